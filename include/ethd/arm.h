@@ -1,0 +1,65 @@
+/* The arm: two links that carry the ring in a vertical plane.
+
+       y ^        X                  parallel: both motors at the base, both angles absolute
+         |   L2 ./  q2 (parallel)      X = (L1 cos q1 + L2 cos q2, L1 sin q1 + L2 sin q2)
+         |   .-'                     serial: q2 relative to link 1
+         | /  L1                       X = (L1 cos q1 + L2 cos(q1 + q2), ...)
+         |/ q1
+      R_0 +------------> x
+
+   Jacobian: V = J dq, force to torque: tau = J^T F. */
+#ifndef ETHD_ARM_H
+#define ETHD_ARM_H
+
+#include "ethd/status.h"
+#include "ethd/vec.h"
+
+ETHD_BEGIN_DECLS
+
+typedef enum ethd_mechanism { ETHD_ARM_PARALLEL = 0, ETHD_ARM_SERIAL = 1 } ethd_mechanism;
+
+typedef struct ethd_arm {
+  ethd_mechanism mechanism;
+  double link1, link2; /* m, > 0 */
+} ethd_arm;
+
+/* The exact inverse of J is used while |sin| of the angle between the links is at least this; nearer
+   to the singularity it is damped, continuously. */
+#define ETHD_ARM_SINGULAR 0.02
+
+/* Where the ring is, and how it moves with the joints. Row-major J: dx/dq1, dx/dq2, dy/dq1, dy/dq2. */
+typedef struct ethd_pose {
+  ethd_vec x;     /* ring centre, m, in R_0 */
+  double j[4];    /* m/rad */
+  double j_inv[4]; /* rad/m: J^-1, damped least squares near a singularity (Nakamura and Hanafusa 1986) */
+} ethd_pose;
+
+/* ETHD_E_RANGE unless both links are finite and > 0 and the mechanism is one of the two. [any] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_arm_check(const ethd_arm *arm, ethd_error *error);
+
+/* Forward kinematics, Jacobian and its (damped) inverse at joint angles q, rad. [any, rt-safe] */
+ETHD_API void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) ETHD_RT;
+
+/* Joint angles that put the ring's centre at x. elbow > 0: link 2 turned counter-clockwise from link 1,
+   < 0: clockwise. ETHD_E_UNREACHABLE outside of the annulus of ethd_arm_reach (q then untouched).
+   Angles in (-pi, pi]. [any, rt-safe] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_arm_angles(const ethd_arm *arm, ethd_vec x, int elbow,
+                                                     double q[2]) ETHD_RT;
+
+/* The reachable annulus about the base joint: inner = |L1 - L2|, outer = L1 + L2, m. [any, rt-safe] */
+ETHD_API void ethd_arm_reach(const ethd_arm *arm, double *inner, double *outer) ETHD_RT;
+
+/* 2x2 row-major products with J or J^-1. [any, rt-safe] */
+static inline ethd_vec ethd_mat_mul(const double m[4], ethd_vec v) ETHD_RT {
+  ethd_vec r = {m[0] * v.x + m[1] * v.y, m[2] * v.x + m[3] * v.y};
+  return r;
+}
+
+static inline ethd_vec ethd_mat_mul_transposed(const double m[4], ethd_vec v) ETHD_RT {
+  ethd_vec r = {m[0] * v.x + m[2] * v.y, m[1] * v.x + m[3] * v.y};
+  return r;
+}
+
+ETHD_END_DECLS
+
+#endif

@@ -1,0 +1,138 @@
+/* The plugin ABI: laws of three kinds, each a const table over state that the controller owns.
+
+   Per tick, for every contact that counts:     transition  who rules? {beta, share, offset, damping}
+                                                contact     (gap, speed) -> force along n
+   and once:                                    tracking    finger relative to ring -> torque
+   The controller composes them:  tau = beta tau_t + J^T sum (share F_e - damping v + feed) n.
+
+   A law is stateless code: numbers in, numbers out. It never allocates, never blocks, keeps nothing.
+   Its state is a block of numbers (no pointers) that is zeroed before reset, copied, recorded, hashed.
+   Parameters were checked against the table when the setup was posted: step trusts them.
+   A law that returns a negative status or a number that isn't finite sends the controller to its safe
+   state. ABI 0 may break until 1.0; ethd_param and ethd_contact are frozen within an ABI, law structs
+   grow at their end and say their size. */
+#ifndef ETHD_LAW_H
+#define ETHD_LAW_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "ethd/param.h"
+#include "ethd/vec.h"
+
+ETHD_BEGIN_DECLS
+
+#define ETHD_ABI 0u
+#define ETHD_STATE_MAX 512u /* bytes of a law's state block */
+
+typedef enum ethd_kind { ETHD_TRACKING = 0, ETHD_CONTACT = 1, ETHD_TRANSITION = 2 } ethd_kind;
+
+/* First member of each kind's struct. */
+typedef struct ethd_law {
+  uint32_t size; /* sizeof the whole law struct as its author compiled it */
+  uint32_t abi;  /* ETHD_ABI */
+  uint32_t kind; /* ethd_kind */
+  uint32_t state_size; /* bytes, <= ETHD_STATE_MAX; contact and transition: one block per contact */
+  const char *id;      /* a-z 0-9 - , 1 to 31 characters */
+  const char *brief;   /* one line */
+  const ethd_param *params;
+  uint32_t param_count;
+  /* Relations between parameters that rows can't say; NULL: none. Negative refuses the post. [main] */
+  ethd_status (*check)(const double *p, ethd_error *error);
+  /* Fills a zeroed state block; NULL: zeros are right. [rt] */
+  void (*reset)(const double *p, void *state) ETHD_RT;
+} ethd_law;
+
+/* ---- tracking: the finger's motion relative to the ring, to joint torques ---- */
+
+typedef struct ethd_tracking_in {
+  double eps_q[2];     /* J^-1 (X_f - X_r), rad (eq. 1) */
+  double eps_q_dot[2]; /* J^-1 (V_f - V_r), rad/s */
+  ethd_vec eps_x;      /* X_f - X_r, m, in R_0 */
+  ethd_vec eps_v;      /* V_f - V_r, m/s */
+  double period;       /* s since the last step */
+} ethd_tracking_in;
+
+typedef struct ethd_tracking_law {
+  ethd_law law;
+  /* tau: joint torques before beta, Nm (eq. 2). [rt] */
+  ethd_status (*step)(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) ETHD_RT;
+} ethd_tracking_law;
+
+/* ---- a contact: a local minimum of the distance between the ring's centre and an object ----
+
+        finger   ring                 |//////     n points into the object
+          o    (      )    d_re       |//////     d_re = n.(P - X_r) - R_r       ring's inner circle to object
+                     |<-------------->P--> n      d_fe = n.(P - X_f) - R_f       finger to object
+                                      |//////     d_fr = n.(P - X_f) - R_r       finger grown to the ring
+   Lengths in m, < 0: penetrating. v = n.(V_r - V of the surface) in m/s, > 0: entering. */
+typedef struct ethd_contact {
+  ethd_vec point, n;
+  double d_re, d_fe, d_fr;
+  double v;       /* of the ring */
+  double v_f;     /* of the finger, likewise along n */
+  double d_beta;  /* R_r - R_f,max, m */
+  double period;  /* s since the last step */
+  double age;     /* s since this contact began to count */
+  int32_t object; /* number in the scene */
+  int32_t reserved;
+} ethd_contact;
+
+/* ---- contact: depth and speed to force ---- */
+
+typedef struct ethd_contact_law {
+  ethd_law law;
+  /* gap: m, to the (offset) wall, < 0 inside; speed: n.V_r, m/s, > 0 entering; entering: the branch of
+     eq. 3, with v_hysteresis applied. force: N along n, <= 0: pushes the ring out (the controller cuts
+     an attractive one to 0). [rt] */
+  ethd_status (*step)(const double *p, void *state, double gap, double speed, int entering,
+                      double *force) ETHD_RT;
+} ethd_contact_law;
+
+/* ---- transition: who rules ---- */
+
+/* What the paper calls the states; a law of another kind of machine may use 3 and up.
+   A contact lives while its state isn't ETHD_TRANSPARENT. */
+enum { ETHD_TRANSPARENT = 0, ETHD_BRAKING = 1, ETHD_VO = 2 };
+
+typedef struct ethd_ruling {
+  double beta;    /* share of the tracking torque, 0 to 1; the smallest over the contacts counts */
+  double share;   /* share of the contact law's force, 0 to 1 */
+  double offset;  /* eps, m: the wall stands so much deeper */
+  double damping; /* bilateral along n, Ns/m (eq. 6): F = -damping v n */
+  double feed;    /* feed-forward force along n, N; adds */
+  ethd_vec shift; /* reference shift, m, added to X_f - X_r; of the contact that rules beta */
+  double argument; /* the distance that beta is a function of, m (recorded) */
+  int32_t state;
+  int32_t reserved;
+} ethd_ruling;
+
+typedef struct ethd_transition_law {
+  ethd_law law;
+  /* `out` comes zeroed but for beta = 1 and argument = d_fe. [rt] */
+  ethd_status (*step)(const double *p, void *state, const ethd_contact *contact,
+                      ethd_ruling *out) ETHD_RT;
+} ethd_transition_law;
+
+/* The smallest size of each kind in ABI 0: up to the end of its last field. */
+#define ETHD_TRACKING_LAW_MIN (offsetof(ethd_tracking_law, step) + sizeof(void (*)(void)))
+#define ETHD_CONTACT_LAW_MIN (offsetof(ethd_contact_law, step) + sizeof(void (*)(void)))
+#define ETHD_TRANSITION_LAW_MIN (offsetof(ethd_transition_law, step) + sizeof(void (*)(void)))
+
+/* ABI, size, kind, state, id, table and entry points of a law; one status each. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_law_check(const ethd_law *law, ethd_error *error);
+
+/* ---- built in: nothing special about them ---- */
+
+ETHD_API extern const ethd_tracking_law ethd_tracking_pd;
+ETHD_API extern const ethd_contact_law ethd_contact_kelvin_voigt, ethd_contact_spring,
+    ethd_contact_hunt_crossley;
+ETHD_API extern const ethd_transition_law ethd_transition_abrupt, ethd_transition_smooth,
+    ethd_transition_offset;
+
+/* All of them, by kind then as in the documentation; the array ends with NULL. [any] */
+ETHD_API extern const ethd_law *const ethd_laws[];
+
+ETHD_END_DECLS
+
+#endif

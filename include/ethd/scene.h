@@ -1,0 +1,134 @@
+/* The virtual scene: objects of the plane, the distance to them, and the contacts within reach.
+
+       outside            inside
+         x ----- n ---->|/////////     d > 0 outside, < 0 inside
+            d           P  object      n = -grad d: into the object, the same way from inside
+                        |/////////
+   A scene is built once and immutable while used: any number of controllers may share it. */
+#ifndef ETHD_SCENE_H
+#define ETHD_SCENE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "ethd/arm.h"
+#include "ethd/param.h"
+#include "ethd/vec.h"
+
+ETHD_BEGIN_DECLS
+
+/* numbers of each shape: halfplane {nx, ny, c}; circle {x, y, r}; capsule {x1, y1, x2, y2, r};
+   box {x, y, half_w, half_h, angle}; segment {x1, y1, x2, y2}; polygon and polyline {x1, y1, x2, y2, ...}.
+   Segments and polylines are thin walls: no inside. Polygons are simple, of either winding. */
+typedef enum ethd_shape {
+  ETHD_HALFPLANE = 0,
+  ETHD_CIRCLE,
+  ETHD_CAPSULE,
+  ETHD_BOX,
+  ETHD_POLYGON,
+  ETHD_SEGMENT,
+  ETHD_POLYLINE,
+  ETHD_SHAPE_COUNT
+} ethd_shape;
+
+#define ETHD_MATERIALS_MAX 32
+#define ETHD_NAME_MAX 32 /* bytes of a name, the closing 0 included */
+
+/* A named surface: values that replace parameters of the setup's contact law ("k_e"). */
+typedef struct ethd_material {
+  char name[ETHD_NAME_MAX];
+  uint32_t count;
+  int32_t line; /* where it was defined, 0 without text */
+  struct {
+    char name[ETHD_NAME_MAX];
+    double value;
+  } values[ETHD_PARAMS_MAX];
+} ethd_material;
+
+typedef struct ethd_object_def {
+  ethd_shape shape;
+  int32_t material; /* index, -1: none */
+  const double *numbers;
+  size_t count; /* of numbers */
+  int32_t line; /* where it stands in the text, for error messages; 0 without text */
+} ethd_object_def;
+
+typedef struct ethd_scene_def {
+  const ethd_object_def *objects;
+  size_t object_count; /* 0 is a valid, empty scene */
+  const ethd_material *materials;
+  size_t material_count;
+} ethd_scene_def;
+
+typedef struct ethd_scene ethd_scene;
+
+/* Copies and checks. Half-plane normals within 1e-6 of unit length are divided by their length (and c
+   with them). Coordinates and sizes up to 1e6 m. ETHD_E_NOT_FINITE, ETHD_E_RANGE, ETHD_E_GEOMETRY
+   (zero-length, self-intersecting), ETHD_E_MEMORY; error->line is the object's. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_create(const ethd_scene_def *def, ethd_scene **out,
+                                                       ethd_error *error);
+
+/* The same from text, one object a line, '#' comments:
+     halfplane NX NY C | circle X Y R | capsule X1 Y1 X2 Y2 R | box X Y HALF_W HALF_H ANGLE
+     polygon X1 Y1 ... | segment X1 Y1 X2 Y2 | polyline X1 Y1 ...      each may end in material=NAME
+     material NAME k_e=.. b_e=..
+   `text` need not end in 0. ETHD_E_SYNTAX, ETHD_E_UNKNOWN, ETHD_E_DUPLICATE and those of create, with
+   error->line and the word in error->name. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_parse(const char *text, size_t length, ethd_scene **out,
+                                                      ethd_error *error);
+
+/* NULL is fine. [main] */
+ETHD_API void ethd_scene_destroy(ethd_scene *scene);
+
+/* The nearest object. */
+typedef struct ethd_nearest {
+  double distance; /* signed; thin walls: >= 0 */
+  ethd_vec point, n;
+  int32_t object; /* ties: the lowest; -1 and distance = inf in an empty scene */
+} ethd_nearest;
+
+/* Exact to 1e-12 times the scene's extent. n is a unit vector always; where the gradient is undefined
+   (on a segment, at a circle's centre) any. [any, rt-safe] */
+ETHD_API void ethd_scene_query(const ethd_scene *scene, ethd_vec x, ethd_nearest *out) ETHD_RT;
+
+/* A local minimum of the distance between x and one object. */
+typedef struct ethd_touch {
+  double distance; /* signed */
+  ethd_vec point, n;
+  int32_t object;
+  int32_t feature; /* edge (2 i) or vertex (2 i + 1) of a polygon or polyline, else 0 */
+  int32_t side;    /* thin walls: +1 left, -1 right of the nearest edge, 0 beyond an end; solids: 0 */
+  int32_t material;
+} ethd_touch;
+
+/* All local minima with distance <= range, the deepest first (ties: lowest object, then feature).
+   At most `room` are written; the return value counts all. Solids give one contact when x is inside.
+   [any, rt-safe] */
+ETHD_API size_t ethd_scene_touches(const ethd_scene *scene, ethd_vec x, double range, ethd_touch *out,
+                                   size_t room) ETHD_RT;
+
+/* The touch of one object at x that continues an earlier one: the local minimum whose point is nearest
+   to `from`, whatever its distance. For contacts that live on out of range. [any, rt-safe] */
+ETHD_API void ethd_scene_follow(const ethd_scene *scene, int32_t object, ethd_vec x, ethd_vec from,
+                                ethd_touch *out) ETHD_RT;
+
+typedef struct ethd_scene_info {
+  size_t objects, by_shape[ETHD_SHAPE_COUNT], segments, materials;
+  double x_min, x_max, y_min, y_max; /* of the bounded objects; min > max when there are none */
+  size_t bytes;                      /* memory held */
+} ethd_scene_info;
+
+ETHD_API void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out);
+
+/* How many objects a ring of this radius on this arm can never touch. [any] */
+ETHD_API size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, double radius);
+
+/* Material i of the scene; NULL past the end. [any, rt-safe] */
+ETHD_API const ethd_material *ethd_scene_material(const ethd_scene *scene, size_t i) ETHD_RT;
+
+/* "halfplane", "circle", ... [any] */
+ETHD_API const char *ethd_shape_name(ethd_shape shape);
+
+ETHD_END_DECLS
+
+#endif

@@ -1,0 +1,58 @@
+/* One enum for every function that can fail: 0 ok, negative failure, positive condition. */
+#ifndef ETHD_STATUS_H
+#define ETHD_STATUS_H
+
+#include "ethd/attributes.h"
+
+ETHD_BEGIN_DECLS
+
+/* X(name, value, sentence) */
+#define ETHD_STATUSES(X)                                                                  \
+  X(OK, 0, "done")                                                                        \
+  X(BUSY, 1, "the receiver has not taken the last one yet")                               \
+  X(STALE, 2, "no newer value has come")                                                  \
+  X(EMPTY, 3, "nothing is waiting")                                                       \
+  X(E_ARGUMENT, -1, "an argument is missing or contradicts another")                      \
+  X(E_RANGE, -2, "a value is out of its range")                                           \
+  X(E_NOT_FINITE, -3, "a value is not a finite number")                                   \
+  X(E_MEMORY, -4, "no memory")                                                            \
+  X(E_UNKNOWN, -5, "an unknown name")                                                     \
+  X(E_DUPLICATE, -6, "a name or key stands twice")                                        \
+  X(E_SYNTAX, -7, "text that cannot be read")                                             \
+  X(E_GEOMETRY, -8, "a shape that cannot be: degenerate or self-intersecting")            \
+  X(E_UNREACHABLE, -9, "out of the arm's reach")                                          \
+  X(E_ABI, -10, "a plugin of another ABI")                                                \
+  X(E_SIZE, -11, "a struct shorter than its ABI asks")                                    \
+  X(E_STATE, -12, "a law's state is over 512 bytes")                                      \
+  X(E_TABLE, -13, "a bad parameter table")                                                \
+  X(E_SYMBOL, -14, "a plugin without the symbol ethd_plugin")                             \
+  X(E_LOAD, -15, "a file that cannot be loaded as a plugin")                              \
+  X(E_LAW, -16, "a law reported a failure")                                               \
+  X(E_BUDGET, -17, "a law ran over its time budget")                                      \
+  X(E_FULL, -18, "no room is left")                                                       \
+  X(E_FILE, -19, "a file that cannot be read or written")                                 \
+  X(E_DEVICE, -20, "the device refused or failed")
+
+typedef enum ethd_status {
+#define ETHD_STATUS_VALUE(name, value, sentence) ETHD_##name = (value),
+  ETHD_STATUSES(ETHD_STATUS_VALUE)
+#undef ETHD_STATUS_VALUE
+} ethd_status;
+
+/* The sentence of a status; "an unknown status" for any other number. [any, rt-safe] */
+ETHD_API const char *ethd_status_sentence(ethd_status status) ETHD_RT;
+
+/* What went wrong, as data: the library formats no text. `name` is the parameter, word or file the
+   failure is about ("contact.k_e"), cut to fit; `line` is 1-based, 0 without text; `found`, `min` and
+   `max` are NaN where no number is meant. */
+typedef struct ethd_error {
+  ethd_status status;
+  int line;
+  char name[64];
+  double found;
+  double min, max;
+} ethd_error;
+
+ETHD_END_DECLS
+
+#endif

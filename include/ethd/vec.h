@@ -1,0 +1,37 @@
+/* Vectors of the plane. Frame R_0: x right, y up, origin at the base joint; m, rad, s, N, Nm. */
+#ifndef ETHD_VEC_H
+#define ETHD_VEC_H
+
+#include <math.h>
+
+#include "ethd/attributes.h"
+
+typedef struct ethd_vec {
+  double x, y;
+} ethd_vec;
+
+static inline ethd_vec ethd_vec_add(ethd_vec a, ethd_vec b) ETHD_RT {
+  ethd_vec r = {a.x + b.x, a.y + b.y};
+  return r;
+}
+
+static inline ethd_vec ethd_vec_sub(ethd_vec a, ethd_vec b) ETHD_RT {
+  ethd_vec r = {a.x - b.x, a.y - b.y};
+  return r;
+}
+
+static inline ethd_vec ethd_vec_scale(double s, ethd_vec a) ETHD_RT {
+  ethd_vec r = {s * a.x, s * a.y};
+  return r;
+}
+
+static inline double ethd_vec_dot(ethd_vec a, ethd_vec b) ETHD_RT { return a.x * b.x + a.y * b.y; }
+
+/* z component of a x b: > 0 where b lies counter-clockwise of a. */
+static inline double ethd_vec_cross(ethd_vec a, ethd_vec b) ETHD_RT {
+  return a.x * b.y - a.y * b.x;
+}
+
+static inline double ethd_vec_norm(ethd_vec a) ETHD_RT { return sqrt(a.x * a.x + a.y * a.y); }
+
+#endif
