@@ -1,0 +1,232 @@
+/* The controller: one call per tick, a pure function of its inputs and one flat block of state.
+
+     ethd_setup setup = ethd_setup_default();            a plain value: which laws, which numbers
+     ethd_control_create(&setup, &control, &error);      checks and copies
+     every tick: ethd_control_step(control, &sense, &command, &trace);
+     any time:   ethd_control_post(control, &setup, &error);    taken whole, between two ticks
+                 ethd_control_poll(control, &event);
+
+   Per tick: estimators (where ring and finger are) -> scene (what is near) -> transition (who rules) ->
+   contact (force of what is touched) -> tracking (torque that follows the finger) -> guard. */
+#ifndef ETHD_CONTROL_H
+#define ETHD_CONTROL_H
+
+#include <stdint.h>
+
+#include "ethd/arm.h"
+#include "ethd/finger_filter.h"
+#include "ethd/finger_fit.h"
+#include "ethd/guard.h"
+#include "ethd/law.h"
+#include "ethd/scene.h"
+#include "ethd/velocity.h"
+
+ETHD_BEGIN_DECLS
+
+#define ETHD_CONTACTS_MAX 8 /* live contacts; the deepest are kept, overflow is counted */
+
+/* ---- setup ---- */
+
+/* Made by ethd_setup_default, then changed field by field. */
+typedef struct ethd_setup {
+  uint32_t cookie; /* set by ethd_setup_default, refuses structs that were not */
+  double period;   /* T, s */
+  ethd_arm arm;
+  double ring_radius;       /* R_r, m: inner radius */
+  double finger_radius;     /* R_f, m */
+  double finger_radius_max; /* R_f,max, m; d_beta = R_r - R_f,max > 0 */
+
+  ethd_velocity_method velocity;
+  double velocity_p[ETHD_PARAMS_MAX];
+  ethd_fit_method fit;
+  double fit_p[ETHD_PARAMS_MAX];
+  ethd_filter_method filter;
+  double filter_p[ETHD_PARAMS_MAX];
+
+  /* The laws outlive the controller. */
+  const ethd_tracking_law *tracking;
+  double tracking_p[ETHD_PARAMS_MAX];
+  const ethd_contact_law *contact;
+  double contact_p[ETHD_PARAMS_MAX];
+  const ethd_transition_law *transition;
+  double transition_p[ETHD_PARAMS_MAX];
+  double swap_time;    /* s: how long a swap's difference fades, 0 to 1 */
+  double v_hysteresis; /* m/s: entering until v < -v_hysteresis, leaving until v > v_hysteresis */
+
+  const ethd_scene *scene; /* NULL: none. Lives until the replaced setup has come back as an event */
+  ethd_limits limits;
+} ethd_setup;
+
+/* parallel 0.25 m arm, lowpass, kasa, ca, pd, kelvin-voigt, offset, no scene, no limits, 1 kHz. [any] */
+ETHD_API ethd_setup ethd_setup_default(void);
+
+/* Choose a law and set its parameters to their defaults. [any] */
+ETHD_API void ethd_setup_tracking(ethd_setup *setup, const ethd_tracking_law *law);
+ETHD_API void ethd_setup_contact(ethd_setup *setup, const ethd_contact_law *law);
+ETHD_API void ethd_setup_transition(ethd_setup *setup, const ethd_transition_law *law);
+ETHD_API void ethd_setup_velocity(ethd_setup *setup, ethd_velocity_method method);
+ETHD_API void ethd_setup_fit(ethd_setup *setup, ethd_fit_method method);
+ETHD_API void ethd_setup_filter(ethd_setup *setup, ethd_filter_method method);
+
+/* Everything that create and post check: names as in the configuration ("contact.k_e"), materials of the
+   scene against the contact law included. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_check(const ethd_setup *setup, ethd_error *error);
+
+/* ---- one tick ---- */
+
+/* What the sense holds, as bits of `have`. */
+enum {
+  ETHD_HAVE_DQ = 1,     /* dq: used as it is, else the setup's velocity estimator works on q */
+  ETHD_HAVE_FINGER = 2, /* finger, finger_v: known for now, no fit, no filter */
+  ETHD_HAVE_START = 4,  /* finger: starts the filter there, at rest */
+  ETHD_HAVE_CENTRE = 8, /* centre: a reading relative to the ring has arrived, taken at sample_ns */
+  ETHD_HAVE_RAYS = 16,  /* rays: a frame of distances has arrived, taken at sample_ns */
+  ETHD_HAVE_RING = 32   /* ring: where the ring stood at sample_ns, as the device knows it */
+};
+
+/* X(type, name, count, unit, brief); every field is 8 bytes wide. */
+#define ETHD_SENSE_FIELDS(X)                                                                     \
+  X(int64_t, time_ns, 1, "ns", "instant of the joint sample")                                   \
+  X(int64_t, have, 1, "1", "bits: what this sense holds")                                       \
+  X(int64_t, missed, 1, "1", "whole periods missed since the last step")                        \
+  X(int64_t, step_ns, 1, "ns", "duration of the last step as the caller measured it")           \
+  X(double, q, 2, "rad", "joint angles")                                                        \
+  X(double, dq, 2, "rad/s", "joint speeds")                                                     \
+  X(double, finger, 2, "m", "finger centre in R_0")                                             \
+  X(double, finger_v, 2, "m/s", "finger velocity in R_0")                                       \
+  X(int64_t, sample_ns, 1, "ns", "instant of the reading")                                      \
+  X(double, centre, 2, "m", "reading: finger centre relative to the ring's")                    \
+  X(double, ring, 2, "m", "ring centre at the reading's instant")                               \
+  X(double, rays, 16, "m", "reading: 16 free distances, NaN missing")
+
+/* X as above. What a tick worked out. Where no contact counts, d_re, d_fe and v_n are NaN. */
+#define ETHD_TRACE_FIELDS(X)                                                                     \
+  X(int64_t, tick, 1, "1", "steps since create or reset")                                       \
+  X(int64_t, fault, 1, "1", "0, or the latched ethd_fault")                                     \
+  X(int64_t, guard, 1, "1", "bits: what the guard did")                                         \
+  X(int64_t, swap, 1, "1", "1: a posted setup was taken at this tick")                          \
+  X(int64_t, queried, 1, "1", "1: the scene was asked")                                         \
+  X(int64_t, contacts, 1, "1", "contacts that count")                                           \
+  X(int64_t, overflow, 1, "1", "contacts that found no room")                                   \
+  X(int64_t, object, 1, "1", "object of the deepest contact, -1 none")                          \
+  X(int64_t, state, 1, "1", "0 transparent, 1 braking, 2 vo")                                   \
+  X(double, x, 2, "m", "ring centre in R_0")                                                    \
+  X(double, v, 2, "m/s", "ring velocity")                                                       \
+  X(double, xf, 2, "m", "finger centre")                                                        \
+  X(double, vf, 2, "m/s", "finger velocity")                                                    \
+  X(double, rf, 1, "m", "finger radius of the last fit, NaN none")                              \
+  X(double, qd, 2, "rad/s", "joint speeds that were used")                                      \
+  X(double, eps_q, 2, "rad", "J^-1 (X_f - X_r)")                                                \
+  X(double, eps_q_dot, 2, "rad/s", "J^-1 (V_f - V_r)")                                          \
+  X(double, beta, 1, "1", "share of the tracking torque")                                       \
+  X(double, fe, 2, "N", "sum of the contact forces")                                            \
+  X(double, fd, 2, "N", "sum of the braking forces")                                            \
+  X(double, eps, 1, "m", "wall offset of the deepest contact")                                  \
+  X(double, d_re, 1, "m", "its ring distance")                                                  \
+  X(double, d_fe, 1, "m", "its finger distance, beta's argument")                               \
+  X(double, v_n, 1, "m/s", "its ring speed along n")                                            \
+  X(double, tau_raw, 2, "Nm", "torque before the guard")                                        \
+  X(double, tau, 2, "Nm", "torque commanded")
+
+#define ETHD_FIELD_1(type, name) type name;
+#define ETHD_FIELD_2(type, name) type name[2];
+#define ETHD_FIELD_16(type, name) type name[16];
+#define ETHD_FIELD(type, name, count, unit, brief) ETHD_FIELD_##count(type, name)
+
+/* One snapshot of the device. Fields that `have` doesn't name are ignored. */
+typedef struct ethd_sense {
+  ETHD_SENSE_FIELDS(ETHD_FIELD)
+} ethd_sense;
+
+/* One tick, whole: replaying `sense` gives the other fields to the bit. */
+typedef struct ethd_trace {
+  ethd_sense sense;
+  ETHD_TRACE_FIELDS(ETHD_FIELD)
+} ethd_trace;
+
+typedef struct ethd_command {
+  double torque[2]; /* Nm, joints 1 and 2 */
+  int32_t safe;     /* 1: safe state, the torque is zero; the device may disable */
+  int32_t reserved;
+} ethd_command;
+
+/* ---- events ---- */
+
+typedef enum ethd_fault {
+  ETHD_FAULT_NONE = 0,
+  ETHD_FAULT_INPUT = 1,     /* q, dq or finger not finite; value: which, ETHD_HAVE_* or 0 for q */
+  ETHD_FAULT_LAW = 2,       /* a law returned a failure; value: 16 kind - status */
+  ETHD_FAULT_FINITE = 3,    /* a law's output isn't finite; value: kind */
+  ETHD_FAULT_BUDGET = 4,    /* the last step ran over limits.step_time; value: ns */
+  ETHD_FAULT_SPEED = 5,     /* guard: value: m/s */
+  ETHD_FAULT_WORKSPACE = 6, /* guard */
+  ETHD_FAULT_COUNT
+} ethd_fault;
+
+/* One sentence each. [any, rt-safe] */
+ETHD_API const char *ethd_fault_sentence(ethd_fault fault) ETHD_RT;
+
+typedef enum ethd_event_kind {
+  ETHD_EVENT_FAULT = 1,  /* code: ethd_fault, value as said there */
+  ETHD_EVENT_TAKEN = 2,  /* a posted setup rules from this tick; scene: the replaced one, if no longer used */
+  ETHD_EVENT_CLEARED = 3 /* faults were acknowledged */
+} ethd_event_kind;
+
+typedef struct ethd_event {
+  ethd_event_kind kind;
+  int32_t code;
+  int64_t tick;
+  double value;
+  const ethd_scene *scene; /* [main] may free it now; NULL: none */
+} ethd_event;
+
+/* Ticks since create or reset, by what happened. */
+typedef struct ethd_counters {
+  uint64_t ticks, queried, swaps, contacts_lost, readings_dropped, events_dropped;
+  uint64_t faults[ETHD_FAULT_COUNT];
+  uint64_t guard[ETHD_GUARD_COUNT];
+} ethd_counters;
+
+/* ---- the controller ---- */
+
+typedef struct ethd_control ethd_control;
+
+/* Checks and copies the setup. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_create(const ethd_setup *setup, ethd_control **out,
+                                                         ethd_error *error);
+
+/* NULL is fine. The setup's scene is the application's. [main] */
+ETHD_API void ethd_control_destroy(ethd_control *control);
+
+/* Checks a whole setup and hands it over; the next step takes it, without a bump: at that tick the torque
+   is what the old setup gives, and the difference to the new one fades linearly to 0 over the new
+   swap_time. ETHD_BUSY: the last one hasn't been taken yet; post again. Any refusal leaves everything as
+   it was. The period can't change (ETHD_E_ARGUMENT). No heap. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_post(ethd_control *control, const ethd_setup *setup,
+                                                       ethd_error *error);
+
+/* The next event, in order; ETHD_EMPTY when there is none. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_poll(ethd_control *control, ethd_event *out);
+
+/* Forgets: state as after create, with the setup that rules now; a posted one stays posted. Not while
+   step runs. [main] */
+ETHD_API void ethd_control_reset(ethd_control *control);
+
+/* Acknowledges a latched fault; taken at the next step, which starts softly from zero torque. [any] */
+ETHD_API void ethd_control_clear(ethd_control *control);
+
+/* One tick. trace may be NULL. Always fills command; a negative status says that this tick's command is
+   the safe one and why: ETHD_E_NOT_FINITE, ETHD_E_LAW, ETHD_E_BUDGET, ETHD_E_RANGE (guard stop). [rt] */
+ETHD_API ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense,
+                                       ethd_command *command, ethd_trace *trace) ETHD_RT;
+
+/* The same tick on a copy of the state: nothing changes, no event. Warms caches before arming. [rt] */
+ETHD_API ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense,
+                                           ethd_command *command) ETHD_RT;
+
+/* [any] between steps. */
+ETHD_API void ethd_control_counters(const ethd_control *control, ethd_counters *out) ETHD_RT;
+
+ETHD_END_DECLS
+
+#endif

@@ -1,0 +1,56 @@
+/* The guard: the last to touch a torque before the device. */
+#ifndef ETHD_GUARD_H
+#define ETHD_GUARD_H
+
+#include <stdint.h>
+
+#include "ethd/arm.h"
+
+ETHD_BEGIN_DECLS
+
+/* Each may be INFINITY (workspace: -INFINITY, INFINITY): no limit. 0 is a limit of 0. */
+typedef struct ethd_limits {
+  double torque;       /* Nm, each joint, >= 0 */
+  double torque_rate;  /* Nm/s, each joint, >= 0 */
+  double speed;        /* m/s of the ring, >= 0 */
+  double workspace[4]; /* m: x_min, x_max, y_min, y_max of the ring's centre */
+  double step_time;    /* s: time budget of one step, > 0 */
+  int32_t latch;       /* 1: faults latch until cleared; 0: each tick is judged alone (replay) */
+  int32_t reserved;
+} ethd_limits;
+
+/* No limits, latching. [any] */
+ETHD_API ethd_limits ethd_limits_none(void);
+
+/* ETHD_E_RANGE or ETHD_E_NOT_FINITE with the limit's name. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_limits_check(const ethd_limits *limits, ethd_error *error);
+
+/* The narrower of two, limit by limit; latches if either does. [any] */
+ETHD_API ethd_limits ethd_limits_narrower(const ethd_limits *a, const ethd_limits *b);
+
+/* What the guard did, as bits; the counters count ticks. */
+enum {
+  ETHD_GUARD_FINITE = 1,    /* torque not finite: zero torque, latched */
+  ETHD_GUARD_TORQUE = 2,    /* clamped */
+  ETHD_GUARD_RATE = 4,      /* slope limited */
+  ETHD_GUARD_SPEED = 8,     /* ring too fast: damped until it is still, then zero, latched */
+  ETHD_GUARD_WORKSPACE = 16 /* ring out of its workspace: likewise */
+};
+#define ETHD_GUARD_COUNT 5
+
+typedef struct ethd_guard_state {
+  double last[2];      /* torque of the last tick, Nm */
+  uint64_t counts[ETHD_GUARD_COUNT];
+  int32_t stopping;    /* bit of the guard that stops the ring, 0: none */
+  int32_t stopped;     /* 1: it stands still; zero torque until cleared */
+} ethd_guard_state;
+
+/* Limits `torque` in place; returns the bits of what it did. Order: speed and workspace (replace the
+   torque by damping), finite, torque, rate. pose and v are the ring's. [rt] */
+ETHD_API int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *state,
+                                 const ethd_pose *pose, ethd_vec v, double dt,
+                                 double torque[2]) ETHD_RT;
+
+ETHD_END_DECLS
+
+#endif
