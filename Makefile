@@ -1,0 +1,234 @@
+# libethd. Targets: all demo check bench ci install uninstall clean.
+# Variables: CC CXX CFLAGS CPPFLAGS LDFLAGS PREFIX DESTDIR BUILD, and
+#   SAN=address|thread|undefined|address,undefined   a sanitizer build, in a tree of its own
+#   WERROR=1   warnings are errors        V=1   whole command lines
+#   TESTS=...  only these tests, by name; % matches anything: TESTS='test_% golden'
+
+PREFIX ?= /usr/local
+BUILD ?= build
+CXX ?= g++
+PKG_CONFIG ?= pkg-config
+CFLAGS ?= -O2 -g
+RT ?= posix
+
+# Sources of libethd that work on [main] only; every other one must suit the control thread.
+MAIN_SIDE := $(wildcard lib/plugin.c lib/scene_parse.c lib/*_create.c)
+
+SHELL := /bin/sh
+.SUFFIXES:
+.DELETE_ON_ERROR:
+.PHONY: all demo check bench ci install uninstall clean tests FORCE
+.DEFAULT_GOAL := all
+
+comma := ,
+ifneq ($(RT),posix)
+$(error RT=$(RT): this version builds RT=posix only)
+endif
+ifneq ($(filter-out address thread undefined,$(subst $(comma), ,$(SAN))),)
+$(error SAN=$(SAN): address, thread, undefined or address,undefined are known)
+endif
+ifneq ($(filter -ffast-math -Ofast -funsafe-math-optimizations,$(CFLAGS) $(CPPFLAGS)),)
+$(error CFLAGS=$(CFLAGS): results are equal to the bit on every machine, which fast maths breaks)
+endif
+
+B := $(BUILD)$(if $(SAN),-san-$(subst $(comma),-,$(SAN)))
+Q := $(if $(V),,@)
+say = $(if $(V),@:,@printf '  %-6s %s\n' $(1) $(2))
+
+# ---- set-up: before anything compiles, while this file is read ------------------------------
+
+GOALS := $(or $(MAKECMDGOALS),all)
+KINDS := $(if $(filter all demo check bench ci install tests,$(GOALS)),build) \
+         $(if $(filter check ci tests,$(GOALS)),check) $(if $(filter demo,$(GOALS)),demo)
+DRY := $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
+ifneq ($(strip $(KINDS)),)
+ifeq ($(DRY),)
+ifneq ($(shell CC='$(CC)' CXX='$(CXX)' PKG_CONFIG='$(PKG_CONFIG)' SAN='$(SAN)' sh .ci/setup $(KINDS)),ready)
+$(error the set-up stopped, as said above)
+endif
+endif
+endif
+
+# ---- flags ----------------------------------------------------------------------------------
+
+X86_32 := $(shell echo | $(CC) $(CPPFLAGS) $(CFLAGS) -dM -E -x c - 2>/dev/null | grep -q __i386__ && echo yes)
+
+WARN := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla \
+        $(if $(WERROR),-Werror)
+MATHS := -ffp-contract=off -fno-math-errno $(if $(X86_32),-msse2 -mfpmath=sse)
+SANFLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-omit-frame-pointer -U_FORTIFY_SOURCE \
+            $(if $(findstring undefined,$(SAN)),-fsanitize=float-cast-overflow -fno-sanitize-recover=all))
+BASE := -std=gnu11 $(CFLAGS) $(WARN) $(MATHS) $(SANFLAGS)
+PIC := -fPIC -fvisibility=hidden -fno-semantic-interposition
+
+FLAGS_lib := $(BASE) $(PIC) -fno-stack-protector -U_FORTIFY_SOURCE -Iinclude -Ilib
+FLAGS_drivers := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Idrivers
+FLAGS_apps := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Idrivers -Iapps
+FLAGS_tests := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Ilib -Idrivers -Iapps -Itests
+FLAGS_plugin := $(BASE) -fPIC -Iinclude
+LIBS := -lm -ldl -lpthread
+LINK = $(CC) $(BASE) $(LDFLAGS)
+
+# ---- what there is --------------------------------------------------------------------------
+
+LIB_C := $(wildcard lib/*.c)
+DRIVERS_C := $(wildcard drivers/*.c drivers/*/*.c)
+PROGRAMS_C := $(wildcard apps/ethd-*.c)
+APPS_C := $(wildcard apps/*/*.c)
+PLUGINS_C := $(wildcard tests/plugins/*.c)
+BENCH_C := $(wildcard tests/bench/*.c)
+TESTS_C := $(filter-out $(PLUGINS_C) $(BENCH_C),$(wildcard tests/*/test_*.c))
+HELPERS_C := $(filter-out $(PLUGINS_C) $(BENCH_C) $(TESTS_C) tests/fuzz/%,$(wildcard tests/*/*.c))
+HEADERS := $(wildcard include/ethd/*.h)
+SCRIPTS := $(sort $(shell find tests -name '*.sh' -perm -u+x 2>/dev/null))
+
+obj = $(patsubst %.c,$(B)/obj/%.o,$(1))
+LIB_O := $(call obj,$(LIB_C))
+RT_O := $(call obj,$(filter-out $(MAIN_SIDE),$(LIB_C)))
+PROGRAMS := $(patsubst apps/%.c,$(B)/bin/%,$(PROGRAMS_C))
+UNIT := $(addprefix $(B)/tests/,$(notdir $(TESTS_C:.c=)))
+PLUGINS := $(patsubst tests/plugins/%.c,$(B)/tests/plugins/%.so,$(PLUGINS_C))
+BENCHES := $(patsubst tests/bench/%.c,$(B)/tests/bench/%,$(BENCH_C))
+SHARE := $(patsubst apps/config/%,$(B)/share/ethd/%,$(shell find apps/config -type f 2>/dev/null)) \
+         $(patsubst apps/plot/%,$(B)/share/ethd/plot/%,$(wildcard apps/plot/*.gp))
+ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a
+LIBRARIES := $(B)/libethd.a $(B)/libethd-drivers.a $(B)/libethd.so.0 $(B)/libethd.so $(B)/ethd.pc
+
+all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
+tests: all $(UNIT) $(PLUGINS)
+
+# ---- build ----------------------------------------------------------------------------------
+
+# Objects of different flags never mix: everything depends on the flags it is built with.
+FLAGS_TEXT = $(LINK) | $(FLAGS_lib) | $(FLAGS_drivers) | $(FLAGS_apps) | $(FLAGS_tests) | $(CPPFLAGS)
+SOURCES_TEXT := $(LIB_C) | $(DRIVERS_C) | $(PROGRAMS_C) | $(APPS_C) | $(HELPERS_C)
+keep = mkdir -p $(@D) && cat >$@.new && if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+$(B)/flags: export TEXT = $(FLAGS_TEXT)
+$(B)/flags: FORCE
+	@{ $(CC) --version && printf '%s\n' "$$TEXT"; } | { $(keep); }
+$(B)/sources: export TEXT = $(SOURCES_TEXT)
+$(B)/sources: FORCE
+	@printf '%s\n' "$$TEXT" | { $(keep); }
+
+define compile
+$(B)/obj/$(1)/%.o: $(1)/%.c $(B)/flags
+	$$(call say,CC,$$<)
+	@mkdir -p $$(@D)
+	$$(Q)$$(CC) $$(CPPFLAGS) $$(FLAGS_$(1)) -MMD -MP -c $$< -o $$@
+endef
+$(foreach d,lib drivers apps tests,$(eval $(call compile,$(d))))
+-include $(patsubst %.o,%.d,$(call obj,$(LIB_C) $(DRIVERS_C) $(PROGRAMS_C) $(APPS_C) $(TESTS_C) \
+           $(HELPERS_C) $(BENCH_C))) $(PLUGINS:.so=.d)
+
+$(B)/libethd.a: $(LIB_O)
+$(B)/libethd-drivers.a: $(call obj,$(DRIVERS_C))
+$(B)/libethd-apps.a: $(call obj,$(APPS_C))
+$(B)/libethd-tests.a: $(call obj,$(HELPERS_C))
+$(B)/%.a: $(B)/sources
+	$(call say,AR,$@)
+	$(Q)rm -f $@ && $(AR) rcs $@ $(filter %.o,$^)
+
+$(B)/libethd.so.0: $(LIB_O) lib/libethd.map $(B)/sources
+	$(call say,LINK,$@)
+	$(Q)$(LINK) -shared -Wl,-soname,libethd.so.0 -Wl,--version-script=lib/libethd.map \
+	  -Wl,-Bsymbolic-functions -Wl,-z,now $(if $(SAN),,-Wl,-z,defs) -o $@ $(LIB_O) -lm -ldl
+$(B)/libethd.so: $(B)/libethd.so.0
+	@ln -sf libethd.so.0 $@
+
+$(B)/ethd.pc: lib/ethd.pc.in include/ethd/ethd.h $(B)/prefix
+	$(call say,GEN,$@)
+	@sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' lib/ethd.pc.in >$@
+$(B)/prefix: FORCE
+	@echo '$(PREFIX)' | { $(keep); }
+VERSION = $(shell sed -n 's/.*define ETHD_VERSION "\(.*\)".*/\1/p' include/ethd/ethd.h)
+
+# Programs hold the whole of libethd and show its public names to the plugins they load: a plugin
+# calls the very code that its host runs, calls within the tick stay direct, and programs run from
+# the tree and once installed without a search path.
+WHOLE := -Wl,--whole-archive $(B)/libethd.a -Wl,--no-whole-archive -Wl,--export-dynamic-symbol='ethd_*' -Wl,-z,now
+
+$(PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES) $(B)/libethd.a
+	$(call say,LINK,$@)
+	@mkdir -p $(@D)
+	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) -linih $(LIBS)
+
+define test_program
+$(B)/$(if $(filter tests/bench/%,$(1)),$(1:.c=),tests/$(notdir $(1:.c=))): $(B)/obj/$(1:.c=.o) $(B)/libethd-tests.a $(ARCHIVES) $(B)/libethd.a
+	$$(call say,LINK,$$@)
+	@mkdir -p $$(@D)
+	$$(Q)$$(LINK) -o $$@ $$< $(B)/libethd-tests.a $$(ARCHIVES) $$(WHOLE) \
+	  $$(shell $$(PKG_CONFIG) --libs check) -linih $$(LIBS)
+endef
+$(foreach t,$(TESTS_C) $(BENCH_C),$(eval $(call test_program,$(t))))
+
+$(PLUGINS): $(B)/tests/plugins/%.so: tests/plugins/%.c $(B)/flags
+	$(call say,PLUGIN,$@)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CPPFLAGS) $(FLAGS_plugin) $(LDFLAGS) -MMD -MP -MF $(@:.so=.d) -shared -o $@ $<
+
+$(filter-out $(B)/share/ethd/plot/%,$(SHARE)): $(B)/share/ethd/%: apps/config/%
+	@mkdir -p $(@D) && cp $< $@
+$(filter $(B)/share/ethd/plot/%,$(SHARE)): $(B)/share/ethd/plot/%: apps/plot/%
+	@mkdir -p $(@D) && cp $< $@
+
+# ---- tests ----------------------------------------------------------------------------------
+
+# One result file for each test; nothing stops at the first failure; the summary comes last.
+wanted = $(if $(TESTS),$(filter $(TESTS),$(1)),$(1))
+UNIT_RUNS := $(addprefix $(B)/run/,$(call wanted,$(notdir $(UNIT))))
+SCRIPT_RUNS := $(foreach s,$(SCRIPTS),$(if $(call wanted,$(basename $(notdir $(s)))),$(B)/run/$(basename $(notdir $(s)))))
+TREE_RUN := $(addprefix $(B)/run/,$(call wanted,tree_clean))
+RUNS := $(UNIT_RUNS) $(SCRIPT_RUNS)
+run_test = @BUILD='$(abspath $(B))' CC='$(CC)' CXX='$(CXX)' PKG_CONFIG='$(PKG_CONFIG)' SAN='$(SAN)' \
+  CFLAGS='$(CFLAGS)' RT_OBJECTS='$(RT_O)' MAKE='$(MAKE)' V='$(V)' sh .ci/test $@
+FORCE:
+
+$(UNIT_RUNS): $(B)/run/%: FORCE | tests
+	$(run_test) $(B)/tests/$*
+$(foreach s,$(SCRIPTS),$(eval $(B)/run/$(basename $(notdir $(s))): SCRIPT := $(s)))
+$(SCRIPT_RUNS): FORCE | tests
+	$(run_test) $(SCRIPT)
+$(TREE_RUN): FORCE | $(RUNS)
+	$(run_test) .ci/tree_clean
+
+ifneq ($(filter check,$(GOALS)),)
+$(if $(DRY),,$(shell BUILD='$(B)' sh .ci/tree_clean before))
+endif
+check: $(RUNS) $(TREE_RUN)
+	@sh .ci/summary $(RUNS) $(TREE_RUN)
+
+demo: all
+	@BUILD='$(B)' sh apps/demo.sh
+
+bench: all $(BENCHES)
+	@$(if $(BENCHES),set -e; for b in $(BENCHES); do $$b; done,echo 'there is no benchmark yet')
+
+ci:
+	@BUILD='$(BUILD)' MAKE='$(MAKE)' bash .ci/ci
+
+# ---- install --------------------------------------------------------------------------------
+
+bindir := $(DESTDIR)$(PREFIX)/bin
+libdir := $(DESTDIR)$(PREFIX)/lib
+incdir := $(DESTDIR)$(PREFIX)/include/ethd
+sharedir := $(DESTDIR)$(PREFIX)/share/ethd
+INSTALLED := $(PROGRAMS:$(B)/bin/%=$(bindir)/%) $(HEADERS:include/ethd/%=$(incdir)/%) \
+  $(SHARE:$(B)/share/ethd/%=$(sharedir)/%) $(libdir)/libethd.a $(libdir)/libethd-drivers.a \
+  $(libdir)/libethd.so.0 $(libdir)/libethd.so $(libdir)/pkgconfig/ethd.pc
+
+install: all
+	install -d $(sort $(dir $(INSTALLED)))
+	$(if $(PROGRAMS),install -m 755 $(PROGRAMS) $(bindir))
+	$(if $(HEADERS),install -m 644 $(HEADERS) $(incdir))
+	install -m 644 $(B)/libethd.a $(B)/libethd-drivers.a $(B)/libethd.so.0 $(libdir)
+	ln -sf libethd.so.0 $(libdir)/libethd.so
+	install -m 644 $(B)/ethd.pc $(libdir)/pkgconfig
+	@$(foreach f,$(SHARE:$(B)/share/ethd/%=%),install -m 644 $(B)/share/ethd/$(f) $(sharedir)/$(f) &&) :
+
+# What was installed, and the folders that are ours alone; shared ones stay.
+uninstall:
+	rm -f $(INSTALLED)
+	@for d in $(incdir) $(sharedir); do if [ -d $$d ]; then find $$d -depth -type d -empty -delete; fi; done
+
+clean:
+	@for d in $(BUILD) $(BUILD)-san-*; do if [ -f $$d/flags ] || [ -d $$d/ci ]; then rm -rf $$d; fi; done

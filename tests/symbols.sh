@@ -1,0 +1,73 @@
+#!/bin/sh
+# What libethd.so shows and what it needs; what the control side's objects need.
+#   BUILD=build sh tests/symbols.sh renew    writes tests/exported-symbols.txt anew
+set -u
+LC_ALL=C
+export LC_ALL
+so=$BUILD/libethd.so.0
+list=tests/exported-symbols.txt
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+failed=0
+fail() { echo "$*"; failed=1; }
+
+# Names marked ETHD_API in the public headers, comments and preprocessor lines left out.
+declared() {
+  cat include/ethd/*.h | awk '
+    { text = text $0 "\n" }
+    END {
+      while ((i = index(text, "/*")) > 0) {
+        rest = substr(text, i + 2); j = index(rest, "*/")
+        text = substr(text, 1, i - 1) " " substr(rest, j + 2)
+      }
+      n = split(text, lines, "\n"); text = ""; carry = 0
+      for (k = 1; k <= n; k++) {
+        if (!carry && lines[k] !~ /^[ \t]*#/) { sub(/\/\/.*/, "", lines[k]); text = text " " lines[k] }
+        else { carry = (lines[k] ~ /\\$/); continue }
+      }
+      n = split(text, statements, /[;{}]/)
+      for (k = 1; k <= n; k++) {
+        s = statements[k]
+        if (!match(s, /(^|[^A-Za-z0-9_])ETHD_API([^A-Za-z0-9_]|$)/)) continue
+        s = substr(s, RSTART + RLENGTH)
+        if (match(s, /[a-z_][A-Za-z0-9_]*[ \t]*\(/) == 0) match(s, /[A-Za-z0-9_]+[ \t]*(\[.*)?$/)
+        name = substr(s, RSTART, RLENGTH); sub(/[^A-Za-z0-9_].*/, "", name); print name
+      }
+    }' | sort -u
+}
+
+nm -D --defined-only "$so" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort -u >"$work/exported"
+if [ "${1:-}" = renew ]; then
+  cp "$work/exported" "$list"
+  echo "$list: $(wc -l <"$list") symbols"
+  exit
+fi
+if [ -n "${SAN:-}" ]; then echo "SKIP: a sanitizer's build needs the sanitizer's symbols"; exit 77; fi
+
+grep -vE '^ethd_[a-z]' "$work/exported" >"$work/foreign" && fail "exported, but not called ethd_*:" && cat "$work/foreign"
+if ! diff "$list" "$work/exported" >"$work/diff"; then
+  fail "exported symbols (>) differ from $list (<); if that is meant: BUILD=$BUILD sh tests/symbols.sh renew"
+  cat "$work/diff"
+fi
+# A declaration belongs to libethd.so or, of the drivers' headers, to libethd-drivers.a.
+declared >"$work/declared"
+nm --defined-only "$BUILD/libethd-drivers.a" 2>/dev/null | awk 'NF == 3 { print $3 }' | sort -u >"$work/drivers"
+comm -13 "$work/declared" "$work/exported" >"$work/unmarked"
+[ -s "$work/unmarked" ] && fail "exported without an ETHD_API declaration:" && cat "$work/unmarked"
+sort -u "$work/exported" "$work/drivers" | comm -23 "$work/declared" - >"$work/undefined"
+[ -s "$work/undefined" ] && fail "declared ETHD_API, defined nowhere:" && cat "$work/undefined"
+
+exact='fabs|floor|ceil|round|trunc|rint|nearbyint|lround|llround|lrint|llrint|fmin|fmax|copysign|fmod|remainder|nextafter|ldexp|frexp|scalbn|modf'
+control="mem(cpy|move|set|cmp|chr)|sqrt|$exact"
+# The compiler's own: start files of a shared object, integer helpers of 32-bit machines.
+compiler='_GLOBAL_OFFSET_TABLE_|__cxa_finalize|__gmon_start__|_ITM_(de)?registerTMCloneTable|__u?(div|mod|divmod|mul|ashl|ashr|lshr)[sdt]i[34]|__aeabi_[a-z0-9_]+'
+library="$control|str[a-z]+|malloc|calloc|free|aligned_alloc|dl(open|sym|close|error)|__isoc23_str[a-z]+"
+
+needs() { nm -u "$@" | awk 'NF >= 2 { sub(/@.*/, "", $2); print $2 }' | sort -u; }
+needs "$so" | grep -vxE "$library|$compiler" >"$work/so" && fail "libethd.so needs what it may not:" && cat "$work/so"
+for object in $RT_OBJECTS; do
+  needs "$object" | grep -vxE "$control|ethd_[a-z0-9_]+|$compiler" >"$work/object" &&
+    fail "$object, of the control side, needs what it may not:" && cat "$work/object"
+done
+echo "$(wc -l <"$work/exported") exported, $(echo $RT_OBJECTS | wc -w) objects of the control side"
+exit $failed
