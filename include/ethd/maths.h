@@ -1,0 +1,47 @@
+/* Elementary functions that give the same bits everywhere.
+
+   A C library picks its variant of sin or exp by the CPU it finds (with or without FMA), so the same
+   seed would give other bits on another machine. These use only + - * / and integers in a fixed order,
+   and give equal bits for every compiler and CPU with IEEE 754 doubles, as long as they are built
+   without contraction or value-changing optimisation (-ffp-contract=off, never -ffast-math).
+
+   Common to all: angles in rad; NaN in, NaN out; round to nearest is assumed; errno is never set and no
+   floating-point flag is promised. With FTZ and DAZ set, as on the control thread, subnormal arguments
+   count as zeros and subnormal results may be zeros; all other results stay the same.
+   ulp: a unit in the last place of the exact result. Errors are the largest ones measured against
+   80-bit long double. */
+#ifndef ETHD_MATHS_H
+#define ETHD_MATHS_H
+
+#include "ethd/attributes.h"
+
+ETHD_BEGIN_DECLS
+
+/* Sine and cosine of every finite x, however large: error < @SIN@ ulp (sin), < @COS@ ulp (cos).
+   sin(+-0) = +-0; NaN for infinite x. Odd and even to the bit. [any, rt-safe] */
+ETHD_API double ethd_sin(double x) ETHD_RT;
+ETHD_API double ethd_cos(double x) ETHD_RT;
+
+/* Both at once, the same bits as ethd_sin and ethd_cos. [any, rt-safe] */
+ETHD_API void ethd_sincos(double x, double *sine, double *cosine) ETHD_RT;
+
+/* Angle of the point (x, y) from the x axis, in [-pi, pi], with the sign of y: error < @ATAN2@ ulp.
+   Zeros and infinities as in C11 F.10.1.4: atan2(+-0, -0) = +-pi, atan2(+-0, +0) = +-0,
+   atan2(+-inf, -inf) = +-3 pi/4, and so on. [any, rt-safe] */
+ETHD_API double ethd_atan2(double y, double x) ETHD_RT;
+
+/* e^x: error < @EXP@ ulp, < @EXPSUB@ ulp where the result is subnormal. exp(+-0) = 1, exp(-inf) = 0,
+   +inf above 709.7827, 0 below -745.1332. [any, rt-safe] */
+ETHD_API double ethd_exp(double x) ETHD_RT;
+
+/* Natural logarithm, of subnormal x too: error < @LOG@ ulp. log(1) = +0, log(+-0) = -inf,
+   log(+inf) = +inf, NaN for x < 0. [any, rt-safe] */
+ETHD_API double ethd_log(double x) ETHD_RT;
+
+/* Hyperbolic tangent: error < @TANH@ ulp, |tanh| <= 1, odd to the bit. tanh(+-0) = +-0,
+   tanh(+-inf) = +-1. [any, rt-safe] */
+ETHD_API double ethd_tanh(double x) ETHD_RT;
+
+ETHD_END_DECLS
+
+#endif

@@ -1,0 +1,65 @@
+/* Recordings: a folder with tick.npy (one ethd_trace a row), config.ini, the scene, events.csv.
+
+   tick.npy is a NumPy structured array whose header's count is raised after each flush: a killed run
+   leaves a readable file. All [main]. */
+#ifndef ETHD_RECORD_H
+#define ETHD_RECORD_H
+
+#include <stdio.h>
+
+#include "ethd/config.h"
+
+ETHD_BEGIN_DECLS
+
+/* One column of a row of 8-byte fields. */
+typedef struct ethd_column {
+  const char *name, *unit;
+  uint32_t count;  /* of numbers */
+  uint32_t offset; /* bytes */
+  char type;       /* 'f' double, 'i' int64_t */
+} ethd_column;
+
+/* The columns of an ethd_trace, ended by a NULL name. */
+ETHD_API extern const ethd_column ethd_trace_columns[];
+
+typedef struct ethd_npy ethd_npy;
+
+/* A new .npy of rows of `columns`; written to path, which must not exist or is replaced. */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_create(const char *path, const ethd_column *columns,
+                                                     size_t row_bytes, ethd_npy **out,
+                                                     char message[ETHD_MESSAGE_MAX]);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_append(ethd_npy *npy, const void *rows, size_t count);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_flush(ethd_npy *npy);
+/* Flushes, closes, frees. */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_close(ethd_npy *npy);
+
+/* Whole file into memory, with exactly these columns; *rows is freed by the caller. */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_read(const char *path, const ethd_column *columns,
+                                                   size_t row_bytes, void **rows, size_t *count,
+                                                   char message[ETHD_MESSAGE_MAX]);
+
+typedef struct ethd_recording ethd_recording;
+
+/* Makes the folder and the files of a recording: config.ini is the configuration's text with the scene's
+   file renamed to scene.scene, plugins to absolute paths. */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, const ethd_config *config,
+                                                           ethd_recording **out,
+                                                           char message[ETHD_MESSAGE_MAX]);
+
+/* events.csv: row,kind,detail; row: of tick.npy, the event comes before it. kind: start (the controller
+   was reset, detail: free words), transition (detail: law), set (detail: key value), fault (sentence). */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_event(ethd_recording *recording, const char *kind,
+                                                          const char *detail);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_tick(ethd_recording *recording,
+                                                         const ethd_trace *trace);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_close(ethd_recording *recording);
+
+/* Replays a recording through the library and compares every field bit for bit. ETHD_OK: equal, and
+   message says how many ticks. Negative: message says the first tick and field that differ, or why it
+   can't be read. */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_verify(const char *folder,
+                                                           char message[ETHD_MESSAGE_MAX]);
+
+ETHD_END_DECLS
+
+#endif
