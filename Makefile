@@ -17,7 +17,7 @@ MAIN_SIDE := $(wildcard lib/plugin.c lib/scene_parse.c lib/*_create.c)
 SHELL := /bin/sh
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: all demo check bench ci install uninstall clean tests FORCE
+.PHONY: all demo check bench ci install install-files uninstall clean tests FORCE
 .DEFAULT_GOAL := all
 
 comma := ,
@@ -92,7 +92,7 @@ BENCHES := $(patsubst tests/bench/%.c,$(B)/tests/bench/%,$(BENCH_C))
 SHARE := $(patsubst apps/config/%,$(B)/share/ethd/%,$(shell find apps/config -type f 2>/dev/null)) \
          $(patsubst apps/plot/%,$(B)/share/ethd/plot/%,$(wildcard apps/plot/*.gp))
 ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a
-LIBRARIES := $(B)/libethd.a $(B)/libethd-drivers.a $(B)/libethd.so.0 $(B)/libethd.so $(B)/ethd.pc
+LIBRARIES := $(B)/libethd.a $(B)/libethd-drivers.a $(B)/libethd.so.0 $(B)/libethd.so
 
 all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
 tests: all $(UNIT) $(PLUGINS)
@@ -134,13 +134,6 @@ $(B)/libethd.so.0: $(LIB_O) lib/libethd.map $(B)/sources
 	  -Wl,-Bsymbolic-functions -Wl,-z,now $(if $(SAN),,-Wl,-z,defs) -o $@ $(LIB_O) -lm -ldl
 $(B)/libethd.so: $(B)/libethd.so.0
 	@ln -sf libethd.so.0 $@
-
-$(B)/ethd.pc: lib/ethd.pc.in include/ethd/ethd.h $(B)/prefix
-	$(call say,GEN,$@)
-	@sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' lib/ethd.pc.in >$@
-$(B)/prefix: FORCE
-	@echo '$(PREFIX)' | { $(keep); }
-VERSION = $(shell sed -n 's/.*define ETHD_VERSION "\(.*\)".*/\1/p' include/ethd/ethd.h)
 
 # Programs hold the whole of libethd and show its public names to the plugins they load: a plugin
 # calls the very code that its host runs, calls within the tick stay direct, and programs run from
@@ -208,6 +201,7 @@ ci:
 
 # ---- install --------------------------------------------------------------------------------
 
+VERSION = $(shell sed -n 's/.*define ETHD_VERSION "\(.*\)".*/\1/p' include/ethd/ethd.h)
 bindir := $(DESTDIR)$(PREFIX)/bin
 libdir := $(DESTDIR)$(PREFIX)/lib
 incdir := $(DESTDIR)$(PREFIX)/include/ethd
@@ -217,12 +211,15 @@ INSTALLED := $(PROGRAMS:$(B)/bin/%=$(bindir)/%) $(HEADERS:include/ethd/%=$(incdi
   $(libdir)/libethd.so.0 $(libdir)/libethd.so $(libdir)/pkgconfig/ethd.pc
 
 install: all
+	@$(MAKE) --no-print-directory install-files
+
+install-files:
 	install -d $(sort $(dir $(INSTALLED)))
 	$(if $(PROGRAMS),install -m 755 $(PROGRAMS) $(bindir))
 	$(if $(HEADERS),install -m 644 $(HEADERS) $(incdir))
 	install -m 644 $(B)/libethd.a $(B)/libethd-drivers.a $(B)/libethd.so.0 $(libdir)
 	ln -sf libethd.so.0 $(libdir)/libethd.so
-	install -m 644 $(B)/ethd.pc $(libdir)/pkgconfig
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' lib/ethd.pc.in >$(libdir)/pkgconfig/ethd.pc
 	@$(foreach f,$(SHARE:$(B)/share/ethd/%=%),install -m 644 $(B)/share/ethd/$(f) $(sharedir)/$(f) &&) :
 
 # What was installed, and the folders that are ours alone; shared ones stay.

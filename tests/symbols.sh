@@ -11,7 +11,8 @@ trap 'rm -rf "$work"' EXIT
 failed=0
 fail() { echo "$*"; failed=1; }
 
-# Names marked ETHD_API in the public headers, comments and preprocessor lines left out.
+# Names marked ETHD_API in the public headers, comments and preprocessor lines left out; ethd_plugin is the
+# one symbol that a plugin defines.
 declared() {
   cat include/ethd/*.h | awk '
     { text = text $0 "\n" }
@@ -30,10 +31,14 @@ declared() {
         s = statements[k]
         if (!match(s, /(^|[^A-Za-z0-9_])ETHD_API([^A-Za-z0-9_]|$)/)) continue
         s = substr(s, RSTART + RLENGTH)
-        if (match(s, /[a-z_][A-Za-z0-9_]*[ \t]*\(/) == 0) match(s, /[A-Za-z0-9_]+[ \t]*(\[.*)?$/)
-        name = substr(s, RSTART, RLENGTH); sub(/[^A-Za-z0-9_].*/, "", name); print name
+        if (match(s, /[a-z_][A-Za-z0-9_]*[ \t]*\(/)) {
+          name = substr(s, RSTART, RLENGTH); sub(/[ \t]*\(/, "", name); print name
+        } else {
+          m = split(s, names, ",")
+          for (i = 1; i <= m; i++) { sub(/[ \t]*(\[.*)?$/, "", names[i]); sub(/.*[^A-Za-z0-9_]/, "", names[i]); print names[i] }
+        }
       }
-    }' | sort -u
+    }' | grep -vx ethd_plugin | sort -u
 }
 
 nm -D --defined-only "$so" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort -u >"$work/exported"

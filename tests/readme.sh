@@ -1,0 +1,37 @@
+#!/bin/sh
+# The README's C: the first block is an application, the second a law. Both compile against the installed
+# library through pkg-config; the application runs; the law loads.
+set -eu
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+[ -f README.md ] || { echo "SKIP: there is no README.md"; exit 77; }
+fail() { echo "README.md: $*"; exit 1; }
+
+awk -v to="$work" '
+  /^```c[ \t\r]*$/ { n++; out = to "/" n ".c"; next }
+  /^```/ { out = "" }
+  out != "" { print >out }' README.md
+[ -f "$work/2.c" ] || fail "fewer than two blocks of C"
+grep -q 'main *(' "$work/1.c" || fail "the first block of C has no main"
+grep -q 'ethd_plugin' "$work/2.c" || fail "the second block of C has no ethd_plugin"
+
+$MAKE --no-print-directory -s B="$BUILD" DESTDIR="$work/root" PREFIX=/opt/ethd install-files >"$work/log" 2>&1 ||
+  { cat "$work/log"; fail "make install failed"; }
+export PKG_CONFIG_PATH="$work/root/opt/ethd/lib/pkgconfig" PKG_CONFIG_SYSROOT_DIR="$work/root"
+export LD_LIBRARY_PATH="$work/root/opt/ethd/lib"
+strict="-std=gnu11 -O2 -Wall -Wextra -Werror ${SAN:+-fsanitize=$SAN}"
+
+$CC $strict "$work/1.c" -o "$work/app" $($PKG_CONFIG --cflags --libs ethd) || fail "the application doesn't compile"
+(cd "$work" && timeout 60 ./app >app.out 2>&1) || { cat "$work/app.out"; fail "the application fails"; }
+[ -s "$work/app.out" ] || fail "the application says nothing"
+$CC $strict "$work/1.c" -o "$work/static" $($PKG_CONFIG --cflags ethd) "$LD_LIBRARY_PATH/libethd.a" -lm -ldl ||
+  fail "the application doesn't link with libethd.a"
+(cd "$work" && timeout 60 ./static >static.out 2>&1) || fail "the application fails with libethd.a"
+cmp "$work/app.out" "$work/static.out"
+
+$CC $strict -shared -fPIC "$work/2.c" -o "$work/law.so" $($PKG_CONFIG --cflags ethd) || fail "the law doesn't compile"
+nm -D --defined-only "$work/law.so" | grep -q ' ethd_plugin$' || fail "the law exports no ethd_plugin"
+printf '[plugins]\nfile = law.so\n' >"$work/law.ini"
+"$BUILD/bin/ethd-check" "$work/law.ini" >"$work/check.out" 2>&1 || { cat "$work/check.out"; fail "the law doesn't load"; }
+for n in 1 2; do echo "block $n: $(wc -l <"$work/$n.c") lines"; done
+cat "$work/app.out" | head -n 5
