@@ -20,27 +20,33 @@ typedef enum ethd_mechanism { ETHD_ARM_PARALLEL = 0, ETHD_ARM_SERIAL = 1 } ethd_
 
 typedef struct ethd_arm {
   ethd_mechanism mechanism;
-  double link1, link2; /* m, > 0 */
+  double link1, link2; /* m, ETHD_ARM_LINK_MIN to ETHD_ARM_LINK_MAX */
 } ethd_arm;
 
-/* The exact inverse of J is used while |sin| of the angle between the links is at least this; nearer
-   to the singularity it is damped, continuously. */
+#define ETHD_ARM_LINK_MIN 1e-3 /* m */
+#define ETHD_ARM_LINK_MAX 1e2
+
+/* While w = |sin| of the angle between the links, |det J| / (L1 L2), is at least this, the inverse of J
+   is adj(J) / det(J). Nearer to the singularity it is J^T (J J^T + lambda^2 I)^-1, damped least squares,
+   with lambda^2 = lambda_0^2 (1 - w / ETHD_ARM_SINGULAR)^2 (Nakamura and Hanafusa 1986), which is
+   continuous, and lambda_0 = ETHD_ARM_SINGULAR L1 L2 / |J|, about the smaller singular value there: the
+   gain of the inverse is at most 1.3 times what it is where the damping begins. */
 #define ETHD_ARM_SINGULAR 0.02
 
 /* Where the ring is, and how it moves with the joints. Row-major J: dx/dq1, dx/dq2, dy/dq1, dy/dq2. */
 typedef struct ethd_pose {
   ethd_vec x;     /* ring centre, m, in R_0 */
   double j[4];    /* m/rad */
-  double j_inv[4]; /* rad/m: J^-1, damped least squares near a singularity (Nakamura and Hanafusa 1986) */
+  double j_inv[4]; /* rad/m: J^-1, damped near a singularity; in a singular J's null direction 0 */
 } ethd_pose;
 
-/* ETHD_E_RANGE unless both links are finite and > 0 and the mechanism is one of the two. [any] */
+/* ETHD_E_RANGE unless both links are within their limits and the mechanism is one of the two. [any] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_arm_check(const ethd_arm *arm, ethd_error *error);
 
 /* Forward kinematics, Jacobian and its (damped) inverse at joint angles q, rad. [any, rt-safe] */
 ETHD_API void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) ETHD_RT;
 
-/* Joint angles that put the ring's centre at x. elbow > 0: link 2 turned counter-clockwise from link 1,
+/* Joint angles that put the ring's centre at x. elbow >= 0: link 2 turned counter-clockwise from link 1,
    < 0: clockwise. ETHD_E_UNREACHABLE outside of the annulus of ethd_arm_reach (q then untouched).
    Angles in (-pi, pi]. [any, rt-safe] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_arm_angles(const ethd_arm *arm, ethd_vec x, int elbow,
