@@ -1,0 +1,46 @@
+#include "error.h"
+
+#include <math.h>
+#include <string.h>
+
+static void copy_name(char *to, size_t room, const char *from) {
+  size_t n = strlen(from);
+  if (n > room - 1) n = room - 1;
+  memcpy(to, from, n);
+  to[n] = 0;
+}
+
+ethd_status ethd__error_range(ethd_error *error, ethd_status status, const char *name, double found,
+                              double min, double max) {
+  if (error) {
+    memset(error, 0, sizeof *error);
+    error->status = status;
+    error->found = found;
+    error->min = min;
+    error->max = max;
+    copy_name(error->name, sizeof error->name, name ? name : "");
+  }
+  return status;
+}
+
+ethd_status ethd__error(ethd_error *error, ethd_status status, const char *name) {
+  return ethd__error_range(error, status, name, (double)NAN, (double)NAN, (double)NAN);
+}
+
+void ethd__error_prefix(ethd_error *error, const char *prefix) {
+  if (!error) return;
+  char name[sizeof error->name];
+  size_t n = strlen(prefix);
+  if (n > sizeof name - 2) n = sizeof name - 2;
+  memcpy(name, prefix, n);
+  name[n] = '.';
+  copy_name(name + n + 1, sizeof name - n - 1, error->name);
+  memcpy(error->name, name, sizeof name);
+}
+
+ethd_status ethd__check_number(ethd_error *error, const char *name, double value, double min,
+                               double max) {
+  if (value >= min && value <= max) return ETHD_OK;
+  return ethd__error_range(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, value, min,
+                           max);
+}
