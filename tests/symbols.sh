@@ -50,13 +50,17 @@ fi
 if [ -n "${SAN:-}" ]; then echo "SKIP: a sanitizer's build needs the sanitizer's symbols"; exit 77; fi
 
 grep -vE '^ethd_[a-z]' "$work/exported" >"$work/foreign" && fail "exported, but not called ethd_*:" && cat "$work/foreign"
+for archive in libethd.a libethd-drivers.a; do
+  nm -g --defined-only "$BUILD/$archive" | awk 'NF == 3 { print $3 }' | grep -v '^ethd_' >"$work/foreign" &&
+    fail "$archive: global, but not called ethd_*:" && cat "$work/foreign"
+done
 if ! diff "$list" "$work/exported" >"$work/diff"; then
   fail "exported symbols (>) differ from $list (<); if that is meant: BUILD=$BUILD sh tests/symbols.sh renew"
   cat "$work/diff"
 fi
 # A declaration belongs to libethd.so or, of the drivers' headers, to libethd-drivers.a.
 declared >"$work/declared"
-nm --defined-only "$BUILD/libethd-drivers.a" 2>/dev/null | awk 'NF == 3 { print $3 }' | sort -u >"$work/drivers"
+nm -g --defined-only "$BUILD/libethd-drivers.a" | awk 'NF == 3 { print $3 }' | sort -u >"$work/drivers"
 comm -13 "$work/declared" "$work/exported" >"$work/unmarked"
 [ -s "$work/unmarked" ] && fail "exported without an ETHD_API declaration:" && cat "$work/unmarked"
 sort -u "$work/exported" "$work/drivers" | comm -23 "$work/declared" - >"$work/undefined"
