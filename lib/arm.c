@@ -1,23 +1,13 @@
 #include "ethd/arm.h"
 
 #include "ethd/maths.h"
-#include "refuse.h"
-
-static int is_link(double length) {
-  return length >= ETHD_ARM_LINK_MIN && length <= ETHD_ARM_LINK_MAX;
-}
-
-static ethd_status refuse_link(const char *name, double length, ethd_error *error) {
-  return ethd__refuse(error, ETHD_E_RANGE, name, length, ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX);
-}
+#include "error.h"
 
 ethd_status ethd_arm_check(const ethd_arm *arm, ethd_error *error) {
-  if (arm->mechanism != ETHD_ARM_PARALLEL && arm->mechanism != ETHD_ARM_SERIAL)
-    return ethd__refuse(error, ETHD_E_RANGE, "mechanism", (double)arm->mechanism, ETHD_ARM_PARALLEL,
-                        ETHD_ARM_SERIAL);
-  if (!is_link(arm->link1)) return refuse_link("link1", arm->link1, error);
-  if (!is_link(arm->link2)) return refuse_link("link2", arm->link2, error);
-  return ETHD_OK;
+  ethd_status status = ethd__check_number(error, "mechanism", (double)arm->mechanism, ETHD_ARM_PARALLEL, ETHD_ARM_SERIAL);
+  if (!status) status = ethd__check_number(error, "link1", arm->link1, ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX);
+  if (!status) status = ethd__check_number(error, "link2", arm->link2, ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX);
+  return status;
 }
 
 /* Damped least squares J^T (J J^T + lambda^2 I)^-1. With J^T adj(J J^T) = det(J) adj(J) it is
