@@ -172,7 +172,7 @@ UNIT_RUNS := $(addprefix $(B)/run/,$(call wanted,$(notdir $(UNIT))))
 SCRIPT_RUNS := $(foreach s,$(SCRIPTS),$(if $(call wanted,$(basename $(notdir $(s)))),$(B)/run/$(basename $(notdir $(s)))))
 TREE_RUN := $(addprefix $(B)/run/,$(call wanted,tree_clean))
 RUNS := $(UNIT_RUNS) $(SCRIPT_RUNS)
-run_test = @BUILD='$(abspath $(B))' CC='$(CC)' CXX='$(CXX)' PKG_CONFIG='$(PKG_CONFIG)' SAN='$(SAN)' \
+run_test = @BUILD='$(abspath $(B))' CC='$(CC)' CXX='$(CXX)' PKG_CONFIG='$(PKG_CONFIG)' SAN='$(SAN)' PYTHON='$(PYTHON)' \
   CFLAGS='$(CFLAGS)' RT_OBJECTS='$(RT_O)' MAKE='$(MAKE)' V='$(V)' sh .ci/test $@
 FORCE:
 
@@ -185,6 +185,7 @@ $(TREE_RUN): FORCE | $(RUNS)
 	$(run_test) .ci/tree_clean
 
 ifneq ($(filter check,$(GOALS)),)
+PYTHON := $(or $(PYTHON),$(shell sh .ci/setup python))
 $(if $(DRY),,$(shell BUILD='$(B)' sh .ci/tree_clean before))
 endif
 check: $(RUNS) $(TREE_RUN)
