@@ -1,0 +1,16 @@
+/* Sentences for people: always one line, never longer than ETHD_MESSAGE_MAX. */
+#ifndef ETHD_FILE_ERROR_TEXT_H
+#define ETHD_FILE_ERROR_TEXT_H
+
+#include "ethd/config.h"
+
+#define ETHD_QUOTE_MAX 56 /* bytes that ethd__quote writes at most, the closing 0 included */
+
+/* printf into message, control characters replaced; returns `status`. [main] */
+ethd_status ethd__say(char message[ETHD_MESSAGE_MAX], ethd_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* A word of the input for a message: in quotes, cut to fit, anything but printable ASCII as '?'. [any] */
+const char *ethd__quote(const char *word, size_t length, char out[ETHD_QUOTE_MAX]);
+
+#endif
