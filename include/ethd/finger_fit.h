@@ -3,7 +3,10 @@
              r_k        Ray k leaves the ring's inner circle at angle 2 pi k / 16 (x axis = 0,
         .--<--|         counter-clockwise, in R_0: the ring doesn't turn) and runs to the ring's centre.
        (  o   |         r_k is the free distance along it, so the finger's surface lies at
-        '-----'         p_k = (R_r - r_k) (cos, sin).  NaN: the ray is missing. */
+        '-----'         p_k = (R_r - r_k) (cos, sin).
+
+   A ray counts iff |r_k| < R_r. NaN: it is missing. At or beyond R_r it has met nothing. At or below 0
+   the finger touches there, within noise: to drop those would push the centre away from the ring. */
 #ifndef ETHD_FINGER_FIT_H
 #define ETHD_FINGER_FIT_H
 
@@ -15,10 +18,13 @@ ETHD_BEGIN_DECLS
 #define ETHD_RAYS 16
 
 typedef enum ethd_fit_method {
-  ETHD_FIT_KASA = 0,    /* algebraic least squares (Kasa 1976) */
-  ETHD_FIT_VERTEX_MEAN, /* the paper's centre of the polygon: mean of its vertices (gain 0.5) */
-  ETHD_FIT_CENTROID,    /* centroid of the polygon's area */
-  ETHD_FIT_ROBUST,      /* known radius, geometric least squares from kasa, outliers gated */
+  ETHD_FIT_KASA = 0,    /* least squares of |p - c|^2 - R^2 in c and R (Kasa 1976) */
+  ETHD_FIT_VERTEX_MEAN, /* the paper's centre of the polygon: mean of its vertices. With all rays it
+                           gives half of a small offset */
+  ETHD_FIT_CENTROID,    /* centroid of the polygon's area, missing vertices left out */
+  ETHD_FIT_ROBUST,      /* the same sum in c alone, R = the known finger radius: two Gauss-Newton steps
+                           from kasa (from the ring's centre if that fails), then two without the rays
+                           over `gate` from the circle */
   ETHD_FIT_COUNT
 } ethd_fit_method;
 
@@ -33,21 +39,24 @@ typedef struct ethd_fit {
 typedef struct ethd_finger {
   ethd_vec centre;  /* relative to the ring's centre, m */
   double radius;    /* m; mean distance of the vertices where the method has none of its own */
-  double residual;  /* rms over the rays used, m */
+  double residual;  /* rms of |p - c| - radius over the rays used, m */
   uint32_t used;    /* bit k: ray k was used */
+  uint32_t reserved;
 } ethd_finger;
 
-/* [main] */
+/* Checks p against the method's table and 1e-4 m <= finger_radius <= ring_radius <= 1 m; out is untouched
+   on failure. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_prepare(ethd_fit_method method, const double *p,
                                                       double ring_radius, double finger_radius,
                                                       ethd_fit *out, ethd_error *error);
 
-/* ETHD_STALE when too few rays are left to say (3 for a circle, 2 with known radius; none beyond the
-   ring's radius counts); out is then untouched. [rt] */
+/* ETHD_STALE when the rays that count don't determine a centre within the ring: under 3 (robust: 2), or
+   on one line; out is then untouched. [rt] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_step(const ethd_fit *fit, const double r[ETHD_RAYS],
                                                    ethd_finger *out) ETHD_RT;
 
-/* The distances that a finger of this radius and centre gives: the fit's inverse. [any, rt-safe] */
+/* The distances that a finger of this radius and centre gives, the fit's inverse; NaN where the ray
+   meets the ring's centre first, or nothing. [any, rt-safe] */
 ETHD_API void ethd_fit_rays(double ring_radius, double finger_radius, ethd_vec centre,
                             double r[ETHD_RAYS]) ETHD_RT;
 
