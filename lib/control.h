@@ -1,0 +1,101 @@
+/* Inside the controller: a plan (a posted setup, worked out on [main]) and the state (one flat block).
+
+     ethd__estimate   sense -> ring and finger            estimate.c
+     ethd__contacts   ring, finger -> contacts, forces    contacts.c
+     ethd__evaluate   both, then tracking -> torque       evaluate.c
+    guard, swap, safe state around them                  tick.c
+     posts, events, latching                              control.c   */
+#ifndef ETHD__CONTROL_H
+#define ETHD__CONTROL_H
+
+#include "ethd/control.h"
+
+typedef struct ethd__plan {
+  ethd_setup setup;
+  double d_beta;
+  ethd_velocity velocity;
+  ethd_fit fit;
+  ethd_filter filter;
+  double material_p[ETHD_MATERIALS_MAX][ETHD_PARAMS_MAX]; /* the contact law's, per material */
+} ethd__plan;
+
+/* Checks the setup and works the plan out; a failure leaves the plan undefined. [main] */
+ethd_status ethd__plan_prepare(const ethd_setup *setup, ethd__plan *out, ethd_error *error);
+
+/* A law's state block. */
+typedef double ethd__block[ETHD_STATE_MAX / sizeof(double)];
+
+/* A contact that counted at the last tick. */
+typedef struct ethd__slot {
+  int32_t used, object, side, state;
+  int32_t leaving; /* branch of eq. 3, with v_hysteresis */
+  int32_t reserved;
+  double age;
+  ethd_vec point;
+  ethd__block transition, contact;
+} ethd__slot;
+
+#define ETHD__HISTORY 32 /* ticks of ring positions, for readings that are late */
+
+typedef struct ethd__state {
+  ethd_counters counters;
+  int64_t fault; /* latched */
+  ethd_velocity_state velocity[2];
+  ethd_filter_state filter;
+  double finger_radius; /* of the last fit, NaN: none */
+  struct {
+    int64_t time_ns;
+    ethd_vec x;
+  } history[ETHD__HISTORY];
+  ethd__block tracking;
+  ethd__slot slots[ETHD_CONTACTS_MAX];
+  struct {
+    double delta[2]; /* old - new torque at the swap, Nm */
+    double elapsed;  /* s since then; INFINITY: no fade */
+  } fade;
+  ethd_guard_state guard;
+} ethd__state;
+
+/* What a failing tick says. */
+typedef struct ethd__failure {
+  ethd_fault fault;
+  double value;
+} ethd__failure;
+
+/* Where ring and finger are, into out->x, v, xf, vf, rf, qd. [rt] */
+void ethd__estimate(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt,
+                    ethd_pose *pose, ethd_trace *out) ETHD_RT;
+
+/* What is touched: out->beta, fe, fd and the deepest contact's row; *shift: of the contact that rules
+   beta. False: a law failed. [rt] */
+int ethd__contacts(const ethd__plan *plan, ethd__state *state, double dt, ethd_trace *out,
+                   ethd_vec *shift, ethd__failure *failure) ETHD_RT;
+
+/* A whole tick up to the torque before fade and guard, out->tau_raw. False: a law failed. [rt] */
+int ethd__evaluate(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt,
+                   ethd_pose *pose, ethd_trace *out, ethd__failure *failure) ETHD_RT;
+
+/* How a tick begins. */
+typedef struct ethd__entry {
+  const ethd__plan *plan; /* rules */
+  const ethd__plan *from; /* was replaced at this tick, NULL: none */
+  int soft;               /* starts from zero torque */
+} ethd__entry;
+
+/* One tick with guard; scratch is needed at a swap. Returns the failure that it met or goes on with. [rt] */
+ethd__failure ethd__tick(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
+                         const ethd_sense *sense, ethd_trace *out) ETHD_RT;
+
+/* Forgets contacts, fade and fault; the estimators stay. [rt] */
+void ethd__resume(const ethd__plan *plan, ethd__state *state) ETHD_RT;
+
+/* Zeroed and reset blocks of laws. [rt] */
+void ethd__block_reset(const ethd_law *law, const double *p, double *block) ETHD_RT;
+void ethd__slot_start(const ethd__plan *plan, ethd__slot *slot) ETHD_RT;
+
+/* The parameters of the contact law on a material, -1: none. [rt] */
+static inline const double *ethd__contact_p(const ethd__plan *plan, int32_t material) ETHD_RT {
+  return material < 0 ? plan->setup.contact_p : plan->material_p[material];
+}
+
+#endif

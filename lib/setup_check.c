@@ -1,0 +1,108 @@
+#include <string.h>
+
+#include "control.h"
+#include "error.h"
+#include "setup.h"
+
+#define TRY(expression)                  \
+  do {                                   \
+    ethd_status status_ = (expression);  \
+    if (status_ < 0) return status_;     \
+  } while (0)
+
+/* The section that a failure belongs to. */
+static ethd_status within(const char *section, ethd_status status, ethd_error *error) {
+  if (status < 0) ethd__error_prefix(error, section);
+  return status;
+}
+
+ethd_status ethd_limits_check(const ethd_limits *limits, ethd_error *error) {
+  const double inf = (double)INFINITY;
+  const double *w = limits->workspace;
+  TRY(ethd__check_number(error, "torque", limits->torque, 0, inf));
+  TRY(ethd__check_number(error, "torque_rate", limits->torque_rate, 0, inf));
+  TRY(ethd__check_number(error, "speed", limits->speed, 0, inf));
+  TRY(ethd__check_number(error, "step_time", limits->step_time, 1e-9, inf));
+  TRY(ethd__check_number(error, "workspace", w[0], -inf, w[1]));
+  TRY(ethd__check_number(error, "workspace", w[2], -inf, w[3]));
+  TRY(ethd__check_number(error, "workspace", w[1], w[0], inf));
+  return ethd__check_number(error, "workspace", w[3], w[2], inf);
+}
+
+static ethd_status check_geometry(const ethd_setup *s, ethd_error *error) {
+  TRY(ethd__check_number(error, "loop.period", s->period, 1e-5, 0.1));
+  TRY(within("arm", ethd_arm_check(&s->arm, error), error));
+  TRY(ethd__check_number(error, "ring.radius", s->ring_radius, 1e-4, 1));
+  TRY(ethd__check_number(error, "finger.radius", s->finger_radius, 1e-5, s->ring_radius));
+  TRY(ethd__check_number(error, "finger.radius_max", s->finger_radius_max, 1e-5, s->ring_radius));
+  if (!(s->finger_radius_max < s->ring_radius))
+    return ethd__error_range(error, ETHD_E_RANGE, "finger.radius_max", s->finger_radius_max, 1e-5,
+                             s->ring_radius);
+  TRY(ethd__check_number(error, "transition.swap_time", s->swap_time, 0, 1));
+  return ethd__check_number(error, "transition.v_hysteresis", s->v_hysteresis, 0, 1);
+}
+
+static ethd_status check_values(const ethd_law *law, const double *p, ethd_error *error) {
+  TRY(ethd_params_check(law->params, law->param_count, p, error));
+  return law->check ? law->check(p, error) : ETHD_OK;
+}
+
+static ethd_status check_law(const char *kind, uint32_t kind_number, const ethd_law *law,
+                             const double *p, ethd_error *error) {
+  if (!law) return ethd__error(error, ETHD_E_ARGUMENT, kind);
+  TRY(within(kind, ethd_law_check(law, error), error));
+  if (law->kind != kind_number) return ethd__error(error, ETHD_E_ARGUMENT, kind);
+  return within(kind, check_values(law, p, error), error);
+}
+
+static ethd_status check_laws(const ethd_setup *s, ethd_error *error) {
+  TRY(check_law("tracking", ETHD_TRACKING, s->tracking ? &s->tracking->law : NULL, s->tracking_p, error));
+  TRY(check_law("contact", ETHD_CONTACT, s->contact ? &s->contact->law : NULL, s->contact_p, error));
+  return check_law("transition", ETHD_TRANSITION, s->transition ? &s->transition->law : NULL,
+                   s->transition_p, error);
+}
+
+/* The contact law's parameters on one material: the setup's, with the material's own in their place. */
+static ethd_status prepare_material(const ethd_setup *s, const ethd_material *m, double *p,
+                                    ethd_error *error) {
+  const ethd_law *law = &s->contact->law;
+  memcpy(p, s->contact_p, sizeof s->contact_p);
+  for (uint32_t i = 0; i < m->count; i++) {
+    int k = ethd_params_find(law->params, law->param_count, m->values[i].name);
+    if (k < 0) return ethd__error(error, ETHD_E_UNKNOWN, m->values[i].name);
+    p[k] = m->values[i].value;
+  }
+  return check_values(law, p, error);
+}
+
+static ethd_status prepare_materials(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
+  const ethd_material *m;
+  for (size_t i = 0; s->scene && (m = ethd_scene_material(s->scene, i)) != NULL; i++) {
+    ethd_status status = prepare_material(s, m, out->material_p[i], error);
+    if (status >= 0) continue;
+    ethd__error_prefix(error, m->name);
+    ethd__error_prefix(error, "material");
+    if (error) error->line = m->line;
+    return status;
+  }
+  return ETHD_OK;
+}
+
+ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
+  if (!s || s->cookie != ETHD__SETUP_COOKIE)
+    return ethd__error(error, ETHD_E_ARGUMENT, "setup (made by ethd_setup_default?)");
+  TRY(check_geometry(s, error));
+  TRY(check_laws(s, error));
+  TRY(within("limits", ethd_limits_check(&s->limits, error), error));
+  out->setup = *s;
+  out->d_beta = s->ring_radius - s->finger_radius_max;
+  TRY(within("velocity", ethd_velocity_prepare(s->velocity, s->velocity_p, s->period, &out->velocity, error), error));
+  TRY(within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error), error));
+  TRY(within("finger_filter", ethd_filter_prepare(s->filter, s->filter_p, s->period, &out->filter, error), error));
+  return prepare_materials(s, out, error);
+}
+
+ethd_status ethd_setup_check(const ethd_setup *setup, ethd_error *error) {
+  ethd__plan plan;
+  return ethd__plan_prepare(setup, &plan, error);
+}

@@ -1,0 +1,196 @@
+#include <string.h>
+
+#include "control.h"
+
+#define MISSED_MAX 1000000 /* periods: a longer gap is no longer a gap of a loop */
+
+static double elapsed(const ethd__plan *plan, const ethd_sense *sense) ETHD_RT {
+  int64_t missed = sense->missed;
+  if (!(missed > 0)) missed = 0;
+  if (missed > MISSED_MAX) missed = MISSED_MAX;
+  return (double)(missed + 1) * plan->setup.period;
+}
+
+/* ---- what forbids a tick ---- */
+
+static int two_finite(const double v[2]) ETHD_RT { return isfinite(v[0]) && isfinite(v[1]); }
+
+static int input_is_good(const ethd_sense *s, ethd__failure *f) ETHD_RT {
+  f->fault = ETHD_FAULT_INPUT;
+  f->value = 0;
+  if (!two_finite(s->q)) return 0;
+  f->value = ETHD_HAVE_DQ;
+  if ((s->have & ETHD_HAVE_DQ) && !two_finite(s->dq)) return 0;
+  f->value = ETHD_HAVE_FINGER;
+  if ((s->have & (ETHD_HAVE_FINGER | ETHD_HAVE_START)) && !two_finite(s->finger)) return 0;
+  if ((s->have & ETHD_HAVE_FINGER) && !two_finite(s->finger_v)) return 0;
+  f->value = ETHD_HAVE_RING;
+  if ((s->have & ETHD_HAVE_RING) && !two_finite(s->ring)) return 0;
+  f->fault = ETHD_FAULT_NONE;
+  return 1;
+}
+
+static int within_budget(const ethd__plan *plan, const ethd_sense *s, ethd__failure *f) ETHD_RT {
+  if (1e-9 * (double)s->step_ns <= plan->setup.limits.step_time) return 1;
+  *f = (ethd__failure){ETHD_FAULT_BUDGET, (double)s->step_ns};
+  return 0;
+}
+
+/* ---- one tick ---- */
+
+/* What is left of a swap's difference after `t` s. */
+static double fade_share(double t, double swap_time) ETHD_RT {
+  return t < swap_time ? 1 - t / swap_time : 0;
+}
+
+static void fade(const ethd__plan *plan, ethd__state *state, double dt, double tau[2]) ETHD_RT {
+  if (isinf(state->fade.elapsed)) return;
+  state->fade.elapsed += dt;
+  double share = fade_share(state->fade.elapsed, plan->setup.swap_time);
+  /* periods add up to swap_time only within rounding */
+  if (share < 1e-9) {
+    state->fade.elapsed = (double)INFINITY;
+    return;
+  }
+  tau[0] += share * state->fade.delta[0];
+  tau[1] += share * state->fade.delta[1];
+}
+
+static void blank(const ethd_sense *sense, ethd_trace *out) ETHD_RT {
+  memset(out, 0, sizeof *out);
+  out->sense = *sense;
+  out->object = -1;
+  out->beta = 1;
+  out->rf = out->d_re = out->d_fe = out->v_n = (double)NAN;
+}
+
+/* The laws' torque with what is left of a fade, into out->tau_raw. */
+static int compute(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt,
+                   ethd_pose *pose, ethd_trace *out, ethd__failure *failure) ETHD_RT {
+  if (!ethd__evaluate(plan, state, sense, dt, pose, out, failure)) return 0;
+  fade(plan, state, dt, out->tau_raw);
+  return 1;
+}
+
+static ethd_fault guard_fault(int64_t bits) ETHD_RT {
+  if (bits & ETHD_GUARD_SPEED) return ETHD_FAULT_SPEED;
+  if (bits & ETHD_GUARD_WORKSPACE) return ETHD_FAULT_WORKSPACE;
+  if (bits & ETHD_GUARD_FINITE) return ETHD_FAULT_FINITE;
+  return ETHD_FAULT_NONE;
+}
+
+/* The guard comes last. A fault takes the torque away at once, not at the rate's pace. */
+static void guard(const ethd__plan *plan, ethd__state *state, const ethd_pose *pose, double dt,
+                  ethd_trace *out, ethd__failure *failure) ETHD_RT {
+  ethd_vec v = {out->v[0], out->v[1]};
+  if (failure->fault != ETHD_FAULT_NONE) {
+    memset(out->tau_raw, 0, sizeof out->tau_raw);
+    memset(state->guard.last, 0, sizeof state->guard.last);
+  }
+  if (failure->fault == ETHD_FAULT_INPUT) return; /* nothing is known of the ring */
+  memcpy(out->tau, out->tau_raw, sizeof out->tau);
+  out->guard = ethd_guard_step(&plan->setup.limits, &state->guard, pose, v, dt, out->tau);
+  if (failure->fault == ETHD_FAULT_NONE)
+    *failure = (ethd__failure){guard_fault(out->guard), ethd_vec_norm(v)};
+}
+
+/* ---- swap ---- */
+
+static void start_fade(ethd__state *state, const double from[2], const double to[2]) ETHD_RT {
+  for (int i = 0; i < 2; i++) state->fade.delta[i] = from[i] - to[i];
+  state->fade.elapsed = 0;
+}
+
+static void migrate_estimators(const ethd__plan *from, const ethd__plan *to, ethd__state *state) ETHD_RT {
+  if (memcmp(from->velocity.p, to->velocity.p, sizeof from->velocity.p) != 0 ||
+      from->velocity.method != to->velocity.method)
+    for (int i = 0; i < 2; i++) {
+      double speed = state->velocity[i].speed;
+      memset(&state->velocity[i], 0, sizeof state->velocity[i]);
+      state->velocity[i].speed = speed;
+    }
+  if (state->filter.started && (memcmp(from->filter.p, to->filter.p, sizeof from->filter.p) != 0 ||
+                                from->filter.method != to->filter.method)) {
+    ethd_vec x, v;
+    ethd_filter_output(&from->filter, &state->filter, &x, &v);
+    ethd_filter_start(&to->filter, &state->filter, x, v);
+  }
+}
+
+/* A law that stays keeps its state; a new one starts from zero, and so does everything in a new scene. */
+static void migrate(const ethd__plan *from, const ethd__plan *to, ethd__state *state) ETHD_RT {
+  migrate_estimators(from, to, state);
+  if (from->setup.tracking != to->setup.tracking)
+    ethd__block_reset(&to->setup.tracking->law, to->setup.tracking_p, state->tracking);
+  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
+    ethd__slot *slot = &state->slots[i];
+    if (from->setup.scene != to->setup.scene) slot->used = 0;
+    if (from->setup.transition != to->setup.transition) {
+      ethd__block_reset(&to->setup.transition->law, to->setup.transition_p, slot->transition);
+      slot->state = ETHD_TRANSPARENT;
+    }
+    if (from->setup.contact != to->setup.contact)
+      ethd__block_reset(&to->setup.contact->law, to->setup.contact_p, slot->contact);
+  }
+}
+
+/* The old setup once more, on a copy; then the new one, and the difference starts to fade. */
+static void swap(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
+                 const ethd_sense *sense, double dt, ethd_pose *pose, ethd_trace *out,
+                 ethd__failure *failure) ETHD_RT {
+  double old[2];
+  memcpy(scratch, state, sizeof *scratch);
+  int held = compute(e->from, scratch, sense, dt, pose, out, failure);
+  memcpy(old, out->tau_raw, sizeof old);
+  migrate(e->from, e->plan, state);
+  if (!held || !ethd__evaluate(e->plan, state, sense, dt, pose, out, failure)) return;
+  start_fade(state, old, out->tau_raw);
+  memcpy(out->tau_raw, old, sizeof old);
+}
+
+/* ---- the whole tick ---- */
+
+/* The torque before the guard, out->tau_raw; what prevents it, *failure. */
+static void drive(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
+                  const ethd_sense *sense, double dt, ethd_pose *pose, ethd_trace *out,
+                  ethd__failure *failure) ETHD_RT {
+  int blind = !input_is_good(sense, failure);
+  int idle = blind || state->fault || !within_budget(e->plan, sense, failure);
+  if (!blind && state->fault) failure->fault = (ethd_fault)state->fault;
+  if (!idle && e->from && !e->soft) {
+    swap(e, state, scratch, sense, dt, pose, out, failure);
+    return;
+  }
+  if (e->from) migrate(e->from, e->plan, state);
+  if (idle) { /* the estimators go on, so that the trace and a later resume are right */
+    if (!blind) ethd__estimate(e->plan, state, sense, dt, pose, out);
+  } else if (compute(e->plan, state, sense, dt, pose, out, failure) && e->soft) {
+    const double zero[2] = {0, 0};
+    start_fade(state, zero, out->tau_raw);
+    memset(out->tau_raw, 0, sizeof out->tau_raw);
+  }
+}
+
+ethd__failure ethd__tick(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
+                         const ethd_sense *sense, ethd_trace *out) {
+  ethd__failure failure = {ETHD_FAULT_NONE, 0};
+  ethd_pose pose;
+  memset(&pose, 0, sizeof pose);
+  double dt = elapsed(e->plan, sense);
+  blank(sense, out);
+  out->swap = e->from != NULL;
+  drive(e, state, scratch, sense, dt, &pose, out, &failure);
+  guard(e->plan, state, &pose, dt, out, &failure);
+  out->fault = failure.fault;
+  out->tick = (int64_t)state->counters.ticks++;
+  return failure;
+}
+
+/* After an acknowledged fault: contacts begin anew. */
+void ethd__resume(const ethd__plan *plan, ethd__state *state) {
+  state->fault = ETHD_FAULT_NONE;
+  state->guard.stopping = state->guard.stopped = 0;
+  state->fade.elapsed = (double)INFINITY;
+  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) state->slots[i].used = 0;
+  ethd__block_reset(&plan->setup.tracking->law, plan->setup.tracking_p, state->tracking);
+}
