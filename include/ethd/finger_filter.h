@@ -1,8 +1,14 @@
 /* The finger at 1 kHz from readings at 300 Hz: position and velocity per axis.
 
-   Every tick predicts; a reading corrects at the tick at which it has arrived. With compensation =
-   stamp the state stands at the last reading's sample instant and the output is extrapolated from
-   there to now; with none a reading counts as if it had been taken now. */
+   Every tick predicts; a reading corrects at the tick at which it has arrived.
+
+     compensation = stamp   the state stands at the last reading's sample instant, `latency` before its
+                            stamp; a reading takes it from there to its own; the output is extrapolated
+                            from there to now. Lost frames only make the way longer
+     compensation = none    the state stands at now, moved on every tick; a reading counts as if it had
+                            been taken now
+
+   Both axes have the same noise, so they share the covariance. */
 #ifndef ETHD_FINGER_FILTER_H
 #define ETHD_FINGER_FILTER_H
 
@@ -12,10 +18,11 @@
 ETHD_BEGIN_DECLS
 
 typedef enum ethd_filter_method {
-  ETHD_FILTER_CA = 0,     /* Kalman, constant acceleration */
+  ETHD_FILTER_CA = 0,     /* Kalman, constant acceleration: Q = jerk^2 g g^T, g = (T^3/6, T^2/2, T) for
+                             each way of T s, a tick's (none) or a reading's (stamp) */
   ETHD_FILTER_HOLD,       /* the last reading, at rest */
-  ETHD_FILTER_ALPHA_BETA, /* fixed gains */
-  ETHD_FILTER_CV,         /* Kalman, constant velocity */
+  ETHD_FILTER_ALPHA_BETA, /* fixed gains: x += alpha r, v += beta r / (time since the last reading) */
+  ETHD_FILTER_CV,         /* Kalman, constant velocity: Q = acceleration^2 g g^T, g = (T^2/2, T) */
   ETHD_FILTER_COUNT
 } ethd_filter_method;
 
@@ -24,38 +31,49 @@ ETHD_API extern const ethd_method ethd_filter_methods[ETHD_FILTER_COUNT];
 /* Where the ring stood for a reading that is relative to it ([finger_filter] reference). */
 enum { ETHD_REFERENCE_SAMPLE = 0, ETHD_REFERENCE_TICK = 1 };
 
+/* [finger_filter] compensation. */
+enum { ETHD_COMPENSATION_STAMP = 0, ETHD_COMPENSATION_NONE = 1 };
+
+/* A checked filter. Plain value. */
 typedef struct ethd_filter {
   ethd_filter_method method;
+  int reference, compensation;
+  int reserved;
   double period;
-  int reference;
-  double p[ETHD_PARAMS_MAX];
-  double c[16];
+  double p[ETHD_PARAMS_MAX]; /* as posted */
 } ethd_filter;
 
-/* Numbers only. Per axis: x, v, a and the upper triangle of the covariance. */
+/* Numbers only. Zeroed: not started. */
 typedef struct ethd_filter_state {
-  double m[2][3];
-  double cov[6]; /* shared by both axes: xx xv xa vv va aa */
-  double age;    /* s, of the state against now */
-  double last_stamp_age; /* s, of the last reading used against now */
+  double x[2], v[2], a[2]; /* m, m/s, m/s^2 */
+  double cov[6];           /* of one axis: xx xv xa vv va aa */
+  double age; /* s, from the last used reading's stamp to now. After a start: -latency (stamp: older
+                 readings are late), inf (none) */
   uint32_t started;
-  uint32_t used, late, gated; /* readings counted */
+  uint32_t used, late, gated, restarts; /* readings counted */
+  uint32_t gated_in_a_row;
 } ethd_filter_state;
 
-/* [main] */
+#define ETHD_FILTER_GATED_MAX 5
+
+/* Checks p against the method's table and the period (1e-6 to 1 s); out is untouched on failure. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_filter_prepare(ethd_filter_method method, const double *p,
                                                          double period, ethd_filter *out,
                                                          ethd_error *error);
 
-/* Starts at x with speed v and the method's initial covariance. [rt] */
+/* Starts at x with speed v, now, with the covariance diag(1e-6 m^2, 1e-4 m^2/s^2, 1 m^2/s^4). Counters
+   stay. [rt] */
 ETHD_API void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x,
                                 ethd_vec v) ETHD_RT;
 
-/* One tick of dt s passes. [rt] */
+/* dt s pass. [rt] */
 ETHD_API void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, double dt) ETHD_RT;
 
-/* A reading of the finger's position in R_0, taken `age` s ago. Starts the filter when it hasn't been.
-   ETHD_STALE: older than the last one used, or outside of the innovation gate; not used, counted. [rt] */
+/* A reading of the finger's position in R_0, stamped `age` s ago. Starts the filter there when it hasn't
+   been: at rest, within 1 m/s and 10 m/s^2 (sd). ETHD_STALE, counted and not used: not newer than the
+   last one used (late), not finite, or over `gate` standard deviations, innovation of both axes together
+   against sqrt(P_xx + noise^2), from where it was expected (gated). The ETHD_FILTER_GATED_MAX-th gated
+   in a row starts the filter anew, for then it is the filter that is wrong. [rt] */
 ETHD_API ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x,
                                         double age) ETHD_RT;
 

@@ -1,0 +1,22 @@
+/* The filters behind ethd_filter_update. */
+#ifndef ETHD_LIB_FILTER_METHODS_H
+#define ETHD_LIB_FILTER_METHODS_H
+
+#include "ethd/finger_filter.h"
+
+/* Rows of the tables; the common ones come first. */
+enum { FILTER_REFERENCE, FILTER_COMPENSATION, FILTER_LATENCY, FILTER_COMMON };
+enum { ALPHA_BETA_ALPHA = FILTER_COMMON, ALPHA_BETA_BETA };
+enum { KALMAN_NOISE = FILTER_COMMON, KALMAN_GATE, KALMAN_DRIVE };
+
+static inline int ethd__filter_is_kalman(const ethd_filter *f) {
+  return f->method == ETHD_FILTER_CV || f->method == ETHD_FILTER_CA;
+}
+
+/* Covariance over a way of dt s, process noise included. [rt] */
+void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, double dt) ETHD_RT;
+
+/* Corrects with the innovation r; 0: gated, nothing done. [rt] */
+int ethd__filter_correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec r) ETHD_RT;
+
+#endif
