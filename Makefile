@@ -88,7 +88,7 @@ RT_O := $(call obj,$(filter-out $(MAIN_SIDE),$(LIB_C)))
 PROGRAMS := $(patsubst apps/%.c,$(B)/bin/%,$(PROGRAMS_C))
 UNIT := $(addprefix $(B)/tests/,$(notdir $(TESTS_C:.c=)))
 PLUGINS := $(patsubst tests/plugins/%.c,$(B)/tests/plugins/%.so,$(PLUGINS_C))
-BENCHES := $(patsubst tests/bench/%.c,$(B)/tests/bench/%,$(BENCH_C))
+BENCHES := $(BENCH_C:%.c=$(B)/%)
 SHARE := $(patsubst apps/config/%,$(B)/share/ethd/%,$(shell find apps/config -type f 2>/dev/null)) \
          $(patsubst apps/plot/%,$(B)/share/ethd/plot/%,$(wildcard apps/plot/*.gp))
 ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a
@@ -146,13 +146,18 @@ $(PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES) $(B)/libethd.a
 	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) -linih $(LIBS)
 
 define test_program
-$(B)/$(if $(filter tests/bench/%,$(1)),$(1:.c=),tests/$(notdir $(1:.c=))): $(B)/obj/$(1:.c=.o) $(B)/libethd-tests.a $(ARCHIVES) $(B)/libethd.a
+$(B)/tests/$(notdir $(1:.c=)): $(B)/obj/$(1:.c=.o) $(B)/libethd-tests.a $(ARCHIVES) $(B)/libethd.a
 	$$(call say,LINK,$$@)
 	@mkdir -p $$(@D)
 	$$(Q)$$(LINK) -o $$@ $$< $(B)/libethd-tests.a $$(ARCHIVES) $$(WHOLE) \
 	  $$(shell $$(PKG_CONFIG) --libs check) -linih $$(LIBS)
 endef
-$(foreach t,$(TESTS_C) $(BENCH_C),$(eval $(call test_program,$(t))))
+$(foreach t,$(TESTS_C),$(eval $(call test_program,$(t))))
+
+$(BENCHES): $(B)/%: $(B)/obj/%.o $(ARCHIVES) $(B)/libethd.a
+	$(call say,LINK,$@)
+	@mkdir -p $(@D)
+	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) -linih $(LIBS)
 
 $(PLUGINS): $(B)/tests/plugins/%.so: tests/plugins/%.c $(B)/flags
 	$(call say,PLUGIN,$@)
