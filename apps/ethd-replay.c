@@ -1,0 +1,154 @@
+/* Recorded input through any law, open loop; or a recording against itself. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "common/cli.h"
+#include "ethd/record.h"
+#include "replay/trace_in.h"
+
+static const char doc[] =
+    "Runs recorded joint angles and finger movements through a control law, tick by tick, and writes what "
+    "the law answers.\v"
+    "IN needs the columns t_s,q1_rad,q2_rad and either xf_m,yf_m,vxf_mps,vyf_mps or t_ring_s,r0_m..r15_m; "
+    "dq1_radps,dq2_radps are used when present. Nothing is limited unless the configuration has [limits].\n\n"
+    "Example:\n"
+    "  ethd-replay --config smooth.ini --in finger.csv --out torque.csv\n"
+    "  ethd-replay --verify recording/";
+
+static const struct argp_option options[] = {
+    {"config", 'c', "C.ini", 0, "configuration; defaults without", 0},
+    {"in", 'i', "IN.csv", 0, "recorded input", 0},
+    {"out", 'o', "OUT.csv", 0, "the law's answer, a row per tick", 0},
+    {"verify", 'v', "DIR", 0, "replay a recording and compare every field bit for bit", 0},
+    {0},
+};
+
+static struct {
+  const char *config, *in, *out, *verify;
+} arg;
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  switch (key) {
+    case 'c': arg.config = text; return 0;
+    case 'i': arg.in = text; return 0;
+    case 'o': arg.out = text; return 0;
+    case 'v': arg.verify = text; return 0;
+    case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+    case ARGP_KEY_END:
+      if (arg.verify && (arg.in || arg.out || arg.config))
+        argp_error(state, "--verify stands alone: a recording brings its own configuration");
+      else if (!arg.verify && (!arg.in || !arg.out))
+        argp_error(state, "--in and --out are needed, or --verify");
+      return 0;
+    default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static const char header[] =
+    "t_s,tau1_nm,tau2_nm,tau1_raw_nm,tau2_raw_nm,beta,state,fex_n,fey_n,fdx_n,fdy_n,eps_m,d_re_m,d_fe_m,"
+    "v_n_mps,x_m,y_m,vx_mps,vy_mps,epsq1_rad,epsq2_rad";
+
+static void put2(ethd_csv_out *out, const double v[2]) {
+  ethd_csv_number(out, v[0]);
+  ethd_csv_number(out, v[1]);
+}
+
+static void write_row(ethd_csv_out *out, double t, const ethd_trace *k, bool ring) {
+  ethd_csv_number(out, t);
+  put2(out, k->tau);
+  put2(out, k->tau_raw);
+  ethd_csv_number(out, k->beta);
+  ethd_csv_integer(out, k->state);
+  put2(out, k->fe);
+  put2(out, k->fd);
+  ethd_csv_number(out, k->eps);
+  ethd_csv_number(out, k->d_re);
+  ethd_csv_number(out, k->d_fe);
+  ethd_csv_number(out, k->v_n);
+  put2(out, k->x);
+  put2(out, k->v);
+  put2(out, k->eps_q);
+  if (ring) {
+    put2(out, k->xf);
+    ethd_csv_number(out, k->rf);
+  }
+  ethd_csv_row(out);
+}
+
+static ethd_csv_out *open_out(bool ring, char message[ETHD_MESSAGE_MAX]) {
+  char names[sizeof header + 16];
+  snprintf(names, sizeof names, "%s%s", header, ring ? ",xf_m,yf_m,rf_m" : "");
+  return ethd_csv_create(arg.out, names, message);
+}
+
+/* Steps through all rows; the first failure of a law is said, the rest still runs. */
+static int run(ethd_control *control, const ethd__trace_in *in, ethd_csv_out *out) {
+  int code = ETHD_EXIT_DONE;
+  for (size_t row = 0; row < in->csv.rows && !ethd__stop; row++) {
+    ethd_sense sense = ethd__trace_in_sense(in, row);
+    ethd_command command;
+    ethd_trace trace;
+    if (ethd_control_step(control, &sense, &command, &trace) < 0 && code == ETHD_EXIT_DONE) {
+      fprintf(stderr, "%s: %s:%zu: %s; the torque is 0 there\n", program_invocation_short_name,
+              in->csv.path, ethd_csv_line(row), ethd_fault_sentence((ethd_fault)trace.fault));
+      code = ETHD_EXIT_FAILED;
+    }
+    write_row(out, in->csv.values[row * in->csv.columns + (size_t)in->t], &trace, in->ring);
+    ethd__progress(row + 1, in->csv.rows, "ticks");
+  }
+  return ethd__stop ? ETHD_EXIT_FAILED : code;
+}
+
+static void say(const ethd_control *control, const ethd__trace_in *in) {
+  ethd_counters c;
+  ethd_control_counters(control, &c);
+  printf("%s: %llu ticks, scene queried in %llu", arg.out, (unsigned long long)c.ticks,
+         (unsigned long long)c.queried);
+  if (in->ring) printf(", %llu frames dropped", (unsigned long long)c.readings_dropped);
+  printf("\n");
+}
+
+static int replay(void) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd_config *config;
+  ethd__trace_in in;
+  ethd_control *control;
+  ethd_error error;
+  ethd_status status = ethd_config_load(arg.config, &config, message);
+  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  status = ethd__trace_in_read(arg.in, &in, message);
+  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  config->setup.limits.latch = 0;
+  status = ethd_control_create(&config->setup, &control, &error);
+  if (status < 0) {
+    ethd_error_text(arg.config, &error, message);
+    ethd__fail(ethd__exit_code(status), "%s", message);
+  }
+  ethd_csv_out *out = open_out(in.ring, message);
+  if (!out) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  int code = run(control, &in, out);
+  if (ethd_csv_close(out, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  say(control, &in);
+  ethd_control_destroy(control);
+  ethd__trace_in_free(&in);
+  ethd_config_free(config);
+  return code;
+}
+
+static int verify(void) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd_status status = ethd_recording_verify(arg.verify, message);
+  if (status >= 0) {
+    printf("%s\n", message);
+    return ETHD_EXIT_DONE;
+  }
+  ethd__fail(status == ETHD_E_LAW ? ETHD_EXIT_FAILED : ethd__exit_code(status), "%s", message);
+}
+
+int main(int argc, char **argv) {
+  static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
+  ethd__begin();
+  argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  ethd__catch_interrupt();
+  return ethd__end(arg.verify ? verify() : replay());
+}
