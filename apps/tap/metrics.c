@@ -1,0 +1,103 @@
+#include "tap/metrics.h"
+
+#include <math.h>
+
+const char *const ethd__reason_words[ETHD_TAP_REASON_COUNT] = {
+#define ETHD_TAP_WORD(name, word) word,
+    ETHD_TAP_REASONS(ETHD_TAP_WORD)
+#undef ETHD_TAP_WORD
+};
+
+static double along(ethd_vec n, const double v[2]) { return n.x * v[0] + n.y * v[1]; }
+
+static double speed_at(const ethd__rows *rows, const ethd__rule *rule, size_t i) {
+  const ethd_truth *truth = &rows->truth[i];
+  return along(rule->n, rule->side ? truth->motor_v : truth->ring_v);
+}
+
+size_t ethd__metrics_meeting(const ethd__rows *rows) {
+  size_t i = 0;
+  while (i < rows->count && !(rows->trace[i].d_re < 0)) i++;
+  return i;
+}
+
+static size_t touch_from(const ethd__rows *rows, size_t i) {
+  while (i < rows->count && !(rows->truth[i].pad > 0)) i++;
+  return i;
+}
+
+/* Each extremum counts once the ring has turned back by the hysteresis. */
+static double rebound(const ethd__rows *rows, const ethd__rule *rule, size_t from) {
+  double peak = along(rule->n, rows->truth[from].ring), valley = peak;
+  bool turned = false;
+  for (size_t i = from; i < rows->count; i++) {
+    double s = along(rule->n, rows->truth[i].ring);
+    if (!turned && s > peak) peak = s;
+    if (!turned && s < peak - ETHD_TAP_HYSTERESIS) turned = true, valley = s;
+    if (turned && s < valley) valley = s;
+    if (turned && s > valley + ETHD_TAP_HYSTERESIS) break;
+  }
+  return turned ? peak - valley : 0;
+}
+
+static double slowest(const ethd__rows *rows, const ethd__rule *rule, size_t from) {
+  double least = INFINITY;
+  size_t end = from + (size_t)floor(ETHD_TAP_REBOUND / rule->period + 0.5);
+  for (size_t i = from; i < rows->count && i <= end; i++) least = fmin(least, speed_at(rows, rule, i));
+  return least;
+}
+
+/* Delta_s and eps, for laws that brake. */
+static void braking(const ethd__rows *rows, const ethd__rule *rule, size_t from, ethd__metrics *out) {
+  size_t i = from;
+  while (i < rows->count && rows->trace[i].state != ETHD_BRAKING) i++;
+  size_t begin = i;
+  while (i < rows->count && rows->trace[i].state != ETHD_VO) i++;
+  if (i >= rows->count) return;
+  out->delta_s = (double)(i - begin) * (1e3 * rule->period);
+  out->eps = rows->trace[i].eps;
+}
+
+static double strongest(const ethd__rows *rows) {
+  double force = 0;
+  for (size_t i = 0; i < rows->count; i++) {
+    const double *f = rows->trace[i].fe;
+    force = fmax(force, sqrt(f[0] * f[0] + f[1] * f[1]));
+  }
+  return force;
+}
+
+static bool faulted(const ethd__rows *rows) {
+  for (size_t i = 0; i < rows->count; i++)
+    if (rows->trace[i].fault) return true;
+  return false;
+}
+
+static ethd__reason judge(const ethd__rows *rows, const ethd__rule *rule, size_t meeting, size_t touch,
+                          double v_rvo) {
+  if (faulted(rows)) return ETHD_TAP_FAULT;
+  if (rule->never_fast) return ETHD_TAP_TOO_SLOW;
+  if (meeting == rows->count) return ETHD_TAP_NO_CONTACT;
+  if (touch_from(rows, 0) < meeting) return ETHD_TAP_EARLY_CONTACT;
+  if (!(v_rvo >= rule->speed - rule->band)) return ETHD_TAP_TOO_SLOW;
+  if (!(v_rvo <= rule->speed + rule->band)) return ETHD_TAP_TOO_FAST;
+  return touch == rows->count ? ETHD_TAP_NO_CONTACT : ETHD_TAP_OK;
+}
+
+void ethd__metrics_of(const ethd__rows *rows, const ethd__rule *rule, ethd__metrics *out) {
+  size_t meeting = ethd__metrics_meeting(rows), touch = touch_from(rows, meeting);
+  *out = (ethd__metrics){.v_rvo = NAN, .v_of = NAN, .d_max = NAN, .v_rmin = NAN, .delta_s = NAN,
+                         .eps = NAN, .t_rvo = NAN, .t_of = NAN, .peak_force = strongest(rows)};
+  if (meeting < rows->count) {
+    out->v_rvo = speed_at(rows, rule, meeting);
+    out->t_rvo = rows->truth[meeting].t;
+    out->d_max = rebound(rows, rule, meeting);
+    braking(rows, rule, meeting, out);
+  }
+  if (touch < rows->count) {
+    out->v_of = speed_at(rows, rule, touch);
+    out->t_of = rows->truth[touch].t;
+    out->v_rmin = slowest(rows, rule, touch);
+  }
+  out->reason = judge(rows, rule, meeting, touch, out->v_rvo);
+}

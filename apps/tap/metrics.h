@@ -1,0 +1,69 @@
+/* What is measured of a tap, from its ticks alone: the same figures come out of a recording.
+
+     ring's front, along n      t_r/vo            d_max = peak - next valley
+            ^                     |     peak
+       x_e -|---------------------x---.-'-.---------
+            |                  .-'         '._.-----     valley
+            +--------------------------------------> t   t_of/r: first tick with the pad touching
+*/
+#ifndef ETHD_TAP_METRICS_H
+#define ETHD_TAP_METRICS_H
+
+#include <stdbool.h>
+
+#include "ethd/sim.h"
+
+#define ETHD_TAP_REBOUND 0.1      /* s after the touch in which v_rmin is looked for */
+#define ETHD_TAP_HYSTERESIS 20e-6 /* m by which the ring must turn back to make an extremum */
+
+/* Ticks of one tap, oldest first; truth[i] belongs to trace[i]. */
+typedef struct ethd__rows {
+  ethd_trace *trace;
+  ethd_truth *truth;
+  size_t count, room;
+} ethd__rows;
+
+/* What a tap is judged by. */
+typedef struct ethd__rule {
+  ethd_vec n;         /* of the wall, into it */
+  double period;      /* s */
+  int32_t side;       /* whose speed counts: 0 the ring's, 1 the motor side's */
+  double speed, band; /* m/s: valid if the ring meets the wall at speed +- band */
+  bool never_fast;    /* the recorded movement never was that fast: too slow */
+} ethd__rule;
+
+#define ETHD_TAP_REASONS(X)         \
+  X(OK, "ok")                       \
+  X(FAULT, "fault")                 \
+  X(EARLY_CONTACT, "early-contact") \
+  X(TOO_SLOW, "too-slow")           \
+  X(TOO_FAST, "too-fast")           \
+  X(NO_CONTACT, "no-contact")
+
+typedef enum ethd__reason {
+#define ETHD_TAP_REASON(name, word) ETHD_TAP_##name,
+  ETHD_TAP_REASONS(ETHD_TAP_REASON)
+#undef ETHD_TAP_REASON
+      ETHD_TAP_REASON_COUNT
+} ethd__reason;
+
+extern const char *const ethd__reason_words[ETHD_TAP_REASON_COUNT];
+
+/* NaN where a figure isn't defined. Speeds and depths along n, > 0 into the wall. */
+typedef struct ethd__metrics {
+  ethd__reason reason;
+  double v_rvo, v_of;       /* m/s: the ring's as it meets the wall, as the finger touches it */
+  double d_max;             /* m: first rebound; 0 when the ring never turns back */
+  double v_rmin;            /* m/s: smallest after the touch */
+  double delta_s;           /* ms: first braking tick to first vo tick after it */
+  double eps;               /* m: offset at that vo tick */
+  double t_rvo, t_of;       /* s of the tap */
+  double peak_force;        /* N: largest |F_e| of the tap */
+} ethd__metrics;
+
+void ethd__metrics_of(const ethd__rows *rows, const ethd__rule *rule, ethd__metrics *out);
+
+/* The tick t_r/vo: the controller's d_re < 0 for the first time; rows->count if never. */
+size_t ethd__metrics_meeting(const ethd__rows *rows);
+
+#endif

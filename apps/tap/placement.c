@@ -1,0 +1,158 @@
+#include "tap/placement.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "file/csv.h"
+#include "file/error_text.h"
+
+/* ---- reading ---- */
+
+enum { T, X, Y, COLUMNS };
+static const char *const names[COLUMNS + 1] = {"t_s", "x_m", "y_m", NULL};
+
+static ethd_status find(const char *path, const ethd_csv *csv, int column[COLUMNS], char *message) {
+  for (int i = 0; i < COLUMNS; i++) {
+    column[i] = ethd_csv_column(csv, names[i]);
+    if (column[i] < 0)
+      return ethd__say(message, ETHD_E_UNKNOWN, "%s:1: no column %s; t_s, x_m and y_m are needed", path,
+                       names[i]);
+  }
+  if (csv->rows < 3)
+    return ethd__say(message, ETHD_E_RANGE, "%s: %zu samples; at least 3 are needed", path, csv->rows);
+  return ETHD_OK;
+}
+
+static ethd_status check_row(const char *path, const ethd_csv *csv, const int column[COLUMNS], size_t row,
+                             char *message) {
+  size_t line = ethd_csv_line(row);
+  const double *now = &csv->values[row * csv->columns], *before = now - csv->columns;
+  for (int i = 0; i < COLUMNS; i++) {
+    if (!isfinite(now[column[i]]))
+      return ethd__say(message, ETHD_E_NOT_FINITE, "%s:%zu: %s: %s; a finite number is needed", path, line,
+                       names[i], ethd_csv_empty(csv, row, column[i]) ? "an empty cell" : "nan");
+    if (i != T && !(fabs(now[column[i]]) <= 1e3))
+      return ethd__say(message, ETHD_E_RANGE, "%s:%zu: %s: found %.10g, -1000 to 1000 is allowed", path,
+                       line, names[i], now[column[i]]);
+  }
+  if (row && !(now[column[T]] > before[column[T]]))
+    return ethd__say(message, ETHD_E_RANGE, "%s:%zu: t_s: found %.10g after %.10g; times must rise", path,
+                     line, now[column[T]], before[column[T]]);
+  if (!(now[column[T]] - csv->values[column[T]] <= ETHD_MOVEMENT_MOST))
+    return ethd__say(message, ETHD_E_RANGE, "%s:%zu: t_s: %.10g s after the start; at most %g are allowed",
+                     path, line, now[column[T]] - csv->values[column[T]], ETHD_MOVEMENT_MOST);
+  return ETHD_OK;
+}
+
+static ethd_status convert(const char *path, const ethd_csv *csv, double scale, ethd__movement *out,
+                           char *message) {
+  int column[COLUMNS];
+  ethd_status status = find(path, csv, column, message);
+  for (size_t row = 0; !status && row < csv->rows; row++)
+    status = check_row(path, csv, column, row, message);
+  if (status) return status;
+  out->samples = malloc(csv->rows * sizeof *out->samples);
+  if (!out->samples)
+    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  out->count = csv->rows;
+  for (size_t row = 0; row < csv->rows; row++) {
+    const double *cell = &csv->values[row * csv->columns];
+    out->samples[row] = (ethd_path_sample){cell[column[T]] - csv->values[column[T]],
+                                           scale * cell[column[X]], scale * cell[column[Y]]};
+  }
+  return ETHD_OK;
+}
+
+ethd_status ethd__movement_load(const char *path, double scale, ethd__movement *out,
+                                char message[ETHD_MESSAGE_MAX]) {
+  ethd_csv csv;
+  *out = (ethd__movement){0};
+  ethd_status status = ethd_csv_read_columns(path, names, &csv, message);
+  if (status) return status;
+  status = convert(path, &csv, scale, out, message);
+  ethd_csv_free(&csv);
+  return status;
+}
+
+void ethd__movement_free(ethd__movement *movement) {
+  free(movement->samples);
+  *movement = (ethd__movement){0};
+}
+
+/* ---- where it touches ---- */
+
+static bool within(double span) { return span <= ETHD_MOVEMENT_WINDOW + 1e-9; }
+
+/* Slope = sum (t - t_mean)(x - x_mean) / sum (t - t_mean)^2. */
+double ethd__movement_speed(const ethd__movement *movement, size_t k) {
+  const ethd_path_sample *s = movement->samples;
+  size_t a = k, b = k;
+  while (a > 0 && (a == k || within(s[k].t - s[a - 1].t))) a--;
+  while (b + 1 < movement->count && (b == k || within(s[b + 1].t - s[k].t))) b++;
+  double t = 0, x = 0, tx = 0, tt = 0, n = (double)(b - a + 1);
+  for (size_t i = a; i <= b; i++) t += (s[i].t - s[k].t) / n, x += (s[i].x - s[k].x) / n;
+  for (size_t i = a; i <= b; i++) {
+    double dt = s[i].t - s[k].t - t;
+    tx += dt * (s[i].x - s[k].x - x);
+    tt += dt * dt;
+  }
+  return -tx / tt;
+}
+
+static size_t peak_of(const ethd__movement *movement, double *speed) {
+  size_t peak = 0;
+  *speed = ethd__movement_speed(movement, 0);
+  for (size_t k = 1; k < movement->count; k++) {
+    double v = ethd__movement_speed(movement, k);
+    if (v > *speed) *speed = v, peak = k;
+  }
+  return peak;
+}
+
+static double falls_to(const ethd__movement *movement, double speed, size_t peak, double before) {
+  const ethd_path_sample *s = movement->samples;
+  for (size_t k = peak + 1; k < movement->count; k++) {
+    double v = ethd__movement_speed(movement, k);
+    if (v <= speed) return s[k - 1].t + (before - speed) / (before - v) * (s[k].t - s[k - 1].t);
+    before = v;
+  }
+  return s[movement->count - 1].t;
+}
+
+void ethd__movement_touchdown(const ethd__movement *movement, double speed, ethd__touchdown *out) {
+  const ethd_path path = {.samples = movement->samples, .sample_count = movement->count};
+  double highest;
+  ethd_vec v;
+  size_t peak = peak_of(movement, &highest);
+  out->never_fast = !(highest >= speed);
+  out->t = out->never_fast ? movement->samples[peak].t : falls_to(movement, speed, peak, highest);
+  ethd_path_at(&path, out->t, &out->x, &v);
+}
+
+/* ---- placing ---- */
+
+static bool reachable(const ethd_arm *arm, ethd_vec x) {
+  double inner, outer, r = ethd_vec_norm(x);
+  ethd_arm_reach(arm, &inner, &outer);
+  return r > inner && r < outer;
+}
+
+size_t ethd__movement_place(const ethd__movement *movement, const ethd__touchdown *touchdown,
+                            ethd_vec centre, const ethd_arm *arm, ethd_path_sample *out) {
+  const ethd_path_sample *s = movement->samples;
+  ethd_vec shift = ethd_vec_sub(centre, touchdown->x);
+  size_t begin = 0, count = 0;
+  if (!reachable(arm, centre)) return 0;
+  for (size_t k = 0; k < movement->count; k++) {
+    ethd_vec x = {s[k].x + shift.x, s[k].y + shift.y};
+    if (reachable(arm, x)) {
+      if (!count) begin = k;
+      out[count++] = (ethd_path_sample){s[k].t - s[begin].t, x.x, x.y};
+    } else if (s[k].t > touchdown->t) {
+      break;
+    } else {
+      count = 0;
+    }
+  }
+  return count;
+}

@@ -1,0 +1,55 @@
+/* A recorded movement as the hand's voluntary path: moved, never bent.
+
+       y ^    recording, moving to -x
+         |        . - ' - .                      shifted in x and y so that at t_touch the finger's
+         |      .           ' - . _              centre is where a finger touches the wall
+      P  o<-- t_touch               start
+     ////|      the first instant after the peak at which the speed toward the wall has fallen to
+                the wanted one; the peak itself when it never was that fast
+
+   Speed toward the wall at a sample: minus the slope in x of the least-squares line through the samples
+   within 5 ms of it, at least one on either side (central differences below 200 Hz); between samples it
+   is linear. Nothing filters the path. */
+#ifndef ETHD_TAP_PLACEMENT_H
+#define ETHD_TAP_PLACEMENT_H
+
+#include <stdbool.h>
+
+#include "ethd/sim.h"
+
+#define ETHD_MOVEMENT_WINDOW 5e-3 /* s, either side */
+#define ETHD_MOVEMENT_MOST 120.0  /* s of recording that are accepted */
+
+/* As recorded, but for the time, which starts at 0, and the scale. */
+typedef struct ethd__movement {
+  ethd_path_sample *samples;
+  size_t count;
+} ethd__movement;
+
+/* Reads t_s, x_m, y_m of a CSV file and multiplies x and y by `scale`. Refuses, with file:line: a column
+   that isn't there, cells empty or not finite, times that don't rise, fewer than 3 samples, more than
+   ETHD_MOVEMENT_MOST, positions beyond 1 km. */
+ETHD_MUST_CHECK ethd_status ethd__movement_load(const char *path, double scale, ethd__movement *out,
+                                                char message[ETHD_MESSAGE_MAX]);
+void ethd__movement_free(ethd__movement *movement);
+
+/* Toward the wall, m/s, at sample k. */
+double ethd__movement_speed(const ethd__movement *movement, size_t k);
+
+/* Where the movement touches. */
+typedef struct ethd__touchdown {
+  double t;        /* s of the movement */
+  ethd_vec x;      /* m, as recorded */
+  bool never_fast; /* it never was that fast; t is the peak's */
+} ethd__touchdown;
+
+void ethd__movement_touchdown(const ethd__movement *movement, double speed, ethd__touchdown *out);
+
+/* Fills out[0..movement->count) with the samples shifted so that the finger's centre is at `centre` at
+   the touchdown, from where it last enters the arm's reach before that to where it leaves it afterwards;
+   returns how many (the path is held there), 0 when the touchdown itself is out of reach. Time starts at
+   0 with the first. */
+size_t ethd__movement_place(const ethd__movement *movement, const ethd__touchdown *touchdown,
+                            ethd_vec centre, const ethd_arm *arm, ethd_path_sample *out);
+
+#endif

@@ -1,0 +1,159 @@
+#include "tap/study.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "file/error_text.h"
+#include "file/text.h"
+
+#define STEP 50e-6 /* s: longest integration step */
+
+bool ethd__speed_parse(const char *word, const ethd_plant *plant, ethd__speed *out) {
+  double v;
+  *out = (ethd__speed){0};
+  if (strlen(word) >= sizeof out->word) return false;
+  strcpy(out->word, word);
+  if (!strcmp(word, "low") || !strcmp(word, "high")) {
+    bool low = word[0] == 'l';
+    out->commanded = low ? plant->speed_low : plant->speed_high;
+    out->centre = low ? 0.2 : 0.4;
+    out->band = low ? plant->band_low : plant->band_high;
+    return true;
+  }
+  if (!ethd__number(word, strlen(word), &v) || !(v >= 0.01 && v <= 2)) return false;
+  out->commanded = out->centre = v;
+  out->band = 0.04 + 0.1 * v;
+  return true;
+}
+
+/* ---- where the wall is ---- */
+
+/* Steps by the clearance never pass through anything; at a wall's they end at once. */
+static ethd_status find_wall(ethd__study *study, char *message) {
+  const ethd_setup *setup = &study->config->setup;
+  double inner, outer;
+  ethd_arm_reach(&setup->arm, &inner, &outer);
+  ethd_vec x = {sqrt(fmax(0, outer * outer - ETHD_TAP_HEIGHT * ETHD_TAP_HEIGHT)), ETHD_TAP_HEIGHT};
+  for (int step = 0; step < 10000 && ethd_vec_norm(x) <= outer; step++) {
+    ethd_nearest near;
+    ethd_scene_query(study->config->scene, x, &near);
+    double clearance = near.distance - setup->ring_radius;
+    if (clearance < 1e-12) {
+      study->meet = x;
+      study->n = near.n;
+      return step ? ETHD_OK
+                  : ethd__say(message, ETHD_E_GEOMETRY,
+                              "the scene leaves no room for a movement to the left at y = %g m",
+                              ETHD_TAP_HEIGHT);
+    }
+    x.x -= clearance;
+  }
+  return ethd__say(message, ETHD_E_GEOMETRY,
+                   "the scene has no wall that the ring meets on its way to the left at y = %g m",
+                   ETHD_TAP_HEIGHT);
+}
+
+/* Where a finger of this radius touches the wall that the ring meets. */
+static ethd_vec finger_at_wall(const ethd__study *study, double radius) {
+  double back = study->config->setup.ring_radius - radius;
+  return ethd_vec_add(study->meet, ethd_vec_scale(back, study->n));
+}
+
+ethd_status ethd__study_prepare(ethd__study *study, char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = find_wall(study, message);
+  if (status || !study->movement.count) return status;
+  for (size_t i = 0; i < study->speed_count; i++)
+    ethd__movement_touchdown(&study->movement, study->speeds[i].centre, &study->speeds[i].touchdown);
+  return ETHD_OK;
+}
+
+/* ---- the stage ---- */
+
+static ethd_limits device_limits(const ethd__study *study) {
+  const ethd_arm *arm = &study->config->setup.arm;
+  ethd_limits limits = ethd_limits_none();
+  limits.torque = study->plant.force_limit * fmax(arm->link1, arm->link2);
+  return limits;
+}
+
+static ethd_status create(ethd__stage *stage, ethd_error *error) {
+  const ethd__study *study = stage->study;
+  const ethd_sim_def def = {.plant = study->plant,
+                            .arm = stage->setup.arm,
+                            .ring_radius = stage->setup.ring_radius,
+                            .period = stage->setup.period,
+                            .step = STEP};
+  stage->samples = malloc((study->movement.count + 1) * sizeof *stage->samples);
+  if (!stage->samples) return ETHD_E_MEMORY;
+  ethd_status status = ethd_sim_create(&def, &stage->sim, error);
+  return status ? status : ethd_control_create(&stage->setup, &stage->control, error);
+}
+
+ethd_status ethd__stage_open(const ethd__study *study, const char *law, ethd__stage *out,
+                             char message[ETHD_MESSAGE_MAX]) {
+  const ethd_config *config = study->config;
+  ethd_error error = {.status = ETHD_E_MEMORY, .found = NAN, .min = NAN, .max = NAN};
+  const ethd_limits device = device_limits(study);
+  *out = (ethd__stage){.study = study, .setup = config->setup};
+  ethd_status status = ethd_config_transition(config, law, &out->setup, message);
+  if (status) return status;
+  out->setup.limits = ethd_limits_narrower(&device, &config->setup.limits);
+  status = create(out, &error);
+  if (!status) return ETHD_OK;
+  ethd_error_text(config->path ? config->path : "defaults", &error, message);
+  ethd__stage_close(out);
+  return status;
+}
+
+void ethd__stage_close(ethd__stage *stage) {
+  ethd_control_destroy(stage->control);
+  ethd_sim_destroy(stage->sim);
+  ethd__rows_free(&stage->rows);
+  free(stage->samples);
+  *stage = (ethd__stage){0};
+}
+
+/* ---- a tap ---- */
+
+ethd_status ethd__stage_draw(ethd__stage *stage, const ethd__speed *speed, uint64_t tap,
+                             ethd_sim_tap *out) {
+  const ethd__study *study = stage->study;
+  ethd_sim_draw(&study->plant, study->seed, tap, speed->commanded, study->meet, out);
+  if (!study->movement.count) return ETHD_OK;
+  ethd_vec centre = finger_at_wall(study, out->finger_radius);
+  size_t count = ethd__movement_place(&study->movement, &speed->touchdown, centre, &stage->setup.arm,
+                                      stage->samples);
+  out->path = (ethd_path){.samples = stage->samples, .sample_count = count};
+  out->commanded = speed->centre;
+  return count ? ETHD_OK : ETHD_E_UNREACHABLE;
+}
+
+static void count_ticks(const ethd__rows *rows, ethd__result *out) {
+  out->ticks = (uint32_t)rows->count;
+  out->queried = 0;
+  for (size_t i = 0; i < rows->count; i++) out->queried += rows->trace[i].queried != 0;
+}
+
+ethd_status ethd__stage_run(ethd__stage *stage, const ethd__speed *speed, uint64_t tap, ethd__result *out,
+                            char message[ETHD_MESSAGE_MAX]) {
+  const ethd__study *study = stage->study;
+  const ethd__rule rule = {.n = study->n,
+                           .period = stage->setup.period,
+                           .side = study->plant.metrics_side,
+                           .speed = speed->centre,
+                           .band = speed->band,
+                           .never_fast = speed->touchdown.never_fast};
+  ethd_sim_tap circumstances;
+  ethd_status status = ethd__stage_draw(stage, speed, tap, &circumstances);
+  if (!status)
+    status = ethd__tap_run(stage->sim, stage->control, &circumstances, stage->setup.period, &stage->rows);
+  if (status)
+    return ethd__say(message, status, "tap %llu at %s: %s", (unsigned long long)tap, speed->word,
+                     ethd_status_sentence(status));
+  ethd__metrics_of(&stage->rows, &rule, &out->metrics);
+  out->commanded = circumstances.commanded;
+  count_ticks(&stage->rows, out);
+  return ETHD_OK;
+}

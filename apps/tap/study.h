@@ -1,0 +1,70 @@
+/* The study: every transition law at every speed, with the same fingers for each.
+
+   The finger of tap k is a function of (seed, k) alone: laws meet the same person, and any tap can be
+   had again on its own. */
+#ifndef ETHD_TAP_STUDY_H
+#define ETHD_TAP_STUDY_H
+
+#include "tap/loop.h"
+#include "tap/placement.h"
+
+#define ETHD_TAP_WORD_MAX 32
+
+typedef struct ethd__speed {
+  char word[ETHD_TAP_WORD_MAX]; /* as it was given: low, high or the number */
+  double commanded;             /* m/s: of the synthetic hand */
+  double centre, band;          /* m/s: valid within centre +- band; a recording touches at centre */
+  ethd__touchdown touchdown;    /* of the movement at this speed */
+} ethd__speed;
+
+/* low and high are the plant's; a number V is commanded as it is and valid within 0.04 + 0.1 V, which
+   gives the paper's bands at 0.2 and 0.4. false: neither a word nor a number from 0.01 to 2. */
+bool ethd__speed_parse(const char *word, const ethd_plant *plant, ethd__speed *out);
+
+typedef struct ethd__study {
+  const ethd_config *config; /* with a scene */
+  ethd_plant plant;
+  uint64_t seed;
+  ethd__movement movement; /* count 0: the plant's synthetic hand */
+  ethd__speed *speeds;
+  size_t speed_count;
+  /* worked out by ethd__study_prepare */
+  ethd_vec meet; /* m: the ring's centre as it meets the wall */
+  ethd_vec n;    /* of the wall there */
+} ethd__study;
+
+#define ETHD_TAP_HEIGHT 0.25 /* m: y of the movement to the left */
+
+/* Finds the wall: the first object that the ring meets on its way to the left at ETHD_TAP_HEIGHT. Then the
+   touchdowns of a movement. Refuses a scene without one, and a touch out of reach. */
+ETHD_MUST_CHECK ethd_status ethd__study_prepare(ethd__study *study, char message[ETHD_MESSAGE_MAX]);
+
+/* What runs taps under one law. */
+typedef struct ethd__stage {
+  const ethd__study *study;
+  ethd_setup setup;
+  ethd_sim *sim;
+  ethd_control *control;
+  ethd__rows rows; /* of the last tap */
+  ethd_path_sample *samples;
+} ethd__stage;
+
+/* The setup is the configuration's with transition `law` and the narrower of its limits and the device's. */
+ETHD_MUST_CHECK ethd_status ethd__stage_open(const ethd__study *study, const char *law, ethd__stage *out,
+                                             char message[ETHD_MESSAGE_MAX]);
+void ethd__stage_close(ethd__stage *stage);
+
+/* A tap's circumstances; its recorded path stands in stage->samples until the next. */
+ETHD_MUST_CHECK ethd_status ethd__stage_draw(ethd__stage *stage, const ethd__speed *speed, uint64_t tap,
+                                             ethd_sim_tap *out);
+
+typedef struct ethd__result {
+  ethd__metrics metrics;
+  double commanded;        /* m/s: what was drawn for this tap */
+  uint32_t ticks, queried; /* of which the scene was asked */
+} ethd__result;
+
+ETHD_MUST_CHECK ethd_status ethd__stage_run(ethd__stage *stage, const ethd__speed *speed, uint64_t tap,
+                                            ethd__result *out, char message[ETHD_MESSAGE_MAX]);
+
+#endif

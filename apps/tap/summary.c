@@ -1,0 +1,108 @@
+#include "tap/summary.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static double value_of(const ethd__result *result, size_t field) {
+  return *(const double *)((const char *)&result->metrics + field);
+}
+
+static bool has(const ethd__result *result, size_t field) {
+  return result->metrics.reason == ETHD_TAP_OK && !isnan(value_of(result, field));
+}
+
+ethd__figure ethd__cell_figure(const ethd__cell *cell, size_t field) {
+  ethd__figure figure = {0, NAN, NAN};
+  double sum = 0, squares = 0;
+  for (size_t i = 0; i < cell->count; i++)
+    if (has(&cell->results[i], field)) figure.n++, sum += value_of(&cell->results[i], field);
+  if (!figure.n) return figure;
+  figure.mean = sum / (double)figure.n;
+  for (size_t i = 0; i < cell->count; i++) {
+    if (!has(&cell->results[i], field)) continue;
+    double d = value_of(&cell->results[i], field) - figure.mean;
+    squares += d * d;
+  }
+  if (figure.n > 1) figure.sd = sqrt(squares / (double)(figure.n - 1));
+  return figure;
+}
+
+double ethd__figure_error(const ethd__figure *figure) { return figure->sd / sqrt((double)figure->n); }
+
+size_t ethd__cell_valid(const ethd__cell *cell) {
+  size_t n = 0;
+  for (size_t i = 0; i < cell->count; i++) n += cell->results[i].metrics.reason == ETHD_TAP_OK;
+  return n;
+}
+
+double ethd__cell_share(const ethd__cell *cell, size_t field, double from, double to) {
+  size_t n = 0, inside = 0;
+  for (size_t i = 0; i < cell->count; i++) {
+    if (!has(&cell->results[i], field)) continue;
+    double value = value_of(&cell->results[i], field);
+    n++;
+    inside += value >= from && value < to;
+  }
+  return n ? (double)inside / (double)n : NAN;
+}
+
+size_t ethd__cell_typical(const ethd__cell *cell) {
+  static const size_t fields[] = {ETHD_TAP_FIELD(v_rvo), ETHD_TAP_FIELD(v_of), ETHD_TAP_FIELD(d_max),
+                                  ETHD_TAP_FIELD(v_rmin)};
+  enum { FIELDS = sizeof fields / sizeof *fields };
+  ethd__figure figures[FIELDS];
+  size_t typical = 0;
+  double least = INFINITY;
+  for (int f = 0; f < FIELDS; f++) figures[f] = ethd__cell_figure(cell, fields[f]);
+  for (size_t i = 0; i < cell->count; i++) {
+    double distance = 0;
+    if (cell->results[i].metrics.reason != ETHD_TAP_OK) continue;
+    for (int f = 0; f < FIELDS; f++) {
+      double d = (value_of(&cell->results[i], fields[f]) - figures[f].mean) / figures[f].sd;
+      if (figures[f].sd > 0) distance += d * d;
+    }
+    if (distance < least) least = distance, typical = i;
+  }
+  return typical;
+}
+
+/* ---- early contact ---- */
+
+typedef struct attempt {
+  double speed;
+  int early;
+} attempt;
+
+static int by_speed(const void *a, const void *b) {
+  const attempt *p = a, *q = b;
+  return p->speed != q->speed ? (p->speed > q->speed) - (p->speed < q->speed) : p->early - q->early;
+}
+
+/* Mistakes of a threshold: early taps below it and others above. */
+static double best_threshold(const attempt *attempts, size_t count, size_t early) {
+  size_t mistakes = count - early, fewest = count;
+  double threshold = NAN;
+  for (size_t i = 0; i + 1 < count; i++) {
+    mistakes += attempts[i].early ? 1 : (size_t)-1;
+    if (mistakes < fewest) fewest = mistakes, threshold = (attempts[i].speed + attempts[i + 1].speed) / 2;
+  }
+  return threshold;
+}
+
+double ethd__cells_early_from(const ethd__cell *cells, size_t count) {
+  size_t total = 0, n = 0, early = 0;
+  for (size_t c = 0; c < count; c++) total += cells[c].count;
+  attempt *attempts = malloc((total + 1) * sizeof *attempts);
+  if (!attempts) return NAN;
+  for (size_t c = 0; c < count; c++) {
+    for (size_t i = 0; i < cells[c].count; i++) {
+      const ethd__result *result = &cells[c].results[i];
+      attempts[n] = (attempt){result->commanded, result->metrics.reason == ETHD_TAP_EARLY_CONTACT};
+      early += (size_t)attempts[n++].early;
+    }
+  }
+  qsort(attempts, n, sizeof *attempts, by_speed);
+  double threshold = early && early < n ? best_threshold(attempts, n, early) : NAN;
+  free(attempts);
+  return threshold;
+}

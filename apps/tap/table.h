@@ -1,0 +1,20 @@
+/* What ethd-tap prints. */
+#ifndef ETHD_TAP_TABLE_H
+#define ETHD_TAP_TABLE_H
+
+#include <stdio.h>
+
+#include "tap/summary.h"
+
+typedef struct ethd__heading {
+  const char *plant, *config; /* names as given */
+  const char *movement;       /* file, NULL: the synthetic hand */
+  double scale;
+  bool scaled;
+} ethd__heading;
+
+/* The cells; with the synthetic hand also Table 1, the claims, what is fitted and what isn't reproduced. */
+void ethd__table_print(FILE *file, const ethd__study *study, const ethd__heading *heading,
+                       const ethd__cell *cells, size_t count);
+
+#endif
