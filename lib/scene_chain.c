@@ -1,0 +1,218 @@
+#include "scene.h"
+
+#include <float.h>
+
+/* Where x stands against edge k from a to b: e = b - a, u = x - a.
+
+     along = e.u        0 at a, e.e at b
+     across = e x u     > 0: x to the left; |across|/|e| is the distance from the line */
+typedef struct edge {
+  ethd_vec a, e, u;
+  double along, across, ee;
+} edge;
+
+typedef enum part { AT_START, BETWEEN, AT_END } part;
+
+static ethd_vec point(const ethd__chain *chain, size_t k) {
+  ethd_vec p = {chain->x[k], chain->y[k]};
+  return p;
+}
+
+static ethd_vec direction(const ethd__chain *chain, size_t k) {
+  return ethd_vec_sub(point(chain, k + 1), point(chain, k));
+}
+
+static edge edge_of(const ethd__chain *chain, size_t k, ethd_vec x) {
+  ethd_vec a = point(chain, k), e = direction(chain, k), u = ethd_vec_sub(x, a);
+  edge r = {a, e, u, ethd_vec_dot(e, u), ethd_vec_cross(e, u), ethd_vec_dot(e, e)};
+  return r;
+}
+
+static part part_of(const edge *g) {
+  return g->along <= 0 ? AT_START : g->along >= g->ee ? AT_END : BETWEEN;
+}
+
+/* The same, but a foot that rounding can't tell from a vertex is at the vertex, for both of its edges. */
+static part settled_part_of(const edge *g) {
+  double e = fabs(g->e.x) + fabs(g->e.y), u = fabs(g->u.x) + fabs(g->u.y);
+  double margin = 8 * DBL_EPSILON * e * (e + u);
+  return g->along <= margin ? AT_START : g->along >= g->ee - margin ? AT_END : BETWEEN;
+}
+
+/* The edges that end and start at point k; false where the chain has none. */
+static bool edge_before(const ethd__chain *chain, size_t k, size_t *out) {
+  *out = k ? k - 1 : chain->edges - 1;
+  return k || chain->closed;
+}
+
+static bool edge_after(const ethd__chain *chain, size_t k, size_t *out) {
+  *out = k < chain->edges ? k : 0;
+  return k < chain->edges || chain->closed;
+}
+
+static ethd_vec unit(ethd_vec v) { return ethd_vec_scale(1 / ethd_vec_norm(v), v); }
+
+static ethd_vec left_of(ethd_vec v) {
+  ethd_vec r = {-v.y, v.x};
+  return r;
+}
+
+/* ---- vertices ---- */
+
+/* A vertex and its edges' directions, one of them twice at an end. */
+typedef struct vertex {
+  ethd_vec p, in, out;
+  int turn; /* sharp turns (of 90 degrees and more): +1 left, -1 right, 0 a reversal */
+  bool blunt, end;
+} vertex;
+
+static vertex vertex_of(const ethd__chain *chain, size_t k) {
+  size_t i, j;
+  bool has_before = edge_before(chain, k, &i), has_after = edge_after(chain, k, &j);
+  if (!has_before) i = j;
+  if (!has_after) j = i;
+  vertex v = {point(chain, k), direction(chain, i), direction(chain, j), 0, false, i == j};
+  v.blunt = ethd_vec_dot(v.in, v.out) > 0;
+  if (!v.blunt) v.turn = ethd__orient(point(chain, i), v.p, point(chain, j + 1));
+  return v;
+}
+
+/* +1: x, nearest to this vertex, stands on the left, -1 right, 0: beyond an end or a reversal. A sharp
+   turn is seen from its outer side only. */
+static int side_of(const vertex *v, ethd_vec x) {
+  if (v->end) return 0;
+  if (!v->blunt) return -v->turn;
+  ethd_vec along = ethd_vec_add(unit(v->in), unit(v->out));
+  return ethd_vec_cross(along, ethd_vec_sub(x, v->p)) >= 0 ? 1 : -1;
+}
+
+/* The normal to the left, at the vertex itself. */
+static ethd_vec left_normal(const vertex *v) {
+  ethd_vec s = unit(v->in), t = unit(v->out);
+  if (v->blunt || !v->turn) return unit(left_of(v->blunt ? ethd_vec_add(s, t) : t));
+  return ethd_vec_scale(v->turn, unit(ethd_vec_sub(t, s)));
+}
+
+/* ---- touches ---- */
+
+/* n of a surface whose left normal is given: into a polygon, away from x at a thin wall. */
+static ethd_vec inward(const ethd__chain *chain, int side, ethd_vec left) {
+  return ethd_vec_scale(chain->turn ? chain->turn : side > 0 ? -1 : 1, left);
+}
+
+static void touch_edge(const ethd__chain *chain, size_t k, const edge *g, ethd_touch *out) {
+  double length = sqrt(g->ee);
+  out->side = g->across >= 0 ? 1 : -1;
+  out->distance = fabs(g->across) / length;
+  out->point = ethd_vec_add(g->a, ethd_vec_scale(g->along / g->ee, g->e));
+  out->n = inward(chain, out->side, ethd_vec_scale(1 / length, left_of(g->e)));
+  out->feature = (int32_t)(2 * k);
+}
+
+static void touch_vertex(const ethd__chain *chain, size_t k, ethd_vec x, ethd_touch *out) {
+  vertex v = vertex_of(chain, k);
+  ethd_vec gap = ethd_vec_sub(v.p, x);
+  double distance = ethd_vec_norm(gap);
+  out->side = side_of(&v, x);
+  out->distance = distance;
+  out->point = v.p;
+  out->n = distance > ETHD__TINY ? ethd_vec_scale(1 / distance, gap)
+                                 : inward(chain, out->side, left_normal(&v));
+  out->feature = (int32_t)(2 * (chain->closed && k == chain->edges ? 0 : k) + 1);
+}
+
+/* ---- the nearest ---- */
+
+static double squared_distance(const ethd__chain *chain, size_t k, ethd_vec x) {
+  edge g = edge_of(chain, k, x);
+  part p = part_of(&g);
+  if (p == BETWEEN) return g.across * g.across / g.ee;
+  ethd_vec u = p == AT_START ? g.u : ethd_vec_sub(x, point(chain, k + 1));
+  return ethd_vec_dot(u, u);
+}
+
+static bool touch_if_between(const ethd__chain *chain, size_t k, ethd_vec x, ethd_touch *out) {
+  edge g = edge_of(chain, k, x);
+  if (part_of(&g) != BETWEEN) return false;
+  touch_edge(chain, k, &g, out);
+  return true;
+}
+
+/* The nearest of edge k, or of an edge beside it that rounding hid behind the vertex between them. */
+static void touch_nearest(const ethd__chain *chain, size_t k, ethd_vec x, ethd_touch *out) {
+  edge g = edge_of(chain, k, x);
+  size_t other;
+  if (touch_if_between(chain, k, x, out)) return;
+  bool at_end = part_of(&g) == AT_END;
+  bool beside = at_end ? edge_after(chain, k + 1, &other) : edge_before(chain, k, &other);
+  if (beside && touch_if_between(chain, other, x, out)) return;
+  touch_vertex(chain, at_end ? k + 1 : k, x, out);
+}
+
+/* By the parity of the edges that a ray to the right crosses, each decided exactly. */
+static bool contains(const ethd__chain *chain, ethd_vec x) {
+  bool inside = false;
+  for (size_t k = 0; k < chain->edges; k++) {
+    ethd_vec a = point(chain, k), b = point(chain, k + 1);
+    if ((a.y > x.y) == (b.y > x.y)) continue;
+    if ((ethd__orient(a, b, x) > 0) == (b.y > a.y)) inside = !inside;
+  }
+  return inside;
+}
+
+/* n comes as seen from outside. An edge that is nearest up to rounding may show x its other face (beyond a
+   needle's tip); on the surface itself an edge's own normal stays. */
+static void sign(const ethd__chain *chain, ethd_vec x, ethd_touch *out) {
+  bool inside = contains(chain, x);
+  bool at_vertex = out->feature % 2;
+  bool turned = at_vertex ? inside && out->distance > ETHD__TINY
+                          : inside != (out->side == chain->turn) && out->distance > chain->slack;
+  if (turned) out->n = ethd_vec_scale(-1, out->n);
+  if (inside) out->distance = -out->distance;
+}
+
+void ethd__chain_nearest(const ethd__chain *chain, ethd_vec x, ethd_touch *out) {
+  size_t nearest = 0;
+  double least = squared_distance(chain, 0, x);
+  for (size_t k = 1; k < chain->edges; k++) {
+    double d = squared_distance(chain, k, x);
+    if (d < least) least = d, nearest = k;
+  }
+  touch_nearest(chain, nearest, x, out);
+  if (chain->turn) sign(chain, x, out);
+}
+
+/* ---- local minima ---- */
+
+/* Before the start of an open chain lies an edge that x is past. */
+static part part_before(const ethd__chain *chain, size_t k, ethd_vec x) {
+  size_t i;
+  if (!edge_before(chain, k, &i)) return AT_END;
+  edge g = edge_of(chain, i, x);
+  return settled_part_of(&g);
+}
+
+static bool faces(const ethd__chain *chain, const ethd_touch *touch) {
+  return !chain->turn || touch->side == -chain->turn;
+}
+
+size_t ethd__chain_minimum(const ethd__chain *chain, ethd_vec x, size_t from, ethd_touch *out) {
+  if (from > chain->edges) return 0;
+  part last = part_before(chain, from, x);
+  for (size_t k = from; k < chain->edges; k++) {
+    edge g = edge_of(chain, k, x);
+    part here = settled_part_of(&g);
+    bool at_vertex = last == AT_END && here == AT_START;
+    last = here;
+    if (at_vertex)
+      touch_vertex(chain, k, x, out);
+    else if (here == BETWEEN)
+      touch_edge(chain, k, &g, out);
+    else
+      continue;
+    if (faces(chain, out)) return k + 1;
+  }
+  if (chain->closed || last != AT_END) return 0;
+  touch_vertex(chain, chain->edges, x, out);
+  return chain->edges + 1;
+}

@@ -1,0 +1,26 @@
+/* What a scene may be made of. */
+#ifndef ETHD_LIB_SCENE_CHECK_H
+#define ETHD_LIB_SCENE_CHECK_H
+
+#include <stdbool.h>
+
+#include "ethd/scene.h"
+
+static inline bool ethd__same(const char *a, const char *b) {
+  while (*a && *a == *b) a++, b++;
+  return *a == *b;
+}
+
+/* Whether a shape is made of so many numbers; else `status`, without a line. */
+ethd_status ethd__check_count(ethd_shape shape, size_t count, ethd_status status, ethd_error *error);
+
+/* `room`: ethd__check_room(def) bytes, aligned like malloc's. */
+size_t ethd__check_room(const ethd_scene_def *def);
+ethd_status ethd__check_scene(const ethd_scene_def *def, void *room, ethd_error *error);
+
+/* Whether the closed chain of n points {x, y} is a simple polygon, 3 <= n < 2^30; if not, `meet` holds the
+   two edges that meet. `room`: ethd__simple_room(n) bytes, aligned like malloc's. */
+size_t ethd__simple_room(size_t n);
+bool ethd__is_simple(const double *points, size_t n, void *room, size_t meet[2]);
+
+#endif

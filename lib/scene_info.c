@@ -1,0 +1,75 @@
+#include "scene.h"
+
+void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out) {
+  *out = (ethd_scene_info){.objects = scene->object_count, .materials = scene->material_count,
+                           .bytes = scene->bytes, .x_min = INFINITY, .x_max = -INFINITY,
+                           .y_min = INFINITY, .y_max = -INFINITY};
+  for (size_t i = 0; i < scene->object_count; i++) {
+    const ethd__object *o = &ethd__objects(scene)[i];
+    out->by_shape[o->shape]++;
+    out->segments += o->edges;
+    if (o->shape == ETHD_HALFPLANE) continue;
+    out->x_min = fmin(out->x_min, ETHD__ARRAY(scene, double, x_min_at)[i]);
+    out->x_max = fmax(out->x_max, ETHD__ARRAY(scene, double, x_max_at)[i]);
+    out->y_min = fmin(out->y_min, ETHD__ARRAY(scene, double, y_min_at)[i]);
+    out->y_max = fmax(out->y_max, ETHD__ARRAY(scene, double, y_max_at)[i]);
+  }
+}
+
+static double norm(double x, double y) { return sqrt(x * x + y * y); }
+
+static double farthest_of_chain(const ethd_scene *scene, size_t object) {
+  ethd__chain chain = ethd__chain_of(scene, object);
+  double most = 0;
+  for (size_t k = 0; k <= chain.edges; k++) most = fmax(most, norm(chain.x[k], chain.y[k]));
+  return most;
+}
+
+/* The base joint seen from the box's frame, and the corner farthest from there. */
+static double farthest_of_box(const double *p) {
+  double u = p[4] * p[0] + p[5] * p[1], v = p[4] * p[1] - p[5] * p[0];
+  return norm(fabs(u) + p[2], fabs(v) + p[3]);
+}
+
+/* How far an object's farthest point is from the base joint. */
+static double farthest(const ethd_scene *scene, size_t object) {
+  const ethd__object *o = &ethd__objects(scene)[object];
+  if (o->shape == ETHD_HALFPLANE) return INFINITY;
+  if (ethd__is_chain((ethd_shape)o->shape)) return farthest_of_chain(scene, object);
+  const double *p = ethd__numbers(scene, object);
+  if (o->shape == ETHD_CIRCLE) return norm(p[0], p[1]) + p[2];
+  if (o->shape == ETHD_CAPSULE) return fmax(norm(p[0], p[1]), norm(p[2], p[3])) + p[4];
+  return farthest_of_box(p);
+}
+
+/* Objects are connected: one whose nearest point lies within the outer circle and whose farthest lies
+   beyond the inner one has points between them. */
+size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, double radius) {
+  double inner, outer;
+  size_t count = 0;
+  ethd_arm_reach(arm, &inner, &outer);
+  for (size_t i = 0; i < scene->object_count; i++) {
+    ethd_touch nearest;
+    ethd__object_nearest(scene, i, (ethd_vec){0, 0}, &nearest);
+    if (nearest.distance > outer + radius || farthest(scene, i) < inner - radius) count++;
+  }
+  return count;
+}
+
+const ethd_material *ethd_scene_material(const ethd_scene *scene, size_t i) {
+  return i < scene->material_count ? ETHD__ARRAY(scene, ethd_material, materials_at) + i : NULL;
+}
+
+const char *ethd_shape_name(ethd_shape shape) {
+  switch (shape) {
+    case ETHD_HALFPLANE: return "halfplane";
+    case ETHD_CIRCLE: return "circle";
+    case ETHD_CAPSULE: return "capsule";
+    case ETHD_BOX: return "box";
+    case ETHD_POLYGON: return "polygon";
+    case ETHD_SEGMENT: return "segment";
+    case ETHD_POLYLINE: return "polyline";
+    case ETHD_SHAPE_COUNT: break;
+  }
+  return "";
+}
