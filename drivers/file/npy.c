@@ -21,10 +21,10 @@
 struct ethd_npy {
   int fd;
   size_t row_bytes, header_bytes;
+  size_t shape;   /* where the count stands in the header */
   uint64_t count; /* rows in the file */
   size_t waiting; /* rows in the buffer */
   bool failed;
-  const ethd_column *columns;
   char *header, *buffer;
 };
 
@@ -57,20 +57,6 @@ static bool dense(const ethd_column *columns, size_t row_bytes) {
 
 static size_t padded(size_t dict) { return (PREFIX + dict + COUNT_ROOM + sizeof ",), }\n" - 1 + 63) / 64 * 64; }
 
-static bool fill_header(ethd_npy *npy) {
-  size_t dict = write_dict(npy->columns, npy->header + PREFIX, HEADER_MAX - PREFIX);
-  size_t total = padded(dict), n = PREFIX + dict;
-  if (!dict || total - PREFIX > 65535) return false;
-  memcpy(npy->header, MAGIC, 8);
-  npy->header[8] = (char)((total - PREFIX) & 255);
-  npy->header[9] = (char)((total - PREFIX) >> 8);
-  n += (size_t)snprintf(npy->header + n, COUNT_ROOM + 8, "%llu,), }", (unsigned long long)npy->count);
-  memset(npy->header + n, ' ', total - n - 1);
-  npy->header[total - 1] = '\n';
-  npy->header_bytes = total;
-  return true;
-}
-
 /* ---- writing ---- */
 
 static bool write_at(int fd, const char *bytes, size_t length, uint64_t offset) {
@@ -83,6 +69,25 @@ static bool write_at(int fd, const char *bytes, size_t length, uint64_t offset) 
     offset += (uint64_t)done;
   }
   return true;
+}
+
+static bool start_header(ethd_npy *npy, const ethd_column *columns) {
+  size_t dict = write_dict(columns, npy->header + PREFIX, HEADER_MAX - PREFIX), total = padded(dict);
+  if (!dict || total - PREFIX > 65535) return false;
+  memcpy(npy->header, MAGIC, 8);
+  npy->header[8] = (char)((total - PREFIX) & 255);
+  npy->header[9] = (char)((total - PREFIX) >> 8);
+  npy->shape = PREFIX + dict;
+  npy->header_bytes = total;
+  return true;
+}
+
+static bool write_header(ethd_npy *npy) {
+  size_t n = npy->shape;
+  n += (size_t)snprintf(npy->header + n, COUNT_ROOM + 8, "%llu,), }", (unsigned long long)npy->count);
+  memset(npy->header + n, ' ', npy->header_bytes - n - 1);
+  npy->header[npy->header_bytes - 1] = '\n';
+  return write_at(npy->fd, npy->header, npy->header_bytes, 0);
 }
 
 static void release(ethd_npy *npy) {
@@ -99,7 +104,6 @@ ethd_status ethd_npy_create(const char *path, const ethd_column *columns, size_t
     return ethd__say(message, ETHD_E_ARGUMENT, "%s: columns that don't fill a row", path);
   ethd_npy *npy = calloc(1, sizeof *npy);
   if (!npy) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
-  npy->columns = columns;
   npy->row_bytes = row_bytes;
   npy->header = malloc(HEADER_MAX);
   npy->buffer = malloc(BUFFER_ROWS * row_bytes);
@@ -107,9 +111,9 @@ ethd_status ethd_npy_create(const char *path, const ethd_column *columns, size_t
   ethd_status status = ETHD_OK;
   if (npy->fd < 0)
     status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
-  else if (!npy->header || !npy->buffer || !fill_header(npy))
+  else if (!npy->header || !npy->buffer || !start_header(npy, columns))
     status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
-  else if (!write_at(npy->fd, npy->header, npy->header_bytes, 0))
+  else if (!write_header(npy))
     status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
   if (status)
     release(npy);
@@ -127,7 +131,7 @@ ethd_status ethd_npy_flush(ethd_npy *npy) {
   if (npy->failed) return ETHD_E_FILE;
   npy->count += npy->waiting;
   npy->waiting = 0;
-  npy->failed = !fill_header(npy) || !write_at(npy->fd, npy->header, npy->header_bytes, 0);
+  npy->failed = !write_header(npy);
   return npy->failed ? ETHD_E_FILE : ETHD_OK;
 }
 
@@ -190,7 +194,7 @@ static ethd_status read_header(const char *text, size_t length, const char *path
 ethd_status ethd_npy_read(const char *path, const ethd_column *columns, size_t row_bytes, void **rows,
                           size_t *count, char message[ETHD_MESSAGE_MAX]) {
   char *text;
-  size_t length, data;
+  size_t length, data = 0;
   *rows = NULL;
   *count = 0;
   if (!dense(columns, row_bytes))

@@ -1,0 +1,38 @@
+/* INI files: inih under a strict layer. What inih would cut, join or skip is an error here.
+
+     [section]
+     key = value      ; a comment        # and ; start comment lines, " ;" ends a line
+
+   All [main]. */
+#ifndef ETHD_FILE_INI_H
+#define ETHD_FILE_INI_H
+
+#include "ethd/config.h"
+
+#define ETHD_INI_BYTES_MAX ((size_t)1 << 20)
+#define ETHD_INI_KEYS_MAX 512u
+
+typedef struct ethd_ini_key {
+  char *section, *key, *value; /* none is empty */
+  int line;
+} ethd_ini_key;
+
+typedef struct ethd_ini {
+  ethd_ini_key *keys; /* in the order of the file */
+  uint32_t count;
+} ethd_ini;
+
+/* `name` stands for the file in messages. `repeats`: "section.key" that may stand more than once, or
+   NULL. Refuses, with file:line: bytes that are no text, lines over 197 characters (comments apart), text
+   behind a section's ']', keys before the first section, keys without '=', empty values, a key twice,
+   over 512 keys. A section may come back. */
+ETHD_MUST_CHECK ethd_status ethd_ini_parse(const char *text, size_t length, const char *name,
+                                           const char *repeats, ethd_ini *out,
+                                           char message[ETHD_MESSAGE_MAX]);
+
+/* The key's entry, NULL if the file hasn't it. */
+const ethd_ini_key *ethd_ini_find(const ethd_ini *ini, const char *section, const char *key);
+
+void ethd_ini_free(ethd_ini *ini);
+
+#endif
