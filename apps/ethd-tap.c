@@ -1,0 +1,244 @@
+/* The tapping study on the simulated device. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "file/error_text.h"
+#include "file/text.h"
+#include "tap/run.h"
+#include "tap/table.h"
+
+#define LIST_MAX 32
+#define TAPS 100u    /* per cell */
+#define TAPS_FINGER 10u /* with a recorded movement */
+#define TAPS_MAX 1000000
+
+static const char doc[] =
+    "Taps a virtual wall with a simulated encounter-type haptic display and a simulated or recorded finger, "
+    "under each transition law at each speed, and prints figures beside the paper's.\v"
+    "Plants are fitted to the paper's Table 1, not measured; nothing runs in real time. Tap k has the same "
+    "finger under every law. The same seed gives the same bytes on every machine.\n\n"
+    "FILE.csv has columns t_s,x_m,y_m (further ones are ignored) of a movement to -x. It is shifted so that "
+    "the finger touches the wall where its speed toward it, after its peak, has fallen to the given speed "
+    "(low, high: 0.2, 0.4 m/s), and is never scaled unless --scale says so. Speed is the slope of the "
+    "least-squares line through the samples within 5 ms, at least one on either side; the path itself is "
+    "not filtered.\n\n"
+    "Every tap is in --csv; means are over the valid ones: the ring met the wall before the finger touched, "
+    "at 0.2 +- 0.06 (low) or 0.4 +- 0.08 m/s (high), at V +- (0.04 + 0.1 V) for a number; plant p has "
+    "bands of its own.\n\n"
+    "Examples:\n"
+    "  ethd-tap\n"
+    "  ethd-tap --taps 400 --csv taps.csv --trace traces\n"
+    "  ethd-tap --finger reach.csv --transition offset --speed high,0.3 --record tap";
+
+enum { OPTION_SCALE = 256, OPTION_TRACE, OPTION_RECORD, OPTION_CSV };
+
+static const struct argp_option options[] = {
+    {"config", 'c', "C.ini", 0, "the controller's configuration; the plant's own without", 0},
+    {"transition", 't', "LAW[,LAW..]", 0, "transition laws: abrupt,smooth,offset", 0},
+    {"speed", 's', "low|high|V[,..]", 0, "speeds: low,high; V in m/s, 0.01 to 2", 0},
+    {"taps", 'n', "N", 0, "attempts per law and speed: 100; 10 with --finger", 0},
+    {"seed", 'r', "S", 0, "key of every random number: 1", 0},
+    {"plant", 'p', "n|b|p|FILE", 0, "the simulated device and finger: n; FILE.plant with FILE.ini beside it", 0},
+    {"finger", 'f', "FILE.csv", 0, "a recorded movement is the hand's voluntary path", 0},
+    {"scale", OPTION_SCALE, "K", 0, "multiply the recorded positions by K, 0.01 to 100", 0},
+    {"csv", OPTION_CSV, "OUT.csv", 0, "a row per tap", 0},
+    {"record", OPTION_RECORD, "DIR", 0,
+     "every tick of every tap: a recording for ethd-replay --verify, with truth.npy and taps.csv beside it", 0},
+    {"trace", OPTION_TRACE, "DIR", 0, "DIR/LAW-SPEED.csv: the typical tap of each cell, a row per tick, for plots", 0},
+    {0},
+};
+
+typedef struct list {
+  const char *words[LIST_MAX];
+  size_t count;
+} list;
+
+static struct {
+  const char *config, *plant, *finger, *csv, *record, *trace;
+  double scale;
+  bool scaled;
+  int64_t taps;
+  uint64_t seed;
+  list laws, speeds;
+} arg = {.plant = "n", .scale = 1, .seed = 1};
+
+/* ---- options ---- */
+
+typedef struct named {
+  list *list;
+  const char *option;
+} named;
+
+static void add(const char *word, void *user) {
+  const named *to = user;
+  char quote[ETHD_QUOTE_MAX];
+  for (size_t i = 0; i < to->list->count; i++)
+    if (!strcmp(to->list->words[i], word))
+      ethd__fail(ETHD_EXIT_INPUT, "%s: %s stands there twice", to->option,
+                 ethd__quote(word, strlen(word), quote));
+  if (to->list->count == LIST_MAX)
+    ethd__fail(ETHD_EXIT_INPUT, "%s: at most %d words are allowed", to->option, LIST_MAX);
+  char *copy = strdup(word);
+  if (!copy) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  to->list->words[to->list->count++] = copy;
+}
+
+static void set_list(list *words, const char *option, const char *text) {
+  named to = {words, option};
+  for (size_t i = 0; i < words->count; i++) free((char *)words->words[i]);
+  words->count = 0;
+  ethd__option_list(option, text, add, &to);
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  switch (key) {
+    case 'c': arg.config = text; return 0;
+    case 't': set_list(&arg.laws, "--transition", text); return 0;
+    case 's': set_list(&arg.speeds, "--speed", text); return 0;
+    case 'n': arg.taps = ethd__option_integer("--taps", text, 1, TAPS_MAX); return 0;
+    case 'r': arg.seed = ethd__option_seed("--seed", text); return 0;
+    case 'p': arg.plant = text; return 0;
+    case 'f': arg.finger = text; return 0;
+    case OPTION_SCALE:
+      arg.scale = ethd__option_number("--scale", text, 0.01, 100);
+      arg.scaled = true;
+      return 0;
+    case OPTION_CSV: arg.csv = text; return 0;
+    case OPTION_RECORD: arg.record = text; return 0;
+    case OPTION_TRACE: arg.trace = text; return 0;
+    case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+    case ARGP_KEY_END:
+      if (arg.scaled && !arg.finger) argp_error(state, "--scale needs --finger");
+      return 0;
+    default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static void fill_in(void) {
+  if (!arg.laws.count) set_list(&arg.laws, "--transition", "abrupt,smooth,offset");
+  if (!arg.speeds.count) set_list(&arg.speeds, "--speed", "low,high");
+  if (!arg.taps) arg.taps = arg.finger ? TAPS_FINGER : TAPS;
+}
+
+/* ---- loading ---- */
+
+static void check(ethd_status status, const char *message) {
+  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+}
+
+static char *joined(const char *a, const char *b) {
+  char *text;
+  if (asprintf(&text, "%s%s", a, b) < 0)
+    ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  return text;
+}
+
+static bool came_along(const char *plant) {
+  return !strcmp(plant, "n") || !strcmp(plant, "b") || !strcmp(plant, "p");
+}
+
+/* "n" and ".ini" to the file that came with the programs; "my/dev", "my/dev.plant" to my/dev.ini. */
+static char *beside_plant(const char *suffix) {
+  size_t length = strlen(arg.plant);
+  if (length > 6 && !strcmp(arg.plant + length - 6, ".plant")) length -= 6;
+  char *stem = strndup(arg.plant, length);
+  if (!stem) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  char *name = joined(stem, suffix);
+  free(stem);
+  if (!came_along(arg.plant)) return name;
+  char *path = ethd__data_path(name);
+  free(name);
+  return path;
+}
+
+static void load_plant(ethd_plant *out) {
+  char message[ETHD_MESSAGE_MAX], *path = beside_plant(".plant");
+  check(ethd_plant_load(path, out, message), message);
+  free(path);
+}
+
+/* A configuration without a scene gets the paper's wall, as if it named it. */
+static ethd_config *with_wall(ethd_config *config, const char *path) {
+  char message[ETHD_MESSAGE_MAX], *wall = ethd__data_path("wall.scene"), *absolute = realpath(wall, NULL);
+  char *scene = joined(config->text && *config->text ? "\n[scene]\nfile = " : "[scene]\nfile = ",
+                       absolute ? absolute : wall);
+  char *text = joined(config->text ? config->text : "", scene);
+  ethd_config *walled;
+  check(ethd_config_parse(text, strlen(text), path, config->folder, &walled, message), message);
+  ethd_config_free(config);
+  free(text);
+  free(scene);
+  free(absolute);
+  free(wall);
+  return walled;
+}
+
+static ethd_config *load_config(char **path) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd_config *config;
+  *path = arg.config ? joined(arg.config, "") : beside_plant(".ini");
+  check(ethd_config_load(*path, &config, message), message);
+  return config->scene ? config : with_wall(config, *path);
+}
+
+static ethd__speed *load_speeds(const ethd_plant *plant) {
+  char quote[ETHD_QUOTE_MAX];
+  ethd__speed *speeds = calloc(arg.speeds.count, sizeof *speeds);
+  if (!speeds) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  for (size_t i = 0; i < arg.speeds.count; i++)
+    if (!ethd__speed_parse(arg.speeds.words[i], plant, &speeds[i]))
+      ethd__fail(ETHD_EXIT_INPUT, "--speed: found %s; low, high and numbers from 0.01 to 2 are allowed",
+                 ethd__quote(arg.speeds.words[i], strlen(arg.speeds.words[i]), quote));
+  return speeds;
+}
+
+/* ---- the study ---- */
+
+static int run(const ethd__plan *plan, const ethd__heading *heading) {
+  char message[ETHD_MESSAGE_MAX];
+  const ethd__study *study = plan->study;
+  ethd__output output;
+  ethd__cell *cells = ethd__cells_create(plan);
+  if (!cells) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  check(ethd__output_open(arg.csv, arg.record, study->config, &output, message), message);
+  ethd_status status = ethd__cells_run(plan, &output, cells, message), closed;
+  char left[ETHD_MESSAGE_MAX];
+  closed = ethd__output_close(&output, left);
+  check(status, message);
+  check(closed, left);
+  if (arg.trace && !ethd__stop) check(ethd__cells_trace(plan, arg.trace, cells, message), message);
+  ethd__table_print(stdout, study, heading, cells, plan->law_count * study->speed_count);
+  ethd__cells_free(cells);
+  if (ethd__stop) fprintf(stderr, "%s: stopped; what was done is kept\n", program_invocation_short_name);
+  return ethd__stop ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE;
+}
+
+int main(int argc, char **argv) {
+  static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
+  char message[ETHD_MESSAGE_MAX], *config;
+  ethd__study study = {0};
+  ethd__begin();
+  argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  fill_in();
+  load_plant(&study.plant);
+  study.speeds = load_speeds(&study.plant);
+  study.speed_count = arg.speeds.count;
+  study.seed = arg.seed;
+  if (arg.finger) check(ethd__movement_load(arg.finger, arg.scale, &study.movement, message), message);
+  ethd_config *loaded = load_config(&config);
+  study.config = loaded;
+  check(ethd__study_prepare(&study, message), message);
+  const ethd__plan plan = {&study, arg.laws.words, arg.laws.count, (uint64_t)arg.taps};
+  const ethd__heading heading = {arg.plant, config, arg.finger, arg.scale, arg.scaled};
+  ethd__catch_interrupt();
+  int code = run(&plan, &heading);
+  ethd__movement_free(&study.movement);
+  ethd_config_free(loaded);
+  set_list(&arg.laws, "", "-");
+  set_list(&arg.speeds, "", "-");
+  free(study.speeds);
+  free(config);
+  return ethd__end(code);
+}

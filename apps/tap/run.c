@@ -1,0 +1,103 @@
+#include "tap/run.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "common/cli.h"
+#include "file/error_text.h"
+
+static size_t cell_count(const ethd__plan *plan) { return plan->law_count * plan->study->speed_count; }
+
+ethd__cell *ethd__cells_create(const ethd__plan *plan) {
+  size_t count = cell_count(plan), speeds = plan->study->speed_count;
+  ethd__cell *cells = calloc(count, sizeof *cells);
+  ethd__result *results = calloc(count * plan->taps, sizeof *results);
+  if (!cells || !results) {
+    free(cells);
+    free(results);
+    return NULL;
+  }
+  for (size_t i = 0; i < count; i++)
+    cells[i] = (ethd__cell){plan->laws[i / speeds], &plan->study->speeds[i % speeds],
+                            results + i * plan->taps, 0};
+  return cells;
+}
+
+void ethd__cells_free(ethd__cell *cells) {
+  if (cells) free(cells->results);
+  free(cells);
+}
+
+/* ---- running ---- */
+
+static ethd_status run_cell(const ethd__plan *plan, ethd__stage *stage, ethd__output *output,
+                            ethd__cell *cells, size_t index, char *message) {
+  ethd__cell *cell = &cells[index];
+  ethd_status status = ETHD_OK;
+  while (!status && cell->count < plan->taps && !ethd__stop) {
+    ethd__result *result = &cell->results[cell->count];
+    uint64_t tap = cell->count;
+    ethd__progress(index * plan->taps + tap, cell_count(plan) * plan->taps, cell->law);
+    status = ethd__stage_run(stage, cell->speed, tap, result, message);
+    if (!status) status = ethd__output_tap(output, stage, cell->law, cell->speed, tap, result, message);
+    cell->count += !status;
+  }
+  return status;
+}
+
+static ethd_status run_law(const ethd__plan *plan, size_t law, ethd__output *output, ethd__cell *cells,
+                           char *message) {
+  ethd__stage stage;
+  size_t speeds = plan->study->speed_count;
+  ethd_status status = ethd__stage_open(plan->study, plan->laws[law], &stage, message);
+  if (status) return status;
+  status = ethd__output_law(output, plan->laws[law], &stage.setup, message);
+  for (size_t i = law * speeds; !status && i < (law + 1) * speeds && !ethd__stop; i++)
+    status = run_cell(plan, &stage, output, cells, i, message);
+  ethd__stage_close(&stage);
+  return status;
+}
+
+ethd_status ethd__cells_run(const ethd__plan *plan, ethd__output *output, ethd__cell *cells,
+                            char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = ETHD_OK;
+  for (size_t law = 0; !status && law < plan->law_count && !ethd__stop; law++)
+    status = run_law(plan, law, output, cells, message);
+  ethd__progress(1, 1, "");
+  return status;
+}
+
+/* ---- typical taps ---- */
+
+static ethd_status trace_cell(const ethd__plan *plan, const char *folder, const ethd__cell *cell,
+                              char *message) {
+  ethd__stage stage;
+  ethd__result result;
+  ethd_sim_tap tap;
+  char *path;
+  uint64_t number = ethd__cell_typical(cell);
+  if (asprintf(&path, "%s/%s-%s.csv", folder, cell->law, cell->speed->word) < 0)
+    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status = ethd__stage_open(plan->study, cell->law, &stage, message);
+  if (!status) {
+    status = ethd__stage_run(&stage, cell->speed, number, &result, message);
+    if (!status) status = ethd__stage_draw(&stage, cell->speed, number, &tap);
+    if (!status) status = ethd__output_trace(path, &stage, &tap, message);
+    ethd__stage_close(&stage);
+  }
+  free(path);
+  return status;
+}
+
+ethd_status ethd__cells_trace(const ethd__plan *plan, const char *folder, const ethd__cell *cells,
+                              char message[ETHD_MESSAGE_MAX]) {
+  if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+    return ethd__say(message, ETHD_E_FILE, "%s: %s", folder, strerror(errno));
+  ethd_status status = ETHD_OK;
+  for (size_t i = 0; !status && i < cell_count(plan); i++)
+    if (cells[i].count) status = trace_cell(plan, folder, &cells[i], message);
+  return status;
+}

@@ -1,0 +1,27 @@
+/* Runs the cells of a study, one after another. */
+#ifndef ETHD_TAP_RUN_H
+#define ETHD_TAP_RUN_H
+
+#include "tap/output.h"
+
+/* What to run: every law at each of the study's speeds, `taps` times. */
+typedef struct ethd__plan {
+  const ethd__study *study;
+  const char *const *laws;
+  size_t law_count;
+  uint64_t taps;
+} ethd__plan;
+
+/* Room for plan->law_count * study->speed_count cells and their results; NULL: no memory. */
+ethd__cell *ethd__cells_create(const ethd__plan *plan);
+void ethd__cells_free(ethd__cell *cells);
+
+/* Fills the cells, laws outermost. Ends early, with ETHD_OK, once ethd__stop is set. */
+ETHD_MUST_CHECK ethd_status ethd__cells_run(const ethd__plan *plan, ethd__output *output, ethd__cell *cells,
+                                            char message[ETHD_MESSAGE_MAX]);
+
+/* Writes folder/LAW-SPEED.csv for every cell that has taps: its typical tap, run again. */
+ETHD_MUST_CHECK ethd_status ethd__cells_trace(const ethd__plan *plan, const char *folder,
+                                              const ethd__cell *cells, char message[ETHD_MESSAGE_MAX]);
+
+#endif
