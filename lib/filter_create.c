@@ -15,8 +15,8 @@
   [FILTER_LATENCY] = {"latency", "s", 0, 0.1, 0,                                                         \
                       "from the sample to its stamp, made up for as well (stamp only)"}
 #define NOISE [KALMAN_NOISE] = {"noise", "m", 1e-7, 1e-2, 0.1e-3, "sd of a reading, each axis"}
-#define GATE(def)                                                                                        \
-  [KALMAN_GATE] = {"gate", "1", 1, INFINITY, def, "sd of the innovation over which a reading is dropped"}
+#define GATE                                                                                             \
+  [KALMAN_GATE] = {"gate", "1", 1, INFINITY, 25, "sd of the innovation over which a reading is dropped; a finger that hits glass makes 20"}
 
 static const ethd_param hold[] = {REFERENCE};
 
@@ -24,18 +24,19 @@ static const ethd_param alpha_beta[] = {
     REFERENCE,
     COMPENSATION,
     LATENCY,
-    [ALPHA_BETA_ALPHA] = {"alpha", "1", 0.01, 1, 0.7, "share of the innovation that moves the position"},
+    [ALPHA_BETA_ALPHA] = {"alpha", "1", 0.01, 1, 0.5, "share of the innovation that moves the position"},
     [ALPHA_BETA_BETA] = {"beta", "1", 0, 2, 0.4, "share of the innovation, per time, that moves the speed"},
 };
 
 static const ethd_param cv[] = {
-    REFERENCE, COMPENSATION, LATENCY, NOISE, GATE(8),
-    [KALMAN_DRIVE] = {"acceleration", "m/s^2", 1e-3, 1e5, 10, "rms acceleration of the finger"},
+    REFERENCE, COMPENSATION, LATENCY, NOISE, GATE,
+    [KALMAN_DRIVE] = {"acceleration", "m/s^2", 1e-3, 1e5, 8, "rms acceleration of the finger"},
 };
 
 static const ethd_param ca[] = {
-    REFERENCE, COMPENSATION, LATENCY, NOISE, GATE(8),
-    [KALMAN_DRIVE] = {"jerk", "m/s^3", 1e-2, 1e7, 500, "rms jerk of the finger"},
+    REFERENCE, COMPENSATION, LATENCY, NOISE, GATE,
+    [KALMAN_DRIVE] = {"jerk", "m/s^3", 1e-2, 1e7, 400, "rms jerk of the finger"},
+    [CA_MEMORY] = {"memory", "s", 1e-3, INFINITY, 0.05, "how long an acceleration lasts; inf: it stays"},
 };
 
 #define ROWS(table) table, sizeof table / sizeof *table

@@ -1,24 +1,29 @@
-/* Kalman filters of position, velocity and acceleration; constant velocity is the same with an
-   acceleration that is 0 and known to be. P = [xx xv xa; . vv va; . . aa], z = x + noise. */
+/* Kalman filters of position, velocity and acceleration; cv is the same with an acceleration that is 0
+   and known to be. P = [xx xv xa; . vv va; . . aa], z = x + noise. */
 #include "filter_methods.h"
 
 enum { XX, XV, XA, VV, VA, AA };
 
-/* P <- F P F^T + g g^T,  F = [1 t h; 0 1 t; 0 0 1],  h = t^2 / 2. */
-void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, double t) {
-  double h = t * t / 2, drive = f->p[KALMAN_DRIVE], *p = s->cov;
+ethd__way ethd__filter_way(const ethd_filter *f, double t) {
+  double z = f->method == ETHD_FILTER_CA ? t / f->p[CA_MEMORY] / 2 : 0;
+  double av = t / (1 + z);
+  return (ethd__way){.t = t, .ax = t * av / 2, .av = av, .aa = (1 - z) / (1 + z)};
+}
+
+/* P <- F P F^T + g g^T,  F = [1 t ax; 0 1 av; 0 0 aa]. */
+void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__way w) {
+  double t = w.t, h = t * t / 2, drive = f->p[KALMAN_DRIVE], *p = s->cov;
   int jerk = f->method == ETHD_FILTER_CA;
   double gx = drive * (jerk ? h * t / 3 : h), gv = drive * (jerk ? h : t), ga = jerk ? drive * t : 0;
-  double x = p[XX] + t * p[XV] + h * p[XA];
-  double v = p[XV] + t * p[VV] + h * p[VA];
-  double a = p[XA] + t * p[VA] + h * p[AA];
-  double va = p[VA] + t * p[AA];
-  p[XX] = x + t * v + h * a + gx * gx;
-  p[XV] = v + t * a + gx * gv;
-  p[XA] = a + gx * ga;
-  p[VV] += t * p[VA] + t * va + gv * gv;
-  p[VA] = va + gv * ga;
-  p[AA] += ga * ga;
+  double x = p[XX] + t * p[XV] + w.ax * p[XA], xv = p[XV] + t * p[VV] + w.ax * p[VA];
+  double xa = p[XA] + t * p[VA] + w.ax * p[AA];
+  double v = p[VV] + w.av * p[VA], va = p[VA] + w.av * p[AA];
+  p[XX] = x + t * xv + w.ax * xa + gx * gx;
+  p[XV] = xv + w.av * xa + gx * gv;
+  p[XA] = w.aa * xa + gx * ga;
+  p[VV] = v + w.av * va + gv * gv;
+  p[VA] = w.aa * va + gv * ga;
+  p[AA] = w.aa * w.aa * p[AA] + ga * ga;
 }
 
 int ethd__filter_correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec r) {

@@ -7,14 +7,22 @@
 /* Rows of the tables; the common ones come first. */
 enum { FILTER_REFERENCE, FILTER_COMPENSATION, FILTER_LATENCY, FILTER_COMMON };
 enum { ALPHA_BETA_ALPHA = FILTER_COMMON, ALPHA_BETA_BETA };
-enum { KALMAN_NOISE = FILTER_COMMON, KALMAN_GATE, KALMAN_DRIVE };
+enum { KALMAN_NOISE = FILTER_COMMON, KALMAN_GATE, KALMAN_DRIVE, CA_MEMORY };
 
 static inline int ethd__filter_is_kalman(const ethd_filter *f) {
   return f->method == ETHD_FILTER_CV || f->method == ETHD_FILTER_CA;
 }
 
-/* Covariance over a way of dt s, process noise included. [rt] */
-void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, double dt) ETHD_RT;
+/* What an acceleration a does within t s: x += ax a, v += av a, a = aa a. It fades, a' = -a / memory, by
+   the trapezoidal rule: exact for memory = inf, where all that is left is t^2 / 2, t and 1. */
+typedef struct ethd__way {
+  double t, ax, av, aa;
+} ethd__way;
+
+ethd__way ethd__filter_way(const ethd_filter *f, double t) ETHD_RT;
+
+/* Covariance over a way, process noise included. [rt] */
+void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__way way) ETHD_RT;
 
 /* Corrects with the innovation r; 0: gated, nothing done. [rt] */
 int ethd__filter_correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec r) ETHD_RT;

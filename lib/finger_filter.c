@@ -29,12 +29,14 @@ static void start_from_reading(const ethd_filter *f, ethd_filter_state *s, ethd_
   s->used++;
 }
 
-static void advance(const ethd_filter *f, ethd_filter_state *s, double dt) {
+static void advance(const ethd_filter *f, ethd_filter_state *s, double t) {
+  ethd__way w = ethd__filter_way(f, t);
   for (int i = 0; i < 2; i++) {
-    s->x[i] += (s->v[i] + s->a[i] * dt / 2) * dt;
-    s->v[i] += s->a[i] * dt;
+    s->x[i] += s->v[i] * t + s->a[i] * w.ax;
+    s->v[i] += s->a[i] * w.av;
+    s->a[i] *= w.aa;
   }
-  if (ethd__filter_is_kalman(f)) ethd__filter_spread(f, s, dt);
+  if (ethd__filter_is_kalman(f)) ethd__filter_spread(f, s, w);
 }
 
 void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, double dt) {
@@ -88,8 +90,9 @@ ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *sta
 
 void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x, ethd_vec *v) {
   int stamp = filter->compensation == ETHD_COMPENSATION_STAMP;
-  double h = stamp ? state->age + filter->p[FILTER_LATENCY] : 0;
-  const double *p = state->x, *w = state->v, *a = state->a;
-  *x = (ethd_vec){p[0] + (w[0] + a[0] * h / 2) * h, p[1] + (w[1] + a[1] * h / 2) * h};
-  *v = (ethd_vec){w[0] + a[0] * h, w[1] + a[1] * h};
+  double t = stamp ? state->age + filter->p[FILTER_LATENCY] : 0;
+  ethd__way w = ethd__filter_way(filter, t);
+  const double *p = state->x, *q = state->v, *a = state->a;
+  *x = (ethd_vec){p[0] + (q[0] * t + a[0] * w.ax), p[1] + (q[1] * t + a[1] * w.ax)};
+  *v = (ethd_vec){q[0] + a[0] * w.av, q[1] + a[1] * w.av};
 }

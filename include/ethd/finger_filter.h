@@ -19,7 +19,8 @@ ETHD_BEGIN_DECLS
 
 typedef enum ethd_filter_method {
   ETHD_FILTER_CA = 0,     /* Kalman, constant acceleration: Q = jerk^2 g g^T, g = (T^3/6, T^2/2, T) for
-                             each way of T s, a tick's (none) or a reading's (stamp) */
+                             each way of T s, a tick's (none) or a reading's (stamp). The acceleration
+                             fades with the time constant `memory` (Singer 1970); inf: it doesn't */
   ETHD_FILTER_HOLD,       /* the last reading, at rest */
   ETHD_FILTER_ALPHA_BETA, /* fixed gains: x += alpha r, v += beta r / (time since the last reading) */
   ETHD_FILTER_CV,         /* Kalman, constant velocity: Q = acceleration^2 g g^T, g = (T^2/2, T) */
