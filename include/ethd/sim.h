@@ -19,7 +19,7 @@ typedef struct ethd_plant {
   double friction, viscous; /* f_c N, b_v Ns/m: torque L (f_c tanh(v / 3 mm/s) + b_v v), v = L dq */
   double delay;            /* s, measurement to torque */
   double count;            /* rad per encoder count at the joint; 0: ideal encoders */
-  double count_dither;     /* 1: the encoder's phase is drawn anew per tick and joint; 0: phase 0 */
+  int32_t count_phase;     /* 1: the encoder's phase is drawn per tap and joint; 0: phase 0 */
   double motor_mass;       /* kg, part of mass on the motor's side; used when stiffness is finite */
   double stiffness, damping; /* transmission at the ring, N/m and Ns/m; stiffness INFINITY: rigid */
   double finger_mass;      /* kg */

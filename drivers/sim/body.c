@@ -1,0 +1,228 @@
+/* Links at absolute angles th, joints at q (serial: q2 = th2 - th1), link vectors a and b with ring = a + b:
+
+     I1 th1'' + H cos(th2 - th1) th2'' - H sin(th2 - th1) th2'^2 = g1 + a x F
+     I2 th2'' + H cos(th2 - th1) th1'' + H sin(th2 - th1) th1'^2 = g2 + b x F
+
+   with g of the joints' drive torques d (serial: g1 = d1 - d2), F the pad's force on the ring. Rigid:
+   d = torque - friction(q'). Compliant, motors' sides at m: d = k (m - q) + c (m' - q'),
+   J m'' = torque - friction(m') - d. */
+#include "sim/body.h"
+
+#include "ethd/maths.h"
+
+#define STICK 3e-3 /* m/s of friction's tanh */
+#define NEAR 0.02  /* rad: so far small_turn holds to the last digit */
+
+void ethd__body_prepare(const ethd_sim_def *def, double finger_radius, ethd__body *out) {
+  const ethd_plant *p = &def->plant;
+  int compliant = p->stiffness < INFINITY;
+  *out = (ethd__body){.dof = compliant ? 6 : 4,
+                      .serial = def->arm.mechanism == ETHD_ARM_SERIAL,
+                      .compliant = compliant,
+                      .link = {def->arm.link1, def->arm.link2},
+                      .coupling = p->coupling,
+                      .gap = def->ring_radius - finger_radius,
+                      .pad_stiffness = p->pad_stiffness,
+                      .pad_damping = p->pad_damping,
+                      .finger_mass = p->finger_mass,
+                      .hand_stiffness = p->hand_stiffness,
+                      .hand_damping = p->hand_damping};
+  for (int j = 0; j < 2; j++) {
+    double l = out->link[j], l2 = l * l;
+    out->inertia[j] = (p->mass[j] - (compliant ? p->motor_mass : 0)) * l2;
+    out->motor_inertia[j] = p->motor_mass * l2;
+    out->stiffness[j] = p->stiffness * l2;
+    out->damping[j] = p->damping * l2;
+    out->friction[j] = p->friction * l;
+    out->viscous[j] = p->viscous * l2;
+    out->sharpness[j] = l / STICK;
+    out->torque_max[j] = p->force_limit * l;
+  }
+}
+
+/* ---- geometry ---- */
+
+/* (sine, cosine) of at + d from those of at, |d| <= NEAR. */
+static void small_turn(double d, double *sine, double *cosine) {
+  double d2 = d * d;
+  double s = d * (1 - d2 / 6 * (1 - d2 / 20 * (1 - d2 / 42)));
+  double c = d2 / 2 * (1 - d2 / 12 * (1 - d2 / 30)); /* 1 - cos d */
+  double s0 = *sine, c0 = *cosine;
+  *sine = s0 + (c0 * s - s0 * c);
+  *cosine = c0 - (s0 * s + c0 * c);
+}
+
+static ethd_vec link_vector(const ethd__body *b, int j, double angle) {
+  double sine = b->sine[j], cosine = b->cosine[j], d = angle - b->at[j];
+  if (fabs(d) <= NEAR)
+    small_turn(d, &sine, &cosine);
+  else
+    ethd_sincos(angle, &sine, &cosine);
+  return (ethd_vec){b->link[j] * cosine, b->link[j] * sine};
+}
+
+static ethd_vec turn(double w, ethd_vec a) { return (ethd_vec){-w * a.y, w * a.x}; }
+
+typedef struct pose {
+  ethd_vec a, b;
+} pose;
+
+static pose links(const ethd__body *body, const double *angle) {
+  return (pose){link_vector(body, 0, angle[0]), link_vector(body, 1, angle[1])};
+}
+
+static ethd_vec velocity(const pose *p, const double *w) {
+  return ethd_vec_add(turn(w[0], p->a), turn(w[1], p->b));
+}
+
+void ethd__body_refer(ethd__body *body, const ethd__state *state) {
+  for (int j = 0; j < 2; j++) {
+    body->at[j] = state->q[ETHD__LINK + j];
+    ethd_sincos(body->at[j], &body->sine[j], &body->cosine[j]);
+  }
+}
+
+void ethd__body_joints(const ethd__body *body, const double x[ETHD__DOF_MAX], double out[2]) {
+  out[0] = body->compliant ? x[ETHD__MOTOR] : x[ETHD__LINK];
+  out[1] = body->compliant ? x[ETHD__MOTOR + 1] : x[ETHD__LINK + 1] - (body->serial ? x[ETHD__LINK] : 0);
+}
+
+void ethd__body_place(const ethd__body *body, const double q[2], ethd__state *out) {
+  double *x = out->q;
+  x[ETHD__LINK] = x[ETHD__MOTOR] = q[0];
+  x[ETHD__LINK + 1] = body->serial ? q[0] + q[1] : q[1];
+  x[ETHD__MOTOR + 1] = q[1];
+}
+
+void ethd__body_ring(const ethd__body *body, const ethd__state *state, ethd_vec *x, ethd_vec *v) {
+  pose p = links(body, state->q);
+  *x = ethd_vec_add(p.a, p.b);
+  *v = velocity(&p, state->v);
+}
+
+void ethd__body_motor(const ethd__body *body, const ethd__state *state, ethd_vec *x, ethd_vec *v) {
+  double q[2], w[2];
+  ethd__body_joints(body, state->q, q);
+  ethd__body_joints(body, state->v, w);
+  if (body->serial) {
+    q[1] += q[0];
+    w[1] += w[0];
+  }
+  pose p = links(body, q);
+  *x = ethd_vec_add(p.a, p.b);
+  *v = velocity(&p, w);
+}
+
+/* ---- pad ---- */
+
+typedef struct pad {
+  ethd_vec r; /* from ring to finger */
+  double distance, p;
+} pad;
+
+static pad pad_of(const ethd__body *body, const pose *links, const double *x) {
+  ethd_vec finger = {x[ETHD__FINGER], x[ETHD__FINGER + 1]};
+  pad d = {.r = ethd_vec_sub(finger, ethd_vec_add(links->a, links->b))};
+  d.distance = ethd_vec_norm(d.r);
+  d.p = d.distance - body->gap;
+  return d;
+}
+
+/* 1 + c p_dot. */
+static double damping(const ethd__body *body, const pad *d, const pose *links, const double *v) {
+  ethd_vec finger = {v[ETHD__FINGER], v[ETHD__FINGER + 1]};
+  ethd_vec away = ethd_vec_sub(finger, velocity(links, v));
+  return 1 + body->pad_damping * (ethd_vec_dot(d->r, away) / d->distance);
+}
+
+ethd__touch ethd__body_touch(const ethd__body *body, const ethd__state *state) {
+  pose l = links(body, state->q);
+  pad d = pad_of(body, &l, state->q);
+  if (!(d.p > 0)) return ETHD__APART;
+  return damping(body, &d, &l, state->v) > 0 ? ETHD__PRESSING : ETHD__LEAVING;
+}
+
+/* Force on the ring. Smooth across the ends of its branch: touch, not p, chooses the branch. */
+static ethd_vec press(const ethd__body *body, const pose *links, const double *x, const double *v) {
+  pad d = pad_of(body, links, x);
+  double force = body->pad_stiffness * d.p * damping(body, &d, links, v);
+  return ethd_vec_scale(force / d.distance, d.r);
+}
+
+void ethd__body_pad(const ethd__body *body, const ethd__state *state, double *p, double *force) {
+  pose l = links(body, state->q);
+  *p = pad_of(body, &l, state->q).p;
+  *force = state->touch == ETHD__PRESSING ? ethd_vec_norm(press(body, &l, state->q, state->v)) : 0;
+}
+
+/* ---- equations ---- */
+
+static double rub(const ethd__body *b, int j, double w) {
+  return b->friction[j] * ethd_tanh(b->sharpness[j] * w) + b->viscous[j] * w;
+}
+
+/* Drive torques of the joints, and the motors' accelerations where they have their own. */
+static void drive(const ethd__body *b, const double *q, const double *v, double d[2], double *a) {
+  for (int j = 0; j < 2; j++) {
+    int relative = j && b->serial;
+    double w = v[ETHD__LINK + j] - (relative ? v[ETHD__LINK] : 0);
+    if (!b->compliant) {
+      d[j] = b->torque[j] - rub(b, j, w);
+      continue;
+    }
+    double angle = q[ETHD__LINK + j] - (relative ? q[ETHD__LINK] : 0);
+    double motor_w = v[ETHD__MOTOR + j];
+    d[j] = b->stiffness[j] * (q[ETHD__MOTOR + j] - angle) + b->damping[j] * (motor_w - w);
+    a[ETHD__MOTOR + j] = (b->torque[j] - rub(b, j, motor_w) - d[j]) / b->motor_inertia[j];
+  }
+  if (b->serial) d[0] -= d[1];
+}
+
+static void couple(const ethd__body *b, const pose *links, const double *w, const double g[2], double *a) {
+  double h = b->coupling / (b->link[0] * b->link[1]);
+  double hc = h * ethd_vec_dot(links->a, links->b), hs = h * ethd_vec_cross(links->a, links->b);
+  double g0 = g[0] + hs * w[1] * w[1], g1 = g[1] - hs * w[0] * w[0];
+  double det = b->inertia[0] * b->inertia[1] - hc * hc;
+  a[0] = (b->inertia[1] * g0 - hc * g1) / det;
+  a[1] = (b->inertia[0] * g1 - hc * g0) / det;
+}
+
+void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, ethd_vec hand, ethd_vec hand_v,
+                           const double *q, const double *v, double *out) {
+  double g[2];
+  drive(b, q, v, g, out);
+  ethd_vec f = {b->hand_stiffness * (hand.x - q[2]) + b->hand_damping * (hand_v.x - v[2]),
+                b->hand_stiffness * (hand.y - q[3]) + b->hand_damping * (hand_v.y - v[3])};
+  if (touch == ETHD__PRESSING || b->coupling != 0) {
+    pose l = links(b, q);
+    if (touch == ETHD__PRESSING) {
+      ethd_vec push = press(b, &l, q, v);
+      f = ethd_vec_sub(f, push);
+      g[0] += ethd_vec_cross(l.a, push);
+      g[1] += ethd_vec_cross(l.b, push);
+    }
+    couple(b, &l, v, g, out);
+  } else {
+    out[0] = g[0] / b->inertia[0];
+    out[1] = g[1] / b->inertia[1];
+  }
+  out[ETHD__FINGER] = f.x / b->finger_mass;
+  out[ETHD__FINGER + 1] = f.y / b->finger_mass;
+}
+
+static double square(double x) { return x * x; }
+
+double ethd__body_energy(const ethd__body *b, const ethd__state *s, ethd_vec hand) {
+  const double *q = s->q, *v = s->v;
+  pose l = links(b, q);
+  double h = b->coupling * ethd_vec_dot(l.a, l.b) / (b->link[0] * b->link[1]);
+  double twice = b->inertia[0] * square(v[0]) + b->inertia[1] * square(v[1]) + 2 * h * v[0] * v[1] +
+                 b->finger_mass * (square(v[2]) + square(v[3])) +
+                 b->hand_stiffness * (square(hand.x - q[2]) + square(hand.y - q[3]));
+  twice += b->pad_stiffness * square(fmax(0, pad_of(b, &l, q).p));
+  for (int j = 0; j < 2 && b->compliant; j++) {
+    double angle = q[j] - (j && b->serial ? q[0] : 0);
+    twice += b->motor_inertia[j] * square(v[4 + j]) + b->stiffness[j] * square(q[4 + j] - angle);
+  }
+  return twice / 2;
+}

@@ -1,0 +1,64 @@
+/* The plant in motion: arm, motors, finger. Equations and one integration step. */
+#ifndef ETHD_SIM_BODY_H
+#define ETHD_SIM_BODY_H
+
+#include "ethd/sim.h"
+#include "sim/path.h"
+
+/* Coordinates: absolute angles of the links, finger x and y, motors' sides of the joints (as joint angles;
+   only with a compliant transmission). */
+enum { ETHD__LINK = 0, ETHD__FINGER = 2, ETHD__MOTOR = 4, ETHD__DOF_MAX = 6 };
+
+/* Pad and ring: apart; pressing, K p (1 + c p_dot); or leaving so fast that this would pull: no force. */
+typedef enum ethd__touch { ETHD__APART, ETHD__PRESSING, ETHD__LEAVING } ethd__touch;
+
+typedef struct ethd__state {
+  double q[ETHD__DOF_MAX], v[ETHD__DOF_MAX];
+  ethd__touch touch;
+} ethd__state;
+
+/* Numbers of the equations, worked out once. Joint quantities: at the ring times L or L^2. */
+typedef struct ethd__body {
+  int dof, serial, compliant;
+  double link[2];
+  double inertia[2], coupling, motor_inertia[2]; /* kg m^2 */
+  double stiffness[2], damping[2];               /* Nm/rad, Nms/rad of the transmission */
+  double friction[2], viscous[2], sharpness[2];  /* Nm, Nms/rad, s/rad: f tanh(sharpness w) + viscous w */
+  double torque_max[2], torque[2];               /* Nm, the latter in effect */
+  double gap, pad_stiffness, pad_damping;
+  double finger_mass, hand_stiffness, hand_damping;
+  double at[2], sine[2], cosine[2]; /* of angles near the present ones */
+} ethd__body;
+
+/* The gap is the tap's. */
+void ethd__body_prepare(const ethd_sim_def *def, double finger_radius, ethd__body *out);
+
+/* Joint angles (measured side, if there are two) to coordinates and back. */
+void ethd__body_place(const ethd__body *body, const double q[2], ethd__state *out) ETHD_RT;
+void ethd__body_joints(const ethd__body *body, const double x[ETHD__DOF_MAX], double out[2]) ETHD_RT;
+
+/* Angles stay near these for a while: their sines are worked out by a small turn from here. */
+void ethd__body_refer(ethd__body *body, const ethd__state *state) ETHD_RT;
+
+/* Ring centre and its velocity; the same as the motor's side has it. */
+void ethd__body_ring(const ethd__body *body, const ethd__state *state, ethd_vec *x, ethd_vec *v) ETHD_RT;
+void ethd__body_motor(const ethd__body *body, const ethd__state *state, ethd_vec *x, ethd_vec *v) ETHD_RT;
+
+/* Penetration p of the pad and its force under the state's touch. */
+void ethd__body_pad(const ethd__body *body, const ethd__state *state, double *p, double *force) ETHD_RT;
+
+/* What pad and ring do in this state, whatever state->touch says. */
+ethd__touch ethd__body_touch(const ethd__body *body, const ethd__state *state) ETHD_RT;
+
+/* Accelerations with the hand's path at x, v. */
+void ethd__body_accelerate(const ethd__body *body, ethd__touch touch, ethd_vec hand, ethd_vec hand_v,
+                           const double *q, const double *v, double *out) ETHD_RT;
+
+/* Kinetic energy plus that of pad, hand and transmission, J, with the path at hand. */
+double ethd__body_energy(const ethd__body *body, const ethd__state *state, ethd_vec hand) ETHD_RT;
+
+/* From t to t + h, within which only touch may change. RK4 (Kutta 1901) with changes of touch located. */
+void ethd__body_advance(const ethd__body *body, const ethd__piece *piece, double t, double h,
+                        ethd__state *state) ETHD_RT;
+
+#endif

@@ -1,0 +1,141 @@
+#include "sim/path.h"
+
+#include "ethd/maths.h"
+
+#define PI 3.14159265358979323846
+
+static const ethd_vec ZERO = {0, 0};
+
+static void hold(ethd_vec x, double begin, double end, ethd__piece *out) {
+  *out = (ethd__piece){.begin = begin, .end = end, .a = x};
+}
+
+/* ---- synthetic ---- */
+
+/* Ramps cover half of what the constant speed would in their time. The speed is kept on a path that is
+   too short for its ramps: it ends beyond to_x. */
+static double cruise_time(const ethd_path *path) {
+  double length = fabs(path->to_x - path->from.x);
+  return fmax(0, length / path->speed - (path->ramp_up + path->ramp_down) / 2);
+}
+
+/* Speed V (1 - cos(w s))/2, with w ramp = pi; falling: the mirror image, with s from its end. */
+static void ramp(ethd_vec x, double velocity, double duration, double begin, double origin,
+                 ethd__piece *out) {
+  hold(x, begin, begin + duration, out);
+  out->origin = origin;
+  out->w = PI / duration;
+  out->b.x = velocity / 2;
+  out->e.x = velocity / (2 * out->w);
+}
+
+static void synthetic_piece(const ethd_path *path, double t, ethd__piece *out) {
+  double velocity = path->to_x < path->from.x ? -path->speed : path->speed;
+  double cruise = path->ramp_up, brake = cruise + cruise_time(path), end = brake + path->ramp_down;
+  ethd_vec x = path->from;
+  if (t < 0) {
+    hold(x, -INFINITY, 0, out);
+    return;
+  }
+  if (t < cruise) {
+    ramp(x, velocity, path->ramp_up, 0, 0, out);
+    return;
+  }
+  x.x += velocity * path->ramp_up / 2;
+  if (t < brake) {
+    hold(x, cruise, brake, out);
+    out->origin = cruise;
+    out->b.x = velocity;
+    return;
+  }
+  x.x += velocity * ((brake - cruise) + path->ramp_down / 2);
+  if (t < end)
+    ramp(x, velocity, path->ramp_down, brake, end, out);
+  else
+    hold(x, end, INFINITY, out);
+}
+
+/* ---- recorded ---- */
+
+static ethd_vec place(const ethd_path_sample *s) { return (ethd_vec){s->x, s->y}; }
+
+static ethd_vec slope(const ethd_path_sample *s) {
+  return ethd_vec_scale(1 / (s[1].t - s[0].t), ethd_vec_sub(place(s + 1), place(s)));
+}
+
+/* Slope at sample i of the parabola through it and its neighbours (Catmull-Rom where they are evenly
+   spaced); 0 at both ends, where the path is held. */
+static ethd_vec tangent(const ethd_path *path, size_t i) {
+  if (i == 0 || i + 1 == path->sample_count) return ZERO;
+  const ethd_path_sample *s = path->samples + i;
+  double before = s[0].t - s[-1].t, after = s[1].t - s[0].t, whole = before + after;
+  return ethd_vec_add(ethd_vec_scale(after / whole, slope(s - 1)), ethd_vec_scale(before / whole, slope(s)));
+}
+
+/* Last sample at or before t. */
+static size_t find(const ethd_path *path, double t) {
+  size_t low = 0, high = path->sample_count;
+  while (high - low > 1) {
+    size_t middle = low + (high - low) / 2;
+    if (path->samples[middle].t <= t)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* Hermite's cubic: c = (3 m - 2 g0 - g1)/h, d = (g0 + g1 - 2 m)/h^2, of mean slope m, end slopes g. */
+static void recorded_piece(const ethd_path *path, double t, ethd__piece *out) {
+  const ethd_path_sample *first = path->samples, *last = first + path->sample_count - 1;
+  if (t < first->t) {
+    hold(place(first), -INFINITY, first->t, out);
+    return;
+  }
+  if (t >= last->t) {
+    hold(place(last), last->t, INFINITY, out);
+    return;
+  }
+  size_t i = find(path, t);
+  const ethd_path_sample *s = first + i;
+  double h = s[1].t - s[0].t;
+  ethd_vec g0 = tangent(path, i), g1 = tangent(path, i + 1), m = slope(s);
+  hold(place(s), s[0].t, s[1].t, out);
+  out->origin = s[0].t;
+  out->b = g0;
+  out->c = (ethd_vec){(3 * m.x - 2 * g0.x - g1.x) / h, (3 * m.y - 2 * g0.y - g1.y) / h};
+  out->d = (ethd_vec){(g0.x + g1.x - 2 * m.x) / (h * h), (g0.y + g1.y - 2 * m.y) / (h * h)};
+}
+
+/* ---- both ---- */
+
+void ethd__path_piece(const ethd_path *path, double t, ethd__piece *out) {
+  if (path->sample_count)
+    recorded_piece(path, t, out);
+  else
+    synthetic_piece(path, t, out);
+}
+
+void ethd__piece_at(const ethd__piece *p, double t, ethd_vec *x, ethd_vec *v) {
+  double s = t - p->origin;
+  x->x = p->a.x + s * (p->b.x + s * (p->c.x + s * p->d.x));
+  x->y = p->a.y + s * (p->b.y + s * (p->c.y + s * p->d.y));
+  v->x = p->b.x + s * (2 * p->c.x + s * (3 * p->d.x));
+  v->y = p->b.y + s * (2 * p->c.y + s * (3 * p->d.y));
+  if (p->w == 0) return;
+  double sine, cosine;
+  ethd_sincos(p->w * s, &sine, &cosine);
+  x->x -= p->e.x * sine;
+  v->x -= p->w * p->e.x * cosine;
+}
+
+void ethd_path_at(const ethd_path *path, double t, ethd_vec *x, ethd_vec *v) {
+  ethd__piece piece;
+  ethd__path_piece(path, t, &piece);
+  ethd__piece_at(&piece, t, x, v);
+}
+
+double ethd_path_end(const ethd_path *path) {
+  if (path->sample_count) return path->samples[path->sample_count - 1].t;
+  return path->ramp_up + cruise_time(path) + path->ramp_down;
+}

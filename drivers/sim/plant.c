@@ -1,0 +1,128 @@
+#include "sim/plant.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "sim/sensors.h"
+
+#define AT(member) offsetof(ethd_plant, member)
+#define ROW(section, key, unit, min, max, member, brief) \
+  {section, {key, unit, min, max, min, brief}, AT(member)}
+
+const ethd__plant_row ethd__plant_rows[] = {
+    ROW("device", "mass_x", "kg", 1e-3, 1e3, mass[0], "effective mass at the ring in x: joint 1"),
+    ROW("device", "mass_y", "kg", 1e-3, 1e3, mass[1], "likewise in y: joint 2"),
+    ROW("device", "coupling", "kg m^2", -1e3, 1e3, coupling, "H of H cos(th2 - th1)"),
+    ROW("device", "force_limit", "N", 0, 1e6, force_limit, "torque limit of each joint / L"),
+    ROW("device", "friction", "N", 0, 1e3, friction, "f_c of f_c tanh(v / 3 mm/s) + b_v v"),
+    ROW("device", "viscous", "Ns/m", 0, 1e3, viscous, "b_v, likewise"),
+    ROW("device", "delay", "s", 0, 1, delay, "from measurement to torque, at most one period"),
+    ROW("device", "count", "rad", 0, 1, count, "one encoder count at the joint; 0: ideal"),
+    ROW("device", "count_phase", "zero|drawn", 0, 1, count_phase, "encoder phase, per tap and joint"),
+    ROW("transmission", "motor_mass", "kg", 0, 1e3, motor_mass, "part of the mass on the motor's side"),
+    ROW("transmission", "stiffness", "N/m", 1, INFINITY, stiffness, "at the ring; inf: rigid"),
+    ROW("transmission", "damping", "Ns/m", 0, 1e6, damping, "at the ring"),
+    ROW("finger", "mass", "kg", 1e-3, 1e3, finger_mass, "moving mass"),
+    ROW("finger", "hand_stiffness", "N/m", 0, 1e6, hand_stiffness, "about the voluntary path, x and y"),
+    ROW("finger", "hand_damping", "Ns/m", 0, 1e6, hand_damping, "likewise"),
+    ROW("finger", "pad_stiffness", "N/m", 0, 1e7, pad_stiffness, "K of K p (1 + c p_dot)"),
+    ROW("finger", "pad_damping", "s/m", 0, 1e3, pad_damping, "c, likewise"),
+    ROW("finger", "radius", "m", 1e-4, 1, finger_radius, "mean over taps"),
+    ROW("finger", "radius_sd", "m", 0, 1, finger_radius_sd, "cut at 2 sd"),
+    ROW("proximity", "reading", "centre|rays", 0, 1, rays, "what a reading holds"),
+    ROW("proximity", "rate", "Hz", 1, 1e5, rate, "readings"),
+    ROW("proximity", "latency", "s", 0, 1, latency, "from its last sample to its delivery"),
+    ROW("proximity", "noise", "m", 0, 0.1, noise, "sd of a centre, each axis"),
+    ROW("proximity", "reference", "ring|motor", 0, 1, reference, "whose position comes with a reading"),
+    ROW("proximity", "ray_noise", "m", 0, 0.1, ray_noise, "sd of a ray"),
+    ROW("proximity", "ray_skew", "s", 0, 0.1, ray_skew, "from the first ray of a frame to its last"),
+    ROW("movement", "start", "m", 0, 10, start, "before the ring would meet the wall"),
+    ROW("movement", "start_sd", "m", 0, 10, start_sd, "cut at 2 sd"),
+    ROW("movement", "overshoot", "m", 0, 10, overshoot, "O: aims O exp(s g) behind it"),
+    ROW("movement", "overshoot_spread", "1", 0, 2, overshoot_spread, "s, with g cut at 2"),
+    ROW("movement", "ramp_up", "s", 0, 10, ramp_up, "speed V (1 - cos)/2"),
+    ROW("movement", "ramp_down", "s", 0, 10, ramp_down, "its mirror image"),
+    ROW("movement", "lateral_sd", "m", 0, 1, lateral_sd, "of the path's y, cut at 2 sd"),
+    ROW("movement", "speed_low", "m/s", 1e-3, 100, speed_low, "commanded"),
+    ROW("movement", "speed_high", "m/s", 1e-3, 100, speed_high, "commanded"),
+    ROW("movement", "speed_spread", "1", 0, 0.39, speed_spread, "coefficient of variation, cut at 2.5 sd"),
+    ROW("study", "side", "ring|motor", 0, 1, metrics_side, "whose speed is measured"),
+    ROW("study", "band_low", "m/s", 0, 10, band_low, "a tap is valid within 0.2 m/s +- this"),
+    ROW("study", "band_high", "m/s", 0, 10, band_high, "likewise 0.4 m/s"),
+};
+const size_t ethd__plant_row_count = sizeof ethd__plant_rows / sizeof *ethd__plant_rows;
+
+ethd_status ethd__sim_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
+                             double max) {
+  if (!error) return status;
+  memset(error, 0, sizeof *error);
+  error->status = status;
+  snprintf(error->name, sizeof error->name, "%s", name);
+  error->found = found;
+  error->min = min;
+  error->max = max;
+  return status;
+}
+
+/* ---- checks ---- */
+
+static double value_of(const ethd__plant_row *row, const ethd_plant *plant) {
+  const char *at = (const char *)plant + row->offset;
+  int32_t choice;
+  double number;
+  memcpy(&choice, at, sizeof choice);
+  memcpy(&number, at, sizeof number);
+  return strchr(row->param.unit, '|') ? choice : number;
+}
+
+static ethd_status check_row(const ethd__plant_row *row, const ethd_plant *plant, ethd_error *error) {
+  const ethd_param *p = &row->param;
+  double value = value_of(row, plant);
+  char name[sizeof error->name];
+  if (value >= p->min && value <= p->max) return ETHD_OK;
+  snprintf(name, sizeof name, "%s.%s", row->section, p->name);
+  return ethd__sim_refuse(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, value, p->min, p->max);
+}
+
+/* name's value must lie in [min, max]. */
+static ethd_status within(ethd_error *error, const char *name, double found, double min, double max) {
+  return found >= min && found <= max ? ETHD_OK : ethd__sim_refuse(error, ETHD_E_RANGE, name, found, min, max);
+}
+
+ethd_status ethd__plant_check(const ethd_plant *p, ethd_error *error) {
+  ethd_status status = ETHD_OK;
+  for (size_t i = 0; i < ethd__plant_row_count && !status; i++)
+    status = check_row(&ethd__plant_rows[i], p, error);
+  if (status) return status;
+  double least = fmin(p->mass[0], p->mass[1]), frame = p->rays ? p->ray_skew : 0;
+  if (p->stiffness < INFINITY) {
+    status = within(error, "transmission.motor_mass", p->motor_mass, 1e-3 * least, (1 - 1e-3) * least);
+    if (status) return status;
+  }
+  status = within(error, "finger.radius_sd", p->finger_radius_sd, 0, (1 - 1e-3) * p->finger_radius / 2);
+  if (status) return status;
+  status = within(error, "proximity.ray_skew", frame, 0, (1 - 1e-6) / p->rate);
+  if (status) return status;
+  return within(error, "proximity.latency", p->latency, 0, (ETHD__READINGS_MAX - 2) / p->rate - frame);
+}
+
+/* The coupled inertia must stay positive with what is on the links' side. */
+static ethd_status check_inertia(const ethd_sim_def *def, ethd_error *error) {
+  const ethd_plant *p = &def->plant;
+  double own = p->stiffness < INFINITY ? p->motor_mass : 0, l = def->arm.link1 * def->arm.link2;
+  double most = 0.999 * l * sqrt((p->mass[0] - own) * (p->mass[1] - own));
+  return within(error, "device.coupling", p->coupling, -most, most);
+}
+
+ethd_status ethd__sim_check(const ethd_sim_def *def, ethd_error *error) {
+  const ethd_plant *p = &def->plant;
+  ethd_status status = ethd__plant_check(p, error);
+  if (!status) status = ethd_arm_check(&def->arm, error);
+  if (!status) status = check_inertia(def, error);
+  if (!status) status = within(error, "period", def->period, 1e-6, 1);
+  if (!status) status = within(error, "step", def->step, 1e-7, 1);
+  if (!status) status = within(error, "device.delay", p->delay, 0, def->period);
+  if (!status)
+    status = within(error, "ring.radius", def->ring_radius, p->finger_radius + 2 * p->finger_radius_sd, 10);
+  return status;
+}

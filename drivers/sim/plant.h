@@ -1,0 +1,27 @@
+/* The plant's numbers as a table: what a plant file may say, and the check of a definition. */
+#ifndef ETHD_SIM_PLANT_H
+#define ETHD_SIM_PLANT_H
+
+#include <stddef.h>
+
+#include "ethd/sim.h"
+
+/* `param` as everywhere; a choice ("centre|rays") is an int32_t at `offset`, all else a double. */
+typedef struct ethd__plant_row {
+  const char *section;
+  ethd_param param;
+  size_t offset;
+} ethd__plant_row;
+
+extern const ethd__plant_row ethd__plant_rows[];
+extern const size_t ethd__plant_row_count;
+
+/* Rows, and what holds between them: name "section.key" in the error. [main] */
+ethd_status ethd__plant_check(const ethd_plant *plant, ethd_error *error);
+ethd_status ethd__sim_check(const ethd_sim_def *def, ethd_error *error);
+
+/* Fills the error, returns its status. [main] */
+ethd_status ethd__sim_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
+                             double max);
+
+#endif

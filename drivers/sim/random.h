@@ -1,0 +1,42 @@
+/* Random numbers as a function of a key: nothing is remembered between calls.
+
+   Philox 4x32-10 (Salmon et al., SC 2011) over the counter (tap, stream, counter) under the key `seed`.
+   Bits are equal on every machine. [any, rt-safe] */
+#ifndef ETHD_SIM_RANDOM_H
+#define ETHD_SIM_RANDOM_H
+
+#include <stdint.h>
+
+#include "ethd/attributes.h"
+
+typedef struct ethd__key {
+  uint64_t seed, tap;
+} ethd__key;
+
+/* What a number is drawn for. */
+enum {
+  ETHD__STREAM_SPEED,
+  ETHD__STREAM_RADIUS,
+  ETHD__STREAM_PHASE,
+  ETHD__STREAM_START,
+  ETHD__STREAM_OVERSHOOT,
+  ETHD__STREAM_LATERAL,
+  ETHD__STREAM_ENCODER,  /* counter: joint */
+  ETHD__STREAM_CENTRE_X, /* counter: reading */
+  ETHD__STREAM_CENTRE_Y,
+  ETHD__STREAM_RAY /* and the 15 after it */
+};
+
+/* The block cipher itself: counter in, four random words out. */
+void ethd__philox(const uint32_t key[2], uint32_t block[4]) ETHD_RT;
+
+/* In [0, 1), multiples of 2^-53. */
+double ethd__uniform(ethd__key key, uint32_t stream, uint32_t counter) ETHD_RT;
+
+/* Mean 0, sd 1. */
+double ethd__normal(ethd__key key, uint32_t stream, uint32_t counter) ETHD_RT;
+
+/* The same, drawn anew until it is within +-cut (cut > 0). */
+double ethd__normal_cut(ethd__key key, uint32_t stream, double cut) ETHD_RT;
+
+#endif

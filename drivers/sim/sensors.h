@@ -1,0 +1,41 @@
+/* What the device measures: joint angles by counts, the finger by the proximity ring. All [any, rt-safe]. */
+#ifndef ETHD_SIM_SENSORS_H
+#define ETHD_SIM_SENSORS_H
+
+#include "ethd/sim.h"
+#include "sim/body.h"
+#include "sim/random.h"
+
+#define ETHD__READINGS_MAX 64
+
+/* A reading on its way. */
+typedef struct ethd__reading {
+  int64_t sample_ns, due_ns;
+  ethd_vec centre, ring;
+  double rays[16];
+} ethd__reading;
+
+/* A reading is made of parts, each at its instant: one for a centre; for a frame its rays in order, and in
+   the middle the instant that stands for the whole. */
+typedef struct ethd__sensors {
+  ethd_plant plant;
+  double ring_radius, finger_radius, phase;
+  ethd__key key;
+  double count_phase[2]; /* counts */
+  uint32_t sample, part; /* what comes next */
+  uint64_t taken;        /* readings complete */
+  ethd__reading readings[ETHD__READINGS_MAX];
+} ethd__sensors;
+
+void ethd__sensors_start(ethd__sensors *sensors, const ethd_sim_def *def, const ethd_sim_tap *tap) ETHD_RT;
+
+/* Instant of the next part, s, and taking it. */
+double ethd__sensors_next(const ethd__sensors *sensors) ETHD_RT;
+void ethd__sensors_take(ethd__sensors *sensors, const ethd__body *body, const ethd__state *state) ETHD_RT;
+
+/* Into the sense: joint angles; the newest reading that is due at its time_ns and wasn't at since_ns. */
+void ethd__sensors_joints(const ethd__sensors *sensors, const ethd__body *body, const ethd__state *state,
+                          ethd_sense *out) ETHD_RT;
+void ethd__sensors_deliver(const ethd__sensors *sensors, int64_t since_ns, ethd_sense *out) ETHD_RT;
+
+#endif
