@@ -17,7 +17,7 @@ MAIN_SIDE := $(wildcard lib/plugin.c lib/error.c lib/param.c lib/scene_parse.c l
 SHELL := /bin/sh
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: all demo check bench ci install install-files uninstall clean tests FORCE
+.PHONY: all demo check bench bench-quick ci install install-files uninstall clean tests FORCE
 .DEFAULT_GOAL := all
 
 comma := ,
@@ -38,7 +38,7 @@ say = $(if $(V),@:,@printf '  %-6s %s\n' $(1) $(2))
 # ---- set-up: before anything compiles, while this file is read ------------------------------
 
 GOALS := $(or $(MAKECMDGOALS),all)
-KINDS := $(if $(filter all demo check bench ci install tests,$(GOALS)),build) \
+KINDS := $(if $(filter all demo check bench bench-quick ci install tests,$(GOALS)),build) \
          $(if $(filter check ci tests,$(GOALS)),check) $(if $(filter demo,$(GOALS)),demo)
 DRY := $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 ifneq ($(strip $(KINDS)),)
@@ -76,9 +76,8 @@ DRIVERS_C := $(wildcard drivers/*.c drivers/*/*.c)
 PROGRAMS_C := $(wildcard apps/ethd-*.c)
 APPS_C := $(wildcard apps/*/*.c)
 PLUGINS_C := $(wildcard tests/plugins/*.c)
-BENCH_C := $(wildcard tests/bench/*.c)
-TESTS_C := $(filter-out $(PLUGINS_C) $(BENCH_C),$(wildcard tests/*/test_*.c))
-HELPERS_C := $(filter-out $(PLUGINS_C) $(BENCH_C) $(TESTS_C) tests/fuzz/%,$(wildcard tests/*/*.c))
+TESTS_C := $(filter-out $(PLUGINS_C),$(wildcard tests/*/test_*.c))
+HELPERS_C := $(filter-out $(PLUGINS_C) $(TESTS_C) tests/fuzz/%,$(wildcard tests/*/*.c))
 HEADERS := $(wildcard include/ethd/*.h)
 SCRIPTS := $(sort $(shell find tests -name '*.sh' -perm -u+x 2>/dev/null))
 
@@ -88,7 +87,6 @@ RT_O := $(call obj,$(filter-out $(MAIN_SIDE),$(LIB_C)))
 PROGRAMS := $(patsubst apps/%.c,$(B)/bin/%,$(PROGRAMS_C))
 UNIT := $(addprefix $(B)/tests/,$(notdir $(TESTS_C:.c=)))
 PLUGINS := $(patsubst tests/plugins/%.c,$(B)/tests/plugins/%.so,$(PLUGINS_C))
-BENCHES := $(BENCH_C:%.c=$(B)/%)
 SHARE := $(patsubst apps/config/%,$(B)/share/ethd/%,$(shell find apps/config -type f 2>/dev/null)) \
          $(patsubst apps/plot/%,$(B)/share/ethd/plot/%,$(wildcard apps/plot/*.gp))
 ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a
@@ -118,7 +116,7 @@ $(B)/obj/$(1)/%.o: $(1)/%.c $(B)/flags
 endef
 $(foreach d,lib drivers apps tests,$(eval $(call compile,$(d))))
 -include $(patsubst %.o,%.d,$(call obj,$(LIB_C) $(DRIVERS_C) $(PROGRAMS_C) $(APPS_C) $(TESTS_C) \
-           $(HELPERS_C) $(BENCH_C))) $(PLUGINS:.so=.d)
+           $(HELPERS_C))) $(PLUGINS:.so=.d)
 
 $(B)/libethd.a: $(LIB_O)
 $(B)/libethd-drivers.a: $(call obj,$(DRIVERS_C))
@@ -153,11 +151,6 @@ $(B)/tests/$(notdir $(1:.c=)): $(B)/obj/$(1:.c=.o) $(B)/libethd-tests.a $(ARCHIV
 	  $$(shell $$(PKG_CONFIG) --libs check) -linih $$(LIBS)
 endef
 $(foreach t,$(TESTS_C),$(eval $(call test_program,$(t))))
-
-$(BENCHES): $(B)/%: $(B)/obj/%.o $(ARCHIVES) $(B)/libethd.a
-	$(call say,LINK,$@)
-	@mkdir -p $(@D)
-	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) -linih $(LIBS)
 
 $(PLUGINS): $(B)/tests/plugins/%.so: tests/plugins/%.c $(B)/flags
 	$(call say,PLUGIN,$@)
@@ -199,8 +192,10 @@ check: $(RUNS) $(TREE_RUN)
 demo: all
 	@BUILD='$(B)' sh apps/demo.sh
 
-bench: all $(BENCHES)
-	@$(if $(BENCHES),set -e; for b in $(BENCHES); do $$b; done,echo 'there is no benchmark yet')
+bench: all
+	@mkdir -p $(B)/bench && $(B)/bin/ethd-bench all --out $(B)/bench
+bench-quick: all
+	@mkdir -p $(B)/bench && $(B)/bin/ethd-bench all --quick --out $(B)/bench
 
 ci:
 	@BUILD='$(BUILD)' MAKE='$(MAKE)' bash .ci/ci
