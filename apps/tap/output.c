@@ -58,7 +58,7 @@ ethd_status ethd__output_law(ethd__output *output, const char *law, const ethd_s
   char torque[64];
   if (!output->recording) return ETHD_OK;
   snprintf(torque, sizeof torque, "limits.torque %.17g", setup->limits.torque);
-  ethd_status status = ethd_recording_event(output->recording, "transition", law);
+  ethd_status status = ethd_recording_event(output->recording, "setup", law);
   if (!status) status = ethd_recording_event(output->recording, "set", torque);
   return status ? ethd__say(message, status, "the recording: %s", ethd_status_sentence(status)) : ETHD_OK;
 }

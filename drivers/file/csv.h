@@ -4,6 +4,7 @@
 #define ETHD_FILE_CSV_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
 #include "ethd/config.h"
 
@@ -51,6 +52,8 @@ ethd_csv_out *ethd_csv_create(const char *path, const char *header, char message
 void ethd_csv_number(ethd_csv_out *out, double value);
 void ethd_csv_integer(ethd_csv_out *out, int64_t value);
 void ethd_csv_word(ethd_csv_out *out, const char *word);
+/* A word as a cell: in quotes when it has to be, line ends as spaces. */
+void ethd__csv_put_word(FILE *file, const char *word);
 /* Ends the row, which must have as many cells as the header has names. */
 void ethd_csv_row(ethd_csv_out *out);
 

@@ -41,8 +41,7 @@ void ethd_csv_number(ethd_csv_out *out, double value) {
 
 void ethd_csv_integer(ethd_csv_out *out, int64_t value) { fprintf(next_cell(out), "%" PRId64, value); }
 
-void ethd_csv_word(ethd_csv_out *out, const char *word) {
-  FILE *file = next_cell(out);
+void ethd__csv_put_word(FILE *file, const char *word) {
   if (!word[strcspn(word, ",\"\r\n")]) {
     fputs(word, file);
     return;
@@ -54,6 +53,8 @@ void ethd_csv_word(ethd_csv_out *out, const char *word) {
   }
   putc('"', file);
 }
+
+void ethd_csv_word(ethd_csv_out *out, const char *word) { ethd__csv_put_word(next_cell(out), word); }
 
 void ethd_csv_row(ethd_csv_out *out) {
   out->ragged |= out->cell != out->columns;

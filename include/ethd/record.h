@@ -46,8 +46,15 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, c
                                                            ethd_recording **out,
                                                            char message[ETHD_MESSAGE_MAX]);
 
-/* events.csv: row,kind,detail; row: of tick.npy, the event comes before it. kind: start (the controller
-   was reset, detail: free words), transition (detail: law), set (detail: key value), fault (sentence). */
+/* events.csv: row,kind,detail; the events of a row of tick.npy come before it, in order. kind:
+     setup       detail: law. The configuration's setup with this transition law, in a fresh controller
+     start       detail: free words. A fresh controller (or a reset one) with the present setup
+     transition  detail: law. Changes the transition law of the present setup
+     set         detail: section.key value. Changes the present setup
+     clear       faults were acknowledged
+     fault       detail: a sentence; for people
+   A row's events make one setup: with setup or start among them the fresh controller starts with it,
+   else it was posted, whole, to the running one. Before the first row a fresh controller is implied. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_event(ethd_recording *recording, const char *kind,
                                                           const char *detail);
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_tick(ethd_recording *recording,

@@ -1,0 +1,34 @@
+/* What recording and replaying share. */
+#ifndef ETHD_FILE_RECORDING_PARTS_H
+#define ETHD_FILE_RECORDING_PARTS_H
+
+#include "ethd/record.h"
+
+#define ETHD_RECORDING_TICK "tick.npy"
+#define ETHD_RECORDING_CONFIG "config.ini"
+#define ETHD_RECORDING_SCENE "scene.scene"
+#define ETHD_RECORDING_EVENTS "events.csv"
+#define ETHD_RECORDING_HEADER "row,kind,detail"
+
+typedef struct ethd__record_event {
+  uint64_t row;
+  size_t line;
+  const char *kind, *detail;
+} ethd__record_event;
+
+typedef struct ethd__record_events {
+  char *text; /* what the words point into */
+  ethd__record_event *events;
+  size_t count;
+} ethd__record_events;
+
+/* events.csv, rows rising. [main] */
+ETHD_MUST_CHECK ethd_status ethd__record_events_read(const char *path, ethd__record_events *out,
+                                                     char message[ETHD_MESSAGE_MAX]);
+void ethd__record_events_free(ethd__record_events *events);
+
+/* The configuration's text with the scene's file called scene.scene and plugins by absolute paths; freed
+   by the caller. NULL: no memory. [main] */
+char *ethd__record_config_text(const ethd_config *config);
+
+#endif
