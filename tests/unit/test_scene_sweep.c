@@ -1,0 +1,163 @@
+/* Simple polygons against a check of every pair of edges in whole numbers, and exact orientation. */
+#include <check.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "scene.h"
+#include "scene_check.h"
+
+static uint64_t seed;
+
+static uint64_t draw(void) {
+  uint64_t z = (seed += 0x9e3779b97f4a7c15u);
+  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+  return z ^ z >> 31;
+}
+
+static long area(const long *a, const long *b, const long *c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+static int within(const long *a, const long *b, const long *p) {
+  return p[0] >= (a[0] < b[0] ? a[0] : b[0]) && p[0] <= (a[0] > b[0] ? a[0] : b[0]) &&
+         p[1] >= (a[1] < b[1] ? a[1] : b[1]) && p[1] <= (a[1] > b[1] ? a[1] : b[1]);
+}
+
+static int on(const long *a, const long *b, const long *p) { return area(a, b, p) == 0 && within(a, b, p); }
+
+static int meet_anywhere(const long *a, const long *b, const long *c, const long *d) {
+  long p = area(a, b, c), q = area(a, b, d), r = area(c, d, a), s = area(c, d, b);
+  if (((p > 0 && q < 0) || (p < 0 && q > 0)) && ((r > 0 && s < 0) || (r < 0 && s > 0))) return 1;
+  return on(a, b, c) || on(a, b, d) || on(c, d, a) || on(c, d, b);
+}
+
+/* Neighbours may share their one point and no other: neither far end lies on the other edge. */
+static int meet_wrongly(const long (*p)[2], size_t n, size_t i, size_t j) {
+  size_t i1 = (i + 1) % n, j1 = (j + 1) % n;
+  if (i1 == j) return on(p[i], p[i1], p[j1]) || on(p[j], p[j1], p[i]);
+  if (j1 == i) return on(p[j], p[j1], p[i1]) || on(p[i], p[i1], p[j]);
+  return meet_anywhere(p[i], p[i1], p[j], p[j1]);
+}
+
+static int is_simple_by_pairs(const long (*p)[2], size_t n) {
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = i + 1; j < n; j++)
+      if (meet_wrongly(p, n, i, j)) return 0;
+  return 1;
+}
+
+START_TEST(test_grid_polygons) {
+  enum { MOST = 9, CASES = 300000 };
+  int simple = 0;
+  seed = 1;
+  for (int c = 0; c < CASES; c++) {
+    long p[MOST][2], size = 2 + (long)(draw() % 5);
+    double points[2 * MOST];
+    size_t n = 3 + draw() % (MOST - 2), meet[2] = {99, 99};
+    int repeats = 0;
+    for (size_t k = 0; k < n; k++)
+      for (int i = 0; i < 2; i++) points[2 * k + (size_t)i] = (double)(p[k][i] = (long)(draw() % (uint64_t)size));
+    for (size_t k = 0; k < n; k++) {
+      const long *a = p[k], *b = p[(k + 1) % n];
+      repeats |= a[0] == b[0] && a[1] == b[1];
+    }
+    if (repeats) continue; /* refused before the sweep */
+    char room[1024];
+    ck_assert_uint_le(ethd__simple_room(n), sizeof room);
+    int expected = is_simple_by_pairs((const long(*)[2])p, n);
+    int found = ethd__is_simple(points, n, (void *)((uintptr_t)(room + 15) & ~(uintptr_t)15), meet);
+    ck_assert_msg(found == expected, "case %d: %d, by pairs %d", c, found, expected);
+    if (!found) {
+      ck_assert_uint_lt(meet[0], n);
+      ck_assert_uint_lt(meet[1], n);
+      ck_assert_uint_ne(meet[0], meet[1]);
+    }
+    simple += found;
+  }
+  ck_assert_int_gt(simple, CASES / 100);
+}
+END_TEST
+
+/* A star of n rays about the origin is simple; with two points swapped it isn't. */
+START_TEST(test_large_polygon) {
+  enum { N = 100000 };
+  double *points = malloc(2 * N * sizeof *points);
+  void *room = malloc(ethd__simple_room(N));
+  size_t meet[2];
+  seed = 2;
+  for (size_t k = 0; k < N; k++) {
+    double a = 2 * M_PI * (double)k / N, r = k % 2 ? 1e-3 : 0.5 + (double)(draw() % 1000) / 1000;
+    points[2 * k] = r * cos(a);
+    points[2 * k + 1] = r * sin(a);
+  }
+  ck_assert(ethd__is_simple(points, N, room, meet));
+  for (int i = 0; i < 2; i++) {
+    double t = points[2 * 70000 + i];
+    points[2 * 70000 + i] = points[2 * 70002 + i];
+    points[2 * 70002 + i] = t;
+  }
+  ck_assert(!ethd__is_simple(points, N, room, meet));
+  ck_assert(meet[0] >= 69998 && meet[0] <= 70003 && meet[1] >= 69998 && meet[1] <= 70003);
+  free(room);
+  free(points);
+}
+END_TEST
+
+/* A comb whose diagonal teeth have bounds that all overlap. */
+START_TEST(test_diagonal_comb) {
+  enum { TEETH = 30000, N = 2 * TEETH + 1 };
+  double *points = malloc(2 * N * sizeof *points);
+  void *room = malloc(ethd__simple_room(N));
+  size_t meet[2];
+  for (size_t k = 0; k < TEETH; k++) {
+    double x = (double)k / TEETH;
+    points[4 * k] = x + 1, points[4 * k + 1] = 1;
+    points[4 * k + 2] = x + 0.5 / TEETH, points[4 * k + 3] = 0;
+  }
+  points[2 * N - 2] = 3, points[2 * N - 1] = 2;
+  ck_assert(ethd__is_simple(points, N, room, meet));
+  points[4 * 1234 + 2] -= 1e-3, points[4 * 1234 + 3] -= 1e-3; /* one valley deeper: still simple */
+  ck_assert(ethd__is_simple(points, N, room, meet));
+  points[4 * 1234 + 2] += 2.0 / TEETH; /* and bent across its neighbours */
+  ck_assert(!ethd__is_simple(points, N, room, meet));
+  free(room);
+  free(points);
+}
+END_TEST
+
+/* a + k (b - a) in steps of powers of two is on the line; an ulp beside it isn't. */
+START_TEST(test_orientation_is_exact) {
+  seed = 3;
+  for (int c = 0; c < 100000; c++) {
+    double ux = (double)(int64_t)(draw() >> 20) * 0x1p-44, uy = (double)(int64_t)(draw() >> 20) * 0x1p-44;
+    ethd_vec a = {0x1p-10 * (double)(int)(draw() % 1000), 0}, b = {ux, uy};
+    ethd_vec o = {0, 0}, far = {8 * b.x, 8 * b.y};
+    ck_assert_int_eq(ethd__orient(o, b, far), 0);
+    ck_assert_int_eq(ethd__orient(far, o, b), 0);
+    if (!(ux > 0 && uy > 0)) continue;
+    ethd_vec above = {far.x, nextafter(far.y, INFINITY)}, below = {far.x, nextafter(far.y, 0)};
+    ck_assert_int_eq(ethd__orient(o, b, above), 1);
+    ck_assert_int_eq(ethd__orient(o, b, below), -1);
+    ck_assert_int_eq(ethd__orient(b, o, above), -1);
+    ck_assert_int_eq(ethd__orient(a, b, above), -ethd__orient(b, a, above));
+  }
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("scene_sweep");
+  TCase *all = tcase_create("all");
+  tcase_set_timeout(all, 60);
+  tcase_add_test(all, test_grid_polygons);
+  tcase_add_test(all, test_large_polygon);
+  tcase_add_test(all, test_diagonal_comb);
+  tcase_add_test(all, test_orientation_is_exact);
+  suite_add_tcase(suite, all);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
