@@ -13,10 +13,10 @@ typedef enum ethd_velocity_method {
                                 a = 1 - exp(-2 pi cutoff dt), raw = (q - q_prev) / dt */
   ETHD_VELOCITY_DIFFERENCE,  /* raw */
   ETHD_VELOCITY_LSQ,         /* slope of the least-squares line through the last `window` samples */
-  ETHD_VELOCITY_FOAW,        /* the same over the longest window, at most `window`, whose end points'
-                                line passes within `noise` of every sample between: first-order
-                                adaptive windowing (Janabi-Sharifi, Hayward and Chen 2000), window by
-                                their end fit, slope by their best fit */
+  ETHD_VELOCITY_FOAW,        /* the same over a window that grows, up to `window`, while the line through
+                                its end points passes within `noise` of every sample between:
+                                first-order adaptive windowing (Janabi-Sharifi, Hayward and Chen 2000),
+                                window by their end fit, slope by their best fit */
   ETHD_VELOCITY_KALMAN,      /* position and speed; known input torque / inertia, unknown one constant
                                 within a tick, `acceleration` rms */
   ETHD_VELOCITY_COUNT
