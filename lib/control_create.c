@@ -6,7 +6,7 @@
 
 ethd_status ethd_control_create(const ethd_setup *setup, ethd_control **out, ethd_error *error) {
   *out = NULL;
-  ethd_control *control = malloc(sizeof *control);
+  ethd_control *control = aligned_alloc(_Alignof(ethd_control), sizeof *control);
   if (!control) return ethd__error(error, ETHD_E_MEMORY, "controller");
   memset(control, 0, sizeof *control);
   ethd_status status = ethd__plan_prepare(setup, &control->plans[0], error);
