@@ -1,107 +1,6 @@
 #include <string.h>
 
-#include "control.h"
-
-/* Touches looked at in one tick: the live contacts and what is newly near. */
-#define CANDIDATES (2 * ETHD_CONTACTS_MAX + 8)
-
-typedef struct candidate {
-  ethd_touch touch;
-  int slot; /* the one that it continues, -1: new */
-} candidate;
-
-typedef struct candidates {
-  candidate at[CANDIDATES];
-  int count;
-} candidates;
-
-/* ---- which touches ---- */
-
-/* Everything that can count lies within: d_re < d_beta, or d_fe <= d_beta however far the finger is ahead. */
-static double reach(const ethd__plan *plan, const ethd_trace *t) ETHD_RT {
-  ethd_vec ahead = {t->xf[0] - t->x[0], t->xf[1] - t->x[1]};
-  return plan->setup.ring_radius + plan->d_beta + ethd_vec_norm(ahead);
-}
-
-static double distance_between(ethd_vec a, ethd_vec b) ETHD_RT {
-  return ethd_vec_norm(ethd_vec_sub(a, b));
-}
-
-static int claimed(const candidates *c, const ethd_touch *touch) ETHD_RT {
-  for (int i = 0; i < c->count; i++)
-    if (c->at[i].slot >= 0 && c->at[i].touch.object == touch->object &&
-        c->at[i].touch.feature == touch->feature)
-      return 1;
-  return 0;
-}
-
-/* The unclaimed candidate that continues a slot: same object, nearest point. */
-static int continuation(const candidates *c, const ethd__slot *slot) ETHD_RT {
-  int best = -1;
-  for (int i = 0; i < c->count; i++) {
-    const candidate *k = &c->at[i];
-    if (k->slot >= 0 || k->touch.object != slot->object) continue;
-    if (best < 0 || distance_between(k->touch.point, slot->point) <
-                        distance_between(c->at[best].touch.point, slot->point))
-      best = i;
-  }
-  return best;
-}
-
-/* A contact lives until its state is transparent, in reach or not. */
-static void follow(const ethd__plan *plan, const ethd__slot *slot, int index, ethd_vec x,
-                   candidates *c) ETHD_RT {
-  if (slot->state == ETHD_TRANSPARENT || c->count == CANDIDATES) return;
-  candidate *k = &c->at[c->count];
-  ethd_scene_follow(plan->setup.scene, slot->object, x, slot->point, &k->touch);
-  if (claimed(c, &k->touch)) return;
-  k->slot = index;
-  c->count++;
-}
-
-static void match(const ethd__plan *plan, ethd__state *state, ethd_vec x, candidates *c) ETHD_RT {
-  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
-    if (!state->slots[i].used) continue;
-    int k = continuation(c, &state->slots[i]);
-    if (k >= 0)
-      c->at[k].slot = i;
-    else
-      follow(plan, &state->slots[i], i, x, c);
-  }
-}
-
-/* A thin wall's side is the one on which the contact began, until the ring has gone round an end. */
-static void keep_side(ethd_touch *touch, const ethd__slot *slot) ETHD_RT {
-  if (!slot || slot->side == 0 || touch->side != -slot->side) return;
-  touch->n = ethd_vec_scale(-1, touch->n);
-  touch->distance = -touch->distance;
-  touch->side = slot->side;
-}
-
-/* Deepest first; equal depths keep the scene's order. */
-static void sort(candidates *c) ETHD_RT {
-  for (int i = 1; i < c->count; i++) {
-    candidate k = c->at[i];
-    int j = i;
-    for (; j > 0 && c->at[j - 1].touch.distance > k.touch.distance; j--) c->at[j] = c->at[j - 1];
-    c->at[j] = k;
-  }
-}
-
-static void collect(const ethd__plan *plan, ethd__state *state, const ethd_trace *t, candidates *c,
-                    int64_t *overflow) ETHD_RT {
-  ethd_touch touches[CANDIDATES - ETHD_CONTACTS_MAX];
-  const size_t room = sizeof touches / sizeof *touches;
-  ethd_vec x = {t->x[0], t->x[1]};
-  size_t found = ethd_scene_touches(plan->setup.scene, x, reach(plan, t), touches, room);
-  *overflow = found > room ? (int64_t)(found - room) : 0;
-  c->count = (int)(found < room ? found : room);
-  for (int i = 0; i < c->count; i++) c->at[i] = (candidate){touches[i], -1};
-  match(plan, state, x, c);
-  for (int i = 0; i < c->count; i++)
-    keep_side(&c->at[i].touch, c->at[i].slot < 0 ? NULL : &state->slots[c->at[i].slot]);
-  sort(c);
-}
+#include "candidates.h"
 
 /* ---- one contact ---- */
 
@@ -138,7 +37,7 @@ static int rule(const ethd__plan *plan, ethd__slot *slot, const ethd_contact *c,
   out->argument = c->d_fe;
   ethd_status status = plan->setup.transition->step(plan->setup.transition_p, slot->transition, c, out);
   if (status < 0) {
-    *failure = (ethd__failure){ETHD_FAULT_LAW, 16 * ETHD_TRANSITION - status};
+    *failure = (ethd__failure){ETHD_FAULT_LAW, 100 * ETHD_TRANSITION - status};
     return 0;
   }
   if (!ruling_is_good(out)) {
@@ -166,7 +65,7 @@ static int wall(const ethd__plan *plan, ethd__slot *slot, const ethd_contact *c,
   ethd_status status = plan->setup.contact->step(ethd__contact_p(plan, material), slot->contact,
                                                  c->d_re + r->offset, c->v, in, force);
   if (status < 0) {
-    *failure = (ethd__failure){ETHD_FAULT_LAW, 16 * ETHD_CONTACT - status};
+    *failure = (ethd__failure){ETHD_FAULT_LAW, 100 * ETHD_CONTACT - status};
     return 0;
   }
   if (!isfinite(*force)) {
@@ -250,15 +149,40 @@ static void nothing(ethd_trace *out, ethd_vec *shift) ETHD_RT {
   *shift = (ethd_vec){0, 0};
 }
 
-/* Slots that no candidate continues end here. */
-static void end_lost(ethd__state *state, const candidates *c) ETHD_RT {
+/* Contacts that no touch continues end here. */
+static void end_lost(ethd__state *state, const ethd__candidates *c) ETHD_RT {
+  unsigned kept = 0;
+  for (int k = 0; k < c->count; k++)
+    if (c->at[k].slot >= 0) kept |= 1u << c->at[k].slot;
   for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
-    int kept = 0;
-    for (int k = 0; k < c->count; k++) kept |= c->at[k].slot == i;
-    if (kept || !state->slots[i].used) continue;
-    state->slots[i].used = 0;
-    if (state->slots[i].state != ETHD_TRANSPARENT) state->counters.contacts_lost++;
+    ethd__slot *slot = &state->slots[i];
+    if (!slot->used || kept & (1u << i)) continue;
+    slot->used = 0;
+    if (slot->state != ETHD_TRANSPARENT) state->counters.contacts_lost++;
   }
+}
+
+static void no_room(ethd__state *state, int count, ethd_trace *out) ETHD_RT {
+  out->overflow += count;
+  state->counters.contacts_lost += (uint64_t)count;
+}
+
+/* Takes the shallowest contact's slot away from it: it stands further down the list than candidate k. */
+static void make_room(ethd__state *state, ethd__candidates *c, int k) ETHD_RT {
+  for (int i = c->count - 1; i > k; i--) {
+    if (c->at[i].slot < 0) continue;
+    state->slots[c->at[i].slot].used = 0;
+    c->at[i].slot = -1;
+    return;
+  }
+}
+
+static ethd__slot *new_slot(const ethd__plan *plan, ethd__state *state, ethd__candidates *c,
+                            int k) ETHD_RT {
+  ethd__slot *slot = free_slot(plan, state);
+  if (slot) return slot;
+  make_room(state, c, k);
+  return free_slot(plan, state);
 }
 
 int ethd__contacts(const ethd__plan *plan, ethd__state *state, double dt, ethd_trace *out,
@@ -267,28 +191,22 @@ int ethd__contacts(const ethd__plan *plan, ethd__state *state, double dt, ethd_t
   if (!plan->setup.scene) return 1;
   out->queried = 1;
   state->counters.queried++;
-  candidates c;
-  collect(plan, state, out, &c, &out->overflow);
+  ethd__candidates c;
+  ethd__candidates_collect(plan, state, out, &c);
   end_lost(state, &c);
-  for (int i = 0, taken = 0; i < c.count; i++) {
-    ethd__slot *slot = c.at[i].slot < 0 ? NULL : &state->slots[c.at[i].slot];
-    ethd_contact m = measure(plan, out, &c.at[i].touch, 0, dt);
-    if (!could_count(&m, slot)) {
+  no_room(state, c.overflow, out);
+  for (int k = 0, taken = 0; k < c.count; k++) {
+    ethd__slot *slot = c.at[k].slot < 0 ? NULL : &state->slots[c.at[k].slot];
+    ethd_contact m = measure(plan, out, &c.at[k].touch, 0, dt);
+    int counts = could_count(&m, slot), room = taken < ETHD_CONTACTS_MAX;
+    if (counts && room) {
+      if (!slot) slot = new_slot(plan, state, &c, k);
+      if (!contact(plan, &c.at[k].touch, slot, dt, out, shift, failure)) return 0;
+      taken += slot->used;
+    } else {
       if (slot) slot->used = 0;
-      continue;
+      if (counts) no_room(state, 1, out); /* the shallowest go */
     }
-    if (taken == ETHD_CONTACTS_MAX) { /* the shallowest go */
-      if (slot) slot->used = 0;
-      out->overflow++;
-      continue;
-    }
-    if (!slot) slot = free_slot(plan, state);
-    if (!slot) { /* held by shallower ones further down the list */
-      out->overflow++;
-      continue;
-    }
-    if (!contact(plan, &c.at[i].touch, slot, dt, out, shift, failure)) return 0;
-    taken += slot->used;
   }
   return 1;
 }

@@ -53,7 +53,8 @@ static ethd_status finish(const ethd__failure *failure, const ethd_trace *out,
                           ethd_command *command) ETHD_RT {
   command->torque[0] = out->tau[0];
   command->torque[1] = out->tau[1];
-  command->safe = failure->fault != ETHD_FAULT_NONE;
+  /* not while the guard still damps the ring: a device takes safe for zero torque */
+  command->safe = failure->fault != ETHD_FAULT_NONE && out->tau[0] == 0 && out->tau[1] == 0;
   command->reserved = 0;
   return status_of[failure->fault];
 }

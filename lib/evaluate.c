@@ -21,7 +21,7 @@ static int track(const ethd__plan *plan, ethd__state *state, const ethd_pose *po
   in.eps_q_dot[1] = out->eps_q_dot[1] = e_dot.y;
   ethd_status status = plan->setup.tracking->step(plan->setup.tracking_p, state->tracking, &in, tau);
   if (status < 0) {
-    *failure = (ethd__failure){ETHD_FAULT_LAW, 16 * ETHD_TRACKING - status};
+    *failure = (ethd__failure){ETHD_FAULT_LAW, 100 * ETHD_TRACKING - status};
     return 0;
   }
   if (!isfinite(tau[0]) || !isfinite(tau[1])) {

@@ -146,7 +146,7 @@ typedef struct ethd_trace {
 
 typedef struct ethd_command {
   double torque[2]; /* Nm, joints 1 and 2 */
-  int32_t safe;     /* 1: safe state, the torque is zero; the device may disable */
+  int32_t safe;     /* 1: safe state and the torque is zero; the device may disable */
   int32_t reserved;
 } ethd_command;
 
@@ -155,7 +155,7 @@ typedef struct ethd_command {
 typedef enum ethd_fault {
   ETHD_FAULT_NONE = 0,
   ETHD_FAULT_INPUT = 1,     /* q, dq or finger not finite; value: which, ETHD_HAVE_* or 0 for q */
-  ETHD_FAULT_LAW = 2,       /* a law returned a failure; value: 16 kind - status */
+  ETHD_FAULT_LAW = 2,       /* a law returned a failure; value: 100 kind - status */
   ETHD_FAULT_FINITE = 3,    /* a law's output isn't finite; value: kind */
   ETHD_FAULT_BUDGET = 4,    /* the last step ran over limits.step_time; value: ns */
   ETHD_FAULT_SPEED = 5,     /* guard: value: m/s */
