@@ -47,6 +47,7 @@ typedef struct ethd__state {
     int64_t time_ns;
     ethd_vec x;
   } history[ETHD__HISTORY];
+  uint64_t remembered; /* positions ever put there; a tick without measurement leaves none */
   ethd__block tracking;
   ethd__slot slots[ETHD_CONTACTS_MAX];
   struct {

@@ -12,14 +12,17 @@ static void joint_speeds(const ethd__plan *plan, ethd__state *state, const ethd_
 }
 
 static void remember(ethd__state *state, int64_t time_ns, ethd_vec x) ETHD_RT {
-  uint64_t i = state->counters.ticks % ETHD__HISTORY;
+  uint64_t i = state->remembered++ % ETHD__HISTORY;
   state->history[i].time_ns = time_ns;
   state->history[i].x = x;
 }
 
+/* b - a for any a <= b. */
+static double seconds(int64_t a, int64_t b) ETHD_RT { return 1e-9 * (double)((uint64_t)b - (uint64_t)a); }
+
 /* Where the ring stood at an earlier instant: linear between ticks, held beyond the history. */
 static ethd_vec ring_at(const ethd__state *state, int64_t time_ns) ETHD_RT {
-  uint64_t now = state->counters.ticks;
+  uint64_t now = state->remembered - 1;
   uint64_t oldest = now >= ETHD__HISTORY ? now - ETHD__HISTORY + 1 : 0;
   uint64_t k = now;
   while (k > oldest && state->history[k % ETHD__HISTORY].time_ns > time_ns) k--;
@@ -28,7 +31,7 @@ static ethd_vec ring_at(const ethd__state *state, int64_t time_ns) ETHD_RT {
   if (k == now || ta >= time_ns) return a;
   ethd_vec b = state->history[(k + 1) % ETHD__HISTORY].x;
   int64_t tb = state->history[(k + 1) % ETHD__HISTORY].time_ns;
-  double share = (double)(time_ns - ta) / (double)(tb - ta);
+  double share = seconds(ta, time_ns) / seconds(ta, tb);
   return ethd_vec_add(a, ethd_vec_scale(share, ethd_vec_sub(b, a)));
 }
 
@@ -58,11 +61,10 @@ static int reading(const ethd__plan *plan, ethd__state *state, const ethd_sense 
 static void correct(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense,
                     ethd_vec ring) ETHD_RT {
   ethd_vec relative;
-  double age = 1e-9 * (double)(sense->time_ns - sense->sample_ns);
-  int usable = age >= 0 && reading(plan, state, sense, &relative);
+  int usable = sense->sample_ns <= sense->time_ns && reading(plan, state, sense, &relative);
   if (!usable || ethd_filter_update(&plan->filter, &state->filter,
                                     ethd_vec_add(relative, reference(plan, state, sense, ring)),
-                                    age) != ETHD_OK)
+                                    seconds(sense->sample_ns, sense->time_ns)) != ETHD_OK)
     state->counters.readings_dropped++;
 }
 
