@@ -125,10 +125,8 @@ static void migrate(const ethd__plan *from, const ethd__plan *to, ethd__state *s
   for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
     ethd__slot *slot = &state->slots[i];
     if (from->setup.scene != to->setup.scene) slot->used = 0;
-    if (from->setup.transition != to->setup.transition) {
+    if (from->setup.transition != to->setup.transition)
       ethd__block_reset(&to->setup.transition->law, to->setup.transition_p, slot->transition);
-      slot->state = ETHD_TRANSPARENT;
-    }
     if (from->setup.contact != to->setup.contact)
       ethd__block_reset(&to->setup.contact->law, to->setup.contact_p, slot->contact);
   }
@@ -186,8 +184,17 @@ ethd__failure ethd__tick(const ethd__entry *e, ethd__state *state, ethd__state *
   return failure;
 }
 
+/* An estimator that a number out of all measure has spoilt would never recover. */
+static void heal(ethd__state *state) ETHD_RT {
+  for (int i = 0; i < 2; i++)
+    if (!isfinite(state->velocity[i].speed)) memset(&state->velocity[i], 0, sizeof state->velocity[i]);
+  if (!two_finite(state->filter.x) || !two_finite(state->filter.v))
+    memset(&state->filter, 0, sizeof state->filter);
+}
+
 /* After an acknowledged fault: contacts begin anew. */
 void ethd__resume(const ethd__plan *plan, ethd__state *state) {
+  heal(state);
   state->fault = ETHD_FAULT_NONE;
   state->guard.stopping = state->guard.stopped = 0;
   state->fade.elapsed = (double)INFINITY;
