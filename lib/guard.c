@@ -1,6 +1,6 @@
 #include "ethd/guard.h"
 
-/* A stop damps the ring with this much, Ns/m, until it is slower than STILL or STOP_TIME has passed. */
+/* A stop damps the ring with this much, Ns/m, until it is slower than STILL. */
 #define STOP_DAMPING 20.0
 #define STILL 0.020
 
