@@ -61,7 +61,7 @@ SANFLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-omit-frame-pointer -U_FORTIFY_SOU
 BASE := -std=gnu11 $(CFLAGS) $(WARN) $(MATHS) $(SANFLAGS)
 PIC := -fPIC -fvisibility=hidden -fno-semantic-interposition
 
-FLAGS_lib := $(BASE) $(PIC) -fno-stack-protector -U_FORTIFY_SOURCE -Iinclude -Ilib
+FLAGS_lib := $(BASE) $(PIC) -fno-stack-protector -fno-builtin-bcmp -U_FORTIFY_SOURCE -Iinclude -Ilib
 FLAGS_drivers := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Idrivers
 FLAGS_apps := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Idrivers -Iapps
 FLAGS_tests := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Ilib -Idrivers -Iapps -Itests
