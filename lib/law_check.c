@@ -14,9 +14,9 @@ static int id_is_good(const char *id) {
 
 static int has_step(const ethd_law *law) {
   switch ((ethd_kind)law->kind) {
-    case ETHD_TRACKING: return ((const ethd_tracking_law *)(const void *)law)->step != NULL;
-    case ETHD_CONTACT: return ((const ethd_contact_law *)(const void *)law)->step != NULL;
-    case ETHD_TRANSITION: return ((const ethd_transition_law *)(const void *)law)->step != NULL;
+    case ETHD_TRACKING: return ((const ethd_tracking_law *)(const void *)law)->step ? 1 : 0;
+    case ETHD_CONTACT: return ((const ethd_contact_law *)(const void *)law)->step ? 1 : 0;
+    case ETHD_TRANSITION: return ((const ethd_transition_law *)(const void *)law)->step ? 1 : 0;
   }
   return 0;
 }

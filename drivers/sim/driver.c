@@ -142,7 +142,7 @@ static ethd_status start(void *device_) {
   return ethd_sim_start(d->sim, &d->tap);
 }
 
-static ethd_status sim_read(void *device_, int64_t now_ns, ethd_sense *out) {
+static ethd_status sim_read(void *device_, int64_t now_ns, ethd_sense *out) ETHD_RT {
   device *d = device_;
   (void)now_ns;
   ethd_sim_read(d->sim, out);
@@ -150,7 +150,7 @@ static ethd_status sim_read(void *device_, int64_t now_ns, ethd_sense *out) {
 }
 
 /* In lock-step: a period passes. */
-static ethd_status sim_write(void *device_, int64_t now_ns, const ethd_command *command) {
+static ethd_status sim_write(void *device_, int64_t now_ns, const ethd_command *command) ETHD_RT {
   device *d = device_;
   ethd_command held = *command;
   (void)now_ns;
@@ -159,7 +159,7 @@ static ethd_status sim_write(void *device_, int64_t now_ns, const ethd_command *
   return ETHD_OK;
 }
 
-static void safe(void *device_) { ((device *)device_)->safe = 1; }
+static void safe(void *device_) ETHD_RT { ((device *)device_)->safe = 1; }
 
 static ethd_status stop(void *device_) {
   safe(device_);
