@@ -187,12 +187,12 @@ static void couple(const ethd__body *b, const pose *links, const double *w, cons
   a[1] = (b->inertia[0] * g1 - hc * g0) / det;
 }
 
-void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, ethd_vec hand, ethd_vec hand_v,
+void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, const ethd__motion *hand,
                            const double *q, const double *v, double *out) {
   double g[2];
   drive(b, q, v, g, out);
-  ethd_vec f = {b->hand_stiffness * (hand.x - q[2]) + b->hand_damping * (hand_v.x - v[2]),
-                b->hand_stiffness * (hand.y - q[3]) + b->hand_damping * (hand_v.y - v[3])};
+  ethd_vec f = {b->hand_stiffness * (hand->x.x - q[2]) + b->hand_damping * (hand->v.x - v[2]),
+                b->hand_stiffness * (hand->x.y - q[3]) + b->hand_damping * (hand->v.y - v[3])};
   if (touch == ETHD__PRESSING || b->coupling != 0) {
     pose l = links(b, q);
     if (touch == ETHD__PRESSING) {
@@ -206,8 +206,8 @@ void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, ethd_vec hand
     out[0] = g[0] / b->inertia[0];
     out[1] = g[1] / b->inertia[1];
   }
-  out[ETHD__FINGER] = f.x / b->finger_mass;
-  out[ETHD__FINGER + 1] = f.y / b->finger_mass;
+  out[ETHD__FINGER] = hand->a.x + f.x / b->finger_mass;
+  out[ETHD__FINGER + 1] = hand->a.y + f.y / b->finger_mass;
 }
 
 static double square(double x) { return x * x; }

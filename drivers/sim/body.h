@@ -50,8 +50,9 @@ void ethd__body_pad(const ethd__body *body, const ethd__state *state, double *p,
 /* What pad and ring do in this state, whatever state->touch says. */
 ethd__touch ethd__body_touch(const ethd__body *body, const ethd__state *state) ETHD_RT;
 
-/* Accelerations with the hand's path at x, v. */
-void ethd__body_accelerate(const ethd__body *body, ethd__touch touch, ethd_vec hand, ethd_vec hand_v,
+/* Accelerations. An undisturbed finger is where the hand wants it: spring and damper act on what a touch
+   changes about the path, m (a_f - a) = K (x - x_f) + B (v - v_f) + pad. */
+void ethd__body_accelerate(const ethd__body *body, ethd__touch touch, const ethd__motion *hand,
                            const double *q, const double *v, double *out) ETHD_RT;
 
 /* Kinetic energy plus that of pad, hand and transmission, J, with the path at hand. */

@@ -116,23 +116,30 @@ void ethd__path_piece(const ethd_path *path, double t, ethd__piece *out) {
     synthetic_piece(path, t, out);
 }
 
-void ethd__piece_at(const ethd__piece *p, double t, ethd_vec *x, ethd_vec *v) {
+ethd__motion ethd__piece_at(const ethd__piece *p, double t) {
   double s = t - p->origin;
-  x->x = p->a.x + s * (p->b.x + s * (p->c.x + s * p->d.x));
-  x->y = p->a.y + s * (p->b.y + s * (p->c.y + s * p->d.y));
-  v->x = p->b.x + s * (2 * p->c.x + s * (3 * p->d.x));
-  v->y = p->b.y + s * (2 * p->c.y + s * (3 * p->d.y));
-  if (p->w == 0) return;
+  ethd__motion m;
+  m.x.x = p->a.x + s * (p->b.x + s * (p->c.x + s * p->d.x));
+  m.x.y = p->a.y + s * (p->b.y + s * (p->c.y + s * p->d.y));
+  m.v.x = p->b.x + s * (2 * p->c.x + s * (3 * p->d.x));
+  m.v.y = p->b.y + s * (2 * p->c.y + s * (3 * p->d.y));
+  m.a.x = 2 * p->c.x + s * (6 * p->d.x);
+  m.a.y = 2 * p->c.y + s * (6 * p->d.y);
+  if (p->w == 0) return m;
   double sine, cosine;
   ethd_sincos(p->w * s, &sine, &cosine);
-  x->x -= p->e.x * sine;
-  v->x -= p->w * p->e.x * cosine;
+  m.x.x -= p->e.x * sine;
+  m.v.x -= p->w * p->e.x * cosine;
+  m.a.x += p->w * p->w * p->e.x * sine;
+  return m;
 }
 
 void ethd_path_at(const ethd_path *path, double t, ethd_vec *x, ethd_vec *v) {
   ethd__piece piece;
   ethd__path_piece(path, t, &piece);
-  ethd__piece_at(&piece, t, x, v);
+  ethd__motion m = ethd__piece_at(&piece, t);
+  *x = m.x;
+  *v = m.v;
 }
 
 double ethd_path_end(const ethd_path *path) {

@@ -14,7 +14,11 @@ typedef struct ethd__piece {
 /* The piece that holds at t and right after it. [any, rt-safe] */
 void ethd__path_piece(const ethd_path *path, double t, ethd__piece *out) ETHD_RT;
 
-/* Position and velocity by that piece, also at its end. [any, rt-safe] */
-void ethd__piece_at(const ethd__piece *piece, double t, ethd_vec *x, ethd_vec *v) ETHD_RT;
+typedef struct ethd__motion {
+  ethd_vec x, v, a;
+} ethd__motion;
+
+/* Position, velocity and acceleration by that piece, also at its end. [any, rt-safe] */
+ethd__motion ethd__piece_at(const ethd__piece *piece, double t) ETHD_RT;
 
 #endif

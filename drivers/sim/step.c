@@ -9,9 +9,8 @@
 
 static void accelerate(const ethd__body *b, const ethd__piece *piece, double t, const ethd__state *s,
                        double *out) {
-  ethd_vec x, v;
-  ethd__piece_at(piece, t, &x, &v);
-  ethd__body_accelerate(b, s->touch, x, v, s->q, s->v, out);
+  ethd__motion hand = ethd__piece_at(piece, t);
+  ethd__body_accelerate(b, s->touch, &hand, s->q, s->v, out);
 }
 
 /* k1: accelerations at t. */
@@ -19,26 +18,25 @@ static void rk4(const ethd__body *b, const ethd__piece *piece, double t, double 
                 const double *k1, ethd__state *out) {
   int n = b->dof;
   *out = *s;
-  ethd_vec x, v;
   double q[ETHD__DOF_MAX], v2[ETHD__DOF_MAX], v3[ETHD__DOF_MAX], v4[ETHD__DOF_MAX];
   double k2[ETHD__DOF_MAX], k3[ETHD__DOF_MAX], k4[ETHD__DOF_MAX];
-  ethd__piece_at(piece, t + h / 2, &x, &v);
+  ethd__motion hand = ethd__piece_at(piece, t + h / 2);
   for (int i = 0; i < n; i++) {
     q[i] = s->q[i] + h / 2 * s->v[i];
     v2[i] = s->v[i] + h / 2 * k1[i];
   }
-  ethd__body_accelerate(b, s->touch, x, v, q, v2, k2);
+  ethd__body_accelerate(b, s->touch, &hand, q, v2, k2);
   for (int i = 0; i < n; i++) {
     q[i] = s->q[i] + h / 2 * v2[i];
     v3[i] = s->v[i] + h / 2 * k2[i];
   }
-  ethd__body_accelerate(b, s->touch, x, v, q, v3, k3);
-  ethd__piece_at(piece, t + h, &x, &v);
+  ethd__body_accelerate(b, s->touch, &hand, q, v3, k3);
+  hand = ethd__piece_at(piece, t + h);
   for (int i = 0; i < n; i++) {
     q[i] = s->q[i] + h * v3[i];
     v4[i] = s->v[i] + h * k3[i];
   }
-  ethd__body_accelerate(b, s->touch, x, v, q, v4, k4);
+  ethd__body_accelerate(b, s->touch, &hand, q, v4, k4);
   for (int i = 0; i < n; i++) {
     out->q[i] = s->q[i] + h / 6 * (s->v[i] + 2 * (v2[i] + v3[i]) + v4[i]);
     out->v[i] = s->v[i] + h / 6 * (k1[i] + 2 * (k2[i] + k3[i]) + k4[i]);
