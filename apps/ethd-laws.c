@@ -1,0 +1,148 @@
+/* Every law and method that a configuration can name, with its parameters. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "ethd/config.h"
+#include "ethd/plugin.h"
+#include "file/config_parts.h"
+#include "file/csv.h"
+
+static const char doc[] =
+    "Lists the laws and methods that a configuration can name, with each parameter's unit, range and default, "
+    "built in and of plugins.\v"
+    "The first of a kind is the default, but for the transition, which is offset.\n\n"
+    "Example:\n"
+    "  ethd-laws\n"
+    "  ethd-laws --plugin mylaw.so --csv laws.csv";
+
+static const struct argp_option options[] = {
+    {"plugin", 'p', "FILE", 0, "laws of this plugin too; may repeat", 0},
+    {"csv", 'c', "FILE", 0, "a row per parameter into this file", 0},
+    {0},
+};
+
+#define PLUGINS_MAX 64
+
+static struct {
+  const char *plugins[PLUGINS_MAX], *csv;
+  int plugin_count;
+} arg;
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  switch (key) {
+    case 'p':
+      if (arg.plugin_count == PLUGINS_MAX) argp_error(state, "over %d plugins", PLUGINS_MAX);
+      arg.plugins[arg.plugin_count++] = text;
+      return 0;
+    case 'c': arg.csv = text; return 0;
+    case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+    default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
+/* ---- one table ---- */
+
+typedef struct listed {
+  const char *section, *id, *brief;
+  const ethd_param *params;
+  uint32_t count;
+} listed;
+
+static const char *text_of(const ethd_param *row, double value, char out[32]) {
+  const char *at = row->unit;
+  if (!ethd_param_words(row)) {
+    snprintf(out, 32, "%.10g", value);
+    return out;
+  }
+  for (int i = 0; i < (int)value; i++) at += strcspn(at, "|") + 1;
+  snprintf(out, 32, "%.*s", (int)strcspn(at, "|"), at);
+  return out;
+}
+
+static void print(const listed *l) {
+  char def[32];
+  printf("%s %s: %s\n", l->section, l->id, l->brief);
+  for (uint32_t i = 0; i < l->count; i++) {
+    const ethd_param *row = &l->params[i];
+    text_of(row, row->def, def);
+    if (ethd_param_words(row))
+      printf("    %-14s %-12s %s: %s\n", row->name, def, row->unit, row->brief);
+    else
+      printf("    %-14s %-12s %s, %.10g to %.10g: %s\n", row->name, def, row->unit, row->min, row->max, row->brief);
+  }
+}
+
+static void write_row(ethd_csv_out *csv, const listed *l, const ethd_param *row) {
+  char def[32] = "";
+  ethd_csv_word(csv, l->section);
+  ethd_csv_word(csv, l->id);
+  ethd_csv_word(csv, row ? row->name : "");
+  ethd_csv_word(csv, row ? row->unit : "");
+  ethd_csv_number(csv, row ? row->min : NAN);
+  ethd_csv_number(csv, row ? row->max : NAN);
+  if (row && ethd_param_words(row))
+    ethd_csv_word(csv, text_of(row, row->def, def));
+  else
+    ethd_csv_number(csv, row ? row->def : NAN);
+  ethd_csv_word(csv, row ? row->brief : l->brief);
+  ethd_csv_row(csv);
+}
+
+static void show(const listed *l, ethd_csv_out *csv) {
+  print(l);
+  if (!csv) return;
+  write_row(csv, l, NULL);
+  for (uint32_t i = 0; i < l->count; i++) write_row(csv, l, &l->params[i]);
+}
+
+/* ---- all tables ---- */
+
+static void show_methods(const char *section, const ethd_method *methods, int count, ethd_csv_out *csv) {
+  for (int i = 0; i < count; i++) {
+    const listed l = {section, methods[i].id, methods[i].brief, methods[i].params, methods[i].param_count};
+    show(&l, csv);
+  }
+}
+
+static void show_laws(const ethd_law *const *laws, ethd_csv_out *csv) {
+  static const char *const kinds[] = {"tracking", "contact", "transition"};
+  for (uint32_t kind = 0; kind < 3; kind++)
+    for (const ethd_law *const *law = laws; *law; law++) {
+      const listed l = {kinds[kind], (*law)->id, (*law)->brief, (*law)->params, (*law)->param_count};
+      if ((*law)->kind == kind) show(&l, csv);
+    }
+}
+
+/* Plugins are loaded as a configuration loads them. */
+static ethd_config *load(void) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd_config *config;
+  if (ethd_config_load(NULL, &config, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  for (int i = 0; i < arg.plugin_count; i++) {
+    ethd__key key = {NULL, 0, "plugins", "file", arg.plugins[i], message};
+    ethd_status status = ethd__config_plugin((ethd__config *)config, &key);
+    if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  }
+  return config;
+}
+
+int main(int argc, char **argv) {
+  static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
+  char message[ETHD_MESSAGE_MAX];
+  ethd__begin();
+  argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  ethd_config *config = load();
+  ethd_csv_out *csv = NULL;
+  if (arg.csv && !(csv = ethd_csv_create(arg.csv, "section,id,param,unit,min,max,default,brief", message)))
+    ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  show_methods("velocity", ethd_velocity_methods, ETHD_VELOCITY_COUNT, csv);
+  show_methods("finger_fit", ethd_fit_methods, ETHD_FIT_COUNT, csv);
+  show_methods("finger_filter", ethd_filter_methods, ETHD_FILTER_COUNT, csv);
+  show_laws(config->laws, csv);
+  if (csv && ethd_csv_close(csv, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd_config_free(config);
+  return ethd__end(ETHD_EXIT_DONE);
+}
