@@ -171,6 +171,20 @@ START_TEST(test_tables) {
 }
 END_TEST
 
+/* The same bytes, whatever the memory held before. */
+START_TEST(test_prepared_whole) {
+  const ethd_method *m = &ethd_velocity_methods[_i];
+  double p[ETHD_PARAMS_MAX];
+  ethd_velocity a, b;
+  memset(&a, 0, sizeof a);
+  memset(&b, 0xa5, sizeof b);
+  ethd_params_default(m->params, m->param_count, p);
+  ck_assert_int_eq(ethd_velocity_prepare((ethd_velocity_method)_i, p, T, &a, NULL), ETHD_OK);
+  ck_assert_int_eq(ethd_velocity_prepare((ethd_velocity_method)_i, p, T, &b, NULL), ETHD_OK);
+  ck_assert_mem_eq(&a, &b, sizeof a);
+}
+END_TEST
+
 /* The first call gives what the state says, the second what two samples tell. */
 START_TEST(test_start) {
   ethd_velocity v = prepared((ethd_velocity_method)_i, NULL);
@@ -329,6 +343,7 @@ int main(void) {
   tcase_add_test(of_one, test_foaw_window);
   tcase_add_test(of_one, test_kalman_as_matrices);
   tcase_add_test(of_all, test_tables);
+  tcase_add_loop_test(of_all, test_prepared_whole, 0, ETHD_VELOCITY_COUNT);
   tcase_add_loop_test(of_all, test_start, 0, ETHD_VELOCITY_COUNT);
   tcase_add_loop_test(of_all, test_constant_speed, 0, ETHD_VELOCITY_COUNT);
   tcase_add_loop_test(of_all, test_lag, 0, ETHD_VELOCITY_COUNT);

@@ -1,0 +1,412 @@
+/* Ring fits against brute force, hand-made polygons and the Cramer-Rao bound. */
+#include "ethd/finger_fit.h"
+
+#include <check.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "draw.h"
+
+#define RING 12e-3
+#define FINGER 7.5e-3
+#define PI 3.14159265358979323846
+
+static ethd_fit prepared(ethd_fit_method method) {
+  double p[ETHD_PARAMS_MAX];
+  ethd_fit fit;
+  const ethd_method *m = &ethd_fit_methods[method];
+  ethd_params_default(m->params, m->param_count, p);
+  ck_assert_int_eq(ethd_fit_prepare(method, p, RING, FINGER, &fit, NULL), ETHD_OK);
+  return fit;
+}
+
+static ethd_vec point(const double *r, int k) {
+  return (ethd_vec){(RING - r[k]) * cos(PI * k / 8), (RING - r[k]) * sin(PI * k / 8)};
+}
+
+/* Uniform over the disc of 4 mm. */
+static ethd_vec some_centre(uint64_t i) {
+  double r = 4e-3 * sqrt(draw(2 * i, 0, 1)), a = draw(2 * i + 1, 0, 2 * PI);
+  return (ethd_vec){r * cos(a), r * sin(a)};
+}
+
+static void noisy(double *r, uint64_t i, double range) {
+  for (int k = 0; k < ETHD_RAYS; k++) r[k] += draw((i << 5) + (uint64_t)k, -range, range);
+}
+
+static double distance(ethd_vec a, ethd_vec b) { return ethd_vec_norm(ethd_vec_sub(a, b)); }
+
+/* ---- geometry ---- */
+
+START_TEST(test_rays_end_on_the_finger) {
+  for (uint64_t i = 0; i < 2000; i++) {
+    double r[ETHD_RAYS];
+    ethd_vec c = some_centre(i);
+    ethd_fit_rays(RING, FINGER, c, r);
+    for (int k = 0; k < ETHD_RAYS; k++) {
+      ck_assert_double_eq_tol(distance(point(r, k), c), FINGER, 1e-17);
+      /* The finger lies on the inner side: there is nothing of it between there and the ring. */
+      ck_assert_double_gt(distance((ethd_vec){RING * cos(PI * k / 8), RING * sin(PI * k / 8)}, c), FINGER);
+    }
+  }
+}
+END_TEST
+
+START_TEST(test_rays_that_miss) {
+  double r[ETHD_RAYS];
+  ethd_fit_rays(RING, 2e-3, (ethd_vec){5e-3, 0}, r);
+  /* asin(2/5) = 23.6 deg: only rays 0 and +-22.5 deg meet it, and none from the other side. */
+  for (int k = 0; k < ETHD_RAYS; k++) ck_assert_int_eq(!isnan(r[k]), k <= 1 || k == 15);
+  ck_assert_double_eq_tol(r[0], RING - 7e-3, 1e-17);
+}
+END_TEST
+
+/* Without noise both circles are exact, whatever rays are missing. */
+START_TEST(test_circles_are_exact) {
+  ethd_fit fit = prepared((ethd_fit_method)_i);
+  for (uint64_t i = 0; i < 5000; i++) {
+    double r[ETHD_RAYS];
+    ethd_vec c = some_centre(i);
+    ethd_finger finger;
+    uint32_t mask = 0xffff;
+    if (i % 2) mask = (uint32_t)draw_bits(i) & 0xffff;
+    if (__builtin_popcount(mask) < 3) mask |= 0x0421;
+    ethd_fit_rays(RING, FINGER, c, r);
+    for (int k = 0; k < ETHD_RAYS; k++)
+      if (!(mask >> k & 1)) r[k] = NAN;
+    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
+    ck_assert_double_le(distance(finger.centre, c), 1e-12);
+    ck_assert_double_eq_tol(finger.radius, FINGER, 1e-12);
+    ck_assert_double_le(finger.residual, 1e-12);
+    ck_assert_uint_eq(finger.used, mask);
+  }
+}
+END_TEST
+
+START_TEST(test_two_rays_with_known_radius) {
+  ethd_fit robust = prepared(ETHD_FIT_ROBUST), kasa = prepared(ETHD_FIT_KASA);
+  for (int k = 1; k < ETHD_RAYS; k++) {
+    double all[ETHD_RAYS], r[ETHD_RAYS];
+    ethd_vec c = {0.4e-3, -0.7e-3};
+    ethd_finger finger = {.radius = 42};
+    ethd_fit_rays(RING, FINGER, c, all);
+    for (int i = 0; i < ETHD_RAYS; i++) r[i] = i == 0 || i == k ? all[i] : NAN;
+    ck_assert_int_eq(ethd_fit_step(&kasa, r, &finger), ETHD_STALE);
+    ck_assert(finger.radius == 42);
+    if (k == 8) continue; /* opposite: the centre may move across them */
+    ck_assert_int_eq(ethd_fit_step(&robust, r, &finger), ETHD_OK);
+    ck_assert_double_le(distance(finger.centre, c), 1e-6);
+  }
+}
+END_TEST
+
+/* ---- least squares, against a search that knows nothing of normal equations ---- */
+
+typedef struct problem {
+  const double *r;
+  uint32_t used;
+  long double radius; /* 0: sought */
+} problem;
+
+static long double cost(const problem *p, const long double v[3]) {
+  long double sum = 0;
+  for (int k = 0; k < ETHD_RAYS; k++) {
+    if (!(p->used >> k & 1)) continue;
+    long double rho = (long double)RING - p->r[k], a = 3.14159265358979323846264338327950288L * k / 8;
+    long double dx = rho * cosl(a) - v[0], dy = rho * sinl(a) - v[1], radius = p->radius > 0 ? p->radius : v[2];
+    long double e = dx * dx + dy * dy - radius * radius;
+    sum += e * e;
+  }
+  return sum;
+}
+
+/* Steps along the axes, halved when none helps. */
+static void search(const problem *p, long double v[3]) {
+  long double best = cost(p, v);
+  for (long double step = 1e-3L; step > 1e-10L;) {
+    int better = 0;
+    for (int k = 0; k < 6; k++) {
+      long double w[3] = {v[0], v[1], v[2]};
+      w[k / 2] += k % 2 ? step : -step;
+      long double c = cost(p, w);
+      if (c < best) best = c, memcpy(v, w, sizeof w), better = 1;
+    }
+    if (!better) step /= 2;
+  }
+}
+
+START_TEST(test_least_squares) {
+  int robust = _i == ETHD_FIT_ROBUST;
+  ethd_fit fit = prepared((ethd_fit_method)_i);
+  for (uint64_t i = 0; i < 40; i++) {
+    double r[ETHD_RAYS];
+    ethd_finger finger;
+    ethd_fit_rays(RING, FINGER, some_centre(i), r);
+    noisy(r, i, 0.3e-3);
+    if (i % 2) r[i % 16] = r[(i + 3) % 16] = r[(i + 4) % 16] = NAN;
+    if (robust && i % 4 > 1) r[5] += 3e-3;
+    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
+    long double v[3] = {0, 0, FINGER};
+    search(&(problem){r, finger.used, robust ? FINGER : 0}, v);
+    ck_assert_double_le(distance(finger.centre, (ethd_vec){(double)v[0], (double)v[1]}), robust ? 1e-7 : 2e-8);
+    if (!robust) ck_assert_double_eq_tol(finger.radius, (double)v[2], 2e-8);
+    if (robust && i % 4 > 1) ck_assert_uint_eq(finger.used >> 5 & 1, 0);
+  }
+}
+END_TEST
+
+/* ---- polygons ---- */
+
+static void kite(double r[ETHD_RAYS]) {
+  for (int k = 0; k < ETHD_RAYS; k++) r[k] = NAN;
+  r[0] = RING - 8e-3; /* (8, 0), (0, 4), (-4, 0), (0, -4) mm */
+  r[4] = r[8] = r[12] = RING - 4e-3;
+}
+
+START_TEST(test_polygons_by_hand) {
+  ethd_fit mean = prepared(ETHD_FIT_VERTEX_MEAN), area = prepared(ETHD_FIT_CENTROID);
+  double r[ETHD_RAYS];
+  ethd_finger finger;
+  kite(r);
+  ck_assert_int_eq(ethd_fit_step(&mean, r, &finger), ETHD_OK);
+  ck_assert_double_le(distance(finger.centre, (ethd_vec){1e-3, 0}), 1e-17);
+  /* Distances 7, sqrt(17), 5, sqrt(17) from (1, 0). */
+  double radius = (12 + 2 * sqrt(17)) / 4 * 1e-3, a = 7e-3 - radius, b = sqrt(17) * 1e-3 - radius, c = 5e-3 - radius;
+  ck_assert_double_eq_tol(finger.radius, radius, 1e-17);
+  ck_assert_double_eq_tol(finger.residual, sqrt((a * a + 2 * b * b + c * c) / 4), 1e-17);
+  /* Two triangles: 32 mm^2 about (8/3, 0), 16 mm^2 about (-4/3, 0). */
+  ck_assert_int_eq(ethd_fit_step(&area, r, &finger), ETHD_OK);
+  ck_assert_double_le(distance(finger.centre, (ethd_vec){4e-3 / 3, 0}), 1e-17);
+  ck_assert_uint_eq(finger.used, 0x1111);
+}
+END_TEST
+
+/* Shoelace about the origin. */
+START_TEST(test_centroid_as_shoelace) {
+  ethd_fit fit = prepared(ETHD_FIT_CENTROID);
+  for (uint64_t i = 0; i < 1000; i++) {
+    double r[ETHD_RAYS];
+    ethd_finger finger;
+    ethd_fit_rays(RING, FINGER, some_centre(i), r);
+    noisy(r, i, 0.3e-3);
+    r[i % 16] = r[(i + 1) % 16] = r[i * i % 16] = NAN;
+    double area = 0, x = 0, y = 0;
+    for (int k = 0, next; k < ETHD_RAYS; k++) {
+      if (isnan(r[k])) continue;
+      for (next = k + 1; isnan(r[next % 16]);) next++;
+      ethd_vec p = point(r, k), q = point(r, next % 16);
+      double cross = p.x * q.y - q.x * p.y;
+      area += cross / 2;
+      x += cross * (p.x + q.x) / 6;
+      y += cross * (p.y + q.y) / 6;
+    }
+    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
+    ck_assert_double_le(distance(finger.centre, (ethd_vec){x / area, y / area}), 1e-16);
+  }
+}
+END_TEST
+
+/* The mean of 16 u u^T is half the identity. */
+START_TEST(test_vertex_mean_has_gain_one_half) {
+  ethd_fit fit = prepared(ETHD_FIT_VERTEX_MEAN);
+  for (int i = 0; i < 50; i++) {
+    double r[ETHD_RAYS], a = i * 0.13, offset = 1e-6;
+    ethd_finger finger;
+    ethd_fit_rays(RING, FINGER, (ethd_vec){offset * cos(a), offset * sin(a)}, r);
+    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
+    ck_assert_double_le(distance(finger.centre, (ethd_vec){offset / 2 * cos(a), offset / 2 * sin(a)}), 1e-6 * offset);
+  }
+}
+END_TEST
+
+/* ---- rays that don't count, rays that don't suffice ---- */
+
+START_TEST(test_what_counts) {
+  const double edge[] = {RING, 1.5 * RING, INFINITY, -INFINITY, NAN, -RING, -1};
+  ethd_fit fit = prepared((ethd_fit_method)_i);
+  for (size_t e = 0; e < sizeof edge / sizeof *edge; e++) {
+    double r[ETHD_RAYS], without[ETHD_RAYS];
+    ethd_finger a, b;
+    ethd_fit_rays(RING, FINGER, (ethd_vec){1e-3, 2e-3}, r);
+    memcpy(without, r, sizeof r);
+    r[3] = edge[e];
+    without[3] = NAN;
+    ck_assert_int_eq(ethd_fit_step(&fit, r, &a), ETHD_OK);
+    ck_assert_int_eq(ethd_fit_step(&fit, without, &b), ETHD_OK);
+    ck_assert_mem_eq(&a, &b, sizeof a);
+    ck_assert_uint_eq(a.used, 0xfff7);
+  }
+  double r[ETHD_RAYS];
+  ethd_finger finger;
+  ethd_fit_rays(RING, FINGER, (ethd_vec){RING - FINGER + 0.1e-3, 0}, r); /* touches, 0.1 mm into the ring */
+  ck_assert_double_lt(r[0], 0);
+  ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
+  ck_assert_uint_eq(finger.used & 1, 1);
+}
+END_TEST
+
+START_TEST(test_too_little) {
+  ethd_fit fit = prepared((ethd_fit_method)_i);
+  double r[ETHD_RAYS];
+  ethd_finger finger = {.radius = 42};
+  for (int k = 0; k < ETHD_RAYS; k++) r[k] = NAN;
+  for (int k = 0; k < 2; k++) { /* none, then one */
+    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STALE);
+    r[6] = 4e-3;
+  }
+  if (_i != ETHD_FIT_ROBUST && _i != ETHD_FIT_VERTEX_MEAN) {
+    r[6] = NAN; /* three on the line x = 5 mm */
+    r[0] = RING - 5e-3;
+    r[1] = r[15] = RING - 5e-3 / cos(PI / 8);
+    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STALE);
+  }
+  if (_i == ETHD_FIT_KASA) {
+    r[0] -= 0.05e-3; /* nearly: the circle's centre lies far outside */
+    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STALE);
+  }
+  ck_assert(finger.radius == 42);
+}
+END_TEST
+
+/* ---- accuracy ---- */
+
+/* Fisher information of (centre, radius) in rays of equal noise: d rho / d (c, R) = (n, 1) / (n.u). The
+   bound of the squared centre error: radius sought or known. */
+static void add_information(double m[6], ethd_vec c, double rho, int k) {
+  ethd_vec u = {cos(PI * k / 8), sin(PI * k / 8)}, n = ethd_vec_sub(ethd_vec_scale(rho, u), c);
+  double scale = 1 / ethd_vec_dot(n, u), g[3] = {n.x * scale, n.y * scale, FINGER * scale};
+  for (int i = 0, at = 0; i < 3; i++)
+    for (int j = i; j < 3; j++) m[at++] += g[i] * g[j];
+}
+
+static double bound(const double m[6], int known) {
+  double a = m[0], b = m[1], d = m[3];
+  if (!known) a -= m[2] * m[2] / m[5], b -= m[2] * m[4] / m[5], d -= m[4] * m[4] / m[5];
+  return (a + d) / (a * d - b * b);
+}
+
+typedef struct scenario {
+  const char *name;
+  int lost, outlier;
+} scenario;
+
+enum { TRIALS = 20000 };
+
+/* rms errors of the four fits, then the two bounds, mm. */
+static void measure(scenario what, double out[ETHD_FIT_COUNT + 2]) {
+  const double range = 0.3e-3, variance = range * range / 3;
+  double sum[ETHD_FIT_COUNT + 2] = {0};
+  for (uint64_t i = 0; i < TRIALS; i++) {
+    double r[ETHD_RAYS], m[6] = {0};
+    ethd_vec c = some_centre(i);
+    int first = (int)(draw_bits(i ^ 0x100000) % 16);
+    ethd_fit_rays(RING, FINGER, c, r);
+    for (int k = 0; k < ETHD_RAYS; k++) {
+      if ((k - first + 16) % 16 < what.lost) r[k] = NAN;
+      else add_information(m, c, RING - r[k], k);
+    }
+    noisy(r, i, range);
+    if (what.outlier) r[(first + 15) % 16] += i % 2 ? 3e-3 : -3e-3;
+    for (int f = 0; f < ETHD_FIT_COUNT; f++) {
+      ethd_fit fit = prepared((ethd_fit_method)f);
+      ethd_finger finger;
+      ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
+      double e = distance(finger.centre, c);
+      sum[f] += e * e;
+    }
+    sum[ETHD_FIT_COUNT] += variance * bound(m, 0);
+    sum[ETHD_FIT_COUNT + 1] += variance * bound(m, 1);
+  }
+  for (int f = 0; f < ETHD_FIT_COUNT + 2; f++) out[f] = 1e3 * sqrt(sum[f] / TRIALS);
+  printf("  %-24s", what.name);
+  for (int f = 0; f < ETHD_FIT_COUNT + 2; f++) printf(" %11.4f", out[f]);
+  printf("\n");
+}
+
+START_TEST(test_accuracy) {
+  double full[ETHD_FIT_COUNT + 2], half[ETHD_FIT_COUNT + 2], outlier[ETHD_FIT_COUNT + 2];
+  printf("centre error rms, mm             kasa vertex-mean    centroid      robust       bound  known R\n");
+  measure((scenario){"16 rays +-0.3 mm", 0, 0}, full);
+  measure((scenario){"half the ring lost", 8, 0}, half);
+  measure((scenario){"one outlier of 3 mm", 0, 1}, outlier);
+  double scored = full[ETHD_FIT_COUNT], known = full[ETHD_FIT_COUNT + 1];
+  ck_assert(full[ETHD_FIT_KASA] <= 1.05 * scored && full[ETHD_FIT_KASA] >= 0.97 * scored);
+  ck_assert(full[ETHD_FIT_ROBUST] <= 1.05 * known && full[ETHD_FIT_ROBUST] >= 0.97 * known);
+  ck_assert(full[ETHD_FIT_KASA] < full[ETHD_FIT_CENTROID] && full[ETHD_FIT_CENTROID] < full[ETHD_FIT_VERTEX_MEAN]);
+  ck_assert_double_le(half[ETHD_FIT_ROBUST], 0.13);
+  ck_assert_double_le(half[ETHD_FIT_KASA], 1.05 * half[ETHD_FIT_COUNT]);
+  ck_assert_double_le(outlier[ETHD_FIT_ROBUST], 0.10);
+}
+END_TEST
+
+/* ---- set-up ---- */
+
+START_TEST(test_tables) {
+  for (int m = 0; m < ETHD_FIT_COUNT; m++) {
+    const ethd_method *method = &ethd_fit_methods[m];
+    ethd_fit a, b;
+    double p[ETHD_PARAMS_MAX];
+    ck_assert_int_eq(ethd_params_check_table(method->params, method->param_count, NULL), ETHD_OK);
+    memset(&a, 0, sizeof a);
+    memset(&b, 0xa5, sizeof b);
+    ethd_params_default(method->params, method->param_count, p);
+    ck_assert_int_eq(ethd_fit_prepare((ethd_fit_method)m, p, RING, FINGER, &a, NULL), ETHD_OK);
+    ck_assert_int_eq(ethd_fit_prepare((ethd_fit_method)m, p, RING, FINGER, &b, NULL), ETHD_OK);
+    ck_assert_mem_eq(&a, &b, sizeof a);
+  }
+}
+END_TEST
+
+START_TEST(test_refusals) {
+  static const struct {
+    int method;
+    double gate, ring, finger;
+    ethd_status status;
+    const char *name;
+  } bad[] = {
+      {ETHD_FIT_ROBUST, 0, RING, FINGER, ETHD_E_RANGE, "gate"},
+      {ETHD_FIT_ROBUST, NAN, RING, FINGER, ETHD_E_NOT_FINITE, "gate"},
+      {ETHD_FIT_KASA, 0, NAN, FINGER, ETHD_E_NOT_FINITE, "ring_radius"},
+      {ETHD_FIT_KASA, 0, 0, FINGER, ETHD_E_RANGE, "ring_radius"},
+      {ETHD_FIT_KASA, 0, RING, 1.01 * RING, ETHD_E_RANGE, "finger_radius"},
+      {ETHD_FIT_KASA, 0, RING, -FINGER, ETHD_E_RANGE, "finger_radius"},
+      {ETHD_FIT_COUNT, 0, RING, FINGER, ETHD_E_UNKNOWN, "method"},
+  };
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    double p[ETHD_PARAMS_MAX] = {bad[i].gate};
+    ethd_fit fit = {.ring_radius = 42};
+    ethd_error error;
+    ck_assert_int_eq(ethd_fit_prepare((ethd_fit_method)bad[i].method, p, bad[i].ring, bad[i].finger, &fit, &error),
+                     bad[i].status);
+    ck_assert_str_eq(error.name, bad[i].name);
+    ck_assert(fit.ring_radius == 42);
+  }
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("finger_fit");
+  TCase *tc = tcase_create("fits");
+  tcase_add_test(tc, test_rays_end_on_the_finger);
+  tcase_add_test(tc, test_rays_that_miss);
+  tcase_add_loop_test(tc, test_circles_are_exact, ETHD_FIT_KASA, ETHD_FIT_KASA + 1);
+  tcase_add_loop_test(tc, test_circles_are_exact, ETHD_FIT_ROBUST, ETHD_FIT_ROBUST + 1);
+  tcase_add_test(tc, test_two_rays_with_known_radius);
+  tcase_add_loop_test(tc, test_least_squares, ETHD_FIT_KASA, ETHD_FIT_KASA + 1);
+  tcase_add_loop_test(tc, test_least_squares, ETHD_FIT_ROBUST, ETHD_FIT_ROBUST + 1);
+  tcase_add_test(tc, test_polygons_by_hand);
+  tcase_add_test(tc, test_centroid_as_shoelace);
+  tcase_add_test(tc, test_vertex_mean_has_gain_one_half);
+  tcase_add_loop_test(tc, test_what_counts, 0, ETHD_FIT_COUNT);
+  tcase_add_loop_test(tc, test_too_little, 0, ETHD_FIT_COUNT);
+  tcase_add_test(tc, test_accuracy);
+  tcase_add_test(tc, test_tables);
+  tcase_add_test(tc, test_refusals);
+  suite_add_tcase(suite, tc);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
