@@ -1,0 +1,370 @@
+/* Several contacts, thin walls, materials: what counts, for how long, and what its state is. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "unit/rig.h"
+
+static void close_to(double got, double want) { ck_assert_double_eq_tol(got, want, 1e-10); }
+
+/* Ring and finger together at x, moving with v. */
+static motion at(double x, double y, double vx, double vy) {
+  return (motion){{x, y}, {vx, vy}, {x, y}, {vx, vy}};
+}
+
+static void open_with(rig *r, const char *scene, const ethd_transition_law *law) {
+  rig_open(r, scene);
+  ethd_setup_transition(&r->setup, law);
+  rig_start(r);
+}
+
+/* ---- several ---- */
+
+/* A concave corner of one object: two contacts, each with a machine of its own. */
+static const char corner[] = "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6\n";
+
+START_TEST(test_corner) {
+  rig r;
+  open_with(&r, corner, &ethd_transition_smooth);
+  motion m = at(0.249, 0.248, -0.1, 0.2);
+  const ethd_trace *t = rig_step(&r, &m);
+  ck_assert_int_eq(t->contacts, 2);
+  close_to(t->fe[0], 2500 * 0.001 + 45 * 0.1);
+  close_to(t->fe[1], 2500 * 0.002); /* on its way out */
+  close_to(t->d_re, -0.002);
+  close_to(t->beta, 0.1 + 0.9 * 2.5 / 2.5);
+  rig_close(&r);
+}
+END_TEST
+
+START_TEST(test_corner_has_two_machines) {
+  rig r;
+  open_with(&r, corner, &ethd_transition_offset);
+  motion m = at(0.249, 0.2505, -0.3, 0);
+  rig_step(&r, &m); /* left wall: braking */
+  m = at(0.2485, 0.2505, 0, 0);
+  const ethd_trace *t = rig_step(&r, &m); /* at rest: vo with eps = 1.5 mm */
+  ck_assert_int_eq(t->state, ETHD_VO);
+  m = at(0.248, 0.247, -0.1, -0.3);
+  t = rig_step(&r, &m); /* floor: braking, the deepest; left wall: 0.5 mm behind its x_eps */
+  ck_assert(t->state == ETHD_BRAKING && t->eps == 0 && t->contacts == 2);
+  close_to(t->d_re, -0.003);
+  close_to(t->fe[0], 2500 * 0.0005 + 45 * 0.1);
+  close_to(t->fd[0], 0);
+  close_to(t->fe[1], 0);
+  close_to(t->fd[1], 100 * 0.3);
+  rig_close(&r);
+}
+END_TEST
+
+/* A channel of one object, a little wider than the ring and d_beta on both sides: when one wall is left
+   and the other met at the same tick, the second begins anew. */
+START_TEST(test_state_stays_with_its_wall) {
+  rig r;
+  open_with(&r, "polygon 0.1 0.1 0.4 0.1 0.4 0.5 0.26705 0.5 0.26705 0.15 0.238 0.15 0.238 0.5 0.1 0.5\n",
+            &ethd_transition_offset);
+  motion m = at(0.249, 0.25, -0.3, 0);
+  ck_assert_int_eq(rig_step(&r, &m)->state, ETHD_BRAKING);
+  m = at(0.2495, 0.25, 0, 0);
+  ck_assert_int_eq(rig_step(&r, &m)->state, ETHD_VO);
+  m = at(0.2527, 0.25, 0.3, 0);
+  const ethd_trace *t = rig_step(&r, &m);
+  close_to(t->d_re, 0.26705 - 0.2527 - 0.012);
+  ck_assert(t->state == ETHD_TRANSPARENT && t->eps == 0 && t->contacts == 1);
+  m = at(0.2552, 0.25, 0.3, 0);
+  ck_assert_int_eq(rig_step(&r, &m)->state, ETHD_BRAKING);
+  rig_close(&r);
+}
+END_TEST
+
+/* Equal depths: the lower object is shown. */
+START_TEST(test_order_of_equals) {
+  rig r;
+  open_with(&r, "halfplane 0 1 0.9\n" RIG_WALL RIG_WALL, &ethd_transition_smooth);
+  motion m = at(0.249, 0.25, 0, 0);
+  const ethd_trace *t = rig_step(&r, &m);
+  ck_assert(t->object == 1 && t->contacts == 2 && t->overflow == 0);
+  close_to(t->fe[0], 5);
+  rig_close(&r);
+}
+END_TEST
+
+/* ---- too many ---- */
+
+/* `count` walls on the left, each 0.1 mm behind the one before. */
+static const char *stack_of(int count, const char *more) {
+  static char text[4096];
+  size_t n = 0;
+  for (int i = 0; i < count; i++)
+    n += (size_t)snprintf(text + n, sizeof text - n, "halfplane -1 0 %.17g\n", -0.238 + 1e-4 * i);
+  snprintf(text + n, sizeof text - n, "%s", more);
+  return text;
+}
+
+START_TEST(test_overflow_keeps_the_deepest) {
+  const int counts[] = {8, 9, 10, 16, 17, 30};
+  int walls = counts[_i];
+  rig r;
+  open_with(&r, stack_of(walls, ""), &ethd_transition_smooth);
+  for (int tick = 1; tick <= 3; tick++) {
+    motion m = at(0.247, 0.25, 0.01, 0);
+    const ethd_trace *t = rig_step(&r, &m);
+    ck_assert_int_eq(t->contacts, 8);
+    ck_assert_int_eq(t->overflow, walls - 8);
+    close_to(t->fe[0], 2500 * (8 * 0.003 - 1e-4 * (7 * 8 / 2)));
+    ethd_counters c;
+    ethd_control_counters(r.control, &c);
+    ck_assert_uint_eq(c.contacts_lost, (uint64_t)(tick * (walls - 8)));
+  }
+  rig_close(&r);
+}
+END_TEST
+
+/* Eight are there when a ninth becomes the deepest: it takes the shallowest one's place. */
+START_TEST(test_newcomer_that_is_deeper) {
+  rig r;
+  open_with(&r, stack_of(8, "halfplane 0 -1 -0.238\n"), &ethd_transition_smooth);
+  motion m = at(0.249, 0.256, 0, 0);
+  ck_assert_int_eq(rig_step(&r, &m)->overflow, 0);
+  m = at(0.249, 0.246, 0, 0);
+  for (int tick = 0; tick < 2; tick++) {
+    const ethd_trace *t = rig_step(&r, &m);
+    ck_assert(t->contacts == 8 && t->overflow == 1 && t->object == 8);
+    close_to(t->d_re, -0.004);
+    close_to(t->fe[1], 10);
+    close_to(t->fe[0], 2500 * (7 * 0.001 - 1e-4 * (6 * 7 / 2)));
+  }
+  m = at(0.249, 0.256, 0, 0); /* gone again: all eight are back */
+  close_to(rig_step(&r, &m)->fe[0], 2500 * (8 * 0.001 - 1e-4 * (7 * 8 / 2)));
+  rig_close(&r);
+}
+END_TEST
+
+/* ---- what counts ---- */
+
+/* Not before d_re < d_beta (2.5 mm), or d_fe <= d_beta however far the finger is ahead. */
+START_TEST(test_within_reach) {
+  rig r;
+  open_with(&r, RIG_WALL, &ethd_transition_smooth);
+  motion m = rig_at(0.002501, 0, 0);
+  const ethd_trace *t = rig_step(&r, &m);
+  ck_assert(t->contacts == 0 && t->object == -1 && t->state == 0 && t->beta == 1 && t->queried == 1);
+  ck_assert(isnan(t->d_re) && isnan(t->d_fe) && isnan(t->v_n) && t->eps == 0);
+  m = rig_at(0.002499, 0, 0);
+  t = rig_step(&r, &m);
+  ck_assert(t->contacts == 1 && t->object == 0);
+  close_to(t->d_re, 0.002499);
+  m = rig_at(0.050, 0, 0.0519); /* d_fe = 50 - 51.9 + 4.5 mm */
+  ck_assert_int_eq(rig_step(&r, &m)->contacts, 0);
+  m = rig_at(0.050, 0, 0.0530);
+  t = rig_step(&r, &m);
+  ck_assert_int_eq(t->contacts, 1);
+  close_to(t->d_fe, 0.0015);
+  close_to(t->beta, 0.1 + 0.9 * 0.6);
+  rig_close(&r);
+}
+END_TEST
+
+/* The tangent line stands for the surface, for the finger too. */
+START_TEST(test_circle) {
+  rig r;
+  open_with(&r, "circle 0.2 0.25 0.03\n", &ethd_transition_smooth);
+  motion m = {{0.244, 0.25}, {-0.2, 0.7}, {0.245, 0.258}, {0, 0}};
+  const ethd_trace *t = rig_step(&r, &m);
+  close_to(t->d_re, 0.044 - 0.03 - 0.012);
+  close_to(t->d_fe, 0.245 - 0.23 - 0.0075);
+  close_to(t->v_n, 0.2);
+  rig_close(&r);
+}
+END_TEST
+
+START_TEST(test_no_scene_and_empty_scene) {
+  for (int empty = 0; empty < 2; empty++) {
+    rig r;
+    open_with(&r, empty ? "# nothing\n" : NULL, &ethd_transition_offset);
+    motion m = rig_at(-0.01, 0.3, 0.001);
+    const ethd_trace *t = rig_step(&r, &m);
+    ck_assert(t->contacts == 0 && t->beta == 1 && t->queried == empty);
+    rig_close(&r);
+  }
+}
+END_TEST
+
+/* A contact lives until its state is transparent, however far away; its law is asked each tick. */
+static ethd_status lingering_step(const double *p, void *state, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
+  double *ticks = state;
+  (void)p;
+  out->state = ++*ticks < 20 ? 5 : ETHD_TRANSPARENT;
+  out->argument = c->age;
+  out->feed = -1;
+  return ETHD_OK;
+}
+
+static const ethd_transition_law lingering = {
+    {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, sizeof(double), "lingering", "lives 20 ticks", NULL, 0,
+     NULL, NULL},
+    lingering_step};
+
+START_TEST(test_contact_lives_out_of_reach) {
+  rig r;
+  open_with(&r, RIG_WALL "circle 0.25 0.35 0.01\n", &lingering);
+  motion m = rig_at(0.001, 0, 0);
+  for (int tick = 0; tick < 25; tick++) {
+    const ethd_trace *t = rig_step(&r, &m);
+    if (tick < 19) {
+      ck_assert(t->contacts == 1 && t->state == 5 && t->object == 0);
+      close_to(t->d_fe, 0.001 * tick); /* its age */
+      close_to(t->fe[0], 1);           /* feed-forward, along n = (-1, 0) */
+      close_to(t->d_re, m.x.x - 0.25);
+    } else {
+      ck_assert_int_eq(t->contacts, 0);
+    }
+    m = rig_at(0.1, 0, 0);
+  }
+  m = rig_at(0.001, 0, 0); /* a new one */
+  ck_assert_int_eq(rig_step(&r, &m)->state, 5);
+  rig_close(&r);
+}
+END_TEST
+
+/* v_th goes first, far outside as well: eps < 0 for one tick. */
+START_TEST(test_braking_that_ends_far_outside) {
+  rig r;
+  open_with(&r, RIG_WALL, &ethd_transition_offset);
+  motion m = rig_at(-0.001, 0.4, 0);
+  rig_step(&r, &m);
+  m = rig_at(0.020, 0.01, 0);
+  const ethd_trace *t = rig_step(&r, &m);
+  ck_assert(t->state == ETHD_VO && t->contacts == 1);
+  close_to(t->eps, -0.020);
+  t = rig_step(&r, &m);
+  ck_assert(t->state == ETHD_TRANSPARENT && t->contacts == 0 && t->eps == 0);
+  rig_close(&r);
+}
+END_TEST
+
+/* ---- thin walls ---- */
+
+/* The default wall's place, but thin: from y = 0.1 to 0.4. */
+static const char thin[] = "segment 0.238 0.1 0.238 0.4\n";
+
+/* The side is the one on which the contact began, through the wall and out of reach behind it. */
+START_TEST(test_thin_wall_remembers_its_side) {
+  rig r;
+  open_with(&r, thin, &ethd_transition_smooth);
+  for (double d = 0.002; d > -0.1; d -= 0.004) {
+    motion m = at(0.25 + d, 0.25, -4, 0);
+    const ethd_trace *t = rig_step(&r, &m);
+    close_to(t->d_re, d);
+    close_to(t->v_n, 4);
+    close_to(t->fe[0], d < 0 ? -2500 * d + 45 * 4 : 0);
+  }
+  motion m = at(0.25 - 0.1, 0.25, 4, 0); /* and back */
+  close_to(rig_step(&r, &m)->fe[0], 250);
+  m = at(0.25 + 0.001, 0.25, 4, 0);
+  close_to(rig_step(&r, &m)->d_re, 0.001);
+  rig_close(&r);
+}
+END_TEST
+
+/* Begun on the left, it is a wall toward +x. */
+START_TEST(test_thin_wall_from_behind) {
+  rig r;
+  open_with(&r, thin, &ethd_transition_smooth);
+  motion m = at(0.226 - 0.001, 0.25, 0.1, 0);
+  close_to(rig_step(&r, &m)->d_re, 0.001);
+  m = at(0.226 + 0.020, 0.25, 0.1, 0);
+  const ethd_trace *t = rig_step(&r, &m);
+  close_to(t->d_re, -0.020);
+  close_to(t->fe[0], -2500 * 0.020 - 45 * 0.1);
+  rig_close(&r);
+}
+END_TEST
+
+/* The finger is measured from the ring's side. */
+START_TEST(test_thin_wall_and_a_finger_behind_it) {
+  rig r;
+  open_with(&r, thin, &ethd_transition_smooth);
+  motion m = {{0.251, 0.25}, {0, 0}, {0.228, 0.25}, {0, 0}};
+  const ethd_trace *t = rig_step(&r, &m);
+  close_to(t->d_fe, 0.228 - 0.238 - 0.0075);
+  ck_assert_double_eq(t->beta, 0.1);
+  rig_close(&r);
+}
+END_TEST
+
+/* Past an end the wall is a point; beyond it the other side is as good. */
+START_TEST(test_thin_wall_round_an_end) {
+  rig r;
+  open_with(&r, thin, &ethd_transition_smooth);
+  motion m = at(0.251, 0.395, 0, 0);
+  close_to(rig_step(&r, &m)->d_re, 0.001);
+  m = at(0.248, 0.4075, 0, 0); /* 10 and 7.5 mm from the end: 12.5 mm */
+  const ethd_trace *t = rig_step(&r, &m);
+  close_to(t->d_re, 0.0005);
+  m = at(0.228, 0.4075, 0, 0);
+  close_to(rig_step(&r, &m)->d_re, 0.0005);
+  m = at(0.2265, 0.395, 0, 0);
+  t = rig_step(&r, &m);
+  close_to(t->d_re, -0.0005);
+  close_to(t->fe[0], -2500 * 0.0005); /* pushed to the left */
+  rig_close(&r);
+}
+END_TEST
+
+/* ---- materials ---- */
+
+START_TEST(test_materials) {
+  rig r;
+  open_with(&r, "material soft k_e=500 b_e=10\nmaterial hard k_e=9000\n" RIG_WALL
+               "halfplane -1 0 -0.238 material=soft\nhalfplane 0 -1 -0.238 material=hard\n",
+            &ethd_transition_smooth);
+  motion m = at(0.248, 0.249, -0.1, -0.1);
+  const ethd_trace *t = rig_step(&r, &m);
+  close_to(t->fe[0], (2500 + 500) * 0.002 + (45 + 10) * 0.1);
+  close_to(t->fe[1], 9000 * 0.001 + 45 * 0.1); /* b_e: the setup's */
+  rig_close(&r);
+}
+END_TEST
+
+START_TEST(test_materials_are_checked) {
+  rig r;
+  ethd_error error;
+  rig_open(&r, "\nmaterial odd c_e=1\nhalfplane -1 0 -0.238\n");
+  ck_assert_int_eq(ethd_control_create(&r.setup, &r.control, &error), ETHD_E_UNKNOWN);
+  ck_assert_str_eq(error.name, "material.odd.c_e");
+  ck_assert_int_eq(error.line, 2);
+  ethd_setup_contact(&r.setup, &ethd_contact_hunt_crossley); /* it has a c_e */
+  rig_start(&r);
+  rig_close(&r);
+  rig_open(&r, "material odd k_e=-1\n");
+  ck_assert_int_eq(ethd_setup_check(&r.setup, &error), ETHD_E_RANGE);
+  ck_assert_str_eq(error.name, "material.odd.k_e");
+  ck_assert(error.found == -1 && error.min == 0);
+  rig_close(&r);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("contacts");
+  TCase *t = tcase_create("contacts");
+  tcase_add_test(t, test_corner);
+  tcase_add_test(t, test_corner_has_two_machines);
+  tcase_add_test(t, test_state_stays_with_its_wall);
+  tcase_add_test(t, test_order_of_equals);
+  tcase_add_loop_test(t, test_overflow_keeps_the_deepest, 0, 6);
+  tcase_add_test(t, test_newcomer_that_is_deeper);
+  tcase_add_test(t, test_within_reach);
+  tcase_add_test(t, test_circle);
+  tcase_add_test(t, test_no_scene_and_empty_scene);
+  tcase_add_test(t, test_contact_lives_out_of_reach);
+  tcase_add_test(t, test_braking_that_ends_far_outside);
+  tcase_add_test(t, test_thin_wall_remembers_its_side);
+  tcase_add_test(t, test_thin_wall_from_behind);
+  tcase_add_test(t, test_thin_wall_and_a_finger_behind_it);
+  tcase_add_test(t, test_thin_wall_round_an_end);
+  tcase_add_test(t, test_materials);
+  tcase_add_test(t, test_materials_are_checked);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}
