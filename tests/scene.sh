@@ -1,0 +1,111 @@
+#!/bin/sh
+# ethd-scene: distances of points against numbers worked out by hand, the summary, and each refusal.
+set -u
+program=$BUILD/bin/ethd-scene
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+failed=0
+fail() { echo "$*"; failed=1; }
+
+cat >walls.scene <<'END'
+# the paper's wall and things around it
+halfplane -1 0 -0.238 material=soft
+circle 3 4 1
+box 3 -4 1 0.5 1.5707963267948966
+polygon 10 0 12 0 12 1 11 1 11 2 10 2   # an L
+segment 20 0 22 0
+material soft k_e=500
+END
+# Columns in another order, one more, CRLF.
+printf 'note,y_m,x_m\r\nwall,0.25,0.25\r\ninside,4,3\r\nfree,4,5\r\nbox,-4,4\r\nreflex,0.75,10.75\r\nnotch,1.25,11.5\r\nend,4,25\r\n' >points.csv
+"$program" query --scene walls.scene --in points.csv --out out.csv || fail "query fails"
+cat >expected.csv <<'END'
+distance_m,nx,ny,object
+0.012,-1,0,0
+-1,any,any,1
+1,-1,0,1
+0.5,-1,0,2
+-0.35355339059327379,-0.70710678118654757,-0.70710678118654757,3
+0.25,0,-1,3
+5,-0.6,-0.8,4
+END
+awk -F, '
+  NR == FNR { line[NR] = $0; lines = NR; next }
+  { n = split(line[FNR], want, ","); if (NF != n) bad = 1 }
+  FNR == 1 { if ($0 != line[1]) bad = 1; next }
+  { for (i = 1; i <= n; i++)
+      if (want[i] != "any" && ($i - want[i] > 1e-14 || want[i] - $i > 1e-14)) { print FNR ": " $i ", not " want[i]; bad = 1 } }
+  END { exit bad || FNR != lines }' expected.csv out.csv || fail "query's answers differ"
+grep -q '^-0.35355339059327379,' out.csv || fail "fewer than 17 digits"
+
+"$program" info walls.scene >info.txt || fail "info fails"
+for line in '5 objects' 'halfplane  *1' 'segments: *7' 'materials: *1' 'x 2 to 22 m, y -5 to 5 m' 'build time:' \
+  'memory: *[0-9]* bytes' 'out of reach: 4 of 5'; do
+  grep -q "$line" info.txt || fail "info lacks: $line"
+done
+# An arm of 2 x 2.1 m reaches circle and box, (3, 4) - 1 and (3, -4) - 0.9.
+printf '[arm]\nlink1 = 2\nlink2 = 2.1\n' >arm.ini
+"$program" info walls.scene --config arm.ini | grep -q 'out of reach: 2 of 5' || fail "info ignores the configuration"
+
+: >empty.scene
+printf 'x_m,y_m\n1,2\n' >one.csv
+"$program" query --scene empty.scene --in one.csv --out empty.csv || fail "an empty scene is refused"
+grep -q '^inf,.*,-1$' empty.csv || fail "an empty scene has a nearest object"
+
+"$program" --help | grep -q 'ethd-scene query --scene' || fail "no example in --help"
+"$program" --version | grep -q . || fail "no version"
+
+# refuse PATTERN ARGUMENTS...: exit 2, one line with the pattern (usage: argp's two), nothing written over.
+refuse() {
+  pattern=$1
+  shift
+  echo old >kept.csv
+  "$program" "$@" >stdout.txt 2>error.txt
+  code=$?
+  [ $code = 2 ] || fail "$*: exit $code"
+  [ -s stdout.txt ] && fail "$*: says something on stdout"
+  [ "$(grep -cv '^Try ' error.txt)" = 1 ] || fail "$*: not one line: $(cat error.txt)"
+  grep -q -- "$pattern" error.txt || fail "$*: no \"$pattern\" in: $(cat error.txt)"
+  [ "$(cat kept.csv)" = old ] || fail "$*: wrote over a file"
+  [ -z "$(find . -name 'kept.csv?*')" ] || fail "$*: left a temporary file"
+}
+
+printf 'circle 0 0 1\n\ncircle 0 0\n' >count.scene
+printf 'polygon 0 0 1 1 1 0 0 1\n' >bow.scene
+printf 'circle 0 0 1 material=mud\n' >mud.scene
+head -c 4096 /dev/zero >zero.scene
+printf 'x_m,y_m\n1,2\n3\n' >ragged.csv
+printf 'x_m\n1\n' >missing.csv
+printf 'x_m,y_m\n1,2\n1,nan\n' >nan.csv
+printf 'x_m,y_m\n1,\n' >hole.csv
+printf 'x_m,y_m,x_m\n1,2,3\n' >twice.csv
+printf 'x_m,y_m\n1,2e10\n' >far.csv
+: >empty.csv2
+q() { pattern=$1; scene=$2; points=$3; refuse "$pattern" query --scene "$scene" --in "$points" --out kept.csv; }
+q 'count.scene:3: .*circle.*found 2' count.scene one.csv
+q 'bow.scene:1: .*edges 0 and 2' bow.scene one.csv
+q 'mud.scene:1: mud' mud.scene one.csv
+q 'zero.scene:1: ' zero.scene one.csv
+q 'nowhere.scene: ' nowhere.scene one.csv
+q '\.: ' . one.csv
+q 'ragged.csv:3: ' walls.scene ragged.csv
+q 'missing.csv:1: .*y_m' walls.scene missing.csv
+q 'nan.csv:3: y_m: .*nan' walls.scene nan.csv
+q 'hole.csv:2: y_m: ' walls.scene hole.csv
+q 'twice.csv:1: .*x_m' walls.scene twice.csv
+q 'far.csv:2: y_m: .*2e+10' walls.scene far.csv
+q 'empty.csv2' walls.scene empty.csv2
+q 'nowhere.csv: ' walls.scene nowhere.csv
+refuse 'query or info'
+refuse '"draw"' draw
+refuse 'query needs' query --scene walls.scene
+refuse 'no such argument' query walls.scene
+refuse 'info needs' info
+refuse 'for query' info walls.scene --in one.csv
+refuse 'no such argument' info walls.scene more
+refuse 'frobnicate' info --frobnicate walls.scene
+refuse 'count.scene:3: ' info count.scene
+refuse 'nowhere.ini: ' info walls.scene --config nowhere.ini
+[ $failed = 0 ] && echo "distances, summary and refusals as expected"
+exit $failed

@@ -1,0 +1,93 @@
+/* A scene's summary, and what an arm can't reach. */
+#include <check.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "scene_objects.h"
+
+START_TEST(test_describe) {
+  object o[] = {{ETHD_HALFPLANE, 3, {0, 1, 5}},          {ETHD_CIRCLE, 3, {1, 2, 0.5}},
+                {ETHD_POLYGON, 8, {0, 0, 3, 0, 3, 1, 0, 1}}, {ETHD_POLYLINE, 6, {-2, 0, -1, 0, -1, -4}},
+                {ETHD_SEGMENT, 4, {0, 0, 1, 1}},         {ETHD_CIRCLE, 3, {0, 0, 0.1}}};
+  ethd_scene *s = scene_build(o, 6);
+  ethd_scene_info info;
+  ethd_scene_describe(s, &info);
+  ck_assert_uint_eq(info.objects, 6);
+  ck_assert_uint_eq(info.by_shape[ETHD_CIRCLE], 2);
+  ck_assert_uint_eq(info.by_shape[ETHD_HALFPLANE], 1);
+  ck_assert_uint_eq(info.by_shape[ETHD_BOX], 0);
+  ck_assert_uint_eq(info.segments, 4 + 2 + 1);
+  ck_assert(info.x_min == -2 && info.x_max == 3 && info.y_min == -4 && info.y_max == 2.5);
+  ck_assert(info.bytes > 6 * 32 && info.bytes < 6 * 32 + 2000);
+  ethd_scene_destroy(s);
+  s = scene_build(o, 1);
+  ethd_scene_describe(s, &info);
+  ck_assert(info.x_min > info.x_max && info.y_min > info.y_max);
+  ethd_scene_destroy(s);
+  s = SCENE_ONE(ETHD_BOX, 1, 1, 2, 1, M_PI / 2);
+  ethd_scene_describe(s, &info);
+  ck_assert(fabs(info.x_min) <= SCENE_TIGHT && fabs(info.x_max - 2) <= SCENE_TIGHT);
+  ck_assert(fabs(info.y_max - 3) <= SCENE_TIGHT);
+  ethd_scene_destroy(s);
+  for (int i = 0; i < ETHD_SHAPE_COUNT; i++)
+    for (int k = 0; k < i; k++)
+      ck_assert_str_ne(ethd_shape_name((ethd_shape)i), ethd_shape_name((ethd_shape)k));
+  ck_assert_str_eq(ethd_shape_name(ETHD_HALFPLANE), "halfplane");
+}
+END_TEST
+
+/* An arm of 0.3 and 0.2 m: an annulus of 0.1 to 0.5 m, and a ring of 0.05 m. Objects lie within reach iff a
+   point of theirs lies 0.05 to 0.55 m from the base: random points of them against the answer. */
+START_TEST(test_out_of_reach) {
+  ethd_arm arm = {ETHD_ARM_SERIAL, 0.3, 0.2};
+  int out = 0;
+  scene_seed(900);
+  for (int s = 0; s < 2000; s++) {
+    object o = scene_random((ethd_shape)(scene_draw() % ETHD_SHAPE_COUNT));
+    if (s % 2)
+      for (size_t k = 0; k < o.count && o.shape != ETHD_HALFPLANE && o.shape != ETHD_BOX; k++) o.p[k] *= 0.05;
+    ethd_scene *scene = scene_build(&o, 1);
+    size_t dropped = ethd_scene_out_of_reach(scene, &arm, 0.05);
+    int reached = 0;
+    real nearest = scene_expected(&o, 0, 0);
+    for (int i = 0; i < 400 && !reached; i++) {
+      real r = scene_uniform(0.0501, 0.5499), a = scene_uniform(-4, 4);
+      reached = scene_expected(&o, r * cosl(a), r * sinl(a)) <= 0;
+    }
+    if (reached) ck_assert_uint_eq(dropped, 0);
+    if (nearest > 0.5501L) ck_assert_uint_eq(dropped, 1);
+    out += (int)dropped;
+    ethd_scene_destroy(scene);
+  }
+  ck_assert_int_gt(out, 100);
+  ethd_scene *s = SCENE_ONE(ETHD_CIRCLE, 0.02, 0, 0.0299); /* in the hole */
+  ck_assert_uint_eq(ethd_scene_out_of_reach(s, &arm, 0.05), 1);
+  ethd_scene_destroy(s);
+  s = SCENE_ONE(ETHD_CIRCLE, 0.02, 0, 0.0301);
+  ck_assert_uint_eq(ethd_scene_out_of_reach(s, &arm, 0.05), 0);
+  ethd_scene_destroy(s);
+  s = SCENE_ONE(ETHD_BOX, 0.9, 0, 0.3501, 0.1, 0);
+  ck_assert_uint_eq(ethd_scene_out_of_reach(s, &arm, 0.05), 0);
+  ethd_scene_destroy(s);
+  s = SCENE_ONE(ETHD_BOX, 0.9, 0, 0.3499, 0.1, 0);
+  ck_assert_uint_eq(ethd_scene_out_of_reach(s, &arm, 0.05), 1);
+  ethd_scene_destroy(s);
+  s = SCENE_ONE(ETHD_POLYGON, -9, -9, 9, -9, 9, 9, -9, 9); /* everything lies in it */
+  ck_assert_uint_eq(ethd_scene_out_of_reach(s, &arm, 0.05), 0);
+  ethd_scene_destroy(s);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("scene_info");
+  TCase *all = tcase_create("all");
+  tcase_set_timeout(all, 60);
+  tcase_add_test(all, test_describe);
+  tcase_add_test(all, test_out_of_reach);
+  suite_add_tcase(suite, all);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
