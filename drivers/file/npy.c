@@ -6,6 +6,7 @@
 
 #include "ethd/record.h"
 #include "file/error_text.h"
+#include "file/npy_parts.h"
 #include "file/text.h"
 
 /* NumPy's format 1.0: "\x93NUMPY" 1 0, u16 length, a Python dict padded with spaces and ended by a newline
@@ -191,26 +192,31 @@ static ethd_status read_header(const char *text, size_t length, const char *path
 }
 
 /* Rows behind the header's count were being written when the writer ended: they don't count. */
+ethd_status ethd__npy_parse(const char *text, size_t length, const char *path, const ethd_column *columns,
+                            size_t row_bytes, size_t *data, size_t *count, char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = read_header(text, length, path, columns, data, count, message);
+  if (status || *count <= (length - *data) / row_bytes) return status;
+  return ethd__say(message, ETHD_E_SYNTAX, "%s: cut short: %zu rows of %zu are there", path,
+                   (length - *data) / row_bytes, *count);
+}
+
 ethd_status ethd_npy_read(const char *path, const ethd_column *columns, size_t row_bytes, void **rows,
                           size_t *count, char message[ETHD_MESSAGE_MAX]) {
   char *text;
-  size_t length, data = 0;
+  size_t length, data = 0, n = 0;
   *rows = NULL;
   *count = 0;
   if (!dense(columns, row_bytes))
     return ethd__say(message, ETHD_E_ARGUMENT, "%s: columns that don't fill a row", path);
   ethd_status status = ethd_text_read(path, BYTES_MAX, &text, &length, message);
   if (status) return status;
-  status = read_header(text, length, path, columns, &data, count, message);
-  if (!status && *count > (length - data) / row_bytes)
-    status = ethd__say(message, ETHD_E_SYNTAX, "%s: cut short: %zu rows of %zu are there", path,
-                       (length - data) / row_bytes, *count);
+  status = ethd__npy_parse(text, length, path, columns, row_bytes, &data, &n, message);
   if (status) {
     free(text);
-    *count = 0;
     return status;
   }
-  memmove(text, text + data, *count * row_bytes);
+  memmove(text, text + data, n * row_bytes);
   *rows = text;
+  *count = n;
   return ETHD_OK;
 }

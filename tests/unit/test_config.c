@@ -1,0 +1,397 @@
+/* Configurations: every key lands where it belongs, order never matters, all else is refused with its
+   line. */
+#include <check.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "ethd/config.h"
+#include "mutate.h"
+
+#define X50 "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx"
+
+static char message[ETHD_MESSAGE_MAX];
+
+static ethd_config *parse(const char *text) {
+  ethd_config *config;
+  ethd_status status = ethd_config_parse(text, strlen(text), "x.ini", "/nowhere", &config, message);
+  ck_assert_msg(status == ETHD_OK, "%s\nrefused: %s", text, message);
+  return config;
+}
+
+static double law_value(const ethd_law *law, const double *p, const char *name) {
+  int i = ethd_params_find(law->params, law->param_count, name);
+  ck_assert_msg(i >= 0, "%s has no %s", law->id, name);
+  return p[i];
+}
+
+static double transition_value(const ethd_setup *s, const char *name) {
+  return law_value(&s->transition->law, s->transition_p, name);
+}
+
+/* ---- what is accepted ---- */
+
+START_TEST(test_defaults) {
+  static const char *const empties[] = {"", "\n", "# nothing\n; either\n", "[arm]\n[contact]\n[arm]\n", "\xef\xbb\xbf",
+                                        "\r\n[arm]\r\n"};
+  for (size_t i = 0; i < sizeof empties / sizeof *empties; i++) {
+    ethd_config *c = parse(empties[i]);
+    const ethd_setup *s = &c->setup;
+    ck_assert_int_eq(s->arm.mechanism, ETHD_ARM_PARALLEL);
+    ck_assert(s->arm.link1 == 0.25 && s->arm.link2 == 0.25 && s->ring_radius == 0.012);
+    ck_assert(s->finger_radius == 0.0075 && s->finger_radius_max == 0.0095 && s->period == 0.001);
+    ck_assert(s->velocity == ETHD_VELOCITY_LOWPASS && s->fit == ETHD_FIT_KASA && s->filter == ETHD_FILTER_CA);
+    ck_assert(s->tracking == &ethd_tracking_pd && s->contact == &ethd_contact_kelvin_voigt);
+    ck_assert(s->transition == &ethd_transition_offset);
+    ck_assert(law_value(&s->tracking->law, s->tracking_p, "k_t") == 40);
+    ck_assert(law_value(&s->tracking->law, s->tracking_p, "b_t") == 1);
+    ck_assert(law_value(&s->contact->law, s->contact_p, "k_e") == 2500);
+    ck_assert(law_value(&s->contact->law, s->contact_p, "b_e") == 45);
+    ck_assert(transition_value(s, "b_d") == 100 && transition_value(s, "v_th") == 0.020);
+    ck_assert(transition_value(s, "beta_min") == 0.1 && transition_value(s, "eps_max") == 0.006);
+    ck_assert(transition_value(s, "t_max") == 0.050 && s->swap_time == 0.020 && s->v_hysteresis == 0);
+    ck_assert(isinf(s->limits.torque) && isinf(s->limits.step_time) && c->limits_given == 0);
+    ck_assert(isnan(c->mass_x) && isnan(c->mass_y) && !c->scene && !s->scene);
+    ck_assert_str_eq(c->device, "sim");
+    ethd_config_free(c);
+  }
+  ethd_config *c;
+  ck_assert_int_eq(ethd_config_load(NULL, &c, message), ETHD_OK);
+  ck_assert_ptr_null(c->path);
+  ethd_config_free(c);
+  ethd_config_free(NULL);
+}
+END_TEST
+
+/* Every key, each with a value of its own. */
+static const char everything[] =
+    "[arm]\nmechanism = serial\nlink1 = 0.31\nlink2 = 0.32\nmass_x = 0.5\nmass_y = 0.6\n"
+    "[ring]\nradius = 0.013\n"
+    "[finger]\nradius = 0.0071\nradius_max = 0.0091\n"
+    "[loop]\nperiod = 0.002\n"
+    "[velocity]\nmethod = lsq\nwindow = 9\n"
+    "[finger_fit]\nmethod = robust\n"
+    "[finger_filter]\nmethod = cv\nreference = tick\n"
+    "[tracking]\nlaw = pd\nk_t = 41\nb_t = 2\nderivative = difference\n"
+    "[contact]\nlaw = hunt-crossley\nk_e = 2600\n"
+    "[transition]\nlaw = offset\nb_d = 110\nv_th = 0.021\nbeta_min = 0.2\neps_max = inf\nt_max = +inf\n"
+    "v_hysteresis = 0.001\npreset = product\nswap_time = 0.03\n"
+    "[limits]\ntorque = 1.5\ntorque_rate = inf\nspeed = 2\nworkspace = -0.4 0.4 0.1 inf\nstep_time = 5e-4\n"
+    "[device]\ndriver = other\nwire = 3 x\n";
+
+START_TEST(test_every_key) {
+  ethd_config *c = parse(everything);
+  const ethd_setup *s = &c->setup;
+  ck_assert_int_eq(s->arm.mechanism, ETHD_ARM_SERIAL);
+  ck_assert(s->arm.link1 == 0.31 && s->arm.link2 == 0.32 && c->mass_x == 0.5 && c->mass_y == 0.6);
+  ck_assert(s->ring_radius == 0.013 && s->finger_radius == 0.0071 && s->finger_radius_max == 0.0091);
+  ck_assert(s->period == 0.002 && s->velocity == ETHD_VELOCITY_LSQ && s->velocity_p[0] == 9);
+  ck_assert(s->fit == ETHD_FIT_ROBUST && s->filter == ETHD_FILTER_CV);
+  const ethd_method *cv = &ethd_filter_methods[ETHD_FILTER_CV];
+  ck_assert(s->filter_p[ethd_params_find(cv->params, cv->param_count, "reference")] == ETHD_REFERENCE_TICK);
+  ck_assert(law_value(&s->tracking->law, s->tracking_p, "k_t") == 41);
+  ck_assert(law_value(&s->tracking->law, s->tracking_p, "b_t") == 2);
+  ck_assert(law_value(&s->tracking->law, s->tracking_p, "derivative") == 1);
+  ck_assert(s->contact == &ethd_contact_hunt_crossley);
+  ck_assert(law_value(&s->contact->law, s->contact_p, "k_e") == 2600);
+  ck_assert(transition_value(s, "b_d") == 110 && transition_value(s, "v_th") == 0.021);
+  ck_assert(transition_value(s, "beta_min") == 0.2 && isinf(transition_value(s, "eps_max")));
+  ck_assert(isinf(transition_value(s, "t_max")) && s->v_hysteresis == 0.001 && s->swap_time == 0.03);
+  ck_assert(s->limits.torque == 1.5 && isinf(s->limits.torque_rate) && s->limits.speed == 2);
+  ck_assert(s->limits.workspace[0] == -0.4 && s->limits.workspace[1] == 0.4);
+  ck_assert(s->limits.workspace[2] == 0.1 && isinf(s->limits.workspace[3]) && s->limits.step_time == 5e-4);
+  ck_assert_uint_eq(c->limits_given, 31);
+  ck_assert_str_eq(c->device, "other");
+  ck_assert_uint_eq(c->setting_count, 1);
+  ck_assert_str_eq(c->settings[0].key, "wire");
+  ck_assert_str_eq(c->settings[0].value, "3 x");
+  ck_assert_int_eq(c->settings[0].line, 48);
+  ck_assert_str_eq(c->text, everything);
+  ethd_config_free(c);
+}
+END_TEST
+
+/* Keys of one section in every rotation, sections in reverse: the setup stays the same. */
+START_TEST(test_order_never_matters) {
+  static const char *const keys[] = {"law = offset", "preset = paper", "eps_max = 0.004", "v_hysteresis = 0.002",
+                                     "b_d = 90"};
+  enum { COUNT = sizeof keys / sizeof *keys };
+  for (int first = 0; first < COUNT; first++)
+    for (int step = 1; step < COUNT; step++) {
+      char text[512] = "[contact]\nk_e = 7\n[transition]\n";
+      for (int i = 0; i < COUNT; i++) {
+        strcat(text, keys[(first + i * step) % COUNT]);
+        strcat(text, i == 2 ? "\n[ring]\n[transition]\n" : "\n");
+      }
+      strcat(text, "[contact]\nlaw = spring\n");
+      ethd_config *c = parse(text);
+      ck_assert(transition_value(&c->setup, "eps_max") == 0.004);
+      ck_assert(isinf(transition_value(&c->setup, "t_max")));
+      ck_assert(c->setup.v_hysteresis == 0.002 && transition_value(&c->setup, "b_d") == 90);
+      ck_assert(c->setup.contact == &ethd_contact_spring && c->setup.contact_p[0] == 7);
+      ethd_config_free(c);
+    }
+}
+END_TEST
+
+START_TEST(test_preset) {
+  ethd_config *c = parse("[transition]\npreset = paper\n");
+  ck_assert(isinf(transition_value(&c->setup, "eps_max")) && isinf(transition_value(&c->setup, "t_max")));
+  ethd_config_free(c);
+  c = parse("[transition]\npreset = product\n");
+  ck_assert(transition_value(&c->setup, "eps_max") == 0.006);
+  ethd_config_free(c);
+  c = parse("[transition]\npreset = paper\nlaw = abrupt\n"); /* has neither cap */
+  ck_assert_int_eq(ethd_config_transition(c, "offset", &c->setup, message), ETHD_OK);
+  ck_assert(isinf(transition_value(&c->setup, "eps_max")));
+  ethd_config_free(c);
+}
+END_TEST
+
+START_TEST(test_comments_and_spaces) {
+  ethd_config *c = parse("  [contact]  ; walls\n\tk_e=100\t;soft ; really\n  b_e =  7  \n;b_e = 8\n   # b_e = 9\n"
+                         "[device]\na = b;c\n# " X50 X50 X50 X50 X50 "\nd = e=f # g\n");
+  ck_assert(c->setup.contact_p[0] == 100 && c->setup.contact_p[1] == 7);
+  ck_assert_str_eq(c->settings[0].value, "b;c");
+  ck_assert_str_eq(c->settings[1].value, "e=f # g");
+  ethd_config_free(c);
+}
+END_TEST
+
+/* ---- changes of law, single values ---- */
+
+START_TEST(test_transition) {
+  ethd_config *c = parse("[transition]\nbeta_min = 0.3\nb_d = 70\nswap_time = 0.5\nv_hysteresis = 0.01\n");
+  ethd_setup s = c->setup;
+  ck_assert_int_eq(ethd_config_transition(c, "smooth", &s, message), ETHD_OK);
+  ck_assert(s.transition == &ethd_transition_smooth && transition_value(&s, "beta_min") == 0.3);
+  ck_assert(s.swap_time == 0.5 && s.v_hysteresis == 0.01);
+  ck_assert_int_eq(ethd_config_transition(c, "offset", &s, message), ETHD_OK);
+  ck_assert(transition_value(&s, "beta_min") == 0.3);
+  ck_assert(transition_value(&s, "b_d") == 100); /* dropped on the way */
+  ck_assert(c->setup.transition == &ethd_transition_offset && transition_value(&c->setup, "b_d") == 70);
+  ethd_setup before = s;
+  ck_assert_int_eq(ethd_config_transition(c, "kelvin-voigt", &s, message), ETHD_E_UNKNOWN);
+  ck_assert_str_eq(message, "transition.law: found \"kelvin-voigt\", abrupt, smooth, offset is allowed");
+  ck_assert(memcmp(&before, &s, sizeof s) == 0);
+  ethd_config_free(c);
+}
+END_TEST
+
+START_TEST(test_set) {
+  static const char *const refused[][2] = {
+      {"contact.k_e", "-1"},     {"contact.k_e", "x"},    {"contact.k_e", "nan"}, {"contact.k_e", ""},
+      {"contact.k_x", "1"},      {"contact.law", "spring"}, {"velocity.method", "lsq"},
+      {"scene.file", "a"},       {"plugins.file", "a"},   {"device.driver", "a"}, {"device.x", "a"},
+      {"transition.preset", "paper"}, {"arm.mass_x", "1"}, {"k_e", "1"},          {".", "1"},
+      {"", "1"},                 {"nothing.k", "1"},      {"finger.radius_max", "0.012"}, {"ring.radius", "0.001"},
+      {"limits.workspace", "1 2 3"}, {"limits.workspace", "1 0 0 1"}, {"limits.torque", "-1"}};
+  ethd_config *c = parse("");
+  ethd_setup s = c->setup;
+  ck_assert_int_eq(ethd_config_set(c, "contact.k_e", "2000", &s, message), ETHD_OK);
+  ck_assert(s.contact_p[0] == 2000 && c->setup.contact_p[0] == 2500);
+  ck_assert_int_eq(ethd_config_set(c, "transition.eps_max", "inf", &s, message), ETHD_OK);
+  ck_assert_int_eq(ethd_config_set(c, "tracking.derivative", "difference", &s, message), ETHD_OK);
+  ck_assert_int_eq(ethd_config_set(c, "limits.torque", "1.25", &s, message), ETHD_OK);
+  ck_assert(s.limits.torque == 1.25);
+  ethd_setup before = s;
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+    message[0] = 0;
+    ck_assert_msg(ethd_config_set(c, refused[i][0], refused[i][1], &s, message) < 0, "%s %s passed",
+                  refused[i][0], refused[i][1]);
+    ck_assert(message[0] && memcmp(&before, &s, sizeof s) == 0);
+  }
+  ck_assert_int_lt(ethd_config_set(c, "contact.k_e", "-1", &s, message), 0);
+  ck_assert_str_eq(message, "contact.k_e: found -1, 0 to 1000000 N/m is allowed");
+  ethd_config_free(c);
+}
+END_TEST
+
+/* ---- what is refused, and how ---- */
+
+typedef struct bad {
+  const char *text, *says;
+} bad;
+
+static const bad bads[] = {
+    {"[contact]\nk_e = 1\nk_e = 1\n", "x.ini:3: contact.k_e: stands twice, first on line 2"},
+    {"[contact]\nk_e = 1\n[arm]\n[contact]\nk_e = 2\n", "x.ini:5: contact.k_e: stands twice, first on line 2"},
+    {"[device]\na = 1\na = 1\n", "x.ini:3: device.a: stands twice, first on line 2"},
+    {"[nothing]\nx = 1\n", "x.ini:2: nothing.x: unknown section; arm, "},
+    {"[contact]\nk_x = 1\n", "x.ini:2: contact.k_x: not a key of kelvin-voigt, which has law, k_e, b_e"},
+    {"[ring]\nr = 1\n", "x.ini:2: ring.r: unknown key; radius are allowed"},
+    {"[contact]\nlaw = spring\nb_e = 1\n", "x.ini:3: contact.b_e: not a key of spring, which has law, k_e"},
+    {"[contact]\nb_e = 1\nlaw = spring\n", "x.ini:2: contact.b_e: not a key of spring"},
+    {"[velocity]\nlaw = lsq\n", "x.ini:2: velocity.law: not a key of lowpass, which has method"},
+    {"[tracking]\nmethod = pd\n", "x.ini:2: tracking.method: not a key of pd"},
+    {"[contact]\nlaw = offset\n", "x.ini:2: contact.law: found \"offset\", kelvin-voigt, spring, hunt-crossley is"},
+    {"[velocity]\nmethod = fast\n", "x.ini:2: velocity.method: found \"fast\", lowpass, difference, lsq, foaw"},
+    {"[transition]\npreset = papers\n", "x.ini:2: transition.preset: found \"papers\", product or paper is allowed"},
+    {"[contact]\nk_e = -1\n", "x.ini:2: contact.k_e: found -1, 0 to 1000000 N/m is allowed"},
+    {"[contact]\nk_e = inf\n", "x.ini:2: contact.k_e: found inf, 0 to 1000000 N/m is allowed"},
+    {"[contact]\nk_e = nan\n", "x.ini:2: contact.k_e: found \"nan\", a decimal number is allowed"},
+    {"[contact]\nk_e = NaN\n", "x.ini:2: contact.k_e: found \"NaN\", a decimal number is allowed"},
+    {"[contact]\nk_e = 0x10\n", "x.ini:2: contact.k_e: found \"0x10\", a decimal number is allowed"},
+    {"[contact]\nk_e = 1e\n", "x.ini:2: contact.k_e: found \"1e\""},
+    {"[contact]\nk_e = 1e400\n", "x.ini:2: contact.k_e: found \"1e400\""},
+    {"[contact]\nk_e = 10 N/m\n", "x.ini:2: contact.k_e: found \"10 N/m\", a decimal number is allowed"},
+    {"[contact]\nk_e = 1,5\n", "x.ini:2: contact.k_e: found \"1,5\""},
+    {"[contact]\nk_e = .\n", "x.ini:2: contact.k_e: found \".\""},
+    {"[contact]\nk_e = 10 # stiff\n", "x.ini:2: contact.k_e: found \"10 # stiff\""},
+    {"[contact]\nk_e =\n", "x.ini:2: contact.k_e: found nothing, a value is needed"},
+    {"[contact]\nk_e = ; 5\n", "x.ini:2: contact.k_e: found nothing, a value is needed"},
+    {"[contact]\n= 5\n", "x.ini:2: contact: a value without a key"},
+    {"[contact]\nk_e\n", "x.ini:2: found \"k_e\", [section] or key = value is allowed"},
+    {"[contact]\nk_e: 5\n", "x.ini:2: found \"k_e: 5\", [section] or key = value is allowed"},
+    {"k_e = 5\n", "x.ini:1: k_e: a key before the first [section]"},
+    {"[contact\nk_e = 5\n", "x.ini:1: found \"[contact\", a section needs its ]"},
+    {"[contact] k_e = 5\n", "x.ini:1: found \"[contact] k_e = 5\", nothing is allowed behind ]"},
+    {"[" X50 "]\n", "x.ini:1: a section's name of 50 characters, at most 49 are allowed"},
+    {"[device]\na = " X50 X50 X50 X50 "\n", "x.ini:2: a line of 204 characters, at most 197 are allowed"},
+    {"[contact]\nk_e = 5\n  b_e = 0x4\n", "x.ini:3: contact.b_e: found \"0x4\""}, /* no continuation */
+    {"[device]\na = 1\n  and more\n", "x.ini:3: found \"and more\", [section] or key = value is allowed"},
+    {"[contact]\nk_e = 5\001\n", "x.ini:2: a byte 1: this is no text"},
+    {"[contact]\rk_e = 5\r", "x.ini:1: a byte 13: this is no text"},
+    {"[finger]\nradius_max = 0.012\n", "x.ini:2: finger.radius_max: a value is out of its range"},
+    {"[ring]\nradius = 0\n", "x.ini:2: ring.radius: a value is out of its range; found 0, allowed"},
+    {"[loop]\nperiod = inf\n", "x.ini:2: loop.period: a value is out of its range"},
+    {"[arm]\n\nmechanism = Serial\n", "x.ini:3: arm.mechanism: found \"Serial\", parallel or serial is allowed"},
+    {"[arm]\nlink1 = -1\n", "x.ini:2: arm.link1: a value is out of its range"},
+    {"[arm]\nmass_x = 0\n", "x.ini:2: arm.mass_x: found \"0\", a mass over 0"},
+    {"[limits]\nworkspace = 0 1 0\n", "x.ini:2: limits.workspace: found \"0 1 0\", x_min x_max y_min y_max"},
+    {"[limits]\nworkspace = 0 1 0 1 2\n", "x.ini:2: limits.workspace: found"},
+    {"[limits]\nworkspace = 0 1 0 nan\n", "x.ini:2: limits.workspace: found"},
+    {"[limits]\nworkspace = 1 0 0 1\n", "x.ini:2: limits.workspace: a value is out of its range"},
+    {"[limits]\ntorque = -1\n", "x.ini:2: limits.torque: a value is out of its range"},
+    {"[transition]\nswap_time = 2\n", "x.ini:2: transition.swap_time: a value is out of its range"},
+    {"[transition]\nlaw = smooth\neps_max = 1\n", "x.ini:3: transition.eps_max: not a key of smooth"},
+    {"[tracking]\nderivative = 0\n", "x.ini:2: tracking.derivative: found \"0\", velocity|difference is allowed"},
+    {"[scene]\nfile = no.scene\n", "x.ini:2: scene.file: /nowhere/no.scene: No such file or directory"},
+    {"[scene]\nfiles = no.scene\n", "x.ini:2: scene.files: unknown key; file are allowed"},
+    {"[plugins]\nfile = no.so\n", "x.ini:2: plugins.file: /nowhere/no.so: No such file or directory"},
+    {"[device]\ndriver = " X50 "\n", "x.ini:2: device.driver: found"},
+};
+
+START_TEST(test_bad_texts) {
+  for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {
+    ethd_config *c = (ethd_config *)&i;
+    message[0] = 0;
+    ethd_status status = ethd_config_parse(bads[i].text, strlen(bads[i].text), "x.ini", "/nowhere", &c, message);
+    ck_assert_msg(status < 0, "passed: %s", bads[i].text);
+    ck_assert_ptr_null(c);
+    ck_assert_msg(strncmp(message, bads[i].says, strlen(bads[i].says)) == 0, "%s\nsays: %s\nnot:  %s", bads[i].text,
+                  message, bads[i].says);
+  }
+}
+END_TEST
+
+START_TEST(test_too_many_keys) {
+  static char text[64 * 1024];
+  char *p = text + sprintf(text, "[device]\n");
+  for (int i = 0; i < 513; i++) p += sprintf(p, "k%d = 1\n", i);
+  ethd_config *c;
+  ck_assert_int_lt(ethd_config_parse(text, (size_t)(p - text), "x.ini", NULL, &c, message), 0);
+  ck_assert_str_eq(message, "x.ini:514: over 512 keys");
+}
+END_TEST
+
+/* ---- files beside it ---- */
+
+static void write_text(const char *folder, const char *name, const char *text) {
+  char path[256];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *file = fopen(path, "w");
+  ck_assert_ptr_nonnull(file);
+  fputs(text, file);
+  ck_assert_int_eq(fclose(file), 0);
+}
+
+static ethd_status load(const char *folder, ethd_config **out) {
+  char path[256];
+  snprintf(path, sizeof path, "%s/c.ini", folder);
+  return ethd_config_load(path, out, message);
+}
+
+START_TEST(test_scene_file) {
+  char folder[] = "/tmp/ethd-config-XXXXXX", says[512], command[64];
+  ethd_config *c;
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  write_text(folder, "c.ini", "[scene]\nfile = s.scene\n");
+  write_text(folder, "s.scene", "halfplane -1 0 -0.238\ncircle 0 0 0.1\n");
+  ck_assert_msg(load(folder, &c) == ETHD_OK, "%s", message);
+  ethd_scene_info info;
+  ethd_scene_describe(c->scene, &info);
+  ck_assert_uint_eq(info.objects, 2);
+  ck_assert_ptr_eq(c->setup.scene, c->scene);
+  ck_assert_str_eq(c->scene_text, "halfplane -1 0 -0.238\ncircle 0 0 0.1\n");
+  ethd_config_free(c);
+
+  write_text(folder, "s.scene", "halfplane -1 0 -0.238\ncircle 0 0\n");
+  ck_assert_int_lt(load(folder, &c), 0);
+  snprintf(says, sizeof says, "%s/s.scene:2: ", folder);
+  ck_assert_msg(strncmp(message, says, strlen(says)) == 0, "%s", message);
+
+  write_text(folder, "s.scene", "# soft\nmaterial soft c_e=2\nhalfplane -1 0 -0.238 material=soft\n");
+  ck_assert_int_lt(load(folder, &c), 0);
+  snprintf(says, sizeof says, "%s/s.scene:2: material.soft.c_e: an unknown name", folder);
+  ck_assert_str_eq(message, says);
+  write_text(folder, "c.ini", "[scene]\nfile = s.scene\n[contact]\nlaw = hunt-crossley\n");
+  ck_assert_msg(load(folder, &c) == ETHD_OK, "%s", message);
+  ethd_config_free(c);
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  ck_assert_int_eq(system(command), 0);
+}
+END_TEST
+
+/* ---- whatever comes ---- */
+
+START_TEST(test_mutations) {
+  static const char *const words[] = {"[contact]\n", "\n", "=", "inf", "nan", "-", "1e9", "law = spring\n", ";", "]",
+                                      "preset = paper\n", "[plugins]\nfile = /nowhere\n", "\t", "0x", " ", "[", "\r\n",
+                                      X50 X50 X50 X50, "method = kalman\n", "driver = ", "[device]\nq = 1\n", NULL};
+  char text[4096];
+  int accepted = 0;
+  for (uint64_t i = 0; i < 80000; i++) {
+    size_t n = mutate(everything, sizeof everything - 1, words, i, text, sizeof text);
+    ethd_config *c = NULL;
+    memset(message, 'x', sizeof message);
+    ethd_status status = ethd_config_parse(text, n, "x.ini", "/nowhere", &c, message);
+    accepted += status == ETHD_OK;
+    if (status == ETHD_OK) {
+      ethd_error error;
+      ck_assert_int_eq(ethd_setup_check(&c->setup, &error), ETHD_OK);
+      ethd_config_free(c);
+      continue;
+    }
+    ck_assert_ptr_null(c);
+    ck_assert_ptr_nonnull(memchr(message, 0, sizeof message));
+    ck_assert_msg(strncmp(message, "x.ini:", 6) == 0 && !strpbrk(message, "\n\r"), "%s", message);
+  }
+  ck_assert_int_gt(accepted, 100);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("config");
+  TCase *all = tcase_create("all");
+  tcase_set_timeout(all, 60);
+  tcase_add_test(all, test_defaults);
+  tcase_add_test(all, test_every_key);
+  tcase_add_test(all, test_order_never_matters);
+  tcase_add_test(all, test_preset);
+  tcase_add_test(all, test_comments_and_spaces);
+  tcase_add_test(all, test_transition);
+  tcase_add_test(all, test_set);
+  tcase_add_test(all, test_bad_texts);
+  tcase_add_test(all, test_too_many_keys);
+  tcase_add_test(all, test_scene_file);
+  tcase_add_test(all, test_mutations);
+  suite_add_tcase(suite, all);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}

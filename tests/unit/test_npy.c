@@ -1,0 +1,224 @@
+/* NumPy files: laid out as the format says, readable while they grow, strict when read. */
+#include <check.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "ethd/record.h"
+#include "file/npy_parts.h"
+#include "mutate.h"
+
+typedef struct row {
+  int64_t n;
+  double x[16], y;
+} row;
+
+static const ethd_column columns[] = {{"n", "1", 1, 0, 'i'},
+                                      {"x", "m", 16, 8, 'f'},
+                                      {"y", "m", 1, 136, 'f'},
+                                      {NULL, NULL, 0, 0, 0}};
+static const char dict[] =
+    "{'descr': [('n', '<i8'), ('x', '<f8', (16,)), ('y', '<f8')], 'fortran_order': False, 'shape': (";
+
+static char message[ETHD_MESSAGE_MAX];
+static char path[] = "/tmp/ethd-npy-XXXXXX";
+
+static void set_up(void) {
+  int fd = mkstemp(path);
+  ck_assert_int_ge(fd, 0);
+  close(fd);
+}
+
+static void tear_down(void) {
+  unlink(path);
+  strcpy(path, "/tmp/ethd-npy-XXXXXX");
+}
+
+static row row_at(int64_t i) {
+  row r = {.n = i, .y = (double)i / 3};
+  for (int k = 0; k < 16; k++) r.x[k] = (double)i + k * 0.0625;
+  return r;
+}
+
+static void write_rows(ethd_npy *npy, int64_t from, int64_t to) {
+  for (int64_t i = from; i < to; i++) {
+    row r = row_at(i);
+    ck_assert_int_eq(ethd_npy_append(npy, &r, 1), ETHD_OK);
+  }
+}
+
+static size_t read_file(char *out, size_t room) {
+  FILE *file = fopen(path, "rb");
+  ck_assert_ptr_nonnull(file);
+  size_t n = fread(out, 1, room, file);
+  fclose(file);
+  return n;
+}
+
+static void write_file(const char *bytes, size_t length) {
+  FILE *file = fopen(path, "wb");
+  ck_assert_ptr_nonnull(file);
+  ck_assert_uint_eq(fwrite(bytes, 1, length, file), length);
+  fclose(file);
+}
+
+/* The header byte by byte, from the format's own description. */
+START_TEST(test_layout) {
+  ethd_npy *npy;
+  static char file[16384];
+  ck_assert_int_eq(ethd_npy_create(path, columns, sizeof(row), &npy, message), ETHD_OK);
+  write_rows(npy, 0, 5);
+  ck_assert_int_eq(ethd_npy_close(npy), ETHD_OK);
+  size_t n = read_file(file, sizeof file);
+  ck_assert(memcmp(file, "\x93NUMPY\x01\x00", 8) == 0);
+  size_t header = (unsigned char)file[8] + 256u * (unsigned char)file[9];
+  ck_assert_uint_eq((10 + header) % 64, 0);
+  ck_assert_uint_eq(n, 10 + header + 5 * sizeof(row));
+  ck_assert(memcmp(file + 10, dict, sizeof dict - 1) == 0);
+  ck_assert(memcmp(file + 10 + sizeof dict - 1, "5,), }", 6) == 0);
+  for (const char *p = file + 10 + sizeof dict - 1 + 6; p < file + 9 + header; p++) ck_assert_int_eq(*p, ' ');
+  ck_assert_int_eq(file[9 + header], '\n');
+  ck_assert_uint_ge(header - (sizeof dict - 1), 6 + 19 + 1); /* room for any count */
+  for (int i = 0; i < 5; i++) {
+    row r = row_at(i);
+    ck_assert(memcmp(file + 10 + header + (size_t)i * sizeof r, &r, sizeof r) == 0);
+  }
+}
+END_TEST
+
+START_TEST(test_readable_while_it_grows) {
+  ethd_npy *npy;
+  void *rows;
+  size_t count;
+  ck_assert_int_eq(ethd_npy_create(path, columns, sizeof(row), &npy, message), ETHD_OK);
+  ck_assert_int_eq(ethd_npy_read(path, columns, sizeof(row), &rows, &count, message), ETHD_OK);
+  ck_assert_uint_eq(count, 0);
+  free(rows);
+  for (int64_t n = 1; n < 3000; n *= 3) {
+    write_rows(npy, n / 3, n);
+    ck_assert_int_eq(ethd_npy_flush(npy), ETHD_OK);
+    ck_assert_int_eq(ethd_npy_read(path, columns, sizeof(row), &rows, &count, message), ETHD_OK);
+    ck_assert_uint_eq(count, (size_t)n);
+    for (int64_t i = 0; i < n; i++) {
+      row r = row_at(i);
+      ck_assert(memcmp((row *)rows + i, &r, sizeof r) == 0);
+    }
+    free(rows);
+  }
+  ck_assert_int_eq(ethd_npy_close(npy), ETHD_OK);
+}
+END_TEST
+
+static void check_refused(const char *bytes, size_t length, const char *says) {
+  void *rows;
+  size_t count;
+  char expected[ETHD_MESSAGE_MAX];
+  write_file(bytes, length);
+  snprintf(expected, sizeof expected, "%s: %s", path, says);
+  ck_assert_int_lt(ethd_npy_read(path, columns, sizeof(row), &rows, &count, message), 0);
+  ck_assert_ptr_null(rows);
+  ck_assert_str_eq(message, expected);
+}
+
+START_TEST(test_bad_files) {
+  static char file[16384], bad[16384];
+  ethd_npy *npy;
+  ck_assert_int_eq(ethd_npy_create(path, columns, sizeof(row), &npy, message), ETHD_OK);
+  write_rows(npy, 0, 5);
+  ck_assert_int_eq(ethd_npy_close(npy), ETHD_OK);
+  size_t n = read_file(file, sizeof file);
+  char *shape = strstr(file + 10, "5,), }");
+  check_refused(file, n - 1, "cut short: 4 rows of 5 are there");
+  check_refused(file, 100, "cut short within its header");
+  check_refused(file, 9, "no NumPy file of version 1.0");
+  check_refused("", 0, "no NumPy file of version 1.0");
+  memcpy(bad, file, n);
+  bad[6] = 2;
+  check_refused(bad, n, "no NumPy file of version 1.0");
+  memcpy(bad, file, n);
+  memcpy(strstr(bad + 10, "<f8"), "<f4", 3);
+  check_refused(bad, n, "other columns than those of this version of libethd");
+  memcpy(bad, file, n);
+  memcpy(bad + (shape - file), "5, 1)", 5);
+  check_refused(bad, n, "its header's shape isn't one count of rows");
+  memcpy(bad, file, n);
+  memcpy(bad + (shape - file), "999999999999999999,), }", 23);
+  check_refused(bad, n, "cut short: 5 rows of 999999999999999999 are there");
+}
+END_TEST
+
+START_TEST(test_bad_columns) {
+  static const ethd_column gap[] = {{"n", "1", 1, 0, 'i'}, {"y", "m", 1, 136, 'f'}, {NULL, NULL, 0, 0, 0}};
+  ethd_npy *npy;
+  ck_assert_int_eq(ethd_npy_create(path, gap, sizeof(row), &npy, message), ETHD_E_ARGUMENT);
+  ck_assert_ptr_null(npy);
+  ck_assert_int_eq(ethd_npy_create("/nowhere/x.npy", columns, sizeof(row), &npy, message), ETHD_E_FILE);
+  ck_assert_str_eq(message, "/nowhere/x.npy: No such file or directory");
+}
+END_TEST
+
+START_TEST(test_full_disk) {
+  ethd_npy *npy;
+  ethd_status status = ethd_npy_create("/dev/full", columns, sizeof(row), &npy, message);
+  ck_assert_int_eq(status, ETHD_E_FILE);
+}
+END_TEST
+
+/* A trace's columns cover it without a gap, in the order of its fields. */
+START_TEST(test_trace_columns) {
+  size_t at = 0, count = 0;
+  for (const ethd_column *c = ethd_trace_columns; c->name; c++, count++) {
+    ck_assert_uint_eq(c->offset, at);
+    at += c->count * (size_t)8;
+    for (const ethd_column *other = ethd_trace_columns; other < c; other++) ck_assert_str_ne(other->name, c->name);
+  }
+  ck_assert_uint_eq(at, sizeof(ethd_trace));
+  ck_assert_str_eq(ethd_trace_columns[0].name, "time_ns");
+  ck_assert_str_eq(ethd_trace_columns[count - 1].name, "tau");
+  ck_assert_uint_eq(ethd_trace_columns[count - 1].offset, offsetof(ethd_trace, tau));
+}
+END_TEST
+
+START_TEST(test_mutations) {
+  static const char *const words[] = {"9", "0", ",", "(", "'", "\n", " ", "\x93NUMPY", "}", NULL};
+  static char file[4096], text[8192];
+  ethd_npy *npy;
+  int accepted = 0;
+  ck_assert_int_eq(ethd_npy_create(path, columns, sizeof(row), &npy, message), ETHD_OK);
+  write_rows(npy, 0, 2);
+  ck_assert_int_eq(ethd_npy_close(npy), ETHD_OK);
+  size_t length = read_file(file, sizeof file);
+  for (uint64_t i = 0; i < 100000; i++) {
+    size_t data, count, n = mutate(file, length, words, i, text, sizeof text);
+    ethd_status status = ethd__npy_parse(text, n, "x.npy", columns, sizeof(row), &data, &count, message);
+    accepted += status == ETHD_OK;
+    if (status == ETHD_OK)
+      ck_assert(data + count * sizeof(row) <= n);
+    else
+      ck_assert_msg(strncmp(message, "x.npy: ", 7) == 0 && !strpbrk(message, "\n\r"), "%s", message);
+  }
+  ck_assert_int_gt(accepted, 100);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("npy");
+  TCase *all = tcase_create("all");
+  tcase_set_timeout(all, 60);
+  tcase_add_checked_fixture(all, set_up, tear_down);
+  tcase_add_test(all, test_layout);
+  tcase_add_test(all, test_readable_while_it_grows);
+  tcase_add_test(all, test_bad_files);
+  tcase_add_test(all, test_bad_columns);
+  tcase_add_test(all, test_full_disk);
+  tcase_add_test(all, test_trace_columns);
+  tcase_add_test(all, test_mutations);
+  suite_add_tcase(suite, all);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
