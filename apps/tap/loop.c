@@ -33,10 +33,10 @@ static void tick(ethd_sim *sim, ethd_control *control, ethd_trace *trace, ethd_t
 
 static size_t ticks(double seconds, double period) { return (size_t)floor(seconds / period + 0.5); }
 
-ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap, double period,
-                          ethd__rows *rows) {
-  size_t last = ticks(ethd_path_end(&tap->path) + ETHD_TAP_LOST, period);
-  bool met = false;
+ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
+                          const ethd__rule *rule, ethd__rows *rows) {
+  size_t last = ticks(ethd_path_end(&tap->path) + ETHD_TAP_LOST, rule->period);
+  ethd__approach approach = {0};
   rows->count = 0;
   ethd_control_reset(control);
   ethd_status status = ethd_sim_start(sim, tap);
@@ -44,11 +44,10 @@ ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_t
     status = make_room(rows);
     if (status) break;
     ethd_trace *trace = &rows->trace[rows->count];
-    tick(sim, control, trace, &rows->truth[rows->count]);
-    if (!met && trace->d_re < 0) {
-      met = true;
-      last = rows->count + ticks(ETHD_TAP_AFTER, period);
-    }
+    ethd_truth *truth = &rows->truth[rows->count];
+    tick(sim, control, trace, truth);
+    if (ethd__approach_step(&approach, rule, trace, truth))
+      last = rows->count + ticks(ETHD_TAP_AFTER, rule->period);
     rows->count++;
   }
   return status;

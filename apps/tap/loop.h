@@ -11,7 +11,7 @@
    first at time 0. ETHD_E_MEMORY, or what ethd_sim_start says; faults of the controller stand in the rows
    and end nothing. */
 ETHD_MUST_CHECK ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
-                                          double period, ethd__rows *rows);
+                                          const ethd__rule *rule, ethd__rows *rows);
 
 void ethd__rows_free(ethd__rows *rows);
 

@@ -15,10 +15,34 @@ static double speed_at(const ethd__rows *rows, const ethd__rule *rule, size_t i)
   return along(rule->n, rule->side ? truth->motor_v : truth->ring_v);
 }
 
-size_t ethd__metrics_meeting(const ethd__rows *rows) {
+static bool clear(const ethd__rule *rule, const ethd_trace *trace, const ethd_truth *truth) {
+  bool ring = isnan(trace->d_re) || trace->d_re > rule->d_beta;
+  return ring && along(rule->n, truth->hand) < rule->meet - rule->d_beta;
+}
+
+bool ethd__approach_step(ethd__approach *approach, const ethd__rule *rule, const ethd_trace *trace,
+                         const ethd_truth *truth) {
+  size_t tick = approach->count++;
+  bool inside = trace->d_re < 0;
+  if (!approach->begun && ((tick == 0 && !inside) || clear(rule, trace, truth))) {
+    approach->begun = true;
+    approach->begin = tick;
+  }
+  if (!approach->begun || approach->met || !inside) return false;
+  return approach->met = true;
+}
+
+static size_t approach_of(const ethd__rows *rows, const ethd__rule *rule, size_t *begin) {
+  ethd__approach approach = {0};
   size_t i = 0;
-  while (i < rows->count && !(rows->trace[i].d_re < 0)) i++;
+  while (i < rows->count && !ethd__approach_step(&approach, rule, &rows->trace[i], &rows->truth[i])) i++;
+  *begin = approach.begun ? approach.begin : rows->count;
   return i;
+}
+
+size_t ethd__metrics_meeting(const ethd__rows *rows, const ethd__rule *rule) {
+  size_t begin;
+  return approach_of(rows, rule, &begin);
 }
 
 static size_t touch_from(const ethd__rows *rows, size_t i) {
@@ -73,19 +97,20 @@ static bool faulted(const ethd__rows *rows) {
   return false;
 }
 
-static ethd__reason judge(const ethd__rows *rows, const ethd__rule *rule, size_t meeting, size_t touch,
-                          double v_rvo) {
+static ethd__reason judge(const ethd__rows *rows, const ethd__rule *rule, size_t begin, size_t meeting,
+                          size_t touch, double v_rvo) {
   if (faulted(rows)) return ETHD_TAP_FAULT;
   if (rule->never_fast) return ETHD_TAP_TOO_SLOW;
   if (meeting == rows->count) return ETHD_TAP_NO_CONTACT;
-  if (touch_from(rows, 0) < meeting) return ETHD_TAP_EARLY_CONTACT;
+  if (touch_from(rows, begin) < meeting) return ETHD_TAP_EARLY_CONTACT;
   if (!(v_rvo >= rule->speed - rule->band)) return ETHD_TAP_TOO_SLOW;
   if (!(v_rvo <= rule->speed + rule->band)) return ETHD_TAP_TOO_FAST;
   return touch == rows->count ? ETHD_TAP_NO_CONTACT : ETHD_TAP_OK;
 }
 
 void ethd__metrics_of(const ethd__rows *rows, const ethd__rule *rule, ethd__metrics *out) {
-  size_t meeting = ethd__metrics_meeting(rows), touch = touch_from(rows, meeting);
+  size_t begin, meeting = approach_of(rows, rule, &begin);
+  size_t touch = touch_from(rows, meeting);
   *out = (ethd__metrics){.v_rvo = NAN, .v_of = NAN, .d_max = NAN, .v_rmin = NAN, .delta_s = NAN,
                          .eps = NAN, .t_rvo = NAN, .t_of = NAN, .peak_force = strongest(rows)};
   if (meeting < rows->count) {
@@ -99,5 +124,5 @@ void ethd__metrics_of(const ethd__rows *rows, const ethd__rule *rule, ethd__metr
     out->t_of = rows->truth[touch].t;
     out->v_rmin = slowest(rows, rule, touch);
   }
-  out->reason = judge(rows, rule, meeting, touch, out->v_rvo);
+  out->reason = judge(rows, rule, begin, meeting, touch, out->v_rvo);
 }

@@ -5,7 +5,10 @@
        x_e -|---------------------x---.-'-.---------
             |                  .-'         '._.-----     valley
             +--------------------------------------> t   t_of/r: first tick with the pad touching
-*/
+
+   t_r/vo is the first tick with the controller's d_re < 0. A recorded movement may start with the ring in
+   the wall: the tap then begins once the ring is clear of it again, and would be if it were centred on the
+   hand, both by more than d_beta. */
 #ifndef ETHD_TAP_METRICS_H
 #define ETHD_TAP_METRICS_H
 
@@ -29,8 +32,20 @@ typedef struct ethd__rule {
   double period;      /* s */
   int32_t side;       /* whose speed counts: 0 the ring's, 1 the motor side's */
   double speed, band; /* m/s: valid if the ring meets the wall at speed +- band */
+  double meet;        /* m: the ring's centre along n as it meets the wall */
+  double d_beta;      /* m */
   bool never_fast;    /* the recorded movement never was that fast: too slow */
 } ethd__rule;
+
+/* Looks for t_r/vo tick by tick: all zeros, then every tick in turn. */
+typedef struct ethd__approach {
+  size_t count, begin; /* ticks seen; where the tap begins, once it has */
+  bool begun, met;
+} ethd__approach;
+
+/* True at t_r/vo, once. */
+bool ethd__approach_step(ethd__approach *approach, const ethd__rule *rule, const ethd_trace *trace,
+                         const ethd_truth *truth);
 
 #define ETHD_TAP_REASONS(X)         \
   X(OK, "ok")                       \
@@ -63,7 +78,7 @@ typedef struct ethd__metrics {
 
 void ethd__metrics_of(const ethd__rows *rows, const ethd__rule *rule, ethd__metrics *out);
 
-/* The tick t_r/vo: the controller's d_re < 0 for the first time; rows->count if never. */
-size_t ethd__metrics_meeting(const ethd__rows *rows);
+/* The tick t_r/vo, rows->count if there is none. */
+size_t ethd__metrics_meeting(const ethd__rows *rows, const ethd__rule *rule);
 
 #endif

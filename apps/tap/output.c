@@ -154,10 +154,11 @@ static void trace_row(ethd_csv_out *csv, const ethd__stage *stage, double finger
   ethd_csv_row(csv);
 }
 
-ethd_status ethd__output_trace(const char *path, const ethd__stage *stage, const ethd_sim_tap *tap,
-                               char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__output_trace(const char *path, const ethd__stage *stage, const ethd__speed *speed,
+                               const ethd_sim_tap *tap, char message[ETHD_MESSAGE_MAX]) {
   const ethd__rows *rows = &stage->rows;
-  size_t meeting = ethd__metrics_meeting(rows);
+  const ethd__rule rule = ethd__stage_rule(stage, speed);
+  size_t meeting = ethd__metrics_meeting(rows, &rule);
   double t = meeting < rows->count ? rows->truth[meeting].t : NAN;
   ethd_csv_out *csv = ethd_csv_create(path, TRACE_HEADER, message);
   if (!csv) return ETHD_E_FILE;

@@ -41,6 +41,7 @@ ETHD_MUST_CHECK ethd_status ethd__output_close(ethd__output *output, char messag
 /* The ticks of the tap that stage ran last, for plots: depths are those of the ring's front, the finger's
    and the hand's along n, from the wall into it. */
 ETHD_MUST_CHECK ethd_status ethd__output_trace(const char *path, const ethd__stage *stage,
-                                               const ethd_sim_tap *tap, char message[ETHD_MESSAGE_MAX]);
+                                               const ethd__speed *speed, const ethd_sim_tap *tap,
+                                               char message[ETHD_MESSAGE_MAX]);
 
 #endif

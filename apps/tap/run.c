@@ -85,7 +85,7 @@ static ethd_status trace_cell(const ethd__plan *plan, const char *folder, const 
   if (!status) {
     status = ethd__stage_run(&stage, cell->speed, number, &result, message);
     if (!status) status = ethd__stage_draw(&stage, cell->speed, number, &tap);
-    if (!status) status = ethd__output_trace(path, &stage, &tap, message);
+    if (!status) status = ethd__output_trace(path, &stage, cell->speed, &tap, message);
     ethd__stage_close(&stage);
   }
   free(path);

@@ -130,6 +130,18 @@ ethd_status ethd__stage_draw(ethd__stage *stage, const ethd__speed *speed, uint6
   return count ? ETHD_OK : ETHD_E_UNREACHABLE;
 }
 
+ethd__rule ethd__stage_rule(const ethd__stage *stage, const ethd__speed *speed) {
+  const ethd__study *study = stage->study;
+  return (ethd__rule){.n = study->n,
+                      .period = stage->setup.period,
+                      .side = study->plant.metrics_side,
+                      .speed = speed->centre,
+                      .band = speed->band,
+                      .meet = ethd_vec_dot(study->n, study->meet),
+                      .d_beta = stage->setup.ring_radius - stage->setup.finger_radius_max,
+                      .never_fast = speed->touchdown.never_fast};
+}
+
 static void count_ticks(const ethd__rows *rows, ethd__result *out) {
   out->ticks = (uint32_t)rows->count;
   out->queried = 0;
@@ -138,17 +150,11 @@ static void count_ticks(const ethd__rows *rows, ethd__result *out) {
 
 ethd_status ethd__stage_run(ethd__stage *stage, const ethd__speed *speed, uint64_t tap, ethd__result *out,
                             char message[ETHD_MESSAGE_MAX]) {
-  const ethd__study *study = stage->study;
-  const ethd__rule rule = {.n = study->n,
-                           .period = stage->setup.period,
-                           .side = study->plant.metrics_side,
-                           .speed = speed->centre,
-                           .band = speed->band,
-                           .never_fast = speed->touchdown.never_fast};
+  const ethd__rule rule = ethd__stage_rule(stage, speed);
   ethd_sim_tap circumstances;
   ethd_status status = ethd__stage_draw(stage, speed, tap, &circumstances);
   if (!status)
-    status = ethd__tap_run(stage->sim, stage->control, &circumstances, stage->setup.period, &stage->rows);
+    status = ethd__tap_run(stage->sim, stage->control, &circumstances, &rule, &stage->rows);
   if (status)
     return ethd__say(message, status, "tap %llu at %s: %s", (unsigned long long)tap, speed->word,
                      ethd_status_sentence(status));

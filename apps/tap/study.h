@@ -58,6 +58,9 @@ void ethd__stage_close(ethd__stage *stage);
 ETHD_MUST_CHECK ethd_status ethd__stage_draw(ethd__stage *stage, const ethd__speed *speed, uint64_t tap,
                                              ethd_sim_tap *out);
 
+/* What taps on this stage at this speed are judged by. */
+ethd__rule ethd__stage_rule(const ethd__stage *stage, const ethd__speed *speed);
+
 typedef struct ethd__result {
   ethd__metrics metrics;
   double commanded;        /* m/s: what was drawn for this tap */
