@@ -23,38 +23,42 @@ static void collect(const ethd_fit *fit, const double r[ETHD_RAYS], ethd__points
   }
 }
 
-/* Radius (the mean distance where it is NaN) and residual over the rays used. */
-static void describe(const ethd__points *points, ethd_vec centre, double radius, ethd_finger *out) {
-  double d[ETHD_RAYS], sum = 0, square = 0;
-  uint32_t n = 0;
-  for (uint32_t i = 0; i < points->count; i++)
-    if (points->used >> points->ray[i] & 1) sum += d[n++] = ethd_vec_norm(ethd_vec_sub(points->p[i], centre));
-  if (isnan(radius)) radius = sum / n;
-  for (uint32_t i = 0; i < n; i++) square += (d[i] - radius) * (d[i] - radius);
+/* From e = |p - c|^2 - R_f^2, small wherever the finger is what it is said to be, so that the variance
+   keeps its digits. */
+static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec centre, ethd_finger *out) {
+  double square = fit->finger_radius * fit->finger_radius, n = 0, sum = 0, sum2 = 0;
+  for (uint32_t i = 0; i < points->count; i++) {
+    ethd_vec u = ethd_vec_sub(points->p[i], centre);
+    double e = ethd_vec_dot(u, u) - square;
+    if (!(points->used >> points->ray[i] & 1)) continue;
+    n += 1;
+    sum += e;
+    sum2 += e * e;
+  }
+  double mean = sum / n;
   out->centre = centre;
-  out->radius = radius;
-  out->residual = sqrt(square / n);
+  out->radius = sqrt(square + mean);
+  out->residual = sqrt(fmax(0, sum2 / n - mean * mean)) / (2 * out->radius);
   out->used = points->used;
   out->reserved = 0;
 }
 
-static int find(const ethd_fit *fit, ethd__points *points, ethd_vec *centre, double *radius) {
+static int find(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
   switch (fit->method) {
   case ETHD_FIT_VERTEX_MEAN: return ethd__fit_vertex_mean(points, centre);
   case ETHD_FIT_CENTROID: return ethd__fit_centroid(points, centre);
   case ETHD_FIT_ROBUST: return ethd__fit_robust(fit, points, centre);
-  default: return ethd__fit_kasa(points, centre, radius);
+  default: return ethd__fit_kasa(points, centre);
   }
 }
 
 ethd_status ethd_fit_step(const ethd_fit *fit, const double r[ETHD_RAYS], ethd_finger *out) {
   ethd__points points;
   ethd_vec centre;
-  double radius = (double)NAN;
   collect(fit, r, &points);
-  if (!find(fit, &points, &centre, &radius)) return ETHD_STALE;
+  if (!find(fit, &points, &centre)) return ETHD_STALE;
   if (!(ethd_vec_norm(centre) < fit->ring_radius)) return ETHD_STALE;
-  describe(&points, centre, radius, out);
+  describe(fit, &points, centre, out);
   return ETHD_OK;
 }
 

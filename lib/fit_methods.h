@@ -16,7 +16,7 @@ typedef struct ethd__points {
 } ethd__points;
 
 /* 0: the points don't determine a centre. robust sets points->used. [rt] */
-int ethd__fit_kasa(const ethd__points *points, ethd_vec *centre, double *radius) ETHD_RT;
+int ethd__fit_kasa(const ethd__points *points, ethd_vec *centre) ETHD_RT;
 int ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) ETHD_RT;
 int ethd__fit_vertex_mean(const ethd__points *points, ethd_vec *centre) ETHD_RT;
 int ethd__fit_centroid(const ethd__points *points, ethd_vec *centre) ETHD_RT;

@@ -38,8 +38,8 @@ typedef struct ethd_fit {
 
 typedef struct ethd_finger {
   ethd_vec centre;  /* relative to the ring's centre, m */
-  double radius;    /* m; mean distance of the vertices where the method has none of its own */
-  double residual;  /* rms of |p - c| - radius over the rays used, m */
+  double radius;    /* rms of |p - c| over the rays used, m: kasa's R */
+  double residual;  /* rms of (|p - c|^2 - radius^2) / (2 radius), which is |p - c| - radius nearly, m */
   uint32_t used;    /* bit k: ray k was used */
   uint32_t reserved;
 } ethd_finger;
