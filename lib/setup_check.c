@@ -23,10 +23,10 @@ ethd_status ethd_limits_check(const ethd_limits *limits, ethd_error *error) {
   TRY(ethd__check_number(error, "torque_rate", limits->torque_rate, 0, inf));
   TRY(ethd__check_number(error, "speed", limits->speed, 0, inf));
   TRY(ethd__check_number(error, "step_time", limits->step_time, 1e-9, inf));
+  TRY(ethd__check_number(error, "workspace", w[1], -inf, inf));
+  TRY(ethd__check_number(error, "workspace", w[3], -inf, inf));
   TRY(ethd__check_number(error, "workspace", w[0], -inf, w[1]));
-  TRY(ethd__check_number(error, "workspace", w[2], -inf, w[3]));
-  TRY(ethd__check_number(error, "workspace", w[1], w[0], inf));
-  return ethd__check_number(error, "workspace", w[3], w[2], inf);
+  return ethd__check_number(error, "workspace", w[2], -inf, w[3]);
 }
 
 static ethd_status check_geometry(const ethd_setup *s, ethd_error *error) {

@@ -267,6 +267,21 @@ START_TEST(test_thin_wall_remembers_its_side) {
 }
 END_TEST
 
+/* Behind it there is another wall; the thin one is the deeper. */
+START_TEST(test_thin_wall_is_the_deepest) {
+  rig r;
+  open_with(&r, "segment 0.238 0.1 0.238 0.4\nhalfplane -1 0 -0.218\n", &ethd_transition_smooth);
+  for (double x = 0.251; x > 0.22; x -= 0.005) {
+    motion m = at(x, 0.25, 0, 0);
+    const ethd_trace *t = rig_step(&r, &m);
+    ck_assert_int_eq(t->object, 0);
+    close_to(t->d_re, x - 0.25);
+  }
+  ck_assert_int_eq(r.trace.contacts, 2);
+  rig_close(&r);
+}
+END_TEST
+
 /* Begun on the left, it is a wall toward +x. */
 START_TEST(test_thin_wall_from_behind) {
   rig r;
@@ -360,6 +375,7 @@ int main(void) {
   tcase_add_test(t, test_contact_lives_out_of_reach);
   tcase_add_test(t, test_braking_that_ends_far_outside);
   tcase_add_test(t, test_thin_wall_remembers_its_side);
+  tcase_add_test(t, test_thin_wall_is_the_deepest);
   tcase_add_test(t, test_thin_wall_from_behind);
   tcase_add_test(t, test_thin_wall_and_a_finger_behind_it);
   tcase_add_test(t, test_thin_wall_round_an_end);
