@@ -50,11 +50,6 @@ static void say_velocity(const ethd__bounds *b) {
   if (b->delay) printf(" and %d tick%s of delay", b->delay, b->delay > 1 ? "s" : "");
 }
 
-/* Small gains: the hold and the delay turn K into a damping of -K T (n + 1/2). */
-static double damping_needed(const ethd__bounds *b, double stiffness) {
-  return stiffness * b->config->setup.period * (b->delay + 0.5);
-}
-
 static void say_largest(const ethd_loop *loop, const gains *g) {
   if (g->stiffness > 0) printf("; largest %s %.5g N/m", g->stiffness_name, ethd__loop_stiffness_max(loop));
   if (g->damping > 0) printf("; largest %s %.5g Ns/m", g->damping_name, ethd__loop_damping_max(loop));
@@ -75,7 +70,7 @@ static int report_loop(const ethd__bounds *b, const gains *g, const axis *a) {
   bool known = !isnan(a->mass), stable = known ? ethd__loop_stable(&loop) : least < (double)INFINITY;
   if (least == (double)INFINITY)
     printf(" is unstable at any mass without friction: over %.3g Ns/m of damping make up for the hold",
-           damping_needed(b, g->stiffness));
+           ethd__loop_damping_needed(&loop));
   else if (stable)
     printf(" is stable from %.3g kg on", least);
   else

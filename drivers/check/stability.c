@@ -159,8 +159,13 @@ static double bisect(ethd_loop *loop, double *value, double stable, double unsta
 
 static double grid(int i) { return exp(i * log(10) / STEPS_PER_DECADE); }
 
+/* At a large mass all is slow, and hold and delay take K T (n + 1/2) off the damping, whatever the
+   estimator. */
+double ethd__loop_damping_needed(const ethd_loop *l) { return l->stiffness * l->period * (l->delay + 0.5); }
+
 double ethd__loop_mass_min(const ethd_loop *loop) {
   ethd_loop l = *loop;
+  if (l.damping < ethd__loop_damping_needed(&l)) return (double)INFINITY;
   for (int i = 4 * STEPS_PER_DECADE; i >= -7 * STEPS_PER_DECADE; i--) {
     l.mass = grid(i);
     if (ethd__loop_stable(&l)) continue;

@@ -33,6 +33,9 @@ typedef struct ethd_loop {
 double ethd__loop_radius(const ethd_loop *loop);
 bool ethd__loop_stable(const ethd_loop *loop);
 
+/* Less than K T (n + 1/2) is unstable however large the mass is, Ns/m. */
+double ethd__loop_damping_needed(const ethd_loop *loop);
+
 /* The smallest mass from which on the gains are stable; INFINITY: at none up to 1e4 kg. */
 double ethd__loop_mass_min(const ethd_loop *loop);
 

@@ -1,0 +1,300 @@
+/* Recordings: a folder that replays bit for bit, and says where it doesn't. */
+#include <check.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "common/denormals.h"
+#include "draw.h"
+#include "ethd/record.h"
+#include "file/recording_parts.h"
+#include "file/text.h"
+
+#define CONFIG                                                                                        \
+  "# a wall\n[scene]\nfile = walls.scene ; the left one\n[transition]\nb_d = 70\n[limits]\nspeed = 5\n" \
+  "[velocity]\nmethod = kalman"
+
+static char message[ETHD_MESSAGE_MAX];
+static char folder[] = "/tmp/ethd-recording-XXXXXX", recording_folder[64];
+static ethd_config *config;
+
+static void write_text(const char *where, const char *name, const char *text) {
+  char path[256];
+  snprintf(path, sizeof path, "%s/%s", where, name);
+  ck_assert_msg(ethd_text_write(path, text, strlen(text), message) == ETHD_OK, "%s", message);
+}
+
+static void set_up(void) {
+  char path[128];
+  (void)ethd__denormals_flush();
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/c.ini", folder);
+  snprintf(recording_folder, sizeof recording_folder, "%s/rec", folder);
+  write_text(folder, "walls.scene", "halfplane -1 0 -0.238\n");
+  write_text(folder, "c.ini", CONFIG);
+  ck_assert_msg(ethd_config_load(path, &config, message) == ETHD_OK, "%s", message);
+}
+
+static void tear_down(void) {
+  char command[64];
+  ethd_config_free(config);
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  ck_assert_int_eq(system(command), 0);
+  strcpy(folder, "/tmp/ethd-recording-XXXXXX");
+}
+
+/* ---- a program that records ---- */
+
+typedef struct program {
+  ethd_recording *recording;
+  ethd_setup setup;
+  ethd_control *control;
+  int64_t tick;
+} program;
+
+static void event(program *p, const char *kind, const char *detail) {
+  ck_assert_int_eq(ethd_recording_event(p->recording, kind, detail), ETHD_OK);
+}
+
+static void create(program *p) {
+  ethd_error error;
+  ethd_control_destroy(p->control);
+  ck_assert_int_eq(ethd_control_create(&p->setup, &p->control, &error), ETHD_OK);
+}
+
+static void post(program *p) {
+  ethd_error error;
+  ck_assert_int_eq(ethd_control_post(p->control, &p->setup, &error), ETHD_OK);
+}
+
+/* Ring and finger swing into the wall at x = 0.238 and out again. */
+static void run(program *p, int ticks) {
+  for (int i = 0; i < ticks; i++, p->tick++) {
+    double t = 0.001 * (double)p->tick, x = 0.256 + 0.01 * cos(40 * t), y = 0.25 + 0.004 * sin(13 * t);
+    ethd_sense sense;
+    ethd_command command;
+    ethd_trace trace;
+    ethd_event e;
+    memset(&sense, 0, sizeof sense);
+    sense.time_ns = p->tick * 1000000;
+    sense.have = ETHD_HAVE_FINGER;
+    ck_assert_int_eq(ethd_arm_angles(&p->setup.arm, (ethd_vec){x, y}, -1, sense.q), ETHD_OK);
+    sense.finger[0] = x - 0.003 + 1e-4 * draw_normal((uint64_t)p->tick);
+    sense.finger[1] = y;
+    sense.finger_v[0] = -0.4 * sin(40 * t);
+    memset(&trace, 0xff, sizeof trace);
+    (void)ethd_control_step(p->control, &sense, &command, &trace);
+    while (ethd_control_poll(p->control, &e) == ETHD_OK) continue;
+    ck_assert_int_eq(ethd_recording_tick(p->recording, &trace), ETHD_OK);
+  }
+}
+
+static void record(void) {
+  program p = {.setup = config->setup};
+  ck_assert_msg(ethd_recording_create(recording_folder, config, &p.recording, message) == ETHD_OK, "%s", message);
+  create(&p);
+  run(&p, 100);
+  event(&p, "start", "tap 1, \"again\"");
+  create(&p);
+  run(&p, 100);
+  event(&p, "transition", "smooth");
+  ck_assert_int_eq(ethd_config_transition(config, "smooth", &p.setup, message), ETHD_OK);
+  post(&p);
+  run(&p, 50);
+  event(&p, "set", "contact.k_e 2000");
+  event(&p, "set", "contact.b_e 30");
+  ck_assert_int_eq(ethd_config_set(config, "contact.k_e", "2000", &p.setup, message), ETHD_OK);
+  ck_assert_int_eq(ethd_config_set(config, "contact.b_e", "30", &p.setup, message), ETHD_OK);
+  post(&p);
+  run(&p, 50);
+  event(&p, "transition", "offset"); /* b_d was dropped by smooth */
+  ck_assert_int_eq(ethd_config_transition(config, "offset", &p.setup, message), ETHD_OK);
+  post(&p);
+  run(&p, 100);
+  event(&p, "setup", "offset"); /* the configuration's: b_d = 70, k_e = 2500 */
+  event(&p, "set", "limits.torque 0.5");
+  p.setup = config->setup;
+  ck_assert_int_eq(ethd_config_set(config, "limits.torque", "0.5", &p.setup, message), ETHD_OK);
+  create(&p);
+  run(&p, 200);
+  event(&p, "set", "limits.speed 0.01"); /* a fault: stops, latched */
+  ck_assert_int_eq(ethd_config_set(config, "limits.speed", "0.01", &p.setup, message), ETHD_OK);
+  post(&p);
+  run(&p, 20);
+  event(&p, "fault", "the ring is too fast");
+  run(&p, 20);
+  event(&p, "set", "limits.speed 5");
+  event(&p, "clear", "");
+  ck_assert_int_eq(ethd_config_set(config, "limits.speed", "5", &p.setup, message), ETHD_OK);
+  post(&p);
+  ethd_control_clear(p.control);
+  run(&p, 60);
+  ck_assert_int_eq(ethd_recording_close(p.recording), ETHD_OK);
+  ethd_control_destroy(p.control);
+}
+
+/* ---- tests ---- */
+
+START_TEST(test_replays_to_the_bit) {
+  char says[256];
+  record();
+  ck_assert_msg(ethd_recording_verify(recording_folder, message) == ETHD_OK, "%s", message);
+  snprintf(says, sizeof says, "%s: 700 ticks, equal to the bit", recording_folder);
+  ck_assert_str_eq(message, says);
+}
+END_TEST
+
+static char *read_text(const char *name) {
+  char path[256], *text;
+  size_t length;
+  snprintf(path, sizeof path, "%s/%s", recording_folder, name);
+  ck_assert_msg(ethd_text_read(path, 1000000, &text, &length, message) == ETHD_OK, "%s", message);
+  return text;
+}
+
+START_TEST(test_files) {
+  record();
+  char *text = read_text("config.ini");
+  ck_assert_str_eq(text, "# a wall\n[scene]\nfile = scene.scene\n[transition]\nb_d = 70\n[limits]\nspeed = 5\n"
+                         "[velocity]\nmethod = kalman\n");
+  free(text);
+  text = read_text("scene.scene");
+  ck_assert_str_eq(text, "halfplane -1 0 -0.238\n");
+  free(text);
+  text = read_text("events.csv");
+  ck_assert_str_eq(text, "row,kind,detail\n100,start,\"tap 1, \"\"again\"\"\"\n200,transition,smooth\n"
+                         "250,set,contact.k_e 2000\n250,set,contact.b_e 30\n300,transition,offset\n"
+                         "400,setup,offset\n400,set,limits.torque 0.5\n600,set,limits.speed 0.01\n"
+                         "620,fault,the ring is too fast\n640,set,limits.speed 5\n640,clear,\n");
+  free(text);
+}
+END_TEST
+
+/* Row, field and index of a number that was changed. */
+static void flip(size_t row, size_t offset, unsigned char mask) {
+  char path[128];
+  snprintf(path, sizeof path, "%s/tick.npy", recording_folder);
+  FILE *file = fopen(path, "r+b");
+  ck_assert_ptr_nonnull(file);
+  unsigned char head[10], byte;
+  ck_assert_uint_eq(fread(head, 1, 10, file), 10);
+  long at = 10 + head[8] + 256 * head[9] + (long)(row * sizeof(ethd_trace) + offset);
+  ck_assert(fseek(file, at, SEEK_SET) == 0 && fread(&byte, 1, 1, file) == 1);
+  byte ^= mask;
+  ck_assert(fseek(file, at, SEEK_SET) == 0 && fwrite(&byte, 1, 1, file) == 1 && fclose(file) == 0);
+}
+
+START_TEST(test_says_what_differs) {
+  static const struct {
+    size_t row, offset;
+    const char *says;
+  } changes[] = {{350, offsetof(ethd_trace, tau) + 8, "tick 350: tau[1]: recorded "},
+                 {120, offsetof(ethd_trace, beta), "tick 120: beta: recorded "},
+                 {0, offsetof(ethd_trace, state), "tick 0: state: recorded 1, replayed 0"},
+                 {699, offsetof(ethd_trace, v), "tick 699: v[0]: recorded "}};
+  char says[256];
+  record();
+  for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+    flip(changes[i].row, changes[i].offset, 1);
+    ck_assert_int_eq(ethd_recording_verify(recording_folder, message), ETHD_E_RANGE);
+    snprintf(says, sizeof says, "%s: %s", recording_folder, changes[i].says);
+    ck_assert_msg(strncmp(message, says, strlen(says)) == 0, "%s", message);
+    flip(changes[i].row, changes[i].offset, 1);
+  }
+  ck_assert_int_eq(ethd_recording_verify(recording_folder, message), ETHD_OK);
+}
+END_TEST
+
+/* Each event matters: without it, or a row late, the replay differs. */
+START_TEST(test_events_matter) {
+  static const char *const changes[][2] = {
+      {"100,start,", "101,start,"},          {"200,transition,smooth", "200,fault,smooth"},
+      {"250,set,contact.k_e 2000", "250,set,contact.k_e 2001"}, {"400,setup,offset", "400,setup,smooth"},
+      {"300,transition,offset", "301,transition,offset"}, {"400,set,limits.torque 0.5", "400,fault,"},
+      {"640,clear,", "640,fault,"}};
+  record();
+  char *text = read_text("events.csv");
+  for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+    char changed[2048];
+    char *at = strstr(text, changes[i][0]);
+    ck_assert_ptr_nonnull(at);
+    snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, changes[i][1], at + strlen(changes[i][0]));
+    write_text(recording_folder, "events.csv", changed);
+    ck_assert_msg(ethd_recording_verify(recording_folder, message) < 0, "%s passed", changes[i][1]);
+  }
+  free(text);
+}
+END_TEST
+
+START_TEST(test_bad_events) {
+  static const char *const bads[][2] = {
+      {"", "events.csv:1: the first line must be row,kind,detail"},
+      {"row,kind\n", "events.csv:1: the first line must be row,kind,detail"},
+      {"row,kind,detail\n5,start\n", "events.csv:2: no row,kind,detail"},
+      {"row,kind,detail\nx,start,\n", "events.csv:2: no row,kind,detail"},
+      {"row,kind,detail\n-1,start,\n", "events.csv:2: no row,kind,detail"},
+      {"row,kind,detail\n5,start,\n4,start,\n", "events.csv:3: row: found 4, 5 or more is allowed"},
+      {"row,kind,detail\n5,begin,\n", "events.csv:2: begin: an unknown kind of event; setup, "},
+      {"row,kind,detail\n5,set,contact.k_e\n", "events.csv:2: set: section.key value is allowed"},
+      {"row,kind,detail\n5,set,contact.k_e -1\n", "events.csv:2: set: contact.k_e: found -1, 0 to 1000000 N/m"},
+      {"row,kind,detail\n5,transition,odd\n", "events.csv:2: transition: transition.law: found \"odd\", abrupt"}};
+  char says[256];
+  record();
+  for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {
+    write_text(recording_folder, "events.csv", bads[i][0]);
+    ck_assert_int_lt(ethd_recording_verify(recording_folder, message), 0);
+    snprintf(says, sizeof says, "%s/%s", recording_folder, bads[i][1]);
+    ck_assert_msg(strncmp(message, says, strlen(says)) == 0, "%s\nsays %s", bads[i][0], message);
+  }
+}
+END_TEST
+
+START_TEST(test_missing_files) {
+  static const char *const names[] = {"config.ini", "tick.npy", "events.csv", "scene.scene"};
+  char from[128], to[128];
+  ck_assert_int_lt(ethd_recording_verify(recording_folder, message), 0);
+  record();
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    snprintf(from, sizeof from, "%s/%s", recording_folder, names[i]);
+    snprintf(to, sizeof to, "%s/hidden", folder);
+    ck_assert_int_eq(rename(from, to), 0);
+    ck_assert_int_lt(ethd_recording_verify(recording_folder, message), 0);
+    ck_assert_msg(strstr(message, names[i]) && strstr(message, "No such file"), "%s", message);
+    ck_assert_int_eq(rename(to, from), 0);
+  }
+}
+END_TEST
+
+START_TEST(test_no_place) {
+  ethd_recording *recording;
+  char path[128];
+  snprintf(path, sizeof path, "%s/c.ini", folder);
+  ck_assert_int_eq(ethd_recording_create(path, config, &recording, message), ETHD_E_FILE);
+  ck_assert_ptr_null(recording);
+  ck_assert_int_eq(ethd_recording_create("/nowhere/rec", config, &recording, message), ETHD_E_FILE);
+  ck_assert_str_eq(message, "/nowhere/rec: No such file or directory");
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("recording");
+  TCase *all = tcase_create("all");
+  tcase_set_timeout(all, 60);
+  tcase_add_checked_fixture(all, set_up, tear_down);
+  tcase_add_test(all, test_replays_to_the_bit);
+  tcase_add_test(all, test_files);
+  tcase_add_test(all, test_says_what_differs);
+  tcase_add_test(all, test_events_matter);
+  tcase_add_test(all, test_bad_events);
+  tcase_add_test(all, test_missing_files);
+  tcase_add_test(all, test_no_place);
+  suite_add_tcase(suite, all);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}

@@ -1,0 +1,151 @@
+/* The spectral radius of the sampled loop against the closed forms, and against the estimators themselves
+   in a loop that is stepped through. */
+#include <check.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check/stability.h"
+
+#define M 0.3
+#define T 0.001
+#define LINK 0.25
+
+static ethd_loop loop_of(ethd_velocity_method method, double stiffness, double damping) {
+  ethd_loop l = {.mass = M, .period = T, .stiffness = stiffness, .damping = damping, .method = method, .link = LINK};
+  const ethd_method *m = &ethd_velocity_methods[method];
+  ethd_params_default(m->params, m->param_count, l.p);
+  return l;
+}
+
+static void check_near(double value, double expected, double share, const char *what) {
+  ck_assert_msg(fabs(value - expected) <= share * fabs(expected), "%s: %.10g, not %.10g", what, value, expected);
+}
+
+/* The curve's own points: a gain over it is unstable, under it stable, within 0.5 %. */
+START_TEST(test_boundary) {
+  for (int n = 0; n <= 4; n++)
+    for (int i = 1; i < 16; i++) {
+      double th = M_PI / (2 * (n + 1)) * i / 16, t = tan(th / 2), k, b;
+      ethd__loop_boundary(M, T, n, th, &k, &b);
+      check_near(k * T * T / M, 4 * t * t * cos((n + 1) * th), 1e-12, "K of the page");
+      check_near(b * T / M, 2 * t * sin((n + 1) * th) - k * T * T / (2 * M), 1e-12, "B of the page");
+      ethd_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, k, b);
+      l.delay = n;
+      check_near(ethd__loop_radius(&l), 1, 1e-6, "radius on the curve");
+      check_near(ethd__loop_stiffness_max(&l), k, 5e-3, "largest K");
+      if (i >= 4) check_near(ethd__loop_mass_min(&l), M, 5e-3, "smallest mass"); /* below it hardly matters */
+    }
+}
+END_TEST
+
+/* Largest K of the page: 0.686, 0.1445, 0.0624 m/T^2; largest B of a free ring: 2, 0.828, 0.536 m/T. */
+START_TEST(test_published_numbers) {
+  static const double largest_k[] = {0.686, 0.1445, 0.0624}, largest_b[] = {2, 0.828, 0.536};
+  for (int n = 0; n < 3; n++) {
+    double most = 0;
+    for (int i = 1; i <= 1000; i++) {
+      double k, b;
+      ethd__loop_boundary(M, T, n, M_PI / (2 * (n + 1)) * i / 1000, &k, &b);
+      most = fmax(most, k);
+    }
+    check_near(most * T * T / M, largest_k[n], 2e-3, "largest K");
+    check_near(ethd__loop_damping_free(M, T, n), largest_b[n] * M / T, 1e-3, "largest B");
+    ethd_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, 0, 1);
+    l.delay = n;
+    check_near(ethd__loop_damping_max(&l), 2 * M / T * tan(M_PI / (4 * (n + 1))), 1e-3, "largest B of the loop");
+  }
+  ethd_loop l = loop_of(ETHD_VELOCITY_LSQ, 0, 100); /* a 15 ms window: unstable under 0.4 kg */
+  l.p[0] = 16;
+  check_near(ethd__loop_mass_min(&l), 0.4, 0.03, "smallest mass with a window of 15 ms");
+}
+END_TEST
+
+/* Small gains: K = B / (T (n + 1/2)), whatever the estimator. */
+START_TEST(test_small_gains) {
+  for (int method = 0; method < ETHD_VELOCITY_COUNT; method++)
+    for (int n = 0; n < 3; n++) {
+      ethd_loop l = loop_of((ethd_velocity_method)method, 1, 0.02);
+      l.delay = n;
+      check_near(ethd__loop_stiffness_max(&l), 0.02 / (T * (n + 0.5)), 0.02, ethd_velocity_methods[method].id);
+    }
+}
+END_TEST
+
+START_TEST(test_trivial_loops) {
+  ethd_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, 0, 0);
+  check_near(ethd__loop_radius(&l), 1, 1e-6, "a free mass");
+  l.stiffness = 1000;
+  ck_assert(!ethd__loop_stable(&l) && isinf(ethd__loop_mass_min(&l)));
+  check_near(ethd__loop_damping_needed(&l), 0.5, 1e-12, "damping that the hold takes");
+  l.damping = 45;
+  check_near(ethd__loop_passive_friction(&l), 45.5, 1e-12, "passivity");
+}
+END_TEST
+
+/* ---- the estimators themselves ---- */
+
+/* The growth of the motion over `ticks`, the estimator stepped as a controller steps it. */
+static double growth(const ethd_loop *l, int ticks) {
+  ethd_velocity velocity;
+  ethd_velocity_state state;
+  ethd_error error;
+  ck_assert_int_eq(ethd_velocity_prepare(l->method, l->p, l->period, &velocity, &error), ETHD_OK);
+  memset(&state, 0, sizeof state);
+  double x = 0, v = 0, torque = 0, way[ETHD_LOOP_DELAY_MAX] = {0}, before = 0, after = 0;
+  for (int k = 0; k < 3000 + ticks; k++) {
+    if (k == 2000) v = 1e-3; /* a Kalman filter's gains have settled */
+    double speed = LINK * ethd_velocity_step(&velocity, &state, x / LINK, torque, l->period);
+    double f = -l->stiffness * x - l->damping * speed, applied = l->delay ? way[k % l->delay] : f;
+    if (l->delay) way[k % l->delay] = f;
+    torque = f * LINK;
+    x += l->period * v + l->period * l->period / (2 * l->mass) * applied;
+    v += l->period / l->mass * applied;
+    double size = fabs(v) + fabs(l->stiffness * x) * l->period / l->mass;
+    if (k >= 2900 && k < 3000) before = fmax(before, size);
+    if (k >= 2900 + ticks) after = fmax(after, size);
+  }
+  return after / before;
+}
+
+/* Just over the largest stable damping the motion grows, just under it it dies. foaw stands at its longest
+   window only while samples lie on a line, so its loop is the least squares'. */
+START_TEST(test_estimators) {
+  static const ethd_velocity_method methods[] = {ETHD_VELOCITY_LOWPASS, ETHD_VELOCITY_DIFFERENCE, ETHD_VELOCITY_LSQ,
+                                                 ETHD_VELOCITY_KALMAN};
+  for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
+    for (int n = 0; n < 3; n++)
+      for (double k = 0; k < 3000; k += 1000) {
+        ethd_loop l = loop_of(methods[i], k, 10);
+        const char *id = ethd_velocity_methods[methods[i]].id;
+        if (methods[i] == ETHD_VELOCITY_KALMAN) l.p[2] = 0.8 * M * LINK * LINK; /* not quite the true inertia */
+        l.delay = n;
+        double largest = ethd__loop_damping_max(&l);
+        ck_assert_msg(largest > 0, "%s: no damping is stable", id);
+        l.damping = 1.01 * largest;
+        ck_assert_msg(growth(&l, 2000) > 1.5, "%s, %d ticks, K %g: %.6g dies", id, n, k, l.damping);
+        l.damping = 0.99 * largest;
+        ck_assert_msg(growth(&l, 2000) < 0.7, "%s, %d ticks, K %g: %.6g grows", id, n, k, l.damping);
+      }
+  ethd_loop foaw = loop_of(ETHD_VELOCITY_FOAW, 1000, 10), lsq = loop_of(ETHD_VELOCITY_LSQ, 1000, 10);
+  lsq.p[0] = foaw.p[0];
+  ck_assert(ethd__loop_radius(&foaw) == ethd__loop_radius(&lsq));
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("stability");
+  TCase *all = tcase_create("all");
+  tcase_set_timeout(all, 60);
+  tcase_add_test(all, test_boundary);
+  tcase_add_test(all, test_published_numbers);
+  tcase_add_test(all, test_small_gains);
+  tcase_add_test(all, test_trivial_loops);
+  tcase_add_test(all, test_estimators);
+  suite_add_tcase(suite, all);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
