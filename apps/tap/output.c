@@ -141,7 +141,7 @@ static void trace_row(ethd_csv_out *csv, const ethd__stage *stage, double finger
   ethd_csv_number(csv, depth(study, truth->ring, stage->setup.ring_radius));
   ethd_csv_number(csv, depth(study, truth->finger, finger_radius));
   ethd_csv_number(csv, depth(study, truth->hand, finger_radius));
-  ethd_csv_number(csv, trace->state == ETHD_VO ? trace->eps : NAN);
+  ethd_csv_number(csv, trace->eps != 0 ? trace->eps : NAN);
   ethd_csv_number(csv, along(study->n, study->plant.metrics_side ? truth->motor_v : truth->ring_v));
   ethd_csv_number(csv, along(study->n, truth->finger_v));
   ethd_csv_integer(csv, trace->state);

@@ -25,7 +25,7 @@ enum { COLUMNS = sizeof columns / sizeof *columns };
 static void print_figure(FILE *file, const ethd__figure *figure, double scale, int digits) {
   char sd[24] = "";
   if (!figure->n) {
-    fprintf(file, "  %15s", "-");
+    fprintf(file, "  %7s%-8s", "-", "");
     return;
   }
   if (figure->n > 1) snprintf(sd, sizeof sd, " (%.*f)", digits, scale * figure->sd);

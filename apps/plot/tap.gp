@@ -1,0 +1,90 @@
+# One tap, in the manner of the paper's figures 9 to 12.
+#   gnuplot -e "in='offset-high.csv'; out='offset-high.png'; title='offset, high speed'" tap.gp
+# in: a file of ethd-tap --trace. title, from, to (ms) may be left out; plant names the plant in the title.
+if (!exists("in") || !exists("out")) { print "tap.gp: set in and out: gnuplot -e \"in='x.csv'; out='x.png'\" tap.gp"; exit status 2 }
+if (!exists("title")) title = in
+if (!exists("plant")) plant = "n"
+if (!exists("from")) from = -40
+if (!exists("to")) to = 90
+
+set terminal pngcairo size 1200,1300 font "Sans,15" background "#ffffff"
+set output out
+set datafile separator comma
+set datafile columnheaders
+
+ring = "#c0392b"; finger = "#1f5fa8"; hand = "#9db7d5"; wall = "#333333"; moved = "#d98a00"; grey = "#7a7a7a"
+set style line 1 lc rgb ring lw 2.6
+set style line 2 lc rgb finger lw 2.6
+set style line 3 lc rgb hand lw 1.8 dt (10,6)
+set style line 4 lc rgb wall lw 1.8 dt (14,6)
+set style line 5 lc rgb moved lw 2.4 dt (6,4)
+set grid lc rgb "#e4e4e4" lt 1 lw 1
+set border 3 lc rgb grey
+set tics nomirror textcolor rgb "#333333" scale 0.6
+set xrange [from:to]
+set lmargin at screen 0.12
+set rmargin at screen 0.84
+set key at screen 0.85, graph 0.98 left top Left reverse samplen 1.6 spacing 1.25
+t(x) = 1e3*column("since_wall_s")
+
+# t_of/r: the first tick at or after t_r/vo with the pad pressing
+touch = NaN
+stats in using (column("since_wall_s") >= -1e-9 && column("pad_force_n") > 0 && touch != touch ? (touch = 1e3*column("since_wall_s")) : 0) nooutput
+stats [*:*] in using (t(0) >= from && t(0) <= to ? 1e3*column("ring_m") : NaN) nooutput name "R"
+top = R_max > 8 ? 10 : R_max + 2
+bottom = R_min < -14 ? -14 : R_min
+
+set multiplot
+set label 1 title.", one typical tap" at screen 0.12,0.972 font "Sans Bold,19"
+set label 2 "simulated; plant ".plant." is fitted to Table 1, not measured. Time from t_{r/vo}: the ring meets the wall." \
+  at screen 0.12,0.947 font "Sans,13" textcolor rgb grey
+marks = 'set arrow 1 from 0,graph 0 to 0,graph 1 nohead lc rgb "#aaaaaa" lw 1.4; if (touch == touch) {set arrow 2 from touch,graph 0 to touch,graph 1 nohead lc rgb finger lw 1.2 dt (2,3)}'
+eval(marks)
+
+# ---- positions ----
+set tmargin at screen 0.925
+set bmargin at screen 0.565
+set format x ""
+set ylabel "position along n, mm" offset 1.2
+set yrange [bottom:top]
+set object 1 rectangle from graph 0, first 0 to graph 1, graph 1 fc rgb "#f3f1ec" fs solid noborder behind
+set label 3 "virtual wall" at graph 0.012, first (top - 0.07*(top - bottom)) textcolor rgb grey font "Sans Italic,13"
+plot in using (t(0)):(1e3*column("hand_m")) with lines ls 3 title "hand's path", \
+     0 with lines ls 4 title "wall x_e", \
+     in using (t(0)):(1e3*column("offset_wall_m")) with lines ls 5 title "wall x_{/Symbol e}", \
+     in using (t(0)):(1e3*column("finger_m")) with lines ls 2 title "finger's pad", \
+     in using (t(0)):(1e3*column("ring_m")) with lines ls 1 title "ring's front"
+unset object 1
+unset label 1; unset label 2; unset label 3
+
+# ---- speed ----
+set tmargin at screen 0.545
+set bmargin at screen 0.34
+set ylabel "speed along n, m/s"
+set yrange [*:*]
+if (touch == touch) {set label 4 " finger touches" at touch, graph 0.93 textcolor rgb finger font "Sans,13"}
+set label 5 "ring meets wall " at 0, graph 0.07 right textcolor rgb grey font "Sans,13"
+plot 0 with lines lc rgb "#bbbbbb" lw 1 notitle, \
+     in using (t(0)):"v_finger_mps" with lines lc rgb finger lw 1.6 title "finger", \
+     in using (t(0)):"v_ring_mps" with lines ls 1 title "ring"
+unset label 4; unset label 5
+
+# ---- state ----
+set tmargin at screen 0.32
+set bmargin at screen 0.215
+unset ylabel
+set yrange [-0.25:2.25]
+set ytics ("transparent" 0, "braking" 1, "vo" 2)
+plot in using (t(0)):"state" with steps lc rgb "#444444" lw 2.2 notitle
+set ytics auto
+
+# ---- beta ----
+set tmargin at screen 0.195
+set bmargin at screen 0.065
+set format x "%g"
+set xlabel "time from t_{r/vo}, ms" offset 0,0.4
+set ylabel "{/Symbol b}" offset 1.2
+set yrange [0:1.1]
+set ytics 0.25
+plot in using (t(0)):"beta" with steps lc rgb "#2e7d4f" lw 2.4 notitle
+unset multiplot
