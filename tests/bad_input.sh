@@ -1,0 +1,180 @@
+#!/bin/sh
+# Bad input of every kind: exit 2, one line on stderr, and what stood at the output stays as it was.
+set -u
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+bin=$BUILD/bin
+failed=0
+
+fail() {
+  failed=$((failed + 1))
+  echo "FAILED $*"
+}
+
+# refuse WHAT 'PATTERN' COMMAND...: the line on stderr matches the pattern
+refuse() {
+  what=$1 pattern=$2
+  shift 2
+  echo untouched >"$folder/out.csv"
+  "$@" >"$folder/stdout" 2>"$folder/stderr" </dev/null
+  code=$?
+  [ $code = 2 ] || fail "$what: exit $code: $(head -c 300 "$folder/stderr")"
+  [ "$(wc -l <"$folder/stderr")" = 1 ] || fail "$what: $(wc -l <"$folder/stderr") lines: $(head -3 "$folder/stderr")"
+  [ "$(wc -c <"$folder/stderr")" -lt 560 ] || fail "$what: a line of $(wc -c <"$folder/stderr") bytes"
+  grep -q -e "$pattern" "$folder/stderr" || fail "$what: no $pattern in: $(cat "$folder/stderr")"
+  [ "$(cat "$folder/out.csv")" = untouched ] || fail "$what: the output was written over"
+  rm "$folder/out.csv"
+  left=$(ls -A "$folder" | grep -v -x -e good.ini -e good.csv -e good.scene -e good.so -e 'bad\..*' -e std... -e stderr)
+  [ -z "$left" ] || fail "$what: left behind: $left"
+}
+
+good() {
+  "$@" >"$folder/stdout" 2>"$folder/stderr" || fail "good input: $*: $(cat "$folder/stderr")"
+}
+
+replay() { refuse "$1" "$2" "$bin/ethd-replay" --config "$3" --in "$4" --out "$folder/out.csv"; }
+
+cat >"$folder/good.ini" <<'END'
+[scene]
+file = good.scene
+END
+cat >"$folder/good.scene" <<'END'
+halfplane -1 0 -0.238
+END
+cat >"$folder/good.csv" <<'END'
+t_s,q1_rad,q2_rad,xf_m,yf_m,vxf_mps,vyf_mps
+0.000,1.57,0.00,0.25,0.25,0,0
+0.001,1.57,0.01,0.25,0.25,0,0
+0.002,1.57,0.02,0.25,0.25,0,0
+END
+good "$bin/ethd-replay" --config "$folder/good.ini" --in "$folder/good.csv" --out "$folder/out.csv"
+good "$bin/ethd-check" "$folder/good.ini"
+good "$bin/ethd-scene" info "$folder/good.scene"
+
+# bad.X by name: the same faults for every kind of file
+truncate -s 100M "$folder/bad.huge"
+head -c 5000 "$bin/ethd-check" >"$folder/bad.binary"
+: >"$folder/bad.empty"
+
+# ---- configurations ----
+config() { # WHAT PATTERN TEXT
+  printf "$3" >"$folder/bad.ini"
+  refuse "check, $1" "$2" "$bin/ethd-check" "$folder/bad.ini"
+  replay "replay, $1" "$2" "$folder/bad.ini" "$folder/good.csv"
+}
+replay 'missing configuration' 'no.ini: No such file' "$folder/no.ini" "$folder/good.csv"
+replay 'a folder as configuration' 'is a folder' "$folder" "$folder/good.csv"
+replay 'huge configuration' '104857600 bytes, at most 1048576' "$folder/bad.huge" "$folder/good.csv"
+replay 'binary configuration' 'bad.binary:1: ' "$folder/bad.binary" "$folder/good.csv"
+config 'cut in a section' 'bad.ini:1: .*needs its' '[contac'
+config 'cut in a key' 'bad.ini:2: .*key = value' '[contact]\nk_'
+config 'cut in a value' 'bad.ini:2: contact.k_e: found nothing' '[contact]\nk_e ='
+config 'NaN' 'bad.ini:2: contact.k_e: found "nan"' '[contact]\nk_e = nan\n'
+config 'inf' 'bad.ini:2: contact.k_e: found inf' '[contact]\nk_e = inf\n'
+config 'duplicate' 'bad.ini:3: contact.k_e: stands twice' '[contact]\nk_e = 1\nk_e = 2\n'
+config 'unknown key' 'bad.ini:2: contact.k: ' '[contact]\nk = 1\n'
+config 'unknown section' 'bad.ini:2: walls.k: unknown section' '[walls]\nk = 1\n'
+config 'out of range' 'bad.ini:2: contact.k_e: found -1' '[contact]\nk_e = -1\n'
+config 'a byte 0' 'bad.ini:2: a byte 0' '[contact]\n\000k_e = 1\n'
+config 'missing scene' 'bad.ini:2: scene.file: .*no.scene: No such file' '[scene]\nfile = no.scene\n'
+
+# ---- scenes ----
+scene() { # WHAT PATTERN TEXT
+  printf "$3" >"$folder/bad.scene"
+  printf '[scene]\nfile = bad.scene\n' >"$folder/bad.ini"
+  refuse "info, $1" "$2" "$bin/ethd-scene" info "$folder/bad.scene"
+  replay "replay, $1" "$2" "$folder/bad.ini" "$folder/good.csv"
+}
+scene_file() { # WHAT PATTERN FILE
+  printf '[scene]\nfile = %s\n' "$3" >"$folder/bad.ini"
+  refuse "info, $1" "$2" "$bin/ethd-scene" info "$folder/$3"
+  replay "replay, $1" "$2" "$folder/bad.ini" "$folder/good.csv"
+}
+scene_file 'missing scene' 'no.scene: No such file' no.scene
+scene_file 'huge scene' 'bad.huge:1: ' bad.huge
+scene_file 'binary scene' 'bad.binary:1: ' bad.binary
+scene 'cut scene' 'bad.scene:2: ' 'circle 0 0 1\nhalfplane -1 0'
+scene 'NaN in a scene' 'bad.scene:1: ' 'circle 0 0 nan\n'
+scene 'inf in a scene' 'bad.scene:1: ' 'circle 0 inf 1\n'
+scene 'unknown shape' 'bad.scene:1: ' 'ellipse 0 0 1 2\n'
+scene 'radius out of range' 'bad.scene:1: ' 'circle 0 0 -1\n'
+scene 'a number too many' 'bad.scene:1: ' 'circle 0 0 1 2\n'
+scene 'a normal that is no unit vector' 'bad.scene:1: ' 'halfplane -1 1 0\n'
+scene 'a polygon that crosses itself' 'bad.scene:2: ' '# x\npolygon 0 0 1 1 1 0 0 1\n'
+scene 'an unknown material' 'bad.scene:1: ' 'circle 0 0 1 material=soft\n'
+scene 'a material twice' 'bad.scene:2: ' 'material a k_e=1\nmaterial a k_e=2\n'
+
+# ---- traces ----
+trace() { # WHAT PATTERN TEXT
+  printf "$3" >"$folder/bad.csv"
+  replay "$1" "$2" "$folder/good.ini" "$folder/bad.csv"
+}
+names=t_s,q1_rad,q2_rad,xf_m,yf_m,vxf_mps,vyf_mps
+row=,1.57,0,0.25,0.25,0,0
+replay 'missing trace' 'no.csv: No such file' "$folder/good.ini" "$folder/no.csv"
+replay 'empty trace' 'bad.empty: is empty' "$folder/good.ini" "$folder/bad.empty"
+replay 'huge trace' 'bad.huge:1: ' "$folder/good.ini" "$folder/bad.huge"
+replay 'binary trace' 'bad.binary:' "$folder/good.ini" "$folder/bad.binary"
+trace 'cut trace' 'bad.csv:3: 4 cells' "$names\n0$row\n0.001,1.57,0,0.2"
+trace 'a trace without rows' 'bad.csv' "$names\n"
+trace 'NaN in a trace' 'bad.csv:2: q1_rad: ' "$names\n0,nan,0,0.25,0.25,0,0\n"
+trace 'an empty cell in a trace' 'bad.csv:2: q1_rad: ' "$names\n0,,0,0.25,0.25,0,0\n"
+trace 'inf in a trace' 'bad.csv:2: q1_rad: ' "$names\n0,inf,0,0.25,0.25,0,0\n"
+trace 'a word in a trace' 'bad.csv:2: xf_m: found "left"' "$names\n0,1,0,left,0.25,0,0\n"
+trace 'a column twice' 'bad.csv:1: the column "t_s" stands twice' "$names,t_s\n0$row,0\n"
+trace 'a missing column' 'bad.csv:1: ' "t_s,q1_rad\n0,1\n"
+trace 'time stands still' 'bad.csv:3: t_s: ' "$names\n0$row\n0$row\n"
+trace 'time runs back' 'bad.csv:4: t_s: ' "$names\n0$row\n2$row\n1$row\n"
+trace 'time is NaN' 'bad.csv:3: t_s: ' "$names\n0$row\nnan$row\n"
+
+# ---- movements ----
+finger() { # WHAT PATTERN TEXT
+  printf "$3" >"$folder/bad.csv"
+  refuse "$1" "$2" "$bin/ethd-tap" --taps 1 --finger "$folder/bad.csv" --csv "$folder/out.csv"
+}
+refuse 'missing movement' 'no.csv: No such file' "$bin/ethd-tap" --taps 1 --finger "$folder/no.csv" --csv "$folder/out.csv"
+refuse 'huge movement' 'bad.huge:1: ' "$bin/ethd-tap" --taps 1 --finger "$folder/bad.huge" --csv "$folder/out.csv"
+finger 'a movement of one sample' 'bad.csv' 't_s,x_m,y_m\n0,0,0\n'
+finger 'a movement without y' 'bad.csv:1: ' 't_s,x_m\n0,0\n1,1\n'
+finger 'NaN in a movement' 'bad.csv:3: x_m: ' 't_s,x_m,y_m\n0,0,0\n0.01,nan,0\n0.02,0,0\n'
+finger 'time runs back in a movement' 'bad.csv:3: t_s: ' 't_s,x_m,y_m\n0,0,0\n-0.01,0,0\n0.02,0,0\n'
+
+# ---- plugins ----
+cat >"$folder/bad.c" <<'END'
+#include "ethd/plugin.h"
+static ethd_status step(const double *p, void *state, double gap, double speed, int entering, double *force) {
+  (void)p, (void)state, (void)speed, (void)entering;
+  *force = gap < 0 ? 1e3 * gap : 0;
+  return ETHD_OK;
+}
+static const ethd_contact_law law = {
+    .law = {sizeof law, ETHD_ABI, ETHD_CONTACT, 0, ID, "a spring of its own", NULL, 0, NULL, NULL}, .step = step};
+static const ethd_law *const laws[] = {&law.law};
+ETHD_API const ethd_plugin_entry ethd_plugin = {sizeof ethd_plugin, ETHD_ABI, "mine", "1.0", laws, 1};
+END
+compile() { ${CC:-cc} -Iinclude -fPIC -shared "-DID=\"$1\"" -o "$folder/$2" "$folder/bad.c"; }
+plugin() { # WHAT PATTERN FILE
+  printf '[plugins]\nfile = %s\n' "$3" >"$folder/bad.ini"
+  refuse "check, $1" "bad.ini:2: plugins.file: $2" "$bin/ethd-check" "$folder/bad.ini"
+  refuse "laws, $1" "plugins.file: $2" "$bin/ethd-laws" --plugin "$folder/$3" --csv "$folder/out.csv"
+}
+compile own good.so || fail 'the example plugin does not compile'
+printf '[plugins]\nfile = good.so\n[contact]\nlaw = own\n' >"$folder/bad.ini"
+good "$bin/ethd-check" "$folder/bad.ini"
+good "$bin/ethd-laws" --plugin "$folder/good.so"
+plugin 'missing plugin' '.*No such file' no.so
+plugin 'empty plugin' '.*is empty' bad.empty
+plugin 'huge plugin' '.*is no shared object' bad.huge
+plugin 'text as plugin' '.*is no shared object\|.*is cut short' good.csv
+plugin 'a program as plugin' '.*' bad.binary
+size=$(wc -c <"$folder/good.so")
+for share in 1 5 10 25 50 75 90 99; do
+  head -c $((size * share / 100)) "$folder/good.so" >"$folder/bad.so"
+  plugin "a plugin cut to $share %" '.*' bad.so
+done
+compile spring bad.so
+plugin 'a law of a built-in name' 'the law spring of mine is there already' bad.so
+printf '[plugins]\nfile = good.so\nfile = good.so\n' >"$folder/bad.ini"
+refuse 'a plugin twice' 'bad.ini:3: plugins.file: the law own of mine is there already' "$bin/ethd-check" "$folder/bad.ini"
+
+[ $failed = 0 ]
