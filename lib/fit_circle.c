@@ -39,7 +39,7 @@ static void shift(moments *m, ethd_vec s) {
   m->zy = o.zy - 2 * (o.xy * s.x + o.yy * s.y) + ss * o.y - s.y * z;
 }
 
-/* sum u u^T s = (g, h); 0 where that says nothing. */
+/* sum u u^T s = (g, h); 0 for points on one line, and for fewer than two. */
 static int solve(const moments *m, double g, double h, ethd_vec *s) {
   double det = m->xx * m->yy - m->xy * m->xy, trace = m->xx + m->yy;
   if (!(det > FLAT * trace * trace)) return 0;
@@ -59,7 +59,6 @@ static moments of_all(const ethd__points *points) {
    The moments move to the centre. */
 static int kasa(moments *m, ethd_vec *centre) {
   ethd_vec mean = {m->x / m->n, m->y / m->n}, s;
-  if (!(m->n >= 3)) return 0;
   shift(m, mean);
   if (!solve(m, m->zx / 2, m->zy / 2, &s)) return 0;
   *centre = ethd_vec_add(mean, s);
@@ -82,34 +81,43 @@ static int step(moments *m, double radius, ethd_vec *centre) {
   return 1;
 }
 
-/* Moments about the centre of the points within the gate: (|u|^2 - R^2) / (2 R) is |u| - R nearly. */
-static moments of_near(ethd__points *points, ethd_vec centre, double radius, double gate) {
+/* (|u|^2 - R^2) / (2 R) is |u| - R nearly. */
+static int is_near(const ethd_fit *fit, double square) {
+  double radius = fit->finger_radius;
+  return fabs(square - radius * radius) <= 2 * radius * fit->p[ROBUST_GATE];
+}
+
+/* Moments about the centre of the points within the gate. */
+static moments of_near(const ethd_fit *fit, ethd__points *points, ethd_vec centre) {
   moments m = {0};
   points->used = 0;
   for (uint32_t i = 0; i < points->count; i++) {
     ethd_vec u = ethd_vec_sub(points->p[i], centre);
-    if (!(fabs(ethd_vec_dot(u, u) - radius * radius) <= 2 * radius * gate)) continue;
+    if (!is_near(fit, ethd_vec_dot(u, u))) continue;
     add(&m, u);
     points->used |= 1u << points->ray[i];
   }
   return m;
 }
 
-/* A finger of the known radius stands within the ring; a start that says otherwise is none. */
+/* Kasa's centre is a start if it is a finger's: within the ring, the radius within the gate. Few rays or
+   an outlier make others; the ring's middle is never far. */
 static moments start(const ethd_fit *fit, const ethd__points *points, ethd_vec *centre) {
   moments all = of_all(points), m = all;
-  if (kasa(&m, centre) && ethd_vec_norm(*centre) <= fit->ring_radius - fit->finger_radius) return m;
+  if (kasa(&m, centre) && is_near(fit, (m.xx + m.yy) / m.n) &&
+      ethd_vec_norm(*centre) <= fit->ring_radius - fit->finger_radius)
+    return m;
   *centre = (ethd_vec){0, 0};
   return all;
 }
 
 /* Two steps with all points first, so that an outlier's pull on the start doesn't gate good ones. */
 int ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
-  double radius = fit->finger_radius, gate = fit->p[ROBUST_GATE];
+  double radius = fit->finger_radius;
   moments m = start(fit, points, centre);
   int found = step(&m, radius, centre) && step(&m, radius, centre);
   for (int pass = 0; pass < 2 && found; pass++) {
-    m = of_near(points, *centre, radius, gate);
+    m = of_near(fit, points, *centre);
     found = step(&m, radius, centre);
   }
   return found;

@@ -23,8 +23,8 @@ typedef enum ethd_fit_method {
                            gives half of a small offset */
   ETHD_FIT_CENTROID,    /* centroid of the polygon's area, missing vertices left out */
   ETHD_FIT_ROBUST,      /* the same sum in c alone, R = the known finger radius: two Gauss-Newton steps
-                           from kasa (from the ring's centre if that fails), then two without the rays
-                           over `gate` from the circle */
+                           from kasa (from the ring's centre if that isn't such a finger), then two without
+                           the rays over `gate` from the circle */
   ETHD_FIT_COUNT
 } ethd_fit_method;
 

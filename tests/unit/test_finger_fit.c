@@ -12,6 +12,8 @@
 #define FINGER 7.5e-3
 #define PI 3.14159265358979323846
 
+enum { TRIALS = 20000 };
+
 static ethd_fit prepared(ethd_fit_method method) {
   double p[ETHD_PARAMS_MAX];
   ethd_fit fit;
@@ -156,6 +158,45 @@ START_TEST(test_least_squares) {
 }
 END_TEST
 
+/* A ray is left out by its distance from the circle, and then from radius and residual as well. */
+START_TEST(test_gate) {
+  ethd_fit fit = prepared(ETHD_FIT_ROBUST);
+  const double off[] = {0.8e-3, -0.8e-3, 1.8e-3, -1.8e-3, 4e-3, -4e-3};
+  for (int i = 0; i < 6; i++)
+    for (int k = 0; k < ETHD_RAYS; k++) {
+      double r[ETHD_RAYS];
+      ethd_finger finger;
+      ethd_vec c = {1e-3, -0.5e-3};
+      int out = fabs(off[i]) > 1.2e-3;
+      ethd_fit_rays(RING, FINGER, c, r);
+      r[k] += off[i];
+      ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
+      ck_assert_uint_eq(finger.used, 0xffffu & ~((uint32_t)out << k));
+      ck_assert(out == (distance(finger.centre, c) < 1e-6));
+      ck_assert(out == (fabs(finger.radius - FINGER) < 1e-6));
+      ck_assert(out == (finger.residual < 1e-6));
+    }
+}
+END_TEST
+
+/* Three rays side by side say little, but where kasa gets lost the known radius doesn't. */
+START_TEST(test_three_rays_side_by_side) {
+  ethd_fit fit = prepared(ETHD_FIT_ROBUST);
+  double sum = 0;
+  for (uint64_t i = 0; i < TRIALS; i++) {
+    double r[ETHD_RAYS];
+    ethd_finger finger;
+    ethd_vec c = some_centre(i);
+    ethd_fit_rays(RING, FINGER, c, r);
+    noisy(r, i, 0.3e-3);
+    for (uint64_t k = 0; k < 13; k++) r[(i + k) % 16] = NAN;
+    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
+    sum += distance(finger.centre, c) * distance(finger.centre, c);
+  }
+  ck_assert_double_le(1e3 * sqrt(sum / TRIALS), 0.40);
+}
+END_TEST
+
 /* ---- polygons ---- */
 
 static void kite(double r[ETHD_RAYS]) {
@@ -255,13 +296,15 @@ START_TEST(test_too_little) {
     r[6] = 4e-3;
   }
   if (_i != ETHD_FIT_ROBUST && _i != ETHD_FIT_VERTEX_MEAN) {
-    r[6] = NAN; /* three on the line x = 5 mm */
-    r[0] = RING - 5e-3;
-    r[1] = r[15] = RING - 5e-3 / cos(PI / 8);
-    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STALE);
+    for (int k = 1; k < ETHD_RAYS; k++) { /* three on a line, 5 mm from the ring's centre */
+      for (int i = 0; i < ETHD_RAYS; i++) r[i] = NAN;
+      r[k] = RING - 5e-3;
+      r[k - 1] = r[(k + 1) % 16] = RING - 5e-3 / cos(PI / 8);
+      ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STALE);
+    }
   }
   if (_i == ETHD_FIT_KASA) {
-    r[0] -= 0.05e-3; /* nearly: the circle's centre lies far outside */
+    r[15] -= 0.05e-3; /* nearly: the circle's centre lies far outside */
     ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STALE);
   }
   ck_assert(finger.radius == 42);
@@ -289,8 +332,6 @@ typedef struct scenario {
   const char *name;
   int lost, outlier;
 } scenario;
-
-enum { TRIALS = 20000 };
 
 /* rms errors of the four fits, then the two bounds, mm. */
 static void measure(scenario what, double out[ETHD_FIT_COUNT + 2]) {
@@ -394,6 +435,8 @@ int main(void) {
   tcase_add_test(tc, test_two_rays_with_known_radius);
   tcase_add_loop_test(tc, test_least_squares, ETHD_FIT_KASA, ETHD_FIT_KASA + 1);
   tcase_add_loop_test(tc, test_least_squares, ETHD_FIT_ROBUST, ETHD_FIT_ROBUST + 1);
+  tcase_add_test(tc, test_gate);
+  tcase_add_test(tc, test_three_rays_side_by_side);
   tcase_add_test(tc, test_polygons_by_hand);
   tcase_add_test(tc, test_centroid_as_shoelace);
   tcase_add_test(tc, test_vertex_mean_has_gain_one_half);
