@@ -37,10 +37,10 @@ set label 2 "simulated; plant ".plant." is fitted to Table 1, not measured. Vali
   sprintf("A low %d, B low %d, A high %d, B high %d.", count("smooth", "low"), count("offset", "low"), \
           count("smooth", "high"), count("offset", "high")) \
   at screen 0.075,0.938 font "Sans,13" textcolor rgb grey
-set label 3 "A" at screen 0.735,0.968 font "Sans Bold,15" textcolor rgb a
-set label 4 "smooth (VO-A)" at screen 0.752,0.968 font "Sans,15" textcolor rgb "#333333"
-set label 5 "B" at screen 0.868,0.968 font "Sans Bold,15" textcolor rgb b
-set label 6 "offset (VO-B)" at screen 0.885,0.968 font "Sans,15" textcolor rgb "#333333"
+set label 3 "A" at screen 0.69,0.968 font "Sans Bold,15" textcolor rgb a
+set label 4 "smooth (VO-A)" at screen 0.707,0.968 font "Sans,15" textcolor rgb "#333333"
+set label 5 "B" at screen 0.845,0.968 font "Sans Bold,15" textcolor rgb b
+set label 6 "offset (VO-B)" at screen 0.862,0.968 font "Sans,15" textcolor rgb "#333333"
 
 left(i) = i ? 0.585 : 0.085
 place = 'set lmargin at screen left(col); set rmargin at screen left(col) + 0.395; set tmargin at screen row ? 0.425 : 0.875; set bmargin at screen row ? 0.075 : 0.525'

@@ -31,6 +31,8 @@ t(x) = 1e3*column("since_wall_s")
 touch = NaN
 stats in using (column("since_wall_s") >= -1e-9 && column("pad_force_n") > 0 && touch != touch ? (touch = 1e3*column("since_wall_s")) : 0) nooutput
 stats [*:*] in using (t(0) >= from && t(0) <= to ? 1e3*column("ring_m") : NaN) nooutput name "R"
+moved_any = 0
+stats in using (moved_any = moved_any + (strlen(strcol("offset_wall_m")) > 0), 0) nooutput
 top = R_max > 8 ? 10 : R_max + 2
 bottom = R_min < -14 ? -14 : R_min
 
@@ -51,7 +53,7 @@ set object 1 rectangle from graph 0, first 0 to graph 1, graph 1 fc rgb "#f3f1ec
 set label 3 "virtual wall" at graph 0.012, first (top - 0.07*(top - bottom)) textcolor rgb grey font "Sans Italic,13"
 plot in using (t(0)):(1e3*column("hand_m")) with lines ls 3 title "hand's path", \
      0 with lines ls 4 title "wall x_e", \
-     in using (t(0)):(1e3*column("offset_wall_m")) with lines ls 5 title "wall x_{/Symbol e}", \
+     in using (t(0)):(1e3*column("offset_wall_m")) with lines ls 5 title (moved_any ? "wall x_{/Symbol e}" : ""), \
      in using (t(0)):(1e3*column("finger_m")) with lines ls 2 title "finger's pad", \
      in using (t(0)):(1e3*column("ring_m")) with lines ls 1 title "ring's front"
 unset object 1
