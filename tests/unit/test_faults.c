@@ -51,9 +51,9 @@ static void open_moody(rig *r, int latch) {
   rig_start(r);
 }
 
-/* 1 mm inside, finger 1 mm deeper. */
+/* 1 mm inside at 10 mm/s, finger 1 mm deeper. */
 static ethd_sense ordinary(const rig *r) {
-  motion m = rig_at(-0.001, 0, 0.001);
+  motion m = rig_at(-0.001, 0.010, 0.001);
   ethd_sense s = rig_sense(&r->setup.arm, &m);
   s.time_ns = r->sense.time_ns + 1000000;
   return s;
@@ -228,6 +228,25 @@ START_TEST(test_budget) {
   rig_try(&r, &s);
   expect_safe(&r, ETHD_E_BUDGET, ETHD_FAULT_BUDGET);
   expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_BUDGET, 100001);
+  rig_close(&r);
+}
+END_TEST
+
+/* The rate limit holds back no fault's zero. */
+START_TEST(test_fault_is_quicker_than_the_rate_limit) {
+  rig r;
+  open_moody(&r, 1);
+  ethd_sense s = ordinary(&r);
+  r.setup.limits.torque_rate = 1;
+  rig_post(&r);
+  for (int i = 0; i < 100; i++) rig_try(&r, &s);
+  ck_assert_double_gt(fabs(r.command.torque[0]), 0.05);
+  mood.contact = FAIL;
+  rig_try(&r, &s);
+  expect_safe(&r, ETHD_E_LAW, ETHD_FAULT_LAW);
+  mood.contact = WELL;
+  rig_try(&r, &s);
+  expect_safe(&r, ETHD_E_LAW, ETHD_FAULT_LAW);
   rig_close(&r);
 }
 END_TEST
@@ -431,10 +450,10 @@ START_TEST(test_speed) {
   motion m = rig_at(0.020, 0.4, 0);
   ethd_sense s = rig_sense(&r.setup.arm, &m);
   ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
-  m = rig_at(0.020, 0.6, 0); /* J = diag(-0.25, 0.25): F = +12 N in x is tau1 = -3 Nm */
+  m = rig_at(0.020, 0.6, 0); /* F = +12 N in x */
   s = rig_sense(&r.setup.arm, &m);
   ck_assert_int_eq(rig_try(&r, &s), ETHD_E_RANGE);
-  ck_assert_double_eq_tol(r.command.torque[0], -0.27 * 12 + 0.02 * 12, 0.3);
+  ck_assert_double_eq_tol(r.command.torque[0], -12 * 0.25, 0.01); /* dx/dq1 = -y = -0.25 m */
   ck_assert(r.command.safe == 0 && r.trace.guard == ETHD_GUARD_SPEED && r.trace.fault == ETHD_FAULT_SPEED);
   double first = r.command.torque[0];
   m = rig_at(0.020, 0.3, 0); /* slower than the limit, and still stopping */
@@ -452,7 +471,10 @@ START_TEST(test_speed) {
   expect_event(&r, ETHD_EVENT_TAKEN, 0, 0);
   expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_SPEED, NAN);
   ethd_control_clear(r.control);
-  ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
+  m = rig_at(0.020, 0.3, 0.001);
+  s = rig_sense(&r.setup.arm, &m);
+  for (int i = 0; i < 300; i++) ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
+  ck_assert_double_eq_tol(r.command.torque[0], 299e-6, 1e-12); /* follows again, at the rate's pace */
   rig_close(&r);
 }
 END_TEST
@@ -495,6 +517,7 @@ int main(void) {
   tcase_add_loop_test(t, test_law_says_nonsense, 0, sizeof bad_outputs / sizeof *bad_outputs);
   tcase_add_test(t, test_sum_overflows);
   tcase_add_test(t, test_budget);
+  tcase_add_test(t, test_fault_is_quicker_than_the_rate_limit);
   tcase_add_test(t, test_latched_until_cleared);
   tcase_add_test(t, test_cleared_too_early);
   tcase_add_test(t, test_post_during_a_fault);
