@@ -1,0 +1,201 @@
+/* Metrics of taps made by hand: every expected value is read off the construction. */
+#include <check.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tap/metrics.h"
+
+enum { COUNT = 300 };
+static ethd_trace trace[COUNT];
+static ethd_truth truth[COUNT];
+static const ethd__rows rows = {trace, truth, COUNT, COUNT};
+static ethd__rule rule;
+
+/* A ring that comes from the right at 0.2 m/s, meets x = 0.25 at tick 50 and stops at tick 60. */
+static void setup(void) {
+  memset(trace, 0, sizeof trace);
+  memset(truth, 0, sizeof truth);
+  rule = (ethd__rule){.n = {-1, 0}, .period = 1e-3, .speed = 0.2, .band = 0.06, .meet = -0.25, .d_beta = 1.5e-3};
+  double x = 0.26;
+  for (int i = 0; i < COUNT; i++) {
+    double v = i < 60 ? 0.2 : 0;
+    truth[i].t = i * 1e-3;
+    truth[i].ring[0] = x;
+    truth[i].ring_v[0] = -v;
+    truth[i].motor_v[0] = -2 * v;
+    truth[i].hand[0] = x;
+    truth[i].pad = -1e-3;
+    trace[i].d_re = i < 40 ? NAN : i < 50 ? 1e-3 : -1e-3;
+    trace[i].state = ETHD_TRANSPARENT;
+    x -= 1e-3 * v;
+  }
+}
+
+
+static ethd__metrics measure(void) {
+  ethd__metrics m;
+  ethd__metrics_of(&rows, &rule, &m);
+  return m;
+}
+
+static void touch_at(int tick) {
+  for (int i = tick; i < COUNT; i++) truth[i].pad = 1e-4;
+}
+
+START_TEST(test_meeting_and_touch) {
+  touch_at(70);
+  truth[70].ring_v[0] = 0.03; /* leaving */
+  truth[75].ring_v[0] = 0.11;
+  ethd__metrics m = measure();
+  ck_assert_int_eq(m.reason, ETHD_TAP_OK);
+  ck_assert_double_eq(m.t_rvo, 50 * 1e-3);
+  ck_assert_double_eq(m.t_of, 70 * 1e-3);
+  ck_assert_double_eq(m.v_rvo, 0.2);
+  ck_assert_double_eq(m.v_of, -0.03);
+  ck_assert_double_eq(m.v_rmin, -0.11);
+  ck_assert(isnan(m.delta_s) && isnan(m.eps));
+}
+END_TEST
+
+/* v_rmin is looked for from the touch to 0.1 s after it, both ends included. */
+START_TEST(test_window_of_the_smallest_speed) {
+  touch_at(70);
+  truth[69].ring_v[0] = 0.9;
+  truth[171].ring_v[0] = 0.8;
+  truth[170].ring_v[0] = 0.5;
+  ck_assert_double_eq(measure().v_rmin, -0.5);
+  truth[170].ring_v[0] = -0.1;
+  ck_assert_double_eq(measure().v_rmin, -0.0);
+}
+END_TEST
+
+/* Up to 1 mm deep, 15 um of ripple, back by 0.4 mm, forth by 30 um, further back. */
+START_TEST(test_first_rebound) {
+  const double depth[] = {0.2, 0.6, 0.585, 1.0, 0.99, 0.8, 0.6, 0.615, 0.6, 0.63, 0.1, 0.1};
+  enum { N = sizeof depth / sizeof *depth };
+  for (int i = 50; i < COUNT; i++)
+    truth[i].ring[0] = 0.25 - 1e-3 * depth[i - 50 < N ? i - 50 : N - 1];
+  ck_assert_double_eq_tol(measure().d_max, 0.4e-3, 1e-12);
+}
+END_TEST
+
+START_TEST(test_no_rebound) {
+  ck_assert_double_eq(measure().d_max, 0);
+  truth[COUNT - 1].ring[0] += 25e-6; /* turned back, and the tap ends there */
+  ck_assert_double_eq_tol(measure().d_max, 25e-6, 1e-12);
+}
+END_TEST
+
+/* Nine ticks of braking; the offset is the one of the first vo tick. */
+START_TEST(test_braking) {
+  for (int i = 50; i < COUNT; i++) trace[i].state = i < 59 ? ETHD_BRAKING : ETHD_VO;
+  for (int i = 59; i < COUNT; i++) trace[i].eps = 1e-3 + i * 1e-6;
+  ethd__metrics m = measure();
+  ck_assert_double_eq(m.delta_s, 9);
+  ck_assert_double_eq(m.eps, 1e-3 + 59 * 1e-6);
+  for (int i = 59; i < COUNT; i++) trace[i].state = ETHD_BRAKING;
+  m = measure();
+  ck_assert(isnan(m.delta_s) && isnan(m.eps));
+}
+END_TEST
+
+/* A law without braking has neither, whatever its vo means. */
+START_TEST(test_vo_without_braking) {
+  for (int i = 50; i < COUNT; i++) trace[i].state = ETHD_VO;
+  ck_assert(isnan(measure().delta_s));
+}
+END_TEST
+
+START_TEST(test_reasons) {
+  ck_assert_int_eq(measure().reason, ETHD_TAP_NO_CONTACT);
+  touch_at(70);
+  ck_assert_int_eq(measure().reason, ETHD_TAP_OK);
+  rule.speed = 0.261;
+  ck_assert_int_eq(measure().reason, ETHD_TAP_TOO_SLOW);
+  rule.speed = 0.139;
+  ck_assert_int_eq(measure().reason, ETHD_TAP_TOO_FAST);
+  rule.never_fast = true;
+  ck_assert_int_eq(measure().reason, ETHD_TAP_TOO_SLOW);
+  rule.never_fast = false;
+  truth[20].pad = 1e-6; /* a touch on the way */
+  ck_assert_int_eq(measure().reason, ETHD_TAP_EARLY_CONTACT);
+  trace[10].fault = ETHD_FAULT_LAW;
+  ck_assert_int_eq(measure().reason, ETHD_TAP_FAULT);
+}
+END_TEST
+
+/* Touching at the very tick is no early contact. */
+START_TEST(test_touch_as_the_wall_is_met) {
+  touch_at(50);
+  ethd__metrics m = measure();
+  ck_assert_int_eq(m.reason, ETHD_TAP_OK);
+  ck_assert_double_eq(m.t_of, m.t_rvo);
+}
+END_TEST
+
+START_TEST(test_never_met) {
+  for (int i = 0; i < COUNT; i++) trace[i].d_re = NAN;
+  ethd__metrics m = measure();
+  ck_assert_int_eq(m.reason, ETHD_TAP_NO_CONTACT);
+  ck_assert(isnan(m.t_rvo) && isnan(m.v_rvo) && isnan(m.d_max) && isnan(m.t_of) && isnan(m.v_of));
+}
+END_TEST
+
+START_TEST(test_motor_side) {
+  rule.side = 1;
+  rule.speed = 0.4;
+  touch_at(55);
+  ethd__metrics m = measure();
+  ck_assert_int_eq(m.reason, ETHD_TAP_OK);
+  ck_assert_double_eq(m.v_rvo, 0.4);
+  ck_assert_double_eq(m.v_of, 0.4);
+}
+END_TEST
+
+START_TEST(test_peak_force) {
+  trace[3].fe[0] = 3;
+  trace[3].fe[1] = -4;
+  trace[90].fe[0] = 4.9;
+  ck_assert_double_eq(measure().peak_force, 5);
+}
+END_TEST
+
+/* The ring starts in the wall with the finger resting there, bounces, and is taken away before the tap:
+   what happens until ring and hand are both clear is not part of it. */
+START_TEST(test_start_in_the_wall) {
+  touch_at(70);
+  for (int i = 0; i < 30; i++) {
+    trace[i].d_re = i == 9 ? 2e-3 : i == 10 ? -1e-3 : i < 20 ? -4e-3 : 1e-3;
+    truth[i].hand[0] = 0.245;
+    truth[i].pad = 1e-4;
+  }
+  ethd__metrics m = measure();
+  ck_assert_double_eq(m.t_rvo, 50 * 1e-3);
+  ck_assert_int_eq(m.reason, ETHD_TAP_OK);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("metrics");
+  TCase *all = tcase_create("all");
+  tcase_add_checked_fixture(all, setup, NULL);
+  tcase_add_test(all, test_meeting_and_touch);
+  tcase_add_test(all, test_window_of_the_smallest_speed);
+  tcase_add_test(all, test_first_rebound);
+  tcase_add_test(all, test_no_rebound);
+  tcase_add_test(all, test_braking);
+  tcase_add_test(all, test_vo_without_braking);
+  tcase_add_test(all, test_reasons);
+  tcase_add_test(all, test_touch_as_the_wall_is_met);
+  tcase_add_test(all, test_never_met);
+  tcase_add_test(all, test_motor_side);
+  tcase_add_test(all, test_peak_force);
+  tcase_add_test(all, test_start_in_the_wall);
+  suite_add_tcase(suite, all);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
