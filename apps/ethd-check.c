@@ -12,11 +12,11 @@
 #include "file/text.h"
 
 static const char doc[] =
-    "Validates a configuration, prints the setup as it was understood, and names the stability bounds that its "
-    "gains exceed.\v"
-    "Bounds are those of the sampled loop: a free mass (arm.mass_x, arm.mass_y) under zero-order hold with the "
-    "configured velocity estimator, one axis at a time, without friction. The exit code is 0 for every valid "
-    "configuration, whether bounds are exceeded or not; 2 with one line for one that isn't.\n\n"
+    "Validates a configuration, prints the setup as it was understood, and names the stability bounds that "
+    "its gains exceed.\v"
+    "Bounds are those of the sampled loop: a free mass (arm.mass_x, arm.mass_y) under zero-order hold with "
+    "the configured velocity estimator, one axis at a time, without friction. The exit code is 0 for every "
+    "valid configuration, whether bounds are exceeded or not; 2 with one line for one that isn't.\n\n"
     "Example:\n"
     "  ethd-check device.ini\n"
     "  ethd-check --counts 39200 --delay 1 device.ini";
@@ -58,7 +58,8 @@ static void check_device(const ethd_config *config) {
   void *device;
   const ethd_device_def def = {&config->setup, config->settings, config->setting_count, config->folder};
   if (strcmp(config->device, ethd_driver_sim.id) != 0)
-    ethd__fail(ETHD_EXIT_INPUT, "%s: device.driver: found \"%s\", sim is allowed", arg.config, config->device);
+    ethd__fail(ETHD_EXIT_INPUT, "%s: device.driver: found \"%s\", sim is allowed", arg.config,
+               config->device);
   ethd_status status = ethd_driver_sim.open(&def, &device, &error);
   if (status < 0) {
     ethd_error_text(arg.config, &error, message);

@@ -25,8 +25,13 @@ static const char *law_value(const ethd_law *law, const double *p, const char *n
 
 static ethd_loop loop_of(const ethd__bounds *b, const gains *g, const axis *a) {
   const ethd_setup *s = &b->config->setup;
-  ethd_loop loop = {.mass = a->mass, .period = s->period, .stiffness = g->stiffness, .damping = g->damping,
-                    .delay = b->delay, .method = s->velocity, .link = a->link};
+  ethd_loop loop = {.mass = a->mass,
+                    .period = s->period,
+                    .stiffness = g->stiffness,
+                    .damping = g->damping,
+                    .delay = b->delay,
+                    .method = s->velocity,
+                    .link = a->link};
   memcpy(loop.p, s->velocity_p, sizeof loop.p);
   return loop;
 }
@@ -36,7 +41,8 @@ static ethd_loop loop_of(const ethd__bounds *b, const gains *g, const axis *a) {
 static void say_gains(const gains *g, const axis *a) {
   printf("%-9s %s  ", g->what, a->name);
   if (g->stiffness > 0) printf("%s = %.5g N/m", g->stiffness_name, g->stiffness);
-  if (g->damping > 0) printf("%s%s = %.5g Ns/m", g->stiffness > 0 ? ", " : "", g->damping_name, g->damping);
+  if (g->damping > 0)
+    printf("%s%s = %.5g Ns/m", g->stiffness > 0 ? ", " : "", g->damping_name, g->damping);
 }
 
 static void say_velocity(const ethd__bounds *b) {
@@ -45,16 +51,19 @@ static void say_velocity(const ethd__bounds *b) {
   printf(" with your velocity %s", m->id);
   if (m->param_count) {
     bool pure = strcmp(m->params[0].unit, "1") == 0;
-    printf(" (%s %.5g%s%s)", m->params[0].name, s->velocity_p[0], pure ? "" : " ", pure ? "" : m->params[0].unit);
+    printf(" (%s %.5g%s%s)", m->params[0].name, s->velocity_p[0], pure ? "" : " ",
+           pure ? "" : m->params[0].unit);
   }
   if (b->delay) printf(" and %d tick%s of delay", b->delay, b->delay > 1 ? "s" : "");
 }
 
 static void say_largest(const ethd_loop *loop, const gains *g) {
-  if (g->stiffness > 0) printf("; largest %s %.5g N/m", g->stiffness_name, ethd__loop_stiffness_max(loop));
+  if (g->stiffness > 0)
+    printf("; largest %s %.5g N/m", g->stiffness_name, ethd__loop_stiffness_max(loop));
   if (g->damping > 0) printf("; largest %s %.5g Ns/m", g->damping_name, ethd__loop_damping_max(loop));
   if (g->damping > 0 && !(g->stiffness > 0))
-    printf(" (backward difference: %.5g)", ethd__loop_damping_free(loop->mass, loop->period, loop->delay));
+    printf(" (backward difference: %.5g)",
+           ethd__loop_damping_free(loop->mass, loop->period, loop->delay));
 }
 
 static int report_loop(const ethd__bounds *b, const gains *g, const axis *a) {
@@ -112,8 +121,9 @@ static int report_tracking(const ethd__bounds *b, const axis axes[2]) {
   ethd_arm_pose(&s->arm, q, &pose);
   at_ring(pose.j_inv, k_t, k);
   at_ring(pose.j_inv, b_t, d);
-  printf("felt at the ring at (%g, %g) m: %.5g N/m in x, %.5g in y, %.5g across; %.5g, %.5g, %.5g Ns/m\n",
-         POSE_X, POSE_Y, k[0], k[2], k[1], d[0], d[2], d[1]);
+  printf(
+      "felt at the ring at (%g, %g) m: %.5g N/m in x, %.5g in y, %.5g across; %.5g, %.5g, %.5g Ns/m\n",
+      POSE_X, POSE_Y, k[0], k[2], k[1], d[0], d[2], d[1]);
   const gains x = {"tracking", "K_x", "B_x", k[0], d[0]}, y = {"tracking", "K_y", "B_y", k[2], d[2]};
   return report_loop(b, &x, &axes[0]) + report_loop(b, &y, &axes[1]);
 }
@@ -129,8 +139,9 @@ static int report_wall(const ethd__bounds *b, const axis axes[2]) {
   printf("wall         passive only with a friction of %.5g Ns/m or more (K_e T/2 + B_e)\n",
          ethd__loop_passive_friction(&loop));
   if (law_value(&s->contact->law, s->contact_p, "c_e", &c_e) && c_e > 0)
-    printf("wall         its damping K_e c_e p grows with the depth p: %.5g Ns/m at 1 mm, not counted above\n",
-           g.stiffness * c_e * 1e-3);
+    printf(
+        "wall         its damping K_e c_e p grows with the depth p: %.5g Ns/m at 1 mm, not counted above\n",
+        g.stiffness * c_e * 1e-3);
   return exceeded;
 }
 

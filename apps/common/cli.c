@@ -26,7 +26,8 @@ void ethd__begin(void) {
 int ethd__end(int code) {
   bool failed = fflush(stdout) != 0 || ferror(stdout);
   if (!failed) return code;
-  fprintf(stderr, "%s: standard output: %s\n", program_invocation_short_name, strerror(errno ? errno : EIO));
+  fprintf(stderr, "%s: standard output: %s\n", program_invocation_short_name,
+          strerror(errno ? errno : EIO));
   return code ? code : ETHD_EXIT_FAILED;
 }
 
@@ -75,8 +76,9 @@ int64_t ethd__option_integer(const char *option, const char *text, int64_t min, 
   errno = 0;
   int64_t value = strtoimax(text, NULL, 10);
   if (!whole(text, true) || errno || value < min || value > max)
-    ethd__fail(ETHD_EXIT_INPUT, "%s: found %s, a whole number from %" PRId64 " to %" PRId64 " is allowed",
-               option, ethd__quote(text, strlen(text), quote), min, max);
+    ethd__fail(ETHD_EXIT_INPUT,
+               "%s: found %s, a whole number from %" PRId64 " to %" PRId64 " is allowed", option,
+               ethd__quote(text, strlen(text), quote), min, max);
   return value;
 }
 
@@ -121,7 +123,8 @@ char *ethd__data_path(const char *name) {
   free(folder);
   if (!path) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
   if (access(path, R_OK) != 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s: %s; ETHD_DATA_DIR may name the folder it is in", path, strerror(errno));
+    ethd__fail(ETHD_EXIT_FAILED, "%s: %s; ETHD_DATA_DIR may name the folder it is in", path,
+               strerror(errno));
   return path;
 }
 

@@ -38,8 +38,8 @@ void ethd__option_list(const char *option, const char *text, void (*each)(const 
    program's folder. Freed by the caller; exit 1 when it isn't there. */
 char *ethd__data_path(const char *name);
 
-/* A bar on stderr when that is a terminal, else nothing; redrawn at most ten times a second. done = total
-   removes it. */
+/* A bar on stderr when that is a terminal, else nothing; redrawn at most ten times a second. done =
+   total removes it. */
 void ethd__progress(uint64_t done, uint64_t total, const char *what);
 
 /* From here on Ctrl-C and SIGTERM set ethd__stop; a second one ends the program at once. */

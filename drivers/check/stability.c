@@ -5,19 +5,27 @@
 
 #include "ethd/maths.h"
 
-/* One tick as a linear map of: position, speed, estimate, filter position, force of the last tick, forces
-   on their way, last positions. Its matrix is read off by applying it to unit vectors. */
-enum { X, V, ESTIMATE, FILTER, LAST, WAY, STATE_MAX = WAY + ETHD_LOOP_DELAY_MAX + ETHD_VELOCITY_WINDOW_MAX };
+/* One tick as a linear map of: position, speed, estimate, filter position, force of the last tick,
+   forces on their way, last positions. Its matrix is read off by applying it to unit vectors. */
+enum {
+  X,
+  V,
+  ESTIMATE,
+  FILTER,
+  LAST,
+  WAY,
+  STATE_MAX = WAY + ETHD_LOOP_DELAY_MAX + ETHD_VELOCITY_WINDOW_MAX
+};
 
 typedef double matrix[STATE_MAX][STATE_MAX];
 
 typedef struct model {
   const ethd_loop *loop;
-  int past, size; /* index of x_k-1; length of the state */
-  int samples;    /* last positions kept */
+  int past, size;                     /* index of x_k-1; length of the state */
+  int samples;                        /* last positions kept */
   double w[ETHD_VELOCITY_WINDOW_MAX]; /* v^ from x_k, x_k-1, ... */
-  double keep;    /* share of the last estimate (lowpass) */
-  double alpha, beta, inertia; /* kalman at the ring */
+  double keep;                        /* share of the last estimate (lowpass) */
+  double alpha, beta, inertia;        /* kalman at the ring */
 } model;
 
 /* ---- estimators: v^_k = keep v^_k-1 + sum w_i x_k-i, but for the Kalman filter ---- */
@@ -49,7 +57,9 @@ static void use_kalman(model *m) {
 static void prepare(const ethd_loop *loop, model *m) {
   *m = (model){.loop = loop};
   switch (loop->method) {
-    case ETHD_VELOCITY_LOWPASS: use_difference(m, 1 - ethd_exp(-2 * M_PI * loop->p[0] * loop->period)); break;
+    case ETHD_VELOCITY_LOWPASS:
+      use_difference(m, 1 - ethd_exp(-2 * M_PI * loop->p[0] * loop->period));
+      break;
     case ETHD_VELOCITY_LSQ:
     case ETHD_VELOCITY_FOAW: use_line(m, (int)loop->p[0]); break;
     case ETHD_VELOCITY_KALMAN: use_kalman(m); break;
@@ -161,7 +171,9 @@ static double grid(int i) { return exp(i * log(10) / STEPS_PER_DECADE); }
 
 /* At a large mass all is slow, and hold and delay take K T (n + 1/2) off the damping, whatever the
    estimator. */
-double ethd__loop_damping_needed(const ethd_loop *l) { return l->stiffness * l->period * (l->delay + 0.5); }
+double ethd__loop_damping_needed(const ethd_loop *l) {
+  return l->stiffness * l->period * (l->delay + 0.5);
+}
 
 double ethd__loop_mass_min(const ethd_loop *loop) {
   ethd_loop l = *loop;
@@ -197,7 +209,8 @@ double ethd__loop_damping_max(const ethd_loop *loop) {
 
 /* ---- closed forms ---- */
 
-void ethd__loop_boundary(double mass, double period, int delay, double th, double *stiffness, double *damping) {
+void ethd__loop_boundary(double mass, double period, int delay, double th, double *stiffness,
+                         double *damping) {
   double t = tan(th / 2), k = 4 * t * t * cos((delay + 1) * th);
   *stiffness = k * mass / (period * period);
   *damping = (2 * t * sin((delay + 1) * th) - k / 2) * mass / period;

@@ -44,7 +44,8 @@ static ethd_status parse_scene(const reading *r, size_t length) {
   if (zero) {
     int line = 1;
     for (const char *p = c->scene_text; p < zero; p++) line += *p == '\n';
-    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%d: a byte 0: this is no text", r->whole->scene_path, line);
+    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%d: a byte 0: this is no text", r->whole->scene_path,
+                     line);
   }
   ethd_status status = ethd_scene_parse(c->scene_text, length, &c->scene, &error);
   if (status) ethd_error_text(r->whole->scene_path, &error, r->message);
@@ -59,7 +60,8 @@ static ethd_status load_scene(const reading *r, const ethd_ini_key *k) {
   size_t length;
   r->whole->scene_path = ethd__path_join(c->folder, k->value);
   if (!r->whole->scene_path) return no_memory(r);
-  ethd_status status = ethd_text_read(r->whole->scene_path, SCENE_BYTES_MAX, &c->scene_text, &length, what);
+  ethd_status status =
+      ethd_text_read(r->whole->scene_path, SCENE_BYTES_MAX, &c->scene_text, &length, what);
   if (status) return ethd__key_refuse(&key, status, "%s", what);
   return parse_scene(r, length);
 }

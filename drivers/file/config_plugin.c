@@ -18,24 +18,25 @@ static bool read_at(FILE *file, uint64_t offset, void *out, size_t length) {
   return fseeko(file, (off_t)offset, SEEK_SET) == 0 && fread(out, 1, length, file) == length;
 }
 
-static bool own_header(ElfW(Ehdr) *out) {
+static bool own_header(ElfW(Ehdr) * out) {
   FILE *file = fopen("/proc/self/exe", "rbe");
   bool read = file && read_at(file, 0, out, sizeof *out);
   if (file) fclose(file);
   return read;
 }
 
-static bool for_this_machine(const ElfW(Ehdr) *h) {
+static bool for_this_machine(const ElfW(Ehdr) * h) {
   ElfW(Ehdr) own;
   if (!own_header(&own)) return true; /* the loader decides */
   return h->e_ident[EI_CLASS] == own.e_ident[EI_CLASS] && h->e_ident[EI_DATA] == own.e_ident[EI_DATA] &&
          h->e_machine == own.e_machine;
 }
 
-static const char *segments_fault(FILE *file, const ElfW(Ehdr) *h, uint64_t size) {
+static const char *segments_fault(FILE *file, const ElfW(Ehdr) * h, uint64_t size) {
   bool dynamic = false;
   if (h->e_phentsize != sizeof(ElfW(Phdr)) || !h->e_phnum) return "has no segments";
-  if (h->e_phoff > size || (uint64_t)h->e_phnum * sizeof(ElfW(Phdr)) > size - h->e_phoff) return "is cut short";
+  if (h->e_phoff > size || (uint64_t)h->e_phnum * sizeof(ElfW(Phdr)) > size - h->e_phoff)
+    return "is cut short";
   for (unsigned i = 0; i < h->e_phnum; i++) {
     ElfW(Phdr) p;
     if (!read_at(file, h->e_phoff + i * sizeof p, &p, sizeof p)) return "is cut short";
@@ -49,7 +50,8 @@ static const char *segments_fault(FILE *file, const ElfW(Ehdr) *h, uint64_t size
 static const char *file_fault(FILE *file, uint64_t size) {
   ElfW(Ehdr) h;
   if (size == 0) return "is empty";
-  if (!read_at(file, 0, &h, sizeof h)) return size < sizeof h ? "is cut short or no shared object" : "can't be read";
+  if (!read_at(file, 0, &h, sizeof h))
+    return size < sizeof h ? "is cut short or no shared object" : "can't be read";
   if (memcmp(h.e_ident, ELFMAG, SELFMAG) != 0) return "is no shared object";
   if (!for_this_machine(&h)) return "was built for another machine";
   if (h.e_type != ET_DYN) return "is no shared object";
@@ -86,7 +88,8 @@ static ethd_status add_laws(ethd_config *config, const ethd_plugin_entry *entry,
     const ethd_law *law = entry->laws[i];
     for (uint32_t k = 0; k < n; k++)
       if (laws[k]->kind == law->kind && strcmp(laws[k]->id, law->id) == 0)
-        return ethd__key_refuse(key, ETHD_E_DUPLICATE, "the law %s of %s is there already", law->id, entry->id);
+        return ethd__key_refuse(key, ETHD_E_DUPLICATE, "the law %s of %s is there already", law->id,
+                                entry->id);
     laws[n++] = law;
     laws[n] = NULL;
   }

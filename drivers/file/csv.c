@@ -111,8 +111,8 @@ static ethd_status header_name(const reader *r, const cell *c, layout *l, const 
   for (size_t i = 0; i < l->cells; i++) {
     if (strcmp(l->names[i], name) != 0) continue;
     free(name);
-    return ethd__say(r->message, ETHD_E_DUPLICATE, "%s:%zu: the column %s stands twice", r->name, r->line,
-                     ethd__quote(c->text, c->length, quote));
+    return ethd__say(r->message, ETHD_E_DUPLICATE, "%s:%zu: the column %s stands twice", r->name,
+                     r->line, ethd__quote(c->text, c->length, quote));
   }
   bool kept = is_wanted(wanted, name);
   l->map[l->cells] = kept ? (int)out->columns++ : -1;
@@ -131,8 +131,8 @@ static ethd_status keep_names(const reader *r, const layout *l, ethd_csv *out) {
 static ethd_status read_header(reader *r, layout *l, const char *const *wanted, ethd_csv *out) {
   cell c;
   if (!next_line(r))
-    return ethd__say(r->message, ETHD_E_SYNTAX, "%s: is empty; a first line that names the columns is needed",
-                     r->name);
+    return ethd__say(r->message, ETHD_E_SYNTAX,
+                     "%s: is empty; a first line that names the columns is needed", r->name);
   while (r->more) {
     ethd_status status = next_cell(r, &c);
     if (!status) status = header_name(r, &c, l, wanted, out);
@@ -143,14 +143,16 @@ static ethd_status read_header(reader *r, layout *l, const char *const *wanted, 
 
 /* ---- rows ---- */
 
-static ethd_status store(const reader *r, const cell *c, const char *column, size_t index, ethd_csv *out) {
+static ethd_status store(const reader *r, const cell *c, const char *column, size_t index,
+                         ethd_csv *out) {
   char quote[ETHD_QUOTE_MAX];
   if (!c->length) {
     out->values[index] = NAN;
     out->empties[index / 8] |= (unsigned char)(1u << index % 8);
     return ETHD_OK;
   }
-  if (ethd__number(c->text, c->length, &out->values[index]) && !isinf(out->values[index])) return ETHD_OK;
+  if (ethd__number(c->text, c->length, &out->values[index]) && !isinf(out->values[index]))
+    return ETHD_OK;
   return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: %s: found %s, a finite decimal number is allowed",
                    r->name, r->line, column, ethd__quote(c->text, c->length, quote));
 }
@@ -166,8 +168,8 @@ static ethd_status read_row(reader *r, const layout *l, ethd_csv *out) {
     if (status) return status;
   }
   if (i != l->cells)
-    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: %zu cells, the header names %zu columns", r->name,
-                     r->line, i, l->cells);
+    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: %zu cells, the header names %zu columns",
+                     r->name, r->line, i, l->cells);
   out->rows++;
   return ETHD_OK;
 }

@@ -74,8 +74,8 @@ static void check_section(feed *f, span s) {
     REFUSE(f, ETHD_E_SYNTAX, "%s:%d: found %s, nothing is allowed behind ]", f->name, f->line,
            ethd__quote(s.text, s.length, quote));
   else if (s.length - 2 > NAME_MAX_LENGTH)
-    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a section's name of %zu characters, at most %u are allowed", f->name,
-           f->line, s.length - 2, NAME_MAX_LENGTH);
+    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a section's name of %zu characters, at most %u are allowed",
+           f->name, f->line, s.length - 2, NAME_MAX_LENGTH);
 }
 
 /* inih takes ':' for '=' too. */
@@ -130,10 +130,11 @@ static bool check_key(feed *f, const char *section, const char *key, const char 
   else if (!*key)
     REFUSE(f, ETHD_E_SYNTAX, "%s:%d: %s: a value without a key", f->name, f->line, section);
   else if (!*value)
-    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: %s.%s: found nothing, a value is needed", f->name, f->line, section, key);
+    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: %s.%s: found nothing, a value is needed", f->name, f->line, section,
+           key);
   else if (twin && !repeatable(f, section, key))
-    REFUSE(f, ETHD_E_DUPLICATE, "%s:%d: %s.%s: stands twice, first on line %d", f->name, f->line, section,
-           key, twin->line);
+    REFUSE(f, ETHD_E_DUPLICATE, "%s:%d: %s.%s: stands twice, first on line %d", f->name, f->line,
+           section, key, twin->line);
   else if (f->out->count == ETHD_INI_KEYS_MAX)
     REFUSE(f, ETHD_E_RANGE, "%s:%d: over %u keys", f->name, f->line, ETHD_INI_KEYS_MAX);
   return !f->status;
@@ -153,7 +154,8 @@ ethd_status ethd_ini_parse(const char *text, size_t length, const char *name, co
                            ethd_ini *out, char message[ETHD_MESSAGE_MAX]) {
   feed f = {text, text + length, 0, name, repeats, out, ETHD_OK, message};
   *out = (ethd_ini){calloc(ETHD_INI_KEYS_MAX, sizeof *out->keys), 0};
-  if (!out->keys) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", name, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!out->keys)
+    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", name, ethd_status_sentence(ETHD_E_MEMORY));
   if (length > ETHD_INI_BYTES_MAX)
     REFUSE(&f, ETHD_E_RANGE, "%s: %zu bytes, at most %zu are allowed", name, length, ETHD_INI_BYTES_MAX);
   if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) f.at += 3;
@@ -165,7 +167,8 @@ ethd_status ethd_ini_parse(const char *text, size_t length, const char *name, co
 
 const ethd_ini_key *ethd_ini_find(const ethd_ini *ini, const char *section, const char *key) {
   for (uint32_t i = 0; i < ini->count; i++)
-    if (strcmp(ini->keys[i].section, section) == 0 && strcmp(ini->keys[i].key, key) == 0) return &ini->keys[i];
+    if (strcmp(ini->keys[i].section, section) == 0 && strcmp(ini->keys[i].key, key) == 0)
+      return &ini->keys[i];
   return NULL;
 }
 

@@ -23,9 +23,9 @@ typedef struct ethd_ini {
 } ethd_ini;
 
 /* `name` stands for the file in messages. `repeats`: "section.key" that may stand more than once, or
-   NULL. Refuses, with file:line: bytes that are no text, lines over 197 characters (comments apart), text
-   behind a section's ']', keys before the first section, keys without '=', empty values, a key twice,
-   over 512 keys. A section may come back. */
+   NULL. Refuses, with file:line: bytes that are no text, lines over 197 characters (comments apart),
+   text behind a section's ']', keys before the first section, keys without '=', empty values, a key
+   twice, over 512 keys. A section may come back. */
 ETHD_MUST_CHECK ethd_status ethd_ini_parse(const char *text, size_t length, const char *name,
                                            const char *repeats, ethd_ini *out,
                                            char message[ETHD_MESSAGE_MAX]);

@@ -19,8 +19,8 @@
 #define TRACE_COLUMN(type, name, count, unit, brief) \
   {#name, unit, count, offsetof(ethd_trace, name), LETTER_##type},
 
-const ethd_column ethd_trace_columns[] = {
-    ETHD_SENSE_FIELDS(SENSE_COLUMN) ETHD_TRACE_FIELDS(TRACE_COLUMN){NULL, NULL, 0, 0, 0}};
+const ethd_column ethd_trace_columns[] = {ETHD_SENSE_FIELDS(SENSE_COLUMN)
+                                              ETHD_TRACE_FIELDS(TRACE_COLUMN){NULL, NULL, 0, 0, 0}};
 
 struct ethd_recording {
   ethd_npy *ticks;
@@ -70,7 +70,8 @@ char *ethd__record_config_text(const ethd_config *config) {
 
 static ethd_status write_file(const char *folder, const char *name, const char *text, char *message) {
   char *path = text ? ethd__path_join(folder, name) : NULL;
-  if (!path) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!path)
+    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
   ethd_status status = ethd_text_write(path, text, strlen(text), message);
   free(path);
   return status;

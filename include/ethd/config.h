@@ -41,14 +41,14 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_parse(const char *text, size_t 
 
 ETHD_API void ethd_config_free(ethd_config *config);
 
-/* Changes the transition law in `setup`: keys that the new law has too keep their values, the rest is
-   dropped. Doesn't touch config->setup. */
+/* Changes the transition law in `setup`: values that were chosen for keys that the new law has too are
+   kept, the rest is dropped; the file's preset counts. Doesn't touch config->setup. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_transition(const ethd_config *config, const char *id,
                                                             ethd_setup *setup,
                                                             char message[ETHD_MESSAGE_MAX]);
 
-/* Sets "section.key" in `setup` as the file would ("contact.k_e", "2000"); file, law and device keys
-   can't be set so. */
+/* Sets "section.key" in `setup` as the file would ("contact.k_e", "2000"); file, law, preset and
+   device keys can't be set so. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_set(const ethd_config *config, const char *key,
                                                      const char *value, ethd_setup *setup,
                                                      char message[ETHD_MESSAGE_MAX]);

@@ -8,8 +8,8 @@
 
 /* Writes a mutation of `seed` into out (room bytes, 0 behind the end); returns its length. `words` are
    spliced in now and then; they end with NULL. */
-static inline size_t mutate(const char *seed, size_t length, const char *const *words, uint64_t i, char *out,
-                            size_t room) {
+static inline size_t mutate(const char *seed, size_t length, const char *const *words, uint64_t i,
+                            char *out, size_t room) {
   size_t n = length < room / 2 ? length : room / 2, count = 0;
   memcpy(out, seed, n);
   while (words[count]) count++;

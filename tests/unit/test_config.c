@@ -34,15 +34,16 @@ static double transition_value(const ethd_setup *s, const char *name) {
 /* ---- what is accepted ---- */
 
 START_TEST(test_defaults) {
-  static const char *const empties[] = {"", "\n", "# nothing\n; either\n", "[arm]\n[contact]\n[arm]\n", "\xef\xbb\xbf",
-                                        "\r\n[arm]\r\n"};
+  static const char *const empties[] = {
+      "", "\n", "# nothing\n; either\n", "[arm]\n[contact]\n[arm]\n", "\xef\xbb\xbf", "\r\n[arm]\r\n"};
   for (size_t i = 0; i < sizeof empties / sizeof *empties; i++) {
     ethd_config *c = parse(empties[i]);
     const ethd_setup *s = &c->setup;
     ck_assert_int_eq(s->arm.mechanism, ETHD_ARM_PARALLEL);
     ck_assert(s->arm.link1 == 0.25 && s->arm.link2 == 0.25 && s->ring_radius == 0.012);
     ck_assert(s->finger_radius == 0.0075 && s->finger_radius_max == 0.0095 && s->period == 0.001);
-    ck_assert(s->velocity == ETHD_VELOCITY_LOWPASS && s->fit == ETHD_FIT_KASA && s->filter == ETHD_FILTER_CA);
+    ck_assert(s->velocity == ETHD_VELOCITY_LOWPASS && s->fit == ETHD_FIT_KASA &&
+              s->filter == ETHD_FILTER_CA);
     ck_assert(s->tracking == &ethd_tracking_pd && s->contact == &ethd_contact_kelvin_voigt);
     ck_assert(s->transition == &ethd_transition_offset);
     ck_assert(law_value(&s->tracking->law, s->tracking_p, "k_t") == 40);
@@ -90,7 +91,8 @@ START_TEST(test_every_key) {
   ck_assert(s->period == 0.002 && s->velocity == ETHD_VELOCITY_LSQ && s->velocity_p[0] == 9);
   ck_assert(s->fit == ETHD_FIT_ROBUST && s->filter == ETHD_FILTER_CV);
   const ethd_method *cv = &ethd_filter_methods[ETHD_FILTER_CV];
-  ck_assert(s->filter_p[ethd_params_find(cv->params, cv->param_count, "reference")] == ETHD_REFERENCE_TICK);
+  ck_assert(s->filter_p[ethd_params_find(cv->params, cv->param_count, "reference")] ==
+            ETHD_REFERENCE_TICK);
   ck_assert(law_value(&s->tracking->law, s->tracking_p, "k_t") == 41);
   ck_assert(law_value(&s->tracking->law, s->tracking_p, "b_t") == 2);
   ck_assert(law_value(&s->tracking->law, s->tracking_p, "derivative") == 1);
@@ -101,7 +103,8 @@ START_TEST(test_every_key) {
   ck_assert(isinf(transition_value(s, "t_max")) && s->v_hysteresis == 0.001 && s->swap_time == 0.03);
   ck_assert(s->limits.torque == 1.5 && isinf(s->limits.torque_rate) && s->limits.speed == 2);
   ck_assert(s->limits.workspace[0] == -0.4 && s->limits.workspace[1] == 0.4);
-  ck_assert(s->limits.workspace[2] == 0.1 && isinf(s->limits.workspace[3]) && s->limits.step_time == 5e-4);
+  ck_assert(s->limits.workspace[2] == 0.1 && isinf(s->limits.workspace[3]) &&
+            s->limits.step_time == 5e-4);
   ck_assert_uint_eq(c->limits_given, 31);
   ck_assert_str_eq(c->device, "other");
   ck_assert_uint_eq(c->setting_count, 1);
@@ -115,8 +118,8 @@ END_TEST
 
 /* Keys of one section in every rotation, sections in reverse: the setup stays the same. */
 START_TEST(test_order_never_matters) {
-  static const char *const keys[] = {"law = offset", "preset = paper", "eps_max = 0.004", "v_hysteresis = 0.002",
-                                     "b_d = 90"};
+  static const char *const keys[] = {"law = offset", "preset = paper", "eps_max = 0.004",
+                                     "v_hysteresis = 0.002", "b_d = 90"};
   enum { COUNT = sizeof keys / sizeof *keys };
   for (int first = 0; first < COUNT; first++)
     for (int step = 1; step < COUNT; step++) {
@@ -138,7 +141,8 @@ END_TEST
 
 START_TEST(test_preset) {
   ethd_config *c = parse("[transition]\npreset = paper\n");
-  ck_assert(isinf(transition_value(&c->setup, "eps_max")) && isinf(transition_value(&c->setup, "t_max")));
+  ck_assert(isinf(transition_value(&c->setup, "eps_max")) &&
+            isinf(transition_value(&c->setup, "t_max")));
   ethd_config_free(c);
   c = parse("[transition]\npreset = product\n");
   ck_assert(transition_value(&c->setup, "eps_max") == 0.006);
@@ -151,8 +155,9 @@ START_TEST(test_preset) {
 END_TEST
 
 START_TEST(test_comments_and_spaces) {
-  ethd_config *c = parse("  [contact]  ; walls\n\tk_e=100\t;soft ; really\n  b_e =  7  \n;b_e = 8\n   # b_e = 9\n"
-                         "[device]\na = b;c\n# " X50 X50 X50 X50 X50 "\nd = e=f # g\n");
+  ethd_config *c =
+      parse("  [contact]  ; walls\n\tk_e=100\t;soft ; really\n  b_e =  7  \n;b_e = 8\n   # b_e = 9\n"
+            "[device]\na = b;c\n# " X50 X50 X50 X50 X50 "\nd = e=f # g\n");
   ck_assert(c->setup.contact_p[0] == 100 && c->setup.contact_p[1] == 7);
   ck_assert_str_eq(c->settings[0].value, "b;c");
   ck_assert_str_eq(c->settings[1].value, "e=f # g");
@@ -163,7 +168,8 @@ END_TEST
 /* ---- changes of law, single values ---- */
 
 START_TEST(test_transition) {
-  ethd_config *c = parse("[transition]\nbeta_min = 0.3\nb_d = 70\nswap_time = 0.5\nv_hysteresis = 0.01\n");
+  ethd_config *c =
+      parse("[transition]\nbeta_min = 0.3\nb_d = 70\nswap_time = 0.5\nv_hysteresis = 0.01\n");
   ethd_setup s = c->setup;
   ck_assert_int_eq(ethd_config_transition(c, "smooth", &s, message), ETHD_OK);
   ck_assert(s.transition == &ethd_transition_smooth && transition_value(&s, "beta_min") == 0.3);
@@ -181,13 +187,28 @@ START_TEST(test_transition) {
 END_TEST
 
 START_TEST(test_set) {
-  static const char *const refused[][2] = {
-      {"contact.k_e", "-1"},     {"contact.k_e", "x"},    {"contact.k_e", "nan"}, {"contact.k_e", ""},
-      {"contact.k_x", "1"},      {"contact.law", "spring"}, {"velocity.method", "lsq"},
-      {"scene.file", "a"},       {"plugins.file", "a"},   {"device.driver", "a"}, {"device.x", "a"},
-      {"transition.preset", "paper"}, {"arm.mass_x", "1"}, {"k_e", "1"},          {".", "1"},
-      {"", "1"},                 {"nothing.k", "1"},      {"finger.radius_max", "0.012"}, {"ring.radius", "0.001"},
-      {"limits.workspace", "1 2 3"}, {"limits.workspace", "1 0 0 1"}, {"limits.torque", "-1"}};
+  static const char *const refused[][2] = {{"contact.k_e", "-1"},
+                                           {"contact.k_e", "x"},
+                                           {"contact.k_e", "nan"},
+                                           {"contact.k_e", ""},
+                                           {"contact.k_x", "1"},
+                                           {"contact.law", "spring"},
+                                           {"velocity.method", "lsq"},
+                                           {"scene.file", "a"},
+                                           {"plugins.file", "a"},
+                                           {"device.driver", "a"},
+                                           {"device.x", "a"},
+                                           {"transition.preset", "paper"},
+                                           {"arm.mass_x", "1"},
+                                           {"k_e", "1"},
+                                           {".", "1"},
+                                           {"", "1"},
+                                           {"nothing.k", "1"},
+                                           {"finger.radius_max", "0.012"},
+                                           {"ring.radius", "0.001"},
+                                           {"limits.workspace", "1 2 3"},
+                                           {"limits.workspace", "1 0 0 1"},
+                                           {"limits.torque", "-1"}};
   ethd_config *c = parse("");
   ethd_setup s = c->setup;
   ck_assert_int_eq(ethd_config_set(c, "contact.k_e", "2000", &s, message), ETHD_OK);
@@ -217,18 +238,23 @@ typedef struct bad {
 
 static const bad bads[] = {
     {"[contact]\nk_e = 1\nk_e = 1\n", "x.ini:3: contact.k_e: stands twice, first on line 2"},
-    {"[contact]\nk_e = 1\n[arm]\n[contact]\nk_e = 2\n", "x.ini:5: contact.k_e: stands twice, first on line 2"},
+    {"[contact]\nk_e = 1\n[arm]\n[contact]\nk_e = 2\n",
+     "x.ini:5: contact.k_e: stands twice, first on line 2"},
     {"[device]\na = 1\na = 1\n", "x.ini:3: device.a: stands twice, first on line 2"},
     {"[nothing]\nx = 1\n", "x.ini:2: nothing.x: unknown section; arm, "},
     {"[contact]\nk_x = 1\n", "x.ini:2: contact.k_x: not a key of kelvin-voigt, which has law, k_e, b_e"},
     {"[ring]\nr = 1\n", "x.ini:2: ring.r: unknown key; radius are allowed"},
-    {"[contact]\nlaw = spring\nb_e = 1\n", "x.ini:3: contact.b_e: not a key of spring, which has law, k_e"},
+    {"[contact]\nlaw = spring\nb_e = 1\n",
+     "x.ini:3: contact.b_e: not a key of spring, which has law, k_e"},
     {"[contact]\nb_e = 1\nlaw = spring\n", "x.ini:2: contact.b_e: not a key of spring"},
     {"[velocity]\nlaw = lsq\n", "x.ini:2: velocity.law: not a key of lowpass, which has method"},
     {"[tracking]\nmethod = pd\n", "x.ini:2: tracking.method: not a key of pd"},
-    {"[contact]\nlaw = offset\n", "x.ini:2: contact.law: found \"offset\", kelvin-voigt, spring, hunt-crossley is"},
-    {"[velocity]\nmethod = fast\n", "x.ini:2: velocity.method: found \"fast\", lowpass, difference, lsq, foaw"},
-    {"[transition]\npreset = papers\n", "x.ini:2: transition.preset: found \"papers\", product or paper is allowed"},
+    {"[contact]\nlaw = offset\n",
+     "x.ini:2: contact.law: found \"offset\", kelvin-voigt, spring, hunt-crossley is"},
+    {"[velocity]\nmethod = fast\n",
+     "x.ini:2: velocity.method: found \"fast\", lowpass, difference, lsq, foaw"},
+    {"[transition]\npreset = papers\n",
+     "x.ini:2: transition.preset: found \"papers\", product or paper is allowed"},
     {"[contact]\nk_e = -1\n", "x.ini:2: contact.k_e: found -1, 0 to 1000000 N/m is allowed"},
     {"[contact]\nk_e = inf\n", "x.ini:2: contact.k_e: found inf, 0 to 1000000 N/m is allowed"},
     {"[contact]\nk_e = nan\n", "x.ini:2: contact.k_e: found \"nan\", a decimal number is allowed"},
@@ -249,25 +275,30 @@ static const bad bads[] = {
     {"[contact\nk_e = 5\n", "x.ini:1: found \"[contact\", a section needs its ]"},
     {"[contact] k_e = 5\n", "x.ini:1: found \"[contact] k_e = 5\", nothing is allowed behind ]"},
     {"[" X50 "]\n", "x.ini:1: a section's name of 50 characters, at most 49 are allowed"},
-    {"[device]\na = " X50 X50 X50 X50 "\n", "x.ini:2: a line of 204 characters, at most 197 are allowed"},
+    {"[device]\na = " X50 X50 X50 X50 "\n",
+     "x.ini:2: a line of 204 characters, at most 197 are allowed"},
     {"[contact]\nk_e = 5\n  b_e = 0x4\n", "x.ini:3: contact.b_e: found \"0x4\""}, /* no continuation */
-    {"[device]\na = 1\n  and more\n", "x.ini:3: found \"and more\", [section] or key = value is allowed"},
+    {"[device]\na = 1\n  and more\n",
+     "x.ini:3: found \"and more\", [section] or key = value is allowed"},
     {"[contact]\nk_e = 5\001\n", "x.ini:2: a byte 1: this is no text"},
     {"[contact]\rk_e = 5\r", "x.ini:1: a byte 13: this is no text"},
     {"[finger]\nradius_max = 0.012\n", "x.ini:2: finger.radius_max: a value is out of its range"},
     {"[ring]\nradius = 0\n", "x.ini:2: ring.radius: a value is out of its range; found 0, allowed"},
     {"[loop]\nperiod = inf\n", "x.ini:2: loop.period: a value is out of its range"},
-    {"[arm]\n\nmechanism = Serial\n", "x.ini:3: arm.mechanism: found \"Serial\", parallel or serial is allowed"},
+    {"[arm]\n\nmechanism = Serial\n",
+     "x.ini:3: arm.mechanism: found \"Serial\", parallel or serial is allowed"},
     {"[arm]\nlink1 = -1\n", "x.ini:2: arm.link1: a value is out of its range"},
     {"[arm]\nmass_x = 0\n", "x.ini:2: arm.mass_x: found \"0\", a mass over 0"},
-    {"[limits]\nworkspace = 0 1 0\n", "x.ini:2: limits.workspace: found \"0 1 0\", x_min x_max y_min y_max"},
+    {"[limits]\nworkspace = 0 1 0\n",
+     "x.ini:2: limits.workspace: found \"0 1 0\", x_min x_max y_min y_max"},
     {"[limits]\nworkspace = 0 1 0 1 2\n", "x.ini:2: limits.workspace: found"},
     {"[limits]\nworkspace = 0 1 0 nan\n", "x.ini:2: limits.workspace: found"},
     {"[limits]\nworkspace = 1 0 0 1\n", "x.ini:2: limits.workspace: a value is out of its range"},
     {"[limits]\ntorque = -1\n", "x.ini:2: limits.torque: a value is out of its range"},
     {"[transition]\nswap_time = 2\n", "x.ini:2: transition.swap_time: a value is out of its range"},
     {"[transition]\nlaw = smooth\neps_max = 1\n", "x.ini:3: transition.eps_max: not a key of smooth"},
-    {"[tracking]\nderivative = 0\n", "x.ini:2: tracking.derivative: found \"0\", velocity|difference is allowed"},
+    {"[tracking]\nderivative = 0\n",
+     "x.ini:2: tracking.derivative: found \"0\", velocity|difference is allowed"},
     {"[scene]\nfile = no.scene\n", "x.ini:2: scene.file: /nowhere/no.scene: No such file or directory"},
     {"[scene]\nfiles = no.scene\n", "x.ini:2: scene.files: unknown key; file are allowed"},
     {"[plugins]\nfile = no.so\n", "x.ini:2: plugins.file: /nowhere/no.so: No such file or directory"},
@@ -278,11 +309,12 @@ START_TEST(test_bad_texts) {
   for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {
     ethd_config *c = (ethd_config *)&i;
     message[0] = 0;
-    ethd_status status = ethd_config_parse(bads[i].text, strlen(bads[i].text), "x.ini", "/nowhere", &c, message);
+    ethd_status status =
+        ethd_config_parse(bads[i].text, strlen(bads[i].text), "x.ini", "/nowhere", &c, message);
     ck_assert_msg(status < 0, "passed: %s", bads[i].text);
     ck_assert_ptr_null(c);
-    ck_assert_msg(strncmp(message, bads[i].says, strlen(bads[i].says)) == 0, "%s\nsays: %s\nnot:  %s", bads[i].text,
-                  message, bads[i].says);
+    ck_assert_msg(strncmp(message, bads[i].says, strlen(bads[i].says)) == 0, "%s\nsays: %s\nnot:  %s",
+                  bads[i].text, message, bads[i].says);
   }
 }
 END_TEST
@@ -348,9 +380,28 @@ END_TEST
 /* ---- whatever comes ---- */
 
 START_TEST(test_mutations) {
-  static const char *const words[] = {"[contact]\n", "\n", "=", "inf", "nan", "-", "1e9", "law = spring\n", ";", "]",
-                                      "preset = paper\n", "[plugins]\nfile = /nowhere\n", "\t", "0x", " ", "[", "\r\n",
-                                      X50 X50 X50 X50, "method = kalman\n", "driver = ", "[device]\nq = 1\n", NULL};
+  static const char *const words[] = {"[contact]\n",
+                                      "\n",
+                                      "=",
+                                      "inf",
+                                      "nan",
+                                      "-",
+                                      "1e9",
+                                      "law = spring\n",
+                                      ";",
+                                      "]",
+                                      "preset = paper\n",
+                                      "[plugins]\nfile = /nowhere\n",
+                                      "\t",
+                                      "0x",
+                                      " ",
+                                      "[",
+                                      "\r\n",
+                                      X50 X50 X50 X50,
+                                      "method = kalman\n",
+                                      "driver = ",
+                                      "[device]\nq = 1\n",
+                                      NULL};
   char text[4096];
   int accepted = 0;
   for (uint64_t i = 0; i < 80000; i++) {

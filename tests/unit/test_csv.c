@@ -51,7 +51,9 @@ END_TEST
 START_TEST(test_wanted_columns) {
   static const char *const wanted[] = {"b", "absent", "d", NULL};
   ethd_csv c;
-  parse("\xef\xbb\xbf" "a,b,\"c,c\",d\nword,1,\"x, \"\"y\"\"\",2\ninf,3,,4", wanted, &c);
+  parse("\xef\xbb\xbf"
+        "a,b,\"c,c\",d\nword,1,\"x, \"\"y\"\"\",2\ninf,3,,4",
+        wanted, &c);
   ck_assert(c.rows == 2 && c.columns == 2);
   ck_assert(ethd_csv_column(&c, "b") == 0 && ethd_csv_column(&c, "d") == 1);
   ck_assert_int_eq(ethd_csv_column(&c, "absent"), -1);
@@ -97,8 +99,8 @@ START_TEST(test_bad_texts) {
     ethd_csv c;
     message[0] = 0;
     const char *says = bads[i].says;
-    ck_assert_msg(ethd_csv_parse(bads[i].text, strlen(bads[i].text), "x.csv", NULL, &c, message) < 0, "passed: %s",
-                  bads[i].text);
+    ck_assert_msg(ethd_csv_parse(bads[i].text, strlen(bads[i].text), "x.csv", NULL, &c, message) < 0,
+                  "passed: %s", bads[i].text);
     ck_assert_msg(strncmp(message, says, strlen(says)) == 0, "%s\nsays %s", bads[i].text, message);
   }
   ethd_csv c;
@@ -119,7 +121,8 @@ END_TEST
 /* ---- writing ---- */
 
 START_TEST(test_round_trip) {
-  static const double values[] = {0.1, -0.0, 1e-310, 1.7976931348623157e308, 123456789.123456789, 1.0 / 3};
+  static const double values[] = {0.1,    -0.0, 1e-310, 1.7976931348623157e308, 123456789.123456789,
+                                  1.0 / 3};
   ethd_csv_out *out = ethd_csv_create(path, "a,b,c,d", message);
   ck_assert_ptr_nonnull(out);
   for (size_t i = 0; i < 6; i++) {
@@ -176,7 +179,8 @@ START_TEST(test_no_place) {
   ck_assert_ptr_null(ethd_csv_create(folder, "a", message));
   ck_assert(strstr(message, "is a folder"));
   ck_assert_int_eq(ethd_text_write("/dev/null", "x", 1, message), ETHD_OK);
-  ck_assert(stat("/dev/null", &info) == 0 && S_ISCHR(info.st_mode)); /* a device is written to, not replaced */
+  ck_assert(stat("/dev/null", &info) == 0 &&
+            S_ISCHR(info.st_mode)); /* a device is written to, not replaced */
   ck_assert_int_eq(ethd_text_write("/dev/full", "x", 1, message), ETHD_E_FILE);
   ck_assert_str_eq(message, "output: No space left on device");
 }
@@ -199,8 +203,10 @@ END_TEST
 /* ---- whatever comes ---- */
 
 START_TEST(test_mutations) {
-  static const char *const words[] = {",", "\n", "\"", "nan", "inf", "-", "1e5", "\r\n", "a", "\n\n", ",,", " ", NULL};
-  static const char seed[] = "t_s,q1_rad,q2_rad,note\n0,0.5,1e-3,\"a,b\"\n0.001,,nan,c\r\n0.002,-1.25,+4,\n";
+  static const char *const words[] = {",",    "\n", "\"",   "nan", "inf", "-", "1e5",
+                                      "\r\n", "a",  "\n\n", ",,",  " ",   NULL};
+  static const char seed[] =
+      "t_s,q1_rad,q2_rad,note\n0,0.5,1e-3,\"a,b\"\n0.001,,nan,c\r\n0.002,-1.25,+4,\n";
   static const char *const wanted[] = {"t_s", "q1_rad", NULL};
   char text[1024];
   int accepted = 0;
@@ -223,9 +229,11 @@ START_TEST(test_mutations) {
 END_TEST
 
 START_TEST(test_number) {
-  static const char *const good[] = {"0", "-0", "+1", "1.", ".1", "1e5", "1E-5", "inf", "-INF", "+inf", "nan", "00012"};
-  static const char *const bad[] = {"", "+", "-", ".", "e5", "1e", "1e+", "1e5.", "0x1", "1f", "infinity", "-nan",
-                                    "nan(1)", " 1", "1 ", "1_0", "1e99999", "--1", "+-1", "inf ", "1,0", "\xd9\xa1"};
+  static const char *const good[] = {"0",    "-0",  "+1",   "1.",   ".1",  "1e5",
+                                     "1E-5", "inf", "-INF", "+inf", "nan", "00012"};
+  static const char *const bad[] = {
+      "",     "+",      "-",  ".",  "e5",  "1e",      "1e+", "1e5.", "0x1",  "1f",  "infinity",
+      "-nan", "nan(1)", " 1", "1 ", "1_0", "1e99999", "--1", "+-1",  "inf ", "1,0", "\xd9\xa1"};
   double value;
   for (size_t i = 0; i < sizeof good / sizeof *good; i++)
     ck_assert_msg(ethd__number(good[i], strlen(good[i]), &value), "%s", good[i]);

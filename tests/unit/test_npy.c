@@ -15,10 +15,8 @@ typedef struct row {
   double x[16], y;
 } row;
 
-static const ethd_column columns[] = {{"n", "1", 1, 0, 'i'},
-                                      {"x", "m", 16, 8, 'f'},
-                                      {"y", "m", 1, 136, 'f'},
-                                      {NULL, NULL, 0, 0, 0}};
+static const ethd_column columns[] = {
+    {"n", "1", 1, 0, 'i'}, {"x", "m", 16, 8, 'f'}, {"y", "m", 1, 136, 'f'}, {NULL, NULL, 0, 0, 0}};
 static const char dict[] =
     "{'descr': [('n', '<i8'), ('x', '<f8', (16,)), ('y', '<f8')], 'fortran_order': False, 'shape': (";
 
@@ -78,7 +76,8 @@ START_TEST(test_layout) {
   ck_assert_uint_eq(n, 10 + header + 5 * sizeof(row));
   ck_assert(memcmp(file + 10, dict, sizeof dict - 1) == 0);
   ck_assert(memcmp(file + 10 + sizeof dict - 1, "5,), }", 6) == 0);
-  for (const char *p = file + 10 + sizeof dict - 1 + 6; p < file + 9 + header; p++) ck_assert_int_eq(*p, ' ');
+  for (const char *p = file + 10 + sizeof dict - 1 + 6; p < file + 9 + header; p++)
+    ck_assert_int_eq(*p, ' ');
   ck_assert_int_eq(file[9 + header], '\n');
   ck_assert_uint_ge(header - (sizeof dict - 1), 6 + 19 + 1); /* room for any count */
   for (int i = 0; i < 5; i++) {
@@ -150,7 +149,8 @@ START_TEST(test_bad_files) {
 END_TEST
 
 START_TEST(test_bad_columns) {
-  static const ethd_column gap[] = {{"n", "1", 1, 0, 'i'}, {"y", "m", 1, 136, 'f'}, {NULL, NULL, 0, 0, 0}};
+  static const ethd_column gap[] = {
+      {"n", "1", 1, 0, 'i'}, {"y", "m", 1, 136, 'f'}, {NULL, NULL, 0, 0, 0}};
   ethd_npy *npy;
   ck_assert_int_eq(ethd_npy_create(path, gap, sizeof(row), &npy, message), ETHD_E_ARGUMENT);
   ck_assert_ptr_null(npy);
@@ -172,7 +172,8 @@ START_TEST(test_trace_columns) {
   for (const ethd_column *c = ethd_trace_columns; c->name; c++, count++) {
     ck_assert_uint_eq(c->offset, at);
     at += c->count * (size_t)8;
-    for (const ethd_column *other = ethd_trace_columns; other < c; other++) ck_assert_str_ne(other->name, c->name);
+    for (const ethd_column *other = ethd_trace_columns; other < c; other++)
+      ck_assert_str_ne(other->name, c->name);
   }
   ck_assert_uint_eq(at, sizeof(ethd_trace));
   ck_assert_str_eq(ethd_trace_columns[0].name, "time_ns");

@@ -13,7 +13,7 @@
 #include "file/recording_parts.h"
 #include "file/text.h"
 
-#define CONFIG                                                                                        \
+#define CONFIG                                                                                          \
   "# a wall\n[scene]\nfile = walls.scene ; the left one\n[transition]\nb_d = 70\n[limits]\nspeed = 5\n" \
   "[velocity]\nmethod = kalman"
 
@@ -94,7 +94,8 @@ static void run(program *p, int ticks) {
 
 static void record(void) {
   program p = {.setup = config->setup};
-  ck_assert_msg(ethd_recording_create(recording_folder, config, &p.recording, message) == ETHD_OK, "%s", message);
+  ck_assert_msg(ethd_recording_create(recording_folder, config, &p.recording, message) == ETHD_OK, "%s",
+                message);
   create(&p);
   run(&p, 100);
   event(&p, "start", "tap 1, \"again\"");
@@ -158,8 +159,9 @@ static char *read_text(const char *name) {
 START_TEST(test_files) {
   record();
   char *text = read_text("config.ini");
-  ck_assert_str_eq(text, "# a wall\n[scene]\nfile = scene.scene\n[transition]\nb_d = 70\n[limits]\nspeed = 5\n"
-                         "[velocity]\nmethod = kalman\n");
+  ck_assert_str_eq(text,
+                   "# a wall\n[scene]\nfile = scene.scene\n[transition]\nb_d = 70\n[limits]\nspeed = 5\n"
+                   "[velocity]\nmethod = kalman\n");
   free(text);
   text = read_text("scene.scene");
   ck_assert_str_eq(text, "halfplane -1 0 -0.238\n");
@@ -210,18 +212,21 @@ END_TEST
 
 /* Each event matters: without it, or a row late, the replay differs. */
 START_TEST(test_events_matter) {
-  static const char *const changes[][2] = {
-      {"100,start,", "101,start,"},          {"200,transition,smooth", "200,fault,smooth"},
-      {"250,set,contact.k_e 2000", "250,set,contact.k_e 2001"}, {"400,setup,offset", "400,setup,smooth"},
-      {"300,transition,offset", "301,transition,offset"}, {"400,set,limits.torque 0.5", "400,fault,"},
-      {"640,clear,", "640,fault,"}};
+  static const char *const changes[][2] = {{"100,start,", "101,start,"},
+                                           {"200,transition,smooth", "200,fault,smooth"},
+                                           {"250,set,contact.k_e 2000", "250,set,contact.k_e 2001"},
+                                           {"400,setup,offset", "400,setup,smooth"},
+                                           {"300,transition,offset", "301,transition,offset"},
+                                           {"400,set,limits.torque 0.5", "400,fault,"},
+                                           {"640,clear,", "640,fault,"}};
   record();
   char *text = read_text("events.csv");
   for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
     char changed[2048];
     char *at = strstr(text, changes[i][0]);
     ck_assert_ptr_nonnull(at);
-    snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, changes[i][1], at + strlen(changes[i][0]));
+    snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, changes[i][1],
+             at + strlen(changes[i][0]));
     write_text(recording_folder, "events.csv", changed);
     ck_assert_msg(ethd_recording_verify(recording_folder, message) < 0, "%s passed", changes[i][1]);
   }
@@ -239,8 +244,10 @@ START_TEST(test_bad_events) {
       {"row,kind,detail\n5,start,\n4,start,\n", "events.csv:3: row: found 4, 5 or more is allowed"},
       {"row,kind,detail\n5,begin,\n", "events.csv:2: begin: an unknown kind of event; setup, "},
       {"row,kind,detail\n5,set,contact.k_e\n", "events.csv:2: set: section.key value is allowed"},
-      {"row,kind,detail\n5,set,contact.k_e -1\n", "events.csv:2: set: contact.k_e: found -1, 0 to 1000000 N/m"},
-      {"row,kind,detail\n5,transition,odd\n", "events.csv:2: transition: transition.law: found \"odd\", abrupt"}};
+      {"row,kind,detail\n5,set,contact.k_e -1\n",
+       "events.csv:2: set: contact.k_e: found -1, 0 to 1000000 N/m"},
+      {"row,kind,detail\n5,transition,odd\n",
+       "events.csv:2: transition: transition.law: found \"odd\", abrupt"}};
   char says[256];
   record();
   for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {
