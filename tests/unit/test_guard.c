@@ -1,0 +1,225 @@
+/* The guard on its own: limits in their order, stops, counts. */
+#include <math.h>
+#include <string.h>
+
+#include "unit/rig.h"
+
+/* A ring at x with an arm whose J is the unit matrix times 1/4 m. */
+static const ethd_pose pose = {{0.3, 0.2}, {0.25, 0, 0, 0.25}, {4, 0, 0, 4}};
+static const ethd_vec still = {0, 0};
+
+static int32_t step(const ethd_limits *l, ethd_guard_state *s, ethd_vec v, double t1, double t2, double out[2]) {
+  out[0] = t1;
+  out[1] = t2;
+  return ethd_guard_step(l, s, &pose, v, 0.001, out);
+}
+
+static void is(const double tau[2], double t1, double t2) {
+  ck_assert_double_eq_tol(tau[0], t1, 1e-15);
+  ck_assert_double_eq_tol(tau[1], t2, 1e-15);
+}
+
+START_TEST(test_no_limits) {
+  ethd_limits l = ethd_limits_none();
+  ethd_guard_state s = {0};
+  double tau[2];
+  ck_assert_int_eq(step(&l, &s, (ethd_vec){1e9, -1e9}, 1e300, -1e300, tau), 0);
+  ck_assert(tau[0] == 1e300 && tau[1] == -1e300);
+  for (int i = 0; i < ETHD_GUARD_COUNT; i++) ck_assert_uint_eq(s.counts[i], 0);
+}
+END_TEST
+
+START_TEST(test_torque) {
+  ethd_limits l = ethd_limits_none();
+  ethd_guard_state s = {0};
+  double tau[2];
+  l.torque = 1.5;
+  ck_assert_int_eq(step(&l, &s, still, 1.5, -1.5, tau), 0); /* at the limit is within */
+  ck_assert_int_eq(step(&l, &s, still, 1.6, -9, tau), ETHD_GUARD_TORQUE);
+  is(tau, 1.5, -1.5);
+  l.torque = 0;
+  ck_assert_int_eq(step(&l, &s, still, 1e-300, 0, tau), ETHD_GUARD_TORQUE);
+  is(tau, 0, 0);
+  ck_assert_uint_eq(s.counts[1], 2); /* ticks, not joints */
+}
+END_TEST
+
+/* 100 Nm/s: 0.1 Nm a tick, from the torque that was commanded, not the one that was asked for. */
+START_TEST(test_rate) {
+  ethd_limits l = ethd_limits_none();
+  ethd_guard_state s = {0};
+  double tau[2];
+  l.torque_rate = 100;
+  ck_assert_int_eq(step(&l, &s, still, 0.05, -0.05, tau), 0);
+  for (int i = 1; i <= 5; i++) {
+    ck_assert_int_eq(step(&l, &s, still, 9, -9, tau), ETHD_GUARD_RATE);
+    is(tau, 0.05 + 0.1 * i, -0.05 - 0.1 * i);
+  }
+  ck_assert_int_eq(step(&l, &s, still, 0.5, -0.5, tau), 0);
+  ck_assert_uint_eq(s.counts[2], 5);
+}
+END_TEST
+
+/* A longer step may change more. */
+START_TEST(test_rate_over_missed_ticks) {
+  ethd_limits l = ethd_limits_none();
+  ethd_guard_state s = {0};
+  double tau[2] = {9, 0};
+  l.torque_rate = 100;
+  ck_assert_int_eq(ethd_guard_step(&l, &s, &pose, still, 0.005, tau), ETHD_GUARD_RATE);
+  is(tau, 0.5, 0);
+}
+END_TEST
+
+/* Torque before rate: both bits when both had to act; the rate's result stays within the torque limit. */
+START_TEST(test_torque_then_rate) {
+  ethd_limits l = ethd_limits_none();
+  ethd_guard_state s = {0};
+  double tau[2];
+  l.torque = 0.25;
+  l.torque_rate = 100;
+  ck_assert_int_eq(step(&l, &s, still, 5, 0.02, tau), ETHD_GUARD_TORQUE | ETHD_GUARD_RATE);
+  is(tau, 0.1, 0.02);
+  (void)step(&l, &s, still, 5, 0.02, tau);
+  ck_assert_int_eq(step(&l, &s, still, 5, 0.02, tau), ETHD_GUARD_TORQUE);
+  is(tau, 0.25, 0.02);
+}
+END_TEST
+
+START_TEST(test_finite) {
+  const double bad[] = {NAN, INFINITY, -INFINITY};
+  ethd_limits l = ethd_limits_none();
+  l.torque = 1;
+  for (int i = 0; i < 6; i++) {
+    ethd_guard_state s = {.last = {0.5, 0.5}};
+    double tau[2];
+    int32_t bits = step(&l, &s, still, i % 2 ? bad[i / 2] : 0.3, i % 2 ? 0.3 : bad[i / 2], tau);
+    ck_assert_int_eq(bits, ETHD_GUARD_FINITE); /* zero torque is no clamping */
+    is(tau, 0, 0);
+    ck_assert_uint_eq(s.counts[0], 1);
+  }
+}
+END_TEST
+
+/* F = -20 v until slower than 20 mm/s; then nothing, until cleared. */
+START_TEST(test_stop) {
+  ethd_limits l = ethd_limits_none();
+  ethd_guard_state s = {0};
+  double tau[2];
+  l.speed = 0.5;
+  ck_assert_int_eq(step(&l, &s, (ethd_vec){0.3, 0.4}, 1, 1, tau), 0);
+  is(tau, 1, 1);
+  ck_assert_int_eq(step(&l, &s, (ethd_vec){0.3, 0.41}, 1, 1, tau), ETHD_GUARD_SPEED);
+  is(tau, 0.25 * -20 * 0.3, 0.25 * -20 * 0.41);
+  ck_assert_int_eq(step(&l, &s, (ethd_vec){-0.1, 0.02}, 1, 1, tau), 0); /* within, and still stopping */
+  is(tau, 0.25 * 20 * 0.1, 0.25 * -20 * 0.02);
+  ck_assert_int_eq(s.stopped, 0);
+  (void)step(&l, &s, (ethd_vec){0.012, 0.0159}, 1, 1, tau);
+  is(tau, 0, 0);
+  ck_assert_int_eq(s.stopped, 1);
+  ck_assert_int_eq(step(&l, &s, (ethd_vec){2, 0}, 1, 1, tau), ETHD_GUARD_SPEED);
+  is(tau, 0, 0);
+  ck_assert_uint_eq(s.counts[3], 2);
+}
+END_TEST
+
+/* Not a number is too fast, and out of any workspace that has a bound. */
+START_TEST(test_nan_fails) {
+  ethd_limits l = ethd_limits_none();
+  ethd_guard_state s = {0};
+  ethd_pose nowhere = pose;
+  double tau[2];
+  ck_assert_int_eq(step(&l, &s, (ethd_vec){NAN, 0}, 1, 1, tau), ETHD_GUARD_SPEED | ETHD_GUARD_FINITE);
+  is(tau, 0, 0);
+  nowhere.x.y = NAN;
+  tau[0] = tau[1] = 1;
+  memset(&s, 0, sizeof s);
+  ck_assert_int_eq(ethd_guard_step(&l, &s, &nowhere, still, 0.001, tau), ETHD_GUARD_WORKSPACE);
+}
+END_TEST
+
+START_TEST(test_workspace) {
+  const double bounds[4] = {0.31, 0.29, 0.21, 0.19}; /* each leaves (0.3, 0.2) outside */
+  for (int i = 0; i < 4; i++) {
+    ethd_limits l = ethd_limits_none();
+    ethd_guard_state s = {0};
+    double tau[2];
+    l.workspace[i] = i % 2 ? (i == 1 ? 0.3 : 0.2) : (i == 0 ? 0.3 : 0.2);
+    ck_assert_int_eq(step(&l, &s, still, 1, 1, tau), 0); /* on the bound is within */
+    l.workspace[i] = bounds[i];
+    ck_assert_int_eq(step(&l, &s, still, 1, 1, tau), ETHD_GUARD_WORKSPACE);
+    is(tau, 0, 0);
+    ck_assert_int_eq(s.stopping, ETHD_GUARD_WORKSPACE);
+    ck_assert_uint_eq(s.counts[4], 1);
+  }
+}
+END_TEST
+
+/* The stop's damping obeys the torque limit, and no rate. */
+START_TEST(test_stop_and_the_other_limits) {
+  ethd_limits l = ethd_limits_none();
+  ethd_guard_state s = {.last = {0.4, 0}};
+  double tau[2];
+  l.speed = 0.5;
+  l.torque = 2;
+  l.torque_rate = 1;
+  ck_assert_int_eq(step(&l, &s, (ethd_vec){1, 0}, 0.4, 0, tau), ETHD_GUARD_SPEED | ETHD_GUARD_TORQUE);
+  is(tau, -2, 0);
+}
+END_TEST
+
+/* Without latch only the tick of the breach is stopped. */
+START_TEST(test_without_latch) {
+  ethd_limits l = ethd_limits_none();
+  ethd_guard_state s = {0};
+  double tau[2];
+  l.speed = 0.5;
+  l.latch = 0;
+  ck_assert_int_eq(step(&l, &s, (ethd_vec){1, 0}, 1, 1, tau), ETHD_GUARD_SPEED);
+  is(tau, -5, 0);
+  ck_assert_int_eq(step(&l, &s, (ethd_vec){0.4, 0}, 1, 1, tau), 0);
+  is(tau, 1, 1);
+  ck_assert(s.stopping == 0 && s.stopped == 0);
+}
+END_TEST
+
+START_TEST(test_narrower) {
+  ethd_limits a = ethd_limits_none(), b = ethd_limits_none();
+  a.torque = 1, b.torque = 2;
+  b.torque_rate = 3;
+  a.speed = 4;
+  b.speed = 0.4;
+  a.workspace[0] = 0.1, b.workspace[0] = 0.2;
+  a.workspace[1] = 0.5;
+  b.workspace[2] = -1;
+  a.workspace[3] = 5, b.workspace[3] = 4;
+  b.step_time = 1e-4;
+  a.latch = 0, b.latch = 1;
+  for (int i = 0; i < 2; i++) {
+    ethd_limits n = i ? ethd_limits_narrower(&a, &b) : ethd_limits_narrower(&b, &a);
+    ck_assert(n.torque == 1 && n.torque_rate == 3 && n.speed == 0.4 && n.step_time == 1e-4 && n.latch == 1);
+    ck_assert(n.workspace[0] == 0.2 && n.workspace[1] == 0.5 && n.workspace[2] == -1 && n.workspace[3] == 4);
+  }
+  b.latch = 0;
+  ck_assert_int_eq(ethd_limits_narrower(&a, &b).latch, 0);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("guard");
+  TCase *t = tcase_create("guard");
+  tcase_add_test(t, test_no_limits);
+  tcase_add_test(t, test_torque);
+  tcase_add_test(t, test_rate);
+  tcase_add_test(t, test_rate_over_missed_ticks);
+  tcase_add_test(t, test_torque_then_rate);
+  tcase_add_test(t, test_finite);
+  tcase_add_test(t, test_stop);
+  tcase_add_test(t, test_nan_fails);
+  tcase_add_test(t, test_workspace);
+  tcase_add_test(t, test_stop_and_the_other_limits);
+  tcase_add_test(t, test_without_latch);
+  tcase_add_test(t, test_narrower);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}
