@@ -1,0 +1,329 @@
+/* Changing laws while they work: at the tick of a swap the torque is what the old setup gives, to the
+   last bit; afterwards the difference fades in a straight line. Motion is scripted, so that a controller
+   that swaps and one that doesn't see the same. */
+#include <math.h>
+#include <string.h>
+
+#include "controller.h"
+#include "unit/draw.h"
+#include "unit/rig.h"
+
+/* A tap: in at 0.4 m/s, stopped 3 mm behind the wall, pressed, pulled out; the finger goes before. */
+enum { TAP = 160 };
+
+static motion tap(int tick) {
+  double t = 0.001 * tick, d, v;
+  if (tick < 50) {
+    v = 0.4 * (1 - t * t / 0.0025);
+    d = 0.0103 - 0.4 * (t - t * t * t / 0.0075);
+  } else if (tick < 100) {
+    v = 0.05 * sin(125.6 * (t - 0.05));
+    d = -0.0030 - 0.0004 * (1 - cos(125.6 * (t - 0.05)));
+  } else {
+    v = -8 * (t - 0.1);
+    d = -0.0030 + 4 * (t - 0.1) * (t - 0.1);
+  }
+  return rig_at(d, v, 0.0012 * sin(40 * t));
+}
+
+static const ethd_transition_law *const strategies[] = {&ethd_transition_abrupt, &ethd_transition_smooth,
+                                                        &ethd_transition_offset};
+
+/* tau = beta tau_t + J^T (F_e + F_d) with the default gains, from what a tick reports. */
+static void torque_of(const ethd_trace *t, double tau[2]) {
+  const double *q = t->sense.q, f[2] = {t->fe[0] + t->fd[0], t->fe[1] + t->fd[1]};
+  for (int i = 0; i < 2; i++)
+    tau[i] = t->beta * (40 * t->eps_q[i] + t->eps_q_dot[i]) + 0.25 * (cos(q[i]) * f[1] - sin(q[i]) * f[0]);
+}
+
+static double bound_of(double delta) { return fabs(delta) * (1 + 1e-9) + 1e-13; }
+
+/* _i: from which to which. At every tick of the tap. */
+START_TEST(test_every_tick_of_a_tap) {
+  const ethd_transition_law *from = strategies[_i % 3], *to = strategies[_i / 3];
+  rig r, stays;
+  int moved = 0;
+  rig_open(&stays, RIG_WALL);
+  ethd_setup_transition(&stays.setup, from);
+  rig_start(&stays);
+  rig_open(&r, RIG_WALL);
+  for (int at = 0; at < TAP; at++) {
+    motion m = tap(at);
+    ethd_setup_transition(&r.setup, from);
+    rig_start(&r);
+    for (int tick = 0; tick < at; tick++) {
+      motion before = tap(tick);
+      rig_step(&r, &before);
+    }
+    ethd_setup_transition(&r.setup, to);
+    rig_post(&r);
+    stays.sense.time_ns = r.sense.time_ns;
+    rig_step(&stays, &m);
+    rig_step(&r, &m);
+    ck_assert_mem_eq(r.trace.tau, stays.trace.tau, sizeof r.trace.tau);
+    double new[2], delta[2], fade[2], last[2];
+    torque_of(&r.trace, new);
+    for (int i = 0; i < 2; i++) last[i] = delta[i] = r.trace.tau[i] - new[i];
+    moved += fabs(delta[0]) > 0.1;
+    for (int k = 1; k <= 22 && at + k < TAP; k++) {
+      m = tap(at + k);
+      rig_step(&r, &m);
+      torque_of(&r.trace, new);
+      for (int i = 0; i < 2; i++) {
+        fade[i] = r.trace.tau[i] - new[i];
+        ck_assert_double_le(fabs(fade[i] - last[i]), bound_of(delta[i] / 20));
+        ck_assert_double_eq_tol(fade[i], k < 20 ? delta[i] * (1 - k / 20.0) : 0, 1e-12);
+        last[i] = fade[i];
+      }
+    }
+    ethd_control_destroy(r.control);
+    r.control = NULL;
+  }
+  if (from != to) ck_assert_int_gt(moved, 20); /* there was something to bridge */
+  if (from == to) ck_assert_int_eq(moved, 0);
+  rig_close(&r);
+  rig_close(&stays);
+}
+END_TEST
+
+/* ---- ten thousand random ones ---- */
+
+static const char *const scenes[] = {
+    RIG_WALL, RIG_WALL "halfplane 0 -1 -0.237\n",
+    "segment 0.238 0.1 0.238 0.4\ncircle 0.2 0.23 0.035\n",
+    "material soft k_e=300\npolygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6 material=soft\n"};
+
+static void random_p(const ethd_param *rows, uint32_t count, uint64_t n, double *p) {
+  for (uint32_t i = 0; i < count; i++) {
+    if (ethd_param_words(&rows[i])) p[i] = draw(n + i, 0, 1) < 0.5 ? 0 : 1;
+    else if (isfinite(rows[i].max) || draw(n + i + 20, 0, 1) < 0.8) p[i] = rows[i].def * draw(n + i, 0.5, 1.5);
+    else p[i] = INFINITY;
+    if (p[i] < rows[i].min) p[i] = rows[i].min;
+    if (p[i] > rows[i].max) p[i] = rows[i].max;
+    if (!strcmp(rows[i].name, "window")) p[i] = floor(p[i]);
+  }
+}
+
+static void randomize(ethd_setup *s, uint64_t n, ethd_scene *const scene[4]) {
+  static const ethd_contact_law *const contacts[] = {&ethd_contact_kelvin_voigt, &ethd_contact_spring,
+                                                     &ethd_contact_hunt_crossley};
+  n *= 1000;
+  ethd_setup_transition(s, strategies[draw_bits(n) % 3]);
+  ethd_setup_contact(s, contacts[draw_bits(n + 1) % 3]);
+  ethd_setup_velocity(s, (ethd_velocity_method)(draw_bits(n + 2) % ETHD_VELOCITY_COUNT));
+  ethd_setup_filter(s, (ethd_filter_method)(draw_bits(n + 3) % ETHD_FILTER_COUNT));
+  random_p(s->transition->law.params, s->transition->law.param_count, n + 100, s->transition_p);
+  random_p(s->contact->law.params, s->contact->law.param_count, n + 200, s->contact_p);
+  random_p(s->tracking->law.params, s->tracking->law.param_count, n + 300, s->tracking_p);
+  const ethd_method *v = &ethd_velocity_methods[s->velocity], *f = &ethd_filter_methods[s->filter];
+  random_p(v->params, v->param_count, n + 400, s->velocity_p);
+  random_p(f->params, f->param_count, n + 500, s->filter_p);
+  s->finger_radius = draw(n + 4, 0.006, 0.009);
+  s->finger_radius_max = draw(n + 5, 0.009, 0.0105);
+  s->v_hysteresis = draw_bits(n + 6) % 2 ? draw(n + 6, 0, 0.02) : 0;
+  s->swap_time = draw_bits(n + 7) % 5 ? draw(n + 7, 0, 0.05) : 0;
+  if (draw_bits(n + 8) % 4 == 0) s->scene = draw_bits(n + 9) % 5 ? scene[draw_bits(n + 9) % 5 - 1] : NULL;
+}
+
+/* Speeds by difference, the finger by readings every third tick or known; now and then missed ticks. */
+static ethd_sense scripted(rig *r, int tick) {
+  motion m = tap(tick % TAP);
+  ethd_sense s = rig_sense(&r->setup.arm, &m);
+  if (tick / TAP % 2) s.have = ETHD_HAVE_FINGER;
+  if (tick / TAP % 4 > 1) {
+    s.have &= ~ETHD_HAVE_FINGER;
+    s.centre[0] = m.xf.x - m.x.x + 1e-4 * draw_normal((uint64_t)tick);
+    if (tick % 3 == 0) s.have |= ETHD_HAVE_CENTRE;
+  }
+  s.missed = draw((uint64_t)tick + 7777, 0, 1) < 0.03;
+  s.time_ns = r->sense.time_ns + 1000000 * (1 + s.missed);
+  s.sample_ns = s.time_ns - 2000000;
+  return s;
+}
+
+/* The same controller without a fade. */
+static void copy_without_fade(ethd_control *to, const ethd_control *from) {
+  memcpy(to, from, sizeof *to);
+  to->state.fade.elapsed = INFINITY;
+}
+
+START_TEST(test_ten_thousand) {
+  static ethd_control plain;
+  ethd_scene *scene[4];
+  rig r;
+  int tick = 0, nested = 0, moved = 0;
+  for (int i = 0; i < 4; i++) scene[i] = rig_scene(scenes[i]);
+  rig_open(&r, NULL);
+  r.setup.scene = scene[0];
+  rig_start(&r);
+  for (int n = 0; n < 10000; n++) {
+    ethd_sense s = scripted(&r, tick++);
+    randomize(&r.setup, (uint64_t)n, scene);
+    rig_post(&r);
+    ethd_command told, bare;
+    nested += !isinf(r.control->state.fade.elapsed);
+    ck_assert_int_eq(ethd_control_rehearse(r.control, &s, &told), ETHD_OK); /* the one that doesn't swap */
+    ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
+    ck_assert_int_eq(r.trace.swap, 1);
+    ck_assert_mem_eq(told.torque, r.trace.tau, sizeof told.torque);
+    ck_assert_int_eq(rig_poll(&r).kind, ETHD_EVENT_TAKEN);
+    double delta[2], elapsed = 0, last[2];
+    memcpy(delta, r.control->state.fade.delta, sizeof delta);
+    memcpy(last, delta, sizeof last);
+    moved += fabs(delta[0]) > 0.1;
+    copy_without_fade(&plain, r.control);
+    for (int k = (int)(draw_bits((uint64_t)n) % 25); k > 0; k--) {
+      s = scripted(&r, tick++);
+      /* this estimator works with the commanded torque, fade included */
+      if (r.setup.velocity == ETHD_VELOCITY_KALMAN) copy_without_fade(&plain, r.control);
+      ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
+      ck_assert_int_eq(ethd_control_step(&plain, &s, &bare, NULL), ETHD_OK);
+      double dt = 0.001 * (double)(1 + s.missed), share;
+      elapsed += dt;
+      share = elapsed < r.setup.swap_time - 1e-10 ? 1 - elapsed / r.setup.swap_time : 0;
+      for (int i = 0; i < 2; i++) {
+        double fade = r.trace.tau[i] - bare.torque[i], grain = 1e-15 * fabs(bare.torque[i]) + 1e-12;
+        if (share == 0 && fade != 0) ck_abort_msg("swap %d: %g left of the fade", n, fade);
+        ck_assert_double_eq_tol(fade, share * delta[i], 1e-9 * fabs(delta[i]) + grain);
+        double most = r.setup.swap_time > dt ? fabs(delta[i]) * dt / r.setup.swap_time : fabs(delta[i]);
+        ck_assert_double_le(fabs(fade - last[i]), most * (1 + 1e-9) + 2 * grain);
+        last[i] = fade;
+      }
+    }
+  }
+  ck_assert_msg(nested > 3000 && moved > 3000, "%d swaps within a fade, %d with something to bridge", nested, moved);
+  rig_close(&r);
+  for (int i = 0; i < 4; i++) ethd_scene_destroy(scene[i]);
+}
+END_TEST
+
+/* ---- what each law finds ---- */
+
+static const ethd_trace *swap_to(rig *r, const ethd_transition_law *law, const motion *m) {
+  ethd_setup_transition(&r->setup, law);
+  rig_post(r);
+  return rig_step(r, m);
+}
+
+/* Into VO-B inside the wall: braking, even at rest; then one arrow a tick as ever. Out of it: eps is
+   forgotten and comes not back. */
+START_TEST(test_into_offset_and_out) {
+  rig r;
+  rig_open(&r, RIG_WALL);
+  ethd_setup_transition(&r.setup, &ethd_transition_smooth);
+  rig_start(&r);
+  motion m = rig_at(-0.002, 0, 0);
+  ck_assert_int_eq(rig_step(&r, &m)->state, ETHD_VO);
+  const ethd_trace *t = swap_to(&r, &ethd_transition_offset, &m);
+  ck_assert(t->state == ETHD_BRAKING && t->eps == 0);
+  t = rig_step(&r, &m);
+  ck_assert(t->state == ETHD_VO && fabs(t->eps - 0.002) < 1e-15);
+  t = swap_to(&r, &ethd_transition_smooth, &m);
+  ck_assert(t->state == ETHD_VO && t->eps == 0 && fabs(t->fe[0] - 5) < 1e-10);
+  t = swap_to(&r, &ethd_transition_offset, &m);
+  ck_assert(t->state == ETHD_BRAKING && t->eps == 0);
+  /* outside of the wall it starts transparent */
+  t = swap_to(&r, &ethd_transition_abrupt, &m);
+  m = rig_at(0.001, 0.1, 0);
+  ck_assert_int_eq(swap_to(&r, &ethd_transition_offset, &m)->state, ETHD_TRANSPARENT);
+  rig_close(&r);
+}
+END_TEST
+
+/* Other gains for the same law: its state stays. */
+START_TEST(test_same_law_keeps_its_state) {
+  rig r;
+  rig_open(&r, RIG_WALL);
+  rig_start(&r);
+  motion m = rig_at(-0.002, 0.3, 0);
+  rig_step(&r, &m);
+  r.setup.transition_p[0] = 50;
+  rig_post(&r);
+  const ethd_trace *t = rig_step(&r, &m);
+  ck_assert(t->state == ETHD_BRAKING && fabs(t->fd[0] - 15) < 1e-10);
+  m = rig_at(-0.002, 0, 0);
+  rig_step(&r, &m);
+  r.setup.contact_p[0] = 1000;
+  rig_post(&r);
+  m = rig_at(-0.003, 0, 0);
+  t = rig_step(&r, &m);
+  ck_assert(t->state == ETHD_VO && fabs(t->eps - 0.002) < 1e-15 && fabs(t->fe[0] - 1) < 1e-10);
+  rig_close(&r);
+}
+END_TEST
+
+/* The same setup again: no difference at all, ever. */
+START_TEST(test_nothing_new) {
+  rig r, stays;
+  rig_open(&r, RIG_WALL);
+  rig_open(&stays, RIG_WALL);
+  stays.setup.scene = r.scene;
+  rig_start(&r);
+  rig_start(&stays);
+  for (int tick = 0; tick < TAP; tick++) {
+    if (tick % 3 == 1) rig_post(&r);
+    motion m = tap(tick);
+    rig_step(&r, &m);
+    rig_step(&stays, &m);
+    ck_assert_mem_eq(r.trace.tau, stays.trace.tau, sizeof r.trace.tau);
+    (void)rig_poll(&r);
+  }
+  rig_close(&r);
+  rig_close(&stays);
+}
+END_TEST
+
+/* A thin wall that the ring has pulled itself through keeps its side, out of reach as well. */
+START_TEST(test_thin_wall_keeps_its_side) {
+  rig r;
+  rig_open(&r, "segment 0.238 0.1 0.238 0.4\n");
+  ethd_setup_transition(&r.setup, &ethd_transition_smooth);
+  rig_start(&r);
+  motion m = rig_at(0.001, 0.1, 0);
+  for (double d = 0.001; d > -0.05; d -= 0.005) {
+    m = rig_at(d, 0.1, 0);
+    rig_step(&r, &m);
+  }
+  const ethd_trace *t = swap_to(&r, &ethd_transition_offset, &m);
+  ck_assert(t->contacts == 1 && t->state == ETHD_BRAKING && fabs(t->d_re - (m.x.x - 0.25)) < 1e-12);
+  ck_assert_double_eq_tol(t->fd[0], 10, 1e-10); /* back to where it came from */
+  rig_close(&r);
+}
+END_TEST
+
+/* A soft start is a fade like any other. */
+START_TEST(test_swap_in_a_soft_start) {
+  rig r;
+  rig_open(&r, RIG_WALL);
+  rig_start(&r);
+  motion m = rig_at(-0.002, 0.01, 0.001);
+  ethd_sense bad = rig_sense(&r.setup.arm, &m), s = bad;
+  bad.q[0] = NAN;
+  rig_step(&r, &m);
+  rig_try(&r, &bad);
+  ethd_control_clear(r.control);
+  for (int i = 0; i < 5; i++) rig_step(&r, &m);
+  ethd_setup_transition(&r.setup, &ethd_transition_abrupt);
+  rig_post(&r);
+  ethd_command told;
+  ck_assert_int_eq(ethd_control_rehearse(r.control, &s, &told), ETHD_OK);
+  rig_step(&r, &m);
+  ck_assert_mem_eq(told.torque, r.trace.tau, sizeof told.torque);
+  rig_close(&r);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("swap");
+  TCase *t = tcase_create("swap");
+  tcase_add_loop_test(t, test_every_tick_of_a_tap, 0, 9);
+  tcase_add_test(t, test_ten_thousand);
+  tcase_add_test(t, test_into_offset_and_out);
+  tcase_add_test(t, test_same_law_keeps_its_state);
+  tcase_add_test(t, test_nothing_new);
+  tcase_add_test(t, test_thin_wall_keeps_its_side);
+  tcase_add_test(t, test_swap_in_a_soft_start);
+  tcase_set_timeout(t, 30);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}
