@@ -36,7 +36,7 @@ static const ethd_param cv[] = {
 static const ethd_param ca[] = {
     REFERENCE, COMPENSATION, LATENCY, NOISE, GATE,
     [KALMAN_DRIVE] = {"jerk", "m/s^3", 1e-2, 1e7, 400, "rms jerk of the finger"},
-    [CA_MEMORY] = {"memory", "s", 1e-3, INFINITY, 0.05, "how long an acceleration lasts; inf: it stays"},
+    [CA_MEMORY] = {"memory", "s", 1e-3, INFINITY, 0.08, "how long an acceleration lasts; inf: it stays"},
 };
 
 #define ROWS(table) table, sizeof table / sizeof *table
