@@ -252,7 +252,42 @@ START_TEST(test_same_law_keeps_its_state) {
 }
 END_TEST
 
-/* The same setup again: no difference at all, ever. */
+/* A force that grows with every step of the contact, to see whose state is whose. */
+static ethd_status growing_step(const double *p, void *state, double gap, double speed, int entering,
+                                double *force) ETHD_RT {
+  (void)p, (void)gap, (void)speed, (void)entering;
+  *force = -++*(double *)state;
+  return ETHD_OK;
+}
+
+#define GROWING \
+  {{sizeof(ethd_contact_law), ETHD_ABI, ETHD_CONTACT, 8, "growing", "counts", NULL, 0, NULL, NULL}, growing_step}
+static const ethd_contact_law growing = GROWING, growing_too = GROWING;
+
+START_TEST(test_state_of_other_laws) {
+  rig r;
+  rig_open(&r, RIG_WALL);
+  ethd_setup_transition(&r.setup, &ethd_transition_smooth);
+  ethd_setup_contact(&r.setup, &growing);
+  const double difference[] = {0, 1, 1}; /* b_t alone, on the difference of eps_q */
+  memcpy(r.setup.tracking_p, difference, sizeof difference);
+  rig_start(&r);
+  motion m = rig_at(-0.001, 0, 0.001);
+  for (int i = 1; i <= 5; i++) ck_assert_double_eq_tol(rig_step(&r, &m)->fe[0], i, 1e-12);
+  rig_post(&r); /* neither law changes: counting goes on, and eps_q of the last tick is known */
+  m = rig_at(-0.001, 0, 0.002);
+  const ethd_trace *t = rig_step(&r, &m);
+  ck_assert_double_eq_tol(t->fe[0], 6, 1e-12);
+  ck_assert_double_eq_tol(t->tau[0], 0.64 * 4 - 0.25 * 6, 1e-3);
+  ck_assert_double_eq_tol(rig_step(&r, &m)->tau[0], -0.25 * 7, 1e-4); /* nothing fades */
+  r.setup.contact = &growing_too;
+  rig_post(&r);
+  ck_assert_double_eq_tol(rig_step(&r, &m)->fe[0], 1, 1e-12);
+  rig_close(&r);
+}
+END_TEST
+
+/* The same setup again: no difference at all, ever, of anything that was estimated either. */
 START_TEST(test_nothing_new) {
   rig r, stays;
   rig_open(&r, RIG_WALL);
@@ -260,16 +295,50 @@ START_TEST(test_nothing_new) {
   stays.setup.scene = r.scene;
   rig_start(&r);
   rig_start(&stays);
-  for (int tick = 0; tick < TAP; tick++) {
+  for (int tick = 0; tick < 8 * TAP; tick++) {
     if (tick % 3 == 1) rig_post(&r);
-    motion m = tap(tick);
-    rig_step(&r, &m);
-    rig_step(&stays, &m);
-    ck_assert_mem_eq(r.trace.tau, stays.trace.tau, sizeof r.trace.tau);
+    ethd_sense s = scripted(&r, tick);
+    ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
+    ck_assert_int_eq(rig_try(&stays, &s), ETHD_OK);
+    r.trace.swap = 0;
+    ck_assert_mem_eq(&r.trace, &stays.trace, sizeof r.trace);
     (void)rig_poll(&r);
   }
   rig_close(&r);
   rig_close(&stays);
+}
+END_TEST
+
+/* A new estimator goes on from where the old one was: at a steady speed nothing is to be seen. */
+START_TEST(test_estimators_go_on) {
+  rig r;
+  rig_open(&r, NULL);
+  r.setup.tracking_p[0] = r.setup.tracking_p[1] = 0; /* no torque: the motion is scripted */
+  rig_start(&r);
+  for (int tick = 0; tick < 2000; tick++) {
+    ethd_sense s;
+    memset(&s, 0, sizeof s);
+    double t = 0.001 * tick;
+    s.time_ns = s.sample_ns = 1000000 * (int64_t)tick;
+    s.q[0] = 1.2 + 0.25 * t;
+    s.q[1] = -0.1 + 0.25 * t;
+    s.have = ETHD_HAVE_CENTRE | ETHD_HAVE_RING; /* the finger in R_0: 0.2 m/s along x */
+    s.ring[0] = 0.1 + 0.2 * t;
+    s.centre[1] = 0.2;
+    if (tick >= 500 && tick % 25 == 0) {
+      ethd_setup_velocity(&r.setup, (ethd_velocity_method)(tick / 25 % ETHD_VELOCITY_COUNT));
+      ethd_setup_filter(&r.setup, (ethd_filter_method)(tick / 25 % 2 ? ETHD_FILTER_CV : ETHD_FILTER_CA));
+      rig_post(&r);
+    }
+    ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
+    if (tick >= 499) {
+      for (int i = 0; i < 2; i++) ck_assert_double_eq_tol(r.trace.qd[i], 0.25, 2e-3);
+      ck_assert_double_eq_tol(r.trace.vf[0], 0.2, 2e-3);
+      ck_assert_double_eq_tol(r.trace.xf[0], 0.1 + 0.2 * t, 1e-5);
+    }
+    (void)rig_poll(&r);
+  }
+  rig_close(&r);
 }
 END_TEST
 
@@ -320,7 +389,9 @@ int main(void) {
   tcase_add_test(t, test_ten_thousand);
   tcase_add_test(t, test_into_offset_and_out);
   tcase_add_test(t, test_same_law_keeps_its_state);
+  tcase_add_test(t, test_state_of_other_laws);
   tcase_add_test(t, test_nothing_new);
+  tcase_add_test(t, test_estimators_go_on);
   tcase_add_test(t, test_thin_wall_keeps_its_side);
   tcase_add_test(t, test_swap_in_a_soft_start);
   tcase_set_timeout(t, 30);
