@@ -73,11 +73,11 @@ static void sort(sweep *s, uint32_t *a, uint32_t *b) {
 
 static bool share(const sweep *s, uint32_t e, uint32_t f) { return f == next(s, e) || e == next(s, f); }
 
-/* Edges with a common point p go over each other iff they leave it in one direction. */
+/* Edges side by side with a common point leave it to one side: they go over each other iff they leave it
+   in one direction. */
 static bool fold(const sweep *s, uint32_t e, uint32_t f) {
   uint32_t p = f == next(s, e) ? f : e;
-  uint32_t a = previous(s, p), b = next(s, p);
-  return precedes(s, p, a) == precedes(s, p, b) && orient(s, p, a, b) == 0;
+  return orient(s, p, previous(s, p), next(s, p)) == 0;
 }
 
 static bool cross(const sweep *s, uint32_t e, uint32_t f) {

@@ -45,7 +45,7 @@ START_TEST(test_out_of_reach) {
   for (int s = 0; s < 2000; s++) {
     object o = scene_random((ethd_shape)(scene_draw() % ETHD_SHAPE_COUNT));
     if (s % 2)
-      for (size_t k = 0; k < o.count && o.shape != ETHD_HALFPLANE && o.shape != ETHD_BOX; k++) o.p[k] *= 0.05;
+      for (size_t k = 0; k < o.count && o.shape != ETHD_HALFPLANE; k++) o.p[k] *= o.shape == ETHD_BOX ? 0.2 : 0.05;
     ethd_scene *scene = scene_build(&o, 1);
     size_t dropped = ethd_scene_out_of_reach(scene, &arm, 0.05);
     int reached = 0;

@@ -252,6 +252,9 @@ START_TEST(test_numbers_of_refusals) {
   const char *text = "circle 0 0 -3";
   ck_assert_int_eq(ethd_scene_parse(text, strlen(text), &s, &error), ETHD_E_RANGE);
   ck_assert(error.found == -3 && error.min == 0 && error.max == 1e6);
+  text = "circle 0 2e6 3";
+  ck_assert_int_eq(ethd_scene_parse(text, strlen(text), &s, &error), ETHD_E_RANGE);
+  ck_assert(error.found == 2e6 && error.min == -1e6 && error.max == 1e6);
   text = "box 1 2 3";
   ck_assert_int_eq(ethd_scene_parse(text, strlen(text), &s, &error), ETHD_E_SYNTAX);
   ck_assert(error.found == 3 && error.min == 5 && error.max == 5);

@@ -146,6 +146,45 @@ START_TEST(test_orientation_is_exact) {
 }
 END_TEST
 
+/* Whole numbers of 52 bits, nearly on a line, against 128 bits. */
+START_TEST(test_orientation_of_whole_numbers) {
+  __extension__ typedef __int128 wide;
+  int zeros = 0, others = 0;
+  seed = 4;
+  for (int c = 0; c < 100000; c++) {
+    int64_t ux = (int64_t)(draw() % (1 << 24)) - (1 << 23), uy = (int64_t)(draw() % (1 << 24)) - (1 << 23);
+    int64_t p[3][2];
+    for (int k = 0; k < 3; k++) {
+      int64_t t = (int64_t)(draw() % (1 << 28)) - (1 << 27);
+      p[k][0] = t * ux + (int64_t)(draw() % 16 == 0);
+      p[k][1] = t * uy + (int64_t)(draw() % 16 == 0);
+    }
+    wide l = (wide)(p[1][0] - p[0][0]) * (p[2][1] - p[0][1]), r = (wide)(p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
+    int expected = (l > r) - (l < r);
+    ethd_vec v[3];
+    for (int k = 0; k < 3; k++) v[k] = (ethd_vec){0x1p-40 * (double)p[k][0], 0x1p-40 * (double)p[k][1]};
+    ck_assert_int_eq(ethd__orient(v[0], v[1], v[2]), expected);
+    zeros += expected == 0;
+    others += expected != 0;
+  }
+  ck_assert(zeros > 10000 && others > 10000);
+}
+END_TEST
+
+/* Beside the diagonal, in steps of an ulp of 1/2 (Kettner et al. 2008): rounded differences get it wrong. */
+START_TEST(test_orientation_beside_a_diagonal) {
+  ethd_vec q = {12, 12}, r = {24, 24};
+  for (int i = 0; i < 256; i++)
+    for (int j = 0; j < 256; j++) {
+      ethd_vec p = {0.5 + i * 0x1p-53, 0.5 + j * 0x1p-53};
+      int expected = (p.y > p.x) - (p.y < p.x);
+      ck_assert_int_eq(ethd__orient(p, q, r), expected);
+      ck_assert_int_eq(ethd__orient(q, r, p), expected);
+      ck_assert_int_eq(ethd__orient(r, q, p), -expected);
+    }
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("scene_sweep");
   TCase *all = tcase_create("all");
@@ -154,6 +193,8 @@ int main(void) {
   tcase_add_test(all, test_large_polygon);
   tcase_add_test(all, test_diagonal_comb);
   tcase_add_test(all, test_orientation_is_exact);
+  tcase_add_test(all, test_orientation_of_whole_numbers);
+  tcase_add_test(all, test_orientation_beside_a_diagonal);
   suite_add_tcase(suite, all);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_ENV);

@@ -131,6 +131,23 @@ START_TEST(test_channel_and_corner) {
 }
 END_TEST
 
+/* A foot a nanometre from a corner: the edge's normal, although the corner is as near in double. */
+START_TEST(test_foot_beside_a_vertex) {
+  static const double there[] = {0, 0, 1, 0, 2, -1}, back[] = {2, -1, 1, 0, 0, 0};
+  for (int i = 0; i < 2; i++) {
+    ethd_scene *s = scene_one(ETHD_POLYLINE, 6, i ? back : there);
+    ethd_vec x = {1 - 1e-9, 0.5};
+    ethd_nearest q;
+    ethd_touch t[2];
+    ethd_scene_query(s, x, &q);
+    ck_assert(q.distance == 0.5 && q.n.x == 0 && q.n.y == -1 && q.point.x == x.x);
+    ck_assert_uint_eq(ethd_scene_touches(s, x, 1, t, 2), 1);
+    ck_assert(t[0].feature == 2 * i && t[0].n.x == 0 && t[0].side == (i ? -1 : 1));
+    ethd_scene_destroy(s);
+  }
+}
+END_TEST
+
 START_TEST(test_shared_vertices_count_once) {
   /* A straight line of four edges, seen from over its inner points, as wall and as polygon. */
   ethd_scene *s = SCENE_ONE(ETHD_POLYLINE, 0, 0, 0.1, 0, 0.2, 0, 0.30000000000000004, 0, 1, 0);
@@ -231,6 +248,7 @@ int main(void) {
   tcase_add_loop_test(all, test_touches, ETHD_POLYGON, ETHD_SHAPE_COUNT);
   tcase_add_test(all, test_touches_of_convex_solids);
   tcase_add_test(all, test_channel_and_corner);
+  tcase_add_test(all, test_foot_beside_a_vertex);
   tcase_add_test(all, test_shared_vertices_count_once);
   tcase_add_test(all, test_order_and_overflow);
   tcase_add_test(all, test_follow);
