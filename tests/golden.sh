@@ -1,0 +1,69 @@
+#!/bin/sh
+# The same seed gives the same bytes: on every compiler, at -O0 and -O2, and whatever variants libm picks.
+# `tests/golden.sh renew` writes the hashes anew: after a change that is meant to change numbers.
+set -eu
+bin=${BUILD:-build}/bin
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# A finger that shakes within the ring, a frame every 3 ticks, a ray lost now and then: sums, products and
+# quotients only, which every awk works out alike.
+frames() {
+  awk 'BEGIN {
+    printf "t_s,q1_rad,q2_rad,t_ring_s"; for (k = 0; k < 16; k++) printf ",r%d_m", k; print ""
+    for (i = 0; i < 600; i++) {
+      s = (i % 120 - 60) / 60; wave = s * (1 - (s < 0 ? -s : s))
+      printf "%.17g,%.17g,%.17g", i / 1000, 1.6 + wave / 5, -0.03 + wave / 9
+      if (i % 3) { printf ","; for (k = 0; k < 16; k++) printf ","; print ""; continue }
+      printf ",%.17g", i / 1000 - 0.002
+      for (k = 0; k < 16; k++)
+        if ((i + 7 * k) % 41 == 0) printf ",nan"
+        else printf ",%.17g", 0.0045 + 0.002 * wave * (k < 8 ? 1 : -1) * (8 - (k % 8)) / 8 + ((i * 7 + k * 13) % 17 - 8) / 1e5
+      print ""
+    }
+  }'
+}
+
+# Every velocity, fit and filter in turn, with every transition.
+replays() { # FOLDER
+  set -- "$1" kasa vertex-mean centroid robust
+  for velocity in lowpass difference lsq foaw kalman; do
+    for filter in ca hold alpha-beta cv; do
+      law=$(echo "abrupt smooth offset" | cut -d' ' -f$((${#velocity} % 3 + 1)))
+      printf '[velocity]\nmethod = %s\n[finger_fit]\nmethod = %s\n[finger_filter]\nmethod = %s\n[transition]\nlaw = %s\n[scene]\nfile = %s\n' \
+        $velocity "$2" $filter $law "$bin/../share/ethd/room.scene" >"$work/replay.ini"
+      "$bin/ethd-replay" --config "$work/replay.ini" --in "$work/frames.csv" --out "$1/$velocity-$filter-$2.csv" >/dev/null
+      first=$1 fit=$2
+      shift 2
+      set -- "$first" "$@" "$fit"
+    done
+  done
+}
+
+run() { # FOLDER: every plant, law and speed
+  mkdir "$1"
+  for plant in n b p; do
+    "$bin/ethd-tap" --plant $plant --taps 3 --seed 7 --csv "$1/$plant.csv" --record "$1/$plant" >/dev/null
+    rm "$1/$plant/config.ini" # names this machine's folders
+  done
+  replays "$1"
+  (cd "$1" && find . -type f | LC_ALL=C sort | xargs sha256sum)
+}
+
+frames >"$work/frames.csv"
+run "$work/plain" >"$work/plain.sums"
+if [ "${1:-}" = renew ]; then
+  cp "$work/plain.sums" tests/golden.sums
+  echo "tests/golden.sums is new"
+  exit 0
+fi
+for mask in -FMA,-AVX2_Usable,-FMA_Usable -FMA,-AVX2,-AVX512F,-FMA4,-AVX -SSE4_1,-FMA,-AVX2,-ERMS; do
+  GLIBC_TUNABLES=glibc.cpu.hwcaps=$mask run "$work/masked" >"$work/masked.sums"
+  cmp "$work/plain.sums" "$work/masked.sums" || { echo "the bytes change with GLIBC_TUNABLES $mask"; exit 1; }
+  rm -r "$work/masked"
+done
+diff tests/golden.sums "$work/plain.sums" || {
+  echo "the bytes differ from tests/golden.sums; if numbers were meant to change: tests/golden.sh renew"
+  exit 1
+}
+echo "$(wc -l <tests/golden.sums) files have their golden bytes, under 3 masks of processor features"
