@@ -121,8 +121,8 @@ ethd_status ethd_replace_commit(ethd_replace *replace, char message[ETHD_MESSAGE
   failed |= fclose(replace->file) != 0;
   if (!failed && replace->temporary) failed = rename(replace->temporary, replace->path) != 0;
   if (failed) {
-    if (!errno) errno = EIO;
-    status = refuse(path, message);
+    status = errno ? refuse(path, message)
+                   : ethd__say(message, ETHD_E_FILE, "%s: a write failed; is there room?", path);
     if (replace->temporary) unlink(replace->temporary);
   }
   release(replace);

@@ -178,6 +178,13 @@ START_TEST(test_transition) {
   ck_assert(transition_value(&s, "beta_min") == 0.3);
   ck_assert(transition_value(&s, "b_d") == 100); /* dropped on the way */
   ck_assert(c->setup.transition == &ethd_transition_offset && transition_value(&c->setup, "b_d") == 70);
+  ethd_config *empty = parse(""); /* nothing chosen but by a command */
+  s = empty->setup;
+  ck_assert_int_eq(ethd_config_set(empty, "transition.beta_min", "0.4", &s, message), ETHD_OK);
+  ck_assert_int_eq(ethd_config_transition(empty, "smooth", &s, message), ETHD_OK);
+  ck_assert(transition_value(&s, "beta_min") == 0.4);
+  ethd_config_free(empty);
+  s = c->setup;
   ethd_setup before = s;
   ck_assert_int_eq(ethd_config_transition(c, "kelvin-voigt", &s, message), ETHD_E_UNKNOWN);
   ck_assert_str_eq(message, "transition.law: found \"kelvin-voigt\", abrupt, smooth, offset is allowed");

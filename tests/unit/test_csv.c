@@ -1,9 +1,12 @@
 /* CSV files in and out. */
 #include <check.h>
+#include <fcntl.h>
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -173,16 +176,48 @@ START_TEST(test_old_file_stays) {
 END_TEST
 
 START_TEST(test_no_place) {
-  struct stat info;
   ck_assert_ptr_null(ethd_csv_create("/nowhere/x.csv", "a", message));
   ck_assert_str_eq(message, "/nowhere/x.csv: No such file or directory");
   ck_assert_ptr_null(ethd_csv_create(folder, "a", message));
   ck_assert(strstr(message, "is a folder"));
-  ck_assert_int_eq(ethd_text_write("/dev/null", "x", 1, message), ETHD_OK);
-  ck_assert(stat("/dev/null", &info) == 0 &&
-            S_ISCHR(info.st_mode)); /* a device is written to, not replaced */
-  ck_assert_int_eq(ethd_text_write("/dev/full", "x", 1, message), ETHD_E_FILE);
-  ck_assert_str_eq(message, "output: No space left on device");
+}
+END_TEST
+
+/* What isn't a file is written to, not replaced. */
+START_TEST(test_pipe) {
+  struct stat info;
+  char got[4] = "";
+  ck_assert_int_eq(mkfifo(path, 0600), 0);
+  int reader = open(path, O_RDWR | O_NONBLOCK);
+  ck_assert_int_ge(reader, 0);
+  ck_assert_int_eq(ethd_text_write(path, "x", 1, message), ETHD_OK);
+  ck_assert_int_eq(read(reader, got, sizeof got), 1);
+  ck_assert_int_eq(got[0], 'x');
+  ck_assert(lstat(path, &info) == 0 && S_ISFIFO(info.st_mode));
+  close(reader);
+}
+END_TEST
+
+/* No byte more fits: the old file stays, nothing is left beside it. */
+START_TEST(test_no_room) {
+  static char big[1 << 20];
+  struct rlimit before, none;
+  static const char *const sentences[] = {"File too large", "a write failed; is there room?"};
+  char says[128];
+  ck_assert_int_eq(ethd_text_write(path, "old", 3, message), ETHD_OK);
+  ck_assert_int_eq(getrlimit(RLIMIT_FSIZE, &before), 0);
+  none = before;
+  none.rlim_cur = 0;
+  signal(SIGXFSZ, SIG_IGN);
+  for (size_t length = 1; length <= sizeof big; length *= 1024) { /* small: seen when it is closed */
+    ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &none), 0);
+    ethd_status status = ethd_text_write(path, big, length, message);
+    ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &before), 0);
+    ck_assert_int_eq(status, ETHD_E_FILE);
+    snprintf(says, sizeof says, "%s: %s", path, sentences[length > 65536]);
+    ck_assert_str_eq(message, says);
+    check_content("old");
+  }
 }
 END_TEST
 
@@ -254,6 +289,8 @@ int main(void) {
   tcase_add_test(all, test_round_trip);
   tcase_add_test(all, test_old_file_stays);
   tcase_add_test(all, test_no_place);
+  tcase_add_test(all, test_pipe);
+  tcase_add_test(all, test_no_room);
   tcase_add_test(all, test_keeps_mode_and_link);
   tcase_add_test(all, test_mutations);
   tcase_add_test(all, test_number);
