@@ -175,6 +175,11 @@ static ethd_config *with_wall(ethd_config *config, const char *path) {
   return walled;
 }
 
+static const char *base_name(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash ? slash + 1 : path;
+}
+
 static ethd_config *load_config(char **path) {
   char message[ETHD_MESSAGE_MAX];
   ethd_config *config;
@@ -231,7 +236,8 @@ int main(int argc, char **argv) {
   study.config = loaded;
   check(ethd__study_prepare(&study, message), message);
   const ethd__plan plan = {&study, arg.laws.words, arg.laws.count, (uint64_t)arg.taps};
-  const ethd__heading heading = {arg.plant, config, arg.finger, arg.scale, arg.scaled};
+  check(ethd__plan_check(&plan, message), message);
+  const ethd__heading heading = {arg.plant, arg.config ? arg.config : base_name(config), arg.finger, arg.scale, arg.scaled};
   ethd__catch_interrupt();
   int code = run(&plan, &heading);
   ethd__movement_free(&study.movement);

@@ -33,6 +33,28 @@ void ethd__cells_free(ethd__cell *cells) {
 
 /* ---- running ---- */
 
+static ethd_status check_law(const ethd__plan *plan, const char *law, char *message) {
+  ethd__stage stage;
+  ethd_sim_tap tap;
+  ethd_status status = ethd__stage_open(plan->study, law, &stage, message);
+  if (status) return status;
+  for (size_t i = 0; !status && i < plan->study->speed_count; i++) {
+    status = ethd__stage_draw(&stage, &plan->study->speeds[i], 0, &tap);
+    if (status)
+      (void)ethd__say(message, status, "speed %s: the touch: %s", plan->study->speeds[i].word,
+                      ethd_status_sentence(status));
+  }
+  ethd__stage_close(&stage);
+  return status;
+}
+
+ethd_status ethd__plan_check(const ethd__plan *plan, char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = ETHD_OK;
+  for (size_t law = 0; !status && law < plan->law_count; law++)
+    status = check_law(plan, plan->laws[law], message);
+  return status;
+}
+
 static ethd_status run_cell(const ethd__plan *plan, ethd__stage *stage, ethd__output *output,
                             ethd__cell *cells, size_t index, char *message) {
   ethd__cell *cell = &cells[index];

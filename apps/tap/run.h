@@ -16,6 +16,9 @@ typedef struct ethd__plan {
 ethd__cell *ethd__cells_create(const ethd__plan *plan);
 void ethd__cells_free(ethd__cell *cells);
 
+/* Refuses what the first taps would stumble over: unknown laws, setups that don't fit, a touch out of reach. */
+ETHD_MUST_CHECK ethd_status ethd__plan_check(const ethd__plan *plan, char message[ETHD_MESSAGE_MAX]);
+
 /* Fills the cells, laws outermost. Ends early, with ETHD_OK, once ethd__stop is set. */
 ETHD_MUST_CHECK ethd_status ethd__cells_run(const ethd__plan *plan, ethd__output *output, ethd__cell *cells,
                                             char message[ETHD_MESSAGE_MAX]);

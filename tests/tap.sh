@@ -1,0 +1,112 @@
+#!/bin/sh
+# ethd-tap as its users see it.
+set -eu
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+tap=$BUILD/bin/ethd-tap
+fail() { echo "$*"; exit 1; }
+
+# The same seed gives the same bytes; another one doesn't.
+"$tap" --taps 6 --csv "$folder/a.csv" >"$folder/a.txt"
+"$tap" --taps 6 --csv "$folder/b.csv" >"$folder/b.txt"
+"$tap" --taps 6 --seed 2 --csv "$folder/c.csv" >"$folder/c.txt"
+cmp "$folder/a.csv" "$folder/b.csv"
+cmp "$folder/a.txt" "$folder/b.txt"
+cmp -s "$folder/a.csv" "$folder/c.csv" && fail "seed 2 gives what seed 1 gives"
+header=tap,transition,speed,seed,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m,t_rvo_s,t_of_s,peak_force_n
+[ "$(head -n 1 "$folder/a.csv")" = "$header" ] || fail "the header is $(head -n 1 "$folder/a.csv")"
+[ "$(wc -l <"$folder/a.csv")" = 37 ] || fail "not 6 taps in 6 cells"
+
+# A tap is a function of seed and number: alone, with others, in any order.
+"$tap" --taps 4 --transition offset --speed high,low --csv "$folder/d.csv" >/dev/null
+grep ',offset,' "$folder/a.csv" | awk -F, '$1 < 4' | sort >"$folder/a.sorted"
+tail -n +2 "$folder/d.csv" | sort | diff "$folder/a.sorted" - || fail "a tap depends on the taps around it"
+
+# Table 1 and the claims, for any seed.
+if [ -z "${SAN:-}" ]; then
+  for seed in 1 20140101; do
+    "$tap" --taps 400 --seed $seed >"$folder/table"
+    met=$(grep -c ' met$' "$folder/table") || :
+    [ "$met" = 11 ] && ! grep -q 'NOT MET' "$folder/table" || { cat "$folder/table"; fail "seed $seed: $met of 11 met"; }
+  done
+fi
+grep -q 'not realtime' "$folder/a.txt" || fail "it doesn't say that nothing is realtime"
+grep -q 'not measured' "$folder/a.txt" || fail "it doesn't say that the plant is fitted"
+grep -q '^scene queried [0-9]* of [0-9]* ticks$' "$folder/a.txt" || fail "it doesn't say how often the scene was asked"
+
+# A configuration without a scene has the default wall; what it is given rules.
+: >"$folder/empty.ini"
+"$tap" --config "$folder/empty.ini" --taps 2 --transition offset --record "$folder/rec" --csv "$folder/e.csv" >/dev/null
+[ "$(cut -d, -f13 "$folder/e.csv" | grep -c .)" = 5 ] || fail "an empty configuration has no wall"
+"$BUILD/bin/ethd-replay" --verify "$folder/rec" >/dev/null
+printf '[contact]\nk_e = 500\n' >"$folder/soft.ini"
+"$tap" --config "$folder/soft.ini" --taps 2 --transition offset --csv "$folder/s.csv" >/dev/null
+cmp -s "$folder/e.csv" "$folder/s.csv" && fail "k_e changes nothing"
+
+# Traces of typical taps.
+"$tap" --taps 3 --transition smooth,offset --speed 0.3 --trace "$folder/traces" >/dev/null
+for law in smooth offset; do
+  head -n 1 "$folder/traces/$law-0.3.csv" | grep -q '^t_s,since_wall_s,ring_m,' || fail "no trace of $law"
+done
+
+# A movement: said, never scaled unless asked for.
+awk 'BEGIN { print "t_s,x_m,y_m"; for (i = 0; i < 120; i++) { t = i / 200; printf "%.4f,%.6f,0\n", t, 0.05 * cos(5 * t) } }' \
+  >"$folder/swing.csv"
+"$tap" --finger "$folder/swing.csv" --speed 0.2 --taps 2 >"$folder/f.txt"
+grep -q 'swing.csv, not scaled' "$folder/f.txt" || fail "it doesn't say that the movement wasn't scaled"
+"$tap" --finger "$folder/swing.csv" --speed high --taps 2 --csv "$folder/f.csv" >/dev/null
+[ "$(grep -c ',too-slow,' "$folder/f.csv")" = 6 ] || fail "a movement of 0.25 m/s isn't too slow for 0.4"
+"$tap" --finger "$folder/swing.csv" --scale 2 --speed high --taps 2 --csv "$folder/g.csv" >"$folder/f.txt"
+grep -q 'SCALED by 2' "$folder/f.txt" || fail "it doesn't say that the movement was scaled"
+grep -q ',too-slow,' "$folder/g.csv" && fail "0.5 m/s is too slow"
+
+motion=${ETHD_MOTION_DIR:-../shared/motion}
+for file in "$motion"/*/*_tap.csv "$motion"/*/*_reach.csv "$motion"/*/*_free.csv "$motion"/*/*_move*.csv; do
+  case $file in *1.csv | *01_*) ;; *) continue ;; esac
+  [ -f "$file" ] && { "$tap" --finger "$file" --taps 1 >/dev/null || fail "$file: exit $?"; }
+done
+
+# Wrong usage and bad input: exit 2, one line, nothing written over.
+echo precious >"$folder/kept.csv"
+refuse() {
+  says=$1
+  shift
+  code=0
+  "$tap" --taps 1 --csv "$folder/kept.csv" "$@" >"$folder/out" 2>"$folder/err" || code=$?
+  [ $code = 2 ] || fail "exit $code, not 2: $*"
+  [ "$(wc -l <"$folder/err")" -le 2 ] || fail "more than a line: $*"
+  grep -q -- "$says" "$folder/err" || { cat "$folder/err"; fail "it doesn't say '$says': $*"; }
+  [ "$(cat "$folder/kept.csv")" = precious ] || fail "written over: $*"
+}
+refuse 'a whole number from 1' --taps 0
+refuse 'a whole number from 1' --taps 1.5
+refuse 'low, high and numbers' --speed fast
+refuse 'low, high and numbers' --speed nan
+refuse 'low, high and numbers' --speed 0
+refuse 'twice' --speed low,low
+refuse 'empty word' --transition offset,
+refuse 'abrupt' --transition bumpy
+refuse 'whole number from 0' --seed -1
+refuse 'no-such' --plant "$folder/no-such"
+refuse 'no-such' --config "$folder/no-such.ini"
+refuse 'no-such' --finger "$folder/no-such.csv"
+refuse 'needs --finger' --scale 2
+refuse 'from 0.01 to 100' --finger "$folder/swing.csv" --scale 0
+refuse 'y_m' --finger "$folder/a.csv"
+printf 'halfplane -1 0 0.9\n' >"$folder/far.scene"
+printf '[scene]\nfile = far.scene\n' >"$folder/far.ini"
+refuse 'no wall' --config "$folder/far.ini"
+
+# Ctrl-C: what was done is kept.
+"$tap" --taps 100000 --csv "$folder/cut.csv" --record "$folder/cut" >"$folder/out" 2>"$folder/err" &
+pid=$!
+sleep 1
+kill -INT $pid
+code=0
+wait $pid || code=$?
+[ $code = 1 ] || fail "after Ctrl-C: exit $code, not 1"
+grep -q 'what was done is kept' "$folder/err" || fail "it doesn't say that it was stopped"
+[ "$(tail -n +2 "$folder/cut.csv" | awk -F, 'NF != 15' | wc -l)" = 0 ] || fail "a cut row"
+[ "$(wc -l <"$folder/cut.csv")" -gt 1 ] || fail "nothing was kept"
+"$BUILD/bin/ethd-replay" --verify "$folder/cut" >/dev/null
+exit 0
