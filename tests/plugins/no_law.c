@@ -1,0 +1,3 @@
+/* Nothing offered. */
+#define LAWS 0
+#include "broken.h"

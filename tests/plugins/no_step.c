@@ -1,0 +1,3 @@
+/* A law without a step. */
+#define STEP NULL
+#include "broken.h"

@@ -1,0 +1,3 @@
+/* The entry under another name. */
+#define ENTRY my_plugin
+#include "broken.h"

@@ -1,0 +1,3 @@
+/* The same law twice. */
+#define LAWS 2
+#include "broken.h"

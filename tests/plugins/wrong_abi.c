@@ -1,0 +1,3 @@
+/* Built for an ABI that doesn't exist yet. */
+#define ABI (ETHD_ABI + 1)
+#include "broken.h"
