@@ -176,6 +176,18 @@ START_TEST(test_start_in_the_wall) {
 }
 END_TEST
 
+/* Outside, if only just: that is where the tap begins. */
+START_TEST(test_start_close_to_the_wall) {
+  for (int i = 0; i < COUNT; i++) {
+    trace[i].d_re = i < 5 ? 0.5e-3 : -1e-3;
+    truth[i].hand[0] = 0.2505;
+  }
+  ck_assert_double_eq(measure().t_rvo, 5 * 1e-3);
+  truth[2].pad = 1e-6;
+  ck_assert_int_eq(measure().reason, ETHD_TAP_EARLY_CONTACT);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("metrics");
   TCase *all = tcase_create("all");
@@ -192,6 +204,7 @@ int main(void) {
   tcase_add_test(all, test_motor_side);
   tcase_add_test(all, test_peak_force);
   tcase_add_test(all, test_start_in_the_wall);
+  tcase_add_test(all, test_start_close_to_the_wall);
   suite_add_tcase(suite, all);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_ENV);
