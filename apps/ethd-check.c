@@ -9,6 +9,7 @@
 #include "check/stability.h"
 #include "common/cli.h"
 #include "ethd/sim.h"
+#include "file/config_parts.h"
 #include "file/text.h"
 
 static const char doc[] =
@@ -58,8 +59,8 @@ static void check_device(const ethd_config *config) {
   void *device;
   const ethd_device_def def = {&config->setup, config->settings, config->setting_count, config->folder};
   if (strcmp(config->device, ethd_driver_sim.id) != 0)
-    ethd__fail(ETHD_EXIT_INPUT, "%s: device.driver: found \"%s\", sim is allowed", arg.config,
-               config->device);
+    ethd__fail(ETHD_EXIT_INPUT, "%s:%d: device.driver: found \"%s\", sim is allowed", arg.config,
+               ethd_ini_find(&ethd__config_whole(config)->ini, "device", "driver")->line, config->device);
   ethd_status status = ethd_driver_sim.open(&def, &device, &error);
   if (status < 0) {
     ethd_error_text(arg.config, &error, message);

@@ -78,6 +78,9 @@ config 'out of range' 'bad.ini:2: contact.k_e: found -1' '[contact]\nk_e = -1\n'
 config 'a byte 0' 'bad.ini:2: a byte 0' '[contact]\n\000k_e = 1\n'
 config 'missing scene' 'bad.ini:2: scene.file: .*no.scene: No such file' '[scene]\nfile = no.scene\n'
 
+printf '[device]\ndriver = none\n' >"$folder/bad.ini"
+refuse 'unknown driver' 'bad.ini:2: device.driver: found "none"' "$bin/ethd-check" "$folder/bad.ini"
+
 # ---- scenes ----
 scene() { # WHAT PATTERN TEXT
   printf "$3" >"$folder/bad.scene"
