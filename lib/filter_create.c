@@ -5,27 +5,30 @@
 #include "error.h"
 #include "filter_methods.h"
 
-#define REFERENCE                                                                                        \
-  [FILTER_REFERENCE] = {"reference", "sample|tick", 0, 1, ETHD_REFERENCE_SAMPLE,                         \
-                        "where the ring stood for a reading: at its sample instant or at this tick"}
-#define COMPENSATION                                                                                     \
-  [FILTER_COMPENSATION] = {"compensation", "stamp|none", 0, 1, ETHD_COMPENSATION_STAMP,                  \
-                           "age of a reading: made up for by its stamp, or ignored"}
-#define LATENCY                                                                                          \
-  [FILTER_LATENCY] = {"latency", "s", 0, 0.1, 0,                                                         \
-                      "from the sample to its stamp, made up for as well (stamp only)"}
-#define NOISE [KALMAN_NOISE] = {"noise", "m", 1e-7, 1e-2, 0.1e-3, "sd of a reading, each axis"}
-#define GATE                                                                                             \
-  [KALMAN_GATE] = {"gate", "1", 1, INFINITY, 25, "sd of the innovation over which a reading is dropped; a finger that hits glass makes 20"}
+/* clang-format off */
+#define REFERENCE                                                                  \
+  [FILTER_REFERENCE] = {"reference", "sample|tick", 0, 1, ETHD_REFERENCE_SAMPLE,   \
+      "where the ring stood for a reading: at its sample instant or at this tick"}
+#define COMPENSATION                                                               \
+  [FILTER_COMPENSATION] = {"compensation", "stamp|none", 0, 1,                     \
+      ETHD_COMPENSATION_STAMP, "age of a reading: made up for by its stamp, or ignored"}
+#define LATENCY                                                                    \
+  [FILTER_LATENCY] = {"latency", "s", 0, 0.1, 0,                                   \
+      "from the sample to its stamp, made up for as well (stamp only)"}
+#define NOISE                                                                      \
+  [KALMAN_NOISE] = {"noise", "m", 1e-7, 1e-2, 0.1e-3, "sd of a reading, each axis"}
+#define GATE                                                                       \
+  [KALMAN_GATE] = {"gate", "1", 1, INFINITY, 25,                                   \
+      "sd of the innovation over which a reading is dropped; a finger on glass makes 20"}
 
 static const ethd_param hold[] = {REFERENCE};
 
 static const ethd_param alpha_beta[] = {
-    REFERENCE,
-    COMPENSATION,
-    LATENCY,
-    [ALPHA_BETA_ALPHA] = {"alpha", "1", 0.01, 1, 0.5, "share of the innovation that moves the position"},
-    [ALPHA_BETA_BETA] = {"beta", "1", 0, 2, 0.4, "share of the innovation, per time, that moves the speed"},
+    REFERENCE, COMPENSATION, LATENCY,
+    [ALPHA_BETA_ALPHA] = {"alpha", "1", 0.01, 1, 0.5,
+        "share of the innovation that moves the position"},
+    [ALPHA_BETA_BETA] = {"beta", "1", 0, 2, 0.4,
+        "share of the innovation, per time, that moves the speed"},
 };
 
 static const ethd_param cv[] = {
@@ -38,13 +41,15 @@ static const ethd_param ca[] = {
     [KALMAN_DRIVE] = {"jerk", "m/s^3", 1e-2, 1e7, 400, "rms jerk of the finger"},
     [CA_MEMORY] = {"memory", "s", 1e-3, INFINITY, 0.08, "how long an acceleration lasts; inf: it stays"},
 };
+/* clang-format on */
 
 #define ROWS(table) table, sizeof table / sizeof *table
 
 const ethd_method ethd_filter_methods[ETHD_FILTER_COUNT] = {
     [ETHD_FILTER_CA] = {"ca", "Kalman filter of constant acceleration", ROWS(ca)},
     [ETHD_FILTER_HOLD] = {"hold", "the last reading, at rest", ROWS(hold)},
-    [ETHD_FILTER_ALPHA_BETA] = {"alpha-beta", "position and velocity with fixed gains", ROWS(alpha_beta)},
+    [ETHD_FILTER_ALPHA_BETA] = {"alpha-beta", "position and velocity with fixed gains",
+                                ROWS(alpha_beta)},
     [ETHD_FILTER_CV] = {"cv", "Kalman filter of constant velocity", ROWS(cv)},
 };
 

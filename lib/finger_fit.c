@@ -25,7 +25,8 @@ static void collect(const ethd_fit *fit, const double r[ETHD_RAYS], ethd__points
 
 /* From e = |p - c|^2 - R_f^2, small wherever the finger is what it is said to be, so that the variance
    keeps its digits. */
-static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec centre, ethd_finger *out) {
+static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec centre,
+                     ethd_finger *out) {
   double square = fit->finger_radius * fit->finger_radius, n = 0, sum = 0, sum2 = 0;
   for (uint32_t i = 0; i < points->count; i++) {
     ethd_vec u = ethd_vec_sub(points->p[i], centre);
@@ -45,10 +46,14 @@ static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec c
 
 static int find(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
   switch (fit->method) {
-  case ETHD_FIT_VERTEX_MEAN: return ethd__fit_vertex_mean(points, centre);
-  case ETHD_FIT_CENTROID: return ethd__fit_centroid(points, centre);
-  case ETHD_FIT_ROBUST: return ethd__fit_robust(fit, points, centre);
-  default: return ethd__fit_kasa(points, centre);
+  case ETHD_FIT_VERTEX_MEAN:
+    return ethd__fit_vertex_mean(points, centre);
+  case ETHD_FIT_CENTROID:
+    return ethd__fit_centroid(points, centre);
+  case ETHD_FIT_ROBUST:
+    return ethd__fit_robust(fit, points, centre);
+  default:
+    return ethd__fit_kasa(points, centre);
   }
 }
 

@@ -35,12 +35,13 @@ typedef struct ethd_arm {
 
 /* Where the ring is, and how it moves with the joints. Row-major J: dx/dq1, dx/dq2, dy/dq1, dy/dq2. */
 typedef struct ethd_pose {
-  ethd_vec x;     /* ring centre, m, in R_0 */
-  double j[4];    /* m/rad */
+  ethd_vec x;      /* ring centre, m, in R_0 */
+  double j[4];     /* m/rad */
   double j_inv[4]; /* rad/m: J^-1, damped near a singularity; in a singular J's null direction 0 */
 } ethd_pose;
 
-/* ETHD_E_RANGE (ETHD_E_NOT_FINITE for NaN) unless both links are within their limits and the mechanism is one of the two. [any] */
+/* ETHD_E_RANGE, ETHD_E_NOT_FINITE for NaN, unless both links are within their limits and the mechanism
+   is one of the two. [any] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_arm_check(const ethd_arm *arm, ethd_error *error);
 
 /* Forward kinematics, Jacobian and its (damped) inverse at joint angles q, rad. [any, rt-safe] */

@@ -57,7 +57,8 @@ typedef struct ethd_filter_state {
 
 #define ETHD_FILTER_GATED_MAX 5
 
-/* Checks p against the method's table and the period (1e-6 to 1 s); out is untouched on failure. [main] */
+/* Checks p against the method's table and the period (1e-6 to 1 s); out is untouched on failure.
+   [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_filter_prepare(ethd_filter_method method, const double *p,
                                                          double period, ethd_filter *out,
                                                          ethd_error *error);
@@ -68,7 +69,8 @@ ETHD_API void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *st
                                 ethd_vec v) ETHD_RT;
 
 /* dt s pass. [rt] */
-ETHD_API void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, double dt) ETHD_RT;
+ETHD_API void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state,
+                                  double dt) ETHD_RT;
 
 /* A reading of the finger's position in R_0, stamped `age` s ago. Starts the filter there when it hasn't
    been: at rest, within 1 m/s and 10 m/s^2 (sd). ETHD_STALE, counted and not used: not newer than the

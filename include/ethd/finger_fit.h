@@ -23,8 +23,8 @@ typedef enum ethd_fit_method {
                            gives half of a small offset */
   ETHD_FIT_CENTROID,    /* centroid of the polygon's area, missing vertices left out */
   ETHD_FIT_ROBUST,      /* the same sum in c alone, R = the known finger radius: two Gauss-Newton steps
-                           from kasa (from the ring's centre if that isn't such a finger), then two without
-                           the rays over `gate` from the circle */
+                           from kasa (from the ring's centre if that isn't such a finger), then two
+                           without the rays over `gate` from the circle */
   ETHD_FIT_COUNT
 } ethd_fit_method;
 
@@ -37,15 +37,15 @@ typedef struct ethd_fit {
 } ethd_fit;
 
 typedef struct ethd_finger {
-  ethd_vec centre;  /* relative to the ring's centre, m */
-  double radius;    /* rms of |p - c| over the rays used, m: kasa's R */
-  double residual;  /* rms of (|p - c|^2 - radius^2) / (2 radius), which is |p - c| - radius nearly, m */
-  uint32_t used;    /* bit k: ray k was used */
+  ethd_vec centre; /* relative to the ring's centre, m */
+  double radius;   /* rms of |p - c| over the rays used, m: kasa's R */
+  double residual; /* rms of (|p - c|^2 - radius^2) / (2 radius), which is |p - c| - radius nearly, m */
+  uint32_t used;   /* bit k: ray k was used */
   uint32_t reserved;
 } ethd_finger;
 
-/* Checks p against the method's table and 1e-4 m <= finger_radius <= ring_radius <= 1 m; out is untouched
-   on failure. [main] */
+/* Checks p against the method's table and 1e-4 m <= finger_radius <= ring_radius <= 1 m; out is
+   untouched on failure. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_prepare(ethd_fit_method method, const double *p,
                                                       double ring_radius, double finger_radius,
                                                       ethd_fit *out, ethd_error *error);

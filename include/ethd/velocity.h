@@ -51,10 +51,10 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_velocity_prepare(ethd_velocity_method 
                                                            double period, ethd_velocity *out,
                                                            ethd_error *error);
 
-/* Next speed, rad/s. q: rad; torque: the joint's last commanded torque, Nm (kalman only); dt > 0: s since
-   the last step, a whole number of periods when ticks were missed. After a zeroed state the first call
-   gives 0 (no difference yet); a state with count = 0 but speed set starts from that speed. Without
-   drift: nothing accumulates. What isn't finite stays until the state is zeroed. [rt] */
+/* Next speed, rad/s. q: rad; torque: the joint's last commanded torque, Nm (kalman only); dt > 0: s
+   since the last step, a whole number of periods when ticks were missed. After a zeroed state the first
+   call gives 0 (no difference yet); a state with count = 0 but speed set starts from that speed. Nothing
+   accumulates over time. What isn't finite stays until the state is zeroed. [rt] */
 ETHD_API double ethd_velocity_step(const ethd_velocity *velocity, ethd_velocity_state *state, double q,
                                    double torque, double dt) ETHD_RT;
 

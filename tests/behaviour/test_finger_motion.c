@@ -27,8 +27,10 @@ static ethd_vec recording_at(const void *data, double t) {
   int low = 0, high = r->count - 1;
   while (high - low > 1) {
     int middle = (low + high) / 2;
-    if (r->t[middle] <= t) low = middle;
-    else high = middle;
+    if (r->t[middle] <= t)
+      low = middle;
+    else
+      high = middle;
   }
   t = fmin(fmax(t, r->t[low]), r->t[low + 1]);
   return (ethd_vec){cubic(r->t, r->x, low, r->count, t), cubic(r->t, r->y, low, r->count, t)};
@@ -83,8 +85,9 @@ static void report(const char *name, int first, int last) {
     long gated = 0;
     errors(first, last, finger_latencies[l], rms, &gated);
     double cv = rms[ETHD_FILTER_CV], ca = rms[ETHD_FILTER_CA];
-    printf("%-24s %5d %10.0f %7.3f %10.4f %7.4f %7.4f %6.1f %% %5ld\n", name, last - first, 1e3 * finger_latencies[l],
-           rms[ETHD_FILTER_HOLD], rms[ETHD_FILTER_ALPHA_BETA], cv, ca, 100 * (1 - ca / cv), gated);
+    printf("%-24s %5d %10.0f %7.3f %10.4f %7.4f %7.4f %6.1f %% %5ld\n", name, last - first,
+           1e3 * finger_latencies[l], rms[ETHD_FILTER_HOLD], rms[ETHD_FILTER_ALPHA_BETA], cv, ca,
+           100 * (1 - ca / cv), gated);
   }
 }
 
@@ -98,9 +101,10 @@ static int ranked(int count) {
     double cv = finger_best(ETHD_FILTER_CV, "acceleration", 4.2, 5, paths, count, latency, &q);
     double ca = finger_best(ETHD_FILTER_CA, "jerk", 220, 5, paths, count, latency, &j);
     errors(0, count, latency, rms, &gated);
-    printf("all, best tuning, %.0f ms: cv %.4f (%.1f m/s^2), ca %.4f (%.0f m/s^3), %.1f %% less\n", 1e3 * latency, cv, q, ca,
-           j, 100 * (1 - ca / cv));
-    right &= rms[ETHD_FILTER_HOLD] > cv && cv > ca && rms[ETHD_FILTER_CV] > rms[ETHD_FILTER_CA] && gated == 0;
+    printf("all, best tuning, %.0f ms: cv %.4f (%.1f m/s^2), ca %.4f (%.0f m/s^3), %.1f %% less\n",
+           1e3 * latency, cv, q, ca, j, 100 * (1 - ca / cv));
+    right &=
+        rms[ETHD_FILTER_HOLD] > cv && cv > ca && rms[ETHD_FILTER_CV] > rms[ETHD_FILTER_CA] && gated == 0;
   }
   return right;
 }
@@ -116,7 +120,9 @@ int main(void) {
     int first = count;
     count = load_folder(folders.gl_pathv[i], count);
     if (count == first) continue;
-    if (!first) printf("error rms, mm: defaults   files latency ms    hold alpha-beta      cv      ca ca under cv gated\n");
+    if (!first)
+      printf("error rms, mm: defaults   files latency ms    hold alpha-beta      cv      ca ca under cv "
+             "gated\n");
     report(folders.gl_pathv[i] + strlen(pattern) - 2, first, count);
   }
   if (!count) {

@@ -19,7 +19,8 @@ static ethd_filter with(ethd_filter_method method, const char *const *names, con
     int row = ethd_params_find(m->params, m->param_count, *names);
     if (row >= 0) p[row] = *values;
   }
-  ck_assert_msg(ethd_filter_prepare(method, p, T, &f, &error) == ETHD_OK, "%s %g", error.name, error.found);
+  ck_assert_msg(ethd_filter_prepare(method, p, T, &f, &error) == ETHD_OK, "%s %g", error.name,
+                error.found);
   return f;
 }
 
@@ -41,7 +42,8 @@ typedef struct reference {
 static void ref_move(reference *r, long double t) {
   long double z = r->n == 3 ? t / (2 * r->memory) : 0, fade = (1 - z) / (1 + z), av = t / (1 + z);
   matrix f = {{1, t, t * av / 2}, {0, 1, av}, {0, 0, fade}}, fp = {{0}}, out = {{0}};
-  long double g3[3] = {t * t * t / 6, t * t / 2, t}, g2[3] = {t * t / 2, t, 0}, *g = r->n == 3 ? g3 : g2, x[3] = {0};
+  long double g3[3] = {t * t * t / 6, t * t / 2, t}, g2[3] = {t * t / 2, t, 0}, *g = r->n == 3 ? g3 : g2,
+              x[3] = {0};
   for (int i = 0; i < r->n; i++)
     for (int j = 0; j < r->n; j++) {
       x[i] += f[i][j] * r->x[j];
@@ -79,16 +81,26 @@ static void ref_equal(const reference *r, const ethd_filter_state *s) {
 
 /* cv, ca, ca without fading; each tick by tick and by stamps; frames lost, ticks missed. */
 START_TEST(test_kalman_as_matrices) {
-  static const char *const names[] = {"compensation", "gate", "latency", "noise", "acceleration", "jerk", "memory", NULL};
+  static const char *const names[] = {"compensation", "gate", "latency", "noise",
+                                      "acceleration", "jerk", "memory",  NULL};
   int ca = _i / 2 > 0, by_stamp = _i % 2;
   double memory = _i / 2 == 2 ? INFINITY : 0.05;
-  const double values[] = {by_stamp ? ETHD_COMPENSATION_STAMP : ETHD_COMPENSATION_NONE, INFINITY, 0.4e-3, 0.101e-3, 9.07,
-                           400, memory};
+  const double values[] = {by_stamp ? ETHD_COMPENSATION_STAMP : ETHD_COMPENSATION_NONE,
+                           INFINITY,
+                           0.4e-3,
+                           0.101e-3,
+                           9.07,
+                           400,
+                           memory};
   ethd_filter f = with(ca ? ETHD_FILTER_CA : ETHD_FILTER_CV, names, values);
   ethd_filter_state s;
   memset(&s, 0, sizeof s);
   ethd_filter_start(&f, &s, (ethd_vec){0.3, 0.2}, (ethd_vec){0.05, 0});
-  reference r = {.n = ca ? 3 : 2, .noise = 0.101e-3, .drive = ca ? 400 : 9.07, .memory = memory, .x = {0.3, 0.05, 0},
+  reference r = {.n = ca ? 3 : 2,
+                 .noise = 0.101e-3,
+                 .drive = ca ? 400 : 9.07,
+                 .memory = memory,
+                 .x = {0.3, 0.05, 0},
                  .p = {{1e-6, 0, 0}, {0, 1e-4, 0}, {0, 0, 1}}};
   double now = 0, stands = 0; /* where the reference's state stands */
   int used = 0;
@@ -98,7 +110,8 @@ START_TEST(test_kalman_as_matrices) {
     ethd_filter_predict(&f, &s, dt);
     if (!by_stamp) ref_move(&r, dt);
     if (k % 3 || draw(3 * (uint64_t)k + 1, 0, 1) < 0.2) continue;
-    double sampled = now - 2e-3, z = 0.3 + 0.05 * now + 0.01 * sin(20 * sampled) + 1e-4 * draw_normal((uint64_t)k);
+    double sampled = now - 2e-3,
+           z = 0.3 + 0.05 * now + 0.01 * sin(20 * sampled) + 1e-4 * draw_normal((uint64_t)k);
     if (by_stamp && sampled - 0.4e-3 <= stands) continue;
     if (by_stamp) ref_move(&r, (long double)(sampled - 0.4e-3) - stands);
     ref_correct(&r, z);
@@ -151,7 +164,8 @@ static void ramp(const ethd_filter *f, ethd_filter_state *s, double b, double ag
 START_TEST(test_latency_on_a_ramp) {
   const double b = 0.4, age = 5e-3, last = 5999 * T;
   const double more[] = {ETHD_COMPENSATION_STAMP, INFINITY, 2e-3};
-  ethd_filter a = with((ethd_filter_method)_i, compensation, stamp), c = with((ethd_filter_method)_i, compensation, none);
+  ethd_filter a = with((ethd_filter_method)_i, compensation, stamp),
+              c = with((ethd_filter_method)_i, compensation, none);
   ethd_filter d = with((ethd_filter_method)_i, compensation, more);
   ethd_filter_state s[3];
   memset(s, 0, sizeof s);
@@ -185,7 +199,8 @@ START_TEST(test_arrival_does_not_matter) {
     for (; due * 3 <= k - (due % 5) * 2; due++) /* up to 8 ticks late, several at once */
       ck_assert_int_eq(feed(&f, &b, 0.2 * sin(0.06 * due), (k - 3 * due) * T), ETHD_OK);
   }
-  for (; due * 3 < 900; due++) ck_assert_int_eq(feed(&f, &b, 0.2 * sin(0.06 * due), (899 - 3 * due) * T), ETHD_OK);
+  for (; due * 3 < 900; due++)
+    ck_assert_int_eq(feed(&f, &b, 0.2 * sin(0.06 * due), (899 - 3 * due) * T), ETHD_OK);
   ck_assert_double_eq_tol(out_x(&f, &a), out_x(&f, &b), 1e-11);
   ck_assert_double_eq_tol(out_v(&f, &a), out_v(&f, &b), 1e-9);
   for (int i = 0; i < 6; i++) ck_assert_double_le(fabs(a.cov[i] - b.cov[i]), 1e-9 * fabs(a.cov[i]));
@@ -241,7 +256,8 @@ START_TEST(test_starts_itself) {
   ck_assert(s.started == 1 && s.used == 1);
   ck_assert(out_x(&f, &s) == 0.3 && out_v(&f, &s) == 0);
   if (_i != ETHD_FILTER_CV && _i != ETHD_FILTER_CA) return;
-  for (int k = 1; k < 4; k++) ck_assert_int_eq(feed(&f, &s, 0.3 + 0.5 * k / 300, 20e-3 - k / 300.0), ETHD_OK);
+  for (int k = 1; k < 4; k++)
+    ck_assert_int_eq(feed(&f, &s, 0.3 + 0.5 * k / 300, 20e-3 - k / 300.0), ETHD_OK);
   ck_assert_double_eq_tol(out_v(&f, &s), 0.5, 0.05);
 }
 END_TEST
@@ -258,9 +274,10 @@ START_TEST(test_not_finite_is_not_used) {
   before = s;
   for (int i = 0; i < 12; i++) {
     ck_assert_int_eq(feed(&f, &s, bad[i % 3], 0), ETHD_STALE);
+    ck_assert_int_eq(ethd_filter_update(&f, &s, (ethd_vec){0.1, bad[i % 3]}, 0), ETHD_STALE);
     ck_assert_int_eq(ethd_filter_update(&f, &s, (ethd_vec){0.1, -0.1}, bad[i % 3]), ETHD_STALE);
   }
-  before.gated = 3 + 24;
+  before.gated = 3 + 36;
   ck_assert_mem_eq(&s, &before, sizeof s);
 }
 END_TEST
@@ -275,9 +292,14 @@ START_TEST(test_gate) {
   ethd_filter_state s, t;
   memset(&s, 0, sizeof s);
   ramp(&f, &s, 0.1, 2e-3);
-  reference r = {.n = _i == ETHD_FILTER_CA ? 3 : 2, .noise = 0.1e-3, .drive = _i == ETHD_FILTER_CA ? 400 : 8, .memory = 0.08,
+  reference r = {.n = _i == ETHD_FILTER_CA ? 3 : 2,
+                 .noise = 0.1e-3,
+                 .drive = _i == ETHD_FILTER_CA ? 400 : 8,
+                 .memory = 0.08,
                  .x = {s.x[0], s.v[0], s.a[0]},
-                 .p = {{s.cov[0], s.cov[1], s.cov[2]}, {s.cov[1], s.cov[3], s.cov[4]}, {s.cov[2], s.cov[4], s.cov[5]}}};
+                 .p = {{s.cov[0], s.cov[1], s.cov[2]},
+                       {s.cov[1], s.cov[3], s.cov[4]},
+                       {s.cov[2], s.cov[4], s.cov[5]}}};
   ethd_filter_predict(&f, &s, T);
   ref_move(&r, 3e-3L);
   double sd = sqrt((double)r.p[0][0] + 1e-8), x = (double)r.x[0];
@@ -288,7 +310,8 @@ START_TEST(test_gate) {
         ethd_filter_update(&f, &t, (ethd_vec){x + along * cos(a), -x + along * sin(a)}, 2e-3);
     ck_assert_int_eq(status, k % 2 ? ETHD_STALE : ETHD_OK);
     ck_assert_uint_eq(t.gated, (uint32_t)(k % 2));
-    if (k % 2) ck_assert_mem_eq(t.x, s.x, sizeof s.x + sizeof s.v + sizeof s.a + sizeof s.cov + sizeof s.age);
+    if (k % 2)
+      ck_assert_mem_eq(t.x, s.x, sizeof s.x + sizeof s.v + sizeof s.a + sizeof s.cov + sizeof s.age);
   }
 }
 END_TEST
@@ -343,7 +366,8 @@ typedef struct reach {
 /* Minimum jerk: s = 10 u^3 - 15 u^4 + 6 u^5, peak speed 15/8 length / duration; 50 ms of rest around. */
 static ethd_vec reach_at(const void *data, double t) {
   const reach *r = data;
-  double u = fmin(1, fmax(0, (t - 0.05) / r->duration)), s = r->length * u * u * u * (10 - 15 * u + 6 * u * u);
+  double u = fmin(1, fmax(0, (t - 0.05) / r->duration)),
+         s = r->length * u * u * u * (10 - 15 * u + 6 * u * u);
   return (ethd_vec){s * cos(r->angle), s * sin(r->angle)};
 }
 
@@ -359,7 +383,8 @@ START_TEST(test_extrapolation) {
     paths[i] = (finger_path){reach_at, &reaches[i], reaches[i].duration + 0.1};
   }
   printf("extrapolation error rms, mm: minimum-jerk reaches of 0.5 to 1.1 m/s, 300 Hz, 0.1 mm noise\n");
-  printf("  latency ms   hold  alpha-beta      cv (m/s^2)      ca (m/s^3)  gain    defaults: cv     ca\n");
+  printf(
+      "  latency ms   hold  alpha-beta      cv (m/s^2)      ca (m/s^3)  gain    defaults: cv     ca\n");
   for (int l = 0; l < 3; l++) {
     double latency = finger_latencies[l], q = 0, j = 0, b = 0;
     finger_error by[ETHD_FILTER_COUNT] = {{0, 0, 0}};
@@ -372,8 +397,9 @@ START_TEST(test_extrapolation) {
     double fixed = finger_best(ETHD_FILTER_ALPHA_BETA, "beta", 0.1, 9, paths, REACHES, latency, &b);
     double cv = finger_best(ETHD_FILTER_CV, "acceleration", 3, 8, paths, REACHES, latency, &q);
     double ca = finger_best(ETHD_FILTER_CA, "jerk", 80, 9, paths, REACHES, latency, &j);
-    printf("  %10.0f  %.3f %11.4f  %.4f (%4.1f)   %.4f (%4.0f)  %4.1f %%          %.4f  %.4f\n", 1e3 * latency, hold, fixed,
-           cv, q, ca, j, 100 * (1 - ca / cv), finger_rms(by[ETHD_FILTER_CV]), finger_rms(by[ETHD_FILTER_CA]));
+    printf("  %10.0f  %.3f %11.4f  %.4f (%4.1f)   %.4f (%4.0f)  %4.1f %%          %.4f  %.4f\n",
+           1e3 * latency, hold, fixed, cv, q, ca, j, 100 * (1 - ca / cv), finger_rms(by[ETHD_FILTER_CV]),
+           finger_rms(by[ETHD_FILTER_CA]));
     ck_assert(ca < cv && cv < hold && fixed < hold);
     ck_assert_double_le(ca, (1 - goal[l]) * cv);
     ck_assert_double_le(finger_rms(by[ETHD_FILTER_CA]), 1.15 * ca);
@@ -410,10 +436,14 @@ START_TEST(test_refusals) {
     double value;
     ethd_status status;
   } bad[] = {
-      {ETHD_FILTER_CV, "noise", 0, ETHD_E_RANGE},          {ETHD_FILTER_CV, "acceleration", NAN, ETHD_E_NOT_FINITE},
-      {ETHD_FILTER_CA, "jerk", -1, ETHD_E_RANGE},          {ETHD_FILTER_CA, "memory", 0, ETHD_E_RANGE},
-      {ETHD_FILTER_CA, "gate", 0.5, ETHD_E_RANGE},         {ETHD_FILTER_CA, "compensation", 0.5, ETHD_E_RANGE},
-      {ETHD_FILTER_HOLD, "reference", 2, ETHD_E_RANGE},    {ETHD_FILTER_ALPHA_BETA, "alpha", 1.1, ETHD_E_RANGE},
+      {ETHD_FILTER_CV, "noise", 0, ETHD_E_RANGE},
+      {ETHD_FILTER_CV, "acceleration", NAN, ETHD_E_NOT_FINITE},
+      {ETHD_FILTER_CA, "jerk", -1, ETHD_E_RANGE},
+      {ETHD_FILTER_CA, "memory", 0, ETHD_E_RANGE},
+      {ETHD_FILTER_CA, "gate", 0.5, ETHD_E_RANGE},
+      {ETHD_FILTER_CA, "compensation", 0.5, ETHD_E_RANGE},
+      {ETHD_FILTER_HOLD, "reference", 2, ETHD_E_RANGE},
+      {ETHD_FILTER_ALPHA_BETA, "alpha", 1.1, ETHD_E_RANGE},
       {ETHD_FILTER_CV, "latency", INFINITY, ETHD_E_NOT_FINITE},
   };
   double p[ETHD_PARAMS_MAX] = {0};
@@ -423,7 +453,8 @@ START_TEST(test_refusals) {
     const ethd_method *m = &ethd_filter_methods[bad[i].method];
     ethd_params_default(m->params, m->param_count, p);
     p[ethd_params_find(m->params, m->param_count, bad[i].name)] = bad[i].value;
-    ck_assert_int_eq(ethd_filter_prepare((ethd_filter_method)bad[i].method, p, T, &f, &error), bad[i].status);
+    ck_assert_int_eq(ethd_filter_prepare((ethd_filter_method)bad[i].method, p, T, &f, &error),
+                     bad[i].status);
     ck_assert_str_eq(error.name, bad[i].name);
   }
   ethd_params_default(ethd_filter_methods[0].params, ethd_filter_methods[0].param_count, p);

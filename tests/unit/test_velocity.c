@@ -92,7 +92,8 @@ START_TEST(test_lsq_is_the_line) {
   ck_assert(ethd_velocity_step(&v, &s, q[0], 0, dt[0]) == 0);
   for (int k = 1; k < TICKS; k++) {
     int n = k + 1 < window ? k + 1 : (int)window;
-    ck_assert_double_le(fabs((double)(ethd_velocity_step(&v, &s, q[k], 0, dt[k]) - line_slope(k, n))), 1e-11);
+    ck_assert_double_le(fabs((double)(ethd_velocity_step(&v, &s, q[k], 0, dt[k]) - line_slope(k, n))),
+                        1e-11);
   }
 }
 END_TEST
@@ -121,7 +122,8 @@ START_TEST(test_foaw_window) {
     int n = 2;
     while (n < k + 1 && n < 24 && passes(k, n + 1, p[1])) n++;
     seen[n]++;
-    ck_assert_double_le(fabs((double)(ethd_velocity_step(&v, &s, q[k], 0, dt[k]) - line_slope(k, n))), 1e-11);
+    ck_assert_double_le(fabs((double)(ethd_velocity_step(&v, &s, q[k], 0, dt[k]) - line_slope(k, n))),
+                        1e-11);
   }
   for (int n = 0; n <= W; n++) kinds += seen[n] > 0;
   ck_assert_int_gt(kinds, 8);
@@ -277,16 +279,19 @@ static figure measure(ethd_velocity_method method, const double *p) {
 
 START_TEST(test_lag_against_noise) {
   const double fifty = 50, wide[] = {32, 132e-6}, count[] = {16, 132e-6}, kalman[] = {38e-6, 50, 0.0073};
-  figure difference = measure(ETHD_VELOCITY_DIFFERENCE, NULL), slow = measure(ETHD_VELOCITY_LOWPASS, &fifty);
+  figure difference = measure(ETHD_VELOCITY_DIFFERENCE, NULL),
+         slow = measure(ETHD_VELOCITY_LOWPASS, &fifty);
   figure lowpass = measure(ETHD_VELOCITY_LOWPASS, NULL), lsq = measure(ETHD_VELOCITY_LSQ, NULL);
   figure foaw = measure(ETHD_VELOCITY_FOAW, count), foaw32 = measure(ETHD_VELOCITY_FOAW, wide);
   figure filter = measure(ETHD_VELOCITY_KALMAN, kalman);
-  const char *names[] = {"difference", "lowpass 50", "lowpass 130", "lsq 8", "foaw 16", "foaw 32", "kalman, torque unknown"};
+  const char *names[] = {"difference", "lowpass 50", "lowpass 130",           "lsq 8",
+                         "foaw 16",    "foaw 32",    "kalman, torque unknown"};
   figure all[] = {difference, slow, lowpass, lsq, foaw, foaw32, filter};
   printf("velocity error rms, mm/s       at 30 mm/s  braking from 0.4 m/s at 45 m/s^2\n");
   for (int i = 0; i < 7; i++) printf("  %-24s %12.2f %10.1f\n", names[i], all[i].steady, all[i].braking);
 
-  /* A count a tick is 32.7 mm/s and comes in a share p = 0.917 of the ticks: rms 32.7 sqrt(p (1 - p)). */
+  /* A count a tick is 32.7 mm/s and comes in a share p = 0.917 of the ticks: rms 32.7 sqrt(p (1 - p)).
+   */
   ck_assert_double_eq_tol(difference.steady, 32.725 * sqrt(0.9167 * 0.0833), 0.1);
   ck_assert(foaw32.steady < foaw.steady && foaw.steady < lsq.steady && lsq.steady < lowpass.steady);
   ck_assert(slow.steady < lowpass.steady && lowpass.steady < difference.steady);
@@ -322,12 +327,14 @@ START_TEST(test_refusals) {
     double p[ETHD_PARAMS_MAX] = {bad[i].p0, bad[i].p1, 1};
     ethd_velocity v = {.period = 42};
     ethd_error error;
-    ethd_status status = ethd_velocity_prepare((ethd_velocity_method)bad[i].method, p, bad[i].period, &v, &error);
+    ethd_status status =
+        ethd_velocity_prepare((ethd_velocity_method)bad[i].method, p, bad[i].period, &v, &error);
     ck_assert_int_eq(status, bad[i].status);
     ck_assert_int_eq(error.status, bad[i].status);
     ck_assert_str_eq(error.name, bad[i].name);
     ck_assert(v.period == 42);
-    ck_assert_int_eq(ethd_velocity_prepare((ethd_velocity_method)bad[i].method, p, bad[i].period, &v, NULL), status);
+    ck_assert_int_eq(
+        ethd_velocity_prepare((ethd_velocity_method)bad[i].method, p, bad[i].period, &v, NULL), status);
   }
 }
 END_TEST
