@@ -91,12 +91,37 @@ static size_t digits(const char *at, const char *end, char *out) {
   return n;
 }
 
+/* [+-] digits after an 'e'; far too large ones stay far too large. */
+static bool read_exponent(const char **at, const char *end, long *out) {
+  bool minus = *at < end && **at == '-';
+  if (*at < end && (**at == '+' || **at == '-')) ++*at;
+  size_t places = digits(*at, end, NULL);
+  for (size_t i = 0; i < places; i++)
+    if (*out < 100000) *out = *out * 10 + ((*at)[i] - '0');
+  *at += places;
+  if (minus) *out = -*out;
+  return places > 0;
+}
+
+static void write_exponent(char *to, long exponent) {
+  char digits_of[24];
+  size_t n = sizeof digits_of;
+  unsigned long rest = (unsigned long)labs(exponent);
+  digits_of[--n] = 0;
+  do digits_of[--n] = (char)('0' + rest % 10);
+  while (rest /= 10);
+  *to++ = 'e';
+  *to++ = exponent < 0 ? '-' : '+';
+  memcpy(to, digits_of + n, sizeof digits_of - n);
+}
+
 /* [+-] digits [. digits] [e [+-] digits], a digit before or after the point. The point is taken out and
    goes into the exponent, for strtod expects the locale's. */
 static bool number(word w, double *out) {
   char text[NUMBER_LENGTH + 32], *to = text;
   const char *at = w.at, *end = w.at + w.length;
-  size_t whole, parts = 0, places = 0;
+  size_t whole, parts = 0;
+  long exponent = 0;
   if (w.length == 0 || w.length > NUMBER_LENGTH) return false;
   if (*at == '+' || *at == '-') *to++ = *at++;
   whole = digits(at, end, to);
@@ -106,28 +131,12 @@ static bool number(word w, double *out) {
     at += parts, to += parts;
   }
   if (whole + parts == 0) return false;
-  long exponent = 0;
   if (at < end && (*at == 'e' || *at == 'E')) {
-    bool minus = ++at < end && *at == '-';
-    if (at < end && (*at == '+' || *at == '-')) at++;
-    places = digits(at, end, NULL);
-    if (places == 0) return false;
-    for (size_t i = 0; i < places; i++)
-      if (exponent < 100000) exponent = exponent * 10 + (at[i] - '0');
-    at += places;
-    if (minus) exponent = -exponent;
+    at++;
+    if (!read_exponent(&at, end, &exponent)) return false;
   }
   if (at != end) return false;
-  exponent -= (long)parts;
-  *to++ = 'e';
-  *to++ = exponent < 0 ? '-' : '+';
-  char reversed[24];
-  size_t n = 0;
-  unsigned long rest = (unsigned long)labs(exponent);
-  do reversed[n++] = (char)('0' + rest % 10);
-  while (rest /= 10);
-  while (n) *to++ = reversed[--n];
-  *to = 0;
+  write_exponent(to, exponent - (long)parts);
   *out = strtod(text, NULL);
   return true;
 }

@@ -63,8 +63,9 @@ typedef struct ethd_scene_def {
 typedef struct ethd_scene ethd_scene;
 
 /* Copies and checks. Half-plane normals within 1e-6 of unit length are divided by their length (and c
-   with them). Coordinates and sizes up to 1e6 m. ETHD_E_NOT_FINITE, ETHD_E_RANGE, ETHD_E_GEOMETRY
-   (zero-length, self-intersecting), ETHD_E_MEMORY; error->line is the object's. [main] */
+   with them). Coordinates and sizes up to 1e6 m. ETHD_E_NOT_FINITE, ETHD_E_RANGE, ETHD_E_GEOMETRY (points
+   that rounding can't tell apart, self-intersecting), ETHD_E_ARGUMENT (a wrong count of numbers),
+   ETHD_E_DUPLICATE, ETHD_E_FULL, ETHD_E_MEMORY; error->line is the object's. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_create(const ethd_scene_def *def, ethd_scene **out,
                                                        ethd_error *error);
 
@@ -91,7 +92,8 @@ typedef struct ethd_nearest {
    (on a segment, at a circle's centre) any. [any, rt-safe] */
 ETHD_API void ethd_scene_query(const ethd_scene *scene, ethd_vec x, ethd_nearest *out) ETHD_RT;
 
-/* A local minimum of the distance between x and one object. */
+/* A local minimum of the distance between x and the points of one object: a solid's surface has none where
+   it turns its back to x. A polyline whose last point is its first has no ends. */
 typedef struct ethd_touch {
   double distance; /* signed */
   ethd_vec point, n;
