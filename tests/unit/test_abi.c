@@ -1,0 +1,226 @@
+/* What a plugin was compiled against may not move: offsets and sizes of ABI 0 on a 64-bit machine, and
+   the tables of every law that the library brings. */
+#include <float.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "ethd/control.h"
+#include "ethd/plugin.h"
+#include "unit/rig.h"
+
+#if FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16
+#error "excess precision changes the bits"
+#endif
+
+#if defined(__LP64__)
+#define AT(type, field, offset, bytes)                        \
+  _Static_assert(offsetof(type, field) == (offset), #field); \
+  _Static_assert(sizeof(((type *)0)->field) == (bytes), #field)
+#define SIZE(type, bytes, align)                  \
+  _Static_assert(sizeof(type) == (bytes), #type); \
+  _Static_assert(_Alignof(type) == (align), #type)
+
+/* Frozen within an ABI. */
+SIZE(ethd_param, 48, 8);
+AT(ethd_param, name, 0, 8);
+AT(ethd_param, unit, 8, 8);
+AT(ethd_param, min, 16, 8);
+AT(ethd_param, max, 24, 8);
+AT(ethd_param, def, 32, 8);
+AT(ethd_param, brief, 40, 8);
+
+SIZE(ethd_contact, 104, 8);
+AT(ethd_contact, point, 0, 16);
+AT(ethd_contact, n, 16, 16);
+AT(ethd_contact, d_re, 32, 8);
+AT(ethd_contact, d_fe, 40, 8);
+AT(ethd_contact, d_fr, 48, 8);
+AT(ethd_contact, v, 56, 8);
+AT(ethd_contact, v_f, 64, 8);
+AT(ethd_contact, d_beta, 72, 8);
+AT(ethd_contact, period, 80, 8);
+AT(ethd_contact, age, 88, 8);
+AT(ethd_contact, object, 96, 4);
+
+SIZE(ethd_vec, 16, 8);
+AT(ethd_vec, x, 0, 8);
+AT(ethd_vec, y, 8, 8);
+
+SIZE(ethd_tracking_in, 72, 8);
+AT(ethd_tracking_in, eps_q, 0, 16);
+AT(ethd_tracking_in, eps_q_dot, 16, 16);
+AT(ethd_tracking_in, eps_x, 32, 16);
+AT(ethd_tracking_in, eps_v, 48, 16);
+AT(ethd_tracking_in, period, 64, 8);
+
+SIZE(ethd_ruling, 72, 8);
+AT(ethd_ruling, beta, 0, 8);
+AT(ethd_ruling, share, 8, 8);
+AT(ethd_ruling, offset, 16, 8);
+AT(ethd_ruling, damping, 24, 8);
+AT(ethd_ruling, feed, 32, 8);
+AT(ethd_ruling, shift, 40, 16);
+AT(ethd_ruling, argument, 56, 8);
+AT(ethd_ruling, state, 64, 4);
+
+/* May grow at their ends: nothing here moves, and a plugin of today stays long enough. */
+AT(ethd_law, size, 0, 4);
+AT(ethd_law, abi, 4, 4);
+AT(ethd_law, kind, 8, 4);
+AT(ethd_law, state_size, 12, 4);
+AT(ethd_law, id, 16, 8);
+AT(ethd_law, brief, 24, 8);
+AT(ethd_law, params, 32, 8);
+AT(ethd_law, param_count, 40, 4);
+AT(ethd_law, check, 48, 8);
+AT(ethd_law, reset, 56, 8);
+SIZE(ethd_law, 64, 8);
+AT(ethd_tracking_law, step, 64, 8);
+AT(ethd_contact_law, step, 64, 8);
+AT(ethd_transition_law, step, 64, 8);
+_Static_assert(ETHD_TRACKING_LAW_MIN == 72 && ETHD_CONTACT_LAW_MIN == 72 && ETHD_TRANSITION_LAW_MIN == 72, "least");
+
+AT(ethd_plugin_entry, size, 0, 4);
+AT(ethd_plugin_entry, abi, 4, 4);
+AT(ethd_plugin_entry, id, 8, 8);
+AT(ethd_plugin_entry, version, 16, 8);
+AT(ethd_plugin_entry, laws, 24, 8);
+AT(ethd_plugin_entry, law_count, 32, 4);
+_Static_assert(ETHD_PLUGIN_MIN == 36, "least");
+#endif
+
+_Static_assert(ETHD_ABI == 0 && ETHD_STATE_MAX == 512 && ETHD_PARAMS_MAX == 16, "ABI 0");
+_Static_assert(ETHD_TRACKING == 0 && ETHD_CONTACT == 1 && ETHD_TRANSITION == 2, "kinds");
+_Static_assert(ETHD_TRANSPARENT == 0 && ETHD_BRAKING == 1 && ETHD_VO == 2, "states");
+
+/* Recordings are made of these: 8-byte fields without a hole. */
+#define COUNT_1(type, name) +1
+#define COUNT_2(type, name) +2
+#define COUNT_16(type, name) +16
+#define COUNT(type, name, count, unit, brief) COUNT_##count(type, name)
+_Static_assert(sizeof(ethd_sense) == 8 * (0 ETHD_SENSE_FIELDS(COUNT)), "sense");
+_Static_assert(sizeof(ethd_trace) == sizeof(ethd_sense) + 8 * (0 ETHD_TRACE_FIELDS(COUNT)), "trace");
+
+START_TEST(test_every_law) {
+  const char *const ids[] = {"pd",     "kelvin-voigt", "spring", "hunt-crossley",
+                             "abrupt", "smooth",       "offset", NULL};
+  ethd_error error;
+  for (int i = 0; ids[i] || ethd_laws[i]; i++) {
+    ck_assert(ids[i] && ethd_laws[i]);
+    ck_assert_str_eq(ethd_laws[i]->id, ids[i]);
+    ck_assert_int_eq(ethd_law_check(ethd_laws[i], &error), ETHD_OK);
+    ck_assert_int_eq(ethd_laws[i]->kind, i < 1 ? ETHD_TRACKING : i < 4 ? ETHD_CONTACT : ETHD_TRANSITION);
+    double p[ETHD_PARAMS_MAX];
+    ethd_params_default(ethd_laws[i]->params, ethd_laws[i]->param_count, p);
+    ck_assert_int_eq(ethd_params_check(ethd_laws[i]->params, ethd_laws[i]->param_count, p, &error), ETHD_OK);
+  }
+}
+END_TEST
+
+START_TEST(test_every_method) {
+  ethd_error error;
+  for (int i = 0; i < ETHD_VELOCITY_COUNT; i++)
+    ck_assert_int_eq(ethd_params_check_table(ethd_velocity_methods[i].params, ethd_velocity_methods[i].param_count, &error), ETHD_OK);
+  for (int i = 0; i < ETHD_FILTER_COUNT; i++)
+    ck_assert_int_eq(ethd_params_check_table(ethd_filter_methods[i].params, ethd_filter_methods[i].param_count, &error), ETHD_OK);
+  for (int i = 0; i < ETHD_FIT_COUNT; i++)
+    ck_assert_int_eq(ethd_params_check_table(ethd_fit_methods[i].params, ethd_fit_methods[i].param_count, &error), ETHD_OK);
+}
+END_TEST
+
+/* A law of a later minor version is longer; one that stops short of step is refused. */
+START_TEST(test_sizes_of_laws) {
+  ethd_transition_law law = ethd_transition_smooth;
+  law.law.size = ETHD_TRANSITION_LAW_MIN;
+  ck_assert_int_eq(ethd_law_check(&law.law, NULL), ETHD_OK);
+  law.law.size = 4096;
+  ck_assert_int_eq(ethd_law_check(&law.law, NULL), ETHD_OK);
+  law.law.size = ETHD_TRANSITION_LAW_MIN - 1;
+  ck_assert_int_eq(ethd_law_check(&law.law, NULL), ETHD_E_SIZE);
+  law.law.size = 0;
+  ck_assert_int_eq(ethd_law_check(&law.law, NULL), ETHD_E_SIZE);
+}
+END_TEST
+
+START_TEST(test_law_check) {
+  static const char *const bad_ids[] = {NULL, "", "Smooth", "a b", "a_b", "x1234567890123456789012345678901"};
+  ethd_error error;
+  ck_assert_int_eq(ethd_law_check(NULL, &error), ETHD_E_ARGUMENT);
+  for (int i = 0; i < 6; i++) {
+    ethd_transition_law law = ethd_transition_smooth;
+    law.law.id = bad_ids[i];
+    ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_E_ARGUMENT);
+  }
+  ethd_transition_law law = ethd_transition_smooth;
+  law.law.id = "x123456789012345678901234567890";
+  ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_OK);
+  law.law.brief = "";
+  ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_E_ARGUMENT);
+  law.law.brief = NULL;
+  ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_E_ARGUMENT);
+  law = ethd_transition_smooth;
+  law.law.kind = 3;
+  ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_E_ARGUMENT);
+  law = ethd_transition_smooth;
+  law.law.state_size = 512;
+  ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_OK);
+  law.law.state_size = 513;
+  ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_E_STATE);
+  ck_assert(error.found == 513 && error.max == 512);
+  law = ethd_transition_smooth;
+  law.law.params = NULL;
+  ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_E_TABLE);
+  law.law.abi = 1; /* said before all else: nothing behind it can be trusted */
+  ck_assert_int_eq(ethd_law_check(&law.law, &error), ETHD_E_ABI);
+}
+END_TEST
+
+/* The whole block of 512 bytes is a law's own, zeroed before reset, and nobody else's. */
+static ethd_status greedy_step(const double *p, void *state, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
+  double *block = state;
+  (void)p;
+  ck_assert_double_eq(block[63], c->object + 100 * block[0]);
+  for (int i = 1; i < 63; i++) ck_assert_double_eq(block[i], block[0] * i);
+  block[0]++;
+  for (int i = 1; i < 63; i++) block[i] = block[0] * i;
+  block[63] = c->object + 100 * block[0];
+  out->state = ETHD_VO;
+  return ETHD_OK;
+}
+
+static void greedy_reset(const double *p, void *state) ETHD_RT {
+  double *block = state;
+  (void)p;
+  for (int i = 0; i < 64; i++) ck_assert_double_eq(block[i], 0);
+}
+
+START_TEST(test_state_blocks) {
+  const ethd_transition_law greedy = {{sizeof greedy, ETHD_ABI, ETHD_TRANSITION, 512, "greedy", "all of its state", NULL,
+                                       0, NULL, greedy_reset},
+                                      greedy_step};
+  rig r;
+  /* one object only: its number is 0 in a block's first tick, when block[63] is 0 too */
+  rig_open(&r, "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6\n");
+  ethd_setup_transition(&r.setup, &greedy);
+  rig_start(&r);
+  for (int tick = 0; tick < 50; tick++) {
+    motion m = {{0.249 + 0.0001 * tick, 0.249}, {0, 0}, {0.249, 0.249}, {0, 0}};
+    rig_step(&r, &m);
+    ck_assert_int_eq(r.trace.contacts, 2);
+    if (tick % 10 == 9) ethd_control_reset(r.control);
+  }
+  rig_close(&r);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("abi");
+  TCase *t = tcase_create("abi");
+  tcase_add_test(t, test_every_law);
+  tcase_add_test(t, test_every_method);
+  tcase_add_test(t, test_sizes_of_laws);
+  tcase_add_test(t, test_law_check);
+  tcase_add_test(t, test_state_blocks);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}
