@@ -194,20 +194,25 @@ static void greedy_reset(const double *p, void *state) ETHD_RT {
   for (int i = 0; i < 64; i++) ck_assert_double_eq(block[i], 0);
 }
 
+#define GREEDY \
+  {{sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 512, "greedy", "all of its state", NULL, 0, NULL, greedy_reset}, \
+   greedy_step}
+static const ethd_transition_law greedy = GREEDY, greedy_too = GREEDY;
+
 START_TEST(test_state_blocks) {
-  const ethd_transition_law greedy = {{sizeof greedy, ETHD_ABI, ETHD_TRANSITION, 512, "greedy", "all of its state", NULL,
-                                       0, NULL, greedy_reset},
-                                      greedy_step};
   rig r;
   /* one object only: its number is 0 in a block's first tick, when block[63] is 0 too */
   rig_open(&r, "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6\n");
-  ethd_setup_transition(&r.setup, &greedy);
   rig_start(&r);
-  for (int tick = 0; tick < 50; tick++) {
-    motion m = {{0.249 + 0.0001 * tick, 0.249}, {0, 0}, {0.249, 0.249}, {0, 0}};
+  for (int tick = 0; tick < 100; tick++) {
+    motion m = {{0.249 + 0.00005 * tick, 0.249}, {0, 0}, {0.249, 0.249}, {0, 0}};
+    if (tick % 10 == 0) {
+      ethd_setup_transition(&r.setup, tick % 20 ? &greedy_too : &greedy);
+      rig_post(&r);
+    }
     rig_step(&r, &m);
     ck_assert_int_eq(r.trace.contacts, 2);
-    if (tick % 10 == 9) ethd_control_reset(r.control);
+    if (tick % 35 == 34) ethd_control_reset(r.control);
   }
   rig_close(&r);
 }
