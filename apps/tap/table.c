@@ -25,21 +25,26 @@ enum { COLUMNS = sizeof columns / sizeof *columns };
 static void print_figure(FILE *file, const ethd__figure *figure, double scale, int digits) {
   char sd[24] = "";
   if (!figure->n) {
-    fprintf(file, "  %7s%-8s", "-", "");
+    fprintf(file, " %7s%-8s", "-", "");
     return;
   }
   if (figure->n > 1) snprintf(sd, sizeof sd, " (%.*f)", digits, scale * figure->sd);
-  fprintf(file, "  %7.*f%-8s", digits, scale * figure->mean, sd);
+  fprintf(file, " %7.*f%-8s", digits, scale * figure->mean, sd);
 }
 
 static void print_cells(FILE *file, const ethd__cell *cells, size_t count) {
-  fprintf(file, "%-10s %-6s %5s %7s", "law", "speed", "taps", "valid");
-  for (int c = 0; c < COLUMNS; c++) fprintf(file, "  %7s %-7s", columns[c].name, columns[c].unit);
+  int law = 3, speed = 5;
+  for (size_t i = 0; i < count; i++) {
+    law = (int)fmax(law, (double)strlen(cells[i].law));
+    speed = (int)fmax(speed, (double)strlen(cells[i].speed->word));
+  }
+  fprintf(file, "%-*s %-*s %5s %7s", law, "law", speed, "speed", "taps", "valid");
+  for (int c = 0; c < COLUMNS; c++) fprintf(file, " %7s %-7s", columns[c].name, columns[c].unit);
   fputc('\n', file);
   for (size_t i = 0; i < count; i++) {
     const ethd__cell *cell = &cells[i];
     double share = cell->count ? 100 * (double)ethd__cell_valid(cell) / (double)cell->count : 0;
-    fprintf(file, "%-10s %-6s %5zu %5.1f %%", cell->law, cell->speed->word, cell->count, share);
+    fprintf(file, "%-*s %-*s %5zu %5.1f %%", law, cell->law, speed, cell->speed->word, cell->count, share);
     for (int c = 0; c < COLUMNS; c++) {
       ethd__figure figure = ethd__cell_figure(cell, columns[c].field);
       print_figure(file, &figure, columns[c].scale, columns[c].digits);
@@ -108,9 +113,9 @@ static void print_means(FILE *file, const char *plant, const ethd__cell *cells, 
 static void print_claims(FILE *file, const ethd__cell *cells, size_t count) {
   ethd__claim claims[ETHD_TAP_CLAIMS_MAX];
   size_t n = ethd__claims(cells, count, claims);
-  fprintf(file, "\n%-72s %-22s\n", "The paper's claims", "here");
+  fprintf(file, "\n%-74s %s\n", "The paper's claims", "here");
   for (size_t i = 0; i < n; i++)
-    fprintf(file, "%-72s %-22s %s\n", claims[i].text, claims[i].verdict ? claims[i].here : "",
+    fprintf(file, "%-74s %-22s %s\n", claims[i].text, claims[i].verdict ? claims[i].here : "",
             verdicts[claims[i].verdict]);
 }
 
