@@ -90,7 +90,7 @@ static ethd_ruling rule(const ethd_transition_law *law, const double *p, void *s
   memset(&r, 0, sizeof r);
   r.beta = 1;
   r.argument = c->d_fe;
-  ck_assert_int_eq(law->step(p, state, c, &r), ETHD_OK);
+  if (law->step(p, state, c, &r) != ETHD_OK) ck_abort_msg("step fails");
   return r;
 }
 
@@ -210,9 +210,9 @@ START_TEST(test_cap_of_time_is_exact) {
       double state[64] = {0}, p[] = {100, 0.020, 0.1, INFINITY, n * (k * 1e-4)};
       ethd_contact c = contact_at(-0.001, 0.1, 0.01);
       c.period = k * 1e-4;
-      for (int tick = 0; tick < n; tick++)
-        ck_assert_int_eq(rule(&ethd_transition_offset, p, state, &c).state, ETHD_BRAKING);
-      ck_assert_int_eq(rule(&ethd_transition_offset, p, state, &c).state, ETHD_VO);
+      int ticks = 0;
+      while (rule(&ethd_transition_offset, p, state, &c).state == ETHD_BRAKING) ticks++;
+      ck_assert_int_eq(ticks, n);
     }
 }
 END_TEST
