@@ -10,7 +10,7 @@ static void copy_name(char *to, size_t room, const char *from) {
   to[n] = 0;
 }
 
-ethd_status ethd__error_range(ethd_error *error, ethd_status status, const char *name, double found,
+ethd_status ethd__refuse(ethd_error *error, ethd_status status, const char *name, double found,
                               double min, double max) {
   if (error) {
     memset(error, 0, sizeof *error);
@@ -24,7 +24,7 @@ ethd_status ethd__error_range(ethd_error *error, ethd_status status, const char 
 }
 
 ethd_status ethd__error(ethd_error *error, ethd_status status, const char *name) {
-  return ethd__error_range(error, status, name, (double)NAN, (double)NAN, (double)NAN);
+  return ethd__refuse(error, status, name, (double)NAN, (double)NAN, (double)NAN);
 }
 
 void ethd__error_prefix(ethd_error *error, const char *prefix) {
@@ -41,6 +41,6 @@ void ethd__error_prefix(ethd_error *error, const char *prefix) {
 ethd_status ethd__check_number(ethd_error *error, const char *name, double value, double min,
                                double max) {
   if (value >= min && value <= max) return ETHD_OK;
-  return ethd__error_range(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, value, min,
+  return ethd__refuse(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, value, min,
                            max);
 }

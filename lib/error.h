@@ -5,7 +5,7 @@
 #include "ethd/status.h"
 
 ethd_status ethd__error(ethd_error *error, ethd_status status, const char *name);
-ethd_status ethd__error_range(ethd_error *error, ethd_status status, const char *name, double found,
+ethd_status ethd__refuse(ethd_error *error, ethd_status status, const char *name, double found,
                               double min, double max);
 
 /* Puts "prefix." before the name: "contact" + "k_e". */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "refuse.h"
+#include "error.h"
 
 #define NAME_MAX_LENGTH 31
 

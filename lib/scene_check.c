@@ -3,7 +3,7 @@
 #include <float.h>
 #include <string.h>
 
-#include "refuse.h"
+#include "error.h"
 #include "scene.h"
 
 #define POINTS_MAX (INT32_MAX / 2 - 1) /* a feature's number is twice a point's, plus 1 */

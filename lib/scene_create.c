@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "ethd/maths.h"
-#include "refuse.h"
+#include "error.h"
 #include "scene.h"
 #include "scene_check.h"
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "refuse.h"
+#include "error.h"
 #include "scene.h"
 #include "scene_check.h"
 

@@ -36,7 +36,7 @@ static ethd_status check_geometry(const ethd_setup *s, ethd_error *error) {
   TRY(ethd__check_number(error, "finger.radius", s->finger_radius, 1e-5, s->ring_radius));
   TRY(ethd__check_number(error, "finger.radius_max", s->finger_radius_max, 1e-5, s->ring_radius));
   if (!(s->finger_radius_max < s->ring_radius))
-    return ethd__error_range(error, ETHD_E_RANGE, "finger.radius_max", s->finger_radius_max, 1e-5,
+    return ethd__refuse(error, ETHD_E_RANGE, "finger.radius_max", s->finger_radius_max, 1e-5,
                              s->ring_radius);
   TRY(ethd__check_number(error, "transition.swap_time", s->swap_time, 0, 1));
   return ethd__check_number(error, "transition.v_hysteresis", s->v_hysteresis, 0, 1);
