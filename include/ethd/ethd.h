@@ -11,6 +11,7 @@
 #include "ethd/finger_fit.h"
 #include "ethd/guard.h"
 #include "ethd/law.h"
+#include "ethd/maths.h"
 #include "ethd/param.h"
 #include "ethd/plugin.h"
 #include "ethd/scene.h"
