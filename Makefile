@@ -2,6 +2,7 @@
 # Variables: CC CXX CFLAGS CPPFLAGS LDFLAGS PREFIX DESTDIR BUILD, and
 #   SAN=address|thread|undefined|address,undefined   a sanitizer build, in a tree of its own
 #   WERROR=1   warnings are errors        V=1   whole command lines
+#   WHAT=...   make bench: only this question
 #   TESTS=...  only these tests, by name; % matches anything: TESTS='test_% golden'
 
 PREFIX ?= /usr/local
@@ -39,7 +40,8 @@ say = $(if $(V),@:,@printf '  %-6s %s\n' $(1) $(2))
 
 GOALS := $(or $(MAKECMDGOALS),all)
 KINDS := $(if $(filter all demo check bench bench-quick ci install tests,$(GOALS)),build) \
-         $(if $(filter check ci tests,$(GOALS)),check) $(if $(filter demo,$(GOALS)),demo)
+         $(if $(filter check ci tests,$(GOALS)),check) $(if $(filter demo,$(GOALS)),demo) \
+         $(if $(filter bench bench-quick,$(GOALS)),bench)
 DRY := $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 ifneq ($(strip $(KINDS)),)
 ifeq ($(DRY),)
@@ -192,10 +194,19 @@ check: $(RUNS) $(TREE_RUN)
 demo: all
 	@BUILD='$(B)' sh apps/demo.sh
 
-bench: all
-	@mkdir -p $(B)/bench && $(B)/bin/ethd-bench all --out $(B)/bench
-bench-quick: all
-	@mkdir -p $(B)/bench && $(B)/bin/ethd-bench all --quick --out $(B)/bench
+# Other people's libraries that the benchmarks measure beside ours: ethd-bench loads those that are there.
+PEERS := $(patsubst apps/bench/peers/%,$(B)/peers/%.so,$(basename $(wildcard apps/bench/peers/*.c apps/bench/peers/*.cc)))
+define peer
+$(B)/peers/$(basename $(notdir $(1))).so: $(1) $(wildcard apps/bench/*.h) $(HEADERS) $(B)/flags
+	$$(call say,PEER,$$@)
+	@CC='$$(CC)' CXX='$$(CXX)' CFLAGS='$$(CFLAGS)' sh .ci/peer $$< $$@
+endef
+$(foreach p,$(wildcard apps/bench/peers/*.c apps/bench/peers/*.cc),$(eval $(call peer,$(p))))
+
+bench-quick: QUICK := 1
+bench bench-quick: all $(PEERS)
+	@BUILD='$(B)' QUICK='$(QUICK)' WHAT='$(WHAT)' sh apps/bench.sh \
+	  'commit $(or $(shell git describe --always --dirty 2>/dev/null),unknown); $(CC) $(BASE)'
 
 ci:
 	@BUILD='$(BUILD)' MAKE='$(MAKE)' bash .ci/ci

@@ -1,4 +1,7 @@
-/* What all benchmarks share: a clock, percentiles, the machine's description, CSV. */
+/* What all benchmarks share: clocks, races, percentiles, peers, CSV.
+
+   A benchmark answers one question with a table on the terminal and DIR/WHAT.csv; plot/bench-WHAT.gp draws
+   it. Times are of this machine at this moment: contenders race in turns, and only ratios count. */
 #ifndef ETHD_APPS_BENCH_H
 #define ETHD_APPS_BENCH_H
 
@@ -6,19 +9,38 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* One question that ethd-bench answers. `folder`: where CSV and pictures go; quick: under 20 s. */
+/* One question that ethd-bench answers. `folder`: where the CSV goes; quick: under 15 s. */
 typedef struct ethd__bench {
   const char *name, *brief;
   int (*run)(const char *folder, int quick); /* exit code */
 } ethd__bench;
 
-extern const ethd__bench ethd__bench_tick;
+extern const ethd__bench ethd__bench_fits, ethd__bench_filters, ethd__bench_velocity, ethd__bench_kinematics,
+    ethd__bench_tick;
 
 /* CLOCK_MONOTONIC, ns. */
 int64_t ethd__bench_now(void);
 
-/* What two clock reads in a row cost, ns: the smallest of many. */
+/* What two clock reads in a row cost, ns: the median of many. */
 double ethd__bench_clock_cost(void);
+
+/* ---- races ---- */
+
+/* work(data) does `items` things; ns is what one of them takes. */
+typedef struct ethd__bench_entry {
+  const char *name;
+  void (*work)(void *data);
+  void *data;
+  double items;
+  double ns;
+} ethd__bench_entry;
+
+/* Fills ns of all: they work in turns of about 0.2 ms for `seconds` each; the median turn counts, which
+   nobody has interrupted. */
+void ethd__bench_race(ethd__bench_entry *entries, size_t count, double seconds);
+
+/* Results go here, so that no work is idle. */
+extern volatile double ethd__bench_sink;
 
 typedef struct ethd__bench_times {
   double mean, median, p99, p999, max; /* ns */
@@ -27,8 +49,29 @@ typedef struct ethd__bench_times {
 /* Sorts `ns` in place. */
 ethd__bench_times ethd__bench_percentiles(double *ns, size_t count);
 
-/* Opens folder/name.csv with '#' lines that say machine, compiler, flags and version, then `header`;
-   exits when it can't. */
-FILE *ethd__bench_csv(const char *folder, const char *name, const char *header);
+/* ---- random numbers: draw i is the same everywhere ---- */
+
+/* Uniform in [a, b). */
+double ethd__bench_draw(uint64_t i, double a, double b);
+double ethd__bench_normal(uint64_t i);
+
+/* ---- peers ---- */
+
+/* `symbol` of PEERS/NAME.so (apps/bench/peers/NAME.cc, tables in peers.h). NULL: it isn't there, and a
+   line says so. */
+const void *ethd__bench_peer(const char *name, const char *symbol);
+void ethd__bench_peers_in(const char *folder);
+
+/* ---- output ---- */
+
+/* Opens folder/name.csv with '#' lines that say machine, compiler, flags and version, then those of `about`
+   (each ends in a newline), then `header`; exits when it can't. */
+FILE *ethd__bench_csv(const char *folder, const char *name, const char *about, const char *header);
+
+/* Whatever else the '#' lines shall say: commit, flags. */
+void ethd__bench_about(const char *text);
+
+/* "met" or "MISSED". */
+const char *ethd__bench_verdict(int met);
 
 #endif

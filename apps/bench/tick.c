@@ -103,7 +103,7 @@ static int run(const char *folder, int quick) {
   static work w;
   ethd_setup setup = ethd_setup_default();
   script(&setup, w.senses);
-  FILE *csv = ethd__bench_csv(folder, "tick", "law,scene,mean_ns,median_ns,p99_ns,p999_ns,max_ns");
+  FILE *csv = ethd__bench_csv(folder, "tick", "", "law,scene,mean_ns,median_ns,p99_ns,p999_ns,max_ns");
   printf("the whole tick, hot, ns; scene: none, a wall, a wall and an outline of 100 or 1000 segments\n");
   printf("%-8s %-6s %8s %8s %8s %8s %10s\n", "law", "scene", "mean", "median", "p99", "p99.9", "max");
   for (size_t s = 0; s < sizeof scenes / sizeof *scenes; s++) {
