@@ -53,11 +53,14 @@ endif
 
 # ---- flags ----------------------------------------------------------------------------------
 
-X86_32 := $(shell echo | $(CC) $(CPPFLAGS) $(CFLAGS) -dM -E -x c - 2>/dev/null | grep -q __i386__ && echo yes)
+TARGET := $(shell echo | $(CC) $(CPPFLAGS) $(CFLAGS) -dM -E -x c - 2>/dev/null | grep -oE '__(i386__|FMA4?__|ARM_FEATURE_COMPLEX)')
 
 WARN := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla \
         $(if $(WERROR),-Werror)
-MATHS := -ffp-contract=off -fno-math-errno $(if $(X86_32),-msse2 -mfpmath=sse)
+# gcc's vectoriser fuses a*b - c, a*b + c in pairs (vfmsubadd) in spite of -ffp-contract=off.
+FUSES := $(filter __FMA% __ARM%,$(TARGET))
+MATHS := -ffp-contract=off -fno-math-errno $(if $(FUSES),-fno-tree-vectorize) \
+         $(if $(filter __i386__,$(TARGET)),-msse2 -mfpmath=sse)
 SANFLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-omit-frame-pointer -U_FORTIFY_SOURCE \
             $(if $(findstring undefined,$(SAN)),-fsanitize=float-cast-overflow -fno-sanitize-recover=all))
 BASE := -std=gnu11 $(CFLAGS) $(WARN) $(MATHS) $(SANFLAGS)
