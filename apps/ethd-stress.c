@@ -1,0 +1,93 @@
+/* Numerical stress: what the library does at its limits, against formulas. */
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "common/cli.h"
+#include "stress/stress.h"
+
+static const ethd__stress *const tests[] = {
+    &ethd__stress_boundary, &ethd__stress_braking,
+};
+#define COUNT (sizeof tests / sizeof *tests)
+
+static const char doc[] =
+    "Measures the library's real code at its limits and compares with closed forms: measured, analytic, "
+    "verdict. Exit 1 when one fails. NAME: all (default) or one of `--list`.\v"
+    "Where many points make one line, it is the worst of them; --csv has them all.\n\n"
+    "Example:\n"
+    "  ethd-stress all --quick\n"
+    "  ethd-stress boundary --out pictures";
+
+static const struct argp_option options[] = {
+    {"quick", 'q', NULL, 0, "fewer points: all in a few seconds", 0},
+    {"long", 'l', NULL, 0, "1e9 ticks where the default has 1e7: minutes", 0},
+    {"csv", 'c', "FILE", 0, "every result, one a row", 0},
+    {"out", 'o', "DIR", 0, "folder for the data of pictures (plot/stability.gp draws them)", 0},
+    {"list", 'L', NULL, 0, "names the tests", 0},
+    {0},
+};
+
+static struct {
+  const char *name, *csv, *folder;
+  ethd__effort effort;
+  int list;
+} arg = {.effort = ETHD__NORMAL};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  switch (key) {
+    case 'q': arg.effort = ETHD__QUICK; return 0;
+    case 'l': arg.effort = ETHD__LONG; return 0;
+    case 'c': arg.csv = text; return 0;
+    case 'o': arg.folder = text; return 0;
+    case 'L': arg.list = 1; return 0;
+    case ARGP_KEY_ARG:
+      if (arg.name) argp_error(state, "\"%s\": one NAME at a time", text);
+      arg.name = text;
+      return 0;
+    default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static int wanted(const ethd__stress *test) {
+  return !arg.name || strcmp(arg.name, "all") == 0 || strcmp(arg.name, test->name) == 0;
+}
+
+static void open_outputs(ethd__stress_log *log) {
+  if (arg.folder && mkdir(arg.folder, 0777) != 0 && errno != EEXIST)
+    ethd__fail(ETHD_EXIT_FAILED, "%s: %s", arg.folder, strerror(errno));
+  if (!arg.csv) return;
+  log->csv = fopen(arg.csv, "w");
+  if (!log->csv) ethd__fail(ETHD_EXIT_FAILED, "%s: %s", arg.csv, strerror(errno));
+  fprintf(log->csv, "test,what,measured,relation,analytic,unit,allowed,pass\n");
+}
+
+static void check_name(void) {
+  for (size_t i = 0; i < COUNT; i++)
+    if (wanted(tests[i])) return;
+  ethd__fail(ETHD_EXIT_INPUT, "\"%s\" isn't a test; all and those of --list are", arg.name);
+}
+
+int main(int argc, char **argv) {
+  static const struct argp argp = {options, parse, "[NAME]", doc, NULL, NULL, NULL};
+  ethd__begin();
+  argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  for (size_t i = 0; arg.list && i < COUNT; i++) printf("%-10s  %s\n", tests[i]->name, tests[i]->brief);
+  if (arg.list) return ethd__end(ETHD_EXIT_DONE);
+  check_name();
+  ethd__stress_log log = {.effort = arg.effort, .folder = arg.folder};
+  open_outputs(&log);
+  for (size_t i = 0; i < COUNT; i++) {
+    if (!wanted(tests[i])) continue;
+    printf("%s: %s\n", tests[i]->name, tests[i]->brief);
+    log.test = tests[i]->name;
+    tests[i]->run(&log);
+    ethd__stress_flush(&log);
+  }
+  ethd__stress_close(log.csv);
+  if (log.failures)
+    printf("%llu FAILED\n", (unsigned long long)log.failures);
+  else
+    printf("all within what is allowed\n");
+  return ethd__end(log.failures ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE);
+}

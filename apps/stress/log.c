@@ -1,0 +1,105 @@
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "stress/stress.h"
+
+/* 0 exact, 1 just allowed, over 1 failed; what isn't a number has failed. */
+static double load(const ethd__result *r) {
+  double off = r->bound ? r->measured : fabs(r->measured - r->analytic);
+  double most = r->bound ? r->analytic : r->allowed;
+  if (off <= most) return most > 0 ? off / most : 0;
+  double over = off / most;
+  return over > 1 ? over : (double)INFINITY;
+}
+
+/* Of two results with the same words: bounds of 0 have no load to tell them apart. */
+static int worse(const ethd__result *r, const ethd__result *than) {
+  double a = load(r), b = load(than);
+  return a > b || (a == b && r->bound && r->measured > than->measured);
+}
+
+void ethd__stress_flush(ethd__stress_log *log) {
+  const ethd__result *r = &log->worst;
+  char count[32] = "";
+  if (log->merged == 0) return;
+  if (log->merged > 1) snprintf(count, sizeof count, "  worst of %llu", (unsigned long long)log->merged);
+  printf("  %-58s %13.6g %s %-13.6g %-6s", r->what, r->measured, r->bound ? "<=" : "= ", r->analytic,
+         r->unit);
+  if (r->bound)
+    printf(" %22s", "");
+  else
+    printf(" %8.1e of %8.1e", fabs(r->measured - r->analytic), r->allowed);
+  printf("  %s%s\n", load(r) <= 1 ? "ok" : "FAILED", count);
+  fflush(stdout);
+  log->merged = 0;
+}
+
+static void add(ethd__stress_log *log, const ethd__result *r) {
+  if (log->merged && strcmp(log->worst.what, r->what) != 0) ethd__stress_flush(log);
+  if (log->merged == 0 || worse(r, &log->worst)) log->worst = *r;
+  log->merged++;
+  int passed = load(r) <= 1;
+  if (!passed) log->failures++;
+  if (log->csv)
+    fprintf(log->csv, "%s,\"%s\",%.17g,%s,%.17g,%s,%.17g,%d\n", log->test, r->what, r->measured,
+            r->bound ? "<=" : "=", r->analytic, r->unit, r->allowed, passed);
+}
+
+#define WORDS(r, what)                           \
+  do {                                           \
+    va_list args;                                \
+    va_start(args, what);                        \
+    vsnprintf((r).what, sizeof(r).what, what, args); \
+    va_end(args);                                \
+  } while (0)
+
+void ethd__stress_near(ethd__stress_log *log, const char *unit, double measured, double analytic,
+                       double share, const char *what, ...) {
+  ethd__result r = {.unit = unit, .measured = measured, .analytic = analytic};
+  r.allowed = share * fabs(analytic);
+  WORDS(r, what);
+  add(log, &r);
+}
+
+void ethd__stress_within(ethd__stress_log *log, const char *unit, double measured, double analytic,
+                         double distance, const char *what, ...) {
+  ethd__result r = {.unit = unit, .measured = measured, .analytic = analytic, .allowed = distance};
+  WORDS(r, what);
+  add(log, &r);
+}
+
+void ethd__stress_bound(ethd__stress_log *log, const char *unit, double measured, double bound,
+                        const char *what, ...) {
+  ethd__result r = {.unit = unit, .measured = measured, .analytic = bound, .bound = 1};
+  WORDS(r, what);
+  add(log, &r);
+}
+
+void ethd__stress_note(ethd__stress_log *log, const char *text, ...) {
+  va_list args;
+  ethd__stress_flush(log);
+  va_start(args, text);
+  printf("  ");
+  vprintf(text, args);
+  printf("\n");
+  va_end(args);
+}
+
+FILE *ethd__stress_data(const ethd__stress_log *log, const char *name, const char *header) {
+  char path[4096];
+  if (!log->folder) return NULL;
+  snprintf(path, sizeof path, "%s/%s", log->folder, name);
+  FILE *f = fopen(path, "w");
+  if (!f) ethd__fail(ETHD_EXIT_FAILED, "%s: %s", path, strerror(errno));
+  fprintf(f, "%s\n", header);
+  return f;
+}
+
+void ethd__stress_close(FILE *data) {
+  if (!data) return;
+  int bad = ferror(data);
+  if (fclose(data) != 0 || bad) ethd__fail(ETHD_EXIT_FAILED, "data: %s", strerror(errno ? errno : EIO));
+}

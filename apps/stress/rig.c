@@ -1,0 +1,144 @@
+#include "stress/rig.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "stress/stress.h"
+
+ethd_scene *ethd__rig_wall(double c) {
+  double numbers[3] = {-1, 0, c};
+  ethd_object_def wall = {ETHD_HALFPLANE, -1, numbers, 3, 0};
+  ethd_scene_def def = {&wall, 1, NULL, 0};
+  ethd_scene *scene;
+  ethd_error error;
+  if (ethd_scene_create(&def, &scene, &error) < 0)
+    ethd__fail(ETHD_EXIT_FAILED, "scene: %s", ethd_status_sentence(error.status));
+  return scene;
+}
+
+void ethd__rig_open(ethd__rig *rig, double mass, double gap) {
+  memset(rig, 0, sizeof *rig);
+  rig->setup = ethd_setup_default();
+  rig->setup.tracking_p[0] = rig->setup.tracking_p[1] = 0; /* k_t, b_t */
+  rig->mass = mass;
+  rig->force_limit = (double)INFINITY;
+  rig->scene = ethd__rig_wall(gap + rig->setup.ring_radius - ETHD__RIG_X);
+  rig->setup.scene = rig->scene;
+}
+
+/* J^T push at the present pose. */
+static ethd_vec pushed(const ethd__rig *rig) {
+  ethd_pose pose;
+  if (rig->push.x == 0 && rig->push.y == 0) return (ethd_vec){0, 0};
+  ethd_arm_pose(&rig->setup.arm, rig->q, &pose);
+  return ethd_mat_mul_transposed(pose.j, rig->push);
+}
+
+void ethd__rig_push(ethd__rig *rig, ethd_vec push) {
+  rig->push = push;
+  ethd_vec out = pushed(rig);
+  for (int i = 0; i < rig->delay; i++) {
+    rig->way[i][0] = -out.x;
+    rig->way[i][1] = -out.y;
+  }
+}
+
+void ethd__rig_start(ethd__rig *rig, double speed) {
+  ethd_error error;
+  if (ethd_control_create(&rig->setup, &rig->control, &error) < 0)
+    ethd__fail(ETHD_EXIT_FAILED, "%s: %s (found %g, from %g to %g)", error.name,
+               ethd_status_sentence(error.status), error.found, error.min, error.max);
+  rig->q[0] = M_PI / 2;
+  rig->q[1] = 0;
+  rig->w[0] = speed / rig->setup.arm.link1;
+  rig->w[1] = 0;
+  ethd__rig_push(rig, rig->push);
+}
+
+void ethd__rig_close(ethd__rig *rig) {
+  ethd_control_destroy(rig->control);
+  ethd_scene_destroy(rig->scene);
+}
+
+ethd_sense ethd__rig_sense(const ethd__rig *rig) {
+  ethd_sense s;
+  memset(&s, 0, sizeof s);
+  s.time_ns = (int64_t)rint((double)rig->tick * (1e9 * rig->setup.period));
+  s.have = (rig->measured ? ETHD_HAVE_DQ : 0) | (rig->has_finger ? ETHD_HAVE_FINGER : 0);
+  memcpy(s.q, rig->q, sizeof s.q);
+  memcpy(s.dq, rig->w, sizeof s.dq);
+  s.finger[0] = rig->finger.x, s.finger[1] = rig->finger.y;
+  s.finger_v[0] = rig->finger_v.x, s.finger_v[1] = rig->finger_v.y;
+  return s;
+}
+
+const ethd_trace *ethd__rig_step(ethd__rig *rig) {
+  ethd_sense sense = ethd__rig_sense(rig);
+  rig->status = ethd_control_step(rig->control, &sense, &rig->command, &rig->trace);
+  return &rig->trace;
+}
+
+/* What the motors give now: the command of `delay` ticks ago, limited. */
+static void torque(ethd__rig *rig, double out[2]) {
+  const ethd_arm *arm = &rig->setup.arm;
+  double *slot = rig->way[rig->delay ? rig->tick % rig->delay : 0];
+  for (int j = 0; j < 2; j++) {
+    double most = rig->force_limit * (j ? arm->link2 : arm->link1), now = rig->command.torque[j];
+    out[j] = fmin(fmax(rig->delay ? slot[j] : now, -most), most);
+    slot[j] = now;
+  }
+}
+
+void ethd__rig_move(ethd__rig *rig) {
+  const ethd_arm *arm = &rig->setup.arm;
+  double tau[2], T = rig->setup.period;
+  ethd_vec out = pushed(rig);
+  torque(rig, tau);
+  for (int j = 0; j < 2; j++) {
+    double link = j ? arm->link2 : arm->link1;
+    double a = (tau[j] + (j ? out.y : out.x)) / (rig->mass * link * link);
+    rig->q[j] += T * rig->w[j] + T * T / 2 * a;
+    rig->w[j] += T * a;
+  }
+  rig->tick++;
+}
+
+const ethd_trace *ethd__rig_tick(ethd__rig *rig) {
+  ethd__rig_step(rig);
+  ethd__rig_move(rig);
+  return &rig->trace;
+}
+
+double ethd__rig_depth(const ethd__rig *rig) {
+  return (rig->q[0] - M_PI / 2) * rig->setup.arm.link1;
+}
+
+double ethd__rig_speed(const ethd__rig *rig) { return rig->w[0] * rig->setup.arm.link1; }
+
+/* ---- growth ---- */
+
+static void shift(double *past, int count, double newest) {
+  memmove(past + 1, past, (size_t)(count - 1) * sizeof *past);
+  past[0] = newest;
+}
+
+static double difference(const double *x, int order) {
+  return order == 1 ? x[0] - x[1] : (x[0] - x[1]) - (x[1] - x[2]);
+}
+
+double ethd__rig_growth(ethd__rig *rig, const ethd__swing *s) {
+  double x[3] = {0}, y[3] = {0}, first = NAN, c = NAN;
+  for (int k = 0; k <= s->settle + s->span; k++) {
+    ethd__rig_tick(rig);
+    shift(x, 3, ethd__rig_depth(rig));
+    if (k < s->order) continue;
+    shift(y, 3, difference(x, s->order));
+    if (k < s->order + 2) continue;
+    if (!(fabs(y[0]) <= s->ceiling)) return (double)INFINITY;
+    if (fmax(fabs(y[0]), fmax(fabs(y[1]), fabs(y[2]))) < s->floor) return -(double)INFINITY;
+    c = fabs(y[1] * y[1] - y[0] * y[2]);
+    if (k == s->settle) first = c;
+  }
+  return log(c / first) / (2 * s->span);
+}

@@ -1,0 +1,73 @@
+/* The library's whole step against an exact mass: no integrator stands between formula and measurement.
+
+      push                          arm parallel, links at 90 and 0 degrees: x is driven by joint 1
+        |   |//////  wall           alone, with the inertia m L^2
+        v   |//////
+     ( ring )|/////   wall on the left: n = (-1, 0), d_re = x + shift
+        0.25 m                                                                                         */
+#ifndef ETHD_APPS_STRESS_RIG_H
+#define ETHD_APPS_STRESS_RIG_H
+
+#include "ethd/control.h"
+
+#define ETHD__RIG_DELAY_MAX 16
+#define ETHD__RIG_X 0.25 /* m: the ring's x at the start, and its y */
+
+typedef struct ethd__rig {
+  ethd_setup setup; /* changed before start */
+  double mass;      /* kg at the ring, both joints alike */
+  int delay;        /* ticks from measurement to torque */
+  int measured;     /* 1: joint speeds are measured, 0: the setup estimates them */
+  int has_finger;
+  ethd_vec finger, finger_v; /* m, m/s; without one it is where the ring is */
+  ethd_vec push;             /* N on the ring from outside */
+  double force_limit;        /* N: torque limit of each joint / L; INFINITY: none */
+
+  ethd_scene *scene;
+  ethd_control *control;
+  double q[2], w[2]; /* rad, rad/s: true at the present tick */
+  double way[ETHD__RIG_DELAY_MAX][2];
+  int64_t tick;
+  ethd_status status;
+  ethd_command command;
+  ethd_trace trace; /* of the last tick */
+} ethd__rig;
+
+/* The default setup without tracking, without friction, `gap` m from the wall (d_re; < 0: inside). */
+void ethd__rig_open(ethd__rig *rig, double mass, double gap);
+
+/* Controller and ring at its place, `speed` m/s into the wall. Exits when the setup is refused. */
+void ethd__rig_start(ethd__rig *rig, double speed);
+void ethd__rig_close(ethd__rig *rig);
+
+/* From now on this push, and torques on their way that bear it (start does it for rig->push). */
+void ethd__rig_push(ethd__rig *rig, ethd_vec push);
+
+/* One tick: step, then the mass moves on for a period. */
+const ethd_trace *ethd__rig_tick(ethd__rig *rig);
+
+/* The same without moving. */
+const ethd_trace *ethd__rig_step(ethd__rig *rig);
+void ethd__rig_move(ethd__rig *rig);
+
+/* A tick's sense as the rig stands. */
+ethd_sense ethd__rig_sense(const ethd__rig *rig);
+
+/* How far and how fast the ring is along n, m and m/s: joint 1's angle times L. */
+double ethd__rig_depth(const ethd__rig *rig);
+double ethd__rig_speed(const ethd__rig *rig);
+
+/* How a swing grows, ln per tick: a pair of modes z, z* of x_k, the `order`-th differences of the motion,
+   has x_k^2 - x_k+1 x_k-1 proportional to |z|^2k exactly, whatever its phase. Measured from tick `settle`
+   on over `span` ticks; +-INFINITY as soon as the differences leave [floor, ceiling] m. */
+typedef struct ethd__swing {
+  int order, settle, span;
+  double floor, ceiling;
+} ethd__swing;
+
+double ethd__rig_growth(ethd__rig *rig, const ethd__swing *swing);
+
+/* A half-plane scene; exits without memory. */
+ethd_scene *ethd__rig_wall(double c);
+
+#endif

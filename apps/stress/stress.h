@@ -1,0 +1,70 @@
+/* Numerical stress with analytic answers: what its tests share.
+
+   A test measures on the library's real code and works its analytic figure out from a formula of its own.
+   Results with the same words, one after the other, make one line on the terminal, that of the worst;
+   the CSV holds them all. */
+#ifndef ETHD_APPS_STRESS_H
+#define ETHD_APPS_STRESS_H
+
+#include <stdint.h>
+#include <stdio.h>
+
+typedef enum ethd__effort { ETHD__QUICK, ETHD__NORMAL, ETHD__LONG } ethd__effort;
+
+typedef struct ethd__result {
+  char what[96];
+  const char *unit;
+  double measured, analytic, allowed; /* allowed: the distance; a bound's is 0 */
+  int bound;                          /* 1: measured <= analytic */
+} ethd__result;
+
+typedef struct ethd__stress_log {
+  ethd__effort effort;
+  const char *folder; /* of data for pictures; NULL: none are written */
+  FILE *csv;          /* NULL: none */
+  const char *test;
+  uint64_t failures;
+  ethd__result worst; /* of the results that make the next line */
+  uint64_t merged;
+} ethd__stress_log;
+
+typedef struct ethd__stress {
+  const char *name, *brief;
+  void (*run)(ethd__stress_log *log);
+} ethd__stress;
+
+/* |measured - analytic| <= share |analytic|. Words are printf's. */
+void ethd__stress_near(ethd__stress_log *log, const char *unit, double measured, double analytic,
+                       double share, const char *what, ...) __attribute__((format(printf, 6, 7)));
+
+/* |measured - analytic| <= distance. */
+void ethd__stress_within(ethd__stress_log *log, const char *unit, double measured, double analytic,
+                         double distance, const char *what, ...) __attribute__((format(printf, 6, 7)));
+
+/* measured <= bound. */
+void ethd__stress_bound(ethd__stress_log *log, const char *unit, double measured, double bound,
+                        const char *what, ...) __attribute__((format(printf, 5, 6)));
+
+/* A figure without a verdict. */
+void ethd__stress_note(ethd__stress_log *log, const char *text, ...)
+    __attribute__((format(printf, 2, 3)));
+
+/* Prints the line that is still open. */
+void ethd__stress_flush(ethd__stress_log *log);
+
+/* folder/name for writing with a header row; NULL when there is no folder; exits when it can't. */
+FILE *ethd__stress_data(const ethd__stress_log *log, const char *name, const char *header);
+void ethd__stress_close(FILE *data);
+
+/* Of the three efforts' values the present one. */
+static inline int64_t ethd__stress_pick(const ethd__stress_log *log, int64_t quick, int64_t normal,
+                                        int64_t most) {
+  return log->effort == ETHD__QUICK ? quick : log->effort == ETHD__NORMAL ? normal : most;
+}
+
+extern const ethd__stress ethd__stress_boundary, ethd__stress_braking, ethd__stress_viscous,
+    ethd__stress_stop, ethd__stress_touch, ethd__stress_lag, ethd__stress_press, ethd__stress_creep,
+    ethd__stress_energy, ethd__stress_arm, ethd__stress_parameters, ethd__stress_denormals,
+    ethd__stress_drift, ethd__stress_inputs, ethd__stress_jitter, ethd__stress_map;
+
+#endif
