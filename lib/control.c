@@ -9,9 +9,9 @@ static const ethd_status status_of[ETHD_FAULT_COUNT] = {
     [ETHD_FAULT_WORKSPACE] = ETHD_E_RANGE,
 };
 
-static void push(ethd_control *control, ethd_event_kind kind, int32_t code, double value,
+static void push(ethd_control *control, int64_t tick, ethd_event_kind kind, int32_t code, double value,
                  const ethd_scene *scene) ETHD_RT {
-  ethd_event event = {kind, code, (int64_t)control->state.counters.ticks, value, scene};
+  ethd_event event = {kind, code, tick, value, scene};
   if (!ethd__events_push(&control->events, &event)) control->state.counters.events_dropped++;
 }
 
@@ -26,9 +26,9 @@ static const ethd__plan *take_posted(ethd_control *control) ETHD_RT {
 }
 
 /* [main] may free the old scene and post again only when this tick is through with both. */
-static void give_back(ethd_control *control, const ethd__plan *from) ETHD_RT {
+static void give_back(ethd_control *control, int64_t tick, const ethd__plan *from) ETHD_RT {
   const ethd_scene *now = control->plans[control->ruling].setup.scene;
-  push(control, ETHD_EVENT_TAKEN, 0, 0, from->setup.scene != now ? from->setup.scene : NULL);
+  push(control, tick, ETHD_EVENT_TAKEN, 0, 0, from->setup.scene != now ? from->setup.scene : NULL);
   atomic_store_explicit(&control->posted, 0, memory_order_release);
 }
 
@@ -37,15 +37,15 @@ static int take_clear(ethd_control *control) ETHD_RT {
   atomic_store_explicit(&control->clear, 0, memory_order_relaxed);
   if (!control->state.fault) return 0;
   ethd__resume(&control->plans[control->ruling], &control->state);
-  push(control, ETHD_EVENT_CLEARED, 0, 0, NULL);
+  push(control, (int64_t)control->state.counters.ticks, ETHD_EVENT_CLEARED, 0, 0, NULL);
   return 1;
 }
 
-static void report(ethd_control *control, const ethd__failure *failure) ETHD_RT {
+static void report(ethd_control *control, int64_t tick, const ethd__failure *failure) ETHD_RT {
   ethd__state *s = &control->state;
   if (failure->fault == ETHD_FAULT_NONE || s->fault) return;
   s->counters.faults[failure->fault]++;
-  push(control, ETHD_EVENT_FAULT, (int32_t)failure->fault, failure->value, NULL);
+  push(control, tick, ETHD_EVENT_FAULT, (int32_t)failure->fault, failure->value, NULL);
   if (control->plans[control->ruling].setup.limits.latch) s->fault = failure->fault;
 }
 
@@ -66,8 +66,8 @@ ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, et
   const ethd__plan *from = take_posted(control);
   ethd__entry e = {&control->plans[control->ruling], from, soft};
   ethd__failure failure = ethd__tick(&e, &control->state, &control->scratch, sense, out);
-  if (from) give_back(control, from);
-  report(control, &failure);
+  if (from) give_back(control, out->tick, from);
+  report(control, out->tick, &failure);
   return finish(&failure, out, command);
 }
 

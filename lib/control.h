@@ -40,6 +40,7 @@ typedef struct ethd__slot {
 typedef struct ethd__state {
   ethd_counters counters;
   int64_t fault; /* latched */
+  int64_t blind; /* periods since the last tick that had a measurement */
   ethd_velocity_state velocity[2];
   ethd_filter_state filter;
   double finger_radius; /* of the last fit, NaN: none */

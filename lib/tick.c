@@ -2,13 +2,13 @@
 
 #include "control.h"
 
-#define MISSED_MAX 1000000 /* periods: a longer gap is no longer a gap of a loop */
+#define GAP_MAX 1000000 /* periods: a longer gap is no longer a gap of a loop */
 
-static double elapsed(const ethd__plan *plan, const ethd_sense *sense) ETHD_RT {
-  int64_t missed = sense->missed;
-  if (!(missed > 0)) missed = 0;
-  if (missed > MISSED_MAX) missed = MISSED_MAX;
-  return (double)(missed + 1) * plan->setup.period;
+/* Periods since the last tick that had a measurement; one without counts as missed. */
+static int64_t periods(const ethd__state *state, const ethd_sense *sense) ETHD_RT {
+  int64_t missed = sense->missed > 0 ? sense->missed : 0;
+  int64_t n = state->blind + (missed < GAP_MAX ? missed : GAP_MAX) + 1;
+  return n < GAP_MAX ? n : GAP_MAX;
 }
 
 /* ---- what forbids a tick ---- */
@@ -141,6 +141,7 @@ static void swap(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
   int held = compute(e->from, scratch, sense, dt, pose, out, failure);
   memcpy(old, out->tau_raw, sizeof old);
   migrate(e->from, e->plan, state);
+  if (!held) ethd__estimate(e->plan, state, sense, dt, pose, out);
   if (!held || !ethd__evaluate(e->plan, state, sense, dt, pose, out, failure)) return;
   start_fade(state, old, out->tau_raw);
   memcpy(out->tau_raw, old, sizeof old);
@@ -152,7 +153,7 @@ static void swap(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
 static void drive(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
                   const ethd_sense *sense, double dt, ethd_pose *pose, ethd_trace *out,
                   ethd__failure *failure) ETHD_RT {
-  int blind = !input_is_good(sense, failure);
+  int blind = failure->fault == ETHD_FAULT_INPUT;
   int idle = blind || state->fault || !within_budget(e->plan, sense, failure);
   if (!blind && state->fault) failure->fault = (ethd_fault)state->fault;
   if (!idle && e->from && !e->soft) {
@@ -174,7 +175,9 @@ ethd__failure ethd__tick(const ethd__entry *e, ethd__state *state, ethd__state *
   ethd__failure failure = {ETHD_FAULT_NONE, 0};
   ethd_pose pose;
   memset(&pose, 0, sizeof pose);
-  double dt = elapsed(e->plan, sense);
+  int64_t gap = periods(state, sense);
+  double dt = (double)gap * e->plan->setup.period;
+  state->blind = input_is_good(sense, &failure) ? 0 : gap;
   blank(sense, out);
   out->swap = e->from != NULL;
   drive(e, state, scratch, sense, dt, &pose, out, &failure);

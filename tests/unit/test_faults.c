@@ -389,6 +389,62 @@ START_TEST(test_estimators_go_on) {
 }
 END_TEST
 
+/* Ticks without a measurement are missed ones for whatever comes next: no speed is too high after them. */
+START_TEST(test_gap_of_measurements) {
+  rig r, missing;
+  open_moody(&r, 0);
+  open_moody(&missing, 0);
+  ethd_setup_velocity(&r.setup, ETHD_VELOCITY_DIFFERENCE);
+  rig_post(&r);
+  ethd_setup_velocity(&missing.setup, ETHD_VELOCITY_DIFFERENCE);
+  rig_post(&missing);
+  for (int tick = 0; tick < 60; tick++) {
+    motion m = rig_at(0.010 - 2e-4 * tick, 0.2, 0.001);
+    ethd_sense s = rig_sense(&r.setup.arm, &m), bad = s;
+    s.have = bad.have = ETHD_HAVE_FINGER;
+    bad.q[1] = NAN;
+    int gap = tick >= 20 && tick < 27;
+    if (gap || tick == 30) {
+      rig_try(&r, &bad);
+      expect_safe(&r, ETHD_E_NOT_FINITE, ETHD_FAULT_INPUT);
+      continue;
+    }
+    ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
+    s.missed = tick == 27 ? 7 : tick == 31;
+    ck_assert_int_eq(rig_try(&missing, &s), ETHD_OK);
+    ck_assert_mem_eq(r.trace.qd, missing.trace.qd, sizeof r.trace.qd);
+    ck_assert_mem_eq(r.trace.tau, missing.trace.tau, sizeof r.trace.tau);
+    if (tick > 0) ck_assert_double_eq_tol(r.trace.v[0], -0.2, 1e-3);
+  }
+  rig_close(&missing);
+  rig_close(&r);
+}
+END_TEST
+
+/* A law that fails just when it is to be replaced costs the estimators no sample either. */
+START_TEST(test_failure_at_a_swap) {
+  rig r;
+  open_moody(&r, 0);
+  ethd_setup_velocity(&r.setup, ETHD_VELOCITY_DIFFERENCE);
+  rig_post(&r);
+  for (int tick = 0; tick < 30; tick++) {
+    motion m = rig_at(-0.001 - 2e-4 * tick, 0.2, 0.001);
+    ethd_sense s = rig_sense(&r.setup.arm, &m);
+    s.have = ETHD_HAVE_FINGER;
+    if (tick == 20) {
+      mood.contact = FAIL;
+      ethd_setup_contact(&r.setup, &ethd_contact_spring);
+      rig_post(&r);
+    }
+    rig_try(&r, &s);
+    if (tick == 20) expect_safe(&r, ETHD_E_LAW, ETHD_FAULT_LAW);
+    else ck_assert_int_eq(r.status, ETHD_OK);
+    if (tick > 0) ck_assert_double_eq_tol(r.trace.v[0], -0.2, 1e-3);
+  }
+  rig_close(&r);
+}
+END_TEST
+
 /* Angles out of all measure spoil a speed for ever, unless a clear heals it. */
 START_TEST(test_absurd_angle) {
   rig r;
@@ -523,6 +579,8 @@ int main(void) {
   tcase_add_test(t, test_post_during_a_fault);
   tcase_add_test(t, test_contacts_begin_anew);
   tcase_add_test(t, test_estimators_go_on);
+  tcase_add_test(t, test_gap_of_measurements);
+  tcase_add_test(t, test_failure_at_a_swap);
   tcase_add_test(t, test_absurd_angle);
   tcase_add_test(t, test_without_latch);
   tcase_add_test(t, test_speed);
