@@ -77,6 +77,44 @@ START_TEST(test_state_stays_with_its_wall) {
 }
 END_TEST
 
+/* What two contacts say, together: forces add, the smaller beta and its shift count. */
+static ethd_status saying_step(const double *p, void *state, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
+  (void)p, (void)state;
+  out->state = ETHD_VO;
+  out->beta = c->object ? 0.25 : 0.5;
+  out->shift = c->object ? (ethd_vec){0, 0.002} : (ethd_vec){0.001, 0};
+  out->share = c->object ? 0.5 : 1;
+  out->offset = c->object ? 0 : 0.0005;
+  out->damping = c->object ? 10 : 0;
+  out->feed = c->object ? 0 : -2;
+  return ETHD_OK;
+}
+
+static const ethd_transition_law saying = {
+    {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 0, "saying", "says it all", NULL, 0, NULL, NULL}, saying_step};
+
+START_TEST(test_rulings_together) {
+  for (int swapped = 0; swapped < 2; swapped++) { /* whichever is the deeper */
+    rig r;
+    open_with(&r, RIG_WALL "halfplane 0 -1 -0.238\n", &saying);
+    double dx = swapped ? -0.001 : -0.003, dy = swapped ? -0.003 : -0.001;
+    motion m = {{0.25 + dx, 0.25 + dy}, {0.1, -0.2}, {0.25 + dx, 0.25 + dy}, {0.1, -0.2}};
+    const ethd_trace *t = rig_step(&r, &m);
+    ck_assert_int_eq(t->object, swapped);
+    close_to(t->fe[0], 2500 * (-dx - 0.0005) + 2);
+    close_to(t->fe[1], 0.5 * (2500 * -dy + 45 * 0.2));
+    close_to(t->fd[0], 0);
+    close_to(t->fd[1], 10 * 0.2);
+    close_to(t->beta, 0.25);
+    /* the finger stands at the ring, so eps_q is the shift's alone: J eps_q = (0, 2 mm) */
+    double a = t->sense.q[0], b = t->sense.q[1];
+    close_to(-0.25 * (sin(a) * t->eps_q[0] + sin(b) * t->eps_q[1]), 0);
+    close_to(0.25 * (cos(a) * t->eps_q[0] + cos(b) * t->eps_q[1]), 0.002);
+    rig_close(&r);
+  }
+}
+END_TEST
+
 /* Equal depths: the lower object is shown. */
 START_TEST(test_order_of_equals) {
   rig r;
@@ -366,6 +404,7 @@ int main(void) {
   tcase_add_test(t, test_corner);
   tcase_add_test(t, test_corner_has_two_machines);
   tcase_add_test(t, test_state_stays_with_its_wall);
+  tcase_add_test(t, test_rulings_together);
   tcase_add_test(t, test_order_of_equals);
   tcase_add_loop_test(t, test_overflow_keeps_the_deepest, 0, 6);
   tcase_add_test(t, test_newcomer_that_is_deeper);
