@@ -4,8 +4,9 @@
 
 /* ---- one contact ---- */
 
-static ethd_contact measure(const ethd__plan *plan, const ethd_trace *t, const ethd_touch *touch,
+static ethd_contact measure(const ethd__plan *plan, const ethd_trace *t, const ethd__candidate *k,
                             double age, double dt) ETHD_RT {
+  const ethd_touch *touch = &k->touch;
   ethd_contact c;
   memset(&c, 0, sizeof c);
   double along = ethd_vec_dot(touch->n, ethd_vec_sub(touch->point, (ethd_vec){t->xf[0], t->xf[1]}));
@@ -14,12 +15,13 @@ static ethd_contact measure(const ethd__plan *plan, const ethd_trace *t, const e
   c.d_re = touch->distance - plan->setup.ring_radius;
   c.d_fe = along - plan->setup.finger_radius;
   c.d_fr = along - plan->setup.ring_radius;
-  c.v = touch->n.x * t->v[0] + touch->n.y * t->v[1];
-  c.v_f = touch->n.x * t->vf[0] + touch->n.y * t->vf[1];
+  c.v = touch->n.x * (t->v[0] - k->v.x) + touch->n.y * (t->v[1] - k->v.y);
+  c.v_f = touch->n.x * (t->vf[0] - k->v.x) + touch->n.y * (t->vf[1] - k->v.y);
   c.d_beta = plan->d_beta;
   c.period = dt;
   c.age = age;
   c.object = touch->object;
+  c.body = k->place;
   return c;
 }
 
@@ -62,7 +64,7 @@ static int wall(const ethd__plan *plan, ethd__slot *slot, const ethd_contact *c,
   int in = entering(slot, c->v, plan->setup.v_hysteresis);
   *force = 0;
   if (!(r->share > 0)) return 1;
-  ethd_status status = plan->setup.contact->step(ethd__contact_p(plan, material), slot->contact,
+  ethd_status status = plan->setup.contact->step(ethd__contact_p(plan, c->body, material), slot->contact,
                                                  c->d_re + r->offset, c->v, in, force);
   if (status < 0) {
     *failure = (ethd__failure){ETHD_FAULT_LAW, 100 * ETHD_CONTACT - status};
@@ -108,6 +110,7 @@ static void add(const ethd_contact *c, const ethd_ruling *r, double force, ethd_
                 ethd_vec *shift) ETHD_RT {
   if (out->contacts++ == 0) { /* the deepest comes first */
     out->object = c->object;
+    out->body = c->body;
     out->state = r->state;
     out->eps = r->offset;
     out->d_re = c->d_re;
@@ -122,9 +125,10 @@ static void add(const ethd_contact *c, const ethd_ruling *r, double force, ethd_
   add_force(out->fd, -r->damping * c->v, c->n);
 }
 
-static int contact(const ethd__plan *plan, const ethd_touch *touch, ethd__slot *slot, double dt,
+static int contact(const ethd__plan *plan, const ethd__candidate *k, ethd__slot *slot, double dt,
                    ethd_trace *out, ethd_vec *shift, ethd__failure *failure) ETHD_RT {
-  ethd_contact c = measure(plan, out, touch, slot->age, dt);
+  const ethd_touch *touch = &k->touch;
+  ethd_contact c = measure(plan, out, k, slot->age, dt);
   ethd_ruling r;
   double force;
   if (!rule(plan, slot, &c, &r, failure)) return 0;
@@ -132,7 +136,8 @@ static int contact(const ethd__plan *plan, const ethd_touch *touch, ethd__slot *
   if (!slot->used) return 1;
   if (!wall(plan, slot, &c, touch->material, &r, &force, failure)) return 0;
   slot->object = touch->object;
-  slot->point = touch->point;
+  slot->place = k->place;
+  slot->point = k->local;
   slot->side = touch->side;
   slot->state = r.state;
   slot->age += dt;
@@ -141,7 +146,7 @@ static int contact(const ethd__plan *plan, const ethd_touch *touch, ethd__slot *
 }
 
 static void nothing(ethd_trace *out, ethd_vec *shift) ETHD_RT {
-  out->queried = out->contacts = out->overflow = out->state = 0;
+  out->queried = out->contacts = out->overflow = out->body = out->state = 0;
   out->object = -1;
   out->beta = 1;
   out->fe[0] = out->fe[1] = out->fd[0] = out->fd[1] = out->eps = 0;
@@ -188,20 +193,20 @@ static ethd__slot *new_slot(const ethd__plan *plan, ethd__state *state, ethd__ca
 int ethd__contacts(const ethd__plan *plan, ethd__state *state, double dt, ethd_trace *out,
                    ethd_vec *shift, ethd__failure *failure) {
   nothing(out, shift);
-  if (!plan->setup.scene) return 1;
-  out->queried = 1;
-  state->counters.queried++;
+  if (!plan->has_scene) return 1;
   ethd__candidates c;
   ethd__candidates_collect(plan, state, out, &c);
+  out->queried = c.queried;
+  state->counters.queried += (uint64_t)c.queried;
   end_lost(state, &c);
   no_room(state, c.overflow, out);
   for (int k = 0, taken = 0; k < c.count; k++) {
     ethd__slot *slot = c.at[k].slot < 0 ? NULL : &state->slots[c.at[k].slot];
-    ethd_contact m = measure(plan, out, &c.at[k].touch, 0, dt);
+    ethd_contact m = measure(plan, out, &c.at[k], 0, dt);
     int counts = could_count(&m, slot), room = taken < ETHD_CONTACTS_MAX;
     if (counts && room) {
       if (!slot) slot = new_slot(plan, state, &c, k);
-      if (!contact(plan, &c.at[k].touch, slot, dt, out, shift, failure)) return 0;
+      if (!contact(plan, &c.at[k], slot, dt, out, shift, failure)) return 0;
       taken += slot->used;
     } else {
       if (slot) slot->used = 0;

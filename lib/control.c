@@ -18,17 +18,30 @@ static void push(ethd_control *control, int64_t tick, ethd_event_kind kind, int3
 /* A posted setup is taken only while its event has room: a replaced scene is never lost. */
 static const ethd__plan *take_posted(ethd_control *control) ETHD_RT {
   if (!atomic_load_explicit(&control->posted, memory_order_acquire)) return NULL;
-  if (ethd__events_room(&control->events) == 0) return NULL;
+  if (ethd__events_room(&control->events) < ETHD__PLACES) return NULL;
   const ethd__plan *from = &control->plans[control->ruling];
   control->ruling = 1 - control->ruling;
   control->state.counters.swaps++;
   return from;
 }
 
-/* [main] may free the old scene and post again only when this tick is through with both. */
+/* The scene of a place of the replaced setup, if nothing uses it any more; a scene in two places is
+   handed back once. */
+static const ethd_scene *released(const ethd_setup *from, const ethd_setup *now, int place) ETHD_RT {
+  const ethd_scene *scene = ethd__place_scene(from, place);
+  for (int i = 0; i < ETHD__PLACES; i++)
+    if (scene == ethd__place_scene(now, i) || (i < place && scene == ethd__place_scene(from, i))) return NULL;
+  return scene;
+}
+
+/* [main] may free the old scenes and post again only when this tick is through with both. */
 static void give_back(ethd_control *control, int64_t tick, const ethd__plan *from) ETHD_RT {
-  const ethd_scene *now = control->plans[control->ruling].setup.scene;
-  push(control, tick, ETHD_EVENT_TAKEN, 0, 0, from->setup.scene != now ? from->setup.scene : NULL);
+  const ethd_setup *now = &control->plans[control->ruling].setup;
+  push(control, tick, ETHD_EVENT_TAKEN, 0, 0, released(&from->setup, now, 0));
+  for (int place = 1; place < ETHD__PLACES; place++) {
+    const ethd_scene *scene = released(&from->setup, now, place);
+    if (scene) push(control, tick, ETHD_EVENT_RELEASED, place, 0, scene);
+  }
   atomic_store_explicit(&control->posted, 0, memory_order_release);
 }
 
@@ -84,6 +97,7 @@ void ethd_control_reset(ethd_control *control) {
   const ethd__plan *plan = &control->plans[control->ruling];
   memset(&control->state, 0, sizeof control->state);
   control->state.finger_radius = (double)NAN;
+  control->state.places[0].there = 1;
   ethd__resume(plan, &control->state);
 }
 

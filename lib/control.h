@@ -10,13 +10,22 @@
 
 #include "ethd/control.h"
 
+/* Where objects are: 0 the scene that stands still, then the bodies. */
+#define ETHD__PLACES (1 + ETHD_BODIES_MAX)
+
+static inline const ethd_scene *ethd__place_scene(const ethd_setup *setup, int place) ETHD_RT {
+  return place == 0 ? setup->scene : setup->bodies[place - 1];
+}
+
 typedef struct ethd__plan {
   ethd_setup setup;
   double d_beta;
+  int has_scene; /* any place has one */
   ethd_velocity velocity;
   ethd_fit fit;
   ethd_filter filter;
-  double material_p[ETHD_MATERIALS_MAX][ETHD_PARAMS_MAX]; /* the contact law's, per material */
+  /* the contact law's parameters, per place and material */
+  double material_p[ETHD__PLACES][ETHD_MATERIALS_MAX][ETHD_PARAMS_MAX];
 } ethd__plan;
 
 /* Checks the setup and works the plan out; a failure leaves the plan undefined. [main] */
@@ -29,11 +38,20 @@ typedef double ethd__block[ETHD_STATE_MAX / sizeof(double)];
 typedef struct ethd__slot {
   int32_t used, object, side, state;
   int32_t leaving; /* branch of eq. 3, with v_hysteresis */
-  int32_t reserved;
+  int32_t place;
   double age;
-  ethd_vec point;
+  ethd_vec point; /* in the place's frame */
   ethd__block transition, contact;
 } ethd__slot;
+
+/* A scene as the ring meets it. */
+typedef struct ethd__place {
+  double pose[6]; /* as in the sense; zeros for what stands still */
+  ethd_vec at;    /* ring's centre in the place's frame when it was last asked for clearance */
+  double clearance; /* distance to the nearest object there, negative: not known */
+  int32_t there;  /* 0: a body that has no pose yet */
+  int32_t reserved;
+} ethd__place;
 
 #define ETHD__HISTORY 32 /* ticks of ring positions, for readings that are late */
 
@@ -51,6 +69,7 @@ typedef struct ethd__state {
   uint64_t remembered; /* positions ever put there; a tick without measurement leaves none */
   ethd__block tracking;
   ethd__slot slots[ETHD_CONTACTS_MAX];
+  ethd__place places[ETHD__PLACES];
   struct {
     double delta[2]; /* old - new torque at the swap, Nm */
     double elapsed;  /* s since then; INFINITY: no fade */
@@ -96,8 +115,8 @@ void ethd__block_reset(const ethd_law *law, const double *p, double *block) ETHD
 void ethd__slot_start(const ethd__plan *plan, ethd__slot *slot) ETHD_RT;
 
 /* The parameters of the contact law on a material, -1: none. [rt] */
-static inline const double *ethd__contact_p(const ethd__plan *plan, int32_t material) ETHD_RT {
-  return material < 0 ? plan->setup.contact_p : plan->material_p[material];
+static inline const double *ethd__contact_p(const ethd__plan *plan, int place, int32_t material) ETHD_RT {
+  return material < 0 ? plan->setup.contact_p : plan->material_p[place][material];
 }
 
 #endif

@@ -75,10 +75,11 @@ static ethd_status prepare_material(const ethd_setup *s, const ethd_material *m,
   return check_values(law, p, error);
 }
 
-static ethd_status prepare_materials(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
+static ethd_status prepare_materials(const ethd_setup *s, int place, ethd__plan *out, ethd_error *error) {
+  const ethd_scene *scene = ethd__place_scene(s, place);
   const ethd_material *m;
-  for (size_t i = 0; s->scene && (m = ethd_scene_material(s->scene, i)) != NULL; i++) {
-    ethd_status status = prepare_material(s, m, out->material_p[i], error);
+  for (size_t i = 0; scene && (m = ethd_scene_material(scene, i)) != NULL; i++) {
+    ethd_status status = prepare_material(s, m, out->material_p[place][i], error);
     if (status >= 0) continue;
     ethd__error_prefix(error, m->name);
     ethd__error_prefix(error, "material");
@@ -99,7 +100,12 @@ ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error 
   TRY(within("velocity", ethd_velocity_prepare(s->velocity, s->velocity_p, s->period, &out->velocity, error), error));
   TRY(within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error), error));
   TRY(within("finger_filter", ethd_filter_prepare(s->filter, s->filter_p, s->period, &out->filter, error), error));
-  return prepare_materials(s, out, error);
+  out->has_scene = 0;
+  for (int place = 0; place < ETHD__PLACES; place++) {
+    out->has_scene |= ethd__place_scene(s, place) != NULL;
+    TRY(prepare_materials(s, place, out, error));
+  }
+  return ETHD_OK;
 }
 
 ethd_status ethd_setup_check(const ethd_setup *setup, ethd_error *error) {

@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "control.h"
+#include "places.h"
 
 #define GAP_MAX 1000000 /* periods: a longer gap is no longer a gap of a loop */
 
@@ -15,6 +15,10 @@ static int64_t periods(const ethd__state *state, const ethd_sense *sense) ETHD_R
 
 static int two_finite(const double v[2]) ETHD_RT { return isfinite(v[0]) && isfinite(v[1]); }
 
+static int pose_is_good(const double pose[6]) ETHD_RT {
+  return two_finite(pose) && two_finite(pose + 2) && two_finite(pose + 4);
+}
+
 static int input_is_good(const ethd_sense *s, ethd__failure *f) ETHD_RT {
   f->fault = ETHD_FAULT_INPUT;
   f->value = 0;
@@ -26,6 +30,9 @@ static int input_is_good(const ethd_sense *s, ethd__failure *f) ETHD_RT {
   if ((s->have & ETHD_HAVE_FINGER) && !two_finite(s->finger_v)) return 0;
   f->value = ETHD_HAVE_RING;
   if ((s->have & ETHD_HAVE_RING) && !two_finite(s->ring)) return 0;
+  f->value = ETHD_HAVE_BODY;
+  for (int i = 0; i < ETHD_BODIES_MAX; i++)
+    if ((s->have & ((int64_t)ETHD_HAVE_BODY << i)) && !pose_is_good(s->bodies + 6 * i)) return 0;
   f->fault = ETHD_FAULT_NONE;
   return 1;
 }
@@ -120,11 +127,15 @@ static void migrate_estimators(const ethd__plan *from, const ethd__plan *to, eth
 /* A law that stays keeps its state; a new one starts from zero, and so does everything in a new scene. */
 static void migrate(const ethd__plan *from, const ethd__plan *to, ethd__state *state) ETHD_RT {
   migrate_estimators(from, to, state);
+  for (int place = 0; place < ETHD__PLACES; place++)
+    if (ethd__place_scene(&from->setup, place) != ethd__place_scene(&to->setup, place))
+      ethd__place_forget(&state->places[place]);
   if (from->setup.tracking != to->setup.tracking)
     ethd__block_reset(&to->setup.tracking->law, to->setup.tracking_p, state->tracking);
   for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
     ethd__slot *slot = &state->slots[i];
-    if (from->setup.scene != to->setup.scene) slot->used = 0;
+    if (ethd__place_scene(&from->setup, slot->place) != ethd__place_scene(&to->setup, slot->place))
+      slot->used = 0;
     if (from->setup.transition != to->setup.transition)
       ethd__block_reset(&to->setup.transition->law, to->setup.transition_p, slot->transition);
     if (from->setup.contact != to->setup.contact)
@@ -155,6 +166,7 @@ static void drive(const ethd__entry *e, ethd__state *state, ethd__state *scratch
                   ethd__failure *failure) ETHD_RT {
   int blind = failure->fault == ETHD_FAULT_INPUT;
   int idle = blind || state->fault || !within_budget(e->plan, sense, failure);
+  if (!blind) ethd__places_take(state, sense);
   if (!blind && state->fault) failure->fault = (ethd_fault)state->fault;
   if (!idle && e->from && !e->soft) {
     swap(e, state, scratch, sense, dt, pose, out, failure);

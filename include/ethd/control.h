@@ -24,6 +24,7 @@
 ETHD_BEGIN_DECLS
 
 #define ETHD_CONTACTS_MAX 8 /* live contacts; the deepest are kept, overflow is counted */
+#define ETHD_BODIES_MAX 4   /* scenes that move */
 
 /* ---- setup ---- */
 
@@ -53,7 +54,9 @@ typedef struct ethd_setup {
   double swap_time;    /* s: how long a swap's difference fades, 0 to 1 */
   double v_hysteresis; /* m/s: entering until v < -v_hysteresis, leaving until v > v_hysteresis */
 
-  const ethd_scene *scene; /* NULL: none. Lives until the replaced setup has come back as an event */
+  /* NULL: none. Scenes live until an event hands them back. */
+  const ethd_scene *scene;                   /* stands still, in R_0 */
+  const ethd_scene *bodies[ETHD_BODIES_MAX]; /* each moves as a rigid body; its pose comes with the sense */
   ethd_limits limits;
 } ethd_setup;
 
@@ -81,7 +84,8 @@ enum {
   ETHD_HAVE_START = 4,  /* finger: starts the filter there, at rest */
   ETHD_HAVE_CENTRE = 8, /* centre: a reading relative to the ring has arrived, taken at sample_ns */
   ETHD_HAVE_RAYS = 16,  /* rays: a frame of distances has arrived, taken at sample_ns */
-  ETHD_HAVE_RING = 32   /* ring: where the ring stood at sample_ns, as the device knows it */
+  ETHD_HAVE_RING = 32,  /* ring: where the ring stood at sample_ns, as the device knows it */
+  ETHD_HAVE_BODY = 64   /* ETHD_HAVE_BODY << i: bodies i has a new pose; else the last one holds */
 };
 
 /* X(type, name, count, unit, brief); every field is 8 bytes wide. */
@@ -97,7 +101,8 @@ enum {
   X(int64_t, sample_ns, 1, "ns", "instant of the reading")                                      \
   X(double, centre, 2, "m", "reading: finger centre relative to the ring's")                    \
   X(double, ring, 2, "m", "ring centre at the reading's instant")                               \
-  X(double, rays, 16, "m", "reading: 16 free distances, NaN missing")
+  X(double, rays, 16, "m", "reading: 16 free distances, NaN missing")                            \
+  X(double, bodies, 24, "m, rad, s", "6 of each body: x, y, angle, their speeds")
 
 /* X as above. What a tick worked out. Where no contact counts, d_re, d_fe and v_n are NaN. */
 #define ETHD_TRACE_FIELDS(X)                                                                     \
@@ -109,6 +114,7 @@ enum {
   X(int64_t, contacts, 1, "1", "contacts that count")                                           \
   X(int64_t, overflow, 1, "1", "contacts that found no room")                                   \
   X(int64_t, object, 1, "1", "object of the deepest contact, -1 none")                          \
+  X(int64_t, body, 1, "1", "what the object belongs to: 0 scene, i bodies[i - 1]")              \
   X(int64_t, state, 1, "1", "0 transparent, 1 braking, 2 vo")                                   \
   X(double, x, 2, "m", "ring centre in R_0")                                                    \
   X(double, v, 2, "m/s", "ring velocity")                                                       \
@@ -131,6 +137,7 @@ enum {
 #define ETHD_FIELD_1(type, name) type name;
 #define ETHD_FIELD_2(type, name) type name[2];
 #define ETHD_FIELD_16(type, name) type name[16];
+#define ETHD_FIELD_24(type, name) type name[24];
 #define ETHD_FIELD(type, name, count, unit, brief) ETHD_FIELD_##count(type, name)
 
 /* One snapshot of the device. Fields that `have` doesn't name are ignored. */
@@ -169,7 +176,8 @@ ETHD_API const char *ethd_fault_sentence(ethd_fault fault) ETHD_RT;
 typedef enum ethd_event_kind {
   ETHD_EVENT_FAULT = 1,  /* code: ethd_fault, value as said there */
   ETHD_EVENT_TAKEN = 2,  /* a posted setup rules from this tick; scene: the replaced one, if no longer used */
-  ETHD_EVENT_CLEARED = 3 /* faults were acknowledged */
+  ETHD_EVENT_CLEARED = 3, /* faults were acknowledged */
+  ETHD_EVENT_RELEASED = 4 /* scene: a replaced body's, no longer used */
 } ethd_event_kind;
 
 typedef struct ethd_event {

@@ -6,6 +6,7 @@
 
 #include "ethd/arm.h"
 #include "ethd/attributes.h"
+#include "ethd/cell.h"
 #include "ethd/control.h"
 #include "ethd/finger_filter.h"
 #include "ethd/finger_fit.h"

@@ -74,8 +74,8 @@ typedef struct ethd_contact {
   double d_beta;  /* R_r - R_f,max, m */
   double period;  /* s since the last step */
   double age;     /* s since this contact began to count */
-  int32_t object; /* number in the scene */
-  int32_t reserved;
+  int32_t object; /* number in its scene */
+  int32_t body;   /* 0: the scene that stands still, i: bodies[i - 1] of the setup */
 } ethd_contact;
 
 /* ---- contact: depth and speed to force ---- */

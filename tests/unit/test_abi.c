@@ -97,6 +97,7 @@ _Static_assert(ETHD_TRANSPARENT == 0 && ETHD_BRAKING == 1 && ETHD_VO == 2, "stat
 #define COUNT_1(type, name) +1
 #define COUNT_2(type, name) +2
 #define COUNT_16(type, name) +16
+#define COUNT_24(type, name) +24
 #define COUNT(type, name, count, unit, brief) COUNT_##count(type, name)
 _Static_assert(sizeof(ethd_sense) == 8 * (0 ETHD_SENSE_FIELDS(COUNT)), "sense");
 _Static_assert(sizeof(ethd_trace) == sizeof(ethd_sense) + 8 * (0 ETHD_TRACE_FIELDS(COUNT)), "trace");

@@ -132,7 +132,7 @@ END_TEST
 
 /* ---- the event ring ---- */
 
-/* Full: faults are dropped and counted, but a post waits, so that no scene is lost. */
+/* Full: faults are dropped and counted, but a post waits for room for all its scenes, so that none is lost. */
 START_TEST(test_full_ring) {
   rig r;
   ethd_counters c;
@@ -151,13 +151,13 @@ START_TEST(test_full_ring) {
   run(&r, 0, 3);
   ck_assert_int_eq(r.trace.swap, 0);
   ck_assert_int_eq(ethd_control_post(r.control, &r.setup, NULL), ETHD_BUSY);
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < 1 + ETHD_BODIES_MAX; i++) {
     ethd_event e = rig_poll(&r);
     ck_assert(e.kind == ETHD_EVENT_FAULT && e.code == ETHD_FAULT_INPUT && e.tick == i);
   }
   run(&r, 3, 4);
   ck_assert_int_eq(r.trace.swap, 1);
-  for (int i = 2; i < 64; i++) ck_assert_int_eq(rig_poll(&r).kind, ETHD_EVENT_FAULT);
+  for (int i = 1 + ETHD_BODIES_MAX; i < 64; i++) ck_assert_int_eq(rig_poll(&r).kind, ETHD_EVENT_FAULT);
   ck_assert_ptr_eq(rig_poll(&r).scene, old);
   ck_assert_int_eq(rig_poll(&r).kind, 0);
   ethd_scene_destroy(old);
@@ -260,12 +260,17 @@ START_TEST(test_counters) {
   rig_open(&r, RIG_WALL);
   r.setup.limits.torque = 1e-6;
   rig_start(&r);
-  run(&r, 0, 10);
+  uint64_t queried = 0; /* some ticks far from the wall pass without */
+  for (int tick = 0; tick < 10; tick++) {
+    run(&r, tick, tick + 1);
+    queried += (uint64_t)r.trace.queried;
+  }
   r.setup.scene = NULL;
   rig_post(&r);
   run(&r, 10, 15);
   ethd_control_counters(r.control, &c);
-  ck_assert(c.ticks == 15 && c.queried == 10 && c.swaps == 1 && c.events_dropped == 0);
+  ck_assert(queried > 5 && queried < 10);
+  ck_assert(c.ticks == 15 && c.queried == queried && c.swaps == 1 && c.events_dropped == 0);
   ck_assert(c.guard[1] == 15 && c.guard[0] == 0 && c.faults[ETHD_FAULT_INPUT] == 0);
   rig_close(&r);
 }

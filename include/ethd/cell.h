@@ -1,0 +1,29 @@
+/* The latest value of a slow feed: one thread puts, another takes, neither ever waits.
+
+   A triple buffer: the writer fills a slot of its own and exchanges it for the middle one, the reader
+   exchanges the middle one for its own. What is taken is always whole, and always the newest. */
+#ifndef ETHD_CELL_H
+#define ETHD_CELL_H
+
+#include "ethd/status.h"
+
+ETHD_BEGIN_DECLS
+
+typedef struct ethd_cell ethd_cell;
+
+/* A cell for values of `size` bytes, 1 to 65536. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_cell_create(size_t size, ethd_cell **out, ethd_error *error);
+
+/* NULL is fine. [main] */
+ETHD_API void ethd_cell_destroy(ethd_cell *cell);
+
+/* One writer at a time. [any, rt-safe] */
+ETHD_API void ethd_cell_put(ethd_cell *cell, const void *value) ETHD_RT;
+
+/* One reader at a time. ETHD_STALE: nothing newer than what was taken last; `value` then holds that
+   again, or is untouched if nothing ever came. [any, rt-safe] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_cell_take(ethd_cell *cell, void *value) ETHD_RT;
+
+ETHD_END_DECLS
+
+#endif
