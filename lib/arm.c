@@ -1,7 +1,10 @@
 #include "ethd/arm.h"
 
+#include <string.h>
+
 #include "error.h"
 #include "ethd/maths.h"
+#include "maths_two.h"
 
 ethd_status ethd_arm_check(const ethd_arm *arm, ethd_error *error) {
   ethd_status status =
@@ -35,19 +38,16 @@ static void invert(const double j[4], double w0, double out[4]) {
     invert_damped(j, det, w0, out);
     return;
   }
-  out[0] = j[3] / det;
-  out[1] = -j[1] / det;
-  out[2] = -j[2] / det;
-  out[3] = j[0] / det;
+  two top = (two){j[3], -j[1]} / det, bottom = (two){-j[2], j[0]} / det;
+  memcpy(out, &top, sizeof top);
+  memcpy(out + 2, &bottom, sizeof bottom);
 }
 
 void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) {
   int serial = arm->mechanism == ETHD_ARM_SERIAL;
-  double s1, c1, s2, c2;
-  ethd_sincos(q[0], &s1, &c1);
-  ethd_sincos(serial ? q[0] + q[1] : q[1], &s2, &c2);
-  ethd_vec a = {arm->link1 * c1, arm->link1 * s1};
-  ethd_vec b = {arm->link2 * c2, arm->link2 * s2};
+  two_waves w = two_sincos((two){q[0], serial ? q[0] + q[1] : q[1]});
+  ethd_vec a = {arm->link1 * w.cosine[0], arm->link1 * w.sine[0]};
+  ethd_vec b = {arm->link2 * w.cosine[1], arm->link2 * w.sine[1]};
   out->x = ethd_vec_add(a, b);
   out->j[0] = serial ? -(a.y + b.y) : -a.y;
   out->j[1] = -b.y;

@@ -11,6 +11,8 @@
 #include <xmmintrin.h>
 #endif
 
+#include "maths_two.h"
+
 #define PI_2 0x1.921fb54442d18469898cc517018p+0L
 
 enum { POINTS = 150000 };
@@ -283,6 +285,19 @@ START_TEST(test_symmetry) {
 }
 END_TEST
 
+/* Side by side as one by one: angles of all sizes, and those next to multiples of pi/4. */
+START_TEST(test_two_at_once) {
+  for (uint64_t i = 0; i < POINTS; i++) {
+    two x = {i % 3 ? turns(i) : any_finite(i), i % 5 ? many_turns(i) : near_eighth_turns(i)};
+    two_waves w = two_sincos(x);
+    for (int k = 0; k < 2; k++) {
+      SAME(w.sine[k], ethd_sin(x[k]));
+      SAME(w.cosine[k], ethd_cos(x[k]));
+    }
+  }
+}
+END_TEST
+
 START_TEST(test_monotonic) {
   double before[4] = {-2, -1, -2000, -4};
   for (int i = -POINTS; i <= POINTS; i++) {
@@ -356,6 +371,7 @@ int main(void) {
   tcase_add_test(of_cases, test_special_cases);
   tcase_add_test(of_cases, test_atan2_special_cases);
   tcase_add_test(of_cases, test_symmetry);
+  tcase_add_test(of_cases, test_two_at_once);
   tcase_add_test(of_cases, test_monotonic);
   tcase_add_test(of_cases, test_golden);
 #ifdef __SSE2__
