@@ -115,7 +115,8 @@ int main(void) {
   glob_t folders;
   int count = 0;
   snprintf(pattern, sizeof pattern, "%s/*/", root ? root : "../shared/motion");
-  if (glob(pattern, 0, NULL, &folders) != 0) folders.gl_pathc = 0;
+  int none = glob(pattern, 0, NULL, &folders);
+  if (none) folders.gl_pathc = 0;
   for (size_t i = 0; i < folders.gl_pathc; i++) {
     int first = count;
     count = load_folder(folders.gl_pathv[i], count);
@@ -125,6 +126,7 @@ int main(void) {
              "gated\n");
     report(folders.gl_pathv[i] + strlen(pattern) - 2, first, count);
   }
+  if (!none) globfree(&folders);
   if (!count) {
     printf("SKIP: no recorded movements in ETHD_MOTION_DIR (motion), %s\n", pattern);
     return SKIP;
