@@ -27,6 +27,23 @@ ethd__figure ethd__cell_figure(const ethd__cell *cell, size_t field) {
   return figure;
 }
 
+static int by_value(const void *a, const void *b) {
+  double p = *(const double *)a, q = *(const double *)b;
+  return (p > q) - (p < q);
+}
+
+double ethd__cell_median(const ethd__cell *cell, size_t field) {
+  double *values = malloc((cell->count + 1) * sizeof *values), median = NAN;
+  size_t n = 0;
+  if (!values) return NAN;
+  for (size_t i = 0; i < cell->count; i++)
+    if (has(&cell->results[i], field)) values[n++] = value_of(&cell->results[i], field);
+  qsort(values, n, sizeof *values, by_value);
+  if (n) median = (values[(n - 1) / 2] + values[n / 2]) / 2;
+  free(values);
+  return median;
+}
+
 double ethd__figure_error(const ethd__figure *figure) { return figure->sd / sqrt((double)figure->n); }
 
 size_t ethd__cell_valid(const ethd__cell *cell) {

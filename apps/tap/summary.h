@@ -20,6 +20,9 @@ typedef struct ethd__figure {
 #define ETHD_TAP_FIELD(name) offsetof(ethd__metrics, name)
 ethd__figure ethd__cell_figure(const ethd__cell *cell, size_t field);
 
+/* Over the same taps; NaN of none. */
+double ethd__cell_median(const ethd__cell *cell, size_t field);
+
 /* Standard error of the mean. */
 double ethd__figure_error(const ethd__figure *figure);
 
