@@ -7,7 +7,8 @@
 #include "stress/stress.h"
 
 static const ethd__stress *const tests[] = {
-    &ethd__stress_boundary, &ethd__stress_braking,
+    &ethd__stress_boundary, &ethd__stress_braking, &ethd__stress_viscous, &ethd__stress_stop, &ethd__stress_touch, &ethd__stress_lag,
+    &ethd__stress_press, &ethd__stress_creep, &ethd__stress_energy,
 };
 #define COUNT (sizeof tests / sizeof *tests)
 

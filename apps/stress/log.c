@@ -21,27 +21,39 @@ static int worse(const ethd__result *r, const ethd__result *than) {
   return a > b || (a == b && r->bound && r->measured > than->measured);
 }
 
-void ethd__stress_flush(ethd__stress_log *log) {
-  const ethd__result *r = &log->worst;
-  char count[32] = "";
-  if (log->merged == 0) return;
-  if (log->merged > 1) snprintf(count, sizeof count, "  worst of %llu", (unsigned long long)log->merged);
-  printf("  %-58s %13.6g %s %-13.6g %-6s", r->what, r->measured, r->bound ? "<=" : "= ", r->analytic,
+static void print(const ethd__result *r) {
+  char count[48] = "";
+  if (r->count > 1) snprintf(count, sizeof count, ", worst of %llu", (unsigned long long)r->count);
+  printf("  %-62s %12.6g %s %-12.6g %-6s", r->what, r->measured, r->bound ? "<=" : "= ", r->analytic,
          r->unit);
   if (r->bound)
-    printf(" %22s", "");
+    printf(" %19s", "");
   else
-    printf(" %8.1e of %8.1e", fabs(r->measured - r->analytic), r->allowed);
+    printf(" %7.1e of %7.1e", fabs(r->measured - r->analytic), r->allowed);
   printf("  %s%s\n", load(r) <= 1 ? "ok" : "FAILED", count);
+}
+
+void ethd__stress_flush(ethd__stress_log *log) {
+  for (int i = 0; i < log->count; i++) print(&log->lines[i]);
   fflush(stdout);
-  log->merged = 0;
+  log->count = 0;
+}
+
+/* The line with these words, new ones at the end. */
+static ethd__result *line_of(ethd__stress_log *log, const char *what) {
+  for (int i = 0; i < log->count; i++)
+    if (strcmp(log->lines[i].what, what) == 0) return &log->lines[i];
+  if (log->count == ETHD__STRESS_LINES) ethd__stress_flush(log);
+  memset(&log->lines[log->count], 0, sizeof *log->lines);
+  return &log->lines[log->count++];
 }
 
 static void add(ethd__stress_log *log, const ethd__result *r) {
-  if (log->merged && strcmp(log->worst.what, r->what) != 0) ethd__stress_flush(log);
-  if (log->merged == 0 || worse(r, &log->worst)) log->worst = *r;
-  log->merged++;
+  ethd__result *line = line_of(log, r->what);
+  uint64_t count = line->count;
   int passed = load(r) <= 1;
+  if (count == 0 || worse(r, line)) *line = *r;
+  line->count = count + 1;
   if (!passed) log->failures++;
   if (log->csv)
     fprintf(log->csv, "%s,\"%s\",%.17g,%s,%.17g,%s,%.17g,%d\n", log->test, r->what, r->measured,

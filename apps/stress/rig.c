@@ -23,8 +23,7 @@ void ethd__rig_open(ethd__rig *rig, double mass, double gap) {
   rig->setup.tracking_p[0] = rig->setup.tracking_p[1] = 0; /* k_t, b_t */
   rig->mass = mass;
   rig->force_limit = (double)INFINITY;
-  rig->scene = ethd__rig_wall(gap + rig->setup.ring_radius - ETHD__RIG_X);
-  rig->setup.scene = rig->scene;
+  rig->gap = gap;
 }
 
 /* J^T push at the present pose. */
@@ -46,6 +45,8 @@ void ethd__rig_push(ethd__rig *rig, ethd_vec push) {
 
 void ethd__rig_start(ethd__rig *rig, double speed) {
   ethd_error error;
+  rig->scene = ethd__rig_wall(rig->gap + rig->setup.ring_radius - rig->setup.arm.link2);
+  rig->setup.scene = rig->scene;
   if (ethd_control_create(&rig->setup, &rig->control, &error) < 0)
     ethd__fail(ETHD_EXIT_FAILED, "%s: %s (found %g, from %g to %g)", error.name,
                ethd_status_sentence(error.status), error.found, error.min, error.max);

@@ -3,19 +3,19 @@
       push                          arm parallel, links at 90 and 0 degrees: x is driven by joint 1
         |   |//////  wall           alone, with the inertia m L^2
         v   |//////
-     ( ring )|/////   wall on the left: n = (-1, 0), d_re = x + shift
-        0.25 m                                                                                         */
+     ( ring )|/////   wall on the left: n = (-1, 0), d_re = gap at the start                           */
 #ifndef ETHD_APPS_STRESS_RIG_H
 #define ETHD_APPS_STRESS_RIG_H
 
 #include "ethd/control.h"
 
 #define ETHD__RIG_DELAY_MAX 16
-#define ETHD__RIG_X 0.25 /* m: the ring's x at the start, and its y */
+#define ETHD__RIG_STRAIGHT ETHD_ARM_LINK_MAX /* m: links on which a joint's turn is a straight line */
 
 typedef struct ethd__rig {
   ethd_setup setup; /* changed before start */
   double mass;      /* kg at the ring, both joints alike */
+  double gap;       /* m to the wall at the start */
   int delay;        /* ticks from measurement to torque */
   int measured;     /* 1: joint speeds are measured, 0: the setup estimates them */
   int has_finger;

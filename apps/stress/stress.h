@@ -1,8 +1,7 @@
 /* Numerical stress with analytic answers: what its tests share.
 
    A test measures on the library's real code and works its analytic figure out from a formula of its own.
-   Results with the same words, one after the other, make one line on the terminal, that of the worst;
-   the CSV holds them all. */
+   Results with the same words make one line on the terminal, that of the worst; the CSV holds them all. */
 #ifndef ETHD_APPS_STRESS_H
 #define ETHD_APPS_STRESS_H
 
@@ -16,7 +15,10 @@ typedef struct ethd__result {
   const char *unit;
   double measured, analytic, allowed; /* allowed: the distance; a bound's is 0 */
   int bound;                          /* 1: measured <= analytic */
+  uint64_t count;                     /* results of which this is the worst */
 } ethd__result;
+
+#define ETHD__STRESS_LINES 64
 
 typedef struct ethd__stress_log {
   ethd__effort effort;
@@ -24,8 +26,8 @@ typedef struct ethd__stress_log {
   FILE *csv;          /* NULL: none */
   const char *test;
   uint64_t failures;
-  ethd__result worst; /* of the results that make the next line */
-  uint64_t merged;
+  ethd__result lines[ETHD__STRESS_LINES]; /* of this test, not yet printed */
+  int count;
 } ethd__stress_log;
 
 typedef struct ethd__stress {
@@ -45,11 +47,11 @@ void ethd__stress_within(ethd__stress_log *log, const char *unit, double measure
 void ethd__stress_bound(ethd__stress_log *log, const char *unit, double measured, double bound,
                         const char *what, ...) __attribute__((format(printf, 5, 6)));
 
-/* A figure without a verdict. */
+/* A figure without a verdict, below the lines so far. */
 void ethd__stress_note(ethd__stress_log *log, const char *text, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* Prints the line that is still open. */
+/* Prints the lines so far. */
 void ethd__stress_flush(ethd__stress_log *log);
 
 /* folder/name for writing with a header row; NULL when there is no folder; exits when it can't. */

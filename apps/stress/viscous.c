@@ -1,0 +1,90 @@
+/* The free viscous ring: braking with B_d and nothing else, tick for tick, b = B_d T/m.
+
+     speeds measured     v_k+1 = (1 - b) v_k
+     lowpass of gain a   z^2 - (2 - a - a b/2) z + 1 - a + a b/2 = 0, v_k a sum of its modes;
+                         a = 1 is the backward difference                                        */
+#include <complex.h>
+#include <math.h>
+
+#include "stress/rig.h"
+#include "stress/stress.h"
+
+#define MASS 0.1173
+#define PERIOD 0.001
+#define SPEED 0.2
+#define STILL 0.001 /* v_th */
+
+static void open_braking(ethd__rig *rig, double damping) {
+  ethd__rig_open(rig, MASS, -1e-12);
+  rig->setup.arm.link1 = ETHD__RIG_STRAIGHT;
+  rig->setup.transition_p[0] = damping;
+  rig->setup.transition_p[1] = STILL;
+  rig->setup.transition_p[3] = rig->setup.transition_p[4] = (double)INFINITY;
+}
+
+/* Ticks of braking, and eps, when speeds are measured. */
+static void measured(ethd__stress_log *log, double damping) {
+  ethd__rig rig;
+  double b = damping * PERIOD / MASS;
+  open_braking(&rig, damping);
+  rig.measured = 1;
+  ethd__rig_start(&rig, SPEED);
+  while (ethd__rig_tick(&rig)->state != ETHD_VO && rig.tick < 100000) continue;
+  double ticks = ceil(log1p(STILL / SPEED - 1) / log1p(-b)), left = exp(ticks * log1p(-b));
+  double eps = PERIOD * SPEED * (1 - left) / b * (1 - b / 2);
+  ethd__stress_within(log, "ticks", (double)rig.trace.tick, ticks, 0,
+                      "ticks of braking = ceil(ln(v_th/v0) / ln(1 - b))");
+  ethd__stress_near(log, "m", rig.trace.eps, eps, 1e-6, "eps = T v0 (1 - (1 - b)^N) (1/b - 1/2)");
+  ethd__rig_close(&rig);
+}
+
+/* v_k = p z^k + r y^k, from its first two. */
+typedef struct modes {
+  double complex z, y, p, r;
+} modes;
+
+static modes modes_of(double a, double b, double v0, double v1) {
+  double half = (2 - a - a * b / 2) / 2, product = 1 - a + a * b / 2;
+  double complex root = csqrt(half * half - product);
+  modes m = {.z = half + root, .y = half - root};
+  m.p = (v1 - v0 * m.y) / (m.z - m.y);
+  m.r = v0 - m.p;
+  return m;
+}
+
+static double speed_at(const modes *m, int k) { return creal(m->p * cpow(m->z, k) + m->r * cpow(m->y, k)); }
+
+/* The largest distance from the modes while it brakes, as a share of the first speed. */
+static double off_modes(double cutoff, double damping) {
+  ethd__rig rig;
+  double v0, v1, worst = 0, a = cutoff > 0 ? 1 - exp(-2 * M_PI * cutoff * PERIOD) : 1;
+  open_braking(&rig, damping);
+  ethd_setup_velocity(&rig.setup, cutoff > 0 ? ETHD_VELOCITY_LOWPASS : ETHD_VELOCITY_DIFFERENCE);
+  if (cutoff > 0) rig.setup.velocity_p[0] = cutoff;
+  ethd__rig_start(&rig, SPEED);
+  ethd__rig_tick(&rig); /* nothing is known of the speed yet */
+  v0 = ethd__rig_speed(&rig);
+  ethd__rig_tick(&rig);
+  v1 = ethd__rig_speed(&rig);
+  modes m = modes_of(a, damping * PERIOD / MASS, v0, v1);
+  for (int k = 2; rig.trace.state == ETHD_BRAKING; k++) {
+    ethd__rig_tick(&rig);
+    if (rig.trace.state == ETHD_BRAKING)
+      worst = fmax(worst, fabs(ethd__rig_speed(&rig) - speed_at(&m, k)) / v0);
+  }
+  ethd__rig_close(&rig);
+  return worst;
+}
+
+static void run(ethd__stress_log *log) {
+  static const double share[] = {1e-3, 0.01, 0.05, 0.2, 0.5, 0.9};
+  const double unit = MASS / PERIOD;
+  for (size_t i = 0; i < 6; i++) measured(log, share[i] * unit);
+  for (size_t i = 0; i < 6; i++)
+    ethd__stress_bound(log, "1", off_modes(0, share[i] * unit), 1e-5, "difference: speeds off its two modes");
+  for (size_t i = 0; i < 6; i++)
+    ethd__stress_bound(log, "1", off_modes(130, share[i] * unit), 1e-5,
+                       "lowpass 130 Hz: speeds off its two modes");
+}
+
+const ethd__stress ethd__stress_viscous = {"viscous", "a free ring braked by B_d alone, tick for tick", run};
