@@ -23,14 +23,14 @@ static const char doc[] =
     "the finger touches the wall where its speed toward it, after its peak, has fallen to the given speed "
     "(low, high: 0.2, 0.4 m/s), and is never scaled unless --scale says so. Speed is the slope of the "
     "least-squares line through the samples within 5 ms, at least one on either side; the path itself is "
-    "not filtered.\n\n"
+    "not filtered. A tap on a recording begins once the ring is clear of the wall.\n\n"
     "Every tap is in --csv; means are over the valid ones: the ring met the wall before the finger touched, "
     "at 0.2 +- 0.06 (low) or 0.4 +- 0.08 m/s (high), at V +- (0.04 + 0.1 V) for a number; plant p has "
     "bands of its own.\n\n"
     "Examples:\n"
     "  ethd-tap\n"
     "  ethd-tap --taps 400 --csv taps.csv --trace traces\n"
-    "  ethd-tap --finger reach.csv --transition offset --speed high,0.3 --record tap";
+    "  ethd-tap --finger reach.csv --speed high,0.3 --record taps";
 
 enum { OPTION_SCALE = 256, OPTION_TRACE, OPTION_RECORD, OPTION_CSV };
 
