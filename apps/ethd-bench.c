@@ -10,7 +10,7 @@
 #include "file/text.h"
 
 static const ethd__bench *const benches[] = {
-    &ethd__bench_tick,
+    &ethd__bench_kinematics, &ethd__bench_tick,
 };
 #define BENCH_COUNT (sizeof benches / sizeof *benches)
 
