@@ -20,6 +20,15 @@ extern const size_t ethd__plant_row_count;
 ethd_status ethd__plant_check(const ethd_plant *plant, ethd_error *error);
 ethd_status ethd__sim_check(const ethd_sim_def *def, ethd_error *error);
 
+/* Where a plant is: a file beside `folder`; "n" is n.plant there, else among the files that came with the
+   programs (ETHD_DATA_DIR, by default ../share/ethd of the program's folder). Freed by the caller; NULL: no
+   memory. [main] */
+char *ethd__plant_path(const char *plant, const char *folder);
+
+/* ethd_plant_load with `name` for the file in messages. [main] */
+ethd_status ethd__plant_read(const char *path, const char *name, ethd_plant *out,
+                             char message[ETHD_MESSAGE_MAX]);
+
 /* Fills the error, returns its status. [main] */
 ethd_status ethd__sim_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
                              double max);

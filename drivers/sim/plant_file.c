@@ -1,6 +1,8 @@
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "file/error_text.h"
 #include "file/ini.h"
@@ -69,16 +71,54 @@ static ethd_status fill(const char *path, const ethd_ini *ini, ethd_plant *out, 
   return status;
 }
 
-ethd_status ethd_plant_load(const char *path, ethd_plant *out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__plant_read(const char *path, const char *name, ethd_plant *out,
+                             char message[ETHD_MESSAGE_MAX]) {
   char *text;
   size_t length;
   ethd_ini ini;
   ethd_status status = ethd_text_read(path, BYTES_MAX, &text, &length, message);
   if (status) return status;
-  status = ethd_ini_parse(text, length, path, NULL, &ini, message);
+  status = ethd_ini_parse(text, length, name, NULL, &ini, message);
   free(text);
   if (status) return status;
-  status = fill(path, &ini, out, message);
+  status = fill(name, &ini, out, message);
   ethd_ini_free(&ini);
   return status;
+}
+
+ethd_status ethd_plant_load(const char *path, ethd_plant *out, char message[ETHD_MESSAGE_MAX]) {
+  return ethd__plant_read(path, path, out, message);
+}
+
+/* ---- where it is ---- */
+
+static char *came_with_programs(const char *file) {
+  const char *given = getenv("ETHD_DATA_DIR");
+  if (given && *given) return ethd__path_join(given, file);
+  char program[PATH_MAX];
+  ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+  program[length > 0 ? length : 0] = 0;
+  char *bin = ethd__path_folder(program);
+  char *share = bin ? ethd__path_join(bin, "../share/ethd") : NULL;
+  char *path = share ? ethd__path_join(share, file) : NULL;
+  free(share);
+  free(bin);
+  return path;
+}
+
+char *ethd__plant_path(const char *plant, const char *folder) {
+  char file[64];
+  size_t length = strlen(plant);
+  if (strpbrk(plant, "/.") || length > sizeof file - sizeof ".plant") return ethd__path_join(folder, plant);
+  memcpy(file, plant, length);
+  strcpy(file + length, ".plant");
+  char *beside = ethd__path_join(folder, file);
+  if (!beside || access(beside, R_OK) == 0) return beside;
+  char *shared = came_with_programs(file);
+  if (!shared || access(shared, R_OK) != 0) {
+    free(shared);
+    return beside;
+  }
+  free(beside);
+  return shared;
 }

@@ -1,10 +1,10 @@
 /* The simulated device: arm, motors, ring, encoders, proximity ring, and a finger with a hand behind it.
 
    Plausible and fitted to the paper's Table 1, not measured: say so wherever a number of it is shown.
-   Plants are data (files *.plant). The finger follows a voluntary path through the hand's spring and
-   damper; where pad and ring meet, Hunt-Crossley. RK4, split at sample instants, torque updates, contact
-   changes. Everything is deterministic to the bit: every random number is a function of
-   (seed, tap, stream, counter). */
+   Plants are data (files *.plant). The finger moves on its voluntary path; what the ring pushes it aside
+   works against the hand's spring and damper about that path; where pad and ring meet, Hunt-Crossley. RK4,
+   split at sample instants, torque updates, contact changes. Everything is deterministic to the bit: every
+   random number is a function of (seed, tap, stream, counter). */
 #ifndef ETHD_SIM_H
 #define ETHD_SIM_H
 
@@ -53,7 +53,8 @@ typedef struct ethd_path {
      mirror image over ramp_down; starts at t = 0 */
   ethd_vec from;
   double to_x, speed, ramp_up, ramp_down;
-  /* recorded: C1 cubic interpolation (Catmull-Rom tangents by finite differences), held at both ends */
+  /* recorded: C1 cubic interpolation (slopes of the parabola through three samples), held at both ends, where
+     its slope is 0; the samples outlive the simulation */
   const ethd_path_sample *samples;
   size_t sample_count;
 } ethd_path;

@@ -1,0 +1,28 @@
+/* What the [device] section may say to the simulated device. */
+#ifndef ETHD_SIM_SETTINGS_H
+#define ETHD_SIM_SETTINGS_H
+
+#include "ethd/driver.h"
+
+enum {
+  ETHD__SIM_STEP,
+  ETHD__SIM_SEED,
+  ETHD__SIM_TAP,
+  ETHD__SIM_SPEED,
+  ETHD__SIM_MEET_X,
+  ETHD__SIM_MEET_Y,
+  ETHD__SIM_PARAMS
+};
+
+extern const ethd_param ethd__sim_params[ETHD__SIM_PARAMS];
+
+typedef struct ethd__sim_settings {
+  double p[ETHD__SIM_PARAMS];
+  const ethd_setting *plant; /* NULL: n */
+  int rays;                  /* -1: as the plant says */
+} ethd__sim_settings;
+
+/* The error's line is the setting's. [main] */
+ethd_status ethd__sim_settings_read(const ethd_device_def *def, ethd__sim_settings *out, ethd_error *error);
+
+#endif
