@@ -8,6 +8,8 @@
 #ifndef ETHD__CONTROL_H
 #define ETHD__CONTROL_H
 
+#include <string.h>
+
 #include "ethd/control.h"
 
 /* Where objects are: 0 the scene that stands still, then the bodies. */
@@ -111,7 +113,10 @@ ethd__failure ethd__tick(const ethd__entry *e, ethd__state *state, ethd__state *
 void ethd__resume(const ethd__plan *plan, ethd__state *state) ETHD_RT;
 
 /* Zeroed and reset blocks of laws. [rt] */
-void ethd__block_reset(const ethd_law *law, const double *p, double *block) ETHD_RT;
+static inline void ethd__block_reset(const ethd_law *law, const double *p, double *block) ETHD_RT {
+  memset(block, 0, sizeof(ethd__block));
+  if (law->reset) law->reset(p, block);
+}
 void ethd__slot_start(const ethd__plan *plan, ethd__slot *slot) ETHD_RT;
 
 /* The parameters of the contact law on a material, -1: none. [rt] */

@@ -1,11 +1,4 @@
-#include <string.h>
-
 #include "control.h"
-
-void ethd__block_reset(const ethd_law *law, const double *p, double *block) {
-  memset(block, 0, ETHD_STATE_MAX);
-  if (law->reset) law->reset(p, block);
-}
 
 static int track(const ethd__plan *plan, ethd__state *state, const ethd_pose *pose, ethd_vec shift,
                  double dt, ethd_trace *out, double tau[2], ethd__failure *failure) ETHD_RT {
