@@ -29,15 +29,15 @@ ethd_status ethd_limits_check(const ethd_limits *limits, ethd_error *error) {
   return ethd__check_number(error, "workspace", w[2], -inf, w[3]);
 }
 
+#define D_BETA_MIN 1e-5 /* m: so far R_f,max stays from R_r */
+
 static ethd_status check_geometry(const ethd_setup *s, ethd_error *error) {
   TRY(ethd__check_number(error, "loop.period", s->period, 1e-5, 0.1));
   TRY(within("arm", ethd_arm_check(&s->arm, error), error));
   TRY(ethd__check_number(error, "ring.radius", s->ring_radius, 1e-4, 1));
-  TRY(ethd__check_number(error, "finger.radius", s->finger_radius, 1e-5, s->ring_radius));
-  TRY(ethd__check_number(error, "finger.radius_max", s->finger_radius_max, 1e-5, s->ring_radius));
-  if (!(s->finger_radius_max < s->ring_radius))
-    return ethd__refuse(error, ETHD_E_RANGE, "finger.radius_max", s->finger_radius_max, 1e-5,
-                             s->ring_radius);
+  TRY(ethd__check_number(error, "finger.radius", s->finger_radius, 1e-4, s->ring_radius));
+  TRY(ethd__check_number(error, "finger.radius_max", s->finger_radius_max, 1e-5,
+                         s->ring_radius - D_BETA_MIN));
   TRY(ethd__check_number(error, "transition.swap_time", s->swap_time, 0, 1));
   return ethd__check_number(error, "transition.v_hysteresis", s->v_hysteresis, 0, 1);
 }

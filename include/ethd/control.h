@@ -35,7 +35,7 @@ typedef struct ethd_setup {
   ethd_arm arm;
   double ring_radius;       /* R_r, m: inner radius */
   double finger_radius;     /* R_f, m */
-  double finger_radius_max; /* R_f,max, m; d_beta = R_r - R_f,max > 0 */
+  double finger_radius_max; /* R_f,max, m; d_beta = R_r - R_f,max >= 1e-5 */
 
   ethd_velocity_method velocity;
   double velocity_p[ETHD_PARAMS_MAX];

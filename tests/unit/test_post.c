@@ -294,6 +294,7 @@ static const refusal refusals[] = {
     {AT(ring_radius), INFINITY, "ring.radius", ETHD_E_RANGE},
     {AT(ring_radius), 0, "ring.radius", ETHD_E_RANGE},
     {AT(finger_radius), 0.0121, "finger.radius", ETHD_E_RANGE},
+    {AT(finger_radius), 5e-5, "finger.radius", ETHD_E_RANGE},
     {AT(finger_radius_max), 0.012, "finger.radius_max", ETHD_E_RANGE},
     {AT(finger_radius_max), NAN, "finger.radius_max", ETHD_E_NOT_FINITE},
     {AT(velocity_p[0]), 0, "velocity.cutoff", ETHD_E_RANGE},
@@ -331,6 +332,11 @@ START_TEST(test_refusals) {
   ck_assert(isnan(c->value) ? isnan(error.found) : error.found == c->value);
   ck_assert_int_eq(ethd_control_create(&s, &control, NULL), c->status);
   ck_assert_ptr_null(control);
+  if (status != ETHD_E_RANGE || c->at == AT(ring_radius)) return; /* the finger must fit the ring */
+  memcpy((char *)&s + c->at, &error.min, sizeof error.min); /* what is said to be allowed is */
+  ck_assert_int_eq(ethd_setup_check(&s, NULL), ETHD_OK);
+  memcpy((char *)&s + c->at, &error.max, sizeof error.max);
+  ck_assert_int_eq(ethd_setup_check(&s, NULL), ETHD_OK);
 }
 END_TEST
 
