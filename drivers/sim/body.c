@@ -187,8 +187,8 @@ static void couple(const ethd__body *b, const pose *links, const double *w, cons
   a[1] = (b->inertia[0] * g1 - hc * g0) / det;
 }
 
-void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, const ethd__motion *hand,
-                           const double *q, const double *v, double *out) {
+void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, const ethd__motion *hand, const double *q,
+                           const double *v, double *out) {
   double g[2];
   drive(b, q, v, g, out);
   ethd_vec f = {b->hand_stiffness * (hand->x.x - q[2]) + b->hand_damping * (hand->v.x - v[2]),

@@ -45,7 +45,8 @@ static ethd_status sim_open(const ethd_device_def *def, void **out, ethd_error *
   if (!status) status = ethd_sim_create(&d->def, &d->sim, error);
   if (!status) {
     ethd_vec meet = {s.p[ETHD__SIM_MEET_X], s.p[ETHD__SIM_MEET_Y]};
-    ethd_sim_draw(&d->def.plant, (uint64_t)s.p[ETHD__SIM_SEED], (uint64_t)s.p[ETHD__SIM_TAP], s.p[ETHD__SIM_SPEED], meet, &d->tap);
+    ethd_sim_draw(&d->def.plant, (uint64_t)s.p[ETHD__SIM_SEED], (uint64_t)s.p[ETHD__SIM_TAP],
+                  s.p[ETHD__SIM_SPEED], meet, &d->tap);
     status = ethd_sim_start(d->sim, &d->tap);
     if (status) ethd__sim_refuse(error, status, "sim", NAN, NAN, NAN);
   }

@@ -6,7 +6,7 @@
 #include "sim/sensors.h"
 
 #define AT(member) offsetof(ethd_plant, member)
-#define ROW(section, key, unit, min, max, member, brief) \
+#define ROW(section, key, unit, min, max, member, brief)                                                     \
   {section, {key, unit, min, max, min, brief}, AT(member)}
 
 const ethd__plant_row ethd__plant_rows[] = {
@@ -52,8 +52,8 @@ const ethd__plant_row ethd__plant_rows[] = {
 };
 const size_t ethd__plant_row_count = sizeof ethd__plant_rows / sizeof *ethd__plant_rows;
 
-ethd_status ethd__sim_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
-                             double max) {
+ethd_status ethd__sim_refuse(ethd_error *error, ethd_status status, const char *name, double found,
+                             double min, double max) {
   if (!error) return status;
   memset(error, 0, sizeof *error);
   error->status = status;
@@ -81,12 +81,14 @@ static ethd_status check_row(const ethd__plant_row *row, const ethd_plant *plant
   char name[sizeof error->name];
   if (value >= p->min && value <= p->max) return ETHD_OK;
   snprintf(name, sizeof name, "%s.%s", row->section, p->name);
-  return ethd__sim_refuse(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, value, p->min, p->max);
+  return ethd__sim_refuse(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, value, p->min,
+                          p->max);
 }
 
 /* name's value must lie in [min, max]. */
 static ethd_status within(ethd_error *error, const char *name, double found, double min, double max) {
-  return found >= min && found <= max ? ETHD_OK : ethd__sim_refuse(error, ETHD_E_RANGE, name, found, min, max);
+  return found >= min && found <= max ? ETHD_OK
+                                      : ethd__sim_refuse(error, ETHD_E_RANGE, name, found, min, max);
 }
 
 ethd_status ethd__plant_check(const ethd_plant *p, ethd_error *error) {

@@ -30,7 +30,7 @@ ethd_status ethd__plant_read(const char *path, const char *name, ethd_plant *out
                              char message[ETHD_MESSAGE_MAX]);
 
 /* Fills the error, returns its status. [main] */
-ethd_status ethd__sim_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
-                             double max);
+ethd_status ethd__sim_refuse(ethd_error *error, ethd_status status, const char *name, double found,
+                             double min, double max);
 
 #endif

@@ -13,20 +13,20 @@
 
 static ethd_status refuse(const char *path, const ethd_ini_key *key, const char *allowed, char *message) {
   char quote[ETHD_QUOTE_MAX];
-  return ethd__say(message, ETHD_E_RANGE, "%s:%d: %s.%s: found %s, %s is allowed", path, key->line, key->section,
-                   key->key, ethd__quote(key->value, strlen(key->value), quote), allowed);
+  return ethd__say(message, ETHD_E_RANGE, "%s:%d: %s.%s: found %s, %s is allowed", path, key->line,
+                   key->section, key->key, ethd__quote(key->value, strlen(key->value), quote), allowed);
 }
 
-static ethd_status set_choice(const char *path, const ethd__plant_row *row, const ethd_ini_key *key, void *out,
-                              char *message) {
+static ethd_status set_choice(const char *path, const ethd__plant_row *row, const ethd_ini_key *key,
+                              void *out, char *message) {
   int32_t word = ethd_param_word(&row->param, key->value);
   if (word < 0) return refuse(path, key, row->param.unit, message);
   memcpy(out, &word, sizeof word);
   return ETHD_OK;
 }
 
-static ethd_status set_number(const char *path, const ethd__plant_row *row, const ethd_ini_key *key, void *out,
-                              char *message) {
+static ethd_status set_number(const char *path, const ethd__plant_row *row, const ethd_ini_key *key,
+                              void *out, char *message) {
   const ethd_param *p = &row->param;
   double value;
   char allowed[ETHD_MESSAGE_MAX];
@@ -50,7 +50,8 @@ static ethd_status set(const char *path, const ethd__plant_row *row, const ethd_
 
 static int is_known(const ethd_ini_key *key) {
   for (size_t i = 0; i < ethd__plant_row_count; i++)
-    if (!strcmp(ethd__plant_rows[i].section, key->section) && !strcmp(ethd__plant_rows[i].param.name, key->key))
+    if (!strcmp(ethd__plant_rows[i].section, key->section) &&
+        !strcmp(ethd__plant_rows[i].param.name, key->key))
       return 1;
   return 0;
 }

@@ -41,8 +41,8 @@ double ethd__sensors_next(const ethd__sensors *s) {
   return s->phase + (double)s->sample / s->plant.rate + skew;
 }
 
-static void stamp(const ethd__sensors *s, const ethd__body *body, const ethd__state *state, ethd_vec true_ring,
-                  ethd__reading *out) {
+static void stamp(const ethd__sensors *s, const ethd__body *body, const ethd__state *state,
+                  ethd_vec true_ring, ethd__reading *out) {
   ethd_vec v;
   out->sample_ns = nanoseconds(ethd__sensors_next(s));
   out->ring = true_ring;
@@ -53,8 +53,7 @@ static void take_ray(const ethd__sensors *s, ethd_vec relative, ethd__reading *o
   double rays[ETHD_RAYS];
   uint32_t ray = s->part < STAMP ? s->part : s->part - 1;
   ethd_fit_rays(s->ring_radius, s->finger_radius, relative, rays);
-  out->rays[ray] =
-      rays[ray] + s->plant.ray_noise * ethd__normal(s->key, ETHD__STREAM_RAY + ray, s->sample);
+  out->rays[ray] = rays[ray] + s->plant.ray_noise * ethd__normal(s->key, ETHD__STREAM_RAY + ray, s->sample);
 }
 
 static void take_centre(const ethd__sensors *s, ethd_vec relative, ethd__reading *out) {

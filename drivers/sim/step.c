@@ -44,8 +44,8 @@ static void rk4(const ethd__body *b, const ethd__piece *piece, double t, double 
 }
 
 /* Shortest step, to LOCATED, after which touch has changed. */
-static double locate(const ethd__body *b, const ethd__piece *piece, double t, double h,
-                     const ethd__state *s, const double *k1) {
+static double locate(const ethd__body *b, const ethd__piece *piece, double t, double h, const ethd__state *s,
+                     const double *k1) {
   double low = 0, high = h;
   while (high - low > LOCATED) {
     double middle = (low + high) / 2;

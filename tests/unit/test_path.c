@@ -1,0 +1,185 @@
+/* The hand's voluntary path: the synthetic reach against its definition, recorded ones against their
+ * samples. */
+#include <math.h>
+
+#include "sim/path.h"
+#include "unit/draw.h"
+#include "unit/rig.h"
+
+#define PI 3.14159265358979323846
+
+static const ethd_path reach = {
+    .from = {0.30, 0.24}, .to_x = 0.20, .speed = 0.4, .ramp_up = 0.08, .ramp_down = 0.03};
+
+/* 0.1 m = 0.4 m/s (0.11 s / 2 + cruise): 0.195 s of cruise. */
+static double speed_of_reach(double t) {
+  if (t < 0 || t > 0.305) return 0;
+  if (t < 0.08) return 0.2 * (1 - cos(PI * t / 0.08));
+  if (t > 0.275) return 0.2 * (1 - cos(PI * (0.305 - t) / 0.03));
+  return 0.4;
+}
+
+START_TEST(test_speed) {
+  ethd_vec x, v;
+  for (double t = -0.01; t < 0.4; t += 0.00037) {
+    ethd_path_at(&reach, t, &x, &v);
+    ck_assert_double_eq_tol(v.x, -speed_of_reach(t), 1e-14);
+    ck_assert(v.y == 0 && x.y == 0.24);
+  }
+  ck_assert_double_eq_tol(ethd_path_end(&reach), 0.305, 1e-15);
+}
+END_TEST
+
+/* The position is the integral of the defined speed (Simpson, 20 us). */
+START_TEST(test_position) {
+  double expected = 0.30, h = 20e-6;
+  ethd_vec x, v;
+  ethd_path_at(&reach, -1, &x, &v);
+  ck_assert(x.x == 0.30);
+  for (int i = 0; i < 16000; i++) {
+    double t = i * h;
+    expected -= h / 6 * (speed_of_reach(t) + 4 * speed_of_reach(t + h / 2) + speed_of_reach(t + h));
+    ethd_path_at(&reach, t + h, &x, &v);
+    ck_assert_double_eq_tol(x.x, expected, 1e-9);
+  }
+  ethd_path_at(&reach, 5, &x, &v);
+  ck_assert_double_eq_tol(x.x, 0.20, 1e-15);
+  ck_assert(v.x == 0);
+}
+END_TEST
+
+/* To the right it is the mirror image. Too short for its ramps, it keeps speed and ramps and ends
+ * beyond. */
+START_TEST(test_other_reaches) {
+  ethd_path right = reach, hop = reach;
+  ethd_vec x, v, y, w;
+  right.to_x = 0.40;
+  hop.to_x = 0.29;
+  for (double t = 0; t < 0.4; t += 0.001) {
+    ethd_path_at(&reach, t, &x, &v);
+    ethd_path_at(&right, t, &y, &w);
+    ck_assert_double_eq_tol(y.x - 0.30, 0.30 - x.x, 1e-14);
+    ck_assert_double_eq_tol(w.x, -v.x, 1e-13);
+  }
+  ck_assert_double_eq_tol(ethd_path_end(&hop), 0.11, 1e-15);
+  ethd_path_at(&hop, 0.08, &x, &v);
+  ck_assert_double_eq_tol(v.x, -0.4, 1e-14);
+  ethd_path_at(&hop, 0.2, &x, &v);
+  ck_assert_double_eq_tol(x.x, 0.30 - 0.4 * 0.055, 1e-15);
+}
+END_TEST
+
+/* ---- recorded ---- */
+
+enum { COUNT = 40 };
+
+/* Uneven in time. */
+static ethd_path record(ethd_path_sample *s, ethd_vec (*at)(double t)) {
+  for (int i = 0; i < COUNT; i++) {
+    double t = 0.1 + 0.004 * i + (i && i + 1 < COUNT ? draw((uint64_t)i, 0, 0.003) : 0);
+    ethd_vec x = at(t);
+    s[i] = (ethd_path_sample){t, x.x, x.y};
+  }
+  return (ethd_path){.samples = s, .sample_count = COUNT};
+}
+
+static ethd_vec parabola(double t) { return (ethd_vec){0.3 - 0.2 * t - 3 * t * t, 0.2 + t - 7 * t * t}; }
+
+/* Slopes of parabolas make a parabola exact, all but the end pieces; there the slope ends at 0. */
+START_TEST(test_parabola) {
+  ethd_path_sample s[COUNT];
+  ethd_path path = record(s, parabola);
+  ethd_vec x, v;
+  for (double t = s[1].t; t < s[COUNT - 2].t; t += 0.00011) {
+    ethd_vec expected = parabola(t);
+    ethd_path_at(&path, t, &x, &v);
+    ck_assert_double_eq_tol(x.x, expected.x, 1e-15);
+    ck_assert_double_eq_tol(x.y, expected.y, 1e-15);
+    ck_assert_double_eq_tol(v.x, -0.2 - 6 * t, 1e-12);
+    ck_assert_double_eq_tol(v.y, 1 - 14 * t, 1e-12);
+  }
+  ck_assert(ethd_path_end(&path) == s[COUNT - 1].t);
+}
+END_TEST
+
+static ethd_vec jagged(double t) {
+  uint64_t n = (uint64_t)(t * 1e6);
+  return (ethd_vec){draw(n, 0.2, 0.3), draw(n + 1, 0.2, 0.3)};
+}
+
+/* Whatever the samples: through each of them, one slope on both sides, still before and after. */
+START_TEST(test_through_samples) {
+  ethd_path_sample s[COUNT];
+  ethd_path path = record(s, jagged);
+  for (int i = 0; i < COUNT; i++) {
+    ethd__piece before, after;
+    ethd__path_piece(&path, i ? s[i - 1].t : 0, &before);
+    ethd__path_piece(&path, s[i].t, &after);
+    ck_assert(before.end == s[i].t && after.begin == s[i].t);
+    ethd__motion left = ethd__piece_at(&before, s[i].t), right = ethd__piece_at(&after, s[i].t);
+    ck_assert(right.x.x == s[i].x && right.x.y == s[i].y);
+    ck_assert_double_eq_tol(left.x.x, s[i].x, 1e-15);
+    ck_assert_double_eq_tol(left.x.y, s[i].y, 1e-15);
+    ck_assert_double_eq_tol(left.v.x, right.v.x, 1e-11);
+    ck_assert_double_eq_tol(left.v.y, right.v.y, 1e-11);
+    if (i == 0 || i + 1 == COUNT) ck_assert(right.v.x == 0 && right.v.y == 0);
+  }
+  ethd_vec x, v;
+  ethd_path_at(&path, 0, &x, &v);
+  ck_assert(x.x == s[0].x && x.y == s[0].y && v.x == 0 && v.y == 0);
+  ethd_path_at(&path, 9, &x, &v);
+  ck_assert(x.x == s[COUNT - 1].x && x.y == s[COUNT - 1].y && v.x == 0 && v.y == 0);
+}
+END_TEST
+
+START_TEST(test_single_sample) {
+  ethd_path_sample one = {0.5, 0.3, 0.2};
+  ethd_path path = {.samples = &one, .sample_count = 1};
+  ethd_vec x, v;
+  for (double t = 0; t < 1.1; t += 0.25) {
+    ethd_path_at(&path, t, &x, &v);
+    ck_assert(x.x == 0.3 && x.y == 0.2 && v.x == 0 && v.y == 0);
+  }
+  ck_assert(ethd_path_end(&path) == 0.5);
+}
+END_TEST
+
+/* ---- both ---- */
+
+/* Within a piece the acceleration is the slope of the speed, the speed that of the position. */
+static void derivatives_agree(const ethd_path *path, double from, double to) {
+  double h = 1e-6;
+  for (double t = from; t < to; t += 0.0007) {
+    ethd__piece piece;
+    ethd__path_piece(path, t, &piece);
+    ck_assert(piece.begin <= t && t < piece.end);
+    ethd__motion a = ethd__piece_at(&piece, t - h), m = ethd__piece_at(&piece, t),
+                 b = ethd__piece_at(&piece, t + h);
+    ck_assert_double_eq_tol(m.v.x, (b.x.x - a.x.x) / (2 * h), 1e-4);
+    ck_assert_double_eq_tol(m.v.y, (b.x.y - a.x.y) / (2 * h), 1e-4);
+    ck_assert_double_eq_tol(m.a.x, (b.v.x - a.v.x) / (2 * h), 1e-3 + 1e-6 * fabs(m.a.x));
+    ck_assert_double_eq_tol(m.a.y, (b.v.y - a.v.y) / (2 * h), 1e-3 + 1e-6 * fabs(m.a.y));
+  }
+}
+
+START_TEST(test_derivatives) {
+  ethd_path_sample s[COUNT];
+  ethd_path path = record(s, parabola);
+  derivatives_agree(&reach, -0.01, 0.4);
+  derivatives_agree(&path, 0.05, 0.3);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("path");
+  TCase *t = tcase_create("path");
+  tcase_add_test(t, test_speed);
+  tcase_add_test(t, test_position);
+  tcase_add_test(t, test_other_reaches);
+  tcase_add_test(t, test_parabola);
+  tcase_add_test(t, test_through_samples);
+  tcase_add_test(t, test_single_sample);
+  tcase_add_test(t, test_derivatives);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}
