@@ -63,6 +63,7 @@ typedef struct ethd__state {
   int64_t blind; /* periods since the last tick that had a measurement */
   ethd_velocity_state velocity[2];
   ethd_filter_state filter;
+  int64_t reading_ns;   /* stamp of the reading that was used last */
   double finger_radius; /* of the last fit, NaN: none */
   struct {
     int64_t time_ns;

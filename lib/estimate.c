@@ -58,14 +58,24 @@ static int reading(const ethd__plan *plan, ethd__state *state, const ethd_sense 
   return 1;
 }
 
+/* From the past, and not the last one once more: ages, as sums of periods, wouldn't tell it from a reading
+   that is newer by their rounding. */
+static int is_new(const ethd__state *state, const ethd_sense *sense) ETHD_RT {
+  return sense->sample_ns <= sense->time_ns &&
+         (state->filter.used == 0 || sense->sample_ns != state->reading_ns);
+}
+
 static void correct(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense,
                     ethd_vec ring) ETHD_RT {
   ethd_vec relative;
-  int usable = sense->sample_ns <= sense->time_ns && reading(plan, state, sense, &relative);
+  int usable = is_new(state, sense) && reading(plan, state, sense, &relative);
   if (!usable || ethd_filter_update(&plan->filter, &state->filter,
                                     ethd_vec_add(relative, reference(plan, state, sense, ring)),
-                                    seconds(sense->sample_ns, sense->time_ns)) != ETHD_OK)
+                                    seconds(sense->sample_ns, sense->time_ns)) != ETHD_OK) {
     state->counters.readings_dropped++;
+    return;
+  }
+  state->reading_ns = sense->sample_ns;
 }
 
 static void finger(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt,
