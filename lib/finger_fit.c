@@ -8,38 +8,38 @@
 #define C2 0.70710678118654752440
 #define C3 0.38268343236508977173
 
-static const ethd_vec directions[ETHD_RAYS] = {
-    {1, 0},  {C1, C3},   {C2, C2},   {C3, C1},   {0, 1},  {-C3, C1}, {-C2, C2}, {-C1, C3},
-    {-1, 0}, {-C1, -C3}, {-C2, -C2}, {-C3, -C1}, {0, -1}, {C3, -C1}, {C2, -C2}, {C1, -C3},
-};
+static const two cosines[ETHD__PAIRS] = {{1, C1},   {C2, C3},   {0, -C3}, {-C2, -C1},
+                                         {-1, -C1}, {-C2, -C3}, {0, C3},  {C2, C1}};
+static const two sines[ETHD__PAIRS] = {{0, C3},  {C2, C1},   {1, C1},   {C2, C3},
+                                       {0, -C3}, {-C2, -C1}, {-1, -C1}, {-C2, -C3}};
 
 static void collect(const ethd_fit *fit, const double r[ETHD_RAYS], ethd__points *out) {
-  out->count = out->used = 0;
-  for (uint32_t k = 0; k < ETHD_RAYS; k++) {
-    if (!(fabs(r[k]) < fit->ring_radius)) continue;
-    out->p[out->count] = ethd_vec_scale(fit->ring_radius - r[k], directions[k]);
-    out->ray[out->count++] = k;
-    out->used |= 1u << k;
+  for (int i = 0; i < ETHD__PAIRS; i++) {
+    two free = {r[2 * i], r[2 * i + 1]};
+    out->counts[i] = (two_bits)(two_abs(free) < fit->ring_radius);
+    two reach = two_where(out->counts[i], fit->ring_radius - free);
+    out->x[i] = reach * cosines[i];
+    out->y[i] = reach * sines[i];
   }
+  out->used = ethd__points_used(out->counts);
 }
 
 /* From e = |p - c|^2 - R_f^2, small wherever the finger is what it is said to be, so that the variance
    keeps its digits. */
 static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec centre,
                      ethd_finger *out) {
-  double square = fit->finger_radius * fit->finger_radius, n = 0, sum = 0, sum2 = 0;
-  for (uint32_t i = 0; i < points->count; i++) {
-    ethd_vec u = ethd_vec_sub(points->p[i], centre);
-    double e = ethd_vec_dot(u, u) - square;
-    if (!(points->used >> points->ray[i] & 1)) continue;
-    n += 1;
+  double square = fit->finger_radius * fit->finger_radius, n = ethd__count(points->used);
+  two sum = {0, 0}, sum2 = {0, 0};
+  for (int i = 0; i < ETHD__PAIRS; i++) {
+    two x = points->x[i] - centre.x, y = points->y[i] - centre.y;
+    two e = two_where(points->counts[i], x * x + y * y - square);
     sum += e;
     sum2 += e * e;
   }
-  double mean = sum / n;
+  double mean = two_sum(sum) / n;
   out->centre = centre;
   out->radius = sqrt(square + mean);
-  out->residual = sqrt(fmax(0, sum2 / n - mean * mean)) / (2 * out->radius);
+  out->residual = sqrt(fmax(0, two_sum(sum2) / n - mean * mean)) / (2 * out->radius);
   out->used = points->used;
   out->reserved = 0;
 }
@@ -62,14 +62,15 @@ ethd_status ethd_fit_step(const ethd_fit *fit, const double r[ETHD_RAYS], ethd_f
   ethd_vec centre;
   collect(fit, r, &points);
   if (!find(fit, &points, &centre)) return ETHD_STALE;
-  if (!(ethd_vec_norm(centre) < fit->ring_radius)) return ETHD_STALE;
+  if (!(ethd_vec_dot(centre, centre) < fit->ring_radius * fit->ring_radius)) return ETHD_STALE;
   describe(fit, &points, centre, out);
   return ETHD_OK;
 }
 
 void ethd_fit_rays(double ring_radius, double finger_radius, ethd_vec centre, double r[ETHD_RAYS]) {
   for (int k = 0; k < ETHD_RAYS; k++) {
-    double along = ethd_vec_dot(directions[k], centre), across = ethd_vec_cross(directions[k], centre);
+    ethd_vec u = {cosines[k / 2][k % 2], sines[k / 2][k % 2]};
+    double along = ethd_vec_dot(u, centre), across = ethd_vec_cross(u, centre);
     double reach = along + sqrt(fmax(0, (finger_radius - across) * (finger_radius + across)));
     r[k] = fabs(across) <= finger_radius && reach > 0 ? ring_radius - reach : (double)NAN;
   }

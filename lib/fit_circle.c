@@ -5,6 +5,7 @@
 
      sum |u - s|^2 (u - s) = sum |u|^2 u - 2 sum u u^T s + |s|^2 sum u - s sum |u - s|^2            */
 #include <math.h>
+#include <string.h>
 
 #include "fit_methods.h"
 
@@ -14,19 +15,7 @@ typedef struct moments {
   double n, x, y, xx, xy, yy, zx, zy; /* z = |u|^2 */
 } moments;
 
-static void add(moments *m, ethd_vec u) {
-  double z = ethd_vec_dot(u, u);
-  m->n += 1;
-  m->x += u.x;
-  m->y += u.y;
-  m->xx += u.x * u.x;
-  m->xy += u.x * u.y;
-  m->yy += u.y * u.y;
-  m->zx += z * u.x;
-  m->zy += z * u.y;
-}
-
-static void shift(moments *m, ethd_vec s) {
+static inline void shift(moments *m, ethd_vec s) {
   moments o = *m;
   double ss = ethd_vec_dot(s, s);
   m->x = o.x - o.n * s.x;
@@ -40,7 +29,7 @@ static void shift(moments *m, ethd_vec s) {
 }
 
 /* sum u u^T s = (g, h); 0 for points on one line, and for fewer than two. */
-static int solve(const moments *m, double g, double h, ethd_vec *s) {
+static inline int solve(const moments *m, double g, double h, ethd_vec *s) {
   double det = m->xx * m->yy - m->xy * m->xy, trace = m->xx + m->yy;
   if (!(det > FLAT * trace * trace)) return 0;
   s->x = (m->yy * g - m->xy * h) / det;
@@ -48,16 +37,35 @@ static int solve(const moments *m, double g, double h, ethd_vec *s) {
   return 1;
 }
 
-static moments of_all(const ethd__points *points) {
-  moments m = {0};
-  for (uint32_t i = 0; i < points->count; i++) add(&m, points->p[i]);
-  return m;
+/* Of the points that count, about `origin`. */
+static inline moments of(const ethd__points *points, ethd_vec origin) {
+  two x = {0, 0}, y = x, xx = x, xy = x, yy = x, zx = x, zy = x;
+  for (int i = 0; i < ETHD__PAIRS; i++) {
+    two u = two_where(points->counts[i], points->x[i] - origin.x);
+    two v = two_where(points->counts[i], points->y[i] - origin.y);
+    two uu = u * u, vv = v * v, z = uu + vv;
+    x += u;
+    y += v;
+    xx += uu;
+    xy += u * v;
+    yy += vv;
+    zx += z * u;
+    zy += z * v;
+  }
+  return (moments){ethd__count(points->used),
+                   two_sum(x),
+                   two_sum(y),
+                   two_sum(xx),
+                   two_sum(xy),
+                   two_sum(yy),
+                   two_sum(zx),
+                   two_sum(zy)};
 }
 
 /* About the mean the linear terms vanish, so that the centre parts from the radius:
      sum u u^T s = 1/2 sum |u|^2 u;   R^2 is then the mean of |p - c|^2.
    The moments move to the centre. */
-static int kasa(moments *m, ethd_vec *centre) {
+static inline int kasa(moments *m, ethd_vec *centre) {
   ethd_vec mean = {m->x / m->n, m->y / m->n}, s;
   shift(m, mean);
   if (!solve(m, m->zx / 2, m->zy / 2, &s)) return 0;
@@ -67,12 +75,12 @@ static int kasa(moments *m, ethd_vec *centre) {
 }
 
 int ethd__fit_kasa(const ethd__points *points, ethd_vec *centre) {
-  moments m = of_all(points);
+  moments m = of(points, (ethd_vec){0, 0});
   return kasa(&m, centre);
 }
 
 /* Gauss-Newton from the moments' origin: sum u u^T s = 1/2 sum (|u|^2 - R^2) u. */
-static int step(moments *m, double radius, ethd_vec *centre) {
+static inline int step(moments *m, double radius, ethd_vec *centre) {
   ethd_vec s;
   double square = radius * radius;
   if (!solve(m, (m->zx - square * m->x) / 2, (m->zy - square * m->y) / 2, &s)) return 0;
@@ -82,42 +90,47 @@ static int step(moments *m, double radius, ethd_vec *centre) {
 }
 
 /* (|u|^2 - R^2) / (2 R) is |u| - R nearly. */
-static int is_near(const ethd_fit *fit, double square) {
-  double radius = fit->finger_radius;
-  return fabs(square - radius * radius) <= 2 * radius * fit->p[ROBUST_GATE];
+static inline double gate(const ethd_fit *fit) {
+  return 2 * fit->finger_radius * fit->p[ROBUST_GATE];
 }
 
-/* Moments about the centre of the points within the gate. */
-static moments of_near(const ethd_fit *fit, ethd__points *points, ethd_vec centre) {
-  moments m = {0};
-  points->used = 0;
-  for (uint32_t i = 0; i < points->count; i++) {
-    ethd_vec u = ethd_vec_sub(points->p[i], centre);
-    if (!is_near(fit, ethd_vec_dot(u, u))) continue;
-    add(&m, u);
-    points->used |= 1u << points->ray[i];
+/* Leaves out those beyond the gate among the rays that are `there`. The moments, about the centre, are
+   worked out anew if that changes anything. */
+static inline void choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS], ethd__points *points,
+                          ethd_vec centre, moments *m) {
+  double square = fit->finger_radius * fit->finger_radius, most = gate(fit);
+  uint32_t before = points->used;
+  for (int i = 0; i < ETHD__PAIRS; i++) {
+    two u = points->x[i] - centre.x, v = points->y[i] - centre.y;
+    points->counts[i] = there[i] & (two_bits)(two_abs(u * u + v * v - square) <= most);
   }
-  return m;
+  points->used = ethd__points_used(points->counts);
+  if (points->used != before) *m = of(points, centre);
 }
 
 /* Kasa's centre is a start if it is a finger's: within the ring, the radius within the gate. Few rays or
-   an outlier make others; the ring's middle is never far. */
-static moments start(const ethd_fit *fit, const ethd__points *points, ethd_vec *centre) {
-  moments all = of_all(points), m = all;
-  if (kasa(&m, centre) && is_near(fit, (m.xx + m.yy) / m.n) &&
-      ethd_vec_norm(*centre) <= fit->ring_radius - fit->finger_radius)
-    return m;
+   an outlier make others; the ring's middle, and a step from there, is never far. */
+static inline int start(const ethd_fit *fit, const ethd__points *points, moments *m, ethd_vec *centre) {
+  moments all = of(points, (ethd_vec){0, 0});
+  double square = fit->finger_radius * fit->finger_radius, gap = fit->ring_radius - fit->finger_radius;
+  *m = all;
+  if (kasa(m, centre) && fabs(m->xx + m->yy - square * m->n) <= gate(fit) * m->n &&
+      ethd_vec_dot(*centre, *centre) <= gap * gap)
+    return 1;
+  *m = all;
   *centre = (ethd_vec){0, 0};
-  return all;
+  return step(m, fit->finger_radius, centre);
 }
 
-/* Two steps with all points first, so that an outlier's pull on the start doesn't gate good ones. */
+/* A step with all points first, so that an outlier's pull on the start doesn't gate good ones. */
 int ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
+  two_bits there[ETHD__PAIRS];
   double radius = fit->finger_radius;
-  moments m = start(fit, points, centre);
-  int found = step(&m, radius, centre) && step(&m, radius, centre);
+  moments m;
+  memcpy(there, points->counts, sizeof there);
+  int found = start(fit, points, &m, centre) && step(&m, radius, centre);
   for (int pass = 0; pass < 2 && found; pass++) {
-    m = of_near(fit, points, *centre);
+    choose(fit, there, points, *centre, &m);
     found = step(&m, radius, centre);
   }
   return found;

@@ -3,22 +3,43 @@
 #define ETHD_LIB_FIT_METHODS_H
 
 #include "ethd/finger_fit.h"
+#include "two.h"
 
 /* Rows of robust's table. */
 enum { ROBUST_GATE };
 
-/* Where the rays met the finger, counter-clockwise, relative to the ring's centre. */
+enum { ETHD__PAIRS = ETHD_RAYS / 2 };
+
+/* Where the rays met the finger, relative to the ring's centre: rays 2 i and 2 i + 1 in the i-th pair. A
+   fit takes rays out of `counts` and `used`. */
 typedef struct ethd__points {
-  ethd_vec p[ETHD_RAYS];
-  uint32_t ray[ETHD_RAYS];
-  uint32_t count;
-  uint32_t used; /* bits of the rays; a fit takes away what it leaves out */
+  two x[ETHD__PAIRS], y[ETHD__PAIRS]; /* 0 where there is none */
+  two_bits counts[ETHD__PAIRS];       /* all bits, or none */
+  uint32_t used;                      /* bits of the rays that count */
 } ethd__points;
 
-/* 0: the points don't determine a centre. robust sets points->used. [rt] */
+static inline ethd_vec ethd__point(const ethd__points *points, int ray) {
+  return (ethd_vec){points->x[ray / 2][ray % 2], points->y[ray / 2][ray % 2]};
+}
+
+/* 0: the points don't determine a centre. [rt] */
 int ethd__fit_kasa(const ethd__points *points, ethd_vec *centre) ETHD_RT;
 int ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) ETHD_RT;
 int ethd__fit_vertex_mean(const ethd__points *points, ethd_vec *centre) ETHD_RT;
 int ethd__fit_centroid(const ethd__points *points, ethd_vec *centre) ETHD_RT;
+
+static inline uint32_t ethd__points_used(const two_bits counts[ETHD__PAIRS]) {
+  two_bits used = {0, 0}, bit = {1, 2};
+  for (int i = 0; i < ETHD__PAIRS; i++, bit <<= 2) used |= counts[i] & bit;
+  return (uint32_t)(used[0] | used[1]);
+}
+
+/* How many of 16 bits are set: in pairs, fours, eights. */
+static inline double ethd__count(uint32_t bits) {
+  bits -= bits >> 1 & 0x5555;
+  bits = (bits & 0x3333) + (bits >> 2 & 0x3333);
+  bits = (bits + (bits >> 4)) & 0x0f0f;
+  return (bits + (bits >> 8)) & 0x1f;
+}
 
 #endif

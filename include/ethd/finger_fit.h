@@ -22,8 +22,8 @@ typedef enum ethd_fit_method {
   ETHD_FIT_VERTEX_MEAN, /* the paper's centre of the polygon: mean of its vertices. With all rays it
                            gives half of a small offset */
   ETHD_FIT_CENTROID,    /* centroid of the polygon's area, missing vertices left out */
-  ETHD_FIT_ROBUST,      /* the same sum in c alone, R = the known finger radius: two Gauss-Newton steps
-                           from kasa (from the ring's centre if that isn't such a finger), then two
+  ETHD_FIT_ROBUST,      /* the same sum in c alone, R = the known finger radius: a Gauss-Newton step from
+                           kasa (two from the ring's centre if that isn't such a finger), then two
                            without the rays over `gate` from the circle */
   ETHD_FIT_COUNT
 } ethd_fit_method;

@@ -1,0 +1,24 @@
+/* Two doubles side by side: SSE2 and NEON have them in one register, elsewhere the compiler takes turns.
+ */
+#ifndef ETHD_TWO_H
+#define ETHD_TWO_H
+
+#include <stdint.h>
+
+typedef double two __attribute__((vector_size(16)));
+typedef uint64_t two_bits __attribute__((vector_size(16)));
+
+static inline two two_abs(two x) {
+  return (two)((two_bits)x & INT64_MAX);
+}
+
+/* x where the mask's bits are set, else 0. */
+static inline two two_where(two_bits mask, two x) {
+  return (two)((two_bits)x & mask);
+}
+
+static inline double two_sum(two x) {
+  return x[0] + x[1];
+}
+
+#endif
