@@ -10,8 +10,7 @@
 
 #include "ethd/maths.h"
 
-#define STICK 3e-3 /* m/s of friction's tanh */
-#define NEAR 0.02  /* rad: so far small_turn holds to the last digit */
+#define NEAR 0.02 /* rad: so far small_turn holds to the last digit */
 
 void ethd__body_prepare(const ethd_sim_def *def, double finger_radius, ethd__body *out) {
   const ethd_plant *p = &def->plant;
@@ -35,7 +34,7 @@ void ethd__body_prepare(const ethd_sim_def *def, double finger_radius, ethd__bod
     out->damping[j] = p->damping * l2;
     out->friction[j] = p->friction * l;
     out->viscous[j] = p->viscous * l2;
-    out->sharpness[j] = l / STICK;
+    out->sharpness[j] = l / ETHD__STICK;
     out->torque_max[j] = p->force_limit * l;
   }
 }

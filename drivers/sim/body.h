@@ -5,6 +5,8 @@
 #include "ethd/sim.h"
 #include "sim/path.h"
 
+#define ETHD__STICK 3e-3 /* m/s of friction's tanh */
+
 /* Coordinates: absolute angles of the links, finger x and y, motors' sides of the joints (as joint angles;
    only with a compliant transmission). */
 enum { ETHD__LINK = 0, ETHD__FINGER = 2, ETHD__MOTOR = 4, ETHD__DOF_MAX = 6 };

@@ -83,7 +83,7 @@ typedef struct ethd_sim_def {
   ethd_plant plant;
   ethd_arm arm;
   double ring_radius, period;
-  double step; /* s: longest integration step; golden 50e-6 */
+  double step; /* s: longest integration step; golden 50e-6, at most 2 / the plant's fastest rate */
 } ethd_sim_def;
 
 typedef struct ethd_sim ethd_sim;
