@@ -1,0 +1,173 @@
+/* The simulated device as a driver: settings, refusals with their line, lock-step. */
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "ethd/driver.h"
+#include "unit/sim_rig.h"
+
+#define FOLDER "apps/config"
+
+static ethd_setup setup;
+
+static ethd_status try(const ethd_setting *settings, uint32_t count, void **device, ethd_error *error) {
+  setup = ethd_setup_default();
+  const ethd_device_def def = {&setup, settings, count, FOLDER};
+  memset(error, 0, sizeof *error);
+  return ethd_driver_sim.open(&def, device, error);
+}
+
+static void *open_with(const ethd_setting *settings, uint32_t count) {
+  void *device;
+  ethd_error error;
+  ck_assert_msg(try(settings, count, &device, &error) == ETHD_OK, "%s", error.name);
+  ck_assert_int_eq(ethd_driver_sim.start(device), ETHD_OK);
+  return device;
+}
+
+static void refused(const char *key, const char *value, ethd_status status, const char *name) {
+  const ethd_setting setting = {key, value, 17};
+  void *device = &setup;
+  ethd_error error;
+  ck_assert_int_eq(try(&setting, 1, &device, &error), status);
+  ck_assert_ptr_null(device);
+  ck_assert_int_eq(error.line, 17);
+  ck_assert_msg(strstr(error.name, name) != NULL, "%s = %s: %s", key, value, error.name);
+}
+
+START_TEST(test_table) {
+  ck_assert_str_eq(ethd_driver_sim.id, "sim");
+  ck_assert_uint_eq(ethd_driver_sim.size, sizeof(ethd_driver));
+  ck_assert_uint_eq(ethd_driver_sim.abi, ETHD_DRIVER_ABI);
+  ethd_error error;
+  ck_assert_int_eq(ethd_params_check_table(ethd_driver_sim.params, ethd_driver_sim.param_count, &error),
+                   ETHD_OK);
+}
+END_TEST
+
+START_TEST(test_refused) {
+  refused("colour", "red", ETHD_E_UNKNOWN, "colour");
+  refused("step", "1x", ETHD_E_SYNTAX, "step");
+  refused("step", "0", ETHD_E_RANGE, "step");
+  refused("step", "nan", ETHD_E_RANGE, "step");
+  refused("seed", "1.5", ETHD_E_RANGE, "seed");
+  refused("tap", "-1", ETHD_E_RANGE, "tap");
+  refused("speed", "inf", ETHD_E_RANGE, "speed");
+  refused("reading", "sound", ETHD_E_UNKNOWN, "reading");
+  refused("plant", "q", ETHD_E_FILE, "q.plant");
+  refused("plant", "wall.scene", ETHD_E_SYNTAX, "wall.scene:2");
+}
+END_TEST
+
+/* The same device as the one that is built by hand. */
+START_TEST(test_lock_step) {
+  static const ethd_setting settings[] = {
+      {"plant", "p", 1}, {"seed", "9", 2}, {"tap", "4", 3}, {"speed", "0.3", 4}, {"reading", "rays", 5}};
+  void *device = open_with(settings, 5);
+  char message[ETHD_MESSAGE_MAX];
+  ethd_sim_def def = sim_def();
+  ck_assert_int_eq(ethd_plant_load(FOLDER "/p.plant", &def.plant, message), ETHD_OK);
+  def.plant.rays = 1;
+  ethd_sim_tap tap;
+  ethd_sim_draw(&def.plant, 9, 4, 0.3, (ethd_vec){0.25, 0.25}, &tap);
+  ethd_sim *sim = sim_open(&def, &tap);
+  int rays = 0;
+  for (int k = 0; k < 100; k++) {
+    ethd_sense s, expected = sim_sense(sim);
+    ethd_command command = {{-0.02 * (k % 5), 0.01}, 0, 0};
+    ck_assert_int_eq(ethd_driver_sim.read(device, 12345, &s), ETHD_OK);
+    ck_assert_mem_eq(&s, &expected, sizeof s);
+    rays += (s.have & ETHD_HAVE_RAYS) != 0;
+    ck_assert_int_eq(ethd_driver_sim.write(device, 12345, &command), ETHD_OK);
+    ethd_sim_write(sim, &command);
+  }
+  ck_assert_int_gt(rays, 20);
+  /* from the beginning again */
+  ck_assert_int_eq(ethd_driver_sim.stop(device), ETHD_OK);
+  ck_assert_int_eq(ethd_driver_sim.start(device), ETHD_OK);
+  ck_assert_int_eq(ethd_sim_start(sim, &tap), ETHD_OK);
+  ethd_sense s, expected = sim_sense(sim);
+  ck_assert_int_eq(ethd_driver_sim.read(device, 0, &s), ETHD_OK);
+  ck_assert_mem_eq(&s, &expected, sizeof s);
+  ethd_driver_sim.close(device);
+  ethd_sim_destroy(sim);
+}
+END_TEST
+
+/* Once safe, nothing drives it until it is started anew. */
+START_TEST(test_safe) {
+  void *device = open_with(NULL, 0);
+  ethd_sense a, b;
+  ethd_command push = {{1, 0}, 0, 0};
+  ethd_driver_sim.safe(device);
+  ck_assert_int_eq(ethd_driver_sim.read(device, 0, &a), ETHD_OK);
+  for (int k = 0; k < 10; k++) ck_assert_int_eq(ethd_driver_sim.write(device, 0, &push), ETHD_OK);
+  ck_assert_int_eq(ethd_driver_sim.read(device, 0, &b), ETHD_OK);
+  ck_assert(a.q[0] == b.q[0] && a.q[1] == b.q[1]);
+  ck_assert_int_eq(ethd_driver_sim.start(device), ETHD_OK);
+  for (int k = 0; k < 10; k++) ck_assert_int_eq(ethd_driver_sim.write(device, 0, &push), ETHD_OK);
+  ck_assert_int_eq(ethd_driver_sim.read(device, 0, &b), ETHD_OK);
+  ck_assert_double_gt(fabs(a.q[0] - b.q[0]), 1e-3);
+  ethd_driver_sim.close(device);
+}
+END_TEST
+
+/* What the motors give: 5.357 N at the shorter link. */
+START_TEST(test_limits) {
+  void *device = open_with(NULL, 0);
+  ethd_limits limits = ethd_driver_sim.limits(device);
+  ck_assert_double_eq_tol(limits.torque, 5.357 * 0.25, 1e-15);
+  ck_assert(isinf(limits.torque_rate) && isinf(limits.speed));
+  ethd_driver_sim.close(device);
+}
+END_TEST
+
+/* A plant's letter is a file beside the configuration, else one of ETHD_DATA_DIR; a path is a path. */
+START_TEST(test_where_plants_are) {
+  const ethd_setting letter = {"plant", "b", 1}, path = {"plant", "../../" FOLDER "/b.plant", 1};
+  setup = ethd_setup_default();
+  const ethd_device_def defs[] = {{&setup, &letter, 1, FOLDER},
+                                  {&setup, &letter, 1, "tests"},
+                                  {&setup, &path, 1, FOLDER},
+                                  {&setup, &path, 1, "tests"}};
+  ck_assert_int_eq(setenv("ETHD_DATA_DIR", FOLDER, 1), 0);
+  for (size_t i = 0; i < 4; i++) {
+    void *device;
+    ethd_error error;
+    ethd_status status = ethd_driver_sim.open(&defs[i], &device, &error);
+    ck_assert_int_eq(status, i == 3 ? ETHD_E_FILE : ETHD_OK);
+    if (status) continue;
+    ck_assert_double_eq_tol(ethd_driver_sim.limits(device).torque, 5.369 * 0.25, 1e-15);
+    ethd_driver_sim.close(device);
+  }
+}
+END_TEST
+
+/* A wall elsewhere; one that the arm can't reach. */
+START_TEST(test_meet) {
+  const ethd_setting near[] = {{"meet_x", "0.1", 1}, {"meet_y", "0.3", 2}, {"tap", "1", 3}};
+  void *device = open_with(near, 3);
+  ethd_sense s;
+  ck_assert_int_eq(ethd_driver_sim.read(device, 0, &s), ETHD_OK);
+  ck_assert_double_eq_tol(s.finger[0], 0.1 + 31.6e-3, 10e-3);
+  ck_assert_double_eq_tol(s.finger[1], 0.3, 1e-3);
+  ethd_driver_sim.close(device);
+  const ethd_setting far = {"meet_x", "0.6", 1};
+  ethd_error error;
+  ck_assert_int_eq(try(&far, 1, &device, &error), ETHD_E_UNREACHABLE);
+  ck_assert_ptr_null(device);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("sim_driver");
+  TCase *t = tcase_create("sim_driver");
+  tcase_add_test(t, test_table);
+  tcase_add_test(t, test_refused);
+  tcase_add_test(t, test_lock_step);
+  tcase_add_test(t, test_safe);
+  tcase_add_test(t, test_limits);
+  tcase_add_test(t, test_where_plants_are);
+  tcase_add_test(t, test_meet);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}
