@@ -207,7 +207,7 @@ endef
 $(foreach p,$(wildcard apps/bench/peers/*.c apps/bench/peers/*.cc),$(eval $(call peer,$(p))))
 
 bench-quick: QUICK := 1
-bench bench-quick: all $(PEERS)
+bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
 	@BUILD='$(B)' QUICK='$(QUICK)' WHAT='$(WHAT)' sh apps/bench.sh \
 	  'commit $(or $(shell git describe --always --dirty 2>/dev/null),unknown); $(CC) $(BASE)'
 

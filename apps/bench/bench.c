@@ -63,7 +63,8 @@ void ethd__bench_race(ethd__bench_entry *entries, size_t count, double seconds) 
   for (size_t i = 0; i < count; i++) repeats[i] = repeats_of(&entries[i]);
   for (int t = 0; t < turns; t++)
     for (size_t i = 0; i < count; i++)
-      ns[i * (size_t)turns + (size_t)t] = turn(&entries[i], repeats[i]) / (repeats[i] * entries[i].items);
+      ns[i * (size_t)turns + (size_t)t] =
+          turn(&entries[i], repeats[i]) / (repeats[i] * entries[i].items);
   for (size_t i = 0; i < count; i++) {
     qsort(&ns[i * (size_t)turns], (size_t)turns, sizeof *ns, ascending);
     entries[i].ns = ns[i * (size_t)turns + (size_t)turns / 2];
@@ -102,7 +103,9 @@ double ethd__bench_normal(uint64_t i) {
 
 static const char *peers_folder;
 
-void ethd__bench_peers_in(const char *folder) { peers_folder = folder; }
+void ethd__bench_peers_in(const char *folder) {
+  peers_folder = folder;
+}
 
 const void *ethd__bench_peer(const char *name, const char *symbol) {
   char path[4096];
@@ -133,7 +136,9 @@ static void processor(char *text, size_t room) {
 
 static const char *about_all = "";
 
-void ethd__bench_about(const char *text) { about_all = text; }
+void ethd__bench_about(const char *text) {
+  about_all = text;
+}
 
 FILE *ethd__bench_csv(const char *folder, const char *name, const char *about, const char *header) {
   char path[4096], cpu[256];
@@ -148,4 +153,6 @@ FILE *ethd__bench_csv(const char *folder, const char *name, const char *about, c
   return f;
 }
 
-const char *ethd__bench_verdict(int met) { return met ? "met" : "MISSED"; }
+const char *ethd__bench_verdict(int met) {
+  return met ? "met" : "MISSED";
+}

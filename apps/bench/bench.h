@@ -1,7 +1,8 @@
 /* What all benchmarks share: clocks, races, percentiles, peers, CSV.
 
-   A benchmark answers one question with a table on the terminal and DIR/WHAT.csv; plot/bench-WHAT.gp draws
-   it. Times are of this machine at this moment: contenders race in turns, and only ratios count. */
+   A benchmark answers one question with a table on the terminal and DIR/WHAT.csv; plot/bench-WHAT.gp
+   draws it. Times are of this machine at this moment: contenders race in turns, and only ratios count.
+ */
 #ifndef ETHD_APPS_BENCH_H
 #define ETHD_APPS_BENCH_H
 
@@ -15,8 +16,8 @@ typedef struct ethd__bench {
   int (*run)(const char *folder, int quick); /* exit code */
 } ethd__bench;
 
-extern const ethd__bench ethd__bench_fits, ethd__bench_filters, ethd__bench_velocity, ethd__bench_kinematics,
-    ethd__bench_tick;
+extern const ethd__bench ethd__bench_fits, ethd__bench_filters, ethd__bench_velocity,
+    ethd__bench_kinematics, ethd__bench_tick;
 
 /* CLOCK_MONOTONIC, ns. */
 int64_t ethd__bench_now(void);
@@ -64,8 +65,8 @@ void ethd__bench_peers_in(const char *folder);
 
 /* ---- output ---- */
 
-/* Opens folder/name.csv with '#' lines that say machine, compiler, flags and version, then those of `about`
-   (each ends in a newline), then `header`; exits when it can't. */
+/* Opens folder/name.csv with '#' lines that say machine, compiler, flags and version, then those of
+   `about` (each ends in a newline), then `header`; exits when it can't. */
 FILE *ethd__bench_csv(const char *folder, const char *name, const char *about, const char *header);
 
 /* Whatever else the '#' lines shall say: commit, flags. */

@@ -62,7 +62,7 @@ static void plain(void *data) {
 
 static void peer(void *data) {
   work *w = data;
-  w->peer->work(w->peer_self, (const double (*)[NUMBERS])w->in, w->out, PLACES);
+  w->peer->work(w->peer_self, (const double(*)[NUMBERS])w->in, w->out, PLACES);
 }
 
 /* ---- error: against the same formulas in long double, each output over its largest value ---- */
@@ -98,7 +98,8 @@ static double error_of(const work *w) {
 }
 
 static int run(const char *folder, int quick) {
-  static work serial = {.arm = {ETHD_ARM_SERIAL, LINK, LINK}}, parallel = {.arm = {ETHD_ARM_PARALLEL, LINK, LINK}};
+  static work serial = {.arm = {ETHD_ARM_SERIAL, LINK, LINK}},
+              parallel = {.arm = {ETHD_ARM_PARALLEL, LINK, LINK}};
   static work libm, kdl;
   make_places(&serial);
   make_places(&parallel);
@@ -108,17 +109,19 @@ static int run(const char *folder, int quick) {
                                  {"plain C with libm serial", plain, &libm, PLACES, 0},
                                  {NULL, peer, &kdl, PLACES, 0}};
   size_t count = 3;
-  printf("kinematics: FK, J, J^T f and J^-1 e of a planar arm; error over the largest value, against long double\n");
+  printf("kinematics: FK, J, J^T f and J^-1 e of a planar arm; error over the largest value, against "
+         "long double\n");
   kdl.peer = ethd__bench_peer("kdl", "peer_kinematics");
   if (kdl.peer) {
     kdl.peer_self = kdl.peer->create(LINK, LINK);
     entries[count++].name = kdl.peer->name;
   }
   ethd__bench_race(entries, count, quick ? 0.3 : 3);
-  FILE *csv = ethd__bench_csv(folder, "kinematics",
-                              "# planar arm, links 0.25 m: FK, J, J^T f, J^-1 e at 1024 places\n"
-                              "# error: the largest over outputs and places, over the output's largest value\n",
-                              "method,time_ns,error_relative,times_ours");
+  FILE *csv =
+      ethd__bench_csv(folder, "kinematics",
+                      "# planar arm, links 0.25 m: FK, J, J^T f, J^-1 e at 1024 places\n"
+                      "# error: the largest over outputs and places, over the output's largest value\n",
+                      "method,time_ns,error_relative,times_ours");
   printf("  %-28s %8s %10s %12s\n", "", "ns", "error", "times ours");
   for (size_t i = 0; i < count; i++) {
     double error = error_of(entries[i].data), times = entries[i].ns / entries[0].ns;
@@ -127,7 +130,8 @@ static int run(const char *folder, int quick) {
   }
   if (kdl.peer) {
     double times = entries[3].ns / entries[0].ns;
-    printf("  goal: KDL takes %.0f times as long: %.1f, %s\n", GOAL, times, ethd__bench_verdict(times >= GOAL));
+    printf("  goal: KDL takes %.0f times as long: %.1f, %s\n", GOAL, times,
+           ethd__bench_verdict(times >= GOAL));
     kdl.peer->destroy(kdl.peer_self);
   }
   return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;

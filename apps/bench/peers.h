@@ -18,8 +18,8 @@ typedef struct ethd__peer_kinematics {
 } ethd__peer_kinematics;
 
 /* `peer_filter`: Kalman filter of constant acceleration, two axes. P0 = diag(xx, vv, aa) of each; every
-   tick of T s predicts with Q = jerk^2 g g^T, g = (T^3/6, T^2/2, T); a reading, where there is one, corrects
-   with noise^2. Items of `in`: a reading's x and y, NaN none; of `out`: x y vx vy. */
+   tick of T s predicts with Q = jerk^2 g g^T, g = (T^3/6, T^2/2, T); a reading, where there is one,
+   corrects with noise^2. Items of `in`: a reading's x and y, NaN none; of `out`: x y vx vy. */
 typedef struct ethd__peer_filter {
   const char *name;
   void *(*create)(double period, double jerk, double noise, const double p0[3]);
