@@ -13,7 +13,7 @@ CFLAGS ?= -O2 -g
 RT ?= posix
 
 # Sources of libethd that work on [main] only; every other one must suit the control thread.
-MAIN_SIDE := $(wildcard lib/plugin.c lib/error.c lib/param.c lib/scene_parse.c lib/*_check.c lib/*_create.c)
+MAIN_SIDE := $(wildcard lib/plugin.c lib/error.c lib/param.c lib/scene_parse.c lib/*_check.c lib/*_create.c lib/*_build.c)
 
 SHELL := /bin/sh
 .SUFFIXES:

@@ -1,11 +1,11 @@
 /* A scene in memory: one block without pointers, every array found by its offset.
 
-     objects    what each is and where its data starts
-     boxes      bounds of each object, half-planes unbounded: first rejection
+     objects    what each is and where its numbers are; in the order of the tree's leaves, half-planes last
+     places     of the objects, by id
      numbers    halfplane {nx, ny, c}, circle {x, y, r}, capsule {x1, y1, x2, y2, r},
-                box {x, y, half_w, half_h, cos, sin}
-     points     chains: edge k of an object runs from point first + k to first + k + 1; closed ones
-                repeat their first point */
+                box {x, y, half_w, half_h, cos, sin}; chains: the points, closed ones repeat their first
+     nodes      of the chains' own trees, then of the tree (scene_tree.h)
+     slopes     one for each box of a chain's tree */
 #ifndef ETHD_LIB_SCENE_H
 #define ETHD_LIB_SCENE_H
 
@@ -17,46 +17,49 @@
 #define ETHD__TINY 1e-140        /* m: the square of anything less may lose digits */
 
 typedef struct ethd__object {
-  int32_t shape;
+  int32_t id; /* its number in the file */
   int32_t material;
-  uint32_t first; /* number, or point */
+  uint32_t first; /* of its numbers */
   uint32_t edges; /* of a chain, else 0 */
-  int32_t turn;   /* polygon: +1 counter-clockwise, -1 clockwise; thin walls: 0 */
-  int32_t closed; /* chain: the last point is the first */
+  uint32_t nodes; /* the first of a chain's own tree */
+  int8_t shape;
+  int8_t turn;   /* polygon: +1 counter-clockwise, -1 clockwise; thin walls: 0 */
+  int8_t closed; /* chain: the last point is the first */
 } ethd__object;
 
+#define ETHD__LEVELS 12 /* 8^11 leaves are more than there can be */
+
+/* Level l's nodes start at first[l]. */
+typedef struct ethd__tree {
+  uint32_t leaves, levels;
+  uint32_t first[ETHD__LEVELS];
+} ethd__tree;
+
 struct ethd_scene {
-  size_t object_count, number_count, point_count, material_count;
-  size_t bytes;
-  size_t objects_at, x_min_at, x_max_at, y_min_at, y_max_at, numbers_at, x_at, y_at, materials_at;
+  ethd_vec centre; /* the trees' frame: X = scale (x - centre), scale a power of two */
+  double scale;
   double slack; /* m: what rounding may do to a distance, and more */
+  size_t nodes_at, objects_at, numbers_at, places_at, slopes_at, materials_at;
+  ethd__tree tree;
+  uint32_t object_count, number_count, node_count, material_count;
+  size_t bytes;
+  double x_min, x_max, y_min, y_max; /* of all but half-planes; min > max: nothing */
 };
 
 #define ETHD__ARRAY(scene, type, at) ((const type *)(const void *)((const char *)(scene) + (scene)->at))
 
-static inline const ethd__object *ethd__objects(const ethd_scene *scene) {
-  return ETHD__ARRAY(scene, ethd__object, objects_at);
+/* An object is meant by its place. */
+static inline const ethd__object *ethd__object_at(const ethd_scene *scene, uint32_t place) {
+  return ETHD__ARRAY(scene, ethd__object, objects_at) + place;
 }
 
-static inline const double *ethd__numbers(const ethd_scene *scene, size_t object) {
-  return ETHD__ARRAY(scene, double, numbers_at) + ethd__objects(scene)[object].first;
-}
-
-/* Distance from x to an object's bounds, 0 inside of them. */
-static inline double ethd__box_distance(const ethd_scene *scene, size_t object, ethd_vec x) {
-  double left = ETHD__ARRAY(scene, double, x_min_at)[object] - x.x;
-  double right = x.x - ETHD__ARRAY(scene, double, x_max_at)[object];
-  double below = ETHD__ARRAY(scene, double, y_min_at)[object] - x.y;
-  double above = x.y - ETHD__ARRAY(scene, double, y_max_at)[object];
-  double dx = left > right ? left : right, dy = below > above ? below : above;
-  dx = dx > 0 ? dx : 0;
-  dy = dy > 0 ? dy : 0;
-  return sqrt(dx * dx + dy * dy);
+static inline const double *ethd__numbers(const ethd_scene *scene, const ethd__object *o) {
+  return ETHD__ARRAY(scene, double, numbers_at) + o->first;
 }
 
 /* A run of edges. */
 typedef struct ethd__chain {
-  const double *x, *y; /* edges + 1 points */
+  const ethd_vec *points; /* edges + 1 */
   size_t edges;
   int turn;
   bool closed;
@@ -67,29 +70,42 @@ static inline bool ethd__is_chain(ethd_shape shape) {
   return shape == ETHD_POLYGON || shape == ETHD_SEGMENT || shape == ETHD_POLYLINE;
 }
 
-ethd__chain ethd__chain_of(const ethd_scene *scene, size_t object) ETHD_RT;
+static inline ethd__chain ethd__chain_of(const ethd_scene *scene, const ethd__object *o) {
+  const ethd_vec *points = (const ethd_vec *)(const void *)ethd__numbers(scene, o);
+  ethd__chain chain = {points, o->edges, o->turn, o->closed, scene->slack};
+  return chain;
+}
 
-/* The nearest point of a chain; of a polygon the distance is signed, `side` means nothing. Sets distance,
-   point, n, feature, side. */
+/* The nearest point of a chain; of a polygon the distance is signed. Sets distance, point, n, feature;
+   `side` means nothing. */
 void ethd__chain_nearest(const ethd__chain *chain, ethd_vec x, ethd_touch *out) ETHD_RT;
+
+/* The same when edge k is known to be the nearest, and, of a polygon, whether x is inside. */
+void ethd__chain_touch(const ethd__chain *chain, size_t k, ethd_vec x, bool inside, ethd_touch *out) ETHD_RT;
 
 /* The first local minimum of the distance at edge `from` or later, vertex k standing before edge k; the
    place to go on from, 0 when there is none. Of a polygon only surfaces that face x, which stands
    outside. */
 size_t ethd__chain_minimum(const ethd__chain *chain, ethd_vec x, size_t from, ethd_touch *out) ETHD_RT;
 
+/* The one at edge k or at vertex k before it; k = edges: at the end. */
+bool ethd__chain_minimum_at(const ethd__chain *chain, size_t k, ethd_vec x, ethd_touch *out) ETHD_RT;
+
+/* Whether an edge is crossed by the ray from x to the right, exactly. */
+bool ethd__edge_crossed(ethd_vec a, ethd_vec b, ethd_vec x) ETHD_RT;
+
 /* What a touch of this object has whatever its place: object, material, and no feature and side where the
    contract has none. */
-static inline void ethd__label(const ethd_scene *scene, size_t object, ethd_touch *out) {
-  const ethd__object *o = &ethd__objects(scene)[object];
-  out->object = (int32_t)object;
+static inline void ethd__label(const ethd__object *o, ethd_touch *out) {
+  out->object = o->id;
   out->material = o->material;
   if (o->shape == ETHD_SEGMENT) out->feature = 0;
   if (o->turn) out->side = 0;
 }
 
-/* The nearest point of any object: a complete touch. */
-void ethd__object_nearest(const ethd_scene *scene, size_t object, ethd_vec x, ethd_touch *out) ETHD_RT;
+/* The nearest point of an object, by its closed form or edge by edge: a complete touch but for a chain's
+   side. */
+void ethd__object_nearest(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_touch *out) ETHD_RT;
 
 /* Sign of the area of a, b, c, exactly: +1 counter-clockwise, -1 clockwise, 0 on a line. */
 int ethd__orient(ethd_vec a, ethd_vec b, ethd_vec c) ETHD_RT;

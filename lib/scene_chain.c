@@ -13,22 +13,21 @@ typedef struct edge {
 
 typedef enum part { AT_START, BETWEEN, AT_END } part;
 
-static ethd_vec point(const ethd__chain *chain, size_t k) {
-  ethd_vec p = {chain->x[k], chain->y[k]};
-  return p;
+static inline ethd_vec point(const ethd__chain *chain, size_t k) {
+  return chain->points[k];
 }
 
-static ethd_vec direction(const ethd__chain *chain, size_t k) {
+static inline ethd_vec direction(const ethd__chain *chain, size_t k) {
   return ethd_vec_sub(point(chain, k + 1), point(chain, k));
 }
 
-static edge edge_of(const ethd__chain *chain, size_t k, ethd_vec x) {
+static inline edge edge_of(const ethd__chain *chain, size_t k, ethd_vec x) {
   ethd_vec a = point(chain, k), e = direction(chain, k), u = ethd_vec_sub(x, a);
   edge r = {a, e, u, ethd_vec_dot(e, u), ethd_vec_cross(e, u), ethd_vec_dot(e, e)};
   return r;
 }
 
-static part part_of(const edge *g) {
+static inline part part_of(const edge *g) {
   return g->along <= 0 ? AT_START : g->along >= g->ee ? AT_END : BETWEEN;
 }
 
@@ -109,16 +108,24 @@ static void touch_edge(const ethd__chain *chain, size_t k, const edge *g, ethd_t
   out->feature = (int32_t)(2 * k);
 }
 
+/* All but the side, which costs the most. */
+static void meet_vertex(const ethd__chain *chain, size_t k, ethd_vec x, ethd_touch *out) {
+  ethd_vec p = point(chain, k), gap = ethd_vec_sub(p, x);
+  out->distance = ethd_vec_norm(gap);
+  out->point = p;
+  out->feature = (int32_t)(2 * (chain->closed && k == chain->edges ? 0 : k) + 1);
+  if (out->distance > ETHD__TINY) {
+    out->n = ethd_vec_scale(1 / out->distance, gap);
+  } else {
+    vertex v = vertex_of(chain, k);
+    out->n = inward(chain, side_of(&v, x), left_normal(&v));
+  }
+}
+
 static void touch_vertex(const ethd__chain *chain, size_t k, ethd_vec x, ethd_touch *out) {
   vertex v = vertex_of(chain, k);
-  ethd_vec gap = ethd_vec_sub(v.p, x);
-  double distance = ethd_vec_norm(gap);
+  meet_vertex(chain, k, x, out);
   out->side = side_of(&v, x);
-  out->distance = distance;
-  out->point = v.p;
-  out->n = distance > ETHD__TINY ? ethd_vec_scale(1 / distance, gap)
-                                 : inward(chain, out->side, left_normal(&v));
-  out->feature = (int32_t)(2 * (chain->closed && k == chain->edges ? 0 : k) + 1);
 }
 
 /* ---- the nearest ---- */
@@ -141,34 +148,44 @@ static bool touch_if_between(const ethd__chain *chain, size_t k, ethd_vec x, eth
 /* The nearest of edge k, or of an edge beside it that rounding hid behind the vertex between them. */
 static void touch_nearest(const ethd__chain *chain, size_t k, ethd_vec x, ethd_touch *out) {
   edge g = edge_of(chain, k, x);
+  part p = part_of(&g);
+  out->side = 0;
+  if (p == BETWEEN) {
+    touch_edge(chain, k, &g, out);
+    return;
+  }
   size_t other;
-  if (touch_if_between(chain, k, x, out)) return;
-  bool at_end = part_of(&g) == AT_END;
+  bool at_end = p == AT_END;
   bool beside = at_end ? edge_after(chain, k + 1, &other) : edge_before(chain, k, &other);
   if (beside && touch_if_between(chain, other, x, out)) return;
-  touch_vertex(chain, at_end ? k + 1 : k, x, out);
+  meet_vertex(chain, at_end ? k + 1 : k, x, out);
 }
 
-/* By the parity of the edges that a ray to the right crosses, each decided exactly. */
+bool ethd__edge_crossed(ethd_vec a, ethd_vec b, ethd_vec x) {
+  if ((a.y > x.y) == (b.y > x.y)) return false;
+  return (ethd__orient(a, b, x) > 0) == (b.y > a.y);
+}
+
+/* By the parity of the edges that a ray to the right crosses. */
 static bool contains(const ethd__chain *chain, ethd_vec x) {
   bool inside = false;
-  for (size_t k = 0; k < chain->edges; k++) {
-    ethd_vec a = point(chain, k), b = point(chain, k + 1);
-    if ((a.y > x.y) == (b.y > x.y)) continue;
-    if ((ethd__orient(a, b, x) > 0) == (b.y > a.y)) inside = !inside;
-  }
+  for (size_t k = 0; k < chain->edges; k++) inside ^= ethd__edge_crossed(point(chain, k), point(chain, k + 1), x);
   return inside;
 }
 
 /* n comes as seen from outside. An edge that is nearest up to rounding may show x its other face (beyond a
    needle's tip); on the surface itself an edge's own normal stays. */
-static void sign(const ethd__chain *chain, ethd_vec x, ethd_touch *out) {
-  bool inside = contains(chain, x);
+static void sign(const ethd__chain *chain, bool inside, ethd_touch *out) {
   bool at_vertex = out->feature % 2;
   bool turned = at_vertex ? inside && out->distance > ETHD__TINY
                           : inside != (out->side == chain->turn) && out->distance > chain->slack;
   if (turned) out->n = ethd_vec_scale(-1, out->n);
   if (inside) out->distance = -out->distance;
+}
+
+void ethd__chain_touch(const ethd__chain *chain, size_t k, ethd_vec x, bool inside, ethd_touch *out) {
+  touch_nearest(chain, k, x, out);
+  if (chain->turn) sign(chain, inside, out);
 }
 
 void ethd__chain_nearest(const ethd__chain *chain, ethd_vec x, ethd_touch *out) {
@@ -178,8 +195,7 @@ void ethd__chain_nearest(const ethd__chain *chain, ethd_vec x, ethd_touch *out) 
     double d = squared_distance(chain, k, x);
     if (d < least) least = d, nearest = k;
   }
-  touch_nearest(chain, nearest, x, out);
-  if (chain->turn) sign(chain, x, out);
+  ethd__chain_touch(chain, nearest, x, chain->turn && contains(chain, x), out);
 }
 
 /* ---- local minima ---- */
@@ -196,23 +212,34 @@ static bool faces(const ethd__chain *chain, const ethd_touch *touch) {
   return !chain->turn || touch->side == -chain->turn;
 }
 
+/* That of edge k or of the vertex before it, which is at the part `before` of the edge before; `here`: where
+   x is at edge k. */
+static bool minimum(const ethd__chain *chain, size_t k, ethd_vec x, part before, part *here, ethd_touch *out) {
+  if (k == chain->edges) {
+    if (chain->closed || before != AT_END) return false;
+    touch_vertex(chain, k, x, out);
+    return true;
+  }
+  edge g = edge_of(chain, k, x);
+  *here = settled_part_of(&g);
+  if (before == AT_END && *here == AT_START)
+    touch_vertex(chain, k, x, out);
+  else if (*here == BETWEEN)
+    touch_edge(chain, k, &g, out);
+  else
+    return false;
+  return faces(chain, out);
+}
+
 size_t ethd__chain_minimum(const ethd__chain *chain, ethd_vec x, size_t from, ethd_touch *out) {
   if (from > chain->edges) return 0;
-  part last = part_before(chain, from, x);
-  for (size_t k = from; k < chain->edges; k++) {
-    edge g = edge_of(chain, k, x);
-    part here = settled_part_of(&g);
-    bool at_vertex = last == AT_END && here == AT_START;
-    last = here;
-    if (at_vertex)
-      touch_vertex(chain, k, x, out);
-    else if (here == BETWEEN)
-      touch_edge(chain, k, &g, out);
-    else
-      continue;
-    if (faces(chain, out)) return k + 1;
-  }
-  if (chain->closed || last != AT_END) return 0;
-  touch_vertex(chain, chain->edges, x, out);
-  return chain->edges + 1;
+  part before = part_before(chain, from, x);
+  for (size_t k = from; k <= chain->edges; k++)
+    if (minimum(chain, k, x, before, &before, out)) return k + 1;
+  return 0;
+}
+
+bool ethd__chain_minimum_at(const ethd__chain *chain, size_t k, ethd_vec x, ethd_touch *out) {
+  part here;
+  return minimum(chain, k, x, part_before(chain, k, x), &here, out);
 }

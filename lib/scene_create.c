@@ -2,46 +2,62 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ethd/maths.h"
 #include "error.h"
-#include "scene.h"
+#include "ethd/maths.h"
+#include "scene_build.h"
 #include "scene_check.h"
 
-/* Boxes keep the cosine and the sine of their angle. */
-static size_t kept_numbers(const ethd_object_def *o) { return o->count + (o->shape == ETHD_BOX); }
+/* Boxes keep the cosine and the sine of their angle, polygons their first point twice. */
+static size_t kept_numbers(const ethd_object_def *o) {
+  return o->count + (o->shape == ETHD_BOX) + (o->shape == ETHD_POLYGON ? 2 : 0);
+}
 
-static size_t kept_points(const ethd_object_def *o) { return o->count / 2 + (o->shape == ETHD_POLYGON); }
+static uint32_t edges_of(const ethd_object_def *o) {
+  return ethd__is_chain(o->shape) ? (uint32_t)(kept_numbers(o) / 2 - 1) : 0;
+}
+
+static uint32_t own_nodes(uint32_t edges) { return edges > ETHD__FLAT ? ethd__node_count(edges) : 0; }
+
+/* ---- sizes ---- */
 
 static size_t reserve(size_t *bytes, size_t size) {
   size_t at = *bytes;
-  *bytes += (size + 7) / 8 * 8;
+  *bytes += (size + 63) / 64 * 64;
   return at;
 }
 
-static void lay_out(const ethd_scene_def *def, ethd_scene *s) {
-  size_t n = s->object_count = def->object_count, bytes = 0;
-  s->material_count = def->material_count;
-  for (size_t i = 0; i < n; i++) {
-    const ethd_object_def *o = &def->objects[i];
-    if (ethd__is_chain(o->shape)) s->point_count += kept_points(o);
-    else s->number_count += kept_numbers(o);
+/* Nodes of chains come first, for their slopes. */
+static ethd_status plan(const ethd_scene_def *def, ethd_scene *s, ethd_error *error) {
+  size_t numbers = 0, nodes = 0, endless = 0;
+  for (size_t i = 0; i < def->object_count; i++) {
+    numbers += kept_numbers(&def->objects[i]);
+    nodes += own_nodes(edges_of(&def->objects[i]));
+    endless += def->objects[i].shape == ETHD_HALFPLANE;
   }
-  reserve(&bytes, sizeof *s);
-  s->objects_at = reserve(&bytes, n * sizeof(ethd__object));
-  s->x_min_at = reserve(&bytes, n * sizeof(double));
-  s->x_max_at = reserve(&bytes, n * sizeof(double));
-  s->y_min_at = reserve(&bytes, n * sizeof(double));
-  s->y_max_at = reserve(&bytes, n * sizeof(double));
-  s->numbers_at = reserve(&bytes, s->number_count * sizeof(double));
-  s->x_at = reserve(&bytes, s->point_count * sizeof(double));
-  s->y_at = reserve(&bytes, s->point_count * sizeof(double));
-  s->materials_at = reserve(&bytes, def->material_count * sizeof(ethd_material));
-  s->bytes = bytes;
+  if (numbers > UINT32_MAX)
+    return ethd__refuse(error, ETHD_E_FULL, "numbers", (double)numbers, 0, UINT32_MAX);
+  s->object_count = (uint32_t)def->object_count;
+  s->material_count = (uint32_t)def->material_count;
+  s->number_count = (uint32_t)numbers;
+  ethd__tree_set(&s->tree, (uint32_t)(def->object_count - endless), (uint32_t)nodes);
+  s->node_count = (uint32_t)nodes + ethd__node_count(s->tree.leaves);
+  reserve(&s->bytes, sizeof *s);
+  s->nodes_at = reserve(&s->bytes, s->node_count * sizeof(ethd__node));
+  s->objects_at = reserve(&s->bytes, s->object_count * sizeof(ethd__object));
+  s->numbers_at = reserve(&s->bytes, s->number_count * sizeof(double));
+  s->places_at = reserve(&s->bytes, s->object_count * sizeof(uint32_t));
+  s->slopes_at = reserve(&s->bytes, nodes * ETHD__WIDE * sizeof(float));
+  s->materials_at = reserve(&s->bytes, s->material_count * sizeof(ethd_material));
+  return ETHD_OK;
 }
+
+/* ---- bounds ---- */
 
 typedef struct box {
   double x_min, x_max, y_min, y_max;
 } box;
+
+static const box nowhere = {INFINITY, -INFINITY, INFINITY, -INFINITY};
 
 static box around(double x, double y, double w, double h) {
   box b = {x - w, x + w, y - h, y + h};
@@ -53,23 +69,43 @@ static box together(box a, box b) {
   return r;
 }
 
-static box keep_numbers(const ethd_object_def *def, double *kept) {
+static box bounds_of(const ethd_object_def *def) {
   const double *p = def->numbers;
-  double length;
-  memcpy(kept, p, def->count * sizeof *p);
+  double c, s;
+  box b = nowhere;
   switch (def->shape) {
+    case ETHD_HALFPLANE: return nowhere;
     case ETHD_CIRCLE: return around(p[0], p[1], p[2], p[2]);
     case ETHD_CAPSULE: return together(around(p[0], p[1], p[4], p[4]), around(p[2], p[3], p[4], p[4]));
     case ETHD_BOX:
-      ethd_sincos(p[4], &kept[5], &kept[4]);
-      return around(p[0], p[1], fabs(kept[4]) * p[2] + fabs(kept[5]) * p[3],
-                    fabs(kept[5]) * p[2] + fabs(kept[4]) * p[3]);
-    default:
-      length = sqrt(p[0] * p[0] + p[1] * p[1]);
-      for (int i = 0; i < 3; i++) kept[i] = p[i] / length;
-      return around(0, 0, INFINITY, INFINITY);
+      ethd_sincos(p[4], &s, &c);
+      return around(p[0], p[1], fabs(c) * p[2] + fabs(s) * p[3], fabs(s) * p[2] + fabs(c) * p[3]);
+    default: break;
   }
+  for (size_t k = 0; k < def->count; k += 2) b = together(b, around(p[k], p[k + 1], 0, 0));
+  return b;
 }
+
+/* The trees' frame: everything within [-1, 1]. */
+static void frame(ethd_scene *s, box b) {
+  int exponent = 0;
+  s->x_min = b.x_min, s->x_max = b.x_max, s->y_min = b.y_min, s->y_max = b.y_max;
+  s->scale = 1;
+  if (!(b.x_min <= b.x_max)) return;
+  s->centre = (ethd_vec){b.x_min + (b.x_max - b.x_min) / 2, b.y_min + (b.y_max - b.y_min) / 2};
+  double half = fmax(fmax(b.x_max - s->centre.x, s->centre.x - b.x_min),
+                     fmax(b.y_max - s->centre.y, s->centre.y - b.y_min));
+  frexp(half, &exponent);
+  s->scale = ldexp(1, exponent < -400 ? 400 : -exponent); /* its square is finite */
+}
+
+static double largest(const ethd_object_def *def) {
+  double most = 0;
+  for (size_t k = 0; k < def->count; k++) most = fmax(most, fabs(def->numbers[k]));
+  return most;
+}
+
+/* ---- objects ---- */
 
 static ethd_vec point(const double *p, size_t k) {
   ethd_vec r = {p[2 * k], p[2 * k + 1]};
@@ -84,50 +120,58 @@ static int turn_of(const double *p, size_t n) {
   return ethd__orient(point(p, k ? k - 1 : n - 1), point(p, k), point(p, k + 1 < n ? k + 1 : 0));
 }
 
-static box keep_points(const ethd_object_def *def, ethd__object *o, double *x, double *y) {
+static void keep_numbers(const ethd_object_def *def, double *kept) {
   const double *p = def->numbers;
-  size_t n = def->count / 2, kept = kept_points(def);
-  box b = around(p[0], p[1], 0, 0);
-  for (size_t k = 0; k < kept; k++) {
-    x[k] = p[2 * (k % n)];
-    y[k] = p[2 * (k % n) + 1];
-    b = together(b, around(x[k], y[k], 0, 0));
-  }
-  o->edges = (uint32_t)(kept - 1);
-  o->turn = def->shape == ETHD_POLYGON ? turn_of(p, n) : 0;
-  o->closed = kept > 3 && x[0] == x[kept - 1] && y[0] == y[kept - 1];
-  return b;
+  memcpy(kept, p, def->count * sizeof *p);
+  if (def->shape == ETHD_BOX) ethd_sincos(p[4], &kept[5], &kept[4]);
+  if (def->shape == ETHD_POLYGON) memcpy(kept + def->count, p, 2 * sizeof *p);
+  if (def->shape != ETHD_HALFPLANE) return;
+  double length = sqrt(p[0] * p[0] + p[1] * p[1]);
+  for (int i = 0; i < 3; i++) kept[i] = p[i] / length;
 }
 
-static double largest(const ethd_object_def *def) {
-  double most = 0;
-  for (size_t k = 0; k < def->count; k++) most = fmax(most, fabs(def->numbers[k]));
-  return most;
+static bool is_closed(const double *points, uint32_t edges) {
+  return edges > 2 && points[0] == points[2 * edges] && points[1] == points[2 * edges + 1];
 }
 
-static void fill(const ethd_scene_def *def, ethd_scene *s) {
-  char *base = (char *)s;
-  ethd__object *objects = (void *)(base + s->objects_at);
-  double *x_min = (void *)(base + s->x_min_at), *x_max = (void *)(base + s->x_max_at);
-  double *y_min = (void *)(base + s->y_min_at), *y_max = (void *)(base + s->y_max_at);
-  double *x = (void *)(base + s->x_at), *y = (void *)(base + s->y_at);
-  double *numbers = (void *)(base + s->numbers_at);
-  size_t number = 0, place = 0;
+/* The order of the leaves, half-planes last. */
+static void order(const ethd_scene_def *def, ethd_scene *s, ethd__item *items) {
+  box all = nowhere;
+  uint32_t n = 0, last = s->tree.leaves;
   double extent = 0;
-  for (size_t i = 0; i < s->object_count; i++) {
-    const ethd_object_def *d = &def->objects[i];
-    ethd__object *o = &objects[i];
-    bool chain = ethd__is_chain(d->shape);
-    *o = (ethd__object){(int32_t)d->shape, d->material, (uint32_t)(chain ? place : number), 0, 0, 0};
-    box b = chain ? keep_points(d, o, x + place, y + place) : keep_numbers(d, numbers + number);
-    x_min[i] = b.x_min, x_max[i] = b.x_max, y_min[i] = b.y_min, y_max[i] = b.y_max;
-    *(chain ? &place : &number) += chain ? kept_points(d) : kept_numbers(d);
-    extent = fmax(extent, largest(d));
+  for (uint32_t i = 0; i < s->object_count; i++) {
+    box b = bounds_of(&def->objects[i]);
+    bool endless = def->objects[i].shape == ETHD_HALFPLANE;
+    all = together(all, b);
+    extent = fmax(extent, largest(&def->objects[i]));
+    items[endless ? last++ : n++] = (ethd__item){{b.x_min / 2 + b.x_max / 2, b.y_min / 2 + b.y_max / 2}, i};
   }
   s->slack = 16 * DBL_EPSILON * extent;
-  if (s->material_count)
-    memcpy(base + s->materials_at, def->materials, s->material_count * sizeof(ethd_material));
+  frame(s, all);
+  ethd__order_build(items, s->tree.leaves);
 }
+
+static void fill(const ethd_scene_def *def, ethd_scene *s, const ethd__item *items) {
+  char *base = (char *)s;
+  ethd__object *objects = (void *)(base + s->objects_at);
+  uint32_t *places = (void *)(base + s->places_at), number = 0, node = 0;
+  for (uint32_t i = 0; i < s->object_count; i++) {
+    const ethd_object_def *d = &def->objects[items[i].id];
+    uint32_t edges = edges_of(d);
+    double *numbers = (double *)(void *)(base + s->numbers_at) + number;
+    keep_numbers(d, numbers);
+    objects[i] = (ethd__object){.id = (int32_t)items[i].id, .material = d->material, .first = number, .edges = edges,
+                                .nodes = node, .shape = (int8_t)d->shape};
+    if (d->shape == ETHD_POLYGON) objects[i].turn = (int8_t)turn_of(d->numbers, d->count / 2);
+    if (edges) objects[i].closed = is_closed(numbers, edges);
+    places[items[i].id] = i;
+    number += (uint32_t)kept_numbers(d);
+    node += own_nodes(edges);
+  }
+  if (s->material_count) memcpy(base + s->materials_at, def->materials, s->material_count * sizeof(ethd_material));
+}
+
+/* ---- all ---- */
 
 static ethd_status check(const ethd_scene_def *def, ethd_error *error) {
   void *room = malloc(ethd__check_room(def));
@@ -137,19 +181,37 @@ static ethd_status check(const ethd_scene_def *def, ethd_error *error) {
   return status;
 }
 
+static bool build(const ethd_scene_def *def, ethd_scene *scene) {
+  ethd__item *items = malloc((scene->object_count + (size_t)1) * sizeof *items);
+  void *room = malloc(ethd__nodes_room(scene));
+  bool ready = items && room;
+  if (ready) {
+    order(def, scene, items);
+    fill(def, scene, items);
+    ethd__nodes_build(scene, room);
+  }
+  free(items);
+  free(room);
+  return ready;
+}
+
 ethd_status ethd_scene_create(const ethd_scene_def *def, ethd_scene **out, ethd_error *error) {
   *out = NULL;
   ethd_status status = check(def, error);
   if (status) return status;
-  ethd_scene plan = {0};
-  lay_out(def, &plan);
-  if (plan.point_count > UINT32_MAX || plan.number_count > UINT32_MAX)
-    return ethd__refuse(error, ETHD_E_FULL, "numbers", (double)(plan.point_count + plan.number_count), 0,
-                        UINT32_MAX);
-  ethd_scene *scene = calloc(1, plan.bytes);
-  if (!scene) return ethd__refuse(error, ETHD_E_MEMORY, "scene", NAN, NAN, NAN);
-  *scene = plan;
-  fill(def, scene);
+  ethd_scene empty;
+  memset(&empty, 0, sizeof empty);
+  status = plan(def, &empty, error);
+  if (status) return status;
+  ethd_scene *scene = aligned_alloc(64, empty.bytes);
+  if (scene) {
+    memset(scene, 0, empty.bytes);
+    *scene = empty;
+  }
+  if (!scene || !build(def, scene)) {
+    free(scene);
+    return ethd__refuse(error, ETHD_E_MEMORY, "scene", NAN, NAN, NAN);
+  }
   *out = scene;
   return ETHD_OK;
 }

@@ -2,26 +2,21 @@
 
 void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out) {
   *out = (ethd_scene_info){.objects = scene->object_count, .materials = scene->material_count,
-                           .bytes = scene->bytes, .x_min = INFINITY, .x_max = -INFINITY,
-                           .y_min = INFINITY, .y_max = -INFINITY};
-  for (size_t i = 0; i < scene->object_count; i++) {
-    const ethd__object *o = &ethd__objects(scene)[i];
+                           .bytes = scene->bytes, .x_min = scene->x_min, .x_max = scene->x_max,
+                           .y_min = scene->y_min, .y_max = scene->y_max};
+  for (uint32_t i = 0; i < scene->object_count; i++) {
+    const ethd__object *o = ethd__object_at(scene, i);
     out->by_shape[o->shape]++;
     out->segments += o->edges;
-    if (o->shape == ETHD_HALFPLANE) continue;
-    out->x_min = fmin(out->x_min, ETHD__ARRAY(scene, double, x_min_at)[i]);
-    out->x_max = fmax(out->x_max, ETHD__ARRAY(scene, double, x_max_at)[i]);
-    out->y_min = fmin(out->y_min, ETHD__ARRAY(scene, double, y_min_at)[i]);
-    out->y_max = fmax(out->y_max, ETHD__ARRAY(scene, double, y_max_at)[i]);
   }
 }
 
 static double norm(double x, double y) { return sqrt(x * x + y * y); }
 
-static double farthest_of_chain(const ethd_scene *scene, size_t object) {
-  ethd__chain chain = ethd__chain_of(scene, object);
+static double farthest_of_chain(const ethd_scene *scene, const ethd__object *o) {
+  ethd__chain chain = ethd__chain_of(scene, o);
   double most = 0;
-  for (size_t k = 0; k <= chain.edges; k++) most = fmax(most, norm(chain.x[k], chain.y[k]));
+  for (size_t k = 0; k <= chain.edges; k++) most = fmax(most, ethd_vec_norm(chain.points[k]));
   return most;
 }
 
@@ -32,11 +27,10 @@ static double farthest_of_box(const double *p) {
 }
 
 /* How far an object's farthest point is from the base joint. */
-static double farthest(const ethd_scene *scene, size_t object) {
-  const ethd__object *o = &ethd__objects(scene)[object];
+static double farthest(const ethd_scene *scene, const ethd__object *o) {
   if (o->shape == ETHD_HALFPLANE) return INFINITY;
-  if (ethd__is_chain((ethd_shape)o->shape)) return farthest_of_chain(scene, object);
-  const double *p = ethd__numbers(scene, object);
+  if (ethd__is_chain((ethd_shape)o->shape)) return farthest_of_chain(scene, o);
+  const double *p = ethd__numbers(scene, o);
   if (o->shape == ETHD_CIRCLE) return norm(p[0], p[1]) + p[2];
   if (o->shape == ETHD_CAPSULE) return fmax(norm(p[0], p[1]), norm(p[2], p[3])) + p[4];
   return farthest_of_box(p);
@@ -48,10 +42,11 @@ size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, dou
   double inner, outer;
   size_t count = 0;
   ethd_arm_reach(arm, &inner, &outer);
-  for (size_t i = 0; i < scene->object_count; i++) {
+  for (uint32_t i = 0; i < scene->object_count; i++) {
+    const ethd__object *o = ethd__object_at(scene, i);
     ethd_touch nearest;
-    ethd__object_nearest(scene, i, (ethd_vec){0, 0}, &nearest);
-    if (nearest.distance > outer + radius || farthest(scene, i) < inner - radius) count++;
+    ethd__object_nearest(scene, o, (ethd_vec){0, 0}, &nearest);
+    if (nearest.distance > outer + radius || farthest(scene, o) < inner - radius) count++;
   }
   return count;
 }

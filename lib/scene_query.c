@@ -69,41 +69,23 @@ static void box(const double *p, ethd_vec x, ethd_touch *out) {
   set(out, d, point, vec(c * nu - s * nv, s * nu + c * nv));
 }
 
-ethd__chain ethd__chain_of(const ethd_scene *scene, size_t object) {
-  const ethd__object *o = &ethd__objects(scene)[object];
-  const double *x = ETHD__ARRAY(scene, double, x_at), *y = ETHD__ARRAY(scene, double, y_at);
-  ethd__chain chain = {x + o->first, y + o->first, o->edges, o->turn, o->closed, scene->slack};
-  return chain;
+static void chain(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_touch *out) {
+  ethd__chain c = ethd__chain_of(scene, o);
+  ethd__chain_nearest(&c, x, out);
 }
 
-static void nearest_of_chain(const ethd_scene *scene, size_t object, ethd_vec x, ethd_touch *out) {
-  ethd__chain chain = ethd__chain_of(scene, object);
-  ethd__chain_nearest(&chain, x, out);
-}
-
-void ethd__object_nearest(const ethd_scene *scene, size_t object, ethd_vec x, ethd_touch *out) {
-  const ethd__object *o = &ethd__objects(scene)[object];
+void ethd__object_nearest(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_touch *out) {
+  const double *p = ethd__numbers(scene, o);
   out->feature = out->side = 0;
   switch ((ethd_shape)o->shape) {
-    case ETHD_HALFPLANE: halfplane(ethd__numbers(scene, object), x, out); break;
-    case ETHD_CIRCLE: circle(ethd__numbers(scene, object), x, out); break;
-    case ETHD_CAPSULE: capsule(ethd__numbers(scene, object), x, out); break;
-    case ETHD_BOX: box(ethd__numbers(scene, object), x, out); break;
+    case ETHD_HALFPLANE: halfplane(p, x, out); break;
+    case ETHD_CIRCLE: circle(p, x, out); break;
+    case ETHD_CAPSULE: capsule(p, x, out); break;
+    case ETHD_BOX: box(p, x, out); break;
     case ETHD_POLYGON:
     case ETHD_SEGMENT:
     case ETHD_POLYLINE:
-    case ETHD_SHAPE_COUNT: nearest_of_chain(scene, object, x, out); break;
+    case ETHD_SHAPE_COUNT: chain(scene, o, x, out); break;
   }
-  ethd__label(scene, object, out);
-}
-
-void ethd_scene_query(const ethd_scene *scene, ethd_vec x, ethd_nearest *out) {
-  *out = (ethd_nearest){INFINITY, x, {1, 0}, -1};
-  for (size_t i = 0; i < scene->object_count; i++) {
-    ethd_touch touch;
-    if (!(ethd__box_distance(scene, i, x) - scene->slack <= fmax(out->distance, 0))) continue;
-    ethd__object_nearest(scene, i, x, &touch);
-    if (touch.distance < out->distance)
-      *out = (ethd_nearest){touch.distance, touch.point, touch.n, touch.object};
-  }
+  ethd__label(o, out);
 }

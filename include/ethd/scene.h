@@ -92,6 +92,16 @@ typedef struct ethd_nearest {
    (on a segment, at a circle's centre) any. [any, rt-safe] */
 ETHD_API void ethd_scene_query(const ethd_scene *scene, ethd_vec x, ethd_nearest *out) ETHD_RT;
 
+/* Where a query found its answer: the next one near there is quicker for it, and never different. {0} to
+   start with; one for each thing that moves, and for any scene. */
+typedef struct ethd_scene_hint {
+  uint32_t leaf, edge;
+} ethd_scene_hint;
+
+/* As ethd_scene_query; `hint` is read, then renewed. [any, rt-safe] */
+ETHD_API void ethd_scene_query_near(const ethd_scene *scene, ethd_vec x, ethd_scene_hint *hint,
+                                    ethd_nearest *out) ETHD_RT;
+
 /* A local minimum of the distance between x and the points of one object: a solid's surface has none where
    it turns its back to x. A polyline whose last point is its first has no ends. */
 typedef struct ethd_touch {
