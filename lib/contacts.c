@@ -128,7 +128,7 @@ static void add(const ethd_contact *c, const ethd_ruling *r, double force, ethd_
 static int contact(const ethd__plan *plan, const ethd__candidate *k, ethd__slot *slot, double dt,
                    ethd_trace *out, ethd_vec *shift, ethd__failure *failure) ETHD_RT {
   const ethd_touch *touch = &k->touch;
-  ethd_contact c = measure(plan, out, k, slot->age, dt);
+  ethd_contact c = measure(plan, out, k, (double)slot->periods * plan->setup.period, dt);
   ethd_ruling r;
   double force;
   if (!rule(plan, slot, &c, &r, failure)) return 0;
@@ -140,7 +140,7 @@ static int contact(const ethd__plan *plan, const ethd__candidate *k, ethd__slot 
   slot->point = k->local;
   slot->side = touch->side;
   slot->state = r.state;
-  slot->age += dt;
+  slot->periods += (int64_t)rint(dt / plan->setup.period); /* whole: the age doesn't drift */
   add(&c, &r, force, out, shift);
   return 1;
 }

@@ -41,7 +41,7 @@ typedef struct ethd__slot {
   int32_t used, object, side, state;
   int32_t leaving; /* branch of eq. 3, with v_hysteresis */
   int32_t place;
-  double age;
+  int64_t periods; /* since it began to count */
   ethd_vec point; /* in the place's frame */
   ethd__block transition, contact;
 } ethd__slot;

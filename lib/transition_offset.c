@@ -23,7 +23,7 @@ static const ethd_param params[COUNT] = {
 typedef struct state {
   double phase; /* ETHD_TRANSPARENT, ETHD_BRAKING, ETHD_VO */
   double eps;   /* wall offset, 0 outside of vo */
-  double braked; /* s since braking began */
+  double braked, rest; /* s since braking began, and what its sum still owes (Kahan 1965) */
 } state;
 
 _Static_assert(sizeof(state) <= ETHD_STATE_MAX, "state");
@@ -34,11 +34,18 @@ _Static_assert(sizeof(state) <= ETHD_STATE_MAX, "state");
 static void enter(state *s, int phase, double eps) ETHD_RT {
   s->phase = phase;
   s->eps = eps;
-  s->braked = 0;
+  s->braked = s->rest = 0;
+}
+
+/* A sum of any length, right within a rounding. */
+static void add_time(state *s, double period) ETHD_RT {
+  double term = period - s->rest, sum = s->braked + term;
+  s->rest = sum - s->braked - term;
+  s->braked = sum;
 }
 
 static void brake(const double *p, state *s, const ethd_contact *c) ETHD_RT {
-  s->braked += c->period;
+  add_time(s, c->period);
   if (fabs(c->v) < p[V_TH])
     enter(s, ETHD_VO, -c->d_re);
   else if (c->d_re > c->d_beta)

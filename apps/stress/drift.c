@@ -1,0 +1,134 @@
+/* A thousand million ticks: nothing that is added up drifts.
+
+     ages and caps   counted in periods: a law sees age = k T, and braking ends t_max / T ticks after it began
+     a static press  the same input gives the same bits
+     taps            readings, filters, braking, vo and back, again and again: the same torques
+     time            stamps are integers, and what is between two of them is theirs                    */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "ethd/control.h"
+#include "stress/rig.h"
+#include "stress/stress.h"
+
+#define PERIOD 0.001
+
+/* ---- braking, then pressing, for ever ---- */
+
+/* offset, and a look at the contact it is given. */
+static double age_seen;
+
+static ethd_status watch(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) {
+  age_seen = contact->age;
+  return ethd_transition_offset.step(p, state, contact, out);
+}
+
+static ethd_control *make(const ethd_transition_law *law, double t_max, const ethd_scene *scene) {
+  ethd_setup setup = ethd_setup_default();
+  ethd_control *control;
+  ethd_error error;
+  ethd_setup_transition(&setup, law);
+  setup.scene = scene;
+  setup.transition_p[3] = (double)INFINITY;
+  setup.transition_p[4] = t_max;
+  if (ethd_control_create(&setup, &control, &error) < 0)
+    ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));
+  return control;
+}
+
+/* The ring stands 1 mm deep and says that it moves: braking goes on until t_max. */
+static void press(ethd__stress_log *log, const ethd_scene *scene, int64_t ticks) {
+  ethd_transition_law law = ethd_transition_offset;
+  law.law.id = "watched";
+  law.step = watch;
+  int64_t braking = ticks / 10 * 9;
+  ethd_control *control = make(&law, (double)braking * PERIOD, scene);
+  ethd_setup setup = ethd_setup_default();
+  ethd_sense s;
+  ethd_command c, first = {{0, 0}, 0, 0};
+  ethd_trace t;
+  int64_t ended = -1, changed = 0;
+  memset(&s, 0, sizeof s);
+  s.have = ETHD_HAVE_DQ | ETHD_HAVE_FINGER;
+  if (ethd_arm_angles(&setup.arm, (ethd_vec){0.249, 0.25}, -1, s.q) < 0) return;
+  s.dq[0] = 0.1 / 0.25;
+  s.finger[0] = 0.245, s.finger[1] = 0.25;
+  for (int64_t k = 0; k < ticks && !ethd__stop; k++) {
+    s.time_ns = k * 1000000;
+    (void)ethd_control_step(control, &s, &c, &t);
+    if (ended < 0 && t.state == ETHD_VO) ended = k;
+    if (k == 0 || k == ended) first = c;
+    changed += memcmp(c.torque, first.torque, sizeof c.torque) != 0;
+    if ((k & 0xfffff) == 0) ethd__progress((uint64_t)k, (uint64_t)ticks, "a static press");
+  }
+  ethd__progress(1, 1, "");
+  ethd__stress_within(log, "s", age_seen, (double)(ticks - 1) * PERIOD, 1e-15 * age_seen,
+                      "age of a contact after %g ticks", (double)ticks);
+  ethd__stress_within(log, "ticks", (double)ended, (double)braking, 0, "tick at which t_max ended the braking");
+  ethd__stress_within(log, "ticks", (double)changed, 0, 0, "ticks on which the torque of a press changed");
+  ethd_control_destroy(control);
+}
+
+/* ---- taps ---- */
+
+#define CYCLE 3000 /* ticks: three taps, a whole number of readings */
+
+static void script(const ethd_arm *arm, ethd_sense senses[CYCLE]) {
+  for (int k = 0; k < CYCLE; k++) {
+    ethd_sense *s = &senses[k];
+    double phase = 2 * M_PI * 3 * k / CYCLE;
+    ethd_vec ring = {0.27 - 0.025 * (1 - cos(phase)) / 2, 0.25 + 0.01 * sin(phase)};
+    memset(s, 0, sizeof *s);
+    if (ethd_arm_angles(arm, ring, -1, s->q) < 0) ethd__fail(ETHD_EXIT_FAILED, "out of reach");
+    if (k % 3) continue;
+    s->have = ETHD_HAVE_CENTRE;
+    s->centre[0] = -0.002 * sin(phase);
+    s->centre[1] = 0.001 * cos(phase);
+  }
+}
+
+/* The largest distance of a cycle's torques from those of another. */
+static double apart(const double *a, const double *b) {
+  double most = 0;
+  for (int i = 0; i < 2 * CYCLE; i++) most = fmax(most, fabs(a[i] - b[i]));
+  return most;
+}
+
+static void taps(ethd__stress_log *log, const ethd_scene *scene, int64_t ticks) {
+  static ethd_sense senses[CYCLE];
+  static double early[2 * CYCLE], late[2 * CYCLE];
+  ethd_setup setup = ethd_setup_default();
+  ethd_control *control = make(&ethd_transition_offset, 0.05, scene);
+  ethd_command c;
+  int64_t cycles = ticks / CYCLE, braking = 0, vo = 0;
+  script(&setup.arm, senses);
+  for (int64_t i = 0; i < cycles && !ethd__stop; i++) {
+    for (int k = 0; k < CYCLE; k++) {
+      ethd_sense s = senses[k];
+      ethd_trace t;
+      s.time_ns = (i * CYCLE + k) * 1000000;
+      s.sample_ns = s.time_ns - 1900000;
+      (void)ethd_control_step(control, &s, &c, i == cycles - 1 ? &t : NULL);
+      memcpy((i < 10 ? early : late) + 2 * k, c.torque, sizeof c.torque);
+      if (i == cycles - 1) braking += t.state == ETHD_BRAKING, vo += t.state == ETHD_VO;
+    }
+    if ((i & 255) == 0) ethd__progress((uint64_t)i, (uint64_t)cycles, "taps");
+  }
+  ethd__progress(1, 1, "");
+  ethd__stress_within(log, "Nm", apart(early, late), 0, 1e-12, "torques of taps 10 and of the last ones, %g ticks later",
+                      (double)((cycles - 10) * CYCLE));
+  ethd__stress_bound(log, "ticks", -(double)(braking < vo ? braking : vo), -10, "the last ones brake and press (ticks, negated)");
+  ethd_control_destroy(control);
+}
+
+static void run(ethd__stress_log *log) {
+  ethd_scene *scene = ethd__rig_wall(-0.238);
+  int64_t ticks = ethd__stress_pick(log, 1000000, 10000000, 1000000000);
+  press(log, scene, ticks);
+  taps(log, scene, ticks);
+  ethd_scene_destroy(scene);
+}
+
+const ethd__stress ethd__stress_drift = {"drift", "1e6 (quick), 1e7 or 1e9 (long) ticks without drift", run};
