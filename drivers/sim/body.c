@@ -10,6 +10,7 @@
 
 #include "ethd/maths.h"
 
+#define TOLERANCE 1e-10 /* m/s */
 #define NEAR 0.02 /* rad: so far small_turn holds to the last digit */
 
 void ethd__body_prepare(const ethd_sim_def *def, double finger_radius, ethd__body *out) {
@@ -25,7 +26,8 @@ void ethd__body_prepare(const ethd_sim_def *def, double finger_radius, ethd__bod
                       .pad_damping = p->pad_damping,
                       .finger_mass = p->finger_mass,
                       .hand_stiffness = p->hand_stiffness,
-                      .hand_damping = p->hand_damping};
+                      .hand_damping = p->hand_damping,
+                      .tolerance = TOLERANCE};
   for (int j = 0; j < 2; j++) {
     double l = out->link[j], l2 = l * l;
     out->inertia[j] = (p->mass[j] - (compliant ? p->motor_mass : 0)) * l2;
@@ -51,12 +53,23 @@ static void small_turn(double d, double *sine, double *cosine) {
   *cosine = c0 - (s0 * s + c0 * c);
 }
 
-static ethd_vec link_vector(const ethd__body *b, int j, double angle) {
-  double sine = b->sine[j], cosine = b->cosine[j], d = angle - b->at[j];
+static void waves(const ethd__body *b, int j, double angle, double *sine, double *cosine) {
+  double d = angle - b->at[j];
+  *sine = b->sine[j];
+  *cosine = b->cosine[j];
   if (fabs(d) <= NEAR)
-    small_turn(d, &sine, &cosine);
+    small_turn(d, sine, cosine);
   else
-    ethd_sincos(angle, &sine, &cosine);
+    ethd_sincos(angle, sine, cosine);
+}
+
+void ethd__body_waves(const ethd__body *b, const double angle[2], double sine[2], double cosine[2]) {
+  for (int j = 0; j < 2; j++) waves(b, j, angle[j], &sine[j], &cosine[j]);
+}
+
+static ethd_vec link_vector(const ethd__body *b, int j, double angle) {
+  double sine, cosine;
+  waves(b, j, angle, &sine, &cosine);
   return (ethd_vec){b->link[j] * cosine, b->link[j] * sine};
 }
 

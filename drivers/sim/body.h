@@ -29,6 +29,7 @@ typedef struct ethd__body {
   double torque_max[2], torque[2];               /* Nm, the latter in effect */
   double gap, pad_stiffness, pad_damping;
   double finger_mass, hand_stiffness, hand_damping;
+  double tolerance; /* m/s: what a step may add to the error of a speed */
   double at[2], sine[2], cosine[2]; /* of angles near the present ones */
 } ethd__body;
 
@@ -41,6 +42,9 @@ void ethd__body_joints(const ethd__body *body, const double x[ETHD__DOF_MAX], do
 
 /* Angles stay near these for a while: their sines are worked out by a small turn from here. */
 void ethd__body_refer(ethd__body *body, const ethd__state *state) ETHD_RT;
+
+/* Sines and cosines of the links' angles. */
+void ethd__body_waves(const ethd__body *body, const double angle[2], double sine[2], double cosine[2]) ETHD_RT;
 
 /* Ring centre and its velocity; the same as the motor's side has it. */
 void ethd__body_ring(const ethd__body *body, const ethd__state *state, ethd_vec *x, ethd_vec *v) ETHD_RT;
@@ -60,7 +64,8 @@ void ethd__body_accelerate(const ethd__body *body, ethd__touch touch, const ethd
 /* Kinetic energy plus that of pad, hand and transmission, J, with the path at hand. */
 double ethd__body_energy(const ethd__body *body, const ethd__state *state, ethd_vec hand) ETHD_RT;
 
-/* From t to t + h, within which only touch may change. RK4 (Kutta 1901) with changes of touch located. */
+/* From t to t + h, within which only touch may change, by steps of power series; changes of touch are located
+   to 1e-12 s. */
 void ethd__body_advance(const ethd__body *body, const ethd__piece *piece, double t, double h,
                         ethd__state *state) ETHD_RT;
 

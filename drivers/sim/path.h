@@ -4,7 +4,10 @@
 
 #include "ethd/sim.h"
 
-/* Position x = a + b s + c s^2 + d s^3 - e sin(w s) with s = t - origin. */
+/* x and y, or joint 1 and joint 2. */
+typedef double ethd__two __attribute__((vector_size(16)));
+
+/* Position x = a + b s + c s^2 + d s^3 - e sin(w s) with s = t - origin; c = d = 0 or w = 0. */
 typedef struct ethd__piece {
   double begin, end; /* s, -INFINITY and INFINITY outside of the path */
   double origin, w;
@@ -20,5 +23,11 @@ typedef struct ethd__motion {
 
 /* Position, velocity and acceleration by that piece, also at its end. [any, rt-safe] */
 ethd__motion ethd__piece_at(const ethd__piece *piece, double t) ETHD_RT;
+
+/* The position as a power series about the instant of `at`, which is piece_at's. */
+void ethd__piece_terms(const ethd__piece *piece, const ethd__motion *at, int count, ethd__two *out) ETHD_RT;
+
+/* At least |x| + |y| of how far it goes within h, coming by at velocity v. */
+double ethd__piece_travel(const ethd__piece *piece, ethd__two v, double h) ETHD_RT;
 
 #endif

@@ -16,6 +16,7 @@ typedef ethd__two two;
 typedef struct work {
   const ethd__body *body;
   ethd__series *out;
+  int turned, related; /* terms of the geometry that are known */
   two inertia, inverse_inertia, length, friction, viscous, sharpness;
   two slip[ETHD__TERMS], slip_a[ETHD__TERMS], link_a[ETHD__TERMS]; /* slip: speed of what rubs */
   two rub[ETHD__TERMS], unlike[ETHD__TERMS];                       /* u, 1 - u^2 */
@@ -54,6 +55,8 @@ static inline two joint(const ethd__body *b, two link) { return b->serial ? (two
 /* ---- geometry ---- */
 
 static void rotate(work *w, int k) {
+  if (k <= w->turned) return;
+  w->turned = k;
   two c = w->out->link_v[0] * w->sine[k - 1], s = w->out->link_v[0] * w->cosine[k - 1];
   for (int i = 1; i < k; i++) {
     c += w->out->link_v[i] * w->sine[k - 1 - i];
@@ -64,6 +67,9 @@ static void rotate(work *w, int k) {
 }
 
 static void relate(work *w, int k) {
+  if (k <= w->related) return;
+  w->related = k;
+  rotate(w, k);
   two ring = {sum(w->length * w->cosine[k]), sum(w->length * w->sine[k])};
   w->apart[k] = w->out->hand[k] + w->out->aside[k] - ring;
   w->square[k] = sum(product(w->apart, w->apart, k));
@@ -120,7 +126,6 @@ static two drive(work *w, int k) {
     w->slip[k] = s->motor_v[k];
     w->slip_a[k] = (torque - rub(w, k) - d) / pair(b->motor_inertia);
     s->motor_v[k + 1] = w->slip_a[k] * INVERSE[k + 1];
-    s->motor[k + 1] = s->motor_v[k] * INVERSE[k + 1];
   } else {
     w->slip[k] = joint(b, s->link_v[k]);
     d = torque - rub(w, k);
@@ -132,6 +137,7 @@ static two drive(work *w, int k) {
 static two couple(work *w, two g, int k) {
   const ethd__two *c = w->cosine, *s = w->sine;
   double h = w->body->coupling;
+  rotate(w, k);
   w->along[k] = w->across[k] = 0;
   for (int i = 0; i <= k; i++) {
     w->along[k] += h * (c[i][0] * c[k - i][1] + s[i][0] * s[k - i][1]);
@@ -144,22 +150,26 @@ static two couple(work *w, two g, int k) {
          both(w->inertia[0] * w->inertia[1] - w->along[0] * w->along[0]);
 }
 
+/* Positions' terms k + 1. */
+static void integrate(work *w, int k) {
+  ethd__series *s = w->out;
+  s->link[k + 1] = s->link_v[k] * INVERSE[k + 1];
+  s->aside[k + 1] = s->aside_v[k] * INVERSE[k + 1];
+  if (w->body->compliant) s->motor[k + 1] = s->motor_v[k] * INVERSE[k + 1];
+}
+
 /* Speeds' terms k + 1 from what is known up to k. */
 static void accelerate(work *w, ethd__touch touch, int k) {
   const ethd__body *b = w->body;
   ethd__series *s = w->out;
   two g = drive(w, k);
-  s->link[k + 1] = s->link_v[k] * INVERSE[k + 1];
-  s->aside[k + 1] = s->aside_v[k] * INVERSE[k + 1];
+  integrate(w, k);
   two f = -(both(b->hand_stiffness) * s->aside[k] + both(b->hand_damping) * s->aside_v[k]);
   if (touch == ETHD__PRESSING) {
-    rotate(w, k + 1);
     relate(w, k + 1);
     measure(w, k + 1);
     g += press(w, k);
     f -= w->force[k];
-  } else if (b->coupling != 0 && k) {
-    rotate(w, k);
   }
   w->link_a[k] = b->coupling != 0 ? couple(w, g, k) : g * w->inverse_inertia;
   if (!b->compliant) w->slip_a[k] = joint(b, w->link_a[k]);
@@ -179,4 +189,97 @@ static double power(double x, int k) {
   double y = 1;
   for (; k > 0; k--) y *= x;
   return y;
+}
+
+/* How far pad and ring can come nearer to each other within the step: every term in full. */
+static double travel(const work *w, const ethd__piece *piece, double h) {
+  const ethd__series *s = w->out;
+  double reach = 0;
+  for (int k = s->order + 1; k > 0; k--)
+    reach = h * (size(w->length * s->link[k]) + size(s->aside[k]) + reach);
+  return reach + ethd__piece_travel(piece, s->hand[1], h);
+}
+
+static void geometry_begins(work *w, const ethd__piece *piece, const ethd__motion *hand, const double *angle) {
+  double sine[2], cosine[2];
+  ethd__body_waves(w->body, angle, sine, cosine);
+  w->sine[0] = pair(sine);
+  w->cosine[0] = pair(cosine);
+  ethd__piece_terms(piece, hand, ETHD__TERMS, w->out->hand);
+  w->turned = 0;
+  w->related = -1;
+  relate(w, 0);
+}
+
+/* Apart, far from each other: nothing to watch. */
+static void watch(work *w, const ethd__piece *piece, ethd__touch touch) {
+  ethd__series *s = w->out;
+  int last = s->order + 1;
+  if (touch == ETHD__APART) {
+    double slack = w->body->gap - sqrt(w->square[0]);
+    s->watched = !(slack > travel(w, piece, s->step));
+    if (!s->watched) return;
+  }
+  s->watched = last;
+  for (int k = w->related + 1; k <= last; k++) {
+    relate(w, k);
+    if (touch != ETHD__APART) measure(w, k);
+  }
+  if (touch != ETHD__APART) return;
+  s->beyond[0] = w->square[0] - w->body->gap * w->body->gap;
+  for (int k = 1; k <= last; k++) s->beyond[k] = w->square[k];
+}
+
+static void begin(const ethd__body *b, const ethd__motion *hand, const ethd__state *state, ethd__series *s) {
+  s->link[0] = pair(state->q + ETHD__LINK);
+  s->link_v[0] = pair(state->v + ETHD__LINK);
+  s->hand[0] = (two){hand->x.x, hand->x.y};
+  s->hand[1] = (two){hand->v.x, hand->v.y};
+  s->aside[0] = pair(state->q + ETHD__FINGER) - s->hand[0];
+  s->aside_v[0] = pair(state->v + ETHD__FINGER) - s->hand[1];
+  if (!b->compliant) return;
+  s->motor[0] = pair(state->q + ETHD__MOTOR);
+  s->motor_v[0] = pair(state->v + ETHD__MOTOR);
+}
+
+/* Terms up to that which no longer counts, and where the last two of all do, a shorter step. */
+static void expand(work *w, ethd__touch touch, double tolerance) {
+  ethd__series *s = w->out;
+  double h = s->step, reach = h, before = INFINITY, term = INFINITY;
+  int k = 0;
+  while (k < ETHD__ORDER_MAX && !(k >= 3 && before <= tolerance && term <= tolerance)) {
+    accelerate(w, touch, k++);
+    before = term;
+    term = reach * speed(w, k);
+    reach *= h;
+  }
+  s->order = k;
+  integrate(w, k);
+  double last = speed(w, k), previous = speed(w, k - 1);
+  while (!(term <= tolerance && before <= tolerance) && isfinite(term)) {
+    h *= 0.75;
+    term = last * power(h, k);
+    before = previous * power(h, k - 1);
+  }
+  s->step = h;
+}
+
+void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, double t, double step,
+                         const ethd__state *state, ethd__series *out) {
+  work w;
+  ethd__motion hand = ethd__piece_at(piece, t);
+  w.body = b;
+  w.out = out;
+  w.inertia = pair(b->inertia);
+  w.inverse_inertia = 1 / w.inertia;
+  w.length = pair(b->link);
+  w.friction = pair(b->friction);
+  w.viscous = pair(b->viscous);
+  w.sharpness = pair(b->sharpness);
+  begin(b, &hand, state, out);
+  geometry_begins(&w, piece, &hand, state->q);
+  if (state->touch != ETHD__APART) measure(&w, 0);
+  out->step = step;
+  expand(&w, state->touch, b->tolerance);
+  watch(&w, piece, state->touch);
 }

@@ -6,17 +6,15 @@
 
 enum { ETHD__ORDER_MAX = 14, ETHD__TERMS = ETHD__ORDER_MAX + 2 };
 
-/* x and y, or joint 1 and joint 2. */
-typedef double ethd__two __attribute__((vector_size(16)));
-
 /* Term k belongs to (t' - t)^k. Speeds have terms 0 to order, positions one more. */
 typedef struct ethd__series {
   int order;
-  double step; /* how long it holds to the tolerance */
+  double step;  /* s: how long it holds to the tolerance */
+  int watched;  /* order of those below; 0: pad and ring stay apart */
   ethd__two link[ETHD__TERMS], link_v[ETHD__TERMS];
   ethd__two motor[ETHD__TERMS], motor_v[ETHD__TERMS];
   ethd__two aside[ETHD__TERMS], aside_v[ETHD__TERMS]; /* of the finger from its path */
-  ethd__two hand[ETHD__TERMS];                        /* 0 and 1; all once the geometry is asked for */
+  ethd__two hand[ETHD__TERMS];
   double beyond[ETHD__TERMS];                         /* apart: distance^2 - gap^2; touching: p */
   double leaving[ETHD__TERMS];                        /* touching: 1 + c p_dot */
 } ethd__series;

@@ -1,107 +1,116 @@
-/* RK4 for x'' = f(t, x, x'), with changes of touch located and steps refined where friction turns. */
-#include "sim/body.h"
+/* Steps by power series, with changes of touch located. */
+#include "sim/series.h"
 
-#define LOCATED 1e-12    /* s */
-#define TURNING 18e-3    /* m/s: beyond it tanh(v / 3 mm/s) is +-1 within 1e-5 */
-#define TURN_STEP 0.6e-3 /* m/s per reference step of 50 us, while friction turns */
-#define REFERENCE 50e-6  /* s */
-#define REFINED_MAX 64
+#define LOCATED 1e-12 /* s */
+#define RUBBING 10.0  /* tanh is +-1 within 4e-9 beyond it */
+#define TURN 2.0      /* by so much its argument may change in a step that comes nearer to 0 */
 
-static void accelerate(const ethd__body *b, const ethd__piece *piece, double t, const ethd__state *s,
-                       double *out) {
-  ethd__motion hand = ethd__piece_at(piece, t);
-  ethd__body_accelerate(b, s->touch, &hand, s->q, s->v, out);
+typedef ethd__two two;
+
+static two at(const two *term, int order, double h) {
+  two y = term[order];
+  for (int k = order - 1; k >= 0; k--) y = y * h + term[k];
+  return y;
 }
 
-/* k1: accelerations at t. */
-static void rk4(const ethd__body *b, const ethd__piece *piece, double t, double h, const ethd__state *s,
-                const double *k1, ethd__state *out) {
-  int n = b->dof;
-  *out = *s;
-  double q[ETHD__DOF_MAX], v2[ETHD__DOF_MAX], v3[ETHD__DOF_MAX], v4[ETHD__DOF_MAX];
-  double k2[ETHD__DOF_MAX], k3[ETHD__DOF_MAX], k4[ETHD__DOF_MAX];
-  ethd__motion hand = ethd__piece_at(piece, t + h / 2);
-  for (int i = 0; i < n; i++) {
-    q[i] = s->q[i] + h / 2 * s->v[i];
-    v2[i] = s->v[i] + h / 2 * k1[i];
-  }
-  ethd__body_accelerate(b, s->touch, &hand, q, v2, k2);
-  for (int i = 0; i < n; i++) {
-    q[i] = s->q[i] + h / 2 * v2[i];
-    v3[i] = s->v[i] + h / 2 * k2[i];
-  }
-  ethd__body_accelerate(b, s->touch, &hand, q, v3, k3);
-  hand = ethd__piece_at(piece, t + h);
-  for (int i = 0; i < n; i++) {
-    q[i] = s->q[i] + h * v3[i];
-    v4[i] = s->v[i] + h * k3[i];
-  }
-  ethd__body_accelerate(b, s->touch, &hand, q, v4, k4);
-  for (int i = 0; i < n; i++) {
-    out->q[i] = s->q[i] + h / 6 * (s->v[i] + 2 * (v2[i] + v3[i]) + v4[i]);
-    out->v[i] = s->v[i] + h / 6 * (k1[i] + 2 * (k2[i] + k3[i]) + k4[i]);
-  }
+static double value(const double *term, int order, double h) {
+  double y = term[order];
+  for (int k = order - 1; k >= 0; k--) y = y * h + term[k];
+  return y;
 }
 
-/* Shortest step, to LOCATED, after which touch has changed. */
-static double locate(const ethd__body *b, const ethd__piece *piece, double t, double h, const ethd__state *s,
-                     const double *k1) {
+static double slope(const double *term, int order, double h) {
+  double y = order * term[order];
+  for (int k = order - 1; k > 0; k--) y = y * h + k * term[k];
+  return y;
+}
+
+/* Where sign * y becomes positive first within h, to LOCATED; INFINITY: nowhere. */
+static double rises(const double *term, int order, double sign, double h) {
   double low = 0, high = h;
+  if (!(sign * value(term, order, h) > 0)) {
+    if (!(sign * slope(term, order, 0) > 0 && sign * slope(term, order, h) < 0)) return INFINITY;
+    while (high - low > LOCATED) { /* a summit within */
+      double middle = (low + high) / 2;
+      if (sign * slope(term, order, middle) > 0)
+        low = middle;
+      else
+        high = middle;
+    }
+    if (!(sign * value(term, order, high) > 0)) return INFINITY;
+    low = 0;
+  }
   while (high - low > LOCATED) {
     double middle = (low + high) / 2;
-    ethd__state trial;
-    rk4(b, piece, t, middle, s, k1, &trial);
-    if (ethd__body_touch(b, &trial) == s->touch)
-      low = middle;
-    else
+    if (sign * value(term, order, middle) > 0)
       high = middle;
+    else
+      low = middle;
   }
   return high;
 }
 
-/* k1 comes in as the accelerations at t. */
-static void step(const ethd__body *b, const ethd__piece *piece, double t, double h, double *k1,
-                 ethd__state *s) {
-  for (;;) {
-    ethd__state next;
-    rk4(b, piece, t, h, s, k1, &next);
-    next.touch = ethd__body_touch(b, &next);
-    if (next.touch == s->touch) {
-      *s = next;
-      return;
-    }
-    double done = locate(b, piece, t, h, s, k1);
-    rk4(b, piece, t, done, s, k1, &next);
-    next.touch = ethd__body_touch(b, &next);
-    *s = next;
-    t += done;
-    h -= done;
-    if (!(h > 0)) return;
-    accelerate(b, piece, t, s, k1);
-  }
+typedef struct change {
+  double after;
+  ethd__touch touch;
+} change;
+
+static change next_change(const ethd__series *s, ethd__touch touch) {
+  change none = {INFINITY, touch};
+  int n = s->watched;
+  if (!n) return none;
+  if (touch == ETHD__APART) return (change){rises(s->beyond, n, 1, s->step), ETHD__PRESSING};
+  change apart = {rises(s->beyond, n, -1, s->step), ETHD__APART};
+  change other = {rises(s->leaving, n - 1, touch == ETHD__PRESSING ? -1 : 1, s->step),
+                  touch == ETHD__PRESSING ? ETHD__LEAVING : ETHD__PRESSING};
+  return apart.after <= other.after ? apart : other;
 }
 
-/* Into how many steps h is cut: friction turns within some mm/s, which strong motors pass in microseconds.
-   Proportional, not to a tolerance: halving h halves every step. */
-static int refinement(const ethd__body *b, double h, const ethd__state *s, const double *a) {
-  double finest = 1;
+static void put(two x, double *out) {
+  out[0] = x[0];
+  out[1] = x[1];
+}
+
+static void move(const ethd__body *b, const ethd__series *s, const ethd__piece *piece, double t, double h,
+                 ethd__state *state) {
+  int n = s->order;
+  ethd__motion hand = ethd__piece_at(piece, t + h);
+  put(at(s->link, n + 1, h), state->q + ETHD__LINK);
+  put(at(s->link_v, n, h), state->v + ETHD__LINK);
+  put(at(s->aside, n + 1, h) + (two){hand.x.x, hand.x.y}, state->q + ETHD__FINGER);
+  put(at(s->aside_v, n, h) + (two){hand.v.x, hand.v.y}, state->v + ETHD__FINGER);
+  if (!b->compliant) return;
+  put(at(s->motor, n + 1, h), state->q + ETHD__MOTOR);
+  put(at(s->motor_v, n, h), state->v + ETHD__MOTOR);
+}
+
+/* Friction far from its turn is constant to the last digit, and a series can't see the turn ahead. */
+static int turns(const ethd__body *b, const ethd__state *from, const ethd__state *to) {
+  double before[2], after[2];
+  ethd__body_joints(b, from->v, before);
+  ethd__body_joints(b, to->v, after);
   for (int j = 0; j < 2; j++) {
-    double l = b->link[j], w[2], aw[2];
-    ethd__body_joints(b, s->v, w);
-    ethd__body_joints(b, a, aw);
-    double slip = fabs(l * w[j]), gain = fabs(l * aw[j]);
-    if (slip < TURNING + gain * h) finest = fmax(finest, ceil(gain * (REFERENCE / TURN_STEP)));
+    double u = fabs(b->sharpness[j] * before[j]), moved = fabs(b->sharpness[j] * (after[j] - before[j]));
+    if (b->friction[j] > 0 && !(moved <= fmax(TURN, u - RUBBING))) return 1;
   }
-  return (int)fmin(finest, REFINED_MAX);
+  return 0;
 }
 
-void ethd__body_advance(const ethd__body *b, const ethd__piece *piece, double t, double h, ethd__state *s) {
-  double k1[ETHD__DOF_MAX];
-  accelerate(b, piece, t, s, k1);
-  int n = refinement(b, h, s, k1);
-  for (int i = 0; i < n; i++) {
-    double begin = h * i / n, end = h * (i + 1) / n;
-    if (i) accelerate(b, piece, t + begin, s, k1);
-    step(b, piece, t + begin, end - begin, k1, s);
+void ethd__body_advance(const ethd__body *b, const ethd__piece *piece, double t, double h, ethd__state *state) {
+  double done = 0;
+  while (done < h) {
+    ethd__series s;
+    ethd__state next = *state;
+    ethd__series_expand(b, piece, t + done, h - done, state, &s);
+    change c = next_change(&s, state->touch);
+    double step = fmin(s.step, c.after);
+    move(b, &s, piece, t + done, step, &next);
+    while (turns(b, state, &next)) {
+      step /= 2;
+      move(b, &s, piece, t + done, step, &next);
+    }
+    if (step == c.after) next.touch = c.touch;
+    *state = next;
+    done = step < h - done ? done + step : h;
   }
 }
