@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "sim/body.h"
 #include "sim/sensors.h"
 
 #define AT(member) offsetof(ethd_plant, member)
@@ -117,29 +116,13 @@ static ethd_status check_inertia(const ethd_sim_def *def, ethd_error *error) {
   return within(error, "device.coupling", p->coupling, -most, most);
 }
 
-/* Fastest rate of decay or oscillation, rad/s: friction about standstill, transmission, hand, pad. */
-static double fastest(const ethd_plant *p) {
-  int compliant = p->stiffness < INFINITY;
-  double light = compliant ? p->motor_mass : fmin(p->mass[0], p->mass[1]), m = p->finger_mass;
-  double spring = compliant ? p->stiffness : 0, damper = compliant ? p->damping : 0;
-  double ring = fmin(p->mass[0], p->mass[1]) - (compliant ? p->motor_mass : 0);
-  double decay = fmax((p->friction / ETHD__STICK + p->viscous + damper) / light, p->hand_damping / m);
-  double swing = fmax((p->hand_stiffness + p->pad_stiffness) / m, p->pad_stiffness / ring);
-  return fmax(decay, sqrt(fmax(swing, fmax(spring / light, spring / ring))));
-}
-
-/* Beyond 2.78 / rate RK4 blows up. */
-static ethd_status check_step(const ethd_sim_def *def, ethd_error *error) {
-  return within(error, "step", def->step, 1e-7, fmin(1, 2 / fastest(&def->plant)));
-}
-
 ethd_status ethd__sim_check(const ethd_sim_def *def, ethd_error *error) {
   const ethd_plant *p = &def->plant;
   ethd_status status = ethd__plant_check(p, error);
   if (!status) status = ethd_arm_check(&def->arm, error);
   if (!status) status = check_inertia(def, error);
   if (!status) status = within(error, "period", def->period, 1e-6, 1);
-  if (!status) status = check_step(def, error);
+  if (!status) status = within(error, "step", def->step, 1e-7, 1);
   if (!status) status = within(error, "device.delay", p->delay, 0, def->period);
   if (!status)
     status = within(error, "ring.radius", def->ring_radius, p->finger_radius + 2 * p->finger_radius_sd, 10);

@@ -2,9 +2,9 @@
 
    Plausible and fitted to the paper's Table 1, not measured: say so wherever a number of it is shown.
    Plants are data (files *.plant). The finger moves on its voluntary path; what the ring pushes it aside
-   works against the hand's spring and damper about that path; where pad and ring meet, Hunt-Crossley. RK4,
-   split at sample instants, torque updates, contact changes. Everything is deterministic to the bit: every
-   random number is a function of (seed, tap, stream, counter). */
+   works against the hand's spring and damper about that path; where pad and ring meet, Hunt-Crossley. Steps
+   of power series, split at sample instants, torque updates, contact changes. Everything is deterministic
+   to the bit: every random number is a function of (seed, tap, stream, counter). */
 #ifndef ETHD_SIM_H
 #define ETHD_SIM_H
 
@@ -83,7 +83,7 @@ typedef struct ethd_sim_def {
   ethd_plant plant;
   ethd_arm arm;
   double ring_radius, period;
-  double step; /* s: longest integration step; golden 50e-6, at most 2 / the plant's fastest rate */
+  double step; /* s: longest integration step; golden 50e-6 */
 } ethd_sim_def;
 
 typedef struct ethd_sim ethd_sim;

@@ -236,7 +236,6 @@ START_TEST(test_refused_definitions) {
       {"link1", offsetof(ethd_sim_def, arm.link1), -0.25},
       {"period", offsetof(ethd_sim_def, period), 0},
       {"step", offsetof(ethd_sim_def, step), NAN},
-      {"step", offsetof(ethd_sim_def, step), 1.8e-3}, /* 2 m / (f_c / 3 mm/s + b_v): 1.75 ms */
       {"ring.radius", offsetof(ethd_sim_def, ring_radius), 0.008},
   };
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
