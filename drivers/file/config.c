@@ -147,6 +147,11 @@ static ethd_status apply_keys(const reading *r) {
   static ethd_status (*const passes[])(const reading *, const ethd_ini_key *) = {plugin_pass, law_pass,
                                                                                  preset_pass, key_pass};
   const ethd_ini *ini = &r->whole->ini;
+  for (uint32_t i = 0; i < ini->section_count; i++) {
+    ethd_status status =
+        ethd__config_section_known(&ini->sections[i], r->name, &r->whole->config.setup, r->message);
+    if (status) return status;
+  }
   for (size_t pass = 0; pass < sizeof passes / sizeof *passes; pass++)
     for (uint32_t i = 0; i < ini->count; i++) {
       ethd_status status = passes[pass](r, &ini->keys[i]);

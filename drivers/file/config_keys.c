@@ -190,16 +190,26 @@ static void list_keys(const char *section, const ethd__section *own, char list[E
   for (uint32_t i = 0; i < own->count; i++) add(list, own->params[i].name);
 }
 
+static const char sections[] =
+    "unknown section; arm, ring, finger, loop, velocity, finger_fit, finger_filter, "
+    "tracking, contact, transition, scene, limits, device, plugins are allowed";
+
+ethd_status ethd__config_section_known(const ethd_ini_section *section, const char *file, ethd_setup *setup,
+                                       char message[ETHD_MESSAGE_MAX]) {
+  char list[ETHD_MESSAGE_MAX] = "";
+  ethd__section own = {0};
+  (void)ethd__config_section(setup, section->name, &own);
+  list_keys(section->name, &own, list);
+  if (list[0]) return ETHD_OK;
+  return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: [%s]: %s", file, section->line, section->name, sections);
+}
+
 ethd_status ethd__config_unknown(const ethd__key *key, ethd_setup *setup) {
   char list[ETHD_MESSAGE_MAX] = "";
   ethd__section own = {0};
   int has_law = ethd__config_section(setup, key->section, &own);
   list_keys(key->section, &own, list);
-  if (!list[0])
-    return ethd__key_refuse(
-        key, ETHD_E_UNKNOWN,
-        "unknown section; arm, ring, finger, loop, velocity, finger_fit, finger_filter, "
-        "tracking, contact, transition, scene, limits, device, plugins are allowed");
+  if (!list[0]) return ethd__key_refuse(key, ETHD_E_UNKNOWN, "%s", sections);
   if (has_law)
     return ethd__key_refuse(key, ETHD_E_UNKNOWN, "not a key of %s, which has %s", own.id, list);
   return ethd__key_refuse(key, ETHD_E_UNKNOWN, "unknown key; %s are allowed", list);

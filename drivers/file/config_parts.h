@@ -37,6 +37,10 @@ ethd_status ethd__config_apply(const ethd__key *key, ethd_setup *setup);
 /* The refusal of a key that its section has not under the laws of the setup. */
 ethd_status ethd__config_unknown(const ethd__key *key, ethd_setup *setup);
 
+/* Refuses a section that no configuration has: it may stand without any key. */
+ethd_status ethd__config_section_known(const ethd_ini_section *section, const char *file, ethd_setup *setup,
+                                       char message[ETHD_MESSAGE_MAX]);
+
 /* The section's own table in a setup: law or method, its parameters and their values. */
 typedef struct ethd__section {
   const char *id; /* of the law or method that rules */

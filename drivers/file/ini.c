@@ -64,6 +64,18 @@ static void check_text(feed *f, span s) {
   }
 }
 
+/* inih says nothing of a section without keys. */
+static void keep_section(feed *f, span name) {
+  ethd_ini *ini = f->out;
+  if (ini->section_count == ETHD_INI_SECTIONS_MAX) {
+    REFUSE(f, ETHD_E_RANGE, "%s:%d: over %u sections", f->name, f->line, ETHD_INI_SECTIONS_MAX);
+    return;
+  }
+  char *copy = strndup(name.text, name.length);
+  if (!copy) REFUSE(f, ETHD_E_MEMORY, "%s: %s", f->name, ethd_status_sentence(ETHD_E_MEMORY));
+  if (copy) ini->sections[ini->section_count++] = (ethd_ini_section){copy, f->line};
+}
+
 static void check_section(feed *f, span s) {
   char quote[ETHD_QUOTE_MAX];
   const char *close = memchr(s.text, ']', s.length);
@@ -76,6 +88,8 @@ static void check_section(feed *f, span s) {
   else if (s.length - 2 > NAME_MAX_LENGTH)
     REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a section's name of %zu characters, at most %u are allowed",
            f->name, f->line, s.length - 2, NAME_MAX_LENGTH);
+  else
+    keep_section(f, (span){s.text + 1, s.length - 2});
 }
 
 /* inih takes ':' for '=' too. */
@@ -153,9 +167,12 @@ static int take_key(void *user, const char *section, const char *key, const char
 ethd_status ethd_ini_parse(const char *text, size_t length, const char *name, const char *repeats,
                            ethd_ini *out, char message[ETHD_MESSAGE_MAX]) {
   feed f = {text, text + length, 0, name, repeats, out, ETHD_OK, message};
-  *out = (ethd_ini){calloc(ETHD_INI_KEYS_MAX, sizeof *out->keys), 0};
-  if (!out->keys)
+  *out = (ethd_ini){.keys = calloc(ETHD_INI_KEYS_MAX, sizeof *out->keys),
+                    .sections = calloc(ETHD_INI_SECTIONS_MAX, sizeof *out->sections)};
+  if (!out->keys || !out->sections) {
+    ethd_ini_free(out);
     return ethd__say(message, ETHD_E_MEMORY, "%s: %s", name, ethd_status_sentence(ETHD_E_MEMORY));
+  }
   if (length > ETHD_INI_BYTES_MAX)
     REFUSE(&f, ETHD_E_RANGE, "%s: %zu bytes, at most %zu are allowed", name, length, ETHD_INI_BYTES_MAX);
   if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) f.at += 3;
@@ -178,6 +195,8 @@ void ethd_ini_free(ethd_ini *ini) {
     free(ini->keys[i].key);
     free(ini->keys[i].value);
   }
+  for (uint32_t i = 0; i < ini->section_count; i++) free(ini->sections[i].name);
   free(ini->keys);
+  free(ini->sections);
   *ini = (ethd_ini){0};
 }

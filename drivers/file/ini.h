@@ -11,21 +11,28 @@
 
 #define ETHD_INI_BYTES_MAX ((size_t)1 << 20)
 #define ETHD_INI_KEYS_MAX 512u
+#define ETHD_INI_SECTIONS_MAX 512u
 
 typedef struct ethd_ini_key {
   char *section, *key, *value; /* none is empty */
   int line;
 } ethd_ini_key;
 
+typedef struct ethd_ini_section {
+  char *name;
+  int line;
+} ethd_ini_section;
+
 typedef struct ethd_ini {
   ethd_ini_key *keys; /* in the order of the file */
-  uint32_t count;
+  ethd_ini_section *sections; /* likewise, those without keys too */
+  uint32_t count, section_count;
 } ethd_ini;
 
 /* `name` stands for the file in messages. `repeats`: "section.key" that may stand more than once, or
    NULL. Refuses, with file:line: bytes that are no text, lines over 197 characters (comments apart),
    text behind a section's ']', keys before the first section, keys without '=', empty values, a key
-   twice, over 512 keys. A section may come back. */
+   twice, over 512 keys or sections. A section may come back. */
 ETHD_MUST_CHECK ethd_status ethd_ini_parse(const char *text, size_t length, const char *name,
                                            const char *repeats, ethd_ini *out,
                                            char message[ETHD_MESSAGE_MAX]);
