@@ -9,7 +9,8 @@
 static const ethd__stress *const tests[] = {
     &ethd__stress_boundary, &ethd__stress_braking, &ethd__stress_viscous, &ethd__stress_stop, &ethd__stress_touch, &ethd__stress_lag,
     &ethd__stress_press, &ethd__stress_creep, &ethd__stress_energy, &ethd__stress_arm,
-    &ethd__stress_parameters, &ethd__stress_inputs, &ethd__stress_drift,
+    &ethd__stress_parameters, &ethd__stress_inputs, &ethd__stress_denormals, &ethd__stress_drift, &ethd__stress_jitter,
+    &ethd__stress_map,
 };
 #define COUNT (sizeof tests / sizeof *tests)
 

@@ -67,6 +67,7 @@ ethd_sense ethd__rig_sense(const ethd__rig *rig) {
   memset(&s, 0, sizeof s);
   s.time_ns = (int64_t)rint((double)rig->tick * (1e9 * rig->setup.period));
   s.have = (rig->measured ? ETHD_HAVE_DQ : 0) | (rig->has_finger ? ETHD_HAVE_FINGER : 0);
+  s.missed = rig->missed > 0 ? rig->missed : 0;
   memcpy(s.q, rig->q, sizeof s.q);
   memcpy(s.dq, rig->w, sizeof s.dq);
   s.finger[0] = rig->finger.x, s.finger[1] = rig->finger.y;
@@ -77,6 +78,7 @@ ethd_sense ethd__rig_sense(const ethd__rig *rig) {
 const ethd_trace *ethd__rig_step(ethd__rig *rig) {
   ethd_sense sense = ethd__rig_sense(rig);
   rig->status = ethd_control_step(rig->control, &sense, &rig->command, &rig->trace);
+  rig->missed = -1; /* the move that follows belongs to this step */
   return &rig->trace;
 }
 
@@ -103,6 +105,7 @@ void ethd__rig_move(ethd__rig *rig) {
     rig->w[j] += T * a;
   }
   rig->tick++;
+  rig->missed++;
 }
 
 const ethd_trace *ethd__rig_tick(ethd__rig *rig) {
@@ -128,8 +131,20 @@ static double difference(const double *x, int order) {
   return order == 1 ? x[0] - x[1] : (x[0] - x[1]) - (x[1] - x[2]);
 }
 
+/* c = |z|^2k of a swing; where one real mode is all that is left, c drowns in rounding and y counts. */
+typedef struct amplitude {
+  double c, y;
+} amplitude;
+
+static amplitude measure(const double y[3]) {
+  return (amplitude){fabs(y[1] * y[1] - y[0] * y[2]), fmax(fabs(y[0]), fmax(fabs(y[1]), fabs(y[2])))};
+}
+
+static int is_swing(amplitude a) { return a.c > 1e-5 * a.y * a.y; }
+
 double ethd__rig_growth(ethd__rig *rig, const ethd__swing *s) {
-  double x[3] = {0}, y[3] = {0}, first = NAN, c = NAN;
+  double x[3] = {0}, y[3] = {0};
+  amplitude first = {0, 0}, last = {0, 0};
   for (int k = 0; k <= s->settle + s->span; k++) {
     ethd__rig_tick(rig);
     shift(x, 3, ethd__rig_depth(rig));
@@ -137,9 +152,10 @@ double ethd__rig_growth(ethd__rig *rig, const ethd__swing *s) {
     shift(y, 3, difference(x, s->order));
     if (k < s->order + 2) continue;
     if (!(fabs(y[0]) <= s->ceiling)) return (double)INFINITY;
-    if (fmax(fabs(y[0]), fmax(fabs(y[1]), fabs(y[2]))) < s->floor) return -(double)INFINITY;
-    c = fabs(y[1] * y[1] - y[0] * y[2]);
-    if (k == s->settle) first = c;
+    last = measure(y);
+    if (last.y < s->floor) return -(double)INFINITY;
+    if (k == s->settle) first = last;
   }
-  return log(c / first) / (2 * s->span);
+  if (is_swing(first) && is_swing(last)) return log(last.c / first.c) / (2 * s->span);
+  return log(last.y / first.y) / s->span;
 }

@@ -28,6 +28,7 @@ typedef struct ethd__rig {
   double q[2], w[2]; /* rad, rad/s: true at the present tick */
   double way[ETHD__RIG_DELAY_MAX][2];
   int64_t tick;
+  int64_t missed;    /* periods that went by since the last step without one */
   ethd_status status;
   ethd_command command;
   ethd_trace trace; /* of the last tick */
@@ -46,7 +47,7 @@ void ethd__rig_push(ethd__rig *rig, ethd_vec push);
 /* One tick: step, then the mass moves on for a period. */
 const ethd_trace *ethd__rig_tick(ethd__rig *rig);
 
-/* The same without moving. */
+/* Its two halves. A move without a step before it is a tick that was lost: the torque stays. */
 const ethd_trace *ethd__rig_step(ethd__rig *rig);
 void ethd__rig_move(ethd__rig *rig);
 
@@ -58,8 +59,8 @@ double ethd__rig_depth(const ethd__rig *rig);
 double ethd__rig_speed(const ethd__rig *rig);
 
 /* How a swing grows, ln per tick: a pair of modes z, z* of x_k, the `order`-th differences of the motion,
-   has x_k^2 - x_k+1 x_k-1 proportional to |z|^2k exactly, whatever its phase. Measured from tick `settle`
-   on over `span` ticks; +-INFINITY as soon as the differences leave [floor, ceiling] m. */
+   has x_k^2 - x_k+1 x_k-1 proportional to |z|^2k exactly, whatever its phase (of one real mode it is 0, and
+   the motion itself is measured). From tick `settle` on over `span` ticks; +-INFINITY as soon as the differences leave [floor, ceiling] m. */
 typedef struct ethd__swing {
   int order, settle, span;
   double floor, ceiling;

@@ -1,4 +1,5 @@
-/* FTZ and DAZ: subnormal numbers count as 0, which keeps every step equally quick. [any] */
+/* FTZ and DAZ: subnormal numbers count as 0, which keeps every step equally quick. flush sets them for this
+   thread and keep clears them; both return what was set before, for restore. [any] */
 #ifndef ETHD_COMMON_DENORMALS_H
 #define ETHD_COMMON_DENORMALS_H
 
@@ -6,10 +7,14 @@
 
 #if defined(__SSE__)
 #include <xmmintrin.h>
-/* On for this thread; returns what was set before. */
 static inline uint64_t ethd__denormals_flush(void) {
   unsigned before = _mm_getcsr();
   _mm_setcsr(before | 0x8040u);
+  return before;
+}
+static inline uint64_t ethd__denormals_keep(void) {
+  unsigned before = _mm_getcsr();
+  _mm_setcsr(before & ~0x8040u);
   return before;
 }
 static inline void ethd__denormals_restore(uint64_t before) { _mm_setcsr((unsigned)before); }
@@ -20,11 +25,18 @@ static inline uint64_t ethd__denormals_flush(void) {
   __asm__ volatile("msr fpcr, %0" : : "r"(before | (uint64_t)1 << 24));
   return before;
 }
+static inline uint64_t ethd__denormals_keep(void) {
+  uint64_t before;
+  __asm__ volatile("mrs %0, fpcr" : "=r"(before));
+  __asm__ volatile("msr fpcr, %0" : : "r"(before & ~((uint64_t)1 << 24)));
+  return before;
+}
 static inline void ethd__denormals_restore(uint64_t before) {
   __asm__ volatile("msr fpcr, %0" : : "r"(before));
 }
 #else
 static inline uint64_t ethd__denormals_flush(void) { return 0; }
+static inline uint64_t ethd__denormals_keep(void) { return 0; }
 static inline void ethd__denormals_restore(uint64_t before) { (void)before; }
 #endif
 
