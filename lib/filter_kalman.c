@@ -4,12 +4,6 @@
 
 enum { XX, XV, XA, VV, VA, AA };
 
-ethd__way ethd__filter_way(const ethd_filter *f, double t) {
-  double z = f->method == ETHD_FILTER_CA ? t / f->p[CA_MEMORY] / 2 : 0;
-  double av = t / (1 + z);
-  return (ethd__way){.t = t, .ax = t * av / 2, .av = av, .aa = (1 - z) / (1 + z)};
-}
-
 /* P <- F P F^T + g g^T,  F = [1 t ax; 0 1 av; 0 0 aa]. */
 void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__way w) {
   double t = w.t, h = t * t / 2, drive = f->p[KALMAN_DRIVE], *p = s->cov;

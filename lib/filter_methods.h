@@ -19,7 +19,11 @@ typedef struct ethd__way {
   double t, ax, av, aa;
 } ethd__way;
 
-ethd__way ethd__filter_way(const ethd_filter *f, double t) ETHD_RT;
+static inline ethd__way ethd__filter_way(const ethd_filter *f, double t) {
+  if (f->method != ETHD_FILTER_CA) return (ethd__way){.t = t, .ax = t * t / 2, .av = t, .aa = 1};
+  double z = t / f->p[CA_MEMORY] / 2, av = t / (1 + z);
+  return (ethd__way){.t = t, .ax = t * av / 2, .av = av, .aa = (1 - z) / (1 + z)};
+}
 
 /* Covariance over a way, process noise included. [rt] */
 void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__way way) ETHD_RT;
