@@ -17,14 +17,14 @@ typedef struct ethd__peer_kinematics {
   void (*destroy)(void *self);
 } ethd__peer_kinematics;
 
-/* `peer_filter`: Kalman filter of constant acceleration, two axes. P0 = diag(xx, vv, aa) of each; every
-   tick of T s predicts with Q = jerk^2 g g^T, g = (T^3/6, T^2/2, T); a reading, where there is one,
-   corrects with noise^2. Items of `in`: a reading's x and y, NaN none; of `out`: x y vx vy. */
+/* `peer_filter`: Kalman filter of constant acceleration with 3x3 matrices, both axes alike, the finger
+   filter's `ca`: what it starts from, how it fades, how a reading takes it from sample to sample. Items
+   of `in` are a tick's reading x y and its age in s, NaN without one; of `out` x y now. A tick is
+   `period`. */
 typedef struct ethd__peer_filter {
   const char *name;
-  void *(*create)(double period, double jerk, double noise, const double p0[3]);
-  void (*start)(void *self, double x, double y);
-  void (*work)(void *self, const double (*in)[2], double (*out)[4], size_t count);
+  void *(*create)(double period, double jerk, double memory, double noise);
+  void (*work)(void *self, const double (*in)[3], double (*out)[2], size_t count); /* starts anew */
   void (*destroy)(void *self);
 } ethd__peer_filter;
 

@@ -1,0 +1,312 @@
+/* Finger filters: error of the extrapolated position at every tick against ns a tick, on reaches and on
+   recorded movements, each filter with the tuning that suits the reaches best. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/bench.h"
+#include "bench/peers.h"
+#include "bench/tracks.h"
+#include "common/cli.h"
+#include "ethd/ethd.h"
+
+#define SETTLE 30 /* ticks that don't count: a filter starts at its first reading */
+
+enum { LATENCIES = 3, REACHES = 40, SETS_MAX = 16, OUT_MAX = 100000 };
+
+static const double latencies[LATENCIES] = {0, 3e-3, 6e-3};
+static const double goals[LATENCIES] = {0.15, 0.25, 0.30}; /* share by which ca is under cv */
+
+/* ---- contenders ---- */
+
+typedef struct contender {
+  const char *name;
+  void (*work)(void *self, const double (*in)[3], double (*out)[2], size_t count);
+  void *self;
+} contender;
+
+static void ours(void *self, const double (*in)[3], double (*out)[2], size_t count) {
+  const ethd_filter *f = self;
+  ethd_filter_state s;
+  memset(&s, 0, sizeof s);
+  for (size_t i = 0; i < count; i++) {
+    ethd_vec x, v;
+    ethd_filter_predict(f, &s, ETHD__TRACK_PERIOD);
+    if (!isnan(in[i][2])) (void)!ethd_filter_update(f, &s, (ethd_vec){in[i][0], in[i][1]}, in[i][2]);
+    ethd_filter_output(f, &s, &x, &v);
+    out[i][0] = x.x;
+    out[i][1] = x.y;
+  }
+}
+
+/* The line through the last two readings. */
+static void two_readings(void *self, const double (*in)[3], double (*out)[2], size_t count) {
+  double x[2] = {0, 0}, v[2] = {0, 0}, age = 0;
+  int known = 0;
+  (void)self;
+  for (size_t i = 0; i < count; i++) {
+    age += ETHD__TRACK_PERIOD;
+    if (!isnan(in[i][2])) {
+      for (int k = 0; k < 2; k++) {
+        v[k] = known ? (in[i][k] - x[k]) / (age - in[i][2]) : 0;
+        x[k] = in[i][k];
+      }
+      age = in[i][2];
+      known = 1;
+    }
+    for (int k = 0; k < 2; k++) out[i][k] = x[k] + v[k] * age;
+  }
+}
+
+/* ---- error ---- */
+
+typedef struct sum {
+  double squares;
+  double count;
+} sum;
+
+static double out_room[OUT_MAX][2];
+
+static void add_errors(const contender *c, const ethd__tracks *set, sum *to) {
+  for (size_t t = 0; t < set->count; t++) {
+    const ethd__track *track = &set->at[t];
+    size_t count = track->count < OUT_MAX ? track->count : OUT_MAX;
+    c->work(c->self, (const double(*)[3])track->in, out_room, count);
+    for (size_t i = SETTLE; i < count; i++)
+      for (int k = 0; k < 2; k++) {
+        double e = out_room[i][k] - track->truth[i][k];
+        to->squares += e * e;
+        to->count += 1;
+      }
+  }
+}
+
+/* rms over both axes, m. */
+static double rms(const contender *c, const ethd__tracks *sets, size_t count) {
+  sum all = {0, 0};
+  for (size_t s = 0; s < count; s++) add_errors(c, &sets[s], &all);
+  return sqrt(all.squares / all.count);
+}
+
+/* ---- tuning ---- */
+
+typedef struct tuning {
+  const char *row[2]; /* of the method's table; [1] may be NULL */
+  double value[2];
+} tuning;
+
+static ethd_filter prepare(ethd_filter_method method, const tuning *t) {
+  const ethd_method *m = &ethd_filter_methods[method];
+  double p[ETHD_PARAMS_MAX];
+  ethd_filter f;
+  ethd_error error;
+  ethd_params_default(m->params, m->param_count, p);
+  for (int i = 0; i < 2; i++)
+    if (t->row[i]) p[ethd_params_find(m->params, m->param_count, t->row[i])] = t->value[i];
+  if (ethd_filter_prepare(method, p, ETHD__TRACK_PERIOD, &f, &error) < 0)
+    ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));
+  return f;
+}
+
+static double error_with(ethd_filter_method method, const tuning *t, const ethd__tracks *sets,
+                         size_t count) {
+  ethd_filter f = prepare(method, t);
+  contender c = {NULL, ours, &f};
+  return rms(&c, sets, count);
+}
+
+/* The best of a grid: the first row from `from` on, each 1.25 times the one before; the second's values
+   are listed. */
+static tuning best_tuning(ethd_filter_method method, const ethd__tracks *sets, size_t count) {
+  static const double memories[] = {0.04, 0.08, 0.16, 0.32, (double)INFINITY},
+                      alphas[] = {0.4, 0.5, 0.6, 0.7, 0.8};
+  static const struct {
+    tuning t;
+    const double *second;
+    double from;
+  } grids[ETHD_FILTER_COUNT] = {
+      [ETHD_FILTER_CA] = {{{"jerk", "memory"}, {0, 0}}, memories, 60},
+      [ETHD_FILTER_HOLD] = {{{NULL, NULL}, {0, 0}}, NULL, 0},
+      [ETHD_FILTER_ALPHA_BETA] = {{{"beta", "alpha"}, {0, 0}}, alphas, 0.06},
+      [ETHD_FILTER_CV] = {{{"acceleration", NULL}, {0, 0}}, NULL, 2},
+  };
+  tuning t = grids[method].t, best = t;
+  double least = (double)INFINITY;
+  for (int i = 0; t.row[0] && i < (grids[method].second ? 5 : 1); i++) {
+    if (t.row[1]) t.value[1] = grids[method].second[i];
+    t.value[0] = grids[method].from;
+    for (int k = 0; k < 13; k++, t.value[0] *= 1.25) {
+      double error = error_with(method, &t, sets, count);
+      if (error < least) least = error, best = t;
+    }
+  }
+  return best;
+}
+
+static const char *describe(const tuning *t, char text[64]) {
+  text[0] = 0;
+  for (int i = 0, at = 0; i < 2 && t->row[i]; i++)
+    at += snprintf(text + at, 64 - (size_t)at, "%s%s %.3g", i ? " " : "", t->row[i], t->value[i]);
+  return text;
+}
+
+/* ---- time ---- */
+
+typedef struct timed {
+  contender c;
+  const ethd__track *track;
+} timed;
+
+static void work(void *data) {
+  timed *t = data;
+  t->c.work(t->c.self, (const double(*)[3])t->track->in, out_room, t->track->count);
+}
+
+static void race(contender *list, size_t count, const ethd__track *track, double seconds, double *ns) {
+  timed t[8];
+  ethd__bench_entry entries[8];
+  for (size_t i = 0; i < count; i++) {
+    t[i] = (timed){list[i], track};
+    entries[i] = (ethd__bench_entry){list[i].name, work, &t[i], (double)track->count, 0};
+  }
+  ethd__bench_race(entries, count, seconds);
+  for (size_t i = 0; i < count; i++) ns[i] = entries[i].ns;
+}
+
+/* ---- one latency ---- */
+
+static FILE *csv;
+
+static void row(const char *set, double latency, const contender *c, double ns, double error,
+                const char *tuned) {
+  fprintf(csv, "%s,%.17g,%s,%.17g,%.17g,%s\n", set, 1e3 * latency, c->name, ns, 1e3 * error, tuned);
+}
+
+typedef struct field {
+  contender list[6];
+  size_t count;
+  ethd_filter filters[ETHD_FILTER_COUNT];
+  char tuned[6][64];
+} field;
+
+static const ethd_filter_method order[ETHD_FILTER_COUNT] = {ETHD_FILTER_HOLD, ETHD_FILTER_ALPHA_BETA,
+                                                            ETHD_FILTER_CV, ETHD_FILTER_CA};
+
+/* hold, two readings, alpha-beta, cv, ca, the peer. */
+static void gather(field *f, const ethd__tracks *reaches, const ethd__peer_filter *peer) {
+  f->count = 0;
+  for (int i = 0; i < ETHD_FILTER_COUNT; i++) {
+    ethd_filter_method m = order[i];
+    tuning t = best_tuning(m, reaches, 1);
+    f->filters[m] = prepare(m, &t);
+    describe(&t, f->tuned[f->count]);
+    f->list[f->count++] = (contender){ethd_filter_methods[m].id, ours, &f->filters[m]};
+    if (i == 0) {
+      f->tuned[f->count][0] = 0;
+      f->list[f->count++] = (contender){"two readings", two_readings, NULL};
+    }
+    if (m == ETHD_FILTER_CA && peer) {
+      strcpy(f->tuned[f->count], f->tuned[f->count - 1]);
+      void *self = peer->create(ETHD__TRACK_PERIOD, t.value[0], t.value[1], ETHD__TRACK_NOISE);
+      f->list[f->count++] = (contender){peer->name, peer->work, self};
+    }
+  }
+}
+
+static int by_error(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* "ca < cv < hold" */
+static void print_ranking(const field *f, const double *errors, size_t count) {
+  double sorted[6];
+  memcpy(sorted, errors, count * sizeof *sorted);
+  qsort(sorted, count, sizeof *sorted, by_error);
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < count; k++)
+      if (errors[k] == sorted[i]) printf("%s%s", i ? " < " : "", f->list[k].name);
+}
+
+enum { OURS = 5, CV = 3, CA = 4 }; /* in the field */
+
+static void print_errors(const char *set, double latency, const double *errors, size_t count) {
+  printf("  %-22s %4.0f ms", set, 1e3 * latency);
+  for (size_t i = 0; i < count; i++) printf(" %12.4f", 1e3 * errors[i]);
+  printf("  %5.1f %%\n", 100 * (1 - errors[CA] / errors[CV]));
+}
+
+static void compare(const field *f, const char *set, double latency, const ethd__tracks *sets,
+                    size_t count, const double *ns, double *errors) {
+  for (size_t i = 0; i < f->count; i++) {
+    errors[i] = rms(&f->list[i], sets, count);
+    row(set, latency, &f->list[i], ns[i], errors[i], f->tuned[i]);
+  }
+  print_errors(set, latency, errors, f->count);
+}
+
+static void print_cv_ca(const ethd__tracks *recorded, size_t sets) {
+  static const ethd_filter_method methods[2] = {ETHD_FILTER_CV, ETHD_FILTER_CA};
+  double defaults[2], best[2];
+  char text[2][64];
+  for (int i = 0; i < 2; i++) {
+    const tuning none = {{NULL, NULL}, {0, 0}};
+    tuning t = best_tuning(methods[i], recorded, sets);
+    defaults[i] = 1e3 * error_with(methods[i], &none, recorded, sets);
+    best[i] = 1e3 * error_with(methods[i], &t, recorded, sets);
+    describe(&t, text[i]);
+  }
+  printf("    by default cv %.4f, ca %.4f, %.1f %%; tuned to them cv %.4f (%s), ca %.4f (%s), %.1f %%\n",
+         defaults[0], defaults[1], 100 * (1 - defaults[1] / defaults[0]), best[0], text[0], best[1],
+         text[1], 100 * (1 - best[1] / best[0]));
+}
+
+static int one_latency(int l, double seconds, const ethd__peer_filter *peer) {
+  double latency = latencies[l], ns[6], errors[6];
+  ethd__tracks reaches = ethd__tracks_reaches(REACHES, latency), recorded[SETS_MAX];
+  size_t sets = ethd__tracks_recorded(latency, recorded, SETS_MAX);
+  field f;
+  gather(&f, &reaches, peer);
+  race(f.list, f.count, &reaches.at[0], seconds, ns);
+  if (l == 0) {
+    printf("  %-22s %7s", "rms error, mm", "");
+    for (size_t i = 0; i < f.count; i++) printf(" %12s", f.list[i].name);
+    printf("  ca under cv\n");
+  }
+  compare(&f, "reaches", latency, &reaches, 1, ns, errors);
+  int met = errors[CA] <= (1 - goals[l]) * errors[CV];
+  double gain = 100 * (1 - errors[CA] / errors[CV]);
+  for (size_t s = 0; s < sets; s++) compare(&f, recorded[s].name, latency, &recorded[s], 1, ns, errors);
+  if (sets) compare(&f, "all recorded", latency, recorded, sets, ns, errors);
+  printf("  %-22s %7s", "ns a tick", "");
+  for (size_t i = 0; i < f.count; i++) printf(" %12.1f", ns[i]);
+  printf("\n  tuned: alpha-beta %s, cv %s, ca %s\n", f.tuned[2], f.tuned[3], f.tuned[4]);
+  if (sets) {
+    printf("  ranking on all recorded: ");
+    print_ranking(&f, errors, OURS);
+    printf("\n");
+    print_cv_ca(&recorded[0], sets);
+  }
+  printf("  goal: ca at least %.0f %% under cv on reaches at %.0f ms: %.1f %%, %s\n", 100 * goals[l],
+         1e3 * latency, gain, ethd__bench_verdict(met));
+  if (peer) peer->destroy(f.list[5].self);
+  ethd__tracks_free(&reaches);
+  for (size_t s = 0; s < sets; s++) ethd__tracks_free(&recorded[s]);
+  return (int)sets;
+}
+
+static int run(const char *folder, int quick) {
+  printf("finger filters: readings at 300 Hz with 0.1 mm of noise, output every ms\n");
+  const ethd__peer_filter *peer = ethd__bench_peer("eigen", "peer_filter");
+  csv = ethd__bench_csv(folder, "filters",
+                        "# simulated readings at 300 Hz, noise 0.1 mm (sd, each axis); error rms over "
+                        "ticks of 1 ms and both axes\n"
+                        "# reaches: 40 of minimum jerk, 0.5 to 1.1 m/s; each filter tuned to them\n",
+                        "set,latency_ms,method,time_ns,error_rms_mm,tuning");
+  int sets = 0;
+  for (int l = 0; l < LATENCIES; l++) sets = one_latency(l, quick ? 0.1 : 1, peer);
+  if (!sets) printf("SKIP: recorded movements: none in ETHD_MOTION_DIR\n");
+  return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+}
+
+const ethd__bench ethd__bench_filters = {"filters", "where the finger is now, from late readings", run};
