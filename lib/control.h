@@ -51,6 +51,7 @@ typedef struct ethd__place {
   double pose[6]; /* as in the sense; zeros for what stands still */
   ethd_vec at;    /* ring's centre in the place's frame when it was last asked for clearance */
   double clearance; /* distance to the nearest object there, negative: not known */
+  ethd_scene_hint hint;
   int32_t there;  /* 0: a body that has no pose yet */
   int32_t reserved;
 } ethd__place;

@@ -30,7 +30,7 @@ int ethd__place_is_far(const ethd__place *p, ethd_vec x, double range) {
 
 void ethd__place_clear(ethd__place *place, const ethd_scene *scene, ethd_vec x) {
   ethd_nearest nearest;
-  ethd_scene_query(scene, x, &nearest);
+  ethd_scene_query_near(scene, x, &place->hint, &nearest);
   place->at = x;
   place->clearance = nearest.distance;
 }
