@@ -96,25 +96,34 @@ static bool is_wanted(const char *const *wanted, const char *name) {
   return false;
 }
 
+static ethd_status check_name(const reader *r, const cell *c, const layout *l) {
+  char quote[ETHD_QUOTE_MAX];
+  if (!c->length)
+    return refuse(r, ETHD_E_SYNTAX, NULL, "a column without a name; the first line names the columns");
+  for (size_t i = 0; i < l->cells; i++)
+    if (strlen(l->names[i]) == c->length && memcmp(l->names[i], c->text, c->length) == 0)
+      return ethd__say(r->message, ETHD_E_DUPLICATE, "%s:%zu: the column %s stands twice", r->name,
+                       r->line, ethd__quote(c->text, c->length, quote));
+  return ETHD_OK;
+}
+
+/* Columns that nobody asked for may have any name, and none. */
 static ethd_status header_name(const reader *r, const cell *c, layout *l, const char *const *wanted,
                                ethd_csv *out) {
   char quote[ETHD_QUOTE_MAX];
   double number;
-  if (!c->length)
-    return refuse(r, ETHD_E_SYNTAX, NULL, "a column without a name; the first line names the columns");
-  if (ethd__number(c->text, c->length, &number))
+  if (!l->cells && ethd__number(c->text, c->length, &number))
     return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: found %s, but the first line names the columns",
                      r->name, r->line, ethd__quote(c->text, c->length, quote));
   if (l->cells == COLUMNS_MAX) return refuse(r, ETHD_E_RANGE, NULL, "over 1024 columns");
   char *name = strndup(c->text, c->length);
   if (!name) return no_memory(r);
-  for (size_t i = 0; i < l->cells; i++) {
-    if (strcmp(l->names[i], name) != 0) continue;
-    free(name);
-    return ethd__say(r->message, ETHD_E_DUPLICATE, "%s:%zu: the column %s stands twice", r->name,
-                     r->line, ethd__quote(c->text, c->length, quote));
-  }
   bool kept = is_wanted(wanted, name);
+  ethd_status status = kept ? check_name(r, c, l) : ETHD_OK;
+  if (status) {
+    free(name);
+    return status;
+  }
   l->map[l->cells] = kept ? (int)out->columns++ : -1;
   l->names[l->cells++] = name;
   return ETHD_OK;

@@ -22,8 +22,8 @@ typedef struct ethd_csv {
 ETHD_MUST_CHECK ethd_status ethd_csv_read(const char *path, ethd_csv *out,
                                           char message[ETHD_MESSAGE_MAX]);
 
-/* The same, keeping only columns named in `wanted` (ends with NULL); the others may hold anything. A
-   wanted column that the file hasn't is no error: ethd_csv_column says -1. */
+/* The same, keeping only columns named in `wanted` (ends with NULL); the others may have any name, or
+   none, and hold anything. A wanted column that the file hasn't is no error: ethd_csv_column says -1. */
 ETHD_MUST_CHECK ethd_status ethd_csv_read_columns(const char *path, const char *const *wanted,
                                                   ethd_csv *out, char message[ETHD_MESSAGE_MAX]);
 

@@ -62,6 +62,9 @@ START_TEST(test_wanted_columns) {
   ck_assert_int_eq(ethd_csv_column(&c, "absent"), -1);
   ck_assert(c.values[0] == 1 && c.values[1] == 2 && c.values[2] == 3 && c.values[3] == 4);
   ethd_csv_free(&c);
+  parse("x,b,,x,d,0,\ny,1,,,2,z,\n", wanted, &c); /* others: nameless, alike, numbers */
+  ck_assert(c.rows == 1 && c.columns == 2 && c.values[0] == 1 && c.values[1] == 2);
+  ethd_csv_free(&c);
   parse("a\n\n1\n", NULL, &c); /* one column: a blank line is an empty cell */
   ck_assert(c.rows == 2 && ethd_csv_empty(&c, 0, 0) && c.values[1] == 1);
   ethd_csv_free(&c);
