@@ -128,6 +128,11 @@ static void check(ethd_status status, const char *message) {
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
 }
 
+/* Of what is written and run, once all input has been read. */
+static void check_job(ethd_status status, const char *message) {
+  if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+}
+
 static char *joined(const char *a, const char *b) {
   char *text;
   if (asprintf(&text, "%s%s", a, b) < 0)
@@ -207,13 +212,13 @@ static int run(const ethd__plan *plan, const ethd__heading *heading) {
   ethd__output output;
   ethd__cell *cells = ethd__cells_create(plan);
   if (!cells) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
-  check(ethd__output_open(arg.csv, arg.record, study->config, &output, message), message);
+  check_job(ethd__output_open(arg.csv, arg.record, study->config, &output, message), message);
   ethd_status status = ethd__cells_run(plan, &output, cells, message), closed;
   char left[ETHD_MESSAGE_MAX];
   closed = ethd__output_close(&output, left);
-  check(status, message);
-  check(closed, left);
-  if (arg.trace && !ethd__stop) check(ethd__cells_trace(plan, arg.trace, cells, message), message);
+  check_job(status, message);
+  check_job(closed, left);
+  if (arg.trace && !ethd__stop) check_job(ethd__cells_trace(plan, arg.trace, cells, message), message);
   ethd__table_print(stdout, study, heading, cells, plan->law_count * study->speed_count);
   ethd__cells_free(cells);
   if (ethd__stop) fprintf(stderr, "%s: stopped; what was done is kept\n", program_invocation_short_name);

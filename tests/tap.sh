@@ -39,6 +39,13 @@ grep -q '^scene queried [0-9]* of [0-9]* ticks$' "$folder/a.txt" || fail "it doe
 "$tap" --config "$folder/empty.ini" --taps 2 --transition offset --record "$folder/rec" --csv "$folder/e.csv" >/dev/null
 [ "$(cut -d, -f13 "$folder/e.csv" | grep -c .)" = 5 ] || fail "an empty configuration has no wall"
 "$BUILD/bin/ethd-replay" --verify "$folder/rec" >/dev/null
+printf '[contact]\nk_e = 2501\n' >>"$folder/rec/config.ini"
+code=0
+"$BUILD/bin/ethd-replay" --verify "$folder/rec" >"$folder/out" 2>"$folder/err" || code=$?
+[ $code = 1 ] && grep -q ': tick [1-9].*recorded .*replayed ' "$folder/err" || fail "a replay that differs: exit $code, $(cat "$folder/err")"
+code=0
+"$tap" --taps 1 --csv /dev/full >"$folder/out" 2>"$folder/err" || code=$?
+[ $code = 1 ] && grep -q '/dev/full: No space' "$folder/err" || fail "no room for the CSV: exit $code, $(cat "$folder/err")"
 printf '[contact]\nk_e = 500\n' >"$folder/soft.ini"
 "$tap" --config "$folder/soft.ini" --taps 2 --transition offset --csv "$folder/s.csv" >/dev/null
 cmp -s "$folder/e.csv" "$folder/s.csv" && fail "k_e changes nothing"

@@ -50,7 +50,8 @@ int ethd__exit_code(ethd_status status) {
     case ETHD_E_LAW:
     case ETHD_E_BUDGET:
     case ETHD_E_FULL:
-    case ETHD_E_DEVICE: return ETHD_EXIT_FAILED;
+    case ETHD_E_DEVICE:
+    case ETHD_E_DIFFERS: return ETHD_EXIT_FAILED;
     default: return status < 0 ? ETHD_EXIT_INPUT : ETHD_EXIT_DONE;
   }
 }

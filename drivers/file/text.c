@@ -72,7 +72,9 @@ ethd_status ethd_text_read(const char *path, size_t most, char **text, size_t *l
 
 static ethd_status in_place(const char *path, ethd_replace *out, char *message) {
   out->file = fopen(path, "wbe");
-  return out->file ? ETHD_OK : refuse(path, message);
+  if (!out->file) return refuse(path, message);
+  out->path = strdup(path);
+  return ETHD_OK;
 }
 
 /* A fresh file in the target's own folder, so that the rename stays within one file system. */

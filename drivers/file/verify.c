@@ -150,7 +150,7 @@ static ethd_status compare(const replay *r, size_t row, const ethd_trace *replay
       if (c->count > 1) snprintf(index, sizeof index, "[%u]", i);
       say_number(c->type, a + at, was);
       say_number(c->type, b + at, is);
-      return ethd__say(r->message, ETHD_E_RANGE, "%s: tick %zu: %s%s: recorded %s, replayed %s",
+      return ethd__say(r->message, ETHD_E_DIFFERS, "%s: tick %zu: %s%s: recorded %s, replayed %s",
                        r->folder, row, c->name, index, was, is);
     }
   return ETHD_OK;

@@ -62,8 +62,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_tick(ethd_recording *recordi
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_close(ethd_recording *recording);
 
 /* Replays a recording through the library and compares every field bit for bit. ETHD_OK: equal, and
-   message says how many ticks. Negative: message says the first tick and field that differ, or why it
-   can't be read. */
+   message says how many ticks. ETHD_E_DIFFERS: the first tick and field that differ; otherwise
+   negative: why it can't be read. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_verify(const char *folder,
                                                            char message[ETHD_MESSAGE_MAX]);
 

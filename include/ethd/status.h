@@ -31,7 +31,8 @@ ETHD_BEGIN_DECLS
   X(E_BUDGET, -17, "a law ran over its time budget")                                      \
   X(E_FULL, -18, "no room is left")                                                       \
   X(E_FILE, -19, "a file that cannot be read or written")                                 \
-  X(E_DEVICE, -20, "the device refused or failed")
+  X(E_DEVICE, -20, "the device refused or failed")                                        \
+  X(E_DIFFERS, -21, "a replay that differs from its recording")
 
 typedef enum ethd_status {
 #define ETHD_STATUS_VALUE(name, value, sentence) ETHD_##name = (value),

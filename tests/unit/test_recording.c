@@ -201,7 +201,7 @@ START_TEST(test_says_what_differs) {
   record();
   for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
     flip(changes[i].row, changes[i].offset, 1);
-    ck_assert_int_eq(ethd_recording_verify(recording_folder, message), ETHD_E_RANGE);
+    ck_assert_int_eq(ethd_recording_verify(recording_folder, message), ETHD_E_DIFFERS);
     snprintf(says, sizeof says, "%s: %s", recording_folder, changes[i].says);
     ck_assert_msg(strncmp(message, says, strlen(says)) == 0, "%s", message);
     flip(changes[i].row, changes[i].offset, 1);
