@@ -1,4 +1,4 @@
-# libethd. Targets: all demo check bench ci install uninstall clean.
+# libethd. Targets: all demo check bench stress ci install uninstall clean.
 # Variables: CC CXX CFLAGS CPPFLAGS LDFLAGS PREFIX DESTDIR BUILD, and
 #   SAN=address|thread|undefined|address,undefined   a sanitizer build, in a tree of its own
 #   WERROR=1   warnings are errors        V=1   whole command lines
@@ -18,7 +18,7 @@ MAIN_SIDE := $(wildcard lib/plugin.c lib/error.c lib/param.c lib/scene_parse.c l
 SHELL := /bin/sh
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: all demo check bench bench-quick ci install install-files uninstall clean tests FORCE
+.PHONY: all demo check bench bench-quick stress ci install install-files uninstall clean tests FORCE
 .DEFAULT_GOAL := all
 
 comma := ,
@@ -39,8 +39,8 @@ say = $(if $(V),@:,@printf '  %-6s %s\n' $(1) $(2))
 # ---- set-up: before anything compiles, while this file is read ------------------------------
 
 GOALS := $(or $(MAKECMDGOALS),all)
-KINDS := $(if $(filter all demo check bench bench-quick ci install tests,$(GOALS)),build) \
-         $(if $(filter check ci tests,$(GOALS)),check) $(if $(filter demo,$(GOALS)),demo) \
+KINDS := $(if $(filter all demo check bench bench-quick stress ci install tests,$(GOALS)),build) \
+         $(if $(filter check ci tests,$(GOALS)),check) $(if $(filter demo stress,$(GOALS)),demo) \
          $(if $(filter bench bench-quick,$(GOALS)),bench)
 DRY := $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 ifneq ($(strip $(KINDS)),)
@@ -210,6 +210,10 @@ bench-quick: QUICK := 1
 bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
 	@BUILD='$(B)' QUICK='$(QUICK)' WHAT='$(WHAT)' sh apps/bench.sh \
 	  'commit $(or $(shell git describe --always --dirty 2>/dev/null),unknown); $(CC) $(BASE)'
+
+# The long ones: minutes.
+stress: all
+	@BUILD='$(B)' sh apps/stress.sh
 
 ci:
 	@BUILD='$(BUILD)' MAKE='$(MAKE)' bash .ci/ci

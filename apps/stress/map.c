@@ -71,14 +71,14 @@ static void fill(FILE *data, const ethd__curve *c, const char *name, int cells, 
     }
 }
 
+/* Densely at the end, where K falls to 0. */
 static void draw_curve(FILE *data, const ethd__curve *c, const char *name) {
   double end = ethd__curve_end(c), k, b;
   for (int i = 1; data && i < 400; i++) {
-    double share = i / 400.0;
-    ethd__curve_at(c, end * (1 - (1 - share) * (1 - share)) , &k, &b);
-    fprintf(data, "%s,%d,%.17g,%.17g,%.17g,%.17g\n", name, c->delay, c->mass, end * share, k, b);
+    double left = 1 - i / 400.0, th = end * (1 - left * left);
+    ethd__curve_at(c, th, &k, &b);
+    fprintf(data, "%s,%d,%.17g,%.17g,%.17g,%.17g\n", name, c->delay, c->mass, th, k, b);
   }
-  if (data) fprintf(data, "\n\n");
 }
 
 static void run(ethd__stress_log *log) {

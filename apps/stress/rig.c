@@ -145,6 +145,7 @@ static int is_swing(amplitude a) { return a.c > 1e-5 * a.y * a.y; }
 double ethd__rig_growth(ethd__rig *rig, const ethd__swing *s) {
   double x[3] = {0}, y[3] = {0};
   amplitude first = {0, 0}, last = {0, 0};
+  double peak = 0;
   for (int k = 0; k <= s->settle + s->span; k++) {
     ethd__rig_tick(rig);
     shift(x, 3, ethd__rig_depth(rig));
@@ -153,7 +154,8 @@ double ethd__rig_growth(ethd__rig *rig, const ethd__swing *s) {
     if (k < s->order + 2) continue;
     if (!(fabs(y[0]) <= s->ceiling)) return (double)INFINITY;
     last = measure(y);
-    if (last.y < s->floor) return -(double)INFINITY;
+    peak = fmax(peak, last.y);
+    if (last.y < s->floor) return log(s->floor / peak) / k;
     if (k == s->settle) first = last;
   }
   if (is_swing(first) && is_swing(last)) return log(last.c / first.c) / (2 * s->span);

@@ -60,7 +60,8 @@ double ethd__rig_speed(const ethd__rig *rig);
 
 /* How a swing grows, ln per tick: a pair of modes z, z* of x_k, the `order`-th differences of the motion,
    has x_k^2 - x_k+1 x_k-1 proportional to |z|^2k exactly, whatever its phase (of one real mode it is 0, and
-   the motion itself is measured). From tick `settle` on over `span` ticks; +-INFINITY as soon as the differences leave [floor, ceiling] m. */
+   the motion itself is measured). From tick `settle` on over `span` ticks; INFINITY as soon as a difference
+   is over `ceiling` m, the mean so far when they are below `floor` m. */
 typedef struct ethd__swing {
   int order, settle, span;
   double floor, ceiling;
