@@ -1,0 +1,150 @@
+/* The plant alone: run time against error, for every method that integrates it. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/bench.h"
+#include "bench/methods.h"
+#include "common/cli.h"
+
+enum { CONTENDERS_MAX = 120, POINTS = 7, TAPS = 4 };
+
+typedef struct contender {
+  const char *name;
+  const ethd__problem *problem;
+  ethd__mark *marks;
+  double setting, error, time; /* s per simulated s */
+  ethd__runner runner;         /* ours: without a method */
+} contender;
+
+static struct {
+  contender all[CONTENDERS_MAX];
+  int count;
+} field;
+
+static void ours(void *user, ethd__body *body, const ethd__stretch *s, ethd__state *state) {
+  const contender *c = user;
+  body->tolerance = c->setting;
+  ethd__body_advance(body, &s->piece, s->begin, s->end - s->begin, state);
+}
+
+static void play(void *user) {
+  contender *c = user;
+  c->runner.h = 1e-4;
+  if (c->runner.method || c->runner.peer)
+    ethd__problem_play(c->problem, ethd__runner_stretch, &c->runner, c->marks);
+  else
+    ethd__problem_play(c->problem, ours, c, c->marks);
+}
+
+static contender *enter(const ethd__problem *problem, const char *name, double setting) {
+  if (field.count == CONTENDERS_MAX) ethd__fail(ETHD_EXIT_FAILED, "no room for more contenders");
+  contender *c = &field.all[field.count++];
+  *c = (contender){.name = name, .problem = problem, .setting = setting};
+  c->marks = calloc((size_t)problem->mark_count, sizeof *c->marks);
+  if (!c->marks) ethd__fail(ETHD_EXIT_FAILED, "no memory");
+  c->runner.setting = setting;
+  c->runner.ode = ethd__plain_ode(&c->runner.plain);
+  return c;
+}
+
+static void enter_all(const ethd__problem *problem) {
+  static const double tolerances[] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
+  for (size_t i = 0; i < sizeof tolerances / sizeof *tolerances; i++)
+    enter(problem, "libethd", tolerances[i]);
+  for (int m = 0; m < ethd__method_count; m++)
+    for (int i = 0; i < 8 && ethd__methods[m].settings[i] > 0; i++) {
+      contender *c = enter(problem, ethd__methods[m].name, ethd__methods[m].settings[i]);
+      c->runner.method = &ethd__methods[m];
+      c->runner.plain.live = !ethd__methods[m].events;
+    }
+  static const char *const libraries[] = {"gsl", "sundials", "odeint"};
+  for (int l = 0; l < 3; l++) {
+    const ethd__peer_ode *peer = ethd__bench_peer(libraries[l], "peer_ode");
+    for (; peer && peer->name; peer++)
+      for (double t = peer->loosest; t > 0.5 * peer->tightest; t /= 10) {
+        contender *c = enter(problem, peer->name, t);
+        c->runner.peer = peer;
+        c->runner.peer_self = peer->create(&c->runner.ode, t);
+      }
+  }
+}
+
+/* ---- time at an error: between points of a curve, on logarithmic axes ---- */
+
+static double time_at(const char *name, double error) {
+  double best = INFINITY;
+  for (int i = 0; i < field.count; i++) {
+    const contender *a = &field.all[i], *b = a + 1;
+    if (!strstr(a->name, name)) continue;
+    if (a->error <= error) best = fmin(best, a->time);
+    if (b == field.all + field.count || strcmp(a->name, b->name) != 0) continue;
+    if (!(a->error > error && b->error < error)) continue;
+    double share = log(a->error / error) / log(a->error / b->error);
+    best = fmin(best, exp(log(a->time) + share * log(b->time / a->time)));
+  }
+  return best;
+}
+
+static void goal(const char *peer, const char *spoken, double error, double times) {
+  double ratio = time_at(peer, error) / time_at("libethd", error);
+  if (!isfinite(ratio))
+    printf("  goal: %s at %.0e m takes %.1f times as long: no such point\n", spoken, error, times);
+  else
+    printf("  goal: %s at %.0e m takes %.1f times as long: %.1f, %s\n", spoken, error, times, ratio,
+           ethd__bench_verdict(ratio >= times));
+}
+
+/* ---- all ---- */
+
+static void race(double seconds) {
+  ethd__bench_entry entries[CONTENDERS_MAX];
+  for (int i = 0; i < field.count; i++) entries[i] = (ethd__bench_entry){field.all[i].name, play, &field.all[i], 1, 0};
+  for (int i = 0; i < field.count; i += 60)
+    ethd__bench_race(entries + i, (size_t)(field.count - i < 60 ? field.count - i : 60), seconds);
+  for (int i = 0; i < field.count; i++) field.all[i].time = 1e-9 * entries[i].ns / field.all[i].problem->duration;
+}
+
+static int run(const char *folder, int quick) {
+  ethd__problem problem = ethd__problem_record(TAPS);
+  field.count = 0;
+  printf("integrators: plant n alone, %d taps of %.1f s in all, torques recorded in closed loop; error: the\n"
+         "largest distance of ring or finger, every tick and torque change, from DOPRI5 with events at 1e-15\n"
+         "exact matrix exponential: left out, friction's tanh and the pad's K p (1 + c p') are not linear\n"
+         "peer MuJoCo: absent\n",
+         TAPS, problem.duration);
+  contender *reference = enter(&problem, "reference", 1e-15);
+  reference->runner.method = &ethd__methods[ethd__method_count - 1];
+  reference->runner.setting = 1e-15;
+  play(reference);
+  ethd__mark *truth = reference->marks;
+  field.count = 0;
+  enter_all(&problem);
+  race(quick ? 0.002 : 0.02);
+  FILE *csv = ethd__bench_csv(folder, "integrators",
+                              "# plant n alone, torques of taps recorded in closed loop; error: largest distance of ring\n"
+                              "# or finger from DOPRI5 with events at tolerance 1e-15; time per simulated second\n",
+                              "method,setting,error_m,time_s");
+  for (int i = 0; i < field.count; i++) {
+    contender *c = &field.all[i];
+    play(c);
+    c->error = ethd__problem_error(&problem, c->marks, truth);
+    printf("  %-26s %8.1e  %9.2e m %10.1f us/s\n", c->name, c->setting, c->error, 1e6 * c->time);
+    fprintf(csv, "%s%s,%.17g,%.17g,%.17g\n", i && strcmp(c->name, c[-1].name) != 0 ? "\n\n" : "", c->name,
+            c->setting, c->error, c->time);
+  }
+  goal("rkf45", "GSL rkf45", 1e-6, 2);
+  goal("rkf45", "GSL rkf45", 1e-7, 1.3);
+  goal("rkf45", "GSL rkf45", 1e-8, 1.3);
+  goal("rkf45", "GSL rkf45", 1e-10, 1);
+  goal("CVODE", "CVODE", 1e-6, 30);
+  goal("CVODE", "CVODE", 1e-8, 30);
+  for (int i = 0; i < field.count; i++) {
+    if (field.all[i].runner.peer) field.all[i].runner.peer->destroy(field.all[i].runner.peer_self);
+    free(field.all[i].marks);
+  }
+  free(truth);
+  ethd__problem_free(&problem);
+  return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+}
+
+const ethd__bench ethd__bench_integrators = {"integrators", "the plant's integration, against GSL, CVODE, odeint", run};

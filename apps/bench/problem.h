@@ -1,0 +1,43 @@
+/* The plant alone: taps of plant n in closed loop leave their torques behind, which every method then plays
+   to the same plant. */
+#ifndef ETHD_APPS_BENCH_PROBLEM_H
+#define ETHD_APPS_BENCH_PROBLEM_H
+
+#include "bench/ode.h"
+#include "sim/body.h"
+
+/* Between two of: tick, torque update, kink of the path. */
+typedef struct ethd__stretch {
+  double begin, end, torque[2];
+  int tick; /* 1: begins at one */
+  ethd__piece piece;
+} ethd__stretch;
+
+typedef struct ethd__played {
+  ethd__body body;
+  ethd__state start;
+  ethd__stretch *stretches;
+  int count;
+} ethd__played;
+
+/* What a method leaves: coordinates at the end of each stretch. */
+typedef double ethd__mark[4];
+
+typedef struct ethd__problem {
+  ethd__played *taps;
+  int tap_count, mark_count; /* of all taps */
+  double duration;           /* s, of all taps */
+} ethd__problem;
+
+/* Half of the taps at the low speed, half at the high one, under law `offset`. Exits when it can't. */
+ethd__problem ethd__problem_record(int taps);
+void ethd__problem_free(ethd__problem *problem);
+
+/* Plays all taps: `stretch` moves the state through one. */
+typedef void ethd__play(void *user, ethd__body *body, const ethd__stretch *stretch, ethd__state *state);
+void ethd__problem_play(const ethd__problem *problem, ethd__play *stretch, void *user, ethd__mark *out);
+
+/* Largest distance of ring or finger from where `reference` has it, m. */
+double ethd__problem_error(const ethd__problem *problem, ethd__mark *marks, ethd__mark *reference);
+
+#endif
