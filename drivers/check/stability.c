@@ -14,14 +14,14 @@ enum {
   FILTER,
   LAST,
   WAY,
-  STATE_MAX = WAY + ETHD_LOOP_DELAY_MAX + ETHD_VELOCITY_WINDOW_MAX
+  STATE_MAX = WAY + ETHD_LOOP_DELAY_MAX + 1 + ETHD_VELOCITY_WINDOW_MAX
 };
 
 typedef double matrix[STATE_MAX][STATE_MAX];
 
 typedef struct model {
   const ethd_loop *loop;
-  int past, size;                     /* index of x_k-1; length of the state */
+  int ways, past, size;               /* forces on their way; index of x_k-1; length of the state */
   int samples;                        /* last positions kept */
   double w[ETHD_VELOCITY_WINDOW_MAX]; /* v^ from x_k, x_k-1, ... */
   double keep;                        /* share of the last estimate (lowpass) */
@@ -65,7 +65,8 @@ static void prepare(const ethd_loop *loop, model *m) {
     case ETHD_VELOCITY_KALMAN: use_kalman(m); break;
     default: use_difference(m, 1);
   }
-  m->past = WAY + loop->delay;
+  m->ways = loop->delay + (loop->late > 0);
+  m->past = WAY + m->ways;
   m->size = m->past + m->samples;
 }
 
@@ -81,18 +82,19 @@ static double estimate(const model *m, const double *s, double *filter) {
 
 /* ---- the tick ---- */
 
+/* For `late` the force of one tick earlier still acts. */
 static void tick(const model *m, const double *s, double *next) {
   const ethd_loop *l = m->loop;
-  double T = l->period, filter = 0;
+  double T = l->period, late = l->late, rest = T - late, filter = 0;
   double v = estimate(m, s, &filter);
   double f = -l->stiffness * s[X] - l->damping * v;
-  double applied = l->delay ? s[WAY] : f;
-  next[X] = s[X] + T * s[V] + T * T / (2 * l->mass) * applied;
-  next[V] = s[V] + T / l->mass * applied;
+  double now = l->delay ? s[WAY + m->ways - l->delay] : f, before = late > 0 ? s[WAY] : 0;
+  next[X] = s[X] + T * s[V] + (before * late * (T - late / 2) + now * rest * rest / 2) / l->mass;
+  next[V] = s[V] + (before * late + now * rest) / l->mass;
   next[ESTIMATE] = v;
   next[FILTER] = filter;
   next[LAST] = f;
-  for (int i = 0; i < l->delay; i++) next[WAY + i] = i + 1 < l->delay ? s[WAY + i + 1] : f;
+  for (int i = 0; i < m->ways; i++) next[WAY + i] = i + 1 < m->ways ? s[WAY + i + 1] : f;
   for (int i = 0; i < m->samples; i++) next[m->past + i] = i ? s[m->past + i - 1] : s[X];
 }
 
@@ -169,10 +171,10 @@ static double bisect(ethd_loop *loop, double *value, double stable, double unsta
 
 static double grid(int i) { return exp(i * log(10) / STEPS_PER_DECADE); }
 
-/* At a large mass all is slow, and hold and delay take K T (n + 1/2) off the damping, whatever the
+/* At a large mass all is slow, and hold and delay take K (T (n + 1/2) + late) off the damping, whatever the
    estimator. */
 double ethd__loop_damping_needed(const ethd_loop *l) {
-  return l->stiffness * l->period * (l->delay + 0.5);
+  return l->stiffness * (l->period * (l->delay + 0.5) + l->late);
 }
 
 double ethd__loop_mass_min(const ethd_loop *loop) {

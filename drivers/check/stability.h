@@ -23,6 +23,7 @@ typedef struct ethd_loop {
   double period;             /* T, s */
   double stiffness, damping; /* K N/m, B Ns/m */
   int delay;                 /* n, whole ticks from measurement to force, 0 to ETHD_LOOP_DELAY_MAX */
+  double late;               /* s on top of them, 0 <= late < T */
   /* The estimator with its parameters, as in a setup. foaw stands at its longest window, its worst. */
   ethd_velocity_method method;
   double p[ETHD_PARAMS_MAX];
@@ -33,7 +34,7 @@ typedef struct ethd_loop {
 double ethd__loop_radius(const ethd_loop *loop);
 bool ethd__loop_stable(const ethd_loop *loop);
 
-/* Less than K T (n + 1/2) is unstable however large the mass is, Ns/m. */
+/* Less than K (T (n + 1/2) + late) is unstable however large the mass is, Ns/m. */
 double ethd__loop_damping_needed(const ethd_loop *loop);
 
 /* The smallest mass from which on the gains are stable; INFINITY: at none up to 1e4 kg. */
@@ -43,7 +44,7 @@ double ethd__loop_mass_min(const ethd_loop *loop);
 double ethd__loop_stiffness_max(const ethd_loop *loop);
 double ethd__loop_damping_max(const ethd_loop *loop);
 
-/* Closed forms for the backward difference. The boundary, 0 < th <= pi / (2 (n + 1)):
+/* Closed forms for the backward difference, whole ticks. The boundary, 0 < th <= pi / (2 (n + 1)):
      K T^2/m = 4 tan^2(th/2) cos((n+1) th),  B T/m = 2 tan(th/2) sin((n+1) th) - K T^2/(2m) */
 void ethd__loop_boundary(double mass, double period, int delay, double th, double *stiffness,
                          double *damping);

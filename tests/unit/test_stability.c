@@ -101,15 +101,19 @@ static double growth(const ethd_loop *l, int ticks) {
   ethd_error error;
   ck_assert_int_eq(ethd_velocity_prepare(l->method, l->p, l->period, &velocity, &error), ETHD_OK);
   memset(&state, 0, sizeof state);
-  double x = 0, v = 0, torque = 0, way[ETHD_LOOP_DELAY_MAX] = {0}, before = 0, after = 0;
+  double x = 0, v = 0, torque = 0, way[ETHD_LOOP_DELAY_MAX] = {0}, last = 0, before = 0, after = 0;
   for (int k = 0; k < 3000 + ticks; k++) {
     if (k == 2000) v = 1e-3; /* a Kalman filter's gains have settled */
     double speed = LINK * ethd_velocity_step(&velocity, &state, x / LINK, torque, l->period);
     double f = -l->stiffness * x - l->damping * speed, applied = l->delay ? way[k % l->delay] : f;
     if (l->delay) way[k % l->delay] = f;
     torque = f * LINK;
-    x += l->period * v + l->period * l->period / (2 * l->mass) * applied;
-    v += l->period / l->mass * applied;
+    double spans[2] = {l->late, l->period - l->late}, forces[2] = {last, applied};
+    for (int i = 0; i < 2; i++) {
+      x += spans[i] * v + spans[i] * spans[i] / (2 * l->mass) * forces[i];
+      v += spans[i] / l->mass * forces[i];
+    }
+    last = applied;
     double size = fabs(v) + fabs(l->stiffness * x) * l->period / l->mass;
     if (k >= 2900 && k < 3000) before = fmax(before, size);
     if (k >= 2900 + ticks) after = fmax(after, size);
@@ -119,7 +123,7 @@ static double growth(const ethd_loop *l, int ticks) {
 
 /* Just over the largest stable damping the motion grows, just under it it dies. foaw stands at its
    longest window only while samples lie on a line, so its loop is the least squares'. */
-START_TEST(test_estimators) {
+static void check_estimators(double late) {
   static const ethd_velocity_method methods[] = {ETHD_VELOCITY_LOWPASS, ETHD_VELOCITY_DIFFERENCE,
                                                  ETHD_VELOCITY_LSQ, ETHD_VELOCITY_KALMAN};
   for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
@@ -130,6 +134,7 @@ START_TEST(test_estimators) {
         if (methods[i] == ETHD_VELOCITY_KALMAN)
           l.p[2] = 0.8 * M * LINK * LINK; /* not quite the true inertia */
         l.delay = n;
+        l.late = late;
         double largest = ethd__loop_damping_max(&l);
         ck_assert_msg(largest > 0, "%s: no damping is stable", id);
         l.damping = 1.01 * largest;
@@ -140,6 +145,34 @@ START_TEST(test_estimators) {
   ethd_loop foaw = loop_of(ETHD_VELOCITY_FOAW, 1000, 10), lsq = loop_of(ETHD_VELOCITY_LSQ, 1000, 10);
   lsq.p[0] = foaw.p[0];
   ck_assert(ethd__loop_radius(&foaw) == ethd__loop_radius(&lsq));
+}
+
+START_TEST(test_estimators) { check_estimators(0); }
+END_TEST
+
+START_TEST(test_late_forces) { check_estimators(0.3 * T); }
+END_TEST
+
+/* What is late by nearly a tick is a tick of delay; in between it is neither. */
+START_TEST(test_late_is_between) {
+  ethd_loop l = loop_of(ETHD_VELOCITY_LOWPASS, 2000, 40);
+  double prompt = ethd__loop_damping_max(&l);
+  l.late = T / 2;
+  double half = ethd__loop_damping_max(&l);
+  l.late = T * (1 - 1e-9);
+  double nearly = ethd__loop_damping_max(&l);
+  l.late = 0;
+  l.delay = 1;
+  check_near(nearly, ethd__loop_damping_max(&l), 1e-5, "a tick of delay");
+  ck_assert(half < 0.95 * prompt && half > 1.05 * nearly);
+  l.late = 0.25 * T;
+  l.damping = ethd__loop_damping_needed(&l);
+  check_near(l.damping, 2000 * T * 1.75, 1e-12, "damping that hold and delay take");
+  l.mass = 10;
+  l.damping *= 1.01;
+  ck_assert(ethd__loop_stable(&l));
+  l.damping *= 0.98;
+  ck_assert(!ethd__loop_stable(&l));
 }
 END_TEST
 
@@ -152,6 +185,8 @@ int main(void) {
   tcase_add_test(all, test_small_gains);
   tcase_add_test(all, test_trivial_loops);
   tcase_add_test(all, test_estimators);
+  tcase_add_test(all, test_late_forces);
+  tcase_add_test(all, test_late_is_between);
   suite_add_tcase(suite, all);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_ENV);
