@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define SECONDS_MAX 1e9 /* so that ns fit */
+#define SECONDS_MAX 9e9 /* ns fit, and so do dates: seconds since 1970 */
 
 static const char *const columns[] = {
     "t_s",    "q1_rad", "q2_rad", "dq1_radps", "dq2_radps", "xf_m",  "yf_m",  "vxf_mps", "vyf_mps",
@@ -75,7 +75,7 @@ static ethd_status check_finite(const ethd__trace_in *in, size_t row, const int 
 static ethd_status check_frame(const ethd__trace_in *in, size_t row, char message[ETHD_MESSAGE_MAX]) {
   bool none = ethd_csv_empty(&in->csv, row, in->t_ring);
   if (!none && !(fabs(cell(in, row, in->t_ring)) <= SECONDS_MAX))
-    return refuse(in, row, in->t_ring, "not a time within 1e9 s", message);
+    return refuse(in, row, in->t_ring, "not a time within 9e9 s", message);
   for (int i = 0; i < ETHD_RAYS; i++)
     if (ethd_csv_empty(&in->csv, row, in->rays[i]) != none)
       return refuse(in, row, in->rays[i],
@@ -91,7 +91,7 @@ static ethd_status check_row(const ethd__trace_in *in, size_t row, char message[
     status = in->ring ? check_frame(in, row, message) : check_finite(in, row, in->finger, 4, message);
   if (status != ETHD_OK) return status;
   if (!(fabs(cell(in, row, in->t)) <= SECONDS_MAX))
-    return refuse(in, row, in->t, "not a time within 1e9 s", message);
+    return refuse(in, row, in->t, "not a time within 9e9 s", message);
   if (row > 0 && !(cell(in, row, in->t) > cell(in, row - 1, in->t)))
     return refuse(in, row, in->t, "time must rise from row to row", message);
   return ETHD_OK;
