@@ -6,11 +6,16 @@
 #include "sim/plant.h"
 #include "sim/settings.h"
 
+#define CATCH_UP_MAX 1000 /* periods: after a longer gap simulated time falls behind */
+
 typedef struct device {
   ethd_sim *sim;
   ethd_sim_def def;
   ethd_sim_tap tap;
   int32_t safe;
+  int32_t written;   /* 1: `held` and `due_ns` are known */
+  int64_t due_ns;    /* the tick at which the next read is expected */
+  ethd_command held; /* of the last write */
 } device;
 
 static ethd_status load_plant(const ethd_device_def *def, const ethd_setting *setting, ethd_plant *out,
@@ -39,7 +44,8 @@ static ethd_status sim_open(const ethd_device_def *def, void **out, ethd_error *
   d->def = (ethd_sim_def){.arm = def->setup->arm,
                           .ring_radius = def->setup->ring_radius,
                           .period = def->setup->period,
-                          .step = s.p[ETHD__SIM_STEP]};
+                          .step = s.p[ETHD__SIM_STEP],
+                          .tolerance = s.p[ETHD__SIM_TOLERANCE]};
   status = load_plant(def, s.plant, &d->def.plant, error);
   if (!status && s.rays >= 0) d->def.plant.rays = s.rays;
   if (!status) status = ethd_sim_create(&d->def, &d->sim, error);
@@ -61,12 +67,23 @@ static ethd_status sim_open(const ethd_device_def *def, void **out, ethd_error *
 static ethd_status start(void *device_) {
   device *d = device_;
   d->safe = 0;
+  d->written = 0;
   return ethd_sim_start(d->sim, &d->tap);
+}
+
+static int64_t period_ns(const device *d) ETHD_RT { return (int64_t)rint(1e9 * d->def.period); }
+
+/* Periods that the loop has missed pass all the same, under the torque that it left. */
+static void catch_up(device *d, int64_t now_ns) ETHD_RT {
+  for (int i = 0; d->written && i < CATCH_UP_MAX && now_ns - d->due_ns >= period_ns(d); i++) {
+    ethd_sim_write(d->sim, &d->held);
+    d->due_ns += period_ns(d);
+  }
 }
 
 static ethd_status sim_read(void *device_, int64_t now_ns, ethd_sense *out) ETHD_RT {
   device *d = device_;
-  (void)now_ns;
+  catch_up(d, now_ns);
   ethd_sim_read(d->sim, out);
   return ETHD_OK;
 }
@@ -74,10 +91,11 @@ static ethd_status sim_read(void *device_, int64_t now_ns, ethd_sense *out) ETHD
 /* In lock-step: a period passes. */
 static ethd_status sim_write(void *device_, int64_t now_ns, const ethd_command *command) ETHD_RT {
   device *d = device_;
-  ethd_command held = *command;
-  (void)now_ns;
-  if (d->safe) held.safe = 1;
-  ethd_sim_write(d->sim, &held);
+  d->held = *command;
+  if (d->safe) d->held.safe = 1;
+  d->written = 1;
+  d->due_ns = now_ns + period_ns(d);
+  ethd_sim_write(d->sim, &d->held);
   return ETHD_OK;
 }
 

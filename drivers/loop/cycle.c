@@ -1,0 +1,196 @@
+/* The control thread's way, tick by tick: nothing here allocates, locks, or calls the system but to sleep. */
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+#include "loop/loop.h"
+
+#define REHEARSALS 3 /* after an early wake-up */
+
+/* ---- clock ---- */
+
+int64_t ethd__loop_now(const ethd_loop *l) {
+  struct timespec t;
+  if (l->def.clock) return *l->def.clock;
+  __RT(clock_gettime)(CLOCK_MONOTONIC, &t);
+  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+static int sleep_until(const ethd_loop *l, int64_t instant) ETHD_RT {
+  struct timespec t = {.tv_sec = (time_t)(instant / 1000000000), .tv_nsec = (long)(instant % 1000000000)};
+  int failure;
+  if (l->def.clock) {
+    if (*l->def.clock < instant) *l->def.clock = instant;
+    return 0;
+  }
+  do failure = __RT(clock_nanosleep)(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, NULL);
+  while (failure == EINTR);
+  return failure;
+}
+
+/* ---- rows ---- */
+
+static int room(const ethd__rows *r) ETHD_RT {
+  return atomic_load_explicit(&r->head, memory_order_relaxed) -
+             atomic_load_explicit(&r->tail, memory_order_acquire) <
+         r->size;
+}
+
+static void raise(uint64_t *count, uint64_t by) ETHD_RT {
+  __atomic_store_n(count, *count + by, __ATOMIC_RELAXED);
+}
+
+static void push(ethd_loop *l) ETHD_RT {
+  ethd__rows *r = &l->rows;
+  if (!r->size) return;
+  if (!room(r)) {
+    l->lost++;
+    raise(&l->stats.rows_lost, 1);
+    return;
+  }
+  unsigned head = atomic_load_explicit(&r->head, memory_order_relaxed);
+  l->row.lost = l->lost;
+  l->row.swaps = l->swaps;
+  l->row.marks = l->marks;
+  r->at[head % r->size] = l->row;
+  atomic_store_explicit(&r->head, head + 1, memory_order_release);
+  l->lost = 0;
+  l->marks = 0;
+}
+
+/* ---- one tick ---- */
+
+/* A device that can't be read isn't known: the controller's input fault follows. */
+static void read_device(ethd_loop *l) ETHD_RT {
+  if (l->def.driver->read(l->def.device, l->due, &l->sense) < 0) {
+    raise(&l->stats.read_failures, 1);
+    memset(&l->sense, 0, sizeof l->sense);
+    l->sense.time_ns = l->due;
+    l->sense.q[0] = l->sense.q[1] = (double)NAN;
+  }
+  l->sense.missed = l->missed;
+  l->sense.step_ns = l->step;
+}
+
+static void disarm(ethd_loop *l) ETHD_RT {
+  atomic_store_explicit(&l->armed, 0, memory_order_relaxed);
+  if (l->was_armed) l->def.driver->safe(l->def.device);
+  l->was_armed = 0;
+}
+
+/* The share of the torque that the device gets. */
+static double share(ethd_loop *l) ETHD_RT {
+  double t = (double)l->ramp++ * l->def.period;
+  return t < l->def.soft_start ? t / l->def.soft_start : 1;
+}
+
+static void write_device(ethd_loop *l, ethd_command *command) ETHD_RT {
+  double s = 0;
+  if (command->safe || !atomic_load_explicit(&l->armed, memory_order_relaxed)) {
+    disarm(l);
+    *command = (ethd_command){.safe = 1};
+  } else {
+    l->was_armed = 1;
+    s = share(l);
+    for (int i = 0; i < 2; i++) command->torque[i] *= s;
+  }
+  l->row.share = s;
+  l->row.armed = l->was_armed;
+  if (l->def.driver->write(l->def.device, l->due, command) >= 0) return;
+  raise(&l->stats.write_failures, 1);
+  disarm(l);
+}
+
+static void step(ethd_loop *l, ethd_command *command) ETHD_RT {
+  if (atomic_load_explicit(&l->clear, memory_order_relaxed)) {
+    atomic_store_explicit(&l->clear, 0, memory_order_relaxed);
+    ethd_control_clear(l->def.control);
+    l->marks |= ETHD_ROW_CLEARED;
+  }
+  if (l->dry) (void)!ethd_control_rehearse(l->def.control, &l->sense, command);
+  l->dry = 0;
+  int64_t begin = ethd__loop_now(l);
+  (void)!ethd_control_step(l->def.control, &l->sense, command, &l->row.trace);
+  l->step = ethd__loop_now(l) - begin;
+  l->swaps += l->row.trace.swap != 0;
+  l->missed = 0;
+}
+
+static void tick(ethd_loop *l) ETHD_RT {
+  ethd_command command;
+  read_device(l);
+  step(l, &command);
+  write_device(l, &command);
+  push(l);
+  raise(&l->stats.ticks, 1);
+}
+
+void ethd__loop_rest(ethd_loop *l) {
+  ethd_command zero = {.safe = 1};
+  l->was_armed = 1;
+  disarm(l);
+  (void)!l->def.driver->write(l->def.device, l->due, &zero);
+}
+
+/* ---- the grid ---- */
+
+static void overrun(ethd_loop *l, int64_t periods) ETHD_RT {
+  raise(&l->stats.overruns, 1);
+  raise(&l->stats.missed, (uint64_t)periods);
+  l->missed += periods;
+  l->due += periods * l->period;
+}
+
+/* Until the tick; with early wake the caches are warm and the start is exact. */
+static int wait(ethd_loop *l) ETHD_RT {
+  int failure = sleep_until(l, l->due - l->early);
+  if (failure) return failure;
+  int64_t now = ethd__loop_now(l), late = now - (l->due - l->early);
+  ethd_histogram_add(&l->stats.wake, late);
+  if (l->early && !l->dry) {
+    ethd_command command;
+    for (int i = 0; i < REHEARSALS; i++)
+      (void)!ethd_control_rehearse(l->def.control, &l->sense, &command);
+    while (!l->def.clock && (now = ethd__loop_now(l)) < l->due) continue;
+  }
+  if (now - l->due >= l->period) overrun(l, (now - l->due) / l->period);
+  return 0;
+}
+
+/* The next instant of the grid that isn't over. */
+static void advance(ethd_loop *l) ETHD_RT {
+  l->due += l->period;
+  int64_t late = ethd__loop_now(l) - l->due;
+  if (late > 0) overrun(l, (late + l->period - 1) / l->period);
+}
+
+/* Yes, once asked; unless [main] has lost its patience at this very moment. */
+static int parked(ethd_loop *l) ETHD_RT {
+  int mode = ETHD__LOOP_ASKED;
+  return atomic_compare_exchange_strong_explicit(&l->mode, &mode, ETHD__LOOP_PARKED, memory_order_acq_rel,
+                                                 memory_order_acquire) ||
+         mode == ETHD__LOOP_PARKED;
+}
+
+int ethd__loop_turn(ethd_loop *l) {
+  /* while parked, [main] may be using all but the clock */
+  if (parked(l)) {
+    l->due += l->period;
+    return sleep_until(l, l->due);
+  }
+  int failure = wait(l);
+  if (failure) return failure;
+  int64_t begin = ethd__loop_now(l);
+  tick(l);
+  ethd_histogram_add(&l->stats.tick, ethd__loop_now(l) - begin);
+  advance(l);
+  return 0;
+}
+
+int ethd__loop_cycle(ethd_loop *l) {
+  int failure = 0;
+  l->due = ethd__loop_now(l) + l->period;
+  while (!failure && !atomic_load_explicit(&l->stop, memory_order_relaxed)) failure = ethd__loop_turn(l);
+  ethd__loop_rest(l);
+  return failure;
+}

@@ -1,0 +1,132 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/denormals.h"
+#include "loop/loop.h"
+
+#define COOKIE 0x6c6f6f70u
+
+ethd_loop_def ethd_loop_default(void) {
+  return (ethd_loop_def){.cookie = COOKIE,
+                         .period = 1e-3,
+                         .cpu = ETHD_CPU_NONE,
+                         .priority = 80,
+                         .dma_latency = -1,
+                         .soft_start = 0.1,
+                         .stack = (size_t)256 << 10,
+                         .rows = 4096};
+}
+
+ethd_status ethd__loop_refuse(ethd_error *error, ethd_status status, const char *name, double found,
+                              double min, double max) {
+  if (!error) return status;
+  *error = (ethd_error){.status = status, .found = found, .min = min, .max = max};
+  size_t n = strnlen(name, sizeof error->name - 1);
+  memcpy(error->name, name, n);
+  return status;
+}
+
+/* ---- create ---- */
+
+static ethd_status within(ethd_error *error, const char *name, double found, double min, double max) {
+  if (found >= min && found <= max) return ETHD_OK;
+  return ethd__loop_refuse(error, ETHD_E_RANGE, name, found, min, max);
+}
+
+static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
+  if (d->cookie != COOKIE) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "ethd_loop_def", NAN, NAN, NAN);
+  if (!d->driver) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "driver", NAN, NAN, NAN);
+  if (!d->control) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "control", NAN, NAN, NAN);
+  if (d->driver->abi != ETHD_DRIVER_ABI || d->driver->size < sizeof *d->driver)
+    return ethd__loop_refuse(error, ETHD_E_ABI, "driver", NAN, NAN, NAN);
+  if (d->rows & (d->rows - 1)) return ethd__loop_refuse(error, ETHD_E_RANGE, "rows", d->rows, 0, 0x1p20);
+  ethd_status status = within(error, "period", d->period, 1e-5, 1);
+  if (!status) status = within(error, "cpu", d->cpu, ETHD_CPU_AUTO, 1023);
+  if (!status) status = within(error, "priority", d->priority, 1, 99);
+  if (!status) status = within(error, "dma_latency", d->dma_latency, -1, 1e6);
+  if (!status) status = within(error, "early_wake", d->early_wake, 0, d->period / 2);
+  if (!status) status = within(error, "soft_start", d->soft_start, 0, 10);
+  if (!status) status = within(error, "stack", (double)d->stack, 65536, 0x1p26);
+  if (!status) status = within(error, "rows", d->rows, 0, 0x1p20);
+  return status;
+}
+
+ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_error *error) {
+  *out = NULL;
+  ethd_status status = check(def, error);
+  if (status) return status;
+  size_t size = (sizeof(ethd_loop) + 63) / 64 * 64;
+  ethd_loop *l = aligned_alloc(64, size);
+  if (!l) return ethd__loop_refuse(error, ETHD_E_MEMORY, "loop", NAN, NAN, NAN);
+  memset(l, 0, size);
+  l->def = *def;
+  l->period = llrint(1e9 * def->period);
+  l->early = llrint(1e9 * def->early_wake);
+  l->dma_latency = -1;
+  l->rows.size = def->rows;
+  l->rows.at = calloc(def->rows ? def->rows : 1, sizeof *l->rows.at);
+  if (!l->rows.at) {
+    ethd_loop_destroy(l);
+    return ethd__loop_refuse(error, ETHD_E_MEMORY, "rows", NAN, NAN, NAN);
+  }
+  *out = l;
+  return ETHD_OK;
+}
+
+void ethd_loop_destroy(ethd_loop *l) {
+  if (!l) return;
+  ethd_loop_stop(l);
+  (void)!ethd_loop_join(l);
+  free(l->rows.at);
+  free(l);
+}
+
+/* ---- the virtual clock ---- */
+
+void ethd_loop_tick(ethd_loop *l) {
+  uint64_t before = ethd__denormals_flush();
+  const ethd_driver *driver = l->def.driver;
+  if (driver->service && driver->service(l->def.device, ethd__loop_now(l)) < 0) l->stats.service_failures++;
+  (void)!ethd__loop_turn(l);
+  ethd__denormals_restore(before);
+}
+
+/* ---- other threads ---- */
+
+int32_t ethd_loop_armed(const ethd_loop *l) { return atomic_load_explicit(&l->armed, memory_order_relaxed); }
+int32_t ethd_loop_ended(const ethd_loop *l) { return atomic_load_explicit(&l->ended, memory_order_acquire); }
+int32_t ethd_loop_shortfalls(const ethd_loop *l) { return l->shortfalls; }
+void ethd_loop_disarm(ethd_loop *l) { atomic_store_explicit(&l->armed, 0, memory_order_relaxed); }
+void ethd_loop_clear(ethd_loop *l) { atomic_store_explicit(&l->clear, 1, memory_order_relaxed); }
+void ethd_loop_stop(ethd_loop *l) { atomic_store_explicit(&l->stop, 1, memory_order_relaxed); }
+
+ethd_status ethd_loop_take(ethd_loop *l, ethd_loop_row *out) {
+  ethd__rows *r = &l->rows;
+  unsigned tail = atomic_load_explicit(&r->tail, memory_order_relaxed);
+  if (tail == atomic_load_explicit(&r->head, memory_order_acquire)) return ETHD_EMPTY;
+  *out = r->at[tail % r->size];
+  atomic_store_explicit(&r->tail, tail + 1, memory_order_release);
+  return ETHD_OK;
+}
+
+static uint64_t seen(const uint64_t *count) { return __atomic_load_n(count, __ATOMIC_RELAXED); }
+
+static void read_histogram(const ethd_histogram *h, ethd_histogram *out) {
+  for (uint32_t i = 0; i < ETHD_BINS; i++) out->count += out->counts[i] = seen(&h->counts[i]);
+  out->max = __atomic_load_n(&h->max, __ATOMIC_RELAXED);
+}
+
+void ethd_loop_read(const ethd_loop *l, ethd_loop_stats *out) {
+  const ethd_loop_stats *s = &l->stats;
+  *out = (ethd_loop_stats){.ticks = seen(&s->ticks),
+                           .overruns = seen(&s->overruns),
+                           .missed = seen(&s->missed),
+                           .relaxes = ethd__xenomai_relaxes(),
+                           .read_failures = seen(&s->read_failures),
+                           .write_failures = seen(&s->write_failures),
+                           .service_failures = seen(&s->service_failures),
+                           .rows_lost = seen(&s->rows_lost)};
+  read_histogram(&s->wake, &out->wake);
+  read_histogram(&s->tick, &out->tick);
+}

@@ -1,0 +1,73 @@
+/* The loop's own memory. Fields between two threads are atomic, each with one writer at a time but for
+   flags that anybody may raise. */
+#ifndef ETHD_LOOP_PARTS_H
+#define ETHD_LOOP_PARTS_H
+
+#include <stdatomic.h>
+
+#include "ethd/loop.h"
+#include "loop/rt.h"
+
+/* Who has device and controller: the loop, or [main] while it enables. */
+enum { ETHD__LOOP_RUNS, ETHD__LOOP_ASKED, ETHD__LOOP_PARKED };
+
+typedef struct ethd__rows {
+  _Alignas(64) atomic_uint head; /* next to write, [rt] */
+  _Alignas(64) atomic_uint tail; /* next to read */
+  uint32_t size;
+  ethd_loop_row *at;
+} ethd__rows;
+
+struct ethd_loop {
+  ethd_loop_def def;
+  int64_t period, early; /* ns */
+
+  /* [rt]; [main] while parked */
+  int64_t due;    /* ns: the next tick's instant */
+  int64_t missed; /* periods since the last step */
+  int64_t step;   /* ns: duration of the last step */
+  int64_t ramp;   /* armed ticks since the start */
+  int32_t dry;    /* 1: the next step is rehearsed first */
+  int32_t marks, was_armed;
+  uint64_t lost, swaps;
+  ethd_sense sense;
+  ethd_loop_row row;
+  ethd_loop_stats stats;
+
+  _Alignas(64) atomic_int mode, armed, clear, stop, ended, failed;
+  ethd__rows rows;
+
+  /* [main] */
+  int32_t shortfalls, threads, locked;
+  pthread_t control, service;
+  void *stack;
+  int dma_latency;
+};
+
+/* The loop's instant now, ns. [rt] */
+int64_t ethd__loop_now(const ethd_loop *loop) ETHD_RT;
+
+/* Sleep, tick, count: until it is told to stop. 0, or what the sleep failed with. [rt] */
+int ethd__loop_cycle(ethd_loop *loop) ETHD_RT;
+
+/* Once round; 0 or what the sleep failed with. [rt] */
+int ethd__loop_turn(ethd_loop *loop) ETHD_RT;
+
+/* Zero torque, as the last thing. [rt] */
+void ethd__loop_rest(ethd_loop *loop) ETHD_RT;
+
+/* What the machine grants, before there is a thread: locks memory, holds the dma latency, finds the
+   processor; the bits of what it refuses. [main] */
+int32_t ethd__loop_ask_machine(ethd_loop *loop, int *cpu);
+void ethd__loop_release_machine(ethd_loop *loop);
+
+/* Names a failure. [main] */
+ethd_status ethd__loop_refuse(ethd_error *error, ethd_status status, const char *name, double found,
+                              double min, double max);
+
+/* Xenomai's initialisation, 0 where there is none to do; switches to secondary mode since. [main] */
+int ethd__xenomai_begin(void);
+void ethd__xenomai_watch(void); /* on the loop's thread, before the first tick */
+uint64_t ethd__xenomai_relaxes(void);
+
+#endif

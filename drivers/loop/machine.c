@@ -1,0 +1,111 @@
+/* What a realtime thread asks of the machine, and what to say when it isn't granted. */
+#include <fcntl.h>
+#include <sched.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include "loop/loop.h"
+
+static const struct {
+  const char *sentence, *mend;
+} words[ETHD_SHORT_COUNT] = {
+    {"no real-time priority: the loop waits behind every other program",
+     "put \"@realtime - rtprio 95\" into /etc/security/limits.d/ethd.conf, join the group realtime and log in "
+     "again; or: setcap cap_sys_nice+ep PROGRAM"},
+    {"memory isn't locked: a page fault may stall a tick",
+     "put \"@realtime - memlock unlimited\" into /etc/security/limits.d/ethd.conf, join the group realtime "
+     "and log in again; or: setcap cap_ipc_lock+ep PROGRAM"},
+    {"the loop isn't bound to the processor that was asked for",
+     "ask for one that is there and allowed (taskset -p $$); isolate it with isolcpus=N on the kernel's "
+     "command line"},
+    {"deep sleep of the processor isn't prevented: wake-ups come late",
+     "let the group open it: KERNEL==\"cpu_dma_latency\", GROUP=\"realtime\", MODE=\"0660\" in "
+     "/etc/udev/rules.d/99-ethd.rules"},
+    {"the kernel isn't a realtime one: latencies have no bound",
+     "boot a kernel with PREEMPT_RT (Debian: linux-image-rt-amd64), or Xenomai"},
+};
+
+static int place(int32_t bit) {
+  for (int i = 0; i < ETHD_SHORT_COUNT; i++)
+    if (bit == 1 << i) return i;
+  return -1;
+}
+
+const char *ethd_shortfall_sentence(int32_t bit) {
+  return place(bit) < 0 ? "an unknown shortfall" : words[place(bit)].sentence;
+}
+
+const char *ethd_shortfall_mend(int32_t bit) { return place(bit) < 0 ? "" : words[place(bit)].mend; }
+
+/* ---- asking ---- */
+
+static int first_line(const char *path, char *out, int size) {
+  FILE *file = fopen(path, "re");
+  int good = file && fgets(out, size, file);
+  if (file) fclose(file);
+  return good;
+}
+
+static int kernel_is_realtime(void) {
+#if defined(__COBALT__)
+  return 1;
+#else
+  char line[16];
+  struct utsname name;
+  if (first_line("/sys/kernel/realtime", line, sizeof line) && line[0] == '1') return 1;
+  return uname(&name) == 0 && strstr(name.version, "PREEMPT_RT");
+#endif
+}
+
+/* "2-3,6": 6; -1 without one. */
+static int highest_isolated(void) {
+  char line[256];
+  int highest = ETHD_CPU_NONE, number = 0;
+  if (!first_line("/sys/devices/system/cpu/isolated", line, sizeof line)) return ETHD_CPU_NONE;
+  for (const char *p = line; sscanf(p, "%d", &number) == 1; p++) {
+    if (number > highest) highest = number;
+    p += strcspn(p, "-,");
+    if (!*p) break;
+  }
+  return highest;
+}
+
+/* The calling thread tries for the other, and comes back. */
+static int may_run_on(int cpu) {
+  cpu_set_t before, one;
+  CPU_ZERO(&one);
+  CPU_SET((unsigned)cpu, &one);
+  if (sched_getaffinity(0, sizeof before, &before) != 0) return 0;
+  if (sched_setaffinity(0, sizeof one, &one) != 0) return 0;
+  return sched_setaffinity(0, sizeof before, &before) == 0;
+}
+
+static int hold_dma_latency(ethd_loop *l) {
+  l->dma_latency = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
+  return l->dma_latency >= 0 &&
+         write(l->dma_latency, &l->def.dma_latency, sizeof l->def.dma_latency) == sizeof l->def.dma_latency;
+}
+
+int32_t ethd__loop_ask_machine(ethd_loop *l, int *cpu) {
+  int32_t bits = 0;
+  *cpu = l->def.cpu == ETHD_CPU_AUTO ? highest_isolated() : l->def.cpu;
+  if (*cpu >= 0 && !may_run_on(*cpu)) {
+    bits |= ETHD_SHORT_AFFINITY;
+    *cpu = ETHD_CPU_NONE;
+  }
+  l->locked = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+  if (!l->locked) bits |= ETHD_SHORT_MLOCK;
+  if (l->def.dma_latency >= 0 && !hold_dma_latency(l)) bits |= ETHD_SHORT_DMA_LATENCY;
+  if (!kernel_is_realtime()) bits |= ETHD_SHORT_PREEMPT;
+  return bits;
+}
+
+void ethd__loop_release_machine(ethd_loop *l) {
+  if (l->dma_latency >= 0) close(l->dma_latency);
+  if (l->locked) munlockall();
+  l->dma_latency = -1;
+  l->locked = 0;
+}

@@ -1,0 +1,180 @@
+/* The loop's threads: its own, and one for the driver's blocking I/O. */
+#include <errno.h>
+#include <math.h>
+#include <sched.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+
+#include "common/denormals.h"
+#include "loop/loop.h"
+
+#define SERVICE_STACK ((size_t)256 << 10)
+#define PAUSE 1000000  /* ns */
+#define PATIENCE 1000  /* pauses */
+
+enum { CONTROL = 1, SERVICE = 2 };
+
+static void pause_a_little(void) {
+  struct timespec t = {.tv_nsec = PAUSE};
+  __STD(nanosleep)(&t, NULL);
+}
+
+/* ---- what runs on them ---- */
+
+static void *run_control(void *loop) {
+  ethd_loop *l = loop;
+  (void)ethd__denormals_flush();
+  /* an ordinary thread's timers may otherwise come 50 us late; a real-time one's don't */
+  prctl(PR_SET_TIMERSLACK, 1, 0, 0, 0);
+  ethd__xenomai_watch();
+  atomic_store_explicit(&l->failed, ethd__loop_cycle(l), memory_order_relaxed);
+  atomic_store_explicit(&l->ended, 1, memory_order_release);
+  return NULL;
+}
+
+static void *run_service(void *loop) {
+  ethd_loop *l = loop;
+  while (!atomic_load_explicit(&l->stop, memory_order_relaxed)) {
+    struct timespec t;
+    __STD(clock_gettime)(CLOCK_MONOTONIC, &t);
+    ethd_status status = l->def.driver->service(l->def.device, (int64_t)t.tv_sec * 1000000000 + t.tv_nsec);
+    if (status < 0) __atomic_fetch_add(&l->stats.service_failures, 1, __ATOMIC_RELAXED);
+    if (status) pause_a_little();
+  }
+  return NULL;
+}
+
+/* ---- starting ---- */
+
+/* Present before the first tick, so that no page of it faults in one; its lowest page is a fence. */
+static void *make_stack(size_t size) {
+  void *stack = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK | MAP_POPULATE, -1, 0);
+  if (stack == MAP_FAILED) return NULL;
+  (void)!mprotect(stack, 4096, PROT_NONE);
+  return stack;
+}
+
+static int create_control(ethd_loop *l, int cpu, int policy) {
+  pthread_attr_t attr;
+  struct sched_param param = {.sched_priority = policy == SCHED_FIFO ? l->def.priority : 0};
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  pthread_attr_init(&attr);
+  pthread_attr_setinheritsched(&attr, PTHREAD_EXPLICIT_SCHED);
+  pthread_attr_setschedpolicy(&attr, policy);
+  pthread_attr_setschedparam(&attr, &param);
+  int failure = pthread_attr_setstack(&attr, l->stack, l->def.stack);
+  if (cpu >= 0) {
+    CPU_SET((unsigned)cpu, &one);
+    pthread_attr_setaffinity_np(&attr, sizeof one, &one);
+  }
+  if (!failure) failure = __RT(pthread_create)(&l->control, &attr, run_control, l);
+  pthread_attr_destroy(&attr);
+  return failure;
+}
+
+static int start_control(ethd_loop *l, int cpu) {
+  int failure = create_control(l, cpu, SCHED_FIFO);
+  if (failure != EPERM) return failure;
+  l->shortfalls |= ETHD_SHORT_FIFO;
+  return l->def.require_rt ? EPERM : create_control(l, cpu, SCHED_OTHER);
+}
+
+static int start_service(ethd_loop *l) {
+  pthread_attr_t attr;
+  if (!l->def.driver->service) return 0;
+  pthread_attr_init(&attr);
+  pthread_attr_setstacksize(&attr, SERVICE_STACK);
+  int failure = __STD(pthread_create)(&l->service, &attr, run_service, l);
+  pthread_attr_destroy(&attr);
+  return failure;
+}
+
+/* Signals are the application's: none reaches these threads, but the one by which Cobalt complains. */
+static int start_threads(ethd_loop *l, int cpu) {
+  sigset_t all, before;
+  sigfillset(&all);
+#if defined(__COBALT__)
+  sigdelset(&all, SIGDEBUG);
+#endif
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  int failure = start_service(l);
+  if (!failure && l->def.driver->service) l->threads |= SERVICE;
+  if (!failure) failure = start_control(l, cpu);
+  if (!failure) l->threads |= CONTROL;
+  pthread_sigmask(SIG_SETMASK, &before, NULL);
+  return failure;
+}
+
+static void arm(ethd_loop *l) {
+  l->missed = l->step = l->ramp = 0;
+  l->dry = 1;
+  l->marks |= ETHD_ROW_STARTED;
+  atomic_store_explicit(&l->armed, 1, memory_order_relaxed);
+}
+
+static ethd_status give_up(ethd_loop *l, ethd_error *error, const char *name, double found) {
+  ethd_loop_stop(l);
+  (void)!ethd_loop_join(l);
+  return ethd__loop_refuse(error, ETHD_E_DEVICE, name, found, NAN, NAN);
+}
+
+ethd_status ethd_loop_start(ethd_loop *l, ethd_error *error) {
+  int cpu;
+  if (l->def.clock) {
+    l->due = *l->def.clock + l->period;
+    arm(l);
+    return ETHD_OK;
+  }
+  if (l->threads) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "loop", NAN, NAN, NAN);
+  if (ethd__xenomai_begin()) return ethd__loop_refuse(error, ETHD_E_DEVICE, "xenomai", NAN, NAN, NAN);
+  l->stack = make_stack(l->def.stack);
+  if (!l->stack) return ethd__loop_refuse(error, ETHD_E_MEMORY, "stack", NAN, NAN, NAN);
+  l->shortfalls = ethd__loop_ask_machine(l, &cpu);
+  if (l->def.require_rt && l->shortfalls) return give_up(l, error, "require_rt", l->shortfalls);
+  arm(l);
+  int failure = start_threads(l, cpu);
+  if (l->def.require_rt && l->shortfalls) return give_up(l, error, "require_rt", l->shortfalls);
+  return failure ? give_up(l, error, "thread", failure) : ETHD_OK;
+}
+
+/* ---- while it runs ---- */
+
+/* The loop lets go between two ticks; then device and controller are [main]'s. */
+static int take_over(ethd_loop *l) {
+  int asked = ETHD__LOOP_ASKED;
+  if (!(l->threads & CONTROL) || ethd_loop_ended(l)) return l->def.clock != NULL;
+  atomic_store_explicit(&l->mode, ETHD__LOOP_ASKED, memory_order_release);
+  for (int i = 0; i < PATIENCE; i++) {
+    if (atomic_load_explicit(&l->mode, memory_order_acquire) == ETHD__LOOP_PARKED) return 1;
+    pause_a_little();
+  }
+  return !atomic_compare_exchange_strong(&l->mode, &asked, ETHD__LOOP_RUNS);
+}
+
+ethd_status ethd_loop_enable(ethd_loop *l) {
+  if (!take_over(l)) return ETHD_BUSY;
+  ethd_status status = l->def.driver->start(l->def.device);
+  if (!status) {
+    ethd_control_reset(l->def.control);
+    arm(l);
+  }
+  atomic_store_explicit(&l->mode, ETHD__LOOP_RUNS, memory_order_release);
+  return status;
+}
+
+ethd_status ethd_loop_join(ethd_loop *l) {
+  if (l->def.clock && !ethd_loop_ended(l)) {
+    ethd__loop_rest(l);
+    atomic_store_explicit(&l->ended, 1, memory_order_release);
+  }
+  if (l->threads & CONTROL) __RT(pthread_join)(l->control, NULL);
+  if (l->threads & SERVICE) __STD(pthread_join)(l->service, NULL);
+  l->threads = 0;
+  if (l->stack) munmap(l->stack, l->def.stack);
+  l->stack = NULL;
+  ethd__loop_release_machine(l);
+  return atomic_load_explicit(&l->failed, memory_order_relaxed) ? ETHD_E_DEVICE : ETHD_OK;
+}

@@ -1,0 +1,226 @@
+/* The loop with threads: under a filter of system calls it needs nothing but to sleep; enabling takes the device
+   over between two ticks; it ends when told. No wall-clock bound is asserted. */
+#include <errno.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <math.h>
+#include <stdatomic.h>
+#include <stddef.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "ethd/loop.h"
+#include "unit/rig.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define SANITIZED 1
+#endif
+#endif
+#ifndef SANITIZED
+#define SANITIZED 0
+#endif
+
+/* ---- a device that puts its own thread under the filter ---- */
+
+typedef struct device {
+  int filter, calls; /* at the first read; a forbidden call at the 50th */
+  long filtered;     /* what the filter's installation returned */
+  int inside;        /* reads and writes now; never while start runs */
+  atomic_int reads, starts, overlaps;
+  atomic_int services;
+  double nan_at;     /* read at which q isn't a number, 0: never */
+  ethd_sense sense;
+} device;
+
+#define ALLOW(number)                                           \
+  BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (unsigned)(number), 0, 1), \
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)
+
+/* Sleep, the clock and futex; what a thread does as it ends. */
+static long forbid_the_rest(void) {
+  struct sock_filter filter[] = {
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr)),
+      ALLOW(SYS_clock_nanosleep),
+      ALLOW(SYS_clock_gettime),
+      ALLOW(SYS_futex),
+      ALLOW(SYS_rt_sigreturn),
+      ALLOW(SYS_rt_sigprocmask),
+      ALLOW(SYS_madvise),
+      ALLOW(SYS_exit),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS),
+  };
+  struct sock_fprog program = {sizeof filter / sizeof *filter, filter};
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)) return -1;
+  return syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, 0, &program);
+}
+
+static ethd_status dev_start(void *device_) {
+  device *d = device_;
+  if (d->inside) atomic_fetch_add(&d->overlaps, 1);
+  d->inside++;
+  atomic_fetch_add(&d->starts, 1);
+  d->inside--;
+  return ETHD_OK;
+}
+
+static ethd_status dev_read(void *device_, int64_t now, ethd_sense *out) ETHD_RT {
+  device *d = device_;
+  int n = atomic_fetch_add(&d->reads, 1) + 1;
+  d->inside++;
+  if (n == 1 && d->filter) d->filtered = forbid_the_rest();
+  if (n == 50 && d->calls) (void)!getppid();
+  *out = d->sense;
+  out->time_ns = now;
+  if (d->nan_at > 0 && n == (int)d->nan_at) out->q[0] = (double)NAN;
+  return ETHD_OK;
+}
+
+static ethd_status dev_write(void *device_, int64_t now, const ethd_command *command) ETHD_RT {
+  (void)now, (void)command;
+  ((device *)device_)->inside--;
+  return ETHD_OK;
+}
+
+static ethd_status dev_service(void *d, int64_t now) {
+  struct timespec t = {.tv_nsec = 1000000};
+  (void)now;
+  atomic_fetch_add(&((device *)d)->services, 1);
+  nanosleep(&t, NULL);
+  return ETHD_OK;
+}
+
+static void dev_safe(void *d) ETHD_RT { (void)d; }
+static ethd_status dev_stop(void *d) { return (void)d, ETHD_OK; }
+static void dev_close(void *d) { (void)d; }
+
+static const ethd_driver driver = {.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "test", .brief = "test",
+                                   .start = dev_start, .read = dev_read, .write = dev_write, .service = dev_service,
+                                   .safe = dev_safe, .stop = dev_stop, .close = dev_close};
+
+static rig r;
+static device d;
+static ethd_loop *loop;
+
+static void open_loop(double early_wake) {
+  rig_open(&r, RIG_WALL);
+  rig_start(&r);
+  motion m = rig_at(0.001, -0.01, 0.001);
+  d.sense = rig_sense(&r.setup.arm, &m);
+  ethd_loop_def def = ethd_loop_default();
+  def.driver = &driver;
+  def.device = &d;
+  def.control = r.control;
+  def.early_wake = early_wake;
+  ck_assert_int_eq(ethd_loop_create(&def, &loop, NULL), ETHD_OK);
+}
+
+static void await_reads(int n) {
+  struct timespec t = {.tv_nsec = 1000000};
+  while (atomic_load(&d.reads) < n) nanosleep(&t, NULL);
+}
+
+static void close_loop(void) {
+  ethd_loop_stop(loop);
+  ck_assert_int_eq(ethd_loop_join(loop), ETHD_OK);
+  ck_assert_int_eq(ethd_loop_ended(loop), 1);
+  ethd_loop_destroy(loop);
+  rig_close(&r);
+}
+
+static void run_filtered(int calls, double early_wake) {
+  d.filter = !SANITIZED;
+  d.calls = calls && !SANITIZED;
+  open_loop(early_wake);
+  ck_assert_int_eq(ethd_loop_start(loop, NULL), ETHD_OK);
+  await_reads(200);
+  ck_assert_int_eq(d.filtered, 0);
+  close_loop();
+}
+
+START_TEST(test_no_call_but_the_sleep) { run_filtered(0, 0); }
+END_TEST
+
+START_TEST(test_no_call_with_early_wake) { run_filtered(0, 1e-4); }
+END_TEST
+
+/* The filter bites. */
+START_TEST(test_a_call_is_fatal) { run_filtered(1, 0); }
+END_TEST
+
+START_TEST(test_enable_between_ticks) {
+  d.nan_at = 20;
+  open_loop(0);
+  ck_assert_int_eq(ethd_loop_start(loop, NULL), ETHD_OK);
+  await_reads(40);
+  ck_assert_int_eq(ethd_loop_armed(loop), 0);
+  ck_assert_int_eq(ethd_loop_enable(loop), ETHD_OK);
+  await_reads(80);
+  ck_assert_int_eq(ethd_loop_armed(loop), 1);
+  for (int i = 0; i < 20; i++) ck_assert_int_eq(ethd_loop_enable(loop), ETHD_OK);
+  ck_assert_int_eq(atomic_load(&d.starts), 21);
+  ck_assert_int_eq(atomic_load(&d.overlaps), 0);
+  ck_assert_int_gt(atomic_load(&d.services), 0);
+  close_loop();
+}
+END_TEST
+
+/* Rows come in order, and statistics can be read, while it runs. */
+START_TEST(test_rows_while_running) {
+  static ethd_loop_stats s;
+  ethd_loop_row row;
+  int64_t next = 0;
+  open_loop(0);
+  ck_assert_int_eq(ethd_loop_start(loop, NULL), ETHD_OK);
+  while (next < 200) {
+    struct timespec t = {.tv_nsec = 1000000};
+    while (ethd_loop_take(loop, &row) == ETHD_OK) ck_assert_int_eq(row.trace.tick, next++);
+    ethd_loop_read(loop, &s);
+    nanosleep(&t, NULL);
+  }
+  close_loop();
+}
+END_TEST
+
+/* A machine without PREEMPT_RT or rights is refused, with all its reasons; nothing ran. */
+START_TEST(test_require_rt) {
+  rig_open(&r, RIG_WALL);
+  rig_start(&r);
+  ethd_loop_def def = ethd_loop_default();
+  ethd_error error;
+  def.driver = &driver;
+  def.device = &d;
+  def.control = r.control;
+  def.require_rt = 1;
+  def.cpu = 1023;
+  ck_assert_int_eq(ethd_loop_create(&def, &loop, NULL), ETHD_OK);
+  ck_assert_int_eq(ethd_loop_start(loop, &error), ETHD_E_DEVICE);
+  ck_assert_str_eq(error.name, "require_rt");
+  ck_assert_int_ne(ethd_loop_shortfalls(loop) & ETHD_SHORT_AFFINITY, 0);
+  ck_assert_int_eq(atomic_load(&d.reads), 0);
+  ethd_loop_destroy(loop);
+  rig_close(&r);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("loop thread");
+  TCase *t = tcase_create("loop thread");
+  tcase_add_test(t, test_no_call_but_the_sleep);
+  tcase_add_test(t, test_no_call_with_early_wake);
+  if (SANITIZED)
+    tcase_add_test(t, test_a_call_is_fatal);
+  else
+    tcase_add_test_raise_signal(t, test_a_call_is_fatal, 31 /* SIGSYS */);
+  tcase_add_test(t, test_enable_between_ticks);
+  tcase_add_test(t, test_rows_while_running);
+  tcase_add_test(t, test_require_rt);
+  tcase_set_timeout(t, 60);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}

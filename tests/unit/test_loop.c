@@ -1,0 +1,412 @@
+/* The loop on a virtual clock: the grid, overruns, what the device gets, rows; the histogram against a sort. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ethd/loop.h"
+#include "unit/rig.h"
+
+#define PERIOD 1000000 /* ns */
+
+/* ---- a device that says what it was asked, and stalls when told to ---- */
+
+typedef struct device {
+  int64_t *clock;
+  int64_t read_at[64];
+  int reads, writes, starts, safes, services;
+  int64_t stall_read[64], stall_write[64]; /* ns, by tick */
+  int fail_read, fail_write;               /* at this tick; -1 never */
+  ethd_command written[64];
+  ethd_sense sense;
+} device;
+
+static ethd_status dev_start(void *d) { return ((device *)d)->starts++, ETHD_OK; }
+
+static ethd_status dev_read(void *device_, int64_t now, ethd_sense *out) ETHD_RT {
+  device *d = device_;
+  *out = d->sense;
+  out->time_ns = now;
+  d->read_at[d->reads] = now;
+  *d->clock += d->stall_read[d->reads];
+  return d->reads++ == d->fail_read ? ETHD_E_DEVICE : ETHD_OK;
+}
+
+static ethd_status dev_write(void *device_, int64_t now, const ethd_command *command) ETHD_RT {
+  device *d = device_;
+  (void)now;
+  d->written[d->writes] = *command;
+  *d->clock += d->stall_write[d->writes];
+  return d->writes++ == d->fail_write ? ETHD_E_DEVICE : ETHD_OK;
+}
+
+static void dev_safe(void *d) ETHD_RT { ((device *)d)->safes++; }
+static ethd_status dev_service(void *d, int64_t now) { return (void)now, ((device *)d)->services++, ETHD_OK; }
+static ethd_status dev_stop(void *d) { return (void)d, ETHD_OK; }
+static void dev_close(void *d) { (void)d; }
+
+static const ethd_driver driver = {.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "test", .brief = "test",
+                                   .start = dev_start, .read = dev_read, .write = dev_write, .service = dev_service,
+                                   .safe = dev_safe, .stop = dev_stop, .close = dev_close};
+
+typedef struct bench {
+  rig r;
+  device d;
+  int64_t clock;
+  ethd_loop_def def;
+  ethd_loop *loop;
+} bench;
+
+/* Ring in free space, finger 1 mm ahead: a torque that isn't 0. */
+static void bench_open(bench *b) {
+  memset(b, 0, sizeof *b);
+  rig_open(&b->r, NULL);
+  rig_start(&b->r);
+  motion m = rig_at(0.01, 0, 0.001);
+  b->clock = 5 * (int64_t)PERIOD;
+  b->d = (device){.clock = &b->clock, .fail_read = -1, .fail_write = -1, .sense = rig_sense(&b->r.setup.arm, &m)};
+  b->def = ethd_loop_default();
+  b->def.driver = &driver;
+  b->def.device = &b->d;
+  b->def.control = b->r.control;
+  b->def.clock = &b->clock;
+  b->def.soft_start = 0;
+}
+
+static void bench_start(bench *b) {
+  ck_assert_int_eq(ethd_loop_create(&b->def, &b->loop, NULL), ETHD_OK);
+  ck_assert_int_eq(ethd_loop_start(b->loop, NULL), ETHD_OK);
+}
+
+static ethd_loop_row bench_tick(bench *b) {
+  ethd_loop_row row;
+  ethd_loop_tick(b->loop);
+  ck_assert_int_eq(ethd_loop_take(b->loop, &row), ETHD_OK);
+  return row;
+}
+
+static void bench_close(bench *b) {
+  ethd_loop_destroy(b->loop);
+  rig_close(&b->r);
+}
+
+/* ---- the grid ---- */
+
+START_TEST(test_ticks_stand_on_the_grid) {
+  bench b;
+  ethd_loop_stats s;
+  bench_open(&b);
+  bench_start(&b);
+  for (int i = 0; i < 10; i++) ck_assert_int_eq(bench_tick(&b).trace.sense.missed, 0);
+  for (int i = 0; i < 10; i++) ck_assert_int_eq(b.d.read_at[i], (6 + i) * (int64_t)PERIOD);
+  ethd_loop_read(b.loop, &s);
+  ck_assert_uint_eq(s.ticks, 10);
+  ck_assert_uint_eq(s.overruns, 0);
+  ck_assert_uint_eq(s.missed, 0);
+  ck_assert_int_eq(s.wake.max, 0);
+  ck_assert_int_eq(b.d.services, 10);
+  bench_close(&b);
+}
+END_TEST
+
+/* A tick of `busy` ns, from tick 3: the next one is on the grid, and knows what it missed. Exactly at the next
+   instant is in time. */
+static const struct {
+  int64_t busy, missed;
+} busy_ticks[] = {{PERIOD / 2, 0},     {PERIOD, 0},         {PERIOD + 1, 1},     {2 * PERIOD - 1, 1},
+                  {2 * PERIOD, 1},     {2 * PERIOD + 1, 2}, {7 * PERIOD / 2, 3}, {100 * PERIOD, 99}};
+
+START_TEST(test_overruns_are_counted_and_realigned) {
+  bench b;
+  ethd_loop_stats s;
+  int64_t missed = busy_ticks[_i].missed;
+  bench_open(&b);
+  b.d.stall_write[3] = busy_ticks[_i].busy;
+  bench_start(&b);
+  for (int i = 0; i < 10; i++) ck_assert_int_eq(bench_tick(&b).trace.sense.missed, i == 4 ? missed : 0);
+  for (int i = 0; i < 10; i++) ck_assert_int_eq(b.d.read_at[i], (6 + i + (i > 3 ? missed : 0)) * (int64_t)PERIOD);
+  ethd_loop_read(b.loop, &s);
+  ck_assert_uint_eq(s.overruns, missed > 0);
+  ck_assert_uint_eq(s.missed, (uint64_t)missed);
+  ck_assert_int_eq(s.tick.max, busy_ticks[_i].busy);
+  bench_close(&b);
+}
+END_TEST
+
+/* The clock ran on while the loop slept (preempted, suspended). */
+START_TEST(test_late_wake_up_is_an_overrun) {
+  bench b;
+  ethd_loop_stats s;
+  bench_open(&b);
+  bench_start(&b);
+  bench_tick(&b);
+  b.clock += 3 * PERIOD + PERIOD / 4; /* now 9.25, due 7 */
+  ethd_loop_row row = bench_tick(&b);
+  ck_assert_int_eq(row.trace.sense.missed, 2);
+  ck_assert_int_eq(b.d.read_at[1], 9 * (int64_t)PERIOD);
+  bench_tick(&b);
+  ck_assert_int_eq(b.d.read_at[2], 10 * (int64_t)PERIOD);
+  ethd_loop_read(b.loop, &s);
+  ck_assert_uint_eq(s.overruns, 1);
+  ck_assert_uint_eq(s.missed, 2);
+  ck_assert_int_eq(s.wake.max, 2 * PERIOD + PERIOD / 4);
+  bench_close(&b);
+}
+END_TEST
+
+/* The step's duration reaches the next step: the budget guard lives on it. A virtual step takes no time. */
+START_TEST(test_two_runs_are_equal) {
+  bench *b = calloc(2, sizeof *b);
+  for (int k = 0; k < 2; k++) {
+    bench_open(&b[k]);
+    b[k].d.stall_read[7] = 2500000;
+    bench_start(&b[k]);
+  }
+  for (int i = 0; i < 40; i++) {
+    ethd_loop_row rows[2] = {bench_tick(&b[0]), bench_tick(&b[1])};
+    ck_assert_int_eq(rows[0].trace.sense.step_ns, 0);
+    ck_assert_mem_eq(&rows[0].trace, &rows[1].trace, sizeof rows[0].trace);
+  }
+  bench_close(&b[0]);
+  bench_close(&b[1]);
+  free(b);
+}
+END_TEST
+
+/* ---- what the device gets ---- */
+
+START_TEST(test_soft_start) {
+  bench b;
+  bench_open(&b);
+  b.def.soft_start = 0.004;
+  bench_start(&b);
+  for (int i = 0; i < 8; i++) {
+    ethd_loop_row row = bench_tick(&b);
+    double share = i < 4 ? i / 4.0 : 1;
+    ck_assert_double_eq_tol(row.share, share, 1e-12);
+    ck_assert(row.trace.tau[0] != 0);
+    ck_assert_double_eq(b.d.written[i].torque[0], row.share * row.trace.tau[0]);
+    ck_assert_int_eq(row.armed, 1);
+  }
+  bench_close(&b);
+}
+END_TEST
+
+START_TEST(test_disarm_and_enable) {
+  bench b;
+  bench_open(&b);
+  bench_start(&b);
+  ck_assert_int_eq(bench_tick(&b).marks, ETHD_ROW_STARTED);
+  ck_assert(b.d.written[0].torque[0] != 0 && !b.d.written[0].safe);
+  ethd_loop_disarm(b.loop);
+  for (int i = 1; i < 4; i++) {
+    ethd_loop_row row = bench_tick(&b);
+    ck_assert(row.share == 0 && row.armed == 0 && row.trace.tau[0] != 0 && row.marks == 0);
+    ck_assert(b.d.written[i].torque[0] == 0 && b.d.written[i].torque[1] == 0 && b.d.written[i].safe);
+  }
+  ck_assert_int_eq(b.d.safes, 1);
+  ck_assert_int_eq(ethd_loop_enable(b.loop), ETHD_OK);
+  ck_assert_int_eq(b.d.starts, 1);
+  ethd_loop_row row = bench_tick(&b);
+  ck_assert_int_eq(row.marks, ETHD_ROW_STARTED);
+  ck_assert_int_eq(row.trace.tick, 0);
+  ck_assert(b.d.written[4].torque[0] != 0);
+  bench_close(&b);
+}
+END_TEST
+
+/* A device that can't be read: the same tick gives zero torque, latched, until acknowledged and enabled. */
+START_TEST(test_failed_read_disarms) {
+  bench b;
+  bench_open(&b);
+  b.d.fail_read = 2;
+  bench_start(&b);
+  for (int i = 0; i < 5; i++) {
+    ethd_loop_row row = bench_tick(&b);
+    ck_assert_int_eq(row.trace.fault, i < 2 ? ETHD_FAULT_NONE : ETHD_FAULT_INPUT);
+    ck_assert_int_eq(b.d.written[i].safe, i >= 2);
+    if (i >= 2) ck_assert(b.d.written[i].torque[0] == 0 && b.d.written[i].torque[1] == 0);
+  }
+  ck_assert_int_eq(ethd_loop_armed(b.loop), 0);
+  ck_assert_int_eq(b.d.safes, 1);
+  ethd_loop_clear(b.loop);
+  ethd_loop_row row = bench_tick(&b);
+  ck_assert_int_eq(row.marks, ETHD_ROW_CLEARED);
+  ck_assert_int_eq(row.trace.fault, ETHD_FAULT_NONE);
+  ck_assert(b.d.written[5].safe);
+  bench_close(&b);
+}
+END_TEST
+
+START_TEST(test_failed_write_disarms) {
+  bench b;
+  ethd_loop_stats s;
+  bench_open(&b);
+  b.d.fail_write = 2;
+  bench_start(&b);
+  for (int i = 0; i < 4; i++) bench_tick(&b);
+  ck_assert_int_eq(b.d.written[2].safe, 0);
+  ck_assert_int_eq(b.d.written[3].safe, 1);
+  ck_assert_int_eq(b.d.safes, 1);
+  ethd_loop_read(b.loop, &s);
+  ck_assert_uint_eq(s.write_failures, 1);
+  bench_close(&b);
+}
+END_TEST
+
+START_TEST(test_zero_torque_is_the_last_thing) {
+  bench b;
+  bench_open(&b);
+  bench_start(&b);
+  bench_tick(&b);
+  ethd_loop_stop(b.loop);
+  ck_assert_int_eq(ethd_loop_join(b.loop), ETHD_OK);
+  ck_assert_int_eq(b.d.writes, 2);
+  ck_assert(b.d.written[1].safe && b.d.written[1].torque[0] == 0 && b.d.written[1].torque[1] == 0);
+  ck_assert_int_eq(ethd_loop_ended(b.loop), 1);
+  bench_close(&b);
+  ck_assert_int_eq(b.d.writes, 2);
+}
+END_TEST
+
+/* Rows without room are counted, and the next one says how many. */
+START_TEST(test_lost_rows) {
+  bench b;
+  ethd_loop_row row;
+  ethd_loop_stats s;
+  bench_open(&b);
+  b.def.rows = 4;
+  bench_start(&b);
+  for (int i = 0; i < 7; i++) ethd_loop_tick(b.loop);
+  for (int i = 0; i < 4; i++) {
+    ck_assert_int_eq(ethd_loop_take(b.loop, &row), ETHD_OK);
+    ck_assert_int_eq(row.trace.tick, i);
+    ck_assert_uint_eq(row.lost, 0);
+  }
+  ck_assert_int_eq(ethd_loop_take(b.loop, &row), ETHD_EMPTY);
+  row = bench_tick(&b);
+  ck_assert_int_eq(row.trace.tick, 7);
+  ck_assert_uint_eq(row.lost, 3);
+  ethd_loop_read(b.loop, &s);
+  ck_assert_uint_eq(s.rows_lost, 3);
+  bench_close(&b);
+}
+END_TEST
+
+/* ---- refusals ---- */
+
+START_TEST(test_refused_defs) {
+  bench b;
+  ethd_error error;
+  bench_open(&b);
+#define REFUSED(field, value, code)                                         \
+  do {                                                                      \
+    ethd_loop_def def = b.def;                                              \
+    def.field = value;                                                      \
+    ck_assert_int_eq(ethd_loop_create(&def, &b.loop, &error), code);        \
+    ck_assert_ptr_null(b.loop);                                             \
+    if (code == ETHD_E_RANGE) ck_assert_str_eq(error.name, #field);         \
+  } while (0)
+  REFUSED(cookie, 0, ETHD_E_ARGUMENT);
+  REFUSED(driver, NULL, ETHD_E_ARGUMENT);
+  REFUSED(control, NULL, ETHD_E_ARGUMENT);
+  REFUSED(period, 0, ETHD_E_RANGE);
+  REFUSED(period, (double)NAN, ETHD_E_RANGE);
+  REFUSED(period, 2, ETHD_E_RANGE);
+  REFUSED(cpu, -3, ETHD_E_RANGE);
+  REFUSED(cpu, 1024, ETHD_E_RANGE);
+  REFUSED(priority, 0, ETHD_E_RANGE);
+  REFUSED(priority, 100, ETHD_E_RANGE);
+  REFUSED(early_wake, 0.0006, ETHD_E_RANGE);
+  REFUSED(early_wake, (double)NAN, ETHD_E_RANGE);
+  REFUSED(soft_start, -1, ETHD_E_RANGE);
+  REFUSED(dma_latency, -2, ETHD_E_RANGE);
+  REFUSED(stack, 1000, ETHD_E_RANGE);
+  REFUSED(rows, 1000, ETHD_E_RANGE);
+  REFUSED(rows, 1u << 21, ETHD_E_RANGE);
+  rig_close(&b.r);
+}
+END_TEST
+
+/* ---- histogram ---- */
+
+START_TEST(test_bins_join) {
+  for (uint32_t bin = 0; bin + 1 < ETHD_BINS; bin++) {
+    int64_t first = ethd_histogram_first(bin), last = ethd_histogram_last(bin);
+    ck_assert(first <= last && last + 1 == ethd_histogram_first(bin + 1));
+    ck_assert(bin < 64 ? first == last : (last - first) * 32 < first);
+  }
+}
+END_TEST
+
+static int by_size(const void *a, const void *b) {
+  int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+  return (x > y) - (x < y);
+}
+
+/* The answer is in the bin of the sorted list's element, over it by at most 1/32. */
+START_TEST(test_percentiles_against_a_sort) {
+  enum { N = 20000 };
+  static int64_t ns[N];
+  static ethd_histogram h;
+  static const double shares[] = {0, 1e-4, 0.01, 0.5, 0.9, 0.99, 0.999, 0.9999, 1};
+  uint64_t x = 88172645463325252u;
+  for (int i = 0; i < N; i++) {
+    x ^= x << 13, x ^= x >> 7, x ^= x << 17;
+    ns[i] = (int64_t)(x >> (30 + x % 32)); /* 2 to 2^34 */
+    ethd_histogram_add(&h, ns[i]);
+  }
+  qsort(ns, N, sizeof *ns, by_size);
+  for (size_t i = 0; i < sizeof shares / sizeof *shares; i++) {
+    int64_t rank = (int64_t)ceil(shares[i] * N);
+    int64_t exact = ns[rank > 0 ? rank - 1 : 0], found = ethd_histogram_at(&h, shares[i]);
+    ck_assert_msg(found >= exact && (found - exact) * 32 <= exact, "%g: %ld, sorted %ld", shares[i], (long)found,
+                  (long)exact);
+  }
+  ck_assert_int_eq(ethd_histogram_at(&h, 1), ns[N - 1]);
+  ck_assert_int_eq(h.max, ns[N - 1]);
+}
+END_TEST
+
+START_TEST(test_histogram_ends) {
+  static ethd_histogram h;
+  ck_assert_int_eq(ethd_histogram_at(&h, 0.5), 0);
+  ethd_histogram_add(&h, -5);
+  ck_assert_uint_eq(h.counts[0], 1);
+  ethd_histogram_add(&h, INT64_MAX);
+  ck_assert_uint_eq(h.counts[ETHD_BINS - 1], 1);
+  ck_assert_int_eq(ethd_histogram_at(&h, 1), INT64_MAX);
+  ck_assert_int_eq(ethd_histogram_at(&h, 0.5), 0);
+}
+END_TEST
+
+/* Every shortfall has words, and nothing else has. */
+START_TEST(test_shortfalls_have_words) {
+  for (int i = 0; i < ETHD_SHORT_COUNT; i++) {
+    ck_assert_str_ne(ethd_shortfall_sentence(1 << i), ethd_shortfall_sentence(1 << ETHD_SHORT_COUNT));
+    ck_assert_uint_gt(strlen(ethd_shortfall_mend(1 << i)), 10);
+  }
+  ck_assert_str_eq(ethd_shortfall_mend(3), "");
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("loop");
+  TCase *t = tcase_create("loop");
+  tcase_add_test(t, test_ticks_stand_on_the_grid);
+  tcase_add_loop_test(t, test_overruns_are_counted_and_realigned, 0, sizeof busy_ticks / sizeof *busy_ticks);
+  tcase_add_test(t, test_late_wake_up_is_an_overrun);
+  tcase_add_test(t, test_two_runs_are_equal);
+  tcase_add_test(t, test_soft_start);
+  tcase_add_test(t, test_disarm_and_enable);
+  tcase_add_test(t, test_failed_read_disarms);
+  tcase_add_test(t, test_failed_write_disarms);
+  tcase_add_test(t, test_zero_torque_is_the_last_thing);
+  tcase_add_test(t, test_lost_rows);
+  tcase_add_test(t, test_refused_defs);
+  tcase_add_test(t, test_bins_join);
+  tcase_add_test(t, test_percentiles_against_a_sort);
+  tcase_add_test(t, test_histogram_ends);
+  tcase_add_test(t, test_shortfalls_have_words);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}
