@@ -1,0 +1,141 @@
+/* A device, really: opened, stepped in real time, commanded on stdin. */
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "common/cli.h"
+#include "run/commands.h"
+#include "run/session.h"
+#include "run/summary.h"
+
+#define POLL 20 /* ms between looks at signals and the duration */
+
+static const char doc[] =
+    "Runs a device under the controller, one tick a period, until the duration is over, the command stop, "
+    "Ctrl-C, SIGTERM or SIGHUP: then the ring is damped until it is still, and the device disabled.\v"
+    "Commands on stdin, one a line, each answered by a line that begins with ok or error:\n"
+    "  transition LAW          another transition law, without a bump\n"
+    "  set SECTION.KEY VALUE   as in the configuration\n"
+    "  status                  where ring and controller are\n"
+    "  ack                     acknowledges a fault\n"
+    "  enable                  starts a disabled device anew, torque rising from zero\n"
+    "  wait S                  the next command waits for S seconds of the loop\n"
+    "  stop                    ends the run\n"
+    "The end of the input doesn't end the run. With --virtual there is no real time: the device is stepped as "
+    "fast as it goes, time passes in wait and, after the input, up to the duration, and equal input gives "
+    "equal bytes.\n\n"
+    "Examples:\n"
+    "  ethd-run --config device.ini --record session\n"
+    "  printf 'wait 0.5\\ntransition smooth\\nstatus\\n' | ethd-run --virtual --duration 2";
+
+enum { OPTION_RECORD = 256, OPTION_TELEMETRY, OPTION_VIRTUAL, OPTION_CPU, OPTION_PRIORITY, OPTION_REQUIRE, OPTION_EARLY, OPTION_DMA, OPTION_SOFT };
+
+static const struct argp_option options[] = {
+    {"config", 'c', "C.ini", 0, "configuration; the simulated device without", 0},
+    {"duration", 'd', "S", 0, "ends after so many seconds; needed with --virtual", 0},
+    {"record", OPTION_RECORD, "DIR", 0, "every tick, for ethd-replay --verify", 0},
+    {"telemetry", OPTION_TELEMETRY, "HOST:PORT", 0, "UDP, JSON, 100 Hz: PlotJuggler's UDP server reads it", 0},
+    {"virtual", OPTION_VIRTUAL, NULL, 0, "lock-step on a virtual clock, no threads", 0},
+    {"cpu", OPTION_CPU, "N|auto|none", 0, "processor of the loop: none; auto: the highest isolated one", 1},
+    {"priority", OPTION_PRIORITY, "N", 0, "of SCHED_FIFO: 80", 1},
+    {"require-rt", OPTION_REQUIRE, NULL, 0, "refuse to run when the machine grants less than realtime", 1},
+    {"early-wake", OPTION_EARLY, "US", 0, "wake so much early, warm the caches, spin to the tick: 0", 1},
+    {"dma-latency", OPTION_DMA, "US", 0, "hold /dev/cpu_dma_latency at this", 1},
+    {"soft-start", OPTION_SOFT, "S", 0, "time in which the torque rises after enabling: 0.1", 1},
+    {0},
+};
+
+static struct {
+  ethd__session_options session;
+  double duration; /* s, 0: none */
+} arg;
+
+static int32_t parse_cpu(const char *text) {
+  if (!strcmp(text, "none")) return ETHD_CPU_NONE;
+  if (!strcmp(text, "auto")) return ETHD_CPU_AUTO;
+  return (int32_t)ethd__option_integer("--cpu", text, 0, 1023);
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  ethd_loop_def *loop = &arg.session.loop;
+  switch (key) {
+    case 'c': arg.session.config = text; return 0;
+    case 'd': arg.duration = ethd__option_number("--duration", text, 1e-3, 1e7); return 0;
+    case OPTION_RECORD: arg.session.record = text; return 0;
+    case OPTION_TELEMETRY: arg.session.telemetry = text; return 0;
+    case OPTION_VIRTUAL: arg.session.is_virtual = true; return 0;
+    case OPTION_CPU: loop->cpu = parse_cpu(text); return 0;
+    case OPTION_PRIORITY: loop->priority = (int32_t)ethd__option_integer("--priority", text, 1, 99); return 0;
+    case OPTION_REQUIRE: loop->require_rt = 1; return 0;
+    case OPTION_EARLY: loop->early_wake = 1e-6 * ethd__option_number("--early-wake", text, 0, 1e5); return 0;
+    case OPTION_DMA: loop->dma_latency = (int32_t)ethd__option_integer("--dma-latency", text, 0, 1000000); return 0;
+    case OPTION_SOFT: loop->soft_start = ethd__option_number("--soft-start", text, 0, 10); return 0;
+    case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+    case ARGP_KEY_END:
+      if (arg.session.is_virtual && !(arg.duration > 0)) argp_error(state, "--virtual needs --duration");
+      if (arg.session.is_virtual && loop->require_rt) argp_error(state, "--virtual contradicts --require-rt");
+      return 0;
+    default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static bool over(const ethd__session *s) {
+  return ethd__stop || ethd_loop_ended(s->loop) ||
+         (arg.duration > 0 && ethd__session_time(s) >= arg.duration * (1 - 1e-12));
+}
+
+/* Commands as they come; those behind a wait when it is over. */
+static void run_live(ethd__session *s) {
+  ethd__commands c = {.ended = false};
+  while (!c.stop && !over(s)) {
+    bool held = ethd__session_time(s) < c.hold;
+    if (held || c.ended)
+      usleep(held ? 1000 : POLL * 1000);
+    else
+      ethd__commands_read(&c, s, POLL);
+    ethd__session_poll(s);
+  }
+}
+
+/* Commands take no time; a terminal has none for a virtual clock. */
+static void run_virtual(ethd__session *s) {
+  ethd__commands c = {.ended = isatty(STDIN_FILENO)};
+  while (!c.stop && !over(s)) {
+    if (c.ended || ethd__session_time(s) < c.hold)
+      ethd__session_tick(s);
+    else
+      ethd__commands_read(&c, s, -1);
+  }
+}
+
+/* SIGHUP as SIGTERM; a reader of our answers that leaves doesn't end the run. */
+static void catch_signals(void) {
+  struct sigaction action;
+  ethd__catch_interrupt();
+  sigaction(SIGTERM, NULL, &action);
+  sigaction(SIGHUP, &action, NULL);
+  signal(SIGPIPE, SIG_IGN);
+}
+
+int main(int argc, char **argv) {
+  static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
+  static ethd__session session;
+  char message[ETHD_MESSAGE_MAX];
+  arg.session.loop = ethd_loop_default();
+  ethd__begin();
+  argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  catch_signals();
+  ethd_status status = ethd__session_open(&arg.session, &session, message);
+  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  if (!arg.session.is_virtual) ethd__shortfalls_print(stderr, ethd_loop_shortfalls(session.loop));
+  if (arg.session.is_virtual)
+    run_virtual(&session);
+  else
+    run_live(&session);
+  ethd__session_halt(&session);
+  status = ethd__session_end(&session, message);
+  ethd__summary_print(stdout, &session, arg.session.record);
+  if (status) fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);
+  ethd__session_free(&session);
+  return ethd__end(status ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE);
+}

@@ -1,0 +1,174 @@
+#include "run/commands.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <poll.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "file/error_text.h"
+#include "file/text.h"
+
+static void answer(const char *format, ...) __attribute__((format(printf, 1, 2)));
+static void answer(const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  vprintf(format, args);
+  va_end(args);
+  putchar('\n');
+  fflush(stdout);
+}
+
+/* ---- the commands ---- */
+
+static void post(ethd__session *s, ethd_status status, const ethd_setup *setup, const char *kind,
+                 const char *detail, char *message) {
+  if (!status) status = ethd__session_post(s, setup, kind, detail, message);
+  if (status)
+    answer("error: %s", message);
+  else
+    answer("ok: %s %s", kind, detail);
+}
+
+static void transition(ethd__session *s, ethd__commands *c, char *rest) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  ethd_setup setup = s->setup;
+  (void)c;
+  if (!*rest) {
+    answer("error: transition LAW");
+    return;
+  }
+  post(s, ethd_config_transition(s->config, rest, &setup, message), &setup, "transition", rest, message);
+}
+
+static void set(ethd__session *s, ethd__commands *c, char *rest) {
+  char message[ETHD_MESSAGE_MAX] = "", detail[ETHD__LINE_MAX];
+  ethd_setup setup = s->setup;
+  size_t key = strcspn(rest, " \t");
+  char *value = rest + key + strspn(rest + key, " \t");
+  (void)c;
+  if (!*value) {
+    answer("error: set SECTION.KEY VALUE");
+    return;
+  }
+  rest[key] = 0;
+  snprintf(detail, sizeof detail, "%s %s", rest, value);
+  post(s, ethd_config_set(s->config, rest, value, &setup, message), &setup, "set", detail, message);
+}
+
+static void status(ethd__session *s, ethd__commands *c, char *rest) {
+  static const char *const states[] = {"transparent", "braking", "vo"};
+  static ethd_loop_stats stats;
+  ethd_loop_row row = ethd__recorder_latest(&s->recorder);
+  const ethd_trace *k = &row.trace;
+  (void)c, (void)rest;
+  ethd_loop_read(s->loop, &stats);
+  answer("ok: t %.3f s, %s, %s, %s, beta %.3f, ring %.4f %.4f m, torque %.4f %.4f Nm, %" PRIu64
+         " overruns, %s",
+         ethd__session_time(s), ethd_loop_armed(s->loop) ? "enabled" : "disabled", s->setup.transition->law.id,
+         k->state >= 0 && k->state < 3 ? states[k->state] : "?", k->beta, k->x[0], k->x[1],
+         row.share * k->tau[0], row.share * k->tau[1], stats.overruns, ethd_fault_sentence((ethd_fault)k->fault));
+}
+
+static bool faulty(ethd__session *s) { return ethd__recorder_latest(&s->recorder).trace.fault != 0; }
+
+static void ack(ethd__session *s, ethd__commands *c, char *rest) {
+  (void)c, (void)rest;
+  if (!faulty(s)) {
+    answer("error: there is no fault to acknowledge");
+    return;
+  }
+  ethd_loop_clear(s->loop);
+  answer(ethd_loop_armed(s->loop) ? "ok: acknowledged" : "ok: acknowledged; the device is disabled, enable starts it");
+}
+
+static void enable(ethd__session *s, ethd__commands *c, char *rest) {
+  (void)c, (void)rest;
+  if (ethd_loop_armed(s->loop)) {
+    answer("error: the device is enabled");
+  } else if (faulty(s)) {
+    answer("error: a fault is latched: %s; ack comes first",
+           ethd_fault_sentence((ethd_fault)ethd__recorder_latest(&s->recorder).trace.fault));
+  } else {
+    ethd_status failure = ethd__session_enable(s);
+    if (failure)
+      answer("error: %s", ethd_status_sentence(failure));
+    else
+      answer("ok: enabled");
+  }
+}
+
+static void stop(ethd__session *s, ethd__commands *c, char *rest) {
+  (void)s, (void)rest;
+  c->stop = true;
+  answer("ok: stopping");
+}
+
+static void wait_for(ethd__session *s, ethd__commands *c, char *rest) {
+  double seconds;
+  if (!ethd__number(rest, strlen(rest), &seconds) || !(seconds >= 0 && seconds <= 1e6)) {
+    answer("error: wait: a number of seconds from 0 to 1000000 is allowed");
+    return;
+  }
+  c->hold = ethd__session_time(s) + seconds;
+  answer("ok: waiting");
+}
+
+static const struct {
+  const char *word;
+  void (*run)(ethd__session *s, ethd__commands *c, char *rest);
+  bool alone;
+} table[] = {{"transition", transition, false}, {"set", set, false},     {"status", status, true},
+             {"ack", ack, true},                {"enable", enable, true}, {"stop", stop, true},
+             {"wait", wait_for, false}};
+
+/* ---- lines ---- */
+
+static void run(ethd__commands *c, ethd__session *s) {
+  char *word = c->line + strspn(c->line, " \t"), quote[ETHD_QUOTE_MAX];
+  for (size_t n = strlen(word); n && strchr(" \t\r", word[n - 1]);) word[--n] = 0;
+  size_t length = strcspn(word, " \t");
+  char *rest = word + length + strspn(word + length, " \t");
+  if (!*word) return;
+  for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+    if (strlen(table[i].word) != length || memcmp(table[i].word, word, length) != 0) continue;
+    if (table[i].alone && *rest)
+      answer("error: %s stands alone", table[i].word);
+    else
+      table[i].run(s, c, rest);
+    return;
+  }
+  answer("error: found %s; transition, set, status, ack, enable, stop, wait are allowed",
+         ethd__quote(word, length, quote));
+}
+
+static void end_line(ethd__commands *c, ethd__session *s) {
+  c->line[c->length] = 0;
+  if (c->overlong)
+    answer("error: a line over %d bytes", ETHD__LINE_MAX - 1);
+  else
+    run(c, s);
+  c->length = 0;
+  c->overlong = false;
+}
+
+void ethd__commands_read(ethd__commands *c, ethd__session *s, int wait_ms) {
+  struct pollfd in = {.fd = STDIN_FILENO, .events = POLLIN};
+  char byte;
+  while (!c->ended && poll(&in, 1, wait_ms) > 0) {
+    ssize_t n = read(STDIN_FILENO, &byte, 1);
+    if (n < 0 && (errno == EINTR || errno == EAGAIN)) return;
+    c->ended = n <= 0;
+    if (n <= 0 && !c->length) return;
+    if (n <= 0 || byte == '\n') {
+      end_line(c, s);
+      return;
+    }
+    if (c->length < ETHD__LINE_MAX - 1 && byte)
+      c->line[c->length++] = byte;
+    else
+      c->overlong = true;
+  }
+}

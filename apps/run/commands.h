@@ -1,0 +1,20 @@
+/* Commands of ethd-run: a line in, a line out. All [main]. */
+#ifndef ETHD_APPS_RUN_COMMANDS_H
+#define ETHD_APPS_RUN_COMMANDS_H
+
+#include "run/session.h"
+
+#define ETHD__LINE_MAX 512
+
+typedef struct ethd__commands {
+  char line[ETHD__LINE_MAX];
+  size_t length;
+  bool overlong, ended; /* ended: no more input */
+  bool stop;            /* the command stop was given */
+  double hold;          /* s on the loop's clock: the next command waits for it */
+} ethd__commands;
+
+/* Reads what is there, at most one line, and answers it. wait_ms as for poll(2). */
+void ethd__commands_read(ethd__commands *c, ethd__session *s, int wait_ms);
+
+#endif

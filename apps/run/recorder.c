@@ -1,0 +1,129 @@
+#include "run/recorder.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "common/cli.h"
+#include "run/telemetry.h"
+
+#define STACK ((size_t)512 << 10)
+#define PAUSE 2000000 /* ns */
+#define TELEMETRY 0.01 /* s */
+
+void ethd__recorder_begin(ethd__recorder *r, double period) {
+  pthread_mutex_init(&r->lock, NULL);
+  r->every = (uint64_t)fmax(1, round(TELEMETRY / period));
+}
+
+/* ---- rows ---- */
+
+static void event(ethd__recorder *r, const char *kind, const char *detail) {
+  if (r->recording && ethd_recording_event(r->recording, kind, detail)) r->failed = true;
+}
+
+static void tell_lost(ethd__recorder *r, uint64_t lost) {
+  char text[80];
+  if (!lost) return;
+  r->lost += lost;
+  snprintf(text, sizeof text, "%" PRIu64 " ticks before this one found no room", lost);
+  event(r, "fault", text);
+}
+
+static void tell_posts(ethd__recorder *r, uint64_t swaps) {
+  for (; r->swaps < swaps && r->waiting; r->swaps++) {
+    event(r, r->posts[0].kind, r->posts[0].detail);
+    memmove(r->posts, r->posts + 1, (size_t)--r->waiting * sizeof r->posts[0]);
+  }
+}
+
+static void tell_fault(ethd__recorder *r, int64_t fault) {
+  const char *sentence = ethd_fault_sentence((ethd_fault)fault);
+  if (!fault || fault == r->latest.trace.fault || atomic_load(&r->stopping)) return;
+  if (fault > 0 && fault < ETHD_FAULT_COUNT) r->faults[fault]++;
+  event(r, "fault", sentence);
+  fprintf(stderr, "%s: fault: %s\n", program_invocation_short_name, sentence);
+}
+
+static void take(ethd__recorder *r, const ethd_loop_row *row) {
+  pthread_mutex_lock(&r->lock);
+  tell_lost(r, row->lost);
+  if (row->marks & ETHD_ROW_STARTED && r->rows) event(r, "start", "enabled");
+  tell_posts(r, row->swaps);
+  if (row->marks & ETHD_ROW_CLEARED) event(r, "clear", "");
+  tell_fault(r, row->trace.fault);
+  if (r->recording && ethd_recording_tick(r->recording, &row->trace)) r->failed = true;
+  r->latest = *row;
+  r->rows++;
+  pthread_mutex_unlock(&r->lock);
+  if (r->telemetry >= 0 && r->rows % r->every == 0) ethd__telemetry_send(r->telemetry, row);
+}
+
+void ethd__recorder_drain(ethd__recorder *r) {
+  ethd_loop_row row;
+  while (ethd_loop_take(r->loop, &row) == ETHD_OK) take(r, &row);
+}
+
+/* ---- thread ---- */
+
+static void *run(void *recorder) {
+  ethd__recorder *r = recorder;
+  while (!atomic_load(&r->stop)) {
+    struct timespec t = {.tv_nsec = PAUSE};
+    ethd__recorder_drain(r);
+    nanosleep(&t, NULL);
+  }
+  return NULL;
+}
+
+/* Signals are the main thread's. */
+ethd_status ethd__recorder_start(ethd__recorder *r) {
+  pthread_attr_t attr;
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_attr_init(&attr);
+  pthread_attr_setstacksize(&attr, STACK);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  r->threaded = pthread_create(&r->thread, &attr, run, r) == 0;
+  pthread_sigmask(SIG_SETMASK, &before, NULL);
+  pthread_attr_destroy(&attr);
+  return r->threaded ? ETHD_OK : ETHD_E_MEMORY;
+}
+
+void ethd__recorder_end(ethd__recorder *r) {
+  atomic_store(&r->stop, 1);
+  if (r->threaded) pthread_join(r->thread, NULL);
+  r->threaded = false;
+  ethd__recorder_drain(r);
+  pthread_mutex_destroy(&r->lock);
+}
+
+/* ---- of the main thread ---- */
+
+bool ethd__recorder_expect(ethd__recorder *r, const char *kind, const char *detail) {
+  size_t length = strlen(detail);
+  if (length >= ETHD__DETAIL_MAX) return false;
+  pthread_mutex_lock(&r->lock);
+  bool room = r->waiting < ETHD__POSTS_MAX;
+  if (room) {
+    r->posts[r->waiting].kind = kind;
+    memcpy(r->posts[r->waiting++].detail, detail, length + 1);
+  }
+  pthread_mutex_unlock(&r->lock);
+  return room;
+}
+
+void ethd__recorder_withdraw(ethd__recorder *r) {
+  pthread_mutex_lock(&r->lock);
+  if (r->waiting) r->waiting--;
+  pthread_mutex_unlock(&r->lock);
+}
+
+ethd_loop_row ethd__recorder_latest(ethd__recorder *r) {
+  pthread_mutex_lock(&r->lock);
+  ethd_loop_row row = r->latest;
+  pthread_mutex_unlock(&r->lock);
+  return row;
+}

@@ -1,0 +1,56 @@
+/* Takes the loop's rows: into a recording, to telemetry, and keeps the newest for whoever asks. A thread of
+   its own, or, on a virtual clock, after every tick. */
+#ifndef ETHD_APPS_RUN_RECORDER_H
+#define ETHD_APPS_RUN_RECORDER_H
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+
+#include "ethd/loop.h"
+#include "ethd/record.h"
+
+#define ETHD__POSTS_MAX 4
+#define ETHD__DETAIL_MAX 256
+
+/* A setup that was posted, as events.csv tells it. */
+typedef struct ethd__post {
+  const char *kind;
+  char detail[ETHD__DETAIL_MAX];
+} ethd__post;
+
+typedef struct ethd__recorder {
+  ethd_loop *loop;
+  ethd_recording *recording; /* NULL: none */
+  int telemetry;             /* socket, -1 none */
+  uint64_t every;            /* rows from one datagram to the next */
+  pthread_t thread;
+  atomic_int stop, stopping; /* stopping: a controlled stop's fault is none */
+  bool threaded;
+
+  pthread_mutex_t lock; /* for what follows */
+  ethd__post posts[ETHD__POSTS_MAX];
+  int waiting; /* posts */
+  ethd_loop_row latest;
+  uint64_t rows, lost, swaps;
+  uint64_t faults[ETHD_FAULT_COUNT];
+  bool failed; /* the recording couldn't be written */
+} ethd__recorder;
+
+/* recorder->loop, recording and telemetry are set. */
+void ethd__recorder_begin(ethd__recorder *recorder, double period);
+ETHD_MUST_CHECK ethd_status ethd__recorder_start(ethd__recorder *recorder);
+
+/* Takes what is there. Not while the thread runs. */
+void ethd__recorder_drain(ethd__recorder *recorder);
+
+/* Ends the thread and takes the rest. */
+void ethd__recorder_end(ethd__recorder *recorder);
+
+/* Before a setup is posted; taken back when the post is refused. False: the detail is too long. */
+bool ethd__recorder_expect(ethd__recorder *recorder, const char *kind, const char *detail);
+void ethd__recorder_withdraw(ethd__recorder *recorder);
+
+ethd_loop_row ethd__recorder_latest(ethd__recorder *recorder);
+
+#endif

@@ -1,0 +1,260 @@
+#include "run/session.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "common/cli.h"
+#include "file/error_text.h"
+#include "run/telemetry.h"
+
+#define PATIENCE 1000 /* waits of 1 ms, or ticks */
+
+static const ethd_driver *const drivers[] = {&ethd_driver_sim};
+
+#define DRIVERS (sizeof drivers / sizeof *drivers)
+
+/* ---- time ---- */
+
+void ethd__session_poll(ethd__session *s) {
+  ethd_event event;
+  while (ethd_control_poll(s->control, &event) == ETHD_OK)
+    if (event.kind == ETHD_EVENT_TAKEN) s->posted = false;
+}
+
+void ethd__session_tick(ethd__session *s) {
+  ethd_loop_tick(s->loop);
+  ethd__recorder_drain(&s->recorder);
+  ethd__session_poll(s);
+}
+
+static void pass(ethd__session *s) {
+  struct timespec t = {.tv_nsec = 1000000};
+  if (s->is_virtual) {
+    ethd__session_tick(s);
+  } else {
+    nanosleep(&t, NULL);
+    ethd__session_poll(s);
+  }
+}
+
+static uint64_t ticks(const ethd__session *s) {
+  static ethd_loop_stats stats;
+  ethd_loop_read(s->loop, &stats);
+  return stats.ticks;
+}
+
+double ethd__session_time(const ethd__session *s) {
+  static ethd_loop_stats stats;
+  ethd_loop_read(s->loop, &stats);
+  return (double)(stats.ticks + stats.missed) * s->setup.period;
+}
+
+/* Until `posted` setups are taken. */
+static bool settle(ethd__session *s) {
+  for (int i = 0; s->posted && i < PATIENCE && !ethd_loop_ended(s->loop); i++) pass(s);
+  return !s->posted;
+}
+
+static void await_tick(ethd__session *s) {
+  uint64_t before = ticks(s);
+  for (int i = 0; ticks(s) == before && i < PATIENCE && !ethd_loop_ended(s->loop); i++) pass(s);
+}
+
+/* ---- opening ---- */
+
+static ethd_status find_driver(ethd__session *s, char *message) {
+  char quote[ETHD_QUOTE_MAX], list[128] = "";
+  for (size_t i = 0; i < DRIVERS; i++) {
+    if (!strcmp(drivers[i]->id, s->config->device)) s->driver = drivers[i];
+    snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", i ? ", " : "", drivers[i]->id);
+  }
+  if (s->driver) return ETHD_OK;
+  return ethd__say(message, ETHD_E_UNKNOWN, "%s: device.driver: found %s; %s is allowed",
+                   s->config->path ? s->config->path : "the defaults",
+                   ethd__quote(s->config->device, strlen(s->config->device), quote), list);
+}
+
+static ethd_status open_device(ethd__session *s, char *message) {
+  ethd_error error = {0};
+  const ethd_device_def def = {&s->config->setup, s->config->settings, s->config->setting_count,
+                               s->config->folder};
+  ethd_status status = find_driver(s, message);
+  if (status) return status;
+  status = s->driver->open(&def, &s->device, &error);
+  if (status) {
+    ethd_error_text(s->config->path, &error, message);
+    return status;
+  }
+  const ethd_limits limits = s->driver->limits(s->device);
+  s->setup = s->config->setup;
+  s->setup.limits = ethd_limits_narrower(&limits, &s->config->setup.limits);
+  status = ethd_control_create(&s->setup, &s->control, &error);
+  if (status) ethd_error_text(s->config->path, &error, message);
+  return status;
+}
+
+/* The device's limits, which the configuration doesn't know: a replay has no device. */
+static ethd_status record_limits(const ethd__session *s) {
+  const ethd_limits *a = &s->config->setup.limits, *b = &s->setup.limits;
+  const struct {
+    const char *name;
+    double was, is;
+  } one[] = {{"torque", a->torque, b->torque},
+             {"torque_rate", a->torque_rate, b->torque_rate},
+             {"speed", a->speed, b->speed},
+             {"step_time", a->step_time, b->step_time}};
+  char text[ETHD__DETAIL_MAX];
+  ethd_status status = ETHD_OK;
+  for (size_t i = 0; !status && i < sizeof one / sizeof *one; i++) {
+    if (one[i].is == one[i].was) continue;
+    snprintf(text, sizeof text, "limits.%s %.17g", one[i].name, one[i].is);
+    status = ethd_recording_event(s->recorder.recording, "set", text);
+  }
+  if (status || !memcmp(a->workspace, b->workspace, sizeof a->workspace)) return status;
+  const double *w = b->workspace;
+  snprintf(text, sizeof text, "limits.workspace %.17g %.17g %.17g %.17g", w[0], w[1], w[2], w[3]);
+  return ethd_recording_event(s->recorder.recording, "set", text);
+}
+
+static ethd_status open_recorder(ethd__session *s, const ethd__session_options *o, char *message) {
+  ethd__recorder *r = &s->recorder;
+  ethd_status status = ETHD_OK;
+  r->telemetry = -1;
+  if (o->telemetry) status = ethd__telemetry_open(o->telemetry, &r->telemetry, message);
+  if (status || !o->record) return status;
+  status = ethd_recording_create(o->record, s->config, &r->recording, message);
+  if (status) return status;
+  status = record_limits(s);
+  return status ? ethd__say(message, status, "%s: %s", o->record, ethd_status_sentence(status)) : ETHD_OK;
+}
+
+static ethd_status refuse_start(const ethd__session *s, ethd_status status, const ethd_error *error,
+                                char *message) {
+  if (strcmp(error->name, "require_rt"))
+    return ethd__say(message, status, "the loop: %s: %s", error->name, ethd_status_sentence(status));
+  int32_t bits = ethd_loop_shortfalls(s->loop);
+  const char *first = bits ? ethd_shortfall_sentence(bits & -bits) : "";
+  return ethd__say(message, status, "--require-rt: %s; mend: %s", first,
+                   bits ? ethd_shortfall_mend(bits & -bits) : "");
+}
+
+static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, char *message) {
+  ethd_loop_def def = o->loop;
+  ethd_error error = {0};
+  def.driver = s->driver;
+  def.device = s->device;
+  def.control = s->control;
+  def.period = s->setup.period;
+  def.clock = o->is_virtual ? &s->clock : NULL;
+  ethd_status status = ethd_loop_create(&def, &s->loop, &error);
+  if (status) {
+    ethd_error_text("the loop", &error, message);
+    return status;
+  }
+  s->recorder.loop = s->loop;
+  ethd__recorder_begin(&s->recorder, def.period);
+  status = s->driver->start(s->device);
+  if (status) return ethd__say(message, status, "device %s: start: %s", s->driver->id, ethd_status_sentence(status));
+  s->started = true;
+  status = ethd_loop_start(s->loop, &error);
+  if (status) return refuse_start(s, status, &error, message);
+  if (!o->is_virtual) status = ethd__recorder_start(&s->recorder);
+  return status ? ethd__say(message, status, "the recorder: %s", ethd_status_sentence(status)) : ETHD_OK;
+}
+
+ethd_status ethd__session_open(const ethd__session_options *o, ethd__session *s,
+                               char message[ETHD_MESSAGE_MAX]) {
+  char left[ETHD_MESSAGE_MAX];
+  memset(s, 0, sizeof *s);
+  s->recorder.telemetry = -1;
+  s->is_virtual = o->is_virtual;
+  ethd_status status = ethd_config_load(o->config, &s->config, message);
+  if (!status) status = open_device(s, message);
+  if (!status) status = open_recorder(s, o, message);
+  if (!status) status = open_loop(s, o, message);
+  if (status) {
+    (void)!ethd__session_end(s, left);
+    ethd__session_free(s);
+    return status;
+  }
+  await_tick(s);
+  return ETHD_OK;
+}
+
+/* ---- while it runs ---- */
+
+ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const char *kind,
+                               const char *detail, char message[ETHD_MESSAGE_MAX]) {
+  ethd_error error = {0};
+  if (!settle(s)) return ethd__say(message, ETHD_BUSY, "%s", ethd_status_sentence(ETHD_BUSY));
+  if (!ethd__recorder_expect(&s->recorder, kind, detail))
+    return ethd__say(message, ETHD_E_FULL, "%s", ethd_status_sentence(ETHD_E_FULL));
+  ethd_status status = ethd_control_post(s->control, setup, &error);
+  if (status) {
+    ethd__recorder_withdraw(&s->recorder);
+    ethd_error_text(NULL, &error, message);
+    return status;
+  }
+  s->setup = *setup;
+  s->posted = true;
+  if (s->is_virtual || settle(s)) return ETHD_OK;
+  return ethd__say(message, ETHD_BUSY, "%s", ethd_status_sentence(ETHD_BUSY));
+}
+
+ethd_status ethd__session_enable(ethd__session *s) {
+  if (!settle(s)) return ETHD_BUSY;
+  ethd_status status = ethd_loop_enable(s->loop);
+  if (!status) await_tick(s);
+  return status;
+}
+
+/* A speed limit of 0: the guard damps the ring, and lets go when it stands. */
+void ethd__session_halt(ethd__session *s) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd_setup setup = s->setup;
+  atomic_store(&s->recorder.stopping, 1);
+  setup.limits.speed = 0;
+  if (ethd_loop_armed(s->loop) && !ethd__session_post(s, &setup, "set", "limits.speed 0", message))
+    for (int i = 0; ethd_loop_armed(s->loop) && i < PATIENCE && !ethd_loop_ended(s->loop); i++) pass(s);
+  ethd_loop_disarm(s->loop);
+  await_tick(s);
+}
+
+/* ---- ending ---- */
+
+static ethd_status close_recording(ethd__session *s, char *message) {
+  ethd__recorder *r = &s->recorder;
+  ethd_status status = ethd_recording_close(r->recording);
+  r->recording = NULL;
+  if (r->telemetry >= 0) close(r->telemetry);
+  r->telemetry = -1;
+  if (!status && !r->failed) return ETHD_OK;
+  return ethd__say(message, ETHD_E_FILE, "--record: %s", ethd_status_sentence(ETHD_E_FILE));
+}
+
+ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = ETHD_OK, closed;
+  if (s->loop) {
+    ethd_loop_stop(s->loop);
+    status = ethd_loop_join(s->loop);
+    if (status) (void)ethd__say(message, status, "the clock failed; the loop ended by itself");
+    ethd__recorder_end(&s->recorder);
+  }
+  if (s->started && s->driver->stop(s->device) < 0 && !status)
+    status = ethd__say(message, ETHD_E_DEVICE, "device %s: stop: %s", s->driver->id,
+                       ethd_status_sentence(ETHD_E_DEVICE));
+  s->started = false;
+  closed = close_recording(s, message);
+  return status ? status : closed;
+}
+
+void ethd__session_free(ethd__session *s) {
+  ethd_loop_destroy(s->loop);
+  if (s->device) s->driver->close(s->device);
+  ethd_control_destroy(s->control);
+  if (s->config) ethd_config_free(s->config);
+}

@@ -1,0 +1,56 @@
+/* A device under a controller: opened, stepped by a loop, stopped in order. All [main]. */
+#ifndef ETHD_APPS_RUN_SESSION_H
+#define ETHD_APPS_RUN_SESSION_H
+
+#include <stdbool.h>
+
+#include "ethd/loop.h"
+#include "run/recorder.h"
+
+typedef struct ethd__session {
+  ethd_config *config;
+  const ethd_driver *driver;
+  void *device;
+  ethd_setup setup; /* posted last */
+  ethd_control *control;
+  ethd_loop *loop;
+  ethd__recorder recorder;
+  bool is_virtual, posted, started;
+  int64_t clock; /* of a virtual session, ns */
+} ethd__session;
+
+typedef struct ethd__session_options {
+  const char *config, *record, *telemetry; /* NULL: none */
+  bool is_virtual;
+  ethd_loop_def loop; /* its device, controller, period and clock are filled in */
+} ethd__session_options;
+
+/* Opens and starts the device; the loop runs, or on a virtual clock has made its first tick. On failure
+   all is closed. */
+ETHD_MUST_CHECK ethd_status ethd__session_open(const ethd__session_options *options, ethd__session *s,
+                                               char message[ETHD_MESSAGE_MAX]);
+
+/* Damps the ring until it is still, then disables. */
+void ethd__session_halt(ethd__session *s);
+
+/* Ends the loop and the device: numbers can be read, nothing moves. ETHD_E_DEVICE: the clock had failed. */
+ETHD_MUST_CHECK ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]);
+void ethd__session_free(ethd__session *s);
+
+/* Posts a changed setup; kind and detail as in events.csv. On a live session it rules when this returns. */
+ETHD_MUST_CHECK ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const char *kind,
+                                               const char *detail, char message[ETHD_MESSAGE_MAX]);
+
+/* The device from its start, the controller reset, torque from zero. */
+ETHD_MUST_CHECK ethd_status ethd__session_enable(ethd__session *s);
+
+/* Takes the controller's events; call it now and then. */
+void ethd__session_poll(ethd__session *s);
+
+/* A tick of a virtual session. */
+void ethd__session_tick(ethd__session *s);
+
+/* s on the loop's clock, missed periods included. */
+double ethd__session_time(const ethd__session *s);
+
+#endif

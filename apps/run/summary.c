@@ -1,0 +1,61 @@
+#include "run/summary.h"
+
+#include <inttypes.h>
+
+void ethd__durations_print(FILE *out, const char *name, const ethd_histogram *h) {
+  fprintf(out, "%-10s p50 %9.3f  p99 %9.3f  p99.9 %9.3f  max %9.3f us\n", name,
+          1e-3 * (double)ethd_histogram_at(h, 0.5), 1e-3 * (double)ethd_histogram_at(h, 0.99),
+          1e-3 * (double)ethd_histogram_at(h, 0.999), 1e-3 * (double)h->max);
+}
+
+void ethd__shortfalls_print(FILE *out, int32_t bits) {
+  for (int i = 0; i < ETHD_SHORT_COUNT; i++)
+    if (bits & 1 << i)
+      fprintf(out, "not realtime: %s\n        mend: %s\n", ethd_shortfall_sentence(1 << i),
+              ethd_shortfall_mend(1 << i));
+}
+
+static void print_faults(FILE *out, const ethd__recorder *r) {
+  int none = 1;
+  for (int i = 0; i < ETHD_FAULT_COUNT; i++) {
+    if (!r->faults[i]) continue;
+    fprintf(out, "%-10s %" PRIu64 " x %s\n", none ? "faults" : "", r->faults[i], ethd_fault_sentence((ethd_fault)i));
+    none = 0;
+  }
+  if (none) fprintf(out, "%-10s none\n", "faults");
+}
+
+/* Counters are the controller's, since it was enabled last. */
+static void print_skipped(FILE *out, const ethd__session *s, const ethd_loop_stats *stats) {
+  ethd_counters c;
+  ethd_control_counters(s->control, &c);
+  fprintf(out, "%-10s %" PRIu64 " readings dropped, %" PRIu64 " contacts without room, %" PRIu64
+               " ticks without room in the recorder\n",
+          "skipped", c.readings_dropped, c.contacts_lost, stats->rows_lost);
+}
+
+static void print_device(FILE *out, const ethd_loop_stats *stats) {
+  if (stats->read_failures || stats->write_failures || stats->service_failures)
+    fprintf(out, "%-10s failed %" PRIu64 " reads, %" PRIu64 " writes, %" PRIu64 " of its own\n", "device",
+            stats->read_failures, stats->write_failures, stats->service_failures);
+  if (stats->relaxes) fprintf(out, "%-10s %" PRIu64 " switches to secondary mode\n", "relaxes", stats->relaxes);
+}
+
+void ethd__summary_print(FILE *out, const ethd__session *s, const char *record) {
+  static ethd_loop_stats stats;
+  ethd_loop_read(s->loop, &stats);
+  fprintf(out, "%-10s %" PRIu64 " of %g s\n", "ticks", stats.ticks, s->setup.period);
+  fprintf(out, "%-10s %" PRIu64 ", %" PRIu64 " periods missed\n", "overruns", stats.overruns, stats.missed);
+  if (s->is_virtual) {
+    fprintf(out, "%-10s virtual: nothing ran in real time\n", "clock");
+  } else {
+    ethd__durations_print(out, "wake-up", &stats.wake);
+    ethd__durations_print(out, "tick", &stats.tick);
+  }
+  print_faults(out, &s->recorder);
+  print_device(out, &stats);
+  print_skipped(out, s, &stats);
+  if (record) fprintf(out, "%-10s %s: %" PRIu64 " ticks\n", "recorded", record, s->recorder.rows);
+  if (!s->is_virtual && !ethd_loop_shortfalls(s->loop)) fprintf(out, "%-10s none\n", "shortfalls");
+  if (!s->is_virtual) ethd__shortfalls_print(out, ethd_loop_shortfalls(s->loop));
+}

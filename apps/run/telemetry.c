@@ -1,0 +1,116 @@
+#include "run/telemetry.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <netdb.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "file/error_text.h"
+
+#define HOST_MAX 256
+
+/* ---- address ---- */
+
+static int split(const char *address, char host[HOST_MAX], const char **port) {
+  const char *colon = strrchr(address, ':');
+  if (!colon || colon == address || !colon[1] || colon[1 + strspn(colon + 1, "0123456789")]) return 0;
+  size_t length = (size_t)(colon - address);
+  if (address[0] == '[' && colon[-1] == ']') {
+    address++;
+    length -= 2;
+  }
+  if (!length || length >= HOST_MAX) return 0;
+  memcpy(host, address, length);
+  host[length] = 0;
+  *port = colon + 1;
+  return strlen(*port) <= 5;
+}
+
+ethd_status ethd__telemetry_open(const char *address, int *out, char message[ETHD_MESSAGE_MAX]) {
+  char host[HOST_MAX], quote[ETHD_QUOTE_MAX];
+  const char *port;
+  struct addrinfo hints = {.ai_socktype = SOCK_DGRAM}, *found;
+  *out = -1;
+  if (!split(address, host, &port))
+    return ethd__say(message, ETHD_E_SYNTAX, "--telemetry: found %s, HOST:PORT is allowed",
+                     ethd__quote(address, strlen(address), quote));
+  int failure = getaddrinfo(host, port, &hints, &found);
+  if (failure) return ethd__say(message, ETHD_E_UNKNOWN, "--telemetry: %s: %s", host, gai_strerror(failure));
+  int s = socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  failure = s < 0 || connect(s, found->ai_addr, found->ai_addrlen) != 0;
+  freeaddrinfo(found);
+  if (!failure) {
+    *out = s;
+    return ETHD_OK;
+  }
+  (void)ethd__say(message, ETHD_E_FILE, "--telemetry: %s: %s", address, strerror(errno));
+  if (s >= 0) close(s);
+  return ETHD_E_FILE;
+}
+
+/* ---- datagram ---- */
+
+typedef struct text {
+  char at[2048];
+  size_t length;
+} text;
+
+static void put(text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void put(text *t, const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  int n = vsnprintf(t->at + t->length, sizeof t->at - t->length, format, args);
+  va_end(args);
+  if (n > 0) t->length += (size_t)n;
+  if (t->length >= sizeof t->at) t->length = sizeof t->at - 1;
+}
+
+/* JSON knows no NaN and no infinity. */
+static void put_number(text *t, double v) {
+  if (isfinite(v))
+    put(t, "%.9g", v);
+  else
+    put(t, "null");
+}
+
+static void put_one(text *t, const char *name, double v) {
+  put(t, ",\"%s\":", name);
+  put_number(t, v);
+}
+
+static void put_two(text *t, const char *name, const double v[2]) {
+  put(t, ",\"%s\":[", name);
+  put_number(t, v[0]);
+  put(t, ",");
+  put_number(t, v[1]);
+  put(t, "]");
+}
+
+void ethd__telemetry_send(int socket, const ethd_loop_row *row) {
+  const ethd_trace *k = &row->trace;
+  text t = {.length = 0};
+  put(&t, "{\"timestamp\":%.9f,\"tick\":%" PRId64, 1e-9 * (double)k->sense.time_ns, k->tick);
+  put(&t, ",\"state\":%d,\"fault\":%d,\"armed\":%d", (int)k->state, (int)k->fault, (int)row->armed);
+  put(&t, ",\"contacts\":%d,\"missed\":%" PRId64, (int)k->contacts, k->sense.missed);
+  put_one(&t, "share", row->share);
+  put_two(&t, "q", k->sense.q);
+  put_two(&t, "x", k->x);
+  put_two(&t, "v", k->v);
+  put_two(&t, "xf", k->xf);
+  put_two(&t, "vf", k->vf);
+  put_two(&t, "tau", k->tau);
+  put_two(&t, "fe", k->fe);
+  put_two(&t, "fd", k->fd);
+  put_one(&t, "beta", k->beta);
+  put_one(&t, "eps", k->eps);
+  put_one(&t, "d_re", k->d_re);
+  put_one(&t, "d_fe", k->d_fe);
+  put_one(&t, "v_n", k->v_n);
+  put(&t, "}");
+  (void)!send(socket, t.at, t.length, MSG_DONTWAIT | MSG_NOSIGNAL);
+}
