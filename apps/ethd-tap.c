@@ -6,6 +6,8 @@
 #include "common/cli.h"
 #include "file/error_text.h"
 #include "file/text.h"
+#include "sim/plant.h"
+#include "tap/device.h"
 #include "tap/run.h"
 #include "tap/table.h"
 
@@ -40,7 +42,8 @@ static const struct argp_option options[] = {
     {"speed", 's', "low|high|V[,..]", 0, "speeds: low,high; V in m/s, 0.01 to 2", 0},
     {"taps", 'n', "N", 0, "attempts per law and speed: 100; 10 with --finger", 0},
     {"seed", 'r', "S", 0, "key of every random number: 1", 0},
-    {"plant", 'p', "n|b|p|FILE", 0, "the simulated device and finger: n; FILE.plant with FILE.ini beside it", 0},
+    {"plant", 'p', "n|b|p|FILE", 0,
+     "the simulated device and finger: that of --config, or n; FILE.plant with FILE.ini beside it", 0},
     {"finger", 'f', "FILE.csv", 0, "a recorded movement is the hand's voluntary path", 0},
     {"scale", OPTION_SCALE, "K", 0, "multiply the recorded positions by K, 0.01 to 100", 0},
     {"csv", OPTION_CSV, "OUT.csv", 0, "a row per tap", 0},
@@ -62,7 +65,7 @@ static struct {
   int64_t taps;
   uint64_t seed;
   list laws, speeds;
-} arg = {.plant = "n", .scale = 1, .seed = 1};
+} arg = {.scale = 1, .seed = 1};
 
 /* ---- options ---- */
 
@@ -119,6 +122,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 static void fill_in(void) {
   if (!arg.laws.count) set_list(&arg.laws, "--transition", "abrupt,smooth,offset");
   if (!arg.speeds.count) set_list(&arg.speeds, "--speed", "low,high");
+  if (!arg.plant && !arg.config) arg.plant = "n";
   if (!arg.taps) arg.taps = arg.finger ? TAPS_FINGER : TAPS;
 }
 
@@ -158,9 +162,20 @@ static char *beside_plant(const char *suffix) {
   return path;
 }
 
-static void load_plant(ethd_plant *out) {
-  char message[ETHD_MESSAGE_MAX], *path = beside_plant(".plant");
+/* --plant, else what the configuration names, else n. */
+static void load_plant(const ethd_config *config, ethd_plant *out) {
+  char message[ETHD_MESSAGE_MAX], *path;
+  ethd__device device;
+  check(ethd__device_read(config, &device, message), message);
+  if (arg.plant) {
+    path = beside_plant(".plant");
+  } else {
+    arg.plant = device.plant ? device.plant : "n";
+    path = ethd__plant_path(arg.plant, config->folder);
+    if (!path) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  }
   check(ethd_plant_load(path, out, message), message);
+  if (device.rays >= 0) out->rays = device.rays;
   free(path);
 }
 
@@ -232,13 +247,13 @@ int main(int argc, char **argv) {
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   fill_in();
-  load_plant(&study.plant);
+  ethd_config *loaded = load_config(&config);
+  study.config = loaded;
+  load_plant(loaded, &study.plant);
   study.speeds = load_speeds(&study.plant);
   study.speed_count = arg.speeds.count;
   study.seed = arg.seed;
   if (arg.finger) check(ethd__movement_load(arg.finger, arg.scale, &study.movement, message), message);
-  ethd_config *loaded = load_config(&config);
-  study.config = loaded;
   check(ethd__study_prepare(&study, message), message);
   const ethd__plan plan = {&study, arg.laws.words, arg.laws.count, (uint64_t)arg.taps};
   check(ethd__plan_check(&plan, message), message);

@@ -50,6 +50,16 @@ printf '[contact]\nk_e = 500\n' >"$folder/soft.ini"
 "$tap" --config "$folder/soft.ini" --taps 2 --transition offset --csv "$folder/s.csv" >/dev/null
 cmp -s "$folder/e.csv" "$folder/s.csv" && fail "k_e changes nothing"
 
+# The [device] section: its plant unless --plant names one, its sensor, nothing unknown.
+printf '[device]\nplant = b\n' >"$folder/b.ini"
+"$tap" --config "$folder/b.ini" --taps 2 --transition offset --csv "$folder/e.csv" | grep -q 'Plant b, ' || fail "the configuration's plant"
+"$tap" --config "$folder/empty.ini" --plant b --taps 2 --transition offset --csv "$folder/s.csv" >/dev/null
+cmp -s "$folder/e.csv" "$folder/s.csv" || fail "plant = b isn't --plant b"
+"$tap" --config "$folder/b.ini" --plant n --taps 2 --transition offset --csv "$folder/s.csv" | grep -q 'Plant n, ' || fail "--plant goes first"
+printf '[device]\nplant = b\nreading = rays\n' >"$folder/rays.ini"
+"$tap" --config "$folder/rays.ini" --taps 2 --transition offset --csv "$folder/s.csv" >/dev/null
+cmp -s "$folder/e.csv" "$folder/s.csv" && fail "reading = rays changes nothing"
+
 # Traces of typical taps.
 "$tap" --taps 3 --transition smooth,offset --speed 0.3 --trace "$folder/traces" >/dev/null
 for law in smooth offset; do
@@ -101,6 +111,13 @@ refuse 'needs --finger' --scale 2
 refuse 'from 0.01 to 100' --finger "$folder/swing.csv" --scale 0
 refuse 'y_m' --finger "$folder/a.csv"
 printf 'halfplane -1 0 0.9\n' >"$folder/far.scene"
+printf '[scene]\nfile = far.scene\n' >"$folder/far.ini"
+printf '[device]\ndriver = servo\n' >"$folder/far.ini"
+refuse 'far.ini:2: device.driver: found "servo", sim is allowed' --config "$folder/far.ini"
+printf '[device]\nplnt = n\n' >"$folder/far.ini"
+refuse 'far.ini:2: plnt: an unknown name' --config "$folder/far.ini"
+printf '[device]\nplant = none\n' >"$folder/far.ini"
+refuse 'none.plant: No such file' --config "$folder/far.ini"
 printf '[scene]\nfile = far.scene\n' >"$folder/far.ini"
 refuse 'no wall' --config "$folder/far.ini"
 
