@@ -8,7 +8,6 @@
 #include "file/error_text.h"
 #include "file/text.h"
 
-#define STEP 50e-6 /* s: longest integration step */
 
 bool ethd__speed_parse(const char *word, const ethd_plant *plant, ethd__speed *out) {
   double v;
@@ -84,7 +83,8 @@ static ethd_status create(ethd__stage *stage, ethd_error *error) {
                             .arm = stage->setup.arm,
                             .ring_radius = stage->setup.ring_radius,
                             .period = stage->setup.period,
-                            .step = STEP};
+                            .step = stage->setup.period,
+                            .tolerance = ETHD_SIM_GOLDEN};
   stage->samples = malloc((study->movement.count + 1) * sizeof *stage->samples);
   if (!stage->samples) return ETHD_E_MEMORY;
   ethd_status status = ethd_sim_create(&def, &stage->sim, error);

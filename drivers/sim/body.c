@@ -10,7 +10,6 @@
 
 #include "ethd/maths.h"
 
-#define TOLERANCE 1e-10 /* m/s */
 #define NEAR 0.02 /* rad: so far small_turn holds to the last digit */
 
 void ethd__body_prepare(const ethd_sim_def *def, double finger_radius, ethd__body *out) {
@@ -27,7 +26,7 @@ void ethd__body_prepare(const ethd_sim_def *def, double finger_radius, ethd__bod
                       .finger_mass = p->finger_mass,
                       .hand_stiffness = p->hand_stiffness,
                       .hand_damping = p->hand_damping,
-                      .tolerance = TOLERANCE};
+                      .tolerance = def->tolerance};
   for (int j = 0; j < 2; j++) {
     double l = out->link[j], l2 = l * l;
     out->inertia[j] = (p->mass[j] - (compliant ? p->motor_mass : 0)) * l2;

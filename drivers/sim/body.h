@@ -29,7 +29,7 @@ typedef struct ethd__body {
   double torque_max[2], torque[2];               /* Nm, the latter in effect */
   double gap, pad_stiffness, pad_damping;
   double finger_mass, hand_stiffness, hand_damping;
-  double tolerance; /* m/s: what a step may add to the error of a speed */
+  double tolerance; /* m/s: of a step's last terms */
   double at[2], sine[2], cosine[2]; /* of angles near the present ones */
 } ethd__body;
 

@@ -134,13 +134,12 @@ ethd__motion ethd__piece_at(const ethd__piece *p, double t) {
   return m;
 }
 
-void ethd__piece_terms(const ethd__piece *p, const ethd__motion *at, int count, ethd__two *out) {
+void ethd__piece_terms(const ethd__piece *p, const ethd__motion *at, ethd__two out[4]) {
   double w2 = p->w * p->w;
   out[0] = (ethd__two){at->x.x, at->x.y};
   out[1] = (ethd__two){at->v.x, at->v.y};
   out[2] = (ethd__two){at->a.x, at->a.y} / 2;
   out[3] = (ethd__two){p->d.x, p->d.y} - w2 / 6 * (out[1] - (ethd__two){p->b.x, p->b.y});
-  for (int k = 4; k < count; k++) out[k] = -w2 / (k * (k - 1)) * out[k - 2];
 }
 
 double ethd__piece_travel(const ethd__piece *p, ethd__two v, double h) {

@@ -123,6 +123,7 @@ ethd_status ethd__sim_check(const ethd_sim_def *def, ethd_error *error) {
   if (!status) status = check_inertia(def, error);
   if (!status) status = within(error, "period", def->period, 1e-6, 1);
   if (!status) status = within(error, "step", def->step, 1e-7, 1);
+  if (!status) status = within(error, "tolerance", def->tolerance, 1e-14, INFINITY);
   if (!status) status = within(error, "device.delay", p->delay, 0, def->period);
   if (!status)
     status = within(error, "ring.radius", def->ring_radius, p->finger_radius + 2 * p->finger_radius_sd, 10);

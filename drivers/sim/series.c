@@ -12,18 +12,22 @@
 
 typedef ethd__two two;
 
+#define ORDER_MIN 4
+
 /* What is needed on the way only. */
 typedef struct work {
   const ethd__body *body;
   ethd__series *out;
   int turned, related; /* terms of the geometry that are known */
+  int turning;         /* 0: friction is constant */
   two inertia, inverse_inertia, length, friction, viscous, sharpness;
   two slip[ETHD__TERMS], slip_a[ETHD__TERMS], link_a[ETHD__TERMS]; /* slip: speed of what rubs */
   two rub[ETHD__TERMS], unlike[ETHD__TERMS];                       /* u, 1 - u^2 */
   two cosine[ETHD__TERMS], sine[ETHD__TERMS], square_v[ETHD__TERMS];
   double along[ETHD__TERMS], across[ETHD__TERMS]; /* H cos and H sin of th2 - th1 */
   two apart[ETHD__TERMS], force[ETHD__TERMS];     /* from ring to finger; on the ring */
-  double square[ETHD__TERMS], distance[ETHD__TERMS], push[ETHD__TERMS]; /* push: force over distance */
+  double swing; /* of the hand's terms beyond 3 */
+  double inverse_distance, square[ETHD__TERMS], distance[ETHD__TERMS], push[ETHD__TERMS]; /* push: force over distance */
 } work;
 
 static const double INVERSE[ETHD__TERMS + 1] = {0,       1.0,     1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,
@@ -62,14 +66,15 @@ static void rotate(work *w, int k) {
     c += w->out->link_v[i] * w->sine[k - 1 - i];
     s += w->out->link_v[i] * w->cosine[k - 1 - i];
   }
-  w->cosine[k] = -c * INVERSE[k];
-  w->sine[k] = s * INVERSE[k];
+  w->cosine[k] = -c * both(INVERSE[k]);
+  w->sine[k] = s * both(INVERSE[k]);
 }
 
 static void relate(work *w, int k) {
   if (k <= w->related) return;
   w->related = k;
   rotate(w, k);
+  if (k > 3) w->out->hand[k] = w->out->hand[k - 2] * both(w->swing * (INVERSE[k] * INVERSE[k - 1]));
   two ring = {sum(w->length * w->cosine[k]), sum(w->length * w->sine[k])};
   w->apart[k] = w->out->hand[k] + w->out->aside[k] - ring;
   w->square[k] = sum(product(w->apart, w->apart, k));
@@ -78,12 +83,13 @@ static void relate(work *w, int k) {
 static void measure(work *w, int k) {
   if (k == 0) {
     w->distance[0] = sqrt(w->square[0]);
+    w->inverse_distance = 1 / w->distance[0];
     w->out->beyond[0] = w->distance[0] - w->body->gap;
     return;
   }
   double s = w->square[k];
   for (int i = 1; i < k; i++) s -= w->distance[i] * w->distance[k - i];
-  w->out->beyond[k] = w->distance[k] = s / (2 * w->distance[0]);
+  w->out->beyond[k] = w->distance[k] = s / 2 * w->inverse_distance;
   w->out->leaving[k - 1] = w->body->pad_damping * (k * w->distance[k]) + (k == 1);
 }
 
@@ -91,15 +97,14 @@ static void measure(work *w, int k) {
 static two press(work *w, int k) {
   double s = w->body->pad_stiffness * product_1(w->out->beyond, w->out->leaving, k);
   for (int i = 1; i <= k; i++) s -= w->distance[i] * w->push[k - i];
-  w->push[k] = s / w->distance[0];
+  w->push[k] = s * w->inverse_distance;
   two f = both(w->push[0]) * w->apart[k];
   for (int i = 1; i <= k; i++) f += both(w->push[i]) * w->apart[k - i];
   w->force[k] = f;
-  double x[2] = {0, 0};
-  for (int j = 0; j < 2; j++)
-    for (int i = 0; i <= k; i++)
-      x[j] += w->cosine[i][j] * w->force[k - i][1] - w->sine[i][j] * w->force[k - i][0];
-  return w->length * pair(x);
+  two torque = both(0);
+  for (int i = 0; i <= k; i++)
+    torque += w->cosine[i] * both(w->force[k - i][1]) - w->sine[i] * both(w->force[k - i][0]);
+  return w->length * torque;
 }
 
 /* ---- accelerations ---- */
@@ -108,6 +113,9 @@ static two rub(work *w, int k) {
   if (k == 0) {
     for (int j = 0; j < 2; j++) w->rub[0][j] = ethd_tanh(w->sharpness[j] * w->slip[0][j]);
     w->unlike[0] = 1 - w->rub[0] * w->rub[0];
+    w->turning = sum(w->unlike[0]) > 0;
+  } else if (!w->turning) {
+    return w->viscous * w->slip[k];
   } else {
     w->rub[k] = w->sharpness * both(INVERSE[k]) * product(w->slip_a, w->unlike, k - 1);
     w->unlike[k] = -product(w->rub, w->rub, k);
@@ -179,7 +187,7 @@ static void accelerate(work *w, ethd__touch touch, int k) {
 
 /* ---- how many terms, how far ---- */
 
-static double speed(const work *w, int k) {
+static inline double speed(const work *w, int k) {
   const ethd__series *s = w->out;
   double m = size(w->length * s->link_v[k]) + size(s->aside_v[k]);
   return w->body->compliant ? m + size(w->length * s->motor_v[k]) : m;
@@ -200,25 +208,25 @@ static double travel(const work *w, const ethd__piece *piece, double h) {
   return reach + ethd__piece_travel(piece, s->hand[1], h);
 }
 
-static void geometry_begins(work *w, const ethd__piece *piece, const ethd__motion *hand, const double *angle) {
+static void geometry_begins(work *w, const double *angle) {
   double sine[2], cosine[2];
   ethd__body_waves(w->body, angle, sine, cosine);
   w->sine[0] = pair(sine);
   w->cosine[0] = pair(cosine);
-  ethd__piece_terms(piece, hand, ETHD__TERMS, w->out->hand);
   w->turned = 0;
   w->related = -1;
   relate(w, 0);
 }
 
 /* Apart, far from each other: nothing to watch. */
-static void watch(work *w, const ethd__piece *piece, ethd__touch touch) {
+static void watch(work *w, const ethd__piece *piece, const ethd__motion *hand, ethd__touch touch) {
   ethd__series *s = w->out;
   int last = s->order + 1;
   if (touch == ETHD__APART) {
     double slack = w->body->gap - sqrt(w->square[0]);
-    s->watched = !(slack > travel(w, piece, s->step));
-    if (!s->watched) return;
+    s->watched = 0;
+    if (slack > travel(w, piece, s->step)) return;
+    ethd__piece_terms(piece, hand, s->hand);
   }
   s->watched = last;
   for (int k = w->related + 1; k <= last; k++) {
@@ -247,7 +255,7 @@ static void expand(work *w, ethd__touch touch, double tolerance) {
   ethd__series *s = w->out;
   double h = s->step, reach = h, before = INFINITY, term = INFINITY;
   int k = 0;
-  while (k < ETHD__ORDER_MAX && !(k >= 3 && before <= tolerance && term <= tolerance)) {
+  while (k < ETHD__ORDER_MAX && !(k >= ORDER_MIN && before <= tolerance && term <= tolerance)) {
     accelerate(w, touch, k++);
     before = term;
     term = reach * speed(w, k);
@@ -256,7 +264,7 @@ static void expand(work *w, ethd__touch touch, double tolerance) {
   s->order = k;
   integrate(w, k);
   double last = speed(w, k), previous = speed(w, k - 1);
-  while (!(term <= tolerance && before <= tolerance) && isfinite(term)) {
+  while (!(term <= tolerance && before <= tolerance) && isfinite(term) && isfinite(before)) {
     h *= 0.75;
     term = last * power(h, k);
     before = previous * power(h, k - 1);
@@ -270,6 +278,7 @@ void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, double t
   ethd__motion hand = ethd__piece_at(piece, t);
   w.body = b;
   w.out = out;
+  w.swing = -piece->w * piece->w;
   w.inertia = pair(b->inertia);
   w.inverse_inertia = 1 / w.inertia;
   w.length = pair(b->link);
@@ -277,9 +286,12 @@ void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, double t
   w.viscous = pair(b->viscous);
   w.sharpness = pair(b->sharpness);
   begin(b, &hand, state, out);
-  geometry_begins(&w, piece, &hand, state->q);
-  if (state->touch != ETHD__APART) measure(&w, 0);
+  geometry_begins(&w, state->q);
+  if (state->touch != ETHD__APART) {
+    ethd__piece_terms(piece, &hand, out->hand);
+    measure(&w, 0);
+  }
   out->step = step;
   expand(&w, state->touch, b->tolerance);
-  watch(&w, piece, state->touch);
+  watch(&w, piece, &hand, state->touch);
 }

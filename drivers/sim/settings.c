@@ -7,7 +7,8 @@
 #include "sim/plant.h"
 
 const ethd_param ethd__sim_params[ETHD__SIM_PARAMS] = {
-    [ETHD__SIM_STEP] = {"step", "s", 1e-7, 1e-2, 50e-6, "longest integration step"},
+    [ETHD__SIM_STEP] = {"step", "s", 1e-7, 1e-2, 1e-3, "longest integration step"},
+    [ETHD__SIM_TOLERANCE] = {"tolerance", "m/s", 1e-14, 1, ETHD_SIM_GOLDEN, "of a step's last terms"},
     [ETHD__SIM_SEED] = {"seed", "1", 0, 0x1p53, 1, "key of every random number, whole"},
     [ETHD__SIM_TAP] = {"tap", "1", 0, 0x1p53, 0, "number of the tap that is drawn, whole"},
     [ETHD__SIM_SPEED] = {"speed", "m/s", 1e-3, 10, 0.4, "commanded speed of the finger"},

@@ -3,7 +3,8 @@
 
 #define LOCATED 1e-12 /* s */
 #define RUBBING 10.0  /* tanh is +-1 within 4e-9 beyond it */
-#define TURN 2.0      /* by so much its argument may change in a step that comes nearer to 0 */
+#define TURN 2.0      /* by so much its argument may change in a step that comes nearer to 0, */
+#define PACE 5e3      /* 1/s: and in a short stretch by less, so that halving that halves each step */
 
 typedef ethd__two two;
 
@@ -29,7 +30,7 @@ static double slope(const double *term, int order, double h) {
 static double rises(const double *term, int order, double sign, double h) {
   double low = 0, high = h;
   if (!(sign * value(term, order, h) > 0)) {
-    if (!(sign * slope(term, order, 0) > 0 && sign * slope(term, order, h) < 0)) return INFINITY;
+    if (!(sign * term[1] > 0 && sign * slope(term, order, h) < 0)) return INFINITY;
     while (high - low > LOCATED) { /* a summit within */
       double middle = (low + high) / 2;
       if (sign * slope(term, order, middle) > 0)
@@ -85,19 +86,19 @@ static void move(const ethd__body *b, const ethd__series *s, const ethd__piece *
 }
 
 /* Friction far from its turn is constant to the last digit, and a series can't see the turn ahead. */
-static int turns(const ethd__body *b, const ethd__state *from, const ethd__state *to) {
+static int turns(const ethd__body *b, double most, const ethd__state *from, const ethd__state *to) {
   double before[2], after[2];
   ethd__body_joints(b, from->v, before);
   ethd__body_joints(b, to->v, after);
   for (int j = 0; j < 2; j++) {
     double u = fabs(b->sharpness[j] * before[j]), moved = fabs(b->sharpness[j] * (after[j] - before[j]));
-    if (b->friction[j] > 0 && !(moved <= fmax(TURN, u - RUBBING))) return 1;
+    if (b->friction[j] > 0 && !(moved <= fmax(most, u - RUBBING))) return 1;
   }
   return 0;
 }
 
 void ethd__body_advance(const ethd__body *b, const ethd__piece *piece, double t, double h, ethd__state *state) {
-  double done = 0;
+  double done = 0, most = fmin(TURN, PACE * h);
   while (done < h) {
     ethd__series s;
     ethd__state next = *state;
@@ -105,7 +106,7 @@ void ethd__body_advance(const ethd__body *b, const ethd__piece *piece, double t,
     change c = next_change(&s, state->touch);
     double step = fmin(s.step, c.after);
     move(b, &s, piece, t + done, step, &next);
-    while (turns(b, state, &next)) {
+    while (turns(b, most, state, &next)) {
       step /= 2;
       move(b, &s, piece, t + done, step, &next);
     }

@@ -79,11 +79,17 @@ typedef struct ethd_sim_tap {
 ETHD_API void ethd_sim_draw(const ethd_plant *plant, uint64_t seed, uint64_t tap, double speed,
                             ethd_vec meet, ethd_sim_tap *out);
 
+/* Tolerances with steps of a period: a tap of plant n stays within 1e-8 m, 1e-6 m. */
+#define ETHD_SIM_GOLDEN 1e-8
+#define ETHD_SIM_FAST 1e-5
+
 typedef struct ethd_sim_def {
   ethd_plant plant;
   ethd_arm arm;
   double ring_radius, period;
-  double step; /* s: longest integration step; golden 50e-6 */
+  double step;      /* s: longest integration step */
+  double tolerance; /* m/s: the last term of a step's power series, over which steps are cut; INFINITY: steps
+                       of order 4, all of length `step` */
 } ethd_sim_def;
 
 typedef struct ethd_sim ethd_sim;

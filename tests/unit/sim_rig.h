@@ -10,7 +10,7 @@
 
 static inline ethd_sim_def sim_def(void) {
   ethd_sim_def def = {
-      .arm = {ETHD_ARM_PARALLEL, 0.25, 0.25}, .ring_radius = 0.012, .period = 1e-3, .step = 50e-6};
+      .arm = {ETHD_ARM_PARALLEL, 0.25, 0.25}, .ring_radius = 0.012, .period = 1e-3, .step = 50e-6, .tolerance = 1e-10};
   char message[ETHD_MESSAGE_MAX];
   ck_assert_msg(ethd_plant_load("apps/config/n.plant", &def.plant, message) == ETHD_OK, "%s", message);
   def.plant.noise = 0;

@@ -203,7 +203,7 @@ END_TEST
 /* Simulated taps on plant n, another law every few ticks: the hand feels no bump. */
 START_TEST(test_simulated_taps) {
   char message[ETHD_MESSAGE_MAX];
-  ethd_sim_def def = {.arm = {ETHD_ARM_PARALLEL, 0.25, 0.25}, .ring_radius = 0.012, .period = 0.001, .step = 50e-6};
+  ethd_sim_def def = {.arm = {ETHD_ARM_PARALLEL, 0.25, 0.25}, .ring_radius = 0.012, .period = 0.001, .step = 50e-6, .tolerance = 1e-10};
   ethd_sim *sim;
   ethd_sim_tap how;
   rig r;
