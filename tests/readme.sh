@@ -33,5 +33,15 @@ $CC $strict -shared -fPIC "$work/2.c" -o "$work/law.so" $($PKG_CONFIG --cflags e
 nm -D --defined-only "$work/law.so" | grep -q ' ethd_plugin$' || fail "the law exports no ethd_plugin"
 printf '[plugins]\nfile = law.so\n' >"$work/law.ini"
 "$BUILD/bin/ethd-check" "$work/law.ini" >"$work/check.out" 2>&1 || { cat "$work/check.out"; fail "the law doesn't load"; }
+# The commands on a configuration of one's own, as they stand there.
+mkdir -p "$work/tree/build" && cp -r apps "$work/tree" && ln -s "$BUILD/bin" "$work/tree/build/bin"
+sed -n '/^    mkdir mine/,/^$/p' README.md >"$work/mine.sh"
+grep -q 'ethd-tap --config mine' "$work/mine.sh" || fail "no commands on a configuration of one's own"
+(cd "$work/tree" && ETHD_DATA_DIR="$BUILD/share/ethd" sh -e "$work/mine.sh" >"$work/mine.out" 2>&1) ||
+  { cat "$work/mine.out"; fail "those commands fail"; }
+grep -q '^k_e *= 500 ' <<END || fail "k_e isn't set"
+$("$BUILD/bin/ethd-check" "$work/tree/mine/n.ini")
+END
+
 for n in 1 2; do echo "block $n: $(wc -l <"$work/$n.c") lines"; done
 cat "$work/app.out" | head -n 5
