@@ -67,6 +67,8 @@ START_TEST(test_lock_step) {
   ethd_sim_def def = sim_def();
   ck_assert_int_eq(ethd_plant_load(FOLDER "/p.plant", &def.plant, message), ETHD_OK);
   def.plant.rays = 1;
+  def.step = ethd_driver_sim.params[0].def;
+  def.tolerance = ETHD_SIM_GOLDEN;
   ethd_sim_tap tap;
   ethd_sim_draw(&def.plant, 9, 4, 0.3, (ethd_vec){0.25, 0.25}, &tap);
   ethd_sim *sim = sim_open(&def, &tap);
