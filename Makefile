@@ -1,6 +1,7 @@
 # libethd. Targets: all demo check bench stress ci install uninstall clean.
 # Variables: CC CXX CFLAGS CPPFLAGS LDFLAGS PREFIX DESTDIR BUILD, and
 #   SAN=address|thread|undefined|address,undefined   a sanitizer build, in a tree of its own
+#   RT=posix|mercury|cobalt   plain Linux, or a core of Xenomai 3 (XENO_CONFIG=its xeno-config), likewise
 #   WERROR=1   warnings are errors        V=1   whole command lines
 #   WHAT=...   make bench: only this question
 #   TESTS=...  only these tests, by name; % matches anything: TESTS='test_% golden'
@@ -14,6 +15,8 @@ RT ?= posix
 
 # Sources of libethd that work on [main] only; every other one must suit the control thread.
 MAIN_SIDE := $(wildcard lib/plugin.c lib/error.c lib/param.c lib/scene_parse.c lib/*_check.c lib/*_create.c lib/*_build.c)
+# Sources of the loop that its thread runs: they may sleep and read the clock, no more.
+LOOP_SIDE := drivers/loop/cycle.c drivers/loop/histogram.c
 
 SHELL := /bin/sh
 .SUFFIXES:
@@ -22,8 +25,22 @@ SHELL := /bin/sh
 .DEFAULT_GOAL := all
 
 comma := ,
+ifeq ($(filter posix mercury cobalt,$(RT)),)
+$(error RT=$(RT): posix, mercury and cobalt are known)
+endif
 ifneq ($(RT),posix)
-$(error RT=$(RT): this version builds RT=posix only)
+XENO_CONFIG ?= $(firstword $(wildcard $(addsuffix /xeno-config,$(subst :, ,$(PATH)) /usr/xenomai/bin)))
+ifeq ($(wildcard $(XENO_CONFIG)),)
+$(error RT=$(RT): no xeno-config in PATH or /usr/xenomai/bin. Install Xenomai 3, or say where it is: make RT=$(RT) XENO_CONFIG=/path/xeno-config)
+endif
+XENO_CORE := $(shell '$(XENO_CONFIG)' --core)
+ifneq ($(XENO_CORE),$(RT))
+$(error RT=$(RT), but $(XENO_CONFIG) belongs to the core $(or $(XENO_CORE),that it doesn't name))
+endif
+# The skin comes first; we initialise ourselves, and look for Cobalt before.
+XENO := '$(XENO_CONFIG)' --skin=$(if $(filter cobalt,$(RT)),cobalt --no-mode-check,posix) --no-auto-init
+XENO_CFLAGS := $(patsubst -I%,-isystem %,$(shell $(XENO) --cflags))
+XENO_LDFLAGS := $(shell $(XENO) --ldflags) -Wl,-rpath,$(shell '$(XENO_CONFIG)' --libdir)
 endif
 ifneq ($(filter-out address thread undefined,$(subst $(comma), ,$(SAN))),)
 $(error SAN=$(SAN): address, thread, undefined or address,undefined are known)
@@ -32,7 +49,7 @@ ifneq ($(filter -ffast-math -Ofast -funsafe-math-optimizations,$(CFLAGS) $(CPPFL
 $(error CFLAGS=$(CFLAGS): results are equal to the bit on every machine, which fast maths breaks)
 endif
 
-B := $(BUILD)$(if $(SAN),-san-$(subst $(comma),-,$(SAN)))
+B := $(BUILD)$(if $(XENO_CORE),-$(RT))$(if $(SAN),-san-$(subst $(comma),-,$(SAN)))
 Q := $(if $(V),,@)
 say = $(if $(V),@:,@printf '  %-6s %s\n' $(1) $(2))
 
@@ -59,6 +76,9 @@ WARN := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototyp
         $(if $(WERROR),-Werror)
 # gcc's vectoriser fuses a*b - c, a*b + c in pairs (vfmsubadd) in spite of -ffp-contract=off.
 FUSES := $(filter __FMA% __ARM%,$(TARGET))
+# gcc copies blocks of a few hundred bytes with instructions that take three times as long as memcpy.
+STRINGS := -mmemcpy-strategy=libcall:-1:noalign -mmemset-strategy=libcall:-1:noalign
+STRINGS := $(shell $(CC) $(STRINGS) -fsyntax-only -x c /dev/null 2>/dev/null && echo $(STRINGS))
 MATHS := -ffp-contract=off -fno-math-errno $(if $(FUSES),-fno-tree-vectorize) \
          $(if $(filter __i386__,$(TARGET)),-msse2 -mfpmath=sse)
 SANFLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-omit-frame-pointer -U_FORTIFY_SOURCE \
@@ -66,12 +86,12 @@ SANFLAGS := $(if $(SAN),-fsanitize=$(SAN) -fno-omit-frame-pointer -U_FORTIFY_SOU
 BASE := -std=gnu11 $(CFLAGS) $(WARN) $(MATHS) $(SANFLAGS)
 PIC := -fPIC -fvisibility=hidden -fno-semantic-interposition
 
-FLAGS_lib := $(BASE) $(PIC) -fno-stack-protector -fno-builtin-bcmp -U_FORTIFY_SOURCE -Iinclude -Ilib
+FLAGS_lib := $(BASE) $(STRINGS) $(PIC) -fno-stack-protector -fno-builtin-bcmp -U_FORTIFY_SOURCE -Iinclude -Ilib
 FLAGS_drivers := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Idrivers
 FLAGS_apps := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Idrivers -Iapps
 FLAGS_tests := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Ilib -Idrivers -Iapps -Itests
 FLAGS_plugin := $(BASE) -fPIC -Iinclude
-LIBS := -lm -ldl -lpthread
+LIBS := $(XENO_LDFLAGS) -lm -ldl -lpthread
 LINK = $(CC) $(BASE) $(LDFLAGS)
 
 # ---- what there is --------------------------------------------------------------------------
@@ -89,6 +109,7 @@ SCRIPTS := $(sort $(shell find tests -name '*.sh' -perm -u+x 2>/dev/null))
 obj = $(patsubst %.c,$(B)/obj/%.o,$(1))
 LIB_O := $(call obj,$(LIB_C))
 RT_O := $(call obj,$(filter-out $(MAIN_SIDE),$(LIB_C)))
+LOOP_O := $(call obj,$(LOOP_SIDE))
 PROGRAMS := $(patsubst apps/%.c,$(B)/bin/%,$(PROGRAMS_C))
 UNIT := $(addprefix $(B)/tests/,$(notdir $(TESTS_C:.c=)))
 PLUGINS := $(patsubst tests/plugins/%.c,$(B)/tests/plugins/%.so,$(PLUGINS_C))
@@ -103,7 +124,7 @@ tests: all $(UNIT) $(PLUGINS)
 # ---- build ----------------------------------------------------------------------------------
 
 # Objects of different flags never mix: everything depends on the flags it is built with.
-FLAGS_TEXT = $(LINK) | $(FLAGS_lib) | $(FLAGS_drivers) | $(FLAGS_apps) | $(FLAGS_tests) | $(CPPFLAGS)
+FLAGS_TEXT = $(LINK) | $(FLAGS_lib) | $(FLAGS_drivers) | $(FLAGS_apps) | $(FLAGS_tests) | $(CPPFLAGS) | $(XENO_CFLAGS) | $(XENO_LDFLAGS)
 SOURCES_TEXT := $(LIB_C) | $(DRIVERS_C) | $(PROGRAMS_C) | $(APPS_C) | $(HELPERS_C)
 keep = mkdir -p $(@D) && cat >$@.new && if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 $(B)/flags: export TEXT = $(FLAGS_TEXT)
@@ -120,6 +141,7 @@ $(B)/obj/$(1)/%.o: $(1)/%.c $(B)/flags
 	$$(Q)$$(CC) $$(CPPFLAGS) $$(FLAGS_$(1)) -MMD -MP -c $$< -o $$@
 endef
 $(foreach d,lib drivers apps tests,$(eval $(call compile,$(d))))
+$(call obj,$(wildcard drivers/loop/*.c)): FLAGS_drivers += $(XENO_CFLAGS)
 -include $(patsubst %.o,%.d,$(call obj,$(LIB_C) $(DRIVERS_C) $(PROGRAMS_C) $(APPS_C) $(TESTS_C) \
            $(HELPERS_C))) $(PLUGINS:.so=.d)
 
@@ -176,7 +198,7 @@ SCRIPT_RUNS := $(foreach s,$(SCRIPTS),$(if $(call wanted,$(basename $(notdir $(s
 TREE_RUN := $(addprefix $(B)/run/,$(call wanted,tree_clean))
 RUNS := $(UNIT_RUNS) $(SCRIPT_RUNS)
 run_test = @BUILD='$(abspath $(B))' CC='$(CC)' CXX='$(CXX)' PKG_CONFIG='$(PKG_CONFIG)' SAN='$(SAN)' PYTHON='$(PYTHON)' \
-  CFLAGS='$(CFLAGS)' RT_OBJECTS='$(RT_O)' MAKE='$(MAKE)' V='$(V)' sh .ci/test $@
+  CFLAGS='$(CFLAGS)' RT_OBJECTS='$(RT_O)' LOOP_OBJECTS='$(LOOP_O)' MAKE='$(MAKE)' V='$(V)' sh .ci/test $@
 FORCE:
 
 $(UNIT_RUNS): $(B)/run/%: FORCE | tests
@@ -247,4 +269,4 @@ uninstall:
 	@for d in $(incdir) $(sharedir); do if [ -d $$d ]; then find $$d -depth -type d -empty -delete; fi; done
 
 clean:
-	@for d in $(BUILD) $(BUILD)-san-*; do if [ -f $$d/flags ] || [ -d $$d/ci ]; then rm -rf $$d; fi; done
+	@for d in $(BUILD) $(BUILD)-san-* $(BUILD)-mercury* $(BUILD)-cobalt*; do if [ -f $$d/flags ] || [ -d $$d/ci ]; then rm -rf $$d; fi; done

@@ -34,9 +34,15 @@ static int is_same_face(const ethd_touch *touches, int i) ETHD_RT {
   return 0;
 }
 
-static int is_live(const ethd__state *state, int place) ETHD_RT {
-  for (int i = 0; i < ETHD_CONTACTS_MAX; i++)
-    if (state->slots[i].used && state->slots[i].place == place) return 1;
+static unsigned slots_in_use(const ethd__state *state) ETHD_RT {
+  unsigned bits = 0;
+  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) bits |= (unsigned)(state->slots[i].used != 0) << i;
+  return bits;
+}
+
+static int is_live(const ethd__state *state, unsigned in_use, int place) ETHD_RT {
+  for (; in_use; in_use &= in_use - 1)
+    if (state->slots[__builtin_ctz(in_use)].place == place) return 1;
   return 0;
 }
 
@@ -44,7 +50,7 @@ static void look_around(const ethd_scene *scene, ethd__state *state, int place, 
                         ethd_vec x, double range, ethd__candidates *c) ETHD_RT {
   ethd_touch touches[ETHD__TOUCHES];
   ethd__place *p = &state->places[place];
-  if (ethd__place_is_far(p, x, range) && !is_live(state, place)) return;
+  if (ethd__place_is_far(p, x, range) && !is_live(state, c->live, place)) return;
   c->queried = 1;
   size_t found = ethd_scene_touches(scene, x, range, touches, ETHD__TOUCHES);
   int kept = (int)(found < ETHD__TOUCHES ? found : ETHD__TOUCHES);
@@ -64,9 +70,9 @@ static void look_around(const ethd_scene *scene, ethd__state *state, int place, 
 static int closest(const ethd__state *state, unsigned open, double limit, const ethd__candidates *c,
                    int *slot) ETHD_RT {
   int best = -1;
-  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
+  for (; open; open &= open - 1) {
+    int i = __builtin_ctz(open);
     const ethd__slot *s = &state->slots[i];
-    if (!(open & (1u << i))) continue;
     for (int k = 0; k < c->count; k++) {
       const ethd__candidate *t = &c->at[k];
       if (t->slot >= 0 || t->touch.object != s->object || t->place != s->place) continue;
@@ -105,9 +111,7 @@ static void follow(const ethd_scene *scene, const ethd__slot *slot, int i, const
 /* The closest pairs first, so that a contact that ends doesn't leave its state to another one. The rest
    stays open. */
 static unsigned match(const ethd__plan *plan, const ethd__state *state, ethd__candidates *c) ETHD_RT {
-  unsigned open = 0;
-  for (int i = 0; i < ETHD_CONTACTS_MAX; i++)
-    if (state->slots[i].used) open |= 1u << i;
+  unsigned open = c->live;
   for (int i = 0, k; (k = closest(state, open, plan->setup.ring_radius, c, &i)) >= 0;) {
     c->at[k].slot = i;
     open &= ~(1u << i);
@@ -138,17 +142,17 @@ void ethd__candidates_collect(const ethd__plan *plan, ethd__state *state, const 
   ethd_vec x[ETHD__PLACES];
   double range = reach(plan, t);
   out->count = out->overflow = out->queried = 0;
-  for (int place = 0; place < ETHD__PLACES; place++) {
+  out->live = slots_in_use(state);
+  for (int place = 0; place < plan->places; place++) {
     const ethd_scene *scene = ethd__place_scene(&plan->setup, place);
     if (!scene || !state->places[place].there) continue;
     frames[place] = ethd__frame_of(&state->places[place]);
     x[place] = ethd__frame_in(&frames[place], (ethd_vec){t->x[0], t->x[1]});
     look_around(scene, state, place, &frames[place], x[place], range, out);
   }
-  unsigned open = match(plan, state, out);
-  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
+  for (unsigned open = match(plan, state, out); open; open &= open - 1) {
+    int i = __builtin_ctz(open);
     const ethd__slot *slot = &state->slots[i];
-    if (!(open & (1u << i))) continue;
     follow(ethd__place_scene(&plan->setup, slot->place), slot, i, &frames[slot->place], x[slot->place], out);
   }
   for (int k = 0; k < out->count; k++)

@@ -18,6 +18,7 @@ typedef struct ethd__candidate {
 typedef struct ethd__candidates {
   ethd__candidate at[ETHD__CANDIDATES]; /* the deepest first; equal depths keep the scenes' order */
   int count;
+  unsigned live; /* slots in use as the tick began, as bits */
   int overflow; /* touches within reach that weren't looked at */
   int queried;  /* 1: a scene was asked */
 } ethd__candidates;

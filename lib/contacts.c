@@ -156,12 +156,11 @@ static void nothing(ethd_trace *out, ethd_vec *shift) ETHD_RT {
 
 /* Contacts that no touch continues end here. */
 static void end_lost(ethd__state *state, const ethd__candidates *c) ETHD_RT {
-  unsigned kept = 0;
+  unsigned lost = c->live;
   for (int k = 0; k < c->count; k++)
-    if (c->at[k].slot >= 0) kept |= 1u << c->at[k].slot;
-  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
-    ethd__slot *slot = &state->slots[i];
-    if (!slot->used || kept & (1u << i)) continue;
+    if (c->at[k].slot >= 0) lost &= ~(1u << c->at[k].slot);
+  for (; lost; lost &= lost - 1) {
+    ethd__slot *slot = &state->slots[__builtin_ctz(lost)];
     slot->used = 0;
     if (slot->state != ETHD_TRANSPARENT) state->counters.contacts_lost++;
   }
@@ -193,7 +192,7 @@ static ethd__slot *new_slot(const ethd__plan *plan, ethd__state *state, ethd__ca
 int ethd__contacts(const ethd__plan *plan, ethd__state *state, double dt, ethd_trace *out,
                    ethd_vec *shift, ethd__failure *failure) {
   nothing(out, shift);
-  if (!plan->has_scene) return 1;
+  if (!plan->places) return 1;
   ethd__candidates c;
   ethd__candidates_collect(plan, state, out, &c);
   out->queried = c.queried;

@@ -22,7 +22,7 @@ static inline const ethd_scene *ethd__place_scene(const ethd_setup *setup, int p
 typedef struct ethd__plan {
   ethd_setup setup;
   double d_beta;
-  int has_scene; /* any place has one */
+  int places; /* all from here on have no scene */
   ethd_velocity velocity;
   ethd_fit fit;
   ethd_filter filter;

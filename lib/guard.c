@@ -67,6 +67,6 @@ int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *s, const et
     if (!stopping && clamp(s->last[i], limits->torque_rate * dt, &torque[i])) bits |= ETHD_GUARD_RATE;
     s->last[i] = torque[i];
   }
-  count(s, bits);
+  if (bits) count(s, bits);
   return bits;
 }

@@ -13,7 +13,7 @@ ethd__frame ethd__frame_of(const ethd__place *p) {
 }
 
 void ethd__places_take(ethd__state *state, const ethd_sense *sense) {
-  for (int i = 0; i < ETHD_BODIES_MAX; i++) {
+  for (int i = 0; i < ETHD_BODIES_MAX && (sense->have & ETHD__HAVE_BODIES); i++) {
     if (!(sense->have & ((int64_t)ETHD_HAVE_BODY << i))) continue;
     memcpy(state->places[1 + i].pose, sense->bodies + 6 * i, sizeof state->places[1 + i].pose);
     state->places[1 + i].there = 1;

@@ -7,6 +7,9 @@
 
 #include "control.h"
 
+/* Any of them. */
+#define ETHD__HAVE_BODIES (((int64_t)ETHD_HAVE_BODY << ETHD_BODIES_MAX) - ETHD_HAVE_BODY)
+
 typedef struct ethd__frame {
   ethd_vec x, v; /* origin in R_0 and its velocity */
   double cosine, sine, rate;

@@ -28,7 +28,8 @@ typedef struct ethd__minima {
   ethd_vec x;
   float bound; /* see ethd__bound */
   const float *slopes;
-  bool end; /* of an open chain is still to come */
+  bool apart; /* x and the centre */
+  bool end;   /* of an open chain is still to come */
   int count;
   struct {
     uint32_t level, index;

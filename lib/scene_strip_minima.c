@@ -2,14 +2,15 @@
 
 #include <float.h>
 
-/* Near the centre, and not leaning as seen from x. */
+/* Near the centre, and not leaning as seen from x, which is the centre unless they are `apart`. */
 static unsigned open_lanes(const ethd__minima *m, uint32_t place) {
   ethd__eight near, facing;
-  const ethd__node *n = m->at_centre.nodes + place;
-  ethd__eight_squared(n, NULL, &m->at_centre, near.squared);
+  const ethd__node *n = m->at_x.nodes + place;
+  const float *slopes = m->slopes ? m->slopes + ETHD__WIDE * (size_t)place : NULL;
+  ethd__eight_squared(n, m->apart ? NULL : slopes, &m->at_centre, near.squared);
   unsigned lanes = ethd__lanes_within(near.squared, m->bound);
-  if (!lanes || !m->slopes) return lanes;
-  ethd__eight_squared(n, m->slopes + ETHD__WIDE * (size_t)place, &m->at_x, facing.squared);
+  if (!lanes || !slopes || !m->apart) return lanes;
+  ethd__eight_squared(n, slopes, &m->at_x, facing.squared);
   return lanes & ethd__lanes_within(facing.squared, FLT_MAX);
 }
 
@@ -28,6 +29,7 @@ void ethd__minima_start(ethd__minima *m, const ethd_scene *scene, const ethd__ob
   m->at_x = ethd__probe_at(scene, x);
   m->at_centre = ethd__probe_at(scene, centre);
   m->x = x;
+  m->apart = x.x != centre.x || x.y != centre.y;
   m->bound = ethd__bound(&m->at_centre, INFINITY);
   m->slopes = ethd__is_true_to(&m->at_x) ? ETHD__ARRAY(scene, float, slopes_at) : NULL;
   m->end = true;

@@ -100,9 +100,9 @@ ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error 
   TRY(within("velocity", ethd_velocity_prepare(s->velocity, s->velocity_p, s->period, &out->velocity, error), error));
   TRY(within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error), error));
   TRY(within("finger_filter", ethd_filter_prepare(s->filter, s->filter_p, s->period, &out->filter, error), error));
-  out->has_scene = 0;
+  out->places = 0;
   for (int place = 0; place < ETHD__PLACES; place++) {
-    out->has_scene |= ethd__place_scene(s, place) != NULL;
+    if (ethd__place_scene(s, place)) out->places = place + 1;
     TRY(prepare_materials(s, place, out, error));
   }
   return ETHD_OK;

@@ -31,7 +31,7 @@ static int input_is_good(const ethd_sense *s, ethd__failure *f) ETHD_RT {
   f->value = ETHD_HAVE_RING;
   if ((s->have & ETHD_HAVE_RING) && !two_finite(s->ring)) return 0;
   f->value = ETHD_HAVE_BODY;
-  for (int i = 0; i < ETHD_BODIES_MAX; i++)
+  for (int i = 0; i < ETHD_BODIES_MAX && (s->have & ETHD__HAVE_BODIES); i++)
     if ((s->have & ((int64_t)ETHD_HAVE_BODY << i)) && !pose_is_good(s->bodies + 6 * i)) return 0;
   f->fault = ETHD_FAULT_NONE;
   return 1;
@@ -64,8 +64,9 @@ static void fade(const ethd__plan *plan, ethd__state *state, double dt, double t
 }
 
 static void blank(const ethd_sense *sense, ethd_trace *out) ETHD_RT {
-  memset(out, 0, sizeof *out);
+  const size_t own = offsetof(ethd_trace, tick);
   out->sense = *sense;
+  memset((char *)out + own, 0, sizeof *out - own);
   out->object = -1;
   out->beta = 1;
   out->rf = out->d_re = out->d_fe = out->v_n = (double)NAN;
@@ -97,7 +98,7 @@ static void guard(const ethd__plan *plan, ethd__state *state, const ethd_pose *p
   if (failure->fault == ETHD_FAULT_INPUT) return; /* nothing is known of the ring */
   memcpy(out->tau, out->tau_raw, sizeof out->tau);
   out->guard = ethd_guard_step(&plan->setup.limits, &state->guard, pose, v, dt, out->tau);
-  if (failure->fault == ETHD_FAULT_NONE)
+  if (failure->fault == ETHD_FAULT_NONE && out->guard)
     *failure = (ethd__failure){guard_fault(out->guard), ethd_vec_norm(v)};
 }
 
