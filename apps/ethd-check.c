@@ -3,45 +3,69 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "check/report.h"
 #include "check/stability.h"
 #include "common/cli.h"
 #include "ethd/sim.h"
 #include "file/config_parts.h"
-#include "file/text.h"
+#include "sim/plant.h"
 
-static const char doc[] =
-    "Validates a configuration, prints the setup as it was understood, and names the stability bounds that "
-    "its gains exceed.\v"
-    "Bounds are those of the sampled loop: a free mass (arm.mass_x, arm.mass_y) under zero-order hold with "
-    "the configured velocity estimator, one axis at a time, without friction. The exit code is 0 for every "
-    "valid configuration, whether bounds are exceeded or not; 2 with one line for one that isn't.\n\n"
-    "Example:\n"
-    "  ethd-check device.ini\n"
-    "  ethd-check --counts 39200 --delay 1 device.ini";
+static const char doc[] = "Validates a configuration, prints the setup as it was understood, and how "
+                          "far it is from its bounds: "
+                          "stability, passivity, rest at touch, quantisation, the tick's time; each "
+                          "with its formula and with what to "
+                          "change.\v"
+                          "Figures of the device come from the plant when it is the simulated one, else "
+                          "from options; options win. "
+                          "The exit code is 0 for every valid configuration, whether bounds are "
+                          "exceeded or not; 2 with one line for "
+                          "one that isn't.\n\n"
+                          "Example:\n"
+                          "  ethd-check device.ini\n"
+                          "  ethd-check --counts 39200 --delay 1 --force-limit 5.4 device.ini";
 
 static const struct argp_option options[] = {
-    {"counts", 'c', "N", 0, "encoder counts per joint turn (known for the simulated device)", 0},
-    {"delay", 'd', "TICKS", 0, "whole ticks from measurement to torque, 0 by default", 0},
+    {"counts", 'c', "N", 0, "encoder counts per joint turn", 0},
+    {"delay", 'd', "TICKS", 0, "ticks from measurement to torque, 0 to 20; parts count", 0},
+    {"force-limit", 'f', "N", 0, "force at the ring: torque limit of a joint / its link", 0},
+    {"friction", 'r', "N", 0, "Coulomb friction at the ring", 0},
+    {"viscous", 'b', "NSPM", 0, "viscous friction at the ring, Ns/m", 0},
+    {"latency", 'l', "S", 0, "age of the finger's readings when they arrive, s", 0},
     {0},
 };
 
-static struct {
-  const char *config, *counts, *delay;
-} arg;
+static struct { const char *config, *counts, *delay, *force, *friction, *viscous, *latency; } arg;
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
-    case 'c': arg.counts = text; return 0;
-    case 'd': arg.delay = text; return 0;
-    case ARGP_KEY_ARG:
-      if (arg.config) argp_error(state, "\"%s\": one configuration is checked", text);
-      arg.config = text;
-      return 0;
-    case ARGP_KEY_NO_ARGS: argp_error(state, "which configuration?"); return 0;
-    default: return ARGP_ERR_UNKNOWN;
+  case 'c':
+    arg.counts = text;
+    return 0;
+  case 'd':
+    arg.delay = text;
+    return 0;
+  case 'f':
+    arg.force = text;
+    return 0;
+  case 'r':
+    arg.friction = text;
+    return 0;
+  case 'b':
+    arg.viscous = text;
+    return 0;
+  case 'l':
+    arg.latency = text;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (arg.config) argp_error(state, "\"%s\": one configuration is checked", text);
+    arg.config = text;
+    return 0;
+  case ARGP_KEY_NO_ARGS:
+    argp_error(state, "which configuration?");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -60,7 +84,8 @@ static void check_device(const ethd_config *config) {
   const ethd_device_def def = {&config->setup, config->settings, config->setting_count, config->folder};
   if (strcmp(config->device, ethd_driver_sim.id) != 0)
     ethd__fail(ETHD_EXIT_INPUT, "%s:%d: device.driver: found \"%s\", sim is allowed", arg.config,
-               ethd_ini_find(&ethd__config_whole(config)->ini, "device", "driver")->line, config->device);
+               ethd_ini_find(&ethd__config_whole(config)->ini, "device", "driver")->line,
+               config->device);
   ethd_status status = ethd_driver_sim.open(&def, &device, &error);
   if (status < 0) {
     ethd_error_text(arg.config, &error, message);
@@ -69,23 +94,49 @@ static void check_device(const ethd_config *config) {
   ethd_driver_sim.close(device);
 }
 
-/* The simulated device's plant: beside the configuration, else one that came with the programs. */
-static double plant_count(const ethd_config *config) {
-  char message[ETHD_MESSAGE_MAX], name[64];
-  ethd_plant plant;
+/* The driver has read it already: it can be. */
+static void from_plant(const ethd_config *config, ethd__figures *f) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd_plant p;
   const ethd_setting *own = setting(config, "plant");
-  const char *value = own ? own->value : "n";
-  bool named = !strpbrk(value, "/.");
-  if (strlen(value) >= sizeof name - sizeof ".plant") return NAN;
-  snprintf(name, sizeof name, "%s%s", value, named ? ".plant" : "");
-  char *path = ethd__path_join(config->folder, name);
-  if (path && named && access(path, R_OK) != 0) {
-    free(path);
-    path = ethd__data_path(name);
-  }
-  ethd_status status = path ? ethd_plant_load(path, &plant, message) : ETHD_E_MEMORY;
+  char *path = ethd__plant_path(own ? own->value : "n", config->folder);
+  ethd_status status = path ? ethd_plant_load(path, &p, message) : ETHD_E_MEMORY;
   free(path);
-  return status ? NAN : plant.count;
+  if (status) return;
+  for (int i = 0; i < 2; i++) {
+    f->mass[i] = p.mass[i];
+    f->force[i] = p.force_limit;
+  }
+  f->friction = p.friction;
+  f->viscous = p.viscous;
+  f->delay = p.delay;
+  f->count = p.count;
+  f->latency = p.latency;
+  f->compliant = isfinite(p.stiffness);
+}
+
+static void option(const char *name, const char *text, double max, double *out) {
+  if (text) *out = ethd__option_number(name, text, 0, max);
+}
+
+static ethd__figures figures(const ethd_config *config) {
+  const ethd_setup *setup = &config->setup;
+  ethd__figures f = {{NAN, NAN}, {NAN, NAN}, NAN, NAN, NAN, NAN, NAN, 0};
+  double links[2] = {setup->arm.link1, setup->arm.link2}, ticks = NAN;
+  if (strcmp(config->device, ethd_driver_sim.id) == 0) from_plant(config, &f);
+  option("--friction", arg.friction, 1e6, &f.friction);
+  option("--viscous", arg.viscous, 1e6, &f.viscous);
+  option("--latency", arg.latency, 1, &f.latency);
+  option("--delay", arg.delay, ETHD_LOOP_DELAY_MAX, &ticks);
+  if (arg.delay) f.delay = ticks * setup->period;
+  if (arg.counts) f.count = 2 * M_PI / ethd__option_number("--counts", arg.counts, 1, 1e12);
+  for (int i = 0; i < 2; i++) {
+    option("--force-limit", arg.force, 1e6, &f.force[i]);
+    f.force[i] = fmin(f.force[i], setup->limits.torque / links[i]); /* fmin: of the one that is known */
+  }
+  if (!isnan(config->mass_x)) f.mass[0] = config->mass_x;
+  if (!isnan(config->mass_y)) f.mass[1] = config->mass_y;
+  return f;
 }
 
 /* ---- all of it ---- */
@@ -99,17 +150,17 @@ int main(int argc, char **argv) {
   ethd_status status = ethd_config_load(arg.config, &config, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
   check_device(config);
-  ethd__bounds bounds = {.config = config, .count = NAN};
-  if (arg.delay) bounds.delay = (int)ethd__option_integer("--delay", arg.delay, 0, ETHD_LOOP_DELAY_MAX);
-  if (arg.counts)
-    bounds.count = 2 * M_PI / ethd__option_number("--counts", arg.counts, 1, 1e12);
-  else
-    bounds.count = plant_count(config);
+  ethd__subject subject = {.config = config, .device = figures(config)};
   printf("; %s is valid\n\n", arg.config);
   ethd__report_setup(config);
   printf("\n");
-  int exceeded = ethd__report_bounds(&bounds);
-  printf("%d bound%s exceeded\n", exceeded, exceeded == 1 ? "" : "s");
+  ethd__report_device(&subject);
+  int exceeded = ethd__report_stability(&subject);
+  exceeded += ethd__report_passivity(&subject);
+  exceeded += ethd__report_stop(&subject);
+  exceeded += ethd__report_threshold(&subject);
+  exceeded += ethd__report_tick(&subject);
+  printf("\n%d bound%s exceeded\n", exceeded, exceeded == 1 ? "" : "s");
   ethd_config_free(config);
   return ethd__end(ETHD_EXIT_DONE);
 }

@@ -7,10 +7,10 @@
 #include "stress/stress.h"
 
 static const ethd__stress *const tests[] = {
-    &ethd__stress_boundary, &ethd__stress_braking, &ethd__stress_viscous, &ethd__stress_stop, &ethd__stress_touch, &ethd__stress_lag,
-    &ethd__stress_press, &ethd__stress_creep, &ethd__stress_energy, &ethd__stress_arm,
-    &ethd__stress_parameters, &ethd__stress_inputs, &ethd__stress_denormals, &ethd__stress_drift, &ethd__stress_jitter,
-    &ethd__stress_map,
+    &ethd__stress_boundary,  &ethd__stress_braking, &ethd__stress_viscous,    &ethd__stress_stop,
+    &ethd__stress_touch,     &ethd__stress_lag,     &ethd__stress_press,      &ethd__stress_creep,
+    &ethd__stress_energy,    &ethd__stress_arm,     &ethd__stress_parameters, &ethd__stress_inputs,
+    &ethd__stress_denormals, &ethd__stress_drift,   &ethd__stress_jitter,     &ethd__stress_map,
 };
 #define COUNT (sizeof tests / sizeof *tests)
 
@@ -39,16 +39,27 @@ static struct {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
-    case 'q': arg.effort = ETHD__QUICK; return 0;
-    case 'l': arg.effort = ETHD__LONG; return 0;
-    case 'c': arg.csv = text; return 0;
-    case 'o': arg.folder = text; return 0;
-    case 'L': arg.list = 1; return 0;
-    case ARGP_KEY_ARG:
-      if (arg.name) argp_error(state, "\"%s\": one NAME at a time", text);
-      arg.name = text;
-      return 0;
-    default: return ARGP_ERR_UNKNOWN;
+  case 'q':
+    arg.effort = ETHD__QUICK;
+    return 0;
+  case 'l':
+    arg.effort = ETHD__LONG;
+    return 0;
+  case 'c':
+    arg.csv = text;
+    return 0;
+  case 'o':
+    arg.folder = text;
+    return 0;
+  case 'L':
+    arg.list = 1;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (arg.name) argp_error(state, "\"%s\": one NAME at a time", text);
+    arg.name = text;
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
   }
 }
 

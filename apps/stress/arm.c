@@ -1,5 +1,6 @@
 /* The arm stretched out, folded, and near both. With J = U diag(s1, s2) V^T the damped inverse is
-   V diag(s_i / (s_i^2 + lambda^2)) U^T, so that its norm is known from s1^2 + s2^2 = |J|^2, s1 s2 = |det J|:
+   V diag(s_i / (s_i^2 + lambda^2)) U^T, so that its norm is known from s1^2 + s2^2 = |J|^2, s1 s2 = |det
+   J|:
 
      w = |det J| / (L1 L2) >= w0:  the inverse;  below:  lambda = w0 L1 L2 / |J| (1 - w / w0).      */
 #include <math.h>
@@ -59,7 +60,8 @@ static void check_gain(ethd__stress_log *log, const place *p) {
         ethd__stress_bound(log, "1", eye, 1e-13, "%s: |J J^-1 - I| outside of the damping", p->name);
       }
     }
-  ethd__stress_bound(log, "1/m", most, 1.3 * begin, "%s: |J^-1| <= 1.3 times where damping begins", p->name);
+  ethd__stress_bound(log, "1/m", most, 1.3 * begin, "%s: |J^-1| <= 1.3 times where damping begins",
+                     p->name);
 }
 
 /* Torques of whole steps on a sweep through the singular pose, the finger 5 mm away: largest torque over
@@ -89,7 +91,8 @@ static sweep through(const place *p, int64_t steps) {
     ethd_arm_pose(&p->arm, sense.q, &pose);
     sense.finger[0] = pose.x.x + 0.003;
     sense.finger[1] = pose.x.y - 0.004;
-    if (ethd_control_step(control, &sense, &c, NULL) < 0 || !isfinite(c.torque[0]) || !isfinite(c.torque[1]))
+    if (ethd_control_step(control, &sense, &c, NULL) < 0 || !isfinite(c.torque[0]) ||
+        !isfinite(c.torque[1]))
       r.bad++;
     double size = hypot(c.torque[0], c.torque[1]);
     r.load = fmax(r.load, size / (K_T * 0.005 * gain_formula(&p->arm, pose.j)));
@@ -114,10 +117,11 @@ static void run(ethd__stress_log *log) {
     const place *p = &places[i];
     check_gain(log, p);
     sweep coarse = through(p, steps), fine = through(p, 10 * steps);
-    ethd__stress_within(log, "ticks", coarse.bad + fine.bad, 0, 0, "%s: steps at fault or not finite", p->name);
+    ethd__stress_within(log, "ticks", coarse.bad + fine.bad, 0, 0, "%s: steps at fault or not finite",
+                        p->name);
     ethd__stress_bound(log, "1", fine.load, 1 + 1e-9, "%s: |tau| <= K_t |J^-1| |eps|", p->name);
-    ethd__stress_near(log, "1", fine.jump / coarse.jump, 0.1, 0.05, "%s: a tenth of the step, a tenth of the jump",
-                      p->name);
+    ethd__stress_near(log, "1", fine.jump / coarse.jump, 0.1, 0.05,
+                      "%s: a tenth of the step, a tenth of the jump", p->name);
   }
 }
 

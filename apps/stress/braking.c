@@ -1,7 +1,7 @@
 /* B_max: the largest stable damping of a free ring, B_d of the braking state with each estimator.
 
-   A push makes the ring creep, so that its estimated speed never falls below v_th and the state stays. It
-   begins with the braking, which bears it from the first tick on. */
+   A push makes the ring creep, so that its estimated speed never falls below v_th and the state stays.
+   It begins with the braking, which bears it from the first tick on. */
 #include <math.h>
 
 #include "stress/curve.h"
@@ -28,7 +28,7 @@ static double growth(const ethd__curve *c, double damping) {
   ethd_setup_velocity(&rig.setup, c->method);
   rig.setup.velocity_p[0] = c->value;
   rig.setup.transition_p[0] = damping;
-  rig.setup.transition_p[1] = 1e-6;                                           /* v_th */
+  rig.setup.transition_p[1] = 1e-6;                                         /* v_th */
   rig.setup.transition_p[3] = rig.setup.transition_p[4] = (double)INFINITY; /* eps_max, t_max */
   rig.delay = c->delay;
   enter(&rig, damping);

@@ -13,10 +13,10 @@
 #include "ethd/velocity.h"
 
 typedef struct ethd__curve {
-  double mass, period; /* kg, s */
-  int delay;           /* n */
+  double mass, period;         /* kg, s */
+  int delay;                   /* n */
   ethd_velocity_method method; /* difference, lowpass or lsq */
-  double value;        /* cutoff, Hz, or window, samples */
+  double value;                /* cutoff, Hz, or window, samples */
 } ethd__curve;
 
 /* K, N/m, and B, Ns/m, on the boundary at 0 < th, rad. */

@@ -1,6 +1,6 @@
-/* Subnormal numbers: a low-pass that has nothing more to say decays into them and, with rounding to nearest,
-   stays there. The programs set FTZ and DAZ: the tick keeps its pace, and but for what is subnormal the
-   results are the same bits. */
+/* Subnormal numbers: a low-pass that has nothing more to say decays into them and, with rounding to
+   nearest, stays there. The programs set FTZ and DAZ: the tick keeps its pace, and but for what is
+   subnormal the results are the same bits. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -59,7 +59,9 @@ static outcome rest(int64_t still, int rounds) {
 }
 
 /* 1e-300: far over what is subnormal, far under what moves anything. */
-static double apart(double a, double b) { return fabs(a - b) <= 1e-300 ? 0 : fabs(a - b); }
+static double apart(double a, double b) {
+  return fabs(a - b) <= 1e-300 ? 0 : fabs(a - b);
+}
 
 /* By its bits: with DAZ it compares as 0. */
 static int subnormal(double x) {
@@ -88,9 +90,11 @@ static void run(ethd__stress_log *log) {
   ethd__stress_bound(log, "rad/s", fabs(flushed.speed), DBL_MIN / (1 - exp(-2 * M_PI * CUTOFF * 0.001)),
                      "flushed: the speed that is left <= least normal number / a");
   ethd__stress_within(log, "Nm", off, 0, 0, "torques, forces, speeds flushed and kept differ by");
-  ethd__stress_bound(log, "1", flushed.tick / calm.tick, 1.5, "flushed: tick at rest over a tick in motion");
+  ethd__stress_bound(log, "1", flushed.tick / calm.tick, 1.5,
+                     "flushed: tick at rest over a tick in motion");
   ethd__stress_note(log, "tick in motion %.0f ns; at rest flushed %.0f ns, with subnormals kept %.0f ns",
                     1e9 * calm.tick, 1e9 * flushed.tick, 1e9 * kept.tick);
 }
 
-const ethd__stress ethd__stress_denormals = {"denormals", "subnormal numbers: same results, same pace", run};
+const ethd__stress ethd__stress_denormals = {"denormals", "subnormal numbers: same results, same pace",
+                                             run};

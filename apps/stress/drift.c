@@ -1,9 +1,9 @@
 /* A thousand million ticks: nothing that is added up drifts.
 
-     ages and caps   counted in periods: a law sees age = k T, and braking ends t_max / T ticks after it began
-     a static press  the same input gives the same bits
-     taps            readings, filters, braking, vo and back, again and again: the same torques
-     time            stamps are integers, and what is between two of them is theirs                    */
+     ages and caps   counted in periods: a law sees age = k T, and braking ends t_max / T ticks after it
+   began a static press  the same input gives the same bits taps            readings, filters, braking,
+   vo and back, again and again: the same torques time            stamps are integers, and what is
+   between two of them is theirs                    */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -66,8 +66,10 @@ static void press(ethd__stress_log *log, const ethd_scene *scene, int64_t ticks)
   ethd__progress(1, 1, "");
   ethd__stress_within(log, "s", age_seen, (double)(ticks - 1) * PERIOD, 1e-15 * age_seen,
                       "age of a contact after %g ticks", (double)ticks);
-  ethd__stress_within(log, "ticks", (double)ended, (double)braking, 0, "tick at which t_max ended the braking");
-  ethd__stress_within(log, "ticks", (double)changed, 0, 0, "ticks on which the torque of a press changed");
+  ethd__stress_within(log, "ticks", (double)ended, (double)braking, 0,
+                      "tick at which t_max ended the braking");
+  ethd__stress_within(log, "ticks", (double)changed, 0, 0,
+                      "ticks on which the torque of a press changed");
   ethd_control_destroy(control);
 }
 
@@ -117,9 +119,11 @@ static void taps(ethd__stress_log *log, const ethd_scene *scene, int64_t ticks) 
     if ((i & 255) == 0) ethd__progress((uint64_t)i, (uint64_t)cycles, "taps");
   }
   ethd__progress(1, 1, "");
-  ethd__stress_within(log, "Nm", apart(early, late), 0, 1e-12, "torques of taps 10 and of the last ones, %g ticks later",
+  ethd__stress_within(log, "Nm", apart(early, late), 0, 1e-12,
+                      "torques of taps 10 and of the last ones, %g ticks later",
                       (double)((cycles - 10) * CYCLE));
-  ethd__stress_bound(log, "ticks", -(double)(braking < vo ? braking : vo), -10, "the last ones brake and press (ticks, negated)");
+  ethd__stress_bound(log, "ticks", -(double)(braking < vo ? braking : vo), -10,
+                     "the last ones brake and press (ticks, negated)");
   ethd_control_destroy(control);
 }
 
@@ -131,4 +135,5 @@ static void run(ethd__stress_log *log) {
   ethd_scene_destroy(scene);
 }
 
-const ethd__stress ethd__stress_drift = {"drift", "1e6 (quick), 1e7 or 1e9 (long) ticks without drift", run};
+const ethd__stress ethd__stress_drift = {"drift", "1e6 (quick), 1e7 or 1e9 (long) ticks without drift",
+                                         run};

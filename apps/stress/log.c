@@ -60,12 +60,12 @@ static void add(ethd__stress_log *log, const ethd__result *r) {
             r->bound ? "<=" : "=", r->analytic, r->unit, r->allowed, passed);
 }
 
-#define WORDS(r, what)                           \
-  do {                                           \
-    va_list args;                                \
-    va_start(args, what);                        \
-    vsnprintf((r).what, sizeof(r).what, what, args); \
-    va_end(args);                                \
+#define WORDS(r, what)                                                                                  \
+  do {                                                                                                  \
+    va_list args;                                                                                       \
+    va_start(args, what);                                                                               \
+    vsnprintf((r).what, sizeof(r).what, what, args);                                                    \
+    va_end(args);                                                                                       \
   } while (0)
 
 void ethd__stress_near(ethd__stress_log *log, const char *unit, double measured, double analytic,

@@ -1,6 +1,7 @@
 /* Every parameter at both ends of its range, alone and in all pairs, in a loop that taps at a wall: the
    setup is accepted, every number of the trace is finite, the torque is within its limit, and no fault
-   comes but those that a limit of 0 is there for. As in the programs, the device's torque limit counts. */
+   comes but those that a limit of 0 is there for. As in the programs, the device's torque limit counts.
+ */
 #include <math.h>
 #include <string.h>
 
@@ -24,7 +25,8 @@ typedef struct knobs {
 
 /* ---- what there is to turn ---- */
 
-static void add(knobs *all, const char *section, const char *name, size_t offset, double min, double max) {
+static void add(knobs *all, const char *section, const char *name, size_t offset, double min,
+                double max) {
   knob *k = &all->at[all->count++];
   snprintf(k->name, sizeof k->name, "%s.%s", section, name);
   k->offset = offset;
@@ -32,7 +34,8 @@ static void add(knobs *all, const char *section, const char *name, size_t offset
   k->ends[1] = max;
 }
 
-static void add_table(knobs *all, const char *section, const ethd_param *rows, uint32_t count, size_t offset) {
+static void add_table(knobs *all, const char *section, const ethd_param *rows, uint32_t count,
+                      size_t offset) {
   for (uint32_t i = 0; i < count; i++)
     add(all, section, rows[i].name, offset + i * sizeof(double), rows[i].min, rows[i].max);
 }
@@ -57,7 +60,8 @@ static void collect(const ethd_setup *s, knobs *all) {
   add(all, "limits", "step_time", AT(limits.step_time), 1e-9, inf);
   add_table(all, "tracking", s->tracking->law.params, s->tracking->law.param_count, AT(tracking_p));
   add_table(all, "contact", s->contact->law.params, s->contact->law.param_count, AT(contact_p));
-  add_table(all, "transition", s->transition->law.params, s->transition->law.param_count, AT(transition_p));
+  add_table(all, "transition", s->transition->law.params, s->transition->law.param_count,
+            AT(transition_p));
   const ethd_method *v = &ethd_velocity_methods[s->velocity], *f = &ethd_fit_methods[s->fit],
                     *g = &ethd_filter_methods[s->filter];
   add_table(all, "velocity", v->params, v->param_count, AT(velocity_p));
@@ -91,10 +95,12 @@ static int all_finite(const double *v, int n) {
 }
 
 static int trace_is_finite(const ethd_trace *t) {
-  return all_finite(t->x, 2) && all_finite(t->v, 2) && all_finite(t->xf, 2) && all_finite(t->vf, 2) && all_finite(t->qd, 2) &&
-         all_finite(t->eps_q, 2) && all_finite(t->eps_q_dot, 2) && all_finite(&t->beta, 1) && all_finite(t->fe, 2) &&
-         all_finite(t->fd, 2) && all_finite(&t->eps, 1) && all_finite(t->tau_raw, 2) && all_finite(t->tau, 2) &&
-         (!t->contacts || (all_finite(&t->d_re, 1) && all_finite(&t->d_fe, 1) && all_finite(&t->v_n, 1)));
+  return all_finite(t->x, 2) && all_finite(t->v, 2) && all_finite(t->xf, 2) && all_finite(t->vf, 2) &&
+         all_finite(t->qd, 2) && all_finite(t->eps_q, 2) && all_finite(t->eps_q_dot, 2) &&
+         all_finite(&t->beta, 1) && all_finite(t->fe, 2) && all_finite(t->fd, 2) &&
+         all_finite(&t->eps, 1) && all_finite(t->tau_raw, 2) && all_finite(t->tau, 2) &&
+         (!t->contacts ||
+          (all_finite(&t->d_re, 1) && all_finite(&t->d_fe, 1) && all_finite(&t->v_n, 1)));
 }
 
 static int torque_is_held(const ethd_trace *t, double most) {
@@ -140,7 +146,8 @@ static void tap(ethd__rig *rig, int ticks, const char *name, tally *t) {
       t->stopped++;
     } else if (rig->trace.fault) {
       t->faults++;
-      snprintf(t->fault, sizeof t->fault, "%s: %s", name, ethd_fault_sentence((ethd_fault)rig->trace.fault));
+      snprintf(t->fault, sizeof t->fault, "%s: %s", name,
+               ethd_fault_sentence((ethd_fault)rig->trace.fault));
     }
     if (!trace_is_finite(&rig->trace) || !torque_is_held(&rig->trace, rig->setup.limits.torque)) {
       t->broken++;
@@ -191,8 +198,8 @@ static void pairs(const ethd_setup *base, int ticks, tally *t) {
 
 static const ethd_contact_law *const contacts[] = {&ethd_contact_kelvin_voigt, &ethd_contact_spring,
                                                    &ethd_contact_hunt_crossley};
-static const ethd_transition_law *const transitions[] = {&ethd_transition_offset, &ethd_transition_smooth,
-                                                         &ethd_transition_abrupt};
+static const ethd_transition_law *const transitions[] = {
+    &ethd_transition_offset, &ethd_transition_smooth, &ethd_transition_abrupt};
 
 static void run(ethd__stress_log *log) {
   int quick = log->effort == ETHD__QUICK, ticks = quick ? 60 : 300;
@@ -210,9 +217,10 @@ static void run(ethd__stress_log *log) {
     }
   ethd__stress_within(log, "setups", (double)t.refused, 0, 0, "setups refused of those tried");
   ethd__stress_within(log, "ticks", (double)t.faults, 0, 0, "faults that no limit asked for");
-  ethd__stress_within(log, "ticks", (double)t.broken, 0, 0, "ticks not finite, or over the torque limit");
-  ethd__stress_note(log, "%lld setups of %d ticks, %lld stopped by a limit of 0", (long long)t.runs, ticks,
-                    (long long)t.stopped);
+  ethd__stress_within(log, "ticks", (double)t.broken, 0, 0,
+                      "ticks not finite, or over the torque limit");
+  ethd__stress_note(log, "%lld setups of %d ticks, %lld stopped by a limit of 0", (long long)t.runs,
+                    ticks, (long long)t.stopped);
   if (t.refused) ethd__stress_note(log, "refused: %s", t.refusal);
   if (t.faults) ethd__stress_note(log, "fault: %s", t.fault);
   if (t.broken) ethd__stress_note(log, "broken: %s", t.breach);

@@ -118,7 +118,9 @@ double ethd__rig_depth(const ethd__rig *rig) {
   return (rig->q[0] - M_PI / 2) * rig->setup.arm.link1;
 }
 
-double ethd__rig_speed(const ethd__rig *rig) { return rig->w[0] * rig->setup.arm.link1; }
+double ethd__rig_speed(const ethd__rig *rig) {
+  return rig->w[0] * rig->setup.arm.link1;
+}
 
 /* ---- growth ---- */
 
@@ -140,7 +142,9 @@ static amplitude measure(const double y[3]) {
   return (amplitude){fabs(y[1] * y[1] - y[0] * y[2]), fmax(fabs(y[0]), fmax(fabs(y[1]), fabs(y[2])))};
 }
 
-static int is_swing(amplitude a) { return a.c > 1e-5 * a.y * a.y; }
+static int is_swing(amplitude a) {
+  return a.c > 1e-5 * a.y * a.y;
+}
 
 double ethd__rig_growth(ethd__rig *rig, const ethd__swing *s) {
   double x[3] = {0}, y[3] = {0};

@@ -28,7 +28,7 @@ typedef struct ethd__rig {
   double q[2], w[2]; /* rad, rad/s: true at the present tick */
   double way[ETHD__RIG_DELAY_MAX][2];
   int64_t tick;
-  int64_t missed;    /* periods that went by since the last step without one */
+  int64_t missed; /* periods that went by since the last step without one */
   ethd_status status;
   ethd_command command;
   ethd_trace trace; /* of the last tick */
@@ -58,10 +58,10 @@ ethd_sense ethd__rig_sense(const ethd__rig *rig);
 double ethd__rig_depth(const ethd__rig *rig);
 double ethd__rig_speed(const ethd__rig *rig);
 
-/* How a swing grows, ln per tick: a pair of modes z, z* of x_k, the `order`-th differences of the motion,
-   has x_k^2 - x_k+1 x_k-1 proportional to |z|^2k exactly, whatever its phase (of one real mode it is 0, and
-   the motion itself is measured). From tick `settle` on over `span` ticks; INFINITY as soon as a difference
-   is over `ceiling` m, the mean so far when they are below `floor` m. */
+/* How a swing grows, ln per tick: a pair of modes z, z* of x_k, the `order`-th differences of the
+   motion, has x_k^2 - x_k+1 x_k-1 proportional to |z|^2k exactly, whatever its phase (of one real mode
+   it is 0, and the motion itself is measured). From tick `settle` on over `span` ticks; INFINITY as soon
+   as a difference is over `ceiling` m, the mean so far when they are below `floor` m. */
 typedef struct ethd__swing {
   int order, settle, span;
   double floor, ceiling;

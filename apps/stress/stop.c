@@ -93,10 +93,10 @@ static void compare(ethd__stress_log *log, const stop *s, double speed, int dela
       m.time += one.time / 200, m.eps += one.eps / 200;
       f.time += form.time / 200, f.eps += form.eps / 200;
     }
-  ethd__stress_within(log, "s", m.time, f.time, s->period, "%s, n = %d, %g m/s: Delta_s without ticks", s->plant,
-                      delay, speed);
-  ethd__stress_within(log, "m", m.eps, f.eps, speed * s->period / 4, "%s, n = %d, %g m/s: eps without ticks",
+  ethd__stress_within(log, "s", m.time, f.time, s->period, "%s, n = %d, %g m/s: Delta_s without ticks",
                       s->plant, delay, speed);
+  ethd__stress_within(log, "m", m.eps, f.eps, speed * s->period / 4,
+                      "%s, n = %d, %g m/s: eps without ticks", s->plant, delay, speed);
 }
 
 static void run(ethd__stress_log *log) {

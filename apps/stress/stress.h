@@ -1,7 +1,8 @@
 /* Numerical stress with analytic answers: what its tests share.
 
-   A test measures on the library's real code and works its analytic figure out from a formula of its own.
-   Results with the same words make one line on the terminal, that of the worst; the CSV holds them all. */
+   A test measures on the library's real code and works its analytic figure out from a formula of its
+   own. Results with the same words make one line on the terminal, that of the worst; the CSV holds them
+   all. */
 #ifndef ETHD_APPS_STRESS_H
 #define ETHD_APPS_STRESS_H
 

@@ -1,7 +1,8 @@
-/* Rest at touch: the ring meets the wall at v, `lag` behind the finger, which goes on at v. It stands still
-   when the finger reaches it iff
+/* Rest at touch: the ring meets the wall at v, `lag` behind the finger, which goes on at v. It stands
+   still when the finger reaches it iff
 
-       gap - lag >= v^2/(2a),  gap = R_r - R_f,  a = (F_sat + f_c)/m,  so up to v* = sqrt(2a (gap - lag)):
+       gap - lag >= v^2/(2a),  gap = R_r - R_f,  a = (F_sat + f_c)/m,  so up to v* = sqrt(2a (gap -
+   lag)):
 
    while the ring brakes for v/a s and v^2/(2a) m, the finger moves v^2/a. Ticks are made short here and
    braking hard, so that only this is left; at 1 kHz the paper's braking is noted beside it. */
@@ -69,9 +70,11 @@ static void run(ethd__stress_log *log) {
     for (size_t k = 0; k < 5; k++)
       ethd__stress_near(log, "m/s", highest(p, &ideal, lags[k]), sqrt(2 * a * (gap - lags[k])), 5e-3,
                         "%s, %g mm behind: highest speed, rest at touch", p->name, 1e3 * lags[k]);
-    ethd__stress_note(log, "%s at 1 kHz with B_d = 100 Ns/m, at rest from 0.02 m/s on: %.3f m/s, 0 mm behind",
+    ethd__stress_note(log,
+                      "%s at 1 kHz with B_d = 100 Ns/m, at rest from 0.02 m/s on: %.3f m/s, 0 mm behind",
                       p->name, highest(p, &paper, 0));
   }
 }
 
-const ethd__stress ethd__stress_touch = {"touch", "rest at touch: the highest speed without early contact", run};
+const ethd__stress ethd__stress_touch = {"touch",
+                                         "rest at touch: the highest speed without early contact", run};

@@ -57,13 +57,18 @@ static void use_kalman(model *m) {
 static void prepare(const ethd_loop *loop, model *m) {
   *m = (model){.loop = loop};
   switch (loop->method) {
-    case ETHD_VELOCITY_LOWPASS:
-      use_difference(m, 1 - ethd_exp(-2 * M_PI * loop->p[0] * loop->period));
-      break;
-    case ETHD_VELOCITY_LSQ:
-    case ETHD_VELOCITY_FOAW: use_line(m, (int)loop->p[0]); break;
-    case ETHD_VELOCITY_KALMAN: use_kalman(m); break;
-    default: use_difference(m, 1);
+  case ETHD_VELOCITY_LOWPASS:
+    use_difference(m, 1 - ethd_exp(-2 * M_PI * loop->p[0] * loop->period));
+    break;
+  case ETHD_VELOCITY_LSQ:
+  case ETHD_VELOCITY_FOAW:
+    use_line(m, (int)loop->p[0]);
+    break;
+  case ETHD_VELOCITY_KALMAN:
+    use_kalman(m);
+    break;
+  default:
+    use_difference(m, 1);
   }
   m->ways = loop->delay + (loop->late > 0);
   m->past = WAY + m->ways;
@@ -151,7 +156,9 @@ double ethd__loop_radius(const ethd_loop *loop) {
 }
 
 /* A free ring's position is neither stable nor unstable: radius 1. */
-bool ethd__loop_stable(const ethd_loop *loop) { return ethd__loop_radius(loop) <= 1 + 1e-7; }
+bool ethd__loop_stable(const ethd_loop *loop) {
+  return ethd__loop_radius(loop) <= 1 + 1e-7;
+}
 
 /* ---- searches ---- */
 
@@ -169,10 +176,12 @@ static double bisect(ethd_loop *loop, double *value, double stable, double unsta
   return stable;
 }
 
-static double grid(int i) { return exp(i * log(10) / STEPS_PER_DECADE); }
+static double grid(int i) {
+  return exp(i * log(10) / STEPS_PER_DECADE);
+}
 
-/* At a large mass all is slow, and hold and delay take K (T (n + 1/2) + late) off the damping, whatever the
-   estimator. */
+/* At a large mass all is slow, and hold and delay take K (T (n + 1/2) + late) off the damping, whatever
+   the estimator. */
 double ethd__loop_damping_needed(const ethd_loop *l) {
   return l->stiffness * (l->period * (l->delay + 0.5) + l->late);
 }
@@ -207,6 +216,54 @@ double ethd__loop_stiffness_max(const ethd_loop *loop) {
 double ethd__loop_damping_max(const ethd_loop *loop) {
   ethd_loop l = *loop;
   return gain_max(&l, &l.damping, l.mass / l.period);
+}
+
+static bool stable_with(ethd_loop *l, double delay) {
+  l->delay = (int)floor(delay / l->period * (1 + 1e-12));
+  l->late = fmax(0, delay - l->delay * l->period);
+  return ethd__loop_stable(l);
+}
+
+double ethd__loop_delay_max(const ethd_loop *loop) {
+  ethd_loop l = *loop;
+  double T = l.period, low = 0, high = 0, most = ETHD_LOOP_DELAY_MAX * T;
+  if (!stable_with(&l, 0)) return -1;
+  for (high = T / 4; high < most && stable_with(&l, high); high += T / 4) low = high;
+  if (high >= most) return most;
+  for (int i = 0; i < 20; i++) {
+    double middle = (low + high) / 2;
+    if (stable_with(&l, middle))
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+static double cutoff_min(ethd_loop *l) {
+  const double step = exp(log(10) / STEPS_PER_DECADE);
+  double high = l->p[0];
+  for (l->p[0] = high / step; l->p[0] > 1; l->p[0] = high / step) {
+    if (!ethd__loop_stable(l)) return bisect(l, &l->p[0], high, high / step);
+    high /= step;
+  }
+  return 1;
+}
+
+static double window_max(ethd_loop *l) {
+  while (l->p[0] < ETHD_VELOCITY_WINDOW_MAX) {
+    l->p[0]++;
+    if (!ethd__loop_stable(l)) return l->p[0] - 1;
+  }
+  return l->p[0];
+}
+
+double ethd__loop_velocity_end(const ethd_loop *loop) {
+  ethd_loop l = *loop;
+  if (!ethd__loop_stable(&l)) return NAN;
+  if (l.method == ETHD_VELOCITY_LOWPASS) return cutoff_min(&l);
+  if (l.method == ETHD_VELOCITY_LSQ || l.method == ETHD_VELOCITY_FOAW) return window_max(&l);
+  return NAN;
 }
 
 /* ---- closed forms ---- */

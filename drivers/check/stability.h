@@ -44,6 +44,13 @@ double ethd__loop_mass_min(const ethd_loop *loop);
 double ethd__loop_stiffness_max(const ethd_loop *loop);
 double ethd__loop_damping_max(const ethd_loop *loop);
 
+/* The longest delay with which it is stable, s; under one of 20 ticks; < 0: none. */
+double ethd__loop_delay_max(const ethd_loop *loop);
+
+/* How far the estimator may go: the lowest cutoff of lowpass (1: the table's end), the longest window of
+   lsq and foaw; NaN: it has neither, or the loop is unstable as it is. */
+double ethd__loop_velocity_end(const ethd_loop *loop);
+
 /* Closed forms for the backward difference, whole ticks. The boundary, 0 < th <= pi / (2 (n + 1)):
      K T^2/m = 4 tan^2(th/2) cos((n+1) th),  B T/m = 2 tan(th/2) sin((n+1) th) - K T^2/(2m) */
 void ethd__loop_boundary(double mass, double period, int delay, double th, double *stiffness,

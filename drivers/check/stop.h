@@ -28,7 +28,7 @@ double ethd__stop_margin(const ethd_stop *stop, double speed);
 /* The highest speed with margin >= 0, m/s; 0: none. */
 double ethd__stop_speed(const ethd_stop *stop);
 
-/* Saturated braking from `speed` down to v_th with B_d: Delta_s, s, and eps, m, `delay` s after the tick. */
+/* Saturated braking from `speed` down to v_th with B_d, `delay` s late: Delta_s, s, and eps, m. */
 typedef struct ethd_braking {
   double damping, v_th, period, delay;
 } ethd_braking;

@@ -176,6 +176,36 @@ START_TEST(test_late_is_between) {
 }
 END_TEST
 
+/* Just within what they say it is stable, just beyond it isn't. */
+START_TEST(test_ends) {
+  ethd_loop l = loop_of(ETHD_VELOCITY_LOWPASS, 2500, 45);
+  double delay = ethd__loop_delay_max(&l), cutoff = ethd__loop_velocity_end(&l);
+  ck_assert(delay > T && delay < 20 * T && cutoff > 1 && cutoff < l.p[0]);
+  l.p[0] = 0.999 * cutoff;
+  ck_assert(!ethd__loop_stable(&l));
+  l.p[0] = 1.001 * cutoff;
+  ck_assert(ethd__loop_stable(&l));
+  l = loop_of(ETHD_VELOCITY_LOWPASS, 2500, 45);
+  for (int i = -1; i <= 1; i += 2) {
+    double d = delay * (1 + 1e-4 * i);
+    l.delay = (int)(d / T);
+    l.late = d - l.delay * T;
+    ck_assert(ethd__loop_stable(&l) == (i < 0));
+  }
+  l = loop_of(ETHD_VELOCITY_LSQ, 0, 100);
+  l.mass = 0.1;
+  l.p[0] = 2;
+  double window = ethd__loop_velocity_end(&l);
+  l.p[0] = window;
+  ck_assert(window >= 2 && ethd__loop_stable(&l));
+  l.p[0]++;
+  ck_assert(!ethd__loop_stable(&l));
+  ck_assert(isnan(ethd__loop_velocity_end(&l)));
+  l = loop_of(ETHD_VELOCITY_DIFFERENCE, 1000, 0);
+  ck_assert(ethd__loop_delay_max(&l) < 0 && isnan(ethd__loop_velocity_end(&l)));
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("stability");
   TCase *all = tcase_create("all");
@@ -187,6 +217,7 @@ int main(void) {
   tcase_add_test(all, test_estimators);
   tcase_add_test(all, test_late_forces);
   tcase_add_test(all, test_late_is_between);
+  tcase_add_test(all, test_ends);
   suite_add_tcase(suite, all);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_ENV);

@@ -1,0 +1,88 @@
+/* Passivity of the wall, and the encoder's count against v_th. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "check/report.h"
+#include "check/stability.h"
+
+/* Sufficient, not necessary: no bound is exceeded when they fail. */
+int ethd__report_passivity(const ethd__subject *s) {
+  const ethd_setup *setup = &s->config->setup;
+  const ethd_law *law = &setup->contact->law;
+  double K = ethd__law_value(law, setup->contact_p, "k_e"),
+         B = ethd__law_value(law, setup->contact_p, "b_e");
+  double T = setup->period, b = s->device.viscous, fc = s->device.friction;
+  double count = s->device.count * fmax(setup->arm.link1, setup->arm.link2);
+  if (isnan(K)) return 0;
+  ethd_loop loop = {.period = T, .stiffness = K, .damping = isnan(B) ? 0 : B};
+  double needed = ethd__loop_passive_friction(&loop);
+  printf("\npassivity    sufficient for any hand, not necessary: a stable wall may fail it\n");
+  printf("  Colgate and Schenkel     b > K_e T/2 + B_e = %.4g Ns/m of friction", needed);
+  if (isnan(b))
+    printf("; give --viscous\n");
+  else if (b > needed)
+    printf("; the device has %.4g: passive\n", b);
+  else
+    printf("; the device has %.4g: not passive%s\n", b, B > 0 ? " (less contact.b_e counts most)" : "");
+  printf("  Abbott and Okamura       K_e <= min(2 b/T, 2 f_c/Delta)");
+  if (isnan(b) || isnan(fc) || isnan(count)) {
+    printf("; give --viscous, --friction and --counts\n");
+    return 0;
+  }
+  double held = 2 * b / T, counted = count > 0 ? 2 * fc / count : INFINITY;
+  printf(" = min(%.4g, %.4g) N/m; K_e is %.4g: %s\n", held, counted, K,
+         K <= fmin(held, counted) ? "met"
+         : held < counted         ? "not met; more viscous friction or a shorter loop.period"
+                                  : "not met; a finer encoder or more friction");
+  return 0;
+}
+
+/* The estimator's largest answer to one count of a ring that stood still. */
+static double answer(const ethd_setup *setup, double count) {
+  ethd_velocity velocity;
+  ethd_velocity_state state;
+  double most = 0;
+  memset(&state, 0, sizeof state);
+  if (ethd_velocity_prepare(setup->velocity, setup->velocity_p, setup->period, &velocity, NULL) < 0)
+    return NAN;
+  for (int k = 0; k < 4000; k++) {
+    double speed = ethd_velocity_step(&velocity, &state, k < 3000 ? 0 : count, 0, setup->period);
+    if (k >= 3000) most = fmax(most, fabs(speed));
+  }
+  return most;
+}
+
+static const char *smoother(const ethd_setup *setup) {
+  switch (setup->velocity) {
+  case ETHD_VELOCITY_LOWPASS:
+    return "a lower velocity.cutoff";
+  case ETHD_VELOCITY_KALMAN:
+    return "a lower velocity.acceleration";
+  case ETHD_VELOCITY_DIFFERENCE:
+    return "a velocity.method that averages";
+  default:
+    return "a longer velocity.window";
+  }
+}
+
+int ethd__report_threshold(const ethd__subject *s) {
+  const ethd_setup *setup = &s->config->setup;
+  double v_th = ethd__law_value(&setup->transition->law, setup->transition_p, "v_th");
+  double link = fmax(setup->arm.link1, setup->arm.link2), count = s->device.count;
+  char velocity[96];
+  if (isnan(v_th)) return 0;
+  printf("\nquantisation transition.v_th = %.4g m/s against an encoder count\n", v_th);
+  if (isnan(count)) {
+    printf("  give --counts to compare\n");
+    return 0;
+  }
+  double step = count * link / setup->period, heard = answer(setup, count) * link;
+  ethd__velocity_text(setup, velocity, sizeof velocity);
+  printf("  one count per tick       Delta/T = %.4g m/s at the ring\n", step);
+  printf("  one count, ring still    %s makes %.4g m/s of it: %s\n", velocity, heard,
+         heard < v_th ? "under v_th" : "over v_th, so each count puts off the end of braking");
+  if (heard >= v_th)
+    printf("  to change:               %s, or transition.v_th over %.4g\n", smoother(setup), heard);
+  return heard >= v_th && setup->velocity == ETHD_VELOCITY_DIFFERENCE;
+}

@@ -1,0 +1,113 @@
+/* How the ring stops at a wall: rest at touch and braking, in closed form. */
+#include "check/stop.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "check/report.h"
+
+/* What an estimate of the finger is behind: the readings' age, unless the filter makes up for it. */
+static double behind(const ethd__subject *s) {
+  const ethd_setup *setup = &s->config->setup;
+  const ethd_method *m = &ethd_filter_methods[setup->filter];
+  int i = ethd_params_find(m->params, m->param_count, "compensation");
+  if (i >= 0 && setup->filter_p[i] == ETHD_COMPENSATION_STAMP) return 0;
+  return isnan(s->device.latency) ? 0 : s->device.latency;
+}
+
+static ethd_stop stop_of(const ethd__subject *s, int axis) {
+  const ethd_setup *setup = &s->config->setup;
+  const ethd__figures *f = &s->device;
+  return (ethd_stop){.mass = f->mass[axis],
+                     .force = f->force[axis],
+                     .friction = isnan(f->friction) ? 0 : f->friction,
+                     .viscous = isnan(f->viscous) ? 0 : f->viscous,
+                     .stiffness = s->k[axis],
+                     .behind = behind(s),
+                     .gap = setup->ring_radius - setup->finger_radius};
+}
+
+static const double speeds[] = {0.2, 0.4};
+
+static void rest_at_touch(const ethd__subject *s, int axis) {
+  ethd_stop stop = stop_of(s, axis);
+  double most = ethd__stop_speed(&stop);
+  printf("  rest at touch, %c         gap - lag >= v^2/(2a), a = (F_sat + f_c)/m = %.4g m/s^2, gap %.4g "
+         "mm\n",
+         'x' + axis, ethd__stop_deceleration(&stop), 1e3 * stop.gap);
+  for (int i = 0; i < 2; i++) {
+    double v = speeds[i], lag = ethd__stop_lag(&stop, v), margin = ethd__stop_margin(&stop, v);
+    printf("    at %.1f m/s             lag (f_c + b_v v)/K_%c + v t_f = %.3f mm, v^2/(2a) = %.3f mm: "
+           "%s %.3f mm\n",
+           v, 'x' + axis, 1e3 * lag, 1e3 * (stop.gap - lag - margin),
+           margin < 0 ? "touched early by" : "left", 1e3 * fabs(margin));
+  }
+  printf("    highest speed          v* = %.3f m/s without early contact", most);
+  stop.stiffness = INFINITY;
+  stop.behind = 0;
+  printf(" (%.3f without lag)\n", ethd__stop_speed(&stop));
+}
+
+static void braking(const ethd__subject *s, int axis, double damping) {
+  const ethd_setup *setup = &s->config->setup;
+  ethd_stop stop = stop_of(s, axis);
+  double delay = isnan(s->device.delay) ? 0 : s->device.delay;
+  double eps_max = ethd__law_value(&setup->transition->law, setup->transition_p, "eps_max");
+  double t_max = ethd__law_value(&setup->transition->law, setup->transition_p, "t_max");
+  ethd_braking b = {damping, ethd__law_value(&setup->transition->law, setup->transition_p, "v_th"),
+                    setup->period, delay};
+  for (int i = 0; i < 2; i++) {
+    double time = ethd__braking_time(&stop, &b, speeds[i]),
+           eps = ethd__braking_depth(&stop, &b, speeds[i]);
+    printf("  saturated braking, %c     at %.1f m/s: Delta_s = %.3g ms, eps = %.3g mm%s\n", 'x' + axis,
+           speeds[i], 1e3 * time, 1e3 * eps,
+           eps > eps_max  ? ": cut short by transition.eps_max"
+           : time > t_max ? ": cut short by transition.t_max"
+                          : "");
+  }
+}
+
+static void creep(const ethd_setup *setup, double damping) {
+  const ethd_law *law = &setup->transition->law;
+  const double *p = setup->transition_p;
+  int capped =
+      isfinite(ethd__law_value(law, p, "eps_max")) || isfinite(ethd__law_value(law, p, "t_max"));
+  printf("  creep                  a push over B_d v_th = %.3g N goes on braking, at F/B_d, %s\n",
+         damping * ethd__law_value(law, p, "v_th"),
+         capped ? "until transition.eps_max or t_max"
+                : "for ever: transition.eps_max and t_max would end it");
+}
+
+static void say_missing(const ethd__subject *s) {
+  const ethd__figures *f = &s->device;
+  printf("  needs");
+  if (isnan(f->mass[0]) && isnan(f->mass[1])) printf(" arm.mass_x or arm.mass_y");
+  if (isnan(f->force[0]) && isnan(f->force[1])) printf(" --force-limit or limits.torque");
+  if (isnan(s->k[0])) printf(" a tracking law with k_t");
+  printf("\n");
+}
+
+int ethd__report_stop(const ethd__subject *s) {
+  const ethd__figures *f = &s->device;
+  const ethd_setup *setup = &s->config->setup;
+  double b_d = ethd__law_value(&setup->transition->law, setup->transition_p, "b_d");
+  int said = 0;
+  printf("\nstop         at a wall across each axis, with the motors' force at once%s\n",
+         isnan(f->friction) || isnan(f->viscous) ? " (friction unknown, taken as 0)" : "");
+  for (int axis = 0; axis < 2; axis++) {
+    if (isnan(f->mass[axis]) || !isfinite(f->force[axis]) || isnan(s->k[axis])) continue;
+    rest_at_touch(s, axis);
+    if (b_d > 0) braking(s, axis, b_d);
+    said = 1;
+  }
+  if (!said) {
+    say_missing(s);
+    return 0;
+  }
+  if (b_d > 0) creep(setup, b_d);
+  printf("  to change:             a lighter ring, more force, a larger gap (ring.radius - "
+         "finger.radius), a higher\n");
+  printf("                         tracking.k_t%s\n",
+         behind(s) > 0 ? ", finger_filter.compensation = stamp" : "");
+  return 0;
+}

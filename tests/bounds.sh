@@ -1,0 +1,64 @@
+#!/bin/sh
+# ethd-check as its users see it: what it prints is a configuration again; bounds, and what to change.
+set -eu
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+check=$BUILD/bin/ethd-check
+fail() { echo "$*"; exit 1; }
+says() { grep -q -e "$2" "$1" || { cat "$1"; fail "it doesn't say '$2'"; }; }
+silent() { if grep -q -e "$2" "$1"; then cat "$1"; fail "it says '$2'"; fi; }
+
+# The setup's part is a configuration that gives the same setup.
+setup() { sed '/^device  /,$d' "$1" | grep -v '^; .* is valid$'; }
+cp "$BUILD"/share/ethd/n.* "$BUILD/share/ethd/wall.scene" "$folder/"
+"$check" "$folder/n.ini" >"$folder/a"
+setup "$folder/a" >"$folder/again.ini"
+"$check" "$folder/again.ini" >"$folder/b"
+setup "$folder/b" | cmp - "$folder/again.ini" || fail "the setup isn't what it was read from"
+
+# Each bound by the name of its formula, the device's figures from the plant.
+for words in 'spectral radius' 'Colgate' 'Abbott and Okamura' 'rest at touch' 'saturated braking' 'highest speed' \
+  'v_th' 'rehearsed' 'no bound: this process' 'force 5.357 N' 'delay 0.071 ms' '^0 bounds exceeded'; do
+  says "$folder/a" "$words"
+done
+
+# Plants n and b by hand: v* = sqrt(2 a gap) = 0.678, 0.543; K_e T/2 + B_e = 46.25.
+says "$folder/a" '0.678 without lag'
+says "$folder/a" '46.25 Ns/m'
+cp "$BUILD"/share/ethd/b.* "$folder/"
+"$check" "$folder/b.ini" >"$folder/b.out"
+says "$folder/b.out" '0.543 without lag'
+
+# Too much of a gain is named with what to change; after the change nothing is.
+printf '[transition]\nb_d = 1000\n' >"$folder/bad.ini"
+"$check" "$folder/bad.ini" >"$folder/bad"
+says "$folder/bad" '^2 bounds exceeded'
+says "$folder/bad" 'transition.b_d  *1000 .*EXCEEDED'
+most=$(sed -n 's/.*transition.b_d at most \([0-9.]*\).*/\1/p' "$folder/bad" | head -n 1)
+[ -n "$most" ] || fail "it doesn't say what to change"
+printf '[transition]\nb_d = %s\n' "$(awk -v m="$most" 'BEGIN { print 0.999 * m }')" >"$folder/good.ini"
+"$check" "$folder/good.ini" >"$folder/good"
+says "$folder/good" '^0 bounds exceeded'
+
+# A spring lives off friction; delay is taken in parts of a tick; options win over the plant.
+printf '[contact]\nlaw = spring\n' >"$folder/spring.ini"
+"$check" --delay 0 "$folder/spring.ini" >"$folder/out"
+says "$folder/out" '1.25 Ns/m'
+says "$folder/out" '^0 bounds exceeded'
+"$check" --delay 0.5 --viscous 2.4 "$folder/spring.ini" >"$folder/out"
+says "$folder/out" '2.5 Ns/m.*2.4: EXCEEDED'
+"$check" --force-limit 50 --friction 0 --latency 0 "$folder/n.ini" >"$folder/out"
+says "$folder/out" 'force 50 N'
+silent "$folder/out" 'compensation = stamp'
+
+# A torque limit of the configuration narrows the device's.
+printf '[limits]\ntorque = 0.5\n' >"$folder/narrow.ini"
+"$check" "$folder/narrow.ini" >"$folder/out"
+says "$folder/out" 'force 2 N'
+
+for option in '--delay 21' '--delay -1' '--counts 0' '--friction x' '--viscous nan' '--latency 2' '--force-limit inf'; do
+  code=0
+  "$check" $option "$folder/n.ini" >"$folder/out" 2>"$folder/err" || code=$?
+  [ $code = 2 ] && [ "$(wc -l <"$folder/err")" = 1 ] || fail "$option: exit $code: $(cat "$folder/err")"
+done
+exit 0
