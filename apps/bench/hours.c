@@ -1,0 +1,156 @@
+/* Simulated hours per CPU hour: the closed loop of device, controller and record, tap after tap. */
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "bench/bench.h"
+#include "common/cli.h"
+#include "tap/study.h"
+
+#define GOAL 5000.0
+#define REST 0.15      /* s: after the path's end */
+#define TRUEST 1e-13   /* m/s: tolerance of the reference */
+
+enum { TAPS = 8, TICKS = 1500 };
+
+typedef struct loop {
+  ethd__stage stage;
+  ethd__study study;
+  ethd__speed speeds[2];
+  ethd_config *config;
+  ethd_sim *sim;
+  ethd_trace trace[TICKS];
+  ethd_truth truth[TICKS];
+} loop;
+
+static void check(ethd_status status, const char *message) {
+  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+}
+
+static void open_loop(loop *l, const char *law) {
+  char message[ETHD_MESSAGE_MAX], *plant = ethd__data_path("n.plant"), *controller = ethd__data_path("n.ini");
+  check(ethd_config_load(controller, &l->config, message), message);
+  check(ethd_plant_load(plant, &l->study.plant, message), message);
+  ethd__speed_parse("low", &l->study.plant, &l->speeds[0]);
+  ethd__speed_parse("high", &l->study.plant, &l->speeds[1]);
+  l->study.config = l->config;
+  l->study.seed = 1;
+  l->study.speeds = l->speeds;
+  l->study.speed_count = 2;
+  check(ethd__study_prepare(&l->study, message), message);
+  check(ethd__stage_open(&l->study, law, &l->stage, message), message);
+  free(plant);
+  free(controller);
+}
+
+static void close_loop(loop *l) {
+  ethd__stage_close(&l->stage);
+  ethd_config_free(l->config);
+}
+
+/* Ideal encoders for errors: a count that turns over a moment earlier is a step of 40 um, not an error. */
+static void use(loop *l, double tolerance, int ideal) {
+  ethd_sim_def def = {.plant = l->study.plant,
+                      .arm = l->stage.setup.arm,
+                      .ring_radius = l->stage.setup.ring_radius,
+                      .period = l->stage.setup.period,
+                      .step = l->stage.setup.period,
+                      .tolerance = tolerance};
+  ethd_error error;
+  if (ideal) def.plant.count = 0;
+  ethd_sim_destroy(l->sim);
+  check(ethd_sim_create(&def, &l->sim, &error), error.name);
+}
+
+/* One tap; returns its ticks. */
+static size_t tap(loop *l, int number, int truth) {
+  ethd_sim_tap circumstances;
+  ethd_sense sense;
+  ethd_command command;
+  check(ethd__stage_draw(&l->stage, &l->speeds[number & 1], (uint64_t)(number / 2), &circumstances), "a tap");
+  check(ethd_sim_start(l->sim, &circumstances), "a tap begins out of reach");
+  ethd_control_reset(l->stage.control);
+  double seconds = ethd_path_end(&circumstances.path) + REST;
+  size_t ticks = (size_t)fmin(TICKS, seconds / l->stage.setup.period);
+  for (size_t k = 0; k < ticks; k++) {
+    ethd_sim_read(l->sim, &sense);
+    if (truth) ethd_sim_truth(l->sim, &l->truth[k]);
+    (void)!ethd_control_step(l->stage.control, &sense, &command, &l->trace[k]);
+    ethd_sim_write(l->sim, &command);
+  }
+  return ticks;
+}
+
+static double cpu(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* CPU seconds of a simulated one: the median of rounds. */
+static double cost(loop *l, double tolerance, int truth, int rounds) {
+  double each[64];
+  use(l, tolerance, 0);
+  for (int r = 0; r < rounds; r++) {
+    double start = cpu();
+    size_t ticks = 0;
+    for (int i = 0; i < TAPS; i++) ticks += tap(l, i, truth);
+    each[r] = (cpu() - start) / ((double)ticks * l->stage.setup.period);
+  }
+  return ethd__bench_percentiles(each, (size_t)rounds).median;
+}
+
+static double apart(const double *a, const double *b) { return hypot(a[0] - b[0], a[1] - b[1]); }
+
+static double error_of(loop *l, double tolerance) {
+  static ethd_truth reference[TAPS][TICKS];
+  double worst = 0;
+  use(l, TRUEST, 1);
+  for (int i = 0; i < TAPS; i++) {
+    size_t ticks = tap(l, i, 1);
+    memcpy(reference[i], l->truth, ticks * sizeof *l->truth);
+  }
+  use(l, tolerance, 1);
+  for (int i = 0; i < TAPS; i++) {
+    size_t ticks = tap(l, i, 1);
+    for (size_t k = 0; k < ticks; k++) {
+      const ethd_truth *a = &reference[i][k], *b = &l->truth[k];
+      double e = fmax(apart(a->ring, b->ring), apart(a->finger, b->finger));
+      worst = e <= worst ? worst : e; /* NaN too */
+    }
+  }
+  return worst;
+}
+
+static int run(const char *folder, int quick) {
+  static const struct {
+    const char *name;
+    double tolerance, error;
+    int truth;
+  } rows[] = {{"fast", ETHD_SIM_FAST, 1e-6, 0},
+              {"fast, truth recorded", ETHD_SIM_FAST, 1e-6, 1},
+              {"golden", ETHD_SIM_GOLDEN, 1e-8, 0},
+              {"golden, truth recorded", ETHD_SIM_GOLDEN, 1e-8, 1}};
+  static loop l;
+  FILE *csv = ethd__bench_csv(folder, "hours",
+                              "# closed loop of plant n and law offset, 8 taps; error: largest distance of ring or finger\n"
+                              "# from the same loop at tolerance 1e-13, both with ideal encoders\n",
+                              "setting,tolerance,error_m,time_s,hours_per_cpu_hour");
+  open_loop(&l, "offset");
+  printf("hours: closed loop of plant n, law offset and record, %d taps\n", TAPS);
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    double error = error_of(&l, rows[i].tolerance);
+    double time = cost(&l, rows[i].tolerance, rows[i].truth, quick ? 15 : 63);
+    printf("  %-24s %9.2e m %8.1f us/s %8.0f simulated hours per CPU hour\n", rows[i].name, error, 1e6 * time, 1 / time);
+    if (i == 0) printf("  goal: %.0f: %s\n", GOAL, ethd__bench_verdict(1 / time >= GOAL));
+    if (!rows[i].truth)
+      printf("  goal: error at most %.0e m: %s\n", rows[i].error, ethd__bench_verdict(error <= rows[i].error));
+    fprintf(csv, "\"%s\",%.17g,%.17g,%.17g,%.17g\n", rows[i].name, rows[i].tolerance, error, time, 1 / time);
+  }
+  ethd_sim_destroy(l.sim);
+  l.sim = NULL;
+  close_loop(&l);
+  return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+}
+
+const ethd__bench ethd__bench_hours = {"hours", "simulated hours per CPU hour", run};

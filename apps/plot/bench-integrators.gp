@@ -1,0 +1,30 @@
+# The plant's integration: run time against error.
+#   gnuplot -e "in='integrators.csv'; out='integrators.png'" bench-integrators.gp
+# in: a file of ethd-bench integrators.
+if (!exists("in") || !exists("out")) { print "bench-integrators.gp: set in and out: gnuplot -e \"in='integrators.csv'; out='integrators.png'\" bench-integrators.gp"; exit status 2 }
+
+set terminal pngcairo size 1200,800 font "Sans,14" background "#ffffff"
+set output out
+set datafile separator comma
+
+grey = "#7a7a7a"
+set border 3 lc rgb grey
+set tics nomirror textcolor rgb "#333333" scale 0.6
+set grid lc rgb "#e4e4e4" lt 1 lw 1
+set tmargin at screen 0.87
+set label 1 "Moving the plant alone: run time against error" at screen 0.075,0.962 font "Sans Bold,18"
+set label 2 "plant n, simulated, plausible and not measured; torques recorded in closed loop; against DOPRI5 with events at 10^{-15}" \
+  at screen 0.075,0.922 font "Sans,12" textcolor rgb grey
+set logscale xy
+set xlabel "run time of a simulated second, s" offset 0,0.2
+set format x "10^{%T}"
+set format y "10^{%T}"
+set yrange [1e-13:1e-3]
+set ylabel "largest error of ring or finger, m" offset 0.5
+set key outside right top Left reverse samplen 2 spacing 1.3
+# names in order of appearance, and the rows of one
+names = system(sprintf("sed -n 's/^\"\\([^\"]*\\)\".*/\\1/p' '%s' | awk '!($0 in n) {n[$0]; gsub(/ /, \"~\"); print}'", in))
+rows(i) = sprintf("< grep '^\"%s\"' '%s'", system(sprintf("echo '%s' | tr '~' ' '", word(names, i))), in)
+array colour[12] = [0xc0392b, 0xcfcfcf, 0xa8a8a8, 0x707070, 0x303030, 0x1f5fa8, 0x7fb0e0, 0x7d3c98, 0x2e8b57, 0x8fcfa8, 0xb7950b, 0x117a8b]
+plot for [i = 1:words(names)] rows(i) using 4:3 with linespoints pt 7 ps (i == 1 ? 1.5 : 0.9) lw (i == 1 ? 3 : 1.5) \
+  lc rgb colour[i] title system(sprintf("echo '%s' | tr '~' ' '", word(names, i)))
