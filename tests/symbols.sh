@@ -78,5 +78,11 @@ for object in $RT_OBJECTS; do
   needs "$object" | grep -vxE "$control|ethd_[a-z0-9_]+|$compiler" >"$work/object" &&
     fail "$object, of the control side, needs what it may not:" && cat "$work/object"
 done
-echo "$(wc -l <"$work/exported") exported, $(echo $RT_OBJECTS | wc -w) objects of the control side"
+# The loop's thread sleeps and reads the clock, by Xenomai's names where it is built for that.
+clock='(__cobalt_)?clock_(nanosleep|gettime)'
+for object in $LOOP_OBJECTS; do
+  needs "$object" | grep -vxE "$control|$clock|ethd_[a-z0-9_]+|$compiler" >"$work/object" &&
+    fail "$object, of the loop's thread, needs what it may not:" && cat "$work/object"
+done
+echo "$(wc -l <"$work/exported") exported, $(echo $RT_OBJECTS $LOOP_OBJECTS | wc -w) objects of the control side"
 exit $failed

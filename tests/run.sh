@@ -1,0 +1,119 @@
+#!/bin/sh
+# ethd-run: commands, recordings that replay, telemetry, signals, a killed run, the virtual clock's repeatability.
+# No time is asserted, only order.
+set -u
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+run=$BUILD/bin/ethd-run
+verify="$BUILD/bin/ethd-replay --verify"
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+
+# says FILE PATTERN...: each pattern stands in the file
+says() {
+  file=$1
+  shift
+  for pattern; do grep -q -e "$pattern" "$file" || { fail "no $pattern in:"; cat "$file"; }; done
+}
+replays() { $verify "$1" >"$folder/verify" 2>&1 && grep -q 'equal to the bit' "$folder/verify" || { fail "$1: $(cat "$folder/verify")"; }; }
+
+cat >"$folder/device.ini" <<'END2'
+[scene]
+file = wall.scene
+[transition]
+law = offset
+[limits]
+speed = 5
+END2
+echo 'halfplane -1 0 -0.238' >"$folder/wall.scene"
+
+# ---- virtual: every command, equal bytes twice ----
+script='status\nwait 0.3\ntransition smooth\nset contact.k_e 2000\nwait 0.2\ntransition abrupt\nack\nenable\nbogus\nset contact.k_e -1\nset contact.k_e\ntransition nowhere\nset limits.speed 0.001\nwait 0.3\nenable\nstatus\nack\nset limits.speed 5\nwait 0.1\nenable\nwait 0.4\nstatus\nstop\n'
+for k in 1 2; do
+  printf "$script" | "$run" --virtual --duration 100 --config "$folder/device.ini" --record "$folder/v$k" >"$folder/v$k.out" 2>"$folder/v$k.err" ||
+    fail "virtual run $k: exit $?: $(cat "$folder/v$k.err")"
+  replays "$folder/v$k"
+done
+sed "s|$folder/v2|$folder/v1|" "$folder/v2.out" | cmp - "$folder/v1.out" || fail "two virtual runs answer differently"
+diff -r "$folder/v1" "$folder/v2" || fail "two virtual runs leave different recordings"
+says "$folder/v1.out" '^ok: t 0.001 s, enabled, offset, transparent' '^ok: transition smooth$' '^ok: set contact.k_e 2000$' \
+  '^error: there is no fault to acknowledge$' '^error: the device is enabled$' '^error: found "bogus"' \
+  '^error: contact.k_e: found -1, ' '^error: set SECTION.KEY VALUE$' '^error: .*nowhere' \
+  '^error: a fault is latched: the ring is faster' '^ok: acknowledged; the device is disabled' '^ok: enabled$' \
+  '^ok: t .* enabled, abrupt, .* no fault$' '^ok: stopping$' '^faults  *1 x the ring is faster than its limit$' 'virtual'
+says "$folder/v1/events.csv" ',transition,smooth$' ',set,contact.k_e 2000$' ',clear,' ',start,enabled$' ',fault,' ',set,limits.speed 0$'
+
+# one answer a command
+[ "$(grep -cE '^(ok|error): ' "$folder/v1.out")" = 23 ] || fail "$(grep -cE '^(ok|error): ' "$folder/v1.out") answers to 23 commands"
+
+# ---- real: two seconds, commands on stdin, telemetry ----
+cat >"$folder/udp.py" <<'END2'
+import json, socket, sys
+s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+s.bind(("127.0.0.1", 0))
+s.settimeout(30)
+open(sys.argv[1], "w").write(str(s.getsockname()[1]))
+k = [json.loads(s.recv(4096)) for _ in range(20)]
+assert all(b["timestamp"] > a["timestamp"] for a, b in zip(k, k[1:])), k
+assert {"tick", "q", "x", "tau", "beta", "fault", "armed"} <= k[0].keys(), k[0]
+assert len(k[0]["q"]) == 2 and k[0]["d_re"] is None or isinstance(k[0]["d_re"], float)
+END2
+python3 "$folder/udp.py" "$folder/port" &
+listener=$!
+while ! [ -s "$folder/port" ]; do sleep 0.05; done
+printf 'wait 0.4\ntransition smooth\nstatus\nwait 0.4\nset contact.b_e 40\nstatus\n' |
+  "$run" --config "$folder/device.ini" --duration 2 --record "$folder/real" --telemetry "127.0.0.1:$(cat "$folder/port")" \
+    >"$folder/real.out" 2>"$folder/real.err" || fail "real run: exit $?: $(cat "$folder/real.err")"
+wait $listener || fail "telemetry isn't what it should be"
+replays "$folder/real"
+says "$folder/real.out" '^ok: transition smooth$' '^ok: set contact.b_e 40$' '^ok: t .*, smooth, ' '^ticks ' '^overruns ' \
+  '^wake-up .*p50.*p99 .*p99.9.*max' '^tick .*p50' '^faults '
+if grep -q '^shortfalls  *none' "$folder/real.out"; then
+  [ -s "$folder/real.err" ] && fail "no shortfall, but: $(cat "$folder/real.err")"
+else
+  says "$folder/real.err" '^not realtime: ' 'mend: '
+fi
+
+# ---- signals: a controlled stop; a killed run ----
+for signal in TERM INT HUP; do
+  # a shell's background jobs ignore SIGINT
+  python3 -c 'import signal, subprocess, sys, time
+signal.signal(signal.SIGINT, signal.SIG_DFL)
+p = subprocess.Popen(sys.argv[2:], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+p.stdin.write("status\n"); p.stdin.flush()
+assert p.stdout.readline().startswith("ok: t ")
+p.send_signal(getattr(signal, "SIG" + sys.argv[1]))
+out = p.communicate()[0]
+assert p.returncode == 0 and "ticks" in out, (p.returncode, out)' $signal "$run" --record "$folder/$signal" || fail "SIG$signal"
+  replays "$folder/$signal"
+  says "$folder/$signal/events.csv" ',set,limits.speed 0$'
+done
+"$run" --record "$folder/killed" </dev/null >/dev/null 2>&1 &
+killed=$!
+size() { if [ -f "$1" ]; then wc -c <"$1"; else echo 0; fi; }
+while [ "$(size "$folder/killed/tick.npy")" -lt 500000 ]; do sleep 0.05; done
+kill -KILL $killed
+wait $killed 2>/dev/null
+replays "$folder/killed"
+
+# ---- refusals ----
+refuse() { # PATTERN ARGUMENTS...
+  pattern=$1
+  shift
+  "$run" "$@" </dev/null >"$folder/out" 2>"$folder/err"
+  code=$?
+  [ $code = 2 ] && [ "$(grep -c . "$folder/err")" -le 2 ] && grep -q -e "$pattern" "$folder/err" ||
+    fail "$*: exit $code: $(cat "$folder/err")"
+}
+printf '[device]\ndriver = nothing\n' >"$folder/bad.ini"
+printf '[device]\nseed = -1\n' >"$folder/seed.ini"
+refuse 'bad.ini: device.driver: found "nothing"; sim is allowed' --config "$folder/bad.ini"
+refuse 'seed.ini:2: .*seed' --config "$folder/seed.ini"
+refuse 'duration: found "0"' --duration 0
+refuse 'virtual needs --duration' --virtual
+refuse 'telemetry: found "nowhere"' --telemetry nowhere --virtual --duration 1
+refuse 'cpu: found "x"' --cpu x
+refuse 'early_wake' --early-wake 900 --duration 1
+
+[ $failed = 0 ] && echo "$(grep -c . "$folder/v1/events.csv") events replayed; $(cat "$folder/verify")"
+exit $failed
