@@ -73,6 +73,29 @@ static void press(ethd__stress_log *log, const ethd_scene *scene, int64_t ticks)
   ethd_control_destroy(control);
 }
 
+/* Ticks that were lost count too. */
+static void lost(ethd__stress_log *log, const ethd_scene *scene) {
+  ethd_transition_law law = ethd_transition_offset;
+  law.step = watch;
+  ethd_control *control = make(&law, (double)INFINITY, scene);
+  ethd_setup setup = ethd_setup_default();
+  ethd_sense s;
+  ethd_command c;
+  int64_t periods = 0, before = 0;
+  memset(&s, 0, sizeof s);
+  s.have = ETHD_HAVE_DQ;
+  if (ethd_arm_angles(&setup.arm, (ethd_vec){0.249, 0.25}, -1, s.q) < 0) return;
+  for (int k = 0; k < 1000; k++) {
+    s.missed = k * k % 7;
+    before = periods;
+    periods += s.missed + 1;
+    (void)ethd_control_step(control, &s, &c, NULL);
+  }
+  ethd__stress_near(log, "s", age_seen, (double)before * PERIOD, 1e-15,
+                    "age of a contact, 0 to 6 ticks lost each time");
+  ethd_control_destroy(control);
+}
+
 /* ---- taps ---- */
 
 #define CYCLE 3000 /* ticks: three taps, a whole number of readings */
@@ -131,6 +154,7 @@ static void run(ethd__stress_log *log) {
   ethd_scene *scene = ethd__rig_wall(-0.238);
   int64_t ticks = ethd__stress_pick(log, 1000000, 10000000, 1000000000);
   press(log, scene, ticks);
+  lost(log, scene);
   taps(log, scene, ticks);
   ethd_scene_destroy(scene);
 }

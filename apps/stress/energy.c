@@ -76,6 +76,23 @@ static void offset(ethd__stress_log *log, double speed) {
   ethd__rig_close(&rig);
 }
 
+/* Whatever depth and speed: the wall pushes out. */
+static void never_pulls(ethd__stress_log *log, const ethd_contact_law *law) {
+  double most = -INFINITY;
+  for (double depth = 0; depth < 0.01; depth += 5e-4)
+    for (double speed = -4; speed <= 4; speed += 0.25) {
+      ethd__rig rig;
+      ethd__rig_open(&rig, MASS, -depth);
+      ethd_setup_transition(&rig.setup, &ethd_transition_smooth);
+      ethd_setup_contact(&rig.setup, law);
+      rig.measured = 1;
+      ethd__rig_start(&rig, speed);
+      most = fmax(most, -ethd__rig_step(&rig)->fe[0]); /* along n = (-1, 0) */
+      ethd__rig_close(&rig);
+    }
+  ethd__stress_bound(log, "N", most, 0, "%s: largest pull", law->law.id);
+}
+
 static void run(ethd__stress_log *log) {
   static const double stiffnesses[] = {100, 2500, 20000};
   static const double depths[] = {1e-4, 1e-3, 5e-3};
@@ -83,6 +100,9 @@ static void run(ethd__stress_log *log) {
     for (int k = 0; k < 3; k++) smooth(log, stiffnesses[i], depths[k]);
   static const double speeds[] = {0.05, 0.1, 0.2, 0.4, 0.8};
   for (int i = 0; i < 5; i++) offset(log, speeds[i]);
+  never_pulls(log, &ethd_contact_kelvin_voigt);
+  never_pulls(log, &ethd_contact_spring);
+  never_pulls(log, &ethd_contact_hunt_crossley);
 }
 
 const ethd__stress ethd__stress_energy = {"energy", "energy that the wall gives back", run};
