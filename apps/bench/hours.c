@@ -8,8 +8,8 @@
 #include "tap/study.h"
 
 #define GOAL 5000.0
-#define REST 0.15      /* s: after the path's end */
-#define TRUEST 1e-13   /* m/s: tolerance of the reference */
+#define REST 0.15    /* s: after the path's end */
+#define TRUEST 1e-13 /* m/s: tolerance of the reference */
 
 enum { TAPS = 8, TICKS = 1500 };
 
@@ -28,7 +28,8 @@ static void check(ethd_status status, const char *message) {
 }
 
 static void open_loop(loop *l, const char *law) {
-  char message[ETHD_MESSAGE_MAX], *plant = ethd__data_path("n.plant"), *controller = ethd__data_path("n.ini");
+  char message[ETHD_MESSAGE_MAX], *plant = ethd__data_path("n.plant"),
+                                  *controller = ethd__data_path("n.ini");
   check(ethd_config_load(controller, &l->config, message), message);
   check(ethd_plant_load(plant, &l->study.plant, message), message);
   ethd__speed_parse("low", &l->study.plant, &l->speeds[0]);
@@ -48,7 +49,8 @@ static void close_loop(loop *l) {
   ethd_config_free(l->config);
 }
 
-/* Ideal encoders for errors: a count that turns over a moment earlier is a step of 40 um, not an error. */
+/* Ideal encoders for errors: a count that turns over a moment earlier is a step of 40 um, not an error.
+ */
 static void use(loop *l, double tolerance, int ideal) {
   ethd_sim_def def = {.plant = l->study.plant,
                       .arm = l->stage.setup.arm,
@@ -67,7 +69,8 @@ static size_t tap(loop *l, int number, int truth) {
   ethd_sim_tap circumstances;
   ethd_sense sense;
   ethd_command command;
-  check(ethd__stage_draw(&l->stage, &l->speeds[number & 1], (uint64_t)(number / 2), &circumstances), "a tap");
+  check(ethd__stage_draw(&l->stage, &l->speeds[number & 1], (uint64_t)(number / 2), &circumstances),
+        "a tap");
   check(ethd_sim_start(l->sim, &circumstances), "a tap begins out of reach");
   ethd_control_reset(l->stage.control);
   double seconds = ethd_path_end(&circumstances.path) + REST;
@@ -100,7 +103,9 @@ static double cost(loop *l, double tolerance, int truth, int rounds) {
   return ethd__bench_percentiles(each, (size_t)rounds).median;
 }
 
-static double apart(const double *a, const double *b) { return hypot(a[0] - b[0], a[1] - b[1]); }
+static double apart(const double *a, const double *b) {
+  return hypot(a[0] - b[0], a[1] - b[1]);
+}
 
 static double error_of(loop *l, double tolerance) {
   static ethd_truth reference[TAPS][TICKS];
@@ -132,20 +137,24 @@ static int run(const char *folder, int quick) {
               {"golden", ETHD_SIM_GOLDEN, 1e-8, 0},
               {"golden, truth recorded", ETHD_SIM_GOLDEN, 1e-8, 1}};
   static loop l;
-  FILE *csv = ethd__bench_csv(folder, "hours",
-                              "# closed loop of plant n and law offset, 8 taps; error: largest distance of ring or finger\n"
-                              "# from the same loop at tolerance 1e-13, both with ideal encoders\n",
-                              "setting,tolerance,error_m,time_s,hours_per_cpu_hour");
+  FILE *csv = ethd__bench_csv(
+      folder, "hours",
+      "# closed loop of plant n and law offset, 8 taps; error: largest distance of ring or finger\n"
+      "# from the same loop at tolerance 1e-13, both with ideal encoders\n",
+      "setting,tolerance,error_m,time_s,hours_per_cpu_hour");
   open_loop(&l, "offset");
   printf("hours: closed loop of plant n, law offset and record, %d taps\n", TAPS);
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     double error = error_of(&l, rows[i].tolerance);
     double time = cost(&l, rows[i].tolerance, rows[i].truth, quick ? 15 : 63);
-    printf("  %-24s %9.2e m %8.1f us/s %8.0f simulated hours per CPU hour\n", rows[i].name, error, 1e6 * time, 1 / time);
+    printf("  %-24s %9.2e m %8.1f us/s %8.0f simulated hours per CPU hour\n", rows[i].name, error,
+           1e6 * time, 1 / time);
     if (i == 0) printf("  goal: %.0f: %s\n", GOAL, ethd__bench_verdict(1 / time >= GOAL));
     if (!rows[i].truth)
-      printf("  goal: error at most %.0e m: %s\n", rows[i].error, ethd__bench_verdict(error <= rows[i].error));
-    fprintf(csv, "\"%s\",%.17g,%.17g,%.17g,%.17g\n", rows[i].name, rows[i].tolerance, error, time, 1 / time);
+      printf("  goal: error at most %.0e m: %s\n", rows[i].error,
+             ethd__bench_verdict(error <= rows[i].error));
+    fprintf(csv, "\"%s\",%.17g,%.17g,%.17g,%.17g\n", rows[i].name, rows[i].tolerance, error, time,
+            1 / time);
   }
   ethd_sim_destroy(l.sim);
   l.sim = NULL;

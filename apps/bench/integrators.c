@@ -7,7 +7,7 @@
 #include "bench/methods.h"
 #include "common/cli.h"
 
-enum { CONTENDERS_MAX = 120, POINTS = 7, TAPS = 4 };
+enum { CONTENDERS_MAX = 120, TAPS = 4 };
 
 typedef struct contender {
   const char *name;
@@ -118,11 +118,14 @@ static void race(int rounds) {
 static int run(const char *folder, int quick) {
   ethd__problem problem = ethd__problem_record(TAPS);
   field.count = 0;
-  printf("integrators: plant n alone, %d taps of %.1f s in all, torques recorded in closed loop; error: the\n"
-         "largest distance of ring or finger, every tick and torque change, from DOPRI5 with events at 1e-15\n"
-         "exact matrix exponential: left out, friction's tanh and the pad's K p (1 + c p') are not linear\n"
-         "peer MuJoCo: absent\n",
-         TAPS, problem.duration);
+  printf(
+      "integrators: plant n alone, %d taps of %.1f s in all, torques recorded in closed loop; error: "
+      "the\n"
+      "largest distance of ring or finger, every tick and torque change, from DOPRI5 with events at "
+      "1e-15\n"
+      "exact matrix exponential: left out, friction's tanh and the pad's K p (1 + c p') are not linear\n"
+      "peer MuJoCo: absent\n",
+      TAPS, problem.duration);
   contender *reference = enter(&problem, "reference", 1e-15);
   reference->runner.method = &ethd__methods[ethd__method_count - 1];
   reference->runner.setting = 1e-15;
@@ -131,10 +134,11 @@ static int run(const char *folder, int quick) {
   field.count = 0;
   enter_all(&problem);
   race(quick ? 8 : 60);
-  FILE *csv = ethd__bench_csv(folder, "integrators",
-                              "# plant n alone, torques of taps recorded in closed loop; error: largest distance of ring\n"
-                              "# or finger from DOPRI5 with events at tolerance 1e-15; CPU time per simulated second\n",
-                              "method,setting,error_m,time_s");
+  FILE *csv = ethd__bench_csv(
+      folder, "integrators",
+      "# plant n alone, torques of taps recorded in closed loop; error: largest distance of ring\n"
+      "# or finger from DOPRI5 with events at tolerance 1e-15; CPU time per simulated second\n",
+      "method,setting,error_m,time_s");
   for (int i = 0; i < field.count; i++) {
     contender *c = &field.all[i];
     c->error = ethd__problem_error(&problem, c->marks, truth);
@@ -156,4 +160,5 @@ static int run(const char *folder, int quick) {
   return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
 }
 
-const ethd__bench ethd__bench_integrators = {"integrators", "the plant's integration, against GSL, CVODE, odeint", run};
+const ethd__bench ethd__bench_integrators = {"integrators",
+                                             "the plant's integration, against GSL, CVODE, odeint", run};

@@ -1,4 +1,5 @@
-/* What a peer that integrates exports: `peer_ode`, a table that ends with a NULL name (C linkage, const). */
+/* What a peer that integrates exports: `peer_ode`, a table that ends with a NULL name (C linkage,
+ * const). */
 #ifndef ETHD_APPS_BENCH_ODE_H
 #define ETHD_APPS_BENCH_ODE_H
 
@@ -38,8 +39,8 @@ static inline int ethd__ode_changed(const double g[2]) {
 
 /* For peers without event location: g(s) < 0 first at a step s within h, by regula falsi (Illinois);
    `try_step` takes a step of s and returns g after it. */
-static inline double ethd__ode_locate(double (*try_step)(void *self, double s), void *self, double before,
-                                      double h, double after) {
+static inline double ethd__ode_locate(double (*try_step)(void *self, double s), void *self,
+                                      double before, double h, double after) {
   double low = 0, high = h, g_low = before, g_high = after;
   int side = 0;
   while (high - low > ETHD__ODE_LOCATED) {

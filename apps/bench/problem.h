@@ -1,5 +1,5 @@
-/* The plant alone: taps of plant n in closed loop leave their torques behind, which every method then plays
-   to the same plant. */
+/* The plant alone: taps of plant n in closed loop leave their torques behind, which every method then
+   plays to the same plant. */
 #ifndef ETHD_APPS_BENCH_PROBLEM_H
 #define ETHD_APPS_BENCH_PROBLEM_H
 

@@ -1,4 +1,5 @@
-/* Links at absolute angles th, joints at q (serial: q2 = th2 - th1), link vectors a and b with ring = a + b:
+/* Links at absolute angles th, joints at q (serial: q2 = th2 - th1), link vectors a and b with ring = a
+   + b:
 
      I1 th1'' + H cos(th2 - th1) th2'' - H sin(th2 - th1) th2'^2 = g1 + a x F
      I2 th2'' + H cos(th2 - th1) th1'' + H sin(th2 - th1) th1'^2 = g2 + b x F
@@ -72,7 +73,9 @@ static ethd_vec link_vector(const ethd__body *b, int j, double angle) {
   return (ethd_vec){b->link[j] * cosine, b->link[j] * sine};
 }
 
-static ethd_vec turn(double w, ethd_vec a) { return (ethd_vec){-w * a.y, w * a.x}; }
+static ethd_vec turn(double w, ethd_vec a) {
+  return (ethd_vec){-w * a.y, w * a.x};
+}
 
 typedef struct pose {
   ethd_vec a, b;
@@ -189,7 +192,8 @@ static void drive(const ethd__body *b, const double *q, const double *v, double 
   if (b->serial) d[0] -= d[1];
 }
 
-static void couple(const ethd__body *b, const pose *links, const double *w, const double g[2], double *a) {
+static void couple(const ethd__body *b, const pose *links, const double *w, const double g[2],
+                   double *a) {
   double h = b->coupling / (b->link[0] * b->link[1]);
   double hc = h * ethd_vec_dot(links->a, links->b), hs = h * ethd_vec_cross(links->a, links->b);
   double g0 = g[0] + hs * w[1] * w[1], g1 = g[1] - hs * w[0] * w[0];
@@ -198,8 +202,8 @@ static void couple(const ethd__body *b, const pose *links, const double *w, cons
   a[1] = (b->inertia[0] * g1 - hc * g0) / det;
 }
 
-void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, const ethd__motion *hand, const double *q,
-                           const double *v, double *out) {
+void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, const ethd__motion *hand,
+                           const double *q, const double *v, double *out) {
   double g[2];
   drive(b, q, v, g, out);
   ethd_vec f = {b->hand_stiffness * (hand->x.x - q[2]) + b->hand_damping * (hand->v.x - v[2]),
@@ -221,7 +225,9 @@ void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, const ethd__m
   out[ETHD__FINGER + 1] = hand->a.y + f.y / b->finger_mass;
 }
 
-static double square(double x) { return x * x; }
+static double square(double x) {
+  return x * x;
+}
 
 double ethd__body_energy(const ethd__body *b, const ethd__state *s, ethd_vec hand) {
   const double *q = s->q, *v = s->v;

@@ -7,11 +7,12 @@
 
 #define ETHD__STICK 3e-3 /* m/s of friction's tanh */
 
-/* Coordinates: absolute angles of the links, finger x and y, motors' sides of the joints (as joint angles;
-   only with a compliant transmission). */
+/* Coordinates: absolute angles of the links, finger x and y, motors' sides of the joints (as joint
+   angles; only with a compliant transmission). */
 enum { ETHD__LINK = 0, ETHD__FINGER = 2, ETHD__MOTOR = 4, ETHD__DOF_MAX = 6 };
 
-/* Pad and ring: apart; pressing, K p (1 + c p_dot); or leaving so fast that this would pull: no force. */
+/* Pad and ring: apart; pressing, K p (1 + c p_dot); or leaving so fast that this would pull: no force.
+ */
 typedef enum ethd__touch { ETHD__APART, ETHD__PRESSING, ETHD__LEAVING } ethd__touch;
 
 typedef struct ethd__state {
@@ -25,11 +26,11 @@ typedef struct ethd__body {
   double link[2];
   double inertia[2], coupling, motor_inertia[2]; /* kg m^2 */
   double stiffness[2], damping[2];               /* Nm/rad, Nms/rad of the transmission */
-  double friction[2], viscous[2], sharpness[2];  /* Nm, Nms/rad, s/rad: f tanh(sharpness w) + viscous w */
-  double torque_max[2], torque[2];               /* Nm, the latter in effect */
+  double friction[2], viscous[2], sharpness[2]; /* Nm, Nms/rad, s/rad: f tanh(sharpness w) + viscous w */
+  double torque_max[2], torque[2];              /* Nm, the latter in effect */
   double gap, pad_stiffness, pad_damping;
   double finger_mass, hand_stiffness, hand_damping;
-  double tolerance; /* m/s: of a step's last terms */
+  double tolerance;                 /* m/s: of a step's last terms */
   double at[2], sine[2], cosine[2]; /* of angles near the present ones */
 } ethd__body;
 
@@ -44,11 +45,13 @@ void ethd__body_joints(const ethd__body *body, const double x[ETHD__DOF_MAX], do
 void ethd__body_refer(ethd__body *body, const ethd__state *state) ETHD_RT;
 
 /* Sines and cosines of the links' angles. */
-void ethd__body_waves(const ethd__body *body, const double angle[2], double sine[2], double cosine[2]) ETHD_RT;
+void ethd__body_waves(const ethd__body *body, const double angle[2], double sine[2],
+                      double cosine[2]) ETHD_RT;
 
 /* Ring centre and its velocity; the same as the motor's side has it. */
 void ethd__body_ring(const ethd__body *body, const ethd__state *state, ethd_vec *x, ethd_vec *v) ETHD_RT;
-void ethd__body_motor(const ethd__body *body, const ethd__state *state, ethd_vec *x, ethd_vec *v) ETHD_RT;
+void ethd__body_motor(const ethd__body *body, const ethd__state *state, ethd_vec *x,
+                      ethd_vec *v) ETHD_RT;
 
 /* Penetration p of the pad and its force under the state's touch. */
 void ethd__body_pad(const ethd__body *body, const ethd__state *state, double *p, double *force) ETHD_RT;
@@ -56,16 +59,17 @@ void ethd__body_pad(const ethd__body *body, const ethd__state *state, double *p,
 /* What pad and ring do in this state, whatever state->touch says. */
 ethd__touch ethd__body_touch(const ethd__body *body, const ethd__state *state) ETHD_RT;
 
-/* Accelerations. An undisturbed finger is where the hand wants it: spring and damper act on what a touch
-   changes about the path, m (a_f - a) = K (x - x_f) + B (v - v_f) + pad. */
+/* Accelerations, for methods that ask for them; series.c has the same equations term by term. An
+   undisturbed finger is where the hand wants it: spring and damper act on what a touch changes about the
+   path, m (a_f - a) = K (x - x_f) + B (v - v_f) + pad. */
 void ethd__body_accelerate(const ethd__body *body, ethd__touch touch, const ethd__motion *hand,
                            const double *q, const double *v, double *out) ETHD_RT;
 
 /* Kinetic energy plus that of pad, hand and transmission, J, with the path at hand. */
 double ethd__body_energy(const ethd__body *body, const ethd__state *state, ethd_vec hand) ETHD_RT;
 
-/* From t to t + h, within which only touch may change, by steps of power series; changes of touch are located
-   to 1e-12 s. */
+/* From t to t + h, within which only touch may change, by steps of power series; changes of touch are
+   located to 1e-12 s. */
 void ethd__body_advance(const ethd__body *body, const ethd__piece *piece, double t, double h,
                         ethd__state *state) ETHD_RT;
 

@@ -24,8 +24,8 @@ typedef struct ethd__motion {
 /* Position, velocity and acceleration by that piece, also at its end. [any, rt-safe] */
 ethd__motion ethd__piece_at(const ethd__piece *piece, double t) ETHD_RT;
 
-/* First terms of the position as a power series about the instant of `at`, which is piece_at's. Each further one
-   is -w^2 / (k (k - 1)) times that two before it. */
+/* First terms of the position as a power series about the instant of `at`, which is piece_at's. Each
+   further one is -w^2 / (k (k - 1)) times that two before it. */
 void ethd__piece_terms(const ethd__piece *piece, const ethd__motion *at, ethd__two out[4]) ETHD_RT;
 
 /* At least |x| + |y| of how far it goes within h, coming by at velocity v. */

@@ -1,6 +1,6 @@
-/* Terms of a product are sums of products, z_k = sum x_i y_(k-i); those of y = x' are y_k = (k+1) x_(k+1).
-   So each equation of body.c gives term k of an acceleration from the terms up to k of angles and speeds.
-   Functions come from their differential equations:
+/* Terms of a product are sums of products, z_k = sum x_i y_(k-i); those of y = x' are y_k = (k+1)
+   x_(k+1). So each equation of body.c gives term k of an acceleration from the terms up to k of angles
+   and speeds. Functions come from their differential equations:
 
      u = tanh(s w):         u' = s w' (1 - u^2)
      (C, S) = e^(i th):     C' = -th' S, S' = th' C
@@ -26,19 +26,31 @@ typedef struct work {
   two cosine[ETHD__TERMS], sine[ETHD__TERMS], square_v[ETHD__TERMS];
   double along[ETHD__TERMS], across[ETHD__TERMS]; /* H cos and H sin of th2 - th1 */
   two apart[ETHD__TERMS], force[ETHD__TERMS];     /* from ring to finger; on the ring */
-  double swing; /* of the hand's terms beyond 3 */
-  double inverse_distance, square[ETHD__TERMS], distance[ETHD__TERMS], push[ETHD__TERMS]; /* push: force over distance */
+  double inverse_mass;                            /* of the finger */
+  double swing;                                   /* of the hand's terms beyond 3 */
+  double inverse_distance, square[ETHD__TERMS], distance[ETHD__TERMS],
+      push[ETHD__TERMS]; /* push: force over distance */
 } work;
 
-static const double INVERSE[ETHD__TERMS + 1] = {0,       1.0,     1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,
-                                                1.0 / 6, 1.0 / 7, 1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11,
-                                                1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16};
+static const double INVERSE[ETHD__TERMS + 1] = {
+    0,       1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,  1.0 / 7, 1.0 / 8,
+    1.0 / 9, 1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16};
 
-static inline two both(double x) { return (two){x, x}; }
-static inline two pair(const double *x) { return (two){x[0], x[1]}; }
-static inline two swapped(two x) { return (two){x[1], x[0]}; }
-static inline double sum(two x) { return x[0] + x[1]; }
-static inline double size(two x) { return fabs(x[0]) + fabs(x[1]); }
+static inline two both(double x) {
+  return (two){x, x};
+}
+static inline two pair(const double *x) {
+  return (two){x[0], x[1]};
+}
+static inline two swapped(two x) {
+  return (two){x[1], x[0]};
+}
+static inline double sum(two x) {
+  return x[0] + x[1];
+}
+static inline double size(two x) {
+  return fabs(x[0]) + fabs(x[1]);
+}
 
 /* Term k of x y. */
 static inline two product(const two *x, const two *y, int k) {
@@ -54,7 +66,9 @@ static inline double product_1(const double *x, const double *y, int k) {
 }
 
 /* From the links' absolute angles, or what derives from them, to the joints'. */
-static inline two joint(const ethd__body *b, two link) { return b->serial ? (two){link[0], link[1] - link[0]} : link; }
+static inline two joint(const ethd__body *b, two link) {
+  return b->serial ? (two){link[0], link[1] - link[0]} : link;
+}
 
 /* ---- geometry ---- */
 
@@ -93,7 +107,8 @@ static void measure(work *w, int k) {
   w->out->leaving[k - 1] = w->body->pad_damping * (k * w->distance[k]) + (k == 1);
 }
 
-/* Force over distance = K p (1 + c p') / D; on the ring along r. Needs the geometry's terms up to k + 1. */
+/* Force over distance = K p (1 + c p') / D; on the ring along r. Needs the geometry's terms up to k + 1.
+ */
 static two press(work *w, int k) {
   double s = w->body->pad_stiffness * product_1(w->out->beyond, w->out->leaving, k);
   for (int i = 1; i <= k; i++) s -= w->distance[i] * w->push[k - i];
@@ -182,7 +197,7 @@ static void accelerate(work *w, ethd__touch touch, int k) {
   w->link_a[k] = b->coupling != 0 ? couple(w, g, k) : g * w->inverse_inertia;
   if (!b->compliant) w->slip_a[k] = joint(b, w->link_a[k]);
   s->link_v[k + 1] = w->link_a[k] * INVERSE[k + 1];
-  s->aside_v[k + 1] = f * both(INVERSE[k + 1] / b->finger_mass);
+  s->aside_v[k + 1] = f * both(INVERSE[k + 1] * w->inverse_mass);
 }
 
 /* ---- how many terms, how far ---- */
@@ -238,7 +253,8 @@ static void watch(work *w, const ethd__piece *piece, const ethd__motion *hand, e
   for (int k = 1; k <= last; k++) s->beyond[k] = w->square[k];
 }
 
-static void begin(const ethd__body *b, const ethd__motion *hand, const ethd__state *state, ethd__series *s) {
+static void begin(const ethd__body *b, const ethd__motion *hand, const ethd__state *state,
+                  ethd__series *s) {
   s->link[0] = pair(state->q + ETHD__LINK);
   s->link_v[0] = pair(state->v + ETHD__LINK);
   s->hand[0] = (two){hand->x.x, hand->x.y};
@@ -278,6 +294,7 @@ void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, double t
   ethd__motion hand = ethd__piece_at(piece, t);
   w.body = b;
   w.out = out;
+  w.inverse_mass = 1 / b->finger_mass;
   w.swing = -piece->w * piece->w;
   w.inertia = pair(b->inertia);
   w.inverse_inertia = 1 / w.inertia;

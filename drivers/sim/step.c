@@ -72,8 +72,8 @@ static void put(two x, double *out) {
   out[1] = x[1];
 }
 
-static void move(const ethd__body *b, const ethd__series *s, const ethd__piece *piece, double t, double h,
-                 ethd__state *state) {
+static void move(const ethd__body *b, const ethd__series *s, const ethd__piece *piece, double t,
+                 double h, ethd__state *state) {
   int n = s->order;
   ethd__motion hand = ethd__piece_at(piece, t + h);
   put(at(s->link, n + 1, h), state->q + ETHD__LINK);
@@ -97,7 +97,8 @@ static int turns(const ethd__body *b, double most, const ethd__state *from, cons
   return 0;
 }
 
-void ethd__body_advance(const ethd__body *b, const ethd__piece *piece, double t, double h, ethd__state *state) {
+void ethd__body_advance(const ethd__body *b, const ethd__piece *piece, double t, double h,
+                        ethd__state *state) {
   double done = 0, most = fmin(TURN, PACE * h);
   while (done < h) {
     ethd__series s;

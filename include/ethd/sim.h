@@ -81,7 +81,7 @@ ETHD_API void ethd_sim_draw(const ethd_plant *plant, uint64_t seed, uint64_t tap
 
 /* Tolerances with steps of a period: a tap of plant n stays within 1e-8 m, 1e-6 m. */
 #define ETHD_SIM_GOLDEN 1e-8
-#define ETHD_SIM_FAST 1e-5
+#define ETHD_SIM_FAST 1e-4
 
 typedef struct ethd_sim_def {
   ethd_plant plant;
