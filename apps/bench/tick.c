@@ -1,125 +1,275 @@
-/* The whole tick, hot: a tap played again and again through the step, recording included. */
+/* The whole tick, recording included: hot, by law, scene and kind of finger, and by part. */
+#include "bench/tick.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench/bench.h"
 #include "common/cli.h"
-#include "ethd/ethd.h"
 
-#define TICKS 2048
+/* ---- a controller that taps ---- */
 
-typedef struct work {
-  const char *scene_name;
-  ethd_scene *scene;
-  ethd_sense senses[TICKS];
-  ethd_trace traces[TICKS]; /* the record of the run */
-} work;
-
-/* A finger that taps at x = 0.238 and comes back, the ring 2 ms behind. */
-static void script(const ethd_setup *setup, ethd_sense *senses) {
-  for (int k = 0; k < TICKS; k++) {
-    double phase = 2 * 3.141592653589793 * k / TICKS, t = 0.002;
-    ethd_vec ring = {0.27 + 0.022 * cos(phase), 0.25 + 0.01 * sin(3 * phase)};
-    double speed = -0.022 * sin(phase) * 2 * 3.141592653589793 / (TICKS * 0.001);
-    ethd_sense *s = &senses[k];
-    memset(s, 0, sizeof *s);
-    s->have = ETHD_HAVE_FINGER;
-    s->finger[0] = ring.x + t * speed;
-    s->finger[1] = ring.y;
-    s->finger_v[0] = speed;
-    if (ethd_arm_angles(&setup->arm, ring, -1, s->q) < 0)
-      ethd__fail(ETHD_EXIT_FAILED, "the scripted tap leaves the arm's reach");
-  }
-}
-
-/* A wall on the left, and a wavy outline around the workspace of `segments` edges. */
-static ethd_scene *make_scene(size_t segments) {
-  ethd_object_def objects[2];
-  const double wall[3] = {-1, 0, -0.238};
-  double *outline = malloc((2 * segments + 2) * sizeof *outline);
-  ethd_error error;
-  ethd_scene *scene;
-  if (!outline) ethd__fail(ETHD_EXIT_FAILED, "no memory");
-  for (size_t i = 0; i <= segments; i++) {
-    double a = 6.283185307179586 * (double)i / (double)segments, r = 0.06 + 0.004 * sin(17 * a);
-    outline[2 * i] = 0.28 + r * cos(a);
-    outline[2 * i + 1] = 0.25 + r * sin(a);
-  }
-  objects[0] = (ethd_object_def){ETHD_HALFPLANE, -1, wall, 3, 0};
-  objects[1] = (ethd_object_def){ETHD_POLYLINE, -1, outline, 2 * segments + 2, 0};
-  ethd_scene_def def = {objects, segments ? 2 : 1, NULL, 0};
-  if (ethd_scene_create(&def, &scene, &error) < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "scene: %s", ethd_status_sentence(error.status));
-  free(outline);
-  return scene;
-}
-
-static ethd_control *make_control(const ethd_transition_law *law, const ethd_scene *scene) {
+ethd__tapping *ethd__tapping_create(const ethd_transition_law *law, long segments,
+                                    ethd__tap_finger how) {
+  ethd__tapping *t = aligned_alloc(64, (sizeof *t + 63) / 64 * 64);
+  if (!t) ethd__fail(ETHD_EXIT_FAILED, "no memory");
+  memset(t, 0, sizeof *t);
   ethd_setup setup = ethd_setup_default();
-  ethd_control *control;
-  ethd_error error;
-  ethd_setup_transition(&setup, law);
-  setup.scene = scene;
-  if (ethd_control_create(&setup, &control, &error) < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));
-  return control;
-}
-
-static void step(ethd_control *control, work *w, int k) {
-  ethd_command command;
-  if (ethd_control_step(control, &w->senses[k], &command, &w->traces[k]) < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "tick %d is at fault", k);
-}
-
-/* Mean without a clock in the loop; percentiles from steps timed one by one, the clock's cost taken off. */
-static ethd__bench_times measure(ethd_control *control, work *w, int rounds) {
-  double *ns = malloc((size_t)(rounds * TICKS) * sizeof *ns);
-  if (!ns) ethd__fail(ETHD_EXIT_FAILED, "no memory");
-  double cost = ethd__bench_clock_cost();
-  for (int k = 0; k < TICKS; k++) step(control, w, k);
-  int64_t start = ethd__bench_now();
-  for (int r = 0; r < rounds; r++)
-    for (int k = 0; k < TICKS; k++) step(control, w, k);
-  double mean = (double)(ethd__bench_now() - start) / (rounds * TICKS);
-  for (int i = 0; i < rounds * TICKS; i++) {
-    int64_t a = ethd__bench_now();
-    step(control, w, i % TICKS);
-    ns[i] = fmax(0, (double)(ethd__bench_now() - a) - cost);
-  }
-  ethd__bench_times t = ethd__bench_percentiles(ns, (size_t)(rounds * TICKS));
-  t.mean = mean;
-  free(ns);
+  ethd__tap_senses(&setup, how, t->senses);
+  t->scene = ethd__tap_scene(segments);
+  t->control = ethd__tap_control(law, t->scene);
+  t->traced = 1;
   return t;
 }
 
-static int run(const char *folder, int quick) {
-  static const ethd_transition_law *const laws[] = {&ethd_transition_abrupt, &ethd_transition_smooth,
-                                                    &ethd_transition_offset};
-  static const struct {
-    const char *name;
-    long segments; /* -1: no scene */
-  } scenes[] = {{"none", -1}, {"wall", 0}, {"100", 100}, {"1000", 1000}};
-  static work w;
-  ethd_setup setup = ethd_setup_default();
-  script(&setup, w.senses);
-  FILE *csv = ethd__bench_csv(folder, "tick", "", "law,scene,mean_ns,median_ns,p99_ns,p999_ns,max_ns");
-  printf("the whole tick, hot, ns; scene: none, a wall, a wall and an outline of 100 or 1000 segments\n");
-  printf("%-8s %-6s %8s %8s %8s %8s %10s\n", "law", "scene", "mean", "median", "p99", "p99.9", "max");
-  for (size_t s = 0; s < sizeof scenes / sizeof *scenes; s++) {
-    ethd_scene *scene = scenes[s].segments < 0 ? NULL : make_scene((size_t)scenes[s].segments);
-    for (size_t l = 0; l < 3; l++) {
-      ethd_control *control = make_control(laws[l], scene);
-      ethd__bench_times t = measure(control, &w, quick ? 20 : 200);
-      printf("%-8s %-6s %8.0f %8.0f %8.0f %8.0f %10.0f\n", laws[l]->law.id, scenes[s].name, t.mean,
-             t.median, t.p99, t.p999, t.max);
-      fprintf(csv, "%s,%s,%.17g,%.17g,%.17g,%.17g,%.17g\n", laws[l]->law.id, scenes[s].name, t.mean,
-              t.median, t.p99, t.p999, t.max);
-      ethd_control_destroy(control);
-    }
-    ethd_scene_destroy(scene);
+void ethd__tapping_destroy(ethd__tapping *t) {
+  ethd_control_destroy(t->control);
+  ethd_scene_destroy(t->scene);
+  free(t);
+}
+
+const ethd_sense *ethd__tapping_sense(ethd__tapping *t) {
+  const int64_t tap = 1000000 * (int64_t)ETHD__TAP_TICKS;
+  ethd_sense *s = &t->senses[t->next++ % ETHD__TAP_TICKS];
+  s->time_ns += tap;
+  s->sample_ns += tap;
+  return s;
+}
+
+void ethd__tapping_step(ethd__tapping *t, const ethd_sense *sense) {
+  ethd_command command;
+  ethd_trace *trace = t->traced ? &t->traces[t->next % ETHD__TICK_RING] : NULL;
+  if (ethd_control_step(t->control, sense, &command, trace) < 0)
+    ethd__fail(ETHD_EXIT_FAILED, "tick %d is at fault", t->next);
+}
+
+static void tap(void *data) {
+  ethd__tapping *t = data;
+  for (int k = 0; k < ETHD__TAP_TICKS; k++) ethd__tapping_step(t, ethd__tapping_sense(t));
+}
+
+/* ---- output ---- */
+
+void ethd__tick_put(FILE *csv, ethd__tick_row row, const char *name, double share_longer, double ns) {
+  fprintf(csv, "%s,%s,%s,%s,%s,%.17g,%.17g\n", row.what, row.law, row.scene, row.finger, name,
+          share_longer, ns);
+}
+
+ethd__bench_times ethd__tick_report(FILE *csv, ethd__tick_row row, double *ns, size_t count,
+                                    double mean) {
+  ethd__bench_times t = ethd__bench_percentiles(ns, count);
+  if (mean >= 0) t.mean = mean;
+  printf("  %-10s %-8s %-7s %-8s %7.0f %7.0f %7.0f %8.0f %9.0f\n", row.what, row.law, row.scene,
+         row.finger, t.mean, t.median, t.p99, t.p999, t.max);
+  ethd__tick_put(csv, row, "mean", NAN, t.mean);
+  for (double share = 1; share * (double)count >= 1; share *= 0.8)
+    ethd__tick_put(csv, row, "tail", share, ns[count - (size_t)(share * (double)count)]);
+  ethd__tick_put(csv, row, "max", 0, t.max);
+  return t;
+}
+
+/* ---- hot ---- */
+
+static const struct {
+  const char *name;
+  long segments;
+} scenes[] = {{"none", -1}, {"wall", 0}, {"100", 100}, {"1000", 1000}, {"100000", 100000}};
+enum { NONE, WALL, HUNDRED, THOUSAND, MANY, SCENES };
+
+static const char *const fingers[] = {"known", "encoder", "centre", "rays"};
+enum { FINGERS = sizeof fingers / sizeof *fingers };
+
+static const ethd_transition_law *const laws[] = {&ethd_transition_abrupt, &ethd_transition_smooth,
+                                                  &ethd_transition_offset};
+enum { LAWS = sizeof laws / sizeof *laws, OFFSET = 2 };
+
+/* Steps timed one by one, the clock's cost taken off. */
+static void time_ticks(ethd__tapping *t, double *ns, size_t count) {
+  double cost = ethd__bench_clock_cost();
+  for (size_t i = 0; i < count; i++) {
+    const ethd_sense *sense = ethd__tapping_sense(t);
+    int64_t start = ethd__bench_now();
+    ethd__tapping_step(t, sense);
+    ns[i] = fmax(0, (double)(ethd__bench_now() - start) - cost);
   }
+}
+
+typedef struct hot {
+  ethd__bench_entry entries[LAWS * FINGERS * SCENES];
+  ethd__tick_row rows[LAWS * FINGERS * SCENES];
+  size_t count;
+  size_t at[LAWS][FINGERS][SCENES]; /* index into entries */
+} hot;
+
+/* The default law with everything; the others with all that works. */
+static void gather(hot *h) {
+  h->count = 0;
+  for (int l = 0; l < LAWS; l++)
+    for (int f = 0; f < FINGERS; f++)
+      for (int s = 0; s < SCENES; s++) {
+        if (l != OFFSET && (f != ETHD__TAP_RAYS || s == MANY)) continue;
+        h->at[l][f][s] = h->count;
+        h->rows[h->count] = (ethd__tick_row){"hot", laws[l]->law.id, scenes[s].name, fingers[f]};
+        ethd__tapping *t = ethd__tapping_create(laws[l], scenes[s].segments, (ethd__tap_finger)f);
+        h->entries[h->count++] = (ethd__bench_entry){"", tap, t, ETHD__TAP_TICKS, 0};
+      }
+}
+
+static double mean_of(const hot *h, int l, int f, int s) {
+  return h->entries[h->at[l][f][s]].ns;
+}
+
+/* ---- by part ---- */
+
+static void put_part(FILE *csv, const char *law, const char *name, double ns) {
+  ethd__tick_put(csv, (ethd__tick_row){"part", law, "1000", "rays"}, name, NAN, ns);
+  printf("    %-52s %6.1f\n", name, ns);
+}
+
+/* Differences between set-ups that have one thing more each, and what recording costs. */
+static void report_parts(FILE *csv, const hot *h) {
+  const int f = ETHD__TAP_RAYS;
+  ethd__tapping *t = h->entries[h->at[OFFSET][f][THOUSAND]].data;
+  ethd__bench_entry both[2] = {{"", tap, t, ETHD__TAP_TICKS, 0}, {"", tap, NULL, ETHD__TAP_TICKS, 0}};
+  ethd__tapping *untraced = ethd__tapping_create(laws[OFFSET], 1000, f);
+  untraced->traced = 0;
+  both[1].data = untraced;
+  ethd__bench_race(both, 2, 0.1);
+  double record = both[0].ns - both[1].ns;
+  printf("  by part, ns a tick, as differences (offset, rays, 1000 segments):\n");
+  put_part(csv, "offset", "record: into a ring instead of the stack", record);
+  put_part(csv, "offset", "kinematics, tracking, guard, the frame",
+           mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE) - record);
+  put_part(csv, "offset", "estimator: joint speeds",
+           mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE) - mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE));
+  put_part(csv, "offset", "estimator: finger filter",
+           mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE) - mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE));
+  put_part(csv, "offset", "estimator: ring fit (300 Hz)",
+           mean_of(h, OFFSET, f, NONE) - mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE));
+  for (int l = 0; l < LAWS; l++) {
+    char name[64];
+    snprintf(name, sizeof name, "transition, contact, a wall: %s", laws[l]->law.id);
+    put_part(csv, laws[l]->law.id, name, mean_of(h, l, f, WALL) - mean_of(h, l, f, NONE));
+  }
+  put_part(csv, "offset", "scene: 1000 segments instead of the wall",
+           mean_of(h, OFFSET, f, THOUSAND) - mean_of(h, OFFSET, f, WALL));
+  ethd__tapping_destroy(untraced);
+}
+
+typedef struct calls {
+  ethd_setup setup;
+  ethd_pose poses[ETHD__TAP_TICKS];
+  ethd_sense senses[ETHD__TAP_TICKS];
+} calls;
+
+static void call_pose(void *data) {
+  calls *c = data;
+  for (int k = 0; k < ETHD__TAP_TICKS; k++) ethd_arm_pose(&c->setup.arm, c->senses[k].q, &c->poses[k]);
+}
+
+static void call_tracking(void *data) {
+  const calls *c = data;
+  double tau[2] = {0, 0}, sum = 0, state[ETHD_STATE_MAX / 8] = {0};
+  for (int k = 0; k < ETHD__TAP_TICKS; k++) {
+    const double *j = c->poses[k].j_inv;
+    ethd_tracking_in in = {
+        {j[0] * 1e-3, j[2] * 1e-3}, {j[1] * 1e-2, j[3] * 1e-2}, {1e-3, 0}, {0, 1e-2}, 1e-3};
+    (void)!c->setup.tracking->step(c->setup.tracking_p, state, &in, tau);
+    sum += tau[0];
+  }
+  ethd__bench_sink = sum;
+}
+
+static void call_guard(void *data) {
+  const calls *c = data;
+  ethd_guard_state state;
+  double sum = 0;
+  memset(&state, 0, sizeof state);
+  for (int k = 0; k < ETHD__TAP_TICKS; k++) {
+    double tau[2] = {c->poses[k].j[0], c->poses[k].j[1]};
+    sum += ethd_guard_step(&c->setup.limits, &state, &c->poses[k], (ethd_vec){0.1, 0.2}, 1e-3, tau) +
+           tau[0];
+  }
+  ethd__bench_sink = sum;
+}
+
+/* A ring that goes into a wall and out again, braked on its way. */
+static void call_transition(void *data) {
+  const calls *c = data;
+  const ethd_transition_law *law = c->setup.transition;
+  double state[ETHD_STATE_MAX / 8] = {0}, sum = 0;
+  for (int k = 0; k < ETHD__TAP_TICKS; k++) {
+    double w = 2 * M_PI * k / ETHD__TAP_TICKS, d = 3e-3 * cos(w), v = 0.02 * sin(w);
+    ethd_contact contact = {{0.238, 0.25}, {-1, 0}, d, d, d - 2.5e-3, v, v, 2.5e-3, 1e-3, 0, 0, 0};
+    ethd_ruling r = {1, 0, 0, 0, 0, {0, 0}, d, 0, 0};
+    (void)!law->step(c->setup.transition_p, state, &contact, &r);
+    double force = 0, block[1] = {0};
+    (void)!c->setup.contact->step(c->setup.contact_p, block, d + r.offset, v, v > 0, &force);
+    sum += force + r.beta;
+  }
+  ethd__bench_sink = sum;
+}
+
+static void report_calls(FILE *csv, int quick) {
+  static calls c;
+  c.setup = ethd_setup_default();
+  ethd__tap_senses(&c.setup, ETHD__TAP_KNOWN, c.senses);
+  ethd__bench_entry entries[] = {
+      {"called alone: kinematics", call_pose, &c, ETHD__TAP_TICKS, 0},
+      {"called alone: tracking", call_tracking, &c, ETHD__TAP_TICKS, 0},
+      {"called alone: guard", call_guard, &c, ETHD__TAP_TICKS, 0},
+      {"called alone: transition and contact law, sin cos", call_transition, &c, ETHD__TAP_TICKS, 0}};
+  ethd__bench_race(entries, 4, quick ? 0.05 : 0.5);
+  for (int i = 0; i < 4; i++) put_part(csv, "offset", entries[i].name, entries[i].ns);
+}
+
+/* ---- goals ---- */
+
+static void goal(const char *what, double value, double most, const char *unit) {
+  printf("  goal: %-52s <= %-5g %-3s %.3g, %s\n", what, most, unit, value,
+         ethd__bench_verdict(value <= most));
+}
+
+static int run(const char *folder, int quick) {
+  size_t count = (size_t)(quick ? 20 : 200) * ETHD__TAP_TICKS;
+  double *ns = malloc(count * sizeof *ns);
+  static hot h;
+  if (!ns) ethd__fail(ETHD_EXIT_FAILED, "no memory");
+  FILE *csv = ethd__bench_csv(folder, "tick",
+                              "# a tap a second: ring and finger meet the wall at x = 0.238 m and stay "
+                              "there for a fifth of the time\n"
+                              "# finger: known; encoder: the same, joint speeds estimated; centre, "
+                              "rays: readings at 300 Hz, filtered, fitted\n"
+                              "# tail: share_longer of the ticks take longer; part: ns a tick\n",
+                              "what,law,scene,finger,name,share_longer,time_ns");
+  printf("the whole tick, recording included, ns; finger: rays are fitted and filtered, and joint "
+         "speeds estimated\n");
+  printf("  %-10s %-8s %-7s %-8s %7s %7s %7s %8s %9s\n", "", "law", "scene", "finger", "mean", "median",
+         "p99", "p99.9", "max");
+  gather(&h);
+  ethd__bench_times full = {0, 0, 0, 0, 0}, known = full;
+  for (size_t i = 0; i < h.count; i++) {
+    ethd__bench_race(&h.entries[i], 1, quick ? 0.05 : 0.5); /* one after the other: each in a warm cache */
+    time_ticks(h.entries[i].data, ns, count);
+    ethd__bench_times t = ethd__tick_report(csv, h.rows[i], ns, count, h.entries[i].ns);
+    if (i == h.at[OFFSET][ETHD__TAP_RAYS][THOUSAND]) full = t;
+    if (i == h.at[OFFSET][ETHD__TAP_KNOWN][THOUSAND]) known = t;
+  }
+  report_parts(csv, &h);
+  report_calls(csv, quick);
+  ethd__tick_cold(csv, quick);
+  ethd__tick_live(csv, quick);
+  goal("hot mean at 1000 segments, rays", full.mean, 150, "ns");
+  goal("hot p99 at 1000 segments, rays", full.p99, 230, "ns");
+  goal("hot mean at 1000 segments, finger known", known.mean, 150, "ns");
+  goal("hot p99 at 1000 segments, finger known", known.p99, 230, "ns");
+  goal("hot mean from 100 to 100000 segments, times",
+       mean_of(&h, OFFSET, ETHD__TAP_RAYS, MANY) / mean_of(&h, OFFSET, ETHD__TAP_RAYS, HUNDRED), 2.2,
+       "");
+  for (size_t i = 0; i < h.count; i++) ethd__tapping_destroy(h.entries[i].data);
+  free(ns);
   return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
 }
 
-const ethd__bench ethd__bench_tick = {"tick", "the whole tick, by law and scene", run};
+const ethd__bench ethd__bench_tick = {"tick", "the whole tick: hot, cold, in a 1 kHz loop, by part",
+                                      run};

@@ -1,0 +1,41 @@
+/* Parts of the tick's benchmark. */
+#ifndef ETHD_APPS_BENCH_TICK_H
+#define ETHD_APPS_BENCH_TICK_H
+
+#include "bench/bench.h"
+#include "bench/tap_track.h"
+
+enum { ETHD__TICK_RING = 64 }; /* traces that are kept: a recorder's buffer, in the cache */
+
+/* A controller that taps for ever; `next` is its tick. */
+typedef struct ethd__tapping {
+  ethd_control *control;
+  ethd_scene *scene;
+  int traced, next;
+  ethd_sense senses[ETHD__TAP_TICKS];
+  ethd_trace traces[ETHD__TICK_RING];
+} ethd__tapping;
+
+ethd__tapping *ethd__tapping_create(const ethd_transition_law *law, long segments, ethd__tap_finger how);
+void ethd__tapping_destroy(ethd__tapping *t);
+
+/* The next tick's sense, then the tick. */
+const ethd_sense *ethd__tapping_sense(ethd__tapping *t);
+void ethd__tapping_step(ethd__tapping *t, const ethd_sense *sense);
+
+/* Rows of tick.csv. */
+typedef struct ethd__tick_row {
+  const char *what, *law, *scene, *finger;
+} ethd__tick_row;
+
+void ethd__tick_put(FILE *csv, ethd__tick_row row, const char *name, double share_longer, double ns);
+
+/* Prints a line and writes mean, percentiles and the tail; sorts `ns`. mean < 0: that of `ns`. */
+ethd__bench_times ethd__tick_report(FILE *csv, ethd__tick_row row, double *ns, size_t count,
+                                    double mean);
+
+/* Cold: the caches emptied before a tick. Live: in a 1 kHz loop. */
+void ethd__tick_cold(FILE *csv, int quick);
+void ethd__tick_live(FILE *csv, int quick);
+
+#endif

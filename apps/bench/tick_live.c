@@ -1,0 +1,131 @@
+/* Ticks as a device has them: with cold caches, and in a loop that sleeps in between. */
+#include <errno.h>
+#include <math.h>
+#include <pthread.h>
+#include <sched.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <time.h>
+
+#include "bench/tick.h"
+#include "common/cli.h"
+
+static void heading(const char *text) {
+  printf("  %s\n", text);
+}
+
+static double *room_for(size_t count) {
+  double *ns = calloc(count, sizeof *ns);
+  if (!ns) ethd__fail(ETHD_EXIT_FAILED, "no memory");
+  return ns;
+}
+
+/* ---- cold ---- */
+
+#define EVICT ((size_t)32 << 20) /* bytes: over any second-level cache, and most third-level ones */
+
+static void evict(unsigned char *buffer) {
+  for (size_t i = 0; i < EVICT; i += 64) buffer[i]++;
+}
+
+/* Every fifth tick is cold, so that the whole tap is seen. */
+void ethd__tick_cold(FILE *csv, int quick) {
+  const long segments[] = {0, 1000};
+  size_t count = quick ? 100 : 1000;
+  double *ns = room_for(count), cost = ethd__bench_clock_cost();
+  unsigned char *buffer = calloc(1, EVICT);
+  if (!buffer) ethd__fail(ETHD_EXIT_FAILED, "no memory");
+  heading("cold: 32 MB written before the tick");
+  for (int s = 0; s < 2; s++) {
+    ethd__tapping *t = ethd__tapping_create(&ethd_transition_offset, segments[s], ETHD__TAP_RAYS);
+    for (size_t i = 0; i < 5 * count; i++) {
+      if (i % 5 == 0) evict(buffer);
+      const ethd_sense sense = *ethd__tapping_sense(t); /* a device has just written it */
+      int64_t start = ethd__bench_now();
+      ethd__tapping_step(t, &sense);
+      if (i % 5 == 0) ns[i / 5] = fmax(0, (double)(ethd__bench_now() - start) - cost);
+    }
+    ethd__tick_report(csv, (ethd__tick_row){"cold", "offset", s ? "1000" : "wall", "rays"}, ns, count,
+                      -1);
+    ethd__tapping_destroy(t);
+  }
+  free(buffer);
+  free(ns);
+}
+
+/* ---- live ---- */
+
+#define PERIOD 1000000 /* ns */
+#define EARLY 100000   /* ns: so much before the tick an early loop wakes */
+
+typedef struct loop {
+  ethd__tapping *tapping;
+  int early; /* wake before the tick, rehearse, spin */
+  double *ns;
+  size_t count;
+  int fifo; /* granted */
+} loop;
+
+static void sleep_until(int64_t t) {
+  struct timespec at = {t / 1000000000, t % 1000000000};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL) == EINTR) continue;
+}
+
+static void warm(loop *l, const ethd_sense *sense, int64_t tick) {
+  ethd_command command;
+  for (int i = 0; i < 3; i++) (void)!ethd_control_rehearse(l->tapping->control, sense, &command);
+  while (ethd__bench_now() < tick) continue;
+}
+
+static void *live(void *data) {
+  loop *l = data;
+  struct sched_param priority = {.sched_priority = 80};
+  l->fifo = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0;
+  ethd__flush_denormals();
+  double cost = ethd__bench_clock_cost();
+  int64_t next = ethd__bench_now() + 10 * (int64_t)PERIOD;
+  for (size_t i = 0; i < l->count; i++, next += PERIOD) {
+    const ethd_sense sense = *ethd__tapping_sense(l->tapping);
+    sleep_until(l->early ? next - EARLY : next);
+    if (l->early) warm(l, &sense, next);
+    int64_t start = ethd__bench_now();
+    ethd__tapping_step(l->tapping, &sense);
+    int64_t end = ethd__bench_now();
+    l->ns[i] = fmax(0, (double)(end - start) - cost);
+    while (next + PERIOD < end) next += PERIOD; /* ticks that were missed are not made up for */
+  }
+  return NULL;
+}
+
+static void run_loop(loop *l) {
+  pthread_t thread;
+  if (pthread_create(&thread, NULL, live, l) != 0) ethd__fail(ETHD_EXIT_FAILED, "no thread");
+  pthread_join(thread, NULL);
+}
+
+void ethd__tick_live(FILE *csv, int quick) {
+  static const ethd_transition_law *const laws[] = {&ethd_transition_offset, &ethd_transition_smooth,
+                                                    &ethd_transition_abrupt};
+  size_t count = quick ? 1500 : 20000;
+  double *ns = room_for(count);
+  int locked = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+  for (int k = 0; k < (quick ? 1 : 3); k++)
+    for (int early = 0; early < 2; early++) {
+      loop l = {ethd__tapping_create(laws[k], 1000, ETHD__TAP_RAYS), early, ns, count, 0};
+      run_loop(&l);
+      if (k == 0 && !early) {
+        printf("  live: 1 kHz, clock_nanosleep, %s, memory %s; early: awake 100 us before, three dry "
+               "ticks\n",
+               l.fifo ? "SCHED_FIFO 80" : "SCHED_OTHER (SCHED_FIFO isn't allowed)",
+               locked ? "locked" : "not locked");
+        fprintf(csv, "# live: %s\n", l.fifo ? "SCHED_FIFO 80" : "SCHED_OTHER");
+      }
+      ethd__tick_report(csv,
+                        (ethd__tick_row){early ? "live early" : "live", laws[k]->law.id, "1000", "rays"},
+                        ns, count, -1);
+      ethd__tapping_destroy(l.tapping);
+    }
+  if (locked) munlockall();
+  free(ns);
+}
