@@ -96,6 +96,18 @@ kill -KILL $killed
 wait $killed 2>/dev/null
 replays "$folder/killed"
 
+# ---- ethd-latency: a histogram that adds up, and its picture ----
+"$BUILD/bin/ethd-latency" --alone --duration 0.3 --csv "$folder/latency.csv" >"$folder/latency.out" 2>&1 || fail "ethd-latency: $(cat "$folder/latency.out")"
+says "$folder/latency.out" '^ticks ' '^wake-up .*p50.*p99 .*p99.9.*max' '^tick .*max'
+awk -F, 'NR == 1 { exit $0 != "from_s,to_s,wake,tick" } ' "$folder/latency.csv" || fail "the header: $(head -n 1 "$folder/latency.csv")"
+awk -F, -v ticks="$(awk '/^ticks/ { print $2 }' "$folder/latency.out")" 'NR > 1 { wake += $3; tick += $4; bad += !($2 > $1) }
+  END { exit !(tick >= ticks - 1 && tick <= ticks + 1 && wake >= tick && wake <= tick + 1 && !bad) }' "$folder/latency.csv" ||
+  fail "the histogram doesn't add up: $(cat "$folder/latency.out")"
+if command -v gnuplot >/dev/null; then
+  gnuplot -e "in='$folder/latency.csv'; out='$folder/latency.png'" apps/plot/latency.gp >"$folder/plot" 2>&1 && [ ! -s "$folder/plot" ] ||
+    fail "latency.gp: $(cat "$folder/plot")"
+fi
+
 # ---- refusals ----
 refuse() { # PATTERN ARGUMENTS...
   pattern=$1

@@ -1,0 +1,148 @@
+/* How late the loop wakes and how long its ticks take, beside cyclictest on the same machine. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "common/cli.h"
+#include "file/csv.h"
+#include "run/session.h"
+#include "run/summary.h"
+
+#define DURATION 10.0 /* s */
+
+static const char doc[] =
+    "Runs the loop with a device (the simulated one without a configuration) and prints how late it woke and "
+    "how long its ticks took; then cyclictest, where it is installed, for as long, at the same period and "
+    "priority. Figures are this machine's, under what ran beside it: the max comes last.\v"
+    "Examples:\n"
+    "  ethd-latency --duration 60 --csv latency.csv\n"
+    "  gnuplot -e \"in='latency.csv'; out='latency.png'\" latency.gp";
+
+enum { OPTION_CSV = 256, OPTION_CPU, OPTION_PRIORITY, OPTION_EARLY, OPTION_DMA, OPTION_ALONE };
+
+static const struct argp_option options[] = {
+    {"config", 'c', "C.ini", 0, "configuration; the simulated device without", 0},
+    {"duration", 'd', "S", 0, "10", 0},
+    {"csv", OPTION_CSV, "OUT.csv", 0, "the histograms: a row per bin", 0},
+    {"cpu", OPTION_CPU, "N", 0, "processor of the loop", 0},
+    {"priority", OPTION_PRIORITY, "N", 0, "of SCHED_FIFO: 80", 0},
+    {"early-wake", OPTION_EARLY, "US", 0, "wake so much early, warm the caches, spin to the tick: 0", 0},
+    {"dma-latency", OPTION_DMA, "US", 0, "hold /dev/cpu_dma_latency at this", 0},
+    {"alone", OPTION_ALONE, NULL, 0, "without cyclictest", 0},
+    {0},
+};
+
+static struct {
+  ethd__session_options session;
+  const char *csv;
+  double duration;
+  bool alone;
+} arg = {.duration = DURATION};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  ethd_loop_def *loop = &arg.session.loop;
+  switch (key) {
+    case 'c': arg.session.config = text; return 0;
+    case 'd': arg.duration = ethd__option_number("--duration", text, 0.01, 1e6); return 0;
+    case OPTION_CSV: arg.csv = text; return 0;
+    case OPTION_CPU: loop->cpu = (int32_t)ethd__option_integer("--cpu", text, 0, 1023); return 0;
+    case OPTION_PRIORITY: loop->priority = (int32_t)ethd__option_integer("--priority", text, 1, 99); return 0;
+    case OPTION_EARLY: loop->early_wake = 1e-6 * ethd__option_number("--early-wake", text, 0, 1e5); return 0;
+    case OPTION_DMA: loop->dma_latency = (int32_t)ethd__option_integer("--dma-latency", text, 0, 1000000); return 0;
+    case OPTION_ALONE: arg.alone = true; return 0;
+    case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+    default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
+/* ---- cyclictest ---- */
+
+/* Its histogram's rows: microseconds and a count. */
+static void read_cyclictest(FILE *pipe, ethd_histogram *out) {
+  char line[256];
+  while (fgets(line, sizeof line, pipe)) {
+    long us, count;
+    char after;
+    if (sscanf(line, "%ld %ld %c", &us, &count, &after) != 2) continue;
+    for (long i = 0; i < count; i++) ethd_histogram_add(out, us * 1000);
+  }
+}
+
+static bool run_cyclictest(double period, ethd_histogram *out) {
+  char command[256];
+  const ethd_loop_def *loop = &arg.session.loop;
+  int n = snprintf(command, sizeof command, "exec cyclictest -q -m -t 1 -p %d -i %ld -l %ld -h 20000", loop->priority,
+                   (long)(1e6 * period), (long)(arg.duration / period));
+  if (loop->cpu >= 0) snprintf(command + n, sizeof command - (size_t)n, " -a %d", loop->cpu);
+  strcat(command, " 2>/dev/null");
+  FILE *pipe = popen(command, "r");
+  if (!pipe) return false;
+  read_cyclictest(pipe, out);
+  return pclose(pipe) == 0 && out->count > 0;
+}
+
+/* ---- out ---- */
+
+static void write_row(ethd_csv_out *out, uint32_t bin, const ethd_loop_stats *s, const ethd_histogram *peer) {
+  ethd_csv_number(out, 1e-9 * (double)ethd_histogram_first(bin));
+  ethd_csv_number(out, 1e-9 * (double)(ethd_histogram_last(bin) + 1));
+  ethd_csv_integer(out, (int64_t)s->wake.counts[bin]);
+  ethd_csv_integer(out, (int64_t)s->tick.counts[bin]);
+  if (peer) ethd_csv_integer(out, (int64_t)peer->counts[bin]);
+  ethd_csv_row(out);
+}
+
+static void write_csv(const ethd_loop_stats *s, const ethd_histogram *peer) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd_csv_out *out = ethd_csv_create(arg.csv, peer ? "from_s,to_s,wake,tick,cyclictest" : "from_s,to_s,wake,tick", message);
+  if (!out) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  for (uint32_t bin = 0; bin + 1 < ETHD_BINS; bin++)
+    if (s->wake.counts[bin] || s->tick.counts[bin] || (peer && peer->counts[bin])) write_row(out, bin, s, peer);
+  if (ethd_csv_close(out, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+}
+
+static void measure(ethd_loop_stats *out, int32_t *shortfalls, double *period) {
+  static ethd__session session;
+  char message[ETHD_MESSAGE_MAX];
+  ethd_status status = ethd__session_open(&arg.session, &session, message);
+  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  while (!ethd__stop && !ethd_loop_ended(session.loop) && ethd__session_time(&session) < arg.duration) {
+    ethd__progress((uint64_t)(1e3 * ethd__session_time(&session)), (uint64_t)(1e3 * arg.duration), "loop");
+    usleep(10000);
+    ethd__session_poll(&session);
+  }
+  ethd__progress(1, 1, "");
+  ethd_loop_read(session.loop, out);
+  *shortfalls = ethd_loop_shortfalls(session.loop);
+  *period = session.setup.period;
+  ethd__session_halt(&session);
+  status = ethd__session_end(&session, message);
+  if (status) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd__session_free(&session);
+}
+
+int main(int argc, char **argv) {
+  static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
+  static ethd_loop_stats stats;
+  static ethd_histogram cyclictest;
+  int32_t shortfalls;
+  double period;
+  arg.session.loop = ethd_loop_default();
+  ethd__begin();
+  argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  ethd__catch_interrupt();
+  measure(&stats, &shortfalls, &period);
+  bool peer = !arg.alone && !ethd__stop && run_cyclictest(period, &cyclictest);
+  printf("%-10s %llu of %g s, %llu overruns, %llu periods missed\n", "ticks", (unsigned long long)stats.ticks, period,
+         (unsigned long long)stats.overruns, (unsigned long long)stats.missed);
+  ethd__durations_print(stdout, "wake-up", &stats.wake);
+  ethd__durations_print(stdout, "tick", &stats.tick);
+  if (peer)
+    ethd__durations_print(stdout, "cyclictest", &cyclictest);
+  else if (!arg.alone)
+    printf("%-10s skipped: not installed (Debian: rt-tests), or not permitted\n", "cyclictest");
+  ethd__shortfalls_print(stdout, shortfalls);
+  if (arg.csv) write_csv(&stats, peer ? &cyclictest : NULL);
+  return ethd__end(ETHD_EXIT_DONE);
+}
