@@ -79,8 +79,9 @@ typedef struct ethd_sim_tap {
 ETHD_API void ethd_sim_draw(const ethd_plant *plant, uint64_t seed, uint64_t tap, double speed,
                             ethd_vec meet, ethd_sim_tap *out);
 
-/* Tolerances with steps of a period: a tap of plant n stays within 1e-8 m, 1e-6 m. */
-#define ETHD_SIM_GOLDEN 1e-8
+/* Tolerances with steps of a period: a tap stays within 1e-8 m of the exact solution (any plant), within
+   1e-6 m (plant n). */
+#define ETHD_SIM_GOLDEN 1e-10
 #define ETHD_SIM_FAST 1e-4
 
 typedef struct ethd_sim_def {
