@@ -36,8 +36,9 @@ typedef struct ethd__minima {
   } stack[(ETHD__WIDE - 1) * ETHD__LEVELS + 1];
 } ethd__minima;
 
+/* The probes: of x and of the centre. */
 void ethd__minima_start(ethd__minima *m, const ethd_scene *scene, const ethd__object *o, ethd_vec x,
-                        ethd_vec centre) ETHD_RT;
+                        const ethd__probe *at_x, const ethd__probe *at_centre) ETHD_RT;
 bool ethd__minima_next(ethd__minima *m, ethd_touch *out) ETHD_RT;
 
 #endif

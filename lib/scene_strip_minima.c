@@ -23,13 +23,13 @@ static void open_node(ethd__minima *m, uint32_t level, uint32_t index) {
 }
 
 void ethd__minima_start(ethd__minima *m, const ethd_scene *scene, const ethd__object *o, ethd_vec x,
-                        ethd_vec centre) {
+                        const ethd__probe *at_x, const ethd__probe *at_centre) {
   m->chain = ethd__chain_of(scene, o);
   ethd__tree_set(&m->tree, o->edges, o->nodes);
-  m->at_x = ethd__probe_at(scene, x);
-  m->at_centre = ethd__probe_at(scene, centre);
+  m->at_x = *at_x;
+  m->at_centre = *at_centre;
   m->x = x;
-  m->apart = x.x != centre.x || x.y != centre.y;
+  m->apart = at_x != at_centre;
   m->bound = ethd__bound(&m->at_centre, INFINITY);
   m->slopes = ethd__is_true_to(&m->at_x) ? ETHD__ARRAY(scene, float, slopes_at) : NULL;
   m->end = true;

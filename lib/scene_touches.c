@@ -64,7 +64,7 @@ static void add_strip(const ethd_scene *scene, const ethd__object *o, const ethd
     add(l, &touch);
     return;
   }
-  ethd__minima_start(&minima, scene, o, x, x);
+  ethd__minima_start(&minima, scene, o, x, p, p);
   minima.bound = ethd__bound(p, squared);
   while (ethd__minima_next(&minima, &touch)) {
     ethd__label(o, &touch);
@@ -117,7 +117,7 @@ static void follow_strip(const ethd_scene *scene, const ethd__object *o, ethd_ve
   ethd__minima minima;
   double least = INFINITY;
   if (o->turn && only_touch(scene, o, &at_x, x, out)) return;
-  ethd__minima_start(&minima, scene, o, x, from);
+  ethd__minima_start(&minima, scene, o, x, &at_x, &at_from);
   while (ethd__minima_next(&minima, &touch)) {
     take(&touch, from, &least, out);
     minima.bound = ethd__bound(&at_from, least);
