@@ -13,6 +13,7 @@ typedef struct contender {
   const char *name;
   const ethd__problem *problem;
   ethd__mark *marks;
+  int fixed;                   /* 1: ours with steps of order 4 */
   double setting, error, time; /* s per simulated s */
   ethd__runner runner;         /* ours: without a method */
 } contender;
@@ -28,13 +29,23 @@ static void ours(void *user, ethd__body *body, const ethd__stretch *s, ethd__sta
   ethd__body_advance(body, &s->piece, s->begin, s->end - s->begin, state);
 }
 
+/* Steps of order 4, all alike; the setting is their length. */
+static void ours_fixed(void *user, ethd__body *body, const ethd__stretch *s, ethd__state *state) {
+  const contender *c = user;
+  double length = s->end - s->begin;
+  int n = (int)ceil(length / c->setting - 1e-9);
+  body->tolerance = INFINITY;
+  for (int i = 0; i < n; i++)
+    ethd__body_advance(body, &s->piece, s->begin + length * i / n, length / n, state);
+}
+
 static void play(void *user) {
   contender *c = user;
   c->runner.h = 1e-4;
   if (c->runner.method || c->runner.peer)
     ethd__problem_play(c->problem, ethd__runner_stretch, &c->runner, c->marks);
   else
-    ethd__problem_play(c->problem, ours, c, c->marks);
+    ethd__problem_play(c->problem, c->fixed ? ours_fixed : ours, c, c->marks);
 }
 
 static contender *enter(const ethd__problem *problem, const char *name, double setting) {
@@ -52,6 +63,7 @@ static void enter_all(const ethd__problem *problem) {
   static const double tolerances[] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
   for (size_t i = 0; i < sizeof tolerances / sizeof *tolerances; i++)
     enter(problem, "libethd", tolerances[i]);
+  for (double h = 200e-6; h > 10e-6; h /= 2) enter(problem, "libethd with fixed steps", h)->fixed = 1;
   for (int m = 0; m < ethd__method_count; m++)
     for (int i = 0; i < 8 && ethd__methods[m].settings[i] > 0; i++) {
       contender *c = enter(problem, ethd__methods[m].name, ethd__methods[m].settings[i]);
@@ -93,6 +105,20 @@ static void goal(const char *peer, const char *spoken, double error, double time
   else
     printf("  goal: %s at %.0e m takes %.1f times as long: %.1f, %s\n", spoken, error, times, ratio,
            ethd__bench_verdict(ratio >= times));
+}
+
+/* What halving a fixed step gains, the mean of halvings. */
+static void order(void) {
+  double gain = 0;
+  int halvings = 0;
+  for (int i = 1; i < field.count; i++)
+    if (field.all[i].fixed && field.all[i - 1].fixed && field.all[i].error > 1e-12) {
+      gain += log(field.all[i - 1].error / field.all[i].error);
+      halvings++;
+    }
+  gain = exp(gain / halvings);
+  printf("  goal: halving the step cuts the error 14 times through contacts: %.1f, %s\n", gain,
+         ethd__bench_verdict(gain >= 14));
 }
 
 /* ---- all ---- */
@@ -151,6 +177,7 @@ static int run(const char *folder, int quick) {
   goal("rkf45", "GSL rkf45", 1e-10, 1);
   goal("CVODE", "CVODE", 1e-6, 30);
   goal("CVODE", "CVODE", 1e-8, 30);
+  order();
   for (int i = 0; i < field.count; i++) {
     if (field.all[i].runner.peer) field.all[i].runner.peer->destroy(field.all[i].runner.peer_self);
     free(field.all[i].marks);

@@ -21,10 +21,10 @@ set format x "10^{%T}"
 set format y "10^{%T}"
 set yrange [1e-13:1e-3]
 set ylabel "largest error of ring or finger, m" offset 0.5
-set key outside right top Left reverse samplen 2 spacing 1.3
+set key outside right top Left reverse samplen 2 spacing 1.3 noenhanced
 # names in order of appearance, and the rows of one
 names = system(sprintf("sed -n 's/^\"\\([^\"]*\\)\".*/\\1/p' '%s' | awk '!($0 in n) {n[$0]; gsub(/ /, \"~\"); print}'", in))
 rows(i) = sprintf("< grep '^\"%s\"' '%s'", system(sprintf("echo '%s' | tr '~' ' '", word(names, i))), in)
-array colour[12] = [0xc0392b, 0xcfcfcf, 0xa8a8a8, 0x707070, 0x303030, 0x1f5fa8, 0x7fb0e0, 0x7d3c98, 0x2e8b57, 0x8fcfa8, 0xb7950b, 0x117a8b]
+array colour[13] = [0xc0392b, 0xe59866, 0xcfcfcf, 0xa8a8a8, 0x707070, 0x303030, 0x1f5fa8, 0x7fb0e0, 0x7d3c98, 0x2e8b57, 0x8fcfa8, 0xb7950b, 0x117a8b]
 plot for [i = 1:words(names)] rows(i) using 4:3 with linespoints pt 7 ps (i == 1 ? 1.5 : 0.9) lw (i == 1 ? 3 : 1.5) \
   lc rgb colour[i] title system(sprintf("echo '%s' | tr '~' ' '", word(names, i)))

@@ -3,9 +3,7 @@
 #define ETHD_SIM_PATH_H
 
 #include "ethd/sim.h"
-
-/* x and y, or joint 1 and joint 2. */
-typedef double ethd__two __attribute__((vector_size(16)));
+#include "sim/two.h"
 
 /* Position x = a + b s + c s^2 + d s^3 - e sin(w s) with s = t - origin; c = d = 0 or w = 0. */
 typedef struct ethd__piece {

@@ -1,11 +1,9 @@
-/* Terms of a product are sums of products, z_k = sum x_i y_(k-i); those of y = x' are y_k = (k+1)
-   x_(k+1). So each equation of body.c gives term k of an acceleration from the terms up to k of angles
-   and speeds. Functions come from their differential equations:
+/* Terms of a product: z_k = sum x_i y_(k-i); of y = x': y_k = (k+1) x_(k+1). So each equation of body.c gives
+   term k of an acceleration from the terms up to k of angles and speeds, and functions come from their own:
 
      u = tanh(s w):         u' = s w' (1 - u^2)
      (C, S) = e^(i th):     C' = -th' S, S' = th' C
-     D = sqrt(r . r):       sum D_i D_(k-i) = (r . r)_k
-*/
+     D = sqrt(r . r):       sum D_i D_(k-i) = (r . r)_k */
 #include "sim/series.h"
 
 #include "ethd/maths.h"
@@ -36,22 +34,6 @@ static const double INVERSE[ETHD__TERMS + 1] = {
     0,       1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,  1.0 / 7, 1.0 / 8,
     1.0 / 9, 1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16};
 
-static inline two both(double x) {
-  return (two){x, x};
-}
-static inline two pair(const double *x) {
-  return (two){x[0], x[1]};
-}
-static inline two swapped(two x) {
-  return (two){x[1], x[0]};
-}
-static inline double sum(two x) {
-  return x[0] + x[1];
-}
-static inline double size(two x) {
-  return fabs(x[0]) + fabs(x[1]);
-}
-
 /* Term k of x y. */
 static inline two product(const two *x, const two *y, int k) {
   two s = x[0] * y[k];
@@ -80,18 +62,19 @@ static void rotate(work *w, int k) {
     c += w->out->link_v[i] * w->sine[k - 1 - i];
     s += w->out->link_v[i] * w->cosine[k - 1 - i];
   }
-  w->cosine[k] = -c * both(INVERSE[k]);
-  w->sine[k] = s * both(INVERSE[k]);
+  w->cosine[k] = -c * ethd__both(INVERSE[k]);
+  w->sine[k] = s * ethd__both(INVERSE[k]);
 }
 
 static void relate(work *w, int k) {
   if (k <= w->related) return;
   w->related = k;
   rotate(w, k);
-  if (k > 3) w->out->hand[k] = w->out->hand[k - 2] * both(w->swing * (INVERSE[k] * INVERSE[k - 1]));
-  two ring = {sum(w->length * w->cosine[k]), sum(w->length * w->sine[k])};
+  if (k > 3)
+    w->out->hand[k] = w->out->hand[k - 2] * ethd__both(w->swing * (INVERSE[k] * INVERSE[k - 1]));
+  two ring = {ethd__sum(w->length * w->cosine[k]), ethd__sum(w->length * w->sine[k])};
   w->apart[k] = w->out->hand[k] + w->out->aside[k] - ring;
-  w->square[k] = sum(product(w->apart, w->apart, k));
+  w->square[k] = ethd__sum(product(w->apart, w->apart, k));
 }
 
 static void measure(work *w, int k) {
@@ -113,12 +96,13 @@ static two press(work *w, int k) {
   double s = w->body->pad_stiffness * product_1(w->out->beyond, w->out->leaving, k);
   for (int i = 1; i <= k; i++) s -= w->distance[i] * w->push[k - i];
   w->push[k] = s * w->inverse_distance;
-  two f = both(w->push[0]) * w->apart[k];
-  for (int i = 1; i <= k; i++) f += both(w->push[i]) * w->apart[k - i];
+  two f = ethd__both(w->push[0]) * w->apart[k];
+  for (int i = 1; i <= k; i++) f += ethd__both(w->push[i]) * w->apart[k - i];
   w->force[k] = f;
-  two torque = both(0);
+  two torque = ethd__both(0);
   for (int i = 0; i <= k; i++)
-    torque += w->cosine[i] * both(w->force[k - i][1]) - w->sine[i] * both(w->force[k - i][0]);
+    torque +=
+        w->cosine[i] * ethd__both(w->force[k - i][1]) - w->sine[i] * ethd__both(w->force[k - i][0]);
   return w->length * torque;
 }
 
@@ -128,11 +112,11 @@ static two rub(work *w, int k) {
   if (k == 0) {
     for (int j = 0; j < 2; j++) w->rub[0][j] = ethd_tanh(w->sharpness[j] * w->slip[0][j]);
     w->unlike[0] = 1 - w->rub[0] * w->rub[0];
-    w->turning = sum(w->unlike[0]) > 0;
+    w->turning = ethd__sum(w->unlike[0]) > 0;
   } else if (!w->turning) {
     return w->viscous * w->slip[k];
   } else {
-    w->rub[k] = w->sharpness * both(INVERSE[k]) * product(w->slip_a, w->unlike, k - 1);
+    w->rub[k] = w->sharpness * ethd__both(INVERSE[k]) * product(w->slip_a, w->unlike, k - 1);
     w->unlike[k] = -product(w->rub, w->rub, k);
   }
   return w->friction * w->rub[k] + w->viscous * w->slip[k];
@@ -142,12 +126,12 @@ static two rub(work *w, int k) {
 static two drive(work *w, int k) {
   const ethd__body *b = w->body;
   ethd__series *s = w->out;
-  two torque = k ? both(0) : pair(b->torque), d;
+  two torque = k ? ethd__both(0) : ethd__pair(b->torque), d;
   if (b->compliant) {
-    d = pair(b->stiffness) * (s->motor[k] - joint(b, s->link[k])) +
-        pair(b->damping) * (s->motor_v[k] - joint(b, s->link_v[k]));
+    d = ethd__pair(b->stiffness) * (s->motor[k] - joint(b, s->link[k])) +
+        ethd__pair(b->damping) * (s->motor_v[k] - joint(b, s->link_v[k]));
     w->slip[k] = s->motor_v[k];
-    w->slip_a[k] = (torque - rub(w, k) - d) / pair(b->motor_inertia);
+    w->slip_a[k] = (torque - rub(w, k) - d) / ethd__pair(b->motor_inertia);
     s->motor_v[k + 1] = w->slip_a[k] * INVERSE[k + 1];
   } else {
     w->slip[k] = joint(b, s->link_v[k]);
@@ -167,10 +151,11 @@ static two couple(work *w, two g, int k) {
     w->across[k] += h * (c[i][0] * s[k - i][1] - s[i][0] * c[k - i][1]);
   }
   w->square_v[k] = product(w->out->link_v, w->out->link_v, k);
-  for (int i = 0; i <= k; i++) g += both(w->across[i]) * swapped(w->square_v[k - i]) * (two){1, -1};
-  for (int i = 1; i <= k; i++) g -= both(w->along[i]) * swapped(w->link_a[k - i]);
-  return (swapped(w->inertia) * g - both(w->along[0]) * swapped(g)) /
-         both(w->inertia[0] * w->inertia[1] - w->along[0] * w->along[0]);
+  for (int i = 0; i <= k; i++)
+    g += ethd__both(w->across[i]) * ethd__swapped(w->square_v[k - i]) * (two){1, -1};
+  for (int i = 1; i <= k; i++) g -= ethd__both(w->along[i]) * ethd__swapped(w->link_a[k - i]);
+  return (ethd__swapped(w->inertia) * g - ethd__both(w->along[0]) * ethd__swapped(g)) /
+         ethd__both(w->inertia[0] * w->inertia[1] - w->along[0] * w->along[0]);
 }
 
 /* Positions' terms k + 1. */
@@ -187,7 +172,7 @@ static void accelerate(work *w, ethd__touch touch, int k) {
   ethd__series *s = w->out;
   two g = drive(w, k);
   integrate(w, k);
-  two f = -(both(b->hand_stiffness) * s->aside[k] + both(b->hand_damping) * s->aside_v[k]);
+  two f = -(ethd__both(b->hand_stiffness) * s->aside[k] + ethd__both(b->hand_damping) * s->aside_v[k]);
   if (touch == ETHD__PRESSING) {
     relate(w, k + 1);
     measure(w, k + 1);
@@ -197,15 +182,15 @@ static void accelerate(work *w, ethd__touch touch, int k) {
   w->link_a[k] = b->coupling != 0 ? couple(w, g, k) : g * w->inverse_inertia;
   if (!b->compliant) w->slip_a[k] = joint(b, w->link_a[k]);
   s->link_v[k + 1] = w->link_a[k] * INVERSE[k + 1];
-  s->aside_v[k + 1] = f * both(INVERSE[k + 1] * w->inverse_mass);
+  s->aside_v[k + 1] = f * ethd__both(INVERSE[k + 1] * w->inverse_mass);
 }
 
 /* ---- how many terms, how far ---- */
 
 static inline double speed(const work *w, int k) {
   const ethd__series *s = w->out;
-  double m = size(w->length * s->link_v[k]) + size(s->aside_v[k]);
-  return w->body->compliant ? m + size(w->length * s->motor_v[k]) : m;
+  double m = ethd__size(w->length * s->link_v[k]) + ethd__size(s->aside_v[k]);
+  return w->body->compliant ? m + ethd__size(w->length * s->motor_v[k]) : m;
 }
 
 static double power(double x, int k) {
@@ -219,15 +204,15 @@ static double travel(const work *w, const ethd__piece *piece, double h) {
   const ethd__series *s = w->out;
   double reach = 0;
   for (int k = s->order + 1; k > 0; k--)
-    reach = h * (size(w->length * s->link[k]) + size(s->aside[k]) + reach);
+    reach = h * (ethd__size(w->length * s->link[k]) + ethd__size(s->aside[k]) + reach);
   return reach + ethd__piece_travel(piece, s->hand[1], h);
 }
 
 static void geometry_begins(work *w, const double *angle) {
   double sine[2], cosine[2];
   ethd__body_waves(w->body, angle, sine, cosine);
-  w->sine[0] = pair(sine);
-  w->cosine[0] = pair(cosine);
+  w->sine[0] = ethd__pair(sine);
+  w->cosine[0] = ethd__pair(cosine);
   w->turned = 0;
   w->related = -1;
   relate(w, 0);
@@ -255,15 +240,15 @@ static void watch(work *w, const ethd__piece *piece, const ethd__motion *hand, e
 
 static void begin(const ethd__body *b, const ethd__motion *hand, const ethd__state *state,
                   ethd__series *s) {
-  s->link[0] = pair(state->q + ETHD__LINK);
-  s->link_v[0] = pair(state->v + ETHD__LINK);
+  s->link[0] = ethd__pair(state->q + ETHD__LINK);
+  s->link_v[0] = ethd__pair(state->v + ETHD__LINK);
   s->hand[0] = (two){hand->x.x, hand->x.y};
   s->hand[1] = (two){hand->v.x, hand->v.y};
-  s->aside[0] = pair(state->q + ETHD__FINGER) - s->hand[0];
-  s->aside_v[0] = pair(state->v + ETHD__FINGER) - s->hand[1];
+  s->aside[0] = ethd__pair(state->q + ETHD__FINGER) - s->hand[0];
+  s->aside_v[0] = ethd__pair(state->v + ETHD__FINGER) - s->hand[1];
   if (!b->compliant) return;
-  s->motor[0] = pair(state->q + ETHD__MOTOR);
-  s->motor_v[0] = pair(state->v + ETHD__MOTOR);
+  s->motor[0] = ethd__pair(state->q + ETHD__MOTOR);
+  s->motor_v[0] = ethd__pair(state->v + ETHD__MOTOR);
 }
 
 /* Terms up to that which no longer counts, and where the last two of all do, a shorter step. */
@@ -296,12 +281,12 @@ void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, double t
   w.out = out;
   w.inverse_mass = 1 / b->finger_mass;
   w.swing = -piece->w * piece->w;
-  w.inertia = pair(b->inertia);
+  w.inertia = ethd__pair(b->inertia);
   w.inverse_inertia = 1 / w.inertia;
-  w.length = pair(b->link);
-  w.friction = pair(b->friction);
-  w.viscous = pair(b->viscous);
-  w.sharpness = pair(b->sharpness);
+  w.length = ethd__pair(b->link);
+  w.friction = ethd__pair(b->friction);
+  w.viscous = ethd__pair(b->viscous);
+  w.sharpness = ethd__pair(b->sharpness);
   begin(b, &hand, state, out);
   geometry_begins(&w, state->q);
   if (state->touch != ETHD__APART) {
