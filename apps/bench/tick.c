@@ -138,7 +138,7 @@ static void report_parts(FILE *csv, const hot *h) {
   double record = both[0].ns - both[1].ns;
   printf("  by part, ns a tick, as differences (offset, rays, 1000 segments):\n");
   put_part(csv, "offset", "record: into a ring instead of the stack", record);
-  put_part(csv, "offset", "kinematics, tracking, guard, the frame",
+  put_part(csv, "offset", "kinematics; tracking; guard; the frame",
            mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE) - record);
   put_part(csv, "offset", "estimator: joint speeds",
            mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE) - mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE));
@@ -148,7 +148,7 @@ static void report_parts(FILE *csv, const hot *h) {
            mean_of(h, OFFSET, f, NONE) - mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE));
   for (int l = 0; l < LAWS; l++) {
     char name[64];
-    snprintf(name, sizeof name, "transition, contact, a wall: %s", laws[l]->law.id);
+    snprintf(name, sizeof name, "transition and contact at a wall: %s", laws[l]->law.id);
     put_part(csv, laws[l]->law.id, name, mean_of(h, l, f, WALL) - mean_of(h, l, f, NONE));
   }
   put_part(csv, "offset", "scene: 1000 segments instead of the wall",
@@ -218,7 +218,7 @@ static void report_calls(FILE *csv, int quick) {
       {"called alone: kinematics", call_pose, &c, ETHD__TAP_TICKS, 0},
       {"called alone: tracking", call_tracking, &c, ETHD__TAP_TICKS, 0},
       {"called alone: guard", call_guard, &c, ETHD__TAP_TICKS, 0},
-      {"called alone: transition and contact law, sin cos", call_transition, &c, ETHD__TAP_TICKS, 0}};
+      {"called alone: transition and contact law; sin; cos", call_transition, &c, ETHD__TAP_TICKS, 0}};
   ethd__bench_race(entries, 4, quick ? 0.05 : 0.5);
   for (int i = 0; i < 4; i++) put_part(csv, "offset", entries[i].name, entries[i].ns);
 }
