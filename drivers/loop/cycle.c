@@ -187,10 +187,16 @@ int ethd__loop_turn(ethd_loop *l) {
   return 0;
 }
 
+/* Not while [main] has the device. */
+static int told_to_stop(ethd_loop *l) ETHD_RT {
+  return atomic_load_explicit(&l->stop, memory_order_relaxed) &&
+         atomic_load_explicit(&l->mode, memory_order_acquire) == ETHD__LOOP_RUNS;
+}
+
 int ethd__loop_cycle(ethd_loop *l) {
   int failure = 0;
   l->due = ethd__loop_now(l) + l->period;
-  while (!failure && !atomic_load_explicit(&l->stop, memory_order_relaxed)) failure = ethd__loop_turn(l);
+  while (!failure && !told_to_stop(l)) failure = ethd__loop_turn(l);
   ethd__loop_rest(l);
   return failure;
 }
