@@ -65,6 +65,8 @@ typedef struct ethd_tracking_law {
           o    (      )    d_re       |//////     d_re = n.(P - X_r) - R_r       ring's inner circle to object
                      |<-------------->P--> n      d_fe = n.(P - X_f) - R_f       finger to object
                                       |//////     d_fr = n.(P - X_f) - R_r       finger grown to the ring
+   Minima of one object that face the same way within 15 deg are one contact, the deepest: a curve drawn
+   with short edges pushes once.
    Lengths in m, < 0: penetrating. v = n.(V_r - V of the surface) in m/s, > 0: entering. */
 typedef struct ethd_contact {
   ethd_vec point, n;
