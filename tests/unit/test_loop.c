@@ -286,6 +286,7 @@ START_TEST(test_lost_rows) {
   row = bench_tick(&b);
   ck_assert_int_eq(row.trace.tick, 7);
   ck_assert_uint_eq(row.lost, 3);
+  ck_assert_uint_eq(bench_tick(&b).lost, 0);
   ethd_loop_read(b.loop, &s);
   ck_assert_uint_eq(s.rows_lost, 3);
   bench_close(&b);
