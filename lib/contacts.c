@@ -4,8 +4,9 @@
 
 /* ---- one contact ---- */
 
+/* Without its age. */
 static ethd_contact measure(const ethd__plan *plan, const ethd_trace *t, const ethd__candidate *k,
-                            double age, double dt) ETHD_RT {
+                            double dt) ETHD_RT {
   const ethd_touch *touch = &k->touch;
   ethd_contact c;
   memset(&c, 0, sizeof c);
@@ -19,7 +20,6 @@ static ethd_contact measure(const ethd__plan *plan, const ethd_trace *t, const e
   c.v_f = touch->n.x * (t->vf[0] - k->v.x) + touch->n.y * (t->vf[1] - k->v.y);
   c.d_beta = plan->d_beta;
   c.period = dt;
-  c.age = age;
   c.object = touch->object;
   c.body = k->place;
   return c;
@@ -125,23 +125,23 @@ static void add(const ethd_contact *c, const ethd_ruling *r, double force, ethd_
   add_force(out->fd, -r->damping * c->v, c->n);
 }
 
-static int contact(const ethd__plan *plan, const ethd__candidate *k, ethd__slot *slot, double dt,
+static int contact(const ethd__plan *plan, const ethd__candidate *k, ethd_contact *c, ethd__slot *slot,
                    ethd_trace *out, ethd_vec *shift, ethd__failure *failure) ETHD_RT {
   const ethd_touch *touch = &k->touch;
-  ethd_contact c = measure(plan, out, k, (double)slot->periods * plan->setup.period, dt);
   ethd_ruling r;
   double force;
-  if (!rule(plan, slot, &c, &r, failure)) return 0;
-  slot->used = c.d_re < c.d_beta || r.argument <= c.d_beta || r.state != ETHD_TRANSPARENT;
+  c->age = (double)slot->periods * plan->setup.period;
+  if (!rule(plan, slot, c, &r, failure)) return 0;
+  slot->used = c->d_re < c->d_beta || r.argument <= c->d_beta || r.state != ETHD_TRANSPARENT;
   if (!slot->used) return 1;
-  if (!wall(plan, slot, &c, touch->material, &r, &force, failure)) return 0;
+  if (!wall(plan, slot, c, touch->material, &r, &force, failure)) return 0;
   slot->object = touch->object;
   slot->place = k->place;
   slot->point = k->local;
   slot->side = touch->side;
   slot->state = r.state;
-  slot->periods += (int64_t)rint(dt / plan->setup.period); /* whole: the age doesn't drift */
-  add(&c, &r, force, out, shift);
+  slot->periods += (int64_t)rint(c->period / plan->setup.period); /* whole: the age doesn't drift */
+  add(c, &r, force, out, shift);
   return 1;
 }
 
@@ -201,11 +201,11 @@ int ethd__contacts(const ethd__plan *plan, ethd__state *state, double dt, ethd_t
   no_room(state, c.overflow, out);
   for (int k = 0, taken = 0; k < c.count; k++) {
     ethd__slot *slot = c.at[k].slot < 0 ? NULL : &state->slots[c.at[k].slot];
-    ethd_contact m = measure(plan, out, &c.at[k], 0, dt);
+    ethd_contact m = measure(plan, out, &c.at[k], dt);
     int counts = could_count(&m, slot), room = taken < ETHD_CONTACTS_MAX;
     if (counts && room) {
       if (!slot) slot = new_slot(plan, state, &c, k);
-      if (!contact(plan, &c.at[k], slot, dt, out, shift, failure)) return 0;
+      if (!contact(plan, &c.at[k], &m, slot, out, shift, failure)) return 0;
       taken += slot->used;
     } else {
       if (slot) slot->used = 0;
