@@ -67,7 +67,7 @@ void ethd__bench_race(ethd__bench_entry *entries, size_t count, double seconds) 
           turn(&entries[i], repeats[i]) / (repeats[i] * entries[i].items);
   for (size_t i = 0; i < count; i++) {
     qsort(&ns[i * (size_t)turns], (size_t)turns, sizeof *ns, ascending);
-    entries[i].ns = ns[i * (size_t)turns + (size_t)turns / 2];
+    entries[i].ns = ns[i * (size_t)turns + (size_t)turns / 4];
   }
   free(ns);
 }

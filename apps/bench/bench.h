@@ -38,8 +38,8 @@ typedef struct ethd__bench_entry {
   double ns;
 } ethd__bench_entry;
 
-/* Fills ns of all: they work in turns of about 0.2 ms for `seconds` each; the median turn counts, which
-   nobody has interrupted. */
+/* Fills ns of all: they work in turns of about 0.2 ms for `seconds` each; the lower quartile of the turns
+   counts, which nobody else has disturbed. */
 void ethd__bench_race(ethd__bench_entry *entries, size_t count, double seconds);
 
 /* Results go here, so that no work is idle. */
