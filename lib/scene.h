@@ -4,7 +4,8 @@
      places     of the objects, by id
      numbers    halfplane {nx, ny, c}, circle {x, y, r}, capsule {x1, y1, x2, y2, r},
                 box {x, y, half_w, half_h, cos, sin}; chains: the points, closed ones repeat their first
-     nodes      of the chains' own trees, then of the tree (scene_tree.h)
+     trees      of the chains with a tree of their own (scene_tree.h)
+     nodes      of those, then of the tree of all objects
      slopes     one for each box of a chain's tree */
 #ifndef ETHD_LIB_SCENE_H
 #define ETHD_LIB_SCENE_H
@@ -21,7 +22,7 @@ typedef struct ethd__object {
   int32_t material;
   uint32_t first; /* of its numbers */
   uint32_t edges; /* of a chain, else 0 */
-  uint32_t nodes; /* the first of a chain's own tree */
+  uint32_t tree;  /* of a chain, its own */
   int8_t shape;
   int8_t turn;   /* polygon: +1 counter-clockwise, -1 clockwise; thin walls: 0 */
   int8_t closed; /* chain: the last point is the first */
@@ -39,9 +40,9 @@ struct ethd_scene {
   ethd_vec centre; /* the trees' frame: X = scale (x - centre), scale a power of two */
   double scale;
   double slack; /* m: what rounding may do to a distance, and more */
-  size_t nodes_at, objects_at, numbers_at, places_at, slopes_at, materials_at;
+  size_t nodes_at, objects_at, numbers_at, trees_at, places_at, slopes_at, materials_at;
   ethd__tree tree;
-  uint32_t object_count, number_count, node_count, material_count;
+  uint32_t object_count, number_count, tree_count, node_count, material_count;
   size_t bytes;
   double x_min, x_max, y_min, y_max; /* of all but half-planes; min > max: nothing */
 };

@@ -6,7 +6,7 @@
 
 /* An object before it has its place. */
 typedef struct ethd__item {
-  double middle[2]; /* of its bounds */
+  uint32_t at[2]; /* the middle of its bounds, in the scene's from 0 to UINT32_MAX */
   uint32_t id;
 } ethd__item;
 

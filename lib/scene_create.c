@@ -16,8 +16,6 @@ static uint32_t edges_of(const ethd_object_def *o) {
   return ethd__is_chain(o->shape) ? (uint32_t)(kept_numbers(o) / 2 - 1) : 0;
 }
 
-static uint32_t own_nodes(uint32_t edges) { return edges > ETHD__FLAT ? ethd__node_count(edges) : 0; }
-
 /* ---- sizes ---- */
 
 static size_t reserve(size_t *bytes, size_t size) {
@@ -31,7 +29,10 @@ static ethd_status plan(const ethd_scene_def *def, ethd_scene *s, ethd_error *er
   size_t numbers = 0, nodes = 0, endless = 0;
   for (size_t i = 0; i < def->object_count; i++) {
     numbers += kept_numbers(&def->objects[i]);
-    nodes += own_nodes(edges_of(&def->objects[i]));
+    if (edges_of(&def->objects[i]) > ETHD__FLAT) {
+      nodes += ethd__node_count(edges_of(&def->objects[i]));
+      s->tree_count++;
+    }
     endless += def->objects[i].shape == ETHD_HALFPLANE;
   }
   if (numbers > UINT32_MAX)
@@ -45,6 +46,7 @@ static ethd_status plan(const ethd_scene_def *def, ethd_scene *s, ethd_error *er
   s->nodes_at = reserve(&s->bytes, s->node_count * sizeof(ethd__node));
   s->objects_at = reserve(&s->bytes, s->object_count * sizeof(ethd__object));
   s->numbers_at = reserve(&s->bytes, s->number_count * sizeof(double));
+  s->trees_at = reserve(&s->bytes, s->tree_count * sizeof(ethd__tree));
   s->places_at = reserve(&s->bytes, s->object_count * sizeof(uint32_t));
   s->slopes_at = reserve(&s->bytes, nodes * ETHD__WIDE * sizeof(float));
   s->materials_at = reserve(&s->bytes, s->material_count * sizeof(ethd_material));
@@ -134,39 +136,55 @@ static bool is_closed(const double *points, uint32_t edges) {
   return edges > 2 && points[0] == points[2 * edges] && points[1] == points[2 * edges + 1];
 }
 
-/* The order of the leaves, half-planes last. */
-static void order(const ethd_scene_def *def, ethd_scene *s, ethd__item *items) {
+static void measure(const ethd_scene_def *def, ethd_scene *s) {
   box all = nowhere;
-  uint32_t n = 0, last = s->tree.leaves;
   double extent = 0;
   for (uint32_t i = 0; i < s->object_count; i++) {
-    box b = bounds_of(&def->objects[i]);
-    bool endless = def->objects[i].shape == ETHD_HALFPLANE;
-    all = together(all, b);
+    all = together(all, bounds_of(&def->objects[i]));
     extent = fmax(extent, largest(&def->objects[i]));
-    items[endless ? last++ : n++] = (ethd__item){{b.x_min / 2 + b.x_max / 2, b.y_min / 2 + b.y_max / 2}, i};
   }
   s->slack = 16 * DBL_EPSILON * extent;
   frame(s, all);
+}
+
+static uint32_t step_of(const ethd_scene *s, double low, double high, double centre) {
+  double v = s->scale * (low / 2 + high / 2 - centre);
+  return (uint32_t)((v + 1) / 2 * UINT32_MAX);
+}
+
+/* The order of the leaves, half-planes last. */
+static void order(const ethd_scene_def *def, const ethd_scene *s, ethd__item *items) {
+  uint32_t n = 0, last = s->tree.leaves;
+  for (uint32_t i = 0; i < s->object_count; i++) {
+    box b = bounds_of(&def->objects[i]);
+    if (def->objects[i].shape == ETHD_HALFPLANE) {
+      items[last++].id = i;
+    } else {
+      items[n++] = (ethd__item){{step_of(s, b.x_min, b.x_max, s->centre.x), step_of(s, b.y_min, b.y_max, s->centre.y)}, i};
+    }
+  }
   ethd__order_build(items, s->tree.leaves);
 }
 
 static void fill(const ethd_scene_def *def, ethd_scene *s, const ethd__item *items) {
   char *base = (char *)s;
   ethd__object *objects = (void *)(base + s->objects_at);
-  uint32_t *places = (void *)(base + s->places_at), number = 0, node = 0;
+  ethd__tree *trees = (void *)(base + s->trees_at);
+  uint32_t *places = (void *)(base + s->places_at), number = 0, tree = 0, node = 0;
   for (uint32_t i = 0; i < s->object_count; i++) {
     const ethd_object_def *d = &def->objects[items[i].id];
     uint32_t edges = edges_of(d);
     double *numbers = (double *)(void *)(base + s->numbers_at) + number;
     keep_numbers(d, numbers);
     objects[i] = (ethd__object){.id = (int32_t)items[i].id, .material = d->material, .first = number, .edges = edges,
-                                .nodes = node, .shape = (int8_t)d->shape};
+                                .tree = tree, .shape = (int8_t)d->shape};
     if (d->shape == ETHD_POLYGON) objects[i].turn = (int8_t)turn_of(d->numbers, d->count / 2);
     if (edges) objects[i].closed = is_closed(numbers, edges);
     places[items[i].id] = i;
     number += (uint32_t)kept_numbers(d);
-    node += own_nodes(edges);
+    if (edges <= ETHD__FLAT) continue;
+    ethd__tree_set(&trees[tree++], edges, node);
+    node += ethd__node_count(edges);
   }
   if (s->material_count) memcpy(base + s->materials_at, def->materials, s->material_count * sizeof(ethd_material));
 }
@@ -186,6 +204,7 @@ static bool build(const ethd_scene_def *def, ethd_scene *scene) {
   void *room = malloc(ethd__nodes_room(scene));
   bool ready = items && room;
   if (ready) {
+    measure(def, scene);
     order(def, scene, items);
     fill(def, scene, items);
     ethd__nodes_build(scene, room);

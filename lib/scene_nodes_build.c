@@ -90,14 +90,13 @@ static float steepest(const strip *t, size_t from, size_t to, float c, float s) 
 }
 
 static void build_strip(build *b, const ethd__object *o, const ethd_vec *points) {
-  ethd__tree tree;
+  const ethd__tree *tree = ethd__tree_at(b->scene, o);
   ethd__cloud cloud = {points, NULL};
   strip t = {points, o->edges, o->closed};
-  ethd__tree_set(&tree, o->edges, o->nodes);
-  for (uint32_t level = 1; level <= tree.levels; level++) {
+  for (uint32_t level = 1; level <= tree->levels; level++) {
     size_t step = (size_t)1 << 3 * (level - 1), lanes = (t.edges + step - 1) / step;
     for (size_t i = 0; i < (lanes + ETHD__WIDE - 1) / ETHD__WIDE * ETHD__WIDE; i++) {
-      size_t from = i * step, to = least(from + step, t.edges), place = tree.first[level] + i / ETHD__WIDE;
+      size_t from = i * step, to = least(from + step, t.edges), place = tree->first[level] + i / ETHD__WIDE;
       ethd__node *node = &b->nodes[place];
       size_t lane = i % ETHD__WIDE;
       if (i < lanes) {

@@ -1,8 +1,9 @@
 #include "scene_build.h"
 
-static int precedes(const ethd__item *a, const ethd__item *b, int k) {
-  return a->middle[k] < b->middle[k] || (a->middle[k] == b->middle[k] && a->id < b->id);
-}
+#define SMALL 12 /* items that are sorted by insertion */
+
+/* No two are equal. */
+static uint64_t rank(const ethd__item *i, int side) { return (uint64_t)i->at[side] << 32 | i->id; }
 
 static void swap(ethd__item *a, ethd__item *b) {
   ethd__item t = *a;
@@ -10,19 +11,39 @@ static void swap(ethd__item *a, ethd__item *b) {
   *b = t;
 }
 
-/* The first `m` of `n` in the order of coordinate k come first (Hoare 1961). */
-static void part(ethd__item *p, size_t n, size_t m, int k) {
-  for (size_t round = 0; n > 1 && m > 0 && m < n; round++) {
-    ethd__item pivot = p[(n / 2 + round * 0x9e3779b1u) % n];
-    size_t i = 0, j = n - 1;
-    for (;; i++, j--) {
-      while (precedes(&p[i], &pivot, k)) i++;
-      while (precedes(&pivot, &p[j], k)) j--;
-      if (i >= j) break;
-      swap(&p[i], &p[j]);
-    }
-    size_t low = i == j ? i + 1 : i; /* of p, none before `low` goes after one of the rest */
-    if (low == n) low = n - 1;
+static void sort(ethd__item *p, size_t n, int side) {
+  for (size_t i = 1; i < n; i++)
+    for (size_t k = i; k > 0 && rank(&p[k], side) < rank(&p[k - 1], side); k--) swap(&p[k], &p[k - 1]);
+}
+
+static uint64_t median(uint64_t a, uint64_t b, uint64_t c) {
+  uint64_t low = a < b ? a : b, high = a < b ? b : a;
+  return c < low ? low : c > high ? high : c;
+}
+
+/* Neither the first nor the last of all: of nine, the median of three medians. */
+static uint64_t pivot(const ethd__item *p, size_t n, int side) {
+  uint64_t m[3];
+  for (size_t i = 0; i < 3; i++)
+    m[i] = median(rank(&p[i * n / 9], side), rank(&p[(i + 3) * n / 9], side), rank(&p[(i + 6) * n / 9], side));
+  return median(m[0], m[1], m[2]);
+}
+
+/* Those up to the pivot come first; how many. No branch depends on the order of items. */
+static size_t divide(ethd__item *p, size_t n, uint64_t most, int side) {
+  size_t low = 0;
+  for (size_t i = 0; i < n; i++) {
+    size_t goes = rank(&p[i], side) <= most;
+    swap(&p[i], &p[low]);
+    low += goes;
+  }
+  return low;
+}
+
+/* The first `m` of `n` come first (Hoare 1961). */
+static void part(ethd__item *p, size_t n, size_t m, int side) {
+  while (n > SMALL && m > 0 && m < n) {
+    size_t low = divide(p, n, pivot(p, n, side), side);
     if (m < low) {
       n = low;
     } else {
@@ -31,13 +52,14 @@ static void part(ethd__item *p, size_t n, size_t m, int k) {
       m -= low;
     }
   }
+  if (m > 0 && m < n) sort(p, n, side);
 }
 
 static int wider_side(const ethd__item *p, size_t n) {
-  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  uint32_t low[2] = {UINT32_MAX, UINT32_MAX}, high[2] = {0, 0};
   for (size_t i = 0; i < n; i++)
     for (int k = 0; k < 2; k++) {
-      double v = p[i].middle[k];
+      uint32_t v = p[i].at[k];
       low[k] = v < low[k] ? v : low[k];
       high[k] = v > high[k] ? v : high[k];
     }
@@ -51,8 +73,6 @@ typedef struct range {
   uint32_t level;
 } range;
 
-static size_t capacity(uint32_t level) { return (size_t)1 << 3 * level; }
-
 /* Halves of whole things of the level below, until there is one. */
 void ethd__order_build(ethd__item *items, uint32_t count) {
   range stack[4 * ETHD__LEVELS];
@@ -63,7 +83,7 @@ void ethd__order_build(ethd__item *items, uint32_t count) {
   while (depth) {
     range r = stack[--depth];
     if (r.level == 0) continue;
-    size_t step = capacity(r.level - 1), things = (r.count + step - 1) / step;
+    size_t step = (size_t)1 << 3 * (r.level - 1), things = (r.count + step - 1) / step;
     if (things <= 1) {
       stack[depth++] = (range){r.items, r.count, r.level - 1};
       continue;

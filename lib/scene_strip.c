@@ -18,12 +18,11 @@ static void take(const ethd__chain *c, uint32_t k, ethd_vec x, ethd__nearest_edg
 void ethd__strip_nearest(const ethd_scene *scene, const ethd__object *o, const ethd__probe *p, ethd_vec x,
                          uint32_t first, double limit, ethd__nearest_edge *out) {
   ethd__chain c = ethd__chain_of(scene, o);
-  ethd__tree tree;
+  const ethd__tree *tree = ethd__tree_at(scene, o);
   ethd__walk walk;
   ethd__place at;
-  ethd__tree_set(&tree, o->edges, o->nodes);
   *out = (ethd__nearest_edge){limit, ETHD__NONE, false};
-  ethd__walk_start(&walk, &tree, p, slopes(scene, p));
+  ethd__walk_start(&walk, tree, p, slopes(scene, p));
   if (first < o->edges) {
     take(&c, first, x, out);
     ethd__walk_around(&walk, first, ethd__bound(p, out->squared));
@@ -102,13 +101,12 @@ static void take_face(const ethd__chain *c, uint32_t k, ethd_vec x, ethd__neares
 void ethd__strip_signed(const ethd_scene *scene, const ethd__object *o, const ethd__probe *p, ethd_vec x,
                         uint32_t first, ethd__nearest_edge *out) {
   ethd__chain c = ethd__chain_of(scene, o);
-  ethd__tree tree;
+  const ethd__tree *tree = ethd__tree_at(scene, o);
   faces f = {INFINITY, INFINITY};
   ethd__walk walk;
   ethd__place at;
-  ethd__tree_set(&tree, o->edges, o->nodes);
   *out = (ethd__nearest_edge){INFINITY, 0, false};
-  ethd__walk_start(&walk, &tree, p, slopes(scene, p));
+  ethd__walk_start(&walk, tree, p, slopes(scene, p));
   if (first < o->edges) {
     take_face(&c, first, x, out, &f);
     ethd__walk_around(&walk, first, ethd__bound(p, out->squared));
@@ -121,5 +119,5 @@ void ethd__strip_signed(const ethd_scene *scene, const ethd__object *o, const et
     take_face(&c, at.index, x, out, &f);
     walk.bound = ethd__bound(p, out->squared);
   }
-  out->inside = is_inside(&c, &tree, p, x, &f);
+  out->inside = is_inside(&c, tree, p, x, &f);
 }

@@ -23,7 +23,7 @@ void ethd__strip_signed(const ethd_scene *scene, const ethd__object *o, const et
    no order. Boxes are left out whose edges all lean one way as seen from x (Johnson and Cohen 2001). */
 typedef struct ethd__minima {
   ethd__chain chain;
-  ethd__tree tree;
+  const ethd__tree *tree;
   ethd__probe at_x, at_centre;
   ethd_vec x;
   float bound; /* see ethd__bound */

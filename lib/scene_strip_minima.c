@@ -15,7 +15,7 @@ static unsigned open_lanes(const ethd__minima *m, uint32_t place) {
 }
 
 static void open_node(ethd__minima *m, uint32_t level, uint32_t index) {
-  unsigned open = open_lanes(m, m->tree.first[level] + index);
+  unsigned open = open_lanes(m, m->tree->first[level] + index);
   for (; open; open &= open - 1) {
     m->stack[m->count].level = level - 1;
     m->stack[m->count++].index = ETHD__WIDE * index + (uint32_t)__builtin_ctz(open);
@@ -25,16 +25,22 @@ static void open_node(ethd__minima *m, uint32_t level, uint32_t index) {
 void ethd__minima_start(ethd__minima *m, const ethd_scene *scene, const ethd__object *o, ethd_vec x,
                         const ethd__probe *at_x, const ethd__probe *at_centre) {
   m->chain = ethd__chain_of(scene, o);
+<<<<<<< HEAD
+  m->tree = ethd__tree_at(scene, o);
+  m->at_x = ethd__probe_at(scene, x);
+  m->at_centre = ethd__probe_at(scene, centre);
+=======
   ethd__tree_set(&m->tree, o->edges, o->nodes);
   m->at_x = *at_x;
   m->at_centre = *at_centre;
+>>>>>>> 43b0c7136008e0a040c74ee65c54b6bfeb5423ee
   m->x = x;
   m->apart = at_x != at_centre;
   m->bound = ethd__bound(&m->at_centre, INFINITY);
   m->slopes = ethd__is_true_to(&m->at_x) ? ETHD__ARRAY(scene, float, slopes_at) : NULL;
   m->end = true;
   m->count = 1;
-  m->stack[0].level = m->tree.levels;
+  m->stack[0].level = m->tree->levels;
   m->stack[0].index = 0;
 }
 

@@ -48,6 +48,10 @@ static inline uint32_t ethd__node_count(uint32_t leaves) {
 
 static inline bool ethd__has_tree(const ethd__object *o) { return o->edges > ETHD__FLAT; }
 
+static inline const ethd__tree *ethd__tree_at(const ethd_scene *scene, const ethd__object *o) {
+  return ETHD__ARRAY(scene, ethd__tree, trees_at) + o->tree;
+}
+
 /* ---- a point in the trees' frame ---- */
 
 typedef struct ethd__probe {
@@ -82,7 +86,8 @@ static inline float ethd__bound(const ethd__probe *p, double squared) {
 /* Four lanes' squared distances, inf where `slopes` (NULL: nowhere) tells that no edge in the box can be the
    nearest, nor one of its vertices: all lean one way as seen from x, which is farther along the box's axis
    than the steepest edge makes up for across it (Johnson and Cohen 2001). */
-ETHD__INLINE ethd__floats ethd__four_squared(const ethd__node *n, const float *slopes, int i, float x, float y) {
+ETHD__INLINE ethd__floats ethd__four_squared(const ethd__node *n, const float *slopes, int i, ethd__floats x,
+                                             ethd__floats y) {
   ethd__floats c = ethd__load(n->c + i), s = ethd__load(n->s + i), zero = ethd__all(0);
   ethd__floats w = ethd__load(n->w + i), h = ethd__load(n->h + i);
   ethd__floats u = ethd__abs(c * x + s * y - ethd__load(n->u + i));
@@ -90,13 +95,15 @@ ETHD__INLINE ethd__floats ethd__four_squared(const ethd__node *n, const float *s
   ethd__floats du = ethd__max(u - w, zero), dv = ethd__max(v - h, zero), d = du * du + dv * dv;
   if (!slopes) return d;
   ethd__words leaning = du > ethd__load(slopes + i) * (v + h);
-  return (ethd__floats)((leaning & (ethd__words)ethd__all(INFINITY)) | (~leaning & (ethd__words)d));
+  return ethd__max(d, (ethd__floats)(leaning & (ethd__words)ethd__all(INFINITY)));
 }
 
 ETHD__INLINE void ethd__eight_squared(const ethd__node *n, const float *slopes, const ethd__probe *p,
                                       float squared[ETHD__WIDE]) {
-  ethd__store(squared, ethd__four_squared(n, slopes, 0, p->x, p->y));
-  ethd__store(squared + 4, ethd__four_squared(n, slopes, 4, p->x, p->y));
+  ethd__floats x = ethd__all(p->x), y = ethd__all(p->y);
+  ethd__floats low = ethd__four_squared(n, slopes, 0, x, y), high = ethd__four_squared(n, slopes, 4, x, y);
+  ethd__store(squared, low);
+  ethd__store(squared + 4, high);
 }
 
 /* The lanes that are not beyond. */

@@ -75,13 +75,28 @@ static void answer(search *q, ethd_nearest *out) {
   *out = (ethd_nearest){q->touch.distance, q->touch.point, q->touch.n, o->id};
 }
 
+/* As far along the chain as last time, once more. */
+static uint32_t guess_edge(const search *q, uint32_t leaf, const ethd_scene_hint *hint) {
+  uint32_t guess = hint->edge + (uint32_t)hint->step, edges = ethd__object_at(q->scene, leaf)->edges;
+  return guess < edges ? guess : hint->edge;
+}
+
+static void renew(const search *q, ethd_scene_hint *hint) {
+  bool same = hint->leaf == q->place + 1;
+  *hint = (ethd_scene_hint){q->place + 1, q->edge, same ? (int32_t)(q->edge - hint->edge) : 0};
+}
+
 static void search_tree(search *q, const ethd_scene_hint *hint) {
   ethd__walk walk;
   ethd__place at;
   uint32_t first = hint->leaf - 1; /* no hint: ETHD__NONE */
+  if (q->scene->tree.leaves == 1) {
+    take(q, 0, true, first == 0 ? guess_edge(q, 0, hint) : ETHD__NONE);
+    return;
+  }
   ethd__walk_start(&walk, &q->scene->tree, &q->probe, NULL);
   if (first < q->scene->tree.leaves) {
-    take(q, first, true, hint->edge);
+    take(q, first, true, guess_edge(q, first, hint));
     ethd__walk_around(&walk, first, ethd__bound(&q->probe, q->squared));
   } else {
     first = ethd__walk_down(&walk);
@@ -107,10 +122,10 @@ void ethd_scene_query_near(const ethd_scene *scene, ethd_vec x, ethd_scene_hint 
   if (scene->tree.leaves) search_tree(&q, hint);
   if (q.place == ETHD__NONE) return;
   answer(&q, out);
-  if (q.place < scene->tree.leaves) *hint = (ethd_scene_hint){q.place + 1, q.edge};
+  if (q.place < scene->tree.leaves) renew(&q, hint);
 }
 
 void ethd_scene_query(const ethd_scene *scene, ethd_vec x, ethd_nearest *out) {
-  ethd_scene_hint hint = {0, 0};
+  ethd_scene_hint hint = {0};
   ethd_scene_query_near(scene, x, &hint, out);
 }

@@ -2,6 +2,7 @@
 #ifndef ETHD_APPS_BENCH_PEERS_H
 #define ETHD_APPS_BENCH_PEERS_H
 
+#include <math.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -27,6 +28,35 @@ typedef struct ethd__peer_filter {
   void (*work)(void *self, const double (*in)[3], double (*out)[2], size_t count); /* starts anew */
   void (*destroy)(void *self);
 } ethd__peer_filter;
+
+/* `peer_scene`: segments {x1, y1, x2, y2} of the plane, which stay where they are. */
+typedef struct ethd__peer_scene {
+  const char *name;
+  void *(*create)(const double (*segments)[4], size_t count);
+  /* out: distance of the nearest one, INFINITY if that is beyond `limit`, and the point there. `warm`: may
+     start from what it answered last. */
+  void (*nearest)(void *self, const double x[2], double limit, int warm, double out[3]);
+  size_t (*bytes)(void *self); /* NULL: it can't say */
+  void (*destroy)(void *self);
+} ethd__peer_scene;
+
+/* Squared distance from x to a segment. */
+static inline double ethd__peer_squared(const double s[4], const double x[2]) {
+  double ex = s[2] - s[0], ey = s[3] - s[1], ux = x[0] - s[0], uy = x[1] - s[1];
+  double along = ex * ux + ey * uy, ee = ex * ex + ey * ey;
+  double across = ex * uy - ey * ux, wx = x[0] - s[2], wy = x[1] - s[3];
+  return along <= 0 ? ux * ux + uy * uy : along >= ee ? wx * wx + wy * wy : across * across / ee;
+}
+
+/* Distance from x to a segment, and the point there. */
+static inline void ethd__peer_point(const double s[4], const double x[2], double out[3]) {
+  double ex = s[2] - s[0], ey = s[3] - s[1], ux = x[0] - s[0], uy = x[1] - s[1];
+  double along = ex * ux + ey * uy, ee = ex * ex + ey * ey;
+  double t = along <= 0 ? 0 : along >= ee ? 1 : along / ee;
+  out[0] = sqrt(ethd__peer_squared(s, x));
+  out[1] = t == 1 ? s[2] : s[0] + t * ex;
+  out[2] = t == 1 ? s[3] : s[1] + t * ey;
+}
 
 #ifdef __cplusplus
 }

@@ -96,6 +96,7 @@ ETHD_API void ethd_scene_query(const ethd_scene *scene, ethd_vec x, ethd_nearest
    start with; one for each thing that moves, and for any scene. */
 typedef struct ethd_scene_hint {
   uint32_t leaf, edge;
+  int32_t step;
 } ethd_scene_hint;
 
 /* As ethd_scene_query; `hint` is read, then renewed. [any, rt-safe] */

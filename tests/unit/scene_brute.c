@@ -307,7 +307,7 @@ static void check_nearest(const ethd_scene *scene, ethd_vec x, ethd_scene_hint *
   tight = SCENE_TIGHT * fmax(draft.size, fmax(fabs(x.x), fabs(x.y)));
   nearest b = brute_nearest(scene, x);
   ethd_nearest cold, warm, lost;
-  ethd_scene_hint wrong = {(uint32_t)scene_draw() % 2000, (uint32_t)scene_draw() % 2000};
+  ethd_scene_hint wrong = {(uint32_t)scene_draw() % 2000, (uint32_t)scene_draw() % 2000, (int32_t)scene_draw()};
   ethd_scene_query(scene, x, &cold);
   ethd_scene_query_near(scene, x, path, &warm);
   ethd_scene_query_near(scene, x, &wrong, &lost);
@@ -359,7 +359,7 @@ static ethd_vec place(void) {
 void scene_check_kind(const scene_kind *kind, double size, int queries) {
   for (int left = queries; left > 0;) {
     ethd_scene *scene = kind->create(size);
-    ethd_scene_hint path = {0, 0};
+    ethd_scene_hint path = {0};
     for (int i = 0; i < 250 && left > 0; i++, left--) {
       ethd_vec x = place();
       check_nearest(scene, x, &path);
