@@ -25,15 +25,9 @@ static void open_node(ethd__minima *m, uint32_t level, uint32_t index) {
 void ethd__minima_start(ethd__minima *m, const ethd_scene *scene, const ethd__object *o, ethd_vec x,
                         const ethd__probe *at_x, const ethd__probe *at_centre) {
   m->chain = ethd__chain_of(scene, o);
-<<<<<<< HEAD
   m->tree = ethd__tree_at(scene, o);
-  m->at_x = ethd__probe_at(scene, x);
-  m->at_centre = ethd__probe_at(scene, centre);
-=======
-  ethd__tree_set(&m->tree, o->edges, o->nodes);
   m->at_x = *at_x;
   m->at_centre = *at_centre;
->>>>>>> 43b0c7136008e0a040c74ee65c54b6bfeb5423ee
   m->x = x;
   m->apart = at_x != at_centre;
   m->bound = ethd__bound(&m->at_centre, INFINITY);
