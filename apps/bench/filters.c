@@ -5,164 +5,32 @@
 #include <string.h>
 
 #include "bench/bench.h"
+#include "bench/filter_tuning.h"
 #include "bench/peers.h"
-#include "bench/tracks.h"
 #include "common/cli.h"
 #include "ethd/ethd.h"
 
-#define SETTLE 30 /* ticks that don't count: a filter starts at its first reading */
-
-enum { LATENCIES = 3, REACHES = 40, SETS_MAX = 16, OUT_MAX = 100000 };
+enum { LATENCIES = 3, REACHES = 40, SETS_MAX = 16 };
 
 static const double latencies[LATENCIES] = {0, 3e-3, 6e-3};
 static const double goals[LATENCIES] = {0.15, 0.25, 0.30}; /* share by which ca is under cv */
 
-/* ---- contenders ---- */
-
-typedef struct contender {
-  const char *name;
-  void (*work)(void *self, const double (*in)[3], double (*out)[2], size_t count);
-  void *self;
-} contender;
-
-static void ours(void *self, const double (*in)[3], double (*out)[2], size_t count) {
-  const ethd_filter *f = self;
-  ethd_filter_state s;
-  memset(&s, 0, sizeof s);
-  for (size_t i = 0; i < count; i++) {
-    ethd_vec x, v;
-    ethd_filter_predict(f, &s, ETHD__TRACK_PERIOD);
-    if (!isnan(in[i][2])) (void)!ethd_filter_update(f, &s, (ethd_vec){in[i][0], in[i][1]}, in[i][2]);
-    ethd_filter_output(f, &s, &x, &v);
-    out[i][0] = x.x;
-    out[i][1] = x.y;
-  }
-}
-
-/* The line through the last two readings. */
-static void two_readings(void *self, const double (*in)[3], double (*out)[2], size_t count) {
-  double x[2] = {0, 0}, v[2] = {0, 0}, age = 0;
-  int known = 0;
-  (void)self;
-  for (size_t i = 0; i < count; i++) {
-    age += ETHD__TRACK_PERIOD;
-    if (!isnan(in[i][2])) {
-      for (int k = 0; k < 2; k++) {
-        v[k] = known ? (in[i][k] - x[k]) / (age - in[i][2]) : 0;
-        x[k] = in[i][k];
-      }
-      age = in[i][2];
-      known = 1;
-    }
-    for (int k = 0; k < 2; k++) out[i][k] = x[k] + v[k] * age;
-  }
-}
-
-/* ---- error ---- */
-
-typedef struct sum {
-  double squares;
-  double count;
-} sum;
-
-static double out_room[OUT_MAX][2];
-
-static void add_errors(const contender *c, const ethd__tracks *set, sum *to) {
-  for (size_t t = 0; t < set->count; t++) {
-    const ethd__track *track = &set->at[t];
-    size_t count = track->count < OUT_MAX ? track->count : OUT_MAX;
-    c->work(c->self, (const double(*)[3])track->in, out_room, count);
-    for (size_t i = SETTLE; i < count; i++)
-      for (int k = 0; k < 2; k++) {
-        double e = out_room[i][k] - track->truth[i][k];
-        to->squares += e * e;
-        to->count += 1;
-      }
-  }
-}
-
-/* rms over both axes, m. */
-static double rms(const contender *c, const ethd__tracks *sets, size_t count) {
-  sum all = {0, 0};
-  for (size_t s = 0; s < count; s++) add_errors(c, &sets[s], &all);
-  return sqrt(all.squares / all.count);
-}
-
-/* ---- tuning ---- */
-
-typedef struct tuning {
-  const char *row[2]; /* of the method's table; [1] may be NULL */
-  double value[2];
-} tuning;
-
-static ethd_filter prepare(ethd_filter_method method, const tuning *t) {
-  const ethd_method *m = &ethd_filter_methods[method];
-  double p[ETHD_PARAMS_MAX];
-  ethd_filter f;
-  ethd_error error;
-  ethd_params_default(m->params, m->param_count, p);
-  for (int i = 0; i < 2; i++)
-    if (t->row[i]) p[ethd_params_find(m->params, m->param_count, t->row[i])] = t->value[i];
-  if (ethd_filter_prepare(method, p, ETHD__TRACK_PERIOD, &f, &error) < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));
-  return f;
-}
-
-static double error_with(ethd_filter_method method, const tuning *t, const ethd__tracks *sets,
-                         size_t count) {
-  ethd_filter f = prepare(method, t);
-  contender c = {NULL, ours, &f};
-  return rms(&c, sets, count);
-}
-
-/* The best of a grid: the first row from `from` on, each 1.25 times the one before; the second's values
-   are listed. */
-static tuning best_tuning(ethd_filter_method method, const ethd__tracks *sets, size_t count) {
-  static const double memories[] = {0.04, 0.08, 0.16, 0.32, (double)INFINITY},
-                      alphas[] = {0.4, 0.5, 0.6, 0.7, 0.8};
-  static const struct {
-    tuning t;
-    const double *second;
-    double from;
-  } grids[ETHD_FILTER_COUNT] = {
-      [ETHD_FILTER_CA] = {{{"jerk", "memory"}, {0, 0}}, memories, 60},
-      [ETHD_FILTER_HOLD] = {{{NULL, NULL}, {0, 0}}, NULL, 0},
-      [ETHD_FILTER_ALPHA_BETA] = {{{"beta", "alpha"}, {0, 0}}, alphas, 0.06},
-      [ETHD_FILTER_CV] = {{{"acceleration", NULL}, {0, 0}}, NULL, 2},
-  };
-  tuning t = grids[method].t, best = t;
-  double least = (double)INFINITY;
-  for (int i = 0; t.row[0] && i < (grids[method].second ? 5 : 1); i++) {
-    if (t.row[1]) t.value[1] = grids[method].second[i];
-    t.value[0] = grids[method].from;
-    for (int k = 0; k < 13; k++, t.value[0] *= 1.25) {
-      double error = error_with(method, &t, sets, count);
-      if (error < least) least = error, best = t;
-    }
-  }
-  return best;
-}
-
-static const char *describe(const tuning *t, char text[64]) {
-  text[0] = 0;
-  for (int i = 0, at = 0; i < 2 && t->row[i]; i++)
-    at += snprintf(text + at, 64 - (size_t)at, "%s%s %.3g", i ? " " : "", t->row[i], t->value[i]);
-  return text;
-}
-
 /* ---- time ---- */
 
+static double ticks_out[ETHD__TRACK_MAX][2];
+
 typedef struct timed {
-  contender c;
+  ethd__contender c;
   const ethd__track *track;
 } timed;
 
 static void work(void *data) {
   timed *t = data;
-  t->c.work(t->c.self, (const double(*)[3])t->track->in, out_room, t->track->count);
+  t->c.work(t->c.self, (const double(*)[3])t->track->in, ticks_out, t->track->count);
 }
 
-static void race(contender *list, size_t count, const ethd__track *track, double seconds, double *ns) {
+static void race(ethd__contender *list, size_t count, const ethd__track *track, double seconds,
+                 double *ns) {
   timed t[8];
   ethd__bench_entry entries[8];
   for (size_t i = 0; i < count; i++) {
@@ -177,13 +45,13 @@ static void race(contender *list, size_t count, const ethd__track *track, double
 
 static FILE *csv;
 
-static void row(const char *set, double latency, const contender *c, double ns, double error,
+static void row(const char *set, double latency, const ethd__contender *c, double ns, double error,
                 const char *tuned) {
   fprintf(csv, "%s,%.17g,%s,%.17g,%.17g,%s\n", set, 1e3 * latency, c->name, ns, 1e3 * error, tuned);
 }
 
 typedef struct field {
-  contender list[6];
+  ethd__contender list[6];
   size_t count;
   ethd_filter filters[ETHD_FILTER_COUNT];
   char tuned[6][64];
@@ -197,18 +65,19 @@ static void gather(field *f, const ethd__tracks *reaches, const ethd__peer_filte
   f->count = 0;
   for (int i = 0; i < ETHD_FILTER_COUNT; i++) {
     ethd_filter_method m = order[i];
-    tuning t = best_tuning(m, reaches, 1);
-    f->filters[m] = prepare(m, &t);
-    describe(&t, f->tuned[f->count]);
-    f->list[f->count++] = (contender){ethd_filter_methods[m].id, ours, &f->filters[m]};
+    ethd__tuning t = ethd__tuning_best(m, reaches, 1);
+    f->filters[m] = ethd__tuning_filter(m, &t);
+    ethd__tuning_text(&t, f->tuned[f->count]);
+    f->list[f->count++] =
+        (ethd__contender){ethd_filter_methods[m].id, ethd__filter_work, &f->filters[m]};
     if (i == 0) {
       f->tuned[f->count][0] = 0;
-      f->list[f->count++] = (contender){"two readings", two_readings, NULL};
+      f->list[f->count++] = (ethd__contender){"two readings", ethd__two_readings, NULL};
     }
     if (m == ETHD_FILTER_CA && peer) {
       strcpy(f->tuned[f->count], f->tuned[f->count - 1]);
       void *self = peer->create(ETHD__TRACK_PERIOD, t.value[0], t.value[1], ETHD__TRACK_NOISE);
-      f->list[f->count++] = (contender){peer->name, peer->work, self};
+      f->list[f->count++] = (ethd__contender){peer->name, peer->work, self};
     }
   }
 }
@@ -239,7 +108,7 @@ static void print_errors(const char *set, double latency, const double *errors, 
 static void compare(const field *f, const char *set, double latency, const ethd__tracks *sets,
                     size_t count, const double *ns, double *errors) {
   for (size_t i = 0; i < f->count; i++) {
-    errors[i] = rms(&f->list[i], sets, count);
+    errors[i] = ethd__contender_error(&f->list[i], sets, count);
     row(set, latency, &f->list[i], ns[i], errors[i], f->tuned[i]);
   }
   print_errors(set, latency, errors, f->count);
@@ -250,11 +119,11 @@ static void print_cv_ca(const ethd__tracks *recorded, size_t sets) {
   double defaults[2], best[2];
   char text[2][64];
   for (int i = 0; i < 2; i++) {
-    const tuning none = {{NULL, NULL}, {0, 0}};
-    tuning t = best_tuning(methods[i], recorded, sets);
-    defaults[i] = 1e3 * error_with(methods[i], &none, recorded, sets);
-    best[i] = 1e3 * error_with(methods[i], &t, recorded, sets);
-    describe(&t, text[i]);
+    const ethd__tuning none = {{NULL, NULL}, {0, 0}};
+    ethd__tuning t = ethd__tuning_best(methods[i], recorded, sets);
+    defaults[i] = 1e3 * ethd__tuning_error(methods[i], &none, recorded, sets);
+    best[i] = 1e3 * ethd__tuning_error(methods[i], &t, recorded, sets);
+    ethd__tuning_text(&t, text[i]);
   }
   printf("    by default cv %.4f, ca %.4f, %.1f %%; tuned to them cv %.4f (%s), ca %.4f (%s), %.1f %%\n",
          defaults[0], defaults[1], 100 * (1 - defaults[1] / defaults[0]), best[0], text[0], best[1],

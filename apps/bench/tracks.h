@@ -8,7 +8,9 @@
 #define ETHD__TRACK_PERIOD 1e-3 /* s */
 #define ETHD__TRACK_NOISE 1e-4  /* m, sd of a reading, each axis */
 
-/* One movement. */
+enum { ETHD__TRACK_MAX = 100000 }; /* ticks */
+
+/* One movement, what is longer is cut. */
 typedef struct ethd__track {
   size_t count;    /* ticks */
   double (*in)[3]; /* each tick's reading x y and its age, NaN without one */

@@ -1,0 +1,40 @@
+/* What the finger filters' benchmark compares: contenders on tracks, and their best tuning. */
+#ifndef ETHD_APPS_BENCH_FILTER_TUNING_H
+#define ETHD_APPS_BENCH_FILTER_TUNING_H
+
+#include "bench/tracks.h"
+#include "ethd/finger_filter.h"
+
+/* One way to say where the finger is; it starts anew with every call. */
+typedef struct ethd__contender {
+  const char *name;
+  void (*work)(void *self, const double (*in)[3], double (*out)[2], size_t count);
+  void *self;
+} ethd__contender;
+
+/* `self`: an ethd_filter. */
+void ethd__filter_work(void *self, const double (*in)[3], double (*out)[2], size_t count);
+
+/* The line through the last two readings; `self`: nothing. */
+void ethd__two_readings(void *self, const double (*in)[3], double (*out)[2], size_t count);
+
+/* rms over both axes, m; the first 30 ms of a track don't count. */
+double ethd__contender_error(const ethd__contender *c, const ethd__tracks *sets, size_t count);
+
+/* Up to two rows of a method's table; all others at their defaults. */
+typedef struct ethd__tuning {
+  const char *row[2]; /* NULL: none */
+  double value[2];
+} ethd__tuning;
+
+ethd_filter ethd__tuning_filter(ethd_filter_method method, const ethd__tuning *t);
+double ethd__tuning_error(ethd_filter_method method, const ethd__tuning *t, const ethd__tracks *sets,
+                          size_t count);
+
+/* The best of a grid on these sets. */
+ethd__tuning ethd__tuning_best(ethd_filter_method method, const ethd__tracks *sets, size_t count);
+
+/* "jerk 183 memory 0.16" */
+const char *ethd__tuning_text(const ethd__tuning *t, char text[64]);
+
+#endif
