@@ -74,28 +74,30 @@ void ethd__tap_senses(const ethd_setup *setup, ethd__tap_finger how,
   }
 }
 
-ethd_scene *ethd__tap_scene(long segments) {
-  static const double wall[3] = {-1, 0, -WALL};
-  ethd_object_def object = {ETHD_HALFPLANE, -1, wall, 3, 0};
-  ethd_scene_def def = {&object, 1, NULL, 0};
-  double *outline = NULL;
-  ethd_error error;
-  ethd_scene *scene;
-  if (segments < 0) return NULL;
-  if (segments > 0) {
-    size_t n = (size_t)segments;
-    outline = malloc(2 * n * sizeof *outline);
-    if (!outline) ethd__fail(ETHD_EXIT_FAILED, "no memory");
-    for (size_t i = 0; i < n; i++) {
-      double a = 2 * M_PI * (double)i / (double)n, r = 0.06 + 0.5e-3 * (cos(17 * a) + 1);
-      outline[2 * i] = WALL + 0.06 + r * cos(a);
-      outline[2 * i + 1] = 0.25 + r * sin(a);
-    }
-    object = (ethd_object_def){ETHD_POLYLINE, -1, outline, 2 * n, 0};
+static void outline(ethd__tap_wall wall, size_t n, double *points) {
+  double wave = wall == ETHD__TAP_OUTLINE ? 0.5e-3 : 4e-3;
+  double middle = wall == ETHD__TAP_OUTLINE ? WALL + 0.06 : WALL + 0.042;
+  for (size_t i = 0; i < n; i++) {
+    double a = 2 * M_PI * (double)i / (double)n, r = 0.06 + wave * (cos(17 * a) + 1);
+    points[2 * i] = middle + r * cos(a);
+    points[2 * i + 1] = 0.25 + r * sin(a);
   }
-  if (ethd_scene_create(&def, &scene, &error) < 0)
+}
+
+ethd_scene *ethd__tap_scene(ethd__tap_wall wall, size_t segments) {
+  static const double plane[3] = {-1, 0, -WALL};
+  double *points = malloc((2 * segments + 1) * sizeof *points);
+  if (!points) ethd__fail(ETHD_EXIT_FAILED, "no memory");
+  outline(wall, segments, points);
+  const ethd_object_def objects[] = {{ETHD_HALFPLANE, -1, plane, 3, 0},
+                                     {ETHD_POLYLINE, -1, points, 2 * segments, 0}};
+  const size_t first = wall == ETHD__TAP_OUTLINE, last = wall == ETHD__TAP_PLANE ? 1 : 2;
+  ethd_scene_def def = {objects + first, last - first, NULL, 0};
+  ethd_error error;
+  ethd_scene *scene = NULL;
+  if (wall != ETHD__TAP_NOTHING && ethd_scene_create(&def, &scene, &error) < 0)
     ethd__fail(ETHD_EXIT_FAILED, "scene: %s", ethd_status_sentence(error.status));
-  free(outline);
+  free(points);
   return scene;
 }
 

@@ -17,9 +17,15 @@ typedef enum ethd__tap_finger {
 
 void ethd__tap_senses(const ethd_setup *setup, ethd__tap_finger how, ethd_sense senses[ETHD__TAP_TICKS]);
 
-/* What to tap on: segments < 0 nothing (NULL), 0 a half-plane, else a closed wavy outline about the
-   arm's workspace of so many segments, which the ring meets at the same place. */
-ethd_scene *ethd__tap_scene(long segments);
+/* What to tap on. Outlines are closed, wavy and around the finger's way. */
+typedef enum ethd__tap_wall {
+  ETHD__TAP_NOTHING, /* no scene: NULL */
+  ETHD__TAP_PLANE,   /* a half-plane */
+  ETHD__TAP_BESIDE,  /* the half-plane, and an outline of `segments` that is near, but never met */
+  ETHD__TAP_OUTLINE, /* an outline of `segments` alone, met where the half-plane was */
+} ethd__tap_wall;
+
+ethd_scene *ethd__tap_scene(ethd__tap_wall wall, size_t segments);
 
 /* A controller with default values but for the transition law and the scene. */
 ethd_control *ethd__tap_control(const ethd_transition_law *law, const ethd_scene *scene);

@@ -9,14 +9,14 @@
 
 /* ---- a controller that taps ---- */
 
-ethd__tapping *ethd__tapping_create(const ethd_transition_law *law, long segments,
+ethd__tapping *ethd__tapping_create(const ethd_transition_law *law, ethd__tap_wall wall, size_t segments,
                                     ethd__tap_finger how) {
   ethd__tapping *t = aligned_alloc(64, (sizeof *t + 63) / 64 * 64);
   if (!t) ethd__fail(ETHD_EXIT_FAILED, "no memory");
   memset(t, 0, sizeof *t);
   ethd_setup setup = ethd_setup_default();
   ethd__tap_senses(&setup, how, t->senses);
-  t->scene = ethd__tap_scene(segments);
+  t->scene = ethd__tap_scene(wall, segments);
   t->control = ethd__tap_control(law, t->scene);
   t->traced = 1;
   return t;
@@ -72,9 +72,12 @@ ethd__bench_times ethd__tick_report(FILE *csv, ethd__tick_row row, double *ns, s
 
 static const struct {
   const char *name;
-  long segments;
-} scenes[] = {{"none", -1}, {"wall", 0}, {"100", 100}, {"1000", 1000}, {"100000", 100000}};
-enum { NONE, WALL, HUNDRED, THOUSAND, MANY, SCENES };
+  ethd__tap_wall wall;
+  size_t segments;
+} scenes[] = {{"none", ETHD__TAP_NOTHING, 0},    {"wall", ETHD__TAP_PLANE, 0},
+              {"+1000", ETHD__TAP_BESIDE, 1000}, {"100", ETHD__TAP_OUTLINE, 100},
+              {"1000", ETHD__TAP_OUTLINE, 1000}, {"100000", ETHD__TAP_OUTLINE, 100000}};
+enum { NONE, WALL, BESIDE, HUNDRED, THOUSAND, MANY, SCENES };
 
 static const char *const fingers[] = {"known", "encoder", "centre", "rays"};
 enum { FINGERS = sizeof fingers / sizeof *fingers };
@@ -110,7 +113,8 @@ static void gather(hot *h) {
         if (l != OFFSET && (f != ETHD__TAP_RAYS || s == MANY)) continue;
         h->at[l][f][s] = h->count;
         h->rows[h->count] = (ethd__tick_row){"hot", laws[l]->law.id, scenes[s].name, fingers[f]};
-        ethd__tapping *t = ethd__tapping_create(laws[l], scenes[s].segments, (ethd__tap_finger)f);
+        ethd__tapping *t =
+            ethd__tapping_create(laws[l], scenes[s].wall, scenes[s].segments, (ethd__tap_finger)f);
         h->entries[h->count++] = (ethd__bench_entry){"", tap, t, ETHD__TAP_TICKS, 0};
       }
 }
@@ -131,7 +135,7 @@ static void report_parts(FILE *csv, const hot *h) {
   const int f = ETHD__TAP_RAYS;
   ethd__tapping *t = h->entries[h->at[OFFSET][f][THOUSAND]].data;
   ethd__bench_entry both[2] = {{"", tap, t, ETHD__TAP_TICKS, 0}, {"", tap, NULL, ETHD__TAP_TICKS, 0}};
-  ethd__tapping *untraced = ethd__tapping_create(laws[OFFSET], 1000, f);
+  ethd__tapping *untraced = ethd__tapping_create(laws[OFFSET], ETHD__TAP_OUTLINE, 1000, f);
   untraced->traced = 0;
   both[1].data = untraced;
   ethd__bench_race(both, 2, 0.1);
@@ -230,6 +234,21 @@ static void goal(const char *what, double value, double most, const char *unit) 
          ethd__bench_verdict(value <= most));
 }
 
+static void judge(const hot *h, const ethd__bench_times *times) {
+  static const int judged[] = {ETHD__TAP_ENCODER, ETHD__TAP_RAYS}, walls[] = {BESIDE, THOUSAND};
+  for (int f = 0; f < 2; f++)
+    for (int s = 0; s < 2; s++) {
+      const ethd__bench_times *t = &times[h->at[OFFSET][judged[f]][walls[s]]];
+      char what[64];
+      snprintf(what, sizeof what, "mean, %s, 1000 segments %s", fingers[judged[f]],
+               s ? "tapped" : "beside the wall");
+      goal(what, t->mean, 150, "ns");
+      snprintf(what, sizeof what, "p99, %s, 1000 segments %s", fingers[judged[f]],
+               s ? "tapped" : "beside the wall");
+      goal(what, t->p99, 230, "ns");
+    }
+}
+
 static int run(const char *folder, int quick) {
   size_t count = (size_t)(quick ? 20 : 200) * ETHD__TAP_TICKS;
   double *ns = malloc(count * sizeof *ns);
@@ -240,6 +259,8 @@ static int run(const char *folder, int quick) {
                               "there for a fifth of the time\n"
                               "# finger: known; encoder: the same, joint speeds estimated; centre, "
                               "rays: readings at 300 Hz, filtered, fitted\n"
+                              "# scene: nothing, a half-plane, the half-plane and 1000 segments near "
+                              "it, an outline of so many segments alone\n"
                               "# tail: share_longer of the ticks take longer; part: ns a tick\n",
                               "what,law,scene,finger,name,share_longer,time_ns");
   printf("the whole tick, recording included, ns; finger: rays are fitted and filtered, and joint "
@@ -247,22 +268,19 @@ static int run(const char *folder, int quick) {
   printf("  %-10s %-8s %-7s %-8s %7s %7s %7s %8s %9s\n", "", "law", "scene", "finger", "mean", "median",
          "p99", "p99.9", "max");
   gather(&h);
-  ethd__bench_times full = {0, 0, 0, 0, 0}, known = full;
+  ethd__bench_times times[LAWS * FINGERS * SCENES];
   for (size_t i = 0; i < h.count; i++) {
-    ethd__bench_race(&h.entries[i], 1, quick ? 0.05 : 0.5); /* one after the other: each in a warm cache */
+    ethd__bench_race(&h.entries[i], 1,
+                     quick ? 0.05 : 0.5); /* one after the other: each in a warm cache */
     time_ticks(h.entries[i].data, ns, count);
-    ethd__bench_times t = ethd__tick_report(csv, h.rows[i], ns, count, h.entries[i].ns);
-    if (i == h.at[OFFSET][ETHD__TAP_RAYS][THOUSAND]) full = t;
-    if (i == h.at[OFFSET][ETHD__TAP_KNOWN][THOUSAND]) known = t;
+    times[i] = ethd__tick_report(csv, h.rows[i], ns, count, h.entries[i].ns);
   }
   report_parts(csv, &h);
   report_calls(csv, quick);
   ethd__tick_cold(csv, quick);
   ethd__tick_live(csv, quick);
-  goal("hot mean at 1000 segments, rays", full.mean, 150, "ns");
-  goal("hot p99 at 1000 segments, rays", full.p99, 230, "ns");
-  goal("hot mean at 1000 segments, finger known", known.mean, 150, "ns");
-  goal("hot p99 at 1000 segments, finger known", known.p99, 230, "ns");
+  judge(&h, times);
+
   goal("hot mean from 100 to 100000 segments, times",
        mean_of(&h, OFFSET, ETHD__TAP_RAYS, MANY) / mean_of(&h, OFFSET, ETHD__TAP_RAYS, HUNDRED), 2.2,
        "");

@@ -16,7 +16,8 @@ typedef struct ethd__tapping {
   ethd_trace traces[ETHD__TICK_RING];
 } ethd__tapping;
 
-ethd__tapping *ethd__tapping_create(const ethd_transition_law *law, long segments, ethd__tap_finger how);
+ethd__tapping *ethd__tapping_create(const ethd_transition_law *law, ethd__tap_wall wall, size_t segments,
+                                    ethd__tap_finger how);
 void ethd__tapping_destroy(ethd__tapping *t);
 
 /* The next tick's sense, then the tick. */

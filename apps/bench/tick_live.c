@@ -31,14 +31,15 @@ static void evict(unsigned char *buffer) {
 
 /* Every fifth tick is cold, so that the whole tap is seen. */
 void ethd__tick_cold(FILE *csv, int quick) {
-  const long segments[] = {0, 1000};
+
   size_t count = quick ? 100 : 1000;
   double *ns = room_for(count), cost = ethd__bench_clock_cost();
   unsigned char *buffer = calloc(1, EVICT);
   if (!buffer) ethd__fail(ETHD_EXIT_FAILED, "no memory");
   heading("cold: 32 MB written before the tick");
   for (int s = 0; s < 2; s++) {
-    ethd__tapping *t = ethd__tapping_create(&ethd_transition_offset, segments[s], ETHD__TAP_RAYS);
+    ethd__tapping *t = ethd__tapping_create(
+        &ethd_transition_offset, s ? ETHD__TAP_OUTLINE : ETHD__TAP_PLANE, 1000, ETHD__TAP_RAYS);
     for (size_t i = 0; i < 5 * count; i++) {
       if (i % 5 == 0) evict(buffer);
       const ethd_sense sense = *ethd__tapping_sense(t); /* a device has just written it */
@@ -112,7 +113,8 @@ void ethd__tick_live(FILE *csv, int quick) {
   int locked = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
   for (int k = 0; k < (quick ? 1 : 3); k++)
     for (int early = 0; early < 2; early++) {
-      loop l = {ethd__tapping_create(laws[k], 1000, ETHD__TAP_RAYS), early, ns, count, 0};
+      loop l = {ethd__tapping_create(laws[k], ETHD__TAP_OUTLINE, 1000, ETHD__TAP_RAYS), early, ns, count,
+                0};
       run_loop(&l);
       if (k == 0 && !early) {
         printf("  live: 1 kHz, clock_nanosleep, %s, memory %s; early: awake 100 us before, three dry "
