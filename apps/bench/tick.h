@@ -31,9 +31,10 @@ typedef struct ethd__tick_row {
 
 void ethd__tick_put(FILE *csv, ethd__tick_row row, const char *name, double share_longer, double ns);
 
-/* Prints a line and writes mean, percentiles and the tail; sorts `ns`. mean < 0: that of `ns`. */
+/* Prints a line and writes mean, percentiles and the tail; sorts `ns`. `quiet` (NULL: none): mean,
+   median and p99 without what else the machine does. */
 ethd__bench_times ethd__tick_report(FILE *csv, ethd__tick_row row, double *ns, size_t count,
-                                    double mean);
+                                    const ethd__bench_times *quiet);
 
 /* Cold: the caches emptied before a tick. Live: in a 1 kHz loop. */
 void ethd__tick_cold(FILE *csv, int quick);

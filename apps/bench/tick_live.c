@@ -48,7 +48,7 @@ void ethd__tick_cold(FILE *csv, int quick) {
       if (i % 5 == 0) ns[i / 5] = fmax(0, (double)(ethd__bench_now() - start) - cost);
     }
     ethd__tick_report(csv, (ethd__tick_row){"cold", "offset", s ? "1000" : "wall", "rays"}, ns, count,
-                      -1);
+                      NULL);
     ethd__tapping_destroy(t);
   }
   free(buffer);
@@ -125,7 +125,7 @@ void ethd__tick_live(FILE *csv, int quick) {
       }
       ethd__tick_report(csv,
                         (ethd__tick_row){early ? "live early" : "live", laws[k]->law.id, "1000", "rays"},
-                        ns, count, -1);
+                        ns, count, NULL);
       ethd__tapping_destroy(l.tapping);
     }
   if (locked) munlockall();
