@@ -57,7 +57,7 @@ say = $(if $(V),@:,@printf '  %-6s %s\n' $(1) $(2))
 
 GOALS := $(or $(MAKECMDGOALS),all)
 KINDS := $(if $(filter all demo check bench bench-quick stress ci install tests,$(GOALS)),build) \
-         $(if $(filter check ci tests,$(GOALS)),check) $(if $(filter demo stress,$(GOALS)),demo) \
+         $(if $(filter check stress ci tests,$(GOALS)),check) $(if $(filter demo stress,$(GOALS)),demo) \
          $(if $(filter bench bench-quick,$(GOALS)),bench)
 DRY := $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 ifneq ($(strip $(KINDS)),)
@@ -234,7 +234,8 @@ bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
 	  'commit $(or $(shell git describe --always --dirty 2>/dev/null),unknown); $(CC) $(BASE)'
 
 # The long ones: minutes.
-stress: all
+stress: all $(B)/tests/test_scene_tree
+	ETHD_SCENE_QUERIES=1000000 $(B)/tests/test_scene_tree
 	@BUILD='$(B)' sh apps/stress.sh
 
 ci:

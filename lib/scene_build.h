@@ -25,7 +25,8 @@ void ethd__box_fit(const ethd__cloud *cloud, size_t from, size_t to, ethd__node 
 /* Nothing in this lane. */
 void ethd__box_clear(ethd__node *node, size_t lane);
 
-/* Nodes and slopes of a scene that has all else. `room`: nodes_room bytes, aligned like malloc's. */
+/* Nodes and slopes of a scene that has all else; both ask that. `room`: nodes_room bytes, aligned like
+   malloc's. */
 size_t ethd__nodes_room(const ethd_scene *scene);
 void ethd__nodes_build(ethd_scene *scene, void *room);
 

@@ -201,17 +201,16 @@ static ethd_status check(const ethd_scene_def *def, ethd_error *error) {
 
 static bool build(const ethd_scene_def *def, ethd_scene *scene) {
   ethd__item *items = malloc((scene->object_count + (size_t)1) * sizeof *items);
-  void *room = malloc(ethd__nodes_room(scene));
-  bool ready = items && room;
-  if (ready) {
-    measure(def, scene);
-    order(def, scene, items);
-    fill(def, scene, items);
-    ethd__nodes_build(scene, room);
-  }
+  if (!items) return false;
+  measure(def, scene);
+  order(def, scene, items);
+  fill(def, scene, items);
   free(items);
+  void *room = malloc(ethd__nodes_room(scene));
+  if (!room) return false;
+  ethd__nodes_build(scene, room);
   free(room);
-  return ready;
+  return true;
 }
 
 ethd_status ethd_scene_create(const ethd_scene_def *def, ethd_scene **out, ethd_error *error) {

@@ -11,7 +11,16 @@ typedef struct build {
   size_t *start; /* the object at place i has the discs from start[i] on */
 } build;
 
-static size_t disc_count(const ethd_scene *s) { return s->number_count / 2 + 4 * (size_t)s->object_count; }
+static size_t discs_of(const ethd__object *o) {
+  if (o->shape == ETHD_CIRCLE) return 1;
+  return o->shape == ETHD_CAPSULE ? 2 : o->shape == ETHD_BOX ? 4 : o->edges + (size_t)1;
+}
+
+static size_t disc_count(const ethd_scene *s) {
+  size_t count = 0;
+  for (uint32_t i = 0; i < s->tree.leaves; i++) count += discs_of(ethd__object_at(s, i));
+  return count;
+}
 
 size_t ethd__nodes_room(const ethd_scene *s) {
   return disc_count(s) * (sizeof(ethd_vec) + sizeof(double)) + (s->object_count + (size_t)1) * sizeof(size_t);
@@ -111,8 +120,9 @@ static void build_strip(build *b, const ethd__object *o, const ethd_vec *points)
 
 void ethd__nodes_build(ethd_scene *s, void *room) {
   build b = {s, (void *)((char *)s + s->nodes_at), (void *)((char *)s + s->slopes_at), room, NULL, NULL};
-  b.radii = (double *)(b.points + disc_count(s));
-  b.start = (size_t *)(b.radii + disc_count(s));
+  size_t discs = disc_count(s);
+  b.radii = (double *)(b.points + discs);
+  b.start = (size_t *)(b.radii + discs);
   b.start[0] = 0;
   for (uint32_t i = 0; i < s->tree.leaves; i++) {
     const ethd__object *o = ethd__object_at(s, i);

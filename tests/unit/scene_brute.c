@@ -374,3 +374,27 @@ void scene_check_kind(const scene_kind *kind, double size, int queries) {
     ethd_scene_destroy(scene);
   }
 }
+
+static uint64_t hash(uint64_t h, const void *data, size_t size) {
+  const unsigned char *p = data;
+  for (size_t i = 0; i < size; i++) h = (h ^ p[i]) * 0x100000001b3u;
+  return h;
+}
+
+uint64_t scene_hash(const scene_kind *kind, int queries) {
+  uint64_t h = 0xcbf29ce484222325u;
+  ethd_scene_hint hint = {0};
+  ethd_scene *scene = kind->create(1);
+  for (int i = 0; i < queries; i++) {
+    ethd_vec x = {scene_uniform(-1, 1), scene_uniform(-1, 1)};
+    ethd_nearest q;
+    ethd_touch t[8];
+    ethd_scene_query_near(scene, x, &hint, &q);
+    size_t count = ethd_scene_touches(scene, x, 0.1, t, 8);
+    h = hash(h, &q, offsetof(ethd_nearest, object) + sizeof q.object);
+    h = hash(h, &count, sizeof count);
+    h = hash(h, t, (count < 8 ? count : 8) * sizeof *t);
+  }
+  ethd_scene_destroy(scene);
+  return h;
+}

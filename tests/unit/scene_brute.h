@@ -2,6 +2,8 @@
 #ifndef ETHD_TESTS_SCENE_BRUTE_H
 #define ETHD_TESTS_SCENE_BRUTE_H
 
+#include <stdint.h>
+
 #include "ethd/scene.h"
 
 /* A kind of scene within `size` m of the origin; `size` is a power of two. */
@@ -16,5 +18,8 @@ extern const int scene_kind_count;
 /* Random scenes of this kind and size, 250 queries on each: nearest without a hint, with one that follows
    a path and with a wrong one, touches, and the continuation of one. Fails the test that calls it. */
 void scene_check_kind(const scene_kind *kind, double size, int queries);
+
+/* Of all that `queries` queries give, to the bit. */
+uint64_t scene_hash(const scene_kind *kind, int queries);
 
 #endif

@@ -1,16 +1,17 @@
-/* Trees agree with brute force. make stress asks the same a hundred times as often. */
+/* Trees agree with brute force. make stress asks more: ETHD_SCENE_QUERIES of each kind. */
 #include <check.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "scene_brute.h"
 #include "scene_objects.h"
 
-enum { QUERIES = 6000 };
+static int queries = 6000;
 
 START_TEST(test_kind) {
   scene_seed(1000 + (uint64_t)_i);
-  scene_check_kind(&scene_kinds[_i], 1, QUERIES);
+  scene_check_kind(&scene_kinds[_i], 1, queries);
 }
 END_TEST
 
@@ -18,16 +19,71 @@ END_TEST
 START_TEST(test_size) {
   static const double sizes[] = {0x1p-30, 0x1p-10, 0x1p10, 0x1p19};
   scene_seed(2000 + (uint64_t)_i);
-  for (int i = 0; i < 4; i++) scene_check_kind(&scene_kinds[_i], sizes[i], QUERIES / 10);
+  for (int i = 0; i < 4; i++) scene_check_kind(&scene_kinds[_i], sizes[i], queries / 10);
+}
+END_TEST
+
+/* The same bits from every compiler, with and without its vectors. */
+START_TEST(test_bits) {
+  static const struct {
+    const char *kind;
+    uint64_t hash;
+  } expected[] = {{"circles", 0xef25ffb4a1277017}, {"capsules", 0xa404c44faf998228}, {"boxes", 0x0ece58aab813b1fa}, {"segments", 0x13044bdef500b14a}, {"polylines", 0xc1dc8b3e90ee90d4}, {"scribble", 0x03843c38c005fbf0}, {"lattice", 0xbd1a18dec93146b1}};
+  scene_seed(3000);
+  for (size_t i = 0; i < sizeof expected / sizeof *expected; i++)
+    for (int k = 0; k < scene_kind_count; k++) {
+      if (strcmp(scene_kinds[k].name, expected[i].kind) != 0) continue;
+      uint64_t hash = scene_hash(&scene_kinds[k], 1000);
+      ck_assert_msg(hash == expected[i].hash, "%s: 0x%016llx", expected[i].kind, (unsigned long long)hash);
+    }
+}
+END_TEST
+
+/* A hundred thousand objects are in one tree. */
+START_TEST(test_many) {
+  enum { MANY = 100000 };
+  double(*p)[4] = malloc(MANY * sizeof *p);
+  ethd_object_def *o = malloc(MANY * sizeof *o);
+  ethd_scene *scene;
+  ethd_error error;
+  scene_seed(4000);
+  for (int i = 0; i < MANY; i++) {
+    p[i][0] = scene_uniform(-1, 1), p[i][1] = scene_uniform(-1, 1);
+    p[i][2] = p[i][0] + scene_uniform(-1e-3, 1e-3), p[i][3] = p[i][1] + scene_uniform(-1e-3, 1e-3);
+    o[i] = (ethd_object_def){i % 3 ? ETHD_SEGMENT : ETHD_CIRCLE, -1, p[i], i % 3 ? 4 : 3, 0};
+    if (i % 3 == 0) p[i][2] = 1e-3;
+  }
+  ethd_scene_def def = {o, MANY, NULL, 0};
+  ck_assert_int_eq(ethd_scene_create(&def, &scene, &error), ETHD_OK);
+  ethd_scene_hint hint = {0};
+  for (int i = 0; i < 200; i++) {
+    ethd_vec x = {scene_uniform(-1, 1), 0.3};
+    double least = INFINITY;
+    ethd_nearest q;
+    ethd_scene_query_near(scene, x, &hint, &q);
+    for (int k = 0; k < MANY; k++) {
+      ethd_vec a = {p[k][0] - x.x, p[k][1] - x.y}, b = {p[k][2] - p[k][0], p[k][3] - p[k][1]};
+      double t = k % 3 ? fmin(1, fmax(0, -ethd_vec_dot(a, b) / ethd_vec_dot(b, b))) : 0;
+      least = fmin(least, hypot(a.x + t * b.x, a.y + t * b.y) - (k % 3 ? 0 : 1e-3));
+    }
+    ck_assert_msg(fabs(q.distance - least) <= 1e-15, "%g, not %g", q.distance, least);
+  }
+  ethd_scene_destroy(scene);
+  free(o);
+  free(p);
 }
 END_TEST
 
 static Suite *suite(void) {
   Suite *s = suite_create("scene_tree");
   TCase *c = tcase_create("scene_tree");
-  tcase_set_timeout(c, 60);
+  const char *wanted = getenv("ETHD_SCENE_QUERIES");
+  if (wanted) queries = atoi(wanted);
+  tcase_set_timeout(c, wanted ? 0 : 60);
   tcase_add_loop_test(c, test_kind, 0, scene_kind_count);
   tcase_add_loop_test(c, test_size, 0, scene_kind_count);
+  tcase_add_test(c, test_bits);
+  tcase_add_test(c, test_many);
   suite_add_tcase(s, c);
   return s;
 }
