@@ -1,0 +1,53 @@
+/* Bytes from the wire to frames: COBS, length, type, CRC, sequence.
+
+   A frame ends at a zero and holds none, so the decoder is in step again at the next zero, whatever came
+   before: it may start anywhere. Bytes come in pieces of any size; nothing is allocated. All [any, rt-safe]. */
+#ifndef ETHD_PROXIMITY_RING_DECODER_H
+#define ETHD_PROXIMITY_RING_DECODER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "ethd/attributes.h"
+#include "proximity_ring/frame.h"
+
+typedef struct ethd__frame {
+  uint8_t type, flags; /* ETHD__FRAME_* */
+  uint16_t seq;
+  uint32_t t_us;
+  uint16_t counts[ETHD__FRAME_SENSORS];
+  uint32_t lost; /* frames that the sequence misses before this one, corrupt ones among them */
+} ethd__frame;
+
+typedef struct ethd__decoder_counters {
+  uint64_t frames;   /* good ones */
+  uint64_t corrupt;  /* pieces between zeros that are no frame; the first since a reset isn't counted */
+  uint64_t lost;     /* by sequence; a corrupt frame is lost too */
+  uint64_t repeated; /* frames whose sequence is the last one's: handed on all the same */
+} ethd__decoder_counters;
+
+/* Zeroed: ready. */
+typedef struct ethd__decoder {
+  ethd__decoder_counters counters;
+  uint32_t held; /* bytes of a piece that hasn't ended; over ETHD__FRAME_WIRE: too long for a frame */
+  uint16_t seq;  /* of the last frame */
+  bool started;  /* a frame has come: seq counts */
+  bool in_step;  /* a zero has come */
+  uint8_t piece[ETHD__FRAME_WIRE];
+} ethd__decoder;
+
+/* The next frame among the bytes from *at to `end`; *at goes behind what was taken. False: no frame, and
+   *at == end. */
+bool ethd__decoder_next(ethd__decoder *decoder, const uint8_t **at, const uint8_t *end,
+                        ethd__frame *out) ETHD_RT;
+
+/* Forgets a begun piece and the sequence, as after a reopened port; the counters stay. */
+void ethd__decoder_restart(ethd__decoder *decoder) ETHD_RT;
+
+/* CRC-16/MCRF4XX of the bytes; of a frame with its CRC behind it: 0. */
+uint16_t ethd__frame_crc(const uint8_t *bytes, size_t count) ETHD_RT;
+
+/* A frame as it goes over the wire; lost doesn't count. */
+void ethd__frame_encode(const ethd__frame *frame, uint8_t out[ETHD__FRAME_WIRE]) ETHD_RT;
+
+#endif
