@@ -109,17 +109,3 @@ void ethd_control_counters(const ethd_control *control, ethd_counters *out) {
   *out = control->state.counters;
   memcpy(out->guard, control->state.guard.counts, sizeof out->guard);
 }
-
-static const char *const sentences[ETHD_FAULT_COUNT] = {
-    [ETHD_FAULT_NONE] = "no fault",
-    [ETHD_FAULT_INPUT] = "a measurement isn't a finite number",
-    [ETHD_FAULT_LAW] = "a law reported a failure",
-    [ETHD_FAULT_FINITE] = "a law's output isn't a finite number in its range",
-    [ETHD_FAULT_BUDGET] = "a step ran over its time budget",
-    [ETHD_FAULT_SPEED] = "the ring is faster than its limit",
-    [ETHD_FAULT_WORKSPACE] = "the ring is out of its workspace",
-};
-
-const char *ethd_fault_sentence(ethd_fault fault) {
-  return (unsigned)fault < ETHD_FAULT_COUNT ? sentences[fault] : "an unknown fault";
-}

@@ -13,10 +13,6 @@
 
 #define PATIENCE 1000 /* waits of 1 ms, or ticks */
 
-static const ethd_driver *const drivers[] = {&ethd_driver_sim};
-
-#define DRIVERS (sizeof drivers / sizeof *drivers)
-
 /* ---- time ---- */
 
 void ethd__session_poll(ethd__session *s) {
@@ -66,29 +62,12 @@ static void await_tick(ethd__session *s) {
 
 /* ---- opening ---- */
 
-static ethd_status find_driver(ethd__session *s, char *message) {
-  char quote[ETHD_QUOTE_MAX], list[128] = "";
-  for (size_t i = 0; i < DRIVERS; i++) {
-    if (!strcmp(drivers[i]->id, s->config->device)) s->driver = drivers[i];
-    snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", i ? ", " : "", drivers[i]->id);
-  }
-  if (s->driver) return ETHD_OK;
-  return ethd__say(message, ETHD_E_UNKNOWN, "%s: device.driver: found %s; %s is allowed",
-                   s->config->path ? s->config->path : "the defaults",
-                   ethd__quote(s->config->device, strlen(s->config->device), quote), list);
-}
-
 static ethd_status open_device(ethd__session *s, char *message) {
   ethd_error error = {0};
   const ethd_device_def def = {&s->config->setup, s->config->settings, s->config->setting_count,
-                               s->config->folder};
-  ethd_status status = find_driver(s, message);
+                               s->config->folder, s->config->path};
+  ethd_status status = ethd_device_open(s->config->device, NULL, &def, &s->driver, &s->device, message);
   if (status) return status;
-  status = s->driver->open(&def, &s->device, &error);
-  if (status) {
-    ethd_error_text(s->config->path, &error, message);
-    return status;
-  }
   const ethd_limits limits = s->driver->limits(s->device);
   s->setup = s->config->setup;
   s->setup.limits = ethd_limits_narrower(&limits, &s->config->setup.limits);

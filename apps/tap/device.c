@@ -18,7 +18,8 @@ ethd_status ethd__device_read(const ethd_config *config, ethd__device *out,
                               char message[ETHD_MESSAGE_MAX]) {
   ethd__sim_settings settings;
   ethd_error error;
-  const ethd_device_def def = {&config->setup, config->settings, config->setting_count, config->folder};
+  const ethd_device_def def = {&config->setup, config->settings, config->setting_count, config->folder,
+                               config->path};
   ethd_status status = check_driver(config, message);
   if (status) return status;
   status = ethd__sim_settings_read(&def, &settings, &error);

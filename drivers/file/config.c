@@ -74,7 +74,7 @@ static ethd_status device_key(const reading *r, const ethd_ini_key *k) {
     return ETHD_OK;
   }
   if (strlen(k->value) >= sizeof c->device)
-    return ethd__key_found(&key, ETHD_E_SYNTAX, "a name of at most 31 characters");
+    return ethd__key_found(&key, ETHD_E_SYNTAX, "at most 95 characters");
   strcpy(c->device, k->value);
   return ETHD_OK;
 }

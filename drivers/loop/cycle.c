@@ -6,6 +6,7 @@
 #include "loop/loop.h"
 
 #define REHEARSALS 3 /* after an early wake-up */
+#define HOLD_MAX 20  /* ticks without a newer joint sample; more is a device that can't be read */
 
 /* ---- clock ---- */
 
@@ -61,15 +62,27 @@ static void push(ethd_loop *l) ETHD_RT {
 /* ---- one tick ---- */
 
 /* A device that can't be read isn't known: the controller's input fault follows. */
-static void read_device(ethd_loop *l) ETHD_RT {
-  if (l->def.driver->read(l->def.device, l->due, &l->sense) < 0) {
-    raise(&l->stats.read_failures, 1);
-    memset(&l->sense, 0, sizeof l->sense);
-    l->sense.time_ns = l->due;
-    l->sense.q[0] = l->sense.q[1] = (double)NAN;
+static void blind(ethd_loop *l) ETHD_RT {
+  raise(&l->stats.read_failures, 1);
+  l->sense.have = 0;
+  l->sense.time_ns = l->due;
+  l->sense.q[0] = l->sense.q[1] = (double)NAN;
+}
+
+/* No: there is nothing newer than what the last step knew, and the torque holds. */
+static int read_device(ethd_loop *l) ETHD_RT {
+  if (!l->held) memset(&l->sense, 0, sizeof l->sense);
+  ethd_status status = l->def.driver->read(l->def.device, l->due, &l->sense);
+  if (status == ETHD_STALE && !(l->sense.faults | l->sense.grave) && l->held < HOLD_MAX) {
+    l->held++;
+    l->missed++;
+    return 0;
   }
+  if (status < 0 || (status == ETHD_STALE && l->held == HOLD_MAX)) blind(l);
+  l->held = 0;
   l->sense.missed = l->missed;
   l->sense.step_ns = l->step;
+  return 1;
 }
 
 static void disarm(ethd_loop *l) ETHD_RT {
@@ -118,11 +131,11 @@ static void step(ethd_loop *l, ethd_command *command) ETHD_RT {
 
 static void tick(ethd_loop *l) ETHD_RT {
   ethd_command command;
-  read_device(l);
+  raise(&l->stats.ticks, 1);
+  if (!read_device(l)) return;
   step(l, &command);
   write_device(l, &command);
   push(l);
-  raise(&l->stats.ticks, 1);
 }
 
 void ethd__loop_rest(ethd_loop *l) {

@@ -84,10 +84,16 @@ void ethd_loop_destroy(ethd_loop *l) {
 
 /* ---- the virtual clock ---- */
 
+uint32_t ethd__loop_units(const ethd_loop *l) {
+  uint32_t (*units)(const void *) = l->def.driver->units;
+  uint32_t n = units ? units(l->def.device) : 0;
+  return n < ETHD_UNITS_MAX ? n : ETHD_UNITS_MAX;
+}
+
 void ethd_loop_tick(ethd_loop *l) {
   uint64_t before = ethd__denormals_flush();
-  const ethd_driver *driver = l->def.driver;
-  if (driver->service && driver->service(l->def.device, ethd__loop_now(l)) < 0) l->stats.service_failures++;
+  for (uint32_t i = 0; i < ethd__loop_units(l); i++)
+    if (l->def.driver->service(l->def.device, i, ethd__loop_now(l)) < 0) l->stats.service_failures++;
   (void)!ethd__loop_turn(l);
   ethd__denormals_restore(before);
 }

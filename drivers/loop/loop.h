@@ -18,6 +18,12 @@ typedef struct ethd__rows {
   ethd_loop_row *at;
 } ethd__rows;
 
+typedef struct ethd__unit {
+  ethd_loop *loop;
+  uint32_t number;
+  pthread_t thread;
+} ethd__unit;
+
 struct ethd_loop {
   ethd_loop_def def;
   int64_t period, early; /* ns */
@@ -28,6 +34,7 @@ struct ethd_loop {
   int64_t step;   /* ns: duration of the last step */
   int64_t ramp;   /* armed ticks since the start */
   int32_t dry;    /* 1: the next step is rehearsed first */
+  int32_t held;   /* ticks since the last that stepped */
   int32_t marks, was_armed;
   uint64_t lost, swaps;
   ethd_sense sense;
@@ -38,8 +45,10 @@ struct ethd_loop {
   ethd__rows rows;
 
   /* [main] */
-  int32_t shortfalls, threads, locked;
-  pthread_t control, service;
+  int32_t shortfalls, locked, has_control;
+  uint32_t units; /* of blocking I/O that have a thread */
+  ethd__unit unit[ETHD_UNITS_MAX];
+  pthread_t control;
   void *stack;
   int dma_latency;
 };
@@ -60,6 +69,9 @@ void ethd__loop_rest(ethd_loop *loop) ETHD_RT;
    processor; the bits of what it refuses. [main] */
 int32_t ethd__loop_ask_machine(ethd_loop *loop, int *cpu);
 void ethd__loop_release_machine(ethd_loop *loop);
+
+/* Units of blocking I/O that the device has. [main] */
+uint32_t ethd__loop_units(const ethd_loop *loop);
 
 /* Names a failure. [main] */
 ethd_status ethd__loop_refuse(ethd_error *error, ethd_status status, const char *name, double found,

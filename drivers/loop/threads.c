@@ -1,4 +1,4 @@
-/* The loop's threads: its own, and one for the driver's blocking I/O. */
+/* The loop's threads: its own, and one for each unit of the device's blocking I/O. */
 #include <errno.h>
 #include <math.h>
 #include <sched.h>
@@ -13,8 +13,6 @@
 #define SERVICE_STACK ((size_t)256 << 10)
 #define PAUSE 1000000  /* ns */
 #define PATIENCE 1000  /* pauses */
-
-enum { CONTROL = 1, SERVICE = 2 };
 
 static void pause_a_little(void) {
   struct timespec t = {.tv_nsec = PAUSE};
@@ -34,12 +32,13 @@ static void *run_control(void *loop) {
   return NULL;
 }
 
-static void *run_service(void *loop) {
-  ethd_loop *l = loop;
+static void *run_unit(void *unit_) {
+  const ethd__unit *unit = unit_;
+  ethd_loop *l = unit->loop;
   while (!atomic_load_explicit(&l->stop, memory_order_relaxed)) {
     struct timespec t;
     __STD(clock_gettime)(CLOCK_MONOTONIC, &t);
-    ethd_status status = l->def.driver->service(l->def.device, (int64_t)t.tv_sec * 1000000000 + t.tv_nsec);
+    ethd_status status = l->def.driver->service(l->def.device, unit->number, (int64_t)t.tv_sec * 1000000000 + t.tv_nsec);
     if (status < 0) __atomic_fetch_add(&l->stats.service_failures, 1, __ATOMIC_RELAXED);
     if (status) pause_a_little();
   }
@@ -82,12 +81,16 @@ static int start_control(ethd_loop *l, int cpu) {
   return l->def.require_rt ? EPERM : create_control(l, cpu, SCHED_OTHER);
 }
 
-static int start_service(ethd_loop *l) {
+static int start_units(ethd_loop *l) {
   pthread_attr_t attr;
-  if (!l->def.driver->service) return 0;
+  int failure = 0;
   pthread_attr_init(&attr);
   pthread_attr_setstacksize(&attr, SERVICE_STACK);
-  int failure = __STD(pthread_create)(&l->service, &attr, run_service, l);
+  for (uint32_t i = 0, n = ethd__loop_units(l); !failure && i < n; i++) {
+    l->unit[i] = (ethd__unit){.loop = l, .number = i};
+    failure = __STD(pthread_create)(&l->unit[i].thread, &attr, run_unit, &l->unit[i]);
+    if (!failure) l->units++;
+  }
   pthread_attr_destroy(&attr);
   return failure;
 }
@@ -100,10 +103,9 @@ static int start_threads(ethd_loop *l, int cpu) {
   sigdelset(&all, SIGDEBUG);
 #endif
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  int failure = start_service(l);
-  if (!failure && l->def.driver->service) l->threads |= SERVICE;
+  int failure = start_units(l);
   if (!failure) failure = start_control(l, cpu);
-  if (!failure) l->threads |= CONTROL;
+  if (!failure) l->has_control = 1;
   pthread_sigmask(SIG_SETMASK, &before, NULL);
   return failure;
 }
@@ -128,7 +130,7 @@ ethd_status ethd_loop_start(ethd_loop *l, ethd_error *error) {
     arm(l);
     return ETHD_OK;
   }
-  if (l->threads) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "loop", NAN, NAN, NAN);
+  if (l->has_control || l->units) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "loop", NAN, NAN, NAN);
   if (ethd__xenomai_begin()) return ethd__loop_refuse(error, ETHD_E_DEVICE, "xenomai", NAN, NAN, NAN);
   l->stack = make_stack(l->def.stack);
   if (!l->stack) return ethd__loop_refuse(error, ETHD_E_MEMORY, "stack", NAN, NAN, NAN);
@@ -145,7 +147,7 @@ ethd_status ethd_loop_start(ethd_loop *l, ethd_error *error) {
 /* The loop lets go between two ticks; then device and controller are [main]'s. */
 static int take_over(ethd_loop *l) {
   int asked = ETHD__LOOP_ASKED;
-  if (!(l->threads & CONTROL) || ethd_loop_ended(l)) return l->def.clock != NULL;
+  if (!l->has_control || ethd_loop_ended(l)) return l->def.clock != NULL;
   atomic_store_explicit(&l->mode, ETHD__LOOP_ASKED, memory_order_release);
   for (int i = 0; i < PATIENCE; i++) {
     if (atomic_load_explicit(&l->mode, memory_order_acquire) == ETHD__LOOP_PARKED) return 1;
@@ -170,9 +172,9 @@ ethd_status ethd_loop_join(ethd_loop *l) {
     ethd__loop_rest(l);
     atomic_store_explicit(&l->ended, 1, memory_order_release);
   }
-  if (l->threads & CONTROL) __RT(pthread_join)(l->control, NULL);
-  if (l->threads & SERVICE) __STD(pthread_join)(l->service, NULL);
-  l->threads = 0;
+  if (l->has_control) __RT(pthread_join)(l->control, NULL);
+  l->has_control = 0;
+  for (; l->units; l->units--) __STD(pthread_join)(l->unit[l->units - 1].thread, NULL);
   if (l->stack) munmap(l->stack, l->def.stack);
   l->stack = NULL;
   ethd__loop_release_machine(l);

@@ -3,6 +3,7 @@
 
 #include "ethd/driver.h"
 #include "ethd/sim.h"
+#include "file/error_text.h"
 #include "sim/plant.h"
 #include "sim/settings.h"
 
@@ -19,43 +20,51 @@ typedef struct device {
 } device;
 
 static ethd_status load_plant(const ethd_device_def *def, const ethd_setting *setting, ethd_plant *out,
-                              ethd_error *error) {
-  const char *plant = setting ? setting->value : "n";
-  char message[ETHD_MESSAGE_MAX];
-  char *path = ethd__plant_path(plant, def->folder);
-  ethd_status status = path ? ethd__plant_read(path, plant, out, message) : ETHD_E_MEMORY;
+                              char *message) {
+  char *path = ethd__plant_path(setting ? setting->value : "n", def->folder);
+  ethd_status status = path ? ethd_plant_load(path, out, message)
+                            : ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
   free(path);
-  if (!status) return ETHD_OK;
-  ethd__sim_refuse(error, status, status == ETHD_E_MEMORY ? plant : message, NAN, NAN, NAN);
-  if (error && setting) error->line = setting->line;
   return status;
 }
 
 static ethd_status start(void *device);
 static void close_device(void *device);
 
-static ethd_status sim_open(const ethd_device_def *def, void **out, ethd_error *error) {
-  ethd__sim_settings s;
-  *out = NULL;
-  ethd_status status = ethd__sim_settings_read(def, &s, error);
+static ethd_status create(const ethd_device_def *def, const ethd__sim_settings *s, device *d, char *message) {
+  ethd_error error = {0};
+  ethd_status status = load_plant(def, s->plant, &d->def.plant, message);
   if (status) return status;
+  if (s->rays >= 0) d->def.plant.rays = s->rays;
+  status = ethd_sim_create(&d->def, &d->sim, &error);
+  if (!status) {
+    ethd_vec meet = {s->p[ETHD__SIM_MEET_X], s->p[ETHD__SIM_MEET_Y]};
+    ethd_sim_draw(&d->def.plant, (uint64_t)s->p[ETHD__SIM_SEED], (uint64_t)s->p[ETHD__SIM_TAP],
+                  s->p[ETHD__SIM_SPEED], meet, &d->tap);
+    status = ethd_sim_start(d->sim, &d->tap);
+    if (status) ethd__sim_refuse(&error, status, "sim", NAN, NAN, NAN);
+  }
+  if (status) ethd_error_text(def->file, &error, message);
+  return status;
+}
+
+static ethd_status sim_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
+  ethd__sim_settings s;
+  ethd_error error = {0};
+  *out = NULL;
+  ethd_status status = ethd__sim_settings_read(def, &s, &error);
+  if (status) {
+    ethd_error_text(def->file, &error, message);
+    return status;
+  }
   device *d = calloc(1, sizeof *d);
-  if (!d) return ethd__sim_refuse(error, ETHD_E_MEMORY, "sim", NAN, NAN, NAN);
+  if (!d) return ethd__say(message, ETHD_E_MEMORY, "sim: %s", ethd_status_sentence(ETHD_E_MEMORY));
   d->def = (ethd_sim_def){.arm = def->setup->arm,
                           .ring_radius = def->setup->ring_radius,
                           .period = def->setup->period,
                           .step = s.p[ETHD__SIM_STEP],
                           .tolerance = s.p[ETHD__SIM_TOLERANCE]};
-  status = load_plant(def, s.plant, &d->def.plant, error);
-  if (!status && s.rays >= 0) d->def.plant.rays = s.rays;
-  if (!status) status = ethd_sim_create(&d->def, &d->sim, error);
-  if (!status) {
-    ethd_vec meet = {s.p[ETHD__SIM_MEET_X], s.p[ETHD__SIM_MEET_Y]};
-    ethd_sim_draw(&d->def.plant, (uint64_t)s.p[ETHD__SIM_SEED], (uint64_t)s.p[ETHD__SIM_TAP],
-                  s.p[ETHD__SIM_SPEED], meet, &d->tap);
-    status = ethd_sim_start(d->sim, &d->tap);
-    if (status) ethd__sim_refuse(error, status, "sim", NAN, NAN, NAN);
-  }
+  status = create(def, &s, d, message);
   if (status)
     close_device(d);
   else
@@ -131,7 +140,6 @@ const ethd_driver ethd_driver_sim = {
     .start = start,
     .read = sim_read,
     .write = sim_write,
-    .service = NULL,
     .safe = safe,
     .stop = stop,
     .close = close_device,

@@ -11,8 +11,6 @@
 
 ETHD_BEGIN_DECLS
 
-#define ETHD_MESSAGE_MAX 512 /* bytes: room for one line about a failure */
-
 typedef struct ethd_config {
   ethd_setup setup;         /* ready to create a controller with; setup.scene = scene */
   ethd_scene *scene;        /* owned; NULL without a scene */
@@ -22,7 +20,7 @@ typedef struct ethd_config {
   char *folder;             /* relative paths start here */
   double mass_x, mass_y;    /* kg at the ring, for stability checks; NaN: not given */
   uint32_t limits_given;    /* bits: torque 1, torque_rate 2, speed 4, workspace 8, step_time 16 */
-  char device[ETHD_NAME_MAX]; /* driver id, "sim" by default */
+  char device[ETHD_DRIVERS_TEXT_MAX]; /* the drivers' ids as written, "sim" by default */
   ethd_setting *settings;   /* the other keys of [device] */
   uint32_t setting_count;
   const ethd_law **laws;    /* built in and of plugins; ends with NULL */

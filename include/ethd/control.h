@@ -14,6 +14,7 @@
 #include <stdint.h>
 
 #include "ethd/arm.h"
+#include "ethd/fault.h"
 #include "ethd/finger_filter.h"
 #include "ethd/finger_fit.h"
 #include "ethd/guard.h"
@@ -94,6 +95,8 @@ enum {
   X(int64_t, have, 1, "1", "bits: what this sense holds")                                       \
   X(int64_t, missed, 1, "1", "whole periods missed since the last step")                        \
   X(int64_t, step_ns, 1, "ns", "duration of the last step as the caller measured it")           \
+  X(int64_t, faults, 1, "1", "bits: rows of the fault table that device or loop saw")           \
+  X(int64_t, grave, 1, "1", "bits: rows whose second reaction is due")                          \
   X(double, q, 2, "rad", "joint angles")                                                        \
   X(double, dq, 2, "rad/s", "joint speeds")                                                     \
   X(double, finger, 2, "m", "finger centre in R_0")                                             \
@@ -159,22 +162,8 @@ typedef struct ethd_command {
 
 /* ---- events ---- */
 
-typedef enum ethd_fault {
-  ETHD_FAULT_NONE = 0,
-  ETHD_FAULT_INPUT = 1,     /* q, dq or finger not finite; value: which, ETHD_HAVE_* or 0 for q */
-  ETHD_FAULT_LAW = 2,       /* a law returned a failure; value: 100 kind - status */
-  ETHD_FAULT_FINITE = 3,    /* a law's output isn't finite; value: kind */
-  ETHD_FAULT_BUDGET = 4,    /* the last step ran over limits.step_time; value: ns */
-  ETHD_FAULT_SPEED = 5,     /* guard: value: m/s */
-  ETHD_FAULT_WORKSPACE = 6, /* guard */
-  ETHD_FAULT_COUNT
-} ethd_fault;
-
-/* One sentence each. [any, rt-safe] */
-ETHD_API const char *ethd_fault_sentence(ethd_fault fault) ETHD_RT;
-
 typedef enum ethd_event_kind {
-  ETHD_EVENT_FAULT = 1,  /* code: ethd_fault, value as said there */
+  ETHD_EVENT_FAULT = 1,  /* code: ethd_fault, value as said in fault.h */
   ETHD_EVENT_TAKEN = 2,  /* a posted setup rules from this tick; scene: the replaced one, if no longer used */
   ETHD_EVENT_CLEARED = 3, /* faults were acknowledged */
   ETHD_EVENT_RELEASED = 4 /* scene: a replaced body's, no longer used */

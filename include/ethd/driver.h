@@ -1,9 +1,17 @@
 /* A device: what moves the ring and measures ring and finger.
 
    open [main] may block; start [main] enables; read and write [rt] are wait-free and bounded; service does
-   one unit of blocking I/O: the I/O thread calls it, or the virtual clock in lock-step, so that a run with
-   the same drivers repeats bit for bit; safe [rt, any state] can't fail: zero torque from now on;
-   stop [main] disables; close [main] frees. The simulated device is a driver like any other. */
+   one piece of blocking I/O: an I/O thread for each unit calls it, or the virtual clock in lock-step, so
+   that a run with the same drivers repeats bit for bit; safe [any thread, any state] can't fail: zero torque
+   from now on; stop [main] disables; close [main] frees. The simulated device is a driver like any other.
+
+   Several drivers may stand behind one device (a servo, its encoders, a proximity ring): each adds what it
+   knows to the sense, and takes from the command what is its own.
+
+        [device]                                  ethd_device_open
+        driver = servo, ring                        servo  --.
+        servo.map = svd48v.map                               +--> one driver, one device
+        ring.port = /dev/ttyUSB0                    ring   --'                                            */
 #ifndef ETHD_DRIVER_H
 #define ETHD_DRIVER_H
 
@@ -14,6 +22,12 @@
 ETHD_BEGIN_DECLS
 
 #define ETHD_DRIVER_ABI 0u
+#define ETHD_DRIVERS_MAX 4       /* behind one device */
+#define ETHD_DRIVERS_TEXT_MAX 96 /* bytes of their ids in a row, the closing 0 included */
+#define ETHD_UNITS_MAX 8         /* of blocking I/O, of all drivers together */
+#define ETHD_FIGURES_MAX 64      /* likewise */
+
+typedef struct ethd_driver ethd_driver;
 
 /* One key of a configuration's [device] section, as text; keys the driver doesn't know are errors. */
 typedef struct ethd_setting {
@@ -21,31 +35,57 @@ typedef struct ethd_setting {
   int line;
 } ethd_setting;
 
-/* What a driver is opened with. */
+/* What a device is opened with. */
 typedef struct ethd_device_def {
   const ethd_setup *setup; /* arm, ring, period that the controller assumes */
   const ethd_setting *settings;
   uint32_t setting_count;
   const char *folder; /* relative paths in settings start here */
+  const char *file;   /* of the settings, for messages; NULL: they weren't in a file */
 } ethd_device_def;
 
-typedef struct ethd_driver {
+/* A number about the device for people: "feedback age p99", "s", 0.0012. */
+typedef struct ethd_figure {
+  const char *name, *unit;
+  double value;
+} ethd_figure;
+
+struct ethd_driver {
   uint32_t size, abi;
   const char *id, *brief;
   const ethd_param *params; /* documentation of its numeric settings; may be NULL */
   uint32_t param_count;
-  ethd_status (*open)(const ethd_device_def *def, void **device, ethd_error *error);
+  /* On failure *device is NULL and message holds one line: file:line, what was found, what is allowed. */
+  ethd_status (*open)(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]);
   ethd_status (*start)(void *device);
+  /* Adds what is new to *out, which is zero when a step is over. ETHD_STALE: a joint sample is due from
+     this driver and there is no newer one; the loop then holds the torque and steps when there is, unless
+     *out names a fault. Negative: nothing can be known of the device. NULL: it measures nothing. */
   ethd_status (*read)(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT;
-  ethd_status (*write)(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT;
-  ethd_status (*service)(void *device, int64_t now_ns); /* NULL: no blocking I/O */
+  ethd_status (*write)(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT; /* or NULL */
+  uint32_t (*units)(const void *device); /* of blocking I/O; NULL: none */
+  /* unit: 0 .. units - 1. A positive status: there was nothing to do. */
+  ethd_status (*service)(void *device, uint32_t unit, int64_t now_ns);
   void (*safe)(void *device) ETHD_RT;
   ethd_status (*stop)(void *device);
   void (*close)(void *device);
   ethd_limits (*limits)(const void *device);
-} ethd_driver;
+  /* At most `max` figures, since the start; returns how many. [main], while it runs too; NULL: none. */
+  uint32_t (*figures)(const void *device, ethd_figure *out, uint32_t max);
+};
 
 ETHD_API extern const ethd_driver ethd_driver_sim;
+
+/* All that are built in, ended by NULL. */
+ETHD_API extern const ethd_driver *const ethd_drivers[];
+
+/* Opens the drivers that `ids` names ("sim", "servo, ring"), in that order, out of `from` (ended by NULL;
+   NULL: ethd_drivers), as one. With several, a setting's key carries its driver's id ("ring.port"); with one
+   it may. *driver and *device then go together; device is closed by driver->close. Limits are the narrowest
+   of all. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from,
+                                                      const ethd_device_def *def, const ethd_driver **driver,
+                                                      void **device, char message[ETHD_MESSAGE_MAX]);
 
 ETHD_END_DECLS
 

@@ -118,7 +118,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_create(const ethd_loop_def *def, 
 /* Stops and joins if need be. NULL is fine. [main] */
 ETHD_API void ethd_loop_destroy(ethd_loop *loop);
 
-/* Threads: the loop's, one for the driver's service. One dry tick, then the device is armed. With a virtual
+/* Threads: the loop's, one for each unit of the device's blocking I/O. One dry tick, then the device is armed. With a virtual
    clock there are none. Failures: ETHD_E_DEVICE, its name says of what ("require_rt", "thread",
    "xenomai"); with require_rt nothing runs. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_start(ethd_loop *loop, ethd_error *error);

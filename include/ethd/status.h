@@ -43,6 +43,8 @@ typedef enum ethd_status {
 /* The sentence of a status; "an unknown status" for any other number. [any, rt-safe] */
 ETHD_API const char *ethd_status_sentence(ethd_status status) ETHD_RT;
 
+#define ETHD_MESSAGE_MAX 512 /* bytes: room for one line to people about a failure */
+
 /* What went wrong, as data: the library formats no text. `name` is the parameter, word or file the
    failure is about ("contact.k_e"), cut to fit; `line` is 1-based, 0 without text; `found`, `min` and
    `max` are NaN where no number is meant. */

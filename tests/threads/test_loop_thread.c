@@ -87,9 +87,11 @@ static ethd_status dev_write(void *device_, int64_t now, const ethd_command *com
   return ETHD_OK;
 }
 
-static ethd_status dev_service(void *d, int64_t now) {
+static uint32_t dev_units(const void *d) { return (void)d, 1; }
+
+static ethd_status dev_service(void *d, uint32_t unit, int64_t now) {
   struct timespec t = {.tv_nsec = 1000000};
-  (void)now;
+  (void)unit, (void)now;
   atomic_fetch_add(&((device *)d)->services, 1);
   nanosleep(&t, NULL);
   return ETHD_OK;
@@ -100,7 +102,7 @@ static ethd_status dev_stop(void *d) { return (void)d, ETHD_OK; }
 static void dev_close(void *d) { (void)d; }
 
 static const ethd_driver driver = {.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "test", .brief = "test",
-                                   .start = dev_start, .read = dev_read, .write = dev_write, .service = dev_service,
+                                   .start = dev_start, .read = dev_read, .write = dev_write, .units = dev_units, .service = dev_service,
                                    .safe = dev_safe, .stop = dev_stop, .close = dev_close};
 
 static rig r;

@@ -1,0 +1,118 @@
+#include "device/stack.h"
+
+#include <stdlib.h>
+
+/* ---- [rt] ---- */
+
+static ethd_status worse(ethd_status a, ethd_status b) ETHD_RT {
+  if (a < 0 || b < 0) return a < b ? a : b;
+  return a ? a : b;
+}
+
+static ethd_status read_all(void *stack, int64_t now_ns, ethd_sense *out) ETHD_RT {
+  const ethd__stack *s = stack;
+  ethd_status status = ETHD_OK;
+  for (uint32_t i = 0; i < s->count; i++)
+    if (s->at[i].driver->read) status = worse(status, s->at[i].driver->read(s->at[i].device, now_ns, out));
+  return status;
+}
+
+static ethd_status write_all(void *stack, int64_t now_ns, const ethd_command *command) ETHD_RT {
+  const ethd__stack *s = stack;
+  ethd_status status = ETHD_OK;
+  for (uint32_t i = 0; i < s->count; i++)
+    if (s->at[i].driver->write) status = worse(status, s->at[i].driver->write(s->at[i].device, now_ns, command));
+  return status;
+}
+
+static void safe_all(void *stack) ETHD_RT {
+  const ethd__stack *s = stack;
+  for (uint32_t i = 0; i < s->count; i++) s->at[i].driver->safe(s->at[i].device);
+}
+
+/* ---- I/O ---- */
+
+static uint32_t units_of(const ethd__stack *s, uint32_t i) {
+  return s->at[i].driver->units ? s->at[i].driver->units(s->at[i].device) : 0;
+}
+
+static uint32_t units(const void *stack) {
+  const ethd__stack *s = stack;
+  uint32_t sum = 0;
+  for (uint32_t i = 0; i < s->count; i++) sum += units_of(s, i);
+  return sum;
+}
+
+static ethd_status service(void *stack, uint32_t unit, int64_t now_ns) {
+  const ethd__stack *s = stack;
+  for (uint32_t i = 0; i < s->count; i++) {
+    uint32_t own = units_of(s, i);
+    if (unit < own) return s->at[i].driver->service(s->at[i].device, unit, now_ns);
+    unit -= own;
+  }
+  return ETHD_E_ARGUMENT;
+}
+
+/* ---- [main] ---- */
+
+/* Measuring drivers may come after the one that moves; all start, or those that did are stopped. */
+static ethd_status start(void *stack) {
+  const ethd__stack *s = stack;
+  for (uint32_t i = 0; i < s->count; i++) {
+    ethd_status status = s->at[i].driver->start(s->at[i].device);
+    if (status >= 0) continue;
+    while (i--) (void)!s->at[i].driver->stop(s->at[i].device);
+    return status;
+  }
+  return ETHD_OK;
+}
+
+static ethd_status stop(void *stack) {
+  const ethd__stack *s = stack;
+  ethd_status status = ETHD_OK;
+  for (uint32_t i = s->count; i--;) status = worse(status, s->at[i].driver->stop(s->at[i].device));
+  return status;
+}
+
+static void close_all(void *stack) {
+  ethd__stack *s = stack;
+  if (!s) return;
+  for (uint32_t i = s->count; i--;)
+    if (s->at[i].device) s->at[i].driver->close(s->at[i].device);
+  free(s);
+}
+
+static ethd_limits limits(const void *stack) {
+  const ethd__stack *s = stack;
+  ethd_limits most = s->at[0].driver->limits(s->at[0].device);
+  for (uint32_t i = 1; i < s->count; i++) {
+    ethd_limits own = s->at[i].driver->limits(s->at[i].device);
+    most = ethd_limits_narrower(&most, &own);
+  }
+  return most;
+}
+
+static uint32_t figures(const void *stack, ethd_figure *out, uint32_t max) {
+  const ethd__stack *s = stack;
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < s->count; i++)
+    if (s->at[i].driver->figures) n += s->at[i].driver->figures(s->at[i].device, out + n, max - n);
+  return n;
+}
+
+const ethd_driver ethd__driver_stack = {
+    .size = sizeof(ethd_driver),
+    .abi = ETHD_DRIVER_ABI,
+    .id = "stack",
+    .brief = "several drivers behind one device",
+    .start = start,
+    .read = read_all,
+    .write = write_all,
+    .units = units,
+    .service = service,
+    .safe = safe_all,
+    .stop = stop,
+    .close = close_all,
+    .limits = limits,
+    .figures = figures,
+};

@@ -1,0 +1,174 @@
+/* Several drivers behind one device: names, whose keys are whose, order, what is read and written. */
+#include <check.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ethd/driver.h"
+
+typedef struct part {
+  char name;
+  uint32_t keys;
+  char key[2][16];
+} part;
+
+static char log_[64];
+
+static void note(char what, char who) {
+  size_t n = strlen(log_);
+  log_[n] = what, log_[n + 1] = who, log_[n + 2] = 0;
+}
+
+static ethd_status open_part(char name, const ethd_device_def *def, void **device, char *message) {
+  part *p = calloc(1, sizeof *p);
+  p->name = name;
+  for (uint32_t i = 0; i < def->setting_count && i < 2; i++) strncpy(p->key[i], def->settings[i].key, 15);
+  p->keys = def->setting_count;
+  *device = p;
+  note('o', name);
+  if (p->keys && !strcmp(p->key[0], "bad")) {
+    free(p);
+    *device = NULL;
+    strcpy(message, "refused");
+    return ETHD_E_DEVICE;
+  }
+  return ETHD_OK;
+}
+static ethd_status open_a(const ethd_device_def *d, void **v, char m[ETHD_MESSAGE_MAX]) { return open_part('a', d, v, m); }
+static ethd_status open_b(const ethd_device_def *d, void **v, char m[ETHD_MESSAGE_MAX]) { return open_part('b', d, v, m); }
+static int fail_start;
+static ethd_status start(void *p) {
+  note('s', ((part *)p)->name);
+  return fail_start && ((part *)p)->name == 'b' ? ETHD_E_DEVICE : ETHD_OK;
+}
+static ethd_status stop(void *p) { return note('t', ((part *)p)->name), ETHD_OK; }
+static void safe(void *p) { note('x', ((part *)p)->name); }
+static void close_part(void *p) {
+  note('c', ((part *)p)->name);
+  free(p);
+}
+static ethd_status read_a(void *p, int64_t now, ethd_sense *out) {
+  (void)p, out->q[0] = 1, out->time_ns = now;
+  return ETHD_STALE;
+}
+static ethd_status read_b(void *p, int64_t now, ethd_sense *out) {
+  (void)p, (void)now, out->have |= ETHD_HAVE_RAYS, out->faults |= ETHD_FAULT_BIT(ETHD_FAULT_SENSOR);
+  return ETHD_OK;
+}
+static ethd_status write_a(void *p, int64_t now, const ethd_command *c) { return (void)p, (void)now, (void)c, note('w', 'a'), ETHD_OK; }
+static uint32_t one(const void *p) { return (void)p, 1; }
+static uint32_t two(const void *p) { return (void)p, 2; }
+static ethd_status service(void *p, uint32_t unit, int64_t now) { return (void)now, note((char)('0' + unit), ((part *)p)->name), ETHD_OK; }
+static ethd_limits limits_a(const void *p) {
+  ethd_limits l = ethd_limits_none();
+  return (void)p, l.torque = 2, l.speed = 3, l;
+}
+static ethd_limits limits_b(const void *p) {
+  ethd_limits l = ethd_limits_none();
+  return (void)p, l.torque = 1, l;
+}
+static uint32_t figures(const void *p, ethd_figure *out, uint32_t max) {
+  if (max) out[0] = (ethd_figure){"age", "s", ((const part *)p)->name};
+  return max ? 1 : 0;
+}
+
+static const ethd_driver a = {.size = sizeof a, .id = "a", .brief = "a", .open = open_a, .start = start, .read = read_a,
+                              .write = write_a, .units = one, .service = service, .safe = safe, .stop = stop,
+                              .close = close_part, .limits = limits_a, .figures = figures};
+static const ethd_driver b = {.size = sizeof b, .id = "b", .brief = "b", .open = open_b, .start = start, .read = read_b,
+                              .units = two, .service = service, .safe = safe, .stop = stop, .close = close_part,
+                              .limits = limits_b, .figures = figures};
+static const ethd_driver *const both[] = {&a, &b, NULL};
+
+static const ethd_driver *driver;
+static void *device;
+static char message[ETHD_MESSAGE_MAX];
+
+static ethd_status try(const char *ids, const char *k0, const char *k1) {
+  const ethd_setting settings[] = {{k0, "1", 7}, {k1, "2", 8}};
+  const ethd_setup setup = ethd_setup_default();
+  const ethd_device_def def = {&setup, settings, (k0 != NULL) + (k1 != NULL), ".", "c.ini"};
+  log_[0] = message[0] = 0;
+  return ethd_device_open(ids, both, &def, &driver, &device, message);
+}
+
+START_TEST(test_alone) {
+  ck_assert_int_eq(try("b", "b.port", "speed"), ETHD_OK);
+  ck_assert_ptr_eq(driver, &b);
+  ck_assert_str_eq(((part *)device)->key[0], "port");
+  ck_assert_str_eq(((part *)device)->key[1], "speed");
+  driver->close(device);
+}
+END_TEST
+
+START_TEST(test_two) {
+  ethd_sense s = {0};
+  ethd_command c = {0};
+  ethd_figure f[3];
+  ck_assert_int_eq(try("a ,b", "b.port", "a.map"), ETHD_OK);
+  ck_assert_int_eq(driver->start(device), ETHD_OK);
+  ck_assert_int_eq(driver->read(device, 5, &s), ETHD_STALE);
+  ck_assert(s.q[0] == 1 && s.time_ns == 5 && s.have == ETHD_HAVE_RAYS && s.faults == ETHD_FAULT_BIT(18));
+  ck_assert_int_eq(driver->write(device, 5, &c), ETHD_OK);
+  ck_assert_uint_eq(driver->units(device), 3);
+  for (uint32_t u = 0; u < 3; u++) ck_assert_int_eq(driver->service(device, u, 5), ETHD_OK);
+  ck_assert_int_eq(driver->service(device, 3, 5), ETHD_E_ARGUMENT);
+  driver->safe(device);
+  ethd_limits l = driver->limits(device);
+  ck_assert(l.torque == 1 && l.speed == 3);
+  ck_assert_uint_eq(driver->figures(device, f, 3), 2);
+  ck_assert(f[0].value == 'a' && f[1].value == 'b');
+  ck_assert_uint_eq(driver->figures(device, f, 1), 1);
+  ck_assert_int_eq(driver->stop(device), ETHD_OK);
+  driver->close(device);
+  ck_assert_str_eq(log_, "oaobsasbwa0a0b1bxaxbtbtacbca");
+}
+END_TEST
+
+/* A start that fails leaves nothing started; an open that fails nothing open. */
+START_TEST(test_undone) {
+  ck_assert_int_eq(try("a,b", NULL, NULL), ETHD_OK);
+  fail_start = 1;
+  ck_assert_int_eq(driver->start(device), ETHD_E_DEVICE);
+  fail_start = 0;
+  driver->close(device);
+  ck_assert_str_eq(log_, "oaobsasbtacbca");
+  ck_assert_int_eq(try("a,b", "b.bad", NULL), ETHD_E_DEVICE);
+  ck_assert_str_eq(log_, "oaobca");
+  ck_assert_str_eq(message, "refused");
+}
+END_TEST
+
+START_TEST(test_refused) {
+  static const struct {
+    const char *ids, *key;
+    ethd_status status;
+    const char *says;
+  } bad[] = {{"c", NULL, ETHD_E_UNKNOWN, "c.ini: device.driver: found \"c\"; a, b are allowed"},
+             {"", NULL, ETHD_E_UNKNOWN, "found \"\""},
+             {"a,", NULL, ETHD_E_UNKNOWN, "found \"\""},
+             {"a b", NULL, ETHD_E_UNKNOWN, "found \"a b\""},
+             {"a, a", NULL, ETHD_E_DUPLICATE, "a stands twice"},
+             {"a, b", "port", ETHD_E_UNKNOWN, "c.ini:7: device.port: with several drivers"},
+             {"a, b", "c.port", ETHD_E_UNKNOWN, "c.ini:7: device.c.port"}};
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    ck_assert_int_eq(try(bad[i].ids, bad[i].key, NULL), bad[i].status);
+    ck_assert_msg(strstr(message, bad[i].says) != NULL, "%s", message);
+    ck_assert(driver == NULL && device == NULL);
+  }
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("device");
+  TCase *tests = tcase_create("device");
+  tcase_add_test(tests, test_alone);
+  tcase_add_test(tests, test_two);
+  tcase_add_test(tests, test_undone);
+  tcase_add_test(tests, test_refused);
+  suite_add_tcase(suite, tests);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed != 0;
+}
