@@ -82,6 +82,24 @@ static void braking(const ethd__rows *rows, const ethd__rule *rule, size_t from,
   out->eps = rows->trace[i].eps;
 }
 
+/* The pad's front is at the wall that the eye has. */
+static size_t sight_from(const ethd__rows *rows, const ethd__rule *rule, size_t i) {
+  while (i < rows->count && !(along(rule->n, rows->truth[i].finger) >= rule->seen)) i++;
+  return i;
+}
+
+static double pressing(const ethd__rows *rows, const ethd__rule *rule, size_t touch) {
+  size_t ticks = 0;
+  for (size_t i = touch; i < rows->count; i++) ticks += rows->truth[i].pad > 0;
+  return (double)ticks * rule->period;
+}
+
+static bool comes_back(const ethd__rows *rows, const ethd__rule *rule, size_t touch) {
+  size_t i = sight_from(rows, rule, touch);
+  while (i < rows->count && along(rule->n, rows->truth[i].finger) > rule->seen - rule->lift) i++;
+  return sight_from(rows, rule, i) < rows->count;
+}
+
 static double strongest(const ethd__rows *rows) {
   double force = 0;
   for (size_t i = 0; i < rows->count; i++) {
@@ -105,14 +123,16 @@ static ethd__reason judge(const ethd__rows *rows, const ethd__rule *rule, size_t
   if (touch_from(rows, begin) < meeting) return ETHD_TAP_EARLY_CONTACT;
   if (!(v_rvo >= rule->speed - rule->band)) return ETHD_TAP_TOO_SLOW;
   if (!(v_rvo <= rule->speed + rule->band)) return ETHD_TAP_TOO_FAST;
-  return touch == rows->count ? ETHD_TAP_NO_CONTACT : ETHD_TAP_OK;
+  if (touch == rows->count) return ETHD_TAP_NO_CONTACT;
+  if (pressing(rows, rule, touch) < rule->graze) return ETHD_TAP_GRAZING;
+  return rule->single && comes_back(rows, rule, touch) ? ETHD_TAP_DOUBLE : ETHD_TAP_OK;
 }
 
 void ethd__metrics_of(const ethd__rows *rows, const ethd__rule *rule, ethd__metrics *out) {
   size_t begin, meeting = approach_of(rows, rule, &begin);
   size_t touch = touch_from(rows, meeting);
   *out = (ethd__metrics){.v_rvo = NAN, .v_of = NAN, .d_max = NAN, .v_rmin = NAN, .delta_s = NAN,
-                         .eps = NAN, .t_rvo = NAN, .t_of = NAN, .peak_force = strongest(rows)};
+                         .eps = NAN, .t_rvo = NAN, .t_of = NAN, .t_seen = NAN, .peak_force = strongest(rows)};
   if (meeting < rows->count) {
     out->v_rvo = speed_at(rows, rule, meeting);
     out->t_rvo = rows->truth[meeting].t;
@@ -124,5 +144,7 @@ void ethd__metrics_of(const ethd__rows *rows, const ethd__rule *rule, ethd__metr
     out->t_of = rows->truth[touch].t;
     out->v_rmin = slowest(rows, rule, touch);
   }
+  size_t sight = sight_from(rows, rule, begin);
+  if (sight < rows->count) out->t_seen = rows->truth[sight].t;
   out->reason = judge(rows, rule, begin, meeting, touch, out->v_rvo);
 }

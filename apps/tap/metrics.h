@@ -35,6 +35,10 @@ typedef struct ethd__rule {
   double meet;        /* m: the ring's centre along n as it meets the wall */
   double d_beta;      /* m */
   bool never_fast;    /* the recorded movement never was that fast: too slow */
+  double seen;        /* m: the finger's centre along n as its pad's front is at the wall */
+  double graze;       /* s: a tap whose pad touches for less in all is grazing; 0: none */
+  bool single;        /* a finger that leaves the wall by `lift` after its touch and comes back makes a */
+  double lift;        /* m: double tap */
 } ethd__rule;
 
 /* Looks for t_r/vo tick by tick: all zeros, then every tick in turn. */
@@ -53,7 +57,9 @@ bool ethd__approach_step(ethd__approach *approach, const ethd__rule *rule, const
   X(EARLY_CONTACT, "early-contact") \
   X(TOO_SLOW, "too-slow")           \
   X(TOO_FAST, "too-fast")           \
-  X(NO_CONTACT, "no-contact")
+  X(NO_CONTACT, "no-contact")       \
+  X(GRAZING, "grazing")             \
+  X(DOUBLE, "double")
 
 typedef enum ethd__reason {
 #define ETHD_TAP_REASON(name, word) ETHD_TAP_##name,
@@ -73,6 +79,7 @@ typedef struct ethd__metrics {
   double delta_s;           /* ms: first braking tick to first vo tick after it */
   double eps;               /* m: offset at that vo tick */
   double t_rvo, t_of;       /* s of the tap */
+  double t_seen;            /* s of the tap: the finger's avatar reaches the wall that is seen */
   double peak_force;        /* N: largest |F_e| of the tap */
 } ethd__metrics;
 

@@ -2,32 +2,27 @@
 #ifndef ETHD_TAP_OUTPUT_H
 #define ETHD_TAP_OUTPUT_H
 
-#include "ethd/record.h"
 #include "file/csv.h"
 #include "tap/summary.h"
+#include "tap/ticks.h"
 
 /* A row per tap. `speed` as given, `valid` 1 or 0, empty where a figure isn't defined. */
 #define ETHD_TAP_HEADER                                                                              \
   "tap,transition,speed,seed,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m,"   \
   "t_rvo_s,t_of_s,peak_force_n"
 
-/* The columns of an ethd_truth, ended by a NULL name. */
-extern const ethd_column ethd__truth_columns[];
-
-/* A recording's folder holds, beside a recording's own files, truth.npy (row i belongs to row i of
-   tick.npy) and taps.csv (ETHD_TAP_HEADER). events.csv tells where a tap starts. */
+/* The folder of the ticks holds taps.csv (ETHD_TAP_HEADER) too. */
 typedef struct ethd__output {
   ethd_csv_out *csv, *taps;
-  ethd_recording *recording;
-  ethd_npy *truth;
+  ethd__ticks ticks;
 } ethd__output;
 
 /* csv, folder: NULL for none. */
 ETHD_MUST_CHECK ethd_status ethd__output_open(const char *csv, const char *folder, const ethd_config *config,
                                               ethd__output *out, char message[ETHD_MESSAGE_MAX]);
 
-/* From here on taps run with this setup. */
-ETHD_MUST_CHECK ethd_status ethd__output_law(ethd__output *output, const char *law, const ethd_setup *setup,
+/* From here on taps run on this stage. */
+ETHD_MUST_CHECK ethd_status ethd__output_law(ethd__output *output, const ethd__stage *stage,
                                              char message[ETHD_MESSAGE_MAX]);
 
 /* The tap that stage ran last. */
@@ -37,11 +32,5 @@ ETHD_MUST_CHECK ethd_status ethd__output_tap(ethd__output *output, const ethd__s
 
 /* Puts everything in its place. */
 ETHD_MUST_CHECK ethd_status ethd__output_close(ethd__output *output, char message[ETHD_MESSAGE_MAX]);
-
-/* The ticks of the tap that stage ran last, for plots: depths are those of the ring's front, the finger's
-   and the hand's along n, from the wall into it. */
-ETHD_MUST_CHECK ethd_status ethd__output_trace(const char *path, const ethd__stage *stage,
-                                               const ethd__speed *speed, const ethd_sim_tap *tap,
-                                               char message[ETHD_MESSAGE_MAX]);
 
 #endif

@@ -76,7 +76,7 @@ static ethd_status run_law(const ethd__plan *plan, size_t law, ethd__output *out
   size_t speeds = plan->study->speed_count;
   ethd_status status = ethd__stage_open(plan->study, plan->laws[law], &stage, message);
   if (status) return status;
-  status = ethd__output_law(output, plan->laws[law], &stage.setup, message);
+  status = ethd__output_law(output, &stage, message);
   for (size_t i = law * speeds; !status && i < (law + 1) * speeds && !ethd__stop; i++)
     status = run_cell(plan, &stage, output, cells, i, message);
   ethd__stage_close(&stage);
@@ -98,7 +98,6 @@ static ethd_status trace_cell(const ethd__plan *plan, const char *folder, const 
                               char *message) {
   ethd__stage stage;
   ethd__result result;
-  ethd_sim_tap tap;
   char *path;
   uint64_t number = ethd__cell_typical(cell);
   if (asprintf(&path, "%s/%s-%s.csv", folder, cell->law, cell->speed->word) < 0)
@@ -106,8 +105,10 @@ static ethd_status trace_cell(const ethd__plan *plan, const char *folder, const 
   ethd_status status = ethd__stage_open(plan->study, cell->law, &stage, message);
   if (!status) {
     status = ethd__stage_run(&stage, cell->speed, number, &result, message);
-    if (!status) status = ethd__stage_draw(&stage, cell->speed, number, &tap);
-    if (!status) status = ethd__output_trace(path, &stage, cell->speed, &tap, message);
+    if (!status) {
+      const ethd__view view = ethd__stage_view(&stage, cell->speed, result.finger_radius);
+      status = ethd__trace_write(path, &view, &stage.rows, message);
+    }
     ethd__stage_close(&stage);
   }
   free(path);

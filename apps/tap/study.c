@@ -77,6 +77,22 @@ static ethd_limits device_limits(const ethd__study *study) {
   return limits;
 }
 
+static ethd_status set_gains(const ethd__study *study, ethd_setup *setup, char *message) {
+  for (size_t i = 0; i < study->gain_count; i++) {
+    const ethd__gain *gain = &study->gains[i];
+    ethd_status status = ethd_config_set(study->config, gain->key, gain->value, setup, message);
+    if (status && status != ETHD_E_UNKNOWN) return status;
+  }
+  return ETHD_OK;
+}
+
+bool ethd__gain_applies(const ethd__study *study, const char *law, const ethd__gain *gain) {
+  char unsaid[ETHD_MESSAGE_MAX];
+  ethd_setup setup = study->config->setup;
+  return !ethd_config_transition(study->config, law, &setup, unsaid) &&
+         !ethd_config_set(study->config, gain->key, gain->value, &setup, unsaid);
+}
+
 static ethd_status create(ethd__stage *stage, ethd_error *error) {
   const ethd__study *study = stage->study;
   const ethd_sim_def def = {.plant = study->plant,
@@ -96,10 +112,11 @@ ethd_status ethd__stage_open(const ethd__study *study, const char *law, ethd__st
   const ethd_config *config = study->config;
   ethd_error error = {.status = ETHD_E_MEMORY, .found = NAN, .min = NAN, .max = NAN};
   const ethd_limits device = device_limits(study);
-  *out = (ethd__stage){.study = study, .setup = config->setup};
+  *out = (ethd__stage){.study = study, .law = law, .setup = config->setup};
   ethd_status status = ethd_config_transition(config, law, &out->setup, message);
+  if (!status) status = set_gains(study, &out->setup, message);
   if (status) return status;
-  out->setup.limits = ethd_limits_narrower(&device, &config->setup.limits);
+  out->setup.limits = ethd_limits_narrower(&device, &out->setup.limits);
   status = create(out, &error);
   if (!status) return ETHD_OK;
   ethd_error_text(config->path ? config->path : "defaults", &error, message);
@@ -130,16 +147,26 @@ ethd_status ethd__stage_draw(ethd__stage *stage, const ethd__speed *speed, uint6
   return count ? ETHD_OK : ETHD_E_UNREACHABLE;
 }
 
-ethd__rule ethd__stage_rule(const ethd__stage *stage, const ethd__speed *speed) {
+ethd__rule ethd__stage_rule(const ethd__stage *stage, const ethd__speed *speed, double finger_radius) {
   const ethd__study *study = stage->study;
+  double meet = ethd_vec_dot(study->n, study->meet);
   return (ethd__rule){.n = study->n,
                       .period = stage->setup.period,
                       .side = study->plant.metrics_side,
                       .speed = speed->centre,
                       .band = speed->band,
-                      .meet = ethd_vec_dot(study->n, study->meet),
+                      .meet = meet,
+                      .seen = meet + stage->setup.ring_radius - finger_radius,
                       .d_beta = stage->setup.ring_radius - stage->setup.finger_radius_max,
                       .never_fast = speed->touchdown.never_fast};
+}
+
+ethd__view ethd__stage_view(const ethd__stage *stage, const ethd__speed *speed, double finger_radius) {
+  ethd__view view = {.rule = ethd__stage_rule(stage, speed, finger_radius),
+                     .ring_radius = stage->setup.ring_radius,
+                     .finger_radius = finger_radius};
+  view.wall = view.rule.meet + view.ring_radius;
+  return view;
 }
 
 static void count_ticks(const ethd__rows *rows, ethd__result *out) {
@@ -150,9 +177,9 @@ static void count_ticks(const ethd__rows *rows, ethd__result *out) {
 
 ethd_status ethd__stage_run(ethd__stage *stage, const ethd__speed *speed, uint64_t tap, ethd__result *out,
                             char message[ETHD_MESSAGE_MAX]) {
-  const ethd__rule rule = ethd__stage_rule(stage, speed);
   ethd_sim_tap circumstances;
   ethd_status status = ethd__stage_draw(stage, speed, tap, &circumstances);
+  const ethd__rule rule = ethd__stage_rule(stage, speed, circumstances.finger_radius);
   if (!status)
     status = ethd__tap_run(stage->sim, stage->control, &circumstances, &rule, &stage->rows);
   if (status)
@@ -160,6 +187,7 @@ ethd_status ethd__stage_run(ethd__stage *stage, const ethd__speed *speed, uint64
                      ethd_status_sentence(status));
   ethd__metrics_of(&stage->rows, &rule, &out->metrics);
   out->commanded = circumstances.commanded;
+  out->finger_radius = circumstances.finger_radius;
   count_ticks(&stage->rows, out);
   return ETHD_OK;
 }

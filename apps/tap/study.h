@@ -7,6 +7,7 @@
 
 #include "tap/loop.h"
 #include "tap/placement.h"
+#include "tap/trace.h"
 
 #define ETHD_TAP_WORD_MAX 32
 
@@ -21,6 +22,11 @@ typedef struct ethd__speed {
    gives the paper's bands at 0.2 and 0.4. false: neither a word nor a number from 0.01 to 2. */
 bool ethd__speed_parse(const char *word, const ethd_plant *plant, ethd__speed *out);
 
+/* A change of the configuration's setup: "contact.k_e", "2000". */
+typedef struct ethd__gain {
+  const char *key, *value;
+} ethd__gain;
+
 typedef struct ethd__study {
   const ethd_config *config; /* with a scene */
   ethd_plant plant;
@@ -28,6 +34,8 @@ typedef struct ethd__study {
   ethd__movement movement; /* count 0: the plant's synthetic hand */
   ethd__speed *speeds;
   size_t speed_count;
+  const ethd__gain *gains; /* on top of the configuration; a law without such a parameter goes without */
+  size_t gain_count;
   /* worked out by ethd__study_prepare */
   ethd_vec meet; /* m: the ring's centre as it meets the wall */
   ethd_vec n;    /* of the wall there */
@@ -42,6 +50,7 @@ ETHD_MUST_CHECK ethd_status ethd__study_prepare(ethd__study *study, char message
 /* What runs taps under one law. */
 typedef struct ethd__stage {
   const ethd__study *study;
+  const char *law;
   ethd_setup setup;
   ethd_sim *sim;
   ethd_control *control;
@@ -49,7 +58,11 @@ typedef struct ethd__stage {
   ethd_path_sample *samples;
 } ethd__stage;
 
-/* The setup is the configuration's with transition `law` and the narrower of its limits and the device's. */
+/* False for a key that the law hasn't. */
+bool ethd__gain_applies(const ethd__study *study, const char *law, const ethd__gain *gain);
+
+/* The setup is the configuration's with transition `law`, the study's gains, and the narrower of its limits
+   and the device's. `law` outlives the stage. */
 ETHD_MUST_CHECK ethd_status ethd__stage_open(const ethd__study *study, const char *law, ethd__stage *out,
                                              char message[ETHD_MESSAGE_MAX]);
 void ethd__stage_close(ethd__stage *stage);
@@ -58,12 +71,16 @@ void ethd__stage_close(ethd__stage *stage);
 ETHD_MUST_CHECK ethd_status ethd__stage_draw(ethd__stage *stage, const ethd__speed *speed, uint64_t tap,
                                              ethd_sim_tap *out);
 
-/* What taps on this stage at this speed are judged by. */
-ethd__rule ethd__stage_rule(const ethd__stage *stage, const ethd__speed *speed);
+/* What taps of this finger on this stage at this speed are judged by. */
+ethd__rule ethd__stage_rule(const ethd__stage *stage, const ethd__speed *speed, double finger_radius);
+
+/* Likewise, for their tables. */
+ethd__view ethd__stage_view(const ethd__stage *stage, const ethd__speed *speed, double finger_radius);
 
 typedef struct ethd__result {
   ethd__metrics metrics;
   double commanded;        /* m/s: what was drawn for this tap */
+  double finger_radius;    /* m: likewise */
   uint32_t ticks, queried; /* of which the scene was asked */
 } ethd__result;
 

@@ -125,6 +125,42 @@ START_TEST(test_reasons) {
 }
 END_TEST
 
+/* Both are looked for only where the rule says so. */
+START_TEST(test_grazing) {
+  for (int i = 70; i < 79; i++) truth[i].pad = 1e-4;
+  ck_assert_int_eq(measure().reason, ETHD_TAP_OK);
+  rule.graze = 9.5e-3;
+  ck_assert_int_eq(measure().reason, ETHD_TAP_GRAZING);
+  truth[200].pad = 1e-4; /* ten ticks in all */
+  ck_assert_int_eq(measure().reason, ETHD_TAP_OK);
+}
+END_TEST
+
+/* The finger behind the wall from 70 on, out of it by 4 mm at 120, back at 140. */
+START_TEST(test_double) {
+  touch_at(70);
+  for (int i = 0; i < COUNT; i++) truth[i].finger[0] = i < 70 || (i >= 120 && i < 140) ? 0.249 : 0.244;
+  rule.seen = -0.245;
+  ck_assert_int_eq(measure().reason, ETHD_TAP_OK);
+  ck_assert_double_eq(measure().t_seen, 0.07);
+  rule.single = true;
+  rule.lift = 5e-3;
+  ck_assert_int_eq(measure().reason, ETHD_TAP_OK);
+  rule.lift = 3e-3;
+  ck_assert_int_eq(measure().reason, ETHD_TAP_DOUBLE);
+  for (int i = 140; i < COUNT; i++) truth[i].finger[0] = 0.249; /* left for good */
+  ck_assert_int_eq(measure().reason, ETHD_TAP_OK);
+}
+END_TEST
+
+START_TEST(test_never_seen) {
+  touch_at(70);
+  for (int i = 0; i < COUNT; i++) truth[i].finger[0] = 0.249;
+  rule.seen = -0.245;
+  ck_assert(isnan(measure().t_seen));
+}
+END_TEST
+
 /* Touching at the very tick is no early contact. */
 START_TEST(test_touch_as_the_wall_is_met) {
   touch_at(50);
@@ -199,6 +235,9 @@ int main(void) {
   tcase_add_test(all, test_braking);
   tcase_add_test(all, test_vo_without_braking);
   tcase_add_test(all, test_reasons);
+  tcase_add_test(all, test_grazing);
+  tcase_add_test(all, test_double);
+  tcase_add_test(all, test_never_seen);
   tcase_add_test(all, test_touch_as_the_wall_is_met);
   tcase_add_test(all, test_never_met);
   tcase_add_test(all, test_motor_side);

@@ -1,0 +1,104 @@
+#include "tap/ticks.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "file/error_text.h"
+#include "file/recording_parts.h"
+#include "file/text.h"
+
+#define TRUTH "truth.npy"
+#define LETTER_double 'f'
+#define COLUMN(type, name, count, unit, brief) \
+  {#name, unit, count, offsetof(ethd_truth, name), LETTER_##type},
+const ethd_column ethd__truth_columns[] = {ETHD_TRUTH_FIELDS(COLUMN){NULL, NULL, 0, 0, 0}};
+#undef COLUMN
+
+/* ---- writing ---- */
+
+static ethd_status in_folder(const char *folder, const char *name, char **out, char *message) {
+  *out = ethd__path_join(folder, name);
+  return *out ? ETHD_OK : ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder,
+                                    ethd_status_sentence(ETHD_E_MEMORY));
+}
+
+static ethd_status said(ethd_status status, char *message) {
+  return status ? ethd__say(message, status, "the recording: %s", ethd_status_sentence(status)) : ETHD_OK;
+}
+
+ethd_status ethd__ticks_open(const char *folder, const ethd_config *config, ethd__ticks *out,
+                             char message[ETHD_MESSAGE_MAX]) {
+  char *truth = NULL, unsaid[ETHD_MESSAGE_MAX];
+  *out = (ethd__ticks){0};
+  ethd_status status = ethd_recording_create(folder, config, &out->recording, message);
+  if (!status) status = in_folder(folder, TRUTH, &truth, message);
+  if (!status)
+    status = ethd_npy_create(truth, ethd__truth_columns, sizeof(ethd_truth), &out->truth, message);
+  free(truth);
+  if (status) (void)!ethd__ticks_close(out, unsaid);
+  return status;
+}
+
+ethd_status ethd__ticks_stage(ethd__ticks *ticks, const ethd__stage *stage, char message[ETHD_MESSAGE_MAX]) {
+  char detail[192];
+  ethd_recording *recording = ticks->recording;
+  ethd_status status = ethd_recording_event(recording, "setup", stage->law);
+  for (size_t i = 0; !status && i < stage->study->gain_count; i++) {
+    const ethd__gain *gain = &stage->study->gains[i];
+    if (!ethd__gain_applies(stage->study, stage->law, gain)) continue;
+    snprintf(detail, sizeof detail, "%s %s", gain->key, gain->value);
+    status = ethd_recording_event(recording, "set", detail);
+  }
+  snprintf(detail, sizeof detail, "limits.torque %.17g", stage->setup.limits.torque);
+  if (!status) status = ethd_recording_event(recording, "set", detail);
+  return said(status, message);
+}
+
+ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *words, const ethd__rows *rows,
+                            char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = ethd_recording_event(ticks->recording, "start", words);
+  for (size_t i = 0; !status && i < rows->count; i++)
+    status = ethd_recording_tick(ticks->recording, &rows->trace[i]);
+  if (!status) status = ethd_npy_append(ticks->truth, rows->truth, rows->count);
+  if (!status) status = ethd_npy_flush(ticks->truth);
+  return said(status, message);
+}
+
+ethd_status ethd__ticks_close(ethd__ticks *ticks, char message[ETHD_MESSAGE_MAX]) {
+  ethd_status truth = ethd_npy_close(ticks->truth), ticked = ethd_recording_close(ticks->recording);
+  *ticks = (ethd__ticks){0};
+  if (truth) return ethd__say(message, truth, "the recording's %s: %s", TRUTH, ethd_status_sentence(truth));
+  return said(ticked, message);
+}
+
+/* ---- reading ---- */
+
+static ethd_status read_npy(const char *folder, const char *name, const ethd_column *columns, size_t bytes,
+                            void **rows, size_t *count, char *message) {
+  char *path;
+  ethd_status status = in_folder(folder, name, &path, message);
+  if (!status) status = ethd_npy_read(path, columns, bytes, rows, count, message);
+  free(path);
+  return status;
+}
+
+ethd_status ethd__ticks_read(const char *folder, ethd__rows *out, char message[ETHD_MESSAGE_MAX]) {
+  void *trace = NULL, *truth = NULL;
+  size_t count = 0, truths = 0;
+  *out = (ethd__rows){0};
+  ethd_status status = read_npy(folder, ETHD_RECORDING_TICK, ethd_trace_columns, sizeof(ethd_trace), &trace,
+                                &count, message);
+  if (!status)
+    status = read_npy(folder, TRUTH, ethd__truth_columns, sizeof(ethd_truth), &truth, &truths, message);
+  if (!status && count != truths)
+    status = ethd__say(message, ETHD_E_SYNTAX, "%s: %zu rows in %s, %zu in %s; the same number is allowed",
+                       folder, count, ETHD_RECORDING_TICK, truths, TRUTH);
+  if (!status) {
+    *out = (ethd__rows){trace, truth, count, count};
+    return ETHD_OK;
+  }
+  free(trace);
+  free(truth);
+  return status;
+}

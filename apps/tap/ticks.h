@@ -1,0 +1,38 @@
+/* Ticks of taps on disk: a recording, and the truth beside it.
+
+   The folder holds, beside a recording's own files, truth.npy: row i belongs to row i of tick.npy.
+   events.csv tells where a tap starts. All [main]. */
+#ifndef ETHD_TAP_TICKS_H
+#define ETHD_TAP_TICKS_H
+
+#include "ethd/record.h"
+#include "tap/study.h"
+
+/* The columns of an ethd_truth, ended by a NULL name. */
+extern const ethd_column ethd__truth_columns[];
+
+typedef struct ethd__ticks {
+  ethd_recording *recording;
+  ethd_npy *truth;
+} ethd__ticks;
+
+/* Makes the folder. On failure nothing is open. */
+ETHD_MUST_CHECK ethd_status ethd__ticks_open(const char *folder, const ethd_config *config, ethd__ticks *out,
+                                             char message[ETHD_MESSAGE_MAX]);
+
+/* From here on taps run on this stage, under its law. */
+ETHD_MUST_CHECK ethd_status ethd__ticks_stage(ethd__ticks *ticks, const ethd__stage *stage,
+                                              char message[ETHD_MESSAGE_MAX]);
+
+/* A whole tap; `words` for people. */
+ETHD_MUST_CHECK ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *words, const ethd__rows *rows,
+                                            char message[ETHD_MESSAGE_MAX]);
+
+/* NULL recording is fine. */
+ETHD_MUST_CHECK ethd_status ethd__ticks_close(ethd__ticks *ticks, char message[ETHD_MESSAGE_MAX]);
+
+/* Both files of a folder back into rows, which ethd__rows_free frees. */
+ETHD_MUST_CHECK ethd_status ethd__ticks_read(const char *folder, ethd__rows *out,
+                                             char message[ETHD_MESSAGE_MAX]);
+
+#endif
