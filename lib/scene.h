@@ -89,8 +89,9 @@ void ethd__chain_touch(const ethd__chain *chain, size_t k, ethd_vec x, bool insi
    outside. */
 size_t ethd__chain_minimum(const ethd__chain *chain, ethd_vec x, size_t from, ethd_touch *out) ETHD_RT;
 
-/* The one at edge k or at vertex k before it; k = edges: at the end. */
-bool ethd__chain_minimum_at(const ethd__chain *chain, size_t k, ethd_vec x, ethd_touch *out) ETHD_RT;
+/* The one at edge k or at vertex k before it; k = edges: at the end. x comes by its address: gcc 12 stores a
+   pair in two halves, loads it whole and waits. */
+bool ethd__chain_minimum_at(const ethd__chain *chain, size_t k, const ethd_vec *x, ethd_touch *out) ETHD_RT;
 
 /* Whether an edge is crossed by the ray from x to the right, exactly. */
 bool ethd__edge_crossed(ethd_vec a, ethd_vec b, ethd_vec x) ETHD_RT;

@@ -212,34 +212,22 @@ static bool faces(const ethd__chain *chain, const ethd_touch *touch) {
   return !chain->turn || touch->side == -chain->turn;
 }
 
-/* That of edge k or of the vertex before it, which is at the part `before` of the edge before; `here`: where
-   x is at edge k. */
-static bool minimum(const ethd__chain *chain, size_t k, ethd_vec x, part before, part *here, ethd_touch *out) {
-  if (k == chain->edges) {
-    if (chain->closed || before != AT_END) return false;
-    touch_vertex(chain, k, x, out);
-    return true;
-  }
-  edge g = edge_of(chain, k, x);
-  *here = settled_part_of(&g);
-  if (before == AT_END && *here == AT_START)
-    touch_vertex(chain, k, x, out);
-  else if (*here == BETWEEN)
+bool ethd__chain_minimum_at(const ethd__chain *chain, size_t k, const ethd_vec *x, ethd_touch *out) {
+  bool end = k == chain->edges;
+  if (end && chain->closed) return false;
+  edge g = edge_of(chain, end ? k - 1 : k, *x);
+  part here = settled_part_of(&g);
+  if (here == BETWEEN && !end)
     touch_edge(chain, k, &g, out);
+  else if (end ? here == AT_END : here == AT_START && part_before(chain, k, *x) == AT_END)
+    touch_vertex(chain, k, *x, out);
   else
     return false;
   return faces(chain, out);
 }
 
 size_t ethd__chain_minimum(const ethd__chain *chain, ethd_vec x, size_t from, ethd_touch *out) {
-  if (from > chain->edges) return 0;
-  part before = part_before(chain, from, x);
   for (size_t k = from; k <= chain->edges; k++)
-    if (minimum(chain, k, x, before, &before, out)) return k + 1;
+    if (ethd__chain_minimum_at(chain, k, &x, out)) return k + 1;
   return 0;
-}
-
-bool ethd__chain_minimum_at(const ethd__chain *chain, size_t k, ethd_vec x, ethd_touch *out) {
-  part here;
-  return minimum(chain, k, x, part_before(chain, k, x), &here, out);
 }

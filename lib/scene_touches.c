@@ -85,6 +85,10 @@ static void add_tree(const ethd_scene *scene, ethd_vec x, double reach, list *l)
   ethd__probe p = ethd__probe_at(scene, x);
   ethd__walk walk;
   ethd__place at = {0, 0, 0};
+  if (scene->tree.leaves == 1) {
+    add_leaf(scene, &p, at, x, reach * reach, l);
+    return;
+  }
   ethd__walk_start(&walk, &scene->tree, &p, NULL);
   ethd__walk_around(&walk, 0, ethd__bound(&p, reach * reach));
   for (; at.index != ETHD__NONE; at = ethd__walk_next(&walk)) add_leaf(scene, &p, at, x, reach * reach, l);

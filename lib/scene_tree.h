@@ -106,6 +106,17 @@ ETHD__INLINE void ethd__eight_squared(const ethd__node *n, const float *slopes, 
   ethd__store(squared + 4, high);
 }
 
+/* The lanes that are not beyond, without their distances. */
+ETHD__INLINE unsigned ethd__lanes_near(const ethd__node *n, const float *slopes, const ethd__probe *p, float bound) {
+  ethd__floats x = ethd__all(p->x), y = ethd__all(p->y), most = ethd__all(bound);
+  ethd__floats low, high;
+  if (slopes)
+    low = ethd__four_squared(n, slopes, 0, x, y), high = ethd__four_squared(n, slopes, 4, x, y);
+  else
+    low = ethd__four_squared(n, NULL, 0, x, y), high = ethd__four_squared(n, NULL, 4, x, y);
+  return ethd__bits(low <= most) | ethd__bits(high <= most) << 4;
+}
+
 /* The lanes that are not beyond. */
 ETHD__INLINE unsigned ethd__lanes_within(const float squared[ETHD__WIDE], float bound) {
   ethd__floats most = ethd__all(bound);
