@@ -6,8 +6,7 @@
 #include "common/cli.h"
 #include "file/error_text.h"
 #include "file/text.h"
-#include "sim/plant.h"
-#include "tap/device.h"
+#include "tap/load.h"
 #include "tap/run.h"
 #include "tap/table.h"
 
@@ -122,7 +121,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 static void fill_in(void) {
   if (!arg.laws.count) set_list(&arg.laws, "--transition", "abrupt,smooth,offset");
   if (!arg.speeds.count) set_list(&arg.speeds, "--speed", "low,high");
-  if (!arg.plant && !arg.config) arg.plant = "n";
   if (!arg.taps) arg.taps = arg.finger ? TAPS_FINGER : TAPS;
 }
 
@@ -137,75 +135,9 @@ static void check_job(ethd_status status, const char *message) {
   if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
 }
 
-static char *joined(const char *a, const char *b) {
-  char *text;
-  if (asprintf(&text, "%s%s", a, b) < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
-  return text;
-}
-
-static bool came_along(const char *plant) {
-  return !strcmp(plant, "n") || !strcmp(plant, "b") || !strcmp(plant, "p");
-}
-
-/* "n" and ".ini" to the file that came with the programs; "my/dev", "my/dev.plant" to my/dev.ini. */
-static char *beside_plant(const char *suffix) {
-  size_t length = strlen(arg.plant);
-  if (length > 6 && !strcmp(arg.plant + length - 6, ".plant")) length -= 6;
-  char *stem = strndup(arg.plant, length);
-  if (!stem) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
-  char *name = joined(stem, suffix);
-  free(stem);
-  if (!came_along(arg.plant)) return name;
-  char *path = ethd__data_path(name);
-  free(name);
-  return path;
-}
-
-/* --plant, else what the configuration names, else n. */
-static void load_plant(const ethd_config *config, ethd_plant *out) {
-  char message[ETHD_MESSAGE_MAX], *path;
-  ethd__device device;
-  check(ethd__device_read(config, &device, message), message);
-  if (arg.plant) {
-    path = beside_plant(".plant");
-  } else {
-    arg.plant = device.plant ? device.plant : "n";
-    path = ethd__plant_path(arg.plant, config->folder);
-    if (!path) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
-  }
-  check(ethd_plant_load(path, out, message), message);
-  if (device.rays >= 0) out->rays = device.rays;
-  free(path);
-}
-
-/* A configuration without a scene gets the paper's wall, as if it named it. */
-static ethd_config *with_wall(ethd_config *config, const char *path) {
-  char message[ETHD_MESSAGE_MAX], *wall = ethd__data_path("wall.scene"), *absolute = realpath(wall, NULL);
-  char *scene = joined(config->text && *config->text ? "\n[scene]\nfile = " : "[scene]\nfile = ",
-                       absolute ? absolute : wall);
-  char *text = joined(config->text ? config->text : "", scene);
-  ethd_config *walled;
-  check(ethd_config_parse(text, strlen(text), path, config->folder, &walled, message), message);
-  ethd_config_free(config);
-  free(text);
-  free(scene);
-  free(absolute);
-  free(wall);
-  return walled;
-}
-
 static const char *base_name(const char *path) {
   const char *slash = strrchr(path, '/');
   return slash ? slash + 1 : path;
-}
-
-static ethd_config *load_config(char **path) {
-  char message[ETHD_MESSAGE_MAX];
-  ethd_config *config;
-  *path = arg.config ? joined(arg.config, "") : beside_plant(".ini");
-  check(ethd_config_load(*path, &config, message), message);
-  return config->scene ? config : with_wall(config, *path);
 }
 
 static ethd__speed *load_speeds(const ethd_plant *plant) {
@@ -242,14 +174,15 @@ static int run(const ethd__plan *plan, const ethd__heading *heading) {
 
 int main(int argc, char **argv) {
   static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
-  char message[ETHD_MESSAGE_MAX], *config;
+  char message[ETHD_MESSAGE_MAX];
+  ethd__loaded loaded;
   ethd__study study = {0};
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   fill_in();
-  ethd_config *loaded = load_config(&config);
-  study.config = loaded;
-  load_plant(loaded, &study.plant);
+  ethd__load(arg.config, arg.plant, &loaded);
+  study.config = loaded.config;
+  study.plant = loaded.plant;
   study.speeds = load_speeds(&study.plant);
   study.speed_count = arg.speeds.count;
   study.seed = arg.seed;
@@ -257,14 +190,14 @@ int main(int argc, char **argv) {
   check(ethd__study_prepare(&study, message), message);
   const ethd__plan plan = {&study, arg.laws.words, arg.laws.count, (uint64_t)arg.taps};
   check(ethd__plan_check(&plan, message), message);
-  const ethd__heading heading = {arg.plant, arg.config ? arg.config : base_name(config), arg.finger, arg.scale, arg.scaled};
+  const ethd__heading heading = {loaded.plant_name, arg.config ? arg.config : base_name(loaded.path), arg.finger,
+                                 arg.scale, arg.scaled};
   ethd__catch_interrupt();
   int code = run(&plan, &heading);
   ethd__movement_free(&study.movement);
-  ethd_config_free(loaded);
+  ethd__loaded_free(&loaded);
   set_list(&arg.laws, "", "-");
   set_list(&arg.speeds, "", "-");
   free(study.speeds);
-  free(config);
   return ethd__end(code);
 }

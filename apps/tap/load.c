@@ -1,0 +1,90 @@
+#include "tap/load.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "sim/plant.h"
+#include "tap/device.h"
+
+static void check(ethd_status status, const char *message) {
+  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+}
+
+static char *had(char *text) {
+  if (!text) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  return text;
+}
+
+static char *joined(const char *a, const char *b) {
+  char *text;
+  return had(asprintf(&text, "%s%s", a, b) < 0 ? NULL : text);
+}
+
+static bool came_along(const char *plant) {
+  return !strcmp(plant, "n") || !strcmp(plant, "b") || !strcmp(plant, "p");
+}
+
+/* "n" and ".ini" to the file that came with the programs; "my/dev", "my/dev.plant" to my/dev.ini. */
+static char *beside_plant(const char *plant, const char *suffix) {
+  size_t length = strlen(plant);
+  if (length > 6 && !strcmp(plant + length - 6, ".plant")) length -= 6;
+  char *stem = had(strndup(plant, length)), *name = joined(stem, suffix);
+  free(stem);
+  if (!came_along(plant)) return name;
+  char *path = ethd__data_path(name);
+  free(name);
+  return path;
+}
+
+static void load_plant(const char *plant, ethd__loaded *out) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd__device device;
+  check(ethd__device_read(out->config, &device, message), message);
+  if (plant) {
+    out->plant_path = beside_plant(plant, ".plant");
+  } else {
+    plant = device.plant ? device.plant : "n";
+    out->plant_path = had(ethd__plant_path(plant, out->config->folder));
+  }
+  out->plant_name = had(strdup(plant));
+  check(ethd_plant_load(out->plant_path, &out->plant, message), message);
+  if (device.rays >= 0) out->plant.rays = device.rays;
+}
+
+/* A configuration without a scene gets the paper's wall, as if it named it. */
+static ethd_config *with_wall(ethd_config *config, const char *path) {
+  char message[ETHD_MESSAGE_MAX], *wall = ethd__data_path("wall.scene"), *absolute = realpath(wall, NULL);
+  char *scene = joined(config->text && *config->text ? "\n[scene]\nfile = " : "[scene]\nfile = ",
+                       absolute ? absolute : wall);
+  char *text = joined(config->text ? config->text : "", scene);
+  ethd_config *walled;
+  check(ethd_config_parse(text, strlen(text), path, config->folder, &walled, message), message);
+  ethd_config_free(config);
+  free(text);
+  free(scene);
+  free(absolute);
+  free(wall);
+  return walled;
+}
+
+static void load_config(const char *config, const char *plant, ethd__loaded *out) {
+  char message[ETHD_MESSAGE_MAX];
+  out->path = config ? had(strdup(config)) : beside_plant(plant ? plant : "n", ".ini");
+  check(ethd_config_load(out->path, &out->config, message), message);
+  if (!out->config->scene) out->config = with_wall(out->config, out->path);
+}
+
+void ethd__load(const char *config, const char *plant, ethd__loaded *out) {
+  *out = (ethd__loaded){0};
+  load_config(config, plant, out);
+  load_plant(plant || config ? plant : "n", out);
+}
+
+void ethd__loaded_free(ethd__loaded *loaded) {
+  ethd_config_free(loaded->config);
+  free(loaded->path);
+  free(loaded->plant_name);
+  free(loaded->plant_path);
+  *loaded = (ethd__loaded){0};
+}

@@ -1,0 +1,20 @@
+/* The simulated device that a program's user names: a configuration, a plant. All [main]. */
+#ifndef ETHD_TAP_LOAD_H
+#define ETHD_TAP_LOAD_H
+
+#include "ethd/sim.h"
+
+typedef struct ethd__loaded {
+  ethd_config *config; /* has a scene: the paper's wall when it names none */
+  char *path;          /* of the configuration */
+  ethd_plant plant;
+  char *plant_name, *plant_path;
+} ethd__loaded;
+
+/* config: a file, NULL: the plant's own. plant: n, b or p, which came with the programs, or a file, with
+   or without .plant; NULL: the one that the configuration's [device] names, else n. Exit 2 on bad input. */
+void ethd__load(const char *config, const char *plant, ethd__loaded *out);
+
+void ethd__loaded_free(ethd__loaded *loaded);
+
+#endif
