@@ -1,0 +1,240 @@
+/* What one key alone can't show. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "ethd/param.h"
+#include "file/error_text.h"
+#include "servo/map_parts.h"
+#include "servo/words.h"
+
+#define R ETHD__SERVO_READ
+#define W ETHD__SERVO_WRITE
+
+const ethd__servo_role ethd__servo_roles[ETHD__SERVO_ROLES] = {
+    [ETHD__SERVO_TORQUE1] = {"torque1", "A|Nm", W},       [ETHD__SERVO_TORQUE2] = {"torque2", "A|Nm", W},
+    [ETHD__SERVO_COUNTER] = {"counter", "1", W},          [ETHD__SERVO_POSITION1] = {"position1", "count|turn|rad", R},
+    [ETHD__SERVO_POSITION2] = {"position2", "count|turn|rad", R},
+    [ETHD__SERVO_SPEED1] = {"speed1", "count/s|rpm|rad/s", R},
+    [ETHD__SERVO_SPEED2] = {"speed2", "count/s|rpm|rad/s", R},
+    [ETHD__SERVO_MEASURED1] = {"measured1", "A|Nm", R},   [ETHD__SERVO_MEASURED2] = {"measured2", "A|Nm", R},
+    [ETHD__SERVO_BUS_VOLTAGE] = {"bus_voltage", "V", R},  [ETHD__SERVO_READING_X] = {"reading_x", "m", R},
+    [ETHD__SERVO_READING_Y] = {"reading_y", "m", R},      [ETHD__SERVO_READING_COUNT] = {"reading_count", "1", R},
+    [ETHD__SERVO_READING_AGE] = {"reading_age", "s", R},
+};
+
+/* A refusal at a register's key, or at its section when it hasn't that key. */
+static ethd_status refuse(const ethd__servo_source *s, const ethd__servo_register *r, const char *name,
+                          const char *format, ...) __attribute__((format(printf, 4, 5)));
+static ethd_status refuse(const ethd__servo_source *s, const ethd__servo_register *r, const char *name,
+                          const char *format, ...) {
+  char section[ETHD__SERVO_NAME_MAX + 16], text[256];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  snprintf(section, sizeof section, "register %s", r->name);
+  const ethd_ini_key *key = ethd_ini_find(s->ini, section, name);
+  return ethd__say(s->message, ETHD_E_RANGE, "%s:%d: %s.%s: %s", s->name, key ? key->line : r->line, section, name, text);
+}
+
+static bool has(const ethd__servo_source *s, const ethd__servo_register *r, const char *key) {
+  char section[ETHD__SERVO_NAME_MAX + 16];
+  snprintf(section, sizeof section, "register %s", r->name);
+  return ethd_ini_find(s->ini, section, key) != NULL;
+}
+
+static bool unit_is(const ethd__servo_register *r, const char *words) {
+  const ethd_param units = {.unit = ethd__servo_units}, allowed = {.unit = words};
+  char word[16];
+  const char *at = units.unit;
+  for (int i = 0; i < r->unit; i++) at = strchr(at, '|') + 1;
+  snprintf(word, sizeof word, "%.*s", (int)strcspn(at, "|"), at);
+  /* a table of one word has no '|' */
+  return strchr(words, '|') ? ethd_param_word(&allowed, word) >= 0 : !strcmp(words, word);
+}
+
+/* ---- one register ---- */
+
+static ethd_status check_unit(const ethd__servo_source *s, const ethd__servo_register *r) {
+  if (unit_is(r, "A") && !(r->torque_constant > 0)) return refuse(s, r, "torque_constant", "is missing: unit = A needs it");
+  if (unit_is(r, "count|count/s") && !(r->counts > 0)) return refuse(s, r, "counts", "is missing: counts a motor turn");
+  if (r->role < 0) return ETHD_OK;
+  const ethd__servo_role *role = &ethd__servo_roles[r->role];
+  if (!unit_is(r, role->units)) return refuse(s, r, "unit", "%s is allowed", role->units);
+  if (r->direction != role->direction)
+    return refuse(s, r, "direction", "%s is allowed", role->direction == R ? "read" : "write");
+  return ETHD_OK;
+}
+
+static ethd_status check_words(const ethd__servo_source *s, const ethd__servo_register *r) {
+  if (r->type >= ETHD__SERVO_U32 && r->order == ETHD__SERVO_NO_ORDER)
+    return refuse(s, r, "order", "is missing: high-first or low-first, as two words need it");
+  if (r->direction == W && r->space == ETHD__SERVO_INPUT)
+    return refuse(s, r, "space", "an input register can't be written, holding is allowed");
+  if (r->type != ETHD__SERVO_F32 && r->bits > 16 * ethd__servo_words(r))
+    return refuse(s, r, "bits", "found %u, its words have %u", r->bits, 16 * ethd__servo_words(r));
+  if (r->role == ETHD__SERVO_COUNTER && r->type != ETHD__SERVO_U16) return refuse(s, r, "type", "u16 is allowed");
+  if (r->role == ETHD__SERVO_READING_COUNT && r->type == ETHD__SERVO_F32)
+    return refuse(s, r, "type", "a type of whole numbers is allowed");
+  return ETHD_OK;
+}
+
+static ethd_status check_masks(const ethd__servo_source *s, const ethd__servo_register *r) {
+  uint32_t most = ethd__servo_words(r) == 2 ? UINT32_MAX : UINT16_MAX;
+  if (!(r->fault_mask | r->enabled_mask)) return ETHD_OK;
+  const char *key = r->fault_mask ? "fault_mask" : "enabled_mask";
+  if (r->direction != R || r->type == ETHD__SERVO_F32) return refuse(s, r, key, "only whole numbers that are read have bits");
+  if (r->fault_mask > most || r->enabled_mask > most) return refuse(s, r, key, "is wider than the register");
+  if (r->healthy & ~r->fault_mask) return refuse(s, r, "healthy", "has bits outside of fault_mask");
+  if (r->enabled & ~r->enabled_mask) return refuse(s, r, "enabled", "has bits outside of enabled_mask");
+  return ETHD_OK;
+}
+
+static ethd_status check_torque(const ethd__servo_source *s, const ethd__servo_register *r) {
+  double least, most, low = (r->min - r->offset) / r->scale, high = (r->max - r->offset) / r->scale;
+  double zero = -r->offset / r->scale;
+  if (!has(s, r, "min") || !has(s, r, "max"))
+    return refuse(s, r, has(s, r, "min") ? "max" : "min", "is missing: a command needs its limits");
+  if (!(r->min < 0 && r->max > 0)) return refuse(s, r, "min", "min < 0 < max is allowed");
+  ethd__servo_range(r, &least, &most);
+  if (!(fmin(low, high) >= least && fmax(low, high) <= most))
+    return refuse(s, r, "max", "the limits are raw %.10g and %.10g, the type holds %.10g to %.10g", low, high, least, most);
+  if (r->type != ETHD__SERVO_F32 && zero != rint(zero))
+    return refuse(s, r, "offset", "no torque is raw %.10g, a whole number is needed", zero);
+  return ETHD_OK;
+}
+
+static ethd_status check_register(const ethd__servo_source *s, const ethd__servo_register *r) {
+  ethd_status status = check_words(s, r);
+  if (!status) status = check_unit(s, r);
+  if (!status) status = check_masks(s, r);
+  if (!status && (r->role == ETHD__SERVO_TORQUE1 || r->role == ETHD__SERVO_TORQUE2)) status = check_torque(s, r);
+  if (status) return status;
+  if (r->role == ETHD__SERVO_BUS_VOLTAGE && !(has(s, r, "min") && has(s, r, "max") && r->min < r->max))
+    return refuse(s, r, "min", "min < max are needed: outside of them the supply is a fault");
+  if (r->tolerance > 0 && r->role != ETHD__SERVO_MEASURED1 && r->role != ETHD__SERVO_MEASURED2)
+    return refuse(s, r, "tolerance", "only measured1 and measured2 have one");
+  return ETHD_OK;
+}
+
+/* ---- echoes, overlaps, use ---- */
+
+static ethd_status link_echo(const ethd__servo_source *s, ethd__servo_map *map, ethd__servo_register *r) {
+  char section[ETHD__SERVO_NAME_MAX + 16];
+  snprintf(section, sizeof section, "register %s", r->name);
+  const ethd_ini_key *key = ethd_ini_find(s->ini, section, "echo");
+  if (!key) return ETHD_OK;
+  r->echo = ethd__servo_find(map, key->value, strlen(key->value));
+  if (r->echo < 0) return refuse(s, r, "echo", "the map has no [register %.40s]", key->value);
+  if (r->direction != W || r->role < 0) return refuse(s, r, "echo", "only torque1, torque2 and counter have one");
+  if (map->registers[r->echo].direction != R) return refuse(s, r, "echo", "%s isn't read", key->value);
+  if (map->registers[r->echo].type != r->type) return refuse(s, r, "echo", "%s is of another type", key->value);
+  map->registers[r->echo].cyclic = true;
+  return ETHD_OK;
+}
+
+static bool overlap(const ethd__servo_register *a, const ethd__servo_register *b) {
+  return a->space == b->space && a->address < b->address + ethd__servo_words(b) &&
+         b->address < a->address + ethd__servo_words(a);
+}
+
+static bool same_words(const ethd__servo_register *a, const ethd__servo_register *b) {
+  return a->address == b->address && a->type == b->type && (a->order == b->order || ethd__servo_words(a) == 1);
+}
+
+static ethd_status check_overlaps(const ethd__servo_source *s, const ethd__servo_map *map) {
+  for (uint32_t i = 0; i < map->count; i++)
+    for (uint32_t j = 0; j < i; j++) {
+      const ethd__servo_register *a = &map->registers[i], *b = &map->registers[j];
+      if (!overlap(a, b)) continue;
+      if (!same_words(a, b))
+        return refuse(s, a, "address", "overlaps [register %s] of line %d, which is of another type or place", b->name, b->line);
+      if (a->direction == b->direction && a->direction == W)
+        return refuse(s, a, "address", "[register %s] of line %d writes there too", b->name, b->line);
+    }
+  return ETHD_OK;
+}
+
+static bool in_steps(const ethd__servo_map *map, uint32_t i) {
+  for (int q = 0; q < ETHD__SERVO_SEQUENCES; q++)
+    for (uint32_t k = 0; k < map->sequences[q].count; k++)
+      if (map->sequences[q].at[k].at == (int32_t)i) return true;
+  return false;
+}
+
+static ethd_status check_use(const ethd__servo_source *s, ethd__servo_map *map) {
+  for (uint32_t i = 0; i < map->count; i++) {
+    ethd__servo_register *r = &map->registers[i];
+    r->cyclic |= r->role >= 0 || r->fault_mask || r->enabled_mask;
+    if (!r->cyclic && !in_steps(map, i))
+      return ethd__say(s->message, ETHD_E_UNKNOWN,
+                       "%s:%d: register %s: nothing uses it: it has no meaning of its own, no mask, no step and is no echo",
+                       s->name, r->line, r->name);
+  }
+  return ETHD_OK;
+}
+
+/* ---- the whole ---- */
+
+static bool both_or_none(const ethd__servo_map *map, int a, int b) { return (map->roles[a] < 0) == (map->roles[b] < 0); }
+
+static ethd_status check_roles(const ethd__servo_source *s, const ethd__servo_map *map) {
+  const int32_t *roles = map->roles;
+  const char *wrong = NULL;
+  if (roles[ETHD__SERVO_TORQUE1] < 0 && roles[ETHD__SERVO_TORQUE2] < 0) wrong = "a torque1 or a torque2 is missing";
+  if (!both_or_none(map, ETHD__SERVO_TORQUE1, ETHD__SERVO_POSITION1)) wrong = "torque1 and position1 go together";
+  if (!both_or_none(map, ETHD__SERVO_TORQUE2, ETHD__SERVO_POSITION2)) wrong = "torque2 and position2 go together";
+  if (!both_or_none(map, ETHD__SERVO_READING_X, ETHD__SERVO_READING_Y) ||
+      !both_or_none(map, ETHD__SERVO_READING_X, ETHD__SERVO_READING_COUNT) ||
+      (roles[ETHD__SERVO_READING_AGE] >= 0 && roles[ETHD__SERVO_READING_X] < 0))
+    wrong = "reading_x, reading_y and reading_count go together";
+  if (map->watchdog == ETHD__SERVO_WATCH_COUNTER && roles[ETHD__SERVO_COUNTER] < 0)
+    wrong = "watchdog.kind = counter needs a [register counter]";
+  return wrong ? ethd__say(s->message, ETHD_E_UNKNOWN, "%s: %s", s->name, wrong) : ETHD_OK;
+}
+
+ethd_status ethd__servo_map_check(const ethd__servo_source *s, ethd__servo_map *map) {
+  ethd_status status = ETHD_OK;
+  for (uint32_t i = 0; i < map->count && !status; i++) status = check_register(s, &map->registers[i]);
+  for (uint32_t i = 0; i < map->count && !status; i++) status = link_echo(s, map, &map->registers[i]);
+  if (!status) status = check_overlaps(s, map);
+  if (!status) status = check_use(s, map);
+  return status ? status : check_roles(s, map);
+}
+
+/* ---- what stays open ---- */
+
+static bool any_echo(const ethd__servo_map *map) {
+  for (uint32_t i = 0; i < map->count; i++)
+    if (map->registers[i].echo >= 0) return true;
+  return false;
+}
+
+static bool any_mask(const ethd__servo_map *map) {
+  for (uint32_t i = 0; i < map->count; i++)
+    if (map->registers[i].fault_mask) return true;
+  return false;
+}
+
+static bool is_watched(const ethd__servo_map *map, int torque, int measured) {
+  if (map->roles[torque] < 0) return true;
+  return map->roles[measured] >= 0 && map->registers[map->roles[measured]].tolerance > 0;
+}
+
+const char *ethd__servo_risk(const ethd__servo_map *map, uint32_t i) {
+  const char *risks[8];
+  uint32_t n = 0;
+  if (map->watchdog == ETHD__SERVO_WATCH_NONE)
+    risks[n++] = "no watchdog: when this computer dies, the drive holds its last torque";
+  if (map->resumes) risks[n++] = "the drive goes on by itself when the bus comes back: zero is written first";
+  if (!any_echo(map)) risks[n++] = "no echo: a stale answer or a lost set-point isn't noticed";
+  if (!any_mask(map)) risks[n++] = "no fault mask: the drive's faults aren't noticed";
+  if (!is_watched(map, ETHD__SERVO_TORQUE1, ETHD__SERVO_MEASURED1) ||
+      !is_watched(map, ETHD__SERVO_TORQUE2, ETHD__SERVO_MEASURED2))
+    risks[n++] = "no measured torque with a tolerance: a drive that doesn't follow isn't noticed";
+  if (map->roles[ETHD__SERVO_BUS_VOLTAGE] < 0) risks[n++] = "no bus_voltage: the supply isn't watched";
+  if (!map->sequences[ETHD__SERVO_DISABLE].count) risks[n++] = "no [disable] steps: a stop only writes zero torque";
+  return i < n ? risks[i] : NULL;
+}

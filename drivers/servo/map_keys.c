@@ -1,0 +1,203 @@
+/* The keys of a map, as tables: name, range, default, meaning. */
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "ethd/param.h"
+#include "file/error_text.h"
+#include "file/text.h"
+#include "servo/map_parts.h"
+
+typedef enum { NUMBER, WHOLE, CHOICE } kind;
+
+typedef struct row {
+  kind kind;
+  ethd_param param; /* def NaN: must be given; a choice's words stand in its unit */
+  size_t offset;
+} row;
+
+const char ethd__servo_formats[] = "8N1|8E1|8O1|8N2";
+
+#define AT(type, field) offsetof(ethd__servo_##type, field)
+#define OPEN_LIMIT 1e12
+#define WORD_MAX 4294967295.0
+
+static const row bus[] = {
+    {CHOICE, {"transport", "tcp|rtu", 0, 1, (double)NAN, "Modbus/TCP, or RTU on a serial line"}, AT(map, transport)},
+    {CHOICE, {"format", ethd__servo_formats, 0, 3, 0, "of a serial byte"}, AT(map, format)},
+    {NUMBER, {"baud", "1/s", 1200, 12e6, 0, "of a serial line, any"}, AT(map, baud)},
+    {WHOLE, {"unit", "1", 0, 255, 1, "station"}, AT(map, unit)},
+    {WHOLE, {"base", "1", 0, 1, 0, "what the manual calls the first register"}, AT(map, base)},
+    {WHOLE, {"divisor", "1", 1, 1000, 1, "ticks of the loop an exchange"}, AT(map, divisor)},
+    {WHOLE, {"gap", "1", 0, 32, 0, "unnamed registers that a read may span"}, AT(map, gap)},
+    {CHOICE, {"exchange", "separate|combined", 0, 1, 0, "16 then 3, or 0x17"}, AT(map, exchange)},
+    {NUMBER, {"connect", "s", 1e-3, 60, 1, "time to connect"}, AT(map, connect)},
+    {NUMBER, {"response", "s", 1e-4, 10, 0.02, "time for an answer"}, AT(map, response)},
+    {NUMBER, {"drain", "s", 1e-4, 10, 2e-3, "quiet time that ends an error"}, AT(map, drain)},
+    {NUMBER, {"silence", "s", 0, 1, -1, "before a request; rtu: 3.5 bytes by default"}, AT(map, silence)},
+    {NUMBER, {"back_off", "s", 1e-3, 60, 0.05, "between attempts to connect, doubled up to 32 times"}, AT(map, back_off)},
+};
+
+static const row watchdog[] = {
+    {CHOICE, {"kind", "none|silence|counter", 0, 2, 0, "what stops the drive without us"}, AT(map, watchdog)},
+    {NUMBER, {"time", "s", 1e-3, 60, 0, "after which it stops"}, AT(map, watchdog_time)},
+    {CHOICE, {"resumes", "no|yes", 0, 1, 0, "goes on by itself when the bus does"}, AT(map, resumes)},
+};
+
+static const row keys[] = {
+    {CHOICE, {"direction", "read|write", 0, 1, (double)NAN, "as the loop sees it"}, AT(register, direction)},
+    {WHOLE, {"address", "1", 0, 65536, (double)NAN, "as in the manual"}, AT(register, address)},
+    {CHOICE, {"space", "holding|input", 0, 1, 0, "functions 3 and 16, or 4"}, AT(register, space)},
+    {CHOICE, {"type", "u16|i16|u32|i32|f32", 0, 4, (double)NAN, "of the words"}, AT(register, type)},
+    {CHOICE, {"order", "high-first|low-first", 0, 1, 2, "of two words"}, AT(register, order)},
+    {CHOICE, {"unit", ethd__servo_units, 0, 11, 0, "at the motor"}, AT(register, unit)},
+    {NUMBER, {"scale", "1", -1e9, 1e9, 1, "units a raw count"}, AT(register, scale)},
+    {NUMBER, {"offset", "1", -1e9, 1e9, 0, "units at raw 0"}, AT(register, offset)},
+    {NUMBER, {"min", "1", -OPEN_LIMIT, OPEN_LIMIT, -OPEN_LIMIT, "limit, in its unit"}, AT(register, min)},
+    {NUMBER, {"max", "1", -OPEN_LIMIT, OPEN_LIMIT, OPEN_LIMIT, "limit, in its unit"}, AT(register, max)},
+    {NUMBER, {"ratio", "1", 1e-3, 1e4, 1, "motor turns a joint turn"}, AT(register, ratio)},
+    {NUMBER, {"sign", "1", -1, 1, 1, "1 or -1: of the joint's turn"}, AT(register, sign)},
+    {NUMBER, {"counts", "1", 1, 1e9, 0, "a motor turn"}, AT(register, counts)},
+    {NUMBER, {"torque_constant", "Nm/A", 1e-6, 1e3, 0, "of the motor"}, AT(register, torque_constant)},
+    {WHOLE, {"bits", "1", 8, 32, 0, "width of a position's counter: the type's by default"}, AT(register, bits)},
+    {NUMBER, {"tolerance", "1", 1e-9, 1e9, 0, "of a measured torque, in its unit"}, AT(register, tolerance)},
+    {WHOLE, {"fault_mask", "1", 1, WORD_MAX, 0, "bits that tell a fault"}, AT(register, fault_mask)},
+    {WHOLE, {"healthy", "1", 0, WORD_MAX, 0, "what they are without one"}, AT(register, healthy)},
+    {WHOLE, {"enabled_mask", "1", 1, WORD_MAX, 0, "bits that tell whether the drive is enabled"}, AT(register, enabled_mask)},
+    {WHOLE, {"enabled", "1", 0, WORD_MAX, 0, "what they are when it is"}, AT(register, enabled)},
+};
+
+#define ROWS(table) table, sizeof table / sizeof *table
+
+/* ---- one value ---- */
+
+bool ethd__servo_whole(const char *text, double *out) {
+  size_t n = strlen(text);
+  if (n > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X')) {
+    *out = 0;
+    for (const char *p = text + 2; *p; p++) {
+      const char *hex = "0123456789abcdef0123456789ABCDEF", *at = strchr(hex, *p);
+      if (!at) return false;
+      *out = *out * 16 + (double)((at - hex) % 16);
+    }
+    return n <= 10;
+  }
+  return ethd__number(text, n, out) && *out == rint(*out) && fabs(*out) <= WORD_MAX;
+}
+
+ethd_status ethd__servo_refuse(const ethd__servo_source *s, const ethd_ini_key *key, const char *allowed) {
+  char quote[ETHD_QUOTE_MAX];
+  return ethd__say(s->message, ETHD_E_RANGE, "%s:%d: %s.%s: found %s, %s is allowed", s->name, key->line,
+                   key->section, key->key, ethd__quote(key->value, strlen(key->value), quote), allowed);
+}
+
+static ethd_status refuse_range(const ethd__servo_source *s, const ethd_ini_key *key, const row *r) {
+  char allowed[ETHD_MESSAGE_MAX];
+  const char *unit = strcmp(r->param.unit, "1") ? r->param.unit : "";
+  ethd__say(allowed, ETHD_OK, "%s%.10g to %.10g%s%s", r->kind == WHOLE ? "a whole number from " : "",
+            r->param.min, r->param.max, *unit ? " " : "", unit);
+  return ethd__servo_refuse(s, key, allowed);
+}
+
+static void put(const row *r, double value, void *base) {
+  char *at = (char *)base + r->offset;
+  int32_t word = (int32_t)value;
+  uint32_t whole = (uint32_t)value;
+  if (r->kind == NUMBER) memcpy(at, &value, sizeof value);
+  if (r->kind == CHOICE) memcpy(at, &word, sizeof word);
+  if (r->kind == WHOLE) memcpy(at, &whole, sizeof whole);
+}
+
+static ethd_status set(const ethd__servo_source *s, const row *r, const ethd_ini_key *key, void *base) {
+  double value;
+  if (r->kind == CHOICE) {
+    value = ethd_param_word(&r->param, key->value);
+    if (value < 0) return ethd__servo_refuse(s, key, r->param.unit);
+  } else {
+    bool is_number = r->kind == WHOLE ? ethd__servo_whole(key->value, &value)
+                                      : ethd__number(key->value, strlen(key->value), &value);
+    if (!is_number || !(value >= r->param.min && value <= r->param.max)) return refuse_range(s, key, r);
+  }
+  put(r, value, base);
+  return ETHD_OK;
+}
+
+/* ---- a section ---- */
+
+static ethd_status read_rows(const ethd__servo_source *s, const char *section, int line, const row *table,
+                             size_t count, void *base) {
+  for (size_t i = 0; i < count; i++) {
+    const ethd_ini_key *key = ethd_ini_find(s->ini, section, table[i].param.name);
+    ethd_status status = ETHD_OK;
+    if (key) {
+      status = set(s, &table[i], key, base);
+    } else if (isnan(table[i].param.def)) {
+      status = ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s is missing: %s", s->name, line, section,
+                         table[i].param.name, table[i].param.brief);
+    } else {
+      put(&table[i], table[i].param.def, base);
+    }
+    if (status) return status;
+  }
+  return ETHD_OK;
+}
+
+static bool is_row(const char *name, const row *table, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (!strcmp(table[i].param.name, name)) return true;
+  return false;
+}
+
+/* `text`: the section's one key whose value is a word of its own. */
+static ethd_status check_known(const ethd__servo_source *s, const char *section, const row *table,
+                               size_t count, const char *text) {
+  for (uint32_t i = 0; i < s->ini->count; i++) {
+    const ethd_ini_key *k = &s->ini->keys[i];
+    if (strcmp(k->section, section) || is_row(k->key, table, count) || (text && !strcmp(k->key, text))) continue;
+    return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: a map has no such key there", s->name, k->line,
+                     section, k->key);
+  }
+  return ETHD_OK;
+}
+
+ethd_status ethd__servo_read_bus(const ethd__servo_source *s, int line, ethd__servo_map *map) {
+  ethd_status status = check_known(s, "bus", ROWS(bus), "port");
+  if (!status) status = read_rows(s, "bus", line, ROWS(bus), map);
+  if (status) return status;
+  const ethd_ini_key *port = ethd_ini_find(s->ini, "bus", "port");
+  if (!port) return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: bus.port is missing: HOST:PORT, or a serial device",
+                              s->name, line);
+  if (strlen(port->value) >= sizeof map->port) return ethd__servo_refuse(s, port, "a shorter name");
+  strcpy(map->port, port->value);
+  if (map->transport == ETHD__SERVO_RTU && !(map->baud > 0))
+    return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: bus.baud is missing: rtu needs it", s->name, line);
+  if (map->baud != rint(map->baud)) return ethd__servo_refuse(s, ethd_ini_find(s->ini, "bus", "baud"), "a whole number");
+  if (map->silence < 0) map->silence = map->transport == ETHD__SERVO_RTU ? 3.5 * 11 / map->baud : 0;
+  return ETHD_OK;
+}
+
+ethd_status ethd__servo_read_watchdog(const ethd__servo_source *s, int line, ethd__servo_map *map) {
+  ethd_status status = check_known(s, "watchdog", ROWS(watchdog), NULL);
+  if (!status) status = read_rows(s, "watchdog", line, ROWS(watchdog), map);
+  if (!status && map->watchdog && !(map->watchdog_time > 0))
+    status = ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: watchdog.time is missing: %s", s->name, line,
+                       watchdog[1].param.brief);
+  return status;
+}
+
+ethd_status ethd__servo_read_register(const ethd__servo_source *s, const ethd_ini_section *section,
+                                      const ethd__servo_map *map, ethd__servo_register *out) {
+  ethd_status status = check_known(s, section->name, ROWS(keys), "echo");
+  if (!status) status = read_rows(s, section->name, section->line, ROWS(keys), out);
+  if (status) return status;
+  const ethd_ini_key *address = ethd_ini_find(s->ini, section->name, "address");
+  uint32_t words = out->type >= ETHD__SERVO_U32 ? 2 : 1;
+  if (out->address < map->base || out->address - map->base + words > 65536)
+    return ethd__servo_refuse(s, address, map->base ? "1 to 65536 less the words" : "0 to 65535 less the words");
+  out->address -= map->base;
+  if (out->sign != 1 && out->sign != -1)
+    return ethd__servo_refuse(s, ethd_ini_find(s->ini, section->name, "sign"), "1 or -1");
+  if (out->scale == 0) return ethd__servo_refuse(s, ethd_ini_find(s->ini, section->name, "scale"), "a number but 0");
+  if (!out->bits) out->bits = 16 * words;
+  return ETHD_OK;
+}

@@ -1,0 +1,38 @@
+/* Between the files that read a map. All [main]. */
+#ifndef ETHD_SERVO_MAP_PARTS_H
+#define ETHD_SERVO_MAP_PARTS_H
+
+#include "file/ini.h"
+#include "servo/map.h"
+
+/* What is being read, and where a refusal goes. */
+typedef struct ethd__servo_source {
+  const ethd_ini *ini;
+  const char *name; /* of the file */
+  char *message;
+} ethd__servo_source;
+
+/* A whole number, decimal or 0x; at most 32 bits. */
+bool ethd__servo_whole(const char *text, double *out);
+
+/* "file:line: section.key: found X, `allowed` is allowed". */
+ethd_status ethd__servo_refuse(const ethd__servo_source *s, const ethd_ini_key *key, const char *allowed);
+
+/* Keys of [bus] and [watchdog] into the map, of a [register NAME] into a register; defaults for the rest.
+   `line`: of the section, 0 without one. */
+ethd_status ethd__servo_read_bus(const ethd__servo_source *s, int line, ethd__servo_map *map);
+ethd_status ethd__servo_read_watchdog(const ethd__servo_source *s, int line, ethd__servo_map *map);
+ethd_status ethd__servo_read_register(const ethd__servo_source *s, const ethd_ini_section *section,
+                                      const ethd__servo_map *map, ethd__servo_register *out);
+
+/* The steps of [identify], [enable], [disable]. */
+ethd_status ethd__servo_read_steps(const ethd__servo_source *s, const char *section,
+                                   const ethd__servo_map *map, ethd__servo_steps *out);
+
+/* The register of this name, -1. */
+int32_t ethd__servo_find(const ethd__servo_map *map, const char *name, size_t length);
+
+/* What one key alone can't show: overlaps, limits, echoes, roles. */
+ethd_status ethd__servo_map_check(const ethd__servo_source *s, ethd__servo_map *map);
+
+#endif
