@@ -1,4 +1,4 @@
-# libethd. Targets: all demo check bench stress ci install uninstall clean.
+# libethd. Targets: all demo check check-xenomai bench stress ci install uninstall clean.
 # Variables: CC CXX CFLAGS CPPFLAGS LDFLAGS PREFIX DESTDIR BUILD, and
 #   SAN=address|thread|undefined|address,undefined   a sanitizer build, in a tree of its own
 #   RT=posix|mercury|cobalt   plain Linux, or a core of Xenomai 3 (XENO_CONFIG=its xeno-config), likewise
@@ -21,7 +21,7 @@ LOOP_SIDE := drivers/loop/cycle.c drivers/loop/histogram.c
 SHELL := /bin/sh
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: all demo check bench bench-quick stress ci install install-files uninstall clean tests FORCE
+.PHONY: all demo check check-xenomai bench bench-quick stress ci install install-files uninstall clean tests FORCE
 .DEFAULT_GOAL := all
 
 comma := ,
@@ -38,9 +38,9 @@ ifneq ($(XENO_CORE),$(RT))
 $(error RT=$(RT), but $(XENO_CONFIG) belongs to the core $(or $(XENO_CORE),that it doesn't name))
 endif
 # The skin comes first; we initialise ourselves, and look for Cobalt before.
-XENO := '$(XENO_CONFIG)' --skin=$(if $(filter cobalt,$(RT)),cobalt --no-mode-check,posix) --no-auto-init
+XENO := '$(XENO_CONFIG)' --skin=$(if $(filter cobalt,$(RT)),cobalt --no-mode-check,posix)
 XENO_CFLAGS := $(patsubst -I%,-isystem %,$(shell $(XENO) --cflags))
-XENO_LDFLAGS := $(shell $(XENO) --ldflags) -Wl,-rpath,$(shell '$(XENO_CONFIG)' --libdir)
+XENO_LDFLAGS := $(shell $(XENO) --no-auto-init --ldflags) -Wl,-rpath,$(shell '$(XENO_CONFIG)' --libdir)
 endif
 ifneq ($(filter-out address thread undefined,$(subst $(comma), ,$(SAN))),)
 $(error SAN=$(SAN): address, thread, undefined or address,undefined are known)
@@ -237,6 +237,10 @@ bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
 stress: all $(B)/tests/test_scene_tree
 	ETHD_SCENE_QUERIES=1000000 $(B)/tests/test_scene_tree
 	@BUILD='$(B)' sh apps/stress.sh
+
+# A real Xenomai, where there is one.
+check-xenomai:
+	@BUILD='$(BUILD)' MAKE='$(MAKE)' XENO_CONFIG='$(XENO_CONFIG)' sh .ci/xenomai
 
 ci:
 	@BUILD='$(BUILD)' MAKE='$(MAKE)' bash .ci/ci
