@@ -1,0 +1,39 @@
+#include <math.h>
+#include <stdio.h>
+
+#include "encoder/unwrap.h"
+
+static ethd_status refuse(ethd_error *error, const char *name, double found, double min, double max) {
+  ethd_status status = isnan(found) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE;
+  if (!error) return status;
+  *error = (ethd_error){.status = status, .found = found, .min = min, .max = max};
+  snprintf(error->name, sizeof error->name, "%s", name);
+  return status;
+}
+
+static double counts_per_radian(const ethd__encoder_def *d) {
+  return (double)d->counts_per_turn * d->ratio / (2 * 3.14159265358979323846);
+}
+
+ethd_status ethd__encoder_check(const ethd__encoder_def *d, double period, ethd_error *error) {
+  const struct {
+    const char *name;
+    double value, min, max;
+  } rows[] = {
+      {"ceiling", (double)d->ceiling, 1, 0x1p64},
+      {"counts_per_turn", (double)d->counts_per_turn, 1, 0x1p40},
+      {"ratio", d->ratio, 1e-3, 1e4},
+      {"offset", d->offset, -1e3, 1e3},
+      {"speed_max", d->speed_max, 1e-3, 1e4},
+      {"freeze_torque", d->freeze_torque, 1e-6, (double)INFINITY},
+      {"freeze_time", d->freeze_time, 1e-6, 1e3},
+      {"reverse_torque", d->reverse_torque, 1e-6, (double)INFINITY},
+      {"reverse_time", d->reverse_time, 1e-6, 1e3},
+      {"sign", fabs((double)d->sign), 1, 1},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    if (!(rows[i].value >= rows[i].min && rows[i].value <= rows[i].max))
+      return refuse(error, rows[i].name, rows[i].value, rows[i].min, rows[i].max);
+  double most = (double)(d->ceiling / 2) / (counts_per_radian(d) * period);
+  return d->speed_max <= most ? ETHD_OK : refuse(error, "speed_max", d->speed_max, 1e-3, most);
+}
