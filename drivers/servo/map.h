@@ -48,6 +48,7 @@ enum { ETHD__SERVO_HOLDING, ETHD__SERVO_INPUT };
 enum { ETHD__SERVO_U16, ETHD__SERVO_I16, ETHD__SERVO_U32, ETHD__SERVO_I32, ETHD__SERVO_F32 };
 enum { ETHD__SERVO_HIGH_FIRST, ETHD__SERVO_LOW_FIRST, ETHD__SERVO_NO_ORDER };
 enum { ETHD__SERVO_SEPARATE, ETHD__SERVO_COMBINED }; /* 16 then 3, or 0x17 */
+enum { ETHD__SERVO_BY_WORD, ETHD__SERVO_BY_VALUE };
 enum { ETHD__SERVO_WATCH_NONE, ETHD__SERVO_WATCH_SILENCE, ETHD__SERVO_WATCH_COUNTER };
 
 /* Names with a meaning, in the order of ethd__servo_roles. */
@@ -98,7 +99,7 @@ typedef struct ethd__servo_steps {
 enum { ETHD__SERVO_IDENTIFY, ETHD__SERVO_ENABLE, ETHD__SERVO_DISABLE, ETHD__SERVO_SEQUENCES };
 
 typedef struct ethd__servo_map {
-  int32_t transport, format, exchange;
+  int32_t transport, format, exchange, addressing;
   char port[ETHD__SERVO_PORT_MAX];
   double baud;
   uint32_t unit, base, divisor, gap;

@@ -135,7 +135,8 @@ static ethd_status link_echo(const ethd__servo_source *s, ethd__servo_map *map, 
   return ETHD_OK;
 }
 
-static bool overlap(const ethd__servo_register *a, const ethd__servo_register *b) {
+static bool overlap(const ethd__servo_map *map, const ethd__servo_register *a, const ethd__servo_register *b) {
+  if (map->addressing == ETHD__SERVO_BY_VALUE) return a->space == b->space && a->address == b->address;
   return a->space == b->space && a->address < b->address + ethd__servo_words(b) &&
          b->address < a->address + ethd__servo_words(a);
 }
@@ -148,7 +149,7 @@ static ethd_status check_overlaps(const ethd__servo_source *s, const ethd__servo
   for (uint32_t i = 0; i < map->count; i++)
     for (uint32_t j = 0; j < i; j++) {
       const ethd__servo_register *a = &map->registers[i], *b = &map->registers[j];
-      if (!overlap(a, b)) continue;
+      if (!overlap(map, a, b)) continue;
       if (!same_words(a, b))
         return refuse(s, a, "address", "overlaps [register %s] of line %d, which is of another type or place", b->name, b->line);
       if (a->direction == b->direction && a->direction == W)

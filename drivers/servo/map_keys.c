@@ -30,6 +30,7 @@ static const row bus[] = {
     {WHOLE, {"base", "1", 0, 1, 0, "what the manual calls the first register"}, AT(map, base)},
     {WHOLE, {"divisor", "1", 1, 1000, 1, "ticks of the loop an exchange"}, AT(map, divisor)},
     {WHOLE, {"gap", "1", 0, 32, 0, "unnamed registers that a read may span"}, AT(map, gap)},
+    {CHOICE, {"addressing", "words|values", 0, 1, 0, "what an address counts; values: each is asked for alone"}, AT(map, addressing)},
     {CHOICE, {"exchange", "separate|combined", 0, 1, 0, "16 then 3, or 0x17"}, AT(map, exchange)},
     {NUMBER, {"connect", "s", 1e-3, 60, 1, "time to connect"}, AT(map, connect)},
     {NUMBER, {"response", "s", 1e-4, 10, 0.02, "time for an answer"}, AT(map, response)},
