@@ -158,7 +158,10 @@ ethd__rule ethd__stage_rule(const ethd__stage *stage, const ethd__speed *speed, 
                       .meet = meet,
                       .seen = meet + stage->setup.ring_radius - finger_radius,
                       .d_beta = stage->setup.ring_radius - stage->setup.finger_radius_max,
-                      .never_fast = speed->touchdown.never_fast};
+                      .never_fast = speed->touchdown.never_fast,
+                      .graze = study->graze,
+                      .single = study->single,
+                      .lift = study->lift};
 }
 
 ethd__view ethd__stage_view(const ethd__stage *stage, const ethd__speed *speed, double finger_radius) {

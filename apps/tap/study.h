@@ -36,6 +36,8 @@ typedef struct ethd__study {
   size_t speed_count;
   const ethd__gain *gains; /* on top of the configuration; a law without such a parameter goes without */
   size_t gain_count;
+  double graze, lift; /* as in ethd__rule */
+  bool single;
   /* worked out by ethd__study_prepare */
   ethd_vec meet; /* m: the ring's centre as it meets the wall */
   ethd_vec n;    /* of the wall there */

@@ -1,0 +1,34 @@
+/* The simulated device on a desk, with simulated people or recorded fingers. All [main]. */
+#ifndef ETHD_STUDY_DESK_H
+#define ETHD_STUDY_DESK_H
+
+#include "study/source.h"
+#include "tap/load.h"
+
+typedef struct ethd__desk {
+  const ethd__protocol *protocol;
+  const ethd__loaded *loaded;
+  char **movements; /* files, by name */
+  size_t movement_count;
+  ethd__study study; /* of the present person */
+  ethd__speed speeds[ETHD_STUDY_WORDS];
+  ethd__gain gains[ETHD_STUDY_GAINS];
+  ethd__stage stage;
+  uint32_t person; /* whose study it is */
+  size_t strategy, movement;
+  bool seated, open;
+} ethd__desk;
+
+/* Checks everything that the first tap would stumble over: strategies, speeds, gains, the wall, the
+   movements. finger: one recorded movement, or NULL for what the protocol says. */
+ETHD_MUST_CHECK ethd_status ethd__desk_open(const ethd__protocol *protocol, const ethd__loaded *loaded,
+                                            const char *finger, ethd__desk *out,
+                                            char message[ETHD_MESSAGE_MAX]);
+void ethd__desk_close(ethd__desk *desk);
+
+/* From here on with the gains of this point of the grid. */
+void ethd__desk_point(ethd__desk *desk, size_t point);
+
+ethd__source ethd__desk_source(ethd__desk *desk);
+
+#endif

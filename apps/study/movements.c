@@ -1,0 +1,67 @@
+#include "study/movements.h"
+
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "file/error_text.h"
+#include "file/text.h"
+
+static char *folder_of(const ethd__protocol *p) {
+  const char *given = getenv("ETHD_MOTION_DIR");
+  char *beside = ethd__path_join(p->folder, p->motion);
+  if (!beside || access(beside, R_OK) == 0) return beside;
+  char *shared = ethd__path_join(given && *given ? given : "../shared/motion", p->motion);
+  if (!shared || access(shared, R_OK) != 0) {
+    free(shared);
+    return beside;
+  }
+  free(beside);
+  return shared;
+}
+
+static int is_csv(const struct dirent *entry) {
+  size_t n = strlen(entry->d_name);
+  return n > 4 && entry->d_name[0] != '.' && !strcmp(entry->d_name + n - 4, ".csv");
+}
+
+/* Bytes, not the locale: the same order everywhere. */
+static int by_name(const struct dirent **a, const struct dirent **b) {
+  return strcmp((*a)->d_name, (*b)->d_name);
+}
+
+static ethd_status list(const char *folder, char ***files, size_t *count, char *message) {
+  struct dirent **entries = NULL;
+  int n = scandir(folder, &entries, is_csv, by_name);
+  bool failed = n < 0;
+  *files = calloc(n > 0 ? (size_t)n : 1, sizeof **files);
+  for (int i = 0; i < n; i++) {
+    char *path = *files ? ethd__path_join(folder, entries[i]->d_name) : NULL;
+    if (path) (*files)[(*count)++] = path;
+    failed |= !path;
+    free(entries[i]);
+  }
+  free(entries);
+  if (!failed && n > 0) return ETHD_OK;
+  return ethd__say(message, ETHD_E_FILE, "%s: no folder with recorded movements (*.csv); ETHD_MOTION_DIR may name the one it is in", folder);
+}
+
+ethd_status ethd__movements_find(const ethd__protocol *protocol, const char *finger, char ***files,
+                                 size_t *count, char message[ETHD_MESSAGE_MAX]) {
+  *count = 0;
+  *files = NULL;
+  if (!finger && !protocol->motion)
+    return ethd__say(message, ETHD_E_ARGUMENT, "%s: hand.source: recorded needs motion = FOLDER or --finger",
+                     protocol->path);
+  if (!finger) {
+    char *folder = folder_of(protocol);
+    ethd_status status = folder ? list(folder, files, count, message) : ETHD_E_MEMORY;
+    free(folder);
+    return status;
+  }
+  *files = calloc(1, sizeof **files);
+  char *copy = *files ? strdup(finger) : NULL;
+  if (copy) (*files)[(*count)++] = copy;
+  return copy ? ETHD_OK : ethd__say(message, ETHD_E_MEMORY, "%s: %s", finger, ethd_status_sentence(ETHD_E_MEMORY));
+}

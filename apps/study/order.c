@@ -1,0 +1,56 @@
+#include "study/order.h"
+
+#include "study/people.h"
+
+enum { CELLS = ETHD_STUDY_WORDS * ETHD_STUDY_WORDS };
+
+static void paper(size_t strategies, size_t count, uint32_t participant, size_t cell[CELLS]) {
+  for (size_t i = 0; i < count; i++) cell[i] = i / strategies * strategies + (participant + 1 + i) % strategies;
+}
+
+static void shuffled(const ethd__protocol *protocol, size_t count, uint32_t participant, size_t cell[CELLS]) {
+  for (size_t i = 0; i < count; i++) cell[i] = i;
+  for (size_t i = count; i-- > 1;) {
+    size_t j = ethd__person_below(protocol->seed, participant, (uint32_t)i, (uint32_t)i + 1), other = cell[j];
+    cell[j] = cell[i];
+    cell[i] = other;
+  }
+}
+
+/* 0, 1, n-1, 2, n-2, .. plus the row; an odd n needs the mirror images too. */
+static void latin(size_t count, uint32_t participant, size_t cell[CELLS]) {
+  size_t row = participant % count;
+  bool mirrored = count % 2 && participant / count % 2;
+  for (size_t i = 0; i < count; i++) {
+    size_t step = i % 2 ? (i + 1) / 2 : (count - i / 2) % count;
+    cell[mirrored ? count - 1 - i : i] = (step + row) % count;
+  }
+}
+
+static size_t last_at(size_t strategies, const size_t cell[CELLS], size_t count, size_t speed) {
+  size_t last = 0;
+  for (size_t i = 0; i < count; i++)
+    if (cell[i] / strategies == speed) last = cell[i];
+  return last % strategies;
+}
+
+size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant,
+                      ethd__block out[ETHD_STUDY_BLOCKS]) {
+  size_t cell[CELLS], n = 0, strategies = protocol->strategies.count;
+  size_t count = strategies * protocol->speeds.count;
+  bool trained[ETHD_STUDY_WORDS] = {false};
+  if (protocol->order == ETHD_ORDER_PAPER)
+    paper(strategies, count, participant, cell);
+  else if (protocol->order == ETHD_ORDER_RANDOM)
+    shuffled(protocol, count, participant, cell);
+  else
+    latin(count, participant, cell);
+  for (size_t i = 0; i < count; i++) {
+    size_t speed = cell[i] / strategies;
+    if (protocol->training && !trained[speed])
+      out[n++] = (ethd__block){true, last_at(strategies, cell, count, speed), speed};
+    trained[speed] = true;
+    out[n++] = (ethd__block){false, cell[i] % strategies, speed};
+  }
+  return n;
+}

@@ -1,0 +1,26 @@
+/* What a participant does, in which order.
+
+   A block is a strategy at a speed. Speeds come in the file's order, strategies counterbalanced: participant
+   p (from 0) trains with strategy p mod K and taps in p+1, p+2, .. p mod K. For two strategies that is the
+   paper's rule: train A, tap B, tap A; the next one train B, tap A, tap B; the same again at the next speed.
+   `random`: all cells shuffled by (seed, participant). `latin`: a balanced Latin square over all cells
+   (Williams 1949): over a multiple of the number of cells (twice that, if it is odd) each cell stands at
+   each place and follows each other one equally often. A speed's training comes before its first cell,
+   with the strategy that comes last at it. [any] */
+#ifndef ETHD_STUDY_ORDER_H
+#define ETHD_STUDY_ORDER_H
+
+#include "study/protocol.h"
+
+#define ETHD_STUDY_BLOCKS (ETHD_STUDY_WORDS * ETHD_STUDY_WORDS + ETHD_STUDY_WORDS)
+
+typedef struct ethd__block {
+  bool training;
+  size_t strategy, speed; /* of the protocol */
+} ethd__block;
+
+/* How many were written. */
+size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant,
+                      ethd__block out[ETHD_STUDY_BLOCKS]);
+
+#endif

@@ -1,0 +1,22 @@
+/* Simulated people: what a person brings along is a function of (seed, person) alone.
+
+   The plant's spreads are fitted over all taps of all hands. A share of their variance, `between`, lies
+   between people, the rest within them, so that a crowd of people taps as the plant does. A finger's radius
+   is a person's: nothing of it changes from tap to tap. The spread of the hand's stiffness and damping is
+   invented: nothing of it was fitted. [any] */
+#ifndef ETHD_STUDY_PEOPLE_H
+#define ETHD_STUDY_PEOPLE_H
+
+#include "ethd/sim.h"
+
+/* Key of all random numbers of this person's taps. */
+uint64_t ethd__person_seed(uint64_t seed, uint32_t person);
+
+/* A whole number below `count` for the person's draw number `index`. */
+uint32_t ethd__person_below(uint64_t seed, uint32_t person, uint32_t index, uint32_t count);
+
+/* The plant as it is with this person's finger and hand in it. */
+ethd_plant ethd__person_plant(const ethd_plant *plant, uint64_t seed, uint32_t person, double between,
+                              double hand_spread);
+
+#endif

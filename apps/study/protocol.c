@@ -1,0 +1,128 @@
+#include "study/protocol.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "file/error_text.h"
+#include "file/text.h"
+#include "study/protocol_keys.h"
+
+/* ---- the file ---- */
+
+static ethd_status defaults(ethd__protocol *p) {
+  static const struct {
+    const char *key, *value;
+  } text[] = {{"name", "study"}, {"strategies", "smooth,offset"}, {"speeds", "low,high"}};
+  char unsaid[ETHD_MESSAGE_MAX];
+  *p = (ethd__protocol){.seed = 1, .participants = 3, .training = 2, .taps = 3, .attempts = 40, .record = true,
+                        .between = 0.5, .hand_spread = 0.15, .band_low = NAN, .band_high = NAN, .graze = 0.02,
+                        .lift = 0.005};
+  for (size_t i = 0; i < sizeof text / sizeof *text; i++) {
+    ethd_ini_key key = {(char *)"study", (char *)text[i].key, (char *)text[i].value, 0};
+    const ethd__entry e = {"the defaults", &key, p, unsaid};
+    if (ethd__entry_set(&e)) return ETHD_E_MEMORY;
+  }
+  return ETHD_OK;
+}
+
+static ethd_status known_sections(const ethd_ini *ini, const char *name, char *message) {
+  char quote[ETHD_QUOTE_MAX];
+  for (uint32_t i = 0; i < ini->section_count; i++) {
+    const ethd_ini_section *s = &ini->sections[i];
+    if (!ethd__entry_section(s->name))
+      return ethd__say(message, ETHD_E_UNKNOWN,
+                       "%s:%d: %s: unknown section; study, device, hand, validity, grid are allowed", name,
+                       s->line, ethd__quote(s->name, strlen(s->name), quote));
+  }
+  return ETHD_OK;
+}
+
+/* What no key can say alone. */
+static ethd_status check(const ethd_ini *ini, const ethd__entry *last, ethd__protocol *p) {
+  const ethd_ini_key *attempts = ethd_ini_find(ini, "study", "attempts"), *taps = ethd_ini_find(ini, "study", "taps");
+  const ethd_ini_key *motion = ethd_ini_find(ini, "hand", "motion");
+  ethd__entry e = *last;
+  e.key = attempts ? attempts : taps;
+  if (p->attempts < p->taps && !attempts) p->attempts = 40 * p->taps / 3;
+  if (p->attempts < p->taps)
+    return ethd__entry_refuse(&e, ETHD_E_RANGE, "%" PRIu32 " attempts can't make %" PRIu32 " valid taps; at least as many are allowed",
+                  p->attempts, p->taps);
+  e.key = motion;
+  if (motion && !p->recorded) return ethd__entry_refuse(&e, ETHD_E_RANGE, "stands there without source = recorded");
+  for (size_t i = 0, points = 1; i < p->axis_count; i++) {
+    points *= p->axes[i].values.count;
+    e.key = ethd_ini_find(ini, "grid", p->axes[i].key);
+    if (points > ETHD_STUDY_POINTS)
+      return ethd__entry_refuse(&e, ETHD_E_RANGE, "over %u combinations in the grid", ETHD_STUDY_POINTS);
+  }
+  return ETHD_OK;
+}
+
+static ethd_status fill(const ethd_ini *ini, const char *name, ethd__protocol *p, char *message) {
+  ethd_status status = known_sections(ini, name, message);
+  ethd__entry e = {name, NULL, p, message};
+  for (uint32_t i = 0; !status && i < ini->count; i++) {
+    e.key = &ini->keys[i];
+    status = ethd__entry_set(&e);
+  }
+  return status ? status : check(ini, &e, p);
+}
+
+ethd_status ethd__protocol_parse(const char *text, size_t length, const char *name, const char *folder,
+                                 ethd__protocol *out, char message[ETHD_MESSAGE_MAX]) {
+  ethd_ini ini;
+  *out = (ethd__protocol){0};
+  ethd_status status = ethd_ini_parse(text, length, name, NULL, &ini, message);
+  if (status) return status;
+  status = defaults(out);
+  out->path = strdup(name);
+  out->text = strndup(text, length);
+  out->folder = strdup(folder);
+  if (status || !out->path || !out->text || !out->folder)
+    status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", name, ethd_status_sentence(ETHD_E_MEMORY));
+  else
+    status = fill(&ini, name, out, message);
+  ethd_ini_free(&ini);
+  if (status) ethd__protocol_free(out);
+  return status;
+}
+
+ethd_status ethd__protocol_load(const char *path, ethd__protocol *out, char message[ETHD_MESSAGE_MAX]) {
+  char *text, *folder = ethd__path_folder(path);
+  size_t length;
+  *out = (ethd__protocol){0};
+  ethd_status status = ethd_text_read(path, ETHD_STUDY_TEXT_MAX, &text, &length, message);
+  if (!status && !folder)
+    status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!status) status = ethd__protocol_parse(text, length, path, folder, out, message);
+  free(text);
+  free(folder);
+  return status;
+}
+
+void ethd__protocol_free(ethd__protocol *p) {
+  char *own[] = {p->path, p->text, p->folder, p->name, p->config, p->plant, p->motion};
+  for (size_t i = 0; i < sizeof own / sizeof *own; i++) free(own[i]);
+  ethd__words_free(&p->strategies);
+  ethd__words_free(&p->speeds);
+  for (size_t i = 0; i < p->axis_count; i++) {
+    free(p->axes[i].key);
+    ethd__words_free(&p->axes[i].values);
+  }
+  *p = (ethd__protocol){0};
+}
+
+/* ---- the grid ---- */
+
+size_t ethd__protocol_points(const ethd__protocol *p) {
+  size_t points = 1;
+  for (size_t i = 0; i < p->axis_count; i++) points *= p->axes[i].values.count;
+  return points;
+}
+
+const char *ethd__protocol_value(const ethd__protocol *p, size_t point, size_t axis) {
+  for (size_t i = p->axis_count - 1; i > axis; i--) point /= p->axes[i].values.count;
+  return p->axes[axis].values.word[point % p->axes[axis].values.count];
+}

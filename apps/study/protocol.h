@@ -1,0 +1,79 @@
+/* A study file: who taps on what, how often, and when a tap counts. INI, strict; all [main].
+
+     [study]                              [hand]
+     name = paper                         source = simulated      or recorded
+     seed = 1                             motion = FOLDER         of recorded movements
+     participants = 3                     between = 0.5           share of the plant's variance between people
+     strategies = smooth,offset           hand_spread = 0.15      of stiffness and damping, ln, between people
+     speeds = low,high
+     order = paper     random, latin      [validity]
+     training = 2      per speed          band_low = 0.06         m/s about 0.2; the plant's without
+     taps = 3          valid ones         band_high = 0.08        m/s about 0.4
+     attempts = 40     at most, a cell    graze = 0.02            s of touch that a tap needs at least
+     survey = off      on                 lift = 0.005            m off the wall and back: a double tap
+     record = all      none
+                                          [grid]                  --simulate: every combination
+     [device]                             contact.k_e = 1000,2500
+     config = n.ini
+     plant = n
+
+   All keys have defaults; the figures above are they, but strategies, speeds and order of the paper.
+   Files are looked for beside the study file, then among those that came with the programs. */
+#ifndef ETHD_STUDY_PROTOCOL_H
+#define ETHD_STUDY_PROTOCOL_H
+
+#include <stdbool.h>
+
+#include "ethd/config.h"
+
+#define ETHD_STUDY_WORDS 8     /* strategies, speeds, values of a gain */
+#define ETHD_STUDY_GAINS 6     /* keys of a grid */
+#define ETHD_STUDY_PEOPLE 1000000u
+#define ETHD_STUDY_POINTS 100000u /* of a grid */
+#define ETHD_STUDY_TEXT_MAX ((size_t)1 << 16)
+
+typedef enum ethd__order { ETHD_ORDER_PAPER, ETHD_ORDER_RANDOM, ETHD_ORDER_LATIN } ethd__order;
+
+typedef struct ethd__words {
+  char *word[ETHD_STUDY_WORDS];
+  size_t count;
+  int line; /* of the file, 0: the default */
+} ethd__words;
+
+typedef struct ethd__axis {
+  char *key; /* section.key */
+  ethd__words values;
+} ethd__axis;
+
+typedef struct ethd__protocol {
+  char *path, *text, *folder; /* as it was read; relative paths start at folder */
+  char *name, *config, *plant, *motion; /* NULL where not given, but the name */
+  uint64_t seed;
+  uint32_t participants, training, taps, attempts;
+  ethd__words strategies, speeds;
+  ethd__order order;
+  bool survey, record, recorded; /* recorded: the hands are */
+  double between, hand_spread;
+  double band_low, band_high; /* m/s, NaN: the plant's */
+  double graze, lift;
+  ethd__axis axes[ETHD_STUDY_GAINS];
+  size_t axis_count;
+} ethd__protocol;
+
+ETHD_MUST_CHECK ethd_status ethd__protocol_load(const char *path, ethd__protocol *out,
+                                                char message[ETHD_MESSAGE_MAX]);
+
+/* The same from text; `name` stands for the file. */
+ETHD_MUST_CHECK ethd_status ethd__protocol_parse(const char *text, size_t length, const char *name,
+                                                 const char *folder, ethd__protocol *out,
+                                                 char message[ETHD_MESSAGE_MAX]);
+
+void ethd__protocol_free(ethd__protocol *protocol);
+
+/* Combinations of the grid, 1 without one. */
+size_t ethd__protocol_points(const ethd__protocol *protocol);
+
+/* Value of an axis at a combination; the last axis runs fastest. */
+const char *ethd__protocol_value(const ethd__protocol *protocol, size_t point, size_t axis);
+
+#endif

@@ -1,0 +1,208 @@
+#include "study/protocol_keys.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "file/error_text.h"
+#include "file/text.h"
+
+typedef struct key_row key_row;
+struct key_row {
+  const char *section, *key;
+  ethd_status (*set)(const ethd__entry *e, const key_row *row, void *at);
+  size_t offset;
+  double min, max; /* of numbers */
+  const char *words; /* of choices: "off|on" */
+};
+
+ethd_status ethd__entry_refuse(const ethd__entry *e, ethd_status status, const char *format, ...) {
+  char what[ETHD_MESSAGE_MAX / 2];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(what, sizeof what, format, args);
+  va_end(args);
+  return ethd__say(e->message, status, "%s:%d: %s.%s: %s", e->file, e->key->line, e->key->section,
+                   e->key->key, what);
+}
+
+static ethd_status found(const ethd__entry *e, const char *word, const char *allowed) {
+  char quote[ETHD_QUOTE_MAX];
+  return ethd__entry_refuse(e, ETHD_E_RANGE, "found %s, %s is allowed", ethd__quote(word, strlen(word), quote), allowed);
+}
+
+/* ---- kinds of values ---- */
+
+static ethd_status set_number(const ethd__entry *e, const key_row *row, void *at) {
+  char allowed[96];
+  double value;
+  snprintf(allowed, sizeof allowed, "a number from %.10g to %.10g", row->min, row->max);
+  if (!ethd__number(e->key->value, strlen(e->key->value), &value) || !(value >= row->min && value <= row->max))
+    return found(e, e->key->value, allowed);
+  *(double *)at = value;
+  return ETHD_OK;
+}
+
+static bool whole(const char *text, uint64_t *out) {
+  errno = 0;
+  *out = strtoumax(text, NULL, 10);
+  return *text && !text[strspn(text, "0123456789")] && !errno;
+}
+
+static ethd_status set_count(const ethd__entry *e, const key_row *row, void *at) {
+  char allowed[96];
+  uint64_t value;
+  snprintf(allowed, sizeof allowed, "a whole number from %.0f to %.0f", row->min, row->max);
+  if (!whole(e->key->value, &value) || !(value >= row->min && value <= row->max))
+    return found(e, e->key->value, allowed);
+  *(uint32_t *)at = (uint32_t)value;
+  return ETHD_OK;
+}
+
+static ethd_status set_seed(const ethd__entry *e, const key_row *row, void *at) {
+  (void)row;
+  return whole(e->key->value, at) ? ETHD_OK : found(e, e->key->value, "a whole number from 0 to 2^64 - 1");
+}
+
+/* Index of `word` in "a|b|c", -1 without it. */
+static int choice(const char *words, const char *word) {
+  int index = 0;
+  size_t length = strlen(word);
+  for (const char *p = words; *p; p += *p == '|', index++) {
+    size_t n = strcspn(p, "|");
+    if (n == length && !memcmp(p, word, n)) return index;
+    p += n;
+  }
+  return -1;
+}
+
+static ethd_status set_order(const ethd__entry *e, const key_row *row, void *at) {
+  int index = choice(row->words, e->key->value);
+  if (index < 0) return found(e, e->key->value, row->words);
+  *(ethd__order *)at = (ethd__order)index;
+  return ETHD_OK;
+}
+
+static ethd_status set_switch(const ethd__entry *e, const key_row *row, void *at) {
+  int index = choice(row->words, e->key->value);
+  if (index < 0) return found(e, e->key->value, row->words);
+  *(bool *)at = index == 1;
+  return ETHD_OK;
+}
+
+static ethd_status set_text(const ethd__entry *e, const key_row *row, void *at) {
+  (void)row;
+  free(*(char **)at);
+  *(char **)at = strdup(e->key->value);
+  return *(char **)at ? ETHD_OK : ethd__entry_refuse(e, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+}
+
+/* It stands in tables and file names. */
+static bool plain(const char *word) {
+  return *word && strlen(word) < 32 &&
+         !word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+-")] &&
+         *word != '.' && *word != '-';
+}
+
+static ethd_status set_name(const ethd__entry *e, const key_row *row, void *at) {
+  if (!plain(e->key->value)) return found(e, e->key->value, "a word of up to 31 letters, digits, _ . + -");
+  return set_text(e, row, at);
+}
+
+void ethd__words_free(ethd__words *words) {
+  for (size_t i = 0; i < words->count; i++) free(words->word[i]);
+  words->count = 0;
+}
+
+static ethd_status add_word(const ethd__entry *e, ethd__words *words, const char *word) {
+  for (size_t i = 0; i < words->count; i++)
+    if (!strcmp(words->word[i], word)) return ethd__entry_refuse(e, ETHD_E_DUPLICATE, "%s stands there twice", word);
+  if (words->count == ETHD_STUDY_WORDS)
+    return ethd__entry_refuse(e, ETHD_E_RANGE, "at most %d words are allowed", ETHD_STUDY_WORDS);
+  char *copy = strdup(word);
+  if (!copy) return ethd__entry_refuse(e, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  words->word[words->count++] = copy;
+  return ETHD_OK;
+}
+
+static ethd_status set_words(const ethd__entry *e, const key_row *row, void *at) {
+  ethd__words *words = at;
+  ethd_status status = ETHD_OK;
+  char *list = strdup(e->key->value), *rest = list, *word;
+  (void)row;
+  if (!list) return ethd__entry_refuse(e, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  ethd__words_free(words);
+  words->line = e->key->line;
+  while (!status && (word = strsep(&rest, ","))) {
+    word += strspn(word, " \t");
+    word[strcspn(word, " \t")] = 0;
+    status = plain(word) ? add_word(e, words, word) : found(e, e->key->value, "word,word.. of letters, digits, _ . + -");
+  }
+  free(list);
+  return status;
+}
+
+/* ---- the keys ---- */
+
+#define AT(name) offsetof(ethd__protocol, name)
+static const key_row rows[] = {
+    {"study", "name", set_name, AT(name), 0, 0, NULL},
+    {"study", "seed", set_seed, AT(seed), 0, 0, NULL},
+    {"study", "participants", set_count, AT(participants), 1, ETHD_STUDY_PEOPLE, NULL},
+    {"study", "strategies", set_words, AT(strategies), 0, 0, NULL},
+    {"study", "speeds", set_words, AT(speeds), 0, 0, NULL},
+    {"study", "order", set_order, AT(order), 0, 0, "paper|random|latin"},
+    {"study", "training", set_count, AT(training), 0, 1000, NULL},
+    {"study", "taps", set_count, AT(taps), 1, 100000, NULL},
+    {"study", "attempts", set_count, AT(attempts), 1, 1000000, NULL},
+    {"study", "survey", set_switch, AT(survey), 0, 0, "off|on"},
+    {"study", "record", set_switch, AT(record), 0, 0, "none|all"},
+    {"device", "config", set_text, AT(config), 0, 0, NULL},
+    {"device", "plant", set_text, AT(plant), 0, 0, NULL},
+    {"hand", "source", set_switch, AT(recorded), 0, 0, "simulated|recorded"},
+    {"hand", "motion", set_text, AT(motion), 0, 0, NULL},
+    {"hand", "between", set_number, AT(between), 0, 1, NULL},
+    {"hand", "hand_spread", set_number, AT(hand_spread), 0, 1, NULL},
+    {"validity", "band_low", set_number, AT(band_low), 0.001, 0.2, NULL},
+    {"validity", "band_high", set_number, AT(band_high), 0.001, 0.4, NULL},
+    {"validity", "graze", set_number, AT(graze), 0, 0.15, NULL},
+    {"validity", "lift", set_number, AT(lift), 0.001, 0.1, NULL},
+};
+enum { ROWS = sizeof rows / sizeof *rows };
+
+static const key_row *find_row(const char *section, const char *key) {
+  for (int i = 0; i < ROWS; i++)
+    if (!strcmp(rows[i].section, section) && (!key || !strcmp(rows[i].key, key))) return &rows[i];
+  return NULL;
+}
+
+static ethd_status set_axis(const ethd__entry *e) {
+  ethd__protocol *p = e->out;
+  if (p->axis_count == ETHD_STUDY_GAINS)
+    return ethd__entry_refuse(e, ETHD_E_RANGE, "at most %d gains are allowed", ETHD_STUDY_GAINS);
+  if (!strchr(e->key->key, '.')) return found(e, e->key->key, "section.key of a configuration");
+  ethd__axis *axis = &p->axes[p->axis_count++];
+  *axis = (ethd__axis){.key = strdup(e->key->key)};
+  if (!axis->key) return ethd__entry_refuse(e, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  return set_words(e, NULL, &axis->values);
+}
+
+static ethd_status unknown_key(const ethd__entry *e) {
+  char list[192] = "";
+  for (int i = 0; i < ROWS; i++)
+    if (!strcmp(rows[i].section, e->key->section))
+      snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", *list ? ", " : "", rows[i].key);
+  return ethd__entry_refuse(e, ETHD_E_UNKNOWN, "no key of this section; %s are allowed", list);
+}
+
+ethd_status ethd__entry_set(const ethd__entry *e) {
+  if (!strcmp(e->key->section, "grid")) return set_axis(e);
+  const key_row *row = find_row(e->key->section, e->key->key);
+  return row ? row->set(e, row, (char *)e->out + row->offset) : unknown_key(e);
+}
+
+
+bool ethd__entry_section(const char *section) { return !strcmp(section, "grid") || find_row(section, NULL); }

@@ -1,0 +1,27 @@
+/* The keys of a study file, one at a time. */
+#ifndef ETHD_STUDY_PROTOCOL_KEYS_H
+#define ETHD_STUDY_PROTOCOL_KEYS_H
+
+#include "file/ini.h"
+#include "study/protocol.h"
+
+/* A key that is being read. */
+typedef struct ethd__entry {
+  const char *file;
+  const ethd_ini_key *key;
+  ethd__protocol *out;
+  char *message;
+} ethd__entry;
+
+/* "file:line: section.key: ..."; returns `status`. */
+ethd_status ethd__entry_refuse(const ethd__entry *e, ethd_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+ETHD_MUST_CHECK ethd_status ethd__entry_set(const ethd__entry *e);
+
+/* Whether study files have such a section. */
+bool ethd__entry_section(const char *section);
+
+void ethd__words_free(ethd__words *words);
+
+#endif
