@@ -168,14 +168,14 @@ WHOLE := -Wl,--whole-archive $(B)/libethd.a -Wl,--no-whole-archive -Wl,--export-
 $(PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES) $(B)/libethd.a
 	$(call say,LINK,$@)
 	@mkdir -p $(@D)
-	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) -linih -lmodbus $(LIBS)
+	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) -linih -lmodbus -lz $(LIBS)
 
 define test_program
 $(B)/tests/$(notdir $(1:.c=)): $(B)/obj/$(1:.c=.o) $(B)/libethd-tests.a $(ARCHIVES) $(B)/libethd.a
 	$$(call say,LINK,$$@)
 	@mkdir -p $$(@D)
 	$$(Q)$$(LINK) -o $$@ $$< $(B)/libethd-tests.a $$(ARCHIVES) $$(WHOLE) \
-	  $$(shell $$(PKG_CONFIG) --libs check) -linih -lmodbus $$(LIBS)
+	  $$(shell $$(PKG_CONFIG) --libs check) -linih -lmodbus -lz $$(LIBS)
 endef
 $(foreach t,$(TESTS_C),$(eval $(call test_program,$(t))))
 
