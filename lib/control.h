@@ -25,6 +25,7 @@ typedef struct ethd__plan {
   int places; /* all from here on have no scene */
   ethd_velocity velocity;
   ethd_fit fit;
+  double lag_least, lag_most; /* of setup.ray_lag and 0, s; equal: no ray lags */
   ethd_filter filter;
   /* the contact law's parameters, per place and material */
   double material_p[ETHD__PLACES][ETHD_MATERIALS_MAX][ETHD_PARAMS_MAX];

@@ -1,4 +1,5 @@
 #include "control.h"
+#include "fit_methods.h"
 
 /* ---- ring ---- */
 
@@ -44,6 +45,23 @@ static ethd_vec reference(const ethd__plan *plan, const ethd__state *state, cons
   return ring_at(state, sense->sample_ns);
 }
 
+/* Of finger and ring, between the first of a frame's rays and the last. */
+static ethd_vec relative_speed(const ethd__plan *plan, const ethd__state *state,
+                               const ethd_sense *sense) ETHD_RT {
+  int64_t first = sense->sample_ns - (int64_t)(1e9 * plan->lag_most);
+  int64_t last = sense->sample_ns - (int64_t)(1e9 * plan->lag_least);
+  ethd_vec way = ethd_vec_sub(ring_at(state, last), ring_at(state, first));
+  ethd_vec v = {state->filter.v[0], state->filter.v[1]};
+  return ethd_vec_sub(v, ethd_vec_scale(1 / (plan->lag_most - plan->lag_least), way));
+}
+
+static ethd_status fit(const ethd__plan *plan, const ethd__state *state, const ethd_sense *sense,
+                       ethd_finger *out) ETHD_RT {
+  if (plan->lag_least == plan->lag_most || !state->filter.started)
+    return ethd_fit_step(&plan->fit, sense->rays, out);
+  return ethd__fit_moving(&plan->fit, sense->rays, plan->setup.ray_lag, relative_speed(plan, state, sense), out);
+}
+
 /* The reading of this tick relative to the ring; false: none, or not usable. */
 static int reading(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense,
                    ethd_vec *out) ETHD_RT {
@@ -52,7 +70,7 @@ static int reading(const ethd__plan *plan, ethd__state *state, const ethd_sense 
     return isfinite(out->x) && isfinite(out->y);
   }
   ethd_finger finger;
-  if (ethd_fit_step(&plan->fit, sense->rays, &finger) != ETHD_OK) return 0;
+  if (fit(plan, state, sense, &finger) != ETHD_OK) return 0;
   state->finger_radius = finger.radius;
   *out = finger.centre;
   return 1;

@@ -57,14 +57,30 @@ static int find(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
   }
 }
 
+static inline ethd_status finish(const ethd_fit *fit, ethd__points *points, ethd_finger *out) {
+  ethd_vec centre;
+  if (!find(fit, points, &centre)) return ETHD_STALE;
+  if (!(ethd_vec_dot(centre, centre) < fit->ring_radius * fit->ring_radius)) return ETHD_STALE;
+  describe(fit, points, centre, out);
+  return ETHD_OK;
+}
+
 ethd_status ethd_fit_step(const ethd_fit *fit, const double r[ETHD_RAYS], ethd_finger *out) {
   ethd__points points;
-  ethd_vec centre;
   collect(fit, r, &points);
-  if (!find(fit, &points, &centre)) return ETHD_STALE;
-  if (!(ethd_vec_dot(centre, centre) < fit->ring_radius * fit->ring_radius)) return ETHD_STALE;
-  describe(fit, &points, centre, out);
-  return ETHD_OK;
+  return finish(fit, &points, out);
+}
+
+ethd_status ethd__fit_moving(const ethd_fit *fit, const double r[ETHD_RAYS], const double lag[ETHD_RAYS],
+                             ethd_vec v, ethd_finger *out) {
+  ethd__points points;
+  collect(fit, r, &points);
+  for (int i = 0; i < ETHD__PAIRS; i++) {
+    two passed = two_where(points.counts[i], (two){lag[2 * i], lag[2 * i + 1]});
+    points.x[i] += passed * v.x;
+    points.y[i] += passed * v.y;
+  }
+  return finish(fit, &points, out);
 }
 
 void ethd_fit_rays(double ring_radius, double finger_radius, ethd_vec centre, double r[ETHD_RAYS]) {

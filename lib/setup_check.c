@@ -1,3 +1,4 @@
+#include <math.h>
 #include <string.h>
 
 #include "control.h"
@@ -89,6 +90,18 @@ static ethd_status prepare_materials(const ethd_setup *s, int place, ethd__plan 
   return ETHD_OK;
 }
 
+#define LAG_MAX 0.01 /* s */
+
+static ethd_status prepare_lags(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
+  out->lag_least = out->lag_most = 0;
+  for (int k = 0; k < ETHD_RAYS; k++) {
+    TRY(ethd__check_number(error, "finger_fit.lag", s->ray_lag[k], -LAG_MAX, LAG_MAX));
+    out->lag_least = fmin(out->lag_least, s->ray_lag[k]);
+    out->lag_most = fmax(out->lag_most, s->ray_lag[k]);
+  }
+  return ETHD_OK;
+}
+
 ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
   if (!s || s->cookie != ETHD__SETUP_COOKIE)
     return ethd__error(error, ETHD_E_ARGUMENT, "setup (made by ethd_setup_default?)");
@@ -100,6 +113,7 @@ ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error 
   TRY(within("velocity", ethd_velocity_prepare(s->velocity, s->velocity_p, s->period, &out->velocity, error), error));
   TRY(within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error), error));
   TRY(within("finger_filter", ethd_filter_prepare(s->filter, s->filter_p, s->period, &out->filter, error), error));
+  TRY(prepare_lags(s, out, error));
   out->places = 0;
   for (int place = 0; place < ETHD__PLACES; place++) {
     if (ethd__place_scene(s, place)) out->places = place + 1;

@@ -29,7 +29,7 @@ ethd_status ethd__key_found(const ethd__key *key, ethd_status status, const char
 
 /* ---- keys that stand in the setup itself ---- */
 
-typedef enum kind { NUMBER, WORKSPACE, MECHANISM } kind;
+typedef enum kind { NUMBER, WORKSPACE, MECHANISM, LAGS } kind;
 
 typedef struct field {
   const char *section, *key;
@@ -46,6 +46,7 @@ static const field fields[] = {
     {"ring", "radius", NUMBER, AT(ring_radius)},
     {"finger", "radius", NUMBER, AT(finger_radius)},
     {"finger", "radius_max", NUMBER, AT(finger_radius_max)},
+    {"finger_fit", "lag", LAGS, AT(ray_lag)},
     {"loop", "period", NUMBER, AT(period)},
     {"transition", "swap_time", NUMBER, AT(swap_time)},
     {"transition", "v_hysteresis", NUMBER, AT(v_hysteresis)},
@@ -66,17 +67,17 @@ static ethd_status read_number(const ethd__key *key, double *out) {
   return ETHD_OK;
 }
 
-static ethd_status read_workspace(const ethd__key *key, double out[4]) {
+/* `count` numbers, at most ETHD_RAYS. */
+static ethd_status read_numbers(const ethd__key *key, int count, const char *allowed, double *out) {
   const char *p = key->value;
-  double w[4];
-  for (int i = 0; i < 4; i++) {
+  double w[ETHD_RAYS];
+  for (int i = 0; i < count; i++) {
     size_t n = strcspn(p += strspn(p, " \t"), " \t");
-    if (!ethd__number(p, n, &w[i]) || isnan(w[i]))
-      return ethd__key_found(key, ETHD_E_SYNTAX, "x_min x_max y_min y_max");
+    if (!ethd__number(p, n, &w[i]) || isnan(w[i])) return ethd__key_found(key, ETHD_E_SYNTAX, allowed);
     p += n;
   }
-  if (p[strspn(p, " \t")]) return ethd__key_found(key, ETHD_E_SYNTAX, "x_min x_max y_min y_max");
-  memcpy(out, w, sizeof w);
+  if (p[strspn(p, " \t")]) return ethd__key_found(key, ETHD_E_SYNTAX, allowed);
+  memcpy(out, w, (size_t)count * sizeof *w);
   return ETHD_OK;
 }
 
@@ -93,7 +94,8 @@ static ethd_status read_mechanism(const ethd__key *key, ethd_mechanism *out) {
 static ethd_status read_field(const field *f, const ethd__key *key, ethd_setup *setup) {
   void *at = (char *)setup + f->offset;
   switch (f->kind) {
-    case WORKSPACE: return read_workspace(key, at);
+    case WORKSPACE: return read_numbers(key, 4, "x_min x_max y_min y_max", at);
+    case LAGS: return read_numbers(key, ETHD_RAYS, "a time in s for each of the 16 rays", at);
     case MECHANISM: return read_mechanism(key, at);
     default: return read_number(key, at);
   }

@@ -42,6 +42,7 @@ typedef struct ethd_setup {
   double velocity_p[ETHD_PARAMS_MAX];
   ethd_fit_method fit;
   double fit_p[ETHD_PARAMS_MAX];
+  double ray_lag[ETHD_RAYS]; /* s: ray k was measured so long before sample_ns, -0.01 to 0.01; 0: with it */
   ethd_filter_method filter;
   double filter_p[ETHD_PARAMS_MAX];
 
