@@ -73,7 +73,7 @@ static const void *cell(const ethd_trace *row, const ethd_column *c, uint32_t i)
 /* ---- CSV ---- */
 
 static const char *suffix(const char *unit) {
-  static const char *const table[][2] = {{"ns", "_ns"},   {"rad", "_rad"}, {"rad/s", "_radps"}, {"m", "_m"},
+  static const char *const table[][2] = {{"rad", "_rad"}, {"rad/s", "_radps"}, {"m", "_m"},
                                          {"m/s", "_mps"}, {"N", "_n"},     {"Nm", "_nm"}};
   for (size_t i = 0; i < sizeof table / sizeof *table; i++)
     if (!strcmp(table[i][0], unit)) return table[i][1];

@@ -1,0 +1,70 @@
+#!/bin/sh
+# ethd-convert: CSV and MCAP hold what the recording holds, as others read it.
+set -u
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+convert=$BUILD/bin/ethd-convert
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+printf 'wait 0.5\ntransition smooth\nset contact.k_e 2000\nwait 9\n' |
+  "$BUILD/bin/ethd-run" --virtual --duration 2 --record "$folder/rec" >/dev/null || fail "recording"
+for out in rec.csv rec.mcap; do "$convert" "$folder/rec" "$folder/$out" >"$folder/log" 2>&1 || fail "$out: $(cat "$folder/log")"; done
+
+# ---- refusals: one line, and what was there stays ----
+refuse() { # PATTERN ARGUMENTS...
+  pattern=$1
+  shift
+  "$convert" "$@" >"$folder/log" 2>&1
+  code=$?
+  [ $code = 2 ] && grep -q -e "$pattern" "$folder/log" || fail "$*: exit $code: $(cat "$folder/log")"
+}
+refuse 'ends in .csv or .mcap' "$folder/rec" "$folder/rec.txt"
+refuse 'tick.npy' "$folder/nowhere" "$folder/x.csv"
+refuse 'are needed' "$folder/rec"
+cp -r "$folder/rec" "$folder/cut"
+truncate -s 1000 "$folder/cut/tick.npy"
+echo old >"$folder/old.mcap"
+refuse 'tick.npy' "$folder/cut" "$folder/old.mcap"
+[ "$(cat "$folder/old.mcap")" = old ] || fail "a failed conversion left its mark"
+
+# ---- what others read ----
+python3=$(sh .ci/setup python) || { echo "SKIP: no python3 with numpy"; exit 77; }
+venv=$BUILD/peers/mcap
+[ -x "$venv/bin/python" ] && "$venv/bin/python" -c 'import mcap' 2>/dev/null ||
+  { "$python3" -m venv --system-site-packages "$venv" && "$venv/bin/pip" -q --disable-pip-version-check install mcap==1.6.0; } >"$folder/pip" 2>&1 ||
+  { [ $failed = 0 ] || exit 1; tail -n 3 "$folder/pip"; echo "SKIP: the Python package mcap can't be had"; exit 77; }
+cat >"$folder/read.py" <<'EOF2'
+import csv, json, math, sys
+import numpy as np
+from mcap.reader import make_reader
+folder = sys.argv[1]
+rows = np.load(folder + "/rec/tick.npy")
+events = list(csv.DictReader(open(folder + "/rec/events.csv")))
+
+def flat(row):
+    for name in rows.dtype.names:
+        yield from np.ravel(row[name]).tolist()
+
+table = list(csv.reader(open(folder + "/rec.csv")))
+assert len(table) == len(rows) + 1 and {"time_ns", "q_1_rad", "tau_2_nm", "vf_1_mps"} <= set(table[0])
+for row, line in zip(rows, table[1:]):
+    for value, text in zip(flat(row), line, strict=True):
+        assert (text == "" and math.isnan(value)) or float(text) == value, (value, text)
+
+reader = make_reader(open(folder + "/rec.mcap", "rb"), validate_crcs=True)
+statistics = reader.get_summary().statistics
+assert statistics.message_count == len(rows) + len(events) and len(reader.get_summary().chunk_indexes) >= 2
+ticks = [(m.log_time, json.loads(m.data)) for _, c, m in reader.iter_messages(topics=["/tick"])]
+said = [json.loads(m.data) for _, c, m in reader.iter_messages(topics=["/events"])]
+assert len(ticks) == len(rows)
+for row, (now, message) in zip(rows, ticks):
+    assert now == row["time_ns"] and list(message) == list(rows.dtype.names)
+    values = [v for m in message.values() for v in (m if isinstance(m, list) else [m])]
+    assert all((v is None and not math.isfinite(x)) or v == x for v, x in zip(values, flat(row), strict=True))
+assert [(str(e["row"]), e["kind"], e["detail"]) for e in said] == [(e["row"], e["kind"], e["detail"]) for e in events]
+middle = rows["time_ns"][len(rows) // 2]
+assert next(reader.iter_messages(topics=["/tick"], starting_at=int(middle)))[2].log_time == middle
+print(f"{len(rows)} ticks and {len(events)} events, as CSV and as MCAP")
+EOF2
+"$venv/bin/python" "$folder/read.py" "$folder" || fail "others read something else"
+exit $failed
