@@ -4,8 +4,11 @@
 
 #include "device/stack.h"
 #include "file/error_text.h"
+#include "file/text.h"
+#include "inject/inject.h"
 
 #define BLANKS " \t"
+#define INJECT "inject" /* the key that is no driver's */
 
 /* ---- names ---- */
 
@@ -61,7 +64,7 @@ static const char *own_key(const char *key, const char *id) {
 /* Every key has an owner, so that each driver is given all of its own and nothing is left over. */
 static ethd_status check_owners(const ethd__stack *s, const ethd_device_def *def, char *message) {
   for (uint32_t k = 0; s->count > 1 && k < def->setting_count; k++) {
-    int owned = 0;
+    int owned = !strcmp(def->settings[k].key, INJECT);
     for (uint32_t i = 0; i < s->count; i++) owned |= own_key(def->settings[k].key, s->at[i].driver->id) != NULL;
     if (!owned)
       return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: device.%s: with several drivers a key names its own, as in %s.%s",
@@ -75,7 +78,7 @@ static uint32_t own_settings(const ethd__stack *s, uint32_t i, const ethd_device
   uint32_t n = 0;
   for (uint32_t k = 0; k < def->setting_count; k++) {
     const char *key = own_key(def->settings[k].key, s->at[i].driver->id);
-    if (!key && s->count > 1) continue;
+    if ((!key && s->count > 1) || !strcmp(def->settings[k].key, INJECT)) continue;
     out[n] = def->settings[k];
     if (key) out[n].key = key;
     n++;
@@ -106,6 +109,34 @@ static ethd_status open_all(ethd__stack *s, const char *ids, const ethd_driver *
   return status;
 }
 
+/* ---- what is to go wrong ---- */
+
+/* Puts the injecting driver around an open device; closes it when that fails. */
+static ethd_status inject(const ethd_device_def *def, const char *file, const ethd_driver **driver, void **device,
+                          char *message) {
+  ethd__script script = {.count = 0};
+  char *path = ethd__path_join(def->folder, file);
+  ethd_status status = path ? ethd__script_load(path, def->setup->period, &script, message)
+                            : ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  free(path);
+  void *inner = *device;
+  *device = NULL;
+  if (status) {
+    (*driver)->close(inner);
+  } else {
+    status = ethd__inject_around(*driver, inner, &script, device);
+    if (status) ethd__say(message, status, "%s", ethd_status_sentence(status));
+  }
+  *driver = status ? NULL : &ethd__driver_inject;
+  return status;
+}
+
+static const char *script_of(const ethd_device_def *def) {
+  for (uint32_t k = 0; k < def->setting_count; k++)
+    if (!strcmp(def->settings[k].key, INJECT)) return def->settings[k].value;
+  return NULL;
+}
+
 ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from, const ethd_device_def *def,
                              const ethd_driver **driver, void **device, char message[ETHD_MESSAGE_MAX]) {
   *driver = NULL;
@@ -121,5 +152,6 @@ ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from, co
   *driver = alone ? s->at[0].driver : &ethd__driver_stack;
   *device = alone ? s->at[0].device : s;
   if (alone) free(s);
-  return ETHD_OK;
+  const char *script = script_of(def);
+  return script ? inject(def, script, driver, device, message) : ETHD_OK;
 }

@@ -1,0 +1,80 @@
+/* What a device is to do wrong, and when: one line an injection, # comments.
+
+       TIME CHANNEL KIND [by=NUMBER] [for=SECONDS]
+
+       0.500  q1       freeze          for=0.1      # an encoder that stands still
+       0.500  q2       offset  by=0.2               # one sample: for= is one period by default
+       612t   rays     nan             for=inf      # t: periods since the start
+       0.700  reading  delay   by=0.02 for=0.2
+       0.700  write    drop            for=0.005
+       0.900  fault9   set                          # the drive reports a fault
+
+   TIME counts from the first sample after the device's start. Without a number a channel means all of its
+   numbers: q is q1 and q2. What the channels and kinds are stands in script.c, in two tables. */
+#ifndef ETHD_INJECT_SCRIPT_H
+#define ETHD_INJECT_SCRIPT_H
+
+#include "ethd/driver.h"
+
+#define ETHD_INJECT_LINES_MAX 1024
+#define ETHD_INJECT_BYTES_MAX ((size_t)1 << 20)
+
+typedef enum ethd__inject_channel {
+  ETHD__INJECT_Q,
+  ETHD__INJECT_DQ,
+  ETHD__INJECT_CENTRE,
+  ETHD__INJECT_FINGER,
+  ETHD__INJECT_RING,
+  ETHD__INJECT_RAY,
+  ETHD__INJECT_TIME,    /* of the joint sample */
+  ETHD__INJECT_READING, /* of the finger, whole */
+  ETHD__INJECT_READ,    /* the calls of a driver */
+  ETHD__INJECT_WRITE,
+  ETHD__INJECT_SERVICE,
+  ETHD__INJECT_START,
+  ETHD__INJECT_FAULT, /* rows of the table */
+  ETHD__INJECT_CHANNELS
+} ethd__inject_channel;
+
+typedef enum ethd__inject_kind {
+  ETHD__INJECT_FREEZE,  /* stays what it was when this began */
+  ETHD__INJECT_OFFSET,  /* by is added */
+  ETHD__INJECT_REVERSE, /* moves the other way from where this began */
+  ETHD__INJECT_SCALE,   /* times by */
+  ETHD__INJECT_NOISE,   /* uniform within by to both sides */
+  ETHD__INJECT_SET_TO,  /* is by */
+  ETHD__INJECT_NAN,
+  ETHD__INJECT_DROP,  /* never arrives */
+  ETHD__INJECT_DELAY, /* arrives by seconds later */
+  ETHD__INJECT_FAIL,  /* the call says that the device failed */
+  ETHD__INJECT_STALE, /* the call says that there is nothing newer */
+  ETHD__INJECT_SET,   /* the row is seen */
+  ETHD__INJECT_GRAVE, /* the row is seen at its worst */
+  ETHD__INJECT_KINDS
+} ethd__inject_kind;
+
+typedef struct ethd__injection {
+  int64_t from_ns, until_ns; /* since the first sample; until is not of it */
+  ethd__inject_channel channel;
+  ethd__inject_kind kind;
+  uint32_t first, count; /* numbers of the channel */
+  double by;
+  int line;
+  int32_t begun;              /* while it runs, `held` is known */
+  double held[ETHD_RAYS];
+} ethd__injection;
+
+typedef struct ethd__script {
+  uint32_t count;
+  ethd__injection *at;
+} ethd__script;
+
+/* `name` stands for the file in messages; period, s. text[length] is 0. On failure *out is empty. [main] */
+ETHD_MUST_CHECK ethd_status ethd__script_parse(const char *text, size_t length, const char *name,
+                                               double period, ethd__script *out,
+                                               char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__script_load(const char *path, double period, ethd__script *out,
+                                              char message[ETHD_MESSAGE_MAX]);
+void ethd__script_free(ethd__script *script);
+
+#endif

@@ -1,0 +1,61 @@
+#include "inject/values.h"
+
+#include <math.h>
+
+/* Where a channel's numbers are; NULL: they aren't in this sample. */
+static double *numbers(ethd__inject_channel channel, int joints, ethd_sense *s) ETHD_RT {
+  switch (channel) {
+    case ETHD__INJECT_Q: return joints ? s->q : NULL;
+    case ETHD__INJECT_DQ: return joints && (s->have & ETHD_HAVE_DQ) ? s->dq : NULL;
+    case ETHD__INJECT_CENTRE: return s->have & ETHD_HAVE_CENTRE ? s->centre : NULL;
+    case ETHD__INJECT_FINGER: return s->have & ETHD_HAVE_FINGER ? s->finger : NULL;
+    case ETHD__INJECT_RING: return s->have & ETHD_HAVE_RING ? s->ring : NULL;
+    case ETHD__INJECT_RAY: return s->have & ETHD_HAVE_RAYS ? s->rays : NULL;
+    default: return NULL;
+  }
+}
+
+/* In [-1, 1), of a line, a number of its channel and an instant. */
+static double draw(int line, uint32_t i, int64_t t) ETHD_RT {
+  uint64_t z = ((uint64_t)line << 40) + ((uint64_t)i << 56) + (uint64_t)t;
+  z = (z + 0x9e3779b97f4a7c15u) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+  return (double)((z ^ z >> 31) >> 11) * 0x1p-52 - 1;
+}
+
+static double spoilt(const ethd__injection *in, uint32_t i, int64_t t, double value) ETHD_RT {
+  switch (in->kind) {
+    case ETHD__INJECT_FREEZE: return in->held[i];
+    case ETHD__INJECT_OFFSET: return value + in->by;
+    case ETHD__INJECT_REVERSE: return in->held[i] - (value - in->held[i]);
+    case ETHD__INJECT_SCALE: return value * in->by;
+    case ETHD__INJECT_NOISE: return value + in->by * draw(in->line, i, t);
+    case ETHD__INJECT_SET_TO: return in->by;
+    case ETHD__INJECT_NAN: return (double)NAN;
+    default: return value;
+  }
+}
+
+static int32_t shift_time(ethd__injection *in, ethd_sense *s) ETHD_RT {
+  if (!in->begun) in->held[0] = (double)s->time_ns;
+  in->begun = 1;
+  s->time_ns = in->kind == ETHD__INJECT_FREEZE ? (int64_t)in->held[0] : s->time_ns + (int64_t)rint(1e9 * in->by);
+  return 1;
+}
+
+int32_t ethd__inject_values(ethd__injection *in, int64_t t, int joints, ethd_sense *s) {
+  if (t < in->from_ns || t >= in->until_ns) {
+    in->begun = 0;
+    return 0;
+  }
+  if (in->channel == ETHD__INJECT_TIME) return joints ? shift_time(in, s) : 0;
+  double *at = numbers(in->channel, joints, s);
+  if (!at) return 0;
+  for (uint32_t i = 0; i < in->count; i++) {
+    double *value = at + in->first + i;
+    if (!in->begun) in->held[i] = *value;
+    *value = spoilt(in, i, t, *value);
+  }
+  in->begun = 1;
+  return 1;
+}
