@@ -25,7 +25,7 @@ static struct {
 
 static void ours(void *user, ethd__body *body, const ethd__stretch *s, ethd__state *state) {
   const contender *c = user;
-  body->tolerance = c->setting;
+  ethd__body_tolerate(body, c->setting);
   ethd__body_advance(body, &s->piece, s->begin, s->end - s->begin, state);
 }
 
@@ -34,7 +34,7 @@ static void ours_fixed(void *user, ethd__body *body, const ethd__stretch *s, eth
   const contender *c = user;
   double length = s->end - s->begin;
   int n = (int)ceil(length / c->setting - 1e-9);
-  body->tolerance = INFINITY;
+  ethd__body_tolerate(body, INFINITY);
   for (int i = 0; i < n; i++)
     ethd__body_advance(body, &s->piece, s->begin + length * i / n, length / n, state);
 }

@@ -27,7 +27,7 @@ void ethd__body_prepare(const ethd_sim_def *def, double finger_radius, ethd__bod
                       .finger_mass = p->finger_mass,
                       .hand_stiffness = p->hand_stiffness,
                       .hand_damping = p->hand_damping,
-                      .tolerance = def->tolerance};
+                      .at = {INFINITY, INFINITY}};
   for (int j = 0; j < 2; j++) {
     double l = out->link[j], l2 = l * l;
     out->inertia[j] = (p->mass[j] - (compliant ? p->motor_mass : 0)) * l2;
@@ -39,38 +39,39 @@ void ethd__body_prepare(const ethd_sim_def *def, double finger_radius, ethd__bod
     out->sharpness[j] = l / ETHD__STICK;
     out->torque_max[j] = p->force_limit * l;
   }
+  ethd__body_tolerate(out, def->tolerance);
+}
+
+void ethd__body_tolerate(ethd__body *body, double tolerance) {
+  double order = ceil(1 - ethd_log(tolerance) / 2);
+  body->tolerance = tolerance;
+  body->order_max = (int)fmin(fmax(order, ETHD__ORDER_MIN), ETHD__ORDER_MAX);
 }
 
 /* ---- geometry ---- */
 
-/* (sine, cosine) of at + d from those of at, |d| <= NEAR. */
-static void small_turn(double d, double *sine, double *cosine) {
-  double d2 = d * d;
-  double s = d * (1 - d2 / 6 * (1 - d2 / 20 * (1 - d2 / 42)));
-  double c = d2 / 2 * (1 - d2 / 12 * (1 - d2 / 30)); /* 1 - cos d */
-  double s0 = *sine, c0 = *cosine;
+/* Sines and cosines of at + d from those of at, |d| <= NEAR. */
+static void small_turn(ethd__two d, ethd__two *sine, ethd__two *cosine) {
+  ethd__two d2 = d * d;
+  ethd__two s = d * (1 - d2 * (1. / 6) * (1 - d2 * (1. / 20) * (1 - d2 * (1. / 42))));
+  ethd__two c = d2 / 2 * (1 - d2 * (1. / 12) * (1 - d2 * (1. / 30))); /* 1 - cos d */
+  ethd__two s0 = *sine, c0 = *cosine;
   *sine = s0 + (c0 * s - s0 * c);
   *cosine = c0 - (s0 * s + c0 * c);
 }
 
-static void waves(const ethd__body *b, int j, double angle, double *sine, double *cosine) {
-  double d = angle - b->at[j];
-  *sine = b->sine[j];
-  *cosine = b->cosine[j];
-  if (fabs(d) <= NEAR)
+void ethd__body_waves(const ethd__body *b, ethd__two angle, ethd__two *sine, ethd__two *cosine) {
+  ethd__two d = angle - ethd__pair(b->at);
+  *sine = ethd__pair(b->sine);
+  *cosine = ethd__pair(b->cosine);
+  if (fabs(d[0]) <= NEAR && fabs(d[1]) <= NEAR) {
     small_turn(d, sine, cosine);
-  else
-    ethd_sincos(angle, sine, cosine);
-}
-
-void ethd__body_waves(const ethd__body *b, const double angle[2], double sine[2], double cosine[2]) {
-  for (int j = 0; j < 2; j++) waves(b, j, angle[j], &sine[j], &cosine[j]);
-}
-
-static ethd_vec link_vector(const ethd__body *b, int j, double angle) {
-  double sine, cosine;
-  waves(b, j, angle, &sine, &cosine);
-  return (ethd_vec){b->link[j] * cosine, b->link[j] * sine};
+    return;
+  }
+  double s[2], c[2];
+  for (int j = 0; j < 2; j++) ethd_sincos(angle[j], &s[j], &c[j]);
+  *sine = ethd__pair(s);
+  *cosine = ethd__pair(c);
 }
 
 static ethd_vec turn(double w, ethd_vec a) {
@@ -82,7 +83,10 @@ typedef struct pose {
 } pose;
 
 static pose links(const ethd__body *body, const double *angle) {
-  return (pose){link_vector(body, 0, angle[0]), link_vector(body, 1, angle[1])};
+  ethd__two sine, cosine, length = ethd__pair(body->link);
+  ethd__body_waves(body, ethd__pair(angle), &sine, &cosine);
+  ethd__two x = length * cosine, y = length * sine;
+  return (pose){{x[0], y[0]}, {x[1], y[1]}};
 }
 
 static ethd_vec velocity(const pose *p, const double *w) {
@@ -91,6 +95,7 @@ static ethd_vec velocity(const pose *p, const double *w) {
 
 void ethd__body_refer(ethd__body *body, const ethd__state *state) {
   for (int j = 0; j < 2; j++) {
+    if (fabs(state->q[ETHD__LINK + j] - body->at[j]) <= NEAR / 2) continue;
     body->at[j] = state->q[ETHD__LINK + j];
     ethd_sincos(body->at[j], &body->sine[j], &body->cosine[j]);
   }

@@ -11,12 +11,16 @@
    angles; only with a compliant transmission). */
 enum { ETHD__LINK = 0, ETHD__FINGER = 2, ETHD__MOTOR = 4, ETHD__DOF_MAX = 6 };
 
+/* Orders of steps. */
+enum { ETHD__ORDER_MIN = 4, ETHD__ORDER_MAX = 14 };
+
 /* Pad and ring: apart; pressing, K p (1 + c p_dot); or leaving so fast that this would pull: no force.
  */
 typedef enum ethd__touch { ETHD__APART, ETHD__PRESSING, ETHD__LEAVING } ethd__touch;
 
 typedef struct ethd__state {
   double q[ETHD__DOF_MAX], v[ETHD__DOF_MAX];
+  double clearance; /* m: pad and ring are at least so far from touching; 0: nobody knows */
   ethd__touch touch;
 } ethd__state;
 
@@ -31,22 +35,26 @@ typedef struct ethd__body {
   double gap, pad_stiffness, pad_damping;
   double finger_mass, hand_stiffness, hand_damping;
   double tolerance;                 /* m/s: of a step's last terms */
+  int order_max;                    /* of steps: what that tolerance is reached with most cheaply */
   double at[2], sine[2], cosine[2]; /* of angles near the present ones */
 } ethd__body;
 
 /* The gap is the tap's. */
 void ethd__body_prepare(const ethd_sim_def *def, double finger_radius, ethd__body *out);
 
+/* Sets tolerance and order_max: 1 - ln(tolerance)/2 (Jorba and Zou 2005). */
+void ethd__body_tolerate(ethd__body *body, double tolerance) ETHD_RT;
+
 /* Joint angles (measured side, if there are two) to coordinates and back. */
 void ethd__body_place(const ethd__body *body, const double q[2], ethd__state *out) ETHD_RT;
 void ethd__body_joints(const ethd__body *body, const double x[ETHD__DOF_MAX], double out[2]) ETHD_RT;
 
-/* Angles stay near these for a while: their sines are worked out by a small turn from here. */
+/* Angles stay near these for a while: their sines are worked out by a small turn from here. Does nothing
+   while they are near the last ones. */
 void ethd__body_refer(ethd__body *body, const ethd__state *state) ETHD_RT;
 
 /* Sines and cosines of the links' angles. */
-void ethd__body_waves(const ethd__body *body, const double angle[2], double sine[2],
-                      double cosine[2]) ETHD_RT;
+void ethd__body_waves(const ethd__body *body, ethd__two angle, ethd__two *sine, ethd__two *cosine) ETHD_RT;
 
 /* Ring centre and its velocity; the same as the motor's side has it. */
 void ethd__body_ring(const ethd__body *body, const ethd__state *state, ethd_vec *x, ethd_vec *v) ETHD_RT;

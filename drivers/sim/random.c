@@ -6,20 +6,21 @@
 
 #define TWO_PI 6.28318530717958647692
 
-static void round_once(const uint32_t key[2], uint32_t c[4]) {
-  uint64_t a = (uint64_t)0xD2511F53u * c[0], b = (uint64_t)0xCD9E8D57u * c[2];
-  uint32_t next[4] = {(uint32_t)(b >> 32) ^ c[1] ^ key[0], (uint32_t)b, (uint32_t)(a >> 32) ^ c[3] ^ key[1],
-                      (uint32_t)a};
-  for (int i = 0; i < 4; i++) c[i] = next[i];
-}
-
 void ethd__philox(const uint32_t key[2], uint32_t block[4]) {
-  uint32_t k[2] = {key[0], key[1]};
+  uint32_t k0 = key[0], k1 = key[1], c0 = block[0], c1 = block[1], c2 = block[2], c3 = block[3];
   for (int i = 0; i < 10; i++) {
-    round_once(k, block);
-    k[0] += 0x9E3779B9u;
-    k[1] += 0xBB67AE85u;
+    uint64_t a = (uint64_t)0xD2511F53u * c0, b = (uint64_t)0xCD9E8D57u * c2;
+    c0 = (uint32_t)(b >> 32) ^ c1 ^ k0;
+    c1 = (uint32_t)b;
+    c2 = (uint32_t)(a >> 32) ^ c3 ^ k1;
+    c3 = (uint32_t)a;
+    k0 += 0x9E3779B9u;
+    k1 += 0xBB67AE85u;
   }
+  block[0] = c0;
+  block[1] = c1;
+  block[2] = c2;
+  block[3] = c3;
 }
 
 static void pair(ethd__key key, uint32_t stream, uint32_t counter, double out[2]) {

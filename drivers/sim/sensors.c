@@ -6,24 +6,12 @@ enum { STAMP = ETHD_RAYS / 2, PARTS = ETHD_RAYS + 1 };
 
 static int64_t nanoseconds(double t) { return (int64_t)rint(1e9 * t); }
 
-void ethd__sensors_start(ethd__sensors *s, const ethd_sim_def *def, const ethd_sim_tap *tap) {
-  s->plant = def->plant;
-  s->ring_radius = def->ring_radius;
-  s->finger_radius = tap->finger_radius;
-  s->phase = tap->phase;
-  s->key = (ethd__key){tap->seed, tap->tap};
-  for (uint32_t j = 0; j < 2; j++)
-    s->count_phase[j] = def->plant.count_phase ? ethd__uniform(s->key, ETHD__STREAM_ENCODER, j) : 0;
-  s->sample = s->part = 0;
-  s->taken = 0;
-}
-
 /* ---- joints ---- */
 
-void ethd__sensors_joints(const ethd__sensors *s, const ethd__body *body, const ethd__state *state,
+void ethd__sensors_joints(const ethd__sensors *s, const ethd__body *body, const double x[ETHD__DOF_MAX],
                           ethd_sense *out) {
   double count = s->plant.count;
-  ethd__body_joints(body, state->q, out->q);
+  ethd__body_joints(body, x, out->q);
   for (int j = 0; j < 2 && count > 0; j++)
     out->q[j] = (rint(out->q[j] / count - s->count_phase[j]) + s->count_phase[j]) * count;
 }
@@ -36,15 +24,28 @@ static double place(uint32_t part) {
   return (double)(part < STAMP ? part : part - 1) / (ETHD_RAYS - 1);
 }
 
-double ethd__sensors_next(const ethd__sensors *s) {
+static void appoint(ethd__sensors *s) {
   double skew = s->plant.rays ? s->plant.ray_skew * place(s->part) : 0;
-  return s->phase + (double)s->sample / s->plant.rate + skew;
+  s->next = s->phase + (double)s->sample / s->plant.rate + skew;
+}
+
+void ethd__sensors_start(ethd__sensors *s, const ethd_sim_def *def, const ethd_sim_tap *tap) {
+  s->plant = def->plant;
+  s->ring_radius = def->ring_radius;
+  s->finger_radius = tap->finger_radius;
+  s->phase = tap->phase;
+  s->key = (ethd__key){tap->seed, tap->tap};
+  for (uint32_t j = 0; j < 2; j++)
+    s->count_phase[j] = def->plant.count_phase ? ethd__uniform(s->key, ETHD__STREAM_ENCODER, j) : 0;
+  s->sample = s->part = 0;
+  s->taken = 0;
+  appoint(s);
 }
 
 static void stamp(const ethd__sensors *s, const ethd__body *body, const ethd__state *state,
                   ethd_vec true_ring, ethd__reading *out) {
   ethd_vec v;
-  out->sample_ns = nanoseconds(ethd__sensors_next(s));
+  out->sample_ns = nanoseconds(s->next);
   out->ring = true_ring;
   if (s->plant.reference) ethd__body_motor(body, state, &out->ring, &v);
 }
@@ -74,12 +75,13 @@ void ethd__sensors_take(ethd__sensors *s, const ethd__body *body, const ethd__st
     take_ray(s, relative, r);
   if (s->plant.rays && s->part + 1 < PARTS) {
     s->part++;
-    return;
+  } else {
+    r->due_ns = nanoseconds(s->next) + nanoseconds(s->plant.latency);
+    s->part = 0;
+    s->sample++;
+    s->taken++;
   }
-  r->due_ns = nanoseconds(ethd__sensors_next(s)) + nanoseconds(s->plant.latency);
-  s->part = 0;
-  s->sample++;
-  s->taken++;
+  appoint(s);
 }
 
 static void fill(const ethd__sensors *s, const ethd__reading *r, ethd_sense *out) {

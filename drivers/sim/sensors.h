@@ -22,20 +22,21 @@ typedef struct ethd__sensors {
   double ring_radius, finger_radius, phase;
   ethd__key key;
   double count_phase[2]; /* counts */
-  uint32_t sample, part; /* what comes next */
+  uint32_t sample, part; /* what comes next, */
+  double next;           /* s: and when */
   uint64_t taken;        /* readings complete */
   ethd__reading readings[ETHD__READINGS_MAX];
 } ethd__sensors;
 
 void ethd__sensors_start(ethd__sensors *sensors, const ethd_sim_def *def, const ethd_sim_tap *tap) ETHD_RT;
 
-/* Instant of the next part, s, and taking it. */
-double ethd__sensors_next(const ethd__sensors *sensors) ETHD_RT;
+/* Takes the next part: the state at its instant. */
 void ethd__sensors_take(ethd__sensors *sensors, const ethd__body *body, const ethd__state *state) ETHD_RT;
 
-/* Into the sense: joint angles; the newest reading that is due at its time_ns and wasn't at since_ns. */
-void ethd__sensors_joints(const ethd__sensors *sensors, const ethd__body *body, const ethd__state *state,
-                          ethd_sense *out) ETHD_RT;
+/* Into the sense: joint angles, from the coordinates; the newest reading that is due at its time_ns and
+   wasn't at since_ns. */
+void ethd__sensors_joints(const ethd__sensors *sensors, const ethd__body *body,
+                          const double x[ETHD__DOF_MAX], ethd_sense *out) ETHD_RT;
 void ethd__sensors_deliver(const ethd__sensors *sensors, int64_t since_ns, ethd_sense *out) ETHD_RT;
 
 #endif

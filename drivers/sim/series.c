@@ -1,5 +1,5 @@
-/* Terms of a product: z_k = sum x_i y_(k-i); of y = x': y_k = (k+1) x_(k+1). So each equation of body.c gives
-   term k of an acceleration from the terms up to k of angles and speeds, and functions come from their own:
+/* Terms of y = x': y_k = (k+1) x_(k+1); of products: terms.h. So each equation of body.c gives term k of an
+   acceleration from the terms up to k of angles and speeds, and functions come from their own:
 
      u = tanh(s w):         u' = s w' (1 - u^2)
      (C, S) = e^(i th):     C' = -th' S, S' = th' C
@@ -7,108 +7,92 @@
 #include "sim/series.h"
 
 #include "ethd/maths.h"
+#include "sim/terms.h"
 
 typedef ethd__two two;
 
-#define ORDER_MIN 4
-
-/* What is needed on the way only. */
+/* What is needed on the way only. Numbers stand in both halves of a pair where they multiply pairs. */
 typedef struct work {
   const ethd__body *body;
   ethd__series *out;
-  int turned, related; /* terms of the geometry that are known */
-  int turning;         /* 0: friction is constant */
-  two inertia, inverse_inertia, length, friction, viscous, sharpness;
+  int related; /* terms of the geometry that are known */
+  int turning; /* 0: friction is constant */
+  two inverse_inertia, length, friction, viscous, sharpness;
   two slip[ETHD__TERMS], slip_a[ETHD__TERMS], link_a[ETHD__TERMS]; /* slip: speed of what rubs */
   two rub[ETHD__TERMS], unlike[ETHD__TERMS];                       /* u, 1 - u^2 */
   two cosine[ETHD__TERMS], sine[ETHD__TERMS], square_v[ETHD__TERMS];
   double along[ETHD__TERMS], across[ETHD__TERMS]; /* H cos and H sin of th2 - th1 */
-  two apart[ETHD__TERMS], force[ETHD__TERMS];     /* from ring to finger; on the ring */
-  double inverse_mass;                            /* of the finger */
-  double swing;                                   /* of the hand's terms beyond 3 */
-  double inverse_distance, square[ETHD__TERMS], distance[ETHD__TERMS],
-      push[ETHD__TERMS]; /* push: force over distance */
+  two apart[ETHD__TERMS], half_square[ETHD__TERMS], distance[ETHD__TERMS]; /* from ring to finger */
+  two push[ETHD__TERMS], force_x[ETHD__TERMS], force_y[ETHD__TERMS]; /* on the ring; push: by distance */
+  two inverse_distance, stiffness; /* of the pad, the latter by distance */
+  double inverse_mass;             /* of the finger */
+  double swing;                    /* of the hand's terms beyond 3 */
 } work;
 
 static const double INVERSE[ETHD__TERMS + 1] = {
     0,       1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,  1.0 / 7, 1.0 / 8,
     1.0 / 9, 1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16};
 
-/* Term k of x y. */
-static inline two product(const two *x, const two *y, int k) {
-  two s = x[0] * y[k];
-  for (int i = 1; i <= k; i++) s += x[i] * y[k - i];
-  return s;
-}
-
-static inline double product_1(const double *x, const double *y, int k) {
-  double s = x[0] * y[k];
-  for (int i = 1; i <= k; i++) s += x[i] * y[k - i];
-  return s;
-}
-
 /* From the links' absolute angles, or what derives from them, to the joints'. */
-static inline two joint(const ethd__body *b, two link) {
-  return b->serial ? (two){link[0], link[1] - link[0]} : link;
+static inline two joint(int serial, two link) {
+  return serial ? (two){link[0], link[1] - link[0]} : link;
 }
 
 /* ---- geometry ---- */
 
-static void rotate(work *w, int k) {
-  if (k <= w->turned) return;
-  w->turned = k;
-  two c = w->out->link_v[0] * w->sine[k - 1], s = w->out->link_v[0] * w->cosine[k - 1];
-  for (int i = 1; i < k; i++) {
-    c += w->out->link_v[i] * w->sine[k - 1 - i];
-    s += w->out->link_v[i] * w->cosine[k - 1 - i];
-  }
-  w->cosine[k] = -c * ethd__both(INVERSE[k]);
-  w->sine[k] = s * ethd__both(INVERSE[k]);
+ETHD__INLINE void rotate(work *w, int k) {
+  const two *v = w->out->link_v;
+  w->cosine[k] = -ethd__product(v, w->sine, k - 1) * ethd__both(INVERSE[k]);
+  w->sine[k] = ethd__product(v, w->cosine, k - 1) * ethd__both(INVERSE[k]);
 }
 
-static void relate(work *w, int k) {
-  if (k <= w->related) return;
+/* Term k of what is between ring and finger. */
+ETHD__INLINE void relate(work *w, int k) {
+  if (k > 0) rotate(w, k);
+  if (k > 3) w->out->hand[k] = w->out->hand[k - 2] * ethd__both(w->swing * (INVERSE[k] * INVERSE[k - 1]));
+  two x = w->length * w->cosine[k], y = w->length * w->sine[k];
+  w->apart[k] = (w->out->hand[k] + w->out->aside[k]) - (two){ethd__sum(x), ethd__sum(y)};
+  w->half_square[k] = ethd__both(ethd__sum(ethd__half_square(w->apart, k)));
   w->related = k;
-  rotate(w, k);
-  if (k > 3)
-    w->out->hand[k] = w->out->hand[k - 2] * ethd__both(w->swing * (INVERSE[k] * INVERSE[k - 1]));
-  two ring = {ethd__sum(w->length * w->cosine[k]), ethd__sum(w->length * w->sine[k])};
-  w->apart[k] = w->out->hand[k] + w->out->aside[k] - ring;
-  w->square[k] = ethd__sum(product(w->apart, w->apart, k));
 }
 
-static void measure(work *w, int k) {
-  if (k == 0) {
-    w->distance[0] = sqrt(w->square[0]);
-    w->inverse_distance = 1 / w->distance[0];
-    w->out->beyond[0] = w->distance[0] - w->body->gap;
-    return;
-  }
-  double s = w->square[k];
-  for (int i = 1; i < k; i++) s -= w->distance[i] * w->distance[k - i];
-  w->out->beyond[k] = w->distance[k] = s / 2 * w->inverse_distance;
-  w->out->leaving[k - 1] = w->body->pad_damping * (k * w->distance[k]) + (k == 1);
+/* Term k > 0 of the distance D, from that of r r / 2, and term k - 1 of 1 + c D'. */
+ETHD__INLINE void measure(work *w, int k) {
+  two d = (w->half_square[k] - ethd__half_middle(w->distance, k)) * w->inverse_distance;
+  two e = ethd__both(w->body->pad_damping * k) * d;
+  w->out->beyond[k] = w->distance[k] = d;
+  w->out->leaving[k - 1] = k == 1 ? e + ethd__both(1) : e;
 }
 
-/* Force over distance = K p (1 + c p') / D; on the ring along r. Needs the geometry's terms up to k + 1.
- */
-static two press(work *w, int k) {
-  double s = w->body->pad_stiffness * product_1(w->out->beyond, w->out->leaving, k);
-  for (int i = 1; i <= k; i++) s -= w->distance[i] * w->push[k - i];
-  w->push[k] = s * w->inverse_distance;
-  two f = ethd__both(w->push[0]) * w->apart[k];
-  for (int i = 1; i <= k; i++) f += ethd__both(w->push[i]) * w->apart[k - i];
-  w->force[k] = f;
-  two torque = ethd__both(0);
-  for (int i = 0; i <= k; i++)
-    torque +=
-        w->cosine[i] * ethd__both(w->force[k - i][1]) - w->sine[i] * ethd__both(w->force[k - i][0]);
-  return w->length * torque;
+static void geometry_begins(work *w, const ethd__piece *piece, const ethd__motion *hand) {
+  ethd__body_waves(w->body, w->out->link[0], w->sine, w->cosine);
+  ethd__piece_terms(piece, hand, w->out->hand);
+  relate(w, 0);
+  w->distance[0] = ethd__both(sqrt(2 * w->half_square[0][0]));
+}
+
+static void measuring_begins(work *w) {
+  w->inverse_distance = 1 / w->distance[0];
+  w->stiffness = ethd__both(w->body->pad_stiffness) * w->inverse_distance;
+  w->out->beyond[0] = w->distance[0] - ethd__both(w->body->gap);
+}
+
+/* Torque over length. Force over distance = K p (1 + c p') / D; on the ring along r. Needs the geometry's
+   terms up to k + 1. */
+ETHD__INLINE two press(work *w, int k) {
+  two s = w->stiffness * ethd__product(w->out->leaving, w->out->beyond, k);
+  if (k > 0)
+    s -= (ethd__middle(w->distance, w->push, k) + w->distance[k] * w->push[0]) * w->inverse_distance;
+  w->push[k] = s;
+  two force = ethd__product(w->push, w->apart, k);
+  w->force_x[k] = ethd__both(force[0]);
+  w->force_y[k] = ethd__both(force[1]);
+  return ethd__product(w->force_y, w->cosine, k) - ethd__product(w->force_x, w->sine, k);
 }
 
 /* ---- accelerations ---- */
 
-static two rub(work *w, int k) {
+ETHD__INLINE two rub(work *w, int k) {
   if (k == 0) {
     for (int j = 0; j < 2; j++) w->rub[0][j] = ethd_tanh(w->sharpness[j] * w->slip[0][j]);
     w->unlike[0] = 1 - w->rub[0] * w->rub[0];
@@ -116,184 +100,197 @@ static two rub(work *w, int k) {
   } else if (!w->turning) {
     return w->viscous * w->slip[k];
   } else {
-    w->rub[k] = w->sharpness * ethd__both(INVERSE[k]) * product(w->slip_a, w->unlike, k - 1);
-    w->unlike[k] = -product(w->rub, w->rub, k);
+    w->rub[k] = w->sharpness * ethd__both(INVERSE[k]) * ethd__product(w->slip_a, w->unlike, k - 1);
+    w->unlike[k] = -2 * ethd__half_square(w->rub, k);
   }
   return w->friction * w->rub[k] + w->viscous * w->slip[k];
 }
 
+/* What sets plants apart; touch changes from step to step. */
+typedef struct kind {
+  int serial, compliant, coupled;
+  ethd__touch touch;
+} kind;
+
 /* Torques on the links; the motors' terms k + 1 where they have their own. */
-static two drive(work *w, int k) {
+ETHD__INLINE two drive(work *w, kind has, int k) {
   const ethd__body *b = w->body;
   ethd__series *s = w->out;
   two torque = k ? ethd__both(0) : ethd__pair(b->torque), d;
-  if (b->compliant) {
-    d = ethd__pair(b->stiffness) * (s->motor[k] - joint(b, s->link[k])) +
-        ethd__pair(b->damping) * (s->motor_v[k] - joint(b, s->link_v[k]));
+  if (has.compliant) {
+    d = ethd__pair(b->stiffness) * (s->motor[k] - joint(has.serial, s->link[k])) +
+        ethd__pair(b->damping) * (s->motor_v[k] - joint(has.serial, s->link_v[k]));
     w->slip[k] = s->motor_v[k];
     w->slip_a[k] = (torque - rub(w, k) - d) / ethd__pair(b->motor_inertia);
     s->motor_v[k + 1] = w->slip_a[k] * INVERSE[k + 1];
   } else {
-    w->slip[k] = joint(b, s->link_v[k]);
+    w->slip[k] = joint(has.serial, s->link_v[k]);
     d = torque - rub(w, k);
   }
-  return b->serial ? (two){d[0] - d[1], d[1]} : d;
+  return has.serial ? (two){d[0] - d[1], d[1]} : d;
 }
 
 /* I1 a1 + along a2 = g1 + across w2^2, along a1 + I2 a2 = g2 - across w1^2. */
 static two couple(work *w, two g, int k) {
   const ethd__two *c = w->cosine, *s = w->sine;
+  two inertia = ethd__pair(w->body->inertia);
   double h = w->body->coupling;
-  rotate(w, k);
+  if (w->related < k) relate(w, k);
   w->along[k] = w->across[k] = 0;
   for (int i = 0; i <= k; i++) {
     w->along[k] += h * (c[i][0] * c[k - i][1] + s[i][0] * s[k - i][1]);
     w->across[k] += h * (c[i][0] * s[k - i][1] - s[i][0] * c[k - i][1]);
   }
-  w->square_v[k] = product(w->out->link_v, w->out->link_v, k);
+  w->square_v[k] = ethd__product(w->out->link_v, w->out->link_v, k);
   for (int i = 0; i <= k; i++)
     g += ethd__both(w->across[i]) * ethd__swapped(w->square_v[k - i]) * (two){1, -1};
   for (int i = 1; i <= k; i++) g -= ethd__both(w->along[i]) * ethd__swapped(w->link_a[k - i]);
-  return (ethd__swapped(w->inertia) * g - ethd__both(w->along[0]) * ethd__swapped(g)) /
-         ethd__both(w->inertia[0] * w->inertia[1] - w->along[0] * w->along[0]);
+  return (ethd__swapped(inertia) * g - ethd__both(w->along[0]) * ethd__swapped(g)) /
+         ethd__both(inertia[0] * inertia[1] - w->along[0] * w->along[0]);
 }
 
 /* Positions' terms k + 1. */
-static void integrate(work *w, int k) {
+ETHD__INLINE void integrate(work *w, kind has, int k) {
   ethd__series *s = w->out;
   s->link[k + 1] = s->link_v[k] * INVERSE[k + 1];
   s->aside[k + 1] = s->aside_v[k] * INVERSE[k + 1];
-  if (w->body->compliant) s->motor[k + 1] = s->motor_v[k] * INVERSE[k + 1];
+  if (has.compliant) s->motor[k + 1] = s->motor_v[k] * INVERSE[k + 1];
 }
 
 /* Speeds' terms k + 1 from what is known up to k. */
-static void accelerate(work *w, ethd__touch touch, int k) {
+ETHD__INLINE void accelerate(work *w, kind has, int k) {
   const ethd__body *b = w->body;
   ethd__series *s = w->out;
-  two g = drive(w, k);
-  integrate(w, k);
+  two g = drive(w, has, k);
+  integrate(w, has, k);
   two f = -(ethd__both(b->hand_stiffness) * s->aside[k] + ethd__both(b->hand_damping) * s->aside_v[k]);
-  if (touch == ETHD__PRESSING) {
+  if (has.touch == ETHD__PRESSING) {
     relate(w, k + 1);
     measure(w, k + 1);
-    g += press(w, k);
-    f -= w->force[k];
+    g += w->length * press(w, k);
+    f -= (two){w->force_x[k][0], w->force_y[k][0]};
   }
-  w->link_a[k] = b->coupling != 0 ? couple(w, g, k) : g * w->inverse_inertia;
-  if (!b->compliant) w->slip_a[k] = joint(b, w->link_a[k]);
+  w->link_a[k] = has.coupled ? couple(w, g, k) : g * w->inverse_inertia;
+  if (!has.compliant) w->slip_a[k] = joint(has.serial, w->link_a[k]);
   s->link_v[k + 1] = w->link_a[k] * INVERSE[k + 1];
   s->aside_v[k + 1] = f * ethd__both(INVERSE[k + 1] * w->inverse_mass);
 }
 
 /* ---- how many terms, how far ---- */
 
-static inline double speed(const work *w, int k) {
+ETHD__INLINE double speed(const work *w, kind has, int k) {
   const ethd__series *s = w->out;
   double m = ethd__size(w->length * s->link_v[k]) + ethd__size(s->aside_v[k]);
-  return w->body->compliant ? m + ethd__size(w->length * s->motor_v[k]) : m;
+  return has.compliant ? m + ethd__size(w->length * s->motor_v[k]) : m;
 }
 
-static double power(double x, int k) {
-  double y = 1;
-  for (; k > 0; k--) y *= x;
-  return y;
-}
-
-/* How far pad and ring can come nearer to each other within the step: every term in full. */
-static double travel(const work *w, const ethd__piece *piece, double h) {
-  const ethd__series *s = w->out;
-  double reach = 0;
-  for (int k = s->order + 1; k > 0; k--)
-    reach = h * (ethd__size(w->length * s->link[k]) + ethd__size(s->aside[k]) + reach);
-  return reach + ethd__piece_travel(piece, s->hand[1], h);
-}
-
-static void geometry_begins(work *w, const double *angle) {
-  double sine[2], cosine[2];
-  ethd__body_waves(w->body, angle, sine, cosine);
-  w->sine[0] = ethd__pair(sine);
-  w->cosine[0] = ethd__pair(cosine);
-  w->turned = 0;
-  w->related = -1;
-  relate(w, 0);
-}
-
-/* Apart, far from each other: nothing to watch. */
-static void watch(work *w, const ethd__piece *piece, const ethd__motion *hand, ethd__touch touch) {
+/* Terms up to that which no longer counts, and where the last two of all do, a shorter step. Returns a speed
+   that ring and finger's way beside its path stay under. */
+ETHD__INLINE double expand(work *w, kind has) {
   ethd__series *s = w->out;
-  int last = s->order + 1;
-  if (touch == ETHD__APART) {
-    double slack = w->body->gap - sqrt(w->square[0]);
-    s->watched = 0;
-    if (slack > travel(w, piece, s->step)) return;
-    ethd__piece_terms(piece, hand, s->hand);
+  double tolerance = w->body->tolerance, h = s->step, reach = h, most, before, term;
+  accelerate(w, has, 0);
+  accelerate(w, has, 1);
+  accelerate(w, has, 2);
+  accelerate(w, has, 3);
+  most = speed(w, has, 0) + h * (speed(w, has, 1) + h * speed(w, has, 2));
+  reach = h * h * h;
+  before = reach * speed(w, has, 3);
+  reach *= h;
+  term = reach * speed(w, has, 4);
+  most += before + term;
+  int k = ETHD__ORDER_MIN;
+  while (k < w->body->order_max && !(before <= tolerance && term <= tolerance)) {
+    accelerate(w, has, k++);
+    before = term;
+    reach *= h;
+    term = reach * speed(w, has, k);
+    most += term;
   }
-  s->watched = last;
-  for (int k = w->related + 1; k <= last; k++) {
-    relate(w, k);
-    if (touch != ETHD__APART) measure(w, k);
+  s->order = k;
+  integrate(w, has, k);
+  double less = 0.75;
+  for (int i = 2; i < k; i++) less *= 0.75;
+  while (!(term <= tolerance && before <= tolerance) && isfinite(term) && isfinite(before)) {
+    h *= 0.75;
+    term *= 0.75 * less;
+    before *= less;
   }
-  if (touch != ETHD__APART) return;
-  s->beyond[0] = w->square[0] - w->body->gap * w->body->gap;
-  for (int k = 1; k <= last; k++) s->beyond[k] = w->square[k];
+  s->step = h;
+  return most;
 }
 
-static void begin(const ethd__body *b, const ethd__motion *hand, const ethd__state *state,
-                  ethd__series *s) {
+/* The paper's arm apart, since it is what runs most. */
+static double expand_kind(work *w, kind has) {
+  if (has.serial || has.compliant || has.coupled) return expand(w, has);
+  if (has.touch == ETHD__PRESSING) return expand(w, (kind){0, 0, 0, ETHD__PRESSING});
+  return expand(w, (kind){0, 0, 0, ETHD__APART});
+}
+
+/* ---- what touches ---- */
+
+static void watch_apart(work *w) {
+  ethd__series *s = w->out;
+  s->watched = s->order + 1;
+  while (w->related < s->watched) relate(w, w->related + 1);
+  s->beyond[0] = w->half_square[0] - ethd__both(w->body->gap * w->body->gap / 2);
+  for (int k = 1; k <= s->watched; k++) s->beyond[k] = w->half_square[k];
+}
+
+static void watch_touching(work *w, ethd__touch touch) {
+  ethd__series *s = w->out;
+  int measured = s->order * (touch == ETHD__PRESSING);
+  s->watched = s->order + 1;
+  while (w->related < s->watched) relate(w, w->related + 1);
+  for (int k = measured + 1; k <= s->watched; k++) measure(w, k);
+}
+
+/* Far from each other, and how far is only asked when they may have come near. */
+static void keep_clear(work *w, const ethd__piece *piece, const ethd__motion *hand, double clearance,
+                       double most) {
+  ethd__series *s = w->out;
+  double travel = s->step * most + ethd__piece_travel(piece, (two){hand->v.x, hand->v.y}, s->step);
+  s->watched = 0;
+  s->clearance = clearance - travel;
+  if (s->clearance > 0) return;
+  if (w->related < 0) geometry_begins(w, piece, hand);
+  s->clearance = w->body->gap - w->distance[0][0] - travel;
+  if (s->clearance > 0) return;
+  s->clearance = 0;
+  watch_apart(w);
+}
+
+static void begin(const ethd__motion *hand, const ethd__state *state, ethd__series *s) {
   s->link[0] = ethd__pair(state->q + ETHD__LINK);
   s->link_v[0] = ethd__pair(state->v + ETHD__LINK);
-  s->hand[0] = (two){hand->x.x, hand->x.y};
-  s->hand[1] = (two){hand->v.x, hand->v.y};
-  s->aside[0] = ethd__pair(state->q + ETHD__FINGER) - s->hand[0];
-  s->aside_v[0] = ethd__pair(state->v + ETHD__FINGER) - s->hand[1];
-  if (!b->compliant) return;
+  s->aside[0] = ethd__pair(state->q + ETHD__FINGER) - (two){hand->x.x, hand->x.y};
+  s->aside_v[0] = ethd__pair(state->v + ETHD__FINGER) - (two){hand->v.x, hand->v.y};
   s->motor[0] = ethd__pair(state->q + ETHD__MOTOR);
   s->motor_v[0] = ethd__pair(state->v + ETHD__MOTOR);
 }
 
-/* Terms up to that which no longer counts, and where the last two of all do, a shorter step. */
-static void expand(work *w, ethd__touch touch, double tolerance) {
-  ethd__series *s = w->out;
-  double h = s->step, reach = h, before = INFINITY, term = INFINITY;
-  int k = 0;
-  while (k < ETHD__ORDER_MAX && !(k >= ORDER_MIN && before <= tolerance && term <= tolerance)) {
-    accelerate(w, touch, k++);
-    before = term;
-    term = reach * speed(w, k);
-    reach *= h;
-  }
-  s->order = k;
-  integrate(w, k);
-  double last = speed(w, k), previous = speed(w, k - 1);
-  while (!(term <= tolerance && before <= tolerance) && isfinite(term) && isfinite(before)) {
-    h *= 0.75;
-    term = last * power(h, k);
-    before = previous * power(h, k - 1);
-  }
-  s->step = h;
-}
-
-void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, double t, double step,
-                         const ethd__state *state, ethd__series *out) {
+void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, const ethd__motion *hand,
+                         double step, const ethd__state *state, ethd__series *out) {
+  kind has = {b->serial, b->compliant, b->coupling != 0, state->touch};
   work w;
-  ethd__motion hand = ethd__piece_at(piece, t);
   w.body = b;
   w.out = out;
-  w.inverse_mass = 1 / b->finger_mass;
+  w.related = -1;
   w.swing = -piece->w * piece->w;
-  w.inertia = ethd__pair(b->inertia);
-  w.inverse_inertia = 1 / w.inertia;
+  w.inverse_mass = 1 / b->finger_mass;
+  w.inverse_inertia = 1 / ethd__pair(b->inertia);
   w.length = ethd__pair(b->link);
   w.friction = ethd__pair(b->friction);
   w.viscous = ethd__pair(b->viscous);
   w.sharpness = ethd__pair(b->sharpness);
-  begin(b, &hand, state, out);
-  geometry_begins(&w, state->q);
-  if (state->touch != ETHD__APART) {
-    ethd__piece_terms(piece, &hand, out->hand);
-    measure(&w, 0);
-  }
+  begin(hand, state, out);
   out->step = step;
-  expand(&w, state->touch, b->tolerance);
-  watch(&w, piece, &hand, state->touch);
+  if (has.touch != ETHD__APART || has.coupled) geometry_begins(&w, piece, hand);
+  if (has.touch != ETHD__APART) measuring_begins(&w);
+  double most = expand_kind(&w, has);
+  out->clearance = 0;
+  if (has.touch == ETHD__APART)
+    keep_clear(&w, piece, hand, state->clearance, most);
+  else
+    watch_touching(&w, has.touch);
 }

@@ -4,23 +4,47 @@
 
 #include "sim/body.h"
 
-enum { ETHD__ORDER_MAX = 14, ETHD__TERMS = ETHD__ORDER_MAX + 2 };
+enum { ETHD__TERMS = ETHD__ORDER_MAX + 2 };
 
 /* Term k belongs to (t' - t)^k. Speeds have terms 0 to order, positions one more. */
 typedef struct ethd__series {
   int order;
-  double step; /* s: how long it holds to the tolerance */
-  int watched; /* order of those below; 0: pad and ring stay apart */
+  double step;      /* s: how long it holds to the tolerance */
+  double clearance; /* of the state at its end */
+  int watched;      /* order of those below; 0: pad and ring stay apart */
   ethd__two link[ETHD__TERMS], link_v[ETHD__TERMS];
   ethd__two motor[ETHD__TERMS], motor_v[ETHD__TERMS];
   ethd__two aside[ETHD__TERMS], aside_v[ETHD__TERMS]; /* of the finger from its path */
   ethd__two hand[ETHD__TERMS];
-  double beyond[ETHD__TERMS];  /* apart: distance^2 - gap^2; touching: p */
-  double leaving[ETHD__TERMS]; /* touching: 1 + c p_dot */
+  ethd__two beyond[ETHD__TERMS];  /* apart: (distance^2 - gap^2)/2; touching: p; each twice */
+  ethd__two leaving[ETHD__TERMS]; /* touching: 1 + c p_dot, likewise */
 } ethd__series;
 
-/* The motion from this state on, for `step` or as much of it as the tolerance allows. */
-void ethd__series_expand(const ethd__body *body, const ethd__piece *piece, double t, double step,
-                         const ethd__state *state, ethd__series *out) ETHD_RT;
+/* The motion from this state on, for `step` or as much of it as the tolerance allows. `hand`: the path's at
+   that instant. */
+void ethd__series_expand(const ethd__body *body, const ethd__piece *piece, const ethd__motion *hand,
+                         double step, const ethd__state *state, ethd__series *out) ETHD_RT;
+
+/* One step: the motion from `begin` to `end` and what it leads to. */
+typedef struct ethd__leg {
+  double begin, end;
+  ethd__motion hand; /* the path at `end` */
+  ethd__state from, to;
+  ethd__series series;
+} ethd__leg;
+
+/* A leg of no length, to start from. */
+void ethd__leg_begin(const ethd__piece *piece, double t, const ethd__state *state, ethd__leg *out) ETHD_RT;
+
+/* The next one, up to `end` at most: up to where touch changes or the tolerance ends. `cell`: the length of
+   all steps that nothing cuts. */
+void ethd__leg_next(const ethd__body *body, const ethd__piece *piece, double end, double cell,
+                    ethd__leg *leg) ETHD_RT;
+
+/* Within it: the angles of links and motors among the coordinates; the whole state. */
+void ethd__leg_angles(const ethd__body *body, const ethd__leg *leg, double t,
+                      double out[ETHD__DOF_MAX]) ETHD_RT;
+void ethd__leg_at(const ethd__body *body, const ethd__piece *piece, const ethd__leg *leg, double t,
+                  ethd__state *out) ETHD_RT;
 
 #endif

@@ -5,16 +5,18 @@
 #include "sim/body.h"
 #include "sim/plant.h"
 #include "sim/sensors.h"
+#include "sim/series.h"
 
 struct ethd_sim {
   ethd_sim_def def;
   ethd__body body;
-  ethd__state state;
+  ethd__leg leg; /* holds the present tick, and goes on up to the next torque */
   ethd__sensors sensors;
   ethd_path path;
   ethd__piece piece;
   int64_t tick;
-  double t; /* s, always tick * period between writes */
+  double t;    /* s, always tick * period between writes */
+  double cell; /* s, of the grid of steps: a whole part of the period */
 };
 
 /* ---- create ---- */
@@ -58,9 +60,18 @@ static ethd_status check_tap(const ethd_sim *sim, const ethd_sim_tap *tap) {
 
 static double tick_time(const ethd_sim *sim, int64_t tick) { return (double)tick * sim->def.period; }
 
-static void take_due(ethd_sim *sim) {
-  while (ethd__sensors_next(&sim->sensors) <= sim->t)
-    ethd__sensors_take(&sim->sensors, &sim->body, &sim->state);
+static ethd__state state_at(const ethd_sim *sim, double t) {
+  ethd__state state;
+  ethd__leg_at(&sim->body, &sim->piece, &sim->leg, t, &state);
+  return state;
+}
+
+/* Samples up to t, which the present step holds. */
+static void take_due(ethd_sim *sim, double t) {
+  while (sim->sensors.next <= t) {
+    ethd__state state = state_at(sim, sim->sensors.next);
+    ethd__sensors_take(&sim->sensors, &sim->body, &state);
+  }
 }
 
 ethd_status ethd_sim_start(ethd_sim *sim, const ethd_sim_tap *tap) {
@@ -74,16 +85,19 @@ ethd_status ethd_sim_start(ethd_sim *sim, const ethd_sim_tap *tap) {
   sim->path = tap->path;
   sim->tick = 0;
   sim->t = 0;
-  memset(&sim->state, 0, sizeof sim->state);
+  sim->cell = sim->def.period / fmax(1, ceil(sim->def.period / sim->def.step - 1e-9));
+  ethd__state state;
+  memset(&state, 0, sizeof state);
   ethd__body_prepare(&sim->def, tap->finger_radius, &sim->body);
-  ethd__body_place(&sim->body, q, &sim->state);
-  ethd__body_refer(&sim->body, &sim->state);
-  ethd__body_ring(&sim->body, &sim->state, &x, &v);
-  sim->state.q[ETHD__FINGER] = x.x;
-  sim->state.q[ETHD__FINGER + 1] = x.y;
+  ethd__body_place(&sim->body, q, &state);
+  ethd__body_refer(&sim->body, &state);
+  ethd__body_ring(&sim->body, &state, &x, &v);
+  state.q[ETHD__FINGER] = x.x;
+  state.q[ETHD__FINGER + 1] = x.y;
   ethd__path_piece(&sim->path, 0, &sim->piece);
+  ethd__leg_begin(&sim->piece, 0, &state, &sim->leg);
   ethd__sensors_start(&sim->sensors, &sim->def, tap);
-  take_due(sim);
+  take_due(sim, 0);
   return ETHD_OK;
 }
 
@@ -94,31 +108,34 @@ static int64_t tick_ns(const ethd_sim *sim, int64_t tick) {
 }
 
 void ethd_sim_read(ethd_sim *sim, ethd_sense *out) {
+  double x[ETHD__DOF_MAX];
   memset(out, 0, sizeof *out);
   out->time_ns = tick_ns(sim, sim->tick);
-  ethd__sensors_joints(&sim->sensors, &sim->body, &sim->state, out);
+  ethd__leg_angles(&sim->body, &sim->leg, sim->t, x);
+  ethd__sensors_joints(&sim->sensors, &sim->body, x, out);
   if (sim->tick == 0) {
     out->have |= ETHD_HAVE_START;
-    out->finger[0] = sim->state.q[ETHD__FINGER];
-    out->finger[1] = sim->state.q[ETHD__FINGER + 1];
+    out->finger[0] = x[ETHD__FINGER];
+    out->finger[1] = x[ETHD__FINGER + 1];
   }
   ethd__sensors_deliver(&sim->sensors, sim->tick ? tick_ns(sim, sim->tick - 1) : -1, out);
 }
 
 void ethd_sim_truth(const ethd_sim *sim, ethd_truth *out) {
   ethd_vec x, v, motor, motor_v, hand, hand_v;
-  ethd__body_ring(&sim->body, &sim->state, &x, &v);
-  ethd__body_motor(&sim->body, &sim->state, &motor, &motor_v);
+  ethd__state now = state_at(sim, sim->t);
+  ethd__body_ring(&sim->body, &now, &x, &v);
+  ethd__body_motor(&sim->body, &now, &motor, &motor_v);
   ethd_path_at(&sim->path, sim->t, &hand, &hand_v);
   *out = (ethd_truth){.t = sim->t,
                       .ring = {x.x, x.y},
                       .ring_v = {v.x, v.y},
                       .motor = {motor.x, motor.y},
                       .motor_v = {motor_v.x, motor_v.y},
-                      .finger = {sim->state.q[ETHD__FINGER], sim->state.q[ETHD__FINGER + 1]},
-                      .finger_v = {sim->state.v[ETHD__FINGER], sim->state.v[ETHD__FINGER + 1]},
+                      .finger = {now.q[ETHD__FINGER], now.q[ETHD__FINGER + 1]},
+                      .finger_v = {now.v[ETHD__FINGER], now.v[ETHD__FINGER + 1]},
                       .hand = {hand.x, hand.y}};
-  ethd__body_pad(&sim->body, &sim->state, &out->pad, &out->pad_force);
+  ethd__body_pad(&sim->body, &now, &out->pad, &out->pad_force);
 }
 
 /* ---- write ---- */
@@ -131,33 +148,29 @@ static void saturate(const ethd_sim *sim, const ethd_command *command, double ou
   }
 }
 
-/* Next instant at which something happens, after or at t. */
-static double next_instant(const ethd_sim *sim, double end, double update, double grid) {
-  double next = fmin(fmin(end, update), fmin(grid, sim->piece.end));
-  return fmin(next, ethd__sensors_next(&sim->sensors));
+/* Steps go from one change of torque to the next, on a grid so that a finer one cuts each of them alike, and
+   end where the path has a kink, too. Ticks and samples are read off them. */
+static void go_on(ethd_sim *sim, double until, double update) {
+  ethd__leg *leg = &sim->leg;
+  while (leg->end < until) {
+    take_due(sim, leg->end);
+    if (leg->end >= sim->piece.end) {
+      ethd__path_piece(&sim->path, leg->end, &sim->piece);
+      leg->hand = ethd__piece_at(&sim->piece, leg->end);
+    }
+    double cell = sim->cell, grid = update;
+    if (leg->end + cell < update) grid -= cell * floor((update - leg->end) / cell - 1e-9);
+    ethd__body_refer(&sim->body, &leg->to);
+    ethd__leg_next(&sim->body, &sim->piece, fmin(grid, sim->piece.end), cell, leg);
+  }
 }
 
-/* Steps end on a grid of the tick, so that a finer grid cuts each of them alike, and where the torque
-   changes, a sensor samples, or the path has a kink. */
 void ethd_sim_write(ethd_sim *sim, const ethd_command *command) {
-  double torque[2], begin = sim->t, end = tick_time(sim, sim->tick + 1);
-  double update = fmin(begin + sim->def.plant.delay, end);
-  double cells = fmax(1, ceil(sim->def.period / sim->def.step - 1e-9));
-  double cell = 1;
-  saturate(sim, command, torque);
-  ethd__body_refer(&sim->body, &sim->state);
-  while (sim->t < end) {
-    double grid = cell < cells ? begin + (end - begin) * (cell / cells) : end;
-    double next = next_instant(sim, end, update, grid);
-    if (next > sim->t) ethd__body_advance(&sim->body, &sim->piece, sim->t, next - sim->t, &sim->state);
-    sim->t = next;
-    if (next >= update) {
-      memcpy(sim->body.torque, torque, sizeof torque);
-      update = INFINITY;
-    }
-    if (next >= grid) cell++;
-    if (next >= sim->piece.end) ethd__path_piece(&sim->path, next, &sim->piece);
-    take_due(sim);
-  }
+  double delay = sim->def.plant.delay, update = sim->t + delay, end = tick_time(sim, sim->tick + 1);
+  go_on(sim, update, update);
+  saturate(sim, command, sim->body.torque);
+  go_on(sim, end, end + delay);
+  take_due(sim, end);
+  sim->t = end;
   sim->tick++;
 }

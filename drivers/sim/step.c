@@ -1,4 +1,6 @@
 /* Steps by power series, with changes of touch located. */
+#include <string.h>
+
 #include "sim/series.h"
 
 #define LOCATED 1e-12 /* s */
@@ -14,41 +16,57 @@ static two at(const two *term, int order, double h) {
   return y;
 }
 
-static double value(const double *term, int order, double h) {
-  double y = term[order];
-  for (int k = order - 1; k >= 0; k--) y = y * h + term[k];
+static double value(const two *term, int order, double h) {
+  return at(term, order, h)[0];
+}
+
+static double slope(const two *term, int order, double h) {
+  double y = order * term[order][0];
+  for (int k = order - 1; k > 0; k--) y = y * h + k * term[k][0];
   return y;
 }
 
-static double slope(const double *term, int order, double h) {
-  double y = order * term[order];
-  for (int k = order - 1; k > 0; k--) y = y * h + k * term[k];
-  return y;
+/* How far y can go from where it begins within h: every term in full. */
+static double reach(const two *term, int order, double h) {
+  double y = fabs(term[order][0]);
+  for (int k = order - 1; k > 0; k--) y = y * h + fabs(term[k][0]);
+  return y * h;
+}
+
+/* Where f, a value or a slope, times sign passes from below 0 to above, to LOCATED: regula falsi (Illinois).
+   The end where it is above. */
+static double locate(double f(const two *, int, double), const two *term, int order, double sign,
+                     double high) {
+  double low = 0, below = sign * f(term, order, 0), above = sign * f(term, order, high);
+  int side = 0;
+  while (high - low > LOCATED) {
+    double share = below < 0 ? below / (below - above) : 0.5, middle = low + share * (high - low);
+    middle = fmin(fmax(middle, low + LOCATED / 4), high - LOCATED / 4);
+    double y = sign * f(term, order, middle);
+    if (y > 0) {
+      high = middle;
+      above = y;
+      if (side > 0) below /= 2;
+      side = 1;
+    } else {
+      low = middle;
+      below = y;
+      if (side < 0) above /= 2;
+      side = -1;
+    }
+  }
+  return high;
 }
 
 /* Where sign * y becomes positive first within h, to LOCATED; INFINITY: nowhere. */
-static double rises(const double *term, int order, double sign, double h) {
-  double low = 0, high = h;
+static double rises(const two *term, int order, double sign, double h) {
+  if (sign * term[0][0] + reach(term, order, h) < 0) return INFINITY;
   if (!(sign * value(term, order, h) > 0)) {
-    if (!(sign * term[1] > 0 && sign * slope(term, order, h) < 0)) return INFINITY;
-    while (high - low > LOCATED) { /* a summit within */
-      double middle = (low + high) / 2;
-      if (sign * slope(term, order, middle) > 0)
-        low = middle;
-      else
-        high = middle;
-    }
-    if (!(sign * value(term, order, high) > 0)) return INFINITY;
-    low = 0;
+    if (!(sign * term[1][0] > 0 && sign * slope(term, order, h) < 0)) return INFINITY;
+    h = locate(slope, term, order, -sign, h); /* a summit within */
+    if (!(sign * value(term, order, h) > 0)) return INFINITY;
   }
-  while (high - low > LOCATED) {
-    double middle = (low + high) / 2;
-    if (sign * value(term, order, middle) > 0)
-      high = middle;
-    else
-      low = middle;
-  }
-  return high;
+  return locate(value, term, order, sign, h);
 }
 
 typedef struct change {
@@ -72,17 +90,32 @@ static void put(two x, double *out) {
   out[1] = x[1];
 }
 
-static void move(const ethd__body *b, const ethd__series *s, const ethd__piece *piece, double t,
-                 double h, ethd__state *state) {
-  int n = s->order;
-  ethd__motion hand = ethd__piece_at(piece, t + h);
-  put(at(s->link, n + 1, h), state->q + ETHD__LINK);
-  put(at(s->link_v, n, h), state->v + ETHD__LINK);
-  put(at(s->aside, n + 1, h) + (two){hand.x.x, hand.x.y}, state->q + ETHD__FINGER);
-  put(at(s->aside_v, n, h) + (two){hand.v.x, hand.v.y}, state->v + ETHD__FINGER);
+/* Four polynomials of n + 1, n, n + 1, n terms, side by side. */
+static void evaluate(const two *x, const two *v, const two *y, const two *w, int n, double h, two out[4]) {
+  two a = x[n + 1], b = v[n], c = y[n + 1], d = w[n];
+  for (int k = n; k > 0; k--) {
+    a = a * h + x[k];
+    b = b * h + v[k - 1];
+    c = c * h + y[k];
+    d = d * h + w[k - 1];
+  }
+  out[0] = a * h + x[0];
+  out[1] = b;
+  out[2] = c * h + y[0];
+  out[3] = d;
+}
+
+static void move(const ethd__body *b, const ethd__series *s, const ethd__motion *hand, double h,
+                 ethd__state *state) {
+  two out[4];
+  evaluate(s->link, s->link_v, s->aside, s->aside_v, s->order, h, out);
+  put(out[0], state->q + ETHD__LINK);
+  put(out[1], state->v + ETHD__LINK);
+  put(out[2] + (two){hand->x.x, hand->x.y}, state->q + ETHD__FINGER);
+  put(out[3] + (two){hand->v.x, hand->v.y}, state->v + ETHD__FINGER);
   if (!b->compliant) return;
-  put(at(s->motor, n + 1, h), state->q + ETHD__MOTOR);
-  put(at(s->motor_v, n, h), state->v + ETHD__MOTOR);
+  put(at(s->motor, s->order + 1, h), state->q + ETHD__MOTOR);
+  put(at(s->motor_v, s->order, h), state->v + ETHD__MOTOR);
 }
 
 /* Friction far from its turn is constant to the last digit, and a series can't see the turn ahead. */
@@ -97,22 +130,52 @@ static int turns(const ethd__body *b, double most, const ethd__state *from, cons
   return 0;
 }
 
+void ethd__leg_begin(const ethd__piece *piece, double t, const ethd__state *state, ethd__leg *out) {
+  out->begin = out->end = t;
+  out->from = out->to = *state;
+  out->hand = ethd__piece_at(piece, t);
+}
+
+void ethd__leg_next(const ethd__body *b, const ethd__piece *piece, double end, double cell, ethd__leg *leg) {
+  ethd__series *s = &leg->series;
+  double whole = end - leg->end, most = fmin(TURN, PACE * cell);
+  leg->begin = leg->end;
+  leg->from = leg->to;
+  ethd__series_expand(b, piece, &leg->hand, whole, &leg->from, s);
+  change c = next_change(s, leg->from.touch);
+  double step = fmin(s->step, c.after);
+  for (;; step /= 2) {
+    leg->end = step < whole ? leg->begin + step : end;
+    leg->hand = ethd__piece_at(piece, leg->end);
+    move(b, s, &leg->hand, step, &leg->to);
+    if (!turns(b, most, &leg->from, &leg->to)) break;
+  }
+  leg->to.clearance = s->clearance;
+  if (step == c.after) leg->to.touch = c.touch;
+}
+
+void ethd__leg_angles(const ethd__body *b, const ethd__leg *leg, double t, double out[ETHD__DOF_MAX]) {
+  const ethd__series *s = &leg->series;
+  if (t <= leg->begin || t >= leg->end) {
+    memcpy(out, t < leg->end ? leg->from.q : leg->to.q, sizeof leg->to.q);
+    return;
+  }
+  put(at(s->link, s->order + 1, t - leg->begin), out + ETHD__LINK);
+  if (b->compliant) put(at(s->motor, s->order + 1, t - leg->begin), out + ETHD__MOTOR);
+}
+
+void ethd__leg_at(const ethd__body *b, const ethd__piece *piece, const ethd__leg *leg, double t,
+                  ethd__state *out) {
+  *out = t < leg->end ? leg->from : leg->to;
+  if (t <= leg->begin || t >= leg->end) return;
+  ethd__motion hand = ethd__piece_at(piece, t);
+  move(b, &leg->series, &hand, t - leg->begin, out);
+}
+
 void ethd__body_advance(const ethd__body *b, const ethd__piece *piece, double t, double h,
                         ethd__state *state) {
-  double done = 0, most = fmin(TURN, PACE * h);
-  while (done < h) {
-    ethd__series s;
-    ethd__state next = *state;
-    ethd__series_expand(b, piece, t + done, h - done, state, &s);
-    change c = next_change(&s, state->touch);
-    double step = fmin(s.step, c.after);
-    move(b, &s, piece, t + done, step, &next);
-    while (turns(b, most, state, &next)) {
-      step /= 2;
-      move(b, &s, piece, t + done, step, &next);
-    }
-    if (step == c.after) next.touch = c.touch;
-    *state = next;
-    done = step < h - done ? done + step : h;
-  }
+  ethd__leg leg;
+  ethd__leg_begin(piece, t, state, &leg);
+  while (leg.end < t + h) ethd__leg_next(b, piece, t + h, h, &leg);
+  *state = leg.to;
 }

@@ -3,8 +3,9 @@
    Plausible and fitted to the paper's Table 1, not measured: say so wherever a number of it is shown.
    Plants are data (files *.plant). The finger moves on its voluntary path; what the ring pushes it aside
    works against the hand's spring and damper about that path; where pad and ring meet, Hunt-Crossley. Steps
-   of power series, split at sample instants, torque updates, contact changes. Everything is deterministic
-   to the bit: every random number is a function of (seed, tap, stream, counter). */
+   of power series go from torque update to torque update, cut where a contact changes; ticks and samples are
+   read off them. Everything is deterministic to the bit: every random number is a function of (seed, tap,
+   stream, counter). */
 #ifndef ETHD_SIM_H
 #define ETHD_SIM_H
 
