@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "common/cli.h"
+#include "common/dropped.h"
 #include "ethd/record.h"
 #include "replay/trace_in.h"
 
@@ -112,11 +113,12 @@ static int run(ethd_control *control, const ethd__trace_in *in, ethd_csv_out *ou
   return ethd__stop ? ETHD_EXIT_FAILED : code;
 }
 
-static void say(const ethd_control *control, const ethd__trace_in *in) {
+static void say(const ethd_control *control, const ethd_scene *scene, const ethd__trace_in *in) {
   ethd_counters c;
   ethd_control_counters(control, &c);
   printf("%s: %llu ticks, scene queried in %llu", arg.out, (unsigned long long)c.ticks,
          (unsigned long long)c.queried);
+  ethd__dropped_print(stdout, scene);
   if (in->ring) printf(", %llu frames dropped", (unsigned long long)c.readings_dropped);
   printf("\n");
 }
@@ -141,7 +143,7 @@ static int replay(void) {
   if (!out) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   int code = run(control, &in, out);
   if (ethd_csv_close(out, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
-  say(control, &in);
+  say(control, config->scene, &in);
   ethd_control_destroy(control);
   ethd__trace_in_free(&in);
   ethd_config_free(config);

@@ -186,8 +186,8 @@ static int info(void) {
   say_counts(&info);
   printf("build time:   %.3g ms (read and built)\n", 1e3 * seconds);
   printf("memory:       %zu bytes\n", info.bytes);
-  printf("out of reach: %zu of %zu objects (%s arm %g + %g m, ring %g m)\n",
-         ethd_scene_out_of_reach(scene, &setup.arm, setup.ring_radius), info.objects,
+  printf("out of reach: %zu of %zu objects, which a controller drops (%s arm %g + %g m, ring %g m)\n",
+         ethd_scene_out_of_reach(scene, &setup.arm, ethd_setup_range(&setup)), info.objects,
          setup.arm.mechanism == ETHD_ARM_SERIAL ? "serial" : "parallel", setup.arm.link1, setup.arm.link2,
          setup.ring_radius);
   ethd_scene_destroy(scene);

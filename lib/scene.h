@@ -1,9 +1,9 @@
 /* A scene in memory: one block without pointers, every array found by its offset.
 
      objects    what each is and where its numbers are; in the order of the tree's leaves, half-planes last
-     places     of the objects, by id
+     places     of the objects, in the order of their ids
      numbers    halfplane {nx, ny, c}, circle {x, y, r}, capsule {x1, y1, x2, y2, r},
-                box {x, y, half_w, half_h, cos, sin}; chains: the points, closed ones repeat their first
+                box {x, y, half_w, half_h, angle, cos, sin}; chains: the points, closed ones repeat their first
      trees      of the chains with a tree of their own (scene_tree.h)
      nodes      of those, then of the tree of all objects
      slopes     one for each box of a chain's tree */
@@ -43,6 +43,8 @@ struct ethd_scene {
   size_t nodes_at, objects_at, numbers_at, trees_at, places_at, slopes_at, materials_at;
   ethd__tree tree;
   uint32_t object_count, number_count, tree_count, node_count, material_count;
+  uint32_t dropped; /* objects that aren't here, for an arm can't reach them */
+  double inner, outer; /* m from the base: between them nothing is missing */
   size_t bytes;
   double x_min, x_max, y_min, y_max; /* of all but half-planes; min > max: nothing */
 };
@@ -108,6 +110,13 @@ static inline void ethd__label(const ethd__object *o, ethd_touch *out) {
 /* The nearest point of an object, by its closed form or edge by edge: a complete touch but for a chain's
    side. */
 void ethd__object_nearest(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_touch *out) ETHD_RT;
+
+/* Builds from what is known to be right. ids: their numbers, rising; NULL: 0, 1, ... [main] */
+ethd_status ethd__scene_make(const ethd_scene_def *def, const int32_t *ids, ethd_scene **out, ethd_error *error);
+
+/* Where things count for this arm, m from the base. */
+void ethd__scene_annulus(const ethd_arm *arm, double radius, double *inner, double *outer);
+bool ethd__object_is_within(const ethd_scene *scene, const ethd__object *o, double inner, double outer);
 
 /* Sign of the area of a, b, c, exactly: +1 counter-clockwise, -1 clockwise, 0 on a line. */
 int ethd__orient(ethd_vec a, ethd_vec b, ethd_vec c) ETHD_RT;

@@ -7,9 +7,9 @@
 #include "scene_build.h"
 #include "scene_check.h"
 
-/* Boxes keep the cosine and the sine of their angle, polygons their first point twice. */
+/* Boxes keep the cosine and the sine of their angle too, polygons their first point twice. */
 static size_t kept_numbers(const ethd_object_def *o) {
-  return o->count + (o->shape == ETHD_BOX) + (o->shape == ETHD_POLYGON ? 2 : 0);
+  return o->count + (o->shape == ETHD_BOX || o->shape == ETHD_POLYGON ? 2 : 0);
 }
 
 static uint32_t edges_of(const ethd_object_def *o) {
@@ -125,10 +125,11 @@ static int turn_of(const double *p, size_t n) {
 static void keep_numbers(const ethd_object_def *def, double *kept) {
   const double *p = def->numbers;
   memcpy(kept, p, def->count * sizeof *p);
-  if (def->shape == ETHD_BOX) ethd_sincos(p[4], &kept[5], &kept[4]);
+  if (def->shape == ETHD_BOX) ethd_sincos(p[4], &kept[6], &kept[5]);
   if (def->shape == ETHD_POLYGON) memcpy(kept + def->count, p, 2 * sizeof *p);
   if (def->shape != ETHD_HALFPLANE) return;
   double length = sqrt(p[0] * p[0] + p[1] * p[1]);
+  if (fabs(length - 1) <= 4 * DBL_EPSILON) return; /* divided once is divided for good */
   for (int i = 0; i < 3; i++) kept[i] = p[i] / length;
 }
 
@@ -166,7 +167,7 @@ static void order(const ethd_scene_def *def, const ethd_scene *s, ethd__item *it
   ethd__order_build(items, s->tree.leaves);
 }
 
-static void fill(const ethd_scene_def *def, ethd_scene *s, const ethd__item *items) {
+static void fill(const ethd_scene_def *def, const int32_t *ids, ethd_scene *s, const ethd__item *items) {
   char *base = (char *)s;
   ethd__object *objects = (void *)(base + s->objects_at);
   ethd__tree *trees = (void *)(base + s->trees_at);
@@ -176,8 +177,8 @@ static void fill(const ethd_scene_def *def, ethd_scene *s, const ethd__item *ite
     uint32_t edges = edges_of(d);
     double *numbers = (double *)(void *)(base + s->numbers_at) + number;
     keep_numbers(d, numbers);
-    objects[i] = (ethd__object){.id = (int32_t)items[i].id, .material = d->material, .first = number, .edges = edges,
-                                .tree = tree, .shape = (int8_t)d->shape};
+    objects[i] = (ethd__object){.id = ids ? ids[items[i].id] : (int32_t)items[i].id, .material = d->material,
+                                .first = number, .edges = edges, .tree = tree, .shape = (int8_t)d->shape};
     if (d->shape == ETHD_POLYGON) objects[i].turn = (int8_t)turn_of(d->numbers, d->count / 2);
     if (edges) objects[i].closed = is_closed(numbers, edges);
     places[items[i].id] = i;
@@ -199,12 +200,12 @@ static ethd_status check(const ethd_scene_def *def, ethd_error *error) {
   return status;
 }
 
-static bool build(const ethd_scene_def *def, ethd_scene *scene) {
+static bool build(const ethd_scene_def *def, const int32_t *ids, ethd_scene *scene) {
   ethd__item *items = malloc((scene->object_count + (size_t)1) * sizeof *items);
   if (!items) return false;
   measure(def, scene);
   order(def, scene, items);
-  fill(def, scene, items);
+  fill(def, ids, scene, items);
   free(items);
   void *room = malloc(ethd__nodes_room(scene));
   if (!room) return false;
@@ -213,25 +214,30 @@ static bool build(const ethd_scene_def *def, ethd_scene *scene) {
   return true;
 }
 
-ethd_status ethd_scene_create(const ethd_scene_def *def, ethd_scene **out, ethd_error *error) {
-  *out = NULL;
-  ethd_status status = check(def, error);
-  if (status) return status;
+ethd_status ethd__scene_make(const ethd_scene_def *def, const int32_t *ids, ethd_scene **out, ethd_error *error) {
   ethd_scene empty;
   memset(&empty, 0, sizeof empty);
-  status = plan(def, &empty, error);
+  empty.outer = INFINITY;
+  *out = NULL;
+  ethd_status status = plan(def, &empty, error);
   if (status) return status;
   ethd_scene *scene = aligned_alloc(64, empty.bytes);
   if (scene) {
     memset(scene, 0, empty.bytes);
     *scene = empty;
   }
-  if (!scene || !build(def, scene)) {
+  if (!scene || !build(def, ids, scene)) {
     free(scene);
     return ethd__refuse(error, ETHD_E_MEMORY, "scene", NAN, NAN, NAN);
   }
   *out = scene;
   return ETHD_OK;
+}
+
+ethd_status ethd_scene_create(const ethd_scene_def *def, ethd_scene **out, ethd_error *error) {
+  *out = NULL;
+  ethd_status status = check(def, error);
+  return status ? status : ethd__scene_make(def, NULL, out, error);
 }
 
 void ethd_scene_destroy(ethd_scene *scene) { free(scene); }

@@ -2,6 +2,7 @@
 
 void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out) {
   *out = (ethd_scene_info){.objects = scene->object_count, .materials = scene->material_count,
+                           .dropped = scene->dropped,
                            .bytes = scene->bytes, .x_min = scene->x_min, .x_max = scene->x_max,
                            .y_min = scene->y_min, .y_max = scene->y_max};
   for (uint32_t i = 0; i < scene->object_count; i++) {
@@ -22,7 +23,7 @@ static double farthest_of_chain(const ethd_scene *scene, const ethd__object *o) 
 
 /* The base joint seen from the box's frame, and the corner farthest from there. */
 static double farthest_of_box(const double *p) {
-  double u = p[4] * p[0] + p[5] * p[1], v = p[4] * p[1] - p[5] * p[0];
+  double u = p[5] * p[0] + p[6] * p[1], v = p[5] * p[1] - p[6] * p[0];
   return norm(fabs(u) + p[2], fabs(v) + p[3]);
 }
 
@@ -38,17 +39,44 @@ static double farthest(const ethd_scene *scene, const ethd__object *o) {
 
 /* Objects are connected: one whose nearest point lies within the outer circle and whose farthest lies
    beyond the inner one has points between them. */
+bool ethd__object_is_within(const ethd_scene *scene, const ethd__object *o, double inner, double outer) {
+  ethd_touch nearest;
+  ethd__object_nearest(scene, o, (ethd_vec){0, 0}, &nearest);
+  return nearest.distance <= outer && farthest(scene, o) >= inner;
+}
+
+void ethd__scene_annulus(const ethd_arm *arm, double radius, double *inner, double *outer) {
+  ethd_arm_reach(arm, inner, outer);
+  *inner -= radius;
+  *outer += radius;
+}
+
 size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, double radius) {
   double inner, outer;
   size_t count = 0;
-  ethd_arm_reach(arm, &inner, &outer);
-  for (uint32_t i = 0; i < scene->object_count; i++) {
-    const ethd__object *o = ethd__object_at(scene, i);
-    ethd_touch nearest;
-    ethd__object_nearest(scene, o, (ethd_vec){0, 0}, &nearest);
-    if (nearest.distance > outer + radius || farthest(scene, o) < inner - radius) count++;
-  }
+  ethd__scene_annulus(arm, radius, &inner, &outer);
+  for (uint32_t i = 0; i < scene->object_count; i++)
+    count += !ethd__object_is_within(scene, ethd__object_at(scene, i), inner, outer);
   return count;
+}
+
+/* ---- what it is made of ---- */
+
+static size_t given_numbers(const ethd__object *o) {
+  switch ((ethd_shape)o->shape) {
+    case ETHD_HALFPLANE:
+    case ETHD_CIRCLE: return 3;
+    case ETHD_CAPSULE:
+    case ETHD_BOX: return 5;
+    default: return 2 * (o->edges + (o->shape != ETHD_POLYGON ? (size_t)1 : 0));
+  }
+}
+
+int32_t ethd_scene_object(const ethd_scene *scene, size_t i, ethd_object_def *out) {
+  if (i >= scene->object_count) return -1;
+  const ethd__object *o = ethd__object_at(scene, ETHD__ARRAY(scene, uint32_t, places_at)[i]);
+  *out = (ethd_object_def){(ethd_shape)o->shape, o->material, ethd__numbers(scene, o), given_numbers(o), 0};
+  return o->id;
 }
 
 const ethd_material *ethd_scene_material(const ethd_scene *scene, size_t i) {

@@ -38,7 +38,7 @@ static size_t put(build *b, size_t n, double x, double y, double r) {
 static size_t put_corners(build *b, size_t n, const double *p) {
   for (int k = 0; k < 4; k++) {
     double u = k & 1 ? p[2] : -p[2], v = k & 2 ? p[3] : -p[3];
-    n = put(b, n, p[0] + (p[4] * u - p[5] * v), p[1] + (p[5] * u + p[4] * v), 0);
+    n = put(b, n, p[0] + (p[5] * u - p[6] * v), p[1] + (p[6] * u + p[5] * v), 0);
   }
   return n;
 }

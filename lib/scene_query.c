@@ -46,7 +46,7 @@ static void capsule(const double *p, ethd_vec x, ethd_touch *out) {
 
 /* In the box's frame, folded into its first quadrant: (u, v) from the centre, (du, dv) beyond the faces. */
 static void box(const double *p, ethd_vec x, ethd_touch *out) {
-  double c = p[4], s = p[5];
+  double c = p[5], s = p[6];
   ethd_vec r = ethd_vec_sub(x, vec(p[0], p[1]));
   double u = c * r.x + s * r.y, v = c * r.y - s * r.x;
   double su = copysign(1, u), sv = copysign(1, v), du = fabs(u) - p[2], dv = fabs(v) - p[3];

@@ -139,9 +139,19 @@ static void follow_object(const ethd_scene *scene, const ethd__object *o, ethd_v
   for (size_t k = 0; (k = ethd__chain_minimum(&chain, x, k, &touch)) != 0;) take(&touch, from, &least, out);
 }
 
-void ethd_scene_follow(const ethd_scene *scene, int32_t object, ethd_vec x, ethd_vec from, ethd_touch *out) {
+/* Where none was dropped, its id is its rank. */
+static const ethd__object *object_of(const ethd_scene *scene, int32_t id) {
   const uint32_t *places = ETHD__ARRAY(scene, uint32_t, places_at);
-  const ethd__object *o = ethd__object_at(scene, places[object]);
+  uint32_t low = scene->dropped ? 0 : (uint32_t)id, high = scene->dropped ? scene->object_count : low + 1;
+  while (high - low > 1) {
+    uint32_t middle = low + (high - low) / 2;
+    *(ethd__object_at(scene, places[middle])->id <= id ? &low : &high) = middle;
+  }
+  return ethd__object_at(scene, places[low]);
+}
+
+void ethd_scene_follow(const ethd_scene *scene, int32_t object, ethd_vec x, ethd_vec from, ethd_touch *out) {
+  const ethd__object *o = object_of(scene, object);
   if (ethd__has_tree(o))
     follow_strip(scene, o, x, from, out);
   else

@@ -3,6 +3,7 @@
 
 #include "control.h"
 #include "error.h"
+#include "scene.h"
 #include "setup.h"
 
 #define TRY(expression)                  \
@@ -102,6 +103,17 @@ static ethd_status prepare_lags(const ethd_setup *s, ethd__plan *out, ethd_error
   return ETHD_OK;
 }
 
+/* A scene pruned for another arm may lack what this one meets; a body can come from anywhere. */
+static ethd_status check_scene(const ethd_setup *s, int place, ethd_error *error) {
+  const ethd_scene *scene = ethd__place_scene(s, place);
+  double inner = 0, outer = (double)INFINITY;
+  if (!scene) return ETHD_OK;
+  if (place == 0) ethd__scene_annulus(&s->arm, ethd_setup_range(s), &inner, &outer);
+  if (scene->inner <= fmax(inner, 0) && scene->outer >= outer) return ETHD_OK;
+  return ethd__refuse(error, ETHD_E_RANGE, "scene was pruned for another arm or ring; reach", outer, scene->inner,
+                      scene->outer);
+}
+
 ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
   if (!s || s->cookie != ETHD__SETUP_COOKIE)
     return ethd__error(error, ETHD_E_ARGUMENT, "setup (made by ethd_setup_default?)");
@@ -117,6 +129,7 @@ ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error 
   out->places = 0;
   for (int place = 0; place < ETHD__PLACES; place++) {
     if (ethd__place_scene(s, place)) out->places = place + 1;
+    TRY(check_scene(s, place, error));
     TRY(prepare_materials(s, place, out, error));
   }
   return ETHD_OK;

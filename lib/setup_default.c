@@ -8,6 +8,10 @@ ethd_limits ethd_limits_none(void) {
   return (ethd_limits){inf, inf, inf, {-inf, inf, -inf, inf}, inf, 1, 0};
 }
 
+double ethd_setup_range(const ethd_setup *s) {
+  return 2 * s->ring_radius + (s->ring_radius - s->finger_radius_max);
+}
+
 static void defaults(const ethd_param *params, uint32_t count, double *p) {
   memset(p, 0, ETHD_PARAMS_MAX * sizeof *p);
   ethd_params_default(params, count, p);

@@ -48,6 +48,14 @@ done
 printf '[arm]\nlink1 = 2\nlink2 = 2.1\n' >arm.ini
 "$program" info walls.scene --config arm.ini | grep -q 'out of reach: 2 of 5' || fail "info ignores the configuration"
 
+# What the arm can't reach, a controller isn't burdened with; numbers stay the file's.
+printf 'circle 9 9 1\nhalfplane -1 0 -0.238\ncircle 9 -9 1\n' >far.scene
+printf '[scene]\nfile = far.scene\n' >far.ini
+printf 't_s,q1_rad,q2_rad,xf_m,yf_m,vxf_mps,vyf_mps\n0,1.5707963,0,0.25,0.25,0,0\n' >tick.csv
+"$BUILD/bin/ethd-replay" --config far.ini --in tick.csv --out tick_out.csv >replay.txt || fail "the replay fails"
+grep -q 'queried in 1, 2 objects out of reach dropped' replay.txt || fail "not told what was dropped: $(cat replay.txt)"
+"$program" info far.scene | grep -q 'out of reach: 2 of 3' || fail "info doesn't say what would be dropped"
+
 : >empty.scene
 printf 'x_m,y_m\n1,2\n' >one.csv
 "$program" query --scene empty.scene --in one.csv --out empty.csv || fail "an empty scene is refused"

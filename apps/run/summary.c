@@ -2,6 +2,8 @@
 
 #include <inttypes.h>
 
+#include "common/dropped.h"
+
 void ethd__durations_print(FILE *out, const char *name, const ethd_histogram *h) {
   fprintf(out, "%-10s p50 %9.3f  p99 %9.3f  p99.9 %9.3f  max %9.3f us\n", name,
           1e-3 * (double)ethd_histogram_at(h, 0.5), 1e-3 * (double)ethd_histogram_at(h, 0.99),
@@ -32,6 +34,9 @@ static void print_skipped(FILE *out, const ethd__session *s, const ethd_loop_sta
   fprintf(out, "%-10s %" PRIu64 " readings dropped, %" PRIu64 " contacts without room, %" PRIu64
                " ticks without room in the recorder\n",
           "skipped", c.readings_dropped, c.contacts_lost, stats->rows_lost);
+  fprintf(out, "%-10s queried in %" PRIu64 " of %" PRIu64 " ticks", "scene", c.queried, c.ticks);
+  ethd__dropped_print(out, s->setup.scene);
+  fputc('\n', out);
 }
 
 static void print_device(FILE *out, const ethd_loop_stats *stats) {

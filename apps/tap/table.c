@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "common/dropped.h"
 #include "tap/claims.h"
 
 static const char *const verdicts[] = {"-", "met", "NOT MET"};
@@ -66,7 +67,7 @@ static void print_reasons(FILE *file, const ethd__cell *cells, size_t count) {
   fputc('\n', file);
 }
 
-static void print_queries(FILE *file, const ethd__cell *cells, size_t count) {
+static void print_queries(FILE *file, const ethd_scene *scene, const ethd__cell *cells, size_t count) {
   uint64_t ticks = 0, queried = 0;
   for (size_t c = 0; c < count; c++) {
     for (size_t i = 0; i < cells[c].count; i++) {
@@ -74,7 +75,9 @@ static void print_queries(FILE *file, const ethd__cell *cells, size_t count) {
       queried += cells[c].results[i].queried;
     }
   }
-  fprintf(file, "scene queried %" PRIu64 " of %" PRIu64 " ticks\n", queried, ticks);
+  fprintf(file, "scene queried %" PRIu64 " of %" PRIu64 " ticks", queried, ticks);
+  ethd__dropped_print(file, scene);
+  fputc('\n', file);
 }
 
 /* ---- the paper ---- */
@@ -183,7 +186,7 @@ void ethd__table_print(FILE *file, const ethd__study *study, const ethd__heading
   print_cells(file, cells, count);
   fputc('\n', file);
   print_reasons(file, cells, count);
-  print_queries(file, cells, count);
+  print_queries(file, study->config->scene, cells, count);
   if (heading->movement) return;
   print_means(file, heading->plant, cells, count);
   print_claims(file, cells, count);

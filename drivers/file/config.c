@@ -143,6 +143,20 @@ static ethd_status check_setup(const reading *r) {
   return status;
 }
 
+/* What this arm's ring can never meet is not kept. */
+static ethd_status drop_unreachable(const reading *r) {
+  ethd_config *c = &r->whole->config;
+  ethd_scene *pruned = NULL;
+  ethd_error error;
+  if (!c->scene) return ETHD_OK;
+  ethd_status status = ethd_scene_prune(c->scene, &c->setup.arm, ethd_setup_range(&c->setup), &pruned, &error);
+  if (status) ethd_error_text(r->whole->scene_path, &error, r->message);
+  if (!pruned) return status;
+  ethd_scene_destroy(c->scene);
+  c->setup.scene = c->scene = pruned;
+  return ETHD_OK;
+}
+
 static ethd_status apply_keys(const reading *r) {
   static ethd_status (*const passes[])(const reading *, const ethd_ini_key *) = {plugin_pass, law_pass,
                                                                                  preset_pass, key_pass};
@@ -157,7 +171,8 @@ static ethd_status apply_keys(const reading *r) {
       ethd_status status = passes[pass](r, &ini->keys[i]);
       if (status) return status;
     }
-  return check_setup(r);
+  ethd_status status = check_setup(r);
+  return status ? status : drop_unreachable(r);
 }
 
 /* ---- whole configurations ---- */

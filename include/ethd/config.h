@@ -13,7 +13,7 @@ ETHD_BEGIN_DECLS
 
 typedef struct ethd_config {
   ethd_setup setup;         /* ready to create a controller with; setup.scene = scene */
-  ethd_scene *scene;        /* owned; NULL without a scene */
+  ethd_scene *scene;        /* owned; without what the arm can't reach; NULL without a scene */
   char *path;               /* of the file, NULL for defaults */
   char *text;               /* as it was read, for recordings */
   char *scene_text;         /* likewise; NULL without a scene */

@@ -73,6 +73,10 @@ ETHD_API void ethd_setup_velocity(ethd_setup *setup, ethd_velocity_method method
 ETHD_API void ethd_setup_fit(ethd_setup *setup, ethd_fit_method method);
 ETHD_API void ethd_setup_filter(ethd_setup *setup, ethd_filter_method method);
 
+/* 2 R_r + d_beta, m: what is farther than this from the ring's centre can't count, as long as the finger is
+   within the ring. For ethd_scene_prune. [any] */
+ETHD_API double ethd_setup_range(const ethd_setup *setup);
+
 /* Everything that create and post check: names as in the configuration ("contact.k_e"), materials of the
    scene against the contact law included. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_check(const ethd_setup *setup, ethd_error *error);

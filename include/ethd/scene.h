@@ -127,14 +127,25 @@ ETHD_API void ethd_scene_follow(const ethd_scene *scene, int32_t object, ethd_ve
 
 typedef struct ethd_scene_info {
   size_t objects, by_shape[ETHD_SHAPE_COUNT], segments, materials;
+  size_t dropped; /* objects that ethd_scene_prune left out */
   double x_min, x_max, y_min, y_max; /* of the bounded objects; min > max when there are none */
   size_t bytes;                      /* memory held */
 } ethd_scene_info;
 
 ETHD_API void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out);
 
-/* How many objects a ring of this radius on this arm can never touch. [any] */
+/* Object i in the order of their numbers: what it is made of, as it was given (a half-plane's divided by
+   |n|), `line` 0. The numbers belong to the scene. Its number in the file; -1 past the end. [any] */
+ETHD_API int32_t ethd_scene_object(const ethd_scene *scene, size_t i, ethd_object_def *out);
+
+/* How many objects lie wholly farther than `radius` from wherever this arm can hold the ring's centre. [any] */
 ETHD_API size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, double radius);
+
+/* A scene without those objects, for one arm; the others keep their numbers and give the same touches to the
+   bit. *out is NULL when none would go: the scene itself will do. A setup whose arm or ring reaches farther
+   refuses it, and so does a body. ETHD_E_MEMORY. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_prune(const ethd_scene *scene, const ethd_arm *arm, double radius,
+                                                      ethd_scene **out, ethd_error *error);
 
 /* Material i of the scene; NULL past the end. [any, rt-safe] */
 ETHD_API const ethd_material *ethd_scene_material(const ethd_scene *scene, size_t i) ETHD_RT;

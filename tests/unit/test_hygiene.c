@@ -102,7 +102,7 @@ ETHD_API ssize_t write(int fd, const void *bytes, size_t n) {
 
 static const char scene_text[] =
     "material soft k_e=500\nhalfplane -1 0 -0.238 material=soft\ncircle 0.2 0.2 0.01\n"
-    "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6\npolyline 0 0 1 1 2 0\nsegment 0 0 1 0\n";
+    "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6\npolyline 0 0 1 1 2 0\nsegment 0 0 1 0\ncircle 9 9 1\n";
 
 static int well_said; /* a failure leaves nothing in its out and says what it is */
 
@@ -132,6 +132,18 @@ static ethd_status make_scene(void) {
   ethd_scene *scene;
   ethd_error error;
   ethd_status status = ethd_scene_create(&def, &scene, &error);
+  if (status == ETHD_OK) ethd_scene_destroy(scene);
+  else well_said = scene == NULL && error.status == status;
+  return status;
+}
+
+static ethd_status prune_scene(void) {
+  static ethd_scene *whole;
+  const ethd_arm arm = {ETHD_ARM_PARALLEL, 0.1, 0.1};
+  ethd_scene *scene;
+  ethd_error error;
+  if (!whole) whole = rig_scene("circle 0.1 0 0.01\ncircle 9 0 0.01\npolyline 0 0 1 0 1 1 2 1 2 2 3 3\n");
+  ethd_status status = ethd_scene_prune(whole, &arm, 0.02, &scene, &error);
   if (status == ETHD_OK) ethd_scene_destroy(scene);
   else well_said = scene == NULL && error.status == status;
   return status;
@@ -169,7 +181,7 @@ static void remove_files(void) {
 
 /* Each says that there is no memory, once for each allocation it makes, and keeps nothing. */
 START_TEST(test_memory_runs_out) {
-  ethd_status (*const makers[])(void) = {make_controller, parse_scene, make_scene, load_config};
+  ethd_status (*const makers[])(void) = {make_controller, parse_scene, make_scene, prune_scene, load_config};
   write_files();
   ck_assert_int_eq(makers[_i](), ETHD_OK); /* what the C library keeps for itself is there now */
   int failures = 0;
@@ -263,7 +275,7 @@ END_TEST
 int main(void) {
   Suite *suite = suite_create("hygiene");
   TCase *t = tcase_create("hygiene");
-  tcase_add_loop_test(t, test_memory_runs_out, 0, 4);
+  tcase_add_loop_test(t, test_memory_runs_out, 0, 5);
   tcase_add_test(t, test_a_tap);
   tcase_add_loop_test_raise_signal(t, test_traps, SIGABRT, 0, 7);
   suite_add_tcase(suite, t);
