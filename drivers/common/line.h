@@ -1,0 +1,21 @@
+/* A serial line: raw, at any baud, ours alone. A pty will do as well. */
+#ifndef ETHD_COMMON_LINE_H
+#define ETHD_COMMON_LINE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "ethd/driver.h"
+
+typedef enum ethd__line_format { ETHD__LINE_8N1 = 0, ETHD__LINE_8E1, ETHD__LINE_8O1, ETHD__LINE_8N2 } ethd__line_format;
+
+/* Opens without waiting for a carrier, and never blocks in read or write. Refuses a line that another program
+   holds, what isn't a terminal, and a rate that the line doesn't then have: set through BOTHER, read back. What
+   was in the buffers is dropped. On failure *fd is -1. [main], or an I/O thread. */
+ETHD_MUST_CHECK ethd_status ethd__line_open(const char *path, ethd__line_format format, uint32_t baud, int *fd,
+                                            char message[ETHD_MESSAGE_MAX]);
+
+/* Asks the kernel's driver to hand bytes over at once; false: it doesn't know how. */
+bool ethd__line_low_latency(int fd);
+
+#endif

@@ -1,0 +1,112 @@
+/* Serial lines, on a pty. */
+#include <stdarg.h>
+#include <stdint.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/syscall.h>
+
+#include "common/line.h"
+#include "unit/pty.h"
+#include "unit/rig.h"
+
+static char message[ETHD_MESSAGE_MAX], path[64];
+
+/* ---- a line that has another rate than it was asked for, as some adapters do ---- */
+
+enum { GET_TERMIOS2 = 0x2a, INPUT_SPEED = 36 }; /* the request's last byte; where struct termios2 has it */
+
+static uint32_t rate; /* 0: as it was asked for */
+
+int ioctl(int fd, unsigned long request, ...) {
+  va_list args;
+  va_start(args, request);
+  char *what = va_arg(args, char *);
+  va_end(args);
+  int result = (int)syscall(SYS_ioctl, fd, request, what);
+  if (result == 0 && rate && (request & 0xff) == GET_TERMIOS2 && request > 0xffff) {
+    memcpy(what + INPUT_SPEED, &rate, sizeof rate);
+    memcpy(what + INPUT_SPEED + sizeof rate, &rate, sizeof rate);
+  }
+  return result;
+}
+
+START_TEST(test_another_rate) {
+  char expected[ETHD_MESSAGE_MAX];
+  int master = pty_open(NULL, path), fd;
+  rate = 9600;
+  ck_assert_int_eq(ethd__line_open(path, ETHD__LINE_8N1, 500000, &fd, message), ETHD_E_DEVICE);
+  rate = 0;
+  snprintf(expected, sizeof expected, "%s: asked for 500000 baud, the line has 9600; choose a rate that it can", path);
+  ck_assert_str_eq(message, expected);
+  ck_assert_int_eq(fd, -1);
+  close(master);
+}
+END_TEST
+
+START_TEST(test_any_rate) {
+  static const uint32_t rates[] = {9600, 115200, 250000, 400000, 500000, 1000000, 2000000, 12345};
+  int master = pty_open(NULL, path), fd;
+  ck_assert_int_ge(master, 0);
+  for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {
+    struct termios t;
+    ck_assert_msg(ethd__line_open(path, ETHD__LINE_8N1, rates[i], &fd, message) == ETHD_OK, "%s", message);
+    ck_assert_int_eq(tcgetattr(fd, &t), 0);
+    ck_assert(!(t.c_lflag & (ICANON | ECHO | ISIG)) && !(t.c_oflag & OPOST) && (t.c_cflag & CSIZE) == CS8);
+    (void)ethd__line_low_latency(fd);
+    close(fd);
+  }
+  close(master);
+}
+END_TEST
+
+START_TEST(test_every_byte) {
+  int master = pty_open(NULL, path), fd;
+  unsigned char sent[256], got[256];
+  ck_assert_int_eq(ethd__line_open(path, ETHD__LINE_8N1, 500000, &fd, message), ETHD_OK);
+  ck_assert_int_eq(read(fd, got, sizeof got), 0); /* nothing yet, and no waiting */
+  for (int i = 0; i < 256; i++) sent[i] = (unsigned char)i;
+  ck_assert_int_eq(write(master, sent, sizeof sent), sizeof sent);
+  ck_assert_int_eq(read(fd, got, sizeof got), sizeof got);
+  ck_assert_mem_eq(got, sent, sizeof got);
+  ck_assert_int_eq(write(fd, sent, sizeof sent), sizeof sent);
+  ck_assert_int_eq(read(master, got, sizeof got), sizeof got);
+  ck_assert_mem_eq(got, sent, sizeof got);
+  close(fd);
+  close(master);
+}
+END_TEST
+
+START_TEST(test_ours_alone) {
+  int master = pty_open(NULL, path), fd, other;
+  ck_assert_int_eq(ethd__line_open(path, ETHD__LINE_8N1, 500000, &fd, message), ETHD_OK);
+  ck_assert_int_eq(ethd__line_open(path, ETHD__LINE_8N1, 500000, &other, message), ETHD_E_DEVICE);
+  ck_assert_ptr_nonnull(strstr(message, "another program uses it"));
+  ck_assert_int_eq(other, -1);
+  close(fd);
+  ck_assert_int_eq(ethd__line_open(path, ETHD__LINE_8N1, 500000, &fd, message), ETHD_OK);
+  close(fd);
+  close(master);
+}
+END_TEST
+
+START_TEST(test_refused) {
+  int fd;
+  ck_assert_int_eq(ethd__line_open("/nowhere/ttyUSB0", ETHD__LINE_8N1, 500000, &fd, message), ETHD_E_DEVICE);
+  ck_assert_str_eq(message, "/nowhere/ttyUSB0: No such file or directory");
+  ck_assert_int_eq(ethd__line_open("/dev/null", ETHD__LINE_8N1, 500000, &fd, message), ETHD_E_DEVICE);
+  ck_assert_str_eq(message, "/dev/null: isn't a serial line");
+  ck_assert_int_eq(fd, -1);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("line");
+  TCase *tc = tcase_create("line");
+  tcase_add_test(tc, test_another_rate);
+  tcase_add_test(tc, test_any_rate);
+  tcase_add_test(tc, test_every_byte);
+  tcase_add_test(tc, test_ours_alone);
+  tcase_add_test(tc, test_refused);
+  suite_add_tcase(suite, tc);
+  return rig_run(suite);
+}
