@@ -117,6 +117,13 @@ static void catch_signals(void) {
   signal(SIGPIPE, SIG_IGN);
 }
 
+/* Before anything is known to move. */
+static void print_remarks(const ethd__session *s) {
+  const char *remark;
+  for (uint32_t i = 0; s->driver->remark && (remark = s->driver->remark(s->device, i)); i++)
+    fprintf(stderr, "device: %s\n", remark);
+}
+
 int main(int argc, char **argv) {
   static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
   static ethd__session session;
@@ -127,6 +134,7 @@ int main(int argc, char **argv) {
   catch_signals();
   ethd_status status = ethd__session_open(&arg.session, &session, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  print_remarks(&session);
   if (!arg.session.is_virtual) ethd__shortfalls_print(stderr, ethd_loop_shortfalls(session.loop));
   if (arg.session.is_virtual)
     run_virtual(&session);

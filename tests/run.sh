@@ -120,7 +120,7 @@ refuse() { # PATTERN ARGUMENTS...
 }
 printf '[device]\ndriver = nothing\n' >"$folder/bad.ini"
 printf '[device]\nseed = -1\n' >"$folder/seed.ini"
-refuse 'bad.ini: device.driver: found "nothing"; sim is allowed' --config "$folder/bad.ini"
+refuse 'bad.ini: device.driver: found "nothing"; sim' --config "$folder/bad.ini"
 refuse 'seed.ini:2: .*seed' --config "$folder/seed.ini"
 refuse 'duration: found "0"' --duration 0
 refuse 'virtual needs --duration' --virtual

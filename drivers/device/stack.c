@@ -100,6 +100,19 @@ static uint32_t figures(const void *stack, ethd_figure *out, uint32_t max) {
   return n;
 }
 
+static const char *remark(const void *stack, uint32_t i) {
+  const ethd__stack *s = stack;
+  const char *own = NULL;
+  for (uint32_t k = 0; k < s->count && !own; k++) {
+    if (!s->at[k].driver->remark) continue;
+    uint32_t n = 0;
+    while (s->at[k].driver->remark(s->at[k].device, n)) n++;
+    if (i < n) own = s->at[k].driver->remark(s->at[k].device, i);
+    i -= i < n ? i : n;
+  }
+  return own;
+}
+
 const ethd_driver ethd__driver_stack = {
     .size = sizeof(ethd_driver),
     .abi = ETHD_DRIVER_ABI,
@@ -115,4 +128,5 @@ const ethd_driver ethd__driver_stack = {
     .close = close_all,
     .limits = limits,
     .figures = figures,
+    .remark = remark,
 };

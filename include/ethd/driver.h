@@ -72,9 +72,13 @@ struct ethd_driver {
   ethd_limits (*limits)(const void *device);
   /* At most `max` figures, since the start; returns how many. [main], while it runs too; NULL: none. */
   uint32_t (*figures)(const void *device, ethd_figure *out, uint32_t max);
+  /* What people should know of the device: the i-th sentence, a risk that stays open; NULL behind the last. [main];
+     NULL: nothing. */
+  const char *(*remark)(const void *device, uint32_t i);
 };
 
 ETHD_API extern const ethd_driver ethd_driver_sim;
+ETHD_API extern const ethd_driver ethd_driver_servo;
 
 /* All that are built in, ended by NULL. */
 ETHD_API extern const ethd_driver *const ethd_drivers[];

@@ -1,0 +1,160 @@
+#include "servo/bus.h"
+
+#include <errno.h>
+#include <modbus/modbus.h>
+#include <poll.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "file/error_text.h"
+
+#define DRAINS 10 /* times the quiet that is asked for, before giving up for now */
+
+static int64_t now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+static int64_t nanoseconds(double seconds) { return (int64_t)(1e9 * seconds); }
+
+/* ---- opening ---- */
+
+/* libmodbus frames and checks; lines and connections are ours, so none of its recoveries. */
+static modbus_t *context(const ethd__servo_map *map, int fd) {
+  modbus_t *m = map->transport == ETHD__SERVO_TCP ? modbus_new_tcp("127.0.0.1", 502)
+                                                  : modbus_new_rtu(map->port, 9600, 'N', 8, 1);
+  uint32_t response = (uint32_t)(1e6 * map->response);
+  if (!m) return NULL;
+  modbus_set_error_recovery(m, MODBUS_ERROR_RECOVERY_NONE);
+  modbus_set_response_timeout(m, response / 1000000, response % 1000000);
+  modbus_set_byte_timeout(m, 0, 0); /* or it would rule over the response's */
+  modbus_set_socket(m, fd);
+  if (modbus_set_slave(m, (int)map->unit) == 0) return m;
+  modbus_free(m);
+  return NULL;
+}
+
+ethd_status ethd__servo_bus_open(const ethd__servo_map *map, ethd__servo_bus *bus, char message[ETHD_MESSAGE_MAX]) {
+  *bus = (ethd__servo_bus){.map = map, .fd = -1};
+  ethd_status status = ethd__servo_port_open(map, &bus->fd, message);
+  if (status) return status;
+  bus->modbus = context(map, bus->fd);
+  bus->quiet_ns = now();
+  if (bus->modbus) return ETHD_OK;
+  ethd__servo_bus_close(bus);
+  return ethd__say(message, ETHD_E_ARGUMENT, "%s: unit %u isn't allowed here", map->port, map->unit);
+}
+
+void ethd__servo_bus_close(ethd__servo_bus *bus) {
+  if (bus->modbus) modbus_free(bus->modbus);
+  bus->modbus = NULL;
+  if (bus->fd >= 0) close(bus->fd);
+  bus->fd = -1;
+}
+
+/* ---- one question ---- */
+
+static ethd__servo_outcome outcome(int error) {
+  switch (error) {
+    case ETIMEDOUT:
+    case EAGAIN:
+    case EMBXGPATH:
+    case EMBXGTAR: return ETHD__SERVO_MISSING;
+    case EMBXILFUN:
+    case EMBXILADD:
+    case EMBXILVAL: return ETHD__SERVO_REFUSED;
+    case EMBXSBUSY:
+    case EMBXACK: return ETHD__SERVO_BUSY;
+    case EMBXSFAIL:
+    case EMBXMEMPAR: return ETHD__SERVO_FAILED;
+    case EBADF:
+    case EPIPE:
+    case EIO:
+    case ENXIO:
+    case ENODEV:
+    case ENOTCONN:
+    case ECONNRESET:
+    case ECONNREFUSED:
+    case ECONNABORTED:
+    case EHOSTUNREACH:
+    case ENETUNREACH: return ETHD__SERVO_LOST;
+    default: return ETHD__SERVO_GARBLED;
+  }
+}
+
+/* A frame's end on a serial line is the silence behind it. */
+static void keep_silence(const ethd__servo_bus *bus) {
+  int64_t left = bus->quiet_ns + nanoseconds(bus->map->silence) - now();
+  struct timespec t = {left / 1000000000, left % 1000000000};
+  if (left > 0) nanosleep(&t, NULL);
+}
+
+static ethd__servo_outcome end(ethd__servo_bus *bus, int got, uint32_t count) {
+  ethd__servo_outcome result = ETHD__SERVO_DONE;
+  if (got != (int)count) {
+    bus->error = got < 0 ? errno : EMBBADDATA;
+    result = outcome(bus->error);
+  }
+  bus->quiet_ns = bus->map->silence > 0 ? now() : 0;
+  return result;
+}
+
+static ethd__servo_outcome gone(ethd__servo_bus *bus) {
+  bus->error = ENOTCONN;
+  return ETHD__SERVO_LOST;
+}
+
+ethd__servo_outcome ethd__servo_bus_read(ethd__servo_bus *bus, int32_t space, uint32_t address, uint32_t count,
+                                         uint16_t *words) {
+  if (!bus->modbus) return gone(bus);
+  keep_silence(bus);
+  int got = space == ETHD__SERVO_INPUT
+                ? modbus_read_input_registers(bus->modbus, (int)address, (int)count, words)
+                : modbus_read_registers(bus->modbus, (int)address, (int)count, words);
+  return end(bus, got, count);
+}
+
+ethd__servo_outcome ethd__servo_bus_write(ethd__servo_bus *bus, uint32_t address, uint32_t count,
+                                          const uint16_t *words) {
+  if (!bus->modbus) return gone(bus);
+  keep_silence(bus);
+  return end(bus, modbus_write_registers(bus->modbus, (int)address, (int)count, words), count);
+}
+
+ethd__servo_outcome ethd__servo_bus_both(ethd__servo_bus *bus, uint32_t to, uint32_t written, const uint16_t *out,
+                                         uint32_t from, uint32_t count, uint16_t *in) {
+  if (!bus->modbus) return gone(bus);
+  keep_silence(bus);
+  int got = modbus_write_and_read_registers(bus->modbus, (int)to, (int)written, out, (int)from, (int)count, in);
+  return end(bus, got, count);
+}
+
+/* ---- after an error ---- */
+
+ethd__servo_outcome ethd__servo_bus_drain(ethd__servo_bus *bus) {
+  unsigned char rest[512];
+  int64_t quiet = nanoseconds(bus->map->drain), since = now(), give_up = since + DRAINS * quiet;
+  while (bus->modbus) {
+    int64_t at = now(), left = since + quiet - at;
+    struct pollfd wait = {bus->fd, POLLIN, 0};
+    struct timespec t = {left / 1000000000, left % 1000000000};
+    if (left <= 0) return ETHD__SERVO_DONE;
+    if (at > give_up) return ETHD__SERVO_MISSING;
+    int ready = ppoll(&wait, 1, &t, NULL);
+    if (ready < 0 && errno != EINTR) break;
+    if (ready < 1) continue;
+    ssize_t n = read(bus->fd, rest, sizeof rest);
+    if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) break;
+    if (n > 0) since = now();
+    /* a line that hung up is readable for ever, and empty */
+    else if (wait.revents & (POLLHUP | POLLERR)) break;
+  }
+  return gone(bus);
+}
+
+/* libmodbus's numbers mean nothing to strerror. */
+const char *ethd__servo_bus_error(const ethd__servo_bus *bus) {
+  return bus->error >= MODBUS_ENOBASE ? modbus_strerror(bus->error) : strerror(bus->error);
+}

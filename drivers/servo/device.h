@@ -1,0 +1,58 @@
+/* The servo's own memory: what belongs to which thread. */
+#ifndef ETHD_SERVO_DEVICE_H
+#define ETHD_SERVO_DEVICE_H
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "ethd/cell.h"
+#include "ethd/driver.h"
+#include "ethd/loop.h"
+#include "servo/feedback.h"
+
+typedef struct ethd__servo_command {
+  int64_t stamp_ns;
+  uint32_t epoch;
+  double torque[2]; /* Nm at the map's axes */
+} ethd__servo_command;
+
+typedef struct ethd__servo_device {
+  /* made once */
+  ethd__servo_map map;
+  int64_t period_ns, exchange_ns;
+  int32_t joint[2]; /* joint, from 0, of the map's axes; -1: none */
+  ethd_cell *commands, *samples;
+
+  /* any thread */
+  atomic_int safe;   /* 1: zero torque until the next start */
+  atomic_uint epoch; /* starts */
+
+  /* [rt] */
+  ethd__servo_sample newest;
+  uint64_t seen_number, seen_readings;
+  uint32_t seen_rows[ETHD_FAULT_COUNT];
+  uint32_t seen_epoch;
+  int64_t grace_ns;
+  ethd_histogram age;
+
+  /* I/O thread, or [main] in start and stop: who holds the lock */
+  pthread_mutex_t lock;
+  ethd__servo_link link;
+  ethd__servo_feedback feedback;
+  ethd__servo_command command;
+  int64_t due_ns;
+  ethd_histogram trip;
+} ethd__servo_device;
+
+ethd_status ethd__servo_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT;
+ethd_status ethd__servo_write(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT;
+void ethd__servo_safe(void *device) ETHD_RT;
+ethd_status ethd__servo_service(void *device, uint32_t unit, int64_t now_ns);
+
+/* ns: feedback or a command older than this is too old. [any] */
+int64_t ethd__servo_old(const ethd__servo_device *d) ETHD_RT;
+
+/* One turn of the link and what it tells; the device is locked. */
+ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double torque[2]);
+
+#endif

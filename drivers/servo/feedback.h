@@ -1,0 +1,49 @@
+/* From what a drive answered to joints, and to rows of the fault table. */
+#ifndef ETHD_SERVO_FEEDBACK_H
+#define ETHD_SERVO_FEEDBACK_H
+
+#include "servo/link.h"
+
+#define ETHD__SERVO_FOLLOW 0.020 /* s: a drive that doesn't follow its set-point for so long is a fault */
+
+enum { ETHD__SERVO_HAS_SPEED = 1, ETHD__SERVO_HAS_READING = 2 }; /* of `has` */
+
+/* What crosses to the control thread: whole, newest first. */
+typedef struct ethd__servo_sample {
+  int64_t stamp_ns;   /* when the joints were where `q` says */
+  uint64_t number;    /* of good exchanges; the same: nothing newer */
+  int32_t has;
+  uint32_t epoch;     /* start that this belongs to */
+  double q[2], dq[2]; /* axes 1 and 2 of the map: rad, rad/s */
+  double reading[2];  /* m: finger relative to the ring */
+  int64_t reading_ns; /* when it was taken */
+  uint64_t readings;  /* how many came */
+  int64_t levels, grave; /* rows of the fault table that last, as bits */
+  uint32_t rows[ETHD_FAULT_COUNT]; /* how often a row was seen */
+} ethd__servo_sample;
+
+/* An axis' counter, unwrapped. */
+typedef struct ethd__servo_axis {
+  bool started;
+  uint32_t last;
+  int64_t count;
+  double offset;    /* rad, added to the angle */
+  int64_t since_ns; /* the torque isn't followed since; 0: it is */
+  double torque;    /* asked for by the exchange before, Nm */
+} ethd__servo_axis;
+
+typedef struct ethd__servo_feedback {
+  ethd__servo_axis axes[2];
+  double home[2];   /* rad: where the joints stand at the first sample; NaN: as the register says */
+  double count;     /* the reading's, last */
+  ethd__servo_sample sample;
+} ethd__servo_feedback;
+
+/* After a turn of the link that went well; torque is what went out (Nm). I/O side. */
+void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *link, int64_t stamp_ns,
+                               const double torque[2]);
+
+/* After any turn: what lasts. I/O side. */
+void ethd__servo_feedback_judge(ethd__servo_feedback *f, const ethd__servo_link *link);
+
+#endif

@@ -1,0 +1,74 @@
+/* The I/O thread's side of the servo: one turn of the link an exchange. */
+#include <stdlib.h>
+#include <time.h>
+
+#include "servo/device.h"
+
+#define PHASE 0.2     /* of a period: exchanges begin so long after a tick, when its command is there */
+#define FAR 100000000 /* ns: a clock so far from the system's is a virtual one */
+#define BEHIND 3      /* exchanges: nothing is due later */
+
+static int64_t monotonic(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+static int is_virtual(int64_t now_ns) { return llabs(now_ns - monotonic()) > FAR; }
+
+/* The newest command, unless it is of an earlier start, or of a loop that is gone: then zero. */
+static void command(ethd__servo_device *d, int64_t now_ns, double torque[2]) {
+  int fresh = ethd_cell_take(d->commands, &d->command) == ETHD_OK;
+  const ethd__servo_command *c = &d->command;
+  int good = !atomic_load_explicit(&d->safe, memory_order_relaxed) && now_ns - c->stamp_ns <= ethd__servo_old(d) &&
+             c->epoch == atomic_load_explicit(&d->epoch, memory_order_relaxed);
+  for (int i = 0; i < 2; i++) torque[i] = good ? c->torque[i] : 0;
+  d->due_ns = fresh ? c->stamp_ns + d->exchange_ns + (int64_t)(PHASE * (double)d->period_ns) : now_ns + d->exchange_ns;
+}
+
+/* One turn of the link and what it tells; the device is locked. */
+ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double torque[2]) {
+  int64_t begin = monotonic();
+  ethd_status status = ethd__servo_link_turn(&d->link, now_ns, torque);
+  int64_t took = monotonic() - begin;
+  if (!status) {
+    ethd_histogram_add(&d->trip, took);
+    /* the joints' words come last */
+    ethd__servo_feedback_take(&d->feedback, &d->link, is_virtual(now_ns) ? now_ns : begin + took * 3 / 4, torque);
+  }
+  ethd__servo_feedback_judge(&d->feedback, &d->link);
+  d->feedback.sample.epoch = atomic_load_explicit(&d->epoch, memory_order_relaxed);
+  ethd_cell_put(d->samples, &d->feedback.sample);
+  return status;
+}
+
+/* Until the exchange is due. A virtual clock never waits for the system's. */
+static ethd_status await(const ethd__servo_device *d, int64_t *now_ns) {
+  int64_t left = d->due_ns - *now_ns;
+  struct timespec t = {left / 1000000000, left % 1000000000};
+  if (left <= 0) return ETHD_OK;
+  if (is_virtual(*now_ns)) {
+    if (left >= d->period_ns) return ETHD_STALE;
+    return ETHD_OK;
+  }
+  if (left > BEHIND * d->exchange_ns) return ETHD_OK;
+  nanosleep(&t, NULL);
+  *now_ns = monotonic();
+  return ETHD_OK;
+}
+
+ethd_status ethd__servo_service(void *device, uint32_t unit, int64_t now_ns) {
+  ethd__servo_device *d = device;
+  double torque[2];
+  (void)unit;
+  ethd_status status = await(d, &now_ns);
+  if (status) return status;
+  pthread_mutex_lock(&d->lock);
+  command(d, now_ns, torque);
+  if (d->link.state == ETHD__SERVO_ENABLED && atomic_load_explicit(&d->safe, memory_order_relaxed))
+    ethd__servo_link_begin(&d->link, ETHD__SERVO_DISABLE, now_ns);
+  status = ethd__servo_turn(d, now_ns, torque);
+  if (d->link.state != ETHD__SERVO_DOWN && status < 0) status = ETHD_OK; /* counted there, and soon again */
+  pthread_mutex_unlock(&d->lock);
+  return status;
+}

@@ -1,0 +1,155 @@
+#include "servo/link.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "file/error_text.h"
+#include "servo/words.h"
+
+#define BACK_OFF_MOST 32.0 /* times the map's */
+#define SILENT_LEAST 0.2   /* s without a good answer, after which the line is taken for dead */
+#define SILENT_ANSWERS 10.0
+#define BUCKET_ADD 10
+#define BUCKET_REFUSED 100
+
+static int64_t nanoseconds(double seconds) { return (int64_t)(1e9 * seconds); }
+
+void ethd__servo_link_make(const ethd__servo_map *map, ethd__servo_link *out) {
+  memset(out, 0, sizeof *out);
+  out->map = map;
+  out->bus.fd = out->sequence = -1;
+  out->back_off = map->back_off;
+  ethd__servo_plan_make(map, &out->plan);
+}
+
+void ethd__servo_link_close(ethd__servo_link *l) {
+  ethd__servo_bus_close(&l->bus);
+  l->state = ETHD__SERVO_DOWN;
+  l->sequence = -1;
+  l->result = ETHD_E_DEVICE;
+}
+
+ethd_status ethd__servo_link_connect(ethd__servo_link *l, int64_t now_ns) {
+  ethd_status status = ethd__servo_bus_open(l->map, &l->bus, l->message);
+  if (status) {
+    l->attempt_ns = now_ns + nanoseconds(l->back_off);
+    l->back_off = fmin(2 * l->back_off, BACK_OFF_MOST * l->map->back_off);
+    return status;
+  }
+  l->counts.connects++;
+  l->state = ETHD__SERVO_UP;
+  l->draining = true;
+  l->heard_ns = now_ns;
+  ethd__servo_link_begin(l, ETHD__SERVO_IDENTIFY, now_ns);
+  return ETHD_OK;
+}
+
+static void lose(ethd__servo_link *l, int64_t now_ns) {
+  ethd__say(l->message, ETHD_E_DEVICE, "%s: %s", l->map->port, ethd__servo_bus_error(&l->bus));
+  ethd__servo_link_close(l);
+  l->counts.lost++;
+  l->rows[ETHD_FAULT_LINK_LOST]++;
+  l->attempt_ns = now_ns + nanoseconds(l->back_off);
+}
+
+/* ---- bad answers ---- */
+
+static void count(ethd__servo_link *l, ethd__servo_outcome got) {
+  switch (got) {
+    case ETHD__SERVO_MISSING: l->counts.missing++, l->rows[ETHD_FAULT_REPLY_MISSING]++; break;
+    case ETHD__SERVO_BUSY: l->counts.busy++, l->rows[ETHD_FAULT_REPLY_BAD]++; break;
+    case ETHD__SERVO_REFUSED: l->counts.refused++, l->rows[ETHD_FAULT_REPLY_BAD]++; break;
+    case ETHD__SERVO_FAILED: l->counts.failed++, l->rows[ETHD_FAULT_DRIVE]++; break;
+    default: l->counts.garbled++, l->rows[ETHD_FAULT_REPLY_BAD]++;
+  }
+}
+
+/* The line stays; nothing is sent until it is quiet. */
+static ethd_status fail(ethd__servo_link *l, ethd__servo_outcome got, int64_t now_ns) {
+  double silent = fmax(SILENT_LEAST, SILENT_ANSWERS * (l->map->response + l->map->drain));
+  if (got == ETHD__SERVO_LOST) {
+    lose(l, now_ns);
+    return ETHD_E_DEVICE;
+  }
+  count(l, got);
+  ethd__say(l->message, ETHD_E_DEVICE, "%s: %s", l->map->port, ethd__servo_bus_error(&l->bus));
+  if (got != ETHD__SERVO_MISSING) l->bucket += got == ETHD__SERVO_REFUSED ? BUCKET_REFUSED : BUCKET_ADD;
+  if (l->bucket > 2 * BUCKET_REFUSED) l->bucket = 2 * BUCKET_REFUSED;
+  l->draining = got != ETHD__SERVO_BUSY;
+  if (now_ns - l->heard_ns > nanoseconds(silent)) lose(l, now_ns);
+  return ETHD_E_DEVICE;
+}
+
+/* ---- an exchange ---- */
+
+static void set(ethd__servo_link *l, int role, double raw) {
+  int32_t r = l->map->roles[role];
+  if (r >= 0) ethd__servo_pack(&l->map->registers[r], raw, ethd__servo_plan_words(&l->plan, l->map, r));
+}
+
+static void fill(ethd__servo_link *l, const double torque[2]) {
+  const int roles[2] = {ETHD__SERVO_TORQUE1, ETHD__SERVO_TORQUE2};
+  for (int i = 0; i < 2; i++) {
+    int32_t r = l->map->roles[roles[i]];
+    double joint = l->state == ETHD__SERVO_ENABLED ? torque[i] : 0;
+    if (r >= 0) set(l, roles[i], ethd__servo_raw(&l->map->registers[r], joint));
+  }
+  set(l, ETHD__SERVO_COUNTER, ++l->counter);
+}
+
+/* What the drive shows is what was written to it just now: else the answer is of another question. */
+static bool echoes(ethd__servo_link *l) {
+  for (uint32_t i = 0; i < l->map->count; i++) {
+    const ethd__servo_register *r = &l->map->registers[i];
+    if (r->echo < 0 || !r->cyclic) continue;
+    uint32_t written = ethd__servo_bits(r, ethd__servo_plan_words(&l->plan, l->map, (int32_t)i));
+    const ethd__servo_register *e = &l->map->registers[r->echo];
+    if (ethd__servo_bits(e, ethd__servo_plan_words(&l->plan, l->map, r->echo)) != written) return false;
+  }
+  return true;
+}
+
+static void unpack(ethd__servo_link *l) {
+  for (uint32_t i = 0; i < l->map->count; i++)
+    if (l->plan.block[i] >= 0 && l->map->registers[i].direction == ETHD__SERVO_READ)
+      l->raw[i] = ethd__servo_unpack(&l->map->registers[i], ethd__servo_plan_words(&l->plan, l->map, (int32_t)i));
+}
+
+static ethd_status stale(ethd__servo_link *l) {
+  l->counts.stale++;
+  l->rows[ETHD_FAULT_REPLY_STALE]++;
+  l->draining = true;
+  ethd__say(l->message, ETHD_E_DEVICE, "%s: the drive doesn't show what was written to it", l->map->port);
+  return ETHD_E_DEVICE;
+}
+
+static ethd_status exchange(ethd__servo_link *l, int64_t now_ns, const double torque[2]) {
+  fill(l, torque);
+  ethd__servo_outcome got = ethd__servo_plan_ask(&l->plan, &l->bus);
+  if (got) return fail(l, got, now_ns);
+  l->echo_failed = !echoes(l);
+  if (l->echo_failed) return stale(l);
+  unpack(l);
+  l->heard_ns = now_ns;
+  l->back_off = l->map->back_off;
+  l->counts.exchanges++;
+  if (l->bucket > 0) l->bucket--;
+  return ETHD_OK;
+}
+
+ethd_status ethd__servo_link_turn(ethd__servo_link *l, int64_t now_ns, const double torque[2]) {
+  if (l->state == ETHD__SERVO_DOWN) {
+    if (now_ns < l->attempt_ns) return ETHD_STALE;
+    ethd_status status = ethd__servo_link_connect(l, now_ns);
+    if (status) return status;
+  }
+  if (l->draining) {
+    ethd__servo_outcome got = ethd__servo_bus_drain(&l->bus);
+    if (got) return fail(l, got, now_ns);
+    l->draining = false;
+  }
+  ethd_status status = exchange(l, now_ns, torque);
+  if (status || l->sequence < 0) return status;
+  ethd__servo_outcome got = ethd__servo_sequence_turn(l, now_ns);
+  return got ? fail(l, got, now_ns) : ETHD_OK;
+}

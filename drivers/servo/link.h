@@ -1,0 +1,70 @@
+/* The link to a drive: a state machine over exchanges. Nothing enables by itself.
+
+          open             quiet            steps of [identify]
+     DOWN -----> DRAINING -------> UP ----------------> IDENTIFIED --- enable ---> ENABLED
+      ^                                                     ^                        |
+      '------ back-off: the line is gone, silent for long   '--- disable, any fault -'
+
+   After any error nothing is sent until the line was quiet; the state stays, and set-points go on from there. A loss
+   of the line ends ENABLED, and the first set-point of every connection is zero torque. */
+#ifndef ETHD_SERVO_LINK_H
+#define ETHD_SERVO_LINK_H
+
+#include "ethd/fault.h"
+#include "servo/plan.h"
+
+typedef enum ethd__servo_state {
+  ETHD__SERVO_DOWN,
+  ETHD__SERVO_UP,
+  ETHD__SERVO_IDENTIFIED,
+  ETHD__SERVO_ENABLED
+} ethd__servo_state;
+
+typedef struct ethd__servo_counts {
+  uint64_t exchanges, missing, stale, garbled, busy, refused, failed, lost, connects;
+} ethd__servo_counts;
+
+typedef struct ethd__servo_link {
+  const ethd__servo_map *map;
+  ethd__servo_plan plan;
+  ethd__servo_bus bus;
+  ethd__servo_state state;
+  bool draining, echo_failed; /* echo_failed: the last exchange's echo wasn't what was written */
+  uint16_t counter;
+  int32_t sequence;    /* that runs; -1: none */
+  uint32_t step;       /* of it */
+  int64_t step_ns;     /* when that began */
+  ethd_status result;  /* of the last sequence */
+  int32_t bucket;      /* leaky: bad answers in a row */
+  int64_t heard_ns;    /* of the last good exchange, or of connecting */
+  int64_t attempt_ns;  /* when to connect next */
+  double back_off;     /* s */
+  double raw[ETHD__SERVO_REGISTERS_MAX]; /* as read last */
+  uint32_t rows[ETHD_FAULT_COUNT];       /* rows of the fault table, as often as they were seen */
+  ethd__servo_counts counts;
+  char message[ETHD_MESSAGE_MAX];        /* of the last failure */
+} ethd__servo_link;
+
+#define ETHD__SERVO_BUCKET_LIMIT 50
+
+/* DOWN, not yet tried. The map outlives the link. */
+void ethd__servo_link_make(const ethd__servo_map *map, ethd__servo_link *out);
+
+/* Tries once, now. On failure the next attempt is due after the back-off. [main] or I/O */
+ETHD_MUST_CHECK ethd_status ethd__servo_link_connect(ethd__servo_link *link, int64_t now_ns);
+
+/* One turn: connect when that is due, or drain, or an exchange with this torque (Nm at the joints; zero goes out
+   unless ENABLED) and a step of the sequence that runs. ETHD_OK: fresh values in raw; ETHD_STALE: there was nothing
+   to do; ETHD_E_DEVICE: no answer, or a bad one. */
+ETHD_MUST_CHECK ethd_status ethd__servo_link_turn(ethd__servo_link *link, int64_t now_ns, const double torque[2]);
+
+/* Begins [enable] or [disable]; turns do the rest. Enabling ends in ENABLED; disabling leaves it at once. */
+void ethd__servo_link_begin(ethd__servo_link *link, int32_t sequence, int64_t now_ns);
+
+/* Closes the line. */
+void ethd__servo_link_close(ethd__servo_link *link);
+
+/* Does a step of the sequence that runs. Internal to the link. */
+ethd__servo_outcome ethd__servo_sequence_turn(ethd__servo_link *link, int64_t now_ns);
+
+#endif

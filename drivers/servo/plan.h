@@ -1,0 +1,33 @@
+/* The questions of one exchange: registers that stand side by side go together. */
+#ifndef ETHD_SERVO_PLAN_H
+#define ETHD_SERVO_PLAN_H
+
+#include "servo/bus.h"
+
+#define ETHD__SERVO_READ_MAX 125u /* words of one question */
+#define ETHD__SERVO_WRITE_MAX 121u
+
+typedef struct ethd__servo_block {
+  int32_t space;
+  uint32_t address, count;
+  uint16_t words[ETHD__SERVO_READ_MAX];
+} ethd__servo_block;
+
+typedef struct ethd__servo_plan {
+  ethd__servo_block writes[3], reads[ETHD__SERVO_REGISTERS_MAX];
+  uint32_t write_count, read_count;
+  int32_t block[ETHD__SERVO_REGISTERS_MAX];   /* of a cyclic register; -1: none */
+  uint32_t offset[ETHD__SERVO_REGISTERS_MAX]; /* its first word there */
+  bool combined;                              /* the first write and the first read are one question */
+} ethd__servo_plan;
+
+/* [main] */
+void ethd__servo_plan_make(const ethd__servo_map *map, ethd__servo_plan *out);
+
+/* The words of a cyclic register. [any] */
+uint16_t *ethd__servo_plan_words(ethd__servo_plan *plan, const ethd__servo_map *map, int32_t r);
+
+/* Asks them in order, writes first; stops at the first that isn't DONE. */
+ethd__servo_outcome ethd__servo_plan_ask(ethd__servo_plan *plan, ethd__servo_bus *bus);
+
+#endif
