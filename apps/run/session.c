@@ -223,9 +223,9 @@ ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]) 
     if (status) (void)ethd__say(message, status, "the clock failed; the loop ended by itself");
     ethd__recorder_end(&s->recorder);
   }
-  if (s->started && s->driver->stop(s->device) < 0 && !status)
-    status = ethd__say(message, ETHD_E_DEVICE, "device %s: stop: %s", s->driver->id,
-                       ethd_status_sentence(ETHD_E_DEVICE));
+  ethd_status stopped = s->started ? s->driver->stop(s->device) : ETHD_OK;
+  if (stopped < 0 && !status)
+    status = ethd__say(message, stopped, "device %s: stop: %s", s->driver->id, ethd_status_sentence(stopped));
   s->started = false;
   closed = close_recording(s, message);
   return status ? status : closed;

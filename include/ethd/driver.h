@@ -79,6 +79,7 @@ struct ethd_driver {
 
 ETHD_API extern const ethd_driver ethd_driver_sim;
 ETHD_API extern const ethd_driver ethd_driver_servo;
+ETHD_API extern const ethd_driver ethd_driver_replay; /* a recorded session, fed and compared */
 
 /* All that are built in, ended by NULL. */
 ETHD_API extern const ethd_driver *const ethd_drivers[];

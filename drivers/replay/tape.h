@@ -1,0 +1,18 @@
+/* A recording as a device plays it: samples, the torques that answered them, the device's limits. */
+#ifndef ETHD_REPLAY_TAPE_H
+#define ETHD_REPLAY_TAPE_H
+
+#include "ethd/record.h"
+
+typedef struct ethd__tape {
+  ethd_trace *rows;
+  size_t count;
+  size_t compared; /* rows before the first change of the setup, by a command or at the end */
+  ethd_limits limits;
+} ethd__tape;
+
+/* A folder that a run has recorded. On failure *out is empty and message holds the one line. [main] */
+ETHD_MUST_CHECK ethd_status ethd__tape_load(const char *folder, ethd__tape *out, char message[ETHD_MESSAGE_MAX]);
+void ethd__tape_free(ethd__tape *tape);
+
+#endif
