@@ -3,22 +3,13 @@
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "file/error_text.h"
 #include "file/text.h"
 
 static char *folder_of(const ethd__protocol *p) {
   const char *given = getenv("ETHD_MOTION_DIR");
-  char *beside = ethd__path_join(p->folder, p->motion);
-  if (!beside || access(beside, R_OK) == 0) return beside;
-  char *shared = ethd__path_join(given && *given ? given : "../shared/motion", p->motion);
-  if (!shared || access(shared, R_OK) != 0) {
-    free(shared);
-    return beside;
-  }
-  free(beside);
-  return shared;
+  return ethd__path_join(given && *given ? given : "../shared/motion", p->motion);
 }
 
 static int is_csv(const struct dirent *entry) {

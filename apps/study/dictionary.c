@@ -1,0 +1,61 @@
+#include "study/dictionary.h"
+
+#define QUESTION_1                                                                                     \
+  "When did you feel the touch, beside the moment at which the circle reached the wall on the screen? " \
+  "1 well before, 2 a little before, 3 just then, 4 a little after, 5 well after"
+#define QUESTION_2                                                                                \
+  "What did the wall do as you touched it? 1 moved clearly to the left, 2 slightly to the left, " \
+  "3 stood still, 4 moved slightly to the right, 5 clearly to the right"
+#define QUESTION_3                                                                                      \
+  "How did the touch feel? 1 very natural, 2 natural, 3 neither, 4 unnatural, 5 very unnatural"
+
+const char *const ethd__questions[3] = {QUESTION_1, QUESTION_2, QUESTION_3};
+
+const char ethd__dictionary[] =
+    "# What is in this folder\n\n"
+    "A tapping study with an encounter-type haptic display, as ethd-study ran it. SI units, unless a column's\n"
+    "name says otherwise; an empty cell: not defined, or not asked. Participants are numbers, nothing else.\n\n"
+    "| file | holds |\n|---|---|\n"
+    "| study.ini | the study file as it was read |\n"
+    "| config.ini, scene.scene | the controller's configuration and walls |\n"
+    "| device.plant | the simulated device and finger: plausible, fitted, not measured |\n"
+    "| versions.txt | program, compiler, hash of the four files above |\n"
+    "| taps.csv | a row per tap, training too |\n"
+    "| survey.csv | a row per participant and cell; simulated participants answer nothing |\n"
+    "| events.csv | begin, blocks, pauses, notes, end |\n"
+    "| journal | of a session: what happened, in order, each line with its check sum; the tables follow from it |\n"
+    "| taps/P01-03-004 | participant, block, attempt: every tick of that tap |\n"
+    "| shard-i-of-n.csv | of a simulation: the rows of one worker; taps.csv is all of them, merged |\n\n"
+    "`ethd-report .` draws and counts; `ethd-study --resume .` goes on with a session.\n\n"
+    "## taps.csv\n\n"
+    "| column | unit | meaning |\n|---|---|---|\n"
+    "| study, point | | of a simulation: first 12 digits of the hash; which combination of the grid, from 0 |\n"
+    "| participant | | P01, P02, .. |\n"
+    "| block | | of the participant, from 1: a strategy at a speed |\n"
+    "| part | | training or test |\n"
+    "| attempt | | within the block, from 1 |\n"
+    "| transition, speed | | strategy; low, high, or m/s |\n"
+    "| seed, tap | | key of the simulated finger's random numbers |\n"
+    "| valid, reason | | 1 or 0; ok, fault, early-contact, too-slow, too-fast, no-contact, grazing, double |\n"
+    "| v_rvo_mps | m/s | ring's speed along n as it meets the wall (first tick with d_re < 0) |\n"
+    "| v_of_mps | m/s | ring's speed as the finger's pad first touches it after that |\n"
+    "| d_max_m | m | first rebound: the ring's first maximum along n minus the minimum after it |\n"
+    "| v_rmin_mps | m/s | the ring's smallest speed in the 0.1 s after the touch; < 0: away from the wall |\n"
+    "| delta_s_ms | ms | first braking tick to first vo tick; only strategies that brake have it |\n"
+    "| eps_m | m | how far the wall was moved |\n"
+    "| t_rvo_s, t_of_s | s | of the tap: the ring meets the wall; the pad touches the ring |\n"
+    "| t_seen_s | s | of the tap: the finger's front reaches the wall, which a screen without delay shows |\n"
+    "| peak_force_n | N | largest rendered force |\n"
+    "| finger_radius_m, commanded_mps | m, m/s | drawn for this tap |\n"
+    "| section.key | | of a simulation: the gain at this point of the grid |\n\n"
+    "n points into the wall; speeds are > 0 toward it. The haptic delay is t_of_s - t_seen_s: > 0, the touch is\n"
+    "felt after it is seen.\n\n"
+    "## survey.csv\n\n"
+    "q1. " QUESTION_1 ".\n\n"
+    "q2. " QUESTION_2 ".\n\n"
+    "q3. " QUESTION_3 ".\n\n"
+    "## A tap's folder\n\n"
+    "tick.npy has a row per tick: what the controller read and what it answered. truth.npy has the same ticks as\n"
+    "the simulated device knows them. Both are NumPy structured arrays. config.ini, scene.scene and events.csv\n"
+    "say how to repeat them: `ethd-replay --verify taps/P01-03-004` compares every field bit for bit. tap.csv is\n"
+    "the tap's row of taps.csv.\n";

@@ -1,0 +1,160 @@
+#include "study/folder.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "common/cli.h"
+#include "ethd/ethd.h"
+#include "file/error_text.h"
+#include "file/recording_parts.h"
+#include "file/text.h"
+#include "study/dictionary.h"
+
+#define PLANT "device.plant"
+#define VERSIONS "versions.txt"
+#define MOVEMENT "movement.csv"
+#define BYTES_MAX ((size_t)1 << 24)
+
+static const char *const hashed[] = {ETHD_STUDY_FILE, ETHD_RECORDING_CONFIG, ETHD_RECORDING_SCENE, PLANT};
+
+char *ethd__folder_path(const char *folder, const char *name) {
+  char *path = ethd__path_join(folder, name);
+  if (!path) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  return path;
+}
+
+static ethd_status write_text(const char *folder, const char *name, const char *text, char *message) {
+  char *path = ethd__folder_path(folder, name);
+  ethd_status status = ethd_text_write(path, text, strlen(text), message);
+  free(path);
+  return status;
+}
+
+/* ---- what the protocol names ---- */
+
+/* Beside the study file, else among the files that came with the programs. */
+static char *find(const ethd__protocol *p, const char *name) {
+  char *path = ethd__folder_path(p->folder, name);
+  if (strchr(name, '/') || access(path, R_OK) == 0) return path;
+  free(path);
+  return ethd__data_path(name);
+}
+
+static void load(const ethd__protocol *p, ethd__loaded *out) {
+  char *config = p->config ? find(p, p->config) : NULL;
+  bool letter = p->plant && !p->plant[strcspn(p->plant, "/.")] && strlen(p->plant) == 1;
+  char *plant = p->plant && !letter ? find(p, p->plant) : NULL;
+  ethd__load(config, plant ? plant : p->plant, out);
+  free(config);
+  free(plant);
+}
+
+static ethd_status copy(const char *from, const char *folder, const char *name, char *message) {
+  size_t length;
+  char *text;
+  ethd_status status = ethd_text_read(from, BYTES_MAX, &text, &length, message);
+  if (status) return status;
+  status = write_text(folder, name, text, message);
+  free(text);
+  return status;
+}
+
+static ethd_status write_device(const char *folder, const ethd__loaded *loaded, char *message) {
+  char *config = ethd__record_config_text(loaded->config);
+  if (!config) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status = write_text(folder, ETHD_RECORDING_CONFIG, config, message);
+  free(config);
+  if (!status) status = write_text(folder, ETHD_RECORDING_SCENE, loaded->config->scene_text, message);
+  return status ? status : copy(loaded->plant_path, folder, PLANT, message);
+}
+
+/* ---- making ---- */
+
+static ethd_status hash(const char *folder, char out[ETHD_SHA256_TEXT], char *message) {
+  ethd__sha256 sum;
+  ethd_status status = ETHD_OK;
+  ethd__sha256_begin(&sum);
+  for (size_t i = 0; !status && i < sizeof hashed / sizeof *hashed; i++) {
+    char *path = ethd__folder_path(folder, hashed[i]), *text;
+    size_t length;
+    status = ethd_text_read(path, BYTES_MAX, &text, &length, message);
+    if (!status) ethd__sha256_add(&sum, text, length);
+    free(text);
+    free(path);
+  }
+  ethd__sha256_end(&sum, out);
+  return status;
+}
+
+static ethd_status write_versions(const char *folder, char *message) {
+  char text[512], sum[ETHD_SHA256_TEXT];
+  ethd_status status = hash(folder, sum, message);
+  if (status) return status;
+  snprintf(text, sizeof text,
+           "libethd %s\ncompiler %s\nhash %s\n"
+           "The hash is: cat study.ini config.ini scene.scene device.plant | sha256sum\n",
+           ETHD_VERSION, __VERSION__, sum);
+  return write_text(folder, VERSIONS, text, message);
+}
+
+/* All of it reaches the disk before a journal tells of it. */
+static ethd_status settle(const char *folder, char *message) {
+  int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  bool failed = fd < 0 || syncfs(fd) != 0;
+  int reason = errno;
+  if (fd >= 0) close(fd);
+  return failed ? ethd__say(message, ETHD_E_FILE, "%s: %s", folder, strerror(reason)) : ETHD_OK;
+}
+
+ethd_status ethd__folder_make(const char *folder, const ethd__protocol *protocol, const char *finger,
+                              char message[ETHD_MESSAGE_MAX]) {
+  ethd__loaded loaded;
+  load(protocol, &loaded);
+  if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
+    ethd__loaded_free(&loaded);
+    return ethd__say(message, ETHD_E_FILE, "%s: %s", folder, strerror(errno));
+  }
+  ethd_status status = write_text(folder, ETHD_STUDY_FILE, protocol->text, message);
+  if (!status) status = write_device(folder, &loaded, message);
+  if (!status && finger) status = copy(finger, folder, MOVEMENT, message);
+  if (!status) status = write_versions(folder, message);
+  if (!status) status = write_text(folder, "README.md", ethd__dictionary, message);
+  if (!status) status = settle(folder, message);
+  ethd__loaded_free(&loaded);
+  return status;
+}
+
+/* ---- opening ---- */
+
+ethd_status ethd__folder_open(const char *folder, ethd__folder *out, char message[ETHD_MESSAGE_MAX]) {
+  *out = (ethd__folder){.path = ethd__folder_path(folder, "")};
+  out->path[strlen(out->path) - 1] = 0;
+  char *study = ethd__folder_path(folder, ETHD_STUDY_FILE), *config = ethd__folder_path(folder, ETHD_RECORDING_CONFIG),
+       *plant = ethd__folder_path(folder, PLANT);
+  ethd_status status = ethd__protocol_load(study, &out->protocol, message);
+  if (!status) status = hash(folder, out->hash, message);
+  if (!status) ethd__load(config, plant, &out->loaded);
+  free(study);
+  free(config);
+  free(plant);
+  out->finger = ethd__folder_path(folder, MOVEMENT);
+  if (access(out->finger, F_OK) != 0) {
+    free(out->finger);
+    out->finger = NULL;
+  }
+  if (status) ethd__folder_close(out);
+  return status;
+}
+
+void ethd__folder_close(ethd__folder *folder) {
+  ethd__protocol_free(&folder->protocol);
+  ethd__loaded_free(&folder->loaded);
+  free(folder->path);
+  free(folder->finger);
+  folder->path = folder->finger = NULL;
+}

@@ -1,0 +1,43 @@
+/* A study's folder: what was asked for, on which device, by which program. All [main].
+
+     study.ini      the study file, as it was read
+     config.ini     the controller's configuration; scene.scene its walls; device.plant the simulated device
+     movement.csv   the recorded movement, when all hands follow one
+     versions.txt   program, compiler, and the hash: SHA-256 of those four files one after another
+     README.md      the data dictionary */
+#ifndef ETHD_STUDY_FOLDER_H
+#define ETHD_STUDY_FOLDER_H
+
+#include "common/sha256.h"
+#include "study/protocol.h"
+#include "tap/load.h"
+
+#define ETHD_STUDY_FILE "study.ini"
+#define ETHD_STUDY_JOURNAL "journal"
+#define ETHD_STUDY_TAPS "taps.csv"
+#define ETHD_STUDY_SURVEY "survey.csv"
+#define ETHD_STUDY_EVENTS "events.csv"
+#define ETHD_STUDY_RECORDINGS "taps"
+
+/* Makes the folder, unless it is there, and its files from what the protocol names. finger: a recorded
+   movement for all hands, or NULL. Exit 2 on a bad configuration or plant. */
+ETHD_MUST_CHECK ethd_status ethd__folder_make(const char *folder, const ethd__protocol *protocol,
+                                              const char *finger, char message[ETHD_MESSAGE_MAX]);
+
+typedef struct ethd__folder {
+  char *path;
+  char *finger; /* the movement for all hands, NULL: none */
+  ethd__protocol protocol;
+  ethd__loaded loaded;
+  char hash[ETHD_SHA256_TEXT];
+} ethd__folder;
+
+/* Back from the folder's own files alone. Exit 2 on a bad configuration or plant. */
+ETHD_MUST_CHECK ethd_status ethd__folder_open(const char *folder, ethd__folder *out,
+                                              char message[ETHD_MESSAGE_MAX]);
+void ethd__folder_close(ethd__folder *folder);
+
+/* folder/name; exit 1 without memory. */
+char *ethd__folder_path(const char *folder, const char *name);
+
+#endif

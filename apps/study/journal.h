@@ -1,0 +1,45 @@
+/* A session's journal: what has happened, in order, a line each; whatever else is in the folder follows from it.
+
+     KIND TEXT #8 hex digits        of the SHA-256 of "KIND TEXT"
+
+   Lines are appended whole and reach the disk before the next step is taken. A line that a crash has torn is
+   the last one: it is cut off. A broken line before good ones is damage, and refused. All [main]. */
+#ifndef ETHD_STUDY_JOURNAL_H
+#define ETHD_STUDY_JOURNAL_H
+
+#include <stdbool.h>
+
+#include "ethd/config.h"
+
+typedef struct ethd__journal_line {
+  const char *kind, *text;
+} ethd__journal_line;
+
+typedef struct ethd__journal {
+  int fd;
+  char *path, *text; /* text: what stood there when it was opened; the lines point into it */
+  ethd__journal_line *lines;
+  size_t count;
+  uint64_t length; /* bytes of the file that count */
+  bool cut;        /* a torn line was cut off */
+} ethd__journal;
+
+/* A new file, which must not be there; locked against other programs. */
+ETHD_MUST_CHECK ethd_status ethd__journal_create(const char *path, ethd__journal *out,
+                                                 char message[ETHD_MESSAGE_MAX]);
+
+/* To go on; locked likewise. */
+ETHD_MUST_CHECK ethd_status ethd__journal_open(const char *path, ethd__journal *out,
+                                               char message[ETHD_MESSAGE_MAX]);
+
+/* Only to read: lines that come later are missing, nothing is cut or locked. */
+ETHD_MUST_CHECK ethd_status ethd__journal_read(const char *path, ethd__journal *out,
+                                               char message[ETHD_MESSAGE_MAX]);
+
+/* On failure the file is as it was. `text` has no line ends. */
+ETHD_MUST_CHECK ethd_status ethd__journal_append(ethd__journal *journal, const char *kind, const char *text,
+                                                 char message[ETHD_MESSAGE_MAX]);
+
+void ethd__journal_close(ethd__journal *journal);
+
+#endif

@@ -1,0 +1,176 @@
+#include <dirent.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "file/error_text.h"
+#include "file/text.h"
+#include "study/shard.h"
+
+/* The shards of a folder while they are merged. */
+typedef struct merge {
+  ethd__folder *folder;
+  uint32_t count;
+  FILE **file; /* by shard */
+  char **line; /* of each, the next one, NULL at its end */
+  size_t *room;
+  FILE *out;
+  uint64_t taps;
+  char *message;
+} merge;
+
+static ethd_status no_memory(const merge *m) {
+  return ethd__say(m->message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+}
+
+/* ---- which there are ---- */
+
+static bool shard_name(const char *name, ethd__shard *out) {
+  char again[64];
+  if (sscanf(name, "shard-%" SCNu32 "-of-%" SCNu32 ".csv", &out->index, &out->count) != 2) return false;
+  snprintf(again, sizeof again, "shard-%" PRIu32 "-of-%" PRIu32 ".csv", out->index, out->count);
+  return !strcmp(name, again) && out->count >= 1 && out->count <= ETHD_STUDY_SHARDS_MAX;
+}
+
+static ethd_status count_shards(merge *m) {
+  DIR *folder = opendir(m->folder->path);
+  const struct dirent *entry;
+  ethd__shard shard;
+  ethd_status status = ETHD_OK;
+  while (folder && !status && (entry = readdir(folder))) {
+    if (!shard_name(entry->d_name, &shard)) continue;
+    if (m->count && m->count != shard.count)
+      status = ethd__say(m->message, ETHD_E_FILE, "%s: shards of %" PRIu32 " and of %" PRIu32 "; keep those of one division",
+                         m->folder->path, m->count, shard.count);
+    m->count = shard.count;
+  }
+  if (folder) closedir(folder);
+  if (!status && !m->count)
+    status = ethd__say(m->message, ETHD_E_FILE, "%s: no shard-i-of-n.csv; --simulate makes them", m->folder->path);
+  return status;
+}
+
+/* ---- lines ---- */
+
+static void next(merge *m, uint32_t shard) {
+  ssize_t length = getline(&m->line[shard], &m->room[shard], m->file[shard]);
+  if (length > 0) return;
+  free(m->line[shard]);
+  m->line[shard] = NULL;
+}
+
+static ethd_status open_shard(merge *m, uint32_t shard, const char *header) {
+  const ethd__shard which = {.index = shard + 1, .count = m->count};
+  char *path = ethd__shard_path(m->folder, &which, ".csv");
+  size_t n = strlen(header);
+  ethd_status status = ETHD_OK;
+  m->file[shard] = fopen(path, "re");
+  if (!m->file[shard]) {
+    status = ethd__say(m->message, ETHD_E_FILE, "%s: missing; ethd-study --simulate N --shard %" PRIu32 "/%" PRIu32 " makes it",
+                       path, which.index, which.count);
+  } else {
+    next(m, shard);
+    if (!m->line[shard] || strncmp(m->line[shard], header, n) != 0 || m->line[shard][n] != '\n')
+      status = ethd__say(m->message, ETHD_E_SYNTAX, "%s:1: not the columns of this study", path);
+    else
+      next(m, shard);
+  }
+  free(path);
+  return status;
+}
+
+static ethd_status open_shards(merge *m) {
+  char *header = ethd__shard_header(&m->folder->protocol);
+  ethd_status status = ETHD_OK;
+  for (uint32_t i = 0; !status && i < m->count; i++) status = open_shard(m, i, header);
+  fprintf(m->out, "%s\n", header);
+  free(header);
+  return status;
+}
+
+/* Participants, read off the first rows: id widths tell how many digits, the last unit of a point how many. */
+static ethd_status count_people(merge *m, uint64_t *units) {
+  char *path;
+  uint64_t count = 0;
+  for (uint32_t i = 0; i < m->count; i++) {
+    const ethd__shard which = {.index = i + 1, .count = m->count};
+    char *text, *last = NULL;
+    size_t length;
+    path = ethd__shard_path(m->folder, &which, ".csv");
+    ethd_status status = ethd_text_read(path, (size_t)1 << 34, &text, &length, m->message);
+    free(path);
+    if (status) return status;
+    for (char *at = text; at && *at; at = strchr(at, '\n') ? strchr(at, '\n') + 1 : NULL) {
+      size_t n = 0;
+      for (int comma = 0; comma < 3 && at[n]; n++) comma += at[n] == ',';
+      if (at == text) continue;
+      if (!last || strncmp(last, at, n) != 0) count++;
+      last = at;
+    }
+    free(text);
+  }
+  *units = count;
+  size_t points = ethd__protocol_points(&m->folder->protocol);
+  m->folder->protocol.participants = (uint32_t)(count / points);
+  return count && count % points == 0
+             ? ETHD_OK
+             : ethd__say(m->message, ETHD_E_SYNTAX, "%s: %" PRIu64 " participants at %zu points: the shards don't fit together",
+                         m->folder->path, count, points);
+}
+
+static ethd_status merge_unit(merge *m, uint64_t unit) {
+  uint32_t shard = (uint32_t)(unit % m->count);
+  char *prefix = ethd__unit_prefix(m->folder, unit);
+  size_t n = strlen(prefix);
+  uint64_t before = m->taps;
+  while (m->line[shard] && !strncmp(m->line[shard], prefix, n)) {
+    fputs(m->line[shard], m->out);
+    m->taps++;
+    next(m, shard);
+  }
+  ethd_status status = ETHD_OK;
+  if (m->taps == before)
+    status = ethd__say(m->message, ETHD_E_SYNTAX, "%s/shard-%" PRIu32 "-of-%" PRIu32 ".csv: no rows that begin with %s; remove it and have it made again",
+                       m->folder->path, shard + 1, m->count, prefix);
+  free(prefix);
+  return status;
+}
+
+static void release(merge *m) {
+  for (uint32_t i = 0; m->file && i < m->count; i++) {
+    if (m->file[i]) fclose(m->file[i]);
+    free(m->line[i]);
+  }
+  free(m->file);
+  free(m->line);
+  free(m->room);
+}
+
+ethd_status ethd__shards_merge(ethd__folder *folder, uint64_t *taps, char message[ETHD_MESSAGE_MAX]) {
+  merge m = {.folder = folder, .message = message};
+  ethd_replace replace;
+  uint64_t units = 0;
+  ethd_status status = count_shards(&m);
+  if (status) return status;
+  m.file = calloc(m.count, sizeof *m.file);
+  m.line = calloc(m.count, sizeof *m.line);
+  m.room = calloc(m.count, sizeof *m.room);
+  char *path = ethd__folder_path(folder->path, ETHD_STUDY_TAPS);
+  if (!m.file || !m.line || !m.room) status = no_memory(&m);
+  if (!status) status = ethd_replace_begin(path, &replace, message);
+  free(path);
+  if (!status) {
+    m.out = replace.file;
+    status = open_shards(&m);
+    if (!status) status = count_people(&m, &units);
+    for (uint64_t unit = 0; !status && unit < units; unit++) status = merge_unit(&m, unit);
+    if (status)
+      ethd_replace_abandon(&replace);
+    else
+      status = ethd_replace_commit(&replace, message);
+  }
+  release(&m);
+  *taps = m.taps;
+  return status;
+}

@@ -1,0 +1,66 @@
+#include "study/row.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void ethd__participant_id(const ethd__protocol *protocol, uint32_t person, char out[ETHD_STUDY_ID_MAX]) {
+  int digits = 2;
+  for (uint32_t n = protocol->participants; n > 99; n /= 10) digits++;
+  snprintf(out, ETHD_STUDY_ID_MAX, "P%0*" PRIu32, digits, person + 1);
+}
+
+char *ethd__tap_row(const ethd__protocol *protocol, const ethd__taken *taken) {
+  const ethd__turn *turn = &taken->turn;
+  const ethd__metrics *m = &taken->result.metrics;
+  const double figures[] = {m->v_rvo,  m->v_of,   m->d_max,      m->v_rmin,
+                            m->delta_s, m->eps,   m->t_rvo,      m->t_of,
+                            m->t_seen, m->peak_force, taken->result.finger_radius, taken->result.commanded};
+  char id[ETHD_STUDY_ID_MAX], *text = NULL;
+  size_t length;
+  FILE *file = open_memstream(&text, &length);
+  if (!file) return NULL;
+  ethd__participant_id(protocol, turn->person, id);
+  fprintf(file, "%s,%zu,%s,%" PRIu32 ",%s,%s,%" PRIu64 ",%" PRIu64 ",%d,%s", id, turn->number,
+          turn->block.training ? "training" : "test", turn->attempt,
+          protocol->strategies.word[turn->block.strategy], protocol->speeds.word[turn->block.speed], taken->seed,
+          taken->tap, m->reason == ETHD_TAP_OK, ethd__reason_words[m->reason]);
+  for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
+    if (isnan(figures[i]))
+      fputc(',', file);
+    else
+      fprintf(file, ",%.17g", figures[i]);
+  bool failed = ferror(file);
+  if (fclose(file) == 0 && !failed) return text;
+  free(text);
+  return NULL;
+}
+
+bool ethd__row_cell(const char **row, char *out, size_t room) {
+  size_t n = strcspn(*row, ",");
+  if (!**row || n >= room) return false;
+  memcpy(out, *row, n);
+  out[n] = 0;
+  *row += n + ((*row)[n] == ',');
+  return true;
+}
+
+static bool count_of(const char *cell, unsigned long long most, unsigned long long *out) {
+  *out = strtoull(cell, NULL, 10);
+  return *cell && !cell[strspn(cell, "0123456789")] && *out >= 1 && *out <= most;
+}
+
+bool ethd__tap_row_key(const char *row, ethd__tap_key *out) {
+  enum { PARTICIPANT, BLOCK, PART, ATTEMPT, TRANSITION, SPEED, SEED, TAP, VALID, CELLS };
+  char cell[CELLS][40];
+  unsigned long long person, number, attempt;
+  for (int i = 0; i < CELLS; i++)
+    if (!ethd__row_cell(&row, cell[i], sizeof cell[i])) return false;
+  if (cell[PARTICIPANT][0] != 'P' || !count_of(cell[PARTICIPANT] + 1, ETHD_STUDY_PEOPLE, &person) ||
+      !count_of(cell[BLOCK], ETHD_STUDY_BLOCKS, &number) || !count_of(cell[ATTEMPT], UINT32_MAX, &attempt))
+    return false;
+  *out = (ethd__tap_key){(uint32_t)person - 1, (uint32_t)attempt, (size_t)number, cell[VALID][0] == '1'};
+  return true;
+}
