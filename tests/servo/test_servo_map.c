@@ -1,0 +1,320 @@
+/* Register maps: those that come with the programs, every refusal with its line, and texts that are no maps. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "file/text.h"
+#include "servo/words.h"
+#include "unit/mutate.h"
+#include "unit/rig.h"
+
+static char text[1 << 16], message[ETHD_MESSAGE_MAX];
+static ethd__servo_map map;
+
+static void read_map(const char *path) {
+  char *found;
+  size_t length;
+  ck_assert_msg(ethd_text_read(path, sizeof text - 1, &found, &length, message) == ETHD_OK, "%s", message);
+  memcpy(text, found, length + 1);
+  free(found);
+}
+
+static ethd_status try(const char *changed) {
+  return ethd__servo_map_parse(changed, strlen(changed), "m.map", &map, message);
+}
+
+static const ethd__servo_register *named(const char *name) {
+  for (uint32_t i = 0; i < map.count; i++)
+    if (!strcmp(map.registers[i].name, name)) return &map.registers[i];
+  ck_abort_msg("no register %s", name);
+}
+
+/* The line of the text where `part` begins. */
+static int line_of(const char *all, const char *part) {
+  int line = 1;
+  for (const char *p = all; p < part; p++) line += *p == '\n';
+  return line;
+}
+
+/* The map with the first `was` behind `from` replaced is refused, in one line of file:line: why. */
+static void refused_behind(const char *from, const char *was, const char *now, const char *why) {
+  static char changed[sizeof text + 4096];
+  char *start = strstr(text, from), *at = start ? strstr(start, was) : NULL;
+  ck_assert_msg(at != NULL, "no %s behind %s", was, from);
+  snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, now, at + strlen(was));
+  ck_assert_msg(try(changed) < 0, "%s passes", now);
+  ck_assert_msg(strstr(message, why) && !strchr(message, '\n') && !strncmp(message, "m.map:", 6), "%s -> %s, not %s",
+                now, message, why);
+}
+static void refused(const char *was, const char *now, const char *why) { refused_behind("", was, now, why); }
+
+/* ---- what comes with the programs ---- */
+
+START_TEST(test_plant) {
+  read_map("apps/config/plant.map");
+  ck_assert_msg(try(text) == ETHD_OK, "%s", message);
+  const ethd__servo_register *torque = named("torque1"), *position = named("position2");
+  ck_assert_uint_eq(torque->address, 1);
+  ck_assert_double_eq(torque->ratio, 9.80);
+  ck_assert_str_eq(map.registers[torque->echo].name, "seen1");
+  ck_assert_int_eq(position->type, ETHD__SERVO_I32);
+  ck_assert_int_eq(map.watchdog, ETHD__SERVO_WATCH_SILENCE);
+  ck_assert_uint_eq(map.sequences[ETHD__SERVO_ENABLE].count, 4);
+  ck_assert_ptr_null(ethd__servo_risk(&map, 0));
+  ck_assert_double_eq_tol(ethd__servo_most(torque), 0.2 * 9.80, 1e-12);
+  /* a joint turn is 4000 x 9.80 counts */
+  ck_assert_double_eq_tol(ethd__servo_joint(position, 39200), 6.283185307179586, 1e-12);
+}
+END_TEST
+
+START_TEST(test_makers) {
+  read_map("apps/config/svd48v.map");
+  ck_assert_msg(try(text) == ETHD_OK, "%s", message);
+  ck_assert_uint_eq(named("torque1")->address, 0x5308);
+  ck_assert_double_eq(map.baud, 500000);
+  ck_assert_ptr_nonnull(strstr(ethd__servo_risk(&map, 0), "no watchdog"));
+  read_map("apps/config/roboteq.map");
+  ck_assert_msg(try(text) == ETHD_OK, "%s", message);
+  ck_assert_ptr_nonnull(strstr(ethd__servo_risk(&map, 0), "goes on by itself"));
+  /* an address that nobody knows keeps the drive from moving */
+  read_map("apps/config/akd.map");
+  ck_assert_int_lt(try(text), 0);
+  ck_assert_msg(strstr(message, "torque1.address: found \"LOOK_UP\"") != NULL, "%s", message);
+  for (char *at; (at = strstr(text, "LOOK_UP\n"));) memcpy(at, "1000   ", 7);
+  for (char *at; (at = strstr(text, "LOOK_UP"));) memcpy(at, "1000   ", 7);
+  ck_assert_msg(try(text) == ETHD_OK, "%s", message);
+  ck_assert_ptr_nonnull(strstr(ethd__servo_risk(&map, 0), "no watchdog"));
+}
+END_TEST
+
+/* ---- refusals ---- */
+
+START_TEST(test_bus_refused) {
+  read_map("apps/config/plant.map");
+  refused("transport = tcp", "transport = can", ":4: bus.transport: found \"can\", tcp|rtu is allowed");
+  refused("transport = tcp", "", ":3: bus.transport is missing");
+  refused("[bus]", "[bus_]", "found [bus_]");
+  refused("port = 127", "por = 127", ":5: bus.por: a map has no such key");
+  refused("port = 127.0.0.1:1502", "", "bus.port is missing");
+  refused("transport = tcp", "transport = rtu", "bus.baud is missing");
+  refused("transport = tcp", "transport = rtu\nbaud = 9600.5", "bus.baud");
+  refused("transport = tcp", "transport = rtu\nbaud = 100", "bus.baud");
+  refused("transport = tcp", "transport = tcp\nformat = 7N1", "bus.format");
+  refused("unit = 1", "unit = 256", ":6: bus.unit: found \"256\", a whole number from 0 to 255");
+  refused("unit = 1", "unit = 1\nunit = 1", ":7: bus.unit: stands twice");
+  refused("unit = 1", "unit = 0x1g", "bus.unit");
+  refused("divisor = 1", "divisor = 0", ":7: bus.divisor");
+  refused("divisor = 1", "divisor = 1.5", ":7: bus.divisor");
+  refused("response = 0.003", "response = nan", "bus.response");
+  refused("response = 0.003", "response = 0", "bus.response");
+  refused("drain = 0.0008", "drain = inf", "bus.drain");
+  refused("unit = 1", "unit = 1\nsilence = 2", "bus.silence");
+  refused("unit = 1", "unit = 1\nbase = 2", "bus.base");
+  refused("unit = 1", "unit = 1\naddressing = bytes", "bus.addressing");
+  refused("unit = 1", "unit = 1\nexchange = both", "bus.exchange");
+  refused("kind = silence", "kind = dog", "watchdog.kind");
+  refused("time = 0.05", "", "watchdog.time is missing");
+  refused("time = 0.05", "tim = 0.05", "watchdog.tim: a map has no such key");
+}
+END_TEST
+
+START_TEST(test_register_refused) {
+  read_map("apps/config/plant.map");
+  refused_behind("[register torque1]", "min = -0.2\n", "", "register torque1.min: is missing: a command needs its limits");
+  refused_behind("[register torque1]", "max = 0.2\n", "", "register torque1.max: is missing: a command needs its limits");
+  refused_behind("[register torque1]", "min = -0.2", "min = 0.1", "min < 0 < max");
+  refused_behind("[register torque1]", "max = 0.2", "max = 20", "the type holds -32768 to 32767");
+  refused_behind("[register torque1]", "max = 0.2", "max = 0.2\noffset = 0.00005", "no torque is raw -0.5");
+  refused_behind("[register torque1]", "unit = Nm", "unit = V", "register torque1.unit: A|Nm is allowed");
+  refused_behind("[register torque1]", "unit = Nm", "unit = A", "torque_constant: is missing");
+  refused_behind("[register torque1]", "scale = 1e-4", "scale = 0", "register torque1.scale");
+  refused_behind("[register torque1]", "ratio = 9.80", "ratio = 0", "register torque1.ratio");
+  refused_behind("[register torque1]", "ratio = 9.80", "ratio = 9.80\nsign = 0.5", "1 or -1");
+  refused_behind("[register torque1]", "direction = write", "direction = read", "register torque1.direction: write is allowed");
+  refused_behind("[register torque1]", "direction = write", "direction = write\nspace = input", "can't be written");
+  refused_behind("[register torque1]", "echo = seen1", "echo = seen9", "register torque1.echo: the map has no [register seen9]");
+  refused_behind("[register torque1]", "echo = seen1", "echo = torque2", "torque2 isn't read");
+  refused_behind("[register torque1]", "echo = seen1", "echo = seen_counter", "seen_counter is of another type");
+  refused_behind("[register torque1]", "echo = seen1", "", "nothing uses it");
+  refused_behind("[register control]", "type = u16", "type = u16\necho = seen1", "only torque1, torque2 and counter");
+  refused_behind("[register counter]", "type = u16", "type = i16", "u16 is allowed");
+  refused_behind("[register position1]", "order = high-first\n", "", "register position1.order: is missing");
+  refused_behind("[register position1]", "order = high-first", "order = big", "register position1.order");
+  refused_behind("[register position1]", "counts = 4000\n", "", "register position1.counts: is missing");
+  refused_behind("[register position1]", "type = i32", "type = i24", "register position1.type");
+  refused_behind("[register position1]", "type = i32\n", "", "register position1.type is missing");
+  refused_behind("[register position1]", "address = 5", "address = 65535", "register position1.address");
+  refused_behind("[register position1]", "address = 5", "address = -1", "register position1.address");
+  refused_behind("[register position1]", "address = 5", "address = 0x10000000000", "register position1.address");
+  refused_behind("[register position1]", "address = 5", "address = 3", "register position1.address: overlaps [register counter]");
+  refused_behind("[register position2]", "address = 7", "address = 6", "register position2.address: overlaps");
+  refused_behind("[register position1]", "counts = 4000", "counts = 4000\nbits = 33", "register position1.bits");
+  refused_behind("[register measured1]", "unit = Nm", "unit = Nm\nbits = 17", "its words have 16");
+  refused_behind("[register torque2]", "address = 2", "address = 1", "writes there too");
+  refused_behind("[register status]", "fault_mask = 0x0001", "fault_mask = 0x10000", "is wider than the register");
+  refused_behind("[register status]", "fault_mask = 0x0001", "fault_mask = 1\nhealthy = 2", "register status.healthy");
+  refused_behind("[register status]", "enabled = 0x0002", "enabled = 4", "register status.enabled");
+  refused_behind("[register status]", "direction = read", "direction = write", "only whole numbers that are read");
+  refused_behind("[register seen1]", "type = i16", "type = i16\ntolerance = 1", "only measured1 and measured2");
+  refused_behind("[register bus_voltage]", "min = 24\n", "", "min < max are needed");
+  refused_behind("[register reading_count]", "type = u16", "type = f32\norder = high-first", "whole numbers");
+  refused("[register reading_y]", "[register reading_z]", "reading_z: nothing uses it");
+  refused("[register seen2]", "[register Seen2]", "a register's name has");
+  refused("[register seen2]", "[register ]", "a register's name has");
+  refused("[register seen2]", "[register a_name_of_more_than_23_letters]", "a register's name has");
+  refused("[register seen2]", "[register seen1]", "stands twice");
+  refused("[register position2]", "[register speed2]", "unit");
+  refused_behind("[register seen2]", "type = i16", "type = i16 ; x\nfoo = 1", "register seen2.foo: a map has no such key");
+}
+END_TEST
+
+/* Without its position a torque is none, and likewise. */
+START_TEST(test_roles_refused) {
+  static const char *const lean =
+      "[bus]\ntransport = tcp\nport = a:1\n[register torque1]\ndirection = write\naddress = 0\ntype = i16\nunit = Nm\n"
+      "min = -1\nmax = 1\n";
+  snprintf(text, sizeof text, "%s", lean);
+  ck_assert_int_lt(try(text), 0);
+  ck_assert_msg(strstr(message, "torque1 and position1 go together") != NULL, "%s", message);
+  snprintf(text, sizeof text, "%s[register position1]\ndirection = read\naddress = 1\ntype = u16\nunit = rad\n", lean);
+  ck_assert_msg(try(text) == ETHD_OK, "%s", message);
+  const size_t end = strlen(text);
+  snprintf(text + end, sizeof text - end, "[watchdog]\nkind = counter\ntime = 1\n");
+  ck_assert_int_lt(try(text), 0);
+  ck_assert_ptr_nonnull(strstr(message, "needs a [register counter]"));
+  ck_assert_int_lt(try(""), 0);
+  ck_assert_str_eq(message, "m.map: section [bus] is missing");
+  ck_assert_int_lt(try("[bus]\ntransport = tcp\nport = a:1\n"), 0);
+  ck_assert_ptr_nonnull(strstr(message, "a torque1 or a torque2 is missing"));
+}
+END_TEST
+
+START_TEST(test_steps_refused) {
+  read_map("apps/config/plant.map");
+  char why[64];
+  const char *step = "step1 = write control 2";
+  snprintf(why, sizeof why, ":%d: enable.step1: the map has no [register controls]", line_of(text, strstr(text, step)));
+  refused(step, "step1 = write controls 2", why);
+  refused(step, "step1 = write control", "write NAME RAW");
+  refused(step, "step1 = write control 65536", "write NAME RAW");
+  refused(step, "step1 = write control 1.5", "write NAME RAW");
+  refused(step, "step1 = write status 2", "direction = write is allowed");
+  refused(step, "step1 = wait control 1 1 1", "direction = read is allowed");
+  refused(step, "step1 = jump control 2", "write NAME RAW, wait NAME MASK BITS SECONDS or pause SECONDS");
+  refused(step, "step1 = pause 0", "pause SECONDS");
+  refused(step, "step1 = pause 61", "pause SECONDS");
+  refused(step, "step5 = pause 1", "step1 comes here");
+  refused(step, "step25 = pause 1", "step1 to step24");
+  refused(step, "step01 = pause 1", "step1 to step24");
+  refused(step, "stepp = pause 1", "step1 to step24");
+  const char *wait = "step2 = wait status 0x0001 0x0000 0.5";
+  refused(wait, "step2 = wait status 0x0001 0x0002 0.5", "bits within the mask");
+  refused(wait, "step2 = wait status 0x10000 0 0.5", "wait NAME MASK BITS SECONDS");
+  refused(wait, "step2 = wait status 1 0 0", "wait NAME MASK BITS SECONDS");
+  refused(wait, "step2 = wait status 1 0", "wait NAME MASK BITS SECONDS");
+  refused(wait, "step2 = wait status 1 0 1 1", "wait NAME MASK BITS SECONDS");
+  refused(wait, "", "step2 comes here");
+}
+END_TEST
+
+/* ---- words ---- */
+
+START_TEST(test_words) {
+  static const struct {
+    int32_t type, order;
+    double raw;
+    uint16_t words[2];
+  } known[] = {
+      {ETHD__SERVO_U16, 0, 65535, {0xFFFF, 0}},         {ETHD__SERVO_I16, 0, -2, {0xFFFE, 0}},
+      {ETHD__SERVO_U32, 0, 0x12345678, {0x1234, 0x5678}}, {ETHD__SERVO_U32, 1, 0x12345678, {0x5678, 0x1234}},
+      {ETHD__SERVO_I32, 0, -2, {0xFFFF, 0xFFFE}},       {ETHD__SERVO_I32, 1, -2, {0xFFFE, 0xFFFF}},
+      {ETHD__SERVO_F32, 0, 1.5, {0x3FC0, 0}},           {ETHD__SERVO_F32, 1, 1.5, {0, 0x3FC0}},
+  };
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+    const ethd__servo_register r = {.type = known[i].type, .order = known[i].order};
+    uint16_t words[2] = {0, 0};
+    ethd__servo_pack(&r, known[i].raw, words);
+    ck_assert_msg(!memcmp(words, known[i].words, sizeof words), "row %zu: %04x %04x", i, words[0], words[1]);
+    ck_assert_double_eq(ethd__servo_unpack(&r, words), known[i].raw);
+  }
+}
+END_TEST
+
+/* Back is what went, for every type and order; what doesn't fit is cut, what isn't a number is 0. */
+START_TEST(test_words_back) {
+  for (uint64_t i = 0; i < 20000; i++) {
+    const ethd__servo_register r = {.type = (int32_t)(draw_bits(3 * i) % 5), .order = (int32_t)(draw_bits(3 * i + 1) % 2)};
+    double min, max;
+    uint16_t words[2];
+    ethd__servo_range(&r, &min, &max);
+    double raw = r.type == ETHD__SERVO_F32 ? (double)(float)draw(3 * i + 2, -1e6, 1e6) : rint(draw(3 * i + 2, min, max));
+    ethd__servo_pack(&r, raw, words);
+    ck_assert_double_eq(ethd__servo_unpack(&r, words), raw);
+    ethd__servo_pack(&r, (double)INFINITY, words);
+    ck_assert_double_eq(ethd__servo_unpack(&r, words), max);
+    ethd__servo_pack(&r, (double)NAN, words);
+    ck_assert_double_eq(ethd__servo_unpack(&r, words), 0);
+  }
+}
+END_TEST
+
+/* Whatever torque is asked for, what goes out is within the limits, the right way round. */
+START_TEST(test_limits) {
+  read_map("apps/config/svd48v.map");
+  ck_assert_int_eq(try(text), ETHD_OK);
+  ethd__servo_register r = *named("torque1");
+  r.sign = -1;
+  for (uint64_t i = 0; i < 2000; i++) {
+    double joint = draw(i, -5, 5), raw = ethd__servo_raw(&r, joint), most = 2.5 * 0.0389 * 12;
+    ck_assert(fabs(raw) <= 25 && raw == rint(raw));
+    double cut = fmin(fmax(joint, -most), most);
+    ck_assert_double_eq_tol(ethd__servo_joint(&r, raw), cut, 0.5 * 0.1 * 0.0389 * 12 + 1e-12);
+  }
+  ck_assert_double_eq(ethd__servo_raw(&r, (double)NAN), 0);
+  r.max = 0.17; /* rounding doesn't pass a limit either */
+  ck_assert_double_eq(ethd__servo_raw(&r, -5), 1);
+}
+END_TEST
+
+/* ---- no maps ---- */
+
+START_TEST(test_any_text) {
+  static const char *const words[] = {"[register torque1]", "\n", "=", "0x", "echo = seen1\n", "step1 = ", "wait", "1e999",
+                                      "type = f32\n", "order = low-first\n", "[", "]", "min = ", "NaN", NULL};
+  static const char *const seeds[] = {"apps/config/plant.map", "apps/config/svd48v.map", "apps/config/roboteq.map"};
+  static char out[sizeof text];
+  const char *given = getenv("ETHD_FUZZ");
+  uint64_t count = given ? (uint64_t)strtoull(given, NULL, 10) : 6000, passed = 0;
+  for (int k = 0; k < 3; k++) {
+    read_map(seeds[k]);
+    size_t length = strlen(text);
+    for (uint64_t i = 0; i < count / 3; i++) {
+      size_t n = mutate(text, length, words, i, out, sizeof out);
+      message[0] = 0;
+      ethd_status status = ethd__servo_map_parse(out, n, "m.map", &map, message);
+      passed += status == ETHD_OK;
+      if (status) ck_assert_msg(*message && !strchr(message, '\n'), "case %d %llu", k, (unsigned long long)i);
+      for (uint32_t r = 0; !status && ethd__servo_risk(&map, r); r++) continue;
+    }
+  }
+  ck_assert_uint_gt(passed, count / 100);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("servo_map");
+  TCase *t = tcase_create("servo_map");
+  tcase_set_timeout(t, 300);
+  tcase_add_test(t, test_plant);
+  tcase_add_test(t, test_makers);
+  tcase_add_test(t, test_bus_refused);
+  tcase_add_test(t, test_register_refused);
+  tcase_add_test(t, test_roles_refused);
+  tcase_add_test(t, test_steps_refused);
+  tcase_add_test(t, test_words);
+  tcase_add_test(t, test_words_back);
+  tcase_add_test(t, test_limits);
+  tcase_add_test(t, test_any_text);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}
