@@ -1,0 +1,50 @@
+#include "proximity_ring/calibration.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "ethd/maths.h"
+
+const char *const ethd__level_names[ETHD__LEVEL_COUNT] = {"none", "common", "gain", "law", "table"};
+
+ethd__calibration ethd__calibration_default(void) {
+  ethd__calibration c;
+  memset(&c, 0, sizeof c);
+  c.residual = (double)NAN;
+  for (int k = 0; k < ETHD_RAYS; k++) {
+    ethd__sensor *s = &c.sensors[k];
+    s->a = 0.5;
+    s->p = 2;
+    s->d0 = 0.0025;
+    s->dark = s->residual = (double)NAN;
+  }
+  return c;
+}
+
+static double power(double base, double exponent) ETHD_RT { return ethd_exp(exponent * ethd_log(base)); }
+
+static double between(double x, double x0, double y0, double x1, double y1) ETHD_RT {
+  return y0 + (y1 - y0) * ((x - x0) / (x1 - x0));
+}
+
+/* Held beyond the near end, carried on beyond the far one. */
+static double look_up(const ethd__sensor *s, double above) ETHD_RT {
+  uint32_t i = 1;
+  if (above >= s->above[0]) return s->at[0];
+  while (i + 1 < s->points && s->above[i] > above) i++;
+  return between(above, s->above[i - 1], s->at[i - 1], s->above[i], s->at[i]);
+}
+
+double ethd__sensor_distance(const ethd__sensor *s, uint16_t counts) {
+  double above = counts - s->dark;
+  if (counts == ETHD__FRAME_MISSING || isnan(above)) return (double)NAN;
+  if (above <= 0) return ETHD__DISTANCE_MAX;
+  return fmin(s->points ? look_up(s, above) : power(s->a / above, 1 / s->p) - s->d0, ETHD__DISTANCE_MAX);
+}
+
+double ethd__sensor_counts(const ethd__sensor *s, double distance) {
+  uint32_t i = 1;
+  if (!s->points) return s->dark + s->a / power(fmax(distance + s->d0, 1e-6), s->p);
+  while (i + 1 < s->points && s->at[i] < distance) i++;
+  return s->dark + fmax(0, between(distance, s->at[i - 1], s->above[i - 1], s->at[i], s->above[i]));
+}

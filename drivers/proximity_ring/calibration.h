@@ -1,0 +1,78 @@
+/* From a sensor's counts to a distance.
+
+     counts                              light that comes back falls with the distance, on a floor that is
+       |*                                there without a finger (dark: stray light, the ring itself):
+       | *
+       |   *                               counts - dark = a / (d + d0)^p
+       |       *        *        *         d = (a / (counts - dark))^(1/p) - d0
+       |_ _ _ _ _ _ _ _ _ _ _ dark
+       +---------------------------- d   or a table of (counts - dark, d), straight between its points
+
+   Levels, each with more numbers of its own than the one before:
+     none     the law of a typical sensor, nothing measured but dark
+     common   one law, fitted to all sensors together
+     gain     the common law with a and d0 of each sensor: a gain and an offset
+     law      a, d0 and p of each sensor
+     table    points of each sensor */
+#ifndef ETHD_PROXIMITY_RING_CALIBRATION_H
+#define ETHD_PROXIMITY_RING_CALIBRATION_H
+
+#include "ethd/config.h"
+#include "ethd/finger_fit.h"
+#include "proximity_ring/frame.h"
+
+enum { ETHD__POINTS_MAX = 24, ETHD__SERIAL_MAX = 48 };
+
+#define ETHD__DISTANCE_MAX 0.1 /* m: farther is as good as nothing */
+
+typedef enum ethd__level {
+  ETHD__LEVEL_NONE = 0,
+  ETHD__LEVEL_COMMON,
+  ETHD__LEVEL_GAIN,
+  ETHD__LEVEL_LAW,
+  ETHD__LEVEL_TABLE,
+  ETHD__LEVEL_COUNT
+} ethd__level;
+
+extern const char *const ethd__level_names[ETHD__LEVEL_COUNT];
+
+typedef struct ethd__sensor {
+  double a;        /* counts m^p */
+  double p;        /* 1 */
+  double d0;       /* m */
+  double dark;     /* counts; NaN: not measured yet */
+  double residual; /* m rms of its calibration, NaN: none */
+  uint32_t points; /* of the table; 0: the law */
+  double above[ETHD__POINTS_MAX], at[ETHD__POINTS_MAX]; /* counts above dark, falling; m, rising */
+  char serial[ETHD__SERIAL_MAX];
+} ethd__sensor;
+
+typedef struct ethd__calibration {
+  ethd__level level;
+  double residual; /* m rms over all sensors, NaN: none */
+  char date[ETHD__SERIAL_MAX], serial[ETHD__SERIAL_MAX];
+  ethd__sensor sensors[ETHD_RAYS];
+} ethd__calibration;
+
+/* Level none: a = 0.5, p = 2, d0 = 2.5 mm, typical figures of the sensor, not measured. [any] */
+ethd__calibration ethd__calibration_default(void);
+
+/* m. NaN for a missing reading or an unknown dark; ETHD__DISTANCE_MAX at and below dark. A saturated reading is
+   the distance at which it saturates. Own exp and log: the same bits everywhere. [any, rt-safe] */
+double ethd__sensor_distance(const ethd__sensor *sensor, uint16_t counts) ETHD_RT;
+
+/* The inverse: counts, not rounded, over the ceiling too. [any, rt-safe] */
+double ethd__sensor_counts(const ethd__sensor *sensor, double distance) ETHD_RT;
+
+/* ---- files ---- */
+
+/* INI: [calibration] level, date, serial, residual; [law] a, p, d0; [sensor K] serial, dark, residual, a, p, d0
+   or point0, point1, ... = COUNTS_ABOVE_DARK METRES. Which keys a sensor may have is said by the level. All [main]. */
+ETHD_MUST_CHECK ethd_status ethd__calibration_parse(const char *text, size_t length, const char *name,
+                                                    ethd__calibration *out, char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__calibration_load(const char *path, ethd__calibration *out,
+                                                   char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__calibration_save(const ethd__calibration *calibration, const char *path,
+                                                   char message[ETHD_MESSAGE_MAX]);
+
+#endif

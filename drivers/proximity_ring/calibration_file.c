@@ -1,0 +1,251 @@
+#include <inttypes.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "file/error_text.h"
+#include "file/ini.h"
+#include "file/text.h"
+#include "proximity_ring/calibration.h"
+
+typedef struct reading {
+  const char *name;
+  char *message;
+  ethd__calibration *out;
+  uint32_t listed; /* bits of the sensors that have a section */
+} reading;
+
+/* ---- numbers ---- */
+
+typedef struct row {
+  const char *key;
+  double min, max;
+  size_t offset;
+  ethd__level from, to; /* levels at which a sensor may have one of its own */
+} row;
+
+#define AT(member) offsetof(ethd__sensor, member)
+
+static const row rows[] = {
+    {"a", 1e-9, 1e9, AT(a), ETHD__LEVEL_GAIN, ETHD__LEVEL_LAW},
+    {"p", 0.5, 8, AT(p), ETHD__LEVEL_LAW, ETHD__LEVEL_LAW},
+    {"d0", 0, 0.05, AT(d0), ETHD__LEVEL_GAIN, ETHD__LEVEL_LAW},
+    {"dark", 0, 65534, AT(dark), ETHD__LEVEL_NONE, ETHD__LEVEL_TABLE},
+    {"residual", 0, 0.1, AT(residual), ETHD__LEVEL_NONE, ETHD__LEVEL_TABLE},
+};
+
+#define ROWS (sizeof rows / sizeof *rows)
+
+static ethd_status refuse(const reading *r, const ethd_ini_key *k, ethd_status status, const char *allowed) {
+  char quote[ETHD_QUOTE_MAX];
+  return ethd__say(r->message, status, "%s:%d: %s.%s: found %s, %s is allowed", r->name, k->line, k->section, k->key,
+                   ethd__quote(k->value, strlen(k->value), quote), allowed);
+}
+
+static ethd_status unknown(const reading *r, const ethd_ini_key *k, const char *allowed) {
+  return ethd__say(r->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: unknown key at level %s; %s are allowed", r->name, k->line,
+                   k->section, k->key, ethd__level_names[r->out->level], allowed);
+}
+
+static ethd_status number(const reading *r, const ethd_ini_key *k, double min, double max, double *out) {
+  char allowed[64];
+  double value;
+  snprintf(allowed, sizeof allowed, "%.10g to %.10g", min, max);
+  if (!ethd__number(k->value, strlen(k->value), &value)) return refuse(r, k, ETHD_E_SYNTAX, "a decimal number");
+  if (!(value >= min && value <= max)) return refuse(r, k, ETHD_E_RANGE, allowed);
+  *out = value;
+  return ETHD_OK;
+}
+
+static ethd_status word(const reading *r, const ethd_ini_key *k, char out[ETHD__SERIAL_MAX]) {
+  if (strlen(k->value) >= ETHD__SERIAL_MAX) return refuse(r, k, ETHD_E_SYNTAX, "at most 47 characters");
+  strcpy(out, k->value);
+  return ETHD_OK;
+}
+
+static const row *find(const char *key) {
+  for (size_t i = 0; i < ROWS; i++)
+    if (!strcmp(rows[i].key, key)) return &rows[i];
+  return NULL;
+}
+
+static double *field(ethd__sensor *s, const row *r) { return (double *)((char *)s + r->offset); }
+
+/* ---- sections ---- */
+
+static ethd_status read_level(const reading *r, const ethd_ini_key *k) {
+  for (int i = 0; i < ETHD__LEVEL_COUNT; i++)
+    if (!strcmp(k->value, ethd__level_names[i])) {
+      r->out->level = (ethd__level)i;
+      return ETHD_OK;
+    }
+  return refuse(r, k, ETHD_E_UNKNOWN, "none, common, gain, law or table");
+}
+
+static ethd_status read_general(const reading *r, const ethd_ini_key *k) {
+  if (!strcmp(k->key, "level")) return ETHD_OK; /* has been read */
+  if (!strcmp(k->key, "date")) return word(r, k, r->out->date);
+  if (!strcmp(k->key, "serial")) return word(r, k, r->out->serial);
+  if (!strcmp(k->key, "residual")) return number(r, k, 0, 0.1, &r->out->residual);
+  return unknown(r, k, "level, date, serial, residual");
+}
+
+static ethd_status read_law(const reading *r, const ethd_ini_key *k) {
+  const row *which = find(k->key);
+  double value;
+  if (!which || which->from == ETHD__LEVEL_NONE) return unknown(r, k, "a, p, d0");
+  if (r->out->level == ETHD__LEVEL_NONE || r->out->level == ETHD__LEVEL_TABLE)
+    return ethd__say(r->message, ETHD_E_ARGUMENT, "%s:%d: [law]: level %s has none", r->name, k->line,
+                     ethd__level_names[r->out->level]);
+  ethd_status status = number(r, k, which->min, which->max, &value);
+  for (int i = 0; i < ETHD_RAYS && !status; i++) *field(&r->out->sensors[i], which) = value;
+  return status;
+}
+
+static ethd_status read_point(const reading *r, const ethd_ini_key *k, ethd__sensor *s) {
+  static const char allowed[] = "COUNTS_ABOVE_DARK METRES, counts falling and metres rising from point to point,";
+  char expected[16];
+  size_t n = strcspn(k->value, " \t"), gap = strspn(k->value + n, " \t");
+  const char *second = k->value + n + gap;
+  double above, at;
+  snprintf(expected, sizeof expected, "point%u", s->points);
+  if (s->points == ETHD__POINTS_MAX || strcmp(k->key, expected)) return unknown(r, k, "dark, residual, serial, point0 to point23 in order");
+  if (!ethd__number(k->value, n, &above) || !gap || !ethd__number(second, strlen(second), &at))
+    return refuse(r, k, ETHD_E_SYNTAX, allowed);
+  bool falls = s->points == 0 || (above < s->above[s->points - 1] && at > s->at[s->points - 1]);
+  if (!(above > 0 && above < 65536 && at >= 0 && at <= ETHD__DISTANCE_MAX && falls)) return refuse(r, k, ETHD_E_RANGE, allowed);
+  s->above[s->points] = above;
+  s->at[s->points++] = at;
+  return ETHD_OK;
+}
+
+static ethd_status read_sensor(const reading *r, const ethd_ini_key *k, int sensor) {
+  static const char *const allowed[] = {"dark, residual, serial", "dark, residual, serial", "dark, residual, serial, a, d0",
+                                        "dark, residual, serial, a, p, d0", "dark, residual, serial, point0 to point23"};
+  ethd__sensor *s = &r->out->sensors[sensor];
+  const row *which = find(k->key);
+  if (!strcmp(k->key, "serial")) return word(r, k, s->serial);
+  if (which && which->from <= r->out->level && which->to >= r->out->level) return number(r, k, which->min, which->max, field(s, which));
+  if (!which && r->out->level == ETHD__LEVEL_TABLE) return read_point(r, k, s);
+  return unknown(r, k, allowed[r->out->level]);
+}
+
+/* "sensor 0" to "sensor 15", else -1. */
+static int sensor_of(const char *section) {
+  char expected[16];
+  for (int i = 0; i < ETHD_RAYS; i++) {
+    snprintf(expected, sizeof expected, "sensor %d", i);
+    if (!strcmp(section, expected)) return i;
+  }
+  return -1;
+}
+
+static ethd_status read_key(const reading *r, const ethd_ini_key *k) {
+  if (!strcmp(k->section, "calibration")) return read_general(r, k);
+  if (!strcmp(k->section, "law")) return read_law(r, k);
+  return ETHD_OK;
+}
+
+static ethd_status check_sections(reading *r, const ethd_ini *ini) {
+  char quote[ETHD_QUOTE_MAX];
+  for (uint32_t i = 0; i < ini->section_count; i++) {
+    const ethd_ini_section *s = &ini->sections[i];
+    int sensor = sensor_of(s->name);
+    if (sensor >= 0) r->listed |= 1u << sensor;
+    if (sensor < 0 && strcmp(s->name, "calibration") && strcmp(s->name, "law"))
+      return ethd__say(r->message, ETHD_E_UNKNOWN, "%s:%d: [%s]: unknown section; calibration, law, sensor 0 to sensor 15 are allowed",
+                       r->name, s->line, ethd__quote(s->name, strlen(s->name), quote));
+  }
+  return ETHD_OK;
+}
+
+/* What a level promises must be there. */
+static ethd_status check_whole(const reading *r) {
+  for (int i = 0; i < ETHD_RAYS && r->out->level >= ETHD__LEVEL_GAIN; i++) {
+    if (!(r->listed >> i & 1))
+      return ethd__say(r->message, ETHD_E_ARGUMENT, "%s: [sensor %d] is missing; level %s needs all 16", r->name, i,
+                       ethd__level_names[r->out->level]);
+    if (r->out->level == ETHD__LEVEL_TABLE && r->out->sensors[i].points < 2)
+      return ethd__say(r->message, ETHD_E_ARGUMENT, "%s: [sensor %d] has %u points, 2 to 24 are allowed", r->name, i,
+                       r->out->sensors[i].points);
+  }
+  return ETHD_OK;
+}
+
+static ethd_status read_all(reading *r, const ethd_ini *ini) {
+  const ethd_ini_key *level = ethd_ini_find(ini, "calibration", "level");
+  if (!level) return ethd__say(r->message, ETHD_E_ARGUMENT, "%s: calibration.level is missing", r->name);
+  ethd_status status = read_level(r, level);
+  if (!status) status = check_sections(r, ini);
+  for (uint32_t i = 0; i < ini->count && !status; i++) status = read_key(r, &ini->keys[i]);
+  for (uint32_t i = 0; i < ini->count && !status; i++) { /* once the common law is known */
+    int sensor = sensor_of(ini->keys[i].section);
+    if (sensor >= 0) status = read_sensor(r, &ini->keys[i], sensor);
+  }
+  return status ? status : check_whole(r);
+}
+
+ethd_status ethd__calibration_parse(const char *text, size_t length, const char *name, ethd__calibration *out,
+                                    char message[ETHD_MESSAGE_MAX]) {
+  ethd__calibration got = ethd__calibration_default();
+  reading r = {name, message, &got, 0};
+  ethd_ini ini = {0};
+  ethd_status status = ethd_ini_parse(text, length, name, NULL, &ini, message);
+  if (status) return status;
+  status = read_all(&r, &ini);
+  ethd_ini_free(&ini);
+  if (!status) *out = got;
+  return status;
+}
+
+ethd_status ethd__calibration_load(const char *path, ethd__calibration *out, char message[ETHD_MESSAGE_MAX]) {
+  char *text;
+  size_t length;
+  ethd_status status = ethd_text_read(path, ETHD_INI_BYTES_MAX, &text, &length, message);
+  if (status) return status;
+  status = ethd__calibration_parse(text, length, path, out, message);
+  free(text);
+  return status;
+}
+
+/* ---- writing ---- */
+
+static void put(FILE *f, const char *key, double value) {
+  if (!isnan(value)) fprintf(f, "%s = %.17g\n", key, value);
+}
+
+static void put_word(FILE *f, const char *key, const char *value) {
+  if (value[0]) fprintf(f, "%s = %s\n", key, value);
+}
+
+static void put_sensor(FILE *f, const ethd__calibration *c, int sensor) {
+  ethd__sensor s = c->sensors[sensor];
+  fprintf(f, "\n[sensor %d]\n", sensor);
+  put_word(f, "serial", s.serial);
+  for (size_t i = 0; i < ROWS; i++)
+    if (rows[i].from <= c->level && rows[i].to >= c->level) put(f, rows[i].key, *field(&s, &rows[i]));
+  for (uint32_t i = 0; i < s.points && c->level == ETHD__LEVEL_TABLE; i++)
+    fprintf(f, "point%u = %.17g %.17g\n", i, s.above[i], s.at[i]);
+}
+
+ethd_status ethd__calibration_save(const ethd__calibration *c, const char *path, char message[ETHD_MESSAGE_MAX]) {
+  ethd_replace to;
+  ethd_status status = ethd_replace_begin(path, &to, message);
+  if (status) return status;
+  fprintf(to.file, "; counts - dark = a / (d + d0)^p; a in counts m^p, d0 and residual (rms) in m, dark in counts\n"
+                   "[calibration]\nlevel = %s\n",
+          ethd__level_names[c->level]);
+  put_word(to.file, "date", c->date);
+  put_word(to.file, "serial", c->serial);
+  put(to.file, "residual", c->residual);
+  if (c->level != ETHD__LEVEL_NONE && c->level != ETHD__LEVEL_TABLE) {
+    ethd__sensor common = c->sensors[0];
+    fprintf(to.file, "\n[law]\n");
+    for (size_t i = 0; i < ROWS; i++)
+      if (rows[i].from != ETHD__LEVEL_NONE) put(to.file, rows[i].key, *field(&common, &rows[i]));
+  }
+  for (int k = 0; k < ETHD_RAYS; k++) put_sensor(to.file, c, k);
+  return ethd_replace_commit(&to, message);
+}
