@@ -154,7 +154,7 @@ START_TEST(test_register_refused) {
   refused_behind("[register status]", "fault_mask = 0x0001", "fault_mask = 0x10000", "is wider than the register");
   refused_behind("[register status]", "fault_mask = 0x0001", "fault_mask = 1\nhealthy = 2", "register status.healthy");
   refused_behind("[register status]", "enabled = 0x0002", "enabled = 4", "register status.enabled");
-  refused_behind("[register status]", "direction = read", "direction = write", "only whole numbers that are read");
+  refused_behind("[register reading_x]", "type = f32", "type = f32\nfault_mask = 1", "only whole numbers that are read");
   refused_behind("[register seen1]", "type = i16", "type = i16\ntolerance = 1", "only measured1 and measured2");
   refused_behind("[register bus_voltage]", "min = 24\n", "", "min < max are needed");
   refused_behind("[register reading_count]", "type = u16", "type = f32\norder = high-first", "whole numbers");
