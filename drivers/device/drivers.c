@@ -1,3 +1,3 @@
 #include "ethd/driver.h"
 
-const ethd_driver *const ethd_drivers[] = {&ethd_driver_sim, &ethd_driver_replay, &ethd_driver_servo, NULL};
+const ethd_driver *const ethd_drivers[] = {&ethd_driver_sim, &ethd_driver_replay, &ethd_driver_servo, &ethd_driver_hello, NULL};

@@ -77,7 +77,7 @@ struct ethd_driver {
   const char *(*remark)(const void *device, uint32_t i);
 };
 
-ETHD_API extern const ethd_driver ethd_driver_sim;
+ETHD_API extern const ethd_driver ethd_driver_sim, ethd_driver_hello;
 ETHD_API extern const ethd_driver ethd_driver_servo;
 ETHD_API extern const ethd_driver ethd_driver_replay; /* a recorded session, fed and compared */
 

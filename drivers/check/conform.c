@@ -1,0 +1,211 @@
+#include <dirent.h>
+#include <math.h>
+#include <string.h>
+
+#include "check/conform_rig.h"
+
+#define OPENINGS 20
+#define PUSH 0.1       /* s */
+#define LAPSE 0.05     /* s after which no torque may be left, then half of this twice to see it */
+#define STILL 0.01     /* rad in PUSH without torque */
+#define SPEED_MAX 50.0 /* rad/s: faster is a jump */
+#define AGE_MAX 0.005  /* s of a joint sample */
+
+/* ---- questions ---- */
+
+static ethd_verdict ask_table(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__rig r;
+  ethd_error error;
+  if (!ethd__rig_open(def, &r)) return ethd__rig_answer(a, ETHD_BROKEN, "open: %.140s", r.message);
+  const ethd_driver *d = r.driver;
+  const char *missing = !d->start ? "start" : !d->read ? "read" : !d->safe ? "safe" : !d->stop ? "stop" : !d->limits ? "limits" :
+                        d->units && !d->service ? "service" : !d->brief || !d->brief[0] ? "brief" : NULL;
+  if (missing)
+    ethd__rig_answer(a, ETHD_BROKEN, "%s has no %s", d->id, missing);
+  else if (d->size < sizeof *d || d->abi != ETHD_DRIVER_ABI)
+    ethd__rig_answer(a, ETHD_BROKEN, "%s: another ABI: %u bytes, version %u", d->id, d->size, d->abi);
+  else if (d->param_count && ethd_params_check_table(d->params, d->param_count, &error))
+    ethd__rig_answer(a, ETHD_BROKEN, "%s: its table of settings: %s", d->id, error.name);
+  else
+    ethd__rig_answer(a, ETHD_KEPT, "%s: %s", d->id, d->brief);
+  d->close(r.device);
+  return a->verdict;
+}
+
+static int descriptors(void) {
+  DIR *folder = opendir("/proc/self/fd");
+  int n = 0;
+  while (folder && readdir(folder)) n++;
+  if (folder) closedir(folder);
+  return n;
+}
+
+/* Also started, also twice; what was opened is closed. */
+static ethd_verdict ask_open(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__rig r;
+  int before = 0;
+  for (int k = 0; k < OPENINGS; k++) {
+    if (!ethd__rig_begin(def, &r, a)) return a->verdict;
+    if (k % 2) ethd__rig_run(&r, 0.005, 0, 0);
+    ethd__rig_end(&r);
+    if (!k) before = descriptors();
+  }
+  int left = descriptors() - before;
+  if (left) return ethd__rig_answer(a, ETHD_BROKEN, "%d descriptors are left open after %d times", left, OPENINGS - 1);
+  return ethd__rig_answer(a, ETHD_KEPT, "%d times open, start, stop, close", OPENINGS);
+}
+
+static ethd_verdict ask_limits(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__rig r;
+  ethd_error error;
+  if (!ethd__rig_begin(def, &r, a)) return a->verdict;
+  ethd__rig_run(&r, 0.02, 0, 0);
+  ethd_limits l = r.driver->limits(r.device);
+  ethd_pose pose;
+  ethd_arm_pose(&def->device->setup->arm, r.sense.q, &pose);
+  const double *w = l.workspace;
+  if (ethd_limits_check(&l, &error))
+    ethd__rig_answer(a, ETHD_BROKEN, "%s: %s", error.name, ethd_status_sentence(error.status));
+  else if (!(pose.x.x >= w[0] && pose.x.x <= w[1] && pose.x.y >= w[2] && pose.x.y <= w[3]))
+    ethd__rig_answer(a, ETHD_BROKEN, "the ring stands at %.3f %.3f m, outside of its workspace", pose.x.x, pose.x.y);
+  else if (!isfinite(l.torque))
+    ethd__rig_answer(a, ETHD_AT_RISK, "the device names no torque limit: only the configuration's holds");
+  else
+    ethd__rig_answer(a, ETHD_KEPT, "torque %.4g Nm, speed %.4g m/s", l.torque, l.speed);
+  ethd__rig_end(&r);
+  return a->verdict;
+}
+
+static ethd_verdict ask_sense(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__rig r;
+  if (!ethd__rig_begin(def, &r, a)) return a->verdict;
+  ethd__rig_run(&r, 5 * PUSH, 0, 0);
+  if (!r.samples)
+    ethd__rig_answer(a, ETHD_BROKEN, "no joint sample in %g s", 5 * PUSH);
+  else if (r.failed || !r.finite)
+    ethd__rig_answer(a, ETHD_BROKEN, "%d failed calls%s", r.failed, r.finite ? "" : ", angles that aren't finite");
+  else if (r.backwards || r.ahead)
+    ethd__rig_answer(a, ETHD_BROKEN, "%d samples go back in time, %d come from the future", r.backwards, r.ahead);
+  else if (r.faults)
+    ethd__rig_answer(a, ETHD_BROKEN, "it reports: %s", ethd_fault_sentence((ethd_fault)(ffsll(r.faults) - 1)));
+  else
+    ethd__rig_answer(a, r.age > AGE_MAX ? ETHD_AT_RISK : ETHD_KEPT, "%d samples, the oldest used at %.3g ms", r.samples, 1e3 * r.age);
+  ethd__rig_end(&r);
+  return a->verdict;
+}
+
+static ethd_verdict ask_zero(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__rig r;
+  if (!ethd__rig_begin(def, &r, a)) return a->verdict;
+  ethd__rig_run(&r, 0.01, 0, 0);
+  double q[2] = {r.sense.q[0], r.sense.q[1]};
+  ethd__rig_run(&r, PUSH, 0, 0);
+  double moved = fmax(fabs(r.sense.q[0] - q[0]), fabs(r.sense.q[1] - q[1]));
+  ethd__rig_end(&r);
+  return ethd__rig_answer(a, moved <= STILL ? ETHD_KEPT : ETHD_BROKEN, "%.3g rad in %g s without torque, %g is allowed", moved, PUSH, STILL);
+}
+
+static ethd_verdict ask_sign(const ethd_conform_def *def, ethd_conform_answer *a) {
+  double moved[2][2];
+  for (int joint = 0; joint < 2; joint++)
+    for (int minus = 0; minus < 2; minus++) {
+      ethd__rig r;
+      if (!ethd__rig_begin(def, &r, a)) return a->verdict;
+      ethd__rig_run(&r, 0.01, joint, 0);
+      double q = r.sense.q[joint];
+      ethd__rig_run(&r, PUSH, joint, minus ? -def->torque : def->torque);
+      moved[joint][minus] = r.sense.q[joint] - q;
+      ethd__rig_end(&r);
+    }
+  int right = moved[0][0] > 0 && moved[0][1] < 0 && moved[1][0] > 0 && moved[1][1] < 0;
+  return ethd__rig_answer(a, right ? ETHD_KEPT : ETHD_BROKEN, "+-%g Nm moved joint 1 by %+.3g %+.3g, joint 2 by %+.3g %+.3g rad", def->torque,
+                moved[0][0], moved[0][1], moved[1][0], moved[1][1]);
+}
+
+static ethd_verdict ask_counts(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__rig r;
+  if (!ethd__rig_begin(def, &r, a)) return a->verdict;
+  ethd__rig_run(&r, 0.01, 0, 0);
+  ethd__rig_run(&r, PUSH, 0, def->torque);
+  ethd__rig_end(&r);
+  if (!(r.speed <= SPEED_MAX)) return ethd__rig_answer(a, ETHD_BROKEN, "the angles jump: %.3g rad/s", r.speed);
+  if (isinf(r.resolution)) return ethd__rig_answer(a, ETHD_BROKEN, "the angles didn't change under torque");
+  return ethd__rig_answer(a, ETHD_KEPT, "smallest step %.3g rad, fastest %.3g rad/s", r.resolution, r.speed);
+}
+
+/* Torque that nobody renews must end. */
+static ethd_verdict ask_watchdog(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__rig r;
+  if (!ethd__rig_begin(def, &r, a)) return a->verdict;
+  ethd__rig_run(&r, 0.01, 0, 0);
+  double pushed = ethd__rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
+  (void)ethd__rig_acceleration(&r, 0, def->torque, 0, LAPSE / 2);
+  double left = ethd__rig_acceleration(&r, 0, def->torque, 0, LAPSE / 2);
+  ethd__rig_end(&r);
+  if (left <= 0.25 * pushed)
+    return ethd__rig_answer(a, ETHD_KEPT, "%.3g rad/s^2 under torque, %.3g once nobody had written for %g s", pushed, left, LAPSE);
+  return ethd__rig_answer(a, ETHD_AT_RISK, "none: still %.3g of %.3g rad/s^2, %g s after the last write", left, pushed, LAPSE);
+}
+
+static ethd_verdict ask_safe(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__rig r;
+  if (!ethd__rig_open(def, &r)) return ethd__rig_answer(a, ETHD_BROKEN, "open: %.140s", r.message);
+  r.driver->safe(r.device); /* before it was started */
+  r.driver->close(r.device);
+  if (!ethd__rig_begin(def, &r, a)) return a->verdict;
+  ethd__rig_run(&r, 0.01, 0, 0);
+  double pushed = ethd__rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
+  r.driver->safe(r.device);
+  r.driver->safe(r.device);
+  ethd__rig_run(&r, 0.01, 0, def->torque);
+  double left = ethd__rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
+  (void)!r.driver->stop(r.device);
+  r.driver->safe(r.device); /* and once stopped */
+  r.driver->close(r.device);
+  return ethd__rig_answer(a, left <= 0.25 * pushed ? ETHD_KEPT : ETHD_BROKEN, "%.3g rad/s^2 under torque, %.3g with the same torque once safe", pushed,
+                left);
+}
+
+static ethd_verdict ask_restart(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__rig r;
+  if (!ethd__rig_begin(def, &r, a)) return a->verdict;
+  ethd__rig_run(&r, PUSH / 2, 0, def->torque);
+  (void)!r.driver->stop(r.device);
+  ethd_status status = r.driver->start(r.device);
+  if (status < 0) {
+    ethd__rig_end(&r);
+    return ethd__rig_answer(a, ETHD_BROKEN, "started anew: %s", ethd_status_sentence(status));
+  }
+  (void)ethd__rig_acceleration(&r, 0, 0, 0, 1e-9 * (double)r.period); /* where it stands now */
+  double q = r.sense.q[0];
+  (void)ethd__rig_acceleration(&r, 0, 0, 0, LAPSE / 2);
+  double moved = r.sense.q[0] - q, pushed = ethd__rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
+  ethd__rig_end(&r);
+  int right = pushed > 0 && fabs(moved) <= 0.1 * pushed * LAPSE * LAPSE / 2;
+  return ethd__rig_answer(a, right ? ETHD_KEPT : ETHD_BROKEN,
+                          "started anew: %+.3g rad before it is written to, %.3g rad/s^2 under torque", moved, pushed);
+}
+
+static const struct {
+  const char *name;
+  ethd_verdict (*ask)(const ethd_conform_def *def, ethd_conform_answer *a);
+  int moves;
+} questions[ETHD_QUESTIONS] = {{"table", ask_table, 0}, {"open", ask_open, 0},         {"limits", ask_limits, 0},
+                               {"sense", ask_sense, 0}, {"zero", ask_zero, 0},         {"sign", ask_sign, 1},
+                               {"counts", ask_counts, 1}, {"watchdog", ask_watchdog, 1}, {"safe", ask_safe, 1},
+                               {"restart", ask_restart, 1}};
+
+ethd_status ethd_conform(const ethd_conform_def *def, ethd_conform_answer answers[ETHD_QUESTIONS]) {
+  int broken = 0;
+  for (int i = 0; i < ETHD_QUESTIONS; i++) {
+    ethd_conform_answer *a = &answers[i];
+    a->question = questions[i].name;
+    if (i && answers[0].verdict == ETHD_BROKEN)
+      ethd__rig_answer(a, ETHD_NOT_ASKED, "the device can't be opened, or its table is broken");
+    else if (questions[i].moves && !(def->torque > 0))
+      ethd__rig_answer(a, ETHD_NOT_ASKED, "it would move the device");
+    else
+      broken |= questions[i].ask(def, a) == ETHD_BROKEN;
+  }
+  return broken ? ETHD_E_DEVICE : ETHD_OK;
+}

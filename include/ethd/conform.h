@@ -1,0 +1,41 @@
+/* Does a driver keep its contract? Questions put to a device at its own boundary, one answer each.
+
+   The device is opened, started, stopped and closed many times; with `torque` it moves: keep clear of it.
+   All [main]. */
+#ifndef ETHD_CONFORM_H
+#define ETHD_CONFORM_H
+
+#include "ethd/driver.h"
+
+ETHD_BEGIN_DECLS
+
+typedef enum ethd_verdict {
+  ETHD_KEPT = 0,
+  ETHD_BROKEN = 1,
+  ETHD_AT_RISK = 2,  /* allowed, but people should know */
+  ETHD_NOT_ASKED = 3 /* says why */
+} ethd_verdict;
+
+typedef struct ethd_conform_answer {
+  const char *question; /* "safe", "sign", ... */
+  ethd_verdict verdict;
+  char found[160]; /* one line */
+} ethd_conform_answer;
+
+#define ETHD_QUESTIONS 10
+
+typedef struct ethd_conform_def {
+  const char *ids;                 /* as for ethd_device_open */
+  const ethd_driver *const *from;  /* likewise */
+  const ethd_device_def *device;
+  double torque;      /* Nm, pushes each joint in turn for a tenth of a second; 0: nothing may move */
+  int32_t is_virtual; /* 1: time is only counted, for a device that needs none to pass */
+} ethd_conform_def;
+
+/* Puts all questions; ETHD_OK: nothing is broken, ETHD_E_DEVICE: something is. */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_conform(const ethd_conform_def *def,
+                                                  ethd_conform_answer answers[ETHD_QUESTIONS]);
+
+ETHD_END_DECLS
+
+#endif

@@ -1,0 +1,22 @@
+#!/bin/sh
+# ethd-conform on the drivers that need no hardware.
+set -u
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+conform=$BUILD/bin/ethd-conform
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+printf '[device]\ndriver = hello\n' >"$folder/hello.ini"
+# a finger that hardly moves leaves the ring alone
+printf '[device]\ndriver = sim\nspeed = 0.001\n' >"$folder/sim.ini"
+"$conform" --config "$folder/hello.ini" --virtual --move >"$folder/hello" 2>&1 || fail "hello: $(cat "$folder/hello")"
+[ "$(grep -c ' kept ' "$folder/hello")" = 10 ] || fail "hello: $(cat "$folder/hello")"
+"$conform" --config "$folder/sim.ini" --virtual --move >"$folder/sim" 2>&1 || fail "sim: $(cat "$folder/sim")"
+grep -q '^watchdog  at risk' "$folder/sim" || fail "the simulated device has got a watchdog: $(cat "$folder/sim")"
+"$conform" --config "$folder/hello.ini" >"$folder/still" 2>&1 || fail "in real time: $(cat "$folder/still")"
+[ "$(grep -c ' not asked ' "$folder/still")" = 5 ] || fail "it may not move: $(cat "$folder/still")"
+printf '[device]\ndriver = hello\ncolour = red\n' >"$folder/bad.ini"
+"$conform" --config "$folder/bad.ini" >"$folder/bad" 2>&1 && fail "a setting that hello hasn't passes"
+grep -q 'bad.ini:3: device.colour: hello has no settings' "$folder/bad" || fail "$(cat "$folder/bad")"
+cat "$folder/hello"
+exit $failed

@@ -1,0 +1,130 @@
+/* A driver that keeps its contract, and one that breaks it in each way that is asked for. */
+#include <check.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "ethd/conform.h"
+
+enum { SOUND, NO_STOP, LEAKS, NO_LIMIT, OUTSIDE, NAN_ANGLE, BACKWARDS, FAULTY, DRIFTS, REVERSED, JUMPS, NO_WATCHDOG, UNSAFE, OLD_TORQUE, WAYS };
+
+static int way;
+
+typedef struct fake {
+  double q[2], w[2], torque[2];
+  int64_t now, written, ticks;
+  int safe;
+} fake;
+
+static ethd_status open_fake(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
+  fake *f = calloc(1, sizeof *f);
+  (void)message;
+  *device = f;
+  if (way == LEAKS) (void)!dup(0);
+  return ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, f->q);
+}
+
+static ethd_status start(void *device) {
+  fake *f = device;
+  f->safe = 0;
+  f->now = 0;
+  f->w[0] = f->w[1] = 0;
+  if (way != OLD_TORQUE) f->torque[0] = f->torque[1] = 0;
+  return ETHD_OK;
+}
+
+static ethd_status read_fake(void *device, int64_t now, ethd_sense *out) {
+  fake *f = device;
+  double dt = f->now ? 1e-9 * (double)(now - f->now) : 0;
+  int alive = (!f->safe || way == UNSAFE) && (now - f->written <= 20000000 || way == NO_WATCHDOG);
+  f->now = now;
+  for (int i = 0; i < 2; i++) {
+    f->w[i] += dt / 0.02 * (alive ? f->torque[i] : 0) * (way == REVERSED && i ? -1 : 1) + (way == DRIFTS ? dt * 5 : 0);
+    out->q[i] = f->q[i] += dt * f->w[i];
+  }
+  if (way == JUMPS && ++f->ticks == 50) f->q[0] += 1;
+  if (way == NAN_ANGLE && ++f->ticks == 50) out->q[1] = (double)NAN;
+  out->time_ns = way == BACKWARDS && ++f->ticks == 50 ? now - 5000000 : now;
+  if (way == FAULTY) out->faults = ETHD_FAULT_BIT(ETHD_FAULT_DRIVE);
+  return ETHD_OK;
+}
+
+static ethd_status write_fake(void *device, int64_t now, const ethd_command *command) {
+  fake *f = device;
+  memcpy(f->torque, command->torque, sizeof f->torque);
+  f->written = now;
+  return ETHD_OK;
+}
+
+static void safe(void *device) { ((fake *)device)->safe = 1; }
+static ethd_status stop(void *device) { return safe(device), ETHD_OK; }
+static ethd_limits limits(const void *device) {
+  ethd_limits l = ethd_limits_none();
+  (void)device;
+  l.torque = way == NO_LIMIT ? (double)INFINITY : 1;
+  if (way == OUTSIDE) l.workspace[1] = 0.2;
+  return l;
+}
+
+/* With OLD_TORQUE the start forgets nothing: the driver begins with what it was told last. */
+static ethd_verdict ask(const char *question, double torque, ethd_status *status) {
+  static ethd_driver driver;
+  static ethd_conform_answer answers[ETHD_QUESTIONS];
+  driver = (ethd_driver){.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "fake", .brief = "fake", .open = open_fake, .start = start,
+                         .read = read_fake, .write = write_fake, .safe = safe, .stop = way == NO_STOP ? NULL : stop, .close = free,
+                         .limits = limits};
+  const ethd_driver *const from[] = {&driver, NULL};
+  const ethd_setup setup = ethd_setup_default();
+  const ethd_device_def device = {&setup, NULL, 0, ".", NULL};
+  const ethd_conform_def def = {"fake", from, &device, torque, 1};
+  *status = ethd_conform(&def, answers);
+  for (int i = 0; i < ETHD_QUESTIONS; i++) {
+    ck_assert_msg(answers[i].found[0], "%s says nothing", answers[i].question);
+    if (!strcmp(answers[i].question, question)) return answers[i].verdict;
+  }
+  ck_abort_msg("%s isn't asked", question);
+  return ETHD_BROKEN;
+}
+
+static const struct {
+  const char *question;
+  ethd_verdict verdict;
+} expected[WAYS] = {
+    [NO_STOP] = {"table", ETHD_BROKEN},     [LEAKS] = {"open", ETHD_BROKEN},        [NO_LIMIT] = {"limits", ETHD_AT_RISK},
+    [OUTSIDE] = {"limits", ETHD_BROKEN},    [NAN_ANGLE] = {"sense", ETHD_BROKEN},   [BACKWARDS] = {"sense", ETHD_BROKEN},
+    [FAULTY] = {"sense", ETHD_BROKEN},      [DRIFTS] = {"zero", ETHD_BROKEN},       [REVERSED] = {"sign", ETHD_BROKEN},
+    [JUMPS] = {"counts", ETHD_BROKEN},      [NO_WATCHDOG] = {"watchdog", ETHD_AT_RISK}, [UNSAFE] = {"safe", ETHD_BROKEN},
+    [OLD_TORQUE] = {"restart", ETHD_BROKEN}};
+
+START_TEST(test_way) {
+  ethd_status status;
+  way = _i;
+  ck_assert_int_eq(ask(expected[_i].question, 0.1, &status), expected[_i].verdict);
+  ck_assert_int_eq(status, expected[_i].verdict == ETHD_BROKEN ? ETHD_E_DEVICE : ETHD_OK);
+}
+END_TEST
+
+START_TEST(test_sound) {
+  static const char *const all[] = {"table", "open", "limits", "sense", "zero", "sign", "counts", "watchdog", "safe", "restart"};
+  ethd_status status;
+  way = SOUND;
+  for (int i = 0; i < ETHD_QUESTIONS; i++) ck_assert_int_eq(ask(all[i], 0.1, &status), ETHD_KEPT);
+  ck_assert_int_eq(status, ETHD_OK);
+  ck_assert_int_eq(ask("sign", 0, &status), ETHD_NOT_ASKED);
+  ck_assert_int_eq(ask("zero", 0, &status), ETHD_KEPT);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("conform");
+  TCase *tests = tcase_create("conform");
+  tcase_add_test(tests, test_sound);
+  tcase_add_loop_test(tests, test_way, SOUND + 1, WAYS);
+  suite_add_tcase(suite, tests);
+  SRunner *runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed != 0;
+}
