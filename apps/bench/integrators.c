@@ -70,13 +70,14 @@ static void enter_all(const ethd__problem *problem) {
       c->runner.method = &ethd__methods[m];
       c->runner.plain.live = !ethd__methods[m].events;
     }
-  static const char *const libraries[] = {"gsl", "sundials", "odeint"};
-  for (int l = 0; l < 3; l++) {
+  static const char *const libraries[] = {"gsl", "sundials", "odeint", "mujoco"};
+  for (int l = 0; l < 4; l++) {
     const ethd__peer_ode *peer = ethd__bench_peer(libraries[l], "peer_ode");
     for (; peer && peer->name; peer++)
-      for (double t = peer->loosest; t > 0.5 * peer->tightest; t /= 10) {
+      for (double t = peer->loosest; t > 0.7 * peer->tightest; t /= peer->ratio) {
         contender *c = enter(problem, peer->name, t);
         c->runner.peer = peer;
+        c->runner.plain.live = peer->live;
         c->runner.peer_self = peer->create(&c->runner.ode, t);
       }
   }
@@ -150,7 +151,7 @@ static int run(const char *folder, int quick) {
       "largest distance of ring or finger, every tick and torque change, from DOPRI5 with events at "
       "1e-15\n"
       "exact matrix exponential: left out, friction's tanh and the pad's K p (1 + c p') are not linear\n"
-      "peer MuJoCo: absent\n",
+      "MuJoCo: the same forces through its passive callback, steps of fixed length, no events\n",
       TAPS, problem.duration);
   contender *reference = enter(&problem, "reference", 1e-15);
   reference->runner.method = &ethd__methods[ethd__method_count - 1];
@@ -177,6 +178,7 @@ static int run(const char *folder, int quick) {
   goal("rkf45", "GSL rkf45", 1e-10, 1);
   goal("CVODE", "CVODE", 1e-6, 30);
   goal("CVODE", "CVODE", 1e-8, 30);
+  goal("MuJoCo", "MuJoCo", 1e-6, 25);
   order();
   for (int i = 0; i < field.count; i++) {
     if (field.all[i].runner.peer) field.all[i].runner.peer->destroy(field.all[i].runner.peer_self);
@@ -188,4 +190,4 @@ static int run(const char *folder, int quick) {
 }
 
 const ethd__bench ethd__bench_integrators = {"integrators",
-                                             "the plant's integration, against GSL, CVODE, odeint", run};
+                                             "the plant's integration, against GSL, CVODE, odeint, MuJoCo", run};

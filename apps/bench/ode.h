@@ -22,7 +22,8 @@ typedef struct ethd__ode {
 
 typedef struct ethd__peer_ode {
   const char *name;
-  double loosest, tightest; /* tolerances that are worth a point */
+  double loosest, tightest, ratio; /* tolerances, or lengths of steps, that are worth a point */
+  int live; /* it has no events: rate() finds out what touches each time */
   void *(*create)(const ethd__ode *ode, double tolerance);
   /* From t to `end`, between which only watched numbers interrupt; y in place. */
   void (*work)(void *self, double t, double end, double *y);

@@ -92,7 +92,7 @@ static void destroy(void *self) {
 
 extern const ethd__peer_ode peer_ode[];
 const ethd__peer_ode peer_ode[] = {
-    {"GSL " GSL_VERSION " rkf45", 1e-4, 1e-12, create_rkf45, work, destroy},
-    {"GSL " GSL_VERSION " rk8pd", 1e-4, 1e-12, create_rk8pd, work, destroy},
+    {"GSL " GSL_VERSION " rkf45", 1e-4, 1e-12, 10, 0, create_rkf45, work, destroy},
+    {"GSL " GSL_VERSION " rk8pd", 1e-4, 1e-12, 10, 0, create_rk8pd, work, destroy},
     {0},
 };

@@ -91,7 +91,7 @@ template <class S> void destroy(void *self) {
 #define NAME "odeint " BOOST_LIB_VERSION
 extern "C" const ethd__peer_ode peer_ode[];
 extern "C" const ethd__peer_ode peer_ode[] = {
-    {NAME " dopri5", 1e-4, 1e-12, create<Dopri5>, work<Dopri5>, destroy<Dopri5>},
-    {NAME " fehlberg78", 1e-4, 1e-12, create<Fehlberg78>, work<Fehlberg78>, destroy<Fehlberg78>},
+    {NAME " dopri5", 1e-4, 1e-12, 10, 0, create<Dopri5>, work<Dopri5>, destroy<Dopri5>},
+    {NAME " fehlberg78", 1e-4, 1e-12, 10, 0, create<Fehlberg78>, work<Fehlberg78>, destroy<Fehlberg78>},
     {},
 };

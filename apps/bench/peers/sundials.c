@@ -88,6 +88,6 @@ static void destroy(void *self) {
 
 extern const ethd__peer_ode peer_ode[];
 const ethd__peer_ode peer_ode[] = {
-    {"CVODE " SUNDIALS_VERSION " Adams with roots", 1e-5, 1e-11, create, work, destroy},
+    {"CVODE " SUNDIALS_VERSION " Adams with roots", 1e-5, 1e-11, 10, 0, create, work, destroy},
     {0},
 };

@@ -1,0 +1,87 @@
+// flags: -I"$site/mujoco/include" "$site"/mujoco/libmujoco.so.* -Wl,-rpath,"$site/mujoco"
+// pip: mujoco==3.3.7
+// MuJoCo with steps of fixed length. Its contacts are soft constraints, which the pad's Hunt-Crossley isn't: so
+// its own are off and the plant's accelerations come in as forces on unit masses, by its passive callback. It
+// locates no events: touch is asked anew at each evaluation.
+#include <mujoco/mujoco.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/ode.h"
+
+enum { HALF = ETHD__ODE_SIZE / 2 };
+
+#define BODY                                                                                            \
+  "<body><joint type='slide' axis='1 0 0'/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></body>"
+
+static const char model[] =
+    "<mujoco><option gravity='0 0 0'><flag constraint='disable' contact='disable'/></option>"
+    "<worldbody>" BODY BODY BODY BODY "</worldbody></mujoco>";
+
+typedef struct solver {
+  ethd__ode ode;
+  mjModel *model;
+  mjData *data;
+  double step;
+} solver;
+
+static const solver *working; /* its callback knows no user */
+
+static void passive(const mjModel *m, mjData *d) {
+  double y[ETHD__ODE_SIZE], rate[ETHD__ODE_SIZE];
+  (void)m;
+  memcpy(y, d->qpos, HALF * sizeof *y);
+  memcpy(y + HALF, d->qvel, HALF * sizeof *y);
+  working->ode.rate(working->ode.self, d->time, y, rate);
+  for (int i = 0; i < HALF; i++) d->qfrc_passive[i] += rate[HALF + i];
+}
+
+static void *create(const ethd__ode *ode, double step, mjtIntegrator integrator) {
+  static mjVFS files;
+  char message[256];
+  solver *s = calloc(1, sizeof *s);
+  if (!s) return NULL;
+  s->ode = *ode;
+  s->step = step;
+  mj_defaultVFS(&files);
+  mj_addBufferVFS(&files, "model.xml", model, sizeof model - 1);
+  s->model = mj_loadXML("model.xml", &files, message, sizeof message);
+  mj_deleteVFS(&files);
+  if (!s->model) abort();
+  s->model->opt.integrator = integrator;
+  s->data = mj_makeData(s->model);
+  return s;
+}
+
+static void *create_euler(const ethd__ode *ode, double step) { return create(ode, step, mjINT_EULER); }
+static void *create_rk4(const ethd__ode *ode, double step) { return create(ode, step, mjINT_RK4); }
+
+static void work(void *self, double t, double end, double *y) {
+  solver *s = self;
+  double steps = ceil((end - t) / s->step - 1e-9);
+  working = s;
+  mjcb_passive = passive;
+  s->model->opt.timestep = (end - t) / steps;
+  s->data->time = t;
+  memcpy(s->data->qpos, y, HALF * sizeof *y);
+  memcpy(s->data->qvel, y + HALF, HALF * sizeof *y);
+  for (; steps > 0; steps--) mj_step(s->model, s->data);
+  memcpy(y, s->data->qpos, HALF * sizeof *y);
+  memcpy(y + HALF, s->data->qvel, HALF * sizeof *y);
+}
+
+static void destroy(void *self) {
+  solver *s = self;
+  mj_deleteData(s->data);
+  mj_deleteModel(s->model);
+  free(s);
+}
+
+_Static_assert(mjVERSION_HEADER == 337, "the version is in the names");
+
+extern const ethd__peer_ode peer_ode[];
+const ethd__peer_ode peer_ode[] = {
+    {"MuJoCo 3.3.7 Euler", 1e-3, 1e-5, 4, 1, create_euler, work, destroy},
+    {"MuJoCo 3.3.7 RK4", 1e-3, 2e-5, 2, 1, create_rk4, work, destroy},
+    {0},
+};
