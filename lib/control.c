@@ -45,31 +45,46 @@ static void give_back(ethd_control *control, int64_t tick, const ethd__plan *fro
   atomic_store_explicit(&control->posted, 0, memory_order_release);
 }
 
+/* Periods add up to the clean time only within rounding. */
+static int clean_enough(const ethd_control *control) ETHD_RT {
+  double clean_time = control->plans[control->ruling].setup.limits.clean_time;
+  return ethd_control_clean(control) >= clean_time * (1 - 1e-9);
+}
+
 static int take_clear(ethd_control *control) ETHD_RT {
   if (!atomic_load_explicit(&control->clear, memory_order_relaxed)) return 0;
   atomic_store_explicit(&control->clear, 0, memory_order_relaxed);
-  if (!control->state.fault) return 0;
+  if (!control->state.fault || !clean_enough(control)) return 0;
   ethd__resume(&control->plans[control->ruling], &control->state);
   push(control, (int64_t)control->state.counters.ticks, ETHD_EVENT_CLEARED, 0, 0, NULL);
   return 1;
 }
 
+/* Clamps are frequent: an event when they last. */
+#define TOLD_WHEN_GRAVE (ETHD_FAULT_BIT(ETHD_FAULT_TORQUE) | ETHD_FAULT_BIT(ETHD_FAULT_TORQUE_RATE))
+
 static void report(ethd_control *control, int64_t tick, const ethd__failure *failure) ETHD_RT {
   ethd__state *s = &control->state;
-  if (failure->fault == ETHD_FAULT_NONE || s->fault) return;
-  s->counters.faults[failure->fault]++;
-  push(control, tick, ETHD_EVENT_FAULT, (int32_t)failure->fault, failure->value, NULL);
-  if (control->plans[control->ruling].setup.limits.latch) s->fault = failure->fault;
+  if (!ethd__rows_any(&s->met) && !ethd__rows_any(&s->before)) return;
+  ethd__rows begun = ethd__rows_begun(&control->plans[control->ruling], s);
+  for (int64_t left = begun.faults | begun.grave; left; left &= left - 1) {
+    int32_t row = __builtin_ctzll((uint64_t)left);
+    int64_t bit = left & -left;
+    double value = (s->met.grave & bit) != 0;
+    if (row == (int32_t)failure->fault) value = failure->value;
+    if (begun.faults & bit) s->counters.faults[row]++;
+    if (begun.grave & bit || !(bit & TOLD_WHEN_GRAVE)) push(control, tick, ETHD_EVENT_FAULT, row, value, NULL);
+  }
+  s->before = s->met;
 }
 
-static ethd_status finish(const ethd__failure *failure, const ethd_trace *out,
-                          ethd_command *command) ETHD_RT {
+static ethd_status finish(const ethd_trace *out, ethd_command *command) ETHD_RT {
   command->torque[0] = out->tau[0];
   command->torque[1] = out->tau[1];
   /* not while the guard still damps the ring: a device takes safe for zero torque */
-  command->safe = failure->fault != ETHD_FAULT_NONE && out->tau[0] == 0 && out->tau[1] == 0;
+  command->safe = out->fault != ETHD_FAULT_NONE && out->tau[0] == 0 && out->tau[1] == 0;
   command->reserved = 0;
-  return status_of[failure->fault];
+  return out->fault && !status_of[out->fault] ? ETHD_E_DEVICE : status_of[out->fault];
 }
 
 ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, ethd_command *command,
@@ -81,7 +96,7 @@ ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, et
   ethd__failure failure = ethd__tick(&e, &control->state, &control->scratch, sense, out);
   if (from) give_back(control, out->tick, from);
   report(control, out->tick, &failure);
-  return finish(&failure, out, command);
+  return finish(out, command);
 }
 
 ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense,
@@ -89,8 +104,8 @@ ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense
   ethd_trace out;
   memcpy(&control->scratch, &control->state, sizeof control->scratch);
   ethd__entry e = {&control->plans[control->ruling], NULL, 0};
-  ethd__failure failure = ethd__tick(&e, &control->scratch, NULL, sense, &out);
-  return finish(&failure, &out, command);
+  (void)ethd__tick(&e, &control->scratch, NULL, sense, &out);
+  return finish(&out, command);
 }
 
 void ethd_control_reset(ethd_control *control) {
@@ -103,6 +118,11 @@ void ethd_control_reset(ethd_control *control) {
 
 void ethd_control_clear(ethd_control *control) {
   atomic_store_explicit(&control->clear, 1, memory_order_relaxed);
+}
+
+double ethd_control_clean(const ethd_control *control) {
+  if (!__atomic_load_n(&control->state.fault, __ATOMIC_RELAXED)) return (double)INFINITY;
+  return (double)__atomic_load_n(&control->state.clean, __ATOMIC_RELAXED) * control->period;
 }
 
 void ethd_control_counters(const ethd_control *control, ethd_counters *out) {

@@ -3,6 +3,7 @@
      ethd__estimate   sense -> ring and finger            estimate.c
      ethd__contacts   ring, finger -> contacts, forces    contacts.c
      ethd__evaluate   both, then tracking -> torque       evaluate.c
+     ethd__judge      rows of the fault table -> reaction  judge.c
     guard, swap, safe state around them                  tick.c
      posts, events, latching                              control.c   */
 #ifndef ETHD__CONTROL_H
@@ -57,11 +58,19 @@ typedef struct ethd__place {
   int32_t reserved;
 } ethd__place;
 
+/* Rows of the fault table as bits, as a sense has them. */
+typedef struct ethd__rows {
+  int64_t faults, grave;
+} ethd__rows;
+
 #define ETHD__HISTORY 32 /* ticks of ring positions, for readings that are late */
 
 typedef struct ethd__state {
   ethd_counters counters;
-  int64_t fault; /* latched */
+  int64_t fault; /* latched first; [any] reads it and the next */
+  int64_t clean; /* periods since the last tick that called for a stop */
+  ethd__rows met, before; /* at this tick, at the last */
+  int64_t time_ns; /* of the last tick */
   int64_t blind; /* periods since the last tick that had a measurement */
   ethd_velocity_state velocity[2];
   ethd_filter_state filter;
@@ -82,7 +91,7 @@ typedef struct ethd__state {
   ethd_guard_state guard;
 } ethd__state;
 
-/* What a failing tick says. */
+/* What prevents a tick: a row of reaction ZERO with its value. */
 typedef struct ethd__failure {
   ethd_fault fault;
   double value;
@@ -108,9 +117,29 @@ typedef struct ethd__entry {
   int soft;               /* starts from zero torque */
 } ethd__entry;
 
-/* One tick with guard; scratch is needed at a swap. Returns the failure that it met or goes on with. [rt] */
+/* One tick with guard; scratch is needed at a swap. Returns what this tick failed with, which only names the
+   value of its row's event: out->fault says what it ended with. [rt] */
 ethd__failure ethd__tick(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
                          const ethd_sense *sense, ethd_trace *out) ETHD_RT;
+
+/* ---- rows of the fault table, all [rt] ---- */
+
+/* What the sense says. */
+void ethd__rows_take(ethd__rows *rows, const ethd_sense *sense) ETHD_RT;
+
+/* The first that takes the torque away; ETHD_FAULT_NONE. */
+ethd_fault ethd__rows_zero(const ethd__rows *rows) ETHD_RT;
+
+/* Tells the guard to stop the ring or let it go, where a row calls for it. */
+void ethd__rows_stop(const ethd__rows *rows, ethd_guard_state *guard) ETHD_RT;
+
+/* With what the guard did, all is met: latches. The fault that the tick ends with. */
+ethd_fault ethd__judge(const ethd__plan *plan, ethd__state *state, int64_t guard_bits, int64_t periods) ETHD_RT;
+
+/* Occurrences that begin at this tick; grave: that come to the worst at it. */
+ethd__rows ethd__rows_begun(const ethd__plan *plan, const ethd__state *state) ETHD_RT;
+
+static inline int ethd__rows_any(const ethd__rows *rows) ETHD_RT { return (rows->faults | rows->grave) != 0; }
 
 /* Forgets contacts, fade and fault; the estimators stay. [rt] */
 void ethd__resume(const ethd__plan *plan, ethd__state *state) ETHD_RT;

@@ -14,6 +14,7 @@ ethd_status ethd_control_create(const ethd_setup *setup, ethd_control **out, eth
     free(control);
     return status;
   }
+  control->period = setup->period;
   ethd_control_reset(control);
   *out = control;
   return ETHD_OK;
@@ -26,10 +27,8 @@ ethd_status ethd_control_post(ethd_control *control, const ethd_setup *setup, et
   ethd__plan *spare = &control->plans[1 - control->ruling];
   ethd_status status = ethd__plan_prepare(setup, spare, error);
   if (status < 0) return status;
-  if (setup->period != control->plans[control->ruling].setup.period)
-    return ethd__refuse(error, ETHD_E_ARGUMENT, "loop.period", setup->period,
-                             control->plans[control->ruling].setup.period,
-                             control->plans[control->ruling].setup.period);
+  if (setup->period != control->period)
+    return ethd__refuse(error, ETHD_E_ARGUMENT, "loop.period", setup->period, control->period, control->period);
   atomic_store_explicit(&control->posted, 1, memory_order_release);
   return ETHD_OK;
 }

@@ -22,6 +22,7 @@ int ethd__events_push(ethd__events *events, const ethd_event *event) ETHD_RT;
 unsigned ethd__events_room(ethd__events *events) ETHD_RT;
 
 struct ethd_control {
+  double period; /* of any plan */
   ethd__plan plans[2];
   int ruling; /* index of the plan that rules; written by [rt] before `posted` is cleared */
   atomic_int posted, clear;

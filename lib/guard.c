@@ -4,21 +4,6 @@
 #define STOP_DAMPING 20.0
 #define STILL 0.020
 
-ethd_limits ethd_limits_narrower(const ethd_limits *a, const ethd_limits *b) {
-  ethd_limits r;
-  r.torque = fmin(a->torque, b->torque);
-  r.torque_rate = fmin(a->torque_rate, b->torque_rate);
-  r.speed = fmin(a->speed, b->speed);
-  for (int i = 0; i < 4; i += 2) {
-    r.workspace[i] = fmax(a->workspace[i], b->workspace[i]);
-    r.workspace[i + 1] = fmin(a->workspace[i + 1], b->workspace[i + 1]);
-  }
-  r.step_time = fmin(a->step_time, b->step_time);
-  r.latch = a->latch || b->latch;
-  r.reserved = 0;
-  return r;
-}
-
 static int outside(const double w[4], ethd_vec x) ETHD_RT {
   return !(x.x >= w[0] && x.x <= w[1] && x.y >= w[2] && x.y <= w[3]);
 }
@@ -33,8 +18,8 @@ static int32_t breach(const ethd_limits *limits, ethd_vec x, ethd_vec v) ETHD_RT
 /* Damping while the ring moves, nothing once it stands: the arm is counterweighted. */
 static void stop(ethd_guard_state *s, const ethd_pose *pose, ethd_vec v, double torque[2]) ETHD_RT {
   if (s->stopping && ethd_vec_norm(v) < STILL) s->stopped = 1;
-  double b = s->stopped ? 0 : STOP_DAMPING;
-  ethd_vec tau = ethd_mat_mul_transposed(pose->j, ethd_vec_scale(-b, v));
+  ethd_vec tau = {0, 0};
+  if (!s->stopped) tau = ethd_mat_mul_transposed(pose->j, ethd_vec_scale(-STOP_DAMPING, v));
   torque[0] = tau.x;
   torque[1] = tau.y;
 }

@@ -18,19 +18,6 @@ static ethd_status within(const char *section, ethd_status status, ethd_error *e
   return status;
 }
 
-ethd_status ethd_limits_check(const ethd_limits *limits, ethd_error *error) {
-  const double inf = (double)INFINITY;
-  const double *w = limits->workspace;
-  TRY(ethd__check_number(error, "torque", limits->torque, 0, inf));
-  TRY(ethd__check_number(error, "torque_rate", limits->torque_rate, 0, inf));
-  TRY(ethd__check_number(error, "speed", limits->speed, 0, inf));
-  TRY(ethd__check_number(error, "step_time", limits->step_time, 1e-9, inf));
-  TRY(ethd__check_number(error, "workspace", w[1], -inf, inf));
-  TRY(ethd__check_number(error, "workspace", w[3], -inf, inf));
-  TRY(ethd__check_number(error, "workspace", w[0], -inf, w[1]));
-  return ethd__check_number(error, "workspace", w[2], -inf, w[3]);
-}
-
 #define D_BETA_MIN 1e-5 /* m: so far R_f,max stays from R_r */
 
 static ethd_status check_geometry(const ethd_setup *s, ethd_error *error) {

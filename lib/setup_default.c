@@ -3,11 +3,6 @@
 #include "control.h"
 #include "setup.h"
 
-ethd_limits ethd_limits_none(void) {
-  const double inf = (double)INFINITY;
-  return (ethd_limits){inf, inf, inf, {-inf, inf, -inf, inf}, inf, 1, 0};
-}
-
 double ethd_setup_range(const ethd_setup *s) {
   return 2 * s->ring_radius + (s->ring_radius - s->finger_radius_max);
 }

@@ -4,11 +4,10 @@
 
 #define GAP_MAX 1000000 /* periods: a longer gap is no longer a gap of a loop */
 
-/* Periods since the last tick that had a measurement; one without counts as missed. */
-static int64_t periods(const ethd__state *state, const ethd_sense *sense) ETHD_RT {
+/* Periods since the last step. */
+static int64_t periods(const ethd_sense *sense) ETHD_RT {
   int64_t missed = sense->missed > 0 ? sense->missed : 0;
-  int64_t n = state->blind + (missed < GAP_MAX ? missed : GAP_MAX) + 1;
-  return n < GAP_MAX ? n : GAP_MAX;
+  return missed < GAP_MAX ? missed + 1 : GAP_MAX;
 }
 
 /* ---- what forbids a tick ---- */
@@ -35,6 +34,16 @@ static int input_is_good(const ethd_sense *s, ethd__failure *f) ETHD_RT {
     if ((s->have & ((int64_t)ETHD_HAVE_BODY << i)) && !pose_is_good(s->bodies + 6 * i)) return 0;
   f->fault = ETHD_FAULT_NONE;
   return 1;
+}
+
+/* No two steps further apart than the limit, on either clock. */
+static int clock_is_good(const ethd__plan *plan, const ethd__state *state, const ethd_sense *s,
+                         int64_t n) ETHD_RT {
+  const double most = plan->setup.limits.gap;
+  if (!(most < (double)INFINITY)) return 1;
+  double way = (double)n * plan->setup.period;
+  double passed = 1e-9 * (double)(int64_t)((uint64_t)s->time_ns - (uint64_t)state->time_ns);
+  return way <= most && (state->counters.ticks == 0 || fabs(passed - way) <= most);
 }
 
 static int within_budget(const ethd__plan *plan, const ethd_sense *s, ethd__failure *f) ETHD_RT {
@@ -80,26 +89,21 @@ static int compute(const ethd__plan *plan, ethd__state *state, const ethd_sense 
   return 1;
 }
 
-static ethd_fault guard_fault(int64_t bits) ETHD_RT {
-  if (bits & ETHD_GUARD_SPEED) return ETHD_FAULT_SPEED;
-  if (bits & ETHD_GUARD_WORKSPACE) return ETHD_FAULT_WORKSPACE;
-  if (bits & ETHD_GUARD_FINITE) return ETHD_FAULT_FINITE;
-  return ETHD_FAULT_NONE;
-}
-
 /* The guard comes last. A fault takes the torque away at once, not at the rate's pace. */
 static void guard(const ethd__plan *plan, ethd__state *state, const ethd_pose *pose, double dt,
                   ethd_trace *out, ethd__failure *failure) ETHD_RT {
   ethd_vec v = {out->v[0], out->v[1]};
-  if (failure->fault != ETHD_FAULT_NONE) {
+  if (failure->fault != ETHD_FAULT_NONE) state->met.faults |= ETHD_FAULT_BIT(failure->fault);
+  if (failure->fault != ETHD_FAULT_NONE || state->fault) {
     memset(out->tau_raw, 0, sizeof out->tau_raw);
     memset(state->guard.last, 0, sizeof state->guard.last);
   }
   if (failure->fault == ETHD_FAULT_INPUT) return; /* nothing is known of the ring */
+  if (ethd__rows_any(&state->met)) ethd__rows_stop(&state->met, &state->guard);
   memcpy(out->tau, out->tau_raw, sizeof out->tau);
   out->guard = ethd_guard_step(&plan->setup.limits, &state->guard, pose, v, dt, out->tau);
-  if (failure->fault == ETHD_FAULT_NONE && out->guard)
-    *failure = (ethd__failure){guard_fault(out->guard), ethd_vec_norm(v)};
+  if (failure->fault == ETHD_FAULT_NONE && out->guard & ETHD_GUARD_SPEED)
+    *failure = (ethd__failure){ETHD_FAULT_SPEED, ethd_vec_norm(v)};
 }
 
 /* ---- swap ---- */
@@ -166,9 +170,8 @@ static void drive(const ethd__entry *e, ethd__state *state, ethd__state *scratch
                   const ethd_sense *sense, double dt, ethd_pose *pose, ethd_trace *out,
                   ethd__failure *failure) ETHD_RT {
   int blind = failure->fault == ETHD_FAULT_INPUT;
-  int idle = blind || state->fault || !within_budget(e->plan, sense, failure);
+  int idle = blind || state->fault || failure->fault != ETHD_FAULT_NONE;
   if (!blind) ethd__places_take(state, sense);
-  if (!blind && state->fault) failure->fault = (ethd_fault)state->fault;
   if (!idle && e->from && !e->soft) {
     swap(e, state, scratch, sense, dt, pose, out, failure);
     return;
@@ -183,19 +186,35 @@ static void drive(const ethd__entry *e, ethd__state *state, ethd__state *scratch
   }
 }
 
+/* Rows that are known before anything is worked out; those that take the torque away are the failure. */
+static ethd__failure look(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense,
+                          int64_t n) ETHD_RT {
+  ethd__failure failure = {ETHD_FAULT_NONE, 0};
+  state->met = (ethd__rows){0, 0};
+  if (sense->faults | sense->grave) ethd__rows_take(&state->met, sense);
+  if (!clock_is_good(plan, state, sense, n)) state->met.grave |= ETHD_FAULT_BIT(ETHD_FAULT_CLOCK);
+  state->time_ns = sense->time_ns;
+  if (!input_is_good(sense, &failure) || state->fault) return failure;
+  if (!within_budget(plan, sense, &failure) || !ethd__rows_any(&state->met)) return failure;
+  failure.fault = ethd__rows_zero(&state->met);
+  failure.value = (state->met.grave & ETHD_FAULT_BIT(failure.fault)) != 0;
+  return failure;
+}
+
 ethd__failure ethd__tick(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
                          const ethd_sense *sense, ethd_trace *out) {
-  ethd__failure failure = {ETHD_FAULT_NONE, 0};
   ethd_pose pose;
   memset(&pose, 0, sizeof pose);
-  int64_t gap = periods(state, sense);
+  int64_t n = periods(sense), gap = state->blind + n < GAP_MAX ? state->blind + n : GAP_MAX;
   double dt = (double)gap * e->plan->setup.period;
-  state->blind = input_is_good(sense, &failure) ? 0 : gap;
+  ethd__failure failure = look(e->plan, state, sense, n);
+  state->blind = failure.fault == ETHD_FAULT_INPUT ? gap : 0;
   blank(sense, out);
   out->swap = e->from != NULL;
   drive(e, state, scratch, sense, dt, &pose, out, &failure);
   guard(e->plan, state, &pose, dt, out, &failure);
-  out->fault = failure.fault;
+  if (out->guard || state->fault || ethd__rows_any(&state->met))
+    out->fault = ethd__judge(e->plan, state, out->guard, n);
   out->tick = (int64_t)state->counters.ticks++;
   return failure;
 }
@@ -211,7 +230,8 @@ static void heal(ethd__state *state) ETHD_RT {
 /* After an acknowledged fault: contacts begin anew. */
 void ethd__resume(const ethd__plan *plan, ethd__state *state) {
   heal(state);
-  state->fault = ETHD_FAULT_NONE;
+  __atomic_store_n(&state->fault, ETHD_FAULT_NONE, __ATOMIC_RELAXED);
+  state->before = (ethd__rows){0, 0}; /* what lasts is a new occurrence */
   state->guard.stopping = state->guard.stopped = 0;
   state->fade.elapsed = (double)INFINITY;
   for (int i = 0; i < ETHD_CONTACTS_MAX; i++) state->slots[i].used = 0;

@@ -44,6 +44,13 @@ says "$folder/v1.out" '^ok: t 0.001 s, enabled, offset, transparent' '^ok: trans
   '^ok: t .* enabled, abrupt, .* no fault$' '^ok: stopping$' '^faults  *1 x the ring is faster than its limit$' 'virtual'
 says "$folder/v1/events.csv" ',transition,smooth$' ',set,contact.k_e 2000$' ',clear,' ',start,enabled$' ',fault,' ',set,limits.speed 0$'
 
+# an acknowledgement counts after a clean time
+{ cat "$folder/device.ini"; echo 'clean_time = 0.5'; } >"$folder/clean.ini"
+printf 'wait 0.1\nset limits.speed 0.001\nwait 0.3\nset limits.speed 5\nwait 0.2\nack\nwait 0.4\nack\nwait 0.1\nenable\nstop\n' |
+  "$run" --virtual --duration 9 --config "$folder/clean.ini" --record "$folder/clean" >"$folder/clean.out" 2>&1 || fail "clean time: exit $?"
+says "$folder/clean.out" '^error: nothing has gone wrong for 0.2[0-9]* s, 0.5 s are required$' '^ok: acknowledged; ' '^ok: enabled$'
+replays "$folder/clean"
+
 # one answer a command
 [ "$(grep -cE '^(ok|error): ' "$folder/v1.out")" = 23 ] || fail "$(grep -cE '^(ok|error): ' "$folder/v1.out") answers to 23 commands"
 

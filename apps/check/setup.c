@@ -70,21 +70,20 @@ static void geometry(const ethd_config *c) {
 }
 
 static void limits(const ethd_config *c) {
-  const ethd_limits *l = &c->setup.limits;
-  static const char *const names[] = {"torque", "torque_rate", "speed", "", "step_time"};
-  static const char *const units[] = {"Nm", "Nm/s", "m/s", "", "s"};
-  const double values[] = {l->torque, l->torque_rate, l->speed, 0, l->step_time};
+  ethd_limits l = c->setup.limits;
   printf("\n[limits]\n");
-  for (int i = 0; i < 5; i++) {
-    if (!(c->limits_given >> i & 1))
-      continue;
-    else if (i == 3)
-      printf("workspace     = %.17g %.17g %.17g %.17g ; m, x_min x_max y_min y_max\n", l->workspace[0],
-             l->workspace[1], l->workspace[2], l->workspace[3]);
-    else
-      number(names[i], values[i], units[i], "");
+  for (int i = 0; i < ETHD_LIMITS; i++) {
+    const ethd_limit *row = &ethd_limit_rows[i];
+    if (!(c->limits_given >> i & 1)) continue;
+    printf("%-13s =", row->name);
+    for (uint32_t k = 0; k < row->count; k++) {
+      char text[32];
+      exact(ethd_limit_of(&l, row)[k], text);
+      printf(" %s", text);
+    }
+    printf(" ; %s, %s\n", row->unit, row->brief);
   }
-  if (c->limits_given != 31) printf("; the others are the device's own\n");
+  if (c->limits_given != (1u << ETHD_LIMITS) - 1) printf("; the others are the device's own\n");
 }
 
 static void surroundings(const ethd_config *c) {

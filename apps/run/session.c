@@ -78,25 +78,18 @@ static ethd_status open_device(ethd__session *s, char *message) {
 
 /* The device's limits, which the configuration doesn't know: a replay has no device. */
 static ethd_status record_limits(const ethd__session *s) {
-  const ethd_limits *a = &s->config->setup.limits, *b = &s->setup.limits;
-  const struct {
-    const char *name;
-    double was, is;
-  } one[] = {{"torque", a->torque, b->torque},
-             {"torque_rate", a->torque_rate, b->torque_rate},
-             {"speed", a->speed, b->speed},
-             {"step_time", a->step_time, b->step_time}};
-  char text[ETHD__DETAIL_MAX];
+  ethd_limits was = s->config->setup.limits, is = s->setup.limits;
   ethd_status status = ETHD_OK;
-  for (size_t i = 0; !status && i < sizeof one / sizeof *one; i++) {
-    if (one[i].is == one[i].was) continue;
-    snprintf(text, sizeof text, "limits.%s %.17g", one[i].name, one[i].is);
+  for (const ethd_limit *row = ethd_limit_rows; !status && row < ethd_limit_rows + ETHD_LIMITS; row++) {
+    const double *own = ethd_limit_of(&is, row);
+    char text[ETHD__DETAIL_MAX];
+    if (!memcmp(ethd_limit_of(&was, row), own, row->count * sizeof *own)) continue;
+    int n = snprintf(text, sizeof text, "limits.%s", row->name);
+    for (uint32_t i = 0; i < row->count; i++)
+      n += snprintf(text + n, sizeof text - (size_t)n, " %.17g", own[i]);
     status = ethd_recording_event(s->recorder.recording, "set", text);
   }
-  if (status || !memcmp(a->workspace, b->workspace, sizeof a->workspace)) return status;
-  const double *w = b->workspace;
-  snprintf(text, sizeof text, "limits.workspace %.17g %.17g %.17g %.17g", w[0], w[1], w[2], w[3]);
-  return ethd_recording_event(s->recorder.recording, "set", text);
+  return status;
 }
 
 static ethd_status open_recorder(ethd__session *s, const ethd__session_options *o, char *message) {

@@ -88,13 +88,6 @@ static ethd_status mass_key(const reading *r, const ethd_ini_key *k, double *out
   return ETHD_OK;
 }
 
-static uint32_t limit_bit(const char *key) {
-  static const char *const names[] = {"torque", "torque_rate", "speed", "workspace", "step_time"};
-  for (uint32_t i = 0; i < 5; i++)
-    if (strcmp(names[i], key) == 0) return 1u << i;
-  return 0;
-}
-
 /* ---- passes: what a key means depends on plugins, laws and preset, not on where it stands ---- */
 
 static ethd_status plugin_pass(const reading *r, const ethd_ini_key *k) {
@@ -121,7 +114,8 @@ static ethd_status key_pass(const reading *r, const ethd_ini_key *k) {
   if (strcmp(k->section, "device") == 0) return device_key(r, k);
   if (is(k, "arm", "mass_x")) return mass_key(r, k, &c->mass_x);
   if (is(k, "arm", "mass_y")) return mass_key(r, k, &c->mass_y);
-  if (strcmp(k->section, "limits") == 0) c->limits_given |= limit_bit(k->key);
+  int limit = ethd__config_limit(k->section, k->key);
+  if (limit >= 0) c->limits_given |= 1u << limit;
   return ethd__config_apply(&key, &c->setup);
 }
 

@@ -29,7 +29,7 @@ ethd_status ethd__key_found(const ethd__key *key, ethd_status status, const char
 
 /* ---- keys that stand in the setup itself ---- */
 
-typedef enum kind { NUMBER, WORKSPACE, MECHANISM, LAGS } kind;
+typedef enum kind { NUMBER, MECHANISM, LAGS } kind;
 
 typedef struct field {
   const char *section, *key;
@@ -50,11 +50,6 @@ static const field fields[] = {
     {"loop", "period", NUMBER, AT(period)},
     {"transition", "swap_time", NUMBER, AT(swap_time)},
     {"transition", "v_hysteresis", NUMBER, AT(v_hysteresis)},
-    {"limits", "torque", NUMBER, AT(limits.torque)},
-    {"limits", "torque_rate", NUMBER, AT(limits.torque_rate)},
-    {"limits", "speed", NUMBER, AT(limits.speed)},
-    {"limits", "workspace", WORKSPACE, AT(limits.workspace)},
-    {"limits", "step_time", NUMBER, AT(limits.step_time)},
 };
 
 #define FIELD_COUNT (sizeof fields / sizeof *fields)
@@ -68,17 +63,28 @@ static ethd_status read_number(const ethd__key *key, double *out) {
 }
 
 /* `count` numbers, at most ETHD_RAYS. */
-static ethd_status read_numbers(const ethd__key *key, int count, const char *allowed, double *out) {
+static ethd_status read_numbers(const ethd__key *key, uint32_t count, const char *allowed, double *out) {
   const char *p = key->value;
   double w[ETHD_RAYS];
-  for (int i = 0; i < count; i++) {
+  for (uint32_t i = 0; i < count; i++) {
     size_t n = strcspn(p += strspn(p, " \t"), " \t");
     if (!ethd__number(p, n, &w[i]) || isnan(w[i])) return ethd__key_found(key, ETHD_E_SYNTAX, allowed);
     p += n;
   }
   if (p[strspn(p, " \t")]) return ethd__key_found(key, ETHD_E_SYNTAX, allowed);
-  memcpy(out, w, (size_t)count * sizeof *w);
+  memcpy(out, w, count * sizeof *w);
   return ETHD_OK;
+}
+
+static ethd_status read_limit(const ethd_limit *limit, const ethd__key *key, ethd_limits *limits) {
+  double *out = ethd_limit_of(limits, limit);
+  return limit->count == 1 ? read_number(key, out) : read_numbers(key, limit->count, limit->brief, out);
+}
+
+int ethd__config_limit(const char *section, const char *key) {
+  for (int i = 0; strcmp(section, "limits") == 0 && i < ETHD_LIMITS; i++)
+    if (strcmp(ethd_limit_rows[i].name, key) == 0) return i;
+  return -1;
 }
 
 static ethd_status read_mechanism(const ethd__key *key, ethd_mechanism *out) {
@@ -94,7 +100,6 @@ static ethd_status read_mechanism(const ethd__key *key, ethd_mechanism *out) {
 static ethd_status read_field(const field *f, const ethd__key *key, ethd_setup *setup) {
   void *at = (char *)setup + f->offset;
   switch (f->kind) {
-    case WORKSPACE: return read_numbers(key, 4, "x_min x_max y_min y_max", at);
     case LAGS: return read_numbers(key, ETHD_RAYS, "a time in s for each of the 16 rays", at);
     case MECHANISM: return read_mechanism(key, at);
     default: return read_number(key, at);
@@ -166,6 +171,8 @@ ethd_status ethd__config_apply(const ethd__key *key, ethd_setup *setup) {
   for (size_t i = 0; i < FIELD_COUNT; i++)
     if (strcmp(fields[i].section, key->section) == 0 && strcmp(fields[i].key, key->key) == 0)
       return read_field(&fields[i], key, setup);
+  int limit = ethd__config_limit(key->section, key->key);
+  if (limit >= 0) return read_limit(&ethd_limit_rows[limit], key, &setup->limits);
   if (ethd__config_section(setup, key->section, &own)) {
     int i = ethd_params_find(own.params, own.count, key->key);
     if (i >= 0) return read_param(&own.params[i], key, &own.values[i]);
@@ -189,6 +196,7 @@ static void list_keys(const char *section, const ethd__section *own, char list[E
     if (strcmp(file_keys[i][0], section) == 0) add(list, file_keys[i][1]);
   for (size_t i = 0; i < FIELD_COUNT; i++)
     if (strcmp(fields[i].section, section) == 0) add(list, fields[i].key);
+  for (int i = 0; strcmp(section, "limits") == 0 && i < ETHD_LIMITS; i++) add(list, ethd_limit_rows[i].name);
   for (uint32_t i = 0; i < own->count; i++) add(list, own->params[i].name);
 }
 

@@ -34,6 +34,9 @@ ethd_status ethd__key_found(const ethd__key *key, ethd_status status, const char
    ethd_setup_check. */
 ethd_status ethd__config_apply(const ethd__key *key, ethd_setup *setup);
 
+/* Index in ethd_limit_rows, -1: the key is no limit. */
+int ethd__config_limit(const char *section, const char *key);
+
 /* The refusal of a key that its section has not under the laws of the setup. */
 ethd_status ethd__config_unknown(const ethd__key *key, ethd_setup *setup);
 

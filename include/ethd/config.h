@@ -19,7 +19,7 @@ typedef struct ethd_config {
   char *scene_text;         /* likewise; NULL without a scene */
   char *folder;             /* relative paths start here */
   double mass_x, mass_y;    /* kg at the ring, for stability checks; NaN: not given */
-  uint32_t limits_given;    /* bits: torque 1, torque_rate 2, speed 4, workspace 8, step_time 16 */
+  uint32_t limits_given;    /* bit i: of ethd_limit_rows[i] */
   char device[ETHD_DRIVERS_TEXT_MAX]; /* the drivers' ids as written, "sim" by default */
   ethd_setting *settings;   /* the other keys of [device] */
   uint32_t setting_count;

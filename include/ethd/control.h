@@ -168,7 +168,7 @@ typedef struct ethd_command {
 /* ---- events ---- */
 
 typedef enum ethd_event_kind {
-  ETHD_EVENT_FAULT = 1,  /* code: ethd_fault, value as said in fault.h */
+  ETHD_EVENT_FAULT = 1,  /* an occurrence. code: ethd_fault, value as said in fault.h */
   ETHD_EVENT_TAKEN = 2,  /* a posted setup rules from this tick; scene: the replaced one, if no longer used */
   ETHD_EVENT_CLEARED = 3, /* faults were acknowledged */
   ETHD_EVENT_RELEASED = 4 /* scene: a replaced body's, no longer used */
@@ -182,7 +182,7 @@ typedef struct ethd_event {
   const ethd_scene *scene; /* [main] may free it now; NULL: none */
 } ethd_event;
 
-/* Ticks since create or reset, by what happened. */
+/* Ticks since create or reset, by what happened; of faults the occurrences. */
 typedef struct ethd_counters {
   uint64_t ticks, queried, swaps, contacts_lost, readings_dropped, events_dropped;
   uint64_t faults[ETHD_FAULT_COUNT];
@@ -214,11 +214,17 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_poll(ethd_control *control, et
    step runs. [main] */
 ETHD_API void ethd_control_reset(ethd_control *control);
 
-/* Acknowledges a latched fault; taken at the next step, which starts softly from zero torque. [any] */
+/* Acknowledges a latched fault; taken at the next step, which starts softly from zero torque. Before
+   limits.clean_time is over it means nothing. [any] */
 ETHD_API void ethd_control_clear(ethd_control *control);
 
+/* s for which nothing has called for a stop since a fault was latched; INFINITY: none is latched.
+   [any, rt-safe] */
+ETHD_API double ethd_control_clean(const ethd_control *control) ETHD_RT;
+
 /* One tick. trace may be NULL. Always fills command; a negative status says that this tick's command is
-   the safe one and why: ETHD_E_NOT_FINITE, ETHD_E_LAW, ETHD_E_BUDGET, ETHD_E_RANGE (guard stop). [rt] */
+   the safe one and why: ETHD_E_NOT_FINITE, ETHD_E_LAW, ETHD_E_BUDGET, ETHD_E_RANGE (guard stop),
+   ETHD_E_DEVICE (any other row of the fault table). [rt] */
 ETHD_API ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense,
                                        ethd_command *command, ethd_trace *trace) ETHD_RT;
 

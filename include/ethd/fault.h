@@ -8,7 +8,20 @@
      ZERO     no torque, the device is disabled; latched until acknowledged
    A zero torque is a safe state because the arm is counterweighted. A row's first reaction meets it when it
    is seen; where it comes to the worst (often, long, twice: as the sentence says), the second. Rows of one
-   reaction have it twice. REFUSE rows are met before anything moves. */
+   reaction have it twice. REFUSE rows are met before anything moves; in a sense they are only counted.
+
+   Who sees a row sets its bit: device and loop in the sense, bit i of `faults` for row i, in every tick in
+   which it lasts; bit i of `grave` where the second reaction is due, with or without the other. A bit that
+   comes is one occurrence: counted, and told by one event. Ticks of one occurrence follow each other. The
+   controller's own rows are met in the same way.
+
+        faults  _____######______##____    two occurrences
+        grave   ________###___________     the second reaction; told by an event more
+
+   The controller does what the rows say. STOP and ZERO latch: the first of them (of one tick's, a ZERO
+   before a STOP, then the lowest row) stands in trace.fault until it is acknowledged, whatever else comes;
+   a ZERO ends a STOP that still damps. An acknowledgement counts once no row has called for STOP or ZERO
+   for limits.clean_time. Replaying the senses replays the faults. */
 #ifndef ETHD_FAULT_H
 #define ETHD_FAULT_H
 
@@ -29,7 +42,8 @@ typedef enum ethd_reaction {
 
 /* X(row, NAME, first reaction, second, bound, sentence); bound: how soon it is noticed, in words.
    Event values: FINITE kind of law; LAW 100 kind - status; BUDGET ns; SPEED m/s; INPUT which, ETHD_HAVE_*
-   or 0 for q; else 0. */
+   or 0 for q; else 1 where the second reaction is due, 0 where not. TORQUE and TORQUE_RATE are told only
+   when they last: over 0.1 s, over 20 ticks. */
 #define ETHD_FAULTS(X)                                                                                      \
   X(1, OVERRUN, COUNT, COUNT, "1 tick", "a tick was late")                                                  \
   X(2, OVERRUNS, STOP, STOP, "5 ms", "ticks are late too often, or one by more than 5 ms")                   \

@@ -8,19 +8,48 @@
 
 ETHD_BEGIN_DECLS
 
-/* Each may be INFINITY (workspace: -INFINITY, INFINITY): no limit. 0 is a limit of 0. */
+/* Each may be INFINITY (workspace: -INFINITY, INFINITY): no limit. 0 is a limit of 0. A limit that isn't
+   set costs nothing. */
 typedef struct ethd_limits {
   double torque;       /* Nm, each joint, >= 0 */
   double torque_rate;  /* Nm/s, each joint, >= 0 */
   double speed;        /* m/s of the ring, >= 0 */
   double workspace[4]; /* m: x_min, x_max, y_min, y_max of the ring's centre */
   double step_time;    /* s: time budget of one step, > 0 */
+  double gap;          /* s: longest time between two steps, and by which a clock may jump, > 0 */
+  double clean_time;   /* s without anything that stops before an acknowledgement counts, >= 0, finite;
+                          narrower is longer */
   int32_t latch;       /* 1: faults latch until cleared; 0: each tick is judged alone (replay) */
   int32_t reserved;
 } ethd_limits;
 
-/* No limits, latching. [any] */
+/* A row for each limit, by which they are read, written and compared. */
+typedef enum ethd_limit_kind {
+  ETHD_LIMIT_MOST,  /* the smaller, the narrower; INFINITY: none */
+  ETHD_LIMIT_LEAST, /* the larger, the narrower; min: none */
+  ETHD_LIMIT_RANGES /* pairs of a least and a most */
+} ethd_limit_kind;
+
+typedef struct ethd_limit {
+  const char *name, *unit;
+  uint32_t offset, count; /* in ethd_limits, bytes; doubles */
+  ethd_limit_kind kind;
+  double min, max; /* of the value */
+  const char *brief;
+} ethd_limit;
+
+#define ETHD_LIMITS 7
+ETHD_API extern const ethd_limit ethd_limit_rows[ETHD_LIMITS];
+
+static inline double *ethd_limit_of(ethd_limits *limits, const ethd_limit *row) ETHD_RT {
+  return (double *)(void *)((char *)limits + row->offset);
+}
+
+/* No limits, latching, no clean time. [any] */
 ETHD_API ethd_limits ethd_limits_none(void);
+
+/* What a driver of a real device begins with: gap 5 ms, clean_time 1 s; the rest as none. [any] */
+ETHD_API ethd_limits ethd_limits_device(void);
 
 /* ETHD_E_RANGE or ETHD_E_NOT_FINITE with the limit's name. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_limits_check(const ethd_limits *limits, ethd_error *error);
@@ -34,15 +63,16 @@ enum {
   ETHD_GUARD_TORQUE = 2,    /* clamped */
   ETHD_GUARD_RATE = 4,      /* slope limited */
   ETHD_GUARD_SPEED = 8,     /* ring too fast: damped until it is still, then zero, latched */
-  ETHD_GUARD_WORKSPACE = 16 /* ring out of its workspace: likewise */
+  ETHD_GUARD_WORKSPACE = 16, /* ring out of its workspace: likewise */
+  ETHD_GUARD_FAULT = 32      /* a row of the fault table stops the ring: likewise */
 };
-#define ETHD_GUARD_COUNT 5
+#define ETHD_GUARD_COUNT 6
 
 typedef struct ethd_guard_state {
   double last[2];      /* torque of the last tick, Nm */
   uint64_t counts[ETHD_GUARD_COUNT];
-  int32_t stopping;    /* bit of the guard that stops the ring, 0: none */
-  int32_t stopped;     /* 1: it stands still; zero torque until cleared */
+  int32_t stopping;    /* what stops the ring, ETHD_GUARD_* bits, 0: nothing; may be set from outside */
+  int32_t stopped;     /* 1: it stands still, or has to be let go: zero torque until cleared */
 } ethd_guard_state;
 
 /* Limits `torque` in place; returns the bits of what it did. Order: speed and workspace (replace the
