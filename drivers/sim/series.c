@@ -94,7 +94,8 @@ ETHD__INLINE two press(work *w, int k) {
 
 ETHD__INLINE two rub(work *w, int k) {
   if (k == 0) {
-    for (int j = 0; j < 2; j++) w->rub[0][j] = ethd_tanh(w->sharpness[j] * w->slip[0][j]);
+    two u = w->sharpness * w->slip[0];
+    w->rub[0] = (two){ethd_tanh(u[0]), ethd_tanh(u[1])};
     w->unlike[0] = 1 - w->rub[0] * w->rub[0];
     w->turning = ethd__sum(w->unlike[0]) > 0;
   } else if (!w->turning) {
