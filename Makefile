@@ -1,4 +1,4 @@
-# libethd. Targets: all demo check check-xenomai bench stress ci install uninstall clean.
+# libethd. Targets: all firmware demo check check-xenomai bench stress ci install uninstall clean.
 # Variables: CC CXX CFLAGS CPPFLAGS LDFLAGS PREFIX DESTDIR BUILD, and
 #   SAN=address|thread|undefined|address,undefined   a sanitizer build, in a tree of its own
 #   RT=posix|mercury|cobalt   plain Linux, or a core of Xenomai 3 (XENO_CONFIG=its xeno-config), likewise
@@ -21,7 +21,7 @@ LOOP_SIDE := drivers/loop/cycle.c drivers/loop/histogram.c drivers/servo/tick.c
 SHELL := /bin/sh
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: all demo check check-xenomai bench bench-quick stress ci install install-files uninstall clean tests FORCE
+.PHONY: all firmware demo check check-xenomai bench bench-quick stress ci install install-files uninstall clean tests FORCE
 .DEFAULT_GOAL := all
 
 comma := ,
@@ -96,13 +96,20 @@ LINK = $(CC) $(BASE) $(LDFLAGS)
 
 # ---- what there is --------------------------------------------------------------------------
 
+# Tests of the firmware need its compiler and its simulator; they say so where these are absent.
+ifneq ($(filter check tests,$(GOALS)),)
+SIMAVR := $(shell $(PKG_CONFIG) --cflags --libs simavr 2>/dev/null)
+RING_PARTS := $(shell echo '\#include <avr/io.h>' | $(or $(AVR_CC),avr-gcc) -mmcu=atmega328p -E - >/dev/null 2>&1 && \
+  echo $(B)/firmware/proximity_ring.hex) $(if $(SIMAVR),$(B)/tests/ring_board)
+endif
+
 LIB_C := $(wildcard lib/*.c)
 DRIVERS_C := $(wildcard drivers/*.c drivers/*/*.c)
 PROGRAMS_C := $(wildcard apps/ethd-*.c)
 APPS_C := $(wildcard apps/*/*.c)
 PLUGINS_C := $(wildcard tests/plugins/*.c)
 TESTS_C := $(filter-out $(PLUGINS_C),$(wildcard tests/*/test_*.c))
-HELPERS_C := $(filter-out $(PLUGINS_C) $(TESTS_C) tests/fuzz/%,$(wildcard tests/*/*.c))
+HELPERS_C := $(filter-out $(PLUGINS_C) $(TESTS_C) tests/fuzz/% tests/simavr/%,$(wildcard tests/*/*.c))
 HEADERS := $(wildcard include/ethd/*.h)
 SCRIPTS := $(sort $(shell find tests -name '*.sh' -perm -u+x 2>/dev/null))
 
@@ -119,7 +126,7 @@ ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a
 LIBRARIES := $(B)/libethd.a $(B)/libethd-drivers.a $(B)/libethd.so.0 $(B)/libethd.so
 
 all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
-tests: all $(UNIT) $(PLUGINS)
+tests: all $(UNIT) $(PLUGINS) $(RING_PARTS)
 
 # ---- build ----------------------------------------------------------------------------------
 
@@ -188,6 +195,30 @@ $(filter-out $(B)/share/ethd/plot/%,$(SHARE)): $(B)/share/ethd/%: apps/config/%
 	@mkdir -p $(@D) && cp $< $@
 $(filter $(B)/share/ethd/plot/%,$(SHARE)): $(B)/share/ethd/plot/%: apps/plot/%
 	@mkdir -p $(@D) && cp $< $@
+
+# ---- the proximity ring's firmware, and four of its boards in simavr ------------------------
+
+AVR_CC ?= avr-gcc
+AVR_OBJCOPY ?= avr-objcopy
+AVR_SIZE ?= avr-size
+AVR_FLAGS := -std=gnu11 -O2 -g -fno-inline-functions-called-once -mmcu=atmega328p $(WARN)
+FIRMWARE_FROM := $(wildcard drivers/proximity_ring/firmware/*.[ch]) drivers/proximity_ring/frame.h
+RING_BOARD_C := $(wildcard tests/simavr/*.c)
+
+firmware: $(B)/firmware/proximity_ring.hex
+	@$(AVR_SIZE) $(B)/firmware/proximity_ring.elf
+
+$(B)/firmware/proximity_ring.elf: $(FIRMWARE_FROM) Makefile
+	$(call say,AVR,$@)
+	@mkdir -p $(@D)
+	$(Q)$(AVR_CC) $(AVR_FLAGS) -o $@ $(filter %.c,$^)
+$(B)/firmware/proximity_ring.hex: $(B)/firmware/proximity_ring.elf
+	$(Q)$(AVR_OBJCOPY) -O ihex -R .eeprom $< $@
+
+$(B)/tests/ring_board: $(RING_BOARD_C) $(wildcard tests/simavr/*.h) $(B)/flags
+	$(call say,LINK,$@)
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(BASE) -D_GNU_SOURCE $(patsubst -I%,-isystem %,$(SIMAVR)) -o $@ $(RING_BOARD_C) $(patsubst -I%,,$(SIMAVR))
 
 # ---- tests ----------------------------------------------------------------------------------
 

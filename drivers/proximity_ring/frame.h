@@ -57,6 +57,6 @@
 
 /* When sensor k measures: see above. */
 #define ETHD__FRAME_START_US 80u
-#define ETHD__FRAME_SLOT_US 450u
+#define ETHD__FRAME_SLOT_US 430u
 
 #endif
