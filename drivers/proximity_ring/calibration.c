@@ -27,12 +27,15 @@ static double between(double x, double x0, double y0, double x1, double y1) ETHD
   return y0 + (y1 - y0) * ((x - x0) / (x1 - x0));
 }
 
-/* Held beyond the near end, carried on beyond the far one. */
+/* What points are joined in: a law with p = 2 is straight in it. */
+static double straight(double above) ETHD_RT { return 1 / sqrt(above); }
+
+/* Carried on beyond both ends. */
 static double look_up(const ethd__sensor *s, double above) ETHD_RT {
   uint32_t i = 1;
-  if (above >= s->above[0]) return s->at[0];
   while (i + 1 < s->points && s->above[i] > above) i++;
-  return between(above, s->above[i - 1], s->at[i - 1], s->above[i], s->at[i]);
+  double d = between(straight(above), straight(s->above[i - 1]), s->at[i - 1], straight(s->above[i]), s->at[i]);
+  return fmax(d, 0);
 }
 
 double ethd__sensor_distance(const ethd__sensor *s, uint16_t counts) {
@@ -46,5 +49,6 @@ double ethd__sensor_counts(const ethd__sensor *s, double distance) {
   uint32_t i = 1;
   if (!s->points) return s->dark + s->a / power(fmax(distance + s->d0, 1e-6), s->p);
   while (i + 1 < s->points && s->at[i] < distance) i++;
-  return s->dark + fmax(0, between(distance, s->at[i - 1], s->above[i - 1], s->at[i], s->above[i]));
+  double x = between(distance, s->at[i - 1], straight(s->above[i - 1]), s->at[i], straight(s->above[i]));
+  return s->dark + 1 / (fmax(x, 1e-4) * fmax(x, 1e-4));
 }

@@ -6,7 +6,8 @@
        |   *                               counts - dark = a / (d + d0)^p
        |       *        *        *         d = (a / (counts - dark))^(1/p) - d0
        |_ _ _ _ _ _ _ _ _ _ _ dark
-       +---------------------------- d   or a table of (counts - dark, d), straight between its points
+       +---------------------------- d   or a table of (counts - dark, d), its points joined by
+                                           straight lines in 1/sqrt(counts - dark)
 
    Levels, each with more numbers of its own than the one before:
      none     the law of a typical sensor, nothing measured but dark
