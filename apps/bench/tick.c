@@ -144,11 +144,6 @@ static double mean_of(const hot *h, int l, int f, int s) {
 
 /* ---- by part ---- */
 
-static void put_part(FILE *csv, const char *law, const char *name, double ns) {
-  ethd__tick_put(csv, (ethd__tick_row){"part", law, "1000", "rays"}, name, NAN, ns);
-  printf("    %-52s %6.1f\n", name, ns);
-}
-
 /* Differences between set-ups that have one thing more each, and what recording costs. */
 static void report_parts(FILE *csv, const hot *h) {
   const int f = ETHD__TAP_RAYS;
@@ -160,90 +155,23 @@ static void report_parts(FILE *csv, const hot *h) {
   ethd__bench_race(both, 2, 0.1);
   double record = both[0].ns - both[1].ns;
   printf("  by part, ns a tick, as differences (offset, rays, 1000 segments):\n");
-  put_part(csv, "offset", "record: into a ring instead of the stack", record);
-  put_part(csv, "offset", "kinematics; tracking; guard; the frame",
+  ethd__tick_part(csv, "offset", "record: into a ring instead of the stack", record);
+  ethd__tick_part(csv, "offset", "kinematics; tracking; guard; the frame",
            mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE) - record);
-  put_part(csv, "offset", "estimator: joint speeds",
+  ethd__tick_part(csv, "offset", "estimator: joint speeds",
            mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE) - mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE));
-  put_part(csv, "offset", "estimator: finger filter",
+  ethd__tick_part(csv, "offset", "estimator: finger filter",
            mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE) - mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE));
-  put_part(csv, "offset", "estimator: ring fit (300 Hz)",
+  ethd__tick_part(csv, "offset", "estimator: ring fit (300 Hz)",
            mean_of(h, OFFSET, f, NONE) - mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE));
   for (int l = 0; l < LAWS; l++) {
     char name[64];
     snprintf(name, sizeof name, "transition and contact at a wall: %s", laws[l]->law.id);
-    put_part(csv, laws[l]->law.id, name, mean_of(h, l, f, WALL) - mean_of(h, l, f, NONE));
+    ethd__tick_part(csv, laws[l]->law.id, name, mean_of(h, l, f, WALL) - mean_of(h, l, f, NONE));
   }
-  put_part(csv, "offset", "scene: 1000 segments instead of the wall",
+  ethd__tick_part(csv, "offset", "scene: 1000 segments instead of the wall",
            mean_of(h, OFFSET, f, THOUSAND) - mean_of(h, OFFSET, f, WALL));
   ethd__tapping_destroy(untraced);
-}
-
-typedef struct calls {
-  ethd_setup setup;
-  ethd_pose poses[ETHD__TAP_TICKS];
-  ethd_sense senses[ETHD__TAP_TICKS];
-} calls;
-
-static void call_pose(void *data) {
-  calls *c = data;
-  for (int k = 0; k < ETHD__TAP_TICKS; k++) ethd_arm_pose(&c->setup.arm, c->senses[k].q, &c->poses[k]);
-}
-
-static void call_tracking(void *data) {
-  const calls *c = data;
-  double tau[2] = {0, 0}, sum = 0, state[ETHD_STATE_MAX / 8] = {0};
-  for (int k = 0; k < ETHD__TAP_TICKS; k++) {
-    const double *j = c->poses[k].j_inv;
-    ethd_tracking_in in = {
-        {j[0] * 1e-3, j[2] * 1e-3}, {j[1] * 1e-2, j[3] * 1e-2}, {1e-3, 0}, {0, 1e-2}, 1e-3};
-    (void)!c->setup.tracking->step(c->setup.tracking_p, state, &in, tau);
-    sum += tau[0];
-  }
-  ethd__bench_sink = sum;
-}
-
-static void call_guard(void *data) {
-  const calls *c = data;
-  ethd_guard_state state;
-  double sum = 0;
-  memset(&state, 0, sizeof state);
-  for (int k = 0; k < ETHD__TAP_TICKS; k++) {
-    double tau[2] = {c->poses[k].j[0], c->poses[k].j[1]};
-    sum += ethd_guard_step(&c->setup.limits, &state, &c->poses[k], (ethd_vec){0.1, 0.2}, 1e-3, tau) +
-           tau[0];
-  }
-  ethd__bench_sink = sum;
-}
-
-/* A ring that goes into a wall and out again, braked on its way. */
-static void call_transition(void *data) {
-  const calls *c = data;
-  const ethd_transition_law *law = c->setup.transition;
-  double state[ETHD_STATE_MAX / 8] = {0}, sum = 0;
-  for (int k = 0; k < ETHD__TAP_TICKS; k++) {
-    double w = 2 * M_PI * k / ETHD__TAP_TICKS, d = 3e-3 * cos(w), v = 0.02 * sin(w);
-    ethd_contact contact = {{0.238, 0.25}, {-1, 0}, d, d, d - 2.5e-3, v, v, 2.5e-3, 1e-3, 0, 0, 0};
-    ethd_ruling r = {1, 0, 0, 0, 0, {0, 0}, d, 0, 0};
-    (void)!law->step(c->setup.transition_p, state, &contact, &r);
-    double force = 0, block[1] = {0};
-    (void)!c->setup.contact->step(c->setup.contact_p, block, d + r.offset, v, v > 0, &force);
-    sum += force + r.beta;
-  }
-  ethd__bench_sink = sum;
-}
-
-static void report_calls(FILE *csv, int quick) {
-  static calls c;
-  c.setup = ethd_setup_default();
-  ethd__tap_senses(&c.setup, ETHD__TAP_KNOWN, c.senses);
-  ethd__bench_entry entries[] = {
-      {"called alone: kinematics", call_pose, &c, ETHD__TAP_TICKS, 0},
-      {"called alone: tracking", call_tracking, &c, ETHD__TAP_TICKS, 0},
-      {"called alone: guard", call_guard, &c, ETHD__TAP_TICKS, 0},
-      {"called alone: transition and contact law; sin; cos", call_transition, &c, ETHD__TAP_TICKS, 0}};
-  ethd__bench_race(entries, 4, quick ? 0.05 : 0.5);
-  for (int i = 0; i < 4; i++) put_part(csv, "offset", entries[i].name, entries[i].ns);
 }
 
 /* ---- goals ---- */
@@ -299,7 +227,7 @@ static int run(const char *folder, int quick) {
     times[i] = ethd__tick_report(csv, h.rows[i], ns, count, &quiet);
   }
   report_parts(csv, &h);
-  report_calls(csv, quick);
+  ethd__tick_calls(csv, quick);
   ethd__tick_cold(csv, quick);
   ethd__tick_live(csv, quick);
   judge(&h, times);
