@@ -145,7 +145,9 @@ int64_t ethd__encoder_step(const ethd__encoder_def *def, ethd__encoder *e, const
   int64_t faults = 0;
   if (!e->started && s->raw <= def->ceiling) begin(def, e, s);
   int64_t step = shorter(s->raw, e->raw, def->ceiling);
-  if (is_jump(def, e, s, step)) return drop(def, e, s, grave);
+  if (e->paused && s->raw <= def->ceiling) e->time_ns = s->time_ns;
+  else if (is_jump(def, e, s, step)) return drop(def, e, s, grave);
+  e->paused = 0;
   e->step = step;
   e->step_ns = s->time_ns - e->time_ns;
   e->position = sum(e->position, step);
@@ -163,4 +165,10 @@ void ethd__encoder_restart(ethd__encoder *e) {
   int32_t misindexed = e->misindexed;
   memset(e, 0, sizeof *e);
   e->misindexed = misindexed;
+}
+
+void ethd__encoder_pause(ethd__encoder *e) {
+  e->paused = e->started;
+  e->edges = e->jumped = 0;
+  e->still = e->wrong = 0;
 }

@@ -56,8 +56,9 @@ typedef struct ethd__encoder {
   int32_t homed;      /* 1: the home mark has passed */
   int32_t misindexed; /* 1: index marks had a wrong distance; stays, and the next run is to be refused */
 
-  int32_t started, edges, marks;
+  int32_t started, paused, edges, marks;
   int32_t direction;  /* of the last edge */
+  int32_t reserved;
   uint64_t raw;
   int64_t home;       /* count of the angle `offset` */
   int64_t mark, first_mark;
@@ -83,6 +84,10 @@ ETHD_MUST_CHECK ethd_status ethd__encoder_check(const ethd__encoder_def *def, do
 
 /* Forgets where it was, but not that it was misindexed. */
 void ethd__encoder_restart(ethd__encoder *encoder) ETHD_RT;
+
+/* Time has passed unseen, or another clock counts: the next sample is no jump, wherever it is within half of the
+   ceiling; position and home stay. */
+void ethd__encoder_pause(ethd__encoder *encoder) ETHD_RT;
 
 /* One sample, newer than the last. torque: Nm at the joint since that one, NAN if it isn't known.
    Returns ETHD_FAULT_BIT of ENCODER_JUMP, ENCODER_FROZEN, ENCODER_REVERSED, INDEX as they are seen in this

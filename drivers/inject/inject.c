@@ -248,6 +248,13 @@ static uint32_t inject_figures(const void *device, ethd_figure *out, uint32_t ma
   return n;
 }
 
+/* That it does wrong, before what the other one says. */
+static const char *inject_remark(const void *device, uint32_t i) {
+  const inject *in = device;
+  if (i == 0) return "faults are injected: this is no run to trust";
+  return in->driver->remark ? in->driver->remark(in->device, i - 1) : NULL;
+}
+
 const ethd_driver ethd__driver_inject = {
     .size = sizeof(ethd_driver),
     .abi = ETHD_DRIVER_ABI,
@@ -263,4 +270,5 @@ const ethd_driver ethd__driver_inject = {
     .close = inject_close,
     .limits = inject_limits,
     .figures = inject_figures,
+    .remark = inject_remark,
 };

@@ -1,0 +1,95 @@
+/* Two encoders behind the kernel's counters (linux/counter.h), one for each joint.
+
+     /sys/bus/counter/devices/counterN/countM/count      the count, read once a service
+                                              /ceiling   where it begins anew
+                                              /function  "quadrature x4": set, and read back
+     /dev/counterN   events with the kernel's instants: index marks; each edge, where speeds come from those
+
+       [device]
+       driver = servo, counter          the later driver's angles are the ones that count
+       counter.device = /dev/counter0
+       counter.ratio = 12
+
+   This driver was never run on hardware: the kernels at hand had no counter. It was tested with a stand-in
+   for the system calls below. A kernel's counter is slow or quick; here a thread reads it, never the loop. */
+#ifndef ETHD_ENCODER_COUNTER_H
+#define ETHD_ENCODER_COUNTER_H
+
+#include <stdbool.h>
+#include <sys/types.h>
+
+#include "encoder/unwrap.h"
+#include "ethd/driver.h"
+
+#define ETHD_COUNTER_TEXT_MAX 96 /* bytes of a path or a function's name, the closing 0 included */
+
+/* The system calls, as the kernel has them: failures are -1 and errno. */
+typedef struct ethd__counter_calls {
+  int (*open)(const char *path, int flags);
+  int (*close)(int fd);
+  int (*ioctl)(int fd, unsigned long request, void *argument);
+  ssize_t (*read)(int fd, void *to, size_t size);             /* of the device: whole events */
+  ssize_t (*read_text)(int fd, char *to, size_t size);        /* of an attribute: from its beginning */
+  ssize_t (*write_text)(int fd, const char *from, size_t size);
+  void (*pause)(int64_t ns);
+} ethd__counter_calls;
+
+extern const ethd__counter_calls ethd__counter_kernel;
+extern const ethd__counter_calls *ethd__counter_calls_now; /* a test's own; taken when a device is opened */
+
+enum {
+  ETHD__COUNTER_COUNTS_PER_TURN,
+  ETHD__COUNTER_RATIO,
+  ETHD__COUNTER_SIGN1,
+  ETHD__COUNTER_SIGN2,
+  ETHD__COUNTER_OFFSET1,
+  ETHD__COUNTER_OFFSET2,
+  ETHD__COUNTER_WIDTH,
+  ETHD__COUNTER_HOME,
+  ETHD__COUNTER_HOME_TIME,
+  ETHD__COUNTER_STAMPS,
+  ETHD__COUNTER_SPEED_MAX,
+  ETHD__COUNTER_FREEZE_TORQUE,
+  ETHD__COUNTER_FREEZE_TIME,
+  ETHD__COUNTER_REVERSE_TORQUE,
+  ETHD__COUNTER_REVERSE_TIME,
+  ETHD__COUNTER_PARAMS
+};
+
+extern const ethd_param ethd__counter_params[ETHD__COUNTER_PARAMS];
+
+/* What the configuration says. */
+typedef struct ethd__counter_settings {
+  double p[ETHD__COUNTER_PARAMS];
+  char device[2][ETHD_COUNTER_TEXT_MAX]; /* of joint 1 and 2 */
+  char function[ETHD_COUNTER_TEXT_MAX];
+  uint8_t count[2], channel[2];          /* number of the count; of its index event */
+} ethd__counter_settings;
+
+ETHD_MUST_CHECK ethd_status ethd__counter_settings_read(const ethd_device_def *def, ethd__counter_settings *out,
+                                                        char message[ETHD_MESSAGE_MAX]);
+
+/* One count of the kernel's. */
+typedef struct ethd__kernel_count {
+  int device, count;  /* descriptors; the device may be another count's too */
+  bool shared;
+  uint64_t ceiling;
+} ethd__kernel_count;
+
+/* Opens joint j's count; `other`: the one of the joint before, or NULL. *out is closed on failure. */
+ETHD_MUST_CHECK ethd_status ethd__kernel_count_open(const ethd__counter_calls *calls,
+                                                    const ethd__counter_settings *settings, int j,
+                                                    const ethd__kernel_count *other, ethd__kernel_count *out,
+                                                    char message[ETHD_MESSAGE_MAX]);
+void ethd__kernel_count_close(const ethd__counter_calls *calls, ethd__kernel_count *count);
+
+/* The count now; -1: it can't be read. */
+int ethd__kernel_count_read(const ethd__counter_calls *calls, const ethd__kernel_count *count, uint64_t *raw);
+
+/* Asks the device of joint j for its events; those of a shared device come from both at once. */
+ETHD_MUST_CHECK ethd_status ethd__kernel_count_watch(const ethd__counter_calls *calls,
+                                                     const ethd__counter_settings *settings, int j,
+                                                     const ethd__kernel_count *counts,
+                                                     char message[ETHD_MESSAGE_MAX]);
+
+#endif

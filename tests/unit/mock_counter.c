@@ -1,0 +1,101 @@
+#include "unit/mock_counter.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#define FIRST 1000 /* descriptor */
+
+mock_counter mock;
+
+static int fail(int reason) { return errno = reason, -1; }
+static const char *path_of(int fd) { return mock.opened[fd - FIRST]; }
+static int ends(const char *path, const char *end) {
+  size_t n = strlen(path), m = strlen(end);
+  return n >= m && !strcmp(path + n - m, end);
+}
+
+static int mock_open(const char *path, int flags) {
+  (void)flags;
+  if (ends(path, "/ceiling") && !mock.ceiling[0]) return fail(ENOENT);
+  if (ends(path, "/enable") || strstr(path, "counter9")) return fail(ENOENT);
+  for (int i = 0; i < 16; i++)
+    if (!mock.opened[i][0]) {
+      snprintf(mock.opened[i], sizeof mock.opened[i], "%s", path);
+      mock.open_files++;
+      return FIRST + i;
+    }
+  return fail(EMFILE);
+}
+
+static int mock_close(int fd) {
+  mock.opened[fd - FIRST][0] = 0;
+  mock.open_files--;
+  return 0;
+}
+
+static int mock_ioctl(int fd, unsigned long request, void *argument) {
+  (void)fd;
+  if (request == COUNTER_ADD_WATCH_IOCTL) {
+    const struct counter_watch *w = argument;
+    if (w->event == mock.refuse_event) return fail(EINVAL);
+    mock.watches[mock.watch_count++ % 8] = *w;
+  }
+  if (request == COUNTER_ENABLE_EVENTS_IOCTL) mock.enabled = 1;
+  if (request == COUNTER_DISABLE_EVENTS_IOCTL) mock.enabled = 0;
+  return 0;
+}
+
+static ssize_t mock_read(int fd, void *to, size_t size) {
+  (void)fd;
+  if (mock.gone) return fail(ENODEV);
+  uint32_t n = (uint32_t)(size / sizeof *mock.events);
+  if (n > mock.waiting) n = mock.waiting;
+  if (!n) return fail(EAGAIN);
+  memcpy(to, mock.events, n * sizeof *mock.events);
+  memmove(mock.events, mock.events + n, (mock.waiting - n) * sizeof *mock.events);
+  mock.waiting -= n;
+  return (ssize_t)(n * sizeof *mock.events);
+}
+
+static ssize_t mock_read_text(int fd, char *to, size_t size) {
+  const char *path = path_of(fd);
+  if (mock.gone) return fail(ENODEV);
+  if (ends(path, "/function")) return snprintf(to, size, "%s\n", mock.function);
+  if (ends(path, "/ceiling")) return snprintf(to, size, "%s\n", mock.ceiling);
+  return snprintf(to, size, "%" PRIu64 "\n", mock.count[strstr(path, "count1/") != NULL]);
+}
+
+static ssize_t mock_write_text(int fd, const char *from, size_t size) {
+  if (ends(path_of(fd), "/function") && !mock.deaf) snprintf(mock.function, sizeof mock.function, "%.*s", (int)size, from);
+  return (ssize_t)size;
+}
+
+static void mock_pause(int64_t ns) {
+  mock.pauses++;
+  if (mock.on_pause) mock.on_pause(ns);
+}
+
+static const ethd__counter_calls calls = {.open = mock_open,
+                                          .close = mock_close,
+                                          .ioctl = mock_ioctl,
+                                          .read = mock_read,
+                                          .read_text = mock_read_text,
+                                          .write_text = mock_write_text,
+                                          .pause = mock_pause};
+
+void mock_counter_install(void) {
+  mock = (mock_counter){.ceiling = "4294967295", .function = "quadrature x4", .refuse_event = -1};
+  ethd__counter_calls_now = &calls;
+}
+
+void mock_counter_event(uint8_t kind, int joint, uint64_t value, int64_t time_ns) {
+  if (mock.waiting == MOCK_EVENTS) return;
+  mock.events[mock.waiting++] = (struct counter_event){
+      .timestamp = (uint64_t)time_ns,
+      .value = value,
+      .watch = {.component = {COUNTER_COMPONENT_COUNT, COUNTER_SCOPE_COUNT, (uint8_t)joint, 0},
+                .event = kind,
+                .channel = (uint8_t)joint}};
+}

@@ -1,0 +1,34 @@
+/* Two counts of a kernel's counter, without the kernel: stands in for the driver's system calls. */
+#ifndef ETHD_TESTS_MOCK_COUNTER_H
+#define ETHD_TESTS_MOCK_COUNTER_H
+
+#include <linux/counter.h>
+
+#include "encoder/counter.h"
+
+#define MOCK_EVENTS 1024
+
+typedef struct mock_counter {
+  uint64_t count[2];
+  char ceiling[32], function[32]; /* empty: the attribute doesn't exist */
+  int deaf;                       /* 1: takes a function, and keeps the old one */
+  int gone;                       /* 1: every read fails */
+  int refuse_event;               /* this event can't be watched; -1: all can */
+  void (*on_pause)(int64_t ns);   /* NULL: nothing happens meanwhile */
+  struct counter_event events[MOCK_EVENTS];
+  uint32_t waiting;
+  struct counter_watch watches[8];
+  uint32_t watch_count;
+  int enabled, open_files, pauses;
+  char opened[16][160]; /* paths by descriptor, "" closed */
+} mock_counter;
+
+extern mock_counter mock;
+
+/* 32 bits, quadrature x4; opening a device anew takes its calls from here. */
+void mock_counter_install(void);
+
+/* An event as it would come from the kernel. */
+void mock_counter_event(uint8_t kind, int joint, uint64_t value, int64_t time_ns);
+
+#endif
