@@ -76,6 +76,8 @@ typedef struct ethd__state {
   ethd_filter_state filter;
   int64_t reading_ns;   /* stamp of the reading that was used last */
   double finger_radius; /* of the last fit, NaN: none */
+  double absent;        /* share of the tracking torque that has faded, for the finger isn't seen */
+  int64_t implausible;  /* readings in a row */
   struct {
     int64_t time_ns;
     ethd_vec x;
@@ -140,6 +142,18 @@ ethd_fault ethd__judge(const ethd__plan *plan, ethd__state *state, int64_t guard
 ethd__rows ethd__rows_begun(const ethd__plan *plan, const ethd__state *state) ETHD_RT;
 
 static inline int ethd__rows_any(const ethd__rows *rows) ETHD_RT { return (rows->faults | rows->grave) != 0; }
+
+/* ---- the finger's readings, all [rt] ---- */
+
+static inline int ethd__is_watched(const ethd__plan *plan) ETHD_RT {
+  return plan->setup.limits.finger_age < (double)INFINITY;
+}
+
+/* Once a tick, where it is watched: how old the last used reading is. */
+void ethd__finger_watch(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt) ETHD_RT;
+
+/* A reading has come; implausible ones aren't used. */
+void ethd__finger_doubt(ethd__state *state, int implausible) ETHD_RT;
 
 /* Forgets contacts, fade and fault; the estimators stay. [rt] */
 void ethd__resume(const ethd__plan *plan, ethd__state *state) ETHD_RT;

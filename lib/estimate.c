@@ -83,17 +83,28 @@ static int is_new(const ethd__state *state, const ethd_sense *sense) ETHD_RT {
          (state->filter.used == 0 || sense->sample_ns != state->reading_ns);
 }
 
+/* No: not used. The finger's centre can't be outside of the ring; what the filter gates out isn't plausible
+   either. */
+static int use(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, ethd_vec relative,
+               ethd_vec ring) ETHD_RT {
+  int watched = ethd__is_watched(plan), outside = watched && !(ethd_vec_norm(relative) <= plan->setup.ring_radius);
+  uint32_t gated = state->filter.gated;
+  ethd_vec x = ethd_vec_add(relative, reference(plan, state, sense, ring));
+  ethd_status status = outside ? ETHD_STALE
+                               : ethd_filter_update(&plan->filter, &state->filter, x,
+                                                    seconds(sense->sample_ns, sense->time_ns));
+  if (watched) ethd__finger_doubt(state, outside || state->filter.gated != gated);
+  return status == ETHD_OK;
+}
+
 static void correct(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense,
                     ethd_vec ring) ETHD_RT {
   ethd_vec relative;
-  int usable = is_new(state, sense) && reading(plan, state, sense, &relative);
-  if (!usable || ethd_filter_update(&plan->filter, &state->filter,
-                                    ethd_vec_add(relative, reference(plan, state, sense, ring)),
-                                    seconds(sense->sample_ns, sense->time_ns)) != ETHD_OK) {
+  if (is_new(state, sense) && reading(plan, state, sense, &relative) &&
+      use(plan, state, sense, relative, ring))
+    state->reading_ns = sense->sample_ns;
+  else
     state->counters.readings_dropped++;
-    return;
-  }
-  state->reading_ns = sense->sample_ns;
 }
 
 static void finger(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt,
@@ -109,6 +120,7 @@ static void finger(const ethd__plan *plan, ethd__state *state, const ethd_sense 
   else if (state->filter.started)
     ethd_filter_predict(&plan->filter, &state->filter, dt);
   if (sense->have & (ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS)) correct(plan, state, sense, ring);
+  if (ethd__is_watched(plan)) ethd__finger_watch(plan, state, sense, dt);
   if (state->filter.started) {
     ethd_filter_output(&plan->filter, &state->filter, x, v);
   } else { /* never seen: nothing to follow */

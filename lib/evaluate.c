@@ -32,6 +32,7 @@ int ethd__evaluate(const ethd__plan *plan, ethd__state *state, const ethd_sense 
   ethd__estimate(plan, state, sense, dt, pose, out);
   if (!ethd__contacts(plan, state, dt, out, &shift, failure)) return 0;
   if (!track(plan, state, pose, shift, dt, out, tau_t, failure)) return 0;
+  if (state->absent > 0) out->beta *= 1 - state->absent;
   ethd_vec force = {out->fe[0] + out->fd[0], out->fe[1] + out->fd[1]};
   ethd_vec tau_f = ethd_mat_mul_transposed(pose->j, force);
   out->tau_raw[0] = out->beta * tau_t[0] + tau_f.x;

@@ -13,6 +13,8 @@ const ethd_limit ethd_limit_rows[ETHD_LIMITS] = {
     {"workspace", "m", AT(workspace), 4, ETHD_LIMIT_RANGES, -INF, INF, "x_min x_max y_min y_max"},
     {"step_time", "s", AT(step_time), 1, ETHD_LIMIT_MOST, 1e-9, INF, "budget of one step"},
     {"gap", "s", AT(gap), 1, ETHD_LIMIT_MOST, 1e-9, INF, "between two steps"},
+    {"finger_age", "s", AT(finger_age), 1, ETHD_LIMIT_MOST, 1e-4, INF, "of the reading that tracking needs"},
+    {"finger_lost", "s", AT(finger_lost), 1, ETHD_LIMIT_MOST, 1e-4, INF, "of the reading that moving needs"},
     {"clean_time", "s", AT(clean_time), 1, ETHD_LIMIT_LEAST, 0, 1e6, "before an acknowledgement"},
 };
 
@@ -38,6 +40,8 @@ ethd_limits ethd_limits_device(void) {
   ethd_limits limits = ethd_limits_none();
   limits.gap = 0.005;
   limits.clean_time = 1;
+  limits.finger_age = 0.010;
+  limits.finger_lost = 0.030;
   return limits;
 }
 

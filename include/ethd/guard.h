@@ -17,6 +17,8 @@ typedef struct ethd_limits {
   double workspace[4]; /* m: x_min, x_max, y_min, y_max of the ring's centre */
   double step_time;    /* s: time budget of one step, > 0 */
   double gap;          /* s: longest time between two steps, and by which a clock may jump, > 0 */
+  double finger_age;   /* s: older readings of the finger: tracking fades out; INFINITY: none is judged */
+  double finger_lost;  /* s: older ones: the ring is stopped */
   double clean_time;   /* s without anything that stops before an acknowledgement counts, >= 0, finite;
                           narrower is longer */
   int32_t latch;       /* 1: faults latch until cleared; 0: each tick is judged alone (replay) */
@@ -38,7 +40,7 @@ typedef struct ethd_limit {
   const char *brief;
 } ethd_limit;
 
-#define ETHD_LIMITS 7
+#define ETHD_LIMITS 9
 ETHD_API extern const ethd_limit ethd_limit_rows[ETHD_LIMITS];
 
 static inline double *ethd_limit_of(ethd_limits *limits, const ethd_limit *row) ETHD_RT {
@@ -48,7 +50,8 @@ static inline double *ethd_limit_of(ethd_limits *limits, const ethd_limit *row) 
 /* No limits, latching, no clean time. [any] */
 ETHD_API ethd_limits ethd_limits_none(void);
 
-/* What a driver of a real device begins with: gap 5 ms, clean_time 1 s; the rest as none. [any] */
+/* What a driver of a real device begins with: gap 5 ms, clean_time 1 s, finger_age 10 ms, finger_lost 30 ms;
+   the rest as none. [any] */
 ETHD_API ethd_limits ethd_limits_device(void);
 
 /* ETHD_E_RANGE or ETHD_E_NOT_FINITE with the limit's name. [main] */
