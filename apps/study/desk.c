@@ -77,8 +77,8 @@ static uint64_t tap_of(const ethd__turn *turn) {
   return (uint64_t)turn->block.training << 32 | (uint64_t)turn->block.speed << 24 | (turn->attempt - 1);
 }
 
-static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, char message[ETHD_MESSAGE_MAX]) {
-  ethd__desk *desk = self;
+ethd_status ethd__desk_prepare(ethd__desk *desk, const ethd__turn *turn, ethd__taken *out,
+                               char message[ETHD_MESSAGE_MAX]) {
   if (!desk->seated || desk->person != turn->person) seat(desk, turn->person);
   ethd_status status = take_movement(desk, turn, message);
   if (!status) status = open_stage(desk, turn->block.strategy, message);
@@ -88,7 +88,13 @@ static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, cha
                        .tap = tap_of(turn),
                        .speed = &desk->speeds[turn->block.speed],
                        .stage = &desk->stage};
-  return ethd__stage_run(&desk->stage, out->speed, out->tap, &out->result, message);
+  return ETHD_OK;
+}
+
+static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, char message[ETHD_MESSAGE_MAX]) {
+  ethd__desk *desk = self;
+  ethd_status status = ethd__desk_prepare(desk, turn, out, message);
+  return status ? status : ethd__stage_run(&desk->stage, out->speed, out->tap, &out->result, message);
 }
 
 ethd__source ethd__desk_source(ethd__desk *desk) { return (ethd__source){desk, true, tap}; }

@@ -33,22 +33,32 @@ static void tick(ethd_sim *sim, ethd_control *control, ethd_trace *trace, ethd_t
 
 static size_t ticks(double seconds, double period) { return (size_t)floor(seconds / period + 0.5); }
 
-ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
-                          const ethd__rule *rule, ethd__rows *rows) {
-  size_t last = ticks(ethd_path_end(&tap->path) + ETHD_TAP_LOST, rule->period);
-  ethd__approach approach = {0};
+ethd_status ethd__tapping_begin(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
+                                const ethd__rule *rule, ethd__rows *rows, ethd__tapping *out) {
+  *out = (ethd__tapping){.sim = sim, .control = control, .rule = rule, .rows = rows};
+  out->last = ticks(ethd_path_end(&tap->path) + ETHD_TAP_LOST, rule->period);
   rows->count = 0;
   ethd_control_reset(control);
-  ethd_status status = ethd_sim_start(sim, tap);
-  while (!status && rows->count <= last) {
-    status = make_room(rows);
-    if (status) break;
-    ethd_trace *trace = &rows->trace[rows->count];
-    ethd_truth *truth = &rows->truth[rows->count];
-    tick(sim, control, trace, truth);
-    if (ethd__approach_step(&approach, rule, trace, truth))
-      last = rows->count + ticks(ETHD_TAP_AFTER, rule->period);
-    rows->count++;
-  }
-  return status;
+  return ethd_sim_start(sim, tap);
+}
+
+ethd_status ethd__tapping_step(ethd__tapping *t) {
+  if (t->rows->count > t->last) return ETHD_EMPTY;
+  ethd_status status = make_room(t->rows);
+  if (status) return status;
+  ethd_trace *trace = &t->rows->trace[t->rows->count];
+  ethd_truth *truth = &t->rows->truth[t->rows->count];
+  tick(t->sim, t->control, trace, truth);
+  if (ethd__approach_step(&t->approach, t->rule, trace, truth))
+    t->last = t->rows->count + ticks(ETHD_TAP_AFTER, t->rule->period);
+  t->rows->count++;
+  return ETHD_OK;
+}
+
+ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
+                          const ethd__rule *rule, ethd__rows *rows) {
+  ethd__tapping tapping;
+  ethd_status status = ethd__tapping_begin(sim, control, tap, rule, rows, &tapping);
+  while (!status) status = ethd__tapping_step(&tapping);
+  return status < 0 ? status : ETHD_OK;
 }

@@ -13,6 +13,22 @@
 ETHD_MUST_CHECK ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
                                           const ethd__rule *rule, ethd__rows *rows);
 
+/* The same tap by tap's tick, for whoever leads the finger meanwhile. Rule and rows outlive it. */
+typedef struct ethd__tapping {
+  ethd_sim *sim;
+  ethd_control *control;
+  const ethd__rule *rule;
+  ethd__rows *rows;
+  ethd__approach approach;
+  size_t last; /* tick, as far as is known */
+} ethd__tapping;
+
+ETHD_MUST_CHECK ethd_status ethd__tapping_begin(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
+                                                const ethd__rule *rule, ethd__rows *rows, ethd__tapping *out);
+
+/* One tick; ETHD_EMPTY: the tap is over. */
+ETHD_MUST_CHECK ethd_status ethd__tapping_step(ethd__tapping *tapping);
+
 void ethd__rows_free(ethd__rows *rows);
 
 #endif

@@ -178,6 +178,14 @@ static void count_ticks(const ethd__rows *rows, ethd__result *out) {
   for (size_t i = 0; i < rows->count; i++) out->queried += rows->trace[i].queried != 0;
 }
 
+void ethd__stage_judge(const ethd__stage *stage, const ethd__rule *rule, const ethd_sim_tap *tap,
+                       ethd__result *out) {
+  ethd__metrics_of(&stage->rows, rule, &out->metrics);
+  out->commanded = tap->commanded;
+  out->finger_radius = tap->finger_radius;
+  count_ticks(&stage->rows, out);
+}
+
 ethd_status ethd__stage_run(ethd__stage *stage, const ethd__speed *speed, uint64_t tap, ethd__result *out,
                             char message[ETHD_MESSAGE_MAX]) {
   ethd_sim_tap circumstances;
@@ -188,9 +196,6 @@ ethd_status ethd__stage_run(ethd__stage *stage, const ethd__speed *speed, uint64
   if (status)
     return ethd__say(message, status, "tap %llu at %s: %s", (unsigned long long)tap, speed->word,
                      ethd_status_sentence(status));
-  ethd__metrics_of(&stage->rows, &rule, &out->metrics);
-  out->commanded = circumstances.commanded;
-  out->finger_radius = circumstances.finger_radius;
-  count_ticks(&stage->rows, out);
+  ethd__stage_judge(stage, &rule, &circumstances, out);
   return ETHD_OK;
 }
