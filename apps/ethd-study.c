@@ -101,17 +101,34 @@ static void check(ethd_status status, const char *message) {
 
 /* ---- a session ---- */
 
+/* Nothing is written before all of the input is known to be good. */
+static void check_study(const ethd__protocol *protocol, const ethd__loaded *loaded) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd__desk desk;
+  check(ethd__desk_open(protocol, loaded, arg.finger, &desk, message), message);
+  ethd__desk_close(&desk);
+  if (protocol->axis_count && !arg.simulate)
+    ethd__fail(ETHD_EXIT_INPUT, "%s: [grid]: a session has no grid; --simulate has", protocol->path);
+  if (arg.participant > protocol->participants)
+    ethd__fail(ETHD_EXIT_INPUT, "--participant: found %lld, 1 to %u are allowed", (long long)arg.participant,
+               protocol->participants);
+}
+
 static void make_folder(void) {
   char message[ETHD_MESSAGE_MAX], *journal = ethd__folder_path(arg.out, ETHD_STUDY_JOURNAL);
   ethd__protocol protocol;
+  ethd__loaded loaded;
   if (access(journal, F_OK) == 0)
     ethd__fail(ETHD_EXIT_INPUT, "%s: holds a session; --resume %s goes on with it", arg.out, arg.out);
   free(journal);
   char *study = arg.study ? strdup(arg.study) : ethd__data_path("paper.study");
   if (!study) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
   check(ethd__protocol_load(study, &protocol, message), message);
-  ethd_status status = ethd__folder_make(arg.out, &protocol, arg.finger, message);
+  ethd__folder_device(&protocol, &loaded);
+  check_study(&protocol, &loaded);
+  ethd_status status = ethd__folder_make(arg.out, &protocol, &loaded, arg.finger, message);
   if (status) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd__loaded_free(&loaded);
   ethd__protocol_free(&protocol);
   free(study);
 }
@@ -151,8 +168,6 @@ static int run_session(void) {
   check(ethd__folder_open(path, &folder, message), message);
   ethd__console console = {.protocol = &folder.protocol, .ask = arg.ask, .quiet = arg.quiet};
   check(ethd__desk_open(&folder.protocol, &folder.loaded, folder.finger, &desk, message), message);
-  if (folder.protocol.axis_count)
-    ethd__fail(ETHD_EXIT_INPUT, "%s: [grid]: a session has no grid; --simulate has", folder.protocol.path);
   check(ethd__sitting_open(&folder, &sitting, message), message);
   choose(&sitting, &folder.protocol);
   sitting.source = ethd__desk_source(&desk);

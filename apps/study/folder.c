@@ -45,7 +45,7 @@ static char *find(const ethd__protocol *p, const char *name) {
   return ethd__data_path(name);
 }
 
-static void load(const ethd__protocol *p, ethd__loaded *out) {
+void ethd__folder_device(const ethd__protocol *p, ethd__loaded *out) {
   char *config = p->config ? find(p, p->config) : NULL;
   bool letter = p->plant && !p->plant[strcspn(p->plant, "/.")] && strlen(p->plant) == 1;
   char *plant = p->plant && !letter ? find(p, p->plant) : NULL;
@@ -111,22 +111,16 @@ static ethd_status settle(const char *folder, char *message) {
   return failed ? ethd__say(message, ETHD_E_FILE, "%s: %s", folder, strerror(reason)) : ETHD_OK;
 }
 
-ethd_status ethd__folder_make(const char *folder, const ethd__protocol *protocol, const char *finger,
-                              char message[ETHD_MESSAGE_MAX]) {
-  ethd__loaded loaded;
-  load(protocol, &loaded);
-  if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-    ethd__loaded_free(&loaded);
+ethd_status ethd__folder_make(const char *folder, const ethd__protocol *protocol, const ethd__loaded *loaded,
+                              const char *finger, char message[ETHD_MESSAGE_MAX]) {
+  if (mkdir(folder, 0777) != 0 && errno != EEXIST)
     return ethd__say(message, ETHD_E_FILE, "%s: %s", folder, strerror(errno));
-  }
   ethd_status status = write_text(folder, ETHD_STUDY_FILE, protocol->text, message);
-  if (!status) status = write_device(folder, &loaded, message);
+  if (!status) status = write_device(folder, loaded, message);
   if (!status && finger) status = copy(finger, folder, MOVEMENT, message);
   if (!status) status = write_versions(folder, message);
   if (!status) status = write_text(folder, "README.md", ethd__dictionary, message);
-  if (!status) status = settle(folder, message);
-  ethd__loaded_free(&loaded);
-  return status;
+  return status ? status : settle(folder, message);
 }
 
 /* ---- opening ---- */

@@ -19,10 +19,13 @@
 #define ETHD_STUDY_EVENTS "events.csv"
 #define ETHD_STUDY_RECORDINGS "taps"
 
-/* Makes the folder, unless it is there, and its files from what the protocol names. finger: a recorded
-   movement for all hands, or NULL. Exit 2 on a bad configuration or plant. */
+/* The device that the protocol names. Exit 2 on a bad configuration or plant. */
+void ethd__folder_device(const ethd__protocol *protocol, ethd__loaded *out);
+
+/* Makes the folder, unless it is there, and its files. finger: a recorded movement for all hands, or NULL. */
 ETHD_MUST_CHECK ethd_status ethd__folder_make(const char *folder, const ethd__protocol *protocol,
-                                              const char *finger, char message[ETHD_MESSAGE_MAX]);
+                                              const ethd__loaded *loaded, const char *finger,
+                                              char message[ETHD_MESSAGE_MAX]);
 
 typedef struct ethd__folder {
   char *path;

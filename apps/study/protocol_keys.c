@@ -104,7 +104,7 @@ static ethd_status set_text(const ethd__entry *e, const key_row *row, void *at) 
 static bool plain(const char *word) {
   return *word && strlen(word) < 32 &&
          !word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+-")] &&
-         *word != '.' && *word != '-';
+         *word != '.';
 }
 
 static ethd_status set_name(const ethd__entry *e, const key_row *row, void *at) {

@@ -1,0 +1,203 @@
+#!/bin/sh
+# ethd-study: a session's data, order and replay; killed at any call, out of room, misused. No time is asserted.
+# ETHD_STUDY_KILLS: how many random moments (6; make stress has 50).
+set -u
+folder=$(mktemp -d)
+mounted=
+trap '[ -z "$mounted" ] || umount "$folder/small"; rm -rf "$folder"' EXIT
+study=$BUILD/bin/ethd-study
+replay="$BUILD/bin/ethd-replay --verify"
+kills=${ETHD_STUDY_KILLS:-6}
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+
+# ---- the paper's study: 3 x 3 x 4 ----
+"$study" --out "$folder/paper" >"$folder/out" 2>&1 || fail "the paper's study: $(tail -n 1 "$folder/out")"
+taps=$folder/paper/taps.csv
+header=participant,block,part,attempt,transition,speed,seed,tap,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m,t_rvo_s,t_of_s,t_seen_s,peak_force_n,finger_radius_m,commanded_mps
+[ "$(head -n 1 "$taps")" = "$header" ] || fail "the header: $(head -n 1 "$taps")"
+awk -F, 'NR > 1 && $3 == "test" && $9 { n[$1, $5, $6]++ } END { for (k in n) { cells++; bad += n[k] != 3 } exit cells != 12 || bad }' "$taps" ||
+  fail "not three valid taps in each of 12 cells"
+awk -F, 'NR > 1 && ($9 == 1) != ($10 == "ok")' "$taps" | grep . && fail "valid isn't what reason says"
+order=$(awk -F, 'NR > 1 && $2 != last { printf "%s%s-%s-%s", sep, $3, $5, $6; sep = " "; last = $2 }' "$taps")
+[ "$order" = "training-smooth-low test-offset-low test-smooth-low training-smooth-high test-offset-high test-smooth-high training-offset-low test-smooth-low test-offset-low training-offset-high test-smooth-high test-offset-high training-smooth-low test-offset-low test-smooth-low training-smooth-high test-offset-high test-smooth-high" ] ||
+  fail "the order is $order"
+awk -F, 'NR > 1 { if ($1 == id && $2 == block && $4 != attempt + 1) bad++; id = $1; block = $2; attempt = $4 } END { exit bad > 0 }' "$taps" ||
+  fail "attempts don't count up"
+[ "$(awk -F, 'NR > 1 && $5$6$7 == ""' "$folder/paper/survey.csv" | wc -l)" = 12 ] || fail "simulated people have answered"
+hash=$(cd "$folder/paper" && cat study.ini config.ini scene.scene device.plant | sha256sum | cut -d' ' -f1)
+grep -q "^hash $hash$" "$folder/paper/versions.txt" || fail "the hash isn't what versions.txt says"
+[ "$(($(wc -l <"$taps") - 1))" = "$(ls "$folder/paper/taps" | wc -l)" ] || fail "not a folder per tap"
+for tap in P01-02-001 P02-05-004 P03-06-002; do
+  $replay "$folder/paper/taps/$tap" >"$folder/out" 2>&1 && grep -q 'equal to the bit' "$folder/out" || fail "$tap: $(cat "$folder/out")"
+done
+grep -rl "$(id -un)\|$(hostname)" "$folder/paper" --include=*.csv --include=*.txt --include=*.md | grep . && [ "$(id -un)" != root ] && fail "not anonymous"
+
+# ---- a small one to kill: the same bytes as if nothing had been ----
+cat >"$folder/small.study" <<'END'
+[study]
+name = small
+participants = 2
+taps = 1
+attempts = 3
+training = 1
+survey = on
+END
+"$study" "$folder/small.study" --quiet --out "$folder/whole" >"$folder/out" 2>&1 || fail "the small study: $(cat "$folder/out")"
+on() { (become "$@"); }
+become() { # FOLDER: begins it or goes on
+  if [ -f "$1/journal" ]; then set -- --resume "$1"; else set -- "$folder/small.study" --out "$1"; fi
+  exec "$study" --quiet "$@"
+}
+same() { # FOLDER WHAT
+  for what in taps.csv survey.csv study.ini; do cmp "$folder/whole/$what" "$1/$what" || fail "$2: $what"; done
+  diff -r "$folder/whole/taps" "$1/taps" >"$folder/out" || fail "$2: $(head -n 3 "$folder/out")"
+}
+
+# At random moments; each session that comes to its end is compared, and another one begun.
+at=0 whole=0
+while [ $at -lt "$kills" ]; do
+  become "$folder/random" >/dev/null 2>"$folder/err" &
+  pid=$!
+  sleep "$(awk -v seed="$at$whole$$" 'BEGIN { srand(seed); print rand() * 0.3 }')"
+  kill -KILL $pid 2>/dev/null
+  wait $pid 2>/dev/null
+  if [ $? = 137 ]; then
+    at=$((at + 1))
+  else
+    whole=$((whole + 1))
+    same "$folder/random" "after $at random kills"
+    rm -r "$folder/random"
+  fi
+  grep . "$folder/err" && fail "after $at kills: $(cat "$folder/err")"
+done
+on "$folder/random" >"$folder/out" 2>&1 || fail "after $kills random kills: $(cat "$folder/out")"
+same "$folder/random" "after $kills random kills"
+
+# At every call that changes the disk, one after another; a write is torn in the middle.
+cat >"$folder/killer.c" <<'END'
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <unistd.h>
+static int due(void) {
+  static long at = -1, n;
+  if (at < 0) at = getenv("KILL_AT") ? atol(getenv("KILL_AT")) : 0;
+  return at && ++n == at;
+}
+#define NEXT(name) __typeof__(&name) next = (__typeof__(&name))dlsym(RTLD_NEXT, #name); if (due())
+ssize_t pwrite(int fd, const void *b, size_t n, off_t o) {
+  NEXT(pwrite) { next(fd, b, n / 2, o); raise(SIGKILL); }
+  return next(fd, b, n, o);
+}
+int rename(const char *a, const char *b) { NEXT(rename) raise(SIGKILL); return next(a, b); }
+int mkdir(const char *a, mode_t m);
+int mkdir(const char *a, mode_t m) { NEXT(mkdir) raise(SIGKILL); return next(a, m); }
+int fdatasync(int fd) { NEXT(fdatasync) raise(SIGKILL); return next(fd); }
+int unlinkat(int fd, const char *a, int f) { NEXT(unlinkat) raise(SIGKILL); return next(fd, a, f); }
+int ftruncate(int fd, off_t o) { NEXT(ftruncate) raise(SIGKILL); return next(fd, o); }
+END
+if [ -z "${SAN:-}" ] && ${CC:-cc} -shared -fPIC -o "$folder/killer.so" "$folder/killer.c" -ldl 2>"$folder/err"; then
+  # each run dies at its k-th call: every call dies once, those of going on too
+  call=0 dead=0
+  while call=$((call % 97 + 1)); LD_PRELOAD=$folder/killer.so KILL_AT=$call on "$folder/call" >"$folder/out" 2>&1; [ $? = 137 ]; do
+    dead=$((dead + 1))
+    [ $dead -gt 2000 ] && { fail "it doesn't come to an end"; break; }
+  done
+  grep . "$folder/out" | grep -v 'taps; ethd-report' && fail "killed $dead times: $(cat "$folder/out")"
+  same "$folder/call" "killed $dead times at a call"
+  [ $dead -gt 30 ] || fail "killed only $dead times"
+fi
+
+# ---- room: none left, more later ----
+full() { # WHAT: refused in one line, nothing torn; then there is room again
+  [ $code = 1 ] && [ "$(grep -c . "$folder/err")" = 1 ] && grep -q 'No space left\|File too large' "$folder/err" ||
+    fail "$1: exit $code: $(cat "$folder/err")"
+}
+printf '[study]\nparticipants = 2\ntaps = 1\nattempts = 3\ntraining = 1\nsurvey = on\nrecord = none\nname = small\n' >"$folder/short.study"
+(ulimit -f 4; "$study" "$folder/short.study" --quiet --out "$folder/quota" >/dev/null 2>"$folder/err"; exit $?)
+code=$?
+full "a quota"
+"$study" --quiet --resume "$folder/quota" >"$folder/out" 2>&1 || fail "after a quota: $(cat "$folder/out")"
+cmp "$folder/whole/taps.csv" "$folder/quota/taps.csv" || fail "a quota has changed the taps"
+mkdir "$folder/small"
+if mount -t tmpfs -o size=2m tmpfs "$folder/small" 2>"$folder/err"; then
+  mounted=1
+  "$study" "$folder/small.study" --quiet --out "$folder/small/s" >/dev/null 2>"$folder/err"
+  code=$?
+  full "a full disk"
+  mount -o remount,size=64m "$folder/small" && on "$folder/small/s" >"$folder/out" 2>&1 || fail "a disk with room again: $(cat "$folder/out")"
+  same "$folder/small/s" "a full disk"
+else
+  echo "no small file system here: $(cat "$folder/err")"
+fi
+
+# ---- two at once; damage; commands ----
+flock "$folder/whole/journal" "$study" --resume "$folder/whole" >"$folder/out" 2>"$folder/err"
+code=$?
+[ $code != 0 ] && grep -q 'another program is at work' "$folder/err" || fail "two at once: exit $code: $(cat "$folder/err")"
+cp -r "$folder/whole" "$folder/damaged"
+sed -i '5s/,/;/' "$folder/damaged/journal"
+"$study" --resume "$folder/damaged" >"$folder/out" 2>"$folder/err" && fail "a damaged journal"
+grep -q 'journal:5: a damaged line' "$folder/err" || fail "a damaged journal: $(cat "$folder/err")"
+printf 'taps = 2\n' >>"$folder/whole/study.ini"
+"$study" --resume "$folder/whole" >"$folder/out" 2>"$folder/err" && fail "another study file"
+[ "$(grep -c . "$folder/err")" = 1 ] || fail "another study file: $(cat "$folder/err")"
+printf 'note finger, cold\nbogus\npause\nnote in it\ngo\nabort\n' |
+  "$study" "$folder/small.study" --ask --out "$folder/asked" >"$folder/out" 2>&1 || fail "commands: exit $?: $(cat "$folder/out")"
+grep -q 'note WORDS, pause, go, abort, stop are allowed' "$folder/out" || fail "an unknown command"
+[ "$(cut -d, -f4- "$folder/asked/events.csv" | tr '\n' ' ')" = 'event,detail open,libethd 0.1.0 note,"finger, cold" pause, note,in it abort, over, ' ] ||
+  fail "events: $(cat "$folder/asked/events.csv")"
+grep -q '^P01' "$folder/asked/taps.csv" && fail "P01 went on after abort"
+grep -q '^P02' "$folder/asked/taps.csv" || fail "P02 wasn't asked"
+"$study" "$folder/small.study" --quiet --participant 2 --out "$folder/parts" >/dev/null && "$study" --quiet --participant 1 --resume "$folder/parts" >/dev/null ||
+  fail "participants apart"
+sort "$folder/whole/taps.csv" >"$folder/a"; sort "$folder/parts/taps.csv" | cmp - "$folder/a" || fail "participants apart have other taps"
+
+# ---- recorded fingers ----
+awk 'BEGIN { print "t_s,x_m,y_m"; for (i = 0; i < 120; i++) { t = i / 200; printf "%.4f,%.6f,0\n", t, 0.1 * cos(5 * t) } }' >"$folder/swing.csv"
+printf '[study]\nspeeds = 0.2\nparticipants = 1\nattempts = 4\nstrategies = offset\n' >"$folder/swing.study"
+"$study" "$folder/swing.study" --finger "$folder/swing.csv" --out "$folder/swing" >"$folder/out" 2>&1 || fail "a recorded finger: $(cat "$folder/out")"
+$replay "$folder/swing/taps/P01-02-001" >/dev/null || fail "a recorded finger's tap doesn't replay"
+rm "$folder/swing.csv"
+"$study" --resume "$folder/swing" >/dev/null || fail "a session needs a movement that isn't in it"
+
+# ---- refusals ----
+refuse() { # PATTERN TEXT [ARGUMENTS]
+  pattern=$1
+  printf "$2" >"$folder/bad.study"
+  shift 2
+  "$study" "$folder/bad.study" --out "$folder/bad" "$@" >"$folder/out" 2>"$folder/err" </dev/null
+  code=$?
+  [ $code = 2 ] && [ "$(wc -l <"$folder/err")" = 1 ] && grep -q -e "$pattern" "$folder/err" ||
+    fail "$pattern: exit $code: $(cat "$folder/err")"
+  [ ! -e "$folder/bad" ] || fail "$pattern: something was written"
+  rm -rf "$folder/bad"
+}
+refuse 'bad.study:2: study.tap: no key of this section; name, seed,' '[study]\ntap = 3\n'
+refuse 'bad.study:1: "walls": unknown section; study,' '[walls]\n'
+refuse 'bad.study:2: study.taps: found "0", a whole number from 1 to ' '[study]\ntaps = 0\n'
+refuse 'bad.study:2: study.taps: found "3.5"' '[study]\ntaps = 3.5\n'
+refuse 'bad.study:3: study.taps: stands twice' '[study]\ntaps = 3\ntaps = 3\n'
+refuse 'bad.study:2: study.attempts: 2 attempts ' '[study]\nattempts = 2\n'
+refuse 'bad.study:2: study.order: found "any", paper|random|latin' '[study]\norder = any\n'
+refuse 'bad.study:2: study.strategies: smooth stands there twice' '[study]\nstrategies = smooth,smooth\n'
+refuse 'bad.study:2: study.strategies: .*found "rough"' '[study]\nstrategies = rough\n'
+refuse 'bad.study:2: study.speeds: found "9"; low, high' '[study]\nspeeds = low,9\n'
+refuse 'bad.study:2: validity.graze: found "nan"' '[validity]\ngraze = nan\n'
+refuse 'bad.study:2: hand.motion: stands there without' '[hand]\nmotion = x\n'
+refuse 'hand.source: recorded needs' '[hand]\nsource = recorded\n'
+refuse 'no_such_folder: no folder' '[hand]\nsource = recorded\nmotion = no_such_folder\n'
+refuse 'bad.study:2: grid.contact.k: ' '[grid]\ncontact.k = 1\n' --simulate 2
+refuse 'bad.study:2: grid.contact.k_e: .*found -1' '[grid]\ncontact.k_e = 2500,-1\n' --simulate 2
+refuse 'a session has no grid' '[grid]\ncontact.k_e = 1000\n'
+refuse 'nothing.ini: No such' '[device]\nconfig = ./nothing.ini\n'
+refuse 'participant: found 9' '[study]\n' --participant 9
+"$study" "$folder/none.study" --out "$folder/bad" >"$folder/out" 2>"$folder/err" && fail "no study file"
+grep -q 'none.study: No such file' "$folder/err" || fail "no study file: $(cat "$folder/err")"
+"$study" --out "$folder/paper" >"$folder/out" 2>"$folder/err" && fail "a session over another"
+grep -q 'holds a session; --resume' "$folder/err" || fail "a session over another: $(cat "$folder/err")"
+
+[ $failed = 0 ] && echo "$kills random kills of $((whole + 1)) sessions, ${dead:-no} at calls"
+exit $failed
