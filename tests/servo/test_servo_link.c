@@ -1,0 +1,553 @@
+/* The traps of a Modbus, each with what falls into it (plain libmodbus, as its examples use it) and with the link.
+   Nothing here measures time: what is compared is what was answered, and in which order. */
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <modbus/modbus.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "servo/line_speed.h"
+#include "servo/link.h"
+#include "servo/mock.h"
+#include "servo/words.h"
+#include "unit/rig.h"
+
+#define RESPONSE 30000 /* us: long beside what a busy machine adds */
+#define CYCLES 200
+
+static ethd__servo_map map;
+static ethd__servo_link link_;
+static mock drive;
+static char message[ETHD_MESSAGE_MAX];
+static const double none[2] = {0, 0};
+
+static int64_t now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+static void open_mock(int is_rtu) {
+  mock_start(&drive, is_rtu);
+  ck_assert_msg(ethd__servo_map_load("apps/config/plant.map", "plant.map", &map, message) == ETHD_OK, "%s", message);
+  strcpy(map.port, drive.port);
+  map.transport = is_rtu ? ETHD__SERVO_RTU : ETHD__SERVO_TCP;
+  map.baud = 500000;
+  map.response = 1e-6 * RESPONSE;
+  map.drain = 4e-3;
+  map.back_off = 1e-3;
+}
+
+static void open_link(int is_rtu) {
+  open_mock(is_rtu);
+  ethd__servo_link_make(&map, &link_);
+  ck_assert_msg(ethd__servo_link_connect(&link_, now()) == ETHD_OK, "%s", link_.message);
+}
+
+static void close_link(void) {
+  ethd__servo_link_close(&link_);
+  mock_stop(&drive);
+}
+
+static ethd_status turn(void) { return ethd__servo_link_turn(&link_, now(), none); }
+
+static void turn_until(ethd__servo_state state) {
+  for (int i = 0; i < 2000 && link_.state != state; i++) {
+    (void)!turn();
+    usleep(200);
+  }
+  ck_assert_msg(link_.state == state, "state %d: %s", link_.state, link_.message);
+}
+
+/* libmodbus as its manual shows it. */
+static modbus_t *naive(int baud) {
+  modbus_t *m = drive.is_rtu ? modbus_new_rtu(drive.port, baud, 'N', 8, 1)
+                             : modbus_new_tcp("127.0.0.1", atoi(strchr(drive.port, ':') + 1));
+  modbus_set_slave(m, 1);
+  modbus_set_response_timeout(m, 0, RESPONSE);
+  ck_assert_int_eq(modbus_connect(m), 0);
+  return m;
+}
+
+static void naive_close(modbus_t *m) {
+  modbus_close(m);
+  modbus_free(m);
+}
+
+/* What the trap does today with plain libmodbus; another version may have mended it. */
+static void tell(const char *trap, int caught, const char *how) {
+  printf("%s: plain libmodbus %s%s\n", trap, caught ? "falls in: " : "does not fall in any more: ", how);
+}
+
+/* ---- requests that go wrong ---- */
+
+static mock_act late_once(void *user, uint64_t n, int function) {
+  (void)function;
+  return (mock_act){MOCK_LATE, 0, n == *(uint64_t *)user ? RESPONSE + RESPONSE / 3 : 300};
+}
+
+/* A cycle: write a counter, read it back. How many answers are another question's, taken for this one's. */
+static int naive_cycles(modbus_t *m, int *errors) {
+  int stale = 0;
+  for (uint16_t i = 1; i <= CYCLES; i++) {
+    uint16_t got = 0;
+    if (modbus_write_registers(m, MOCK_COUNTER, 1, &i) != 1 || modbus_read_registers(m, MOCK_COUNTER, 1, &got) != 1) {
+      modbus_flush(m);
+      ++*errors;
+    } else if (got != i) {
+      stale++;
+    }
+  }
+  return stale;
+}
+
+/* The same by the link: position1 holds the counter, which no echo watches. */
+static int link_cycles(int *errors) {
+  int stale = 0;
+  for (int i = 0; i < CYCLES; i++) {
+    drive.words[MOCK_POSITION1 + 1] = 0;
+    if (turn()) ++*errors;
+    else stale += (uint16_t)link_.raw[map.registers[map.roles[ETHD__SERVO_COUNTER]].echo] != link_.counter;
+  }
+  return stale;
+}
+
+/* Answers of one kind only, as a drive that is only read gives them: RTU has no transaction numbers. */
+START_TEST(test_late_rtu) {
+  uint64_t at = 20;
+  char how[80];
+  int errors = 0, stale = 0;
+  open_mock(1);
+  drive.act = late_once;
+  drive.user = &at;
+  modbus_t *m = naive(115200);
+  for (uint16_t i = 1; i <= CYCLES; i++) {
+    uint16_t got = 0;
+    drive.words[MOCK_POSITION1] = i;
+    if (modbus_read_registers(m, MOCK_POSITION1, 1, &got) != 1) modbus_flush(m), errors++;
+    else stale += got != i;
+  }
+  naive_close(m);
+  mock_stop(&drive);
+  snprintf(how, sizeof how, "%d of %d answers are stale, %d errors", stale, CYCLES, errors);
+  tell("a late answer, rtu", stale > 0, how);
+  open_link(1);
+  turn_until(ETHD__SERVO_IDENTIFIED);
+  drive.act = late_once;
+  at = drive.requests + 20;
+  drive.user = &at;
+  errors = 0;
+  ck_assert_int_eq(link_cycles(&errors), 0);
+  ck_assert_int_ge(errors, 1);
+  ck_assert_int_le(errors, 5);
+  close_link();
+}
+END_TEST
+
+START_TEST(test_late_tcp) {
+  uint64_t at = 40;
+  char how[80];
+  int errors = 0;
+  open_mock(0);
+  drive.act = late_once;
+  drive.user = &at;
+  modbus_t *m = naive(0);
+  int stale = naive_cycles(m, &errors);
+  naive_close(m);
+  mock_stop(&drive);
+  snprintf(how, sizeof how, "%d of %d cycles fail, %d stale", errors, CYCLES, stale);
+  tell("a late answer, tcp", errors > CYCLES / 2, how);
+  open_link(0);
+  turn_until(ETHD__SERVO_IDENTIFIED);
+  drive.act = late_once;
+  at = drive.requests + 40;
+  drive.user = &at;
+  errors = 0;
+  ck_assert_int_eq(link_cycles(&errors), 0);
+  ck_assert_int_ge(errors, 1);
+  ck_assert_int_le(errors, 5);
+  close_link();
+}
+END_TEST
+
+/* Even an answer that comes after the quiet, or is the drive's own old one, isn't taken. */
+static mock_act old_sometimes(void *user, uint64_t n, int function) {
+  (void)user;
+  return (mock_act){n % 7 == 3 && function == 3 ? MOCK_OLD : MOCK_ANSWER, 0, 0};
+}
+START_TEST(test_old_answers) {
+  int errors = 0;
+  open_link(0);
+  turn_until(ETHD__SERVO_IDENTIFIED);
+  drive.act = old_sometimes;
+  ck_assert_int_eq(link_cycles(&errors), 0);
+  ck_assert_uint_gt(link_.counts.stale, CYCLES / 20);
+  ck_assert_uint_eq(link_.rows[ETHD_FAULT_REPLY_STALE], link_.counts.stale);
+  ck_assert_uint_eq(link_.counts.lost, 0);
+  close_link();
+}
+END_TEST
+
+/* ---- lines ---- */
+
+START_TEST(test_baud) {
+  char how[80];
+  open_mock(1);
+  modbus_t *m = naive(250000);
+  unsigned speed = line_speed(modbus_get_socket(m));
+  snprintf(how, sizeof how, "asked for 250000 baud, connected, the line has %u", speed);
+  tell("a baud without a name", speed != 250000, how);
+  naive_close(m);
+  static const double rates[] = {9600, 250000, 400000, 500000, 2000000, 76923};
+  for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {
+    ethd__servo_bus bus;
+    map.baud = rates[i];
+    ck_assert_msg(ethd__servo_bus_open(&map, &bus, message) == ETHD_OK, "%s", message);
+    ck_assert_uint_eq(line_speed(bus.fd), (unsigned)rates[i]);
+    ethd__servo_bus_close(&bus);
+  }
+  strcpy(map.port, "/dev/null");
+  ethd__servo_bus bus;
+  ck_assert_int_lt(ethd__servo_bus_open(&map, &bus, message), 0);
+  ck_assert_ptr_nonnull(strstr(message, "/dev/null: "));
+  mock_stop(&drive);
+}
+END_TEST
+
+START_TEST(test_no_delay) {
+  int on = 0;
+  socklen_t size = sizeof on;
+  open_link(0);
+  ck_assert_int_eq(getsockopt(link_.bus.fd, IPPROTO_TCP, TCP_NODELAY, &on, &size), 0);
+  ck_assert_int_ne(on, 0);
+  close_link();
+}
+END_TEST
+
+/* A child that does this; 1: it was still at it when its patience ended, or died by a signal. */
+static int child(void (*work)(void)) {
+  int status = 0;
+  fflush(stdout);
+  pid_t pid = fork();
+  if (pid == 0) {
+    const struct rlimit no_core = {0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    freopen("/dev/null", "w", stderr);
+    work();
+    _exit(0);
+  }
+  for (int i = 0; i < 200; i++) {
+    if (waitpid(pid, &status, WNOHANG) == pid) return WIFSIGNALED(status);
+    usleep(10000);
+  }
+  kill(pid, SIGKILL);
+  waitpid(pid, &status, 0);
+  return 1;
+}
+
+static int gone_port;
+static void recover(void) {
+  uint16_t got;
+  close(drive.listener); /* the child's own copy of it */
+  modbus_t *m = modbus_new_tcp("127.0.0.1", gone_port);
+  modbus_set_error_recovery(m, (modbus_error_recovery_mode)(MODBUS_ERROR_RECOVERY_LINK | MODBUS_ERROR_RECOVERY_PROTOCOL));
+  modbus_set_response_timeout(m, 0, RESPONSE);
+  if (modbus_connect(m)) _exit(1);
+  kill(getppid(), SIGUSR1);
+  usleep(300000);
+  (void)!modbus_read_registers(m, 0, 1, &got);
+}
+
+static volatile sig_atomic_t connected;
+static void note(int number) {
+  (void)number;
+  connected = 1;
+}
+static void *unplug(void *unused) {
+  (void)unused;
+  while (!connected) usleep(1000);
+  mock_unplug(&drive);
+  return NULL;
+}
+
+/* The line is taken away, for good. */
+START_TEST(test_unplugged) {
+  pthread_t thread;
+  signal(SIGUSR1, note);
+  open_mock(0);
+  gone_port = atoi(strchr(drive.port, ':') + 1);
+  pthread_create(&thread, NULL, unplug, NULL);
+  int hangs = child(recover);
+  pthread_join(thread, NULL);
+  tell("unplugged, with its own recovery", hangs, "the call doesn't return within two seconds");
+  mock_plug(&drive);
+  ethd__servo_link_make(&map, &link_);
+  ck_assert_int_eq(ethd__servo_link_connect(&link_, now()), ETHD_OK);
+  turn_until(ETHD__SERVO_IDENTIFIED);
+  mock_unplug(&drive);
+  for (int i = 0; i < 50; i++) {
+    (void)!turn();
+    usleep(500);
+  }
+  ck_assert_int_eq(link_.state, ETHD__SERVO_DOWN);
+  ck_assert_uint_eq(link_.counts.lost, 1);
+  ck_assert_double_gt(link_.back_off, map.back_off);
+  mock_plug(&drive);
+  turn_until(ETHD__SERVO_IDENTIFIED);
+  ck_assert_uint_eq(link_.counts.connects, 2);
+  close_link();
+}
+END_TEST
+
+static mock_act halves(void *user, uint64_t n, int function) {
+  (void)user;
+  return (mock_act){n == 0 && function ? MOCK_HALF : MOCK_ANSWER, 0, 4 * RESPONSE};
+}
+
+/* Half an answer, the rest four response times later: whoever returns with it has waited that long. */
+START_TEST(test_byte_timeout) {
+  uint16_t got;
+  open_mock(1);
+  drive.act = halves;
+  modbus_t *m = naive(115200);
+  int count = modbus_read_registers(m, MOCK_POSITION1, 1, &got);
+  tell("its byte timeout", count == 1, "it waited four times the response time, and took the answer");
+  naive_close(m);
+  mock_stop(&drive);
+  open_mock(1);
+  ethd__servo_bus bus;
+  ck_assert_int_eq(ethd__servo_bus_open(&map, &bus, message), ETHD_OK);
+  drive.act = halves;
+  ck_assert_int_eq(ethd__servo_bus_read(&bus, ETHD__SERVO_HOLDING, MOCK_POSITION1, 1, &got), ETHD__SERVO_MISSING);
+  ethd__servo_bus_close(&bus);
+  mock_stop(&drive);
+}
+END_TEST
+
+static void fill_descriptors(int most) {
+  const struct rlimit many = {(rlim_t)most + 64, (rlim_t)most + 64};
+  setrlimit(RLIMIT_NOFILE, &many);
+  while (open("/dev/null", O_RDONLY) < most) continue;
+}
+
+static void naive_high(void) {
+  uint16_t got;
+  fill_descriptors(FD_SETSIZE);
+  modbus_t *m = modbus_new_tcp("127.0.0.1", gone_port);
+  if (modbus_connect(m) == 0) (void)!modbus_read_registers(m, 0, 1, &got);
+}
+
+static char refusal[ETHD_MESSAGE_MAX];
+static void link_high(void) {
+  fill_descriptors(FD_SETSIZE);
+  ethd__servo_bus bus;
+  ethd_status status = ethd__servo_bus_open(&map, &bus, refusal);
+  if (status == ETHD_E_DEVICE && strstr(refusal, "under 1024 is needed")) return;
+  abort();
+}
+
+START_TEST(test_descriptor) {
+  open_mock(0);
+  gone_port = atoi(strchr(drive.port, ':') + 1);
+  tell("a descriptor over 1023", child(naive_high), "it ends the process");
+  ck_assert_int_eq(child(link_high), 0);
+  mock_stop(&drive);
+}
+END_TEST
+
+/* Every number that libmodbus makes of two words, read by its other function. */
+START_TEST(test_floats) {
+  uint16_t words[2], own[2];
+  char how[80];
+  const ethd__servo_register r = {.type = ETHD__SERVO_F32, .order = ETHD__SERVO_HIGH_FIRST};
+  const float value = 0.1234567f;
+  modbus_set_float(value, words);
+  float back = modbus_get_float(words);
+  snprintf(how, sizeof how, "%.7g comes back as %.7g", (double)value, (double)back);
+  tell("floats", back != value, how);
+  ethd__servo_pack(&r, (double)value, own);
+  ck_assert_double_eq(ethd__servo_unpack(&r, own), (double)value);
+}
+END_TEST
+
+/* ---- exceptions ---- */
+
+static mock_act refuse_reads(void *user, uint64_t n, int function) {
+  (void)n;
+  return (mock_act){function == 3 ? MOCK_EXCEPTION : MOCK_ANSWER, *(int *)user, 0};
+}
+
+START_TEST(test_exceptions) {
+  static const struct {
+    int code;
+    ethd__servo_outcome outcome;
+    ethd_fault row;
+  } all[] = {{1, ETHD__SERVO_REFUSED, ETHD_FAULT_REPLY_BAD}, {2, ETHD__SERVO_REFUSED, ETHD_FAULT_REPLY_BAD},
+             {3, ETHD__SERVO_REFUSED, ETHD_FAULT_REPLY_BAD}, {4, ETHD__SERVO_FAILED, ETHD_FAULT_DRIVE},
+             {6, ETHD__SERVO_BUSY, ETHD_FAULT_REPLY_BAD},    {11, ETHD__SERVO_MISSING, ETHD_FAULT_REPLY_MISSING}};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+    uint16_t got;
+    int code = all[i].code;
+    open_link(0);
+    turn_until(ETHD__SERVO_IDENTIFIED);
+    drive.act = refuse_reads;
+    drive.user = &code;
+    ck_assert_int_eq(ethd__servo_bus_read(&link_.bus, ETHD__SERVO_HOLDING, 5, 1, &got), all[i].outcome);
+    ck_assert_int_eq(link_.bus.error, MODBUS_ENOBASE + code);
+    ck_assert_ptr_null(strstr(ethd__servo_bus_error(&link_.bus), "Unknown error"));
+    uint32_t before = link_.rows[all[i].row];
+    ck_assert_int_eq(turn(), ETHD_E_DEVICE);
+    ck_assert_uint_eq(link_.rows[all[i].row], before + 1);
+    /* a refusal is the map's fault, and grave at once */
+    ck_assert_int_eq(link_.bucket > ETHD__SERVO_BUCKET_LIMIT, all[i].outcome == ETHD__SERVO_REFUSED);
+    close_link();
+  }
+  tell("errors over 112345678", strstr(strerror(EMBXILADD), "nknown error") != NULL, strerror(EMBXILADD));
+}
+END_TEST
+
+static mock_act bad(void *user, uint64_t n, int function) {
+  (void)function;
+  return (mock_act){n % 3 == 0 ? *(mock_kind *)user : MOCK_ANSWER, 0, 0};
+}
+
+/* Damaged answers: none is taken, the link stays, and too many of them are told. */
+START_TEST(test_damaged) {
+  static const mock_kind kinds[] = {MOCK_GARBLE, MOCK_CUT, MOCK_DROP};
+  for (int is_rtu = 0; is_rtu < 2; is_rtu++)
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+      mock_kind kind = kinds[i];
+      int errors = 0, good = 0;
+      open_link(is_rtu);
+      turn_until(ETHD__SERVO_IDENTIFIED);
+      drive.act = bad;
+      drive.user = &kind;
+      for (int k = 0; k < 12; k++)
+        if (turn()) errors++;
+        else good += (uint16_t)link_.raw[map.registers[map.roles[ETHD__SERVO_COUNTER]].echo] == link_.counter;
+      ck_assert_int_ge(errors, 3);
+      ck_assert_int_eq(errors + good, 12);
+      ck_assert_uint_eq(link_.counts.lost, 0);
+      ck_assert_int_eq(link_.bucket > ETHD__SERVO_BUCKET_LIMIT, kind == MOCK_GARBLE && errors > 5);
+      close_link();
+    }
+}
+END_TEST
+
+static mock_act resets(void *user, uint64_t n, int function) {
+  (void)user, (void)function;
+  return (mock_act){n % 50 == 49 ? MOCK_RESET : MOCK_ANSWER, 0, 0};
+}
+
+START_TEST(test_reset) {
+  open_link(0);
+  turn_until(ETHD__SERVO_IDENTIFIED);
+  drive.act = resets;
+  for (int i = 0; i < 400; i++) {
+    ethd_status status = turn();
+    ck_assert_int_eq(link_.state == ETHD__SERVO_ENABLED, 0);
+    if (status) usleep(500);
+  }
+  ck_assert_uint_gt(link_.counts.lost, 3);
+  ck_assert_uint_eq(link_.rows[ETHD_FAULT_LINK_LOST], link_.counts.lost);
+  close_link();
+}
+END_TEST
+
+/* ---- sequences ---- */
+
+START_TEST(test_sequences) {
+  const double torque[2] = {0.3, -0.2};
+  open_link(0);
+  drive.words[MOCK_STATUS] = 1;
+  turn_until(ETHD__SERVO_IDENTIFIED);
+  ck_assert_int_eq(ethd__servo_link_turn(&link_, now(), torque), ETHD_OK);
+  ck_assert_uint_eq(drive.words[MOCK_TORQUE1], 0); /* not enabled: zero, whatever was asked for */
+  ethd__servo_link_begin(&link_, ETHD__SERVO_ENABLE, now());
+  turn_until(ETHD__SERVO_ENABLED);
+  ck_assert_uint_eq(drive.words[MOCK_STATUS], 2);
+  ck_assert_int_eq(ethd__servo_link_turn(&link_, now(), torque), ETHD_OK);
+  ck_assert_int_eq((int16_t)drive.words[MOCK_TORQUE1], (int)lrint(0.3 / 9.8 / 1e-4));
+  ck_assert_int_eq((int16_t)drive.words[MOCK_TORQUE2], (int)lrint(-0.2 / 9.8 / 1e-4));
+  ethd__servo_link_begin(&link_, ETHD__SERVO_DISABLE, now());
+  ck_assert_int_eq(link_.state, ETHD__SERVO_IDENTIFIED);
+  for (int i = 0; i < 50 && link_.sequence >= 0; i++) ck_assert_int_eq(ethd__servo_link_turn(&link_, now(), torque), ETHD_OK);
+  ck_assert_int_eq(link_.result, ETHD_OK);
+  ck_assert_uint_eq(drive.words[MOCK_STATUS], 0);
+  ck_assert_uint_eq(drive.words[MOCK_TORQUE1], 0);
+  close_link();
+}
+END_TEST
+
+/* A drive that doesn't come: the step's time-out says which and what it had. */
+START_TEST(test_step_timeout) {
+  int64_t clock = now();
+  open_link(0);
+  turn_until(ETHD__SERVO_IDENTIFIED);
+  ethd__servo_link_begin(&link_, ETHD__SERVO_ENABLE, clock);
+  for (int i = 0; i < 2; i++) (void)!ethd__servo_link_turn(&link_, clock, none);
+  for (int i = 0; i < 20 && link_.sequence >= 0; i++) {
+    drive.words[MOCK_CONTROL] = 0; /* forgets at once */
+    drive.words[MOCK_STATUS] = 0;
+    clock += 200000000;
+    (void)!ethd__servo_link_turn(&link_, clock, none);
+  }
+  ck_assert_int_eq(link_.result, ETHD_E_DEVICE);
+  ck_assert_msg(strstr(link_.message, "enable.step4: status is 0x0 after 0.5 s") != NULL, "%s", link_.message);
+  ck_assert_int_eq(link_.state, ETHD__SERVO_IDENTIFIED);
+  close_link();
+}
+END_TEST
+
+/* 0x17, input registers, registers in values: the same words go over the line. */
+START_TEST(test_other_questions) {
+  for (int k = 0; k < 3; k++) {
+    open_mock(k == 2);
+    if (k == 0) map.exchange = ETHD__SERVO_COMBINED;
+    if (k == 1) map.addressing = ETHD__SERVO_BY_VALUE;
+    if (k == 2) map.exchange = ETHD__SERVO_COMBINED;
+    ethd__servo_link_make(&map, &link_);
+    uint32_t questions = k == 1 ? 3 + link_.plan.read_count : 1;
+    ck_assert_int_eq(ethd__servo_link_connect(&link_, now()), ETHD_OK);
+    turn_until(ETHD__SERVO_IDENTIFIED);
+    uint64_t before = drive.requests;
+    drive.words[MOCK_POSITION1] = 1, drive.words[MOCK_POSITION1 + 1] = 2;
+    ck_assert_msg(turn() == ETHD_OK, "%s", link_.message);
+    ck_assert_uint_eq(drive.requests - before, questions);
+    ck_assert_double_eq(link_.raw[map.roles[ETHD__SERVO_POSITION1]], 65538);
+    close_link();
+  }
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("servo_link");
+  TCase *t = tcase_create("servo_link");
+  tcase_set_timeout(t, 120);
+  tcase_add_test(t, test_late_rtu);
+  tcase_add_test(t, test_late_tcp);
+  tcase_add_test(t, test_old_answers);
+  tcase_add_test(t, test_baud);
+  tcase_add_test(t, test_no_delay);
+  tcase_add_test(t, test_unplugged);
+  tcase_add_test(t, test_byte_timeout);
+  tcase_add_test(t, test_descriptor);
+  tcase_add_test(t, test_floats);
+  tcase_add_test(t, test_exceptions);
+  tcase_add_test(t, test_damaged);
+  tcase_add_test(t, test_reset);
+  tcase_add_test(t, test_sequences);
+  tcase_add_test(t, test_step_timeout);
+  tcase_add_test(t, test_other_questions);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}
