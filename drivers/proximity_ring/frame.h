@@ -8,7 +8,8 @@
    sampling began, in board 0's own clock, modulo 2^32; it starts near 0 too. counts[k] belongs to the sensor
    of ray k, at the angle 2 pi k / 16 round the ring. crc is CRC-16/MCRF4XX (polynomial 0x1021 reflected =
    0x8408, start 0xFFFF, no final inversion; of "123456789": 0x6F91) of the 40 bytes before it. On the wire the
-   42 bytes are COBS-coded (43 bytes, no zero among them) and ended by a zero: 44.
+   42 bytes are COBS-coded (43 bytes, no zero among them) and ended by a zero: 44. After a reset a zero of its own
+   comes first, so that half a frame from before doesn't cost the first one.
 
    Board b has the sensors 4 b .. 4 b + 3. They measure one after another, so that only four of the 16 shine at
    a time, a quarter turn apart: sensor k begins ETHD__FRAME_START_US + (k % 4) * ETHD__FRAME_SLOT_US after t_us

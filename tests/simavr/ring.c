@@ -160,10 +160,15 @@ void ring_run(ring *r, uint64_t until) {
   }
 }
 
+/* The levels that the board's straps give; simavr tells them once and forgets them at a reset. */
+static int straps(const ring_board *b) { return STRAPS & ~(b->number << 5 | (b->ring->slow ? 1 << 7 : 0)); }
+
 static void was_reset(avr_io_t *io) {
   ring_board *b = (ring_board *)((char *)io - offsetof(ring_board, io));
   b->ddr_b = b->ddr_c = b->ddr_d = 0;
   two_wire_reset(&b->ring->link, b->number);
+  level(b->avr, PIND, straps(b), true);
+  level(b->avr, PIND, START, !b->ring->started);
   lane_wires(b);
   link_wires(b->ring);
   start_wire(b->ring, b->avr->cycle);
@@ -191,13 +196,12 @@ static void connect(ring_board *b, uint32_t port, int irq, avr_irq_notify_t noti
   avr_irq_register_notify(line, notify, b);
 }
 
-static void strap(ring_board *b, bool slow) {
-  unsigned grounded = (unsigned)b->number << 5 | (slow ? 1u << 7 : 0);
-  avr_ioport_external_t straps = {.name = 'D', .mask = STRAPS, .value = STRAPS & ~grounded};
-  avr_ioctl(b->avr, AVR_IOCTL_IOPORT_SET_EXTERNAL('D'), &straps);
+static void strap(ring_board *b) {
+  avr_ioport_external_t pins = {.name = 'D', .mask = STRAPS, .value = (uint8_t)straps(b)};
+  avr_ioctl(b->avr, AVR_IOCTL_IOPORT_SET_EXTERNAL('D'), &pins);
 }
 
-static bool make_board(ring *r, int n, elf_firmware_t *firmware, bool slow) {
+static bool make_board(ring *r, int n, elf_firmware_t *firmware) {
   ring_board *b = &r->board[n];
   avr_t *avr = avr_make_mcu_by_name("atmega328p");
   if (!avr) return false;
@@ -214,7 +218,7 @@ static bool make_board(ring *r, int n, elf_firmware_t *firmware, bool slow) {
   connect(b, AVR_IOCTL_IOPORT_GETIRQ('B'), IOPORT_IRQ_DIRECTION_ALL, ddr_b);
   connect(b, AVR_IOCTL_IOPORT_GETIRQ('C'), IOPORT_IRQ_DIRECTION_ALL, ddr_c);
   connect(b, AVR_IOCTL_IOPORT_GETIRQ('D'), IOPORT_IRQ_DIRECTION_ALL, ddr_d);
-  strap(b, slow);
+  strap(b);
   uint32_t quiet = 0;
   avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &quiet);
   if (n == 0) connect(b, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT, transmitted);
@@ -225,8 +229,9 @@ ring *ring_create(const char *path, bool slow) {
   elf_firmware_t firmware = {0};
   ring *r = calloc(1, sizeof *r);
   bool made = r && !elf_read_firmware(path, &firmware);
+  if (r) r->slow = slow;
   if (!made) fprintf(stderr, "ring_board: %s: found no firmware that can be loaded; make firmware\n", path);
-  for (int n = 0; made && n < RING_BOARDS; n++) made = make_board(r, n, &firmware, slow);
+  for (int n = 0; made && n < RING_BOARDS; n++) made = make_board(r, n, &firmware);
   if (!made) {
     free(r);
     return NULL;

@@ -38,6 +38,7 @@ struct ring {
   two_wire link;
   bus_times times;
   uint64_t now; /* cycles */
+  bool slow;
   bool started; /* level of the start line: low */
   uint64_t start;
   ring_range period, begin[RING_LANES], last_byte;

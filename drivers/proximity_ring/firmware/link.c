@@ -11,6 +11,7 @@
 
 static uint8_t offered[2][LINK_SIZE];
 static volatile uint8_t newest;
+static volatile bool fetched;
 
 /* Polynomial x^8 + x^2 + x + 1, four bits at a time. */
 static uint8_t crc8(const uint8_t *bytes) {
@@ -31,14 +32,19 @@ void link_offer(const link_block *block) {
   bytes[0] = block->status;
   memcpy(bytes + 1, block->counts, sizeof block->counts);
   bytes[LINK_SIZE - 1] = crc8(bytes);
+  fetched = false;
   newest = !newest;
+  if (!(TWCR & (1 << TWEN))) TWCR = LISTEN; /* before the first block there is nobody here */
 }
+
+bool link_fetched(void) { return fetched; }
 
 /* A block is told whole, even if a newer one is offered meanwhile. What is written to us is ignored. */
 ISR(TWI_vect) {
   static const uint8_t *told;
   static uint8_t left;
   uint8_t status = TW_STATUS;
+  if (status == TW_ST_DATA_NACK && told == offered[newest] + LINK_SIZE) fetched = true;
   if (status == TW_ST_SLA_ACK) {
     told = offered[newest];
     left = LINK_SIZE;
@@ -120,10 +126,6 @@ link_result link_fetch(uint8_t board, link_block *out) {
 
 void link_open(uint8_t board) {
   TWBR = (F_CPU / 400000UL - 16) / 2;
-  if (board) {
-    TWAR = (uint8_t)((LINK_ADDRESS + board - 1) << 1);
-    TWCR = LISTEN;
-  } else {
-    clock_free();
-  }
+  if (board) TWAR = (uint8_t)((LINK_ADDRESS + board - 1) << 1);
+  else clock_free();
 }

@@ -27,6 +27,9 @@ void link_open(uint8_t board);
 /* Boards 1..3: from now on this block is given. */
 void link_offer(const link_block *block);
 
+/* Whether the last one was fetched. */
+bool link_fetched(void);
+
 /* Board 0. SILENT: no answer, or not a whole block. HELD: the bus didn't move for 100 us; it was clocked free as far
    as that goes, and it isn't worth asking the others in this period. */
 link_result link_fetch(uint8_t board, link_block *out);

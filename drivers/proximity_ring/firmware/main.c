@@ -38,9 +38,10 @@ static bool sample(uint16_t start, uint16_t counts[LANES]) {
 static void follow(link_block *block) {
   period now;
   if (!period_next(&now)) return;
+  if (link_fetched()) block->status &= LINK_COUNT; /* board 0 knows */
   if (sample(now.start, block->counts)) block->status |= LINK_RECOVERED;
+  block->status = (block->status & (uint8_t)~LINK_COUNT) | ((block->status + 1) & LINK_COUNT);
   link_offer(block);
-  block->status = (block->status + 1) & LINK_COUNT;
 }
 
 static void follow_for_ever(void) {

@@ -42,6 +42,7 @@ void period_open(bool leader) {
     TIMSK1 = 1 << OCIE1A;
   } else {
     TIMSK1 = 1 << TOIE1;
+    EIFR = 1 << INTF0; /* a start that was missed is no start */
     EIMSK = 1 << INT0;
   }
   set_sleep_mode(SLEEP_MODE_IDLE);

@@ -19,6 +19,7 @@ void uart_open(bool slow) {
   UCSR0C = (1 << UCSZ01) | (1 << UCSZ00);
   UBRR0 = slow ? 4 : 3;
   UCSR0B = 1 << TXEN0;
+  UDR0 = ETHD__FRAME_DELIMITER; /* ends what a reset may have cut short */
 }
 
 /* Each zero becomes the distance to the next one; 42 bytes need one byte more. */
