@@ -9,9 +9,9 @@
 
 /* ---- a controller that taps ---- */
 
-ethd__tapping *ethd__tapping_create(const ethd_transition_law *law, ethd__tap_wall wall, size_t segments,
+ethd__ticking *ethd__ticking_create(const ethd_transition_law *law, ethd__tap_wall wall, size_t segments,
                                     ethd__tap_finger how) {
-  ethd__tapping *t = aligned_alloc(64, (sizeof *t + 63) / 64 * 64);
+  ethd__ticking *t = aligned_alloc(64, (sizeof *t + 63) / 64 * 64);
   if (!t) ethd__fail(ETHD_EXIT_FAILED, "no memory");
   memset(t, 0, sizeof *t);
   ethd_setup setup = ethd_setup_default();
@@ -22,13 +22,13 @@ ethd__tapping *ethd__tapping_create(const ethd_transition_law *law, ethd__tap_wa
   return t;
 }
 
-void ethd__tapping_destroy(ethd__tapping *t) {
+void ethd__ticking_destroy(ethd__ticking *t) {
   ethd_control_destroy(t->control);
   ethd_scene_destroy(t->scene);
   free(t);
 }
 
-const ethd_sense *ethd__tapping_sense(ethd__tapping *t) {
+const ethd_sense *ethd__ticking_sense(ethd__ticking *t) {
   const int64_t tap = 1000000 * (int64_t)ETHD__TAP_TICKS;
   ethd_sense *s = &t->senses[t->next++ % ETHD__TAP_TICKS];
   s->time_ns += tap;
@@ -36,7 +36,7 @@ const ethd_sense *ethd__tapping_sense(ethd__tapping *t) {
   return s;
 }
 
-void ethd__tapping_step(ethd__tapping *t, const ethd_sense *sense) {
+void ethd__ticking_step(ethd__ticking *t, const ethd_sense *sense) {
   ethd_command command;
   ethd_trace *trace = t->traced ? &t->traces[t->next % ETHD__TICK_RING] : NULL;
   if (ethd_control_step(t->control, sense, &command, trace) < 0)
@@ -44,8 +44,8 @@ void ethd__tapping_step(ethd__tapping *t, const ethd_sense *sense) {
 }
 
 static void tap(void *data) {
-  ethd__tapping *t = data;
-  for (int k = 0; k < ETHD__TAP_TICKS; k++) ethd__tapping_step(t, ethd__tapping_sense(t));
+  ethd__ticking *t = data;
+  for (int k = 0; k < ETHD__TAP_TICKS; k++) ethd__ticking_step(t, ethd__ticking_sense(t));
 }
 
 /* ---- output ---- */
@@ -93,12 +93,12 @@ static const ethd_transition_law *const laws[] = {&ethd_transition_abrupt, &ethd
 enum { LAWS = sizeof laws / sizeof *laws, OFFSET = 2 };
 
 /* Steps timed one by one, the clock's cost taken off. */
-static void time_ticks(ethd__tapping *t, double *ns, size_t count) {
+static void time_ticks(ethd__ticking *t, double *ns, size_t count) {
   double cost = ethd__bench_clock_cost();
   for (size_t i = 0; i < count; i++) {
-    const ethd_sense *sense = ethd__tapping_sense(t);
+    const ethd_sense *sense = ethd__ticking_sense(t);
     int64_t start = ethd__bench_now();
-    ethd__tapping_step(t, sense);
+    ethd__ticking_step(t, sense);
     ns[i] = fmax(0, (double)(ethd__bench_now() - start) - cost);
   }
 }
@@ -132,8 +132,8 @@ static void gather(hot *h) {
         if (l != OFFSET && (f != ETHD__TAP_RAYS || s == MANY)) continue;
         h->at[l][f][s] = h->count;
         h->rows[h->count] = (ethd__tick_row){"hot", laws[l]->law.id, scenes[s].name, fingers[f]};
-        ethd__tapping *t =
-            ethd__tapping_create(laws[l], scenes[s].wall, scenes[s].segments, (ethd__tap_finger)f);
+        ethd__ticking *t =
+            ethd__ticking_create(laws[l], scenes[s].wall, scenes[s].segments, (ethd__tap_finger)f);
         h->entries[h->count++] = (ethd__bench_entry){"", tap, t, ETHD__TAP_TICKS, 0};
       }
 }
@@ -147,9 +147,9 @@ static double mean_of(const hot *h, int l, int f, int s) {
 /* Differences between set-ups that have one thing more each, and what recording costs. */
 static void report_parts(FILE *csv, const hot *h) {
   const int f = ETHD__TAP_RAYS;
-  ethd__tapping *t = h->entries[h->at[OFFSET][f][THOUSAND]].data;
+  ethd__ticking *t = h->entries[h->at[OFFSET][f][THOUSAND]].data;
   ethd__bench_entry both[2] = {{"", tap, t, ETHD__TAP_TICKS, 0}, {"", tap, NULL, ETHD__TAP_TICKS, 0}};
-  ethd__tapping *untraced = ethd__tapping_create(laws[OFFSET], ETHD__TAP_OUTLINE, 1000, f);
+  ethd__ticking *untraced = ethd__ticking_create(laws[OFFSET], ETHD__TAP_OUTLINE, 1000, f);
   untraced->traced = 0;
   both[1].data = untraced;
   ethd__bench_race(both, 2, 0.1);
@@ -171,7 +171,7 @@ static void report_parts(FILE *csv, const hot *h) {
   }
   ethd__tick_part(csv, "offset", "scene: 1000 segments instead of the wall",
            mean_of(h, OFFSET, f, THOUSAND) - mean_of(h, OFFSET, f, WALL));
-  ethd__tapping_destroy(untraced);
+  ethd__ticking_destroy(untraced);
 }
 
 /* ---- goals ---- */
@@ -235,7 +235,7 @@ static int run(const char *folder, int quick) {
   goal("hot mean from 100 to 100000 segments, times",
        mean_of(&h, OFFSET, ETHD__TAP_RAYS, MANY) / mean_of(&h, OFFSET, ETHD__TAP_RAYS, HUNDRED), 2.2,
        "");
-  for (size_t i = 0; i < h.count; i++) ethd__tapping_destroy(h.entries[i].data);
+  for (size_t i = 0; i < h.count; i++) ethd__ticking_destroy(h.entries[i].data);
   free(ns);
   return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
 }

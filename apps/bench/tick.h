@@ -8,21 +8,21 @@
 enum { ETHD__TICK_RING = 64 }; /* traces that are kept: a recorder's buffer, in the cache */
 
 /* A controller that taps for ever; `next` is its tick. */
-typedef struct ethd__tapping {
+typedef struct ethd__ticking {
   ethd_control *control;
   ethd_scene *scene;
   int traced, next;
   ethd_sense senses[ETHD__TAP_TICKS];
   ethd_trace traces[ETHD__TICK_RING];
-} ethd__tapping;
+} ethd__ticking;
 
-ethd__tapping *ethd__tapping_create(const ethd_transition_law *law, ethd__tap_wall wall, size_t segments,
+ethd__ticking *ethd__ticking_create(const ethd_transition_law *law, ethd__tap_wall wall, size_t segments,
                                     ethd__tap_finger how);
-void ethd__tapping_destroy(ethd__tapping *t);
+void ethd__ticking_destroy(ethd__ticking *t);
 
 /* The next tick's sense, then the tick. */
-const ethd_sense *ethd__tapping_sense(ethd__tapping *t);
-void ethd__tapping_step(ethd__tapping *t, const ethd_sense *sense);
+const ethd_sense *ethd__ticking_sense(ethd__ticking *t);
+void ethd__ticking_step(ethd__ticking *t, const ethd_sense *sense);
 
 /* Rows of tick.csv. */
 typedef struct ethd__tick_row {

@@ -38,18 +38,18 @@ void ethd__tick_cold(FILE *csv, int quick) {
   if (!buffer) ethd__fail(ETHD_EXIT_FAILED, "no memory");
   heading("cold: 32 MB written before the tick");
   for (int s = 0; s < 2; s++) {
-    ethd__tapping *t = ethd__tapping_create(
+    ethd__ticking *t = ethd__ticking_create(
         &ethd_transition_offset, s ? ETHD__TAP_OUTLINE : ETHD__TAP_PLANE, 1000, ETHD__TAP_RAYS);
     for (size_t i = 0; i < 5 * count; i++) {
       if (i % 5 == 0) evict(buffer);
-      const ethd_sense sense = *ethd__tapping_sense(t); /* a device has just written it */
+      const ethd_sense sense = *ethd__ticking_sense(t); /* a device has just written it */
       int64_t start = ethd__bench_now();
-      ethd__tapping_step(t, &sense);
+      ethd__ticking_step(t, &sense);
       if (i % 5 == 0) ns[i / 5] = fmax(0, (double)(ethd__bench_now() - start) - cost);
     }
     ethd__tick_report(csv, (ethd__tick_row){"cold", "offset", s ? "1000" : "wall", "rays"}, ns, count,
                       NULL);
-    ethd__tapping_destroy(t);
+    ethd__ticking_destroy(t);
   }
   free(buffer);
   free(ns);
@@ -61,7 +61,7 @@ void ethd__tick_cold(FILE *csv, int quick) {
 #define EARLY 100000   /* ns: so much before the tick an early loop wakes */
 
 typedef struct loop {
-  ethd__tapping *tapping;
+  ethd__ticking *tapping;
   int early; /* wake before the tick, rehearse, spin */
   double *ns;
   size_t count;
@@ -87,11 +87,11 @@ static void *live(void *data) {
   double cost = ethd__bench_clock_cost();
   int64_t next = ethd__bench_now() + 10 * (int64_t)PERIOD;
   for (size_t i = 0; i < l->count; i++, next += PERIOD) {
-    const ethd_sense sense = *ethd__tapping_sense(l->tapping);
+    const ethd_sense sense = *ethd__ticking_sense(l->tapping);
     sleep_until(l->early ? next - EARLY : next);
     if (l->early) warm(l, &sense, next);
     int64_t start = ethd__bench_now();
-    ethd__tapping_step(l->tapping, &sense);
+    ethd__ticking_step(l->tapping, &sense);
     int64_t end = ethd__bench_now();
     l->ns[i] = fmax(0, (double)(end - start) - cost);
     while (next + PERIOD < end) next += PERIOD; /* ticks that were missed are not made up for */
@@ -113,7 +113,7 @@ void ethd__tick_live(FILE *csv, int quick) {
   int locked = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
   for (int k = 0; k < (quick ? 1 : 3); k++)
     for (int early = 0; early < 2; early++) {
-      loop l = {ethd__tapping_create(laws[k], ETHD__TAP_OUTLINE, 1000, ETHD__TAP_RAYS), early, ns, count,
+      loop l = {ethd__ticking_create(laws[k], ETHD__TAP_OUTLINE, 1000, ETHD__TAP_RAYS), early, ns, count,
                 0};
       run_loop(&l);
       if (k == 0 && !early) {
@@ -126,7 +126,7 @@ void ethd__tick_live(FILE *csv, int quick) {
       ethd__tick_report(csv,
                         (ethd__tick_row){early ? "live early" : "live", laws[k]->law.id, "1000", "rays"},
                         ns, count, NULL);
-      ethd__tapping_destroy(l.tapping);
+      ethd__ticking_destroy(l.tapping);
     }
   if (locked) munlockall();
   free(ns);
