@@ -39,7 +39,7 @@ static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec c
   double mean = two_sum(sum) / n;
   out->centre = centre;
   out->radius = sqrt(square + mean);
-  out->residual = sqrt(fmax(0, two_sum(sum2) / n - mean * mean)) / (2 * out->radius);
+  out->residual = sqrt(fmax(0, two_sum(sum2) / n - mean * mean) / (square + mean)) / 2;
   out->used = points->used;
   out->reserved = 0;
 }

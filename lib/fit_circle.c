@@ -9,7 +9,8 @@
 
 #include "fit_methods.h"
 
-#define FLAT 1e-9 /* determinant over squared trace under which points count as collinear */
+#define SHORT 1e-4 /* of the squared radius: squared steps that leave 1/20000 of the radius */
+#define FLAT 1e-9  /* determinant over squared trace under which points count as collinear */
 
 typedef struct moments {
   double n, x, y, xx, xy, yy, zx, zy; /* z = |u|^2 */
@@ -80,11 +81,12 @@ int ethd__fit_kasa(const ethd__points *points, ethd_vec *centre) {
 }
 
 /* Gauss-Newton from the moments' origin: sum u u^T s = 1/2 sum (|u|^2 - R^2) u. */
-static inline int step(moments *m, double radius, ethd_vec *centre) {
+static inline int step(moments *m, double radius, ethd_vec *centre, double *moved) {
   ethd_vec s;
   double square = radius * radius;
   if (!solve(m, (m->zx - square * m->x) / 2, (m->zy - square * m->y) / 2, &s)) return 0;
   *centre = ethd_vec_add(*centre, s);
+  *moved = ethd_vec_dot(s, s);
   shift(m, s);
   return 1;
 }
@@ -94,10 +96,23 @@ static inline double gate(const ethd_fit *fit) {
   return 2 * fit->finger_radius * fit->p[ROBUST_GATE];
 }
 
-/* Leaves out those beyond the gate among the rays that are `there`. The moments, about the centre, are
-   worked out anew if that changes anything. */
-static inline void choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS], ethd__points *points,
-                          ethd_vec centre, moments *m) {
+/* One more point, or with sign -1 one less. */
+static inline void add(moments *m, double sign, ethd_vec u) {
+  double z = ethd_vec_dot(u, u), x = sign * u.x, y = sign * u.y;
+  m->n += sign;
+  m->x += x;
+  m->y += y;
+  m->xx += x * u.x;
+  m->xy += x * u.y;
+  m->yy += y * u.y;
+  m->zx += z * x;
+  m->zy += z * y;
+}
+
+/* Leaves out those beyond the gate among the rays that are `there`; false: they stay the same. The moments,
+   about the centre, follow: by the one point that comes or goes, or anew. */
+static inline int choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS], ethd__points *points,
+                         ethd_vec centre, moments *m) {
   double square = fit->finger_radius * fit->finger_radius, most = gate(fit);
   uint32_t before = points->used;
   for (int i = 0; i < ETHD__PAIRS; i++) {
@@ -105,7 +120,14 @@ static inline void choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS]
     points->counts[i] = there[i] & (two_bits)(two_abs(u * u + v * v - square) <= most);
   }
   points->used = ethd__points_used(points->counts);
-  if (points->used != before) *m = of(points, centre);
+  uint32_t changed = before ^ points->used;
+  if (!changed) return 0;
+  if ((changed & (changed - 1)) == 0)
+    add(m, points->used > before ? 1 : -1,
+        ethd_vec_sub(ethd__point(points, __builtin_ctz(changed)), centre));
+  else
+    *m = of(points, centre);
+  return 1;
 }
 
 /* Kasa's centre is a start if it is a finger's: within the ring, the radius within the gate. Few rays or
@@ -117,21 +139,23 @@ static inline int start(const ethd_fit *fit, const ethd__points *points, moments
   if (kasa(m, centre) && fabs(m->xx + m->yy - square * m->n) <= gate(fit) * m->n &&
       ethd_vec_dot(*centre, *centre) <= gap * gap)
     return 1;
+  double moved;
   *m = all;
   *centre = (ethd_vec){0, 0};
-  return step(m, fit->finger_radius, centre);
+  return step(m, fit->finger_radius, centre, &moved);
 }
 
-/* A step with all points first, so that an outlier's pull on the start doesn't gate good ones. */
+/* A step with all points first, so that an outlier's pull on the start doesn't gate good ones. A step of s
+   leaves |s|^2 / 2 R: short ones by the same points end it. */
 int ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
   two_bits there[ETHD__PAIRS];
-  double radius = fit->finger_radius;
+  double radius = fit->finger_radius, moved = 0;
   moments m;
   memcpy(there, points->counts, sizeof there);
-  int found = start(fit, points, &m, centre) && step(&m, radius, centre);
+  int found = start(fit, points, &m, centre) && step(&m, radius, centre, &moved);
   for (int pass = 0; pass < 2 && found; pass++) {
-    choose(fit, there, points, *centre, &m);
-    found = step(&m, radius, centre);
+    if (!choose(fit, there, points, *centre, &m) && moved <= SHORT * radius * radius) break;
+    found = step(&m, radius, centre, &moved);
   }
   return found;
 }

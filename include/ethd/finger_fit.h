@@ -23,8 +23,8 @@ typedef enum ethd_fit_method {
                            gives half of a small offset */
   ETHD_FIT_CENTROID,    /* centroid of the polygon's area, missing vertices left out */
   ETHD_FIT_ROBUST,      /* the same sum in c alone, R = the known finger radius: a Gauss-Newton step from
-                           kasa (two from the ring's centre if that isn't such a finger), then two
-                           without the rays over `gate` from the circle */
+                           kasa (two from the ring's centre if that isn't such a finger), then up to two
+                           without the rays over `gate` from the circle, while rays change or it moves */
   ETHD_FIT_COUNT
 } ethd_fit_method;
 
