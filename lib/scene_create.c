@@ -101,9 +101,11 @@ static void frame(ethd_scene *s, box b) {
   s->scale = ldexp(1, exponent < -400 ? 400 : -exponent); /* its square is finite */
 }
 
+/* Of its lengths: neither a half-plane's normal nor a box's angle is one. */
 static double largest(const ethd_object_def *def) {
   double most = 0;
-  for (size_t k = 0; k < def->count; k++) most = fmax(most, fabs(def->numbers[k]));
+  size_t first = def->shape == ETHD_HALFPLANE ? 2 : 0, end = def->shape == ETHD_BOX ? 4 : def->count;
+  for (size_t k = first; k < end; k++) most = fmax(most, fabs(def->numbers[k]));
   return most;
 }
 

@@ -85,6 +85,9 @@ static double slope_of(const strip *t, size_t k, ethd_vec axis) {
   return along > 0 ? fabs(ethd_vec_cross(axis, e)) / along : INFINITY;
 }
 
+/* A place across is known to 2^-20 of its distance: times this and more, that is no longer little. */
+#define STEEPEST 8
+
 /* Of edges [from, to) and of one more on each side, on which the vertices there depend; at the ends of an
    open chain everything is possible. */
 static float steepest(const strip *t, size_t from, size_t to, float c, float s) {
@@ -95,7 +98,7 @@ static float steepest(const strip *t, size_t from, size_t to, float c, float s) 
   most = fmax(most, before);
   for (size_t k = from; k < to && most < INFINITY; k++) most = fmax(most, slope_of(t, k, axis));
   most = most * ETHD__STRETCH_FAR + 0x1p-16;
-  return most < 1e37 ? (float)most : FLT_MAX;
+  return most < STEEPEST ? (float)most : FLT_MAX;
 }
 
 static void build_strip(build *b, const ethd__object *o, const ethd_vec *points) {

@@ -53,12 +53,14 @@ static unsigned ahead(const ethd__node *n, float x, float y) {
   return meet;
 }
 
-/* By the parity of the edges that a ray to the right crosses. */
+/* By the parity of the edges that a ray to the right crosses. Beyond the frame that all objects lie in nothing
+   is inside, and boxes would be wrong by more than they are inflated. */
 static bool contains(const ethd__chain *c, const ethd__tree *tree, const ethd__probe *p, ethd_vec x) {
   struct {
     uint32_t level, index;
   } stack[(ETHD__WIDE - 1) * ETHD__LEVELS + 1] = {{tree->levels, 0}}, at;
   bool inside = false;
+  if (!(fabsf(p->x) <= 2 && fabsf(p->y) <= 2)) return false;
   for (int count = 1; count > 0;) {
     at = stack[--count];
     if (at.level == 0) {

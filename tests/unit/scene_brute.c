@@ -277,6 +277,7 @@ static void brute_follow(const ethd_scene *scene, int32_t id, ethd_vec x, ethd_v
 /* ---- both ---- */
 
 static double tight; /* m: at most 1e-15 of the larger of the scene and the distance from it */
+static double slack; /* m: as near as this x is on a surface, with the normal of any edge there */
 
 static void same_nearest(const char *how, const ethd_nearest *q, const nearest *b, ethd_vec x) {
   ck_assert_msg(fabs(q->distance - b->distance) <= tight, "%s: %.17g, not %.17g, at %.17g %.17g", how, q->distance,
@@ -285,14 +286,15 @@ static void same_nearest(const char *how, const ethd_nearest *q, const nearest *
     ck_assert_msg(q->object == b->object, "%s: object %d, not %d", how, q->object, b->object);
   ck_assert(fabs(ethd_vec_norm(q->n) - 1) <= 4 * DBL_EPSILON);
   ethd_vec p = ethd_vec_add(x, ethd_vec_scale(q->distance, q->n));
-  ck_assert_msg(ethd_vec_norm(ethd_vec_sub(p, q->point)) <= 4 * tight, "%s: the point isn't %g along n", how,
+  ck_assert_msg(ethd_vec_norm(ethd_vec_sub(p, q->point)) <= 4 * tight + (fabs(q->distance) <= slack ? 2 * slack : 0),
+                "%s: the point isn't %g along n", how,
                 q->distance);
 }
 
-/* All numbers of a touch; of a polygon around x only the distance, for several edges may be as near. */
+/* All numbers of a touch; of a polygon around x or at it only the distance, for several edges may be as near. */
 static bool same_touch(const ethd_touch *a, const ethd_touch *b) {
   if (a->object != b->object || a->material != b->material || fabs(a->distance - b->distance) > tight) return false;
-  return b->distance <= tight || (a->distance == b->distance && a->point.x == b->point.x &&
+  return b->distance <= fmax(tight, slack) || (a->distance == b->distance && a->point.x == b->point.x &&
                                   a->point.y == b->point.y && a->n.x == b->n.x && a->n.y == b->n.y &&
                                   a->feature == b->feature && a->side == b->side);
 }
@@ -305,6 +307,7 @@ static bool is_among(const ethd_touch *t, const ethd_touch *list, size_t n) {
 
 static void check_nearest(const ethd_scene *scene, ethd_vec x, ethd_scene_hint *path) {
   tight = SCENE_TIGHT * fmax(draft.size, fmax(fabs(x.x), fabs(x.y)));
+  slack = scene->slack;
   nearest b = brute_nearest(scene, x);
   ethd_nearest cold, warm, lost;
   ethd_scene_hint wrong = {(uint32_t)scene_draw() % 2000, (uint32_t)scene_draw() % 2000, (int32_t)scene_draw()};
@@ -344,14 +347,15 @@ static void check_follow(const ethd_scene *scene, ethd_vec x) {
 
 /* Anywhere, near a number of the scene's, on a lattice, far away. */
 static ethd_vec place(void) {
-  double s = draft.size, e = pow(10, scene_uniform(-17, -1)) * s;
+  double s = draft.size, e = pow(10, scene_uniform(-17, -1)) * s, f = pow(10, scene_uniform(0, 9)) * s;
   size_t i = scene_draw() % (draft.used / 2) * 2;
-  switch (scene_draw() % 8) {
+  switch (scene_draw() % 9) {
     case 0:
     case 1:
     case 2: return (ethd_vec){draft.numbers[i] + scene_uniform(-e, e), draft.numbers[i + 1] + scene_uniform(-e, e)};
     case 3: return (ethd_vec){0.0625 * s * (int)(scene_draw() % 16), 0.0625 * s * (int)(scene_draw() % 16)};
     case 4: return (ethd_vec){draft.numbers[i], scene_uniform(-s, s)};
+    case 5: return (ethd_vec){scene_uniform(-f, f), scene_draw() % 2 ? scene_uniform(-f, f) : draft.numbers[i + 1]};
     default: return (ethd_vec){scene_uniform(-s, s), scene_uniform(-s, s)};
   }
 }
