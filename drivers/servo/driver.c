@@ -186,12 +186,14 @@ static ethd_status start_locked(ethd__servo_device *d) {
   atomic_store(&d->safe, 1);
   atomic_fetch_add(&d->epoch, 1); /* commands from before count no more */
   d->link.attempt_ns = 0;
+  d->link.set_point_stays = false;
   for (int i = 0; i < 2; i++) d->feedback.axes[i].since_ns = 0;
   ethd_status status = identify(d, START_MOST / 10 + steps_time(&d->map, ETHD__SERVO_IDENTIFY));
   if (status) return status;
   /* an old set-point must be gone, and be seen to be gone, before the drive moves anything */
   status = zero_and_verify(d, 0.5);
-  if (status && d->link.echo_failed) d->link.rows[ETHD_FAULT_SET_POINT]++;
+  d->link.set_point_stays = status && d->link.echo_failed;
+  if (d->link.set_point_stays) d->link.rows[ETHD_FAULT_SET_POINT]++;
   if (!status) status = run(d, ETHD__SERVO_ENABLE);
   if (status) return status;
   atomic_store(&d->safe, 0);

@@ -118,6 +118,7 @@ void ethd__servo_feedback_judge(ethd__servo_feedback *f, const ethd__servo_link 
   bool spoilt = l->bucket > ETHD__SERVO_BUCKET_LIMIT;
   put(&s->levels, ETHD_FAULT_LINK_LOST, l->state == ETHD__SERVO_DOWN);
   put(&s->levels, ETHD_FAULT_REPLY_BAD, spoilt);
+  put(&s->levels, ETHD_FAULT_SET_POINT, l->set_point_stays);
   put(&s->grave, ETHD_FAULT_REPLY_BAD, spoilt);
   memcpy(s->rows, l->rows, sizeof s->rows);
   if (!l->counts.exchanges) return;

@@ -30,6 +30,7 @@ typedef struct ethd__servo_link {
   ethd__servo_bus bus;
   ethd__servo_state state;
   bool draining, echo_failed; /* echo_failed: the last exchange's echo wasn't what was written */
+  bool set_point_stays;       /* a start was refused for it: the drive still shows an old one */
   uint16_t counter;
   int32_t sequence;    /* that runs; -1: none */
   uint32_t step;       /* of it */

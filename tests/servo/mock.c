@@ -32,7 +32,8 @@ static void put(uint8_t *p, uint32_t v) {
 /* ---- the drive ---- */
 
 static void heed(mock *m) {
-  uint16_t *w = m->words;
+  _Atomic uint16_t *w = m->words;
+  if (m->stuck) w[MOCK_TORQUE1] = (uint16_t)m->stuck;
   if (w[MOCK_CONTROL] == 2) w[MOCK_STATUS] &= (uint16_t)~1;
   if (w[MOCK_CONTROL] == 1 && !(w[MOCK_STATUS] & 1)) w[MOCK_STATUS] |= 2;
   if (w[MOCK_CONTROL] == 0 || w[MOCK_STATUS] & 1) w[MOCK_STATUS] &= (uint16_t)~2;
@@ -153,7 +154,8 @@ static void serve(mock *m) {
   while (!atomic_load(&m->stop) && read_request(m, head, q)) {
     uint64_t n = atomic_fetch_add(&m->requests, 1);
     mock_act act = {MOCK_ANSWER, 0, 0};
-    if (m->act) act = m->act(m->user, n, q[1]);
+    mock_plan plan = m->act;
+    if (plan) act = plan(m->user, n, q[1]);
     if (act.kind == MOCK_RESET) break;
     reply(m, head, q, act);
   }

@@ -26,13 +26,16 @@ typedef struct mock_act {
   int64_t wait; /* us */
 } mock_act;
 
+/* What to do with request n, of this function. */
+typedef mock_act (*mock_plan)(void *user, uint64_t n, int function);
+
 typedef struct mock {
-  uint16_t words[65536];
-  /* what to do with request n, of this function; NULL: answer */
-  mock_act (*act)(void *user, uint64_t n, int function);
-  void *user;
+  _Atomic uint16_t words[65536];
+  _Atomic mock_plan act; /* NULL: answer */
+  void *_Atomic user;
+  atomic_int frozen; /* 1: the motors stay as they were */
+  atomic_int stuck;  /* not 0: what torque1 holds whatever is written */
   int is_rtu;
-  int frozen; /* 1: the drive ignores what is written but to `control` */
   atomic_uint_fast64_t requests, connections;
   atomic_int stop, released, holding;
   int listener, line; /* line: connection, or the terminal's other end */

@@ -92,7 +92,7 @@ static void tell(const char *trap, int caught, const char *how) {
 
 static mock_act late_once(void *user, uint64_t n, int function) {
   (void)function;
-  return (mock_act){MOCK_LATE, 0, n == *(uint64_t *)user ? RESPONSE + RESPONSE / 3 : 300};
+  return (mock_act){MOCK_LATE, 0, n == *(_Atomic uint64_t *)user ? RESPONSE + RESPONSE / 3 : 300};
 }
 
 /* A cycle: write a counter, read it back. How many answers are another question's, taken for this one's. */
@@ -123,7 +123,7 @@ static int link_cycles(int *errors) {
 
 /* Answers of one kind only, as a drive that is only read gives them: RTU has no transaction numbers. */
 START_TEST(test_late_rtu) {
-  uint64_t at = 20;
+  _Atomic uint64_t at = 20;
   char how[80];
   int errors = 0, stale = 0;
   open_mock(1);
@@ -154,7 +154,7 @@ START_TEST(test_late_rtu) {
 END_TEST
 
 START_TEST(test_late_tcp) {
-  uint64_t at = 40;
+  _Atomic uint64_t at = 40;
   char how[80];
   int errors = 0;
   open_mock(0);
@@ -254,7 +254,7 @@ static int child(void (*work)(void)) {
   return 1;
 }
 
-static int gone_port;
+static int gone_port, told[2]; /* told: a pipe */
 static void recover(void) {
   uint16_t got;
   close(drive.listener); /* the child's own copy of it */
@@ -262,27 +262,22 @@ static void recover(void) {
   modbus_set_error_recovery(m, (modbus_error_recovery_mode)(MODBUS_ERROR_RECOVERY_LINK | MODBUS_ERROR_RECOVERY_PROTOCOL));
   modbus_set_response_timeout(m, 0, RESPONSE);
   if (modbus_connect(m)) _exit(1);
-  kill(getppid(), SIGUSR1);
+  if (write(told[1], "", 1) < 0) _exit(1);
   usleep(300000);
   (void)!modbus_read_registers(m, 0, 1, &got);
 }
 
-static volatile sig_atomic_t connected;
-static void note(int number) {
-  (void)number;
-  connected = 1;
-}
 static void *unplug(void *unused) {
+  char byte;
   (void)unused;
-  while (!connected) usleep(1000);
-  mock_unplug(&drive);
+  if (read(told[0], &byte, 1) == 1) mock_unplug(&drive);
   return NULL;
 }
 
 /* The line is taken away, for good. */
 START_TEST(test_unplugged) {
   pthread_t thread;
-  signal(SIGUSR1, note);
+  ck_assert_int_eq(pipe(told), 0);
   open_mock(0);
   gone_port = atoi(strchr(drive.port, ':') + 1);
   pthread_create(&thread, NULL, unplug, NULL);
@@ -520,7 +515,8 @@ START_TEST(test_other_questions) {
     ck_assert_int_eq(ethd__servo_link_connect(&link_, now()), ETHD_OK);
     turn_until(ETHD__SERVO_IDENTIFIED);
     uint64_t before = drive.requests;
-    drive.words[MOCK_POSITION1] = 1, drive.words[MOCK_POSITION1 + 1] = 2;
+    drive.words[MOCK_POSITION1] = 1;
+    drive.words[MOCK_POSITION1 + 1] = 2;
     ck_assert_msg(turn() == ETHD_OK, "%s", link_.message);
     ck_assert_uint_eq(drive.requests - before, questions);
     ck_assert_double_eq(link_.raw[map.roles[ETHD__SERVO_POSITION1]], 65538);

@@ -1,0 +1,453 @@
+/* The servo as the loop sees it, in lock-step on a virtual clock, with a drive of our own behind a real connection. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "ethd/driver.h"
+#include "file/text.h"
+#include "servo/device.h"
+#include "servo/mock.h"
+#include "unit/rig.h"
+
+#define TICK 1000000
+#define COUNT (2 * 3.14159265358979323846 / (4000 * 9.8))
+#define NM (1 / 9.8 / 1e-4) /* raw of 1 Nm at the joint */
+
+static const ethd_driver *const servo = &ethd_driver_servo;
+static ethd_setup setup;
+static mock drive;
+static void *device;
+static char message[ETHD_MESSAGE_MAX], folder[] = "/tmp/ethd-servo-XXXXXX";
+static int64_t now;
+static ethd_sense sense;
+static ethd_status last;
+
+static ethd_status open_with(ethd_setting *settings, uint32_t count) {
+  setup = ethd_setup_default();
+  const ethd_device_def def = {&setup, settings, count, "apps/config", "d.ini"};
+  return servo->open(&def, &device, message);
+}
+
+static void open_device(void) {
+  mock_start(&drive, 0);
+  ethd_setting settings[] = {{"map", "plant.map", 1}, {"port", drive.port, 2}};
+  ck_assert_msg(open_with(settings, 2) == ETHD_OK, "%s", message);
+  now = 0;
+}
+
+static void start_device(void) {
+  open_device();
+  ck_assert_int_eq(servo->start(device), ETHD_OK);
+}
+
+static void close_device(void) {
+  servo->close(device);
+  mock_stop(&drive);
+}
+
+/* One tick as the loop makes it; what read said, the sense beside. */
+static ethd_status tick(double torque1, double torque2) {
+  const ethd_command command = {{torque1, torque2}, 0, 0};
+  now += TICK;
+  (void)!servo->service(device, 0, now);
+  memset(&sense, 0, sizeof sense);
+  last = servo->read(device, now, &sense);
+  (void)!servo->write(device, now, &command);
+  return last;
+}
+
+static int shows(ethd_fault row) { return (sense.faults & ETHD_FAULT_BIT(row)) != 0; }
+
+/* Ticks until a row shows; most + 1: it doesn't. */
+static int ticks_until(ethd_fault row, int most) {
+  int n = 0;
+  do tick(0.1, 0);
+  while (++n <= most && !shows(row));
+  return n;
+}
+
+static int32_t raw(int at) { return (int16_t)drive.words[at]; }
+
+/* ---- what goes and comes ---- */
+
+START_TEST(test_goes_and_comes) {
+  start_device();
+  drive.words[MOCK_POSITION1] = 0xFFFF;
+  drive.words[MOCK_POSITION1 + 1] = 0xFFFE;
+  drive.words[MOCK_POSITION2 + 1] = 1000;
+  ck_assert_int_eq(tick(0.5, -0.25), ETHD_OK);
+  ck_assert_double_eq_tol(sense.q[0], -2 * COUNT, 1e-15);
+  ck_assert_double_eq_tol(sense.q[1], 1000 * COUNT, 1e-15);
+  ck_assert_int_eq(sense.time_ns, now);
+  ck_assert_int_eq(sense.faults, 0);
+  ck_assert_int_eq(tick(0, 0), ETHD_OK);
+  ck_assert_int_eq(raw(MOCK_TORQUE1), (int)lrint(0.5 * NM)); /* a tick of age */
+  ck_assert_int_eq(raw(MOCK_TORQUE2), (int)lrint(-0.25 * NM));
+  tick(100, -100); /* the map's limits */
+  tick(0, 0);
+  ck_assert_int_eq(raw(MOCK_TORQUE1), 2000);
+  ck_assert_int_eq(raw(MOCK_TORQUE2), -2000);
+  ck_assert_double_eq_tol(servo->limits(device).torque, 0.2 * 9.8, 1e-12);
+  ck_assert_int_eq(servo->stop(device), ETHD_OK);
+  ck_assert_int_eq(raw(MOCK_TORQUE1) | raw(MOCK_CONTROL) | raw(MOCK_STATUS), 0);
+  close_device();
+}
+END_TEST
+
+START_TEST(test_unwraps) {
+  start_device();
+  for (int64_t count = 2147483000; count < 2147485000; count += 500) {
+    drive.words[MOCK_POSITION1] = (uint16_t)(count >> 16);
+    drive.words[MOCK_POSITION1 + 1] = (uint16_t)count;
+    ck_assert_int_eq(tick(0, 0), ETHD_OK);
+    ck_assert_double_eq_tol(sense.q[0], (double)count * COUNT, 1e-9);
+  }
+  close_device();
+}
+END_TEST
+
+START_TEST(test_home_and_joint) {
+  char *text, path[64];
+  size_t length;
+  mock_start(&drive, 0);
+  drive.words[MOCK_POSITION1 + 1] = 500;
+  ethd_setting home[] = {{"map", "plant.map", 1}, {"port", drive.port, 2}, {"q1", "0.7", 3}, {"q2", "-0.3", 4}};
+  ck_assert_msg(open_with(home, 4) == ETHD_OK, "%s", message);
+  ck_assert_int_eq(servo->start(device), ETHD_OK);
+  tick(0, 0);
+  ck_assert_double_eq_tol(sense.q[0], 0.7, 1e-12);
+  ck_assert_double_eq_tol(sense.q[1], -0.3, 1e-12);
+  servo->close(device);
+  /* a map of one axis, for the second joint */
+  ck_assert_int_eq(ethd_text_read("apps/config/plant.map", 1 << 16, &text, &length, message), ETHD_OK);
+  for (const char **name = (const char *[]){"[register torque2]", "[register seen2]", "[register position2]", "[register measured2]", NULL}; *name; name++) {
+    char *from = strstr(text, *name), *to = strchr(from, '\n');
+    while (strncmp(to, "\n\n", 2)) to++;
+    memset(from, '\n', (size_t)(to - from));
+  }
+  snprintf(path, sizeof path, "%s/one.map", folder);
+  ck_assert_int_eq(ethd_text_write(path, text, length, message), ETHD_OK);
+  free(text);
+  ethd_setting one[] = {{"map", path, 1}, {"port", drive.port, 2}, {"joint", "2", 3}};
+  ck_assert_msg(open_with(one, 3) == ETHD_OK, "%s", message);
+  ck_assert_int_eq(servo->start(device), ETHD_OK);
+  now = 0;
+  tick(0.1, 0.2);
+  tick(0, 0);
+  ck_assert_double_eq_tol(sense.q[1], 500 * COUNT, 1e-12);
+  ck_assert_double_eq(sense.q[0], 0);
+  ck_assert_int_eq(raw(MOCK_TORQUE1), (int)lrint(0.2 * NM));
+  unlink(path);
+  close_device();
+}
+END_TEST
+
+START_TEST(test_settings_refused) {
+  static const struct {
+    ethd_setting one;
+    const char *why;
+  } all[] = {{{"q1", "0", 1}, "d.ini: device.map is missing"},
+             {{"map", "no.map", 3}, "apps/config/no.map"},
+             {{"speed", "1", 7}, "d.ini:7: device.speed: a servo knows"},
+             {{"joint", "3", 8}, "d.ini:8: device.joint: found \"3\", 1 to 2"},
+             {{"q1", "x", 9}, "d.ini:9: device.q1"}};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+    ethd_setting one = all[i].one;
+    ck_assert_int_lt(open_with(&one, 1), 0);
+    ck_assert_ptr_null(device);
+    ck_assert_msg(strstr(message, all[i].why) && !strchr(message, '\n'), "%s", message);
+  }
+  ethd_setting nobody[] = {{"map", "plant.map", 1}, {"port", "127.0.0.1:1", 2}};
+  ck_assert_int_eq(open_with(nobody, 2), ETHD_E_DEVICE);
+  ck_assert_msg(strstr(message, "127.0.0.1:1: Connection refused") != NULL, "%s", message);
+}
+END_TEST
+
+/* ---- rows of the fault table ---- */
+
+static mock_act from_to(void *user, uint64_t n, int function) {
+  const _Atomic uint64_t *range = user;
+  (void)function;
+  return (mock_act){n >= range[0] && n < range[1] ? (mock_kind)range[2] : MOCK_ANSWER, (int32_t)range[3], 0};
+}
+
+static _Atomic uint64_t range[4];
+/* The next `count` requests go wrong. */
+static void spoil(uint64_t count, mock_kind kind, int code) {
+  range[0] = drive.requests;
+  range[1] = range[0] + count;
+  range[2] = (uint64_t)kind;
+  range[3] = (uint64_t)code;
+  drive.user = range;
+  drive.act = from_to;
+}
+
+START_TEST(test_missing_once) {
+  start_device();
+  for (int i = 0; i < 20; i++) ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
+  spoil(1, MOCK_DROP, 0);
+  ck_assert_int_eq(tick(0.1, 0), ETHD_STALE); /* the loop holds its torque, and knows no new fault */
+  ck_assert_int_eq(sense.faults | sense.grave, 0);
+  ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
+  ck_assert_int_eq(sense.faults, ETHD_FAULT_BIT(ETHD_FAULT_REPLY_MISSING));
+  ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
+  ck_assert_int_eq(sense.faults, 0);
+  ck_assert_int_eq(raw(MOCK_TORQUE1), (int)lrint(0.1 * NM));
+  close_device();
+}
+END_TEST
+
+START_TEST(test_feedback_old) {
+  start_device();
+  for (int i = 0; i < 20; i++) tick(0.1, 0);
+  double q = sense.q[0];
+  spoil(1000, MOCK_DROP, 0);
+  ck_assert_int_eq(ticks_until(ETHD_FAULT_FEEDBACK_OLD, 20), 6); /* the first tick over 5 ms */
+  ck_assert_int_eq(last, ETHD_STALE);
+  ck_assert_double_eq(sense.q[0], q);
+  close_device();
+}
+END_TEST
+
+START_TEST(test_stale_answer) {
+  start_device();
+  for (int i = 0; i < 20; i++) tick(0.1, 0);
+  spoil(2, MOCK_OLD, 0);
+  ck_assert_int_eq(tick(0.1, 0), ETHD_STALE);
+  ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
+  ck_assert_int_eq(sense.faults, ETHD_FAULT_BIT(ETHD_FAULT_REPLY_STALE));
+  close_device();
+}
+END_TEST
+
+START_TEST(test_bad_answers) {
+  start_device();
+  for (int i = 0; i < 20; i++) tick(0.1, 0);
+  spoil(1, MOCK_GARBLE, 0);
+  ck_assert_int_eq(ticks_until(ETHD_FAULT_REPLY_BAD, 5), 2);
+  ck_assert_int_eq(sense.grave, 0);
+  /* a refusal is an error of the map: grave at once */
+  spoil(1, MOCK_EXCEPTION, 2);
+  ck_assert_int_eq(ticks_until(ETHD_FAULT_REPLY_BAD, 5), 1);
+  ck_assert_int_eq(sense.grave, ETHD_FAULT_BIT(ETHD_FAULT_REPLY_BAD));
+  close_device();
+}
+END_TEST
+
+START_TEST(test_drive_fault) {
+  start_device();
+  for (int i = 0; i < 20; i++) tick(0.1, 0);
+  drive.words[MOCK_STATUS] |= 1;
+  ck_assert_int_eq(ticks_until(ETHD_FAULT_DRIVE, 5), 1);
+  drive.words[MOCK_STATUS] = 0; /* disabled by itself is a fault, too */
+  drive.words[MOCK_CONTROL] = 0;
+  ck_assert_int_eq(ticks_until(ETHD_FAULT_DRIVE, 5), 1);
+  close_device();
+}
+END_TEST
+
+START_TEST(test_bus_voltage) {
+  start_device();
+  tick(0, 0);
+  drive.words[MOCK_VOLTAGE] = 230;
+  ck_assert_int_eq(ticks_until(ETHD_FAULT_BUS_VOLTAGE, 5), 1);
+  drive.words[MOCK_VOLTAGE] = 480;
+  tick(0, 0);
+  ck_assert(!shows(ETHD_FAULT_BUS_VOLTAGE));
+  drive.words[MOCK_VOLTAGE] = 561;
+  ck_assert_int_eq(ticks_until(ETHD_FAULT_BUS_VOLTAGE, 5), 1);
+  close_device();
+}
+END_TEST
+
+START_TEST(test_not_followed) {
+  start_device();
+  for (int i = 0; i < 20; i++) tick(0.1, 0);
+  drive.frozen = 1;
+  int n = 0;
+  do tick(1, 0);
+  while (++n < 50 && !shows(ETHD_FAULT_NOT_FOLLOWED));
+  ck_assert_int_ge(n, 20);
+  ck_assert_int_le(n, 23); /* 20 ms, behind a tick of age */
+  drive.frozen = 0;
+  tick(1, 0);
+  ck_assert(!shows(ETHD_FAULT_NOT_FOLLOWED));
+  close_device();
+}
+END_TEST
+
+/* ---- lost and found ---- */
+
+static void connect_again(void) {
+  for (int i = 0; i < 3000 && ((ethd__servo_device *)device)->link.state != ETHD__SERVO_IDENTIFIED; i++) {
+    tick(0.5, 0.5);
+    usleep(100);
+  }
+  ck_assert_int_eq(((ethd__servo_device *)device)->link.state, ETHD__SERVO_IDENTIFIED);
+}
+
+/* ETHD_SERVO_PLUGS times, 10 without. */
+START_TEST(test_unplugged) {
+  const char *given = getenv("ETHD_SERVO_PLUGS");
+  const int plugs = given ? atoi(given) : 10;
+  start_device();
+  for (int k = 0; k < plugs; k++) {
+    for (int i = 0; i < 5; i++) tick(0.5, 0);
+    ck_assert_int_eq(raw(MOCK_TORQUE1), (int)lrint(0.5 * NM));
+    mock_unplug(&drive);
+    ck_assert_int_le(ticks_until(ETHD_FAULT_LINK_LOST, 4), 2);
+    ck_assert_int_eq(last, ETHD_STALE);
+    mock_plug(&drive);
+    connect_again();
+    /* back, seeing, and never enabled by itself: zero torque whatever the loop writes */
+    for (int i = 0; i < 20; i++) {
+      ck_assert_int_eq(tick(0.5, 0.5), ETHD_OK);
+      ck_assert_int_eq(raw(MOCK_TORQUE1) | raw(MOCK_TORQUE2), 0);
+    }
+    ck_assert(!shows(ETHD_FAULT_LINK_LOST));
+    ck_assert_int_eq(servo->start(device), ETHD_OK);
+  }
+  ck_assert_uint_eq(((ethd__servo_device *)device)->link.counts.lost, (uint64_t)plugs);
+  close_device();
+}
+END_TEST
+
+/* The first set-point of a connection is zero, also where the drive goes on with the old one by itself. */
+START_TEST(test_first_is_zero) {
+  mock_start(&drive, 0);
+  drive.words[MOCK_TORQUE1] = 1234;
+  drive.words[MOCK_CONTROL] = 1;
+  drive.words[MOCK_STATUS] = 2;
+  ethd_setting settings[] = {{"map", "plant.map", 1}, {"port", drive.port, 2}};
+  ck_assert_msg(open_with(settings, 2) == ETHD_OK, "%s", message);
+  ck_assert_int_eq(raw(MOCK_TORQUE1), 0);
+  close_device();
+}
+END_TEST
+
+START_TEST(test_old_set_point) {
+  start_device();
+  for (int i = 0; i < 5; i++) tick(0.5, 0);
+  servo->safe(device);
+  for (int i = 0; i < 5; i++) tick(0.5, 0);
+  ck_assert_int_eq(raw(MOCK_CONTROL) | raw(MOCK_TORQUE1), 0);
+  drive.stuck = 700;
+  ck_assert_int_eq(servo->start(device), ETHD_E_DEVICE);
+  ck_assert_int_eq(raw(MOCK_CONTROL), 0); /* nothing was enabled */
+  ck_assert_int_eq(ticks_until(ETHD_FAULT_SET_POINT, 5), 1);
+  drive.stuck = 0;
+  ck_assert_int_eq(servo->start(device), ETHD_OK);
+  ck_assert_int_eq(raw(MOCK_CONTROL), 1);
+  tick(0, 0);
+  ck_assert(!shows(ETHD_FAULT_SET_POINT));
+  close_device();
+}
+END_TEST
+
+START_TEST(test_safe) {
+  start_device();
+  for (int i = 0; i < 5; i++) tick(0.5, 0);
+  servo->safe(device);
+  tick(0.5, 0);
+  ck_assert_int_eq(raw(MOCK_TORQUE1), 0);
+  for (int i = 0; i < 5; i++) tick(0.5, 0);
+  ck_assert_int_eq(raw(MOCK_CONTROL) | raw(MOCK_STATUS) | raw(MOCK_TORQUE1), 0);
+  /* started anew; what the loop wrote before that counts no more */
+  ck_assert_int_eq(servo->start(device), ETHD_OK);
+  now += TICK;
+  (void)!servo->service(device, 0, now);
+  ck_assert_int_eq(raw(MOCK_TORQUE1), 0);
+  close_device();
+}
+END_TEST
+
+/* Nothing comes from the loop: its last torque doesn't stay. */
+START_TEST(test_loop_gone) {
+  start_device();
+  for (int i = 0; i < 5; i++) tick(0.5, 0);
+  for (int i = 0; i < 5; i++) (void)!servo->service(device, 0, now += TICK);
+  ck_assert_int_ne(raw(MOCK_TORQUE1), 0);
+  (void)!servo->service(device, 0, now += TICK);
+  ck_assert_int_eq(raw(MOCK_TORQUE1), 0);
+  close_device();
+}
+END_TEST
+
+static void *serve_once(void *unused) {
+  (void)unused;
+  (void)!servo->service(device, 0, now + TICK);
+  return NULL;
+}
+
+static mock_act hold_all(void *user, uint64_t n, int function) {
+  (void)user, (void)n, (void)function;
+  return (mock_act){MOCK_HOLD, 0, 0};
+}
+
+/* While an exchange waits for its answer, the control thread's calls return. */
+START_TEST(test_never_waits) {
+  pthread_t thread;
+  start_device();
+  tick(0, 0);
+  ((ethd__servo_device *)device)->map.response = 5;
+  drive.act = hold_all;
+  pthread_create(&thread, NULL, serve_once, NULL);
+  while (!atomic_load(&drive.holding)) usleep(100);
+  for (int i = 0; i < 10000; i++) {
+    const ethd_command command = {{0.1, 0}, 0, 0};
+    ck_assert_int_eq(servo->read(device, now, &sense), ETHD_STALE);
+    ck_assert_int_eq(servo->write(device, now, &command), ETHD_OK);
+    servo->safe(device);
+  }
+  drive.act = NULL;
+  mock_release(&drive);
+  pthread_join(thread, NULL);
+  close_device();
+}
+END_TEST
+
+START_TEST(test_figures) {
+  ethd_figure figures[ETHD_FIGURES_MAX];
+  start_device();
+  for (int i = 0; i < 100; i++) tick(0, 0);
+  uint32_t n = servo->figures(device, figures, ETHD_FIGURES_MAX);
+  ck_assert_uint_ge(n, 12);
+  for (uint32_t i = 0; i < n; i++) ck_assert(figures[i].name && figures[i].unit && isfinite(figures[i].value));
+  ck_assert_double_ge(figures[0].value, 100);
+  ck_assert_uint_eq(servo->figures(device, figures, 3), 3);
+  ck_assert_ptr_null(servo->remark(device, 0));
+  close_device();
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("servo_driver");
+  TCase *t = tcase_create("servo_driver");
+  if (!mkdtemp(folder)) return 1;
+  tcase_set_timeout(t, 240);
+  tcase_add_test(t, test_goes_and_comes);
+  tcase_add_test(t, test_unwraps);
+  tcase_add_test(t, test_home_and_joint);
+  tcase_add_test(t, test_settings_refused);
+  tcase_add_test(t, test_missing_once);
+  tcase_add_test(t, test_feedback_old);
+  tcase_add_test(t, test_stale_answer);
+  tcase_add_test(t, test_bad_answers);
+  tcase_add_test(t, test_drive_fault);
+  tcase_add_test(t, test_bus_voltage);
+  tcase_add_test(t, test_not_followed);
+  tcase_add_test(t, test_unplugged);
+  tcase_add_test(t, test_first_is_zero);
+  tcase_add_test(t, test_old_set_point);
+  tcase_add_test(t, test_safe);
+  tcase_add_test(t, test_loop_gone);
+  tcase_add_test(t, test_never_waits);
+  tcase_add_test(t, test_figures);
+  suite_add_tcase(suite, t);
+  int failed = rig_run(suite);
+  rmdir(folder);
+  return failed;
+}
