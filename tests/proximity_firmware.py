@@ -161,11 +161,12 @@ def test_rate(*options, baud, seconds):
     n = len(frames) - 1
     assert abs((frames[-1].t_us - frames[0].t_us) - n * 1e6 / 300) <= 1
     stats = ring.stats
-    low, high, count = stats["period_cycles"]
+    low, high, mean, count = stats["period_cycles"]
+    assert abs(mean - 16e6 / 300) < 0.1, mean  # 2 in a million
     assert 53333 - 96 <= low <= high <= 53334 + 96 and abs(count - 300 * seconds) <= 1, (low, high, count)  # 6 us
     assert stats["baud"] == [baud]
     for slot in range(4):
-        least, most, _ = stats[f"begin{slot}_us"]
+        least, most, _, _ = stats[f"begin{slot}_us"]
         at = START_US + slot * SLOT_US
         assert at - 10 < least <= most < at + 40, (slot, least, most)
     assert stats["hurried"] == [0], stats
@@ -206,6 +207,19 @@ def test_fault(ring, begin, end, counts, flags, back=3):
     assert_follow(frames + after)
 
 
+def test_supply(ring):
+    """A sensor whose supply has failed for a moment has forgotten its emitter's current: it is missing, never wrong."""
+    for k in range(16):
+        ring.run(0.0123)
+        frames, _ = ring.run(10 / 3 * 1e-3 - (ring.stats["time_s"][0] % (1 / 300)) + 0.003)  # an idle moment
+        ring.tell(f"mute {k}")
+        ring.tell(f"unmute {k}")
+        frames, bad = ring.run(0.03)
+        assert bad == 0
+        assert all(f.counts == COUNTS or f.counts == without([k]) for f in frames), (k, frames)
+        assert_good(frames[3:])
+
+
 def test_stuck(ring):
     """A sensor that was stopped in the middle of a byte is clocked free; one that holds on longer gets more clocks."""
     for clocks in (1, 9, 30, 300, 3000):
@@ -215,6 +229,26 @@ def test_stuck(ring):
         assert_follow(frames)
         assert all(f.counts == COUNTS or f.counts == without([9]) for f in frames)
         assert_good(frames[-3:])
+    for k in range(8, 12):
+        ring.tell(f"stick {k} 9")
+    frames, bad = ring.run(0.05)
+    assert bad == 0 and any(f.flags & RECOVERED for f in frames), frames
+    assert_good(frames[4:])
+
+
+def test_link(ring):
+    """A block that was spoilt between the boards is none, and nor are half of its counts."""
+    for count in (1, 5, 40):
+        ring.tell(f"link-corrupt {count}")
+        frames, bad = ring.run(0.03)
+        assert bad == 0
+        assert_follow(frames)
+        for frame in frames:
+            lost = [b for b in range(1, 4) if not any(frame.counts[4 * b : 4 * b + 4])]
+            assert frame.counts == without([4 * b + l for b in lost for l in range(4)]), frame
+            assert frame.flags == (MISSING | BOARD if lost else 0), frame
+        assert any(f.flags for f in frames)
+        assert_good(frames[6:])
 
 
 def test_board_reset(ring):
@@ -349,8 +383,13 @@ def main():
     test_fault(ring, "short 0", "unshort 0", without([0]), MISSING)
     for board in range(4):
         test_fault(ring, f"scl {board}", f"unscl {board}", without(range(4 * board, 4 * board + 4)), MISSING)
+        if board:
+            test_fault(ring, f"deaf {board}", f"undeaf {board}", without(range(4 * board, 4 * board + 4)), MISSING | BOARD)
+    test_fault(ring, "slow 6", "unslow 6", without([6]), MISSING)
     test_fault(ring, "link-short", "link-free", without(range(4, 16)), MISSING | BOARD)
+    test_supply(ring)
     test_stuck(ring)
+    test_link(ring)
     test_board_reset(ring)
     test_board_hang(ring)
     test_leader_reset(ring)

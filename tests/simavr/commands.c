@@ -10,9 +10,12 @@ const char commands_help[] =
     "  run SECONDS             with --step: let that much time pass\n"
     "  mute K, unmute K        sensor K loses its supply, has it again\n"
     "  short K, unshort K      sensor K's SDA lies at ground\n"
+    "  slow K, unslow K        sensor K takes 2 ms to measure\n"
     "  stick K N               sensor K holds SDA low for N clocks\n"
     "  scl B, unscl B          SCL of board B's sensors lies at ground\n"
+    "  deaf B, undeaf B        the start line doesn't reach board B\n"
     "  link-short, link-free   SDA between the boards lies at ground\n"
+    "  link-corrupt N          the next N bytes between the boards go over wrongly\n"
     "  reset B, hang B         board B's reset; its program hangs\n"
     "  corrupt N, lose N, insert N   the next N bytes on the wire to the host\n"
     "  unplug, plug            the pseudo-terminal goes; a new one comes (its name is printed)\n"
@@ -35,7 +38,9 @@ static bool counts(session *s, const char *line) {
 /* ---- stats ---- */
 
 static void show(const char *name, const ring_range *range, double scale) {
-  printf("%s %.4f %.4f %llu\n", name, (double)range->min * scale, (double)range->max * scale, (unsigned long long)range->count);
+  double mean = range->count ? (double)range->sum / (double)range->count : 0;
+  printf("%s %.4f %.4f %.4f %llu\n", name, (double)range->min * scale, (double)range->max * scale, mean * scale,
+         (unsigned long long)range->count);
 }
 
 static void stats(session *s) {
@@ -74,6 +79,11 @@ static void unmute(session *s, int k) {
 }
 static void shorten(session *s, int k) { sensor_of(s, k)->shorted = true; }
 static void unshorten(session *s, int k) { sensor_of(s, k)->shorted = false; }
+static void slow(session *s, int k) { sensor_of(s, k)->slow = true; }
+static void unslow(session *s, int k) { sensor_of(s, k)->slow = false; }
+static void deaf(session *s, int b) { s->ring->board[b].deaf = true; }
+static void undeaf(session *s, int b) { s->ring->board[b].deaf = false; }
+static void link_corrupt(session *s, int n) { s->ring->link.corrupt = n; }
 static void scl(session *s, int b) { s->ring->board[b].scl_shorted = true; }
 static void unscl(session *s, int b) { s->ring->board[b].scl_shorted = false; }
 static void reset(session *s, int b) { ring_reset(s->ring, b); }
@@ -98,6 +108,9 @@ static const struct {
 } table[] = {
     {"mute", RING_SENSORS, mute},      {"unmute", RING_SENSORS, unmute},
     {"short", RING_SENSORS, shorten},  {"unshort", RING_SENSORS, unshorten},
+    {"slow", RING_SENSORS, slow},      {"unslow", RING_SENSORS, unslow},
+    {"deaf", RING_BOARDS, deaf},       {"undeaf", RING_BOARDS, undeaf},
+    {"link-corrupt", 1000000000, link_corrupt},
     {"scl", RING_BOARDS, scl},         {"unscl", RING_BOARDS, unscl},
     {"reset", RING_BOARDS, reset},     {"hang", RING_BOARDS, hang},
     {"corrupt", 1000000000, corrupt},  {"lose", 1000000000, lose},

@@ -22,6 +22,7 @@ enum { SLICE = 8 };
 static void note(ring_range *range, uint64_t value) {
   if (!range->count++ || value < range->min) range->min = value;
   if (value > range->max) range->max = value;
+  range->sum += value;
 }
 
 static void level(avr_t *avr, int pin_register, int mask, bool high) {
@@ -65,7 +66,7 @@ static void start_wire(ring *r, uint64_t now) {
     r->start = now;
   }
   for (int n = 0; n < RING_BOARDS; n++)
-    avr_raise_irq(avr_io_getirq(r->board[n].avr, AVR_IOCTL_IOPORT_GETIRQ('D'), 2), !low);
+    if (!r->board[n].deaf) avr_raise_irq(avr_io_getirq(r->board[n].avr, AVR_IOCTL_IOPORT_GETIRQ('D'), 2), !low);
 }
 
 static void ddr_b(struct avr_irq_t *irq, uint32_t value, void *param) {

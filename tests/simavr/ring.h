@@ -25,12 +25,13 @@ typedef struct ring_board {
   avr_run_t run;
   uint8_t ddr_b, ddr_c, ddr_d;
   bool scl_shorted;
+  bool deaf; /* the start line is broken on its way here */
   sensor sensor[RING_LANES];
   uint64_t awake; /* cycles */
 } ring_board;
 
 typedef struct ring_range {
-  uint64_t min, max, count;
+  uint64_t min, max, sum, count;
 } ring_range;
 
 struct ring {

@@ -1,12 +1,12 @@
 #include "sensor.h"
 
 enum { ADDRESS = 0x13, COMMAND = 0x80, PRODUCT = 0x81, CURRENT = 0x83, HIGH = 0x87, LOW = 0x88, TIMING = 0x8A };
-enum { MEASURE = 0x08, READY = 0x20, LOCK = 0x80, ID = 0x11, CURRENT_AT_START = 2, CURRENT_OF_LEVEL = 10 };
+enum { MEASURE = 0x08, READY = 0x20, LOCK = 0x80, ID = 0x11, CURRENT_AT_START = 2, CURRENT_OF_LEVEL = 10, SLOW = 32000 };
 
 void sensor_power(sensor *s, int number, bus_times *times) {
   uint16_t level = s->level;
-  bool mute = s->mute;
-  *s = (sensor){.level = level, .mute = mute, .current = CURRENT_AT_START, .scl = true, .sda = true, .times = times};
+  bool mute = s->mute, slow = s->slow;
+  *s = (sensor){.level = level, .mute = mute, .slow = slow, .current = CURRENT_AT_START, .scl = true, .sda = true, .times = times};
   s->convert = 16 * (170 + (uint64_t)(number * 7 % 16) * 230 / 15);
 }
 
@@ -15,11 +15,10 @@ bool sensor_pulls(const sensor *s) { return s->shorted || (!s->mute && (s->pulls
 /* ---- registers ---- */
 
 static void settle(sensor *s, uint64_t now) {
-  if (!s->measuring || now < s->began + s->convert) return;
-  uint32_t seen = (uint32_t)s->level * s->current / CURRENT_OF_LEVEL;
+  if (!s->measuring || now < s->began + (s->slow ? SLOW : s->convert)) return;
   s->measuring = false;
   s->ready = true;
-  s->result = seen > 0xFFFF ? 0xFFFF : (uint16_t)seen;
+  s->result = s->seen;
 }
 
 static uint8_t get(sensor *s, uint64_t now) {
@@ -42,6 +41,8 @@ static void put(sensor *s, uint8_t value, uint64_t now) {
   s->measuring = s->begun = true;
   s->ready = false;
   s->began = now;
+  uint32_t seen = (uint32_t)s->level * s->current / CURRENT_OF_LEVEL;
+  s->seen = seen > 0xFFFF ? 0xFFFF : (uint16_t)seen;
 }
 
 /* ---- bus ---- */

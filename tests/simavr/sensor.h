@@ -24,6 +24,7 @@ typedef struct sensor {
   uint16_t level; /* what a measurement at 100 mA finds; set from outside */
   bool mute;      /* no supply */
   bool shorted;   /* SDA to ground, for ever */
+  bool slow;      /* takes 2 ms to measure */
   int stuck;      /* clocks that SDA stays low */
   uint64_t began; /* the last conversion, cycles */
   bool begun;     /* and one has begun since this was last cleared */
@@ -31,7 +32,7 @@ typedef struct sensor {
   uint64_t convert; /* cycles */
   bool measuring, ready;
   uint8_t current, timing;
-  uint16_t result;
+  uint16_t result, seen;
   uint8_t pointer;
 
   enum { SENSOR_IDLE, SENSOR_LISTEN, SENSOR_TALK, SENSOR_DEAF } mode;

@@ -75,6 +75,10 @@ static avr_cycle_count_t exchanged(avr_t *avr, avr_cycle_count_t when, void *par
   bool more = *control(p) & TWEA;
   uint8_t data = bus->slave >= 0 ? bus->port[bus->slave].avr->data[TWDR] : 0xFF;
   p->avr->data[TWDR] = two_wire_sda(bus) ? data : 0;
+  if (bus->corrupt > 0) {
+    bus->corrupt--;
+    p->avr->data[TWDR] ^= 0x11;
+  }
   bus->bytes++;
   tell(p, more ? 0x50 : 0x58);
   if (bus->slave >= 0) tell(&bus->port[bus->slave], more ? 0xB8 : 0xC0);

@@ -29,6 +29,7 @@ struct two_wire {
   int master, slave; /* -1: nobody */
   enum { TWO_WIRE_IDLE, TWO_WIRE_STARTED, TWO_WIRE_READING, TWO_WIRE_ENDED } phase;
   bool shorted; /* SDA to ground */
+  int corrupt;  /* bytes that will go over wrongly */
   int stuck;    /* clocks that a slave still holds SDA */
   uint64_t bytes, recoveries;
 };

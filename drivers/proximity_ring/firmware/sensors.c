@@ -7,6 +7,7 @@
 #define EMITTER 10u /* x 10 mA */
 
 static uint8_t settled; /* lanes whose sensor has its settings */
+static uint8_t begun;   /* lanes that measure, with their settings */
 
 void sensors_open(void) {
   lanes_open();
@@ -27,6 +28,7 @@ static void check_settings(void) {
 
 void sensors_settle(void) {
   check_settings();
+  begun &= settled;
   uint8_t lanes = (uint8_t)~settled & LANES_ALL;
   if (!lanes) return;
   lanes = lanes_put(lanes, VCNL4000_ADDRESS, VCNL4000_CURRENT, EMITTER);
@@ -34,8 +36,10 @@ void sensors_settle(void) {
 }
 
 void sensors_begin(uint8_t lane) {
-  uint8_t lanes = settled & (uint8_t)(1u << lane);
-  if (lanes && !lanes_put(lanes, VCNL4000_ADDRESS, VCNL4000_COMMAND, VCNL4000_MEASURE)) settled &= (uint8_t)~lanes;
+  uint8_t mask = (uint8_t)(1u << lane);
+  uint8_t done = lanes_put(settled & mask, VCNL4000_ADDRESS, VCNL4000_COMMAND, VCNL4000_MEASURE);
+  settled &= (uint8_t)~mask | done;
+  begun = (begun & (uint8_t)~mask) | done;
 }
 
 /* A count is never 0: that is how a missing one is told. */
@@ -52,7 +56,7 @@ bool sensors_read(uint16_t counts[4]) {
   lanes_split(result[0], high);
   lanes_split(result[1], low);
   for (uint8_t lane = 0, mask = 1; lane < LANES; lane++, mask <<= 1) {
-    bool good = settled & mask && command[lane] & VCNL4000_READY;
+    bool good = settled & begun & mask && command[lane] & VCNL4000_READY;
     counts[lane] = good ? count(high[lane], low[lane]) : ETHD__FRAME_MISSING;
   }
   uint8_t held = lanes_held();
