@@ -79,6 +79,7 @@ struct ethd_driver {
 
 ETHD_API extern const ethd_driver ethd_driver_sim, ethd_driver_hello;
 ETHD_API extern const ethd_driver ethd_driver_servo;
+ETHD_API extern const ethd_driver ethd_driver_ring;    /* a proximity ring, beside a driver that moves */
 ETHD_API extern const ethd_driver ethd_driver_replay;  /* a recorded session, fed and compared */
 ETHD_API extern const ethd_driver ethd_driver_counter; /* encoders, beside a driver that moves */
 

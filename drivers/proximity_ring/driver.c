@@ -1,0 +1,287 @@
+/* The proximity ring as a device: it measures the finger, beside a driver that moves.
+
+     I/O thread   port -> receiver -> cell          [rt]   cell -> rays, sample_ns, rows 15, 18, 20      */
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "ethd/cell.h"
+#include "ethd/fault.h"
+#include "file/error_text.h"
+#include "file/text.h"
+#include "proximity_ring/empty.h"
+#include "proximity_ring/port.h"
+#include "proximity_ring/settings.h"
+
+#define WAIT_MS 20                 /* for bytes, in a service */
+#define ROOM 4096                  /* bytes of one read */
+#define NOT_OURS 1000000000        /* ns: a clock that is further from CLOCK_MONOTONIC is a virtual one */
+#define GAP_NS (1500000000 / ETHD__FRAME_RATE) /* without a frame: one is lost, at least */
+
+/* What the I/O thread hands over. */
+typedef struct sample {
+  ethd__reading reading;
+  ethd__receiver_counts counts;
+  int64_t arrival_ns; /* of the reading */
+} sample;
+
+typedef struct ring {
+  ethd__ring_settings settings;
+  pthread_mutex_t lock; /* of the I/O thread's part, for figures */
+  ethd_cell *cell;
+
+  /* I/O thread, and open */
+  ethd__ring_port port;
+  ethd__receiver receiver;
+  sample newest;
+
+  /* [rt] */
+  sample taken;
+  ethd__receiver_counts seen;
+} ring;
+
+/* ---- I/O ---- */
+
+static int64_t monotonic(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+static void take(ring *r, const uint8_t *bytes, size_t count, int64_t arrival_ns) {
+  const uint8_t *at = bytes;
+  ethd__reading reading;
+  while (ethd__receiver_next(&r->receiver, &at, bytes + count, arrival_ns, &reading)) {
+    r->newest.reading = reading;
+    r->newest.arrival_ns = arrival_ns;
+  }
+  r->newest.counts = r->receiver.counts;
+  ethd_cell_put(r->cell, &r->newest);
+}
+
+static ethd_status reopen(ring *r, int64_t now_ns) {
+  char message[ETHD_MESSAGE_MAX];
+  if (now_ns < r->port.attempt_ns) return ETHD_STALE;
+  ethd_status status = ethd__ring_port_open(&r->port, now_ns, message);
+  if (!status) ethd__receiver_restart(&r->receiver);
+  return status;
+}
+
+/* On the virtual clock nothing waits, and what is there has arrived now. */
+static ethd_status service(void *device, uint32_t unit, int64_t now_ns) {
+  ring *r = device;
+  uint8_t bytes[ROOM];
+  (void)unit;
+  if (r->port.fd < 0) {
+    pthread_mutex_lock(&r->lock);
+    ethd_status status = reopen(r, now_ns);
+    pthread_mutex_unlock(&r->lock);
+    if (status) return status;
+  }
+  bool is_virtual = llabs(monotonic() - now_ns) > NOT_OURS;
+  int64_t got = ethd__ring_port_read(&r->port, is_virtual ? 0 : WAIT_MS, bytes, sizeof bytes);
+  int64_t arrival_ns = is_virtual ? now_ns : monotonic();
+  if (got <= 0) return got < 0 ? ETHD_E_DEVICE : ETHD_OK;
+  pthread_mutex_lock(&r->lock);
+  take(r, bytes, (size_t)got, arrival_ns);
+  pthread_mutex_unlock(&r->lock);
+  return ETHD_OK;
+}
+
+/* ---- [rt] ---- */
+
+static int64_t lasting(const sample *s, int64_t now_ns, int64_t *grave) ETHD_RT {
+  int64_t rows = 0;
+  uint32_t out = 0;
+  if (s->counts.readings == 0) return 0;
+  if (now_ns - s->arrival_ns > GAP_NS) rows |= ETHD_FAULT_BIT(ETHD_FAULT_FRAME_LOST);
+  for (uint32_t mask = s->reading.out; mask; mask &= mask - 1) out++;
+  if (out) rows |= ETHD_FAULT_BIT(ETHD_FAULT_SENSOR);
+  if (ETHD_RAYS - out < ETHD__GOOD_LEAST) *grave |= ETHD_FAULT_BIT(ETHD_FAULT_SENSOR);
+  return rows;
+}
+
+static ethd_status ring_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
+  ring *r = device;
+  const sample *s = &r->taken;
+  (void)!ethd_cell_take(r->cell, &r->taken);
+  if (s->counts.frame_lost != r->seen.frame_lost) out->faults |= ETHD_FAULT_BIT(ETHD_FAULT_FRAME_LOST);
+  if (s->counts.board_clock != r->seen.board_clock) out->faults |= ETHD_FAULT_BIT(ETHD_FAULT_BOARD_CLOCK);
+  out->faults |= lasting(s, now_ns, &out->grave);
+  if (s->counts.readings != r->seen.readings) {
+    out->have |= ETHD_HAVE_RAYS;
+    out->sample_ns = s->reading.sample_ns;
+    memcpy(out->rays, s->reading.rays, sizeof out->rays);
+  }
+  r->seen = s->counts;
+  return ETHD_OK;
+}
+
+static void safe(void *device) ETHD_RT { (void)device; }
+
+/* ---- [main] ---- */
+
+static void ring_close(void *device) {
+  ring *r = device;
+  if (!r) return;
+  ethd__ring_port_close(&r->port);
+  ethd_cell_destroy(r->cell);
+  pthread_mutex_destroy(&r->lock);
+  free(r->port.path);
+  free(r);
+}
+
+static ethd_status load_calibration(const ethd_device_def *def, ring *r, char *message) {
+  const ethd_setting *s = r->settings.calibration;
+  r->receiver.calibration = ethd__calibration_default();
+  if (!s) return ETHD_OK;
+  char *path = ethd__path_join(def->folder, s->value);
+  if (!path) return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status = ethd__calibration_load(path, &r->receiver.calibration, message);
+  free(path);
+  return status;
+}
+
+static ethd_status prepare(const ethd_device_def *def, ring *r, char *message) {
+  const double *p = r->settings.p;
+  ethd_error error = {0};
+  ethd_status status = load_calibration(def, r, message);
+  if (status) return status;
+  r->receiver.clock.delay = p[ETHD__RING_DELAY];
+  status = ethd__plausible_prepare(def->setup->ring_radius, def->setup->finger_radius, p[ETHD__RING_GATE],
+                                   p[ETHD__RING_SPEED], p[ETHD__RING_SLACK], &r->receiver.plausible, &error);
+  if (status) ethd_error_text(def->file, &error, message);
+  r->port = (ethd__ring_port){.path = ethd__path_join(def->folder, r->settings.port->value),
+                              .baud = (uint32_t)p[ETHD__RING_BAUD], .fd = -1};
+  if (!status && (!r->port.path || ethd_cell_create(sizeof(sample), &r->cell, NULL)))
+    status = ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  return status;
+}
+
+static ethd_status no_frames(const ring *r, const ethd__decoder *d, uint64_t bytes, char *message) {
+  double seconds = r->settings.p[ETHD__RING_PATIENCE];
+  if (!bytes)
+    return ethd__say(message, ETHD_E_DEVICE, "%s: nothing came in %g s: is the ring connected and powered?", r->port.path, seconds);
+  return ethd__say(message, ETHD_E_DEVICE, "%s: %llu bytes but %llu frames in %g s: is %u its baud?", r->port.path,
+                   (unsigned long long)bytes, (unsigned long long)d->counters.frames, seconds, r->port.baud);
+}
+
+/* The first frames: is the line what it should be? They tell the darks. */
+static ethd_status listen_first(ring *r, ethd__empty *empty, char *message) {
+  ethd__decoder d = {0};
+  uint8_t bytes[ROOM];
+  uint64_t all = 0;
+  int64_t end = monotonic() + (int64_t)(1e9 * r->settings.p[ETHD__RING_PATIENCE]);
+  while (empty->frames < ETHD__EMPTY_FRAMES && monotonic() < end) {
+    int64_t got = ethd__ring_port_read(&r->port, WAIT_MS, bytes, sizeof bytes);
+    if (got < 0) return ethd__say(message, ETHD_E_DEVICE, "%s: the line is gone", r->port.path);
+    const uint8_t *at = bytes;
+    ethd__frame frame;
+    while (ethd__decoder_next(&d, &at, bytes + got, &frame)) ethd__empty_add(empty, &frame);
+    all += (uint64_t)got;
+  }
+  return empty->frames < ETHD__EMPTY_FRAMES ? no_frames(r, &d, all, message) : ETHD_OK;
+}
+
+static ethd_status check_darks(const ring *r, char *message) {
+  for (int k = 0; k < ETHD_RAYS; k++)
+    if (isnan(r->receiver.calibration.sensors[k].dark))
+      return ethd__say(message, ETHD_E_ARGUMENT, "device.empty = trust: the calibration has no dark of sensor %d; empty = check measures it", k);
+  return ETHD_OK;
+}
+
+static ethd_status listen_to(ring *r, double ring_radius, char *message) {
+  char what[ETHD_MESSAGE_MAX];
+  ethd__empty empty = {0};
+  ethd_status status = ethd__ring_port_open(&r->port, monotonic(), message);
+  if (!status) status = listen_first(r, &empty, message);
+  if (status) return status;
+  if (r->settings.p[ETHD__RING_EMPTY] == 1) return check_darks(r, message);
+  status = ethd__empty_check(&empty, ring_radius, &r->receiver.calibration, what);
+  return status ? ethd__say(message, status, "%s: %.*s", r->port.path, ETHD_MESSAGE_MAX / 2, what) : ETHD_OK;
+}
+
+static ethd_status ring_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
+  ethd__ring_settings settings;
+  *out = NULL;
+  ethd_status status = ethd__ring_settings_read(def, &settings, message);
+  if (status) return status;
+  ring *r = calloc(1, sizeof *r);
+  if (!r) return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  r->settings = settings;
+  r->port.fd = -1;
+  pthread_mutex_init(&r->lock, NULL);
+  status = prepare(def, r, message);
+  if (!status) status = listen_to(r, def->setup->ring_radius, message);
+  if (status) {
+    ring_close(r);
+    return status;
+  }
+  *out = r;
+  return ETHD_OK;
+}
+
+static ethd_status start(void *device) {
+  (void)device;
+  return ETHD_OK;
+}
+
+static uint32_t units(const void *device) {
+  (void)device;
+  return 1;
+}
+
+static ethd_limits limits(const void *device) {
+  (void)device;
+  return ethd_limits_device();
+}
+
+static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
+  ring *r = (ring *)device;
+  pthread_mutex_lock(&r->lock);
+  const ethd__receiver *in = &r->receiver;
+  const ethd_figure all[] = {
+      {"ring frames", "1", (double)in->decoder.counters.frames},
+      {"ring frames corrupt", "1", (double)in->decoder.counters.corrupt},
+      {"ring frames lost", "1", (double)in->decoder.counters.lost},
+      {"ring frames implausible", "1", (double)in->plausible.bad},
+      {"ring rays left out", "1", (double)in->plausible.suspects},
+      {"ring clock jumps", "1", (double)in->clock.jumps},
+      {"ring clock drift", "1", in->clock.drift},
+      {"ring port opened", "1", (double)r->port.opened},
+  };
+  pthread_mutex_unlock(&r->lock);
+  uint32_t n = sizeof all / sizeof *all;
+  if (n > max) n = max;
+  memcpy(out, all, n * sizeof *all);
+  return n;
+}
+
+static const char *remark(const void *device, uint32_t i) {
+  const ring *r = device;
+  if (i > 0 || r->port.low_latency) return NULL;
+  return "the ring's port doesn't know low latency: its bytes may come up to 16 ms late";
+}
+
+const ethd_driver ethd_driver_ring = {
+    .size = sizeof(ethd_driver),
+    .abi = ETHD_DRIVER_ABI,
+    .id = "ring",
+    .brief = "proximity ring on a serial port, beside a driver that moves",
+    .params = ethd__ring_params,
+    .param_count = ETHD__RING_PARAMS,
+    .open = ring_open,
+    .start = start,
+    .read = ring_read,
+    .write = NULL,
+    .units = units,
+    .service = service,
+    .safe = safe,
+    .stop = start,
+    .close = ring_close,
+    .limits = limits,
+    .figures = figures,
+    .remark = remark,
+};

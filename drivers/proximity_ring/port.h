@@ -1,0 +1,25 @@
+/* The ring's serial port and what comes out of it: opened, waited for, read, opened anew after an unplug. */
+#ifndef ETHD_PROXIMITY_RING_PORT_H
+#define ETHD_PROXIMITY_RING_PORT_H
+
+#include "proximity_ring/receiver.h"
+
+typedef struct ethd__ring_port {
+  char *path;
+  uint32_t baud;
+  int fd;             /* -1: not open */
+  bool low_latency;   /* the kernel's driver hands bytes over at once */
+  int64_t attempt_ns; /* when to open next */
+  int64_t back_off;   /* ns, doubled with each attempt up to 1.6 s */
+  uint64_t opened;    /* times */
+} ethd__ring_port;
+
+/* One attempt, now; the next is due after the back-off. [main] or I/O */
+ETHD_MUST_CHECK ethd_status ethd__ring_port_open(ethd__ring_port *port, int64_t now_ns, char message[ETHD_MESSAGE_MAX]);
+
+/* What has come, at most `room` bytes; waits up to wait_ms for the first. -1: the line is gone, and closed. */
+int64_t ethd__ring_port_read(ethd__ring_port *port, int wait_ms, uint8_t *out, size_t room);
+
+void ethd__ring_port_close(ethd__ring_port *port);
+
+#endif

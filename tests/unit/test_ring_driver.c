@@ -1,0 +1,340 @@
+/* The proximity ring's driver on a pty, on the virtual clock: what comes, what is missing, unplugged and plugged
+   in again. ETHD_REPLUGS: how often (5). */
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <time.h>
+
+#include "ethd/driver.h"
+#include "ethd/fault.h"
+#include "proximity_ring/settings.h"
+#include "unit/pty.h"
+#include "unit/rig.h"
+#include "unit/ring_scene.h"
+
+#define TICK 1000000
+#define VIRTUAL INT64_C(4000000000000000000) /* far from CLOCK_MONOTONIC: nothing waits */
+
+static const ethd_driver *const driver = &ethd_driver_ring;
+static char folder[] = "/tmp/ethd-ring-XXXXXX", link_path[64], message[ETHD_MESSAGE_MAX];
+
+static void set_up(void) {
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  snprintf(link_path, sizeof link_path, "%s/port", folder);
+}
+
+static void tear_down(void) {
+  char path[80];
+  unlink(link_path);
+  snprintf(path, sizeof path, "%s/ring.ini", folder);
+  unlink(path);
+  ck_assert_int_eq(rmdir(folder), 0);
+}
+
+/* ---- the far end ---- */
+
+typedef struct board {
+  ring_scene scene;
+  int master;
+  atomic_int stop;
+  bool finger; /* in it while the driver opens */
+  pthread_t thread;
+} board;
+
+static void send_frame(const board *b, const ethd__frame *frame) {
+  uint8_t wire[ETHD__FRAME_WIRE];
+  ethd__frame_encode(frame, wire);
+  ck_assert_int_eq(write(b->master, wire, sizeof wire), sizeof wire);
+}
+
+static ethd__frame empty_frame(const ring_scene *s, uint32_t i) {
+  ethd__frame f = scene_frame(s, i);
+  for (int k = 0; k < ETHD_RAYS; k++) f.counts[k] = (uint16_t)rod_counts(&s->truth, k, (double)NAN, 5, i * 16ull + (uint64_t)k);
+  return f;
+}
+
+/* While the driver opens: frames of an empty ring, twice as fast as real time. */
+static void *send_frames(void *board_) {
+  board *b = board_;
+  struct timespec pause = {.tv_nsec = 1500000};
+  for (uint32_t i = 0; !atomic_load(&b->stop); i++, nanosleep(&pause, NULL)) {
+    uint8_t wire[ETHD__FRAME_WIRE];
+    ethd__frame f = b->finger ? scene_frame(&b->scene, i) : empty_frame(&b->scene, i);
+    ethd__frame_encode(&f, wire);
+    (void)!write(b->master, wire, sizeof wire); /* when nobody reads they are gone, as a UART's */
+  }
+  return NULL;
+}
+
+static void plug(board *b) {
+  char path[64];
+  b->master = pty_open(link_path, path);
+  ck_assert_int_ge(b->master, 0);
+}
+
+/* ---- opening ---- */
+
+static ethd_status open_with(board *b, const ethd_setting *settings, uint32_t count, void **device) {
+  static ethd_setup setup;
+  setup = ethd_setup_default();
+  const ethd_device_def def = {&setup, settings, count, folder, "x.ini"};
+  atomic_store(&b->stop, 0);
+  ck_assert_int_eq(pthread_create(&b->thread, NULL, send_frames, b), 0);
+  ethd_status status = driver->open(&def, device, message);
+  atomic_store(&b->stop, 1);
+  pthread_join(b->thread, NULL);
+  return status;
+}
+
+/* A ring with its calibration in a file, opened; the line is quiet. */
+static void *open_ring(board *b) {
+  static const ethd_setting settings[] = {{"port", "port", 1}, {"calibration", "ring.ini", 2}, {"delay", "0.0042", 3}};
+  char path[80];
+  uint8_t rest[4096];
+  void *device;
+  *b = (board){.scene = {rod_truth(1), 5, VIRTUAL}, .master = -1};
+  b->scene.truth.level = ETHD__LEVEL_LAW;
+  snprintf(path, sizeof path, "%s/ring.ini", folder);
+  ck_assert_msg(ethd__calibration_save(&b->scene.truth, path, message) == ETHD_OK, "%s", message);
+  plug(b);
+  ck_assert_msg(open_with(b, settings, 3, &device) == ETHD_OK, "%s", message);
+  ck_assert_int_eq(driver->units(device), 1);
+  while (driver->service(device, 0, VIRTUAL - 1000000000) == ETHD_OK && read(b->master, rest, sizeof rest) > 0) {}
+  ethd_sense sense = {0};
+  ck_assert_int_eq(driver->read(device, VIRTUAL - 1000000000, &sense), ETHD_OK);
+  return device;
+}
+
+START_TEST(test_refused) {
+  static const struct {
+    const char *key, *value, *says;
+  } rows[] = {
+      {"calibration", "nowhere.ini", "nowhere.ini: No such file"},
+      {"prot", "x", "x.ini:2: device.prot: a ring knows port, calibration, baud, delay"},
+      {"baud", "fast", "x.ini:2: device.baud: found \"fast\", 9600 to 12000000 1/s is allowed"},
+      {"patience", "-1", "x.ini:2: device.patience: found \"-1\", 0.05 to 60 s is allowed"},
+      {"empty", "no", "x.ini:2: device.empty: found \"no\", check|trust is allowed"},
+      {"empty", "trust", "device.empty = trust: the calibration has no dark of sensor 0; empty = check measures it"},
+  };
+  board b = {.scene = {rod_truth(1), 5, 0}};
+  void *device;
+  plug(&b);
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    const ethd_setting settings[] = {{"port", "port", 1}, {rows[i].key, rows[i].value, 2}};
+    ck_assert_int_lt(open_with(&b, settings, 2, &device), 0);
+    ck_assert_msg(strstr(message, rows[i].says) != NULL, "%s", message);
+    ck_assert_ptr_null(device);
+  }
+  ck_assert_int_lt(open_with(&b, NULL, 0, &device), 0);
+  ck_assert_str_eq(message, "x.ini: device.port is missing: the ring's serial port, as /dev/ttyUSB0");
+  close(b.master);
+}
+END_TEST
+
+START_TEST(test_refused_by_what_comes) {
+  static const ethd_setting settings[] = {{"port", "port", 1}, {"patience", "0.3", 2}};
+  static ethd_setup setup;
+  setup = ethd_setup_default();
+  const ethd_device_def def = {&setup, settings, 2, folder, "x.ini"};
+  board b = {.scene = {rod_truth(1), 5, 0}, .finger = true};
+  void *device;
+  plug(&b);
+  ck_assert_int_eq(driver->open(&def, &device, message), ETHD_E_DEVICE);
+  ck_assert_ptr_nonnull(strstr(message, "nothing came in 0.3 s: is the ring connected and powered?"));
+  ck_assert_int_eq(open_with(&b, settings, 2, &device), ETHD_E_DEVICE);
+  ck_assert_msg(strstr(message, "are allowed in an empty ring: take out what is in it") != NULL, "%s", message);
+  unlink(link_path);
+  ck_assert_int_eq(driver->open(&def, &device, message), ETHD_E_DEVICE);
+  ck_assert_ptr_nonnull(strstr(message, "port: No such file or directory"));
+  close(b.master);
+}
+END_TEST
+
+/* ---- ticks ---- */
+
+typedef struct run {
+  board board;
+  void *device;
+  int64_t now_ns;
+  uint32_t next; /* frame */
+  uint64_t rays;
+  ethd_sense sense;
+} run;
+
+static void begin(run *r) {
+  memset(r, 0, sizeof *r);
+  r->device = open_ring(&r->board);
+  r->now_ns = VIRTUAL;
+}
+
+/* What may become of frame i; false: it is lost. */
+typedef bool (*mangle)(ethd__frame *frame, uint32_t i);
+
+/* A tick: the frames that are due are sent, or not; then service and read. */
+static ethd_status tick(run *r, mangle how) {
+  r->now_ns += TICK;
+  for (; scene_arrival(&r->board.scene, r->next) <= r->now_ns; r->next++) {
+    ethd__frame f = scene_frame(&r->board.scene, r->next);
+    if (r->board.master >= 0 && (!how || how(&f, r->next))) send_frame(&r->board, &f);
+  }
+  ethd_status status = driver->service(r->device, 0, r->now_ns);
+  r->sense = (ethd_sense){.time_ns = r->now_ns};
+  ck_assert_int_eq(driver->read(r->device, r->now_ns, &r->sense), ETHD_OK);
+  if (r->sense.have & ETHD_HAVE_RAYS) {
+    r->rays++;
+    ck_assert_int_le(r->sense.sample_ns, r->now_ns);
+  }
+  return status;
+}
+
+static void end(run *r) {
+  driver->safe(r->device);
+  ck_assert_int_eq(driver->stop(r->device), ETHD_OK);
+  driver->close(r->device);
+  if (r->board.master >= 0) close(r->board.master);
+}
+
+START_TEST(test_readings) {
+  run r;
+  begin(&r);
+  ck_assert_int_eq(driver->start(r.device), ETHD_OK);
+  for (uint32_t i = 0; i < 2000; i++) {
+    tick(&r, NULL);
+    if (!(r.sense.have & ETHD_HAVE_RAYS)) continue;
+    uint32_t frame = r.next - 1;
+    ethd__reading reading = {0};
+    memcpy(reading.rays, r.sense.rays, sizeof reading.rays);
+    ck_assert_double_le(scene_error(&reading, frame), 0.08e-3);
+    /* arrivals are seen at ticks: the envelope finds those that weren't late */
+    if (i > 1000) ck_assert_int_le(llabs(r.sense.sample_ns - VIRTUAL - (int64_t)(1e9 * scene_time(frame)) - 1000 * (int64_t)ETHD__MIDDLE_US), 400000);
+    ck_assert_int_eq(r.sense.faults | r.sense.grave, 0);
+  }
+  ck_assert_uint_eq(r.rays, r.next);
+  ethd_figure figures[ETHD_FIGURES_MAX];
+  uint32_t n = driver->figures(r.device, figures, ETHD_FIGURES_MAX);
+  ck_assert(n > 0 && !strcmp(figures[0].name, "ring frames") && figures[0].value >= r.next);
+  ck_assert_uint_eq(driver->figures(r.device, figures, 3), 3);
+  ck_assert_ptr_nonnull(driver->remark(r.device, 0));
+  ck_assert_ptr_null(driver->remark(r.device, 1));
+  end(&r);
+}
+END_TEST
+
+/* ---- rows of the fault table: bound, in ticks, at 20 phases ---- */
+
+static uint32_t onset;
+
+static bool lose_one(ethd__frame *f, uint32_t i) { (void)f; return i != onset; }
+static bool lose_all(ethd__frame *f, uint32_t i) { (void)f; return i < onset; }
+static bool reset_board(ethd__frame *f, uint32_t i) {
+  if (i < onset) return true;
+  f->seq = (uint16_t)(i - onset);
+  f->t_us -= onset * 3333;
+  if (i == onset) f->flags |= ETHD__FRAME_FIRST, f->t_us = 20;
+  return true;
+}
+static bool jump_clock(ethd__frame *f, uint32_t i) {
+  if (i >= onset) f->t_us += 77777;
+  return true;
+}
+static bool spoil_sensors(ethd__frame *f, uint32_t i, int count) {
+  for (int k = 0; k < count && i >= onset; k++) f->counts[3 * k] = 0;
+  if (i >= onset) f->flags |= ETHD__FRAME_SENSOR_MISSING;
+  return true;
+}
+static bool spoil_one(ethd__frame *f, uint32_t i) { return spoil_sensors(f, i, 1); }
+static bool spoil_five(ethd__frame *f, uint32_t i) { return spoil_sensors(f, i, 5); }
+static bool implausible(ethd__frame *f, uint32_t i) {
+  for (int k = 0; k < ETHD_RAYS && i == onset; k++) f->counts[k] = (uint16_t)(3000 + 9000 * (k % 2) + 77 * k);
+  return true;
+}
+
+/* Ticks from the tick at which frame `onset` arrives, or would, until the row's bit. */
+static int noticed(mangle how, ethd_fault row, bool grave) {
+  run r;
+  int ticks = -1;
+  begin(&r);
+  int64_t bit = ETHD_FAULT_BIT(row), due = scene_arrival(&r.board.scene, onset);
+  while (r.now_ns < due + 60 * TICK && ticks < 0) {
+    tick(&r, how);
+    int64_t bits = grave ? r.sense.grave : r.sense.faults;
+    if (r.now_ns < due) ck_assert_int_eq(r.sense.faults | r.sense.grave, 0);
+    if (bits & bit) ticks = (int)((r.now_ns - due) / TICK);
+  }
+  end(&r);
+  return ticks;
+}
+
+static const struct {
+  const char *what;
+  mangle how;
+  ethd_fault row;
+  bool grave;
+  int most; /* ticks after the tick of the arrival */
+} rows[] = {
+    {"a frame lost", lose_one, ETHD_FAULT_FRAME_LOST, false, 6},
+    {"all frames lost", lose_all, ETHD_FAULT_FRAME_LOST, false, 6},
+    {"a frame implausible", implausible, ETHD_FAULT_FRAME_LOST, false, 0},
+    {"a sensor missing", spoil_one, ETHD_FAULT_SENSOR, false, 14},
+    {"five sensors missing", spoil_five, ETHD_FAULT_SENSOR, true, 14},
+    {"the board was reset", reset_board, ETHD_FAULT_BOARD_CLOCK, false, 0},
+    {"the board's clock jumped", jump_clock, ETHD_FAULT_BOARD_CLOCK, false, 0},
+};
+
+START_TEST(test_rows) {
+  int worst = -1;
+  for (uint32_t phase = 0; phase < 20; phase++) {
+    onset = 60 + 7 * phase;
+    int ticks = noticed(rows[_i].how, rows[_i].row, rows[_i].grave);
+    ck_assert_msg(ticks >= 0 && ticks <= rows[_i].most, "%s, phase %u: %d ticks", rows[_i].what, phase, ticks);
+    if (ticks > worst) worst = ticks;
+  }
+  printf("%-26s row %d%s seen at most %d ticks after it\n", rows[_i].what, (int)rows[_i].row, rows[_i].grave ? ", grave," : "", worst);
+}
+END_TEST
+
+/* ---- unplugged ---- */
+
+START_TEST(test_replug) {
+  const char *wanted = getenv("ETHD_REPLUGS");
+  int replugs = wanted ? atoi(wanted) : 5;
+  uint64_t lost = 0;
+  run r;
+  begin(&r);
+  for (int i = 0; i < replugs; i++) {
+    uint64_t sent = 0, before;
+    for (int k = 0; k < 40 + i % 9; k++) tick(&r, NULL);
+    close(r.board.master);
+    r.board.master = -1;
+    for (int k = 0; k < 30 + i % 7; k++) tick(&r, NULL);
+    ck_assert(r.sense.faults & ETHD_FAULT_BIT(ETHD_FAULT_FRAME_LOST)); /* lasts */
+    plug(&r.board);
+    while (r.sense.faults & ETHD_FAULT_BIT(ETHD_FAULT_FRAME_LOST)) ck_assert_int_le((tick(&r, NULL), ++sent), 2000);
+    before = r.rays;
+    uint32_t from = r.next;
+    for (int k = 0; k < 100; k++) tick(&r, NULL);
+    lost += r.next - from - (r.rays - before);
+  }
+  ck_assert_uint_eq(lost, 0);
+  ethd_figure figures[ETHD_FIGURES_MAX];
+  uint32_t n = driver->figures(r.device, figures, ETHD_FIGURES_MAX);
+  for (uint32_t i = 0; i < n; i++)
+    if (!strcmp(figures[i].name, "ring port opened")) ck_assert(figures[i].value == replugs + 1);
+  printf("unplugged and plugged in again %d times, %llu readings, none lost while it was plugged in\n", replugs, (unsigned long long)r.rays);
+  end(&r);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("ring driver");
+  TCase *tc = tcase_create("driver");
+  tcase_set_timeout(tc, 250);
+  tcase_add_checked_fixture(tc, set_up, tear_down);
+  tcase_add_test(tc, test_refused);
+  tcase_add_test(tc, test_refused_by_what_comes);
+  tcase_add_test(tc, test_readings);
+  tcase_add_loop_test(tc, test_rows, 0, (int)(sizeof rows / sizeof *rows));
+  tcase_add_test(tc, test_replug);
+  suite_add_tcase(suite, tc);
+  return rig_run(suite);
+}
