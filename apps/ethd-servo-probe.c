@@ -1,0 +1,132 @@
+/* What a bus with a drive on it can do: how many exchanges a second, how long each takes, what is read. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "common/cli.h"
+#include "ethd/loop.h"
+#include "servo/link.h"
+#include "servo/words.h"
+
+static const char doc[] =
+    "Measures the bus to a servo drive by its register map: connects, identifies, writes zero torque and reads, as "
+    "fast as the bus goes, and says which rate it can hold. The drive isn't enabled, nothing moves.\v"
+    "Examples:\n"
+    "  ethd-servo-probe --map svd48v.map\n"
+    "  ethd-servo-probe --map plant.map --port 127.0.0.1:1502 --duration 10";
+
+enum { OPTION_PORT = 256 };
+
+static const struct argp_option options[] = {
+    {"map", 'm', "F.map", 0, "register map of the drive", 0},
+    {"port", OPTION_PORT, "PORT", 0, "HOST:PORT or a serial device, instead of the map's", 0},
+    {"duration", 'd', "S", 0, "measures for so long: 2", 0},
+    {0},
+};
+
+static struct {
+  const char *map, *port;
+  double duration; /* s */
+} arg = {.duration = 2};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  switch (key) {
+    case 'm': arg.map = text; return 0;
+    case OPTION_PORT: arg.port = text; return 0;
+    case 'd': arg.duration = ethd__option_number("--duration", text, 0.01, 86400); return 0;
+    case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+    case ARGP_KEY_END:
+      if (!arg.map) argp_error(state, "--map is needed");
+      return 0;
+    default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static ethd__servo_map map;
+static ethd__servo_link drive;
+static ethd_histogram trip;
+
+static int64_t now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+static void load(void) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd_status status = ethd__servo_map_load(arg.map, arg.map, &map, message);
+  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  if (arg.port && strlen(arg.port) >= sizeof map.port) ethd__fail(ETHD_EXIT_INPUT, "--port: too long");
+  if (arg.port) strcpy(map.port, arg.port);
+}
+
+/* Connected and identified, or the reason why not. */
+static void reach(void) {
+  const double zero[2] = {0, 0};
+  ethd__servo_link_make(&map, &drive);
+  ethd_status status = ethd__servo_link_connect(&drive, now());
+  if (status) ethd__fail(ethd__exit_code(status), "%s", drive.message);
+  int64_t end = now() + (int64_t)(1e9 * (map.connect + 1));
+  while (drive.state == ETHD__SERVO_UP && drive.sequence >= 0 && now() < end)
+    (void)!ethd__servo_link_turn(&drive, now(), zero);
+  if (drive.state < ETHD__SERVO_IDENTIFIED) ethd__fail(ETHD_EXIT_FAILED, "%s", drive.message);
+}
+
+static double measure(void) {
+  const double zero[2] = {0, 0};
+  int64_t begin = now(), at = begin, end = begin + (int64_t)(1e9 * arg.duration);
+  for (; at < end && !ethd__stop; ethd__progress((uint64_t)(at - begin), (uint64_t)(end - begin), "exchanges")) {
+    ethd_status status = ethd__servo_link_turn(&drive, at, zero);
+    int64_t after = now();
+    if (!status) ethd_histogram_add(&trip, after - at);
+    at = after;
+  }
+  ethd__progress(1, 1, "exchanges");
+  return 1e-9 * (double)(at - begin);
+}
+
+/* ---- the report ---- */
+
+static void print_rate(double seconds) {
+  const ethd__servo_counts *c = &drive.counts;
+  double slow = 1e-9 * (double)ethd_histogram_at(&trip, 0.99);
+  printf("%-10s %s, %u + %u questions an exchange\n", "bus", map.port, drive.plan.write_count,
+         drive.plan.read_count - drive.plan.combined);
+  printf("%-10s p50 %.3f  p99 %.3f  max %.3f ms, %" PRIu64 " exchanges in %.3g s\n", "round trip",
+         1e-6 * (double)ethd_histogram_at(&trip, 0.5), 1e3 * slow, 1e-6 * (double)trip.max, trip.count, seconds);
+  printf("%-10s %" PRIu64 " missing, %" PRIu64 " stale, %" PRIu64 " damaged or refused, %" PRIu64 " links lost\n",
+         "answers", c->missing, c->stale, c->garbled + c->busy + c->refused + c->failed, c->lost);
+  if (!trip.count) ethd__fail(ETHD_EXIT_FAILED, "no exchange went well: %s", drive.message);
+  printf("%-10s this bus can do %.0f Hz (99 %% of the exchanges; %.0f a second back to back)\n", "rate", floor(1 / slow),
+         (double)trip.count / seconds);
+}
+
+static void print_values(void) {
+  for (uint32_t i = 0; i < map.count; i++) {
+    const ethd__servo_register *r = &map.registers[i];
+    if (drive.plan.block[i] < 0 || r->direction != ETHD__SERVO_READ) continue;
+    printf("%-10s %-16s raw %-12.10g %.6g", i ? "" : "values", r->name, drive.raw[i], r->scale * drive.raw[i] + r->offset);
+    const char *unit = ethd__servo_units;
+    for (int32_t k = 0; k < r->unit; k++) unit = strchr(unit, '|') + 1;
+    printf(" %.*s\n", r->unit ? (int)strcspn(unit, "|") : 0, unit);
+  }
+}
+
+int main(int argc, char **argv) {
+  static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
+  const char *risk;
+  ethd__begin();
+  argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  ethd__catch_interrupt();
+  load();
+  reach();
+  double seconds = measure();
+  print_rate(seconds);
+  print_values();
+  for (uint32_t i = 0; (risk = ethd__servo_risk(&map, i)); i++) printf("%-10s %s\n", i ? "" : "open risk", risk);
+  ethd__servo_link_close(&drive);
+  return ethd__end(ETHD_EXIT_DONE);
+}
