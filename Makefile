@@ -16,7 +16,7 @@ RT ?= posix
 # Sources of libethd that work on [main] only; every other one must suit the control thread.
 MAIN_SIDE := $(wildcard lib/plugin.c lib/error.c lib/param.c lib/scene_parse.c lib/*_check.c lib/*_create.c lib/*_build.c)
 # Sources of the loop that its thread runs: they may sleep and read the clock, no more.
-LOOP_SIDE := drivers/loop/cycle.c drivers/loop/histogram.c drivers/servo/tick.c
+LOOP_SIDE := drivers/loop/cycle.c drivers/loop/histogram.c drivers/loop/watch.c drivers/servo/tick.c
 
 SHELL := /bin/sh
 .SUFFIXES:

@@ -140,7 +140,7 @@ int main(int argc, char **argv) {
     run_virtual(&session);
   else
     run_live(&session);
-  ethd__session_halt(&session);
+  ethd__session_halt(&session, ethd__stop);
   status = ethd__session_end(&session, message);
   ethd__summary_print(stdout, &session, arg.session.record);
   if (status) fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);

@@ -11,6 +11,7 @@
 #include "file/error_text.h"
 #include "run/telemetry.h"
 
+#define HEARTBEAT 0.1  /* s */
 #define PATIENCE 1000 /* waits of 1 ms, or ticks */
 
 /* ---- time ---- */
@@ -19,6 +20,7 @@ void ethd__session_poll(ethd__session *s) {
   ethd_event event;
   while (ethd_control_poll(s->control, &event) == ETHD_OK)
     if (event.kind == ETHD_EVENT_TAKEN) s->posted = false;
+  if (s->loop) ethd_loop_beat(s->loop);
 }
 
 void ethd__session_tick(ethd__session *s) {
@@ -121,6 +123,8 @@ static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, c
   def.device = s->device;
   def.control = s->control;
   def.period = s->setup.period;
+  def.gap = s->setup.limits.gap;
+  if (def.gap < (double)INFINITY) def.heartbeat = HEARTBEAT;
   def.clock = o->is_virtual ? &s->clock : NULL;
   ethd_status status = ethd_loop_create(&def, &s->loop, &error);
   if (status) {
@@ -185,10 +189,14 @@ ethd_status ethd__session_enable(ethd__session *s) {
 }
 
 /* A speed limit of 0: the guard damps the ring, and lets go when it stands. */
-void ethd__session_halt(ethd__session *s) {
+void ethd__session_halt(ethd__session *s, bool told) {
   char message[ETHD_MESSAGE_MAX];
   ethd_setup setup = s->setup;
   atomic_store(&s->recorder.stopping, 1);
+  if (told) {
+    ethd_loop_raise(s->loop, ETHD_FAULT_APPLICATION);
+    await_tick(s);
+  }
   setup.limits.speed = 0;
   if (ethd_loop_armed(s->loop) && !ethd__session_post(s, &setup, "set", "limits.speed 0", message))
     for (int i = 0; ethd_loop_armed(s->loop) && i < PATIENCE && !ethd_loop_ended(s->loop); i++) pass(s);

@@ -30,8 +30,8 @@ typedef struct ethd__session_options {
 ETHD_MUST_CHECK ethd_status ethd__session_open(const ethd__session_options *options, ethd__session *s,
                                                char message[ETHD_MESSAGE_MAX]);
 
-/* Damps the ring until it is still, then disables. */
-void ethd__session_halt(ethd__session *s);
+/* Damps the ring until it is still, then disables. told: a signal asked for it. */
+void ethd__session_halt(ethd__session *s, bool told);
 
 /* Ends the loop and the device: numbers can be read, nothing moves. ETHD_E_DEVICE: the clock had failed. */
 ETHD_MUST_CHECK ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]);

@@ -17,13 +17,18 @@ void ethd__shortfalls_print(FILE *out, int32_t bits) {
               ethd_shortfall_mend(1 << i));
 }
 
-static void print_faults(FILE *out, const ethd__recorder *r) {
+static void print_fault(FILE *out, int fault, uint64_t n, int *none) {
+  if (!n) return;
+  fprintf(out, "%-10s %" PRIu64 " x %s\n", *none ? "faults" : "", n, ethd_fault_sentence((ethd_fault)fault));
+  *none = 0;
+}
+
+/* What stopped the ring comes first. The stop at the end is a speed limit of 0, whose fault is none. */
+static void print_faults(FILE *out, const ethd__recorder *r, const ethd_loop_stats *stats) {
   int none = 1;
-  for (int i = 0; i < ETHD_FAULT_COUNT; i++) {
-    if (!r->faults[i]) continue;
-    fprintf(out, "%-10s %" PRIu64 " x %s\n", none ? "faults" : "", r->faults[i], ethd_fault_sentence((ethd_fault)i));
-    none = 0;
-  }
+  for (int i = 0; i < ETHD_FAULT_COUNT; i++) print_fault(out, i, r->faults[i], &none);
+  for (int i = 0; i < ETHD_FAULT_COUNT; i++)
+    if (!r->faults[i] && i != ETHD_FAULT_SPEED) print_fault(out, i, stats->faults[i], &none);
   if (none) fprintf(out, "%-10s none\n", "faults");
 }
 
@@ -57,7 +62,7 @@ void ethd__summary_print(FILE *out, const ethd__session *s, const char *record) 
     ethd__durations_print(out, "wake-up", &stats.wake);
     ethd__durations_print(out, "tick", &stats.tick);
   }
-  print_faults(out, &s->recorder);
+  print_faults(out, &s->recorder, &stats);
   print_device(out, &stats);
   print_skipped(out, s, &stats);
   if (record) fprintf(out, "%-10s %s: %" PRIu64 " ticks\n", "recorded", record, s->recorder.rows);

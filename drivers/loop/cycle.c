@@ -73,6 +73,7 @@ static void blind(ethd_loop *l) ETHD_RT {
 static int read_device(ethd_loop *l) ETHD_RT {
   if (!l->held) memset(&l->sense, 0, sizeof l->sense);
   ethd_status status = l->def.driver->read(l->def.device, l->due, &l->sense);
+  l->sense.faults |= ethd__loop_rows(l);
   if (status == ETHD_STALE && !(l->sense.faults | l->sense.grave) && l->held < HOLD_MAX) {
     l->held++;
     l->missed++;
@@ -147,7 +148,8 @@ void ethd__loop_rest(ethd_loop *l) {
 
 /* ---- the grid ---- */
 
-static void overrun(ethd_loop *l, int64_t periods) ETHD_RT {
+static void overrun(ethd_loop *l, int64_t late, int64_t periods) ETHD_RT {
+  ethd__loop_late(l, late);
   raise(&l->stats.overruns, 1);
   raise(&l->stats.missed, (uint64_t)periods);
   l->missed += periods;
@@ -166,7 +168,7 @@ static int wait(ethd_loop *l) ETHD_RT {
       (void)!ethd_control_rehearse(l->def.control, &l->sense, &command);
     while (!l->def.clock && (now = ethd__loop_now(l)) < l->due) continue;
   }
-  if (now - l->due >= l->period) overrun(l, (now - l->due) / l->period);
+  if (now - l->due >= l->period) overrun(l, now - l->due, (now - l->due) / l->period);
   return 0;
 }
 
@@ -174,7 +176,7 @@ static int wait(ethd_loop *l) ETHD_RT {
 static void advance(ethd_loop *l) ETHD_RT {
   l->due += l->period;
   int64_t late = ethd__loop_now(l) - l->due;
-  if (late > 0) overrun(l, (late + l->period - 1) / l->period);
+  if (late > 0) overrun(l, late, (late + l->period - 1) / l->period);
 }
 
 /* Yes, once asked; unless [main] has lost its patience at this very moment. */
@@ -186,6 +188,7 @@ static int parked(ethd_loop *l) ETHD_RT {
 }
 
 int ethd__loop_turn(ethd_loop *l) {
+  atomic_fetch_add_explicit(&l->turns, 1, memory_order_relaxed);
   /* while parked, [main] may be using all but the clock */
   if (parked(l)) {
     l->due += l->period;

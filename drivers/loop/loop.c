@@ -14,6 +14,8 @@ ethd_loop_def ethd_loop_default(void) {
                          .priority = 80,
                          .dma_latency = -1,
                          .soft_start = 0.1,
+                         .gap = (double)INFINITY,
+                         .heartbeat = (double)INFINITY,
                          .stack = (size_t)256 << 10,
                          .rows = 4096};
 }
@@ -47,9 +49,19 @@ static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
   if (!status) status = within(error, "dma_latency", d->dma_latency, -1, 1e6);
   if (!status) status = within(error, "early_wake", d->early_wake, 0, d->period / 2);
   if (!status) status = within(error, "soft_start", d->soft_start, 0, 10);
+  if (!status) status = within(error, "gap", d->gap, d->period, (double)INFINITY);
+  if (!status) status = within(error, "heartbeat", d->heartbeat, d->period, (double)INFINITY);
   if (!status) status = within(error, "stack", (double)d->stack, 65536, 0x1p26);
   if (!status) status = within(error, "rows", d->rows, 0, 0x1p20);
   return status;
+}
+
+static int64_t nanoseconds(double s) { return s < 1e9 ? llrint(1e9 * s) : INT64_MAX; }
+
+/* The narrower of the application's and the device's. */
+static double gap_of(const ethd_loop_def *d) {
+  if (!d->driver->limits || !d->device) return d->gap;
+  return fmin(d->gap, d->driver->limits(d->device).gap);
 }
 
 ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_error *error) {
@@ -63,6 +75,8 @@ ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_err
   l->def = *def;
   l->period = llrint(1e9 * def->period);
   l->early = llrint(1e9 * def->early_wake);
+  l->gap = nanoseconds(gap_of(def));
+  l->heartbeat = nanoseconds(def->heartbeat);
   l->dma_latency = -1;
   l->rows.size = def->rows;
   l->rows.at = calloc(def->rows ? def->rows : 1, sizeof *l->rows.at);
@@ -105,6 +119,13 @@ int32_t ethd_loop_ended(const ethd_loop *l) { return atomic_load_explicit(&l->en
 int32_t ethd_loop_shortfalls(const ethd_loop *l) { return l->shortfalls; }
 void ethd_loop_disarm(ethd_loop *l) { atomic_store_explicit(&l->armed, 0, memory_order_relaxed); }
 void ethd_loop_clear(ethd_loop *l) { atomic_store_explicit(&l->clear, 1, memory_order_relaxed); }
+void ethd_loop_beat(ethd_loop *l) { atomic_fetch_add_explicit(&l->beats, 1, memory_order_relaxed); }
+
+void ethd_loop_raise(ethd_loop *l, ethd_fault fault) {
+  if (fault > ETHD_FAULT_NONE && fault < ETHD_FAULT_COUNT)
+    atomic_fetch_or_explicit(&l->raised, ETHD_FAULT_BIT(fault), memory_order_relaxed);
+}
+
 void ethd_loop_stop(ethd_loop *l) { atomic_store_explicit(&l->stop, 1, memory_order_relaxed); }
 
 ethd_status ethd_loop_take(ethd_loop *l, ethd_loop_row *out) {
@@ -123,6 +144,13 @@ static void read_histogram(const ethd_histogram *h, ethd_histogram *out) {
   out->max = __atomic_load_n(&h->max, __ATOMIC_RELAXED);
 }
 
+/* The controller's own count is whole only between two of its steps. */
+static void read_faults(const ethd_loop *l, uint64_t out[ETHD_FAULT_COUNT]) {
+  ethd_counters now = {0};
+  if (l->def.clock || ethd_loop_ended(l)) ethd_control_counters(l->def.control, &now);
+  for (int i = 0; i < ETHD_FAULT_COUNT; i++) out[i] = l->faults[i] + now.faults[i];
+}
+
 void ethd_loop_read(const ethd_loop *l, ethd_loop_stats *out) {
   const ethd_loop_stats *s = &l->stats;
   *out = (ethd_loop_stats){.ticks = seen(&s->ticks),
@@ -135,4 +163,5 @@ void ethd_loop_read(const ethd_loop *l, ethd_loop_stats *out) {
                            .rows_lost = seen(&s->rows_lost)};
   read_histogram(&s->wake, &out->wake);
   read_histogram(&s->tick, &out->tick);
+  read_faults(l, out->faults);
 }

@@ -26,7 +26,8 @@ typedef struct ethd__unit {
 
 struct ethd_loop {
   ethd_loop_def def;
-  int64_t period, early; /* ns */
+  int64_t period, early;  /* ns */
+  int64_t gap, heartbeat; /* ns; INT64_MAX: none */
 
   /* [rt]; [main] while parked */
   int64_t due;    /* ns: the next tick's instant */
@@ -36,19 +37,27 @@ struct ethd_loop {
   int32_t dry;    /* 1: the next step is rehearsed first */
   int32_t held;   /* ticks since the last that stepped */
   int32_t marks, was_armed;
+  int64_t late;    /* ns: the longest overrun since the last step */
+  int64_t bucket;  /* of overruns */
+  int64_t beat_at; /* ns: the tick that saw the last beat of the application, 0: none yet */
+  unsigned beats_seen;
   uint64_t lost, swaps;
   ethd_sense sense;
   ethd_loop_row row;
   ethd_loop_stats stats;
 
   _Alignas(64) atomic_int mode, armed, clear, stop, ended, failed;
+  atomic_uint beats;           /* of the application */
+  atomic_uint turns;           /* of the loop's thread */
+  _Atomic int64_t raised;      /* rows for the next sense */
   ethd__rows rows;
 
   /* [main] */
-  int32_t shortfalls, locked, has_control;
+  int32_t shortfalls, locked, has_control, has_watch;
+  uint64_t faults[ETHD_FAULT_COUNT]; /* of controllers that were reset */
   uint32_t units; /* of blocking I/O that have a thread */
   ethd__unit unit[ETHD_UNITS_MAX];
-  pthread_t control;
+  pthread_t control, watch;
   void *stack;
   int dma_latency;
 };
@@ -61,6 +70,12 @@ int ethd__loop_cycle(ethd_loop *loop) ETHD_RT;
 
 /* Once round; 0 or what the sleep failed with. [rt] */
 int ethd__loop_turn(ethd_loop *loop) ETHD_RT;
+
+/* A tick was due `ns` ago. [rt] */
+void ethd__loop_late(ethd_loop *loop, int64_t ns) ETHD_RT;
+
+/* Rows of the fault table that the loop sees at this tick; once a tick. [rt] */
+int64_t ethd__loop_rows(ethd_loop *loop) ETHD_RT;
 
 /* Zero torque, as the last thing. [rt] */
 void ethd__loop_rest(ethd_loop *loop) ETHD_RT;

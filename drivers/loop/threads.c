@@ -13,6 +13,7 @@
 #define SERVICE_STACK ((size_t)256 << 10)
 #define PAUSE 1000000  /* ns */
 #define PATIENCE 1000  /* pauses */
+#define LOOK_MAX 10000000 /* ns from one look at the loop's thread to the next */
 
 static void pause_a_little(void) {
   struct timespec t = {.tv_nsec = PAUSE};
@@ -41,6 +42,27 @@ static void *run_unit(void *unit_) {
     ethd_status status = l->def.driver->service(l->def.device, unit->number, (int64_t)t.tv_sec * 1000000000 + t.tv_nsec);
     if (status < 0) __atomic_fetch_add(&l->stats.service_failures, 1, __ATOMIC_RELAXED);
     if (status) pause_a_little();
+  }
+  return NULL;
+}
+
+/* The loop's thread is dead when it hasn't turned for `gap` while the device gets torques: then the device
+   is let go from here, and the loop, should it live again, is told. */
+static void *run_watch(void *loop) {
+  ethd_loop *l = loop;
+  unsigned turns = atomic_load_explicit(&l->turns, memory_order_relaxed);
+  int64_t since = ethd__loop_now(l), now;
+  while (!atomic_load_explicit(&l->stop, memory_order_relaxed) && !ethd_loop_ended(l)) {
+    struct timespec t = {.tv_nsec = l->gap / 4 < LOOK_MAX ? l->gap / 4 : LOOK_MAX};
+    __STD(nanosleep)(&t, NULL);
+    unsigned seen = atomic_load_explicit(&l->turns, memory_order_relaxed);
+    now = ethd__loop_now(l);
+    if (seen != turns || !ethd_loop_armed(l)) since = now;
+    turns = seen;
+    if (now - since <= l->gap) continue;
+    l->def.driver->safe(l->def.device);
+    ethd_loop_raise(l, ETHD_FAULT_LOOP);
+    since = now;
   }
   return NULL;
 }
@@ -95,6 +117,29 @@ static int start_units(ethd_loop *l) {
   return failure;
 }
 
+/* Above the loop in priority, where that is granted. */
+static int create_watch(ethd_loop *l, int policy) {
+  pthread_attr_t attr;
+  int top = l->def.priority < 99 ? l->def.priority + 1 : 99;
+  struct sched_param param = {.sched_priority = policy == SCHED_FIFO ? top : 0};
+  pthread_attr_init(&attr);
+  pthread_attr_setstacksize(&attr, SERVICE_STACK);
+  pthread_attr_setinheritsched(&attr, PTHREAD_EXPLICIT_SCHED);
+  pthread_attr_setschedpolicy(&attr, policy);
+  pthread_attr_setschedparam(&attr, &param);
+  int failure = __STD(pthread_create)(&l->watch, &attr, run_watch, l);
+  pthread_attr_destroy(&attr);
+  return failure;
+}
+
+static int start_watch(ethd_loop *l) {
+  if (l->gap == INT64_MAX) return 0;
+  int failure = create_watch(l, SCHED_FIFO);
+  if (failure == EPERM) failure = create_watch(l, SCHED_OTHER);
+  l->has_watch = !failure;
+  return failure;
+}
+
 /* Signals are the application's: none reaches these threads, but the one by which Cobalt complains. */
 static int start_threads(ethd_loop *l, int cpu) {
   sigset_t all, before;
@@ -106,12 +151,13 @@ static int start_threads(ethd_loop *l, int cpu) {
   int failure = start_units(l);
   if (!failure) failure = start_control(l, cpu);
   if (!failure) l->has_control = 1;
+  if (!failure) failure = start_watch(l);
   pthread_sigmask(SIG_SETMASK, &before, NULL);
   return failure;
 }
 
 static void arm(ethd_loop *l) {
-  l->missed = l->step = l->ramp = 0;
+  l->missed = l->step = l->ramp = l->bucket = l->late = l->beat_at = 0;
   l->dry = 1;
   l->marks |= ETHD_ROW_STARTED;
   atomic_store_explicit(&l->armed, 1, memory_order_relaxed);
@@ -160,6 +206,9 @@ ethd_status ethd_loop_enable(ethd_loop *l) {
   if (!take_over(l)) return ETHD_BUSY;
   ethd_status status = l->def.driver->start(l->def.device);
   if (!status) {
+    ethd_counters counters;
+    ethd_control_counters(l->def.control, &counters);
+    for (int i = 0; i < ETHD_FAULT_COUNT; i++) l->faults[i] += counters.faults[i];
     ethd_control_reset(l->def.control);
     arm(l);
   }
@@ -174,6 +223,8 @@ ethd_status ethd_loop_join(ethd_loop *l) {
   }
   if (l->has_control) __RT(pthread_join)(l->control, NULL);
   l->has_control = 0;
+  if (l->has_watch) __STD(pthread_join)(l->watch, NULL);
+  l->has_watch = 0;
   for (; l->units; l->units--) __STD(pthread_join)(l->unit[l->units - 1].thread, NULL);
   if (l->stack) munmap(l->stack, l->def.stack);
   l->stack = NULL;

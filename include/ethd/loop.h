@@ -73,6 +73,9 @@ typedef struct ethd_loop_def {
   int32_t require_rt;    /* 1: start fails at any shortfall */
   int32_t dma_latency;   /* us, held while the loop runs; -1: not held */
   double early_wake;     /* s, 0 to period / 2: wakes so early, warms the caches, then spins to the tick */
+  double gap;            /* s, from a period on: lateness and silence over it are faults, and a thread watches
+                            over the loop's; INFINITY: they are only counted. The device's own limit holds too */
+  double heartbeat;      /* s, from a period on: the application's longest silence; INFINITY: any */
   double soft_start;     /* s, 0 to 10: time in which the torque's share rises from 0 to 1 after enabling */
   size_t stack;          /* bytes of the loop's stack, 65536 to 2^26 */
   uint32_t rows;         /* of the ring, a power of two up to 2^20; 0: no rows are kept */
@@ -80,7 +83,8 @@ typedef struct ethd_loop_def {
                             instant, a driver may move it on */
 } ethd_loop_def;
 
-/* 1 ms, no cpu, priority 80, early_wake 0, dma_latency -1, soft_start 0.1 s, 256 KiB, 4096 rows. [any] */
+/* 1 ms, no cpu, priority 80, early_wake 0, dma_latency -1, no gap, no heartbeat, soft_start 0.1 s,
+   256 KiB, 4096 rows. [any] */
 ETHD_API ethd_loop_def ethd_loop_default(void);
 
 typedef struct ethd_loop ethd_loop;
@@ -107,6 +111,7 @@ typedef struct ethd_loop_stats {
   uint64_t relaxes;  /* switches to the secondary mode of Xenomai's Cobalt; 0 elsewhere */
   uint64_t read_failures, write_failures, service_failures;
   uint64_t rows_lost;
+  uint64_t faults[ETHD_FAULT_COUNT]; /* occurrences; while threads run, up to the last enabling */
   ethd_histogram wake; /* from the instant that was asked for to the first instruction */
   ethd_histogram tick; /* read, step, write */
 } ethd_loop_stats;
@@ -131,6 +136,13 @@ ETHD_API void ethd_loop_disarm(ethd_loop *loop);
 
 /* 1: the device gets torques. A controller's safe command or a device's failure disarms. [any] */
 ETHD_API int32_t ethd_loop_armed(const ethd_loop *loop);
+
+/* The application is alive: within every `heartbeat` while the device is armed, or it is stopped. [any] */
+ETHD_API void ethd_loop_beat(ethd_loop *loop);
+
+/* A row of the fault table that the application sees, an emergency stop or a signal: its bit stands in the
+   next sense, once; raise it again while it lasts. [any] */
+ETHD_API void ethd_loop_raise(ethd_loop *loop, ethd_fault fault);
 
 /* Acknowledges the controller's fault before the next step. [any] */
 ETHD_API void ethd_loop_clear(ethd_loop *loop);

@@ -1,0 +1,38 @@
+/* Rows of the fault table that the loop itself sees. The thread that watches over it is in threads.c. */
+#include "loop/loop.h"
+
+/* A leaky bucket: lateness that comes often is as bad as long lateness. */
+#define POUR 10
+#define FULL 50
+#define BRIM 100 /* no more is remembered */
+
+void ethd__loop_late(ethd_loop *l, int64_t ns) {
+  l->bucket = l->bucket + POUR < BRIM ? l->bucket + POUR : BRIM;
+  if (ns > l->late) l->late = ns;
+}
+
+static int64_t overruns(ethd_loop *l) ETHD_RT {
+  int64_t rows = l->late ? ETHD_FAULT_BIT(ETHD_FAULT_OVERRUN) : 0;
+  if (l->gap < INT64_MAX && (l->bucket >= FULL || l->late > l->gap)) rows |= ETHD_FAULT_BIT(ETHD_FAULT_OVERRUNS);
+  if (!l->late && l->bucket) l->bucket--;
+  l->late = 0;
+  return rows;
+}
+
+/* Beats are counted by the application, and dated here. */
+static int64_t heartbeat(ethd_loop *l) ETHD_RT {
+  unsigned beats = atomic_load_explicit(&l->beats, memory_order_relaxed);
+  int armed = atomic_load_explicit(&l->armed, memory_order_relaxed);
+  if (beats != l->beats_seen || !armed || !l->beat_at) l->beat_at = l->due;
+  l->beats_seen = beats;
+  return l->due - l->beat_at > l->heartbeat ? ETHD_FAULT_BIT(ETHD_FAULT_APPLICATION) : 0;
+}
+
+int64_t ethd__loop_rows(ethd_loop *l) {
+  int64_t rows = 0;
+  if (atomic_load_explicit(&l->raised, memory_order_relaxed))
+    rows = atomic_exchange_explicit(&l->raised, 0, memory_order_relaxed);
+  if (l->late || l->bucket) rows |= overruns(l);
+  if (l->heartbeat < INT64_MAX) rows |= heartbeat(l);
+  return rows;
+}

@@ -1,0 +1,158 @@
+/* What the loop itself sees of the fault table, on a virtual clock: lateness, an application that is silent,
+   rows that it raises. */
+#include <math.h>
+#include <string.h>
+
+#include "unit/bench.h"
+
+#define BIT(row) ETHD_FAULT_BIT(ETHD_FAULT_##row)
+
+static int64_t rows_of_tick(bench *b) { return bench_tick(b).trace.sense.faults; }
+
+/* One late tick is counted; over 5 ms it is a stop, if anybody says so. */
+static const struct {
+  int64_t busy; /* ns of tick 3 */
+  int limited;
+  int64_t rows; /* of tick 4 */
+} late_ticks[] = {{PERIOD, 0, 0},           {PERIOD + 1, 0, BIT(OVERRUN)},
+                  {20 * PERIOD, 0, BIT(OVERRUN)}, {PERIOD + 1, 1, BIT(OVERRUN)},
+                  {6 * PERIOD, 1, BIT(OVERRUN)},  {6 * PERIOD + 1, 1, BIT(OVERRUN) | BIT(OVERRUNS)}};
+
+START_TEST(test_late) {
+  bench b;
+  ethd_loop_stats stats;
+  bench_open(&b);
+  if (late_ticks[_i].limited) b.def.gap = 0.005;
+  b.d.stall_write[3] = late_ticks[_i].busy;
+  bench_start(&b);
+  for (int i = 0; i < 8; i++) ck_assert_int_eq(rows_of_tick(&b), i == 4 ? late_ticks[_i].rows : 0);
+  int stops = (late_ticks[_i].rows & BIT(OVERRUNS)) != 0;
+  ck_assert_int_eq(ethd_loop_armed(b.loop), !stops); /* the ring is at rest */
+  ethd_loop_read(b.loop, &stats);
+  ck_assert_uint_eq(stats.faults[ETHD_FAULT_OVERRUN], late_ticks[_i].rows != 0);
+  ck_assert_uint_eq(stats.faults[ETHD_FAULT_OVERRUNS], (uint64_t)stops);
+  bench_close(&b);
+}
+END_TEST
+
+/* The device's own limit is as good as the application's. */
+static ethd_limits strict(const void *d) {
+  (void)d;
+  return ethd_limits_device();
+}
+
+START_TEST(test_limit_of_the_device) {
+  bench b;
+  bench_open(&b);
+  ethd_driver own = *b.def.driver;
+  own.limits = strict;
+  b.def.driver = &own;
+  b.d.stall_write[3] = 7 * PERIOD;
+  bench_start(&b);
+  for (int i = 0; i < 4; i++) rows_of_tick(&b);
+  ck_assert_int_eq(rows_of_tick(&b), BIT(OVERRUN) | BIT(OVERRUNS));
+  bench_close(&b);
+}
+END_TEST
+
+/* Five short ones in a row fill the bucket, one in eleven don't, one in five do in the end. */
+START_TEST(test_often_late) {
+  const int every[] = {1, 11, 5};
+  bench b;
+  bench_open(&b);
+  b.def.gap = 0.005;
+  for (int i = 0; i < 60; i++) b.d.stall_write[i] = i % every[_i] == 0 ? PERIOD + PERIOD / 2 : 0;
+  bench_start(&b);
+  int at = -1;
+  for (int i = 0; i < 60; i++)
+    if (rows_of_tick(&b) & BIT(OVERRUNS) && at < 0) at = i;
+  ck_assert_int_eq(at, _i == 0 ? 5 : _i == 1 ? -1 : 36); /* 10 + 6 k >= 50, k = 7 */
+  bench_close(&b);
+}
+END_TEST
+
+START_TEST(test_silent_application) {
+  bench b;
+  bench_open(&b);
+  b.def.heartbeat = 0.010;
+  bench_start(&b);
+  for (int i = 0; i < 40; i++) {
+    if (i % 9 == 0) ethd_loop_beat(b.loop);
+    ck_assert_int_eq(rows_of_tick(&b), 0);
+  }
+  int i = 0; /* the last beat was at tick 36 */
+  while (!rows_of_tick(&b)) i++;
+  ck_assert_int_eq(i, 7);
+  ck_assert_int_eq(ethd_loop_armed(b.loop), 0);
+  ck_assert_int_eq(bench_tick(&b).trace.fault, ETHD_FAULT_APPLICATION);
+  bench_close(&b);
+}
+END_TEST
+
+START_TEST(test_raise) {
+  bench b;
+  bench_open(&b);
+  bench_start(&b);
+  bench_tick(&b);
+  ethd_loop_raise(b.loop, ETHD_FAULT_RECORDER);
+  ethd_loop_raise(b.loop, ETHD_FAULT_NONE);
+  ethd_loop_raise(b.loop, (ethd_fault)-1);
+  ethd_loop_raise(b.loop, ETHD_FAULT_COUNT);
+  ck_assert_int_eq(rows_of_tick(&b), BIT(RECORDER));
+  ck_assert_int_eq(rows_of_tick(&b), 0); /* once */
+  ck_assert_int_eq(ethd_loop_armed(b.loop), 1);
+  ethd_loop_raise(b.loop, ETHD_FAULT_EMERGENCY_STOP);
+  ethd_loop_row row = bench_tick(&b);
+  ck_assert(row.trace.fault == ETHD_FAULT_EMERGENCY_STOP && !row.armed && b.d.safes == 1);
+  ck_assert(b.d.written[b.d.writes - 1].safe == 1 && b.d.written[b.d.writes - 1].torque[0] == 0);
+  bench_close(&b);
+}
+END_TEST
+
+/* Counts outlive the reset of an enabling. */
+START_TEST(test_counts_over_an_enabling) {
+  bench b;
+  ethd_loop_stats stats;
+  bench_open(&b);
+  bench_start(&b);
+  for (int i = 0; i < 3; i++) {
+    ethd_loop_raise(b.loop, ETHD_FAULT_EMERGENCY_STOP);
+    bench_tick(&b);
+    ck_assert_int_eq(ethd_loop_enable(b.loop), ETHD_OK);
+    bench_tick(&b);
+  }
+  ethd_loop_read(b.loop, &stats);
+  ck_assert_uint_eq(stats.faults[ETHD_FAULT_EMERGENCY_STOP], 3);
+  bench_close(&b);
+}
+END_TEST
+
+START_TEST(test_bad_bounds) {
+  const double bad[] = {NAN, -1, 0, 0.0009};
+  bench b;
+  bench_open(&b);
+  for (int i = 0; i < 8; i++) {
+    ethd_loop_def def = b.def;
+    ethd_error error;
+    *(i % 2 ? &def.gap : &def.heartbeat) = bad[i / 2];
+    ck_assert_int_eq(ethd_loop_create(&def, &b.loop, &error), ETHD_E_RANGE);
+    ck_assert_str_eq(error.name, i % 2 ? "gap" : "heartbeat");
+  }
+  b.loop = NULL;
+  bench_close(&b);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("loop_faults");
+  TCase *t = tcase_create("loop_faults");
+  tcase_add_loop_test(t, test_late, 0, sizeof late_ticks / sizeof *late_ticks);
+  tcase_add_test(t, test_limit_of_the_device);
+  tcase_add_loop_test(t, test_often_late, 0, 3);
+  tcase_add_test(t, test_silent_application);
+  tcase_add_test(t, test_raise);
+  tcase_add_test(t, test_counts_over_an_enabling);
+  tcase_add_test(t, test_bad_bounds);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}
