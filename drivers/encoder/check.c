@@ -29,6 +29,7 @@ ethd_status ethd__encoder_check(const ethd__encoder_def *d, double period, ethd_
       {"freeze_time", d->freeze_time, 1e-6, 1e3},
       {"reverse_torque", d->reverse_torque, 1e-6, (double)INFINITY},
       {"reverse_time", d->reverse_time, 1e-6, 1e3},
+      {"inertia", d->inertia, 1e-9, 1e6},
       {"sign", fabs((double)d->sign), 1, 1},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)

@@ -18,11 +18,12 @@ const ethd_param ethd__counter_params[ETHD__COUNTER_PARAMS] = {
     [ETHD__COUNTER_STAMPS] = {"stamps", "no|yes", 0, 1, 0, "speeds from the instants of the edges"},
     [ETHD__COUNTER_SPEED_MAX] = {"speed_max", "rad/s", 1e-3, 1e4, 30, "of a joint; what is faster is a jump"},
     [ETHD__COUNTER_FREEZE_TORQUE] = {"freeze_torque", "Nm", 1e-6, (double)INFINITY, (double)INFINITY,
-                                     "a sound joint doesn't stand under more; inf: it may"},
-    [ETHD__COUNTER_FREEZE_TIME] = {"freeze_time", "s", 1e-3, 10, 0.040, "it may for so long"},
+                                     "a change of torque that moves a sound joint, thrice its friction; inf: none"},
+    [ETHD__COUNTER_FREEZE_TIME] = {"freeze_time", "s", 1e-3, 10, 0.045, "within so long"},
     [ETHD__COUNTER_REVERSE_TORQUE] = {"reverse_torque", "Nm", 1e-6, (double)INFINITY, (double)INFINITY,
-                                      "a sound joint gains no speed against more; inf: it may"},
-    [ETHD__COUNTER_REVERSE_TIME] = {"reverse_time", "s", 1e-3, 10, 0.015, "it may for so long"},
+                                      "against more a sound joint gains no speed by itself; inf: it may"},
+    [ETHD__COUNTER_REVERSE_TIME] = {"reverse_time", "s", 1e-3, 10, 0.010, "it may for so long"},
+    [ETHD__COUNTER_INERTIA] = {"inertia", "kg m^2", 1e-6, 1e3, 0.01, "of a joint, within a half"},
 };
 
 static ethd_status refuse(const ethd_device_def *def, const ethd_setting *s, ethd_status status, double found,

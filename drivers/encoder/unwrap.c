@@ -6,6 +6,9 @@
 #define JUMPS_NS 10000000 /* a second jump within this is grave */
 #define TURN 6.283185307179586
 #define FRESH_NS 50000000 /* an edge older than this is no measure of speed */
+#define SMOOTHING 0.003   /* s, of the speed that energy is reckoned from */
+#define GAIN_LEAST 0.3    /* of the work against the torque that appears as speed: a reversed joint's is over */
+                          /* a half, a pushed one's under a tenth */
 
 /* ---- counts ---- */
 
@@ -89,35 +92,55 @@ static void time_edges(const ethd__encoder_def *def, ethd__encoder *e, const eth
 /* ---- against the torque ---- */
 
 static int64_t check_still(const ethd__encoder_def *def, ethd__encoder *e, double dt, double torque) ETHD_RT {
-  int held = e->step == 0 && fabs(torque) > def->freeze_torque;
-  e->still = held ? e->still + dt : 0;
+  if (e->step != 0) {
+    e->low = e->high = torque;
+    e->still = 0;
+    return 0;
+  }
+  e->low = fmin(e->low, torque);
+  e->high = fmax(e->high, torque);
+  if (e->high - e->low > def->freeze_torque) e->still += dt;
   return e->still >= def->freeze_time ? ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_FROZEN) : 0;
 }
 
-/* A joint that is driven against its motion slows down; the reading of a reversed one gains speed. */
-static int64_t check_direction(const ethd__encoder_def *def, ethd__encoder *e, double dt,
-                               double torque) ETHD_RT {
-  double speed = (double)e->step / dt;
-  int against = fabs(torque) > def->reverse_torque && speed * def->sign * torque < 0;
-  if (!against) {
+static double energy(const ethd__encoder_def *def, double speed) ETHD_RT { return 0.5 * def->inertia * speed * speed; }
+
+/* A joint that is driven against its motion slows down; the reading of a reversed one gains the speed that the
+   torque gives. A hand that pushes a sound one works against the torque for the most part. */
+static int64_t check_direction(const ethd__encoder_def *def, ethd__encoder *e, double dt, double torque) ETHD_RT {
+  double way = angle_per_count(def) * (double)e->step;
+  e->speed += (way / dt - e->speed) * (e->moves ? dt / (SMOOTHING + dt) : 1);
+  e->moves = 1;
+  if (!(fabs(torque) > def->reverse_torque && e->speed * torque < 0)) {
     e->wrong = 0;
     return 0;
   }
-  if (e->wrong == 0) e->wrong_speed = fabs(speed);
+  if (e->wrong == 0) {
+    e->wrong_speed = e->speed;
+    e->work = 0;
+  }
   e->wrong += dt;
-  if (e->wrong < def->reverse_time) return 0;
-  if (fabs(speed) > e->wrong_speed) return ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_REVERSED);
-  e->wrong = 0;
-  return 0;
+  e->work -= torque * way;
+  double gain = energy(def, e->speed) - energy(def, e->wrong_speed);
+  int reversed = e->wrong >= def->reverse_time && gain > 0 && gain > GAIN_LEAST * e->work;
+  return reversed ? ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_REVERSED) : 0;
 }
 
 /* ---- one sample ---- */
+
+static void forget_motion(ethd__encoder *e) ETHD_RT {
+  e->low = (double)INFINITY;
+  e->high = -(double)INFINITY;
+  e->still = e->wrong = 0;
+  e->moves = 0;
+}
 
 static void begin(const ethd__encoder_def *def, ethd__encoder *e, const ethd__count *s) ETHD_RT {
   e->position = shorter(s->raw, 0, def->ceiling);
   e->raw = s->raw;
   e->time_ns = s->time_ns;
   e->started = 1;
+  forget_motion(e);
 }
 
 /* Goes on at the last step's speed. */
@@ -170,5 +193,5 @@ void ethd__encoder_restart(ethd__encoder *e) {
 void ethd__encoder_pause(ethd__encoder *e) {
   e->paused = e->started;
   e->edges = e->jumped = 0;
-  e->still = e->wrong = 0;
+  forget_motion(e);
 }

@@ -37,10 +37,13 @@ typedef struct ethd__encoder_def {
   double ratio;            /* turns of that shaft in one of the joint, > 0 */
   double offset;           /* rad: the joint's angle at count 0, or at the home mark */
   double speed_max;        /* rad/s of the joint, > 0: what is faster is a jump */
-  double freeze_torque;    /* Nm, > 0: under more a sound joint doesn't stand; INFINITY: it may */
-  double freeze_time;      /* s: how long it may stand all the same, > 0 */
-  double reverse_torque;   /* Nm, > 0: against more a sound joint gains no speed; INFINITY: it may */
+  double freeze_torque;    /* Nm, > 0: a sound joint that stands while its torque changes by more soon moves:
+                              over twice its friction; INFINITY: it needn't */
+  double freeze_time;      /* s: how soon, > 0 */
+  double reverse_torque;   /* Nm, > 0: against more a sound joint gains no speed, unless a hand pushes it:
+                              then most of the hand's work is lost against the torque; INFINITY: it may */
   double reverse_time;     /* s: how long it may all the same, > 0 */
+  double inertia;          /* kg m^2 of the joint within a half, > 0: what energy its speed is */
   int32_t sign;            /* 1, or -1: counts rise while the angle falls */
   int32_t home;            /* 1: the first index mark that passes is the home mark, the whole number of
                               turns being the one nearest to what count and offset say; 0: no homing */
@@ -58,7 +61,7 @@ typedef struct ethd__encoder {
 
   int32_t started, paused, edges, marks;
   int32_t direction;  /* of the last edge */
-  int32_t reserved;
+  int32_t moves;      /* 1: speed is known */
   uint64_t raw;
   int64_t home;       /* count of the angle `offset` */
   int64_t mark, first_mark;
@@ -69,9 +72,12 @@ typedef struct ethd__encoder {
   double edge;        /* count at that edge: halfway between two */
   int64_t jump_ns;    /* of the last dropped sample */
   int32_t jumped;
-  double still;       /* s, under freeze_torque */
-  double wrong;       /* s, gaining speed against reverse_torque */
-  double wrong_speed; /* counts/s, at its begin */
+  double low, high;   /* Nm: torques since the last edge */
+  double still;       /* s, since they differ by more than freeze_torque */
+  double speed;       /* rad/s, smoothed */
+  double wrong;       /* s, against reverse_torque */
+  double wrong_speed; /* rad/s, at its begin */
+  double work;        /* J, given to the joint since then */
 } ethd__encoder;
 
 /* 2^width - 1, of 1 to 64 bits. */

@@ -7,10 +7,10 @@
 
 #define FIRST 1000 /* descriptor */
 
-mock_counter mock;
+mock_counter counter_mock;
 
 static int fail(int reason) { return errno = reason, -1; }
-static const char *path_of(int fd) { return mock.opened[fd - FIRST]; }
+static const char *path_of(int fd) { return counter_mock.opened[fd - FIRST]; }
 static int ends(const char *path, const char *end) {
   size_t n = strlen(path), m = strlen(end);
   return n >= m && !strcmp(path + n - m, end);
@@ -18,20 +18,20 @@ static int ends(const char *path, const char *end) {
 
 static int mock_open(const char *path, int flags) {
   (void)flags;
-  if (ends(path, "/ceiling") && !mock.ceiling[0]) return fail(ENOENT);
+  if (ends(path, "/ceiling") && !counter_mock.ceiling[0]) return fail(ENOENT);
   if (ends(path, "/enable") || strstr(path, "counter9")) return fail(ENOENT);
   for (int i = 0; i < 16; i++)
-    if (!mock.opened[i][0]) {
-      snprintf(mock.opened[i], sizeof mock.opened[i], "%s", path);
-      mock.open_files++;
+    if (!counter_mock.opened[i][0]) {
+      snprintf(counter_mock.opened[i], sizeof counter_mock.opened[i], "%s", path);
+      counter_mock.open_files++;
       return FIRST + i;
     }
   return fail(EMFILE);
 }
 
 static int mock_close(int fd) {
-  mock.opened[fd - FIRST][0] = 0;
-  mock.open_files--;
+  counter_mock.opened[fd - FIRST][0] = 0;
+  counter_mock.open_files--;
   return 0;
 }
 
@@ -39,42 +39,42 @@ static int mock_ioctl(int fd, unsigned long request, void *argument) {
   (void)fd;
   if (request == COUNTER_ADD_WATCH_IOCTL) {
     const struct counter_watch *w = argument;
-    if (w->event == mock.refuse_event) return fail(EINVAL);
-    mock.watches[mock.watch_count++ % 8] = *w;
+    if (w->event == counter_mock.refuse_event) return fail(EINVAL);
+    counter_mock.watches[counter_mock.watch_count++ % 8] = *w;
   }
-  if (request == COUNTER_ENABLE_EVENTS_IOCTL) mock.enabled = 1;
-  if (request == COUNTER_DISABLE_EVENTS_IOCTL) mock.enabled = 0;
+  if (request == COUNTER_ENABLE_EVENTS_IOCTL) counter_mock.enabled = 1;
+  if (request == COUNTER_DISABLE_EVENTS_IOCTL) counter_mock.enabled = 0;
   return 0;
 }
 
 static ssize_t mock_read(int fd, void *to, size_t size) {
   (void)fd;
-  if (mock.gone) return fail(ENODEV);
-  uint32_t n = (uint32_t)(size / sizeof *mock.events);
-  if (n > mock.waiting) n = mock.waiting;
+  if (counter_mock.gone) return fail(ENODEV);
+  uint32_t n = (uint32_t)(size / sizeof *counter_mock.events);
+  if (n > counter_mock.waiting) n = counter_mock.waiting;
   if (!n) return fail(EAGAIN);
-  memcpy(to, mock.events, n * sizeof *mock.events);
-  memmove(mock.events, mock.events + n, (mock.waiting - n) * sizeof *mock.events);
-  mock.waiting -= n;
-  return (ssize_t)(n * sizeof *mock.events);
+  memcpy(to, counter_mock.events, n * sizeof *counter_mock.events);
+  memmove(counter_mock.events, counter_mock.events + n, (counter_mock.waiting - n) * sizeof *counter_mock.events);
+  counter_mock.waiting -= n;
+  return (ssize_t)(n * sizeof *counter_mock.events);
 }
 
 static ssize_t mock_read_text(int fd, char *to, size_t size) {
   const char *path = path_of(fd);
-  if (mock.gone) return fail(ENODEV);
-  if (ends(path, "/function")) return snprintf(to, size, "%s\n", mock.function);
-  if (ends(path, "/ceiling")) return snprintf(to, size, "%s\n", mock.ceiling);
-  return snprintf(to, size, "%" PRIu64 "\n", mock.count[strstr(path, "count1/") != NULL]);
+  if (counter_mock.gone) return fail(ENODEV);
+  if (ends(path, "/function")) return snprintf(to, size, "%s\n", counter_mock.function);
+  if (ends(path, "/ceiling")) return snprintf(to, size, "%s\n", counter_mock.ceiling);
+  return snprintf(to, size, "%" PRIu64 "\n", counter_mock.count[strstr(path, "count1/") != NULL]);
 }
 
 static ssize_t mock_write_text(int fd, const char *from, size_t size) {
-  if (ends(path_of(fd), "/function") && !mock.deaf) snprintf(mock.function, sizeof mock.function, "%.*s", (int)size, from);
+  if (ends(path_of(fd), "/function") && !counter_mock.deaf) snprintf(counter_mock.function, sizeof counter_mock.function, "%.*s", (int)size, from);
   return (ssize_t)size;
 }
 
 static void mock_pause(int64_t ns) {
-  mock.pauses++;
-  if (mock.on_pause) mock.on_pause(ns);
+  counter_mock.pauses++;
+  if (counter_mock.on_pause) counter_mock.on_pause(ns);
 }
 
 static const ethd__counter_calls calls = {.open = mock_open,
@@ -86,13 +86,13 @@ static const ethd__counter_calls calls = {.open = mock_open,
                                           .pause = mock_pause};
 
 void mock_counter_install(void) {
-  mock = (mock_counter){.ceiling = "4294967295", .function = "quadrature x4", .refuse_event = -1};
+  counter_mock = (mock_counter){.ceiling = "4294967295", .function = "quadrature x4", .refuse_event = -1};
   ethd__counter_calls_now = &calls;
 }
 
 void mock_counter_event(uint8_t kind, int joint, uint64_t value, int64_t time_ns) {
-  if (mock.waiting == MOCK_EVENTS) return;
-  mock.events[mock.waiting++] = (struct counter_event){
+  if (counter_mock.waiting == MOCK_EVENTS) return;
+  counter_mock.events[counter_mock.waiting++] = (struct counter_event){
       .timestamp = (uint64_t)time_ns,
       .value = value,
       .watch = {.component = {COUNTER_COMPONENT_COUNT, COUNTER_SCOPE_COUNT, (uint8_t)joint, 0},

@@ -23,7 +23,7 @@ typedef struct mock_counter {
   char opened[16][160]; /* paths by descriptor, "" closed */
 } mock_counter;
 
-extern mock_counter mock;
+extern mock_counter counter_mock;
 
 /* 32 bits, quadrature x4; opening a device anew takes its calls from here. */
 void mock_counter_install(void);

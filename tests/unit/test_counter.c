@@ -43,8 +43,8 @@ START_TEST(test_counts_become_angles) {
   void *d = open_with((const char *const[]){"offset1", "0.5", "sign2", "-1", NULL});
   ck_assert_int_eq(D.start(d), ETHD_OK);
   for (int i = 0; i < 100; i++) {
-    mock.count[0] = (uint64_t)(10 * i);
-    mock.count[1] = 0xFFFFFFFF & (uint64_t)(-20 * i);
+    counter_mock.count[0] = (uint64_t)(10 * i);
+    counter_mock.count[1] = 0xFFFFFFFF & (uint64_t)(-20 * i);
     ethd_sense s = sample(d, i + 1, ETHD_OK);
     ck_assert_double_eq_tol(s.q[0], 0.5 + PER_COUNT * 10 * i, 1e-12);
     ck_assert_double_eq_tol(s.q[1], PER_COUNT * 20 * i, 1e-12);
@@ -53,38 +53,38 @@ START_TEST(test_counts_become_angles) {
   }
   ethd_sense s = {0};
   ck_assert_int_eq(D.read(d, 0, &s), ETHD_STALE); /* nothing newer */
-  ck_assert_int_eq(mock.open_files, 3);           /* the device once, two counts */
-  ck_assert_int_eq(mock.pauses, 100);
+  ck_assert_int_eq(counter_mock.open_files, 3);           /* the device once, two counts */
+  ck_assert_int_eq(counter_mock.pauses, 100);
   D.close(d);
-  ck_assert_int_eq(mock.open_files, 0);
+  ck_assert_int_eq(counter_mock.open_files, 0);
 }
 END_TEST
 
 START_TEST(test_two_devices) {
   mock_counter_install();
   void *d = open_with((const char *const[]){"device2", "/dev/counter1", "count2", "0", NULL});
-  ck_assert_int_eq(mock.open_files, 4);
+  ck_assert_int_eq(counter_mock.open_files, 4);
   D.close(d);
-  ck_assert(mock.open_files == 0 && !mock.enabled);
+  ck_assert(counter_mock.open_files == 0 && !counter_mock.enabled);
 }
 END_TEST
 
 /* A count of 10 bits comes round every 1024. */
 START_TEST(test_ceiling_of_the_kernel) {
   mock_counter_install();
-  strcpy(mock.ceiling, "1023");
+  strcpy(counter_mock.ceiling, "1023");
   void *d = open_with((const char *const[]){"speed_max", "20", NULL});
   for (int i = 0; i < 200; i++) {
-    mock.count[0] = (uint64_t)(50 * i) % 1024;
+    counter_mock.count[0] = (uint64_t)(50 * i) % 1024;
     ck_assert_double_eq_tol(sample(d, i + 1, ETHD_OK).q[0], PER_COUNT * 50 * i, 1e-12);
   }
   D.close(d);
-  strcpy(mock.ceiling, "100");
+  strcpy(counter_mock.ceiling, "100");
   char message[ETHD_MESSAGE_MAX];
   const ethd_setting ratio = {"ratio", "12", 1};
   ck_assert_int_eq(try(&ratio, 1, &d, message), ETHD_E_RANGE); /* 30 rad/s are 229 counts in a period */
   ck_assert_msg(strstr(message, "speed_max"), "%s", message);
-  ck_assert_int_eq(mock.open_files, 0);
+  ck_assert_int_eq(counter_mock.open_files, 0);
 }
 END_TEST
 
@@ -94,8 +94,8 @@ static int64_t homing;
 
 static void turn_by_hand(int64_t ns) {
   homing += ns / MS;
-  mock.count[0] = 1000 + 2 * (uint64_t)homing;
-  mock.count[1] = 3000 + 2 * (uint64_t)homing;
+  counter_mock.count[0] = 1000 + 2 * (uint64_t)homing;
+  counter_mock.count[1] = 3000 + 2 * (uint64_t)homing;
   if (homing == 100) mock_counter_event(COUNTER_EVENT_INDEX, 0, 1190, 0);
   if (homing == 200) mock_counter_event(COUNTER_EVENT_INDEX, 1, 3390, 0);
 }
@@ -103,21 +103,21 @@ static void turn_by_hand(int64_t ns) {
 START_TEST(test_homing) {
   mock_counter_install();
   void *d = open_with((const char *const[]){"home", "yes", "offset1", "0.25", NULL});
-  ck_assert_uint_eq(mock.watch_count, 2);
-  ck_assert_int_eq(mock.enabled, 1);
+  ck_assert_uint_eq(counter_mock.watch_count, 2);
+  ck_assert_int_eq(counter_mock.enabled, 1);
   homing = 0;
-  mock.on_pause = turn_by_hand;
-  mock.count[0] = 1000, mock.count[1] = 3000;
+  counter_mock.on_pause = turn_by_hand;
+  counter_mock.count[0] = 1000, counter_mock.count[1] = 3000;
   ck_assert_int_eq(D.start(d), ETHD_OK);
-  mock.on_pause = NULL;
+  counter_mock.on_pause = NULL;
   ck_assert(homing >= 200 && homing < 203);
   /* the mark at 1190 is the whole turn 0, the one at 3390 the whole turn 1 */
   ethd_sense s = sample(d, 1, ETHD_OK);
-  ck_assert_double_eq_tol(s.q[0], 0.25 + PER_COUNT * (double)((int64_t)mock.count[0] - 1190), 1e-12);
-  ck_assert_double_eq_tol(s.q[1], PER_COUNT * (double)((int64_t)mock.count[1] - 3390 + 4000), 1e-12);
+  ck_assert_double_eq_tol(s.q[0], 0.25 + PER_COUNT * (double)((int64_t)counter_mock.count[0] - 1190), 1e-12);
+  ck_assert_double_eq_tol(s.q[1], PER_COUNT * (double)((int64_t)counter_mock.count[1] - 3390 + 4000), 1e-12);
   ck_assert_int_eq(D.start(d), ETHD_OK); /* at home */
-  mock.count[0] = 5190; /* a turn later, by and by */
-  for (int i = 2; i < 100; i++) mock.count[0] = 1404 + (uint64_t)(38 * i), sample(d, i, ETHD_OK);
+  counter_mock.count[0] = 5190; /* a turn later, by and by */
+  for (int i = 2; i < 100; i++) counter_mock.count[0] = 1404 + (uint64_t)(38 * i), sample(d, i, ETHD_OK);
   mock_counter_event(COUNTER_EVENT_INDEX, 0, 5192, 0); /* two counts too far */
   s = sample(d, 100, ETHD_OK);
   ck_assert_int_eq(s.faults, ETHD_FAULT_BIT(ETHD_FAULT_INDEX));
@@ -132,7 +132,7 @@ START_TEST(test_homing_takes_too_long) {
   mock_counter_install();
   void *d = open_with((const char *const[]){"home", "yes", "home_time", "0.5", NULL});
   ck_assert_int_eq(D.start(d), ETHD_E_DEVICE);
-  ck_assert_int_eq(mock.pauses, 500);
+  ck_assert_int_eq(counter_mock.pauses, 500);
   D.close(d);
 }
 END_TEST
@@ -141,7 +141,7 @@ END_TEST
 START_TEST(test_stamps) {
   mock_counter_install();
   void *d = open_with((const char *const[]){"stamps", "yes", NULL});
-  ck_assert_uint_eq(mock.watch_count, 4);
+  ck_assert_uint_eq(counter_mock.watch_count, 4);
   int64_t edge = 0;
   for (int ms = 1; ms < 200; ms++) {
     for (; (edge + 1) * 1111111 <= ms * MS; edge++)
@@ -167,10 +167,10 @@ START_TEST(test_gone) {
   mock_counter_install();
   void *d = open_with((const char *const[]){NULL});
   sample(d, 1, ETHD_OK);
-  mock.gone = 1;
+  counter_mock.gone = 1;
   ck_assert_int_eq(D.service(d, 0, 2 * MS), ETHD_E_DEVICE);
   sample(d, 3, ETHD_E_DEVICE);
-  mock.gone = 0;
+  counter_mock.gone = 0;
   sample(d, 4, ETHD_OK);
   ethd_figure f[4];
   ck_assert_uint_eq(D.figures(d, f, 4), 3);
@@ -183,9 +183,9 @@ END_TEST
 START_TEST(test_reset_counter) {
   mock_counter_install();
   void *d = open_with((const char *const[]){NULL});
-  mock.count[0] = 5000;
+  counter_mock.count[0] = 5000;
   sample(d, 1, ETHD_OK);
-  mock.count[0] = 0;
+  counter_mock.count[0] = 0;
   ethd_sense s = sample(d, 2, ETHD_OK);
   ck_assert_int_eq(s.faults, ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP));
   ck_assert_double_eq_tol(s.q[0], 5000 * PER_COUNT, 1e-12);
@@ -219,10 +219,10 @@ START_TEST(test_refused) {
   mock_counter_install();
   const ethd_setting s = {bad[_i].key, bad[_i].value, 7};
   char message[ETHD_MESSAGE_MAX];
-  void *d = &mock;
+  void *d = &counter_mock;
   ck_assert_int_lt(try(&s, 1, &d, message), 0);
   ck_assert_msg(strstr(message, bad[_i].says), "%s", message);
-  ck_assert(!d && mock.open_files == 0);
+  ck_assert(!d && counter_mock.open_files == 0);
 }
 END_TEST
 
@@ -231,33 +231,33 @@ static ethd_status open_plain(const char *key, const char *value, char *message)
   void *d;
   ethd_status status = try(&s, 1, &d, message);
   if (!status) D.close(d);
-  ck_assert_int_eq(mock.open_files, 0);
+  ck_assert_int_eq(counter_mock.open_files, 0);
   return status;
 }
 
 START_TEST(test_kernel_disagrees) {
   char message[ETHD_MESSAGE_MAX];
   mock_counter_install();
-  strcpy(mock.function, "increase");
+  strcpy(counter_mock.function, "increase");
   ck_assert_int_eq(open_plain("ratio", "1", message), ETHD_OK);
-  ck_assert_str_eq(mock.function, "quadrature x4");
-  strcpy(mock.function, "increase");
-  mock.deaf = 1;
+  ck_assert_str_eq(counter_mock.function, "quadrature x4");
+  strcpy(counter_mock.function, "increase");
+  counter_mock.deaf = 1;
   ck_assert_int_eq(open_plain("ratio", "1", message), ETHD_E_DEVICE);
   ck_assert_msg(strstr(message, "found increase after setting quadrature x4"), "%s", message);
   mock_counter_install();
-  strcpy(mock.ceiling, "many");
+  strcpy(counter_mock.ceiling, "many");
   ck_assert_int_eq(open_plain("ratio", "1", message), ETHD_E_DEVICE);
   ck_assert_msg(strstr(message, "many"), "%s", message);
   mock_counter_install();
-  mock.ceiling[0] = 0; /* the kernel doesn't say: `width` does */
+  counter_mock.ceiling[0] = 0; /* the kernel doesn't say: `width` does */
   ck_assert_int_eq(open_plain("width", "16", message), ETHD_OK);
   mock_counter_install();
-  mock.refuse_event = COUNTER_EVENT_INDEX;
+  counter_mock.refuse_event = COUNTER_EVENT_INDEX;
   ck_assert_int_eq(open_plain("ratio", "1", message), ETHD_OK);
   ck_assert_int_eq(open_plain("home", "yes", message), ETHD_E_DEVICE);
   ck_assert_msg(strstr(message, "has no index event"), "%s", message);
-  mock.refuse_event = COUNTER_EVENT_CHANGE_OF_STATE;
+  counter_mock.refuse_event = COUNTER_EVENT_CHANGE_OF_STATE;
   ck_assert_int_eq(open_plain("stamps", "yes", message), ETHD_E_DEVICE);
 }
 END_TEST
