@@ -227,7 +227,7 @@ static bool make_board(ring *r, int n, elf_firmware_t *firmware) {
 }
 
 ring *ring_create(const char *path, bool slow) {
-  elf_firmware_t firmware = {0};
+  static elf_firmware_t firmware;
   ring *r = calloc(1, sizeof *r);
   bool made = r && !elf_read_firmware(path, &firmware);
   if (r) r->slow = slow;
@@ -245,11 +245,6 @@ ring *ring_create(const char *path, bool slow) {
   }
   ring_touch(r);
   return r;
-}
-
-void ring_destroy(ring *r) {
-  for (int n = 0; n < RING_BOARDS; n++) avr_terminate(r->board[n].avr);
-  free(r);
 }
 
 double ring_baud(const ring *r) {

@@ -47,9 +47,9 @@ struct ring {
   void *context;
 };
 
-/* NULL and one line on stderr when the firmware can't be loaded. `slow` sets the strap of 400 kBd. */
+/* NULL and one line on stderr when the firmware can't be loaded. `slow` sets the strap of 400 kBd. It lives as long
+   as the process: simavr can't take a core apart wholly. */
 ring *ring_create(const char *firmware, bool slow);
-void ring_destroy(ring *r);
 
 void ring_run(ring *r, uint64_t until);
 

@@ -192,7 +192,8 @@ int main(int argc, char **argv) {
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
   sigaction(SIGHUP, &action, NULL);
-  session s = {.step = o.step,
+  static session s;
+  s = (session){.step = o.step,
                .terminal = {.master = -1, .slave = -1, .alias = o.alias, .patient = o.step || o.speed == 0,
                             .baud_matters = o.baud_matters, .random = 2463534242u}};
   avr_global_logger_set(quiet);
@@ -204,6 +205,5 @@ int main(int argc, char **argv) {
   fflush(stdout);
   serve(&s, &o);
   terminal_unplug(&s.terminal);
-  ring_destroy(s.ring);
   return 0;
 }

@@ -121,7 +121,7 @@ static void stop(sensor *s, uint64_t now) {
   bus_times *t = s->times;
   uint64_t spent = now - s->started;
   if (now - s->scl_rose < BUS_HOLD) t->hurried++;
-  if (s->mode != SENSOR_IDLE && s->reads && s->byte > 2) least(&t->get_min, spent), most(&t->get_max, spent);
+  if (s->mode != SENSOR_IDLE && s->reads && s->byte >= 2) least(&t->get_min, spent), most(&t->get_max, spent);
   if (s->mode == SENSOR_LISTEN && s->byte == 3) least(&t->put_min, spent), most(&t->put_max, spent);
   s->mode = SENSOR_IDLE;
   s->pulls = false;
