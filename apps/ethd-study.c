@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "common/cli.h"
+#include "screen/screen.h"
 #include "study/desk.h"
 #include "study/session.h"
 #include "study/shard.h"
@@ -22,11 +23,12 @@ static const char doc[] =
     "Examples:\n"
     "  ethd-study --out session\n"
     "  ethd-study my.study --out session --ask\n"
+    "  ethd-study --out mine --screen    (tap with the mouse)\n"
     "  ethd-study --resume session\n"
     "  ethd-study grid.study --simulate 1000 --shard 1/4 --out bulk    (and 2/4, 3/4, 4/4, anywhere)\n"
     "  ethd-study --merge bulk";
 
-enum { OPTION_RESUME = 256, OPTION_ASK, OPTION_FINGER, OPTION_PARTICIPANT, OPTION_SIMULATE, OPTION_SHARD, OPTION_TICKS, OPTION_MERGE };
+enum { OPTION_RESUME = 256, OPTION_ASK, OPTION_FINGER, OPTION_PARTICIPANT, OPTION_SIMULATE, OPTION_SHARD, OPTION_TICKS, OPTION_MERGE, OPTION_SCREEN };
 
 static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "folder of a new session, or of a simulation", 0},
@@ -34,6 +36,7 @@ static const struct argp_option options[] = {
     {"participant", OPTION_PARTICIPANT, "K", 0, "only this one, from 1; the others another time", 0},
     {"finger", OPTION_FINGER, "FILE.csv", 0, "every hand's path is this recorded movement", 0},
     {"ask", OPTION_ASK, NULL, 0, "take commands on stdin", 0},
+    {"screen", OPTION_SCREEN, "WxH", OPTION_ARG_OPTIONAL, "in a window, 1280x720 by default: the mouse is the finger", 0},
     {"quiet", 'q', NULL, 0, "no line per tap", 0},
     {"simulate", OPTION_SIMULATE, "N", 0, "N participants at every point of the study's [grid]", 1},
     {"shard", OPTION_SHARD, "I/N", 0, "only this share of the simulation: 1/1", 1},
@@ -46,6 +49,7 @@ static struct {
   const char *study, *out, *resume, *finger, *merge;
   int64_t participant, simulate;
   ethd__shard shard;
+  int width, height; /* px of the screen; 0: none */
   bool ask, quiet, sharded;
 } arg = {.shard = {.index = 1, .count = 1}};
 
@@ -61,11 +65,21 @@ static void parse_shard(const char *text) {
   arg.sharded = true;
 }
 
+static void parse_screen(const char *text) {
+  char rest;
+  arg.width = 1280, arg.height = 720;
+  if (text && (sscanf(text, "%5dx%5d%c", &arg.width, &arg.height, &rest) != 2 || arg.width < 320 || arg.height < 200 ||
+               arg.width > 16384 || arg.height > 16384))
+    ethd__fail(ETHD_EXIT_INPUT, "--screen: found \"%.40s\", WxH from 320x200 to 16384x16384 is allowed", text);
+}
+
 /* What goes with what. */
 static void check_options(struct argp_state *state) {
   if (!!arg.out + !!arg.resume + !!arg.merge != 1) argp_error(state, "--out DIR, --resume DIR or --merge DIR is needed");
   if (!arg.out && (arg.study || arg.finger)) argp_error(state, "the study is taken from the folder");
   if ((arg.sharded || arg.shard.record) && !arg.simulate) argp_error(state, "--shard and --ticks need --simulate N");
+  if (arg.width && (arg.ask || arg.simulate || arg.finger || arg.merge))
+    argp_error(state, "--screen has a finger of its own, and keys: no --ask, --finger, --simulate, --merge");
   if (arg.simulate && (!arg.out || arg.ask || arg.participant))
     argp_error(state, "--simulate needs --out DIR, and has nobody to ask or choose");
 }
@@ -83,6 +97,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     case OPTION_SIMULATE: arg.simulate = ethd__option_integer("--simulate", text, 1, ETHD_STUDY_PEOPLE); return 0;
     case OPTION_SHARD: parse_shard(text); return 0;
     case OPTION_TICKS: arg.shard.record = true; return 0;
+    case OPTION_SCREEN: parse_screen(text); return 0;
     case OPTION_MERGE: arg.merge = text; return 0;
     case ARGP_KEY_ARG:
       if (arg.study) argp_error(state, "\"%s\": one study file is allowed", text);
@@ -157,12 +172,25 @@ static int end(const ethd__sitting *sitting, const char *folder, ethd_status sta
   return stopped(folder, "ethd-study --resume");
 }
 
+/* The window, where one is asked for; else lines. */
+static void take_front(ethd__sitting *sitting, ethd__desk *desk, ethd__console *console, ethd__screen *screen) {
+  char message[ETHD_MESSAGE_MAX];
+  sitting->source = ethd__desk_source(desk);
+  sitting->front = ethd__console_front(console);
+  if (!arg.width) return;
+  if (ethd__screen_open(screen, desk, arg.width, arg.height, message))
+    ethd__fail(ETHD_EXIT_FAILED, "--screen: %s", message);
+  sitting->source = ethd__screen_source(screen);
+  sitting->front = ethd__screen_front(screen);
+}
+
 static int run_session(void) {
   char message[ETHD_MESSAGE_MAX] = "";
   const char *path = arg.resume ? arg.resume : arg.out;
   ethd__folder folder;
   ethd__desk desk;
   ethd__sitting sitting;
+  static ethd__screen screen;
   bool over = false;
   if (!arg.resume) make_folder();
   check(ethd__folder_open(path, &folder, message), message);
@@ -170,10 +198,13 @@ static int run_session(void) {
   check(ethd__desk_open(&folder.protocol, &folder.loaded, folder.finger, &desk, message), message);
   check(ethd__sitting_open(&folder, &sitting, message), message);
   choose(&sitting, &folder.protocol);
-  sitting.source = ethd__desk_source(&desk);
-  sitting.front = ethd__console_front(&console);
+  take_front(&sitting, &desk, &console, &screen);
   ethd__catch_interrupt();
   ethd_status status = ethd__sitting_run(&sitting, &over, message);
+  if (arg.width) {
+    ethd__screen_end(&screen, over);
+    ethd__screen_close(&screen);
+  }
   int code = end(&sitting, path, status, over, message);
   ethd__sitting_close(&sitting);
   ethd__desk_close(&desk);

@@ -17,8 +17,7 @@ static void block(void *self, const char *participant, const ethd__turn *turn) {
          c->protocol->speeds.word[turn->block.speed], turn->block.training ? "training" : "test");
 }
 
-/* What to do otherwise, for whoever taps. */
-static const char *advice(ethd__reason reason) {
+const char *ethd__advice(ethd__reason reason) {
   switch (reason) {
     case ETHD_TAP_OK: return "valid";
     case ETHD_TAP_FAULT: return "the device stopped itself";
@@ -36,7 +35,7 @@ static void verdict(void *self, const char *participant, const ethd__taken *take
   const ethd__console *c = self;
   const ethd__metrics *m = &taken->result.metrics;
   if (c->quiet) return;
-  printf("%s tap %2" PRIu32 ": %s", participant, taken->turn.attempt, advice(m->reason));
+  printf("%s tap %2" PRIu32 ": %s", participant, taken->turn.attempt, ethd__advice(m->reason));
   if (m->v_rvo == m->v_rvo)
     printf(" (%.3f m/s; %.3g to %.3g count)", m->v_rvo, taken->speed->centre - taken->speed->band,
            taken->speed->centre + taken->speed->band);

@@ -23,6 +23,9 @@ typedef struct ethd__front {
   bool (*survey)(void *self, const ethd__turn *turn, int answers[3]);
 } ethd__front;
 
+/* What to do otherwise, for whoever taps. [any] */
+const char *ethd__advice(ethd__reason reason);
+
 /* Lines on stdout, commands and answers on stdin when `ask`. */
 typedef struct ethd__console {
   const ethd__protocol *protocol;

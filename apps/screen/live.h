@@ -1,0 +1,47 @@
+/* A tap in real time on a thread of its own: controller and simulated device at their period, the hand led by
+   the pointer. Screen and thread meet in two cells. */
+#ifndef ETHD_SCREEN_LIVE_H
+#define ETHD_SCREEN_LIVE_H
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "ethd/cell.h"
+#include "screen/hand.h"
+#include "tap/study.h"
+
+/* What the screen draws. */
+typedef struct ethd__glimpse {
+  double t; /* s of the tap */
+  ethd_vec finger, ring;
+  int32_t state; /* of the controller, ETHD_TRANSPARENT .. */
+  int32_t reserved;
+} ethd__glimpse;
+
+typedef struct ethd__live {
+  ethd__stage *stage;
+  ethd__rule rule;
+  ethd_sim_tap tap;
+  ethd__hand hand;
+  ethd_cell *pointer, *glimpse; /* ethd_vec in, ethd__glimpse out */
+  pthread_t thread;
+  bool started;
+  atomic_int over, stop;
+  ethd_status status;
+  uint64_t late; /* ticks that began a period too late, or more */
+} ethd__live;
+
+/* Begins tap `number` at rest at x, at most `seconds` long. On failure nothing runs. [main] */
+ETHD_MUST_CHECK ethd_status ethd__live_start(ethd__live *live, ethd__stage *stage, const ethd__speed *speed,
+                                             uint64_t number, ethd_vec x, double seconds);
+
+/* The pointer is at x. [main] */
+void ethd__live_lead(ethd__live *live, ethd_vec x);
+
+/* The newest glimpse; false: the tap is over. [main] */
+bool ethd__live_look(ethd__live *live, ethd__glimpse *out);
+
+/* Ends it, now if need be; then the ticks stand in stage->rows. [main] */
+ETHD_MUST_CHECK ethd_status ethd__live_join(ethd__live *live);
+
+#endif

@@ -1,0 +1,33 @@
+#include "screen/view.h"
+
+#include <math.h>
+
+#define BEHIND 0.015 /* m of free space behind the start */
+#define SHARE 0.62   /* of the window that the free space may fill */
+
+ethd__room ethd__room_of(double wall, double start, double y, double finger, int width, int height) {
+  ethd__room f = {.width = width, .height = height, .left = wall, .right = start + finger + BEHIND, .start = start, .finger = finger};
+  double half = 0.3 * (f.right - f.left);
+  f.bottom = y - half;
+  f.top = y + half;
+  f.scale = SHARE * fmin(width / (f.right - f.left), height / (f.top - f.bottom));
+  return f;
+}
+
+ethd_vec ethd__room_pixel(const ethd__room *f, ethd_vec x) {
+  return (ethd_vec){f->width / 2.0 + f->scale * (x.x - (f->left + f->right) / 2),
+                    f->height / 2.0 - f->scale * (x.y - (f->bottom + f->top) / 2)};
+}
+
+ethd_vec ethd__room_point(const ethd__room *f, double px, double py) {
+  return (ethd_vec){(f->left + f->right) / 2 + (px - f->width / 2.0) / f->scale,
+                    (f->bottom + f->top) / 2 - (py - f->height / 2.0) / f->scale};
+}
+
+/* A number that is none stays at the low end. */
+static double between(double value, double low, double high) { return value > low ? fmin(value, high) : low; }
+
+ethd_vec ethd__room_avatar(const ethd__room *f, ethd_vec x) {
+  return (ethd_vec){between(x.x, f->left + f->finger, f->right - f->finger),
+                    between(x.y, f->bottom + f->finger, f->top - f->finger)};
+}
