@@ -1,0 +1,120 @@
+#!/bin/sh
+# ethd-study --screen under Xvfb: a recorded finger moves the mouse, keys do the rest. Nothing asks how well it taps.
+set -u
+[ -z "${SAN:-}" ] || { echo "SKIP: the window's libraries aren't made for sanitizers"; exit 77; }
+folder=$(mktemp -d)
+server=
+trap 'rm -rf "$folder"; [ -z "$server" ] || kill $server 2>/dev/null' EXIT
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+study=$BUILD/bin/ethd-study
+
+# ---- without a display, without a font: one line, nothing begun is lost ----
+env -u DISPLAY -u WAYLAND_DISPLAY SDL_VIDEODRIVER=x11 "$study" --out "$folder/none" --screen >"$folder/out" 2>"$folder/err"
+[ $? = 1 ] && [ "$(grep -c . "$folder/err")" = 1 ] && grep -q 'no display' "$folder/err" || fail "no display: $(cat "$folder/err")"
+ETHD_FONT=/nowhere SDL_VIDEODRIVER=dummy "$study" --resume "$folder/none" --screen >"$folder/out" 2>"$folder/err"
+[ $? = 1 ] && [ "$(grep -c . "$folder/err")" = 1 ] && grep -q 'fonts-dejavu-core' "$folder/err" || fail "no font: $(cat "$folder/err")"
+"$study" --out "$folder/x" --screen=9x9 >"$folder/out" 2>"$folder/err"
+[ $? = 2 ] && grep -q 'from 320x200' "$folder/err" || fail "9x9: $(cat "$folder/err")"
+
+for program in Xvfb xdotool; do command -v $program >/dev/null || { echo "SKIP: no $program"; exit 77; }; done
+python3=$(sh .ci/setup python) || { echo "SKIP: no python3 with numpy"; exit 77; }
+Xvfb -displayfd 3 -screen 0 1280x720x24 3>"$folder/display" >"$folder/xvfb" 2>&1 &
+server=$!
+for _ in $(seq 200); do [ -s "$folder/display" ] && break; sleep 0.05; done
+DISPLAY=:$(cat "$folder/display")
+export DISPLAY
+
+cat >"$folder/short.study" <<'EOF2'
+[study]
+participants = 1
+strategies = smooth,offset
+speeds = low
+training = 0
+taps = 1
+attempts = 2
+survey = on
+EOF2
+cat >"$folder/drive.py" <<'EOF2'
+import csv, glob, os, re, signal, subprocess, sys, time
+study, folder = sys.argv[1:]
+run = subprocess.Popen([study, folder + "/short.study", "--out", folder + "/session", "--screen"],
+                       stdout=subprocess.PIPE, stderr=open(folder + "/err", "w"), text=True)
+line = run.stdout.readline()
+width, height, x0, scale, y0, _, start, middle, wall = map(float, re.findall(r"-?\d+\.?\d*(?:e[+-]?\d+)?", line))
+mouse = subprocess.Popen(["xdotool", "-"], stdin=subprocess.PIPE, text=True)
+
+def say(words):
+    mouse.stdin.write(words + "\n")
+    mouse.stdin.flush()
+
+def move(x, y):
+    say(f"mousemove {int(x0 + scale * x)} {int(y0 - scale * y)}")
+
+def key(name):
+    say("key " + name)
+    time.sleep(0.15)
+
+# a recorded finger, shifted so that it comes to the wall and waits at the start line until it gets there
+files = sorted(glob.glob(os.environ["ETHD_MOTION_DIR"] + "/**/*.csv", recursive=True))
+finger = []
+for name in files:
+    rows = list(csv.DictReader(open(name)))
+    if rows and {"t_s", "x_m", "y_m"} <= rows[0].keys():
+        t, x, y = ([float(r[k]) for r in rows] for k in ("t_s", "x_m", "y_m"))
+        if x[0] - min(x) > 0.1:
+            finger = [(a - t[0], b, c) for a, b, c in zip(t, x, y)]
+            break
+if not finger:
+    run.kill()
+    print("SKIP: no recorded movements in " + os.environ["ETHD_MOTION_DIR"])
+    sys.exit(77)
+last, at = min(x for _, x, _ in finger), finger[[x for _, x, _ in finger].index(min(x for _, x, _ in finger))][2]
+
+def tap():
+    move(start, middle)
+    time.sleep(1.2)
+    begin = time.monotonic()
+    for t, x, y in finger[::4]:
+        x, y = x - last + wall - 0.004, y - at + middle
+        if x > start:
+            begin = time.monotonic() - t
+            continue
+        while time.monotonic() - begin < t: time.sleep(0.001)
+        move(min(x, start), y)
+    time.sleep(1.0)
+
+def rows():
+    path = folder + "/session/journal"
+    return [l.split(" ")[0] for l in open(path)] if os.path.exists(path) else []
+
+for _ in range(2):
+    key("space")                     # the block's page
+    before = rows().count("survey")
+    for _ in range(2):
+        tap()
+        key("n"); say("type fine"); time.sleep(0.4); key("Return")
+        if rows().count("tap") and rows()[-1] in ("tap", "event"): key("p"); key("space")
+    deadline = time.monotonic() + 60
+    while rows().count("survey") == before and time.monotonic() < deadline and run.poll() is None:
+        for answer in "42 5".replace(" ", ""): key(answer)
+        if rows().count("survey") == before: tap()
+deadline = time.monotonic() + 20
+while run.poll() is None and time.monotonic() < deadline: key("space")
+out = line + run.stdout.read()
+assert run.wait(20) == 0, (run.returncode, open(folder + "/err").read(), out)
+assert "frames" in out and "ethd-report" in out, out
+assert rows().count("survey") == 2 and 2 <= rows().count("tap") <= 4, rows()
+print(out.splitlines()[1])
+EOF2
+"$python3" "$folder/drive.py" "$study" "$folder" >"$folder/out" 2>&1
+code=$?
+cat "$folder/out"
+[ $code = 77 ] && exit 77
+[ $code = 0 ] || fail "the session: $(cat "$folder/err")"
+grep -q '^P1\|^P01' "$folder/session/taps.csv" || fail "no tap in its table"
+grep -Eq ',[1-5],[1-5],[1-5]$' "$folder/session/survey.csv" || fail "no answer: $(cat "$folder/session/survey.csv")"
+for tap in "$folder"/session/taps/*/; do
+  "$BUILD/bin/ethd-replay" --verify "$tap" >"$folder/verify" 2>&1 || fail "$tap: $(cat "$folder/verify")"
+done
+exit $failed
