@@ -1,6 +1,7 @@
 #include "run/summary.h"
 
 #include <inttypes.h>
+#include <string.h>
 
 #include "common/dropped.h"
 
@@ -51,6 +52,17 @@ static void print_device(FILE *out, const ethd_loop_stats *stats) {
   if (stats->relaxes) fprintf(out, "%-10s %" PRIu64 " switches to secondary mode\n", "relaxes", stats->relaxes);
 }
 
+/* What the device counted itself; durations in ms. */
+static void print_figures(FILE *out, const ethd__session *s) {
+  static ethd_figure figures[ETHD_FIGURES_MAX];
+  uint32_t n = s->driver->figures ? s->driver->figures(s->device, figures, ETHD_FIGURES_MAX) : 0;
+  for (uint32_t i = 0; i < n; i++) {
+    int is_time = !strcmp(figures[i].unit, "s");
+    const char *unit = is_time ? "ms" : strcmp(figures[i].unit, "1") ? figures[i].unit : "";
+    fprintf(out, "%-10s %-32s %10.6g %s\n", i ? "" : "figures", figures[i].name, figures[i].value * (is_time ? 1e3 : 1), unit);
+  }
+}
+
 void ethd__summary_print(FILE *out, const ethd__session *s, const char *record) {
   static ethd_loop_stats stats;
   ethd_loop_read(s->loop, &stats);
@@ -65,6 +77,7 @@ void ethd__summary_print(FILE *out, const ethd__session *s, const char *record) 
   print_faults(out, &s->recorder, &stats);
   print_device(out, &stats);
   print_skipped(out, s, &stats);
+  print_figures(out, s);
   if (record) fprintf(out, "%-10s %s: %" PRIu64 " ticks\n", "recorded", record, s->recorder.rows);
   if (!s->is_virtual && !ethd_loop_shortfalls(s->loop)) fprintf(out, "%-10s none\n", "shortfalls");
   if (!s->is_virtual) ethd__shortfalls_print(out, ethd_loop_shortfalls(s->loop));
