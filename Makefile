@@ -110,6 +110,7 @@ APPS_C := $(wildcard apps/*/*.c)
 PLUGINS_C := $(wildcard tests/plugins/*.c)
 TESTS_C := $(filter-out $(PLUGINS_C),$(wildcard tests/*/test_*.c))
 HELPERS_C := $(filter-out $(PLUGINS_C) $(TESTS_C) tests/fuzz/% tests/simavr/%,$(wildcard tests/*/*.c))
+TOOLS_C := $(wildcard tests/*.c)
 HEADERS := $(wildcard include/ethd/*.h)
 SCRIPTS := $(sort $(shell find tests -name '*.sh' -perm -u+x 2>/dev/null))
 
@@ -126,7 +127,7 @@ ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a
 LIBRARIES := $(B)/libethd.a $(B)/libethd-drivers.a $(B)/libethd.so.0 $(B)/libethd.so
 
 all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
-tests: all $(UNIT) $(PLUGINS) $(RING_PARTS)
+tests: all $(UNIT) $(PLUGINS) $(TOOLS_C:%.c=$(B)/%) $(RING_PARTS)
 
 # ---- build ----------------------------------------------------------------------------------
 
@@ -149,7 +150,7 @@ $(B)/obj/$(1)/%.o: $(1)/%.c $(B)/flags
 endef
 $(foreach d,lib drivers apps tests,$(eval $(call compile,$(d))))
 $(call obj,$(wildcard drivers/loop/*.c)): FLAGS_drivers += $(XENO_CFLAGS)
--include $(patsubst %.o,%.d,$(call obj,$(LIB_C) $(DRIVERS_C) $(PROGRAMS_C) $(APPS_C) $(TESTS_C) \
+-include $(patsubst %.o,%.d,$(call obj,$(LIB_C) $(DRIVERS_C) $(PROGRAMS_C) $(APPS_C) $(TESTS_C) $(TOOLS_C) \
            $(HELPERS_C))) $(PLUGINS:.so=.d)
 
 $(B)/libethd.a: $(LIB_O)
@@ -187,6 +188,12 @@ $(B)/tests/$(notdir $(1:.c=)): $(B)/obj/$(1:.c=.o) $(B)/libethd-tests.a $(ARCHIV
 	  $$(shell $$(PKG_CONFIG) --libs check) -linih -lmodbus -lz $$(LIBS)
 endef
 $(foreach t,$(TESTS_C),$(eval $(call test_program,$(t))))
+
+# What test scripts run beside the programs: a plant for servers, a serial line.
+$(TOOLS_C:%.c=$(B)/%): $(B)/tests/%: $(B)/obj/tests/%.o $(ARCHIVES) $(B)/libethd.a
+	$(call say,LINK,$@)
+	@mkdir -p $(@D)
+	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) -linih -lmodbus -lz $(LIBS)
 
 $(PLUGINS): $(B)/tests/plugins/%.so: tests/plugins/%.c $(B)/flags
 	$(call say,PLUGIN,$@)

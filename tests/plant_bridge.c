@@ -5,8 +5,9 @@
      R                          -> 18 words
      F                          -> text: "t ring_x ring_y finger_x finger_y torque1 torque2", SI
 
-   plant_bridge [--plant n] [--speed 0.4] [--period 1.6]; says "port N" first, and a summary at the end of stdin. The
-   finger taps along -x, again and again; time begins when the drive is first enabled. */
+   plant_bridge [--plant n] [--speed 0.4] [--period 1.6] [--lock-step 1]; says "port N" first, and a summary at the end
+   of stdin. The finger taps along -x, again and again; time begins when the drive is first enabled, and is the
+   system's; in lock-step a millisecond passes with every new word in `counter`, and none otherwise. */
 #include <arpa/inet.h>
 #include <math.h>
 #include <poll.h>
@@ -20,6 +21,7 @@
 #include "ethd/sim.h"
 
 #define STEP 1e-4     /* s of the plant's own clock */
+#define TICK 1e-3     /* s that pass with a set-point, in lock-step */
 #define WATCHDOG 0.05 /* s without a set-point, then zero torque */
 #define SAMPLES 200   /* a second of the finger's path */
 #define SECONDS 3600
@@ -36,11 +38,14 @@ static struct {
   ethd_sense sense;
   double begun, last_set; /* s, monotonic; begun < 0: not yet */
   int64_t steps, reading_ns;
-  uint64_t trips, late, sets;
+  uint64_t trips, sets;
+  int lock_step;
+  double clock; /* s, in lock-step */
 } plant = {.begun = -1};
 
 static double now(void) {
   struct timespec t;
+  if (plant.lock_step) return plant.clock;
   clock_gettime(CLOCK_MONOTONIC, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
@@ -116,7 +121,7 @@ static void step(void) {
 static void advance(void) {
   double t = now();
   if (plant.begun < 0) return;
-  for (; (double)plant.steps * STEP < t - plant.begun; step()) {
+  for (; (double)plant.steps * STEP < t - plant.begun - STEP / 2; step()) {
     if (!(plant.words[STATUS] & 2) || plant.begun + (double)plant.steps * STEP - plant.last_set < WATCHDOG) continue;
     plant.words[STATUS] &= (uint16_t)~2;
     plant.trips++;
@@ -141,9 +146,12 @@ static void answer(int fd, const uint8_t *q, ssize_t length, const struct sockad
   advance();
   if (length >= 5 && q[0] == 'W') {
     int at = q[1] << 8 | q[2], count = q[3] << 8 | q[4];
+    uint16_t counter = plant.words[COUNTER];
     for (int i = 0; i < count && at + i < STATUS && 6 + 2 * i < length; i++)
       plant.words[at + i] = (uint16_t)(q[5 + 2 * i] << 8 | q[6 + 2 * i]);
     heed();
+    if (plant.words[COUNTER] != counter) plant.clock += TICK;
+    advance();
   }
   show();
   for (int i = 0; i < WORDS; i++) {
@@ -170,7 +178,8 @@ int main(int argc, char **argv) {
     if (!strcmp(argv[i], "--plant")) name = argv[i + 1];
     else if (!strcmp(argv[i], "--speed")) speed = atof(argv[i + 1]);
     else if (!strcmp(argv[i], "--period")) period = atof(argv[i + 1]);
-    else fail("--plant, --speed and --period are known");
+    else if (!strcmp(argv[i], "--lock-step")) plant.lock_step = atoi(argv[i + 1]);
+    else fail("--plant, --speed, --period and --lock-step are known");
   }
   make_plant(name, speed, period);
   ethd_sim_read(plant.sim, &plant.sense);
