@@ -59,7 +59,7 @@ at=0 whole=0
 while [ $at -lt "$kills" ]; do
   become "$folder/random" >/dev/null 2>"$folder/err" &
   pid=$!
-  sleep "$(awk -v seed="$at$whole$$" 'BEGIN { srand(seed); print rand() * 0.3 }')"
+  sleep "$(awk -v seed="$at$whole$$" 'BEGIN { srand(seed); print rand() * 0.06 }')"
   kill -KILL $pid 2>/dev/null
   wait $pid 2>/dev/null
   if [ $? = 137 ]; then

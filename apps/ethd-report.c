@@ -1,0 +1,158 @@
+/* A study's figures, tables and page. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "common/cli.h"
+#include "ethd/ethd.h"
+#include "file/error_text.h"
+#include "file/text.h"
+#include "report/html.h"
+#include "report/picture.h"
+#include "report/report.h"
+
+static const char doc[] =
+    "Draws and counts what a study has left: traces of taps, states and beta, box plots, Table 1 beside the paper's, "
+    "delays between sight and touch, reasons, survey, strategies compared within participants.\v"
+    "The folder is one of ethd-study's, a session or a simulation. DIR/report holds report.html, which stands alone, "
+    "and the pictures and tidy CSV files behind it. Needs gnuplot.\n\n"
+    "Examples:\n"
+    "  ethd-report session\n"
+    "  ethd-report session --beside crowd --tap P02-06-004";
+
+enum { OPTION_BESIDE = 256, OPTION_TAP, OPTION_POINT, OPTION_SEED };
+
+static const struct argp_option options[] = {
+    {"out", 'o', "DIR", 0, "where the report goes: report in the study's folder", 0},
+    {"beside", OPTION_BESIDE, "DIR", 0, "another folder of taps, to stand beside this one's", 0},
+    {"tap", OPTION_TAP, "NAME", 0, "draw this tap (P02-06-004), not the typical one of each cell", 0},
+    {"point", OPTION_POINT, "K", 0, "of a grid: the point that is shown in full: 0", 0},
+    {"seed", OPTION_SEED, "S", 0, "of the bootstrap: 1", 0},
+    {0},
+};
+
+static struct {
+  const char *folder, *out, *beside, *tap;
+  int64_t point;
+  uint64_t seed;
+} arg = {.seed = 1};
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  switch (key) {
+    case 'o': arg.out = text; return 0;
+    case OPTION_BESIDE: arg.beside = text; return 0;
+    case OPTION_TAP: arg.tap = text; return 0;
+    case OPTION_POINT: arg.point = ethd__option_integer("--point", text, 0, ETHD_STUDY_POINTS); return 0;
+    case OPTION_SEED: arg.seed = ethd__option_seed("--seed", text); return 0;
+    case ARGP_KEY_ARG:
+      if (arg.folder) argp_error(state, "\"%s\": one folder is allowed", text);
+      arg.folder = text;
+      return 0;
+    case ARGP_KEY_END:
+      if (!arg.folder) argp_error(state, "DIR is needed");
+      return 0;
+    default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static void check(ethd_status status, const char *message) {
+  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+}
+
+/* Of what is drawn and written. */
+static void check_job(ethd_status status, const char *message) {
+  if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+}
+
+static void load(const char *folder, size_t point, ethd__folder *out, ethd__data *data) {
+  char message[ETHD_MESSAGE_MAX], *taps = ethd__folder_path(folder, ETHD_STUDY_TAPS);
+  check(ethd__folder_open(folder, out, message), message);
+  if (access(taps, F_OK) != 0)
+    ethd__fail(ETHD_EXIT_INPUT, "%s: No such file; ethd-study --resume %s or --merge %s makes it", taps, folder, folder);
+  check(ethd__data_read(taps, &out->loaded.plant, point, data, message), message);
+  free(taps);
+}
+
+static void print_lead(ethd__report *r) {
+  const ethd__data *d = &r->data;
+  size_t taps = 0, valid = 0;
+  for (size_t i = 0; i < d->group_count; i++) {
+    taps += d->group[i].cell.count;
+    valid += ethd__cell_valid(&d->group[i].cell);
+  }
+  fprintf(r->page, "<p class=\"lead\">%zu participants, %zu cells, %zu test taps, %zu of them valid; %zu training taps.</p>\n",
+          d->people_count, d->group_count, taps, valid, d->training);
+  fputs("<p class=\"note\"><b>Simulated, not measured.</b> Device, finger and people are plausible: the plant was fitted to "
+        "Table 1 of the paper, the spread between people is assumed. The laws and gains are the real ones.</p>\n", r->page);
+  fputs("<nav>", r->page);
+  static const char *const links[][2] = {{"table1", "Table 1"}, {"figures", "Figures"}, {"delay", "Delay"}, {"valid", "Valid taps"},
+                                         {"pairs", "Comparison"}, {"survey", "Survey"}, {"traces", "Traces"}, {"methods", "Methods"}};
+  for (size_t i = 0; i < sizeof links / sizeof *links; i++)
+    fprintf(r->page, "<a href=\"#%s\">%s</a>", links[i][0], links[i][1]);
+  fputs("</nav>\n", r->page);
+}
+
+static void print_foot(ethd__report *r) {
+  ethd__html_heading(r->page, "data", "Data");
+  fputs("<p>The folder's README.md says what every file and column is. ", r->page);
+  fprintf(r->page, "Study hash <code>%s</code>; libethd %s. Any recorded tap repeats bit for bit: "
+          "<code>ethd-replay --verify DIR/taps/NAME</code>.</p>\n", r->folder->hash, ETHD_VERSION);
+}
+
+static ethd_status sections(ethd__report *r) {
+  ethd_status (*const each[])(ethd__report *) = {ethd__report_table1, ethd__report_boxes,  ethd__report_reasons, ethd__report_pairs,
+                                                 ethd__report_survey, ethd__report_traces, ethd__report_grid};
+  ethd_status status = ETHD_OK;
+  char title[128];
+  snprintf(title, sizeof title, "Tapping study: %s", r->folder->protocol.name);
+  ethd__html_begin(r->page, title);
+  print_lead(r);
+  for (size_t i = 0; !status && i < sizeof each / sizeof *each; i++) status = each[i](r);
+  if (status) return status;
+  ethd__report_methods(r);
+  print_foot(r);
+  ethd__html_end(r->page);
+  return ETHD_OK;
+}
+
+static void write_page(ethd__report *r) {
+  char *path = ethd__report_path(r, "report.html");
+  ethd_replace replace;
+  if (mkdir(r->out, 0777) != 0 && errno != EEXIST) ethd__fail(ETHD_EXIT_FAILED, "%s: %s", r->out, strerror(errno));
+  check_job(ethd__picture_ready(r->message), r->message);
+  check_job(ethd_replace_begin(path, &replace, r->message), r->message);
+  r->page = replace.file;
+  ethd_status status = sections(r);
+  if (status) ethd_replace_abandon(&replace);
+  check_job(status, r->message);
+  check_job(ethd_replace_commit(&replace, r->message), r->message);
+  printf("%s\n", path);
+  free(path);
+}
+
+int main(int argc, char **argv) {
+  static const struct argp argp = {options, parse, "DIR", doc, NULL, NULL, NULL};
+  char message[ETHD_MESSAGE_MAX] = "";
+  static ethd__report report;
+  ethd__folder folder, beside;
+  ethd__begin();
+  argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  char *out = arg.out ? NULL : ethd__folder_path(arg.folder, "report");
+  report = (ethd__report){.folder = &folder, .out = out ? out : arg.out, .tap = arg.tap, .point = (size_t)arg.point,
+                          .seed = arg.seed, .message = message};
+  load(arg.folder, report.point, &folder, &report.data);
+  if (arg.beside) {
+    load(arg.beside, 0, &beside, &report.beside);
+    report.beside_name = beside.protocol.name;
+  }
+  write_page(&report);
+  ethd__data_free(&report.data);
+  ethd__data_free(&report.beside);
+  if (arg.beside) ethd__folder_close(&beside);
+  ethd__folder_close(&folder);
+  free(out);
+  return ethd__end(ETHD_EXIT_DONE);
+}

@@ -1,0 +1,90 @@
+#include "report/report.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "file/error_text.h"
+#include "report/html.h"
+#include "report/picture.h"
+
+char *ethd__report_path(const ethd__report *report, const char *name) { return ethd__folder_path(report->out, name); }
+
+ethd_status ethd__report_picture(ethd__report *r, const char *script, const char *name, const char *caption,
+                                 const char *format, ...) {
+  char *settings = NULL, *whole = NULL, *folder = ethd__picture_quote(r->out), *png = ethd__report_path(r, name);
+  ethd_status status = ETHD_E_MEMORY;
+  va_list args;
+  va_start(args, format);
+  if (vasprintf(&settings, format, args) < 0) settings = NULL;
+  va_end(args);
+  if (settings && folder && asprintf(&whole, "cd '%s'; out='%s'; %s", folder, name, settings) >= 0)
+    status = ethd__picture_draw(script, whole, r->message);
+  else
+    (void)ethd__say(r->message, status, "%s", ethd_status_sentence(status));
+  if (!status && !ethd__html_picture(r->page, png, caption))
+    status = ethd__say(r->message, ETHD_E_FILE, "%s: can't be read", png);
+  free(whole);
+  free(settings);
+  free(folder);
+  free(png);
+  return status;
+}
+
+const char *ethd__group_label(const ethd__group *group, char out[80]) {
+  snprintf(out, 80, "%s, %s", group->cell.law, group->speed.word);
+  return out;
+}
+
+const char *ethd__number_text(double value, int digits, char out[32]) {
+  if (isnan(value))
+    strcpy(out, "-");
+  else
+    snprintf(out, 32, "%.*f", digits, value);
+  return out;
+}
+
+const char *ethd__mean_text(const ethd__summary5 *s, int digits, char out[48]) {
+  if (!s->n)
+    strcpy(out, "-");
+  else if (s->n == 1)
+    snprintf(out, 48, "%.*f", digits, s->mean);
+  else
+    snprintf(out, 48, "%.*f (%.*f)", digits, s->mean, digits, s->sd);
+  return out;
+}
+
+void ethd__group_summary(const ethd__group *group, const ethd__quantity *quantity, ethd__summary5 *out) {
+  double *values = malloc((group->cell.count + 1) * sizeof *values);
+  size_t n = values ? ethd__group_values(group, quantity, values, NULL) : 0;
+  ethd__summarise(values, n, out);
+  free(values);
+}
+
+void ethd__report_methods(ethd__report *report) {
+  static const char *const methods[] = {
+      "Means and sample standard deviations (n - 1) as in the paper; medians and quartiles by linear interpolation "
+      "between order statistics (Hyndman and Fan, type 7); bars of the box plots are extremes.",
+      "Intervals are 95 % percentile bootstrap intervals (Efron 1979). Participants are drawn with replacement, each "
+      "with all of their valid taps: taps of one person are no independent sample. With three participants such an "
+      "interval is crude.",
+      "Pairs: the median of each participant's valid taps under the one and the other strategy, at the same speed. "
+      "The p is that of Fisher's sign-flip test, exact up to 16 participants; none is made for fewer than six, whose "
+      "smallest possible p is over 0.05. Nothing is corrected for the number of comparisons.",
+      "Fitted: the simulated device's parameters were chosen so that this figure comes out; that it does shows "
+      "nothing about the strategy. Reproduced: not chosen for, and within what the table states. Not: outside.",
+      "n points into the wall: speeds are positive toward it, negative away. t(seen) is the instant at which the "
+      "finger's front reaches the wall that a screen without delay would show.",
+  };
+  ethd__html_heading(report->page, "methods", "Methods");
+  fputs("<ul>\n", report->page);
+  for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+    fputs("<li>", report->page);
+    ethd__html_text(report->page, methods[i]);
+    fputs("</li>\n", report->page);
+  }
+  fprintf(report->page, "<li>Bootstrap and tests draw their random numbers under seed %llu: %u draws, %u for medians of "
+          "over 4000 taps.</li>\n</ul>\n", (unsigned long long)report->seed, ETHD_STATS_DRAWS, ETHD_STATS_FEW_DRAWS);
+}
