@@ -173,10 +173,10 @@ static bool ask(ethd__screen *s, int number, int *answer) {
     if (w->key >= SDLK_KP_1 && w->key <= SDLK_KP_5) return *answer = (int)(w->key - SDLK_KP_1) + 1, true;
     if (w->key == SDLK_BACKSPACE) return false;
     ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.02 * w->height, s->title, ethd__grey);
-    ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.36 * w->height, ethd__questions[number], ethd__white);
+    ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.18 * w->height, ethd__questions[number], ethd__white);
     for (int k = 1; k <= 5; k++) {
       const char text[2] = {(char)('0' + k), 0};
-      ethd__window_text(w, ETHD_TEXT_LARGE, w->width * (0.5 + 0.1 * (k - 3)), 0.5 * w->height, text, ethd__green);
+      ethd__window_text(w, ETHD_TEXT_LARGE, w->width * (0.5 + 0.1 * (k - 3)), 0.6 * w->height, text, ethd__green);
     }
     ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.95 * w->height, "1 to 5   Backspace: no answer", ethd__grey);
     ethd__window_end(w);

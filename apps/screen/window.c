@@ -26,6 +26,7 @@ static ethd_status open_fonts(ethd__window *w, char *message) {
     w->font[i] = TTF_OpenFont(font, points[i] * w->height / 720 > 8 ? points[i] * w->height / 720 : 8);
     if (!w->font[i])
       return refuse(w, "the screen's font (Debian: fonts-dejavu-core; ETHD_FONT names another)", TTF_GetError(), message);
+    TTF_SetFontWrappedAlign(w->font[i], TTF_WRAPPED_ALIGN_CENTER);
   }
   return ETHD_OK;
 }
@@ -115,7 +116,7 @@ void ethd__window_disc(ethd__window *w, double x, double y, double radius, SDL_C
 }
 
 void ethd__window_text(ethd__window *w, int size, double x, double y, const char *text, SDL_Color c) {
-  SDL_Surface *surface = *text ? TTF_RenderUTF8_Blended(w->font[size], text, c) : NULL;
+  SDL_Surface *surface = *text ? TTF_RenderUTF8_Blended_Wrapped(w->font[size], text, c, (uint32_t)(0.9 * w->width)) : NULL;
   SDL_Texture *texture = surface ? SDL_CreateTextureFromSurface(w->renderer, surface) : NULL;
   if (texture) {
     const SDL_Rect at = {(int)(x - surface->w / 2.0), (int)y, surface->w, surface->h};

@@ -39,7 +39,7 @@ void ethd__window_end(ethd__window *window);
 void ethd__window_box(ethd__window *window, double x, double y, double width, double height, SDL_Color colour);
 void ethd__window_disc(ethd__window *window, double x, double y, double radius, SDL_Color colour);
 
-/* Centred at x, its top at y; nothing for an empty text. */
+/* Centred at x, its top at y, broken into lines where the window is too narrow; nothing for an empty text. */
 void ethd__window_text(ethd__window *window, int size, double x, double y, const char *text, SDL_Color colour);
 
 #endif
