@@ -165,6 +165,7 @@ static void tell(int fd, const struct sockaddr_in *to) {
   char out[256];
   ethd_truth truth;
   advance();
+  show();
   ethd_sim_truth(plant.sim, &truth);
   int n = snprintf(out, sizeof out, "%.9g %.9g %.9g %.9g %.9g %.9g %.9g", truth.t, truth.ring[0], truth.ring[1], truth.finger[0],
                    truth.finger[1], RATIO * NM * (int16_t)plant.words[MEASURED1], RATIO * NM * (int16_t)plant.words[MEASURED1 + 1]);

@@ -1,0 +1,169 @@
+#!/bin/sh
+# The servo over a bus, by an independent server (pymodbus) with the simulated plant behind its registers: taps in
+# lock-step, equal to the bit; a live run that is unplugged and killed; a serial line at 500 kBd. No time is asserted.
+set -u
+case ${SAN:-} in *thread*) echo "SKIP: a thread sanitizer's threads don't fit into the loop's stack"; exit 77 ;; esac
+folder=$(mktemp -d)
+children=
+finish() {
+  for child in $children; do kill "$child" 2>/dev/null; done
+  rm -rf "$folder"
+}
+trap finish EXIT
+run=$BUILD/bin/ethd-run
+verify="$BUILD/bin/ethd-replay --verify"
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+says() { # FILE PATTERN...
+  file=$1
+  shift
+  for pattern; do grep -q -e "$pattern" "$file" || { fail "no $pattern in:"; cat "$file"; }; done
+}
+
+# ---- pymodbus ----
+python3=$(sh .ci/setup python) || { echo "SKIP: no python3 with numpy, which looks at what pymodbus' plant did"; exit 77; }
+venv=$BUILD/peers/pymodbus
+"$venv/bin/python" -c 'import pymodbus, serial' 2>/dev/null ||
+  { "$python3" -m venv --system-site-packages "$venv" &&
+    "$venv/bin/pip" -q --disable-pip-version-check install pymodbus==3.8.6 pyserial==3.5; } >"$folder/pip" 2>&1 ||
+  { tail -n 3 "$folder/pip"; echo "SKIP: the Python package pymodbus can't be had"; exit 77; }
+
+await() { # FILE PATTERN
+  for _ in $(seq 400); do
+    grep -q -e "$2" "$1" 2>/dev/null && return
+    sleep 0.05
+  done
+  fail "no $2 in $1: $(cat "$1")"
+}
+plant() { # NAME ARGUMENTS...: its port in $plant, what it says in NAME.plant; it lives until descriptor 8 is closed
+  name=$1
+  shift
+  rm -f "$folder/plant.in" "$folder/$name.plant"
+  mkfifo "$folder/plant.in"
+  "$BUILD/tests/plant_bridge" "$@" <"$folder/plant.in" >"$folder/$name.plant" 2>&1 &
+  plant_id=$!
+  exec 8>"$folder/plant.in"
+  await "$folder/$name.plant" '^port '
+  plant=$(sed -n 's/^port //p' "$folder/$name.plant")
+}
+plant_ends() {
+  exec 8>&-
+  wait $plant_id
+}
+peer() { # ARGUMENTS...: its id in $peer, where it listens in $at
+  rm -f "$folder/peer.out"
+  "$venv/bin/python" tests/peers/modbus_peer.py "$@" --plant "$plant" >"$folder/peer.out" 2>"$folder/peer.err" 8>&- &
+  peer=$!
+  children="$children $peer"
+  await "$folder/peer.out" '^ready '
+  at=$(sed -n 's/^ready //p' "$folder/peer.out")
+}
+
+cp apps/config/wall.scene "$folder"
+configure() { # NAME PORT
+  { sed '/^\[device\]/,$d' apps/config/n.ini; printf '[device]\ndriver = servo\nmap = plant.map\nport = %s\n' "$2"; } >"$folder/$1.ini"
+}
+# A machine that is busy answers late: in lock-step that is no fault.
+sed -e 's/^response = .*/response = 5/' -e 's/^drain = .*/drain = 0.1/' apps/config/plant.map >"$folder/plant.map"
+
+# ---- lock-step: all three strategies tap through the bus, twice the same ----
+script='status\nwait 3.2\ntransition smooth\nwait 3.2\ntransition abrupt\nwait 3.2\nstatus\nstop\n'
+for k in 1 2; do
+  plant lock --lock-step 1
+  peer --tcp 0
+  configure lock "127.0.0.1:$at"
+  printf "$script" | "$run" --virtual --duration 100 --config "$folder/lock.ini" --record "$folder/v$k" >"$folder/v$k.out" 2>"$folder/v$k.err" ||
+    fail "in lock-step: exit $?: $(cat "$folder/v$k.err")"
+  kill $peer
+  plant_ends
+  $verify "$folder/v$k" >"$folder/verify" 2>&1 && grep -q 'equal to the bit' "$folder/verify" || fail "v$k: $(cat "$folder/verify")"
+done
+cmp "$folder/v1/tick.npy" "$folder/v2/tick.npy" || fail "two runs in lock-step differ"
+says "$folder/v1.out" '^ok: t .* enabled, abrupt, .* no fault$' 'servo answers missing  *0 ' 'servo answers stale  *0 ' 'virtual'
+"$python3" - "$folder/v1/tick.npy" <<'END2' || fail "the taps aren't what they should be"
+import sys
+import numpy as np
+r = np.load(sys.argv[1])
+inside = r["state"] == 2
+begins = np.flatnonzero(inside[1:] & ~inside[:-1]) + 1
+third = len(r) // 3
+ring, finger, wall = r["x"][:, 0], r["xf"][:, 0], 0.25
+print(len(begins), "contacts; the ring went", 1e3 * (wall - ring.min()), "mm into the wall, the finger", 1e3 * (wall - finger.min()), "mm")
+assert all(np.any((begins >= k * third) & (begins < (k + 1) * third)) for k in range(3)), begins
+assert 0 < wall - ring.min() < 0.008 and finger.min() < wall - 0.001
+assert np.all(r["faults"] == 0) and np.abs(r["tau"]).max() > 0.2
+END2
+
+# ---- live ----
+cp apps/config/plant.map "$folder"
+plant live
+peer --tcp 0
+port=$at
+configure live "127.0.0.1:$port"
+"$BUILD/bin/ethd-servo-probe" --map "$folder/plant.map" --port "127.0.0.1:$port" --duration 0.5 >"$folder/probe" 2>&1 ||
+  fail "probe: exit $?: $(cat "$folder/probe")"
+says "$folder/probe" '^round trip p50 .* p99 .* max .* ms' 'this bus can do [1-9][0-9]* Hz' ' position1  *raw' ' bus_voltage  *raw 480 *48 V'
+mkfifo "$folder/commands"
+"$run" --config "$folder/live.ini" --record "$folder/live" <"$folder/commands" >"$folder/live.out" 2>"$folder/live.err" 8>&- &
+live=$!
+children="$children $live"
+exec 9>"$folder/commands"
+echo status >&9
+await "$folder/live.out" '^ok: t .* enabled'
+kill $peer
+echo 'wait 0.3' >&9
+echo status >&9
+await "$folder/live.out" '^ok: t .* disabled'
+peer --tcp "$port"
+# it connects again, and stays disabled
+echo 'wait 2' >&9
+echo status >&9
+await "$folder/live.out" '^ok: t \([^0]\|0[.][^0]\).* disabled.*'
+[ "$(grep -c ' enabled,' "$folder/live.out")" = 1 ] || fail "it enabled itself: $(cat "$folder/live.out")"
+echo ack >&9
+for _ in $(seq 20); do
+  echo 'wait 1.2' >&9
+  echo ack >&9
+  echo enable >&9
+  sleep 1.5
+  grep -q '^ok: enabled' "$folder/live.out" && break
+done
+says "$folder/live.out" '^ok: enabled'
+# killed: the recording is whole, and the drive's own watchdog lets go
+kill -KILL $live
+wait $live 2>/dev/null
+exec 9>&-
+sleep 0.3
+$verify "$folder/live" >"$folder/verify" 2>&1 && grep -q 'equal to the bit' "$folder/verify" || fail "killed: $(cat "$folder/verify")"
+kill $peer
+"$python3" - "$plant" <<'END2' || fail "the plant doesn't answer"
+import socket, sys
+s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+s.settimeout(10)
+s.sendto(b"F", ("127.0.0.1", int(sys.argv[1])))
+words = s.recv(256).split()
+assert len(words) == 7 and float(words[5]) == 0 and float(words[6]) == 0, words
+END2
+plant_ends
+says "$folder/live.plant" 'the watchdog let go [1-9]'
+
+# ---- a serial line, 500 kBd ----
+plant serial
+mkfifo "$folder/wire.in"
+"$BUILD/tests/wire" 500000 <"$folder/wire.in" >"$folder/wire.out" 8>&- &
+wire=$!
+children="$children $wire"
+exec 7>"$folder/wire.in"
+await "$folder/wire.out" '/dev/'
+read -r ours theirs <"$folder/wire.out"
+peer --serial "$theirs"
+sed -e 's/^transport = tcp/transport = rtu\nbaud = 500000\nexchange = combined/' -e 's/^response = .*/response = 0.05/' apps/config/plant.map >"$folder/rtu.map"
+"$BUILD/bin/ethd-servo-probe" --map "$folder/rtu.map" --port "$ours" --duration 1 >"$folder/rtu" 2>&1 || fail "serial: exit $?: $(cat "$folder/rtu")"
+says "$folder/rtu" 'this bus can do [1-9][0-9]* Hz' ' 0 stale' ' bus_voltage  *raw 480 *48 V'
+kill $peer
+exec 7>&-
+plant_ends
+
+grep -h -E '^rate|^round' "$folder/probe" "$folder/rtu"
+[ $failed = 0 ] && echo "$(grep -c . "$folder/v1/events.csv") events replayed"
+exit $failed
