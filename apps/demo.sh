@@ -1,5 +1,6 @@
 #!/bin/sh
-# make demo: the tap study on the simulated device, its table beside the paper's, and pictures.
+# make demo: the tap study on the simulated device, its table beside the paper's, pictures, and the paper's own
+# study with its report.
 # TAPS and PLANT may be set: TAPS=1000 PLANT=b make demo
 set -eu
 here=$(dirname "$0")
@@ -20,9 +21,19 @@ for law in abrupt smooth offset; do
 done
 gnuplot -e "in='$out/taps.csv'; out='$out/boxes.png'; plant='$plant'" "$here/plot/boxes.gp"
 
+# The paper's study as it was done, with three people; and a crowd of 400 beside it.
+rm -rf "$out/study" "$out/crowd"
+"$BUILD/bin/ethd-study" --quiet --out "$out/study" >/dev/null
+"$BUILD/bin/ethd-study" "$BUILD/share/ethd/crowd.study" --simulate 400 --out "$out/crowd" >/dev/null
+"$BUILD/bin/ethd-study" --merge "$out/crowd" >/dev/null
+"$BUILD/bin/ethd-report" "$out/study" --beside "$out/crowd" >/dev/null
+
 echo "pictures, in the manner of the paper's figures:"
 for law in smooth offset abrupt; do
   for speed in low high; do echo "  $out/$law-$speed.png"; done
 done
 echo "  $out/boxes.png"
 echo "and the figures behind them: $out/taps.csv, $out/traces/"
+echo
+echo "the paper's study, 3 simulated people, 3 valid taps in each of 4 cells, every tick of it: $out/study"
+echo "its report, to be opened in a browser: $out/study/report/report.html"

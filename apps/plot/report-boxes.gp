@@ -8,8 +8,8 @@ if (!exists("note")) note = ""
 
 n = words(metrics)
 rows = (n + 1)/2
-wide = n > 1 ? 1200 : 760
-high = 90 + 430*rows
+wide = n > 1 ? 1200 : 940
+high = 90 + 470*rows
 set terminal pngcairo size wide,high font "Sans,15" background "#ffffff"
 set output out
 set datafile separator comma
@@ -32,15 +32,14 @@ title(m) = m eq "v_rvo" ? "Ring's speed as it meets the wall, v_r(t_{r/vo})" : \
   m eq "v_rmin" ? "Ring's smallest speed after the touch, v_{r min}" : m eq "delay" ? "Touch felt after it is seen, t_{of/r} - t_{seen}" : \
   m eq "delta_s" ? "Time of braking, {/Symbol D}s" : m eq "eps" ? "Offset of the wall, {/Symbol e}" : m
 unit(m) = m eq "d_max" || m eq "eps" ? "mm" : m eq "delay" || m eq "delta_s" ? "ms" : "m/s"
-is(m) = strcol("metric") eq m
-count(m) = system(sprintf("awk -F, '$1==\"%s\"' '%s' | wc -l", m, in)) + 0
+of(m, file) = sprintf("< awk -F, 'NR == 1 || $1 == \"%s\"' '%s'", m, file)
 last(m) = system(sprintf("awk -F, '$1==\"%s\"{x=$2} END{print x}' '%s'", m, in)) + 0
 
 left(i) = n > 1 ? (i % 2 ? 0.59 : 0.085) : 0.13
 right(i) = n > 1 ? left(i) + 0.39 : 0.96
 head = 82.0/high
 top(i) = 1 - head - (i/2)*(1 - head)/rows - 34.0/high
-bottom(i) = 1 - head - (i/2 + 1)*(1 - head)/rows + 58.0/high
+bottom(i) = 1 - head - (i/2 + 1)*(1 - head)/rows + 98.0/high
 
 set multiplot
 set label 1 heading at screen left(0),1 - 24.0/high font "Sans Bold,18"
@@ -61,11 +60,10 @@ do for [i=0:n-1] {
     set yrange [-25:60]
   }
   plot 0 with lines lc rgb "#b0b0b0" lw 1, \
-    in using (is(m) ? column("x") : NaN):(column("q1")):(column("min")):(column("max")):(column("q3")):(tint(strcol("transition"))):xtic(strcol("transition")."\n".strcol("speed")."\nn = ".strcol("n")) \
+    of(m, in) using "x":"q1":"min":"max":"q3":(tint(strcol("transition"))):xtic(strcol("transition")."\n".strcol("speed")."\nn = ".strcol("n")) \
       with candlesticks lc rgb variable lw 1.8 whiskerbars 0.4, \
-    points using (is(m) ? column("x") : NaN):(column("value")) with points pt 7 ps 0.45 lc rgb "#c0333333", \
-    in using (is(m) ? column("x") : NaN):(column("median")):(column("median")):(column("median")):(column("median")) \
-      with candlesticks lc rgb "#c00000" lw 3
+    of(m, points) using "x":"value" with points pt 7 ps 0.45 lc rgb "#c0333333", \
+    of(m, in) using (column("x") - 0.26):"median":(0.52):(0) with vectors nohead lc rgb "#c00000" lw 3
   unset label
 }
 unset multiplot

@@ -21,12 +21,12 @@ set xlabel "share of the taps, %"
 set ytics scale 0
 set lmargin 16
 set rmargin 3
-set tmargin 6
+set tmargin at screen 1 - 78.0/(150 + 62*n)
 set key at screen 0.99, screen 0.985 right top horizontal samplen 1 width -1 maxrows 2 font "Sans,13"
 set label 1 "Taps by reason" at screen 0.03, screen 1 - 24.0/(150 + 62*n) font "Sans Bold,18"
 set label 2 note at screen 0.03, screen 1 - 50.0/(150 + 62*n) font "Sans,13" textcolor rgb grey
 total(x) = column("taps")
 below(k) = sum [j=1:k] (100.0*column(keys[j])/total(0))
-plot for [k=1:8] in using ((below(k) + (k > 1 ? below(k - 1) : 0))/2):0:(k > 1 ? below(k - 1) : 0):(below(k)):(column("row") - 0.36):(column("row") + 0.36):ytic(strcol("label")) \
+plot for [k=1:8] in using ((below(k) + (k > 1 ? below(k - 1) : 0))/2):"row":(k > 1 ? below(k - 1) : 0):(below(k)):(column("row") - 0.36):(column("row") + 0.36):ytic(strcol("transition").", ".strcol("speed")) \
   with boxxyerror lc rgb tints[k] fs solid 1 noborder notitle, \
   for [k=1:8] keyentry with boxes lc rgb tints[k] fs solid 1 title (keys[k])

@@ -33,8 +33,8 @@ set label 1 "Active state and weight {/Symbol b} of the tracking torque" at scre
 set label 2 note at screen 0.08,1 - 50.0/high font "Sans,13" textcolor rgb grey
 array names[3] = ["transparent", "braking", "vo"]
 do for [k=0:2] {
-  set object 10 + k rectangle from screen 0.66 + 0.11*k,1 - 32.0/high to screen 0.675 + 0.11*k,1 - 16.0/high fc rgb tint(k) fs solid border lc rgb grey
-  set label 10 + k names[k + 1] at screen 0.681 + 0.11*k,1 - 24.0/high font "Sans,14" textcolor rgb "#333333"
+  set object 10 + k rectangle from screen 0.645 + 0.125*k,1 - 32.0/high to screen 0.66 + 0.125*k,1 - 16.0/high fc rgb tint(k) fs solid border lc rgb grey
+  set label 10 + k names[k + 1] at screen 0.667 + 0.125*k,1 - 24.0/high font "Sans,14" textcolor rgb "#333333"
 }
 do for [i=0:n-1] {
   file = word(in, i + 1)
@@ -42,7 +42,7 @@ do for [i=0:n-1] {
   set title word(titles, i + 1) font "Sans,15" offset 0,-0.6
   if (i == n - 1) { set format x "%g"; set xlabel "time from t_{r/vo}, ms" offset 0,0.4 } else { set format x ""; unset xlabel }
   set arrow 1 from 0,0 to 0,1.15 nohead lc rgb "#999999" lw 1.2 front
-  plot file using (t(0)):(1.15):(1.0):(tint(int(column("state")))) with boxes lc rgb variable fs solid 1 noborder, \
+  plot file using (t(0) + 0.5):(1.15):(1.03):(tint(int(column("state")))) with boxes lc rgb variable fs solid 1 noborder, \
     file using (t(0)):"beta" with steps lc rgb "#2e7d4f" lw 2.6
   unset label; unset object
 }

@@ -5,6 +5,8 @@
 
 #include "file/text.h"
 
+#define BRIEF 30 /* letters of a cell that aren't broken into lines */
+
 static const char style[] =
     "body{font:16px/1.55 system-ui,'DejaVu Sans',sans-serif;color:#222;background:#fff;max-width:62rem;margin:2rem auto;"
     "padding:0 1.2rem}h1{font-size:1.7rem;line-height:1.25;margin-bottom:.3rem}h2{font-size:1.25rem;margin-top:2.6rem;"
@@ -12,7 +14,7 @@ static const char style[] =
     "border-left:4px solid #c9a94e}table{border-collapse:collapse;margin:1rem 0;font-size:.92rem;"
     "font-variant-numeric:tabular-nums}caption{text-align:left;color:#555;padding:.3rem 0;caption-side:top}"
     "th,td{padding:.28rem .7rem;border-bottom:1px solid #e4e4e4;text-align:left;vertical-align:top}"
-    "th{border-bottom:2px solid #999;font-weight:600}td.n,th.n{text-align:right;white-space:nowrap}"
+    "th{border-bottom:2px solid #999;font-weight:600}td.n,th.n{text-align:right}td.s{white-space:nowrap}"
     "tr:hover td{background:#f7f9fb}figure{margin:1.2rem 0}"
     "img{max-width:100%;height:auto;border:1px solid #e4e4e4}figcaption{color:#555;font-size:.92rem}"
     "div.wide{overflow-x:auto}code{background:#f3f3f3;padding:0 .25em}nav a{margin-right:1rem}"
@@ -85,7 +87,8 @@ bool ethd__html_picture(FILE *page, const char *path, const char *caption) {
 static void cells(FILE *page, const char *tag, const char *const *cell, int numbers) {
   fputs("<tr>", page);
   for (int i = 0; cell[i]; i++) {
-    fprintf(page, "<%s%s>", tag, i >= numbers ? " class=\"n\"" : "");
+    bool brief = tag[1] == 'd' && strlen(cell[i]) <= BRIEF;
+    fprintf(page, "<%s class=\"%s%s\">", tag, i >= numbers ? "n" : "t", brief ? " s" : "");
     ethd__html_text(page, cell[i]);
     fprintf(page, "</%s>", tag);
   }

@@ -25,7 +25,8 @@ static void write_row(ethd__report *r, size_t index, ethd_csv_out *csv) {
   snprintf(taps, sizeof taps, "%zu", group->cell.count);
   snprintf(share, sizeof share, "%.0f %%", 100 * (double)valid / (double)group->cell.count);
   snprintf(each, sizeof each, valid ? "%.1f" : "-", 3 * (double)group->cell.count / (double)valid);
-  ethd_csv_word(csv, label);
+  ethd_csv_word(csv, group->cell.law);
+  ethd_csv_word(csv, group->speed.word);
   ethd_csv_integer(csv, (int64_t)index + 1);
   ethd_csv_integer(csv, (int64_t)group->cell.count);
   for (int i = 0; i < REASONS; i++) {
@@ -43,7 +44,7 @@ ethd_status ethd__report_reasons(ethd__report *r) {
   for (int i = 0; i < REASONS; i++) header[4 + i] = ethd__reason_words[order[i]];
   char *path = ethd__report_path(r, "reasons.csv");
   ethd_csv_out *csv = ethd_csv_create(
-      path, "label,row,taps,ok,early-contact,too-slow,too-fast,no-contact,grazing,double,fault", r->message);
+      path, "transition,speed,row,taps,ok,early-contact,too-slow,too-fast,no-contact,grazing,double,fault", r->message);
   free(path);
   if (!csv) return ETHD_E_FILE;
   ethd__html_heading(r->page, "valid", "Valid taps");
