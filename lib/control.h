@@ -24,6 +24,7 @@ typedef struct ethd__plan {
   ethd_setup setup;
   double d_beta;
   int places; /* all from here on have no scene */
+  int looks_further; /* a limit of clock, joints, reach or heat is set */
   ethd_velocity velocity;
   ethd_fit fit;
   double lag_least, lag_most; /* of setup.ray_lag and 0, s; equal: no ray lags */

@@ -1,4 +1,6 @@
-#include "ethd/guard.h"
+#include <string.h>
+
+#include "guard_parts.h"
 
 /* A stop damps the ring with this much, Ns/m, until it is slower than STILL. */
 #define STOP_DAMPING 20.0
@@ -33,25 +35,52 @@ static int clamp(double centre, double most, double *value) ETHD_RT {
 }
 
 static void count(ethd_guard_state *s, int32_t bits) ETHD_RT {
-  for (int i = 0; i < ETHD_GUARD_COUNT; i++)
-    if (bits & (1 << i)) s->counts[i]++;
+  for (; bits; bits &= bits - 1) s->counts[__builtin_ctz((unsigned)bits)]++;
+}
+
+/* A step that takes the limiter many ticks is no steep torque: what is asked for counts. */
+static int32_t steep(const ethd_limits *limits, ethd_guard_state *s, double dt, const double torque[2]) ETHD_RT {
+  double most = limits->torque_rate * dt * (1 + 1e-9);
+  int too_steep = fabs(torque[0] - s->asked[0]) > most || fabs(torque[1] - s->asked[1]) > most;
+  s->steep = too_steep ? s->steep + 1 : 0;
+  memcpy(s->asked, torque, sizeof s->asked);
+  if (s->steep < ETHD_STEEP_MAX || !limits->latch) return 0;
+  s->stopping |= ETHD_GUARD_STEEP; /* from the next tick on */
+  return ETHD_GUARD_STEEP;
+}
+
+/* A hot motor's limit is its own. */
+static int32_t cool(const ethd_limits *limits, const ethd_guard_state *s, double torque[2]) ETHD_RT {
+  int32_t bits = 0;
+  for (int i = 0; i < 2; i++)
+    if (clamp(0, ethd__guard_cool(limits, s->heat[i]), &torque[i])) bits = ETHD_GUARD_HEAT;
+  return bits;
 }
 
 int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *s, const ethd_pose *pose,
                         ethd_vec v, double dt, double torque[2]) {
   int32_t bits = breach(limits, pose->x, v);
   if (limits->latch) s->stopping |= bits;
-  int stopping = bits || s->stopping;
-  if (stopping) stop(s, pose, v, torque);
+  int stopping = bits || s->stopping, rated = !stopping && limits->torque_rate < (double)INFINITY;
+  if (stopping) {
+    stop(s, pose, v, torque);
+    bits |= s->stopping & ETHD_GUARD_FAULT;
+  } else if (limits->margin > 0 && ethd__guard_wall(limits, pose, v, torque)) {
+    bits |= ETHD_GUARD_MARGIN;
+  }
   if (!isfinite(torque[0]) || !isfinite(torque[1])) {
     bits |= ETHD_GUARD_FINITE;
     torque[0] = torque[1] = 0;
   }
+  if (rated) bits |= steep(limits, s, dt, torque);
+  int32_t cooled = limits->nominal_torque < (double)INFINITY ? cool(limits, s, torque) : 0;
   for (int i = 0; i < 2; i++) {
     if (clamp(0, limits->torque, &torque[i])) bits |= ETHD_GUARD_TORQUE;
-    if (!stopping && clamp(s->last[i], limits->torque_rate * dt, &torque[i])) bits |= ETHD_GUARD_RATE;
+    if (rated && clamp(s->last[i], limits->torque_rate * dt, &torque[i])) bits |= ETHD_GUARD_RATE;
     s->last[i] = torque[i];
   }
+  bits |= cooled;
+  s->cut = bits & ETHD_GUARD_TORQUE ? s->cut + dt : 0;
   if (bits) count(s, bits);
   return bits;
 }

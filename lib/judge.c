@@ -35,20 +35,26 @@ void ethd__rows_stop(const ethd__rows *rows, ethd_guard_state *guard) {
   if (zero) guard->stopped = 1;
 }
 
+#define CUT_MAX (0.1 + 1e-9) /* s, as a sum of periods */
+
 /* Rows of what the guard did. */
-static void add_guard(ethd__rows *rows, int64_t bits) ETHD_RT {
+static void add_guard(ethd__rows *rows, const ethd_guard_state *guard, int64_t bits) ETHD_RT {
   if (bits & ETHD_GUARD_SPEED) rows->faults |= ETHD_FAULT_BIT(ETHD_FAULT_SPEED);
   if (bits & ETHD_GUARD_WORKSPACE) rows->grave |= ETHD_FAULT_BIT(ETHD_FAULT_WORKSPACE);
   if (bits & ETHD_GUARD_FINITE) rows->faults |= ETHD_FAULT_BIT(ETHD_FAULT_FINITE);
   if (bits & ETHD_GUARD_TORQUE) rows->faults |= ETHD_FAULT_BIT(ETHD_FAULT_TORQUE);
+  if (guard->cut > CUT_MAX) rows->grave |= ETHD_FAULT_BIT(ETHD_FAULT_TORQUE);
   if (bits & ETHD_GUARD_RATE) rows->faults |= ETHD_FAULT_BIT(ETHD_FAULT_TORQUE_RATE);
+  if (bits & ETHD_GUARD_STEEP) rows->grave |= ETHD_FAULT_BIT(ETHD_FAULT_TORQUE_RATE);
+  if (bits & ETHD_GUARD_MARGIN) rows->faults |= ETHD_FAULT_BIT(ETHD_FAULT_WORKSPACE);
+  if (bits & ETHD_GUARD_HEAT) rows->faults |= ETHD_FAULT_BIT(ETHD_FAULT_HEAT);
 }
 
 static void unlatch(ethd_guard_state *guard) ETHD_RT { guard->stopping = guard->stopped = 0; }
 
 ethd_fault ethd__judge(const ethd__plan *plan, ethd__state *state, int64_t bits, int64_t periods) {
   ethd__rows *met = &state->met;
-  if (bits) add_guard(met, bits);
+  if (bits) add_guard(met, &state->guard, bits);
   int64_t zero = zeros(met), calls = zero | stops(met);
   if (!calls) {
     __atomic_store_n(&state->clean, state->clean + periods, __ATOMIC_RELAXED);

@@ -101,6 +101,12 @@ static ethd_status check_scene(const ethd_setup *s, int place, ethd_error *error
                       scene->outer);
 }
 
+static int looks_further(const ethd_limits *l) {
+  int ranges = !isinf(l->reach[0]) || !isinf(l->reach[1]);
+  for (int i = 0; i < 4; i++) ranges |= !isinf(l->joints[i]);
+  return ranges || l->gap < (double)INFINITY || l->nominal_torque < (double)INFINITY;
+}
+
 ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
   if (!s || s->cookie != ETHD__SETUP_COOKIE)
     return ethd__error(error, ETHD_E_ARGUMENT, "setup (made by ethd_setup_default?)");
@@ -108,6 +114,7 @@ ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error 
   TRY(check_laws(s, error));
   TRY(within("limits", ethd_limits_check(&s->limits, error), error));
   out->setup = *s;
+  out->looks_further = looks_further(&s->limits);
   out->d_beta = s->ring_radius - s->finger_radius_max;
   TRY(within("velocity", ethd_velocity_prepare(s->velocity, s->velocity_p, s->period, &out->velocity, error), error));
   TRY(within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error), error));

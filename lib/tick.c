@@ -39,11 +39,33 @@ static int input_is_good(const ethd_sense *s, ethd__failure *f) ETHD_RT {
 /* No two steps further apart than the limit, on either clock. */
 static int clock_is_good(const ethd__plan *plan, const ethd__state *state, const ethd_sense *s,
                          int64_t n) ETHD_RT {
-  const double most = plan->setup.limits.gap;
-  if (!(most < (double)INFINITY)) return 1;
-  double way = (double)n * plan->setup.period;
+  const double most = plan->setup.limits.gap, way = (double)n * plan->setup.period;
+  if (isinf(most)) return 1;
   double passed = 1e-9 * (double)(int64_t)((uint64_t)s->time_ns - (uint64_t)state->time_ns);
   return way <= most && (state->counters.ticks == 0 || fabs(passed - way) <= most);
+}
+
+static int joints_are_good(const double joints[4], const double q[2]) ETHD_RT {
+  return q[0] >= joints[0] && q[0] <= joints[1] && q[1] >= joints[2] && q[1] <= joints[3];
+}
+
+static int reach_is_good(const double reach[2], ethd_vec x) ETHD_RT {
+  double r = ethd_vec_norm(x);
+  return r >= reach[0] && r <= reach[1];
+}
+
+#define HOT 1.05 /* of what a motor stands for ever */
+
+/* Limits that most setups don't have. */
+static void look_further(const ethd__plan *plan, ethd__state *state, const ethd_sense *s, int64_t n) ETHD_RT {
+  const ethd_limits *limits = &plan->setup.limits;
+  ethd__rows *met = &state->met;
+  if (!clock_is_good(plan, state, s, n)) met->grave |= ETHD_FAULT_BIT(ETHD_FAULT_CLOCK);
+  if (!joints_are_good(limits->joints, s->q)) met->grave |= ETHD_FAULT_BIT(ETHD_FAULT_WORKSPACE);
+  if (limits->nominal_torque < (double)INFINITY &&
+      !(ethd_guard_heat(limits, &state->guard, (double)n * plan->setup.period) <= HOT))
+    met->grave |= ETHD_FAULT_BIT(ETHD_FAULT_HEAT);
+  state->time_ns = s->time_ns;
 }
 
 static int within_budget(const ethd__plan *plan, const ethd_sense *s, ethd__failure *f) ETHD_RT {
@@ -70,6 +92,7 @@ static void fade(const ethd__plan *plan, ethd__state *state, double dt, double t
   }
   tau[0] += share * state->fade.delta[0];
   tau[1] += share * state->fade.delta[1];
+  state->guard.steep = 0; /* the fade's slope is no law's */
 }
 
 static void blank(const ethd_sense *sense, ethd_trace *out) ETHD_RT {
@@ -99,6 +122,8 @@ static void guard(const ethd__plan *plan, ethd__state *state, const ethd_pose *p
     memset(state->guard.last, 0, sizeof state->guard.last);
   }
   if (failure->fault == ETHD_FAULT_INPUT) return; /* nothing is known of the ring */
+  if (plan->looks_further && !reach_is_good(plan->setup.limits.reach, pose->x))
+    state->met.grave |= ETHD_FAULT_BIT(ETHD_FAULT_WORKSPACE);
   if (ethd__rows_any(&state->met)) ethd__rows_stop(&state->met, &state->guard);
   memcpy(out->tau, out->tau_raw, sizeof out->tau);
   out->guard = ethd_guard_step(&plan->setup.limits, &state->guard, pose, v, dt, out->tau);
@@ -192,9 +217,9 @@ static ethd__failure look(const ethd__plan *plan, ethd__state *state, const ethd
   ethd__failure failure = {ETHD_FAULT_NONE, 0};
   state->met = (ethd__rows){0, 0};
   if (sense->faults | sense->grave) ethd__rows_take(&state->met, sense);
-  if (!clock_is_good(plan, state, sense, n)) state->met.grave |= ETHD_FAULT_BIT(ETHD_FAULT_CLOCK);
-  state->time_ns = sense->time_ns;
-  if (!input_is_good(sense, &failure) || state->fault) return failure;
+  int good = input_is_good(sense, &failure);
+  if (plan->looks_further) look_further(plan, state, sense, n);
+  if (!good || state->fault) return failure;
   if (!within_budget(plan, sense, &failure) || !ethd__rows_any(&state->met)) return failure;
   failure.fault = ethd__rows_zero(&state->met);
   failure.value = (state->met.grave & ETHD_FAULT_BIT(failure.fault)) != 0;

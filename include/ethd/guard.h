@@ -15,6 +15,11 @@ typedef struct ethd_limits {
   double torque_rate;  /* Nm/s, each joint, >= 0 */
   double speed;        /* m/s of the ring, >= 0 */
   double workspace[4]; /* m: x_min, x_max, y_min, y_max of the ring's centre */
+  double reach[2];     /* m: least and most distance of the ring's centre from the base */
+  double joints[4];    /* rad: q1_min, q1_max, q2_min, q2_max */
+  double margin;       /* m inside of workspace and reach: there a wall pushes back, >= 0 */
+  double nominal_torque; /* Nm: what each motor can give for ever, > 0 */
+  double heat_time;    /* s: time constant of a motor's heat, > 0; narrower is shorter */
   double step_time;    /* s: time budget of one step, > 0 */
   double gap;          /* s: longest time between two steps, and by which a clock may jump, > 0 */
   double finger_age;   /* s: older readings of the finger: tracking fades out; INFINITY: none is judged */
@@ -40,7 +45,7 @@ typedef struct ethd_limit {
   const char *brief;
 } ethd_limit;
 
-#define ETHD_LIMITS 9
+#define ETHD_LIMITS 14
 ETHD_API extern const ethd_limit ethd_limit_rows[ETHD_LIMITS];
 
 static inline double *ethd_limit_of(ethd_limits *limits, const ethd_limit *row) ETHD_RT {
@@ -67,19 +72,32 @@ enum {
   ETHD_GUARD_RATE = 4,      /* slope limited */
   ETHD_GUARD_SPEED = 8,     /* ring too fast: damped until it is still, then zero, latched */
   ETHD_GUARD_WORKSPACE = 16, /* ring out of its workspace: likewise */
-  ETHD_GUARD_FAULT = 32      /* a row of the fault table stops the ring: likewise */
+  ETHD_GUARD_FAULT = 32,     /* a row of the fault table stops the ring: likewise */
+  ETHD_GUARD_MARGIN = 64,    /* the workspace's wall pushed */
+  ETHD_GUARD_HEAT = 128,     /* clamped to what a hot motor may have */
+  ETHD_GUARD_STEEP = 256     /* what was asked for rose over the rate for ETHD_STEEP_MAX ticks in a row, where
+                                limits latch: damped as for speed */
 };
-#define ETHD_GUARD_COUNT 6
+#define ETHD_GUARD_COUNT 9
+#define ETHD_STEEP_MAX 20
 
 typedef struct ethd_guard_state {
   double last[2];      /* torque of the last tick, Nm */
+  double asked[2];     /* what it was before it was limited, Nm */
+  double heat[2];      /* of each motor; 1: as its nominal torque leads to */
+  double cut;          /* s for which the torque has been clamped without a break */
+  int64_t steep;       /* ticks in a row with too steep a torque */
   uint64_t counts[ETHD_GUARD_COUNT];
   int32_t stopping;    /* what stops the ring, ETHD_GUARD_* bits, 0: nothing; may be set from outside */
   int32_t stopped;     /* 1: it stands still, or has to be let go: zero torque until cleared */
 } ethd_guard_state;
 
+/* The last torque has heated the motors for dt s; the hotter one's heat. Only where nominal_torque is a limit.
+   [rt] */
+ETHD_API double ethd_guard_heat(const ethd_limits *limits, ethd_guard_state *state, double dt) ETHD_RT;
+
 /* Limits `torque` in place; returns the bits of what it did. Order: speed and workspace (replace the
-   torque by damping), finite, torque, rate. pose and v are the ring's. [rt] */
+   torque by damping), margin, finite, torque, heat, rate. pose and v are the ring's. [rt] */
 ETHD_API int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *state,
                                  const ethd_pose *pose, ethd_vec v, double dt,
                                  double torque[2]) ETHD_RT;
