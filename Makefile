@@ -178,14 +178,14 @@ $(B)/bin/ethd-study: LIBS += -lSDL2_ttf -lSDL2
 $(PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES) $(B)/libethd.a
 	$(call say,LINK,$@)
 	@mkdir -p $(@D)
-	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) -linih -lmodbus -lz $(LIBS)
+	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) -linih -lmodbus -lz -lexpat $(LIBS)
 
 define test_program
 $(B)/tests/$(notdir $(1:.c=)): $(B)/obj/$(1:.c=.o) $(B)/libethd-tests.a $(ARCHIVES) $(B)/libethd.a
 	$$(call say,LINK,$$@)
 	@mkdir -p $$(@D)
 	$$(Q)$$(LINK) -o $$@ $$< $(B)/libethd-tests.a $$(ARCHIVES) $$(WHOLE) \
-	  $$(shell $$(PKG_CONFIG) --libs check) -linih -lmodbus -lz $$(LIBS)
+	  $$(shell $$(PKG_CONFIG) --libs check) -linih -lmodbus -lz -lexpat $$(LIBS)
 endef
 $(foreach t,$(TESTS_C),$(eval $(call test_program,$(t))))
 
@@ -193,7 +193,7 @@ $(foreach t,$(TESTS_C),$(eval $(call test_program,$(t))))
 $(TOOLS_C:%.c=$(B)/%): $(B)/tests/%: $(B)/obj/tests/%.o $(ARCHIVES) $(B)/libethd.a
 	$(call say,LINK,$@)
 	@mkdir -p $(@D)
-	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) -linih -lmodbus -lz $(LIBS)
+	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) -linih -lmodbus -lz -lexpat $(LIBS)
 
 $(PLUGINS): $(B)/tests/plugins/%.so: tests/plugins/%.c $(B)/flags
 	$(call say,PLUGIN,$@)
@@ -274,8 +274,10 @@ bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
 	  'commit $(or $(shell git describe --always --dirty 2>/dev/null),unknown); $(CC) $(BASE)'
 
 # The long ones: minutes.
-stress: all $(B)/tests/test_scene_tree
+stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_svg
 	ETHD_SCENE_QUERIES=1000000 $(B)/tests/test_scene_tree
+	ETHD_FUZZ=10000000 $(B)/tests/test_scene_parse
+	ETHD_FUZZ=10000000 $(B)/tests/test_svg
 	@BUILD='$(B)' sh apps/stress.sh
 
 # A real Xenomai, where there is one.

@@ -64,6 +64,30 @@ grep -q '^inf,.*,-1$' empty.csv || fail "an empty scene has a nearest object"
 "$program" --help | grep -q 'ethd-scene query --scene' || fail "no example in --help"
 "$program" --version | grep -q . || fail "no version"
 
+cat >drawing.svg <<'END'
+<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="100mm" viewBox="0 0 200 100">
+  <title>a room</title>
+  <path fill="none" d="M10 10h180v80h-180z"/>
+  <circle cx="100" cy="50" r="10"/>
+  <g display="none"><text>hidden</text></g>
+</svg>
+END
+"$program" convert --in drawing.svg --out room.scene --origin 0.1,0.2 >convert.txt || fail "convert fails"
+cat >expected.scene <<'END'
+polyline 0.11 0.29 0.29 0.29 0.29 0.21 0.11 0.21 0.11 0.29
+circle 0.2 0.25 0.01
+END
+"$program" convert --in expected.scene --out normal.scene >/dev/null && cmp expected.scene normal.scene ||
+  fail "a scene isn't its own normal form"
+awk 'NR == FNR { for (i = 1; i <= NF; i++) want[NR, i] = $i; next }
+  { for (i = 1; i <= NF; i++) if (i == 1 ? $i != want[FNR, i] : $i - want[FNR, i] > 1e-15 || want[FNR, i] - $i > 1e-15) { print $i; bad = 1 } }
+  END { exit bad || FNR != 2 }' expected.scene room.scene || fail "the drawing became: $(cat room.scene)"
+for line in '2 objects, 4 segments' '1 user unit = 0.001 m; y up' 'corner at 0.1, 0.2 m, its size 0.2 x 0.1 m' 'skipped: 2 '; do
+  grep -q "$line" convert.txt || fail "convert doesn't say: $line"
+done
+"$program" convert --in walls.scene --out copy.scene >/dev/null || fail "a scene isn't written again"
+"$program" query --scene copy.scene --in points.csv --out copy.csv && cmp out.csv copy.csv || fail "a copy gives other distances"
+
 # refuse PATTERN ARGUMENTS...: exit 2, one line with the pattern (usage: argp's two), nothing written over.
 refuse() {
   pattern=$1
@@ -105,7 +129,7 @@ q 'twice.csv:1: .*x_m' walls.scene twice.csv
 q 'far.csv:2: y_m: .*2e+10' walls.scene far.csv
 q 'empty.csv2' walls.scene empty.csv2
 q 'nowhere.csv: ' walls.scene nowhere.csv
-refuse 'query or info'
+refuse 'query, info or convert'
 refuse '"draw"' draw
 refuse 'query needs' query --scene walls.scene
 refuse 'no such argument' query walls.scene
@@ -114,6 +138,17 @@ refuse 'for query' info walls.scene --in one.csv
 refuse 'no such argument' info walls.scene more
 refuse 'frobnicate' info --frobnicate walls.scene
 refuse 'count.scene:3: ' info count.scene
+printf '<svg width="1mm" height="1mm">\n<text/></svg>\n' >text.svg
+cp drawing.svg drawing.txt
+refuse 'text.svg:2: not taken.*text' convert --in text.svg --out kept.csv
+refuse 'drawing.txt.*svg or .scene' convert --in drawing.txt --out kept.csv
+refuse 'nowhere.svg' convert --in nowhere.svg --out kept.csv
+refuse 'convert needs' convert --in drawing.svg
+refuse 'are for drawings' convert --in walls.scene --out kept.csv --scale 2
+refuse 'tolerance: found "0"' convert --in drawing.svg --out kept.csv --tolerance 0
+refuse 'origin: found "1"' convert --in drawing.svg --out kept.csv --origin 1
+refuse 'for convert' info walls.scene --scale 2
+refuse 'for info' convert --in drawing.svg --out kept.csv --plot x.png
 refuse 'nowhere.ini: ' info walls.scene --config nowhere.ini
 [ $failed = 0 ] && echo "distances, summary and refusals as expected"
 exit $failed

@@ -153,8 +153,7 @@ static const char *digits(const char *p, const char *end) {
   return p;
 }
 
-/* The end of the decimal number at p, NULL if there is none. */
-static const char *decimal(const char *p, const char *end) {
+const char *ethd__decimal(const char *p, const char *end) {
   const char *whole = p;
   p = digits(p, end);
   size_t count = (size_t)(p - whole);
@@ -183,7 +182,7 @@ bool ethd__number(const char *text, size_t length, double *out) {
   if (is_word(text, length, "nan")) return *out = NAN, true;
   if (p < end && (*p == '+' || *p == '-')) p++;
   if (is_word(p, (size_t)(end - p), "inf")) return *out = *text == '-' ? -INFINITY : INFINITY, true;
-  if (decimal(p, end) != end) return false;
+  if (ethd__decimal(p, end) != end) return false;
   *out = strtod(text, NULL);
   return isfinite(*out);
 }

@@ -33,6 +33,9 @@ void ethd_replace_abandon(ethd_replace *replace);
    large for a double is refused. text[length] must be readable and no part of a number. */
 bool ethd__number(const char *text, size_t length, double *out);
 
+/* The end of the decimal number without a sign at p; NULL: there is none. */
+const char *ethd__decimal(const char *p, const char *end);
+
 /* folder/path, or path when it is absolute or folder is NULL or ""; NULL: no memory. */
 char *ethd__path_join(const char *folder, const char *path);
 

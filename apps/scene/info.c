@@ -1,0 +1,49 @@
+/* What a scene holds. */
+#include <stdio.h>
+
+#include "common/cli.h"
+#include "scene/scene.h"
+
+static ethd_setup setup_of(const char *path) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd_config *config;
+  if (!path) return ethd_setup_default();
+  ethd_status status = ethd_config_load(path, &config, message);
+  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd_setup setup = config->setup;
+  setup.scene = NULL;
+  ethd_config_free(config);
+  return setup;
+}
+
+static void say_counts(const char *name, const ethd_scene_info *info) {
+  printf("%s: %zu objects\n", name, info->objects);
+  for (int shape = 0; shape < ETHD_SHAPE_COUNT; shape++)
+    if (info->by_shape[shape])
+      printf("  %-10s %zu\n", ethd_shape_name((ethd_shape)shape), info->by_shape[shape]);
+  printf("segments:     %zu (edges of polygons, polylines and segments)\n", info->segments);
+  printf("materials:    %zu\n", info->materials);
+  if (info->x_min <= info->x_max)
+    printf("extent:       x %.9g to %.9g m, y %.9g to %.9g m%s\n", info->x_min, info->x_max, info->y_min,
+           info->y_max, info->by_shape[ETHD_HALFPLANE] ? ", and half-planes" : "");
+  else
+    printf("extent:       %s\n", info->by_shape[ETHD_HALFPLANE] ? "half-planes only" : "none");
+}
+
+int ethd__scene_info(const ethd__scene_args *arg) {
+  double seconds;
+  ethd_scene_info info;
+  ethd_setup setup = setup_of(arg->config);
+  ethd_scene *scene = ethd__scene_load(arg->scene, &seconds);
+  ethd_scene_describe(scene, &info);
+  say_counts(arg->scene, &info);
+  printf("build time:   %.3g ms (read and built)\n", 1e3 * seconds);
+  printf("memory:       %zu bytes\n", info.bytes);
+  printf("out of reach: %zu of %zu objects, which a controller drops (%s arm %g + %g m, ring %g m)\n",
+         ethd_scene_out_of_reach(scene, &setup.arm, ethd_setup_range(&setup)), info.objects,
+         setup.arm.mechanism == ETHD_ARM_SERIAL ? "serial" : "parallel", setup.arm.link1, setup.arm.link2,
+         setup.ring_radius);
+  int code = arg->plot ? ethd__scene_plot(arg->plot, scene, &setup) : ETHD_EXIT_DONE;
+  ethd_scene_destroy(scene);
+  return code;
+}

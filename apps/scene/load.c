@@ -1,0 +1,30 @@
+#include <stdlib.h>
+#include <time.h>
+
+#include "common/cli.h"
+#include "file/text.h"
+#include "scene/scene.h"
+
+#define SCENE_BYTES_MAX ((size_t)1 << 30)
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+ethd_scene *ethd__scene_load(const char *path, double *seconds) {
+  char message[ETHD_MESSAGE_MAX], *text;
+  size_t length;
+  ethd_scene *scene;
+  ethd_error error;
+  ethd_status status = ethd_text_read(path, SCENE_BYTES_MAX, &text, &length, message);
+  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+  double start = now();
+  status = ethd_scene_parse(text, length, &scene, &error);
+  *seconds = now() - start;
+  free(text);
+  if (status >= 0) return scene;
+  ethd_error_text(path, &error, message);
+  ethd__fail(ethd__exit_code(status), "%s", message);
+}
