@@ -102,11 +102,11 @@ static ethd_status refuse_range(const ethd__servo_source *s, const ethd_ini_key 
 
 static void put(const row *r, double value, void *base) {
   char *at = (char *)base + r->offset;
-  int32_t word = (int32_t)value;
-  uint32_t whole = (uint32_t)value;
-  if (r->kind == NUMBER) memcpy(at, &value, sizeof value);
-  if (r->kind == CHOICE) memcpy(at, &word, sizeof word);
-  if (r->kind == WHOLE) memcpy(at, &whole, sizeof whole);
+  switch (r->kind) {
+    case NUMBER: memcpy(at, &value, sizeof value); break;
+    case CHOICE: memcpy(at, &(int32_t){(int32_t)value}, sizeof(int32_t)); break;
+    case WHOLE: memcpy(at, &(uint32_t){(uint32_t)value}, sizeof(uint32_t)); break;
+  }
 }
 
 static ethd_status set(const ethd__servo_source *s, const row *r, const ethd_ini_key *key, void *base) {
