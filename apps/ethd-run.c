@@ -1,5 +1,6 @@
 /* A device, really: opened, stepped in real time, commanded on stdin. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -28,12 +29,14 @@ static const char doc[] =
     "  ethd-run --config device.ini --record session\n"
     "  printf 'wait 0.5\\ntransition smooth\\nstatus\\n' | ethd-run --virtual --duration 2";
 
-enum { OPTION_RECORD = 256, OPTION_TELEMETRY, OPTION_VIRTUAL, OPTION_CPU, OPTION_PRIORITY, OPTION_REQUIRE, OPTION_EARLY, OPTION_DMA, OPTION_SOFT };
+enum { OPTION_RECORD = 256, OPTION_SNAPSHOT, OPTION_FAULTS, OPTION_TELEMETRY, OPTION_VIRTUAL, OPTION_CPU, OPTION_PRIORITY, OPTION_REQUIRE, OPTION_EARLY, OPTION_DMA, OPTION_SOFT };
 
 static const struct argp_option options[] = {
     {"config", 'c', "C.ini", 0, "configuration; the simulated device without", 0},
     {"duration", 'd', "S", 0, "ends after so many seconds; needed with --virtual", 0},
     {"record", OPTION_RECORD, "DIR", 0, "every tick, for ethd-replay --verify", 0},
+    {"snapshot", OPTION_SNAPSHOT, "FILE.npy", 0, "the ticks around the first fault: 2 s before, 1 s after; snapshot.npy in DIR with --record", 0},
+    {"faults", OPTION_FAULTS, NULL, 0, "print what may go wrong and what is done then, and end", 0},
     {"telemetry", OPTION_TELEMETRY, "HOST:PORT", 0, "UDP, JSON, 100 Hz: PlotJuggler's UDP server reads it", 0},
     {"virtual", OPTION_VIRTUAL, NULL, 0, "lock-step on a virtual clock, no threads", 0},
     {"cpu", OPTION_CPU, "N|auto|none", 0, "processor of the loop: none; auto: the highest isolated one", 1},
@@ -62,6 +65,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     case 'c': arg.session.config = text; return 0;
     case 'd': arg.duration = ethd__option_number("--duration", text, 1e-3, 1e7); return 0;
     case OPTION_RECORD: arg.session.record = text; return 0;
+    case OPTION_SNAPSHOT: arg.session.snapshot = text; return 0;
+    case OPTION_FAULTS: ethd__faults_print(stdout); exit(ethd__end(ETHD_EXIT_DONE));
     case OPTION_TELEMETRY: arg.session.telemetry = text; return 0;
     case OPTION_VIRTUAL: arg.session.is_virtual = true; return 0;
     case OPTION_CPU: loop->cpu = parse_cpu(text); return 0;

@@ -51,6 +51,23 @@ printf 'wait 0.1\nset limits.speed 0.001\nwait 0.3\nset limits.speed 5\nwait 0.2
 says "$folder/clean.out" '^error: nothing has gone wrong for 0.2[0-9]* s, 0.5 s are required$' '^ok: acknowledged; ' '^ok: enabled$'
 replays "$folder/clean"
 
+# the ticks around the first fault, for numpy; rows of an earlier fault's are gone
+says "$folder/clean.out" '^snapshot  .*clean/snapshot.npy: [0-9]* ticks around the first fault, the ring is faster'
+"${PYTHON:-python3}" -c 'import numpy, sys
+s, all = numpy.load(sys.argv[1] + "/snapshot.npy"), numpy.load(sys.argv[1] + "/tick.npy")
+first = numpy.flatnonzero(all["fault"])[0]
+assert s.dtype == all.dtype and (s["tick"] == all["tick"][:len(s)]).all() and s["fault"][first] == 24
+assert len(s) == min(first + 1001, len(all)), (len(s), first, len(all))' "$folder/clean" || fail "the snapshot"
+[ -e "$folder/v1/snapshot.npy" ] || fail "no snapshot"
+printf 'wait 5\nset limits.speed 0.001\n' | "$run" --virtual --duration 9 --snapshot "$folder/first.npy" >"$folder/first.out" 2>&1
+"${PYTHON:-python3}" -c 'import numpy, sys
+s = numpy.load(sys.argv[1])
+assert len(s) == 3001 and not s["fault"][:2000].any() and (s["fault"][2000:] == 24).all()' "$folder/first.npy" || fail "--snapshot"
+"$run" --virtual --duration 1 --snapshot "$folder/nowhere/x.npy" </dev/null >"$folder/out" 2>&1 || fail "a snapshot that isn't needed"
+"$run" --faults >"$folder/faults" || fail "--faults"
+[ "$(grep -cE '^ *[0-9]+ ' "$folder/faults")" -ge 36 ] || fail "$(cat "$folder/faults")"
+says "$folder/faults" '^ 24  1 tick  *stop  *stop  *the ring is faster than its limit$'
+
 # one answer a command
 [ "$(grep -cE '^(ok|error): ' "$folder/v1.out")" = 23 ] || fail "$(grep -cE '^(ok|error): ' "$folder/v1.out") answers to 23 commands"
 

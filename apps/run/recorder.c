@@ -39,25 +39,35 @@ static void tell_posts(ethd__recorder *r, uint64_t swaps) {
   }
 }
 
-static void tell_fault(ethd__recorder *r, int64_t fault) {
+/* True: a fault that stops the ring begins. */
+static bool tell_fault(ethd__recorder *r, int64_t fault) {
   const char *sentence = ethd_fault_sentence((ethd_fault)fault);
-  if (!fault || fault == r->latest.trace.fault || atomic_load(&r->stopping)) return;
+  if (!fault || fault == r->latest.trace.fault || atomic_load(&r->stopping)) return false;
   if (fault > 0 && fault < ETHD_FAULT_COUNT) r->faults[fault]++;
   event(r, "fault", sentence);
   fprintf(stderr, "%s: fault: %s\n", program_invocation_short_name, sentence);
+  return true;
+}
+
+/* The loop is told once what the recorder loses. */
+static void tell_loop(ethd__recorder *r, uint64_t lost, bool failed_before) {
+  if (lost || r->failed != failed_before) ethd_loop_raise(r->loop, ETHD_FAULT_RECORDER);
 }
 
 static void take(ethd__recorder *r, const ethd_loop_row *row) {
+  bool failed_before = r->failed;
   pthread_mutex_lock(&r->lock);
   tell_lost(r, row->lost);
   if (row->marks & ETHD_ROW_STARTED && r->rows) event(r, "start", "enabled");
   tell_posts(r, row->swaps);
   if (row->marks & ETHD_ROW_CLEARED) event(r, "clear", "");
-  tell_fault(r, row->trace.fault);
+  bool begins = tell_fault(r, row->trace.fault);
   if (r->recording && ethd_recording_tick(r->recording, &row->trace)) r->failed = true;
   r->latest = *row;
   r->rows++;
   pthread_mutex_unlock(&r->lock);
+  tell_loop(r, row->lost, failed_before);
+  ethd__snapshot_take(&r->snapshot, &row->trace, begins);
   if (r->telemetry >= 0 && r->rows % r->every == 0) ethd__telemetry_send(r->telemetry, row);
 }
 
@@ -97,6 +107,7 @@ void ethd__recorder_end(ethd__recorder *r) {
   if (r->threaded) pthread_join(r->thread, NULL);
   r->threaded = false;
   ethd__recorder_drain(r);
+  ethd__snapshot_finish(&r->snapshot);
   pthread_mutex_destroy(&r->lock);
 }
 

@@ -9,6 +9,7 @@
 
 #include "ethd/loop.h"
 #include "ethd/record.h"
+#include "run/snapshot.h"
 
 #define ETHD__POSTS_MAX 4
 #define ETHD__DETAIL_MAX 256
@@ -27,6 +28,8 @@ typedef struct ethd__recorder {
   pthread_t thread;
   atomic_int stop, stopping; /* stopping: a controlled stop's fault is none */
   bool threaded;
+
+  ethd__snapshot snapshot;
 
   pthread_mutex_t lock; /* for what follows */
   ethd__post posts[ETHD__POSTS_MAX];

@@ -9,6 +9,7 @@
 
 #include "common/cli.h"
 #include "file/error_text.h"
+#include "file/text.h"
 #include "run/telemetry.h"
 
 #define HEARTBEAT 0.1  /* s */
@@ -94,11 +95,21 @@ static ethd_status record_limits(const ethd__session *s) {
   return status;
 }
 
+/* In the recording's folder, if not elsewhere; one of an earlier recording goes. */
+static ethd_status open_snapshot(ethd__session *s, const ethd__session_options *o, char *message) {
+  char *path = o->snapshot ? strdup(o->snapshot) : ethd__path_join(o->record, "snapshot.npy");
+  if (path && !o->snapshot) unlink(path);
+  ethd_status status = path ? ethd__snapshot_open(&s->recorder.snapshot, path, s->setup.period) : ETHD_E_MEMORY;
+  free(path);
+  return status ? ethd__say(message, status, "--snapshot: %s", ethd_status_sentence(status)) : ETHD_OK;
+}
+
 static ethd_status open_recorder(ethd__session *s, const ethd__session_options *o, char *message) {
   ethd__recorder *r = &s->recorder;
   ethd_status status = ETHD_OK;
   r->telemetry = -1;
   if (o->telemetry) status = ethd__telemetry_open(o->telemetry, &r->telemetry, message);
+  if (!status && (o->snapshot || o->record)) status = open_snapshot(s, o, message);
   if (status || !o->record) return status;
   status = ethd_recording_create(o->record, s->config, &r->recording, message);
   if (status) return status;
@@ -234,6 +245,7 @@ ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]) 
 
 void ethd__session_free(ethd__session *s) {
   ethd_loop_destroy(s->loop);
+  ethd__snapshot_close(&s->recorder.snapshot);
   if (s->device) s->driver->close(s->device);
   ethd_control_destroy(s->control);
   if (s->config) ethd_config_free(s->config);

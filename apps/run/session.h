@@ -20,7 +20,7 @@ typedef struct ethd__session {
 } ethd__session;
 
 typedef struct ethd__session_options {
-  const char *config, *record, *telemetry; /* NULL: none */
+  const char *config, *record, *telemetry, *snapshot; /* NULL: none; a recording has a snapshot of its own */
   bool is_virtual;
   ethd_loop_def loop; /* its device, controller, period and clock are filled in */
 } ethd__session_options;

@@ -63,6 +63,31 @@ static void print_figures(FILE *out, const ethd__session *s) {
   }
 }
 
+static void print_snapshot(FILE *out, const ethd__snapshot *s) {
+  if (s->message[0]) fprintf(out, "%-10s not written: %s\n", "snapshot", s->message);
+  if (s->written)
+    fprintf(out, "%-10s %s: %zu ticks around the first fault, %s\n", "snapshot", s->path, s->written,
+            ethd_fault_sentence(s->fault));
+}
+
+/* ---- the manual's page ---- */
+
+static const char *word(ethd_reaction reaction) {
+  static const char *const words[] = {"", "count", "degrade", "stop", "zero", "refuse"};
+  return words[reaction];
+}
+
+void ethd__faults_print(FILE *out) {
+  fprintf(out, "What may go wrong, how soon it is noticed, and what is done at first and at the worst.\n"
+               "count: it goes on. degrade: with less. stop: the ring is damped until it stands, then as zero.\n"
+               "zero: no torque, the device is disabled, latched until acknowledged. refuse: nothing moves.\n\n"
+               "row  %-20s%-9s%-9s%s\n", "noticed within", "at first", "at worst", "what");
+  for (int i = 1; i < ETHD_FAULT_COUNT; i++)
+    fprintf(out, "%3d  %-20s%-9s%-9s%s\n", i, ethd_fault_bound((ethd_fault)i),
+            word(ethd_fault_reaction((ethd_fault)i, 0)), word(ethd_fault_reaction((ethd_fault)i, 1)),
+            ethd_fault_sentence((ethd_fault)i));
+}
+
 void ethd__summary_print(FILE *out, const ethd__session *s, const char *record) {
   static ethd_loop_stats stats;
   ethd_loop_read(s->loop, &stats);
@@ -79,6 +104,7 @@ void ethd__summary_print(FILE *out, const ethd__session *s, const char *record) 
   print_skipped(out, s, &stats);
   print_figures(out, s);
   if (record) fprintf(out, "%-10s %s: %" PRIu64 " ticks\n", "recorded", record, s->recorder.rows);
+  print_snapshot(out, &s->recorder.snapshot);
   if (!s->is_virtual && !ethd_loop_shortfalls(s->loop)) fprintf(out, "%-10s none\n", "shortfalls");
   if (!s->is_virtual) ethd__shortfalls_print(out, ethd_loop_shortfalls(s->loop));
 }

@@ -14,4 +14,7 @@ void ethd__shortfalls_print(FILE *out, int32_t bits);
 /* A line of a histogram: p50, p99, p99.9, max in us. */
 void ethd__durations_print(FILE *out, const char *name, const ethd_histogram *h);
 
+/* The fault table as a page. */
+void ethd__faults_print(FILE *out);
+
 #endif

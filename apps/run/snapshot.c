@@ -1,0 +1,67 @@
+#include "run/snapshot.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BEFORE 2.0 /* s */
+#define AFTER 1.0
+#define ROWS_MAX 1e5
+
+static size_t rows_in(double seconds, double period) { return (size_t)fmin(fmax(1, round(seconds / period)), ROWS_MAX); }
+
+ethd_status ethd__snapshot_open(ethd__snapshot *s, const char *path, double period) {
+  *s = (ethd__snapshot){0};
+  if (!path) return ETHD_OK;
+  s->after = rows_in(AFTER, period);
+  s->room = rows_in(BEFORE, period) + 1 + s->after;
+  s->path = strdup(path);
+  s->rows = malloc(s->room * sizeof *s->rows);
+  if (s->path && s->rows) return ETHD_OK;
+  ethd__snapshot_close(s);
+  return ETHD_E_MEMORY;
+}
+
+/* The oldest first. */
+static ethd_status write_rows(ethd__snapshot *s) {
+  ethd_npy *npy;
+  size_t n = s->count < s->room ? s->count : s->room;
+  ethd_status status = ethd_npy_create(s->path, ethd_trace_columns, sizeof *s->rows, &npy, s->message);
+  if (status) return status;
+  for (size_t i = s->count - n; !status && i < s->count; i++)
+    status = ethd_npy_append(npy, &s->rows[i % s->room], 1);
+  ethd_status closed = ethd_npy_close(npy);
+  s->written = n;
+  return status ? status : closed;
+}
+
+static void write_file(ethd__snapshot *s) {
+  s->left = 0;
+  ethd_status status = write_rows(s);
+  if (!status) return;
+  s->written = 0;
+  if (!s->message[0]) strcpy(s->message, ethd_status_sentence(status));
+}
+
+void ethd__snapshot_take(ethd__snapshot *s, const ethd_trace *trace, int begins) {
+  int over = s->fault != ETHD_FAULT_NONE && !s->left;
+  if (!s->path || over) return;
+  s->rows[s->count++ % s->room] = *trace;
+  if (s->left) {
+    if (--s->left == 0) write_file(s);
+  } else if (begins) {
+    s->fault = (ethd_fault)trace->fault;
+    s->left = s->after;
+  }
+}
+
+void ethd__snapshot_finish(ethd__snapshot *s) {
+  if (s->left) write_file(s);
+}
+
+void ethd__snapshot_close(ethd__snapshot *s) {
+  free(s->rows);
+  free(s->path);
+  s->rows = NULL;
+  s->path = NULL;
+}

@@ -1,0 +1,29 @@
+/* The ticks around the first fault that stopped the ring: 2 s before it, 1 s after. All of one thread. */
+#ifndef ETHD_APPS_RUN_SNAPSHOT_H
+#define ETHD_APPS_RUN_SNAPSHOT_H
+
+#include "ethd/control.h"
+#include "ethd/record.h"
+
+typedef struct ethd__snapshot {
+  char *path; /* NULL: none is taken */
+  ethd_trace *rows;
+  size_t room, count; /* rows; taken since the start */
+  size_t after;       /* rows that follow the fault */
+  size_t left;        /* of them to come, 0: no fault yet, or written */
+  ethd_fault fault;   /* the first; ETHD_FAULT_NONE: none yet */
+  size_t written;     /* rows in the file */
+  char message[ETHD_MESSAGE_MAX]; /* why it couldn't be written, else empty */
+} ethd__snapshot;
+
+/* path NULL: nothing is taken. ETHD_E_MEMORY. */
+ETHD_MUST_CHECK ethd_status ethd__snapshot_open(ethd__snapshot *s, const char *path, double period);
+
+/* Every tick, in order; begins: a fault that stops the ring begins at it. */
+void ethd__snapshot_take(ethd__snapshot *s, const ethd_trace *trace, int begins);
+
+/* Writes what is there if the run ended too early. */
+void ethd__snapshot_finish(ethd__snapshot *s);
+void ethd__snapshot_close(ethd__snapshot *s);
+
+#endif
