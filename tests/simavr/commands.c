@@ -7,7 +7,8 @@
 const char commands_help[] =
     "Lines on stdin, or datagrams with --udp:\n"
     "  C0 C1 .. C15            what the 16 sensors see from now on, 0 to 65535\n"
-    "  run SECONDS             with --step: let that much time pass\n"
+    "  step, pace              time stands still but for run (as with --step); goes on by itself\n"
+    "  run SECONDS             after step: let that much time pass\n"
     "  mute K, unmute K        sensor K loses its supply, has it again\n"
     "  short K, unshort K      sensor K's SDA lies at ground\n"
     "  slow K, unslow K        sensor K takes 2 ms to measure\n"
@@ -94,6 +95,8 @@ static void insert(session *s, int n) { s->terminal.insert = n; }
 static void link_short(session *s, int n) { s->ring->link.shorted = n == 0; }
 static void link_free(session *s, int n) { s->ring->link.shorted = n != 0; }
 static void show_stats(session *s, int n) { (void)n, stats(s); }
+static void step(session *s, int n) { (void)n, s->step = s->terminal.patient = true; }
+static void pace(session *s, int n) { (void)n, s->step = s->terminal.patient = false; }
 static void quit(session *s, int n) { (void)n, s->quit = true; }
 static void unplug(session *s, int n) { (void)n, terminal_unplug(&s->terminal); }
 static void plug(session *s, int n) {
@@ -117,6 +120,7 @@ static const struct {
     {"insert", 1000000000, insert},    {"link-short", 0, link_short},
     {"link-free", 0, link_free},       {"unplug", 0, unplug},
     {"plug", 0, plug},                 {"stats", 0, show_stats},
+    {"step", 0, step},                 {"pace", 0, pace},
     {"quit", 0, quit},
 };
 
@@ -143,7 +147,7 @@ static bool named(session *s, const char *line) {
 bool command(session *s, const char *line, const char **why) {
   *why = "see --help for the commands";
   if (!strncmp(line, "run ", 4)) {
-    *why = "run SECONDS needs --step and 0 to 3600 s";
+    *why = "run SECONDS needs step and 0 to 3600 s";
     double seconds = strtod(line + 4, NULL);
     if (!s->step || !(seconds >= 0 && seconds <= 3600)) return false;
     s->run = seconds;

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <avr_extint.h>
 #include <avr_ioport.h>
@@ -229,7 +230,7 @@ static bool make_board(ring *r, int n, elf_firmware_t *firmware) {
 ring *ring_create(const char *path, bool slow) {
   static elf_firmware_t firmware;
   ring *r = calloc(1, sizeof *r);
-  bool made = r && !elf_read_firmware(path, &firmware);
+  bool made = r && !access(path, R_OK) && !elf_read_firmware(path, &firmware);
   if (r) r->slow = slow;
   if (!made) fprintf(stderr, "ring_board: %s: found no firmware that can be loaded; make firmware\n", path);
   for (int n = 0; made && n < RING_BOARDS; n++) made = make_board(r, n, &firmware);

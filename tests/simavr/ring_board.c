@@ -125,8 +125,8 @@ static void serve(session *s, const options *o) {
   int input = STDIN_FILENO, udp = o->udp ? open_udp(o->udp) : -1;
   double origin = clock_now();
   while (!stopped && !s->quit) {
-    listen_for(s, &input, udp, o->step ? -1 : 0);
-    if (o->step) {
+    listen_for(s, &input, udp, s->step ? -1 : 0);
+    if (s->step) {
       if (input < 0) return;
       continue;
     }
