@@ -220,6 +220,7 @@ firmware: $(B)/firmware/proximity_ring.hex
 $(B)/firmware/proximity_ring.elf: $(FIRMWARE_FROM) Makefile
 	$(call say,AVR,$@)
 	@mkdir -p $(@D)
+	@command -v $(AVR_CC) >/dev/null || { echo '$(AVR_CC) is missing (Debian: gcc-avr avr-libc)'; exit 1; }
 	$(Q)$(AVR_CC) $(AVR_FLAGS) -o $@ $(filter %.c,$^)
 $(B)/firmware/proximity_ring.hex: $(B)/firmware/proximity_ring.elf
 	$(Q)$(AVR_OBJCOPY) -O ihex -R .eeprom $< $@
