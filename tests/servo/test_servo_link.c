@@ -21,7 +21,7 @@
 #include "servo/words.h"
 #include "unit/rig.h"
 
-#define RESPONSE 30000 /* us: long beside what a busy machine adds */
+#define RESPONSE 150000 /* us: long beside what a busy machine adds */
 #define CYCLES 200
 
 static ethd__servo_map map;
@@ -43,7 +43,7 @@ static void open_mock(int is_rtu) {
   map.transport = is_rtu ? ETHD__SERVO_RTU : ETHD__SERVO_TCP;
   map.baud = 500000;
   map.response = 1e-6 * RESPONSE;
-  map.drain = 4e-3;
+  map.drain = 30e-3;
   map.back_off = 1e-3;
 }
 
@@ -92,7 +92,7 @@ static void tell(const char *trap, int caught, const char *how) {
 
 static mock_act late_once(void *user, uint64_t n, int function) {
   (void)function;
-  return (mock_act){MOCK_LATE, 0, n == *(_Atomic uint64_t *)user ? RESPONSE + RESPONSE / 3 : 300};
+  return (mock_act){MOCK_LATE, 0, n == *(_Atomic uint64_t *)user ? RESPONSE + RESPONSE / 10 : 300};
 }
 
 /* A cycle: write a counter, read it back. How many answers are another question's, taken for this one's. */
@@ -305,17 +305,17 @@ END_TEST
 
 static mock_act halves(void *user, uint64_t n, int function) {
   (void)user;
-  return (mock_act){n == 0 && function ? MOCK_HALF : MOCK_ANSWER, 0, 4 * RESPONSE};
+  return (mock_act){n == 0 && function ? MOCK_HALF : MOCK_ANSWER, 0, 2 * RESPONSE};
 }
 
-/* Half an answer, the rest four response times later: whoever returns with it has waited that long. */
+/* Half an answer, the rest two response times later: whoever returns with it has waited that long. */
 START_TEST(test_byte_timeout) {
   uint16_t got;
   open_mock(1);
   drive.act = halves;
   modbus_t *m = naive(115200);
   int count = modbus_read_registers(m, MOCK_POSITION1, 1, &got);
-  tell("its byte timeout", count == 1, "it waited four times the response time, and took the answer");
+  tell("its byte timeout", count == 1, "it waited twice the response time, and took the answer");
   naive_close(m);
   mock_stop(&drive);
   open_mock(1);
