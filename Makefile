@@ -275,10 +275,14 @@ bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
 	  'commit $(or $(shell git describe --always --dirty 2>/dev/null),unknown); $(CC) $(BASE)'
 
 # The long ones: minutes.
-stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_svg
+stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_svg $(B)/tests/test_fuzz_decoder \
+  $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver
 	ETHD_SCENE_QUERIES=1000000 $(B)/tests/test_scene_tree
 	ETHD_FUZZ=10000000 $(B)/tests/test_scene_parse
 	ETHD_FUZZ=10000000 $(B)/tests/test_svg
+	ETHD_FUZZ=100000000 $(B)/tests/test_fuzz_decoder
+	ETHD_RING_FRAMES=20000000 $(B)/tests/test_ring_noise
+	ETHD_REPLUGS=100 $(B)/tests/test_ring_driver
 	@BUILD='$(B)' sh apps/stress.sh
 
 # A real Xenomai, where there is one.

@@ -1,4 +1,4 @@
-/* The ring's decoder under mutated streams: ETHD_FUZZ_RUNS executions (default 200 000) in one process, after
+/* The ring's decoder under mutated streams: ETHD_FUZZ executions (default 200 000) in one process, after
    the corpus in tests/fuzz/decoder. Each stream is decoded in two ways, whole and in pieces, which must
    agree; a frame that came out must be what its bytes say once more. */
 #include <dirent.h>
@@ -122,7 +122,7 @@ static size_t mutated(uint64_t i, uint8_t *out) {
 
 int main(void) {
   static uint8_t bytes[ROOM + ETHD__FRAME_WIRE];
-  const char *wanted = getenv("ETHD_FUZZ_RUNS");
+  const char *wanted = getenv("ETHD_FUZZ");
   uint64_t runs = wanted ? strtoull(wanted, NULL, 10) : 200000;
   if (load("tests/fuzz/decoder")) return 1;
   for (uint32_t s = 0; s < seed_count; s++)

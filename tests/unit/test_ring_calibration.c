@@ -177,7 +177,7 @@ START_TEST(test_mutations) {
   static const char seed[] = "[calibration]\nlevel = table\ndate = x\nresidual = 1e-4\n[sensor 0]\ndark = 2e3\nserial = 1\n"
                              "point0 = 60000 1e-3\npoint1 = 30000 2e-3\n[sensor 1]\npoint0 = 5e4 1e-3\n";
   char text[1024];
-  const char *wanted = getenv("ETHD_FUZZ_RUNS");
+  const char *wanted = getenv("ETHD_FUZZ");
   uint64_t runs = wanted ? strtoull(wanted, NULL, 10) : 20000;
   for (uint64_t i = 0; i < runs; i++) {
     ethd__calibration c;
