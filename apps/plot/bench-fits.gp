@@ -13,7 +13,7 @@ set border 3 lc rgb grey
 set tics nomirror textcolor rgb "#333333" scale 0.6
 set grid lc rgb "#e4e4e4" lt 1 lw 1
 unset key
-set xrange [0:200]
+set xrange [0:250]
 set logscale y
 set yrange [0.05:8]
 set ytics (0.05, 0.1, 0.2, 0.5, 1, 2, 5)
@@ -22,11 +22,12 @@ tint(m) = m eq "robust" ? 0xc0392b : m eq "kasa" ? 0xd98a00 : 0x1f5fa8
 here(name) = strcol("scenario") eq scenario ? column(name) : NaN
 left(i) = i ? 0.595 : 0.1
 place = 'set lmargin at screen left(col); set rmargin at screen left(col) + 0.385; set tmargin at screen row ? 0.435 : 0.855; set bmargin at screen row ? 0.085 : 0.52'
-panel = 'plot in using (0):(here("bound_sought_mm")):(200):(0) with vectors nohead lc rgb "#333333" lw 1.6 dt (12,6), \
-  in using (0):(here("bound_known_mm")):(200):(0) with vectors nohead lc rgb "#333333" lw 1.6 dt (2,4), \
+panel = 'plot in using (0):(here("bound_sought_mm")):(250):(0) with vectors nohead lc rgb "#333333" lw 1.6 dt (12,6), \
+  in using (0):(here("bound_known_mm")):(250):(0) with vectors nohead lc rgb "#333333" lw 1.6 dt (2,4), \
   in using (here("time_ns")):(column("error_rms_mm")):(tint(strcol("method"))) with points pt 7 ps 1.7 lc rgb variable, \
   in using (strcol("method") eq "kasa" ? here("time_ns") : NaN):"error_rms_mm":(strcol("method")) with labels right offset -1.2,0.55 font "Sans,14" textcolor rgb "#333333", \
-  in using (strcol("method") eq "centroid" ? here("time_ns") : NaN):"error_rms_mm":(strcol("method")) with labels left offset 1.2,-0.4 font "Sans,14" textcolor rgb "#333333", \
+  in using (strcol("method") eq "centroid" && scenario ne "arc" ? here("time_ns") : NaN):"error_rms_mm":(strcol("method")) with labels center offset 0,1.2 font "Sans,14" textcolor rgb "#333333", \
+  in using (strcol("method") eq "centroid" && scenario eq "arc" ? here("time_ns") : NaN):"error_rms_mm":(strcol("method")) with labels left offset 1.2,-0.4 font "Sans,14" textcolor rgb "#333333", \
   in using (strcol("method") eq "kasa" || strcol("method") eq "centroid" ? NaN : here("time_ns")):"error_rms_mm":(strcol("method")) with labels left offset 1.2,0.55 font "Sans,14" textcolor rgb "#333333"'
 
 set multiplot
