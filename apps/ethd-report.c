@@ -86,7 +86,7 @@ static void print_lead(ethd__report *r) {
   fprintf(r->page, "<p class=\"lead\">%zu participants, %zu cells, %zu test taps, %zu of them valid; %zu training taps.</p>\n",
           d->people_count, d->group_count, taps, valid, d->training);
   fputs("<p class=\"note\"><b>Simulated, not measured.</b> Device, finger and people are plausible: the plant was fitted to "
-        "Table 1 of the paper, the spread between people is assumed. The laws and gains are the real ones.</p>\n", r->page);
+        "Table 1 of the paper, the spread between people is assumed. The laws and gains are the paper's.</p>\n", r->page);
   fputs("<nav>", r->page);
   static const char *const links[][2] = {{"table1", "Table 1"}, {"figures", "Figures"}, {"delay", "Delay"}, {"valid", "Valid taps"},
                                          {"pairs", "Comparison"}, {"survey", "Survey"}, {"traces", "Traces"}, {"methods", "Methods"}};

@@ -74,7 +74,8 @@ void ethd__report_methods(ethd__report *report) {
       "The p is that of Fisher's sign-flip test, exact up to 16 participants; none is made for fewer than six, whose "
       "smallest possible p is over 0.05. Nothing is corrected for the number of comparisons.",
       "Fitted: the simulated device's parameters were chosen so that this figure comes out; that it does shows "
-      "nothing about the strategy. Reproduced: not chosen for, and within what the table states. Not: outside.",
+      "nothing about the strategy. Reproduced: none of the four means that were fitted, and within what the table "
+      "states. Not: outside.",
       "n points into the wall: speeds are positive toward it, negative away. t(seen) is the instant at which the "
       "finger's front reaches the wall that a screen without delay would show.",
   };

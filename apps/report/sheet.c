@@ -13,14 +13,16 @@
 typedef struct scan {
   char *at, *end;
   size_t line;
-  bool row_over, open_quote;
+  bool more, open_quote; /* more: cells in this row */
 } scan;
 
 /* The next cell; the byte behind it becomes 0. */
 static char *next_cell(scan *s) {
   char *cell = s->at, *to = s->at;
   bool quoted = s->at < s->end && *s->at == '"';
+  bool row_over = false;
   s->at += quoted;
+  s->more = false;
   while (s->at < s->end) {
     char c = *s->at++;
     if (quoted && c == '"') {
@@ -29,14 +31,14 @@ static char *next_cell(scan *s) {
       continue;
     }
     if (!quoted && (c == ',' || c == '\n')) {
-      s->row_over = c == '\n';
+      s->more = c == ',';
+      row_over = !s->more;
       break;
     }
     *to++ = c;
-    s->row_over = s->at == s->end;
   }
   s->open_quote |= quoted;
-  if (to > cell && to[-1] == '\r' && s->row_over) to--;
+  if (to > cell && to[-1] == '\r' && row_over) to--;
   *to = 0;
   return cell;
 }
@@ -53,10 +55,8 @@ static ethd_status part(ethd__sheet *sheet, size_t length, char *message) {
   while (s.at < s.end) {
     size_t before = total;
     s.line++;
-    do {
-      s.row_over = false;
-      sheet->cell[total++] = next_cell(&s);
-    } while (!s.row_over && (s.at < s.end || s.at[-1] == ','));
+    do sheet->cell[total++] = next_cell(&s);
+    while (s.more);
     if (s.open_quote)
       return ethd__say(message, ETHD_E_SYNTAX, "%s:%zu: a quote that isn't closed", sheet->path, s.line);
     if (!sheet->columns) sheet->columns = total;

@@ -1,0 +1,265 @@
+/* What a study stands on: its file, the order of its blocks, its people. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/sha256.h"
+#include "study/order.h"
+#include "study/people.h"
+#include "study/row.h"
+#include "unit/mutate.h"
+#include "unit/rig.h"
+
+static ethd__protocol protocol;
+static char message[ETHD_MESSAGE_MAX];
+
+static ethd_status parse(const char *text) {
+  return ethd__protocol_parse(text, strlen(text), "x.study", ".", &protocol, message);
+}
+
+static void read(const char *text) { ck_assert_msg(parse(text) == ETHD_OK, "%s", message); }
+
+/* ---- the file ---- */
+
+START_TEST(test_an_empty_file_is_a_study) {
+  read("");
+  ck_assert_uint_eq(protocol.participants, 3);
+  ck_assert_uint_eq(protocol.strategies.count, 2);
+  ck_assert_str_eq(protocol.strategies.word[0], "smooth");
+  ck_assert_str_eq(protocol.speeds.word[1], "high");
+  ck_assert(isnan(protocol.band_low) && protocol.record && !protocol.survey && !protocol.recorded);
+  ck_assert_uint_eq(ethd__protocol_points(&protocol), 1);
+  ethd__protocol_free(&protocol);
+}
+END_TEST
+
+static const char everything[] =
+    "[study]\nname = all\nseed = 18446744073709551615\nparticipants = 1000000\nstrategies = a, b ,c\nspeeds = low,0.3\n"
+    "order = latin\ntraining = 0\ntaps = 100000\nattempts = 1000000\nsurvey = on\nrecord = none\n"
+    "[device]\nconfig = c.ini\nplant = p\n[hand]\nsource = recorded\nmotion = free\nbetween = 1\nhand_spread = 0\n"
+    "[validity]\nband_low = 0.05\nband_high = 0.1\ngraze = 0\nlift = 0.01\n[grid]\ncontact.k_e = 1,2,3\ntransition.b_d = 5,6\n";
+
+START_TEST(test_every_key) {
+  read(everything);
+  ck_assert_str_eq(protocol.name, "all");
+  ck_assert(protocol.seed == UINT64_MAX);
+  ck_assert_str_eq(protocol.strategies.word[1], "b");
+  ck_assert_int_eq(protocol.order, ETHD_ORDER_LATIN);
+  ck_assert(protocol.survey && !protocol.record && protocol.recorded);
+  ck_assert_double_eq(protocol.band_high, 0.1);
+  ck_assert_uint_eq(ethd__protocol_points(&protocol), 6);
+  ck_assert_str_eq(ethd__protocol_value(&protocol, 0, 0), "1");
+  ck_assert_str_eq(ethd__protocol_value(&protocol, 1, 1), "6");
+  ck_assert_str_eq(ethd__protocol_value(&protocol, 5, 0), "3");
+  ethd__protocol_free(&protocol);
+}
+END_TEST
+
+START_TEST(test_attempts_follow_the_taps_that_are_wanted) {
+  read("[study]\ntaps = 60\n");
+  ck_assert_uint_eq(protocol.attempts, 800);
+  ethd__protocol_free(&protocol);
+  ck_assert_int_eq(parse("[study]\ntaps = 60\nattempts = 59\n"), ETHD_E_RANGE);
+}
+END_TEST
+
+START_TEST(test_a_grid_has_an_end) {
+  char text[2048] = "[grid]\n";
+  for (int i = 0; i < 6; i++) sprintf(text + strlen(text), "a.k%d = 1,2,3,4,5,6,7,8\n", i);
+  ck_assert_int_eq(parse(text), ETHD_E_RANGE); /* 8^6 */
+  ck_assert_ptr_nonnull(strstr(message, "x.study:7: grid.a.k5"));
+}
+END_TEST
+
+/* Whatever is refused says one line with the file, and leaves nothing behind for a sanitizer to find. */
+START_TEST(test_mutations) {
+  static const char *const words[] = {"[grid]", "[hand]\n", "taps = ", "1e999", "nan", ",", "=", "\n", "latin", "\0x", "-", NULL};
+  static char text[8192];
+  const char *more = getenv("ETHD_MUTATIONS");
+  uint64_t count = more ? strtoull(more, NULL, 10) : 20000, taken = 0;
+  for (uint64_t i = 0; i < count; i++) {
+    size_t n = mutate(everything, sizeof everything - 1, words, i, text, sizeof text);
+    *message = 0;
+    if (!ethd__protocol_parse(text, n, "x.study", ".", &protocol, message)) {
+      ck_assert_uint_ge(ethd__protocol_points(&protocol), 1);
+      ck_assert_uint_ge(protocol.attempts, protocol.taps);
+      ethd__protocol_free(&protocol);
+      taken++;
+    } else {
+      ck_assert_msg(!strncmp(message, "x.study:", 8) && !strpbrk(message, "\n\r"), "%s", message);
+    }
+  }
+  ck_assert_uint_gt(taken, 100);
+  ck_assert_uint_lt(taken, count);
+}
+END_TEST
+
+/* ---- order ---- */
+
+static ethd__block blocks[ETHD_STUDY_BLOCKS];
+
+static const char *order_of(uint32_t participant) {
+  static char text[512];
+  size_t count = ethd__order_of(&protocol, participant, blocks);
+  *text = 0;
+  for (size_t i = 0; i < count; i++)
+    sprintf(text + strlen(text), "%s%c%zu", blocks[i].training ? "t" : "", (char)('A' + blocks[i].strategy), blocks[i].speed);
+  return text;
+}
+
+START_TEST(test_the_papers_order) {
+  read("");
+  ck_assert_str_eq(order_of(0), "tA0B0A0tA1B1A1");
+  ck_assert_str_eq(order_of(1), "tB0A0B0tB1A1B1");
+  ck_assert_str_eq(order_of(2), "tA0B0A0tA1B1A1");
+  ethd__protocol_free(&protocol);
+  read("[study]\nstrategies = a,b,c\nspeeds = low\ntraining = 0\n");
+  ck_assert_str_eq(order_of(0), "B0C0A0");
+  ck_assert_str_eq(order_of(1), "C0A0B0");
+  ck_assert_str_eq(order_of(2), "A0B0C0");
+  ethd__protocol_free(&protocol);
+}
+END_TEST
+
+/* Every cell as often at every place, and behind every other. */
+static void check_latin(const char *text, size_t cells, uint32_t people) {
+  size_t place[64][64] = {{0}}, after[64][64] = {{0}};
+  read(text);
+  size_t strategies = protocol.strategies.count;
+  for (uint32_t p = 0; p < people; p++) {
+    ck_assert_uint_eq(ethd__order_of(&protocol, p, blocks), cells);
+    for (size_t i = 0, last = 0; i < cells; i++) {
+      size_t cell = blocks[i].speed * strategies + blocks[i].strategy;
+      place[cell][i]++;
+      if (i) after[last][cell]++;
+      last = cell;
+    }
+  }
+  for (size_t a = 0; a < cells; a++)
+    for (size_t b = 0; b < cells; b++) {
+      ck_assert_uint_eq(place[a][b], people / cells);
+      ck_assert_uint_eq(after[a][b], a == b ? 0 : people / cells);
+    }
+  ethd__protocol_free(&protocol);
+}
+
+START_TEST(test_latin_squares) {
+  check_latin("[study]\norder = latin\ntraining = 0\n", 4, 8);
+  check_latin("[study]\norder = latin\ntraining = 0\nstrategies = a,b,c\nspeeds = low\n", 3, 6);
+  check_latin("[study]\norder = latin\ntraining = 0\nstrategies = a,b,c,d,e\nspeeds = low,high,0.3\n", 15, 30);
+}
+END_TEST
+
+/* Each cell once, another order for most people, training before a speed's first cell. */
+START_TEST(test_random_order) {
+  char first[512];
+  int others = 0;
+  read("[study]\norder = random\nstrategies = a,b,c\n");
+  snprintf(first, sizeof first, "%s", order_of(0));
+  ck_assert_str_eq(order_of(0), first);
+  for (uint32_t p = 0; p < 40; p++) {
+    unsigned seen = 0, trained = 0;
+    others += strcmp(order_of(p), first) != 0;
+    size_t count = ethd__order_of(&protocol, p, blocks);
+    ck_assert_uint_eq(count, 8);
+    for (size_t i = 0; i < count; i++) {
+      if (blocks[i].training) trained |= 1u << blocks[i].speed;
+      ck_assert(trained >> blocks[i].speed & 1);
+      if (!blocks[i].training) seen |= 1u << (blocks[i].speed * 3 + blocks[i].strategy);
+    }
+    ck_assert_uint_eq(seen, 63);
+  }
+  ck_assert_int_gt(others, 35);
+  ethd__protocol_free(&protocol);
+}
+END_TEST
+
+/* ---- people ---- */
+
+/* What lies between and within people makes up what the plant says; radii are a person's. */
+START_TEST(test_people) {
+  ethd_plant plant;
+  ck_assert_msg(!ethd_plant_load("apps/config/n.plant", &plant, message), "%s", message);
+  enum { PEOPLE = 4000 };
+  double pace = 0, square = 0, radius = 0;
+  for (uint32_t i = 0; i < PEOPLE; i++) {
+    ethd_plant own = ethd__person_plant(&plant, 7, i, 0.5, 0.15), again = ethd__person_plant(&plant, 7, i, 0.5, 0.15);
+    ck_assert(!memcmp(&own, &again, sizeof own));
+    ck_assert_double_eq(own.finger_radius_sd, 0);
+    ck_assert_double_eq_tol(own.speed_high / plant.speed_high, own.speed_low / plant.speed_low, 1e-15);
+    double p = own.speed_low / plant.speed_low - 1;
+    pace += p, square += p * p, radius += own.finger_radius;
+    ck_assert_double_eq_tol(own.speed_spread, plant.speed_spread * sqrt(0.5), 1e-15);
+  }
+  /* a normal that is cut at 2 sd has 0.880 of its sd */
+  ck_assert_double_eq_tol(pace / PEOPLE, 0, 3 * plant.speed_spread / sqrt(PEOPLE));
+  ck_assert_double_eq_tol(sqrt(square / PEOPLE), 0.880 * sqrt(0.5) * plant.speed_spread, 0.003);
+  ck_assert_double_eq_tol(radius / PEOPLE, plant.finger_radius, 3 * plant.finger_radius_sd / sqrt(PEOPLE));
+  ethd_plant none = ethd__person_plant(&plant, 7, 1, 0, 0);
+  ck_assert_double_eq(none.speed_low, plant.speed_low);
+  ck_assert_double_eq(none.hand_stiffness, plant.hand_stiffness);
+  ck_assert(ethd__person_seed(7, 1) != ethd__person_seed(7, 2) && ethd__person_seed(7, 1) != ethd__person_seed(8, 1));
+}
+END_TEST
+
+START_TEST(test_ids) {
+  char id[ETHD_STUDY_ID_MAX];
+  protocol = (ethd__protocol){.participants = 3};
+  ethd__participant_id(&protocol, 2, id);
+  ck_assert_str_eq(id, "P03");
+  protocol.participants = 12345;
+  ethd__participant_id(&protocol, 2, id);
+  ck_assert_str_eq(id, "P00003");
+}
+END_TEST
+
+START_TEST(test_row_keys) {
+  ethd__tap_key key;
+  ck_assert(ethd__tap_row_key("P02,3,test,17,offset,low,5,9,1,ok,0.2", &key));
+  ck_assert(key.person == 1 && key.number == 3 && key.attempt == 17 && key.valid);
+  const char *const bad[] = {"", "P02", "X02,3,test,17,offset,low,5,9,1,", "P0,3,test,17,offset,low,5,9,1,",
+                             "P02,0,test,17,offset,low,5,9,1,", "P02,3,test,x,offset,low,5,9,1,", "P02,999,test,1,a,b,5,9,1,"};
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) ck_assert(!ethd__tap_row_key(bad[i], &key));
+}
+END_TEST
+
+/* ---- sums: FIPS 180-4's examples ---- */
+
+static void sum_is(const char *text, size_t times, const char *expected) {
+  char sum[ETHD_SHA256_TEXT];
+  ethd__sha256 s;
+  ethd__sha256_begin(&s);
+  for (size_t i = 0; i < times; i++) ethd__sha256_add(&s, text, strlen(text));
+  ethd__sha256_end(&s, sum);
+  ck_assert_str_eq(sum, expected);
+}
+
+START_TEST(test_sha256) {
+  sum_is("", 1, "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  sum_is("abc", 1, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  sum_is("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq", 1,
+         "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  sum_is("a", 1000000, "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("study");
+  TCase *all = tcase_create("all");
+  tcase_set_timeout(all, 120);
+  tcase_add_test(all, test_an_empty_file_is_a_study);
+  tcase_add_test(all, test_every_key);
+  tcase_add_test(all, test_attempts_follow_the_taps_that_are_wanted);
+  tcase_add_test(all, test_a_grid_has_an_end);
+  tcase_add_test(all, test_mutations);
+  tcase_add_test(all, test_the_papers_order);
+  tcase_add_test(all, test_latin_squares);
+  tcase_add_test(all, test_random_order);
+  tcase_add_test(all, test_people);
+  tcase_add_test(all, test_ids);
+  tcase_add_test(all, test_row_keys);
+  tcase_add_test(all, test_sha256);
+  suite_add_tcase(suite, all);
+  return rig_run(suite);
+}
