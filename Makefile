@@ -190,10 +190,10 @@ endef
 $(foreach t,$(TESTS_C),$(eval $(call test_program,$(t))))
 
 # What test scripts run beside the programs: a plant for servers, a serial line.
-$(TOOLS_C:%.c=$(B)/%): $(B)/tests/%: $(B)/obj/tests/%.o $(ARCHIVES) $(B)/libethd.a
+$(TOOLS_C:%.c=$(B)/%): $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libethd-tests.a $(ARCHIVES) $(B)/libethd.a
 	$(call say,LINK,$@)
 	@mkdir -p $(@D)
-	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) -linih -lmodbus -lz -lexpat $(LIBS)
+	$(Q)$(LINK) -o $@ $< $(B)/libethd-tests.a $(ARCHIVES) $(WHOLE) -linih -lmodbus -lz -lexpat $(LIBS)
 
 $(PLUGINS): $(B)/tests/plugins/%.so: tests/plugins/%.c $(B)/flags
 	$(call say,PLUGIN,$@)
@@ -278,6 +278,8 @@ bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
 stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_svg $(B)/tests/test_fuzz_decoder \
   $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver
 	ETHD_SCENE_QUERIES=1000000 $(B)/tests/test_scene_tree
+	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
+	ETHD_FUZZ_RUNS=10000000 $(B)/tests/test_fuzz_map
 	ETHD_FUZZ=10000000 $(B)/tests/test_scene_parse
 	ETHD_FUZZ=10000000 $(B)/tests/test_svg
 	ETHD_FUZZ=100000000 $(B)/tests/test_fuzz_decoder
