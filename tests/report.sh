@@ -1,0 +1,127 @@
+#!/bin/sh
+# ethd-report: a page that stands alone, its files, a survey with answers, a grid, recorded fingers, and what it refuses.
+set -u
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+study=$BUILD/bin/ethd-study
+report=$BUILD/bin/ethd-report
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+
+cat >"$folder/small.study" <<'END'
+[study]
+name = small <&> "study"
+END
+"$study" "$folder/small.study" --out "$folder/bad" >"$folder/out" 2>"$folder/err" && fail "a name that isn't a word"
+cat >"$folder/small.study" <<'END'
+[study]
+name = small
+participants = 2
+taps = 1
+attempts = 8
+training = 1
+survey = on
+END
+"$study" --quiet "$folder/small.study" --out "$folder/a study's" >"$folder/out" 2>&1 || fail "$(cat "$folder/out")"
+here="$folder/a study's"
+
+# Without gnuplot: one line, before anything is drawn.
+mkdir "$folder/empty"
+PATH=$folder/empty "$report" "$here" >"$folder/out" 2>"$folder/err"
+code=$?
+[ $code = 1 ] && [ "$(wc -l <"$folder/err")" = 1 ] && grep -q 'gnuplot: not found; .*Debian: gnuplot-nox' "$folder/err" ||
+  fail "no gnuplot: exit $code: $(cat "$folder/err")"
+[ ! -e "$here/report/report.html" ] || fail "a page without gnuplot"
+if ! command -v gnuplot >/dev/null; then
+  [ $failed = 0 ] || exit 1
+  echo "SKIP: gnuplot (Debian: gnuplot-nox)"
+  exit 77
+fi
+
+# drawn NAME ARGUMENTS...: the page, whole and alone
+drawn() {
+  where=$1
+  shift
+  "$report" "$@" >"$folder/out" 2>"$folder/err" || { fail "$*: $(cat "$folder/err")"; return; }
+  grep . "$folder/err" && fail "$*: says something"
+  page=$where/report.html
+  [ "$(cat "$folder/out")" = "$page" ] || fail "$*: it says $(cat "$folder/out")"
+  grep -q '^</html>$' "$page" || fail "$*: the page has no end"
+  grep -qE '<script|<link|https?://|src="[^d]|url\(' "$page" && fail "$*: the page needs something else"
+  [ "$(grep -o '<img ' "$page" | wc -l)" = "$(grep -o 'src="data:image/png;base64,iVBOR' "$page" | wc -l)" ] || fail "$*: a picture that is none"
+  [ "$(grep -o '<table>' "$page" | wc -l)" = "$(grep -o '</table>' "$page" | wc -l)" ] || fail "$*: a table without an end"
+  for picture in "$where"/*.png; do [ "$(wc -c <"$picture")" -gt 8000 ] || fail "$picture is empty"; done
+  for table in "$where"/*.csv; do
+    awk -F, '{ gsub(/"[^"]*"/, "q") } NR == 1 { n = NF } NF != n { exit 1 }' "$table" || fail "$table isn't tidy"
+  done
+}
+drawn "$here/report" "$here"
+for words in 'Simulated, not measured' 'no significance is claimed' 'p that 2 pairs can have is 0.5' 'Nobody has answered' 'early-contact' \
+  'percentile bootstrap' 'under seed 1: 2000 draws' 'sign-flip' 'fitted to the four means'; do
+  grep -q "$words" "$here/report/report.html" || fail "the page doesn't say: $words"
+done
+for picture in boxes braking delay reasons states trace-offset-low trace-smooth-high; do
+  [ -s "$here/report/$picture.png" ] || grep -q "no tap" "$folder/out" || fail "no $picture.png"
+done
+cp "$here/report/report.html" "$folder/before"
+drawn "$here/report" "$here"
+cmp "$here/report/report.html" "$folder/before" || fail "the same taps make another page"
+
+# What the table says is what the taps say.
+awk -F, 'NR > 1 && $3 == "test" && $5 == "offset" && $6 == "low" && $9 { s += $11; n++ } END { printf "%d %.12g\n", n, s / n }' "$here/taps.csv" >"$folder/a"
+awk -F, '$1 == "v_rvo" && $3 == "offset" && $4 == "low" { printf "%d %.12g\n", $5, $7 }' "$here/report/summary.csv" >"$folder/b"
+cmp "$folder/a" "$folder/b" || fail "the mean: $(cat "$folder/a" "$folder/b")"
+
+# A chosen tap, another place, taps beside.
+tap=$(awk -F, '$3 == "test" && $5 == "offset" { printf "%s-%02d-%03d\n", $1, $2, $4; exit }' "$here/taps.csv")
+"$study" "$BUILD/share/ethd/crowd.study" --simulate 60 --out "$folder/crowd" >/dev/null && "$study" --merge "$folder/crowd" >/dev/null || fail "the crowd"
+drawn "$folder/other" "$here" --tap "$tap" --out "$folder/other" --beside "$folder/crowd" --seed 7
+grep -q "tap $tap\." "$folder/other/report.html" || fail "the page doesn't name the tap"
+grep -q 'under seed 7' "$folder/other/report.html" || fail "the page doesn't state the seed"
+[ "$(ls "$folder"/other/trace-*.png | wc -l)" = 1 ] || fail "other taps than the chosen one are drawn"
+
+# Answers, made up here for the test alone.
+awk -F, -v OFS=, 'NR > 1 { $5 = 3; $6 = 1 + NR % 5; $7 = 2 } 1' "$here/survey.csv" >"$folder/survey.csv" && cp "$folder/survey.csv" "$here/survey.csv"
+drawn "$here/report" "$here"
+grep -q 'figure 18' "$here/report/report.html" && [ -s "$here/report/survey.png" ] || fail "no survey"
+[ "$(cut -d, -f3 "$here/report/survey-means.csv" | sort -u | tr '\n' ' ')" = '2 n ' ] || fail "not everyone's answers count"
+
+# A grid.
+printf '[study]\ntraining = 0\ntaps = 1\nattempts = 6\n[grid]\ncontact.k_e = 1000,2500\ntransition.b_d = 50,100\n' >"$folder/grid.study"
+"$study" "$folder/grid.study" --simulate 7 --out "$folder/grid" >/dev/null && "$study" --merge "$folder/grid" >/dev/null || fail "the grid's taps"
+drawn "$folder/grid/report" "$folder/grid" --point 3
+[ "$(wc -l <"$folder/grid/report/grid.csv")" = 17 ] || fail "not 4 points x 4 cells: $(wc -l <"$folder/grid/report/grid.csv")"
+grep -q 'show point 3 of 4' "$folder/grid/report/report.html" || fail "the page doesn't name its point"
+grep -q 'No ticks were recorded' "$folder/grid/report/report.html" || fail "the page draws ticks that aren't there"
+
+# ---- refusals ----
+refuse() { # CODE PATTERN ARGUMENTS...
+  wanted=$1 pattern=$2
+  shift 2
+  "$report" "$@" >"$folder/out" 2>"$folder/err"
+  code=$?
+  [ $code = "$wanted" ] && [ "$(wc -l <"$folder/err")" -le 2 ] && grep -q -e "$pattern" "$folder/err" || fail "$pattern: exit $code: $(cat "$folder/err")"
+}
+bad() { # SED PATTERN: a table that was changed
+  rm -rf "$folder/bad"
+  cp -r "$folder/grid" "$folder/bad"
+  sed -i "$1" "$folder/bad/taps.csv"
+  refuse 2 "$2" "$folder/bad"
+}
+refuse 2 'DIR is needed'
+refuse 2 'nowhere/study.ini: No such file' "$folder/nowhere"
+refuse 2 'no test tap at point 9 of 4' "$folder/grid" --point 9
+refuse 1 'no test tap P09-01-001' "$here" --tap P09-01-001
+bad '3s/,ok,/,fine,/' 'taps.csv:[0-9]*: reason: found "fine"\|'
+bad '1s/,reason,/,why,/' 'taps.csv:1: no column reason'
+bad '4s/$/,1/' 'taps.csv:4: 27 cells, the header has 26'
+bad 's/,ok,/,ok,x/' 'taps.csv:[0-9]*: v_rvo_mps: found "x'
+bad '2,$d' 'no test tap'
+rm "$folder/bad/taps.csv"
+refuse 2 'taps.csv: No such file; ethd-study --resume' "$folder/bad"
+echo untouched >"$folder/grid/report/report.html"
+(ulimit -f 100; exec "$report" "$folder/grid") >"$folder/out" 2>"$folder/err" && fail "a quota for the page"
+[ "$(cat "$folder/grid/report/report.html")" = untouched ] || fail "a page that was cut"
+
+[ $failed = 0 ] && echo "$(ls "$here"/report/*.png | wc -l) pictures on $(wc -c <"$here/report/report.html") bytes of page"
+exit $failed
