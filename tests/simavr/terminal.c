@@ -11,7 +11,7 @@
 #include <asm/termbits.h>
 #include <sys/ioctl.h>
 
-enum { PATIENCE_MS = 2000 };
+enum { PATIENCE_MS = 30000 };
 
 static uint8_t random_byte(terminal *t) { /* never 0 */
   t->random ^= t->random << 13, t->random ^= t->random >> 17, t->random ^= t->random << 5;

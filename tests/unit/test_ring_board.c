@@ -277,7 +277,7 @@ int main(void) {
   Suite *suite = suite_create("ring board");
   TCase *tc = tcase_create("driver and firmware");
   tcase_add_checked_fixture(tc, set_up, tear_down);
-  tcase_set_timeout(tc, 60);
+  tcase_set_timeout(tc, 200);
   tcase_add_test(tc, test_speed);
   tcase_add_test(tc, test_finger);
   tcase_add_test(tc, test_finger_slow);
