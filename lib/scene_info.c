@@ -1,8 +1,8 @@
-#include "scene.h"
+#include "scene_tree.h"
 
 void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out) {
   *out = (ethd_scene_info){.objects = scene->object_count, .materials = scene->material_count,
-                           .dropped = scene->dropped,
+                           .dropped = scene->dropped, .boxes = ETHD__WIDE * (size_t)scene->node_count,
                            .bytes = scene->bytes, .x_min = scene->x_min, .x_max = scene->x_max,
                            .y_min = scene->y_min, .y_max = scene->y_max};
   for (uint32_t i = 0; i < scene->object_count; i++) {
@@ -77,6 +77,33 @@ int32_t ethd_scene_object(const ethd_scene *scene, size_t i, ethd_object_def *ou
   const ethd__object *o = ethd__object_at(scene, ETHD__ARRAY(scene, uint32_t, places_at)[i]);
   *out = (ethd_object_def){(ethd_shape)o->shape, o->material, ethd__numbers(scene, o), given_numbers(o), 0};
   return o->id;
+}
+
+/* ---- its trees ---- */
+
+/* The tree that has this node: trees stand in the order of their nodes. */
+static const ethd__tree *tree_of(const ethd_scene *scene, uint32_t node) {
+  const ethd__tree *trees = ETHD__ARRAY(scene, ethd__tree, trees_at);
+  uint32_t low = 0, high = scene->tree_count;
+  if (scene->tree.levels && node >= scene->tree.first[1]) return &scene->tree;
+  while (high - low > 1) {
+    uint32_t middle = low + (high - low) / 2;
+    *(trees[middle].first[1] <= node ? &low : &high) = middle;
+  }
+  return &trees[low];
+}
+
+ethd_status ethd_scene_box_at(const ethd_scene *scene, size_t i, ethd_scene_box *out) {
+  uint32_t node = (uint32_t)(i / ETHD__WIDE), lane = (uint32_t)(i % ETHD__WIDE), level = 1;
+  if (i / ETHD__WIDE >= scene->node_count) return ETHD_EMPTY;
+  const ethd__node *n = ETHD__ARRAY(scene, ethd__node, nodes_at) + node;
+  const ethd__tree *tree = tree_of(scene, node);
+  double c = (double)n->c[lane], s = (double)n->s[lane], u = (double)n->u[lane], v = (double)n->v[lane], k = 1 / scene->scale;
+  if (!isfinite(u)) return ETHD_EMPTY;
+  while (level < tree->levels && node >= tree->first[level + 1]) level++;
+  *out = (ethd_scene_box){{scene->centre.x + k * (c * u - s * v), scene->centre.y + k * (s * u + c * v)},
+                          c, s, k * (double)n->w[lane], k * (double)n->h[lane], (int32_t)level, tree != &scene->tree};
+  return ETHD_OK;
 }
 
 const ethd_material *ethd_scene_material(const ethd_scene *scene, size_t i) {

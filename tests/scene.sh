@@ -88,6 +88,19 @@ done
 "$program" convert --in walls.scene --out copy.scene >/dev/null || fail "a scene isn't written again"
 "$program" query --scene copy.scene --in points.csv --out copy.csv && cmp out.csv copy.csv || fail "a copy gives other distances"
 
+# The picture, and the CSV that its script draws alone.
+if gnuplot -e 'set terminal pngcairo' </dev/null 2>/dev/null; then
+  for scene in walls far room; do
+    "$program" info $scene.scene --plot "$scene's.png" >plot.txt 2>&1 || fail "no picture of $scene: $(cat plot.txt)"
+    [ "$(head -c 4 "$scene's.png" | tail -c 3)" = PNG ] || fail "$scene's picture is no PNG"
+  done
+  gnuplot -e "in='room''s.csv'; out='again.png'" "$BUILD/share/ethd/plot/scene.gp" && [ -s again.png ] ||
+    fail "the script doesn't draw the CSV alone"
+else
+  "$program" info walls.scene --plot "walls's.png" >plot.txt 2>&1 && fail "a picture without gnuplot?"
+fi
+grep -q '^solid,3,10,0,2,0$' "walls's.csv" || fail "the polygon isn't in the picture's CSV"
+
 # refuse PATTERN ARGUMENTS...: exit 2, one line with the pattern (usage: argp's two), nothing written over.
 refuse() {
   pattern=$1
@@ -149,6 +162,7 @@ refuse 'tolerance: found "0"' convert --in drawing.svg --out kept.csv --toleranc
 refuse 'origin: found "1"' convert --in drawing.svg --out kept.csv --origin 1
 refuse 'for convert' info walls.scene --scale 2
 refuse 'for info' convert --in drawing.svg --out kept.csv --plot x.png
+refuse 'plot: found "x.pdf"' info walls.scene --plot x.pdf
 refuse 'nowhere.ini: ' info walls.scene --config nowhere.ini
 [ $failed = 0 ] && echo "distances, summary and refusals as expected"
 exit $failed

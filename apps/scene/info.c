@@ -43,7 +43,7 @@ int ethd__scene_info(const ethd__scene_args *arg) {
          ethd_scene_out_of_reach(scene, &setup.arm, ethd_setup_range(&setup)), info.objects,
          setup.arm.mechanism == ETHD_ARM_SERIAL ? "serial" : "parallel", setup.arm.link1, setup.arm.link2,
          setup.ring_radius);
-  int code = arg->plot ? ethd__scene_plot(arg->plot, scene, &setup) : ETHD_EXIT_DONE;
+  int code = arg->plot ? ethd__scene_plot(arg, scene, &setup) : ETHD_EXIT_DONE;
   ethd_scene_destroy(scene);
   return code;
 }

@@ -1,2 +1,172 @@
+/* A picture of a scene and its trees, as pieces of lines: a CSV that apps/plot/scene.gp draws. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/cli.h"
+#include "ethd/maths.h"
+#include "file/csv.h"
+#include "report/picture.h"
 #include "scene/scene.h"
-int ethd__scene_plot(const char *png, const ethd_scene *scene, const ethd_setup *setup) { (void)png, (void)scene, (void)setup; return 1; }
+
+#define BOXES_MAX 5000 /* of a level: more can't be seen */
+#define LEVELS 16
+#define ARC 96 /* pieces of a circle */
+#define TURN 6.28318530717958647692
+
+/* ---- pieces ---- */
+
+typedef struct pen {
+  ethd_csv_out *out;
+  const char *what;
+  int32_t number; /* of the object, or the level */
+  ethd_vec at;
+} pen;
+
+static void line_to(pen *p, ethd_vec to) {
+  ethd_csv_word(p->out, p->what);
+  ethd_csv_integer(p->out, p->number);
+  ethd_csv_number(p->out, p->at.x);
+  ethd_csv_number(p->out, p->at.y);
+  ethd_csv_number(p->out, to.x - p->at.x);
+  ethd_csv_number(p->out, to.y - p->at.y);
+  ethd_csv_row(p->out);
+  p->at = to;
+}
+
+static ethd_vec on_circle(ethd_vec c, double r, double angle) {
+  double sine, cosine;
+  ethd_sincos(angle, &sine, &cosine);
+  return (ethd_vec){c.x + r * cosine, c.y + r * sine};
+}
+
+static void draw_arc(pen *p, ethd_vec c, double r, double from, double turn) {
+  p->at = on_circle(c, r, from);
+  for (int k = 1; k <= ARC; k++) line_to(p, on_circle(c, r, from + turn * k / ARC));
+}
+
+static void draw_box(pen *p, ethd_vec centre, double cosine, double sine, double w, double h) {
+  static const int corners[5][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}};
+  for (int k = 0; k < 5; k++) {
+    double u = w * corners[k][0], v = h * corners[k][1];
+    ethd_vec to = {centre.x + cosine * u - sine * v, centre.y + sine * u + cosine * v};
+    if (k) line_to(p, to);
+    p->at = to;
+  }
+}
+
+/* ---- objects ---- */
+
+static void draw_capsule(pen *p, const double *v) {
+  ethd_vec a = {v[0], v[1]}, b = {v[2], v[3]}, e = ethd_vec_sub(b, a);
+  double along = ethd_atan2(e.y, e.x);
+  draw_arc(p, b, v[4], along - TURN / 4, TURN / 2);
+  line_to(p, on_circle(a, v[4], along + TURN / 4));
+  draw_arc(p, a, v[4], along + TURN / 4, TURN / 2);
+  line_to(p, on_circle(b, v[4], along - TURN / 4));
+}
+
+static void draw_chain(pen *p, const ethd_object_def *o) {
+  const double *v = o->numbers;
+  p->at = (ethd_vec){v[0], v[1]};
+  for (size_t k = 2; k < o->count; k += 2) line_to(p, (ethd_vec){v[k], v[k + 1]});
+  if (o->shape == ETHD_POLYGON) line_to(p, (ethd_vec){v[0], v[1]});
+}
+
+/* As long as can be seen; the tick shows its inside. */
+static void draw_halfplane(pen *p, const double *v, double size) {
+  ethd_vec foot = {v[0] * v[2], v[1] * v[2]}, along = {-v[1] * size, v[0] * size};
+  p->at = ethd_vec_sub(foot, along);
+  line_to(p, ethd_vec_add(foot, along));
+  p->at = foot;
+  line_to(p, ethd_vec_add(foot, ethd_vec_scale(0.02 * size, (ethd_vec){v[0], v[1]})));
+}
+
+static void draw_object(pen *p, const ethd_object_def *o, double size) {
+  const double *v = o->numbers;
+  double sine, cosine;
+  p->what = o->shape == ETHD_HALFPLANE ? "halfplane" : o->shape == ETHD_SEGMENT || o->shape == ETHD_POLYLINE ? "wall" : "solid";
+  switch (o->shape) {
+    case ETHD_HALFPLANE: draw_halfplane(p, v, size); break;
+    case ETHD_CIRCLE: draw_arc(p, (ethd_vec){v[0], v[1]}, v[2], 0, TURN); break;
+    case ETHD_CAPSULE: draw_capsule(p, v); break;
+    case ETHD_BOX:
+      ethd_sincos(v[4], &sine, &cosine);
+      draw_box(p, (ethd_vec){v[0], v[1]}, cosine, sine, v[2], v[3]);
+      break;
+    default: draw_chain(p, o);
+  }
+}
+
+/* ---- trees ---- */
+
+static void draw_trees(pen *p, const ethd_scene *scene, const ethd_scene_info *info) {
+  size_t counts[LEVELS] = {0};
+  ethd_scene_box b;
+  for (size_t i = 0; i < info->boxes; i++)
+    if (ethd_scene_box_at(scene, i, &b) == ETHD_OK && b.level < LEVELS) counts[b.level]++;
+  for (int level = 1; level < LEVELS; level++)
+    if (counts[level] > BOXES_MAX) printf("not drawn: the %zu boxes of level %d\n", counts[level], level);
+  p->what = "box";
+  for (size_t i = 0; i < info->boxes; i++) {
+    if (ethd_scene_box_at(scene, i, &b) != ETHD_OK || b.level >= LEVELS || counts[b.level] > BOXES_MAX) continue;
+    p->number = b.level;
+    draw_box(p, b.centre, b.cosine, b.sine, b.half_u, b.half_v);
+  }
+}
+
+static void draw_reach(pen *p, const ethd_setup *setup) {
+  double radii[2];
+  ethd_arm_reach(&setup->arm, &radii[0], &radii[1]);
+  p->what = "reach";
+  p->number = 0;
+  for (int i = 0; i < 2; i++)
+    if (radii[i] > 0) draw_arc(p, (ethd_vec){0, 0}, radii[i], 0, TURN);
+}
+
+static void draw_all(ethd_csv_out *out, const ethd_scene *scene, const ethd_setup *setup) {
+  pen p = {.out = out};
+  ethd_object_def o;
+  ethd_scene_info info;
+  ethd_scene_describe(scene, &info);
+  double inner, size;
+  ethd_arm_reach(&setup->arm, &inner, &size);
+  if (info.x_min <= info.x_max) size = fmax(size, hypot(fmax(-info.x_min, info.x_max), fmax(-info.y_min, info.y_max)));
+  for (size_t i = 0; (p.number = ethd_scene_object(scene, i, &o)) >= 0; i++) draw_object(&p, &o, 4 * size);
+  draw_trees(&p, scene, &info);
+  draw_reach(&p, setup);
+}
+
+/* ---- files ---- */
+
+static char *csv_beside(const char *png) {
+  char *csv = strdup(png);
+  if (!csv) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  memcpy(csv + strlen(csv) - 4, ".csv", 4);
+  return csv;
+}
+
+static char *settings_of(const char *name, const char *csv, const char *png) {
+  char *words[] = {ethd__picture_quote(csv), ethd__picture_quote(png), ethd__picture_quote(name)}, *settings;
+  if (!words[0] || !words[1] || !words[2] ||
+      asprintf(&settings, "in='%s'; out='%s'; name='%s'", words[0], words[1], words[2]) < 0)
+    ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  for (int i = 0; i < 3; i++) free(words[i]);
+  return settings;
+}
+
+int ethd__scene_plot(const ethd__scene_args *arg, const ethd_scene *scene, const ethd_setup *setup) {
+  char message[ETHD_MESSAGE_MAX], *csv = csv_beside(arg->plot);
+  ethd_csv_out *out = ethd_csv_create(csv, "what,number,x_m,y_m,dx_m,dy_m", message);
+  if (!out) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  draw_all(out, scene, setup);
+  if (ethd_csv_close(out, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  char *settings = settings_of(arg->scene, csv, arg->plot);
+  if (ethd__picture_ready(message) < 0 || ethd__picture_draw("scene.gp", settings, message) < 0)
+    ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  printf("picture:      %s, drawn from %s\n", arg->plot, csv);
+  free(settings);
+  free(csv);
+  return ETHD_EXIT_DONE;
+}

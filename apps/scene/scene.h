@@ -8,7 +8,8 @@
 #include "file/svg.h"
 
 typedef struct ethd__scene_args {
-  const char *command, *scene, *in, *out, *config, *plot;
+  const char *command, *scene, *in, *out, *config;
+  const char *plot; /* ends in .png */
   ethd_svg_options svg;
   bool svg_given; /* one of its options was */
 } ethd__scene_args;
@@ -20,7 +21,7 @@ int ethd__scene_query(const ethd__scene_args *arg);
 int ethd__scene_info(const ethd__scene_args *arg);
 int ethd__scene_convert(const ethd__scene_args *arg);
 
-/* Draws a scene, its tree and the arm's reach into a PNG, from the CSV of that name that it leaves. */
-int ethd__scene_plot(const char *png, const ethd_scene *scene, const ethd_setup *setup);
+/* Draws a scene, its trees and the arm's reach into arg->plot, from the CSV of that name that it leaves. */
+int ethd__scene_plot(const ethd__scene_args *arg, const ethd_scene *scene, const ethd_setup *setup);
 
 #endif

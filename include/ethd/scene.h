@@ -128,11 +128,23 @@ ETHD_API void ethd_scene_follow(const ethd_scene *scene, int32_t object, ethd_ve
 typedef struct ethd_scene_info {
   size_t objects, by_shape[ETHD_SHAPE_COUNT], segments, materials;
   size_t dropped; /* objects that ethd_scene_prune left out */
+  size_t boxes;   /* places for boxes of its trees */
   double x_min, x_max, y_min, y_max; /* of the bounded objects; min > max when there are none */
   size_t bytes;                      /* memory held */
 } ethd_scene_info;
 
 ETHD_API void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out);
+
+/* A turned box of a tree, m. Level 1: around one thing; level l: around eight of the level below. */
+typedef struct ethd_scene_box {
+  ethd_vec centre;
+  double cosine, sine, half_u, half_v; /* u along (cosine, sine) */
+  int32_t level;
+  int32_t of_chain; /* 1: the things are edges of a chain, 0: objects */
+} ethd_scene_box;
+
+/* What stands at place i, for pictures; ETHD_EMPTY: nothing. [any] */
+ETHD_API ethd_status ethd_scene_box_at(const ethd_scene *scene, size_t i, ethd_scene_box *out);
 
 /* Object i in the order of their numbers: what it is made of, as it was given (a half-plane's divided by
    |n|), `line` 0. The numbers belong to the scene. Its number in the file; -1 past the end. [any] */

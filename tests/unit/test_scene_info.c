@@ -78,12 +78,47 @@ START_TEST(test_out_of_reach) {
 }
 END_TEST
 
+static int holds(const ethd_scene_box *b, double x, double y) {
+  double u = b->cosine * (x - b->centre.x) + b->sine * (y - b->centre.y);
+  double v = b->cosine * (y - b->centre.y) - b->sine * (x - b->centre.x);
+  return fabs(u) <= b->half_u && fabs(v) <= b->half_v;
+}
+
+/* Of a chain of 1000 edges: 1000, 125, 16 and 2 boxes, of which each holds the ends of its edges. */
+START_TEST(test_boxes) {
+  enum { EDGES = 1000 };
+  static double p[2 * EDGES];
+  for (int k = 0; k < EDGES; k++) p[2 * k] = 3 + cos(k * 2 * M_PI / EDGES), p[2 * k + 1] = sin(k * 2 * M_PI / EDGES);
+  ethd_object_def o = {ETHD_POLYGON, -1, p, 2 * EDGES, 0};
+  ethd_scene_def def = {&o, 1, NULL, 0};
+  ethd_scene *s;
+  ck_assert_int_eq(ethd_scene_create(&def, &s, NULL), ETHD_OK);
+  ethd_scene_info info;
+  ethd_scene_describe(s, &info);
+  size_t found[6] = {0}, edges[] = {0, 1, 8, 64, 512};
+  for (size_t i = 0; i < info.boxes; i++) {
+    ethd_scene_box b;
+    if (ethd_scene_box_at(s, i, &b) != ETHD_OK) continue;
+    ck_assert(b.of_chain == 1 && b.level >= 1 && b.level <= 4);
+    size_t first = found[b.level]++ * edges[b.level];
+    for (size_t k = first; k <= first + edges[b.level] && k <= EDGES; k++)
+      ck_assert(holds(&b, p[2 * (k % EDGES)], p[2 * (k % EDGES) + 1]));
+    ck_assert(b.half_u < 1.01 && b.half_v < 1.01 && (b.level > 1 || b.half_u < 0.0035));
+  }
+  ck_assert(found[1] == 1000 && found[2] == 125 && found[3] == 16 && found[4] == 2);
+  ethd_scene_box b;
+  ck_assert_int_eq(ethd_scene_box_at(s, info.boxes, &b), ETHD_EMPTY);
+  ethd_scene_destroy(s);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("scene_info");
   TCase *all = tcase_create("all");
   tcase_set_timeout(all, 60);
   tcase_add_test(all, test_describe);
   tcase_add_test(all, test_out_of_reach);
+  tcase_add_test(all, test_boxes);
   suite_add_tcase(suite, all);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_ENV);
