@@ -122,7 +122,8 @@ PROGRAMS := $(patsubst apps/%.c,$(B)/bin/%,$(PROGRAMS_C))
 UNIT := $(addprefix $(B)/tests/,$(notdir $(TESTS_C:.c=)))
 PLUGINS := $(patsubst tests/plugins/%.c,$(B)/tests/plugins/%.so,$(PLUGINS_C))
 SHARE := $(patsubst apps/config/%,$(B)/share/ethd/%,$(shell find apps/config -type f 2>/dev/null)) \
-         $(patsubst apps/plot/%,$(B)/share/ethd/plot/%,$(wildcard apps/plot/*.gp))
+         $(patsubst apps/plot/%,$(B)/share/ethd/plot/%,$(wildcard apps/plot/*.gp)) \
+         $(patsubst apps/cluster/%,$(B)/share/ethd/cluster/%,$(wildcard apps/cluster/*.sh))
 ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a
 LIBRARIES := $(B)/libethd.a $(B)/libethd-drivers.a $(B)/libethd.so.0 $(B)/libethd.so
 
@@ -200,9 +201,9 @@ $(PLUGINS): $(B)/tests/plugins/%.so: tests/plugins/%.c $(B)/flags
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CPPFLAGS) $(FLAGS_plugin) $(LDFLAGS) -MMD -MP -MF $(@:.so=.d) -shared -o $@ $<
 
-$(filter-out $(B)/share/ethd/plot/%,$(SHARE)): $(B)/share/ethd/%: apps/config/%
+$(filter-out $(B)/share/ethd/plot/% $(B)/share/ethd/cluster/%,$(SHARE)): $(B)/share/ethd/%: apps/config/%
 	@mkdir -p $(@D) && cp $< $@
-$(filter $(B)/share/ethd/plot/%,$(SHARE)): $(B)/share/ethd/plot/%: apps/plot/%
+$(filter $(B)/share/ethd/plot/% $(B)/share/ethd/cluster/%,$(SHARE)): $(B)/share/ethd/%: apps/%
 	@mkdir -p $(@D) && cp $< $@
 
 # ---- the proximity ring's firmware, and four of its boards in simavr ------------------------
@@ -276,7 +277,7 @@ bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
 
 # The long ones: minutes.
 stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_svg $(B)/tests/test_fuzz_decoder \
-  $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver
+  $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study
 	ETHD_SCENE_QUERIES=1000000 $(B)/tests/test_scene_tree
 	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
 	ETHD_FUZZ_RUNS=10000000 $(B)/tests/test_fuzz_map
@@ -285,6 +286,8 @@ stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/te
 	ETHD_FUZZ=100000000 $(B)/tests/test_fuzz_decoder
 	ETHD_RING_FRAMES=20000000 $(B)/tests/test_ring_noise
 	ETHD_REPLUGS=100 $(B)/tests/test_ring_driver
+	ETHD_FUZZ=1000000 $(B)/tests/test_study
+	@BUILD='$(abspath $(B))' CC='$(CC)' SAN='$(SAN)' ETHD_STUDY_KILLS=50 sh tests/study.sh
 	@BUILD='$(B)' sh apps/stress.sh
 
 # A real Xenomai, where there is one.

@@ -76,7 +76,7 @@ END_TEST
 START_TEST(test_mutations) {
   static const char *const words[] = {"[grid]", "[hand]\n", "taps = ", "1e999", "nan", ",", "=", "\n", "latin", "\0x", "-", NULL};
   static char text[8192];
-  const char *more = getenv("ETHD_MUTATIONS");
+  const char *more = getenv("ETHD_FUZZ");
   uint64_t count = more ? strtoull(more, NULL, 10) : 20000, taken = 0;
   for (uint64_t i = 0; i < count; i++) {
     size_t n = mutate(everything, sizeof everything - 1, words, i, text, sizeof text);
