@@ -1,0 +1,104 @@
+"""The whole device's run, and what came of it.
+
+whole_device.py run ETHD_RUN FOLDER SECONDS    commands: each strategy rules so long, enabled
+whole_device.py judge RECORDING ETHD_TAP       taps by strategy, beside those of the simulated device
+"""
+import csv
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+LAWS = ("offset", "smooth", "abrupt")
+PATIENCE = 90  # s a strategy
+
+
+def run(program, folder, seconds):
+    command = [program, "--config", folder + "/device.ini", "--record", folder + "/rec"]
+    device = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=open(folder + "/err", "w"), text=True)
+    log = open(folder + "/out", "w")
+
+    def ask(line):
+        device.stdin.write(line + "\n")
+        device.stdin.flush()
+        answer = device.stdout.readline()
+        log.write(answer)
+        assert answer, "ethd-run has ended"
+        return answer
+
+    trips = 0
+    for law in LAWS:
+        assert ask("transition " + law).startswith("ok")
+        enabled, begin = 0.0, time.monotonic()
+        while enabled < seconds and time.monotonic() - begin < PATIENCE:
+            last = time.monotonic()
+            time.sleep(0.2)
+            if ", enabled," in ask("status"):
+                enabled += time.monotonic() - last
+                continue
+            trips += 1
+            for _ in range(40):
+                time.sleep(0.3)
+                if ask("ack").startswith("ok") and ask("enable").startswith("ok"):
+                    break
+    ask("stop")
+    log.write(device.communicate()[0])
+    print(f"enabled again {trips} times")
+    sys.exit(device.returncode)
+
+
+def taps_of(r, events):
+    """(speed as the ring meets the wall, first rebound, offset) by strategy."""
+    changes = [(int(e["row"]), e["detail"]) for e in events if e["kind"] == "transition"]
+    state, x, wall = r["state"], -r["x"][:, 0], -0.25
+    taps = {law: [] for law in LAWS}
+    for k in np.flatnonzero((state[1:] == 2) & (state[:-1] != 2)) + 1:
+        law = [name for row, name in changes if row <= k][-1]
+        near = slice(max(k - 100, 0), min(k + 150, len(r)))
+        meets = near.start + np.flatnonzero(x[near] >= wall)
+        if not len(meets) or np.any(r["fault"][near]):
+            continue
+        peak = k + int(np.argmax(x[k:near.stop]))
+        taps[law].append((-r["v"][meets[0], 0], x[peak] - x[peak:near.stop].min(), r["eps"][k]))
+    return taps
+
+
+def simulated(tap):
+    taps = {law: [] for law in LAWS}
+    with tempfile.NamedTemporaryFile(suffix=".csv") as out:
+        arguments = [tap, "--transition", ",".join(LAWS), "--speed", "0.4", "--taps", "30", "--csv", out.name]
+        subprocess.run(arguments, check=True, stdout=subprocess.DEVNULL)
+        for row in csv.DictReader(open(out.name)):
+            values = [float(row[c] or "nan") for c in ("v_rvo_mps", "d_max_m", "eps_m")]
+            if values[0] == values[0]:
+                taps[row["transition"]].append(values)
+    return taps
+
+
+def mean(rows):
+    a = np.array(rows).reshape(-1, 3)
+    return [c[~np.isnan(c)].mean() if np.any(~np.isnan(c)) else float("nan") for c in a.T]
+
+
+def judge(folder, tap):
+    r = np.load(folder + "/tick.npy")
+    taps, alone = taps_of(r, csv.DictReader(open(folder + "/events.csv"))), simulated(tap)
+    frames = int(np.sum(r["have"] & 16 != 0))
+    print("strategy   n  speed at the wall m/s  first rebound mm  offset mm     (through the buses | simulated device alone)")
+    for law in LAWS:
+        a, b = mean(taps[law]), mean(alone[law])
+        print(f"{law:8} {len(taps[law]):3}  {a[0]:9.3f} | {b[0]:.3f}     {1e3 * a[1]:9.3f} | {1e3 * b[1]:.3f}   "
+              f"{1e3 * a[2]:8.3f} | {1e3 * b[2]:.3f}")
+    print(f"{len(r)} ticks, {frames} frames of rays, torque at most {np.abs(r['tau']).max():.3f} Nm")
+    assert frames > 0.1 * len(r), "few frames of rays"
+    assert r["x"][:, 0].min() > 0.25 - 0.012, "the ring went through the wall"
+    if not all(taps.values()):
+        print("SKIP: this machine is too busy for a device in real time: not every strategy has tapped")
+        sys.exit(77)
+
+
+if sys.argv[1] == "run":
+    run(sys.argv[2], sys.argv[3], float(sys.argv[4]))
+judge(sys.argv[2], sys.argv[3])
