@@ -44,7 +44,7 @@ same slurm
 
 # Killed, cut in a line, gone on.
 for i in 1 2 3 4 5; do
-  simulate --shard 1/2 --out "$folder/killed" >/dev/null 2>&1 &
+  "$study" "$folder/grid.study" --simulate $people --shard 1/2 --out "$folder/killed" >/dev/null 2>&1 &
   pid=$!
   sleep 0.0$i
   kill -KILL $pid 2>/dev/null
