@@ -20,7 +20,7 @@
 
 #include "ethd/sim.h"
 
-#define STEP 1e-4     /* s of the plant's own clock */
+#define STEP 2e-4     /* s of the plant's own clock */
 #define TICK 1e-3     /* s that pass with a set-point, in lock-step */
 #define WATCHDOG 0.05 /* s without a set-point, then zero torque */
 #define SAMPLES 200   /* a second of the finger's path */
@@ -194,7 +194,8 @@ int main(int argc, char **argv) {
     struct pollfd wait[2] = {{fd, POLLIN, 0}, {0, POLLIN, 0}};
     uint8_t q[512];
     char rest[64];
-    if (poll(wait, 2, -1) < 0) break;
+    if (poll(wait, 2, 20) < 0) break;
+    advance(); /* also while nobody asks */
     if (wait[1].revents && read(0, rest, sizeof rest) <= 0) break;
     if (!(wait[0].revents & POLLIN)) continue;
     size = sizeof from;
