@@ -125,7 +125,7 @@ static void add(const ethd_contact *c, const ethd_ruling *r, double force, ethd_
   add_force(out->fd, -r->damping * c->v, c->n);
 }
 
-static int contact(const ethd__plan *plan, const ethd__candidate *k, ethd_contact *c, ethd__slot *slot,
+static int contact(const ethd__plan *plan, ethd__state *state, const ethd__candidate *k, ethd_contact *c, ethd__slot *slot,
                    ethd_trace *out, ethd_vec *shift, ethd__failure *failure) ETHD_RT {
   const ethd_touch *touch = &k->touch;
   ethd_ruling r;
@@ -135,6 +135,8 @@ static int contact(const ethd__plan *plan, const ethd__candidate *k, ethd_contac
   slot->used = c->d_re < c->d_beta || r.argument <= c->d_beta || r.state != ETHD_TRANSPARENT;
   if (!slot->used) return 1;
   if (!wall(plan, slot, c, touch->material, &r, &force, failure)) return 0;
+  if (plan->setup.limits.energy < (double)INFINITY)
+    force += ethd__passivity(plan, state, slot, c, force, r.feed - r.damping * c->v);
   slot->object = touch->object;
   slot->place = k->place;
   slot->point = k->local;
@@ -205,7 +207,7 @@ int ethd__contacts(const ethd__plan *plan, ethd__state *state, double dt, ethd_t
     int counts = could_count(&m, slot), room = taken < ETHD_CONTACTS_MAX;
     if (counts && room) {
       if (!slot) slot = new_slot(plan, state, &c, k);
-      if (!contact(plan, &c.at[k], &m, slot, out, shift, failure)) return 0;
+      if (!contact(plan, state, &c.at[k], &m, slot, out, shift, failure)) return 0;
       taken += slot->used;
     } else {
       if (slot) slot->used = 0;

@@ -46,6 +46,9 @@ typedef struct ethd__slot {
   int32_t place;
   int64_t periods; /* since it began to count */
   ethd_vec point; /* in the place's frame */
+  /* of the passivity observer, where there is one */
+  double energy[2], force[2], depth_was; /* J, N along n, m */
+  int64_t giving;                  /* 1: damping is added */
   ethd__block transition, contact;
 } ethd__slot;
 
@@ -77,6 +80,8 @@ typedef struct ethd__state {
   ethd_filter_state filter;
   int64_t reading_ns;   /* stamp of the reading that was used last */
   double finger_radius; /* of the last fit, NaN: none */
+  double given, excess; /* J that the last contact gave away, s for which it was far too much */
+  uint64_t given_at;    /* tick */
   double absent;        /* share of the tracking torque that has faded, for the finger isn't seen */
   int64_t implausible;  /* readings in a row */
   struct {
@@ -143,6 +148,11 @@ ethd_fault ethd__judge(const ethd__plan *plan, ethd__state *state, int64_t guard
 ethd__rows ethd__rows_begun(const ethd__plan *plan, const ethd__state *state) ETHD_RT;
 
 static inline int ethd__rows_any(const ethd__rows *rows) ETHD_RT { return (rows->faults | rows->grave) != 0; }
+
+/* The force along n that keeps a contact passive, to be added to the wall's; brake: what else acts there.
+   Once a tick, only where limits.energy is set. [rt] */
+double ethd__passivity(const ethd__plan *plan, ethd__state *state, ethd__slot *slot, const ethd_contact *c,
+                       double wall, double brake) ETHD_RT;
 
 /* ---- the finger's readings, all [rt] ---- */
 

@@ -15,6 +15,7 @@ const ethd_limit ethd_limit_rows[ETHD_LIMITS] = {
     {"reach", "m", AT(reach), 2, ETHD_LIMIT_RANGES, -INF, INF, "r_min r_max"},
     {"joints", "rad", AT(joints), 4, ETHD_LIMIT_RANGES, -INF, INF, "q1_min q1_max q2_min q2_max"},
     {"margin", "m", AT(margin), 1, ETHD_LIMIT_LEAST, 0, 1, "of workspace and reach: a wall pushes back"},
+    {"energy", "J", AT(energy), 1, ETHD_LIMIT_MOST, 1e-9, INF, "that a contact may give away"},
     {"nominal_torque", "Nm", AT(nominal_torque), 1, ETHD_LIMIT_MOST, 1e-9, INF, "of each motor, for ever"},
     {"heat_time", "s", AT(heat_time), 1, ETHD_LIMIT_MOST, 1e-3, INF, "time constant of a motor's heat"},
     {"gap", "s", AT(gap), 1, ETHD_LIMIT_MOST, 1e-9, INF, "between two steps"},

@@ -18,6 +18,7 @@ typedef struct ethd_limits {
   double reach[2];     /* m: least and most distance of the ring's centre from the base */
   double joints[4];    /* rad: q1_min, q1_max, q2_min, q2_max */
   double margin;       /* m inside of workspace and reach: there a wall pushes back, >= 0 */
+  double energy;       /* J that a contact may give away within half a second before damping is added, > 0 */
   double nominal_torque; /* Nm: what each motor can give for ever, > 0 */
   double heat_time;    /* s: time constant of a motor's heat, > 0; narrower is shorter */
   double step_time;    /* s: time budget of one step, > 0 */
@@ -45,7 +46,7 @@ typedef struct ethd_limit {
   const char *brief;
 } ethd_limit;
 
-#define ETHD_LIMITS 14
+#define ETHD_LIMITS 15
 ETHD_API extern const ethd_limit ethd_limit_rows[ETHD_LIMITS];
 
 static inline double *ethd_limit_of(ethd_limits *limits, const ethd_limit *row) ETHD_RT {
