@@ -131,7 +131,8 @@ static ethd_status merge_unit(merge *m, uint64_t unit) {
   }
   ethd_status status = ETHD_OK;
   if (m->taps == before)
-    status = ethd__say(m->message, ETHD_E_SYNTAX, "%s/shard-%" PRIu32 "-of-%" PRIu32 ".csv: no rows that begin with %s; remove it and have it made again",
+    status = ethd__say(m->message, ETHD_E_SYNTAX,
+                       "%s/shard-%" PRIu32 "-of-%" PRIu32 ".csv: no rows that begin with %s; remove it and have it made again",
                        m->folder->path, shard + 1, m->count, prefix);
   free(prefix);
   return status;

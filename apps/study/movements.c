@@ -35,7 +35,8 @@ static ethd_status list(const char *folder, char ***files, size_t *count, char *
   }
   free(entries);
   if (!failed && n > 0) return ETHD_OK;
-  return ethd__say(message, ETHD_E_FILE, "%s: no folder with recorded movements (*.csv); ETHD_MOTION_DIR may name the one it is in", folder);
+  return ethd__say(message, ETHD_E_FILE,
+                   "%s: no folder with recorded movements (*.csv); ETHD_MOTION_DIR may name the one it is in", folder);
 }
 
 ethd_status ethd__movements_find(const ethd__protocol *protocol, const char *finger, char ***files,

@@ -47,7 +47,8 @@ static ethd_status check(const ethd_ini *ini, const ethd__entry *last, ethd__pro
   e.key = attempts ? attempts : taps;
   if (p->attempts < p->taps && !attempts) p->attempts = 40 * p->taps / 3;
   if (p->attempts < p->taps)
-    return ethd__entry_refuse(&e, ETHD_E_RANGE, "%" PRIu32 " attempts can't make %" PRIu32 " valid taps; at least as many are allowed",
+    return ethd__entry_refuse(&e, ETHD_E_RANGE,
+                              "%" PRIu32 " attempts can't make %" PRIu32 " valid taps; at least as many are allowed",
                   p->attempts, p->taps);
   e.key = motion;
   if (motion && !p->recorded) return ethd__entry_refuse(&e, ETHD_E_RANGE, "stands there without source = recorded");

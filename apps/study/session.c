@@ -131,7 +131,8 @@ ethd_status ethd__sitting_open(ethd__folder *folder, ethd__sitting *out, char me
   const ethd__protocol *p = &folder->protocol;
   *out = (ethd__sitting){.folder = folder, .journal = {.fd = -1}, .last = p->participants};
   if (p->participants > ETHD_STUDY_SESSION_PEOPLE)
-    return ethd__say(message, ETHD_E_RANGE, "%s: study.participants: found %" PRIu32 "; at most %u are allowed in a session, more with --simulate",
+    return ethd__say(message, ETHD_E_RANGE,
+                     "%s: study.participants: found %" PRIu32 "; at most %u are allowed in a session, more with --simulate",
                      p->path, p->participants, ETHD_STUDY_SESSION_PEOPLE);
   out->at = calloc(p->participants, sizeof *out->at);
   out->aborted = calloc(p->participants, sizeof *out->aborted);
