@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <malloc.h>
+#include <math.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -217,6 +218,23 @@ static void step_guarded(rig *r, const ethd_sense *sense, int tick) {
   in_step = 0;
 }
 
+/* An outline of many edges that the ring meets. */
+static ethd_scene *large_scene(void) {
+  enum { EDGES = 100000 };
+  double *p = malloc(2 * EDGES * sizeof *p);
+  ethd_object_def o = {ETHD_POLYLINE, -1, p, 2 * EDGES, 0};
+  ethd_scene_def def = {&o, 1, NULL, 0};
+  ethd_scene *scene;
+  for (int i = 0; i < EDGES; i++) {
+    double a = 6.283 * i / EDGES;
+    p[2 * i] = 0.298 + 0.06 * cos(a);
+    p[2 * i + 1] = 0.25 + 0.06 * sin(a);
+  }
+  ck_assert_int_eq(ethd_scene_create(&def, &scene, NULL), ETHD_OK);
+  free(p);
+  return scene;
+}
+
 /* Every law, estimator and filter; posts, scenes, faults, events. */
 START_TEST(test_a_tap) {
   const ethd_transition_law *const laws[] = {&ethd_transition_abrupt, &ethd_transition_smooth, &ethd_transition_offset};
@@ -225,7 +243,7 @@ START_TEST(test_a_tap) {
   int faults = 0, taken = 0;
   rig_open(&r, NULL);
   ethd_scene *scenes[] = {rig_scene("halfplane -1 0 -0.238\nsegment 0.2 0.1 0.2 0.4\n"),
-                          rig_scene("polyline 0.2 0.1 0.239 0.25 0.2 0.4\ncircle 0.2 0.3 0.02\nbox 0.3 0.2 0.01 0.01 0.3\n")};
+                          rig_scene("polyline 0.2 0.1 0.239 0.25 0.2 0.4\ncircle 0.2 0.3 0.02\nbox 0.3 0.2 0.01 0.01 0.3\n"), large_scene()};
   rig_start(&r);
   for (int tick = 0; tick < 4000; tick++) {
     double d = 0.004 - 0.008 * ((tick % 100) / 100.0);
@@ -243,7 +261,7 @@ START_TEST(test_a_tap) {
       ethd_setup_velocity(&r.setup, (ethd_velocity_method)(n % ETHD_VELOCITY_COUNT));
       ethd_setup_filter(&r.setup, (ethd_filter_method)(n % ETHD_FILTER_COUNT));
       ethd_setup_fit(&r.setup, (ethd_fit_method)(n % ETHD_FIT_COUNT));
-      r.setup.scene = scenes[n % 2];
+      r.setup.scene = scenes[n % 3];
       rig_post(&r);
     }
     step_guarded(&r, &s, tick);
@@ -252,8 +270,7 @@ START_TEST(test_a_tap) {
   ck_assert_int_ge(faults, 10);
   ck_assert_int_ge(taken, 400);
   rig_close(&r);
-  ethd_scene_destroy(scenes[0]);
-  ethd_scene_destroy(scenes[1]);
+  for (int i = 0; i < 3; i++) ethd_scene_destroy(scenes[i]);
 }
 END_TEST
 
