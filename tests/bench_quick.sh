@@ -1,0 +1,26 @@
+#!/bin/sh
+# What the benchmarks say of errors, which no machine's speed changes, and that each CSV is enough for its picture.
+set -eu
+[ -z "${SAN:-}" ] || { echo "SKIP: benchmarks are measured without sanitizers"; exit 77; }
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+bench=$BUILD/bin/ethd-bench
+fail() { echo "$*"; exit 1; }
+
+for what in fits filters velocity kinematics hours; do
+  "$bench" $what --quick --out "$folder" --about "a test" >"$folder/$what.txt" || fail "$what failed"
+  head -n 1 "$folder/$what.csv" | grep -q '^# libethd .*compiler' || fail "$what.csv doesn't say what measured it"
+  grep -q '^# a test$' "$folder/$what.csv" || fail "$what.csv doesn't hold what --about says"
+  grep -v '^#' "$folder/$what.csv" | awk -F, 'NR == 1 { n = NF } NF != n { exit 1 } END { exit NR < 4 }' ||
+    fail "$what.csv isn't a table"
+  script=$BUILD/share/ethd/plot/bench-$what.gp
+  [ -f "$script" ] || fail "$what has no picture"
+  command -v gnuplot >/dev/null || continue
+  gnuplot -e "in='$folder/$what.csv'; out='$folder/$what.png'" "$script" 2>"$folder/said" || fail "$what: $(cat "$folder/said")"
+  [ "$(wc -c <"$folder/$what.png")" -gt 5000 ] || fail "$what.png is empty"
+done
+
+grep -h 'goal:.*\(the bound\|mm \|error of\|ca at least\)' "$folder"/*.txt >"$folder/goals"
+[ "$(wc -l <"$folder/goals")" = 9 ] || { cat "$folder/goals"; fail "nine goals are of errors"; }
+if grep -v ', met$' "$folder/goals"; then fail "an error is larger than it may be"; fi
+echo "nine errors within their goals"
