@@ -18,7 +18,7 @@ const ethd_param ethd__counter_params[ETHD__COUNTER_PARAMS] = {
     [ETHD__COUNTER_STAMPS] = {"stamps", "no|yes", 0, 1, 0, "speeds from the instants of the edges"},
     [ETHD__COUNTER_SPEED_MAX] = {"speed_max", "rad/s", 1e-3, 1e4, 30, "of a joint; what is faster is a jump"},
     [ETHD__COUNTER_FREEZE_TORQUE] = {"freeze_torque", "Nm", 1e-6, (double)INFINITY, (double)INFINITY,
-                                     "a change of torque that moves a sound joint, thrice its friction; inf: none"},
+                                     "a change of torque that moves a sound joint, four times its friction; inf: none"},
     [ETHD__COUNTER_FREEZE_TIME] = {"freeze_time", "s", 1e-3, 10, 0.045, "within so long"},
     [ETHD__COUNTER_REVERSE_TORQUE] = {"reverse_torque", "Nm", 1e-6, (double)INFINITY, (double)INFINITY,
                                       "against more a sound joint gains no speed by itself; inf: it may"},

@@ -111,7 +111,8 @@ static int64_t check_direction(const ethd__encoder_def *def, ethd__encoder *e, d
   double way = angle_per_count(def) * (double)e->step;
   e->speed += (way / dt - e->speed) * (e->moves ? dt / (SMOOTHING + dt) : 1);
   e->moves = 1;
-  if (!(fabs(torque) > def->reverse_torque && e->speed * torque < 0)) {
+  int moves = fabs(e->speed) > fabs(angle_per_count(def)) / SMOOTHING; /* more than single counts */
+  if (!(moves && fabs(torque) > def->reverse_torque && e->speed * torque < 0)) {
     e->wrong = 0;
     return 0;
   }

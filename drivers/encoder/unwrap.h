@@ -40,7 +40,7 @@ typedef struct ethd__encoder_def {
   double freeze_torque;    /* Nm, > 0: a sound joint that stands while its torque changes by more soon moves:
                               over twice its friction; INFINITY: it needn't */
   double freeze_time;      /* s: how soon, > 0 */
-  double reverse_torque;   /* Nm, > 0: against more a sound joint gains no speed, unless a hand pushes it:
+  double reverse_torque;   /* Nm, over its friction: against more a joint gains no speed, but by a hand:
                               then most of the hand's work is lost against the torque; INFINITY: it may */
   double reverse_time;     /* s: how long it may all the same, > 0 */
   double inertia;          /* kg m^2 of the joint within a half, > 0: what energy its speed is */

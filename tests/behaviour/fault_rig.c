@@ -1,0 +1,314 @@
+#include "behaviour/fault_rig.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "unit/mock_counter.h"
+
+#define TURN 6.283185307179586
+#define WALL "halfplane -1 0 -0.238\n"
+#define MOTOR_RATIO 9.80
+#define TORQUE_UNIT 1e-4 /* Nm at the motor, of apps/config/plant.map */
+#define WATCHDOG 50      /* ticks, likewise */
+
+void fault_rig_fail(const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  vfprintf(stdout, format, args);
+  va_end(args);
+  putchar('\n');
+  exit(1);
+}
+
+static fault_rig *arm;
+
+/* ---- a law that misbehaves when told to ---- */
+
+static ethd_status track(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) ETHD_RT {
+  ethd_status status = ethd_tracking_pd.step(p, state, in, tau);
+  tau[0] += arm->law_adds;
+  arm->clock += arm->law_takes;
+  return arm->law_says ? arm->law_says : status;
+}
+
+static ethd_tracking_law moody;
+
+/* ---- the arm as a driver ---- */
+
+static ethd_status arm_open(const ethd_device_def *def, void **device, char *message) {
+  (void)def, (void)message;
+  *device = arm;
+  return ETHD_OK;
+}
+static ethd_status arm_start(void *d) { return (void)d, ETHD_OK; }
+
+static ethd_status arm_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
+  fault_rig *r = device;
+  (void)now_ns;
+  r->clock += r->jump_ns;
+  *out = r->now;
+  out->time_ns += r->shift_ns;
+  if (out->have & ETHD_HAVE_CENTRE) out->sample_ns += r->shift_ns;
+  for (int j = 0; j < 2; j++)
+    if (r->unplugged[j]) out->q[j] = (double)NAN;
+  if (r->blind) out->have &= ~(int64_t)(ETHD_HAVE_CENTRE | ETHD_HAVE_RING);
+  return ETHD_OK;
+}
+
+static ethd_status arm_write(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT {
+  fault_rig *r = device;
+  (void)now_ns;
+  r->written = *command;
+  return ETHD_OK;
+}
+
+static void arm_safe(void *device) ETHD_RT { ((fault_rig *)device)->written = (ethd_command){.safe = 1}; }
+static ethd_status arm_stop(void *d) { return (void)d, ETHD_OK; }
+static void arm_close(void *d) { (void)d; }
+static ethd_limits arm_limits(const void *d) { return (void)d, ethd_limits_device(); }
+
+static const ethd_driver driver = {.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "arm", .brief = "simulated arm",
+                                   .open = arm_open, .start = arm_start, .read = arm_read, .write = arm_write,
+                                   .safe = arm_safe, .stop = arm_stop, .close = arm_close, .limits = arm_limits};
+static const ethd_driver *const from[] = {&driver, &ethd_driver_counter, &ethd_driver_servo, NULL};
+
+/* ---- what the sensors have ---- */
+
+static int64_t count_of(double q) { return (int64_t)rint(q * FAULT_COUNTS / TURN); }
+
+static int64_t below(int64_t a, int64_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+
+/* A mark between two counts: the last one that was passed. */
+static void pass_marks(fault_rig *r, int j, int64_t before, int64_t now) {
+  int64_t a = below(before, FAULT_MARKS), b = below(now, FAULT_MARKS);
+  if (a == b) return;
+  if (j == 0) r->marks++;
+  mock_counter_event(COUNTER_EVENT_INDEX, j, (uint64_t)((b > a ? b : a) * FAULT_MARKS + r->slip[j]) & 0xFFFFFFFF, 0);
+}
+
+static int64_t spoilt(const fault_rig *r, int j, int64_t count) {
+  if (r->stuck[j]) return r->from[j];
+  if (r->turned[j]) return 2 * r->from[j] - count;
+  return count + r->slip[j];
+}
+
+static void show_counts(fault_rig *r) {
+  static int64_t before[2];
+  for (int j = 0; j < 2; j++) {
+    int64_t count = count_of(r->now.q[j]);
+    if (!r->stuck[j] && !r->turned[j]) r->from[j] = count;
+    counter_mock.count[j] = (uint64_t)spoilt(r, j, count) & 0xFFFFFFFF;
+    if (r->tick > 0) pass_marks(r, j, before[j], count);
+    before[j] = count;
+  }
+}
+
+static void put_words(_Atomic uint16_t *at, uint32_t bits) {
+  at[0] = (uint16_t)(bits >> 16);
+  at[1] = (uint16_t)bits;
+}
+
+static uint32_t float_bits(double v) {
+  float f = (float)v;
+  uint32_t bits;
+  memcpy(&bits, &f, sizeof bits);
+  return bits;
+}
+
+/* Registers of apps/config/plant.map. */
+static void show_registers(fault_rig *r) {
+  _Atomic uint16_t *w = r->server.words;
+  for (int j = 0; j < 2; j++) {
+    put_words(w + MOCK_POSITION1 + 2 * j, (uint32_t)count_of(r->now.q[j]));
+    w[MOCK_MEASURED1 + j] = (uint16_t)(int16_t)rint(r->torque[j] / (MOTOR_RATIO * TORQUE_UNIT) + r->more / TORQUE_UNIT);
+  }
+  r->server.frozen = r->more != 0;
+  w[MOCK_STATUS] |= r->status;
+  w[MOCK_VOLTAGE] = r->volts;
+  if (!(r->now.have & ETHD_HAVE_CENTRE)) return;
+  put_words(w + 12, float_bits(r->now.centre[0]));
+  put_words(w + 14, float_bits(r->now.centre[1]));
+  w[16] = (uint16_t)++r->readings;
+  w[17] = (uint16_t)((r->now.time_ns - r->now.sample_ns) / 1000);
+}
+
+static mock_act act(void *rig, uint64_t n, int function) {
+  fault_rig *r = rig;
+  (void)n;
+  if (r->deaf) return (mock_act){MOCK_DROP, 0, 0};
+  if (function != 3 || r->acts == 0) return (mock_act){MOCK_ANSWER, 0, 0};
+  if (r->every > 1 && r->acts-- % r->every) return (mock_act){MOCK_ANSWER, 0, 0};
+  if (r->every <= 1) r->acts--;
+  return (mock_act){r->act, r->code, 0};
+}
+
+/* ---- opening ---- */
+
+static void setup_of(fault_rig *r, void (*change)(ethd_setup *setup)) {
+  ethd_error error;
+  if (ethd_scene_parse(WALL, strlen(WALL), &r->scene, &error)) fault_rig_fail("scene: %s", error.name);
+  r->setup = ethd_setup_default();
+  r->setup.scene = r->scene;
+  ethd_setup_transition(&r->setup, &ethd_transition_offset);
+  r->setup.limits = ethd_limits_device();
+  r->setup.limits.torque = FAULT_TORQUE;
+  r->setup.limits.torque_rate = 2000;
+  r->setup.limits.speed = 1.2;
+  r->setup.limits.step_time = 300e-6;
+  const double space[4] = {0.15, 0.42, 0.10, 0.40};
+  memcpy(r->setup.limits.workspace, space, sizeof space);
+  moody = ethd_tracking_pd;
+  moody.step = track;
+  double p[ETHD_PARAMS_MAX];
+  memcpy(p, r->setup.tracking_p, sizeof p);
+  ethd_setup_tracking(&r->setup, &moody);
+  memcpy(r->setup.tracking_p, p, sizeof p);
+  if (change) change(&r->setup);
+  if (ethd_control_create(&r->setup, &r->control, &error)) fault_rig_fail("setup: %s", error.name);
+}
+
+static void sim_of(fault_rig *r, uint64_t number) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd_error error;
+  ethd_sim_tap tap;
+  ethd_sim_def def = {.arm = r->setup.arm, .ring_radius = r->setup.ring_radius, .period = r->setup.period,
+                      .step = 1e-3, .tolerance = ETHD_SIM_FAST};
+  if (ethd_plant_load("apps/config/n.plant", &def.plant, message)) fault_rig_fail("%s", message);
+  def.plant.count = TURN / FAULT_COUNTS;
+  r->motor = def.plant.force_limit * r->setup.arm.link1;
+  def.plant.force_limit = 1000; /* a hand is stronger */
+  ethd_sim_draw(&def.plant, 1, number, number % 2 ? 0.4 : 0.2, (ethd_vec){0.25, 0.25}, &tap);
+  if (ethd_sim_create(&def, &r->sim, &error) || ethd_sim_start(r->sim, &tap)) fault_rig_fail("sim: %s", error.name);
+  ethd_sim_read(r->sim, &r->now);
+}
+
+static void open_device(fault_rig *r) {
+  static const char *const ids[] = {"arm", "arm, counter", "servo"};
+  const ethd_setting counter[] = {{"counter.counts_per_turn", "100", 1}, {"counter.ratio", "392", 2},
+                                  {"counter.freeze_torque", "0.4", 3}, {"counter.reverse_torque", "0.15", 4},
+                                  {"counter.inertia", "0.0073", 5}};
+  const ethd_setting servo[] = {{"map", "plant.map", 1}, {"port", r->server.port, 2}};
+  ethd_device_def def = {&r->setup, NULL, 0, "apps/config", "rig.ini"};
+  char message[ETHD_MESSAGE_MAX];
+  if (r->kind == FAULT_COUNTER) def.settings = counter, def.setting_count = 5;
+  if (r->kind == FAULT_BUS) def.settings = servo, def.setting_count = 2;
+  if (ethd_device_open(ids[r->kind], from, &def, &r->driver, &r->device, message)) fault_rig_fail("%s", message);
+  if (r->driver->start(r->device)) fault_rig_fail("start");
+}
+
+static void open_loop(fault_rig *r) {
+  ethd_loop_def def = ethd_loop_default();
+  ethd_error error;
+  def.driver = r->driver;
+  def.device = r->device;
+  def.control = r->control;
+  def.clock = &r->clock;
+  def.soft_start = 0;
+  def.rows = 16;
+  def.heartbeat = 0.1;
+  if (ethd_loop_create(&def, &r->loop, &error) || ethd_loop_start(r->loop, &error)) fault_rig_fail("loop: %s", error.name);
+}
+
+void fault_rig_open(fault_rig *r, fault_device kind, uint64_t tap, void (*change)(ethd_setup *setup)) {
+  memset(r, 0, sizeof *r);
+  arm = r;
+  r->kind = kind;
+  r->shows = -1;
+  r->volts = 480;
+  r->every = 1;
+  fault_rig_mark(r);
+  setup_of(r, change);
+  sim_of(r, tap);
+  mock_counter_install();
+  show_counts(r);
+  if (kind == FAULT_BUS) {
+    mock_start(&r->server, 0);
+    r->server.act = act;
+    r->server.user = r;
+    show_registers(r);
+  }
+  open_device(r);
+  open_loop(r);
+}
+
+void fault_rig_mark(fault_rig *r) {
+  ethd_counters c = {0};
+  if (r->control) ethd_control_counters(r->control, &c);
+  memcpy(r->base, c.faults, sizeof r->base);
+  for (int i = 0; i < ETHD_FAULT_COUNT; i++) r->seen[i] = r->grave[i] = -1;
+}
+
+void fault_rig_close(fault_rig *r) {
+  ethd_loop_destroy(r->loop);
+  (void)!r->driver->stop(r->device);
+  r->driver->close(r->device);
+  if (r->kind == FAULT_BUS) mock_stop(&r->server);
+  ethd_control_destroy(r->control);
+  ethd_sim_destroy(r->sim);
+  ethd_scene_destroy(r->scene);
+}
+
+/* ---- a tick ---- */
+
+/* A drive that isn't asked for a while lets go by itself. */
+static void watch(fault_rig *r) {
+  uint64_t asked = atomic_load(&r->server.requests);
+  r->silent = asked == r->asked || r->deaf ? r->silent + 1 : 0;
+  r->asked = asked;
+  if (r->silent > WATCHDOG) r->server.words[MOCK_STATUS] &= (uint16_t)~2u;
+}
+
+static void take_torque(fault_rig *r) {
+  int on = r->kind == FAULT_BUS ? r->server.words[MOCK_STATUS] & 2 : !r->written.safe;
+  for (int j = 0; j < 2; j++) {
+    double bus = MOTOR_RATIO * TORQUE_UNIT * (int16_t)r->server.words[MOCK_TORQUE1 + j];
+    r->torque[j] = !on ? 0 : r->kind == FAULT_BUS ? bus : r->written.torque[j];
+    r->most = fmax(r->most, fabs(r->torque[j]));
+    if (!isfinite(r->torque[j])) r->most = (double)INFINITY;
+  }
+}
+
+/* `periods` of true time. */
+static void move_arm(fault_rig *r, int64_t periods) {
+  ethd_command c = {.safe = 0};
+  for (int j = 0; j < 2; j++) {
+    double motor = r->torque[j] + (r->kind == FAULT_BUS ? r->more * MOTOR_RATIO : 0);
+    c.torque[j] = fmax(-r->motor, fmin(r->motor, motor)) + r->shove[j];
+  }
+  for (int64_t i = 0; i < periods; i++) ethd_sim_write(r->sim, &c);
+  ethd_sim_read(r->sim, &r->now);
+}
+
+static void note(fault_rig *r, int64_t bits, int64_t *at) {
+  for (int row = 1; row < ETHD_FAULT_COUNT; row++)
+    if (bits & ETHD_FAULT_BIT(row) && at[row] < 0) at[row] = r->tick;
+}
+
+static void take_events(fault_rig *r) {
+  ethd_event e;
+  ethd_counters c;
+  ethd_control_counters(r->control, &c);
+  for (int row = 1; row < ETHD_FAULT_COUNT; row++)
+    if (c.faults[row] > r->base[row] && r->seen[row] < 0) r->seen[row] = r->tick;
+  note(r, r->stepped ? r->row.trace.sense.grave : 0, r->grave);
+  while (ethd_control_poll(r->control, &e) == ETHD_OK)
+    if (e.kind == ETHD_EVENT_FAULT && e.value == 1 && r->grave[e.code] < 0) r->grave[e.code] = r->tick;
+}
+
+void fault_rig_tick(fault_rig *r) {
+  int64_t before = r->clock;
+  if (r->kind == FAULT_COUNTER) show_counts(r);
+  if (r->kind == FAULT_BUS) show_registers(r);
+  if (!r->gone) ethd_loop_beat(r->loop);
+  ethd_loop_tick(r->loop);
+  r->stepped = ethd_loop_take(r->loop, &r->row) == ETHD_OK;
+  if (r->kind == FAULT_BUS) watch(r);
+  take_torque(r);
+  take_events(r);
+  int64_t period = (int64_t)rint(1e9 * r->setup.period), passed = (r->clock - before + period - 1) / period;
+  move_arm(r, passed > 1 ? passed : 1);
+  r->tick++;
+}

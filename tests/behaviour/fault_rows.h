@@ -1,0 +1,23 @@
+/* Rows of the fault table and what brings each about. */
+#ifndef ETHD_TESTS_FAULT_ROWS_H
+#define ETHD_TESTS_FAULT_ROWS_H
+
+#include "behaviour/fault_rig.h"
+
+typedef struct fault_row {
+  int row;
+  ethd_reaction reaction;
+  int is_grave;
+  fault_device device;
+  int first, last; /* ticks of the tap in which it may begin */
+  int bound;       /* ticks */
+  fault_inject inject;
+  void (*change)(ethd_setup *setup);
+  const char *how;
+  int needs_motion; /* 1: shows in some taps only, and from a moment that `inject` finds */
+} fault_row;
+
+extern const fault_row fault_rows[];
+extern const size_t fault_row_count;
+
+#endif
