@@ -76,6 +76,19 @@ static void load(const char *folder, size_t point, ethd__folder *out, ethd__data
   free(taps);
 }
 
+/* Where people have led the finger, events have a clock. */
+static bool led_by_people(const ethd__report *r) {
+  char *path = ethd__folder_path(r->folder->path, ETHD_STUDY_EVENTS);
+  ethd__sheet events = {0};
+  bool found = access(path, F_OK) == 0 && !ethd__sheet_read(path, &events, r->message);
+  free(path);
+  int utc = found ? ethd__sheet_column(&events, "utc") : -1;
+  bool led = false;
+  for (size_t row = 0; row < events.rows; row++) led |= *ethd__sheet_cell(&events, row, utc) != 0;
+  ethd__sheet_free(&events);
+  return led;
+}
+
 static void print_lead(ethd__report *r) {
   const ethd__data *d = &r->data;
   size_t taps = 0, valid = 0;
@@ -85,8 +98,12 @@ static void print_lead(ethd__report *r) {
   }
   fprintf(r->page, "<p class=\"lead\">%zu participants, %zu cells, %zu test taps, %zu of them valid; %zu training taps.</p>\n",
           d->people_count, d->group_count, taps, valid, d->training);
-  fputs("<p class=\"note\"><b>Simulated, not measured.</b> Device, finger and people are plausible: the plant was fitted to "
-        "Table 1 of the paper, the spread between people is assumed. The laws and gains are the paper's.</p>\n", r->page);
+  fputs("<p class=\"note\"><b>Simulated, not measured.</b> ", r->page);
+  fputs(led_by_people(r) ? "People led the hand; device and finger are plausible: the plant was fitted to Table 1 of the paper."
+                         : "Device, finger and people are plausible: the plant was fitted to Table 1 of the paper, the spread "
+                           "between people is assumed.",
+        r->page);
+  fputs(" Laws and gains are those of the configuration, the paper's unless it says otherwise.</p>\n", r->page);
   fputs("<nav>", r->page);
   static const char *const links[][2] = {{"table1", "Table 1"}, {"figures", "Figures"}, {"delay", "Delay"}, {"valid", "Valid taps"},
                                          {"pairs", "Comparison"}, {"survey", "Survey"}, {"traces", "Traces"}, {"methods", "Methods"}};
