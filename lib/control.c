@@ -65,8 +65,10 @@ static int take_clear(ethd_control *control) ETHD_RT {
 
 static void report(ethd_control *control, int64_t tick, const ethd__failure *failure) ETHD_RT {
   ethd__state *s = &control->state;
-  if (!ethd__rows_any(&s->met) && !ethd__rows_any(&s->before)) return;
-  ethd__rows begun = ethd__rows_begun(&control->plans[control->ruling], s);
+  const ethd__plan *plan = &control->plans[control->ruling];
+  int same = s->met.faults == s->before.faults && s->met.grave == s->before.grave;
+  if (same && (plan->setup.limits.latch || !ethd__rows_any(&s->met))) return;
+  ethd__rows begun = ethd__rows_begun(plan, s);
   for (int64_t left = begun.faults | begun.grave; left; left &= left - 1) {
     int32_t row = __builtin_ctzll((uint64_t)left);
     int64_t bit = left & -left;

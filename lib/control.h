@@ -141,6 +141,13 @@ ethd_fault ethd__rows_zero(const ethd__rows *rows) ETHD_RT;
 /* Tells the guard to stop the ring or let it go, where a row calls for it. */
 void ethd__rows_stop(const ethd__rows *rows, ethd_guard_state *guard) ETHD_RT;
 
+/* A torque was cut. */
+#define ETHD__CUT_MAX (0.1 + 1e-9) /* s, as a sum of periods */
+static inline void ethd__rows_cut(ethd__rows *rows, const ethd_guard_state *guard) ETHD_RT {
+  rows->faults |= ETHD_FAULT_BIT(ETHD_FAULT_TORQUE);
+  if (guard->cut > ETHD__CUT_MAX) rows->grave |= ETHD_FAULT_BIT(ETHD_FAULT_TORQUE);
+}
+
 /* With what the guard did, all is met: latches. The fault that the tick ends with. */
 ethd_fault ethd__judge(const ethd__plan *plan, ethd__state *state, int64_t guard_bits, int64_t periods) ETHD_RT;
 

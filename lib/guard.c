@@ -68,7 +68,7 @@ int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *s, const et
   } else if (limits->margin > 0 && ethd__guard_wall(limits, pose, v, torque)) {
     bits |= ETHD_GUARD_MARGIN;
   }
-  if (!isfinite(torque[0]) || !isfinite(torque[1])) {
+  if (!((torque[0] - torque[0]) + (torque[1] - torque[1]) == 0)) { /* NaN, of what isn't finite */
     bits |= ETHD_GUARD_FINITE;
     torque[0] = torque[1] = 0;
   }

@@ -35,15 +35,12 @@ void ethd__rows_stop(const ethd__rows *rows, ethd_guard_state *guard) {
   if (zero) guard->stopped = 1;
 }
 
-#define CUT_MAX (0.1 + 1e-9) /* s, as a sum of periods */
-
 /* Rows of what the guard did. */
 static void add_guard(ethd__rows *rows, const ethd_guard_state *guard, int64_t bits) ETHD_RT {
   if (bits & ETHD_GUARD_SPEED) rows->faults |= ETHD_FAULT_BIT(ETHD_FAULT_SPEED);
   if (bits & ETHD_GUARD_WORKSPACE) rows->grave |= ETHD_FAULT_BIT(ETHD_FAULT_WORKSPACE);
   if (bits & ETHD_GUARD_FINITE) rows->faults |= ETHD_FAULT_BIT(ETHD_FAULT_FINITE);
-  if (bits & ETHD_GUARD_TORQUE) rows->faults |= ETHD_FAULT_BIT(ETHD_FAULT_TORQUE);
-  if (guard->cut > CUT_MAX) rows->grave |= ETHD_FAULT_BIT(ETHD_FAULT_TORQUE);
+  if (bits & ETHD_GUARD_TORQUE) ethd__rows_cut(rows, guard);
   if (bits & ETHD_GUARD_RATE) rows->faults |= ETHD_FAULT_BIT(ETHD_FAULT_TORQUE_RATE);
   if (bits & ETHD_GUARD_STEEP) rows->grave |= ETHD_FAULT_BIT(ETHD_FAULT_TORQUE_RATE);
   if (bits & ETHD_GUARD_MARGIN) rows->faults |= ETHD_FAULT_BIT(ETHD_FAULT_WORKSPACE);

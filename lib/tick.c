@@ -12,7 +12,8 @@ static int64_t periods(const ethd_sense *sense) ETHD_RT {
 
 /* ---- what forbids a tick ---- */
 
-static int two_finite(const double v[2]) ETHD_RT { return isfinite(v[0]) && isfinite(v[1]); }
+/* v - v is 0, or NaN for what isn't finite. */
+static int two_finite(const double v[2]) ETHD_RT { return (v[0] - v[0]) + (v[1] - v[1]) == 0; }
 
 static int pose_is_good(const double pose[6]) ETHD_RT {
   return two_finite(pose) && two_finite(pose + 2) && two_finite(pose + 4);
@@ -228,8 +229,7 @@ static ethd__failure look(const ethd__plan *plan, ethd__state *state, const ethd
 
 ethd__failure ethd__tick(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
                          const ethd_sense *sense, ethd_trace *out) {
-  ethd_pose pose;
-  memset(&pose, 0, sizeof pose);
+  ethd_pose pose; /* stays unknown on a blind tick, where nothing needs it */
   int64_t n = periods(sense), gap = state->blind + n < GAP_MAX ? state->blind + n : GAP_MAX;
   double dt = (double)gap * e->plan->setup.period;
   ethd__failure failure = look(e->plan, state, sense, n);
@@ -238,7 +238,9 @@ ethd__failure ethd__tick(const ethd__entry *e, ethd__state *state, ethd__state *
   out->swap = e->from != NULL;
   drive(e, state, scratch, sense, dt, &pose, out, &failure);
   guard(e->plan, state, &pose, dt, out, &failure);
-  if (out->guard || state->fault || ethd__rows_any(&state->met))
+  if (out->guard == ETHD_GUARD_TORQUE && !state->fault && !ethd__rows_any(&state->met))
+    ethd__rows_cut(&state->met, &state->guard); /* frequent, and nothing else */
+  else if (out->guard || state->fault || ethd__rows_any(&state->met))
     out->fault = ethd__judge(e->plan, state, out->guard, n);
   out->tick = (int64_t)state->counters.ticks++;
   return failure;
