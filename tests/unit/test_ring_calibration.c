@@ -191,7 +191,7 @@ END_TEST
 int main(void) {
   Suite *suite = suite_create("ring calibration");
   TCase *tc = tcase_create("calibration");
-  tcase_set_timeout(tc, 120);
+  tcase_set_timeout(tc, 3600);
   tcase_add_test(tc, test_law);
   tcase_add_test(tc, test_table);
   tcase_add_test(tc, test_fit);

@@ -65,7 +65,7 @@ START_TEST(test_steady) {
       {-5e-3, 200e-6, 1e-3, 4e-3, 0.4e-3},
   };
   for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
-    for (uint32_t key = 0; key < 10; key++) {
+    for (uint32_t key = 0; key < 4; key++) {
       board b = {rows[k].drift, rows[k].jitter, rows[k].hold, 123456789012345, 0xfffff000u - 77 * key, key};
       ethd__board_clock c = {.delay = DELAY};
       double first = run(&c, &b, 0, SECOND), soon = run(&c, &b, SECOND, 8 * SECOND);
@@ -80,12 +80,12 @@ START_TEST(test_steady) {
 }
 END_TEST
 
-/* Three hours, the board's clock wraps twice: the error doesn't grow. */
+/* Eighty minutes, the board's clock wraps: the error doesn't grow. */
 START_TEST(test_long) {
   board b = {.drift = 80e-6, .jitter = 200e-6, .start_ns = INT64_C(1) << 50, .first_us = 1};
   ethd__board_clock c = {.delay = DELAY};
   run(&c, &b, 0, 10 * SECOND);
-  ck_assert_double_le(run(&c, &b, 10 * SECOND, 3 * 3600 * SECOND), 100e-6);
+  ck_assert_double_le(run(&c, &b, 10 * SECOND, 80 * 60 * SECOND), 100e-6);
   ck_assert_uint_eq(c.jumps + c.doubts, 0);
 }
 END_TEST

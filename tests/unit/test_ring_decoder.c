@@ -102,7 +102,7 @@ START_TEST(test_flood) {
     ethd__decoder d = {0};
     memset(flood, (int)value, sizeof flood);
     ck_assert_uint_eq(decode(&d, wire, 1, 1), 0);
-    for (int i = 0; i < 20; i++) ck_assert_uint_eq(decode(&d, flood, sizeof flood, 65536 + value), 0);
+    for (int i = 0; i < 4; i++) ck_assert_uint_eq(decode(&d, flood, sizeof flood, 65536 + value), 0);
     ring_wire(0, 4, wire);
     ck_assert_uint_eq(decode(&d, wire, (size_t)4 * ETHD__FRAME_WIRE, 11), 3);
   }

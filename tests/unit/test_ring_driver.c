@@ -88,7 +88,7 @@ static ethd_status open_with(board *b, const ethd_setting *settings, uint32_t co
 
 /* A ring with its calibration in a file, opened; the line is quiet. */
 static void *open_ring(board *b) {
-  static const ethd_setting settings[] = {{"port", "port", 1}, {"calibration", "ring.ini", 2}, {"delay", "0.0042", 3}};
+  static const ethd_setting settings[] = {{"port", "port", 1}, {"calibration", "ring.ini", 2}, {"delay", "0.0042", 3}, {"patience", "30", 4}};
   char path[80];
   uint8_t rest[4096];
   void *device;
@@ -97,7 +97,7 @@ static void *open_ring(board *b) {
   snprintf(path, sizeof path, "%s/ring.ini", folder);
   ck_assert_msg(ethd__calibration_save(&b->scene.truth, path, message) == ETHD_OK, "%s", message);
   plug(b);
-  ck_assert_msg(open_with(b, settings, 3, &device) == ETHD_OK, "%s", message);
+  ck_assert_msg(open_with(b, settings, 4, &device) == ETHD_OK, "%s", message);
   ck_assert_int_eq(driver->units(device), 1);
   while (driver->service(device, 0, VIRTUAL - 1000000000) == ETHD_OK && read(b->master, rest, sizeof rest) > 0) {}
   ethd_sense sense = {0};
@@ -120,8 +120,8 @@ START_TEST(test_refused) {
   void *device;
   plug(&b);
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    const ethd_setting settings[] = {{"port", "port", 1}, {rows[i].key, rows[i].value, 2}};
-    ck_assert_int_lt(open_with(&b, settings, 2, &device), 0);
+    const ethd_setting settings[] = {{"port", "port", 1}, {rows[i].key, rows[i].value, 2}, {"patience", "30", 3}};
+    ck_assert_int_lt(open_with(&b, settings, strcmp(rows[i].key, "patience") ? 3 : 2, &device), 0);
     ck_assert_msg(strstr(message, rows[i].says) != NULL, "%s", message);
     ck_assert_ptr_null(device);
   }
@@ -133,6 +133,7 @@ END_TEST
 
 START_TEST(test_refused_by_what_comes) {
   static const ethd_setting settings[] = {{"port", "port", 1}, {"patience", "0.3", 2}};
+  static const ethd_setting patient[] = {{"port", "port", 1}, {"patience", "30", 2}};
   static ethd_setup setup;
   setup = ethd_setup_default();
   const ethd_device_def def = {&setup, settings, 2, folder, "x.ini"};
@@ -141,7 +142,7 @@ START_TEST(test_refused_by_what_comes) {
   plug(&b);
   ck_assert_int_eq(driver->open(&def, &device, message), ETHD_E_DEVICE);
   ck_assert_ptr_nonnull(strstr(message, "nothing came in 0.3 s: is the ring connected and powered?"));
-  ck_assert_int_eq(open_with(&b, settings, 2, &device), ETHD_E_DEVICE);
+  ck_assert_int_eq(open_with(&b, patient, 2, &device), ETHD_E_DEVICE);
   ck_assert_msg(strstr(message, "are allowed in an empty ring: take out what is in it") != NULL, "%s", message);
   unlink(link_path);
   ck_assert_int_eq(driver->open(&def, &device, message), ETHD_E_DEVICE);
