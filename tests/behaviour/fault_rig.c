@@ -138,6 +138,7 @@ static void show_registers(fault_rig *r) {
 static mock_act act(void *rig, uint64_t n, int function) {
   fault_rig *r = rig;
   (void)n;
+  if (r->old_point && function == 3) r->server.words[MOCK_TORQUE1] = r->old_point;
   if (r->deaf) return (mock_act){MOCK_DROP, 0, 0};
   if (function != 3 || r->acts == 0) return (mock_act){MOCK_ANSWER, 0, 0};
   if (r->every > 1 && r->acts-- % r->every) return (mock_act){MOCK_ANSWER, 0, 0};
@@ -304,7 +305,11 @@ void fault_rig_tick(fault_rig *r) {
   if (r->kind == FAULT_BUS) show_registers(r);
   if (!r->gone) ethd_loop_beat(r->loop);
   ethd_loop_tick(r->loop);
-  r->stepped = ethd_loop_take(r->loop, &r->row) == ETHD_OK;
+  r->stepped = 0;
+  while (!r->lazy && ethd_loop_take(r->loop, &r->row) == ETHD_OK) {
+    r->stepped = 1;
+    r->lost += r->row.lost;
+  }
   if (r->kind == FAULT_BUS) watch(r);
   take_torque(r);
   take_events(r);

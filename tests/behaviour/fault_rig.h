@@ -56,6 +56,9 @@ struct fault_rig {
   int32_t code, acts, every; /* exception's code; how many answers; each how manieth */
   uint16_t status, volts;    /* bits that the drive's status has too; its supply, 0.1 V */
   int32_t deaf;         /* 1: the drive hears nothing */
+  uint16_t old_point;   /* not 0: the drive's first set-point is that, whatever is written */
+  int32_t lazy;         /* 1: nobody takes the loop's rows */
+  uint64_t lost;        /* rows, as those behind them say */
   int64_t jump_ns;      /* by which the clock goes on in the loop's read */
   int64_t shift_ns;     /* of the samples' instants */
   double law_adds;      /* Nm, to the tracking torque of joint 1 */

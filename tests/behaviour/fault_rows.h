@@ -20,4 +20,15 @@ typedef struct fault_row {
 extern const fault_row fault_rows[];
 extern const size_t fault_row_count;
 
+/* Rows that aren't met in a tick: trial i goes wrong in `says`, or not. */
+typedef struct fault_end {
+  int row;
+  ethd_reaction reaction;
+  void (*try)(int i, char *says, size_t room);
+  const char *how;
+} fault_end;
+
+extern const fault_end fault_ends[];
+extern const size_t fault_end_count;
+
 #endif
