@@ -118,6 +118,13 @@ void ethd_control_reset(ethd_control *control) {
   ethd__resume(plan, &control->state);
 }
 
+void ethd_control_restart(ethd_control *control) {
+  double heat[2];
+  memcpy(heat, control->state.guard.heat, sizeof heat);
+  ethd_control_reset(control);
+  memcpy(control->state.guard.heat, heat, sizeof heat);
+}
+
 void ethd_control_clear(ethd_control *control) {
   atomic_store_explicit(&control->clear, 1, memory_order_relaxed);
 }

@@ -51,7 +51,7 @@ static ethd_status open_events(replay *r) {
 
 /* ---- events ---- */
 
-enum { CHANGED = 1, FRESH = 2, CLEAR = 4 };
+enum { CHANGED = 1, FRESH = 2, CLEAR = 4, WARM = 8 };
 
 static ethd_status set(replay *r, const char *detail, char *what) {
   char key[128];
@@ -77,7 +77,7 @@ static ethd_status apply(replay *r, const ethd__record_event *e, int *done) {
     status = set(r, e->detail, what);
     *done |= CHANGED;
   } else if (strcmp(e->kind, "start") == 0) {
-    *done |= FRESH;
+    *done |= strcmp(e->detail, "enabled") == 0 ? WARM : FRESH;
   } else if (strcmp(e->kind, "clear") == 0) {
     *done |= CLEAR;
   } else if (strcmp(e->kind, "fault") != 0) {
@@ -92,7 +92,9 @@ static ethd_status apply(replay *r, const ethd__record_event *e, int *done) {
 static ethd_status renew(replay *r, int done) {
   ethd_error error = {0};
   ethd_status status = ETHD_OK;
-  if (done & FRESH) {
+  if (done == WARM && r->control) {
+    ethd_control_restart(r->control);
+  } else if (done & (FRESH | WARM)) {
     ethd_control_destroy(r->control);
     status = ethd_control_create(&r->setup, &r->control, &error);
   } else if (done & CHANGED) {

@@ -209,7 +209,7 @@ ethd_status ethd_loop_enable(ethd_loop *l) {
     ethd_counters counters;
     ethd_control_counters(l->def.control, &counters);
     for (int i = 0; i < ETHD_FAULT_COUNT; i++) l->faults[i] += counters.faults[i];
-    ethd_control_reset(l->def.control);
+    ethd_control_restart(l->def.control);
     arm(l);
   }
   atomic_store_explicit(&l->mode, ETHD__LOOP_RUNS, memory_order_release);

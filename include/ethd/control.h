@@ -214,6 +214,10 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_poll(ethd_control *control, et
    step runs. [main] */
 ETHD_API void ethd_control_reset(ethd_control *control);
 
+/* The same, but the motors are as hot as they are: for a device that is enabled anew. Not while step runs.
+   [main] */
+ETHD_API void ethd_control_restart(ethd_control *control);
+
 /* Acknowledges a latched fault; taken at the next step, which starts softly from zero torque. Before
    limits.clean_time is over it means nothing. [any] */
 ETHD_API void ethd_control_clear(ethd_control *control);

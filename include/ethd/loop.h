@@ -147,7 +147,7 @@ ETHD_API void ethd_loop_raise(ethd_loop *loop, ethd_fault fault);
 /* Acknowledges the controller's fault before the next step. [any] */
 ETHD_API void ethd_loop_clear(ethd_loop *loop);
 
-/* Starts the device anew, resets the controller and arms, softly; meanwhile the loop leaves both alone.
+/* Starts the device anew, restarts the controller and arms, softly; meanwhile the loop leaves both alone.
    Not while a posted setup waits. ETHD_BUSY: the loop didn't let go within a second. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_enable(ethd_loop *loop);
 

@@ -48,7 +48,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, c
 
 /* events.csv: row,kind,detail; the events of a row of tick.npy come before it, in order. kind:
      setup       detail: law. The configuration's setup with this transition law, in a fresh controller
-     start       detail: free words. A fresh controller (or a reset one) with the present setup
+     start       detail: free words. A fresh controller (or a reset one) with the present setup; "enabled":
+                 the running one restarted, its motors as hot as they are
      transition  detail: law. Changes the transition law of the present setup
      set         detail: section.key value. Changes the present setup
      clear       faults were acknowledged

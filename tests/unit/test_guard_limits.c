@@ -171,6 +171,28 @@ START_TEST(test_too_hot) {
 }
 END_TEST
 
+/* An enabling forgets all but the heat. */
+START_TEST(test_restart) {
+  rig r;
+  moody_open(&r, 1);
+  r.setup.limits.nominal_torque = 0.1;
+  r.setup.limits.heat_time = 1;
+  rig_post(&r);
+  motion m = rig_at(0.01, 0, 0.001); /* 0.16 Nm: over the nominal torque, folded back in the end */
+  ethd_sense s = rig_sense(&r.setup.arm, &m);
+  for (int i = 0; i < 3000; i++) ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
+  double folded = fabs(r.command.torque[0]);
+  ck_assert_double_lt(folded, 0.11);
+  for (int forgets = 0; forgets < 2; forgets++) {
+    (forgets ? ethd_control_reset : ethd_control_restart)(r.control);
+    for (int i = 0; i < 3; i++) rig_try(&r, &s);
+    ck_assert_int_eq(r.trace.tick, 2);
+    ck_assert(forgets ? fabs(r.command.torque[0]) > 0.15 : fabs(r.command.torque[0]) < 0.12);
+  }
+  rig_close(&r);
+}
+END_TEST
+
 /* ---- torques ---- */
 
 /* Told once, when it has lasted for 0.1 s. */
@@ -242,6 +264,7 @@ int main(void) {
   tcase_add_test(t, test_heat);
   tcase_add_test(t, test_fold_back);
   tcase_add_test(t, test_too_hot);
+  tcase_add_test(t, test_restart);
   tcase_add_test(t, test_cut);
   tcase_add_test(t, test_steep);
   tcase_add_test(t, test_steep_without_latch);
