@@ -1,17 +1,14 @@
 /* Sockets and serial lines, opened by ourselves: libmodbus takes an unknown baud for 9600 without a word. */
 #include <errno.h>
-#include <fcntl.h>
 #include <netdb.h>
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <string.h>
-#include <sys/ioctl.h>
 #include <sys/select.h>
 #include <sys/socket.h>
-#include <termios.h>
 #include <unistd.h>
 
-#include "common/baud.h"
+#include "common/line.h"
 #include "file/error_text.h"
 #include "servo/bus.h"
 
@@ -59,29 +56,9 @@ static ethd_status open_tcp(const ethd__servo_map *map, int *fd, char *message) 
 
 /* ---- rtu ---- */
 
-static int set_line(int fd, int32_t format) {
-  struct termios t;
-  if (tcgetattr(fd, &t)) return -1;
-  cfmakeraw(&t);
-  t.c_cflag &= ~(tcflag_t)(PARENB | PARODD | CSTOPB | CRTSCTS);
-  t.c_cflag |= CLOCAL | CREAD;
-  if (format == 1 || format == 2) t.c_cflag |= PARENB;
-  if (format == 2) t.c_cflag |= PARODD;
-  if (format == 3) t.c_cflag |= CSTOPB;
-  t.c_cc[VMIN] = t.c_cc[VTIME] = 0;
-  return tcsetattr(fd, TCSANOW, &t);
-}
-
+/* The map's formats are the line's. */
 static ethd_status open_rtu(const ethd__servo_map *map, int *fd, char *message) {
-  *fd = open(map->port, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (*fd < 0) return refuse(map, errno, message);
-  if (ioctl(*fd, TIOCEXCL) || set_line(*fd, map->format)) return refuse(map, errno, message);
-  int64_t baud = ethd__baud_set(*fd, (uint32_t)map->baud);
-  if (baud != (int64_t)map->baud)
-    return ethd__say(message, ETHD_E_DEVICE, "%s: asked for %.0f baud, the line has %lld; choose a rate that it can",
-                     map->port, map->baud, (long long)baud);
-  tcflush(*fd, TCIOFLUSH);
-  return ETHD_OK;
+  return ethd__line_open(map->port, (ethd__line_format)map->format, (uint32_t)map->baud, fd, message);
 }
 
 /* libmodbus waits in select, which can't hold a higher descriptor and ends the process. */
