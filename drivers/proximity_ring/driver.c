@@ -260,8 +260,11 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
 }
 
 static const char *remark(const void *device, uint32_t i) {
-  const ring *r = device;
-  if (i > 0 || r->port.low_latency) return NULL;
+  ring *r = (ring *)device;
+  pthread_mutex_lock(&r->lock);
+  bool at_once = r->port.low_latency;
+  pthread_mutex_unlock(&r->lock);
+  if (i > 0 || at_once) return NULL;
   return "the ring's port doesn't know low latency: its bytes may come up to 16 ms late";
 }
 
