@@ -230,6 +230,17 @@ static const refusal refusals[] = {
     {"polygon 0 0 1 0 1 1 0 0", ETHD_E_GEOMETRY, 1, "polygon: points 3 and 0"},
     {"\npolygon 0 0 1 1 1 0 0 1", ETHD_E_GEOMETRY, 2, "polygon: edges 0 and 2"},
     {"polygon 0 0 2 0 1 0", ETHD_E_GEOMETRY, 1, "polygon: edges"},
+    {"polygon 0 0 1 1 2 2 3 3", ETHD_E_GEOMETRY, 1, "polygon: edges"},
+    {"polygon 0 0 4 0 2 0 2 3", ETHD_E_GEOMETRY, 1, "polygon: edges"},                    /* back along itself */
+    {"polygon 0 0 4 0 4 4 2 0 0 4", ETHD_E_GEOMETRY, 1, "polygon: edges"},                /* a corner on an edge */
+    {"polygon 0 0 2 2 4 0 4 4 2 2 0 4", ETHD_E_GEOMETRY, 1, "polygon: edges"},            /* a corner on a corner */
+    {"polygon 0 0 9 0 9 9 5 9 5 5 5 9 0 9", ETHD_E_GEOMETRY, 1, "polygon: edges"},        /* a slit */
+    {"polygon 0 0 1 0 1 1 1 1", ETHD_E_GEOMETRY, 1, "polygon: points 2 and 3"},
+    {"polygon 1e9 0 1 0 1 1", ETHD_E_RANGE, 1, "polygon x"},
+    {"segment 0 0 0 1e9", ETHD_E_RANGE, 1, "segment y"},
+    {"halfplane 1 0 -1e9", ETHD_E_RANGE, 1, "halfplane c"},
+    {"polyline 1e5 0 100000.00000000001 0", ETHD_E_GEOMETRY, 1, "polyline: points 0 and 1"},
+    {"segment 0 0 1e-150 0", ETHD_E_GEOMETRY, 1, "segment: points 0 and 1"},
 };
 
 START_TEST(test_refusals) {

@@ -1,8 +1,11 @@
-/* Trees agree with brute force. make stress asks more: ETHD_SCENE_QUERIES of each kind. */
+/* Trees agree with brute force. make stress asks more: ETHD_SCENE_QUERIES of each kind; ETHD_SCENE_OBJECTS in one
+   tree. */
 #include <check.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "scene_brute.h"
 #include "scene_objects.h"
@@ -39,29 +42,42 @@ START_TEST(test_bits) {
 }
 END_TEST
 
+static double seconds(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
 /* A hundred thousand objects are in one tree. */
 START_TEST(test_many) {
-  enum { MANY = 100000 };
-  double(*p)[4] = malloc(MANY * sizeof *p);
-  ethd_object_def *o = malloc(MANY * sizeof *o);
+  const char *wanted = getenv("ETHD_SCENE_OBJECTS");
+  const int many = wanted ? atoi(wanted) : 100000;
+  double(*p)[4] = malloc((size_t)many * sizeof *p);
+  ethd_object_def *o = malloc((size_t)many * sizeof *o);
   ethd_scene *scene;
   ethd_error error;
   scene_seed(4000);
-  for (int i = 0; i < MANY; i++) {
+  for (int i = 0; i < many; i++) {
     p[i][0] = scene_uniform(-1, 1), p[i][1] = scene_uniform(-1, 1);
     p[i][2] = p[i][0] + scene_uniform(-1e-3, 1e-3), p[i][3] = p[i][1] + scene_uniform(-1e-3, 1e-3);
     o[i] = (ethd_object_def){i % 3 ? ETHD_SEGMENT : ETHD_CIRCLE, -1, p[i], i % 3 ? 4 : 3, 0};
     if (i % 3 == 0) p[i][2] = 1e-3;
   }
-  ethd_scene_def def = {o, MANY, NULL, 0};
+  ethd_scene_def def = {o, (size_t)many, NULL, 0};
+  double start = seconds();
   ck_assert_int_eq(ethd_scene_create(&def, &scene, &error), ETHD_OK);
+  double spent = seconds() - start;
+  ethd_scene_info info;
+  ethd_scene_describe(scene, &info);
+  ck_assert_uint_le(info.bytes, 120 * (size_t)many);
+  if (wanted) printf("%d objects: built in %.3g s of processor time, %.1f MB\n", many, spent, 1e-6 * (double)info.bytes);
   ethd_scene_hint hint = {0};
-  for (int i = 0; i < 200; i++) {
+  for (int i = 0; i < (wanted ? 20 : 200); i++) {
     ethd_vec x = {scene_uniform(-1, 1), 0.3};
     double least = INFINITY;
     ethd_nearest q;
     ethd_scene_query_near(scene, x, &hint, &q);
-    for (int k = 0; k < MANY; k++) {
+    for (int k = 0; k < many; k++) {
       ethd_vec a = {p[k][0] - x.x, p[k][1] - x.y}, b = {p[k][2] - p[k][0], p[k][3] - p[k][1]};
       double t = k % 3 ? fmin(1, fmax(0, -ethd_vec_dot(a, b) / ethd_vec_dot(b, b))) : 0;
       least = fmin(least, hypot(a.x + t * b.x, a.y + t * b.y) - (k % 3 ? 0 : 1e-3));
@@ -77,9 +93,9 @@ END_TEST
 static Suite *suite(void) {
   Suite *s = suite_create("scene_tree");
   TCase *c = tcase_create("scene_tree");
-  const char *wanted = getenv("ETHD_SCENE_QUERIES");
+  const char *wanted = getenv("ETHD_SCENE_QUERIES"), *many = getenv("ETHD_SCENE_OBJECTS");
   if (wanted) queries = atoi(wanted);
-  tcase_set_timeout(c, wanted ? 0 : 60);
+  tcase_set_timeout(c, wanted || many ? 0 : 60);
   tcase_add_loop_test(c, test_kind, 0, scene_kind_count);
   tcase_add_loop_test(c, test_size, 0, scene_kind_count);
   tcase_add_test(c, test_bits);
