@@ -169,19 +169,18 @@ static int by_speed(const void *a, const void *b) {
   return i != j ? i - j : strcmp(p->cell.law, q->cell.law);
 }
 
-ethd_status ethd__data_read(const char *path, const ethd_plant *plant, size_t point, ethd__data *out,
-                            char message[ETHD_MESSAGE_MAX]) {
-  reading r = {.out = out, .plant = plant, .point = point, .message = message};
-  memset(out, 0, sizeof *out);
+/* out->sheet is there. */
+static ethd_status take_all(reading *r) {
+  ethd__data *out = r->out;
   out->points = 1;
-  ethd_status status = ethd__sheet_read(path, &out->sheet, message);
-  if (status) return status;
   out->people = calloc(out->sheet.rows + 1, sizeof *out->people);
-  if (!out->people) status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
-  if (!status) status = find_columns(&r);
-  for (size_t row = 0; !status && row < out->sheet.rows; row++) status = take(&r, row);
+  ethd_status status = out->people ? find_columns(r)
+                                   : ethd__say(r->message, ETHD_E_MEMORY, "%s: %s", out->sheet.path,
+                                               ethd_status_sentence(ETHD_E_MEMORY));
+  for (size_t row = 0; !status && row < out->sheet.rows; row++) status = take(r, row);
   if (!status && !out->group_count)
-    status = ethd__say(message, ETHD_E_RANGE, "%s: no test tap at point %zu of %zu", path, point, out->points);
+    status = ethd__say(r->message, ETHD_E_RANGE, "%s: no test tap at point %zu of %zu", out->sheet.path, r->point,
+                       out->points);
   if (status) {
     ethd__data_free(out);
     return status;
@@ -191,13 +190,30 @@ ethd_status ethd__data_read(const char *path, const ethd_plant *plant, size_t po
   return ETHD_OK;
 }
 
+ethd_status ethd__data_read(const char *path, const ethd_plant *plant, size_t point, ethd__data *out,
+                            char message[ETHD_MESSAGE_MAX]) {
+  reading r = {.out = out, .plant = plant, .point = point, .message = message};
+  memset(out, 0, sizeof *out);
+  ethd_status status = ethd__sheet_read(path, &out->sheet, message);
+  return status ? status : take_all(&r);
+}
+
+ethd_status ethd__data_at(const ethd__data *whole, const ethd_plant *plant, size_t point, ethd__data *out,
+                          char message[ETHD_MESSAGE_MAX]) {
+  reading r = {.out = out, .plant = plant, .point = point, .message = message};
+  memset(out, 0, sizeof *out);
+  out->sheet = whole->sheet;
+  out->borrowed = true;
+  return take_all(&r);
+}
+
 void ethd__data_free(ethd__data *data) {
   for (size_t i = 0; i < data->group_count; i++) {
     free(data->group[i].cell.results);
     free(data->group[i].who);
   }
   free(data->people);
-  ethd__sheet_free(&data->sheet);
+  if (!data->borrowed) ethd__sheet_free(&data->sheet);
   data->people = NULL;
   data->group_count = 0;
 }

@@ -22,6 +22,7 @@ typedef struct ethd__group {
 
 typedef struct ethd__data {
   ethd__sheet sheet;
+  bool borrowed; /* the sheet is another's */
   ethd__group group[ETHD_REPORT_CELLS]; /* speeds in order of the table, strategies within */
   size_t group_count;
   const char **people; /* ids */
@@ -31,6 +32,9 @@ typedef struct ethd__data {
 /* path: a taps.csv of ethd-study; of a grid, only `point` goes into the groups. */
 ETHD_MUST_CHECK ethd_status ethd__data_read(const char *path, const ethd_plant *plant, size_t point,
                                             ethd__data *out, char message[ETHD_MESSAGE_MAX]);
+/* The same at another point, on the sheet of `whole`, which outlives it. */
+ETHD_MUST_CHECK ethd_status ethd__data_at(const ethd__data *whole, const ethd_plant *plant, size_t point,
+                                          ethd__data *out, char message[ETHD_MESSAGE_MAX]);
 void ethd__data_free(ethd__data *data);
 
 /* Copies of the groups' cells; how many. */

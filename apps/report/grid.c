@@ -58,14 +58,12 @@ static char *csv_header(const ethd__protocol *p) {
 static ethd_status points(ethd__report *r, const ethd__protocol *p, ethd_csv_out *csv) {
   size_t rows = 0;
   ethd_status status = ETHD_OK;
-  char *path = ethd__folder_path(r->folder->path, ETHD_STUDY_TAPS);
   for (size_t point = 0; !status && point < r->data.points; point++) {
     ethd__data data;
-    status = ethd__data_read(path, &r->folder->loaded.plant, point, &data, r->message);
+    status = ethd__data_at(&r->data, &r->folder->loaded.plant, point, &data, r->message);
     for (size_t i = 0; !status && i < data.group_count; i++) write_row(r, p, point, &data.group[i], rows++ < ROWS_MAX, csv);
     if (!status) ethd__data_free(&data);
   }
-  free(path);
   return status;
 }
 

@@ -140,7 +140,7 @@ static double sign_flip(const double *differences, size_t n, uint64_t seed) {
 
 void ethd__compare(const double *differences, size_t n, uint64_t seed, ethd__paired *out) {
   double draws[ETHD_STATS_DRAWS], *copy = malloc((n + 1) * sizeof *copy);
-  *out = (ethd__paired){.n = n, .mean = NAN, .median = NAN, .p = NAN, .interval = {NAN, NAN, n}};
+  *out = (ethd__paired){.n = n, .mean = NAN, .median = NAN, .p = NAN, .interval = {NAN, NAN, n, 0}};
   if (!copy || !n) {
     free(copy);
     return;
