@@ -30,7 +30,7 @@ typedef struct ethd__servo_device {
   /* [rt] */
   ethd__servo_sample newest;
   uint64_t seen_number, seen_readings;
-  uint32_t seen_rows[ETHD_FAULT_COUNT];
+  uint32_t seen_rows[ETHD_FAULT_COUNT], seen_worst[ETHD_FAULT_COUNT];
   uint32_t seen_epoch;
   int64_t grace_ns;
   ethd_histogram age;

@@ -144,7 +144,10 @@ static ethd_status servo_open(const ethd_device_def *def, void **out, char messa
     d->period_ns = (int64_t)rint(1e9 * def->setup->period);
     d->exchange_ns = d->period_ns * d->map.divisor;
     ethd__servo_link_make(&d->map, &d->link);
-    status = ethd__servo_link_connect(&d->link, monotonic());
+    ethd_error error;
+    status = ethd__servo_feedback_make(&d->feedback, &d->map, 1e-9 * (double)d->exchange_ns, &error);
+    if (status) ethd_error_text(s.map->value, &error, d->link.message);
+    if (!status) status = ethd__servo_link_connect(&d->link, monotonic());
     if (!status) status = identify(d, steps_time(&d->map, ETHD__SERVO_IDENTIFY));
     if (status) ethd__say(message, status, "%s: %.*s", s.map->value, ETHD_MESSAGE_MAX / 2, d->link.message);
   }

@@ -1,7 +1,6 @@
 #include "servo/feedback.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "servo/words.h"
 
@@ -14,14 +13,39 @@ static const ethd__servo_register *role(const ethd__servo_link *l, int which, do
 
 /* ---- joints ---- */
 
-/* The shorter way round a counter of r->bits. */
-static double unwrap(ethd__servo_axis *a, const ethd__servo_register *r, double raw) {
-  uint32_t mask = r->bits < 32 ? (1u << r->bits) - 1 : UINT32_MAX, half = 1u << (r->bits - 1);
-  uint32_t now = (uint32_t)(int64_t)raw & mask, up = (now - a->last) & mask;
-  if (!a->started) a->count = (int64_t)raw;
-  else a->count += up >= half ? (int64_t)up - (int64_t)mask - 1 : (int64_t)up;
-  a->last = now;
-  return (double)a->count;
+ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo_map *map, double period,
+                                      ethd_error *error) {
+  ethd_status status = ETHD_OK;
+  for (int i = 0; i < 2 && !status; i++) {
+    int32_t at = map->roles[ETHD__SERVO_POSITION1 + i];
+    const ethd__servo_register *r = at < 0 ? NULL : &map->registers[at];
+    if (!r || !(r->counts > 0) || r->type == ETHD__SERVO_F32) continue;
+    f->axes[i].counts = true;
+    f->axes[i].def = (ethd__encoder_def){.ceiling = ethd__count_ceiling(r->bits),
+                                         .counts_per_turn = (int64_t)r->counts,
+                                         .ratio = r->ratio,
+                                         .speed_max = r->speed_max,
+                                         .freeze_torque = r->freeze_torque,
+                                         .freeze_time = r->freeze_time,
+                                         .reverse_torque = r->reverse_torque,
+                                         .reverse_time = r->reverse_time,
+                                         .inertia = r->inertia,
+                                         .sign = (int32_t)r->sign};
+    status = ethd__encoder_check(&f->axes[i].def, period, error);
+  }
+  return status;
+}
+
+/* A counter's angle; rows that it shows are counted. */
+static double follow(ethd__servo_feedback *f, ethd__servo_axis *a, double raw) {
+  int64_t grave = 0;
+  const ethd__count count = {.time_ns = f->sample.stamp_ns, .raw = (uint64_t)(int64_t)raw & a->def.ceiling};
+  int64_t seen = ethd__encoder_step(&a->def, &a->encoder, &count, a->torque, &grave);
+  for (int row = ETHD_FAULT_ENCODER_JUMP; row <= ETHD_FAULT_INDEX; row++) {
+    f->rows[row] += (seen & ETHD_FAULT_BIT(row)) != 0;
+    f->sample.worst[row] += (grave & ETHD_FAULT_BIT(row)) != 0;
+  }
+  return a->encoder.q;
 }
 
 static void take_axis(ethd__servo_feedback *f, const ethd__servo_link *l, int i) {
@@ -29,7 +53,7 @@ static void take_axis(ethd__servo_feedback *f, const ethd__servo_link *l, int i)
   ethd__servo_axis *a = &f->axes[i];
   const ethd__servo_register *r = role(l, ETHD__SERVO_POSITION1 + i, &raw);
   if (!r) return;
-  double q = ethd__servo_joint(r, r->type == ETHD__SERVO_F32 ? raw : unwrap(a, r, raw));
+  double q = a->counts ? follow(f, a, raw) : ethd__servo_joint(r, raw);
   if (!a->started) a->offset = isnan(f->home[i]) ? 0 : f->home[i] - q;
   a->started = true;
   f->sample.q[i] = q + a->offset;
@@ -81,9 +105,13 @@ static void watch_torque(ethd__servo_feedback *f, const ethd__servo_link *l, con
 
 void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *l, int64_t stamp_ns,
                                const double torque[2]) {
+  bool unseen = f->connects != l->counts.connects || stamp_ns <= f->sample.stamp_ns;
   f->sample.stamp_ns = stamp_ns;
   f->sample.number++;
   f->sample.has |= ETHD__SERVO_HAS_SPEED;
+  /* while the line was away the arm may have gone anywhere; a start may be by another clock than what follows */
+  for (int i = 0; i < 2 && unseen; i++) ethd__encoder_pause(&f->axes[i].encoder);
+  f->connects = l->counts.connects;
   for (int i = 0; i < 2; i++) take_axis(f, l, i);
   take_reading(f, l);
   watch_torque(f, l, torque);
@@ -120,7 +148,7 @@ void ethd__servo_feedback_judge(ethd__servo_feedback *f, const ethd__servo_link 
   put(&s->levels, ETHD_FAULT_REPLY_BAD, spoilt);
   put(&s->levels, ETHD_FAULT_SET_POINT, l->set_point_stays);
   put(&s->grave, ETHD_FAULT_REPLY_BAD, spoilt);
-  memcpy(s->rows, l->rows, sizeof s->rows);
+  for (int row = 0; row < ETHD_FAULT_COUNT; row++) s->rows[row] = l->rows[row] + f->rows[row];
   if (!l->counts.exchanges) return;
   put(&s->levels, ETHD_FAULT_DRIVE, drive_fault(l));
   put(&s->levels, ETHD_FAULT_BUS_VOLTAGE, voltage_fault(l));

@@ -2,6 +2,7 @@
 #ifndef ETHD_SERVO_FEEDBACK_H
 #define ETHD_SERVO_FEEDBACK_H
 
+#include "encoder/unwrap.h"
 #include "servo/link.h"
 
 #define ETHD__SERVO_FOLLOW 0.020 /* s: a drive that doesn't follow its set-point for so long is a fault */
@@ -20,13 +21,13 @@ typedef struct ethd__servo_sample {
   uint64_t readings;  /* how many came */
   int64_t levels, grave; /* rows of the fault table that last, as bits */
   uint32_t rows[ETHD_FAULT_COUNT]; /* how often a row was seen */
+  uint32_t worst[ETHD_FAULT_COUNT]; /* and at its worst */
 } ethd__servo_sample;
 
-/* An axis' counter, unwrapped. */
 typedef struct ethd__servo_axis {
-  bool started;
-  uint32_t last;
-  int64_t count;
+  bool started, counts; /* counts: its position is a counter, unwrapped and watched */
+  ethd__encoder_def def;
+  ethd__encoder encoder;
   double offset;    /* rad, added to the angle */
   int64_t since_ns; /* the torque isn't followed since; 0: it is */
   double torque;    /* asked for by the exchange before, Nm */
@@ -36,8 +37,14 @@ typedef struct ethd__servo_feedback {
   ethd__servo_axis axes[2];
   double home[2];   /* rad: where the joints stand at the first sample; NaN: as the register says */
   double count;     /* the reading's, last */
+  uint32_t rows[ETHD_FAULT_COUNT]; /* of the encoders */
+  uint64_t connects; /* of the link, at the last sample */
   ethd__servo_sample sample;
 } ethd__servo_feedback;
+
+/* The counters of the map's positions; `period` of an exchange, s. home: as above. The error names the field. [main] */
+ETHD_MUST_CHECK ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo_map *map, double period,
+                                                      ethd_error *error);
 
 /* After a turn of the link that went well; torque is what went out (Nm). I/O side. */
 void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *link, int64_t stamp_ns,

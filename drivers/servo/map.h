@@ -76,6 +76,9 @@ typedef struct ethd__servo_register {
   double scale, offset, min, max, ratio, sign;
   double counts, torque_constant;          /* per motor turn; Nm/A */
   uint32_t bits;                           /* width of a position's counter */
+  double speed_max;                        /* rad/s of the joint: a counter that is faster jumped */
+  double freeze_torque, freeze_time;       /* Nm, s: as in encoder/unwrap.h; a torque of infinity: not watched */
+  double reverse_torque, reverse_time, inertia;
   double tolerance;                        /* of measured torque, in its unit; 0: not watched */
   uint32_t fault_mask, healthy;            /* (raw & fault_mask) != healthy: the drive reports a fault */
   uint32_t enabled_mask, enabled;          /* (raw & enabled_mask) == enabled: the drive is enabled */

@@ -60,6 +60,8 @@ static bool unit_is(const ethd__servo_register *r, const char *words) {
 static ethd_status check_unit(const ethd__servo_source *s, const ethd__servo_register *r) {
   if (unit_is(r, "A") && !(r->torque_constant > 0)) return refuse(s, r, "torque_constant", "is missing: unit = A needs it");
   if (unit_is(r, "count|count/s") && !(r->counts > 0)) return refuse(s, r, "counts", "is missing: counts a motor turn");
+  if (unit_is(r, "count") && (r->counts != rint(r->counts) || r->scale != 1 || r->offset != 0))
+    return refuse(s, r, "counts", "a counter has whole counts, scale = 1 and offset = 0");
   if (r->role < 0) return ETHD_OK;
   const ethd__servo_role *role = &ethd__servo_roles[r->role];
   if (!unit_is(r, role->units)) return refuse(s, r, "unit", "%s is allowed", role->units);
@@ -75,6 +77,7 @@ static ethd_status check_words(const ethd__servo_source *s, const ethd__servo_re
     return refuse(s, r, "space", "an input register can't be written, holding is allowed");
   if (r->type != ETHD__SERVO_F32 && r->bits > 16 * ethd__servo_words(r))
     return refuse(s, r, "bits", "found %u, its words have %u", r->bits, 16 * ethd__servo_words(r));
+  if (r->type == ETHD__SERVO_F32 && unit_is(r, "count")) return refuse(s, r, "type", "counts are whole numbers");
   if (r->role == ETHD__SERVO_COUNTER && r->type != ETHD__SERVO_U16) return refuse(s, r, "type", "u16 is allowed");
   if (r->role == ETHD__SERVO_READING_COUNT && r->type == ETHD__SERVO_F32)
     return refuse(s, r, "type", "a type of whole numbers is allowed");

@@ -13,9 +13,12 @@ int64_t ethd__servo_old(const ethd__servo_device *d) {
 
 static void add_edges(ethd__servo_device *d, ethd_sense *out) ETHD_RT {
   const ethd__servo_sample *s = &d->newest;
-  for (int row = 0; row < ETHD_FAULT_COUNT; row++)
+  for (int row = 0; row < ETHD_FAULT_COUNT; row++) {
     if (s->rows[row] != d->seen_rows[row]) out->faults |= ETHD_FAULT_BIT(row);
+    if (s->worst[row] != d->seen_worst[row]) out->grave |= ETHD_FAULT_BIT(row);
+  }
   memcpy(d->seen_rows, s->rows, sizeof s->rows);
+  memcpy(d->seen_worst, s->worst, sizeof s->worst);
 }
 
 static void add_joints(const ethd__servo_device *d, ethd_sense *out) ETHD_RT {

@@ -77,10 +77,10 @@ START_TEST(test_goes_and_comes) {
   start_device();
   drive.words[MOCK_POSITION1] = 0xFFFF;
   drive.words[MOCK_POSITION1 + 1] = 0xFFFE;
-  drive.words[MOCK_POSITION2 + 1] = 1000;
+  drive.words[MOCK_POSITION2 + 1] = 100;
   ck_assert_int_eq(tick(0.5, -0.25), ETHD_OK);
   ck_assert_double_eq_tol(sense.q[0], -2 * COUNT, 1e-15);
-  ck_assert_double_eq_tol(sense.q[1], 1000 * COUNT, 1e-15);
+  ck_assert_double_eq_tol(sense.q[1], 100 * COUNT, 1e-15);
   ck_assert_int_eq(sense.time_ns, now);
   ck_assert_int_eq(sense.faults, 0);
   ck_assert_int_eq(tick(0, 0), ETHD_OK);
@@ -97,14 +97,43 @@ START_TEST(test_goes_and_comes) {
 }
 END_TEST
 
+static void place(int64_t count) {
+  drive.words[MOCK_POSITION1] = (uint16_t)(count >> 16);
+  drive.words[MOCK_POSITION1 + 1] = (uint16_t)count;
+}
+
 START_TEST(test_unwraps) {
-  start_device();
-  for (int64_t count = 2147483000; count < 2147485000; count += 500) {
-    drive.words[MOCK_POSITION1] = (uint16_t)(count >> 16);
-    drive.words[MOCK_POSITION1 + 1] = (uint16_t)count;
+  mock_start(&drive, 0);
+  ethd_setting settings[] = {{"map", "plant.map", 1}, {"port", drive.port, 2}};
+  place(2147483000);
+  ck_assert_msg(open_with(settings, 2) == ETHD_OK, "%s", message);
+  ck_assert_int_eq(servo->start(device), ETHD_OK);
+  now = 0;
+  for (int64_t count = 2147483000; count < 2147485000; count += 100) {
+    place(count);
     ck_assert_int_eq(tick(0, 0), ETHD_OK);
     ck_assert_double_eq_tol(sense.q[0], (double)count * COUNT, 1e-9);
+    ck_assert_int_eq(sense.faults, 0);
   }
+  close_device();
+}
+END_TEST
+
+/* A counter that jumps is dropped and told; once more within 10 ms it is grave. */
+START_TEST(test_encoder_jump) {
+  start_device();
+  for (int i = 0; i < 20; i++) tick(0, 0);
+  place(500);
+  ck_assert_int_eq(tick(0, 0), ETHD_OK);
+  ck_assert_int_eq(sense.faults, ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP));
+  ck_assert_int_eq(sense.grave, 0);
+  ck_assert_double_eq_tol(sense.q[0], 0, COUNT);
+  place(0);
+  ck_assert_int_eq(tick(0, 0), ETHD_OK);
+  ck_assert_int_eq(sense.faults, 0);
+  place(-500);
+  tick(0, 0);
+  ck_assert_int_eq(sense.faults & sense.grave, ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP));
   close_device();
 }
 END_TEST
@@ -445,6 +474,7 @@ int main(void) {
   tcase_set_timeout(t, 240);
   tcase_add_test(t, test_goes_and_comes);
   tcase_add_test(t, test_unwraps);
+  tcase_add_test(t, test_encoder_jump);
   tcase_add_test(t, test_home_and_joint);
   tcase_add_test(t, test_settings_refused);
   tcase_add_test(t, test_missing_once);
