@@ -23,9 +23,14 @@ static struct {
   int count;
 } field;
 
+/* Once a tap: each has a body of its own. */
+static void tolerate(ethd__body *body, double tolerance) {
+  if (body->tolerance != tolerance) ethd__body_tolerate(body, tolerance);
+}
+
 static void ours(void *user, ethd__body *body, const ethd__stretch *s, ethd__state *state) {
   const contender *c = user;
-  ethd__body_tolerate(body, c->setting);
+  tolerate(body, c->setting);
   ethd__body_advance(body, &s->piece, s->begin, s->end - s->begin, state);
 }
 
@@ -34,7 +39,7 @@ static void ours_fixed(void *user, ethd__body *body, const ethd__stretch *s, eth
   const contender *c = user;
   double length = s->end - s->begin;
   int n = (int)ceil(length / c->setting - 1e-9);
-  ethd__body_tolerate(body, INFINITY);
+  tolerate(body, INFINITY);
   for (int i = 0; i < n; i++)
     ethd__body_advance(body, &s->piece, s->begin + length * i / n, length / n, state);
 }
