@@ -275,6 +275,11 @@ START_TEST(test_drive_fault) {
   drive.words[MOCK_STATUS] = 0; /* disabled by itself is a fault, too */
   drive.words[MOCK_CONTROL] = 0;
   ck_assert_int_eq(ticks_until(ETHD_FAULT_DRIVE, 5), 1);
+  servo->safe(device); /* and a fault bit alone, when nothing is enabled */
+  for (int i = 0; i < 5; i++) tick(0, 0);
+  ck_assert(!shows(ETHD_FAULT_DRIVE));
+  drive.words[MOCK_STATUS] = 1;
+  ck_assert_int_eq(ticks_until(ETHD_FAULT_DRIVE, 5), 1);
   close_device();
 }
 END_TEST
