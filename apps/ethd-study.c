@@ -138,14 +138,15 @@ static void make_folder(void) {
   free(journal);
   char *study = arg.study ? strdup(arg.study) : ethd__data_path("paper.study");
   if (!study) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
-  check(ethd__protocol_load(study, &protocol, message), message);
+  ethd_status status = ethd__protocol_load(study, &protocol, message);
+  free(study);
+  check(status, message);
   ethd__folder_device(&protocol, &loaded);
   check_study(&protocol, &loaded);
-  ethd_status status = ethd__folder_make(arg.out, &protocol, &loaded, arg.finger, message);
+  status = ethd__folder_make(arg.out, &protocol, &loaded, arg.finger, message);
   if (status) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   ethd__loaded_free(&loaded);
   ethd__protocol_free(&protocol);
-  free(study);
 }
 
 static void choose(ethd__sitting *sitting, const ethd__protocol *protocol) {
