@@ -83,7 +83,7 @@ static const bad bads[] = {
     {"[scene]\nfile = no.scene\n", "x.ini:2: scene.file: /nowhere/no.scene: No such file or directory"},
     {"[scene]\nfiles = no.scene\n", "x.ini:2: scene.files: unknown key; file are allowed"},
     {"[plugins]\nfile = no.so\n", "x.ini:2: plugins.file: /nowhere/no.so: No such file or directory"},
-    {"[device]\ndriver = " X50 "\n", "x.ini:2: device.driver: found"},
+    {"[device]\ndriver = " X50 X50 "\n", "x.ini:2: device.driver: found"},
 };
 
 START_TEST(test_bad_texts) {
