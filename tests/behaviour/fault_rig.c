@@ -5,7 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "behaviour/fault_ring.h"
 #include "unit/mock_counter.h"
 
 #define TURN 6.283185307179586
@@ -54,6 +56,7 @@ static ethd_status arm_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_
   if (out->have & ETHD_HAVE_CENTRE) out->sample_ns += r->shift_ns;
   for (int j = 0; j < 2; j++)
     if (r->unplugged[j]) out->q[j] = (double)NAN;
+  if (r->kind == FAULT_RING) out->have &= ~(int64_t)(ETHD_HAVE_RAYS | ETHD_HAVE_RING);
   if (r->blind) out->have &= ~(int64_t)(ETHD_HAVE_CENTRE | ETHD_HAVE_RING);
   return ETHD_OK;
 }
@@ -73,7 +76,7 @@ static ethd_limits arm_limits(const void *d) { return (void)d, ethd_limits_devic
 static const ethd_driver driver = {.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "arm", .brief = "simulated arm",
                                    .open = arm_open, .start = arm_start, .read = arm_read, .write = arm_write,
                                    .safe = arm_safe, .stop = arm_stop, .close = arm_close, .limits = arm_limits};
-static const ethd_driver *const from[] = {&driver, &ethd_driver_counter, &ethd_driver_servo, NULL};
+static const ethd_driver *const from[] = {&driver, &ethd_driver_counter, &ethd_driver_servo, &ethd_driver_ring, NULL};
 
 /* ---- what the sensors have ---- */
 
@@ -178,6 +181,7 @@ static void sim_of(fault_rig *r, uint64_t number) {
   ethd_sim_def def = {.arm = r->setup.arm, .ring_radius = r->setup.ring_radius, .period = r->setup.period,
                       .step = 1e-3, .tolerance = ETHD_SIM_FAST};
   if (ethd_plant_load("apps/config/n.plant", &def.plant, message)) fault_rig_fail("%s", message);
+  def.plant.rays = r->kind == FAULT_RING;
   def.plant.count = TURN / FAULT_COUNTS;
   r->motor = def.plant.force_limit * r->setup.arm.link1;
   def.plant.force_limit = 1000; /* a hand is stronger */
@@ -186,17 +190,38 @@ static void sim_of(fault_rig *r, uint64_t number) {
   ethd_sim_read(r->sim, &r->now);
 }
 
+double fault_rig_response = 0.1;
+
+/* apps/config/plant.map with another patience. */
+static void write_map(const char *path) {
+  char line[256];
+  FILE *plain = fopen("apps/config/plant.map", "r"), *to = fopen(path, "w");
+  if (!plain || !to) fault_rig_fail("%s", path);
+  while (fgets(line, sizeof line, plain)) {
+    if (strncmp(line, "response", 8)) fputs(line, to);
+    else fprintf(to, "response = %g\n", fault_rig_response);
+  }
+  fclose(plain);
+  fclose(to);
+}
+
 static void open_device(fault_rig *r) {
-  static const char *const ids[] = {"arm", "arm, counter", "servo"};
+  static const char *const ids[] = {"arm", "arm, counter", "servo", "arm, ring"};
   const ethd_setting counter[] = {{"counter.counts_per_turn", "100", 1}, {"counter.ratio", "392", 2},
                                   {"counter.freeze_torque", "0.4", 3}, {"counter.reverse_torque", "0.15", 4},
                                   {"counter.inertia", "0.0073", 5}};
-  const ethd_setting servo[] = {{"map", "plant.map", 1}, {"port", r->server.port, 2}};
+  char map[64];
+  snprintf(map, sizeof map, "/tmp/ethd-rig-%d.map", (int)getpid());
+  const ethd_setting servo[] = {{"map", map, 1}, {"port", r->server.port, 2}};
+  const ethd_setting ring[] = {{"ring.port", board.port, 1}, {"ring.calibration", board.calibration, 2}};
   ethd_device_def def = {&r->setup, NULL, 0, "apps/config", "rig.ini"};
   char message[ETHD_MESSAGE_MAX];
   if (r->kind == FAULT_COUNTER) def.settings = counter, def.setting_count = 5;
   if (r->kind == FAULT_BUS) def.settings = servo, def.setting_count = 2;
+  if (r->kind == FAULT_RING) def.settings = ring, def.setting_count = 2;
+  if (r->kind == FAULT_BUS) write_map(map);
   if (ethd_device_open(ids[r->kind], from, &def, &r->driver, &r->device, message)) fault_rig_fail("%s", message);
+  if (r->kind == FAULT_BUS) unlink(map);
   if (r->driver->start(r->device)) fault_rig_fail("start");
 }
 
@@ -231,7 +256,9 @@ void fault_rig_open(fault_rig *r, fault_device kind, uint64_t tap, void (*change
     r->server.user = r;
     show_registers(r);
   }
+  if (kind == FAULT_RING) fault_board_plug();
   open_device(r);
+  if (kind == FAULT_RING) fault_board_run();
   open_loop(r);
 }
 
@@ -247,6 +274,7 @@ void fault_rig_close(fault_rig *r) {
   (void)!r->driver->stop(r->device);
   r->driver->close(r->device);
   if (r->kind == FAULT_BUS) mock_stop(&r->server);
+  if (r->kind == FAULT_RING) fault_board_unplug();
   ethd_control_destroy(r->control);
   ethd_sim_destroy(r->sim);
   ethd_scene_destroy(r->scene);
@@ -303,6 +331,7 @@ void fault_rig_tick(fault_rig *r) {
   int64_t before = r->clock;
   if (r->kind == FAULT_COUNTER) show_counts(r);
   if (r->kind == FAULT_BUS) show_registers(r);
+  if (r->kind == FAULT_RING) fault_board_tick(&r->now);
   if (!r->gone) ethd_loop_beat(r->loop);
   ethd_loop_tick(r->loop);
   r->stepped = 0;

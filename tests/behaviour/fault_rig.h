@@ -3,6 +3,7 @@
 
      PLAIN    the arm as a driver of the test's own: what a sound sensor gives
      COUNTER  the same; the joints through the counter driver, from counts that a stand-in for the kernel has
+     RING     the same; the finger through the proximity ring's driver, from frames on a pty
      BUS      the servo driver, over TCP, to a drive whose registers the arm's numbers are in
 
    Each tick: the sensors' numbers are put where the device finds them, the loop ticks, the torque that
@@ -14,7 +15,7 @@
 #include "ethd/sim.h"
 #include "servo/mock.h"
 
-typedef enum fault_device { FAULT_PLAIN, FAULT_COUNTER, FAULT_BUS } fault_device;
+typedef enum fault_device { FAULT_PLAIN, FAULT_COUNTER, FAULT_BUS, FAULT_RING } fault_device;
 
 #define FAULT_COUNTS 39200 /* of an encoder in a turn of the joint */
 #define FAULT_MARKS 100    /* counts between two index marks */
@@ -75,6 +76,9 @@ struct fault_rig {
   double motor;         /* Nm at a joint: what a motor can give */
   double most;          /* Nm: the largest torque that the drive was told */
 };
+
+/* s: how long the servo waits for an answer, in true time: an overloaded machine gives none in 3 ms. */
+extern double fault_rig_response;
 
 /* A tap as drawn by this number; change, if any, has the last word on the setup. */
 void fault_rig_open(fault_rig *r, fault_device kind, uint64_t tap, void (*change)(ethd_setup *setup));

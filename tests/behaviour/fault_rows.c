@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "behaviour/fault_ring.h"
+
 /* ---- what breaks ---- */
 
 static void late(fault_rig *r, int64_t since) { r->jump_ns = since == 0 ? 1500000 : 0; }
@@ -54,6 +56,45 @@ static void slip(fault_rig *r, int64_t since) {
   if (r->shows < 0 && marks > 0 && r->marks > marks) r->shows = r->tick - 1;
   r->slip[0] = 5;
 }
+
+/* Show when the next frame is due. */
+static void next_frame(fault_rig *r, int64_t since) {
+  static uint64_t frames;
+  if (since == 0) frames = board.frames;
+  if (r->shows < 0 && board.frames > frames) r->shows = r->tick - 1;
+}
+static void lost_frame(fault_rig *r, int64_t since) {
+  if (since == 0) board.drops = 1;
+  next_frame(r, since);
+}
+static void damaged_frame(fault_rig *r, int64_t since) {
+  if (since == 0) board.garbles = 1;
+  next_frame(r, since);
+}
+static void silent_sensor(fault_rig *r, int64_t since) {
+  board.silent = 1u << 5;
+  next_frame(r, since);
+}
+static void silent_sensors(fault_rig *r, int64_t since) {
+  board.silent = 0x1F;
+  next_frame(r, since);
+}
+static void board_clock(fault_rig *r, int64_t since) {
+  board.jump_us = 50000;
+  next_frame(r, since);
+}
+
+/* Shows with the next reading: 30 mm off. */
+static void displace(fault_rig *r, int64_t since, int readings) {
+  static int left;
+  if (since == 0) left = readings;
+  if (!(r->now.have & ETHD_HAVE_CENTRE) || left == 0) return;
+  if (r->shows < 0) r->shows = r->tick;
+  r->now.centre[0] += 0.030;
+  left--;
+}
+static void one_wrong_reading(fault_rig *r, int64_t since) { displace(r, since, 1); }
+static void wrong_readings(fault_rig *r, int64_t since) { displace(r, since, -1); }
 
 static void not_finite(fault_rig *r, int64_t since) { (void)since, r->law_adds = (double)NAN; }
 static void strong(fault_rig *r, int64_t since) { r->law_adds = since < 150 ? 1000 : 0; }
@@ -158,13 +199,20 @@ const fault_row fault_rows[] = {
     {13, ZERO, 0, FAULT_COUNTER, 20, 250, 20, turn_round, NULL, "a count runs the other way; from when it moves",
      1},
     {14, COUNT, 0, FAULT_COUNTER, 60, 200, 1, slip, NULL, "5 counts are lost; from the next mark", 1},
+    {15, DEGRADE, 0, FAULT_RING, 30, 300, 7, lost_frame, NULL, "a frame is lost; from when it is due", 1},
+    {15, DEGRADE, 0, FAULT_RING, 30, 300, 7, damaged_frame, NULL, "a bit of a frame is wrong, likewise", 1},
+    {18, DEGRADE, 0, FAULT_RING, 30, 80, 17, silent_sensor, NULL, "a sensor doesn't answer, likewise", 1},
+    {18, STOP, 1, FAULT_RING, 30, 80, 17, silent_sensors, NULL, "five sensors don't answer, likewise", 1},
+    {19, COUNT, 0, FAULT_PLAIN, 20, 300, 0, one_wrong_reading, NULL, "a reading is 30 mm off", 1},
+    {19, STOP, 1, FAULT_PLAIN, 20, 300, 14, wrong_readings, NULL, "every reading is; from the first", 1},
+    {20, DEGRADE, 0, FAULT_RING, 30, 300, 4, board_clock, NULL, "the board's clock jumps by 50 ms; from the next frame", 1},
     {16, DEGRADE, 0, FAULT_PLAIN, 20, 700, 10, finger_unseen, NULL, "no reading for 16 ms", 0},
     {17, STOP, 0, FAULT_PLAIN, 20, 700, 30, finger_lost, NULL, "no reading any more", 0},
     {21, ZERO, 0, FAULT_PLAIN, 20, 700, 0, not_finite, NULL, "a law's torque is NaN", 0},
     {22, COUNT, 0, FAULT_PLAIN, 20, 80, 0, strong, much_torque, "a law's torque is 1 kNm too high", 0},
     {22, COUNT, 1, FAULT_PLAIN, 20, 80, 100, strong, much_torque, "for 150 ms", 0},
     {23, COUNT, 0, FAULT_PLAIN, 20, 80, 1, twitch, little_rate, "a law's torque goes 2.4 Nm up and down, 10 times", 0},
-    {23, STOP, 1, FAULT_PLAIN, 20, 80, 20, restless, little_rate, "for ever", 0},
+    {23, STOP, 1, FAULT_PLAIN, 20, 45, 20, restless, little_rate, "for ever", 0},
     {24, STOP, 0, FAULT_PLAIN, 20, 700, 6, hurl, NULL, "a hand throws the ring; from its true speed", 1},
     {25, DEGRADE, 0, FAULT_PLAIN, 20, 700, 1, push_aside, with_margin, "a hand pushes the ring to the edge", 1},
     {25, STOP, 1, FAULT_PLAIN, 20, 700, 1, push_out, any_speed, "a hand pushes the ring out", 1},

@@ -55,6 +55,7 @@ static void try(const fault_row *t, int trial, outcome *o) {
   static fault_rig r;
   uint64_t key = (uint64_t)(t - fault_rows) * 1000 + (uint64_t)trial;
   int64_t begin = t->first + (int64_t)(draw_bits(key) % (uint64_t)(t->last - t->first));
+  fault_rig_response = t->row == ETHD_FAULT_FEEDBACK_OLD ? 0.003 : 0.1; /* each tick of silence takes that */
   fault_rig_open(&r, t->device, (uint64_t)trial, t->change);
   while (r.tick < begin) fault_rig_tick(&r);
   if (r.row.trace.fault) wrong(o, trial, "a fault before the fault: row", (double)r.row.trace.fault);
