@@ -22,12 +22,19 @@ static int line_to(const char *port) {
   return fd;
 }
 
+/* Sensors are never quite still: a few counts, evenly. */
+static double noise(void) {
+  static uint64_t state = 1;
+  state = state * 6364136223846793005u + 1442695040888963407u;
+  return 8 * ((double)(state >> 40) * 0x1p-24 - 0.5);
+}
+
 /* A ray that meets nothing counts the dark. */
 static void counts(const ethd__calibration *law, const double *rays, double dark, char *out, size_t room) {
   size_t n = 0;
   for (int k = 0; k < ETHD_RAYS; k++) {
     double c = isnan(rays[k]) ? dark : ethd__sensor_counts(&law->sensors[k], fmax(rays[k], 0));
-    n += (size_t)snprintf(out + n, room - n, "%s%d", k ? " " : "", (int)rint(fmin(fmax(c, 0), 65535)));
+    n += (size_t)snprintf(out + n, room - n, "%s%d", k ? " " : "", (int)rint(fmin(fmax(c + noise(), 0), 65535)));
   }
 }
 

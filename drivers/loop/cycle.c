@@ -69,17 +69,42 @@ static void blind(ethd_loop *l) ETHD_RT {
   l->sense.q[0] = l->sense.q[1] = (double)NAN;
 }
 
+/* A row that ends the torque doesn't wait for the next sample. */
+static int is_pressing(const ethd_sense *s) ETHD_RT {
+  for (int64_t rows = s->faults | s->grave; rows; rows &= rows - 1) {
+    ethd_fault row = (ethd_fault)__builtin_ctzll((uint64_t)rows);
+    if (ethd_fault_reaction(row, s->grave >> row & 1) >= ETHD_REACTION_STOP) return 1;
+  }
+  return 0;
+}
+
+/* Of a step without a newer sample, what is known of the joints is the last one. */
+static void remember_joints(ethd_loop *l, ethd_status status) ETHD_RT {
+  ethd_sense *s = &l->sense;
+  if (status == ETHD_OK) {
+    l->joints = (ethd__joints){s->time_ns, s->have & ETHD_HAVE_DQ, {s->q[0], s->q[1]}, {s->dq[0], s->dq[1]}, 1};
+    return;
+  }
+  s->time_ns = l->joints.time_ns;
+  s->have |= l->joints.have;
+  memcpy(s->q, l->joints.q, sizeof s->q);
+  memcpy(s->dq, l->joints.dq, sizeof s->dq);
+}
+
 /* No: there is nothing newer than what the last step knew, and the torque holds. */
 static int read_device(ethd_loop *l) ETHD_RT {
   if (!l->held) memset(&l->sense, 0, sizeof l->sense);
   ethd_status status = l->def.driver->read(l->def.device, l->due, &l->sense);
   l->sense.faults |= ethd__loop_rows(l);
-  if (status == ETHD_STALE && !(l->sense.faults | l->sense.grave) && l->held < HOLD_MAX) {
+  if (status == ETHD_STALE && l->held < HOLD_MAX && !is_pressing(&l->sense)) {
     l->held++;
     l->missed++;
     return 0;
   }
-  if (status < 0 || (status == ETHD_STALE && l->held == HOLD_MAX)) blind(l);
+  if (status < 0 || (status == ETHD_STALE && (l->held == HOLD_MAX || !l->joints.known)))
+    blind(l);
+  else
+    remember_joints(l, status);
   l->held = 0;
   l->sense.missed = l->missed;
   l->sense.step_ns = l->step;

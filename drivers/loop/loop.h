@@ -24,6 +24,13 @@ typedef struct ethd__unit {
   pthread_t thread;
 } ethd__unit;
 
+/* The last joint sample, as it came. */
+typedef struct ethd__joints {
+  int64_t time_ns, have;
+  double q[2], dq[2];
+  int32_t known;
+} ethd__joints;
+
 struct ethd_loop {
   ethd_loop_def def;
   int64_t period, early;  /* ns */
@@ -43,6 +50,7 @@ struct ethd_loop {
   unsigned beats_seen;
   uint64_t lost, swaps;
   ethd_sense sense;
+  ethd__joints joints;
   ethd_loop_row row;
   ethd_loop_stats stats;
 

@@ -77,12 +77,21 @@ static uint32_t off_circle(const ethd__plausible *p, const double d[ETHD_RAYS], 
   return met & ~finger.used;
 }
 
+/* Rays that meet something, when enough do for a finger. */
+static uint32_t on_finger(const ethd__plausible *p, const double d[ETHD_RAYS]) ETHD_RT {
+  uint32_t met = 0;
+  for (int k = 0; k < ETHD_RAYS; k++) met |= (uint32_t)(fabs(d[k]) < p->fit.ring_radius) << k;
+  return bits(met) < PRESENT ? 0 : met;
+}
+
 /* ---- sensors ---- */
 
-static uint32_t symptoms(const ethd__plausible *p, const ethd__calibration *c, const ethd__frame *f) ETHD_RT {
+/* met: rays that lie on a finger's circle. */
+static uint32_t symptoms(const ethd__plausible *p, const ethd__calibration *c, const ethd__frame *f, uint32_t met) ETHD_RT {
   uint32_t same = 0, bad = 0;
   for (int k = 0; k < ETHD_RAYS; k++) {
-    bool edge = f->counts[k] == ETHD__FRAME_MISSING || f->counts[k] == ETHD__FRAME_SATURATED;
+    bool near = met >> k & 1; /* a finger that touches the ring saturates what it touches */
+    bool edge = f->counts[k] == ETHD__FRAME_MISSING || (f->counts[k] == ETHD__FRAME_SATURATED && !near);
     same |= (uint32_t)(p->started && f->counts[k] == p->counts[k]) << k;
     bad |= (uint32_t)(edge || !(f->counts[k] >= 0.5 * c->sensors[k].dark)) << k; /* NaN: dark unknown */
   }
@@ -130,7 +139,7 @@ bool ethd__plausible_step(ethd__plausible *p, const ethd__calibration *c, const 
     return false;
   }
   for (int k = 0; k < ETHD_RAYS; k++) d[k] = ethd__sensor_distance(&c->sensors[k], f->counts[k]);
-  uint32_t suspects = suspect_rays(p, f, d), bad = symptoms(p, c, f) | suspects;
+  uint32_t suspects = suspect_rays(p, f, d), bad = symptoms(p, c, f, on_finger(p, d) & ~suspects) | suspects;
   if (bits(suspects) > ETHD__SUSPECTS_MAX && p->bad_in_a_row < ETHD__BAD_IN_A_ROW - 1) {
     p->bad_in_a_row++;
     p->bad++;

@@ -8,8 +8,8 @@
    are believed: something was put into the ring.
 
    A sensor that fails in five frames more than it does well is out of use, until it has done well as often:
-   missing, saturated, under half its dark, with a suspect ray, or stuck: the same count while half of the
-   others move. All [rt]. */
+   missing, saturated where no finger is, under half its dark, with a suspect ray, or stuck: the same count while
+   half of the others move. All [rt]. */
 #ifndef ETHD_PROXIMITY_RING_PLAUSIBLE_H
 #define ETHD_PROXIMITY_RING_PLAUSIBLE_H
 

@@ -59,8 +59,8 @@ struct ethd_driver {
   ethd_status (*open)(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]);
   ethd_status (*start)(void *device);
   /* Adds what is new to *out, which is zero when a step is over. ETHD_STALE: a joint sample is due from
-     this driver and there is no newer one; the loop then holds the torque and steps when there is, unless
-     *out names a fault. Negative: nothing can be known of the device. NULL: it measures nothing. */
+     this driver and there is no newer one; the loop then holds the torque and steps when there is, or at
+     once, with the last sample, when *out names a fault that ends the torque. Negative: nothing can be known of the device. NULL: it measures nothing. */
   ethd_status (*read)(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT;
   ethd_status (*write)(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT; /* or NULL */
   uint32_t (*units)(const void *device); /* of blocking I/O; NULL: none */

@@ -127,6 +127,73 @@ START_TEST(test_counts_over_an_enabling) {
 }
 END_TEST
 
+/* A joint sample that is due but not there; what the device says meanwhile. */
+static struct {
+  int from, until; /* ticks without */
+  int64_t faults;
+} gap;
+
+static ethd_status gappy_read(void *device_, int64_t now, ethd_sense *out) {
+  device *d = device_;
+  int tick = d->reads++;
+  out->have |= tick == gap.from ? ETHD_HAVE_RAYS : 0;
+  if (tick < gap.from || tick >= gap.until) {
+    out->q[0] = d->sense.q[0];
+    out->q[1] = d->sense.q[1];
+    out->time_ns = now;
+    return ETHD_OK;
+  }
+  if (tick > gap.from) out->faults |= gap.faults;
+  return ETHD_STALE;
+}
+
+static void open_gap(bench *b, ethd_driver *own, int64_t faults) {
+  bench_open(b);
+  *own = *b->def.driver;
+  own->read = gappy_read;
+  b->def.driver = own;
+  gap.from = 4, gap.until = 7, gap.faults = faults;
+  bench_start(b);
+}
+
+static int rows_made(bench *b, ethd_loop_row *row) {
+  ethd_loop_tick(b->loop);
+  return ethd_loop_take(b->loop, row) == ETHD_OK;
+}
+
+/* Rows that only count wait for the next sample, and come with it; so does whatever else has come meanwhile. */
+START_TEST(test_holds_without_a_sample) {
+  bench b;
+  ethd_driver own;
+  ethd_loop_row row;
+  open_gap(&b, &own, BIT(SENSOR) | BIT(OVERRUN));
+  for (int i = 0; i < 4; i++) ck_assert(rows_made(&b, &row));
+  for (int i = 4; i < 7; i++) ck_assert(!rows_made(&b, &row));
+  ck_assert(rows_made(&b, &row));
+  ck_assert(row.trace.sense.faults == (BIT(SENSOR) | BIT(OVERRUN)) && row.trace.sense.missed == 3);
+  ck_assert(row.trace.sense.have & ETHD_HAVE_RAYS);
+  ck_assert(row.trace.sense.q[0] == b.d.sense.q[0] && row.armed && row.trace.fault == 0);
+  bench_close(&b);
+}
+END_TEST
+
+/* A row that ends the torque doesn't wait: the step knows the joints as they were last. */
+START_TEST(test_ends_without_a_sample) {
+  bench b;
+  ethd_driver own;
+  ethd_loop_row row, last;
+  open_gap(&b, &own, BIT(FEEDBACK_OLD));
+  for (int i = 0; i < 4; i++) ck_assert(rows_made(&b, &last));
+  ck_assert(!rows_made(&b, &row));
+  ck_assert(rows_made(&b, &row));
+  ck_assert(row.trace.fault == ETHD_FAULT_FEEDBACK_OLD && row.trace.sense.missed == 1 && !row.armed);
+  ck_assert(row.trace.sense.q[0] == b.d.sense.q[0] && row.trace.sense.q[1] == b.d.sense.q[1]);
+  ck_assert_int_eq(row.trace.sense.time_ns, last.trace.sense.time_ns);
+  ck_assert(row.trace.x[0] == last.trace.x[0] && row.trace.x[1] == last.trace.x[1]);
+  bench_close(&b);
+}
+END_TEST
+
 START_TEST(test_bad_bounds) {
   const double bad[] = {NAN, -1, 0, 0.0009};
   bench b;
@@ -152,6 +219,8 @@ int main(void) {
   tcase_add_test(t, test_silent_application);
   tcase_add_test(t, test_raise);
   tcase_add_test(t, test_counts_over_an_enabling);
+  tcase_add_test(t, test_holds_without_a_sample);
+  tcase_add_test(t, test_ends_without_a_sample);
   tcase_add_test(t, test_bad_bounds);
   suite_add_tcase(suite, t);
   return rig_run(suite);
