@@ -12,7 +12,7 @@ import time
 import numpy as np
 
 LAWS = ("offset", "smooth", "abrupt")
-PATIENCE = 90  # s a strategy
+PATIENCE = 30  # s a strategy
 
 
 def run(program, folder, seconds):

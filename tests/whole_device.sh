@@ -57,7 +57,7 @@ cp apps/config/wall.scene "$folder"
   sed '/^\[device\]/,$d' apps/config/n.ini
   printf '[device]\ndriver = servo, ring\nservo.map = plant.map\nservo.port = 127.0.0.1:%s\nring.port = ring\n' "$(sed -n 's/^ready //p' "$folder/peer")"
 } >"$folder/device.ini"
-"$python3" tests/whole_device.py run "$BUILD/bin/ethd-run" "$folder" "$seconds" 6>&- 7>&- 8>&- || fail "ethd-run: $(cat "$folder/err")"
+$alone "$python3" tests/whole_device.py run "$BUILD/bin/ethd-run" "$folder" "$seconds" 6>&- 7>&- 8>&- || fail "ethd-run: $(cat "$folder/err")"
 exec 6>&- 7>&- 8>&-
 tail -n 45 "$folder/out" | grep -v '^ok'
 "$BUILD/bin/ethd-replay" --verify "$folder/rec" >"$folder/verify" 2>&1 && grep -q 'equal to the bit' "$folder/verify" || fail "$(cat "$folder/verify")"

@@ -86,14 +86,37 @@ typedef struct tally {
   double torque, off;
 } tally;
 
+/* The hardest reaction that the sense's own rows of the fault table call for. */
+static ethd_reaction called_for(const ethd_sense *s) {
+  ethd_reaction most = ETHD_REACTION_NONE;
+  for (int row = 1; row < ETHD_FAULT_COUNT; row++) {
+    int grave = s->grave >> row & 1;
+    if (!grave && !(s->faults >> row & 1)) continue;
+    ethd_reaction reaction = ethd_fault_reaction((ethd_fault)row, grave);
+    if (reaction <= ETHD_REACTION_ZERO && reaction > most) most = reaction;
+  }
+  return most;
+}
+
+/* A stop ends in zero torque, but damps on its way. */
+static void judge_told(ethd_reaction reaction, const ethd_command *c, const ethd_trace *t, tally *sum) {
+  if (!t->fault) sum->wrong_fault++;
+  if (reaction == ETHD_REACTION_ZERO && (!c->safe || c->torque[0] != 0 || c->torque[1] != 0)) sum->unsafe++;
+}
+
 static void judge(const ethd_sense *s, ethd_status status, const ethd_command *c, const ethd_trace *t,
                   tally *sum) {
   int input = is_input_fault(s), said = t->fault == ETHD_FAULT_INPUT;
   double most = fmax(fabs(c->torque[0]), fabs(c->torque[1]));
+  ethd_reaction told = called_for(s);
+  if (!(most <= sum->torque)) sum->torque = most;
+  if (told >= ETHD_REACTION_STOP) {
+    judge_told(told, c, t, sum);
+    return;
+  }
   if (input != said || (input && status != ETHD_E_NOT_FINITE)) sum->wrong_fault++;
   if (!input && t->fault && t->fault != ETHD_FAULT_FINITE) sum->wrong_fault++;
   if (t->fault && (!c->safe || most != 0)) sum->unsafe++;
-  if (!(most <= sum->torque)) sum->torque = most;
 }
 
 /* ---- one disturbance ---- */

@@ -107,9 +107,10 @@ static int torque_is_held(const ethd_trace *t, double most) {
   return fabs(t->tau[0]) <= most && fabs(t->tau[1]) <= most;
 }
 
-/* Limits of 0 are there to stop a ring that moves and a step that takes time. */
+/* Limits of 0 are there to stop a ring that moves, a torque that rises, a step that takes time. */
 static int expected(const ethd_setup *s, int64_t fault) {
   return (fault == ETHD_FAULT_SPEED && s->limits.speed == 0) ||
+         (fault == ETHD_FAULT_TORQUE_RATE && s->limits.torque_rate == 0) ||
          (fault == ETHD_FAULT_BUDGET && s->limits.step_time == 1e-9);
 }
 
