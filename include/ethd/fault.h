@@ -62,7 +62,7 @@ typedef enum ethd_reaction {
   X(15, FRAME_LOST, DEGRADE, DEGRADE, "6.7 ms", "a frame of the proximity ring is lost or damaged")         \
   X(16, FINGER_OLD, DEGRADE, DEGRADE, "10 ms", "the finger wasn't seen for 10 ms: tracking fades")          \
   X(17, FINGER_LOST, STOP, STOP, "30 ms", "the finger wasn't seen for 30 ms")                               \
-  X(18, SENSOR, DEGRADE, STOP, "5 frames", "proximity sensors fail; fewer than 12 are left")                \
+  X(18, SENSOR, DEGRADE, STOP, "5 frames", "a proximity sensor fails, or leaves fewer than 12 good ones")         \
   X(19, ESTIMATE, COUNT, STOP, "1 frame", "the finger's readings are implausible, five in a row")           \
   X(20, BOARD_CLOCK, DEGRADE, DEGRADE, "1 frame", "the proximity ring's clock jumped or started anew")      \
   X(21, FINITE, ZERO, ZERO, "same tick", "a law's output isn't a finite number in its range")               \
