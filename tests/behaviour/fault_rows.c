@@ -147,6 +147,25 @@ static void push_out(fault_rig *r, int64_t since) {
   throw_ring(r, ETHD_FAULT_WORKSPACE, 1, 3, truth.ring[1] > r->setup.limits.workspace[3]);
 }
 
+/* From now on a spring over the sampled loop's bound. Shows when it has given the ring more than the bound, worked
+   out here once more from the ring's true speed. */
+static void active_wall(fault_rig *r, int64_t since) {
+  static double given;
+  const ethd_law *law = &r->setup.contact->law;
+  const ethd_trace *t = &r->row.trace;
+  ethd_truth truth;
+  ethd_error error;
+  if (since == 0) {
+    given = 0;
+    r->setup.contact_p[ethd_params_find(law->params, law->param_count, "k_e")] = 10000;
+    r->setup.contact_p[ethd_params_find(law->params, law->param_count, "b_e")] = 0;
+    if (ethd_control_post(r->control, &r->setup, &error)) fault_rig_fail("post: %s", error.name);
+  }
+  ethd_sim_truth(r->sim, &truth);
+  given = t->contacts ? given + r->setup.period * (t->fe[0] * truth.ring_v[0] + t->fe[1] * truth.ring_v[1]) : 0;
+  if (r->shows < 0 && given > r->setup.limits.energy) r->shows = r->tick;
+}
+
 /* ---- setups ---- */
 
 static void any_place(ethd_setup *s) {
@@ -172,6 +191,12 @@ static void small_motors(ethd_setup *s) {
   any_place(s);
   s->limits.nominal_torque = 0.5;
   s->limits.heat_time = 2;
+}
+
+static void guarded_walls(ethd_setup *s) {
+  any_place(s);
+  ethd_setup_transition(s, &ethd_transition_abrupt);
+  s->limits.energy = 0.002;
 }
 
 #define DEGRADE ETHD_REACTION_DEGRADE
@@ -217,6 +242,7 @@ const fault_row fault_rows[] = {
     {25, DEGRADE, 0, FAULT_PLAIN, 20, 700, 1, push_aside, with_margin, "a hand pushes the ring to the edge", 1},
     {25, STOP, 1, FAULT_PLAIN, 20, 700, 1, push_out, any_speed, "a hand pushes the ring out", 1},
     {26, DEGRADE, 0, FAULT_PLAIN, 20, 80, 2, overload, small_motors, "2.6 times the nominal torque; from when the model folds back", 1},
+    {27, DEGRADE, 0, FAULT_PLAIN, 20, 80, 50, active_wall, guarded_walls, "a spring of 10 kN/m; from when it has given 2 mJ", 1},
     {28, ZERO, 0, FAULT_BUS, 20, 400, 1, low_supply, NULL, "the drive's supply is 10 V", 0},
     {29, ZERO, 0, FAULT_PLAIN, 20, 700, 1, slow_law, NULL, "a law takes 0.5 ms of the clock", 0},
     {33, ZERO, 0, FAULT_PLAIN, 20, 700, 1, emergency, NULL, "raised by the application", 0},

@@ -127,7 +127,6 @@ static const struct {
   const char *why;
 } elsewhere[] = {
     {3, "not here: it needs threads; tests/threads/test_loop_thread.c"},
-    {27, "not tested: nothing sees it yet"},
 };
 
 int main(int count, char **words) {
