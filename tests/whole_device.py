@@ -50,7 +50,7 @@ def run(program, folder, seconds):
 
 
 def taps_of(r, events):
-    """(speed as the ring meets the wall, first rebound, offset) by strategy."""
+    """(speed as the ring meets the wall, first rebound, offset, Delta_s) by strategy."""
     changes = [(int(e["row"]), e["detail"]) for e in events if e["kind"] == "transition"]
     state, x, wall = r["state"], -r["x"][:, 0], -0.25
     taps = {law: [] for law in LAWS}
@@ -61,7 +61,12 @@ def taps_of(r, events):
         if not len(meets) or np.any(r["fault"][near]):
             continue
         peak = k + int(np.argmax(x[k:near.stop]))
-        taps[law].append((-r["v"][meets[0], 0], x[peak] - x[peak:near.stop].min(), r["eps"][k]))
+        braking = k
+        while state[braking - 1] == 1:
+            braking -= 1
+        delta = 1e-6 * (r["time_ns"][k] - r["time_ns"][braking]) if law == "offset" else np.nan
+        eps = r["eps"][k] if law == "offset" else np.nan
+        taps[law].append((-r["v"][meets[0], 0], x[peak] - x[peak:near.stop].min(), eps, delta))
     return taps
 
 
@@ -71,14 +76,14 @@ def simulated(tap):
         arguments = [tap, "--transition", ",".join(LAWS), "--speed", "0.4", "--taps", "30", "--csv", out.name]
         subprocess.run(arguments, check=True, stdout=subprocess.DEVNULL)
         for row in csv.DictReader(open(out.name)):
-            values = [float(row[c] or "nan") for c in ("v_rvo_mps", "d_max_m", "eps_m")]
+            values = [float(row[c] or "nan") for c in ("v_rvo_mps", "d_max_m", "eps_m", "delta_s_ms")]
             if values[0] == values[0]:
                 taps[row["transition"]].append(values)
     return taps
 
 
 def mean(rows):
-    a = np.array(rows).reshape(-1, 3)
+    a = np.array(rows).reshape(-1, 4)
     return [c[~np.isnan(c)].mean() if np.any(~np.isnan(c)) else float("nan") for c in a.T]
 
 
@@ -86,11 +91,11 @@ def judge(folder, tap):
     r = np.load(folder + "/tick.npy")
     taps, alone = taps_of(r, csv.DictReader(open(folder + "/events.csv"))), simulated(tap)
     frames = int(np.sum(r["have"] & 16 != 0))
-    print("strategy   n  speed at the wall m/s  first rebound mm  offset mm     (through the buses | simulated device alone)")
+    print("strategy   n  speed at the wall m/s  first rebound mm  offset mm  Delta_s ms   (through the buses | simulated device alone)")
     for law in LAWS:
         a, b = mean(taps[law]), mean(alone[law])
         print(f"{law:8} {len(taps[law]):3}  {a[0]:9.3f} | {b[0]:.3f}     {1e3 * a[1]:9.3f} | {1e3 * b[1]:.3f}   "
-              f"{1e3 * a[2]:8.3f} | {1e3 * b[2]:.3f}")
+              f"{1e3 * a[2]:8.3f} | {1e3 * b[2]:.3f}  {a[3]:6.2f} | {b[3]:.2f}")
     print(f"{len(r)} ticks, {frames} frames of rays, torque at most {np.abs(r['tau']).max():.3f} Nm")
     assert frames > 0.1 * len(r), "few frames of rays"
     assert r["x"][:, 0].min() > 0.25 - 0.012, "the ring went through the wall"
