@@ -436,7 +436,7 @@ START_TEST(test_never_waits) {
     ck_assert_int_eq(servo->write(device, now, &command), ETHD_OK);
     servo->safe(device);
   }
-  drive.act = NULL;
+  drive.act = (mock_plan)0;
   mock_release(&drive);
   pthread_join(thread, NULL);
   close_device();

@@ -18,7 +18,7 @@ static void inside(const ethd__room *r, ethd_vec x) {
 START_TEST(test_stays_inside) {
   ethd__room r = room();
   uint64_t seed = 5;
-  for (int k = 0; k < 100000; k++) inside(&r, (ethd_vec){draw(seed++, -1, 1), draw(seed++, -1, 1)});
+  for (int k = 0; k < 100000; k++) inside(&r, (ethd_vec){draw(seed + 2 * (uint64_t)k, -1, 1), draw(seed + 2 * (uint64_t)k + 1, -1, 1)});
   inside(&r, (ethd_vec){(double)NAN, (double)INFINITY});
   inside(&r, (ethd_vec){-(double)INFINITY, 1e300});
   ethd_vec within = {0.26, 0.251}, same = ethd__room_avatar(&r, within);
@@ -51,7 +51,7 @@ START_TEST(test_hand_is_causal) {
   ck_assert_int_eq(ethd__hand_create(&hand, pointer, 3), ETHD_OK);
   ethd_path path = ethd__hand_path(&hand);
   for (int k = 0; k < TICKS; k++) {
-    if (k < TICKS / 2 && k % 16 == 0) pointer = (ethd_vec){draw(seed++, 0.2, 0.3), draw(seed++, 0.2, 0.3)};
+    if (k < TICKS / 2 && k % 16 == 0) pointer = (ethd_vec){draw(seed + 2 * (uint64_t)k, 0.2, 0.3), draw(seed + 2 * (uint64_t)k + 1, 0.2, 0.3)};
     ethd__hand_lead(&hand, 1e-3 * k, pointer);
     ethd_path_at(&path, 1e-3 * k + 0.00099, &seen[k], &speed[k]);
   }
