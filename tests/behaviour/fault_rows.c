@@ -111,14 +111,18 @@ static void finger_unseen(fault_rig *r, int64_t since) { r->blind = since < 16; 
 static void finger_lost(fault_rig *r, int64_t since) { (void)since, r->blind = 1; }
 
 /* Shows when the winding's model, worked out here once more, says so. */
-static void overload(fault_rig *r, int64_t since) {
+static void warm(fault_rig *r, int64_t since, int row_is_grave) {
   static double heat;
   const ethd_limits *l = &r->setup.limits;
   double load = r->torque[0] / l->nominal_torque;
   heat = since == 0 ? 0 : heat + (1 - exp(-1e-3 / l->heat_time)) * (load * load - heat);
-  r->law_adds = r->seen[ETHD_FAULT_HEAT] < 0 ? 1000 : 0;
-  if (r->shows < 0 && heat > 0.9 + 0.1 * l->nominal_torque / fabs(r->torque[0])) r->shows = r->tick;
+  const int64_t *seen = row_is_grave ? r->grave : r->seen;
+  r->law_adds = seen[ETHD_FAULT_HEAT] < 0 ? 1000 : 0;
+  double most = row_is_grave ? 1.05 : 0.9 + 0.1 * l->nominal_torque / fabs(r->torque[0]);
+  if (r->shows < 0 && heat > most) r->shows = r->tick;
 }
+static void overload(fault_rig *r, int64_t since) { warm(r, since, 0); }
+static void burn(fault_rig *r, int64_t since) { warm(r, since, 1); }
 
 /* A hand throws the ring away from the wall, until something is seen. */
 static void throw_ring(fault_rig *r, int row, int joint, double torque, int shows) {
@@ -131,6 +135,17 @@ static void hurl(fault_rig *r, int64_t since) {
   (void)since;
   ethd_sim_truth(r->sim, &truth);
   throw_ring(r, ETHD_FAULT_SPEED, 0, -6, hypot(truth.ring_v[0], truth.ring_v[1]) > r->setup.limits.speed);
+}
+
+/* From when the samples say so. */
+static void hurl_seen(fault_rig *r, int64_t since) {
+  static ethd_vec was;
+  ethd_truth truth;
+  ethd_sim_truth(r->sim, &truth);
+  ethd_vec x = {truth.ring[0], truth.ring[1]};
+  double speed = since ? ethd_vec_norm(ethd_vec_sub(x, was)) / r->setup.period : 0;
+  was = x;
+  throw_ring(r, ETHD_FAULT_SPEED, 0, -6, speed > r->setup.limits.speed);
 }
 
 static void push_aside(fault_rig *r, int64_t since) {
@@ -193,6 +208,13 @@ static void small_motors(ethd_setup *s) {
   s->limits.heat_time = 2;
 }
 
+/* So weak that a tick at full torque takes them from warm to too hot. */
+static void tiny_motors(ethd_setup *s) {
+  any_place(s);
+  s->limits.nominal_torque = 0.1;
+  s->limits.heat_time = 0.15;
+}
+static void quick_speed(ethd_setup *s) { ethd_setup_velocity(s, ETHD_VELOCITY_DIFFERENCE); }
 static void guarded_walls(ethd_setup *s) {
   any_place(s);
   ethd_setup_transition(s, &ethd_transition_abrupt);
@@ -238,10 +260,12 @@ const fault_row fault_rows[] = {
     {22, COUNT, 1, FAULT_PLAIN, 20, 80, 100, strong, much_torque, "for 150 ms", 0},
     {23, COUNT, 0, FAULT_PLAIN, 20, 80, 1, twitch, little_rate, "a law's torque goes 2.4 Nm up and down, 10 times", 0},
     {23, STOP, 1, FAULT_PLAIN, 20, 45, 20, restless, little_rate, "for ever", 0},
-    {24, STOP, 0, FAULT_PLAIN, 20, 700, 6, hurl, NULL, "a hand throws the ring; from its true speed", 1},
+    {24, STOP, 0, FAULT_PLAIN, 20, 700, 6, hurl, NULL, "a hand throws the ring; from its true speed, by a low-pass", 1},
+    {24, STOP, 0, FAULT_PLAIN, 20, 700, 1, hurl_seen, quick_speed, "likewise, from the samples' speed, by differences", 1},
     {25, DEGRADE, 0, FAULT_PLAIN, 20, 700, 1, push_aside, with_margin, "a hand pushes the ring to the edge", 1},
     {25, STOP, 1, FAULT_PLAIN, 20, 700, 1, push_out, any_speed, "a hand pushes the ring out", 1},
     {26, DEGRADE, 0, FAULT_PLAIN, 20, 80, 2, overload, small_motors, "2.6 times the nominal torque; from when the model folds back", 1},
+    {26, ZERO, 1, FAULT_PLAIN, 5, 25, 1, burn, tiny_motors, "13 times the nominal torque; from 105 %", 1},
     {27, DEGRADE, 0, FAULT_PLAIN, 20, 80, 50, active_wall, guarded_walls, "a spring of 10 kN/m; from when it has given 2 mJ", 1},
     {28, ZERO, 0, FAULT_BUS, 20, 400, 1, low_supply, NULL, "the drive's supply is 10 V", 0},
     {29, ZERO, 0, FAULT_PLAIN, 20, 700, 1, slow_law, NULL, "a law takes 0.5 ms of the clock", 0},
