@@ -31,6 +31,12 @@ static ethd_status open_fonts(ethd__window *w, char *message) {
   return ETHD_OK;
 }
 
+/* X takes pixels as they are. SDL would send them through OpenGL, which, without a graphics card, computes on all
+   cores: four times as long a frame, and late ticks. */
+static void keep_off_gl(void) {
+  if (!strcmp(SDL_GetCurrentVideoDriver(), "x11")) SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
+}
+
 ethd_status ethd__window_open(ethd__window *w, const char *title, int width, int height, char message[ETHD_MESSAGE_MAX]) {
   memset(w, 0, sizeof *w);
   w->width = width;
@@ -38,6 +44,7 @@ ethd_status ethd__window_open(ethd__window *w, const char *title, int width, int
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
   if (SDL_Init(SDL_INIT_VIDEO))
     return refuse(w, "no display (DISPLAY or WAYLAND_DISPLAY; without --screen the study needs none)", SDL_GetError(), message);
+  keep_off_gl();
   w->window = SDL_CreateWindow(title, SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, width, height, SDL_WINDOW_RESIZABLE);
   if (!w->window) return refuse(w, "the window", SDL_GetError(), message);
   w->renderer = SDL_CreateRenderer(w->window, -1, SDL_RENDERER_SOFTWARE);
