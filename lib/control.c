@@ -120,9 +120,17 @@ void ethd_control_reset(ethd_control *control) {
 
 void ethd_control_restart(ethd_control *control) {
   double heat[2];
-  memcpy(heat, control->state.guard.heat, sizeof heat);
+  ethd_control_heat(control, heat);
   ethd_control_reset(control);
-  memcpy(control->state.guard.heat, heat, sizeof heat);
+  ethd_control_heated(control, heat);
+}
+
+void ethd_control_heat(const ethd_control *control, double out[2]) {
+  memcpy(out, control->state.guard.heat, sizeof control->state.guard.heat);
+}
+
+void ethd_control_heated(ethd_control *control, const double heat[2]) {
+  memcpy(control->state.guard.heat, heat, sizeof control->state.guard.heat);
 }
 
 void ethd_control_clear(ethd_control *control) {

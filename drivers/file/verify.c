@@ -16,6 +16,7 @@ typedef struct replay {
   ethd_trace *rows;
   size_t count, next; /* rows; next event */
   ethd_setup setup;
+  double heat[2]; /* of the motors, by the last event of that kind */
   ethd_control *control;
   char *message;
 } replay;
@@ -51,7 +52,17 @@ static ethd_status open_events(replay *r) {
 
 /* ---- events ---- */
 
-enum { CHANGED = 1, FRESH = 2, CLEAR = 4, WARM = 8 };
+#define HEAT_MOST 1e9
+
+enum { CHANGED = 1, FRESH = 2, CLEAR = 4, WARM = 8, HOT = 16 };
+
+static ethd_status take_heat(replay *r, const char *detail, char *what) {
+  const char *space = strchr(detail, ' ');
+  bool numbers = space && ethd__number(detail, (size_t)(space - detail), &r->heat[0]) &&
+                 ethd__number(space + 1, strlen(space + 1), &r->heat[1]);
+  if (numbers && r->heat[0] >= 0 && r->heat[0] < HEAT_MOST && r->heat[1] >= 0 && r->heat[1] < HEAT_MOST) return ETHD_OK;
+  return ethd__say(what, ETHD_E_SYNTAX, "two numbers from 0 to 1e9 are allowed");
+}
 
 static ethd_status set(replay *r, const char *detail, char *what) {
   char key[128];
@@ -80,10 +91,13 @@ static ethd_status apply(replay *r, const ethd__record_event *e, int *done) {
     *done |= strcmp(e->detail, "enabled") == 0 ? WARM : FRESH;
   } else if (strcmp(e->kind, "clear") == 0) {
     *done |= CLEAR;
+  } else if (strcmp(e->kind, "heat") == 0) {
+    status = take_heat(r, e->detail, what);
+    *done |= HOT;
   } else if (strcmp(e->kind, "fault") != 0) {
     status = ethd__say(what, ETHD_E_UNKNOWN,
                        "an unknown kind of event; setup, start, transition, set, clear, "
-                       "fault are allowed");
+                       "heat, fault are allowed");
   }
   if (!status) return ETHD_OK;
   return ethd__say(r->message, status, "%s:%zu: %s: %s", r->events_path, e->line, e->kind, what);
@@ -92,7 +106,7 @@ static ethd_status apply(replay *r, const ethd__record_event *e, int *done) {
 static ethd_status renew(replay *r, int done) {
   ethd_error error = {0};
   ethd_status status = ETHD_OK;
-  if (done == WARM && r->control) {
+  if ((done & ~HOT) == WARM && r->control) {
     ethd_control_restart(r->control);
   } else if (done & (FRESH | WARM)) {
     ethd_control_destroy(r->control);
@@ -101,6 +115,7 @@ static ethd_status renew(replay *r, int done) {
     status = ethd_control_post(r->control, &r->setup, &error);
   }
   if (done & CLEAR && r->control) ethd_control_clear(r->control);
+  if (done & HOT && !status) ethd_control_heated(r->control, r->heat);
   if (status) ethd_error_text(r->events_path, &error, r->message);
   return status;
 }

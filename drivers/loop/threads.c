@@ -157,9 +157,12 @@ static int start_threads(ethd_loop *l, int cpu) {
 }
 
 static void arm(ethd_loop *l) {
-  l->missed = l->step = l->ramp = l->bucket = l->late = l->beat_at = 0;
+  int64_t now = ethd__loop_now(l);
+  l->ahead = ethd__loop_boot(l) - now;
+  l->missed = l->step = l->ramp = l->bucket = l->late = l->slept = l->beat_at = 0;
   l->dry = 1;
   l->marks |= ETHD_ROW_STARTED;
+  ethd_control_heat(l->def.control, l->row.heat);
   atomic_store_explicit(&l->armed, 1, memory_order_relaxed);
 }
 

@@ -218,6 +218,12 @@ ETHD_API void ethd_control_reset(ethd_control *control);
    [main] */
 ETHD_API void ethd_control_restart(ethd_control *control);
 
+/* How hot the motors are by limits.nominal_torque and heat_time: rise over the surroundings, as a share of
+   the rise that the nominal torque leads to; and to go on as if they were so, for a replay that begins in
+   the middle. Not while step runs. [main] */
+ETHD_API void ethd_control_heat(const ethd_control *control, double out[2]);
+ETHD_API void ethd_control_heated(ethd_control *control, const double heat[2]);
+
 /* Acknowledges a latched fault; taken at the next step, which starts softly from zero torque. Before
    limits.clean_time is over it means nothing. [any] */
 ETHD_API void ethd_control_clear(ethd_control *control);

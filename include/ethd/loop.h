@@ -7,6 +7,10 @@
    next step as `missed`, and the loop goes on at the next instant of the grid, never in a burst. On the
    thread's way there is no mutex and no system call but the sleep (a clock is read without one).
 
+   CLOCK_MONOTONIC stands still while the machine is suspended, CLOCK_BOOTTIME doesn't: what it gains on the
+   other from tick to tick is missed as well, and row 35 of the fault table. Not on Xenomai's Cobalt, which
+   has a clock of its own.
+
    What the machine refuses (real-time priority, locked memory, ...) is data, a set of bits with a sentence
    each; require_rt makes it a failure. With a virtual clock there are no threads: ethd_loop_tick does one
    tick, the driver's service included, and equal inputs give equal bits.
@@ -81,6 +85,7 @@ typedef struct ethd_loop_def {
   uint32_t rows;         /* of the ring, a power of two up to 2^20; 0: no rows are kept */
   int64_t *clock;        /* NULL: the system's. Else a virtual clock, ns: the loop sets it to each tick's
                             instant, a driver may move it on */
+  const int64_t *suspended; /* ns for which a virtual clock has stood still so far; NULL: it never does */
 } ethd_loop_def;
 
 /* 1 ms, no cpu, priority 80, early_wake 0, dma_latency -1, no gap, no heartbeat, soft_start 0.1 s,
@@ -102,6 +107,7 @@ typedef struct ethd_loop_row {
   uint64_t lost;  /* rows before this one that found no room */
   uint64_t swaps; /* posted setups taken up to this tick, lost rows included */
   int32_t marks, armed;
+  double heat[2]; /* of the motors as the device was started last, see ethd_control_heat */
 } ethd_loop_row;
 
 typedef struct ethd_loop_stats {

@@ -53,6 +53,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, c
      transition  detail: law. Changes the transition law of the present setup
      set         detail: section.key value. Changes the present setup
      clear       faults were acknowledged
+     heat        detail: h1 h2. The motors are so hot, see ethd_control_heat
      fault       detail: a sentence; for people
    A row's events make one setup: with setup or start among them the fresh controller starts with it,
    else it was posted, whole, to the running one. Before the first row a fresh controller is implied. */

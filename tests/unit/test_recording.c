@@ -234,6 +234,26 @@ START_TEST(test_events_matter) {
 }
 END_TEST
 
+/* A recording may begin with hot motors, of which its rows know nothing. */
+START_TEST(test_heat) {
+  program p = {.setup = config->setup};
+  const double heat[2] = {0.93, 1.01};
+  p.setup.limits.nominal_torque = 0.05;
+  for (int told = 0; told < 2; told++) {
+    ck_assert_int_eq(ethd_recording_create(recording_folder, config, &p.recording, message), ETHD_OK);
+    event(&p, "set", "limits.nominal_torque 0.05");
+    if (told) event(&p, "heat", "0.93000000000000005 1.01");
+    event(&p, "start", "in the middle");
+    create(&p);
+    ethd_control_heated(p.control, heat);
+    run(&p, 100);
+    ck_assert_int_eq(ethd_recording_close(p.recording), ETHD_OK);
+    ck_assert_int_eq(ethd_recording_verify(recording_folder, message), told ? ETHD_OK : ETHD_E_DIFFERS);
+  }
+  ethd_control_destroy(p.control);
+}
+END_TEST
+
 START_TEST(test_bad_events) {
   static const char *const bads[][2] = {
       {"", "events.csv:1: the first line must be row,kind,detail"},
@@ -243,6 +263,8 @@ START_TEST(test_bad_events) {
       {"row,kind,detail\n-1,start,\n", "events.csv:2: no row,kind,detail"},
       {"row,kind,detail\n5,start,\n4,start,\n", "events.csv:3: row: found 4, 5 or more is allowed"},
       {"row,kind,detail\n5,begin,\n", "events.csv:2: begin: an unknown kind of event; setup, "},
+      {"row,kind,detail\n5,heat,0.5\n", "events.csv:2: heat: two numbers from 0 to 1e9 are allowed"},
+      {"row,kind,detail\n5,heat,0.5 inf\n", "events.csv:2: heat: two numbers from 0 to 1e9 are allowed"},
       {"row,kind,detail\n5,set,contact.k_e\n", "events.csv:2: set: section.key value is allowed"},
       {"row,kind,detail\n5,set,contact.k_e -1\n",
        "events.csv:2: set: contact.k_e: found -1, 0 to 1000000 N/m"},
@@ -295,6 +317,7 @@ int main(void) {
   tcase_add_test(all, test_files);
   tcase_add_test(all, test_says_what_differs);
   tcase_add_test(all, test_events_matter);
+  tcase_add_test(all, test_heat);
   tcase_add_test(all, test_bad_events);
   tcase_add_test(all, test_missing_files);
   tcase_add_test(all, test_no_place);
