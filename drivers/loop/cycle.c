@@ -17,6 +17,18 @@ int64_t ethd__loop_now(const ethd_loop *l) {
   return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
 }
 
+/* Cobalt's clock isn't Linux's, and runs on in no suspended machine: there nothing is compared. */
+int64_t ethd__loop_boot(const ethd_loop *l) {
+  if (l->def.clock) return *l->def.clock + (l->def.suspended ? *l->def.suspended : 0);
+#if defined(__COBALT__)
+  return ethd__loop_now(l);
+#else
+  struct timespec t;
+  __STD(clock_gettime)(CLOCK_BOOTTIME, &t);
+  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+#endif
+}
+
 static int sleep_until(const ethd_loop *l, int64_t instant) ETHD_RT {
   struct timespec t = {.tv_sec = (time_t)(instant / 1000000000), .tv_nsec = (long)(instant % 1000000000)};
   int failure;
@@ -95,7 +107,7 @@ static void remember_joints(ethd_loop *l, ethd_status status) ETHD_RT {
 static int read_device(ethd_loop *l) ETHD_RT {
   if (!l->held) memset(&l->sense, 0, sizeof l->sense);
   ethd_status status = l->def.driver->read(l->def.device, l->due, &l->sense);
-  l->sense.faults |= ethd__loop_rows(l);
+  ethd__loop_rows(l, &l->sense);
   if (status == ETHD_STALE && l->held < HOLD_MAX && !is_pressing(&l->sense)) {
     l->held++;
     l->missed++;
@@ -221,7 +233,8 @@ int ethd__loop_turn(ethd_loop *l) {
   }
   int failure = wait(l);
   if (failure) return failure;
-  int64_t begin = ethd__loop_now(l);
+  int64_t boot = ethd__loop_boot(l), begin = ethd__loop_now(l);
+  ethd__loop_ahead(l, boot - begin, boot - l->due);
   tick(l);
   ethd_histogram_add(&l->stats.tick, ethd__loop_now(l) - begin);
   advance(l);

@@ -45,6 +45,8 @@ struct ethd_loop {
   int32_t held;   /* ticks since the last that stepped */
   int32_t marks, was_armed;
   int64_t late;    /* ns: the longest overrun since the last step */
+  int64_t ahead;   /* ns by which CLOCK_BOOTTIME is ahead of the loop's clock, at most */
+  int64_t slept;   /* ns for which the machine was suspended since the last step */
   int64_t bucket;  /* of overruns */
   int64_t beat_at; /* ns: the tick that saw the last beat of the application, 0: none yet */
   unsigned beats_seen;
@@ -70,8 +72,9 @@ struct ethd_loop {
   int dma_latency;
 };
 
-/* The loop's instant now, ns. [rt] */
+/* The loop's instant now, ns; and on a clock that a suspended machine doesn't stop. [rt] */
 int64_t ethd__loop_now(const ethd_loop *loop) ETHD_RT;
+int64_t ethd__loop_boot(const ethd_loop *loop) ETHD_RT;
 
 /* Sleep, tick, count: until it is told to stop. 0, or what the sleep failed with. [rt] */
 int ethd__loop_cycle(ethd_loop *loop) ETHD_RT;
@@ -82,8 +85,11 @@ int ethd__loop_turn(ethd_loop *loop) ETHD_RT;
 /* A tick was due `ns` ago. [rt] */
 void ethd__loop_late(ethd_loop *loop, int64_t ns) ETHD_RT;
 
-/* Rows of the fault table that the loop sees at this tick; once a tick. [rt] */
-int64_t ethd__loop_rows(ethd_loop *loop) ETHD_RT;
+/* The second clock is ahead of the first by so much. [rt] */
+void ethd__loop_ahead(ethd_loop *loop, int64_t least, int64_t most) ETHD_RT;
+
+/* Adds the rows of the fault table that the loop sees at this tick; once a tick. [rt] */
+void ethd__loop_rows(ethd_loop *loop, ethd_sense *sense) ETHD_RT;
 
 /* Zero torque, as the last thing. [rt] */
 void ethd__loop_rest(ethd_loop *loop) ETHD_RT;

@@ -11,6 +11,22 @@ void ethd__loop_late(ethd_loop *l, int64_t ns) {
   if (ns > l->late) l->late = ns;
 }
 
+/* By more than before: the machine was suspended, which the loop's clock doesn't show. What lies between the
+   two readings makes the least smaller and the most larger, so that no delay passes for a suspension. */
+void ethd__loop_ahead(ethd_loop *l, int64_t least, int64_t most) {
+  int64_t slept = least - l->ahead;
+  l->ahead = most;
+  if (slept < l->period) return;
+  l->slept += slept;
+  l->missed += slept / l->period;
+}
+
+static void suspended(ethd_loop *l, ethd_sense *sense) ETHD_RT {
+  int64_t *rows = l->slept > l->gap ? &sense->grave : &sense->faults;
+  *rows |= ETHD_FAULT_BIT(ETHD_FAULT_CLOCK);
+  l->slept = 0;
+}
+
 static int64_t overruns(ethd_loop *l) ETHD_RT {
   int64_t rows = l->late ? ETHD_FAULT_BIT(ETHD_FAULT_OVERRUN) : 0;
   if (l->gap < INT64_MAX && (l->bucket >= FULL || l->late > l->gap)) rows |= ETHD_FAULT_BIT(ETHD_FAULT_OVERRUNS);
@@ -28,11 +44,10 @@ static int64_t heartbeat(ethd_loop *l) ETHD_RT {
   return l->due - l->beat_at > l->heartbeat ? ETHD_FAULT_BIT(ETHD_FAULT_APPLICATION) : 0;
 }
 
-int64_t ethd__loop_rows(ethd_loop *l) {
-  int64_t rows = 0;
+void ethd__loop_rows(ethd_loop *l, ethd_sense *sense) {
   if (atomic_load_explicit(&l->raised, memory_order_relaxed))
-    rows = atomic_exchange_explicit(&l->raised, 0, memory_order_relaxed);
-  if (l->late || l->bucket) rows |= overruns(l);
-  if (l->heartbeat < INT64_MAX) rows |= heartbeat(l);
-  return rows;
+    sense->faults |= atomic_exchange_explicit(&l->raised, 0, memory_order_relaxed);
+  if (l->late || l->bucket) sense->faults |= overruns(l);
+  if (l->slept) suspended(l, sense);
+  if (l->heartbeat < INT64_MAX) sense->faults |= heartbeat(l);
 }

@@ -35,6 +35,40 @@ START_TEST(test_late) {
 }
 END_TEST
 
+/* The machine is suspended between two ticks: the loop's clock hasn't moved. */
+static const struct {
+  int64_t ns;
+  int limited;
+  int64_t faults, grave, missed; /* of tick 3 */
+} suspensions[] = {{PERIOD - 1, 1, 0, 0, 0},
+                   {PERIOD, 1, BIT(CLOCK), 0, 1},
+                   {5 * PERIOD, 1, BIT(CLOCK), 0, 5},
+                   {5 * PERIOD + 1, 1, 0, BIT(CLOCK), 5},
+                   {3600000 * (int64_t)PERIOD, 1, 0, BIT(CLOCK), 3600000},
+                   {3600000 * (int64_t)PERIOD, 0, BIT(CLOCK), 0, 3600000}};
+
+START_TEST(test_suspended) {
+  bench b;
+  int64_t suspended = 7777777; /* before the loop was there */
+  bench_open(&b);
+  if (suspensions[_i].limited) b.def.gap = 0.005;
+  b.def.suspended = &suspended;
+  bench_start(&b);
+  for (int i = 0; i < 8; i++) {
+    if (i == 3) suspended += suspensions[_i].ns;
+    ethd_sense s = bench_tick(&b).trace.sense;
+    ck_assert_int_eq(s.faults, i == 3 ? suspensions[_i].faults : 0);
+    ck_assert_int_eq(s.grave, i == 3 ? suspensions[_i].grave : 0);
+    ck_assert_int_eq(s.missed, i == 3 ? suspensions[_i].missed : 0);
+  }
+  ck_assert_int_eq(ethd_loop_armed(b.loop), !suspensions[_i].grave);
+  suspended += 3600000 * (int64_t)PERIOD; /* before it is enabled anew */
+  ck_assert_int_eq(ethd_loop_enable(b.loop), ETHD_OK);
+  ck_assert_int_eq(bench_tick(&b).trace.fault, ETHD_FAULT_NONE);
+  bench_close(&b);
+}
+END_TEST
+
 /* The device's own limit is as good as the application's. */
 static ethd_limits strict(const void *d) {
   (void)d;
@@ -214,6 +248,7 @@ int main(void) {
   Suite *suite = suite_create("loop_faults");
   TCase *t = tcase_create("loop_faults");
   tcase_add_loop_test(t, test_late, 0, sizeof late_ticks / sizeof *late_ticks);
+  tcase_add_loop_test(t, test_suspended, 0, sizeof suspensions / sizeof *suspensions);
   tcase_add_test(t, test_limit_of_the_device);
   tcase_add_loop_test(t, test_often_late, 0, 3);
   tcase_add_test(t, test_silent_application);
