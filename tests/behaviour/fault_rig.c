@@ -7,14 +7,12 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "behaviour/fault_drive.h"
 #include "behaviour/fault_ring.h"
 #include "unit/mock_counter.h"
 
 #define TURN 6.283185307179586
 #define WALL "halfplane -1 0 -0.238\n"
-#define MOTOR_RATIO 9.80
-#define TORQUE_UNIT 1e-4 /* Nm at the motor, of apps/config/plant.map */
-#define WATCHDOG 50      /* ticks, likewise */
 
 void fault_rig_fail(const char *format, ...) {
   va_list args;
@@ -52,8 +50,8 @@ static ethd_status arm_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_
   (void)now_ns;
   r->clock += r->jump_ns;
   *out = r->now;
-  out->time_ns += r->shift_ns;
-  if (out->have & ETHD_HAVE_CENTRE) out->sample_ns += r->shift_ns;
+  out->time_ns += r->shift_ns - r->suspended;
+  if (out->have & ETHD_HAVE_CENTRE) out->sample_ns += r->shift_ns - r->suspended;
   for (int j = 0; j < 2; j++)
     if (r->unplugged[j]) out->q[j] = (double)NAN;
   if (r->kind == FAULT_RING) out->have &= ~(int64_t)(ETHD_HAVE_RAYS | ETHD_HAVE_RING);
@@ -77,77 +75,6 @@ static const ethd_driver driver = {.size = sizeof driver, .abi = ETHD_DRIVER_ABI
                                    .open = arm_open, .start = arm_start, .read = arm_read, .write = arm_write,
                                    .safe = arm_safe, .stop = arm_stop, .close = arm_close, .limits = arm_limits};
 static const ethd_driver *const from[] = {&driver, &ethd_driver_counter, &ethd_driver_servo, &ethd_driver_ring, NULL};
-
-/* ---- what the sensors have ---- */
-
-static int64_t count_of(double q) { return (int64_t)rint(q * FAULT_COUNTS / TURN); }
-
-static int64_t below(int64_t a, int64_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
-
-/* A mark between two counts: the last one that was passed. */
-static void pass_marks(fault_rig *r, int j, int64_t before, int64_t now) {
-  int64_t a = below(before, FAULT_MARKS), b = below(now, FAULT_MARKS);
-  if (a == b) return;
-  if (j == 0) r->marks++;
-  mock_counter_event(COUNTER_EVENT_INDEX, j, (uint64_t)((b > a ? b : a) * FAULT_MARKS + r->slip[j]) & 0xFFFFFFFF, 0);
-}
-
-static int64_t spoilt(const fault_rig *r, int j, int64_t count) {
-  if (r->stuck[j]) return r->from[j];
-  if (r->turned[j]) return 2 * r->from[j] - count;
-  return count + r->slip[j];
-}
-
-static void show_counts(fault_rig *r) {
-  static int64_t before[2];
-  for (int j = 0; j < 2; j++) {
-    int64_t count = count_of(r->now.q[j]);
-    if (!r->stuck[j] && !r->turned[j]) r->from[j] = count;
-    counter_mock.count[j] = (uint64_t)spoilt(r, j, count) & 0xFFFFFFFF;
-    if (r->tick > 0) pass_marks(r, j, before[j], count);
-    before[j] = count;
-  }
-}
-
-static void put_words(_Atomic uint16_t *at, uint32_t bits) {
-  at[0] = (uint16_t)(bits >> 16);
-  at[1] = (uint16_t)bits;
-}
-
-static uint32_t float_bits(double v) {
-  float f = (float)v;
-  uint32_t bits;
-  memcpy(&bits, &f, sizeof bits);
-  return bits;
-}
-
-/* Registers of apps/config/plant.map. */
-static void show_registers(fault_rig *r) {
-  _Atomic uint16_t *w = r->server.words;
-  for (int j = 0; j < 2; j++) {
-    put_words(w + MOCK_POSITION1 + 2 * j, (uint32_t)count_of(r->now.q[j]));
-    w[MOCK_MEASURED1 + j] = (uint16_t)(int16_t)rint(r->torque[j] / (MOTOR_RATIO * TORQUE_UNIT) + r->more / TORQUE_UNIT);
-  }
-  r->server.frozen = r->more != 0;
-  w[MOCK_STATUS] |= r->status;
-  w[MOCK_VOLTAGE] = r->volts;
-  if (!(r->now.have & ETHD_HAVE_CENTRE)) return;
-  put_words(w + 12, float_bits(r->now.centre[0]));
-  put_words(w + 14, float_bits(r->now.centre[1]));
-  w[16] = (uint16_t)++r->readings;
-  w[17] = (uint16_t)((r->now.time_ns - r->now.sample_ns) / 1000);
-}
-
-static mock_act act(void *rig, uint64_t n, int function) {
-  fault_rig *r = rig;
-  (void)n;
-  if (r->old_point && function == 3) r->server.words[MOCK_TORQUE1] = r->old_point;
-  if (r->deaf) return (mock_act){MOCK_DROP, 0, 0};
-  if (function != 3 || r->acts == 0) return (mock_act){MOCK_ANSWER, 0, 0};
-  if (r->every > 1 && r->acts-- % r->every) return (mock_act){MOCK_ANSWER, 0, 0};
-  if (r->every <= 1) r->acts--;
-  return (mock_act){r->act, r->code, 0};
-}
 
 /* ---- opening ---- */
 
@@ -190,21 +117,6 @@ static void sim_of(fault_rig *r, uint64_t number) {
   ethd_sim_read(r->sim, &r->now);
 }
 
-double fault_rig_response = 0.1;
-
-/* apps/config/plant.map with another patience. */
-static void write_map(const char *path) {
-  char line[256];
-  FILE *plain = fopen("apps/config/plant.map", "r"), *to = fopen(path, "w");
-  if (!plain || !to) fault_rig_fail("%s", path);
-  while (fgets(line, sizeof line, plain)) {
-    if (strncmp(line, "response", 8)) fputs(line, to);
-    else fprintf(to, "response = %g\n", fault_rig_response);
-  }
-  fclose(plain);
-  fclose(to);
-}
-
 static void open_device(fault_rig *r) {
   static const char *const ids[] = {"arm", "arm, counter", "servo", "arm, ring"};
   const ethd_setting counter[] = {{"counter.counts_per_turn", "100", 1}, {"counter.ratio", "392", 2},
@@ -219,7 +131,7 @@ static void open_device(fault_rig *r) {
   if (r->kind == FAULT_COUNTER) def.settings = counter, def.setting_count = 5;
   if (r->kind == FAULT_BUS) def.settings = servo, def.setting_count = 2;
   if (r->kind == FAULT_RING) def.settings = ring, def.setting_count = 2;
-  if (r->kind == FAULT_BUS) write_map(map);
+  if (r->kind == FAULT_BUS) fault_drive_map(map);
   if (ethd_device_open(ids[r->kind], from, &def, &r->driver, &r->device, message)) fault_rig_fail("%s", message);
   if (r->kind == FAULT_BUS) unlink(map);
   if (r->driver->start(r->device)) fault_rig_fail("start");
@@ -232,6 +144,7 @@ static void open_loop(fault_rig *r) {
   def.device = r->device;
   def.control = r->control;
   def.clock = &r->clock;
+  def.suspended = &r->suspended;
   def.soft_start = 0;
   def.rows = 16;
   def.heartbeat = 0.1;
@@ -249,12 +162,12 @@ void fault_rig_open(fault_rig *r, fault_device kind, uint64_t tap, void (*change
   setup_of(r, change);
   sim_of(r, tap);
   mock_counter_install();
-  show_counts(r);
+  fault_drive_counts(r);
   if (kind == FAULT_BUS) {
     mock_start(&r->server, 0);
-    r->server.act = act;
+    r->server.act = fault_drive_act;
     r->server.user = r;
-    show_registers(r);
+    fault_drive_registers(r);
   }
   if (kind == FAULT_RING) fault_board_plug();
   open_device(r);
@@ -282,18 +195,10 @@ void fault_rig_close(fault_rig *r) {
 
 /* ---- a tick ---- */
 
-/* A drive that isn't asked for a while lets go by itself. */
-static void watch(fault_rig *r) {
-  uint64_t asked = atomic_load(&r->server.requests);
-  r->silent = asked == r->asked || r->deaf ? r->silent + 1 : 0;
-  r->asked = asked;
-  if (r->silent > WATCHDOG) r->server.words[MOCK_STATUS] &= (uint16_t)~2u;
-}
-
 static void take_torque(fault_rig *r) {
   int on = r->kind == FAULT_BUS ? r->server.words[MOCK_STATUS] & 2 : !r->written.safe;
   for (int j = 0; j < 2; j++) {
-    double bus = MOTOR_RATIO * TORQUE_UNIT * (int16_t)r->server.words[MOCK_TORQUE1 + j];
+    double bus = FAULT_RATIO * FAULT_TORQUE_UNIT * (int16_t)r->server.words[MOCK_TORQUE1 + j];
     r->torque[j] = !on ? 0 : r->kind == FAULT_BUS ? bus : r->written.torque[j];
     r->most = fmax(r->most, fabs(r->torque[j]));
     if (!isfinite(r->torque[j])) r->most = (double)INFINITY;
@@ -304,11 +209,16 @@ static void take_torque(fault_rig *r) {
 static void move_arm(fault_rig *r, int64_t periods) {
   ethd_command c = {.safe = 0};
   for (int j = 0; j < 2; j++) {
-    double motor = r->torque[j] + (r->kind == FAULT_BUS ? r->more * MOTOR_RATIO : 0);
+    double motor = r->torque[j] + (r->kind == FAULT_BUS ? r->more * FAULT_RATIO : 0);
     c.torque[j] = fmax(-r->motor, fmin(r->motor, motor)) + r->shove[j];
   }
   for (int64_t i = 0; i < periods; i++) ethd_sim_write(r->sim, &c);
   ethd_sim_read(r->sim, &r->now);
+}
+
+void fault_rig_suspend(fault_rig *r, int64_t periods) {
+  r->suspended += periods * (int64_t)rint(1e9 * r->setup.period);
+  move_arm(r, periods);
 }
 
 static void note(fault_rig *r, int64_t bits, int64_t *at) {
@@ -329,8 +239,8 @@ static void take_events(fault_rig *r) {
 
 void fault_rig_tick(fault_rig *r) {
   int64_t before = r->clock;
-  if (r->kind == FAULT_COUNTER) show_counts(r);
-  if (r->kind == FAULT_BUS) show_registers(r);
+  if (r->kind == FAULT_COUNTER) fault_drive_counts(r);
+  if (r->kind == FAULT_BUS) fault_drive_registers(r);
   if (r->kind == FAULT_RING) fault_board_tick(&r->now);
   if (!r->gone) ethd_loop_beat(r->loop);
   ethd_loop_tick(r->loop);
@@ -339,7 +249,7 @@ void fault_rig_tick(fault_rig *r) {
     r->stepped = 1;
     r->lost += r->row.lost;
   }
-  if (r->kind == FAULT_BUS) watch(r);
+  if (r->kind == FAULT_BUS) fault_drive_watch(r);
   take_torque(r);
   take_events(r);
   int64_t period = (int64_t)rint(1e9 * r->setup.period), passed = (r->clock - before + period - 1) / period;

@@ -62,6 +62,7 @@ struct fault_rig {
   uint64_t lost;        /* rows, as those behind them say */
   int64_t jump_ns;      /* by which the clock goes on in the loop's read */
   int64_t shift_ns;     /* of the samples' instants */
+  int64_t suspended;    /* ns for which the machine was, its clock with it */
   double law_adds;      /* Nm, to the tracking torque of joint 1 */
   ethd_status law_says;
   int64_t law_takes;    /* ns of the clock */
@@ -83,6 +84,7 @@ extern double fault_rig_response;
 /* A tap as drawn by this number; change, if any, has the last word on the setup. */
 void fault_rig_open(fault_rig *r, fault_device kind, uint64_t tap, void (*change)(ethd_setup *setup));
 void fault_rig_tick(fault_rig *r);
+void fault_rig_suspend(fault_rig *r, int64_t periods); /* the arm moves on as it was driven */
 void fault_rig_mark(fault_rig *r); /* from here on something may be seen */
 void fault_rig_close(fault_rig *r);
 

@@ -104,6 +104,9 @@ static void slow_law(fault_rig *r, int64_t since) { r->law_takes = since < 3 ? 5
 static void failing_law(fault_rig *r, int64_t since) { (void)since, r->law_says = ETHD_E_LAW; }
 static void no_number(fault_rig *r, int64_t since) { r->unplugged[1] = since < 2; }
 static void clock_jump(fault_rig *r, int64_t since) { (void)since, r->shift_ns = 20000000; }
+static void suspend(fault_rig *r, int64_t since) {
+  if (since == 0) fault_rig_suspend(r, 6 + r->tick % 10);
+}
 static void emergency(fault_rig *r, int64_t since) { (void)since, ethd_loop_raise(r->loop, ETHD_FAULT_EMERGENCY_STOP); }
 static void application_gone(fault_rig *r, int64_t since) { (void)since, r->gone = 1; }
 
@@ -272,6 +275,7 @@ const fault_row fault_rows[] = {
     {33, ZERO, 0, FAULT_PLAIN, 20, 700, 1, emergency, NULL, "raised by the application", 0},
     {34, STOP, 0, FAULT_PLAIN, 20, 700, 101, application_gone, NULL, "its heart stops", 0},
     {35, STOP, 1, FAULT_PLAIN, 20, 700, 1, clock_jump, NULL, "the samples' clock jumps by 20 ms", 0},
+    {35, STOP, 1, FAULT_PLAIN, 20, 700, 1, suspend, NULL, "the machine is suspended for 6 to 15 ms", 0},
     {37, ZERO, 0, FAULT_PLAIN, 20, 700, 0, no_number, NULL, "a joint is NaN, twice", 0},
     {38, ZERO, 0, FAULT_PLAIN, 20, 700, 0, failing_law, NULL, "a law fails", 0},
 };
