@@ -174,8 +174,8 @@ $(B)/libethd.so: $(B)/libethd.so.0
 # the tree and once installed without a search path.
 WHOLE := -Wl,--whole-archive $(B)/libethd.a -Wl,--no-whole-archive -Wl,--export-dynamic-symbol='ethd_*' -Wl,-z,now
 
-# Only the study has a window.
-$(B)/bin/ethd-study: LIBS += -lSDL2_ttf -lSDL2
+# Only the study has a window, and the test of what is drawn into it.
+$(B)/bin/ethd-study $(B)/tests/test_shapes: LIBS += -lSDL2_ttf -lSDL2
 $(PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES) $(B)/libethd.a
 	$(call say,LINK,$@)
 	@mkdir -p $(@D)

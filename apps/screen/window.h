@@ -1,4 +1,6 @@
-/* A window on SDL2's software renderer: shapes, text, keys, the pointer, 60 frames a second. All [main]. */
+/* A window on pixels of SDL2's: shapes, text, keys, the pointer, 60 frames a second. A frame is a list of shapes;
+   those that are as in the frame before keep their pixels, so a text is set once and only what differs is drawn and
+   sent. All [main]. */
 #ifndef ETHD_SCREEN_WINDOW_H
 #define ETHD_SCREEN_WINDOW_H
 
@@ -9,20 +11,35 @@
 #include "ethd/config.h"
 #include "ethd/loop.h"
 
+#define ETHD_SHAPES_MAX 32 /* of a frame; what is more isn't drawn */
+
 enum { ETHD_TEXT_SMALL, ETHD_TEXT_LARGE, ETHD_TEXTS };
+
+typedef struct ethd__shape {
+  int kind, size;             /* size: of a text, ETHD_TEXT_SMALL .. */
+  double x, y, width, height; /* px, as asked for; width: a disc's radius */
+  SDL_Color colour;
+  char text[256];
+  SDL_Rect at;                /* px that it may touch */
+  SDL_Surface *picture;       /* of a text, a disc */
+} ethd__shape;
 
 typedef struct ethd__window {
   SDL_Window *window;
-  SDL_Renderer *renderer;
   TTF_Font *font[ETHD_TEXTS];
   int width, height;    /* px */
   double pointer[2];    /* px */
   int key;              /* SDLK_* pressed since the last frame, 0: none */
   char typed[64];       /* text likewise */
-  bool closed;
+  bool closed, resized;
+  bool covered;         /* what was shown may be gone */
   uint64_t begun;       /* of the present frame, in SDL's performance counts */
   uint64_t due;         /* likewise, of the next */
-  ethd_histogram frames; /* ns from a frame's begin to its end on the screen */
+  ethd_histogram frames; /* ns from a frame's begin to its end on the screen, of those that changed something */
+  ethd__shape shape[ETHD_SHAPES_MAX];
+  size_t shape_count, shape_before; /* of this frame so far, of the one before */
+  SDL_Rect changed[ETHD_SHAPES_MAX];
+  size_t changed_count;
 } ethd__window;
 
 /* Without a display, a font: one line that says what is missing. */
@@ -30,7 +47,7 @@ ETHD_MUST_CHECK ethd_status ethd__window_open(ethd__window *window, const char *
                                               char message[ETHD_MESSAGE_MAX]);
 void ethd__window_close(ethd__window *window);
 
-/* Waits until a frame is due, takes what keys and pointer did, and clears to black. */
+/* Waits until a frame is due, takes what keys and pointer did, and begins with black. */
 void ethd__window_begin(ethd__window *window);
 
 /* Shows it. */
@@ -41,5 +58,12 @@ void ethd__window_disc(ethd__window *window, double x, double y, double radius, 
 
 /* Centred at x, its top at y, broken into lines where the window is too narrow; nothing for an empty text. */
 void ethd__window_text(ethd__window *window, int size, double x, double y, const char *text, SDL_Color colour);
+
+/* Ends the list: draws what changed since the last one, or everything if it was covered, and leaves the boxes of it
+   in window->changed. */
+void ethd__window_draw(ethd__window *window, SDL_Surface *onto);
+
+/* Forgets all shapes; the next frame is drawn as a whole. */
+void ethd__window_forget(ethd__window *window);
 
 #endif
