@@ -79,15 +79,16 @@ static const ethd_setting *setting(const ethd_config *config, const char *key) {
 
 static void check_device(const ethd_config *config) {
   char message[ETHD_MESSAGE_MAX];
+  const ethd_driver *driver;
   void *device;
   const ethd_device_def def = {&config->setup, config->settings, config->setting_count, config->folder, arg.config};
   if (strcmp(config->device, ethd_driver_sim.id) != 0)
     ethd__fail(ETHD_EXIT_INPUT, "%s:%d: device.driver: found \"%s\", sim is allowed", arg.config,
                ethd_ini_find(&ethd__config_whole(config)->ini, "device", "driver")->line,
                config->device);
-  ethd_status status = ethd_driver_sim.open(&def, &device, message);
+  ethd_status status = ethd_device_open(config->device, NULL, &def, &driver, &device, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
-  ethd_driver_sim.close(device);
+  driver->close(device);
 }
 
 /* The driver has read it already: it can be. */

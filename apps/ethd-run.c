@@ -125,7 +125,7 @@ static void catch_signals(void) {
 /* Before anything is known to move. */
 static void print_remarks(const ethd__session *s) {
   const char *remark;
-  for (uint32_t i = 0; s->driver->remark && (remark = s->driver->remark(s->device, i)); i++)
+  for (uint32_t i = 0; (remark = s->driver->remark(s->device, i)) != NULL; i++)
     fprintf(stderr, "device: %s\n", remark);
 }
 

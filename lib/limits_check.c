@@ -42,6 +42,12 @@ ethd_limits ethd_limits_none(void) {
   return limits;
 }
 
+ethd_limits ethd_limits_torque(double torque) {
+  ethd_limits limits = ethd_limits_none();
+  limits.torque = torque;
+  return limits;
+}
+
 ethd_limits ethd_limits_device(void) {
   ethd_limits limits = ethd_limits_none();
   limits.gap = 0.005;

@@ -145,7 +145,7 @@ static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, c
   s->recorder.loop = s->loop;
   ethd__recorder_begin(&s->recorder, def.period);
   status = s->driver->start(s->device);
-  if (status) return ethd__say(message, status, "device %s: start: %s", s->driver->id, ethd_status_sentence(status));
+  if (status) return ethd__say(message, status, "device %s: start: %s", s->config->device, ethd_status_sentence(status));
   s->started = true;
   status = ethd_loop_start(s->loop, &error);
   if (status) return refuse_start(s, status, &error, message);
@@ -237,7 +237,7 @@ ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]) 
   }
   ethd_status stopped = s->started ? s->driver->stop(s->device) : ETHD_OK;
   if (stopped < 0 && !status)
-    status = ethd__say(message, stopped, "device %s: stop: %s", s->driver->id, ethd_status_sentence(stopped));
+    status = ethd__say(message, stopped, "device %s: stop: %s", s->config->device, ethd_status_sentence(stopped));
   s->started = false;
   closed = close_recording(s, message);
   return status ? status : closed;

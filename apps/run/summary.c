@@ -55,7 +55,7 @@ static void print_device(FILE *out, const ethd_loop_stats *stats) {
 /* What the device counted itself; durations in ms. */
 static void print_figures(FILE *out, const ethd__session *s) {
   static ethd_figure figures[ETHD_FIGURES_MAX];
-  uint32_t n = s->driver->figures ? s->driver->figures(s->device, figures, ETHD_FIGURES_MAX) : 0;
+  uint32_t n = s->driver->figures(s->device, figures, ETHD_FIGURES_MAX);
   for (uint32_t i = 0; i < n; i++) {
     int is_time = !strcmp(figures[i].unit, "s");
     const char *unit = is_time ? "ms" : strcmp(figures[i].unit, "1") ? figures[i].unit : "";

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "check/conform_rig.h"
+#include "device/stack.h"
 
 #define OPENINGS 20
 #define PUSH 0.1       /* s */
@@ -13,22 +14,26 @@
 
 /* ---- questions ---- */
 
+/* What a driver shows of itself, before it is asked for anything. */
+static ethd_verdict judge_table(const ethd_driver *d, ethd_conform_answer *a) {
+  ethd_error error;
+  if (d->size < sizeof *d || d->abi != ETHD_DRIVER_ABI)
+    return ethd__rig_answer(a, ETHD_BROKEN, "%s: another ABI: %u bytes, version %u", d->id, d->size, d->abi);
+  if (!d->brief || !d->brief[0]) return ethd__rig_answer(a, ETHD_BROKEN, "%s has no brief", d->id);
+  if (d->units && !d->service) return ethd__rig_answer(a, ETHD_BROKEN, "%s has units of I/O and no service", d->id);
+  if (d->param_count && ethd_params_check_table(d->params, d->param_count, &error))
+    return ethd__rig_answer(a, ETHD_BROKEN, "%s: its table of settings: %s", d->id, error.name);
+  return ETHD_KEPT;
+}
+
+/* Of several: each. */
 static ethd_verdict ask_table(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__rig r;
-  ethd_error error;
   if (!ethd__rig_open(def, &r)) return ethd__rig_answer(a, ETHD_BROKEN, "open: %.140s", r.message);
-  const ethd_driver *d = r.driver;
-  const char *missing = !d->start ? "start" : !d->read ? "read" : !d->safe ? "safe" : !d->stop ? "stop" : !d->limits ? "limits" :
-                        d->units && !d->service ? "service" : !d->brief || !d->brief[0] ? "brief" : NULL;
-  if (missing)
-    ethd__rig_answer(a, ETHD_BROKEN, "%s has no %s", d->id, missing);
-  else if (d->size < sizeof *d || d->abi != ETHD_DRIVER_ABI)
-    ethd__rig_answer(a, ETHD_BROKEN, "%s: another ABI: %u bytes, version %u", d->id, d->size, d->abi);
-  else if (d->param_count && ethd_params_check_table(d->params, d->param_count, &error))
-    ethd__rig_answer(a, ETHD_BROKEN, "%s: its table of settings: %s", d->id, error.name);
-  else
-    ethd__rig_answer(a, ETHD_KEPT, "%s: %s", d->id, d->brief);
-  d->close(r.device);
+  const ethd__stack *s = r.driver == &ethd__driver_stack ? r.device : NULL;
+  ethd__rig_answer(a, ETHD_KEPT, "%s: %s", def->ids, s && s->count == 1 ? s->at[0].driver->brief : r.driver->brief);
+  for (uint32_t i = 0; s && i < s->count && a->verdict == ETHD_KEPT; i++) judge_table(s->at[i].driver, a);
+  r.driver->close(r.device);
   return a->verdict;
 }
 

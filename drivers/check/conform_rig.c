@@ -78,7 +78,7 @@ static void tick(ethd__rig *r, const double *torque) {
   ethd_command command = {.safe = torque == NULL};
   if (torque) memcpy(command.torque, torque, sizeof command.torque);
   await_tick(r);
-  for (uint32_t u = 0, n = r->driver->units ? r->driver->units(r->device) : 0; u < n; u++)
+  for (uint32_t u = 0, n = r->driver->units(r->device); u < n; u++)
     (void)!r->driver->service(r->device, u, r->now);
   ethd_status status = r->driver->read(r->device, r->now, &s);
   r->failed += status < 0;
@@ -87,7 +87,7 @@ static void tick(ethd__rig *r, const double *torque) {
     r->sense = s;
   }
   if (r->samples) r->age = fmax(r->age, 1e-9 * (double)(r->now - r->sense.time_ns));
-  if (torque && r->driver->write) r->failed += r->driver->write(r->device, r->now, &command) < 0;
+  if (torque) r->failed += r->driver->write(r->device, r->now, &command) < 0;
 }
 
 void ethd__rig_run(ethd__rig *r, double seconds, int joint, double torque) {

@@ -89,13 +89,18 @@ static uint32_t own_settings(const ethd__stack *s, uint32_t i, const ethd_device
 /* ---- opening ---- */
 
 static ethd_status open_one(ethd__stack *s, uint32_t i, const ethd_device_def *def, char *message) {
+  const ethd_driver *driver = s->at[i].driver;
+  if (driver->write && !driver->safe)
+    return ethd__say(message, ETHD_E_ARGUMENT, "device.driver: %s takes torque and has no safe to let go", driver->id);
   ethd_setting *settings = calloc(def->setting_count + 1, sizeof *settings);
   if (!settings) return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
   ethd_device_def own = *def;
   own.settings = settings;
   own.setting_count = own_settings(s, i, def, settings);
-  ethd_status status = s->at[i].driver->open(&own, &s->at[i].device, message);
+  message[0] = 0;
+  ethd_status status = driver->open(&own, &s->at[i].device, message);
   free(settings);
+  if (status && !message[0]) ethd__say(message, status, "device %s: %s", driver->id, ethd_status_sentence(status));
   return status;
 }
 
@@ -148,10 +153,8 @@ ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from, co
     ethd__driver_stack.close(s);
     return status;
   }
-  int alone = s->count == 1;
-  *driver = alone ? s->at[0].driver : &ethd__driver_stack;
-  *device = alone ? s->at[0].device : s;
-  if (alone) free(s);
+  *driver = &ethd__driver_stack;
+  *device = s;
   const char *script = script_of(def);
   return script ? inject(def, script, driver, device, message) : ETHD_OK;
 }

@@ -27,7 +27,8 @@ static ethd_status write_all(void *stack, int64_t now_ns, const ethd_command *co
 
 static void safe_all(void *stack) ETHD_RT {
   const ethd__stack *s = stack;
-  for (uint32_t i = 0; i < s->count; i++) s->at[i].driver->safe(s->at[i].device);
+  for (uint32_t i = 0; i < s->count; i++)
+    if (s->at[i].driver->safe) s->at[i].driver->safe(s->at[i].device);
 }
 
 /* ---- I/O ---- */
@@ -55,13 +56,24 @@ static ethd_status service(void *stack, uint32_t unit, int64_t now_ns) {
 
 /* ---- [main] ---- */
 
+static ethd_status start_one(const ethd__stack *s, uint32_t i) {
+  return s->at[i].driver->start ? s->at[i].driver->start(s->at[i].device) : ETHD_OK;
+}
+
+static ethd_status stop_one(const ethd__stack *s, uint32_t i) {
+  const ethd_driver *driver = s->at[i].driver;
+  if (driver->stop) return driver->stop(s->at[i].device);
+  if (driver->safe) driver->safe(s->at[i].device);
+  return ETHD_OK;
+}
+
 /* Measuring drivers may come after the one that moves; all start, or those that did are stopped. */
 static ethd_status start(void *stack) {
   const ethd__stack *s = stack;
   for (uint32_t i = 0; i < s->count; i++) {
-    ethd_status status = s->at[i].driver->start(s->at[i].device);
+    ethd_status status = start_one(s, i);
     if (status >= 0) continue;
-    while (i--) (void)!s->at[i].driver->stop(s->at[i].device);
+    while (i--) (void)!stop_one(s, i);
     return status;
   }
   return ETHD_OK;
@@ -70,7 +82,7 @@ static ethd_status start(void *stack) {
 static ethd_status stop(void *stack) {
   const ethd__stack *s = stack;
   ethd_status status = ETHD_OK;
-  for (uint32_t i = s->count; i--;) status = worse(status, s->at[i].driver->stop(s->at[i].device));
+  for (uint32_t i = s->count; i--;) status = worse(status, stop_one(s, i));
   return status;
 }
 
@@ -84,8 +96,9 @@ static void close_all(void *stack) {
 
 static ethd_limits limits(const void *stack) {
   const ethd__stack *s = stack;
-  ethd_limits most = s->at[0].driver->limits(s->at[0].device);
-  for (uint32_t i = 1; i < s->count; i++) {
+  ethd_limits most = ethd_limits_none();
+  for (uint32_t i = 0; i < s->count; i++) {
+    if (!s->at[i].driver->limits) continue;
     ethd_limits own = s->at[i].driver->limits(s->at[i].device);
     most = ethd_limits_narrower(&most, &own);
   }

@@ -1,4 +1,4 @@
-/* Drivers in a row as one driver. */
+/* Drivers in a row as one driver, which has all functions, whatever one or several have. */
 #ifndef ETHD_DEVICE_STACK_H
 #define ETHD_DEVICE_STACK_H
 

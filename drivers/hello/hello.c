@@ -1,35 +1,29 @@
 /* A driver to copy: two motors that aren't there, J dw/dt = torque - b w. What a real one puts in place of
-   the model: its encoders in `read`, its amplifier in `write`, its brake or enable line in `safe`. */
-#include <math.h>
+   the model: its encoders in `read`, its amplifier in `write`, its brake or enable line in `start` and `safe`. */
 #include <stdlib.h>
 
 #include "ethd/driver.h"
-#include "file/error_text.h"
 
-#define INERTIA 0.02       /* kg m^2 */
-#define FRICTION 0.05      /* Nms/rad */
-#define WATCHDOG 20000000  /* ns without a write: no torque */
+#define INERTIA 0.02      /* kg m^2 */
+#define FRICTION 0.05     /* Nms/rad */
+#define WATCHDOG 20000000 /* ns without a write: no torque */
 
 typedef struct hello {
   double q[2], w[2], torque[2];
   int64_t now, written; /* ns */
-  int32_t safe;
+  _Atomic int32_t safe; /* any thread's */
 } hello;
 
 static ethd_status open_hello(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
-  hello *h = def->setting_count ? NULL : calloc(1, sizeof *h);
-  *device = h;
-  if (def->setting_count)
-    return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: device.%s: hello has no settings", def->file ? def->file : "",
-                     def->settings[0].line, def->settings[0].key);
-  if (!h) return ethd__say(message, ETHD_E_MEMORY, "hello: %s", ethd_status_sentence(ETHD_E_MEMORY));
-  return ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, h->q);
+  hello *h = *device = calloc(1, sizeof *h);
+  ethd_status status = h ? ethd_settings_read(&ethd_driver_hello, def, NULL, NULL, message) : ETHD_E_MEMORY;
+  return status ? status : ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, h->q);
 }
 
+/* At rest where it stands, and no torque from before. */
 static ethd_status start(void *device) {
   hello *h = device;
-  for (int i = 0; i < 2; i++) h->w[i] = h->torque[i] = 0;
-  h->now = h->safe = 0;
+  *h = (hello){.q = {h->q[0], h->q[1]}};
   return ETHD_OK;
 }
 
@@ -37,32 +31,22 @@ static ethd_status read_joints(void *device, int64_t now_ns, ethd_sense *out) ET
   hello *h = device;
   double dt = h->now ? 1e-9 * (double)(now_ns - h->now) : 0;
   int alive = !h->safe && now_ns - h->written <= WATCHDOG;
-  for (int i = 0; i < 2; i++) {
-    h->w[i] = (h->w[i] + dt / INERTIA * (alive ? h->torque[i] : 0)) / (1 + dt / INERTIA * FRICTION);
-    out->q[i] = h->q[i] += dt * h->w[i];
-  }
+  for (int i = 0; i < 2; i++) h->w[i] += dt / INERTIA * ((alive ? h->torque[i] : 0) - FRICTION * h->w[i]);
+  for (int i = 0; i < 2; i++) out->q[i] = h->q[i] += dt * h->w[i];
   out->time_ns = h->now = now_ns;
   return ETHD_OK;
 }
 
 static ethd_status write_torque(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT {
   hello *h = device;
-  for (int i = 0; i < 2; i++) h->torque[i] = command->safe ? 0 : command->torque[i];
+  for (int i = 0; i < 2; i++) h->torque[i] = command->torque[i];
   h->written = now_ns;
   return ETHD_OK;
 }
 
 static void safe(void *device) ETHD_RT { ((hello *)device)->safe = 1; }
-static ethd_status stop(void *device) { return safe(device), ETHD_OK; }
+static ethd_limits limits(const void *device) { return (void)device, ethd_limits_torque(1); }
 
-static ethd_limits limits(const void *device) {
-  ethd_limits limits = ethd_limits_none();
-  (void)device;
-  limits.torque = 1;
-  return limits;
-}
-
-const ethd_driver ethd_driver_hello = {.size = sizeof(ethd_driver), .abi = ETHD_DRIVER_ABI, .id = "hello",
-                                       .brief = "two motors that aren't there, to copy from", .open = open_hello,
-                                       .start = start, .read = read_joints, .write = write_torque, .safe = safe,
-                                       .stop = stop, .close = free, .limits = limits};
+const ethd_driver ethd_driver_hello = {
+    .size = sizeof(ethd_driver), .abi = ETHD_DRIVER_ABI, .id = "hello", .brief = "two motors that aren't there, to copy from",
+    .open = open_hello, .start = start, .read = read_joints, .write = write_torque, .safe = safe, .close = free, .limits = limits};

@@ -188,7 +188,7 @@ static ethd_status inject_write(void *device, int64_t now_ns, const ethd_command
     if (i->kind == ETHD__INJECT_SCALE)
       for (int j = 0; j < 2; j++) c.torque[j] *= i->by;
   }
-  return in->driver->write ? in->driver->write(in->device, now_ns, &c) : ETHD_OK;
+  return in->driver->write(in->device, now_ns, &c);
 }
 
 static void inject_safe(void *device) ETHD_RT {
@@ -233,7 +233,7 @@ static void inject_close(void *device) {
 
 static uint32_t inject_units(const void *device) {
   const inject *in = device;
-  return in->driver->units ? in->driver->units(in->device) : 0;
+  return in->driver->units(in->device);
 }
 
 static ethd_limits inject_limits(const void *device) {
@@ -243,7 +243,7 @@ static ethd_limits inject_limits(const void *device) {
 
 static uint32_t inject_figures(const void *device, ethd_figure *out, uint32_t max) {
   const inject *in = device;
-  uint32_t n = in->driver->figures ? in->driver->figures(in->device, out, max) : 0;
+  uint32_t n = in->driver->figures(in->device, out, max);
   if (n < max) out[n++] = (ethd_figure){"injected faults", "1", (double)in->done};
   return n;
 }
@@ -252,7 +252,7 @@ static uint32_t inject_figures(const void *device, ethd_figure *out, uint32_t ma
 static const char *inject_remark(const void *device, uint32_t i) {
   const inject *in = device;
   if (i == 0) return "faults are injected: this is no run to trust";
-  return in->driver->remark ? in->driver->remark(in->device, i - 1) : NULL;
+  return in->driver->remark(in->device, i - 1);
 }
 
 const ethd_driver ethd__driver_inject = {

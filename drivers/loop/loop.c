@@ -42,6 +42,8 @@ static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
   if (!d->control) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "control", NAN, NAN, NAN);
   if (d->driver->abi != ETHD_DRIVER_ABI || d->driver->size < sizeof *d->driver)
     return ethd__loop_refuse(error, ETHD_E_ABI, "driver", NAN, NAN, NAN);
+  if (!d->driver->start || !d->driver->read || !d->driver->write || !d->driver->safe)
+    return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "driver", NAN, NAN, NAN);
   if (d->rows & (d->rows - 1)) return ethd__loop_refuse(error, ETHD_E_RANGE, "rows", d->rows, 0, 0x1p20);
   ethd_status status = within(error, "period", d->period, 1e-5, 1);
   if (!status) status = within(error, "cpu", d->cpu, ETHD_CPU_AUTO, 1023);

@@ -119,8 +119,6 @@ static ethd_status ring_read(void *device, int64_t now_ns, ethd_sense *out) ETHD
   return ETHD_OK;
 }
 
-static void safe(void *device) ETHD_RT { (void)device; }
-
 /* ---- [main] ---- */
 
 static void ring_close(void *device) {
@@ -208,24 +206,13 @@ static ethd_status ring_open(const ethd_device_def *def, void **out, char messag
   *out = NULL;
   ethd_status status = ethd__ring_settings_read(def, &settings, message);
   if (status) return status;
-  ring *r = calloc(1, sizeof *r);
-  if (!r) return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  ring *r = *out = calloc(1, sizeof *r);
+  if (!r) return ETHD_E_MEMORY;
   r->settings = settings;
   r->port.fd = -1;
   pthread_mutex_init(&r->lock, NULL);
   status = prepare(def, r, message);
-  if (!status) status = listen_to(r, def->setup->ring_radius, message);
-  if (status) {
-    ring_close(r);
-    return status;
-  }
-  *out = r;
-  return ETHD_OK;
-}
-
-static ethd_status start(void *device) {
-  (void)device;
-  return ETHD_OK;
+  return status ? status : listen_to(r, def->setup->ring_radius, message);
 }
 
 static uint32_t units(const void *device) {
@@ -275,14 +262,11 @@ const ethd_driver ethd_driver_ring = {
     .brief = "proximity ring on a serial port, beside a driver that moves",
     .params = ethd__ring_params,
     .param_count = ETHD__RING_PARAMS,
+    .keys = ethd__ring_keys,
     .open = ring_open,
-    .start = start,
     .read = ring_read,
-    .write = NULL,
     .units = units,
     .service = service,
-    .safe = safe,
-    .stop = start,
     .close = ring_close,
     .limits = limits,
     .figures = figures,

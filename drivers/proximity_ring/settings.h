@@ -16,6 +16,7 @@ enum {
 };
 
 extern const ethd_param ethd__ring_params[ETHD__RING_PARAMS];
+extern const char *const ethd__ring_keys[]; /* NULL behind the last */
 
 typedef struct ethd__ring_settings {
   const ethd_setting *port, *calibration; /* calibration NULL: level none */

@@ -30,20 +30,17 @@ typedef struct replay {
 
 /* ---- opening ---- */
 
-static ethd_status refuse(const ethd_device_def *def, int line, const char *key, const char *says, char *message) {
-  return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: device.%s: %s", def->file ? def->file : "", line, key, says);
-}
+static const char *const keys[] = {"folder", NULL};
 
 static ethd_status load(const ethd_device_def *def, replay *r, char *message) {
   const ethd_setting *folder = NULL;
-  for (uint32_t i = 0; i < def->setting_count; i++) {
-    if (strcmp(def->settings[i].key, "folder") != 0)
-      return refuse(def, def->settings[i].line, def->settings[i].key, "the replay's key is folder", message);
-    folder = &def->settings[i];
-  }
-  if (!folder) return refuse(def, 0, "folder", "the replay needs the folder of a recording", message);
+  ethd_status status = ethd_settings_read(&ethd_driver_replay, def, NULL, &folder, message);
+  if (status) return status;
+  if (!folder)
+    return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.folder: the replay needs the folder of a recording",
+                     def->file ? def->file : "the defaults");
   char *path = ethd__path_join(def->folder, folder->value);
-  ethd_status status = path ? ethd__tape_load(path, &r->tape, message)
+  status = path ? ethd__tape_load(path, &r->tape, message)
                             : ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
   free(path);
   return status;
@@ -57,15 +54,8 @@ static void replay_close(void *device) {
 }
 
 static ethd_status replay_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
-  replay *r = calloc(1, sizeof *r);
-  *out = NULL;
-  if (!r) return ethd__say(message, ETHD_E_MEMORY, "replay: %s", ethd_status_sentence(ETHD_E_MEMORY));
-  ethd_status status = load(def, r, message);
-  if (status)
-    replay_close(r);
-  else
-    *out = r;
-  return status;
+  replay *r = *out = calloc(1, sizeof *r);
+  return r ? load(def, r, message) : ETHD_E_MEMORY;
 }
 
 static ethd_status replay_start(void *device) {
@@ -128,6 +118,7 @@ static ethd_status replay_write(void *device, int64_t now_ns, const ethd_command
   return ETHD_OK;
 }
 
+/* A recording moves nothing. */
 static void replay_safe(void *device) ETHD_RT { (void)device; }
 
 /* ---- [main] ---- */
@@ -157,6 +148,7 @@ const ethd_driver ethd_driver_replay = {
     .abi = ETHD_DRIVER_ABI,
     .id = "replay",
     .brief = "a recorded session: its samples, and its commands to compare with",
+    .keys = keys,
     .open = replay_open,
     .start = replay_start,
     .read = replay_read,

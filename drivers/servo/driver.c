@@ -21,40 +21,27 @@ static const ethd_param params[PARAMS] = {
     [JOINT] = {"joint", "1", 1, 2, 1, "of a map with one axis: which joint that is"},
 };
 
+static const char *const keys[] = {"map", "port", NULL};
+
 typedef struct settings {
   const ethd_setting *map, *port;
-  double p[PARAMS];
-  int32_t joint_given;
+  double p[PARAMS]; /* NAN: not given */
 } settings;
 
 /* ---- settings ---- */
 
 static const char *file(const ethd_device_def *def) { return def->file ? def->file : "the defaults"; }
 
-static ethd_status set(const ethd_device_def *def, const ethd_setting *s, settings *out, char *message) {
-  char quote[ETHD_QUOTE_MAX];
-  if (!strcmp(s->key, "map")) return out->map = s, ETHD_OK;
-  if (!strcmp(s->key, "port")) return out->port = s, ETHD_OK;
-  int i = ethd_params_find(params, PARAMS, s->key);
-  if (i < 0)
-    return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: device.%s: a servo knows map, port, q1, q2, joint", file(def),
-                     s->line, s->key);
-  double value;
-  if (!ethd__number(s->value, strlen(s->value), &value) || !(value >= params[i].min && value <= params[i].max) ||
-      (i == JOINT && value != rint(value)))
-    return ethd__say(message, ETHD_E_RANGE, "%s:%d: device.%s: found %s, %g to %g is allowed", file(def), s->line,
-                     s->key, ethd__quote(s->value, strlen(s->value), quote), params[i].min, params[i].max);
-  out->p[i] = value;
-  out->joint_given |= i == JOINT;
-  return ETHD_OK;
-}
-
 static ethd_status read_settings(const ethd_device_def *def, settings *out, char *message) {
-  ethd_status status = ETHD_OK;
-  *out = (settings){.p = {[Q1] = NAN, [Q2] = NAN, [JOINT] = 1}};
-  for (uint32_t i = 0; i < def->setting_count && !status; i++) status = set(def, &def->settings[i], out, message);
+  const ethd_setting *texts[2] = {NULL, NULL};
+  *out = (settings){.p = {NAN, NAN, NAN}};
+  ethd_status status = ethd_settings_read(&ethd_driver_servo, def, out->p, texts, message);
+  out->map = texts[0];
+  out->port = texts[1];
   if (!status && !out->map)
     status = ethd__say(message, ETHD_E_ARGUMENT, "%s: device.map is missing: a servo needs its register map", file(def));
+  if (!status && !isnan(out->p[JOINT]) && out->p[JOINT] != rint(out->p[JOINT]))
+    status = ethd__say(message, ETHD_E_RANGE, "%s: device.joint: found %g, 1 and 2 are allowed", file(def), out->p[JOINT]);
   return status;
 }
 
@@ -79,10 +66,11 @@ static ethd_status place_axes(ethd__servo_device *d, const ethd_device_def *def,
     both &= d->joint[i] >= 0;
     d->feedback.home[i] = NAN;
   }
-  if (both && s->joint_given) return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.joint: the map has both joints", file(def));
+  int given = !isnan(s->p[JOINT]);
+  if (both && given) return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.joint: the map has both joints", file(def));
   for (int i = 0; i < 2; i++) {
     if (d->joint[i] < 0) continue;
-    if (!both && s->joint_given) d->joint[i] = (int32_t)s->p[JOINT] - 1;
+    if (!both && given) d->joint[i] = (int32_t)s->p[JOINT] - 1;
     d->feedback.home[i] = s->p[d->joint[i] ? Q2 : Q1];
   }
   return ETHD_OK;
@@ -130,8 +118,8 @@ static ethd_status servo_open(const ethd_device_def *def, void **out, char messa
   *out = NULL;
   ethd_status status = read_settings(def, &s, message);
   if (status) return status;
-  ethd__servo_device *d = calloc(1, sizeof *d);
-  if (!d) return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  ethd__servo_device *d = *out = calloc(1, sizeof *d);
+  if (!d) return ETHD_E_MEMORY;
   d->link.bus.fd = -1;
   pthread_mutex_init(&d->lock, NULL);
   atomic_init(&d->safe, 1);
@@ -151,8 +139,6 @@ static ethd_status servo_open(const ethd_device_def *def, void **out, char messa
     if (!status) status = identify(d, steps_time(&d->map, ETHD__SERVO_IDENTIFY));
     if (status) ethd__say(message, status, "%s: %.*s", s.map->value, ETHD_MESSAGE_MAX / 2, d->link.message);
   }
-  if (status) close_device(d);
-  else *out = d;
   return status;
 }
 
@@ -278,6 +264,7 @@ const ethd_driver ethd_driver_servo = {
     .brief = "servo drive on a Modbus, by a register map",
     .params = params,
     .param_count = PARAMS,
+    .keys = keys,
     .open = servo_open,
     .start = start,
     .read = ethd__servo_read,

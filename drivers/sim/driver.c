@@ -28,9 +28,6 @@ static ethd_status load_plant(const ethd_device_def *def, const ethd_setting *se
   return status;
 }
 
-static ethd_status start(void *device);
-static void close_device(void *device);
-
 static ethd_status create(const ethd_device_def *def, const ethd__sim_settings *s, device *d, char *message) {
   ethd_error error = {0};
   ethd_status status = load_plant(def, s->plant, &d->def.plant, message);
@@ -57,19 +54,14 @@ static ethd_status sim_open(const ethd_device_def *def, void **out, char message
     ethd_error_text(def->file, &error, message);
     return status;
   }
-  device *d = calloc(1, sizeof *d);
-  if (!d) return ethd__say(message, ETHD_E_MEMORY, "sim: %s", ethd_status_sentence(ETHD_E_MEMORY));
+  device *d = *out = calloc(1, sizeof *d);
+  if (!d) return ETHD_E_MEMORY;
   d->def = (ethd_sim_def){.arm = def->setup->arm,
                           .ring_radius = def->setup->ring_radius,
                           .period = def->setup->period,
                           .step = s.p[ETHD__SIM_STEP],
                           .tolerance = s.p[ETHD__SIM_TOLERANCE]};
-  status = create(def, &s, d, message);
-  if (status)
-    close_device(d);
-  else
-    *out = d;
-  return status;
+  return create(def, &s, d, message);
 }
 
 /* The tap from its beginning. */
@@ -110,11 +102,6 @@ static ethd_status sim_write(void *device_, int64_t now_ns, const ethd_command *
 
 static void safe(void *device_) ETHD_RT { ((device *)device_)->safe = 1; }
 
-static ethd_status stop(void *device_) {
-  safe(device_);
-  return ETHD_OK;
-}
-
 static void close_device(void *device_) {
   device *d = device_;
   if (!d) return;
@@ -124,9 +111,7 @@ static void close_device(void *device_) {
 
 static ethd_limits limits(const void *device_) {
   const device *d = device_;
-  ethd_limits limits = ethd_limits_none();
-  limits.torque = d->def.plant.force_limit * fmin(d->def.arm.link1, d->def.arm.link2);
-  return limits;
+  return ethd_limits_torque(d->def.plant.force_limit * fmin(d->def.arm.link1, d->def.arm.link2));
 }
 
 const ethd_driver ethd_driver_sim = {
@@ -136,12 +121,12 @@ const ethd_driver ethd_driver_sim = {
     .brief = "simulated device: plausible, fitted to the paper's Table 1, not measured",
     .params = ethd__sim_params,
     .param_count = ETHD__SIM_PARAMS,
+    .keys = ethd__sim_keys,
     .open = sim_open,
     .start = start,
     .read = sim_read,
     .write = sim_write,
     .safe = safe,
-    .stop = stop,
     .close = close_device,
     .limits = limits,
 };

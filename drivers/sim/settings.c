@@ -16,6 +16,8 @@ const ethd_param ethd__sim_params[ETHD__SIM_PARAMS] = {
     [ETHD__SIM_MEET_Y] = {"meet_y", "m", -10, 10, 0.25, "likewise"},
 };
 
+const char *const ethd__sim_keys[] = {"plant", "reading", NULL};
+
 static ethd_status refuse(ethd_error *error, ethd_status status, const ethd_setting *s, double found,
                           double min, double max) {
   ethd__sim_refuse(error, status, s->key, found, min, max);

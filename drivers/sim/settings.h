@@ -16,6 +16,7 @@ enum {
 };
 
 extern const ethd_param ethd__sim_params[ETHD__SIM_PARAMS];
+extern const char *const ethd__sim_keys[]; /* NULL behind the last */
 
 typedef struct ethd__sim_settings {
   double p[ETHD__SIM_PARAMS];

@@ -5,6 +5,9 @@
    that a run with the same drivers repeats bit for bit; safe [any thread, any state] can't fail: zero torque
    from now on; stop [main] disables; close [main] frees. The simulated device is a driver like any other.
 
+   A driver has what it has something to say in: any function but open and close may be NULL, and then there
+   is nothing to do, to read or to limit. Only what takes torque must be able to let go: no write without safe.
+
    Several drivers may stand behind one device (a servo, its encoders, a proximity ring): each adds what it
    knows to the sense, and takes from the command what is its own.
 
@@ -53,27 +56,30 @@ typedef struct ethd_figure {
 struct ethd_driver {
   uint32_t size, abi;
   const char *id, *brief;
-  const ethd_param *params; /* documentation of its numeric settings; may be NULL */
+  const ethd_param *params; /* its settings that are numbers or one of several words; may be NULL */
   uint32_t param_count;
-  /* On failure *device is NULL and message holds one line: file:line, what was found, what is allowed. */
+  const char *const *keys; /* its other settings, ended by NULL; may be NULL */
+  /* On failure message holds one line: file:line, what was found, what is allowed; left empty, it is the
+     status's sentence. What open leaves in *device is closed, also after a failure, unless it is NULL. */
   ethd_status (*open)(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]);
   ethd_status (*start)(void *device);
   /* Adds what is new to *out, which is zero when a step is over. ETHD_STALE: a joint sample is due from
      this driver and there is no newer one; the loop then holds the torque and steps when there is, or at
-     once, with the last sample, when *out names a fault that ends the torque. Negative: nothing can be known of the device. NULL: it measures nothing. */
+     once, with the last sample, when *out names a fault that ends the torque. Negative: nothing can be known of
+     the device. */
   ethd_status (*read)(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT;
-  ethd_status (*write)(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT; /* or NULL */
-  uint32_t (*units)(const void *device); /* of blocking I/O; NULL: none */
+  /* Torque is zero where the command is the safe one. */
+  ethd_status (*write)(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT;
+  uint32_t (*units)(const void *device); /* of blocking I/O */
   /* unit: 0 .. units - 1. A positive status: there was nothing to do. */
   ethd_status (*service)(void *device, uint32_t unit, int64_t now_ns);
   void (*safe)(void *device) ETHD_RT;
-  ethd_status (*stop)(void *device);
+  ethd_status (*stop)(void *device); /* NULL: as safe */
   void (*close)(void *device);
   ethd_limits (*limits)(const void *device);
-  /* At most `max` figures, since the start; returns how many. [main], while it runs too; NULL: none. */
+  /* At most `max` figures, since the start; returns how many. [main], while it runs too. */
   uint32_t (*figures)(const void *device, ethd_figure *out, uint32_t max);
-  /* What people should know of the device: the i-th sentence, a risk that stays open; NULL behind the last. [main];
-     NULL: nothing. */
+  /* What people should know of the device: the i-th sentence, a risk that stays open; NULL behind the last. [main] */
   const char *(*remark)(const void *device, uint32_t i);
 };
 
@@ -88,11 +94,18 @@ ETHD_API extern const ethd_driver *const ethd_drivers[];
 
 /* Opens the drivers that `ids` names ("sim", "servo, ring"), in that order, out of `from` (ended by NULL;
    NULL: ethd_drivers), as one. With several, a setting's key carries its driver's id ("ring.port"); with one
-   it may. *driver and *device then go together; device is closed by driver->close. Limits are the narrowest
-   of all. [main] */
+   it may. *driver and *device then go together, and *driver has all functions but open; device is closed by
+   driver->close. Limits are the narrowest of all. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from,
                                                       const ethd_device_def *def, const ethd_driver **driver,
                                                       void **device, char message[ETHD_MESSAGE_MAX]);
+
+/* For a driver's open: what the configuration says by the driver's own table, values[i] of its params and
+   texts[i] of its keys; where it says nothing they stay as they are. Keys that the table hasn't, and values
+   that it doesn't allow, are refused by file and line. values, texts: NULL where the table has none. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_settings_read(const ethd_driver *driver, const ethd_device_def *def,
+                                                        double *values, const ethd_setting **texts,
+                                                        char message[ETHD_MESSAGE_MAX]);
 
 ETHD_END_DECLS
 

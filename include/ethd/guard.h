@@ -56,6 +56,9 @@ static inline double *ethd_limit_of(ethd_limits *limits, const ethd_limit *row) 
 /* No limits, latching, no clean time. [any] */
 ETHD_API ethd_limits ethd_limits_none(void);
 
+/* As none, but for the torque, Nm. [any] */
+ETHD_API ethd_limits ethd_limits_torque(double torque);
+
 /* What a driver of a real device begins with: gap 5 ms, clean_time 1 s, finger_age 10 ms, finger_lost 30 ms;
    the rest as none. [any] */
 ETHD_API ethd_limits ethd_limits_device(void);

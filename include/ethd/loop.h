@@ -68,7 +68,7 @@ ETHD_API const char *ethd_shortfall_mend(int32_t bit);
 /* Made by ethd_loop_default, then changed field by field. */
 typedef struct ethd_loop_def {
   uint32_t cookie; /* set by ethd_loop_default */
-  const ethd_driver *driver;
+  const ethd_driver *driver; /* of ethd_device_open; or one that has start, read, write and safe */
   void *device;          /* open and started */
   ethd_control *control; /* stepped by nobody else while the loop lives */
   double period;         /* s, the controller's; 1e-5 to 1 */

@@ -28,7 +28,9 @@ static ethd_status last;
 static ethd_status open_with(ethd_setting *settings, uint32_t count) {
   setup = ethd_setup_default();
   const ethd_device_def def = {&setup, settings, count, folder, "d.ini"};
-  return servo->open(&def, &device, message);
+  ethd_status status = servo->open(&def, &device, message);
+  if (status && device) servo->close(device), device = NULL;
+  return status;
 }
 
 static void open_device(void) {
@@ -181,7 +183,7 @@ START_TEST(test_settings_refused) {
     const char *why;
   } all[] = {{{"q1", "0", 1}, "d.ini: device.map is missing"},
              {{"map", "no.map", 3}, "no.map: "},
-             {{"speed", "1", 7}, "d.ini:7: device.speed: a servo knows"},
+             {{"speed", "1", 7}, "d.ini:7: device.speed: servo knows"},
              {{"joint", "3", 8}, "d.ini:8: device.joint: found \"3\", 1 to 2"},
              {{"q1", "x", 9}, "d.ini:9: device.q1"}};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {

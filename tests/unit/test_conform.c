@@ -7,7 +7,7 @@
 
 #include "ethd/conform.h"
 
-enum { SOUND, NO_STOP, LEAKS, NO_LIMIT, OUTSIDE, NAN_ANGLE, BACKWARDS, FAULTY, DRIFTS, REVERSED, JUMPS, NO_WATCHDOG, UNSAFE, OLD_TORQUE, WAYS };
+enum { SOUND, NO_SAFE, NO_SERVICE, NO_BRIEF, BAD_TABLE, LEAKS, NO_LIMIT, OUTSIDE, NAN_ANGLE, BACKWARDS, FAULTY, DRIFTS, REVERSED, JUMPS, NO_WATCHDOG, UNSAFE, OLD_TORQUE, WAYS };
 
 static int way;
 
@@ -67,13 +67,16 @@ static ethd_limits limits(const void *device) {
   return l;
 }
 
+static uint32_t none(const void *device) { return (void)device, 0; }
+static const ethd_param unnamed = {"", "1", 0, 1, 0, "without a name"};
+
 /* With OLD_TORQUE the start forgets nothing: the driver begins with what it was told last. */
 static ethd_verdict ask(const char *question, double torque, ethd_status *status) {
   static ethd_driver driver;
   static ethd_conform_answer answers[ETHD_QUESTIONS];
-  driver = (ethd_driver){.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "fake", .brief = "fake", .open = open_fake, .start = start,
-                         .read = read_fake, .write = write_fake, .safe = safe, .stop = way == NO_STOP ? NULL : stop, .close = free,
-                         .limits = limits};
+  driver = (ethd_driver){.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "fake", .brief = way == NO_BRIEF ? "" : "fake", .open = open_fake, .start = start,
+                         .read = read_fake, .write = write_fake, .safe = way == NO_SAFE ? NULL : safe, .stop = stop, .close = free,
+                         .units = way == NO_SERVICE ? none : NULL, .params = &unnamed, .param_count = way == BAD_TABLE, .limits = limits};
   const ethd_driver *const from[] = {&driver, NULL};
   const ethd_setup setup = ethd_setup_default();
   const ethd_device_def device = {&setup, NULL, 0, ".", NULL};
@@ -91,7 +94,8 @@ static const struct {
   const char *question;
   ethd_verdict verdict;
 } expected[WAYS] = {
-    [NO_STOP] = {"table", ETHD_BROKEN},     [LEAKS] = {"open", ETHD_BROKEN},        [NO_LIMIT] = {"limits", ETHD_AT_RISK},
+    [NO_SAFE] = {"table", ETHD_BROKEN},     [NO_SERVICE] = {"table", ETHD_BROKEN},  [NO_BRIEF] = {"table", ETHD_BROKEN},
+    [BAD_TABLE] = {"table", ETHD_BROKEN},   [LEAKS] = {"open", ETHD_BROKEN},        [NO_LIMIT] = {"limits", ETHD_AT_RISK},
     [OUTSIDE] = {"limits", ETHD_BROKEN},    [NAN_ANGLE] = {"sense", ETHD_BROKEN},   [BACKWARDS] = {"sense", ETHD_BROKEN},
     [FAULTY] = {"sense", ETHD_BROKEN},      [DRIFTS] = {"zero", ETHD_BROKEN},       [REVERSED] = {"sign", ETHD_BROKEN},
     [JUMPS] = {"counts", ETHD_BROKEN},      [NO_WATCHDOG] = {"watchdog", ETHD_AT_RISK}, [UNSAFE] = {"safe", ETHD_BROKEN},

@@ -11,7 +11,7 @@ typedef struct part {
   char key[2][16];
 } part;
 
-static char log_[64];
+static char log_[64], keys[2][16]; /* of what was opened last */
 
 static void note(char what, char who) {
   size_t n = strlen(log_);
@@ -25,12 +25,9 @@ static ethd_status open_part(char name, const ethd_device_def *def, void **devic
   p->keys = def->setting_count;
   *device = p;
   note('o', name);
-  if (p->keys && !strcmp(p->key[0], "bad")) {
-    free(p);
-    *device = NULL;
-    strcpy(message, "refused");
-    return ETHD_E_DEVICE;
-  }
+  memcpy(keys, p->key, sizeof keys);
+  if (p->keys && !strcmp(p->key[0], "mute")) return ETHD_E_DEVICE;
+  if (p->keys && !strcmp(p->key[0], "bad")) return strcpy(message, "refused"), ETHD_E_DEVICE;
   return ETHD_OK;
 }
 static ethd_status open_a(const ethd_device_def *d, void **v, char m[ETHD_MESSAGE_MAX]) { return open_part('a', d, v, m); }
@@ -93,9 +90,8 @@ static ethd_status try(const char *ids, const char *k0, const char *k1) {
 
 START_TEST(test_alone) {
   ck_assert_int_eq(try("b", "b.port", "speed"), ETHD_OK);
-  ck_assert_ptr_eq(driver, &b);
-  ck_assert_str_eq(((part *)device)->key[0], "port");
-  ck_assert_str_eq(((part *)device)->key[1], "speed");
+  ck_assert_str_eq(keys[0], "port");
+  ck_assert_str_eq(keys[1], "speed");
   driver->close(device);
 }
 END_TEST
@@ -133,8 +129,91 @@ START_TEST(test_undone) {
   driver->close(device);
   ck_assert_str_eq(log_, "oaobsasbtacbca");
   ck_assert_int_eq(try("a,b", "b.bad", NULL), ETHD_E_DEVICE);
-  ck_assert_str_eq(log_, "oaobca");
+  ck_assert_str_eq(log_, "oaobcbca");
   ck_assert_str_eq(message, "refused");
+  ck_assert_int_eq(try("a,b", "b.mute", NULL), ETHD_E_DEVICE);
+  ck_assert_str_eq(message, "device b: the device refused or failed");
+}
+END_TEST
+
+/* What a driver hasn't is nothing: to do, to read, to limit; and a device has it all the same. */
+static ethd_driver bare;
+static const ethd_driver *const only_bare[] = {&bare, &a, NULL};
+
+static ethd_status open_bare(const char *ids) {
+  const ethd_setup setup = ethd_setup_default();
+  const ethd_device_def def = {&setup, NULL, 0, ".", NULL};
+  log_[0] = message[0] = 0;
+  return ethd_device_open(ids, only_bare, &def, &driver, &device, message);
+}
+
+START_TEST(test_bare) {
+  const ethd_limits none = ethd_limits_none();
+  ethd_sense s = {0};
+  ethd_command c = {0};
+  ethd_figure f;
+  bare = (ethd_driver){.size = sizeof bare, .id = "bare", .brief = "bare", .open = open_b, .close = close_part};
+  ck_assert_int_eq(open_bare("bare"), ETHD_OK);
+  ck_assert_int_eq(driver->start(device), ETHD_OK);
+  ck_assert_int_eq(driver->read(device, 5, &s), ETHD_OK);
+  ck_assert_int_eq(driver->write(device, 5, &c), ETHD_OK);
+  ck_assert_uint_eq(driver->units(device), 0);
+  driver->safe(device);
+  ethd_limits l = driver->limits(device);
+  ck_assert_mem_eq(&l, &none, sizeof l);
+  ck_assert_uint_eq(driver->figures(device, &f, 1), 0);
+  ck_assert(driver->remark(device, 0) == NULL);
+  ck_assert_int_eq(driver->stop(device), ETHD_OK);
+  driver->close(device);
+  ck_assert_str_eq(log_, "obcb");
+  /* beside another; without a stop of its own it is made safe */
+  bare.safe = safe;
+  ck_assert_int_eq(open_bare("a, bare"), ETHD_OK);
+  ck_assert_int_eq(driver->start(device), ETHD_OK);
+  l = driver->limits(device);
+  ck_assert(l.torque == 2 && l.speed == 3);
+  ck_assert_int_eq(driver->stop(device), ETHD_OK);
+  driver->close(device);
+  ck_assert_str_eq(log_, "oaobsaxbtacbca");
+  /* what takes torque must let go */
+  bare.safe = NULL;
+  bare.write = write_a;
+  ck_assert_int_eq(open_bare("bare"), ETHD_E_ARGUMENT);
+  ck_assert_msg(strstr(message, "bare takes torque and has no safe") != NULL, "%s", message);
+}
+END_TEST
+
+/* ---- settings by a driver's own table ---- */
+
+static const ethd_param params[] = {{"speed", "m/s", 0, 2, 1, "of it"}, {"mood", "good|bad", 0, 1, 0, "of it"}};
+static const char *const texts[] = {"map", "port", NULL};
+static const ethd_driver settled = {.id = "settled", .params = params, .param_count = 2, .keys = texts};
+
+static const struct {
+  const ethd_driver *driver;
+  const char *key, *value, *says;
+} settings[] = {{&settled, "speed", "1.5", ""},
+                {&settled, "mood", "bad", ""},
+                {&settled, "port", "x", ""},
+                {&settled, "speed", "3", "c.ini:7: device.speed: found \"3\", 0 to 2 m/s is allowed"},
+                {&settled, "speed", "nan", "c.ini:7: device.speed: found \"nan\""},
+                {&settled, "speed", "1x", "c.ini:7: device.speed: found \"1x\""},
+                {&settled, "mood", "sad", "c.ini:7: device.mood: found \"sad\", good|bad is allowed"},
+                {&settled, "colour", "red", "c.ini:7: device.colour: settled knows map, port, speed, mood"},
+                {&bare, "colour", "red", "c.ini:7: device.colour: bare has no settings"}};
+
+START_TEST(test_settings) {
+  const ethd_setting one = {settings[_i].key, settings[_i].value, 7}, *text[2] = {NULL, NULL};
+  const ethd_setup setup = ethd_setup_default();
+  const ethd_device_def def = {&setup, &one, 1, ".", "c.ini"};
+  double values[2] = {-1, -2};
+  bare = (ethd_driver){.id = "bare"};
+  message[0] = 0;
+  ethd_status status = ethd_settings_read(settings[_i].driver, &def, values, text, message);
+  ck_assert_msg(strncmp(message, settings[_i].says, strlen(settings[_i].says)) == 0, "%s", message);
+  ck_assert_int_eq(status == ETHD_OK, settings[_i].says[0] == 0);
+  ck_assert(values[0] == (_i == 0 ? 1.5 : -1) && values[1] == (_i == 1 ? 1 : -2));
+  ck_assert(text[0] == NULL && text[1] == (_i == 2 ? &one : NULL));
 }
 END_TEST
 
@@ -164,6 +243,8 @@ int main(void) {
   tcase_add_test(tests, test_alone);
   tcase_add_test(tests, test_two);
   tcase_add_test(tests, test_undone);
+  tcase_add_test(tests, test_bare);
+  tcase_add_loop_test(tests, test_settings, 0, sizeof settings / sizeof *settings);
   tcase_add_test(tests, test_refused);
   suite_add_tcase(suite, tests);
   SRunner *runner = srunner_create(suite);

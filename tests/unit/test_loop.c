@@ -225,6 +225,14 @@ START_TEST(test_refused_defs) {
   } while (0)
   REFUSED(cookie, 0, ETHD_E_ARGUMENT);
   REFUSED(driver, NULL, ETHD_E_ARGUMENT);
+  for (int i = 0; i < 4; i++) {
+    ethd_driver gap = *b.def.driver;
+    if (i == 0) gap.start = NULL;
+    if (i == 1) gap.read = NULL;
+    if (i == 2) gap.write = NULL;
+    if (i == 3) gap.safe = NULL;
+    REFUSED(driver, &gap, ETHD_E_ARGUMENT);
+  }
   REFUSED(control, NULL, ETHD_E_ARGUMENT);
   REFUSED(period, 0, ETHD_E_RANGE);
   REFUSED(period, (double)NAN, ETHD_E_RANGE);
