@@ -225,7 +225,7 @@ static int parked(ethd_loop *l) ETHD_RT {
 }
 
 int ethd__loop_turn(ethd_loop *l) {
-  atomic_fetch_add_explicit(&l->turns, 1, memory_order_relaxed);
+  atomic_store_explicit(&l->turned, l->due - l->period, memory_order_relaxed);
   /* while parked, [main] may be using all but the clock */
   if (parked(l)) {
     l->due += l->period;

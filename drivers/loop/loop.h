@@ -58,7 +58,7 @@ struct ethd_loop {
 
   _Alignas(64) atomic_int mode, armed, clear, stop, ended, failed;
   atomic_uint beats;           /* of the application */
-  atomic_uint turns;           /* of the loop's thread */
+  _Atomic int64_t turned;      /* ns: the loop's thread was alive then */
   _Atomic int64_t raised;      /* rows for the next sense */
   ethd__rows rows;
 

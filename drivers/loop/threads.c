@@ -46,23 +46,24 @@ static void *run_unit(void *unit_) {
   return NULL;
 }
 
-/* The loop's thread is dead when it hasn't turned for `gap` while the device gets torques: then the device
-   is let go from here, and the loop, should it live again, is told. */
+/* The loop's thread is dead when it hasn't turned for `gap` while the device gets torques: then the loop, should
+   it live again at this very moment, is told, and the device is let go from here. */
 static void *run_watch(void *loop) {
   ethd_loop *l = loop;
-  unsigned turns = atomic_load_explicit(&l->turns, memory_order_relaxed);
-  int64_t since = ethd__loop_now(l), now;
+  int64_t gap = l->gap > 2 * l->period ? l->gap : 2 * l->period; /* a period lies between two turns */
+  int64_t alive = ethd__loop_now(l), left = gap;
   while (!atomic_load_explicit(&l->stop, memory_order_relaxed) && !ethd_loop_ended(l)) {
-    struct timespec t = {.tv_nsec = l->gap / 4 < LOOK_MAX ? l->gap / 4 : LOOK_MAX};
+    struct timespec t = {.tv_nsec = left < LOOK_MAX ? left : LOOK_MAX};
     __STD(nanosleep)(&t, NULL);
-    unsigned seen = atomic_load_explicit(&l->turns, memory_order_relaxed);
-    now = ethd__loop_now(l);
-    if (seen != turns || !ethd_loop_armed(l)) since = now;
-    turns = seen;
-    if (now - since <= l->gap) continue;
-    l->def.driver->safe(l->def.device);
+    int64_t turned = atomic_load_explicit(&l->turned, memory_order_relaxed), now = ethd__loop_now(l);
+    if (turned > alive) alive = turned;
+    if (!ethd_loop_armed(l)) alive = now;
+    left = alive + gap - now;
+    if (left > 0) continue;
     ethd_loop_raise(l, ETHD_FAULT_LOOP);
-    since = now;
+    l->def.driver->safe(l->def.device);
+    alive = now;
+    left = gap;
   }
   return NULL;
 }
