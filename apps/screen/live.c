@@ -1,10 +1,14 @@
 #include "screen/live.h"
 
+#include <errno.h>
 #include <math.h>
+#include <sched.h>
 #include <string.h>
 #include <time.h>
 
 #include "common/cli.h"
+
+#define PRIORITY 10 /* of SCHED_FIFO: under a device's loop */
 
 /* ---- the thread ---- */
 
@@ -56,6 +60,24 @@ static void *run(void *live) {
 
 /* ---- [main] ---- */
 
+/* Before everything that has no realtime priority, the screen among it, where the machine grants that. */
+static int create(ethd__live *l, int policy) {
+  pthread_attr_t attr;
+  struct sched_param param = {.sched_priority = policy == SCHED_FIFO ? PRIORITY : 0};
+  pthread_attr_init(&attr);
+  pthread_attr_setinheritsched(&attr, PTHREAD_EXPLICIT_SCHED);
+  pthread_attr_setschedpolicy(&attr, policy);
+  pthread_attr_setschedparam(&attr, &param);
+  int failure = pthread_create(&l->thread, &attr, run, l);
+  pthread_attr_destroy(&attr);
+  return failure;
+}
+
+static bool start(ethd__live *l) {
+  int failure = create(l, SCHED_FIFO);
+  return !(failure == EPERM ? create(l, SCHED_OTHER) : failure);
+}
+
 static ethd_status open_cells(ethd__live *l) {
   ethd_error error;
   ethd_status status = ethd_cell_create(sizeof(ethd_vec), &l->pointer, &error);
@@ -81,7 +103,7 @@ ethd_status ethd__live_start(ethd__live *l, ethd__stage *stage, const ethd__spee
     l->tap.commanded = speed->centre;
     l->tap.path = ethd__hand_path(&l->hand);
     l->rule = ethd__stage_rule(stage, speed, l->tap.finger_radius);
-    l->started = !pthread_create(&l->thread, NULL, run, l);
+    l->started = start(l);
     status = l->started ? ETHD_OK : ETHD_E_MEMORY;
   }
   if (status) release(l);
