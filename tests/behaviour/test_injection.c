@@ -126,7 +126,7 @@ static const struct {
   int row;
   const char *why;
 } elsewhere[] = {
-    {3, "not here: it needs threads; tests/threads/test_loop_thread.c"},
+    {3, "not here: it needs threads; tests/threads/test_loop_rows.c"},
 };
 
 int main(int count, char **words) {
