@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "common/cli.h"
+#include "common/limits_event.h"
 #include "file/error_text.h"
 #include "file/text.h"
 #include "run/telemetry.h"
@@ -79,22 +80,6 @@ static ethd_status open_device(ethd__session *s, char *message) {
   return status;
 }
 
-/* The device's limits, which the configuration doesn't know: a replay has no device. */
-static ethd_status record_limits(const ethd__session *s) {
-  ethd_limits was = s->config->setup.limits, is = s->setup.limits;
-  ethd_status status = ETHD_OK;
-  for (const ethd_limit *row = ethd_limit_rows; !status && row < ethd_limit_rows + ETHD_LIMITS; row++) {
-    const double *own = ethd_limit_of(&is, row);
-    char text[ETHD__DETAIL_MAX];
-    if (!memcmp(ethd_limit_of(&was, row), own, row->count * sizeof *own)) continue;
-    int n = snprintf(text, sizeof text, "limits.%s", row->name);
-    for (uint32_t i = 0; i < row->count; i++)
-      n += snprintf(text + n, sizeof text - (size_t)n, " %.17g", own[i]);
-    status = ethd_recording_event(s->recorder.recording, "set", text);
-  }
-  return status;
-}
-
 /* In the recording's folder, if not elsewhere; one of an earlier recording goes. */
 static ethd_status open_snapshot(ethd__session *s, const ethd__session_options *o, char *message) {
   char *path = o->snapshot ? strdup(o->snapshot) : ethd__path_join(o->record, "snapshot.npy");
@@ -113,7 +98,7 @@ static ethd_status open_recorder(ethd__session *s, const ethd__session_options *
   if (status || !o->record) return status;
   status = ethd_recording_create(o->record, s->config, &r->recording, message);
   if (status) return status;
-  status = record_limits(s);
+  status = ethd__limits_event(r->recording, &s->config->setup.limits, &s->setup.limits);
   return status ? ethd__say(message, status, "%s: %s", o->record, ethd_status_sentence(status)) : ETHD_OK;
 }
 

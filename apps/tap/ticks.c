@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/limits_event.h"
 #include "file/error_text.h"
 #include "file/recording_parts.h"
 #include "file/text.h"
@@ -50,8 +51,7 @@ ethd_status ethd__ticks_stage(ethd__ticks *ticks, const ethd__stage *stage, char
     snprintf(detail, sizeof detail, "%s %s", gain->key, gain->value);
     status = ethd_recording_event(recording, "set", detail);
   }
-  snprintf(detail, sizeof detail, "limits.torque %.17g", stage->setup.limits.torque);
-  if (!status) status = ethd_recording_event(recording, "set", detail);
+  if (!status) status = ethd__limits_event(recording, &stage->study->config->setup.limits, &stage->setup.limits);
   return said(status, message);
 }
 
