@@ -122,13 +122,6 @@ static void catch_signals(void) {
   signal(SIGPIPE, SIG_IGN);
 }
 
-/* Before anything is known to move. */
-static void print_remarks(const ethd__session *s) {
-  const char *remark;
-  for (uint32_t i = 0; (remark = s->driver->remark(s->device, i)) != NULL; i++)
-    fprintf(stderr, "device: %s\n", remark);
-}
-
 int main(int argc, char **argv) {
   static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
   static ethd__session session;
@@ -139,8 +132,7 @@ int main(int argc, char **argv) {
   catch_signals();
   ethd_status status = ethd__session_open(&arg.session, &session, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
-  print_remarks(&session);
-  if (!arg.session.is_virtual) ethd__shortfalls_print(stderr, ethd_loop_shortfalls(session.loop));
+  ethd__remarks_print(stderr, &session);
   if (arg.session.is_virtual)
     run_virtual(&session);
   else

@@ -6,10 +6,13 @@
 #include <unistd.h>
 
 #include "common/cli.h"
+#include "file/recording_parts.h"
+#include "run/summary.h"
 #include "screen/screen.h"
 #include "study/desk.h"
 #include "study/session.h"
 #include "study/shard.h"
+#include "study/station.h"
 
 static const char doc[] =
     "Runs a tapping study: participants tap a virtual wall under each strategy at each speed until enough taps "
@@ -18,8 +21,10 @@ static const char doc[] =
     "STUDY is an INI file; paper.study, which comes along, is the paper's. The folder of --out holds all data and "
     "a README.md that says what each file and column is; ethd-report draws it. A session that was stopped, killed "
     "or ran out of disk goes on with --resume: no tap is lost, repeated or torn. Simulated participants are "
-    "plausible, not measured; they answer no survey.\n\n"
-    "With --ask, lines on stdin: note WORDS, pause, go, abort (this participant), stop; and the survey's answers.\n\n"
+    "plausible, not measured; they answer no survey. With \"[hand] source = people\" the configuration's device is "
+    "opened and run as ethd-run does, and a person's finger is in its ring.\n\n"
+    "With --ask, lines on stdin: note WORDS, pause, go, abort (this participant), stop; ack, for a device that has "
+    "stopped itself; and the survey's answers.\n\n"
     "Examples:\n"
     "  ethd-study --out session\n"
     "  ethd-study my.study --out session --ask\n"
@@ -28,7 +33,7 @@ static const char doc[] =
     "  ethd-study grid.study --simulate 1000 --shard 1/4 --out bulk    (and 2/4, 3/4, 4/4, anywhere)\n"
     "  ethd-study --merge bulk";
 
-enum { OPTION_RESUME = 256, OPTION_ASK, OPTION_FINGER, OPTION_PARTICIPANT, OPTION_SIMULATE, OPTION_SHARD, OPTION_TICKS, OPTION_MERGE, OPTION_SCREEN };
+enum { OPTION_RESUME = 256, OPTION_ASK, OPTION_FINGER, OPTION_PARTICIPANT, OPTION_SIMULATE, OPTION_SHARD, OPTION_TICKS, OPTION_MERGE, OPTION_SCREEN, OPTION_VIRTUAL };
 
 static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "folder of a new session, or of a simulation", 0},
@@ -36,7 +41,8 @@ static const struct argp_option options[] = {
     {"participant", OPTION_PARTICIPANT, "K", 0, "only this one, from 1; the others another time", 0},
     {"finger", OPTION_FINGER, "FILE.csv", 0, "every hand's path is this recorded movement", 0},
     {"ask", OPTION_ASK, NULL, 0, "take commands on stdin", 0},
-    {"screen", OPTION_SCREEN, "WxH", OPTION_ARG_OPTIONAL, "in a window, 1280x720 by default: the mouse is the finger", 0},
+    {"screen", OPTION_SCREEN, "WxH", OPTION_ARG_OPTIONAL, "in a window, 1280x720 by default; the mouse is the finger, unless people's are", 0},
+    {"virtual", OPTION_VIRTUAL, NULL, 0, "with people: the device in lock-step, as fast as it goes", 0},
     {"quiet", 'q', NULL, 0, "no line per tap", 0},
     {"simulate", OPTION_SIMULATE, "N", 0, "N participants at every point of the study's [grid]", 1},
     {"shard", OPTION_SHARD, "I/N", 0, "only this share of the simulation: 1/1", 1},
@@ -50,7 +56,7 @@ static struct {
   int64_t participant, simulate;
   ethd__shard shard;
   int width, height; /* px of the screen; 0: none */
-  bool ask, quiet, sharded;
+  bool ask, quiet, sharded, is_virtual;
 } arg = {.shard = {.index = 1, .count = 1}};
 
 static void parse_shard(const char *text) {
@@ -98,6 +104,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     case OPTION_SHARD: parse_shard(text); return 0;
     case OPTION_TICKS: arg.shard.record = true; return 0;
     case OPTION_SCREEN: parse_screen(text); return 0;
+    case OPTION_VIRTUAL: arg.is_virtual = true; return 0;
     case OPTION_MERGE: arg.merge = text; return 0;
     case ARGP_KEY_ARG:
       if (arg.study) argp_error(state, "\"%s\": one study file is allowed", text);
@@ -122,6 +129,11 @@ static void check_study(const ethd__protocol *protocol, const ethd__loaded *load
   ethd__desk desk;
   check(ethd__desk_open(protocol, loaded, arg.finger, &desk, message), message);
   ethd__desk_close(&desk);
+  bool people = protocol->hands == ETHD_HANDS_PEOPLE;
+  if (people && (arg.simulate || arg.finger))
+    ethd__fail(ETHD_EXIT_INPUT, "%s: hand.source: people have hands of their own; no --simulate, no --finger", protocol->path);
+  if (!people && arg.is_virtual)
+    ethd__fail(ETHD_EXIT_INPUT, "--virtual: %s: hand.source: people is needed; any other has no real time", protocol->path);
   if (protocol->axis_count && !arg.simulate)
     ethd__fail(ETHD_EXIT_INPUT, "%s: [grid]: a session has no grid; --simulate has", protocol->path);
   if (arg.participant > protocol->participants)
@@ -173,43 +185,85 @@ static int end(const ethd__sitting *sitting, const char *folder, ethd_status sta
   return stopped(folder, "ethd-study --resume");
 }
 
+/* All that a session needs at once. */
+typedef struct ethd__place {
+  ethd__folder folder;
+  ethd__desk desk;
+  ethd__station station;
+  ethd__screen screen;
+  ethd__console console;
+  ethd__sitting sitting;
+  ethd__source device; /* people's; its self is NULL without */
+} ethd__place;
+
+/* Where people tap, their device: it says of itself what isn't realtime and what risk stays. */
+static void take_device(ethd__place *at, const char *path) {
+  char message[ETHD_MESSAGE_MAX], *config = ethd__folder_path(path, ETHD_RECORDING_CONFIG);
+  ethd_status status =
+      ethd__station_open(&at->desk, config, at->folder.device, arg.is_virtual, &at->station, message);
+  free(config);
+  check(status, message);
+  ethd__remarks_print(stderr, &at->station.session);
+  at->device = ethd__station_source(&at->station);
+  at->sitting.source = at->device;
+}
+
 /* The window, where one is asked for; else lines. */
-static void take_front(ethd__sitting *sitting, ethd__desk *desk, ethd__console *console, ethd__screen *screen) {
+static void take_front(ethd__place *at) {
   char message[ETHD_MESSAGE_MAX];
-  sitting->source = ethd__desk_source(desk);
-  sitting->front = ethd__console_front(console);
+  bool people = at->device.self != NULL;
+  at->sitting.front = ethd__console_front(&at->console);
   if (!arg.width) return;
-  if (ethd__screen_open(screen, desk, arg.width, arg.height, message))
+  if (ethd__screen_open(&at->screen, &at->desk, people ? &at->device : NULL, arg.width, arg.height, message))
     ethd__fail(ETHD_EXIT_FAILED, "--screen: %s", message);
-  sitting->source = ethd__screen_source(screen);
-  sitting->front = ethd__screen_front(screen);
+  if (!people) at->sitting.source = ethd__screen_source(&at->screen);
+  if (people) at->station.watcher = ethd__screen_watcher(&at->screen);
+  at->sitting.front = ethd__screen_front(&at->screen);
+}
+
+static void open_place(ethd__place *at, const char *path) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  check(ethd__folder_open(path, &at->folder, message), message);
+  if (arg.is_virtual && at->folder.protocol.hands != ETHD_HANDS_PEOPLE)
+    ethd__fail(ETHD_EXIT_INPUT, "--virtual: %s: hand.source: people is needed", at->folder.protocol.path);
+  at->console = (ethd__console){.protocol = &at->folder.protocol, .ask = arg.ask, .quiet = arg.quiet};
+  check(ethd__desk_open(&at->folder.protocol, &at->folder.loaded, at->folder.finger, &at->desk, message), message);
+  check(ethd__sitting_open(&at->folder, &at->sitting, message), message);
+  choose(&at->sitting, &at->folder.protocol);
+  at->sitting.source = ethd__desk_source(&at->desk);
+  ethd__catch_interrupt();
+  if (at->folder.protocol.hands == ETHD_HANDS_PEOPLE) take_device(at, path);
+  take_front(at);
+}
+
+/* First of all: nothing moves any more, whatever is still to be said. */
+static void close_device(ethd__place *at) {
+  char message[ETHD_MESSAGE_MAX];
+  if (at->device.self && ethd__station_close(&at->station, message) < 0)
+    fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);
+}
+
+static void close_place(ethd__place *at) {
+  ethd__sitting_close(&at->sitting);
+  ethd__desk_close(&at->desk);
+  ethd__folder_close(&at->folder);
 }
 
 static int run_session(void) {
+  static ethd__place place;
   char message[ETHD_MESSAGE_MAX] = "";
   const char *path = arg.resume ? arg.resume : arg.out;
-  ethd__folder folder;
-  ethd__desk desk;
-  ethd__sitting sitting;
-  static ethd__screen screen;
   bool over = false;
   if (!arg.resume) make_folder();
-  check(ethd__folder_open(path, &folder, message), message);
-  ethd__console console = {.protocol = &folder.protocol, .ask = arg.ask, .quiet = arg.quiet};
-  check(ethd__desk_open(&folder.protocol, &folder.loaded, folder.finger, &desk, message), message);
-  check(ethd__sitting_open(&folder, &sitting, message), message);
-  choose(&sitting, &folder.protocol);
-  take_front(&sitting, &desk, &console, &screen);
-  ethd__catch_interrupt();
-  ethd_status status = ethd__sitting_run(&sitting, &over, message);
+  open_place(&place, path);
+  ethd_status status = ethd__sitting_run(&place.sitting, &over, message);
+  close_device(&place);
   if (arg.width) {
-    ethd__screen_end(&screen, over);
-    ethd__screen_close(&screen);
+    ethd__screen_end(&place.screen, over);
+    ethd__screen_close(&place.screen);
   }
-  int code = end(&sitting, path, status, over, message);
-  ethd__sitting_close(&sitting);
-  ethd__desk_close(&desk);
-  ethd__folder_close(&folder);
+  int code = end(&place.sitting, path, status, over, message);
+  close_place(&place);
   return code;
 }
 

@@ -180,7 +180,7 @@ int main(int argc, char **argv) {
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   fill_in();
-  ethd__load(arg.config, arg.plant, &loaded);
+  ethd__load(arg.config, arg.plant, true, &loaded);
   study.config = loaded.config;
   study.plant = loaded.plant;
   study.speeds = load_speeds(&study.plant);

@@ -67,6 +67,7 @@ static void take(ethd__recorder *r, const ethd_loop_row *row) {
   r->rows++;
   pthread_mutex_unlock(&r->lock);
   tell_loop(r, row->lost, failed_before);
+  if (r->sink.take) r->sink.take(r->sink.self, row);
   ethd__snapshot_take(&r->snapshot, &row->trace, begins);
   if (r->telemetry >= 0 && r->rows % r->every == 0) ethd__telemetry_send(r->telemetry, row);
 }

@@ -20,8 +20,15 @@ typedef struct ethd__post {
   char detail[ETHD__DETAIL_MAX];
 } ethd__post;
 
+/* Whoever else wants every row, as it comes, on the recorder's thread. */
+typedef struct ethd__sink {
+  void *self;
+  void (*take)(void *self, const ethd_loop_row *row); /* NULL: nobody */
+} ethd__sink;
+
 typedef struct ethd__recorder {
   ethd_loop *loop;
+  ethd__sink sink;
   ethd_recording *recording; /* NULL: none */
   int telemetry;             /* socket, -1 none */
   uint64_t every;            /* rows from one datagram to the next */

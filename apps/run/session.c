@@ -66,10 +66,10 @@ static void await_tick(ethd__session *s) {
 
 /* ---- opening ---- */
 
-static ethd_status open_device(ethd__session *s, char *message) {
+static ethd_status open_device(ethd__session *s, const char *folder, char *message) {
   ethd_error error = {0};
   const ethd_device_def def = {&s->config->setup, s->config->settings, s->config->setting_count,
-                               s->config->folder, s->config->path};
+                               folder ? folder : s->config->folder, s->config->path};
   ethd_status status = ethd_device_open(s->config->device, NULL, &def, &s->driver, &s->device, message);
   if (status) return status;
   const ethd_limits limits = s->driver->limits(s->device);
@@ -143,9 +143,10 @@ ethd_status ethd__session_open(const ethd__session_options *o, ethd__session *s,
   char left[ETHD_MESSAGE_MAX];
   memset(s, 0, sizeof *s);
   s->recorder.telemetry = -1;
+  s->recorder.sink = o->sink;
   s->is_virtual = o->is_virtual;
   ethd_status status = ethd_config_load(o->config, &s->config, message);
-  if (!status) status = open_device(s, message);
+  if (!status) status = open_device(s, o->folder, message);
   if (!status) status = open_recorder(s, o, message);
   if (!status) status = open_loop(s, o, message);
   if (status) {
@@ -179,6 +180,10 @@ ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const 
 
 ethd_status ethd__session_enable(ethd__session *s) {
   if (!settle(s)) return ETHD_BUSY;
+  if (ethd_loop_armed(s->loop)) {
+    ethd_loop_disarm(s->loop);
+    await_tick(s);
+  }
   ethd_status status = ethd_loop_enable(s->loop);
   if (!status) await_tick(s);
   return status;

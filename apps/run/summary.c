@@ -18,6 +18,13 @@ void ethd__shortfalls_print(FILE *out, int32_t bits) {
               ethd_shortfall_mend(1 << i));
 }
 
+void ethd__remarks_print(FILE *out, const ethd__session *s) {
+  const char *remark;
+  for (uint32_t i = 0; (remark = s->driver->remark(s->device, i)) != NULL; i++)
+    fprintf(out, "device: %s\n", remark);
+  if (!s->is_virtual) ethd__shortfalls_print(out, ethd_loop_shortfalls(s->loop));
+}
+
 static void print_fault(FILE *out, int fault, uint64_t n, int *none) {
   if (!n) return;
   fprintf(out, "%-10s %" PRIu64 " x %s\n", *none ? "faults" : "", n, ethd_fault_sentence((ethd_fault)fault));

@@ -17,7 +17,8 @@ void ethd__draw_fit(ethd__screen *s) {
                             s->window.height);
 }
 
-ethd_vec ethd__draw_pointer(const ethd__screen *s) {
+ethd_vec ethd__draw_finger(const ethd__screen *s) {
+  if (s->device) return s->device->finger(s->device->self);
   return ethd__room_point(&s->frame, s->window.pointer[0], s->window.pointer[1]);
 }
 

@@ -13,8 +13,8 @@ void ethd__draw_room(ethd__screen *screen, ethd_vec x, double seconds);
 /* Title above, two lines below. */
 void ethd__draw_words(ethd__screen *screen, const char *line, SDL_Color colour, const char *keys);
 
-/* The pointer, m. */
-ethd_vec ethd__draw_pointer(const ethd__screen *screen);
+/* The finger's centre, m: the device's, or the pointer. */
+ethd_vec ethd__draw_finger(const ethd__screen *screen);
 
 /* Fits the free space into the window. */
 void ethd__draw_fit(ethd__screen *screen);

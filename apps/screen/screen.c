@@ -93,7 +93,7 @@ typedef struct waiting {
 } waiting;
 
 static bool at_start(const ethd__screen *s, waiting *wait) {
-  ethd_vec x = ethd__draw_pointer(s);
+  ethd_vec x = ethd__draw_finger(s);
   double t = now(), middle = (s->frame.bottom + s->frame.top) / 2;
   double speed = ethd_vec_norm(ethd_vec_sub(x, wait->last)) / fmax(t - wait->before, 1e-3);
   bool there = fabs(x.x - s->frame.start) < NEAR && fabs(x.y - middle) < NEAR && speed < SETTLED;
@@ -115,26 +115,39 @@ static ethd__wish wish(void *self, char words[ETHD_MESSAGE_MAX]) {
       page(s, "Pause", "", "Space goes on   Esc stops");
       return s->stop ? ETHD_WISH_STOP : ETHD_WISH_PAUSE;
     }
-    ethd__draw_room(s, ethd__draw_pointer(s), now() - start);
+    ethd__draw_room(s, ethd__draw_finger(s), now() - start);
     ethd__draw_words(s, s->feedback[0] ? s->feedback : "Bring the circle to the grey line, and wait", s->feedback[0] && !s->good ? ethd__red : ethd__white,
                      KEYS);
     ethd__window_end(&s->window);
-    if (at_start(s, &wait)) return ETHD_WISH_GO;
+    bool stopped = s->device && s->device->stopped(s->device->self);
+    if (stopped || at_start(s, &wait)) return ETHD_WISH_GO;
   }
   return ETHD_WISH_STOP;
 }
 
 /* ---- a tap ---- */
 
+static void show(ethd__screen *s, double t, ethd_vec finger) {
+  ethd__draw_room(s, finger, t);
+  ethd__draw_words(s, "Tap", ethd__green, "");
+  ethd__window_end(&s->window);
+}
+
+static bool look(void *self, double t, ethd_vec finger) {
+  ethd__screen *s = self;
+  if (begin(s)) show(s, t, finger);
+  return !s->stop;
+}
+
+ethd__watcher ethd__screen_watcher(ethd__screen *s) { return (ethd__watcher){s, look}; }
+
 static void follow(ethd__screen *s, ethd__live *live, ethd_vec from) {
   ethd__glimpse g = {.finger = from};
   while (ethd__live_look(live, &g)) {
     (void)begin(s);
     if (s->stop) break;
-    ethd__live_lead(live, ethd__draw_pointer(s));
-    ethd__draw_room(s, g.finger, g.t);
-    ethd__draw_words(s, "Tap", ethd__green, "");
-    ethd__window_end(&s->window);
+    ethd__live_lead(live, ethd__draw_finger(s));
+    show(s, g.t, g.finger);
   }
 }
 
@@ -161,6 +174,14 @@ static void verdict(void *self, const char *participant, const ethd__taken *take
   (void)participant;
   s->good = reason == ETHD_TAP_OK;
   snprintf(s->feedback, sizeof s->feedback, wanted ? "%s   (%u of %u)" : "%s", ethd__advice(reason), valid, wanted);
+}
+
+/* ---- a device that has stopped itself ---- */
+
+static bool stopped(void *self, const char *why) {
+  ethd__screen *s = self;
+  page(s, "The device has stopped itself", why, "Space: I have seen to it   Esc stops");
+  return !s->stop;
 }
 
 /* ---- the survey ---- */
@@ -192,9 +213,11 @@ static bool survey(void *self, const ethd__turn *turn, int answers[3]) {
 
 /* ---- open and close ---- */
 
-ethd_status ethd__screen_open(ethd__screen *s, ethd__desk *desk, int width, int height, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__screen_open(ethd__screen *s, ethd__desk *desk, const ethd__source *device, int width, int height,
+                              char message[ETHD_MESSAGE_MAX]) {
   memset(s, 0, sizeof *s);
   s->desk = desk;
+  s->device = device;
   s->protocol = desk->protocol;
   ethd_status status = ethd__window_open(&s->window, "ethd-study", width, height, message);
   if (status) return status;
@@ -207,8 +230,8 @@ ethd_status ethd__screen_open(ethd__screen *s, ethd__desk *desk, int width, int 
   return ETHD_OK;
 }
 
-ethd__source ethd__screen_source(ethd__screen *s) { return (ethd__source){s, false, tap}; }
-ethd__front ethd__screen_front(ethd__screen *s) { return (ethd__front){s, block, verdict, wish, survey}; }
+ethd__source ethd__screen_source(ethd__screen *s) { return (ethd__source){.self = s, .tap = tap}; }
+ethd__front ethd__screen_front(ethd__screen *s) { return (ethd__front){s, block, verdict, wish, stopped, survey}; }
 
 void ethd__screen_end(ethd__screen *s, bool over) {
   const ethd_histogram *h = &s->window.frames;

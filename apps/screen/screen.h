@@ -13,6 +13,7 @@
 typedef struct ethd__screen {
   ethd__window window;
   ethd__desk *desk;
+  const ethd__source *device; /* has a finger of its own; NULL: the pointer is it, on the simulated device */
   const ethd__protocol *protocol;
   ethd__room frame;
   ethd_vec avatar;         /* as drawn last */
@@ -23,10 +24,15 @@ typedef struct ethd__screen {
   uint64_t late;           /* ticks */
 } ethd__screen;
 
-ETHD_MUST_CHECK ethd_status ethd__screen_open(ethd__screen *screen, ethd__desk *desk, int width, int height,
-                                              char message[ETHD_MESSAGE_MAX]);
+/* device: where the finger and the taps come from; NULL: the mouse. It outlives the screen. */
+ETHD_MUST_CHECK ethd_status ethd__screen_open(ethd__screen *screen, ethd__desk *desk, const ethd__source *device,
+                                              int width, int height, char message[ETHD_MESSAGE_MAX]);
 
+/* Taps with the mouse. */
 ethd__source ethd__screen_source(ethd__screen *screen);
+
+/* Shows a device's taps while they are done. */
+ethd__watcher ethd__screen_watcher(ethd__screen *screen);
 ethd__front ethd__screen_front(ethd__screen *screen);
 
 /* The last page; then how long frames took, as a line on stdout. */

@@ -88,6 +88,18 @@ static ethd__wish wish(void *self, char words[ETHD_MESSAGE_MAX]) {
   return c->paused ? ETHD_WISH_STOP : ETHD_WISH_GO;
 }
 
+static bool stopped(void *self, const char *why) {
+  ethd__console *c = self;
+  char line[ETHD_MESSAGE_MAX];
+  if (!c->ask) return false;
+  do {
+    printf("the device stopped itself: %s; ack goes on, stop ends\n", why);
+    fflush(stdout);
+    if (!read_line(c, true, line, sizeof line) || !strcmp(line, "stop")) return false;
+  } while (strcmp(line, "ack"));
+  return true;
+}
+
 static bool ask(ethd__console *c, int question, int *answer) {
   char line[ETHD_MESSAGE_MAX];
   printf("%s\n", ethd__questions[question]);
@@ -111,5 +123,5 @@ static bool survey(void *self, const ethd__turn *turn, int answers[3]) {
 }
 
 ethd__front ethd__console_front(ethd__console *console) {
-  return (ethd__front){console, block, verdict, wish, survey};
+  return (ethd__front){console, block, verdict, wish, stopped, survey};
 }

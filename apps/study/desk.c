@@ -35,7 +35,9 @@ static void seat(ethd__desk *desk, uint32_t person) {
   leave(desk);
   desk->person = person;
   desk->seated = true;
-  desk->study.plant = ethd__person_plant(&desk->loaded->plant, p->seed, person, p->between, p->hand_spread);
+  desk->study.plant = p->hands == ETHD_HANDS_PEOPLE
+                          ? desk->loaded->plant
+                          : ethd__person_plant(&desk->loaded->plant, p->seed, person, p->between, p->hand_spread);
   desk->study.seed = ethd__person_seed(p->seed, person);
   for (size_t i = 0; i < p->speeds.count; i++)
     (void)parse_speed(desk, &desk->study.plant, p->speeds.word[i], &desk->speeds[i]);
@@ -97,7 +99,7 @@ static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, cha
   return status ? status : ethd__stage_run(&desk->stage, out->speed, out->tap, &out->result, message);
 }
 
-ethd__source ethd__desk_source(ethd__desk *desk) { return (ethd__source){desk, true, tap}; }
+ethd__source ethd__desk_source(ethd__desk *desk) { return (ethd__source){.self = desk, .simulated = true, .tap = tap}; }
 
 /* ---- opening ---- */
 
@@ -184,7 +186,7 @@ ethd_status ethd__desk_open(const ethd__protocol *protocol, const ethd__loaded *
   if (!status) status = check_grid(out, message);
   if (!status) status = ethd__study_prepare(&out->study, message);
   if (!status) status = check_stages(out, message);
-  if (!status && (protocol->recorded || finger))
+  if (!status && (protocol->hands == ETHD_HANDS_RECORDED || finger))
     status = ethd__movements_find(protocol, finger, &out->movements, &out->movement_count, message);
   if (status) ethd__desk_close(out);
   return status;

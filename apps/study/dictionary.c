@@ -20,6 +20,7 @@ const char ethd__dictionary[] =
     "| config.ini, scene.scene | the controller's configuration and walls |\n"
     "| device.plant | the simulated device and finger: plausible, fitted, not measured |\n"
     "| movement.csv | the recorded movement, when all hands follow one |\n"
+    "| device.folder | with people: where relative paths of the device's settings start |\n"
     "| versions.txt | program, compiler, hash of the four files above |\n"
     "| taps.csv | a row per tap, training too |\n"
     "| survey.csv | a row per participant and cell; simulated participants answer nothing |\n"

@@ -18,6 +18,7 @@
 #define PLANT "device.plant"
 #define VERSIONS "versions.txt"
 #define MOVEMENT "movement.csv"
+#define DEVICE_FOLDER "device.folder"
 #define BYTES_MAX ((size_t)1 << 24)
 
 static const char *const hashed[] = {ETHD_STUDY_FILE, ETHD_RECORDING_CONFIG, ETHD_RECORDING_SCENE, PLANT};
@@ -49,7 +50,7 @@ void ethd__folder_device(const ethd__protocol *p, ethd__loaded *out) {
   char *config = p->config ? find(p, p->config) : NULL;
   bool letter = p->plant && !p->plant[strcspn(p->plant, "/.")] && strlen(p->plant) == 1;
   char *plant = p->plant && !letter ? find(p, p->plant) : NULL;
-  ethd__load(config, plant ? plant : p->plant, out);
+  ethd__load(config, plant ? plant : p->plant, p->hands != ETHD_HANDS_PEOPLE, out);
   free(config);
   free(plant);
 }
@@ -71,6 +72,15 @@ static ethd_status write_device(const char *folder, const ethd__loaded *loaded, 
   free(config);
   if (!status) status = write_text(folder, ETHD_RECORDING_SCENE, loaded->config->scene_text, message);
   return status ? status : copy(loaded->plant_path, folder, PLANT, message);
+}
+
+/* The configuration is copied away from the files that its device needs. */
+static ethd_status write_device_folder(const char *folder, const ethd__loaded *loaded, char *message) {
+  char *absolute = realpath(loaded->config->folder, NULL);
+  if (!absolute) return ethd__say(message, ETHD_E_FILE, "%s: %s", loaded->config->folder, strerror(errno));
+  ethd_status status = write_text(folder, DEVICE_FOLDER, absolute, message);
+  free(absolute);
+  return status;
 }
 
 /* ---- making ---- */
@@ -118,12 +128,21 @@ ethd_status ethd__folder_make(const char *folder, const ethd__protocol *protocol
   ethd_status status = write_text(folder, ETHD_STUDY_FILE, protocol->text, message);
   if (!status) status = write_device(folder, loaded, message);
   if (!status && finger) status = copy(finger, folder, MOVEMENT, message);
+  if (!status && protocol->hands == ETHD_HANDS_PEOPLE) status = write_device_folder(folder, loaded, message);
   if (!status) status = write_versions(folder, message);
   if (!status) status = write_text(folder, "README.md", ethd__dictionary, message);
   return status ? status : settle(folder, message);
 }
 
 /* ---- opening ---- */
+
+static ethd_status read_device_folder(const char *folder, char **out, char *message) {
+  size_t length;
+  char *path = ethd__folder_path(folder, DEVICE_FOLDER);
+  ethd_status status = ethd_text_read(path, 1 << 16, out, &length, message);
+  free(path);
+  return status;
+}
 
 ethd_status ethd__folder_open(const char *folder, ethd__folder *out, char message[ETHD_MESSAGE_MAX]) {
   *out = (ethd__folder){.path = ethd__folder_path(folder, "")};
@@ -132,7 +151,7 @@ ethd_status ethd__folder_open(const char *folder, ethd__folder *out, char messag
        *plant = ethd__folder_path(folder, PLANT);
   ethd_status status = ethd__protocol_load(study, &out->protocol, message);
   if (!status) status = hash(folder, out->hash, message);
-  if (!status) ethd__load(config, plant, &out->loaded);
+  if (!status) ethd__load(config, plant, out->protocol.hands != ETHD_HANDS_PEOPLE, &out->loaded);
   free(study);
   free(config);
   free(plant);
@@ -141,6 +160,7 @@ ethd_status ethd__folder_open(const char *folder, ethd__folder *out, char messag
     free(out->finger);
     out->finger = NULL;
   }
+  if (!status && out->protocol.hands == ETHD_HANDS_PEOPLE) status = read_device_folder(folder, &out->device, message);
   if (status) ethd__folder_close(out);
   return status;
 }
@@ -150,5 +170,6 @@ void ethd__folder_close(ethd__folder *folder) {
   ethd__loaded_free(&folder->loaded);
   free(folder->path);
   free(folder->finger);
-  folder->path = folder->finger = NULL;
+  free(folder->device);
+  folder->path = folder->finger = folder->device = NULL;
 }

@@ -3,6 +3,7 @@
      study.ini      the study file, as it was read
      config.ini     the controller's configuration; scene.scene its walls; device.plant the simulated device
      movement.csv   the recorded movement, when all hands follow one
+     device.folder  with people: where relative paths of the device's settings start
      versions.txt   program, compiler, and the hash: SHA-256 of those four files one after another
      README.md      the data dictionary */
 #ifndef ETHD_STUDY_FOLDER_H
@@ -30,6 +31,7 @@ ETHD_MUST_CHECK ethd_status ethd__folder_make(const char *folder, const ethd__pr
 typedef struct ethd__folder {
   char *path;
   char *finger; /* the movement for all hands, NULL: none */
+  char *device; /* where relative paths of [device] start, NULL: nothing of the kind is written down */
   ethd__protocol protocol;
   ethd__loaded loaded;
   char hash[ETHD_SHA256_TEXT];

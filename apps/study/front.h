@@ -19,6 +19,8 @@ typedef struct ethd__front {
   void (*verdict)(void *self, const char *participant, const ethd__taken *taken, uint32_t valid, uint32_t wanted);
   /* Before each tap. words: of a note. */
   ethd__wish (*wish)(void *self, char words[ETHD_MESSAGE_MAX]);
+  /* The device has stopped itself. True: somebody has seen to it, and it may go on. */
+  bool (*stopped)(void *self, const char *why);
   /* 1 to 5 each; false: no answers. */
   bool (*survey)(void *self, const ethd__turn *turn, int answers[3]);
 } ethd__front;

@@ -18,7 +18,8 @@ static ethd_status defaults(ethd__protocol *p) {
   char unsaid[ETHD_MESSAGE_MAX];
   *p = (ethd__protocol){.seed = 1, .participants = 3, .training = 2, .taps = 3, .attempts = 40, .record = true,
                         .between = 0.5, .hand_spread = 0.15, .band_low = NAN, .band_high = NAN, .graze = 0.02,
-                        .lift = 0.005};
+                        .lift = 0.005,
+                        .slack = 0.0004};
   for (size_t i = 0; i < sizeof text / sizeof *text; i++) {
     ethd_ini_key key = {(char *)"study", (char *)text[i].key, (char *)text[i].value, 0};
     const ethd__entry e = {"the defaults", &key, p, unsaid};
@@ -51,7 +52,7 @@ static ethd_status check(const ethd_ini *ini, const ethd__entry *last, ethd__pro
                               "%" PRIu32 " attempts can't make %" PRIu32 " valid taps; at least as many are allowed",
                   p->attempts, p->taps);
   e.key = motion;
-  if (motion && !p->recorded) return ethd__entry_refuse(&e, ETHD_E_RANGE, "stands there without source = recorded");
+  if (motion && p->hands != ETHD_HANDS_RECORDED) return ethd__entry_refuse(&e, ETHD_E_RANGE, "stands there without source = recorded");
   for (size_t i = 0, points = 1; i < p->axis_count; i++) {
     points *= p->axes[i].values.count;
     e.key = ethd_ini_find(ini, "grid", p->axes[i].key);

@@ -1,7 +1,7 @@
 /* A study file: who taps on what, how often, and when a tap counts. INI, strict; all [main].
 
      [study]                              [hand]
-     name = paper                         source = simulated      or recorded
+     name = paper                         source = simulated      recorded; people: fingers in a device
      seed = 1                             motion = FOLDER         of recorded movements
      participants = 3                     between = 0.5           share of the plant's variance between people
      strategies = smooth,offset           hand_spread = 0.15      of stiffness and damping, ln, between people
@@ -11,12 +11,14 @@
      taps = 3          valid ones         band_high = 0.08        m/s about 0.4
      attempts = 40     at most, a cell    graze = 0.02            s of touch that a tap needs at least
      survey = off      on                 lift = 0.005            m off the wall and back: a double tap
-     record = all      none
-                                          [grid]                  --simulate: every combination
-     [device]                             contact.k_e = 1000,2500
-     config = n.ini
+     record = all      none               slack = 0.0004          m: so near to the ring people's fingers touch it
+
+     [device]                             [grid]                  --simulate: every combination
+     config = n.ini                       contact.k_e = 1000,2500
      plant = n
 
+   With people, the configuration's [device] is opened as ethd-run does; the plant then only says how fast
+   low and high are.
    All keys have defaults; the figures above are they, but strategies, speeds and order of the paper.
    Files are looked for beside the study file, then among those that came with the programs. */
 #ifndef ETHD_STUDY_PROTOCOL_H
@@ -33,6 +35,9 @@
 #define ETHD_STUDY_TEXT_MAX ((size_t)1 << 16)
 
 typedef enum ethd__order { ETHD_ORDER_PAPER, ETHD_ORDER_RANDOM, ETHD_ORDER_LATIN } ethd__order;
+
+/* Whose hands: the simulated device's, on a synthetic or a recorded path, or people's on any device. */
+typedef enum ethd__hands { ETHD_HANDS_SIMULATED, ETHD_HANDS_RECORDED, ETHD_HANDS_PEOPLE } ethd__hands;
 
 typedef struct ethd__words {
   char *word[ETHD_STUDY_WORDS];
@@ -52,10 +57,11 @@ typedef struct ethd__protocol {
   uint32_t participants, training, taps, attempts;
   ethd__words strategies, speeds;
   ethd__order order;
-  bool survey, record, recorded; /* recorded: the hands are */
+  ethd__hands hands;
+  bool survey, record;
   double between, hand_spread;
   double band_low, band_high; /* m/s, NaN: the plant's */
-  double graze, lift;
+  double graze, lift, slack;
   ethd__axis axes[ETHD_STUDY_GAINS];
   size_t axis_count;
 } ethd__protocol;

@@ -79,10 +79,11 @@ static int choice(const char *words, const char *word) {
   return -1;
 }
 
-static ethd_status set_order(const ethd__entry *e, const key_row *row, void *at) {
+/* An enumeration. */
+static ethd_status set_choice(const ethd__entry *e, const key_row *row, void *at) {
   int index = choice(row->words, e->key->value);
   if (index < 0) return found(e, e->key->value, row->words);
-  *(ethd__order *)at = (ethd__order)index;
+  *(unsigned *)at = (unsigned)index;
   return ETHD_OK;
 }
 
@@ -154,7 +155,7 @@ static const key_row rows[] = {
     {"study", "participants", set_count, AT(participants), 1, ETHD_STUDY_PEOPLE, NULL},
     {"study", "strategies", set_words, AT(strategies), 0, 0, NULL},
     {"study", "speeds", set_words, AT(speeds), 0, 0, NULL},
-    {"study", "order", set_order, AT(order), 0, 0, "paper|random|latin"},
+    {"study", "order", set_choice, AT(order), 0, 0, "paper|random|latin"},
     {"study", "training", set_count, AT(training), 0, 1000, NULL},
     {"study", "taps", set_count, AT(taps), 1, 100000, NULL},
     {"study", "attempts", set_count, AT(attempts), 1, 1000000, NULL},
@@ -162,13 +163,14 @@ static const key_row rows[] = {
     {"study", "record", set_switch, AT(record), 0, 0, "none|all"},
     {"device", "config", set_text, AT(config), 0, 0, NULL},
     {"device", "plant", set_text, AT(plant), 0, 0, NULL},
-    {"hand", "source", set_switch, AT(recorded), 0, 0, "simulated|recorded"},
+    {"hand", "source", set_choice, AT(hands), 0, 0, "simulated|recorded|people"},
     {"hand", "motion", set_text, AT(motion), 0, 0, NULL},
     {"hand", "between", set_number, AT(between), 0, 1, NULL},
     {"hand", "hand_spread", set_number, AT(hand_spread), 0, 1, NULL},
     {"validity", "band_low", set_number, AT(band_low), 0.001, 0.2, NULL},
     {"validity", "band_high", set_number, AT(band_high), 0.001, 0.4, NULL},
     {"validity", "graze", set_number, AT(graze), 0, 0.15, NULL},
+    {"validity", "slack", set_number, AT(slack), 0, 0.002, NULL},
     {"validity", "lift", set_number, AT(lift), 0.001, 0.1, NULL},
 };
 enum { ROWS = sizeof rows / sizeof *rows };

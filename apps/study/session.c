@@ -179,6 +179,7 @@ static ethd_status run_tap(ethd__sitting *s, const char *id, const ethd__turn *t
   ethd__taken taken = {.speed = NULL};
   snprintf(name, sizeof name, "%s-%02zu-%03" PRIu32, id, turn->number, turn->attempt);
   ethd_status status = have_tap(s, folder, name, turn, &taken, &row, message);
+  bool none = status == ETHD_EMPTY;
   if (!status) status = ethd__journal_append(&s->journal, "tap", row, message);
   if (!status && !take_tap(s, row))
     status = ethd__say(message, ETHD_E_SYNTAX, "%s/%s: not the row of that tap", folder, name);
@@ -188,10 +189,26 @@ static ethd_status run_tap(ethd__sitting *s, const char *id, const ethd__turn *t
   s->taps += !status;
   free(row);
   free(folder);
-  return status;
+  return none ? ETHD_OK : status;
 }
 
 /* ---- a block ---- */
+
+/* A device that has stopped itself goes on once somebody has seen to it. */
+static ethd_status see_to_device(ethd__sitting *s, const char *id, const ethd__turn *turn, char *message) {
+  const ethd__source *source = &s->source;
+  const char *why;
+  ethd_status status = ETHD_OK;
+  while (!status && !ethd__stop && source->stopped && (why = source->stopped(source->self))) {
+    status = event(s, id, turn->number, "fault", why, message);
+    if (status) return status;
+    if (!s->front.stopped(s->front.self, why))
+      return ethd__say(message, ETHD_E_DEVICE, "the device stopped itself: %s", why);
+    status = source->acknowledge(source->self, message);
+    if (!status) status = event(s, id, turn->number, "acknowledged", "", message);
+  }
+  return status;
+}
 
 /* *go: the next tap may come. */
 static ethd_status hear(ethd__sitting *s, const char *id, const ethd__turn *turn, bool *go, bool *stop, char *message) {
@@ -227,7 +244,9 @@ static ethd_status run_block(ethd__sitting *s, const char *id, ethd__turn *turn,
     if (!shown) s->front.block(s->front.self, id, turn);
     shown = true;
     turn->attempt = at->taken + 1;
-    status = hear(s, id, turn, &go, stop, message);
+    go = false;
+    status = see_to_device(s, id, turn, message);
+    if (!status) status = hear(s, id, turn, &go, stop, message);
     if (!status && go) status = run_tap(s, id, turn, message);
   }
   bool asked = p->survey && !turn->block.training && !at->surveyed && !s->aborted[turn->person];

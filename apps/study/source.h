@@ -24,8 +24,20 @@ typedef struct ethd__taken {
 typedef struct ethd__source {
   void *self;
   bool simulated; /* people are: nothing is asked of them, and no clock stands in their tables */
-  /* One tap, whatever it takes. */
+  /* One tap, whatever it takes. ETHD_EMPTY: somebody stops it, there was none. */
   ethd_status (*tap)(void *self, const ethd__turn *turn, ethd__taken *out, char message[ETHD_MESSAGE_MAX]);
+  /* Why the device has stopped itself, a sentence; NULL: it hasn't. acknowledge: it may go on. Both NULL
+     where nothing stops. */
+  const char *(*stopped)(void *self);
+  ethd_status (*acknowledge)(void *self, char message[ETHD_MESSAGE_MAX]);
+  /* The finger's centre as the device has it, R_0; NULL: the screen's pointer is the finger. */
+  ethd_vec (*finger)(void *self);
 } ethd__source;
+
+/* Whoever looks on while a tap is done, some times a frame. False: it shall end. */
+typedef struct ethd__watcher {
+  void *self;
+  bool (*look)(void *self, double t, ethd_vec finger); /* s of the tap; NULL: nobody */
+} ethd__watcher;
 
 #endif

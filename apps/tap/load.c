@@ -37,10 +37,10 @@ static char *beside_plant(const char *plant, const char *suffix) {
   return path;
 }
 
-static void load_plant(const char *plant, ethd__loaded *out) {
+static void load_plant(const char *plant, bool simulated, ethd__loaded *out) {
   char message[ETHD_MESSAGE_MAX];
-  ethd__device device;
-  check(ethd__device_read(out->config, &device, message), message);
+  ethd__device device = {.rays = -1};
+  if (simulated) check(ethd__device_read(out->config, &device, message), message);
   if (plant) {
     out->plant_path = beside_plant(plant, ".plant");
   } else {
@@ -75,10 +75,10 @@ static void load_config(const char *config, const char *plant, ethd__loaded *out
   if (!out->config->scene) out->config = with_wall(out->config, out->path);
 }
 
-void ethd__load(const char *config, const char *plant, ethd__loaded *out) {
+void ethd__load(const char *config, const char *plant, bool simulated, ethd__loaded *out) {
   *out = (ethd__loaded){0};
   load_config(config, plant, out);
-  load_plant(plant || config ? plant : "n", out);
+  load_plant(plant || config ? plant : "n", simulated, out);
 }
 
 void ethd__loaded_free(ethd__loaded *loaded) {

@@ -2,6 +2,8 @@
 #ifndef ETHD_TAP_LOAD_H
 #define ETHD_TAP_LOAD_H
 
+#include <stdbool.h>
+
 #include "ethd/sim.h"
 
 typedef struct ethd__loaded {
@@ -12,8 +14,9 @@ typedef struct ethd__loaded {
 } ethd__loaded;
 
 /* config: a file, NULL: the plant's own. plant: n, b or p, which came with the programs, or a file, with
-   or without .plant; NULL: the one that the configuration's [device] names, else n. Exit 2 on bad input. */
-void ethd__load(const char *config, const char *plant, ethd__loaded *out);
+   or without .plant; NULL: the one that the configuration's [device] names, else n. simulated: any other
+   device is refused; without, [device] isn't looked at. Exit 2 on bad input. */
+void ethd__load(const char *config, const char *plant, bool simulated, ethd__loaded *out);
 
 void ethd__loaded_free(ethd__loaded *loaded);
 

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static ethd_status make_room(ethd__rows *rows) {
+ethd_status ethd__rows_room(ethd__rows *rows) {
   if (rows->count < rows->room) return ETHD_OK;
   size_t room = rows->room ? 2 * rows->room : 1024;
   ethd_trace *trace = realloc(rows->trace, room * sizeof *trace);
@@ -44,7 +44,7 @@ ethd_status ethd__tapping_begin(ethd_sim *sim, ethd_control *control, const ethd
 
 ethd_status ethd__tapping_step(ethd__tapping *t) {
   if (t->rows->count > t->last) return ETHD_EMPTY;
-  ethd_status status = make_room(t->rows);
+  ethd_status status = ethd__rows_room(t->rows);
   if (status) return status;
   ethd_trace *trace = &t->rows->trace[t->rows->count];
   ethd_truth *truth = &t->rows->truth[t->rows->count];

@@ -29,6 +29,9 @@ ETHD_MUST_CHECK ethd_status ethd__tapping_begin(ethd_sim *sim, ethd_control *con
 /* One tick; ETHD_EMPTY: the tap is over. */
 ETHD_MUST_CHECK ethd_status ethd__tapping_step(ethd__tapping *tapping);
 
+/* Room for one row more. ETHD_E_MEMORY. */
+ETHD_MUST_CHECK ethd_status ethd__rows_room(ethd__rows *rows);
+
 void ethd__rows_free(ethd__rows *rows);
 
 #endif

@@ -71,6 +71,13 @@ static double slowest(const ethd__rows *rows, const ethd__rule *rule, size_t fro
   return least;
 }
 
+/* Periods from row to row, those that a live loop missed among them. */
+static size_t periods(const ethd__rows *rows, size_t from, size_t to) {
+  size_t n = to - from;
+  for (size_t i = from + 1; i <= to; i++) n += (size_t)rows->trace[i].sense.missed;
+  return n;
+}
+
 /* Delta_s and eps, for laws that brake. */
 static void braking(const ethd__rows *rows, const ethd__rule *rule, size_t from, ethd__metrics *out) {
   size_t i = from;
@@ -78,7 +85,7 @@ static void braking(const ethd__rows *rows, const ethd__rule *rule, size_t from,
   size_t begin = i;
   while (i < rows->count && rows->trace[i].state != ETHD_VO) i++;
   if (i >= rows->count) return;
-  out->delta_s = (double)(i - begin) * (1e3 * rule->period);
+  out->delta_s = (double)periods(rows, begin, i) * (1e3 * rule->period);
   out->eps = rows->trace[i].eps;
 }
 

@@ -57,6 +57,7 @@ typedef struct ethd__stage {
   ethd_sim *sim;
   ethd_control *control;
   ethd__rows rows; /* of the last tap */
+  double heat[2];  /* of the motors as it began, see ethd_control_heat */
   ethd_path_sample *samples;
 } ethd__stage;
 

@@ -52,6 +52,8 @@ ethd_status ethd__ticks_stage(ethd__ticks *ticks, const ethd__stage *stage, char
     status = ethd_recording_event(recording, "set", detail);
   }
   if (!status) status = ethd__limits_event(recording, &stage->study->config->setup.limits, &stage->setup.limits);
+  snprintf(detail, sizeof detail, "%.17g %.17g", stage->heat[0], stage->heat[1]);
+  if (!status && (stage->heat[0] > 0 || stage->heat[1] > 0)) status = ethd_recording_event(recording, "heat", detail);
   return said(status, message);
 }
 

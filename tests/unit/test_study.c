@@ -28,7 +28,7 @@ START_TEST(test_an_empty_file_is_a_study) {
   ck_assert_uint_eq(protocol.strategies.count, 2);
   ck_assert_str_eq(protocol.strategies.word[0], "smooth");
   ck_assert_str_eq(protocol.speeds.word[1], "high");
-  ck_assert(isnan(protocol.band_low) && protocol.record && !protocol.survey && !protocol.recorded);
+  ck_assert(isnan(protocol.band_low) && protocol.record && !protocol.survey && protocol.hands == ETHD_HANDS_SIMULATED);
   ck_assert_uint_eq(ethd__protocol_points(&protocol), 1);
   ethd__protocol_free(&protocol);
 }
@@ -46,7 +46,7 @@ START_TEST(test_every_key) {
   ck_assert(protocol.seed == UINT64_MAX);
   ck_assert_str_eq(protocol.strategies.word[1], "b");
   ck_assert_int_eq(protocol.order, ETHD_ORDER_LATIN);
-  ck_assert(protocol.survey && !protocol.record && protocol.recorded);
+  ck_assert(protocol.survey && !protocol.record && protocol.hands == ETHD_HANDS_RECORDED);
   ck_assert_double_eq(protocol.band_high, 0.1);
   ck_assert_uint_eq(ethd__protocol_points(&protocol), 6);
   ck_assert_str_eq(ethd__protocol_value(&protocol, 0, 0), "1");

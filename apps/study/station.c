@@ -1,0 +1,211 @@
+#include "study/station.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "common/cli.h"
+#include "file/error_text.h"
+#include "tap/seen.h"
+
+#define SECONDS 6.0     /* of a tap at most */
+#define BEAT 20000000   /* ns */
+#define LOOK 1000000    /* ns from look to look at a tap */
+#define CLEAN 3.0       /* s in which an acknowledged device must have come to rest */
+
+static void rest(long ns) {
+  const struct timespec t = {.tv_nsec = ns};
+  nanosleep(&t, NULL);
+}
+
+/* ---- rows, on the recorder's thread ---- */
+
+static void begin(ethd__station *s, const ethd_loop_row *row) {
+  s->phase = ETHD_PHASE_TAP;
+  s->begin_ns = row->trace.sense.time_ns;
+  memcpy(s->stage.heat, row->heat, sizeof row->heat);
+}
+
+static void add(ethd__station *s, const ethd_loop_row *row) {
+  ethd__rows *rows = &s->stage.rows;
+  s->status = row->lost && rows->count ? ETHD_E_FULL : ethd__rows_room(rows);
+  if (s->status) {
+    s->phase = ETHD_PHASE_OVER;
+    return;
+  }
+  rows->trace[rows->count] = row->trace;
+  rows->truth[rows->count] = ethd__seen(&row->trace, &s->stage.setup, s->slack, s->begin_ns);
+  if (ethd__approach_step(&s->approach, &s->rule, &rows->trace[rows->count], &rows->truth[rows->count]))
+    s->last = rows->count + (size_t)floor(ETHD_TAP_AFTER / s->rule.period + 0.5);
+  if (rows->count++ >= s->last || row->trace.fault) s->phase = ETHD_PHASE_OVER;
+}
+
+static void take(void *self, const ethd_loop_row *row) {
+  ethd__station *s = self;
+  pthread_mutex_lock(&s->lock);
+  if (s->phase == ETHD_PHASE_DUE && row->marks & ETHD_ROW_STARTED) begin(s, row);
+  if (s->phase == ETHD_PHASE_TAP) add(s, row);
+  pthread_mutex_unlock(&s->lock);
+}
+
+static ethd__phase set_phase(ethd__station *s, ethd__phase phase) {
+  pthread_mutex_lock(&s->lock);
+  ethd__phase was = s->phase;
+  s->phase = phase;
+  pthread_mutex_unlock(&s->lock);
+  return was;
+}
+
+static ethd__phase phase_of(ethd__station *s) {
+  pthread_mutex_lock(&s->lock);
+  ethd__phase phase = s->phase;
+  pthread_mutex_unlock(&s->lock);
+  return phase;
+}
+
+/* ---- the loop ---- */
+
+static ethd_loop_row latest(ethd__station *s) { return ethd__recorder_latest(&s->session.recorder); }
+
+static const char *stopped(void *self) {
+  int64_t fault = latest(self).trace.fault;
+  return fault ? ethd_fault_sentence((ethd_fault)fault) : NULL;
+}
+
+static void pass(ethd__station *s) {
+  if (s->session.is_virtual) {
+    ethd__session_tick(&s->session);
+  } else {
+    rest(LOOK);
+    ethd__session_poll(&s->session);
+  }
+}
+
+/* ---- a tap ---- */
+
+/* The strategy rules once this returns. */
+static ethd_status take_strategy(ethd__station *s, const char *law, char *message) {
+  ethd__session *session = &s->session;
+  ethd_setup setup = session->setup;
+  if (!strcmp(setup.transition->law.id, law)) return ETHD_OK;
+  ethd_status status = ethd_config_transition(session->config, law, &setup, message);
+  return status ? status : ethd__session_post(session, &setup, "transition", law, message);
+}
+
+static void make_ready(ethd__station *s, const ethd__taken *taken) {
+  s->stage.study = &s->desk->study;
+  s->stage.law = taken->stage->law;
+  s->stage.setup = s->session.setup;
+  s->stage.rows.count = 0;
+  s->rule = ethd__stage_rule(&s->stage, taken->speed, s->stage.setup.finger_radius);
+  s->approach = (ethd__approach){0};
+  s->last = (size_t)(SECONDS / s->rule.period);
+  s->status = ETHD_OK;
+}
+
+static bool look(ethd__station *s) {
+  ethd_loop_row row = latest(s);
+  double t = 1e-9 * (double)(row.trace.sense.time_ns - s->begin_ns);
+  return !s->watcher.look || s->watcher.look(s->watcher.self, t, (ethd_vec){row.trace.xf[0], row.trace.xf[1]});
+}
+
+/* Until the tap is over; false: somebody stops it before. */
+static bool follow(ethd__station *s) {
+  bool go = true;
+  while (go && phase_of(s) != ETHD_PHASE_OVER) {
+    pass(s);
+    go = !ethd__stop && !ethd_loop_ended(s->session.loop) && look(s);
+  }
+  return set_phase(s, ETHD_PHASE_IDLE) == ETHD_PHASE_OVER;
+}
+
+static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, char message[ETHD_MESSAGE_MAX]) {
+  ethd__station *s = self;
+  ethd_status status = ethd__desk_prepare(s->desk, turn, out, message);
+  if (!status) status = take_strategy(s, out->stage->law, message);
+  if (status) return status;
+  if (stopped(s)) return ETHD_EMPTY; /* enabling would forget what nobody has acknowledged */
+  make_ready(s, out);
+  set_phase(s, ETHD_PHASE_DUE);
+  status = ethd__session_enable(&s->session);
+  if (status) return ethd__say(message, status, "enabling the device: %s", ethd_status_sentence(status));
+  if (!follow(s)) return ETHD_EMPTY;
+  if (s->status) return ethd__say(message, s->status, "the tap's ticks: %s", ethd_status_sentence(s->status));
+  out->stage = &s->stage;
+  out->seed = out->tap = 0;
+  const ethd_sim_tap circumstances = {.finger_radius = s->stage.setup.finger_radius, .commanded = out->speed->centre};
+  ethd__stage_judge(&s->stage, &s->rule, &circumstances, &out->result);
+  return ETHD_OK;
+}
+
+/* ---- a device that has stopped itself ---- */
+
+/* Whoever acknowledges has seen to it; what still goes on stops the device again. */
+static ethd_status acknowledge(void *self, char message[ETHD_MESSAGE_MAX]) {
+  ethd__station *s = self;
+  double until = ethd__session_time(&s->session) + CLEAN;
+  while (ethd_control_clean(s->session.control) < s->session.setup.limits.clean_time &&
+         ethd__session_time(&s->session) < until && !ethd__stop)
+    pass(s);
+  ethd_loop_clear(s->session.loop);
+  while (stopped(s) && ethd__session_time(&s->session) < until && !ethd__stop) pass(s);
+  if (stopped(s)) return ETHD_OK;
+  ethd_status status = ethd__session_enable(&s->session);
+  return status ? ethd__say(message, status, "enabling the device: %s", ethd_status_sentence(status)) : ETHD_OK;
+}
+
+static ethd_vec finger(void *self) {
+  ethd_loop_row row = latest(self);
+  return (ethd_vec){row.trace.xf[0], row.trace.xf[1]};
+}
+
+ethd__source ethd__station_source(ethd__station *s) {
+  return (ethd__source){.self = s, .tap = tap, .stopped = stopped, .acknowledge = acknowledge, .finger = finger};
+}
+
+/* ---- opening, closing ---- */
+
+/* Whatever [main] waits for, a person or a disk, a signal reaches the device at once. */
+static void *keep(void *self) {
+  ethd__station *s = self;
+  while (!atomic_load(&s->end)) {
+    if (ethd__stop)
+      ethd_loop_raise(s->session.loop, ETHD_FAULT_APPLICATION);
+    else
+      ethd_loop_beat(s->session.loop);
+    rest(BEAT);
+  }
+  return NULL;
+}
+
+ethd_status ethd__station_open(ethd__desk *desk, const char *config, const char *folder, bool is_virtual,
+                               ethd__station *out, char message[ETHD_MESSAGE_MAX]) {
+  const ethd__session_options options = {.config = config,
+                                         .folder = folder,
+                                         .sink = {out, take},
+                                         .is_virtual = is_virtual,
+                                         .loop = ethd_loop_default()};
+  memset(out, 0, sizeof *out);
+  out->desk = desk;
+  out->slack = desk->protocol->slack;
+  pthread_mutex_init(&out->lock, NULL);
+  ethd_status status = ethd__session_open(&options, &out->session, message);
+  if (status) return status;
+  out->kept = !is_virtual && pthread_create(&out->keeper, NULL, keep, out) == 0;
+  if (is_virtual || out->kept) return ETHD_OK;
+  char unsaid[ETHD_MESSAGE_MAX];
+  (void)!ethd__station_close(out, unsaid);
+  return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+}
+
+ethd_status ethd__station_close(ethd__station *s, char message[ETHD_MESSAGE_MAX]) {
+  ethd__session_halt(&s->session, ethd__stop);
+  atomic_store(&s->end, 1);
+  if (s->kept) pthread_join(s->keeper, NULL);
+  ethd_status status = ethd__session_end(&s->session, message);
+  ethd__session_free(&s->session);
+  ethd__rows_free(&s->stage.rows);
+  pthread_mutex_destroy(&s->lock);
+  return status;
+}

@@ -1,0 +1,50 @@
+/* Where people tap: a device under ethd-run's loop, which goes on between the taps. All [main].
+
+     prepare   enable          the wall is met    + 0.15 s
+        |---------|-----------------|-----------------|        a tap: rows of the loop from its enabling on
+     the ring follows the finger from tap to tap
+
+   Each tap begins with the device enabled anew: what the recording needs to replay it is in its own rows. */
+#ifndef ETHD_STUDY_STATION_H
+#define ETHD_STUDY_STATION_H
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "run/session.h"
+#include "study/desk.h"
+
+typedef enum ethd__phase { ETHD_PHASE_IDLE, ETHD_PHASE_DUE, ETHD_PHASE_TAP, ETHD_PHASE_OVER } ethd__phase;
+
+typedef struct ethd__station {
+  ethd__desk *desk; /* the study's speeds, strategies and wall */
+  ethd__session session;
+  ethd__stage stage; /* the present tap's; no simulation */
+  ethd__watcher watcher;
+  double slack; /* m: how near to the ring a finger touches it, as far as radius and filter know */
+
+  pthread_mutex_t lock; /* for what follows, of the tap that is being taken */
+  ethd__phase phase;
+  ethd__rule rule;
+  ethd__approach approach;
+  size_t last;        /* row, as far as is known */
+  int64_t begin_ns;
+  ethd_status status; /* of its rows */
+
+  pthread_t keeper; /* says to the loop that the program lives, and that it was told to end */
+  atomic_int end;
+  bool kept;
+} ethd__station;
+
+/* Opens and starts the configuration's device. folder: where its relative paths start, NULL: beside the
+   configuration. is_virtual: in lock-step, as fast as it goes. On failure nothing runs. */
+ETHD_MUST_CHECK ethd_status ethd__station_open(ethd__desk *desk, const char *config, const char *folder,
+                                               bool is_virtual, ethd__station *out,
+                                               char message[ETHD_MESSAGE_MAX]);
+
+/* Damps the ring until it is still, disables, closes. */
+ETHD_MUST_CHECK ethd_status ethd__station_close(ethd__station *station, char message[ETHD_MESSAGE_MAX]);
+
+ethd__source ethd__station_source(ethd__station *station);
+
+#endif
