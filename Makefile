@@ -288,7 +288,7 @@ stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/te
 	ETHD_REPLUGS=100 $(B)/tests/test_ring_driver
 	ETHD_FUZZ=1000000 $(B)/tests/test_study
 	@BUILD='$(abspath $(B))' CC='$(CC)' SAN='$(SAN)' ETHD_STUDY_KILLS=50 sh tests/study.sh
-	@BUILD='$(B)' sh apps/stress.sh
+	@BUILD='$(B)' SAN='$(SAN)' sh apps/stress.sh
 
 # A real Xenomai, where there is one.
 check-xenomai:
