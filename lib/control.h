@@ -80,8 +80,9 @@ typedef struct ethd__state {
   ethd_filter_state filter;
   int64_t reading_ns;   /* stamp of the reading that was used last */
   double finger_radius; /* of the last fit, NaN: none */
-  double given, excess; /* J that the last contact gave away, s for which it was far too much */
+  double given;         /* J that the last contact gave away */
   uint64_t given_at;    /* tick */
+  uint64_t excess_from, excess_at; /* steps after which it was far too much: first, last; 0: never */
   double absent;        /* share of the tracking torque that has faded, for the finger isn't seen */
   int64_t implausible;  /* readings in a row */
   struct {

@@ -6,7 +6,8 @@
         E < 0                   given away, more than it took; forgotten within a second or so
         E < -energy             damping is added, as much as brings E back by one period's motion, at most
                                 DAMPING_MAX; the wall still never pulls
-        E < -2 energy           for EXCESS_MAX: damping doesn't help
+        E < -2 energy           again and again for EXCESS_MAX: damping doesn't help. Between, a wall stores some of
+                                what it will give next; without it for RESPITE, damping has helped
 
    A contact that begins anew soon after the last one, a bounce, goes on with what that gave away.        */
 #include "control.h"
@@ -14,6 +15,7 @@
 #define MEMORY 0.5         /* s */
 #define DAMPING_MAX 20.0   /* Ns/m, as the guard's stop */
 #define EXCESS_MAX 0.050   /* s */
+#define RESPITE 0.025      /* s */
 
 /* A device gives the force in the period after it was worked out, or in the one after that: both are watched,
    and the worse counts. */
@@ -41,6 +43,13 @@ static double damping(ethd__slot *slot, double given, double bound, double v, do
   return fmin((given - bound / 2) / (v * v * period), DAMPING_MAX);
 }
 
+static int persists(ethd__state *state, double period) ETHD_RT {
+  uint64_t now = state->counters.ticks + 1;
+  if (state->excess_at == 0 || (double)(now - state->excess_at) * period > RESPITE) state->excess_from = now;
+  state->excess_at = now;
+  return (double)(now - state->excess_from) * period > EXCESS_MAX - period / 2;
+}
+
 double ethd__passivity(const ethd__plan *plan, ethd__state *state, ethd__slot *slot, const ethd_contact *c,
                        double wall, double brake) {
   const double bound = plan->setup.limits.energy;
@@ -53,8 +62,7 @@ double ethd__passivity(const ethd__plan *plan, ethd__state *state, ethd__slot *s
   slot->force[0] = wall + added + brake;
   state->given = fmax(given, 0);
   state->given_at = state->counters.ticks;
-  state->excess = given > 2 * bound ? state->excess + c->period : 0;
   if (slot->giving) state->met.faults |= ETHD_FAULT_BIT(ETHD_FAULT_ENERGY);
-  if (state->excess > EXCESS_MAX) state->met.grave |= ETHD_FAULT_BIT(ETHD_FAULT_ENERGY);
+  if (given > 2 * bound && persists(state, plan->setup.period)) state->met.grave |= ETHD_FAULT_BIT(ETHD_FAULT_ENERGY);
   return added;
 }
