@@ -12,7 +12,7 @@
 #include "unit/mock_counter.h"
 
 #define TURN 6.283185307179586
-#define WALL "halfplane -1 0 -0.238\n"
+#define WALL "halfplane -1 0 -0.238\n" /* the ring meets it at FAULT_WALL */
 
 void fault_rig_fail(const char *format, ...) {
   va_list args;
@@ -54,6 +54,10 @@ static ethd_status arm_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_
   if (out->have & ETHD_HAVE_CENTRE) out->sample_ns += r->shift_ns - r->suspended;
   for (int j = 0; j < 2; j++)
     if (r->unplugged[j]) out->q[j] = (double)NAN;
+  if (r->lag > 0) {
+    out->have |= ETHD_HAVE_DQ;
+    memcpy(out->dq, r->speeds[(r->moved - r->lag) % FAULT_LAG_MAX], sizeof out->dq);
+  }
   if (r->kind == FAULT_RING) out->have &= ~(int64_t)(ETHD_HAVE_RAYS | ETHD_HAVE_RING);
   if (r->blind) out->have &= ~(int64_t)(ETHD_HAVE_CENTRE | ETHD_HAVE_RING);
   return ETHD_OK;
@@ -205,6 +209,16 @@ static void take_torque(fault_rig *r) {
   }
 }
 
+/* The joints' true ones. */
+static void note_speeds(fault_rig *r) {
+  ethd_truth truth;
+  ethd_pose pose;
+  ethd_sim_truth(r->sim, &truth);
+  ethd_arm_pose(&r->setup.arm, r->now.q, &pose);
+  ethd_vec w = ethd_mat_mul(pose.j_inv, (ethd_vec){truth.ring_v[0], truth.ring_v[1]});
+  memcpy(r->speeds[r->moved++ % FAULT_LAG_MAX], &w, sizeof w);
+}
+
 /* `periods` of true time. */
 static void move_arm(fault_rig *r, int64_t periods) {
   ethd_command c = {.safe = 0};
@@ -214,6 +228,7 @@ static void move_arm(fault_rig *r, int64_t periods) {
   }
   for (int64_t i = 0; i < periods; i++) ethd_sim_write(r->sim, &c);
   ethd_sim_read(r->sim, &r->now);
+  note_speeds(r);
 }
 
 void fault_rig_suspend(fault_rig *r, int64_t periods) {

@@ -20,6 +20,8 @@ typedef enum fault_device { FAULT_PLAIN, FAULT_COUNTER, FAULT_BUS, FAULT_RING } 
 #define FAULT_COUNTS 39200 /* of an encoder in a turn of the joint */
 #define FAULT_MARKS 100    /* counts between two index marks */
 #define FAULT_TORQUE 1.3   /* Nm: the limit */
+#define FAULT_WALL 0.25    /* m: x of the ring's centre where it meets the wall */
+#define FAULT_LAG_MAX 32   /* ticks */
 
 typedef struct fault_rig fault_rig;
 
@@ -41,6 +43,8 @@ struct fault_rig {
   uint64_t asked;       /* requests that it had; and the ticks since the last */
   int64_t silent;
   uint64_t readings;
+  double speeds[FAULT_LAG_MAX][2]; /* of the joints, rad/s: the last ones */
+  int64_t moved;        /* how many there were */
   /* of the tick that is over */
   int64_t tick;
   ethd_loop_row row;
@@ -63,6 +67,7 @@ struct fault_rig {
   int64_t jump_ns;      /* by which the clock goes on in the loop's read */
   int64_t shift_ns;     /* of the samples' instants */
   int64_t suspended;    /* ns for which the machine was, its clock with it */
+  int64_t lag;          /* not 0: the drive gives speeds, so many ticks old, at least 1 */
   double law_adds;      /* Nm, to the tracking torque of joint 1 */
   ethd_status law_says;
   int64_t law_takes;    /* ns of the clock */

@@ -10,7 +10,7 @@
 #include "unit/draw.h"
 
 #define TRIALS 20
-#define SHOWN_LEAST 15 /* trials in which a fault that needs motion to show does */
+#define TRIALS_MOST 30 /* until a fault that needs motion to show did so in that many */
 #define AFTER 120      /* ticks that are looked at after a row was seen */
 #define PATIENCE 900   /* ticks until it must have been seen, or the ring stand */
 #define ROUNDING 1e-12
@@ -104,11 +104,12 @@ static void print(int row, const char *how, const char *bound, const char *worst
 static void run(const fault_row *t) {
   outcome o = {.worst = -1};
   char worst[32], verdict[220];
-  for (int trial = 0; trial < TRIALS; trial++) try(t, trial, &o);
-  if (o.shown < SHOWN_LEAST) wrong(&o, TRIALS, "it has shown too seldom:", o.shown);
+  int trial = 0;
+  while (trial < TRIALS_MOST && o.shown < TRIALS) try(t, trial++, &o);
+  if (o.shown < TRIALS) wrong(&o, trial, "it has shown too seldom:", o.shown);
   snprintf(worst, sizeof worst, "%d ms", o.worst);
-  if (!o.says[0] && o.shown == TRIALS) snprintf(verdict, sizeof verdict, "good");
-  else if (!o.says[0]) snprintf(verdict, sizeof verdict, "good, %d of %d showed", o.shown, TRIALS);
+  if (!o.says[0] && trial == TRIALS) snprintf(verdict, sizeof verdict, "good");
+  else if (!o.says[0]) snprintf(verdict, sizeof verdict, "good; nothing to show in %d more", trial - TRIALS);
   else snprintf(verdict, sizeof verdict, "BAD: %s", o.says);
   failures += o.says[0] != 0;
   print(t->row, t->how, NULL, worst, reactions[t->reaction], verdict);
