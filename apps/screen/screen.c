@@ -117,8 +117,9 @@ static ethd__wish wish(void *self, char words[ETHD_MESSAGE_MAX]) {
     }
     ethd__draw_room(s, ethd__draw_finger(s), now() - start);
     ethd__draw_words(s, s->feedback[0] ? s->feedback : "Bring the circle to the grey line, and wait", s->feedback[0] && !s->good ? ethd__red : ethd__white,
-                     KEYS);
+                     s->device ? "Space now   " KEYS : KEYS);
     ethd__window_end(&s->window);
+    if (s->device && key == SDLK_SPACE) return ETHD_WISH_GO;
     bool stopped = s->device && s->device->stopped(s->device->self);
     if (stopped || at_start(s, &wait)) return ETHD_WISH_GO;
   }

@@ -84,8 +84,11 @@ static void catch_up(device *d, int64_t now_ns) ETHD_RT {
 
 static ethd_status sim_read(void *device_, int64_t now_ns, ethd_sense *out) ETHD_RT {
   device *d = device_;
+  int64_t faults = out->faults, grave = out->grave; /* others' */
   catch_up(d, now_ns);
   ethd_sim_read(d->sim, out);
+  out->faults |= faults;
+  out->grave |= grave;
   return ETHD_OK;
 }
 

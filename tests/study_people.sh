@@ -1,0 +1,119 @@
+#!/bin/sh
+# ethd-study with people, on ethd-run's device: the simulated one with its own finger stands for both. No time is asserted.
+set -u
+folder=$(mktemp -d)
+server=
+trap 'rm -rf "$folder"; [ -z "$server" ] || kill $server 2>/dev/null' EXIT
+study=$BUILD/bin/ethd-study
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+
+cp apps/config/wall.scene "$folder"
+device() { # FILE SETTINGS: plant n's configuration with another device
+  { sed '/^\[device\]/,$d' apps/config/n.ini && printf '[device]\ndriver = sim\n%b' "$2"; } >"$folder/$1"
+}
+protocol() { # FILE DEVICE ATTEMPTS SURVEY
+  printf '[study]\nparticipants = 1\nstrategies = smooth,offset\nspeeds = 0.2\ntraining = 1\ntaps = 1\nattempts = %s\nsurvey = %s\n[device]\nconfig = %s\n[hand]\nsource = people\n' "$3" "$4" "$2" >"$folder/$1"
+}
+device device.ini 'speed = 0.2\nplant = far.plant\n'
+sed 's/^start = .*/start = 0.08/' apps/config/n.plant >"$folder/far.plant" # the torque has risen before the wall
+protocol people.study device.ini 2 on
+
+talk() { # PATTERN ANSWERS COMMAND..: a line, empty ones too, whenever the pattern has come once more
+  pattern=$1 answers=$2 asked=0
+  shift 2
+  rm -f "$folder/in"
+  mkfifo "$folder/in"
+  "$@" <"$folder/in" >"$folder/out" 2>"$folder/err" &
+  run=$!
+  exec 9>"$folder/in"
+  echo "$answers" | while IFS= read -r answer; do
+    asked=$((asked + 1))
+    for _ in $(seq 600); do
+      [ "$(grep -c "$pattern" "$folder/out")" -ge $asked ] && break
+      kill -0 $run 2>/dev/null || break
+      sleep 0.05
+    done
+    echo "$answer"
+  done >&9
+  exec 9>&-
+  wait $run
+}
+
+# ---- in lock-step: the same bytes again; every tap replays on its own; as the same tap on the desk ----
+for k in 1 2; do
+  "$study" "$folder/people.study" --out "$folder/s$k" --virtual --quiet >"$folder/out" 2>"$folder/err" || fail "in lock-step: $(cat "$folder/err")"
+done
+cmp "$folder/s1/taps.csv" "$folder/s2/taps.csv" && diff -r "$folder/s1/taps" "$folder/s2/taps" >"$folder/out" || fail "not the same bytes again: $(head -n 3 "$folder/out")"
+[ "$(ls "$folder/s1/taps" | wc -l)" -ge 3 ] || fail "too few taps: $(cat "$folder/s1/taps.csv")"
+for tap in "$folder"/s1/taps/*; do
+  "$BUILD/bin/ethd-replay" --verify "$tap" >"$folder/verify" 2>&1 && grep -q 'equal to the bit' "$folder/verify" || fail "$tap: $(cat "$folder/verify")"
+done
+"$BUILD/bin/ethd-tap" --config "$folder/device.ini" --speed 0.2 --transition smooth,offset --taps 1 --seed 1 --csv "$folder/desk.csv" >/dev/null || fail "ethd-tap"
+# The start is softer than on the desk; ring and finger are as the controller sees them, which is near to the truth.
+awk -F, '
+  function off(a, b) { return a > b ? a - b : b - a }
+  FNR == NR { v[$2] = $7; delta[$2] = $11; eps[$2] = $12; rvo[$2] = $13; of[$2] = $14; next }
+  FNR > 1 { n++; bad += off($15, delta[$5]) > 2 || off($16, eps[$5]) > 2e-4 || off($17, rvo[$5]) > 3e-3 || off($11, v[$5]) > 0.03 || off($18, of[$5]) > 0.01 }
+  END { exit n < 3 || bad }' "$folder/desk.csv" "$folder/s1/taps.csv" || fail "not the desk's tap: $(cat "$folder/s1/taps.csv" "$folder/desk.csv")"
+
+# ---- in real time, survey and notes on stdin ----
+talk '?' "4
+3
+5
+1
+" "$study" "$folder/people.study" --out "$folder/live" --ask || fail "in real time: $(cat "$folder/out" "$folder/err")"
+grep -q ',4,3,5$' "$folder/live/survey.csv" && grep -q ',,,$' "$folder/live/survey.csv" || fail "the answers: $(cat "$folder/live/survey.csv")"
+for tap in "$folder"/live/taps/*; do
+  "$BUILD/bin/ethd-replay" --verify "$tap" >"$folder/verify" 2>&1 || fail "$tap: $(cat "$folder/verify")"
+done
+
+# ---- the drive reports a fault in every tap: nothing goes on by itself, everything once somebody has seen to it ----
+printf '150t fault9 set\n' >"$folder/wrong.inject"
+device faulty.ini 'speed = 0.2\ninject = wrong.inject\n'
+protocol faulty.study faulty.ini 2 off
+"$study" "$folder/faulty.study" --out "$folder/faulty" --virtual >"$folder/out" 2>"$folder/err"
+[ $? = 1 ] && grep -q 'the device stopped itself: the drive reports a fault; what was done is kept' "$folder/err" || fail "a fault: $(cat "$folder/err")"
+talk 'ack goes on' 'what
+ack
+stop' "$study" --resume "$folder/faulty" --virtual --ask
+[ $? = 1 ] && [ "$(grep -c 'ack goes on' "$folder/out")" = 3 ] || fail "acknowledged once: $(cat "$folder/out" "$folder/err")"
+talk 'ack goes on' 'ack
+ack
+ack' "$study" --resume "$folder/faulty" --virtual --ask || fail "acknowledged: $(cat "$folder/out" "$folder/err")"
+awk -F, 'NR > 1 { n++; bad += $10 != "fault" } END { exit n != 5 || bad }' "$folder/faulty/taps.csv" || fail "faults: $(cat "$folder/faulty/taps.csv")"
+[ "$(grep -c ',acknowledged,' "$folder/faulty/events.csv")" = 2 ] || fail "acknowledgements: $(cat "$folder/faulty/events.csv")"
+
+# ---- the device's own files stay where they are ----
+mkdir "$folder/elsewhere"
+(cd "$folder/elsewhere" && "$study" --resume "$folder/faulty" --virtual --quiet >"$folder/out" 2>"$folder/err") || fail "from elsewhere: $(cat "$folder/err")"
+
+# ---- what doesn't go together ----
+"$study" "$folder/people.study" --simulate 3 --out "$folder/x" >"$folder/out" 2>"$folder/err"
+[ $? = 2 ] && grep -q 'hand.source: people have hands of their own' "$folder/err" || fail "--simulate: $(cat "$folder/err")"
+"$study" --virtual --out "$folder/x" >"$folder/out" 2>"$folder/err"
+[ $? = 2 ] && grep -q 'people is needed' "$folder/err" || fail "--virtual: $(cat "$folder/err")"
+device odd.ini 'driver2 = 1\n'
+protocol odd.study odd.ini 1 off
+"$study" "$folder/odd.study" --out "$folder/x" --virtual >"$folder/out" 2>"$folder/err"
+[ $? = 2 ] && grep -q 'driver2' "$folder/err" || fail "a bad device: $(cat "$folder/err")"
+
+# ---- on the screen: the device's finger, not the mouse ----
+command -v Xvfb >/dev/null && command -v xdotool >/dev/null && [ -z "${SAN:-}" ] || { echo "SKIP: no Xvfb, no xdotool, or a sanitizer"; exit 77; }
+Xvfb -displayfd 3 -screen 0 1280x720x24 3>"$folder/display" >"$folder/xvfb" 2>&1 &
+server=$!
+for _ in $(seq 200); do [ -s "$folder/display" ] && break; sleep 0.05; done
+DISPLAY=:$(cat "$folder/display")
+export DISPLAY
+"$study" "$folder/people.study" --out "$folder/screen" --screen >"$folder/out" 2>"$folder/err" &
+run=$!
+for _ in $(seq 150); do
+  kill -0 $run 2>/dev/null || break
+  xdotool key space key 4
+  sleep 0.2
+done
+wait $run || fail "the screen: $(cat "$folder/out" "$folder/err")"
+[ "$(grep -c ',4,4,4$' "$folder/screen/survey.csv")" = 2 ] || fail "the screen's answers: $(cat "$folder/screen/survey.csv")"
+[ "$(awk -F, 'NR > 1' "$folder/screen/taps.csv" | wc -l)" -ge 3 ] || fail "the screen's taps: $(cat "$folder/screen/taps.csv")"
+[ -n "$DISPLAY" ] && kill $server && server=
+exit $failed
