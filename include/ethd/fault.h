@@ -40,7 +40,9 @@ typedef enum ethd_reaction {
   ETHD_REACTION_REFUSE = 5
 } ethd_reaction;
 
-/* X(row, NAME, first reaction, second, bound, sentence); bound: how soon it is noticed, in words.
+/* X(row, NAME, first reaction, second, bound, sentence); bound: how soon it is noticed, in words. SPEED looks at
+   the speed that is estimated, which lags behind the true one by ethd_velocity_lag: 1.3 ms by the low-pass that is
+   the default, half a tick by differences.
    Event values: FINITE kind of law; LAW 100 kind - status; BUDGET ns; SPEED m/s; INPUT which, ETHD_HAVE_*
    or 0 for q; else 1 where the second reaction is due, 0 where not. TORQUE and TORQUE_RATE are told only
    when they last: over 0.1 s, over 20 ticks. */
@@ -68,7 +70,7 @@ typedef enum ethd_reaction {
   X(21, FINITE, ZERO, ZERO, "same tick", "a law's output isn't a finite number in its range")               \
   X(22, TORQUE, COUNT, COUNT, "same tick", "a torque over its limit was cut")                               \
   X(23, TORQUE_RATE, COUNT, STOP, "same tick", "a law's torque rises over its limit, 20 ticks long")        \
-  X(24, SPEED, STOP, STOP, "1 tick", "the ring is faster than its limit")                                   \
+  X(24, SPEED, STOP, STOP, "1 tick + speed lag", "the ring is faster than its limit")                       \
   X(25, WORKSPACE, DEGRADE, STOP, "1 tick", "the ring is out of its workspace")                             \
   X(26, HEAT, DEGRADE, ZERO, "model", "a motor is too hot")                                                 \
   X(27, ENERGY, DEGRADE, STOP, "50 ms", "a contact gives energy away and goes on after damping")            \

@@ -145,16 +145,6 @@ static void hurl(fault_rig *r, int64_t since) {
   throw_ring(r, ETHD_FAULT_SPEED, 0, -6, hypot(t.ring_v[0], t.ring_v[1]) > r->setup.limits.speed);
 }
 
-/* From when the samples say so. */
-static void hurl_seen(fault_rig *r, int64_t since) {
-  static double x, y;
-  ethd_truth t = truth(r);
-  double way = since ? hypot(t.ring[0] - x, t.ring[1] - y) : 0;
-  x = t.ring[0];
-  y = t.ring[1];
-  throw_ring(r, ETHD_FAULT_SPEED, 0, -6, way > r->setup.limits.speed * r->setup.period);
-}
-
 static void push_to(fault_rig *r, double y) { throw_ring(r, ETHD_FAULT_WORKSPACE, 1, 3, truth(r).ring[1] > y); }
 static void push_aside(fault_rig *r, int64_t since) {
   (void)since, push_to(r, r->setup.limits.workspace[3] - r->setup.limits.margin);
@@ -232,6 +222,7 @@ static void tiny_motors(ethd_setup *s) {
   s->limits.heat_time = 0.15;
 }
 static void quick_speed(ethd_setup *s) { ethd_setup_velocity(s, ETHD_VELOCITY_DIFFERENCE); }
+static void slow_speed(ethd_setup *s) { ethd_setup_velocity(s, ETHD_VELOCITY_LSQ); }
 static void guarded_walls(ethd_setup *s) {
   much_torque(s);
   ethd_setup_transition(s, &ethd_transition_abrupt);
@@ -277,8 +268,9 @@ const fault_row fault_rows[] = {
     {22, COUNT, 1, FAULT_PLAIN, 20, 80, 100, strong, much_torque, "for 150 ms", 0},
     {23, COUNT, 0, FAULT_PLAIN, 20, 80, 1, twitch, little_rate, "a law's torque goes 2.4 Nm up and down, 10 times", 0},
     {23, STOP, 1, FAULT_PLAIN, 20, 45, 20, restless, little_rate, "for ever", 0},
-    {24, STOP, 0, FAULT_PLAIN, 20, 700, 6, hurl, NULL, "a hand throws the ring; from its true speed, by a low-pass", 1},
-    {24, STOP, 0, FAULT_PLAIN, 20, 700, 1, hurl_seen, quick_speed, "likewise, from the samples' speed, by differences", 1},
+    {24, STOP, 0, FAULT_PLAIN, 20, 700, 3, hurl, NULL, "a hand throws the ring; from its true speed; by a low-pass, 1.3 ms", 1},
+    {24, STOP, 0, FAULT_PLAIN, 20, 700, 2, hurl, quick_speed, "likewise; by differences, 0.5 ms", 1},
+    {24, STOP, 0, FAULT_PLAIN, 20, 700, 5, hurl, slow_speed, "likewise; by a line through 8 samples, 3.5 ms", 1},
     {25, DEGRADE, 0, FAULT_PLAIN, 20, 700, 1, push_aside, with_margin, "a hand pushes the ring to the edge", 1},
     {25, STOP, 1, FAULT_PLAIN, 20, 700, 1, push_out, any_speed, "a hand pushes the ring out", 1},
     {26, DEGRADE, 0, FAULT_PLAIN, 20, 80, 2, overload, small_motors, "2.6 times the nominal torque; from when the model folds back", 1},
