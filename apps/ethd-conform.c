@@ -7,7 +7,7 @@
 static const char doc[] =
     "Puts the driver of a configuration's device to the test at its own boundary: opening and closing, zero torque, "
     "signs, counts, limits, the watchdog, the safe state.\v"
-    "Only with --move does the device move: each joint is pushed for a tenth of a second. Keep clear of it, with the "
+    "Only with --move does the device move: each joint is pushed, for 0.15 s at most. Keep clear of it, with the "
     "emergency stop at hand.\n\n"
     "Example:\n"
     "  printf '[device]\\ndriver = hello\\n' >hello.ini\n"

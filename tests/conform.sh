@@ -7,14 +7,20 @@ conform=$BUILD/bin/ethd-conform
 failed=0
 fail() { echo "FAILED $*"; failed=1; }
 printf '[device]\ndriver = hello\n' >"$folder/hello.ini"
-# a finger that hardly moves leaves the ring alone
-printf '[device]\ndriver = sim\nspeed = 0.001\n' >"$folder/sim.ini"
+# a finger that the ring doesn't feel leaves it alone
+sed 's/^pad_stiffness = [0-9]*/pad_stiffness = 0/' apps/config/n.plant >"$folder/free.plant"
+printf '[device]\ndriver = sim\nspeed = 0.001\nplant = free.plant\n' >"$folder/sim.ini"
+printf '[device]\ndriver = sim\nspeed = 0.001\n' >"$folder/held.ini"
 "$conform" --config "$folder/hello.ini" --virtual --move >"$folder/hello" 2>&1 || fail "hello: $(cat "$folder/hello")"
 [ "$(grep -c ' kept ' "$folder/hello")" = 10 ] || fail "hello: $(cat "$folder/hello")"
-"$conform" --config "$folder/sim.ini" --virtual --move >"$folder/sim" 2>&1 || fail "sim: $(cat "$folder/sim")"
+"$conform" --config "$folder/sim.ini" --virtual --move --torque 0.3 >"$folder/sim" 2>&1 || fail "sim: $(cat "$folder/sim")"
+[ "$(grep -c ' kept ' "$folder/sim")" = 9 ] || fail "sim: $(cat "$folder/sim")"
 grep -q '^watchdog  at risk' "$folder/sim" || fail "the simulated device has got a watchdog: $(cat "$folder/sim")"
 "$conform" --config "$folder/hello.ini" >"$folder/still" 2>&1 || fail "in real time: $(cat "$folder/still")"
 [ "$(grep -c ' not asked ' "$folder/still")" = 5 ] || fail "it may not move: $(cat "$folder/still")"
+# a ring that meets its finger stands still with torque and without
+"$conform" --config "$folder/held.ini" --virtual --move --torque 0.3 >"$folder/held" 2>&1 || fail "held: $(cat "$folder/held")"
+grep -q '^watchdog  not asked .*in its way' "$folder/held" || fail "held: $(cat "$folder/held")"
 printf '[device]\ndriver = hello\ncolour = red\n' >"$folder/bad.ini"
 "$conform" --config "$folder/bad.ini" >"$folder/bad" 2>&1 && fail "a setting that hello hasn't passes"
 grep -q 'bad.ini:3: device.colour: hello has no settings' "$folder/bad" || fail "$(cat "$folder/bad")"

@@ -5,9 +5,10 @@
      R                          -> 18 words
      F                          -> text: "t ring_x ring_y finger_x finger_y torque1 torque2", SI
 
-   plant_bridge [--plant n] [--speed 0.4] [--period 1.6] [--lock-step 1]; says "port N" first, and a summary at the end
-   of stdin. The finger taps along -x, again and again; time begins when the drive is first enabled, and is the
-   system's; in lock-step a millisecond passes with every new word in `counter`, and none otherwise. */
+   plant_bridge [--plant n] [--speed 0.4] [--period 1.6] [--finger 0] [--lock-step 1]; says "port N" first, and a summary
+   at the end of stdin. The finger taps along -x, again and again after the first period; time begins when the
+   drive is first enabled, and is the system's; in lock-step a millisecond passes with every new word in `counter`, and
+   none otherwise. With --finger 0 the ring never feels it. */
 #include <arpa/inet.h>
 #include <math.h>
 #include <poll.h>
@@ -70,12 +71,13 @@ static ethd_path make_path(double speed, double period) {
   return (ethd_path){.samples = samples, .sample_count = SAMPLES * SECONDS};
 }
 
-static void make_plant(const char *name, double speed, double period) {
+static void make_plant(const char *name, double speed, double period, int finger) {
   char path[256], message[ETHD_MESSAGE_MAX];
   ethd_sim_def def = {.arm = {ETHD_ARM_PARALLEL, 0.25, 0.25}, .ring_radius = 0.012, .period = STEP, .step = STEP, .tolerance = ETHD_SIM_FAST};
   ethd_error error;
   snprintf(path, sizeof path, "apps/config/%s.plant", name);
   if (ethd_plant_load(path, &def.plant, message)) fail(message);
+  if (!finger) def.plant.pad_stiffness = 0;
   ethd_sim_tap tap = {.seed = 1, .finger_radius = def.plant.finger_radius, .commanded = speed, .path = make_path(speed, period)};
   if (ethd_sim_create(&def, &plant.sim, &error) || ethd_sim_start(plant.sim, &tap)) fail("the plant can't start");
 }
@@ -175,14 +177,16 @@ static void tell(int fd, const struct sockaddr_in *to) {
 int main(int argc, char **argv) {
   const char *name = "n";
   double speed = 0.4, period = 1.6;
+  int finger = 1;
   for (int i = 1; i + 1 < argc; i += 2) {
     if (!strcmp(argv[i], "--plant")) name = argv[i + 1];
     else if (!strcmp(argv[i], "--speed")) speed = atof(argv[i + 1]);
     else if (!strcmp(argv[i], "--period")) period = atof(argv[i + 1]);
+    else if (!strcmp(argv[i], "--finger")) finger = atoi(argv[i + 1]);
     else if (!strcmp(argv[i], "--lock-step")) plant.lock_step = atoi(argv[i + 1]);
-    else fail("--plant, --speed, --period and --lock-step are known");
+    else fail("--plant, --speed, --period, --finger and --lock-step are known");
   }
-  make_plant(name, speed, period);
+  make_plant(name, speed, period, finger);
   ethd_sim_read(plant.sim, &plant.sense);
   struct sockaddr_in at = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)}, from;
   socklen_t size = sizeof at;

@@ -21,37 +21,7 @@ says() { # FILE PATTERN...
 }
 
 . tests/peers/pymodbus.sh
-
-await() { # FILE PATTERN
-  for _ in $(seq 400); do
-    grep -q -e "$2" "$1" 2>/dev/null && return
-    sleep 0.05
-  done
-  fail "no $2 in $1: $(cat "$1")"
-}
-plant() { # NAME ARGUMENTS...: its port in $plant, what it says in NAME.plant; it lives until descriptor 8 is closed
-  name=$1
-  shift
-  rm -f "$folder/plant.in" "$folder/$name.plant"
-  mkfifo "$folder/plant.in"
-  "$BUILD/tests/plant_bridge" "$@" <"$folder/plant.in" >"$folder/$name.plant" 2>&1 &
-  plant_id=$!
-  exec 8>"$folder/plant.in"
-  await "$folder/$name.plant" '^port '
-  plant=$(sed -n 's/^port //p' "$folder/$name.plant")
-}
-plant_ends() {
-  exec 8>&-
-  wait $plant_id
-}
-peer() { # ARGUMENTS...: its id in $peer, where it listens in $at
-  rm -f "$folder/peer.out"
-  "$venv/bin/python" tests/peers/modbus_peer.py "$@" --plant "$plant" >"$folder/peer.out" 2>"$folder/peer.err" 8>&- &
-  peer=$!
-  children="$children $peer"
-  await "$folder/peer.out" '^ready '
-  at=$(sed -n 's/^ready //p' "$folder/peer.out")
-}
+. tests/peers/plant.sh
 
 cp apps/config/wall.scene "$folder"
 configure() { # NAME PORT

@@ -1,5 +1,6 @@
 #include <dirent.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "check/conform_rig.h"
@@ -8,6 +9,7 @@
 #define OPENINGS 20
 #define PUSH 0.1       /* s */
 #define LAPSE 0.05     /* s after which no torque may be left, then half of this twice to see it */
+#define NUDGE 0.002    /* s: a torque that a driver may remember, but that moves next to nothing */
 #define STILL 0.01     /* rad in PUSH without torque */
 #define SPEED_MAX 50.0 /* rad/s: faster is a jump */
 #define AGE_MAX 0.005  /* s of a joint sample */
@@ -81,6 +83,33 @@ static ethd_verdict ask_limits(const ethd_conform_def *def, ethd_conform_answer 
   return a->verdict;
 }
 
+/* The row that leads to the hardest reaction; 0: none was seen. */
+static ethd_fault worst_row(const ethd__rig *r, ethd_reaction *reaction) {
+  ethd_fault worst = ETHD_FAULT_NONE;
+  *reaction = ETHD_REACTION_NONE;
+  for (int64_t rows = r->faults | r->grave; rows; rows &= rows - 1) {
+    ethd_fault row = (ethd_fault)(ffsll(rows) - 1);
+    ethd_reaction own = ethd_fault_reaction(row, r->grave >> row & 1);
+    if (own <= *reaction) continue;
+    *reaction = own;
+    worst = row;
+  }
+  return worst;
+}
+
+/* A row that is only counted is no break: late answers come. Nor is what a machine sees that is late itself. */
+static ethd_verdict judge_samples(const ethd__rig *r, ethd_conform_answer *a) {
+  char readings[48] = "";
+  ethd_reaction reaction;
+  ethd_fault row = worst_row(r, &reaction);
+  if (row)
+    return ethd__rig_answer(a, reaction >= ETHD_REACTION_STOP && r->late <= AGE_MAX ? ETHD_BROKEN : ETHD_AT_RISK,
+                            "it reports: %s; ticks were up to %.3g ms late", ethd_fault_sentence(row), 1e3 * r->late);
+  if (r->readings) snprintf(readings, sizeof readings, "; %d readings of the finger", r->readings);
+  return ethd__rig_answer(a, r->age > AGE_MAX ? ETHD_AT_RISK : ETHD_KEPT, "%d samples, the oldest used at %.3g ms%s", r->samples,
+                          1e3 * r->age, readings);
+}
+
 static ethd_verdict ask_sense(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__rig r;
   if (!ethd__rig_begin(def, &r, a)) return a->verdict;
@@ -91,10 +120,8 @@ static ethd_verdict ask_sense(const ethd_conform_def *def, ethd_conform_answer *
     ethd__rig_answer(a, ETHD_BROKEN, "%d failed calls%s", r.failed, r.finite ? "" : ", angles that aren't finite");
   else if (r.backwards || r.ahead)
     ethd__rig_answer(a, ETHD_BROKEN, "%d samples go back in time, %d come from the future", r.backwards, r.ahead);
-  else if (r.faults)
-    ethd__rig_answer(a, ETHD_BROKEN, "it reports: %s", ethd_fault_sentence((ethd_fault)(ffsll(r.faults) - 1)));
   else
-    ethd__rig_answer(a, r.age > AGE_MAX ? ETHD_AT_RISK : ETHD_KEPT, "%d samples, the oldest used at %.3g ms", r.samples, 1e3 * r.age);
+    judge_samples(&r, a);
   ethd__rig_end(&r);
   return a->verdict;
 }
@@ -102,7 +129,7 @@ static ethd_verdict ask_sense(const ethd_conform_def *def, ethd_conform_answer *
 static ethd_verdict ask_zero(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__rig r;
   if (!ethd__rig_begin(def, &r, a)) return a->verdict;
-  ethd__rig_run(&r, 0.01, 0, 0);
+  ethd__rig_settle(&r);
   double q[2] = {r.sense.q[0], r.sense.q[1]};
   ethd__rig_run(&r, PUSH, 0, 0);
   double moved = fmax(fabs(r.sense.q[0] - q[0]), fabs(r.sense.q[1] - q[1]));
@@ -116,7 +143,7 @@ static ethd_verdict ask_sign(const ethd_conform_def *def, ethd_conform_answer *a
     for (int minus = 0; minus < 2; minus++) {
       ethd__rig r;
       if (!ethd__rig_begin(def, &r, a)) return a->verdict;
-      ethd__rig_run(&r, 0.01, joint, 0);
+      ethd__rig_settle(&r);
       double q = r.sense.q[joint];
       ethd__rig_run(&r, PUSH, joint, minus ? -def->torque : def->torque);
       moved[joint][minus] = r.sense.q[joint] - q;
@@ -130,7 +157,7 @@ static ethd_verdict ask_sign(const ethd_conform_def *def, ethd_conform_answer *a
 static ethd_verdict ask_counts(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__rig r;
   if (!ethd__rig_begin(def, &r, a)) return a->verdict;
-  ethd__rig_run(&r, 0.01, 0, 0);
+  ethd__rig_settle(&r);
   ethd__rig_run(&r, PUSH, 0, def->torque);
   ethd__rig_end(&r);
   if (!(r.speed <= SPEED_MAX)) return ethd__rig_answer(a, ETHD_BROKEN, "the angles jump: %.3g rad/s", r.speed);
@@ -138,16 +165,40 @@ static ethd_verdict ask_counts(const ethd_conform_def *def, ethd_conform_answer 
   return ethd__rig_answer(a, ETHD_KEPT, "smallest step %.3g rad, fastest %.3g rad/s", r.resolution, r.speed);
 }
 
+/* No: such a push is lost in the steps of the angle, and what it leads to is no answer. */
+static int is_pushed(const ethd__rig *r, double acceleration, ethd_conform_answer *a) {
+  double least = ethd__rig_least(r, LAPSE / 2);
+  if (acceleration > 0 && acceleration >= least) return 1;
+  return ethd__rig_answer(a, ETHD_NOT_ASKED, "%+.3g rad/s^2 under %g Nm, %.3g would show: it needs more torque", acceleration, r->def->torque, least), 0;
+}
+
+/* First the other way, under a torque that is held: rad/s^2 at the end. A device that gains no more speed then
+   has something in its way, and would look the same without a torque: 0, and the answer says so. */
+static double held(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__rig r;
+  if (!ethd__rig_begin(def, &r, a)) return 0;
+  ethd__rig_settle(&r);
+  double pushed = -ethd__rig_acceleration(&r, 0, -def->torque, 1, LAPSE / 2);
+  (void)ethd__rig_acceleration(&r, 0, -def->torque, 1, LAPSE / 2);
+  double end = -ethd__rig_acceleration(&r, 0, -def->torque, 1, LAPSE / 2);
+  ethd__rig_end(&r);
+  if (!is_pushed(&r, pushed, a)) return 0;
+  if (end >= 0.1 * pushed && end >= ethd__rig_least(&r, LAPSE / 2)) return end;
+  return ethd__rig_answer(a, ETHD_NOT_ASKED, "%.3g rad/s^2, but %.3g once the torque was held for %g s: something is in its way", pushed, end, 2 * LAPSE), 0;
+}
+
 /* Torque that nobody renews must end. */
 static ethd_verdict ask_watchdog(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__rig r;
-  if (!ethd__rig_begin(def, &r, a)) return a->verdict;
-  ethd__rig_run(&r, 0.01, 0, 0);
+  double most = 0.25 * held(def, a);
+  if (!(most > 0) || !ethd__rig_begin(def, &r, a)) return a->verdict;
+  ethd__rig_settle(&r);
   double pushed = ethd__rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
   (void)ethd__rig_acceleration(&r, 0, def->torque, 0, LAPSE / 2);
   double left = ethd__rig_acceleration(&r, 0, def->torque, 0, LAPSE / 2);
   ethd__rig_end(&r);
-  if (left <= 0.25 * pushed)
+  if (!is_pushed(&r, pushed, a)) return a->verdict;
+  if (left <= most)
     return ethd__rig_answer(a, ETHD_KEPT, "%.3g rad/s^2 under torque, %.3g once nobody had written for %g s", pushed, left, LAPSE);
   return ethd__rig_answer(a, ETHD_AT_RISK, "none: still %.3g of %.3g rad/s^2, %g s after the last write", left, pushed, LAPSE);
 }
@@ -157,26 +208,29 @@ static ethd_verdict ask_safe(const ethd_conform_def *def, ethd_conform_answer *a
   if (!ethd__rig_open(def, &r)) return ethd__rig_answer(a, ETHD_BROKEN, "open: %.140s", r.message);
   r.driver->safe(r.device); /* before it was started */
   r.driver->close(r.device);
-  if (!ethd__rig_begin(def, &r, a)) return a->verdict;
-  ethd__rig_run(&r, 0.01, 0, 0);
+  double most = 0.25 * held(def, a);
+  if (!(most > 0) || !ethd__rig_begin(def, &r, a)) return a->verdict;
+  ethd__rig_settle(&r);
   double pushed = ethd__rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
   r.driver->safe(r.device);
   r.driver->safe(r.device);
   ethd__rig_run(&r, 0.01, 0, def->torque);
   double left = ethd__rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
-  (void)!r.driver->stop(r.device);
+  ethd__rig_stop(&r);
   r.driver->safe(r.device); /* and once stopped */
   r.driver->close(r.device);
-  return ethd__rig_answer(a, left <= 0.25 * pushed ? ETHD_KEPT : ETHD_BROKEN, "%.3g rad/s^2 under torque, %.3g with the same torque once safe", pushed,
+  if (!is_pushed(&r, pushed, a)) return a->verdict;
+  return ethd__rig_answer(a, left <= most ? ETHD_KEPT : ETHD_BROKEN, "%.3g rad/s^2 under torque, %.3g with the same torque once safe", pushed,
                 left);
 }
 
 static ethd_verdict ask_restart(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__rig r;
   if (!ethd__rig_begin(def, &r, a)) return a->verdict;
-  ethd__rig_run(&r, PUSH / 2, 0, def->torque);
-  (void)!r.driver->stop(r.device);
-  ethd_status status = r.driver->start(r.device);
+  ethd__rig_settle(&r);
+  ethd__rig_run(&r, NUDGE, 0, def->torque);
+  ethd__rig_stop(&r);
+  ethd_status status = ethd__rig_start(&r);
   if (status < 0) {
     ethd__rig_end(&r);
     return ethd__rig_answer(a, ETHD_BROKEN, "started anew: %s", ethd_status_sentence(status));
@@ -186,6 +240,7 @@ static ethd_verdict ask_restart(const ethd_conform_def *def, ethd_conform_answer
   (void)ethd__rig_acceleration(&r, 0, 0, 0, LAPSE / 2);
   double moved = r.sense.q[0] - q, pushed = ethd__rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
   ethd__rig_end(&r);
+  if (fabs(pushed) < ethd__rig_least(&r, LAPSE / 2)) return is_pushed(&r, pushed, a), a->verdict;
   int right = pushed > 0 && fabs(moved) <= 0.1 * pushed * LAPSE * LAPSE / 2;
   return ethd__rig_answer(a, right ? ETHD_KEPT : ETHD_BROKEN,
                           "started anew: %+.3g rad before it is written to, %.3g rad/s^2 under torque", moved, pushed);

@@ -105,10 +105,12 @@ static void watch_torque(ethd__servo_feedback *f, const ethd__servo_link *l, con
 
 void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *l, int64_t stamp_ns,
                                const double torque[2]) {
-  bool unseen = f->connects != l->counts.connects || stamp_ns <= f->sample.stamp_ns;
+  bool other_clock = stamp_ns <= f->sample.stamp_ns;
+  bool unseen = f->connects != l->counts.connects || other_clock;
   f->sample.stamp_ns = stamp_ns;
   f->sample.number++;
   f->sample.has |= ETHD__SERVO_HAS_SPEED;
+  if (other_clock) f->sample.has &= ~ETHD__SERVO_HAS_READING; /* its stamp would lie in another time */
   /* while the line was away the arm may have gone anywhere; a start may be by another clock than what follows */
   for (int i = 0; i < 2 && unseen; i++) ethd__encoder_pause(&f->axes[i].encoder);
   f->connects = l->counts.connects;

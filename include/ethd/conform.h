@@ -1,7 +1,9 @@
 /* Does a driver keep its contract? Questions put to a device at its own boundary, one answer each.
 
-   The device is opened, started, stopped and closed many times; with `torque` it moves: keep clear of it.
-   All [main]. */
+   The device is opened, started, stopped and closed many times; with `torque` it moves: keep clear of it, and
+   keep what it moves clear of everything: ring empty, arm in the middle of its room. Its I/O is done as the loop
+   does it: by a thread for each unit, or with each tick of a virtual clock. A push that is lost in the steps of
+   the angle, or that something stops, is no answer: that question is then not asked. All [main]. */
 #ifndef ETHD_CONFORM_H
 #define ETHD_CONFORM_H
 
@@ -28,7 +30,7 @@ typedef struct ethd_conform_def {
   const char *ids;                 /* as for ethd_device_open */
   const ethd_driver *const *from;  /* likewise */
   const ethd_device_def *device;
-  double torque;      /* Nm, pushes each joint in turn for a tenth of a second; 0: nothing may move */
+  double torque;      /* Nm, pushes each joint in turn, for 0.15 s at most; 0: nothing may move */
   int32_t is_virtual; /* 1: time is only counted, for a device that needs none to pass */
 } ethd_conform_def;
 

@@ -7,12 +7,13 @@
 
 #include "ethd/conform.h"
 
-enum { SOUND, NO_SAFE, NO_SERVICE, NO_BRIEF, BAD_TABLE, LEAKS, NO_LIMIT, OUTSIDE, NAN_ANGLE, BACKWARDS, FAULTY, DRIFTS, REVERSED, JUMPS, NO_WATCHDOG, UNSAFE, OLD_TORQUE, WAYS };
+enum { SOUND, NO_SAFE, NO_SERVICE, NO_BRIEF, BAD_TABLE, LEAKS, NO_LIMIT, OUTSIDE, NAN_ANGLE, BACKWARDS, FAULTY, DRIFTS, REVERSED, JUMPS, NO_WATCHDOG, UNSAFE, OLD_TORQUE, COUNTED, COARSE, COASTS, BLOCKED, WAYS };
 
 static int way;
+static double coasting[2]; /* rad/s, that a closed device keeps */
 
 typedef struct fake {
-  double q[2], w[2], torque[2];
+  double q[2], w[2], torque[2], home[2];
   int64_t now, written, ticks;
   int safe;
 } fake;
@@ -22,14 +23,17 @@ static ethd_status open_fake(const ethd_device_def *def, void **device, char mes
   (void)message;
   *device = f;
   if (way == LEAKS) (void)!dup(0);
-  return ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, f->q);
+  if (way == COASTS) memcpy(f->w, coasting, sizeof f->w);
+  ethd_status status = ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, f->q);
+  memcpy(f->home, f->q, sizeof f->home);
+  return status;
 }
 
 static ethd_status start(void *device) {
   fake *f = device;
   f->safe = 0;
   f->now = 0;
-  f->w[0] = f->w[1] = 0;
+  if (way != COASTS) f->w[0] = f->w[1] = 0;
   if (way != OLD_TORQUE) f->torque[0] = f->torque[1] = 0;
   return ETHD_OK;
 }
@@ -37,16 +41,23 @@ static ethd_status start(void *device) {
 static ethd_status read_fake(void *device, int64_t now, ethd_sense *out) {
   fake *f = device;
   double dt = f->now ? 1e-9 * (double)(now - f->now) : 0;
-  int alive = (!f->safe || way == UNSAFE) && (now - f->written <= 20000000 || way == NO_WATCHDOG);
+  int alive = (!f->safe || way == UNSAFE) && (now - f->written <= 20000000 || way == NO_WATCHDOG || way == BLOCKED);
   f->now = now;
   for (int i = 0; i < 2; i++) {
     f->w[i] += dt / 0.02 * (alive ? f->torque[i] : 0) * (way == REVERSED && i ? -1 : 1) + (way == DRIFTS ? dt * 5 : 0);
     out->q[i] = f->q[i] += dt * f->w[i];
   }
+  /* friction: 2 rad/s^2 */
+  for (int i = 0; i < 2 && way == COASTS; i++) f->w[i] -= copysign(fmin(fabs(f->w[i]), 2 * dt), f->w[i]);
+  if (way == COASTS) memcpy(coasting, f->w, sizeof coasting);
+  for (int i = 0; i < 2 && way == BLOCKED; i++)
+    if (fabs(f->q[i] - f->home[i]) > 0.02) f->w[i] = 0, out->q[i] = f->q[i] = f->home[i] + copysign(0.02, f->q[i] - f->home[i]);
+  for (int i = 0; i < 2 && way == COARSE; i++) out->q[i] = rint(f->q[i] / 0.002) * 0.002;
   if (way == JUMPS && ++f->ticks == 50) f->q[0] += 1;
   if (way == NAN_ANGLE && ++f->ticks == 50) out->q[1] = (double)NAN;
   out->time_ns = way == BACKWARDS && ++f->ticks == 50 ? now - 5000000 : now;
   if (way == FAULTY) out->faults = ETHD_FAULT_BIT(ETHD_FAULT_DRIVE);
+  if (way == COUNTED) out->faults = ETHD_FAULT_BIT(ETHD_FAULT_REPLY_MISSING);
   return ETHD_OK;
 }
 
@@ -99,7 +110,8 @@ static const struct {
     [OUTSIDE] = {"limits", ETHD_BROKEN},    [NAN_ANGLE] = {"sense", ETHD_BROKEN},   [BACKWARDS] = {"sense", ETHD_BROKEN},
     [FAULTY] = {"sense", ETHD_BROKEN},      [DRIFTS] = {"zero", ETHD_BROKEN},       [REVERSED] = {"sign", ETHD_BROKEN},
     [JUMPS] = {"counts", ETHD_BROKEN},      [NO_WATCHDOG] = {"watchdog", ETHD_AT_RISK}, [UNSAFE] = {"safe", ETHD_BROKEN},
-    [OLD_TORQUE] = {"restart", ETHD_BROKEN}};
+    [OLD_TORQUE] = {"restart", ETHD_BROKEN}, [COUNTED] = {"sense", ETHD_AT_RISK},   [COARSE] = {"watchdog", ETHD_NOT_ASKED},
+    [COASTS] = {"restart", ETHD_KEPT},      [BLOCKED] = {"watchdog", ETHD_NOT_ASKED}};
 
 START_TEST(test_way) {
   ethd_status status;
