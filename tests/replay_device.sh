@@ -26,6 +26,28 @@ status=$?
 [ $status = 1 ] || fail "other gains: exit $status"
 grep -q 'a replay that differs from its recording' "$work/out" || fail "other gains: $(cat "$work/out")"
 
+# what was commanded while it ran is commanded again: compared to the end, beyond a fault and a new start
+printf '1.2 fault9 set\n' >"$work/broken.inject"
+config faulty 'driver = sim\nplant = p\ntap = 7\ninject = broken.inject'
+printf '[limits]\nclean_time = 0.1\n' >>"$work/faulty.ini"
+config commanded 'driver = replay\nfolder = faulty'
+printf '[limits]\nclean_time = 0.1\n' >>"$work/commanded.ini"
+script='wait 0.7\ntransition smooth\nwait 0.8\nack\nwait 0.01\nenable\nwait 0.4\nset contact.k_e 1900\nwait 5\n'
+rows() { sed -n "s/^.*$2  *\([0-9][0-9]*\) *$/\1/p" "$1"; }
+printf "$script" | "$run" --virtual --duration 3 --config "$work/faulty.ini" --record "$work/faulty" >"$work/out" 2>&1 ||
+  fail "commanded: $(cat "$work/out")"
+grep -q '^ok: enabled' "$work/out" || fail "it isn't enabled again: $(cat "$work/out")"
+printf "$script" | "$run" --virtual --duration 3 --config "$work/commanded.ini" --record "$work/again" >"$work/out" 2>&1 ||
+  fail "replaying with commands: $(cat "$work/out")"
+cmp "$work/faulty/tick.npy" "$work/again/tick.npy" || fail "the session that was commanded again differs"
+[ "$(rows "$work/out" 'compared commands')" = "$(rows "$work/out" 'recorded ticks')" ] || fail "not all is compared: $(cat "$work/out")"
+grep -q '^device: tick 70[0-9] of the recording was commanded: transition smooth; ' "$work/out" || fail "no remark: $(cat "$work/out")"
+# and without: it differs from there on
+"$run" --virtual --duration 3 --config "$work/commanded.ini" </dev/null >"$work/out" 2>&1
+status=$?
+[ $status = 1 ] || fail "without its commands: exit $status"
+[ "$(rows "$work/out" 'first difference at tick')" -ge 700 ] || fail "without its commands: $(cat "$work/out")"
+
 # refusals
 rm "$work/session/tick.npy"
 "$run" --virtual --duration 2 --config "$work/replay.ini" </dev/null >"$work/out" 2>&1

@@ -5,12 +5,17 @@
        driver = replay
        folder = session1          as ethd-run --record has written it
 
-   Compared to the bit: the torque of each tick, up to the first tick whose setup was changed by a command;
-   while a soft start lets a share of it through, that both joints have one share, and that it rises.
-   Differences are counted and make stop say ETHD_E_DIFFERS. A run in real time that is late anywhere has other
-   periods, and so other commands: on the virtual clock there are none but true ones. Behind the last tick
-   the device can't be read. */
+   Compared to the bit: the torque of each tick; while a soft start lets a share of it through, that both joints
+   have one share, and that it rises. Differences are counted and make stop say ETHD_E_DIFFERS. A run in real time
+   that is late anywhere has other periods, and so other commands: on the virtual clock there are none but true
+   ones. Behind the last tick the device can't be read.
+
+   A device gives samples and takes torques; setups are posted by who runs it. So what was commanded while the
+   session ran (transition, set, ack, enable) must be commanded again at the same instants, as by the same lines
+   on the standard input of ethd-run --virtual; what is left out shows as a difference. ethd-replay --verify takes
+   the commands from the recording itself. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,10 +27,13 @@
 typedef struct replay {
   ethd__tape tape;
   size_t next;     /* row that read gives */
+  size_t answered; /* rows whose command has come: the safe one of an end is beside them */
   int64_t waits;   /* periods that it was waited for */
   double share;    /* of the last command */
   uint64_t compared, different;
   double first;    /* row that differs, -1: none */
+  int32_t runs;    /* 1: started anew while it plays, after a fault: it plays on */
+  char remark[288];
 } replay;
 
 /* ---- opening ---- */
@@ -55,14 +63,21 @@ static void replay_close(void *device) {
 
 static ethd_status replay_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
   replay *r = *out = calloc(1, sizeof *r);
-  return r ? load(def, r, message) : ETHD_E_MEMORY;
+  if (!r) return ETHD_E_MEMORY;
+  ethd_status status = load(def, r, message);
+  snprintf(r->remark, sizeof r->remark,
+           "tick %zu of the recording was commanded: %s; without the same commands at the same instants it differs",
+           r->tape.changed, r->tape.change);
+  return status;
 }
 
 static ethd_status replay_start(void *device) {
   replay *r = device;
-  r->next = 0;
-  r->waits = 0;
   r->share = 0;
+  if (r->runs) return ETHD_OK;
+  r->runs = 1;
+  r->next = r->answered = 0;
+  r->waits = 0;
   r->compared = r->different = 0;
   r->first = -1;
   return ETHD_OK;
@@ -111,7 +126,8 @@ static int is_same(const replay *r, const ethd_trace *row, const ethd_command *c
 static ethd_status replay_write(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT {
   replay *r = device;
   (void)now_ns;
-  if (r->next == 0 || r->next > r->tape.compared || r->waits) return ETHD_OK;
+  if (r->next == r->answered || r->waits) return ETHD_OK;
+  r->answered = r->next;
   r->compared++;
   if (is_same(r, &r->tape.rows[r->next - 1], command, &r->share)) return ETHD_OK;
   if (!r->different++) r->first = (double)(r->next - 1);
@@ -124,7 +140,8 @@ static void replay_safe(void *device) ETHD_RT { (void)device; }
 /* ---- [main] ---- */
 
 static ethd_status replay_stop(void *device) {
-  const replay *r = device;
+  replay *r = device;
+  r->runs = 0;
   return r->different ? ETHD_E_DIFFERS : ETHD_OK;
 }
 
@@ -143,6 +160,11 @@ static uint32_t replay_figures(const void *device, ethd_figure *out, uint32_t ma
   return n;
 }
 
+static const char *replay_remark(const void *device, uint32_t i) {
+  const replay *r = device;
+  return i == 0 && r->tape.changed < r->tape.count ? r->remark : NULL;
+}
+
 const ethd_driver ethd_driver_replay = {
     .size = sizeof(ethd_driver),
     .abi = ETHD_DRIVER_ABI,
@@ -158,4 +180,5 @@ const ethd_driver ethd_driver_replay = {
     .close = replay_close,
     .limits = replay_limits,
     .figures = replay_figures,
+    .remark = replay_remark,
 };

@@ -1,5 +1,6 @@
 #include "replay/tape.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,16 +35,25 @@ static ethd_status take_limits(const ethd__record_events *events, ethd_limits *o
 
 static int changes(const ethd__record_event *e) { return strcmp(e->kind, "fault") != 0; }
 
+/* The first that somebody gave while it ran. */
+static void take_change(const ethd__record_events *events, ethd__tape *tape) {
+  tape->changed = tape->count;
+  for (size_t i = 0; i < events->count; i++) {
+    const ethd__record_event *e = &events->events[i];
+    if (e->row == 0 || e->row >= tape->count || !changes(e)) continue;
+    tape->changed = (size_t)e->row;
+    snprintf(tape->change, sizeof tape->change, "%s%s%s", e->kind, e->detail[0] ? " " : "", e->detail);
+    return;
+  }
+}
+
 static ethd_status take_events(const char *folder, ethd__tape *tape, char *message) {
   ethd__record_events events = {0};
   char *path = ethd__path_join(folder, ETHD_RECORDING_EVENTS);
   ethd_status status = path ? ethd__record_events_read(path, &events, message) : no_memory(folder, message);
   free(path);
   if (status) return status;
-  tape->compared = tape->count;
-  for (size_t i = events.count; i--;)
-    if (events.events[i].row > 0 && events.events[i].row < tape->compared && changes(&events.events[i]))
-      tape->compared = (size_t)events.events[i].row;
+  take_change(&events, tape);
   status = take_limits(&events, &tape->limits, message);
   ethd__record_events_free(&events);
   return status;

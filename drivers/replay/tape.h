@@ -7,7 +7,8 @@
 typedef struct ethd__tape {
   ethd_trace *rows;
   size_t count;
-  size_t compared; /* rows before the first change of the setup, by a command or at the end */
+  size_t changed;   /* the first row behind a command that changed something; count: there was none */
+  char change[128]; /* that command, as events.csv has it: "transition smooth" */
   ethd_limits limits;
 } ethd__tape;
 
