@@ -94,6 +94,27 @@ drawn "$folder/grid/report" "$folder/grid" --point 3
 grep -q 'show point 3 of 4' "$folder/grid/report/report.html" || fail "the page doesn't name its point"
 grep -q 'No ticks were recorded' "$folder/grid/report/report.html" || fail "the page draws ticks that aren't there"
 
+# A simulation's ticks, of one worker out of two: its taps are drawn, no others.
+printf '[study]\ntraining = 1\ntaps = 1\nattempts = 6\n[grid]\ncontact.k_e = 1000,2500\n' >"$folder/ticks.study"
+"$study" "$folder/ticks.study" --simulate 4 --shard 1/2 --out "$folder/ticks" >/dev/null &&
+  "$study" "$folder/ticks.study" --simulate 4 --shard 2/2 --ticks --out "$folder/ticks" >/dev/null &&
+  "$study" --merge "$folder/ticks" >/dev/null || fail "the simulation's taps"
+drawn "$folder/ticks/report" "$folder/ticks" --point 1
+grep -o 'figcaption>As figures 9 to 12 of the paper: [^<]*' "$folder/ticks/report/report.html" >"$folder/captions"
+[ "$(wc -l <"$folder/captions")" = 4 ] || fail "not a trace for each cell: $(cat "$folder/captions")"
+while read -r _ _ _ _ _ _ _ _ law speed _ tap _; do
+  law=${law%,} speed=${speed%,} tap=${tap%,} chosen="$tap $law-$speed"
+  [ -d "$folder/ticks/taps-2-of-2/$tap" ] || fail "$tap isn't recorded"
+  sed 's/-/,/g; s/,0*/,/g' <<END | { IFS=, read -r point person block attempt
+$tap
+END
+    awk -F, -v P="$point" -v I="${person#P}" -v B="$block" -v A="$attempt" -v L="$law" -v S="$speed" '
+      $2 == P && substr($3, 2) + 0 == I + 0 && $4 == B && $6 == A && $7 == L && $8 == S && $11 { n++ } END { exit n != 1 }' \
+      "$folder/ticks/taps.csv"; } || fail "$tap isn't a valid tap of $law, $speed"
+done <"$folder/captions"
+drawn "$folder/other2" "$folder/ticks" --tap "${chosen% *}" --point 1 --out "$folder/other2"
+[ "$(ls "$folder"/other2/trace-*.png)" = "$folder/other2/trace-${chosen#* }.png" ] || fail "other taps than the chosen one are drawn"
+
 # ---- refusals ----
 refuse() { # CODE PATTERN ARGUMENTS...
   wanted=$1 pattern=$2

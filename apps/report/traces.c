@@ -1,9 +1,9 @@
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "file/error_text.h"
 #include "report/html.h"
+#include "report/recordings.h"
 #include "report/report.h"
 #include "tap/ticks.h"
 
@@ -17,31 +17,48 @@ static ethd_status view_of(const ethd__report *r, const ethd__group *group, cons
   return ETHD_OK;
 }
 
-/* taps/P01-03-004 of a row. */
-static char *recording_of(const ethd__report *r, const ethd__group *group, size_t index) {
-  const ethd__sheet *sheet = &r->data.sheet;
-  size_t row = group->who[index].row;
-  char *path = NULL, *folder = ethd__folder_path(r->folder->path, ETHD_STUDY_RECORDINGS);
-  if (asprintf(&path, "%s/%s-%02d-%03d", folder, ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "participant")),
-               atoi(ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "block"))),
-               atoi(ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "attempt")))) < 0)
-    path = NULL;
-  free(folder);
-  return path;
+/* The tap to be drawn; no such index: none. */
+typedef struct choice {
+  size_t index;
+  char name[ETHD_RECORDING_NAME], *recording;
+} choice;
+
+/* The typical one of those whose ticks are there. */
+static size_t typical(const ethd__report *r, const ethd__group *group, const ethd__recordings *recordings) {
+  char name[ETHD_RECORDING_NAME];
+  ethd__cell there = group->cell;
+  there.results = malloc((there.count + 1) * sizeof *there.results);
+  if (!there.results) return group->cell.count;
+  memcpy(there.results, group->cell.results, there.count * sizeof *there.results);
+  for (size_t i = 0; i < there.count; i++) {
+    ethd__recording_name(&r->data.sheet, group->who[i].row, name);
+    char *path = there.results[i].metrics.reason == ETHD_TAP_OK ? ethd__recording_path(recordings, name) : NULL;
+    if (!path) there.results[i].metrics.reason = ETHD_TAP_REASON_COUNT;
+    free(path);
+  }
+  size_t index = ethd__cell_valid(&there) ? ethd__cell_typical(&there) : there.count;
+  free(there.results);
+  return index;
 }
 
-static const char *base_name(const char *path) { return strrchr(path, '/') ? strrchr(path, '/') + 1 : path; }
-
-/* The typical tap, or the chosen one if it is of this group; no such index: none. */
-static size_t chosen(const ethd__report *r, const ethd__group *group) {
-  if (!r->tap) return ethd__cell_valid(&group->cell) ? ethd__cell_typical(&group->cell) : group->cell.count;
-  for (size_t i = 0; i < group->cell.count; i++) {
-    char *path = recording_of(r, group, i);
-    bool same = path && !strcmp(base_name(path), r->tap);
-    free(path);
-    if (same) return i;
+/* The one that was asked for, if it is of this group. */
+static size_t asked_for(const ethd__report *r, const ethd__group *group) {
+  char name[ETHD_RECORDING_NAME];
+  size_t i = 0;
+  for (; i < group->cell.count; i++) {
+    ethd__recording_name(&r->data.sheet, group->who[i].row, name);
+    if (!strcmp(name, r->tap)) break;
   }
-  return group->cell.count;
+  return i;
+}
+
+/* False: no ticks to draw. */
+static bool choose(const ethd__report *r, const ethd__group *group, const ethd__recordings *recordings, choice *out) {
+  out->index = r->tap ? asked_for(r, group) : typical(r, group, recordings);
+  if (out->index >= group->cell.count) return false;
+  ethd__recording_name(&r->data.sheet, group->who[out->index].row, out->name);
+  out->recording = ethd__recording_path(recordings, out->name);
+  return out->recording != NULL;
 }
 
 static ethd_status write_trace(ethd__report *r, const ethd__group *group, size_t index, const char *recording, const char *csv) {
@@ -55,34 +72,35 @@ static ethd_status write_trace(ethd__report *r, const ethd__group *group, size_t
   return status;
 }
 
-static ethd_status draw(ethd__report *r, const ethd__group *group, const char *recording) {
+static ethd_status draw(ethd__report *r, const ethd__group *group, const char *tap) {
   char caption[256], name[96];
   snprintf(name, sizeof name, "trace-%s-%s.png", group->cell.law, group->speed.word);
-  snprintf(caption, sizeof caption, "As figures 9 to 12 of the paper: %s, %s, tap %s%s.", group->cell.law, group->speed.word,
-           base_name(recording), r->tap ? "" : ", the valid one nearest to the cell's means");
+  snprintf(caption, sizeof caption, "As figures 9 to 12 of the paper: %s, %s, tap %s%s.", group->cell.law, group->speed.word, tap,
+           r->tap ? "" : ", of the valid ones that are recorded the one nearest to their means");
   return ethd__report_picture(r, "tap.gp", name, caption, "in='trace-%s-%s.csv'; title='%s, %s speed'; plant='%.60s'",
                               group->cell.law, group->speed.word, group->cell.law, group->speed.word,
                               r->folder->protocol.plant ? r->folder->protocol.plant : "n");
 }
 
-/* names, titles: what the picture of the states shows. */
-static ethd_status trace_group(ethd__report *r, const ethd__group *group, FILE *names, FILE *titles, size_t *count) {
+/* What the picture of the states shows. */
+typedef struct states {
+  FILE *names, *titles;
+  size_t count;
+} states;
+
+static ethd_status trace_group(ethd__report *r, const ethd__group *group, const ethd__recordings *recordings, states *out) {
   char name[96];
-  size_t index = chosen(r, group);
-  char *recording = index < group->cell.count ? recording_of(r, group, index) : NULL;
-  if (!recording || access(recording, F_OK) != 0) {
-    free(recording);
-    return ETHD_OK;
-  }
+  choice tap;
+  if (!choose(r, group, recordings, &tap)) return ETHD_OK;
   snprintf(name, sizeof name, "trace-%s-%s.csv", group->cell.law, group->speed.word);
   char *csv = ethd__report_path(r, name);
-  ethd_status status = write_trace(r, group, index, recording, csv);
-  if (!status) status = draw(r, group, recording);
-  fprintf(names, "%strace-%s-%s.csv", *count ? " " : "", group->cell.law, group->speed.word);
-  fprintf(titles, "%s%s-%s", *count ? " " : "", group->cell.law, group->speed.word);
-  ++*count;
+  ethd_status status = write_trace(r, group, tap.index, tap.recording, csv);
+  if (!status) status = draw(r, group, tap.name);
+  fprintf(out->names, "%s%s", out->count ? " " : "", name);
+  fprintf(out->titles, "%s%s-%s", out->count ? " " : "", group->cell.law, group->speed.word);
+  out->count++;
   free(csv);
-  free(recording);
+  free(tap.recording);
   return status;
 }
 
@@ -95,17 +113,21 @@ static ethd_status draw_states(ethd__report *r, const char *names, const char *t
 
 ethd_status ethd__report_traces(ethd__report *r) {
   char *names = NULL, *titles = NULL;
-  size_t length, count = 0;
+  size_t length;
   ethd_status status = ETHD_OK;
-  FILE *name = open_memstream(&names, &length), *title = open_memstream(&titles, &length);
+  ethd__recordings recordings;
+  states drawn = {.names = open_memstream(&names, &length), .titles = open_memstream(&titles, &length)};
   ethd__html_heading(r->page, "traces", "Traces of single taps");
-  for (size_t i = 0; name && title && !status && i < r->data.group_count; i++)
-    status = trace_group(r, &r->data.group[i], name, title, &count);
-  if (name) fclose(name);
-  if (title) fclose(title);
-  if (!status && !count && r->tap) status = ethd__say(r->message, ETHD_E_RANGE, "--tap: no test tap %s is recorded here", r->tap);
-  if (!status && count) status = draw_states(r, names, titles);
-  if (!status && !count) fputs("<p>No ticks were recorded: there is nothing to draw.</p>\n", r->page);
+  ethd__recordings_find(r->folder->path, &recordings);
+  for (size_t i = 0; drawn.names && drawn.titles && !status && i < r->data.group_count; i++)
+    status = trace_group(r, &r->data.group[i], &recordings, &drawn);
+  if (drawn.names) fclose(drawn.names);
+  if (drawn.titles) fclose(drawn.titles);
+  if (!status && !drawn.count && r->tap)
+    status = ethd__say(r->message, ETHD_E_RANGE, "--tap: no test tap %s is recorded here", r->tap);
+  if (!status && drawn.count) status = draw_states(r, names, titles);
+  if (!status && !drawn.count) fputs("<p>No ticks were recorded: there is nothing to draw.</p>\n", r->page);
+  ethd__recordings_free(&recordings);
   free(names);
   free(titles);
   return status;

@@ -1,0 +1,56 @@
+#include "report/recordings.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "common/cli.h"
+#include "study/folder.h"
+
+static bool holds_taps(const char *name) {
+  unsigned index, of;
+  char rest;
+  return !strcmp(name, ETHD_STUDY_RECORDINGS) || sscanf(name, ETHD_STUDY_RECORDINGS "-%u-of-%u%c", &index, &of, &rest) == 2;
+}
+
+static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
+
+void ethd__recordings_find(const char *study, ethd__recordings *out) {
+  DIR *folder = opendir(study);
+  const struct dirent *entry;
+  *out = (ethd__recordings){0};
+  while (folder && (entry = readdir(folder))) {
+    if (!holds_taps(entry->d_name)) continue;
+    char **longer = realloc(out->folder, (out->count + 1) * sizeof *longer);
+    if (!longer) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+    out->folder = longer;
+    out->folder[out->count++] = ethd__folder_path(study, entry->d_name);
+  }
+  if (folder) closedir(folder);
+  if (out->count) qsort(out->folder, out->count, sizeof *out->folder, by_name);
+}
+
+void ethd__recordings_free(ethd__recordings *r) {
+  for (size_t i = 0; i < r->count; i++) free(r->folder[i]);
+  free(r->folder);
+  *r = (ethd__recordings){0};
+}
+
+void ethd__recording_name(const ethd__sheet *sheet, size_t row, char out[ETHD_RECORDING_NAME]) {
+  int point = ethd__sheet_column(sheet, "point");
+  snprintf(out, ETHD_RECORDING_NAME, "%.20s%s%.20s-%02d-%03d", ethd__sheet_cell(sheet, row, point), point < 0 ? "" : "-",
+           ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "participant")),
+           atoi(ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "block"))),
+           atoi(ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "attempt"))));
+}
+
+char *ethd__recording_path(const ethd__recordings *r, const char *name) {
+  for (size_t i = 0; i < r->count; i++) {
+    char *path = ethd__folder_path(r->folder[i], name);
+    if (access(path, F_OK) == 0) return path;
+    free(path);
+  }
+  return NULL;
+}

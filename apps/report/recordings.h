@@ -1,0 +1,25 @@
+/* Where a study's folder keeps the ticks of its taps: a session in taps/P01-03-004, worker i of n of a simulation in
+   taps-i-of-n/0-P01-03-004, after the point of the grid. All [main]. */
+#ifndef ETHD_REPORT_RECORDINGS_H
+#define ETHD_REPORT_RECORDINGS_H
+
+#include "report/sheet.h"
+
+#define ETHD_RECORDING_NAME 96
+
+typedef struct ethd__recordings {
+  char **folder;
+  size_t count;
+} ethd__recordings;
+
+/* Which such folders there are; none is fine. Exit 1 without memory. */
+void ethd__recordings_find(const char *study, ethd__recordings *out);
+void ethd__recordings_free(ethd__recordings *recordings);
+
+/* Of a row of taps.csv. */
+void ethd__recording_name(const ethd__sheet *sheet, size_t row, char out[ETHD_RECORDING_NAME]);
+
+/* The folder of that name, freed by the caller; NULL: there is none. */
+char *ethd__recording_path(const ethd__recordings *recordings, const char *name);
+
+#endif
