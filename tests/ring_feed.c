@@ -1,5 +1,6 @@
 /* What the proximity ring's 16 sensors see of the plant behind plant_bridge: asks it where ring and finger are, and
-   tells ring_board the counts, a thousand times a second. The ring is empty until the plant's time begins.
+   tells ring_board the counts, a thousand times a second. The ring is empty until the plant's time begins,
+   and from a line "out" on stdin to a line "in".
 
    ring_feed PLANT_PORT BOARD_PORT FINGER_RADIUS [DARK]; ends with stdin. */
 #include <arpa/inet.h>
@@ -9,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include "ethd/finger_fit.h"
 #include "proximity_ring/calibration.h"
@@ -38,13 +40,26 @@ static void counts(const ethd__calibration *law, const double *rays, double dark
   }
 }
 
+/* Whether the finger is in the ring, by the last line on stdin; false: it has ended. */
+static int hear(int *is_out) {
+  char text[64];
+  struct pollfd in = {0, POLLIN, 0};
+  if (poll(&in, 1, 1) == 0) return 1;
+  ssize_t n = read(0, text, sizeof text - 1);
+  if (n <= 0) return 0;
+  text[n] = 0;
+  *is_out = strstr(text, "out") != NULL;
+  return 1;
+}
+
 int main(int argc, char **argv) {
   if (argc < 4) return 2;
   int plant = line_to(argv[1]), board = line_to(argv[2]);
   double radius = atof(argv[3]), dark = argc > 4 ? atof(argv[4]) : 200;
   ethd__calibration law = ethd__calibration_default();
   for (int k = 0; k < ETHD_RAYS; k++) law.sensors[k].dark = dark;
-  for (struct pollfd in = {0, POLLIN, 0}; poll(&in, 1, 1) == 0;) {
+  int is_out = 0;
+  while (hear(&is_out)) {
     double t, ring[2], finger[2], rays[ETHD_RAYS];
     char text[256];
     if (send(plant, "F", 1, 0) != 1) continue;
@@ -55,7 +70,7 @@ int main(int argc, char **argv) {
     text[n] = 0;
     if (sscanf(text, "%lf %lf %lf %lf %lf", &t, &ring[0], &ring[1], &finger[0], &finger[1]) != 5) continue;
     ethd_fit_rays(RING_RADIUS, radius, (ethd_vec){finger[0] - ring[0], finger[1] - ring[1]}, rays);
-    for (int k = 0; !(t > 0) && k < ETHD_RAYS; k++) rays[k] = (double)NAN;
+    for (int k = 0; (is_out || !(t > 0)) && k < ETHD_RAYS; k++) rays[k] = (double)NAN;
     counts(&law, rays, dark, text, sizeof text);
     (void)!send(board, text, strlen(text), 0);
   }

@@ -1,6 +1,7 @@
 """The whole device's run, and what came of it.
 
 whole_device.py run ETHD_RUN FOLDER SECONDS    commands: each strategy rules so long, enabled
+whole_device.py study ETHD_STUDY FOLDER          a study on the same device, acknowledging what a busy machine trips
 whole_device.py judge RECORDING ETHD_TAP       taps by strategy, beside those of the simulated device
 """
 import csv
@@ -47,6 +48,23 @@ def run(program, folder, seconds):
     log.write(device.communicate()[0])
     print(f"enabled again {trips} times")
     sys.exit(device.returncode)
+
+
+def study(program, folder):
+    with open(folder + "/people.study", "w") as file:
+        file.write("[study]\nparticipants = 1\nstrategies = offset,smooth\nspeeds = 0.4\ntraining = 0\ntaps = 1\n"
+                   "attempts = 6\n[device]\nconfig = device.ini\n[hand]\nsource = people\n")
+    command = [program, folder + "/people.study", "--out", folder + "/study", "--ask"]
+    feed = open(folder + "/feed.in", "w")
+    print("out", file=feed, flush=True)  # a ring is opened empty
+    session = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=open(folder + "/study.err", "w"), text=True)
+    for line in session.stdout:
+        print("study:", line.rstrip())
+        print("in", file=feed, flush=True)
+        if "ack goes on" in line:
+            session.stdin.write("ack\n")
+            session.stdin.flush()
+    sys.exit(session.wait())
 
 
 def taps_of(r, events):
@@ -106,4 +124,6 @@ def judge(folder, tap):
 
 if sys.argv[1] == "run":
     run(sys.argv[2], sys.argv[3], float(sys.argv[4]))
+if sys.argv[1] == "study":
+    study(sys.argv[2], sys.argv[3])
 judge(sys.argv[2], sys.argv[3])
