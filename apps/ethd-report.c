@@ -89,6 +89,20 @@ static bool led_by_people(const ethd__report *r) {
   return led;
 }
 
+static void print_origin(ethd__report *r) {
+  if (ethd__report_measured(r)) {
+    fprintf(r->page, "<b>Measured</b> on the device <code>%s</code> of config.ini, with people's fingers in it: the ring as the "
+            "encoders have it, the finger as its filter has it. A finger counts as touching %.2g mm from the ring on.",
+            r->folder->loaded.config->device, 1e3 * r->folder->protocol.slack);
+    return;
+  }
+  fputs("<b>Simulated, not measured.</b> ", r->page);
+  fputs(led_by_people(r) ? "People led the hand; device and finger are plausible: the plant was fitted to Table 1 of the paper."
+                         : "Device, finger and people are plausible: the plant was fitted to Table 1 of the paper, the spread "
+                           "between people is assumed.",
+        r->page);
+}
+
 static void print_lead(ethd__report *r) {
   const ethd__data *d = &r->data;
   size_t taps = 0, valid = 0;
@@ -98,11 +112,8 @@ static void print_lead(ethd__report *r) {
   }
   fprintf(r->page, "<p class=\"lead\">%zu participants, %zu cells, %zu test taps, %zu of them valid; %zu training taps.</p>\n",
           d->people_count, d->group_count, taps, valid, d->training);
-  fputs("<p class=\"note\"><b>Simulated, not measured.</b> ", r->page);
-  fputs(led_by_people(r) ? "People led the hand; device and finger are plausible: the plant was fitted to Table 1 of the paper."
-                         : "Device, finger and people are plausible: the plant was fitted to Table 1 of the paper, the spread "
-                           "between people is assumed.",
-        r->page);
+  fputs("<p class=\"note\">", r->page);
+  print_origin(r);
   fputs(" Laws and gains are those of the configuration, the paper's unless it says otherwise.</p>\n", r->page);
   fputs("<nav>", r->page);
   static const char *const links[][2] = {{"table1", "Table 1"}, {"figures", "Figures"}, {"delay", "Delay"}, {"valid", "Valid taps"},

@@ -57,6 +57,15 @@ awk -F, '
   FNR > 1 { n++; bad += off($15, delta[$5]) > 2 || off($16, eps[$5]) > 2e-4 || off($17, rvo[$5]) > 3e-3 || off($11, v[$5]) > 0.03 || off($18, of[$5]) > 0.01 }
   END { exit n < 3 || bad }' "$folder/desk.csv" "$folder/s1/taps.csv" || fail "not the desk's tap: $(cat "$folder/s1/taps.csv" "$folder/desk.csv")"
 
+# ---- the report says what was measured ----
+if command -v gnuplot >/dev/null; then
+  "$BUILD/bin/ethd-report" "$folder/s1" >"$folder/out" 2>&1 && grep -q 'People led the hand' "$folder/s1/report/report.html" || fail "the report: $(cat "$folder/out")"
+  sed -i 's/^driver = sim/driver = servo/' "$folder/s2/config.ini"
+  "$BUILD/bin/ethd-report" "$folder/s2" >"$folder/out" 2>&1 || fail "the report of a servo's taps: $(cat "$folder/out")"
+  grep -q '<b>Measured</b> on the device <code>servo</code>' "$folder/s2/report/report.html" &&
+    ! grep -q -i 'simulated, not measured\|were <b>fitted' "$folder/s2/report/report.html" || fail "the page of a servo's taps says it was simulated"
+fi
+
 # ---- in real time, survey and notes on stdin ----
 talk '?' "4
 3

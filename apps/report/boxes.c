@@ -73,8 +73,8 @@ static ethd_status draw(ethd__report *r, const char *prefix, const char *picture
   return ethd__report_picture(
       r, "report-boxes.gp", name, caption,
       "in='%sboxes.csv'; points='%spoints.csv'; metrics='%s'; heading='%s'; "
-      "note='simulated: plausible, fitted, not measured. Valid taps: medians (red), quartiles, extremes'",
-      prefix, prefix, metrics, heading);
+      "note='%s. Valid taps: medians (red), quartiles, extremes'",
+      prefix, prefix, metrics, heading, ethd__report_measured(r) ? "measured" : "simulated: plausible, fitted, not measured");
 }
 
 static ethd_status pictures(ethd__report *r, const ethd__data *data, const char *prefix, const char *whose) {

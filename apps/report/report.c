@@ -63,6 +63,11 @@ void ethd__group_summary(const ethd__group *group, const ethd__quantity *quantit
   free(values);
 }
 
+bool ethd__report_measured(const ethd__report *r) {
+  const ethd__folder *f = r->folder;
+  return f->protocol.hands == ETHD_HANDS_PEOPLE && strcmp(f->loaded.config->device, ethd_driver_sim.id) != 0;
+}
+
 void ethd__report_methods(ethd__report *report) {
   static const char *const methods[] = {
       "Means and sample standard deviations (n - 1) as in the paper; medians and quartiles by linear interpolation "

@@ -21,6 +21,9 @@ typedef struct ethd__report {
   char *message;
 } ethd__report;
 
+/* People's fingers on a device that isn't the simulated one: its figures were measured, nothing was fitted. */
+bool ethd__report_measured(const ethd__report *report);
+
 /* out/name; exit 1 without memory. */
 char *ethd__report_path(const ethd__report *report, const char *name);
 
