@@ -1,41 +1,29 @@
 #include "encoder/counter.h"
 
-#include <errno.h>
-#include <linux/counter.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "encoder/counter_input.h"
 #include "ethd/cell.h"
 #include "file/error_text.h"
 
-#define EVENTS 64        /* in one call */
-#define CALLS_MAX 64     /* in one service: the rest waits for the next */
 #define HOME_PAUSE 1000000 /* ns */
-
-/* What the I/O thread hands over. */
-typedef struct snapshot {
-  int64_t time_ns, edge_ns[2];
-  uint64_t raw[2], index[2], marks[2]; /* index: count at the last mark; marks: how many so far */
-} snapshot;
 
 typedef struct counter {
   ethd__counter_settings settings;
   ethd__encoder_def def[2];
   double period;
-  const ethd__counter_calls *calls;
-  ethd__kernel_count counts[2];
-  ethd_cell *cell;
+  ethd_cell *cell; /* of snapshots */
 
   /* I/O thread, and start */
   pthread_mutex_t lock;
-  snapshot latest;
-  uint64_t events, bad_events, failures;
+  ethd__counter_input input;
   int32_t failed; /* also [rt]'s: the count can't be read */
 
   /* [rt], and start */
-  snapshot taken;
+  ethd__counter_snapshot taken;
   ethd__encoder encoder[2];
   double torque[2]; /* of the last command */
   uint64_t marks[2];
@@ -44,61 +32,10 @@ typedef struct counter {
 
 /* ---- I/O ---- */
 
-static int joint_of(const counter *c, int device, const struct counter_event *e) {
-  for (int j = 0; j < 2; j++)
-    if (c->counts[j].device == device && e->watch.component.parent == c->settings.count[j]) return j;
-  return -1;
-}
-
-/* Figures are read while they rise. */
-static void raise_by_one(uint64_t *count) { __atomic_store_n(count, *count + 1, __ATOMIC_RELAXED); }
-static double seen(const uint64_t *count) { return (double)__atomic_load_n(count, __ATOMIC_RELAXED); }
-
-static void take_event(counter *c, int device, const struct counter_event *e) {
-  int j = joint_of(c, device, e);
-  raise_by_one(&c->events);
-  if (j < 0 || e->status) {
-    raise_by_one(&c->bad_events);
-  } else if (e->watch.event == COUNTER_EVENT_INDEX) {
-    c->latest.index[j] = e->value;
-    c->latest.marks[j]++;
-  } else if (e->watch.event == COUNTER_EVENT_CHANGE_OF_STATE) {
-    c->latest.edge_ns[j] = (int64_t)e->timestamp;
-    c->latest.raw[j] = e->value;
-  }
-}
-
-/* All that wait. -1: the device is gone. */
-static int take_events(counter *c, int j) {
-  struct counter_event events[EVENTS];
-  if (c->counts[j].shared) return 0;
-  for (int call = 0; call < CALLS_MAX; call++) {
-    ssize_t n = c->calls->read(c->counts[j].device, events, sizeof events);
-    if (n < 0 && errno != EAGAIN && errno != EINTR && errno != ENODATA) return -1;
-    if (n <= 0) return 0;
-    for (size_t i = 0; i < (size_t)n / sizeof *events; i++) take_event(c, c->counts[j].device, &events[i]);
-    if ((size_t)n < sizeof events) return 0;
-  }
-  return 0;
-}
-
-/* A count whose edges are known has its value from the last of them: both belong together. */
-static int take_count(counter *c, int j) {
-  uint64_t raw;
-  if (c->def[j].stamps && c->latest.edge_ns[j]) return 0;
-  if (ethd__kernel_count_read(c->calls, &c->counts[j], &raw)) return -1;
-  c->latest.raw[j] = raw;
-  return 0;
-}
-
 static ethd_status sample(counter *c, int64_t now_ns) {
-  int bad = 0;
-  c->latest.time_ns = now_ns;
-  for (int j = 0; j < 2; j++) bad |= take_events(c, j) | take_count(c, j);
-  __atomic_store_n(&c->failed, bad, __ATOMIC_RELAXED);
-  if (!bad) return ETHD_OK;
-  raise_by_one(&c->failures);
-  return ETHD_E_DEVICE;
+  ethd_status status = ethd__counter_sample(&c->input, now_ns);
+  __atomic_store_n(&c->failed, status != ETHD_OK, __ATOMIC_RELAXED);
+  return status;
 }
 
 static ethd_status counter_service(void *device, uint32_t unit, int64_t now_ns) {
@@ -106,9 +43,9 @@ static ethd_status counter_service(void *device, uint32_t unit, int64_t now_ns) 
   (void)unit;
   pthread_mutex_lock(&c->lock);
   ethd_status status = sample(c, now_ns);
-  if (!status) ethd_cell_put(c->cell, &c->latest);
+  if (!status) ethd_cell_put(c->cell, &c->input.latest);
   pthread_mutex_unlock(&c->lock);
-  c->calls->pause((int64_t)(0.5e9 * c->period));
+  c->input.calls->pause((int64_t)(0.5e9 * c->period));
   return status;
 }
 
@@ -116,7 +53,7 @@ static ethd_status counter_service(void *device, uint32_t unit, int64_t now_ns) 
 
 /* The row of one joint's sample; q, dq and faults into *out. */
 static void step(counter *c, int j, ethd_sense *out) ETHD_RT {
-  const snapshot *s = &c->taken;
+  const ethd__counter_snapshot *s = &c->taken;
   ethd__count count = {.time_ns = s->time_ns, .edge_ns = s->edge_ns[j], .raw = s->raw[j], .index = s->index[j]};
   if (s->marks[j] != c->marks[j]) count.flags = ETHD__COUNT_INDEX;
   c->marks[j] = s->marks[j];
@@ -168,53 +105,33 @@ static ethd__encoder_def define(const ethd__counter_settings *s, int j, uint64_t
                              .stamps = p[ETHD__COUNTER_STAMPS] != 0};
 }
 
-static ethd_status open_counts(counter *c, const char *file, char *message) {
-  ethd_status status = ETHD_OK;
+static ethd_status prepare(counter *c, const ethd_device_def *def, char *message) {
+  ethd_status status = ethd__counter_settings_read(def, &c->settings, message);
+  if (!status) status = ethd__counter_input_open(&c->settings, &c->input, message);
   for (int j = 0; j < 2 && !status; j++) {
-    status = ethd__kernel_count_open(c->calls, &c->settings, j, j ? &c->counts[0] : NULL, &c->counts[j], message);
-    if (status) return status;
-    c->def[j] = define(&c->settings, j, c->counts[j].ceiling);
     ethd_error error = {0};
+    c->def[j] = define(&c->settings, j, c->input.counts[j].ceiling);
     status = ethd__encoder_check(&c->def[j], c->period, &error);
-    if (status) ethd_error_text(file, &error, message);
+    if (status) ethd_error_text(def->file, &error, message);
   }
-  for (int j = 0; j < 2 && !status; j++)
-    status = ethd__kernel_count_watch(c->calls, &c->settings, j, c->counts, message);
   return status;
 }
 
 static void counter_close(void *device) {
   counter *c = device;
-  if (!c) return;
-  for (int j = 2; j--;) ethd__kernel_count_close(c->calls, &c->counts[j]);
+  ethd__counter_input_close(&c->input);
   ethd_cell_destroy(c->cell);
   pthread_mutex_destroy(&c->lock);
   free(c);
 }
 
-static counter *make(void) {
-  counter *c = calloc(1, sizeof *c);
-  if (!c) return NULL;
-  c->calls = ethd__counter_calls_now;
-  for (int j = 0; j < 2; j++) c->counts[j] = (ethd__kernel_count){.device = -1, .count = -1};
-  pthread_mutex_init(&c->lock, NULL);
-  if (ethd_cell_create(sizeof(snapshot), &c->cell, NULL) == ETHD_OK) return c;
-  counter_close(c);
-  return NULL;
-}
-
 static ethd_status counter_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
-  counter *c = make();
-  *out = NULL;
-  if (!c) return ethd__say(message, ETHD_E_MEMORY, "counter: %s", ethd_status_sentence(ETHD_E_MEMORY));
+  counter *c = *out = calloc(1, sizeof *c);
+  if (!c) return ETHD_E_MEMORY;
   c->period = def->setup->period;
-  ethd_status status = ethd__counter_settings_read(def, &c->settings, message);
-  if (!status) status = open_counts(c, def->file, message);
-  if (status)
-    counter_close(c);
-  else
-    *out = c;
-  return status;
+  pthread_mutex_init(&c->lock, NULL);
+  ethd_status status = ethd_cell_create(sizeof(ethd__counter_snapshot), &c->cell, NULL);
+  return status ? status : prepare(c, def, message);
 }
 
 /* ---- starting ---- */
@@ -228,10 +145,10 @@ static ethd_status home(counter *c) {
     ethd_sense s = {0};
     ethd_status status = sample(c, t * HOME_PAUSE);
     if (status) return status;
-    c->taken = c->latest;
+    c->taken = c->input.latest;
     for (int j = 0; j < 2; j++) step(c, j, &s);
     if (s.grave) return ETHD_E_DEVICE;
-    c->calls->pause(HOME_PAUSE);
+    c->input.calls->pause(HOME_PAUSE);
   }
   for (int j = 0; j < 2; j++) ethd__encoder_pause(&c->encoder[j]);
   return is_homed(c) ? ETHD_OK : ETHD_E_DEVICE;
@@ -249,7 +166,7 @@ static ethd_status counter_start(void *device) {
     if (c->lost) ethd__encoder_restart(&c->encoder[j]);
     ethd__encoder_pause(&c->encoder[j]);
     c->torque[j] = 0;
-    c->marks[j] = c->latest.marks[j];
+    c->marks[j] = c->input.latest.marks[j];
   }
   c->lost = 0;
   if (c->def[0].home && !is_homed(c)) status = home(c);
@@ -257,12 +174,12 @@ static ethd_status counter_start(void *device) {
   return status;
 }
 
-static ethd_status counter_stop(void *device) { return counter_safe(device), ETHD_OK; }
-
 /* ---- for people ---- */
 
+/* Figures are read while they rise. */
+static double seen(const uint64_t *count) { return (double)__atomic_load_n(count, __ATOMIC_RELAXED); }
+
 static uint32_t counter_units(const void *device) { return (void)device, 1; }
-static ethd_limits counter_limits(const void *device) { return (void)device, ethd_limits_none(); }
 
 static const char *counter_remark(const void *device, uint32_t i) {
   const counter *c = device;
@@ -276,9 +193,9 @@ static const char *counter_remark(const void *device, uint32_t i) {
 
 static uint32_t counter_figures(const void *device, ethd_figure *out, uint32_t max) {
   const counter *c = device;
-  const ethd_figure all[] = {{"counter events", "1", seen(&c->events)},
-                             {"counter events with a failure", "1", seen(&c->bad_events)},
-                             {"counter reads that failed", "1", seen(&c->failures)}};
+  const ethd_figure all[] = {{"counter events", "1", seen(&c->input.events)},
+                             {"counter events with a failure", "1", seen(&c->input.bad_events)},
+                             {"counter reads that failed", "1", seen(&c->input.failures)}};
   uint32_t n = max < 3 ? max : 3;
   memcpy(out, all, n * sizeof *out);
   return n;
@@ -291,6 +208,7 @@ const ethd_driver ethd_driver_counter = {
     .brief = "encoders behind the kernel's counters; never run on hardware",
     .params = ethd__counter_params,
     .param_count = ETHD__COUNTER_PARAMS,
+    .keys = ethd__counter_keys,
     .open = counter_open,
     .start = counter_start,
     .read = counter_read,
@@ -298,9 +216,7 @@ const ethd_driver ethd_driver_counter = {
     .units = counter_units,
     .service = counter_service,
     .safe = counter_safe,
-    .stop = counter_stop,
     .close = counter_close,
-    .limits = counter_limits,
     .figures = counter_figures,
     .remark = counter_remark,
 };

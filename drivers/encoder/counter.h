@@ -58,6 +58,7 @@ enum {
 };
 
 extern const ethd_param ethd__counter_params[ETHD__COUNTER_PARAMS];
+extern const char *const ethd__counter_keys[]; /* NULL behind the last */
 
 /* What the configuration says. */
 typedef struct ethd__counter_settings {

@@ -26,6 +26,8 @@ const ethd_param ethd__counter_params[ETHD__COUNTER_PARAMS] = {
     [ETHD__COUNTER_INERTIA] = {"inertia", "kg m^2", 1e-6, 1e3, 0.01, "of a joint, within a half"},
 };
 
+const char *const ethd__counter_keys[] = {"device", "device2", "function", "count1", "count2", "channel1", "channel2", NULL};
+
 static ethd_status refuse(const ethd_device_def *def, const ethd_setting *s, ethd_status status, double found,
                           double min, double max, char *message) {
   ethd_error error = {.status = status, .line = s->line, .found = found, .min = min, .max = max};

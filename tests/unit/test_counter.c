@@ -16,7 +16,9 @@ static ethd_status try(const ethd_setting *settings, uint32_t n, void **device, 
   setup = ethd_setup_default();
   const ethd_device_def def = {&setup, settings, n, NULL, "c.ini"};
   message[0] = 0;
-  return D.open(&def, device, message);
+  ethd_status status = D.open(&def, device, message);
+  if (status && *device) D.close(*device), *device = NULL; /* as a caller must */
+  return status;
 }
 
 static void *open_with(const char *const *pairs) {
