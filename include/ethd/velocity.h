@@ -1,6 +1,6 @@
 /* Joint speed from encoder positions, one estimator per joint.
 
-   Lag against noise decides what a controller survives: control-law.md's table, ethd-check's bounds. */
+   Lag against noise decides what a controller survives: ethd-check prints its bounds. */
 #ifndef ETHD_VELOCITY_H
 #define ETHD_VELOCITY_H
 
