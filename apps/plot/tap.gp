@@ -1,6 +1,7 @@
 # One tap, in the manner of the paper's figures 9 to 12.
 #   gnuplot -e "in='offset-high.csv'; out='offset-high.png'; title='offset, high speed'" tap.gp
-# in: a file of ethd-tap --trace. title, from, to (ms) may be left out; plant names the plant in the title.
+# in: a file of ethd-tap --trace. title, from, to (ms) may be left out; plant names the plant in the title,
+# empty: the tap was measured.
 if (!exists("in") || !exists("out")) { print "tap.gp: set in and out: gnuplot -e \"in='x.csv'; out='x.png'\" tap.gp"; exit status 2 }
 if (!exists("title")) title = in
 if (!exists("plant")) plant = "n"
@@ -38,7 +39,8 @@ bottom = R_min < -14 ? -14 : R_min
 
 set multiplot
 set label 1 title.", one typical tap" at screen 0.12,0.972 font "Sans Bold,19"
-set label 2 "simulated; plant ".plant." is fitted to Table 1, not measured. Time from t_{r/vo}: the ring meets the wall." \
+origin = plant eq "" ? "measured" : "simulated; plant ".plant." is fitted to Table 1, not measured"
+set label 2 origin.". Time from t_{r/vo}: the ring meets the wall." \
   at screen 0.12,0.947 font "Sans,13" textcolor rgb grey
 marks = 'set arrow 1 from 0,graph 0 to 0,graph 1 nohead lc rgb "#aaaaaa" lw 1.4; if (touch == touch) {set arrow 2 from touch,graph 0 to touch,graph 1 nohead lc rgb finger lw 1.2 dt (2,3)}'
 eval(marks)

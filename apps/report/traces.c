@@ -79,7 +79,7 @@ static ethd_status draw(ethd__report *r, const ethd__group *group, const char *t
            r->tap ? "" : ", of the valid ones that are recorded the one nearest to their means");
   return ethd__report_picture(r, "tap.gp", name, caption, "in='trace-%s-%s.csv'; title='%s, %s speed'; plant='%.60s'",
                               group->cell.law, group->speed.word, group->cell.law, group->speed.word,
-                              r->folder->protocol.plant ? r->folder->protocol.plant : "n");
+                              ethd__report_measured(r) ? "" : r->folder->protocol.plant ? r->folder->protocol.plant : "n");
 }
 
 /* What the picture of the states shows. */
