@@ -81,7 +81,7 @@ START_TEST(test_lock_step) {
   ethd_sim *sim = sim_open(&def, &tap);
   int rays = 0;
   for (int k = 0; k < 100; k++) {
-    ethd_sense s, expected = sim_sense(sim);
+    ethd_sense s = {0}, expected = sim_sense(sim); /* read adds to what is there */
     ethd_command command = {{-0.02 * (k % 5), 0.01}, 0, 0};
     ck_assert_int_eq(ethd_driver_sim.read(device, 12345, &s), ETHD_OK);
     ck_assert_mem_eq(&s, &expected, sizeof s);
