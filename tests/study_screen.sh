@@ -103,7 +103,7 @@ for _ in range(2):
     before = rows().count("survey")
     for _ in range(2):
         tap()
-        key("n"); say("type fine"); time.sleep(0.4); key("Return")
+        key("n"); say('type --delay 1 "no letter of this is lost"'); time.sleep(0.4); key("Return")
         if rows().count("tap") and rows()[-1] in ("tap", "event"): key("p"); key("space")
     deadline = time.monotonic() + 60
     while rows().count("survey") == before and time.monotonic() < deadline and run.poll() is None:
@@ -124,6 +124,7 @@ cat "$folder/out"
 [ $code = 77 ] && exit 77
 [ $code = 0 ] || fail "the session: $(cat "$folder/err")"
 grep -q '^P1\|^P01' "$folder/session/taps.csv" || fail "no tap in its table"
+grep -q ',note,no letter of this is lost$' "$folder/session/events.csv" || fail "no note: $(cat "$folder/session/events.csv")"
 grep -Eq ',[1-5],[1-5],[1-5]$' "$folder/session/survey.csv" || fail "no answer: $(cat "$folder/session/survey.csv")"
 for tap in "$folder"/session/taps/*/; do
   "$BUILD/bin/ethd-replay" --verify "$tap" >"$folder/verify" 2>&1 || fail "$tap: $(cat "$folder/verify")"

@@ -48,12 +48,18 @@ static void block(void *self, const char *participant, const ethd__turn *turn) {
   char message[ETHD_MESSAGE_MAX];
   if (!ethd__desk_prepare(s->desk, turn, &taken, message)) s->speed = *taken.speed;
   snprintf(s->title, sizeof s->title, "%s   part %zu%s", participant, turn->number, turn->block.training ? ", practice" : "");
-  snprintf(speed, sizeof speed, "as fast as the mark above moves: %.2g m/s", s->speed.centre);
+  snprintf(speed, sizeof speed, "as fast as the white mark will move: %.2g m/s", s->speed.centre);
   s->feedback[0] = 0;
   page(s, "Tap once on the green wall at the left", speed, "Space goes on   Esc stops");
 }
 
 /* ---- before a tap ---- */
+
+/* By one letter, which may be several bytes. */
+static size_t shorter(const char *line, size_t n) {
+  while (n && (line[--n] & 0xc0) == 0x80) continue;
+  return n;
+}
 
 /* A line of text; Enter ends it, Escape forgets it. */
 static bool write_note(ethd__screen *s, char words[ETHD_MESSAGE_MAX]) {
@@ -64,7 +70,7 @@ static bool write_note(ethd__screen *s, char words[ETHD_MESSAGE_MAX]) {
     size_t n = strlen(line);
     if (w->closed || w->key == SDLK_ESCAPE) return false;
     if (w->key == SDLK_RETURN) break;
-    if (w->key == SDLK_BACKSPACE && n) line[n - 1] = 0;
+    if (w->key == SDLK_BACKSPACE) line[n = shorter(line, n)] = 0;
     if (!first && w->typed[0]) snprintf(line + n, sizeof line - n, "%s", w->typed);
     ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.36 * w->height, "A note", ethd__grey);
     ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.46 * w->height, line, ethd__white);
@@ -187,6 +193,21 @@ static bool stopped(void *self, const char *why) {
 
 /* ---- the survey ---- */
 
+/* "Question? 1 this, 2 that, ..": the question above, a line for each answer. */
+static void draw_question(ethd__window *w, const char *question) {
+  char text[256], next[8];
+  const char *from = strchr(question, '?') + 1;
+  snprintf(text, sizeof text, "%.*s", (int)(from - question), question);
+  ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.2 * w->height, text, ethd__white);
+  for (int k = 1; k <= 5; k++) {
+    snprintf(next, sizeof next, ", %d ", k + 1);
+    const char *to = strstr(from, next);
+    snprintf(text, sizeof text, "%d   %.*s", k, (int)(to ? to - from - 3 : 200), from + 3);
+    ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, (0.38 + 0.08 * k) * w->height, text, ethd__green);
+    from = to ? to + 1 : from;
+  }
+}
+
 static bool ask(ethd__screen *s, int number, int *answer) {
   ethd__window *w = &s->window;
   for (;;) {
@@ -195,11 +216,7 @@ static bool ask(ethd__screen *s, int number, int *answer) {
     if (w->key >= SDLK_KP_1 && w->key <= SDLK_KP_5) return *answer = (int)(w->key - SDLK_KP_1) + 1, true;
     if (w->key == SDLK_BACKSPACE) return false;
     ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.02 * w->height, s->title, ethd__grey);
-    ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.18 * w->height, ethd__questions[number], ethd__white);
-    for (int k = 1; k <= 5; k++) {
-      const char text[2] = {(char)('0' + k), 0};
-      ethd__window_text(w, ETHD_TEXT_LARGE, w->width * (0.5 + 0.1 * (k - 3)), 0.6 * w->height, text, ethd__green);
-    }
+    draw_question(w, ethd__questions[number]);
     ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.95 * w->height, "1 to 5   Backspace: no answer", ethd__grey);
     ethd__window_end(w);
   }

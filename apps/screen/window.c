@@ -19,7 +19,7 @@ static ethd_status refuse(ethd__window *w, const char *what, const char *why, ch
 }
 
 static int points_of(const ethd__window *w, int size) {
-  static const int points[ETHD_TEXTS] = {15, 30}; /* of 720 px */
+  static const int points[ETHD_TEXTS] = {18, 30}; /* of 720 px */
   int high = points[size] * w->height / 720;
   return high > 8 ? high : 8;
 }
@@ -77,7 +77,7 @@ void ethd__window_close(ethd__window *w) {
 static void take(ethd__window *w, const SDL_Event *e) {
   if (e->type == SDL_QUIT) w->closed = true;
   if (e->type == SDL_KEYDOWN && !e->key.repeat) w->key = e->key.keysym.sym;
-  if (e->type == SDL_TEXTINPUT) snprintf(w->typed, sizeof w->typed, "%s", e->text.text);
+  if (e->type == SDL_TEXTINPUT) SDL_strlcat(w->typed, e->text.text, sizeof w->typed);
   if (e->type == SDL_WINDOWEVENT) {
     w->resized |= e->window.event == SDL_WINDOWEVENT_SIZE_CHANGED;
     w->covered |= e->window.event == SDL_WINDOWEVENT_EXPOSED;
@@ -109,7 +109,7 @@ void ethd__window_begin(ethd__window *w) {
   await_frame(w);
   w->key = 0;
   w->typed[0] = 0;
-  while (SDL_PollEvent(&e)) take(w, &e);
+  while (!w->key && SDL_PollEvent(&e)) take(w, &e); /* a key a frame: none is lost, nor its place between letters */
   if (w->resized) fit(w);
   w->covered |= w->shape_count > 0; /* the frame before wasn't ended */
   w->shape_count = w->changed_count = 0;
