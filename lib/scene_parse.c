@@ -201,7 +201,7 @@ static ethd_status read_reference(reader *r, const draft *d, word w, ethd_object
   if (next_word(r, &rest)) return refuse_word(r, ETHD_E_SYNTAX, rest);
   for (size_t i = 0; i < d->material_count; i++)
     if (is(name, d->materials[i].name)) o->material = (int32_t)i;
-  return o->material < 0 ? refuse_word(r, ETHD_E_UNKNOWN, name) : ETHD_OK;
+  return o->material < 0 ? refuse_word(r, ETHD_E_UNKNOWN, w) : ETHD_OK;
 }
 
 static ethd_status read_object(reader *r, draft *d, word keyword) {

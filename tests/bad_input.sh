@@ -100,12 +100,12 @@ scene_file 'binary scene' 'bad.binary:1: ' bad.binary
 scene 'cut scene' 'bad.scene:2: ' 'circle 0 0 1\nhalfplane -1 0'
 scene 'NaN in a scene' 'bad.scene:1: ' 'circle 0 0 nan\n'
 scene 'inf in a scene' 'bad.scene:1: ' 'circle 0 inf 1\n'
-scene 'unknown shape' 'bad.scene:1: ' 'ellipse 0 0 1 2\n'
+scene 'unknown shape' 'bad.scene:1: ellipse: .*; halfplane, .*circle.*, material are allowed' 'ellipse 0 0 1 2\n'
 scene 'radius out of range' 'bad.scene:1: ' 'circle 0 0 -1\n'
 scene 'a number too many' 'bad.scene:1: ' 'circle 0 0 1 2\n'
 scene 'a normal that is no unit vector' 'bad.scene:1: ' 'halfplane -1 1 0\n'
 scene 'a polygon that crosses itself' 'bad.scene:2: ' '# x\npolygon 0 0 1 1 1 0 0 1\n'
-scene 'an unknown material' 'bad.scene:1: ' 'circle 0 0 1 material=soft\n'
+scene 'an unknown material' 'bad.scene:1: material=soft: .*; a line "material soft k_e=2500" defines it' 'circle 0 0 1 material=soft\n'
 scene 'a material twice' 'bad.scene:2: ' 'material a k_e=1\nmaterial a k_e=2\n'
 
 # ---- traces ----

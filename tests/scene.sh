@@ -130,7 +130,7 @@ printf 'x_m,y_m\n1,2e10\n' >far.csv
 q() { pattern=$1; scene=$2; points=$3; refuse "$pattern" query --scene "$scene" --in "$points" --out kept.csv; }
 q 'count.scene:3: .*circle.*found 2' count.scene one.csv
 q 'bow.scene:1: .*edges 0 and 2' bow.scene one.csv
-q 'mud.scene:1: mud' mud.scene one.csv
+q 'mud.scene:1: material=mud' mud.scene one.csv
 q 'zero.scene:1: ' zero.scene one.csv
 q 'nowhere.scene: ' nowhere.scene one.csv
 q '\.: ' . one.csv

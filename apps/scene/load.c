@@ -2,6 +2,7 @@
 #include <time.h>
 
 #include "common/cli.h"
+#include "file/scene_file.h"
 #include "file/text.h"
 #include "scene/scene.h"
 
@@ -25,6 +26,6 @@ ethd_scene *ethd__scene_load(const char *path, double *seconds) {
   *seconds = now() - start;
   free(text);
   if (status >= 0) return scene;
-  ethd_error_text(path, &error, message);
+  ethd__scene_refusal(path, &error, message);
   ethd__fail(ethd__exit_code(status), "%s", message);
 }

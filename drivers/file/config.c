@@ -7,6 +7,7 @@
 
 #include "file/config_parts.h"
 #include "file/error_text.h"
+#include "file/scene_file.h"
 #include "file/text.h"
 
 #define SCENE_BYTES_MAX ((size_t)256 << 20)
@@ -48,7 +49,7 @@ static ethd_status parse_scene(const reading *r, size_t length) {
                      line);
   }
   ethd_status status = ethd_scene_parse(c->scene_text, length, &c->scene, &error);
-  if (status) ethd_error_text(r->whole->scene_path, &error, r->message);
+  if (status) ethd__scene_refusal(r->whole->scene_path, &error, r->message);
   c->setup.scene = c->scene;
   return status;
 }

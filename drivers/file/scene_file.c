@@ -1,9 +1,32 @@
 #include "file/scene_file.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "file/error_text.h"
+
+#define REFERENCE "material="
+
+void ethd__scene_refusal(const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]) {
+  char shapes[160] = "", plain[ETHD_MESSAGE_MAX];
+  ethd_error_text(path, error, plain);
+  for (int i = 0; i < ETHD_SHAPE_COUNT; i++) {
+    strcat(shapes, ethd_shape_name((ethd_shape)i));
+    strcat(shapes, ", ");
+  }
+  if (error->status == ETHD_E_UNKNOWN && !strncmp(error->name, REFERENCE, strlen(REFERENCE)))
+    ethd__say(message, error->status, "%s; a line \"material %.*s k_e=2500\" defines it", plain,
+              (int)(sizeof error->name - strlen(REFERENCE)), error->name + strlen(REFERENCE));
+  else if (error->status == ETHD_E_UNKNOWN)
+    ethd__say(message, error->status, "%s; %smaterial are allowed", plain, shapes);
+  else if (error->status == ETHD_E_SYNTAX && isnan(error->found))
+    ethd__say(message, error->status, "%s; SHAPE NUMBERS [material=NAME] or material NAME [KEY=NUMBER...] are allowed", plain);
+  else
+    ethd__say(message, error->status, "%s", plain);
+}
 
 static void print_number(FILE *out, const char *before, double v) {
   char text[40];

@@ -11,4 +11,7 @@
    a file. Failed writes show in the file. [main] */
 ETHD_MUST_CHECK ethd_status ethd_scene_print(const ethd_scene *scene, FILE *out);
 
+/* One line about what ethd_scene_parse has refused in the file, with the words that are allowed in its place. [main] */
+void ethd__scene_refusal(const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]);
+
 #endif
