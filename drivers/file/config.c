@@ -120,22 +120,35 @@ static ethd_status key_pass(const reading *r, const ethd_ini_key *k) {
   return ethd__config_apply(&key, &c->setup);
 }
 
+static const ethd_ini_key *find_key(const reading *r, const char *name) {
+  char section[64];
+  const char *dot = strchr(name, '.');
+  if (!dot || (size_t)(dot - name) >= sizeof section) return NULL;
+  memcpy(section, name, (size_t)(dot - name));
+  section[dot - name] = 0;
+  return ethd_ini_find(&r->whole->ini, section, dot + 1);
+}
+
+/* A default that fails does so by another key, which the file has. */
+static const ethd_ini_key *find_cause(const reading *r, const char *name) {
+  static const char *const by[][2] = {{"finger.radius", "ring.radius"}, {"finger.radius_max", "ring.radius"}};
+  for (size_t i = 0; i < sizeof by / sizeof *by; i++)
+    if (!strcmp(by[i][0], name)) return find_key(r, by[i][1]);
+  return NULL;
+}
+
 /* A failure's name is "section.key", or "material.NAME.key" with a line of the scene. */
 static ethd_status check_setup(const reading *r) {
   ethd_error error;
-  char section[sizeof error.name];
+  char what[ETHD_MESSAGE_MAX];
   ethd_status status = ethd_setup_check(&r->whole->config.setup, &error);
   if (!status) return ETHD_OK;
-  const char *dot = strchr(error.name, '.');
-  bool material = dot && strncmp(error.name, "material.", 9) == 0;
-  if (dot && !material) {
-    memcpy(section, error.name, (size_t)(dot - error.name));
-    section[dot - error.name] = 0;
-    const ethd_ini_key *k = ethd_ini_find(&r->whole->ini, section, dot + 1);
-    if (k) error.line = k->line;
-  }
-  ethd_error_text(material ? r->whole->scene_path : r->name, &error, r->message);
-  return status;
+  bool material = strncmp(error.name, "material.", 9) == 0;
+  const ethd_ini_key *own = material ? NULL : find_key(r, error.name), *cause = own ? NULL : find_cause(r, error.name);
+  if (own || cause) error.line = own ? own->line : cause->line;
+  ethd_error_text(material ? r->whole->scene_path : r->name, &error, what);
+  if (!cause) return ethd__say(r->message, status, "%s", what);
+  return ethd__say(r->message, status, "%s, by %s.%s = %s", what, cause->section, cause->key, cause->value);
 }
 
 /* What this arm's ring can never meet is not kept. */
