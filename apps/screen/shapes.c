@@ -38,7 +38,9 @@ static void paint_disc(ethd__shape *s) {
 static void paint_text(const ethd__window *w, ethd__shape *s) {
   if (!*s->text) return;
   s->picture = TTF_RenderUTF8_Blended_Wrapped(w->font[s->size], s->text, s->colour, (uint32_t)(0.9 * w->width));
-  if (s->picture) s->at = (SDL_Rect){(int)(s->x - s->picture->w / 2.0), (int)s->y, s->picture->w, s->picture->h};
+  if (!s->picture) return;
+  double low = w->height - s->picture->h; /* a small window's last line isn't cut */
+  s->at = (SDL_Rect){(int)(s->x - s->picture->w / 2.0), (int)fmin(s->y, low), s->picture->w, s->picture->h};
 }
 
 static void paint(const ethd__window *w, ethd__shape *s) {

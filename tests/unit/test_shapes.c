@@ -129,6 +129,19 @@ START_TEST(test_what_stays_costs_nothing) {
 }
 END_TEST
 
+START_TEST(test_last_line_is_not_cut) {
+  ethd__window w = fresh();
+  SDL_Surface *onto = pixels();
+  w.changed_count = 0;
+  ethd__window_text(&w, ETHD_TEXT_SMALL, 160, HEIGHT - 4, "Space goes on", (SDL_Color){255, 255, 255, 255});
+  ethd__window_draw(&w, onto);
+  ck_assert_int_le(w.shape[0].at.y + w.shape[0].picture->h, HEIGHT);
+  ck_assert_int_eq(w.shape[0].at.h, w.shape[0].picture->h);
+  SDL_FreeSurface(onto);
+  end(&w);
+}
+END_TEST
+
 /* A disc weighs what its circle does, wherever between pixels it stands, and keeps within its radius. */
 START_TEST(test_disc_is_round) {
   ethd__window w = fresh();
@@ -158,6 +171,7 @@ int main(void) {
   tcase_add_test(tests, test_looks_as_if_drawn_at_once);
   tcase_add_test(tests, test_says_what_changed);
   tcase_add_test(tests, test_what_stays_costs_nothing);
+  tcase_add_test(tests, test_last_line_is_not_cut);
   tcase_add_test(tests, test_disc_is_round);
   suite_add_tcase(suite, tests);
   SRunner *runner = srunner_create(suite);
