@@ -16,7 +16,7 @@ finish() {
   rm -rf "$folder"
 }
 trap finish EXIT
-trap 'exit 1' HUP INT TERM
+trap 'exit 1' HUP INT PIPE TERM
 failed=0
 fail() { echo "FAILED $*"; failed=1; }
 await() { # FILE PATTERN
