@@ -119,6 +119,7 @@ LIB_O := $(call obj,$(LIB_C))
 RT_O := $(call obj,$(filter-out $(MAIN_SIDE),$(LIB_C)))
 LOOP_O := $(call obj,$(LOOP_SIDE))
 PROGRAMS := $(patsubst apps/%.c,$(B)/bin/%,$(PROGRAMS_C))
+wanted = $(if $(TESTS),$(filter $(TESTS),$(1)),$(1))
 UNIT := $(addprefix $(B)/tests/,$(notdir $(TESTS_C:.c=)))
 PLUGINS := $(patsubst tests/plugins/%.c,$(B)/tests/plugins/%.so,$(PLUGINS_C))
 SHARE := $(patsubst apps/config/%,$(B)/share/ethd/%,$(shell find apps/config -type f 2>/dev/null)) \
@@ -128,7 +129,7 @@ ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a
 LIBRARIES := $(B)/libethd.a $(B)/libethd-drivers.a $(B)/libethd.so.0 $(B)/libethd.so
 
 all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
-tests: all $(UNIT) $(PLUGINS) $(TOOLS_C:%.c=$(B)/%) $(RING_PARTS)
+tests: all $(addprefix $(B)/tests/,$(call wanted,$(notdir $(UNIT)))) $(PLUGINS) $(TOOLS_C:%.c=$(B)/%) $(RING_PARTS)
 
 # ---- build ----------------------------------------------------------------------------------
 
@@ -234,7 +235,6 @@ $(B)/tests/ring_board: $(RING_BOARD_C) $(wildcard tests/simavr/*.h) $(B)/flags
 # ---- tests ----------------------------------------------------------------------------------
 
 # One result file for each test; nothing stops at the first failure; the summary comes last.
-wanted = $(if $(TESTS),$(filter $(TESTS),$(1)),$(1))
 UNIT_RUNS := $(addprefix $(B)/run/,$(call wanted,$(notdir $(UNIT))))
 SCRIPT_RUNS := $(foreach s,$(SCRIPTS),$(if $(call wanted,$(basename $(notdir $(s)))),$(B)/run/$(basename $(notdir $(s)))))
 TREE_RUN := $(addprefix $(B)/run/,$(call wanted,tree_clean))
@@ -277,7 +277,8 @@ bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
 
 # The long ones: minutes.
 stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_svg $(B)/tests/test_fuzz_decoder \
-  $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study
+  $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study $(B)/tests/test_servo_driver \
+  $(B)/tests/test_fuzz_map
 	ETHD_SCENE_QUERIES=1000000 ETHD_SCENE_OBJECTS=10000000 $(B)/tests/test_scene_tree
 	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
 	ETHD_FUZZ_RUNS=10000000 $(B)/tests/test_fuzz_map

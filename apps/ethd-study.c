@@ -29,6 +29,7 @@ static const char doc[] =
     "  ethd-study --out session\n"
     "  ethd-study my.study --out session --ask\n"
     "  ethd-study --out mine --screen    (tap with the mouse)\n"
+    "  ethd-study device.study --out lab --screen    (source = people, config = device.ini: in its ring)\n"
     "  ethd-study --resume session\n"
     "  ethd-study grid.study --simulate 1000 --shard 1/4 --out bulk    (and 2/4, 3/4, 4/4, anywhere)\n"
     "  ethd-study --merge bulk";

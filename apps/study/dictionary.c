@@ -58,6 +58,8 @@ const char ethd__dictionary[] =
     "q3. " QUESTION_3 ".\n\n"
     "## A tap's folder\n\n"
     "tick.npy has a row per tick: what the controller read and what it answered. truth.npy has the same ticks as\n"
-    "the simulated device knows them. Both are NumPy structured arrays. config.ini, scene.scene and events.csv\n"
+    "the simulated device knows them; with people's fingers in a device there is no such knowledge, and it has what\n"
+    "the controller saw: the ring by its encoders, finger and hand by the finger's filter, the pad touching from\n"
+    "validity.slack before the ring on, its force never (NaN). Both are NumPy structured arrays. config.ini, scene.scene and events.csv\n"
     "say how to repeat them: `ethd-replay --verify taps/P01-03-004` compares every field bit for bit. tap.csv is\n"
     "the tap's row of taps.csv.\n";
