@@ -220,7 +220,7 @@ static uint32_t units(const void *device) {
 
 static ethd_limits limits(const void *device) {
   const ethd__servo_device *d = device;
-  ethd_limits limits = ethd_limits_none();
+  ethd_limits limits = ethd_limits_device();
   for (int i = 0; i < 2; i++) {
     int32_t r = d->map.roles[ETHD__SERVO_TORQUE1 + i];
     if (r >= 0) limits.torque = fmin(limits.torque, ethd__servo_most(&d->map.registers[r]));

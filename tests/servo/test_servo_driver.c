@@ -93,6 +93,7 @@ START_TEST(test_goes_and_comes) {
   ck_assert_int_eq(raw(MOCK_TORQUE1), 2000);
   ck_assert_int_eq(raw(MOCK_TORQUE2), -2000);
   ck_assert_double_eq_tol(servo->limits(device).torque, 0.2 * 9.8, 1e-12);
+  ck_assert(servo->limits(device).gap == ethd_limits_device().gap && servo->limits(device).clean_time == 1); /* a real device */
   ck_assert_int_eq(servo->stop(device), ETHD_OK);
   ck_assert_int_eq(raw(MOCK_TORQUE1) | raw(MOCK_CONTROL) | raw(MOCK_STATUS), 0);
   close_device();
