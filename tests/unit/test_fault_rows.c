@@ -232,6 +232,23 @@ START_TEST(test_clock) {
 }
 END_TEST
 
+/* A bus's first sample may be from before the loop ran; the second may not. */
+START_TEST(test_first_sample) {
+  rig r;
+  moody_open(&r, 1);
+  r.setup.limits.gap = 0.005;
+  rig_post(&r);
+  ethd_control_reset(r.control);
+  for (int tick = 0; tick < 4; tick++) {
+    ethd_sense s = moving(&r, 0);
+    s.time_ns = 1000000 * (100 + tick) - (tick == _i ? 20000000 : 0);
+    with(&r, s, 0, 0);
+    ck_assert_int_eq(r.trace.fault, _i && tick > 1 ? ETHD_FAULT_CLOCK : 0);
+  }
+  rig_close(&r);
+}
+END_TEST
+
 /* ---- replay ---- */
 
 static void random_sense(const rig *r, int tick, ethd_sense *s) {
@@ -280,6 +297,7 @@ int main(void) {
   tcase_add_test(t, test_first_stays);
   tcase_add_test(t, test_worst_of_a_tick);
   tcase_add_test(t, test_clean_time);
+  tcase_add_loop_test(t, test_first_sample, 0, 2);
   tcase_add_loop_test(t, test_clock, 0, sizeof gaps / sizeof *gaps);
   tcase_add_test(t, test_replays);
   suite_add_tcase(suite, t);
