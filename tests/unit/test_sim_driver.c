@@ -94,7 +94,7 @@ START_TEST(test_lock_step) {
   ethd_driver_sim.safe(device);
   ck_assert_int_eq(ethd_driver_sim.start(device), ETHD_OK);
   ck_assert_int_eq(ethd_sim_start(sim, &tap), ETHD_OK);
-  ethd_sense s, expected = sim_sense(sim);
+  ethd_sense s = {0}, expected = sim_sense(sim);
   ck_assert_int_eq(ethd_driver_sim.read(device, 0, &s), ETHD_OK);
   ck_assert_mem_eq(&s, &expected, sizeof s);
   ethd_driver_sim.close(device);
@@ -105,7 +105,7 @@ END_TEST
 /* Once safe, nothing drives it until it is started anew. */
 START_TEST(test_safe) {
   void *device = open_with(NULL, 0);
-  ethd_sense a, b;
+  ethd_sense a = {0}, b = {0};
   ethd_command push = {{1, 0}, 0, 0};
   ethd_driver_sim.safe(device);
   ck_assert_int_eq(ethd_driver_sim.read(device, 0, &a), ETHD_OK);
@@ -155,7 +155,7 @@ END_TEST
 START_TEST(test_meet) {
   const ethd_setting near[] = {{"meet_x", "0.1", 1}, {"meet_y", "0.3", 2}, {"tap", "1", 3}};
   void *device = open_with(near, 3);
-  ethd_sense s;
+  ethd_sense s = {0};
   ck_assert_int_eq(ethd_driver_sim.read(device, 0, &s), ETHD_OK);
   ck_assert_double_eq_tol(s.finger[0], 0.1 + 31.6e-3, 10e-3);
   ck_assert_double_eq_tol(s.finger[1], 0.3, 1e-3);
