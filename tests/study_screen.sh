@@ -12,6 +12,8 @@ study=$BUILD/bin/ethd-study
 # ---- without a display, without a font: one line, nothing begun is lost ----
 env -u DISPLAY -u WAYLAND_DISPLAY SDL_VIDEODRIVER=x11 "$study" --out "$folder/none" --screen >"$folder/out" 2>"$folder/err"
 [ $? = 1 ] && [ "$(grep -c . "$folder/err")" = 1 ] && grep -q 'no display' "$folder/err" || fail "no display: $(cat "$folder/err")"
+env -u DISPLAY -u WAYLAND_DISPLAY -u SDL_VIDEODRIVER -u XDG_RUNTIME_DIR timeout 20 "$study" --resume "$folder/none" --screen >"$folder/out" 2>"$folder/err"
+[ $? = 1 ] && [ "$(grep -c . "$folder/err")" = 1 ] && grep -q 'no display' "$folder/err" || fail "no display at all: $(cat "$folder/err")"
 ETHD_FONT=/nowhere SDL_VIDEODRIVER=dummy "$study" --resume "$folder/none" --screen >"$folder/out" 2>"$folder/err"
 [ $? = 1 ] && [ "$(grep -c . "$folder/err")" = 1 ] && grep -q 'fonts-dejavu-core' "$folder/err" || fail "no font: $(cat "$folder/err")"
 "$study" --out "$folder/x" --screen=9x9 >"$folder/out" 2>"$folder/err"

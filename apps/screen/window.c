@@ -7,6 +7,7 @@
 #include "file/error_text.h"
 
 #define RATE 60 /* frames a second */
+#define NO_DISPLAY "no display (DISPLAY or WAYLAND_DISPLAY; without --screen the study needs none)"
 #define FONT "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
 
 /* ---- open ---- */
@@ -36,6 +37,14 @@ static ethd_status open_fonts(ethd__window *w, char *message) {
   return ETHD_OK;
 }
 
+/* Where there is no display SDL would draw for nobody to see; that is for those who ask for it. */
+static bool choose_display(void) {
+  const char *x = getenv("DISPLAY"), *wayland = getenv("WAYLAND_DISPLAY");
+  if (getenv("SDL_VIDEODRIVER")) return true;
+  if (x || wayland) SDL_SetHint(SDL_HINT_VIDEODRIVER, x && wayland ? "x11,wayland" : x ? "x11" : "wayland");
+  return x || wayland;
+}
+
 /* X takes pixels as they are. SDL would send them through OpenGL, which, without a graphics card, computes on all
    cores: four times as long a frame, and late ticks. */
 static void keep_off_gl(void) {
@@ -47,8 +56,8 @@ ethd_status ethd__window_open(ethd__window *w, const char *title, int width, int
   w->width = width;
   w->height = height;
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
-  if (SDL_Init(SDL_INIT_VIDEO))
-    return refuse(w, "no display (DISPLAY or WAYLAND_DISPLAY; without --screen the study needs none)", SDL_GetError(), message);
+  if (!choose_display()) return refuse(w, NO_DISPLAY, "neither is set", message);
+  if (SDL_Init(SDL_INIT_VIDEO)) return refuse(w, NO_DISPLAY, SDL_GetError(), message);
   keep_off_gl();
   w->window = SDL_CreateWindow(title, SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, width, height, SDL_WINDOW_RESIZABLE);
   if (!w->window) return refuse(w, "the window", SDL_GetError(), message);
