@@ -113,15 +113,6 @@ static void run_virtual(ethd__session *s) {
   }
 }
 
-/* SIGHUP as SIGTERM; a reader of our answers that leaves doesn't end the run. */
-static void catch_signals(void) {
-  struct sigaction action;
-  ethd__catch_interrupt();
-  sigaction(SIGTERM, NULL, &action);
-  sigaction(SIGHUP, &action, NULL);
-  signal(SIGPIPE, SIG_IGN);
-}
-
 int main(int argc, char **argv) {
   static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
   static ethd__session session;
@@ -129,7 +120,7 @@ int main(int argc, char **argv) {
   arg.session.loop = ethd_loop_default();
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
-  catch_signals();
+  ethd__catch_end();
   ethd_status status = ethd__session_open(&arg.session, &session, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   ethd__remarks_print(stderr, &session);

@@ -6,13 +6,8 @@
 #include <unistd.h>
 
 #include "common/cli.h"
-#include "file/recording_parts.h"
-#include "run/summary.h"
-#include "screen/screen.h"
-#include "study/desk.h"
-#include "study/session.h"
+#include "study/place.h"
 #include "study/shard.h"
-#include "study/station.h"
 
 static const char doc[] =
     "Runs a tapping study: participants tap a virtual wall under each strategy at each speed until enough taps "
@@ -162,15 +157,6 @@ static void make_folder(void) {
   ethd__protocol_free(&protocol);
 }
 
-static void choose(ethd__sitting *sitting, const ethd__protocol *protocol) {
-  if (arg.participant > protocol->participants)
-    ethd__fail(ETHD_EXIT_INPUT, "--participant: found %lld, 1 to %u are allowed", (long long)arg.participant,
-               protocol->participants);
-  if (!arg.participant) return;
-  sitting->first = (uint32_t)arg.participant - 1;
-  sitting->last = (uint32_t)arg.participant;
-}
-
 static int stopped(const char *folder, const char *how) {
   fprintf(stderr, "%s: stopped; what was done is kept: %s %s goes on\n", program_invocation_short_name, how, folder);
   return ETHD_EXIT_FAILED;
@@ -186,85 +172,22 @@ static int end(const ethd__sitting *sitting, const char *folder, ethd_status sta
   return stopped(folder, "ethd-study --resume");
 }
 
-/* All that a session needs at once. */
-typedef struct ethd__place {
-  ethd__folder folder;
-  ethd__desk desk;
-  ethd__station station;
-  ethd__screen screen;
-  ethd__console console;
-  ethd__sitting sitting;
-  ethd__source device; /* people's; its self is NULL without */
-} ethd__place;
-
-/* Where people tap, their device: it says of itself what isn't realtime and what risk stays. */
-static void take_device(ethd__place *at, const char *path) {
-  char message[ETHD_MESSAGE_MAX], *config = ethd__folder_path(path, ETHD_RECORDING_CONFIG);
-  ethd_status status =
-      ethd__station_open(&at->desk, config, at->folder.device, arg.is_virtual, &at->station, message);
-  free(config);
-  check(status, message);
-  ethd__remarks_print(stderr, &at->station.session);
-  at->device = ethd__station_source(&at->station);
-  at->sitting.source = at->device;
-}
-
-/* The window, where one is asked for; else lines. */
-static void take_front(ethd__place *at) {
-  char message[ETHD_MESSAGE_MAX];
-  bool people = at->device.self != NULL;
-  at->sitting.front = ethd__console_front(&at->console);
-  if (!arg.width) return;
-  if (ethd__screen_open(&at->screen, &at->desk, people ? &at->device : NULL, arg.width, arg.height, message))
-    ethd__fail(ETHD_EXIT_FAILED, "--screen: %s", message);
-  if (!people) at->sitting.source = ethd__screen_source(&at->screen);
-  if (people) at->station.watcher = ethd__screen_watcher(&at->screen);
-  at->sitting.front = ethd__screen_front(&at->screen);
-}
-
-static void open_place(ethd__place *at, const char *path) {
-  char message[ETHD_MESSAGE_MAX] = "";
-  check(ethd__folder_open(path, &at->folder, message), message);
-  if (arg.is_virtual && at->folder.protocol.hands != ETHD_HANDS_PEOPLE)
-    ethd__fail(ETHD_EXIT_INPUT, "--virtual: %s: hand.source: people is needed", at->folder.protocol.path);
-  at->console = (ethd__console){.protocol = &at->folder.protocol, .ask = arg.ask, .quiet = arg.quiet};
-  check(ethd__desk_open(&at->folder.protocol, &at->folder.loaded, at->folder.finger, &at->desk, message), message);
-  check(ethd__sitting_open(&at->folder, &at->sitting, message), message);
-  choose(&at->sitting, &at->folder.protocol);
-  at->sitting.source = ethd__desk_source(&at->desk);
-  ethd__catch_interrupt();
-  if (at->folder.protocol.hands == ETHD_HANDS_PEOPLE) take_device(at, path);
-  take_front(at);
-}
-
-/* First of all: nothing moves any more, whatever is still to be said. */
-static void close_device(ethd__place *at) {
-  char message[ETHD_MESSAGE_MAX];
-  if (at->device.self && ethd__station_close(&at->station, message) < 0)
-    fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);
-}
-
-static void close_place(ethd__place *at) {
-  ethd__sitting_close(&at->sitting);
-  ethd__desk_close(&at->desk);
-  ethd__folder_close(&at->folder);
-}
-
 static int run_session(void) {
   static ethd__place place;
   char message[ETHD_MESSAGE_MAX] = "";
-  const char *path = arg.resume ? arg.resume : arg.out;
+  const ethd__place_options wanted = {.path = arg.resume ? arg.resume : arg.out,
+                                       .participant = arg.participant,
+                                       .ask = arg.ask,
+                                       .quiet = arg.quiet,
+                                       .is_virtual = arg.is_virtual,
+                                       .width = arg.width,
+                                       .height = arg.height};
   bool over = false;
   if (!arg.resume) make_folder();
-  open_place(&place, path);
-  ethd_status status = ethd__sitting_run(&place.sitting, &over, message);
-  close_device(&place);
-  if (arg.width) {
-    ethd__screen_end(&place.screen, over);
-    ethd__screen_close(&place.screen);
-  }
-  int code = end(&place.sitting, path, status, over, message);
-  close_place(&place);
+  ethd__place_open(&wanted, &place);
+  ethd_status status = ethd__place_run(&place, &over, message);
+  int code = end(&place.sitting, wanted.path, status, over, message);
+  ethd__place_close(&place);
   return code;
 }
 

@@ -107,6 +107,10 @@ protocol odd.study odd.ini 1 off
 "$study" "$folder/odd.study" --out "$folder/x" --virtual >"$folder/out" 2>"$folder/err"
 [ $? = 2 ] && grep -q 'driver2' "$folder/err" || fail "a bad device: $(cat "$folder/err")"
 
+# A device that is open is brought to rest whatever fails next.
+env -u DISPLAY -u WAYLAND_DISPLAY SDL_VIDEODRIVER=x11 "$study" "$folder/people.study" --out "$folder/dark" --screen >"$folder/out" 2>"$folder/err"
+[ $? = 1 ] && grep -q 'no display' "$folder/err" || fail "no display: $(cat "$folder/err")"
+
 # ---- on the screen: the device's finger, not the mouse ----
 command -v Xvfb >/dev/null && command -v xdotool >/dev/null && [ -z "${SAN:-}" ] || { echo "SKIP: no Xvfb, no xdotool, or a sanitizer"; exit 77; }
 Xvfb -displayfd 3 -screen 0 1280x720x24 3>"$folder/display" >"$folder/xvfb" 2>&1 &

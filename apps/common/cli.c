@@ -159,9 +159,25 @@ static void stop(int number) {
   ethd__stop = 1;
 }
 
-void ethd__catch_interrupt(void) {
-  struct sigaction action = {.sa_handler = stop, .sa_flags = SA_RESTART};
+static void ask(int number) {
+  (void)number;
+  ethd__stop = 1;
+}
+
+static void catch(void (*handler)(int), int number) {
+  struct sigaction action = {.sa_handler = handler, .sa_flags = SA_RESTART};
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, NULL);
-  sigaction(SIGTERM, &action, NULL);
+  sigaction(number, &action, NULL);
+}
+
+void ethd__catch_interrupt(void) {
+  catch(stop, SIGINT);
+  catch(stop, SIGTERM);
+}
+
+void ethd__catch_end(void) {
+  catch(ask, SIGINT);
+  catch(ask, SIGTERM);
+  catch(ask, SIGHUP);
+  signal(SIGPIPE, SIG_IGN);
 }

@@ -44,6 +44,10 @@ void ethd__progress(uint64_t done, uint64_t total, const char *what);
 
 /* From here on Ctrl-C and SIGTERM set ethd__stop; a second one ends the program at once. */
 void ethd__catch_interrupt(void);
+
+/* For what moves: these and SIGHUP set it, as often as they come: a stop under control isn't cut short. A
+   reader of our lines that leaves ends nothing. */
+void ethd__catch_end(void);
 extern volatile sig_atomic_t ethd__stop;
 
 /* Subnormals count as 0 on this thread (ethd__begin did it for the main thread). */

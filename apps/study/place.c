@@ -1,0 +1,88 @@
+#include "study/place.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "common/cli.h"
+#include "file/recording_parts.h"
+#include "run/summary.h"
+
+static void check(ethd_status status, const char *message) {
+  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+}
+
+static void choose(ethd__sitting *sitting, const ethd__protocol *protocol, int64_t participant) {
+  if (participant > protocol->participants)
+    ethd__fail(ETHD_EXIT_INPUT, "--participant: found %lld, 1 to %u are allowed", (long long)participant,
+               protocol->participants);
+  if (!participant) return;
+  sitting->first = (uint32_t)participant - 1;
+  sitting->last = (uint32_t)participant;
+}
+
+/* Before all else that follows: nothing moves any more. */
+static void close_device(ethd__place *at) {
+  char message[ETHD_MESSAGE_MAX];
+  if (at->device.self && ethd__station_close(&at->station, message) < 0)
+    fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);
+  at->device.self = NULL;
+}
+
+/* It says of itself what isn't realtime and what risk stays. */
+static void take_device(ethd__place *at, const ethd__place_options *o) {
+  char message[ETHD_MESSAGE_MAX], *config = ethd__folder_path(o->path, ETHD_RECORDING_CONFIG);
+  ethd_status status = ethd__station_open(&at->desk, config, at->folder.device, o->is_virtual, &at->station, message);
+  free(config);
+  check(status, message);
+  ethd__remarks_print(stderr, &at->station.session);
+  at->device = ethd__station_source(&at->station);
+  at->sitting.source = at->device;
+}
+
+/* The window, where one is asked for; else lines. */
+static void take_front(ethd__place *at, const ethd__place_options *o) {
+  char message[ETHD_MESSAGE_MAX];
+  bool people = at->device.self != NULL;
+  at->sitting.front = ethd__console_front(&at->console);
+  if (!o->width) return;
+  if (ethd__screen_open(&at->screen, &at->desk, people ? &at->device : NULL, o->width, o->height, message)) {
+    close_device(at);
+    ethd__fail(ETHD_EXIT_FAILED, "--screen: %s", message);
+  }
+  at->has_screen = true;
+  if (!people) at->sitting.source = ethd__screen_source(&at->screen);
+  if (people) at->station.watcher = ethd__screen_watcher(&at->screen);
+  at->sitting.front = ethd__screen_front(&at->screen);
+}
+
+void ethd__place_open(const ethd__place_options *o, ethd__place *out) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  const ethd__protocol *protocol = &out->folder.protocol;
+  check(ethd__folder_open(o->path, &out->folder, message), message);
+  bool people = protocol->hands == ETHD_HANDS_PEOPLE;
+  if (o->is_virtual && !people)
+    ethd__fail(ETHD_EXIT_INPUT, "--virtual: %s: hand.source: people is needed", protocol->path);
+  out->console = (ethd__console){.protocol = protocol, .ask = o->ask, .quiet = o->quiet};
+  check(ethd__desk_open(protocol, &out->folder.loaded, out->folder.finger, &out->desk, message), message);
+  check(ethd__sitting_open(&out->folder, &out->sitting, message), message);
+  choose(&out->sitting, protocol, o->participant);
+  out->sitting.source = ethd__desk_source(&out->desk);
+  (people ? ethd__catch_end : ethd__catch_interrupt)();
+  if (people) take_device(out, o);
+  take_front(out, o);
+}
+
+ethd_status ethd__place_run(ethd__place *at, bool *over, char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = ethd__sitting_run(&at->sitting, over, message);
+  close_device(at);
+  if (!at->has_screen) return status;
+  ethd__screen_end(&at->screen, *over);
+  ethd__screen_close(&at->screen);
+  return status;
+}
+
+void ethd__place_close(ethd__place *at) {
+  ethd__sitting_close(&at->sitting);
+  ethd__desk_close(&at->desk);
+  ethd__folder_close(&at->folder);
+}

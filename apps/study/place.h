@@ -1,0 +1,35 @@
+/* All that a session needs at once: its folder, where people tap, what they see. All [main]. */
+#ifndef ETHD_STUDY_PLACE_H
+#define ETHD_STUDY_PLACE_H
+
+#include "screen/screen.h"
+#include "study/session.h"
+#include "study/station.h"
+
+typedef struct ethd__place_options {
+  const char *path;          /* the session's folder */
+  int64_t participant;       /* only this one, from 1; 0: all */
+  bool ask, quiet, is_virtual;
+  int width, height;         /* px of the screen; 0: none */
+} ethd__place_options;
+
+typedef struct ethd__place {
+  ethd__folder folder;
+  ethd__desk desk;
+  ethd__station station;
+  ethd__screen screen;
+  ethd__console console;
+  ethd__sitting sitting;
+  ethd__source device; /* people's; its self is NULL without */
+  bool has_screen;
+} ethd__place;
+
+/* Ends the program on bad input, a device or a window that can't be had: then nothing moves. */
+void ethd__place_open(const ethd__place_options *options, ethd__place *out);
+
+/* Until all is done or somebody stops it; the device is at rest and closed when this returns. */
+ETHD_MUST_CHECK ethd_status ethd__place_run(ethd__place *place, bool *over, char message[ETHD_MESSAGE_MAX]);
+
+void ethd__place_close(ethd__place *place);
+
+#endif
