@@ -114,7 +114,7 @@ signal.signal(signal.SIGINT, signal.SIG_DFL)
 p = subprocess.Popen(sys.argv[2:], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
 p.stdin.write("status\n"); p.stdin.flush()
 assert p.stdout.readline().startswith("ok: t ")
-p.send_signal(getattr(signal, "SIG" + sys.argv[1]))
+for impatience in range(2): p.send_signal(getattr(signal, "SIG" + sys.argv[1])); time.sleep(0.001)
 out = p.communicate()[0]
 assert p.returncode == 0 and "1 x the application is gone or told to end" in out, (p.returncode, out)' $signal "$run" --record "$folder/$signal" || fail "SIG$signal"
   replays "$folder/$signal"
