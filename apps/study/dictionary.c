@@ -24,7 +24,7 @@ const char ethd__dictionary[] =
     "| versions.txt | program, compiler, hash of the four files above |\n"
     "| taps.csv | a row per tap, training too |\n"
     "| survey.csv | a row per participant and cell; simulated participants answer nothing |\n"
-    "| events.csv | begin, blocks, pauses, notes, end |\n"
+    "| events.csv | begin, pauses, notes, what stopped a device and that somebody saw to it, end |\n"
     "| journal | of a session: what happened, in order, each line with its check sum; the tables follow from it |\n"
     "| taps/P01-03-004 | participant, block, attempt: every tick of that tap |\n"
     "| shard-i-of-n.csv | of a simulation: the rows of one worker; taps.csv is all of them, merged |\n\n"

@@ -104,9 +104,17 @@ static void make_ready(ethd__station *s, const ethd__taken *taken) {
   s->status = ETHD_OK;
 }
 
+/* s of the tap; 0 before it has begun. */
+static double time_of(ethd__station *s, const ethd_loop_row *row) {
+  pthread_mutex_lock(&s->lock);
+  double t = s->phase == ETHD_PHASE_TAP ? 1e-9 * (double)(row->trace.sense.time_ns - s->begin_ns) : 0;
+  pthread_mutex_unlock(&s->lock);
+  return t;
+}
+
 static bool look(ethd__station *s) {
   ethd_loop_row row = latest(s);
-  double t = 1e-9 * (double)(row.trace.sense.time_ns - s->begin_ns);
+  double t = time_of(s, &row);
   return !s->watcher.look || s->watcher.look(s->watcher.self, t, (ethd_vec){row.trace.xf[0], row.trace.xf[1]});
 }
 
