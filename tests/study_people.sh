@@ -112,6 +112,7 @@ env -u DISPLAY -u WAYLAND_DISPLAY SDL_VIDEODRIVER=x11 "$study" "$folder/people.s
 [ $? = 1 ] && grep -q 'no display' "$folder/err" || fail "no display: $(cat "$folder/err")"
 
 # ---- on the screen: the device's finger, not the mouse ----
+[ $failed = 0 ] || exit 1
 command -v Xvfb >/dev/null && command -v xdotool >/dev/null && [ -z "${SAN:-}" ] || { echo "SKIP: no Xvfb, no xdotool, or a sanitizer"; exit 77; }
 Xvfb -displayfd 3 -screen 0 1280x720x24 3>"$folder/display" >"$folder/xvfb" 2>&1 &
 server=$!

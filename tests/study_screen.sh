@@ -19,6 +19,7 @@ ETHD_FONT=/nowhere SDL_VIDEODRIVER=dummy "$study" --resume "$folder/none" --scre
 "$study" --out "$folder/x" --screen=9x9 >"$folder/out" 2>"$folder/err"
 [ $? = 2 ] && grep -q 'from 320x200' "$folder/err" || fail "9x9: $(cat "$folder/err")"
 
+[ $failed = 0 ] || exit 1
 for program in Xvfb xdotool; do command -v $program >/dev/null || { echo "SKIP: no $program"; exit 77; }; done
 python3=$(sh .ci/setup python) || { echo "SKIP: no python3 with numpy"; exit 77; }
 Xvfb -displayfd 3 -screen 0 1280x720x24 3>"$folder/display" >"$folder/xvfb" 2>&1 &
