@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "common/cli.h"
-#include "study/place.h"
+#include "screen/place.h"
 #include "study/shard.h"
 
 static const char doc[] =

@@ -1,4 +1,4 @@
-#include "study/place.h"
+#include "screen/place.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* All that a session needs at once: its folder, where people tap, what they see. All [main]. */
-#ifndef ETHD_STUDY_PLACE_H
-#define ETHD_STUDY_PLACE_H
+#ifndef ETHD_SCREEN_PLACE_H
+#define ETHD_SCREEN_PLACE_H
 
 #include "screen/screen.h"
 #include "study/session.h"
