@@ -14,6 +14,7 @@ import numpy as np
 
 LAWS = ("offset", "smooth", "abrupt")
 PATIENCE = 30  # s a strategy
+ACKNOWLEDGED = 30  # times in a study
 
 
 def run(program, folder, seconds):
@@ -55,6 +56,7 @@ def study(program, folder):
         file.write("[study]\nparticipants = 1\nstrategies = offset,smooth\nspeeds = 0.4\ntraining = 0\ntaps = 1\n"
                    "attempts = 6\n[device]\nconfig = device.ini\n[hand]\nsource = people\n")
     command = [program, folder + "/people.study", "--out", folder + "/study", "--ask"]
+    acknowledged = 0
     feed = open(folder + "/feed.in", "w")
     print("out", file=feed, flush=True)  # a ring is opened empty
     session = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=open(folder + "/study.err", "w"), text=True)
@@ -62,8 +64,12 @@ def study(program, folder):
         print("study:", line.rstrip())
         print("in", file=feed, flush=True)
         if "ack goes on" in line:
-            session.stdin.write("ack\n")
+            acknowledged += 1
+            session.stdin.write("ack\n" if acknowledged < ACKNOWLEDGED else "stop\n")
             session.stdin.flush()
+    if acknowledged >= ACKNOWLEDGED:
+        print("stopped after", acknowledged, "times")
+        sys.exit(77)
     sys.exit(session.wait())
 
 

@@ -58,16 +58,21 @@ cp apps/config/wall.scene "$folder"
   printf '[device]\ndriver = servo, ring\nservo.map = plant.map\nservo.port = 127.0.0.1:%s\nring.port = ring\n' "$(sed -n 's/^ready //p' "$folder/peer")"
 } >"$folder/device.ini"
 $alone "$python3" tests/whole_device.py run "$BUILD/bin/ethd-run" "$folder" "$seconds" 6>&- 7>&- 8>&- || fail "ethd-run: $(cat "$folder/err")"
-$alone "$python3" tests/whole_device.py study "$BUILD/bin/ethd-study" "$folder" 6>&- 7>&- 8>&- || fail "ethd-study: $(cat "$folder/study.err")"
+$alone "$python3" tests/whole_device.py study "$BUILD/bin/ethd-study" "$folder" 6>&- 7>&- 8>&-
+busy=$?
+[ $busy = 0 ] || [ $busy = 77 ] || fail "ethd-study: $(cat "$folder/study.err")"
 exec 6>&- 7>&- 8>&-
 tail -n 45 "$folder/out" | grep -v '^ok'
 "$BUILD/bin/ethd-replay" --verify "$folder/rec" >"$folder/verify" 2>&1 && grep -q 'equal to the bit' "$folder/verify" || fail "$(cat "$folder/verify")"
-[ "$(ls "$folder/study/taps" | wc -l)" -ge 2 ] || fail "the study's taps: $(cat "$folder/study/taps.csv")"
-for tap in "$folder"/study/taps/*; do
+[ $busy = 77 ] || [ "$(ls "$folder/study/taps" | wc -l)" -ge 2 ] || fail "the study's taps: $(cat "$folder/study/taps.csv")"
+for tap in "$folder"/study/taps/*/; do
+  [ -d "$tap" ] || continue
   "$BUILD/bin/ethd-replay" --verify "$tap" >"$folder/verify" 2>&1 || fail "$(cat "$folder/verify")"
 done
 "$python3" tests/whole_device.py judge "$folder/rec" "$BUILD/bin/ethd-tap"
 code=$?
 [ $code = 0 ] || [ $code = 77 ] || fail "the taps aren't what they should be"
-[ $failed = 0 ] && exit $code
-exit 1
+[ $failed = 0 ] || exit 1
+[ $code = 77 ] || [ $busy = 0 ] || echo "SKIP: this machine is too busy for a device in real time: the study didn't come to its end"
+[ $busy = 0 ] || code=77
+exit $code
