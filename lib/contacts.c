@@ -131,16 +131,16 @@ static int contact(const ethd__plan *plan, ethd__state *state, const ethd__candi
   ethd_ruling r;
   double force;
   c->age = (double)slot->periods * plan->setup.period;
+  slot->object = touch->object; /* whose the slot is stands in it before a law may fail */
+  slot->place = k->place;
+  slot->point = k->local;
+  slot->side = touch->side;
   if (!rule(plan, slot, c, &r, failure)) return 0;
   slot->used = c->d_re < c->d_beta || r.argument <= c->d_beta || r.state != ETHD_TRANSPARENT;
   if (!slot->used) return 1;
   if (!wall(plan, slot, c, touch->material, &r, &force, failure)) return 0;
   if (plan->setup.limits.energy < (double)INFINITY)
     force += ethd__passivity(plan, state, slot, c, force, r.feed - r.damping * c->v);
-  slot->object = touch->object;
-  slot->place = k->place;
-  slot->point = k->local;
-  slot->side = touch->side;
   slot->state = r.state;
   slot->periods += (int64_t)rint(c->period / plan->setup.period); /* whole: the age doesn't drift */
   add(c, &r, force, out, shift);

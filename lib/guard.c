@@ -49,12 +49,16 @@ static int32_t steep(const ethd_limits *limits, ethd_guard_state *s, double dt, 
   return ETHD_GUARD_STEEP;
 }
 
-/* A hot motor's limit is its own. */
-static int32_t cool(const ethd_limits *limits, const ethd_guard_state *s, double torque[2]) ETHD_RT {
-  int32_t bits = 0;
-  for (int i = 0; i < 2; i++)
-    if (clamp(0, ethd__guard_cool(limits, s->heat[i]), &torque[i])) bits = ETHD_GUARD_HEAT;
-  return bits;
+static int32_t limit(double most, int32_t bit, double *torque) ETHD_RT { return clamp(0, most, torque) ? bit : 0; }
+
+/* The limits are kept within the rate's window around the last torque. Where that window lies outside of them,
+   because a limit has just become narrower, the limit is what counts: it has the last word. */
+static int32_t bound(const ethd_limits *limits, const ethd_guard_state *s, int i, double rise, double *torque) ETHD_RT {
+  const double heat = limits->nominal_torque < (double)INFINITY ? ethd__guard_cool(limits, s->heat[i]) : (double)INFINITY;
+  int32_t bits = limit(heat, ETHD_GUARD_HEAT, torque) | limit(limits->torque, ETHD_GUARD_TORQUE, torque);
+  if (!clamp(s->last[i], rise, torque)) return bits;
+  return bits | ETHD_GUARD_RATE | limit(heat, ETHD_GUARD_HEAT, torque) |
+         limit(limits->torque, ETHD_GUARD_TORQUE, torque);
 }
 
 int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *s, const ethd_pose *pose,
@@ -71,15 +75,13 @@ int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *s, const et
   if (!((torque[0] - torque[0]) + (torque[1] - torque[1]) == 0)) { /* NaN, of what isn't finite */
     bits |= ETHD_GUARD_FINITE;
     torque[0] = torque[1] = 0;
+    s->last[0] = s->last[1] = 0; /* zero at this very tick, not at the rate's pace */
   }
   if (rated) bits |= steep(limits, s, dt, torque);
-  int32_t cooled = limits->nominal_torque < (double)INFINITY ? cool(limits, s, torque) : 0;
   for (int i = 0; i < 2; i++) {
-    if (clamp(0, limits->torque, &torque[i])) bits |= ETHD_GUARD_TORQUE;
-    if (rated && clamp(s->last[i], limits->torque_rate * dt, &torque[i])) bits |= ETHD_GUARD_RATE;
+    bits |= bound(limits, s, i, rated ? limits->torque_rate * dt : (double)INFINITY, &torque[i]);
     s->last[i] = torque[i];
   }
-  bits |= cooled;
   s->cut = bits & ETHD_GUARD_TORQUE ? s->cut + dt : 0;
   if (bits) count(s, bits);
   return bits;

@@ -6,7 +6,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "unit/rig.h"
+#include "unit/moody.h"
 
 #define NOISE 1e-12
 
@@ -296,6 +296,40 @@ START_TEST(test_no_tunnelling) {
 }
 END_TEST
 
+/* A contact whose law fails at its first tick belongs to its body: nobody looks for it in the scene that isn't
+   there, or in one without objects, and the next tick goes on as if the contact began then. */
+START_TEST(test_contact_fails_on_a_body) {
+  const double pose[6] = {0.239, 0.7, 0, 0.1, 0, 0};
+  for (int how = MOODY_FAIL; how <= MOODY_BAD; how++) {
+    if (how == MOODY_POSITIVE) continue;
+    rig r;
+    moody_open(&r, 0);
+    rig_close(&r);
+    ethd_scene *body = rig_scene(FRAME_WALL);
+    r.setup.bodies[0] = body;
+    r.setup.scene = r.scene = _i ? rig_scene("") : NULL;
+    rig_start(&r);
+    motion m = resting(0.25);
+    ethd_sense s = rig_sense(&r.setup.arm, &m);
+    s.have |= ETHD_HAVE_BODY;
+    memcpy(s.bodies, pose, sizeof pose);
+    mood.contact = how;
+    mood.value = NAN;
+    for (int i = 0; i < 3; i++) {
+      ck_assert_int_lt(rig_try(&r, &s), 0);
+      ck_assert(r.command.torque[0] == 0 && r.command.torque[1] == 0);
+      s.time_ns += 1000000;
+    }
+    mood.contact = MOODY_WELL;
+    ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
+    ck_assert_int_eq(r.trace.body, 1);
+    ck_assert_double_eq_tol(r.trace.fe[0], 2.5, 1e-9); /* 2500 N/m, 1 mm deep */
+    rig_close(&r);
+    ethd_scene_destroy(body);
+  }
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("bodies");
   TCase *t = tcase_create("bodies");
@@ -310,6 +344,7 @@ int main(void) {
   tcase_add_test(t, test_fine_curve_pushes_once);
   tcase_add_test(t, test_corner_pushes_twice);
   tcase_add_test(t, test_no_tunnelling);
+  tcase_add_loop_test(t, test_contact_fails_on_a_body, 0, 2);
   suite_add_tcase(suite, t);
   return rig_run(suite);
 }

@@ -86,6 +86,39 @@ START_TEST(test_torque_then_rate) {
 }
 END_TEST
 
+/* A limit that becomes narrower than the last torque is kept from its first tick on, whatever the rate allows:
+   at 1 Nm with 10 mNm a tick, a limit of 0.1 Nm. */
+START_TEST(test_narrower_torque_at_once) {
+  ethd_limits l = ethd_limits_none();
+  double tau[2];
+  l.torque_rate = 10;
+  for (int hot = 0; hot < 2; hot++) {
+    ethd_guard_state s = {.last = {1, -1}, .asked = {1, -1}};
+    l.torque = hot ? INFINITY : 0.1;
+    l.nominal_torque = hot ? 0.1 : INFINITY;
+    s.heat[0] = s.heat[1] = 1; /* a motor may have its nominal torque */
+    int32_t bits = step(&l, &s, still, 1, -1, tau);
+    ck_assert_int_eq(bits & (ETHD_GUARD_TORQUE | ETHD_GUARD_HEAT), hot ? ETHD_GUARD_HEAT : ETHD_GUARD_TORQUE);
+    is(tau, 0.1, -0.1);
+    (void)step(&l, &s, still, 0.5, 0.5, tau);
+    is(tau, 0.1, -0.09);
+  }
+}
+END_TEST
+
+/* Also where a rate is set, and the next torque rises from that zero. */
+START_TEST(test_finite_with_a_rate) {
+  ethd_limits l = ethd_limits_none();
+  ethd_guard_state s = {.last = {0.5, 0.5}, .asked = {0.5, 0.5}};
+  double tau[2];
+  l.torque_rate = 100;
+  ck_assert_int_eq(step(&l, &s, still, NAN, 0.5, tau), ETHD_GUARD_FINITE);
+  is(tau, 0, 0);
+  (void)step(&l, &s, still, 0.5, 0.5, tau);
+  is(tau, 0.1, 0.1);
+}
+END_TEST
+
 START_TEST(test_finite) {
   const double bad[] = {NAN, INFINITY, -INFINITY};
   ethd_limits l = ethd_limits_none();
@@ -213,7 +246,9 @@ int main(void) {
   tcase_add_test(t, test_rate);
   tcase_add_test(t, test_rate_over_missed_ticks);
   tcase_add_test(t, test_torque_then_rate);
+  tcase_add_test(t, test_narrower_torque_at_once);
   tcase_add_test(t, test_finite);
+  tcase_add_test(t, test_finite_with_a_rate);
   tcase_add_test(t, test_stop);
   tcase_add_test(t, test_nan_fails);
   tcase_add_test(t, test_workspace);
