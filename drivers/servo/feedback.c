@@ -62,15 +62,21 @@ static void take_axis(ethd__servo_feedback *f, const ethd__servo_link *l, int i)
   else f->sample.dq[i] = ethd__servo_joint(r, speed);
 }
 
+/* In SI at the joint, as read last; 0 where the map has no such register. */
+static double value(const ethd__servo_link *l, int which) {
+  double raw;
+  const ethd__servo_register *r = role(l, which, &raw);
+  return r ? ethd__servo_joint(r, raw) : 0;
+}
+
 static void take_reading(ethd__servo_feedback *f, const ethd__servo_link *l) {
-  double count, x = 0, y = 0, age = 0;
+  double count;
   const ethd__servo_register *r = role(l, ETHD__SERVO_READING_COUNT, &count);
   if (!r || (f->sample.readings && count == f->count)) return;
   f->count = count;
-  f->sample.reading[0] = ethd__servo_joint(role(l, ETHD__SERVO_READING_X, &x), x);
-  f->sample.reading[1] = ethd__servo_joint(role(l, ETHD__SERVO_READING_Y, &y), y);
-  r = role(l, ETHD__SERVO_READING_AGE, &age);
-  f->sample.reading_ns = f->sample.stamp_ns - (r ? (int64_t)(1e9 * ethd__servo_joint(r, age)) : 0);
+  f->sample.reading[0] = value(l, ETHD__SERVO_READING_X);
+  f->sample.reading[1] = value(l, ETHD__SERVO_READING_Y);
+  f->sample.reading_ns = f->sample.stamp_ns - (int64_t)(1e9 * value(l, ETHD__SERVO_READING_AGE));
   f->sample.readings++;
   f->sample.has |= ETHD__SERVO_HAS_READING;
 }

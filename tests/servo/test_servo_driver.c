@@ -105,6 +105,32 @@ static void place(int64_t count) {
   drive.words[MOCK_POSITION1 + 1] = (uint16_t)count;
 }
 
+static void set_float(int at, float value) {
+  uint32_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  drive.words[at] = (uint16_t)(bits >> 16);
+  drive.words[at + 1] = (uint16_t)bits;
+}
+
+/* A finger's place relative to the ring, 2.5 ms old, once for each count of readings. */
+START_TEST(test_reading) {
+  start_device();
+  ck_assert_int_eq(tick(0, 0), ETHD_OK);
+  set_float(MOCK_READING_X, 0.00125f);
+  set_float(MOCK_READING_Y, -0.0035f);
+  drive.words[MOCK_READING_AGE] = 2500;
+  drive.words[MOCK_READING_COUNT] = 1;
+  ck_assert_int_eq(tick(0, 0), ETHD_OK);
+  ck_assert(sense.have & ETHD_HAVE_CENTRE);
+  ck_assert_double_eq(sense.centre[0], (double)0.00125f);
+  ck_assert_double_eq(sense.centre[1], (double)-0.0035f);
+  ck_assert_int_eq(sense.sample_ns, now - 2500000);
+  ck_assert_int_eq(tick(0, 0), ETHD_OK);
+  ck_assert(!(sense.have & ETHD_HAVE_CENTRE));
+  close_device();
+}
+END_TEST
+
 START_TEST(test_unwraps) {
   mock_start(&drive, 0);
   ethd_setting settings[] = {{"map", "plant.map", 1}, {"port", drive.port, 2}};
@@ -481,6 +507,7 @@ int main(void) {
   if (write_map(path)) return 1;
   tcase_set_timeout(t, 240);
   tcase_add_test(t, test_goes_and_comes);
+  tcase_add_test(t, test_reading);
   tcase_add_test(t, test_unwraps);
   tcase_add_test(t, test_encoder_jump);
   tcase_add_test(t, test_home_and_joint);
