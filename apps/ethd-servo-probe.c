@@ -111,7 +111,7 @@ static void print_values(void) {
     printf("%-10s %-16s raw %-12.10g %.6g", i ? "" : "values", r->name, drive.raw[i], r->scale * drive.raw[i] + r->offset);
     const char *unit = ethd__servo_units;
     for (int32_t k = 0; k < r->unit; k++) unit = strchr(unit, '|') + 1;
-    printf(" %.*s\n", r->unit ? (int)strcspn(unit, "|") : 0, unit);
+    printf(" %.*s%s\n", r->unit ? (int)strcspn(unit, "|") : 0, unit, r->unconfirmed ? "; address unconfirmed" : "");
   }
 }
 
@@ -126,6 +126,8 @@ int main(int argc, char **argv) {
   double seconds = measure();
   print_rate(seconds);
   print_values();
+  uint32_t unconfirmed = ethd__servo_unconfirmed(&map);
+  if (unconfirmed) printf("%-10s %u of %u registers: no document confirms their addresses\n", "unconfirmed", unconfirmed, map.count);
   for (uint32_t i = 0; (risk = ethd__servo_risk(&map, i)); i++) printf("%-10s %s\n", i ? "" : "open risk", risk);
   ethd__servo_link_close(&drive);
   return ethd__end(ETHD_EXIT_DONE);

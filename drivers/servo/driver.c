@@ -1,5 +1,6 @@
 /* The servo as a device: opened, started and stopped by [main]. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -134,6 +135,10 @@ static ethd_status servo_open(const ethd_device_def *def, void **out, char messa
     ethd__servo_link_make(&d->map, &d->link);
     ethd_error error;
     status = ethd__servo_feedback_make(&d->feedback, &d->map, 1e-9 * (double)d->exchange_ns, &error);
+    uint32_t unconfirmed = ethd__servo_unconfirmed(&d->map);
+    if (unconfirmed)
+      snprintf(d->unconfirmed, sizeof d->unconfirmed,
+               "%u of %u registers are unconfirmed: check their addresses in the drive's manual", unconfirmed, d->map.count);
     if (status) ethd_error_text(s.map->value, &error, d->link.message);
     if (!status) status = ethd__servo_link_connect(&d->link, monotonic());
     if (!status) status = identify(d, steps_time(&d->map, ETHD__SERVO_IDENTIFY));
@@ -254,7 +259,9 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
 }
 
 static const char *remark(const void *device, uint32_t i) {
-  return ethd__servo_risk(&((const ethd__servo_device *)device)->map, i);
+  const ethd__servo_device *d = device;
+  bool some = d->unconfirmed[0] != 0;
+  return some && i == 0 ? d->unconfirmed : ethd__servo_risk(&d->map, i - some);
 }
 
 const ethd_driver ethd_driver_servo = {

@@ -1,5 +1,6 @@
 #include "servo/map.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -84,6 +85,37 @@ static ethd_status read_registers(const ethd__servo_source *s, ethd__servo_map *
   return ETHD_OK;
 }
 
+/* ---- sources ---- */
+
+/* The remark behind a line's value says that nobody confirms it. */
+static bool says_unconfirmed(const char *text, size_t length, int line) {
+  const char *end = text + length, *next;
+  for (; line > 1 && text < end; line--) {
+    next = memchr(text, '\n', (size_t)(end - text));
+    text = next ? next + 1 : end;
+  }
+  next = memchr(text, '\n', (size_t)(end - text));
+  size_t n = (size_t)((next ? next : end) - text);
+  const char *remark = memchr(text, ';', n);
+  const char word[] = "unconfirmed";
+  return remark && memmem(remark, (size_t)(text + n - remark), word, sizeof word - 1);
+}
+
+static void mark_unconfirmed(const ethd__servo_source *s, const char *text, size_t length, ethd__servo_map *map) {
+  char section[ETHD__SERVO_NAME_MAX + 16];
+  for (uint32_t i = 0; i < map->count; i++) {
+    snprintf(section, sizeof section, "%s%s", register_prefix, map->registers[i].name);
+    const ethd_ini_key *address = ethd_ini_find(s->ini, section, "address");
+    map->registers[i].unconfirmed = address && says_unconfirmed(text, length, address->line);
+  }
+}
+
+uint32_t ethd__servo_unconfirmed(const ethd__servo_map *map) {
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < map->count; i++) n += map->registers[i].unconfirmed;
+  return n;
+}
+
 /* ---- the whole ---- */
 
 static ethd_status fill(const ethd__servo_source *s, ethd__servo_map *map) {
@@ -107,6 +139,7 @@ ethd_status ethd__servo_map_parse(const char *text, size_t length, const char *n
   if (status) return status;
   const ethd__servo_source source = {&ini, name, message};
   status = fill(&source, out);
+  if (!status) mark_unconfirmed(&source, text, length, out);
   ethd_ini_free(&ini);
   return status;
 }

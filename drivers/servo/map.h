@@ -8,7 +8,7 @@
      unit = 1                    station on the bus
      [register torque1]          one section a register; address as in the drive's manual (0x or decimal)
      direction = write
-     address = 0x5308
+     address = 0x5308            ; unconfirmed, or the document and page that has it
      type = i16                  32-bit types say their order
      unit = A                    value = scale * raw + offset, in this unit, at the motor
      scale = 0.1
@@ -84,6 +84,7 @@ typedef struct ethd__servo_register {
   uint32_t enabled_mask, enabled;          /* (raw & enabled_mask) == enabled: the drive is enabled */
   int32_t echo;                            /* register that then holds the same raw; -1 none */
   bool cyclic;                             /* part of every exchange */
+  bool unconfirmed;                        /* its address's line says so: no document of the maker's has it */
 } ethd__servo_register;
 
 enum { ETHD__SERVO_STEP_WRITE, ETHD__SERVO_STEP_WAIT, ETHD__SERVO_STEP_PAUSE };
@@ -123,6 +124,9 @@ ETHD_MUST_CHECK ethd_status ethd__servo_map_parse(const char *text, size_t lengt
                                                   ethd__servo_map *out, char message[ETHD_MESSAGE_MAX]);
 ETHD_MUST_CHECK ethd_status ethd__servo_map_load(const char *path, const char *name, ethd__servo_map *out,
                                                  char message[ETHD_MESSAGE_MAX]);
+
+/* How many registers' addresses say `; unconfirmed`. [any] */
+uint32_t ethd__servo_unconfirmed(const ethd__servo_map *map);
 
 /* What this map leaves open, one sentence each: no watchdog, no echo, ...; NULL ends. [main] */
 const char *ethd__servo_risk(const ethd__servo_map *map, uint32_t i);

@@ -252,6 +252,26 @@ START_TEST(test_missing_once) {
   ck_assert_int_eq(sense.faults | sense.grave, 0);
   ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
   ck_assert_int_eq(sense.faults, ETHD_FAULT_BIT(ETHD_FAULT_REPLY_MISSING));
+START_TEST(test_unconfirmed) {
+  char *text, path[64];
+  size_t length;
+  snprintf(path, sizeof path, "%s/plant.map", folder);
+  ck_assert_int_eq(ethd_text_read(path, 1 << 16, &text, &length, message), ETHD_OK);
+  char *at = strstr(text, "address = 9\n"), *all;
+  ck_assert_int_ge(asprintf(&all, "%.*saddress = 9 ; unconfirmed\n%s", (int)(at - text), text, at + 12), 0);
+  snprintf(path, sizeof path, "%s/guess.map", folder);
+  ck_assert_int_eq(ethd_text_write(path, all, strlen(all), message), ETHD_OK);
+  mock_start(&drive, 0);
+  ethd_setting settings[] = {{"map", "guess.map", 1}, {"port", drive.port, 2}};
+  ck_assert_msg(open_with(settings, 2) == ETHD_OK, "%s", message);
+  ck_assert_str_eq(servo->remark(device, 0), "1 of 17 registers are unconfirmed: check their addresses in the drive's manual");
+  close_device();
+  free(text);
+  free(all);
+  unlink(path);
+}
+END_TEST
+
   ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
   ck_assert_int_eq(sense.faults, 0);
   ck_assert_int_eq(raw(MOCK_TORQUE1), (int)lrint(0.1 * NM));
@@ -532,3 +552,4 @@ int main(void) {
   rmdir(folder);
   return failed;
 }
+  tcase_add_test(t, test_unconfirmed);

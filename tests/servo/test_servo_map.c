@@ -67,6 +67,61 @@ START_TEST(test_plant) {
 }
 END_TEST
 
+/* Roboteq's rule (GDC3660E Modbus data sheet, 2018, p. 10), which has 0x2106, index 1 -> 0x20C1 as its example. */
+static uint32_t roboteq(uint32_t id, uint32_t index) { return (id << 5 | index) & 0xFFFF; }
+
+/* CANopen ids of Roboteq's object dictionary: user manual V1.8 p. 181 to 184, V2.0 p. 212, 223, CANbus manual V2.0 p. 35. */
+START_TEST(test_roboteq) {
+  static const struct {
+    const char *name;
+    uint32_t id, index, address; /* address: as a driver that isn't ours has it */
+  } known[] = {
+      {"torque1", 0x2000, 1, 0x0001},   {"torque2", 0x2000, 2, 0x0002},  {"seen1", 0x2101, 1, 0x2021},
+      {"seen2", 0x2101, 2, 0x2022},     {"position1", 0x2104, 1, 0x2081}, {"position2", 0x2104, 2, 0x2082},
+      {"faults", 0x2112, 0, 0x2240},    {"emergency", 0x200C, 0, 0x0180}, {"release", 0x200D, 0, 0x01A0},
+  };
+  ck_assert_uint_eq(roboteq(0x2106, 1), 0x20C1);
+  read_map("apps/config/roboteq.map");
+  ck_assert_msg(try(text) == ETHD_OK, "%s", message);
+  ck_assert_uint_eq(map.count, sizeof known / sizeof *known); /* no register without a source */
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+    ck_assert_uint_eq(named(known[i].name)->address, roboteq(known[i].id, known[i].index));
+    ck_assert_uint_eq(named(known[i].name)->address, known[i].address);
+  }
+  for (uint32_t i = 0; i < map.count; i++) { /* what moves a motor: P, S, PR, PX, PRX; MS stops */
+    uint32_t at = map.registers[i].address & ~31u;
+    ck_assert(at != 0x20 && at != 0x40 && at != 0x1C0 && at != 0x1E0 && at != 0x200 && at != 0x220);
+  }
+  ck_assert_uint_eq(ethd__servo_unconfirmed(&map), 0);
+}
+END_TEST
+
+/* The addresses that the SVD48V's manual (V2.0) has, by its page; the others say that nobody confirms them. */
+START_TEST(test_svd48v) {
+  static const struct {
+    const char *name;
+    uint32_t address;
+  } known[] = {{"input", 0x3008},    {"mode1", 0x5100},    {"control2", 0x5301},  {"torque1", 0x5308}, {"torque2", 0x5309},
+               {"seen1", 0x5308},    {"seen2", 0x5309},    {"running1", 0x5400},  {"bus_voltage", 0x5408},
+               {"measured1", 0x5414}, {"position1", 0x5418}};
+  uint32_t n = sizeof known / sizeof *known;
+  read_map("apps/config/svd48v.map");
+  ck_assert_msg(try(text) == ETHD_OK, "%s", message);
+  for (uint32_t i = 0; i < n; i++) {
+    ck_assert_uint_eq(named(known[i].name)->address, known[i].address);
+    ck_assert_msg(!named(known[i].name)->unconfirmed, "%s", known[i].name);
+  }
+  ck_assert_uint_eq(ethd__servo_unconfirmed(&map), map.count - n);
+  ck_assert(named("position2")->unconfirmed);
+  ck_assert_uint_eq(map.unit, 1);
+  ck_assert_uint_eq(map.gap, 0);
+  ck_assert_int_eq(named("position1")->order, ETHD__SERVO_LOW_FIRST);
+  const ethd__servo_step *first = &map.sequences[ETHD__SERVO_ENABLE].at[0];
+  ck_assert_str_eq(map.registers[first->at].name, "input");
+  ck_assert_double_eq(first->value, 1);
+}
+END_TEST
+
 START_TEST(test_makers) {
   read_map("apps/config/svd48v.map");
   ck_assert_msg(try(text) == ETHD_OK, "%s", message);
@@ -83,6 +138,8 @@ START_TEST(test_makers) {
   for (char *at; (at = strstr(text, "LOOK_UP\n"));) memcpy(at, "1000   ", 7);
   for (char *at; (at = strstr(text, "LOOK_UP"));) memcpy(at, "1000   ", 7);
   ck_assert_msg(try(text) == ETHD_OK, "%s", message);
+  ck_assert_uint_eq(ethd__servo_unconfirmed(&map), 6);
+  ck_assert(!named("torque1")->unconfirmed && named("control")->unconfirmed);
   ck_assert_ptr_nonnull(strstr(ethd__servo_risk(&map, 0), "no watchdog"));
 }
 END_TEST
@@ -307,6 +364,8 @@ int main(void) {
   tcase_set_timeout(t, 300);
   tcase_add_test(t, test_plant);
   tcase_add_test(t, test_makers);
+  tcase_add_test(t, test_roboteq);
+  tcase_add_test(t, test_svd48v);
   tcase_add_test(t, test_bus_refused);
   tcase_add_test(t, test_register_refused);
   tcase_add_test(t, test_roles_refused);
