@@ -14,12 +14,13 @@
 #define ZEROES 3        /* good exchanges with zero torque before anything is enabled */
 #define PAUSE 200000    /* ns between the turns of a start */
 
-enum { Q1, Q2, JOINT, PARAMS };
+enum { Q1, Q2, JOINT, SPEED, PARAMS };
 
 static const ethd_param params[PARAMS] = {
     [Q1] = {"q1", "rad", -100, 100, 0, "joint 1 when the device is opened; without: as its register says"},
     [Q2] = {"q2", "rad", -100, 100, 0, "joint 2, likewise"},
     [JOINT] = {"joint", "1", 1, 2, 1, "of a map with one axis: which joint that is"},
+    [SPEED] = {"speed", "m/s", 0.01, 10, 1.2, "of the ring: faster is row 24 of the fault table"},
 };
 
 static const char *const keys[] = {"map", "port", NULL};
@@ -35,7 +36,7 @@ static const char *file(const ethd_device_def *def) { return def->file ? def->fi
 
 static ethd_status read_settings(const ethd_device_def *def, settings *out, char *message) {
   const ethd_setting *texts[2] = {NULL, NULL};
-  *out = (settings){.p = {NAN, NAN, NAN}};
+  *out = (settings){.p = {NAN, NAN, NAN, params[SPEED].def}};
   ethd_status status = ethd_settings_read(&ethd_driver_servo, def, out->p, texts, message);
   out->map = texts[0];
   out->port = texts[1];
@@ -130,15 +131,16 @@ static ethd_status servo_open(const ethd_device_def *def, void **out, char messa
                   ethd_cell_create(sizeof d->newest, &d->samples, NULL)))
     status = ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
   if (!status) {
+    d->speed = s.p[SPEED];
     d->period_ns = (int64_t)rint(1e9 * def->setup->period);
     d->exchange_ns = d->period_ns * d->map.divisor;
     ethd__servo_link_make(&d->map, &d->link);
-    ethd_error error;
-    status = ethd__servo_feedback_make(&d->feedback, &d->map, 1e-9 * (double)d->exchange_ns, &error);
     uint32_t unconfirmed = ethd__servo_unconfirmed(&d->map);
     if (unconfirmed)
       snprintf(d->unconfirmed, sizeof d->unconfirmed,
                "%u of %u registers are unconfirmed: check their addresses in the drive's manual", unconfirmed, d->map.count);
+    ethd_error error;
+    status = ethd__servo_feedback_make(&d->feedback, &d->map, def->setup->limits.torque, 1e-9 * (double)d->exchange_ns, &error);
     if (status) ethd_error_text(s.map->value, &error, d->link.message);
     if (!status) status = ethd__servo_link_connect(&d->link, monotonic());
     if (!status) status = identify(d, steps_time(&d->map, ETHD__SERVO_IDENTIFY));
@@ -226,6 +228,7 @@ static uint32_t units(const void *device) {
 static ethd_limits limits(const void *device) {
   const ethd__servo_device *d = device;
   ethd_limits limits = ethd_limits_device();
+  limits.speed = d->speed;
   for (int i = 0; i < 2; i++) {
     int32_t r = d->map.roles[ETHD__SERVO_TORQUE1 + i];
     if (r >= 0) limits.torque = fmin(limits.torque, ethd__servo_most(&d->map.registers[r]));
@@ -258,6 +261,7 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
   return n;
 }
 
+/* The registers that nobody confirms, then what the map leaves open. */
 static const char *remark(const void *device, uint32_t i) {
   const ethd__servo_device *d = device;
   bool some = d->unconfirmed[0] != 0;

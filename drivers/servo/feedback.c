@@ -13,21 +13,24 @@ static const ethd__servo_register *role(const ethd__servo_link *l, int which, do
 
 /* ---- joints ---- */
 
-ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo_map *map, double period,
-                                      ethd_error *error) {
+static double given_or(double given, double otherwise) { return given > 0 ? given : otherwise; }
+
+ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo_map *map, double torque,
+                                      double period, ethd_error *error) {
   ethd_status status = ETHD_OK;
   for (int i = 0; i < 2 && !status; i++) {
     int32_t at = map->roles[ETHD__SERVO_POSITION1 + i];
     const ethd__servo_register *r = at < 0 ? NULL : &map->registers[at];
     if (!r || !(r->counts > 0) || r->type == ETHD__SERVO_F32) continue;
+    double most = fmin(torque, ethd__servo_most(&map->registers[map->roles[ETHD__SERVO_TORQUE1 + i]]));
     f->axes[i].counts = true;
     f->axes[i].def = (ethd__encoder_def){.ceiling = ethd__count_ceiling(r->bits),
                                          .counts_per_turn = (int64_t)r->counts,
                                          .ratio = r->ratio,
                                          .speed_max = r->speed_max,
-                                         .freeze_torque = r->freeze_torque,
+                                         .freeze_torque = given_or(r->freeze_torque, ETHD__SERVO_FREEZE * most),
                                          .freeze_time = r->freeze_time,
-                                         .reverse_torque = r->reverse_torque,
+                                         .reverse_torque = given_or(r->reverse_torque, ETHD__SERVO_REVERSE * most),
                                          .reverse_time = r->reverse_time,
                                          .inertia = r->inertia,
                                          .sign = (int32_t)r->sign};

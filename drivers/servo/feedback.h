@@ -5,6 +5,10 @@
 #include "encoder/unwrap.h"
 #include "servo/link.h"
 
+/* Shares of the largest torque, where a map has no torques of its own. The paper's arm: friction of 0.1 Nm, 1.2 to
+   2 Nm at the drive's limit, so 4 to 6 times the friction, and 2 to 3 times. */
+#define ETHD__SERVO_FREEZE 0.3
+#define ETHD__SERVO_REVERSE 0.15
 #define ETHD__SERVO_FOLLOW 0.020 /* s: a drive that doesn't follow its set-point for so long is a fault */
 
 enum { ETHD__SERVO_HAS_SPEED = 1, ETHD__SERVO_HAS_READING = 2 }; /* of `has` */
@@ -42,9 +46,10 @@ typedef struct ethd__servo_feedback {
   ethd__servo_sample sample;
 } ethd__servo_feedback;
 
-/* The counters of the map's positions; `period` of an exchange, s. home: as above. The error names the field. [main] */
-ETHD_MUST_CHECK ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo_map *map, double period,
-                                                      ethd_error *error);
+/* The counters of the map's positions, watched by default: `torque`, Nm, is the most that the controller may ask of a
+   joint, INFINITY where it has no limit; `period` of an exchange, s. home: as above. The error names the field. [main] */
+ETHD_MUST_CHECK ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo_map *map, double torque,
+                                                      double period, ethd_error *error);
 
 /* After a turn of the link that went well; torque is what went out (Nm). I/O side. */
 void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *link, int64_t stamp_ns,

@@ -77,7 +77,7 @@ typedef struct ethd__servo_register {
   double counts, torque_constant;          /* per motor turn; Nm/A */
   uint32_t bits;                           /* width of a position's counter */
   double speed_max;                        /* rad/s of the joint: a counter that is faster jumped */
-  double freeze_torque, freeze_time;       /* Nm, s: as in encoder/unwrap.h; a torque of infinity: not watched */
+  double freeze_torque, freeze_time;       /* Nm, s: as in encoder/unwrap.h; a torque of 0: a share of the largest */
   double reverse_torque, reverse_time, inertia;
   double tolerance;                        /* of measured torque, in its unit; 0: not watched */
   uint32_t fault_mask, healthy;            /* (raw & fault_mask) != healthy: the drive reports a fault */

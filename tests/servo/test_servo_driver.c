@@ -167,6 +167,54 @@ START_TEST(test_encoder_jump) {
 }
 END_TEST
 
+/* By default, from the drive's limits: no key of the map asks for it. */
+START_TEST(test_encoder_frozen) {
+  start_device();
+  for (int i = 0; i < 20; i++) tick(0, 0);
+  int n = 0;
+  do tick(1, 0); /* 0.3 of 1.96 Nm would do */
+  while (++n < 200 && !shows(ETHD_FAULT_ENCODER_FROZEN));
+  ck_assert_int_ge(n, 50);
+  ck_assert_int_le(n, 53); /* 50 ms, behind a tick of age and one until the torque is out */
+  /* a joint that turns a count now and then isn't frozen */
+  for (int i = 0; i < 300; i++) {
+    if (i % 40 == 0) place(1 + i / 40);
+    tick(1, 0);
+    ck_assert(i < 2 || !shows(ETHD_FAULT_ENCODER_FROZEN));
+  }
+  close_device();
+}
+END_TEST
+
+/* A joint of 0.01 kg m^2 that speeds up as 0.5 Nm bids, read with the wrong sign, runs away from the torque. */
+START_TEST(test_encoder_reversed) {
+  for (int sign = -1; sign <= 1; sign += 2) {
+    start_device();
+    for (int i = 0; i < 20; i++) tick(0, 0);
+    int n = 0;
+    do {
+      place(sign * (int64_t)lrint(0.5 / 0.01 * (1e-3 * n) * (1e-3 * n) / 2 / COUNT));
+      tick(0.5, 0); /* 0.15 of 1.96 Nm would do */
+    } while (++n < 60 && !shows(ETHD_FAULT_ENCODER_REVERSED));
+    if (sign > 0) ck_assert_int_eq(n, 60);
+    else ck_assert_msg(n > 20 && n <= 25, "%d ticks", n); /* 20 ms from the motion's begin, 2 of age, 2 until it shows */
+    close_device();
+  }
+}
+END_TEST
+
+START_TEST(test_speed_limit) {
+  open_device();
+  ck_assert_double_eq(servo->limits(device).speed, 1.2);
+  close_device();
+  mock_start(&drive, 0);
+  ethd_setting slow[] = {{"map", "plant.map", 1}, {"port", drive.port, 2}, {"speed", "0.3", 3}};
+  ck_assert_msg(open_with(slow, 3) == ETHD_OK, "%s", message);
+  ck_assert_double_eq(servo->limits(device).speed, 0.3);
+  close_device();
+}
+END_TEST
+
 START_TEST(test_home_and_joint) {
   char *text, path[64];
   size_t length;
@@ -204,13 +252,34 @@ START_TEST(test_home_and_joint) {
 }
 END_TEST
 
+START_TEST(test_unconfirmed) {
+  char *text, path[64];
+  size_t length;
+  snprintf(path, sizeof path, "%s/plant.map", folder);
+  ck_assert_int_eq(ethd_text_read(path, 1 << 16, &text, &length, message), ETHD_OK);
+  char *at = strstr(text, "address = 9\n"), *all;
+  ck_assert_int_ge(asprintf(&all, "%.*saddress = 9 ; unconfirmed\n%s", (int)(at - text), text, at + 12), 0);
+  snprintf(path, sizeof path, "%s/guess.map", folder);
+  ck_assert_int_eq(ethd_text_write(path, all, strlen(all), message), ETHD_OK);
+  mock_start(&drive, 0);
+  ethd_setting settings[] = {{"map", "guess.map", 1}, {"port", drive.port, 2}};
+  ck_assert_msg(open_with(settings, 2) == ETHD_OK, "%s", message);
+  ck_assert_str_eq(servo->remark(device, 0), "1 of 17 registers are unconfirmed: check their addresses in the drive's manual");
+  close_device();
+  free(text);
+  free(all);
+  unlink(path);
+}
+END_TEST
+
 START_TEST(test_settings_refused) {
   static const struct {
     ethd_setting one;
     const char *why;
   } all[] = {{{"q1", "0", 1}, "d.ini: device.map is missing"},
              {{"map", "no.map", 3}, "no.map: "},
-             {{"speed", "1", 7}, "d.ini:7: device.speed: servo knows"},
+             {{"hurry", "1", 7}, "d.ini:7: device.hurry: servo knows"},
+             {{"speed", "inf", 7}, "d.ini:7: device.speed"},
              {{"joint", "3", 8}, "d.ini:8: device.joint: found \"3\", 1 to 2"},
              {{"q1", "x", 9}, "d.ini:9: device.q1"}};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
@@ -252,26 +321,6 @@ START_TEST(test_missing_once) {
   ck_assert_int_eq(sense.faults | sense.grave, 0);
   ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
   ck_assert_int_eq(sense.faults, ETHD_FAULT_BIT(ETHD_FAULT_REPLY_MISSING));
-START_TEST(test_unconfirmed) {
-  char *text, path[64];
-  size_t length;
-  snprintf(path, sizeof path, "%s/plant.map", folder);
-  ck_assert_int_eq(ethd_text_read(path, 1 << 16, &text, &length, message), ETHD_OK);
-  char *at = strstr(text, "address = 9\n"), *all;
-  ck_assert_int_ge(asprintf(&all, "%.*saddress = 9 ; unconfirmed\n%s", (int)(at - text), text, at + 12), 0);
-  snprintf(path, sizeof path, "%s/guess.map", folder);
-  ck_assert_int_eq(ethd_text_write(path, all, strlen(all), message), ETHD_OK);
-  mock_start(&drive, 0);
-  ethd_setting settings[] = {{"map", "guess.map", 1}, {"port", drive.port, 2}};
-  ck_assert_msg(open_with(settings, 2) == ETHD_OK, "%s", message);
-  ck_assert_str_eq(servo->remark(device, 0), "1 of 17 registers are unconfirmed: check their addresses in the drive's manual");
-  close_device();
-  free(text);
-  free(all);
-  unlink(path);
-}
-END_TEST
-
   ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
   ck_assert_int_eq(sense.faults, 0);
   ck_assert_int_eq(raw(MOCK_TORQUE1), (int)lrint(0.1 * NM));
@@ -530,7 +579,11 @@ int main(void) {
   tcase_add_test(t, test_reading);
   tcase_add_test(t, test_unwraps);
   tcase_add_test(t, test_encoder_jump);
+  tcase_add_test(t, test_encoder_frozen);
+  tcase_add_test(t, test_encoder_reversed);
+  tcase_add_test(t, test_speed_limit);
   tcase_add_test(t, test_home_and_joint);
+  tcase_add_test(t, test_unconfirmed);
   tcase_add_test(t, test_settings_refused);
   tcase_add_test(t, test_missing_once);
   tcase_add_test(t, test_feedback_old);
@@ -552,4 +605,3 @@ int main(void) {
   rmdir(folder);
   return failed;
 }
-  tcase_add_test(t, test_unconfirmed);

@@ -67,6 +67,26 @@ START_TEST(test_plant) {
 }
 END_TEST
 
+/* Rows 12 and 13 are watched unless a map says otherwise, and then it is said. */
+START_TEST(test_watched) {
+  static const struct {
+    const char *was, *now, *says;
+  } all[] = {{"counts = 4000", "counts = 4000\nfreeze_torque = 4", "freeze_torque is out of reach"},
+             {"counts = 4000", "counts = 4000\nreverse_torque = 2", "reverse_torque is out of reach"},
+             {"unit = count\ncounts = 4000", "unit = turn", "a position that isn't in counts"}};
+  static char changed[sizeof text + 64];
+  read_map("apps/config/plant.map");
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+    char *at = strstr(strstr(text, "[register position2]"), all[i].was);
+    snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, all[i].now, at + strlen(all[i].was));
+    ck_assert_msg(try(changed) == ETHD_OK, "%s", message);
+    const char *risk = ethd__servo_risk(&map, 0);
+    ck_assert_msg(risk && strstr(risk, all[i].says), "%s", risk ? risk : "no risk");
+    ck_assert_ptr_null(ethd__servo_risk(&map, 1));
+  }
+}
+END_TEST
+
 /* Roboteq's rule (GDC3660E Modbus data sheet, 2018, p. 10), which has 0x2106, index 1 -> 0x20C1 as its example. */
 static uint32_t roboteq(uint32_t id, uint32_t index) { return (id << 5 | index) & 0xFFFF; }
 
@@ -364,6 +384,7 @@ int main(void) {
   tcase_set_timeout(t, 300);
   tcase_add_test(t, test_plant);
   tcase_add_test(t, test_makers);
+  tcase_add_test(t, test_watched);
   tcase_add_test(t, test_roboteq);
   tcase_add_test(t, test_svd48v);
   tcase_add_test(t, test_bus_refused);
