@@ -113,12 +113,8 @@ env -u DISPLAY -u WAYLAND_DISPLAY SDL_VIDEODRIVER=x11 "$study" "$folder/people.s
 
 # ---- on the screen: the device's finger, not the mouse ----
 [ $failed = 0 ] || exit 1
-command -v Xvfb >/dev/null && command -v xdotool >/dev/null && [ -z "${SAN:-}" ] || { echo "SKIP: no Xvfb, no xdotool, or a sanitizer"; exit 77; }
-Xvfb -displayfd 3 -screen 0 1280x720x24 3>"$folder/display" >"$folder/xvfb" 2>&1 &
-server=$!
-for _ in $(seq 200); do [ -s "$folder/display" ] && break; sleep 0.05; done
-DISPLAY=:$(cat "$folder/display")
-export DISPLAY
+[ -z "${SAN:-}" ] || { echo "SKIP: the window's libraries aren't made for sanitizers"; exit 77; }
+. tests/peers/display.sh
 "$study" "$folder/people.study" --out "$folder/screen" --screen >"$folder/out" 2>"$folder/err" &
 run=$!
 for _ in $(seq 150); do
@@ -129,5 +125,5 @@ done
 wait $run || fail "the screen: $(cat "$folder/out" "$folder/err")"
 [ "$(grep -c ',4,4,4$' "$folder/screen/survey.csv")" = 2 ] || fail "the screen's answers: $(cat "$folder/screen/survey.csv")"
 [ "$(awk -F, 'NR > 1' "$folder/screen/taps.csv" | wc -l)" -ge 3 ] || fail "the screen's taps: $(cat "$folder/screen/taps.csv")"
-[ -n "$DISPLAY" ] && kill $server && server=
+kill $server && server=
 exit $failed

@@ -20,13 +20,8 @@ ETHD_FONT=/nowhere SDL_VIDEODRIVER=dummy "$study" --resume "$folder/none" --scre
 [ $? = 2 ] && grep -q 'from 320x200' "$folder/err" || fail "9x9: $(cat "$folder/err")"
 
 [ $failed = 0 ] || exit 1
-for program in Xvfb xdotool; do command -v $program >/dev/null || { echo "SKIP: no $program"; exit 77; }; done
-python3=$(sh .ci/setup python) || { echo "SKIP: no python3 with numpy"; exit 77; }
-Xvfb -displayfd 3 -screen 0 1280x720x24 3>"$folder/display" >"$folder/xvfb" 2>&1 &
-server=$!
-for _ in $(seq 200); do [ -s "$folder/display" ] && break; sleep 0.05; done
-DISPLAY=:$(cat "$folder/display")
-export DISPLAY
+python3=$(sh .ci/setup python) || { echo "FAILED: no python3 with numpy, which .ci/setup check brings"; exit 1; }
+. tests/peers/display.sh
 
 cat >"$folder/short.study" <<'EOF2'
 [study]
