@@ -1,6 +1,7 @@
 #!/bin/sh
 # The servo over a bus, by an independent server (pymodbus) with the simulated plant behind its registers: taps in
-# lock-step, equal to the bit; a live run that is unplugged and killed; a serial line at 500 kBd. No time is asserted.
+# lock-step, equal to the bit; a live run that is unplugged and killed; a serial line at 500 kBd. No time is asserted: a
+# machine too busy for a drive in true time is told from a fault of ours by a program that knows nothing of it.
 set -u
 case ${SAN:-} in *thread*) echo "SKIP: a thread sanitizer's threads don't fit into the loop's stack"; exit 77 ;; esac
 folder=$(mktemp -d)
@@ -59,16 +60,22 @@ assert np.all(r["faults"] == 0) and np.abs(r["tau"]).max() > 0.2
 END2
 
 # ---- live ----
+# The other side of the bus would have a machine of its own.
+alone=
+chrt -r 40 true 2>/dev/null && alone="chrt -r 40"
 cp apps/config/plant.map "$folder"
+$alone "$python3" tests/peers/late.py >"$folder/late" 2>&1 &
+late=$!
+children="$children $late"
 plant live
 peer --tcp 0
 port=$at
 configure live "127.0.0.1:$port"
-"$BUILD/bin/ethd-servo-probe" --map "$folder/plant.map" --port "127.0.0.1:$port" --duration 0.5 >"$folder/probe" 2>&1 ||
+$alone "$BUILD/bin/ethd-servo-probe" --map "$folder/plant.map" --port "127.0.0.1:$port" --duration 0.5 >"$folder/probe" 2>&1 ||
   fail "probe: exit $?: $(cat "$folder/probe")"
 says "$folder/probe" '^round trip p50 .* p99 .* max .* ms' 'this bus can do [1-9][0-9]* Hz' ' position1  *raw' ' bus_voltage  *raw 480 *48 V'
 mkfifo "$folder/commands"
-"$run" --config "$folder/live.ini" --record "$folder/live" <"$folder/commands" >"$folder/live.out" 2>"$folder/live.err" 8>&- &
+$alone "$run" --config "$folder/live.ini" --record "$folder/live" <"$folder/commands" >"$folder/live.out" 2>"$folder/live.err" 8>&- &
 live=$!
 children="$children $live"
 exec 9>"$folder/commands"
@@ -82,15 +89,18 @@ status() { # until it is answered
   done
   fail "no answer to status"
 }
-# A busy machine's late answers disable, as they must: then once more.
+# A busy machine's late answers disable, as they must: then once more. What comes of that is said once it is known
+# how late the machine was.
+tries=30
+unreached=
 enabled() {
-  for _ in $(seq 30); do
+  for _ in $(seq $tries); do
     status
     grep '^ok: t ' "$folder/live.out" | tail -n 1 | grep -q ' enabled,' && return
     printf 'wait 1.2\nack\nenable\nwait 0.1\n' >&9
     sleep 1.5
   done
-  fail "it can't be enabled: $(tail -n 5 "$folder/live.out")"
+  unreached="it can't be enabled: $(tail -n 5 "$folder/live.out")"
 }
 enabled
 # unplugged ETHD_SERVO_PLUGS times: it connects again, and stays disabled
@@ -132,7 +142,11 @@ words = s.recv(256).split()
 assert len(words) == 7 and float(words[5]) == 0 and float(words[6]) == 0, words
 END2
 plant_ends
-says "$folder/live.plant" 'the watchdog let go [1-9]'
+grep -q 'the watchdog let go [1-9]' "$folder/live.plant" || unreached="${unreached:-no watchdog: $(cat "$folder/live.plant")}"
+kill $late
+wait $late
+[ -z "$unreached" ] || awk -v tries=$tries '$1 == "late" && $2 >= tries { busy = 1 } END { exit !busy }' "$folder/late" ||
+  fail "$unreached; $(cat "$folder/late")"
 
 # ---- a serial line, 500 kBd ----
 plant serial
@@ -152,5 +166,6 @@ exec 7>&-
 plant_ends
 
 grep -h -E '^rate|^round' "$folder/probe" "$folder/rtu"
-[ $failed = 0 ] && echo "$(grep -c . "$folder/v1/events.csv") events replayed"
-exit $failed
+[ $failed = 0 ] || exit 1
+echo "$(grep -c . "$folder/v1/events.csv") events replayed"
+[ -z "$unreached" ] || { echo "SKIP: this machine is too busy for a drive in true time ($(cat "$folder/late")): $unreached" | tr '\n' ' '; exit 77; }
