@@ -133,7 +133,7 @@ assert len(gaps) == 0, (gaps, tick[gaps])
 print(len(tick), "records of the live run, without a gap")
 END2
 kill $peer
-"$python3" - "$plant" <<'END2' || fail "the plant doesn't answer"
+"$python3" - "$plant" <<'END2' || fail "the drive pushes still, or doesn't answer"
 import socket, sys
 s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
 s.settimeout(10)
