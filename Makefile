@@ -14,7 +14,7 @@ CFLAGS ?= -O2 -g
 RT ?= posix
 
 # Sources of libethd that work on [main] only; every other one must suit the control thread.
-MAIN_SIDE := $(wildcard lib/plugin.c lib/error.c lib/param.c lib/scene_parse.c lib/*_check.c lib/*_create.c lib/*_build.c)
+MAIN_SIDE := $(wildcard lib/error.c lib/param.c lib/law/plugin.c lib/scene/parse.c $(addprefix lib/,*_create.c */*check.c */*create.c */*build.c))
 # Sources of the loop that its thread runs: they may sleep and read the clock, no more.
 LOOP_SIDE := drivers/loop/cycle.c drivers/loop/histogram.c drivers/loop/watch.c drivers/servo/tick.c
 
@@ -103,7 +103,7 @@ RING_PARTS := $(shell echo '\#include <avr/io.h>' | $(or $(AVR_CC),avr-gcc) -mmc
   echo $(B)/firmware/proximity_ring.hex) $(if $(SIMAVR),$(B)/tests/ring_board)
 endif
 
-LIB_C := $(wildcard lib/*.c)
+LIB_C := $(wildcard lib/*.c lib/*/*.c)
 DRIVERS_C := $(wildcard drivers/*.c drivers/*/*.c)
 PROGRAMS_C := $(wildcard apps/ethd-*.c)
 APPS_C := $(wildcard apps/*/*.c)

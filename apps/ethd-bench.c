@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include "bench/bench.h"
-#include "common/cli.h"
-#include "file/text.h"
+#include "cli/cli.h"
+#include "text/text.h"
 
 static const ethd__bench *const benches[] = {
     &ethd__bench_integrators, &ethd__bench_hours,

@@ -8,7 +8,7 @@
 #include "calibrate/guided.h"
 #include "calibrate/made.h"
 #include "calibrate/report.h"
-#include "common/cli.h"
+#include "cli/cli.h"
 
 #define LAW_ERROR_MAX 0.05e-3 /* m: what a self-test allows level law and table */
 

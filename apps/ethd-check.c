@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "check/report.h"
-#include "check/stability.h"
-#include "common/cli.h"
+#include "bounds/stability.h"
+#include "cli/cli.h"
 #include "ethd/sim.h"
-#include "file/config_parts.h"
+#include "settings/config_parts.h"
 #include "sim/plant.h"
 
 static const char doc[] = "Validates a configuration, prints the setup as it was understood, and how "

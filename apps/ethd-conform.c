@@ -1,7 +1,7 @@
 /* Does the driver of a device keep its contract? */
 #include <stdio.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "ethd/conform.h"
 
 static const char doc[] =

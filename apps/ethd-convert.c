@@ -5,13 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "ethd/record.h"
-#include "file/csv.h"
-#include "file/error_text.h"
-#include "file/mcap.h"
-#include "file/recording_parts.h"
-#include "file/text.h"
+#include "text/csv.h"
+#include "text/error_text.h"
+#include "record/mcap.h"
+#include "record/recording_parts.h"
+#include "text/text.h"
 
 static const char doc[] =
     "Converts a recording to CSV, or to MCAP for PlotJuggler and Foxglove.\v"

@@ -4,8 +4,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "common/cli.h"
-#include "file/csv.h"
+#include "cli/cli.h"
+#include "text/csv.h"
 #include "run/session.h"
 #include "run/summary.h"
 

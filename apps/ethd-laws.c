@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "ethd/config.h"
 #include "ethd/plugin.h"
-#include "file/config_parts.h"
-#include "file/csv.h"
+#include "settings/config_parts.h"
+#include "text/csv.h"
 
 static const char doc[] =
     "Lists the laws and methods that a configuration can name, with each parameter's unit, range and "

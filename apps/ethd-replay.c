@@ -2,10 +2,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "common/cli.h"
-#include "common/dropped.h"
+#include "cli/cli.h"
+#include "cli/dropped.h"
 #include "ethd/record.h"
-#include "replay/trace_in.h"
+#include "trace_in/trace_in.h"
 
 static const char doc[] =
     "Runs recorded joint angles and finger movements through a control law, tick by tick, and writes what "

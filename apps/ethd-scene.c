@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "file/text.h"
+#include "cli/cli.h"
+#include "text/text.h"
 #include "scene/scene.h"
 
 static const char doc[] =

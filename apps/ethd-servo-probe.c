@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "ethd/loop.h"
 #include "servo/link.h"
 #include "servo/words.h"

@@ -3,7 +3,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "stress/stress.h"
 
 static const ethd__stress *const tests[] = {

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "file/error_text.h"
-#include "file/text.h"
+#include "cli/cli.h"
+#include "text/error_text.h"
+#include "text/text.h"
 #include "tap/load.h"
 #include "tap/run.h"
 #include "tap/table.h"

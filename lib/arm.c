@@ -4,7 +4,7 @@
 
 #include "error.h"
 #include "ethd/maths.h"
-#include "maths_two.h"
+#include "maths/two_waves.h"
 
 ethd_status ethd_arm_check(const ethd_arm *arm, ethd_error *error) {
   ethd_status status =

@@ -5,7 +5,7 @@ for clang in clang clang-25 clang-24 clang-23 clang-22 clang-21 clang-20; do
   command -v $clang >/dev/null || continue
   [ "$($clang -dumpversion | cut -d. -f1)" -ge 20 ] || continue
   failed=0
-  for source in lib/*.c $(find drivers -name '*.c'); do
+  for source in $(find lib drivers -name '*.c'); do
     $clang -std=gnu11 -O1 -ffp-contract=off -fno-math-errno -D_GNU_SOURCE -Iinclude -Ilib -Idrivers \
       -fsyntax-only -Wfunction-effects -Werror=function-effects "$source" || failed=1
   done

@@ -10,7 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "ethd/ethd.h"
 
 int64_t ethd__bench_now(void) {

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "ethd/ethd.h"
 
 #define SETTLE 30 /* ticks: a filter starts at its first reading */

@@ -7,7 +7,7 @@
 #include "bench/bench.h"
 #include "bench/filter_tuning.h"
 #include "bench/peers.h"
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "ethd/ethd.h"
 
 enum { LATENCIES = 3, REACHES = 40, SETS_MAX = 16 };

@@ -4,7 +4,7 @@
 #include <time.h>
 
 #include "bench/bench.h"
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "tap/study.h"
 
 #define GOAL 5000.0

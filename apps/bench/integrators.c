@@ -5,7 +5,7 @@
 
 #include "bench/bench.h"
 #include "bench/methods.h"
-#include "common/cli.h"
+#include "cli/cli.h"
 
 enum { CONTENDERS_MAX = 120, TAPS = 4 };
 

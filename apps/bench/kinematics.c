@@ -4,7 +4,7 @@
 
 #include "bench/bench.h"
 #include "bench/peers.h"
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "ethd/ethd.h"
 
 enum { PLACES = 1024, NUMBERS = 6 };

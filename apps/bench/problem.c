@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "tap/study.h"
 
 static void check(ethd_status status, const char *message) {

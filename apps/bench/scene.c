@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 
 static const char *name_of(const ethd__contest *t, int i) { return t->contenders[i].name; }
 

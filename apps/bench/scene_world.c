@@ -5,7 +5,7 @@
 #include <time.h>
 
 #include "bench/bench.h"
-#include "common/cli.h"
+#include "cli/cli.h"
 
 const char *const ethd__world_names[ETHD__WORLDS] = {"random", "contour"};
 const char *const ethd__ask_names[ETHD__ASKS] = {"incoherent", "warm", "horizon"};

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "bench/bench.h"
-#include "common/cli.h"
+#include "cli/cli.h"
 
 #define WALL 0.238   /* m */
 #define AHEAD 0.002  /* s: so far the ring is behind the finger */

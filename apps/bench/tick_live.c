@@ -9,7 +9,7 @@
 #include <time.h>
 
 #include "bench/tick.h"
-#include "common/cli.h"
+#include "cli/cli.h"
 
 static void heading(const char *text) {
   printf("  %s\n", text);

@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "bench/bench.h"
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "ethd/sim.h"
-#include "file/csv.h"
+#include "text/csv.h"
 
 #define RATE 300.0 /* Hz */
 #define REST 0.05  /* s */

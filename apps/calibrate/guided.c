@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "file/error_text.h"
+#include "cli/cli.h"
+#include "text/error_text.h"
 #include "proximity_ring/empty.h"
 #include "proximity_ring/port.h"
 

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "ethd/maths.h"
-#include "file/csv.h"
-#include "file/error_text.h"
+#include "text/csv.h"
+#include "text/error_text.h"
 
 #define RADIUS_MAX 1.0 /* m */
 

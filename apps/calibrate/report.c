@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "file/csv.h"
-#include "file/error_text.h"
+#include "text/csv.h"
+#include "text/error_text.h"
 #include "report/picture.h"
 
 static void print_length(double metres) {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "check/report.h"
-#include "check/stability.h"
+#include "bounds/stability.h"
 
 /* Sufficient, not necessary: no bound is exceeded when they fail. */
 int ethd__report_passivity(const ethd__subject *s) {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "check/report.h"
-#include "file/config_parts.h"
+#include "settings/config_parts.h"
 
 static void head(const char *section) { printf("[%s]\n", section); }
 

@@ -1,5 +1,5 @@
 /* Margins of each gain in the sampled loop. */
-#include "check/stability.h"
+#include "bounds/stability.h"
 
 #include <math.h>
 #include <stdio.h>

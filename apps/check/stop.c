@@ -1,5 +1,5 @@
 /* How the ring stops at a wall: rest at touch and braking, in closed form. */
-#include "check/stop.h"
+#include "bounds/stop.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/error_text.h"
+#include "text/error_text.h"
 
 /* ---- quantities ---- */
 

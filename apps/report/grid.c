@@ -1,7 +1,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "file/csv.h"
+#include "text/csv.h"
 #include "report/html.h"
 #include "report/report.h"
 

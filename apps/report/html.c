@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/text.h"
+#include "text/text.h"
 
 #define BRIEF 30 /* letters of a cell that aren't broken into lines */
 

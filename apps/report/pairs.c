@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/csv.h"
+#include "text/csv.h"
 #include "report/html.h"
 #include "report/report.h"
 

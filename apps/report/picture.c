@@ -9,8 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "common/cli.h"
-#include "file/error_text.h"
+#include "cli/cli.h"
+#include "text/error_text.h"
 
 extern char **environ;
 

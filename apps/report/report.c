@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
-#include "file/error_text.h"
+#include "cli/cli.h"
+#include "text/error_text.h"
 #include "report/html.h"
 #include "report/picture.h"
 

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/error_text.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 #define BYTES_MAX ((size_t)1 << 32)
 

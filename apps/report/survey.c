@@ -3,7 +3,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "file/csv.h"
+#include "text/csv.h"
 #include "report/html.h"
 #include "report/report.h"
 #include "study/dictionary.h"

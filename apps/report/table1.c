@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/error_text.h"
+#include "text/error_text.h"
 #include "report/html.h"
 #include "report/report.h"
 #include "tap/claims.h"

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "run/telemetry.h"
 
 #define STACK ((size_t)512 << 10)

@@ -7,10 +7,10 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "common/cli.h"
-#include "common/limits_event.h"
-#include "file/error_text.h"
-#include "file/text.h"
+#include "cli/cli.h"
+#include "record/limits_event.h"
+#include "text/error_text.h"
+#include "text/text.h"
 #include "run/telemetry.h"
 
 #define HEARTBEAT 0.1  /* s */

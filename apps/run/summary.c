@@ -3,7 +3,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "common/dropped.h"
+#include "cli/dropped.h"
 
 void ethd__durations_print(FILE *out, const char *name, const ethd_histogram *h) {
   fprintf(out, "%-10s p50 %9.3f  p99 %9.3f  p99.9 %9.3f  max %9.3f us\n", name,

@@ -10,7 +10,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "file/error_text.h"
+#include "text/error_text.h"
 
 #define HOST_MAX 256
 

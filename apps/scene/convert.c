@@ -5,9 +5,9 @@
 #include <string.h>
 #include <strings.h>
 
-#include "common/cli.h"
-#include "file/scene_file.h"
-#include "file/text.h"
+#include "cli/cli.h"
+#include "settings/scene_file.h"
+#include "text/text.h"
 #include "scene/scene.h"
 
 #define SVG_BYTES_MAX ((size_t)1 << 30)

@@ -1,7 +1,7 @@
 /* What a scene holds. */
 #include <stdio.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "scene/scene.h"
 
 static ethd_setup setup_of(const char *path) {

@@ -1,9 +1,9 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "common/cli.h"
-#include "file/scene_file.h"
-#include "file/text.h"
+#include "cli/cli.h"
+#include "settings/scene_file.h"
+#include "text/text.h"
 #include "scene/scene.h"
 
 #define SCENE_BYTES_MAX ((size_t)1 << 30)

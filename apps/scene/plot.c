@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "ethd/maths.h"
-#include "file/csv.h"
+#include "text/csv.h"
 #include "report/picture.h"
 #include "scene/scene.h"
 

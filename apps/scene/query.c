@@ -1,6 +1,6 @@
 /* How far points are from a scene. */
-#include "common/cli.h"
-#include "file/csv.h"
+#include "cli/cli.h"
+#include "text/csv.h"
 #include "scene/scene.h"
 
 #define COORDINATE_MAX 1e9 /* m */

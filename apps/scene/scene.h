@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 #include "ethd/config.h"
-#include "file/svg.h"
+#include "svg/svg.h"
 
 typedef struct ethd__scene_args {
   const char *command, *scene, *in, *out, *config;

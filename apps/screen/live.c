@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 
 #define PRIORITY 10 /* of SCHED_FIFO: under a device's loop */
 

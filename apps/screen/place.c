@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "common/cli.h"
-#include "file/recording_parts.h"
+#include "cli/cli.h"
+#include "record/recording_parts.h"
 #include "run/summary.h"
 
 static void check(ethd_status status, const char *message) {

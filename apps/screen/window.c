@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/error_text.h"
+#include "text/error_text.h"
 
 #define RATE 60 /* frames a second */
 #define NO_DISPLAY "no display (DISPLAY or WAYLAND_DISPLAY; without --screen the study needs none)"

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "ethd/control.h"
 #include "stress/stress.h"
 

@@ -6,8 +6,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "common/cli.h"
-#include "common/denormals.h"
+#include "cli/cli.h"
+#include "denormals.h"
 #include "stress/rig.h"
 #include "stress/stress.h"
 

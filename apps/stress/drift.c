@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "ethd/control.h"
 #include "stress/rig.h"
 #include "stress/stress.h"

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "sim/random.h"
 #include "stress/rig.h"
 #include "stress/stress.h"

@@ -3,7 +3,7 @@
 #include <stdarg.h>
 #include <string.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "stress/stress.h"
 
 /* 0 exact, 1 just allowed, over 1 failed; what isn't a number has failed. */

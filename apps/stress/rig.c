@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "stress/stress.h"
 
 ethd_scene *ethd__rig_wall(double c) {

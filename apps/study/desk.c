@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/error_text.h"
+#include "text/error_text.h"
 #include "study/movements.h"
 #include "study/people.h"
 

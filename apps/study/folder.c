@@ -8,11 +8,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "ethd/ethd.h"
-#include "file/error_text.h"
-#include "file/recording_parts.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "record/recording_parts.h"
+#include "text/text.h"
 #include "study/dictionary.h"
 
 #define PLANT "device.plant"

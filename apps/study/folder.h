@@ -9,7 +9,7 @@
 #ifndef ETHD_STUDY_FOLDER_H
 #define ETHD_STUDY_FOLDER_H
 
-#include "common/sha256.h"
+#include "study/sha256.h"
 #include "study/protocol.h"
 #include "tap/load.h"
 

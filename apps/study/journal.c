@@ -8,9 +8,9 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include "common/sha256.h"
-#include "file/error_text.h"
-#include "file/text.h"
+#include "study/sha256.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 #define BYTES_MAX ((size_t)1 << 30)
 #define SUM 8 /* hex digits */

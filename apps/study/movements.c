@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/error_text.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 static char *folder_of(const ethd__protocol *p) {
   const char *given = getenv("ETHD_MOTION_DIR");

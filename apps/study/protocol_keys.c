@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/error_text.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 typedef struct key_row key_row;
 struct key_row {

@@ -2,7 +2,7 @@
 #ifndef ETHD_STUDY_PROTOCOL_KEYS_H
 #define ETHD_STUDY_PROTOCOL_KEYS_H
 
-#include "file/ini.h"
+#include "text/ini.h"
 #include "study/protocol.h"
 
 /* A key that is being read. */

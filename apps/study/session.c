@@ -7,10 +7,10 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "ethd/ethd.h"
-#include "file/csv.h"
-#include "file/error_text.h"
+#include "text/csv.h"
+#include "text/error_text.h"
 #include "study/keep.h"
 #include "study/row.h"
 

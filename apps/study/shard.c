@@ -9,9 +9,9 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include "common/cli.h"
-#include "file/error_text.h"
-#include "file/text.h"
+#include "cli/cli.h"
+#include "text/error_text.h"
+#include "text/text.h"
 #include "study/keep.h"
 #include "study/row.h"
 #include "study/session.h"

@@ -5,8 +5,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "common/cli.h"
-#include "file/error_text.h"
+#include "cli/cli.h"
+#include "text/error_text.h"
 #include "tap/seen.h"
 
 #define SECONDS 6.0     /* of a tap at most */

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/text.h"
+#include "text/text.h"
 #include "study/row.h"
 #include "study/session.h"
 

@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "common/cli.h"
+#include "cli/cli.h"
 #include "study/row.h"
 #include "study/shard.h"
 

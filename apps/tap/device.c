@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-#include "file/config_parts.h"
-#include "file/error_text.h"
+#include "settings/config_parts.h"
+#include "text/error_text.h"
 #include "sim/settings.h"
 
 static ethd_status check_driver(const ethd_config *config, char *message) {

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
-#include "file/error_text.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 static ethd_status open_csv(const char *path, ethd_csv_out **out, char *message) {
   *out = ethd_csv_create(path, ETHD_TAP_HEADER, message);

@@ -2,7 +2,7 @@
 #ifndef ETHD_TAP_OUTPUT_H
 #define ETHD_TAP_OUTPUT_H
 
-#include "file/csv.h"
+#include "text/csv.h"
 #include "tap/summary.h"
 #include "tap/ticks.h"
 

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "file/csv.h"
-#include "file/error_text.h"
+#include "text/csv.h"
+#include "text/error_text.h"
 
 /* ---- reading ---- */
 

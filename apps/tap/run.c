@@ -6,8 +6,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "common/cli.h"
-#include "file/error_text.h"
+#include "cli/cli.h"
+#include "text/error_text.h"
 
 static size_t cell_count(const ethd__plan *plan) { return plan->law_count * plan->study->speed_count; }
 

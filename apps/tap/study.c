@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/error_text.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 
 bool ethd__speed_parse(const char *word, const ethd_plant *plant, ethd__speed *out) {

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "common/dropped.h"
+#include "cli/dropped.h"
 #include "tap/claims.h"
 
 static const char *const verdicts[] = {"-", "met", "NOT MET"};

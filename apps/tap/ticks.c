@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/limits_event.h"
-#include "file/error_text.h"
-#include "file/recording_parts.h"
-#include "file/text.h"
+#include "record/limits_event.h"
+#include "text/error_text.h"
+#include "record/recording_parts.h"
+#include "text/text.h"
 
 #define TRUTH "truth.npy"
 #define LETTER_double 'f'

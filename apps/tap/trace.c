@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "file/csv.h"
+#include "text/csv.h"
 
 #define HEADER                                                                                        \
   "t_s,since_wall_s,ring_m,finger_m,hand_m,offset_wall_m,v_ring_mps,v_finger_mps,state,beta,fe_n,fd_n," \

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "device/stack.h"
-#include "file/error_text.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/text.h"
 #include "inject/inject.h"
 
 #define BLANKS " \t"

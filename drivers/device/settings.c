@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "ethd/driver.h"
-#include "file/error_text.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 static ethd_status refuse(const ethd_device_def *def, const ethd_setting *s, ethd_status status, const char *allowed,
                           char *message) {

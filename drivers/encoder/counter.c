@@ -7,7 +7,7 @@
 
 #include "encoder/counter_input.h"
 #include "ethd/cell.h"
-#include "file/error_text.h"
+#include "text/error_text.h"
 
 #define HOME_PAUSE 1000000 /* ns */
 

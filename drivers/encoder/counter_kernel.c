@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "encoder/counter.h"
-#include "file/error_text.h"
+#include "text/error_text.h"
 
 /* ---- the calls themselves ---- */
 

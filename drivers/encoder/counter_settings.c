@@ -2,8 +2,8 @@
 #include <string.h>
 
 #include "encoder/counter.h"
-#include "file/error_text.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 const ethd_param ethd__counter_params[ETHD__COUNTER_PARAMS] = {
     [ETHD__COUNTER_COUNTS_PER_TURN] = {"counts_per_turn", "1", 1, 0x1p32, 4000, "of the encoder's shaft, whole"},

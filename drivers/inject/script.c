@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/error_text.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 #define BLANKS " \t\r"
 #define BIT(kind) (1u << ETHD__INJECT_##kind)

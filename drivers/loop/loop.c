@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/denormals.h"
+#include "denormals.h"
 #include "loop/loop.h"
 
 #define COOKIE 0x6c6f6f70u

@@ -7,7 +7,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 
-#include "common/denormals.h"
+#include "denormals.h"
 #include "loop/loop.h"
 
 #define SERVICE_STACK ((size_t)256 << 10)

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/error_text.h"
-#include "file/ini.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/ini.h"
+#include "text/text.h"
 #include "proximity_ring/calibration.h"
 
 typedef struct reading {

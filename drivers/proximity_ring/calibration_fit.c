@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "ethd/maths.h"
-#include "file/error_text.h"
+#include "text/error_text.h"
 
 #define CEILING (ETHD__FRAME_SATURATED - 1.0)
 #define P_MIN 0.5

@@ -9,8 +9,8 @@
 
 #include "ethd/cell.h"
 #include "ethd/fault.h"
-#include "file/error_text.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/text.h"
 #include "proximity_ring/empty.h"
 #include "proximity_ring/port.h"
 #include "proximity_ring/settings.h"

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "file/error_text.h"
+#include "text/error_text.h"
 
 void ethd__empty_add(ethd__empty *e, const ethd__frame *frame) {
   e->frames++;

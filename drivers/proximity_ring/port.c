@@ -4,7 +4,7 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include "common/line.h"
+#include "serial/line.h"
 
 #define BACK_OFF_LEAST 50000000   /* ns */
 #define BACK_OFF_MOST 1600000000

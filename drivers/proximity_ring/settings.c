@@ -1,6 +1,6 @@
 #include "proximity_ring/settings.h"
 
-#include "file/error_text.h"
+#include "text/error_text.h"
 
 const ethd_param ethd__ring_params[ETHD__RING_PARAMS] = {
     [ETHD__RING_BAUD] = {"baud", "1/s", 9600, 12e6, 500000, "of the board's UART: 500000 or 400000, by its strap"},

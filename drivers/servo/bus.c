@@ -7,7 +7,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "file/error_text.h"
+#include "text/error_text.h"
 
 #define DRAINS 10 /* times the quiet that is asked for, before giving up for now */
 

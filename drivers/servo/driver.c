@@ -5,8 +5,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "file/error_text.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/text.h"
 #include "servo/device.h"
 #include "servo/words.h"
 

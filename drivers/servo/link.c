@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "file/error_text.h"
+#include "text/error_text.h"
 #include "servo/words.h"
 
 #define BACK_OFF_MOST 32.0 /* times the map's */

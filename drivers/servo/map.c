@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/error_text.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/text.h"
 #include "servo/map_parts.h"
 
 static const char register_prefix[] = "register ";

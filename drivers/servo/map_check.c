@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "ethd/param.h"
-#include "file/error_text.h"
+#include "text/error_text.h"
 #include "servo/map_parts.h"
 #include "servo/words.h"
 

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "ethd/param.h"
-#include "file/error_text.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/text.h"
 #include "servo/map_parts.h"
 
 typedef enum { NUMBER, WHOLE, CHOICE } kind;

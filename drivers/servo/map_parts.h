@@ -2,7 +2,7 @@
 #ifndef ETHD_SERVO_MAP_PARTS_H
 #define ETHD_SERVO_MAP_PARTS_H
 
-#include "file/ini.h"
+#include "text/ini.h"
 #include "servo/map.h"
 
 /* What is being read, and where a refusal goes. */

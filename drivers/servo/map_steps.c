@@ -1,8 +1,8 @@
 /* Sequences: step1, step2, ... in a section of their own. */
 #include <string.h>
 
-#include "file/error_text.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/text.h"
 #include "servo/map_parts.h"
 #include "servo/words.h"
 

@@ -8,8 +8,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "common/line.h"
-#include "file/error_text.h"
+#include "serial/line.h"
+#include "text/error_text.h"
 #include "servo/bus.h"
 
 static ethd_status refuse(const ethd__servo_map *map, int error, char *message) {

@@ -1,5 +1,5 @@
 /* Steps of [identify], [enable] and [disable], one a turn. */
-#include "file/error_text.h"
+#include "text/error_text.h"
 #include "servo/link.h"
 #include "servo/words.h"
 

@@ -3,7 +3,7 @@
 
 #include "ethd/driver.h"
 #include "ethd/sim.h"
-#include "file/error_text.h"
+#include "text/error_text.h"
 #include "sim/plant.h"
 #include "sim/settings.h"
 

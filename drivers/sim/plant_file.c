@@ -4,9 +4,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "file/error_text.h"
-#include "file/ini.h"
-#include "file/text.h"
+#include "text/error_text.h"
+#include "text/ini.h"
+#include "text/text.h"
 #include "sim/plant.h"
 
 #define BYTES_MAX ((size_t)1 << 16)

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "file/text.h"
+#include "text/text.h"
 #include "sim/plant.h"
 
 const ethd_param ethd__sim_params[ETHD__SIM_PARAMS] = {

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "ethd/driver.h"
-#include "file/text.h"
+#include "text/text.h"
 #include "servo/device.h"
 #include "servo/mock.h"
 #include "unit/rig.h"

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/text.h"
+#include "text/text.h"
 #include "servo/words.h"
 #include "unit/mutate.h"
 #include "unit/rig.h"

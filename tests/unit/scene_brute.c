@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene.h"
+#include "scene/scene.h"
 #include "scene_objects.h"
 
 /* ---- scenes ---- */

@@ -10,8 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "file/csv.h"
-#include "file/text.h"
+#include "text/csv.h"
+#include "text/text.h"
 #include "mutate.h"
 
 static char message[ETHD_MESSAGE_MAX];

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "file/text.h"
+#include "text/text.h"
 #include "study/journal.h"
 #include "unit/rig.h"
 

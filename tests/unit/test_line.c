@@ -5,7 +5,7 @@
 #include <sys/ioctl.h>
 #include <sys/syscall.h>
 
-#include "common/line.h"
+#include "serial/line.h"
 #include "unit/pty.h"
 #include "unit/rig.h"
 

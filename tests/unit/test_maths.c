@@ -11,7 +11,7 @@
 #include <xmmintrin.h>
 #endif
 
-#include "maths_two.h"
+#include "maths/two_waves.h"
 
 #define PI_2 0x1.921fb54442d18469898cc517018p+0L
 

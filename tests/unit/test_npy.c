@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "ethd/record.h"
-#include "file/npy_parts.h"
+#include "record/npy_parts.h"
 #include "mutate.h"
 
 typedef struct row {

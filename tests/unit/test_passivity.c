@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "check/stability.h"
+#include "bounds/stability.h"
 #include "stress/rig.h"
 #include "unit/rig.h"
 

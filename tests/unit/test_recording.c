@@ -7,11 +7,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "common/denormals.h"
+#include "denormals.h"
 #include "draw.h"
 #include "ethd/record.h"
-#include "file/recording_parts.h"
-#include "file/text.h"
+#include "record/recording_parts.h"
+#include "text/text.h"
 
 #define CONFIG                                                                                          \
   "# a wall\n[scene]\nfile = walls.scene ; the left one\n[transition]\nb_d = 70\n[limits]\nspeed = 5\n" \

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "file/text.h"
+#include "text/text.h"
 #include "mutate.h"
 #include "unit/rig.h"
 #include "unit/ring_rod.h"

@@ -4,8 +4,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "scene.h"
-#include "scene_check.h"
+#include "scene/scene.h"
+#include "scene/check.h"
 
 static uint64_t seed;
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "check/stability.h"
+#include "bounds/stability.h"
 
 #define M 0.3
 #define T 0.001

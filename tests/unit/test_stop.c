@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "check/stop.h"
+#include "bounds/stop.h"
 
 /* Plants n and b, without lag. */
 static const ethd_stop n = {0.1173, 5.357, 0.398, 0, 1e30, 0, 0.012 - 7.32e-3};

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/sha256.h"
+#include "study/sha256.h"
 #include "study/order.h"
 #include "study/people.h"
 #include "study/row.h"

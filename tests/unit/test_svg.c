@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "file/scene_file.h"
-#include "file/svg.h"
+#include "settings/scene_file.h"
+#include "svg/svg.h"
 #include "unit/mutate.h"
 #include "unit/rig.h"
 

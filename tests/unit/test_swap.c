@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "controller.h"
+#include "control/controller.h"
 #include "ethd/sim.h"
 #include "unit/draw.h"
 #include "unit/rig.h"

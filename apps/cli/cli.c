@@ -1,0 +1,183 @@
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "denormals.h"
+#include "ethd/ethd.h"
+#include "text/error_text.h"
+#include "text/text.h"
+
+void ethd__flush_denormals(void) { (void)ethd__denormals_flush(); }
+
+void ethd__begin(void) {
+  argp_program_version = "libethd " ETHD_VERSION;
+  argp_err_exit_status = ETHD_EXIT_INPUT;
+  ethd__flush_denormals();
+}
+
+int ethd__end(int code) {
+  bool failed = fflush(stdout) != 0 || ferror(stdout);
+  if (!failed) return code;
+  fprintf(stderr, "%s: standard output: %s\n", program_invocation_short_name,
+          strerror(errno ? errno : EIO));
+  return code ? code : ETHD_EXIT_FAILED;
+}
+
+void ethd__fail(int code, const char *format, ...) {
+  char message[ETHD_MESSAGE_MAX];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(message, sizeof message, format, args);
+  va_end(args);
+  for (char *p = message; *p; p++)
+    if ((unsigned char)*p < ' ') *p = '?';
+  fflush(stdout);
+  fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);
+  exit(code);
+}
+
+int ethd__exit_code(ethd_status status) {
+  switch (status) {
+    case ETHD_E_MEMORY:
+    case ETHD_E_LAW:
+    case ETHD_E_BUDGET:
+    case ETHD_E_FULL:
+    case ETHD_E_DEVICE:
+    case ETHD_E_DIFFERS: return ETHD_EXIT_FAILED;
+    default: return status < 0 ? ETHD_EXIT_INPUT : ETHD_EXIT_DONE;
+  }
+}
+
+/* ---- option values ---- */
+
+double ethd__option_number(const char *option, const char *text, double min, double max) {
+  char quote[ETHD_QUOTE_MAX];
+  double value;
+  if (!ethd__number(text, strlen(text), &value) || !(value >= min && value <= max))
+    ethd__fail(ETHD_EXIT_INPUT, "%s: found %s, a number from %.10g to %.10g is allowed", option,
+               ethd__quote(text, strlen(text), quote), min, max);
+  return value;
+}
+
+static bool whole(const char *text, bool negative_too) {
+  if (negative_too && *text == '-') text++;
+  return *text && !text[strspn(text, "0123456789")];
+}
+
+int64_t ethd__option_integer(const char *option, const char *text, int64_t min, int64_t max) {
+  char quote[ETHD_QUOTE_MAX];
+  errno = 0;
+  int64_t value = strtoimax(text, NULL, 10);
+  if (!whole(text, true) || errno || value < min || value > max)
+    ethd__fail(ETHD_EXIT_INPUT,
+               "%s: found %s, a whole number from %" PRId64 " to %" PRId64 " is allowed", option,
+               ethd__quote(text, strlen(text), quote), min, max);
+  return value;
+}
+
+uint64_t ethd__option_seed(const char *option, const char *text) {
+  char quote[ETHD_QUOTE_MAX];
+  errno = 0;
+  uint64_t value = strtoumax(text, NULL, 10);
+  if (!whole(text, false) || errno)
+    ethd__fail(ETHD_EXIT_INPUT, "%s: found %s, a whole number from 0 to %" PRIu64 " is allowed", option,
+               ethd__quote(text, strlen(text), quote), UINT64_MAX);
+  return value;
+}
+
+void ethd__option_list(const char *option, const char *text, void (*each)(const char *word, void *user),
+                       void *user) {
+  char *words = strdup(text), *rest = words, *word;
+  if (!words) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  while ((word = strsep(&rest, ","))) {
+    if (!*word) ethd__fail(ETHD_EXIT_INPUT, "%s: an empty word in the list", option);
+    each(word, user);
+  }
+  free(words);
+}
+
+/* ---- files that came with the programs ---- */
+
+static char *data_folder(void) {
+  const char *given = getenv("ETHD_DATA_DIR");
+  char program[4096];
+  if (given && *given) return strdup(given);
+  ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+  program[length > 0 ? length : 0] = 0;
+  char *bin = ethd__path_folder(program);
+  char *folder = bin ? ethd__path_join(bin, "../share/ethd") : NULL;
+  free(bin);
+  return folder;
+}
+
+char *ethd__data_path(const char *name) {
+  char *folder = data_folder();
+  char *path = folder ? ethd__path_join(folder, name) : NULL;
+  free(folder);
+  if (!path) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (access(path, R_OK) != 0)
+    ethd__fail(ETHD_EXIT_FAILED, "%s: %s; ETHD_DATA_DIR may name the folder it is in", path,
+               strerror(errno));
+  return path;
+}
+
+/* ---- progress ---- */
+
+void ethd__progress(uint64_t done, uint64_t total, const char *what) {
+  static double shown;
+  struct timespec now;
+  if (!isatty(STDERR_FILENO)) return;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  double t = (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+  if (done >= total) {
+    if (shown > 0) fprintf(stderr, "\r\033[K");
+    shown = 0;
+  } else if (t - shown >= 0.1) {
+    double share = (double)done / (double)total;
+    int filled = (int)(share * 40);
+    fprintf(stderr, "\r\033[K%s [%.*s%*s] %3.0f %%", what, filled,
+            "########################################", 40 - filled, "", 100 * share);
+    shown = t;
+  }
+  fflush(stderr);
+}
+
+/* ---- Ctrl-C ---- */
+
+volatile sig_atomic_t ethd__stop;
+
+static void stop(int number) {
+  if (ethd__stop) _exit(128 + number);
+  ethd__stop = 1;
+}
+
+static void ask(int number) {
+  (void)number;
+  ethd__stop = 1;
+}
+
+static void catch(void (*handler)(int), int number) {
+  struct sigaction action = {.sa_handler = handler, .sa_flags = SA_RESTART};
+  sigemptyset(&action.sa_mask);
+  sigaction(number, &action, NULL);
+}
+
+void ethd__catch_interrupt(void) {
+  catch(stop, SIGINT);
+  catch(stop, SIGTERM);
+}
+
+void ethd__catch_end(void) {
+  catch(ask, SIGINT);
+  catch(ask, SIGTERM);
+  catch(ask, SIGHUP);
+  signal(SIGPIPE, SIG_IGN);
+}

@@ -1,0 +1,284 @@
+#include "bounds/stability.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "ethd/maths.h"
+
+/* One tick as a linear map of: position, speed, estimate, filter position, force of the last tick,
+   forces on their way, last positions. Its matrix is read off by applying it to unit vectors. */
+enum {
+  X,
+  V,
+  ESTIMATE,
+  FILTER,
+  LAST,
+  WAY,
+  STATE_MAX = WAY + ETHD_LOOP_DELAY_MAX + 1 + ETHD_VELOCITY_WINDOW_MAX
+};
+
+typedef double matrix[STATE_MAX][STATE_MAX];
+
+typedef struct model {
+  const ethd_loop *loop;
+  int ways, past, size;               /* forces on their way; index of x_k-1; length of the state */
+  int samples;                        /* last positions kept */
+  double w[ETHD_VELOCITY_WINDOW_MAX]; /* v^ from x_k, x_k-1, ... */
+  double keep;                        /* share of the last estimate (lowpass) */
+  double alpha, beta, inertia;        /* kalman at the ring */
+} model;
+
+/* ---- estimators: v^_k = keep v^_k-1 + sum w_i x_k-i, but for the Kalman filter ---- */
+
+static void use_difference(model *m, double share) {
+  m->samples = 1;
+  m->keep = 1 - share;
+  m->w[0] = share / m->loop->period;
+  m->w[1] = -m->w[0];
+}
+
+/* Slope of the least-squares line through n samples at -i T. */
+static void use_line(model *m, int n) {
+  double mean = (n - 1) / 2.0, sum = n * ((double)n * n - 1) / 12;
+  m->samples = n - 1;
+  for (int i = 0; i < n; i++) m->w[i] = (mean - i) / (sum * m->loop->period);
+}
+
+/* Steady gains of the filter driven by white acceleration (Kalata 1984). */
+static void use_kalman(model *m) {
+  const double *p = m->loop->p; /* noise, acceleration, inertia */
+  double index = p[1] * m->loop->period * m->loop->period / p[0];
+  double root = (4 + index - sqrt(index * (8 + index))) / 4;
+  m->alpha = 1 - root * root;
+  m->beta = 2 * (1 - root) * (1 - root);
+  m->inertia = p[2] / (m->loop->link * m->loop->link);
+}
+
+static void prepare(const ethd_loop *loop, model *m) {
+  *m = (model){.loop = loop};
+  switch (loop->method) {
+  case ETHD_VELOCITY_LOWPASS:
+    use_difference(m, 1 - ethd_exp(-2 * M_PI * loop->p[0] * loop->period));
+    break;
+  case ETHD_VELOCITY_LSQ:
+  case ETHD_VELOCITY_FOAW:
+    use_line(m, (int)loop->p[0]);
+    break;
+  case ETHD_VELOCITY_KALMAN:
+    use_kalman(m);
+    break;
+  default:
+    use_difference(m, 1);
+  }
+  m->ways = loop->delay + (loop->late > 0);
+  m->past = WAY + m->ways;
+  m->size = m->past + m->samples;
+}
+
+static double estimate(const model *m, const double *s, double *filter) {
+  double T = m->loop->period, v = m->keep * s[ESTIMATE] + m->w[0] * s[X];
+  for (int i = 0; i < m->samples; i++) v += m->w[i + 1] * s[m->past + i];
+  if (m->loop->method != ETHD_VELOCITY_KALMAN) return v;
+  double u = s[LAST] / m->inertia;
+  double position = s[FILTER] + (s[ESTIMATE] + u * T / 2) * T, speed = s[ESTIMATE] + u * T;
+  *filter = position + m->alpha * (s[X] - position);
+  return speed + m->beta / T * (s[X] - position);
+}
+
+/* ---- the tick ---- */
+
+/* For `late` the force of one tick earlier still acts. */
+static void tick(const model *m, const double *s, double *next) {
+  const ethd_loop *l = m->loop;
+  double T = l->period, late = l->late, rest = T - late, filter = 0;
+  double v = estimate(m, s, &filter);
+  double f = -l->stiffness * s[X] - l->damping * v;
+  double now = l->delay ? s[WAY + m->ways - l->delay] : f, before = late > 0 ? s[WAY] : 0;
+  next[X] = s[X] + T * s[V] + (before * late * (T - late / 2) + now * rest * rest / 2) / l->mass;
+  next[V] = s[V] + (before * late + now * rest) / l->mass;
+  next[ESTIMATE] = v;
+  next[FILTER] = filter;
+  next[LAST] = f;
+  for (int i = 0; i < m->ways; i++) next[WAY + i] = i + 1 < m->ways ? s[WAY + i + 1] : f;
+  for (int i = 0; i < m->samples; i++) next[m->past + i] = i ? s[m->past + i - 1] : s[X];
+}
+
+/* Lengths in m, times in T, forces in what moves the mass by 1 m in T: entries of like size. */
+static void fill(const model *m, matrix a) {
+  double unit[STATE_MAX], column[STATE_MAX], scale[STATE_MAX];
+  double T = m->loop->period, force = m->loop->mass / (T * T);
+  for (int i = 0; i < m->size; i++) scale[i] = i == V || i == ESTIMATE ? 1 / T : 1;
+  for (int i = LAST; i < m->past; i++) scale[i] = force;
+  for (int j = 0; j < m->size; j++) {
+    memset(unit, 0, sizeof unit);
+    unit[j] = scale[j];
+    tick(m, unit, column);
+    for (int i = 0; i < m->size; i++) a[i][j] = column[i] / scale[i];
+  }
+}
+
+/* ---- spectral radius: the limit of |A^k|^(1/k), k = 2^SQUARINGS ---- */
+
+#define SQUARINGS 32
+
+static double normalise(matrix a, int n) {
+  double largest = 0;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) largest = fmax(largest, fabs(a[i][j]));
+  for (int i = 0; i < n && largest > 0; i++)
+    for (int j = 0; j < n; j++) a[i][j] /= largest;
+  return largest;
+}
+
+static void square(matrix a, matrix out, int n) {
+  for (int i = 0; i < n; i++) {
+    memset(out[i], 0, (size_t)n * sizeof(double));
+    for (int k = 0; k < n; k++)
+      for (int j = 0; j < n; j++) out[i][j] += a[i][k] * a[k][j];
+  }
+  memcpy(a, out, sizeof(matrix));
+}
+
+double ethd__loop_radius(const ethd_loop *loop) {
+  matrix a, scratch;
+  model m;
+  memset(scratch, 0, sizeof scratch);
+  prepare(loop, &m);
+  fill(&m, a);
+  double log_norm = 0, share = 1;
+  for (int i = 0; i <= SQUARINGS; i++, share /= 2) {
+    double norm = normalise(a, m.size);
+    if (!(norm > 0)) return 0;
+    log_norm += share * log(norm);
+    if (i < SQUARINGS) square(a, scratch, m.size);
+  }
+  return exp(log_norm);
+}
+
+/* A free ring's position is neither stable nor unstable: radius 1. */
+bool ethd__loop_stable(const ethd_loop *loop) {
+  return ethd__loop_radius(loop) <= 1 + 1e-7;
+}
+
+/* ---- searches ---- */
+
+#define STEPS_PER_DECADE 16
+
+/* Between a stable and an unstable value, to 1e-6 of it. */
+static double bisect(ethd_loop *loop, double *value, double stable, double unstable) {
+  while (fabs(unstable / stable - 1) > 1e-6) {
+    *value = sqrt(stable * unstable);
+    if (ethd__loop_stable(loop))
+      stable = *value;
+    else
+      unstable = *value;
+  }
+  return stable;
+}
+
+static double grid(int i) {
+  return exp(i * log(10) / STEPS_PER_DECADE);
+}
+
+/* At a large mass all is slow, and hold and delay take K (T (n + 1/2) + late) off the damping, whatever
+   the estimator. */
+double ethd__loop_damping_needed(const ethd_loop *l) {
+  return l->stiffness * (l->period * (l->delay + 0.5) + l->late);
+}
+
+double ethd__loop_mass_min(const ethd_loop *loop) {
+  ethd_loop l = *loop;
+  if (l.damping < ethd__loop_damping_needed(&l)) return (double)INFINITY;
+  for (int i = 4 * STEPS_PER_DECADE; i >= -7 * STEPS_PER_DECADE; i--) {
+    l.mass = grid(i);
+    if (ethd__loop_stable(&l)) continue;
+    return i == 4 * STEPS_PER_DECADE ? (double)INFINITY : bisect(&l, &l.mass, grid(i + 1), grid(i));
+  }
+  return 0;
+}
+
+/* In units of what the mass and the period set. A stable band may be narrower than the grid: the value
+   that is there counts too. */
+static double gain_max(ethd_loop *l, double *gain, double unit) {
+  double own = ethd__loop_stable(l) ? *gain : 0;
+  for (int i = STEPS_PER_DECADE; i >= -6 * STEPS_PER_DECADE; i--) {
+    *gain = unit * grid(i);
+    if (ethd__loop_stable(l)) return fmax(own, bisect(l, gain, *gain, unit * grid(i + 1)));
+  }
+  return own;
+}
+
+double ethd__loop_stiffness_max(const ethd_loop *loop) {
+  ethd_loop l = *loop;
+  return gain_max(&l, &l.stiffness, l.mass / (l.period * l.period));
+}
+
+double ethd__loop_damping_max(const ethd_loop *loop) {
+  ethd_loop l = *loop;
+  return gain_max(&l, &l.damping, l.mass / l.period);
+}
+
+static bool stable_with(ethd_loop *l, double delay) {
+  l->delay = (int)floor(delay / l->period * (1 + 1e-12));
+  l->late = fmax(0, delay - l->delay * l->period);
+  return ethd__loop_stable(l);
+}
+
+double ethd__loop_delay_max(const ethd_loop *loop) {
+  ethd_loop l = *loop;
+  double T = l.period, low = 0, high = 0, most = ETHD_LOOP_DELAY_MAX * T;
+  if (!stable_with(&l, 0)) return -1;
+  for (high = T / 4; high < most && stable_with(&l, high); high += T / 4) low = high;
+  if (high >= most) return most;
+  for (int i = 0; i < 20; i++) {
+    double middle = (low + high) / 2;
+    if (stable_with(&l, middle))
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+static double cutoff_min(ethd_loop *l) {
+  const double step = exp(log(10) / STEPS_PER_DECADE);
+  double high = l->p[0];
+  for (l->p[0] = high / step; l->p[0] > 1; l->p[0] = high / step) {
+    if (!ethd__loop_stable(l)) return bisect(l, &l->p[0], high, high / step);
+    high /= step;
+  }
+  return 1;
+}
+
+static double window_max(ethd_loop *l) {
+  while (l->p[0] < ETHD_VELOCITY_WINDOW_MAX) {
+    l->p[0]++;
+    if (!ethd__loop_stable(l)) return l->p[0] - 1;
+  }
+  return l->p[0];
+}
+
+double ethd__loop_velocity_end(const ethd_loop *loop) {
+  ethd_loop l = *loop;
+  if (!ethd__loop_stable(&l)) return NAN;
+  if (l.method == ETHD_VELOCITY_LOWPASS) return cutoff_min(&l);
+  if (l.method == ETHD_VELOCITY_LSQ || l.method == ETHD_VELOCITY_FOAW) return window_max(&l);
+  return NAN;
+}
+
+/* ---- closed forms ---- */
+
+void ethd__loop_boundary(double mass, double period, int delay, double th, double *stiffness,
+                         double *damping) {
+  double t = tan(th / 2), k = 4 * t * t * cos((delay + 1) * th);
+  *stiffness = k * mass / (period * period);
+  *damping = (2 * t * sin((delay + 1) * th) - k / 2) * mass / period;
+}
+
+double ethd__loop_damping_free(double mass, double period, int delay) {
+  return 2 * mass / period * tan(M_PI / (4 * (delay + 1)));
+}
+
+double ethd__loop_passive_friction(const ethd_loop *loop) {
+  return loop->stiffness * loop->period / 2 + loop->damping;
+}

@@ -1,0 +1,175 @@
+#include "conform/conform_rig.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#define IDLE 1000000 /* ns, of an I/O thread that had nothing to do */
+#define STEPS 8      /* of the angle: less is no acceleration */
+#define LOOK 0.01    /* s: does it move? */
+#define SETTLE 200   /* looks */
+#define STANDS 0.02  /* rad/s */
+
+ethd_verdict ethd__rig_answer(ethd_conform_answer *a, ethd_verdict verdict, const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  vsnprintf(a->found, sizeof a->found, format, args);
+  va_end(args);
+  return a->verdict = verdict;
+}
+
+/* ---- time ---- */
+
+static int64_t monotonic(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+static void await_tick(ethd__rig *r) {
+  struct timespec t;
+  r->now += r->period;
+  if (r->def->is_virtual) return;
+  t = (struct timespec){.tv_sec = (time_t)(r->now / 1000000000), .tv_nsec = (long)(r->now % 1000000000)};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, NULL)) continue;
+  r->late = fmax(r->late, 1e-9 * (double)(monotonic() - r->now));
+}
+
+/* ---- I/O, as the loop has it done: by threads, or with the tick of a virtual clock ---- */
+
+static void *run_unit(void *unit_) {
+  const ethd__rig_unit *unit = unit_;
+  ethd__rig *r = unit->rig;
+  const struct timespec pause = {.tv_nsec = IDLE};
+  while (!atomic_load(&r->stop))
+    if (r->driver->service(r->device, unit->number, monotonic())) nanosleep(&pause, NULL);
+  return NULL;
+}
+
+static void start_units(ethd__rig *r) {
+  atomic_store(&r->stop, 0);
+  for (uint32_t u = 0, n = r->driver->units(r->device); u < n && !r->def->is_virtual; u++) {
+    r->unit[u] = (ethd__rig_unit){.rig = r, .number = u};
+    if (pthread_create(&r->unit[u].thread, NULL, run_unit, &r->unit[u])) return;
+    r->units++;
+  }
+}
+
+static void stop_units(ethd__rig *r) {
+  atomic_store(&r->stop, 1);
+  for (; r->units; r->units--) pthread_join(r->unit[r->units - 1].thread, NULL);
+}
+
+/* ---- a device ---- */
+
+int ethd__rig_open(const ethd_conform_def *def, ethd__rig *r) {
+  memset(r, 0, sizeof *r);
+  r->def = def;
+  r->period = llrint(1e9 * def->device->setup->period);
+  r->now = def->is_virtual ? 0 : monotonic();
+  r->resolution = (double)INFINITY;
+  r->finite = 1;
+  return ethd_device_open(def->ids, def->from, def->device, &r->driver, &r->device, r->message) == ETHD_OK;
+}
+
+int ethd__rig_begin(const ethd_conform_def *def, ethd__rig *r, ethd_conform_answer *a) {
+  if (!ethd__rig_open(def, r)) return ethd__rig_answer(a, ETHD_BROKEN, "open: %.140s", r->message), 0;
+  ethd_status status = ethd__rig_start(r);
+  if (status >= 0) return 1;
+  r->driver->close(r->device);
+  return ethd__rig_answer(a, ETHD_BROKEN, "start: %s", ethd_status_sentence(status)), 0;
+}
+
+ethd_status ethd__rig_start(ethd__rig *r) {
+  ethd_status status = r->driver->start(r->device);
+  if (status < 0) return status;
+  start_units(r);
+  if (!r->def->is_virtual) r->now = monotonic(); /* a start takes its time */
+  return status;
+}
+
+void ethd__rig_stop(ethd__rig *r) {
+  stop_units(r);
+  (void)!r->driver->stop(r->device);
+}
+
+void ethd__rig_end(ethd__rig *r) {
+  ethd__rig_stop(r);
+  r->driver->close(r->device);
+}
+
+static void look(ethd__rig *r, const ethd_sense *s) {
+  const ethd_sense *before = &r->sense;
+  double dt = 1e-9 * (double)(s->time_ns - before->time_ns);
+  for (int i = 0; i < 2; i++) {
+    double step = fabs(s->q[i] - before->q[i]);
+    r->finite &= isfinite(s->q[i]) != 0;
+    if (!r->samples || !(dt > 0)) continue;
+    if (step > 0) r->resolution = fmin(r->resolution, step);
+    r->speed = fmax(r->speed, step / dt);
+  }
+  r->backwards += r->samples && dt < 0;
+  r->ahead += s->time_ns > (r->def->is_virtual ? r->now : monotonic());
+  r->samples++;
+}
+
+/* Of the finger, from whatever kind of sensor. */
+static void look_at_reading(ethd__rig *r, const ethd_sense *s) {
+  if (!(s->have & (ETHD_HAVE_FINGER | ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS))) return;
+  r->ahead += s->sample_ns > (r->def->is_virtual ? r->now : monotonic());
+  r->backwards += r->readings && s->sample_ns < r->reading_ns;
+  r->reading_ns = s->sample_ns;
+  r->readings++;
+}
+
+/* One period: I/O, read, and the torque unless it is NULL. */
+static void tick(ethd__rig *r, const double *torque) {
+  ethd_sense s = {0};
+  ethd_command command = {.safe = torque == NULL};
+  if (torque) memcpy(command.torque, torque, sizeof command.torque);
+  await_tick(r);
+  for (uint32_t u = 0, n = r->driver->units(r->device); u < n && r->def->is_virtual; u++)
+    (void)!r->driver->service(r->device, u, r->now);
+  ethd_status status = r->driver->read(r->device, r->now, &s);
+  r->failed += status < 0;
+  r->faults |= s.faults;
+  r->grave |= s.grave;
+  look_at_reading(r, &s);
+  if (status == ETHD_OK) {
+    look(r, &s);
+    r->sense = s;
+  }
+  if (r->samples) r->age = fmax(r->age, 1e-9 * (double)(r->now - r->sense.time_ns));
+  if (torque) r->failed += r->driver->write(r->device, r->now, &command) < 0;
+}
+
+void ethd__rig_run(ethd__rig *r, double seconds, int joint, double torque) {
+  const double both[2] = {joint == 0 ? torque : 0, joint == 1 ? torque : 0};
+  for (int k = 0, n = (int)ceil(seconds * 1e9 / (double)r->period); k < n; k++) tick(r, both);
+}
+
+void ethd__rig_settle(ethd__rig *r) {
+  double q[2] = {0, 0};
+  int moves = 1;
+  for (int k = 0; k < SETTLE && moves; k++) {
+    ethd__rig_run(r, LOOK, 0, 0);
+    moves = k == 0 || !(fmax(fabs(r->sense.q[0] - q[0]), fabs(r->sense.q[1] - q[1])) <= LOOK * STANDS);
+    memcpy(q, r->sense.q, sizeof q);
+  }
+}
+
+double ethd__rig_least(const ethd__rig *r, double window) {
+  return isinf(r->resolution) ? 0 : STEPS * r->resolution / (window * window);
+}
+
+double ethd__rig_acceleration(ethd__rig *r, int joint, double torque, int write, double window) {
+  double q[3], both[2] = {joint == 0 ? torque : 0, joint == 1 ? torque : 0};
+  int n = (int)ceil(window * 1e9 / (double)r->period);
+  for (int k = 0; k < 3; k++) {
+    for (int i = 0; k && i < n; i++) tick(r, write ? both : NULL);
+    q[k] = r->sense.q[joint];
+  }
+  return (q[2] - 2 * q[1] + q[0]) / (window * window);
+}

@@ -1,0 +1,230 @@
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "ethd/record.h"
+#include "text/error_text.h"
+#include "record/npy_parts.h"
+#include "text/text.h"
+
+/* NumPy's format 1.0: "\x93NUMPY" 1 0, u16 length, a Python dict padded with spaces and ended by a
+   newline so that data starts at a multiple of 64. The padding has room for a count of COUNT_ROOM
+   digits. */
+#define MAGIC "\x93NUMPY\x01\x00"
+#define PREFIX 10u
+#define COUNT_ROOM 20u
+#define HEADER_MAX 65536u
+#define BUFFER_ROWS 256u
+#define BYTES_MAX ((size_t)16 << 30)
+#define ENDIAN (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? '<' : '>')
+
+struct ethd_npy {
+  int fd;
+  size_t row_bytes, header_bytes;
+  size_t shape;   /* where the count stands in the header */
+  uint64_t count; /* rows in the file */
+  size_t waiting; /* rows in the buffer */
+  bool failed;
+  char *header, *buffer;
+};
+
+/* ---- header ---- */
+
+/* {'descr': [('a', '<f8'), ('b', '<i8', (2,))], 'fortran_order': False, 'shape': ( */
+static size_t write_dict(const ethd_column *columns, char *out, size_t room) {
+  FILE *file = fmemopen(out, room, "w");
+  if (!file) return 0;
+  fputs("{'descr': [", file);
+  for (const ethd_column *c = columns; c->name; c++) {
+    fprintf(file, "%s('%s', '%c%c8'", c == columns ? "" : ", ", c->name, ENDIAN, c->type);
+    if (c->count != 1) fprintf(file, ", (%u,)", c->count);
+    fputc(')', file);
+  }
+  fputs("], 'fortran_order': False, 'shape': (", file);
+  long length = ftell(file);
+  bool failed = ferror(file) || length + COUNT_ROOM + 8 > (long)room;
+  return fclose(file) == 0 && !failed ? (size_t)length : 0;
+}
+
+static bool dense(const ethd_column *columns, size_t row_bytes) {
+  size_t at = 0;
+  for (const ethd_column *c = columns; c->name; c++) {
+    if (c->offset != at || !c->count || (c->type != 'f' && c->type != 'i')) return false;
+    at += c->count * (size_t)8;
+  }
+  return at == row_bytes && row_bytes;
+}
+
+static size_t padded(size_t dict) {
+  return (PREFIX + dict + COUNT_ROOM + sizeof ",), }\n" - 1 + 63) / 64 * 64;
+}
+
+/* ---- writing ---- */
+
+static bool write_at(int fd, const char *bytes, size_t length, uint64_t offset) {
+  while (length) {
+    ssize_t done = pwrite(fd, bytes, length, (off_t)offset);
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) return false;
+    bytes += done;
+    length -= (size_t)done;
+    offset += (uint64_t)done;
+  }
+  return true;
+}
+
+static bool start_header(ethd_npy *npy, const ethd_column *columns) {
+  size_t dict = write_dict(columns, npy->header + PREFIX, HEADER_MAX - PREFIX), total = padded(dict);
+  if (!dict || total - PREFIX > 65535) return false;
+  memcpy(npy->header, MAGIC, 8);
+  npy->header[8] = (char)((total - PREFIX) & 255);
+  npy->header[9] = (char)((total - PREFIX) >> 8);
+  npy->shape = PREFIX + dict;
+  npy->header_bytes = total;
+  return true;
+}
+
+static bool write_header(ethd_npy *npy) {
+  size_t n = npy->shape;
+  n += (size_t)snprintf(npy->header + n, COUNT_ROOM + 8, "%llu,), }", (unsigned long long)npy->count);
+  memset(npy->header + n, ' ', npy->header_bytes - n - 1);
+  npy->header[npy->header_bytes - 1] = '\n';
+  return write_at(npy->fd, npy->header, npy->header_bytes, 0);
+}
+
+static void release(ethd_npy *npy) {
+  if (npy->fd >= 0) close(npy->fd);
+  free(npy->header);
+  free(npy->buffer);
+  free(npy);
+}
+
+ethd_status ethd_npy_create(const char *path, const ethd_column *columns, size_t row_bytes,
+                            ethd_npy **out, char message[ETHD_MESSAGE_MAX]) {
+  *out = NULL;
+  if (!dense(columns, row_bytes))
+    return ethd__say(message, ETHD_E_ARGUMENT, "%s: columns that don't fill a row", path);
+  ethd_npy *npy = calloc(1, sizeof *npy);
+  if (!npy)
+    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  npy->row_bytes = row_bytes;
+  npy->header = malloc(HEADER_MAX);
+  npy->buffer = malloc(BUFFER_ROWS * row_bytes);
+  npy->fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  ethd_status status = ETHD_OK;
+  if (npy->fd < 0)
+    status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
+  else if (!npy->header || !npy->buffer || !start_header(npy, columns))
+    status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  else if (!write_header(npy))
+    status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
+  if (status)
+    release(npy);
+  else
+    *out = npy;
+  return status;
+}
+
+/* Rows first, then the count that covers them: a reader never counts a row that isn't there. */
+ethd_status ethd_npy_flush(ethd_npy *npy) {
+  if (npy->failed) return ETHD_E_FILE;
+  if (!npy->waiting) return ETHD_OK;
+  uint64_t end = npy->header_bytes + npy->count * npy->row_bytes;
+  npy->failed = !write_at(npy->fd, npy->buffer, npy->waiting * npy->row_bytes, end);
+  if (npy->failed) return ETHD_E_FILE;
+  npy->count += npy->waiting;
+  npy->waiting = 0;
+  npy->failed = !write_header(npy);
+  return npy->failed ? ETHD_E_FILE : ETHD_OK;
+}
+
+ethd_status ethd_npy_append(ethd_npy *npy, const void *rows, size_t count) {
+  const char *from = rows;
+  while (count && !npy->failed) {
+    size_t room = BUFFER_ROWS - npy->waiting, n = count < room ? count : room;
+    memcpy(npy->buffer + npy->waiting * npy->row_bytes, from, n * npy->row_bytes);
+    npy->waiting += n;
+    from += n * npy->row_bytes;
+    count -= n;
+    if (npy->waiting == BUFFER_ROWS && ethd_npy_flush(npy)) break;
+  }
+  return npy->failed ? ETHD_E_FILE : ETHD_OK;
+}
+
+ethd_status ethd_npy_close(ethd_npy *npy) {
+  if (!npy) return ETHD_OK;
+  ethd_status status = ethd_npy_flush(npy);
+  if (close(npy->fd) != 0) status = ETHD_E_FILE;
+  npy->fd = -1;
+  release(npy);
+  return status;
+}
+
+/* ---- reading ---- */
+
+/* "12,), }" spaces newline; false unless it is just that. */
+static bool read_count(const char *p, const char *end, size_t *count) {
+  size_t value = 0, digits = 0;
+  for (; p < end && *p >= '0' && *p <= '9' && digits < 18; p++, digits++)
+    value = value * 10 + (size_t)(*p - '0');
+  if (!digits || end - p < 6 || memcmp(p, ",), }", 5) != 0) return false;
+  for (p += 5; p < end - 1; p++)
+    if (*p != ' ') return false;
+  *count = value;
+  return *p == '\n';
+}
+
+static ethd_status read_header(const char *text, size_t length, const char *path,
+                               const ethd_column *columns, size_t *data, size_t *count,
+                               char message[ETHD_MESSAGE_MAX]) {
+  if (length < PREFIX || memcmp(text, MAGIC, 8) != 0)
+    return ethd__say(message, ETHD_E_SYNTAX, "%s: no NumPy file of version 1.0", path);
+  size_t header = (unsigned char)text[8] | (size_t)(unsigned char)text[9] << 8;
+  if (length < PREFIX + header)
+    return ethd__say(message, ETHD_E_SYNTAX, "%s: cut short within its header", path);
+  char *dict = malloc(HEADER_MAX);
+  size_t n = dict ? write_dict(columns, dict, HEADER_MAX) : 0;
+  bool same = n && n <= header && memcmp(text + PREFIX, dict, n) == 0;
+  free(dict);
+  if (!n) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!same)
+    return ethd__say(message, ETHD_E_SYNTAX, "%s: other columns than those of this version of libethd",
+                     path);
+  if (!read_count(text + PREFIX + n, text + PREFIX + header, count))
+    return ethd__say(message, ETHD_E_SYNTAX, "%s: its header's shape isn't one count of rows", path);
+  *data = PREFIX + header;
+  return ETHD_OK;
+}
+
+/* Rows behind the header's count were being written when the writer ended: they don't count. */
+ethd_status ethd__npy_parse(const char *text, size_t length, const char *path,
+                            const ethd_column *columns, size_t row_bytes, size_t *data, size_t *count,
+                            char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = read_header(text, length, path, columns, data, count, message);
+  if (status || *count <= (length - *data) / row_bytes) return status;
+  return ethd__say(message, ETHD_E_SYNTAX, "%s: cut short: %zu rows of %zu are there", path,
+                   (length - *data) / row_bytes, *count);
+}
+
+ethd_status ethd_npy_read(const char *path, const ethd_column *columns, size_t row_bytes, void **rows,
+                          size_t *count, char message[ETHD_MESSAGE_MAX]) {
+  char *text;
+  size_t length, data = 0, n = 0;
+  *rows = NULL;
+  *count = 0;
+  if (!dense(columns, row_bytes))
+    return ethd__say(message, ETHD_E_ARGUMENT, "%s: columns that don't fill a row", path);
+  ethd_status status = ethd_text_read(path, BYTES_MAX, &text, &length, message);
+  if (status) return status;
+  status = ethd__npy_parse(text, length, path, columns, row_bytes, &data, &n, message);
+  if (status) {
+    free(text);
+    return status;
+  }
+  memmove(text, text + data, n * row_bytes);
+  *rows = text;
+  *count = n;
+  return ETHD_OK;
+}

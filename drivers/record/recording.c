@@ -1,0 +1,150 @@
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "ethd/record.h"
+#include "settings/config_parts.h"
+#include "text/csv.h"
+#include "text/error_text.h"
+#include "record/recording_parts.h"
+#include "text/text.h"
+
+#define LETTER_double 'f'
+#define LETTER_int64_t 'i'
+#define SENSE_COLUMN(type, name, count, unit, brief) \
+  {#name, unit, count, offsetof(ethd_trace, sense.name), LETTER_##type},
+#define TRACE_COLUMN(type, name, count, unit, brief) \
+  {#name, unit, count, offsetof(ethd_trace, name), LETTER_##type},
+
+const ethd_column ethd_trace_columns[] = {ETHD_SENSE_FIELDS(SENSE_COLUMN)
+                                              ETHD_TRACE_FIELDS(TRACE_COLUMN){NULL, NULL, 0, 0, 0}};
+
+struct ethd_recording {
+  ethd_npy *ticks;
+  FILE *events;
+  uint64_t rows;
+};
+
+/* ---- config.ini ---- */
+
+/* What the recording's configuration says on a line of the original, NULL: the same. */
+static const char *own_value(const ethd_config *config, int line) {
+  const ethd_ini *ini = &ethd__config_whole(config)->ini;
+  uint32_t plugin = 0;
+  for (uint32_t i = 0; i < ini->count; i++) {
+    const ethd_ini_key *k = &ini->keys[i];
+    bool is_plugin = strcmp(k->section, "plugins") == 0;
+    if (k->line == line && is_plugin) return config->plugins[plugin];
+    if (k->line == line && strcmp(k->section, "scene") == 0) return ETHD_RECORDING_SCENE;
+    plugin += is_plugin;
+  }
+  return NULL;
+}
+
+char *ethd__record_config_text(const ethd_config *config) {
+  char *text = NULL;
+  size_t length;
+  FILE *out = open_memstream(&text, &length);
+  if (!out) return NULL;
+  int line = 1;
+  for (const char *p = config->text; *p; line++) {
+    size_t n = strcspn(p, "\n");
+    const char *own = own_value(config, line);
+    if (own)
+      fprintf(out, "file = %s", own);
+    else
+      fwrite(p, 1, n, out);
+    putc('\n', out);
+    p += n + (p[n] == '\n');
+  }
+  bool failed = ferror(out);
+  if (fclose(out) == 0 && !failed) return text;
+  free(text);
+  return NULL;
+}
+
+/* ---- writing ---- */
+
+static ethd_status write_file(const char *folder, const char *name, const char *text, char *message) {
+  char *path = text ? ethd__path_join(folder, name) : NULL;
+  if (!path)
+    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status = ethd_text_write(path, text, strlen(text), message);
+  free(path);
+  return status;
+}
+
+static ethd_status write_config(const char *folder, const ethd_config *config, char *message) {
+  char *text = ethd__record_config_text(config);
+  ethd_status status = write_file(folder, ETHD_RECORDING_CONFIG, text, message);
+  free(text);
+  return status;
+}
+
+static ethd_status make_folder(const char *folder, char *message) {
+  struct stat info;
+  if (mkdir(folder, 0777) == 0) return ETHD_OK;
+  int reason = errno;
+  if (reason == EEXIST && stat(folder, &info) == 0 && S_ISDIR(info.st_mode)) return ETHD_OK;
+  return ethd__say(message, ETHD_E_FILE, "%s: %s", folder, strerror(reason));
+}
+
+static ethd_status open_files(const char *folder, ethd_recording *recording, char *message) {
+  char *ticks = ethd__path_join(folder, ETHD_RECORDING_TICK);
+  char *events = ethd__path_join(folder, ETHD_RECORDING_EVENTS);
+  ethd_status status = ETHD_OK;
+  if (!ticks || !events)
+    status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  else if (!(recording->events = fopen(events, "we")))
+    status = ethd__say(message, ETHD_E_FILE, "%s: %s", events, strerror(errno));
+  else
+    status = ethd_npy_create(ticks, ethd_trace_columns, sizeof(ethd_trace), &recording->ticks, message);
+  free(ticks);
+  free(events);
+  if (!status) fputs(ETHD_RECORDING_HEADER "\n", recording->events);
+  return status;
+}
+
+ethd_status ethd_recording_create(const char *folder, const ethd_config *config, ethd_recording **out,
+                                  char message[ETHD_MESSAGE_MAX]) {
+  *out = NULL;
+  ethd_recording *recording = calloc(1, sizeof *recording);
+  if (!recording)
+    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status = make_folder(folder, message);
+  if (!status) status = open_files(folder, recording, message);
+  if (!status) status = write_config(folder, config, message);
+  if (!status && config->scene_text)
+    status = write_file(folder, ETHD_RECORDING_SCENE, config->scene_text, message);
+  if (status)
+    (void)!ethd_recording_close(recording);
+  else
+    *out = recording;
+  return status;
+}
+
+/* Events are few and tell how to read the ticks behind them: both reach the file together. */
+ethd_status ethd_recording_event(ethd_recording *recording, const char *kind, const char *detail) {
+  FILE *file = recording->events;
+  ethd_status status = ethd_npy_flush(recording->ticks);
+  fprintf(file, "%" PRIu64 ",%s,", recording->rows, kind);
+  ethd__csv_put_word(file, detail);
+  putc('\n', file);
+  return fflush(file) == 0 && !ferror(file) ? status : ETHD_E_FILE;
+}
+
+ethd_status ethd_recording_tick(ethd_recording *recording, const ethd_trace *trace) {
+  recording->rows++;
+  return ethd_npy_append(recording->ticks, trace, 1);
+}
+
+ethd_status ethd_recording_close(ethd_recording *recording) {
+  if (!recording) return ETHD_OK;
+  ethd_status status = ethd_npy_close(recording->ticks);
+  if (recording->events && fclose(recording->events) != 0) status = ETHD_E_FILE;
+  free(recording);
+  return status;
+}

@@ -1,0 +1,205 @@
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "denormals.h"
+#include "ethd/record.h"
+#include "text/error_text.h"
+#include "record/recording_parts.h"
+#include "text/text.h"
+
+typedef struct replay {
+  const char *folder;
+  char *events_path;
+  ethd_config *config;
+  ethd__record_events events;
+  ethd_trace *rows;
+  size_t count, next; /* rows; next event */
+  ethd_setup setup;
+  double heat[2]; /* of the motors, by the last event of that kind */
+  ethd_control *control;
+  char *message;
+} replay;
+
+/* ---- opening ---- */
+
+static ethd_status open_config(replay *r) {
+  char *path = ethd__path_join(r->folder, ETHD_RECORDING_CONFIG);
+  if (!path) return ethd__say(r->message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status = ethd_config_load(path, &r->config, r->message);
+  free(path);
+  if (!status) r->setup = r->config->setup;
+  return status;
+}
+
+static ethd_status open_rows(replay *r) {
+  void *rows = NULL;
+  char *path = ethd__path_join(r->folder, ETHD_RECORDING_TICK);
+  if (!path) return ethd__say(r->message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status =
+      ethd_npy_read(path, ethd_trace_columns, sizeof(ethd_trace), &rows, &r->count, r->message);
+  free(path);
+  r->rows = rows;
+  return status;
+}
+
+static ethd_status open_events(replay *r) {
+  r->events_path = ethd__path_join(r->folder, ETHD_RECORDING_EVENTS);
+  if (!r->events_path)
+    return ethd__say(r->message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  return ethd__record_events_read(r->events_path, &r->events, r->message);
+}
+
+/* ---- events ---- */
+
+#define HEAT_MOST 1e9
+
+enum { CHANGED = 1, FRESH = 2, CLEAR = 4, WARM = 8, HOT = 16 };
+
+static ethd_status take_heat(replay *r, const char *detail, char *what) {
+  const char *space = strchr(detail, ' ');
+  bool numbers = space && ethd__number(detail, (size_t)(space - detail), &r->heat[0]) &&
+                 ethd__number(space + 1, strlen(space + 1), &r->heat[1]);
+  if (numbers && r->heat[0] >= 0 && r->heat[0] < HEAT_MOST && r->heat[1] >= 0 && r->heat[1] < HEAT_MOST) return ETHD_OK;
+  return ethd__say(what, ETHD_E_SYNTAX, "two numbers from 0 to 1e9 are allowed");
+}
+
+static ethd_status set(replay *r, const char *detail, char *what) {
+  char key[128];
+  const char *space = strchr(detail, ' ');
+  if (!space || (size_t)(space - detail) >= sizeof key)
+    return ethd__say(what, ETHD_E_SYNTAX, "section.key value is allowed");
+  memcpy(key, detail, (size_t)(space - detail));
+  key[space - detail] = 0;
+  return ethd_config_set(r->config, key, space + 1, &r->setup, what);
+}
+
+static ethd_status apply(replay *r, const ethd__record_event *e, int *done) {
+  char what[ETHD_MESSAGE_MAX];
+  ethd_status status = ETHD_OK;
+  if (strcmp(e->kind, "setup") == 0) {
+    r->setup = r->config->setup;
+    status = ethd_config_transition(r->config, e->detail, &r->setup, what);
+    *done |= FRESH;
+  } else if (strcmp(e->kind, "transition") == 0) {
+    status = ethd_config_transition(r->config, e->detail, &r->setup, what);
+    *done |= CHANGED;
+  } else if (strcmp(e->kind, "set") == 0) {
+    status = set(r, e->detail, what);
+    *done |= CHANGED;
+  } else if (strcmp(e->kind, "start") == 0) {
+    *done |= strcmp(e->detail, "enabled") == 0 ? WARM : FRESH;
+  } else if (strcmp(e->kind, "clear") == 0) {
+    *done |= CLEAR;
+  } else if (strcmp(e->kind, "heat") == 0) {
+    status = take_heat(r, e->detail, what);
+    *done |= HOT;
+  } else if (strcmp(e->kind, "fault") != 0) {
+    status = ethd__say(what, ETHD_E_UNKNOWN,
+                       "an unknown kind of event; setup, start, transition, set, clear, "
+                       "heat, fault are allowed");
+  }
+  if (!status) return ETHD_OK;
+  return ethd__say(r->message, status, "%s:%zu: %s: %s", r->events_path, e->line, e->kind, what);
+}
+
+static ethd_status renew(replay *r, int done) {
+  ethd_error error = {0};
+  ethd_status status = ETHD_OK;
+  if ((done & ~HOT) == WARM && r->control) {
+    ethd_control_restart(r->control);
+  } else if (done & (FRESH | WARM)) {
+    ethd_control_destroy(r->control);
+    status = ethd_control_create(&r->setup, &r->control, &error);
+  } else if (done & CHANGED) {
+    status = ethd_control_post(r->control, &r->setup, &error);
+  }
+  if (done & CLEAR && r->control) ethd_control_clear(r->control);
+  if (done & HOT && !status) ethd_control_heated(r->control, r->heat);
+  if (status) ethd_error_text(r->events_path, &error, r->message);
+  return status;
+}
+
+static ethd_status before_row(replay *r, size_t row) {
+  int done = row == 0 ? FRESH : 0;
+  while (r->next < r->events.count && r->events.events[r->next].row <= row) {
+    ethd_status status = apply(r, &r->events.events[r->next++], &done);
+    if (status) return status;
+  }
+  return renew(r, done);
+}
+
+/* The event ring stays empty: a setup is taken only while it has room. */
+static void drain(ethd_control *control) {
+  ethd_event event;
+  while (ethd_control_poll(control, &event) == ETHD_OK) continue;
+}
+
+/* ---- comparing ---- */
+
+static bool same(const ethd_column *column, const unsigned char *a, const unsigned char *b) {
+  double x, y;
+  if (memcmp(a, b, 8) == 0) return true;
+  if (column->type != 'f') return false;
+  memcpy(&x, a, 8);
+  memcpy(&y, b, 8);
+  return x != x && y != y;
+}
+
+static void say_number(char type, const unsigned char *at, char out[32]) {
+  double number;
+  int64_t integer;
+  memcpy(&number, at, 8);
+  memcpy(&integer, at, 8);
+  if (type == 'f')
+    snprintf(out, 32, "%.17g", number);
+  else
+    snprintf(out, 32, "%" PRId64, integer);
+}
+
+static ethd_status compare(const replay *r, size_t row, const ethd_trace *replayed) {
+  const unsigned char *a = (const unsigned char *)&r->rows[row], *b = (const unsigned char *)replayed;
+  char was[32], is[32], index[16] = "";
+  for (const ethd_column *c = ethd_trace_columns; c->name; c++)
+    for (uint32_t i = 0; i < c->count; i++) {
+      size_t at = c->offset + i * (size_t)8;
+      if (same(c, a + at, b + at)) continue;
+      if (c->count > 1) snprintf(index, sizeof index, "[%u]", i);
+      say_number(c->type, a + at, was);
+      say_number(c->type, b + at, is);
+      return ethd__say(r->message, ETHD_E_DIFFERS, "%s: tick %zu: %s%s: recorded %s, replayed %s",
+                       r->folder, row, c->name, index, was, is);
+    }
+  return ETHD_OK;
+}
+
+static ethd_status run(replay *r) {
+  for (size_t row = 0; row < r->count; row++) {
+    ethd_trace trace;
+    ethd_command command;
+    ethd_status status = before_row(r, row);
+    if (status) return status;
+    memset(&trace, 0, sizeof trace);
+    (void)ethd_control_step(r->control, &r->rows[row].sense, &command, &trace);
+    drain(r->control);
+    status = compare(r, row, &trace);
+    if (status) return status;
+  }
+  return ethd__say(r->message, ETHD_OK, "%s: %zu ticks, equal to the bit", r->folder, r->count);
+}
+
+ethd_status ethd_recording_verify(const char *folder, char message[ETHD_MESSAGE_MAX]) {
+  replay r = {.folder = folder, .message = message};
+  uint64_t before = ethd__denormals_flush();
+  ethd_status status = open_config(&r);
+  if (!status) status = open_rows(&r);
+  if (!status) status = open_events(&r);
+  if (!status) status = run(&r);
+  ethd_control_destroy(r.control);
+  ethd_config_free(r.config);
+  ethd__record_events_free(&r.events);
+  free(r.rows);
+  free(r.events_path);
+  ethd__denormals_restore(before);
+  return status;
+}

@@ -1,0 +1,263 @@
+#include "ethd/config.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "settings/config_parts.h"
+#include "text/error_text.h"
+#include "settings/scene_file.h"
+#include "text/text.h"
+
+#define SCENE_BYTES_MAX ((size_t)256 << 20)
+#define MASS_MAX 1e6 /* kg */
+
+typedef struct reading {
+  ethd__config *whole;
+  const char *name; /* of the file */
+  char *message;
+} reading;
+
+static ethd_status no_memory(const reading *r) {
+  return ethd__say(r->message, ETHD_E_MEMORY, "%s: %s", r->name, ethd_status_sentence(ETHD_E_MEMORY));
+}
+
+static ethd__key key_of(const reading *r, const ethd_ini_key *k) {
+  return (ethd__key){r->name, k->line, k->section, k->key, k->value, r->message};
+}
+
+static bool is(const ethd_ini_key *k, const char *section, const char *key) {
+  return strcmp(k->section, section) == 0 && strcmp(k->key, key) == 0;
+}
+
+static bool chooses(const ethd_ini_key *k) {
+  const char *chooser = ethd__config_chooser(k->section);
+  return chooser && strcmp(chooser, k->key) == 0;
+}
+
+/* ---- single keys ---- */
+
+static ethd_status parse_scene(const reading *r, size_t length) {
+  ethd_config *c = &r->whole->config;
+  ethd_error error;
+  const char *zero = memchr(c->scene_text, 0, length);
+  if (zero) {
+    int line = 1;
+    for (const char *p = c->scene_text; p < zero; p++) line += *p == '\n';
+    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%d: a byte 0: this is no text", r->whole->scene_path,
+                     line);
+  }
+  ethd_status status = ethd_scene_parse(c->scene_text, length, &c->scene, &error);
+  if (status) ethd__scene_refusal(r->whole->scene_path, &error, r->message);
+  c->setup.scene = c->scene;
+  return status;
+}
+
+static ethd_status load_scene(const reading *r, const ethd_ini_key *k) {
+  ethd__key key = key_of(r, k);
+  ethd_config *c = &r->whole->config;
+  char what[ETHD_MESSAGE_MAX];
+  size_t length;
+  r->whole->scene_path = ethd__path_join(c->folder, k->value);
+  if (!r->whole->scene_path) return no_memory(r);
+  ethd_status status =
+      ethd_text_read(r->whole->scene_path, SCENE_BYTES_MAX, &c->scene_text, &length, what);
+  if (status) return ethd__key_refuse(&key, status, "%s", what);
+  return parse_scene(r, length);
+}
+
+static ethd_status device_key(const reading *r, const ethd_ini_key *k) {
+  ethd__key key = key_of(r, k);
+  ethd_config *c = &r->whole->config;
+  if (!is(k, "device", "driver")) {
+    c->settings[c->setting_count++] = (ethd_setting){k->key, k->value, k->line};
+    return ETHD_OK;
+  }
+  if (strlen(k->value) >= sizeof c->device)
+    return ethd__key_found(&key, ETHD_E_SYNTAX, "at most 95 characters");
+  strcpy(c->device, k->value);
+  return ETHD_OK;
+}
+
+static ethd_status mass_key(const reading *r, const ethd_ini_key *k, double *out) {
+  ethd__key key = key_of(r, k);
+  double value;
+  if (!ethd__number(k->value, strlen(k->value), &value) || !(value > 0 && value <= MASS_MAX))
+    return ethd__key_found(&key, ETHD_E_RANGE, "a mass over 0 up to 1e6 kg");
+  *out = value;
+  return ETHD_OK;
+}
+
+/* ---- passes: what a key means depends on plugins, laws and preset, not on where it stands ---- */
+
+static ethd_status plugin_pass(const reading *r, const ethd_ini_key *k) {
+  ethd__key key = key_of(r, k);
+  return is(k, "plugins", "file") ? ethd__config_plugin(r->whole, &key) : ETHD_OK;
+}
+
+static ethd_status law_pass(const reading *r, const ethd_ini_key *k) {
+  ethd__key key = key_of(r, k);
+  ethd_config *c = &r->whole->config;
+  return chooses(k) ? ethd__config_choose(c, &key, &c->setup) : ETHD_OK;
+}
+
+static ethd_status preset_pass(const reading *r, const ethd_ini_key *k) {
+  ethd__key key = key_of(r, k);
+  return is(k, "transition", "preset") ? ethd__config_preset(&key, &r->whole->config.setup) : ETHD_OK;
+}
+
+static ethd_status key_pass(const reading *r, const ethd_ini_key *k) {
+  ethd__key key = key_of(r, k);
+  ethd_config *c = &r->whole->config;
+  if (is(k, "plugins", "file") || chooses(k) || is(k, "transition", "preset")) return ETHD_OK;
+  if (is(k, "scene", "file")) return load_scene(r, k);
+  if (strcmp(k->section, "device") == 0) return device_key(r, k);
+  if (is(k, "arm", "mass_x")) return mass_key(r, k, &c->mass_x);
+  if (is(k, "arm", "mass_y")) return mass_key(r, k, &c->mass_y);
+  int limit = ethd__config_limit(k->section, k->key);
+  if (limit >= 0) c->limits_given |= 1u << limit;
+  return ethd__config_apply(&key, &c->setup);
+}
+
+static const ethd_ini_key *find_key(const reading *r, const char *name) {
+  char section[64];
+  const char *dot = strchr(name, '.');
+  if (!dot || (size_t)(dot - name) >= sizeof section) return NULL;
+  memcpy(section, name, (size_t)(dot - name));
+  section[dot - name] = 0;
+  return ethd_ini_find(&r->whole->ini, section, dot + 1);
+}
+
+/* A default that fails does so by another key, which the file has. */
+static const ethd_ini_key *find_cause(const reading *r, const char *name) {
+  static const char *const by[][2] = {{"finger.radius", "ring.radius"}, {"finger.radius_max", "ring.radius"}};
+  for (size_t i = 0; i < sizeof by / sizeof *by; i++)
+    if (!strcmp(by[i][0], name)) return find_key(r, by[i][1]);
+  return NULL;
+}
+
+/* A failure's name is "section.key", or "material.NAME.key" with a line of the scene. */
+static ethd_status check_setup(const reading *r) {
+  ethd_error error;
+  char what[ETHD_MESSAGE_MAX];
+  ethd_status status = ethd_setup_check(&r->whole->config.setup, &error);
+  if (!status) return ETHD_OK;
+  bool material = strncmp(error.name, "material.", 9) == 0;
+  const ethd_ini_key *own = material ? NULL : find_key(r, error.name), *cause = own ? NULL : find_cause(r, error.name);
+  if (own || cause) error.line = own ? own->line : cause->line;
+  ethd_error_text(material ? r->whole->scene_path : r->name, &error, what);
+  if (!cause) return ethd__say(r->message, status, "%s", what);
+  return ethd__say(r->message, status, "%s, by %s.%s = %s", what, cause->section, cause->key, cause->value);
+}
+
+/* What this arm's ring can never meet is not kept. */
+static ethd_status drop_unreachable(const reading *r) {
+  ethd_config *c = &r->whole->config;
+  ethd_scene *pruned = NULL;
+  ethd_error error;
+  if (!c->scene) return ETHD_OK;
+  ethd_status status = ethd_scene_prune(c->scene, &c->setup.arm, ethd_setup_range(&c->setup), &pruned, &error);
+  if (status) ethd_error_text(r->whole->scene_path, &error, r->message);
+  if (!pruned) return status;
+  ethd_scene_destroy(c->scene);
+  c->setup.scene = c->scene = pruned;
+  return ETHD_OK;
+}
+
+static ethd_status apply_keys(const reading *r) {
+  static ethd_status (*const passes[])(const reading *, const ethd_ini_key *) = {plugin_pass, law_pass,
+                                                                                 preset_pass, key_pass};
+  const ethd_ini *ini = &r->whole->ini;
+  for (uint32_t i = 0; i < ini->section_count; i++) {
+    ethd_status status =
+        ethd__config_section_known(&ini->sections[i], r->name, &r->whole->config.setup, r->message);
+    if (status) return status;
+  }
+  for (size_t pass = 0; pass < sizeof passes / sizeof *passes; pass++)
+    for (uint32_t i = 0; i < ini->count; i++) {
+      ethd_status status = passes[pass](r, &ini->keys[i]);
+      if (status) return status;
+    }
+  ethd_status status = check_setup(r);
+  return status ? status : drop_unreachable(r);
+}
+
+/* ---- whole configurations ---- */
+
+static const ethd_law **copy_laws(void) {
+  size_t n = 0;
+  while (ethd_laws[n]) n++;
+  const ethd_law **laws = malloc((n + 1) * sizeof *laws);
+  if (laws) memcpy(laws, ethd_laws, (n + 1) * sizeof *laws);
+  return laws;
+}
+
+static char *copy_text(const char *text, size_t length) {
+  char *copy = malloc(length + 1);
+  if (!copy) return NULL;
+  if (length) memcpy(copy, text, length);
+  copy[length] = 0;
+  return copy;
+}
+
+static bool fill(ethd_config *c, const char *text, size_t length, const char *name, const char *folder) {
+  c->setup = ethd_setup_default();
+  c->mass_x = c->mass_y = (double)NAN;
+  strcpy(c->device, "sim");
+  c->path = name ? strdup(name) : NULL;
+  c->text = copy_text(text, length);
+  c->folder = strdup(folder ? folder : ".");
+  c->settings = calloc(ETHD_INI_KEYS_MAX, sizeof *c->settings);
+  c->laws = copy_laws();
+  return (!name || c->path) && c->text && c->folder && c->settings && c->laws;
+}
+
+ethd_status ethd_config_parse(const char *text, size_t length, const char *name, const char *folder,
+                              ethd_config **out, char message[ETHD_MESSAGE_MAX]) {
+  reading r = {calloc(1, sizeof *r.whole), name ? name : "configuration", message};
+  *out = NULL;
+  if (!r.whole) return no_memory(&r);
+  ethd_status status = fill(&r.whole->config, text, length, name, folder) ? ETHD_OK : no_memory(&r);
+  if (!status) status = ethd_ini_parse(text, length, r.name, "plugins.file", &r.whole->ini, message);
+  if (!status) status = apply_keys(&r);
+  if (status)
+    ethd_config_free(&r.whole->config);
+  else
+    *out = &r.whole->config;
+  return status;
+}
+
+ethd_status ethd_config_load(const char *path, ethd_config **out, char message[ETHD_MESSAGE_MAX]) {
+  char *text;
+  size_t length;
+  *out = NULL;
+  if (!path) return ethd_config_parse("", 0, NULL, NULL, out, message);
+  ethd_status status = ethd_text_read(path, ETHD_INI_BYTES_MAX, &text, &length, message);
+  if (status) return status;
+  char *folder = ethd__path_folder(path);
+  if (folder)
+    status = ethd_config_parse(text, length, path, folder, out, message);
+  else
+    status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  free(folder);
+  free(text);
+  return status;
+}
+
+void ethd_config_free(ethd_config *config) {
+  if (!config) return;
+  ethd__config *whole = (ethd__config *)config;
+  ethd_scene_destroy(config->scene);
+  for (uint32_t i = 0; i < config->plugin_count; i++) free(config->plugins[i]);
+  free(config->plugins);
+  free(config->laws);
+  free(config->settings);
+  free(config->folder);
+  free(config->scene_text);
+  free(config->text);
+  free(config->path);
+  free(whole->scene_path);
+  ethd_ini_free(&whole->ini);
+  free(whole);
+}

@@ -1,0 +1,71 @@
+#include "settings/scene_file.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "text/error_text.h"
+
+#define REFERENCE "material="
+
+void ethd__scene_refusal(const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]) {
+  char shapes[160] = "", plain[ETHD_MESSAGE_MAX];
+  ethd_error_text(path, error, plain);
+  for (int i = 0; i < ETHD_SHAPE_COUNT; i++) {
+    strcat(shapes, ethd_shape_name((ethd_shape)i));
+    strcat(shapes, ", ");
+  }
+  if (error->status == ETHD_E_UNKNOWN && !strncmp(error->name, REFERENCE, strlen(REFERENCE)))
+    ethd__say(message, error->status, "%s; a line \"material %.*s k_e=2500\" defines it", plain,
+              (int)(sizeof error->name - strlen(REFERENCE)), error->name + strlen(REFERENCE));
+  else if (error->status == ETHD_E_UNKNOWN)
+    ethd__say(message, error->status, "%s; %smaterial are allowed", plain, shapes);
+  else if (error->status == ETHD_E_SYNTAX && isnan(error->found))
+    ethd__say(message, error->status, "%s; SHAPE NUMBERS [material=NAME] or material NAME [KEY=NUMBER...] are allowed", plain);
+  else
+    ethd__say(message, error->status, "%s", plain);
+}
+
+static void print_number(FILE *out, const char *before, double v) {
+  char text[40];
+  for (int digits = 15; digits <= 17; digits++) {
+    snprintf(text, sizeof text, "%.*g", digits, v);
+    if (strtod(text, NULL) == v) break;
+  }
+  fputs(before, out);
+  fputs(text, out);
+}
+
+static bool is_word(const char *name) {
+  for (const char *p = name; *p; p++)
+    if (!isalnum((unsigned char)*p) && !strchr("_-.", *p)) return false;
+  return true;
+}
+
+static bool print_material(const ethd_material *m, FILE *out) {
+  bool good = is_word(m->name);
+  fprintf(out, "material %s", m->name);
+  for (uint32_t i = 0; i < m->count; i++) {
+    good &= is_word(m->values[i].name);
+    fprintf(out, " %s", m->values[i].name);
+    print_number(out, "=", m->values[i].value);
+  }
+  fputc('\n', out);
+  return good;
+}
+
+ethd_status ethd_scene_print(const ethd_scene *scene, FILE *out) {
+  const ethd_material *m;
+  ethd_object_def o;
+  bool good = true;
+  for (size_t i = 0; (m = ethd_scene_material(scene, i)) != NULL; i++) good &= print_material(m, out);
+  for (size_t i = 0; ethd_scene_object(scene, i, &o) >= 0; i++) {
+    fputs(ethd_shape_name(o.shape), out);
+    for (size_t k = 0; k < o.count; k++) print_number(out, " ", o.numbers[k]);
+    if (o.material >= 0) fprintf(out, " material=%s", ethd_scene_material(scene, (size_t)o.material)->name);
+    fputc('\n', out);
+  }
+  return good ? ETHD_OK : ETHD_E_ARGUMENT;
+}

@@ -1,0 +1,184 @@
+/* A recorded session as a device: read gives the samples as they were, write compares the commands with those
+   that answered them. So a session runs anew without its hardware, through the same programs.
+
+       [device]
+       driver = replay
+       folder = session1          as ethd-run --record has written it
+
+   Compared to the bit: the torque of each tick; while a soft start lets a share of it through, that both joints
+   have one share, and that it rises. Differences are counted and make stop say ETHD_E_DIFFERS. A run in real time
+   that is late anywhere has other periods, and so other commands: on the virtual clock there are none but true
+   ones. Behind the last tick the device can't be read.
+
+   A device gives samples and takes torques; setups are posted by who runs it. So what was commanded while the
+   session ran (transition, set, ack, enable) must be commanded again at the same instants, as by the same lines
+   on the standard input of ethd-run --virtual; what is left out shows as a difference. ethd-replay --verify takes
+   the commands from the recording itself. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ethd/driver.h"
+#include "text/error_text.h"
+#include "text/text.h"
+#include "tape/tape.h"
+
+typedef struct replay {
+  ethd__tape tape;
+  size_t next;     /* row that read gives */
+  size_t answered; /* rows whose command has come: the safe one of an end is beside them */
+  int64_t waits;   /* periods that it was waited for */
+  double share;    /* of the last command */
+  uint64_t compared, different;
+  double first;    /* row that differs, -1: none */
+  int32_t runs;    /* 1: started anew while it plays, after a fault: it plays on */
+  char remark[288];
+} replay;
+
+/* ---- opening ---- */
+
+static const char *const keys[] = {"folder", NULL};
+
+static ethd_status load(const ethd_device_def *def, replay *r, char *message) {
+  const ethd_setting *folder = NULL;
+  ethd_status status = ethd_settings_read(&ethd_driver_replay, def, NULL, &folder, message);
+  if (status) return status;
+  if (!folder)
+    return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.folder: the replay needs the folder of a recording",
+                     def->file ? def->file : "the defaults");
+  char *path = ethd__path_join(def->folder, folder->value);
+  status = path ? ethd__tape_load(path, &r->tape, message)
+                            : ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  free(path);
+  return status;
+}
+
+static void replay_close(void *device) {
+  replay *r = device;
+  if (!r) return;
+  ethd__tape_free(&r->tape);
+  free(r);
+}
+
+static ethd_status replay_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
+  replay *r = *out = calloc(1, sizeof *r);
+  if (!r) return ETHD_E_MEMORY;
+  ethd_status status = load(def, r, message);
+  snprintf(r->remark, sizeof r->remark,
+           "tick %zu of the recording was commanded: %s; without the same commands at the same instants it differs",
+           r->tape.changed, r->tape.change);
+  return status;
+}
+
+static ethd_status replay_start(void *device) {
+  replay *r = device;
+  r->share = 0;
+  if (r->runs) return ETHD_OK;
+  r->runs = 1;
+  r->next = r->answered = 0;
+  r->waits = 0;
+  r->compared = r->different = 0;
+  r->first = -1;
+  return ETHD_OK;
+}
+
+/* ---- [rt] ---- */
+
+/* Periods that were missed before a sample pass again, without one. */
+static ethd_status replay_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
+  replay *r = device;
+  (void)now_ns;
+  if (r->next == r->tape.count) return ETHD_E_DEVICE;
+  const ethd_sense *s = &r->tape.rows[r->next].sense;
+  if (r->waits < s->missed) {
+    r->waits++;
+    return ETHD_STALE;
+  }
+  r->waits = 0;
+  r->next++;
+  *out = *s;
+  return ETHD_OK;
+}
+
+static int same_share(const double torque[2], const double recorded[2], double share) ETHD_RT {
+  for (int j = 0; j < 2; j++)
+    if (!(fabs(torque[j] - share * recorded[j]) <= 1e-15 * fabs(recorded[j]))) return 0;
+  return 1;
+}
+
+/* The command of a row; in *share what of the recorded torque it lets through. */
+static int is_same(const replay *r, const ethd_trace *row, const ethd_command *c, double *share) ETHD_RT {
+  int big = fabs(row->tau[1]) > fabs(row->tau[0]);
+  *share = r->share;
+  if (c->safe) {
+    *share = 0;
+    return row->fault != 0 || r->share == 0;
+  }
+  if (row->tau[big] == 0 || memcmp(c->torque, row->tau, sizeof row->tau) == 0) {
+    if (row->tau[big] != 0) *share = 1;
+    return c->torque[0] == row->tau[0] && c->torque[1] == row->tau[1];
+  }
+  *share = c->torque[big] / row->tau[big];
+  return *share >= r->share && *share < 1 && same_share(c->torque, row->tau, *share);
+}
+
+static ethd_status replay_write(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT {
+  replay *r = device;
+  (void)now_ns;
+  if (r->next == r->answered || r->waits) return ETHD_OK;
+  r->answered = r->next;
+  r->compared++;
+  if (is_same(r, &r->tape.rows[r->next - 1], command, &r->share)) return ETHD_OK;
+  if (!r->different++) r->first = (double)(r->next - 1);
+  return ETHD_OK;
+}
+
+/* A recording moves nothing. */
+static void replay_safe(void *device) ETHD_RT { (void)device; }
+
+/* ---- [main] ---- */
+
+static ethd_status replay_stop(void *device) {
+  replay *r = device;
+  r->runs = 0;
+  return r->different ? ETHD_E_DIFFERS : ETHD_OK;
+}
+
+static ethd_limits replay_limits(const void *device) { return ((const replay *)device)->tape.limits; }
+
+static uint32_t replay_figures(const void *device, ethd_figure *out, uint32_t max) {
+  const replay *r = device;
+  const ethd_figure all[] = {{"recorded ticks", "1", (double)r->tape.count},
+                             {"replayed ticks", "1", (double)r->next},
+                             {"compared commands", "1", (double)r->compared},
+                             {"different commands", "1", (double)r->different},
+                             {"first difference at tick", "1", r->first}};
+  uint32_t n = (uint32_t)(sizeof all / sizeof *all) - (r->different ? 0 : 1);
+  if (n > max) n = max;
+  memcpy(out, all, n * sizeof *out);
+  return n;
+}
+
+static const char *replay_remark(const void *device, uint32_t i) {
+  const replay *r = device;
+  return i == 0 && r->tape.changed < r->tape.count ? r->remark : NULL;
+}
+
+const ethd_driver ethd_driver_replay = {
+    .size = sizeof(ethd_driver),
+    .abi = ETHD_DRIVER_ABI,
+    .id = "replay",
+    .brief = "a recorded session: its samples, and its commands to compare with",
+    .keys = keys,
+    .open = replay_open,
+    .start = replay_start,
+    .read = replay_read,
+    .write = replay_write,
+    .safe = replay_safe,
+    .stop = replay_stop,
+    .close = replay_close,
+    .limits = replay_limits,
+    .figures = replay_figures,
+    .remark = replay_remark,
+};

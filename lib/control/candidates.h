@@ -1,0 +1,30 @@
+/* The touches that a tick looks at: what is newly near, and the live contacts wherever they are. */
+#ifndef ETHD__CANDIDATES_H
+#define ETHD__CANDIDATES_H
+
+#include "control/places.h"
+
+#define ETHD__TOUCHES (ETHD_CONTACTS_MAX + 8) /* looked at within reach in one place; the deepest */
+#define ETHD__CANDIDATES (ETHD__PLACES * ETHD__TOUCHES + ETHD_CONTACTS_MAX)
+
+typedef struct ethd__candidate {
+  ethd_touch touch; /* in R_0 */
+  ethd_vec local;   /* its point in the place's frame */
+  ethd_vec v;       /* of the surface there, m/s in R_0 */
+  int place;
+  int slot; /* the contact that it continues, -1: none */
+} ethd__candidate;
+
+typedef struct ethd__candidates {
+  ethd__candidate at[ETHD__CANDIDATES]; /* the deepest first; equal depths keep the scenes' order */
+  int count;
+  unsigned live; /* slots in use as the tick began, as bits */
+  int overflow; /* touches within reach that weren't looked at */
+  int queried;  /* 1: a scene was asked */
+} ethd__candidates;
+
+/* Ring and finger as in t->x, t->xf. [rt] */
+void ethd__candidates_collect(const ethd__plan *plan, ethd__state *state, const ethd_trace *t,
+                              ethd__candidates *out) ETHD_RT;
+
+#endif

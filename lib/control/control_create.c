@@ -1,0 +1,34 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "control/controller.h"
+#include "error.h"
+
+ethd_status ethd_control_create(const ethd_setup *setup, ethd_control **out, ethd_error *error) {
+  *out = NULL;
+  ethd_control *control = aligned_alloc(_Alignof(ethd_control), sizeof *control);
+  if (!control) return ethd__error(error, ETHD_E_MEMORY, "controller");
+  memset(control, 0, sizeof *control);
+  ethd_status status = ethd__plan_prepare(setup, &control->plans[0], error);
+  if (status < 0) {
+    free(control);
+    return status;
+  }
+  control->period = setup->period;
+  ethd_control_reset(control);
+  *out = control;
+  return ETHD_OK;
+}
+
+void ethd_control_destroy(ethd_control *control) { free(control); }
+
+ethd_status ethd_control_post(ethd_control *control, const ethd_setup *setup, ethd_error *error) {
+  if (atomic_load_explicit(&control->posted, memory_order_acquire)) return ETHD_BUSY;
+  ethd__plan *spare = &control->plans[1 - control->ruling];
+  ethd_status status = ethd__plan_prepare(setup, spare, error);
+  if (status < 0) return status;
+  if (setup->period != control->period)
+    return ethd__refuse(error, ETHD_E_ARGUMENT, "loop.period", setup->period, control->period, control->period);
+  atomic_store_explicit(&control->posted, 1, memory_order_release);
+  return ETHD_OK;
+}

@@ -1,0 +1,36 @@
+#include "control/places.h"
+
+#include <string.h>
+
+#include "ethd/maths.h"
+
+#define MARGIN 1e-9 /* m: what rounding may do to distances; scenes are a million times coarser */
+
+ethd__frame ethd__frame_of(const ethd__place *p) {
+  ethd__frame f = {{p->pose[0], p->pose[1]}, {p->pose[3], p->pose[4]}, 1, 0, p->pose[5]};
+  if (p->pose[2] != 0) ethd_sincos(p->pose[2], &f.sine, &f.cosine);
+  return f;
+}
+
+void ethd__places_take(ethd__state *state, const ethd_sense *sense) {
+  for (int i = 0; i < ETHD_BODIES_MAX && (sense->have & ETHD__HAVE_BODIES); i++) {
+    if (!(sense->have & ((int64_t)ETHD_HAVE_BODY << i))) continue;
+    memcpy(state->places[1 + i].pose, sense->bodies + 6 * i, sizeof state->places[1 + i].pose);
+    state->places[1 + i].there = 1;
+  }
+}
+
+void ethd__place_forget(ethd__place *place) { place->clearance = -1; }
+
+int ethd__place_is_far(const ethd__place *p, ethd_vec x, double range) {
+  double left = p->clearance - range - MARGIN;
+  ethd_vec way = ethd_vec_sub(x, p->at);
+  return left > 0 && ethd_vec_dot(way, way) < left * left;
+}
+
+void ethd__place_clear(ethd__place *place, const ethd_scene *scene, ethd_vec x) {
+  ethd_nearest nearest;
+  ethd_scene_query_near(scene, x, &place->hint, &nearest);
+  place->at = x;
+  place->clearance = nearest.distance;
+}

@@ -1,0 +1,135 @@
+#include <math.h>
+#include <string.h>
+
+#include "control/control.h"
+#include "error.h"
+#include "scene/scene.h"
+#include "control/setup.h"
+
+#define TRY(expression)                  \
+  do {                                   \
+    ethd_status status_ = (expression);  \
+    if (status_ < 0) return status_;     \
+  } while (0)
+
+/* The section that a failure belongs to. */
+static ethd_status within(const char *section, ethd_status status, ethd_error *error) {
+  if (status < 0) ethd__error_prefix(error, section);
+  return status;
+}
+
+#define D_BETA_MIN 1e-5 /* m: so far R_f,max stays from R_r */
+
+static ethd_status check_geometry(const ethd_setup *s, ethd_error *error) {
+  TRY(ethd__check_number(error, "loop.period", s->period, 1e-5, 0.1));
+  TRY(within("arm", ethd_arm_check(&s->arm, error), error));
+  TRY(ethd__check_number(error, "ring.radius", s->ring_radius, 1e-4, 1));
+  TRY(ethd__check_number(error, "finger.radius", s->finger_radius, 1e-4, s->ring_radius));
+  TRY(ethd__check_number(error, "finger.radius_max", s->finger_radius_max, 1e-5,
+                         s->ring_radius - D_BETA_MIN));
+  TRY(ethd__check_number(error, "transition.swap_time", s->swap_time, 0, 1));
+  return ethd__check_number(error, "transition.v_hysteresis", s->v_hysteresis, 0, 1);
+}
+
+static ethd_status check_values(const ethd_law *law, const double *p, ethd_error *error) {
+  TRY(ethd_params_check(law->params, law->param_count, p, error));
+  return law->check ? law->check(p, error) : ETHD_OK;
+}
+
+static ethd_status check_law(const char *kind, uint32_t kind_number, const ethd_law *law,
+                             const double *p, ethd_error *error) {
+  if (!law) return ethd__error(error, ETHD_E_ARGUMENT, kind);
+  TRY(within(kind, ethd_law_check(law, error), error));
+  if (law->kind != kind_number) return ethd__error(error, ETHD_E_ARGUMENT, kind);
+  return within(kind, check_values(law, p, error), error);
+}
+
+static ethd_status check_laws(const ethd_setup *s, ethd_error *error) {
+  TRY(check_law("tracking", ETHD_TRACKING, s->tracking ? &s->tracking->law : NULL, s->tracking_p, error));
+  TRY(check_law("contact", ETHD_CONTACT, s->contact ? &s->contact->law : NULL, s->contact_p, error));
+  return check_law("transition", ETHD_TRANSITION, s->transition ? &s->transition->law : NULL,
+                   s->transition_p, error);
+}
+
+/* The contact law's parameters on one material: the setup's, with the material's own in their place. */
+static ethd_status prepare_material(const ethd_setup *s, const ethd_material *m, double *p,
+                                    ethd_error *error) {
+  const ethd_law *law = &s->contact->law;
+  memcpy(p, s->contact_p, sizeof s->contact_p);
+  for (uint32_t i = 0; i < m->count; i++) {
+    int k = ethd_params_find(law->params, law->param_count, m->values[i].name);
+    if (k < 0) return ethd__error(error, ETHD_E_UNKNOWN, m->values[i].name);
+    p[k] = m->values[i].value;
+  }
+  return check_values(law, p, error);
+}
+
+static ethd_status prepare_materials(const ethd_setup *s, int place, ethd__plan *out, ethd_error *error) {
+  const ethd_scene *scene = ethd__place_scene(s, place);
+  const ethd_material *m;
+  for (size_t i = 0; scene && (m = ethd_scene_material(scene, i)) != NULL; i++) {
+    ethd_status status = prepare_material(s, m, out->material_p[place][i], error);
+    if (status >= 0) continue;
+    ethd__error_prefix(error, m->name);
+    ethd__error_prefix(error, "material");
+    if (error) error->line = m->line;
+    return status;
+  }
+  return ETHD_OK;
+}
+
+#define LAG_MAX 0.01 /* s */
+
+static ethd_status prepare_lags(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
+  out->lag_least = out->lag_most = 0;
+  for (int k = 0; k < ETHD_RAYS; k++) {
+    TRY(ethd__check_number(error, "finger_fit.lag", s->ray_lag[k], -LAG_MAX, LAG_MAX));
+    out->lag_least = fmin(out->lag_least, s->ray_lag[k]);
+    out->lag_most = fmax(out->lag_most, s->ray_lag[k]);
+  }
+  return ETHD_OK;
+}
+
+/* A scene pruned for another arm may lack what this one meets; a body can come from anywhere. */
+static ethd_status check_scene(const ethd_setup *s, int place, ethd_error *error) {
+  const ethd_scene *scene = ethd__place_scene(s, place);
+  double inner = 0, outer = (double)INFINITY;
+  if (!scene) return ETHD_OK;
+  if (place == 0) ethd__scene_annulus(&s->arm, ethd_setup_range(s), &inner, &outer);
+  if (scene->inner <= fmax(inner, 0) && scene->outer >= outer) return ETHD_OK;
+  return ethd__refuse(error, ETHD_E_RANGE, "scene was pruned for another arm or ring; reach", outer, scene->inner,
+                      scene->outer);
+}
+
+static int looks_further(const ethd_limits *l) {
+  int ranges = !isinf(l->reach[0]) || !isinf(l->reach[1]);
+  for (int i = 0; i < 4; i++) ranges |= !isinf(l->joints[i]);
+  return ranges || l->gap < (double)INFINITY || l->nominal_torque < (double)INFINITY;
+}
+
+ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
+  if (!s || s->cookie != ETHD__SETUP_COOKIE)
+    return ethd__error(error, ETHD_E_ARGUMENT, "setup (made by ethd_setup_default?)");
+  TRY(check_geometry(s, error));
+  TRY(check_laws(s, error));
+  TRY(within("limits", ethd_limits_check(&s->limits, error), error));
+  out->setup = *s;
+  out->looks_further = looks_further(&s->limits);
+  out->d_beta = s->ring_radius - s->finger_radius_max;
+  TRY(within("velocity", ethd_velocity_prepare(s->velocity, s->velocity_p, s->period, &out->velocity, error), error));
+  TRY(within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error), error));
+  TRY(within("finger_filter", ethd_filter_prepare(s->filter, s->filter_p, s->period, &out->filter, error), error));
+  TRY(prepare_lags(s, out, error));
+  out->places = 0;
+  for (int place = 0; place < ETHD__PLACES; place++) {
+    if (ethd__place_scene(s, place)) out->places = place + 1;
+    TRY(check_scene(s, place, error));
+    TRY(prepare_materials(s, place, out, error));
+  }
+  return ETHD_OK;
+}
+
+ethd_status ethd_setup_check(const ethd_setup *setup, ethd_error *error) {
+  ethd__plan plan;
+  return ethd__plan_prepare(setup, &plan, error);
+}

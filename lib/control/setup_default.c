@@ -1,0 +1,66 @@
+#include <string.h>
+
+#include "control/control.h"
+#include "control/setup.h"
+
+double ethd_setup_range(const ethd_setup *s) {
+  return 2 * s->ring_radius + (s->ring_radius - s->finger_radius_max);
+}
+
+static void defaults(const ethd_param *params, uint32_t count, double *p) {
+  memset(p, 0, ETHD_PARAMS_MAX * sizeof *p);
+  ethd_params_default(params, count, p);
+}
+
+void ethd_setup_tracking(ethd_setup *setup, const ethd_tracking_law *law) {
+  setup->tracking = law;
+  defaults(law->law.params, law->law.param_count, setup->tracking_p);
+}
+
+void ethd_setup_contact(ethd_setup *setup, const ethd_contact_law *law) {
+  setup->contact = law;
+  defaults(law->law.params, law->law.param_count, setup->contact_p);
+}
+
+void ethd_setup_transition(ethd_setup *setup, const ethd_transition_law *law) {
+  setup->transition = law;
+  defaults(law->law.params, law->law.param_count, setup->transition_p);
+}
+
+void ethd_setup_velocity(ethd_setup *setup, ethd_velocity_method method) {
+  setup->velocity = method;
+  defaults(ethd_velocity_methods[method].params, ethd_velocity_methods[method].param_count,
+           setup->velocity_p);
+}
+
+void ethd_setup_fit(ethd_setup *setup, ethd_fit_method method) {
+  setup->fit = method;
+  defaults(ethd_fit_methods[method].params, ethd_fit_methods[method].param_count, setup->fit_p);
+}
+
+void ethd_setup_filter(ethd_setup *setup, ethd_filter_method method) {
+  setup->filter = method;
+  defaults(ethd_filter_methods[method].params, ethd_filter_methods[method].param_count,
+           setup->filter_p);
+}
+
+ethd_setup ethd_setup_default(void) {
+  ethd_setup s;
+  memset(&s, 0, sizeof s);
+  s.cookie = ETHD__SETUP_COOKIE;
+  s.period = 0.001;
+  s.arm = (ethd_arm){ETHD_ARM_PARALLEL, 0.25, 0.25};
+  s.ring_radius = 0.012;
+  s.finger_radius = 0.0075;
+  s.finger_radius_max = 0.0095;
+  ethd_setup_velocity(&s, ETHD_VELOCITY_LOWPASS);
+  ethd_setup_fit(&s, ETHD_FIT_KASA);
+  ethd_setup_filter(&s, ETHD_FILTER_CA);
+  ethd_setup_tracking(&s, &ethd_tracking_pd);
+  ethd_setup_contact(&s, &ethd_contact_kelvin_voigt);
+  ethd_setup_transition(&s, &ethd_transition_offset);
+  s.swap_time = 0.020;
+  s.v_hysteresis = 0;
+  s.limits = ethd_limits_none();
+  return s;
+}

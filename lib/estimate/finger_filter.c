@@ -1,0 +1,102 @@
+#include "ethd/finger_filter.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "estimate/filter_methods.h"
+
+static void place(ethd_filter_state *s, ethd_vec x, ethd_vec v, double xx, double vv, double aa) {
+  double p[6] = {xx, 0, 0, vv, 0, aa};
+  s->x[0] = x.x, s->x[1] = x.y;
+  s->v[0] = v.x, s->v[1] = v.y;
+  s->a[0] = s->a[1] = 0;
+  memcpy(s->cov, p, sizeof p);
+  s->started = 1;
+  s->gated_in_a_row = 0;
+}
+
+static double start_aa(const ethd_filter *f, double aa) {
+  return f->method == ETHD_FILTER_CA ? aa : 0;
+}
+
+void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, ethd_vec v) {
+  place(state, x, v, 1e-6, 1e-4, start_aa(filter, 1));
+  state->age = filter->compensation == ETHD_COMPENSATION_STAMP ? -filter->p[FILTER_LATENCY] : INFINITY;
+}
+
+static void start_from_reading(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, double age) {
+  double noise = ethd__filter_is_kalman(f) ? f->p[KALMAN_NOISE] : 0;
+  place(s, x, (ethd_vec){0, 0}, noise * noise, 1, start_aa(f, 100));
+  s->age = age;
+  s->used++;
+}
+
+static void advance(const ethd_filter *f, ethd_filter_state *s, double t) {
+  ethd__way w = ethd__filter_way(f, t);
+  for (int i = 0; i < 2; i++) {
+    s->x[i] += s->v[i] * t + s->a[i] * w.ax;
+    s->v[i] += s->a[i] * w.av;
+    s->a[i] *= w.aa;
+  }
+  if (ethd__filter_is_kalman(f)) ethd__filter_spread(f, s, w);
+}
+
+void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, double dt) {
+  state->age += dt;
+  if (filter->compensation == ETHD_COMPENSATION_NONE) advance(filter, state, dt);
+}
+
+static int correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, double elapsed) {
+  ethd_vec r = {x.x - s->x[0], x.y - s->x[1]};
+  if (ethd__filter_is_kalman(f)) return ethd__filter_correct(f, s, r);
+  int hold = f->method == ETHD_FILTER_HOLD;
+  double alpha = hold ? 1 : f->p[ALPHA_BETA_ALPHA], beta = hold ? 0 : f->p[ALPHA_BETA_BETA];
+  s->x[0] += alpha * r.x;
+  s->x[1] += alpha * r.y;
+  s->v[0] += beta * r.x / elapsed;
+  s->v[1] += beta * r.y / elapsed;
+  return 1;
+}
+
+static ethd_status gated(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, double age) {
+  s->gated++;
+  if (++s->gated_in_a_row < ETHD_FILTER_GATED_MAX) return ETHD_STALE;
+  start_from_reading(f, s, x, age);
+  s->restarts++;
+  return ETHD_OK;
+}
+
+ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x,
+                               double age) {
+  if (!isfinite(x.x) || !isfinite(x.y) || !isfinite(age)) {
+    state->gated++;
+    return ETHD_STALE;
+  }
+  if (!state->started) {
+    start_from_reading(filter, state, x, age);
+    return ETHD_OK;
+  }
+  double elapsed = state->age - age;
+  if (!(elapsed > 0)) {
+    state->late++;
+    return ETHD_STALE;
+  }
+  ethd_filter_state next = *state;
+  if (filter->compensation == ETHD_COMPENSATION_STAMP) advance(filter, &next, elapsed);
+  if (!correct(filter, &next, x, elapsed)) return gated(filter, state, x, age);
+  next.age = age;
+  next.used++;
+  next.gated_in_a_row = 0;
+  *state = next;
+  return ETHD_OK;
+}
+
+void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x,
+                        ethd_vec *v) {
+  int stamp = filter->compensation == ETHD_COMPENSATION_STAMP;
+  double t = stamp ? state->age + filter->p[FILTER_LATENCY] : 0;
+  ethd__way w = ethd__filter_way(filter, t);
+  const double *p = state->x, *q = state->v, *a = state->a;
+  *x = (ethd_vec){p[0] + (q[0] * t + a[0] * w.ax), p[1] + (q[1] * t + a[1] * w.ax)};
+  *v = (ethd_vec){q[0] + a[0] * w.av, q[1] + a[1] * w.av};
+}

@@ -1,0 +1,161 @@
+/* Circles through points: least squares of |p - c|^2 - R^2, radius sought or known.
+
+   All of it stands in the moments of u = p - origin: one pass over the points, then any number of
+   steps, for a shift of the origin by s needs the moments only:
+
+     sum |u - s|^2 (u - s) = sum |u|^2 u - 2 sum u u^T s + |s|^2 sum u - s sum |u - s|^2            */
+#include <math.h>
+#include <string.h>
+
+#include "estimate/fit_methods.h"
+
+#define SHORT 1e-4 /* of the squared radius: squared steps that leave 1/20000 of the radius */
+#define FLAT 1e-9  /* determinant over squared trace under which points count as collinear */
+
+typedef struct moments {
+  double n, x, y, xx, xy, yy, zx, zy; /* z = |u|^2 */
+} moments;
+
+static inline void shift(moments *m, ethd_vec s) {
+  moments o = *m;
+  double ss = ethd_vec_dot(s, s);
+  m->x = o.x - o.n * s.x;
+  m->y = o.y - o.n * s.y;
+  m->xx = o.xx - (o.x + m->x) * s.x;
+  m->xy = o.xy - o.x * s.y - m->y * s.x;
+  m->yy = o.yy - (o.y + m->y) * s.y;
+  double z = m->xx + m->yy;
+  m->zx = o.zx - 2 * (o.xx * s.x + o.xy * s.y) + ss * o.x - s.x * z;
+  m->zy = o.zy - 2 * (o.xy * s.x + o.yy * s.y) + ss * o.y - s.y * z;
+}
+
+/* sum u u^T s = (g, h); 0 for points on one line, and for fewer than two. */
+static inline int solve(const moments *m, double g, double h, ethd_vec *s) {
+  double det = m->xx * m->yy - m->xy * m->xy, trace = m->xx + m->yy;
+  if (!(det > FLAT * trace * trace)) return 0;
+  s->x = (m->yy * g - m->xy * h) / det;
+  s->y = (m->xx * h - m->xy * g) / det;
+  return 1;
+}
+
+/* Of the points that count, about `origin`. */
+static inline moments of(const ethd__points *points, ethd_vec origin) {
+  two x = {0, 0}, y = x, xx = x, xy = x, yy = x, zx = x, zy = x;
+  for (int i = 0; i < ETHD__PAIRS; i++) {
+    two u = two_where(points->counts[i], points->x[i] - origin.x);
+    two v = two_where(points->counts[i], points->y[i] - origin.y);
+    two uu = u * u, vv = v * v, z = uu + vv;
+    x += u;
+    y += v;
+    xx += uu;
+    xy += u * v;
+    yy += vv;
+    zx += z * u;
+    zy += z * v;
+  }
+  return (moments){ethd__count(points->used),
+                   two_sum(x),
+                   two_sum(y),
+                   two_sum(xx),
+                   two_sum(xy),
+                   two_sum(yy),
+                   two_sum(zx),
+                   two_sum(zy)};
+}
+
+/* About the mean the linear terms vanish, so that the centre parts from the radius:
+     sum u u^T s = 1/2 sum |u|^2 u;   R^2 is then the mean of |p - c|^2.
+   The moments move to the centre. */
+static inline int kasa(moments *m, ethd_vec *centre) {
+  ethd_vec mean = {m->x / m->n, m->y / m->n}, s;
+  shift(m, mean);
+  if (!solve(m, m->zx / 2, m->zy / 2, &s)) return 0;
+  *centre = ethd_vec_add(mean, s);
+  shift(m, s);
+  return 1;
+}
+
+int ethd__fit_kasa(const ethd__points *points, ethd_vec *centre) {
+  moments m = of(points, (ethd_vec){0, 0});
+  return kasa(&m, centre);
+}
+
+/* Gauss-Newton from the moments' origin: sum u u^T s = 1/2 sum (|u|^2 - R^2) u. */
+static inline int step(moments *m, double radius, ethd_vec *centre, double *moved) {
+  ethd_vec s;
+  double square = radius * radius;
+  if (!solve(m, (m->zx - square * m->x) / 2, (m->zy - square * m->y) / 2, &s)) return 0;
+  *centre = ethd_vec_add(*centre, s);
+  *moved = ethd_vec_dot(s, s);
+  shift(m, s);
+  return 1;
+}
+
+/* (|u|^2 - R^2) / (2 R) is |u| - R nearly. */
+static inline double gate(const ethd_fit *fit) {
+  return 2 * fit->finger_radius * fit->p[ROBUST_GATE];
+}
+
+/* One more point, or with sign -1 one less. */
+static inline void add(moments *m, double sign, ethd_vec u) {
+  double z = ethd_vec_dot(u, u), x = sign * u.x, y = sign * u.y;
+  m->n += sign;
+  m->x += x;
+  m->y += y;
+  m->xx += x * u.x;
+  m->xy += x * u.y;
+  m->yy += y * u.y;
+  m->zx += z * x;
+  m->zy += z * y;
+}
+
+/* Leaves out those beyond the gate among the rays that are `there`; false: they stay the same. The moments,
+   about the centre, follow: by the one point that comes or goes, or anew. */
+static inline int choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS], ethd__points *points,
+                         ethd_vec centre, moments *m) {
+  double square = fit->finger_radius * fit->finger_radius, most = gate(fit);
+  uint32_t before = points->used;
+  for (int i = 0; i < ETHD__PAIRS; i++) {
+    two u = points->x[i] - centre.x, v = points->y[i] - centre.y;
+    points->counts[i] = there[i] & (two_bits)(two_abs(u * u + v * v - square) <= most);
+  }
+  points->used = ethd__points_used(points->counts);
+  uint32_t changed = before ^ points->used;
+  if (!changed) return 0;
+  if ((changed & (changed - 1)) == 0)
+    add(m, points->used > before ? 1 : -1,
+        ethd_vec_sub(ethd__point(points, __builtin_ctz(changed)), centre));
+  else
+    *m = of(points, centre);
+  return 1;
+}
+
+/* Kasa's centre is a start if it is a finger's: within the ring, the radius within the gate. Few rays or
+   an outlier make others; the ring's middle, and a step from there, is never far. */
+static inline int start(const ethd_fit *fit, const ethd__points *points, moments *m, ethd_vec *centre) {
+  moments all = of(points, (ethd_vec){0, 0});
+  double square = fit->finger_radius * fit->finger_radius, gap = fit->ring_radius - fit->finger_radius;
+  *m = all;
+  if (kasa(m, centre) && fabs(m->xx + m->yy - square * m->n) <= gate(fit) * m->n &&
+      ethd_vec_dot(*centre, *centre) <= gap * gap)
+    return 1;
+  double moved;
+  *m = all;
+  *centre = (ethd_vec){0, 0};
+  return step(m, fit->finger_radius, centre, &moved);
+}
+
+/* A step with all points first, so that an outlier's pull on the start doesn't gate good ones. A step of s
+   leaves |s|^2 / 2 R: short ones by the same points end it. */
+int ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
+  two_bits there[ETHD__PAIRS];
+  double radius = fit->finger_radius, moved = 0;
+  moments m;
+  memcpy(there, points->counts, sizeof there);
+  int found = start(fit, points, &m, centre) && step(&m, radius, centre, &moved);
+  for (int pass = 0; pass < 2 && found; pass++) {
+    if (!choose(fit, there, points, *centre, &m) && moved <= SHORT * radius * radius) break;
+    found = step(&m, radius, centre, &moved);
+  }
+  return found;
+}

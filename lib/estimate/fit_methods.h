@@ -1,0 +1,50 @@
+/* The fits behind ethd_fit_step. */
+#ifndef ETHD_LIB_FIT_METHODS_H
+#define ETHD_LIB_FIT_METHODS_H
+
+#include "ethd/finger_fit.h"
+#include "maths/two.h"
+
+/* Rows of robust's table. */
+enum { ROBUST_GATE };
+
+enum { ETHD__PAIRS = ETHD_RAYS / 2 };
+
+/* Where the rays met the finger, relative to the ring's centre: rays 2 i and 2 i + 1 in the i-th pair. A
+   fit takes rays out of `counts` and `used`. */
+typedef struct ethd__points {
+  two x[ETHD__PAIRS], y[ETHD__PAIRS]; /* 0 where there is none */
+  two_bits counts[ETHD__PAIRS];       /* all bits, or none */
+  uint32_t used;                      /* bits of the rays that count */
+} ethd__points;
+
+static inline ethd_vec ethd__point(const ethd__points *points, int ray) {
+  return (ethd_vec){points->x[ray / 2][ray % 2], points->y[ray / 2][ray % 2]};
+}
+
+/* 0: the points don't determine a centre. [rt] */
+int ethd__fit_kasa(const ethd__points *points, ethd_vec *centre) ETHD_RT;
+int ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) ETHD_RT;
+int ethd__fit_vertex_mean(const ethd__points *points, ethd_vec *centre) ETHD_RT;
+int ethd__fit_centroid(const ethd__points *points, ethd_vec *centre) ETHD_RT;
+
+/* As ethd_fit_step, ray k measured lag[k] s before the others' common instant by a finger that moved at v
+   m/s relative to the ring: its point is carried on by as much. [rt] */
+ethd_status ethd__fit_moving(const ethd_fit *fit, const double r[ETHD_RAYS], const double lag[ETHD_RAYS],
+                             ethd_vec v, ethd_finger *out) ETHD_RT;
+
+static inline uint32_t ethd__points_used(const two_bits counts[ETHD__PAIRS]) {
+  two_bits used = {0, 0}, bit = {1, 2};
+  for (int i = 0; i < ETHD__PAIRS; i++, bit <<= 2) used |= counts[i] & bit;
+  return (uint32_t)(used[0] | used[1]);
+}
+
+/* How many of 16 bits are set: in pairs, fours, eights. */
+static inline double ethd__count(uint32_t bits) {
+  bits -= bits >> 1 & 0x5555;
+  bits = (bits & 0x3333) + (bits >> 2 & 0x3333);
+  bits = (bits + (bits >> 4)) & 0x0f0f;
+  return (bits + (bits >> 8)) & 0x1f;
+}
+
+#endif

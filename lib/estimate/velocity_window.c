@@ -1,0 +1,55 @@
+/* Lines through the last samples: least squares and first-order adaptive windowing. */
+#include <math.h>
+
+#include "estimate/velocity_methods.h"
+
+/* Sums over samples with age t behind the newest and position y relative to it, so that neither the
+   clock nor the position's size costs digits; the newest itself adds nothing but n. */
+typedef struct line {
+  double n, t, tt, y, ty;
+} line;
+
+static void line_add(line *l, double t, double y) {
+  l->n += 1;
+  l->t += t;
+  l->tt += t * t;
+  l->y += y;
+  l->ty += t * y;
+}
+
+/* Ages run backwards: the slope's sign turns. */
+static double line_slope(const line *l) {
+  return (l->t * l->y - l->n * l->ty) / (l->n * l->tt - l->t * l->t);
+}
+
+static uint32_t samples(const ethd_velocity *v, const ethd_velocity_state *s) {
+  return s->count < v->window ? s->count : v->window;
+}
+
+double ethd__velocity_lsq(const ethd_velocity *v, const ethd_velocity_state *s) {
+  line l = {.n = 1};
+  double age = 0;
+  for (uint32_t i = 1, n = samples(v, s); i < n; i++) {
+    age += s->dt[ethd__velocity_back(s, i - 1)];
+    line_add(&l, age, s->q[ethd__velocity_back(s, i)] - s->q[s->head]);
+  }
+  return line_slope(&l);
+}
+
+/* A line through the newest sample passes within `noise` of the sample at age t iff its slope lies in
+   (rise -+ noise) / t. [low, high] is what the samples so far leave, so one look at each is enough. */
+double ethd__velocity_foaw(const ethd_velocity *v, const ethd_velocity_state *s) {
+  double noise = v->p[FOAW_NOISE];
+  line l = {.n = 1};
+  double age = 0, low = -INFINITY, high = INFINITY;
+  for (uint32_t i = 1, n = samples(v, s); i < n; i++) {
+    age += s->dt[ethd__velocity_back(s, i - 1)];
+    double rise = s->q[s->head] - s->q[ethd__velocity_back(s, i)];
+    double slope = rise / age;
+    if (!(slope >= low && slope <= high)) break;
+    line_add(&l, age, -rise);
+    low = fmax(low, (rise - noise) / age);
+    high = fmin(high, (rise + noise) / age);
+  }
+  return line_slope(&l);
+}

@@ -1,0 +1,88 @@
+#include <string.h>
+
+#include "guard/parts.h"
+
+/* A stop damps the ring with this much, Ns/m, until it is slower than STILL. */
+#define STOP_DAMPING 20.0
+#define STILL 0.020
+
+static int outside(const double w[4], ethd_vec x) ETHD_RT {
+  return !(x.x >= w[0] && x.x <= w[1] && x.y >= w[2] && x.y <= w[3]);
+}
+
+static int32_t breach(const ethd_limits *limits, ethd_vec x, ethd_vec v) ETHD_RT {
+  int32_t bits = 0;
+  if (!(ethd_vec_norm(v) <= limits->speed)) bits |= ETHD_GUARD_SPEED;
+  if (outside(limits->workspace, x)) bits |= ETHD_GUARD_WORKSPACE;
+  return bits;
+}
+
+/* Damping while the ring moves, nothing once it stands: the arm is counterweighted. */
+static void stop(ethd_guard_state *s, const ethd_pose *pose, ethd_vec v, double torque[2]) ETHD_RT {
+  if (s->stopping && ethd_vec_norm(v) < STILL) s->stopped = 1;
+  ethd_vec tau = {0, 0};
+  if (!s->stopped) tau = ethd_mat_mul_transposed(pose->j, ethd_vec_scale(-STOP_DAMPING, v));
+  torque[0] = tau.x;
+  torque[1] = tau.y;
+}
+
+/* `symmetric` clamp that says whether it had to; NaN is left for the caller, who has checked it. */
+static int clamp(double centre, double most, double *value) ETHD_RT {
+  double lo = centre - most, hi = centre + most;
+  if (*value >= lo && *value <= hi) return 0;
+  *value = *value < lo ? lo : hi;
+  return 1;
+}
+
+static void count(ethd_guard_state *s, int32_t bits) ETHD_RT {
+  for (; bits; bits &= bits - 1) s->counts[__builtin_ctz((unsigned)bits)]++;
+}
+
+/* A step that takes the limiter many ticks is no steep torque: what is asked for counts. */
+static int32_t steep(const ethd_limits *limits, ethd_guard_state *s, double dt, const double torque[2]) ETHD_RT {
+  double most = limits->torque_rate * dt * (1 + 1e-9);
+  int too_steep = fabs(torque[0] - s->asked[0]) > most || fabs(torque[1] - s->asked[1]) > most;
+  s->steep = too_steep ? s->steep + 1 : 0;
+  memcpy(s->asked, torque, sizeof s->asked);
+  if (s->steep < ETHD_STEEP_MAX || !limits->latch) return 0;
+  s->stopping |= ETHD_GUARD_STEEP; /* from the next tick on */
+  return ETHD_GUARD_STEEP;
+}
+
+static int32_t limit(double most, int32_t bit, double *torque) ETHD_RT { return clamp(0, most, torque) ? bit : 0; }
+
+/* The limits are kept within the rate's window around the last torque. Where that window lies outside of them,
+   because a limit has just become narrower, the limit is what counts: it has the last word. */
+static int32_t bound(const ethd_limits *limits, const ethd_guard_state *s, int i, double rise, double *torque) ETHD_RT {
+  const double heat = limits->nominal_torque < (double)INFINITY ? ethd__guard_cool(limits, s->heat[i]) : (double)INFINITY;
+  int32_t bits = limit(heat, ETHD_GUARD_HEAT, torque) | limit(limits->torque, ETHD_GUARD_TORQUE, torque);
+  if (!clamp(s->last[i], rise, torque)) return bits;
+  return bits | ETHD_GUARD_RATE | limit(heat, ETHD_GUARD_HEAT, torque) |
+         limit(limits->torque, ETHD_GUARD_TORQUE, torque);
+}
+
+int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *s, const ethd_pose *pose,
+                        ethd_vec v, double dt, double torque[2]) {
+  int32_t bits = breach(limits, pose->x, v);
+  if (limits->latch) s->stopping |= bits;
+  int stopping = bits || s->stopping, rated = !stopping && limits->torque_rate < (double)INFINITY;
+  if (stopping) {
+    stop(s, pose, v, torque);
+    bits |= s->stopping & ETHD_GUARD_FAULT;
+  } else if (limits->margin > 0 && ethd__guard_wall(limits, pose, v, torque)) {
+    bits |= ETHD_GUARD_MARGIN;
+  }
+  if (!((torque[0] - torque[0]) + (torque[1] - torque[1]) == 0)) { /* NaN, of what isn't finite */
+    bits |= ETHD_GUARD_FINITE;
+    torque[0] = torque[1] = 0;
+    s->last[0] = s->last[1] = 0; /* zero at this very tick, not at the rate's pace */
+  }
+  if (rated) bits |= steep(limits, s, dt, torque);
+  for (int i = 0; i < 2; i++) {
+    bits |= bound(limits, s, i, rated ? limits->torque_rate * dt : (double)INFINITY, &torque[i]);
+    s->last[i] = torque[i];
+  }
+  s->cut = bits & ETHD_GUARD_TORQUE ? s->cut + dt : 0;
+  if (bits) count(s, bits);
+  return bits;
+}

@@ -1,0 +1,22 @@
+/* I2t: a motor's winding is a body of one temperature. h: rise over the surroundings, as a share of the rise
+   that the nominal torque leads to:
+
+        h' = ((tau / nominal)^2 - h) / heat_time        exactly solved for a torque that is held
+
+   The torque it may have falls from any at h = FOLD to the nominal at 1, where h rises no more. */
+#include "guard/parts.h"
+
+#define FOLD 0.9
+
+double ethd_guard_heat(const ethd_limits *limits, ethd_guard_state *s, double dt) {
+  double share = 1 - ethd_exp(-dt / limits->heat_time);
+  for (int i = 0; i < 2; i++) {
+    double load = s->last[i] / limits->nominal_torque;
+    s->heat[i] += share * (load * load - s->heat[i]);
+  }
+  return fmax(s->heat[0], s->heat[1]);
+}
+
+double ethd__guard_cool(const ethd_limits *limits, double heat) {
+  return heat > FOLD ? limits->nominal_torque * ((1 - FOLD) / (heat - FOLD)) : (double)INFINITY;
+}

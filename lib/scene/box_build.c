@@ -1,0 +1,89 @@
+#include <float.h>
+
+#include "scene/build.h"
+
+#define DIRECTIONS 8 /* over a quarter turn; a box looks the same a quarter turn further */
+#define SAMPLES 32   /* discs that a direction is judged by */
+
+static const float directions[DIRECTIONS][2] = {
+    {1, 0},
+    {0.98078528f, 0.19509032f},
+    {0.92387953f, 0.38268343f},
+    {0.83146961f, 0.55557023f},
+    {0.70710678f, 0.70710678f},
+    {0.55557023f, 0.83146961f},
+    {0.38268343f, 0.92387953f},
+    {0.19509032f, 0.98078528f},
+};
+
+typedef struct span {
+  double min, max;
+} span;
+
+typedef struct box {
+  float c, s;
+  span u, v;
+} box;
+
+static void widen(span *s, double v, double r) {
+  s->min = v - r < s->min ? v - r : s->min;
+  s->max = v + r > s->max ? v + r : s->max;
+}
+
+static box around(const ethd__cloud *k, size_t from, size_t to, size_t step, float c, float s) {
+  box b = {c, s, {INFINITY, -INFINITY}, {INFINITY, -INFINITY}};
+  for (size_t i = from; i < to; i += step) {
+    ethd_vec p = k->points[i];
+    double r = k->radii ? k->radii[i] : 0;
+    widen(&b.u, c * p.x + s * p.y, r);
+    widen(&b.v, c * p.y - s * p.x, r);
+  }
+  return b;
+}
+
+static double width(span s) { return s.max - s.min; }
+
+/* How many places are nearer to the box than `near`, less what any box has: few is good. */
+static double cost(const box *b) {
+  double w = width(b->u), h = width(b->v), near = 0.01;
+  return w * h + near * (w + h);
+}
+
+/* From the first disc to the last. */
+static box along(const ethd__cloud *k, size_t from, size_t to, size_t step) {
+  ethd_vec e = ethd_vec_sub(k->points[to - 1], k->points[from]);
+  double length = ethd_vec_norm(e);
+  bool any = length > 0;
+  return around(k, from, to, step, any ? (float)(e.x / length) : 1, any ? (float)(e.y / length) : 0);
+}
+
+static box fit(const ethd__cloud *k, size_t from, size_t to) {
+  if (to - from <= 2) return along(k, from, to, 1);
+  size_t step = (to - from + SAMPLES - 1) / SAMPLES;
+  box best = along(k, from, to, step);
+  for (int i = 0; i < DIRECTIONS; i++) {
+    box b = around(k, from, to, step, directions[i][0], directions[i][1]);
+    if (cost(&b) < cost(&best)) best = b;
+  }
+  return around(k, from, to, 1, best.c, best.s);
+}
+
+/* What rounding takes from the half is given back. */
+static void set(span s, float *middle, float *half) {
+  *middle = (float)((s.min + s.max) / 2);
+  double reach = fmax(s.max - (double)*middle, (double)*middle - s.min);
+  *half = (float)(reach * (1 + 4 * (double)FLT_EPSILON)) + ETHD__INFLATE;
+}
+
+void ethd__box_fit(const ethd__cloud *k, size_t from, size_t to, ethd__node *node, size_t lane) {
+  box b = fit(k, from, to);
+  node->c[lane] = b.c;
+  node->s[lane] = b.s;
+  set(b.u, &node->u[lane], &node->w[lane]);
+  set(b.v, &node->v[lane], &node->h[lane]);
+}
+
+void ethd__box_clear(ethd__node *node, size_t lane) {
+  node->c[lane] = node->s[lane] = node->v[lane] = node->w[lane] = node->h[lane] = 0;
+  node->u[lane] = INFINITY;
+}

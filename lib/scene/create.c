@@ -1,0 +1,245 @@
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "error.h"
+#include "ethd/maths.h"
+#include "scene/build.h"
+#include "scene/check.h"
+
+/* Boxes keep the cosine and the sine of their angle too, polygons their first point twice. */
+static size_t kept_numbers(const ethd_object_def *o) {
+  return o->count + (o->shape == ETHD_BOX || o->shape == ETHD_POLYGON ? 2 : 0);
+}
+
+static uint32_t edges_of(const ethd_object_def *o) {
+  return ethd__is_chain(o->shape) ? (uint32_t)(kept_numbers(o) / 2 - 1) : 0;
+}
+
+/* ---- sizes ---- */
+
+static size_t reserve(size_t *bytes, size_t size) {
+  size_t at = *bytes;
+  *bytes += (size + 63) / 64 * 64;
+  return at;
+}
+
+/* Nodes of chains come first, for their slopes. */
+static ethd_status plan(const ethd_scene_def *def, ethd_scene *s, ethd_error *error) {
+  size_t numbers = 0, nodes = 0, endless = 0;
+  for (size_t i = 0; i < def->object_count; i++) {
+    numbers += kept_numbers(&def->objects[i]);
+    if (edges_of(&def->objects[i]) > ETHD__FLAT) {
+      nodes += ethd__node_count(edges_of(&def->objects[i]));
+      s->tree_count++;
+    }
+    endless += def->objects[i].shape == ETHD_HALFPLANE;
+  }
+  if (numbers > UINT32_MAX)
+    return ethd__refuse(error, ETHD_E_FULL, "numbers", (double)numbers, 0, UINT32_MAX);
+  s->object_count = (uint32_t)def->object_count;
+  s->material_count = (uint32_t)def->material_count;
+  s->number_count = (uint32_t)numbers;
+  ethd__tree_set(&s->tree, (uint32_t)(def->object_count - endless), (uint32_t)nodes);
+  s->node_count = (uint32_t)nodes + ethd__node_count(s->tree.leaves);
+  reserve(&s->bytes, sizeof *s);
+  s->nodes_at = reserve(&s->bytes, s->node_count * sizeof(ethd__node));
+  s->objects_at = reserve(&s->bytes, s->object_count * sizeof(ethd__object));
+  s->numbers_at = reserve(&s->bytes, s->number_count * sizeof(double));
+  s->trees_at = reserve(&s->bytes, s->tree_count * sizeof(ethd__tree));
+  s->places_at = reserve(&s->bytes, s->object_count * sizeof(uint32_t));
+  s->slopes_at = reserve(&s->bytes, nodes * ETHD__WIDE * sizeof(float));
+  s->materials_at = reserve(&s->bytes, s->material_count * sizeof(ethd_material));
+  return ETHD_OK;
+}
+
+/* ---- bounds ---- */
+
+typedef struct box {
+  double x_min, x_max, y_min, y_max;
+} box;
+
+static const box nowhere = {INFINITY, -INFINITY, INFINITY, -INFINITY};
+
+static box around(double x, double y, double w, double h) {
+  box b = {x - w, x + w, y - h, y + h};
+  return b;
+}
+
+static box together(box a, box b) {
+  box r = {fmin(a.x_min, b.x_min), fmax(a.x_max, b.x_max), fmin(a.y_min, b.y_min), fmax(a.y_max, b.y_max)};
+  return r;
+}
+
+static box bounds_of(const ethd_object_def *def) {
+  const double *p = def->numbers;
+  double c, s;
+  box b = nowhere;
+  switch (def->shape) {
+    case ETHD_HALFPLANE: return nowhere;
+    case ETHD_CIRCLE: return around(p[0], p[1], p[2], p[2]);
+    case ETHD_CAPSULE: return together(around(p[0], p[1], p[4], p[4]), around(p[2], p[3], p[4], p[4]));
+    case ETHD_BOX:
+      ethd_sincos(p[4], &s, &c);
+      return around(p[0], p[1], fabs(c) * p[2] + fabs(s) * p[3], fabs(s) * p[2] + fabs(c) * p[3]);
+    default: break;
+  }
+  for (size_t k = 0; k < def->count; k += 2) b = together(b, around(p[k], p[k + 1], 0, 0));
+  return b;
+}
+
+/* The trees' frame: everything within [-1, 1]. */
+static void frame(ethd_scene *s, box b) {
+  int exponent = 0;
+  s->x_min = b.x_min, s->x_max = b.x_max, s->y_min = b.y_min, s->y_max = b.y_max;
+  s->scale = 1;
+  if (!(b.x_min <= b.x_max)) return;
+  s->centre = (ethd_vec){b.x_min + (b.x_max - b.x_min) / 2, b.y_min + (b.y_max - b.y_min) / 2};
+  double half = fmax(fmax(b.x_max - s->centre.x, s->centre.x - b.x_min),
+                     fmax(b.y_max - s->centre.y, s->centre.y - b.y_min));
+  frexp(half, &exponent);
+  s->scale = ldexp(1, exponent < -400 ? 400 : -exponent); /* its square is finite */
+}
+
+/* Of its lengths: neither a half-plane's normal nor a box's angle is one. */
+static double largest(const ethd_object_def *def) {
+  double most = 0;
+  size_t first = def->shape == ETHD_HALFPLANE ? 2 : 0, end = def->shape == ETHD_BOX ? 4 : def->count;
+  for (size_t k = first; k < end; k++) most = fmax(most, fabs(def->numbers[k]));
+  return most;
+}
+
+/* ---- objects ---- */
+
+static ethd_vec point(const double *p, size_t k) {
+  ethd_vec r = {p[2 * k], p[2 * k + 1]};
+  return r;
+}
+
+/* The turn at the first point in the order of x, then y: the polygon is convex there. */
+static int turn_of(const double *p, size_t n) {
+  size_t k = 0;
+  for (size_t i = 1; i < n; i++)
+    if (p[2 * i] < p[2 * k] || (p[2 * i] == p[2 * k] && p[2 * i + 1] < p[2 * k + 1])) k = i;
+  return ethd__orient(point(p, k ? k - 1 : n - 1), point(p, k), point(p, k + 1 < n ? k + 1 : 0));
+}
+
+static void keep_numbers(const ethd_object_def *def, double *kept) {
+  const double *p = def->numbers;
+  memcpy(kept, p, def->count * sizeof *p);
+  if (def->shape == ETHD_BOX) ethd_sincos(p[4], &kept[6], &kept[5]);
+  if (def->shape == ETHD_POLYGON) memcpy(kept + def->count, p, 2 * sizeof *p);
+  if (def->shape != ETHD_HALFPLANE) return;
+  double length = sqrt(p[0] * p[0] + p[1] * p[1]);
+  if (fabs(length - 1) <= 4 * DBL_EPSILON) return; /* divided once is divided for good */
+  for (int i = 0; i < 3; i++) kept[i] = p[i] / length;
+}
+
+static bool is_closed(const double *points, uint32_t edges) {
+  return edges > 2 && points[0] == points[2 * edges] && points[1] == points[2 * edges + 1];
+}
+
+static void measure(const ethd_scene_def *def, ethd_scene *s) {
+  box all = nowhere;
+  double extent = 0;
+  for (uint32_t i = 0; i < s->object_count; i++) {
+    all = together(all, bounds_of(&def->objects[i]));
+    extent = fmax(extent, largest(&def->objects[i]));
+  }
+  s->slack = 16 * DBL_EPSILON * extent;
+  frame(s, all);
+}
+
+static uint32_t step_of(const ethd_scene *s, double low, double high, double centre) {
+  double v = s->scale * (low / 2 + high / 2 - centre);
+  return (uint32_t)((v + 1) / 2 * UINT32_MAX);
+}
+
+/* The order of the leaves, half-planes last. */
+static void order(const ethd_scene_def *def, const ethd_scene *s, ethd__item *items) {
+  uint32_t n = 0, last = s->tree.leaves;
+  for (uint32_t i = 0; i < s->object_count; i++) {
+    box b = bounds_of(&def->objects[i]);
+    if (def->objects[i].shape == ETHD_HALFPLANE) {
+      items[last++].id = i;
+    } else {
+      items[n++] = (ethd__item){{step_of(s, b.x_min, b.x_max, s->centre.x), step_of(s, b.y_min, b.y_max, s->centre.y)}, i};
+    }
+  }
+  ethd__order_build(items, s->tree.leaves);
+}
+
+static void fill(const ethd_scene_def *def, const int32_t *ids, ethd_scene *s, const ethd__item *items) {
+  char *base = (char *)s;
+  ethd__object *objects = (void *)(base + s->objects_at);
+  ethd__tree *trees = (void *)(base + s->trees_at);
+  uint32_t *places = (void *)(base + s->places_at), number = 0, tree = 0, node = 0;
+  for (uint32_t i = 0; i < s->object_count; i++) {
+    const ethd_object_def *d = &def->objects[items[i].id];
+    uint32_t edges = edges_of(d);
+    double *numbers = (double *)(void *)(base + s->numbers_at) + number;
+    keep_numbers(d, numbers);
+    objects[i] = (ethd__object){.id = ids ? ids[items[i].id] : (int32_t)items[i].id, .material = d->material,
+                                .first = number, .edges = edges, .tree = tree, .shape = (int8_t)d->shape};
+    if (d->shape == ETHD_POLYGON) objects[i].turn = (int8_t)turn_of(d->numbers, d->count / 2);
+    if (edges) objects[i].closed = is_closed(numbers, edges);
+    places[items[i].id] = i;
+    number += (uint32_t)kept_numbers(d);
+    if (edges <= ETHD__FLAT) continue;
+    ethd__tree_set(&trees[tree++], edges, node);
+    node += ethd__node_count(edges);
+  }
+  if (s->material_count) memcpy(base + s->materials_at, def->materials, s->material_count * sizeof(ethd_material));
+}
+
+/* ---- all ---- */
+
+static ethd_status check(const ethd_scene_def *def, ethd_error *error) {
+  void *room = malloc(ethd__check_room(def));
+  if (!room) return ethd__refuse(error, ETHD_E_MEMORY, "scene", NAN, NAN, NAN);
+  ethd_status status = ethd__check_scene(def, room, error);
+  free(room);
+  return status;
+}
+
+static bool build(const ethd_scene_def *def, const int32_t *ids, ethd_scene *scene) {
+  ethd__item *items = malloc((scene->object_count + (size_t)1) * sizeof *items);
+  if (!items) return false;
+  measure(def, scene);
+  order(def, scene, items);
+  fill(def, ids, scene, items);
+  free(items);
+  void *room = malloc(ethd__nodes_room(scene));
+  if (!room) return false;
+  ethd__nodes_build(scene, room);
+  free(room);
+  return true;
+}
+
+ethd_status ethd__scene_make(const ethd_scene_def *def, const int32_t *ids, ethd_scene **out, ethd_error *error) {
+  ethd_scene empty;
+  memset(&empty, 0, sizeof empty);
+  empty.outer = INFINITY;
+  *out = NULL;
+  ethd_status status = plan(def, &empty, error);
+  if (status) return status;
+  ethd_scene *scene = aligned_alloc(64, empty.bytes);
+  if (scene) {
+    memset(scene, 0, empty.bytes);
+    *scene = empty;
+  }
+  if (!scene || !build(def, ids, scene)) {
+    free(scene);
+    return ethd__refuse(error, ETHD_E_MEMORY, "scene", NAN, NAN, NAN);
+  }
+  *out = scene;
+  return ETHD_OK;
+}
+
+ethd_status ethd_scene_create(const ethd_scene_def *def, ethd_scene **out, ethd_error *error) {
+  *out = NULL;
+  ethd_status status = check(def, error);
+  return status ? status : ethd__scene_make(def, NULL, out, error);
+}
+
+void ethd_scene_destroy(ethd_scene *scene) { free(scene); }

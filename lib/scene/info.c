@@ -1,0 +1,125 @@
+#include "scene/tree.h"
+
+void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out) {
+  *out = (ethd_scene_info){.objects = scene->object_count, .materials = scene->material_count,
+                           .dropped = scene->dropped, .boxes = ETHD__WIDE * (size_t)scene->node_count,
+                           .bytes = scene->bytes, .x_min = scene->x_min, .x_max = scene->x_max,
+                           .y_min = scene->y_min, .y_max = scene->y_max};
+  for (uint32_t i = 0; i < scene->object_count; i++) {
+    const ethd__object *o = ethd__object_at(scene, i);
+    out->by_shape[o->shape]++;
+    out->segments += o->edges;
+  }
+}
+
+static double norm(double x, double y) { return sqrt(x * x + y * y); }
+
+static double farthest_of_chain(const ethd_scene *scene, const ethd__object *o) {
+  ethd__chain chain = ethd__chain_of(scene, o);
+  double most = 0;
+  for (size_t k = 0; k <= chain.edges; k++) most = fmax(most, ethd_vec_norm(chain.points[k]));
+  return most;
+}
+
+/* The base joint seen from the box's frame, and the corner farthest from there. */
+static double farthest_of_box(const double *p) {
+  double u = p[5] * p[0] + p[6] * p[1], v = p[5] * p[1] - p[6] * p[0];
+  return norm(fabs(u) + p[2], fabs(v) + p[3]);
+}
+
+/* How far an object's farthest point is from the base joint. */
+static double farthest(const ethd_scene *scene, const ethd__object *o) {
+  if (o->shape == ETHD_HALFPLANE) return INFINITY;
+  if (ethd__is_chain((ethd_shape)o->shape)) return farthest_of_chain(scene, o);
+  const double *p = ethd__numbers(scene, o);
+  if (o->shape == ETHD_CIRCLE) return norm(p[0], p[1]) + p[2];
+  if (o->shape == ETHD_CAPSULE) return fmax(norm(p[0], p[1]), norm(p[2], p[3])) + p[4];
+  return farthest_of_box(p);
+}
+
+/* Objects are connected: one whose nearest point lies within the outer circle and whose farthest lies
+   beyond the inner one has points between them. */
+bool ethd__object_is_within(const ethd_scene *scene, const ethd__object *o, double inner, double outer) {
+  ethd_touch nearest;
+  ethd__object_nearest(scene, o, (ethd_vec){0, 0}, &nearest);
+  return nearest.distance <= outer && farthest(scene, o) >= inner;
+}
+
+void ethd__scene_annulus(const ethd_arm *arm, double radius, double *inner, double *outer) {
+  ethd_arm_reach(arm, inner, outer);
+  *inner -= radius;
+  *outer += radius;
+}
+
+size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, double radius) {
+  double inner, outer;
+  size_t count = 0;
+  ethd__scene_annulus(arm, radius, &inner, &outer);
+  for (uint32_t i = 0; i < scene->object_count; i++)
+    count += !ethd__object_is_within(scene, ethd__object_at(scene, i), inner, outer);
+  return count;
+}
+
+/* ---- what it is made of ---- */
+
+static size_t given_numbers(const ethd__object *o) {
+  switch ((ethd_shape)o->shape) {
+    case ETHD_HALFPLANE:
+    case ETHD_CIRCLE: return 3;
+    case ETHD_CAPSULE:
+    case ETHD_BOX: return 5;
+    default: return 2 * (o->edges + (o->shape != ETHD_POLYGON ? (size_t)1 : 0));
+  }
+}
+
+int32_t ethd_scene_object(const ethd_scene *scene, size_t i, ethd_object_def *out) {
+  if (i >= scene->object_count) return -1;
+  const ethd__object *o = ethd__object_at(scene, ETHD__ARRAY(scene, uint32_t, places_at)[i]);
+  *out = (ethd_object_def){(ethd_shape)o->shape, o->material, ethd__numbers(scene, o), given_numbers(o), 0};
+  return o->id;
+}
+
+/* ---- its trees ---- */
+
+/* The tree that has this node: trees stand in the order of their nodes. */
+static const ethd__tree *tree_of(const ethd_scene *scene, uint32_t node) {
+  const ethd__tree *trees = ETHD__ARRAY(scene, ethd__tree, trees_at);
+  uint32_t low = 0, high = scene->tree_count;
+  if (scene->tree.levels && node >= scene->tree.first[1]) return &scene->tree;
+  while (high - low > 1) {
+    uint32_t middle = low + (high - low) / 2;
+    *(trees[middle].first[1] <= node ? &low : &high) = middle;
+  }
+  return &trees[low];
+}
+
+ethd_status ethd_scene_box_at(const ethd_scene *scene, size_t i, ethd_scene_box *out) {
+  uint32_t node = (uint32_t)(i / ETHD__WIDE), lane = (uint32_t)(i % ETHD__WIDE), level = 1;
+  if (i / ETHD__WIDE >= scene->node_count) return ETHD_EMPTY;
+  const ethd__node *n = ETHD__ARRAY(scene, ethd__node, nodes_at) + node;
+  const ethd__tree *tree = tree_of(scene, node);
+  double c = (double)n->c[lane], s = (double)n->s[lane], u = (double)n->u[lane], v = (double)n->v[lane], k = 1 / scene->scale;
+  if (!isfinite(u)) return ETHD_EMPTY;
+  while (level < tree->levels && node >= tree->first[level + 1]) level++;
+  *out = (ethd_scene_box){{scene->centre.x + k * (c * u - s * v), scene->centre.y + k * (s * u + c * v)},
+                          c, s, k * (double)n->w[lane], k * (double)n->h[lane], (int32_t)level, tree != &scene->tree};
+  return ETHD_OK;
+}
+
+const ethd_material *ethd_scene_material(const ethd_scene *scene, size_t i) {
+  return i < scene->material_count ? ETHD__ARRAY(scene, ethd_material, materials_at) + i : NULL;
+}
+
+const char *ethd_shape_name(ethd_shape shape) {
+  switch (shape) {
+    case ETHD_HALFPLANE: return "halfplane";
+    case ETHD_CIRCLE: return "circle";
+    case ETHD_CAPSULE: return "capsule";
+    case ETHD_BOX: return "box";
+    case ETHD_POLYGON: return "polygon";
+    case ETHD_SEGMENT: return "segment";
+    case ETHD_POLYLINE: return "polyline";
+    case ETHD_SHAPE_COUNT: break;
+  }
+  return "";
+}

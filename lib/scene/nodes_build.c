@@ -1,0 +1,136 @@
+#include <float.h>
+
+#include "scene/build.h"
+
+typedef struct build {
+  ethd_scene *scene;
+  ethd__node *nodes;
+  float *slopes;
+  ethd_vec *points; /* with radii: discs that span the objects, in the order of the leaves */
+  double *radii;
+  size_t *start; /* the object at place i has the discs from start[i] on */
+} build;
+
+static size_t discs_of(const ethd__object *o) {
+  if (o->shape == ETHD_CIRCLE) return 1;
+  return o->shape == ETHD_CAPSULE ? 2 : o->shape == ETHD_BOX ? 4 : o->edges + (size_t)1;
+}
+
+static size_t disc_count(const ethd_scene *s) {
+  size_t count = 0;
+  for (uint32_t i = 0; i < s->tree.leaves; i++) count += discs_of(ethd__object_at(s, i));
+  return count;
+}
+
+size_t ethd__nodes_room(const ethd_scene *s) {
+  return disc_count(s) * (sizeof(ethd_vec) + sizeof(double)) + (s->object_count + (size_t)1) * sizeof(size_t);
+}
+
+/* ---- what spans an object ---- */
+
+static size_t put(build *b, size_t n, double x, double y, double r) {
+  const ethd_scene *s = b->scene;
+  b->points[n] = ethd_vec_scale(s->scale, ethd_vec_sub((ethd_vec){x, y}, s->centre));
+  b->radii[n] = s->scale * r;
+  return n + 1;
+}
+
+static size_t put_corners(build *b, size_t n, const double *p) {
+  for (int k = 0; k < 4; k++) {
+    double u = k & 1 ? p[2] : -p[2], v = k & 2 ? p[3] : -p[3];
+    n = put(b, n, p[0] + (p[5] * u - p[6] * v), p[1] + (p[6] * u + p[5] * v), 0);
+  }
+  return n;
+}
+
+static size_t put_object(build *b, size_t n, const ethd__object *o) {
+  const double *p = ethd__numbers(b->scene, o);
+  if (o->shape == ETHD_CIRCLE) return put(b, n, p[0], p[1], p[2]);
+  if (o->shape == ETHD_CAPSULE) return put(b, put(b, n, p[0], p[1], p[4]), p[2], p[3], p[4]);
+  if (o->shape == ETHD_BOX) return put_corners(b, n, p);
+  for (size_t k = 0; k <= o->edges; k++) n = put(b, n, p[2 * k], p[2 * k + 1], 0);
+  return n;
+}
+
+/* ---- the tree of the scene ---- */
+
+static size_t least(size_t a, size_t b) { return a < b ? a : b; }
+
+static void build_tree(build *b, const ethd__tree *tree) {
+  ethd__cloud cloud = {b->points, b->radii};
+  for (uint32_t level = 1; level <= tree->levels; level++) {
+    size_t step = (size_t)1 << 3 * (level - 1), lanes = (tree->leaves + step - 1) / step;
+    for (size_t i = 0; i < (lanes + ETHD__WIDE - 1) / ETHD__WIDE * ETHD__WIDE; i++) {
+      ethd__node *node = &b->nodes[tree->first[level] + i / ETHD__WIDE];
+      if (i < lanes)
+        ethd__box_fit(&cloud, b->start[i * step], b->start[least((i + 1) * step, tree->leaves)], node, i % ETHD__WIDE);
+      else
+        ethd__box_clear(node, i % ETHD__WIDE);
+    }
+  }
+}
+
+/* ---- the tree of a chain ---- */
+
+typedef struct strip {
+  const ethd_vec *points;
+  size_t edges;
+  bool closed;
+} strip;
+
+/* |across| / along of edge k in the frame of (c, s); INFINITY: it goes the other way. */
+static double slope_of(const strip *t, size_t k, ethd_vec axis) {
+  ethd_vec e = ethd_vec_sub(t->points[k + 1], t->points[k]);
+  double along = ethd_vec_dot(axis, e);
+  return along > 0 ? fabs(ethd_vec_cross(axis, e)) / along : INFINITY;
+}
+
+/* A place across is known to 2^-20 of its distance: times this and more, that is no longer little. */
+#define STEEPEST 8
+
+/* Of edges [from, to) and of one more on each side, on which the vertices there depend; at the ends of an
+   open chain everything is possible. */
+static float steepest(const strip *t, size_t from, size_t to, float c, float s) {
+  if (!t->closed && (from == 0 || to == t->edges)) return FLT_MAX;
+  ethd_vec axis = {c, s};
+  if (ethd_vec_dot(axis, ethd_vec_sub(t->points[to], t->points[from])) < 0) axis = ethd_vec_scale(-1, axis);
+  double before = slope_of(t, from ? from - 1 : t->edges - 1, axis), most = slope_of(t, to % t->edges, axis);
+  most = fmax(most, before);
+  for (size_t k = from; k < to && most < INFINITY; k++) most = fmax(most, slope_of(t, k, axis));
+  most = most * ETHD__STRETCH_FAR + 0x1p-16;
+  return most < STEEPEST ? (float)most : FLT_MAX;
+}
+
+static void build_strip(build *b, const ethd__object *o, const ethd_vec *points) {
+  const ethd__tree *tree = ethd__tree_at(b->scene, o);
+  ethd__cloud cloud = {points, NULL};
+  strip t = {points, o->edges, o->closed};
+  for (uint32_t level = 1; level <= tree->levels; level++) {
+    size_t step = (size_t)1 << 3 * (level - 1), lanes = (t.edges + step - 1) / step;
+    for (size_t i = 0; i < (lanes + ETHD__WIDE - 1) / ETHD__WIDE * ETHD__WIDE; i++) {
+      size_t from = i * step, to = least(from + step, t.edges), place = tree->first[level] + i / ETHD__WIDE;
+      ethd__node *node = &b->nodes[place];
+      size_t lane = i % ETHD__WIDE;
+      if (i < lanes) {
+        ethd__box_fit(&cloud, from, to + 1, node, lane);
+        b->slopes[ETHD__WIDE * place + lane] = steepest(&t, from, to, node->c[lane], node->s[lane]);
+      } else {
+        ethd__box_clear(node, lane);
+      }
+    }
+  }
+}
+
+void ethd__nodes_build(ethd_scene *s, void *room) {
+  build b = {s, (void *)((char *)s + s->nodes_at), (void *)((char *)s + s->slopes_at), room, NULL, NULL};
+  size_t discs = disc_count(s);
+  b.radii = (double *)(b.points + discs);
+  b.start = (size_t *)(b.radii + discs);
+  b.start[0] = 0;
+  for (uint32_t i = 0; i < s->tree.leaves; i++) {
+    const ethd__object *o = ethd__object_at(s, i);
+    b.start[i + 1] = put_object(&b, b.start[i], o);
+    if (ethd__has_tree(o)) build_strip(&b, o, b.points + b.start[i]);
+  }
+  build_tree(&b, &s->tree);
+}

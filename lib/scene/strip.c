@@ -1,0 +1,125 @@
+#include "scene/strip.h"
+
+#include <float.h>
+
+static const float *slopes(const ethd_scene *scene, const ethd__probe *p) {
+  return ethd__is_true_to(p) ? ETHD__ARRAY(scene, float, slopes_at) : NULL;
+}
+
+/* ---- the nearest edge ---- */
+
+static void take(const ethd__chain *c, uint32_t k, ethd_vec x, ethd__nearest_edge *best) {
+  double squared = ethd__beside_edge(c->points[k], c->points[k + 1], x).squared;
+  if (!(squared < best->squared || (squared == best->squared && k < best->edge))) return;
+  best->squared = squared;
+  best->edge = k;
+}
+
+void ethd__strip_nearest(const ethd_scene *scene, const ethd__object *o, const ethd__probe *p, ethd_vec x,
+                         uint32_t first, double limit, ethd__nearest_edge *out) {
+  ethd__chain c = ethd__chain_of(scene, o);
+  const ethd__tree *tree = ethd__tree_at(scene, o);
+  ethd__walk walk;
+  ethd__place at;
+  *out = (ethd__nearest_edge){limit, ETHD__NONE, false};
+  ethd__walk_start(&walk, tree, p, slopes(scene, p));
+  if (first < o->edges) {
+    take(&c, first, x, out);
+    ethd__walk_around(&walk, first, ethd__bound(p, out->squared));
+  } else {
+    first = ethd__walk_down(&walk);
+    take(&c, first, x, out);
+    ethd__walk_on(&walk, first, ethd__bound(p, out->squared));
+  }
+  while ((at = ethd__walk_next(&walk)).index != ETHD__NONE) {
+    take(&c, at.index, x, out);
+    walk.bound = ethd__bound(p, out->squared);
+  }
+}
+
+/* ---- inside or outside ---- */
+
+/* The ray from x to the right may meet what is in these boxes. */
+static unsigned ahead(const ethd__node *n, float x, float y) {
+  unsigned meet = 0;
+  for (int i = 0; i < ETHD__WIDE; i += 4) {
+    ethd__floats c = ethd__load(n->c + i), s = ethd__load(n->s + i), w = ethd__load(n->w + i), h = ethd__load(n->h + i);
+    ethd__floats du = ethd__load(n->u + i) - (c * x + s * y), dv = ethd__load(n->v + i) - (c * y - s * x);
+    ethd__floats ac = ethd__abs(c), as = ethd__abs(s), tiny = ethd__all(ETHD__INFLATE);
+    ethd__floats right = c * du - s * dv + (ac * w + as * h);
+    ethd__floats above = ethd__abs(s * du + c * dv) - (as * w + ac * h);
+    meet |= ethd__bits((right >= -tiny) & (above <= tiny)) << i;
+  }
+  return meet;
+}
+
+/* By the parity of the edges that a ray to the right crosses. Beyond the frame that all objects lie in nothing
+   is inside, and boxes would be wrong by more than they are inflated. */
+static bool contains(const ethd__chain *c, const ethd__tree *tree, const ethd__probe *p, ethd_vec x) {
+  struct {
+    uint32_t level, index;
+  } stack[(ETHD__WIDE - 1) * ETHD__LEVELS + 1] = {{tree->levels, 0}}, at;
+  bool inside = false;
+  if (!(fabsf(p->x) <= 2 && fabsf(p->y) <= 2)) return false;
+  for (int count = 1; count > 0;) {
+    at = stack[--count];
+    if (at.level == 0) {
+      inside ^= ethd__edge_crossed(c->points[at.index], c->points[at.index + 1], x);
+      continue;
+    }
+    const ethd__node *n = p->nodes + tree->first[at.level] + at.index;
+    for (unsigned meet = ahead(n, p->x, p->y); meet; meet &= meet - 1) {
+      stack[count].level = at.level - 1;
+      stack[count++].index = ETHD__WIDE * at.index + (uint32_t)__builtin_ctz(meet);
+    }
+  }
+  return inside;
+}
+
+/* Squared distances of the nearest edges that may show x their outer face, and their inner face. */
+typedef struct faces {
+  double outer, inner;
+} faces;
+
+/* The nearest face decides, unless one of the other kind is as near up to rounding. */
+static bool is_inside(const ethd__chain *c, const ethd__tree *tree, const ethd__probe *p, ethd_vec x,
+                      const faces *f) {
+  double outer = sqrt(f->outer), inner = sqrt(f->inner);
+  double rounding = 4 * c->slack + 64 * DBL_EPSILON * fmin(outer, inner);
+  return fabs(outer - inner) > rounding ? inner < outer : contains(c, tree, p, x);
+}
+
+static void take_face(const ethd__chain *c, uint32_t k, ethd_vec x, ethd__nearest_edge *best, faces *f) {
+  ethd__beside s = ethd__beside_edge(c->points[k], c->points[k + 1], x);
+  double in = c->turn * s.across;
+  if (s.squared < best->squared || (s.squared == best->squared && k < best->edge)) {
+    best->squared = s.squared;
+    best->edge = k;
+  }
+  if (!(in > s.doubt) && s.squared < f->outer) f->outer = s.squared;
+  if (!(in < -s.doubt) && s.squared < f->inner) f->inner = s.squared;
+}
+
+void ethd__strip_signed(const ethd_scene *scene, const ethd__object *o, const ethd__probe *p, ethd_vec x,
+                        uint32_t first, ethd__nearest_edge *out) {
+  ethd__chain c = ethd__chain_of(scene, o);
+  const ethd__tree *tree = ethd__tree_at(scene, o);
+  faces f = {INFINITY, INFINITY};
+  ethd__walk walk;
+  ethd__place at;
+  *out = (ethd__nearest_edge){INFINITY, 0, false};
+  ethd__walk_start(&walk, tree, p, slopes(scene, p));
+  if (first < o->edges) {
+    take_face(&c, first, x, out, &f);
+    ethd__walk_around(&walk, first, ethd__bound(p, out->squared));
+  } else {
+    first = ethd__walk_down(&walk);
+    take_face(&c, first, x, out, &f);
+    ethd__walk_on(&walk, first, ethd__bound(p, out->squared));
+  }
+  while ((at = ethd__walk_next(&walk)).index != ETHD__NONE) {
+    take_face(&c, at.index, x, out, &f);
+    walk.bound = ethd__bound(p, out->squared);
+  }
+  out->inside = is_inside(&c, tree, p, x, &f);
+}

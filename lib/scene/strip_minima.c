@@ -1,0 +1,59 @@
+#include "scene/strip.h"
+
+#include <float.h>
+
+/* Near the centre, and not leaning as seen from x, which is the centre unless they are `apart`. */
+static unsigned open_lanes(const ethd__minima *m, uint32_t place) {
+  const ethd__node *n = m->at_x.nodes + place;
+  const float *slopes = m->slopes ? m->slopes + ETHD__WIDE * (size_t)place : NULL;
+  if (!m->apart) return ethd__lanes_near(n, slopes, &m->at_x, m->bound);
+  unsigned lanes = ethd__lanes_near(n, NULL, &m->at_centre, m->bound);
+  return lanes && slopes ? lanes & ethd__lanes_near(n, slopes, &m->at_x, FLT_MAX) : lanes;
+}
+
+static void open_node(ethd__minima *m, uint32_t level, uint32_t index) {
+  unsigned open = open_lanes(m, m->tree->first[level] + index);
+  for (; open; open &= open - 1) {
+    m->stack[m->count].level = level - 1;
+    m->stack[m->count++].index = ETHD__WIDE * index + (uint32_t)__builtin_ctz(open);
+  }
+}
+
+/* The root, or its children if they are two: opening them takes no longer than asking it which to open. */
+static void push_top(ethd__minima *m) {
+  uint32_t level = m->tree->levels, roots = 1;
+  if (level > 1 && m->tree->first[level] - m->tree->first[level - 1] == 2) level--, roots = 2;
+  for (uint32_t i = 0; i < roots; i++) {
+    m->stack[m->count].level = level;
+    m->stack[m->count++].index = i;
+  }
+}
+
+void ethd__minima_start(ethd__minima *m, const ethd_scene *scene, const ethd__object *o, ethd_vec x,
+                        const ethd__probe *at_x, const ethd__probe *at_centre) {
+  m->chain = ethd__chain_of(scene, o);
+  m->tree = ethd__tree_at(scene, o);
+  m->at_x = *at_x;
+  m->at_centre = *at_centre;
+  m->x = x;
+  m->apart = at_x != at_centre;
+  m->bound = ethd__bound(&m->at_centre, INFINITY);
+  m->slopes = ethd__is_true_to(&m->at_x) ? ETHD__ARRAY(scene, float, slopes_at) : NULL;
+  m->end = true;
+  m->count = 0;
+  push_top(m);
+}
+
+bool ethd__minima_next(ethd__minima *m, ethd_touch *out) {
+  while (m->count) {
+    m->count--;
+    uint32_t level = m->stack[m->count].level, index = m->stack[m->count].index;
+    if (level)
+      open_node(m, level, index);
+    else if (ethd__chain_minimum_at(&m->chain, index, &m->x, out))
+      return true;
+  }
+  bool end = m->end;
+  m->end = false;
+  return end && ethd__chain_minimum_at(&m->chain, m->chain.edges, &m->x, out);
+}

@@ -1,0 +1,160 @@
+#include "scene/strip.h"
+
+/* ---- all touches ---- */
+
+typedef struct list {
+  ethd_touch *touches;
+  size_t room, count;
+  double range;
+} list;
+
+static bool deeper(const ethd_touch *a, const ethd_touch *b) {
+  if (a->distance != b->distance) return a->distance < b->distance;
+  if (a->object != b->object) return a->object < b->object;
+  return a->feature < b->feature;
+}
+
+static void add(list *l, const ethd_touch *touch) {
+  if (!(touch->distance <= l->range)) return;
+  size_t kept = l->count < l->room ? l->count : l->room, i = kept;
+  l->count++;
+  while (i > 0 && deeper(touch, &l->touches[i - 1])) i--;
+  if (i == l->room) return;
+  for (size_t k = kept < l->room ? kept : kept - 1; k > i; k--) l->touches[k] = l->touches[k - 1];
+  l->touches[i] = *touch;
+}
+
+/* A solid around x has one touch only; so has one that x is at. */
+static bool has_one(const ethd_scene *scene, const ethd__object *o, double distance) {
+  return !o->edges || (o->turn && distance <= scene->slack);
+}
+
+static void add_object(const ethd_scene *scene, const ethd__object *o, ethd_vec x, list *l) {
+  ethd__chain chain = ethd__chain_of(scene, o);
+  ethd_touch touch;
+  if (!o->edges || o->turn) {
+    ethd__object_nearest(scene, o, x, &touch);
+    if (has_one(scene, o, touch.distance)) {
+      add(l, &touch);
+      return;
+    }
+  }
+  for (size_t k = 0; (k = ethd__chain_minimum(&chain, x, k, &touch)) != 0;) {
+    ethd__label(o, &touch);
+    add(l, &touch);
+  }
+}
+
+/* Of a polygon with a tree: whether it has one touch only, as yet without a label. */
+static bool only_touch(const ethd_scene *scene, const ethd__object *o, const ethd__probe *p, ethd_vec x,
+                       ethd_touch *out) {
+  ethd__chain chain = ethd__chain_of(scene, o);
+  ethd__nearest_edge near;
+  ethd__strip_signed(scene, o, p, x, ETHD__NONE, &near);
+  ethd__chain_touch(&chain, near.edge, x, near.inside, out);
+  return has_one(scene, o, out->distance);
+}
+
+static void add_strip(const ethd_scene *scene, const ethd__object *o, const ethd__probe *p, ethd_vec x,
+                      bool maybe_inside, double squared, list *l) {
+  ethd_touch touch;
+  ethd__minima minima;
+  if (o->turn && maybe_inside && only_touch(scene, o, p, x, &touch)) {
+    ethd__label(o, &touch);
+    add(l, &touch);
+    return;
+  }
+  ethd__minima_start(&minima, scene, o, x, p, p);
+  minima.bound = ethd__bound(p, squared);
+  while (ethd__minima_next(&minima, &touch)) {
+    ethd__label(o, &touch);
+    add(l, &touch);
+  }
+}
+
+static void add_leaf(const ethd_scene *scene, const ethd__probe *p, ethd__place at, ethd_vec x, double squared,
+                     list *l) {
+  const ethd__object *o = ethd__object_at(scene, at.index);
+  if (ethd__has_tree(o))
+    add_strip(scene, o, p, x, at.squared == 0, squared, l);
+  else
+    add_object(scene, o, x, l);
+}
+
+static void add_tree(const ethd_scene *scene, ethd_vec x, double reach, list *l) {
+  ethd__probe p = ethd__probe_at(scene, x);
+  ethd__walk walk;
+  ethd__place at = {0, 0, 0};
+  if (scene->tree.leaves == 1) {
+    add_leaf(scene, &p, at, x, reach * reach, l);
+    return;
+  }
+  ethd__walk_start(&walk, &scene->tree, &p, NULL);
+  ethd__walk_around(&walk, 0, ethd__bound(&p, reach * reach));
+  for (; at.index != ETHD__NONE; at = ethd__walk_next(&walk)) add_leaf(scene, &p, at, x, reach * reach, l);
+}
+
+size_t ethd_scene_touches(const ethd_scene *scene, ethd_vec x, double range, ethd_touch *out, size_t room) {
+  list l = {out, room, 0, range};
+  if (!isfinite(x.x) || !isfinite(x.y) || isnan(range)) return 0;
+  for (uint32_t i = scene->tree.leaves; i < scene->object_count; i++)
+    add_object(scene, ethd__object_at(scene, i), x, &l);
+  if (scene->tree.leaves) add_tree(scene, x, fmax(range, 0) + scene->slack, &l);
+  return l.count;
+}
+
+/* ---- one touch again ---- */
+
+/* The first in the order of the chain, if several are as near. */
+static void take(const ethd_touch *touch, ethd_vec from, double *least, ethd_touch *out) {
+  ethd_vec u = ethd_vec_sub(touch->point, from);
+  double d = ethd_vec_dot(u, u);
+  if (!(d < *least || (d == *least && touch->feature < out->feature))) return;
+  *least = d;
+  *out = *touch;
+}
+
+static void follow_strip(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_vec from,
+                         ethd_touch *out) {
+  ethd__probe at_x = ethd__probe_at(scene, x), at_from = ethd__probe_at(scene, from);
+  ethd_touch touch;
+  ethd__minima minima;
+  double least = INFINITY;
+  if (o->turn && only_touch(scene, o, &at_x, x, out)) return;
+  ethd__minima_start(&minima, scene, o, x, &at_x, &at_from);
+  while (ethd__minima_next(&minima, &touch)) {
+    take(&touch, from, &least, out);
+    minima.bound = ethd__bound(&at_from, least);
+  }
+  if (!(least < INFINITY)) ethd__object_nearest(scene, o, x, out);
+}
+
+static void follow_object(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_vec from,
+                          ethd_touch *out) {
+  ethd__chain chain = ethd__chain_of(scene, o);
+  ethd_touch touch;
+  double least = INFINITY;
+  ethd__object_nearest(scene, o, x, out);
+  if (has_one(scene, o, out->distance)) return;
+  for (size_t k = 0; (k = ethd__chain_minimum(&chain, x, k, &touch)) != 0;) take(&touch, from, &least, out);
+}
+
+/* Where none was dropped, its id is its rank. */
+static const ethd__object *object_of(const ethd_scene *scene, int32_t id) {
+  const uint32_t *places = ETHD__ARRAY(scene, uint32_t, places_at);
+  uint32_t low = scene->dropped ? 0 : (uint32_t)id, high = scene->dropped ? scene->object_count : low + 1;
+  while (high - low > 1) {
+    uint32_t middle = low + (high - low) / 2;
+    *(ethd__object_at(scene, places[middle])->id <= id ? &low : &high) = middle;
+  }
+  return ethd__object_at(scene, places[low]);
+}
+
+void ethd_scene_follow(const ethd_scene *scene, int32_t object, ethd_vec x, ethd_vec from, ethd_touch *out) {
+  const ethd__object *o = object_of(scene, object);
+  if (ethd__has_tree(o))
+    follow_strip(scene, o, x, from, out);
+  else
+    follow_object(scene, o, x, from, out);
+  ethd__label(o, out);
+}

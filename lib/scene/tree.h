@@ -1,0 +1,266 @@
+/* Bounds of everything in a scene: packed trees, eight wide, of turned boxes.
+
+     level 0   leaves: objects; of a chain of more than four edges, which has a tree of its own, its edges
+     level l   nodes, each with the boxes of eight things of the level below: node i has those from 8 i on
+
+   Nodes are full but for the last of each level, so nothing points anywhere. Boxes are floats in the trees'
+   frame, in which the bounded objects lie within [-1, 1]. They are larger than what they hold by more than
+   floats can err there, so a box is never farther than what is in it:
+
+     17 2^-24   X rounded, c X + s Y, - u, - w: every rounding at most 2^-24 of its result, |X|, |Y| <= 2
+     2^-22      of the distance: (c, s) isn't quite of unit length, squares and their sum are rounded
+     2^-18      of the distance: all that, when X is farther away
+   The first is less than ETHD__INFLATE; bounds are stretched by more than the others. */
+#ifndef ETHD_LIB_SCENE_TREE_H
+#define ETHD_LIB_SCENE_TREE_H
+
+#include "scene/lanes.h"
+#include "scene/scene.h"
+
+#define ETHD__WIDE 8
+#define ETHD__FLAT 4 /* edges that are looked at one by one */
+#define ETHD__INFLATE 0x1.8p-20f
+#define ETHD__STRETCH_NEAR (1 + 0x1p-20)
+#define ETHD__STRETCH_FAR (1 + 0x1p-16)
+#define ETHD__NONE UINT32_MAX
+
+/* Lane j: the box |c X + s Y - u| <= w, |c Y - s X - v| <= h; nothing: u = inf. */
+typedef struct ethd__node {
+  _Alignas(64) float c[ETHD__WIDE];
+  float s[ETHD__WIDE], u[ETHD__WIDE], v[ETHD__WIDE], w[ETHD__WIDE], h[ETHD__WIDE];
+} ethd__node;
+
+static inline void ethd__tree_set(ethd__tree *t, uint32_t leaves, uint32_t first) {
+  t->leaves = leaves;
+  t->levels = 0;
+  for (uint32_t n = leaves; n > 1;) {
+    n = (n + ETHD__WIDE - 1) / ETHD__WIDE;
+    t->first[++t->levels] = first;
+    first += n;
+  }
+}
+
+static inline uint32_t ethd__node_count(uint32_t leaves) {
+  uint32_t count = 0;
+  for (uint32_t n = leaves; n > 1;) count += n = (n + ETHD__WIDE - 1) / ETHD__WIDE;
+  return count;
+}
+
+static inline bool ethd__has_tree(const ethd__object *o) { return o->edges > ETHD__FLAT; }
+
+static inline const ethd__tree *ethd__tree_at(const ethd_scene *scene, const ethd__object *o) {
+  return ETHD__ARRAY(scene, ethd__tree, trees_at) + o->tree;
+}
+
+/* ---- a point in the trees' frame ---- */
+
+typedef struct ethd__probe {
+  const ethd__node *nodes;
+  double squares; /* from m2 to bounds */
+  float x, y;
+} ethd__probe;
+
+static inline double ethd__within(double v, double most) { return v > most ? most : v < -most ? -most : v; }
+
+/* Beyond 1e15 the nearest point of that square stands for x: no box is farther from it. */
+static inline ethd__probe ethd__probe_at(const ethd_scene *scene, ethd_vec x) {
+  double s = scene->scale, u = s * (x.x - scene->centre.x), v = s * (x.y - scene->centre.y);
+  bool near = fabs(u) <= 2 && fabs(v) <= 2;
+  ethd__probe p = {ETHD__ARRAY(scene, ethd__node, nodes_at), s * s * (near ? ETHD__STRETCH_NEAR : ETHD__STRETCH_FAR),
+                   (float)ethd__within(u, 1e15), (float)ethd__within(v, 1e15)};
+  return p;
+}
+
+static inline bool ethd__is_true_to(const ethd__probe *p) {
+  return fabs((double)p->x) < 1e15 && fabs((double)p->y) < 1e15;
+}
+
+/* A squared distance in metres as a bound for boxes. */
+static inline float ethd__bound(const ethd__probe *p, double squared) {
+  double b = squared * p->squares;
+  return (float)(b < 1e37 ? b : 1e37);
+}
+
+/* ---- boxes ---- */
+
+/* Four lanes' squared distances, inf where `slopes` (NULL: nowhere) tells that no edge in the box can be the
+   nearest, nor one of its vertices: all lean one way as seen from x, which is farther along the box's axis
+   than the steepest edge makes up for across it (Johnson and Cohen 2001). */
+ETHD__INLINE ethd__floats ethd__four_squared(const ethd__node *n, const float *slopes, int i, ethd__floats x,
+                                             ethd__floats y) {
+  ethd__floats c = ethd__load(n->c + i), s = ethd__load(n->s + i), zero = ethd__all(0);
+  ethd__floats w = ethd__load(n->w + i), h = ethd__load(n->h + i);
+  ethd__floats u = ethd__abs(c * x + s * y - ethd__load(n->u + i));
+  ethd__floats v = ethd__abs(c * y - s * x - ethd__load(n->v + i));
+  ethd__floats du = ethd__max(u - w, zero), dv = ethd__max(v - h, zero), d = du * du + dv * dv;
+  if (!slopes) return d;
+  ethd__words leaning = du > ethd__load(slopes + i) * (v + h);
+  return ethd__max(d, (ethd__floats)(leaning & (ethd__words)ethd__all(INFINITY)));
+}
+
+ETHD__INLINE void ethd__eight_squared(const ethd__node *n, const float *slopes, const ethd__probe *p,
+                                      float squared[ETHD__WIDE]) {
+  ethd__floats x = ethd__all(p->x), y = ethd__all(p->y);
+  ethd__floats low = ethd__four_squared(n, slopes, 0, x, y), high = ethd__four_squared(n, slopes, 4, x, y);
+  ethd__store(squared, low);
+  ethd__store(squared + 4, high);
+}
+
+/* The lanes that are not beyond, without their distances. */
+ETHD__INLINE unsigned ethd__lanes_near(const ethd__node *n, const float *slopes, const ethd__probe *p, float bound) {
+  ethd__floats x = ethd__all(p->x), y = ethd__all(p->y), most = ethd__all(bound);
+  ethd__floats low, high;
+  if (slopes)
+    low = ethd__four_squared(n, slopes, 0, x, y), high = ethd__four_squared(n, slopes, 4, x, y);
+  else
+    low = ethd__four_squared(n, NULL, 0, x, y), high = ethd__four_squared(n, NULL, 4, x, y);
+  return ethd__bits(low <= most) | ethd__bits(high <= most) << 4;
+}
+
+/* The lanes that are not beyond. */
+ETHD__INLINE unsigned ethd__lanes_within(const float squared[ETHD__WIDE], float bound) {
+  ethd__floats most = ethd__all(bound);
+  return ethd__bits(ethd__load(squared) <= most) | ethd__bits(ethd__load(squared + 4) <= most) << 4;
+}
+
+/* The first of the nearest ones. */
+ETHD__INLINE uint32_t ethd__nearest_lane(const float squared[ETHD__WIDE]) {
+  ethd__floats low = ethd__load(squared), high = ethd__load(squared + 4), m = ethd__least(ethd__min(low, high));
+  unsigned lanes = ethd__bits(low == m) | ethd__bits(high == m) << 4;
+  return lanes ? (uint32_t)__builtin_ctz(lanes) : 0;
+}
+
+/* ---- the leaves within a bound that may shrink ---- */
+
+typedef struct ethd__place {
+  float squared;
+  uint32_t level, index;
+} ethd__place;
+
+typedef struct ethd__eight {
+  _Alignas(16) float squared[ETHD__WIDE];
+} ethd__eight;
+
+typedef struct ethd__walk {
+  const ethd__tree *tree;
+  const ethd__probe *probe;
+  const float *slopes;
+  float bound;
+  int count;
+  unsigned lanes; /* leaves still to come of the node at hand */
+  uint32_t leaf;  /* its first */
+  ethd__eight at[ETHD__LEVELS]; /* [1]: the node at hand; after walk_down, those on the way */
+  ethd__place stack[(ETHD__WIDE - 1) * ETHD__LEVELS + 1];
+} ethd__walk;
+
+ETHD__INLINE void ethd__look(ethd__walk *w, uint32_t level, uint32_t index, float squared[ETHD__WIDE]) {
+  uint32_t n = w->tree->first[level] + index;
+  ethd__eight_squared(w->probe->nodes + n, w->slopes ? w->slopes + ETHD__WIDE * (size_t)n : NULL, w->probe, squared);
+}
+
+/* These lanes of a node, nearer ones on top. */
+static inline void ethd__push(ethd__walk *w, const float squared[ETHD__WIDE], unsigned lanes, uint32_t level,
+                              uint32_t index) {
+  int start = w->count;
+  for (; lanes; lanes &= lanes - 1) {
+    uint32_t lane = (uint32_t)__builtin_ctz(lanes);
+    int i = w->count++;
+    for (; i > start && w->stack[i - 1].squared < squared[lane]; i--) w->stack[i] = w->stack[i - 1];
+    w->stack[i] = (ethd__place){squared[lane], level - 1, ETHD__WIDE * index + lane};
+  }
+}
+
+static inline void ethd__walk_start(ethd__walk *w, const ethd__tree *tree, const ethd__probe *p,
+                                    const float *slopes) {
+  w->tree = tree;
+  w->probe = p;
+  w->slopes = slopes;
+  w->count = 0;
+  w->lanes = 0;
+}
+
+/* Of node `index`, in `at`, all lanes within the bound but this one. */
+ETHD__INLINE void ethd__walk_beside(ethd__walk *w, const float squared[ETHD__WIDE], uint32_t level, uint32_t index,
+                                    uint32_t but) {
+  unsigned lanes = ethd__lanes_within(squared, w->bound) & ~(1u << but % ETHD__WIDE);
+  if (level > 1) {
+    ethd__push(w, squared, lanes, level, index);
+  } else {
+    w->lanes = lanes;
+    w->leaf = ETHD__WIDE * index;
+  }
+}
+
+/* Everything but leaf `taken`: what is beside it on each level, so no load waits for another. */
+static inline void ethd__walk_around(ethd__walk *w, uint32_t taken, float bound) {
+  w->bound = bound;
+  for (uint32_t level = w->tree->levels; level > 0; level--) {
+    ethd__look(w, level, taken >> 3 * level, w->at[1].squared);
+    ethd__walk_beside(w, w->at[1].squared, level, taken >> 3 * level, taken >> 3 * (level - 1));
+  }
+}
+
+/* The leaf that is found by always taking the nearest box. The tree isn't empty. */
+static inline uint32_t ethd__walk_down(ethd__walk *w) {
+  uint32_t index = 0;
+  for (uint32_t level = w->tree->levels; level > 0; level--) {
+    ethd__look(w, level, index, w->at[level].squared);
+    index = ETHD__WIDE * index + ethd__nearest_lane(w->at[level].squared);
+  }
+  return index;
+}
+
+/* What is beside the leaf that walk_down found. */
+static inline void ethd__walk_on(ethd__walk *w, uint32_t found, float bound) {
+  w->bound = bound;
+  for (uint32_t level = w->tree->levels; level > 0; level--)
+    ethd__walk_beside(w, w->at[level].squared, level, found >> 3 * level, found >> 3 * (level - 1));
+}
+
+/* The next leaf; ETHD__NONE: no more. */
+static inline ethd__place ethd__walk_next(ethd__walk *w) {
+  for (;;) {
+    if (w->lanes) w->lanes &= ethd__lanes_within(w->at[1].squared, w->bound);
+    if (w->lanes) {
+      uint32_t lane = (uint32_t)__builtin_ctz(w->lanes);
+      for (unsigned rest = w->lanes & (w->lanes - 1); rest; rest &= rest - 1) {
+        uint32_t other = (uint32_t)__builtin_ctz(rest);
+        if (w->at[1].squared[other] < w->at[1].squared[lane]) lane = other;
+      }
+      w->lanes ^= 1u << lane;
+      return (ethd__place){w->at[1].squared[lane], 0, w->leaf + lane};
+    }
+    if (!w->count) return (ethd__place){0, 0, ETHD__NONE};
+    ethd__place at = w->stack[--w->count];
+    if (!(at.squared <= w->bound)) continue;
+    if (at.level == 1) {
+      ethd__look(w, 1, at.index, w->at[1].squared);
+      w->lanes = ethd__lanes_within(w->at[1].squared, w->bound);
+      w->leaf = ETHD__WIDE * at.index;
+    } else {
+      ethd__eight e;
+      ethd__look(w, at.level, at.index, e.squared);
+      ethd__push(w, e.squared, ethd__lanes_within(e.squared, w->bound), at.level, at.index);
+    }
+  }
+}
+
+/* ---- one edge ---- */
+
+/* Where x is beside an edge, without a branch: u from the nearest point to x. */
+typedef struct ethd__beside {
+  double squared;
+  double across, doubt; /* e x u and what it may be wrong by */
+} ethd__beside;
+
+static inline ethd__beside ethd__beside_edge(ethd_vec a, ethd_vec b, ethd_vec x) {
+  ethd_vec e = ethd_vec_sub(b, a), u = ethd_vec_sub(x, a);
+  double t = ethd_vec_dot(e, u) / ethd_vec_dot(e, e), l = e.x * u.y, r = e.y * u.x;
+  t = t > 0 ? t : 0;
+  t = t < 1 ? t : 1;
+  ethd_vec g = ethd_vec_sub(u, ethd_vec_scale(t, e));
+  ethd__beside s = {ethd_vec_dot(g, g), l - r, 4e-16 * (fabs(l) + fabs(r))};
+  return s;
+}
+
+#endif
