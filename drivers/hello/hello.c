@@ -2,6 +2,7 @@
    the model: its encoders in `read`, its amplifier in `write`, its brake or enable line in `start` and `safe`. */
 #include <stdlib.h>
 
+#include "ethd/control.h"
 #include "ethd/driver.h"
 
 #define INERTIA 0.02      /* kg m^2 */

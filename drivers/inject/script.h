@@ -15,6 +15,7 @@
 #define ETHD_INJECT_SCRIPT_H
 
 #include "ethd/driver.h"
+#include "ethd/finger_fit.h"
 
 #define ETHD_INJECT_LINES_MAX 1024
 #define ETHD_INJECT_BYTES_MAX ((size_t)1 << 20)

@@ -1,4 +1,4 @@
-/* The arm: two links that carry the ring in a vertical plane.
+/* The arm: two links that carry the ring in a vertical plane. Links from libethd.
 
        y ^        X                  parallel: both motors at the base, both angles absolute
          |   L2 ./  q2 (parallel)      X = (L1 cos q1 + L2 cos q2, L1 sin q1 + L2 sin q2)

@@ -1,4 +1,4 @@
-/* Attributes that say, and let the compiler check, what a function promises.
+/* Attributes that say, and let the compiler check, what a function promises. Links from libethd.
 
    Thread tags close every contract in these headers:
      [main]  the thread that created the object; may allocate and block

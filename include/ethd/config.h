@@ -1,4 +1,5 @@
 /* Configurations: an INI file (interfaces of the programs) to a setup, strictly.
+   Links from libethd-drivers and libethd.
 
    Everything has a default: an empty file is valid. Unknown sections or keys, duplicates, values out of
    range, NaN, hex, trailing junk, over-long lines are errors with file:line, what was found and what is

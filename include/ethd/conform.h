@@ -1,4 +1,5 @@
 /* Does a driver keep its contract? Questions put to a device at its own boundary, one answer each.
+   Links from libethd-drivers and libethd.
 
    The device is opened, started, stopped and closed many times; with `torque` it moves: keep clear of it, and
    keep what it moves clear of everything: ring empty, arm in the middle of its room. Its I/O is done as the loop
@@ -7,6 +8,7 @@
 #ifndef ETHD_CONFORM_H
 #define ETHD_CONFORM_H
 
+#include "ethd/control.h"
 #include "ethd/driver.h"
 
 ETHD_BEGIN_DECLS

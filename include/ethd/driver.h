@@ -1,4 +1,4 @@
-/* A device: what moves the ring and measures ring and finger.
+/* A device: what moves the ring and measures ring and finger. Links from libethd-drivers and libethd.
 
    open [main] may block; start [main] enables; read and write [rt] are wait-free and bounded; service does
    one piece of blocking I/O: an I/O thread for each unit calls it, or the virtual clock in lock-step, so
@@ -20,7 +20,9 @@
 
 #include <stdint.h>
 
-#include "ethd/control.h"
+#include "ethd/guard.h"
+#include "ethd/param.h"
+#include "ethd/sense.h"
 
 ETHD_BEGIN_DECLS
 
@@ -38,9 +40,11 @@ typedef struct ethd_setting {
   int line;
 } ethd_setting;
 
+struct ethd_setup; /* of control.h, for drivers that look into it */
+
 /* What a device is opened with. */
 typedef struct ethd_device_def {
-  const ethd_setup *setup; /* arm, ring, period that the controller assumes */
+  const struct ethd_setup *setup; /* arm, ring, period that the controller assumes */
   const ethd_setting *settings;
   uint32_t setting_count;
   const char *folder; /* relative paths in settings start here */

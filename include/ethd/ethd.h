@@ -1,4 +1,4 @@
-/* libethd: control of encounter-type haptic displays. Everything the library offers. */
+/* libethd: control of encounter-type haptic displays. Everything the library offers. Links from libethd. */
 #ifndef ETHD_ETHD_H
 #define ETHD_ETHD_H
 
@@ -16,6 +16,7 @@
 #include "ethd/param.h"
 #include "ethd/plugin.h"
 #include "ethd/scene.h"
+#include "ethd/sense.h"
 #include "ethd/status.h"
 #include "ethd/vec.h"
 #include "ethd/velocity.h"

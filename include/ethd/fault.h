@@ -1,5 +1,5 @@
 /* The fault table: what may go wrong, how soon it is noticed, what is done. Counters, events, recordings,
-   the summary of a run and the manual's page come from these rows.
+   the summary of a run and the manual's page come from these rows. Links from libethd.
 
    Reactions, from mild to hard:
      COUNT    go on; it is counted

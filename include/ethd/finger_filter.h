@@ -1,4 +1,4 @@
-/* The finger at 1 kHz from readings at 300 Hz: position and velocity per axis.
+/* The finger at 1 kHz from readings at 300 Hz: position and velocity per axis. Links from libethd.
 
    Every tick predicts; a reading corrects at the tick at which it has arrived.
 

@@ -1,4 +1,4 @@
-/* The finger's centre and radius from the ring's 16 distances.
+/* The finger's centre and radius from the ring's 16 distances. Links from libethd.
 
              r_k        Ray k leaves the ring's inner circle at angle 2 pi k / 16 (x axis = 0,
         .--<--|         counter-clockwise, in R_0: the ring doesn't turn) and runs to the ring's centre.

@@ -1,4 +1,4 @@
-/* The guard: the last to touch a torque before the device. */
+/* The guard: the last to touch a torque before the device. Links from libethd. */
 #ifndef ETHD_GUARD_H
 #define ETHD_GUARD_H
 

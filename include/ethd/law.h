@@ -1,4 +1,4 @@
-/* The plugin ABI: laws of three kinds, each a const table over state that the controller owns.
+/* The plugin ABI: laws of three kinds, each a const table over state that the controller owns. Links from libethd.
 
    Per tick, for every contact that counts:     transition  who rules? {beta, share, offset, damping}
                                                 contact     (gap, speed) -> force along n

@@ -1,4 +1,5 @@
 /* The periodic loop: reads a device, steps the controller, writes the device, on a thread of its own.
+   Links from libethd-drivers and libethd.
 
      sleep until the tick -> driver read -> ethd_control_step -> driver write -> count -> row into a ring
 
@@ -19,6 +20,7 @@
 #ifndef ETHD_LOOP_H
 #define ETHD_LOOP_H
 
+#include "ethd/control.h"
 #include "ethd/driver.h"
 
 ETHD_BEGIN_DECLS

@@ -1,4 +1,4 @@
-/* Elementary functions that give the same bits everywhere.
+/* Elementary functions that give the same bits everywhere. Links from libethd.
 
    A C library picks its variant of sin or exp by the CPU it finds (with or without FMA), so the same
    seed would give other bits on another machine. These use only + - * / and integers in a fixed order,

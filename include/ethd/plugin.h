@@ -1,4 +1,4 @@
-/* Laws from a shared object.
+/* Laws from a shared object. Links from libethd.
 
    A plugin exports one data symbol:   const ethd_plugin_entry ethd_plugin = {sizeof(ethd_plugin_entry),
    ETHD_ABI, "mine", "1.0", laws, 1};  A host reads what a file offers without running it. */

@@ -1,4 +1,5 @@
 /* Recordings: a folder with tick.npy (one ethd_trace a row), config.ini, the scene, events.csv.
+   Links from libethd-drivers and libethd.
 
    tick.npy is a NumPy structured array whose header's count is raised after each flush: a killed run
    leaves a readable file. All [main]. */

@@ -1,4 +1,4 @@
-/* The virtual scene: objects of the plane, the distance to them, and the contacts within reach.
+/* The virtual scene: objects of the plane, the distance to them, and the contacts within reach. Links from libethd.
 
        outside            inside
          x ----- n ---->|/////////     d > 0 outside, < 0 inside

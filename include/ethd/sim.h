@@ -1,4 +1,5 @@
 /* The simulated device: arm, motors, ring, encoders, proximity ring, and a finger with a hand behind it.
+   Links from libethd-drivers and libethd.
 
    Plausible and fitted to the paper's Table 1, not measured: say so wherever a number of it is shown.
    Plants are data (files *.plant). The finger moves on its voluntary path; what the ring pushes it aside

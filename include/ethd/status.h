@@ -1,4 +1,4 @@
-/* One enum for every function that can fail: 0 ok, negative failure, positive condition. */
+/* One enum for every function that can fail: 0 ok, negative failure, positive condition. Links from libethd. */
 #ifndef ETHD_STATUS_H
 #define ETHD_STATUS_H
 

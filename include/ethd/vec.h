@@ -1,4 +1,4 @@
-/* Vectors of the plane. Frame R_0: x right, y up, origin at the base joint; m, rad, s, N, Nm. */
+/* Vectors of the plane. Frame R_0: x right, y up, origin at the base joint; m, rad, s, N, Nm. Links from libethd. */
 #ifndef ETHD_VEC_H
 #define ETHD_VEC_H
 

@@ -1,4 +1,4 @@
-/* Joint speed from encoder positions, one estimator per joint.
+/* Joint speed from encoder positions, one estimator per joint. Links from libethd.
 
    Lag against noise decides what a controller survives: ethd-check prints its bounds. */
 #ifndef ETHD_VELOCITY_H

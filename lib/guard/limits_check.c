@@ -1,7 +1,8 @@
+#include <math.h>
 #include <stddef.h>
 
-#include "control/control.h"
 #include "error.h"
+#include "ethd/guard.h"
 
 #define INF ((double)INFINITY)
 #define AT(field) (uint32_t) offsetof(ethd_limits, field)

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ethd/control.h"
 #include "ethd/driver.h"
 
 typedef struct part {
