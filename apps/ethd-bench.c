@@ -10,11 +10,8 @@
 #include "text/text.h"
 
 static const ethd__bench *const benches[] = {
-    &ethd__bench_integrators, &ethd__bench_hours,
-    &ethd__bench_fits, &ethd__bench_filters, &ethd__bench_velocity,
-    &ethd__bench_kinematics,
-    &ethd__bench_scene,
-    &ethd__bench_tick,
+    &ethd__bench_integrators, &ethd__bench_hours,      &ethd__bench_fits,  &ethd__bench_filters,
+    &ethd__bench_velocity,    &ethd__bench_kinematics, &ethd__bench_scene, &ethd__bench_tick,
 };
 #define BENCH_COUNT (sizeof benches / sizeof *benches)
 
@@ -27,8 +24,7 @@ static const char doc[] = "Measures libethd, and other libraries beside it where
 static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "folder of the CSV files (default: bench)", 0},
     {"quick", 'q', NULL, 0, "fewer rounds", 0},
-    {"peers", 'p', "DIR", 0,
-     "folder of the other libraries' shared objects (default: beside the program's)", 0},
+    {"peers", 'p', "DIR", 0, "folder of the other libraries' shared objects (default: beside the program's)", 0},
     {"about", 'a', "TEXT", 0, "goes into each CSV's head: commit, compiler, flags", 0},
     {"list", 'l', NULL, 0, "list the questions", 0},
     {0},
@@ -41,21 +37,11 @@ static struct {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
-  case 'o':
-    arg.folder = text;
-    return 0;
-  case 'q':
-    arg.quick = 1;
-    return 0;
-  case 'p':
-    arg.peers = text;
-    return 0;
-  case 'a':
-    ethd__bench_about(text);
-    return 0;
-  case 'l':
-    arg.list = 1;
-    return 0;
+  case 'o': arg.folder = text; return 0;
+  case 'q': arg.quick = 1; return 0;
+  case 'p': arg.peers = text; return 0;
+  case 'a': ethd__bench_about(text); return 0;
+  case 'l': arg.list = 1; return 0;
   case ARGP_KEY_ARG:
     if (arg.what) argp_error(state, "\"%s\": one WHAT at a time", text);
     arg.what = text;
@@ -63,8 +49,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case ARGP_KEY_END:
     if (!arg.what && !arg.list) argp_error(state, "WHAT is missing; --list lists them");
     return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -89,8 +74,7 @@ static int run_wanted(void) {
     if (one != ETHD_EXIT_DONE) code = one;
     fflush(stdout);
   }
-  if (!known)
-    ethd__fail(ETHD_EXIT_INPUT, "\"%s\" is not known; ethd-bench --list lists what is", arg.what);
+  if (!known) ethd__fail(ETHD_EXIT_INPUT, "\"%s\" is not known; ethd-bench --list lists what is", arg.what);
   return code;
 }
 
@@ -98,8 +82,7 @@ int main(int argc, char **argv) {
   static const struct argp argp = {options, parse, "WHAT", doc, NULL, NULL, NULL};
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
-  for (size_t i = 0; arg.list && i < BENCH_COUNT; i++)
-    printf("%-12s %s\n", benches[i]->name, benches[i]->brief);
+  for (size_t i = 0; arg.list && i < BENCH_COUNT; i++) printf("%-12s %s\n", benches[i]->name, benches[i]->brief);
   if (!arg.what) return ethd__end(ETHD_EXIT_DONE);
   if (mkdir(arg.folder, 0777) != 0 && errno != EEXIST)
     ethd__fail(ETHD_EXIT_FAILED, "%s: %s", arg.folder, strerror(errno));

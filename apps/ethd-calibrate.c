@@ -14,7 +14,8 @@
 
 static const char doc[] =
     "Calibrates the proximity ring with a rod of known radius.\v"
-    "Guided (--port): first the empty ring, then the rod in the middle and pressed against the ring at each sensor; the "
+    "Guided (--port): first the empty ring, then the rod in the middle and pressed against the ring at each sensor; "
+    "the "
     "terminal says what to do. --record keeps what was counted, --in fits it again without the ring. Prints what each "
     "level leaves over, writes the chosen one to --out, for the key calibration of the device's ring.\n"
     "--self-test does the same with a made ring whose laws are known and says how well they are recovered.\n\n"
@@ -51,7 +52,10 @@ static struct {
   bool self_test;
   uint64_t seed;
   double noise;
-} arg = {.guided = {.baud = 500000, .frames = 100, .ring_radius = 0.012, .rod = 0.0075}, .level = ETHD__LEVEL_LAW, .seed = 1, .noise = 30};
+} arg = {.guided = {.baud = 500000, .frames = 100, .ring_radius = 0.012, .rod = 0.0075},
+         .level = ETHD__LEVEL_LAW,
+         .seed = 1,
+         .noise = 30};
 
 static ethd__level level_of(const char *text) {
   for (int i = 0; i < ETHD__LEVEL_COUNT; i++)
@@ -60,9 +64,11 @@ static ethd__level level_of(const char *text) {
 }
 
 static void check_usage(struct argp_state *state) {
-  if ((arg.guided.port != NULL) + (arg.in != NULL) + arg.self_test != 1) argp_error(state, "one of --port, --in and --self-test is needed");
+  if ((arg.guided.port != NULL) + (arg.in != NULL) + arg.self_test != 1)
+    argp_error(state, "one of --port, --in and --self-test is needed");
   if (arg.plot && !arg.csv) argp_error(state, "--plot draws the file of --csv: give both");
-  if (arg.serial && strlen(arg.serial) >= ETHD__SERIAL_MAX) argp_error(state, "--serial: at most %d characters are allowed", ETHD__SERIAL_MAX - 1);
+  if (arg.serial && strlen(arg.serial) >= ETHD__SERIAL_MAX)
+    argp_error(state, "--serial: at most %d characters are allowed", ETHD__SERIAL_MAX - 1);
   if (arg.serial && (strpbrk(arg.serial, ";#\n\r") || !arg.serial[0] || arg.serial[0] == ' '))
     argp_error(state, "--serial: found \"%s\"; text without ; # and line ends is allowed", arg.serial);
   if (!(arg.guided.rod < arg.guided.ring_radius)) argp_error(state, "--rod: a rod thinner than the ring is needed");
@@ -71,24 +77,24 @@ static void check_usage(struct argp_state *state) {
 static error_t parse(int key, char *text, struct argp_state *state) {
   ethd__guided_options *g = &arg.guided;
   switch (key) {
-    case 'p': g->port = text; return 0;
-    case BAUD: g->baud = (uint32_t)ethd__option_integer("--baud", text, 9600, 12000000); return 0;
-    case 'i': arg.in = text; return 0;
-    case SELF_TEST: arg.self_test = true; return 0;
-    case SEED: arg.seed = ethd__option_seed("--seed", text); return 0;
-    case NOISE: arg.noise = ethd__option_number("--noise", text, 0, 10000); return 0;
-    case FRAMES: g->frames = (int)ethd__option_integer("--frames", text, 10, 100000); return 0;
-    case RING_RADIUS: g->ring_radius = ethd__option_number("--ring-radius", text, 1e-3, 0.5); return 0;
-    case 'r': g->rod = ethd__option_number("--rod", text, 1e-3, 0.5); return 0;
-    case 'l': arg.level = level_of(text); return 0;
-    case SERIAL: arg.serial = text; return 0;
-    case 'R': g->record = text; return 0;
-    case 'o': arg.out = text; return 0;
-    case 'c': arg.csv = text; return 0;
-    case 'P': arg.plot = text; return 0;
-    case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
-    case ARGP_KEY_END: check_usage(state); return 0;
-    default: return ARGP_ERR_UNKNOWN;
+  case 'p': g->port = text; return 0;
+  case BAUD: g->baud = (uint32_t)ethd__option_integer("--baud", text, 9600, 12000000); return 0;
+  case 'i': arg.in = text; return 0;
+  case SELF_TEST: arg.self_test = true; return 0;
+  case SEED: arg.seed = ethd__option_seed("--seed", text); return 0;
+  case NOISE: arg.noise = ethd__option_number("--noise", text, 0, 10000); return 0;
+  case FRAMES: g->frames = (int)ethd__option_integer("--frames", text, 10, 100000); return 0;
+  case RING_RADIUS: g->ring_radius = ethd__option_number("--ring-radius", text, 1e-3, 0.5); return 0;
+  case 'r': g->rod = ethd__option_number("--rod", text, 1e-3, 0.5); return 0;
+  case 'l': arg.level = level_of(text); return 0;
+  case SERIAL: arg.serial = text; return 0;
+  case 'R': g->record = text; return 0;
+  case 'o': arg.out = text; return 0;
+  case 'c': arg.csv = text; return 0;
+  case 'P': arg.plot = text; return 0;
+  case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+  case ARGP_KEY_END: check_usage(state); return 0;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -132,8 +138,8 @@ static void write_files(const ethd__places *p, ethd__calibration *c) {
 static int judge(const ethd__calibration *truth, const ethd__places *p) {
   char message[ETHD_MESSAGE_MAX];
   bool failed = false;
-  printf("made ring %llu, counts +-%g (sd), %d frames: error of the laws found, %g to %g mm, mm rms\n", (unsigned long long)arg.seed,
-         arg.noise, arg.guided.frames, 1e3 * ETHD__MADE_FROM, 1e3 * ETHD__MADE_TO);
+  printf("made ring %llu, counts +-%g (sd), %d frames: error of the laws found, %g to %g mm, mm rms\n",
+         (unsigned long long)arg.seed, arg.noise, arg.guided.frames, 1e3 * ETHD__MADE_FROM, 1e3 * ETHD__MADE_TO);
   for (int level = 0; level < ETHD__LEVEL_COUNT; level++) {
     ethd__calibration c;
     if (ethd__places_fit(p, (ethd__level)level, &c, message) != ETHD_OK) ethd__fail(ETHD_EXIT_FAILED, "%s", message);

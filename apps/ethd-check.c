@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "check/report.h"
 #include "bounds/stability.h"
+#include "check/report.h"
 #include "cli/cli.h"
 #include "ethd/sim.h"
 #include "settings/config_parts.h"
@@ -35,37 +35,24 @@ static const struct argp_option options[] = {
     {0},
 };
 
-static struct { const char *config, *counts, *delay, *force, *friction, *viscous, *latency; } arg;
+static struct {
+  const char *config, *counts, *delay, *force, *friction, *viscous, *latency;
+} arg;
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
-  case 'c':
-    arg.counts = text;
-    return 0;
-  case 'd':
-    arg.delay = text;
-    return 0;
-  case 'f':
-    arg.force = text;
-    return 0;
-  case 'r':
-    arg.friction = text;
-    return 0;
-  case 'b':
-    arg.viscous = text;
-    return 0;
-  case 'l':
-    arg.latency = text;
-    return 0;
+  case 'c': arg.counts = text; return 0;
+  case 'd': arg.delay = text; return 0;
+  case 'f': arg.force = text; return 0;
+  case 'r': arg.friction = text; return 0;
+  case 'b': arg.viscous = text; return 0;
+  case 'l': arg.latency = text; return 0;
   case ARGP_KEY_ARG:
     if (arg.config) argp_error(state, "\"%s\": one configuration is checked", text);
     arg.config = text;
     return 0;
-  case ARGP_KEY_NO_ARGS:
-    argp_error(state, "which configuration?");
-    return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
+  case ARGP_KEY_NO_ARGS: argp_error(state, "which configuration?"); return 0;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -84,8 +71,7 @@ static void check_device(const ethd_config *config) {
   const ethd_device_def def = {&config->setup, config->settings, config->setting_count, config->folder, arg.config};
   if (strcmp(config->device, ethd_driver_sim.id) != 0)
     ethd__fail(ETHD_EXIT_INPUT, "%s:%d: device.driver: found \"%s\", sim is allowed", arg.config,
-               ethd_ini_find(&ethd__config_whole(config)->ini, "device", "driver")->line,
-               config->device);
+               ethd_ini_find(&ethd__config_whole(config)->ini, "device", "driver")->line, config->device);
   ethd_status status = ethd_device_open(config->device, NULL, &def, &driver, &device, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
   driver->close(device);

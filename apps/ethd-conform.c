@@ -30,12 +30,12 @@ static struct {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
-    case 'c': arg.config = text; return 0;
-    case 'm': arg.move = true; return 0;
-    case 't': arg.torque = ethd__option_number("--torque", text, 1e-6, 1e3); return 0;
-    case 'v': arg.is_virtual = true; return 0;
-    case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
-    default: return ARGP_ERR_UNKNOWN;
+  case 'c': arg.config = text; return 0;
+  case 'm': arg.move = true; return 0;
+  case 't': arg.torque = ethd__option_number("--torque", text, 1e-6, 1e3); return 0;
+  case 'v': arg.is_virtual = true; return 0;
+  case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -49,7 +49,8 @@ int main(int argc, char **argv) {
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   ethd_status status = ethd_config_load(arg.config, &config, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
-  const ethd_device_def device = {&config->setup, config->settings, config->setting_count, config->folder, config->path};
+  const ethd_device_def device = {&config->setup, config->settings, config->setting_count, config->folder,
+                                  config->path};
   const ethd_conform_def def = {config->device, NULL, &device, arg.move ? arg.torque : 0, arg.is_virtual};
   status = ethd_conform(&def, answers);
   for (int i = 0; i < ETHD_QUESTIONS; i++)

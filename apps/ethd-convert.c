@@ -7,10 +7,10 @@
 
 #include "cli/cli.h"
 #include "ethd/record.h"
-#include "text/csv.h"
-#include "text/error_text.h"
 #include "record/mcap.h"
 #include "record/recording_parts.h"
+#include "text/csv.h"
+#include "text/error_text.h"
 #include "text/text.h"
 
 static const char doc[] =
@@ -27,14 +27,14 @@ static struct {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
-    case ARGP_KEY_ARG:
-      if (state->arg_num > 1) argp_error(state, "\"%s\": a recording and a file are all it takes", text);
-      *(state->arg_num ? &arg.out : &arg.folder) = text;
-      return 0;
-    case ARGP_KEY_END:
-      if (state->arg_num < 2) argp_error(state, "a recording's folder and a .csv or .mcap file are needed");
-      return 0;
-    default: return ARGP_ERR_UNKNOWN;
+  case ARGP_KEY_ARG:
+    if (state->arg_num > 1) argp_error(state, "\"%s\": a recording and a file are all it takes", text);
+    *(state->arg_num ? &arg.out : &arg.folder) = text;
+    return 0;
+  case ARGP_KEY_END:
+    if (state->arg_num < 2) argp_error(state, "a recording's folder and a .csv or .mcap file are needed");
+    return 0;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -74,7 +74,7 @@ static const void *cell(const ethd_trace *row, const ethd_column *c, uint32_t i)
 
 static const char *suffix(const char *unit) {
   static const char *const table[][2] = {{"rad", "_rad"}, {"rad/s", "_radps"}, {"m", "_m"},
-                                         {"m/s", "_mps"}, {"N", "_n"},     {"Nm", "_nm"}};
+                                         {"m/s", "_mps"}, {"N", "_n"},         {"Nm", "_nm"}};
   for (size_t i = 0; i < sizeof table / sizeof *table; i++)
     if (!strcmp(table[i][0], unit)) return table[i][1];
   return "";
@@ -151,8 +151,8 @@ static void put_string(FILE *out, const char *text) {
   putc('"', out);
 }
 
-#define EVENT_SCHEMA                                                                                          \
-  "{\"type\":\"object\",\"properties\":{\"row\":{\"type\":\"integer\"},\"kind\":{\"type\":\"string\"},"      \
+#define EVENT_SCHEMA                                                                                    \
+  "{\"type\":\"object\",\"properties\":{\"row\":{\"type\":\"integer\"},\"kind\":{\"type\":\"string\"}," \
   "\"detail\":{\"type\":\"string\"}}}"
 
 /* A text that is written again and again. */
@@ -204,7 +204,8 @@ static void put_messages(const recording *r, ethd_mcap *mcap, text *t) {
   size_t e = 0;
   for (size_t k = 0; k < r->count && !ethd__stop; k++) {
     now = instant(r, k, &shift, &now);
-    for (; e < r->events.count && r->events.events[e].row <= k; e++) say_event(mcap, events, now, &r->events.events[e], t);
+    for (; e < r->events.count && r->events.events[e].row <= k; e++)
+      say_event(mcap, events, now, &r->events.events[e], t);
     put_tick(again(t), &r->rows[k]);
     say(mcap, ticks, now, t);
     ethd__progress(k, r->count, arg.out);

@@ -5,9 +5,9 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "text/csv.h"
 #include "run/session.h"
 #include "run/summary.h"
+#include "text/csv.h"
 
 #define DURATION 10.0 /* s */
 
@@ -43,16 +43,16 @@ static struct {
 static error_t parse(int key, char *text, struct argp_state *state) {
   ethd_loop_def *loop = &arg.session.loop;
   switch (key) {
-    case 'c': arg.session.config = text; return 0;
-    case 'd': arg.duration = ethd__option_number("--duration", text, 0.01, 1e6); return 0;
-    case OPTION_CSV: arg.csv = text; return 0;
-    case OPTION_CPU: loop->cpu = (int32_t)ethd__option_integer("--cpu", text, 0, 1023); return 0;
-    case OPTION_PRIORITY: loop->priority = (int32_t)ethd__option_integer("--priority", text, 1, 99); return 0;
-    case OPTION_EARLY: loop->early_wake = 1e-6 * ethd__option_number("--early-wake", text, 0, 1e5); return 0;
-    case OPTION_DMA: loop->dma_latency = (int32_t)ethd__option_integer("--dma-latency", text, 0, 1000000); return 0;
-    case OPTION_ALONE: arg.alone = true; return 0;
-    case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
-    default: return ARGP_ERR_UNKNOWN;
+  case 'c': arg.session.config = text; return 0;
+  case 'd': arg.duration = ethd__option_number("--duration", text, 0.01, 1e6); return 0;
+  case OPTION_CSV: arg.csv = text; return 0;
+  case OPTION_CPU: loop->cpu = (int32_t)ethd__option_integer("--cpu", text, 0, 1023); return 0;
+  case OPTION_PRIORITY: loop->priority = (int32_t)ethd__option_integer("--priority", text, 1, 99); return 0;
+  case OPTION_EARLY: loop->early_wake = 1e-6 * ethd__option_number("--early-wake", text, 0, 1e5); return 0;
+  case OPTION_DMA: loop->dma_latency = (int32_t)ethd__option_integer("--dma-latency", text, 0, 1000000); return 0;
+  case OPTION_ALONE: arg.alone = true; return 0;
+  case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -95,7 +95,8 @@ static void write_row(ethd_csv_out *out, uint32_t bin, const ethd_loop_stats *s,
 
 static void write_csv(const ethd_loop_stats *s, const ethd_histogram *peer) {
   char message[ETHD_MESSAGE_MAX];
-  ethd_csv_out *out = ethd_csv_create(arg.csv, peer ? "from_s,to_s,wake,tick,cyclictest" : "from_s,to_s,wake,tick", message);
+  ethd_csv_out *out =
+      ethd_csv_create(arg.csv, peer ? "from_s,to_s,wake,tick,cyclictest" : "from_s,to_s,wake,tick", message);
   if (!out) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   for (uint32_t bin = 0; bin + 1 < ETHD_BINS; bin++)
     if (s->wake.counts[bin] || s->tick.counts[bin] || (peer && peer->counts[bin])) write_row(out, bin, s, peer);

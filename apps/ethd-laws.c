@@ -33,13 +33,13 @@ static struct {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
-    case 'p':
-      if (arg.plugin_count == PLUGINS_MAX) argp_error(state, "over %d plugins", PLUGINS_MAX);
-      arg.plugins[arg.plugin_count++] = text;
-      return 0;
-    case 'c': arg.csv = text; return 0;
-    case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
-    default: return ARGP_ERR_UNKNOWN;
+  case 'p':
+    if (arg.plugin_count == PLUGINS_MAX) argp_error(state, "over %d plugins", PLUGINS_MAX);
+    arg.plugins[arg.plugin_count++] = text;
+    return 0;
+  case 'c': arg.csv = text; return 0;
+  case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -71,8 +71,7 @@ static void print(const listed *l) {
     if (ethd_param_words(row))
       printf("    %-14s %-12s %s: %s\n", row->name, def, row->unit, row->brief);
     else
-      printf("    %-14s %-12s %s, %.10g to %.10g: %s\n", row->name, def, row->unit, row->min, row->max,
-             row->brief);
+      printf("    %-14s %-12s %s, %.10g to %.10g: %s\n", row->name, def, row->unit, row->min, row->max, row->brief);
   }
 }
 
@@ -103,8 +102,7 @@ static void show(const listed *l, ethd_csv_out *csv) {
 
 static void show_methods(const char *section, const ethd_method *methods, int count, ethd_csv_out *csv) {
   for (int i = 0; i < count; i++) {
-    const listed l = {section, methods[i].id, methods[i].brief, methods[i].params,
-                      methods[i].param_count};
+    const listed l = {section, methods[i].id, methods[i].brief, methods[i].params, methods[i].param_count};
     show(&l, csv);
   }
 }
@@ -138,8 +136,7 @@ int main(int argc, char **argv) {
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   ethd_config *config = load();
   ethd_csv_out *csv = NULL;
-  if (arg.csv &&
-      !(csv = ethd_csv_create(arg.csv, "section,id,param,unit,min,max,default,brief", message)))
+  if (arg.csv && !(csv = ethd_csv_create(arg.csv, "section,id,param,unit,min,max,default,brief", message)))
     ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   show_methods("velocity", ethd_velocity_methods, ETHD_VELOCITY_COUNT, csv);
   show_methods("finger_fit", ethd_fit_methods, ETHD_FIT_COUNT, csv);

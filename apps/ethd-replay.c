@@ -30,18 +30,18 @@ static struct {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
-    case 'c': arg.config = text; return 0;
-    case 'i': arg.in = text; return 0;
-    case 'o': arg.out = text; return 0;
-    case 'v': arg.verify = text; return 0;
-    case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
-    case ARGP_KEY_END:
-      if (arg.verify && (arg.in || arg.out || arg.config))
-        argp_error(state, "--verify stands alone: a recording brings its own configuration");
-      else if (!arg.verify && (!arg.in || !arg.out))
-        argp_error(state, "--in and --out are needed, or --verify");
-      return 0;
-    default: return ARGP_ERR_UNKNOWN;
+  case 'c': arg.config = text; return 0;
+  case 'i': arg.in = text; return 0;
+  case 'o': arg.out = text; return 0;
+  case 'v': arg.verify = text; return 0;
+  case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+  case ARGP_KEY_END:
+    if (arg.verify && (arg.in || arg.out || arg.config))
+      argp_error(state, "--verify stands alone: a recording brings its own configuration");
+    else if (!arg.verify && (!arg.in || !arg.out))
+      argp_error(state, "--in and --out are needed, or --verify");
+    return 0;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -83,8 +83,8 @@ static ethd_csv_out *open_out(bool ring, char message[ETHD_MESSAGE_MAX]) {
 }
 
 static void warn(const ethd__trace_in *in, size_t row, const char *what, const char *then) {
-  fprintf(stderr, "%s: %s:%zu: %s; %s there\n", program_invocation_short_name, in->csv.path,
-          ethd_csv_line(row), what, then);
+  fprintf(stderr, "%s: %s:%zu: %s; %s there\n", program_invocation_short_name, in->csv.path, ethd_csv_line(row), what,
+          then);
 }
 
 /* The guard does what it is there for; a law that fails is a failure. */
@@ -116,8 +116,7 @@ static int run(ethd_control *control, const ethd__trace_in *in, ethd_csv_out *ou
 static void say(const ethd_control *control, const ethd_scene *scene, const ethd__trace_in *in) {
   ethd_counters c;
   ethd_control_counters(control, &c);
-  printf("%s: %llu ticks, scene queried in %llu", arg.out, (unsigned long long)c.ticks,
-         (unsigned long long)c.queried);
+  printf("%s: %llu ticks, scene queried in %llu", arg.out, (unsigned long long)c.ticks, (unsigned long long)c.queried);
   ethd__dropped_print(stdout, scene);
   if (in->ring) printf(", %llu frames dropped", (unsigned long long)c.readings_dropped);
   printf("\n");

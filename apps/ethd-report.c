@@ -8,11 +8,11 @@
 
 #include "cli/cli.h"
 #include "ethd/ethd.h"
-#include "text/error_text.h"
-#include "text/text.h"
 #include "report/html.h"
 #include "report/picture.h"
 #include "report/report.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 static const char doc[] =
     "Draws and counts what a study has left: traces of taps, states and beta, box plots, Table 1 beside the paper's, "
@@ -42,19 +42,19 @@ static struct {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
-    case 'o': arg.out = text; return 0;
-    case OPTION_BESIDE: arg.beside = text; return 0;
-    case OPTION_TAP: arg.tap = text; return 0;
-    case OPTION_POINT: arg.point = ethd__option_integer("--point", text, 0, ETHD_STUDY_POINTS); return 0;
-    case OPTION_SEED: arg.seed = ethd__option_seed("--seed", text); return 0;
-    case ARGP_KEY_ARG:
-      if (arg.folder) argp_error(state, "\"%s\": one folder is allowed", text);
-      arg.folder = text;
-      return 0;
-    case ARGP_KEY_END:
-      if (!arg.folder) argp_error(state, "DIR is needed");
-      return 0;
-    default: return ARGP_ERR_UNKNOWN;
+  case 'o': arg.out = text; return 0;
+  case OPTION_BESIDE: arg.beside = text; return 0;
+  case OPTION_TAP: arg.tap = text; return 0;
+  case OPTION_POINT: arg.point = ethd__option_integer("--point", text, 0, ETHD_STUDY_POINTS); return 0;
+  case OPTION_SEED: arg.seed = ethd__option_seed("--seed", text); return 0;
+  case ARGP_KEY_ARG:
+    if (arg.folder) argp_error(state, "\"%s\": one folder is allowed", text);
+    arg.folder = text;
+    return 0;
+  case ARGP_KEY_END:
+    if (!arg.folder) argp_error(state, "DIR is needed");
+    return 0;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -71,7 +71,8 @@ static void load(const char *folder, size_t point, ethd__folder *out, ethd__data
   char message[ETHD_MESSAGE_MAX], *taps = ethd__folder_path(folder, ETHD_STUDY_TAPS);
   check(ethd__folder_open(folder, out, message), message);
   if (access(taps, F_OK) != 0)
-    ethd__fail(ETHD_EXIT_INPUT, "%s: No such file; ethd-study --resume %s or --merge %s makes it", taps, folder, folder);
+    ethd__fail(ETHD_EXIT_INPUT, "%s: No such file; ethd-study --resume %s or --merge %s makes it", taps, folder,
+               folder);
   check(ethd__data_read(taps, &out->loaded.plant, point, data, message), message);
   free(taps);
 }
@@ -91,15 +92,17 @@ static bool led_by_people(const ethd__report *r) {
 
 static void print_origin(ethd__report *r) {
   if (ethd__report_measured(r)) {
-    fprintf(r->page, "<b>Measured</b> on the device <code>%s</code> of config.ini, with people's fingers in it: the ring as the "
+    fprintf(r->page,
+            "<b>Measured</b> on the device <code>%s</code> of config.ini, with people's fingers in it: the ring as the "
             "encoders have it, the finger as its filter has it. A finger counts as touching %.2g mm from the ring on.",
             r->folder->loaded.config->device, 1e3 * r->folder->protocol.slack);
     return;
   }
   fputs("<b>Simulated, not measured.</b> ", r->page);
-  fputs(led_by_people(r) ? "People led the hand; device and finger are plausible: the plant was fitted to Table 1 of the paper."
-                         : "Device, finger and people are plausible: the plant was fitted to Table 1 of the paper, the spread "
-                           "between people is assumed.",
+  fputs(led_by_people(r)
+            ? "People led the hand; device and finger are plausible: the plant was fitted to Table 1 of the paper."
+            : "Device, finger and people are plausible: the plant was fitted to Table 1 of the paper, the spread "
+              "between people is assumed.",
         r->page);
 }
 
@@ -110,14 +113,16 @@ static void print_lead(ethd__report *r) {
     taps += d->group[i].cell.count;
     valid += ethd__cell_valid(&d->group[i].cell);
   }
-  fprintf(r->page, "<p class=\"lead\">%zu participants, %zu cells, %zu test taps, %zu of them valid; %zu training taps.</p>\n",
+  fprintf(r->page,
+          "<p class=\"lead\">%zu participants, %zu cells, %zu test taps, %zu of them valid; %zu training taps.</p>\n",
           d->people_count, d->group_count, taps, valid, d->training);
   fputs("<p class=\"note\">", r->page);
   print_origin(r);
   fputs(" Laws and gains are those of the configuration, the paper's unless it says otherwise.</p>\n", r->page);
   fputs("<nav>", r->page);
-  static const char *const links[][2] = {{"table1", "Table 1"}, {"figures", "Figures"}, {"delay", "Delay"}, {"valid", "Valid taps"},
-                                         {"pairs", "Comparison"}, {"survey", "Survey"}, {"traces", "Traces"}, {"methods", "Methods"}};
+  static const char *const links[][2] = {{"table1", "Table 1"},   {"figures", "Figures"},  {"delay", "Delay"},
+                                         {"valid", "Valid taps"}, {"pairs", "Comparison"}, {"survey", "Survey"},
+                                         {"traces", "Traces"},    {"methods", "Methods"}};
   for (size_t i = 0; i < sizeof links / sizeof *links; i++)
     fprintf(r->page, "<a href=\"#%s\">%s</a>", links[i][0], links[i][1]);
   fputs("</nav>\n", r->page);
@@ -126,13 +131,16 @@ static void print_lead(ethd__report *r) {
 static void print_foot(ethd__report *r) {
   ethd__html_heading(r->page, "data", "Data");
   fputs("<p>The folder's README.md says what every file and column is. ", r->page);
-  fprintf(r->page, "Study hash <code>%s</code>; libethd %s. Any recorded tap repeats bit for bit: "
-          "<code>ethd-replay --verify DIR/taps/NAME</code>.</p>\n", r->folder->hash, ETHD_VERSION);
+  fprintf(r->page,
+          "Study hash <code>%s</code>; libethd %s. Any recorded tap repeats bit for bit: "
+          "<code>ethd-replay --verify DIR/taps/NAME</code>.</p>\n",
+          r->folder->hash, ETHD_VERSION);
 }
 
 static ethd_status sections(ethd__report *r) {
-  ethd_status (*const each[])(ethd__report *) = {ethd__report_table1, ethd__report_boxes,  ethd__report_reasons, ethd__report_pairs,
-                                                 ethd__report_survey, ethd__report_traces, ethd__report_grid};
+  ethd_status (*const each[])(ethd__report *) = {ethd__report_table1, ethd__report_boxes,  ethd__report_reasons,
+                                                 ethd__report_pairs,  ethd__report_survey, ethd__report_traces,
+                                                 ethd__report_grid};
   ethd_status status = ETHD_OK;
   char title[128];
   snprintf(title, sizeof title, "Tapping study: %s", r->folder->protocol.name);
@@ -169,8 +177,12 @@ int main(int argc, char **argv) {
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   char *out = arg.out ? NULL : ethd__folder_path(arg.folder, "report");
-  report = (ethd__report){.folder = &folder, .out = out ? out : arg.out, .tap = arg.tap, .point = (size_t)arg.point,
-                          .seed = arg.seed, .message = message};
+  report = (ethd__report){.folder = &folder,
+                          .out = out ? out : arg.out,
+                          .tap = arg.tap,
+                          .point = (size_t)arg.point,
+                          .seed = arg.seed,
+                          .message = message};
   load(arg.folder, report.point, &folder, &report.data);
   if (arg.beside) {
     load(arg.beside, 0, &beside, &report.beside);

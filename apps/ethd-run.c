@@ -29,13 +29,26 @@ static const char doc[] =
     "  ethd-run --config device.ini --record session\n"
     "  printf 'wait 0.5\\ntransition smooth\\nstatus\\n' | ethd-run --virtual --duration 2";
 
-enum { OPTION_RECORD = 256, OPTION_SNAPSHOT, OPTION_FAULTS, OPTION_TELEMETRY, OPTION_VIRTUAL, OPTION_CPU, OPTION_PRIORITY, OPTION_REQUIRE, OPTION_EARLY, OPTION_DMA, OPTION_SOFT };
+enum {
+  OPTION_RECORD = 256,
+  OPTION_SNAPSHOT,
+  OPTION_FAULTS,
+  OPTION_TELEMETRY,
+  OPTION_VIRTUAL,
+  OPTION_CPU,
+  OPTION_PRIORITY,
+  OPTION_REQUIRE,
+  OPTION_EARLY,
+  OPTION_DMA,
+  OPTION_SOFT
+};
 
 static const struct argp_option options[] = {
     {"config", 'c', "C.ini", 0, "configuration; the simulated device without", 0},
     {"duration", 'd', "S", 0, "ends after so many seconds; needed with --virtual", 0},
     {"record", OPTION_RECORD, "DIR", 0, "every tick, for ethd-replay --verify", 0},
-    {"snapshot", OPTION_SNAPSHOT, "FILE.npy", 0, "the ticks around the first fault: 2 s before, 1 s after; snapshot.npy in DIR with --record", 0},
+    {"snapshot", OPTION_SNAPSHOT, "FILE.npy", 0,
+     "the ticks around the first fault: 2 s before, 1 s after; snapshot.npy in DIR with --record", 0},
     {"faults", OPTION_FAULTS, NULL, 0, "print what may go wrong and what is done then, and end", 0},
     {"telemetry", OPTION_TELEMETRY, "HOST:PORT", 0, "UDP, JSON, 100 Hz: PlotJuggler's UDP server reads it", 0},
     {"virtual", OPTION_VIRTUAL, NULL, 0, "lock-step on a virtual clock, no threads", 0},
@@ -62,25 +75,25 @@ static int32_t parse_cpu(const char *text) {
 static error_t parse(int key, char *text, struct argp_state *state) {
   ethd_loop_def *loop = &arg.session.loop;
   switch (key) {
-    case 'c': arg.session.config = text; return 0;
-    case 'd': arg.duration = ethd__option_number("--duration", text, 1e-3, 1e7); return 0;
-    case OPTION_RECORD: arg.session.record = text; return 0;
-    case OPTION_SNAPSHOT: arg.session.snapshot = text; return 0;
-    case OPTION_FAULTS: ethd__faults_print(stdout); exit(ethd__end(ETHD_EXIT_DONE));
-    case OPTION_TELEMETRY: arg.session.telemetry = text; return 0;
-    case OPTION_VIRTUAL: arg.session.is_virtual = true; return 0;
-    case OPTION_CPU: loop->cpu = parse_cpu(text); return 0;
-    case OPTION_PRIORITY: loop->priority = (int32_t)ethd__option_integer("--priority", text, 1, 99); return 0;
-    case OPTION_REQUIRE: loop->require_rt = 1; return 0;
-    case OPTION_EARLY: loop->early_wake = 1e-6 * ethd__option_number("--early-wake", text, 0, 1e5); return 0;
-    case OPTION_DMA: loop->dma_latency = (int32_t)ethd__option_integer("--dma-latency", text, 0, 1000000); return 0;
-    case OPTION_SOFT: loop->soft_start = ethd__option_number("--soft-start", text, 0, 10); return 0;
-    case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
-    case ARGP_KEY_END:
-      if (arg.session.is_virtual && !(arg.duration > 0)) argp_error(state, "--virtual needs --duration");
-      if (arg.session.is_virtual && loop->require_rt) argp_error(state, "--virtual contradicts --require-rt");
-      return 0;
-    default: return ARGP_ERR_UNKNOWN;
+  case 'c': arg.session.config = text; return 0;
+  case 'd': arg.duration = ethd__option_number("--duration", text, 1e-3, 1e7); return 0;
+  case OPTION_RECORD: arg.session.record = text; return 0;
+  case OPTION_SNAPSHOT: arg.session.snapshot = text; return 0;
+  case OPTION_FAULTS: ethd__faults_print(stdout); exit(ethd__end(ETHD_EXIT_DONE));
+  case OPTION_TELEMETRY: arg.session.telemetry = text; return 0;
+  case OPTION_VIRTUAL: arg.session.is_virtual = true; return 0;
+  case OPTION_CPU: loop->cpu = parse_cpu(text); return 0;
+  case OPTION_PRIORITY: loop->priority = (int32_t)ethd__option_integer("--priority", text, 1, 99); return 0;
+  case OPTION_REQUIRE: loop->require_rt = 1; return 0;
+  case OPTION_EARLY: loop->early_wake = 1e-6 * ethd__option_number("--early-wake", text, 0, 1e5); return 0;
+  case OPTION_DMA: loop->dma_latency = (int32_t)ethd__option_integer("--dma-latency", text, 0, 1000000); return 0;
+  case OPTION_SOFT: loop->soft_start = ethd__option_number("--soft-start", text, 0, 10); return 0;
+  case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+  case ARGP_KEY_END:
+    if (arg.session.is_virtual && !(arg.duration > 0)) argp_error(state, "--virtual needs --duration");
+    if (arg.session.is_virtual && loop->require_rt) argp_error(state, "--virtual contradicts --require-rt");
+    return 0;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 

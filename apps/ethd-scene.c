@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "text/text.h"
 #include "scene/scene.h"
+#include "text/text.h"
 
 static const char doc[] =
     "Says what a scene holds, or the signed distance of points from it; makes scenes of drawings.\v"
@@ -62,8 +62,7 @@ static void check_usage(struct argp_state *state) {
 
 static void take_word(const char *word, struct argp_state *state) {
   if (!arg.command) {
-    if (command_of(word) == COMMANDS)
-      argp_error(state, "\"%s\": unknown; query, info or convert is allowed", word);
+    if (command_of(word) == COMMANDS) argp_error(state, "\"%s\": unknown; query, info or convert is allowed", word);
     arg.command = word;
   } else if (command_of(arg.command) == INFO && !arg.scene) {
     arg.scene = word;
@@ -76,8 +75,8 @@ static void take_word(const char *word, struct argp_state *state) {
 static ethd_vec origin(const char *text) {
   const char *comma = strchr(text, ',');
   ethd_vec o;
-  if (!comma || !ethd__number(text, (size_t)(comma - text), &o.x) || !ethd__number(comma + 1, strlen(comma + 1), &o.y) ||
-      !(fabs(o.x) <= 1e6 && fabs(o.y) <= 1e6))
+  if (!comma || !ethd__number(text, (size_t)(comma - text), &o.x) ||
+      !ethd__number(comma + 1, strlen(comma + 1), &o.y) || !(fabs(o.x) <= 1e6 && fabs(o.y) <= 1e6))
     ethd__fail(ETHD_EXIT_INPUT, "--origin: found \"%s\", X,Y in m is needed, each up to 1e6", text);
   return o;
 }
@@ -92,17 +91,17 @@ static const char *picture(const char *text) {
 static error_t parse(int key, char *text, struct argp_state *state) {
   arg.svg_given |= key == 't' || key == 'l' || key == 'O';
   switch (key) {
-    case 's': arg.scene = text; return 0;
-    case 'i': arg.in = text; return 0;
-    case 'o': arg.out = text; return 0;
-    case 'c': arg.config = text; return 0;
-    case 'p': arg.plot = picture(text); return 0;
-    case 't': arg.svg.tolerance = ethd__option_number("--tolerance", text, 1e-9, 1e3); return 0;
-    case 'l': arg.svg.scale = ethd__option_number("--scale", text, 1e-9, 1e6); return 0;
-    case 'O': arg.svg.origin = origin(text); return 0;
-    case ARGP_KEY_ARG: take_word(text, state); return 0;
-    case ARGP_KEY_END: check_usage(state); return 0;
-    default: return ARGP_ERR_UNKNOWN;
+  case 's': arg.scene = text; return 0;
+  case 'i': arg.in = text; return 0;
+  case 'o': arg.out = text; return 0;
+  case 'c': arg.config = text; return 0;
+  case 'p': arg.plot = picture(text); return 0;
+  case 't': arg.svg.tolerance = ethd__option_number("--tolerance", text, 1e-9, 1e3); return 0;
+  case 'l': arg.svg.scale = ethd__option_number("--scale", text, 1e-9, 1e6); return 0;
+  case 'O': arg.svg.origin = origin(text); return 0;
+  case ARGP_KEY_ARG: take_word(text, state); return 0;
+  case ARGP_KEY_END: check_usage(state); return 0;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 

@@ -34,14 +34,14 @@ static struct {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
-    case 'm': arg.map = text; return 0;
-    case OPTION_PORT: arg.port = text; return 0;
-    case 'd': arg.duration = ethd__option_number("--duration", text, 0.01, 86400); return 0;
-    case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
-    case ARGP_KEY_END:
-      if (!arg.map) argp_error(state, "--map is needed");
-      return 0;
-    default: return ARGP_ERR_UNKNOWN;
+  case 'm': arg.map = text; return 0;
+  case OPTION_PORT: arg.port = text; return 0;
+  case 'd': arg.duration = ethd__option_number("--duration", text, 0.01, 86400); return 0;
+  case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+  case ARGP_KEY_END:
+    if (!arg.map) argp_error(state, "--map is needed");
+    return 0;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -100,15 +100,16 @@ static void print_rate(double seconds) {
   printf("%-10s %" PRIu64 " missing, %" PRIu64 " stale, %" PRIu64 " damaged or refused, %" PRIu64 " links lost\n",
          "answers", c->missing, c->stale, c->garbled + c->busy + c->refused + c->failed, c->lost);
   if (!trip.count) ethd__fail(ETHD_EXIT_FAILED, "no exchange went well: %s", drive.message);
-  printf("%-10s this bus can do %.0f Hz (99 %% of the exchanges; %.0f a second back to back)\n", "rate", floor(1 / slow),
-         (double)trip.count / seconds);
+  printf("%-10s this bus can do %.0f Hz (99 %% of the exchanges; %.0f a second back to back)\n", "rate",
+         floor(1 / slow), (double)trip.count / seconds);
 }
 
 static void print_values(void) {
   for (uint32_t i = 0; i < map.count; i++) {
     const ethd__servo_register *r = &map.registers[i];
     if (drive.plan.block[i] < 0 || r->direction != ETHD__SERVO_READ) continue;
-    printf("%-10s %-16s raw %-12.10g %.6g", i ? "" : "values", r->name, drive.raw[i], r->scale * drive.raw[i] + r->offset);
+    printf("%-10s %-16s raw %-12.10g %.6g", i ? "" : "values", r->name, drive.raw[i],
+           r->scale * drive.raw[i] + r->offset);
     const char *unit = ethd__servo_units;
     for (int32_t k = 0; k < r->unit; k++) unit = strchr(unit, '|') + 1;
     printf(" %.*s%s\n", r->unit ? (int)strcspn(unit, "|") : 0, unit, r->unconfirmed ? "; address unconfirmed" : "");
@@ -127,7 +128,8 @@ int main(int argc, char **argv) {
   print_rate(seconds);
   print_values();
   uint32_t unconfirmed = ethd__servo_unconfirmed(&map);
-  if (unconfirmed) printf("%-10s %u of %u registers: no document confirms their addresses\n", "unconfirmed", unconfirmed, map.count);
+  if (unconfirmed)
+    printf("%-10s %u of %u registers: no document confirms their addresses\n", "unconfirmed", unconfirmed, map.count);
   for (uint32_t i = 0; (risk = ethd__servo_risk(&map, i)); i++) printf("%-10s %s\n", i ? "" : "open risk", risk);
   ethd__servo_link_close(&drive);
   return ethd__end(ETHD_EXIT_DONE);

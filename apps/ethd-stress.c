@@ -39,27 +39,16 @@ static struct {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
-  case 'q':
-    arg.effort = ETHD__QUICK;
-    return 0;
-  case 'l':
-    arg.effort = ETHD__LONG;
-    return 0;
-  case 'c':
-    arg.csv = text;
-    return 0;
-  case 'o':
-    arg.folder = text;
-    return 0;
-  case 'L':
-    arg.list = 1;
-    return 0;
+  case 'q': arg.effort = ETHD__QUICK; return 0;
+  case 'l': arg.effort = ETHD__LONG; return 0;
+  case 'c': arg.csv = text; return 0;
+  case 'o': arg.folder = text; return 0;
+  case 'L': arg.list = 1; return 0;
   case ARGP_KEY_ARG:
     if (arg.name) argp_error(state, "\"%s\": one NAME at a time", text);
     arg.name = text;
     return 0;
-  default:
-    return ARGP_ERR_UNKNOWN;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 

@@ -29,7 +29,18 @@ static const char doc[] =
     "  ethd-study grid.study --simulate 1000 --shard 1/4 --out bulk    (and 2/4, 3/4, 4/4, anywhere)\n"
     "  ethd-study --merge bulk";
 
-enum { OPTION_RESUME = 256, OPTION_ASK, OPTION_FINGER, OPTION_PARTICIPANT, OPTION_SIMULATE, OPTION_SHARD, OPTION_TICKS, OPTION_MERGE, OPTION_SCREEN, OPTION_VIRTUAL };
+enum {
+  OPTION_RESUME = 256,
+  OPTION_ASK,
+  OPTION_FINGER,
+  OPTION_PARTICIPANT,
+  OPTION_SIMULATE,
+  OPTION_SHARD,
+  OPTION_TICKS,
+  OPTION_MERGE,
+  OPTION_SCREEN,
+  OPTION_VIRTUAL
+};
 
 static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "folder of a new session, or of a simulation", 0},
@@ -37,7 +48,8 @@ static const struct argp_option options[] = {
     {"participant", OPTION_PARTICIPANT, "K", 0, "only this one, from 1; the others another time", 0},
     {"finger", OPTION_FINGER, "FILE.csv", 0, "every hand's path is this recorded movement", 0},
     {"ask", OPTION_ASK, NULL, 0, "take commands on stdin", 0},
-    {"screen", OPTION_SCREEN, "WxH", OPTION_ARG_OPTIONAL, "in a window, 1280x720 by default; the mouse is the finger, unless people's are", 0},
+    {"screen", OPTION_SCREEN, "WxH", OPTION_ARG_OPTIONAL,
+     "in a window, 1280x720 by default; the mouse is the finger, unless people's are", 0},
     {"virtual", OPTION_VIRTUAL, NULL, 0, "with people: the device in lock-step, as fast as it goes", 0},
     {"quiet", 'q', NULL, 0, "no line per tap", 0},
     {"simulate", OPTION_SIMULATE, "N", 0, "N participants at every point of the study's [grid]", 1},
@@ -77,7 +89,8 @@ static void parse_screen(const char *text) {
 
 /* What goes with what. */
 static void check_options(struct argp_state *state) {
-  if (!!arg.out + !!arg.resume + !!arg.merge != 1) argp_error(state, "--out DIR, --resume DIR or --merge DIR is needed");
+  if (!!arg.out + !!arg.resume + !!arg.merge != 1)
+    argp_error(state, "--out DIR, --resume DIR or --merge DIR is needed");
   if (!arg.out && (arg.study || arg.finger)) argp_error(state, "the study is taken from the folder");
   if ((arg.sharded || arg.shard.record) && !arg.simulate) argp_error(state, "--shard and --ticks need --simulate N");
   if (arg.width && (arg.ask || arg.simulate || arg.finger || arg.merge))
@@ -88,28 +101,26 @@ static void check_options(struct argp_state *state) {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
-    case 'o': arg.out = text; return 0;
-    case 'q': arg.quiet = true; return 0;
-    case OPTION_RESUME: arg.resume = text; return 0;
-    case OPTION_PARTICIPANT:
-      arg.participant = ethd__option_integer("--participant", text, 1, ETHD_STUDY_SESSION_PEOPLE);
-      return 0;
-    case OPTION_FINGER: arg.finger = text; return 0;
-    case OPTION_ASK: arg.ask = true; return 0;
-    case OPTION_SIMULATE: arg.simulate = ethd__option_integer("--simulate", text, 1, ETHD_STUDY_PEOPLE); return 0;
-    case OPTION_SHARD: parse_shard(text); return 0;
-    case OPTION_TICKS: arg.shard.record = true; return 0;
-    case OPTION_SCREEN: parse_screen(text); return 0;
-    case OPTION_VIRTUAL: arg.is_virtual = true; return 0;
-    case OPTION_MERGE: arg.merge = text; return 0;
-    case ARGP_KEY_ARG:
-      if (arg.study) argp_error(state, "\"%s\": one study file is allowed", text);
-      arg.study = text;
-      return 0;
-    case ARGP_KEY_END:
-      check_options(state);
-      return 0;
-    default: return ARGP_ERR_UNKNOWN;
+  case 'o': arg.out = text; return 0;
+  case 'q': arg.quiet = true; return 0;
+  case OPTION_RESUME: arg.resume = text; return 0;
+  case OPTION_PARTICIPANT:
+    arg.participant = ethd__option_integer("--participant", text, 1, ETHD_STUDY_SESSION_PEOPLE);
+    return 0;
+  case OPTION_FINGER: arg.finger = text; return 0;
+  case OPTION_ASK: arg.ask = true; return 0;
+  case OPTION_SIMULATE: arg.simulate = ethd__option_integer("--simulate", text, 1, ETHD_STUDY_PEOPLE); return 0;
+  case OPTION_SHARD: parse_shard(text); return 0;
+  case OPTION_TICKS: arg.shard.record = true; return 0;
+  case OPTION_SCREEN: parse_screen(text); return 0;
+  case OPTION_VIRTUAL: arg.is_virtual = true; return 0;
+  case OPTION_MERGE: arg.merge = text; return 0;
+  case ARGP_KEY_ARG:
+    if (arg.study) argp_error(state, "\"%s\": one study file is allowed", text);
+    arg.study = text;
+    return 0;
+  case ARGP_KEY_END: check_options(state); return 0;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 
@@ -127,9 +138,11 @@ static void check_study(const ethd__protocol *protocol, const ethd__loaded *load
   ethd__desk_close(&desk);
   bool people = protocol->hands == ETHD_HANDS_PEOPLE;
   if (people && (arg.simulate || arg.finger))
-    ethd__fail(ETHD_EXIT_INPUT, "%s: hand.source: people have hands of their own; no --simulate, no --finger", protocol->path);
+    ethd__fail(ETHD_EXIT_INPUT, "%s: hand.source: people have hands of their own; no --simulate, no --finger",
+               protocol->path);
   if (!people && arg.is_virtual)
-    ethd__fail(ETHD_EXIT_INPUT, "--virtual: %s: hand.source: people is needed; any other has no real time", protocol->path);
+    ethd__fail(ETHD_EXIT_INPUT, "--virtual: %s: hand.source: people is needed; any other has no real time",
+               protocol->path);
   if (protocol->axis_count && !arg.simulate)
     ethd__fail(ETHD_EXIT_INPUT, "%s: [grid]: a session has no grid; --simulate has", protocol->path);
   if (arg.participant > protocol->participants)
@@ -176,12 +189,12 @@ static int run_session(void) {
   static ethd__place place;
   char message[ETHD_MESSAGE_MAX] = "";
   const ethd__place_options wanted = {.path = arg.resume ? arg.resume : arg.out,
-                                       .participant = arg.participant,
-                                       .ask = arg.ask,
-                                       .quiet = arg.quiet,
-                                       .is_virtual = arg.is_virtual,
-                                       .width = arg.width,
-                                       .height = arg.height};
+                                      .participant = arg.participant,
+                                      .ask = arg.ask,
+                                      .quiet = arg.quiet,
+                                      .is_virtual = arg.is_virtual,
+                                      .width = arg.width,
+                                      .height = arg.height};
   bool over = false;
   if (!arg.resume) make_folder();
   ethd__place_open(&wanted, &place);
@@ -206,8 +219,7 @@ static int run_shard(void) {
   ethd__catch_interrupt();
   ethd_status status = ethd__shard_run(&folder, &desk, &arg.shard, &taps, &over, message);
   if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s; the same command goes on", message);
-  if (over)
-    printf("%s: shard %u/%u: %llu taps\n", arg.out, arg.shard.index, arg.shard.count, (unsigned long long)taps);
+  if (over) printf("%s: shard %u/%u: %llu taps\n", arg.out, arg.shard.index, arg.shard.count, (unsigned long long)taps);
   ethd__desk_close(&desk);
   ethd__folder_close(&folder);
   return over ? ETHD_EXIT_DONE : stopped(arg.out, "the same command, --out");

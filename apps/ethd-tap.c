@@ -4,14 +4,14 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "text/error_text.h"
-#include "text/text.h"
 #include "tap/load.h"
 #include "tap/run.h"
 #include "tap/table.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 #define LIST_MAX 32
-#define TAPS 100u    /* per cell */
+#define TAPS 100u       /* per cell */
 #define TAPS_FINGER 10u /* with a recorded movement */
 #define TAPS_MAX 1000000
 
@@ -78,8 +78,7 @@ static void add(const char *word, void *user) {
   char quote[ETHD_QUOTE_MAX];
   for (size_t i = 0; i < to->list->count; i++)
     if (!strcmp(to->list->words[i], word))
-      ethd__fail(ETHD_EXIT_INPUT, "%s: %s stands there twice", to->option,
-                 ethd__quote(word, strlen(word), quote));
+      ethd__fail(ETHD_EXIT_INPUT, "%s: %s stands there twice", to->option, ethd__quote(word, strlen(word), quote));
   if (to->list->count == LIST_MAX)
     ethd__fail(ETHD_EXIT_INPUT, "%s: at most %d words are allowed", to->option, LIST_MAX);
   char *copy = strdup(word);
@@ -96,25 +95,25 @@ static void set_list(list *words, const char *option, const char *text) {
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
-    case 'c': arg.config = text; return 0;
-    case 't': set_list(&arg.laws, "--transition", text); return 0;
-    case 's': set_list(&arg.speeds, "--speed", text); return 0;
-    case 'n': arg.taps = ethd__option_integer("--taps", text, 1, TAPS_MAX); return 0;
-    case 'r': arg.seed = ethd__option_seed("--seed", text); return 0;
-    case 'p': arg.plant = text; return 0;
-    case 'f': arg.finger = text; return 0;
-    case OPTION_SCALE:
-      arg.scale = ethd__option_number("--scale", text, 0.01, 100);
-      arg.scaled = true;
-      return 0;
-    case OPTION_CSV: arg.csv = text; return 0;
-    case OPTION_RECORD: arg.record = text; return 0;
-    case OPTION_TRACE: arg.trace = text; return 0;
-    case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
-    case ARGP_KEY_END:
-      if (arg.scaled && !arg.finger) argp_error(state, "--scale needs --finger");
-      return 0;
-    default: return ARGP_ERR_UNKNOWN;
+  case 'c': arg.config = text; return 0;
+  case 't': set_list(&arg.laws, "--transition", text); return 0;
+  case 's': set_list(&arg.speeds, "--speed", text); return 0;
+  case 'n': arg.taps = ethd__option_integer("--taps", text, 1, TAPS_MAX); return 0;
+  case 'r': arg.seed = ethd__option_seed("--seed", text); return 0;
+  case 'p': arg.plant = text; return 0;
+  case 'f': arg.finger = text; return 0;
+  case OPTION_SCALE:
+    arg.scale = ethd__option_number("--scale", text, 0.01, 100);
+    arg.scaled = true;
+    return 0;
+  case OPTION_CSV: arg.csv = text; return 0;
+  case OPTION_RECORD: arg.record = text; return 0;
+  case OPTION_TRACE: arg.trace = text; return 0;
+  case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+  case ARGP_KEY_END:
+    if (arg.scaled && !arg.finger) argp_error(state, "--scale needs --finger");
+    return 0;
+  default: return ARGP_ERR_UNKNOWN;
   }
 }
 

@@ -31,9 +31,7 @@ static inline uint64_t ethd__denormals_keep(void) {
   __asm__ volatile("msr fpcr, %0" : : "r"(before & ~((uint64_t)1 << 24)));
   return before;
 }
-static inline void ethd__denormals_restore(uint64_t before) {
-  __asm__ volatile("msr fpcr, %0" : : "r"(before));
-}
+static inline void ethd__denormals_restore(uint64_t before) { __asm__ volatile("msr fpcr, %0" : : "r"(before)); }
 #else
 static inline uint64_t ethd__denormals_flush(void) { return 0; }
 static inline uint64_t ethd__denormals_keep(void) { return 0; }

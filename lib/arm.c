@@ -9,10 +9,8 @@
 ethd_status ethd_arm_check(const ethd_arm *arm, ethd_error *error) {
   ethd_status status =
       ethd__check_number(error, "mechanism", (double)arm->mechanism, ETHD_ARM_PARALLEL, ETHD_ARM_SERIAL);
-  if (!status)
-    status = ethd__check_number(error, "link1", arm->link1, ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX);
-  if (!status)
-    status = ethd__check_number(error, "link2", arm->link2, ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX);
+  if (!status) status = ethd__check_number(error, "link1", arm->link1, ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX);
+  if (!status) status = ethd__check_number(error, "link2", arm->link2, ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX);
   return status;
 }
 

@@ -6,8 +6,8 @@ static unsigned char *slot(ethd_cell *cell, unsigned i) ETHD_RT { return cell->s
 
 void ethd_cell_put(ethd_cell *cell, const void *value) {
   memcpy(slot(cell, cell->back), value, cell->size);
-  cell->back = atomic_exchange_explicit(&cell->middle, cell->back | ETHD__CELL_FRESH, memory_order_acq_rel) &
-               ~ETHD__CELL_FRESH;
+  cell->back =
+      atomic_exchange_explicit(&cell->middle, cell->back | ETHD__CELL_FRESH, memory_order_acq_rel) & ~ETHD__CELL_FRESH;
 }
 
 ethd_status ethd_cell_take(ethd_cell *cell, void *value) {

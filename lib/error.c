@@ -10,8 +10,8 @@ static void copy_name(char *to, size_t room, const char *from) {
   to[n] = 0;
 }
 
-ethd_status ethd__refuse(ethd_error *error, ethd_status status, const char *name, double found,
-                              double min, double max) {
+ethd_status ethd__refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
+                         double max) {
   if (error) {
     memset(error, 0, sizeof *error);
     error->status = status;
@@ -38,9 +38,7 @@ void ethd__error_prefix(ethd_error *error, const char *prefix) {
   memcpy(error->name, name, sizeof name);
 }
 
-ethd_status ethd__check_number(ethd_error *error, const char *name, double value, double min,
-                               double max) {
+ethd_status ethd__check_number(ethd_error *error, const char *name, double value, double min, double max) {
   if (value >= min && value <= max) return ETHD_OK;
-  return ethd__refuse(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, value, min,
-                           max);
+  return ethd__refuse(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, value, min, max);
 }

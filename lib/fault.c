@@ -3,19 +3,16 @@
 static const struct {
   const char *bound, *sentence;
   ethd_reaction reaction[2];
-} rows[ETHD_FAULT_COUNT] = {
-    [ETHD_FAULT_NONE] = {"", "no fault", {ETHD_REACTION_NONE, ETHD_REACTION_NONE}},
+} rows[ETHD_FAULT_COUNT] = {[ETHD_FAULT_NONE] = {"", "no fault", {ETHD_REACTION_NONE, ETHD_REACTION_NONE}},
 #define ROW(row, name, first, second, bound, sentence) \
   [row] = {bound, sentence, {ETHD_REACTION_##first, ETHD_REACTION_##second}},
-    ETHD_FAULTS(ROW)
+                            ETHD_FAULTS(ROW)
 #undef ROW
 };
 
 static int is_row(ethd_fault fault) ETHD_RT { return (unsigned)fault < ETHD_FAULT_COUNT; }
 
-const char *ethd_fault_sentence(ethd_fault fault) {
-  return is_row(fault) ? rows[fault].sentence : "an unknown fault";
-}
+const char *ethd_fault_sentence(ethd_fault fault) { return is_row(fault) ? rows[fault].sentence : "an unknown fault"; }
 
 const char *ethd_fault_bound(ethd_fault fault) { return is_row(fault) ? rows[fault].bound : ""; }
 

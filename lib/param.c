@@ -58,13 +58,11 @@ static bool is_row(const ethd_param *row) {
   if (!(isfinite(row->min) && row->min <= row->def && row->def <= row->max)) return false;
   uint32_t words = ethd_param_words(row);
   if (!words) return true;
-  return !has_empty_word(row->unit) && row->min == 0 && row->max == words - 1 &&
-         row->def == floor(row->def);
+  return !has_empty_word(row->unit) && row->min == 0 && row->max == words - 1 && row->def == floor(row->def);
 }
 
 ethd_status ethd_params_check_table(const ethd_param *params, uint32_t count, ethd_error *error) {
-  if (count > ETHD_PARAMS_MAX)
-    return ethd__refuse(error, ETHD_E_TABLE, "param_count", count, 0, ETHD_PARAMS_MAX);
+  if (count > ETHD_PARAMS_MAX) return ethd__refuse(error, ETHD_E_TABLE, "param_count", count, 0, ETHD_PARAMS_MAX);
   if (count && !params) return ethd__refuse(error, ETHD_E_TABLE, "params", NAN, NAN, NAN);
   for (uint32_t i = 0; i < count; i++) {
     const char *name = params[i].name ? params[i].name : "";
@@ -74,8 +72,7 @@ ethd_status ethd_params_check_table(const ethd_param *params, uint32_t count, et
   return ETHD_OK;
 }
 
-ethd_status ethd_params_check(const ethd_param *params, uint32_t count, const double *values,
-                              ethd_error *error) {
+ethd_status ethd_params_check(const ethd_param *params, uint32_t count, const double *values, ethd_error *error) {
   for (uint32_t i = 0; i < count; i++) {
     const ethd_param *row = &params[i];
     double v = values[i];

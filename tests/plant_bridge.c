@@ -26,12 +26,26 @@
 #define WATCHDOG 0.05 /* s without a set-point, then zero torque */
 #define SAMPLES 200   /* a second of the finger's path */
 #define SECONDS 3600
-#define NM 1e-4       /* a raw torque at the motor */
+#define NM 1e-4 /* a raw torque at the motor */
 #define RATIO 9.80
 #define COUNTS (4000 * RATIO / 6.283185307179586)
 
-enum { CONTROL, TORQUE1, TORQUE2, COUNTER, STATUS, POSITION1, POSITION2 = 7, MEASURED1 = 9, VOLTAGE = 11, READING_X, READING_Y = 14,
-       READINGS = 16, READING_AGE, WORDS };
+enum {
+  CONTROL,
+  TORQUE1,
+  TORQUE2,
+  COUNTER,
+  STATUS,
+  POSITION1,
+  POSITION2 = 7,
+  MEASURED1 = 9,
+  VOLTAGE = 11,
+  READING_X,
+  READING_Y = 14,
+  READINGS = 16,
+  READING_AGE,
+  WORDS
+};
 
 static struct {
   uint16_t words[WORDS];
@@ -73,12 +87,17 @@ static ethd_path make_path(double speed, double period) {
 
 static void make_plant(const char *name, double speed, double period, int finger) {
   char path[256], message[ETHD_MESSAGE_MAX];
-  ethd_sim_def def = {.arm = {ETHD_ARM_PARALLEL, 0.25, 0.25}, .ring_radius = 0.012, .period = STEP, .step = STEP, .tolerance = ETHD_SIM_FAST};
+  ethd_sim_def def = {.arm = {ETHD_ARM_PARALLEL, 0.25, 0.25},
+                      .ring_radius = 0.012,
+                      .period = STEP,
+                      .step = STEP,
+                      .tolerance = ETHD_SIM_FAST};
   ethd_error error;
   snprintf(path, sizeof path, "apps/config/%s.plant", name);
   if (ethd_plant_load(path, &def.plant, message)) fail(message);
   if (!finger) def.plant.pad_stiffness = 0;
-  ethd_sim_tap tap = {.seed = 1, .finger_radius = def.plant.finger_radius, .commanded = speed, .path = make_path(speed, period)};
+  ethd_sim_tap tap = {
+      .seed = 1, .finger_radius = def.plant.finger_radius, .commanded = speed, .path = make_path(speed, period)};
   if (ethd_sim_create(&def, &plant.sim, &error) || ethd_sim_start(plant.sim, &tap)) fail("the plant can't start");
 }
 
@@ -169,8 +188,9 @@ static void tell(int fd, const struct sockaddr_in *to) {
   advance();
   show();
   ethd_sim_truth(plant.sim, &truth);
-  int n = snprintf(out, sizeof out, "%.9g %.9g %.9g %.9g %.9g %.9g %.9g", truth.t, truth.ring[0], truth.ring[1], truth.finger[0],
-                   truth.finger[1], RATIO * NM * (int16_t)plant.words[MEASURED1], RATIO * NM * (int16_t)plant.words[MEASURED1 + 1]);
+  int n = snprintf(out, sizeof out, "%.9g %.9g %.9g %.9g %.9g %.9g %.9g", truth.t, truth.ring[0], truth.ring[1],
+                   truth.finger[0], truth.finger[1], RATIO * NM * (int16_t)plant.words[MEASURED1],
+                   RATIO * NM * (int16_t)plant.words[MEASURED1 + 1]);
   sendto(fd, out, (size_t)n, 0, (const struct sockaddr *)to, sizeof *to);
 }
 
@@ -179,12 +199,18 @@ int main(int argc, char **argv) {
   double speed = 0.4, period = 1.6;
   int finger = 1;
   for (int i = 1; i + 1 < argc; i += 2) {
-    if (!strcmp(argv[i], "--plant")) name = argv[i + 1];
-    else if (!strcmp(argv[i], "--speed")) speed = atof(argv[i + 1]);
-    else if (!strcmp(argv[i], "--period")) period = atof(argv[i + 1]);
-    else if (!strcmp(argv[i], "--finger")) finger = atoi(argv[i + 1]);
-    else if (!strcmp(argv[i], "--lock-step")) plant.lock_step = atoi(argv[i + 1]);
-    else fail("--plant, --speed, --period, --finger and --lock-step are known");
+    if (!strcmp(argv[i], "--plant"))
+      name = argv[i + 1];
+    else if (!strcmp(argv[i], "--speed"))
+      speed = atof(argv[i + 1]);
+    else if (!strcmp(argv[i], "--period"))
+      period = atof(argv[i + 1]);
+    else if (!strcmp(argv[i], "--finger"))
+      finger = atoi(argv[i + 1]);
+    else if (!strcmp(argv[i], "--lock-step"))
+      plant.lock_step = atoi(argv[i + 1]);
+    else
+      fail("--plant, --speed, --period, --finger and --lock-step are known");
   }
   make_plant(name, speed, period, finger);
   ethd_sim_read(plant.sim, &plant.sense);
@@ -204,10 +230,12 @@ int main(int argc, char **argv) {
     if (!(wait[0].revents & POLLIN)) continue;
     size = sizeof from;
     ssize_t n = recvfrom(fd, q, sizeof q, 0, (struct sockaddr *)&from, &size);
-    if (n >= 1 && q[0] == 'F') tell(fd, &from);
-    else if (n >= 1) answer(fd, q, n, &from);
+    if (n >= 1 && q[0] == 'F')
+      tell(fd, &from);
+    else if (n >= 1)
+      answer(fd, q, n, &from);
   }
-  printf("plant: %.3f s, %llu set-points, the watchdog let go %llu times\n", (double)plant.steps * STEP, (unsigned long long)plant.sets,
-         (unsigned long long)plant.trips);
+  printf("plant: %.3f s, %llu set-points, the watchdog let go %llu times\n", (double)plant.steps * STEP,
+         (unsigned long long)plant.sets, (unsigned long long)plant.trips);
   return 0;
 }

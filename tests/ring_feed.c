@@ -18,7 +18,8 @@
 #define RING_RADIUS 0.012
 
 static int line_to(const char *port) {
-  struct sockaddr_in at = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK), .sin_port = htons((uint16_t)atoi(port))};
+  struct sockaddr_in at = {
+      .sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK), .sin_port = htons((uint16_t)atoi(port))};
   int fd = socket(AF_INET, SOCK_DGRAM, 0);
   if (connect(fd, (struct sockaddr *)&at, sizeof at)) exit(1);
   return fd;

@@ -34,6 +34,7 @@ int main(int argc, char **argv) {
   printf("ready %s\n", drive.port);
   fflush(stdout);
   while (read(0, &(char){0}, 1) > 0) continue;
-  printf("%llu requests, %llu connections\n", (unsigned long long)drive.requests, (unsigned long long)drive.connections);
+  printf("%llu requests, %llu connections\n", (unsigned long long)drive.requests,
+         (unsigned long long)drive.connections);
   return 0;
 }

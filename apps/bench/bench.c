@@ -63,8 +63,7 @@ void ethd__bench_race(ethd__bench_entry *entries, size_t count, double seconds) 
   for (size_t i = 0; i < count; i++) repeats[i] = repeats_of(&entries[i]);
   for (int t = 0; t < turns; t++)
     for (size_t i = 0; i < count; i++)
-      ns[i * (size_t)turns + (size_t)t] =
-          turn(&entries[i], repeats[i]) / (repeats[i] * entries[i].items);
+      ns[i * (size_t)turns + (size_t)t] = turn(&entries[i], repeats[i]) / (repeats[i] * entries[i].items);
   for (size_t i = 0; i < count; i++) {
     qsort(&ns[i * (size_t)turns], (size_t)turns, sizeof *ns, ascending);
     entries[i].ns = ns[i * (size_t)turns + (size_t)turns / 4];
@@ -76,8 +75,8 @@ ethd__bench_times ethd__bench_percentiles(double *ns, size_t count) {
   double sum = 0;
   qsort(ns, count, sizeof *ns, ascending);
   for (size_t i = 0; i < count; i++) sum += ns[i];
-  ethd__bench_times t = {sum / (double)count, ns[count / 2], ns[count - 1 - count / 100],
-                         ns[count - 1 - count / 1000], ns[count - 1]};
+  ethd__bench_times t = {sum / (double)count, ns[count / 2], ns[count - 1 - count / 100], ns[count - 1 - count / 1000],
+                         ns[count - 1]};
   return t;
 }
 
@@ -90,22 +89,17 @@ static uint64_t bits(uint64_t i) {
   return z ^ z >> 31;
 }
 
-double ethd__bench_draw(uint64_t i, double a, double b) {
-  return a + (b - a) * ((double)(bits(i) >> 11) * 0x1p-53);
-}
+double ethd__bench_draw(uint64_t i, double a, double b) { return a + (b - a) * ((double)(bits(i) >> 11) * 0x1p-53); }
 
 double ethd__bench_normal(uint64_t i) {
-  return sqrt(-2 * log(1 - ethd__bench_draw(2 * i, 0, 1))) *
-         cos(2 * M_PI * ethd__bench_draw(2 * i + 1, 0, 1));
+  return sqrt(-2 * log(1 - ethd__bench_draw(2 * i, 0, 1))) * cos(2 * M_PI * ethd__bench_draw(2 * i + 1, 0, 1));
 }
 
 /* ---- peers ---- */
 
 static const char *peers_folder;
 
-void ethd__bench_peers_in(const char *folder) {
-  peers_folder = folder;
-}
+void ethd__bench_peers_in(const char *folder) { peers_folder = folder; }
 
 const void *ethd__bench_peer(const char *name, const char *symbol) {
   char path[4096];
@@ -136,9 +130,7 @@ static void processor(char *text, size_t room) {
 
 static const char *about_all = "";
 
-void ethd__bench_about(const char *text) {
-  about_all = text;
-}
+void ethd__bench_about(const char *text) { about_all = text; }
 
 FILE *ethd__bench_csv(const char *folder, const char *name, const char *about, const char *header) {
   char path[4096], cpu[256];
@@ -146,13 +138,11 @@ FILE *ethd__bench_csv(const char *folder, const char *name, const char *about, c
   FILE *f = fopen(path, "w");
   if (!f) ethd__fail(ETHD_EXIT_FAILED, "%s: %s", path, strerror(errno));
   processor(cpu, sizeof cpu);
-  fprintf(f, "# libethd %s; %s, %ld processors; compiler %s\n", ETHD_VERSION, cpu,
-          sysconf(_SC_NPROCESSORS_ONLN), __VERSION__);
+  fprintf(f, "# libethd %s; %s, %ld processors; compiler %s\n", ETHD_VERSION, cpu, sysconf(_SC_NPROCESSORS_ONLN),
+          __VERSION__);
   if (*about_all) fprintf(f, "# %s\n", about_all);
   fprintf(f, "%s%s\n", about, header);
   return f;
 }
 
-const char *ethd__bench_verdict(int met) {
-  return met ? "met" : "MISSED";
-}
+const char *ethd__bench_verdict(int met) { return met ? "met" : "MISSED"; }

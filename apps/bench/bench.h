@@ -16,8 +16,8 @@ typedef struct ethd__bench {
   int (*run)(const char *folder, int quick); /* exit code */
 } ethd__bench;
 
-extern const ethd__bench ethd__bench_fits, ethd__bench_filters, ethd__bench_velocity,
-    ethd__bench_kinematics, ethd__bench_scene, ethd__bench_tick;
+extern const ethd__bench ethd__bench_fits, ethd__bench_filters, ethd__bench_velocity, ethd__bench_kinematics,
+    ethd__bench_scene, ethd__bench_tick;
 
 extern const ethd__bench ethd__bench_integrators, ethd__bench_hours;
 

@@ -86,8 +86,7 @@ ethd_filter ethd__tuning_filter(ethd_filter_method method, const ethd__tuning *t
   return f;
 }
 
-double ethd__tuning_error(ethd_filter_method method, const ethd__tuning *t, const ethd__tracks *sets,
-                          size_t count) {
+double ethd__tuning_error(ethd_filter_method method, const ethd__tuning *t, const ethd__tracks *sets, size_t count) {
   ethd_filter f = ethd__tuning_filter(method, t);
   ethd__contender c = {NULL, ethd__filter_work, &f};
   return ethd__contender_error(&c, sets, count);
@@ -96,8 +95,7 @@ double ethd__tuning_error(ethd_filter_method method, const ethd__tuning *t, cons
 /* The first row from `from` on, each 1.25 times the one before; the second's values
    are listed. */
 ethd__tuning ethd__tuning_best(ethd_filter_method method, const ethd__tracks *sets, size_t count) {
-  static const double memories[] = {0.04, 0.08, 0.16, 0.32, (double)INFINITY},
-                      alphas[] = {0.4, 0.5, 0.6, 0.7, 0.8};
+  static const double memories[] = {0.04, 0.08, 0.16, 0.32, (double)INFINITY}, alphas[] = {0.4, 0.5, 0.6, 0.7, 0.8};
   static const struct {
     ethd__tuning t;
     const double *second;

@@ -28,8 +28,7 @@ typedef struct ethd__tuning {
 } ethd__tuning;
 
 ethd_filter ethd__tuning_filter(ethd_filter_method method, const ethd__tuning *t);
-double ethd__tuning_error(ethd_filter_method method, const ethd__tuning *t, const ethd__tracks *sets,
-                          size_t count);
+double ethd__tuning_error(ethd_filter_method method, const ethd__tuning *t, const ethd__tracks *sets, size_t count);
 
 /* The best of a grid on these sets. */
 ethd__tuning ethd__tuning_best(ethd_filter_method method, const ethd__tracks *sets, size_t count);

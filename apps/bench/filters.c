@@ -29,8 +29,7 @@ static void work(void *data) {
   t->c.work(t->c.self, (const double(*)[3])t->track->in, ticks_out, t->track->count);
 }
 
-static void race(ethd__contender *list, size_t count, const ethd__track *track, double seconds,
-                 double *ns) {
+static void race(ethd__contender *list, size_t count, const ethd__track *track, double seconds, double *ns) {
   timed t[8];
   ethd__bench_entry entries[8];
   for (size_t i = 0; i < count; i++) {
@@ -45,8 +44,7 @@ static void race(ethd__contender *list, size_t count, const ethd__track *track, 
 
 static FILE *csv;
 
-static void row(const char *set, double latency, const ethd__contender *c, double ns, double error,
-                const char *tuned) {
+static void row(const char *set, double latency, const ethd__contender *c, double ns, double error, const char *tuned) {
   fprintf(csv, "%s,%.17g,%s,%.17g,%.17g,%s\n", set, 1e3 * latency, c->name, ns, 1e3 * error, tuned);
 }
 
@@ -57,8 +55,8 @@ typedef struct field {
   char tuned[6][64];
 } field;
 
-static const ethd_filter_method order[ETHD_FILTER_COUNT] = {ETHD_FILTER_HOLD, ETHD_FILTER_ALPHA_BETA,
-                                                            ETHD_FILTER_CV, ETHD_FILTER_CA};
+static const ethd_filter_method order[ETHD_FILTER_COUNT] = {ETHD_FILTER_HOLD, ETHD_FILTER_ALPHA_BETA, ETHD_FILTER_CV,
+                                                            ETHD_FILTER_CA};
 
 /* hold, two readings, alpha-beta, cv, ca, the peer. */
 static void gather(field *f, const ethd__tracks *reaches, const ethd__peer_filter *peer) {
@@ -68,8 +66,7 @@ static void gather(field *f, const ethd__tracks *reaches, const ethd__peer_filte
     ethd__tuning t = ethd__tuning_best(m, reaches, 1);
     f->filters[m] = ethd__tuning_filter(m, &t);
     ethd__tuning_text(&t, f->tuned[f->count]);
-    f->list[f->count++] =
-        (ethd__contender){ethd_filter_methods[m].id, ethd__filter_work, &f->filters[m]};
+    f->list[f->count++] = (ethd__contender){ethd_filter_methods[m].id, ethd__filter_work, &f->filters[m]};
     if (i == 0) {
       f->tuned[f->count][0] = 0;
       f->list[f->count++] = (ethd__contender){"two readings", ethd__two_readings, NULL};
@@ -105,8 +102,8 @@ static void print_errors(const char *set, double latency, const double *errors, 
   printf("  %5.1f %%\n", 100 * (1 - errors[CA] / errors[CV]));
 }
 
-static void compare(const field *f, const char *set, double latency, const ethd__tracks *sets,
-                    size_t count, const double *ns, double *errors) {
+static void compare(const field *f, const char *set, double latency, const ethd__tracks *sets, size_t count,
+                    const double *ns, double *errors) {
   for (size_t i = 0; i < f->count; i++) {
     errors[i] = ethd__contender_error(&f->list[i], sets, count);
     row(set, latency, &f->list[i], ns[i], errors[i], f->tuned[i]);
@@ -125,9 +122,9 @@ static void print_cv_ca(const ethd__tracks *recorded, size_t sets) {
     best[i] = 1e3 * ethd__tuning_error(methods[i], &t, recorded, sets);
     ethd__tuning_text(&t, text[i]);
   }
-  printf("    by default cv %.4f, ca %.4f, %.1f %%; tuned to them cv %.4f (%s), ca %.4f (%s), %.1f %%\n",
-         defaults[0], defaults[1], 100 * (1 - defaults[1] / defaults[0]), best[0], text[0], best[1],
-         text[1], 100 * (1 - best[1] / best[0]));
+  printf("    by default cv %.4f, ca %.4f, %.1f %%; tuned to them cv %.4f (%s), ca %.4f (%s), %.1f %%\n", defaults[0],
+         defaults[1], 100 * (1 - defaults[1] / defaults[0]), best[0], text[0], best[1], text[1],
+         100 * (1 - best[1] / best[0]));
 }
 
 static int one_latency(int l, double seconds, const ethd__peer_filter *peer) {
@@ -156,8 +153,8 @@ static int one_latency(int l, double seconds, const ethd__peer_filter *peer) {
     printf("\n");
     print_cv_ca(&recorded[0], sets);
   }
-  printf("  goal: ca at least %.0f %% under cv on reaches at %.0f ms: %.1f %%, %s\n", 100 * goals[l],
-         1e3 * latency, gain, ethd__bench_verdict(met));
+  printf("  goal: ca at least %.0f %% under cv on reaches at %.0f ms: %.1f %%, %s\n", 100 * goals[l], 1e3 * latency,
+         gain, ethd__bench_verdict(met));
   if (peer) peer->destroy(f.list[5].self);
   ethd__tracks_free(&reaches);
   for (size_t s = 0; s < sets; s++) ethd__tracks_free(&recorded[s]);

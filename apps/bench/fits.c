@@ -13,7 +13,7 @@
 #define OUTLIER 3e-3                        /* m */
 #define OFFSET 4e-3                         /* m: centres within this of the ring's */
 #define SPEED 0.4                           /* m/s, in any direction */
-#define FRAME 3.33e-3 /* s: the 16 readings of a skewed frame, one after the other */
+#define FRAME 3.33e-3                       /* s: the 16 readings of a skewed frame, one after the other */
 
 enum { TRIALS_MAX = 40000, TIMED = 512 };
 
@@ -46,9 +46,7 @@ static trial trials[TRIALS_MAX];
    g g^T / s^2 over the rays, and no unbiased estimate of c has less mean squared error than the trace
    of its inverse over c. */
 
-static ethd_vec direction(int k) {
-  return (ethd_vec){cos(2 * M_PI * k / ETHD_RAYS), sin(2 * M_PI * k / ETHD_RAYS)};
-}
+static ethd_vec direction(int k) { return (ethd_vec){cos(2 * M_PI * k / ETHD_RAYS), sin(2 * M_PI * k / ETHD_RAYS)}; }
 
 static void add_information(double m[3][3], ethd_vec c, double reach, int k) {
   ethd_vec u = direction(k), n = ethd_vec_scale(1 / FINGER, ethd_vec_sub(ethd_vec_scale(reach, u), c));
@@ -67,17 +65,14 @@ static double bound(double m[3][3], int known) {
 
 /* ---- trials ---- */
 
-static ethd_vec polar(double r, double angle) {
-  return (ethd_vec){r * cos(angle), r * sin(angle)};
-}
+static ethd_vec polar(double r, double angle) { return (ethd_vec){r * cos(angle), r * sin(angle)}; }
 
 static void make_trial(uint64_t i, const scenario *what, trial *out) {
   const uint64_t at = 64 * i;
   double m[3][3] = {{0}};
   int first = (int)ethd__bench_draw(at, 0, ETHD_RAYS);
   ethd_vec v = polar(what->skew ? SPEED : 0, ethd__bench_draw(at + 1, 0, 2 * M_PI));
-  out->centre =
-      polar(OFFSET * sqrt(ethd__bench_draw(at + 2, 0, 1)), ethd__bench_draw(at + 3, 0, 2 * M_PI));
+  out->centre = polar(OFFSET * sqrt(ethd__bench_draw(at + 2, 0, 1)), ethd__bench_draw(at + 3, 0, 2 * M_PI));
   for (int k = 0; k < ETHD_RAYS; k++) {
     double r[ETHD_RAYS], t = ((k + 0.5) / ETHD_RAYS - 0.5) * FRAME;
     ethd_vec c = ethd_vec_add(out->centre, ethd_vec_scale(t, v));
@@ -137,14 +132,12 @@ typedef struct figure {
 } figure;
 
 static void goal(const char *what, double value, double most, const char *unit) {
-  printf("  goal: %-44s <= %-5g %-12s %.4g, %s\n", what, most, unit, value,
-         ethd__bench_verdict(value <= most));
+  printf("  goal: %-44s <= %-5g %-12s %.4g, %s\n", what, most, unit, value, ethd__bench_verdict(value <= most));
 }
 
 static void judge(figure f[SCENARIOS][ETHD_FIT_COUNT], double bounds[SCENARIOS][2]) {
   double slowest = 0;
-  for (int s = 0; s < SCENARIOS; s++)
-    slowest = fmax(slowest, fmax(f[s][ETHD_FIT_KASA].ns, f[s][ETHD_FIT_ROBUST].ns));
+  for (int s = 0; s < SCENARIOS; s++) slowest = fmax(slowest, fmax(f[s][ETHD_FIT_KASA].ns, f[s][ETHD_FIT_ROBUST].ns));
   goal("kasa, 16 rays", f[0][ETHD_FIT_KASA].error / bounds[0][0], 1.05, "x the bound");
   goal("robust, 16 rays", f[0][ETHD_FIT_ROBUST].error / bounds[0][1], 1.05, "x the bound");
   goal("robust, 8 rays", 1e3 * f[1][ETHD_FIT_ROBUST].error, 0.13, "mm");
@@ -152,8 +145,7 @@ static void judge(figure f[SCENARIOS][ETHD_FIT_COUNT], double bounds[SCENARIOS][
   goal("kasa and robust, the slowest of all", slowest, 150, "ns");
 }
 
-static void measure(const scenario *what, int count, double seconds, figure out[ETHD_FIT_COUNT],
-                    double bounds[2]) {
+static void measure(const scenario *what, int count, double seconds, figure out[ETHD_FIT_COUNT], double bounds[2]) {
   ethd_fit fits[ETHD_FIT_COUNT];
   ethd__bench_entry entries[ETHD_FIT_COUNT];
   for (int i = 0; i < count; i++) make_trial((uint64_t)i, what, &trials[i]);
@@ -169,12 +161,11 @@ static void measure(const scenario *what, int count, double seconds, figure out[
 static int run(const char *folder, int quick) {
   figure f[SCENARIOS][ETHD_FIT_COUNT];
   double bounds[SCENARIOS][2];
-  FILE *csv =
-      ethd__bench_csv(folder, "fits",
-                      "# 16 rays of normal noise, sd 0.173 mm (as +-0.3 mm uniform); ring 12 mm, finger "
-                      "7.5 mm within 4 mm of its middle\n"
-                      "# bound: Cramer-Rao, the radius sought or known, rms over the same trials\n",
-                      "scenario,method,time_ns,error_rms_mm,bound_sought_mm,bound_known_mm");
+  FILE *csv = ethd__bench_csv(folder, "fits",
+                              "# 16 rays of normal noise, sd 0.173 mm (as +-0.3 mm uniform); ring 12 mm, finger "
+                              "7.5 mm within 4 mm of its middle\n"
+                              "# bound: Cramer-Rao, the radius sought or known, rms over the same trials\n",
+                              "scenario,method,time_ns,error_rms_mm,bound_sought_mm,bound_known_mm");
   printf("ring fits: rms error of the centre, mm, and ns a fit; bound: Cramer-Rao, radius sought / "
          "known\n");
   printf("  %-40s", "");
@@ -185,8 +176,8 @@ static int run(const char *folder, int quick) {
     printf("  %-40s", scenarios[s].brief);
     for (int m = 0; m < ETHD_FIT_COUNT; m++) {
       printf("  %6.4f %5.0f ns", 1e3 * f[s][m].error, f[s][m].ns);
-      fprintf(csv, "%s,%s,%.17g,%.17g,%.17g,%.17g\n", scenarios[s].name, ethd_fit_methods[m].id,
-              f[s][m].ns, 1e3 * f[s][m].error, 1e3 * bounds[s][0], 1e3 * bounds[s][1]);
+      fprintf(csv, "%s,%s,%.17g,%.17g,%.17g,%.17g\n", scenarios[s].name, ethd_fit_methods[m].id, f[s][m].ns,
+              1e3 * f[s][m].error, 1e3 * bounds[s][0], 1e3 * bounds[s][1]);
     }
     printf("  %6.4f / %6.4f\n", 1e3 * bounds[s][0], 1e3 * bounds[s][1]);
   }
@@ -194,5 +185,4 @@ static int run(const char *folder, int quick) {
   return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
 }
 
-const ethd__bench ethd__bench_fits = {
-    "fits", "the finger's centre from 16 rays, against the Cramer-Rao bound", run};
+const ethd__bench ethd__bench_fits = {"fits", "the finger's centre from 16 rays, against the Cramer-Rao bound", run};

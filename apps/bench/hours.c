@@ -11,8 +11,7 @@
 #define REST 0.15    /* s: after the path's end */
 #define TRUEST 1e-13 /* m/s: tolerance of the reference */
 
-static const double tolerances[] = {1e-3, ETHD_SIM_FAST, 1e-5,  1e-6, 1e-7, 1e-8,
-                                    1e-9, ETHD_SIM_GOLDEN, 1e-11, 1e-12};
+static const double tolerances[] = {1e-3, ETHD_SIM_FAST, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, ETHD_SIM_GOLDEN, 1e-11, 1e-12};
 
 enum { TAPS = 8, TICKS = 1500, ROUNDS_MAX = 64, TOLERANCES = sizeof tolerances / sizeof *tolerances };
 
@@ -31,8 +30,7 @@ static void check(ethd_status status, const char *message) {
 }
 
 static void open_loop(loop *l, const char *law) {
-  char message[ETHD_MESSAGE_MAX], *plant = ethd__data_path("n.plant"),
-                                  *controller = ethd__data_path("n.ini");
+  char message[ETHD_MESSAGE_MAX], *plant = ethd__data_path("n.plant"), *controller = ethd__data_path("n.ini");
   check(ethd_config_load(controller, &l->config, message), message);
   check(ethd_plant_load(plant, &l->study.plant, message), message);
   ethd__speed_parse("low", &l->study.plant, &l->speeds[0]);
@@ -72,8 +70,7 @@ static size_t tap(loop *l, int number, int truth) {
   ethd_sim_tap circumstances;
   ethd_sense sense;
   ethd_command command;
-  check(ethd__stage_draw(&l->stage, &l->speeds[number & 1], (uint64_t)(number / 2), &circumstances),
-        "a tap");
+  check(ethd__stage_draw(&l->stage, &l->speeds[number & 1], (uint64_t)(number / 2), &circumstances), "a tap");
   check(ethd_sim_start(l->sim, &circumstances), "a tap begins out of reach");
   ethd_control_reset(l->stage.control);
   double seconds = ethd_path_end(&circumstances.path) + REST;
@@ -113,9 +110,7 @@ static void race(loop *l, int rounds, double out[TOLERANCES][2]) {
   }
 }
 
-static double apart(const double *a, const double *b) {
-  return hypot(a[0] - b[0], a[1] - b[1]);
-}
+static double apart(const double *a, const double *b) { return hypot(a[0] - b[0], a[1] - b[1]); }
 
 static double error_of(loop *l, double tolerance) {
   static ethd_truth reference[TAPS][TICKS];
@@ -146,8 +141,7 @@ static void judge(double tolerance, double error, double time) {
   double most = tolerance == ETHD_SIM_FAST ? 1e-6 : 1e-8;
   if (!*name_of(tolerance)) return;
   if (tolerance == ETHD_SIM_FAST)
-    printf("  goal: %.0f hours at the fast setting: %.0f, %s\n", GOAL, 1 / time,
-           ethd__bench_verdict(1 / time >= GOAL));
+    printf("  goal: %.0f hours at the fast setting: %.0f, %s\n", GOAL, 1 / time, ethd__bench_verdict(1 / time >= GOAL));
   printf("  goal: error of the %s setting at most %.0e m: %.1e, %s\n", name_of(tolerance), most, error,
          ethd__bench_verdict(error <= most));
 }
@@ -163,13 +157,11 @@ static int run(const char *folder, int quick) {
       "setting,tolerance,error_m,time_s,time_truth_s,hours_per_cpu_hour");
   open_loop(&l, "offset");
   printf("hours: closed loop of plant n, law offset and record, %d taps, simulated\n", TAPS);
-  printf("  %-8s %9s %11s %10s %10s %18s\n", "", "tolerance", "error, m", "us/s", "with truth",
-         "hours per CPU hour");
+  printf("  %-8s %9s %11s %10s %10s %18s\n", "", "tolerance", "error, m", "us/s", "with truth", "hours per CPU hour");
   race(&l, quick ? 16 : ROUNDS_MAX, times);
   for (size_t i = 0; i < TOLERANCES; i++) {
     double t = tolerances[i], error = error_of(&l, t), time = times[i][0], truth = times[i][1];
-    printf("  %-8s %9.0e %11.2e %10.1f %10.1f %18.0f\n", name_of(t), t, error, 1e6 * time, 1e6 * truth,
-           1 / time);
+    printf("  %-8s %9.0e %11.2e %10.1f %10.1f %18.0f\n", name_of(t), t, error, 1e6 * time, 1e6 * truth, 1 / time);
     fprintf(csv, "%s,%.17g,%.17g,%.17g,%.17g,%.17g\n", name_of(t), t, error, time, truth, 1 / time);
     judge(t, error, time);
   }

@@ -40,8 +40,7 @@ static void ours_fixed(void *user, ethd__body *body, const ethd__stretch *s, eth
   double length = s->end - s->begin;
   int n = (int)ceil(length / c->setting - 1e-9);
   tolerate(body, INFINITY);
-  for (int i = 0; i < n; i++)
-    ethd__body_advance(body, &s->piece, s->begin + length * i / n, length / n, state);
+  for (int i = 0; i < n; i++) ethd__body_advance(body, &s->piece, s->begin + length * i / n, length / n, state);
 }
 
 static void play(void *user) {
@@ -66,8 +65,7 @@ static contender *enter(const ethd__problem *problem, const char *name, double s
 
 static void enter_all(const ethd__problem *problem) {
   static const double tolerances[] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
-  for (size_t i = 0; i < sizeof tolerances / sizeof *tolerances; i++)
-    enter(problem, "libethd", tolerances[i]);
+  for (size_t i = 0; i < sizeof tolerances / sizeof *tolerances; i++) enter(problem, "libethd", tolerances[i]);
   for (double h = 200e-6; h > 10e-6; h /= 2) enter(problem, "libethd with fixed steps", h)->fixed = 1;
   for (int m = 0; m < ethd__method_count; m++)
     for (int i = 0; i < 8 && ethd__methods[m].settings[i] > 0; i++) {
@@ -154,14 +152,13 @@ static void race(int rounds) {
 static int run(const char *folder, int quick) {
   ethd__problem problem = ethd__problem_record(TAPS);
   field.count = 0;
-  printf(
-      "integrators: plant n alone, %d taps of %.1f s in all, torques recorded in closed loop; error: "
-      "the\n"
-      "largest distance of ring or finger, every tick and torque change, from DOPRI5 with events at "
-      "1e-15\n"
-      "exact matrix exponential: left out, friction's tanh and the pad's K p (1 + c p') are not linear\n"
-      "MuJoCo: the same forces through its passive callback, steps of fixed length, no events\n",
-      TAPS, problem.duration);
+  printf("integrators: plant n alone, %d taps of %.1f s in all, torques recorded in closed loop; error: "
+         "the\n"
+         "largest distance of ring or finger, every tick and torque change, from DOPRI5 with events at "
+         "1e-15\n"
+         "exact matrix exponential: left out, friction's tanh and the pad's K p (1 + c p') are not linear\n"
+         "MuJoCo: the same forces through its passive callback, steps of fixed length, no events\n",
+         TAPS, problem.duration);
   contender *reference = enter(&problem, "reference", 1e-15);
   reference->runner.method = &ethd__methods[ethd__method_count - 1];
   reference->runner.setting = 1e-15;
@@ -170,11 +167,11 @@ static int run(const char *folder, int quick) {
   field.count = 0;
   enter_all(&problem);
   race(quick ? 8 : 60);
-  FILE *csv = ethd__bench_csv(
-      folder, "integrators",
-      "# plant n alone, torques of taps recorded in closed loop; error: largest distance of ring\n"
-      "# or finger from DOPRI5 with events at tolerance 1e-15; CPU time per simulated second\n",
-      "method,setting,error_m,time_s");
+  FILE *csv =
+      ethd__bench_csv(folder, "integrators",
+                      "# plant n alone, torques of taps recorded in closed loop; error: largest distance of ring\n"
+                      "# or finger from DOPRI5 with events at tolerance 1e-15; CPU time per simulated second\n",
+                      "method,setting,error_m,time_s");
   for (int i = 0; i < field.count; i++) {
     contender *c = &field.all[i];
     c->error = ethd__problem_error(&problem, c->marks, truth);
@@ -198,5 +195,5 @@ static int run(const char *folder, int quick) {
   return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
 }
 
-const ethd__bench ethd__bench_integrators = {
-    "integrators", "the plant's integration, against GSL, CVODE, odeint, MuJoCo", run};
+const ethd__bench ethd__bench_integrators = {"integrators",
+                                             "the plant's integration, against GSL, CVODE, odeint, MuJoCo", run};

@@ -98,8 +98,7 @@ static double error_of(const work *w) {
 }
 
 static int run(const char *folder, int quick) {
-  static work serial = {.arm = {ETHD_ARM_SERIAL, LINK, LINK}},
-              parallel = {.arm = {ETHD_ARM_PARALLEL, LINK, LINK}};
+  static work serial = {.arm = {ETHD_ARM_SERIAL, LINK, LINK}}, parallel = {.arm = {ETHD_ARM_PARALLEL, LINK, LINK}};
   static work libm, kdl;
   make_places(&serial);
   make_places(&parallel);
@@ -117,11 +116,10 @@ static int run(const char *folder, int quick) {
     entries[count++].name = kdl.peer->name;
   }
   ethd__bench_race(entries, count, quick ? 0.3 : 3);
-  FILE *csv =
-      ethd__bench_csv(folder, "kinematics",
-                      "# planar arm, links 0.25 m: FK, J, J^T f, J^-1 e at 1024 places\n"
-                      "# error: the largest over outputs and places, over the output's largest value\n",
-                      "method,time_ns,error_relative,times_ours");
+  FILE *csv = ethd__bench_csv(folder, "kinematics",
+                              "# planar arm, links 0.25 m: FK, J, J^T f, J^-1 e at 1024 places\n"
+                              "# error: the largest over outputs and places, over the output's largest value\n",
+                              "method,time_ns,error_relative,times_ours");
   printf("  %-28s %8s %10s %12s\n", "", "ns", "error", "times ours");
   for (size_t i = 0; i < count; i++) {
     double error = error_of(entries[i].data), times = entries[i].ns / entries[0].ns;
@@ -130,8 +128,7 @@ static int run(const char *folder, int quick) {
   }
   if (kdl.peer) {
     double times = entries[3].ns / entries[0].ns;
-    printf("  goal: KDL takes %.0f times as long: %.1f, %s\n", GOAL, times,
-           ethd__bench_verdict(times >= GOAL));
+    printf("  goal: KDL takes %.0f times as long: %.1f, %s\n", GOAL, times, ethd__bench_verdict(times >= GOAL));
     kdl.peer->destroy(kdl.peer_self);
   }
   return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;

@@ -56,9 +56,7 @@ static void change(void *self, int i) {
     p->touch = p->touch == ETHD__PRESSING ? ETHD__LEAVING : ETHD__PRESSING;
 }
 
-ethd__ode ethd__plain_ode(ethd__plain *plain) {
-  return (ethd__ode){plain, rate, watch, change};
-}
+ethd__ode ethd__plain_ode(ethd__plain *plain) { return (ethd__ode){plain, rate, watch, change}; }
 
 /* ---- one step ---- */
 
@@ -72,8 +70,8 @@ static void combine(const double *y, double h, int count, const double *c, doubl
 }
 
 /* Speeds first, then positions by the new speeds. */
-static double euler(const ethd__ode *ode, double t, double h, const double *y, const double *k1,
-                    double *out, double *k_next, int *fresh) {
+static double euler(const ethd__ode *ode, double t, double h, const double *y, const double *k1, double *out,
+                    double *k_next, int *fresh) {
   (void)ode, (void)t, (void)k_next;
   for (int j = 0; j < HALF; j++) {
     out[HALF + j] = y[HALF + j] + h * k1[HALF + j];
@@ -83,10 +81,9 @@ static double euler(const ethd__ode *ode, double t, double h, const double *y, c
   return 0;
 }
 
-static double rk4(const ethd__ode *ode, double t, double h, const double *y, const double *k1,
-                  double *out, double *k_next, int *fresh) {
-  static const double a2[] = {0.5}, a3[] = {0, 0.5}, a4[] = {0, 0, 1},
-                      b[] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
+static double rk4(const ethd__ode *ode, double t, double h, const double *y, const double *k1, double *out,
+                  double *k_next, int *fresh) {
+  static const double a2[] = {0.5}, a3[] = {0, 0.5}, a4[] = {0, 0, 1}, b[] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
   double k[4][N], x[N];
   (void)k_next;
   memcpy(k[0], k1, sizeof k[0]);
@@ -102,8 +99,8 @@ static double rk4(const ethd__ode *ode, double t, double h, const double *y, con
 }
 
 /* Dormand and Prince 1980; the last evaluation is the next step's first. */
-static double dopri5(const ethd__ode *ode, double t, double h, const double *y, const double *k1,
-                     double *out, double *k_next, int *fresh) {
+static double dopri5(const ethd__ode *ode, double t, double h, const double *y, const double *k1, double *out,
+                     double *k_next, int *fresh) {
   static const double c[] = {0, 1. / 5, 3. / 10, 4. / 5, 8. / 9, 1};
   static const double a[6][5] = {{0},
                                  {1. / 5},
@@ -112,8 +109,7 @@ static double dopri5(const ethd__ode *ode, double t, double h, const double *y, 
                                  {19372. / 6561, -25360. / 2187, 64448. / 6561, -212. / 729},
                                  {9017. / 3168, -355. / 33, 46732. / 5247, 49. / 176, -5103. / 18656}};
   static const double b[] = {35. / 384, 0, 500. / 1113, 125. / 192, -2187. / 6784, 11. / 84};
-  static const double e[] = {71. / 57600,      0,         -71. / 16695, 71. / 1920,
-                             -17253. / 339200, 22. / 525, -1. / 40};
+  static const double e[] = {71. / 57600, 0, -71. / 16695, 71. / 1920, -17253. / 339200, 22. / 525, -1. / 40};
   double k[7][N], x[N], worst = 0;
   memcpy(k[0], k1, sizeof k[0]);
   for (int i = 1; i < 6; i++) {

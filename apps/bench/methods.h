@@ -21,8 +21,8 @@ typedef struct ethd__method {
   double settings[8]; /* 0 ends them */
   /* From y at t, whose rates are k1, to out; returns the largest estimated error, and k1 for the next
      step where the method has it (`fresh` 0: it hasn't). */
-  double (*step)(const ethd__ode *ode, double t, double h, const double *y, const double *k1,
-                 double *out, double *k_next, int *fresh);
+  double (*step)(const ethd__ode *ode, double t, double h, const double *y, const double *k1, double *out,
+                 double *k_next, int *fresh);
 } ethd__method;
 
 extern const ethd__method ethd__methods[];
@@ -38,7 +38,6 @@ typedef struct ethd__runner {
   void *peer_self;
 } ethd__runner;
 
-void ethd__runner_stretch(void *runner, ethd__body *body, const ethd__stretch *stretch,
-                          ethd__state *state);
+void ethd__runner_stretch(void *runner, ethd__body *body, const ethd__stretch *stretch, ethd__state *state);
 
 #endif

@@ -23,7 +23,7 @@ typedef struct ethd__ode {
 typedef struct ethd__peer_ode {
   const char *name;
   double loosest, tightest, ratio; /* tolerances, or lengths of steps, that are worth a point */
-  int live; /* it has no events: rate() finds out what touches each time */
+  int live;                        /* it has no events: rate() finds out what touches each time */
   void *(*create)(const ethd__ode *ode, double tolerance);
   /* From t to `end`, between which only watched numbers interrupt; y in place. */
   void (*work)(void *self, double t, double end, double *y);
@@ -40,8 +40,8 @@ static inline int ethd__ode_changed(const double g[2]) {
 
 /* For peers without event location: g(s) < 0 first at a step s within h, by regula falsi (Illinois);
    `try_step` takes a step of s and returns g after it. */
-static inline double ethd__ode_locate(double (*try_step)(void *self, double s), void *self,
-                                      double before, double h, double after) {
+static inline double ethd__ode_locate(double (*try_step)(void *self, double s), void *self, double before, double h,
+                                      double after) {
   double low = 0, high = h, g_low = before, g_high = after;
   int side = 0;
   while (high - low > ETHD__ODE_LOCATED) {

@@ -20,8 +20,7 @@ static void *room(size_t count, size_t each) {
 
 static void begin(const ethd__stage *stage, const ethd_sim_tap *tap, ethd__played *out) {
   const ethd_plant *plant = &stage->study->plant;
-  const ethd_sim_def def = {
-      .plant = *plant, .arm = stage->setup.arm, .ring_radius = stage->setup.ring_radius};
+  const ethd_sim_def def = {.plant = *plant, .arm = stage->setup.arm, .ring_radius = stage->setup.ring_radius};
   ethd_vec x, v;
   double q[2];
   ethd_path_at(&tap->path, 0, &x, &v);
@@ -35,8 +34,7 @@ static void begin(const ethd__stage *stage, const ethd_sim_tap *tap, ethd__playe
 }
 
 /* Up to `end`, cut at kinks. */
-static void add(ethd__played *p, const ethd_path *path, double *t, double end, int tick,
-                const double torque[2]) {
+static void add(ethd__played *p, const ethd_path *path, double *t, double end, int tick, const double torque[2]) {
   while (*t < end) {
     ethd__stretch *s = &p->stretches[p->count++];
     *s = (ethd__stretch){.begin = *t, .torque = {torque[0], torque[1]}, .tick = tick};
@@ -67,8 +65,7 @@ static void record(ethd__stage *stage, const ethd__speed *speed, uint64_t number
 }
 
 ethd__problem ethd__problem_record(int taps) {
-  char message[ETHD_MESSAGE_MAX], *plant = ethd__data_path("n.plant"),
-                                  *controller = ethd__data_path("n.ini");
+  char message[ETHD_MESSAGE_MAX], *plant = ethd__data_path("n.plant"), *controller = ethd__data_path("n.ini");
   ethd_config *config;
   ethd__study study = {.seed = 1, .speed_count = 2};
   ethd__speed speeds[2];
@@ -117,9 +114,7 @@ void ethd__problem_play(const ethd__problem *p, ethd__play *stretch, void *user,
   }
 }
 
-static double distance(const double *x, const double *y) {
-  return hypot(x[0] - y[0], x[1] - y[1]);
-}
+static double distance(const double *x, const double *y) { return hypot(x[0] - y[0], x[1] - y[1]); }
 
 static void ring(const ethd__body *b, const double *q, double out[2]) {
   out[0] = b->link[0] * cos(q[0]) + b->link[1] * cos(q[1]);

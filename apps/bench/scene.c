@@ -18,10 +18,13 @@ static void write_csv(const ethd__contest *t, FILE *csv) {
         for (int i = 0; i < CONTENDERS; i++) {
           const ethd__result *r = &t->results[kind][size][ask][i];
           if (!r->there) continue;
-          fprintf(csv, "%s,%zu,%s,%s", ethd__world_names[kind], ethd__contest_sizes[size], ethd__ask_names[ask], name_of(t, i));
+          fprintf(csv, "%s,%zu,%s,%s", ethd__world_names[kind], ethd__contest_sizes[size], ethd__ask_names[ask],
+                  name_of(t, i));
           write_times(csv, &r->each, r->mean);
-          if (size < CALM_FROM) fprintf(csv, ",,,,,");
-          else write_times(csv, &r->calm, r->calm.mean);
+          if (size < CALM_FROM)
+            fprintf(csv, ",,,,,");
+          else
+            write_times(csv, &r->calm, r->calm.mean);
           fprintf(csv, ",%.17g,", r->build);
           if (r->bytes > 0) fprintf(csv, "%.17g", r->bytes);
           fprintf(csv, ",%.17g\n", r->apart);
@@ -29,9 +32,12 @@ static void write_csv(const ethd__contest *t, FILE *csv) {
 }
 
 static void print_short(double ns) {
-  if (ns < 999.5) printf("%9.3g", ns);
-  else if (ns < 999.5e3) printf("%7.3g us", 1e-3 * ns);
-  else printf("%7.3g ms", 1e-6 * ns);
+  if (ns < 999.5)
+    printf("%9.3g", ns);
+  else if (ns < 999.5e3)
+    printf("%7.3g us", 1e-3 * ns);
+  else
+    printf("%7.3g ms", 1e-6 * ns);
 }
 
 static void print_question(const ethd__contest *t, int kind, int ask) {
@@ -72,8 +78,9 @@ static void goal_ratio(const ethd__contest *t, ethd__world_kind kind, int size, 
   const ethd__result *r = t->results[kind][size][ask];
   if (!r[peer].there) return;
   double times = r[peer].mean / r[OURS].mean;
-  printf("  goal: %s %zu %s: %s takes %.1f times as long: %.2f, %s\n", ethd__world_names[kind], ethd__contest_sizes[size],
-         ethd__ask_names[ask], name_of(t, peer), least, times, ethd__bench_verdict(times >= least));
+  printf("  goal: %s %zu %s: %s takes %.1f times as long: %.2f, %s\n", ethd__world_names[kind],
+         ethd__contest_sizes[size], ethd__ask_names[ask], name_of(t, peer), least, times,
+         ethd__bench_verdict(times >= least));
 }
 
 static void goal_incoherent(const ethd__contest *t) {
@@ -132,7 +139,8 @@ static int run(const char *folder, int quick) {
   print_goals(&t);
   FILE *csv = ethd__bench_csv(
       folder, "scene",
-      "# nearest of n segments: distance, point, normal (GEOS: distance); contour: libethd has one polyline, libethd loose and the others n segments\n"
+      "# nearest of n segments: distance, point, normal (GEOS: distance); contour: libethd has one polyline, libethd "
+      "loose and the others n segments\n"
       "# mean: blocks of 100 queries, each at its best of the rounds; median to max: query by query, likewise\n"
       "# cold: 8 MB of something else used between two queries. difference: largest, from libethd's distance\n",
       "scene,segments,mode,contender,mean_ns,median_ns,p99_ns,p999_ns,max_ns,cold_mean_ns,cold_median_ns,"

@@ -53,7 +53,8 @@ void ethd__world_path(ethd_vec *points) {
 
 void ethd__world_anywhere(ethd_vec *points) {
   for (uint64_t i = 0; i < ETHD__BENCH_POINTS; i++)
-    points[i] = (ethd_vec){ethd__bench_draw(2 * i + 1000000007, -0.5, 0.5), ethd__bench_draw(2 * i + 1000000008, -0.5, 0.5)};
+    points[i] =
+        (ethd_vec){ethd__bench_draw(2 * i + 1000000007, -0.5, 0.5), ethd__bench_draw(2 * i + 1000000008, -0.5, 0.5)};
 }
 
 /* ---- contenders ---- */
@@ -106,8 +107,10 @@ double ethd__contender_create(ethd__contender *c, const ethd__world *w) {
 }
 
 void ethd__contender_destroy(ethd__contender *c) {
-  if (c->peer) c->peer->destroy(c->self);
-  else ethd_scene_destroy(c->self);
+  if (c->peer)
+    c->peer->destroy(c->self);
+  else
+    ethd_scene_destroy(c->self);
 }
 
 size_t ethd__contender_bytes(const ethd__contender *c) {
@@ -138,7 +141,9 @@ double ethd__contender_nearest(ethd__contender *c, ethd__ask ask, ethd_vec x) {
     return out[0];
   }
   if (ask == ETHD__HORIZON) return ours_within(c, x);
-  if (ask == ETHD__WARM) ethd_scene_query_near(c->self, x, &c->hint, &nearest);
-  else ethd_scene_query(c->self, x, &nearest);
+  if (ask == ETHD__WARM)
+    ethd_scene_query_near(c->self, x, &c->hint, &nearest);
+  else
+    ethd_scene_query(c->self, x, &nearest);
   return nearest.distance;
 }

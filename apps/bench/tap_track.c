@@ -19,9 +19,8 @@ typedef struct place {
 
 static place at(double t) {
   double w = 2 * M_PI / (1e-3 * ETHD__TAP_TICKS), a = 0.022;
-  place p = {{0.27 + a * cos(w * t), 0.25 + 0.01 * sin(3 * w * t)},
-             {0, 0},
-             {-a * w * sin(w * t), 0.03 * w * cos(3 * w * t)}};
+  place p = {
+      {0.27 + a * cos(w * t), 0.25 + 0.01 * sin(3 * w * t)}, {0, 0}, {-a * w * sin(w * t), 0.03 * w * cos(3 * w * t)}};
   p.finger = ethd_vec_add(p.ring, ethd_vec_scale(AHEAD, p.v));
   return p;
 }
@@ -31,8 +30,7 @@ static void put(double to[2], ethd_vec from) {
   to[1] = from.y;
 }
 
-static void add_reading(const ethd_setup *setup, ethd__tap_finger how, uint64_t i, double sampled,
-                        ethd_sense *s) {
+static void add_reading(const ethd_setup *setup, ethd__tap_finger how, uint64_t i, double sampled, ethd_sense *s) {
   place then = at(sampled);
   ethd_vec relative = ethd_vec_sub(then.finger, then.ring);
   s->sample_ns = (int64_t)rint(1e9 * sampled);
@@ -47,8 +45,7 @@ static void add_reading(const ethd_setup *setup, ethd__tap_finger how, uint64_t 
   }
 }
 
-void ethd__tap_senses(const ethd_setup *setup, ethd__tap_finger how,
-                      ethd_sense senses[ETHD__TAP_TICKS]) {
+void ethd__tap_senses(const ethd_setup *setup, ethd__tap_finger how, ethd_sense senses[ETHD__TAP_TICKS]) {
   double next = -LATENCY;
   for (int k = 0; k < ETHD__TAP_TICKS; k++) {
     ethd_sense *s = &senses[k];
@@ -89,8 +86,7 @@ ethd_scene *ethd__tap_scene(ethd__tap_wall wall, size_t segments) {
   double *points = malloc((2 * segments + 1) * sizeof *points);
   if (!points) ethd__fail(ETHD_EXIT_FAILED, "no memory");
   outline(wall, segments, points);
-  const ethd_object_def objects[] = {{ETHD_HALFPLANE, -1, plane, 3, 0},
-                                     {ETHD_POLYLINE, -1, points, 2 * segments, 0}};
+  const ethd_object_def objects[] = {{ETHD_HALFPLANE, -1, plane, 3, 0}, {ETHD_POLYLINE, -1, points, 2 * segments, 0}};
   const size_t first = wall == ETHD__TAP_OUTLINE, last = wall == ETHD__TAP_PLANE ? 1 : 2;
   ethd_scene_def def = {objects + first, last - first, NULL, 0};
   ethd_error error;

@@ -51,8 +51,7 @@ static void tap(void *data) {
 /* ---- output ---- */
 
 void ethd__tick_put(FILE *csv, ethd__tick_row row, const char *name, double share_longer, double ns) {
-  fprintf(csv, "%s,%s,%s,%s,%s,%.17g,%.17g\n", row.what, row.law, row.scene, row.finger, name,
-          share_longer, ns);
+  fprintf(csv, "%s,%s,%s,%s,%s,%.17g,%.17g\n", row.what, row.law, row.scene, row.finger, name, share_longer, ns);
 }
 
 ethd__bench_times ethd__tick_report(FILE *csv, ethd__tick_row row, double *ns, size_t count,
@@ -63,8 +62,8 @@ ethd__bench_times ethd__tick_report(FILE *csv, ethd__tick_row row, double *ns, s
     t.median = quiet->median;
     t.p99 = quiet->p99;
   }
-  printf("  %-10s %-8s %-7s %-8s %7.0f %7.0f %7.0f %8.0f %9.0f\n", row.what, row.law, row.scene,
-         row.finger, t.mean, t.median, t.p99, t.p999, t.max);
+  printf("  %-10s %-8s %-7s %-8s %7.0f %7.0f %7.0f %8.0f %9.0f\n", row.what, row.law, row.scene, row.finger, t.mean,
+         t.median, t.p99, t.p999, t.max);
   ethd__tick_put(csv, row, "mean", NAN, t.mean);
   ethd__tick_put(csv, row, "median", 0.5, t.median);
   ethd__tick_put(csv, row, "p99", 0.01, t.p99);
@@ -132,15 +131,12 @@ static void gather(hot *h) {
         if (l != OFFSET && (f != ETHD__TAP_RAYS || s == MANY)) continue;
         h->at[l][f][s] = h->count;
         h->rows[h->count] = (ethd__tick_row){"hot", laws[l]->law.id, scenes[s].name, fingers[f]};
-        ethd__ticking *t =
-            ethd__ticking_create(laws[l], scenes[s].wall, scenes[s].segments, (ethd__tap_finger)f);
+        ethd__ticking *t = ethd__ticking_create(laws[l], scenes[s].wall, scenes[s].segments, (ethd__tap_finger)f);
         h->entries[h->count++] = (ethd__bench_entry){"", tap, t, ETHD__TAP_TICKS, 0};
       }
 }
 
-static double mean_of(const hot *h, int l, int f, int s) {
-  return h->entries[h->at[l][f][s]].ns;
-}
+static double mean_of(const hot *h, int l, int f, int s) { return h->entries[h->at[l][f][s]].ns; }
 
 /* ---- by part ---- */
 
@@ -157,28 +153,27 @@ static void report_parts(FILE *csv, const hot *h) {
   printf("  by part, ns a tick, as differences (offset, rays, 1000 segments):\n");
   ethd__tick_part(csv, "offset", "record: into a ring instead of the stack", record);
   ethd__tick_part(csv, "offset", "kinematics; tracking; guard; the frame",
-           mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE) - record);
+                  mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE) - record);
   ethd__tick_part(csv, "offset", "estimator: joint speeds",
-           mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE) - mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE));
+                  mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE) - mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE));
   ethd__tick_part(csv, "offset", "estimator: finger filter",
-           mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE) - mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE));
+                  mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE) - mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE));
   ethd__tick_part(csv, "offset", "estimator: ring fit (300 Hz)",
-           mean_of(h, OFFSET, f, NONE) - mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE));
+                  mean_of(h, OFFSET, f, NONE) - mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE));
   for (int l = 0; l < LAWS; l++) {
     char name[64];
     snprintf(name, sizeof name, "transition and contact at a wall: %s", laws[l]->law.id);
     ethd__tick_part(csv, laws[l]->law.id, name, mean_of(h, l, f, WALL) - mean_of(h, l, f, NONE));
   }
   ethd__tick_part(csv, "offset", "scene: 1000 segments instead of the wall",
-           mean_of(h, OFFSET, f, THOUSAND) - mean_of(h, OFFSET, f, WALL));
+                  mean_of(h, OFFSET, f, THOUSAND) - mean_of(h, OFFSET, f, WALL));
   ethd__ticking_destroy(untraced);
 }
 
 /* ---- goals ---- */
 
 static void goal(const char *what, double value, double most, const char *unit) {
-  printf("  goal: %-52s <= %-5g %-3s %.3g, %s\n", what, most, unit, value,
-         ethd__bench_verdict(value <= most));
+  printf("  goal: %-52s <= %-5g %-3s %.3g, %s\n", what, most, unit, value, ethd__bench_verdict(value <= most));
 }
 
 static void judge(const hot *h, const ethd__bench_times *times) {
@@ -187,11 +182,9 @@ static void judge(const hot *h, const ethd__bench_times *times) {
     for (int s = 0; s < 2; s++) {
       const ethd__bench_times *t = &times[h->at[OFFSET][judged[f]][walls[s]]];
       char what[64];
-      snprintf(what, sizeof what, "mean, %s, 1000 segments %s", fingers[judged[f]],
-               s ? "tapped" : "beside the wall");
+      snprintf(what, sizeof what, "mean, %s, 1000 segments %s", fingers[judged[f]], s ? "tapped" : "beside the wall");
       goal(what, t->mean, 150, "ns");
-      snprintf(what, sizeof what, "p99, %s, 1000 segments %s", fingers[judged[f]],
-               s ? "tapped" : "beside the wall");
+      snprintf(what, sizeof what, "p99, %s, 1000 segments %s", fingers[judged[f]], s ? "tapped" : "beside the wall");
       goal(what, t->p99, 230, "ns");
     }
 }
@@ -201,26 +194,25 @@ static int run(const char *folder, int quick) {
   double *ns = malloc(count * sizeof *ns);
   static hot h;
   if (!ns) ethd__fail(ETHD_EXIT_FAILED, "no memory");
-  FILE *csv = ethd__bench_csv(
-      folder, "tick",
-      "# a tap a second: ring and finger meet the wall at x = 0.238 m and stay "
-      "there for a fifth of the time\n"
-      "# finger: known; encoder: the same, joint speeds estimated; centre, "
-      "rays: readings at 300 Hz, filtered, fitted\n"
-      "# scene: nothing, a half-plane, the half-plane and 1000 segments near "
-      "it, an outline of so many segments alone\n"
-      "# hot mean, median, p99: of the quickest quarter of each tick's repetitions; tail, max: of all\n"
-      "# tail: share_longer of the ticks take longer; part: ns a tick\n",
-      "what,law,scene,finger,name,share_longer,time_ns");
+  FILE *csv =
+      ethd__bench_csv(folder, "tick",
+                      "# a tap a second: ring and finger meet the wall at x = 0.238 m and stay "
+                      "there for a fifth of the time\n"
+                      "# finger: known; encoder: the same, joint speeds estimated; centre, "
+                      "rays: readings at 300 Hz, filtered, fitted\n"
+                      "# scene: nothing, a half-plane, the half-plane and 1000 segments near "
+                      "it, an outline of so many segments alone\n"
+                      "# hot mean, median, p99: of the quickest quarter of each tick's repetitions; tail, max: of all\n"
+                      "# tail: share_longer of the ticks take longer; part: ns a tick\n",
+                      "what,law,scene,finger,name,share_longer,time_ns");
   printf("the whole tick, recording included, ns; finger: rays are fitted and filtered, and joint "
          "speeds estimated\n");
-  printf("  %-10s %-8s %-7s %-8s %7s %7s %7s %8s %9s\n", "", "law", "scene", "finger", "mean", "median",
-         "p99", "p99.9", "max");
+  printf("  %-10s %-8s %-7s %-8s %7s %7s %7s %8s %9s\n", "", "law", "scene", "finger", "mean", "median", "p99", "p99.9",
+         "max");
   gather(&h);
   ethd__bench_times times[LAWS * FINGERS * SCENES];
   for (size_t i = 0; i < h.count; i++) {
-    ethd__bench_race(&h.entries[i], 1,
-                     quick ? 0.05 : 0.5); /* one after the other: each in a warm cache */
+    ethd__bench_race(&h.entries[i], 1, quick ? 0.05 : 0.5); /* one after the other: each in a warm cache */
     time_ticks(h.entries[i].data, ns, count);
     ethd__bench_times quiet = quiet_times(ns, count);
     quiet.mean = h.entries[i].ns;
@@ -233,12 +225,10 @@ static int run(const char *folder, int quick) {
   judge(&h, times);
 
   goal("hot mean from 100 to 100000 segments, times",
-       mean_of(&h, OFFSET, ETHD__TAP_RAYS, MANY) / mean_of(&h, OFFSET, ETHD__TAP_RAYS, HUNDRED), 2.2,
-       "");
+       mean_of(&h, OFFSET, ETHD__TAP_RAYS, MANY) / mean_of(&h, OFFSET, ETHD__TAP_RAYS, HUNDRED), 2.2, "");
   for (size_t i = 0; i < h.count; i++) ethd__ticking_destroy(h.entries[i].data);
   free(ns);
   return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
 }
 
-const ethd__bench ethd__bench_tick = {"tick", "the whole tick: hot, cold, in a 1 kHz loop, by part",
-                                      run};
+const ethd__bench ethd__bench_tick = {"tick", "the whole tick: hot, cold, in a 1 kHz loop, by part", run};

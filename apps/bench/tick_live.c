@@ -11,9 +11,7 @@
 #include "bench/tick.h"
 #include "cli/cli.h"
 
-static void heading(const char *text) {
-  printf("  %s\n", text);
-}
+static void heading(const char *text) { printf("  %s\n", text); }
 
 static double *room_for(size_t count) {
   double *ns = calloc(count, sizeof *ns);
@@ -38,8 +36,8 @@ void ethd__tick_cold(FILE *csv, int quick) {
   if (!buffer) ethd__fail(ETHD_EXIT_FAILED, "no memory");
   heading("cold: 32 MB written before the tick");
   for (int s = 0; s < 2; s++) {
-    ethd__ticking *t = ethd__ticking_create(
-        &ethd_transition_offset, s ? ETHD__TAP_OUTLINE : ETHD__TAP_PLANE, 1000, ETHD__TAP_RAYS);
+    ethd__ticking *t =
+        ethd__ticking_create(&ethd_transition_offset, s ? ETHD__TAP_OUTLINE : ETHD__TAP_PLANE, 1000, ETHD__TAP_RAYS);
     for (size_t i = 0; i < 5 * count; i++) {
       if (i % 5 == 0) evict(buffer);
       const ethd_sense sense = *ethd__ticking_sense(t); /* a device has just written it */
@@ -47,8 +45,7 @@ void ethd__tick_cold(FILE *csv, int quick) {
       ethd__ticking_step(t, &sense);
       if (i % 5 == 0) ns[i / 5] = fmax(0, (double)(ethd__bench_now() - start) - cost);
     }
-    ethd__tick_report(csv, (ethd__tick_row){"cold", "offset", s ? "1000" : "wall", "rays"}, ns, count,
-                      NULL);
+    ethd__tick_report(csv, (ethd__tick_row){"cold", "offset", s ? "1000" : "wall", "rays"}, ns, count, NULL);
     ethd__ticking_destroy(t);
   }
   free(buffer);
@@ -113,19 +110,16 @@ void ethd__tick_live(FILE *csv, int quick) {
   int locked = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
   for (int k = 0; k < (quick ? 1 : 3); k++)
     for (int early = 0; early < 2; early++) {
-      loop l = {ethd__ticking_create(laws[k], ETHD__TAP_OUTLINE, 1000, ETHD__TAP_RAYS), early, ns, count,
-                0};
+      loop l = {ethd__ticking_create(laws[k], ETHD__TAP_OUTLINE, 1000, ETHD__TAP_RAYS), early, ns, count, 0};
       run_loop(&l);
       if (k == 0 && !early) {
         printf("  live: 1 kHz, clock_nanosleep, %s, memory %s; early: awake 100 us before, three dry "
                "ticks\n",
-               l.fifo ? "SCHED_FIFO 80" : "SCHED_OTHER (SCHED_FIFO isn't allowed)",
-               locked ? "locked" : "not locked");
+               l.fifo ? "SCHED_FIFO 80" : "SCHED_OTHER (SCHED_FIFO isn't allowed)", locked ? "locked" : "not locked");
         fprintf(csv, "# live: %s\n", l.fifo ? "SCHED_FIFO 80" : "SCHED_OTHER");
       }
-      ethd__tick_report(csv,
-                        (ethd__tick_row){early ? "live early" : "live", laws[k]->law.id, "1000", "rays"},
-                        ns, count, NULL);
+      ethd__tick_report(csv, (ethd__tick_row){early ? "live early" : "live", laws[k]->law.id, "1000", "rays"}, ns,
+                        count, NULL);
       ethd__ticking_destroy(l.tapping);
     }
   if (locked) munlockall();

@@ -24,8 +24,7 @@ static void *room_for(size_t count, size_t size) {
 }
 
 /* Noise and phase are those of `seed`, whatever the latency. */
-static ethd__track read_path(path_at at, const void *path, double duration, double latency,
-                             uint64_t seed) {
+static ethd__track read_path(path_at at, const void *path, double duration, double latency, uint64_t seed) {
   size_t count = (size_t)fmin(ETHD__TRACK_MAX, duration / ETHD__TRACK_PERIOD);
   ethd__track t = {count, room_for(count, sizeof *t.in), room_for(count, sizeof *t.truth)};
   uint64_t draw = seed << 24;
@@ -55,8 +54,7 @@ typedef struct reach {
 /* s = 10 u^3 - 15 u^4 + 6 u^5, fastest 15/8 length / duration. */
 static ethd_vec reach_at(const void *path, double t) {
   const reach *r = path;
-  double u = fmin(1, fmax(0, (t - REST) / r->duration)),
-         s = r->length * u * u * u * (10 - u * (15 - 6 * u));
+  double u = fmin(1, fmax(0, (t - REST) / r->duration)), s = r->length * u * u * u * (10 - u * (15 - 6 * u));
   return (ethd_vec){s * cos(r->angle), s * sin(r->angle)};
 }
 
@@ -84,8 +82,7 @@ static int add_file(const char *file, double latency, uint64_t seed, ethd__track
   char message[ETHD_MESSAGE_MAX];
   ethd_csv csv;
   if (ethd_csv_read_columns(file, wanted, &csv, message) < 0) ethd__fail(ETHD_EXIT_INPUT, "%s", message);
-  int t = ethd_csv_column(&csv, "t_s"), x = ethd_csv_column(&csv, "x_m"),
-      y = ethd_csv_column(&csv, "y_m");
+  int t = ethd_csv_column(&csv, "t_s"), x = ethd_csv_column(&csv, "x_m"), y = ethd_csv_column(&csv, "y_m");
   int usable = t >= 0 && x >= 0 && y >= 0 && csv.rows >= 20;
   if (usable) {
     ethd_path_sample *samples = room_for(csv.rows, sizeof *samples);
@@ -107,8 +104,7 @@ static ethd__tracks read_folder(const char *folder, double latency, uint64_t *se
   snprintf(pattern, sizeof pattern, "%s*.csv", folder);
   if (glob(pattern, 0, NULL, &found) != 0) return set;
   set.at = room_for(found.gl_pathc, sizeof *set.at);
-  for (size_t i = 0; i < found.gl_pathc; i++)
-    *seed += (uint64_t)add_file(found.gl_pathv[i], latency, *seed, &set);
+  for (size_t i = 0; i < found.gl_pathc; i++) *seed += (uint64_t)add_file(found.gl_pathv[i], latency, *seed, &set);
   globfree(&found);
   return set;
 }

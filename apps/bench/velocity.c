@@ -36,17 +36,11 @@ static double position_at(double t) {
   return t <= 0 ? V0 * t : t <= t1 ? (V0 - a * t / 2) * t : x1 + tau * (v1 - speed_at(t));
 }
 
-static double still_from(void) {
-  return (V0 - v1) / a + tau * log(v1 / V_TH);
-}
+static double still_from(void) { return (V0 - v1) / a + tau * log(v1 / V_TH); }
 
-static double torque_at(double t) {
-  return t <= 0 ? 0 : -LINK * fmin(F_SAT, B_D * speed_at(t));
-}
+static double torque_at(double t) { return t <= 0 ? 0 : -LINK * fmin(F_SAT, B_D * speed_at(t)); }
 
-static double encoder(double x, double phase) {
-  return count * rint(x / LINK / count + phase);
-}
+static double encoder(double x, double phase) { return count * rint(x / LINK / count + phase); }
 
 /* ---- contenders ---- */
 
@@ -95,9 +89,8 @@ static void prepare(contender *c) {
 /* ---- what is measured ---- */
 
 typedef struct figure {
-  double steady, braking; /* m/s rms */
-  double delay, spread,
-      early; /* s after abs(v) < v_th is true: mean, sd; share of runs that declare before */
+  double steady, braking;      /* m/s rms */
+  double delay, spread, early; /* s after abs(v) < v_th is true: mean, sd; share of runs that declare before */
   double ns;
 } figure;
 
@@ -121,8 +114,7 @@ static void brake(const contender *c, int runs, figure *out) {
   double sum = 0, ticks = 0, delays = 0, squares = 0, early = 0;
   for (int run = 0; run < runs; run++) {
     ethd_velocity_state s;
-    double phase = ethd__bench_draw(2 * (uint64_t)run, 0, 1),
-           within = ethd__bench_draw(2 * (uint64_t)run + 1, 0, 1);
+    double phase = ethd__bench_draw(2 * (uint64_t)run, 0, 1), within = ethd__bench_draw(2 * (uint64_t)run + 1, 0, 1);
     double declared = NAN;
     memset(&s, 0, sizeof s);
     for (int k = 0; k < TICKS; k++) {
@@ -158,13 +150,11 @@ static void work(void *data) {
 
 static void put(FILE *csv, const contender *c, const figure *f) {
   double setting = c->method == ETHD_VELOCITY_KALMAN ? c->p[1] : c->p[0];
-  fprintf(csv, "%s,%.17g,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", c->family, setting, c->shown,
-          f->ns, 1e3 * f->steady, 1e3 * f->braking, 1e3 * ethd_velocity_lag(&c->v), 1e3 * f->delay,
-          1e3 * f->spread, f->early);
+  fprintf(csv, "%s,%.17g,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", c->family, setting, c->shown, f->ns,
+          1e3 * f->steady, 1e3 * f->braking, 1e3 * ethd_velocity_lag(&c->v), 1e3 * f->delay, 1e3 * f->spread, f->early);
   if (!c->shown) return;
   printf("  %-24s %6.1f %12.2f %12.1f %10.2f %12.2f +- %.2f %9.0f %%\n", c->name, f->ns, 1e3 * f->steady,
-         1e3 * f->braking, 1e3 * ethd_velocity_lag(&c->v), 1e3 * f->delay, 1e3 * f->spread,
-         100 * f->early);
+         1e3 * f->braking, 1e3 * ethd_velocity_lag(&c->v), 1e3 * f->delay, 1e3 * f->spread, 100 * f->early);
 }
 
 static int run(const char *folder, int quick) {
@@ -174,17 +164,16 @@ static int run(const char *folder, int quick) {
     entries[i] = (ethd__bench_entry){all[i].name, work, &all[i], LONG, 0};
   }
   ethd__bench_race(entries, CONTENDERS, quick ? 0.1 : 1);
-  FILE *csv =
-      ethd__bench_csv(folder, "velocity",
-                      "# encoder of 48000 counts a joint turn, read every ms; figures at the ring, 0.25 "
-                      "m from the joint\n"
-                      "# steady: rms error at 30 mm/s; braking: rms error from 0.4 m/s to rest as plant "
-                      "n does it (49 m/s^2, then 1.17 ms)\n"
-                      "# declared: first tick with abs(v) < 20 mm/s, after the truth; early: share of "
-                      "runs in which it comes before\n"
-                      "# setting: cutoff in Hz, window in samples, unknown acceleration in rad/s^2\n",
-                      "method,setting,shown,time_ns,steady_rms_mmps,braking_rms_mmps,lag_ms,declared_ms,"
-                      "declared_sd_ms,early_share");
+  FILE *csv = ethd__bench_csv(folder, "velocity",
+                              "# encoder of 48000 counts a joint turn, read every ms; figures at the ring, 0.25 "
+                              "m from the joint\n"
+                              "# steady: rms error at 30 mm/s; braking: rms error from 0.4 m/s to rest as plant "
+                              "n does it (49 m/s^2, then 1.17 ms)\n"
+                              "# declared: first tick with abs(v) < 20 mm/s, after the truth; early: share of "
+                              "runs in which it comes before\n"
+                              "# setting: cutoff in Hz, window in samples, unknown acceleration in rad/s^2\n",
+                              "method,setting,shown,time_ns,steady_rms_mmps,braking_rms_mmps,lag_ms,declared_ms,"
+                              "declared_sd_ms,early_share");
   printf("velocity: encoder of 48000 counts a turn at 1 kHz, a count a tick is %.1f mm/s at the ring\n",
          1e3 * count * LINK / T);
   printf("  rms error, mm/s               ns   at 30 mm/s     braking     lag, ms   abs(v) < v_th "
@@ -199,5 +188,4 @@ static int run(const char *folder, int quick) {
   return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
 }
 
-const ethd__bench ethd__bench_velocity = {"velocity",
-                                          "joint speed from encoder counts: lag against noise", run};
+const ethd__bench ethd__bench_velocity = {"velocity", "joint speed from encoder counts: lag against noise", run};

@@ -5,14 +5,14 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "text/error_text.h"
 #include "proximity_ring/empty.h"
 #include "proximity_ring/port.h"
+#include "text/error_text.h"
 
 #define WAIT_MS 20
-#define SILENCE 100  /* waits without a frame before the line is called silent */
+#define SILENCE 100 /* waits without a frame before the line is called silent */
 #define TRIES 5
-#define SPREAD 0.01  /* of the counts, sd: more is a rod that moves */
+#define SPREAD 0.01 /* of the counts, sd: more is a rod that moves */
 #define SPREAD_LEAST 40
 
 typedef struct guided {
@@ -44,7 +44,8 @@ static void add(sums *to, const ethd__frame *f) {
 /* What came while nobody looked is old. */
 static void forget(guided *g) {
   uint8_t bytes[4096];
-  while (ethd__ring_port_read(&g->port, 0, bytes, sizeof bytes) > 0) {}
+  while (ethd__ring_port_read(&g->port, 0, bytes, sizeof bytes) > 0) {
+  }
   ethd__decoder_restart(&g->decoder);
 }
 
@@ -61,7 +62,9 @@ static ethd_status collect(guided *g, sums *out) {
     if (got < 0) return ethd__say(g->message, ETHD_E_DEVICE, "%s: the line is gone", g->o->port);
     while (ethd__decoder_next(&g->decoder, &at, bytes + got, &f)) add(out, &f);
     silent = out->frames > before ? 0 : silent + 1;
-    if (silent == SILENCE) return ethd__say(g->message, ETHD_E_DEVICE, "%s: no frames: is the ring powered, is %u its baud?", g->o->port, g->o->baud);
+    if (silent == SILENCE)
+      return ethd__say(g->message, ETHD_E_DEVICE, "%s: no frames: is the ring powered, is %u its baud?", g->o->port,
+                       g->o->baud);
     ethd__progress((uint64_t)out->frames, (uint64_t)g->o->frames, "frames");
   }
   ethd__progress(1, 1, "");
@@ -73,7 +76,8 @@ static int means(const sums *of, double counts[ETHD_RAYS]) {
   int moved = -1;
   double worst = 1;
   for (int k = 0; k < ETHD_RAYS; k++) {
-    double mean = of->n[k] ? of->s[k] / of->n[k] : 0, sd = of->n[k] ? sqrt(fmax(0, of->ss[k] / of->n[k] - mean * mean)) : 0;
+    double mean = of->n[k] ? of->s[k] / of->n[k] : 0,
+           sd = of->n[k] ? sqrt(fmax(0, of->ss[k] / of->n[k] - mean * mean)) : 0;
     double share = sd / fmax(SPREAD * mean, SPREAD_LEAST);
     counts[k] = 2 * of->n[k] >= of->frames ? mean : 0;
     if (share > worst) worst = share, moved = k;
@@ -134,7 +138,8 @@ static void describe(int i, double rod, char text[160]) {
   if (i == 0)
     snprintf(text, 160, "\nThe middle: the rod (%.1f mm across) in its sleeve, concentric with the ring.", 2e3 * rod);
   else
-    snprintf(text, 160, "\nSensor %d: the rod pressed against the ring right at sensor %d (%.1f degrees).", i - 1, i - 1, 22.5 * (i - 1));
+    snprintf(text, 160, "\nSensor %d: the rod pressed against the ring right at sensor %d (%.1f degrees).", i - 1,
+             i - 1, 22.5 * (i - 1));
 }
 
 static ethd_status rod_places(guided *g) {

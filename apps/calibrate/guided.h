@@ -7,9 +7,9 @@
 typedef struct ethd__guided_options {
   const char *port;
   uint32_t baud;
-  int frames;               /* of one place */
-  double ring_radius, rod;  /* m */
-  const char *record;       /* kept after every step; NULL: nowhere */
+  int frames;              /* of one place */
+  double ring_radius, rod; /* m */
+  const char *record;      /* kept after every step; NULL: nowhere */
 } ethd__guided_options;
 
 /* Asks on stdout, hears on stdin: Enter measures, s skips the place, b goes back one, q ends. Fails in a sentence

@@ -33,7 +33,8 @@ static ethd__calibration with_darks(const ethd__places *p) {
   return c;
 }
 
-ethd_status ethd__places_fit(const ethd__places *p, ethd__level level, ethd__calibration *out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__places_fit(const ethd__places *p, ethd__level level, ethd__calibration *out,
+                             char message[ETHD_MESSAGE_MAX]) {
   *out = with_darks(p);
   return ethd__calibration_fit(level, (ethd__place_readings){p->readings, p->count}, out, message);
 }
@@ -82,33 +83,40 @@ enum { X, Y, ROD, RING, C0, COLUMNS = C0 + ETHD_RAYS };
 static ethd_status columns(const ethd_csv *csv, const char *const *names, int out[COLUMNS], char *message) {
   for (int i = 0; i < COLUMNS; i++)
     if ((out[i] = ethd_csv_column(csv, names[i])) < 0)
-      return ethd__say(message, ETHD_E_ARGUMENT, "%s:1: the column %s is missing; %s are needed", csv->path, names[i], header);
+      return ethd__say(message, ETHD_E_ARGUMENT, "%s:1: the column %s is missing; %s are needed", csv->path, names[i],
+                       header);
   return ETHD_OK;
 }
 
 static ethd_status take_row(const ethd_csv *csv, size_t row, const int at[COLUMNS], ethd__places *p, char *message) {
   double v[COLUMNS];
   for (int i = 0; i < COLUMNS; i++) v[i] = csv->values[row * csv->columns + (size_t)at[i]];
-  bool lengths = fabs(v[X]) < RADIUS_MAX && fabs(v[Y]) < RADIUS_MAX && v[RING] > 0 && v[RING] < RADIUS_MAX && v[ROD] >= 0 && v[ROD] < v[RING];
-  if (!lengths || (row == 0) != (v[ROD] == 0) || (row > 0 && v[RING] != p->ring_radius) || (row > 1 && v[ROD] != p->rod))
-    return ethd__say(message, ETHD_E_RANGE, "%s:%zu: the empty ring, rod_m 0, comes first, then one rod in the same ring, each shorter than 1 m",
-                     csv->path, ethd_csv_line(row));
+  bool lengths = fabs(v[X]) < RADIUS_MAX && fabs(v[Y]) < RADIUS_MAX && v[RING] > 0 && v[RING] < RADIUS_MAX &&
+                 v[ROD] >= 0 && v[ROD] < v[RING];
+  if (!lengths || (row == 0) != (v[ROD] == 0) || (row > 0 && v[RING] != p->ring_radius) ||
+      (row > 1 && v[ROD] != p->rod))
+    return ethd__say(
+        message, ETHD_E_RANGE,
+        "%s:%zu: the empty ring, rod_m 0, comes first, then one rod in the same ring, each shorter than 1 m", csv->path,
+        ethd_csv_line(row));
   for (int k = 0; k < ETHD_RAYS; k++) {
     bool absent = row == 0 && isnan(v[C0 + k]);
     if (!absent && !(v[C0 + k] >= 0 && v[C0 + k] <= ETHD__FRAME_SATURATED))
-      return ethd__say(message, ETHD_E_RANGE, "%s:%zu: c%d: found %g, 0 to 65535 is allowed", csv->path, ethd_csv_line(row), k, v[C0 + k]);
+      return ethd__say(message, ETHD_E_RANGE, "%s:%zu: c%d: found %g, 0 to 65535 is allowed", csv->path,
+                       ethd_csv_line(row), k, v[C0 + k]);
   }
   p->ring_radius = v[RING];
   p->rod = v[ROD];
-  if (row == 0) memcpy(p->dark, v + C0, sizeof p->dark);
+  if (row == 0)
+    memcpy(p->dark, v + C0, sizeof p->dark);
   else if (!ethd__places_add(p, (ethd_vec){v[X], v[Y]}, v + C0))
     return ethd__say(message, ETHD_E_FULL, "%s:%zu: over %d places", csv->path, ethd_csv_line(row), ETHD__PLACES_MAX);
   return ETHD_OK;
 }
 
 ethd_status ethd__places_load(const char *path, ethd__places *out, char message[ETHD_MESSAGE_MAX]) {
-  static const char *const names[] = {"x_m", "y_m", "rod_m", "ring_m", "c0", "c1", "c2", "c3", "c4", "c5", "c6", "c7",
-                                      "c8", "c9", "c10", "c11", "c12", "c13", "c14", "c15", NULL};
+  static const char *const names[] = {"x_m", "y_m", "rod_m", "ring_m", "c0",  "c1",  "c2",  "c3",  "c4",  "c5", "c6",
+                                      "c7",  "c8",  "c9",    "c10",    "c11", "c12", "c13", "c14", "c15", NULL};
   int at[COLUMNS];
   ethd_csv csv;
   memset(out, 0, sizeof *out);
@@ -116,7 +124,8 @@ ethd_status ethd__places_load(const char *path, ethd__places *out, char message[
   if (status) return status;
   status = columns(&csv, names, at, message);
   for (size_t row = 0; row < csv.rows && !status; row++) status = take_row(&csv, row, at, out, message);
-  if (!status && csv.rows < 2) status = ethd__say(message, ETHD_E_ARGUMENT, "%s: %zu rows; the empty ring and places are needed", path, csv.rows);
+  if (!status && csv.rows < 2)
+    status = ethd__say(message, ETHD_E_ARGUMENT, "%s: %zu rows; the empty ring and places are needed", path, csv.rows);
   ethd_csv_free(&csv);
   return status;
 }

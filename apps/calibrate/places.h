@@ -30,7 +30,8 @@ ETHD_MUST_CHECK ethd_status ethd__places_fit(const ethd__places *places, ethd__l
 double ethd__places_left_out(const ethd__places *places, ethd__level level);
 
 /* CSV: x_m,y_m,rod_m,ring_m,c0..c15; the first row, with rod_m 0, is the empty ring. */
-ETHD_MUST_CHECK ethd_status ethd__places_save(const ethd__places *places, const char *path, char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__places_save(const ethd__places *places, const char *path,
+                                              char message[ETHD_MESSAGE_MAX]);
 ETHD_MUST_CHECK ethd_status ethd__places_load(const char *path, ethd__places *out, char message[ETHD_MESSAGE_MAX]);
 
 #endif

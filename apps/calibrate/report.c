@@ -4,9 +4,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "report/picture.h"
 #include "text/csv.h"
 #include "text/error_text.h"
-#include "report/picture.h"
 
 static void print_length(double metres) {
   if (isnan(metres))
@@ -36,9 +36,11 @@ static void print_sensor(const ethd__calibration *c, int k) {
 }
 
 void ethd__calibration_print(const ethd__places *p, const ethd__calibration *chosen) {
-  printf("\n%zu places, a rod of %.3f mm in a ring of %.3f mm (radii)\n\n", p->count, 1e3 * p->rod, 1e3 * p->ring_radius);
+  printf("\n%zu places, a rod of %.3f mm in a ring of %.3f mm (radii)\n\n", p->count, 1e3 * p->rod,
+         1e3 * p->ring_radius);
   printf("  %-8s %10s %10s  mm rms; left out: at places that the fit hadn't seen\n", "level", "residual", "left out");
-  for (int level = 0; level < ETHD__LEVEL_COUNT; level++) print_level(p, (ethd__level)level, (ethd__level)level == chosen->level);
+  for (int level = 0; level < ETHD__LEVEL_COUNT; level++)
+    print_level(p, (ethd__level)level, (ethd__level)level == chosen->level);
   printf("\n  %-8s %10s  %8s  %10s %8s %8s\n", "sensor", "residual", "dark", "a", "p", "d0 mm");
   for (int k = 0; k < ETHD_RAYS; k++) print_sensor(chosen, k);
   printf("\n");
@@ -68,7 +70,8 @@ ethd_status ethd__calibration_csv(const ethd__places *p, const ethd__calibration
 
 ethd_status ethd__calibration_draw(const char *csv, const char *png, char message[ETHD_MESSAGE_MAX]) {
   char settings[2 * ETHD_MESSAGE_MAX], *in = ethd__picture_quote(csv), *out = ethd__picture_quote(png);
-  ethd_status status = in && out ? ETHD_OK : ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status =
+      in && out ? ETHD_OK : ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
   if (!status && (size_t)snprintf(settings, sizeof settings, "in='%s'; out='%s'", in, out) >= sizeof settings)
     status = ethd__say(message, ETHD_E_RANGE, "--plot: too long a path");
   if (!status) status = ethd__picture_draw("calibration.gp", settings, message);

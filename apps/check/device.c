@@ -34,8 +34,7 @@ static void at_ring(const double ji[4], double k, double out[3]) {
 static void feel(ethd__subject *s) {
   const ethd_setup *setup = &s->config->setup;
   const ethd_law *law = &setup->tracking->law;
-  double k_t = ethd__law_value(law, setup->tracking_p, "k_t"),
-         b_t = ethd__law_value(law, setup->tracking_p, "b_t");
+  double k_t = ethd__law_value(law, setup->tracking_p, "k_t"), b_t = ethd__law_value(law, setup->tracking_p, "b_t");
   double q[2], k[3], d[3];
   ethd_pose pose;
   s->k[0] = s->k[1] = s->d[0] = s->d[1] = NAN;
@@ -77,8 +76,6 @@ void ethd__report_device(ethd__subject *s) {
   figure("delay", f->delay, 1e3, "ms", "--delay");
   figure("; encoder count", f->count * fmax(arm->link1, arm->link2), 1e6, "um at the ring", "--counts");
   figure("; finger's readings", f->latency, 1e3, "ms old", "--latency");
-  printf("\n%s", f->compliant
-                     ? "             its transmission gives way: the bounds below are a rigid one's\n"
-                     : "");
+  printf("\n%s", f->compliant ? "             its transmission gives way: the bounds below are a rigid one's\n" : "");
   feel(s);
 }

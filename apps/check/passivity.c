@@ -3,15 +3,14 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "check/report.h"
 #include "bounds/stability.h"
+#include "check/report.h"
 
 /* Sufficient, not necessary: no bound is exceeded when they fail. */
 int ethd__report_passivity(const ethd__subject *s) {
   const ethd_setup *setup = &s->config->setup;
   const ethd_law *law = &setup->contact->law;
-  double K = ethd__law_value(law, setup->contact_p, "k_e"),
-         B = ethd__law_value(law, setup->contact_p, "b_e");
+  double K = ethd__law_value(law, setup->contact_p, "k_e"), B = ethd__law_value(law, setup->contact_p, "b_e");
   double T = setup->period, b = s->device.viscous, fc = s->device.friction;
   double count = s->device.count * fmax(setup->arm.link1, setup->arm.link2);
   if (isnan(K)) return 0;
@@ -44,8 +43,7 @@ static double answer(const ethd_setup *setup, double count) {
   ethd_velocity_state state;
   double most = 0;
   memset(&state, 0, sizeof state);
-  if (ethd_velocity_prepare(setup->velocity, setup->velocity_p, setup->period, &velocity, NULL) < 0)
-    return NAN;
+  if (ethd_velocity_prepare(setup->velocity, setup->velocity_p, setup->period, &velocity, NULL) < 0) return NAN;
   for (int k = 0; k < 4000; k++) {
     double speed = ethd_velocity_step(&velocity, &state, k < 3000 ? 0 : count, 0, setup->period);
     if (k >= 3000) most = fmax(most, fabs(speed));
@@ -55,14 +53,10 @@ static double answer(const ethd_setup *setup, double count) {
 
 static const char *smoother(const ethd_setup *setup) {
   switch (setup->velocity) {
-  case ETHD_VELOCITY_LOWPASS:
-    return "a lower velocity.cutoff";
-  case ETHD_VELOCITY_KALMAN:
-    return "a lower velocity.acceleration";
-  case ETHD_VELOCITY_DIFFERENCE:
-    return "a velocity.method that averages";
-  default:
-    return "a longer velocity.window";
+  case ETHD_VELOCITY_LOWPASS: return "a lower velocity.cutoff";
+  case ETHD_VELOCITY_KALMAN: return "a lower velocity.acceleration";
+  case ETHD_VELOCITY_DIFFERENCE: return "a velocity.method that averages";
+  default: return "a longer velocity.window";
   }
 }
 
@@ -82,7 +76,6 @@ int ethd__report_threshold(const ethd__subject *s) {
   printf("  one count per tick       Delta/T = %.4g m/s at the ring\n", step);
   printf("  one count, ring still    %s makes %.4g m/s of it: %s\n", velocity, heard,
          heard < v_th ? "under v_th" : "over v_th, so each count puts off the end of braking");
-  if (heard >= v_th)
-    printf("  to change:               %s, or transition.v_th over %.4g\n", smoother(setup), heard);
+  if (heard >= v_th) printf("  to change:               %s, or transition.v_th over %.4g\n", smoother(setup), heard);
   return heard >= v_th && setup->velocity == ETHD_VELOCITY_DIFFERENCE;
 }

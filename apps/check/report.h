@@ -21,8 +21,7 @@ typedef struct ethd__figures {
 typedef struct ethd__subject {
   const ethd_config *config;
   ethd__figures device;
-  double k[2],
-      d[2]; /* N/m, Ns/m: tracking as it is felt at the ring; NaN: unknown law or out of reach */
+  double k[2], d[2]; /* N/m, Ns/m: tracking as it is felt at the ring; NaN: unknown law or out of reach */
 } ethd__subject;
 
 /* Fills k and d, and prints what is known. */

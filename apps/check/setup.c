@@ -54,8 +54,7 @@ static void chosen(ethd_setup *setup, const char *name, const char *brief) {
 static void geometry(const ethd_config *c) {
   const ethd_setup *s = &c->setup;
   head("arm");
-  word("mechanism", s->arm.mechanism == ETHD_ARM_SERIAL ? "serial" : "parallel",
-       "what q2 is relative to");
+  word("mechanism", s->arm.mechanism == ETHD_ARM_SERIAL ? "serial" : "parallel", "what q2 is relative to");
   number("link1", s->arm.link1, "m", "");
   number("link2", s->arm.link2, "m", "");
   if (!isnan(c->mass_x)) number("mass_x", c->mass_x, "kg", "at the ring");
@@ -93,13 +92,11 @@ static void surroundings(const ethd_config *c) {
   printf("\n[scene]\n");
   if (scene) {
     ethd_scene_describe(c->scene, &info);
-    printf("file          = %s ; %zu objects, %zu materials, %zu out of the arm's reach\n", scene->value,
-           info.objects, info.materials,
-           ethd_scene_out_of_reach(c->scene, &c->setup.arm, c->setup.ring_radius));
+    printf("file          = %s ; %zu objects, %zu materials, %zu out of the arm's reach\n", scene->value, info.objects,
+           info.materials, ethd_scene_out_of_reach(c->scene, &c->setup.arm, c->setup.ring_radius));
   }
   printf("\n[device]\ndriver        = %s\n", c->device);
-  for (uint32_t i = 0; i < c->setting_count; i++)
-    printf("%-13s = %s\n", c->settings[i].key, c->settings[i].value);
+  for (uint32_t i = 0; i < c->setting_count; i++) printf("%-13s = %s\n", c->settings[i].key, c->settings[i].value);
   if (c->plugin_count) printf("\n[plugins]\n");
   for (uint32_t i = 0; i < c->plugin_count; i++) printf("file          = %s\n", c->plugins[i]);
 }
@@ -114,8 +111,7 @@ void ethd__report_setup(const ethd_config *config) {
   chosen(&s, "contact", s.contact->law.brief);
   chosen(&s, "transition", s.transition->law.brief);
   number("swap_time", s.swap_time, "s", "a change of laws fades over this time");
-  number("v_hysteresis", s.v_hysteresis, "m/s",
-         "entering until v < -v_hysteresis, leaving until v > it");
+  number("v_hysteresis", s.v_hysteresis, "m/s", "entering until v < -v_hysteresis, leaving until v > it");
   limits(config);
   surroundings(config);
 }

@@ -38,12 +38,12 @@ static ethd_loop loop_of(const ethd__subject *s, const gains *g, int axis) {
 /* ---- rows ---- */
 
 /* The loop's name stands in its first row only. `margin`: how many times. */
-static void row(gains *g, int axis, const char *key, double value, const char *relation, double end,
-                double margin, const char *unit) {
+static void row(gains *g, int axis, const char *key, double value, const char *relation, double end, double margin,
+                const char *unit) {
   char times[16] = "";
   if (isfinite(margin)) snprintf(times, sizeof times, "%.3g", margin);
-  printf("  %-20s %c %-18s %10.5g   %s %-10.5g %7s  %-8s%s\n", g->what, 'x' + axis, key, value, relation,
-         end, times, unit,
+  printf("  %-20s %c %-18s %10.5g   %s %-10.5g %7s  %-8s%s\n", g->what, 'x' + axis, key, value, relation, end, times,
+         unit,
          margin < 1      ? " EXCEEDED"
          : margin < THIN ? " thin"
                          : "");
@@ -55,17 +55,14 @@ static void gain_rows(gains *g, int axis, double most_k, double most_b) {
   if (k > 0)
     row(g, axis, g->stiffness_key, k * g->stiffness_scale, "<=", most_k * g->stiffness_scale, most_k / k,
         g->stiffness_unit);
-  row(g, axis, g->damping_key, b * g->damping_scale, "<=", most_b * g->damping_scale, most_b / b,
-      g->damping_unit);
+  row(g, axis, g->damping_key, b * g->damping_scale, "<=", most_b * g->damping_scale, most_b / b, g->damping_unit);
 }
 
 /* What the same gains bear of everything else. */
 static void other_rows(const ethd__subject *s, gains *g, int axis, const ethd_loop *loop) {
-  double mass = loop->mass, least = ethd__loop_mass_min(loop),
-         delay = loop->delay * loop->period + loop->late;
+  double mass = loop->mass, least = ethd__loop_mass_min(loop), delay = loop->delay * loop->period + loop->late;
   double longest = ethd__loop_delay_max(loop), end = ethd__loop_velocity_end(loop);
-  if (isfinite(least))
-    row(g, axis, axis ? "mass in y" : "mass in x", mass, ">=", least, mass / least, "kg");
+  if (isfinite(least)) row(g, axis, axis ? "mass in y" : "mass in x", mass, ">=", least, mass / least, "kg");
   if (longest >= 0)
     row(g, axis, isnan(s->device.delay) ? "delay (unknown)" : "delay", 1e3 * delay, "<=", 1e3 * longest,
         delay > 0 ? longest / delay : NAN, "ms");
@@ -77,24 +74,18 @@ static void other_rows(const ethd__subject *s, gains *g, int axis, const ethd_lo
 
 static const char *quicker(const ethd_setup *s) {
   switch (s->velocity) {
-  case ETHD_VELOCITY_LOWPASS:
-    return "a higher velocity.cutoff";
+  case ETHD_VELOCITY_LOWPASS: return "a higher velocity.cutoff";
   case ETHD_VELOCITY_LSQ:
-  case ETHD_VELOCITY_FOAW:
-    return "a smaller velocity.window";
-  case ETHD_VELOCITY_KALMAN:
-    return "a higher velocity.acceleration, or the true velocity.inertia";
-  default:
-    return "speeds that are measured";
+  case ETHD_VELOCITY_FOAW: return "a smaller velocity.window";
+  case ETHD_VELOCITY_KALMAN: return "a higher velocity.acceleration, or the true velocity.inertia";
+  default: return "speeds that are measured";
   }
 }
 
 /* An unstable loop with a gain under its largest value is so for want of it. */
-static void say_change(const ethd__subject *s, const gains *g, const ethd_loop *loop, double most_k,
-                       double most_b) {
+static void say_change(const ethd__subject *s, const gains *g, const ethd_loop *loop, double most_k, double most_b) {
   printf("  to change:           ");
-  if (g->stiffness > 0 && most_k > 0)
-    printf("%s at most %.4g, or ", g->stiffness_key, most_k * g->stiffness_scale);
+  if (g->stiffness > 0 && most_k > 0) printf("%s at most %.4g, or ", g->stiffness_key, most_k * g->stiffness_scale);
   if (g->damping < most_b)
     printf("more %s (up to %.4g), or ", g->damping_key, most_b * g->damping_scale);
   else if (most_b > 0)
@@ -108,9 +99,8 @@ static void say_change(const ethd__subject *s, const gains *g, const ethd_loop *
 /* Only a damper, or friction, can make up for what the hold takes. */
 static int undamped(const ethd__subject *s, const gains *g, const ethd_loop *loop) {
   double needed = ethd__loop_damping_needed(loop), b = s->device.viscous;
-  printf(
-      "  %-20s has no damping: the hold takes K (T (n + 1/2) + t_d) = %.4g Ns/m, for friction to give; ",
-      g->what, needed);
+  printf("  %-20s has no damping: the hold takes K (T (n + 1/2) + t_d) = %.4g Ns/m, for friction to give; ", g->what,
+         needed);
   if (isnan(b))
     printf("give --viscous\n");
   else if (b >= needed)
@@ -126,8 +116,8 @@ static int unknown_mass(const gains *g, int axis, const ethd_loop *loop) {
   if (isinf(least))
     printf("  %-20s %c unstable at any mass: EXCEEDED\n", g->what, 'x' + axis);
   else
-    printf("  %-20s %c stable from %.3g kg on; arm.mass_%c would give its margins\n", g->what,
-           'x' + axis, least, 'x' + axis);
+    printf("  %-20s %c stable from %.3g kg on; arm.mass_%c would give its margins\n", g->what, 'x' + axis, least,
+           'x' + axis);
   return isinf(least);
 }
 
@@ -136,8 +126,7 @@ static int report_loop(const ethd__subject *s, gains *g, int axis) {
   if (!(g->stiffness > 0) && !(g->damping > 0)) return 0;
   if (!(g->damping > 0)) return axis ? 0 : undamped(s, g, &loop);
   if (isnan(s->device.mass[axis])) return unknown_mass(g, axis, &loop);
-  double most_k = g->stiffness > 0 ? ethd__loop_stiffness_max(&loop) : 0,
-         most_b = ethd__loop_damping_max(&loop);
+  double most_k = g->stiffness > 0 ? ethd__loop_stiffness_max(&loop) : 0, most_b = ethd__loop_damping_max(&loop);
   gain_rows(g, axis, most_k, most_b);
   other_rows(s, g, axis, &loop);
   if (ethd__loop_stable(&loop)) return 0;
@@ -163,9 +152,7 @@ static int tracking(const ethd__subject *s, int axis) {
   return report_loop(s, &g, axis);
 }
 
-static double or_zero(double value) {
-  return isnan(value) ? 0 : value;
-}
+static double or_zero(double value) { return isnan(value) ? 0 : value; }
 
 static int wall(const ethd__subject *s, const char *what, const double *p, int axis) {
   const ethd_law *law = &s->config->setup.contact->law;

@@ -39,8 +39,8 @@ static void rest_at_touch(const ethd__subject *s, int axis) {
     double v = speeds[i], lag = ethd__stop_lag(&stop, v), margin = ethd__stop_margin(&stop, v);
     printf("    at %.1f m/s             lag (f_c + b_v v)/K_%c + v t_f = %.3f mm, v^2/(2a) = %.3f mm: "
            "%s %.3f mm\n",
-           v, 'x' + axis, 1e3 * lag, 1e3 * (stop.gap - lag - margin),
-           margin < 0 ? "touched early by" : "left", 1e3 * fabs(margin));
+           v, 'x' + axis, 1e3 * lag, 1e3 * (stop.gap - lag - margin), margin < 0 ? "touched early by" : "left",
+           1e3 * fabs(margin));
   }
   printf("    highest speed          v* = %.3f m/s without early contact", most);
   stop.stiffness = INFINITY;
@@ -54,13 +54,12 @@ static void braking(const ethd__subject *s, int axis, double damping) {
   double delay = isnan(s->device.delay) ? 0 : s->device.delay;
   double eps_max = ethd__law_value(&setup->transition->law, setup->transition_p, "eps_max");
   double t_max = ethd__law_value(&setup->transition->law, setup->transition_p, "t_max");
-  ethd_braking b = {damping, ethd__law_value(&setup->transition->law, setup->transition_p, "v_th"),
-                    setup->period, delay};
+  ethd_braking b = {damping, ethd__law_value(&setup->transition->law, setup->transition_p, "v_th"), setup->period,
+                    delay};
   for (int i = 0; i < 2; i++) {
-    double time = ethd__braking_time(&stop, &b, speeds[i]),
-           eps = ethd__braking_depth(&stop, &b, speeds[i]);
-    printf("  saturated braking, %c     at %.1f m/s: Delta_s = %.3g ms, eps = %.3g mm%s\n", 'x' + axis,
-           speeds[i], 1e3 * time, 1e3 * eps,
+    double time = ethd__braking_time(&stop, &b, speeds[i]), eps = ethd__braking_depth(&stop, &b, speeds[i]);
+    printf("  saturated braking, %c     at %.1f m/s: Delta_s = %.3g ms, eps = %.3g mm%s\n", 'x' + axis, speeds[i],
+           1e3 * time, 1e3 * eps,
            eps > eps_max  ? ": cut short by transition.eps_max"
            : time > t_max ? ": cut short by transition.t_max"
                           : "");
@@ -70,12 +69,10 @@ static void braking(const ethd__subject *s, int axis, double damping) {
 static void creep(const ethd_setup *setup, double damping) {
   const ethd_law *law = &setup->transition->law;
   const double *p = setup->transition_p;
-  int capped =
-      isfinite(ethd__law_value(law, p, "eps_max")) || isfinite(ethd__law_value(law, p, "t_max"));
+  int capped = isfinite(ethd__law_value(law, p, "eps_max")) || isfinite(ethd__law_value(law, p, "t_max"));
   printf("  creep                  a push over B_d v_th = %.3g N goes on braking, at F/B_d, %s\n",
          damping * ethd__law_value(law, p, "v_th"),
-         capped ? "until transition.eps_max or t_max"
-                : "for ever: transition.eps_max and t_max would end it");
+         capped ? "until transition.eps_max or t_max" : "for ever: transition.eps_max and t_max would end it");
 }
 
 static void say_missing(const ethd__subject *s) {
@@ -107,7 +104,6 @@ int ethd__report_stop(const ethd__subject *s) {
   if (b_d > 0) creep(setup, b_d);
   printf("  to change:             a lighter ring, more force, a larger gap (ring.radius - "
          "finger.radius), a higher\n");
-  printf("                         tracking.k_t%s\n",
-         behind(s) > 0 ? ", finger_filter.compensation = stamp" : "");
+  printf("                         tracking.k_t%s\n", behind(s) > 0 ? ", finger_filter.compensation = stamp" : "");
   return 0;
 }

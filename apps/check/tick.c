@@ -29,8 +29,7 @@ static void sense_at(const ethd_setup *setup, int k, ethd_sense *s) {
   ethd_arm_pose(&setup->arm, s->q, &pose);
   s->have = k == 0 ? ETHD_HAVE_START : k % 3 == 0 ? ETHD_HAVE_RAYS : 0;
   s->finger[0] = pose.x.x, s->finger[1] = pose.x.y;
-  ethd_fit_rays(setup->ring_radius, setup->finger_radius,
-                (ethd_vec){0.1 * setup->ring_radius * cos(a), 0}, s->rays);
+  ethd_fit_rays(setup->ring_radius, setup->finger_radius, (ethd_vec){0.1 * setup->ring_radius * cos(a), 0}, s->rays);
 }
 
 static int ascending(const void *a, const void *b) {
@@ -79,7 +78,6 @@ int ethd__report_tick(const ethd__subject *s) {
          is_realtime() ? "a measurement, if a short one" : "no bound: this process isn't realtime");
   free(ns);
   if (judged <= most) return 0;
-  printf(
-      "  EXCEEDED; to change: fewer objects in the scene, a longer loop.period or limits.step_time\n");
+  printf("  EXCEEDED; to change: fewer objects in the scene, a longer loop.period or limits.step_time\n");
   return 1;
 }

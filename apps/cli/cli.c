@@ -26,8 +26,7 @@ void ethd__begin(void) {
 int ethd__end(int code) {
   bool failed = fflush(stdout) != 0 || ferror(stdout);
   if (!failed) return code;
-  fprintf(stderr, "%s: standard output: %s\n", program_invocation_short_name,
-          strerror(errno ? errno : EIO));
+  fprintf(stderr, "%s: standard output: %s\n", program_invocation_short_name, strerror(errno ? errno : EIO));
   return code ? code : ETHD_EXIT_FAILED;
 }
 
@@ -46,13 +45,13 @@ void ethd__fail(int code, const char *format, ...) {
 
 int ethd__exit_code(ethd_status status) {
   switch (status) {
-    case ETHD_E_MEMORY:
-    case ETHD_E_LAW:
-    case ETHD_E_BUDGET:
-    case ETHD_E_FULL:
-    case ETHD_E_DEVICE:
-    case ETHD_E_DIFFERS: return ETHD_EXIT_FAILED;
-    default: return status < 0 ? ETHD_EXIT_INPUT : ETHD_EXIT_DONE;
+  case ETHD_E_MEMORY:
+  case ETHD_E_LAW:
+  case ETHD_E_BUDGET:
+  case ETHD_E_FULL:
+  case ETHD_E_DEVICE:
+  case ETHD_E_DIFFERS: return ETHD_EXIT_FAILED;
+  default: return status < 0 ? ETHD_EXIT_INPUT : ETHD_EXIT_DONE;
   }
 }
 
@@ -77,8 +76,7 @@ int64_t ethd__option_integer(const char *option, const char *text, int64_t min, 
   errno = 0;
   int64_t value = strtoimax(text, NULL, 10);
   if (!whole(text, true) || errno || value < min || value > max)
-    ethd__fail(ETHD_EXIT_INPUT,
-               "%s: found %s, a whole number from %" PRId64 " to %" PRId64 " is allowed", option,
+    ethd__fail(ETHD_EXIT_INPUT, "%s: found %s, a whole number from %" PRId64 " to %" PRId64 " is allowed", option,
                ethd__quote(text, strlen(text), quote), min, max);
   return value;
 }
@@ -93,8 +91,7 @@ uint64_t ethd__option_seed(const char *option, const char *text) {
   return value;
 }
 
-void ethd__option_list(const char *option, const char *text, void (*each)(const char *word, void *user),
-                       void *user) {
+void ethd__option_list(const char *option, const char *text, void (*each)(const char *word, void *user), void *user) {
   char *words = strdup(text), *rest = words, *word;
   if (!words) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
   while ((word = strsep(&rest, ","))) {
@@ -124,8 +121,7 @@ char *ethd__data_path(const char *name) {
   free(folder);
   if (!path) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
   if (access(path, R_OK) != 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s: %s; ETHD_DATA_DIR may name the folder it is in", path,
-               strerror(errno));
+    ethd__fail(ETHD_EXIT_FAILED, "%s: %s; ETHD_DATA_DIR may name the folder it is in", path, strerror(errno));
   return path;
 }
 
@@ -143,8 +139,8 @@ void ethd__progress(uint64_t done, uint64_t total, const char *what) {
   } else if (t - shown >= 0.1) {
     double share = (double)done / (double)total;
     int filled = (int)(share * 40);
-    fprintf(stderr, "\r\033[K%s [%.*s%*s] %3.0f %%", what, filled,
-            "########################################", 40 - filled, "", 100 * share);
+    fprintf(stderr, "\r\033[K%s [%.*s%*s] %3.0f %%", what, filled, "########################################",
+            40 - filled, "", 100 * share);
     shown = t;
   }
   fflush(stderr);
@@ -164,20 +160,20 @@ static void ask(int number) {
   ethd__stop = 1;
 }
 
-static void catch(void (*handler)(int), int number) {
+static void catch (void (*handler)(int), int number) {
   struct sigaction action = {.sa_handler = handler, .sa_flags = SA_RESTART};
   sigemptyset(&action.sa_mask);
   sigaction(number, &action, NULL);
 }
 
 void ethd__catch_interrupt(void) {
-  catch(stop, SIGINT);
-  catch(stop, SIGTERM);
+  catch (stop, SIGINT);
+  catch (stop, SIGTERM);
 }
 
 void ethd__catch_end(void) {
-  catch(ask, SIGINT);
-  catch(ask, SIGTERM);
-  catch(ask, SIGHUP);
+  catch (ask, SIGINT);
+  catch (ask, SIGTERM);
+  catch (ask, SIGHUP);
   signal(SIGPIPE, SIG_IGN);
 }

@@ -31,8 +31,7 @@ int64_t ethd__option_integer(const char *option, const char *text, int64_t min, 
 uint64_t ethd__option_seed(const char *option, const char *text);
 
 /* Calls `each` for every word of a comma-separated list; exit 2 on an empty word. */
-void ethd__option_list(const char *option, const char *text, void (*each)(const char *word, void *user),
-                       void *user);
+void ethd__option_list(const char *option, const char *text, void (*each)(const char *word, void *user), void *user);
 
 /* A file that came with the programs ("n.ini"): $ETHD_DATA_DIR/NAME, else ../share/ethd/NAME beside the
    program's folder. Freed by the caller; exit 1 when it isn't there. */

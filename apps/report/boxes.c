@@ -2,9 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "text/csv.h"
 #include "report/html.h"
 #include "report/report.h"
+#include "text/csv.h"
 
 #define POINTS_MAX 60 /* taps of a cell that are shown one by one */
 
@@ -15,7 +15,8 @@ typedef struct files {
 /* Speeds stand apart. */
 static double place(const ethd__data *data, size_t group) {
   double x = 0;
-  for (size_t i = 0; i <= group; i++) x += 1 + (i && data->group[i].speed.centre != data->group[i - 1].speed.centre ? 0.5 : 0);
+  for (size_t i = 0; i <= group; i++)
+    x += 1 + (i && data->group[i].speed.centre != data->group[i - 1].speed.centre ? 0.5 : 0);
   return x;
 }
 
@@ -66,15 +67,15 @@ static bool braked(const ethd__data *data) {
   return false;
 }
 
-static ethd_status draw(ethd__report *r, const char *prefix, const char *picture, const char *metrics, const char *heading,
-                        const char *caption) {
+static ethd_status draw(ethd__report *r, const char *prefix, const char *picture, const char *metrics,
+                        const char *heading, const char *caption) {
   char name[64];
   snprintf(name, sizeof name, "%s%s.png", prefix, picture);
-  return ethd__report_picture(
-      r, "report-boxes.gp", name, caption,
-      "in='%sboxes.csv'; points='%spoints.csv'; metrics='%s'; heading='%s'; "
-      "note='%s. Valid taps: medians (red), quartiles, extremes'",
-      prefix, prefix, metrics, heading, ethd__report_measured(r) ? "measured" : "simulated: plausible, fitted, not measured");
+  return ethd__report_picture(r, "report-boxes.gp", name, caption,
+                              "in='%sboxes.csv'; points='%spoints.csv'; metrics='%s'; heading='%s'; "
+                              "note='%s. Valid taps: medians (red), quartiles, extremes'",
+                              prefix, prefix, metrics, heading,
+                              ethd__report_measured(r) ? "measured" : "simulated: plausible, fitted, not measured");
 }
 
 static ethd_status pictures(ethd__report *r, const ethd__data *data, const char *prefix, const char *whose) {
@@ -85,7 +86,8 @@ static ethd_status pictures(ethd__report *r, const ethd__data *data, const char 
   char *points = ethd__report_path(r, name);
   ethd_status status = write_boxes(r, data, boxes, points);
   snprintf(heading, sizeof heading, "Taps on a virtual wall: %s", whose);
-  snprintf(caption, sizeof caption, "As figures 14 to 17 of the paper, %s. Dots are single taps, where they are few.", whose);
+  snprintf(caption, sizeof caption, "As figures 14 to 17 of the paper, %s. Dots are single taps, where they are few.",
+           whose);
   if (!status) status = draw(r, prefix, "boxes", "v_rvo v_of d_max v_rmin", heading, caption);
   if (!status && braked(data)) {
     snprintf(heading, sizeof heading, "Braking: %s", whose);
@@ -111,8 +113,15 @@ static void print_median(ethd__report *r, const ethd__group *group, const ethd__
   snprintf(taps, sizeof taps, "%zu", n);
   snprintf(q, sizeof q, "%.*f to %.*f", d, s.q1, d, s.q3);
   snprintf(i, sizeof i, "%.*f to %.*f", d, interval.low, d, interval.high);
-  const char *cells[] = {quantity->title, quantity->unit, ethd__group_label(group, label), taps, ethd__mean_text(&s, d, mean),
-                         ethd__number_text(s.median, d, median), n ? q : "-", isnan(interval.low) ? "-" : i, NULL};
+  const char *cells[] = {quantity->title,
+                         quantity->unit,
+                         ethd__group_label(group, label),
+                         taps,
+                         ethd__mean_text(&s, d, mean),
+                         ethd__number_text(s.median, d, median),
+                         n ? q : "-",
+                         isnan(interval.low) ? "-" : i,
+                         NULL};
   if (n) ethd__html_row(r->page, cells, 3);
   const double figures[] = {s.mean, s.sd, s.min, s.q1, s.median, s.q3, s.max, interval.low, interval.high};
   ethd_csv_word(csv, quantity->key);
@@ -128,10 +137,12 @@ static void print_median(ethd__report *r, const ethd__group *group, const ethd__
 }
 
 static ethd_status medians(ethd__report *r) {
-  static const char *const header[] = {"figure", "unit", "cell", "n", "mean (sd)", "median", "quartiles", "median, 95 %", NULL};
+  static const char *const header[] = {"figure", "unit",      "cell",         "n", "mean (sd)",
+                                       "median", "quartiles", "median, 95 %", NULL};
   char *path = ethd__report_path(r, "summary.csv");
   ethd_csv_out *csv = ethd_csv_create(
-      path, "metric,unit,transition,speed,n,participants,mean,sd,min,q1,median,q3,max,median_low,median_high", r->message);
+      path, "metric,unit,transition,speed,n,participants,mean,sd,min,q1,median,q3,max,median_low,median_high",
+      r->message);
   free(path);
   if (!csv) return ETHD_E_FILE;
   ethd__html_table(r->page, "Every figure by cell: valid test taps", header, 3);
@@ -148,9 +159,12 @@ ethd_status ethd__report_boxes(ethd__report *r) {
   if (!status) status = medians(r);
   if (status) return status;
   ethd__html_heading(r->page, "delay", "Visual and haptic delay");
-  fputs("<p>When the touch is felt, less when it is seen: positive, felt late; negative, felt early. A delay under 45 ms is "
-        "not noticed (Vogels 2004); in a tap, touch before sight is noticed from about 15 ms, touch after sight from about 50 ms "
-        "(Di Luca and Mahnan 2019). A screen's own delay comes on top of what is seen, and makes these figures smaller.</p>\n",
+  fputs("<p>When the touch is felt, less when it is seen: positive, felt late; negative, felt early. A delay under 45 "
+        "ms is "
+        "not noticed (Vogels 2004); in a tap, touch before sight is noticed from about 15 ms, touch after sight from "
+        "about 50 ms "
+        "(Di Luca and Mahnan 2019). A screen's own delay comes on top of what is seen, and makes these figures "
+        "smaller.</p>\n",
         r->page);
   return draw(r, "", "delay", "delay", "Touch felt after it is seen", "Signed delay between sight and touch, by cell.");
 }

@@ -53,10 +53,17 @@ static const struct {
   size_t offset;
 } figures[] = {
 #define METRIC(column, field) {column, offsetof(ethd__result, metrics) + offsetof(ethd__metrics, field)}
-    METRIC("v_rvo_mps", v_rvo), METRIC("v_of_mps", v_of),     METRIC("d_max_m", d_max),
-    METRIC("v_rmin_mps", v_rmin), METRIC("delta_s_ms", delta_s), METRIC("eps_m", eps),
-    METRIC("t_rvo_s", t_rvo),   METRIC("t_of_s", t_of),       METRIC("t_seen_s", t_seen),
-    METRIC("peak_force_n", peak_force), {"finger_radius_m", offsetof(ethd__result, finger_radius)},
+    METRIC("v_rvo_mps", v_rvo),
+    METRIC("v_of_mps", v_of),
+    METRIC("d_max_m", d_max),
+    METRIC("v_rmin_mps", v_rmin),
+    METRIC("delta_s_ms", delta_s),
+    METRIC("eps_m", eps),
+    METRIC("t_rvo_s", t_rvo),
+    METRIC("t_of_s", t_of),
+    METRIC("t_seen_s", t_seen),
+    METRIC("peak_force_n", peak_force),
+    {"finger_radius_m", offsetof(ethd__result, finger_radius)},
     {"commanded_mps", offsetof(ethd__result, commanded)},
 };
 enum { FIGURES = sizeof figures / sizeof *figures };
@@ -71,8 +78,8 @@ typedef struct reading {
 
 static ethd_status refuse(const reading *r, size_t row, const char *column, const char *found, const char *allowed) {
   char quote[ETHD_QUOTE_MAX];
-  return ethd__say(r->message, ETHD_E_RANGE, "%s:%zu: %s: found %s, %s is allowed", r->out->sheet.path, row + 2,
-                   column, ethd__quote(found, strlen(found), quote), allowed);
+  return ethd__say(r->message, ETHD_E_RANGE, "%s:%zu: %s: found %s, %s is allowed", r->out->sheet.path, row + 2, column,
+                   ethd__quote(found, strlen(found), quote), allowed);
 }
 
 static ethd_status find_columns(reading *r) {
@@ -87,7 +94,8 @@ static ethd_status find_columns(reading *r) {
   r->at_point = ethd__sheet_column(sheet, "point");
   if (r->participant < 0) missing = "participant";
   if (!missing) return ETHD_OK;
-  return ethd__say(r->message, ETHD_E_UNKNOWN, "%s:1: no column %s; a taps.csv of ethd-study has it", sheet->path, missing);
+  return ethd__say(r->message, ETHD_E_UNKNOWN, "%s:1: no column %s; a taps.csv of ethd-study has it", sheet->path,
+                   missing);
 }
 
 static ethd__group *group_of(reading *r, size_t row) {
@@ -150,8 +158,10 @@ static ethd_status take(reading *r, size_t row) {
   r->out->training += training;
   if (training) return ETHD_OK;
   ethd__group *group = group_of(r, row);
-  if (!group) return refuse(r, row, "speed", ethd__sheet_cell(sheet, row, r->word[SPEED]), "low, high or a number, in 64 cells,");
-  if (!grow(group)) return ethd__say(r->message, ETHD_E_MEMORY, "%s: %s", sheet->path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!group)
+    return refuse(r, row, "speed", ethd__sheet_cell(sheet, row, r->word[SPEED]), "low, high or a number, in 64 cells,");
+  if (!grow(group))
+    return ethd__say(r->message, ETHD_E_MEMORY, "%s: %s", sheet->path, ethd_status_sentence(ETHD_E_MEMORY));
   ethd_status status = read_result(r, row, &group->cell.results[group->cell.count]);
   if (status) return status;
   group->who[group->cell.count++] = (ethd__who){person_of(r, row), row};

@@ -22,7 +22,7 @@ typedef struct ethd__group {
 
 typedef struct ethd__data {
   ethd__sheet sheet;
-  bool borrowed; /* the sheet is another's */
+  bool borrowed;                        /* the sheet is another's */
   ethd__group group[ETHD_REPORT_CELLS]; /* speeds in order of the table, strategies within */
   size_t group_count;
   const char **people; /* ids */
@@ -30,8 +30,8 @@ typedef struct ethd__data {
 } ethd__data;
 
 /* path: a taps.csv of ethd-study; of a grid, only `point` goes into the groups. */
-ETHD_MUST_CHECK ethd_status ethd__data_read(const char *path, const ethd_plant *plant, size_t point,
-                                            ethd__data *out, char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__data_read(const char *path, const ethd_plant *plant, size_t point, ethd__data *out,
+                                            char message[ETHD_MESSAGE_MAX]);
 /* The same at another point, on the sheet of `whole`, which outlives it. */
 ETHD_MUST_CHECK ethd_status ethd__data_at(const ethd__data *whole, const ethd_plant *plant, size_t point,
                                           ethd__data *out, char message[ETHD_MESSAGE_MAX]);
@@ -47,8 +47,17 @@ typedef struct ethd__quantity {
   int digits;
 } ethd__quantity;
 
-enum { ETHD_Q_V_RVO, ETHD_Q_V_OF, ETHD_Q_D_MAX, ETHD_Q_V_RMIN, ETHD_Q_DELTA_S, ETHD_Q_EPS, ETHD_Q_DELAY,
-       ETHD_Q_FORCE, ETHD_QUANTITIES };
+enum {
+  ETHD_Q_V_RVO,
+  ETHD_Q_V_OF,
+  ETHD_Q_D_MAX,
+  ETHD_Q_V_RMIN,
+  ETHD_Q_DELTA_S,
+  ETHD_Q_EPS,
+  ETHD_Q_DELAY,
+  ETHD_Q_FORCE,
+  ETHD_QUANTITIES
+};
 extern const ethd__quantity ethd__quantities[ETHD_QUANTITIES];
 
 /* Values of the valid taps that have it, and whose they are (may be NULL); out has room for cell.count. */

@@ -1,9 +1,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "text/csv.h"
 #include "report/html.h"
 #include "report/report.h"
+#include "text/csv.h"
 
 static const int shown[] = {ETHD_Q_DELTA_S, ETHD_Q_EPS, ETHD_Q_D_MAX, ETHD_Q_V_RMIN, ETHD_Q_V_OF};
 enum { SHOWN = sizeof shown / sizeof *shown };
@@ -61,7 +61,8 @@ static ethd_status points(ethd__report *r, const ethd__protocol *p, ethd_csv_out
   for (size_t point = 0; !status && point < r->data.points; point++) {
     ethd__data data;
     status = ethd__data_at(&r->data, &r->folder->loaded.plant, point, &data, r->message);
-    for (size_t i = 0; !status && i < data.group_count; i++) write_row(r, p, point, &data.group[i], rows++ < ROWS_MAX, csv);
+    for (size_t i = 0; !status && i < data.group_count; i++)
+      write_row(r, p, point, &data.group[i], rows++ < ROWS_MAX, csv);
     if (!status) ethd__data_free(&data);
   }
   return status;

@@ -8,9 +8,11 @@
 #define BRIEF 30 /* letters of a cell that aren't broken into lines */
 
 static const char style[] =
-    "body{font:16px/1.55 system-ui,'DejaVu Sans',sans-serif;color:#222;background:#fff;max-width:62rem;margin:2rem auto;"
+    "body{font:16px/1.55 system-ui,'DejaVu Sans',sans-serif;color:#222;background:#fff;max-width:62rem;margin:2rem "
+    "auto;"
     "padding:0 1.2rem}h1{font-size:1.7rem;line-height:1.25;margin-bottom:.3rem}h2{font-size:1.25rem;margin-top:2.6rem;"
-    "border-bottom:1px solid #ddd;padding-bottom:.25rem}p.lead{color:#555}p.note{background:#f6f3ea;padding:.6rem .9rem;"
+    "border-bottom:1px solid #ddd;padding-bottom:.25rem}p.lead{color:#555}p.note{background:#f6f3ea;padding:.6rem "
+    ".9rem;"
     "border-left:4px solid #c9a94e}table{border-collapse:collapse;margin:1rem 0;font-size:.92rem;"
     "font-variant-numeric:tabular-nums}caption{text-align:left;color:#555;padding:.3rem 0;caption-side:top}"
     "th,td{padding:.28rem .7rem;border-bottom:1px solid #e4e4e4;text-align:left;vertical-align:top}"
@@ -59,7 +61,8 @@ static void base64(FILE *page, const unsigned char *bytes, size_t length) {
   static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   for (size_t i = 0; i < length; i += 3) {
     size_t left = length - i;
-    unsigned three = (unsigned)bytes[i] << 16 | (left > 1 ? (unsigned)bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0);
+    unsigned three =
+        (unsigned)bytes[i] << 16 | (left > 1 ? (unsigned)bytes[i + 1] << 8 : 0) | (left > 2 ? bytes[i + 2] : 0);
     fputc(letters[three >> 18], page);
     fputc(letters[three >> 12 & 63], page);
     fputc(left > 1 ? letters[three >> 6 & 63] : '=', page);

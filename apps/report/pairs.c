@@ -2,14 +2,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/csv.h"
 #include "report/html.h"
 #include "report/report.h"
+#include "text/csv.h"
 
 /* Medians by participant, NaN without a valid tap; freed by the caller. */
 static double *by_person(const ethd__report *r, const ethd__group *group, const ethd__quantity *quantity) {
   size_t people = r->data.people_count, n = 0;
-  double *values = malloc((group->cell.count + 1) * sizeof *values), *own = malloc((group->cell.count + 1) * sizeof *own);
+  double *values = malloc((group->cell.count + 1) * sizeof *values),
+         *own = malloc((group->cell.count + 1) * sizeof *own);
   double *medians = malloc((people + 1) * sizeof *medians);
   uint32_t *person = malloc((group->cell.count + 1) * sizeof *person);
   if (values && own && medians && person) {
@@ -31,7 +32,8 @@ static double *by_person(const ethd__report *r, const ethd__group *group, const 
   return medians;
 }
 
-static void compare(ethd__report *r, const ethd__group *a, const ethd__group *b, const ethd__quantity *quantity, ethd_csv_out *csv) {
+static void compare(ethd__report *r, const ethd__group *a, const ethd__group *b, const ethd__quantity *quantity,
+                    ethd_csv_out *csv) {
   double *first = by_person(r, a, quantity), *second = by_person(r, b, quantity);
   size_t n = 0;
   for (size_t p = 0; first && second && p < r->data.people_count; p++)
@@ -48,8 +50,16 @@ static void compare(ethd__report *r, const ethd__group *a, const ethd__group *b,
     snprintf(p, sizeof p, "none: n = %zu", n);
   else
     snprintf(p, sizeof p, c.p < 1e-4 ? "< 0.0001" : "%.4f", c.p);
-  const char *cells[] = {quantity->title, quantity->unit, what, pairs, ethd__number_text(c.mean, d, mean),
-                         isnan(c.interval.low) ? "-" : interval, ethd__number_text(c.median, d, median), positive, p, NULL};
+  const char *cells[] = {quantity->title,
+                         quantity->unit,
+                         what,
+                         pairs,
+                         ethd__number_text(c.mean, d, mean),
+                         isnan(c.interval.low) ? "-" : interval,
+                         ethd__number_text(c.median, d, median),
+                         positive,
+                         p,
+                         NULL};
   if (n) {
     ethd__html_row(r->page, cells, 3);
     ethd_csv_word(csv, quantity->key);
@@ -68,16 +78,21 @@ static void compare(ethd__report *r, const ethd__group *a, const ethd__group *b,
 }
 
 ethd_status ethd__report_pairs(ethd__report *r) {
-  static const char *const header[] = {"figure", "unit", "difference", "n", "mean", "mean, 95 %", "median", "> 0", "p", NULL};
+  static const char *const header[] = {"figure",     "unit",   "difference", "n", "mean",
+                                       "mean, 95 %", "median", "> 0",        "p", NULL};
   char *path = ethd__report_path(r, "pairs.csv");
   ethd_csv_out *csv = ethd_csv_create(
-      path, "metric,unit,transition_a,transition_b,speed,participants,positive,mean_b_minus_a,mean_low,mean_high,median,p", r->message);
+      path,
+      "metric,unit,transition_a,transition_b,speed,participants,positive,mean_b_minus_a,mean_low,mean_high,median,p",
+      r->message);
   free(path);
   if (!csv) return ETHD_E_FILE;
   ethd__html_heading(r->page, "pairs", "Strategies compared within participants");
   if (r->data.people_count < ETHD_STATS_PAIRS)
-    fprintf(r->page, "<p class=\"note\">%zu participants: <b>no significance is claimed</b>. The smallest two-sided p that %zu "
-            "pairs can have is %.3g.</p>\n", r->data.people_count, r->data.people_count, 2 / exp2((double)r->data.people_count));
+    fprintf(r->page,
+            "<p class=\"note\">%zu participants: <b>no significance is claimed</b>. The smallest two-sided p that %zu "
+            "pairs can have is %.3g.</p>\n",
+            r->data.people_count, r->data.people_count, 2 / exp2((double)r->data.people_count));
   ethd__html_table(r->page, "Differences of participants' medians", header, 3);
   for (int q = 0; q < ETHD_QUANTITIES; q++)
     for (size_t a = 0; a < r->data.group_count; a++)

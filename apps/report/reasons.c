@@ -1,13 +1,13 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-#include "text/csv.h"
 #include "report/html.h"
 #include "report/report.h"
+#include "text/csv.h"
 
 /* In the order of the picture's bars. */
-static const ethd__reason order[] = {ETHD_TAP_OK,       ETHD_TAP_EARLY_CONTACT, ETHD_TAP_TOO_SLOW, ETHD_TAP_TOO_FAST,
-                                     ETHD_TAP_NO_CONTACT, ETHD_TAP_GRAZING,     ETHD_TAP_DOUBLE,   ETHD_TAP_FAULT};
+static const ethd__reason order[] = {ETHD_TAP_OK,         ETHD_TAP_EARLY_CONTACT, ETHD_TAP_TOO_SLOW, ETHD_TAP_TOO_FAST,
+                                     ETHD_TAP_NO_CONTACT, ETHD_TAP_GRAZING,       ETHD_TAP_DOUBLE,   ETHD_TAP_FAULT};
 enum { REASONS = sizeof order / sizeof *order };
 _Static_assert(REASONS == (int)ETHD_TAP_REASON_COUNT, "every reason has its bar");
 
@@ -48,8 +48,10 @@ ethd_status ethd__report_reasons(ethd__report *r) {
   free(path);
   if (!csv) return ETHD_E_FILE;
   ethd__html_heading(r->page, "valid", "Valid taps");
-  fputs("<p>A tap is valid when the ring met the wall before the finger touched it, at a speed within the band, and the "
-        "finger pressed once. The paper's participants needed 10 to 15 taps for three valid ones.</p>\n", r->page);
+  fputs(
+      "<p>A tap is valid when the ring met the wall before the finger touched it, at a speed within the band, and the "
+      "finger pressed once. The paper's participants needed 10 to 15 taps for three valid ones.</p>\n",
+      r->page);
   ethd__html_table(r->page, "Taps by reason", header, 1);
   for (size_t i = 0; i < r->data.group_count; i++) write_row(r, i, csv);
   ethd__html_table_end(r->page);

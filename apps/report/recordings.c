@@ -12,7 +12,8 @@
 static bool holds_taps(const char *name) {
   unsigned index, of;
   char rest;
-  return !strcmp(name, ETHD_STUDY_RECORDINGS) || sscanf(name, ETHD_STUDY_RECORDINGS "-%u-of-%u%c", &index, &of, &rest) == 2;
+  return !strcmp(name, ETHD_STUDY_RECORDINGS) ||
+         sscanf(name, ETHD_STUDY_RECORDINGS "-%u-of-%u%c", &index, &of, &rest) == 2;
 }
 
 static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
@@ -40,8 +41,8 @@ void ethd__recordings_free(ethd__recordings *r) {
 
 void ethd__recording_name(const ethd__sheet *sheet, size_t row, char out[ETHD_RECORDING_NAME]) {
   int point = ethd__sheet_column(sheet, "point");
-  snprintf(out, ETHD_RECORDING_NAME, "%.20s%s%.20s-%02d-%03d", ethd__sheet_cell(sheet, row, point), point < 0 ? "" : "-",
-           ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "participant")),
+  snprintf(out, ETHD_RECORDING_NAME, "%.20s%s%.20s-%02d-%03d", ethd__sheet_cell(sheet, row, point),
+           point < 0 ? "" : "-", ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "participant")),
            atoi(ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "block"))),
            atoi(ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "attempt"))));
 }

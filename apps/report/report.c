@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "text/error_text.h"
 #include "report/html.h"
 #include "report/picture.h"
+#include "text/error_text.h"
 
 char *ethd__report_path(const ethd__report *report, const char *name) { return ethd__folder_path(report->out, name); }
 
@@ -91,6 +91,8 @@ void ethd__report_methods(ethd__report *report) {
     ethd__html_text(report->page, methods[i]);
     fputs("</li>\n", report->page);
   }
-  fprintf(report->page, "<li>Bootstrap and tests draw their random numbers under seed %llu: %u draws, %u for medians of "
-          "over 4000 taps.</li>\n</ul>\n", (unsigned long long)report->seed, ETHD_STATS_DRAWS, ETHD_STATS_FEW_DRAWS);
+  fprintf(report->page,
+          "<li>Bootstrap and tests draw their random numbers under seed %llu: %u draws, %u for medians of "
+          "over 4000 taps.</li>\n</ul>\n",
+          (unsigned long long)report->seed, ETHD_STATS_DRAWS, ETHD_STATS_FEW_DRAWS);
 }

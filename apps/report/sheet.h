@@ -9,7 +9,7 @@
 
 typedef struct ethd__sheet {
   char *path, *text;
-  const char **cell; /* row 0 is the header */
+  const char **cell;    /* row 0 is the header */
   size_t rows, columns; /* rows without the header */
 } ethd__sheet;
 

@@ -125,8 +125,7 @@ static double flipped(const double *differences, size_t n, uint64_t signs) {
 
 static double drawn_flip(const double *differences, size_t n, ethd__key key) {
   double sum = 0;
-  for (size_t i = 0; i < n; i++)
-    sum += ethd__uniform(key, FLIP, (uint32_t)i) < 0.5 ? -differences[i] : differences[i];
+  for (size_t i = 0; i < n; i++) sum += ethd__uniform(key, FLIP, (uint32_t)i) < 0.5 ? -differences[i] : differences[i];
   return fabs(sum);
 }
 

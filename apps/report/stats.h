@@ -12,7 +12,7 @@
 
 #define ETHD_STATS_DRAWS 2000u
 #define ETHD_STATS_FEW_DRAWS 200u /* of medians over more than 4000 taps */
-#define ETHD_STATS_PAIRS 6u /* participants below which no test is made: its smallest p is over 0.05 */
+#define ETHD_STATS_PAIRS 6u       /* participants below which no test is made: its smallest p is over 0.05 */
 
 typedef struct ethd__summary5 {
   size_t n;

@@ -3,10 +3,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "text/csv.h"
 #include "report/html.h"
 #include "report/report.h"
 #include "study/dictionary.h"
+#include "text/csv.h"
 
 #define STEPS 5
 
@@ -93,7 +93,9 @@ ethd_status ethd__report_survey(ethd__report *r) {
   if (given)
     status = with_answers(r, &sheet);
   else
-    fputs("<p>Nobody has answered. Simulated participants feel nothing: their answers are left empty, never made up.</p>\n", r->page);
+    fputs("<p>Nobody has answered. Simulated participants feel nothing: their answers are left empty, never made "
+          "up.</p>\n",
+          r->page);
   ethd__sheet_free(&sheet);
   return status;
 }

@@ -2,13 +2,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/error_text.h"
 #include "report/html.h"
 #include "report/report.h"
 #include "tap/claims.h"
+#include "text/error_text.h"
 
-#define NINE 9      /* taps behind each figure of the paper */
-#define FEWEST 30   /* taps to draw nine from */
+#define NINE 9    /* taps behind each figure of the paper */
+#define FEWEST 30 /* taps to draw nine from */
 
 /* The larger sample: what is beside, else the study. */
 static const ethd__data *largest(const ethd__report *r) { return r->beside.group_count ? &r->beside : &r->data; }
@@ -68,18 +68,34 @@ static void print_row(const ethd__report *r, const line *row, FILE *csv) {
                      : row->mean->verdict == ETHD_TAP_NOT_MET ? "not"
                                                               : "too few taps";
   const char *spread = isnan(row->sd_share) ? "too few taps" : row->sd_share >= 0.05 ? "reproduced" : "not";
-  const char *cells[] = {name, paper, ethd__mean_text(&study, digits, here), n,
+  const char *cells[] = {name,
+                         paper,
+                         ethd__mean_text(&study, digits, here),
+                         n,
                          r->beside.group_count ? ethd__mean_text(&other, digits, beside) : "-",
-                         r->beside.group_count ? besides : "-", word, spread, percent(row->mean_share, m),
-                         percent(row->sd_share, s), NULL};
+                         r->beside.group_count ? besides : "-",
+                         word,
+                         spread,
+                         percent(row->mean_share, m),
+                         percent(row->sd_share, s),
+                         NULL};
   ethd__html_row(r->page, cells, 1);
   for (int i = 0; cells[i]; i++) fprintf(csv, "%s\"%s\"", i ? "," : "", cells[i]);
   fputc('\n', csv);
 }
 
 static ethd_status print_table(ethd__report *r) {
-  static const char *const header[] = {"offset", "paper, n = 9", "this study", "n", "beside", "n", "mean", "sd",
-                                       "9 taps: mean as far off", "9 taps: sd as far off", NULL};
+  static const char *const header[] = {"offset",
+                                       "paper, n = 9",
+                                       "this study",
+                                       "n",
+                                       "beside",
+                                       "n",
+                                       "mean",
+                                       "sd",
+                                       "9 taps: mean as far off",
+                                       "9 taps: sd as far off",
+                                       NULL};
   static const int quantity[ETHD_TAP_MEANS] = {ETHD_Q_DELTA_S, ETHD_Q_EPS, ETHD_Q_DELTA_S, ETHD_Q_EPS};
   ethd__mean means[ETHD_TAP_MEANS];
   ethd__cell cells[ETHD_REPORT_CELLS];
@@ -108,12 +124,15 @@ static ethd_status print_table(ethd__report *r) {
 
 static void print_claims(ethd__report *r) {
   static const char *const header[] = {"what the paper says", "here", "", NULL};
-  static const char *const words[] = {[ETHD_TAP_UNKNOWN] = "too few taps", [ETHD_TAP_MET] = "reproduced", [ETHD_TAP_NOT_MET] = "not"};
+  static const char *const words[] = {
+      [ETHD_TAP_UNKNOWN] = "too few taps", [ETHD_TAP_MET] = "reproduced", [ETHD_TAP_NOT_MET] = "not"};
   ethd__claim claims[ETHD_TAP_CLAIMS_MAX];
   ethd__cell cells[ETHD_REPORT_CELLS];
   size_t count = ethd__data_cells(largest(r), cells), n = ethd__claims(cells, count, claims);
-  ethd__html_table(r->page, r->beside.group_count ? "Claims, judged by the taps beside the study, which are more"
-                                                  : "Claims, judged by this study's taps", header, 3);
+  ethd__html_table(r->page,
+                   r->beside.group_count ? "Claims, judged by the taps beside the study, which are more"
+                                         : "Claims, judged by this study's taps",
+                   header, 3);
   for (size_t i = 0; i < n; i++) {
     const char *row[] = {claims[i].text, claims[i].verdict ? claims[i].here : "-", words[claims[i].verdict], NULL};
     ethd__html_row(r->page, row, 3);
@@ -124,10 +143,12 @@ static void print_claims(ethd__report *r) {
 ethd_status ethd__report_table1(ethd__report *r) {
   if (!offset_at(&r->data, false) && !offset_at(&r->data, true)) return ETHD_OK;
   ethd__html_heading(r->page, "table1", "Table 1 and the paper's claims");
-  fputs(was_measured(r) ? "<p>A mean counts as reproduced "
-                                 : "<p>The simulated device and finger were <b>fitted to the four means of Table 1</b>, not measured: "
-                                   "that the means agree is no evidence. What was not fitted, the spreads and the claims, says "
-                                   "more. A mean counts as fitted ", r->page);
+  fputs(was_measured(r)
+            ? "<p>A mean counts as reproduced "
+            : "<p>The simulated device and finger were <b>fitted to the four means of Table 1</b>, not measured: "
+              "that the means agree is no evidence. What was not fitted, the spreads and the claims, says "
+              "more. A mean counts as fitted ",
+        r->page);
   fputs("when it is within one published standard deviation plus two standard errors of the paper's; a spread as "
         "reproduced when at least 5 % of samples of nine taps have one as far off as the paper's, two-sided.</p>\n",
         r->page);

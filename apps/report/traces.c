@@ -1,14 +1,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/error_text.h"
 #include "report/html.h"
 #include "report/recordings.h"
 #include "report/report.h"
 #include "tap/ticks.h"
+#include "text/error_text.h"
 
 /* What a tap is drawn by: the wall of the folder's scene. */
-static ethd_status view_of(const ethd__report *r, const ethd__group *group, const ethd__result *result, ethd__view *out) {
+static ethd_status view_of(const ethd__report *r, const ethd__group *group, const ethd__result *result,
+                           ethd__view *out) {
   ethd__study study = {.config = r->folder->loaded.config, .plant = r->folder->loaded.plant};
   ethd_status status = ethd__study_prepare(&study, r->message);
   if (status) return status;
@@ -61,7 +62,8 @@ static bool choose(const ethd__report *r, const ethd__group *group, const ethd__
   return out->recording != NULL;
 }
 
-static ethd_status write_trace(ethd__report *r, const ethd__group *group, size_t index, const char *recording, const char *csv) {
+static ethd_status write_trace(ethd__report *r, const ethd__group *group, size_t index, const char *recording,
+                               const char *csv) {
   ethd__rows rows;
   ethd__view view;
   ethd_status status = view_of(r, group, &group->cell.results[index], &view);
@@ -75,11 +77,14 @@ static ethd_status write_trace(ethd__report *r, const ethd__group *group, size_t
 static ethd_status draw(ethd__report *r, const ethd__group *group, const char *tap) {
   char caption[256], name[96];
   snprintf(name, sizeof name, "trace-%s-%s.png", group->cell.law, group->speed.word);
-  snprintf(caption, sizeof caption, "As figures 9 to 12 of the paper: %s, %s, tap %s%s.", group->cell.law, group->speed.word, tap,
+  snprintf(caption, sizeof caption, "As figures 9 to 12 of the paper: %s, %s, tap %s%s.", group->cell.law,
+           group->speed.word, tap,
            r->tap ? "" : ", of the valid ones that are recorded the one nearest to their means");
   return ethd__report_picture(r, "tap.gp", name, caption, "in='trace-%s-%s.csv'; title='%s, %s speed'; plant='%.60s'",
                               group->cell.law, group->speed.word, group->cell.law, group->speed.word,
-                              ethd__report_measured(r) ? "" : r->folder->protocol.plant ? r->folder->protocol.plant : "n");
+                              ethd__report_measured(r)    ? ""
+                              : r->folder->protocol.plant ? r->folder->protocol.plant
+                                                          : "n");
 }
 
 /* What the picture of the states shows. */
@@ -88,7 +93,8 @@ typedef struct states {
   size_t count;
 } states;
 
-static ethd_status trace_group(ethd__report *r, const ethd__group *group, const ethd__recordings *recordings, states *out) {
+static ethd_status trace_group(ethd__report *r, const ethd__group *group, const ethd__recordings *recordings,
+                               states *out) {
   char name[96];
   choice tap;
   if (!choose(r, group, recordings, &tap)) return ETHD_OK;
@@ -105,10 +111,11 @@ static ethd_status trace_group(ethd__report *r, const ethd__group *group, const 
 }
 
 static ethd_status draw_states(ethd__report *r, const char *names, const char *titles) {
-  return ethd__report_picture(r, "report-states.gp", "states.png",
-                              "As figure 6 of the paper: the active state, and the weight of the tracking torque, which stays "
-                              "continuous while the wall moves. Where a strategy has no states, vo stands for the ring in the wall.",
-                              "in='%s'; titles='%s'; note='the taps above'", names, titles);
+  return ethd__report_picture(
+      r, "report-states.gp", "states.png",
+      "As figure 6 of the paper: the active state, and the weight of the tracking torque, which stays "
+      "continuous while the wall moves. Where a strategy has no states, vo stands for the ring in the wall.",
+      "in='%s'; titles='%s'; note='the taps above'", names, titles);
 }
 
 ethd_status ethd__report_traces(ethd__report *r) {

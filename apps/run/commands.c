@@ -23,8 +23,8 @@ static void answer(const char *format, ...) {
 
 /* ---- the commands ---- */
 
-static void post(ethd__session *s, ethd_status status, const ethd_setup *setup, const char *kind,
-                 const char *detail, char *message) {
+static void post(ethd__session *s, ethd_status status, const ethd_setup *setup, const char *kind, const char *detail,
+                 char *message) {
   if (!status) status = ethd__session_post(s, setup, kind, detail, message);
   if (status)
     answer("error: %s", message);
@@ -65,11 +65,10 @@ static void status(ethd__session *s, ethd__commands *c, char *rest) {
   const ethd_trace *k = &row.trace;
   (void)c, (void)rest;
   ethd_loop_read(s->loop, &stats);
-  answer("ok: t %.3f s, %s, %s, %s, beta %.3f, ring %.4f %.4f m, torque %.4f %.4f Nm, %" PRIu64
-         " overruns, %s",
+  answer("ok: t %.3f s, %s, %s, %s, beta %.3f, ring %.4f %.4f m, torque %.4f %.4f Nm, %" PRIu64 " overruns, %s",
          ethd__session_time(s), ethd_loop_armed(s->loop) ? "enabled" : "disabled", s->setup.transition->law.id,
-         k->state >= 0 && k->state < 3 ? states[k->state] : "?", k->beta, k->x[0], k->x[1],
-         row.share * k->tau[0], row.share * k->tau[1], stats.overruns, ethd_fault_sentence((ethd_fault)k->fault));
+         k->state >= 0 && k->state < 3 ? states[k->state] : "?", k->beta, k->x[0], k->x[1], row.share * k->tau[0],
+         row.share * k->tau[1], stats.overruns, ethd_fault_sentence((ethd_fault)k->fault));
 }
 
 static bool faulty(ethd__session *s) { return ethd__recorder_latest(&s->recorder).trace.fault != 0; }
@@ -125,9 +124,8 @@ static const struct {
   const char *word;
   void (*run)(ethd__session *s, ethd__commands *c, char *rest);
   bool alone;
-} table[] = {{"transition", transition, false}, {"set", set, false},     {"status", status, true},
-             {"ack", ack, true},                {"enable", enable, true}, {"stop", stop, true},
-             {"wait", wait_for, false}};
+} table[] = {{"transition", transition, false}, {"set", set, false},  {"status", status, true}, {"ack", ack, true},
+             {"enable", enable, true},          {"stop", stop, true}, {"wait", wait_for, false}};
 
 /* ---- lines ---- */
 

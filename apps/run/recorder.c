@@ -10,7 +10,7 @@
 #include "run/telemetry.h"
 
 #define STACK ((size_t)512 << 10)
-#define PAUSE 2000000 /* ns */
+#define PAUSE 2000000  /* ns */
 #define TELEMETRY 0.01 /* s */
 
 void ethd__recorder_begin(ethd__recorder *r, double period) {

@@ -9,11 +9,11 @@
 
 #include "cli/cli.h"
 #include "record/limits_event.h"
+#include "run/telemetry.h"
 #include "text/error_text.h"
 #include "text/text.h"
-#include "run/telemetry.h"
 
-#define HEARTBEAT 0.1  /* s */
+#define HEARTBEAT 0.1 /* s */
 #define PATIENCE 1000 /* waits of 1 ms, or ticks */
 
 /* ---- time ---- */
@@ -102,14 +102,12 @@ static ethd_status open_recorder(ethd__session *s, const ethd__session_options *
   return status ? ethd__say(message, status, "%s: %s", o->record, ethd_status_sentence(status)) : ETHD_OK;
 }
 
-static ethd_status refuse_start(const ethd__session *s, ethd_status status, const ethd_error *error,
-                                char *message) {
+static ethd_status refuse_start(const ethd__session *s, ethd_status status, const ethd_error *error, char *message) {
   if (strcmp(error->name, "require_rt"))
     return ethd__say(message, status, "the loop: %s: %s", error->name, ethd_status_sentence(status));
   int32_t bits = ethd_loop_shortfalls(s->loop);
   const char *first = bits ? ethd_shortfall_sentence(bits & -bits) : "";
-  return ethd__say(message, status, "--require-rt: %s; mend: %s", first,
-                   bits ? ethd_shortfall_mend(bits & -bits) : "");
+  return ethd__say(message, status, "--require-rt: %s; mend: %s", first, bits ? ethd_shortfall_mend(bits & -bits) : "");
 }
 
 static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, char *message) {
@@ -130,7 +128,8 @@ static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, c
   s->recorder.loop = s->loop;
   ethd__recorder_begin(&s->recorder, def.period);
   status = s->driver->start(s->device);
-  if (status) return ethd__say(message, status, "device %s: start: %s", s->config->device, ethd_status_sentence(status));
+  if (status)
+    return ethd__say(message, status, "device %s: start: %s", s->config->device, ethd_status_sentence(status));
   s->started = true;
   status = ethd_loop_start(s->loop, &error);
   if (status) return refuse_start(s, status, &error, message);
@@ -138,8 +137,7 @@ static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, c
   return status ? ethd__say(message, status, "the recorder: %s", ethd_status_sentence(status)) : ETHD_OK;
 }
 
-ethd_status ethd__session_open(const ethd__session_options *o, ethd__session *s,
-                               char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__session_open(const ethd__session_options *o, ethd__session *s, char message[ETHD_MESSAGE_MAX]) {
   char left[ETHD_MESSAGE_MAX];
   memset(s, 0, sizeof *s);
   s->recorder.telemetry = -1;
@@ -160,8 +158,8 @@ ethd_status ethd__session_open(const ethd__session_options *o, ethd__session *s,
 
 /* ---- while it runs ---- */
 
-ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const char *kind,
-                               const char *detail, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const char *kind, const char *detail,
+                               char message[ETHD_MESSAGE_MAX]) {
   ethd_error error = {0};
   if (!settle(s)) return ethd__say(message, ETHD_BUSY, "%s", ethd_status_sentence(ETHD_BUSY));
   if (!ethd__recorder_expect(&s->recorder, kind, detail))

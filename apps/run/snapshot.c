@@ -8,7 +8,9 @@
 #define AFTER 1.0
 #define ROWS_MAX 1e5
 
-static size_t rows_in(double seconds, double period) { return (size_t)fmin(fmax(1, round(seconds / period)), ROWS_MAX); }
+static size_t rows_in(double seconds, double period) {
+  return (size_t)fmin(fmax(1, round(seconds / period)), ROWS_MAX);
+}
 
 ethd_status ethd__snapshot_open(ethd__snapshot *s, const char *path, double period) {
   *s = (ethd__snapshot){0};
@@ -28,8 +30,7 @@ static ethd_status write_rows(ethd__snapshot *s) {
   size_t n = s->count < s->room ? s->count : s->room;
   ethd_status status = ethd_npy_create(s->path, ethd_trace_columns, sizeof *s->rows, &npy, s->message);
   if (status) return status;
-  for (size_t i = s->count - n; !status && i < s->count; i++)
-    status = ethd_npy_append(npy, &s->rows[i % s->room], 1);
+  for (size_t i = s->count - n; !status && i < s->count; i++) status = ethd_npy_append(npy, &s->rows[i % s->room], 1);
   ethd_status closed = ethd_npy_close(npy);
   s->written = n;
   return status ? status : closed;

@@ -20,8 +20,7 @@ void ethd__shortfalls_print(FILE *out, int32_t bits) {
 
 void ethd__remarks_print(FILE *out, const ethd__session *s) {
   const char *remark;
-  for (uint32_t i = 0; (remark = s->driver->remark(s->device, i)) != NULL; i++)
-    fprintf(out, "device: %s\n", remark);
+  for (uint32_t i = 0; (remark = s->driver->remark(s->device, i)) != NULL; i++) fprintf(out, "device: %s\n", remark);
   if (!s->is_virtual) ethd__shortfalls_print(out, ethd_loop_shortfalls(s->loop));
 }
 
@@ -44,8 +43,9 @@ static void print_faults(FILE *out, const ethd__recorder *r, const ethd_loop_sta
 static void print_skipped(FILE *out, const ethd__session *s, const ethd_loop_stats *stats) {
   ethd_counters c;
   ethd_control_counters(s->control, &c);
-  fprintf(out, "%-10s %" PRIu64 " readings dropped, %" PRIu64 " contacts without room, %" PRIu64
-               " ticks without room in the recorder\n",
+  fprintf(out,
+          "%-10s %" PRIu64 " readings dropped, %" PRIu64 " contacts without room, %" PRIu64
+          " ticks without room in the recorder\n",
           "skipped", c.readings_dropped, c.contacts_lost, stats->rows_lost);
   fprintf(out, "%-10s queried in %" PRIu64 " of %" PRIu64 " ticks", "scene", c.queried, c.ticks);
   ethd__dropped_print(out, s->setup.scene);
@@ -66,7 +66,8 @@ static void print_figures(FILE *out, const ethd__session *s) {
   for (uint32_t i = 0; i < n; i++) {
     int is_time = !strcmp(figures[i].unit, "s");
     const char *unit = is_time ? "ms" : strcmp(figures[i].unit, "1") ? figures[i].unit : "";
-    fprintf(out, "%-10s %-32s %10.6g %s\n", i ? "" : "figures", figures[i].name, figures[i].value * (is_time ? 1e3 : 1), unit);
+    fprintf(out, "%-10s %-32s %10.6g %s\n", i ? "" : "figures", figures[i].name, figures[i].value * (is_time ? 1e3 : 1),
+            unit);
   }
 }
 
@@ -85,10 +86,12 @@ static const char *word(ethd_reaction reaction) {
 }
 
 void ethd__faults_print(FILE *out) {
-  fprintf(out, "What may go wrong, how soon it is noticed, and what is done at first and at the worst.\n"
-               "count: it goes on. degrade: with less. stop: the ring is damped until it stands, then as zero.\n"
-               "zero: no torque, the device is disabled, latched until acknowledged. refuse: nothing moves.\n\n"
-               "row  %-20s%-9s%-9s%s\n", "noticed within", "at first", "at worst", "what");
+  fprintf(out,
+          "What may go wrong, how soon it is noticed, and what is done at first and at the worst.\n"
+          "count: it goes on. degrade: with less. stop: the ring is damped until it stands, then as zero.\n"
+          "zero: no torque, the device is disabled, latched until acknowledged. refuse: nothing moves.\n\n"
+          "row  %-20s%-9s%-9s%s\n",
+          "noticed within", "at first", "at worst", "what");
   for (int i = 1; i < ETHD_FAULT_COUNT; i++)
     fprintf(out, "%3d  %-20s%-9s%-9s%s\n", i, ethd_fault_bound((ethd_fault)i),
             word(ethd_fault_reaction((ethd_fault)i, 0)), word(ethd_fault_reaction((ethd_fault)i, 1)),

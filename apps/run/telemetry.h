@@ -2,8 +2,8 @@
 #ifndef ETHD_APPS_RUN_TELEMETRY_H
 #define ETHD_APPS_RUN_TELEMETRY_H
 
-#include "ethd/loop.h"
 #include "ethd/config.h"
+#include "ethd/loop.h"
 
 /* HOST:PORT, [HOST]:PORT for numbers with colons; *out is the socket. */
 ETHD_MUST_CHECK ethd_status ethd__telemetry_open(const char *address, int *out, char message[ETHD_MESSAGE_MAX]);

@@ -6,9 +6,9 @@
 #include <strings.h>
 
 #include "cli/cli.h"
+#include "scene/scene.h"
 #include "settings/scene_file.h"
 #include "text/text.h"
-#include "scene/scene.h"
 
 #define SVG_BYTES_MAX ((size_t)1 << 30)
 
@@ -22,7 +22,8 @@ static void say_page(const ethd__scene_args *arg, const ethd_svg_notes *n) {
          arg->svg.origin.y);
   if (isfinite(n->width) && isfinite(n->height)) printf(", its size %.9g x %.9g m", n->width, n->height);
   printf("; curves within %.3g m\n", arg->svg.tolerance);
-  if (n->skipped) printf("  skipped: %zu elements (hidden, title, desc, metadata, defs, other namespaces)\n", n->skipped);
+  if (n->skipped)
+    printf("  skipped: %zu elements (hidden, title, desc, metadata, defs, other namespaces)\n", n->skipped);
   if (n->blank) printf("  left out: %zu without length\n", n->blank);
 }
 

@@ -19,13 +19,12 @@ static ethd_setup setup_of(const char *path) {
 static void say_counts(const char *name, const ethd_scene_info *info) {
   printf("%s: %zu objects\n", name, info->objects);
   for (int shape = 0; shape < ETHD_SHAPE_COUNT; shape++)
-    if (info->by_shape[shape])
-      printf("  %-10s %zu\n", ethd_shape_name((ethd_shape)shape), info->by_shape[shape]);
+    if (info->by_shape[shape]) printf("  %-10s %zu\n", ethd_shape_name((ethd_shape)shape), info->by_shape[shape]);
   printf("segments:     %zu (edges of polygons, polylines and segments)\n", info->segments);
   printf("materials:    %zu\n", info->materials);
   if (info->x_min <= info->x_max)
-    printf("extent:       x %.9g to %.9g m, y %.9g to %.9g m%s\n", info->x_min, info->x_max, info->y_min,
-           info->y_max, info->by_shape[ETHD_HALFPLANE] ? ", and half-planes" : "");
+    printf("extent:       x %.9g to %.9g m, y %.9g to %.9g m%s\n", info->x_min, info->x_max, info->y_min, info->y_max,
+           info->by_shape[ETHD_HALFPLANE] ? ", and half-planes" : "");
   else
     printf("extent:       %s\n", info->by_shape[ETHD_HALFPLANE] ? "half-planes only" : "none");
 }

@@ -2,9 +2,9 @@
 #include <time.h>
 
 #include "cli/cli.h"
+#include "scene/scene.h"
 #include "settings/scene_file.h"
 #include "text/text.h"
-#include "scene/scene.h"
 
 #define SCENE_BYTES_MAX ((size_t)1 << 30)
 

@@ -6,9 +6,9 @@
 
 #include "cli/cli.h"
 #include "ethd/maths.h"
-#include "text/csv.h"
 #include "report/picture.h"
 #include "scene/scene.h"
+#include "text/csv.h"
 
 #define BOXES_MAX 5000 /* of a level: more can't be seen */
 #define LEVELS 16
@@ -86,16 +86,18 @@ static void draw_halfplane(pen *p, const double *v, double size) {
 static void draw_object(pen *p, const ethd_object_def *o, double size) {
   const double *v = o->numbers;
   double sine, cosine;
-  p->what = o->shape == ETHD_HALFPLANE ? "halfplane" : o->shape == ETHD_SEGMENT || o->shape == ETHD_POLYLINE ? "wall" : "solid";
+  p->what = o->shape == ETHD_HALFPLANE                              ? "halfplane"
+            : o->shape == ETHD_SEGMENT || o->shape == ETHD_POLYLINE ? "wall"
+                                                                    : "solid";
   switch (o->shape) {
-    case ETHD_HALFPLANE: draw_halfplane(p, v, size); break;
-    case ETHD_CIRCLE: draw_arc(p, (ethd_vec){v[0], v[1]}, v[2], 0, TURN); break;
-    case ETHD_CAPSULE: draw_capsule(p, v); break;
-    case ETHD_BOX:
-      ethd_sincos(v[4], &sine, &cosine);
-      draw_box(p, (ethd_vec){v[0], v[1]}, cosine, sine, v[2], v[3]);
-      break;
-    default: draw_chain(p, o);
+  case ETHD_HALFPLANE: draw_halfplane(p, v, size); break;
+  case ETHD_CIRCLE: draw_arc(p, (ethd_vec){v[0], v[1]}, v[2], 0, TURN); break;
+  case ETHD_CAPSULE: draw_capsule(p, v); break;
+  case ETHD_BOX:
+    ethd_sincos(v[4], &sine, &cosine);
+    draw_box(p, (ethd_vec){v[0], v[1]}, cosine, sine, v[2], v[3]);
+    break;
+  default: draw_chain(p, o);
   }
 }
 

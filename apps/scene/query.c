@@ -1,14 +1,13 @@
 /* How far points are from a scene. */
 #include "cli/cli.h"
-#include "text/csv.h"
 #include "scene/scene.h"
+#include "text/csv.h"
 
 #define COORDINATE_MAX 1e9 /* m */
 
 static int column(const ethd_csv *points, const char *name) {
   int c = ethd_csv_column(points, name);
-  if (c < 0)
-    ethd__fail(ETHD_EXIT_INPUT, "%s:1: the column %s is missing; x_m and y_m are needed", points->path, name);
+  if (c < 0) ethd__fail(ETHD_EXIT_INPUT, "%s:1: the column %s is missing; x_m and y_m are needed", points->path, name);
   return c;
 }
 

@@ -13,8 +13,8 @@ void ethd__draw_fit(ethd__screen *s) {
   const ethd__study *study = &s->desk->study;
   const ethd_setup *setup = &s->desk->loaded->config->setup;
   double wall = study->meet.x - setup->ring_radius;
-  s->frame = ethd__room_of(wall, study->meet.x + study->plant.start, study->meet.y, study->plant.finger_radius, s->window.width,
-                            s->window.height);
+  s->frame = ethd__room_of(wall, study->meet.x + study->plant.start, study->meet.y, study->plant.finger_radius,
+                           s->window.width, s->window.height);
 }
 
 ethd_vec ethd__draw_finger(const ethd__screen *s) {
@@ -23,7 +23,8 @@ ethd_vec ethd__draw_finger(const ethd__screen *s) {
 }
 
 static void box(ethd__screen *s, double left, double top, double right, double bottom, SDL_Color colour) {
-  ethd_vec a = ethd__room_pixel(&s->frame, (ethd_vec){left, top}), b = ethd__room_pixel(&s->frame, (ethd_vec){right, bottom});
+  ethd_vec a = ethd__room_pixel(&s->frame, (ethd_vec){left, top}),
+           b = ethd__room_pixel(&s->frame, (ethd_vec){right, bottom});
   ethd__window_box(&s->window, a.x, a.y, b.x - a.x, b.y - a.y, colour);
 }
 

@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "text/error_text.h"
 #include "screen/draw.h"
 #include "study/dictionary.h"
+#include "text/error_text.h"
 
 #define SECONDS_MAX 6.0 /* s of a tap */
 #define NEAR 0.004      /* m from the start line, and from the middle */
@@ -47,7 +47,8 @@ static void block(void *self, const char *participant, const ethd__turn *turn) {
   ethd__taken taken;
   char message[ETHD_MESSAGE_MAX];
   if (!ethd__desk_prepare(s->desk, turn, &taken, message)) s->speed = *taken.speed;
-  snprintf(s->title, sizeof s->title, "%s   part %zu%s", participant, turn->number, turn->block.training ? ", practice" : "");
+  snprintf(s->title, sizeof s->title, "%s   part %zu%s", participant, turn->number,
+           turn->block.training ? ", practice" : "");
   snprintf(speed, sizeof speed, "as fast as the white mark will move: %.2g m/s", s->speed.centre);
   s->feedback[0] = 0;
   page(s, "Tap once on the green wall at the left", speed, "Space goes on   Esc stops");
@@ -74,7 +75,8 @@ static bool write_note(ethd__screen *s, char words[ETHD_MESSAGE_MAX]) {
     if (!first && w->typed[0]) snprintf(line + n, sizeof line - n, "%s", w->typed);
     ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.36 * w->height, "A note", ethd__grey);
     ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.46 * w->height, line, ethd__white);
-    ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.95 * w->height, "Enter keeps it   Esc forgets it", ethd__grey);
+    ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.95 * w->height, "Enter keeps it   Esc forgets it",
+                      ethd__grey);
     ethd__window_end(w);
   }
   snprintf(words, ETHD_MESSAGE_MAX, "%s", line);
@@ -86,7 +88,8 @@ static bool sure(ethd__screen *s) {
   do {
     ethd__window_begin(w);
     ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.42 * w->height, "End for this participant?", ethd__white);
-    ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.95 * w->height, "Y yes   any other key goes back", ethd__grey);
+    ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.95 * w->height, "Y yes   any other key goes back",
+                      ethd__grey);
     ethd__window_end(w);
   } while (!w->key && !w->closed);
   return w->key == SDLK_y;
@@ -122,8 +125,8 @@ static ethd__wish wish(void *self, char words[ETHD_MESSAGE_MAX]) {
       return s->stop ? ETHD_WISH_STOP : ETHD_WISH_PAUSE;
     }
     ethd__draw_room(s, ethd__draw_finger(s), now() - start);
-    ethd__draw_words(s, s->feedback[0] ? s->feedback : "Bring the circle to the grey line, and wait", s->feedback[0] && !s->good ? ethd__red : ethd__white,
-                     s->device ? "Space now   " KEYS : KEYS);
+    ethd__draw_words(s, s->feedback[0] ? s->feedback : "Bring the circle to the grey line, and wait",
+                     s->feedback[0] && !s->good ? ethd__red : ethd__white, s->device ? "Space now   " KEYS : KEYS);
     ethd__window_end(&s->window);
     if (s->device && key == SDLK_SPACE) return ETHD_WISH_GO;
     bool stopped = s->device && s->device->stopped(s->device->self);
@@ -217,7 +220,8 @@ static bool ask(ethd__screen *s, int number, int *answer) {
     if (w->key == SDLK_BACKSPACE) return false;
     ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.02 * w->height, s->title, ethd__grey);
     draw_question(w, ethd__questions[number]);
-    ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.95 * w->height, "1 to 5   Backspace: no answer", ethd__grey);
+    ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.95 * w->height, "1 to 5   Backspace: no answer",
+                      ethd__grey);
     ethd__window_end(w);
   }
 }
@@ -242,8 +246,8 @@ ethd_status ethd__screen_open(ethd__screen *s, ethd__desk *desk, const ethd__sou
   ethd__draw_fit(s);
   const ethd__room *f = &s->frame;
   ethd_vec zero = ethd__room_pixel(f, (ethd_vec){0, 0});
-  printf("screen %d x %d: x_px = %.6g + %.6g x_m, y_px = %.6g - %.6g y_m; start %.6g %.6g, wall %.6g\n", f->width, f->height,
-         zero.x, f->scale, zero.y, f->scale, f->start, (f->bottom + f->top) / 2, f->left);
+  printf("screen %d x %d: x_px = %.6g + %.6g x_m, y_px = %.6g - %.6g y_m; start %.6g %.6g, wall %.6g\n", f->width,
+         f->height, zero.x, f->scale, zero.y, f->scale, f->start, (f->bottom + f->top) / 2, f->left);
   fflush(stdout);
   return ETHD_OK;
 }
@@ -257,9 +261,9 @@ void ethd__screen_end(ethd__screen *s, bool over) {
     s->stop = false;
     page(s, "That was all. Thank you!", "", "Space ends");
   }
-  printf("frames     p50 %7.3f  p99 %7.3f  max %7.3f ms, %llu shown, %llu late ticks\n", 1e-6 * (double)ethd_histogram_at(h, 0.5),
-         1e-6 * (double)ethd_histogram_at(h, 0.99), 1e-6 * (double)h->max, (unsigned long long)h->count,
-         (unsigned long long)s->late);
+  printf("frames     p50 %7.3f  p99 %7.3f  max %7.3f ms, %llu shown, %llu late ticks\n",
+         1e-6 * (double)ethd_histogram_at(h, 0.5), 1e-6 * (double)ethd_histogram_at(h, 0.99), 1e-6 * (double)h->max,
+         (unsigned long long)h->count, (unsigned long long)s->late);
 }
 
 void ethd__screen_close(ethd__screen *s) { ethd__window_close(&s->window); }

@@ -16,12 +16,12 @@ typedef struct ethd__screen {
   const ethd__source *device; /* has a finger of its own; NULL: the pointer is it, on the simulated device */
   const ethd__protocol *protocol;
   ethd__room frame;
-  ethd_vec avatar;         /* as drawn last */
-  ethd__speed speed;       /* of the present block */
+  ethd_vec avatar;   /* as drawn last */
+  ethd__speed speed; /* of the present block */
   char title[96], feedback[160];
-  bool good, stop, told;   /* told: the block's page was read */
-  size_t blocks;           /* of the participant */
-  uint64_t late;           /* ticks */
+  bool good, stop, told; /* told: the block's page was read */
+  size_t blocks;         /* of the participant */
+  uint64_t late;         /* ticks */
 } ethd__screen;
 
 /* device: where the finger and the taps come from; NULL: the mouse. It outlives the screen. */

@@ -6,7 +6,12 @@
 #define SHARE 0.62   /* of the window that the free space may fill */
 
 ethd__room ethd__room_of(double wall, double start, double y, double finger, int width, int height) {
-  ethd__room f = {.width = width, .height = height, .left = wall, .right = start + finger + BEHIND, .start = start, .finger = finger};
+  ethd__room f = {.width = width,
+                  .height = height,
+                  .left = wall,
+                  .right = start + finger + BEHIND,
+                  .start = start,
+                  .finger = finger};
   double half = 0.3 * (f.right - f.left);
   f.bottom = y - half;
   f.top = y + half;

@@ -11,11 +11,11 @@
 #include "ethd/vec.h"
 
 typedef struct ethd__room {
-  int width, height;      /* px of the window */
-  double scale;           /* px/m */
+  int width, height;               /* px of the window */
+  double scale;                    /* px/m */
   double left, right, bottom, top; /* m: free space */
-  double start;           /* m: x of the start line, where the finger's centre waits */
-  double finger;          /* m: radius of the circle */
+  double start;                    /* m: x of the start line, where the finger's centre waits */
+  double finger;                   /* m: radius of the circle */
 } ethd__room;
 
 /* The wall at x = wall on the left, the start at x = start on its right, about y = height. */

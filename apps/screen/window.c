@@ -31,7 +31,8 @@ static ethd_status open_fonts(ethd__window *w, char *message) {
   for (int i = 0; i < ETHD_TEXTS; i++) {
     w->font[i] = TTF_OpenFont(font, points_of(w, i));
     if (!w->font[i])
-      return refuse(w, "the screen's font (Debian: fonts-dejavu-core; ETHD_FONT names another)", TTF_GetError(), message);
+      return refuse(w, "the screen's font (Debian: fonts-dejavu-core; ETHD_FONT names another)", TTF_GetError(),
+                    message);
     TTF_SetFontWrappedAlign(w->font[i], TTF_WRAPPED_ALIGN_CENTER);
   }
   return ETHD_OK;
@@ -51,7 +52,8 @@ static void keep_off_gl(void) {
   if (!strcmp(SDL_GetCurrentVideoDriver(), "x11")) SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
 }
 
-ethd_status ethd__window_open(ethd__window *w, const char *title, int width, int height, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__window_open(ethd__window *w, const char *title, int width, int height,
+                              char message[ETHD_MESSAGE_MAX]) {
   memset(w, 0, sizeof *w);
   w->width = width;
   w->height = height;
@@ -59,7 +61,8 @@ ethd_status ethd__window_open(ethd__window *w, const char *title, int width, int
   if (!choose_display()) return refuse(w, NO_DISPLAY, "neither is set", message);
   if (SDL_Init(SDL_INIT_VIDEO)) return refuse(w, NO_DISPLAY, SDL_GetError(), message);
   keep_off_gl();
-  w->window = SDL_CreateWindow(title, SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, width, height, SDL_WINDOW_RESIZABLE);
+  w->window =
+      SDL_CreateWindow(title, SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, width, height, SDL_WINDOW_RESIZABLE);
   if (!w->window) return refuse(w, "the window", SDL_GetError(), message);
   if (!SDL_GetWindowSurface(w->window)) return refuse(w, "the window's pixels", SDL_GetError(), message);
   SDL_ShowCursor(SDL_DISABLE);

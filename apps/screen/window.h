@@ -20,21 +20,21 @@ typedef struct ethd__shape {
   double x, y, width, height; /* px, as asked for; width: a disc's radius */
   SDL_Color colour;
   char text[256];
-  SDL_Rect at;                /* px that it may touch */
-  SDL_Surface *picture;       /* of a text, a disc */
+  SDL_Rect at;          /* px that it may touch */
+  SDL_Surface *picture; /* of a text, a disc */
 } ethd__shape;
 
 typedef struct ethd__window {
   SDL_Window *window;
   TTF_Font *font[ETHD_TEXTS];
-  int width, height;    /* px */
-  double pointer[2];    /* px */
-  int key;              /* SDLK_* pressed since the last frame, 0: none */
-  char typed[64];       /* text likewise */
+  int width, height; /* px */
+  double pointer[2]; /* px */
+  int key;           /* SDLK_* pressed since the last frame, 0: none */
+  char typed[64];    /* text likewise */
   bool closed, resized;
-  bool covered;         /* what was shown may be gone */
-  uint64_t begun;       /* of the present frame, in SDL's performance counts */
-  uint64_t due;         /* likewise, of the next */
+  bool covered;          /* what was shown may be gone */
+  uint64_t begun;        /* of the present frame, in SDL's performance counts */
+  uint64_t due;          /* likewise, of the next */
   ethd_histogram frames; /* ns from a frame's begin to its end on the screen, of those that changed something */
   ethd__shape shape[ETHD_SHAPES_MAX];
   size_t shape_count, shape_before; /* of this frame so far, of the one before */

@@ -60,8 +60,7 @@ static void check_gain(ethd__stress_log *log, const place *p) {
         ethd__stress_bound(log, "1", eye, 1e-13, "%s: |J J^-1 - I| outside of the damping", p->name);
       }
     }
-  ethd__stress_bound(log, "1/m", most, 1.3 * begin, "%s: |J^-1| <= 1.3 times where damping begins",
-                     p->name);
+  ethd__stress_bound(log, "1/m", most, 1.3 * begin, "%s: |J^-1| <= 1.3 times where damping begins", p->name);
 }
 
 /* Torques of whole steps on a sweep through the singular pose, the finger 5 mm away: largest torque over
@@ -91,9 +90,7 @@ static sweep through(const place *p, int64_t steps) {
     ethd_arm_pose(&p->arm, sense.q, &pose);
     sense.finger[0] = pose.x.x + 0.003;
     sense.finger[1] = pose.x.y - 0.004;
-    if (ethd_control_step(control, &sense, &c, NULL) < 0 || !isfinite(c.torque[0]) ||
-        !isfinite(c.torque[1]))
-      r.bad++;
+    if (ethd_control_step(control, &sense, &c, NULL) < 0 || !isfinite(c.torque[0]) || !isfinite(c.torque[1])) r.bad++;
     double size = hypot(c.torque[0], c.torque[1]);
     r.load = fmax(r.load, size / (K_T * 0.005 * gain_formula(&p->arm, pose.j)));
     if (i) r.jump = fmax(r.jump, hypot(c.torque[0] - last[0], c.torque[1] - last[1]));
@@ -117,11 +114,10 @@ static void run(ethd__stress_log *log) {
     const place *p = &places[i];
     check_gain(log, p);
     sweep coarse = through(p, steps), fine = through(p, 10 * steps);
-    ethd__stress_within(log, "ticks", coarse.bad + fine.bad, 0, 0, "%s: steps at fault or not finite",
-                        p->name);
+    ethd__stress_within(log, "ticks", coarse.bad + fine.bad, 0, 0, "%s: steps at fault or not finite", p->name);
     ethd__stress_bound(log, "1", fine.load, 1 + 1e-9, "%s: |tau| <= K_t |J^-1| |eps|", p->name);
-    ethd__stress_near(log, "1", fine.jump / coarse.jump, 0.1, 0.05,
-                      "%s: a tenth of the step, a tenth of the jump", p->name);
+    ethd__stress_near(log, "1", fine.jump / coarse.jump, 0.1, 0.05, "%s: a tenth of the step, a tenth of the jump",
+                      p->name);
   }
 }
 

@@ -42,8 +42,7 @@ static double growth(const point *p, double scale) {
   rig.delay = p->curve->delay;
   rig.push.x = -push;
   ethd__rig_start(&rig, SWING * p->th / PERIOD);
-  ethd__swing swing = {
-      .order = 1, .settle = 200, .span = 1800, .floor = 1e-3 * SWING * p->th, .ceiling = most * p->th};
+  ethd__swing swing = {.order = 1, .settle = 200, .span = 1800, .floor = 1e-3 * SWING * p->th, .ceiling = most * p->th};
   double rate = ethd__rig_growth(&rig, &swing);
   ethd__rig_close(&rig);
   return rate;
@@ -71,18 +70,16 @@ static void one_curve(ethd__stress_log *log, FILE *data, const ethd__curve *curv
     double scale = found(&p);
     inside[i] = growth(&p, 0.98);
     outside[i] = growth(&p, 1.02);
-    ethd__stress_near(log, "N/m", scale * p.stiffness, p.stiffness, 5e-3,
-                      "%s, n = %d: K_e (and B_e) found", name, curve->delay);
+    ethd__stress_near(log, "N/m", scale * p.stiffness, p.stiffness, 5e-3, "%s, n = %d: K_e (and B_e) found", name,
+                      curve->delay);
     if (data)
-      fprintf(data, "%s,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", name, curve->delay, curve->mass,
-              curve->period, p.th, p.stiffness, p.damping, scale * p.stiffness, scale * p.damping);
+      fprintf(data, "%s,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", name, curve->delay, curve->mass, curve->period,
+              p.th, p.stiffness, p.damping, scale * p.stiffness, scale * p.damping);
   }
   for (int i = 0; i < points; i++)
-    ethd__stress_bound(log, "1", inside[i], 0, "%s, n = %d: 2 %% inside, growth a tick", name,
-                       curve->delay);
+    ethd__stress_bound(log, "1", inside[i], 0, "%s, n = %d: 2 %% inside, growth a tick", name, curve->delay);
   for (int i = 0; i < points; i++)
-    ethd__stress_bound(log, "1", -outside[i], 0, "%s, n = %d: 2 %% outside, decay a tick", name,
-                       curve->delay);
+    ethd__stress_bound(log, "1", -outside[i], 0, "%s, n = %d: 2 %% outside, decay a tick", name, curve->delay);
 }
 
 static void run(ethd__stress_log *log) {

@@ -64,11 +64,11 @@ static void run(ethd__stress_log *log) {
       ethd__curve c = {MASS, PERIOD, n, estimators[i].method, estimators[i].value};
       double k, largest;
       ethd__curve_at(&c, ethd__curve_end(&c), &k, &largest);
-      ethd__stress_near(log, "Ns/m", found(&c, largest), largest, 5e-3, "%s, n = %d: largest B_d",
-                        estimators[i].name, n);
+      ethd__stress_near(log, "Ns/m", found(&c, largest), largest, 5e-3, "%s, n = %d: largest B_d", estimators[i].name,
+                        n);
       if (c.method == ETHD_VELOCITY_DIFFERENCE)
-        ethd__stress_near(log, "Ns/m", found(&c, largest), 2 * MASS / PERIOD * tan(M_PI / (4 * (n + 1))),
-                          5e-3, "the same by (2m/T) tan(pi/(4(n+1))), n = %d", n);
+        ethd__stress_near(log, "Ns/m", found(&c, largest), 2 * MASS / PERIOD * tan(M_PI / (4 * (n + 1))), 5e-3,
+                          "the same by (2m/T) tan(pi/(4(n+1))), n = %d", n);
       if (c.method == ETHD_VELOCITY_LOWPASS && n == 0)
         ethd__stress_near(log, "Ns/m", found(&c, largest), 2 * MASS / PERIOD, 5e-3,
                           "a low-pass doesn't lower it: 2m/T");

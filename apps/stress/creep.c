@@ -26,8 +26,7 @@ static void creep(ethd__stress_log *log, double force) {
   open_pushed(&rig, force, (double)INFINITY, (double)INFINITY);
   int braking = 0;
   for (int k = 0; k < 5000; k++) braking += ethd__rig_tick(&rig)->state == ETHD_BRAKING;
-  ethd__stress_within(log, "ticks", braking, 5000, 0,
-                      "paper: of 5000 ticks pushed over B_d v_th, braking");
+  ethd__stress_within(log, "ticks", braking, 5000, 0, "paper: of 5000 ticks pushed over B_d v_th, braking");
   ethd__stress_near(log, "m/s", rig.trace.v_n, force / DAMPING, 1e-6, "paper: creep at F / B_d");
   ethd__rig_close(&rig);
 }
@@ -37,8 +36,7 @@ static void capped(ethd__stress_log *log, double force, double eps_max, double t
   ethd__rig rig;
   open_pushed(&rig, force, eps_max, t_max);
   while (ethd__rig_tick(&rig)->state != ETHD_VO && rig.tick < 100000) continue;
-  double step = PERIOD * force / DAMPING, by_depth = ceil(eps_max / step - 1e-6),
-         by_time = ceil(t_max / PERIOD - 1e-6);
+  double step = PERIOD * force / DAMPING, by_depth = ceil(eps_max / step - 1e-6), by_time = ceil(t_max / PERIOD - 1e-6);
   double ticks = fmin(by_depth, by_time);
   ethd__stress_within(log, "ticks", (double)rig.trace.tick, ticks, 0,
                       "product: ticks of braking = min(eps_max B_d / F, t_max) / T");

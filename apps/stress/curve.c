@@ -20,8 +20,7 @@ static double complex estimator(const ethd__curve *c, double th) {
 
 void ethd__curve_at(const ethd__curve *c, double th, double *stiffness, double *damping) {
   double t = tan(th / 2);
-  double complex wanted =
-      4 * c->mass / (c->period * c->period) * t * t * cos(th / 2) * cexp(I * (c->delay + 0.5) * th);
+  double complex wanted = 4 * c->mass / (c->period * c->period) * t * t * cos(th / 2) * cexp(I * (c->delay + 0.5) * th);
   double complex h = estimator(c, th);
   *damping = cimag(wanted) / cimag(h);
   *stiffness = creal(wanted) - *damping * creal(h);

@@ -59,9 +59,7 @@ static outcome rest(int64_t still, int rounds) {
 }
 
 /* 1e-300: far over what is subnormal, far under what moves anything. */
-static double apart(double a, double b) {
-  return fabs(a - b) <= 1e-300 ? 0 : fabs(a - b);
-}
+static double apart(double a, double b) { return fabs(a - b) <= 1e-300 ? 0 : fabs(a - b); }
 
 /* By its bits: with DAZ it compares as 0. */
 static int subnormal(double x) {
@@ -85,16 +83,13 @@ static void run(ethd__stress_log *log) {
     off = fmax(off, apart(flushed.trace.fe[i], kept.trace.fe[i]));
     off = fmax(off, apart(flushed.trace.x[i], kept.trace.x[i]));
   }
-  ethd__stress_within(log, "1", subnormal(kept.speed), 1, 0,
-                      "kept: the speed that is left is subnormal");
+  ethd__stress_within(log, "1", subnormal(kept.speed), 1, 0, "kept: the speed that is left is subnormal");
   ethd__stress_bound(log, "rad/s", fabs(flushed.speed), DBL_MIN / (1 - exp(-2 * M_PI * CUTOFF * 0.001)),
                      "flushed: the speed that is left <= least normal number / a");
   ethd__stress_within(log, "Nm", off, 0, 0, "torques, forces, speeds flushed and kept differ by");
-  ethd__stress_bound(log, "1", flushed.tick / calm.tick, 1.5,
-                     "flushed: tick at rest over a tick in motion");
+  ethd__stress_bound(log, "1", flushed.tick / calm.tick, 1.5, "flushed: tick at rest over a tick in motion");
   ethd__stress_note(log, "tick in motion %.0f ns; at rest flushed %.0f ns, with subnormals kept %.0f ns",
                     1e9 * calm.tick, 1e9 * flushed.tick, 1e9 * kept.tick);
 }
 
-const ethd__stress ethd__stress_denormals = {"denormals", "subnormal numbers: same results, same pace",
-                                             run};
+const ethd__stress ethd__stress_denormals = {"denormals", "subnormal numbers: same results, same pace", run};

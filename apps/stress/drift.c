@@ -66,10 +66,8 @@ static void press(ethd__stress_log *log, const ethd_scene *scene, int64_t ticks)
   ethd__progress(1, 1, "");
   ethd__stress_within(log, "s", age_seen, (double)(ticks - 1) * PERIOD, 1e-15 * age_seen,
                       "age of a contact after %g ticks", (double)ticks);
-  ethd__stress_within(log, "ticks", (double)ended, (double)braking, 0,
-                      "tick at which t_max ended the braking");
-  ethd__stress_within(log, "ticks", (double)changed, 0, 0,
-                      "ticks on which the torque of a press changed");
+  ethd__stress_within(log, "ticks", (double)ended, (double)braking, 0, "tick at which t_max ended the braking");
+  ethd__stress_within(log, "ticks", (double)changed, 0, 0, "ticks on which the torque of a press changed");
   ethd_control_destroy(control);
 }
 
@@ -143,8 +141,7 @@ static void taps(ethd__stress_log *log, const ethd_scene *scene, int64_t ticks) 
   }
   ethd__progress(1, 1, "");
   ethd__stress_within(log, "Nm", apart(early, late), 0, 1e-12,
-                      "torques of taps 10 and of the last ones, %g ticks later",
-                      (double)((cycles - 10) * CYCLE));
+                      "torques of taps 10 and of the last ones, %g ticks later", (double)((cycles - 10) * CYCLE));
   ethd__stress_bound(log, "ticks", -(double)(braking < vo ? braking : vo), -10,
                      "the last ones brake and press (ticks, negated)");
   ethd_control_destroy(control);
@@ -159,5 +156,4 @@ static void run(ethd__stress_log *log) {
   ethd_scene_destroy(scene);
 }
 
-const ethd__stress ethd__stress_drift = {"drift", "1e6 (quick), 1e7 or 1e9 (long) ticks without drift",
-                                         run};
+const ethd__stress ethd__stress_drift = {"drift", "1e6 (quick), 1e7 or 1e9 (long) ticks without drift", run};

@@ -42,8 +42,7 @@ static void smooth(ethd__stress_log *log, double stiffness, double depth) {
                     "smooth: given back = K_e (d^2 - d_N^2 + sum of steps^2)/2");
   ethd__stress_near(log, "J", gained, MASS * speed * speed / 2, 1e-5,
                     "smooth: given back, by the closed form of the motion");
-  ethd__stress_bound(log, "J", gained, stored + steps,
-                     "smooth: given back <= K_e d^2/2 + the hold's share");
+  ethd__stress_bound(log, "J", gained, stored + steps, "smooth: given back <= K_e d^2/2 + the hold's share");
   ethd__rig_close(&rig);
 }
 
@@ -56,11 +55,9 @@ static void offset(ethd__stress_log *log, double speed) {
   rig.measured = 1;
   ethd__rig_start(&rig, speed);
   while (ethd__rig_step(&rig)->state != ETHD_VO) ethd__rig_move(&rig);
-  double v = ethd__rig_speed(&rig), kept = MASS * v * v / 2, most = 0, K = rig.setup.contact_p[0],
-         steps = 0;
+  double v = ethd__rig_speed(&rig), kept = MASS * v * v / 2, most = 0, K = rig.setup.contact_p[0], steps = 0;
   double stored = rig.trace.d_re + rig.trace.eps;
-  ethd__stress_within(log, "N", hypot(rig.trace.fe[0], rig.trace.fe[1]), 0, 0,
-                      "offset: force at the switch");
+  ethd__stress_within(log, "N", hypot(rig.trace.fe[0], rig.trace.fe[1]), 0, 0, "offset: force at the switch");
   ethd__stress_within(log, "J", K * stored * stored / 2, 0, 0, "offset: energy stored at the switch");
   for (int i = 0; i < 500; i++) {
     double x = ethd__rig_depth(&rig);
@@ -68,11 +65,9 @@ static void offset(ethd__stress_log *log, double speed) {
     double out = x - ethd__rig_depth(&rig);
     steps += K * out * out / 2;
     ethd__rig_step(&rig);
-    if (ethd__rig_speed(&rig) < 0)
-      most = fmax(most, MASS * ethd__rig_speed(&rig) * ethd__rig_speed(&rig) / 2);
+    if (ethd__rig_speed(&rig) < 0) most = fmax(most, MASS * ethd__rig_speed(&rig) * ethd__rig_speed(&rig) / 2);
   }
-  ethd__stress_bound(log, "J", most, kept + steps + 1e-15,
-                     "offset: given back <= what was left + the hold's share");
+  ethd__stress_bound(log, "J", most, kept + steps + 1e-15, "offset: given back <= what was left + the hold's share");
   ethd__rig_close(&rig);
 }
 

@@ -25,8 +25,8 @@ typedef struct word {
 
 static size_t words(word out[WORDS_OF_SENSE]) {
   size_t n = 0;
-#define WORD(kind, field, number, unit, brief)                                                          \
-  for (size_t i = 0; i < number; i++, n++)                                                              \
+#define WORD(kind, field, number, unit, brief) \
+  for (size_t i = 0; i < number; i++, n++)     \
     out[n] = (word){#field, offsetof(ethd_sense, field) + 8 * i, #kind[0] == 'd' ? 'f' : 'i'};
   ETHD_SENSE_FIELDS(WORD)
 #undef WORD
@@ -70,9 +70,7 @@ static ethd_control *controller(const ethd_scene *scene, ethd_filter_method filt
 
 /* ---- what the contract says ---- */
 
-static int bad(const double *v) {
-  return !isfinite(v[0]) || !isfinite(v[1]);
-}
+static int bad(const double *v) { return !isfinite(v[0]) || !isfinite(v[1]); }
 
 static int is_input_fault(const ethd_sense *s) {
   int64_t have = s->have;
@@ -104,8 +102,7 @@ static void judge_told(ethd_reaction reaction, const ethd_command *c, const ethd
   if (reaction == ETHD_REACTION_ZERO && (!c->safe || c->torque[0] != 0 || c->torque[1] != 0)) sum->unsafe++;
 }
 
-static void judge(const ethd_sense *s, ethd_status status, const ethd_command *c, const ethd_trace *t,
-                  tally *sum) {
+static void judge(const ethd_sense *s, ethd_status status, const ethd_command *c, const ethd_trace *t, tally *sum) {
   int input = is_input_fault(s), said = t->fault == ETHD_FAULT_INPUT;
   double most = fmax(fabs(c->torque[0]), fabs(c->torque[1]));
   ethd_reaction told = called_for(s);
@@ -153,8 +150,7 @@ static void disturb(const ethd_arm *arm, const ethd_scene *scene, const disturba
 
 static const double numbers[] = {NAN,      INFINITY, -INFINITY, 1e300, -1e300, DBL_MAX,
                                  -DBL_MAX, 1e-310,   -5e-324,   -0.0,  1e17,   -1e9};
-static const int64_t integers[] = {INT64_MIN,        INT64_MAX,          -1, 0, 1,
-                                   (int64_t)1 << 40, -((int64_t)1 << 40)};
+static const int64_t integers[] = {INT64_MIN, INT64_MAX, -1, 0, 1, (int64_t)1 << 40, -((int64_t)1 << 40)};
 
 static const int64_t holds[] = {ETHD_HAVE_DQ,
                                 ETHD_HAVE_CENTRE | ETHD_HAVE_RING,
@@ -190,20 +186,16 @@ static void all_words(ethd__stress_log *log, const ethd_arm *arm, const ethd_sce
     for (size_t w = 0; w < count; w++)
       for (size_t h = 0; h < (ticks > 1 ? 4 : hold_count); h++) {
         int is_double = list[w].type == 'f';
-        size_t values =
-            is_double ? sizeof numbers / sizeof *numbers : sizeof integers / sizeof *integers;
+        size_t values = is_double ? sizeof numbers / sizeof *numbers : sizeof integers / sizeof *integers;
         for (size_t v = 0; v < values; v++) {
           disturbance d = {.word = &list[w], .have = holds[h], .ticks = ticks};
-          memcpy(&d.bits, is_double ? (const void *)&numbers[v] : (const void *)&integers[v],
-                 sizeof d.bits);
+          memcpy(&d.bits, is_double ? (const void *)&numbers[v] : (const void *)&integers[v], sizeof d.bits);
           disturb(arm, scene, &d, after, calm, &sum);
         }
       }
   }
-  ethd__stress_within(log, "ticks", (double)sum.wrong_fault, 0, 0,
-                      "faults that the contract doesn't say, or misses");
-  ethd__stress_within(log, "ticks", (double)sum.unsafe, 0, 0,
-                      "faults without zero torque and the safe flag");
+  ethd__stress_within(log, "ticks", (double)sum.wrong_fault, 0, 0, "faults that the contract doesn't say, or misses");
+  ethd__stress_within(log, "ticks", (double)sum.unsafe, 0, 0, "faults without zero torque and the safe flag");
   ethd__stress_bound(log, "Nm", sum.torque, TORQUE, "largest torque of a disturbed tick");
   ethd__stress_bound(log, "Nm", sum.off, 1e-6, "1.6 s later: torque off an undisturbed controller's");
   ethd__stress_note(log, "%lld disturbances", (long long)sum.cases);
@@ -241,8 +233,7 @@ static void frozen(ethd__stress_log *log, const ethd_arm *arm, ethd_filter_metho
   ethd__stress_within(log, "m", t.xf[0] - at, (v + t.vf[0]) / 2, 1e-9,
                       "%s: way of the finger, 1 s without a new reading", id);
   ethd__stress_bound(log, "m/s", fabs(t.vf[0]), 0.2, "%s: its speed then; before: 0.1", id);
-  ethd__stress_within(log, "1", (double)counters.readings_dropped, 333, 0,
-                      "%s: late readings dropped of 333", id);
+  ethd__stress_within(log, "1", (double)counters.readings_dropped, 333, 0, "%s: late readings dropped of 333", id);
   ethd_control_destroy(control);
 }
 
@@ -254,5 +245,4 @@ static void run(ethd__stress_log *log) {
   for (int m = 0; m < ETHD_FILTER_COUNT; m++) frozen(log, &arm, (ethd_filter_method)m);
 }
 
-const ethd__stress ethd__stress_inputs = {
-    "inputs", "NaN, inf, huge, subnormal, stale and frozen measurements", run};
+const ethd__stress ethd__stress_inputs = {"inputs", "NaN, inf, huge, subnormal, stale and frozen measurements", run};

@@ -16,9 +16,7 @@
 #define SPEED 2.0 /* rad/s */
 #define KEY ((ethd__key){1, 1})
 
-static double draw(uint64_t i) {
-  return ethd__uniform(KEY, ETHD__STREAM_ENCODER, (uint32_t)i);
-}
+static double draw(uint64_t i) { return ethd__uniform(KEY, ETHD__STREAM_ENCODER, (uint32_t)i); }
 
 static void prepare(ethd_velocity_method method, double value, ethd_velocity *out) {
   double p[ETHD_PARAMS_MAX] = {0};
@@ -26,8 +24,7 @@ static void prepare(ethd_velocity_method method, double value, ethd_velocity *ou
   const ethd_method *m = &ethd_velocity_methods[method];
   ethd_params_default(m->params, m->param_count, p);
   if (value > 0) p[0] = value;
-  if (ethd_velocity_prepare(method, p, PERIOD, out, &error) < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s", error.name);
+  if (ethd_velocity_prepare(method, p, PERIOD, out, &error) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", error.name);
 }
 
 static void jitter(ethd__stress_log *log, ethd_velocity_method method, double value, double gain) {
@@ -43,9 +40,8 @@ static void jitter(ethd__stress_log *log, ethd_velocity_method method, double va
     double off = ethd_velocity_step(&velocity, &state, SPEED * t, 0, PERIOD) - SPEED;
     if (k > 200) sum += off * off;
   }
-  ethd__stress_near(
-      log, "rad/s", sqrt(sum / (double)(ticks - 201)), SPEED * most / sqrt(3) * gain / PERIOD, 0.02,
-      "%s: rms noise of a constant speed, 50 us of jitter", ethd_velocity_methods[method].id);
+  ethd__stress_near(log, "rad/s", sqrt(sum / (double)(ticks - 201)), SPEED * most / sqrt(3) * gain / PERIOD, 0.02,
+                    "%s: rms noise of a constant speed, 50 us of jitter", ethd_velocity_methods[method].id);
 }
 
 /* 0 to 5 ticks lost again and again. */
@@ -132,8 +128,7 @@ static void closed(ethd__stress_log *log) {
     if (i < 50) first = fmax(first, speed);
     if (i >= 3950) last = fmax(last, speed);
   }
-  ethd__stress_bound(log, "m/s", last, 1e-6 * first,
-                     "a tenth of the ticks lost: what is left of a swing of 1 mm/s");
+  ethd__stress_bound(log, "m/s", last, 1e-6 * first, "a tenth of the ticks lost: what is left of a swing of 1 mm/s");
   ethd__rig_close(&rig);
 }
 
@@ -148,5 +143,4 @@ static void run(ethd__stress_log *log) {
   closed(log);
 }
 
-const ethd__stress ethd__stress_jitter = {"jitter", "jitter of the sample instants, and lost ticks",
-                                          run};
+const ethd__stress ethd__stress_jitter = {"jitter", "jitter of the sample instants, and lost ticks", run};

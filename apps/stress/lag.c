@@ -51,15 +51,14 @@ static void one(ethd__stress_log *log, ethd_mechanism mechanism, const char *nam
     ethd_vec eps = measure(mechanism, direction, speeds[i], &pose);
     ethd_vec f = formula(&pose, ethd_vec_scale(FRICTION + VISCOUS * speeds[i], direction));
     ethd__stress_within(log, "m", ethd_vec_norm(ethd_vec_sub(eps, f)), 0, 5e-3 * ethd_vec_norm(f),
-                        "%s arm, along %s: eps_X - J J^T F / K_t", mechanism ? "serial" : "parallel",
-                        name);
+                        "%s arm, along %s: eps_X - J J^T F / K_t", mechanism ? "serial" : "parallel", name);
   }
   if (mechanism == ETHD_ARM_SERIAL || direction.x * direction.y != 0) return;
   for (int i = 0; i < 4; i++) {
     ethd_pose pose;
     ethd_vec eps = measure(mechanism, direction, speeds[i], &pose);
-    ethd__stress_near(log, "m", ethd_vec_dot(eps, direction), (FRICTION + VISCOUS * speeds[i]) / 640,
-                      5e-3, "parallel arm, along %s: (f_c + b v) / 640 N/m", name);
+    ethd__stress_near(log, "m", ethd_vec_dot(eps, direction), (FRICTION + VISCOUS * speeds[i]) / 640, 5e-3,
+                      "parallel arm, along %s: (f_c + b v) / 640 N/m", name);
   }
 }
 

@@ -24,8 +24,7 @@ static int worse(const ethd__result *r, const ethd__result *than) {
 static void print(const ethd__result *r) {
   char count[48] = "";
   if (r->count > 1) snprintf(count, sizeof count, ", worst of %llu", (unsigned long long)r->count);
-  printf("  %-62s %12.6g %s %-12.6g %-6s", r->what, r->measured, r->bound ? "<=" : "= ", r->analytic,
-         r->unit);
+  printf("  %-62s %12.6g %s %-12.6g %-6s", r->what, r->measured, r->bound ? "<=" : "= ", r->analytic, r->unit);
   if (r->bound)
     printf(" %19s", "");
   else
@@ -56,35 +55,34 @@ static void add(ethd__stress_log *log, const ethd__result *r) {
   line->count = count + 1;
   if (!passed) log->failures++;
   if (log->csv)
-    fprintf(log->csv, "%s,\"%s\",%.17g,%s,%.17g,%s,%.17g,%d\n", log->test, r->what, r->measured,
-            r->bound ? "<=" : "=", r->analytic, r->unit, r->allowed, passed);
+    fprintf(log->csv, "%s,\"%s\",%.17g,%s,%.17g,%s,%.17g,%d\n", log->test, r->what, r->measured, r->bound ? "<=" : "=",
+            r->analytic, r->unit, r->allowed, passed);
 }
 
-#define WORDS(r, what)                                                                                  \
-  do {                                                                                                  \
-    va_list args;                                                                                       \
-    va_start(args, what);                                                                               \
-    vsnprintf((r).what, sizeof(r).what, what, args);                                                    \
-    va_end(args);                                                                                       \
+#define WORDS(r, what)                               \
+  do {                                               \
+    va_list args;                                    \
+    va_start(args, what);                            \
+    vsnprintf((r).what, sizeof(r).what, what, args); \
+    va_end(args);                                    \
   } while (0)
 
-void ethd__stress_near(ethd__stress_log *log, const char *unit, double measured, double analytic,
-                       double share, const char *what, ...) {
+void ethd__stress_near(ethd__stress_log *log, const char *unit, double measured, double analytic, double share,
+                       const char *what, ...) {
   ethd__result r = {.unit = unit, .measured = measured, .analytic = analytic};
   r.allowed = share * fabs(analytic);
   WORDS(r, what);
   add(log, &r);
 }
 
-void ethd__stress_within(ethd__stress_log *log, const char *unit, double measured, double analytic,
-                         double distance, const char *what, ...) {
+void ethd__stress_within(ethd__stress_log *log, const char *unit, double measured, double analytic, double distance,
+                         const char *what, ...) {
   ethd__result r = {.unit = unit, .measured = measured, .analytic = analytic, .allowed = distance};
   WORDS(r, what);
   add(log, &r);
 }
 
-void ethd__stress_bound(ethd__stress_log *log, const char *unit, double measured, double bound,
-                        const char *what, ...) {
+void ethd__stress_bound(ethd__stress_log *log, const char *unit, double measured, double bound, const char *what, ...) {
   ethd__result r = {.unit = unit, .measured = measured, .analytic = bound, .bound = 1};
   WORDS(r, what);
   add(log, &r);

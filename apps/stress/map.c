@@ -57,8 +57,7 @@ static void fill(FILE *data, const ethd__curve *c, const char *name, int cells, 
   double end = ethd__curve_end(c);
   for (int i = 0; i < cells; i++)
     for (int j = 0; j < cells; j++) {
-      double k = K_LOW * pow(K_HIGH / K_LOW, (i + 0.5) / cells),
-             b = B_LOW * pow(B_HIGH / B_LOW, (j + 0.5) / cells);
+      double k = K_LOW * pow(K_HIGH / K_LOW, (i + 0.5) / cells), b = B_LOW * pow(B_HIGH / B_LOW, (j + 0.5) / cells);
       double rate = growth(c, k, b), m = margin(c, end, k, b);
       t->cells++;
       t->stable += rate < 0;
@@ -88,13 +87,10 @@ static void run(ethd__stress_log *log) {
     const char *name;
     ethd_velocity_method method;
     double value;
-  } estimators[] = {{"difference", ETHD_VELOCITY_DIFFERENCE, 0},
-                    {"lowpass", ETHD_VELOCITY_LOWPASS, 130}};
+  } estimators[] = {{"difference", ETHD_VELOCITY_DIFFERENCE, 0}, {"lowpass", ETHD_VELOCITY_LOWPASS, 130}};
   int cells = (int)ethd__stress_pick(log, 10, 50, 50);
-  FILE *map = ethd__stress_data(log, "map.csv",
-                                "velocity,delay_ticks,mass_kg,k_npm,b_nspm,stable,growth_per_tick");
-  FILE *curve =
-      ethd__stress_data(log, "map_curve.csv", "velocity,delay_ticks,mass_kg,th_rad,k_npm,b_nspm");
+  FILE *map = ethd__stress_data(log, "map.csv", "velocity,delay_ticks,mass_kg,k_npm,b_nspm,stable,growth_per_tick");
+  FILE *curve = ethd__stress_data(log, "map_curve.csv", "velocity,delay_ticks,mass_kg,th_rad,k_npm,b_nspm");
   for (int e = 0; e < 2; e++)
     for (int m = 0; m < 2; m++)
       for (int n = 0; n <= 2; n++) {
@@ -102,9 +98,8 @@ static void run(ethd__stress_log *log) {
         tally t = {0};
         fill(map, &c, estimators[e].name, cells, &t);
         draw_curve(curve, &c, estimators[e].name);
-        ethd__stress_within(log, "cells", (double)t.wrong, 0, 0,
-                            "%s, %g kg, n = %d: cells on the curve's wrong side", estimators[e].name,
-                            c.mass, n);
+        ethd__stress_within(log, "cells", (double)t.wrong, 0, 0, "%s, %g kg, n = %d: cells on the curve's wrong side",
+                            estimators[e].name, c.mass, n);
       }
   ethd__stress_close(map);
   ethd__stress_close(curve);

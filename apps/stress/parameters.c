@@ -25,8 +25,7 @@ typedef struct knobs {
 
 /* ---- what there is to turn ---- */
 
-static void add(knobs *all, const char *section, const char *name, size_t offset, double min,
-                double max) {
+static void add(knobs *all, const char *section, const char *name, size_t offset, double min, double max) {
   knob *k = &all->at[all->count++];
   snprintf(k->name, sizeof k->name, "%s.%s", section, name);
   k->offset = offset;
@@ -34,8 +33,7 @@ static void add(knobs *all, const char *section, const char *name, size_t offset
   k->ends[1] = max;
 }
 
-static void add_table(knobs *all, const char *section, const ethd_param *rows, uint32_t count,
-                      size_t offset) {
+static void add_table(knobs *all, const char *section, const ethd_param *rows, uint32_t count, size_t offset) {
   for (uint32_t i = 0; i < count; i++)
     add(all, section, rows[i].name, offset + i * sizeof(double), rows[i].min, rows[i].max);
 }
@@ -60,8 +58,7 @@ static void collect(const ethd_setup *s, knobs *all) {
   add(all, "limits", "step_time", AT(limits.step_time), 1e-9, inf);
   add_table(all, "tracking", s->tracking->law.params, s->tracking->law.param_count, AT(tracking_p));
   add_table(all, "contact", s->contact->law.params, s->contact->law.param_count, AT(contact_p));
-  add_table(all, "transition", s->transition->law.params, s->transition->law.param_count,
-            AT(transition_p));
+  add_table(all, "transition", s->transition->law.params, s->transition->law.param_count, AT(transition_p));
   const ethd_method *v = &ethd_velocity_methods[s->velocity], *f = &ethd_fit_methods[s->fit],
                     *g = &ethd_filter_methods[s->filter];
   add_table(all, "velocity", v->params, v->param_count, AT(velocity_p));
@@ -96,11 +93,10 @@ static int all_finite(const double *v, int n) {
 
 static int trace_is_finite(const ethd_trace *t) {
   return all_finite(t->x, 2) && all_finite(t->v, 2) && all_finite(t->xf, 2) && all_finite(t->vf, 2) &&
-         all_finite(t->qd, 2) && all_finite(t->eps_q, 2) && all_finite(t->eps_q_dot, 2) &&
-         all_finite(&t->beta, 1) && all_finite(t->fe, 2) && all_finite(t->fd, 2) &&
-         all_finite(&t->eps, 1) && all_finite(t->tau_raw, 2) && all_finite(t->tau, 2) &&
-         (!t->contacts ||
-          (all_finite(&t->d_re, 1) && all_finite(&t->d_fe, 1) && all_finite(&t->v_n, 1)));
+         all_finite(t->qd, 2) && all_finite(t->eps_q, 2) && all_finite(t->eps_q_dot, 2) && all_finite(&t->beta, 1) &&
+         all_finite(t->fe, 2) && all_finite(t->fd, 2) && all_finite(&t->eps, 1) && all_finite(t->tau_raw, 2) &&
+         all_finite(t->tau, 2) &&
+         (!t->contacts || (all_finite(&t->d_re, 1) && all_finite(&t->d_fe, 1) && all_finite(&t->v_n, 1)));
 }
 
 static int torque_is_held(const ethd_trace *t, double most) {
@@ -147,8 +143,7 @@ static void tap(ethd__rig *rig, int ticks, const char *name, tally *t) {
       t->stopped++;
     } else if (rig->trace.fault) {
       t->faults++;
-      snprintf(t->fault, sizeof t->fault, "%s: %s", name,
-               ethd_fault_sentence((ethd_fault)rig->trace.fault));
+      snprintf(t->fault, sizeof t->fault, "%s: %s", name, ethd_fault_sentence((ethd_fault)rig->trace.fault));
     }
     if (!trace_is_finite(&rig->trace) || !torque_is_held(&rig->trace, rig->setup.limits.torque)) {
       t->broken++;
@@ -191,16 +186,16 @@ static void pairs(const ethd_setup *base, int ticks, tally *t) {
         ethd_setup setup = *base;
         turn(&setup, &all.at[i], ends & 1);
         if (k > i) turn(&setup, &all.at[k], ends >> 1);
-        snprintf(name, sizeof name, "%s at %s, %s at %s", all.at[i].name, ends & 1 ? "max" : "min",
-                 all.at[k].name, (k > i ? ends >> 1 : ends) ? "max" : "min");
+        snprintf(name, sizeof name, "%s at %s, %s at %s", all.at[i].name, ends & 1 ? "max" : "min", all.at[k].name,
+                 (k > i ? ends >> 1 : ends) ? "max" : "min");
         one(&setup, ticks, name, t);
       }
 }
 
 static const ethd_contact_law *const contacts[] = {&ethd_contact_kelvin_voigt, &ethd_contact_spring,
                                                    &ethd_contact_hunt_crossley};
-static const ethd_transition_law *const transitions[] = {
-    &ethd_transition_offset, &ethd_transition_smooth, &ethd_transition_abrupt};
+static const ethd_transition_law *const transitions[] = {&ethd_transition_offset, &ethd_transition_smooth,
+                                                         &ethd_transition_abrupt};
 
 static void run(ethd__stress_log *log) {
   int quick = log->effort == ETHD__QUICK, ticks = quick ? 60 : 300;
@@ -218,14 +213,13 @@ static void run(ethd__stress_log *log) {
     }
   ethd__stress_within(log, "setups", (double)t.refused, 0, 0, "setups refused of those tried");
   ethd__stress_within(log, "ticks", (double)t.faults, 0, 0, "faults that no limit asked for");
-  ethd__stress_within(log, "ticks", (double)t.broken, 0, 0,
-                      "ticks not finite, or over the torque limit");
-  ethd__stress_note(log, "%lld setups of %d ticks, %lld stopped by a limit of 0", (long long)t.runs,
-                    ticks, (long long)t.stopped);
+  ethd__stress_within(log, "ticks", (double)t.broken, 0, 0, "ticks not finite, or over the torque limit");
+  ethd__stress_note(log, "%lld setups of %d ticks, %lld stopped by a limit of 0", (long long)t.runs, ticks,
+                    (long long)t.stopped);
   if (t.refused) ethd__stress_note(log, "refused: %s", t.refusal);
   if (t.faults) ethd__stress_note(log, "fault: %s", t.fault);
   if (t.broken) ethd__stress_note(log, "broken: %s", t.breach);
 }
 
-const ethd__stress ethd__stress_parameters = {
-    "parameters", "every parameter at both ends of its range, alone and in pairs", run};
+const ethd__stress ethd__stress_parameters = {"parameters",
+                                              "every parameter at both ends of its range, alone and in pairs", run};

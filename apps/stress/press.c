@@ -8,8 +8,7 @@
 #define TICKS 6000
 
 /* Brakes from 0.2 m/s, then F pushes, with some friction so that the springy ring comes to rest. */
-static void press(ethd__stress_log *log, const ethd_contact_law *contact, double stiffness,
-                  double force) {
+static void press(ethd__stress_log *log, const ethd_contact_law *contact, double stiffness, double force) {
   ethd__rig rig;
   ethd__rig_open(&rig, MASS, -1e-6);
   ethd_setup_contact(&rig.setup, contact);

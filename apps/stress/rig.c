@@ -48,8 +48,8 @@ void ethd__rig_start(ethd__rig *rig, double speed) {
   rig->scene = ethd__rig_wall(rig->gap + rig->setup.ring_radius - rig->setup.arm.link2);
   rig->setup.scene = rig->scene;
   if (ethd_control_create(&rig->setup, &rig->control, &error) < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s: %s (found %g, from %g to %g)", error.name,
-               ethd_status_sentence(error.status), error.found, error.min, error.max);
+    ethd__fail(ETHD_EXIT_FAILED, "%s: %s (found %g, from %g to %g)", error.name, ethd_status_sentence(error.status),
+               error.found, error.min, error.max);
   rig->q[0] = M_PI / 2;
   rig->q[1] = 0;
   rig->w[0] = speed / rig->setup.arm.link1;
@@ -114,13 +114,9 @@ const ethd_trace *ethd__rig_tick(ethd__rig *rig) {
   return &rig->trace;
 }
 
-double ethd__rig_depth(const ethd__rig *rig) {
-  return (rig->q[0] - M_PI / 2) * rig->setup.arm.link1;
-}
+double ethd__rig_depth(const ethd__rig *rig) { return (rig->q[0] - M_PI / 2) * rig->setup.arm.link1; }
 
-double ethd__rig_speed(const ethd__rig *rig) {
-  return rig->w[0] * rig->setup.arm.link1;
-}
+double ethd__rig_speed(const ethd__rig *rig) { return rig->w[0] * rig->setup.arm.link1; }
 
 /* ---- growth ---- */
 
@@ -142,9 +138,7 @@ static amplitude measure(const double y[3]) {
   return (amplitude){fabs(y[1] * y[1] - y[0] * y[2]), fmax(fabs(y[0]), fmax(fabs(y[1]), fabs(y[2])))};
 }
 
-static int is_swing(amplitude a) {
-  return a.c > 1e-5 * a.y * a.y;
-}
+static int is_swing(amplitude a) { return a.c > 1e-5 * a.y * a.y; }
 
 double ethd__rig_growth(ethd__rig *rig, const ethd__swing *s) {
   double x[3] = {0}, y[3] = {0};

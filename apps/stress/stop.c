@@ -73,13 +73,12 @@ static outcome smooth(const stop *s, double speed, int delay) {
 }
 
 /* No ring stops quicker than F_sat and f_c let it. */
-static void check_least(ethd__stress_log *log, const stop *s, double speed, double late, int delay,
-                        const outcome *o) {
+static void check_least(ethd__stress_log *log, const stop *s, double speed, double late, int delay, const outcome *o) {
   double a = (s->force + s->friction) / s->mass;
   double least = (speed * speed - o->left * o->left) / (2 * a) + speed * (late + delay * s->period);
   if (o->depth > 0)
-    ethd__stress_bound(log, "m", least, o->depth + 1e-9, "%s, n = %d: v^2/(2a) + v (T/2 + t_d) <= depth",
-                       s->plant, delay);
+    ethd__stress_bound(log, "m", least, o->depth + 1e-9, "%s, n = %d: v^2/(2a) + v (T/2 + t_d) <= depth", s->plant,
+                       delay);
 }
 
 /* Means over speeds about `speed` and instants of contact within a tick: what ticks make of a stop. */
@@ -93,10 +92,10 @@ static void compare(ethd__stress_log *log, const stop *s, double speed, int dela
       m.time += one.time / 200, m.eps += one.eps / 200;
       f.time += form.time / 200, f.eps += form.eps / 200;
     }
-  ethd__stress_within(log, "s", m.time, f.time, s->period, "%s, n = %d, %g m/s: Delta_s without ticks",
-                      s->plant, delay, speed);
-  ethd__stress_within(log, "m", m.eps, f.eps, speed * s->period / 4,
-                      "%s, n = %d, %g m/s: eps without ticks", s->plant, delay, speed);
+  ethd__stress_within(log, "s", m.time, f.time, s->period, "%s, n = %d, %g m/s: Delta_s without ticks", s->plant, delay,
+                      speed);
+  ethd__stress_within(log, "m", m.eps, f.eps, speed * s->period / 4, "%s, n = %d, %g m/s: eps without ticks", s->plant,
+                      delay, speed);
 }
 
 static void run(ethd__stress_log *log) {

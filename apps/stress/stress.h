@@ -37,20 +37,19 @@ typedef struct ethd__stress {
 } ethd__stress;
 
 /* |measured - analytic| <= share |analytic|. Words are printf's. */
-void ethd__stress_near(ethd__stress_log *log, const char *unit, double measured, double analytic,
-                       double share, const char *what, ...) __attribute__((format(printf, 6, 7)));
+void ethd__stress_near(ethd__stress_log *log, const char *unit, double measured, double analytic, double share,
+                       const char *what, ...) __attribute__((format(printf, 6, 7)));
 
 /* |measured - analytic| <= distance. */
-void ethd__stress_within(ethd__stress_log *log, const char *unit, double measured, double analytic,
-                         double distance, const char *what, ...) __attribute__((format(printf, 6, 7)));
+void ethd__stress_within(ethd__stress_log *log, const char *unit, double measured, double analytic, double distance,
+                         const char *what, ...) __attribute__((format(printf, 6, 7)));
 
 /* measured <= bound. */
-void ethd__stress_bound(ethd__stress_log *log, const char *unit, double measured, double bound,
-                        const char *what, ...) __attribute__((format(printf, 5, 6)));
+void ethd__stress_bound(ethd__stress_log *log, const char *unit, double measured, double bound, const char *what, ...)
+    __attribute__((format(printf, 5, 6)));
 
 /* A figure without a verdict, below the lines so far. */
-void ethd__stress_note(ethd__stress_log *log, const char *text, ...)
-    __attribute__((format(printf, 2, 3)));
+void ethd__stress_note(ethd__stress_log *log, const char *text, ...) __attribute__((format(printf, 2, 3)));
 
 /* Prints the lines so far. */
 void ethd__stress_flush(ethd__stress_log *log);
@@ -60,14 +59,13 @@ FILE *ethd__stress_data(const ethd__stress_log *log, const char *name, const cha
 void ethd__stress_close(FILE *data);
 
 /* Of the three efforts' values the present one. */
-static inline int64_t ethd__stress_pick(const ethd__stress_log *log, int64_t quick, int64_t normal,
-                                        int64_t most) {
+static inline int64_t ethd__stress_pick(const ethd__stress_log *log, int64_t quick, int64_t normal, int64_t most) {
   return log->effort == ETHD__QUICK ? quick : log->effort == ETHD__NORMAL ? normal : most;
 }
 
-extern const ethd__stress ethd__stress_boundary, ethd__stress_braking, ethd__stress_viscous,
-    ethd__stress_stop, ethd__stress_touch, ethd__stress_lag, ethd__stress_press, ethd__stress_creep,
-    ethd__stress_energy, ethd__stress_arm, ethd__stress_parameters, ethd__stress_denormals,
-    ethd__stress_drift, ethd__stress_inputs, ethd__stress_jitter, ethd__stress_map;
+extern const ethd__stress ethd__stress_boundary, ethd__stress_braking, ethd__stress_viscous, ethd__stress_stop,
+    ethd__stress_touch, ethd__stress_lag, ethd__stress_press, ethd__stress_creep, ethd__stress_energy, ethd__stress_arm,
+    ethd__stress_parameters, ethd__stress_denormals, ethd__stress_drift, ethd__stress_inputs, ethd__stress_jitter,
+    ethd__stress_map;
 
 #endif

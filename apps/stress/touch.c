@@ -16,8 +16,7 @@ typedef struct plant {
   double mass, force, friction, finger_radius;
 } plant;
 
-static const plant plants[] = {{"plant n", 0.1173, 5.357, 0.398, 7.32e-3},
-                               {"plant b", 0.1445, 5.369, 0.164, 8.15e-3}};
+static const plant plants[] = {{"plant n", 0.1173, 5.357, 0.398, 7.32e-3}, {"plant b", 0.1445, 5.369, 0.164, 8.15e-3}};
 
 typedef struct braking {
   double period, damping, still; /* s, Ns/m, m/s */
@@ -70,11 +69,9 @@ static void run(ethd__stress_log *log) {
     for (size_t k = 0; k < 5; k++)
       ethd__stress_near(log, "m/s", highest(p, &ideal, lags[k]), sqrt(2 * a * (gap - lags[k])), 5e-3,
                         "%s, %g mm behind: highest speed, rest at touch", p->name, 1e3 * lags[k]);
-    ethd__stress_note(log,
-                      "%s at 1 kHz with B_d = 100 Ns/m, at rest from 0.02 m/s on: %.3f m/s, 0 mm behind",
-                      p->name, highest(p, &paper, 0));
+    ethd__stress_note(log, "%s at 1 kHz with B_d = 100 Ns/m, at rest from 0.02 m/s on: %.3f m/s, 0 mm behind", p->name,
+                      highest(p, &paper, 0));
   }
 }
 
-const ethd__stress ethd__stress_touch = {"touch",
-                                         "rest at touch: the highest speed without early contact", run};
+const ethd__stress ethd__stress_touch = {"touch", "rest at touch: the highest speed without early contact", run};

@@ -52,9 +52,7 @@ static modes modes_of(double a, double b, double v0, double v1) {
   return m;
 }
 
-static double speed_at(const modes *m, int k) {
-  return creal(m->p * cpow(m->z, k) + m->r * cpow(m->y, k));
-}
+static double speed_at(const modes *m, int k) { return creal(m->p * cpow(m->z, k) + m->r * cpow(m->y, k)); }
 
 /* The largest distance from the modes while it brakes, as a share of the first speed. */
 static double off_modes(double cutoff, double damping) {
@@ -71,8 +69,7 @@ static double off_modes(double cutoff, double damping) {
   modes m = modes_of(a, damping * PERIOD / MASS, v0, v1);
   for (int k = 2; rig.trace.state == ETHD_BRAKING; k++) {
     ethd__rig_tick(&rig);
-    if (rig.trace.state == ETHD_BRAKING)
-      worst = fmax(worst, fabs(ethd__rig_speed(&rig) - speed_at(&m, k)) / v0);
+    if (rig.trace.state == ETHD_BRAKING) worst = fmax(worst, fabs(ethd__rig_speed(&rig) - speed_at(&m, k)) / v0);
   }
   ethd__rig_close(&rig);
   return worst;
@@ -83,12 +80,9 @@ static void run(ethd__stress_log *log) {
   const double unit = MASS / PERIOD;
   for (size_t i = 0; i < 6; i++) measured(log, share[i] * unit);
   for (size_t i = 0; i < 6; i++)
-    ethd__stress_bound(log, "1", off_modes(0, share[i] * unit), 1e-5,
-                       "difference: speeds off its two modes");
+    ethd__stress_bound(log, "1", off_modes(0, share[i] * unit), 1e-5, "difference: speeds off its two modes");
   for (size_t i = 0; i < 6; i++)
-    ethd__stress_bound(log, "1", off_modes(130, share[i] * unit), 1e-5,
-                       "lowpass 130 Hz: speeds off its two modes");
+    ethd__stress_bound(log, "1", off_modes(130, share[i] * unit), 1e-5, "lowpass 130 Hz: speeds off its two modes");
 }
 
-const ethd__stress ethd__stress_viscous = {"viscous", "a free ring braked by B_d alone, tick for tick",
-                                           run};
+const ethd__stress ethd__stress_viscous = {"viscous", "a free ring braked by B_d alone, tick for tick", run};

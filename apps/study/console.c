@@ -19,15 +19,15 @@ static void block(void *self, const char *participant, const ethd__turn *turn) {
 
 const char *ethd__advice(ethd__reason reason) {
   switch (reason) {
-    case ETHD_TAP_OK: return "valid";
-    case ETHD_TAP_FAULT: return "the device stopped itself";
-    case ETHD_TAP_EARLY_CONTACT: return "touched the ring before the wall: keep the finger in the middle";
-    case ETHD_TAP_TOO_SLOW: return "too slow";
-    case ETHD_TAP_TOO_FAST: return "too fast";
-    case ETHD_TAP_NO_CONTACT: return "no contact: go on until the wall is felt";
-    case ETHD_TAP_GRAZING: return "only grazed: press for a moment";
-    case ETHD_TAP_DOUBLE: return "tapped twice: once is enough";
-    default: return "";
+  case ETHD_TAP_OK: return "valid";
+  case ETHD_TAP_FAULT: return "the device stopped itself";
+  case ETHD_TAP_EARLY_CONTACT: return "touched the ring before the wall: keep the finger in the middle";
+  case ETHD_TAP_TOO_SLOW: return "too slow";
+  case ETHD_TAP_TOO_FAST: return "too fast";
+  case ETHD_TAP_NO_CONTACT: return "no contact: go on until the wall is felt";
+  case ETHD_TAP_GRAZING: return "only grazed: press for a moment";
+  case ETHD_TAP_DOUBLE: return "tapped twice: once is enough";
+  default: return "";
   }
 }
 

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/error_text.h"
 #include "study/movements.h"
 #include "study/people.h"
+#include "text/error_text.h"
 
 /* ---- the person ---- */
 
@@ -67,8 +67,7 @@ static ethd_status open_stage(ethd__desk *desk, size_t strategy, char *message) 
   if (desk->open && desk->strategy == strategy) return ETHD_OK;
   if (desk->open) ethd__stage_close(&desk->stage);
   desk->open = false;
-  ethd_status status =
-      ethd__stage_open(&desk->study, desk->protocol->strategies.word[strategy], &desk->stage, message);
+  ethd_status status = ethd__stage_open(&desk->study, desk->protocol->strategies.word[strategy], &desk->stage, message);
   desk->open = !status;
   desk->strategy = strategy;
   return status;

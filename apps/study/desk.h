@@ -22,8 +22,7 @@ typedef struct ethd__desk {
 /* Checks everything that the first tap would stumble over: strategies, speeds, gains, the wall, the
    movements. finger: one recorded movement, or NULL for what the protocol says. */
 ETHD_MUST_CHECK ethd_status ethd__desk_open(const ethd__protocol *protocol, const ethd__loaded *loaded,
-                                            const char *finger, ethd__desk *out,
-                                            char message[ETHD_MESSAGE_MAX]);
+                                            const char *finger, ethd__desk *out, char message[ETHD_MESSAGE_MAX]);
 void ethd__desk_close(ethd__desk *desk);
 
 /* From here on with the gains of this point of the grid. */

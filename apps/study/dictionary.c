@@ -1,13 +1,12 @@
 #include "study/dictionary.h"
 
-#define QUESTION_1                                                                                     \
+#define QUESTION_1                                                                                      \
   "When did you feel the touch, beside the moment at which the circle reached the wall on the screen? " \
   "1 well before, 2 a little before, 3 just then, 4 a little after, 5 well after"
 #define QUESTION_2                                                                                \
   "What did the wall do as you touched it? 1 moved clearly to the left, 2 slightly to the left, " \
   "3 stood still, 4 moved slightly to the right, 5 clearly to the right"
-#define QUESTION_3                                                                                      \
-  "How did the touch feel? 1 very natural, 2 natural, 3 neither, 4 unnatural, 5 very unnatural"
+#define QUESTION_3 "How did the touch feel? 1 very natural, 2 natural, 3 neither, 4 unnatural, 5 very unnatural"
 
 const char *const ethd__questions[3] = {QUESTION_1, QUESTION_2, QUESTION_3};
 
@@ -60,6 +59,7 @@ const char ethd__dictionary[] =
     "tick.npy has a row per tick: what the controller read and what it answered. truth.npy has the same ticks as\n"
     "the simulated device knows them; with people's fingers in a device there is no such knowledge, and it has what\n"
     "the controller saw: the ring by its encoders, finger and hand by the finger's filter, the pad touching from\n"
-    "validity.slack before the ring on, its force never (NaN). Both are NumPy structured arrays. config.ini, scene.scene and events.csv\n"
+    "validity.slack before the ring on, its force never (NaN). Both are NumPy structured arrays. config.ini, "
+    "scene.scene and events.csv\n"
     "say how to repeat them: `ethd-replay --verify taps/P01-03-004` compares every field bit for bit. tap.csv is\n"
     "the tap's row of taps.csv.\n";

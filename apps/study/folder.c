@@ -10,10 +10,10 @@
 
 #include "cli/cli.h"
 #include "ethd/ethd.h"
-#include "text/error_text.h"
 #include "record/recording_parts.h"
-#include "text/text.h"
 #include "study/dictionary.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 #define PLANT "device.plant"
 #define VERSIONS "versions.txt"

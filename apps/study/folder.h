@@ -9,8 +9,8 @@
 #ifndef ETHD_STUDY_FOLDER_H
 #define ETHD_STUDY_FOLDER_H
 
-#include "study/sha256.h"
 #include "study/protocol.h"
+#include "study/sha256.h"
 #include "tap/load.h"
 
 #define ETHD_STUDY_FILE "study.ini"
@@ -38,8 +38,7 @@ typedef struct ethd__folder {
 } ethd__folder;
 
 /* Back from the folder's own files alone. Exit 2 on a bad configuration or plant. */
-ETHD_MUST_CHECK ethd_status ethd__folder_open(const char *folder, ethd__folder *out,
-                                              char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__folder_open(const char *folder, ethd__folder *out, char message[ETHD_MESSAGE_MAX]);
 void ethd__folder_close(ethd__folder *folder);
 
 /* folder/name; exit 1 without memory. */

@@ -25,16 +25,13 @@ typedef struct ethd__journal {
 } ethd__journal;
 
 /* A new file, which must not be there; locked against other programs. */
-ETHD_MUST_CHECK ethd_status ethd__journal_create(const char *path, ethd__journal *out,
-                                                 char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__journal_create(const char *path, ethd__journal *out, char message[ETHD_MESSAGE_MAX]);
 
 /* To go on; locked likewise. */
-ETHD_MUST_CHECK ethd_status ethd__journal_open(const char *path, ethd__journal *out,
-                                               char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__journal_open(const char *path, ethd__journal *out, char message[ETHD_MESSAGE_MAX]);
 
 /* Only to read: lines that come later are missing, nothing is cut or locked. */
-ETHD_MUST_CHECK ethd_status ethd__journal_read(const char *path, ethd__journal *out,
-                                               char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__journal_read(const char *path, ethd__journal *out, char message[ETHD_MESSAGE_MAX]);
 
 /* On failure the file is as it was. `text` has no line ends. */
 ETHD_MUST_CHECK ethd_status ethd__journal_append(ethd__journal *journal, const char *kind, const char *text,

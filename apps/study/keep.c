@@ -9,10 +9,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "text/error_text.h"
-#include "text/text.h"
 #include "study/folder.h"
 #include "study/row.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 #define FRESH ".new"
 #define ROW "tap.csv"
@@ -85,9 +85,8 @@ static ethd_status put_in_place(const char *folder, const char *fresh, const cha
   return done ? ETHD_OK : refuse(path, message);
 }
 
-ethd_status ethd__tap_keep(const char *folder, const char *name, const ethd_config *config,
-                           const ethd__taken *taken, const char *words, const char *row,
-                           char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__tap_keep(const char *folder, const char *name, const ethd_config *config, const ethd__taken *taken,
+                           const char *words, const char *row, char message[ETHD_MESSAGE_MAX]) {
   char *fresh = ethd__folder_path(folder, FRESH), *path = ethd__folder_path(folder, name);
   discard(fresh);
   ethd_status status = mkdir(folder, 0777) != 0 && errno != EEXIST ? refuse(folder, message) : ETHD_OK;
@@ -105,8 +104,8 @@ static ethd_status read_row(const char *path, char **row, char *message) {
   size_t length, header = strlen(ETHD_STUDY_TAPS_HEADER);
   char *text, *file = ethd__folder_path(path, ROW);
   ethd_status status = ethd_text_read(file, 1 << 16, &text, &length, message);
-  if (!status && (length < header + 3 || memcmp(text, ETHD_STUDY_TAPS_HEADER, header) != 0 ||
-                  text[header] != '\n' || strcspn(text + header + 1, "\n") != length - header - 2))
+  if (!status && (length < header + 3 || memcmp(text, ETHD_STUDY_TAPS_HEADER, header) != 0 || text[header] != '\n' ||
+                  strcspn(text + header + 1, "\n") != length - header - 2))
     status = ethd__say(message, ETHD_E_SYNTAX, "%s: not a tap's row; move the folder away to have the tap again", file);
   if (!status) {
     text[length - 1] = 0;

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "study/shard.h"
 #include "text/error_text.h"
 #include "text/text.h"
-#include "study/shard.h"
 
 /* The shards of a folder while they are merged. */
 typedef struct merge {
@@ -41,8 +41,9 @@ static ethd_status count_shards(merge *m) {
   while (folder && !status && (entry = readdir(folder))) {
     if (!shard_name(entry->d_name, &shard)) continue;
     if (m->count && m->count != shard.count)
-      status = ethd__say(m->message, ETHD_E_FILE, "%s: shards of %" PRIu32 " and of %" PRIu32 "; keep those of one division",
-                         m->folder->path, m->count, shard.count);
+      status =
+          ethd__say(m->message, ETHD_E_FILE, "%s: shards of %" PRIu32 " and of %" PRIu32 "; keep those of one division",
+                    m->folder->path, m->count, shard.count);
     m->count = shard.count;
   }
   if (folder) closedir(folder);
@@ -67,8 +68,9 @@ static ethd_status open_shard(merge *m, uint32_t shard, const char *header) {
   ethd_status status = ETHD_OK;
   m->file[shard] = fopen(path, "re");
   if (!m->file[shard]) {
-    status = ethd__say(m->message, ETHD_E_FILE, "%s: missing; ethd-study --simulate N --shard %" PRIu32 "/%" PRIu32 " makes it",
-                       path, which.index, which.count);
+    status = ethd__say(m->message, ETHD_E_FILE,
+                       "%s: missing; ethd-study --simulate N --shard %" PRIu32 "/%" PRIu32 " makes it", path,
+                       which.index, which.count);
   } else {
     next(m, shard);
     if (!m->line[shard] || strncmp(m->line[shard], header, n) != 0 || m->line[shard][n] != '\n')
@@ -115,8 +117,9 @@ static ethd_status count_people(merge *m, uint64_t *units) {
   m->folder->protocol.participants = (uint32_t)(count / points);
   return count && count % points == 0
              ? ETHD_OK
-             : ethd__say(m->message, ETHD_E_SYNTAX, "%s: %" PRIu64 " participants at %zu points: the shards don't fit together",
-                         m->folder->path, count, points);
+             : ethd__say(m->message, ETHD_E_SYNTAX,
+                         "%s: %" PRIu64 " participants at %zu points: the shards don't fit together", m->folder->path,
+                         count, points);
 }
 
 static ethd_status merge_unit(merge *m, uint64_t unit) {
@@ -132,7 +135,8 @@ static ethd_status merge_unit(merge *m, uint64_t unit) {
   ethd_status status = ETHD_OK;
   if (m->taps == before)
     status = ethd__say(m->message, ETHD_E_SYNTAX,
-                       "%s/shard-%" PRIu32 "-of-%" PRIu32 ".csv: no rows that begin with %s; remove it and have it made again",
+                       "%s/shard-%" PRIu32 "-of-%" PRIu32
+                       ".csv: no rows that begin with %s; remove it and have it made again",
                        m->folder->path, shard + 1, m->count, prefix);
   free(prefix);
   return status;

@@ -18,9 +18,7 @@ static int is_csv(const struct dirent *entry) {
 }
 
 /* Bytes, not the locale: the same order everywhere. */
-static int by_name(const struct dirent **a, const struct dirent **b) {
-  return strcmp((*a)->d_name, (*b)->d_name);
-}
+static int by_name(const struct dirent **a, const struct dirent **b) { return strcmp((*a)->d_name, (*b)->d_name); }
 
 static ethd_status list(const char *folder, char ***files, size_t *count, char *message) {
   struct dirent **entries = NULL;
@@ -39,8 +37,8 @@ static ethd_status list(const char *folder, char ***files, size_t *count, char *
                    "%s: no folder with recorded movements (*.csv); ETHD_MOTION_DIR may name the one it is in", folder);
 }
 
-ethd_status ethd__movements_find(const ethd__protocol *protocol, const char *finger, char ***files,
-                                 size_t *count, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__movements_find(const ethd__protocol *protocol, const char *finger, char ***files, size_t *count,
+                                 char message[ETHD_MESSAGE_MAX]) {
   *count = 0;
   *files = NULL;
   if (!finger && !protocol->motion)

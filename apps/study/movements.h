@@ -6,8 +6,7 @@
 
 /* `finger` alone, or every *.csv of the protocol's folder by name: an absolute path, or one within
    ETHD_MOTION_DIR (default ../shared/motion). Freed by the caller, each and all. */
-ETHD_MUST_CHECK ethd_status ethd__movements_find(const ethd__protocol *protocol, const char *finger,
-                                                 char ***files, size_t *count,
-                                                 char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__movements_find(const ethd__protocol *protocol, const char *finger, char ***files,
+                                                 size_t *count, char message[ETHD_MESSAGE_MAX]);
 
 #endif

@@ -34,8 +34,7 @@ static size_t last_at(size_t strategies, const size_t cell[CELLS], size_t count,
   return last % strategies;
 }
 
-size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant,
-                      ethd__block out[ETHD_STUDY_BLOCKS]) {
+size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant, ethd__block out[ETHD_STUDY_BLOCKS]) {
   size_t cell[CELLS], n = 0, strategies = protocol->strategies.count;
   size_t count = strategies * protocol->speeds.count;
   bool trained[ETHD_STUDY_WORDS] = {false};

@@ -20,7 +20,6 @@ typedef struct ethd__block {
 } ethd__block;
 
 /* How many were written. */
-size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant,
-                      ethd__block out[ETHD_STUDY_BLOCKS]);
+size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant, ethd__block out[ETHD_STUDY_BLOCKS]);
 
 #endif

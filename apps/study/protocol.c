@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "study/protocol_keys.h"
 #include "text/error_text.h"
 #include "text/text.h"
-#include "study/protocol_keys.h"
 
 /* ---- the file ---- */
 
@@ -16,8 +16,17 @@ static ethd_status defaults(ethd__protocol *p) {
     const char *key, *value;
   } text[] = {{"name", "study"}, {"strategies", "smooth,offset"}, {"speeds", "low,high"}};
   char unsaid[ETHD_MESSAGE_MAX];
-  *p = (ethd__protocol){.seed = 1, .participants = 3, .training = 2, .taps = 3, .attempts = 40, .record = true,
-                        .between = 0.5, .hand_spread = 0.15, .band_low = NAN, .band_high = NAN, .graze = 0.02,
+  *p = (ethd__protocol){.seed = 1,
+                        .participants = 3,
+                        .training = 2,
+                        .taps = 3,
+                        .attempts = 40,
+                        .record = true,
+                        .between = 0.5,
+                        .hand_spread = 0.15,
+                        .band_low = NAN,
+                        .band_high = NAN,
+                        .graze = 0.02,
                         .lift = 0.005,
                         .slack = 0.0004};
   for (size_t i = 0; i < sizeof text / sizeof *text; i++) {
@@ -34,8 +43,8 @@ static ethd_status known_sections(const ethd_ini *ini, const char *name, char *m
     const ethd_ini_section *s = &ini->sections[i];
     if (!ethd__entry_section(s->name))
       return ethd__say(message, ETHD_E_UNKNOWN,
-                       "%s:%d: %s: unknown section; study, device, hand, validity, grid are allowed", name,
-                       s->line, ethd__quote(s->name, strlen(s->name), quote));
+                       "%s:%d: %s: unknown section; study, device, hand, validity, grid are allowed", name, s->line,
+                       ethd__quote(s->name, strlen(s->name), quote));
   }
   return ETHD_OK;
 }
@@ -50,9 +59,10 @@ static ethd_status check(const ethd_ini *ini, const ethd__entry *last, ethd__pro
   if (p->attempts < p->taps)
     return ethd__entry_refuse(&e, ETHD_E_RANGE,
                               "%" PRIu32 " attempts can't make %" PRIu32 " valid taps; at least as many are allowed",
-                  p->attempts, p->taps);
+                              p->attempts, p->taps);
   e.key = motion;
-  if (motion && p->hands != ETHD_HANDS_RECORDED) return ethd__entry_refuse(&e, ETHD_E_RANGE, "stands there without source = recorded");
+  if (motion && p->hands != ETHD_HANDS_RECORDED)
+    return ethd__entry_refuse(&e, ETHD_E_RANGE, "stands there without source = recorded");
   for (size_t i = 0, points = 1; i < p->axis_count; i++) {
     points *= p->axes[i].values.count;
     e.key = ethd_ini_find(ini, "grid", p->axes[i].key);

@@ -28,8 +28,8 @@
 
 #include "ethd/config.h"
 
-#define ETHD_STUDY_WORDS 8     /* strategies, speeds, values of a gain */
-#define ETHD_STUDY_GAINS 6     /* keys of a grid */
+#define ETHD_STUDY_WORDS 8 /* strategies, speeds, values of a gain */
+#define ETHD_STUDY_GAINS 6 /* keys of a grid */
 #define ETHD_STUDY_PEOPLE 1000000u
 #define ETHD_STUDY_POINTS 100000u /* of a grid */
 #define ETHD_STUDY_TEXT_MAX ((size_t)1 << 16)
@@ -51,7 +51,7 @@ typedef struct ethd__axis {
 } ethd__axis;
 
 typedef struct ethd__protocol {
-  char *path, *text, *folder; /* as it was read; relative paths start at folder */
+  char *path, *text, *folder;           /* as it was read; relative paths start at folder */
   char *name, *config, *plant, *motion; /* NULL where not given, but the name */
   uint64_t seed;
   uint32_t participants, training, taps, attempts;
@@ -66,13 +66,11 @@ typedef struct ethd__protocol {
   size_t axis_count;
 } ethd__protocol;
 
-ETHD_MUST_CHECK ethd_status ethd__protocol_load(const char *path, ethd__protocol *out,
-                                                char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__protocol_load(const char *path, ethd__protocol *out, char message[ETHD_MESSAGE_MAX]);
 
 /* The same from text; `name` stands for the file. */
-ETHD_MUST_CHECK ethd_status ethd__protocol_parse(const char *text, size_t length, const char *name,
-                                                 const char *folder, ethd__protocol *out,
-                                                 char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__protocol_parse(const char *text, size_t length, const char *name, const char *folder,
+                                                 ethd__protocol *out, char message[ETHD_MESSAGE_MAX]);
 
 void ethd__protocol_free(ethd__protocol *protocol);
 

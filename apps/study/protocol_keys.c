@@ -15,7 +15,7 @@ struct key_row {
   const char *section, *key;
   ethd_status (*set)(const ethd__entry *e, const key_row *row, void *at);
   size_t offset;
-  double min, max; /* of numbers */
+  double min, max;   /* of numbers */
   const char *words; /* of choices: "off|on" */
 };
 
@@ -25,13 +25,13 @@ ethd_status ethd__entry_refuse(const ethd__entry *e, ethd_status status, const c
   va_start(args, format);
   vsnprintf(what, sizeof what, format, args);
   va_end(args);
-  return ethd__say(e->message, status, "%s:%d: %s.%s: %s", e->file, e->key->line, e->key->section,
-                   e->key->key, what);
+  return ethd__say(e->message, status, "%s:%d: %s.%s: %s", e->file, e->key->line, e->key->section, e->key->key, what);
 }
 
 static ethd_status found(const ethd__entry *e, const char *word, const char *allowed) {
   char quote[ETHD_QUOTE_MAX];
-  return ethd__entry_refuse(e, ETHD_E_RANGE, "found %s, %s is allowed", ethd__quote(word, strlen(word), quote), allowed);
+  return ethd__entry_refuse(e, ETHD_E_RANGE, "found %s, %s is allowed", ethd__quote(word, strlen(word), quote),
+                            allowed);
 }
 
 /* ---- kinds of values ---- */
@@ -104,8 +104,7 @@ static ethd_status set_text(const ethd__entry *e, const key_row *row, void *at) 
 /* It stands in tables and file names. */
 static bool plain(const char *word) {
   return *word && strlen(word) < 32 &&
-         !word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+-")] &&
-         *word != '.';
+         !word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+-")] && *word != '.';
 }
 
 static ethd_status set_name(const ethd__entry *e, const key_row *row, void *at) {
@@ -140,7 +139,8 @@ static ethd_status set_words(const ethd__entry *e, const key_row *row, void *at)
   while (!status && (word = strsep(&rest, ","))) {
     word += strspn(word, " \t");
     word[strcspn(word, " \t")] = 0;
-    status = plain(word) ? add_word(e, words, word) : found(e, e->key->value, "word,word.. of letters, digits, _ . + -");
+    status =
+        plain(word) ? add_word(e, words, word) : found(e, e->key->value, "word,word.. of letters, digits, _ . + -");
   }
   free(list);
   return status;
@@ -205,6 +205,5 @@ ethd_status ethd__entry_set(const ethd__entry *e) {
   const key_row *row = find_row(e->key->section, e->key->key);
   return row ? row->set(e, row, (char *)e->out + row->offset) : unknown_key(e);
 }
-
 
 bool ethd__entry_section(const char *section) { return !strcmp(section, "grid") || find_row(section, NULL); }

@@ -2,8 +2,8 @@
 #ifndef ETHD_STUDY_PROTOCOL_KEYS_H
 #define ETHD_STUDY_PROTOCOL_KEYS_H
 
-#include "text/ini.h"
 #include "study/protocol.h"
+#include "text/ini.h"
 
 /* A key that is being read. */
 typedef struct ethd__entry {

@@ -15,18 +15,27 @@ void ethd__participant_id(const ethd__protocol *protocol, uint32_t person, char 
 char *ethd__tap_row(const ethd__protocol *protocol, const ethd__taken *taken) {
   const ethd__turn *turn = &taken->turn;
   const ethd__metrics *m = &taken->result.metrics;
-  const double figures[] = {m->v_rvo,  m->v_of,   m->d_max,      m->v_rmin,
-                            m->delta_s, m->eps,   m->t_rvo,      m->t_of,
-                            m->t_seen, m->peak_force, taken->result.finger_radius, taken->result.commanded};
+  const double figures[] = {m->v_rvo,
+                            m->v_of,
+                            m->d_max,
+                            m->v_rmin,
+                            m->delta_s,
+                            m->eps,
+                            m->t_rvo,
+                            m->t_of,
+                            m->t_seen,
+                            m->peak_force,
+                            taken->result.finger_radius,
+                            taken->result.commanded};
   char id[ETHD_STUDY_ID_MAX], *text = NULL;
   size_t length;
   FILE *file = open_memstream(&text, &length);
   if (!file) return NULL;
   ethd__participant_id(protocol, turn->person, id);
   fprintf(file, "%s,%zu,%s,%" PRIu32 ",%s,%s,%" PRIu64 ",%" PRIu64 ",%d,%s", id, turn->number,
-          turn->block.training ? "training" : "test", turn->attempt,
-          protocol->strategies.word[turn->block.strategy], protocol->speeds.word[turn->block.speed], taken->seed,
-          taken->tap, m->reason == ETHD_TAP_OK, ethd__reason_words[m->reason]);
+          turn->block.training ? "training" : "test", turn->attempt, protocol->strategies.word[turn->block.strategy],
+          protocol->speeds.word[turn->block.speed], taken->seed, taken->tap, m->reason == ETHD_TAP_OK,
+          ethd__reason_words[m->reason]);
   for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
     if (isnan(figures[i]))
       fputc(',', file);

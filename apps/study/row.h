@@ -4,8 +4,8 @@
 
 #include "study/source.h"
 
-#define ETHD_STUDY_TAPS_HEADER                                                                             \
-  "participant,block,part,attempt,transition,speed,seed,tap,valid,reason,v_rvo_mps,v_of_mps,d_max_m,"     \
+#define ETHD_STUDY_TAPS_HEADER                                                                        \
+  "participant,block,part,attempt,transition,speed,seed,tap,valid,reason,v_rvo_mps,v_of_mps,d_max_m," \
   "v_rmin_mps,delta_s_ms,eps_m,t_rvo_s,t_of_s,t_seen_s,peak_force_n,finger_radius_m,commanded_mps"
 #define ETHD_STUDY_SURVEY_HEADER "participant,block,transition,speed,q1,q2,q3"
 #define ETHD_STUDY_EVENTS_HEADER "utc,participant,block,event,detail"

@@ -9,10 +9,10 @@
 
 #include "cli/cli.h"
 #include "ethd/ethd.h"
-#include "text/csv.h"
-#include "text/error_text.h"
 #include "study/keep.h"
 #include "study/row.h"
+#include "text/csv.h"
+#include "text/error_text.h"
 
 bool ethd__block_over(const ethd__protocol *protocol, const ethd__block *block, uint32_t taken, uint32_t valid) {
   if (block->training) return taken >= protocol->training;
@@ -33,8 +33,8 @@ static void now(const ethd__sitting *s, char out[32]) {
   if (!s->source.simulated && gmtime_r(&t, &utc)) strftime(out, 32, "%Y-%m-%dT%H:%M:%SZ", &utc);
 }
 
-static ethd_status event(ethd__sitting *s, const char *participant, size_t number, const char *kind,
-                         const char *detail, char *message) {
+static ethd_status event(ethd__sitting *s, const char *participant, size_t number, const char *kind, const char *detail,
+                         char *message) {
   char utc[32], block[24] = "", *text = NULL;
   size_t length;
   now(s, utc);
@@ -43,8 +43,7 @@ static ethd_status event(ethd__sitting *s, const char *participant, size_t numbe
   if (!file) return no_memory(message);
   fprintf(file, "%s,%s,%s,%s,", utc, participant, block, kind);
   ethd__csv_put_word(file, detail);
-  ethd_status status =
-      fclose(file) ? no_memory(message) : ethd__journal_append(&s->journal, "event", text, message);
+  ethd_status status = fclose(file) ? no_memory(message) : ethd__journal_append(&s->journal, "event", text, message);
   free(text);
   return status;
 }
@@ -132,7 +131,8 @@ ethd_status ethd__sitting_open(ethd__folder *folder, ethd__sitting *out, char me
   *out = (ethd__sitting){.folder = folder, .journal = {.fd = -1}, .last = p->participants};
   if (p->participants > ETHD_STUDY_SESSION_PEOPLE)
     return ethd__say(message, ETHD_E_RANGE,
-                     "%s: study.participants: found %" PRIu32 "; at most %u are allowed in a session, more with --simulate",
+                     "%s: study.participants: found %" PRIu32
+                     "; at most %u are allowed in a session, more with --simulate",
                      p->path, p->participants, ETHD_STUDY_SESSION_PEOPLE);
   out->at = calloc(p->participants, sizeof *out->at);
   out->aborted = calloc(p->participants, sizeof *out->aborted);
@@ -212,8 +212,10 @@ static ethd_status see_to_device(ethd__sitting *s, const char *id, const ethd__t
 
 /* *go: the next tap may come. */
 static ethd_status hear(ethd__sitting *s, const char *id, const ethd__turn *turn, bool *go, bool *stop, char *message) {
-  static const char *const kinds[] = {[ETHD_WISH_NOTE] = "note", [ETHD_WISH_PAUSE] = "pause",
-                                      [ETHD_WISH_ABORT] = "abort", [ETHD_WISH_STOP] = "wish to stop"};
+  static const char *const kinds[] = {[ETHD_WISH_NOTE] = "note",
+                                      [ETHD_WISH_PAUSE] = "pause",
+                                      [ETHD_WISH_ABORT] = "abort",
+                                      [ETHD_WISH_STOP] = "wish to stop"};
   char words[ETHD_MESSAGE_MAX] = "";
   ethd__wish wish = s->front.wish(s->front.self, words);
   *go = wish == ETHD_WISH_GO && !ethd__stop;

@@ -10,11 +10,11 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "text/error_text.h"
-#include "text/text.h"
 #include "study/keep.h"
 #include "study/row.h"
 #include "study/session.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 /* A shard at work. */
 typedef struct work {

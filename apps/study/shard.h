@@ -20,8 +20,7 @@ ETHD_MUST_CHECK ethd_status ethd__shard_run(ethd__folder *folder, ethd__desk *de
                                             uint64_t *taps, bool *over, char message[ETHD_MESSAGE_MAX]);
 
 /* All shards of the folder into taps.csv, in the order of the units: the same bytes for every n. */
-ETHD_MUST_CHECK ethd_status ethd__shards_merge(ethd__folder *folder, uint64_t *taps,
-                                               char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__shards_merge(ethd__folder *folder, uint64_t *taps, char message[ETHD_MESSAGE_MAX]);
 
 #define ETHD_STUDY_SHARDS_MAX 10000u
 

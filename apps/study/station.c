@@ -6,13 +6,13 @@
 #include <time.h>
 
 #include "cli/cli.h"
-#include "text/error_text.h"
 #include "tap/seen.h"
+#include "text/error_text.h"
 
-#define SECONDS 6.0     /* of a tap at most */
-#define BEAT 20000000   /* ns */
-#define LOOK 1000000    /* ns from look to look at a tap */
-#define CLEAN 3.0       /* s in which an acknowledged device must have come to rest */
+#define SECONDS 6.0   /* of a tap at most */
+#define BEAT 20000000 /* ns */
+#define LOOK 1000000  /* ns from look to look at a tap */
+#define CLEAN 3.0     /* s in which an acknowledged device must have come to rest */
 
 static void rest(long ns) {
   const struct timespec t = {.tv_nsec = ns};
@@ -189,11 +189,8 @@ static void *keep(void *self) {
 
 ethd_status ethd__station_open(ethd__desk *desk, const char *config, const char *folder, bool is_virtual,
                                ethd__station *out, char message[ETHD_MESSAGE_MAX]) {
-  const ethd__session_options options = {.config = config,
-                                         .folder = folder,
-                                         .sink = {out, take},
-                                         .is_virtual = is_virtual,
-                                         .loop = ethd_loop_default()};
+  const ethd__session_options options = {
+      .config = config, .folder = folder, .sink = {out, take}, .is_virtual = is_virtual, .loop = ethd_loop_default()};
   memset(out, 0, sizeof *out);
   out->desk = desk;
   out->slack = desk->protocol->slack;

@@ -27,7 +27,7 @@ typedef struct ethd__station {
   ethd__phase phase;
   ethd__rule rule;
   ethd__approach approach;
-  size_t last;        /* row, as far as is known */
+  size_t last; /* row, as far as is known */
   int64_t begin_ns;
   ethd_status status; /* of its rows */
 
@@ -39,8 +39,7 @@ typedef struct ethd__station {
 /* Opens and starts the configuration's device. folder: where its relative paths start, NULL: beside the
    configuration. is_virtual: in lock-step, as fast as it goes. On failure nothing runs. */
 ETHD_MUST_CHECK ethd_status ethd__station_open(ethd__desk *desk, const char *config, const char *folder,
-                                               bool is_virtual, ethd__station *out,
-                                               char message[ETHD_MESSAGE_MAX]);
+                                               bool is_virtual, ethd__station *out, char message[ETHD_MESSAGE_MAX]);
 
 /* Damps the ring until it is still, disables, closes. */
 ETHD_MUST_CHECK ethd_status ethd__station_close(ethd__station *station, char message[ETHD_MESSAGE_MAX]);

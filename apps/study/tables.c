@@ -2,9 +2,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/text.h"
 #include "study/row.h"
 #include "study/session.h"
+#include "text/text.h"
 
 static const struct {
   const char *file, *header, *kind;

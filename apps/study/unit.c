@@ -19,7 +19,8 @@ uint64_t ethd__unit_count(const ethd__protocol *protocol) {
 
 char *ethd__shard_path(const ethd__folder *folder, const ethd__shard *shard, const char *suffix) {
   char *path = NULL;
-  int length = asprintf(&path, "%s/shard-%" PRIu32 "-of-%" PRIu32 "%s", folder->path, shard->index, shard->count, suffix);
+  int length =
+      asprintf(&path, "%s/shard-%" PRIu32 "-of-%" PRIu32 "%s", folder->path, shard->index, shard->count, suffix);
   return had(path, length);
 }
 

@@ -6,8 +6,7 @@
 
 #define FEWEST 5 /* valid taps that a verdict needs */
 
-const ethd__cell *ethd__cell_find(const ethd__cell *cells, size_t count, const char *law,
-                                  const char *speed) {
+const ethd__cell *ethd__cell_find(const ethd__cell *cells, size_t count, const char *law, const char *speed) {
   for (size_t i = 0; i < count; i++)
     if (!strcmp(cells[i].law, law) && !strcmp(cells[i].speed->word, speed)) return &cells[i];
   return NULL;
@@ -96,8 +95,8 @@ static void alike(const ethd__cell *cells, size_t count, ethd__claim *out) {
   double a = ethd__figure_error(&d.smooth), b = ethd__figure_error(&d.offset), error = sqrt(a * a + b * b);
   out->text = "low: smooth and offset are alike (d_max within 25 %, 2 std. errors)";
   snprintf(out->here, sizeof out->here, "%.3f / %.3f mm", 1e3 * d.smooth.mean, 1e3 * d.offset.mean);
-  out->verdict = verdict(d.known, fabs(d.smooth.mean - d.offset.mean) <=
-                                      0.25 * fmax(d.smooth.mean, d.offset.mean) + 2 * error);
+  out->verdict =
+      verdict(d.known, fabs(d.smooth.mean - d.offset.mean) <= 0.25 * fmax(d.smooth.mean, d.offset.mean) + 2 * error);
 }
 
 static void early(const ethd__cell *cells, size_t count, ethd__claim *out) {

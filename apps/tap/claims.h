@@ -29,7 +29,6 @@ typedef struct ethd__claim {
 /* How many were written. */
 size_t ethd__claims(const ethd__cell *cells, size_t count, ethd__claim out[ETHD_TAP_CLAIMS_MAX]);
 
-const ethd__cell *ethd__cell_find(const ethd__cell *cells, size_t count, const char *law,
-                                  const char *speed);
+const ethd__cell *ethd__cell_find(const ethd__cell *cells, size_t count, const char *law, const char *speed);
 
 #endif

@@ -21,9 +21,7 @@ static char *joined(const char *a, const char *b) {
   return had(asprintf(&text, "%s%s", a, b) < 0 ? NULL : text);
 }
 
-static bool came_along(const char *plant) {
-  return !strcmp(plant, "n") || !strcmp(plant, "b") || !strcmp(plant, "p");
-}
+static bool came_along(const char *plant) { return !strcmp(plant, "n") || !strcmp(plant, "b") || !strcmp(plant, "p"); }
 
 /* "n" and ".ini" to the file that came with the programs; "my/dev", "my/dev.plant" to my/dev.ini. */
 static char *beside_plant(const char *plant, const char *suffix) {
@@ -55,8 +53,8 @@ static void load_plant(const char *plant, bool simulated, ethd__loaded *out) {
 /* A configuration without a scene gets the paper's wall, as if it named it. */
 static ethd_config *with_wall(ethd_config *config, const char *path) {
   char message[ETHD_MESSAGE_MAX], *wall = ethd__data_path("wall.scene"), *absolute = realpath(wall, NULL);
-  char *scene = joined(config->text && *config->text ? "\n[scene]\nfile = " : "[scene]\nfile = ",
-                       absolute ? absolute : wall);
+  char *scene =
+      joined(config->text && *config->text ? "\n[scene]\nfile = " : "[scene]\nfile = ", absolute ? absolute : wall);
   char *text = joined(config->text ? config->text : "", scene);
   ethd_config *walled;
   check(ethd_config_parse(text, strlen(text), path, config->folder, &walled, message), message);

@@ -33,8 +33,8 @@ static void tick(ethd_sim *sim, ethd_control *control, ethd_trace *trace, ethd_t
 
 static size_t ticks(double seconds, double period) { return (size_t)floor(seconds / period + 0.5); }
 
-ethd_status ethd__tapping_begin(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
-                                const ethd__rule *rule, ethd__rows *rows, ethd__tapping *out) {
+ethd_status ethd__tapping_begin(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap, const ethd__rule *rule,
+                                ethd__rows *rows, ethd__tapping *out) {
   *out = (ethd__tapping){.sim = sim, .control = control, .rule = rule, .rows = rows};
   out->last = ticks(ethd_path_end(&tap->path) + ETHD_TAP_LOST, rule->period);
   rows->count = 0;
@@ -55,8 +55,8 @@ ethd_status ethd__tapping_step(ethd__tapping *t) {
   return ETHD_OK;
 }
 
-ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
-                          const ethd__rule *rule, ethd__rows *rows) {
+ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap, const ethd__rule *rule,
+                          ethd__rows *rows) {
   ethd__tapping tapping;
   ethd_status status = ethd__tapping_begin(sim, control, tap, rule, rows, &tapping);
   while (!status) status = ethd__tapping_step(&tapping);

@@ -122,8 +122,8 @@ static bool faulted(const ethd__rows *rows) {
   return false;
 }
 
-static ethd__reason judge(const ethd__rows *rows, const ethd__rule *rule, size_t begin, size_t meeting,
-                          size_t touch, double v_rvo) {
+static ethd__reason judge(const ethd__rows *rows, const ethd__rule *rule, size_t begin, size_t meeting, size_t touch,
+                          double v_rvo) {
   if (faulted(rows)) return ETHD_TAP_FAULT;
   if (rule->never_fast) return ETHD_TAP_TOO_SLOW;
   if (meeting == rows->count) return ETHD_TAP_NO_CONTACT;
@@ -138,8 +138,16 @@ static ethd__reason judge(const ethd__rows *rows, const ethd__rule *rule, size_t
 void ethd__metrics_of(const ethd__rows *rows, const ethd__rule *rule, ethd__metrics *out) {
   size_t begin, meeting = approach_of(rows, rule, &begin);
   size_t touch = touch_from(rows, meeting);
-  *out = (ethd__metrics){.v_rvo = NAN, .v_of = NAN, .d_max = NAN, .v_rmin = NAN, .delta_s = NAN,
-                         .eps = NAN, .t_rvo = NAN, .t_of = NAN, .t_seen = NAN, .peak_force = strongest(rows)};
+  *out = (ethd__metrics){.v_rvo = NAN,
+                         .v_of = NAN,
+                         .d_max = NAN,
+                         .v_rmin = NAN,
+                         .delta_s = NAN,
+                         .eps = NAN,
+                         .t_rvo = NAN,
+                         .t_of = NAN,
+                         .t_seen = NAN,
+                         .peak_force = strongest(rows)};
   if (meeting < rows->count) {
     out->v_rvo = speed_at(rows, rule, meeting);
     out->t_rvo = rows->truth[meeting].t;

@@ -14,8 +14,7 @@ static ethd_status open_csv(const char *path, ethd_csv_out **out, char *message)
   return *out ? ETHD_OK : ETHD_E_FILE;
 }
 
-static ethd_status open_ticks(const char *folder, const ethd_config *config, ethd__output *out,
-                              char *message) {
+static ethd_status open_ticks(const char *folder, const ethd_config *config, ethd__output *out, char *message) {
   ethd_status status = ethd__ticks_open(folder, config, &out->ticks, message);
   if (status) return status;
   char *taps = ethd__path_join(folder, "taps.csv");
@@ -25,8 +24,8 @@ static ethd_status open_ticks(const char *folder, const ethd_config *config, eth
   return status;
 }
 
-ethd_status ethd__output_open(const char *csv, const char *folder, const ethd_config *config,
-                              ethd__output *out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__output_open(const char *csv, const char *folder, const ethd_config *config, ethd__output *out,
+                              char message[ETHD_MESSAGE_MAX]) {
   char unsaid[ETHD_MESSAGE_MAX];
   *out = (ethd__output){0};
   ethd_status status = csv ? open_csv(csv, &out->csv, message) : ETHD_OK;
@@ -54,15 +53,14 @@ static void write_row(ethd_csv_out *csv, const ethd__stage *stage, const char *l
   ethd_csv_word(csv, seed);
   ethd_csv_integer(csv, m->reason == ETHD_TAP_OK);
   ethd_csv_word(csv, ethd__reason_words[m->reason]);
-  const double figures[] = {m->v_rvo, m->v_of, m->d_max, m->v_rmin, m->delta_s,
-                            m->eps,   m->t_rvo, m->t_of, m->peak_force};
+  const double figures[] = {m->v_rvo, m->v_of,  m->d_max, m->v_rmin,    m->delta_s,
+                            m->eps,   m->t_rvo, m->t_of,  m->peak_force};
   for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) ethd_csv_number(csv, figures[i]);
   ethd_csv_row(csv);
 }
 
-ethd_status ethd__output_tap(ethd__output *output, const ethd__stage *stage, const char *law,
-                             const ethd__speed *speed, uint64_t tap, const ethd__result *result,
-                             char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__output_tap(ethd__output *output, const ethd__stage *stage, const char *law, const ethd__speed *speed,
+                             uint64_t tap, const ethd__result *result, char message[ETHD_MESSAGE_MAX]) {
   if (output->csv) write_row(output->csv, stage, law, speed, tap, &result->metrics);
   if (output->taps) write_row(output->taps, stage, law, speed, tap, &result->metrics);
   if (!output->ticks.recording) return ETHD_OK;

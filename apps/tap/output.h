@@ -2,13 +2,13 @@
 #ifndef ETHD_TAP_OUTPUT_H
 #define ETHD_TAP_OUTPUT_H
 
-#include "text/csv.h"
 #include "tap/summary.h"
 #include "tap/ticks.h"
+#include "text/csv.h"
 
 /* A row per tap. `speed` as given, `valid` 1 or 0, empty where a figure isn't defined. */
-#define ETHD_TAP_HEADER                                                                              \
-  "tap,transition,speed,seed,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m,"   \
+#define ETHD_TAP_HEADER                                                                            \
+  "tap,transition,speed,seed,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m," \
   "t_rvo_s,t_of_s,peak_force_n"
 
 /* The folder of the ticks holds taps.csv (ETHD_TAP_HEADER) too. */
@@ -27,8 +27,8 @@ ETHD_MUST_CHECK ethd_status ethd__output_law(ethd__output *output, const ethd__s
 
 /* The tap that stage ran last. */
 ETHD_MUST_CHECK ethd_status ethd__output_tap(ethd__output *output, const ethd__stage *stage, const char *law,
-                                             const ethd__speed *speed, uint64_t tap,
-                                             const ethd__result *result, char message[ETHD_MESSAGE_MAX]);
+                                             const ethd__speed *speed, uint64_t tap, const ethd__result *result,
+                                             char message[ETHD_MESSAGE_MAX]);
 
 /* Puts everything in its place. */
 ETHD_MUST_CHECK ethd_status ethd__output_close(ethd__output *output, char message[ETHD_MESSAGE_MAX]);

@@ -15,11 +15,9 @@ static ethd_status find(const char *path, const ethd_csv *csv, int column[COLUMN
   for (int i = 0; i < COLUMNS; i++) {
     column[i] = ethd_csv_column(csv, names[i]);
     if (column[i] < 0)
-      return ethd__say(message, ETHD_E_UNKNOWN, "%s:1: no column %s; t_s, x_m and y_m are needed", path,
-                       names[i]);
+      return ethd__say(message, ETHD_E_UNKNOWN, "%s:1: no column %s; t_s, x_m and y_m are needed", path, names[i]);
   }
-  if (csv->rows < 3)
-    return ethd__say(message, ETHD_E_RANGE, "%s: %zu samples; at least 3 are needed", path, csv->rows);
+  if (csv->rows < 3) return ethd__say(message, ETHD_E_RANGE, "%s: %zu samples; at least 3 are needed", path, csv->rows);
   return ETHD_OK;
 }
 
@@ -29,42 +27,38 @@ static ethd_status check_row(const char *path, const ethd_csv *csv, const int co
   const double *now = &csv->values[row * csv->columns], *before = now - csv->columns;
   for (int i = 0; i < COLUMNS; i++) {
     if (!isfinite(now[column[i]]))
-      return ethd__say(message, ETHD_E_NOT_FINITE, "%s:%zu: %s: %s; a finite number is needed", path, line,
-                       names[i], ethd_csv_empty(csv, row, column[i]) ? "an empty cell" : "nan");
+      return ethd__say(message, ETHD_E_NOT_FINITE, "%s:%zu: %s: %s; a finite number is needed", path, line, names[i],
+                       ethd_csv_empty(csv, row, column[i]) ? "an empty cell" : "nan");
     if (i != T && !(fabs(now[column[i]]) <= 1e3))
-      return ethd__say(message, ETHD_E_RANGE, "%s:%zu: %s: found %.10g, -1000 to 1000 is allowed", path,
-                       line, names[i], now[column[i]]);
+      return ethd__say(message, ETHD_E_RANGE, "%s:%zu: %s: found %.10g, -1000 to 1000 is allowed", path, line, names[i],
+                       now[column[i]]);
   }
   if (row && !(now[column[T]] > before[column[T]]))
-    return ethd__say(message, ETHD_E_RANGE, "%s:%zu: t_s: found %.10g after %.10g; times must rise", path,
-                     line, now[column[T]], before[column[T]]);
+    return ethd__say(message, ETHD_E_RANGE, "%s:%zu: t_s: found %.10g after %.10g; times must rise", path, line,
+                     now[column[T]], before[column[T]]);
   if (!(now[column[T]] - csv->values[column[T]] <= ETHD_MOVEMENT_MOST))
-    return ethd__say(message, ETHD_E_RANGE, "%s:%zu: t_s: %.10g s after the start; at most %g are allowed",
-                     path, line, now[column[T]] - csv->values[column[T]], ETHD_MOVEMENT_MOST);
+    return ethd__say(message, ETHD_E_RANGE, "%s:%zu: t_s: %.10g s after the start; at most %g are allowed", path, line,
+                     now[column[T]] - csv->values[column[T]], ETHD_MOVEMENT_MOST);
   return ETHD_OK;
 }
 
-static ethd_status convert(const char *path, const ethd_csv *csv, double scale, ethd__movement *out,
-                           char *message) {
+static ethd_status convert(const char *path, const ethd_csv *csv, double scale, ethd__movement *out, char *message) {
   int column[COLUMNS];
   ethd_status status = find(path, csv, column, message);
-  for (size_t row = 0; !status && row < csv->rows; row++)
-    status = check_row(path, csv, column, row, message);
+  for (size_t row = 0; !status && row < csv->rows; row++) status = check_row(path, csv, column, row, message);
   if (status) return status;
   out->samples = malloc(csv->rows * sizeof *out->samples);
-  if (!out->samples)
-    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!out->samples) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
   out->count = csv->rows;
   for (size_t row = 0; row < csv->rows; row++) {
     const double *cell = &csv->values[row * csv->columns];
-    out->samples[row] = (ethd_path_sample){cell[column[T]] - csv->values[column[T]],
-                                           scale * cell[column[X]], scale * cell[column[Y]]};
+    out->samples[row] =
+        (ethd_path_sample){cell[column[T]] - csv->values[column[T]], scale * cell[column[X]], scale * cell[column[Y]]};
   }
   return ETHD_OK;
 }
 
-ethd_status ethd__movement_load(const char *path, double scale, ethd__movement *out,
-                                char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__movement_load(const char *path, double scale, ethd__movement *out, char message[ETHD_MESSAGE_MAX]) {
   ethd_csv csv;
   *out = (ethd__movement){0};
   ethd_status status = ethd_csv_read_columns(path, names, &csv, message);
@@ -137,8 +131,8 @@ static bool reachable(const ethd_arm *arm, ethd_vec x) {
   return r > inner && r < outer;
 }
 
-size_t ethd__movement_place(const ethd__movement *movement, const ethd__touchdown *touchdown,
-                            ethd_vec centre, const ethd_arm *arm, ethd_path_sample *out) {
+size_t ethd__movement_place(const ethd__movement *movement, const ethd__touchdown *touchdown, ethd_vec centre,
+                            const ethd_arm *arm, ethd_path_sample *out) {
   const ethd_path_sample *s = movement->samples;
   ethd_vec shift = ethd_vec_sub(centre, touchdown->x);
   size_t begin = 0, count = 0;

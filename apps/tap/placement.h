@@ -49,7 +49,7 @@ void ethd__movement_touchdown(const ethd__movement *movement, double speed, ethd
    the touchdown, from where it last enters the arm's reach before that to where it leaves it afterwards;
    returns how many (the path is held there), 0 when the touchdown itself is out of reach. Time starts at
    0 with the first. */
-size_t ethd__movement_place(const ethd__movement *movement, const ethd__touchdown *touchdown,
-                            ethd_vec centre, const ethd_arm *arm, ethd_path_sample *out);
+size_t ethd__movement_place(const ethd__movement *movement, const ethd__touchdown *touchdown, ethd_vec centre,
+                            const ethd_arm *arm, ethd_path_sample *out);
 
 #endif

@@ -21,8 +21,7 @@ ethd__cell *ethd__cells_create(const ethd__plan *plan) {
     return NULL;
   }
   for (size_t i = 0; i < count; i++)
-    cells[i] = (ethd__cell){plan->laws[i / speeds], &plan->study->speeds[i % speeds],
-                            results + i * plan->taps, 0};
+    cells[i] = (ethd__cell){plan->laws[i / speeds], &plan->study->speeds[i % speeds], results + i * plan->taps, 0};
   return cells;
 }
 
@@ -50,13 +49,12 @@ static ethd_status check_law(const ethd__plan *plan, const char *law, char *mess
 
 ethd_status ethd__plan_check(const ethd__plan *plan, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = ETHD_OK;
-  for (size_t law = 0; !status && law < plan->law_count; law++)
-    status = check_law(plan, plan->laws[law], message);
+  for (size_t law = 0; !status && law < plan->law_count; law++) status = check_law(plan, plan->laws[law], message);
   return status;
 }
 
-static ethd_status run_cell(const ethd__plan *plan, ethd__stage *stage, ethd__output *output,
-                            ethd__cell *cells, size_t index, char *message) {
+static ethd_status run_cell(const ethd__plan *plan, ethd__stage *stage, ethd__output *output, ethd__cell *cells,
+                            size_t index, char *message) {
   ethd__cell *cell = &cells[index];
   ethd_status status = ETHD_OK;
   while (!status && cell->count < plan->taps && !ethd__stop) {
@@ -70,8 +68,7 @@ static ethd_status run_cell(const ethd__plan *plan, ethd__stage *stage, ethd__ou
   return status;
 }
 
-static ethd_status run_law(const ethd__plan *plan, size_t law, ethd__output *output, ethd__cell *cells,
-                           char *message) {
+static ethd_status run_law(const ethd__plan *plan, size_t law, ethd__output *output, ethd__cell *cells, char *message) {
   ethd__stage stage;
   size_t speeds = plan->study->speed_count;
   ethd_status status = ethd__stage_open(plan->study, plan->laws[law], &stage, message);
@@ -94,8 +91,7 @@ ethd_status ethd__cells_run(const ethd__plan *plan, ethd__output *output, ethd__
 
 /* ---- typical taps ---- */
 
-static ethd_status trace_cell(const ethd__plan *plan, const char *folder, const ethd__cell *cell,
-                              char *message) {
+static ethd_status trace_cell(const ethd__plan *plan, const char *folder, const ethd__cell *cell, char *message) {
   ethd__stage stage;
   ethd__result result;
   char *path;

@@ -24,7 +24,7 @@ ETHD_MUST_CHECK ethd_status ethd__cells_run(const ethd__plan *plan, ethd__output
                                             char message[ETHD_MESSAGE_MAX]);
 
 /* Writes folder/LAW-SPEED.csv for every cell that has taps: its typical tap, run again. */
-ETHD_MUST_CHECK ethd_status ethd__cells_trace(const ethd__plan *plan, const char *folder,
-                                              const ethd__cell *cells, char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__cells_trace(const ethd__plan *plan, const char *folder, const ethd__cell *cells,
+                                              char message[ETHD_MESSAGE_MAX]);
 
 #endif

@@ -8,7 +8,6 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-
 bool ethd__speed_parse(const char *word, const ethd_plant *plant, ethd__speed *out) {
   double v;
   *out = (ethd__speed){0};
@@ -44,14 +43,12 @@ static ethd_status find_wall(ethd__study *study, char *message) {
       study->n = near.n;
       return step ? ETHD_OK
                   : ethd__say(message, ETHD_E_GEOMETRY,
-                              "the scene leaves no room for a movement to the left at y = %g m",
-                              ETHD_TAP_HEIGHT);
+                              "the scene leaves no room for a movement to the left at y = %g m", ETHD_TAP_HEIGHT);
     }
     x.x -= clearance;
   }
   return ethd__say(message, ETHD_E_GEOMETRY,
-                   "the scene has no wall that the ring meets on its way to the left at y = %g m",
-                   ETHD_TAP_HEIGHT);
+                   "the scene has no wall that the ring meets on its way to the left at y = %g m", ETHD_TAP_HEIGHT);
 }
 
 /* Where a finger of this radius touches the wall that the ring meets. */
@@ -134,14 +131,12 @@ void ethd__stage_close(ethd__stage *stage) {
 
 /* ---- a tap ---- */
 
-ethd_status ethd__stage_draw(ethd__stage *stage, const ethd__speed *speed, uint64_t tap,
-                             ethd_sim_tap *out) {
+ethd_status ethd__stage_draw(ethd__stage *stage, const ethd__speed *speed, uint64_t tap, ethd_sim_tap *out) {
   const ethd__study *study = stage->study;
   ethd_sim_draw(&study->plant, study->seed, tap, speed->commanded, study->meet, out);
   if (!study->movement.count) return ETHD_OK;
   ethd_vec centre = finger_at_wall(study, out->finger_radius);
-  size_t count = ethd__movement_place(&study->movement, &speed->touchdown, centre, &stage->setup.arm,
-                                      stage->samples);
+  size_t count = ethd__movement_place(&study->movement, &speed->touchdown, centre, &stage->setup.arm, stage->samples);
   out->path = (ethd_path){.samples = stage->samples, .sample_count = count};
   out->commanded = speed->centre;
   return count ? ETHD_OK : ETHD_E_UNREACHABLE;
@@ -178,8 +173,7 @@ static void count_ticks(const ethd__rows *rows, ethd__result *out) {
   for (size_t i = 0; i < rows->count; i++) out->queried += rows->trace[i].queried != 0;
 }
 
-void ethd__stage_judge(const ethd__stage *stage, const ethd__rule *rule, const ethd_sim_tap *tap,
-                       ethd__result *out) {
+void ethd__stage_judge(const ethd__stage *stage, const ethd__rule *rule, const ethd_sim_tap *tap, ethd__result *out) {
   ethd__metrics_of(&stage->rows, rule, &out->metrics);
   out->commanded = tap->commanded;
   out->finger_radius = tap->finger_radius;
@@ -191,8 +185,7 @@ ethd_status ethd__stage_run(ethd__stage *stage, const ethd__speed *speed, uint64
   ethd_sim_tap circumstances;
   ethd_status status = ethd__stage_draw(stage, speed, tap, &circumstances);
   const ethd__rule rule = ethd__stage_rule(stage, speed, circumstances.finger_radius);
-  if (!status)
-    status = ethd__tap_run(stage->sim, stage->control, &circumstances, &rule, &stage->rows);
+  if (!status) status = ethd__tap_run(stage->sim, stage->control, &circumstances, &rule, &stage->rows);
   if (status)
     return ethd__say(message, status, "tap %llu at %s: %s", (unsigned long long)tap, speed->word,
                      ethd_status_sentence(status));

@@ -88,8 +88,7 @@ typedef struct ethd__result {
 } ethd__result;
 
 /* What the ticks in stage->rows were, of this tap. */
-void ethd__stage_judge(const ethd__stage *stage, const ethd__rule *rule, const ethd_sim_tap *tap,
-                       ethd__result *out);
+void ethd__stage_judge(const ethd__stage *stage, const ethd__rule *rule, const ethd_sim_tap *tap, ethd__result *out);
 
 ETHD_MUST_CHECK ethd_status ethd__stage_run(ethd__stage *stage, const ethd__speed *speed, uint64_t tap,
                                             ethd__result *out, char message[ETHD_MESSAGE_MAX]);

@@ -17,8 +17,8 @@ static const struct column {
   double scale;
   int digits;
 } columns[] = {
-    {"v_rvo", "m/s", ETHD_TAP_FIELD(v_rvo), 1, 3},   {"v_of", "m/s", ETHD_TAP_FIELD(v_of), 1, 3},
-    {"d_max", "mm", ETHD_TAP_FIELD(d_max), 1e3, 2},  {"v_rmin", "m/s", ETHD_TAP_FIELD(v_rmin), 1, 3},
+    {"v_rvo", "m/s", ETHD_TAP_FIELD(v_rvo), 1, 3},    {"v_of", "m/s", ETHD_TAP_FIELD(v_of), 1, 3},
+    {"d_max", "mm", ETHD_TAP_FIELD(d_max), 1e3, 2},   {"v_rmin", "m/s", ETHD_TAP_FIELD(v_rmin), 1, 3},
     {"Delta_s", "ms", ETHD_TAP_FIELD(delta_s), 1, 2}, {"eps", "mm", ETHD_TAP_FIELD(eps), 1e3, 3},
 };
 enum { COLUMNS = sizeof columns / sizeof *columns };
@@ -99,8 +99,8 @@ static const char *reference_of(const char *plant, int mean) {
 static void print_means(FILE *file, const char *plant, const ethd__cell *cells, size_t count) {
   ethd__mean means[ETHD_TAP_MEANS];
   ethd__means(cells, count, means);
-  fprintf(file, "\n%-20s %-16s %-16s %-18s %s\n", "Table 1 (offset)", "paper (9 taps)", "here",
-          "another simulator", "|here - paper| <= paper's sd + 2 standard errors");
+  fprintf(file, "\n%-20s %-16s %-16s %-18s %s\n", "Table 1 (offset)", "paper (9 taps)", "here", "another simulator",
+          "|here - paper| <= paper's sd + 2 standard errors");
   for (int i = 0; i < ETHD_TAP_MEANS; i++) {
     const ethd__mean *m = &means[i];
     char paper[32], here[32] = "-", difference[64] = "";
@@ -108,8 +108,8 @@ static void print_means(FILE *file, const char *plant, const ethd__cell *cells, 
     if (m->here.n) snprintf(here, sizeof here, "%.3f (%.3f)", m->here.mean, m->here.sd);
     if (m->verdict)
       snprintf(difference, sizeof difference, "%.3f <= %.3f  ", fabs(m->here.mean - m->paper), m->allowed);
-    fprintf(file, "%-15s %-4s %-16s %-16s %-18s %s%s\n", m->name, m->unit, paper, here,
-            reference_of(plant, i), difference, verdicts[m->verdict]);
+    fprintf(file, "%-15s %-4s %-16s %-16s %-18s %s%s\n", m->name, m->unit, paper, here, reference_of(plant, i),
+            difference, verdicts[m->verdict]);
   }
 }
 
@@ -138,9 +138,9 @@ static void print_weak(FILE *file, const ethd__cell *cells, size_t count) {
   if (!smooth || !offset || !ethd__cell_valid(smooth) || !ethd__cell_valid(offset)) return;
   ethd__figure s = ethd__cell_figure(smooth, field), o = ethd__cell_figure(offset, field);
   fprintf(file,
-          "Weak here: that v_of at high speed is nearer to 0 under offset. |mean| %.3f -> %.3f m/s, |median| %.3f -> %.3f.\n",
-          fabs(s.mean), fabs(o.mean), fabs(ethd__cell_median(smooth, field)),
-          fabs(ethd__cell_median(offset, field)));
+          "Weak here: that v_of at high speed is nearer to 0 under offset. |mean| %.3f -> %.3f m/s, |median| %.3f -> "
+          "%.3f.\n",
+          fabs(s.mean), fabs(o.mean), fabs(ethd__cell_median(smooth, field)), fabs(ethd__cell_median(offset, field)));
   fprintf(file, "The high d_max under smooth is a few large rebounds: by medians it is %.1f times that under offset.\n",
           ethd__cell_median(smooth, rebound) / ethd__cell_median(offset, rebound));
 }
@@ -180,8 +180,8 @@ static void print_heading(FILE *file, const ethd__study *study, const ethd__head
   fputs(" Means (standard deviations) over the valid taps.\n\n", file);
 }
 
-void ethd__table_print(FILE *file, const ethd__study *study, const ethd__heading *heading,
-                       const ethd__cell *cells, size_t count) {
+void ethd__table_print(FILE *file, const ethd__study *study, const ethd__heading *heading, const ethd__cell *cells,
+                       size_t count) {
   print_heading(file, study, heading);
   print_cells(file, cells, count);
   fputc('\n', file);

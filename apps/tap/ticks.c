@@ -5,14 +5,13 @@
 #include <string.h>
 
 #include "record/limits_event.h"
-#include "text/error_text.h"
 #include "record/recording_parts.h"
+#include "text/error_text.h"
 #include "text/text.h"
 
 #define TRUTH "truth.npy"
 #define LETTER_double 'f'
-#define COLUMN(type, name, count, unit, brief) \
-  {#name, unit, count, offsetof(ethd_truth, name), LETTER_##type},
+#define COLUMN(type, name, count, unit, brief) {#name, unit, count, offsetof(ethd_truth, name), LETTER_##type},
 const ethd_column ethd__truth_columns[] = {ETHD_TRUTH_FIELDS(COLUMN){NULL, NULL, 0, 0, 0}};
 #undef COLUMN
 
@@ -20,8 +19,7 @@ const ethd_column ethd__truth_columns[] = {ETHD_TRUTH_FIELDS(COLUMN){NULL, NULL,
 
 static ethd_status in_folder(const char *folder, const char *name, char **out, char *message) {
   *out = ethd__path_join(folder, name);
-  return *out ? ETHD_OK : ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder,
-                                    ethd_status_sentence(ETHD_E_MEMORY));
+  return *out ? ETHD_OK : ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
 }
 
 static ethd_status said(ethd_status status, char *message) {
@@ -34,8 +32,7 @@ ethd_status ethd__ticks_open(const char *folder, const ethd_config *config, ethd
   *out = (ethd__ticks){0};
   ethd_status status = ethd_recording_create(folder, config, &out->recording, message);
   if (!status) status = in_folder(folder, TRUTH, &truth, message);
-  if (!status)
-    status = ethd_npy_create(truth, ethd__truth_columns, sizeof(ethd_truth), &out->truth, message);
+  if (!status) status = ethd_npy_create(truth, ethd__truth_columns, sizeof(ethd_truth), &out->truth, message);
   free(truth);
   if (status) (void)!ethd__ticks_close(out, unsaid);
   return status;
@@ -60,8 +57,7 @@ ethd_status ethd__ticks_stage(ethd__ticks *ticks, const ethd__stage *stage, char
 ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *words, const ethd__rows *rows,
                             char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = ethd_recording_event(ticks->recording, "start", words);
-  for (size_t i = 0; !status && i < rows->count; i++)
-    status = ethd_recording_tick(ticks->recording, &rows->trace[i]);
+  for (size_t i = 0; !status && i < rows->count; i++) status = ethd_recording_tick(ticks->recording, &rows->trace[i]);
   if (!status) status = ethd_npy_append(ticks->truth, rows->truth, rows->count);
   if (!status) status = ethd_npy_flush(ticks->truth);
   return said(status, message);
@@ -76,8 +72,8 @@ ethd_status ethd__ticks_close(ethd__ticks *ticks, char message[ETHD_MESSAGE_MAX]
 
 /* ---- reading ---- */
 
-static ethd_status read_npy(const char *folder, const char *name, const ethd_column *columns, size_t bytes,
-                            void **rows, size_t *count, char *message) {
+static ethd_status read_npy(const char *folder, const char *name, const ethd_column *columns, size_t bytes, void **rows,
+                            size_t *count, char *message) {
   char *path;
   ethd_status status = in_folder(folder, name, &path, message);
   if (!status) status = ethd_npy_read(path, columns, bytes, rows, count, message);
@@ -89,13 +85,12 @@ ethd_status ethd__ticks_read(const char *folder, ethd__rows *out, char message[E
   void *trace = NULL, *truth = NULL;
   size_t count = 0, truths = 0;
   *out = (ethd__rows){0};
-  ethd_status status = read_npy(folder, ETHD_RECORDING_TICK, ethd_trace_columns, sizeof(ethd_trace), &trace,
-                                &count, message);
-  if (!status)
-    status = read_npy(folder, TRUTH, ethd__truth_columns, sizeof(ethd_truth), &truth, &truths, message);
+  ethd_status status =
+      read_npy(folder, ETHD_RECORDING_TICK, ethd_trace_columns, sizeof(ethd_trace), &trace, &count, message);
+  if (!status) status = read_npy(folder, TRUTH, ethd__truth_columns, sizeof(ethd_truth), &truth, &truths, message);
   if (!status && count != truths)
-    status = ethd__say(message, ETHD_E_SYNTAX, "%s: %zu rows in %s, %zu in %s; the same number is allowed",
-                       folder, count, ETHD_RECORDING_TICK, truths, TRUTH);
+    status = ethd__say(message, ETHD_E_SYNTAX, "%s: %zu rows in %s, %zu in %s; the same number is allowed", folder,
+                       count, ETHD_RECORDING_TICK, truths, TRUTH);
   if (!status) {
     *out = (ethd__rows){trace, truth, count, count};
     return ETHD_OK;

@@ -32,7 +32,6 @@ ETHD_MUST_CHECK ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *word
 ETHD_MUST_CHECK ethd_status ethd__ticks_close(ethd__ticks *ticks, char message[ETHD_MESSAGE_MAX]);
 
 /* Both files of a folder back into rows, which ethd__rows_free frees. */
-ETHD_MUST_CHECK ethd_status ethd__ticks_read(const char *folder, ethd__rows *out,
-                                             char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__ticks_read(const char *folder, ethd__rows *out, char message[ETHD_MESSAGE_MAX]);
 
 #endif

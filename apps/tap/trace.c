@@ -4,7 +4,7 @@
 
 #include "text/csv.h"
 
-#define HEADER                                                                                        \
+#define HEADER                                                                                          \
   "t_s,since_wall_s,ring_m,finger_m,hand_m,offset_wall_m,v_ring_mps,v_finger_mps,state,beta,fe_n,fd_n," \
   "pad_force_n,tau1_nm,tau2_nm"
 

@@ -13,7 +13,7 @@ typedef struct ethd__view {
 
 /* Time from t_r/vo; depths are those of the ring's front, the finger's and the hand's along n, from the
    wall into it. [main] */
-ETHD_MUST_CHECK ethd_status ethd__trace_write(const char *path, const ethd__view *view,
-                                              const ethd__rows *rows, char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__trace_write(const char *path, const ethd__view *view, const ethd__rows *rows,
+                                              char message[ETHD_MESSAGE_MAX]);
 
 #endif

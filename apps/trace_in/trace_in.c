@@ -6,10 +6,10 @@
 
 #define SECONDS_MAX 9e9 /* ns fit, and so do dates: seconds since 1970 */
 
-static const char *const columns[] = {
-    "t_s",    "q1_rad", "q2_rad", "dq1_radps", "dq2_radps", "xf_m",  "yf_m",  "vxf_mps", "vyf_mps",
-    "t_ring_s", "r0_m", "r1_m",   "r2_m",      "r3_m",      "r4_m",  "r5_m",  "r6_m",    "r7_m",
-    "r8_m",   "r9_m",   "r10_m",  "r11_m",     "r12_m",     "r13_m", "r14_m", "r15_m",   NULL};
+static const char *const columns[] = {"t_s",     "q1_rad",  "q2_rad",   "dq1_radps", "dq2_radps", "xf_m", "yf_m",
+                                      "vxf_mps", "vyf_mps", "t_ring_s", "r0_m",      "r1_m",      "r2_m", "r3_m",
+                                      "r4_m",    "r5_m",    "r6_m",     "r7_m",      "r8_m",      "r9_m", "r10_m",
+                                      "r11_m",   "r12_m",   "r13_m",    "r14_m",     "r15_m",     NULL};
 enum { Q = 1, DQ = 3, FINGER = 5, T_RING = 9, RAYS = 10 };
 
 static double cell(const ethd__trace_in *in, size_t row, int column) {
@@ -18,8 +18,7 @@ static double cell(const ethd__trace_in *in, size_t row, int column) {
 
 static ethd_status refuse(const ethd__trace_in *in, size_t row, int column, const char *what,
                           char message[ETHD_MESSAGE_MAX]) {
-  snprintf(message, ETHD_MESSAGE_MAX, "%s:%zu: %s: %s", in->csv.path, ethd_csv_line(row),
-           in->csv.names[column], what);
+  snprintf(message, ETHD_MESSAGE_MAX, "%s:%zu: %s: %s", in->csv.path, ethd_csv_line(row), in->csv.names[column], what);
   return ETHD_E_RANGE;
 }
 
@@ -55,8 +54,7 @@ static ethd_status find_columns(ethd__trace_in *in, char message[ETHD_MESSAGE_MA
   int finger = find(in, FINGER, 4, in->finger);
   int ring = find(in, RAYS, ETHD_RAYS, in->rays) + find(in, T_RING, 1, &in->t_ring);
   in->ring = finger == 0 && ring > 0;
-  if (in->ring && ring < ETHD_RAYS + 1)
-    return no_column(in, missing(in, T_RING, ETHD_RAYS + 1), message);
+  if (in->ring && ring < ETHD_RAYS + 1) return no_column(in, missing(in, T_RING, ETHD_RAYS + 1), message);
   if (!in->ring && finger < 4) return no_column(in, missing(in, FINGER, 4), message);
   return ETHD_OK;
 }
@@ -64,7 +62,8 @@ static ethd_status find_columns(ethd__trace_in *in, char message[ETHD_MESSAGE_MA
 static ethd_status check_finite(const ethd__trace_in *in, size_t row, const int *column, int count,
                                 char message[ETHD_MESSAGE_MAX]) {
   for (int i = 0; i < count; i++) {
-    if (ethd_csv_empty(&in->csv, row, column[i])) return refuse(in, row, column[i], "empty; a number is needed", message);
+    if (ethd_csv_empty(&in->csv, row, column[i]))
+      return refuse(in, row, column[i], "empty; a number is needed", message);
     if (!isfinite(cell(in, row, column[i])))
       return refuse(in, row, column[i], "not a number; a finite one is needed", message);
   }
@@ -78,8 +77,8 @@ static ethd_status check_frame(const ethd__trace_in *in, size_t row, char messag
     return refuse(in, row, in->t_ring, "not a time within 9e9 s", message);
   for (int i = 0; i < ETHD_RAYS; i++)
     if (ethd_csv_empty(&in->csv, row, in->rays[i]) != none)
-      return refuse(in, row, in->rays[i],
-                    none ? "a distance without t_ring_s" : "empty; NaN marks a missing ray", message);
+      return refuse(in, row, in->rays[i], none ? "a distance without t_ring_s" : "empty; NaN marks a missing ray",
+                    message);
   return ETHD_OK;
 }
 
@@ -90,8 +89,7 @@ static ethd_status check_row(const ethd__trace_in *in, size_t row, char message[
   if (status == ETHD_OK)
     status = in->ring ? check_frame(in, row, message) : check_finite(in, row, in->finger, 4, message);
   if (status != ETHD_OK) return status;
-  if (!(fabs(cell(in, row, in->t)) <= SECONDS_MAX))
-    return refuse(in, row, in->t, "not a time within 9e9 s", message);
+  if (!(fabs(cell(in, row, in->t)) <= SECONDS_MAX)) return refuse(in, row, in->t, "not a time within 9e9 s", message);
   if (row > 0 && !(cell(in, row, in->t) > cell(in, row - 1, in->t)))
     return refuse(in, row, in->t, "time must rise from row to row", message);
   return ETHD_OK;
@@ -106,8 +104,7 @@ ethd_status ethd__trace_in_read(const char *path, ethd__trace_in *out, char mess
     snprintf(message, ETHD_MESSAGE_MAX, "%s: no rows; a trace needs at least one", path);
     status = ETHD_E_SYNTAX;
   }
-  for (size_t row = 0; status == ETHD_OK && row < out->csv.rows; row++)
-    status = check_row(out, row, message);
+  for (size_t row = 0; status == ETHD_OK && row < out->csv.rows; row++) status = check_row(out, row, message);
   if (status != ETHD_OK) ethd__trace_in_free(out);
   return status;
 }

@@ -13,8 +13,7 @@ typedef struct ethd__trace_in {
 
 /* Reads and checks everything: columns that must be there, times that must rise, numbers that must be
    finite. */
-ETHD_MUST_CHECK ethd_status ethd__trace_in_read(const char *path, ethd__trace_in *out,
-                                                char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__trace_in_read(const char *path, ethd__trace_in *out, char message[ETHD_MESSAGE_MAX]);
 
 /* Row `row` as the controller takes it. */
 ethd_sense ethd__trace_in_sense(const ethd__trace_in *in, size_t row);

@@ -7,15 +7,7 @@
 
 /* One tick as a linear map of: position, speed, estimate, filter position, force of the last tick,
    forces on their way, last positions. Its matrix is read off by applying it to unit vectors. */
-enum {
-  X,
-  V,
-  ESTIMATE,
-  FILTER,
-  LAST,
-  WAY,
-  STATE_MAX = WAY + ETHD_LOOP_DELAY_MAX + 1 + ETHD_VELOCITY_WINDOW_MAX
-};
+enum { X, V, ESTIMATE, FILTER, LAST, WAY, STATE_MAX = WAY + ETHD_LOOP_DELAY_MAX + 1 + ETHD_VELOCITY_WINDOW_MAX };
 
 typedef double matrix[STATE_MAX][STATE_MAX];
 
@@ -57,18 +49,11 @@ static void use_kalman(model *m) {
 static void prepare(const ethd_loop *loop, model *m) {
   *m = (model){.loop = loop};
   switch (loop->method) {
-  case ETHD_VELOCITY_LOWPASS:
-    use_difference(m, 1 - ethd_exp(-2 * M_PI * loop->p[0] * loop->period));
-    break;
+  case ETHD_VELOCITY_LOWPASS: use_difference(m, 1 - ethd_exp(-2 * M_PI * loop->p[0] * loop->period)); break;
   case ETHD_VELOCITY_LSQ:
-  case ETHD_VELOCITY_FOAW:
-    use_line(m, (int)loop->p[0]);
-    break;
-  case ETHD_VELOCITY_KALMAN:
-    use_kalman(m);
-    break;
-  default:
-    use_difference(m, 1);
+  case ETHD_VELOCITY_FOAW: use_line(m, (int)loop->p[0]); break;
+  case ETHD_VELOCITY_KALMAN: use_kalman(m); break;
+  default: use_difference(m, 1);
   }
   m->ways = loop->delay + (loop->late > 0);
   m->past = WAY + m->ways;
@@ -156,9 +141,7 @@ double ethd__loop_radius(const ethd_loop *loop) {
 }
 
 /* A free ring's position is neither stable nor unstable: radius 1. */
-bool ethd__loop_stable(const ethd_loop *loop) {
-  return ethd__loop_radius(loop) <= 1 + 1e-7;
-}
+bool ethd__loop_stable(const ethd_loop *loop) { return ethd__loop_radius(loop) <= 1 + 1e-7; }
 
 /* ---- searches ---- */
 
@@ -176,15 +159,11 @@ static double bisect(ethd_loop *loop, double *value, double stable, double unsta
   return stable;
 }
 
-static double grid(int i) {
-  return exp(i * log(10) / STEPS_PER_DECADE);
-}
+static double grid(int i) { return exp(i * log(10) / STEPS_PER_DECADE); }
 
 /* At a large mass all is slow, and hold and delay take K (T (n + 1/2) + late) off the damping, whatever
    the estimator. */
-double ethd__loop_damping_needed(const ethd_loop *l) {
-  return l->stiffness * (l->period * (l->delay + 0.5) + l->late);
-}
+double ethd__loop_damping_needed(const ethd_loop *l) { return l->stiffness * (l->period * (l->delay + 0.5) + l->late); }
 
 double ethd__loop_mass_min(const ethd_loop *loop) {
   ethd_loop l = *loop;
@@ -268,8 +247,7 @@ double ethd__loop_velocity_end(const ethd_loop *loop) {
 
 /* ---- closed forms ---- */
 
-void ethd__loop_boundary(double mass, double period, int delay, double th, double *stiffness,
-                         double *damping) {
+void ethd__loop_boundary(double mass, double period, int delay, double th, double *stiffness, double *damping) {
   double t = tan(th / 2), k = 4 * t * t * cos((delay + 1) * th);
   *stiffness = k * mass / (period * period);
   *damping = (2 * t * sin((delay + 1) * th) - k / 2) * mass / period;
@@ -279,6 +257,4 @@ double ethd__loop_damping_free(double mass, double period, int delay) {
   return 2 * mass / period * tan(M_PI / (4 * (delay + 1)));
 }
 
-double ethd__loop_passive_friction(const ethd_loop *loop) {
-  return loop->stiffness * loop->period / 2 + loop->damping;
-}
+double ethd__loop_passive_friction(const ethd_loop *loop) { return loop->stiffness * loop->period / 2 + loop->damping; }

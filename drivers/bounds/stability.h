@@ -53,8 +53,7 @@ double ethd__loop_velocity_end(const ethd_loop *loop);
 
 /* Closed forms for the backward difference, whole ticks. The boundary, 0 < th <= pi / (2 (n + 1)):
      K T^2/m = 4 tan^2(th/2) cos((n+1) th),  B T/m = 2 tan(th/2) sin((n+1) th) - K T^2/(2m) */
-void ethd__loop_boundary(double mass, double period, int delay, double th, double *stiffness,
-                         double *damping);
+void ethd__loop_boundary(double mass, double period, int delay, double th, double *stiffness, double *damping);
 
 /* Its end at K = 0: (2m/T) tan(pi / (4 (n+1))). */
 double ethd__loop_damping_free(double mass, double period, int delay);

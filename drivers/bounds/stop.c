@@ -2,9 +2,7 @@
 
 #include <math.h>
 
-double ethd__stop_deceleration(const ethd_stop *s) {
-  return (s->force + s->friction) / s->mass;
-}
+double ethd__stop_deceleration(const ethd_stop *s) { return (s->force + s->friction) / s->mass; }
 
 double ethd__stop_lag(const ethd_stop *s, double speed) {
   return (s->friction + s->viscous * speed) / s->stiffness + speed * s->behind;

@@ -106,8 +106,8 @@ static ethd_verdict judge_samples(const ethd__rig *r, ethd_conform_answer *a) {
     return ethd__rig_answer(a, reaction >= ETHD_REACTION_STOP && r->late <= AGE_MAX ? ETHD_BROKEN : ETHD_AT_RISK,
                             "it reports: %s; ticks were up to %.3g ms late", ethd_fault_sentence(row), 1e3 * r->late);
   if (r->readings) snprintf(readings, sizeof readings, "; %d readings of the finger", r->readings);
-  return ethd__rig_answer(a, r->age > AGE_MAX ? ETHD_AT_RISK : ETHD_KEPT, "%d samples, the oldest used at %.3g ms%s", r->samples,
-                          1e3 * r->age, readings);
+  return ethd__rig_answer(a, r->age > AGE_MAX ? ETHD_AT_RISK : ETHD_KEPT, "%d samples, the oldest used at %.3g ms%s",
+                          r->samples, 1e3 * r->age, readings);
 }
 
 static ethd_verdict ask_sense(const ethd_conform_def *def, ethd_conform_answer *a) {
@@ -134,7 +134,8 @@ static ethd_verdict ask_zero(const ethd_conform_def *def, ethd_conform_answer *a
   ethd__rig_run(&r, PUSH, 0, 0);
   double moved = fmax(fabs(r.sense.q[0] - q[0]), fabs(r.sense.q[1] - q[1]));
   ethd__rig_end(&r);
-  return ethd__rig_answer(a, moved <= STILL ? ETHD_KEPT : ETHD_BROKEN, "%.3g rad in %g s without torque, %g is allowed", moved, PUSH, STILL);
+  return ethd__rig_answer(a, moved <= STILL ? ETHD_KEPT : ETHD_BROKEN, "%.3g rad in %g s without torque, %g is allowed",
+                          moved, PUSH, STILL);
 }
 
 static ethd_verdict ask_sign(const ethd_conform_def *def, ethd_conform_answer *a) {
@@ -150,8 +151,9 @@ static ethd_verdict ask_sign(const ethd_conform_def *def, ethd_conform_answer *a
       ethd__rig_end(&r);
     }
   int right = moved[0][0] > 0 && moved[0][1] < 0 && moved[1][0] > 0 && moved[1][1] < 0;
-  return ethd__rig_answer(a, right ? ETHD_KEPT : ETHD_BROKEN, "+-%g Nm moved joint 1 by %+.3g %+.3g, joint 2 by %+.3g %+.3g rad", def->torque,
-                moved[0][0], moved[0][1], moved[1][0], moved[1][1]);
+  return ethd__rig_answer(a, right ? ETHD_KEPT : ETHD_BROKEN,
+                          "+-%g Nm moved joint 1 by %+.3g %+.3g, joint 2 by %+.3g %+.3g rad", def->torque, moved[0][0],
+                          moved[0][1], moved[1][0], moved[1][1]);
 }
 
 static ethd_verdict ask_counts(const ethd_conform_def *def, ethd_conform_answer *a) {
@@ -169,7 +171,9 @@ static ethd_verdict ask_counts(const ethd_conform_def *def, ethd_conform_answer 
 static int is_pushed(const ethd__rig *r, double acceleration, ethd_conform_answer *a) {
   double least = ethd__rig_least(r, LAPSE / 2);
   if (acceleration > 0 && acceleration >= least) return 1;
-  return ethd__rig_answer(a, ETHD_NOT_ASKED, "%+.3g rad/s^2 under %g Nm, %.3g would show: it needs more torque", acceleration, r->def->torque, least), 0;
+  return ethd__rig_answer(a, ETHD_NOT_ASKED, "%+.3g rad/s^2 under %g Nm, %.3g would show: it needs more torque",
+                          acceleration, r->def->torque, least),
+         0;
 }
 
 /* First the other way, under a torque that is held: rad/s^2 at the end. A device that gains no more speed then
@@ -184,7 +188,10 @@ static double held(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__rig_end(&r);
   if (!is_pushed(&r, pushed, a)) return 0;
   if (end >= 0.1 * pushed && end >= ethd__rig_least(&r, LAPSE / 2)) return end;
-  return ethd__rig_answer(a, ETHD_NOT_ASKED, "%.3g rad/s^2, but %.3g once the torque was held for %g s: something is in its way", pushed, end, 2 * LAPSE), 0;
+  return ethd__rig_answer(a, ETHD_NOT_ASKED,
+                          "%.3g rad/s^2, but %.3g once the torque was held for %g s: something is in its way", pushed,
+                          end, 2 * LAPSE),
+         0;
 }
 
 /* Torque that nobody renews must end. */
@@ -199,8 +206,10 @@ static ethd_verdict ask_watchdog(const ethd_conform_def *def, ethd_conform_answe
   ethd__rig_end(&r);
   if (!is_pushed(&r, pushed, a)) return a->verdict;
   if (left <= most)
-    return ethd__rig_answer(a, ETHD_KEPT, "%.3g rad/s^2 under torque, %.3g once nobody had written for %g s", pushed, left, LAPSE);
-  return ethd__rig_answer(a, ETHD_AT_RISK, "none: still %.3g of %.3g rad/s^2, %g s after the last write", left, pushed, LAPSE);
+    return ethd__rig_answer(a, ETHD_KEPT, "%.3g rad/s^2 under torque, %.3g once nobody had written for %g s", pushed,
+                            left, LAPSE);
+  return ethd__rig_answer(a, ETHD_AT_RISK, "none: still %.3g of %.3g rad/s^2, %g s after the last write", left, pushed,
+                          LAPSE);
 }
 
 static ethd_verdict ask_safe(const ethd_conform_def *def, ethd_conform_answer *a) {
@@ -220,8 +229,8 @@ static ethd_verdict ask_safe(const ethd_conform_def *def, ethd_conform_answer *a
   r.driver->safe(r.device); /* and once stopped */
   r.driver->close(r.device);
   if (!is_pushed(&r, pushed, a)) return a->verdict;
-  return ethd__rig_answer(a, left <= most ? ETHD_KEPT : ETHD_BROKEN, "%.3g rad/s^2 under torque, %.3g with the same torque once safe", pushed,
-                left);
+  return ethd__rig_answer(a, left <= most ? ETHD_KEPT : ETHD_BROKEN,
+                          "%.3g rad/s^2 under torque, %.3g with the same torque once safe", pushed, left);
 }
 
 static ethd_verdict ask_restart(const ethd_conform_def *def, ethd_conform_answer *a) {
@@ -250,9 +259,9 @@ static const struct {
   const char *name;
   ethd_verdict (*ask)(const ethd_conform_def *def, ethd_conform_answer *a);
   int moves;
-} questions[ETHD_QUESTIONS] = {{"table", ask_table, 0}, {"open", ask_open, 0},         {"limits", ask_limits, 0},
-                               {"sense", ask_sense, 0}, {"zero", ask_zero, 0},         {"sign", ask_sign, 1},
-                               {"counts", ask_counts, 1}, {"watchdog", ask_watchdog, 1}, {"safe", ask_safe, 1},
+} questions[ETHD_QUESTIONS] = {{"table", ask_table, 0},    {"open", ask_open, 0},         {"limits", ask_limits, 0},
+                               {"sense", ask_sense, 0},    {"zero", ask_zero, 0},         {"sign", ask_sign, 1},
+                               {"counts", ask_counts, 1},  {"watchdog", ask_watchdog, 1}, {"safe", ask_safe, 1},
                                {"restart", ask_restart, 1}};
 
 ethd_status ethd_conform(const ethd_conform_def *def, ethd_conform_answer answers[ETHD_QUESTIONS]) {

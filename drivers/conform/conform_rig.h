@@ -21,7 +21,7 @@ struct ethd__rig {
   const ethd_driver *driver;
   void *device;
   int64_t now, period; /* ns */
-  atomic_int stop; /* the I/O threads, of which there are `units` */
+  atomic_int stop;     /* the I/O threads, of which there are `units` */
   uint32_t units;
   ethd__rig_unit unit[ETHD_UNITS_MAX];
   ethd_sense sense;

@@ -1,3 +1,9 @@
 #include "ethd/driver.h"
 
-const ethd_driver *const ethd_drivers[] = {&ethd_driver_sim, &ethd_driver_replay, &ethd_driver_counter, &ethd_driver_servo, &ethd_driver_ring, &ethd_driver_hello, NULL};
+const ethd_driver *const ethd_drivers[] = {&ethd_driver_sim,
+                                           &ethd_driver_replay,
+                                           &ethd_driver_counter,
+                                           &ethd_driver_servo,
+                                           &ethd_driver_ring,
+                                           &ethd_driver_hello,
+                                           NULL};

@@ -3,9 +3,9 @@
 #include <string.h>
 
 #include "device/stack.h"
+#include "inject/inject.h"
 #include "text/error_text.h"
 #include "text/text.h"
-#include "inject/inject.h"
 
 #define BLANKS " \t"
 #define INJECT "inject" /* the key that is no driver's */
@@ -67,9 +67,10 @@ static ethd_status check_owners(const ethd__stack *s, const ethd_device_def *def
     int owned = !strcmp(def->settings[k].key, INJECT);
     for (uint32_t i = 0; i < s->count; i++) owned |= own_key(def->settings[k].key, s->at[i].driver->id) != NULL;
     if (!owned)
-      return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: device.%s: with several drivers a key names its own, as in %s.%s",
-                       def->file ? def->file : "", def->settings[k].line, def->settings[k].key,
-                       s->at[0].driver->id, def->settings[k].key);
+      return ethd__say(message, ETHD_E_UNKNOWN,
+                       "%s:%d: device.%s: with several drivers a key names its own, as in %s.%s",
+                       def->file ? def->file : "", def->settings[k].line, def->settings[k].key, s->at[0].driver->id,
+                       def->settings[k].key);
   }
   return ETHD_OK;
 }
@@ -104,8 +105,8 @@ static ethd_status open_one(ethd__stack *s, uint32_t i, const ethd_device_def *d
   return status;
 }
 
-static ethd_status open_all(ethd__stack *s, const char *ids, const ethd_driver *const *from,
-                            const ethd_device_def *def, char *message) {
+static ethd_status open_all(ethd__stack *s, const char *ids, const ethd_driver *const *from, const ethd_device_def *def,
+                            char *message) {
   ethd_status status = name_drivers(s, ids, from, def, message);
   if (!status) status = check_owners(s, def, message);
   for (uint32_t i = 0; !status && i < s->count; i++) status = open_one(s, i, def, message);

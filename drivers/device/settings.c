@@ -22,8 +22,8 @@ static ethd_status refuse_key(const ethd_driver *d, const ethd_device_def *def, 
   char list[ETHD_MESSAGE_MAX] = "";
   for (const char *const *key = d->keys; key && *key; key++) add_name(list, sizeof list, *key);
   for (uint32_t i = 0; i < d->param_count; i++) add_name(list, sizeof list, d->params[i].name);
-  return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: device.%s: %s %s%s", def->file ? def->file : "the defaults", s->line,
-                   s->key, d->id, list[0] ? "knows " : "has no settings", list);
+  return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: device.%s: %s %s%s", def->file ? def->file : "the defaults",
+                   s->line, s->key, d->id, list[0] ? "knows " : "has no settings", list);
 }
 
 static ethd_status set_value(const ethd_device_def *def, const ethd_setting *s, const ethd_param *row, double *out,

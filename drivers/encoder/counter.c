@@ -27,7 +27,7 @@ typedef struct counter {
   ethd__encoder encoder[2];
   double torque[2]; /* of the last command */
   uint64_t marks[2];
-  int32_t lost;     /* a jump was grave: the angle isn't known any more */
+  int32_t lost; /* a jump was grave: the angle isn't known any more */
 } counter;
 
 /* ---- I/O ---- */
@@ -185,7 +185,8 @@ static const char *counter_remark(const void *device, uint32_t i) {
   const counter *c = device;
   const char *said[4] = {NULL};
   uint32_t n = 0;
-  if (is_misindexed(c)) said[n++] = "an encoder's index marks had a wrong distance: check its coupling, then open it anew";
+  if (is_misindexed(c))
+    said[n++] = "an encoder's index marks had a wrong distance: check its coupling, then open it anew";
   if (isinf(c->def[0].freeze_torque)) said[n++] = "counter.freeze_torque is inf: a frozen encoder isn't noticed";
   if (isinf(c->def[0].reverse_torque)) said[n++] = "counter.reverse_torque is inf: a reversed encoder isn't noticed";
   return i < n ? said[i] : NULL;

@@ -28,8 +28,8 @@ typedef struct ethd__counter_calls {
   int (*open)(const char *path, int flags);
   int (*close)(int fd);
   int (*ioctl)(int fd, unsigned long request, void *argument);
-  ssize_t (*read)(int fd, void *to, size_t size);             /* of the device: whole events */
-  ssize_t (*read_text)(int fd, char *to, size_t size);        /* of an attribute: from its beginning */
+  ssize_t (*read)(int fd, void *to, size_t size);      /* of the device: whole events */
+  ssize_t (*read_text)(int fd, char *to, size_t size); /* of an attribute: from its beginning */
   ssize_t (*write_text)(int fd, const char *from, size_t size);
   void (*pause)(int64_t ns);
 } ethd__counter_calls;
@@ -65,7 +65,7 @@ typedef struct ethd__counter_settings {
   double p[ETHD__COUNTER_PARAMS];
   char device[2][ETHD_COUNTER_TEXT_MAX]; /* of joint 1 and 2 */
   char function[ETHD_COUNTER_TEXT_MAX];
-  uint8_t count[2], channel[2];          /* number of the count; of its index event */
+  uint8_t count[2], channel[2]; /* number of the count; of its index event */
 } ethd__counter_settings;
 
 ETHD_MUST_CHECK ethd_status ethd__counter_settings_read(const ethd_device_def *def, ethd__counter_settings *out,
@@ -73,7 +73,7 @@ ETHD_MUST_CHECK ethd_status ethd__counter_settings_read(const ethd_device_def *d
 
 /* One count of the kernel's. */
 typedef struct ethd__kernel_count {
-  int device, count;  /* descriptors; the device may be another count's too */
+  int device, count; /* descriptors; the device may be another count's too */
   bool shared;
   uint64_t ceiling;
 } ethd__kernel_count;
@@ -91,7 +91,6 @@ int ethd__kernel_count_read(const ethd__counter_calls *calls, const ethd__kernel
 /* Asks the device of joint j for its events; those of a shared device come from both at once. */
 ETHD_MUST_CHECK ethd_status ethd__kernel_count_watch(const ethd__counter_calls *calls,
                                                      const ethd__counter_settings *settings, int j,
-                                                     const ethd__kernel_count *counts,
-                                                     char message[ETHD_MESSAGE_MAX]);
+                                                     const ethd__kernel_count *counts, char message[ETHD_MESSAGE_MAX]);
 
 #endif

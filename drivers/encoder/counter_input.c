@@ -16,8 +16,7 @@ ethd_status ethd__counter_input_open(const ethd__counter_settings *settings, eth
   for (int j = 0; j < 2; j++) in->counts[j] = (ethd__kernel_count){.device = -1, .count = -1};
   for (int j = 0; j < 2 && !status; j++)
     status = ethd__kernel_count_open(in->calls, settings, j, j ? &in->counts[0] : NULL, &in->counts[j], message);
-  for (int j = 0; j < 2 && !status; j++)
-    status = ethd__kernel_count_watch(in->calls, settings, j, in->counts, message);
+  for (int j = 0; j < 2 && !status; j++) status = ethd__kernel_count_watch(in->calls, settings, j, in->counts, message);
   return status;
 }
 

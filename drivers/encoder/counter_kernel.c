@@ -89,13 +89,12 @@ static int to_count(const char *text, uint64_t *out) {
   return *end || errno ? -1 : 0;
 }
 
-static ethd_status find_ceiling(const ethd__counter_calls *calls, const ethd__counter_settings *s, int j,
-                                uint64_t *out, char *message) {
+static ethd_status find_ceiling(const ethd__counter_calls *calls, const ethd__counter_settings *s, int j, uint64_t *out,
+                                char *message) {
   char path[160], text[32];
   name_attribute(s, j, "ceiling", path, sizeof path);
   *out = ethd__count_ceiling((uint32_t)s->p[ETHD__COUNTER_WIDTH]);
-  if (get(calls, path, text, sizeof text))
-    return errno == ENOENT ? ETHD_OK : say_errno(path, "can't be read", message);
+  if (get(calls, path, text, sizeof text)) return errno == ENOENT ? ETHD_OK : say_errno(path, "can't be read", message);
   if (to_count(text, out) || *out == 0)
     return ethd__say(message, ETHD_E_DEVICE, "%s: found \"%s\"; a whole number over 0 is expected", path, text);
   return ETHD_OK;

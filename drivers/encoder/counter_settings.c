@@ -26,7 +26,8 @@ const ethd_param ethd__counter_params[ETHD__COUNTER_PARAMS] = {
     [ETHD__COUNTER_INERTIA] = {"inertia", "kg m^2", 1e-6, 1e3, 0.01, "of a joint, within a half"},
 };
 
-const char *const ethd__counter_keys[] = {"device", "device2", "function", "count1", "count2", "channel1", "channel2", NULL};
+const char *const ethd__counter_keys[] = {"device", "device2",  "function", "count1",
+                                          "count2", "channel1", "channel2", NULL};
 
 static ethd_status refuse(const ethd_device_def *def, const ethd_setting *s, ethd_status status, double found,
                           double min, double max, char *message) {
@@ -38,8 +39,7 @@ static ethd_status refuse(const ethd_device_def *def, const ethd_setting *s, eth
 
 static ethd_status set_text(const ethd_device_def *def, const ethd_setting *s, char *out, char *message) {
   size_t n = strlen(s->value);
-  if (n >= ETHD_COUNTER_TEXT_MAX)
-    return refuse(def, s, ETHD_E_RANGE, (double)n, 1, ETHD_COUNTER_TEXT_MAX - 1, message);
+  if (n >= ETHD_COUNTER_TEXT_MAX) return refuse(def, s, ETHD_E_RANGE, (double)n, 1, ETHD_COUNTER_TEXT_MAX - 1, message);
   memcpy(out, s->value, n + 1);
   return ETHD_OK;
 }
@@ -75,8 +75,7 @@ static ethd_status set_number(const ethd_device_def *def, const ethd_setting *s,
   return ETHD_OK;
 }
 
-static ethd_status set(const ethd_device_def *def, const ethd_setting *s, ethd__counter_settings *out,
-                       char *message) {
+static ethd_status set(const ethd_device_def *def, const ethd_setting *s, ethd__counter_settings *out, char *message) {
   if (!strcmp(s->key, "device")) return set_text(def, s, out->device[0], message);
   if (!strcmp(s->key, "device2")) return set_text(def, s, out->device[1], message);
   if (!strcmp(s->key, "function")) return set_text(def, s, out->function, message);

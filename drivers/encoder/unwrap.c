@@ -145,8 +145,7 @@ static void begin(const ethd__encoder_def *def, ethd__encoder *e, const ethd__co
 }
 
 /* Goes on at the last step's speed. */
-static int64_t drop(const ethd__encoder_def *def, ethd__encoder *e, const ethd__count *s,
-                    int64_t *grave) ETHD_RT {
+static int64_t drop(const ethd__encoder_def *def, ethd__encoder *e, const ethd__count *s, int64_t *grave) ETHD_RT {
   int64_t bit = ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP);
   if (e->jumped && s->time_ns - e->jump_ns <= JUMPS_NS) *grave |= bit;
   e->jumped = 1;
@@ -157,20 +156,21 @@ static int64_t drop(const ethd__encoder_def *def, ethd__encoder *e, const ethd__
   return bit;
 }
 
-static int is_jump(const ethd__encoder_def *def, const ethd__encoder *e, const ethd__count *s,
-                   int64_t step) ETHD_RT {
+static int is_jump(const ethd__encoder_def *def, const ethd__encoder *e, const ethd__count *s, int64_t step) ETHD_RT {
   double dt = 1e-9 * (double)(s->time_ns - e->time_ns);
   double most = def->speed_max * dt / fabs(angle_per_count(def)) + 1;
   return s->raw > def->ceiling || (step && !(fabs((double)step) <= most));
 }
 
-int64_t ethd__encoder_step(const ethd__encoder_def *def, ethd__encoder *e, const ethd__count *s,
-                           double torque, int64_t *grave) {
+int64_t ethd__encoder_step(const ethd__encoder_def *def, ethd__encoder *e, const ethd__count *s, double torque,
+                           int64_t *grave) {
   int64_t faults = 0;
   if (!e->started && s->raw <= def->ceiling) begin(def, e, s);
   int64_t step = shorter(s->raw, e->raw, def->ceiling);
-  if (e->paused && s->raw <= def->ceiling) e->time_ns = s->time_ns;
-  else if (is_jump(def, e, s, step)) return drop(def, e, s, grave);
+  if (e->paused && s->raw <= def->ceiling)
+    e->time_ns = s->time_ns;
+  else if (is_jump(def, e, s, step))
+    return drop(def, e, s, grave);
   e->paused = 0;
   e->step = step;
   e->step_ns = s->time_ns - e->time_ns;

@@ -60,17 +60,17 @@ typedef struct ethd__encoder {
   int32_t misindexed; /* 1: index marks had a wrong distance; stays, and the next run is to be refused */
 
   int32_t started, paused, edges, marks;
-  int32_t direction;  /* of the last edge */
-  int32_t moves;      /* 1: speed is known */
+  int32_t direction; /* of the last edge */
+  int32_t moves;     /* 1: speed is known */
   uint64_t raw;
-  int64_t home;       /* count of the angle `offset` */
+  int64_t home; /* count of the angle `offset` */
   int64_t mark, first_mark;
-  int64_t time_ns;    /* of the last good sample */
-  int64_t step;       /* counts, of it, in step_ns */
+  int64_t time_ns; /* of the last good sample */
+  int64_t step;    /* counts, of it, in step_ns */
   int64_t step_ns;
   int64_t edge_ns;
-  double edge;        /* count at that edge: halfway between two */
-  int64_t jump_ns;    /* of the last dropped sample */
+  double edge;     /* count at that edge: halfway between two */
+  int64_t jump_ns; /* of the last dropped sample */
   int32_t jumped;
   double low, high;   /* Nm: torques since the last edge */
   double still;       /* s, since they differ by more than freeze_torque */
@@ -85,8 +85,7 @@ static inline uint64_t ethd__count_ceiling(uint32_t width) { return UINT64_MAX >
 
 /* A definition against the period of its samples, s: ETHD_E_RANGE or ETHD_E_NOT_FINITE with the field's
    name. Refuses a ceiling that speed_max could pass half of in one period. [main] */
-ETHD_MUST_CHECK ethd_status ethd__encoder_check(const ethd__encoder_def *def, double period,
-                                                ethd_error *error);
+ETHD_MUST_CHECK ethd_status ethd__encoder_check(const ethd__encoder_def *def, double period, ethd_error *error);
 
 /* Forgets where it was, but not that it was misindexed. */
 void ethd__encoder_restart(ethd__encoder *encoder) ETHD_RT;

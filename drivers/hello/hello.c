@@ -48,6 +48,14 @@ static ethd_status write_torque(void *device, int64_t now_ns, const ethd_command
 static void safe(void *device) ETHD_RT { ((hello *)device)->safe = 1; }
 static ethd_limits limits(const void *device) { return (void)device, ethd_limits_torque(1); }
 
-const ethd_driver ethd_driver_hello = {
-    .size = sizeof(ethd_driver), .abi = ETHD_DRIVER_ABI, .id = "hello", .brief = "two motors that aren't there, to copy from",
-    .open = open_hello, .start = start, .read = read_joints, .write = write_torque, .safe = safe, .close = free, .limits = limits};
+const ethd_driver ethd_driver_hello = {.size = sizeof(ethd_driver),
+                                       .abi = ETHD_DRIVER_ABI,
+                                       .id = "hello",
+                                       .brief = "two motors that aren't there, to copy from",
+                                       .open = open_hello,
+                                       .start = start,
+                                       .read = read_joints,
+                                       .write = write_torque,
+                                       .safe = safe,
+                                       .close = free,
+                                       .limits = limits};

@@ -137,8 +137,7 @@ static void add(const ethd_sense *s, ethd_status status, ethd_sense *out) ETHD_R
   if (s->have & ETHD_HAVE_START) memcpy(out->finger, s->finger, sizeof out->finger);
   out->have |= s->have;
   for (int b = 0; b < ETHD_BODIES_MAX; b++)
-    if (s->have & ((int64_t)ETHD_HAVE_BODY << b))
-      memcpy(out->bodies + 6 * b, s->bodies + 6 * b, 6 * sizeof *s->bodies);
+    if (s->have & ((int64_t)ETHD_HAVE_BODY << b)) memcpy(out->bodies + 6 * b, s->bodies + 6 * b, 6 * sizeof *s->bodies);
   if (status == ETHD_STALE && !(s->faults | s->grave)) return;
   out->time_ns = s->time_ns;
   memcpy(out->q, s->q, sizeof out->q);

@@ -16,6 +16,6 @@ extern const ethd_driver ethd__driver_inject;
 /* Takes the open `device` of `driver` and the script, also when it fails: closes and frees them then.
    ETHD_E_MEMORY. [main] */
 ETHD_MUST_CHECK ethd_status ethd__inject_around(const ethd_driver *driver, void *device, ethd__script *script,
-                                                                void **out);
+                                                void **out);
 
 #endif

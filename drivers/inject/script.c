@@ -37,18 +37,12 @@ static const struct {
   int by; /* 1: has a number */
   double min, max;
 } kinds[ETHD__INJECT_KINDS] = {
-    [ETHD__INJECT_FREEZE] = {"freeze", 0, 0, 0},
-    [ETHD__INJECT_OFFSET] = {"offset", 1, -1e6, 1e6},
-    [ETHD__INJECT_REVERSE] = {"reverse", 0, 0, 0},
-    [ETHD__INJECT_SCALE] = {"scale", 1, -1e6, 1e6},
-    [ETHD__INJECT_NOISE] = {"noise", 1, 0, 1e6},
-    [ETHD__INJECT_SET_TO] = {"value", 1, -1e6, 1e6},
-    [ETHD__INJECT_NAN] = {"nan", 0, 0, 0},
-    [ETHD__INJECT_DROP] = {"drop", 0, 0, 0},
-    [ETHD__INJECT_DELAY] = {"delay", 1, 0, 1},
-    [ETHD__INJECT_FAIL] = {"fail", 0, 0, 0},
-    [ETHD__INJECT_STALE] = {"stale", 0, 0, 0},
-    [ETHD__INJECT_SET] = {"set", 0, 0, 0},
+    [ETHD__INJECT_FREEZE] = {"freeze", 0, 0, 0},   [ETHD__INJECT_OFFSET] = {"offset", 1, -1e6, 1e6},
+    [ETHD__INJECT_REVERSE] = {"reverse", 0, 0, 0}, [ETHD__INJECT_SCALE] = {"scale", 1, -1e6, 1e6},
+    [ETHD__INJECT_NOISE] = {"noise", 1, 0, 1e6},   [ETHD__INJECT_SET_TO] = {"value", 1, -1e6, 1e6},
+    [ETHD__INJECT_NAN] = {"nan", 0, 0, 0},         [ETHD__INJECT_DROP] = {"drop", 0, 0, 0},
+    [ETHD__INJECT_DELAY] = {"delay", 1, 0, 1},     [ETHD__INJECT_FAIL] = {"fail", 0, 0, 0},
+    [ETHD__INJECT_STALE] = {"stale", 0, 0, 0},     [ETHD__INJECT_SET] = {"set", 0, 0, 0},
     [ETHD__INJECT_GRAVE] = {"grave", 0, 0, 0},
 };
 
@@ -217,8 +211,8 @@ static ethd_status read_lines(reader *r, const char *text, size_t length, ethd__
   return ETHD_OK;
 }
 
-ethd_status ethd__script_parse(const char *text, size_t length, const char *name, double period,
-                               ethd__script *out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__script_parse(const char *text, size_t length, const char *name, double period, ethd__script *out,
+                               char message[ETHD_MESSAGE_MAX]) {
   reader r = {.name = name, .message = message, .line = 1, .period = period};
   *out = (ethd__script){.at = calloc(ETHD_INJECT_LINES_MAX, sizeof *out->at)};
   if (!out->at) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", name, ethd_status_sentence(ETHD_E_MEMORY));
@@ -227,8 +221,7 @@ ethd_status ethd__script_parse(const char *text, size_t length, const char *name
   return status;
 }
 
-ethd_status ethd__script_load(const char *path, double period, ethd__script *out,
-                              char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__script_load(const char *path, double period, ethd__script *out, char message[ETHD_MESSAGE_MAX]) {
   char *text;
   size_t length;
   *out = (ethd__script){.count = 0};

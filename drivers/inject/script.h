@@ -61,7 +61,7 @@ typedef struct ethd__injection {
   uint32_t first, count; /* numbers of the channel */
   double by;
   int line;
-  int32_t begun;              /* while it runs, `held` is known */
+  int32_t begun; /* while it runs, `held` is known */
   double held[ETHD_RAYS];
 } ethd__injection;
 
@@ -71,9 +71,8 @@ typedef struct ethd__script {
 } ethd__script;
 
 /* `name` stands for the file in messages; period, s. text[length] is 0. On failure *out is empty. [main] */
-ETHD_MUST_CHECK ethd_status ethd__script_parse(const char *text, size_t length, const char *name,
-                                               double period, ethd__script *out,
-                                               char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__script_parse(const char *text, size_t length, const char *name, double period,
+                                               ethd__script *out, char message[ETHD_MESSAGE_MAX]);
 ETHD_MUST_CHECK ethd_status ethd__script_load(const char *path, double period, ethd__script *out,
                                               char message[ETHD_MESSAGE_MAX]);
 void ethd__script_free(ethd__script *script);

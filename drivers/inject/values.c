@@ -5,13 +5,13 @@
 /* Where a channel's numbers are; NULL: they aren't in this sample. */
 static double *numbers(ethd__inject_channel channel, int joints, ethd_sense *s) ETHD_RT {
   switch (channel) {
-    case ETHD__INJECT_Q: return joints ? s->q : NULL;
-    case ETHD__INJECT_DQ: return joints && (s->have & ETHD_HAVE_DQ) ? s->dq : NULL;
-    case ETHD__INJECT_CENTRE: return s->have & ETHD_HAVE_CENTRE ? s->centre : NULL;
-    case ETHD__INJECT_FINGER: return s->have & ETHD_HAVE_FINGER ? s->finger : NULL;
-    case ETHD__INJECT_RING: return s->have & ETHD_HAVE_RING ? s->ring : NULL;
-    case ETHD__INJECT_RAY: return s->have & ETHD_HAVE_RAYS ? s->rays : NULL;
-    default: return NULL;
+  case ETHD__INJECT_Q: return joints ? s->q : NULL;
+  case ETHD__INJECT_DQ: return joints && (s->have & ETHD_HAVE_DQ) ? s->dq : NULL;
+  case ETHD__INJECT_CENTRE: return s->have & ETHD_HAVE_CENTRE ? s->centre : NULL;
+  case ETHD__INJECT_FINGER: return s->have & ETHD_HAVE_FINGER ? s->finger : NULL;
+  case ETHD__INJECT_RING: return s->have & ETHD_HAVE_RING ? s->ring : NULL;
+  case ETHD__INJECT_RAY: return s->have & ETHD_HAVE_RAYS ? s->rays : NULL;
+  default: return NULL;
   }
 }
 
@@ -25,14 +25,14 @@ static double draw(int line, uint32_t i, int64_t t) ETHD_RT {
 
 static double spoilt(const ethd__injection *in, uint32_t i, int64_t t, double value) ETHD_RT {
   switch (in->kind) {
-    case ETHD__INJECT_FREEZE: return in->held[i];
-    case ETHD__INJECT_OFFSET: return value + in->by;
-    case ETHD__INJECT_REVERSE: return in->held[i] - (value - in->held[i]);
-    case ETHD__INJECT_SCALE: return value * in->by;
-    case ETHD__INJECT_NOISE: return value + in->by * draw(in->line, i, t);
-    case ETHD__INJECT_SET_TO: return in->by;
-    case ETHD__INJECT_NAN: return (double)NAN;
-    default: return value;
+  case ETHD__INJECT_FREEZE: return in->held[i];
+  case ETHD__INJECT_OFFSET: return value + in->by;
+  case ETHD__INJECT_REVERSE: return in->held[i] - (value - in->held[i]);
+  case ETHD__INJECT_SCALE: return value * in->by;
+  case ETHD__INJECT_NOISE: return value + in->by * draw(in->line, i, t);
+  case ETHD__INJECT_SET_TO: return in->by;
+  case ETHD__INJECT_NAN: return (double)NAN;
+  default: return value;
   }
 }
 

@@ -44,14 +44,11 @@ static int sleep_until(const ethd_loop *l, int64_t instant) ETHD_RT {
 /* ---- rows ---- */
 
 static int room(const ethd__rows *r) ETHD_RT {
-  return atomic_load_explicit(&r->head, memory_order_relaxed) -
-             atomic_load_explicit(&r->tail, memory_order_acquire) <
+  return atomic_load_explicit(&r->head, memory_order_relaxed) - atomic_load_explicit(&r->tail, memory_order_acquire) <
          r->size;
 }
 
-static void raise(uint64_t *count, uint64_t by) ETHD_RT {
-  __atomic_store_n(count, *count + by, __ATOMIC_RELAXED);
-}
+static void raise(uint64_t *count, uint64_t by) ETHD_RT { __atomic_store_n(count, *count + by, __ATOMIC_RELAXED); }
 
 static void push(ethd_loop *l) ETHD_RT {
   ethd__rows *r = &l->rows;
@@ -201,8 +198,7 @@ static int wait(ethd_loop *l) ETHD_RT {
   ethd_histogram_add(&l->stats.wake, late);
   if (l->early && !l->dry) {
     ethd_command command;
-    for (int i = 0; i < REHEARSALS; i++)
-      (void)!ethd_control_rehearse(l->def.control, &l->sense, &command);
+    for (int i = 0; i < REHEARSALS; i++) (void)!ethd_control_rehearse(l->def.control, &l->sense, &command);
     while (!l->def.clock && (now = ethd__loop_now(l)) < l->due) continue;
   }
   if (now - l->due >= l->period) overrun(l, now - l->due, (now - l->due) / l->period);

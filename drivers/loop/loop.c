@@ -20,8 +20,8 @@ ethd_loop_def ethd_loop_default(void) {
                          .rows = 4096};
 }
 
-ethd_status ethd__loop_refuse(ethd_error *error, ethd_status status, const char *name, double found,
-                              double min, double max) {
+ethd_status ethd__loop_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
+                              double max) {
   if (!error) return status;
   *error = (ethd_error){.status = status, .found = found, .min = min, .max = max};
   size_t n = strnlen(name, sizeof error->name - 1);

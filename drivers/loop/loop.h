@@ -57,15 +57,15 @@ struct ethd_loop {
   ethd_loop_stats stats;
 
   _Alignas(64) atomic_int mode, armed, clear, stop, ended, failed;
-  atomic_uint beats;           /* of the application */
-  _Atomic int64_t turned;      /* ns: the loop's thread was alive then */
-  _Atomic int64_t raised;      /* rows for the next sense */
+  atomic_uint beats;      /* of the application */
+  _Atomic int64_t turned; /* ns: the loop's thread was alive then */
+  _Atomic int64_t raised; /* rows for the next sense */
   ethd__rows rows;
 
   /* [main] */
   int32_t shortfalls, locked, has_control, has_watch;
   uint64_t faults[ETHD_FAULT_COUNT]; /* of controllers that were reset */
-  uint32_t units; /* of blocking I/O that have a thread */
+  uint32_t units;                    /* of blocking I/O that have a thread */
   ethd__unit unit[ETHD_UNITS_MAX];
   pthread_t control, watch;
   void *stack;
@@ -103,8 +103,8 @@ void ethd__loop_release_machine(ethd_loop *loop);
 uint32_t ethd__loop_units(const ethd_loop *loop);
 
 /* Names a failure. [main] */
-ethd_status ethd__loop_refuse(ethd_error *error, ethd_status status, const char *name, double found,
-                              double min, double max);
+ethd_status ethd__loop_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
+                              double max);
 
 /* Xenomai's initialisation, 0 where there is none to do; switches to secondary mode since. [main] */
 int ethd__xenomai_begin(void);

@@ -11,8 +11,8 @@
 #include "loop/loop.h"
 
 #define SERVICE_STACK ((size_t)256 << 10)
-#define PAUSE 1000000  /* ns */
-#define PATIENCE 1000  /* pauses */
+#define PAUSE 1000000     /* ns */
+#define PATIENCE 1000     /* pauses */
 #define LOOK_MAX 10000000 /* ns from one look at the loop's thread to the next */
 
 static void pause_a_little(void) {
@@ -39,7 +39,8 @@ static void *run_unit(void *unit_) {
   while (!atomic_load_explicit(&l->stop, memory_order_relaxed)) {
     struct timespec t;
     __STD(clock_gettime)(CLOCK_MONOTONIC, &t);
-    ethd_status status = l->def.driver->service(l->def.device, unit->number, (int64_t)t.tv_sec * 1000000000 + t.tv_nsec);
+    ethd_status status =
+        l->def.driver->service(l->def.device, unit->number, (int64_t)t.tv_sec * 1000000000 + t.tv_nsec);
     if (status < 0) __atomic_fetch_add(&l->stats.service_failures, 1, __ATOMIC_RELAXED);
     if (status) pause_a_little();
   }

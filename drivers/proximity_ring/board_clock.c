@@ -1,12 +1,12 @@
 #include "proximity_ring/board_clock.h"
 
-#define DRIFT_MAX 0.01       /* ceramic resonators are good to 0.005 */
-#define SPAN_MIN 0.3         /* s of points before their slope is believed */
+#define DRIFT_MAX 0.01 /* ceramic resonators are good to 0.005 */
+#define SPAN_MIN 0.3   /* s of points before their slope is believed */
 #define PERIOD_US (1e6 / ETHD__FRAME_RATE)
-#define TOLERANCE_US 100     /* of a frame's time against its sequence; it counts whole us */
-#define LATE_MAX 150         /* periods that board 0 may lose at once */
-#define EARLY_MAX 0.005      /* s under a settled envelope that a clock in step can't come */
-#define SETTLED 4            /* blocks */
+#define TOLERANCE_US 100 /* of a frame's time against its sequence; it counts whole us */
+#define LATE_MAX 150     /* periods that board 0 may lose at once */
+#define EARLY_MAX 0.005  /* s under a settled envelope that a clock in step can't come */
+#define SETTLED 4        /* blocks */
 
 /* ---- does a frame follow another? ---- */
 

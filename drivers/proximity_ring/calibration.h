@@ -38,12 +38,12 @@ typedef enum ethd__level {
 extern const char *const ethd__level_names[ETHD__LEVEL_COUNT];
 
 typedef struct ethd__sensor {
-  double a;        /* counts m^p */
-  double p;        /* 1 */
-  double d0;       /* m */
-  double dark;     /* counts; NaN: not measured yet */
-  double residual; /* m rms of its calibration, NaN: none */
-  uint32_t points; /* of the table; 0: the law */
+  double a;                                             /* counts m^p */
+  double p;                                             /* 1 */
+  double d0;                                            /* m */
+  double dark;                                          /* counts; NaN: not measured yet */
+  double residual;                                      /* m rms of its calibration, NaN: none */
+  uint32_t points;                                      /* of the table; 0: the law */
   double above[ETHD__POINTS_MAX], at[ETHD__POINTS_MAX]; /* counts above dark, falling; m, rising */
   char serial[ETHD__SERIAL_MAX];
 } ethd__sensor;

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "proximity_ring/calibration.h"
 #include "text/error_text.h"
 #include "text/ini.h"
 #include "text/text.h"
-#include "proximity_ring/calibration.h"
 
 typedef struct reading {
   const char *name;
@@ -45,8 +45,8 @@ static ethd_status refuse(const reading *r, const ethd_ini_key *k, ethd_status s
 }
 
 static ethd_status unknown(const reading *r, const ethd_ini_key *k, const char *allowed) {
-  return ethd__say(r->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: unknown key at level %s; %s are allowed", r->name, k->line,
-                   k->section, k->key, ethd__level_names[r->out->level], allowed);
+  return ethd__say(r->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: unknown key at level %s; %s are allowed", r->name,
+                   k->line, k->section, k->key, ethd__level_names[r->out->level], allowed);
 }
 
 static ethd_status number(const reading *r, const ethd_ini_key *k, double min, double max, double *out) {
@@ -111,23 +111,27 @@ static ethd_status read_point(const reading *r, const ethd_ini_key *k, ethd__sen
   const char *second = k->value + n + gap;
   double above, at;
   snprintf(expected, sizeof expected, "point%u", s->points);
-  if (s->points == ETHD__POINTS_MAX || strcmp(k->key, expected)) return unknown(r, k, "dark, residual, serial, point0 to point23 in order");
+  if (s->points == ETHD__POINTS_MAX || strcmp(k->key, expected))
+    return unknown(r, k, "dark, residual, serial, point0 to point23 in order");
   if (!ethd__number(k->value, n, &above) || !gap || !ethd__number(second, strlen(second), &at))
     return refuse(r, k, ETHD_E_SYNTAX, allowed);
   bool falls = s->points == 0 || (above < s->above[s->points - 1] && at > s->at[s->points - 1]);
-  if (!(above > 0 && above < 65536 && at >= 0 && at <= ETHD__DISTANCE_MAX && falls)) return refuse(r, k, ETHD_E_RANGE, allowed);
+  if (!(above > 0 && above < 65536 && at >= 0 && at <= ETHD__DISTANCE_MAX && falls))
+    return refuse(r, k, ETHD_E_RANGE, allowed);
   s->above[s->points] = above;
   s->at[s->points++] = at;
   return ETHD_OK;
 }
 
 static ethd_status read_sensor(const reading *r, const ethd_ini_key *k, int sensor) {
-  static const char *const allowed[] = {"dark, residual, serial", "dark, residual, serial", "dark, residual, serial, a, d0",
-                                        "dark, residual, serial, a, p, d0", "dark, residual, serial, point0 to point23"};
+  static const char *const allowed[] = {"dark, residual, serial", "dark, residual, serial",
+                                        "dark, residual, serial, a, d0", "dark, residual, serial, a, p, d0",
+                                        "dark, residual, serial, point0 to point23"};
   ethd__sensor *s = &r->out->sensors[sensor];
   const row *which = find(k->key);
   if (!strcmp(k->key, "serial")) return word(r, k, s->serial);
-  if (which && which->from <= r->out->level && which->to >= r->out->level) return number(r, k, which->min, which->max, field(s, which));
+  if (which && which->from <= r->out->level && which->to >= r->out->level)
+    return number(r, k, which->min, which->max, field(s, which));
   if (!which && r->out->level == ETHD__LEVEL_TABLE) return read_point(r, k, s);
   return unknown(r, k, allowed[r->out->level]);
 }
@@ -155,8 +159,9 @@ static ethd_status check_sections(reading *r, const ethd_ini *ini) {
     int sensor = sensor_of(s->name);
     if (sensor >= 0) r->listed |= 1u << sensor;
     if (sensor < 0 && strcmp(s->name, "calibration") && strcmp(s->name, "law"))
-      return ethd__say(r->message, ETHD_E_UNKNOWN, "%s:%d: [%s]: unknown section; calibration, law, sensor 0 to sensor 15 are allowed",
-                       r->name, s->line, ethd__quote(s->name, strlen(s->name), quote));
+      return ethd__say(r->message, ETHD_E_UNKNOWN,
+                       "%s:%d: [%s]: unknown section; calibration, law, sensor 0 to sensor 15 are allowed", r->name,
+                       s->line, ethd__quote(s->name, strlen(s->name), quote));
   }
   return ETHD_OK;
 }
@@ -234,8 +239,9 @@ ethd_status ethd__calibration_save(const ethd__calibration *c, const char *path,
   ethd_replace to;
   ethd_status status = ethd_replace_begin(path, &to, message);
   if (status) return status;
-  fprintf(to.file, "; counts - dark = a / (d + d0)^p; a in counts m^p, d0 and residual (rms) in m, dark in counts\n"
-                   "[calibration]\nlevel = %s\n",
+  fprintf(to.file,
+          "; counts - dark = a / (d + d0)^p; a in counts m^p, d0 and residual (rms) in m, dark in counts\n"
+          "[calibration]\nlevel = %s\n",
           ethd__level_names[c->level]);
   put_word(to.file, "date", c->date);
   put_word(to.file, "serial", c->serial);

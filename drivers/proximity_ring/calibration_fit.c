@@ -190,11 +190,12 @@ static ethd_status need(int sensor, size_t has, size_t needs, char *message) {
   if (has >= needs) return ETHD_OK;
   if (sensor < 0) return ethd__say(message, ETHD_E_RANGE, "%zu usable readings, at least %zu are needed", has, needs);
   return ethd__say(message, ETHD_E_RANGE,
-                   "sensor %d: %zu usable readings, at least %zu are needed: is it missing, dirty or saturated?", sensor, has,
-                   needs);
+                   "sensor %d: %zu usable readings, at least %zu are needed: is it missing, dirty or saturated?",
+                   sensor, has, needs);
 }
 
-static ethd_status fit_sensor(ethd__level level, ethd__place_readings readings, int k, ethd__calibration *c, char *message) {
+static ethd_status fit_sensor(ethd__level level, ethd__place_readings readings, int k, ethd__calibration *c,
+                              char *message) {
   ethd__sensor *s = &c->sensors[k];
   if (level == ETHD__LEVEL_TABLE) return need(k, tabulate(c, readings, k, s), 2, message);
   if (level == ETHD__LEVEL_LAW) return need(k, descend(c, readings, k, P + 1, s), 4, message);

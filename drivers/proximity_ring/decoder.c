@@ -35,8 +35,7 @@ static void unpack(const uint8_t raw[ETHD__FRAME_SIZE], ethd__frame *out) ETHD_R
   out->flags = raw[ETHD__FRAME_AT_FLAGS];
   out->seq = (uint16_t)word(raw + ETHD__FRAME_AT_SEQ);
   out->t_us = word(t) | word(t + 2) << 16;
-  for (int k = 0; k < ETHD__FRAME_SENSORS; k++)
-    out->counts[k] = (uint16_t)word(raw + ETHD__FRAME_AT_COUNTS + 2 * k);
+  for (int k = 0; k < ETHD__FRAME_SENSORS; k++) out->counts[k] = (uint16_t)word(raw + ETHD__FRAME_AT_COUNTS + 2 * k);
 }
 
 /* How many the sequence misses; a reset of board 0 begins it anew. */

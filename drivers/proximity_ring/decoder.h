@@ -38,8 +38,7 @@ typedef struct ethd__decoder {
 
 /* The next frame among the bytes from *at to `end`; *at goes behind what was taken. False: no frame, and
    *at == end. */
-bool ethd__decoder_next(ethd__decoder *decoder, const uint8_t **at, const uint8_t *end,
-                        ethd__frame *out) ETHD_RT;
+bool ethd__decoder_next(ethd__decoder *decoder, const uint8_t **at, const uint8_t *end, ethd__frame *out) ETHD_RT;
 
 /* Forgets a begun piece and the sequence, as after a reopened port; the counters stay. */
 void ethd__decoder_restart(ethd__decoder *decoder) ETHD_RT;

@@ -9,15 +9,15 @@
 
 #include "ethd/cell.h"
 #include "ethd/fault.h"
-#include "text/error_text.h"
-#include "text/text.h"
 #include "proximity_ring/empty.h"
 #include "proximity_ring/port.h"
 #include "proximity_ring/settings.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
-#define WAIT_MS 20                 /* for bytes, in a service */
-#define ROOM 4096                  /* bytes of one read */
-#define NOT_OURS 1000000000        /* ns: a clock that is further from CLOCK_MONOTONIC is a virtual one */
+#define WAIT_MS 20                             /* for bytes, in a service */
+#define ROOM 4096                              /* bytes of one read */
+#define NOT_OURS 1000000000                    /* ns: a clock that is further from CLOCK_MONOTONIC is a virtual one */
 #define GAP_NS (1500000000 / ETHD__FRAME_RATE) /* without a frame: one is lost, at least */
 
 /* What the I/O thread hands over. */
@@ -151,8 +151,8 @@ static ethd_status prepare(const ethd_device_def *def, ring *r, char *message) {
   status = ethd__plausible_prepare(def->setup->ring_radius, def->setup->finger_radius, p[ETHD__RING_GATE],
                                    p[ETHD__RING_SPEED], p[ETHD__RING_SLACK], &r->receiver.plausible, &error);
   if (status) ethd_error_text(def->file, &error, message);
-  r->port = (ethd__ring_port){.path = ethd__path_join(def->folder, r->settings.port->value),
-                              .baud = (uint32_t)p[ETHD__RING_BAUD], .fd = -1};
+  r->port = (ethd__ring_port){
+      .path = ethd__path_join(def->folder, r->settings.port->value), .baud = (uint32_t)p[ETHD__RING_BAUD], .fd = -1};
   if (!status && (!r->port.path || ethd_cell_create(sizeof(sample), &r->cell, NULL)))
     status = ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
   return status;
@@ -161,7 +161,8 @@ static ethd_status prepare(const ethd_device_def *def, ring *r, char *message) {
 static ethd_status no_frames(const ring *r, const ethd__decoder *d, uint64_t bytes, char *message) {
   double seconds = r->settings.p[ETHD__RING_PATIENCE];
   if (!bytes)
-    return ethd__say(message, ETHD_E_DEVICE, "%s: nothing came in %g s: is the ring connected and powered?", r->port.path, seconds);
+    return ethd__say(message, ETHD_E_DEVICE, "%s: nothing came in %g s: is the ring connected and powered?",
+                     r->port.path, seconds);
   return ethd__say(message, ETHD_E_DEVICE, "%s: %llu bytes but %llu frames in %g s: is %u its baud?", r->port.path,
                    (unsigned long long)bytes, (unsigned long long)d->counters.frames, seconds, r->port.baud);
 }
@@ -186,7 +187,8 @@ static ethd_status listen_first(ring *r, ethd__empty *empty, char *message) {
 static ethd_status check_darks(const ring *r, char *message) {
   for (int k = 0; k < ETHD_RAYS; k++)
     if (isnan(r->receiver.calibration.sensors[k].dark))
-      return ethd__say(message, ETHD_E_ARGUMENT, "device.empty = trust: the calibration has no dark of sensor %d; empty = check measures it", k);
+      return ethd__say(message, ETHD_E_ARGUMENT,
+                       "device.empty = trust: the calibration has no dark of sensor %d; empty = check measures it", k);
   return ETHD_OK;
 }
 

@@ -21,14 +21,16 @@ static double most(const ethd__sensor *s, double ring_radius) {
 static ethd_status check_sensor(const ethd__empty *e, int k, double ring_radius, ethd__sensor *s, char *message) {
   double mean = e->sum[k] / e->seen[k], allowed = most(s, ring_radius);
   if (mean > allowed)
-    return ethd__say(message, ETHD_E_DEVICE,
-                     "sensor %d counts %.0f, at most %.0f are allowed in an empty ring: take out what is in it, or clean it",
-                     k, mean, allowed);
+    return ethd__say(
+        message, ETHD_E_DEVICE,
+        "sensor %d counts %.0f, at most %.0f are allowed in an empty ring: take out what is in it, or clean it", k,
+        mean, allowed);
   s->dark = mean;
   return ETHD_OK;
 }
 
-ethd_status ethd__empty_check(const ethd__empty *e, double ring_radius, ethd__calibration *c, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__empty_check(const ethd__empty *e, double ring_radius, ethd__calibration *c,
+                              char message[ETHD_MESSAGE_MAX]) {
   ethd__calibration got = *c;
   int good = 0;
   for (int k = 0; k < ETHD_RAYS; k++) {
@@ -41,8 +43,9 @@ ethd_status ethd__empty_check(const ethd__empty *e, double ring_radius, ethd__ca
     good++;
   }
   if (good < ETHD__GOOD_LEAST)
-    return ethd__say(message, ETHD_E_DEVICE, "%d sensors answer in an empty ring, at least %d are needed: are all boards connected?",
-                     good, ETHD__GOOD_LEAST);
+    return ethd__say(message, ETHD_E_DEVICE,
+                     "%d sensors answer in an empty ring, at least %d are needed: are all boards connected?", good,
+                     ETHD__GOOD_LEAST);
   *c = got;
   return ETHD_OK;
 }

@@ -49,12 +49,13 @@
 
 /* Flags; bits that aren't named here are 0. */
 #define ETHD__FRAME_SENSOR_MISSING 0x01u /* at least one count is 0 */
-#define ETHD__FRAME_BOARD_MISSING 0x02u  /* board 1, 2 or 3 gave no block, a stale one or a broken one: four counts are 0 */
-#define ETHD__FRAME_FIRST 0x04u          /* the first frame since board 0's reset: seq and t_us begin anew */
-#define ETHD__FRAME_BOARD_RESET 0x08u    /* board 1, 2 or 3 began anew */
-#define ETHD__FRAME_LATE 0x10u           /* board 0 lost at least one period before this frame; t_us has counted on, seq hasn't */
-#define ETHD__FRAME_BUS_RECOVERED 0x20u  /* a bus was found held low and clocked free */
-#define ETHD__FRAME_WATCHDOG 0x40u       /* with FIRST: it was the watchdog that reset board 0 */
+#define ETHD__FRAME_BOARD_MISSING \
+  0x02u                         /* board 1, 2 or 3 gave no block, a stale one or a broken one: four counts are 0 */
+#define ETHD__FRAME_FIRST 0x04u /* the first frame since board 0's reset: seq and t_us begin anew */
+#define ETHD__FRAME_BOARD_RESET 0x08u /* board 1, 2 or 3 began anew */
+#define ETHD__FRAME_LATE 0x10u /* board 0 lost at least one period before this frame; t_us has counted on, seq hasn't */
+#define ETHD__FRAME_BUS_RECOVERED 0x20u /* a bus was found held low and clocked free */
+#define ETHD__FRAME_WATCHDOG 0x40u      /* with FIRST: it was the watchdog that reset board 0 */
 
 /* When sensor k measures: see above. */
 #define ETHD__FRAME_START_US 80u

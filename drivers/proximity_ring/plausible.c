@@ -87,7 +87,8 @@ static uint32_t on_finger(const ethd__plausible *p, const double d[ETHD_RAYS]) E
 /* ---- sensors ---- */
 
 /* met: rays that lie on a finger's circle. */
-static uint32_t symptoms(const ethd__plausible *p, const ethd__calibration *c, const ethd__frame *f, uint32_t met) ETHD_RT {
+static uint32_t symptoms(const ethd__plausible *p, const ethd__calibration *c, const ethd__frame *f,
+                         uint32_t met) ETHD_RT {
   uint32_t same = 0, bad = 0;
   for (int k = 0; k < ETHD_RAYS; k++) {
     bool near = met >> k & 1; /* a finger that touches the ring saturates what it touches */
@@ -132,7 +133,8 @@ static uint32_t suspect_rays(const ethd__plausible *p, const ethd__frame *f, con
   return (fast | off_circle(p, d, p->out | fast)) & ~p->out;
 }
 
-bool ethd__plausible_step(ethd__plausible *p, const ethd__calibration *c, const ethd__frame *f, double rays[ETHD_RAYS]) {
+bool ethd__plausible_step(ethd__plausible *p, const ethd__calibration *c, const ethd__frame *f,
+                          double rays[ETHD_RAYS]) {
   double d[ETHD_RAYS];
   if (!flags_agree(f, missing(f))) {
     p->bad++;

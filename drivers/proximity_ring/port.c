@@ -6,7 +6,7 @@
 
 #include "serial/line.h"
 
-#define BACK_OFF_LEAST 50000000   /* ns */
+#define BACK_OFF_LEAST 50000000 /* ns */
 #define BACK_OFF_MOST 1600000000
 
 ethd_status ethd__ring_port_open(ethd__ring_port *p, int64_t now_ns, char message[ETHD_MESSAGE_MAX]) {

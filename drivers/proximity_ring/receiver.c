@@ -21,7 +21,8 @@ static void count_corrupt(ethd__receiver *r) ETHD_RT {
   r->corrupt = r->decoder.counters.corrupt;
 }
 
-bool ethd__receiver_next(ethd__receiver *r, const uint8_t **at, const uint8_t *end, int64_t arrival_ns, ethd__reading *out) {
+bool ethd__receiver_next(ethd__receiver *r, const uint8_t **at, const uint8_t *end, int64_t arrival_ns,
+                         ethd__reading *out) {
   ethd__frame frame;
   while (ethd__decoder_next(&r->decoder, at, end, &frame)) {
     count_corrupt(r);

@@ -2,8 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/error_text.h"
 #include "record/recording_parts.h"
+#include "text/error_text.h"
 #include "text/text.h"
 
 #define BYTES_MAX ((size_t)1 << 30)
@@ -47,16 +47,13 @@ static ethd_status parse(const char *path, ethd__record_events *out, char *messa
   char *rest = out->text, *line = cut_line(&rest);
   uint64_t last = 0;
   if (!line || strcmp(line, ETHD_RECORDING_HEADER) != 0)
-    return ethd__say(message, ETHD_E_SYNTAX, "%s:1: the first line must be %s", path,
-                     ETHD_RECORDING_HEADER);
+    return ethd__say(message, ETHD_E_SYNTAX, "%s:1: the first line must be %s", path, ETHD_RECORDING_HEADER);
   for (size_t n = 2; (line = cut_line(&rest)); n++) {
     ethd__record_event *event = &out->events[out->count];
-    if (!parse_line(line, event))
-      return ethd__say(message, ETHD_E_SYNTAX, "%s:%zu: no row,kind,detail", path, n);
+    if (!parse_line(line, event)) return ethd__say(message, ETHD_E_SYNTAX, "%s:%zu: no row,kind,detail", path, n);
     if (event->row < last)
-      return ethd__say(message, ETHD_E_SYNTAX,
-                       "%s:%zu: row: found %" PRIu64 ", %" PRIu64 " or more is allowed", path, n,
-                       event->row, last);
+      return ethd__say(message, ETHD_E_SYNTAX, "%s:%zu: row: found %" PRIu64 ", %" PRIu64 " or more is allowed", path,
+                       n, event->row, last);
     last = event->row;
     event->line = n;
     out->count++;
@@ -70,8 +67,7 @@ static size_t count_lines(const char *p) {
   return n;
 }
 
-ethd_status ethd__record_events_read(const char *path, ethd__record_events *out,
-                                     char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__record_events_read(const char *path, ethd__record_events *out, char message[ETHD_MESSAGE_MAX]) {
   size_t length;
   *out = (ethd__record_events){0};
   ethd_status status = ethd_text_read(path, BYTES_MAX, &out->text, &length, message);

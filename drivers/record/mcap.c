@@ -3,8 +3,8 @@
 #include <zlib.h>
 
 #include "ethd/ethd.h"
-#include "text/error_text.h"
 #include "record/mcap_parts.h"
+#include "text/error_text.h"
 
 #define CHUNK_BYTES (1u << 20) /* a chunk is closed once it has as many */
 #define MAGIC "\x89MCAP0\r\n"

@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include "ethd/record.h"
-#include "text/error_text.h"
 #include "record/npy_parts.h"
+#include "text/error_text.h"
 #include "text/text.h"
 
 /* NumPy's format 1.0: "\x93NUMPY" 1 0, u16 length, a Python dict padded with spaces and ended by a
@@ -57,9 +57,7 @@ static bool dense(const ethd_column *columns, size_t row_bytes) {
   return at == row_bytes && row_bytes;
 }
 
-static size_t padded(size_t dict) {
-  return (PREFIX + dict + COUNT_ROOM + sizeof ",), }\n" - 1 + 63) / 64 * 64;
-}
+static size_t padded(size_t dict) { return (PREFIX + dict + COUNT_ROOM + sizeof ",), }\n" - 1 + 63) / 64 * 64; }
 
 /* ---- writing ---- */
 
@@ -101,14 +99,12 @@ static void release(ethd_npy *npy) {
   free(npy);
 }
 
-ethd_status ethd_npy_create(const char *path, const ethd_column *columns, size_t row_bytes,
-                            ethd_npy **out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd_npy_create(const char *path, const ethd_column *columns, size_t row_bytes, ethd_npy **out,
+                            char message[ETHD_MESSAGE_MAX]) {
   *out = NULL;
-  if (!dense(columns, row_bytes))
-    return ethd__say(message, ETHD_E_ARGUMENT, "%s: columns that don't fill a row", path);
+  if (!dense(columns, row_bytes)) return ethd__say(message, ETHD_E_ARGUMENT, "%s: columns that don't fill a row", path);
   ethd_npy *npy = calloc(1, sizeof *npy);
-  if (!npy)
-    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!npy) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
   npy->row_bytes = row_bytes;
   npy->header = malloc(HEADER_MAX);
   npy->buffer = malloc(BUFFER_ROWS * row_bytes);
@@ -167,8 +163,7 @@ ethd_status ethd_npy_close(ethd_npy *npy) {
 /* "12,), }" spaces newline; false unless it is just that. */
 static bool read_count(const char *p, const char *end, size_t *count) {
   size_t value = 0, digits = 0;
-  for (; p < end && *p >= '0' && *p <= '9' && digits < 18; p++, digits++)
-    value = value * 10 + (size_t)(*p - '0');
+  for (; p < end && *p >= '0' && *p <= '9' && digits < 18; p++, digits++) value = value * 10 + (size_t)(*p - '0');
   if (!digits || end - p < 6 || memcmp(p, ",), }", 5) != 0) return false;
   for (p += 5; p < end - 1; p++)
     if (*p != ' ') return false;
@@ -176,22 +171,18 @@ static bool read_count(const char *p, const char *end, size_t *count) {
   return *p == '\n';
 }
 
-static ethd_status read_header(const char *text, size_t length, const char *path,
-                               const ethd_column *columns, size_t *data, size_t *count,
-                               char message[ETHD_MESSAGE_MAX]) {
+static ethd_status read_header(const char *text, size_t length, const char *path, const ethd_column *columns,
+                               size_t *data, size_t *count, char message[ETHD_MESSAGE_MAX]) {
   if (length < PREFIX || memcmp(text, MAGIC, 8) != 0)
     return ethd__say(message, ETHD_E_SYNTAX, "%s: no NumPy file of version 1.0", path);
   size_t header = (unsigned char)text[8] | (size_t)(unsigned char)text[9] << 8;
-  if (length < PREFIX + header)
-    return ethd__say(message, ETHD_E_SYNTAX, "%s: cut short within its header", path);
+  if (length < PREFIX + header) return ethd__say(message, ETHD_E_SYNTAX, "%s: cut short within its header", path);
   char *dict = malloc(HEADER_MAX);
   size_t n = dict ? write_dict(columns, dict, HEADER_MAX) : 0;
   bool same = n && n <= header && memcmp(text + PREFIX, dict, n) == 0;
   free(dict);
   if (!n) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
-  if (!same)
-    return ethd__say(message, ETHD_E_SYNTAX, "%s: other columns than those of this version of libethd",
-                     path);
+  if (!same) return ethd__say(message, ETHD_E_SYNTAX, "%s: other columns than those of this version of libethd", path);
   if (!read_count(text + PREFIX + n, text + PREFIX + header, count))
     return ethd__say(message, ETHD_E_SYNTAX, "%s: its header's shape isn't one count of rows", path);
   *data = PREFIX + header;
@@ -199,23 +190,21 @@ static ethd_status read_header(const char *text, size_t length, const char *path
 }
 
 /* Rows behind the header's count were being written when the writer ended: they don't count. */
-ethd_status ethd__npy_parse(const char *text, size_t length, const char *path,
-                            const ethd_column *columns, size_t row_bytes, size_t *data, size_t *count,
-                            char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__npy_parse(const char *text, size_t length, const char *path, const ethd_column *columns,
+                            size_t row_bytes, size_t *data, size_t *count, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = read_header(text, length, path, columns, data, count, message);
   if (status || *count <= (length - *data) / row_bytes) return status;
   return ethd__say(message, ETHD_E_SYNTAX, "%s: cut short: %zu rows of %zu are there", path,
                    (length - *data) / row_bytes, *count);
 }
 
-ethd_status ethd_npy_read(const char *path, const ethd_column *columns, size_t row_bytes, void **rows,
-                          size_t *count, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd_npy_read(const char *path, const ethd_column *columns, size_t row_bytes, void **rows, size_t *count,
+                          char message[ETHD_MESSAGE_MAX]) {
   char *text;
   size_t length, data = 0, n = 0;
   *rows = NULL;
   *count = 0;
-  if (!dense(columns, row_bytes))
-    return ethd__say(message, ETHD_E_ARGUMENT, "%s: columns that don't fill a row", path);
+  if (!dense(columns, row_bytes)) return ethd__say(message, ETHD_E_ARGUMENT, "%s: columns that don't fill a row", path);
   ethd_status status = ethd_text_read(path, BYTES_MAX, &text, &length, message);
   if (status) return status;
   status = ethd__npy_parse(text, length, path, columns, row_bytes, &data, &n, message);

@@ -6,7 +6,7 @@
 
 /* Where the rows start in `text` and how many count; `path` stands for the file. [any] */
 ETHD_MUST_CHECK ethd_status ethd__npy_parse(const char *text, size_t length, const char *path,
-                                            const ethd_column *columns, size_t row_bytes, size_t *data,
-                                            size_t *count, char message[ETHD_MESSAGE_MAX]);
+                                            const ethd_column *columns, size_t row_bytes, size_t *data, size_t *count,
+                                            char message[ETHD_MESSAGE_MAX]);
 
 #endif

@@ -6,18 +6,17 @@
 #include <unistd.h>
 
 #include "ethd/record.h"
+#include "record/recording_parts.h"
 #include "settings/config_parts.h"
 #include "text/csv.h"
 #include "text/error_text.h"
-#include "record/recording_parts.h"
 #include "text/text.h"
 
 #define LETTER_double 'f'
 #define LETTER_int64_t 'i'
 #define SENSE_COLUMN(type, name, count, unit, brief) \
   {#name, unit, count, offsetof(ethd_trace, sense.name), LETTER_##type},
-#define TRACE_COLUMN(type, name, count, unit, brief) \
-  {#name, unit, count, offsetof(ethd_trace, name), LETTER_##type},
+#define TRACE_COLUMN(type, name, count, unit, brief) {#name, unit, count, offsetof(ethd_trace, name), LETTER_##type},
 
 const ethd_column ethd_trace_columns[] = {ETHD_SENSE_FIELDS(SENSE_COLUMN)
                                               ETHD_TRACE_FIELDS(TRACE_COLUMN){NULL, NULL, 0, 0, 0}};
@@ -70,8 +69,7 @@ char *ethd__record_config_text(const ethd_config *config) {
 
 static ethd_status write_file(const char *folder, const char *name, const char *text, char *message) {
   char *path = text ? ethd__path_join(folder, name) : NULL;
-  if (!path)
-    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!path) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
   ethd_status status = ethd_text_write(path, text, strlen(text), message);
   free(path);
   return status;
@@ -112,13 +110,11 @@ ethd_status ethd_recording_create(const char *folder, const ethd_config *config,
                                   char message[ETHD_MESSAGE_MAX]) {
   *out = NULL;
   ethd_recording *recording = calloc(1, sizeof *recording);
-  if (!recording)
-    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!recording) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
   ethd_status status = make_folder(folder, message);
   if (!status) status = open_files(folder, recording, message);
   if (!status) status = write_config(folder, config, message);
-  if (!status && config->scene_text)
-    status = write_file(folder, ETHD_RECORDING_SCENE, config->scene_text, message);
+  if (!status && config->scene_text) status = write_file(folder, ETHD_RECORDING_SCENE, config->scene_text, message);
   if (status)
     (void)!ethd_recording_close(recording);
   else

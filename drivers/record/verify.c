@@ -4,8 +4,8 @@
 
 #include "denormals.h"
 #include "ethd/record.h"
-#include "text/error_text.h"
 #include "record/recording_parts.h"
+#include "text/error_text.h"
 #include "text/text.h"
 
 typedef struct replay {
@@ -36,8 +36,7 @@ static ethd_status open_rows(replay *r) {
   void *rows = NULL;
   char *path = ethd__path_join(r->folder, ETHD_RECORDING_TICK);
   if (!path) return ethd__say(r->message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
-  ethd_status status =
-      ethd_npy_read(path, ethd_trace_columns, sizeof(ethd_trace), &rows, &r->count, r->message);
+  ethd_status status = ethd_npy_read(path, ethd_trace_columns, sizeof(ethd_trace), &rows, &r->count, r->message);
   free(path);
   r->rows = rows;
   return status;
@@ -45,8 +44,7 @@ static ethd_status open_rows(replay *r) {
 
 static ethd_status open_events(replay *r) {
   r->events_path = ethd__path_join(r->folder, ETHD_RECORDING_EVENTS);
-  if (!r->events_path)
-    return ethd__say(r->message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!r->events_path) return ethd__say(r->message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
   return ethd__record_events_read(r->events_path, &r->events, r->message);
 }
 
@@ -167,8 +165,8 @@ static ethd_status compare(const replay *r, size_t row, const ethd_trace *replay
       if (c->count > 1) snprintf(index, sizeof index, "[%u]", i);
       say_number(c->type, a + at, was);
       say_number(c->type, b + at, is);
-      return ethd__say(r->message, ETHD_E_DIFFERS, "%s: tick %zu: %s%s: recorded %s, replayed %s",
-                       r->folder, row, c->name, index, was, is);
+      return ethd__say(r->message, ETHD_E_DIFFERS, "%s: tick %zu: %s%s: recorded %s, replayed %s", r->folder, row,
+                       c->name, index, was, is);
     }
   return ETHD_OK;
 }

@@ -37,8 +37,8 @@ static ethd_status set(int fd, const char *path, ethd__line_format format, uint3
   int64_t has = ethd__baud_set(fd, baud);
   if (has < 0) return ethd__say(message, ETHD_E_DEVICE, "%s: %s", path, strerror(errno));
   if (has != baud)
-    return ethd__say(message, ETHD_E_DEVICE, "%s: asked for %u baud, the line has %lld; choose a rate that it can", path,
-                     baud, (long long)has);
+    return ethd__say(message, ETHD_E_DEVICE, "%s: asked for %u baud, the line has %lld; choose a rate that it can",
+                     path, baud, (long long)has);
   tcflush(fd, TCIOFLUSH);
   return ETHD_OK;
 }

@@ -23,8 +23,8 @@ static int64_t nanoseconds(double seconds) { return (int64_t)(1e9 * seconds); }
 
 /* libmodbus frames and checks; lines and connections are ours, so none of its recoveries. */
 static modbus_t *context(const ethd__servo_map *map, int fd) {
-  modbus_t *m = map->transport == ETHD__SERVO_TCP ? modbus_new_tcp("127.0.0.1", 502)
-                                                  : modbus_new_rtu(map->port, 9600, 'N', 8, 1);
+  modbus_t *m =
+      map->transport == ETHD__SERVO_TCP ? modbus_new_tcp("127.0.0.1", 502) : modbus_new_rtu(map->port, 9600, 'N', 8, 1);
   uint32_t response = (uint32_t)(1e6 * map->response);
   if (!m) return NULL;
   modbus_set_error_recovery(m, MODBUS_ERROR_RECOVERY_NONE);
@@ -58,29 +58,29 @@ void ethd__servo_bus_close(ethd__servo_bus *bus) {
 
 static ethd__servo_outcome outcome(int error) {
   switch (error) {
-    case ETIMEDOUT:
-    case EAGAIN:
-    case EMBXGPATH:
-    case EMBXGTAR: return ETHD__SERVO_MISSING;
-    case EMBXILFUN:
-    case EMBXILADD:
-    case EMBXILVAL: return ETHD__SERVO_REFUSED;
-    case EMBXSBUSY:
-    case EMBXACK: return ETHD__SERVO_BUSY;
-    case EMBXSFAIL:
-    case EMBXMEMPAR: return ETHD__SERVO_FAILED;
-    case EBADF:
-    case EPIPE:
-    case EIO:
-    case ENXIO:
-    case ENODEV:
-    case ENOTCONN:
-    case ECONNRESET:
-    case ECONNREFUSED:
-    case ECONNABORTED:
-    case EHOSTUNREACH:
-    case ENETUNREACH: return ETHD__SERVO_LOST;
-    default: return ETHD__SERVO_GARBLED;
+  case ETIMEDOUT:
+  case EAGAIN:
+  case EMBXGPATH:
+  case EMBXGTAR: return ETHD__SERVO_MISSING;
+  case EMBXILFUN:
+  case EMBXILADD:
+  case EMBXILVAL: return ETHD__SERVO_REFUSED;
+  case EMBXSBUSY:
+  case EMBXACK: return ETHD__SERVO_BUSY;
+  case EMBXSFAIL:
+  case EMBXMEMPAR: return ETHD__SERVO_FAILED;
+  case EBADF:
+  case EPIPE:
+  case EIO:
+  case ENXIO:
+  case ENODEV:
+  case ENOTCONN:
+  case ECONNRESET:
+  case ECONNREFUSED:
+  case ECONNABORTED:
+  case EHOSTUNREACH:
+  case ENETUNREACH: return ETHD__SERVO_LOST;
+  default: return ETHD__SERVO_GARBLED;
   }
 }
 
@@ -110,9 +110,8 @@ ethd__servo_outcome ethd__servo_bus_read(ethd__servo_bus *bus, int32_t space, ui
                                          uint16_t *words) {
   if (!bus->modbus) return gone(bus);
   keep_silence(bus);
-  int got = space == ETHD__SERVO_INPUT
-                ? modbus_read_input_registers(bus->modbus, (int)address, (int)count, words)
-                : modbus_read_registers(bus->modbus, (int)address, (int)count, words);
+  int got = space == ETHD__SERVO_INPUT ? modbus_read_input_registers(bus->modbus, (int)address, (int)count, words)
+                                       : modbus_read_registers(bus->modbus, (int)address, (int)count, words);
   return end(bus, got, count);
 }
 
@@ -149,7 +148,8 @@ ethd__servo_outcome ethd__servo_bus_drain(ethd__servo_bus *bus) {
     if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) break;
     if (n > 0) since = now();
     /* a line that hung up is readable for ever, and empty */
-    else if (wait.revents & (POLLHUP | POLLERR)) break;
+    else if (wait.revents & (POLLHUP | POLLERR))
+      break;
   }
   return gone(bus);
 }

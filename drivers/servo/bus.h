@@ -46,7 +46,6 @@ ethd__servo_outcome ethd__servo_bus_drain(ethd__servo_bus *bus);
 const char *ethd__servo_bus_error(const ethd__servo_bus *bus);
 
 /* The descriptor of map->port, connected and set up; libmodbus would take an unknown baud for 9600. */
-ETHD_MUST_CHECK ethd_status ethd__servo_port_open(const ethd__servo_map *map, int *fd,
-                                                  char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__servo_port_open(const ethd__servo_map *map, int *fd, char message[ETHD_MESSAGE_MAX]);
 
 #endif

@@ -21,7 +21,7 @@ typedef struct ethd__servo_device {
   ethd__servo_map map;
   char unconfirmed[96]; /* the remark about registers that nobody confirms; empty: there are none */
   int64_t period_ns, exchange_ns;
-  double speed;         /* m/s of the ring, at most */
+  double speed;     /* m/s of the ring, at most */
   int32_t joint[2]; /* joint, from 0, of the map's axes; -1: none */
   ethd_cell *commands, *samples;
 

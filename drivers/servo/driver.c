@@ -5,10 +5,10 @@
 #include <string.h>
 #include <time.h>
 
-#include "text/error_text.h"
-#include "text/text.h"
 #include "servo/device.h"
 #include "servo/words.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 #define START_MOST 10.0 /* s beyond the steps' own times */
 #define ZEROES 3        /* good exchanges with zero torque before anything is enabled */
@@ -41,9 +41,11 @@ static ethd_status read_settings(const ethd_device_def *def, settings *out, char
   out->map = texts[0];
   out->port = texts[1];
   if (!status && !out->map)
-    status = ethd__say(message, ETHD_E_ARGUMENT, "%s: device.map is missing: a servo needs its register map", file(def));
+    status =
+        ethd__say(message, ETHD_E_ARGUMENT, "%s: device.map is missing: a servo needs its register map", file(def));
   if (!status && !isnan(out->p[JOINT]) && out->p[JOINT] != rint(out->p[JOINT]))
-    status = ethd__say(message, ETHD_E_RANGE, "%s: device.joint: found %g, 1 and 2 are allowed", file(def), out->p[JOINT]);
+    status =
+        ethd__say(message, ETHD_E_RANGE, "%s: device.joint: found %g, 1 and 2 are allowed", file(def), out->p[JOINT]);
   return status;
 }
 
@@ -138,9 +140,11 @@ static ethd_status servo_open(const ethd_device_def *def, void **out, char messa
     uint32_t unconfirmed = ethd__servo_unconfirmed(&d->map);
     if (unconfirmed)
       snprintf(d->unconfirmed, sizeof d->unconfirmed,
-               "%u of %u registers are unconfirmed: check their addresses in the drive's manual", unconfirmed, d->map.count);
+               "%u of %u registers are unconfirmed: check their addresses in the drive's manual", unconfirmed,
+               d->map.count);
     ethd_error error;
-    status = ethd__servo_feedback_make(&d->feedback, &d->map, def->setup->limits.torque, 1e-9 * (double)d->exchange_ns, &error);
+    status = ethd__servo_feedback_make(&d->feedback, &d->map, def->setup->limits.torque, 1e-9 * (double)d->exchange_ns,
+                                       &error);
     if (status) ethd_error_text(s.map->value, &error, d->link.message);
     if (!status) status = ethd__servo_link_connect(&d->link, monotonic());
     if (!status) status = identify(d, steps_time(&d->map, ETHD__SERVO_IDENTIFY));

@@ -15,8 +15,8 @@ static const ethd__servo_register *role(const ethd__servo_link *l, int which, do
 
 static double given_or(double given, double otherwise) { return given > 0 ? given : otherwise; }
 
-ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo_map *map, double torque,
-                                      double period, ethd_error *error) {
+ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo_map *map, double torque, double period,
+                                      ethd_error *error) {
   ethd_status status = ETHD_OK;
   for (int i = 0; i < 2 && !status; i++) {
     int32_t at = map->roles[ETHD__SERVO_POSITION1 + i];
@@ -61,8 +61,10 @@ static void take_axis(ethd__servo_feedback *f, const ethd__servo_link *l, int i)
   a->started = true;
   f->sample.q[i] = q + a->offset;
   r = role(l, ETHD__SERVO_SPEED1 + i, &speed);
-  if (!r) f->sample.has &= ~ETHD__SERVO_HAS_SPEED;
-  else f->sample.dq[i] = ethd__servo_joint(r, speed);
+  if (!r)
+    f->sample.has &= ~ETHD__SERVO_HAS_SPEED;
+  else
+    f->sample.dq[i] = ethd__servo_joint(r, speed);
 }
 
 /* In SI at the joint, as read last; 0 where the map has no such register. */
@@ -105,8 +107,10 @@ static void watch_torque(ethd__servo_feedback *f, const ethd__servo_link *l, con
   for (int i = 0; i < 2; i++) {
     ethd__servo_axis *a = &f->axes[i];
     bool fine = follows(a, l, i, torque[i]) || l->state != ETHD__SERVO_ENABLED;
-    if (fine) a->since_ns = 0;
-    else if (!a->since_ns) a->since_ns = f->sample.stamp_ns;
+    if (fine)
+      a->since_ns = 0;
+    else if (!a->since_ns)
+      a->since_ns = f->sample.stamp_ns;
     if (a->since_ns && 1e-9 * (double)(f->sample.stamp_ns - a->since_ns) >= ETHD__SERVO_FOLLOW)
       f->sample.levels |= ETHD_FAULT_BIT(ETHD_FAULT_NOT_FOLLOWED);
   }

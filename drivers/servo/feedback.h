@@ -15,16 +15,16 @@ enum { ETHD__SERVO_HAS_SPEED = 1, ETHD__SERVO_HAS_READING = 2 }; /* of `has` */
 
 /* What crosses to the control thread: whole, newest first. */
 typedef struct ethd__servo_sample {
-  int64_t stamp_ns;   /* when the joints were where `q` says */
-  uint64_t number;    /* of good exchanges; the same: nothing newer */
+  int64_t stamp_ns; /* when the joints were where `q` says */
+  uint64_t number;  /* of good exchanges; the same: nothing newer */
   int32_t has;
-  uint32_t epoch;     /* start that this belongs to */
-  double q[2], dq[2]; /* axes 1 and 2 of the map: rad, rad/s */
-  double reading[2];  /* m: finger relative to the ring */
-  int64_t reading_ns; /* when it was taken */
-  uint64_t readings;  /* how many came */
-  int64_t levels, grave; /* rows of the fault table that last, as bits */
-  uint32_t rows[ETHD_FAULT_COUNT]; /* how often a row was seen */
+  uint32_t epoch;                   /* start that this belongs to */
+  double q[2], dq[2];               /* axes 1 and 2 of the map: rad, rad/s */
+  double reading[2];                /* m: finger relative to the ring */
+  int64_t reading_ns;               /* when it was taken */
+  uint64_t readings;                /* how many came */
+  int64_t levels, grave;            /* rows of the fault table that last, as bits */
+  uint32_t rows[ETHD_FAULT_COUNT];  /* how often a row was seen */
   uint32_t worst[ETHD_FAULT_COUNT]; /* and at its worst */
 } ethd__servo_sample;
 
@@ -39,17 +39,17 @@ typedef struct ethd__servo_axis {
 
 typedef struct ethd__servo_feedback {
   ethd__servo_axis axes[2];
-  double home[2];   /* rad: where the joints stand at the first sample; NaN: as the register says */
-  double count;     /* the reading's, last */
+  double home[2];                  /* rad: where the joints stand at the first sample; NaN: as the register says */
+  double count;                    /* the reading's, last */
   uint32_t rows[ETHD_FAULT_COUNT]; /* of the encoders */
-  uint64_t connects; /* of the link, at the last sample */
+  uint64_t connects;               /* of the link, at the last sample */
   ethd__servo_sample sample;
 } ethd__servo_feedback;
 
 /* The counters of the map's positions, watched by default: `torque`, Nm, is the most that the controller may ask of a
    joint, INFINITY where it has no limit; `period` of an exchange, s. home: as above. The error names the field. [main] */
-ETHD_MUST_CHECK ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo_map *map, double torque,
-                                                      double period, ethd_error *error);
+ETHD_MUST_CHECK ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo_map *map,
+                                                      double torque, double period, ethd_error *error);
 
 /* After a turn of the link that went well; torque is what went out (Nm). I/O side. */
 void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *link, int64_t stamp_ns,

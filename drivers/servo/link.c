@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "text/error_text.h"
 #include "servo/words.h"
+#include "text/error_text.h"
 
 #define BACK_OFF_MOST 32.0 /* times the map's */
 #define SILENT_LEAST 0.2   /* s without a good answer, after which the line is taken for dead */
@@ -56,11 +56,11 @@ static void lose(ethd__servo_link *l, int64_t now_ns) {
 
 static void count(ethd__servo_link *l, ethd__servo_outcome got) {
   switch (got) {
-    case ETHD__SERVO_MISSING: l->counts.missing++, l->rows[ETHD_FAULT_REPLY_MISSING]++; break;
-    case ETHD__SERVO_BUSY: l->counts.busy++, l->rows[ETHD_FAULT_REPLY_BAD]++; break;
-    case ETHD__SERVO_REFUSED: l->counts.refused++, l->rows[ETHD_FAULT_REPLY_BAD]++; break;
-    case ETHD__SERVO_FAILED: l->counts.failed++, l->rows[ETHD_FAULT_DRIVE]++; break;
-    default: l->counts.garbled++, l->rows[ETHD_FAULT_REPLY_BAD]++;
+  case ETHD__SERVO_MISSING: l->counts.missing++, l->rows[ETHD_FAULT_REPLY_MISSING]++; break;
+  case ETHD__SERVO_BUSY: l->counts.busy++, l->rows[ETHD_FAULT_REPLY_BAD]++; break;
+  case ETHD__SERVO_REFUSED: l->counts.refused++, l->rows[ETHD_FAULT_REPLY_BAD]++; break;
+  case ETHD__SERVO_FAILED: l->counts.failed++, l->rows[ETHD_FAULT_DRIVE]++; break;
+  default: l->counts.garbled++, l->rows[ETHD_FAULT_REPLY_BAD]++;
   }
 }
 

@@ -32,18 +32,18 @@ typedef struct ethd__servo_link {
   bool draining, echo_failed; /* echo_failed: the last exchange's echo wasn't what was written */
   bool set_point_stays;       /* a start was refused for it: the drive still shows an old one */
   uint16_t counter;
-  int32_t sequence;    /* that runs; -1: none */
-  uint32_t step;       /* of it */
-  int64_t step_ns;     /* when that began */
-  ethd_status result;  /* of the last sequence */
-  int32_t bucket;      /* leaky: bad answers in a row */
-  int64_t heard_ns;    /* of the last good exchange, or of connecting */
-  int64_t attempt_ns;  /* when to connect next */
-  double back_off;     /* s */
+  int32_t sequence;                      /* that runs; -1: none */
+  uint32_t step;                         /* of it */
+  int64_t step_ns;                       /* when that began */
+  ethd_status result;                    /* of the last sequence */
+  int32_t bucket;                        /* leaky: bad answers in a row */
+  int64_t heard_ns;                      /* of the last good exchange, or of connecting */
+  int64_t attempt_ns;                    /* when to connect next */
+  double back_off;                       /* s */
   double raw[ETHD__SERVO_REGISTERS_MAX]; /* as read last */
   uint32_t rows[ETHD_FAULT_COUNT];       /* rows of the fault table, as often as they were seen */
   ethd__servo_counts counts;
-  char message[ETHD_MESSAGE_MAX];        /* of the last failure */
+  char message[ETHD_MESSAGE_MAX]; /* of the last failure */
 } ethd__servo_link;
 
 #define ETHD__SERVO_BUCKET_LIMIT 50

@@ -4,16 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "servo/map_parts.h"
 #include "text/error_text.h"
 #include "text/text.h"
-#include "servo/map_parts.h"
 
 static const char register_prefix[] = "register ";
 static const char *const sequences[ETHD__SERVO_SEQUENCES] = {"identify", "enable", "disable"};
 
-static bool is_register(const char *section) {
-  return !strncmp(section, register_prefix, sizeof register_prefix - 1);
-}
+static bool is_register(const char *section) { return !strncmp(section, register_prefix, sizeof register_prefix - 1); }
 
 static bool is_known(const char *section) {
   for (size_t i = 0; i < ETHD__SERVO_SEQUENCES; i++)
@@ -23,8 +21,7 @@ static bool is_known(const char *section) {
 
 int32_t ethd__servo_find(const ethd__servo_map *map, const char *name, size_t length) {
   for (uint32_t i = 0; i < map->count; i++)
-    if (strlen(map->registers[i].name) == length && !memcmp(map->registers[i].name, name, length))
-      return (int32_t)i;
+    if (strlen(map->registers[i].name) == length && !memcmp(map->registers[i].name, name, length)) return (int32_t)i;
   return -1;
 }
 

@@ -53,10 +53,20 @@ enum { ETHD__SERVO_WATCH_NONE, ETHD__SERVO_WATCH_SILENCE, ETHD__SERVO_WATCH_COUN
 
 /* Names with a meaning, in the order of ethd__servo_roles. */
 enum {
-  ETHD__SERVO_TORQUE1, ETHD__SERVO_TORQUE2, ETHD__SERVO_COUNTER,
-  ETHD__SERVO_POSITION1, ETHD__SERVO_POSITION2, ETHD__SERVO_SPEED1, ETHD__SERVO_SPEED2,
-  ETHD__SERVO_MEASURED1, ETHD__SERVO_MEASURED2, ETHD__SERVO_BUS_VOLTAGE,
-  ETHD__SERVO_READING_X, ETHD__SERVO_READING_Y, ETHD__SERVO_READING_COUNT, ETHD__SERVO_READING_AGE,
+  ETHD__SERVO_TORQUE1,
+  ETHD__SERVO_TORQUE2,
+  ETHD__SERVO_COUNTER,
+  ETHD__SERVO_POSITION1,
+  ETHD__SERVO_POSITION2,
+  ETHD__SERVO_SPEED1,
+  ETHD__SERVO_SPEED2,
+  ETHD__SERVO_MEASURED1,
+  ETHD__SERVO_MEASURED2,
+  ETHD__SERVO_BUS_VOLTAGE,
+  ETHD__SERVO_READING_X,
+  ETHD__SERVO_READING_Y,
+  ETHD__SERVO_READING_COUNT,
+  ETHD__SERVO_READING_AGE,
   ETHD__SERVO_ROLES
 };
 
@@ -70,21 +80,21 @@ extern const ethd__servo_role ethd__servo_roles[ETHD__SERVO_ROLES];
 /* What a [register] says. Masks and addresses are whole numbers. */
 typedef struct ethd__servo_register {
   char name[ETHD__SERVO_NAME_MAX];
-  int32_t line, role;                      /* role -1: none */
+  int32_t line, role; /* role -1: none */
   int32_t direction, space, type, order, unit;
-  uint32_t address;                        /* as on the wire, from 0 */
+  uint32_t address; /* as on the wire, from 0 */
   double scale, offset, min, max, ratio, sign;
-  double counts, torque_constant;          /* per motor turn; Nm/A */
-  uint32_t bits;                           /* width of a position's counter */
-  double speed_max;                        /* rad/s of the joint: a counter that is faster jumped */
-  double freeze_torque, freeze_time;       /* Nm, s: as in encoder/unwrap.h; a torque of 0: a share of the largest */
+  double counts, torque_constant;    /* per motor turn; Nm/A */
+  uint32_t bits;                     /* width of a position's counter */
+  double speed_max;                  /* rad/s of the joint: a counter that is faster jumped */
+  double freeze_torque, freeze_time; /* Nm, s: as in encoder/unwrap.h; a torque of 0: a share of the largest */
   double reverse_torque, reverse_time, inertia;
-  double tolerance;                        /* of measured torque, in its unit; 0: not watched */
-  uint32_t fault_mask, healthy;            /* (raw & fault_mask) != healthy: the drive reports a fault */
-  uint32_t enabled_mask, enabled;          /* (raw & enabled_mask) == enabled: the drive is enabled */
-  int32_t echo;                            /* register that then holds the same raw; -1 none */
-  bool cyclic;                             /* part of every exchange */
-  bool unconfirmed;                        /* its address's line says so: no document of the maker's has it */
+  double tolerance;               /* of measured torque, in its unit; 0: not watched */
+  uint32_t fault_mask, healthy;   /* (raw & fault_mask) != healthy: the drive reports a fault */
+  uint32_t enabled_mask, enabled; /* (raw & enabled_mask) == enabled: the drive is enabled */
+  int32_t echo;                   /* register that then holds the same raw; -1 none */
+  bool cyclic;                    /* part of every exchange */
+  bool unconfirmed;               /* its address's line says so: no document of the maker's has it */
 } ethd__servo_register;
 
 enum { ETHD__SERVO_STEP_WRITE, ETHD__SERVO_STEP_WAIT, ETHD__SERVO_STEP_PAUSE };

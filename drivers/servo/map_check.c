@@ -5,22 +5,27 @@
 #include <string.h>
 
 #include "ethd/param.h"
-#include "text/error_text.h"
 #include "servo/map_parts.h"
 #include "servo/words.h"
+#include "text/error_text.h"
 
 #define R ETHD__SERVO_READ
 #define W ETHD__SERVO_WRITE
 
 const ethd__servo_role ethd__servo_roles[ETHD__SERVO_ROLES] = {
-    [ETHD__SERVO_TORQUE1] = {"torque1", "A|Nm", W},       [ETHD__SERVO_TORQUE2] = {"torque2", "A|Nm", W},
-    [ETHD__SERVO_COUNTER] = {"counter", "1", W},          [ETHD__SERVO_POSITION1] = {"position1", "count|turn|rad", R},
+    [ETHD__SERVO_TORQUE1] = {"torque1", "A|Nm", W},
+    [ETHD__SERVO_TORQUE2] = {"torque2", "A|Nm", W},
+    [ETHD__SERVO_COUNTER] = {"counter", "1", W},
+    [ETHD__SERVO_POSITION1] = {"position1", "count|turn|rad", R},
     [ETHD__SERVO_POSITION2] = {"position2", "count|turn|rad", R},
     [ETHD__SERVO_SPEED1] = {"speed1", "count/s|rpm|rad/s", R},
     [ETHD__SERVO_SPEED2] = {"speed2", "count/s|rpm|rad/s", R},
-    [ETHD__SERVO_MEASURED1] = {"measured1", "A|Nm", R},   [ETHD__SERVO_MEASURED2] = {"measured2", "A|Nm", R},
-    [ETHD__SERVO_BUS_VOLTAGE] = {"bus_voltage", "V", R},  [ETHD__SERVO_READING_X] = {"reading_x", "m", R},
-    [ETHD__SERVO_READING_Y] = {"reading_y", "m", R},      [ETHD__SERVO_READING_COUNT] = {"reading_count", "1", R},
+    [ETHD__SERVO_MEASURED1] = {"measured1", "A|Nm", R},
+    [ETHD__SERVO_MEASURED2] = {"measured2", "A|Nm", R},
+    [ETHD__SERVO_BUS_VOLTAGE] = {"bus_voltage", "V", R},
+    [ETHD__SERVO_READING_X] = {"reading_x", "m", R},
+    [ETHD__SERVO_READING_Y] = {"reading_y", "m", R},
+    [ETHD__SERVO_READING_COUNT] = {"reading_count", "1", R},
     [ETHD__SERVO_READING_AGE] = {"reading_age", "s", R},
 };
 
@@ -36,7 +41,8 @@ static ethd_status refuse(const ethd__servo_source *s, const ethd__servo_registe
   va_end(args);
   snprintf(section, sizeof section, "register %s", r->name);
   const ethd_ini_key *key = ethd_ini_find(s->ini, section, name);
-  return ethd__say(s->message, ETHD_E_RANGE, "%s:%d: %s.%s: %s", s->name, key ? key->line : r->line, section, name, text);
+  return ethd__say(s->message, ETHD_E_RANGE, "%s:%d: %s.%s: %s", s->name, key ? key->line : r->line, section, name,
+                   text);
 }
 
 static bool has(const ethd__servo_source *s, const ethd__servo_register *r, const char *key) {
@@ -58,7 +64,8 @@ static bool unit_is(const ethd__servo_register *r, const char *words) {
 /* ---- one register ---- */
 
 static ethd_status check_unit(const ethd__servo_source *s, const ethd__servo_register *r) {
-  if (unit_is(r, "A") && !(r->torque_constant > 0)) return refuse(s, r, "torque_constant", "is missing: unit = A needs it");
+  if (unit_is(r, "A") && !(r->torque_constant > 0))
+    return refuse(s, r, "torque_constant", "is missing: unit = A needs it");
   if (unit_is(r, "count|count/s") && !(r->counts > 0)) return refuse(s, r, "counts", "is missing: counts a motor turn");
   if (unit_is(r, "count") && (r->counts != rint(r->counts) || r->scale != 1 || r->offset != 0))
     return refuse(s, r, "counts", "a counter has whole counts, scale = 1 and offset = 0");
@@ -88,7 +95,8 @@ static ethd_status check_masks(const ethd__servo_source *s, const ethd__servo_re
   uint32_t most = ethd__servo_words(r) == 2 ? UINT32_MAX : UINT16_MAX;
   if (!(r->fault_mask | r->enabled_mask)) return ETHD_OK;
   const char *key = r->fault_mask ? "fault_mask" : "enabled_mask";
-  if (r->direction != R || r->type == ETHD__SERVO_F32) return refuse(s, r, key, "only whole numbers that are read have bits");
+  if (r->direction != R || r->type == ETHD__SERVO_F32)
+    return refuse(s, r, key, "only whole numbers that are read have bits");
   if (r->fault_mask > most || r->enabled_mask > most) return refuse(s, r, key, "is wider than the register");
   if (r->healthy & ~r->fault_mask) return refuse(s, r, "healthy", "has bits outside of fault_mask");
   if (r->enabled & ~r->enabled_mask) return refuse(s, r, "enabled", "has bits outside of enabled_mask");
@@ -103,7 +111,8 @@ static ethd_status check_torque(const ethd__servo_source *s, const ethd__servo_r
   if (!(r->min < 0 && r->max > 0)) return refuse(s, r, "min", "min < 0 < max is allowed");
   ethd__servo_range(r, &least, &most);
   if (!(fmin(low, high) >= least && fmax(low, high) <= most))
-    return refuse(s, r, "max", "the limits are raw %.10g and %.10g, the type holds %.10g to %.10g", low, high, least, most);
+    return refuse(s, r, "max", "the limits are raw %.10g and %.10g, the type holds %.10g to %.10g", low, high, least,
+                  most);
   if (r->type != ETHD__SERVO_F32 && zero != rint(zero))
     return refuse(s, r, "offset", "no torque is raw %.10g, a whole number is needed", zero);
   return ETHD_OK;
@@ -154,7 +163,8 @@ static ethd_status check_overlaps(const ethd__servo_source *s, const ethd__servo
       const ethd__servo_register *a = &map->registers[i], *b = &map->registers[j];
       if (!overlap(map, a, b)) continue;
       if (!same_words(a, b))
-        return refuse(s, a, "address", "overlaps [register %s] of line %d, which is of another type or place", b->name, b->line);
+        return refuse(s, a, "address", "overlaps [register %s] of line %d, which is of another type or place", b->name,
+                      b->line);
       if (a->direction == b->direction && a->direction == W)
         return refuse(s, a, "address", "[register %s] of line %d writes there too", b->name, b->line);
     }
@@ -173,16 +183,19 @@ static ethd_status check_use(const ethd__servo_source *s, ethd__servo_map *map) 
     ethd__servo_register *r = &map->registers[i];
     r->cyclic |= r->role >= 0 || r->fault_mask || r->enabled_mask;
     if (!r->cyclic && !in_steps(map, i))
-      return ethd__say(s->message, ETHD_E_UNKNOWN,
-                       "%s:%d: register %s: nothing uses it: it has no meaning of its own, no mask, no step and is no echo",
-                       s->name, r->line, r->name);
+      return ethd__say(
+          s->message, ETHD_E_UNKNOWN,
+          "%s:%d: register %s: nothing uses it: it has no meaning of its own, no mask, no step and is no echo", s->name,
+          r->line, r->name);
   }
   return ETHD_OK;
 }
 
 /* ---- the whole ---- */
 
-static bool both_or_none(const ethd__servo_map *map, int a, int b) { return (map->roles[a] < 0) == (map->roles[b] < 0); }
+static bool both_or_none(const ethd__servo_map *map, int a, int b) {
+  return (map->roles[a] < 0) == (map->roles[b] < 0);
+}
 
 static ethd_status check_roles(const ethd__servo_source *s, const ethd__servo_map *map) {
   const int32_t *roles = map->roles;
@@ -262,7 +275,8 @@ const char *ethd__servo_risk(const ethd__servo_map *map, uint32_t i) {
   if (!all_count(map)) {
     risks[n++] = "a position that isn't in counts: an encoder that jumps, stands still or is reversed isn't noticed";
   } else {
-    if (!reaches(map, freezes_at, 2)) risks[n++] = "freeze_torque is out of reach: an encoder that stands still isn't noticed";
+    if (!reaches(map, freezes_at, 2))
+      risks[n++] = "freeze_torque is out of reach: an encoder that stands still isn't noticed";
     if (!reaches(map, reverses_at, 1)) risks[n++] = "reverse_torque is out of reach: a reversed encoder isn't noticed";
   }
   if (map->roles[ETHD__SERVO_BUS_VOLTAGE] < 0) risks[n++] = "no bus_voltage: the supply isn't watched";

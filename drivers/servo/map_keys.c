@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "ethd/param.h"
+#include "servo/map_parts.h"
 #include "text/error_text.h"
 #include "text/text.h"
-#include "servo/map_parts.h"
 
 typedef enum { NUMBER, WHOLE, CHOICE } kind;
 
@@ -30,13 +30,17 @@ static const row bus[] = {
     {WHOLE, {"base", "1", 0, 1, 0, "what the manual calls the first register"}, AT(map, base)},
     {WHOLE, {"divisor", "1", 1, 1000, 1, "ticks of the loop an exchange"}, AT(map, divisor)},
     {WHOLE, {"gap", "1", 0, 32, 0, "unnamed registers that a read may span"}, AT(map, gap)},
-    {CHOICE, {"addressing", "words|values", 0, 1, 0, "what an address counts; values: each is asked for alone"}, AT(map, addressing)},
+    {CHOICE,
+     {"addressing", "words|values", 0, 1, 0, "what an address counts; values: each is asked for alone"},
+     AT(map, addressing)},
     {CHOICE, {"exchange", "separate|combined", 0, 1, 0, "16 then 3, or 0x17"}, AT(map, exchange)},
     {NUMBER, {"connect", "s", 1e-3, 60, 1, "time to connect"}, AT(map, connect)},
     {NUMBER, {"response", "s", 1e-4, 10, 0.02, "time for an answer"}, AT(map, response)},
     {NUMBER, {"drain", "s", 1e-4, 10, 2e-3, "quiet time that ends an error"}, AT(map, drain)},
     {NUMBER, {"silence", "s", 0, 1, -1, "before a request; rtu: 3.5 bytes by default"}, AT(map, silence)},
-    {NUMBER, {"back_off", "s", 1e-3, 60, 0.05, "between attempts to connect, doubled up to 32 times"}, AT(map, back_off)},
+    {NUMBER,
+     {"back_off", "s", 1e-3, 60, 0.05, "between attempts to connect, doubled up to 32 times"},
+     AT(map, back_off)},
 };
 
 static const row watchdog[] = {
@@ -61,16 +65,24 @@ static const row keys[] = {
     {NUMBER, {"counts", "1", 1, 1e9, 0, "a motor turn"}, AT(register, counts)},
     {NUMBER, {"torque_constant", "Nm/A", 1e-6, 1e3, 0, "of the motor"}, AT(register, torque_constant)},
     {WHOLE, {"bits", "1", 8, 32, 0, "width of a position's counter: the type's by default"}, AT(register, bits)},
-    {NUMBER, {"speed_max", "rad/s", 0.01, 1e4, 40, "of a joint: a counter that is faster jumped"}, AT(register, speed_max)},
-    {NUMBER, {"freeze_torque", "Nm", 1e-6, 1e6, 0, "a change that moves a sound joint, over twice its friction"}, AT(register, freeze_torque)},
+    {NUMBER,
+     {"speed_max", "rad/s", 0.01, 1e4, 40, "of a joint: a counter that is faster jumped"},
+     AT(register, speed_max)},
+    {NUMBER,
+     {"freeze_torque", "Nm", 1e-6, 1e6, 0, "a change that moves a sound joint, over twice its friction"},
+     AT(register, freeze_torque)},
     {NUMBER, {"freeze_time", "s", 1e-3, 10, 0.05, "how long it may"}, AT(register, freeze_time)},
-    {NUMBER, {"reverse_torque", "Nm", 1e-6, 1e6, 0, "against which a joint gains no speed, over its friction"}, AT(register, reverse_torque)},
+    {NUMBER,
+     {"reverse_torque", "Nm", 1e-6, 1e6, 0, "against which a joint gains no speed, over its friction"},
+     AT(register, reverse_torque)},
     {NUMBER, {"reverse_time", "s", 1e-3, 10, 0.02, "how long it may"}, AT(register, reverse_time)},
     {NUMBER, {"inertia", "kg m^2", 1e-9, 1e6, 0.01, "of the joint, for the last two"}, AT(register, inertia)},
     {NUMBER, {"tolerance", "1", 1e-9, 1e9, 0, "of a measured torque, in its unit"}, AT(register, tolerance)},
     {WHOLE, {"fault_mask", "1", 1, WORD_MAX, 0, "bits that tell a fault"}, AT(register, fault_mask)},
     {WHOLE, {"healthy", "1", 0, WORD_MAX, 0, "what they are without one"}, AT(register, healthy)},
-    {WHOLE, {"enabled_mask", "1", 1, WORD_MAX, 0, "bits that tell whether the drive is enabled"}, AT(register, enabled_mask)},
+    {WHOLE,
+     {"enabled_mask", "1", 1, WORD_MAX, 0, "bits that tell whether the drive is enabled"},
+     AT(register, enabled_mask)},
     {WHOLE, {"enabled", "1", 0, WORD_MAX, 0, "what they are when it is"}, AT(register, enabled)},
 };
 
@@ -94,24 +106,24 @@ bool ethd__servo_whole(const char *text, double *out) {
 
 ethd_status ethd__servo_refuse(const ethd__servo_source *s, const ethd_ini_key *key, const char *allowed) {
   char quote[ETHD_QUOTE_MAX];
-  return ethd__say(s->message, ETHD_E_RANGE, "%s:%d: %s.%s: found %s, %s is allowed", s->name, key->line,
-                   key->section, key->key, ethd__quote(key->value, strlen(key->value), quote), allowed);
+  return ethd__say(s->message, ETHD_E_RANGE, "%s:%d: %s.%s: found %s, %s is allowed", s->name, key->line, key->section,
+                   key->key, ethd__quote(key->value, strlen(key->value), quote), allowed);
 }
 
 static ethd_status refuse_range(const ethd__servo_source *s, const ethd_ini_key *key, const row *r) {
   char allowed[ETHD_MESSAGE_MAX];
   const char *unit = strcmp(r->param.unit, "1") ? r->param.unit : "";
-  ethd__say(allowed, ETHD_OK, "%s%.10g to %.10g%s%s", r->kind == WHOLE ? "a whole number from " : "",
-            r->param.min, r->param.max, *unit ? " " : "", unit);
+  ethd__say(allowed, ETHD_OK, "%s%.10g to %.10g%s%s", r->kind == WHOLE ? "a whole number from " : "", r->param.min,
+            r->param.max, *unit ? " " : "", unit);
   return ethd__servo_refuse(s, key, allowed);
 }
 
 static void put(const row *r, double value, void *base) {
   char *at = (char *)base + r->offset;
   switch (r->kind) {
-    case NUMBER: memcpy(at, &value, sizeof value); break;
-    case CHOICE: memcpy(at, &(int32_t){(int32_t)value}, sizeof(int32_t)); break;
-    case WHOLE: memcpy(at, &(uint32_t){(uint32_t)value}, sizeof(uint32_t)); break;
+  case NUMBER: memcpy(at, &value, sizeof value); break;
+  case CHOICE: memcpy(at, &(int32_t){(int32_t)value}, sizeof(int32_t)); break;
+  case WHOLE: memcpy(at, &(uint32_t){(uint32_t)value}, sizeof(uint32_t)); break;
   }
 }
 
@@ -121,8 +133,8 @@ static ethd_status set(const ethd__servo_source *s, const row *r, const ethd_ini
     value = ethd_param_word(&r->param, key->value);
     if (value < 0) return ethd__servo_refuse(s, key, r->param.unit);
   } else {
-    bool is_number = r->kind == WHOLE ? ethd__servo_whole(key->value, &value)
-                                      : ethd__number(key->value, strlen(key->value), &value);
+    bool is_number =
+        r->kind == WHOLE ? ethd__servo_whole(key->value, &value) : ethd__number(key->value, strlen(key->value), &value);
     if (!is_number || !(value >= r->param.min && value <= r->param.max)) return refuse_range(s, key, r);
   }
   put(r, value, base);
@@ -131,8 +143,8 @@ static ethd_status set(const ethd__servo_source *s, const row *r, const ethd_ini
 
 /* ---- a section ---- */
 
-static ethd_status read_rows(const ethd__servo_source *s, const char *section, int line, const row *table,
-                             size_t count, void *base) {
+static ethd_status read_rows(const ethd__servo_source *s, const char *section, int line, const row *table, size_t count,
+                             void *base) {
   for (size_t i = 0; i < count; i++) {
     const ethd_ini_key *key = ethd_ini_find(s->ini, section, table[i].param.name);
     ethd_status status = ETHD_OK;
@@ -156,13 +168,13 @@ static bool is_row(const char *name, const row *table, size_t count) {
 }
 
 /* `text`: the section's one key whose value is a word of its own. */
-static ethd_status check_known(const ethd__servo_source *s, const char *section, const row *table,
-                               size_t count, const char *text) {
+static ethd_status check_known(const ethd__servo_source *s, const char *section, const row *table, size_t count,
+                               const char *text) {
   for (uint32_t i = 0; i < s->ini->count; i++) {
     const ethd_ini_key *k = &s->ini->keys[i];
     if (strcmp(k->section, section) || is_row(k->key, table, count) || (text && !strcmp(k->key, text))) continue;
-    return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: a map has no such key there", s->name, k->line,
-                     section, k->key);
+    return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: a map has no such key there", s->name, k->line, section,
+                     k->key);
   }
   return ETHD_OK;
 }
@@ -172,13 +184,15 @@ ethd_status ethd__servo_read_bus(const ethd__servo_source *s, int line, ethd__se
   if (!status) status = read_rows(s, "bus", line, ROWS(bus), map);
   if (status) return status;
   const ethd_ini_key *port = ethd_ini_find(s->ini, "bus", "port");
-  if (!port) return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: bus.port is missing: HOST:PORT, or a serial device",
-                              s->name, line);
+  if (!port)
+    return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: bus.port is missing: HOST:PORT, or a serial device", s->name,
+                     line);
   if (strlen(port->value) >= sizeof map->port) return ethd__servo_refuse(s, port, "a shorter name");
   strcpy(map->port, port->value);
   if (map->transport == ETHD__SERVO_RTU && !(map->baud > 0))
     return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: bus.baud is missing: rtu needs it", s->name, line);
-  if (map->baud != rint(map->baud)) return ethd__servo_refuse(s, ethd_ini_find(s->ini, "bus", "baud"), "a whole number");
+  if (map->baud != rint(map->baud))
+    return ethd__servo_refuse(s, ethd_ini_find(s->ini, "bus", "baud"), "a whole number");
   if (map->silence < 0) map->silence = map->transport == ETHD__SERVO_RTU ? 3.5 * 11 / map->baud : 0;
   return ETHD_OK;
 }

@@ -2,8 +2,8 @@
 #ifndef ETHD_SERVO_MAP_PARTS_H
 #define ETHD_SERVO_MAP_PARTS_H
 
-#include "text/ini.h"
 #include "servo/map.h"
+#include "text/ini.h"
 
 /* What is being read, and where a refusal goes. */
 typedef struct ethd__servo_source {
@@ -26,8 +26,8 @@ ethd_status ethd__servo_read_register(const ethd__servo_source *s, const ethd_in
                                       const ethd__servo_map *map, ethd__servo_register *out);
 
 /* The steps of [identify], [enable], [disable]. */
-ethd_status ethd__servo_read_steps(const ethd__servo_source *s, const char *section,
-                                   const ethd__servo_map *map, ethd__servo_steps *out);
+ethd_status ethd__servo_read_steps(const ethd__servo_source *s, const char *section, const ethd__servo_map *map,
+                                   ethd__servo_steps *out);
 
 /* The register of this name, -1. */
 int32_t ethd__servo_find(const ethd__servo_map *map, const char *name, size_t length);

@@ -1,10 +1,10 @@
 /* Sequences: step1, step2, ... in a section of their own. */
 #include <string.h>
 
-#include "text/error_text.h"
-#include "text/text.h"
 #include "servo/map_parts.h"
 #include "servo/words.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 #define WORDS_MAX 5
 #define WAIT_MAX 60.0
@@ -41,8 +41,8 @@ static bool number(const words *w, uint32_t i, bool whole, double *out) {
 
 static ethd_status refuse_register(const ethd__servo_source *s, const ethd_ini_key *key, const words *w) {
   char quote[ETHD_QUOTE_MAX];
-  return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: the map has no [register %.*s]: %s", s->name,
-                   key->line, key->section, key->key, (int)(w->length[1] < 40 ? w->length[1] : 40), w->at[1],
+  return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: the map has no [register %.*s]: %s", s->name, key->line,
+                   key->section, key->key, (int)(w->length[1] < 40 ? w->length[1] : 40), w->at[1],
                    ethd__quote(key->value, strlen(key->value), quote));
 }
 
@@ -98,19 +98,19 @@ static uint32_t step_number(const char *key) {
   return *key ? 0 : n;
 }
 
-ethd_status ethd__servo_read_steps(const ethd__servo_source *s, const char *section,
-                                   const ethd__servo_map *map, ethd__servo_steps *out) {
+ethd_status ethd__servo_read_steps(const ethd__servo_source *s, const char *section, const ethd__servo_map *map,
+                                   ethd__servo_steps *out) {
   out->count = 0;
   for (uint32_t i = 0; i < s->ini->count; i++) {
     const ethd_ini_key *key = &s->ini->keys[i];
     if (strcmp(key->section, section)) continue;
     uint32_t n = step_number(key->key);
     if (!n || n > ETHD__SERVO_STEPS_MAX)
-      return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: step1 to step%u are allowed", s->name,
-                       key->line, section, key->key, ETHD__SERVO_STEPS_MAX);
+      return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: step1 to step%u are allowed", s->name, key->line,
+                       section, key->key, ETHD__SERVO_STEPS_MAX);
     if (n != out->count + 1)
-      return ethd__say(s->message, ETHD_E_SYNTAX, "%s:%d: %s.%s: step%u comes here; steps stand in order",
-                       s->name, key->line, section, key->key, out->count + 1);
+      return ethd__say(s->message, ETHD_E_SYNTAX, "%s:%d: %s.%s: step%u comes here; steps stand in order", s->name,
+                       key->line, section, key->key, out->count + 1);
     ethd_status status = read_step(s, key, map, &out->at[out->count++]);
     if (status) return status;
   }

@@ -18,8 +18,8 @@ static int32_t next(const ethd__servo_map *map, int32_t direction, int64_t after
   return best;
 }
 
-static bool joins(const ethd__servo_map *map, const ethd__servo_block *b, const ethd__servo_register *r,
-                  uint32_t gap, uint32_t most) {
+static bool joins(const ethd__servo_map *map, const ethd__servo_block *b, const ethd__servo_register *r, uint32_t gap,
+                  uint32_t most) {
   if (b->space != r->space) return false;
   if (map->addressing == ETHD__SERVO_BY_VALUE) return b->address == r->address;
   return r->address <= b->address + b->count + gap && r->address + ethd__servo_words(r) - b->address <= most;

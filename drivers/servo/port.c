@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "serial/line.h"
-#include "text/error_text.h"
 #include "servo/bus.h"
+#include "text/error_text.h"
 
 static ethd_status refuse(const ethd__servo_map *map, int error, char *message) {
   return ethd__say(message, ETHD_E_DEVICE, "%s: %s", map->port, strerror(error));
@@ -27,9 +27,12 @@ static int connect_to(const struct addrinfo *to, double seconds) {
   setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &one, sizeof one);
   if (connect(fd, to->ai_addr, to->ai_addrlen)) {
     struct pollfd wait = {fd, POLLOUT, 0};
-    if (errno != EINPROGRESS) error = errno;
-    else if (poll(&wait, 1, (int)(1e3 * seconds) + 1) < 1) error = ETIMEDOUT;
-    else if (getsockopt(fd, SOL_SOCKET, SO_ERROR, &error, &size)) error = errno;
+    if (errno != EINPROGRESS)
+      error = errno;
+    else if (poll(&wait, 1, (int)(1e3 * seconds) + 1) < 1)
+      error = ETIMEDOUT;
+    else if (getsockopt(fd, SOL_SOCKET, SO_ERROR, &error, &size))
+      error = errno;
   }
   if (!error) return fd;
   close(fd);

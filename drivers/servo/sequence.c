@@ -1,7 +1,7 @@
 /* Steps of [identify], [enable] and [disable], one a turn. */
-#include "text/error_text.h"
 #include "servo/link.h"
 #include "servo/words.h"
+#include "text/error_text.h"
 
 static const char *const names[ETHD__SERVO_SEQUENCES] = {"identify", "enable", "disable"};
 

@@ -83,4 +83,6 @@ ethd_status ethd__servo_write(void *device, int64_t now_ns, const ethd_command *
   return ETHD_OK;
 }
 
-void ethd__servo_safe(void *device) { atomic_store_explicit(&((ethd__servo_device *)device)->safe, 1, memory_order_relaxed); }
+void ethd__servo_safe(void *device) {
+  atomic_store_explicit(&((ethd__servo_device *)device)->safe, 1, memory_order_relaxed);
+}

@@ -50,10 +50,10 @@ double ethd__servo_unpack(const ethd__servo_register *r, const uint16_t *words) 
   uint32_t bits = ethd__servo_bits(r, words);
   float f;
   switch (r->type) {
-    case ETHD__SERVO_I16: return (int16_t)bits;
-    case ETHD__SERVO_I32: return (int32_t)bits;
-    case ETHD__SERVO_F32: memcpy(&f, &bits, sizeof f); return (double)f;
-    default: return bits;
+  case ETHD__SERVO_I16: return (int16_t)bits;
+  case ETHD__SERVO_I32: return (int32_t)bits;
+  case ETHD__SERVO_F32: memcpy(&f, &bits, sizeof f); return (double)f;
+  default: return bits;
   }
 }
 
@@ -61,12 +61,12 @@ double ethd__servo_unpack(const ethd__servo_register *r, const uint16_t *words) 
 
 double ethd__servo_factor(const ethd__servo_register *r) {
   switch (r->unit) {
-    case A: return r->torque_constant;
-    case COUNT:
-    case COUNT_S: return TURN / r->counts;
-    case TURNS: return TURN;
-    case RPM: return TURN / 60;
-    default: return 1;
+  case A: return r->torque_constant;
+  case COUNT:
+  case COUNT_S: return TURN / r->counts;
+  case TURNS: return TURN;
+  case RPM: return TURN / 60;
+  default: return 1;
   }
 }
 

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "settings/config_parts.h"
-#include "text/error_text.h"
 #include "settings/scene_file.h"
+#include "text/error_text.h"
 #include "text/text.h"
 
 #define SCENE_BYTES_MAX ((size_t)256 << 20)
@@ -45,8 +45,7 @@ static ethd_status parse_scene(const reading *r, size_t length) {
   if (zero) {
     int line = 1;
     for (const char *p = c->scene_text; p < zero; p++) line += *p == '\n';
-    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%d: a byte 0: this is no text", r->whole->scene_path,
-                     line);
+    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%d: a byte 0: this is no text", r->whole->scene_path, line);
   }
   ethd_status status = ethd_scene_parse(c->scene_text, length, &c->scene, &error);
   if (status) ethd__scene_refusal(r->whole->scene_path, &error, r->message);
@@ -61,8 +60,7 @@ static ethd_status load_scene(const reading *r, const ethd_ini_key *k) {
   size_t length;
   r->whole->scene_path = ethd__path_join(c->folder, k->value);
   if (!r->whole->scene_path) return no_memory(r);
-  ethd_status status =
-      ethd_text_read(r->whole->scene_path, SCENE_BYTES_MAX, &c->scene_text, &length, what);
+  ethd_status status = ethd_text_read(r->whole->scene_path, SCENE_BYTES_MAX, &c->scene_text, &length, what);
   if (status) return ethd__key_refuse(&key, status, "%s", what);
   return parse_scene(r, length);
 }
@@ -74,8 +72,7 @@ static ethd_status device_key(const reading *r, const ethd_ini_key *k) {
     c->settings[c->setting_count++] = (ethd_setting){k->key, k->value, k->line};
     return ETHD_OK;
   }
-  if (strlen(k->value) >= sizeof c->device)
-    return ethd__key_found(&key, ETHD_E_SYNTAX, "at most 95 characters");
+  if (strlen(k->value) >= sizeof c->device) return ethd__key_found(&key, ETHD_E_SYNTAX, "at most 95 characters");
   strcpy(c->device, k->value);
   return ETHD_OK;
 }
@@ -166,12 +163,11 @@ static ethd_status drop_unreachable(const reading *r) {
 }
 
 static ethd_status apply_keys(const reading *r) {
-  static ethd_status (*const passes[])(const reading *, const ethd_ini_key *) = {plugin_pass, law_pass,
-                                                                                 preset_pass, key_pass};
+  static ethd_status (*const passes[])(const reading *, const ethd_ini_key *) = {plugin_pass, law_pass, preset_pass,
+                                                                                 key_pass};
   const ethd_ini *ini = &r->whole->ini;
   for (uint32_t i = 0; i < ini->section_count; i++) {
-    ethd_status status =
-        ethd__config_section_known(&ini->sections[i], r->name, &r->whole->config.setup, r->message);
+    ethd_status status = ethd__config_section_known(&ini->sections[i], r->name, &r->whole->config.setup, r->message);
     if (status) return status;
   }
   for (size_t pass = 0; pass < sizeof passes / sizeof *passes; pass++)
@@ -213,8 +209,8 @@ static bool fill(ethd_config *c, const char *text, size_t length, const char *na
   return (!name || c->path) && c->text && c->folder && c->settings && c->laws;
 }
 
-ethd_status ethd_config_parse(const char *text, size_t length, const char *name, const char *folder,
-                              ethd_config **out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd_config_parse(const char *text, size_t length, const char *name, const char *folder, ethd_config **out,
+                              char message[ETHD_MESSAGE_MAX]) {
   reading r = {calloc(1, sizeof *r.whole), name ? name : "configuration", message};
   *out = NULL;
   if (!r.whole) return no_memory(&r);

@@ -17,14 +17,13 @@ ethd_status ethd__key_refuse(const ethd__key *key, ethd_status status, const cha
   vsnprintf(what, sizeof what, format, args);
   va_end(args);
   if (!key->file) return ethd__say(key->message, status, "%s.%s: %s", key->section, key->key, what);
-  return ethd__say(key->message, status, "%s:%d: %s.%s: %s", key->file, key->line, key->section,
-                   key->key, what);
+  return ethd__say(key->message, status, "%s:%d: %s.%s: %s", key->file, key->line, key->section, key->key, what);
 }
 
 ethd_status ethd__key_found(const ethd__key *key, ethd_status status, const char *allowed) {
   char quote[ETHD_QUOTE_MAX];
-  return ethd__key_refuse(key, status, "found %s, %s is allowed",
-                          ethd__quote(key->value, strlen(key->value), quote), allowed);
+  return ethd__key_refuse(key, status, "found %s, %s is allowed", ethd__quote(key->value, strlen(key->value), quote),
+                          allowed);
 }
 
 /* ---- keys that stand in the setup itself ---- */
@@ -100,9 +99,9 @@ static ethd_status read_mechanism(const ethd__key *key, ethd_mechanism *out) {
 static ethd_status read_field(const field *f, const ethd__key *key, ethd_setup *setup) {
   void *at = (char *)setup + f->offset;
   switch (f->kind) {
-    case LAGS: return read_numbers(key, ETHD_RAYS, "a time in s for each of the 16 rays", at);
-    case MECHANISM: return read_mechanism(key, at);
-    default: return read_number(key, at);
+  case LAGS: return read_numbers(key, ETHD_RAYS, "a time in s for each of the 16 rays", at);
+  case MECHANISM: return read_mechanism(key, at);
+  default: return read_number(key, at);
   }
 }
 
@@ -158,8 +157,8 @@ static ethd_status read_param(const ethd_param *row, const ethd__key *key, doubl
   ethd_status status = read_number(key, &value);
   if (status) return status;
   if (!(value >= row->min && value <= row->max))
-    return ethd__key_refuse(key, ETHD_E_RANGE, "found %.10g, %.10g to %.10g %s is allowed", value,
-                            row->min, row->max, row->unit);
+    return ethd__key_refuse(key, ETHD_E_RANGE, "found %.10g, %.10g to %.10g %s is allowed", value, row->min, row->max,
+                            row->unit);
   *out = value;
   return ETHD_OK;
 }
@@ -181,9 +180,8 @@ ethd_status ethd__config_apply(const ethd__key *key, ethd_setup *setup) {
 }
 
 /* Keys that the files of a configuration take care of before they come here. */
-static const char *const file_keys[][2] = {{"arm", "mass_x"},        {"arm", "mass_y"},
-                                           {"transition", "preset"}, {"scene", "file"},
-                                           {"device", "driver"},     {"plugins", "file"}};
+static const char *const file_keys[][2] = {{"arm", "mass_x"}, {"arm", "mass_y"},    {"transition", "preset"},
+                                           {"scene", "file"}, {"device", "driver"}, {"plugins", "file"}};
 
 static void add(char list[ETHD_MESSAGE_MAX], const char *word) {
   size_t n = strlen(list);
@@ -200,9 +198,8 @@ static void list_keys(const char *section, const ethd__section *own, char list[E
   for (uint32_t i = 0; i < own->count; i++) add(list, own->params[i].name);
 }
 
-static const char sections[] =
-    "unknown section; arm, ring, finger, loop, velocity, finger_fit, finger_filter, "
-    "tracking, contact, transition, scene, limits, device, plugins are allowed";
+static const char sections[] = "unknown section; arm, ring, finger, loop, velocity, finger_fit, finger_filter, "
+                               "tracking, contact, transition, scene, limits, device, plugins are allowed";
 
 ethd_status ethd__config_section_known(const ethd_ini_section *section, const char *file, ethd_setup *setup,
                                        char message[ETHD_MESSAGE_MAX]) {
@@ -220,7 +217,6 @@ ethd_status ethd__config_unknown(const ethd__key *key, ethd_setup *setup) {
   int has_law = ethd__config_section(setup, key->section, &own);
   list_keys(key->section, &own, list);
   if (!list[0]) return ethd__key_refuse(key, ETHD_E_UNKNOWN, "%s", sections);
-  if (has_law)
-    return ethd__key_refuse(key, ETHD_E_UNKNOWN, "not a key of %s, which has %s", own.id, list);
+  if (has_law) return ethd__key_refuse(key, ETHD_E_UNKNOWN, "not a key of %s, which has %s", own.id, list);
   return ethd__key_refuse(key, ETHD_E_UNKNOWN, "unknown key; %s are allowed", list);
 }

@@ -21,8 +21,7 @@ static void list_laws(const ethd_config *config, uint32_t kind, char list[ETHD_M
       n += (size_t)snprintf(list + n, ETHD_MESSAGE_MAX - n, "%s%s", n ? ", " : "", (*law)->id);
 }
 
-static ethd_status choose_law(const ethd_config *config, uint32_t kind, const ethd__key *key,
-                              ethd_setup *setup) {
+static ethd_status choose_law(const ethd_config *config, uint32_t kind, const ethd__key *key, ethd_setup *setup) {
   char list[ETHD_MESSAGE_MAX];
   const ethd_law *law = find_law(config, kind, key->value);
   if (!law) {
@@ -39,8 +38,7 @@ static ethd_status choose_law(const ethd_config *config, uint32_t kind, const et
 }
 
 /* Index of the method, or -1 and the refusal. */
-static int find_method(const ethd_method *methods, int count, const ethd__key *key,
-                       ethd_status *status) {
+static int find_method(const ethd_method *methods, int count, const ethd__key *key, ethd_status *status) {
   char list[ETHD_MESSAGE_MAX] = "";
   size_t n = 0;
   for (int i = 0; i < count; i++) {
@@ -101,8 +99,8 @@ ethd_status ethd__config_preset(const ethd__key *key, ethd_setup *setup) {
 
 /* Values that were chosen, in the file or since, are kept; those that were the old law's defaults become
    the new law's. */
-static void keep_common(const ethd_config *config, const ethd_law *from, const double *old,
-                        const ethd_law *to, double *p) {
+static void keep_common(const ethd_config *config, const ethd_law *from, const double *old, const ethd_law *to,
+                        double *p) {
   const ethd_ini *ini = &ethd__config_whole(config)->ini;
   for (uint32_t i = 0; i < from->param_count; i++) {
     const ethd_param *row = &from->params[i];
@@ -133,13 +131,13 @@ ethd_status ethd_config_transition(const ethd_config *config, const char *id, et
 
 static int stands_in_files_only(const char *section, const char *key) {
   const char *chooser = ethd__config_chooser(section);
-  return strcmp(section, "device") == 0 || strcmp(section, "plugins") == 0 ||
-         strcmp(section, "scene") == 0 || (chooser && strcmp(chooser, key) == 0) ||
-         strcmp(key, "preset") == 0 || (strcmp(section, "arm") == 0 && strncmp(key, "mass_", 5) == 0);
+  return strcmp(section, "device") == 0 || strcmp(section, "plugins") == 0 || strcmp(section, "scene") == 0 ||
+         (chooser && strcmp(chooser, key) == 0) || strcmp(key, "preset") == 0 ||
+         (strcmp(section, "arm") == 0 && strncmp(key, "mass_", 5) == 0);
 }
 
-ethd_status ethd_config_set(const ethd_config *config, const char *name, const char *value,
-                            ethd_setup *setup, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd_config_set(const ethd_config *config, const char *name, const char *value, ethd_setup *setup,
+                            char message[ETHD_MESSAGE_MAX]) {
   char section[64], quote[ETHD_QUOTE_MAX];
   ethd_error error;
   (void)config;

@@ -12,9 +12,7 @@ typedef struct ethd__config {
   char *scene_path;
 } ethd__config;
 
-static inline const ethd__config *ethd__config_whole(const ethd_config *config) {
-  return (const ethd__config *)config;
-}
+static inline const ethd__config *ethd__config_whole(const ethd_config *config) { return (const ethd__config *)config; }
 
 /* A key that is being applied, for messages. file NULL: a command, not a file. */
 typedef struct ethd__key {

@@ -35,8 +35,7 @@ static bool for_this_machine(const ElfW(Ehdr) * h) {
 static const char *segments_fault(FILE *file, const ElfW(Ehdr) * h, uint64_t size) {
   bool dynamic = false;
   if (h->e_phentsize != sizeof(ElfW(Phdr)) || !h->e_phnum) return "has no segments";
-  if (h->e_phoff > size || (uint64_t)h->e_phnum * sizeof(ElfW(Phdr)) > size - h->e_phoff)
-    return "is cut short";
+  if (h->e_phoff > size || (uint64_t)h->e_phnum * sizeof(ElfW(Phdr)) > size - h->e_phoff) return "is cut short";
   for (unsigned i = 0; i < h->e_phnum; i++) {
     ElfW(Phdr) p;
     if (!read_at(file, h->e_phoff + i * sizeof p, &p, sizeof p)) return "is cut short";
@@ -50,13 +49,11 @@ static const char *segments_fault(FILE *file, const ElfW(Ehdr) * h, uint64_t siz
 static const char *file_fault(FILE *file, uint64_t size) {
   ElfW(Ehdr) h;
   if (size == 0) return "is empty";
-  if (!read_at(file, 0, &h, sizeof h))
-    return size < sizeof h ? "is cut short or no shared object" : "can't be read";
+  if (!read_at(file, 0, &h, sizeof h)) return size < sizeof h ? "is cut short or no shared object" : "can't be read";
   if (memcmp(h.e_ident, ELFMAG, SELFMAG) != 0) return "is no shared object";
   if (!for_this_machine(&h)) return "was built for another machine";
   if (h.e_type != ET_DYN) return "is no shared object";
-  if (h.e_shoff && (h.e_shoff > size || (uint64_t)h.e_shnum * h.e_shentsize > size - h.e_shoff))
-    return "is cut short";
+  if (h.e_shoff && (h.e_shoff > size || (uint64_t)h.e_shnum * h.e_shentsize > size - h.e_shoff)) return "is cut short";
   return segments_fault(file, &h, size);
 }
 
@@ -88,8 +85,7 @@ static ethd_status add_laws(ethd_config *config, const ethd_plugin_entry *entry,
     const ethd_law *law = entry->laws[i];
     for (uint32_t k = 0; k < n; k++)
       if (laws[k]->kind == law->kind && strcmp(laws[k]->id, law->id) == 0)
-        return ethd__key_refuse(key, ETHD_E_DUPLICATE, "the law %s of %s is there already", law->id,
-                                entry->id);
+        return ethd__key_refuse(key, ETHD_E_DUPLICATE, "the law %s of %s is there already", law->id, entry->id);
     laws[n++] = law;
     laws[n] = NULL;
   }

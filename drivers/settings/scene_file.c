@@ -23,7 +23,8 @@ void ethd__scene_refusal(const char *path, const ethd_error *error, char message
   else if (error->status == ETHD_E_UNKNOWN)
     ethd__say(message, error->status, "%s; %smaterial are allowed", plain, shapes);
   else if (error->status == ETHD_E_SYNTAX && isnan(error->found))
-    ethd__say(message, error->status, "%s; SHAPE NUMBERS [material=NAME] or material NAME [KEY=NUMBER...] are allowed", plain);
+    ethd__say(message, error->status, "%s; SHAPE NUMBERS [material=NAME] or material NAME [KEY=NUMBER...] are allowed",
+              plain);
   else
     ethd__say(message, error->status, "%s", plain);
 }

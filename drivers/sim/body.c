@@ -74,9 +74,7 @@ void ethd__body_waves(const ethd__body *b, ethd__two angle, ethd__two *sine, eth
   *cosine = ethd__pair(c);
 }
 
-static ethd_vec turn(double w, ethd_vec a) {
-  return (ethd_vec){-w * a.y, w * a.x};
-}
+static ethd_vec turn(double w, ethd_vec a) { return (ethd_vec){-w * a.y, w * a.x}; }
 
 typedef struct pose {
   ethd_vec a, b;
@@ -89,9 +87,7 @@ static pose links(const ethd__body *body, const double *angle) {
   return (pose){{x[0], y[0]}, {x[1], y[1]}};
 }
 
-static ethd_vec velocity(const pose *p, const double *w) {
-  return ethd_vec_add(turn(w[0], p->a), turn(w[1], p->b));
-}
+static ethd_vec velocity(const pose *p, const double *w) { return ethd_vec_add(turn(w[0], p->a), turn(w[1], p->b)); }
 
 void ethd__body_refer(ethd__body *body, const ethd__state *state) {
   for (int j = 0; j < 2; j++) {
@@ -197,8 +193,7 @@ static void drive(const ethd__body *b, const double *q, const double *v, double 
   if (b->serial) d[0] -= d[1];
 }
 
-static void couple(const ethd__body *b, const pose *links, const double *w, const double g[2],
-                   double *a) {
+static void couple(const ethd__body *b, const pose *links, const double *w, const double g[2], double *a) {
   double h = b->coupling / (b->link[0] * b->link[1]);
   double hc = h * ethd_vec_dot(links->a, links->b), hs = h * ethd_vec_cross(links->a, links->b);
   double g0 = g[0] + hs * w[1] * w[1], g1 = g[1] - hs * w[0] * w[0];
@@ -207,8 +202,8 @@ static void couple(const ethd__body *b, const pose *links, const double *w, cons
   a[1] = (b->inertia[0] * g1 - hc * g0) / det;
 }
 
-void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, const ethd__motion *hand,
-                           const double *q, const double *v, double *out) {
+void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, const ethd__motion *hand, const double *q,
+                           const double *v, double *out) {
   double g[2];
   drive(b, q, v, g, out);
   ethd_vec f = {b->hand_stiffness * (hand->x.x - q[2]) + b->hand_damping * (hand->v.x - v[2]),
@@ -230,9 +225,7 @@ void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, const ethd__m
   out[ETHD__FINGER + 1] = hand->a.y + f.y / b->finger_mass;
 }
 
-static double square(double x) {
-  return x * x;
-}
+static double square(double x) { return x * x; }
 
 double ethd__body_energy(const ethd__body *b, const ethd__state *s, ethd_vec hand) {
   const double *q = s->q, *v = s->v;

@@ -30,8 +30,8 @@ typedef struct ethd__body {
   double link[2];
   double inertia[2], coupling, motor_inertia[2]; /* kg m^2 */
   double stiffness[2], damping[2];               /* Nm/rad, Nms/rad of the transmission */
-  double friction[2], viscous[2], sharpness[2]; /* Nm, Nms/rad, s/rad: f tanh(sharpness w) + viscous w */
-  double torque_max[2], torque[2];              /* Nm, the latter in effect */
+  double friction[2], viscous[2], sharpness[2];  /* Nm, Nms/rad, s/rad: f tanh(sharpness w) + viscous w */
+  double torque_max[2], torque[2];               /* Nm, the latter in effect */
   double gap, pad_stiffness, pad_damping;
   double finger_mass, hand_stiffness, hand_damping;
   double tolerance;                 /* m/s: of a step's last terms */
@@ -58,8 +58,7 @@ void ethd__body_waves(const ethd__body *body, ethd__two angle, ethd__two *sine, 
 
 /* Ring centre and its velocity; the same as the motor's side has it. */
 void ethd__body_ring(const ethd__body *body, const ethd__state *state, ethd_vec *x, ethd_vec *v) ETHD_RT;
-void ethd__body_motor(const ethd__body *body, const ethd__state *state, ethd_vec *x,
-                      ethd_vec *v) ETHD_RT;
+void ethd__body_motor(const ethd__body *body, const ethd__state *state, ethd_vec *x, ethd_vec *v) ETHD_RT;
 
 /* Penetration p of the pad and its force under the state's touch. */
 void ethd__body_pad(const ethd__body *body, const ethd__state *state, double *p, double *force) ETHD_RT;
@@ -70,8 +69,8 @@ ethd__touch ethd__body_touch(const ethd__body *body, const ethd__state *state) E
 /* Accelerations, for methods that ask for them; series.c has the same equations term by term. An
    undisturbed finger is where the hand wants it: spring and damper act on what a touch changes about the
    path, m (a_f - a) = K (x - x_f) + B (v - v_f) + pad. */
-void ethd__body_accelerate(const ethd__body *body, ethd__touch touch, const ethd__motion *hand,
-                           const double *q, const double *v, double *out) ETHD_RT;
+void ethd__body_accelerate(const ethd__body *body, ethd__touch touch, const ethd__motion *hand, const double *q,
+                           const double *v, double *out) ETHD_RT;
 
 /* Kinetic energy plus that of pad, hand and transmission, J, with the path at hand. */
 double ethd__body_energy(const ethd__body *body, const ethd__state *state, ethd_vec hand) ETHD_RT;

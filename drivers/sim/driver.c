@@ -3,9 +3,9 @@
 
 #include "ethd/driver.h"
 #include "ethd/sim.h"
-#include "text/error_text.h"
 #include "sim/plant.h"
 #include "sim/settings.h"
+#include "text/error_text.h"
 
 #define CATCH_UP_MAX 1000 /* periods: after a longer gap simulated time falls behind */
 
@@ -19,8 +19,7 @@ typedef struct device {
   ethd_command held; /* of the last write */
 } device;
 
-static ethd_status load_plant(const ethd_device_def *def, const ethd_setting *setting, ethd_plant *out,
-                              char *message) {
+static ethd_status load_plant(const ethd_device_def *def, const ethd_setting *setting, ethd_plant *out, char *message) {
   char *path = ethd__plant_path(setting ? setting->value : "n", def->folder);
   ethd_status status = path ? ethd_plant_load(path, out, message)
                             : ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
@@ -36,8 +35,8 @@ static ethd_status create(const ethd_device_def *def, const ethd__sim_settings *
   status = ethd_sim_create(&d->def, &d->sim, &error);
   if (!status) {
     ethd_vec meet = {s->p[ETHD__SIM_MEET_X], s->p[ETHD__SIM_MEET_Y]};
-    ethd_sim_draw(&d->def.plant, (uint64_t)s->p[ETHD__SIM_SEED], (uint64_t)s->p[ETHD__SIM_TAP],
-                  s->p[ETHD__SIM_SPEED], meet, &d->tap);
+    ethd_sim_draw(&d->def.plant, (uint64_t)s->p[ETHD__SIM_SEED], (uint64_t)s->p[ETHD__SIM_TAP], s->p[ETHD__SIM_SPEED],
+                  meet, &d->tap);
     status = ethd_sim_start(d->sim, &d->tap);
     if (status) ethd__sim_refuse(&error, status, "sim", NAN, NAN, NAN);
   }

@@ -20,8 +20,7 @@ static double cruise_time(const ethd_path *path) {
 }
 
 /* Speed V (1 - cos(w s))/2, with w ramp = pi; falling: the mirror image, with s from its end. */
-static void ramp(ethd_vec x, double velocity, double duration, double begin, double origin,
-                 ethd__piece *out) {
+static void ramp(ethd_vec x, double velocity, double duration, double begin, double origin, ethd__piece *out) {
   hold(x, begin, begin + duration, out);
   out->origin = origin;
   out->w = PI / duration;
@@ -57,9 +56,7 @@ static void synthetic_piece(const ethd_path *path, double t, ethd__piece *out) {
 
 /* ---- recorded ---- */
 
-static ethd_vec place(const ethd_path_sample *s) {
-  return (ethd_vec){s->x, s->y};
-}
+static ethd_vec place(const ethd_path_sample *s) { return (ethd_vec){s->x, s->y}; }
 
 static ethd_vec slope(const ethd_path_sample *s) {
   return ethd_vec_scale(1 / (s[1].t - s[0].t), ethd_vec_sub(place(s + 1), place(s)));
@@ -71,8 +68,7 @@ static ethd_vec tangent(const ethd_path *path, size_t i) {
   if (i == 0 || i + 1 == path->sample_count) return ZERO;
   const ethd_path_sample *s = path->samples + i;
   double before = s[0].t - s[-1].t, after = s[1].t - s[0].t, whole = before + after;
-  return ethd_vec_add(ethd_vec_scale(after / whole, slope(s - 1)),
-                      ethd_vec_scale(before / whole, slope(s)));
+  return ethd_vec_add(ethd_vec_scale(after / whole, slope(s - 1)), ethd_vec_scale(before / whole, slope(s)));
 }
 
 /* Last sample at or before t. */
@@ -146,8 +142,7 @@ void ethd__piece_terms(const ethd__piece *p, const ethd__motion *at, ethd__two o
 }
 
 double ethd__piece_travel(const ethd__piece *p, ethd__two v, double h) {
-  double e = fabs(p->e.x) + fabs(p->e.y), c = fabs(p->c.x) + fabs(p->c.y),
-         d = fabs(p->d.x) + fabs(p->d.y);
+  double e = fabs(p->e.x) + fabs(p->e.y), c = fabs(p->c.x) + fabs(p->c.y), d = fabs(p->d.x) + fabs(p->d.y);
   double bend = e * p->w * p->w;
   if (c + d > 0) bend = 2 * c + 6 * d * (p->end - p->begin);
   return h * (fabs(v[0]) + fabs(v[1]) + h / 2 * bend);

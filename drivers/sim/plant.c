@@ -6,8 +6,7 @@
 #include "sim/sensors.h"
 
 #define AT(member) offsetof(ethd_plant, member)
-#define ROW(section, key, unit, min, max, member, brief)                                                     \
-  {section, {key, unit, min, max, min, brief}, AT(member)}
+#define ROW(section, key, unit, min, max, member, brief) {section, {key, unit, min, max, min, brief}, AT(member)}
 
 const ethd__plant_row ethd__plant_rows[] = {
     ROW("device", "mass_x", "kg", 1e-3, 1e3, mass[0], "effective mass at the ring in x: joint 1"),
@@ -52,8 +51,8 @@ const ethd__plant_row ethd__plant_rows[] = {
 };
 const size_t ethd__plant_row_count = sizeof ethd__plant_rows / sizeof *ethd__plant_rows;
 
-ethd_status ethd__sim_refuse(ethd_error *error, ethd_status status, const char *name, double found,
-                             double min, double max) {
+ethd_status ethd__sim_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
+                             double max) {
   if (!error) return status;
   memset(error, 0, sizeof *error);
   error->status = status;
@@ -81,20 +80,17 @@ static ethd_status check_row(const ethd__plant_row *row, const ethd_plant *plant
   char name[sizeof error->name];
   if (value >= p->min && value <= p->max) return ETHD_OK;
   snprintf(name, sizeof name, "%s.%s", row->section, p->name);
-  return ethd__sim_refuse(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, value, p->min,
-                          p->max);
+  return ethd__sim_refuse(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, value, p->min, p->max);
 }
 
 /* name's value must lie in [min, max]. */
 static ethd_status within(ethd_error *error, const char *name, double found, double min, double max) {
-  return found >= min && found <= max ? ETHD_OK
-                                      : ethd__sim_refuse(error, ETHD_E_RANGE, name, found, min, max);
+  return found >= min && found <= max ? ETHD_OK : ethd__sim_refuse(error, ETHD_E_RANGE, name, found, min, max);
 }
 
 ethd_status ethd__plant_check(const ethd_plant *p, ethd_error *error) {
   ethd_status status = ETHD_OK;
-  for (size_t i = 0; i < ethd__plant_row_count && !status; i++)
-    status = check_row(&ethd__plant_rows[i], p, error);
+  for (size_t i = 0; i < ethd__plant_row_count && !status; i++) status = check_row(&ethd__plant_rows[i], p, error);
   if (status) return status;
   double least = fmin(p->mass[0], p->mass[1]), frame = p->rays ? p->ray_skew : 0;
   if (p->stiffness < INFINITY) {
@@ -125,7 +121,6 @@ ethd_status ethd__sim_check(const ethd_sim_def *def, ethd_error *error) {
   if (!status) status = within(error, "step", def->step, 1e-7, 1);
   if (!status) status = within(error, "tolerance", def->tolerance, 1e-14, INFINITY);
   if (!status) status = within(error, "device.delay", p->delay, 0, def->period);
-  if (!status)
-    status = within(error, "ring.radius", def->ring_radius, p->finger_radius + 2 * p->finger_radius_sd, 10);
+  if (!status) status = within(error, "ring.radius", def->ring_radius, p->finger_radius + 2 * p->finger_radius_sd, 10);
   return status;
 }

@@ -26,11 +26,10 @@ ethd_status ethd__sim_check(const ethd_sim_def *def, ethd_error *error);
 char *ethd__plant_path(const char *plant, const char *folder);
 
 /* ethd_plant_load with `name` for the file in messages. [main] */
-ethd_status ethd__plant_read(const char *path, const char *name, ethd_plant *out,
-                             char message[ETHD_MESSAGE_MAX]);
+ethd_status ethd__plant_read(const char *path, const char *name, ethd_plant *out, char message[ETHD_MESSAGE_MAX]);
 
 /* Fills the error, returns its status. [main] */
-ethd_status ethd__sim_refuse(ethd_error *error, ethd_status status, const char *name, double found,
-                             double min, double max);
+ethd_status ethd__sim_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
+                             double max);
 
 #endif

@@ -4,29 +4,29 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "sim/plant.h"
 #include "text/error_text.h"
 #include "text/ini.h"
 #include "text/text.h"
-#include "sim/plant.h"
 
 #define BYTES_MAX ((size_t)1 << 16)
 
 static ethd_status refuse(const char *path, const ethd_ini_key *key, const char *allowed, char *message) {
   char quote[ETHD_QUOTE_MAX];
-  return ethd__say(message, ETHD_E_RANGE, "%s:%d: %s.%s: found %s, %s is allowed", path, key->line,
-                   key->section, key->key, ethd__quote(key->value, strlen(key->value), quote), allowed);
+  return ethd__say(message, ETHD_E_RANGE, "%s:%d: %s.%s: found %s, %s is allowed", path, key->line, key->section,
+                   key->key, ethd__quote(key->value, strlen(key->value), quote), allowed);
 }
 
-static ethd_status set_choice(const char *path, const ethd__plant_row *row, const ethd_ini_key *key,
-                              void *out, char *message) {
+static ethd_status set_choice(const char *path, const ethd__plant_row *row, const ethd_ini_key *key, void *out,
+                              char *message) {
   int32_t word = ethd_param_word(&row->param, key->value);
   if (word < 0) return refuse(path, key, row->param.unit, message);
   memcpy(out, &word, sizeof word);
   return ETHD_OK;
 }
 
-static ethd_status set_number(const char *path, const ethd__plant_row *row, const ethd_ini_key *key,
-                              void *out, char *message) {
+static ethd_status set_number(const char *path, const ethd__plant_row *row, const ethd_ini_key *key, void *out,
+                              char *message) {
   const ethd_param *p = &row->param;
   double value;
   char allowed[ETHD_MESSAGE_MAX];
@@ -42,16 +42,15 @@ static ethd_status set(const char *path, const ethd__plant_row *row, const ethd_
   const ethd_ini_key *key = ethd_ini_find(ini, row->section, row->param.name);
   char *at = (char *)out + row->offset;
   if (!key)
-    return ethd__say(message, ETHD_E_UNKNOWN, "%s: %s.%s is missing, a plant file needs every key", path,
-                     row->section, row->param.name);
+    return ethd__say(message, ETHD_E_UNKNOWN, "%s: %s.%s is missing, a plant file needs every key", path, row->section,
+                     row->param.name);
   if (strchr(row->param.unit, '|')) return set_choice(path, row, key, at, message);
   return set_number(path, row, key, at, message);
 }
 
 static int is_known(const ethd_ini_key *key) {
   for (size_t i = 0; i < ethd__plant_row_count; i++)
-    if (!strcmp(ethd__plant_rows[i].section, key->section) &&
-        !strcmp(ethd__plant_rows[i].param.name, key->key))
+    if (!strcmp(ethd__plant_rows[i].section, key->section) && !strcmp(ethd__plant_rows[i].param.name, key->key))
       return 1;
   return 0;
 }
@@ -60,8 +59,8 @@ static ethd_status fill(const char *path, const ethd_ini *ini, ethd_plant *out, 
   ethd_error error;
   for (uint32_t i = 0; i < ini->count; i++)
     if (!is_known(&ini->keys[i]))
-      return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: a plant has no such key", path,
-                       ini->keys[i].line, ini->keys[i].section, ini->keys[i].key);
+      return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: a plant has no such key", path, ini->keys[i].line,
+                       ini->keys[i].section, ini->keys[i].key);
   memset(out, 0, sizeof *out);
   for (size_t i = 0; i < ethd__plant_row_count; i++) {
     ethd_status status = set(path, &ethd__plant_rows[i], ini, out, message);
@@ -72,8 +71,7 @@ static ethd_status fill(const char *path, const ethd_ini *ini, ethd_plant *out, 
   return status;
 }
 
-ethd_status ethd__plant_read(const char *path, const char *name, ethd_plant *out,
-                             char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__plant_read(const char *path, const char *name, ethd_plant *out, char message[ETHD_MESSAGE_MAX]) {
   char *text;
   size_t length;
   ethd_ini ini;

@@ -42,8 +42,8 @@ void ethd__sensors_start(ethd__sensors *s, const ethd_sim_def *def, const ethd_s
   appoint(s);
 }
 
-static void stamp(const ethd__sensors *s, const ethd__body *body, const ethd__state *state,
-                  ethd_vec true_ring, ethd__reading *out) {
+static void stamp(const ethd__sensors *s, const ethd__body *body, const ethd__state *state, ethd_vec true_ring,
+                  ethd__reading *out) {
   ethd_vec v;
   out->sample_ns = nanoseconds(s->next);
   out->ring = true_ring;

@@ -35,8 +35,8 @@ void ethd__sensors_take(ethd__sensors *sensors, const ethd__body *body, const et
 
 /* Into the sense: joint angles, from the coordinates; the newest reading that is due at its time_ns and
    wasn't at since_ns. */
-void ethd__sensors_joints(const ethd__sensors *sensors, const ethd__body *body,
-                          const double x[ETHD__DOF_MAX], ethd_sense *out) ETHD_RT;
+void ethd__sensors_joints(const ethd__sensors *sensors, const ethd__body *body, const double x[ETHD__DOF_MAX],
+                          ethd_sense *out) ETHD_RT;
 void ethd__sensors_deliver(const ethd__sensors *sensors, int64_t since_ns, ethd_sense *out) ETHD_RT;
 
 #endif

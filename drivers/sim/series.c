@@ -21,22 +21,20 @@ typedef struct work {
   two slip[ETHD__TERMS], slip_a[ETHD__TERMS], link_a[ETHD__TERMS]; /* slip: speed of what rubs */
   two rub[ETHD__TERMS], unlike[ETHD__TERMS];                       /* u, 1 - u^2 */
   two cosine[ETHD__TERMS], sine[ETHD__TERMS], square_v[ETHD__TERMS];
-  double along[ETHD__TERMS], across[ETHD__TERMS]; /* H cos and H sin of th2 - th1 */
+  double along[ETHD__TERMS], across[ETHD__TERMS];                          /* H cos and H sin of th2 - th1 */
   two apart[ETHD__TERMS], half_square[ETHD__TERMS], distance[ETHD__TERMS]; /* from ring to finger */
-  two push[ETHD__TERMS], force_x[ETHD__TERMS], force_y[ETHD__TERMS]; /* on the ring; push: by distance */
-  two inverse_distance, stiffness; /* of the pad, the latter by distance */
-  double inverse_mass;             /* of the finger */
-  double swing;                    /* of the hand's terms beyond 3 */
+  two push[ETHD__TERMS], force_x[ETHD__TERMS], force_y[ETHD__TERMS];       /* on the ring; push: by distance */
+  two inverse_distance, stiffness;                                         /* of the pad, the latter by distance */
+  double inverse_mass;                                                     /* of the finger */
+  double swing;                                                            /* of the hand's terms beyond 3 */
 } work;
 
-static const double INVERSE[ETHD__TERMS + 1] = {
-    0,       1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,  1.0 / 7, 1.0 / 8,
-    1.0 / 9, 1.0 / 10, 1.0 / 11, 1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16};
+static const double INVERSE[ETHD__TERMS + 1] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,
+                                                1.0 / 6,  1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11,
+                                                1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16};
 
 /* From the links' absolute angles, or what derives from them, to the joints'. */
-static inline two joint(int serial, two link) {
-  return serial ? (two){link[0], link[1] - link[0]} : link;
-}
+static inline two joint(int serial, two link) { return serial ? (two){link[0], link[1] - link[0]} : link; }
 
 /* ---- geometry ---- */
 
@@ -81,8 +79,7 @@ static void measuring_begins(work *w) {
    terms up to k + 1. */
 ETHD__INLINE two press(work *w, int k) {
   two s = w->stiffness * ethd__product(w->out->leaving, w->out->beyond, k);
-  if (k > 0)
-    s -= (ethd__middle(w->distance, w->push, k) + w->distance[k] * w->push[0]) * w->inverse_distance;
+  if (k > 0) s -= (ethd__middle(w->distance, w->push, k) + w->distance[k] * w->push[0]) * w->inverse_distance;
   w->push[k] = s;
   two force = ethd__product(w->push, w->apart, k);
   w->force_x[k] = ethd__both(force[0]);
@@ -143,8 +140,7 @@ static two couple(work *w, two g, int k) {
     w->across[k] += h * (c[i][0] * s[k - i][1] - s[i][0] * c[k - i][1]);
   }
   w->square_v[k] = ethd__product(w->out->link_v, w->out->link_v, k);
-  for (int i = 0; i <= k; i++)
-    g += ethd__both(w->across[i]) * ethd__swapped(w->square_v[k - i]) * (two){1, -1};
+  for (int i = 0; i <= k; i++) g += ethd__both(w->across[i]) * ethd__swapped(w->square_v[k - i]) * (two){1, -1};
   for (int i = 1; i <= k; i++) g -= ethd__both(w->along[i]) * ethd__swapped(w->link_a[k - i]);
   return (ethd__swapped(inertia) * g - ethd__both(w->along[0]) * ethd__swapped(g)) /
          ethd__both(inertia[0] * inertia[1] - w->along[0] * w->along[0]);
@@ -247,8 +243,7 @@ static void watch_touching(work *w, ethd__touch touch) {
 }
 
 /* Far from each other, and how far is only asked when they may have come near. */
-static void keep_clear(work *w, const ethd__piece *piece, const ethd__motion *hand, double clearance,
-                       double most) {
+static void keep_clear(work *w, const ethd__piece *piece, const ethd__motion *hand, double clearance, double most) {
   ethd__series *s = w->out;
   double travel = s->step * most + ethd__piece_travel(piece, (two){hand->v.x, hand->v.y}, s->step);
   s->watched = 0;
@@ -270,8 +265,8 @@ static void begin(const ethd__motion *hand, const ethd__state *state, ethd__seri
   s->motor_v[0] = ethd__pair(state->v + ETHD__MOTOR);
 }
 
-void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, const ethd__motion *hand,
-                         double step, const ethd__state *state, ethd__series *out) {
+void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, const ethd__motion *hand, double step,
+                         const ethd__state *state, ethd__series *out) {
   kind has = {b->serial, b->compliant, b->coupling != 0, state->touch};
   work w;
   w.body = b;

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "text/text.h"
 #include "sim/plant.h"
+#include "text/text.h"
 
 const ethd_param ethd__sim_params[ETHD__SIM_PARAMS] = {
     [ETHD__SIM_STEP] = {"step", "s", 1e-7, 1e-2, 1e-3, "longest integration step"},
@@ -18,23 +18,20 @@ const ethd_param ethd__sim_params[ETHD__SIM_PARAMS] = {
 
 const char *const ethd__sim_keys[] = {"plant", "reading", NULL};
 
-static ethd_status refuse(ethd_error *error, ethd_status status, const ethd_setting *s, double found,
-                          double min, double max) {
+static ethd_status refuse(ethd_error *error, ethd_status status, const ethd_setting *s, double found, double min,
+                          double max) {
   ethd__sim_refuse(error, status, s->key, found, min, max);
   if (error) error->line = s->line;
   return status;
 }
 
-static int is_whole(int i, double value) {
-  return (i != ETHD__SIM_SEED && i != ETHD__SIM_TAP) || value == rint(value);
-}
+static int is_whole(int i, double value) { return (i != ETHD__SIM_SEED && i != ETHD__SIM_TAP) || value == rint(value); }
 
 static ethd_status set_number(const ethd_setting *s, ethd__sim_settings *out, ethd_error *error) {
   int i = ethd_params_find(ethd__sim_params, ETHD__SIM_PARAMS, s->key);
   double value;
   if (i < 0) return refuse(error, ETHD_E_UNKNOWN, s, NAN, NAN, NAN);
-  if (!ethd__number(s->value, strlen(s->value), &value))
-    return refuse(error, ETHD_E_SYNTAX, s, NAN, NAN, NAN);
+  if (!ethd__number(s->value, strlen(s->value), &value)) return refuse(error, ETHD_E_SYNTAX, s, NAN, NAN, NAN);
   if (!(value >= ethd__sim_params[i].min && value <= ethd__sim_params[i].max) || !is_whole(i, value))
     return refuse(error, ETHD_E_RANGE, s, value, ethd__sim_params[i].min, ethd__sim_params[i].max);
   out->p[i] = value;

@@ -46,9 +46,8 @@ static int samples_rise(const ethd_path *path) {
 }
 
 static int shape_is_good(const ethd_path *p) {
-  return isfinite(p->from.x) && isfinite(p->from.y) && isfinite(p->to_x) && p->speed > 0 &&
-         isfinite(p->speed) && p->ramp_up >= 0 && isfinite(p->ramp_up) && p->ramp_down >= 0 &&
-         isfinite(p->ramp_down);
+  return isfinite(p->from.x) && isfinite(p->from.y) && isfinite(p->to_x) && p->speed > 0 && isfinite(p->speed) &&
+         p->ramp_up >= 0 && isfinite(p->ramp_up) && p->ramp_down >= 0 && isfinite(p->ramp_down);
 }
 
 static ethd_status check_tap(const ethd_sim *sim, const ethd_sim_tap *tap) {

@@ -16,9 +16,7 @@ static two at(const two *term, int order, double h) {
   return y;
 }
 
-static double value(const two *term, int order, double h) {
-  return at(term, order, h)[0];
-}
+static double value(const two *term, int order, double h) { return at(term, order, h)[0]; }
 
 static double slope(const two *term, int order, double h) {
   double y = order * term[order][0];
@@ -35,8 +33,7 @@ static double reach(const two *term, int order, double h) {
 
 /* Where f, a value or a slope, times sign passes from below 0 to above, to LOCATED: regula falsi (Illinois).
    The end where it is above. */
-static double locate(double f(const two *, int, double), const two *term, int order, double sign,
-                     double high) {
+static double locate(double f(const two *, int, double), const two *term, int order, double sign, double high) {
   double low = 0, below = sign * f(term, order, 0), above = sign * f(term, order, high);
   int side = 0;
   while (high - low > LOCATED) {
@@ -105,8 +102,7 @@ static void evaluate(const two *x, const two *v, const two *y, const two *w, int
   out[3] = d;
 }
 
-static void move(const ethd__body *b, const ethd__series *s, const ethd__motion *hand, double h,
-                 ethd__state *state) {
+static void move(const ethd__body *b, const ethd__series *s, const ethd__motion *hand, double h, ethd__state *state) {
   two out[4];
   evaluate(s->link, s->link_v, s->aside, s->aside_v, s->order, h, out);
   put(out[0], state->q + ETHD__LINK);
@@ -164,16 +160,14 @@ void ethd__leg_angles(const ethd__body *b, const ethd__leg *leg, double t, doubl
   if (b->compliant) put(at(s->motor, s->order + 1, t - leg->begin), out + ETHD__MOTOR);
 }
 
-void ethd__leg_at(const ethd__body *b, const ethd__piece *piece, const ethd__leg *leg, double t,
-                  ethd__state *out) {
+void ethd__leg_at(const ethd__body *b, const ethd__piece *piece, const ethd__leg *leg, double t, ethd__state *out) {
   *out = t < leg->end ? leg->from : leg->to;
   if (t <= leg->begin || t >= leg->end) return;
   ethd__motion hand = ethd__piece_at(piece, t);
   move(b, &leg->series, &hand, t - leg->begin, out);
 }
 
-void ethd__body_advance(const ethd__body *b, const ethd__piece *piece, double t, double h,
-                        ethd__state *state) {
+void ethd__body_advance(const ethd__body *b, const ethd__piece *piece, double t, double h, ethd__state *state) {
   ethd__leg leg;
   ethd__leg_begin(piece, t, state, &leg);
   while (leg.end < t + h) ethd__leg_next(b, piece, t + h, h, &leg);

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/error_text.h"
 #include "svg/svg_parts.h"
+#include "text/error_text.h"
 
-#define DEPTH 64    /* elements within elements */
+#define DEPTH 64 /* elements within elements */
 #define SVG "http://www.w3.org/2000/svg"
 #define BETWEEN '|' /* a namespace and a name */
 
@@ -34,9 +34,9 @@ typedef struct reader {
 static void refuse(reader *r, const char *what, const char *found) {
   char quote[ETHD_QUOTE_MAX];
   if (r->status) return;
-  r->status = ethd__say(r->message, ETHD_E_SYNTAX, "%s:%lu: %s%s%s", r->name,
-                        (unsigned long)XML_GetCurrentLineNumber(r->xml), what, found ? ": found " : "",
-                        found ? ethd__quote(found, strlen(found), quote) : "");
+  r->status =
+      ethd__say(r->message, ETHD_E_SYNTAX, "%s:%lu: %s%s%s", r->name, (unsigned long)XML_GetCurrentLineNumber(r->xml),
+                what, found ? ": found " : "", found ? ethd__quote(found, strlen(found), quote) : "");
   XML_StopParser(r->xml, XML_FALSE);
 }
 
@@ -91,8 +91,7 @@ static void inherit(reader *r, ethd__attributes a, state *s) {
   if (ethd__svg_property(a, "fill", v) && strcmp(v, "inherit") != 0)
     s->filled = strcmp(v, "none") != 0 && strcmp(v, "transparent") != 0;
   for (int i = 0; i < 2; i++)
-    if (ethd__svg_property(a, cutters[i], v) && strcmp(v, "none") != 0)
-      refuse(r, "clip-path and mask aren't taken", v);
+    if (ethd__svg_property(a, cutters[i], v) && strcmp(v, "none") != 0) refuse(r, "clip-path and mask aren't taken", v);
   const char *transform = ethd__svg_attribute(a, "transform");
   if (transform && !ethd__svg_transform(transform, &s->m))
     refuse(r, "transform: matrix, translate, scale and rotate are taken, that don't squeeze flat", transform);
@@ -135,8 +134,10 @@ static void XMLCALL start(void *user, const char *name, const char **attributes)
   bool ours = !local || (strncmp(name, SVG, sizeof SVG - 1) == 0 && local == name + sizeof SVG - 1);
   local = local ? local + 1 : name;
   if (r->depth) {
-    if (ours) take(r, local, a);
-    else skip(r);
+    if (ours)
+      take(r, local, a);
+    else
+      skip(r);
   } else if (!ours || strcmp(local, "svg") != 0) {
     refuse(r, "a drawing must begin with svg", local);
   } else {
@@ -149,8 +150,10 @@ static void XMLCALL start(void *user, const char *name, const char **attributes)
 static void XMLCALL stop(void *user, const char *name) {
   reader *r = user;
   (void)name;
-  if (r->within) r->within--;
-  else if (r->depth) r->depth--;
+  if (r->within)
+    r->within--;
+  else if (r->depth)
+    r->depth--;
 }
 
 static void XMLCALL entity(void *user, const char *name, int parameter, const char *value, int length, const char *base,

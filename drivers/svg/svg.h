@@ -29,7 +29,7 @@ typedef struct ethd_svg_notes {
 
 /* `name` stands for the file in the message. [main] */
 ETHD_MUST_CHECK ethd_status ethd_svg_parse(const char *text, size_t length, const char *name,
-                                           const ethd_svg_options *options, ethd_scene **out,
-                                           ethd_svg_notes *notes, char message[ETHD_MESSAGE_MAX]);
+                                           const ethd_svg_options *options, ethd_scene **out, ethd_svg_notes *notes,
+                                           char message[ETHD_MESSAGE_MAX]);
 
 #endif

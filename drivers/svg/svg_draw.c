@@ -58,7 +58,8 @@ void ethd__draw_point(ethd__drawing *d, ethd_vec p) {
 void ethd__draw_end(ethd__drawing *d, bool closed, bool filled) {
   if (d->status) return;
   const double *first = d->numbers + d->chain;
-  while (closed && d->number_count > d->chain + 2 && same(first, d->numbers + d->number_count - 2)) d->number_count -= 2;
+  while (closed && d->number_count > d->chain + 2 && same(first, d->numbers + d->number_count - 2))
+    d->number_count -= 2;
   size_t points = (d->number_count - d->chain) / 2;
   if (points < 2) {
     d->number_count = d->chain;
@@ -88,7 +89,8 @@ static int edges(ethd__drawing *d, double n) {
 static int edges_of_curve(ethd__drawing *d, const ethd_vec *p, int degree) {
   double most = 0;
   for (int i = 0; i + 2 <= degree; i++)
-    most = fmax(most, ethd_vec_norm((ethd_vec){p[i].x - 2 * p[i + 1].x + p[i + 2].x, p[i].y - 2 * p[i + 1].y + p[i + 2].y}));
+    most = fmax(most,
+                ethd_vec_norm((ethd_vec){p[i].x - 2 * p[i + 1].x + p[i + 2].x, p[i].y - 2 * p[i + 1].y + p[i + 2].y}));
   return edges(d, sqrt(degree * (degree - 1) * most / (8 * d->tolerance)));
 }
 

@@ -19,7 +19,7 @@ typedef struct path {
   ethd__drawing *d;
   const ethd__matrix *m;
   const char *p;
-  const char *word; /* where the command began */
+  const char *word;            /* where the command began */
   ethd_vec at, start, control; /* control: the last curve's second last point */
   char last;                   /* the last command, in capitals */
   bool filled, open;           /* open: a part is being drawn */
@@ -98,8 +98,8 @@ static void arc_to(path *q, const double *v, ethd_vec to) {
   if (v[4] == 0 && turn > 0) turn -= TURN;
   ethd_vec middle = ethd_vec_scale(0.5, ethd_vec_add(q->at, to)), u = {rx * c, rx * s}, w = {-ry * s, ry * c};
   ethd_vec centre = ethd_vec_add(middle, ethd_vec_add(ethd_vec_scale(cx, u), ethd_vec_scale(cy, w)));
-  ethd__draw_arc(q->d, to_metres(q, centre), ethd__matrix_turn(q->m, u.x, u.y), ethd__matrix_turn(q->m, w.x, w.y),
-                 from, turn);
+  ethd__draw_arc(q->d, to_metres(q, centre), ethd__matrix_turn(q->m, u.x, u.y), ethd__matrix_turn(q->m, w.x, w.y), from,
+                 turn);
   ethd__draw_point(q->d, to_metres(q, to));
   q->at = to;
 }
@@ -142,25 +142,25 @@ static bool curve(path *q, char command, bool relative) {
 static bool once(path *q, char command, bool relative) {
   double v[2];
   switch (command) {
-    case 'M':
-      if (!numbers(q, v, 2)) return false;
-      end(q, false);
-      q->at = q->start = place(q, v, relative);
-      return true;
-    case 'L':
-      if (!numbers(q, v, 2)) return false;
-      line_to(q, place(q, v, relative));
-      return true;
-    case 'H':
-      if (!numbers(q, v, 1)) return false;
-      line_to(q, (ethd_vec){relative ? q->at.x + v[0] : v[0], q->at.y});
-      return true;
-    case 'V':
-      if (!numbers(q, v, 1)) return false;
-      line_to(q, (ethd_vec){q->at.x, relative ? q->at.y + v[0] : v[0]});
-      return true;
-    case 'A': return arc(q, relative);
-    default: return curve(q, command, relative);
+  case 'M':
+    if (!numbers(q, v, 2)) return false;
+    end(q, false);
+    q->at = q->start = place(q, v, relative);
+    return true;
+  case 'L':
+    if (!numbers(q, v, 2)) return false;
+    line_to(q, place(q, v, relative));
+    return true;
+  case 'H':
+    if (!numbers(q, v, 1)) return false;
+    line_to(q, (ethd_vec){relative ? q->at.x + v[0] : v[0], q->at.y});
+    return true;
+  case 'V':
+    if (!numbers(q, v, 1)) return false;
+    line_to(q, (ethd_vec){q->at.x, relative ? q->at.y + v[0] : v[0]});
+    return true;
+  case 'A': return arc(q, relative);
+  default: return curve(q, command, relative);
   }
 }
 
@@ -224,7 +224,8 @@ void ethd__svg_path(ethd__drawing *d, const ethd__matrix *m, const char *text, b
   q.word = q.p;
   while (*q.p && !q.wrong && !d->status) command(&q);
   end(&q, false);
-  if (q.wrong) wrong->found = q.word;
+  if (q.wrong)
+    wrong->found = q.word;
   else if (may_have_holes(&q))
     q.wrong = "filled parts overlap, and objects have no holes; fill=\"none\" makes walls of them";
   if (q.wrong) strcpy(wrong->what, q.wrong);

@@ -35,8 +35,10 @@ static double length_of(const shape *s, const char *name, double otherwise) {
 /* What has no size isn't drawn. */
 static bool is_positive(const shape *s, double v, const char *name) {
   if (v > 0) return true;
-  if (v < 0) snprintf(s->wrong->what, sizeof s->wrong->what, "%s is negative", name);
-  else s->d->blank++;
+  if (v < 0)
+    snprintf(s->wrong->what, sizeof s->wrong->what, "%s is negative", name);
+  else
+    s->d->blank++;
   return false;
 }
 
@@ -85,7 +87,12 @@ static void corner(const shape *s, double x, double y, double rx, double ry, int
   ethd_vec c = ethd__matrix_put(s->m, x, y);
   if (rx > 0 && ry > 0)
     ethd__draw_arc(s->d, c, ethd_vec_scale(rx, a.u), ethd_vec_scale(ry, a.v), from[quarter], QUARTER);
-  double ex = quarter == 0 || quarter == 2 ? 0 : quarter == 1 ? rx : -rx, ey = quarter == 0 ? -ry : quarter == 2 ? ry : 0;
+  double ex = quarter == 0 || quarter == 2 ? 0
+              : quarter == 1               ? rx
+                                           : -rx,
+         ey = quarter == 0   ? -ry
+              : quarter == 2 ? ry
+                             : 0;
   ethd__draw_point(s->d, ethd__matrix_put(s->m, x + ex, y + ey));
 }
 
@@ -145,9 +152,9 @@ static void group(const shape *s) { (void)s; }
 static const struct {
   const char *name;
   void (*draw)(const shape *); /* NULL: skipped */
-} elements[] = {{"g", group},       {"path", path},         {"rect", rect},       {"circle", circle}, {"ellipse", ellipse},
-                {"line", line},     {"polyline", polyline}, {"polygon", polygon}, {"title", NULL},    {"desc", NULL},
-                {"metadata", NULL}, {"defs", NULL}};
+} elements[] = {{"g", group},         {"path", path}, {"rect", rect},         {"circle", circle},
+                {"ellipse", ellipse}, {"line", line}, {"polyline", polyline}, {"polygon", polygon},
+                {"title", NULL},      {"desc", NULL}, {"metadata", NULL},     {"defs", NULL}};
 
 int ethd__svg_shape(const char *name) {
   for (size_t i = 0; i < sizeof elements / sizeof *elements; i++)

@@ -20,9 +20,9 @@
 #include <string.h>
 
 #include "ethd/driver.h"
+#include "tape/tape.h"
 #include "text/error_text.h"
 #include "text/text.h"
-#include "tape/tape.h"
 
 typedef struct replay {
   ethd__tape tape;
@@ -31,8 +31,8 @@ typedef struct replay {
   int64_t waits;   /* periods that it was waited for */
   double share;    /* of the last command */
   uint64_t compared, different;
-  double first;    /* row that differs, -1: none */
-  int32_t runs;    /* 1: started anew while it plays, after a fault: it plays on */
+  double first; /* row that differs, -1: none */
+  int32_t runs; /* 1: started anew while it plays, after a fault: it plays on */
   char remark[288];
 } replay;
 
@@ -49,7 +49,7 @@ static ethd_status load(const ethd_device_def *def, replay *r, char *message) {
                      def->file ? def->file : "the defaults");
   char *path = ethd__path_join(def->folder, folder->value);
   status = path ? ethd__tape_load(path, &r->tape, message)
-                            : ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+                : ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
   free(path);
   return status;
 }

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/error_text.h"
 #include "record/recording_parts.h"
+#include "text/error_text.h"
 #include "text/text.h"
 
 static ethd_status no_memory(const char *folder, char *message) {
@@ -63,9 +63,8 @@ ethd_status ethd__tape_load(const char *folder, ethd__tape *out, char message[ET
   void *rows = NULL;
   *out = (ethd__tape){.count = 0};
   char *path = ethd__path_join(folder, ETHD_RECORDING_TICK);
-  ethd_status status =
-      path ? ethd_npy_read(path, ethd_trace_columns, sizeof(ethd_trace), &rows, &out->count, message)
-           : no_memory(folder, message);
+  ethd_status status = path ? ethd_npy_read(path, ethd_trace_columns, sizeof(ethd_trace), &rows, &out->count, message)
+                            : no_memory(folder, message);
   free(path);
   out->rows = rows;
   if (!status && !out->count) status = ethd__say(message, ETHD_E_RANGE, "%s: a recording without a tick", folder);

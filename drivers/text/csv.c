@@ -26,8 +26,8 @@ typedef struct reader {
 } reader;
 
 static ethd_status refuse(const reader *r, ethd_status status, const char *column, const char *what) {
-  return ethd__say(r->message, status, "%s:%zu: %s%s%s", r->name, r->line, column ? column : "",
-                   column ? ": " : "", what);
+  return ethd__say(r->message, status, "%s:%zu: %s%s%s", r->name, r->line, column ? column : "", column ? ": " : "",
+                   what);
 }
 
 static ethd_status no_memory(const reader *r) {
@@ -98,23 +98,21 @@ static bool is_wanted(const char *const *wanted, const char *name) {
 
 static ethd_status check_name(const reader *r, const cell *c, const layout *l) {
   char quote[ETHD_QUOTE_MAX];
-  if (!c->length)
-    return refuse(r, ETHD_E_SYNTAX, NULL, "a column without a name; the first line names the columns");
+  if (!c->length) return refuse(r, ETHD_E_SYNTAX, NULL, "a column without a name; the first line names the columns");
   for (size_t i = 0; i < l->cells; i++)
     if (strlen(l->names[i]) == c->length && memcmp(l->names[i], c->text, c->length) == 0)
-      return ethd__say(r->message, ETHD_E_DUPLICATE, "%s:%zu: the column %s stands twice", r->name,
-                       r->line, ethd__quote(c->text, c->length, quote));
+      return ethd__say(r->message, ETHD_E_DUPLICATE, "%s:%zu: the column %s stands twice", r->name, r->line,
+                       ethd__quote(c->text, c->length, quote));
   return ETHD_OK;
 }
 
 /* Columns that nobody asked for may have any name, and none. */
-static ethd_status header_name(const reader *r, const cell *c, layout *l, const char *const *wanted,
-                               ethd_csv *out) {
+static ethd_status header_name(const reader *r, const cell *c, layout *l, const char *const *wanted, ethd_csv *out) {
   char quote[ETHD_QUOTE_MAX];
   double number;
   if (!l->cells && ethd__number(c->text, c->length, &number))
-    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: found %s, but the first line names the columns",
-                     r->name, r->line, ethd__quote(c->text, c->length, quote));
+    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: found %s, but the first line names the columns", r->name,
+                     r->line, ethd__quote(c->text, c->length, quote));
   if (l->cells == COLUMNS_MAX) return refuse(r, ETHD_E_RANGE, NULL, "over 1024 columns");
   char *name = strndup(c->text, c->length);
   if (!name) return no_memory(r);
@@ -140,8 +138,7 @@ static ethd_status keep_names(const reader *r, const layout *l, ethd_csv *out) {
 static ethd_status read_header(reader *r, layout *l, const char *const *wanted, ethd_csv *out) {
   cell c;
   if (!next_line(r))
-    return ethd__say(r->message, ETHD_E_SYNTAX,
-                     "%s: is empty; a first line that names the columns is needed", r->name);
+    return ethd__say(r->message, ETHD_E_SYNTAX, "%s: is empty; a first line that names the columns is needed", r->name);
   while (r->more) {
     ethd_status status = next_cell(r, &c);
     if (!status) status = header_name(r, &c, l, wanted, out);
@@ -152,18 +149,16 @@ static ethd_status read_header(reader *r, layout *l, const char *const *wanted, 
 
 /* ---- rows ---- */
 
-static ethd_status store(const reader *r, const cell *c, const char *column, size_t index,
-                         ethd_csv *out) {
+static ethd_status store(const reader *r, const cell *c, const char *column, size_t index, ethd_csv *out) {
   char quote[ETHD_QUOTE_MAX];
   if (!c->length) {
     out->values[index] = NAN;
     out->empties[index / 8] |= (unsigned char)(1u << index % 8);
     return ETHD_OK;
   }
-  if (ethd__number(c->text, c->length, &out->values[index]) && !isinf(out->values[index]))
-    return ETHD_OK;
-  return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: %s: found %s, a finite decimal number is allowed",
-                   r->name, r->line, column, ethd__quote(c->text, c->length, quote));
+  if (ethd__number(c->text, c->length, &out->values[index]) && !isinf(out->values[index])) return ETHD_OK;
+  return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: %s: found %s, a finite decimal number is allowed", r->name,
+                   r->line, column, ethd__quote(c->text, c->length, quote));
 }
 
 static ethd_status read_row(reader *r, const layout *l, ethd_csv *out) {
@@ -177,8 +172,8 @@ static ethd_status read_row(reader *r, const layout *l, ethd_csv *out) {
     if (status) return status;
   }
   if (i != l->cells)
-    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: %zu cells, the header names %zu columns",
-                     r->name, r->line, i, l->cells);
+    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: %zu cells, the header names %zu columns", r->name, r->line, i,
+                     l->cells);
   out->rows++;
   return ETHD_OK;
 }
@@ -195,8 +190,7 @@ static size_t count_lines(const char *p, const char *end) {
 static ethd_status read_rows(reader *r, const layout *l, ethd_csv *out) {
   size_t room = count_lines(r->rest, r->text_end);
   if (room > ROWS_MAX)
-    return ethd__say(r->message, ETHD_E_RANGE, "%s: %zu rows, at most %u are allowed", r->name, room,
-                     ROWS_MAX);
+    return ethd__say(r->message, ETHD_E_RANGE, "%s: %zu rows, at most %u are allowed", r->name, room, ROWS_MAX);
   out->values = malloc((room * out->columns + 1) * sizeof *out->values);
   out->empties = calloc(room * out->columns / 8 + 1, 1);
   if (!out->values || !out->empties) return no_memory(r);
@@ -217,8 +211,8 @@ static ethd_status check_text(const reader *r) {
                    count_lines(r->rest, zero) + (zero == r->rest || zero[-1] == '\n'));
 }
 
-ethd_status ethd_csv_parse(const char *text, size_t length, const char *name, const char *const *wanted,
-                           ethd_csv *out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd_csv_parse(const char *text, size_t length, const char *name, const char *const *wanted, ethd_csv *out,
+                           char message[ETHD_MESSAGE_MAX]) {
   reader r = {.rest = text, .text_end = text + length, .name = name, .message = message};
   layout *l = calloc(1, sizeof *l);
   *out = (ethd_csv){.path = strdup(name)};

@@ -19,18 +19,16 @@ typedef struct ethd_csv {
 /* Every column must hold numbers. Refuses, with file:line: column: ragged and blank lines, a column
    twice, a file without a header, bytes that are no text, words, hex, trailing junk, "inf", over 1e7
    rows. An empty cell passes: ethd_csv_empty. */
-ETHD_MUST_CHECK ethd_status ethd_csv_read(const char *path, ethd_csv *out,
-                                          char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd_csv_read(const char *path, ethd_csv *out, char message[ETHD_MESSAGE_MAX]);
 
 /* The same, keeping only columns named in `wanted` (ends with NULL); the others may have any name, or
    none, and hold anything. A wanted column that the file hasn't is no error: ethd_csv_column says -1. */
-ETHD_MUST_CHECK ethd_status ethd_csv_read_columns(const char *path, const char *const *wanted,
-                                                  ethd_csv *out, char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd_csv_read_columns(const char *path, const char *const *wanted, ethd_csv *out,
+                                                  char message[ETHD_MESSAGE_MAX]);
 
 /* The same from text with a 0 at text[length]; `name` stands for the file; wanted NULL: all. */
-ETHD_MUST_CHECK ethd_status ethd_csv_parse(const char *text, size_t length, const char *name,
-                                           const char *const *wanted, ethd_csv *out,
-                                           char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd_csv_parse(const char *text, size_t length, const char *name, const char *const *wanted,
+                                           ethd_csv *out, char message[ETHD_MESSAGE_MAX]);
 
 /* Index of a column, -1 if the file hasn't it. */
 int ethd_csv_column(const ethd_csv *csv, const char *name);

@@ -39,8 +39,7 @@ static void numbers(const ethd_error *error, char *out, size_t room) {
   out[0] = 0;
   if (error->found == error->found) n = snprintf(out, room, "; found %.10g", error->found);
   if (error->min == error->min && error->max == error->max)
-    snprintf(out + n, room - (size_t)n, "%c allowed %.10g to %.10g", n ? ',' : ';', error->min,
-             error->max);
+    snprintf(out + n, room - (size_t)n, "%c allowed %.10g to %.10g", n ? ',' : ';', error->min, error->max);
 }
 
 void ethd_error_text(const char *file, const ethd_error *error, char message[ETHD_MESSAGE_MAX]) {

@@ -86,8 +86,8 @@ static void check_section(feed *f, span s) {
     REFUSE(f, ETHD_E_SYNTAX, "%s:%d: found %s, nothing is allowed behind ]", f->name, f->line,
            ethd__quote(s.text, s.length, quote));
   else if (s.length - 2 > NAME_MAX_LENGTH)
-    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a section's name of %zu characters, at most %u are allowed",
-           f->name, f->line, s.length - 2, NAME_MAX_LENGTH);
+    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a section's name of %zu characters, at most %u are allowed", f->name, f->line,
+           s.length - 2, NAME_MAX_LENGTH);
   else
     keep_section(f, (span){s.text + 1, s.length - 2});
 }
@@ -104,8 +104,8 @@ static void check_line(feed *f, span s) {
   s = uncommented(s);
   if (f->status || !s.length) return;
   if (s.length > LINE_MAX_LENGTH)
-    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a line of %zu characters, at most %u are allowed", f->name, f->line,
-           s.length, LINE_MAX_LENGTH);
+    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a line of %zu characters, at most %u are allowed", f->name, f->line, s.length,
+           LINE_MAX_LENGTH);
   else if (*s.text == '[')
     check_section(f, s);
   else if (!is_pair(s))
@@ -121,8 +121,8 @@ static char *read_line(char *out, int room, void *user) {
   check_line(f, s);
   s = uncommented(s);
   if (!f->status && s.length + 1 > (size_t)room)
-    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a line of %zu characters, this build of inih keeps %d", f->name,
-           f->line, s.length, room - 1);
+    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a line of %zu characters, this build of inih keeps %d", f->name, f->line, s.length,
+           room - 1);
   if (f->status) return NULL;
   memcpy(out, s.text, s.length);
   out[s.length] = 0;
@@ -144,11 +144,10 @@ static bool check_key(feed *f, const char *section, const char *key, const char 
   else if (!*key)
     REFUSE(f, ETHD_E_SYNTAX, "%s:%d: %s: a value without a key", f->name, f->line, section);
   else if (!*value)
-    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: %s.%s: found nothing, a value is needed", f->name, f->line, section,
-           key);
+    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: %s.%s: found nothing, a value is needed", f->name, f->line, section, key);
   else if (twin && !repeatable(f, section, key))
-    REFUSE(f, ETHD_E_DUPLICATE, "%s:%d: %s.%s: stands twice, first on line %d", f->name, f->line,
-           section, key, twin->line);
+    REFUSE(f, ETHD_E_DUPLICATE, "%s:%d: %s.%s: stands twice, first on line %d", f->name, f->line, section, key,
+           twin->line);
   else if (f->out->count == ETHD_INI_KEYS_MAX)
     REFUSE(f, ETHD_E_RANGE, "%s:%d: over %u keys", f->name, f->line, ETHD_INI_KEYS_MAX);
   return !f->status;
@@ -164,8 +163,8 @@ static int take_key(void *user, const char *section, const char *key, const char
   return !f->status;
 }
 
-ethd_status ethd_ini_parse(const char *text, size_t length, const char *name, const char *repeats,
-                           ethd_ini *out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd_ini_parse(const char *text, size_t length, const char *name, const char *repeats, ethd_ini *out,
+                           char message[ETHD_MESSAGE_MAX]) {
   feed f = {text, text + length, 0, name, repeats, out, ETHD_OK, message};
   *out = (ethd_ini){.keys = calloc(ETHD_INI_KEYS_MAX, sizeof *out->keys),
                     .sections = calloc(ETHD_INI_SECTIONS_MAX, sizeof *out->sections)};
@@ -184,8 +183,7 @@ ethd_status ethd_ini_parse(const char *text, size_t length, const char *name, co
 
 const ethd_ini_key *ethd_ini_find(const ethd_ini *ini, const char *section, const char *key) {
   for (uint32_t i = 0; i < ini->count; i++)
-    if (strcmp(ini->keys[i].section, section) == 0 && strcmp(ini->keys[i].key, key) == 0)
-      return &ini->keys[i];
+    if (strcmp(ini->keys[i].section, section) == 0 && strcmp(ini->keys[i].key, key) == 0) return &ini->keys[i];
   return NULL;
 }
 

@@ -24,7 +24,7 @@ typedef struct ethd_ini_section {
 } ethd_ini_section;
 
 typedef struct ethd_ini {
-  ethd_ini_key *keys; /* in the order of the file */
+  ethd_ini_key *keys;         /* in the order of the file */
   ethd_ini_section *sections; /* likewise, those without keys too */
   uint32_t count, section_count;
 } ethd_ini;
@@ -33,9 +33,8 @@ typedef struct ethd_ini {
    NULL. Refuses, with file:line: bytes that are no text, lines over 197 characters (comments apart),
    text behind a section's ']', keys before the first section, keys without '=', empty values, a key
    twice, over 512 keys or sections. A section may come back. */
-ETHD_MUST_CHECK ethd_status ethd_ini_parse(const char *text, size_t length, const char *name,
-                                           const char *repeats, ethd_ini *out,
-                                           char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd_ini_parse(const char *text, size_t length, const char *name, const char *repeats,
+                                           ethd_ini *out, char message[ETHD_MESSAGE_MAX]);
 
 /* The key's entry, NULL if the file hasn't it. */
 const ethd_ini_key *ethd_ini_find(const ethd_ini *ini, const char *section, const char *key);

@@ -17,8 +17,7 @@ static ethd_status refuse(const char *path, char *message) {
 
 /* ---- reading ---- */
 
-static ethd_status read_all(FILE *file, const char *path, size_t most, char **text, size_t *length,
-                            char *message) {
+static ethd_status read_all(FILE *file, const char *path, size_t most, char **text, size_t *length, char *message) {
   struct stat info;
   size_t room = 65536, n = 0, got;
   if (fstat(fileno(file), &info) == 0 && info.st_size > 0 && (size_t)info.st_size <= most)
@@ -37,8 +36,7 @@ static ethd_status read_all(FILE *file, const char *path, size_t most, char **te
       room *= 2;
     }
   }
-  if (!buffer)
-    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!buffer) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
   if (ferror(file)) {
     free(buffer);
     return refuse(path, message);
@@ -49,8 +47,7 @@ static ethd_status read_all(FILE *file, const char *path, size_t most, char **te
   return ETHD_OK;
 }
 
-ethd_status ethd_text_read(const char *path, size_t most, char **text, size_t *length,
-                           char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd_text_read(const char *path, size_t most, char **text, size_t *length, char message[ETHD_MESSAGE_MAX]) {
   struct stat info;
   *text = NULL;
   *length = 0;
@@ -60,8 +57,8 @@ ethd_status ethd_text_read(const char *path, size_t most, char **text, size_t *l
   if (fstat(fileno(file), &info) == 0 && S_ISDIR(info.st_mode))
     status = ethd__say(message, ETHD_E_FILE, "%s: is a folder, a file is needed", path);
   else if (S_ISREG(info.st_mode) && (uintmax_t)info.st_size > most)
-    status = ethd__say(message, ETHD_E_FILE, "%s: %jd bytes, at most %zu are allowed", path,
-                       (intmax_t)info.st_size, most);
+    status =
+        ethd__say(message, ETHD_E_FILE, "%s: %jd bytes, at most %zu are allowed", path, (intmax_t)info.st_size, most);
   else
     status = read_all(file, path, most, text, length, message);
   fclose(file);
@@ -123,8 +120,8 @@ ethd_status ethd_replace_commit(ethd_replace *replace, char message[ETHD_MESSAGE
   failed |= fclose(replace->file) != 0;
   if (!failed && replace->temporary) failed = rename(replace->temporary, replace->path) != 0;
   if (failed) {
-    status = errno ? refuse(path, message)
-                   : ethd__say(message, ETHD_E_FILE, "%s: a write failed; is there room?", path);
+    status =
+        errno ? refuse(path, message) : ethd__say(message, ETHD_E_FILE, "%s: a write failed; is there room?", path);
     if (replace->temporary) unlink(replace->temporary);
   }
   release(replace);
@@ -137,8 +134,7 @@ void ethd_replace_abandon(ethd_replace *replace) {
   release(replace);
 }
 
-ethd_status ethd_text_write(const char *path, const char *text, size_t length,
-                            char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd_text_write(const char *path, const char *text, size_t length, char message[ETHD_MESSAGE_MAX]) {
   ethd_replace replace;
   ethd_status status = ethd_replace_begin(path, &replace, message);
   if (status) return status;

@@ -23,8 +23,7 @@ typedef struct ethd_replace {
   char *path, *temporary; /* temporary NULL: written in place */
 } ethd_replace;
 
-ETHD_MUST_CHECK ethd_status ethd_replace_begin(const char *path, ethd_replace *out,
-                                               char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd_replace_begin(const char *path, ethd_replace *out, char message[ETHD_MESSAGE_MAX]);
 /* Any failed write so far is reported here; the old file then stays. */
 ETHD_MUST_CHECK ethd_status ethd_replace_commit(ethd_replace *replace, char message[ETHD_MESSAGE_MAX]);
 void ethd_replace_abandon(ethd_replace *replace);

@@ -50,8 +50,7 @@ ETHD_API void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *o
 /* Joint angles that put the ring's centre at x. elbow >= 0: link 2 turned counter-clockwise from link 1,
    < 0: clockwise. ETHD_E_UNREACHABLE outside of the annulus of ethd_arm_reach (q then untouched).
    Angles in (-pi, pi]. [any, rt-safe] */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_arm_angles(const ethd_arm *arm, ethd_vec x, int elbow,
-                                                     double q[2]) ETHD_RT;
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_arm_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) ETHD_RT;
 
 /* The reachable annulus about the base joint: inner = |L1 - L2|, outer = L1 + L2, m. [any, rt-safe] */
 ETHD_API void ethd_arm_reach(const ethd_arm *arm, double *inner, double *outer) ETHD_RT;

@@ -29,8 +29,8 @@ typedef struct ethd_conform_answer {
 #define ETHD_QUESTIONS 10
 
 typedef struct ethd_conform_def {
-  const char *ids;                 /* as for ethd_device_open */
-  const ethd_driver *const *from;  /* likewise */
+  const char *ids;                /* as for ethd_device_open */
+  const ethd_driver *const *from; /* likewise */
   const ethd_device_def *device;
   double torque;      /* Nm, pushes each joint in turn, for 0.15 s at most; 0: nothing may move */
   int32_t is_virtual; /* 1: time is only counted, for a device that needs none to pass */

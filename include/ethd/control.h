@@ -84,8 +84,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_check(const ethd_setup *setup, e
 /* ---- events ---- */
 
 typedef enum ethd_event_kind {
-  ETHD_EVENT_FAULT = 1,  /* an occurrence. code: ethd_fault, value as said in fault.h */
-  ETHD_EVENT_TAKEN = 2,  /* a posted setup rules from this tick; scene: the replaced one, if no longer used */
+  ETHD_EVENT_FAULT = 1,   /* an occurrence. code: ethd_fault, value as said in fault.h */
+  ETHD_EVENT_TAKEN = 2,   /* a posted setup rules from this tick; scene: the replaced one, if no longer used */
   ETHD_EVENT_CLEARED = 3, /* faults were acknowledged */
   ETHD_EVENT_RELEASED = 4 /* scene: a replaced body's, no longer used */
 } ethd_event_kind;
@@ -151,8 +151,8 @@ ETHD_API double ethd_control_clean(const ethd_control *control) ETHD_RT;
 /* One tick. trace may be NULL. Always fills command; a negative status says that this tick's command is
    the safe one and why: ETHD_E_NOT_FINITE, ETHD_E_LAW, ETHD_E_BUDGET, ETHD_E_RANGE (guard stop),
    ETHD_E_DEVICE (any other row of the fault table). [rt] */
-ETHD_API ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense,
-                                       ethd_command *command, ethd_trace *trace) ETHD_RT;
+ETHD_API ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, ethd_command *command,
+                                       ethd_trace *trace) ETHD_RT;
 
 /* The same tick on a copy of the state: nothing changes, no event. Warms caches before arming. [rt] */
 ETHD_API ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense,

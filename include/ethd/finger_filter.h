@@ -48,7 +48,7 @@ typedef struct ethd_filter {
 typedef struct ethd_filter_state {
   double x[2], v[2], a[2]; /* m, m/s, m/s^2 */
   double cov[6];           /* of one axis: xx xv xa vv va aa */
-  double age; /* s, from the last used reading's stamp to now. After a start: -latency (stamp: older
+  double age;              /* s, from the last used reading's stamp to now. After a start: -latency (stamp: older
                  readings are late), inf (none) */
   uint32_t started;
   uint32_t used, late, gated, restarts; /* readings counted */
@@ -59,18 +59,15 @@ typedef struct ethd_filter_state {
 
 /* Checks p against the method's table and the period (1e-6 to 1 s); out is untouched on failure.
    [main] */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_filter_prepare(ethd_filter_method method, const double *p,
-                                                         double period, ethd_filter *out,
-                                                         ethd_error *error);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_filter_prepare(ethd_filter_method method, const double *p, double period,
+                                                         ethd_filter *out, ethd_error *error);
 
 /* Starts at x with speed v, now, with the covariance diag(1e-6 m^2, 1e-4 m^2/s^2, 1 m^2/s^4). Counters
    stay. [rt] */
-ETHD_API void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x,
-                                ethd_vec v) ETHD_RT;
+ETHD_API void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, ethd_vec v) ETHD_RT;
 
 /* dt s pass. [rt] */
-ETHD_API void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state,
-                                  double dt) ETHD_RT;
+ETHD_API void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, double dt) ETHD_RT;
 
 /* A reading of the finger's position in R_0, stamped `age` s ago. Starts the filter there when it hasn't
    been: at rest, within 1 m/s and 10 m/s^2 (sd). ETHD_STALE, counted and not used: not newer than the

@@ -46,9 +46,8 @@ typedef struct ethd_finger {
 
 /* Checks p against the method's table and 1e-4 m <= finger_radius <= ring_radius <= 1 m; out is
    untouched on failure. [main] */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_prepare(ethd_fit_method method, const double *p,
-                                                      double ring_radius, double finger_radius,
-                                                      ethd_fit *out, ethd_error *error);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_prepare(ethd_fit_method method, const double *p, double ring_radius,
+                                                      double finger_radius, ethd_fit *out, ethd_error *error);
 
 /* ETHD_STALE when the rays that count don't determine a centre within the ring: under 3 (robust: 2), or
    on one line; out is then untouched. [rt] */
@@ -57,8 +56,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_step(const ethd_fit *fit, const do
 
 /* The distances that a finger of this radius and centre gives, the fit's inverse; NaN where the ray
    meets the ring's centre first, or nothing. [any, rt-safe] */
-ETHD_API void ethd_fit_rays(double ring_radius, double finger_radius, ethd_vec centre,
-                            double r[ETHD_RAYS]) ETHD_RT;
+ETHD_API void ethd_fit_rays(double ring_radius, double finger_radius, ethd_vec centre, double r[ETHD_RAYS]) ETHD_RT;
 
 ETHD_END_DECLS
 

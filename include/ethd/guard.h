@@ -11,23 +11,23 @@ ETHD_BEGIN_DECLS
 /* Each may be INFINITY (workspace: -INFINITY, INFINITY): no limit. 0 is a limit of 0. A limit that isn't
    set costs nothing. */
 typedef struct ethd_limits {
-  double torque;       /* Nm, each joint, >= 0 */
-  double torque_rate;  /* Nm/s, each joint, >= 0 */
-  double speed;        /* m/s of the ring, >= 0 */
-  double workspace[4]; /* m: x_min, x_max, y_min, y_max of the ring's centre */
-  double reach[2];     /* m: least and most distance of the ring's centre from the base */
-  double joints[4];    /* rad: q1_min, q1_max, q2_min, q2_max */
-  double margin;       /* m inside of workspace and reach: there a wall pushes back, >= 0 */
-  double energy;       /* J that a contact may give away within half a second before damping is added, > 0 */
+  double torque;         /* Nm, each joint, >= 0 */
+  double torque_rate;    /* Nm/s, each joint, >= 0 */
+  double speed;          /* m/s of the ring, >= 0 */
+  double workspace[4];   /* m: x_min, x_max, y_min, y_max of the ring's centre */
+  double reach[2];       /* m: least and most distance of the ring's centre from the base */
+  double joints[4];      /* rad: q1_min, q1_max, q2_min, q2_max */
+  double margin;         /* m inside of workspace and reach: there a wall pushes back, >= 0 */
+  double energy;         /* J that a contact may give away within half a second before damping is added, > 0 */
   double nominal_torque; /* Nm: what each motor can give for ever, > 0 */
-  double heat_time;    /* s: time constant of a motor's heat, > 0; narrower is shorter */
-  double step_time;    /* s: time budget of one step, > 0 */
-  double gap;          /* s: longest time between two steps, and by which a clock may jump, > 0 */
-  double finger_age;   /* s: older readings of the finger: tracking fades out; INFINITY: none is judged */
-  double finger_lost;  /* s: older ones: the ring is stopped */
-  double clean_time;   /* s without anything that stops before an acknowledgement counts, >= 0, finite;
+  double heat_time;      /* s: time constant of a motor's heat, > 0; narrower is shorter */
+  double step_time;      /* s: time budget of one step, > 0 */
+  double gap;            /* s: longest time between two steps, and by which a clock may jump, > 0 */
+  double finger_age;     /* s: older readings of the finger: tracking fades out; INFINITY: none is judged */
+  double finger_lost;    /* s: older ones: the ring is stopped */
+  double clean_time;     /* s without anything that stops before an acknowledgement counts, >= 0, finite;
                           narrower is longer */
-  int32_t latch;       /* 1: faults latch until cleared; 0: each tick is judged alone (replay) */
+  int32_t latch;         /* 1: faults latch until cleared; 0: each tick is judged alone (replay) */
   int32_t reserved;
 } ethd_limits;
 
@@ -71,10 +71,10 @@ ETHD_API ethd_limits ethd_limits_narrower(const ethd_limits *a, const ethd_limit
 
 /* What the guard did, as bits; the counters count ticks. */
 enum {
-  ETHD_GUARD_FINITE = 1,    /* torque not finite: zero torque, latched */
-  ETHD_GUARD_TORQUE = 2,    /* clamped */
-  ETHD_GUARD_RATE = 4,      /* slope limited */
-  ETHD_GUARD_SPEED = 8,     /* ring too fast: damped until it is still, then zero, latched */
+  ETHD_GUARD_FINITE = 1,     /* torque not finite: zero torque, latched */
+  ETHD_GUARD_TORQUE = 2,     /* clamped */
+  ETHD_GUARD_RATE = 4,       /* slope limited */
+  ETHD_GUARD_SPEED = 8,      /* ring too fast: damped until it is still, then zero, latched */
   ETHD_GUARD_WORKSPACE = 16, /* ring out of its workspace: likewise */
   ETHD_GUARD_FAULT = 32,     /* a row of the fault table stops the ring: likewise */
   ETHD_GUARD_MARGIN = 64,    /* the workspace's wall pushed */
@@ -86,14 +86,14 @@ enum {
 #define ETHD_STEEP_MAX 20
 
 typedef struct ethd_guard_state {
-  double last[2];      /* torque of the last tick, Nm */
-  double asked[2];     /* what it was before it was limited, Nm */
-  double heat[2];      /* of each motor; 1: as its nominal torque leads to */
-  double cut;          /* s for which the torque has been clamped without a break */
-  int64_t steep;       /* ticks in a row with too steep a torque */
+  double last[2];  /* torque of the last tick, Nm */
+  double asked[2]; /* what it was before it was limited, Nm */
+  double heat[2];  /* of each motor; 1: as its nominal torque leads to */
+  double cut;      /* s for which the torque has been clamped without a break */
+  int64_t steep;   /* ticks in a row with too steep a torque */
   uint64_t counts[ETHD_GUARD_COUNT];
-  int32_t stopping;    /* what stops the ring, ETHD_GUARD_* bits, 0: nothing; may be set from outside */
-  int32_t stopped;     /* 1: it stands still, or has to be let go: zero torque until cleared */
+  int32_t stopping; /* what stops the ring, ETHD_GUARD_* bits, 0: nothing; may be set from outside */
+  int32_t stopped;  /* 1: it stands still, or has to be let go: zero torque until cleared */
 } ethd_guard_state;
 
 /* The last torque has heated the motors for dt s; the hotter one's heat. Only where nominal_torque is a limit.
@@ -102,9 +102,8 @@ ETHD_API double ethd_guard_heat(const ethd_limits *limits, ethd_guard_state *sta
 
 /* Limits `torque` in place; returns the bits of what it did. Order: speed and workspace (replace the
    torque by damping), margin, finite, torque, heat, rate. pose and v are the ring's. [rt] */
-ETHD_API int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *state,
-                                 const ethd_pose *pose, ethd_vec v, double dt,
-                                 double torque[2]) ETHD_RT;
+ETHD_API int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *state, const ethd_pose *pose, ethd_vec v,
+                                 double dt, double torque[2]) ETHD_RT;
 
 ETHD_END_DECLS
 

@@ -29,9 +29,9 @@ typedef enum ethd_kind { ETHD_TRACKING = 0, ETHD_CONTACT = 1, ETHD_TRANSITION = 
 
 /* First member of each kind's struct. */
 typedef struct ethd_law {
-  uint32_t size; /* sizeof the whole law struct as its author compiled it */
-  uint32_t abi;  /* ETHD_ABI */
-  uint32_t kind; /* ethd_kind */
+  uint32_t size;       /* sizeof the whole law struct as its author compiled it */
+  uint32_t abi;        /* ETHD_ABI */
+  uint32_t kind;       /* ethd_kind */
   uint32_t state_size; /* bytes, <= ETHD_STATE_MAX; contact and transition: one block per contact */
   const char *id;      /* a-z 0-9 - , 1 to 31 characters */
   const char *brief;   /* one line */
@@ -87,8 +87,7 @@ typedef struct ethd_contact_law {
   /* gap: m, to the (offset) wall, < 0 inside; speed: n.V_r, m/s, > 0 entering; entering: the branch of
      eq. 3, with v_hysteresis applied. force: N along n, <= 0: pushes the ring out (the controller cuts
      an attractive one to 0). [rt] */
-  ethd_status (*step)(const double *p, void *state, double gap, double speed, int entering,
-                      double *force) ETHD_RT;
+  ethd_status (*step)(const double *p, void *state, double gap, double speed, int entering, double *force) ETHD_RT;
 } ethd_contact_law;
 
 /* ---- transition: who rules ---- */
@@ -98,12 +97,12 @@ typedef struct ethd_contact_law {
 enum { ETHD_TRANSPARENT = 0, ETHD_BRAKING = 1, ETHD_VO = 2 };
 
 typedef struct ethd_ruling {
-  double beta;    /* share of the tracking torque, 0 to 1; the smallest over the contacts counts */
-  double share;   /* share of the contact law's force, 0 to 1 */
-  double offset;  /* eps, m: the wall stands so much deeper */
-  double damping; /* bilateral along n, Ns/m (eq. 6): F = -damping v n */
-  double feed;    /* feed-forward force along n, N; adds */
-  ethd_vec shift; /* reference shift, m, added to X_f - X_r; of the contact that rules beta */
+  double beta;     /* share of the tracking torque, 0 to 1; the smallest over the contacts counts */
+  double share;    /* share of the contact law's force, 0 to 1 */
+  double offset;   /* eps, m: the wall stands so much deeper */
+  double damping;  /* bilateral along n, Ns/m (eq. 6): F = -damping v n */
+  double feed;     /* feed-forward force along n, N; adds */
+  ethd_vec shift;  /* reference shift, m, added to X_f - X_r; of the contact that rules beta */
   double argument; /* the distance that beta is a function of, m (recorded) */
   int32_t state;
   int32_t reserved;
@@ -112,8 +111,7 @@ typedef struct ethd_ruling {
 typedef struct ethd_transition_law {
   ethd_law law;
   /* `out` comes zeroed but for beta = 1 and argument = d_fe. [rt] */
-  ethd_status (*step)(const double *p, void *state, const ethd_contact *contact,
-                      ethd_ruling *out) ETHD_RT;
+  ethd_status (*step)(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) ETHD_RT;
 } ethd_transition_law;
 
 /* The smallest size of each kind in ABI 0: up to the end of its last field. */
@@ -127,10 +125,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_law_check(const ethd_law *law, ethd_er
 /* ---- built in: nothing special about them ---- */
 
 ETHD_API extern const ethd_tracking_law ethd_tracking_pd;
-ETHD_API extern const ethd_contact_law ethd_contact_kelvin_voigt, ethd_contact_spring,
-    ethd_contact_hunt_crossley;
-ETHD_API extern const ethd_transition_law ethd_transition_abrupt, ethd_transition_smooth,
-    ethd_transition_offset;
+ETHD_API extern const ethd_contact_law ethd_contact_kelvin_voigt, ethd_contact_spring, ethd_contact_hunt_crossley;
+ETHD_API extern const ethd_transition_law ethd_transition_abrupt, ethd_transition_smooth, ethd_transition_offset;
 
 /* All of them, by kind then as in the documentation; the array ends with NULL. [any] */
 ETHD_API extern const ethd_law *const ethd_laws[];

@@ -69,25 +69,25 @@ ETHD_API const char *ethd_shortfall_mend(int32_t bit);
 
 /* Made by ethd_loop_default, then changed field by field. */
 typedef struct ethd_loop_def {
-  uint32_t cookie; /* set by ethd_loop_default */
+  uint32_t cookie;           /* set by ethd_loop_default */
   const ethd_driver *driver; /* of ethd_device_open; or one that has start, read, write and safe */
-  void *device;          /* open and started */
-  ethd_control *control; /* stepped by nobody else while the loop lives */
-  double period;         /* s, the controller's; 1e-5 to 1 */
-  int32_t cpu;           /* number of a processor, ETHD_CPU_NONE or ETHD_CPU_AUTO */
-  int32_t priority;      /* of SCHED_FIFO, 1 to 99 */
-  int32_t require_rt;    /* 1: start fails at any shortfall */
-  int32_t dma_latency;   /* us, held while the loop runs; -1: not held */
-  double early_wake;     /* s, 0 to period / 2: wakes so early, warms the caches, then spins to the tick */
-  double gap;            /* s, from a period on: lateness and silence over it are faults, and a thread watches
+  void *device;              /* open and started */
+  ethd_control *control;     /* stepped by nobody else while the loop lives */
+  double period;             /* s, the controller's; 1e-5 to 1 */
+  int32_t cpu;               /* number of a processor, ETHD_CPU_NONE or ETHD_CPU_AUTO */
+  int32_t priority;          /* of SCHED_FIFO, 1 to 99 */
+  int32_t require_rt;        /* 1: start fails at any shortfall */
+  int32_t dma_latency;       /* us, held while the loop runs; -1: not held */
+  double early_wake;         /* s, 0 to period / 2: wakes so early, warms the caches, then spins to the tick */
+  double gap;                /* s, from a period on: lateness and silence over it are faults, and a thread watches
                             over the loop's; INFINITY: they are only counted. The device's own limit holds too */
-  double heartbeat;      /* s, from a period on: the application's longest silence; INFINITY: any */
-  double soft_start;     /* s, 0 to 10: time in which the torque's share rises from 0 to 1 after enabling */
-  size_t stack;          /* bytes of the loop's stack, 65536 to 2^26 */
-  uint32_t rows;         /* of the ring, a power of two up to 2^20; 0: no rows are kept */
-  int64_t *clock;        /* NULL: the system's. Else a virtual clock, ns: the loop sets it to each tick's
+  double heartbeat;          /* s, from a period on: the application's longest silence; INFINITY: any */
+  double soft_start;         /* s, 0 to 10: time in which the torque's share rises from 0 to 1 after enabling */
+  size_t stack;              /* bytes of the loop's stack, 65536 to 2^26 */
+  uint32_t rows;             /* of the ring, a power of two up to 2^20; 0: no rows are kept */
+  int64_t *clock;            /* NULL: the system's. Else a virtual clock, ns: the loop sets it to each tick's
                             instant, a driver may move it on */
-  const int64_t *suspended; /* ns for which a virtual clock has stood still so far; NULL: it never does */
+  const int64_t *suspended;  /* ns for which a virtual clock has stood still so far; NULL: it never does */
 } ethd_loop_def;
 
 /* 1 ms, no cpu, priority 80, early_wake 0, dma_latency -1, no gap, no heartbeat, soft_start 0.1 s,
@@ -120,13 +120,12 @@ typedef struct ethd_loop_stats {
   uint64_t read_failures, write_failures, service_failures;
   uint64_t rows_lost;
   uint64_t faults[ETHD_FAULT_COUNT]; /* occurrences; while threads run, up to the last enabling */
-  ethd_histogram wake; /* from the instant that was asked for to the first instruction */
-  ethd_histogram tick; /* read, step, write */
+  ethd_histogram wake;               /* from the instant that was asked for to the first instruction */
+  ethd_histogram tick;               /* read, step, write */
 } ethd_loop_stats;
 
 /* ETHD_E_ARGUMENT, ETHD_E_RANGE with the field's name, ETHD_E_MEMORY. [main] */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out,
-                                                      ethd_error *error);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_error *error);
 
 /* Stops and joins if need be. NULL is fine. [main] */
 ETHD_API void ethd_loop_destroy(ethd_loop *loop);

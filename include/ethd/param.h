@@ -36,8 +36,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_params_check_table(const ethd_param *p
                                                              ethd_error *error);
 
 /* Every value against its row: ETHD_E_NOT_FINITE or ETHD_E_RANGE with name, found, min, max. [main] */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_params_check(const ethd_param *params, uint32_t count,
-                                                       const double *values, ethd_error *error);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_params_check(const ethd_param *params, uint32_t count, const double *values,
+                                                       ethd_error *error);
 
 /* values[i] = params[i].def. [any] */
 ETHD_API void ethd_params_default(const ethd_param *params, uint32_t count, double *values);

@@ -26,26 +26,23 @@ ETHD_API extern const ethd_column ethd_trace_columns[];
 typedef struct ethd_npy ethd_npy;
 
 /* A new .npy of rows of `columns`; written to path, which must not exist or is replaced. */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_create(const char *path, const ethd_column *columns,
-                                                     size_t row_bytes, ethd_npy **out,
-                                                     char message[ETHD_MESSAGE_MAX]);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_create(const char *path, const ethd_column *columns, size_t row_bytes,
+                                                     ethd_npy **out, char message[ETHD_MESSAGE_MAX]);
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_append(ethd_npy *npy, const void *rows, size_t count);
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_flush(ethd_npy *npy);
 /* Flushes, closes, frees. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_close(ethd_npy *npy);
 
 /* Whole file into memory, with exactly these columns; *rows is freed by the caller. */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_read(const char *path, const ethd_column *columns,
-                                                   size_t row_bytes, void **rows, size_t *count,
-                                                   char message[ETHD_MESSAGE_MAX]);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_read(const char *path, const ethd_column *columns, size_t row_bytes,
+                                                   void **rows, size_t *count, char message[ETHD_MESSAGE_MAX]);
 
 typedef struct ethd_recording ethd_recording;
 
 /* Makes the folder and the files of a recording: config.ini is the configuration's text with the scene's
    file renamed to scene.scene, plugins to absolute paths. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, const ethd_config *config,
-                                                           ethd_recording **out,
-                                                           char message[ETHD_MESSAGE_MAX]);
+                                                           ethd_recording **out, char message[ETHD_MESSAGE_MAX]);
 
 /* events.csv: row,kind,detail; the events of a row of tick.npy come before it, in order. kind:
      setup       detail: law. The configuration's setup with this transition law, in a fresh controller
@@ -60,15 +57,13 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, c
    else it was posted, whole, to the running one. Before the first row a fresh controller is implied. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_event(ethd_recording *recording, const char *kind,
                                                           const char *detail);
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_tick(ethd_recording *recording,
-                                                         const ethd_trace *trace);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_tick(ethd_recording *recording, const ethd_trace *trace);
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_close(ethd_recording *recording);
 
 /* Replays a recording through the library and compares every field bit for bit. ETHD_OK: equal, and
    message says how many ticks. ETHD_E_DIFFERS: the first tick and field that differ; otherwise
    negative: why it can't be read. */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_verify(const char *folder,
-                                                           char message[ETHD_MESSAGE_MAX]);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_verify(const char *folder, char message[ETHD_MESSAGE_MAX]);
 
 ETHD_END_DECLS
 

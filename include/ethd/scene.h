@@ -66,8 +66,7 @@ typedef struct ethd_scene ethd_scene;
    with them). Coordinates and sizes up to 1e6 m. ETHD_E_NOT_FINITE, ETHD_E_RANGE, ETHD_E_GEOMETRY (points
    that rounding can't tell apart, self-intersecting), ETHD_E_ARGUMENT (a wrong count of numbers),
    ETHD_E_DUPLICATE, ETHD_E_FULL, ETHD_E_MEMORY; error->line is the object's. [main] */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_create(const ethd_scene_def *def, ethd_scene **out,
-                                                       ethd_error *error);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_create(const ethd_scene_def *def, ethd_scene **out, ethd_error *error);
 
 /* The same from text, one object a line, '#' comments:
      halfplane NX NY C | circle X Y R | capsule X1 Y1 X2 Y2 R | box X Y HALF_W HALF_H ANGLE
@@ -127,8 +126,8 @@ ETHD_API void ethd_scene_follow(const ethd_scene *scene, int32_t object, ethd_ve
 
 typedef struct ethd_scene_info {
   size_t objects, by_shape[ETHD_SHAPE_COUNT], segments, materials;
-  size_t dropped; /* objects that ethd_scene_prune left out */
-  size_t boxes;   /* places for boxes of its trees */
+  size_t dropped;                    /* objects that ethd_scene_prune left out */
+  size_t boxes;                      /* places for boxes of its trees */
   double x_min, x_max, y_min, y_max; /* of the bounded objects; min > max when there are none */
   size_t bytes;                      /* memory held */
 } ethd_scene_info;

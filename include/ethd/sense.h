@@ -27,51 +27,51 @@ enum {
 };
 
 /* X(type, name, count, unit, brief); every field is 8 bytes wide. */
-#define ETHD_SENSE_FIELDS(X)                                                                     \
-  X(int64_t, time_ns, 1, "ns", "instant of the joint sample")                                   \
-  X(int64_t, have, 1, "1", "bits: what this sense holds")                                       \
-  X(int64_t, missed, 1, "1", "whole periods missed since the last step")                        \
-  X(int64_t, step_ns, 1, "ns", "duration of the last step as the caller measured it")           \
-  X(int64_t, faults, 1, "1", "bits: rows of the fault table that device or loop saw")           \
-  X(int64_t, grave, 1, "1", "bits: rows whose second reaction is due")                          \
-  X(double, q, 2, "rad", "joint angles")                                                        \
-  X(double, dq, 2, "rad/s", "joint speeds")                                                     \
-  X(double, finger, 2, "m", "finger centre in R_0")                                             \
-  X(double, finger_v, 2, "m/s", "finger velocity in R_0")                                       \
-  X(int64_t, sample_ns, 1, "ns", "instant of the reading")                                      \
-  X(double, centre, 2, "m", "reading: finger centre relative to the ring's")                    \
-  X(double, ring, 2, "m", "ring centre at the reading's instant")                               \
-  X(double, rays, 16, "m", "reading: 16 free distances, NaN missing")                            \
+#define ETHD_SENSE_FIELDS(X)                                                          \
+  X(int64_t, time_ns, 1, "ns", "instant of the joint sample")                         \
+  X(int64_t, have, 1, "1", "bits: what this sense holds")                             \
+  X(int64_t, missed, 1, "1", "whole periods missed since the last step")              \
+  X(int64_t, step_ns, 1, "ns", "duration of the last step as the caller measured it") \
+  X(int64_t, faults, 1, "1", "bits: rows of the fault table that device or loop saw") \
+  X(int64_t, grave, 1, "1", "bits: rows whose second reaction is due")                \
+  X(double, q, 2, "rad", "joint angles")                                              \
+  X(double, dq, 2, "rad/s", "joint speeds")                                           \
+  X(double, finger, 2, "m", "finger centre in R_0")                                   \
+  X(double, finger_v, 2, "m/s", "finger velocity in R_0")                             \
+  X(int64_t, sample_ns, 1, "ns", "instant of the reading")                            \
+  X(double, centre, 2, "m", "reading: finger centre relative to the ring's")          \
+  X(double, ring, 2, "m", "ring centre at the reading's instant")                     \
+  X(double, rays, 16, "m", "reading: 16 free distances, NaN missing")                 \
   X(double, bodies, 24, "m, rad, s", "6 of each body: x, y, angle, their speeds")
 
 /* X as above. What a tick worked out. Where no contact counts, d_re, d_fe and v_n are NaN. */
-#define ETHD_TRACE_FIELDS(X)                                                                     \
-  X(int64_t, tick, 1, "1", "steps since create or reset")                                       \
-  X(int64_t, fault, 1, "1", "0, or the latched ethd_fault")                                     \
-  X(int64_t, guard, 1, "1", "bits: what the guard did")                                         \
-  X(int64_t, swap, 1, "1", "1: a posted setup was taken at this tick")                          \
-  X(int64_t, queried, 1, "1", "1: the scene was asked")                                         \
-  X(int64_t, contacts, 1, "1", "contacts that count")                                           \
-  X(int64_t, overflow, 1, "1", "contacts that found no room")                                   \
-  X(int64_t, object, 1, "1", "object of the deepest contact, -1 none")                          \
-  X(int64_t, body, 1, "1", "what the object belongs to: 0 scene, i bodies[i - 1]")              \
-  X(int64_t, state, 1, "1", "0 transparent, 1 braking, 2 vo")                                   \
-  X(double, x, 2, "m", "ring centre in R_0")                                                    \
-  X(double, v, 2, "m/s", "ring velocity")                                                       \
-  X(double, xf, 2, "m", "finger centre")                                                        \
-  X(double, vf, 2, "m/s", "finger velocity")                                                    \
-  X(double, rf, 1, "m", "finger radius of the last fit, NaN none")                              \
-  X(double, qd, 2, "rad/s", "joint speeds that were used")                                      \
-  X(double, eps_q, 2, "rad", "J^-1 (X_f - X_r)")                                                \
-  X(double, eps_q_dot, 2, "rad/s", "J^-1 (V_f - V_r)")                                          \
-  X(double, beta, 1, "1", "share of the tracking torque")                                       \
-  X(double, fe, 2, "N", "sum of the contact forces")                                            \
-  X(double, fd, 2, "N", "sum of the braking forces")                                            \
-  X(double, eps, 1, "m", "wall offset of the deepest contact")                                  \
-  X(double, d_re, 1, "m", "its ring distance")                                                  \
-  X(double, d_fe, 1, "m", "its finger distance, beta's argument")                               \
-  X(double, v_n, 1, "m/s", "its ring speed along n")                                            \
-  X(double, tau_raw, 2, "Nm", "torque before the guard")                                        \
+#define ETHD_TRACE_FIELDS(X)                                                       \
+  X(int64_t, tick, 1, "1", "steps since create or reset")                          \
+  X(int64_t, fault, 1, "1", "0, or the latched ethd_fault")                        \
+  X(int64_t, guard, 1, "1", "bits: what the guard did")                            \
+  X(int64_t, swap, 1, "1", "1: a posted setup was taken at this tick")             \
+  X(int64_t, queried, 1, "1", "1: the scene was asked")                            \
+  X(int64_t, contacts, 1, "1", "contacts that count")                              \
+  X(int64_t, overflow, 1, "1", "contacts that found no room")                      \
+  X(int64_t, object, 1, "1", "object of the deepest contact, -1 none")             \
+  X(int64_t, body, 1, "1", "what the object belongs to: 0 scene, i bodies[i - 1]") \
+  X(int64_t, state, 1, "1", "0 transparent, 1 braking, 2 vo")                      \
+  X(double, x, 2, "m", "ring centre in R_0")                                       \
+  X(double, v, 2, "m/s", "ring velocity")                                          \
+  X(double, xf, 2, "m", "finger centre")                                           \
+  X(double, vf, 2, "m/s", "finger velocity")                                       \
+  X(double, rf, 1, "m", "finger radius of the last fit, NaN none")                 \
+  X(double, qd, 2, "rad/s", "joint speeds that were used")                         \
+  X(double, eps_q, 2, "rad", "J^-1 (X_f - X_r)")                                   \
+  X(double, eps_q_dot, 2, "rad/s", "J^-1 (V_f - V_r)")                             \
+  X(double, beta, 1, "1", "share of the tracking torque")                          \
+  X(double, fe, 2, "N", "sum of the contact forces")                               \
+  X(double, fd, 2, "N", "sum of the braking forces")                               \
+  X(double, eps, 1, "m", "wall offset of the deepest contact")                     \
+  X(double, d_re, 1, "m", "its ring distance")                                     \
+  X(double, d_fe, 1, "m", "its finger distance, beta's argument")                  \
+  X(double, v_n, 1, "m/s", "its ring speed along n")                               \
+  X(double, tau_raw, 2, "Nm", "torque before the guard")                           \
   X(double, tau, 2, "Nm", "torque commanded")
 
 #define ETHD_FIELD_1(type, name) type name;

@@ -15,35 +15,34 @@
 ETHD_BEGIN_DECLS
 
 typedef struct ethd_plant {
-  double mass[2];          /* kg at the ring, x (joint 1) and y (joint 2): inertia = mass L^2 */
-  double coupling;         /* H, kg m^2: inertia coupling H cos(th2 - th1) */
-  double force_limit;      /* N: torque limit of each joint / L */
-  double friction, viscous; /* f_c N, b_v Ns/m: torque L (f_c tanh(v / 3 mm/s) + b_v v), v = L dq */
-  double delay;            /* s, measurement to torque */
-  double count;            /* rad per encoder count at the joint; 0: ideal encoders */
-  int32_t count_phase;     /* 1: the encoder's phase is drawn per tap and joint; 0: phase 0 */
-  double motor_mass;       /* kg, part of mass on the motor's side; used when stiffness is finite */
-  double stiffness, damping; /* transmission at the ring, N/m and Ns/m; stiffness INFINITY: rigid */
-  double finger_mass;      /* kg */
-  double hand_stiffness, hand_damping; /* N/m, Ns/m about the voluntary path, x and y alike */
-  double pad_stiffness, pad_damping;   /* K N/m, c s/m: K p (1 + c p_dot) */
-  double finger_radius, finger_radius_sd; /* m */
-  double rate, latency, noise; /* Hz, s, m: proximity readings of the centre */
-  int32_t rays;            /* 0: readings of the centre; 1: frames of 16 rays */
-  int32_t reference;       /* what `ring` of the sense is: 0 true ring, 1 motor side */
-  double ray_noise, ray_skew; /* m; s from ray 0 to ray 15, in ray order */
-  double start, start_sd;  /* D0, m before the ring would meet the wall */
-  double overshoot, overshoot_spread; /* O m, s: aims O exp(s g) behind it */
-  double ramp_up, ramp_down; /* s */
-  double lateral_sd;       /* m, y offset */
+  double mass[2];                             /* kg at the ring, x (joint 1) and y (joint 2): inertia = mass L^2 */
+  double coupling;                            /* H, kg m^2: inertia coupling H cos(th2 - th1) */
+  double force_limit;                         /* N: torque limit of each joint / L */
+  double friction, viscous;                   /* f_c N, b_v Ns/m: torque L (f_c tanh(v / 3 mm/s) + b_v v), v = L dq */
+  double delay;                               /* s, measurement to torque */
+  double count;                               /* rad per encoder count at the joint; 0: ideal encoders */
+  int32_t count_phase;                        /* 1: the encoder's phase is drawn per tap and joint; 0: phase 0 */
+  double motor_mass;                          /* kg, part of mass on the motor's side; used when stiffness is finite */
+  double stiffness, damping;                  /* transmission at the ring, N/m and Ns/m; stiffness INFINITY: rigid */
+  double finger_mass;                         /* kg */
+  double hand_stiffness, hand_damping;        /* N/m, Ns/m about the voluntary path, x and y alike */
+  double pad_stiffness, pad_damping;          /* K N/m, c s/m: K p (1 + c p_dot) */
+  double finger_radius, finger_radius_sd;     /* m */
+  double rate, latency, noise;                /* Hz, s, m: proximity readings of the centre */
+  int32_t rays;                               /* 0: readings of the centre; 1: frames of 16 rays */
+  int32_t reference;                          /* what `ring` of the sense is: 0 true ring, 1 motor side */
+  double ray_noise, ray_skew;                 /* m; s from ray 0 to ray 15, in ray order */
+  double start, start_sd;                     /* D0, m before the ring would meet the wall */
+  double overshoot, overshoot_spread;         /* O m, s: aims O exp(s g) behind it */
+  double ramp_up, ramp_down;                  /* s */
+  double lateral_sd;                          /* m, y offset */
   double speed_low, speed_high, speed_spread; /* m/s, m/s, coefficient of variation */
-  int32_t metrics_side;    /* 0: the ring's true speed; 1: the encoder's (motor) side */
-  double band_low, band_high; /* m/s: valid within 0.2 +- band_low, 0.4 +- band_high */
+  int32_t metrics_side;                       /* 0: the ring's true speed; 1: the encoder's (motor) side */
+  double band_low, band_high;                 /* m/s: valid within 0.2 +- band_low, 0.4 +- band_high */
 } ethd_plant;
 
 /* Reads a plant file (INI, every key required once, strict). [main] */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_plant_load(const char *path, ethd_plant *out,
-                                                     char message[ETHD_MESSAGE_MAX]);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_plant_load(const char *path, ethd_plant *out, char message[ETHD_MESSAGE_MAX]);
 
 /* The hand's voluntary path: the paper's synthetic reach, or samples of a recorded movement. */
 typedef struct ethd_path_sample {
@@ -78,8 +77,8 @@ typedef struct ethd_sim_tap {
 
 /* Draws a synthetic tap at commanded speed `speed` toward the wall that the ring meets with its centre at
    `meet` (the wall on the left). Normal draws are cut at 2 sd, the speed at 2.5. */
-ETHD_API void ethd_sim_draw(const ethd_plant *plant, uint64_t seed, uint64_t tap, double speed,
-                            ethd_vec meet, ethd_sim_tap *out);
+ETHD_API void ethd_sim_draw(const ethd_plant *plant, uint64_t seed, uint64_t tap, double speed, ethd_vec meet,
+                            ethd_sim_tap *out);
 
 /* Tolerances with steps of a period: a tap stays within 1e-8 m of the exact solution (any plant), within
    1e-6 m (plant n). */
@@ -97,8 +96,7 @@ typedef struct ethd_sim_def {
 
 typedef struct ethd_sim ethd_sim;
 
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_sim_create(const ethd_sim_def *def, ethd_sim **out,
-                                                     ethd_error *error);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_sim_create(const ethd_sim_def *def, ethd_sim **out, ethd_error *error);
 ETHD_API void ethd_sim_destroy(ethd_sim *sim);
 
 /* Time 0: ring centred on the finger at the start of the path, both at rest. ETHD_E_UNREACHABLE: the
@@ -111,15 +109,15 @@ ETHD_API void ethd_sim_read(ethd_sim *sim, ethd_sense *out) ETHD_RT;
 ETHD_API void ethd_sim_write(ethd_sim *sim, const ethd_command *command) ETHD_RT;
 
 /* Truth at the present tick. X as in ETHD_TRACE_FIELDS. */
-#define ETHD_TRUTH_FIELDS(X)                                                       \
-  X(double, t, 1, "s", "time of the tap")                                         \
-  X(double, ring, 2, "m", "ring centre")                                          \
-  X(double, ring_v, 2, "m/s", "ring velocity")                                    \
-  X(double, motor, 2, "m", "ring centre as the motor side has it")                \
-  X(double, motor_v, 2, "m/s", "likewise")                                        \
-  X(double, finger, 2, "m", "finger centre")                                      \
-  X(double, finger_v, 2, "m/s", "finger velocity")                                \
-  X(double, hand, 2, "m", "voluntary path")                                       \
+#define ETHD_TRUTH_FIELDS(X)                                                        \
+  X(double, t, 1, "s", "time of the tap")                                           \
+  X(double, ring, 2, "m", "ring centre")                                            \
+  X(double, ring_v, 2, "m/s", "ring velocity")                                      \
+  X(double, motor, 2, "m", "ring centre as the motor side has it")                  \
+  X(double, motor_v, 2, "m/s", "likewise")                                          \
+  X(double, finger, 2, "m", "finger centre")                                        \
+  X(double, finger_v, 2, "m/s", "finger velocity")                                  \
+  X(double, hand, 2, "m", "voluntary path")                                         \
   X(double, pad, 1, "m", "pad penetration |X_f - X_r| - (R_r - R_f), > 0 touching") \
   X(double, pad_force, 1, "N", "between pad and ring")
 

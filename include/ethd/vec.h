@@ -28,9 +28,7 @@ static inline ethd_vec ethd_vec_scale(double s, ethd_vec a) ETHD_RT {
 static inline double ethd_vec_dot(ethd_vec a, ethd_vec b) ETHD_RT { return a.x * b.x + a.y * b.y; }
 
 /* z component of a x b: > 0 where b lies counter-clockwise of a. */
-static inline double ethd_vec_cross(ethd_vec a, ethd_vec b) ETHD_RT {
-  return a.x * b.y - a.y * b.x;
-}
+static inline double ethd_vec_cross(ethd_vec a, ethd_vec b) ETHD_RT { return a.x * b.y - a.y * b.x; }
 
 static inline double ethd_vec_norm(ethd_vec a) ETHD_RT { return sqrt(a.x * a.x + a.y * a.y); }
 

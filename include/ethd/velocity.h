@@ -47,16 +47,15 @@ typedef struct ethd_velocity_state {
 
 /* Checks p against the method's table and the period (1e-6 to 1 s), works out the coefficients; out is
    untouched on failure. [main] */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_velocity_prepare(ethd_velocity_method method, const double *p,
-                                                           double period, ethd_velocity *out,
-                                                           ethd_error *error);
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_velocity_prepare(ethd_velocity_method method, const double *p, double period,
+                                                           ethd_velocity *out, ethd_error *error);
 
 /* Next speed, rad/s. q: rad; torque: the joint's last commanded torque, Nm (kalman only); dt > 0: s
    since the last step, a whole number of periods when ticks were missed. After a zeroed state the first
    call gives 0 (no difference yet); a state with count = 0 but speed set starts from that speed. Nothing
    accumulates over time. What isn't finite stays until the state is zeroed. [rt] */
-ETHD_API double ethd_velocity_step(const ethd_velocity *velocity, ethd_velocity_state *state, double q,
-                                   double torque, double dt) ETHD_RT;
+ETHD_API double ethd_velocity_step(const ethd_velocity *velocity, ethd_velocity_state *state, double q, double torque,
+                                   double dt) ETHD_RT;
 
 /* By how much the speed lags under slow constant acceleration (kalman: all of it unknown), s:
    difference T/2, lowpass T/2 + T (1 - a) / a, lsq and, at its longest, foaw (window - 1) T/2. [any] */

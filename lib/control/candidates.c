@@ -29,8 +29,7 @@ static void append(ethd__candidates *c, const ethd_touch *touch, const ethd__fra
 /* The deeper one of two that face the same way stays. */
 static int is_same_face(const ethd_touch *touches, int i) ETHD_RT {
   for (int k = 0; k < i; k++)
-    if (touches[k].object == touches[i].object && ethd_vec_dot(touches[k].n, touches[i].n) > SAME_WAY)
-      return 1;
+    if (touches[k].object == touches[i].object && ethd_vec_dot(touches[k].n, touches[i].n) > SAME_WAY) return 1;
   return 0;
 }
 
@@ -46,8 +45,8 @@ static int is_live(const ethd__state *state, unsigned in_use, int place) ETHD_RT
   return 0;
 }
 
-static void look_around(const ethd_scene *scene, ethd__state *state, int place, const ethd__frame *frame,
-                        ethd_vec x, double range, ethd__candidates *c) ETHD_RT {
+static void look_around(const ethd_scene *scene, ethd__state *state, int place, const ethd__frame *frame, ethd_vec x,
+                        double range, ethd__candidates *c) ETHD_RT {
   ethd_touch touches[ETHD__TOUCHES];
   ethd__place *p = &state->places[place];
   if (ethd__place_is_far(p, x, range) && !is_live(state, c->live, place)) return;
@@ -88,16 +87,15 @@ static int closest(const ethd__state *state, unsigned open, double limit, const 
 
 static int index_of(const ethd__candidates *c, const ethd_touch *touch, int place) ETHD_RT {
   for (int k = 0; k < c->count; k++)
-    if (c->at[k].touch.object == touch->object && c->at[k].touch.feature == touch->feature &&
-        c->at[k].place == place)
+    if (c->at[k].touch.object == touch->object && c->at[k].touch.feature == touch->feature && c->at[k].place == place)
       return k;
   return -1;
 }
 
 /* A contact that jumped or is out of reach: the scene says which local minimum it is. It lives on until
    its state is transparent. */
-static void follow(const ethd_scene *scene, const ethd__slot *slot, int i, const ethd__frame *frame,
-                   ethd_vec x, ethd__candidates *c) ETHD_RT {
+static void follow(const ethd_scene *scene, const ethd__slot *slot, int i, const ethd__frame *frame, ethd_vec x,
+                   ethd__candidates *c) ETHD_RT {
   ethd_touch touch;
   ethd_scene_follow(scene, slot->object, x, slot->point, &touch);
   int k = index_of(c, &touch, slot->place);
@@ -136,8 +134,7 @@ static void sort(ethd__candidates *c) ETHD_RT {
   }
 }
 
-void ethd__candidates_collect(const ethd__plan *plan, ethd__state *state, const ethd_trace *t,
-                              ethd__candidates *out) {
+void ethd__candidates_collect(const ethd__plan *plan, ethd__state *state, const ethd_trace *t, ethd__candidates *out) {
   ethd__frame frames[ETHD__PLACES];
   ethd_vec x[ETHD__PLACES];
   double range = reach(plan, t);

@@ -19,8 +19,8 @@ typedef struct ethd__candidates {
   ethd__candidate at[ETHD__CANDIDATES]; /* the deepest first; equal depths keep the scenes' order */
   int count;
   unsigned live; /* slots in use as the tick began, as bits */
-  int overflow; /* touches within reach that weren't looked at */
-  int queried;  /* 1: a scene was asked */
+  int overflow;  /* touches within reach that weren't looked at */
+  int queried;   /* 1: a scene was asked */
 } ethd__candidates;
 
 /* Ring and finger as in t->x, t->xf. [rt] */

@@ -5,8 +5,7 @@
 /* ---- one contact ---- */
 
 /* Without its age. */
-static ethd_contact measure(const ethd__plan *plan, const ethd_trace *t, const ethd__candidate *k,
-                            double dt) ETHD_RT {
+static ethd_contact measure(const ethd__plan *plan, const ethd_trace *t, const ethd__candidate *k, double dt) ETHD_RT {
   const ethd_touch *touch = &k->touch;
   ethd_contact c;
   memset(&c, 0, sizeof c);
@@ -27,9 +26,9 @@ static ethd_contact measure(const ethd__plan *plan, const ethd_trace *t, const e
 
 /* NaN fails every one of these. */
 static int ruling_is_good(const ethd_ruling *r) ETHD_RT {
-  return r->beta >= 0 && r->beta <= 1 && r->share >= 0 && r->share <= 1 && r->damping >= 0 &&
-         isfinite(r->damping) && isfinite(r->offset) && isfinite(r->feed) && isfinite(r->shift.x) &&
-         isfinite(r->shift.y) && isfinite(r->argument);
+  return r->beta >= 0 && r->beta <= 1 && r->share >= 0 && r->share <= 1 && r->damping >= 0 && isfinite(r->damping) &&
+         isfinite(r->offset) && isfinite(r->feed) && isfinite(r->shift.x) && isfinite(r->shift.y) &&
+         isfinite(r->argument);
 }
 
 static int rule(const ethd__plan *plan, ethd__slot *slot, const ethd_contact *c, ethd_ruling *out,
@@ -59,8 +58,8 @@ static int entering(ethd__slot *slot, double v, double h) ETHD_RT {
 }
 
 /* Force of the (offset) wall along n; never attractive. */
-static int wall(const ethd__plan *plan, ethd__slot *slot, const ethd_contact *c, int32_t material,
-                const ethd_ruling *r, double *force, ethd__failure *failure) ETHD_RT {
+static int wall(const ethd__plan *plan, ethd__slot *slot, const ethd_contact *c, int32_t material, const ethd_ruling *r,
+                double *force, ethd__failure *failure) ETHD_RT {
   int in = entering(slot, c->v, plan->setup.v_hysteresis);
   *force = 0;
   if (!(r->share > 0)) return 1;
@@ -106,8 +105,7 @@ static void add_force(double to[2], double force, ethd_vec n) ETHD_RT {
   to[1] += force * n.y;
 }
 
-static void add(const ethd_contact *c, const ethd_ruling *r, double force, ethd_trace *out,
-                ethd_vec *shift) ETHD_RT {
+static void add(const ethd_contact *c, const ethd_ruling *r, double force, ethd_trace *out, ethd_vec *shift) ETHD_RT {
   if (out->contacts++ == 0) { /* the deepest comes first */
     out->object = c->object;
     out->body = c->body;
@@ -125,8 +123,8 @@ static void add(const ethd_contact *c, const ethd_ruling *r, double force, ethd_
   add_force(out->fd, -r->damping * c->v, c->n);
 }
 
-static int contact(const ethd__plan *plan, ethd__state *state, const ethd__candidate *k, ethd_contact *c, ethd__slot *slot,
-                   ethd_trace *out, ethd_vec *shift, ethd__failure *failure) ETHD_RT {
+static int contact(const ethd__plan *plan, ethd__state *state, const ethd__candidate *k, ethd_contact *c,
+                   ethd__slot *slot, ethd_trace *out, ethd_vec *shift, ethd__failure *failure) ETHD_RT {
   const ethd_touch *touch = &k->touch;
   ethd_ruling r;
   double force;
@@ -183,16 +181,15 @@ static void make_room(ethd__state *state, ethd__candidates *c, int k) ETHD_RT {
   }
 }
 
-static ethd__slot *new_slot(const ethd__plan *plan, ethd__state *state, ethd__candidates *c,
-                            int k) ETHD_RT {
+static ethd__slot *new_slot(const ethd__plan *plan, ethd__state *state, ethd__candidates *c, int k) ETHD_RT {
   ethd__slot *slot = free_slot(plan, state);
   if (slot) return slot;
   make_room(state, c, k);
   return free_slot(plan, state);
 }
 
-int ethd__contacts(const ethd__plan *plan, ethd__state *state, double dt, ethd_trace *out,
-                   ethd_vec *shift, ethd__failure *failure) {
+int ethd__contacts(const ethd__plan *plan, ethd__state *state, double dt, ethd_trace *out, ethd_vec *shift,
+                   ethd__failure *failure) {
   nothing(out, shift);
   if (!plan->places) return 1;
   ethd__candidates c;

@@ -3,9 +3,9 @@
 #include "control/controller.h"
 
 static const ethd_status status_of[ETHD_FAULT_COUNT] = {
-    [ETHD_FAULT_NONE] = ETHD_OK,          [ETHD_FAULT_INPUT] = ETHD_E_NOT_FINITE,
-    [ETHD_FAULT_LAW] = ETHD_E_LAW,        [ETHD_FAULT_FINITE] = ETHD_E_NOT_FINITE,
-    [ETHD_FAULT_BUDGET] = ETHD_E_BUDGET,  [ETHD_FAULT_SPEED] = ETHD_E_RANGE,
+    [ETHD_FAULT_NONE] = ETHD_OK,           [ETHD_FAULT_INPUT] = ETHD_E_NOT_FINITE,
+    [ETHD_FAULT_LAW] = ETHD_E_LAW,         [ETHD_FAULT_FINITE] = ETHD_E_NOT_FINITE,
+    [ETHD_FAULT_BUDGET] = ETHD_E_BUDGET,   [ETHD_FAULT_SPEED] = ETHD_E_RANGE,
     [ETHD_FAULT_WORKSPACE] = ETHD_E_RANGE,
 };
 
@@ -101,8 +101,7 @@ ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, et
   return finish(out, command);
 }
 
-ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense,
-                                  ethd_command *command) {
+ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense, ethd_command *command) {
   ethd_trace out;
   memcpy(&control->scratch, &control->state, sizeof control->scratch);
   ethd__entry e = {&control->plans[control->ruling], NULL, 0};
@@ -133,9 +132,7 @@ void ethd_control_heated(ethd_control *control, const double heat[2]) {
   memcpy(control->state.guard.heat, heat, sizeof control->state.guard.heat);
 }
 
-void ethd_control_clear(ethd_control *control) {
-  atomic_store_explicit(&control->clear, 1, memory_order_relaxed);
-}
+void ethd_control_clear(ethd_control *control) { atomic_store_explicit(&control->clear, 1, memory_order_relaxed); }
 
 double ethd_control_clean(const ethd_control *control) {
   if (!__atomic_load_n(&control->state.fault, __ATOMIC_RELAXED)) return (double)INFINITY;

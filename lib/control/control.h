@@ -23,7 +23,7 @@ static inline const ethd_scene *ethd__place_scene(const ethd_setup *setup, int p
 typedef struct ethd__plan {
   ethd_setup setup;
   double d_beta;
-  int places; /* all from here on have no scene */
+  int places;        /* all from here on have no scene */
   int looks_further; /* a limit of clock, joints, reach or heat is set */
   ethd_velocity velocity;
   ethd_fit fit;
@@ -45,20 +45,20 @@ typedef struct ethd__slot {
   int32_t leaving; /* branch of eq. 3, with v_hysteresis */
   int32_t place;
   int64_t periods; /* since it began to count */
-  ethd_vec point; /* in the place's frame */
+  ethd_vec point;  /* in the place's frame */
   /* of the passivity observer, where there is one */
   double energy[2], force[2], depth_was; /* J, N along n, m */
-  int64_t giving;                  /* 1: damping is added */
+  int64_t giving;                        /* 1: damping is added */
   ethd__block transition, contact;
 } ethd__slot;
 
 /* A scene as the ring meets it. */
 typedef struct ethd__place {
-  double pose[6]; /* as in the sense; zeros for what stands still */
-  ethd_vec at;    /* ring's centre in the place's frame when it was last asked for clearance */
+  double pose[6];   /* as in the sense; zeros for what stands still */
+  ethd_vec at;      /* ring's centre in the place's frame when it was last asked for clearance */
   double clearance; /* distance to the nearest object there, negative: not known */
   ethd_scene_hint hint;
-  int32_t there;  /* 0: a body that has no pose yet */
+  int32_t there; /* 0: a body that has no pose yet */
   int32_t reserved;
 } ethd__place;
 
@@ -71,20 +71,20 @@ typedef struct ethd__rows {
 
 typedef struct ethd__state {
   ethd_counters counters;
-  int64_t fault; /* latched first; [any] reads it and the next */
-  int64_t clean; /* periods since the last tick that called for a stop */
+  int64_t fault;          /* latched first; [any] reads it and the next */
+  int64_t clean;          /* periods since the last tick that called for a stop */
   ethd__rows met, before; /* at this tick, at the last */
-  int64_t time_ns; /* of the last tick */
-  int64_t blind; /* periods since the last tick that had a measurement */
+  int64_t time_ns;        /* of the last tick */
+  int64_t blind;          /* periods since the last tick that had a measurement */
   ethd_velocity_state velocity[2];
   ethd_filter_state filter;
-  int64_t reading_ns;   /* stamp of the reading that was used last */
-  double finger_radius; /* of the last fit, NaN: none */
-  double given;         /* J that the last contact gave away */
-  uint64_t given_at;    /* tick */
+  int64_t reading_ns;              /* stamp of the reading that was used last */
+  double finger_radius;            /* of the last fit, NaN: none */
+  double given;                    /* J that the last contact gave away */
+  uint64_t given_at;               /* tick */
   uint64_t excess_from, excess_at; /* steps after which it was far too much: first, last; 0: never */
-  double absent;        /* share of the tracking torque that has faded, for the finger isn't seen */
-  int64_t implausible;  /* readings in a row */
+  double absent;                   /* share of the tracking torque that has faded, for the finger isn't seen */
+  int64_t implausible;             /* readings in a row */
   struct {
     int64_t time_ns;
     ethd_vec x;
@@ -107,17 +107,17 @@ typedef struct ethd__failure {
 } ethd__failure;
 
 /* Where ring and finger are, into out->x, v, xf, vf, rf, qd. [rt] */
-void ethd__estimate(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt,
-                    ethd_pose *pose, ethd_trace *out) ETHD_RT;
+void ethd__estimate(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt, ethd_pose *pose,
+                    ethd_trace *out) ETHD_RT;
 
 /* What is touched: out->beta, fe, fd and the deepest contact's row; *shift: of the contact that rules
    beta. False: a law failed. [rt] */
-int ethd__contacts(const ethd__plan *plan, ethd__state *state, double dt, ethd_trace *out,
-                   ethd_vec *shift, ethd__failure *failure) ETHD_RT;
+int ethd__contacts(const ethd__plan *plan, ethd__state *state, double dt, ethd_trace *out, ethd_vec *shift,
+                   ethd__failure *failure) ETHD_RT;
 
 /* A whole tick up to the torque before fade and guard, out->tau_raw. False: a law failed. [rt] */
-int ethd__evaluate(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt,
-                   ethd_pose *pose, ethd_trace *out, ethd__failure *failure) ETHD_RT;
+int ethd__evaluate(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt, ethd_pose *pose,
+                   ethd_trace *out, ethd__failure *failure) ETHD_RT;
 
 /* How a tick begins. */
 typedef struct ethd__entry {
@@ -128,8 +128,8 @@ typedef struct ethd__entry {
 
 /* One tick with guard; scratch is needed at a swap. Returns what this tick failed with, which only names the
    value of its row's event: out->fault says what it ended with. [rt] */
-ethd__failure ethd__tick(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
-                         const ethd_sense *sense, ethd_trace *out) ETHD_RT;
+ethd__failure ethd__tick(const ethd__entry *e, ethd__state *state, ethd__state *scratch, const ethd_sense *sense,
+                         ethd_trace *out) ETHD_RT;
 
 /* ---- rows of the fault table, all [rt] ---- */
 
@@ -159,8 +159,8 @@ static inline int ethd__rows_any(const ethd__rows *rows) ETHD_RT { return (rows-
 
 /* The force along n that keeps a contact passive, to be added to the wall's; brake: what else acts there.
    Once a tick, only where limits.energy is set. [rt] */
-double ethd__passivity(const ethd__plan *plan, ethd__state *state, ethd__slot *slot, const ethd_contact *c,
-                       double wall, double brake) ETHD_RT;
+double ethd__passivity(const ethd__plan *plan, ethd__state *state, ethd__slot *slot, const ethd_contact *c, double wall,
+                       double brake) ETHD_RT;
 
 /* ---- the finger's readings, all [rt] ---- */
 

@@ -3,13 +3,12 @@
 
 /* ---- ring ---- */
 
-static void joint_speeds(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense,
-                         double dt, double qd[2]) ETHD_RT {
+static void joint_speeds(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt,
+                         double qd[2]) ETHD_RT {
   for (int i = 0; i < 2; i++)
     qd[i] = sense->have & ETHD_HAVE_DQ
                 ? sense->dq[i]
-                : ethd_velocity_step(&plan->velocity, &state->velocity[i], sense->q[i],
-                                     state->guard.last[i], dt);
+                : ethd_velocity_step(&plan->velocity, &state->velocity[i], sense->q[i], state->guard.last[i], dt);
 }
 
 static void remember(ethd__state *state, int64_t time_ns, ethd_vec x) ETHD_RT {
@@ -46,8 +45,7 @@ static ethd_vec reference(const ethd__plan *plan, const ethd__state *state, cons
 }
 
 /* Of finger and ring, between the first of a frame's rays and the last. */
-static ethd_vec relative_speed(const ethd__plan *plan, const ethd__state *state,
-                               const ethd_sense *sense) ETHD_RT {
+static ethd_vec relative_speed(const ethd__plan *plan, const ethd__state *state, const ethd_sense *sense) ETHD_RT {
   int64_t first = sense->sample_ns - (int64_t)(1e9 * plan->lag_most);
   int64_t last = sense->sample_ns - (int64_t)(1e9 * plan->lag_least);
   ethd_vec way = ethd_vec_sub(ring_at(state, last), ring_at(state, first));
@@ -57,14 +55,12 @@ static ethd_vec relative_speed(const ethd__plan *plan, const ethd__state *state,
 
 static ethd_status fit(const ethd__plan *plan, const ethd__state *state, const ethd_sense *sense,
                        ethd_finger *out) ETHD_RT {
-  if (plan->lag_least == plan->lag_most || !state->filter.started)
-    return ethd_fit_step(&plan->fit, sense->rays, out);
+  if (plan->lag_least == plan->lag_most || !state->filter.started) return ethd_fit_step(&plan->fit, sense->rays, out);
   return ethd__fit_moving(&plan->fit, sense->rays, plan->setup.ray_lag, relative_speed(plan, state, sense), out);
 }
 
 /* The reading of this tick relative to the ring; false: none, or not usable. */
-static int reading(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense,
-                   ethd_vec *out) ETHD_RT {
+static int reading(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, ethd_vec *out) ETHD_RT {
   if (sense->have & ETHD_HAVE_CENTRE) {
     *out = (ethd_vec){sense->centre[0], sense->centre[1]};
     return isfinite(out->x) && isfinite(out->y);
@@ -79,8 +75,7 @@ static int reading(const ethd__plan *plan, ethd__state *state, const ethd_sense 
 /* From the past, and not the last one once more: ages, as sums of periods, wouldn't tell it from a reading
    that is newer by their rounding. */
 static int is_new(const ethd__state *state, const ethd_sense *sense) ETHD_RT {
-  return sense->sample_ns <= sense->time_ns &&
-         (state->filter.used == 0 || sense->sample_ns != state->reading_ns);
+  return sense->sample_ns <= sense->time_ns && (state->filter.used == 0 || sense->sample_ns != state->reading_ns);
 }
 
 /* No: not used. The finger's centre can't be outside of the ring; what the filter gates out isn't plausible
@@ -90,33 +85,30 @@ static int use(const ethd__plan *plan, ethd__state *state, const ethd_sense *sen
   int watched = ethd__is_watched(plan), outside = watched && !(ethd_vec_norm(relative) <= plan->setup.ring_radius);
   uint32_t gated = state->filter.gated;
   ethd_vec x = ethd_vec_add(relative, reference(plan, state, sense, ring));
-  ethd_status status = outside ? ETHD_STALE
-                               : ethd_filter_update(&plan->filter, &state->filter, x,
-                                                    seconds(sense->sample_ns, sense->time_ns));
+  ethd_status status =
+      outside ? ETHD_STALE
+              : ethd_filter_update(&plan->filter, &state->filter, x, seconds(sense->sample_ns, sense->time_ns));
   if (watched) ethd__finger_doubt(state, outside || state->filter.gated != gated);
   return status == ETHD_OK;
 }
 
-static void correct(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense,
-                    ethd_vec ring) ETHD_RT {
+static void correct(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, ethd_vec ring) ETHD_RT {
   ethd_vec relative;
-  if (is_new(state, sense) && reading(plan, state, sense, &relative) &&
-      use(plan, state, sense, relative, ring))
+  if (is_new(state, sense) && reading(plan, state, sense, &relative) && use(plan, state, sense, relative, ring))
     state->reading_ns = sense->sample_ns;
   else
     state->counters.readings_dropped++;
 }
 
-static void finger(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt,
-                   ethd_vec ring, ethd_vec ring_v, ethd_vec *x, ethd_vec *v) ETHD_RT {
+static void finger(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt, ethd_vec ring,
+                   ethd_vec ring_v, ethd_vec *x, ethd_vec *v) ETHD_RT {
   if (sense->have & ETHD_HAVE_FINGER) {
     *x = (ethd_vec){sense->finger[0], sense->finger[1]};
     *v = (ethd_vec){sense->finger_v[0], sense->finger_v[1]};
     return;
   }
   if (sense->have & ETHD_HAVE_START)
-    ethd_filter_start(&plan->filter, &state->filter, (ethd_vec){sense->finger[0], sense->finger[1]},
-                      (ethd_vec){0, 0});
+    ethd_filter_start(&plan->filter, &state->filter, (ethd_vec){sense->finger[0], sense->finger[1]}, (ethd_vec){0, 0});
   else if (state->filter.started)
     ethd_filter_predict(&plan->filter, &state->filter, dt);
   if (sense->have & (ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS)) correct(plan, state, sense, ring);
@@ -134,8 +126,8 @@ static void put(double to[2], ethd_vec from) ETHD_RT {
   to[1] = from.y;
 }
 
-void ethd__estimate(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt,
-                    ethd_pose *pose, ethd_trace *out) {
+void ethd__estimate(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt, ethd_pose *pose,
+                    ethd_trace *out) {
   joint_speeds(plan, state, sense, dt, out->qd);
   ethd_arm_pose(&plan->setup.arm, sense->q, pose);
   ethd_vec v = ethd_mat_mul(pose->j, (ethd_vec){out->qd[0], out->qd[1]});

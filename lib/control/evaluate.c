@@ -1,7 +1,7 @@
 #include "control/control.h"
 
-static int track(const ethd__plan *plan, ethd__state *state, const ethd_pose *pose, ethd_vec shift,
-                 double dt, ethd_trace *out, double tau[2], ethd__failure *failure) ETHD_RT {
+static int track(const ethd__plan *plan, ethd__state *state, const ethd_pose *pose, ethd_vec shift, double dt,
+                 ethd_trace *out, double tau[2], ethd__failure *failure) ETHD_RT {
   ethd_vec xf = {out->xf[0], out->xf[1]}, vf = {out->vf[0], out->vf[1]};
   ethd_tracking_in in;
   in.eps_x = ethd_vec_sub(ethd_vec_add(xf, shift), pose->x);
@@ -25,8 +25,8 @@ static int track(const ethd__plan *plan, ethd__state *state, const ethd_pose *po
 }
 
 /* tau = beta tau_t + J^T (F_e + F_d) (eq. 5 and figure 7) */
-int ethd__evaluate(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt,
-                   ethd_pose *pose, ethd_trace *out, ethd__failure *failure) {
+int ethd__evaluate(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt, ethd_pose *pose,
+                   ethd_trace *out, ethd__failure *failure) {
   double tau_t[2] = {0, 0};
   ethd_vec shift;
   ethd__estimate(plan, state, sense, dt, pose, out);

@@ -1,8 +1,8 @@
 #include "control/controller.h"
 
 unsigned ethd__events_room(ethd__events *e) {
-  return ETHD__EVENTS - (atomic_load_explicit(&e->head, memory_order_relaxed) -
-                         atomic_load_explicit(&e->tail, memory_order_acquire));
+  return ETHD__EVENTS -
+         (atomic_load_explicit(&e->head, memory_order_relaxed) - atomic_load_explicit(&e->tail, memory_order_acquire));
 }
 
 int ethd__events_push(ethd__events *e, const ethd_event *event) {

@@ -12,10 +12,10 @@
    A contact that begins anew soon after the last one, a bounce, goes on with what that gave away.        */
 #include "control/control.h"
 
-#define MEMORY 0.5         /* s */
-#define DAMPING_MAX 20.0   /* Ns/m, as the guard's stop */
-#define EXCESS_MAX 0.050   /* s */
-#define RESPITE 0.025      /* s */
+#define MEMORY 0.5       /* s */
+#define DAMPING_MAX 20.0 /* Ns/m, as the guard's stop */
+#define EXCESS_MAX 0.050 /* s */
+#define RESPITE 0.025    /* s */
 
 /* A device gives the force in the period after it was worked out, or in the one after that: both are watched,
    and the worse counts. */
@@ -50,8 +50,8 @@ static int persists(ethd__state *state, double period) ETHD_RT {
   return (double)(now - state->excess_from) * period > EXCESS_MAX - period / 2;
 }
 
-double ethd__passivity(const ethd__plan *plan, ethd__state *state, ethd__slot *slot, const ethd_contact *c,
-                       double wall, double brake) {
+double ethd__passivity(const ethd__plan *plan, ethd__state *state, ethd__slot *slot, const ethd_contact *c, double wall,
+                       double brake) {
   const double bound = plan->setup.limits.energy;
   if (slot->periods == 0) begin(slot, state, plan->setup.period);
   observe(slot, c);

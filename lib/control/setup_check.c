@@ -2,14 +2,14 @@
 #include <string.h>
 
 #include "control/control.h"
+#include "control/setup.h"
 #include "error.h"
 #include "scene/scene.h"
-#include "control/setup.h"
 
-#define TRY(expression)                  \
-  do {                                   \
-    ethd_status status_ = (expression);  \
-    if (status_ < 0) return status_;     \
+#define TRY(expression)                 \
+  do {                                  \
+    ethd_status status_ = (expression); \
+    if (status_ < 0) return status_;    \
   } while (0)
 
 /* The section that a failure belongs to. */
@@ -25,8 +25,7 @@ static ethd_status check_geometry(const ethd_setup *s, ethd_error *error) {
   TRY(within("arm", ethd_arm_check(&s->arm, error), error));
   TRY(ethd__check_number(error, "ring.radius", s->ring_radius, 1e-4, 1));
   TRY(ethd__check_number(error, "finger.radius", s->finger_radius, 1e-4, s->ring_radius));
-  TRY(ethd__check_number(error, "finger.radius_max", s->finger_radius_max, 1e-5,
-                         s->ring_radius - D_BETA_MIN));
+  TRY(ethd__check_number(error, "finger.radius_max", s->finger_radius_max, 1e-5, s->ring_radius - D_BETA_MIN));
   TRY(ethd__check_number(error, "transition.swap_time", s->swap_time, 0, 1));
   return ethd__check_number(error, "transition.v_hysteresis", s->v_hysteresis, 0, 1);
 }
@@ -36,8 +35,8 @@ static ethd_status check_values(const ethd_law *law, const double *p, ethd_error
   return law->check ? law->check(p, error) : ETHD_OK;
 }
 
-static ethd_status check_law(const char *kind, uint32_t kind_number, const ethd_law *law,
-                             const double *p, ethd_error *error) {
+static ethd_status check_law(const char *kind, uint32_t kind_number, const ethd_law *law, const double *p,
+                             ethd_error *error) {
   if (!law) return ethd__error(error, ETHD_E_ARGUMENT, kind);
   TRY(within(kind, ethd_law_check(law, error), error));
   if (law->kind != kind_number) return ethd__error(error, ETHD_E_ARGUMENT, kind);
@@ -47,13 +46,11 @@ static ethd_status check_law(const char *kind, uint32_t kind_number, const ethd_
 static ethd_status check_laws(const ethd_setup *s, ethd_error *error) {
   TRY(check_law("tracking", ETHD_TRACKING, s->tracking ? &s->tracking->law : NULL, s->tracking_p, error));
   TRY(check_law("contact", ETHD_CONTACT, s->contact ? &s->contact->law : NULL, s->contact_p, error));
-  return check_law("transition", ETHD_TRANSITION, s->transition ? &s->transition->law : NULL,
-                   s->transition_p, error);
+  return check_law("transition", ETHD_TRANSITION, s->transition ? &s->transition->law : NULL, s->transition_p, error);
 }
 
 /* The contact law's parameters on one material: the setup's, with the material's own in their place. */
-static ethd_status prepare_material(const ethd_setup *s, const ethd_material *m, double *p,
-                                    ethd_error *error) {
+static ethd_status prepare_material(const ethd_setup *s, const ethd_material *m, double *p, ethd_error *error) {
   const ethd_law *law = &s->contact->law;
   memcpy(p, s->contact_p, sizeof s->contact_p);
   for (uint32_t i = 0; i < m->count; i++) {
@@ -117,7 +114,8 @@ ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error 
   out->looks_further = looks_further(&s->limits);
   out->d_beta = s->ring_radius - s->finger_radius_max;
   TRY(within("velocity", ethd_velocity_prepare(s->velocity, s->velocity_p, s->period, &out->velocity, error), error));
-  TRY(within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error), error));
+  TRY(within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error),
+             error));
   TRY(within("finger_filter", ethd_filter_prepare(s->filter, s->filter_p, s->period, &out->filter, error), error));
   TRY(prepare_lags(s, out, error));
   out->places = 0;

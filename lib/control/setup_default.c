@@ -3,9 +3,7 @@
 #include "control/control.h"
 #include "control/setup.h"
 
-double ethd_setup_range(const ethd_setup *s) {
-  return 2 * s->ring_radius + (s->ring_radius - s->finger_radius_max);
-}
+double ethd_setup_range(const ethd_setup *s) { return 2 * s->ring_radius + (s->ring_radius - s->finger_radius_max); }
 
 static void defaults(const ethd_param *params, uint32_t count, double *p) {
   memset(p, 0, ETHD_PARAMS_MAX * sizeof *p);
@@ -29,8 +27,7 @@ void ethd_setup_transition(ethd_setup *setup, const ethd_transition_law *law) {
 
 void ethd_setup_velocity(ethd_setup *setup, ethd_velocity_method method) {
   setup->velocity = method;
-  defaults(ethd_velocity_methods[method].params, ethd_velocity_methods[method].param_count,
-           setup->velocity_p);
+  defaults(ethd_velocity_methods[method].params, ethd_velocity_methods[method].param_count, setup->velocity_p);
 }
 
 void ethd_setup_fit(ethd_setup *setup, ethd_fit_method method) {
@@ -40,8 +37,7 @@ void ethd_setup_fit(ethd_setup *setup, ethd_fit_method method) {
 
 void ethd_setup_filter(ethd_setup *setup, ethd_filter_method method) {
   setup->filter = method;
-  defaults(ethd_filter_methods[method].params, ethd_filter_methods[method].param_count,
-           setup->filter_p);
+  defaults(ethd_filter_methods[method].params, ethd_filter_methods[method].param_count, setup->filter_p);
 }
 
 ethd_setup ethd_setup_default(void) {

@@ -39,8 +39,7 @@ static int input_is_good(const ethd_sense *s, ethd__failure *f) ETHD_RT {
 
 /* No two steps further apart than the limit, on either clock. A bus's first sample may be from before the loop
    ran: by how much it's older says nothing of the clock. */
-static int clock_is_good(const ethd__plan *plan, const ethd__state *state, const ethd_sense *s,
-                         int64_t n) ETHD_RT {
+static int clock_is_good(const ethd__plan *plan, const ethd__state *state, const ethd_sense *s, int64_t n) ETHD_RT {
   const double most = plan->setup.limits.gap, way = (double)n * plan->setup.period;
   if (isinf(most)) return 1;
   double passed = 1e-9 * (double)(int64_t)((uint64_t)s->time_ns - (uint64_t)state->time_ns);
@@ -79,9 +78,7 @@ static int within_budget(const ethd__plan *plan, const ethd_sense *s, ethd__fail
 /* ---- one tick ---- */
 
 /* What is left of a swap's difference after `t` s. */
-static double fade_share(double t, double swap_time) ETHD_RT {
-  return t < swap_time ? 1 - t / swap_time : 0;
-}
+static double fade_share(double t, double swap_time) ETHD_RT { return t < swap_time ? 1 - t / swap_time : 0; }
 
 static void fade(const ethd__plan *plan, ethd__state *state, double dt, double tau[2]) ETHD_RT {
   if (isinf(state->fade.elapsed)) return;
@@ -107,16 +104,16 @@ static void blank(const ethd_sense *sense, ethd_trace *out) ETHD_RT {
 }
 
 /* The laws' torque with what is left of a fade, into out->tau_raw. */
-static int compute(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt,
-                   ethd_pose *pose, ethd_trace *out, ethd__failure *failure) ETHD_RT {
+static int compute(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt, ethd_pose *pose,
+                   ethd_trace *out, ethd__failure *failure) ETHD_RT {
   if (!ethd__evaluate(plan, state, sense, dt, pose, out, failure)) return 0;
   fade(plan, state, dt, out->tau_raw);
   return 1;
 }
 
 /* The guard comes last. A fault takes the torque away at once, not at the rate's pace. */
-static void guard(const ethd__plan *plan, ethd__state *state, const ethd_pose *pose, double dt,
-                  ethd_trace *out, ethd__failure *failure) ETHD_RT {
+static void guard(const ethd__plan *plan, ethd__state *state, const ethd_pose *pose, double dt, ethd_trace *out,
+                  ethd__failure *failure) ETHD_RT {
   ethd_vec v = {out->v[0], out->v[1]};
   if (failure->fault != ETHD_FAULT_NONE) state->met.faults |= ETHD_FAULT_BIT(failure->fault);
   if (failure->fault != ETHD_FAULT_NONE || state->fault) {
@@ -148,8 +145,8 @@ static void migrate_estimators(const ethd__plan *from, const ethd__plan *to, eth
       memset(&state->velocity[i], 0, sizeof state->velocity[i]);
       state->velocity[i].speed = speed;
     }
-  if (state->filter.started && (memcmp(from->filter.p, to->filter.p, sizeof from->filter.p) != 0 ||
-                                from->filter.method != to->filter.method)) {
+  if (state->filter.started &&
+      (memcmp(from->filter.p, to->filter.p, sizeof from->filter.p) != 0 || from->filter.method != to->filter.method)) {
     ethd_vec x, v;
     ethd_filter_output(&from->filter, &state->filter, &x, &v);
     ethd_filter_start(&to->filter, &state->filter, x, v);
@@ -166,8 +163,7 @@ static void migrate(const ethd__plan *from, const ethd__plan *to, ethd__state *s
     ethd__block_reset(&to->setup.tracking->law, to->setup.tracking_p, state->tracking);
   for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
     ethd__slot *slot = &state->slots[i];
-    if (ethd__place_scene(&from->setup, slot->place) != ethd__place_scene(&to->setup, slot->place))
-      slot->used = 0;
+    if (ethd__place_scene(&from->setup, slot->place) != ethd__place_scene(&to->setup, slot->place)) slot->used = 0;
     if (from->setup.transition != to->setup.transition)
       ethd__block_reset(&to->setup.transition->law, to->setup.transition_p, slot->transition);
     if (from->setup.contact != to->setup.contact)
@@ -176,9 +172,8 @@ static void migrate(const ethd__plan *from, const ethd__plan *to, ethd__state *s
 }
 
 /* The old setup once more, on a copy; then the new one, and the difference starts to fade. */
-static void swap(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
-                 const ethd_sense *sense, double dt, ethd_pose *pose, ethd_trace *out,
-                 ethd__failure *failure) ETHD_RT {
+static void swap(const ethd__entry *e, ethd__state *state, ethd__state *scratch, const ethd_sense *sense, double dt,
+                 ethd_pose *pose, ethd_trace *out, ethd__failure *failure) ETHD_RT {
   double old[2];
   memcpy(scratch, state, sizeof *scratch);
   int held = compute(e->from, scratch, sense, dt, pose, out, failure);
@@ -193,9 +188,8 @@ static void swap(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
 /* ---- the whole tick ---- */
 
 /* The torque before the guard, out->tau_raw; what prevents it, *failure. */
-static void drive(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
-                  const ethd_sense *sense, double dt, ethd_pose *pose, ethd_trace *out,
-                  ethd__failure *failure) ETHD_RT {
+static void drive(const ethd__entry *e, ethd__state *state, ethd__state *scratch, const ethd_sense *sense, double dt,
+                  ethd_pose *pose, ethd_trace *out, ethd__failure *failure) ETHD_RT {
   int blind = failure->fault == ETHD_FAULT_INPUT;
   int idle = blind || state->fault || failure->fault != ETHD_FAULT_NONE;
   if (!blind) ethd__places_take(state, sense);
@@ -214,8 +208,7 @@ static void drive(const ethd__entry *e, ethd__state *state, ethd__state *scratch
 }
 
 /* Rows that are known before anything is worked out; those that take the torque away are the failure. */
-static ethd__failure look(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense,
-                          int64_t n) ETHD_RT {
+static ethd__failure look(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, int64_t n) ETHD_RT {
   ethd__failure failure = {ETHD_FAULT_NONE, 0};
   state->met = (ethd__rows){0, 0};
   if (sense->faults | sense->grave) ethd__rows_take(&state->met, sense);
@@ -228,8 +221,8 @@ static ethd__failure look(const ethd__plan *plan, ethd__state *state, const ethd
   return failure;
 }
 
-ethd__failure ethd__tick(const ethd__entry *e, ethd__state *state, ethd__state *scratch,
-                         const ethd_sense *sense, ethd_trace *out) {
+ethd__failure ethd__tick(const ethd__entry *e, ethd__state *state, ethd__state *scratch, const ethd_sense *sense,
+                         ethd_trace *out) {
   ethd_pose pose; /* stays unknown on a blind tick, where nothing needs it */
   int64_t n = periods(sense), gap = state->blind + n < GAP_MAX ? state->blind + n : GAP_MAX;
   double dt = (double)gap * e->plan->setup.period;
@@ -251,8 +244,7 @@ ethd__failure ethd__tick(const ethd__entry *e, ethd__state *state, ethd__state *
 static void heal(ethd__state *state) ETHD_RT {
   for (int i = 0; i < 2; i++)
     if (!isfinite(state->velocity[i].speed)) memset(&state->velocity[i], 0, sizeof state->velocity[i]);
-  if (!two_finite(state->filter.x) || !two_finite(state->filter.v))
-    memset(&state->filter, 0, sizeof state->filter);
+  if (!two_finite(state->filter.x) || !two_finite(state->filter.v)) memset(&state->filter, 0, sizeof state->filter);
 }
 
 /* After an acknowledged fault: contacts begin anew. */

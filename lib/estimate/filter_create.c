@@ -48,8 +48,7 @@ static const ethd_param ca[] = {
 const ethd_method ethd_filter_methods[ETHD_FILTER_COUNT] = {
     [ETHD_FILTER_CA] = {"ca", "Kalman filter of constant acceleration", ROWS(ca)},
     [ETHD_FILTER_HOLD] = {"hold", "the last reading, at rest", ROWS(hold)},
-    [ETHD_FILTER_ALPHA_BETA] = {"alpha-beta", "position and velocity with fixed gains",
-                                ROWS(alpha_beta)},
+    [ETHD_FILTER_ALPHA_BETA] = {"alpha-beta", "position and velocity with fixed gains", ROWS(alpha_beta)},
     [ETHD_FILTER_CV] = {"cv", "Kalman filter of constant velocity", ROWS(cv)},
 };
 
@@ -62,8 +61,8 @@ static ethd_status check(ethd_filter_method method, const double *p, double peri
   return status;
 }
 
-ethd_status ethd_filter_prepare(ethd_filter_method method, const double *p, double period,
-                                ethd_filter *out, ethd_error *error) {
+ethd_status ethd_filter_prepare(ethd_filter_method method, const double *p, double period, ethd_filter *out,
+                                ethd_error *error) {
   ethd_status status = check(method, p, period, error);
   if (status) return status;
   memset(out, 0, sizeof *out);

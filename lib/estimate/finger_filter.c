@@ -15,9 +15,7 @@ static void place(ethd_filter_state *s, ethd_vec x, ethd_vec v, double xx, doubl
   s->gated_in_a_row = 0;
 }
 
-static double start_aa(const ethd_filter *f, double aa) {
-  return f->method == ETHD_FILTER_CA ? aa : 0;
-}
+static double start_aa(const ethd_filter *f, double aa) { return f->method == ETHD_FILTER_CA ? aa : 0; }
 
 void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, ethd_vec v) {
   place(state, x, v, 1e-6, 1e-4, start_aa(filter, 1));
@@ -66,8 +64,7 @@ static ethd_status gated(const ethd_filter *f, ethd_filter_state *s, ethd_vec x,
   return ETHD_OK;
 }
 
-ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x,
-                               double age) {
+ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, double age) {
   if (!isfinite(x.x) || !isfinite(x.y) || !isfinite(age)) {
     state->gated++;
     return ETHD_STALE;
@@ -91,8 +88,7 @@ ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *sta
   return ETHD_OK;
 }
 
-void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x,
-                        ethd_vec *v) {
+void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x, ethd_vec *v) {
   int stamp = filter->compensation == ETHD_COMPENSATION_STAMP;
   double t = stamp ? state->age + filter->p[FILTER_LATENCY] : 0;
   ethd__way w = ethd__filter_way(filter, t);

@@ -26,8 +26,7 @@ static void collect(const ethd_fit *fit, const double r[ETHD_RAYS], ethd__points
 
 /* From e = |p - c|^2 - R_f^2, small wherever the finger is what it is said to be, so that the variance
    keeps its digits. */
-static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec centre,
-                     ethd_finger *out) {
+static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec centre, ethd_finger *out) {
   double square = fit->finger_radius * fit->finger_radius, n = ethd__count(points->used);
   two sum = {0, 0}, sum2 = {0, 0};
   for (int i = 0; i < ETHD__PAIRS; i++) {
@@ -46,14 +45,10 @@ static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec c
 
 static int find(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
   switch (fit->method) {
-  case ETHD_FIT_VERTEX_MEAN:
-    return ethd__fit_vertex_mean(points, centre);
-  case ETHD_FIT_CENTROID:
-    return ethd__fit_centroid(points, centre);
-  case ETHD_FIT_ROBUST:
-    return ethd__fit_robust(fit, points, centre);
-  default:
-    return ethd__fit_kasa(points, centre);
+  case ETHD_FIT_VERTEX_MEAN: return ethd__fit_vertex_mean(points, centre);
+  case ETHD_FIT_CENTROID: return ethd__fit_centroid(points, centre);
+  case ETHD_FIT_ROBUST: return ethd__fit_robust(fit, points, centre);
+  default: return ethd__fit_kasa(points, centre);
   }
 }
 
@@ -71,8 +66,8 @@ ethd_status ethd_fit_step(const ethd_fit *fit, const double r[ETHD_RAYS], ethd_f
   return finish(fit, &points, out);
 }
 
-ethd_status ethd__fit_moving(const ethd_fit *fit, const double r[ETHD_RAYS], const double lag[ETHD_RAYS],
-                             ethd_vec v, ethd_finger *out) {
+ethd_status ethd__fit_moving(const ethd_fit *fit, const double r[ETHD_RAYS], const double lag[ETHD_RAYS], ethd_vec v,
+                             ethd_finger *out) {
   ethd__points points;
   collect(fit, r, &points);
   for (int i = 0; i < ETHD__PAIRS; i++) {

@@ -92,9 +92,7 @@ static inline int step(moments *m, double radius, ethd_vec *centre, double *move
 }
 
 /* (|u|^2 - R^2) / (2 R) is |u| - R nearly. */
-static inline double gate(const ethd_fit *fit) {
-  return 2 * fit->finger_radius * fit->p[ROBUST_GATE];
-}
+static inline double gate(const ethd_fit *fit) { return 2 * fit->finger_radius * fit->p[ROBUST_GATE]; }
 
 /* One more point, or with sign -1 one less. */
 static inline void add(moments *m, double sign, ethd_vec u) {
@@ -111,8 +109,8 @@ static inline void add(moments *m, double sign, ethd_vec u) {
 
 /* Leaves out those beyond the gate among the rays that are `there`; false: they stay the same. The moments,
    about the centre, follow: by the one point that comes or goes, or anew. */
-static inline int choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS], ethd__points *points,
-                         ethd_vec centre, moments *m) {
+static inline int choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS], ethd__points *points, ethd_vec centre,
+                         moments *m) {
   double square = fit->finger_radius * fit->finger_radius, most = gate(fit);
   uint32_t before = points->used;
   for (int i = 0; i < ETHD__PAIRS; i++) {
@@ -123,8 +121,7 @@ static inline int choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS],
   uint32_t changed = before ^ points->used;
   if (!changed) return 0;
   if ((changed & (changed - 1)) == 0)
-    add(m, points->used > before ? 1 : -1,
-        ethd_vec_sub(ethd__point(points, __builtin_ctz(changed)), centre));
+    add(m, points->used > before ? 1 : -1, ethd_vec_sub(ethd__point(points, __builtin_ctz(changed)), centre));
   else
     *m = of(points, centre);
   return 1;

@@ -30,8 +30,8 @@ int ethd__fit_centroid(const ethd__points *points, ethd_vec *centre) ETHD_RT;
 
 /* As ethd_fit_step, ray k measured lag[k] s before the others' common instant by a finger that moved at v
    m/s relative to the ring: its point is carried on by as much. [rt] */
-ethd_status ethd__fit_moving(const ethd_fit *fit, const double r[ETHD_RAYS], const double lag[ETHD_RAYS],
-                             ethd_vec v, ethd_finger *out) ETHD_RT;
+ethd_status ethd__fit_moving(const ethd_fit *fit, const double r[ETHD_RAYS], const double lag[ETHD_RAYS], ethd_vec v,
+                             ethd_finger *out) ETHD_RT;
 
 static inline uint32_t ethd__points_used(const two_bits counts[ETHD__PAIRS]) {
   two_bits used = {0, 0}, bit = {1, 2};

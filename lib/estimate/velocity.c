@@ -2,15 +2,12 @@
 
 #include <math.h>
 
-#include "ethd/maths.h"
 #include "estimate/velocity_methods.h"
+#include "ethd/maths.h"
 
-_Static_assert((ETHD_VELOCITY_WINDOW_MAX & (ETHD_VELOCITY_WINDOW_MAX - 1)) == 0,
-               "the ring's index is masked");
+_Static_assert((ETHD_VELOCITY_WINDOW_MAX & (ETHD_VELOCITY_WINDOW_MAX - 1)) == 0, "the ring's index is masked");
 
-double ethd__velocity_gain(double cutoff, double dt) {
-  return 1 - ethd_exp(-2 * M_PI * cutoff * dt);
-}
+double ethd__velocity_gain(double cutoff, double dt) { return 1 - ethd_exp(-2 * M_PI * cutoff * dt); }
 
 static void push(ethd_velocity_state *s, double q, double dt) {
   s->head = (s->head + 1) & (ETHD_VELOCITY_WINDOW_MAX - 1);
@@ -34,19 +31,15 @@ static double next(const ethd_velocity *v, ethd_velocity_state *s, double torque
   if (v->method == ETHD_VELOCITY_KALMAN) return ethd__velocity_kalman(v, s, torque);
   if (s->count < 2) return s->speed;
   switch (v->method) {
-  case ETHD_VELOCITY_LOWPASS:
-    return lowpass(v, s);
-  case ETHD_VELOCITY_LSQ:
-    return ethd__velocity_lsq(v, s);
-  case ETHD_VELOCITY_FOAW:
-    return ethd__velocity_foaw(v, s);
-  default:
-    return difference(s);
+  case ETHD_VELOCITY_LOWPASS: return lowpass(v, s);
+  case ETHD_VELOCITY_LSQ: return ethd__velocity_lsq(v, s);
+  case ETHD_VELOCITY_FOAW: return ethd__velocity_foaw(v, s);
+  default: return difference(s);
   }
 }
 
-double ethd_velocity_step(const ethd_velocity *velocity, ethd_velocity_state *state, double q,
-                          double torque, double dt) {
+double ethd_velocity_step(const ethd_velocity *velocity, ethd_velocity_state *state, double q, double torque,
+                          double dt) {
   push(state, q, dt);
   state->speed = next(velocity, state, torque);
   return state->speed;

@@ -14,18 +14,15 @@ static const ethd_param lsq[] = {
 };
 
 static const ethd_param foaw[] = {
-    [FOAW_WINDOW] = {"window", "1", 2, ETHD_VELOCITY_WINDOW_MAX, 16,
-                     "samples the line is fitted through at most"},
-    [FOAW_NOISE] =
-        {"noise", "rad", 1e-9, 1, 160e-6,
-         "how far a sample may lie from the line: one encoder count, quantisation makes no more"},
+    [FOAW_WINDOW] = {"window", "1", 2, ETHD_VELOCITY_WINDOW_MAX, 16, "samples the line is fitted through at most"},
+    [FOAW_NOISE] = {"noise", "rad", 1e-9, 1, 160e-6,
+                    "how far a sample may lie from the line: one encoder count, quantisation makes no more"},
 };
 
 static const ethd_param kalman[] = {
     [KALMAN_NOISE] = {"noise", "rad", 1e-9, 1, 46e-6, "sd of a position: an encoder count / sqrt(12)"},
-    [KALMAN_ACCELERATION] =
-        {"acceleration", "rad/s^2", 1e-3, 1e6, 50,
-         "rms of what the torque doesn't explain: friction, contacts, wrong inertia"},
+    [KALMAN_ACCELERATION] = {"acceleration", "rad/s^2", 1e-3, 1e6, 50,
+                             "rms of what the torque doesn't explain: friction, contacts, wrong inertia"},
     [KALMAN_INERTIA] = {"inertia", "kg m^2", 1e-6, 1e3, 0.1173 * 0.0625, "of each joint, mass L^2"},
 };
 
@@ -36,8 +33,7 @@ const ethd_method ethd_velocity_methods[ETHD_VELOCITY_COUNT] = {
     [ETHD_VELOCITY_DIFFERENCE] = {"difference", "backward difference of the positions", NULL, 0},
     [ETHD_VELOCITY_LSQ] = {"lsq", "slope of a least-squares line through the last samples", ROWS(lsq)},
     [ETHD_VELOCITY_FOAW] = {"foaw", "first-order adaptive windowing", ROWS(foaw)},
-    [ETHD_VELOCITY_KALMAN] = {"kalman", "Kalman filter with the commanded torque as known input",
-                              ROWS(kalman)},
+    [ETHD_VELOCITY_KALMAN] = {"kalman", "Kalman filter with the commanded torque as known input", ROWS(kalman)},
 };
 
 #define PERIOD_MIN 1e-6 /* s */
@@ -49,23 +45,20 @@ static uint32_t window(ethd_velocity_method method, const double *p) {
   return 0;
 }
 
-static ethd_status check(ethd_velocity_method method, const double *p, double period,
-                         ethd_error *error) {
+static ethd_status check(ethd_velocity_method method, const double *p, double period, ethd_error *error) {
   if ((uint32_t)method >= ETHD_VELOCITY_COUNT)
-    return ethd__refuse(error, ETHD_E_UNKNOWN, "method", (double)method, 0,
-                             ETHD_VELOCITY_COUNT - 1);
+    return ethd__refuse(error, ETHD_E_UNKNOWN, "method", (double)method, 0, ETHD_VELOCITY_COUNT - 1);
   const ethd_method *m = &ethd_velocity_methods[method];
   ethd_status status = ethd__check_number(error, "period", period, PERIOD_MIN, PERIOD_MAX);
   if (!status) status = ethd_params_check(m->params, m->param_count, p, error);
   if (status) return status;
   if (method == ETHD_VELOCITY_LSQ || method == ETHD_VELOCITY_FOAW)
-    if (p[0] != floor(p[0]))
-      return ethd__refuse(error, ETHD_E_RANGE, "window", p[0], 2, ETHD_VELOCITY_WINDOW_MAX);
+    if (p[0] != floor(p[0])) return ethd__refuse(error, ETHD_E_RANGE, "window", p[0], 2, ETHD_VELOCITY_WINDOW_MAX);
   return ETHD_OK;
 }
 
-ethd_status ethd_velocity_prepare(ethd_velocity_method method, const double *p, double period,
-                                  ethd_velocity *out, ethd_error *error) {
+ethd_status ethd_velocity_prepare(ethd_velocity_method method, const double *p, double period, ethd_velocity *out,
+                                  ethd_error *error) {
   ethd_status status = check(method, p, period, error);
   if (status) return status;
   memset(out, 0, sizeof *out);
@@ -88,14 +81,10 @@ static double kalman_lag(const ethd_velocity *v) {
 
 double ethd_velocity_lag(const ethd_velocity *v) {
   switch (v->method) {
-  case ETHD_VELOCITY_LOWPASS:
-    return (0.5 + (1 - v->gain) / v->gain) * v->period;
+  case ETHD_VELOCITY_LOWPASS: return (0.5 + (1 - v->gain) / v->gain) * v->period;
   case ETHD_VELOCITY_LSQ:
-  case ETHD_VELOCITY_FOAW:
-    return (v->window - 1) / 2.0 * v->period;
-  case ETHD_VELOCITY_KALMAN:
-    return kalman_lag(v);
-  default:
-    return 0.5 * v->period;
+  case ETHD_VELOCITY_FOAW: return (v->window - 1) / 2.0 * v->period;
+  case ETHD_VELOCITY_KALMAN: return kalman_lag(v);
+  default: return 0.5 * v->period;
   }
 }

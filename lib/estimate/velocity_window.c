@@ -18,9 +18,7 @@ static void line_add(line *l, double t, double y) {
 }
 
 /* Ages run backwards: the slope's sign turns. */
-static double line_slope(const line *l) {
-  return (l->t * l->y - l->n * l->ty) / (l->n * l->tt - l->t * l->t);
-}
+static double line_slope(const line *l) { return (l->t * l->y - l->n * l->ty) / (l->n * l->tt - l->t * l->t); }
 
 static uint32_t samples(const ethd_velocity *v, const ethd_velocity_state *s) {
   return s->count < v->window ? s->count : v->window;

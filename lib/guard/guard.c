@@ -54,15 +54,16 @@ static int32_t limit(double most, int32_t bit, double *torque) ETHD_RT { return 
 /* The limits are kept within the rate's window around the last torque. Where that window lies outside of them,
    because a limit has just become narrower, the limit is what counts: it has the last word. */
 static int32_t bound(const ethd_limits *limits, const ethd_guard_state *s, int i, double rise, double *torque) ETHD_RT {
-  const double heat = limits->nominal_torque < (double)INFINITY ? ethd__guard_cool(limits, s->heat[i]) : (double)INFINITY;
+  const double heat =
+      limits->nominal_torque < (double)INFINITY ? ethd__guard_cool(limits, s->heat[i]) : (double)INFINITY;
   int32_t bits = limit(heat, ETHD_GUARD_HEAT, torque) | limit(limits->torque, ETHD_GUARD_TORQUE, torque);
   if (!clamp(s->last[i], rise, torque)) return bits;
   return bits | ETHD_GUARD_RATE | limit(heat, ETHD_GUARD_HEAT, torque) |
          limit(limits->torque, ETHD_GUARD_TORQUE, torque);
 }
 
-int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *s, const ethd_pose *pose,
-                        ethd_vec v, double dt, double torque[2]) {
+int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *s, const ethd_pose *pose, ethd_vec v, double dt,
+                        double torque[2]) {
   int32_t bits = breach(limits, pose->x, v);
   if (limits->latch) s->stopping |= bits;
   int stopping = bits || s->stopping, rated = !stopping && limits->torque_rate < (double)INFINITY;

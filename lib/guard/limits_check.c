@@ -5,7 +5,7 @@
 #include "ethd/guard.h"
 
 #define INF ((double)INFINITY)
-#define AT(field) (uint32_t) offsetof(ethd_limits, field)
+#define AT(field) (uint32_t)offsetof(ethd_limits, field)
 
 const ethd_limit ethd_limit_rows[ETHD_LIMITS] = {
     {"torque", "Nm", AT(torque), 1, ETHD_LIMIT_MOST, 0, INF, "of each joint"},

@@ -16,7 +16,6 @@ static inline double ethd__beta(double beta_min, double d_beta, double d) ETHD_R
 }
 
 /* The row that smooth and offset share. */
-#define ETHD__BETA_MIN_PARAM \
-  {"beta_min", "1", 0, 1, 0.1, "share of tracking that is left at the wall (beta_min)"}
+#define ETHD__BETA_MIN_PARAM {"beta_min", "1", 0, 1, 0.1, "share of tracking that is left at the wall (beta_min)"}
 
 #endif

@@ -10,8 +10,7 @@ static const ethd_param params[COUNT] = {
     {"c_e", "s/m", 0, 1e3, 1, "damping, as a share of the stiffness force per speed"},
 };
 
-static ethd_status step(const double *p, void *block, double gap, double speed, int entering,
-                        double *force) ETHD_RT {
+static ethd_status step(const double *p, void *block, double gap, double speed, int entering, double *force) ETHD_RT {
   (void)block, (void)entering;
   *force = gap < 0 ? p[K_E] * gap * (1 + p[C_E] * speed) : 0;
   return ETHD_OK;

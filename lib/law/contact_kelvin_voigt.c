@@ -10,8 +10,7 @@ static const ethd_param params[COUNT] = {
     {"b_e", "Ns/m", 0, 1e4, 45, "damping of the wall while entering (B_e)"},
 };
 
-static ethd_status step(const double *p, void *block, double gap, double speed, int entering,
-                        double *force) ETHD_RT {
+static ethd_status step(const double *p, void *block, double gap, double speed, int entering, double *force) ETHD_RT {
   (void)block;
   if (!(gap < 0))
     *force = 0;
@@ -23,7 +22,7 @@ static ethd_status step(const double *p, void *block, double gap, double speed, 
 }
 
 const ethd_contact_law ethd_contact_kelvin_voigt = {
-    .law = {sizeof(ethd_contact_law), ETHD_ABI, ETHD_CONTACT, 0, "kelvin-voigt",
-            "spring, and a damper on the way in", params, COUNT, NULL, NULL},
+    .law = {sizeof(ethd_contact_law), ETHD_ABI, ETHD_CONTACT, 0, "kelvin-voigt", "spring, and a damper on the way in",
+            params, COUNT, NULL, NULL},
     .step = step,
 };

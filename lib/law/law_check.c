@@ -4,8 +4,7 @@
 #include "ethd/law.h"
 
 /* The smallest size of a law's struct in ABI 0, by kind. */
-static const size_t smallest[] = {ETHD_TRACKING_LAW_MIN, ETHD_CONTACT_LAW_MIN,
-                                  ETHD_TRANSITION_LAW_MIN};
+static const size_t smallest[] = {ETHD_TRACKING_LAW_MIN, ETHD_CONTACT_LAW_MIN, ETHD_TRANSITION_LAW_MIN};
 
 static int id_is_good(const char *id) {
   size_t n = id ? strlen(id) : 0;
@@ -14,9 +13,9 @@ static int id_is_good(const char *id) {
 
 static int has_step(const ethd_law *law) {
   switch ((ethd_kind)law->kind) {
-    case ETHD_TRACKING: return ((const ethd_tracking_law *)(const void *)law)->step ? 1 : 0;
-    case ETHD_CONTACT: return ((const ethd_contact_law *)(const void *)law)->step ? 1 : 0;
-    case ETHD_TRANSITION: return ((const ethd_transition_law *)(const void *)law)->step ? 1 : 0;
+  case ETHD_TRACKING: return ((const ethd_tracking_law *)(const void *)law)->step ? 1 : 0;
+  case ETHD_CONTACT: return ((const ethd_contact_law *)(const void *)law)->step ? 1 : 0;
+  case ETHD_TRANSITION: return ((const ethd_transition_law *)(const void *)law)->step ? 1 : 0;
   }
   return 0;
 }
@@ -24,13 +23,10 @@ static int has_step(const ethd_law *law) {
 /* ABI first: nothing behind it can be trusted when it differs. */
 ethd_status ethd_law_check(const ethd_law *law, ethd_error *error) {
   if (!law) return ethd__error(error, ETHD_E_ARGUMENT, "law");
-  if (law->abi != ETHD_ABI)
-    return ethd__refuse(error, ETHD_E_ABI, "abi", law->abi, ETHD_ABI, ETHD_ABI);
-  if (law->kind > ETHD_TRANSITION)
-    return ethd__refuse(error, ETHD_E_ARGUMENT, "kind", law->kind, 0, ETHD_TRANSITION);
+  if (law->abi != ETHD_ABI) return ethd__refuse(error, ETHD_E_ABI, "abi", law->abi, ETHD_ABI, ETHD_ABI);
+  if (law->kind > ETHD_TRANSITION) return ethd__refuse(error, ETHD_E_ARGUMENT, "kind", law->kind, 0, ETHD_TRANSITION);
   if (law->size < smallest[law->kind])
-    return ethd__refuse(error, ETHD_E_SIZE, "size", law->size, (double)smallest[law->kind],
-                             (double)INFINITY);
+    return ethd__refuse(error, ETHD_E_SIZE, "size", law->size, (double)smallest[law->kind], (double)INFINITY);
   if (!id_is_good(law->id)) return ethd__error(error, ETHD_E_ARGUMENT, "id");
   if (!law->brief || !law->brief[0]) return ethd__error(error, ETHD_E_ARGUMENT, law->id);
   if (law->state_size > ETHD_STATE_MAX)

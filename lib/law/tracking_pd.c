@@ -25,8 +25,7 @@ static double difference(state *s, const ethd_tracking_in *in, int i) ETHD_RT {
   return d;
 }
 
-static ethd_status step(const double *p, void *block, const ethd_tracking_in *in,
-                        double tau[2]) ETHD_RT {
+static ethd_status step(const double *p, void *block, const ethd_tracking_in *in, double tau[2]) ETHD_RT {
   state *s = block;
   for (int i = 0; i < 2; i++) {
     double d = p[DERIVATIVE] == DIFFERENCE ? difference(s, in, i) : in->eps_q_dot[i];

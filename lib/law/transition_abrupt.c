@@ -2,8 +2,7 @@
 
 /* Either tracking or the wall: the baseline that the paper names. */
 
-static ethd_status step(const double *p, void *block, const ethd_contact *c,
-                        ethd_ruling *out) ETHD_RT {
+static ethd_status step(const double *p, void *block, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
   (void)p, (void)block;
   int inside = c->d_re < 0;
   out->beta = inside ? 0 : 1;
@@ -13,7 +12,7 @@ static ethd_status step(const double *p, void *block, const ethd_contact *c,
 }
 
 const ethd_transition_law ethd_transition_abrupt = {
-    .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 0, "abrupt",
-            "tracking outside, the wall inside", NULL, 0, NULL, NULL},
+    .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 0, "abrupt", "tracking outside, the wall inside",
+            NULL, 0, NULL, NULL},
     .step = step,
 };

@@ -21,8 +21,8 @@ static const ethd_param params[COUNT] = {
 };
 
 typedef struct state {
-  double phase; /* ETHD_TRANSPARENT, ETHD_BRAKING, ETHD_VO */
-  double eps;   /* wall offset, 0 outside of vo */
+  double phase;        /* ETHD_TRANSPARENT, ETHD_BRAKING, ETHD_VO */
+  double eps;          /* wall offset, 0 outside of vo */
   double braked, rest; /* s since braking began, and what its sum still owes (Kahan 1965) */
 } state;
 
@@ -63,8 +63,7 @@ static void advance(const double *p, state *s, const ethd_contact *c) ETHD_RT {
     enter(s, ETHD_BRAKING, 0);
 }
 
-static ethd_status step(const double *p, void *block, const ethd_contact *c,
-                        ethd_ruling *out) ETHD_RT {
+static ethd_status step(const double *p, void *block, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
   state *s = block;
   advance(p, s, c);
   out->state = (int32_t)s->phase;

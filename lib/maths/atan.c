@@ -19,15 +19,15 @@ static const pair half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 
 /* atan(j/8) */
 static const pair atan_eighths[9] = {
-  {0, 0},
-  {0x1.fd5ba9aac2f6ep-4, -0x1.cd37686760c17p-59},
-  {0x1.f5b75f92c80ddp-3, 0x1.8ab6e3cf7afbdp-57},
-  {0x1.6f61941e4def1p-2, -0x1.c63aae6f6e918p-56},
-  {0x1.dac670561bb4fp-2, 0x1.a2b7f222f65e2p-56},
-  {0x1.1e00babdefeb4p-1, -0x1.928df287a668fp-58},
-  {0x1.4978fa3269ee1p-1, 0x1.2419a87f2a458p-56},
-  {0x1.700a7c5784634p-1, -0x1.8c34d25aadef6p-56},
-  {0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55},
+    {0, 0},
+    {0x1.fd5ba9aac2f6ep-4, -0x1.cd37686760c17p-59},
+    {0x1.f5b75f92c80ddp-3, 0x1.8ab6e3cf7afbdp-57},
+    {0x1.6f61941e4def1p-2, -0x1.c63aae6f6e918p-56},
+    {0x1.dac670561bb4fp-2, 0x1.a2b7f222f65e2p-56},
+    {0x1.1e00babdefeb4p-1, -0x1.928df287a668fp-58},
+    {0x1.4978fa3269ee1p-1, 0x1.2419a87f2a458p-56},
+    {0x1.700a7c5784634p-1, -0x1.8c34d25aadef6p-56},
+    {0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55},
 };
 
 /* t = hi + lo with hi of 16 bits. */
@@ -45,9 +45,8 @@ static pair first_octant(double low, double high) {
   int j = (int)(8 * (low / high) + 0.5);
   pair t = quotient(low, high, 0.125 * j);
   double x = t.hi + t.lo, z = x * x, w = z * z;
-  double p = -0x1.5555555555536p-2 +
-             (z * (0x1.9999999962d43p-3 + z * -0x1.249248289836ap-3) +
-              z * w * (0x1.c7187d83e3f22p-4 + z * -0x1.70c11e1b6c468p-4));
+  double p = -0x1.5555555555536p-2 + (z * (0x1.9999999962d43p-3 + z * -0x1.249248289836ap-3) +
+                                      z * w * (0x1.c7187d83e3f22p-4 + z * -0x1.70c11e1b6c468p-4));
   pair c = atan_eighths[j], a = sum_ordered(c.hi, t.hi);
   return (pair){a.hi, a.lo + (t.lo + (c.lo + x * z * p))};
 }

@@ -8,8 +8,7 @@
 #include <string.h>
 
 /* 16: as 0, on CPUs with half-precision arithmetic. */
-_Static_assert(FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 16,
-               "excess precision would change the bits");
+_Static_assert(FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 16, "excess precision would change the bits");
 
 /* hi + lo, unevaluated; |lo| <= ulp(hi)/2 unless said otherwise. */
 typedef struct pair {
@@ -32,9 +31,7 @@ static inline double from_bits(uint64_t u) {
 static inline double power_of_two(int64_t k) { return from_bits((uint64_t)(k + 1023) << 52); }
 
 /* The leading 53 - n bits of x. */
-static inline double head(double x, unsigned n) {
-  return from_bits(to_bits(x) & ~(((uint64_t)1 << n) - 1));
-}
+static inline double head(double x, unsigned n) { return from_bits(to_bits(x) & ~(((uint64_t)1 << n) - 1)); }
 
 /* Nearest integer, ties to even, |x| < 2^51. */
 static inline double nearest(double x) { return x + 0x1.8p52 - 0x1.8p52; }

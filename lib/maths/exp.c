@@ -17,23 +17,23 @@
 
 /* 2^(j/16); the last row serves log. */
 static const pair root[17] = {
-  {0x1.0000000000000p+0, 0},
-  {0x1.0b5586cf9890fp+0, 0x1.8a62e4adc610bp-54},
-  {0x1.172b83c7d517bp+0, -0x1.19041b9d78a76p-55},
-  {0x1.2387a6e756238p+0, 0x1.9b07eb6c70573p-54},
-  {0x1.306fe0a31b715p+0, 0x1.6f46ad23182e4p-55},
-  {0x1.3dea64c123422p+0, 0x1.ada0911f09ebcp-55},
-  {0x1.4bfdad5362a27p+0, 0x1.d4397afec42e2p-56},
-  {0x1.5ab07dd485429p+0, 0x1.6324c054647adp-54},
-  {0x1.6a09e667f3bcdp+0, -0x1.bdd3413b26456p-54},
-  {0x1.7a11473eb0187p+0, -0x1.41577ee04992fp-55},
-  {0x1.8ace5422aa0dbp+0, 0x1.6e9f156864b27p-54},
-  {0x1.9c49182a3f090p+0, 0x1.c7c46b071f2bep-56},
-  {0x1.ae89f995ad3adp+0, 0x1.7a1cd345dcc81p-54},
-  {0x1.c199bdd85529cp+0, 0x1.11065895048ddp-55},
-  {0x1.d5818dcfba487p+0, 0x1.2ed02d75b3707p-55},
-  {0x1.ea4afa2a490dap+0, -0x1.e9c23179c2893p-54},
-  {0x1.0000000000000p+1, 0},
+    {0x1.0000000000000p+0, 0},
+    {0x1.0b5586cf9890fp+0, 0x1.8a62e4adc610bp-54},
+    {0x1.172b83c7d517bp+0, -0x1.19041b9d78a76p-55},
+    {0x1.2387a6e756238p+0, 0x1.9b07eb6c70573p-54},
+    {0x1.306fe0a31b715p+0, 0x1.6f46ad23182e4p-55},
+    {0x1.3dea64c123422p+0, 0x1.ada0911f09ebcp-55},
+    {0x1.4bfdad5362a27p+0, 0x1.d4397afec42e2p-56},
+    {0x1.5ab07dd485429p+0, 0x1.6324c054647adp-54},
+    {0x1.6a09e667f3bcdp+0, -0x1.bdd3413b26456p-54},
+    {0x1.7a11473eb0187p+0, -0x1.41577ee04992fp-55},
+    {0x1.8ace5422aa0dbp+0, 0x1.6e9f156864b27p-54},
+    {0x1.9c49182a3f090p+0, 0x1.c7c46b071f2bep-56},
+    {0x1.ae89f995ad3adp+0, 0x1.7a1cd345dcc81p-54},
+    {0x1.c199bdd85529cp+0, 0x1.11065895048ddp-55},
+    {0x1.d5818dcfba487p+0, 0x1.2ed02d75b3707p-55},
+    {0x1.ea4afa2a490dap+0, -0x1.e9c23179c2893p-54},
+    {0x1.0000000000000p+1, 0},
 };
 
 /* ln 2 / 16: n times the first part (37 bits) is exact for every n in use. */
@@ -52,9 +52,9 @@ static power raise(double x) {
   double n = nearest(x * 0x1.71547652b82fep+4);
   int64_t i = (int64_t)n;
   double r = (x - n * step.hi) - n * step.lo, z = r * r;
-  double p = (0x1.0000000000001p-1 + r * 0x1.5555555555556p-3) +
-             z * ((0x1.55555554e93b7p-5 + r * 0x1.11111110e1059p-7) +
-                  z * (0x1.6c17ed5c1f49ep-10 + r * 0x1.a01b0c3c80bbcp-13));
+  double p =
+      (0x1.0000000000001p-1 + r * 0x1.5555555555556p-3) +
+      z * ((0x1.55555554e93b7p-5 + r * 0x1.11111110e1059p-7) + z * (0x1.6c17ed5c1f49ep-10 + r * 0x1.a01b0c3c80bbcp-13));
   pair t = root[i & 15];
   return (power){{t.hi, t.lo + t.hi * (r + z * p)}, floor_16(i)};
 }
@@ -71,10 +71,9 @@ double ethd_exp(double x) {
 /* log(1+r) - r */
 static double log_tail(double r) {
   double z = r * r, w = z * z;
-  double p = ((-0x1.fffffffffffffp-2 + r * 0x1.5555555555554p-2) +
-              z * (-0x1.0000000012891p-2 + r * 0x1.99999999bb4d1p-3)) +
-             w * ((-0x1.555550365e420p-3 + r * 0x1.2492447cc50e2p-3) +
-                  z * (-0x1.0039f1bbe4769p-3 + r * 0x1.c785cc773eb3bp-4));
+  double p =
+      ((-0x1.fffffffffffffp-2 + r * 0x1.5555555555554p-2) + z * (-0x1.0000000012891p-2 + r * 0x1.99999999bb4d1p-3)) +
+      w * ((-0x1.555550365e420p-3 + r * 0x1.2492447cc50e2p-3) + z * (-0x1.0039f1bbe4769p-3 + r * 0x1.c785cc773eb3bp-4));
   return z * p;
 }
 
@@ -100,10 +99,11 @@ double ethd_log(double x) {
 
 static double tanh_small(double x) {
   double z = x * x, w = z * z;
-  double p = ((-0x1.5555555555555p-2 + z * 0x1.1111111110e03p-3) +
-              w * (-0x1.ba1ba1b99400ep-5 + z * 0x1.664f4827b41efp-6)) +
-             w * w * ((-0x1.226e1381eda6cp-7 + z * 0x1.d6c51b22c6c4bp-9) +
-                      w * (-0x1.7bc6cb8fc7ba0p-10 + z * 0x1.148da283151a7p-11));
+  double p =
+      ((-0x1.5555555555555p-2 + z * 0x1.1111111110e03p-3) + w * (-0x1.ba1ba1b99400ep-5 + z * 0x1.664f4827b41efp-6)) +
+      w * w *
+          ((-0x1.226e1381eda6cp-7 + z * 0x1.d6c51b22c6c4bp-9) +
+           w * (-0x1.7bc6cb8fc7ba0p-10 + z * 0x1.148da283151a7p-11));
   return x + x * z * p;
 }
 

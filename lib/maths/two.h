@@ -8,17 +8,11 @@
 typedef double two __attribute__((vector_size(16)));
 typedef uint64_t two_bits __attribute__((vector_size(16)));
 
-static inline two two_abs(two x) {
-  return (two)((two_bits)x & INT64_MAX);
-}
+static inline two two_abs(two x) { return (two)((two_bits)x & INT64_MAX); }
 
 /* x where the mask's bits are set, else 0. */
-static inline two two_where(two_bits mask, two x) {
-  return (two)((two_bits)x & mask);
-}
+static inline two two_where(two_bits mask, two x) { return (two)((two_bits)x & mask); }
 
-static inline double two_sum(two x) {
-  return x[0] + x[1];
-}
+static inline double two_sum(two x) { return x[0] + x[1]; }
 
 #endif

@@ -43,9 +43,7 @@ static inline two two_cosine(two x, two rest) {
 }
 
 /* Huge, tiny, or next to a multiple of pi/2: rare. NaN too. */
-static inline int two_is_plain(double x, double r) {
-  return fabs(x) < 0x1p20 && fabs(r) >= 0x1p-36;
-}
+static inline int two_is_plain(double x, double r) { return fabs(x) < 0x1p20 && fabs(r) >= 0x1p-36; }
 
 /* A quadrant exchanges the two and turns signs: by bits, for nobody can foresee which it will be. */
 static inline two_waves two_sincos(two x) {

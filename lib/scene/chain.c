@@ -13,9 +13,7 @@ typedef struct edge {
 
 typedef enum part { AT_START, BETWEEN, AT_END } part;
 
-static inline ethd_vec point(const ethd__chain *chain, size_t k) {
-  return chain->points[k];
-}
+static inline ethd_vec point(const ethd__chain *chain, size_t k) { return chain->points[k]; }
 
 static inline ethd_vec direction(const ethd__chain *chain, size_t k) {
   return ethd_vec_sub(point(chain, k + 1), point(chain, k));
@@ -27,9 +25,7 @@ static inline edge edge_of(const ethd__chain *chain, size_t k, ethd_vec x) {
   return r;
 }
 
-static inline part part_of(const edge *g) {
-  return g->along <= 0 ? AT_START : g->along >= g->ee ? AT_END : BETWEEN;
-}
+static inline part part_of(const edge *g) { return g->along <= 0 ? AT_START : g->along >= g->ee ? AT_END : BETWEEN; }
 
 /* The same, but a foot that rounding can't tell from a vertex is at the vertex, for both of its edges. */
 static part settled_part_of(const edge *g) {

@@ -24,8 +24,8 @@ static const form forms[ETHD_SHAPE_COUNT] = {
     [ETHD_POLYLINE] = {4, 4, {"polyline x", "polyline y"}},
 };
 
-static ethd_status refuse_object(const ethd_object_def *def, ethd_status status, const char *name,
-                                 double found, double min, double max, ethd_error *error) {
+static ethd_status refuse_object(const ethd_object_def *def, ethd_status status, const char *name, double found,
+                                 double min, double max, ethd_error *error) {
   ethd__refuse(error, status, name, found, min, max);
   if (error) error->line = def->line;
   return status;
@@ -56,9 +56,7 @@ ethd_status ethd__check_count(ethd_shape shape, size_t count, ethd_status status
   return ethd__refuse(error, status, name, (double)count, (double)least, open ? INFINITY : (double)least);
 }
 
-static bool is_size(ethd_shape shape, size_t k) {
-  return k >= forms[shape].sizes && !(shape == ETHD_BOX && k == 4);
-}
+static bool is_size(ethd_shape shape, size_t k) { return k >= forms[shape].sizes && !(shape == ETHD_BOX && k == 4); }
 
 static ethd_status check_numbers(const ethd_object_def *def, ethd_error *error) {
   const form *f = &forms[def->shape];
@@ -93,8 +91,8 @@ static ethd_vec point(const double *numbers, size_t k) {
   return p;
 }
 
-static ethd_status refuse_pair(const ethd_object_def *def, const char *what, size_t i, size_t j,
-                               const char *end, ethd_error *error) {
+static ethd_status refuse_pair(const ethd_object_def *def, const char *what, size_t i, size_t j, const char *end,
+                               ethd_error *error) {
   char name[64];
   size_t n = append(name, 0, ethd_shape_name(def->shape));
   n = append(name, n, what);
@@ -113,8 +111,7 @@ static ethd_status check_simple(const ethd_object_def *def, void *room, ethd_err
 
 static ethd_status check_chain(const ethd_object_def *def, void *room, ethd_error *error) {
   size_t n = def->count / 2;
-  if (n > POINTS_MAX)
-    return refuse_object(def, ETHD_E_FULL, "points", (double)n, 0, POINTS_MAX, error);
+  if (n > POINTS_MAX) return refuse_object(def, ETHD_E_FULL, "points", (double)n, 0, POINTS_MAX, error);
   for (size_t k = 0; k < n; k++) {
     size_t next = k + 1 < n ? k + 1 : 0;
     if (!next && def->shape != ETHD_POLYGON) break;
@@ -124,14 +121,12 @@ static ethd_status check_chain(const ethd_object_def *def, void *room, ethd_erro
   return def->shape == ETHD_POLYGON ? check_simple(def, room, error) : ETHD_OK;
 }
 
-static ethd_status check_object(const ethd_scene_def *def, const ethd_object_def *o, void *room,
-                                ethd_error *error) {
+static ethd_status check_object(const ethd_scene_def *def, const ethd_object_def *o, void *room, ethd_error *error) {
   if ((int)o->shape < 0 || o->shape >= ETHD_SHAPE_COUNT)
     return refuse_object(o, ETHD_E_UNKNOWN, "shape", (double)o->shape, 0, ETHD_SHAPE_COUNT - 1, error);
   if (!o->numbers) return refuse_object(o, ETHD_E_ARGUMENT, "numbers", NAN, NAN, NAN, error);
   if (o->material < -1 || o->material >= (int32_t)def->material_count)
-    return refuse_object(o, ETHD_E_RANGE, "material", o->material, -1, (double)def->material_count - 1,
-                         error);
+    return refuse_object(o, ETHD_E_RANGE, "material", o->material, -1, (double)def->material_count - 1, error);
   ethd_status status = ethd__check_count(o->shape, o->count, ETHD_E_ARGUMENT, error);
   if (status) {
     if (error) error->line = o->line;
@@ -158,16 +153,14 @@ static ethd_status check_material(const ethd_scene_def *def, size_t i, ethd_erro
   for (size_t k = 0; k < i; k++)
     if (ethd__same(m->name, def->materials[k].name))
       return refuse_material(m, ETHD_E_DUPLICATE, m->name, NAN, NAN, error);
-  if (m->count > ETHD_PARAMS_MAX)
-    return refuse_material(m, ETHD_E_FULL, m->name, m->count, ETHD_PARAMS_MAX, error);
+  if (m->count > ETHD_PARAMS_MAX) return refuse_material(m, ETHD_E_FULL, m->name, m->count, ETHD_PARAMS_MAX, error);
   for (uint32_t k = 0; k < m->count; k++) {
     const char *name = m->values[k].name;
     if (!is_name(name)) return refuse_material(m, ETHD_E_ARGUMENT, m->name, NAN, NAN, error);
     if (!isfinite(m->values[k].value))
       return refuse_material(m, ETHD_E_NOT_FINITE, name, m->values[k].value, NAN, error);
     for (uint32_t l = 0; l < k; l++)
-      if (ethd__same(name, m->values[l].name))
-        return refuse_material(m, ETHD_E_DUPLICATE, name, NAN, NAN, error);
+      if (ethd__same(name, m->values[l].name)) return refuse_material(m, ETHD_E_DUPLICATE, name, NAN, NAN, error);
   }
   return ETHD_OK;
 }
@@ -185,14 +178,12 @@ ethd_status ethd__check_scene(const ethd_scene_def *def, void *room, ethd_error 
   if ((def->object_count && !def->objects) || (def->material_count && !def->materials))
     return ethd__refuse(error, ETHD_E_ARGUMENT, "scene", NAN, NAN, NAN);
   if (def->material_count > ETHD_MATERIALS_MAX)
-    return refuse_material(&def->materials[ETHD_MATERIALS_MAX], ETHD_E_FULL, "materials",
-                           (double)def->material_count, ETHD_MATERIALS_MAX, error);
+    return refuse_material(&def->materials[ETHD_MATERIALS_MAX], ETHD_E_FULL, "materials", (double)def->material_count,
+                           ETHD_MATERIALS_MAX, error);
   if (def->object_count > INT32_MAX)
     return ethd__refuse(error, ETHD_E_FULL, "objects", (double)def->object_count, 0, INT32_MAX);
   ethd_status status = ETHD_OK;
   for (size_t i = 0; i < def->material_count && !status; i++) status = check_material(def, i, error);
-  for (size_t i = 0; i < def->object_count && !status; i++)
-    status = check_object(def, &def->objects[i], room, error);
+  for (size_t i = 0; i < def->object_count && !status; i++) status = check_object(def, &def->objects[i], room, error);
   return status;
 }
-

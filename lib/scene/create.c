@@ -35,8 +35,7 @@ static ethd_status plan(const ethd_scene_def *def, ethd_scene *s, ethd_error *er
     }
     endless += def->objects[i].shape == ETHD_HALFPLANE;
   }
-  if (numbers > UINT32_MAX)
-    return ethd__refuse(error, ETHD_E_FULL, "numbers", (double)numbers, 0, UINT32_MAX);
+  if (numbers > UINT32_MAX) return ethd__refuse(error, ETHD_E_FULL, "numbers", (double)numbers, 0, UINT32_MAX);
   s->object_count = (uint32_t)def->object_count;
   s->material_count = (uint32_t)def->material_count;
   s->number_count = (uint32_t)numbers;
@@ -76,13 +75,13 @@ static box bounds_of(const ethd_object_def *def) {
   double c, s;
   box b = nowhere;
   switch (def->shape) {
-    case ETHD_HALFPLANE: return nowhere;
-    case ETHD_CIRCLE: return around(p[0], p[1], p[2], p[2]);
-    case ETHD_CAPSULE: return together(around(p[0], p[1], p[4], p[4]), around(p[2], p[3], p[4], p[4]));
-    case ETHD_BOX:
-      ethd_sincos(p[4], &s, &c);
-      return around(p[0], p[1], fabs(c) * p[2] + fabs(s) * p[3], fabs(s) * p[2] + fabs(c) * p[3]);
-    default: break;
+  case ETHD_HALFPLANE: return nowhere;
+  case ETHD_CIRCLE: return around(p[0], p[1], p[2], p[2]);
+  case ETHD_CAPSULE: return together(around(p[0], p[1], p[4], p[4]), around(p[2], p[3], p[4], p[4]));
+  case ETHD_BOX:
+    ethd_sincos(p[4], &s, &c);
+    return around(p[0], p[1], fabs(c) * p[2] + fabs(s) * p[3], fabs(s) * p[2] + fabs(c) * p[3]);
+  default: break;
   }
   for (size_t k = 0; k < def->count; k += 2) b = together(b, around(p[k], p[k + 1], 0, 0));
   return b;
@@ -95,8 +94,8 @@ static void frame(ethd_scene *s, box b) {
   s->scale = 1;
   if (!(b.x_min <= b.x_max)) return;
   s->centre = (ethd_vec){b.x_min + (b.x_max - b.x_min) / 2, b.y_min + (b.y_max - b.y_min) / 2};
-  double half = fmax(fmax(b.x_max - s->centre.x, s->centre.x - b.x_min),
-                     fmax(b.y_max - s->centre.y, s->centre.y - b.y_min));
+  double half =
+      fmax(fmax(b.x_max - s->centre.x, s->centre.x - b.x_min), fmax(b.y_max - s->centre.y, s->centre.y - b.y_min));
   frexp(half, &exponent);
   s->scale = ldexp(1, exponent < -400 ? 400 : -exponent); /* its square is finite */
 }
@@ -163,7 +162,8 @@ static void order(const ethd_scene_def *def, const ethd_scene *s, ethd__item *it
     if (def->objects[i].shape == ETHD_HALFPLANE) {
       items[last++].id = i;
     } else {
-      items[n++] = (ethd__item){{step_of(s, b.x_min, b.x_max, s->centre.x), step_of(s, b.y_min, b.y_max, s->centre.y)}, i};
+      items[n++] =
+          (ethd__item){{step_of(s, b.x_min, b.x_max, s->centre.x), step_of(s, b.y_min, b.y_max, s->centre.y)}, i};
     }
   }
   ethd__order_build(items, s->tree.leaves);
@@ -179,8 +179,12 @@ static void fill(const ethd_scene_def *def, const int32_t *ids, ethd_scene *s, c
     uint32_t edges = edges_of(d);
     double *numbers = (double *)(void *)(base + s->numbers_at) + number;
     keep_numbers(d, numbers);
-    objects[i] = (ethd__object){.id = ids ? ids[items[i].id] : (int32_t)items[i].id, .material = d->material,
-                                .first = number, .edges = edges, .tree = tree, .shape = (int8_t)d->shape};
+    objects[i] = (ethd__object){.id = ids ? ids[items[i].id] : (int32_t)items[i].id,
+                                .material = d->material,
+                                .first = number,
+                                .edges = edges,
+                                .tree = tree,
+                                .shape = (int8_t)d->shape};
     if (d->shape == ETHD_POLYGON) objects[i].turn = (int8_t)turn_of(d->numbers, d->count / 2);
     if (edges) objects[i].closed = is_closed(numbers, edges);
     places[items[i].id] = i;

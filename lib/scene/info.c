@@ -1,10 +1,15 @@
 #include "scene/tree.h"
 
 void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out) {
-  *out = (ethd_scene_info){.objects = scene->object_count, .materials = scene->material_count,
-                           .dropped = scene->dropped, .boxes = ETHD__WIDE * (size_t)scene->node_count,
-                           .bytes = scene->bytes, .x_min = scene->x_min, .x_max = scene->x_max,
-                           .y_min = scene->y_min, .y_max = scene->y_max};
+  *out = (ethd_scene_info){.objects = scene->object_count,
+                           .materials = scene->material_count,
+                           .dropped = scene->dropped,
+                           .boxes = ETHD__WIDE * (size_t)scene->node_count,
+                           .bytes = scene->bytes,
+                           .x_min = scene->x_min,
+                           .x_max = scene->x_max,
+                           .y_min = scene->y_min,
+                           .y_max = scene->y_max};
   for (uint32_t i = 0; i < scene->object_count; i++) {
     const ethd__object *o = ethd__object_at(scene, i);
     out->by_shape[o->shape]++;
@@ -64,11 +69,11 @@ size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, dou
 
 static size_t given_numbers(const ethd__object *o) {
   switch ((ethd_shape)o->shape) {
-    case ETHD_HALFPLANE:
-    case ETHD_CIRCLE: return 3;
-    case ETHD_CAPSULE:
-    case ETHD_BOX: return 5;
-    default: return 2 * (o->edges + (o->shape != ETHD_POLYGON ? (size_t)1 : 0));
+  case ETHD_HALFPLANE:
+  case ETHD_CIRCLE: return 3;
+  case ETHD_CAPSULE:
+  case ETHD_BOX: return 5;
+  default: return 2 * (o->edges + (o->shape != ETHD_POLYGON ? (size_t)1 : 0));
   }
 }
 
@@ -98,11 +103,17 @@ ethd_status ethd_scene_box_at(const ethd_scene *scene, size_t i, ethd_scene_box 
   if (i / ETHD__WIDE >= scene->node_count) return ETHD_EMPTY;
   const ethd__node *n = ETHD__ARRAY(scene, ethd__node, nodes_at) + node;
   const ethd__tree *tree = tree_of(scene, node);
-  double c = (double)n->c[lane], s = (double)n->s[lane], u = (double)n->u[lane], v = (double)n->v[lane], k = 1 / scene->scale;
+  double c = (double)n->c[lane], s = (double)n->s[lane], u = (double)n->u[lane], v = (double)n->v[lane],
+         k = 1 / scene->scale;
   if (!isfinite(u)) return ETHD_EMPTY;
   while (level < tree->levels && node >= tree->first[level + 1]) level++;
   *out = (ethd_scene_box){{scene->centre.x + k * (c * u - s * v), scene->centre.y + k * (s * u + c * v)},
-                          c, s, k * (double)n->w[lane], k * (double)n->h[lane], (int32_t)level, tree != &scene->tree};
+                          c,
+                          s,
+                          k * (double)n->w[lane],
+                          k * (double)n->h[lane],
+                          (int32_t)level,
+                          tree != &scene->tree};
   return ETHD_OK;
 }
 
@@ -112,14 +123,14 @@ const ethd_material *ethd_scene_material(const ethd_scene *scene, size_t i) {
 
 const char *ethd_shape_name(ethd_shape shape) {
   switch (shape) {
-    case ETHD_HALFPLANE: return "halfplane";
-    case ETHD_CIRCLE: return "circle";
-    case ETHD_CAPSULE: return "capsule";
-    case ETHD_BOX: return "box";
-    case ETHD_POLYGON: return "polygon";
-    case ETHD_SEGMENT: return "segment";
-    case ETHD_POLYLINE: return "polyline";
-    case ETHD_SHAPE_COUNT: break;
+  case ETHD_HALFPLANE: return "halfplane";
+  case ETHD_CIRCLE: return "circle";
+  case ETHD_CAPSULE: return "capsule";
+  case ETHD_BOX: return "box";
+  case ETHD_POLYGON: return "polygon";
+  case ETHD_SEGMENT: return "segment";
+  case ETHD_POLYLINE: return "polyline";
+  case ETHD_SHAPE_COUNT: break;
   }
   return "";
 }

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "error.h"
-#include "scene/scene.h"
 #include "scene/check.h"
+#include "scene/scene.h"
 
 #define NUMBER_LENGTH 127 /* bytes of a number's text */
 
@@ -39,9 +39,7 @@ static ethd_status refuse(reader *r, ethd_status status, word w, double found, d
   return status;
 }
 
-static ethd_status refuse_word(reader *r, ethd_status status, word w) {
-  return refuse(r, status, w, NAN, NAN, NAN);
-}
+static ethd_status refuse_word(reader *r, ethd_status status, word w) { return refuse(r, status, w, NAN, NAN, NAN); }
 
 /* ---- lines and words ---- */
 
@@ -160,10 +158,8 @@ static void copy_name(char name[ETHD_NAME_MAX], word w) {
 static ethd_status read_value(reader *r, word w, ethd_material *m) {
   word key, value;
   double number_read;
-  if (!split(w, &key, &value) || !is_name(key) || !number(value, &number_read))
-    return refuse_word(r, ETHD_E_SYNTAX, w);
-  if (m->count == ETHD_PARAMS_MAX)
-    return refuse(r, ETHD_E_FULL, key, ETHD_PARAMS_MAX + 1, 0, ETHD_PARAMS_MAX);
+  if (!split(w, &key, &value) || !is_name(key) || !number(value, &number_read)) return refuse_word(r, ETHD_E_SYNTAX, w);
+  if (m->count == ETHD_PARAMS_MAX) return refuse(r, ETHD_E_FULL, key, ETHD_PARAMS_MAX + 1, 0, ETHD_PARAMS_MAX);
   if (!isfinite(number_read)) return refuse(r, ETHD_E_NOT_FINITE, key, number_read, NAN, NAN);
   copy_name(m->values[m->count].name, key);
   m->values[m->count++].value = number_read;
@@ -196,8 +192,7 @@ static ethd_status read_shape(reader *r, word w, ethd_shape *out) {
 
 static ethd_status read_reference(reader *r, const draft *d, word w, ethd_object_def *o) {
   word key, name, rest;
-  if (!split(w, &key, &name) || !is(key, "material") || !is_name(name))
-    return refuse_word(r, ETHD_E_SYNTAX, w);
+  if (!split(w, &key, &name) || !is(key, "material") || !is_name(name)) return refuse_word(r, ETHD_E_SYNTAX, w);
   if (next_word(r, &rest)) return refuse_word(r, ETHD_E_SYNTAX, rest);
   for (size_t i = 0; i < d->material_count; i++)
     if (is(name, d->materials[i].name)) o->material = (int32_t)i;

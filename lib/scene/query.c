@@ -25,9 +25,7 @@ static void disc(ethd_vec c, double r, ethd_vec any, ethd_vec x, ethd_touch *out
   set(out, distance - r, ethd_vec_sub(c, ethd_vec_scale(r, n)), n);
 }
 
-static void circle(const double *p, ethd_vec x, ethd_touch *out) {
-  disc(vec(p[0], p[1]), p[2], vec(1, 0), x, out);
-}
+static void circle(const double *p, ethd_vec x, ethd_touch *out) { disc(vec(p[0], p[1]), p[2], vec(1, 0), x, out); }
 
 static void capsule(const double *p, ethd_vec x, ethd_touch *out) {
   ethd_vec a = vec(p[0], p[1]), b = vec(p[2], p[3]), e = ethd_vec_sub(b, a), u = ethd_vec_sub(x, a);
@@ -61,8 +59,10 @@ static void box(const double *p, ethd_vec x, ethd_touch *out) {
     d = across ? du : dv;
     nu = across ? -1 : 0;
     nv = across ? 0 : -1;
-    if (across) pu = p[2];
-    else pv = p[3];
+    if (across)
+      pu = p[2];
+    else
+      pv = p[3];
   }
   nu *= su, nv *= sv, pu *= su, pv *= sv;
   ethd_vec point = vec(p[0] + (c * pu - s * pv), p[1] + (s * pu + c * pv));
@@ -78,14 +78,14 @@ void ethd__object_nearest(const ethd_scene *scene, const ethd__object *o, ethd_v
   const double *p = ethd__numbers(scene, o);
   out->feature = out->side = 0;
   switch ((ethd_shape)o->shape) {
-    case ETHD_HALFPLANE: halfplane(p, x, out); break;
-    case ETHD_CIRCLE: circle(p, x, out); break;
-    case ETHD_CAPSULE: capsule(p, x, out); break;
-    case ETHD_BOX: box(p, x, out); break;
-    case ETHD_POLYGON:
-    case ETHD_SEGMENT:
-    case ETHD_POLYLINE:
-    case ETHD_SHAPE_COUNT: chain(scene, o, x, out); break;
+  case ETHD_HALFPLANE: halfplane(p, x, out); break;
+  case ETHD_CIRCLE: circle(p, x, out); break;
+  case ETHD_CAPSULE: capsule(p, x, out); break;
+  case ETHD_BOX: box(p, x, out); break;
+  case ETHD_POLYGON:
+  case ETHD_SEGMENT:
+  case ETHD_POLYLINE:
+  case ETHD_SHAPE_COUNT: chain(scene, o, x, out); break;
   }
   ethd__label(o, out);
 }

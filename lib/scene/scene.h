@@ -43,7 +43,7 @@ struct ethd_scene {
   size_t nodes_at, objects_at, numbers_at, trees_at, places_at, slopes_at, materials_at;
   ethd__tree tree;
   uint32_t object_count, number_count, tree_count, node_count, material_count;
-  uint32_t dropped; /* objects that aren't here, for an arm can't reach them */
+  uint32_t dropped;    /* objects that aren't here, for an arm can't reach them */
   double inner, outer; /* m from the base: between them nothing is missing */
   size_t bytes;
   double x_min, x_max, y_min, y_max; /* of all but half-planes; min > max: nothing */

@@ -82,8 +82,7 @@ typedef struct faces {
 } faces;
 
 /* The nearest face decides, unless one of the other kind is as near up to rounding. */
-static bool is_inside(const ethd__chain *c, const ethd__tree *tree, const ethd__probe *p, ethd_vec x,
-                      const faces *f) {
+static bool is_inside(const ethd__chain *c, const ethd__tree *tree, const ethd__probe *p, ethd_vec x, const faces *f) {
   double outer = sqrt(f->outer), inner = sqrt(f->inner);
   double rounding = 4 * c->slack + 64 * DBL_EPSILON * fmin(outer, inner);
   return fabs(outer - inner) > rounding ? inner < outer : contains(c, tree, p, x);

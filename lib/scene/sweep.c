@@ -2,8 +2,8 @@
    that it crosses are kept in their order along it, in a tree balanced by random priorities (treap). The
    first two edges that meet stand side by side before they do (Shamos and Hoey 1976), so it is enough to
    test new neighbours. Every decision is exact. O(n log n). */
-#include "scene/scene.h"
 #include "scene/check.h"
+#include "scene/scene.h"
 
 #define NONE UINT32_MAX
 

@@ -114,8 +114,7 @@ static void take(const ethd_touch *touch, ethd_vec from, double *least, ethd_tou
   *out = *touch;
 }
 
-static void follow_strip(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_vec from,
-                         ethd_touch *out) {
+static void follow_strip(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_vec from, ethd_touch *out) {
   ethd__probe at_x = ethd__probe_at(scene, x), at_from = ethd__probe_at(scene, from);
   ethd_touch touch;
   ethd__minima minima;
@@ -129,8 +128,7 @@ static void follow_strip(const ethd_scene *scene, const ethd__object *o, ethd_ve
   if (!(least < INFINITY)) ethd__object_nearest(scene, o, x, out);
 }
 
-static void follow_object(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_vec from,
-                          ethd_touch *out) {
+static void follow_object(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_vec from, ethd_touch *out) {
   ethd__chain chain = ethd__chain_of(scene, o);
   ethd_touch touch;
   double least = INFINITY;

@@ -147,8 +147,8 @@ typedef struct ethd__walk {
   const float *slopes;
   float bound;
   int count;
-  unsigned lanes; /* leaves still to come of the node at hand */
-  uint32_t leaf;  /* its first */
+  unsigned lanes;               /* leaves still to come of the node at hand */
+  uint32_t leaf;                /* its first */
   ethd__eight at[ETHD__LEVELS]; /* [1]: the node at hand; after walk_down, those on the way */
   ethd__place stack[(ETHD__WIDE - 1) * ETHD__LEVELS + 1];
 } ethd__walk;
@@ -170,8 +170,7 @@ static inline void ethd__push(ethd__walk *w, const float squared[ETHD__WIDE], un
   }
 }
 
-static inline void ethd__walk_start(ethd__walk *w, const ethd__tree *tree, const ethd__probe *p,
-                                    const float *slopes) {
+static inline void ethd__walk_start(ethd__walk *w, const ethd__tree *tree, const ethd__probe *p, const float *slopes) {
   w->tree = tree;
   w->probe = p;
   w->slopes = slopes;

@@ -5,15 +5,14 @@ typedef struct search {
   const ethd_scene *scene;
   ethd_vec x;
   ethd__probe probe;
-  double squared; /* of the distance of the nearest so far; 0 inside of it */
-  double distance; /* INFINITY while the nearest is thin */
+  double squared;       /* of the distance of the nearest so far; 0 inside of it */
+  double distance;      /* INFINITY while the nearest is thin */
   uint32_t place, edge; /* the nearest so far; ETHD__NONE: none */
-  ethd_touch touch; /* its, unless it is thin */
+  ethd_touch touch;     /* its, unless it is thin */
 } search;
 
 static bool goes_first(const search *q, uint32_t place) {
-  return q->place == ETHD__NONE ||
-         ethd__object_at(q->scene, place)->id < ethd__object_at(q->scene, q->place)->id;
+  return q->place == ETHD__NONE || ethd__object_at(q->scene, place)->id < ethd__object_at(q->scene, q->place)->id;
 }
 
 /* Thin things wait with their touch until it is clear which is the nearest. */

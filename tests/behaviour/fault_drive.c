@@ -58,7 +58,8 @@ void fault_drive_registers(fault_rig *r) {
   _Atomic uint16_t *w = r->server.words;
   for (int j = 0; j < 2; j++) {
     put_words(w + MOCK_POSITION1 + 2 * j, (uint32_t)count_of(r->now.q[j]));
-    w[MOCK_MEASURED1 + j] = (uint16_t)(int16_t)rint(r->torque[j] / (FAULT_RATIO * FAULT_TORQUE_UNIT) + r->more / FAULT_TORQUE_UNIT);
+    w[MOCK_MEASURED1 + j] =
+        (uint16_t)(int16_t)rint(r->torque[j] / (FAULT_RATIO * FAULT_TORQUE_UNIT) + r->more / FAULT_TORQUE_UNIT);
   }
   r->server.frozen = r->more != 0;
   w[MOCK_STATUS] |= r->status;
@@ -95,8 +96,10 @@ void fault_drive_map(const char *path) {
   FILE *plain = fopen("apps/config/plant.map", "r"), *to = fopen(path, "w");
   if (!plain || !to) fault_rig_fail("%s", path);
   while (fgets(line, sizeof line, plain)) {
-    if (strncmp(line, "response", 8)) fputs(line, to);
-    else fprintf(to, "response = %g\n", fault_rig_response);
+    if (strncmp(line, "response", 8))
+      fputs(line, to);
+    else
+      fprintf(to, "response = %g\n", fault_rig_response);
   }
   fclose(plain);
   fclose(to);

@@ -13,13 +13,16 @@ static void expect_refusal(const char *text, int line, char *says, size_t room) 
   char message[ETHD_MESSAGE_MAX] = "", place[32];
   ethd_status status = ethd_config_parse(text, strlen(text), "bad.ini", "apps/config", &config, message);
   snprintf(place, sizeof place, "bad.ini:%d:", line);
-  if (status >= 0) snprintf(says, room, "taken: %.100s", text);
-  else if (!strstr(message, place)) snprintf(says, room, "said: %.140s", message);
+  if (status >= 0)
+    snprintf(says, room, "taken: %.100s", text);
+  else if (!strstr(message, place))
+    snprintf(says, room, "said: %.140s", message);
   if (config) ethd_config_free(config);
 }
 
 static void bad_plugin(int i, char *says, size_t room) {
-  static const char *const names[] = {"wrong_abi", "bad_table", "short_size", "short_entry", "no_symbol", "no_law", "no_step"};
+  static const char *const names[] = {"wrong_abi", "bad_table", "short_size", "short_entry",
+                                      "no_symbol", "no_law",    "no_step"};
   const char *build = getenv("BUILD");
   char text[1024], lines[32] = "";
   for (int k = 0; k < i; k++) strcat(lines, "\n");
@@ -33,7 +36,8 @@ static void bad_configuration(int i, char *says, size_t room) {
                                     "k_e",         "k_e =",     "law = no", "b_e = 1e999"};
   char text[256];
   int before = (int)(draw_bits((uint64_t)i) % 9);
-  snprintf(text, sizeof text, "%.*s[contact]\n%s\n", before, "\n\n\n\n\n\n\n\n\n", bad[(size_t)i % (sizeof bad / sizeof *bad)]);
+  snprintf(text, sizeof text, "%.*s[contact]\n%s\n", before, "\n\n\n\n\n\n\n\n\n",
+           bad[(size_t)i % (sizeof bad / sizeof *bad)]);
   expect_refusal(text, before + 2, says, room);
 }
 

@@ -75,9 +75,18 @@ static ethd_status arm_stop(void *d) { return (void)d, ETHD_OK; }
 static void arm_close(void *d) { (void)d; }
 static ethd_limits arm_limits(const void *d) { return (void)d, ethd_limits_device(); }
 
-static const ethd_driver driver = {.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "arm", .brief = "simulated arm",
-                                   .open = arm_open, .start = arm_start, .read = arm_read, .write = arm_write,
-                                   .safe = arm_safe, .stop = arm_stop, .close = arm_close, .limits = arm_limits};
+static const ethd_driver driver = {.size = sizeof driver,
+                                   .abi = ETHD_DRIVER_ABI,
+                                   .id = "arm",
+                                   .brief = "simulated arm",
+                                   .open = arm_open,
+                                   .start = arm_start,
+                                   .read = arm_read,
+                                   .write = arm_write,
+                                   .safe = arm_safe,
+                                   .stop = arm_stop,
+                                   .close = arm_close,
+                                   .limits = arm_limits};
 static const ethd_driver *const from[] = {&driver, &ethd_driver_counter, &ethd_driver_servo, &ethd_driver_ring, NULL};
 
 /* ---- opening ---- */
@@ -109,8 +118,11 @@ static void sim_of(fault_rig *r, uint64_t number) {
   char message[ETHD_MESSAGE_MAX];
   ethd_error error;
   ethd_sim_tap tap;
-  ethd_sim_def def = {.arm = r->setup.arm, .ring_radius = r->setup.ring_radius, .period = r->setup.period,
-                      .step = 1e-3, .tolerance = ETHD_SIM_FAST};
+  ethd_sim_def def = {.arm = r->setup.arm,
+                      .ring_radius = r->setup.ring_radius,
+                      .period = r->setup.period,
+                      .step = 1e-3,
+                      .tolerance = ETHD_SIM_FAST};
   if (ethd_plant_load("apps/config/n.plant", &def.plant, message)) fault_rig_fail("%s", message);
   def.plant.rays = r->kind == FAULT_RING;
   def.plant.count = TURN / FAULT_COUNTS;
@@ -123,8 +135,10 @@ static void sim_of(fault_rig *r, uint64_t number) {
 
 static void open_device(fault_rig *r) {
   static const char *const ids[] = {"arm", "arm, counter", "servo", "arm, ring"};
-  const ethd_setting counter[] = {{"counter.counts_per_turn", "100", 1}, {"counter.ratio", "392", 2},
-                                  {"counter.freeze_torque", "0.4", 3}, {"counter.reverse_torque", "0.15", 4},
+  const ethd_setting counter[] = {{"counter.counts_per_turn", "100", 1},
+                                  {"counter.ratio", "392", 2},
+                                  {"counter.freeze_torque", "0.4", 3},
+                                  {"counter.reverse_torque", "0.15", 4},
                                   {"counter.inertia", "0.0073", 5}};
   char map[64];
   snprintf(map, sizeof map, "/tmp/ethd-rig-%d.map", (int)getpid());
@@ -153,7 +167,8 @@ static void open_loop(fault_rig *r) {
   def.soft_start = 0;
   def.rows = 16;
   def.heartbeat = 0.1;
-  if (ethd_loop_create(&def, &r->loop, &error) || ethd_loop_start(r->loop, &error)) fault_rig_fail("loop: %s", error.name);
+  if (ethd_loop_create(&def, &r->loop, &error) || ethd_loop_start(r->loop, &error))
+    fault_rig_fail("loop: %s", error.name);
 }
 
 void fault_rig_open(fault_rig *r, fault_device kind, uint64_t tap, void (*change)(ethd_setup *setup)) {

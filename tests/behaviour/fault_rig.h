@@ -38,13 +38,13 @@ struct fault_rig {
   void *device;
   ethd_loop *loop;
   int64_t clock;
-  ethd_sense now;       /* what the sensors have at this tick */
-  mock server;          /* BUS */
-  uint64_t asked;       /* requests that it had; and the ticks since the last */
+  ethd_sense now; /* what the sensors have at this tick */
+  mock server;    /* BUS */
+  uint64_t asked; /* requests that it had; and the ticks since the last */
   int64_t silent;
   uint64_t readings;
   double speeds[FAULT_LAG_MAX][2]; /* of the joints, rad/s: the last ones */
-  int64_t moved;        /* how many there were */
+  int64_t moved;                   /* how many there were */
   /* of the tick that is over */
   int64_t tick;
   ethd_loop_row row;
@@ -52,23 +52,23 @@ struct fault_rig {
   ethd_command written; /* PLAIN, COUNTER: by the loop */
   double torque[2];     /* Nm at the joints, as the drive was told */
   /* what may break */
-  double shove[2];      /* Nm at the joints, by a hand */
-  int64_t slip[2];      /* counts that an encoder has lost */
+  double shove[2];             /* Nm at the joints, by a hand */
+  int64_t slip[2];             /* counts that an encoder has lost */
   int32_t stuck[2], turned[2]; /* 1: an encoder stands, or counts the wrong way */
-  int64_t from[2];      /* count at which that began */
-  double more;          /* Nm at the motors, that the drive gives too much */
-  mock_kind act;        /* of the drive's next answers */
-  int32_t code, acts, every; /* exception's code; how many answers; each how manieth */
-  uint16_t status, volts;    /* bits that the drive's status has too; its supply, 0.1 V */
-  int32_t deaf;         /* 1: the drive hears nothing */
-  uint16_t old_point;   /* not 0: the drive's first set-point is that, whatever is written */
-  int32_t lazy;         /* 1: nobody takes the loop's rows */
-  uint64_t lost;        /* rows, as those behind them say */
-  int64_t jump_ns;      /* by which the clock goes on in the loop's read */
-  int64_t shift_ns;     /* of the samples' instants */
-  int64_t suspended;    /* ns for which the machine was, its clock with it */
-  int64_t lag;          /* not 0: the drive gives speeds, so many ticks old, at least 1 */
-  double law_adds;      /* Nm, to the tracking torque of joint 1 */
+  int64_t from[2];             /* count at which that began */
+  double more;                 /* Nm at the motors, that the drive gives too much */
+  mock_kind act;               /* of the drive's next answers */
+  int32_t code, acts, every;   /* exception's code; how many answers; each how manieth */
+  uint16_t status, volts;      /* bits that the drive's status has too; its supply, 0.1 V */
+  int32_t deaf;                /* 1: the drive hears nothing */
+  uint16_t old_point;          /* not 0: the drive's first set-point is that, whatever is written */
+  int32_t lazy;                /* 1: nobody takes the loop's rows */
+  uint64_t lost;               /* rows, as those behind them say */
+  int64_t jump_ns;             /* by which the clock goes on in the loop's read */
+  int64_t shift_ns;            /* of the samples' instants */
+  int64_t suspended;           /* ns for which the machine was, its clock with it */
+  int64_t lag;                 /* not 0: the drive gives speeds, so many ticks old, at least 1 */
+  double law_adds;             /* Nm, to the tracking torque of joint 1 */
   ethd_status law_says;
   int64_t law_takes;    /* ns of the clock */
   int32_t gone;         /* 1: the application's heart doesn't beat */
@@ -77,10 +77,10 @@ struct fault_rig {
   /* seen since fault_rig_mark */
   int64_t seen[ETHD_FAULT_COUNT], grave[ETHD_FAULT_COUNT]; /* tick, -1: not yet */
   uint64_t base[ETHD_FAULT_COUNT];
-  int64_t shows;        /* tick in which what broke begins to show; -1: at once */
-  int64_t marks;        /* index marks of joint 1 that passed */
-  double motor;         /* Nm at a joint: what a motor can give */
-  double most;          /* Nm: the largest torque that the drive was told */
+  int64_t shows; /* tick in which what broke begins to show; -1: at once */
+  int64_t marks; /* index marks of joint 1 that passed */
+  double motor;  /* Nm at a joint: what a motor can give */
+  double most;   /* Nm: the largest torque that the drive was told */
 };
 
 /* s: how long the servo waits for an answer, in true time: an overloaded machine gives none in 3 ms. */
@@ -90,7 +90,7 @@ extern double fault_rig_response;
 void fault_rig_open(fault_rig *r, fault_device kind, uint64_t tap, void (*change)(ethd_setup *setup));
 void fault_rig_tick(fault_rig *r);
 void fault_rig_suspend(fault_rig *r, int64_t periods); /* the arm moves on as it was driven */
-void fault_rig_mark(fault_rig *r); /* from here on something may be seen */
+void fault_rig_mark(fault_rig *r);                     /* from here on something may be seen */
 void fault_rig_close(fault_rig *r);
 
 /* Ends the test with a sentence. */

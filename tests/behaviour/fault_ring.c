@@ -6,9 +6,9 @@
 #include <string.h>
 #include <time.h>
 
+#include "proximity_ring/decoder.h"
 #include "unit/pty.h"
 #include "unit/ring_rod.h"
-#include "proximity_ring/decoder.h"
 
 fault_board board;
 

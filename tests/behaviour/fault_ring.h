@@ -14,7 +14,7 @@ typedef struct fault_board {
 
 extern fault_board board;
 
-void fault_board_plug(void);   /* sends frames of an empty ring until it is told to run */
+void fault_board_plug(void); /* sends frames of an empty ring until it is told to run */
 void fault_board_run(void);
 void fault_board_tick(const ethd_sense *now);
 void fault_board_unplug(void);

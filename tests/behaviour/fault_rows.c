@@ -161,9 +161,12 @@ static void wall_gives(fault_rig *r, int64_t since, double most) {
   ethd_arm_pose(&r->setup.arm, r->now.q, &pose);
   ethd_vec x = {t.ring[0], t.ring[1]};
   ethd_vec f = ethd_mat_mul_transposed(pose.j_inv, (ethd_vec){r->torque[0], r->torque[1]});
-  if (since == 0) given = 0;
-  else if (was.x < FAULT_WALL) given += ethd_vec_dot(f, ethd_vec_sub(x, was));
-  else given = fmax(given, 0);
+  if (since == 0)
+    given = 0;
+  else if (was.x < FAULT_WALL)
+    given += ethd_vec_dot(f, ethd_vec_sub(x, was));
+  else
+    given = fmax(given, 0);
   was = x;
   if (r->shows < 0 && given > most) r->shows = r->tick;
 }
@@ -249,10 +252,8 @@ const fault_row fault_rows[] = {
     {10, ZERO, 0, FAULT_BUS, 20, 400, 20, too_much, NULL, "the drive gives 1.2 Nm too much", 0},
     {11, COUNT, 0, FAULT_COUNTER, 20, 700, 1, one_jump, NULL, "3000 counts too many, once", 0},
     {11, ZERO, 1, FAULT_COUNTER, 20, 700, 2, jump, NULL, "3000 counts too many from now on", 0},
-    {12, ZERO, 0, FAULT_COUNTER, 20, 250, 50, freeze, NULL, "a count stands; from a torque that changed by 0.4 Nm",
-     1},
-    {13, ZERO, 0, FAULT_COUNTER, 20, 250, 20, turn_round, NULL, "a count runs the other way; from when it moves",
-     1},
+    {12, ZERO, 0, FAULT_COUNTER, 20, 250, 50, freeze, NULL, "a count stands; from a torque that changed by 0.4 Nm", 1},
+    {13, ZERO, 0, FAULT_COUNTER, 20, 250, 20, turn_round, NULL, "a count runs the other way; from when it moves", 1},
     {14, COUNT, 0, FAULT_COUNTER, 60, 200, 1, slip, NULL, "5 counts are lost; from the next mark", 1},
     {15, DEGRADE, 0, FAULT_RING, 30, 300, 7, lost_frame, NULL, "a frame is lost; from when it is due", 1},
     {15, DEGRADE, 0, FAULT_RING, 30, 300, 7, damaged_frame, NULL, "a bit of a frame is wrong, likewise", 1},
@@ -260,7 +261,8 @@ const fault_row fault_rows[] = {
     {18, STOP, 1, FAULT_RING, 30, 80, 17, silent_sensors, NULL, "five sensors don't answer, likewise", 1},
     {19, COUNT, 0, FAULT_PLAIN, 20, 300, 0, one_wrong_reading, NULL, "a reading is 30 mm off", 1},
     {19, STOP, 1, FAULT_PLAIN, 20, 300, 14, wrong_readings, NULL, "every reading is; from the first", 1},
-    {20, DEGRADE, 0, FAULT_RING, 30, 300, 4, board_clock, NULL, "the board's clock jumps by 50 ms; from the next frame", 1},
+    {20, DEGRADE, 0, FAULT_RING, 30, 300, 4, board_clock, NULL, "the board's clock jumps by 50 ms; from the next frame",
+     1},
     {16, DEGRADE, 0, FAULT_PLAIN, 20, 700, 10, finger_unseen, NULL, "no reading for 16 ms", 0},
     {17, STOP, 0, FAULT_PLAIN, 20, 700, 30, finger_lost, NULL, "no reading any more", 0},
     {21, ZERO, 0, FAULT_PLAIN, 20, 700, 0, not_finite, NULL, "a law's torque is NaN", 0},
@@ -268,15 +270,19 @@ const fault_row fault_rows[] = {
     {22, COUNT, 1, FAULT_PLAIN, 20, 80, 100, strong, much_torque, "for 150 ms", 0},
     {23, COUNT, 0, FAULT_PLAIN, 20, 80, 1, twitch, little_rate, "a law's torque goes 2.4 Nm up and down, 10 times", 0},
     {23, STOP, 1, FAULT_PLAIN, 20, 45, 20, restless, little_rate, "for ever", 0},
-    {24, STOP, 0, FAULT_PLAIN, 20, 700, 3, hurl, NULL, "a hand throws the ring; from its true speed; by a low-pass, 1.3 ms", 1},
+    {24, STOP, 0, FAULT_PLAIN, 20, 700, 3, hurl, NULL,
+     "a hand throws the ring; from its true speed; by a low-pass, 1.3 ms", 1},
     {24, STOP, 0, FAULT_PLAIN, 20, 700, 2, hurl, quick_speed, "likewise; by differences, 0.5 ms", 1},
     {24, STOP, 0, FAULT_PLAIN, 20, 700, 5, hurl, slow_speed, "likewise; by a line through 8 samples, 3.5 ms", 1},
     {25, DEGRADE, 0, FAULT_PLAIN, 20, 700, 1, push_aside, with_margin, "a hand pushes the ring to the edge", 1},
     {25, STOP, 1, FAULT_PLAIN, 20, 700, 1, push_out, any_speed, "a hand pushes the ring out", 1},
-    {26, DEGRADE, 0, FAULT_PLAIN, 20, 80, 2, overload, small_motors, "2.6 times the nominal torque; from when the model folds back", 1},
+    {26, DEGRADE, 0, FAULT_PLAIN, 20, 80, 2, overload, small_motors,
+     "2.6 times the nominal torque; from when the model folds back", 1},
     {26, ZERO, 1, FAULT_PLAIN, 5, 25, 1, burn, tiny_motors, "13 times the nominal torque; from 105 %", 1},
-    {27, DEGRADE, 0, FAULT_PLAIN, 20, 80, 50, active_wall, guarded_walls, "a spring of 5 kN/m; from when the motors have given 2 mJ", 1},
-    {27, STOP, 1, FAULT_PLAIN, 20, 80, 50, old_speeds, guarded_walls, "the drive's speeds are 8 ms old; from when the motors have given 4 mJ", 1},
+    {27, DEGRADE, 0, FAULT_PLAIN, 20, 80, 50, active_wall, guarded_walls,
+     "a spring of 5 kN/m; from when the motors have given 2 mJ", 1},
+    {27, STOP, 1, FAULT_PLAIN, 20, 80, 50, old_speeds, guarded_walls,
+     "the drive's speeds are 8 ms old; from when the motors have given 4 mJ", 1},
     {28, ZERO, 0, FAULT_BUS, 20, 400, 1, low_supply, NULL, "the drive's supply is 10 V", 0},
     {29, ZERO, 0, FAULT_PLAIN, 20, 700, 1, slow_law, NULL, "a law takes 0.5 ms of the clock", 0},
     {33, ZERO, 0, FAULT_PLAIN, 20, 700, 1, emergency, NULL, "raised by the application", 0},

@@ -33,8 +33,8 @@ void assert_finite(const ethd__rows *rows, const char *where) {
     const ethd_trace *k = &rows->trace[i];
     const ethd_truth *t = &rows->truth[i];
     int good = finite2(k->x) && finite2(k->v) && finite2(k->xf) && finite2(k->vf) && finite2(k->qd) &&
-               finite2(k->eps_q) && finite2(k->eps_q_dot) && finite2(k->fe) && finite2(k->fd) &&
-               finite2(k->tau_raw) && finite2(k->tau) && isfinite(k->beta) && isfinite(k->eps);
+               finite2(k->eps_q) && finite2(k->eps_q_dot) && finite2(k->fe) && finite2(k->fd) && finite2(k->tau_raw) &&
+               finite2(k->tau) && isfinite(k->beta) && isfinite(k->eps);
     good = good && finite2(t->ring) && finite2(t->ring_v) && finite2(t->motor) && finite2(t->finger) &&
            finite2(t->finger_v) && finite2(t->hand) && isfinite(t->pad) && isfinite(t->pad_force);
     require(good && !k->fault, "%s: tick %zu: not finite", where, i);
@@ -64,15 +64,13 @@ static double expected_force(const ethd_trace *k, kind law) {
 void assert_forces(const ethd__rows *rows, kind law, const char *where) {
   for (size_t i = 0; i < rows->count; i++) {
     const ethd_trace *k = &rows->trace[i];
-    require(fabs(ring_gap(k) - to_wall(k->x[0], R_R)) <= 1e-12, "%s: tick %zu: d_re %.12g", where, i,
-            k->d_re);
+    require(fabs(ring_gap(k) - to_wall(k->x[0], R_R)) <= 1e-12, "%s: tick %zu: d_re %.12g", where, i, k->d_re);
     double braking = k->state == ETHD_BRAKING ? B_D * k->v[0] : 0;
     require(force_in(k) <= 0, "%s: tick %zu: the wall pulls with %g N", where, i, force_in(k));
     require(k->fe[1] == 0 && k->fd[1] == 0, "%s: tick %zu: a force along the wall", where, i);
-    require(fabs(force_in(k) - expected_force(k, law)) <= 1e-9, "%s: tick %zu: F_e %.12g, not %.12g",
-            where, i, force_in(k), expected_force(k, law));
-    require(fabs(-k->fd[0] - braking) <= 1e-9, "%s: tick %zu: F_d %.12g, not %.12g", where, i,
-            -k->fd[0], braking);
+    require(fabs(force_in(k) - expected_force(k, law)) <= 1e-9, "%s: tick %zu: F_e %.12g, not %.12g", where, i,
+            force_in(k), expected_force(k, law));
+    require(fabs(-k->fd[0] - braking) <= 1e-9, "%s: tick %zu: F_d %.12g, not %.12g", where, i, -k->fd[0], braking);
     if (i && rows->trace[i - 1].state == ETHD_BRAKING && k->state == ETHD_VO)
       require(k->fe[0] == 0 && fabs(k->eps + ring_gap(k)) < 1e-12 && fabs(k->v[0]) < V_TH,
               "%s: tick %zu: braking -> vo with F_e %g N", where, i, k->fe[0]);
@@ -97,8 +95,7 @@ void assert_beta(const ethd__rows *rows, kind law, const gains *with, const char
     const ethd_trace *k = &rows->trace[i];
     double d = finger_gap(k, law, with) + (law == OFFSET && k->state == ETHD_VO ? k->eps : 0);
     double beta = law == ABRUPT ? (ring_gap(k) < 0 ? 0 : 1) : beta_of(d, d_beta);
-    require(fabs(k->beta - beta) <= 1e-9, "%s: tick %zu: beta %.12g, not %.12g", where, i, k->beta,
-            beta);
+    require(fabs(k->beta - beta) <= 1e-9, "%s: tick %zu: beta %.12g, not %.12g", where, i, k->beta, beta);
   }
 }
 
@@ -112,8 +109,8 @@ void assert_beta_jumps(const ethd__rows *rows, kind law, const gains *with, cons
     double bound = slope * fabs(k->xf[0] - before->xf[0]);
     int shifted = (k->state == ETHD_VO) != (before->state == ETHD_VO);
     if (law == OFFSET && shifted) bound += slope * fabs(k->xf[0] - k->x[0]);
-    require(fabs(k->beta - before->beta) <= bound + 1e-9, "%s: tick %zu: beta jumps by %g, %g is allowed",
-            where, i, k->beta - before->beta, bound);
+    require(fabs(k->beta - before->beta) <= bound + 1e-9, "%s: tick %zu: beta jumps by %g, %g is allowed", where, i,
+            k->beta - before->beta, bound);
   }
 }
 
@@ -133,7 +130,7 @@ void assert_energy(const ethd__rows *rows, const char *where) {
     if (allowed == 0) allowed = K_E * depth * depth / 2;
     given += -force_in(k) * step;
     allowed += K_E * step * step / 2;
-    require(given <= allowed + 1e-12, "%s: tick %zu: the wall gives back %g J, %g are allowed", where,
-            i, given, allowed);
+    require(given <= allowed + 1e-12, "%s: tick %zu: the wall gives back %g J, %g are allowed", where, i, given,
+            allowed);
   }
 }

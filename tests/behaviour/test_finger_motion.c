@@ -85,9 +85,8 @@ static void report(const char *name, int first, int last) {
     long gated = 0;
     errors(first, last, finger_latencies[l], rms, &gated);
     double cv = rms[ETHD_FILTER_CV], ca = rms[ETHD_FILTER_CA];
-    printf("%-24s %5d %10.0f %7.3f %10.4f %7.4f %7.4f %6.1f %% %5ld\n", name, last - first,
-           1e3 * finger_latencies[l], rms[ETHD_FILTER_HOLD], rms[ETHD_FILTER_ALPHA_BETA], cv, ca,
-           100 * (1 - ca / cv), gated);
+    printf("%-24s %5d %10.0f %7.3f %10.4f %7.4f %7.4f %6.1f %% %5ld\n", name, last - first, 1e3 * finger_latencies[l],
+           rms[ETHD_FILTER_HOLD], rms[ETHD_FILTER_ALPHA_BETA], cv, ca, 100 * (1 - ca / cv), gated);
   }
 }
 
@@ -101,10 +100,9 @@ static int ranked(int count) {
     double cv = finger_best(ETHD_FILTER_CV, "acceleration", 4.2, 5, paths, count, latency, &q);
     double ca = finger_best(ETHD_FILTER_CA, "jerk", 220, 5, paths, count, latency, &j);
     errors(0, count, latency, rms, &gated);
-    printf("all, best tuning, %.0f ms: cv %.4f (%.1f m/s^2), ca %.4f (%.0f m/s^3), %.1f %% less\n",
-           1e3 * latency, cv, q, ca, j, 100 * (1 - ca / cv));
-    right &=
-        rms[ETHD_FILTER_HOLD] > cv && cv > ca && rms[ETHD_FILTER_CV] > rms[ETHD_FILTER_CA] && gated == 0;
+    printf("all, best tuning, %.0f ms: cv %.4f (%.1f m/s^2), ca %.4f (%.0f m/s^3), %.1f %% less\n", 1e3 * latency, cv,
+           q, ca, j, 100 * (1 - ca / cv));
+    right &= rms[ETHD_FILTER_HOLD] > cv && cv > ca && rms[ETHD_FILTER_CV] > rms[ETHD_FILTER_CA] && gated == 0;
   }
   return right;
 }

@@ -31,14 +31,18 @@ static int is_still(const fault_rig *r) { return r->torque[0] == 0 && r->torque[
 /* What follows once the row was seen. */
 static const char *follow(fault_rig *r, const fault_row *t, int64_t begin) {
   int64_t seen = r->tick, let_go = seen + (t->device == FAULT_BUS ? 60 : 1), stood = -1;
-  int ends = t->reaction == ETHD_REACTION_STOP ? PATIENCE : AFTER, goes_on = t->reaction == ETHD_REACTION_COUNT || t->reaction == ETHD_REACTION_DEGRADE;
+  int ends = t->reaction == ETHD_REACTION_STOP ? PATIENCE : AFTER,
+      goes_on = t->reaction == ETHD_REACTION_COUNT || t->reaction == ETHD_REACTION_DEGRADE;
   for (int i = 0; i < ends; i++) {
     const ethd_trace *trace = &r->row.trace;
     if (goes_on && r->stepped && trace->fault) return "a row that only counts has stopped it: row";
     if (!goes_on && r->stepped && !trace->fault) return "nothing is latched, row";
-    if (t->reaction == ETHD_REACTION_ZERO && r->stepped && (trace->tau[0] != 0 || trace->tau[1] != 0)) return "a torque is asked for, row";
-    if (t->reaction == ETHD_REACTION_ZERO && r->tick >= let_go && !is_still(r)) return "the drive still has a torque, row";
-    if (t->reaction == ETHD_REACTION_STOP && i > 0 && r->stepped && trace->tau[0] * trace->qd[0] + trace->tau[1] * trace->qd[1] > ROUNDING)
+    if (t->reaction == ETHD_REACTION_ZERO && r->stepped && (trace->tau[0] != 0 || trace->tau[1] != 0))
+      return "a torque is asked for, row";
+    if (t->reaction == ETHD_REACTION_ZERO && r->tick >= let_go && !is_still(r))
+      return "the drive still has a torque, row";
+    if (t->reaction == ETHD_REACTION_STOP && i > 0 && r->stepped &&
+        trace->tau[0] * trace->qd[0] + trace->tau[1] * trace->qd[1] > ROUNDING)
       return "the stop drives the ring, row";
     if (t->reaction == ETHD_REACTION_STOP && stood < 0 && r->row.trace.fault && !ethd_loop_armed(r->loop)) stood = i;
     if (stood >= 0 && !is_still(r)) return "it has a torque again, row";
@@ -120,9 +124,12 @@ static void run(const fault_row *t) {
   while (trial < TRIALS_MOST && o.shown < TRIALS) repeat(t, trial++, &o);
   if (o.shown < TRIALS) wrong(&o, trial, "it has shown too seldom:", o.shown);
   snprintf(worst, sizeof worst, "%d ms", o.worst);
-  if (!o.says[0] && trial == TRIALS) snprintf(verdict, sizeof verdict, "good");
-  else if (!o.says[0]) snprintf(verdict, sizeof verdict, "good; nothing to show in %d more", trial - TRIALS);
-  else snprintf(verdict, sizeof verdict, "BAD: %s", o.says);
+  if (!o.says[0] && trial == TRIALS)
+    snprintf(verdict, sizeof verdict, "good");
+  else if (!o.says[0])
+    snprintf(verdict, sizeof verdict, "good; nothing to show in %d more", trial - TRIALS);
+  else
+    snprintf(verdict, sizeof verdict, "BAD: %s", o.says);
   failures += o.says[0] != 0;
   print(t->row, t->how, NULL, worst, reactions[t->reaction], verdict);
 }

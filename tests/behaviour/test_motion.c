@@ -63,8 +63,8 @@ static double tangent(const recording *r, size_t begin, size_t end, size_t i, in
 }
 
 /* A cubic leaves the chord by at most a quarter of what its end slopes differ from the chord's. */
-static void assert_on_path(const recording *r, size_t begin, size_t end, size_t i, double t,
-                           const double shift[2], const double hand[2], const char *where) {
+static void assert_on_path(const recording *r, size_t begin, size_t end, size_t i, double t, const double shift[2],
+                           const double hand[2], const char *where) {
   for (int c = 1; c <= 2; c++) {
     double from = r->at[i][c], to = from, h = 1, s = 0, bound = 0;
     if (i + 1 < end) {
@@ -72,7 +72,8 @@ static void assert_on_path(const recording *r, size_t begin, size_t end, size_t 
       h = r->at[i + 1][0] - r->at[i][0];
       s = (t - r->at[i][0]) / h;
       bound = fmax(fabs(tangent(r, begin, end, i, c, h) - (to - from)),
-                   fabs(tangent(r, begin, end, i + 1, c, h) - (to - from))) / 4;
+                   fabs(tangent(r, begin, end, i + 1, c, h) - (to - from))) /
+              4;
     }
     if (fabs(s) < 1e-6) bound = 0; /* at a sample, exactly */
     double expected = from + s * (to - from) + shift[c - 1];
@@ -110,8 +111,8 @@ static void assert_touchdown(const recording *r, const ethd__speed *speed, const
     high = fmax(high, v);
   }
   if (d->never_fast)
-    ck_assert_msg(high >= 0.9 * fastest && fastest < speed->centre + 0.05, "%s: touches at %g m/s of %g",
-                  where, high, fastest);
+    ck_assert_msg(high >= 0.9 * fastest && fastest < speed->centre + 0.05, "%s: touches at %g m/s of %g", where, high,
+                  fastest);
   else if (d->t < r->at[r->count - 1][0] - r->at[0][0])
     ck_assert_msg(low <= speed->centre && speed->centre <= high && fastest >= speed->centre,
                   "%s: touches at %g to %g m/s", where, low, high);

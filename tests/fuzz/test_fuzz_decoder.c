@@ -90,16 +90,22 @@ static size_t change(uint8_t *out, size_t n, uint64_t r) {
   size_t at = n ? (r >> 8) % n : 0, length = 1 + (r >> 24) % 50;
   if (length > n - at) length = n - at;
   switch (r % 8) {
-    case 0: n = at; break;
-    case 1: memmove(out + at, out + at + length, n - at - length), n -= length; break;
-    case 2:
-      if (n + length > ROOM) break;
-      memmove(out + at + length, out + at, n - at), n += length;
-      break;
-    case 3: memset(out + at, (int)(r >> 40), length); break;
-    case 4: if (n) out[at] = 0; break;
-    case 5: if (n) out[at] = (uint8_t)(r >> 40); break;
-    default: if (n) out[at] ^= (uint8_t)(1u << (r >> 40 & 7)); break;
+  case 0: n = at; break;
+  case 1: memmove(out + at, out + at + length, n - at - length), n -= length; break;
+  case 2:
+    if (n + length > ROOM) break;
+    memmove(out + at + length, out + at, n - at), n += length;
+    break;
+  case 3: memset(out + at, (int)(r >> 40), length); break;
+  case 4:
+    if (n) out[at] = 0;
+    break;
+  case 5:
+    if (n) out[at] = (uint8_t)(r >> 40);
+    break;
+  default:
+    if (n) out[at] ^= (uint8_t)(1u << (r >> 40 & 7));
+    break;
   }
   return n;
 }

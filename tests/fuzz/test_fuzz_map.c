@@ -60,9 +60,11 @@ static int run(const char *text, size_t size) {
 
 /* One key's value changed, or a few: more texts stay maps than under blind mutation. */
 static size_t retouch(const char *seed, size_t size, uint64_t i, char *out) {
-  static const char *const values[] = {"0",    "1",     "-1",   "2",    "65535", "0xFFFF", "1e-9", "-1e12", "1e9",  "0.1", "i16",      "u16",
-                                       "u32",  "f32",   "A",    "Nm",   "count", "rad",    "input", "read", "write", "rtu", "low-first", "silence",
-                                       "yes",  "combined", "values", "wait s 1 1 1", "pause 1", "write c 65535", "17", "32", "torque1"};
+  static const char *const values[] = {
+      "0",     "1",   "-1",        "2",       "65535", "0xFFFF",   "1e-9",   "-1e12",        "1e9",     "0.1",
+      "i16",   "u16", "u32",       "f32",     "A",     "Nm",       "count",  "rad",          "input",   "read",
+      "write", "rtu", "low-first", "silence", "yes",   "combined", "values", "wait s 1 1 1", "pause 1", "write c 65535",
+      "17",    "32",  "torque1"};
   memcpy(out, seed, size);
   for (uint64_t k = 0; k < 1 + draw_bits(i) % 2; k++) {
     uint64_t r = draw_bits(i * 8 + k + 1);
@@ -103,9 +105,31 @@ static uint64_t number(const char *name, uint64_t without) {
 }
 
 int main(void) {
-  static const char *const words[] = {
-      "\n[register torque1]\n", "[register measured2]", "\n", "=", "0x", "echo=e\n", "step1=", "wait s 1 1 1\n", "1e999", "-0.0", "type=f32\n",
-      "order=low-first\n", "[", "]", "min=-1e300\n", "max=", "nan", "65536", "direction=write\n", "unit=A\n", "; c", "0", "1e12", "scale=1e-9\n", NULL};
+  static const char *const words[] = {"\n[register torque1]\n",
+                                      "[register measured2]",
+                                      "\n",
+                                      "=",
+                                      "0x",
+                                      "echo=e\n",
+                                      "step1=",
+                                      "wait s 1 1 1\n",
+                                      "1e999",
+                                      "-0.0",
+                                      "type=f32\n",
+                                      "order=low-first\n",
+                                      "[",
+                                      "]",
+                                      "min=-1e300\n",
+                                      "max=",
+                                      "nan",
+                                      "65536",
+                                      "direction=write\n",
+                                      "unit=A\n",
+                                      "; c",
+                                      "0",
+                                      "1e12",
+                                      "scale=1e-9\n",
+                                      NULL};
   static char text[ROOM];
   uint64_t runs = number("ETHD_FUZZ_RUNS", 20000), from = number("ETHD_FUZZ_FROM", 0);
   if (load("tests/fuzz/map")) return 1;
@@ -116,8 +140,7 @@ int main(void) {
     uint32_t s = (uint32_t)(draw_bits(~i) % seed_count);
     size_t size = i % 2 ? mutate(seeds[s].text, seeds[s].size, words, i, text, sizeof text)
                         : retouch(seeds[s].text, seeds[s].size, i, text);
-    if (run(text, size))
-      return printf("run %llu\n", (unsigned long long)i), 1;
+    if (run(text, size)) return printf("run %llu\n", (unsigned long long)i), 1;
   }
   printf("%llu runs from %u seeds, %llu were maps\n", (unsigned long long)runs, seed_count, (unsigned long long)maps);
   return 0;

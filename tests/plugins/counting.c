@@ -19,8 +19,8 @@ static const ethd_param params[] = {
 };
 
 static const ethd_tracking_law counting = {
-    .law = {sizeof(ethd_tracking_law), ETHD_ABI, ETHD_TRACKING, 64, "counting-pd", "pd that counts its steps",
-            params, 3, NULL, NULL},
+    .law = {sizeof(ethd_tracking_law), ETHD_ABI, ETHD_TRACKING, 64, "counting-pd", "pd that counts its steps", params,
+            3, NULL, NULL},
     .step = step,
 };
 

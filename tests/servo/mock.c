@@ -55,16 +55,17 @@ static int load(const mock *m, uint8_t *pdu, uint32_t at, uint32_t count) {
 static int answer(mock *m, const uint8_t *q, uint8_t *a) {
   a[0] = q[0];
   switch (q[0]) {
-    case 3:
-    case 4: return load(m, a, get(q + 1), get(q + 3));
-    case 16:
-      store(m, q + 6, get(q + 1), get(q + 3));
-      memcpy(a + 1, q + 1, 4);
-      return 5;
-    case 23:
-      store(m, q + 10, get(q + 5), get(q + 7));
-      return load(m, a, get(q + 1), get(q + 3));
-    default: a[0] |= 0x80; a[1] = 1; return 2;
+  case 3:
+  case 4: return load(m, a, get(q + 1), get(q + 3));
+  case 16:
+    store(m, q + 6, get(q + 1), get(q + 3));
+    memcpy(a + 1, q + 1, 4);
+    return 5;
+  case 23: store(m, q + 10, get(q + 5), get(q + 7)); return load(m, a, get(q + 1), get(q + 3));
+  default:
+    a[0] |= 0x80;
+    a[1] = 1;
+    return 2;
   }
 }
 
@@ -138,8 +139,10 @@ static void reply(mock *m, const uint8_t *head, const uint8_t *q, mock_act act) 
   if (act.kind == MOCK_HOLD) hold(m);
   if (act.kind == MOCK_LATE) usleep((useconds_t)act.wait);
   if (act.kind == MOCK_EXCEPTION) pdu[0] = q[1] | 0x80, pdu[1] = (uint8_t)act.code, length = 2;
-  if (act.kind == MOCK_OLD && *last_length == length) memcpy(pdu, last, (size_t)length);
-  else memcpy(last, pdu, (size_t)length), *last_length = length;
+  if (act.kind == MOCK_OLD && *last_length == length)
+    memcpy(pdu, last, (size_t)length);
+  else
+    memcpy(last, pdu, (size_t)length), *last_length = length;
   int bytes = frame(m, head, q, pdu, length, out), first = bytes / 2;
   if (act.kind == MOCK_GARBLE) out[m->is_rtu ? 3 : 1] ^= 0x10;
   if (act.kind != MOCK_HALF && act.kind != MOCK_CUT) first = bytes;
@@ -204,7 +207,8 @@ static void listen_tcp(mock *m, uint16_t port) {
 static void open_terminal(mock *m) {
   struct termios t;
   m->line = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-  if (m->line < 0 || grantpt(m->line) || unlockpt(m->line) || ptsname_r(m->line, m->port, sizeof m->port)) fail("mock: pty");
+  if (m->line < 0 || grantpt(m->line) || unlockpt(m->line) || ptsname_r(m->line, m->port, sizeof m->port))
+    fail("mock: pty");
   m->slave = open(m->port, O_RDWR | O_NOCTTY | O_CLOEXEC);
   tcgetattr(m->slave, &t);
   cfmakeraw(&t);
@@ -221,8 +225,10 @@ void mock_start(mock *m, int is_rtu) {
   m->listener = m->line = m->slave = -1;
   m->is_rtu = is_rtu;
   m->words[MOCK_VOLTAGE] = 480;
-  if (is_rtu) open_terminal(m);
-  else listen_tcp(m, 0);
+  if (is_rtu)
+    open_terminal(m);
+  else
+    listen_tcp(m, 0);
   begin(m);
 }
 

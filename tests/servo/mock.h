@@ -47,9 +47,22 @@ typedef struct mock {
 } mock;
 
 /* Registers of apps/config/plant.map. */
-enum { MOCK_CONTROL, MOCK_TORQUE1, MOCK_TORQUE2, MOCK_COUNTER, MOCK_STATUS, MOCK_POSITION1 = 5, MOCK_POSITION2 = 7,
-       MOCK_MEASURED1 = 9, MOCK_MEASURED2, MOCK_VOLTAGE, MOCK_READING_X = 12, MOCK_READING_Y = 14, MOCK_READING_COUNT = 16,
-       MOCK_READING_AGE };
+enum {
+  MOCK_CONTROL,
+  MOCK_TORQUE1,
+  MOCK_TORQUE2,
+  MOCK_COUNTER,
+  MOCK_STATUS,
+  MOCK_POSITION1 = 5,
+  MOCK_POSITION2 = 7,
+  MOCK_MEASURED1 = 9,
+  MOCK_MEASURED2,
+  MOCK_VOLTAGE,
+  MOCK_READING_X = 12,
+  MOCK_READING_Y = 14,
+  MOCK_READING_COUNT = 16,
+  MOCK_READING_AGE
+};
 
 /* Healthy, disabled, 48 V, answering. is_rtu: behind a pseudo terminal. */
 void mock_start(mock *m, int is_rtu);

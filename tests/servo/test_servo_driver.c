@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 #include "ethd/driver.h"
-#include "text/text.h"
 #include "servo/device.h"
 #include "servo/mock.h"
+#include "text/text.h"
 #include "unit/rig.h"
 
 #define TICK 1000000
@@ -93,7 +93,8 @@ START_TEST(test_goes_and_comes) {
   ck_assert_int_eq(raw(MOCK_TORQUE1), 2000);
   ck_assert_int_eq(raw(MOCK_TORQUE2), -2000);
   ck_assert_double_eq_tol(servo->limits(device).torque, 0.2 * 9.8, 1e-12);
-  ck_assert(servo->limits(device).gap == ethd_limits_device().gap && servo->limits(device).clean_time == 1); /* a real device */
+  ck_assert(servo->limits(device).gap == ethd_limits_device().gap &&
+            servo->limits(device).clean_time == 1); /* a real device */
   ck_assert_int_eq(servo->stop(device), ETHD_OK);
   ck_assert_int_eq(raw(MOCK_TORQUE1) | raw(MOCK_CONTROL) | raw(MOCK_STATUS), 0);
   close_device();
@@ -196,8 +197,10 @@ START_TEST(test_encoder_reversed) {
       place(sign * (int64_t)lrint(0.5 / 0.01 * (1e-3 * n) * (1e-3 * n) / 2 / COUNT));
       tick(0.5, 0); /* 0.15 of 1.96 Nm would do */
     } while (++n < 60 && !shows(ETHD_FAULT_ENCODER_REVERSED));
-    if (sign > 0) ck_assert_int_eq(n, 60);
-    else ck_assert_msg(n > 20 && n <= 25, "%d ticks", n); /* 20 ms from the motion's begin, 2 of age, 2 until it shows */
+    if (sign > 0)
+      ck_assert_int_eq(n, 60);
+    else
+      ck_assert_msg(n > 20 && n <= 25, "%d ticks", n); /* 20 ms from the motion's begin, 2 of age, 2 until it shows */
     close_device();
   }
 }
@@ -230,7 +233,9 @@ START_TEST(test_home_and_joint) {
   /* a map of one axis, for the second joint */
   snprintf(path, sizeof path, "%s/plant.map", folder);
   ck_assert_int_eq(ethd_text_read(path, 1 << 16, &text, &length, message), ETHD_OK);
-  for (const char **name = (const char *[]){"[register torque2]", "[register seen2]", "[register position2]", "[register measured2]", NULL}; *name; name++) {
+  for (const char **name = (const char *[]){"[register torque2]", "[register seen2]", "[register position2]",
+                                            "[register measured2]", NULL};
+       *name; name++) {
     char *from = strstr(text, *name), *to = strchr(from, '\n');
     while (strncmp(to, "\n\n", 2)) to++;
     memset(from, '\n', (size_t)(to - from));
@@ -264,7 +269,8 @@ START_TEST(test_unconfirmed) {
   mock_start(&drive, 0);
   ethd_setting settings[] = {{"map", "guess.map", 1}, {"port", drive.port, 2}};
   ck_assert_msg(open_with(settings, 2) == ETHD_OK, "%s", message);
-  ck_assert_str_eq(servo->remark(device, 0), "1 of 17 registers are unconfirmed: check their addresses in the drive's manual");
+  ck_assert_str_eq(servo->remark(device, 0),
+                   "1 of 17 registers are unconfirmed: check their addresses in the drive's manual");
   close_device();
   free(text);
   free(all);

@@ -115,8 +115,10 @@ static int link_cycles(int *errors) {
   int stale = 0;
   for (int i = 0; i < CYCLES; i++) {
     drive.words[MOCK_POSITION1 + 1] = 0;
-    if (turn()) ++*errors;
-    else stale += (uint16_t)link_.raw[map.registers[map.roles[ETHD__SERVO_COUNTER]].echo] != link_.counter;
+    if (turn())
+      ++*errors;
+    else
+      stale += (uint16_t)link_.raw[map.registers[map.roles[ETHD__SERVO_COUNTER]].echo] != link_.counter;
   }
   return stale;
 }
@@ -133,8 +135,10 @@ START_TEST(test_late_rtu) {
   for (uint16_t i = 1; i <= CYCLES; i++) {
     uint16_t got = 0;
     drive.words[MOCK_POSITION1] = i;
-    if (modbus_read_registers(m, MOCK_POSITION1, 1, &got) != 1) modbus_flush(m), errors++;
-    else stale += got != i;
+    if (modbus_read_registers(m, MOCK_POSITION1, 1, &got) != 1)
+      modbus_flush(m), errors++;
+    else
+      stale += got != i;
   }
   naive_close(m);
   mock_stop(&drive);
@@ -259,7 +263,8 @@ static void recover(void) {
   uint16_t got;
   close(drive.listener); /* the child's own copy of it */
   modbus_t *m = modbus_new_tcp("127.0.0.1", gone_port);
-  modbus_set_error_recovery(m, (modbus_error_recovery_mode)(MODBUS_ERROR_RECOVERY_LINK | MODBUS_ERROR_RECOVERY_PROTOCOL));
+  modbus_set_error_recovery(m,
+                            (modbus_error_recovery_mode)(MODBUS_ERROR_RECOVERY_LINK | MODBUS_ERROR_RECOVERY_PROTOCOL));
   modbus_set_response_timeout(m, 0, RESPONSE);
   if (modbus_connect(m)) _exit(1);
   if (write(told[1], "", 1) < 0) _exit(1);
@@ -427,8 +432,10 @@ START_TEST(test_damaged) {
       drive.act = bad;
       drive.user = &kind;
       for (int k = 0; k < 12; k++)
-        if (turn()) errors++;
-        else good += (uint16_t)link_.raw[map.registers[map.roles[ETHD__SERVO_COUNTER]].echo] == link_.counter;
+        if (turn())
+          errors++;
+        else
+          good += (uint16_t)link_.raw[map.registers[map.roles[ETHD__SERVO_COUNTER]].echo] == link_.counter;
       ck_assert_int_ge(errors, 3);
       ck_assert_int_eq(errors + good, 12);
       ck_assert_uint_eq(link_.counts.lost, 0);
@@ -475,7 +482,8 @@ START_TEST(test_sequences) {
   ck_assert_int_eq((int16_t)drive.words[MOCK_TORQUE2], (int)lrint(-0.2 / 9.8 / 1e-4));
   ethd__servo_link_begin(&link_, ETHD__SERVO_DISABLE, now());
   ck_assert_int_eq(link_.state, ETHD__SERVO_IDENTIFIED);
-  for (int i = 0; i < 50 && link_.sequence >= 0; i++) ck_assert_int_eq(ethd__servo_link_turn(&link_, now(), torque), ETHD_OK);
+  for (int i = 0; i < 50 && link_.sequence >= 0; i++)
+    ck_assert_int_eq(ethd__servo_link_turn(&link_, now(), torque), ETHD_OK);
   ck_assert_int_eq(link_.result, ETHD_OK);
   ck_assert_uint_eq(drive.words[MOCK_STATUS], 0);
   ck_assert_uint_eq(drive.words[MOCK_TORQUE1], 0);

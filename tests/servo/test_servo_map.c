@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "text/text.h"
 #include "servo/words.h"
+#include "text/text.h"
 #include "unit/mutate.h"
 #include "unit/rig.h"
 
@@ -96,9 +96,9 @@ START_TEST(test_roboteq) {
     const char *name;
     uint32_t id, index, address; /* address: as a driver that isn't ours has it */
   } known[] = {
-      {"torque1", 0x2000, 1, 0x0001},   {"torque2", 0x2000, 2, 0x0002},  {"seen1", 0x2101, 1, 0x2021},
-      {"seen2", 0x2101, 2, 0x2022},     {"position1", 0x2104, 1, 0x2081}, {"position2", 0x2104, 2, 0x2082},
-      {"faults", 0x2112, 0, 0x2240},    {"emergency", 0x200C, 0, 0x0180}, {"release", 0x200D, 0, 0x01A0},
+      {"torque1", 0x2000, 1, 0x0001}, {"torque2", 0x2000, 2, 0x0002},   {"seen1", 0x2101, 1, 0x2021},
+      {"seen2", 0x2101, 2, 0x2022},   {"position1", 0x2104, 1, 0x2081}, {"position2", 0x2104, 2, 0x2082},
+      {"faults", 0x2112, 0, 0x2240},  {"emergency", 0x200C, 0, 0x0180}, {"release", 0x200D, 0, 0x01A0},
   };
   ck_assert_uint_eq(roboteq(0x2106, 1), 0x20C1);
   read_map("apps/config/roboteq.map");
@@ -121,9 +121,9 @@ START_TEST(test_svd48v) {
   static const struct {
     const char *name;
     uint32_t address;
-  } known[] = {{"input", 0x3008},    {"mode1", 0x5100},    {"control2", 0x5301},  {"torque1", 0x5308}, {"torque2", 0x5309},
-               {"seen1", 0x5308},    {"seen2", 0x5309},    {"running1", 0x5400},  {"bus_voltage", 0x5408},
-               {"measured1", 0x5414}, {"position1", 0x5418}};
+  } known[] = {{"input", 0x3008},       {"mode1", 0x5100},     {"control2", 0x5301}, {"torque1", 0x5308},
+               {"torque2", 0x5309},     {"seen1", 0x5308},     {"seen2", 0x5309},    {"running1", 0x5400},
+               {"bus_voltage", 0x5408}, {"measured1", 0x5414}, {"position1", 0x5418}};
   uint32_t n = sizeof known / sizeof *known;
   read_map("apps/config/svd48v.map");
   ck_assert_msg(try(text) == ETHD_OK, "%s", message);
@@ -197,8 +197,10 @@ END_TEST
 
 START_TEST(test_register_refused) {
   read_map("apps/config/plant.map");
-  refused_behind("[register torque1]", "min = -0.2\n", "", "register torque1.min: is missing: a command needs its limits");
-  refused_behind("[register torque1]", "max = 0.2\n", "", "register torque1.max: is missing: a command needs its limits");
+  refused_behind("[register torque1]", "min = -0.2\n", "",
+                 "register torque1.min: is missing: a command needs its limits");
+  refused_behind("[register torque1]", "max = 0.2\n", "",
+                 "register torque1.max: is missing: a command needs its limits");
   refused_behind("[register torque1]", "min = -0.2", "min = 0.1", "min < 0 < max");
   refused_behind("[register torque1]", "max = 0.2", "max = 20", "the type holds -32768 to 32767");
   refused_behind("[register torque1]", "max = 0.2", "max = 0.2\noffset = 0.00005", "no torque is raw -0.5");
@@ -207,9 +209,11 @@ START_TEST(test_register_refused) {
   refused_behind("[register torque1]", "scale = 1e-4", "scale = 0", "register torque1.scale");
   refused_behind("[register torque1]", "ratio = 9.80", "ratio = 0", "register torque1.ratio");
   refused_behind("[register torque1]", "ratio = 9.80", "ratio = 9.80\nsign = 0.5", "1 or -1");
-  refused_behind("[register torque1]", "direction = write", "direction = read", "register torque1.direction: write is allowed");
+  refused_behind("[register torque1]", "direction = write", "direction = read",
+                 "register torque1.direction: write is allowed");
   refused_behind("[register torque1]", "direction = write", "direction = write\nspace = input", "can't be written");
-  refused_behind("[register torque1]", "echo = seen1", "echo = seen9", "register torque1.echo: the map has no [register seen9]");
+  refused_behind("[register torque1]", "echo = seen1", "echo = seen9",
+                 "register torque1.echo: the map has no [register seen9]");
   refused_behind("[register torque1]", "echo = seen1", "echo = torque2", "torque2 isn't read");
   refused_behind("[register torque1]", "echo = seen1", "echo = seen_counter", "seen_counter is of another type");
   refused_behind("[register torque1]", "echo = seen1", "", "nothing uses it");
@@ -223,7 +227,8 @@ START_TEST(test_register_refused) {
   refused_behind("[register position1]", "address = 5", "address = 65535", "register position1.address");
   refused_behind("[register position1]", "address = 5", "address = -1", "register position1.address");
   refused_behind("[register position1]", "address = 5", "address = 0x10000000000", "register position1.address");
-  refused_behind("[register position1]", "address = 5", "address = 3", "register position1.address: overlaps [register counter]");
+  refused_behind("[register position1]", "address = 5", "address = 3",
+                 "register position1.address: overlaps [register counter]");
   refused_behind("[register position2]", "address = 7", "address = 6", "register position2.address: overlaps");
   refused_behind("[register position1]", "counts = 4000", "counts = 4000\nbits = 33", "register position1.bits");
   refused_behind("[register measured1]", "unit = Nm", "unit = Nm\nbits = 17", "its words have 16");
@@ -231,7 +236,8 @@ START_TEST(test_register_refused) {
   refused_behind("[register status]", "fault_mask = 0x0001", "fault_mask = 0x10000", "is wider than the register");
   refused_behind("[register status]", "fault_mask = 0x0001", "fault_mask = 1\nhealthy = 2", "register status.healthy");
   refused_behind("[register status]", "enabled = 0x0002", "enabled = 4", "register status.enabled");
-  refused_behind("[register reading_x]", "type = f32", "type = f32\nfault_mask = 1", "only whole numbers that are read");
+  refused_behind("[register reading_x]", "type = f32", "type = f32\nfault_mask = 1",
+                 "only whole numbers that are read");
   refused_behind("[register seen1]", "type = i16", "type = i16\ntolerance = 1", "only measured1 and measured2");
   refused_behind("[register bus_voltage]", "min = 24\n", "", "min < max are needed");
   refused_behind("[register reading_count]", "type = u16", "type = f32\norder = high-first", "whole numbers");
@@ -241,7 +247,8 @@ START_TEST(test_register_refused) {
   refused("[register seen2]", "[register a_name_of_more_than_23_letters]", "a register's name has");
   refused("[register seen2]", "[register seen1]", "stands twice");
   refused("[register position2]", "[register speed2]", "unit");
-  refused_behind("[register seen2]", "type = i16", "type = i16 ; x\nfoo = 1", "register seen2.foo: a map has no such key");
+  refused_behind("[register seen2]", "type = i16", "type = i16 ; x\nfoo = 1",
+                 "register seen2.foo: a map has no such key");
 }
 END_TEST
 
@@ -302,10 +309,14 @@ START_TEST(test_words) {
     double raw;
     uint16_t words[2];
   } known[] = {
-      {ETHD__SERVO_U16, 0, 65535, {0xFFFF, 0}},         {ETHD__SERVO_I16, 0, -2, {0xFFFE, 0}},
-      {ETHD__SERVO_U32, 0, 0x12345678, {0x1234, 0x5678}}, {ETHD__SERVO_U32, 1, 0x12345678, {0x5678, 0x1234}},
-      {ETHD__SERVO_I32, 0, -2, {0xFFFF, 0xFFFE}},       {ETHD__SERVO_I32, 1, -2, {0xFFFE, 0xFFFF}},
-      {ETHD__SERVO_F32, 0, 1.5, {0x3FC0, 0}},           {ETHD__SERVO_F32, 1, 1.5, {0, 0x3FC0}},
+      {ETHD__SERVO_U16, 0, 65535, {0xFFFF, 0}},
+      {ETHD__SERVO_I16, 0, -2, {0xFFFE, 0}},
+      {ETHD__SERVO_U32, 0, 0x12345678, {0x1234, 0x5678}},
+      {ETHD__SERVO_U32, 1, 0x12345678, {0x5678, 0x1234}},
+      {ETHD__SERVO_I32, 0, -2, {0xFFFF, 0xFFFE}},
+      {ETHD__SERVO_I32, 1, -2, {0xFFFE, 0xFFFF}},
+      {ETHD__SERVO_F32, 0, 1.5, {0x3FC0, 0}},
+      {ETHD__SERVO_F32, 1, 1.5, {0, 0x3FC0}},
   };
   for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
     const ethd__servo_register r = {.type = known[i].type, .order = known[i].order};
@@ -320,11 +331,13 @@ END_TEST
 /* Back is what went, for every type and order; what doesn't fit is cut, what isn't a number is 0. */
 START_TEST(test_words_back) {
   for (uint64_t i = 0; i < 20000; i++) {
-    const ethd__servo_register r = {.type = (int32_t)(draw_bits(3 * i) % 5), .order = (int32_t)(draw_bits(3 * i + 1) % 2)};
+    const ethd__servo_register r = {.type = (int32_t)(draw_bits(3 * i) % 5),
+                                    .order = (int32_t)(draw_bits(3 * i + 1) % 2)};
     double min, max;
     uint16_t words[2];
     ethd__servo_range(&r, &min, &max);
-    double raw = r.type == ETHD__SERVO_F32 ? (double)(float)draw(3 * i + 2, -1e6, 1e6) : rint(draw(3 * i + 2, min, max));
+    double raw =
+        r.type == ETHD__SERVO_F32 ? (double)(float)draw(3 * i + 2, -1e6, 1e6) : rint(draw(3 * i + 2, min, max));
     ethd__servo_pack(&r, raw, words);
     ck_assert_double_eq(ethd__servo_unpack(&r, words), raw);
     ethd__servo_pack(&r, (double)INFINITY, words);
@@ -356,8 +369,21 @@ END_TEST
 /* ---- no maps ---- */
 
 START_TEST(test_any_text) {
-  static const char *const words[] = {"[register torque1]", "\n", "=", "0x", "echo = seen1\n", "step1 = ", "wait", "1e999",
-                                      "type = f32\n", "order = low-first\n", "[", "]", "min = ", "NaN", NULL};
+  static const char *const words[] = {"[register torque1]",
+                                      "\n",
+                                      "=",
+                                      "0x",
+                                      "echo = seen1\n",
+                                      "step1 = ",
+                                      "wait",
+                                      "1e999",
+                                      "type = f32\n",
+                                      "order = low-first\n",
+                                      "[",
+                                      "]",
+                                      "min = ",
+                                      "NaN",
+                                      NULL};
   static const char *const seeds[] = {"apps/config/plant.map", "apps/config/svd48v.map", "apps/config/roboteq.map"};
   static char out[sizeof text];
   const char *given = getenv("ETHD_FUZZ");

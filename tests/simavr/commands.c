@@ -62,8 +62,9 @@ static void stats(session *s) {
   printf("scl_low_ns %.0f\nscl_high_ns %.0f\nscl_bit_ns %.0f\nhurried %llu\n", (double)t->low_min * ns,
          (double)t->high_min * ns, (double)t->bit_min * ns, (unsigned long long)t->hurried);
   for (int n = 0; n < RING_BOARDS; n++) printf("awake%d %.4f\n", n, (double)r->board[n].awake / (double)r->now);
-  printf("link_bytes %llu\nlink_recoveries %llu\nsent_bytes %llu\nlost_bytes %llu\nend\n", (unsigned long long)r->link.bytes,
-         (unsigned long long)r->link.recoveries, (unsigned long long)s->terminal.sent, (unsigned long long)s->terminal.lost);
+  printf("link_bytes %llu\nlink_recoveries %llu\nsent_bytes %llu\nlost_bytes %llu\nend\n",
+         (unsigned long long)r->link.bytes, (unsigned long long)r->link.recoveries,
+         (unsigned long long)s->terminal.sent, (unsigned long long)s->terminal.lost);
   r->period = r->last_byte = (ring_range){0};
   memset(r->begin, 0, sizeof r->begin);
   r->times = (bus_times){0};
@@ -109,18 +110,29 @@ static const struct {
   int end; /* its number is below that; 0: it has none */
   void (*act)(session *s, int number);
 } table[] = {
-    {"mute", RING_SENSORS, mute},      {"unmute", RING_SENSORS, unmute},
-    {"short", RING_SENSORS, shorten},  {"unshort", RING_SENSORS, unshorten},
-    {"slow", RING_SENSORS, slow},      {"unslow", RING_SENSORS, unslow},
-    {"deaf", RING_BOARDS, deaf},       {"undeaf", RING_BOARDS, undeaf},
+    {"mute", RING_SENSORS, mute},
+    {"unmute", RING_SENSORS, unmute},
+    {"short", RING_SENSORS, shorten},
+    {"unshort", RING_SENSORS, unshorten},
+    {"slow", RING_SENSORS, slow},
+    {"unslow", RING_SENSORS, unslow},
+    {"deaf", RING_BOARDS, deaf},
+    {"undeaf", RING_BOARDS, undeaf},
     {"link-corrupt", 1000000000, link_corrupt},
-    {"scl", RING_BOARDS, scl},         {"unscl", RING_BOARDS, unscl},
-    {"reset", RING_BOARDS, reset},     {"hang", RING_BOARDS, hang},
-    {"corrupt", 1000000000, corrupt},  {"lose", 1000000000, lose},
-    {"insert", 1000000000, insert},    {"link-short", 0, link_short},
-    {"link-free", 0, link_free},       {"unplug", 0, unplug},
-    {"plug", 0, plug},                 {"stats", 0, show_stats},
-    {"step", 0, step},                 {"pace", 0, pace},
+    {"scl", RING_BOARDS, scl},
+    {"unscl", RING_BOARDS, unscl},
+    {"reset", RING_BOARDS, reset},
+    {"hang", RING_BOARDS, hang},
+    {"corrupt", 1000000000, corrupt},
+    {"lose", 1000000000, lose},
+    {"insert", 1000000000, insert},
+    {"link-short", 0, link_short},
+    {"link-free", 0, link_free},
+    {"unplug", 0, unplug},
+    {"plug", 0, plug},
+    {"stats", 0, show_stats},
+    {"step", 0, step},
+    {"pace", 0, pace},
     {"quit", 0, quit},
 };
 

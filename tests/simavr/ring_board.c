@@ -95,7 +95,8 @@ static void read_datagrams(session *s, int fd) {
 }
 
 static int open_udp(int port) {
-  struct sockaddr_in here = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+  struct sockaddr_in here = {
+      .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
   int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (fd >= 0 && !bind(fd, (struct sockaddr *)&here, sizeof here)) return fd;
   fprintf(stderr, "ring_board: --udp %d: %s\n", port, strerror(errno));
@@ -154,7 +155,8 @@ static const struct argp_option known[] = {
 static double number(const char *text, double max, struct argp_state *state, const char *name) {
   char *end;
   double value = strtod(text, &end);
-  if (end == text || *end || !(value >= 0 && value <= max)) argp_error(state, "%s: found %s, allowed is 0 to %g", name, text, max);
+  if (end == text || *end || !(value >= 0 && value <= max))
+    argp_error(state, "%s: found %s, allowed is 0 to %g", name, text, max);
   return value;
 }
 
@@ -194,8 +196,12 @@ int main(int argc, char **argv) {
   sigaction(SIGHUP, &action, NULL);
   static session s;
   s = (session){.step = o.step,
-               .terminal = {.master = -1, .slave = -1, .alias = o.alias, .patient = o.step || o.speed == 0,
-                            .baud_matters = o.baud_matters, .random = 2463534242u}};
+                .terminal = {.master = -1,
+                             .slave = -1,
+                             .alias = o.alias,
+                             .patient = o.step || o.speed == 0,
+                             .baud_matters = o.baud_matters,
+                             .random = 2463534242u}};
   avr_global_logger_set(quiet);
   s.ring = ring_create(o.firmware, o.slow);
   if (!s.ring || !terminal_plug(&s.terminal)) return 1;

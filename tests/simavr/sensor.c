@@ -1,12 +1,26 @@
 #include "sensor.h"
 
 enum { ADDRESS = 0x13, COMMAND = 0x80, PRODUCT = 0x81, CURRENT = 0x83, HIGH = 0x87, LOW = 0x88, TIMING = 0x8A };
-enum { MEASURE = 0x08, READY = 0x20, LOCK = 0x80, ID = 0x11, CURRENT_AT_START = 2, CURRENT_OF_LEVEL = 10, SLOW = 32000 };
+enum {
+  MEASURE = 0x08,
+  READY = 0x20,
+  LOCK = 0x80,
+  ID = 0x11,
+  CURRENT_AT_START = 2,
+  CURRENT_OF_LEVEL = 10,
+  SLOW = 32000
+};
 
 void sensor_power(sensor *s, int number, bus_times *times) {
   uint16_t level = s->level;
   bool mute = s->mute, slow = s->slow;
-  *s = (sensor){.level = level, .mute = mute, .slow = slow, .current = CURRENT_AT_START, .scl = true, .sda = true, .times = times};
+  *s = (sensor){.level = level,
+                .mute = mute,
+                .slow = slow,
+                .current = CURRENT_AT_START,
+                .scl = true,
+                .sda = true,
+                .times = times};
   s->convert = 16 * (170 + (uint64_t)(number * 7 % 16) * 230 / 15);
 }
 
@@ -62,7 +76,8 @@ static bool heard(sensor *s, uint64_t now) {
     s->reads = s->shift & 1;
     return s->shift >> 1 == ADDRESS;
   }
-  if (byte == 1) s->pointer = s->shift;
+  if (byte == 1)
+    s->pointer = s->shift;
   else {
     put(s, s->shift, now);
     s->pointer++;
@@ -111,7 +126,8 @@ static void start(sensor *s, uint64_t now) {
   if (!again) {
     if (s->stopped && now - s->stopped < BUS_FREE) s->times->hurried++;
     s->started = now;
-  } else if (now - s->scl_rose < BUS_HOLD) s->times->hurried++;
+  } else if (now - s->scl_rose < BUS_HOLD)
+    s->times->hurried++;
   s->mode = SENSOR_LISTEN;
   s->byte = s->bit = 0;
   s->reads = s->pulls = false;
@@ -132,13 +148,17 @@ static void clock_times(sensor *s, uint64_t now, bool scl) {
   bus_times *t = s->times;
   if (s->mode != SENSOR_IDLE) {
     uint64_t since = now - (scl ? s->scl_fell : s->scl_rose);
-    if (scl) least(&t->low_min, since);
-    else if (s->scl_rose > s->started) least(&t->high_min, since);
+    if (scl)
+      least(&t->low_min, since);
+    else if (s->scl_rose > s->started)
+      least(&t->high_min, since);
     if (scl && s->scl_rose > s->started) least(&t->bit_min, now - s->scl_rose);
     if (since < (scl ? BUS_LOW : BUS_HIGH)) t->hurried++;
   }
-  if (scl) s->scl_rose = now;
-  else s->scl_fell = now;
+  if (scl)
+    s->scl_rose = now;
+  else
+    s->scl_fell = now;
 }
 
 void sensor_lines(sensor *s, uint64_t now, bool scl, bool sda) {
@@ -148,11 +168,15 @@ void sensor_lines(sensor *s, uint64_t now, bool scl, bool sda) {
   if (s->mute) return;
   if (scl != clocked) {
     clock_times(s, now, scl);
-    if (scl) rose(s);
-    else fell(s, now);
+    if (scl)
+      rose(s);
+    else
+      fell(s, now);
     s->sda = sda && !sensor_pulls(s);
   } else if (scl && s->sda != before) {
-    if (before) start(s, now);
-    else stop(s, now);
+    if (before)
+      start(s, now);
+    else
+      stop(s, now);
   }
 }

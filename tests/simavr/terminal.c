@@ -93,8 +93,10 @@ void terminal_flush(terminal *t) {
   for (int n = 0; garbled && n < t->filled; n++) t->buffer[n] = random_byte(t);
   for (int turns = 0; t->master >= 0 && done < t->filled && turns < 1000; turns++) {
     ssize_t wrote = write(t->master, t->buffer + done, (size_t)(t->filled - done));
-    if (wrote > 0) done += (int)wrote;
-    else if (wrote < 0 && errno == EAGAIN && !make_room(t)) break;
+    if (wrote > 0)
+      done += (int)wrote;
+    else if (wrote < 0 && errno == EAGAIN && !make_room(t))
+      break;
   }
   t->lost += (uint64_t)(t->filled - done);
   t->filled = 0;

@@ -100,9 +100,16 @@ static void dev_safe(void *device) ETHD_RT {
 static ethd_status dev_stop(void *device) { return (void)device, ETHD_OK; }
 static void dev_close(void *device) { (void)device; }
 
-static const ethd_driver driver = {.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "dies", .brief = "dies",
-                                   .start = dev_start, .read = dev_read, .write = dev_write, .safe = dev_safe,
-                                   .stop = dev_stop, .close = dev_close};
+static const ethd_driver driver = {.size = sizeof driver,
+                                   .abi = ETHD_DRIVER_ABI,
+                                   .id = "dies",
+                                   .brief = "dies",
+                                   .start = dev_start,
+                                   .read = dev_read,
+                                   .write = dev_write,
+                                   .safe = dev_safe,
+                                   .stop = dev_stop,
+                                   .close = dev_close};
 
 static ethd_status track(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) ETHD_RT {
   pass(IN_LAW);
@@ -161,7 +168,8 @@ static void stays_at_zero(int ticks) {
 }
 
 static void expect_zero(const ethd_loop_row *row) {
-  ck_assert(row->trace.fault != 0 && !row->armed && row->trace.tau[0] == 0 && row->trace.tau[1] == 0 && torque(0) == 0 && torque(1) == 0);
+  ck_assert(row->trace.fault != 0 && !row->armed && row->trace.tau[0] == 0 && row->trace.tau[1] == 0 &&
+            torque(0) == 0 && torque(1) == 0);
 }
 
 /* ms from its death until the device was let go; NAN: void. */

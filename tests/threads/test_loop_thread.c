@@ -34,13 +34,12 @@ typedef struct device {
   int inside;        /* reads and writes now; never while start runs */
   atomic_int reads, starts, overlaps;
   atomic_int services;
-  double nan_at;     /* read at which q isn't a number, 0: never */
+  double nan_at; /* read at which q isn't a number, 0: never */
   ethd_sense sense;
 } device;
 
-#define ALLOW(number)                                           \
-  BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (unsigned)(number), 0, 1), \
-      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)
+#define ALLOW(number) \
+  BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (unsigned)(number), 0, 1), BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)
 
 /* Sleep, the clock and futex; what a thread does as it ends. */
 static long forbid_the_rest(void) {
@@ -101,9 +100,18 @@ static void dev_safe(void *d) ETHD_RT { (void)d; }
 static ethd_status dev_stop(void *d) { return (void)d, ETHD_OK; }
 static void dev_close(void *d) { (void)d; }
 
-static const ethd_driver driver = {.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "test", .brief = "test",
-                                   .start = dev_start, .read = dev_read, .write = dev_write, .units = dev_units, .service = dev_service,
-                                   .safe = dev_safe, .stop = dev_stop, .close = dev_close};
+static const ethd_driver driver = {.size = sizeof driver,
+                                   .abi = ETHD_DRIVER_ABI,
+                                   .id = "test",
+                                   .brief = "test",
+                                   .start = dev_start,
+                                   .read = dev_read,
+                                   .write = dev_write,
+                                   .units = dev_units,
+                                   .service = dev_service,
+                                   .safe = dev_safe,
+                                   .stop = dev_stop,
+                                   .close = dev_close};
 
 static rig r;
 static device d;

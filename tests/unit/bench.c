@@ -23,13 +23,24 @@ static ethd_status dev_write(void *device_, int64_t now, const ethd_command *com
 
 static void dev_safe(void *d) ETHD_RT { ((device *)d)->safes++; }
 static uint32_t dev_units(const void *d) { return (void)d, 1; }
-static ethd_status dev_service(void *d, uint32_t unit, int64_t now) { return (void)unit, (void)now, ((device *)d)->services++, ETHD_OK; }
+static ethd_status dev_service(void *d, uint32_t unit, int64_t now) {
+  return (void)unit, (void)now, ((device *)d)->services++, ETHD_OK;
+}
 static ethd_status dev_stop(void *d) { return (void)d, ETHD_OK; }
 static void dev_close(void *d) { (void)d; }
 
-static const ethd_driver driver = {.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "test", .brief = "test",
-                                   .start = dev_start, .read = dev_read, .write = dev_write, .units = dev_units, .service = dev_service,
-                                   .safe = dev_safe, .stop = dev_stop, .close = dev_close};
+static const ethd_driver driver = {.size = sizeof driver,
+                                   .abi = ETHD_DRIVER_ABI,
+                                   .id = "test",
+                                   .brief = "test",
+                                   .start = dev_start,
+                                   .read = dev_read,
+                                   .write = dev_write,
+                                   .units = dev_units,
+                                   .service = dev_service,
+                                   .safe = dev_safe,
+                                   .stop = dev_stop,
+                                   .close = dev_close};
 
 void bench_open(bench *b) {
   memset(b, 0, sizeof *b);

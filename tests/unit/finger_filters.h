@@ -21,8 +21,7 @@ static inline ethd_filter with(ethd_filter_method method, const char *const *nam
     int row = ethd_params_find(m->params, m->param_count, *names);
     if (row >= 0) p[row] = *values;
   }
-  ck_assert_msg(ethd_filter_prepare(method, p, T, &f, &error) == ETHD_OK, "%s %g", error.name,
-                error.found);
+  ck_assert_msg(ethd_filter_prepare(method, p, T, &f, &error) == ETHD_OK, "%s %g", error.name, error.found);
   return f;
 }
 

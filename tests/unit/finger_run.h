@@ -23,9 +23,7 @@ typedef struct finger_error {
   long gated;
 } finger_error;
 
-static inline double finger_rms(finger_error e) {
-  return 1e3 * sqrt(e.sum / (double)e.count);
-}
+static inline double finger_rms(finger_error e) { return 1e3 * sqrt(e.sum / (double)e.count); }
 
 /* Row `row` of the method's table set to value, all others at their defaults. */
 static inline ethd_filter finger_filter(ethd_filter_method method, const char *row, double value) {
@@ -39,8 +37,8 @@ static inline ethd_filter finger_filter(ethd_filter_method method, const char *r
   return f;
 }
 
-static inline void finger_run(const ethd_filter *f, const finger_path *path, double latency,
-                              uint64_t seed, finger_error *error) {
+static inline void finger_run(const ethd_filter *f, const finger_path *path, double latency, uint64_t seed,
+                              finger_error *error) {
   ethd_filter_state s;
   memset(&s, 0, sizeof s);
   double next = draw(seed << 20, 0, 1.0 / 300);
@@ -65,8 +63,7 @@ static inline void finger_run(const ethd_filter *f, const finger_path *path, dou
 
 /* The best of a row's values from `from`, each 1.3 times the one before. */
 static inline double finger_best(ethd_filter_method method, const char *row, double from, int steps,
-                                 const finger_path *paths, int count, double latency,
-                                 double *best_value) {
+                                 const finger_path *paths, int count, double latency, double *best_value) {
   double best = INFINITY, value = from;
   for (int i = 0; i < steps; i++, value *= 1.3) {
     ethd_filter f = finger_filter(method, row, value);

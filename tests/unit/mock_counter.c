@@ -68,7 +68,8 @@ static ssize_t mock_read_text(int fd, char *to, size_t size) {
 }
 
 static ssize_t mock_write_text(int fd, const char *from, size_t size) {
-  if (ends(path_of(fd), "/function") && !counter_mock.deaf) snprintf(counter_mock.function, sizeof counter_mock.function, "%.*s", (int)size, from);
+  if (ends(path_of(fd), "/function") && !counter_mock.deaf)
+    snprintf(counter_mock.function, sizeof counter_mock.function, "%.*s", (int)size, from);
   return (ssize_t)size;
 }
 
@@ -92,10 +93,10 @@ void mock_counter_install(void) {
 
 void mock_counter_event(uint8_t kind, int joint, uint64_t value, int64_t time_ns) {
   if (counter_mock.waiting == MOCK_EVENTS) return;
-  counter_mock.events[counter_mock.waiting++] = (struct counter_event){
-      .timestamp = (uint64_t)time_ns,
-      .value = value,
-      .watch = {.component = {COUNTER_COMPONENT_COUNT, COUNTER_SCOPE_COUNT, (uint8_t)joint, 0},
-                .event = kind,
-                .channel = (uint8_t)joint}};
+  counter_mock.events[counter_mock.waiting++] =
+      (struct counter_event){.timestamp = (uint64_t)time_ns,
+                             .value = value,
+                             .watch = {.component = {COUNTER_COMPONENT_COUNT, COUNTER_SCOPE_COUNT, (uint8_t)joint, 0},
+                                       .event = kind,
+                                       .channel = (uint8_t)joint}};
 }

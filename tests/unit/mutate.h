@@ -8,8 +8,8 @@
 
 /* Writes a mutation of `seed` into out (room bytes, 0 behind the end); returns its length. `words` are
    spliced in now and then; they end with NULL. */
-static inline size_t mutate(const char *seed, size_t length, const char *const *words, uint64_t i,
-                            char *out, size_t room) {
+static inline size_t mutate(const char *seed, size_t length, const char *const *words, uint64_t i, char *out,
+                            size_t room) {
   size_t n = length < room / 2 ? length : room / 2, count = 0;
   memcpy(out, seed, n);
   while (words[count]) count++;
@@ -18,15 +18,15 @@ static inline size_t mutate(const char *seed, size_t length, const char *const *
     const char *word = words[(r >> 40) % count];
     size_t add = strlen(word);
     switch (r & 7) {
-      case 0: n = at; break;                                   /* cut */
-      case 1: out[at] = (char)(r >> 32); break;                /* any byte */
-      case 2: out[at] ^= (char)(1u << ((r >> 32) & 7)); break; /* a bit */
-      case 3: memmove(out + at, out + at + (n > at), n > at ? n - at - 1 : 0), n -= n > 0; break;
-      default:
-        if (n + add >= room) break;
-        memmove(out + at + add, out + at, n - at);
-        memcpy(out + at, word, add);
-        n += add;
+    case 0: n = at; break;                                   /* cut */
+    case 1: out[at] = (char)(r >> 32); break;                /* any byte */
+    case 2: out[at] ^= (char)(1u << ((r >> 32) & 7)); break; /* a bit */
+    case 3: memmove(out + at, out + at + (n > at), n > at ? n - at - 1 : 0), n -= n > 0; break;
+    default:
+      if (n + add >= room) break;
+      memmove(out + at + add, out + at, n - at);
+      memcpy(out + at, word, add);
+      n += add;
     }
   }
   out[n] = 0;

@@ -36,15 +36,15 @@ static inline size_t ring_noise(uint64_t i, uint8_t wire[ETHD__FRAME_WIRE + 2]) 
     uint64_t r = draw_bits(i * 16 + k + 1);
     size_t at = (r >> 8) % n, length = 1 + (r >> 40) % 6;
     switch (r % 8) {
-      case 0: wire[at] = (uint8_t)(r >> 16); break;
-      case 1: memmove(wire + at, wire + at + 1, n - at - 1), n -= n > 1; break;
-      case 2:
-        if (n < ETHD__FRAME_WIRE + 2) memmove(wire + at + 1, wire + at, n - at), n++;
-        break;
-      case 3:
-        for (size_t j = at; j < n && j < at + length; j++) wire[j] = (uint8_t)draw_bits(r + j);
-        break;
-      default: wire[at] ^= (uint8_t)(1u << ((r >> 16) & 7)); break;
+    case 0: wire[at] = (uint8_t)(r >> 16); break;
+    case 1: memmove(wire + at, wire + at + 1, n - at - 1), n -= n > 1; break;
+    case 2:
+      if (n < ETHD__FRAME_WIRE + 2) memmove(wire + at + 1, wire + at, n - at), n++;
+      break;
+    case 3:
+      for (size_t j = at; j < n && j < at + length; j++) wire[j] = (uint8_t)draw_bits(r + j);
+      break;
+    default: wire[at] ^= (uint8_t)(1u << ((r >> 16) & 7)); break;
     }
   }
   return n;

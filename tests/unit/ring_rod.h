@@ -38,7 +38,8 @@ static inline double rod_counts(const ethd__calibration *truth, int k, double di
   return fmin(fmax(rint(c + noise * draw_normal(key)), 1), 65535);
 }
 
-static inline ethd__place_reading rod_reading(const ethd__calibration *truth, ethd_vec centre, double noise, uint64_t key) {
+static inline ethd__place_reading rod_reading(const ethd__calibration *truth, ethd_vec centre, double noise,
+                                              uint64_t key) {
   ethd__place_reading place = ethd__place_expected(ROD_RING, ROD_RADIUS, centre);
   for (int k = 0; k < ETHD_RAYS; k++)
     place.counts[k] = rod_counts(truth, k, place.distance[k], noise, key * ETHD_RAYS + (uint64_t)k);

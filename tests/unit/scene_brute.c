@@ -134,7 +134,8 @@ static ethd_scene *scribble(double size) {
   double x = 0, y = 0;
   begin(size);
   object_of(ETHD_POLYLINE);
-  for (int n = 2 + (int)(scene_draw() % 700); n > 0; n--) point_of(x, y), x = scene_uniform(-0.9, 0.9), y = scene_uniform(-0.9, 0.9);
+  for (int n = 2 + (int)(scene_draw() % 700); n > 0; n--)
+    point_of(x, y), x = scene_uniform(-0.9, 0.9), y = scene_uniform(-0.9, 0.9);
   point_of(x, y);
   if (scene_draw() % 2) point_of(draft.objects[0].numbers[0] / size, draft.objects[0].numbers[1] / size);
   return finish();
@@ -195,10 +196,10 @@ static ethd_scene *dust(double size) {
 }
 
 const scene_kind scene_kinds[] = {
-    {"circles", circles},   {"capsules", capsules}, {"boxes", boxes},       {"segments", segments},
+    {"circles", circles},   {"capsules", capsules},   {"boxes", boxes},     {"segments", segments},
     {"polygons", polygons}, {"polylines", polylines}, {"mixed", mixed},     {"outline", outline},
-    {"nested", nested},     {"room", room},         {"needles", needles},   {"scribble", scribble},
-    {"spiral", spiral},     {"lattice", lattice},   {"heap", heap},         {"dust", dust},
+    {"nested", nested},     {"room", room},           {"needles", needles}, {"scribble", scribble},
+    {"spiral", spiral},     {"lattice", lattice},     {"heap", heap},       {"dust", dust},
 };
 const int scene_kind_count = sizeof scene_kinds / sizeof *scene_kinds;
 
@@ -287,16 +288,15 @@ static void same_nearest(const char *how, const ethd_nearest *q, const nearest *
   ck_assert(fabs(ethd_vec_norm(q->n) - 1) <= 4 * DBL_EPSILON);
   ethd_vec p = ethd_vec_add(x, ethd_vec_scale(q->distance, q->n));
   ck_assert_msg(ethd_vec_norm(ethd_vec_sub(p, q->point)) <= 4 * tight + (fabs(q->distance) <= slack ? 2 * slack : 0),
-                "%s: the point isn't %g along n", how,
-                q->distance);
+                "%s: the point isn't %g along n", how, q->distance);
 }
 
 /* All numbers of a touch; of a polygon around x or at it only the distance, for several edges may be as near. */
 static bool same_touch(const ethd_touch *a, const ethd_touch *b) {
   if (a->object != b->object || a->material != b->material || fabs(a->distance - b->distance) > tight) return false;
-  return b->distance <= fmax(tight, slack) || (a->distance == b->distance && a->point.x == b->point.x &&
-                                  a->point.y == b->point.y && a->n.x == b->n.x && a->n.y == b->n.y &&
-                                  a->feature == b->feature && a->side == b->side);
+  return b->distance <= fmax(tight, slack) ||
+         (a->distance == b->distance && a->point.x == b->point.x && a->point.y == b->point.y && a->n.x == b->n.x &&
+          a->n.y == b->n.y && a->feature == b->feature && a->side == b->side);
 }
 
 static bool is_among(const ethd_touch *t, const ethd_touch *list, size_t n) {
@@ -341,8 +341,7 @@ static void check_follow(const ethd_scene *scene, ethd_vec x) {
   ethd_touch a, b;
   ethd_scene_follow(scene, id, x, from, &a);
   brute_follow(scene, id, x, from, &b);
-  ck_assert_msg(same_touch(&a, &b), "object %d at %.17g %.17g: feature %d, not %d", id, x.x, x.y, a.feature,
-                b.feature);
+  ck_assert_msg(same_touch(&a, &b), "object %d at %.17g %.17g: feature %d, not %d", id, x.x, x.y, a.feature, b.feature);
 }
 
 /* Anywhere, near a number of the scene's, on a lattice, far away. */
@@ -350,13 +349,13 @@ static ethd_vec place(void) {
   double s = draft.size, e = pow(10, scene_uniform(-17, -1)) * s, f = pow(10, scene_uniform(0, 9)) * s;
   size_t i = scene_draw() % (draft.used / 2) * 2;
   switch (scene_draw() % 9) {
-    case 0:
-    case 1:
-    case 2: return (ethd_vec){draft.numbers[i] + scene_uniform(-e, e), draft.numbers[i + 1] + scene_uniform(-e, e)};
-    case 3: return (ethd_vec){0.0625 * s * (int)(scene_draw() % 16), 0.0625 * s * (int)(scene_draw() % 16)};
-    case 4: return (ethd_vec){draft.numbers[i], scene_uniform(-s, s)};
-    case 5: return (ethd_vec){scene_uniform(-f, f), scene_draw() % 2 ? scene_uniform(-f, f) : draft.numbers[i + 1]};
-    default: return (ethd_vec){scene_uniform(-s, s), scene_uniform(-s, s)};
+  case 0:
+  case 1:
+  case 2: return (ethd_vec){draft.numbers[i] + scene_uniform(-e, e), draft.numbers[i + 1] + scene_uniform(-e, e)};
+  case 3: return (ethd_vec){0.0625 * s * (int)(scene_draw() % 16), 0.0625 * s * (int)(scene_draw() % 16)};
+  case 4: return (ethd_vec){draft.numbers[i], scene_uniform(-s, s)};
+  case 5: return (ethd_vec){scene_uniform(-f, f), scene_draw() % 2 ? scene_uniform(-f, f) : draft.numbers[i + 1]};
+  default: return (ethd_vec){scene_uniform(-s, s), scene_uniform(-s, s)};
   }
 }
 

@@ -13,7 +13,7 @@
 #endif
 
 #if defined(__LP64__)
-#define AT(type, field, offset, bytes)                        \
+#define AT(type, field, offset, bytes)                       \
   _Static_assert(offsetof(type, field) == (offset), #field); \
   _Static_assert(sizeof(((type *)0)->field) == (bytes), #field)
 #define SIZE(type, bytes, align)                  \
@@ -103,8 +103,7 @@ _Static_assert(sizeof(ethd_sense) == 8 * (0 ETHD_SENSE_FIELDS(COUNT)), "sense");
 _Static_assert(sizeof(ethd_trace) == sizeof(ethd_sense) + 8 * (0 ETHD_TRACE_FIELDS(COUNT)), "trace");
 
 START_TEST(test_every_law) {
-  const char *const ids[] = {"pd",     "kelvin-voigt", "spring", "hunt-crossley",
-                             "abrupt", "smooth",       "offset", NULL};
+  const char *const ids[] = {"pd", "kelvin-voigt", "spring", "hunt-crossley", "abrupt", "smooth", "offset", NULL};
   ethd_error error;
   for (int i = 0; ids[i] || ethd_laws[i]; i++) {
     ck_assert(ids[i] && ethd_laws[i]);
@@ -121,11 +120,15 @@ END_TEST
 START_TEST(test_every_method) {
   ethd_error error;
   for (int i = 0; i < ETHD_VELOCITY_COUNT; i++)
-    ck_assert_int_eq(ethd_params_check_table(ethd_velocity_methods[i].params, ethd_velocity_methods[i].param_count, &error), ETHD_OK);
+    ck_assert_int_eq(
+        ethd_params_check_table(ethd_velocity_methods[i].params, ethd_velocity_methods[i].param_count, &error),
+        ETHD_OK);
   for (int i = 0; i < ETHD_FILTER_COUNT; i++)
-    ck_assert_int_eq(ethd_params_check_table(ethd_filter_methods[i].params, ethd_filter_methods[i].param_count, &error), ETHD_OK);
+    ck_assert_int_eq(ethd_params_check_table(ethd_filter_methods[i].params, ethd_filter_methods[i].param_count, &error),
+                     ETHD_OK);
   for (int i = 0; i < ETHD_FIT_COUNT; i++)
-    ck_assert_int_eq(ethd_params_check_table(ethd_fit_methods[i].params, ethd_fit_methods[i].param_count, &error), ETHD_OK);
+    ck_assert_int_eq(ethd_params_check_table(ethd_fit_methods[i].params, ethd_fit_methods[i].param_count, &error),
+                     ETHD_OK);
 }
 END_TEST
 
@@ -195,8 +198,9 @@ static void greedy_reset(const double *p, void *state) ETHD_RT {
   for (int i = 0; i < 64; i++) ck_assert_double_eq(block[i], 0);
 }
 
-#define GREEDY \
-  {{sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 512, "greedy", "all of its state", NULL, 0, NULL, greedy_reset}, \
+#define GREEDY                                                                                                \
+  {{sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 512, "greedy", "all of its state", NULL, 0, NULL, \
+    greedy_reset},                                                                                            \
    greedy_step}
 static const ethd_transition_law greedy = GREEDY, greedy_too = GREEDY;
 

@@ -30,9 +30,7 @@ static void with_angle(const ethd_arm *arm, double q1, double th, double q[2]) {
   q[1] = arm->mechanism == ETHD_ARM_SERIAL ? th : q1 + th;
 }
 
-static double largest(const double m[4]) {
-  return fmax(fmax(fabs(m[0]), fabs(m[1])), fmax(fabs(m[2]), fabs(m[3])));
-}
+static double largest(const double m[4]) { return fmax(fmax(fabs(m[0]), fabs(m[1])), fmax(fabs(m[2]), fabs(m[3]))); }
 
 START_TEST(test_forward_and_jacobian) {
   const ethd_arm *arm = &arms[_i];
@@ -49,8 +47,7 @@ START_TEST(test_forward_and_jacobian) {
       forward(arm, (long double[2]){q[0] + (k ? 0 : h), q[1] + (k ? h : 0)}, plus);
       forward(arm, (long double[2]){q[0] - (k ? 0 : h), q[1] - (k ? h : 0)}, minus);
       for (int row = 0; row < 2; row++)
-        ck_assert_double_le(fabs((double)(pose.j[2 * row + k] - (plus[row] - minus[row]) / (2 * h))),
-                            2e-12);
+        ck_assert_double_le(fabs((double)(pose.j[2 * row + k] - (plus[row] - minus[row]) / (2 * h))), 2e-12);
     }
   }
 }
@@ -97,19 +94,16 @@ END_TEST
 START_TEST(test_damped_inverse) {
   const ethd_arm *arm = &arms[_i];
   for (uint64_t i = 0; i < POINTS; i++) {
-    double q[2], th = draw(3 * i, -1, 1) * ETHD_ARM_SINGULAR +
-                      (draw_bits(3 * i + 1) & 1 ? 3.14159265358979324 : 0);
+    double q[2], th = draw(3 * i, -1, 1) * ETHD_ARM_SINGULAR + (draw_bits(3 * i + 1) & 1 ? 3.14159265358979324 : 0);
     with_angle(arm, draw(3 * i + 2, -3, 3), th, q);
     ethd_pose pose;
     ethd_arm_pose(arm, q, &pose);
     long double a = pose.j[0], b = pose.j[1], c = pose.j[2], d = pose.j[3];
     long double det = a * d - b * c, w0 = ETHD_ARM_SINGULAR * (long double)arm->link1 * arm->link2;
     long double lambda = w0 / sqrtl(a * a + b * b + c * c + d * d) * (1 - fabsl(det) / w0);
-    long double p = a * a + b * b + lambda * lambda, r = a * c + b * d,
-                s = c * c + d * d + lambda * lambda;
+    long double p = a * a + b * b + lambda * lambda, r = a * c + b * d, s = c * c + d * d + lambda * lambda;
     long double m = p * s - r * r;
-    long double expected[4] = {(a * s - c * r) / m, (c * p - a * r) / m, (b * s - d * r) / m,
-                               (d * p - b * r) / m};
+    long double expected[4] = {(a * s - c * r) / m, (c * p - a * r) / m, (b * s - d * r) / m, (d * p - b * r) / m};
     for (int k = 0; k < 4; k++)
       ck_assert_double_le(fabs((double)(pose.j_inv[k] - expected[k])), 1e-9 * largest(pose.j_inv));
   }
@@ -152,8 +146,7 @@ START_TEST(test_threshold_is_smooth) {
     with_angle(arm, 0.4, at + delta, q);
     ethd_arm_pose(arm, q, &outside);
     for (int k = 0; k < 4; k++)
-      ck_assert_double_le(fabs(inside.j_inv[k] - outside.j_inv[k]),
-                          4 * delta / at * largest(outside.j_inv));
+      ck_assert_double_le(fabs(inside.j_inv[k] - outside.j_inv[k]), 4 * delta / at * largest(outside.j_inv));
   }
 }
 END_TEST

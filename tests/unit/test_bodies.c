@@ -86,8 +86,8 @@ START_TEST(test_same_as_drawn_there) {
     char text[200];
     double a = 6.28 * draw(&seed), x = 0.25 + 0.04 * (draw(&seed) - 0.5), y = 0.25 + 0.04 * (draw(&seed) - 0.5);
     double c = cos(a), s = sin(a);
-    snprintf(text, sizeof text, "capsule %.17g %.17g %.17g %.17g 0.004\n", x - 0.01 * c, y - 0.01 * s,
-             x + 0.03 * c, y + 0.03 * s);
+    snprintf(text, sizeof text, "capsule %.17g %.17g %.17g %.17g 0.004\n", x - 0.01 * c, y - 0.01 * s, x + 0.03 * c,
+             y + 0.03 * s);
     open_with_body(&r, NULL, "capsule -0.01 0 0.03 0 0.004\n");
     rig_open(&still, text);
     ethd_setup_transition(&still.setup, &ethd_transition_smooth);

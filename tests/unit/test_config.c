@@ -6,8 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "ethd/config.h"
 #include "config_text.h"
+#include "ethd/config.h"
 
 static char message[ETHD_MESSAGE_MAX];
 
@@ -39,8 +39,7 @@ START_TEST(test_defaults) {
     ck_assert_int_eq(s->arm.mechanism, ETHD_ARM_PARALLEL);
     ck_assert(s->arm.link1 == 0.25 && s->arm.link2 == 0.25 && s->ring_radius == 0.012);
     ck_assert(s->finger_radius == 0.0075 && s->finger_radius_max == 0.0095 && s->period == 0.001);
-    ck_assert(s->velocity == ETHD_VELOCITY_LOWPASS && s->fit == ETHD_FIT_KASA &&
-              s->filter == ETHD_FILTER_CA);
+    ck_assert(s->velocity == ETHD_VELOCITY_LOWPASS && s->fit == ETHD_FIT_KASA && s->filter == ETHD_FILTER_CA);
     ck_assert(s->tracking == &ethd_tracking_pd && s->contact == &ethd_contact_kelvin_voigt);
     ck_assert(s->transition == &ethd_transition_offset);
     ck_assert(law_value(&s->tracking->law, s->tracking_p, "k_t") == 40);
@@ -72,8 +71,7 @@ START_TEST(test_every_key) {
   ck_assert(s->period == 0.002 && s->velocity == ETHD_VELOCITY_LSQ && s->velocity_p[0] == 9);
   ck_assert(s->fit == ETHD_FIT_ROBUST && s->filter == ETHD_FILTER_CV);
   const ethd_method *cv = &ethd_filter_methods[ETHD_FILTER_CV];
-  ck_assert(s->filter_p[ethd_params_find(cv->params, cv->param_count, "reference")] ==
-            ETHD_REFERENCE_TICK);
+  ck_assert(s->filter_p[ethd_params_find(cv->params, cv->param_count, "reference")] == ETHD_REFERENCE_TICK);
   ck_assert(law_value(&s->tracking->law, s->tracking_p, "k_t") == 41);
   ck_assert(law_value(&s->tracking->law, s->tracking_p, "b_t") == 2);
   ck_assert(law_value(&s->tracking->law, s->tracking_p, "derivative") == 1);
@@ -84,8 +82,7 @@ START_TEST(test_every_key) {
   ck_assert(isinf(transition_value(s, "t_max")) && s->v_hysteresis == 0.001 && s->swap_time == 0.03);
   ck_assert(s->limits.torque == 1.5 && isinf(s->limits.torque_rate) && s->limits.speed == 2);
   ck_assert(s->limits.workspace[0] == -0.4 && s->limits.workspace[1] == 0.4);
-  ck_assert(s->limits.workspace[2] == 0.1 && isinf(s->limits.workspace[3]) &&
-            s->limits.step_time == 5e-4);
+  ck_assert(s->limits.workspace[2] == 0.1 && isinf(s->limits.workspace[3]) && s->limits.step_time == 5e-4);
   ck_assert_uint_eq(c->limits_given, 31);
   ck_assert_str_eq(c->device, "other");
   ck_assert_uint_eq(c->setting_count, 1);
@@ -99,8 +96,8 @@ END_TEST
 
 /* Keys of one section in every rotation, sections in reverse: the setup stays the same. */
 START_TEST(test_order_never_matters) {
-  static const char *const keys[] = {"law = offset", "preset = paper", "eps_max = 0.004",
-                                     "v_hysteresis = 0.002", "b_d = 90"};
+  static const char *const keys[] = {"law = offset", "preset = paper", "eps_max = 0.004", "v_hysteresis = 0.002",
+                                     "b_d = 90"};
   enum { COUNT = sizeof keys / sizeof *keys };
   for (int first = 0; first < COUNT; first++)
     for (int step = 1; step < COUNT; step++) {
@@ -122,8 +119,7 @@ END_TEST
 
 START_TEST(test_preset) {
   ethd_config *c = parse("[transition]\npreset = paper\n");
-  ck_assert(isinf(transition_value(&c->setup, "eps_max")) &&
-            isinf(transition_value(&c->setup, "t_max")));
+  ck_assert(isinf(transition_value(&c->setup, "eps_max")) && isinf(transition_value(&c->setup, "t_max")));
   ethd_config_free(c);
   c = parse("[transition]\npreset = product\n");
   ck_assert(transition_value(&c->setup, "eps_max") == 0.006);
@@ -136,9 +132,8 @@ START_TEST(test_preset) {
 END_TEST
 
 START_TEST(test_comments_and_spaces) {
-  ethd_config *c =
-      parse("  [contact]  ; walls\n\tk_e=100\t;soft ; really\n  b_e =  7  \n;b_e = 8\n   # b_e = 9\n"
-            "[device]\na = b;c\n# " X50 X50 X50 X50 X50 "\nd = e=f # g\n");
+  ethd_config *c = parse("  [contact]  ; walls\n\tk_e=100\t;soft ; really\n  b_e =  7  \n;b_e = 8\n   # b_e = 9\n"
+                         "[device]\na = b;c\n# " X50 X50 X50 X50 X50 "\nd = e=f # g\n");
   ck_assert(c->setup.contact_p[0] == 100 && c->setup.contact_p[1] == 7);
   ck_assert_str_eq(c->settings[0].value, "b;c");
   ck_assert_str_eq(c->settings[1].value, "e=f # g");
@@ -149,8 +144,7 @@ END_TEST
 /* ---- changes of law, single values ---- */
 
 START_TEST(test_transition) {
-  ethd_config *c =
-      parse("[transition]\nbeta_min = 0.3\nb_d = 70\nswap_time = 0.5\nv_hysteresis = 0.01\n");
+  ethd_config *c = parse("[transition]\nbeta_min = 0.3\nb_d = 70\nswap_time = 0.5\nv_hysteresis = 0.01\n");
   ethd_setup s = c->setup;
   ck_assert_int_eq(ethd_config_transition(c, "smooth", &s, message), ETHD_OK);
   ck_assert(s.transition == &ethd_transition_smooth && transition_value(&s, "beta_min") == 0.3);
@@ -208,8 +202,8 @@ START_TEST(test_set) {
   ethd_setup before = s;
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
     message[0] = 0;
-    ck_assert_msg(ethd_config_set(c, refused[i][0], refused[i][1], &s, message) < 0, "%s %s passed",
-                  refused[i][0], refused[i][1]);
+    ck_assert_msg(ethd_config_set(c, refused[i][0], refused[i][1], &s, message) < 0, "%s %s passed", refused[i][0],
+                  refused[i][1]);
     ck_assert(message[0] && memcmp(&before, &s, sizeof s) == 0);
   }
   ck_assert_int_lt(ethd_config_set(c, "contact.k_e", "-1", &s, message), 0);

@@ -16,29 +16,24 @@ typedef struct bad {
 
 static const bad bads[] = {
     {"[contact]\nk_e = 1\nk_e = 1\n", "x.ini:3: contact.k_e: stands twice, first on line 2"},
-    {"[contact]\nk_e = 1\n[arm]\n[contact]\nk_e = 2\n",
-     "x.ini:5: contact.k_e: stands twice, first on line 2"},
+    {"[contact]\nk_e = 1\n[arm]\n[contact]\nk_e = 2\n", "x.ini:5: contact.k_e: stands twice, first on line 2"},
     {"[device]\na = 1\na = 1\n", "x.ini:3: device.a: stands twice, first on line 2"},
     {"[nothing]\nx = 1\n", "x.ini:1: [nothing]: unknown section; arm, "},
     {"[arm]\n[nothing]\n[ring]\n", "x.ini:2: [nothing]: unknown section; arm, "},
     {"[ arm]\n", "x.ini:1: [ arm]: unknown section"},
     {"[]\n", "x.ini:1: []: unknown section"},
     {"[contact]\nk_x = 1\n", "x.ini:2: contact.k_x: not a key of kelvin-voigt, which has law, k_e, b_e"},
-    {"[arm]\n[ring]\nradius = 0.005\n",
-     "x.ini:3: finger.radius: a value is out of its range; found 0.0075, allowed 0.0001 to 0.005, by ring.radius = 0.005"},
+    {"[arm]\n[ring]\nradius = 0.005\n", "x.ini:3: finger.radius: a value is out of its range; found 0.0075, allowed "
+                                        "0.0001 to 0.005, by ring.radius = 0.005"},
     {"[ring]\nradius = 0.0076\n", "x.ini:2: finger.radius_max: a value is out of its range; found "},
     {"[ring]\nr = 1\n", "x.ini:2: ring.r: unknown key; radius are allowed"},
-    {"[contact]\nlaw = spring\nb_e = 1\n",
-     "x.ini:3: contact.b_e: not a key of spring, which has law, k_e"},
+    {"[contact]\nlaw = spring\nb_e = 1\n", "x.ini:3: contact.b_e: not a key of spring, which has law, k_e"},
     {"[contact]\nb_e = 1\nlaw = spring\n", "x.ini:2: contact.b_e: not a key of spring"},
     {"[velocity]\nlaw = lsq\n", "x.ini:2: velocity.law: not a key of lowpass, which has method"},
     {"[tracking]\nmethod = pd\n", "x.ini:2: tracking.method: not a key of pd"},
-    {"[contact]\nlaw = offset\n",
-     "x.ini:2: contact.law: found \"offset\", kelvin-voigt, spring, hunt-crossley is"},
-    {"[velocity]\nmethod = fast\n",
-     "x.ini:2: velocity.method: found \"fast\", lowpass, difference, lsq, foaw"},
-    {"[transition]\npreset = papers\n",
-     "x.ini:2: transition.preset: found \"papers\", product or paper is allowed"},
+    {"[contact]\nlaw = offset\n", "x.ini:2: contact.law: found \"offset\", kelvin-voigt, spring, hunt-crossley is"},
+    {"[velocity]\nmethod = fast\n", "x.ini:2: velocity.method: found \"fast\", lowpass, difference, lsq, foaw"},
+    {"[transition]\npreset = papers\n", "x.ini:2: transition.preset: found \"papers\", product or paper is allowed"},
     {"[contact]\nk_e = -1\n", "x.ini:2: contact.k_e: found -1, 0 to 1000000 N/m is allowed"},
     {"[contact]\nk_e = inf\n", "x.ini:2: contact.k_e: found inf, 0 to 1000000 N/m is allowed"},
     {"[contact]\nk_e = nan\n", "x.ini:2: contact.k_e: found \"nan\", a decimal number is allowed"},
@@ -59,30 +54,25 @@ static const bad bads[] = {
     {"[contact\nk_e = 5\n", "x.ini:1: found \"[contact\", a section needs its ]"},
     {"[contact] k_e = 5\n", "x.ini:1: found \"[contact] k_e = 5\", nothing is allowed behind ]"},
     {"[" X50 "]\n", "x.ini:1: a section's name of 50 characters, at most 49 are allowed"},
-    {"[device]\na = " X50 X50 X50 X50 "\n",
-     "x.ini:2: a line of 204 characters, at most 197 are allowed"},
+    {"[device]\na = " X50 X50 X50 X50 "\n", "x.ini:2: a line of 204 characters, at most 197 are allowed"},
     {"[contact]\nk_e = 5\n  b_e = 0x4\n", "x.ini:3: contact.b_e: found \"0x4\""}, /* no continuation */
-    {"[device]\na = 1\n  and more\n",
-     "x.ini:3: found \"and more\", [section] or key = value is allowed"},
+    {"[device]\na = 1\n  and more\n", "x.ini:3: found \"and more\", [section] or key = value is allowed"},
     {"[contact]\nk_e = 5\001\n", "x.ini:2: a byte 1: this is no text"},
     {"[contact]\rk_e = 5\r", "x.ini:1: a byte 13: this is no text"},
     {"[finger]\nradius_max = 0.012\n", "x.ini:2: finger.radius_max: a value is out of its range"},
     {"[ring]\nradius = 0\n", "x.ini:2: ring.radius: a value is out of its range; found 0, allowed"},
     {"[loop]\nperiod = inf\n", "x.ini:2: loop.period: a value is out of its range"},
-    {"[arm]\n\nmechanism = Serial\n",
-     "x.ini:3: arm.mechanism: found \"Serial\", parallel or serial is allowed"},
+    {"[arm]\n\nmechanism = Serial\n", "x.ini:3: arm.mechanism: found \"Serial\", parallel or serial is allowed"},
     {"[arm]\nlink1 = -1\n", "x.ini:2: arm.link1: a value is out of its range"},
     {"[arm]\nmass_x = 0\n", "x.ini:2: arm.mass_x: found \"0\", a mass over 0"},
-    {"[limits]\nworkspace = 0 1 0\n",
-     "x.ini:2: limits.workspace: found \"0 1 0\", x_min x_max y_min y_max"},
+    {"[limits]\nworkspace = 0 1 0\n", "x.ini:2: limits.workspace: found \"0 1 0\", x_min x_max y_min y_max"},
     {"[limits]\nworkspace = 0 1 0 1 2\n", "x.ini:2: limits.workspace: found"},
     {"[limits]\nworkspace = 0 1 0 nan\n", "x.ini:2: limits.workspace: found"},
     {"[limits]\nworkspace = 1 0 0 1\n", "x.ini:2: limits.workspace: a value is out of its range"},
     {"[limits]\ntorque = -1\n", "x.ini:2: limits.torque: a value is out of its range"},
     {"[transition]\nswap_time = 2\n", "x.ini:2: transition.swap_time: a value is out of its range"},
     {"[transition]\nlaw = smooth\neps_max = 1\n", "x.ini:3: transition.eps_max: not a key of smooth"},
-    {"[tracking]\nderivative = 0\n",
-     "x.ini:2: tracking.derivative: found \"0\", velocity|difference is allowed"},
+    {"[tracking]\nderivative = 0\n", "x.ini:2: tracking.derivative: found \"0\", velocity|difference is allowed"},
     {"[scene]\nfile = no.scene\n", "x.ini:2: scene.file: /nowhere/no.scene: No such file or directory"},
     {"[scene]\nfiles = no.scene\n", "x.ini:2: scene.files: unknown key; file are allowed"},
     {"[plugins]\nfile = no.so\n", "x.ini:2: plugins.file: /nowhere/no.so: No such file or directory"},
@@ -93,12 +83,11 @@ START_TEST(test_bad_texts) {
   for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {
     ethd_config *c = (ethd_config *)&i;
     message[0] = 0;
-    ethd_status status =
-        ethd_config_parse(bads[i].text, strlen(bads[i].text), "x.ini", "/nowhere", &c, message);
+    ethd_status status = ethd_config_parse(bads[i].text, strlen(bads[i].text), "x.ini", "/nowhere", &c, message);
     ck_assert_msg(status < 0, "passed: %s", bads[i].text);
     ck_assert_ptr_null(c);
-    ck_assert_msg(strncmp(message, bads[i].says, strlen(bads[i].says)) == 0, "%s\nsays: %s\nnot:  %s",
-                  bads[i].text, message, bads[i].says);
+    ck_assert_msg(strncmp(message, bads[i].says, strlen(bads[i].says)) == 0, "%s\nsays: %s\nnot:  %s", bads[i].text,
+                  message, bads[i].says);
   }
 }
 END_TEST

@@ -7,7 +7,30 @@
 
 #include "ethd/conform.h"
 
-enum { SOUND, NO_SAFE, NO_SERVICE, NO_BRIEF, BAD_TABLE, LEAKS, NO_LIMIT, OUTSIDE, NAN_ANGLE, BACKWARDS, FAULTY, DRIFTS, REVERSED, JUMPS, NO_WATCHDOG, UNSAFE, OLD_TORQUE, COUNTED, COARSE, COASTS, BLOCKED, WAYS };
+enum {
+  SOUND,
+  NO_SAFE,
+  NO_SERVICE,
+  NO_BRIEF,
+  BAD_TABLE,
+  LEAKS,
+  NO_LIMIT,
+  OUTSIDE,
+  NAN_ANGLE,
+  BACKWARDS,
+  FAULTY,
+  DRIFTS,
+  REVERSED,
+  JUMPS,
+  NO_WATCHDOG,
+  UNSAFE,
+  OLD_TORQUE,
+  COUNTED,
+  COARSE,
+  COASTS,
+  BLOCKED,
+  WAYS
+};
 
 static int way;
 static double coasting[2]; /* rad/s, that a closed device keeps */
@@ -51,7 +74,8 @@ static ethd_status read_fake(void *device, int64_t now, ethd_sense *out) {
   for (int i = 0; i < 2 && way == COASTS; i++) f->w[i] -= copysign(fmin(fabs(f->w[i]), 2 * dt), f->w[i]);
   if (way == COASTS) memcpy(coasting, f->w, sizeof coasting);
   for (int i = 0; i < 2 && way == BLOCKED; i++)
-    if (fabs(f->q[i] - f->home[i]) > 0.02) f->w[i] = 0, out->q[i] = f->q[i] = f->home[i] + copysign(0.02, f->q[i] - f->home[i]);
+    if (fabs(f->q[i] - f->home[i]) > 0.02)
+      f->w[i] = 0, out->q[i] = f->q[i] = f->home[i] + copysign(0.02, f->q[i] - f->home[i]);
   for (int i = 0; i < 2 && way == COARSE; i++) out->q[i] = rint(f->q[i] / 0.002) * 0.002;
   if (way == JUMPS && ++f->ticks == 50) f->q[0] += 1;
   if (way == NAN_ANGLE && ++f->ticks == 50) out->q[1] = (double)NAN;
@@ -85,9 +109,21 @@ static const ethd_param unnamed = {"", "1", 0, 1, 0, "without a name"};
 static ethd_verdict ask(const char *question, double torque, ethd_status *status) {
   static ethd_driver driver;
   static ethd_conform_answer answers[ETHD_QUESTIONS];
-  driver = (ethd_driver){.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "fake", .brief = way == NO_BRIEF ? "" : "fake", .open = open_fake, .start = start,
-                         .read = read_fake, .write = write_fake, .safe = way == NO_SAFE ? NULL : safe, .stop = stop, .close = free,
-                         .units = way == NO_SERVICE ? none : NULL, .params = &unnamed, .param_count = way == BAD_TABLE, .limits = limits};
+  driver = (ethd_driver){.size = sizeof driver,
+                         .abi = ETHD_DRIVER_ABI,
+                         .id = "fake",
+                         .brief = way == NO_BRIEF ? "" : "fake",
+                         .open = open_fake,
+                         .start = start,
+                         .read = read_fake,
+                         .write = write_fake,
+                         .safe = way == NO_SAFE ? NULL : safe,
+                         .stop = stop,
+                         .close = free,
+                         .units = way == NO_SERVICE ? none : NULL,
+                         .params = &unnamed,
+                         .param_count = way == BAD_TABLE,
+                         .limits = limits};
   const ethd_driver *const from[] = {&driver, NULL};
   const ethd_setup setup = ethd_setup_default();
   const ethd_device_def device = {&setup, NULL, 0, ".", NULL};
@@ -104,14 +140,16 @@ static ethd_verdict ask(const char *question, double torque, ethd_status *status
 static const struct {
   const char *question;
   ethd_verdict verdict;
-} expected[WAYS] = {
-    [NO_SAFE] = {"table", ETHD_BROKEN},     [NO_SERVICE] = {"table", ETHD_BROKEN},  [NO_BRIEF] = {"table", ETHD_BROKEN},
-    [BAD_TABLE] = {"table", ETHD_BROKEN},   [LEAKS] = {"open", ETHD_BROKEN},        [NO_LIMIT] = {"limits", ETHD_AT_RISK},
-    [OUTSIDE] = {"limits", ETHD_BROKEN},    [NAN_ANGLE] = {"sense", ETHD_BROKEN},   [BACKWARDS] = {"sense", ETHD_BROKEN},
-    [FAULTY] = {"sense", ETHD_BROKEN},      [DRIFTS] = {"zero", ETHD_BROKEN},       [REVERSED] = {"sign", ETHD_BROKEN},
-    [JUMPS] = {"counts", ETHD_BROKEN},      [NO_WATCHDOG] = {"watchdog", ETHD_AT_RISK}, [UNSAFE] = {"safe", ETHD_BROKEN},
-    [OLD_TORQUE] = {"restart", ETHD_BROKEN}, [COUNTED] = {"sense", ETHD_AT_RISK},   [COARSE] = {"watchdog", ETHD_NOT_ASKED},
-    [COASTS] = {"restart", ETHD_KEPT},      [BLOCKED] = {"watchdog", ETHD_NOT_ASKED}};
+} expected[WAYS] = {[NO_SAFE] = {"table", ETHD_BROKEN},   [NO_SERVICE] = {"table", ETHD_BROKEN},
+                    [NO_BRIEF] = {"table", ETHD_BROKEN},  [BAD_TABLE] = {"table", ETHD_BROKEN},
+                    [LEAKS] = {"open", ETHD_BROKEN},      [NO_LIMIT] = {"limits", ETHD_AT_RISK},
+                    [OUTSIDE] = {"limits", ETHD_BROKEN},  [NAN_ANGLE] = {"sense", ETHD_BROKEN},
+                    [BACKWARDS] = {"sense", ETHD_BROKEN}, [FAULTY] = {"sense", ETHD_BROKEN},
+                    [DRIFTS] = {"zero", ETHD_BROKEN},     [REVERSED] = {"sign", ETHD_BROKEN},
+                    [JUMPS] = {"counts", ETHD_BROKEN},    [NO_WATCHDOG] = {"watchdog", ETHD_AT_RISK},
+                    [UNSAFE] = {"safe", ETHD_BROKEN},     [OLD_TORQUE] = {"restart", ETHD_BROKEN},
+                    [COUNTED] = {"sense", ETHD_AT_RISK},  [COARSE] = {"watchdog", ETHD_NOT_ASKED},
+                    [COASTS] = {"restart", ETHD_KEPT},    [BLOCKED] = {"watchdog", ETHD_NOT_ASKED}};
 
 START_TEST(test_way) {
   ethd_status status;
@@ -122,7 +160,8 @@ START_TEST(test_way) {
 END_TEST
 
 START_TEST(test_sound) {
-  static const char *const all[] = {"table", "open", "limits", "sense", "zero", "sign", "counts", "watchdog", "safe", "restart"};
+  static const char *const all[] = {"table", "open",   "limits",   "sense", "zero",
+                                    "sign",  "counts", "watchdog", "safe",  "restart"};
   ethd_status status;
   way = SOUND;
   for (int i = 0; i < ETHD_QUESTIONS; i++) ck_assert_int_eq(ask(all[i], 0.1, &status), ETHD_KEPT);

@@ -8,9 +8,7 @@
 static void close_to(double got, double want) { ck_assert_double_eq_tol(got, want, 1e-10); }
 
 /* Ring and finger together at x, moving with v. */
-static motion at(double x, double y, double vx, double vy) {
-  return (motion){{x, y}, {vx, vy}, {x, y}, {vx, vy}};
-}
+static motion at(double x, double y, double vx, double vy) { return (motion){{x, y}, {vx, vy}, {x, y}, {vx, vy}}; }
 
 static void open_with(rig *r, const char *scene, const ethd_transition_law *law) {
   rig_open(r, scene);
@@ -91,7 +89,8 @@ static ethd_status saying_step(const double *p, void *state, const ethd_contact 
 }
 
 static const ethd_transition_law saying = {
-    {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 0, "saying", "says it all", NULL, 0, NULL, NULL}, saying_step};
+    {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 0, "saying", "says it all", NULL, 0, NULL, NULL},
+    saying_step};
 
 START_TEST(test_rulings_together) {
   for (int swapped = 0; swapped < 2; swapped++) { /* whichever is the deeper */
@@ -238,10 +237,9 @@ static ethd_status lingering_step(const double *p, void *state, const ethd_conta
   return ETHD_OK;
 }
 
-static const ethd_transition_law lingering = {
-    {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, sizeof(double), "lingering", "lives 20 ticks", NULL, 0,
-     NULL, NULL},
-    lingering_step};
+static const ethd_transition_law lingering = {{sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, sizeof(double),
+                                               "lingering", "lives 20 ticks", NULL, 0, NULL, NULL},
+                                              lingering_step};
 
 START_TEST(test_contact_lives_out_of_reach) {
   rig r;
@@ -369,8 +367,9 @@ END_TEST
 
 START_TEST(test_materials) {
   rig r;
-  open_with(&r, "material soft k_e=500 b_e=10\nmaterial hard k_e=9000\n" RIG_WALL
-               "halfplane -1 0 -0.238 material=soft\nhalfplane 0 -1 -0.238 material=hard\n",
+  open_with(&r,
+            "material soft k_e=500 b_e=10\nmaterial hard k_e=9000\n" RIG_WALL
+            "halfplane -1 0 -0.238 material=soft\nhalfplane 0 -1 -0.238 material=hard\n",
             &ethd_transition_smooth);
   motion m = at(0.248, 0.249, -0.1, -0.1);
   const ethd_trace *t = rig_step(&r, &m);

@@ -102,7 +102,8 @@ END_TEST
 
 /* Whatever law, depth, speed: no wall pulls. */
 START_TEST(test_never_attractive) {
-  const ethd_contact_law *const laws[] = {&ethd_contact_kelvin_voigt, &ethd_contact_spring, &ethd_contact_hunt_crossley};
+  const ethd_contact_law *const laws[] = {&ethd_contact_kelvin_voigt, &ethd_contact_spring,
+                                          &ethd_contact_hunt_crossley};
   int resting = 0;
   for (int law = 0; law < 3; law++) {
     rig r;

@@ -124,8 +124,7 @@ static answer model_step(model *m, const ethd_sense *s) {
   solve(&u->arm, s->q, s->finger[0] - a.x[0], s->finger[1] - a.x[1], a.eps_q);
   solve(&u->arm, s->q, s->finger_v[0] - a.v[0], s->finger_v[1] - a.v[1], a.eps_q_dot);
   to_joints(&u->arm, s->q, a.fe[0] + a.fd[0], a.fe[1] + a.fd[1], a.tau);
-  for (int i = 0; i < 2; i++)
-    a.tau[i] += a.beta * (u->tracking_p[0] * a.eps_q[i] + u->tracking_p[1] * a.eps_q_dot[i]);
+  for (int i = 0; i < 2; i++) a.tau[i] += a.beta * (u->tracking_p[0] * a.eps_q[i] + u->tracking_p[1] * a.eps_q_dot[i]);
   return a;
 }
 
@@ -160,9 +159,12 @@ static void compare(int tick, const ethd_trace *t, const answer *a) {
 static const char four[] = RIG_WALL "halfplane 1 0 0.272\nhalfplane 0 -1 -0.236\nhalfplane 0.6 0.8 0.37\n";
 
 static model model_of(const ethd_setup *setup, int walls) {
-  model m = {.walls = {{-1, 0, -0.238, 0, 0, 0, 0}, {1, 0, 0.272, 0, 0, 0, 0}, {0, -1, -0.236, 0, 0, 0, 0},
+  model m = {.walls = {{-1, 0, -0.238, 0, 0, 0, 0},
+                       {1, 0, 0.272, 0, 0, 0, 0},
+                       {0, -1, -0.236, 0, 0, 0, 0},
                        {0.6, 0.8, 0.37, 0, 0, 0, 0}},
-             .count = walls, .setup = setup};
+             .count = walls,
+             .setup = setup};
   return m;
 }
 

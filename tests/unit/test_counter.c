@@ -55,7 +55,7 @@ START_TEST(test_counts_become_angles) {
   }
   ethd_sense s = {0};
   ck_assert_int_eq(D.read(d, 0, &s), ETHD_STALE); /* nothing newer */
-  ck_assert_int_eq(counter_mock.open_files, 3);           /* the device once, two counts */
+  ck_assert_int_eq(counter_mock.open_files, 3);   /* the device once, two counts */
   ck_assert_int_eq(counter_mock.pauses, 100);
   D.close(d);
   ck_assert_int_eq(counter_mock.open_files, 0);
@@ -118,7 +118,7 @@ START_TEST(test_homing) {
   ck_assert_double_eq_tol(s.q[0], 0.25 + PER_COUNT * (double)((int64_t)counter_mock.count[0] - 1190), 1e-12);
   ck_assert_double_eq_tol(s.q[1], PER_COUNT * (double)((int64_t)counter_mock.count[1] - 3390 + 4000), 1e-12);
   ck_assert_int_eq(D.start(d), ETHD_OK); /* at home */
-  counter_mock.count[0] = 5190; /* a turn later, by and by */
+  counter_mock.count[0] = 5190;          /* a turn later, by and by */
   for (int i = 2; i < 100; i++) counter_mock.count[0] = 1404 + (uint64_t)(38 * i), sample(d, i, ETHD_OK);
   mock_counter_event(COUNTER_EVENT_INDEX, 0, 5192, 0); /* two counts too far */
   s = sample(d, 100, ETHD_OK);
@@ -213,7 +213,8 @@ static const struct {
     {"count1", "1.5", "c.ini:7: count1"},
     {"freeze_torque", "nan", "c.ini:7: freeze_torque"},
     {"device", "/dev/counter9", "/dev/counter9: no such counter"},
-    {"device", "/a/path/that/is/much/longer/than/any/device/has/ever/been/and/still/goes/on/and/on/until/it/is/too/long",
+    {"device",
+     "/a/path/that/is/much/longer/than/any/device/has/ever/been/and/still/goes/on/and/on/until/it/is/too/long",
      "c.ini:7: device"},
 };
 

@@ -10,9 +10,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "mutate.h"
 #include "text/csv.h"
 #include "text/text.h"
-#include "mutate.h"
 
 static char message[ETHD_MESSAGE_MAX];
 static char folder[] = "/tmp/ethd-csv-XXXXXX", path[64];
@@ -40,8 +40,7 @@ START_TEST(test_numbers) {
   parse("t_s,x_m, y m \r\n0,-1.5,+2e-3\r\n.5,1.,nan\r\n1E+2,,  7\t\r\n", NULL, &c);
   static const double expected[] = {0, -1.5, 2e-3, 0.5, 1, NAN, 100, NAN, 7};
   ck_assert(c.rows == 3 && c.columns == 3);
-  for (size_t i = 0; i < 9; i++)
-    ck_assert(isnan(expected[i]) ? isnan(c.values[i]) : c.values[i] == expected[i]);
+  for (size_t i = 0; i < 9; i++) ck_assert(isnan(expected[i]) ? isnan(c.values[i]) : c.values[i] == expected[i]);
   ck_assert(ethd_csv_empty(&c, 2, 1) && !ethd_csv_empty(&c, 1, 2) && !ethd_csv_empty(&c, 2, 2));
   ck_assert_int_eq(ethd_csv_column(&c, "x_m"), 1);
   ck_assert_int_eq(ethd_csv_column(&c, "y m"), 2);
@@ -105,8 +104,8 @@ START_TEST(test_bad_texts) {
     ethd_csv c;
     message[0] = 0;
     const char *says = bads[i].says;
-    ck_assert_msg(ethd_csv_parse(bads[i].text, strlen(bads[i].text), "x.csv", NULL, &c, message) < 0,
-                  "passed: %s", bads[i].text);
+    ck_assert_msg(ethd_csv_parse(bads[i].text, strlen(bads[i].text), "x.csv", NULL, &c, message) < 0, "passed: %s",
+                  bads[i].text);
     ck_assert_msg(strncmp(message, says, strlen(says)) == 0, "%s\nsays %s", bads[i].text, message);
   }
   ethd_csv c;
@@ -127,8 +126,7 @@ END_TEST
 /* ---- writing ---- */
 
 START_TEST(test_round_trip) {
-  static const double values[] = {0.1,    -0.0, 1e-310, 1.7976931348623157e308, 123456789.123456789,
-                                  1.0 / 3};
+  static const double values[] = {0.1, -0.0, 1e-310, 1.7976931348623157e308, 123456789.123456789, 1.0 / 3};
   ethd_csv_out *out = ethd_csv_create(path, "a,b,c,d", message);
   ck_assert_ptr_nonnull(out);
   for (size_t i = 0; i < 6; i++) {
@@ -241,10 +239,8 @@ END_TEST
 /* ---- whatever comes ---- */
 
 START_TEST(test_mutations) {
-  static const char *const words[] = {",",    "\n", "\"",   "nan", "inf", "-", "1e5",
-                                      "\r\n", "a",  "\n\n", ",,",  " ",   NULL};
-  static const char seed[] =
-      "t_s,q1_rad,q2_rad,note\n0,0.5,1e-3,\"a,b\"\n0.001,,nan,c\r\n0.002,-1.25,+4,\n";
+  static const char *const words[] = {",", "\n", "\"", "nan", "inf", "-", "1e5", "\r\n", "a", "\n\n", ",,", " ", NULL};
+  static const char seed[] = "t_s,q1_rad,q2_rad,note\n0,0.5,1e-3,\"a,b\"\n0.001,,nan,c\r\n0.002,-1.25,+4,\n";
   static const char *const wanted[] = {"t_s", "q1_rad", NULL};
   char text[1024];
   int accepted = 0;
@@ -267,11 +263,10 @@ START_TEST(test_mutations) {
 END_TEST
 
 START_TEST(test_number) {
-  static const char *const good[] = {"0",    "-0",  "+1",   "1.",   ".1",  "1e5",
-                                     "1E-5", "inf", "-INF", "+inf", "nan", "00012"};
-  static const char *const bad[] = {
-      "",     "+",      "-",  ".",  "e5",  "1e",      "1e+", "1e5.", "0x1",  "1f",  "infinity",
-      "-nan", "nan(1)", " 1", "1 ", "1_0", "1e99999", "--1", "+-1",  "inf ", "1,0", "\xd9\xa1"};
+  static const char *const good[] = {"0", "-0", "+1", "1.", ".1", "1e5", "1E-5", "inf", "-INF", "+inf", "nan", "00012"};
+  static const char *const bad[] = {"",        "+",   "-",        ".",    "e5",     "1e",      "1e+", "1e5.",
+                                    "0x1",     "1f",  "infinity", "-nan", "nan(1)", " 1",      "1 ",  "1_0",
+                                    "1e99999", "--1", "+-1",      "inf ", "1,0",    "\xd9\xa1"};
   double value;
   for (size_t i = 0; i < sizeof good / sizeof *good; i++)
     ck_assert_msg(ethd__number(good[i], strlen(good[i]), &value), "%s", good[i]);

@@ -17,9 +17,13 @@ typedef struct swing {
   double ring, ring_speed;     /* against the finger */
 } swing;
 
-static double swung(double amplitude, double speed, double t) { return amplitude > 0 ? amplitude * sin(speed / amplitude * t) : 0; }
+static double swung(double amplitude, double speed, double t) {
+  return amplitude > 0 ? amplitude * sin(speed / amplitude * t) : 0;
+}
 
-static ethd_vec finger_at(const swing *s, double t) { return (ethd_vec){0.25 + swung(s->finger, s->finger_speed, t), 0.25}; }
+static ethd_vec finger_at(const swing *s, double t) {
+  return (ethd_vec){0.25 + swung(s->finger, s->finger_speed, t), 0.25};
+}
 
 static ethd_vec ring_at(const swing *s, double t) {
   ethd_vec finger = finger_at(s, t);
@@ -32,7 +36,8 @@ static void lags(int boards, double out[ETHD_RAYS]) {
     out[k] = boards ? 1e-6 * ETHD__FRAME_SLOT_US * (1.5 - k % ETHD__FRAME_LANES) : 3.3e-3 * (0.5 - k / 15.0);
 }
 
-static void take(const swing *s, const double lag[ETHD_RAYS], int64_t sample_ns, uint64_t frame, double rays[ETHD_RAYS]) {
+static void take(const swing *s, const double lag[ETHD_RAYS], int64_t sample_ns, uint64_t frame,
+                 double rays[ETHD_RAYS]) {
   for (uint64_t k = 0; k < ETHD_RAYS; k++) {
     double t = 1e-9 * (double)sample_ns - lag[k], all[ETHD_RAYS];
     ethd_fit_rays(0.012, 0.0075, ethd_vec_sub(finger_at(s, t), ring_at(s, t)), all);
@@ -87,9 +92,10 @@ START_TEST(test_gain) {
     for (int boards = 0; boards < 2; boards++) {
       double lag[ETHD_RAYS];
       lags(boards, lag);
-      double without = error_of(&rows[i].swing, ETHD_FIT_KASA, lag, 0), with = error_of(&rows[i].swing, ETHD_FIT_KASA, lag, 1);
-      printf("%-38s %s: rms error %.3f mm, lags told %.3f mm\n", rows[i].what, boards ? "1.35 ms" : "3.3 ms ", 1e3 * without,
-             1e3 * with);
+      double without = error_of(&rows[i].swing, ETHD_FIT_KASA, lag, 0),
+             with = error_of(&rows[i].swing, ETHD_FIT_KASA, lag, 1);
+      printf("%-38s %s: rms error %.3f mm, lags told %.3f mm\n", rows[i].what, boards ? "1.35 ms" : "3.3 ms ",
+             1e3 * without, 1e3 * with);
       ck_assert_double_le(with, rows[i].most[boards] * without);
     }
 }
@@ -105,7 +111,8 @@ START_TEST(test_every_fit) {
     if (fit == ETHD_FIT_VERTEX_MEAN) continue; /* gives half of an offset, by definition */
     double least = error_of(&still, (ethd_fit_method)fit, one, 1);
     printf("%s: %.3f mm, moving %.3f mm, one late %.3f mm\n", ethd_fit_methods[fit].id, 1e3 * least,
-           1e3 * error_of(&moving, (ethd_fit_method)fit, lag, 1), 1e3 * error_of(&moving, (ethd_fit_method)fit, one, 1));
+           1e3 * error_of(&moving, (ethd_fit_method)fit, lag, 1),
+           1e3 * error_of(&moving, (ethd_fit_method)fit, one, 1));
     ck_assert_double_le(error_of(&moving, (ethd_fit_method)fit, lag, 1), least + 0.15e-3);
     ck_assert_double_le(error_of(&moving, (ethd_fit_method)fit, one, 1), least + 0.15e-3);
   }
@@ -133,12 +140,14 @@ static ethd_status parse(const char *text, ethd_config **out, char *message) {
 START_TEST(test_configured) {
   char message[ETHD_MESSAGE_MAX];
   ethd_config *config;
-  ck_assert_int_eq(parse("[finger_fit]\nlag = 0 1e-3 2e-3 -1e-3 0 0 0 0 0 0 0 0 0 0 0 -0.01\n", &config, message), ETHD_OK);
+  ck_assert_int_eq(parse("[finger_fit]\nlag = 0 1e-3 2e-3 -1e-3 0 0 0 0 0 0 0 0 0 0 0 -0.01\n", &config, message),
+                   ETHD_OK);
   const double *lag = config->setup.ray_lag;
   ck_assert(lag[0] == 0 && lag[1] == 1e-3 && lag[2] == 2e-3 && lag[3] == -1e-3 && lag[15] == -0.01);
   ethd_config_free(config);
   ck_assert_int_lt(parse("[finger_fit]\nlag = 0 1e-3\n", &config, message), 0);
-  ck_assert_str_eq(message, "x.ini:2: finger_fit.lag: found \"0 1e-3\", a time in s for each of the 16 rays is allowed");
+  ck_assert_str_eq(message,
+                   "x.ini:2: finger_fit.lag: found \"0 1e-3\", a time in s for each of the 16 rays is allowed");
   ck_assert_int_lt(parse("\n[finger_fit]\nlag = 0 0 0 0 0 0 0 0.02 0 0 0 0 0 0 0 0\n", &config, message), 0);
   ck_assert_ptr_nonnull(strstr(message, "x.ini:3: finger_fit.lag: a value is out of its range; found 0.02"));
 }

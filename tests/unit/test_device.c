@@ -31,8 +31,12 @@ static ethd_status open_part(char name, const ethd_device_def *def, void **devic
   if (p->keys && !strcmp(p->key[0], "bad")) return strcpy(message, "refused"), ETHD_E_DEVICE;
   return ETHD_OK;
 }
-static ethd_status open_a(const ethd_device_def *d, void **v, char m[ETHD_MESSAGE_MAX]) { return open_part('a', d, v, m); }
-static ethd_status open_b(const ethd_device_def *d, void **v, char m[ETHD_MESSAGE_MAX]) { return open_part('b', d, v, m); }
+static ethd_status open_a(const ethd_device_def *d, void **v, char m[ETHD_MESSAGE_MAX]) {
+  return open_part('a', d, v, m);
+}
+static ethd_status open_b(const ethd_device_def *d, void **v, char m[ETHD_MESSAGE_MAX]) {
+  return open_part('b', d, v, m);
+}
 static int fail_start;
 static ethd_status start(void *p) {
   note('s', ((part *)p)->name);
@@ -52,10 +56,14 @@ static ethd_status read_b(void *p, int64_t now, ethd_sense *out) {
   (void)p, (void)now, out->have |= ETHD_HAVE_RAYS, out->faults |= ETHD_FAULT_BIT(ETHD_FAULT_SENSOR);
   return ETHD_OK;
 }
-static ethd_status write_a(void *p, int64_t now, const ethd_command *c) { return (void)p, (void)now, (void)c, note('w', 'a'), ETHD_OK; }
+static ethd_status write_a(void *p, int64_t now, const ethd_command *c) {
+  return (void)p, (void)now, (void)c, note('w', 'a'), ETHD_OK;
+}
 static uint32_t one(const void *p) { return (void)p, 1; }
 static uint32_t two(const void *p) { return (void)p, 2; }
-static ethd_status service(void *p, uint32_t unit, int64_t now) { return (void)now, note((char)('0' + unit), ((part *)p)->name), ETHD_OK; }
+static ethd_status service(void *p, uint32_t unit, int64_t now) {
+  return (void)now, note((char)('0' + unit), ((part *)p)->name), ETHD_OK;
+}
 static ethd_limits limits_a(const void *p) {
   ethd_limits l = ethd_limits_none();
   return (void)p, l.torque = 2, l.speed = 3, l;
@@ -69,12 +77,33 @@ static uint32_t figures(const void *p, ethd_figure *out, uint32_t max) {
   return max ? 1 : 0;
 }
 
-static const ethd_driver a = {.size = sizeof a, .id = "a", .brief = "a", .open = open_a, .start = start, .read = read_a,
-                              .write = write_a, .units = one, .service = service, .safe = safe, .stop = stop,
-                              .close = close_part, .limits = limits_a, .figures = figures};
-static const ethd_driver b = {.size = sizeof b, .id = "b", .brief = "b", .open = open_b, .start = start, .read = read_b,
-                              .units = two, .service = service, .safe = safe, .stop = stop, .close = close_part,
-                              .limits = limits_b, .figures = figures};
+static const ethd_driver a = {.size = sizeof a,
+                              .id = "a",
+                              .brief = "a",
+                              .open = open_a,
+                              .start = start,
+                              .read = read_a,
+                              .write = write_a,
+                              .units = one,
+                              .service = service,
+                              .safe = safe,
+                              .stop = stop,
+                              .close = close_part,
+                              .limits = limits_a,
+                              .figures = figures};
+static const ethd_driver b = {.size = sizeof b,
+                              .id = "b",
+                              .brief = "b",
+                              .open = open_b,
+                              .start = start,
+                              .read = read_b,
+                              .units = two,
+                              .service = service,
+                              .safe = safe,
+                              .stop = stop,
+                              .close = close_part,
+                              .limits = limits_b,
+                              .figures = figures};
 static const ethd_driver *const both[] = {&a, &b, NULL};
 
 static const ethd_driver *driver;

@@ -93,7 +93,7 @@ START_TEST(test_one_jump_is_dropped) {
   for (int i = 0; i < 50; i++) ck_assert_int_eq(feed(&k, 20 * i, NAN), 0);
   double before = k.e.q;
   ck_assert_int_eq(feed(&k, 20 * 50 + 500, NAN), BIT(ENCODER_JUMP)); /* 10 rad/s are 76 counts */
-  ck_assert_double_eq_tol(k.e.q, before + 20 * TURN / 48000, 1e-12);  /* goes on as it went */
+  ck_assert_double_eq_tol(k.e.q, before + 20 * TURN / 48000, 1e-12); /* goes on as it went */
   ck_assert_int_eq(feed(&k, 20 * 51, NAN), 0);
   ck_assert_int_eq(k.e.position, 20 * 51);
   ck_assert_int_eq(k.grave, 0);
@@ -172,9 +172,9 @@ START_TEST(test_reversed) {
   for (double torque = 0.15; torque < 0.8; torque += 0.1) {
     int after = drive(torque, 0, 0, -1);
     ck_assert_msg(after >= 9 && after <= 20, "%g Nm: %d ms", torque, after);
-    ck_assert_int_eq(drive(torque, 0, 0, 1), -1);              /* as it should be */
-    ck_assert_int_eq(drive(torque, 0, -1.5, 1), -1);           /* it brakes */
-    ck_assert_int_eq(drive(torque, -1.1 * torque, 0, 1), -1);  /* a hand pushes back, a little stronger */
+    ck_assert_int_eq(drive(torque, 0, 0, 1), -1);             /* as it should be */
+    ck_assert_int_eq(drive(torque, 0, -1.5, 1), -1);          /* it brakes */
+    ck_assert_int_eq(drive(torque, -1.1 * torque, 0, 1), -1); /* a hand pushes back, a little stronger */
     ck_assert_int_eq(drive(torque, -0.5 * torque, 0, -1) > 8, 1);
   }
   ck_assert_int_eq(drive(0.09, 0, 0, -1), -1); /* too little to tell */

@@ -188,8 +188,10 @@ START_TEST(test_failure_at_a_swap) {
       rig_post(&r);
     }
     rig_try(&r, &s);
-    if (tick == 20) moody_expect_safe(&r, ETHD_E_LAW, ETHD_FAULT_LAW);
-    else ck_assert_int_eq(r.status, ETHD_OK);
+    if (tick == 20)
+      moody_expect_safe(&r, ETHD_E_LAW, ETHD_FAULT_LAW);
+    else
+      ck_assert_int_eq(r.status, ETHD_OK);
     if (tick > 0) ck_assert_double_eq_tol(r.trace.v[0], -0.2, 1e-3);
   }
   rig_close(&r);

@@ -166,7 +166,8 @@ START_TEST(test_worst_of_a_tick) {
   rig r;
   moody_open(&r, 1);
   with(&r, moving(&r, 0.3),
-       ETHD_FAULT_BIT(ETHD_FAULT_OVERRUNS) | ETHD_FAULT_BIT(ETHD_FAULT_DRIVE) | ETHD_FAULT_BIT(ETHD_FAULT_BUS_VOLTAGE), 0);
+       ETHD_FAULT_BIT(ETHD_FAULT_OVERRUNS) | ETHD_FAULT_BIT(ETHD_FAULT_DRIVE) | ETHD_FAULT_BIT(ETHD_FAULT_BUS_VOLTAGE),
+       0);
   moody_expect_safe(&r, ETHD_E_DEVICE, ETHD_FAULT_DRIVE);
   rig_close(&r);
 }
@@ -209,8 +210,9 @@ END_TEST
 static const struct {
   int64_t missed, jump;
   int bad;
-} gaps[] = {{0, 0, 0},        {4, 0, 0},        {5, 0, 1},           {100, 0, 1},          {0, 4900000, 0},
-            {0, 5100000, 1},  {0, -5100000, 1}, {0, INT64_MAX / 2, 1}, {3, -5100000, 1}, {0, -4000000, 0}};
+} gaps[] = {{0, 0, 0},        {4, 0, 0},       {5, 0, 1},        {100, 0, 1},
+            {0, 4900000, 0},  {0, 5100000, 1}, {0, -5100000, 1}, {0, INT64_MAX / 2, 1},
+            {3, -5100000, 1}, {0, -4000000, 0}};
 
 START_TEST(test_clock) {
   for (int limited = 0; limited < 2; limited++) {

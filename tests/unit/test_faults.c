@@ -135,7 +135,7 @@ START_TEST(test_sum_overflows) {
   mood.value = -1.7e308;
   ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
   mood.tracking = MOODY_BAD; /* both at once */
-  s.q[1] = 0.6;        /* dx/dq2 = -0.141 m and F = +1.79e308 N: two negative torques */
+  s.q[1] = 0.6;              /* dx/dq2 = -0.141 m and F = +1.79e308 N: two negative torques */
   mood.value = -1.79e308;
   rig_try(&r, &s);
   moody_expect_safe(&r, ETHD_E_NOT_FINITE, ETHD_FAULT_FINITE);

@@ -46,8 +46,7 @@ START_TEST(test_arrival_does_not_matter) {
     for (; due * 3 <= k - (due % 5) * 2; due++) /* up to 8 ticks late, several at once */
       ck_assert_int_eq(feed(&f, &b, 0.2 * sin(0.06 * due), (k - 3 * due) * T), ETHD_OK);
   }
-  for (; due * 3 < 900; due++)
-    ck_assert_int_eq(feed(&f, &b, 0.2 * sin(0.06 * due), (899 - 3 * due) * T), ETHD_OK);
+  for (; due * 3 < 900; due++) ck_assert_int_eq(feed(&f, &b, 0.2 * sin(0.06 * due), (899 - 3 * due) * T), ETHD_OK);
   ck_assert_double_eq_tol(out_x(&f, &a), out_x(&f, &b), 1e-11);
   ck_assert_double_eq_tol(out_v(&f, &a), out_v(&f, &b), 1e-9);
   for (int i = 0; i < 6; i++) ck_assert_double_le(fabs(a.cov[i] - b.cov[i]), 1e-9 * fabs(a.cov[i]));
@@ -103,8 +102,7 @@ START_TEST(test_starts_itself) {
   ck_assert(s.started == 1 && s.used == 1);
   ck_assert(out_x(&f, &s) == 0.3 && out_v(&f, &s) == 0);
   if (_i != ETHD_FILTER_CV && _i != ETHD_FILTER_CA) return;
-  for (int k = 1; k < 4; k++)
-    ck_assert_int_eq(feed(&f, &s, 0.3 + 0.5 * k / 300, 20e-3 - k / 300.0), ETHD_OK);
+  for (int k = 1; k < 4; k++) ck_assert_int_eq(feed(&f, &s, 0.3 + 0.5 * k / 300, 20e-3 - k / 300.0), ETHD_OK);
   ck_assert_double_eq_tol(out_v(&f, &s), 0.5, 0.05);
 }
 END_TEST
@@ -175,8 +173,7 @@ START_TEST(test_refusals) {
     const ethd_method *m = &ethd_filter_methods[bad[i].method];
     ethd_params_default(m->params, m->param_count, p);
     p[ethd_params_find(m->params, m->param_count, bad[i].name)] = bad[i].value;
-    ck_assert_int_eq(ethd_filter_prepare((ethd_filter_method)bad[i].method, p, T, &f, &error),
-                     bad[i].status);
+    ck_assert_int_eq(ethd_filter_prepare((ethd_filter_method)bad[i].method, p, T, &f, &error), bad[i].status);
     ck_assert_str_eq(error.name, bad[i].name);
   }
   ethd_params_default(ethd_filter_methods[0].params, ethd_filter_methods[0].param_count, p);

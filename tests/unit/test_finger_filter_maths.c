@@ -15,8 +15,7 @@ typedef struct reference {
 static void ref_move(reference *r, long double t) {
   long double z = r->n == 3 ? t / (2 * r->memory) : 0, fade = (1 - z) / (1 + z), av = t / (1 + z);
   matrix f = {{1, t, t * av / 2}, {0, 1, av}, {0, 0, fade}}, fp = {{0}}, out = {{0}};
-  long double g3[3] = {t * t * t / 6, t * t / 2, t}, g2[3] = {t * t / 2, t, 0}, *g = r->n == 3 ? g3 : g2,
-              x[3] = {0};
+  long double g3[3] = {t * t * t / 6, t * t / 2, t}, g2[3] = {t * t / 2, t, 0}, *g = r->n == 3 ? g3 : g2, x[3] = {0};
   for (int i = 0; i < r->n; i++)
     for (int j = 0; j < r->n; j++) {
       x[i] += f[i][j] * r->x[j];
@@ -58,13 +57,8 @@ START_TEST(test_kalman_as_matrices) {
                                       "acceleration", "jerk", "memory",  NULL};
   int ca = _i / 2 > 0, by_stamp = _i % 2;
   double memory = _i / 2 == 2 ? INFINITY : 0.05;
-  const double values[] = {by_stamp ? ETHD_COMPENSATION_STAMP : ETHD_COMPENSATION_NONE,
-                           INFINITY,
-                           0.4e-3,
-                           0.101e-3,
-                           9.07,
-                           400,
-                           memory};
+  const double values[] = {
+      by_stamp ? ETHD_COMPENSATION_STAMP : ETHD_COMPENSATION_NONE, INFINITY, 0.4e-3, 0.101e-3, 9.07, 400, memory};
   ethd_filter f = with(ca ? ETHD_FILTER_CA : ETHD_FILTER_CV, names, values);
   ethd_filter_state s;
   memset(&s, 0, sizeof s);
@@ -83,8 +77,7 @@ START_TEST(test_kalman_as_matrices) {
     ethd_filter_predict(&f, &s, dt);
     if (!by_stamp) ref_move(&r, dt);
     if (k % 3 || draw(3 * (uint64_t)k + 1, 0, 1) < 0.2) continue;
-    double sampled = now - 2e-3,
-           z = 0.3 + 0.05 * now + 0.01 * sin(20 * sampled) + 1e-4 * draw_normal((uint64_t)k);
+    double sampled = now - 2e-3, z = 0.3 + 0.05 * now + 0.01 * sin(20 * sampled) + 1e-4 * draw_normal((uint64_t)k);
     if (by_stamp && sampled - 0.4e-3 <= stands) continue;
     if (by_stamp) ref_move(&r, (long double)(sampled - 0.4e-3) - stands);
     ref_correct(&r, z);
@@ -121,21 +114,17 @@ START_TEST(test_gate) {
                  .drive = _i == ETHD_FILTER_CA ? 400 : 8,
                  .memory = 0.08,
                  .x = {s.x[0], s.v[0], s.a[0]},
-                 .p = {{s.cov[0], s.cov[1], s.cov[2]},
-                       {s.cov[1], s.cov[3], s.cov[4]},
-                       {s.cov[2], s.cov[4], s.cov[5]}}};
+                 .p = {{s.cov[0], s.cov[1], s.cov[2]}, {s.cov[1], s.cov[3], s.cov[4]}, {s.cov[2], s.cov[4], s.cov[5]}}};
   ethd_filter_predict(&f, &s, T);
   ref_move(&r, 3e-3L);
   double sd = sqrt((double)r.p[0][0] + 1e-8), x = (double)r.x[0];
   for (int k = 0; k < 4; k++) {
     double along = k % 2 ? 4.001 * sd : 3.999 * sd, a = k < 2 ? 0 : 0.8;
     t = s;
-    ethd_status status =
-        ethd_filter_update(&f, &t, (ethd_vec){x + along * cos(a), -x + along * sin(a)}, 2e-3);
+    ethd_status status = ethd_filter_update(&f, &t, (ethd_vec){x + along * cos(a), -x + along * sin(a)}, 2e-3);
     ck_assert_int_eq(status, k % 2 ? ETHD_STALE : ETHD_OK);
     ck_assert_uint_eq(t.gated, (uint32_t)(k % 2));
-    if (k % 2)
-      ck_assert_mem_eq(t.x, s.x, sizeof s.x + sizeof s.v + sizeof s.a + sizeof s.cov + sizeof s.age);
+    if (k % 2) ck_assert_mem_eq(t.x, s.x, sizeof s.x + sizeof s.v + sizeof s.a + sizeof s.cov + sizeof s.age);
   }
 }
 END_TEST
@@ -190,8 +179,7 @@ typedef struct reach {
 /* Minimum jerk: s = 10 u^3 - 15 u^4 + 6 u^5, peak speed 15/8 length / duration; 50 ms of rest around. */
 static ethd_vec reach_at(const void *data, double t) {
   const reach *r = data;
-  double u = fmin(1, fmax(0, (t - 0.05) / r->duration)),
-         s = r->length * u * u * u * (10 - 15 * u + 6 * u * u);
+  double u = fmin(1, fmax(0, (t - 0.05) / r->duration)), s = r->length * u * u * u * (10 - 15 * u + 6 * u * u);
   return (ethd_vec){s * cos(r->angle), s * sin(r->angle)};
 }
 
@@ -207,8 +195,7 @@ START_TEST(test_extrapolation) {
     paths[i] = (finger_path){reach_at, &reaches[i], reaches[i].duration + 0.1};
   }
   printf("extrapolation error rms, mm: minimum-jerk reaches of 0.5 to 1.1 m/s, 300 Hz, 0.1 mm noise\n");
-  printf(
-      "  latency ms   hold  alpha-beta      cv (m/s^2)      ca (m/s^3)  gain    defaults: cv     ca\n");
+  printf("  latency ms   hold  alpha-beta      cv (m/s^2)      ca (m/s^3)  gain    defaults: cv     ca\n");
   for (int l = 0; l < 3; l++) {
     double latency = finger_latencies[l], q = 0, j = 0, b = 0;
     finger_error by[ETHD_FILTER_COUNT] = {{0, 0, 0}};
@@ -221,9 +208,8 @@ START_TEST(test_extrapolation) {
     double fixed = finger_best(ETHD_FILTER_ALPHA_BETA, "beta", 0.1, 9, paths, REACHES, latency, &b);
     double cv = finger_best(ETHD_FILTER_CV, "acceleration", 3, 8, paths, REACHES, latency, &q);
     double ca = finger_best(ETHD_FILTER_CA, "jerk", 80, 9, paths, REACHES, latency, &j);
-    printf("  %10.0f  %.3f %11.4f  %.4f (%4.1f)   %.4f (%4.0f)  %4.1f %%          %.4f  %.4f\n",
-           1e3 * latency, hold, fixed, cv, q, ca, j, 100 * (1 - ca / cv), finger_rms(by[ETHD_FILTER_CV]),
-           finger_rms(by[ETHD_FILTER_CA]));
+    printf("  %10.0f  %.3f %11.4f  %.4f (%4.1f)   %.4f (%4.0f)  %4.1f %%          %.4f  %.4f\n", 1e3 * latency, hold,
+           fixed, cv, q, ca, j, 100 * (1 - ca / cv), finger_rms(by[ETHD_FILTER_CV]), finger_rms(by[ETHD_FILTER_CA]));
     ck_assert(ca < cv && cv < hold && fixed < hold);
     ck_assert_double_le(ca, (1 - goal[l]) * cv);
     ck_assert_double_le(finger_rms(by[ETHD_FILTER_CA]), 1.15 * ca);

@@ -37,9 +37,7 @@ static void noisy(double *r, uint64_t i, double range) {
   for (int k = 0; k < ETHD_RAYS; k++) r[k] += draw((i << 5) + (uint64_t)k, -range, range);
 }
 
-static double distance(ethd_vec a, ethd_vec b) {
-  return ethd_vec_norm(ethd_vec_sub(a, b));
-}
+static double distance(ethd_vec a, ethd_vec b) { return ethd_vec_norm(ethd_vec_sub(a, b)); }
 
 /* ---- geometry ---- */
 
@@ -51,8 +49,7 @@ START_TEST(test_rays_end_on_the_finger) {
     for (int k = 0; k < ETHD_RAYS; k++) {
       ck_assert_double_eq_tol(distance(point(r, k), c), FINGER, 1e-17);
       /* The finger lies on the inner side: there is nothing of it between there and the ring. */
-      ck_assert_double_gt(distance((ethd_vec){RING * cos(PI * k / 8), RING * sin(PI * k / 8)}, c),
-                          FINGER);
+      ck_assert_double_gt(distance((ethd_vec){RING * cos(PI * k / 8), RING * sin(PI * k / 8)}, c), FINGER);
     }
   }
 }
@@ -119,8 +116,7 @@ static long double cost(const problem *p, const long double v[3]) {
   for (int k = 0; k < ETHD_RAYS; k++) {
     if (!(p->used >> k & 1)) continue;
     long double rho = (long double)RING - p->r[k], a = 3.14159265358979323846264338327950288L * k / 8;
-    long double dx = rho * cosl(a) - v[0], dy = rho * sinl(a) - v[1],
-                radius = p->radius > 0 ? p->radius : v[2];
+    long double dx = rho * cosl(a) - v[0], dy = rho * sinl(a) - v[1], radius = p->radius > 0 ? p->radius : v[2];
     long double e = dx * dx + dy * dy - radius * radius;
     sum += e * e;
   }
@@ -155,8 +151,7 @@ START_TEST(test_least_squares) {
     ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
     long double v[3] = {0, 0, FINGER};
     search(&(problem){r, finger.used, robust ? FINGER : 0}, v);
-    ck_assert_double_le(distance(finger.centre, (ethd_vec){(double)v[0], (double)v[1]}),
-                        robust ? 1e-6 : 2e-8);
+    ck_assert_double_le(distance(finger.centre, (ethd_vec){(double)v[0], (double)v[1]}), robust ? 1e-6 : 2e-8);
     if (!robust) ck_assert_double_eq_tol(finger.radius, (double)v[2], 2e-8);
     if (robust && i % 4 > 1) ck_assert_uint_eq(finger.used >> 5 & 1, 0);
   }
@@ -219,8 +214,7 @@ START_TEST(test_polygons_by_hand) {
   ck_assert_double_le(distance(finger.centre, (ethd_vec){1e-3, 0}), 1e-17);
   /* Squared distances from (1, 0): 49, 17, 25, 17, mean 27; off it by 22, -10, -2, -10. */
   ck_assert_double_eq_tol(finger.radius, sqrt(27) * 1e-3, 1e-17);
-  ck_assert_double_eq_tol(finger.residual,
-                          sqrt((22 * 22 + 2 * 10 * 10 + 2 * 2) / 4.0) / (2 * sqrt(27)) * 1e-3, 1e-17);
+  ck_assert_double_eq_tol(finger.residual, sqrt((22 * 22 + 2 * 10 * 10 + 2 * 2) / 4.0) / (2 * sqrt(27)) * 1e-3, 1e-17);
   /* Two triangles: 32 mm^2 about (8/3, 0), 16 mm^2 about (-4/3, 0). */
   ck_assert_int_eq(ethd_fit_step(&area, r, &finger), ETHD_OK);
   ck_assert_double_le(distance(finger.centre, (ethd_vec){4e-3 / 3, 0}), 1e-17);
@@ -261,8 +255,7 @@ START_TEST(test_vertex_mean_has_gain_one_half) {
     ethd_finger finger;
     ethd_fit_rays(RING, FINGER, (ethd_vec){offset * cos(a), offset * sin(a)}, r);
     ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
-    ck_assert_double_le(distance(finger.centre, (ethd_vec){offset / 2 * cos(a), offset / 2 * sin(a)}),
-                        1e-6 * offset);
+    ck_assert_double_le(distance(finger.centre, (ethd_vec){offset / 2 * cos(a), offset / 2 * sin(a)}), 1e-6 * offset);
   }
 }
 END_TEST
@@ -286,8 +279,7 @@ START_TEST(test_what_counts) {
   }
   double r[ETHD_RAYS];
   ethd_finger finger;
-  ethd_fit_rays(RING, FINGER, (ethd_vec){RING - FINGER + 0.1e-3, 0},
-                r); /* touches, 0.1 mm into the ring */
+  ethd_fit_rays(RING, FINGER, (ethd_vec){RING - FINGER + 0.1e-3, 0}, r); /* touches, 0.1 mm into the ring */
   ck_assert_double_lt(r[0], 0);
   ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
   ck_assert_uint_eq(finger.used & 1, 1);
@@ -384,8 +376,7 @@ START_TEST(test_accuracy) {
   double scored = full[ETHD_FIT_COUNT], known = full[ETHD_FIT_COUNT + 1];
   ck_assert(full[ETHD_FIT_KASA] <= 1.05 * scored && full[ETHD_FIT_KASA] >= 0.97 * scored);
   ck_assert(full[ETHD_FIT_ROBUST] <= 1.05 * known && full[ETHD_FIT_ROBUST] >= 0.97 * known);
-  ck_assert(full[ETHD_FIT_KASA] < full[ETHD_FIT_CENTROID] &&
-            full[ETHD_FIT_CENTROID] < full[ETHD_FIT_VERTEX_MEAN]);
+  ck_assert(full[ETHD_FIT_KASA] < full[ETHD_FIT_CENTROID] && full[ETHD_FIT_CENTROID] < full[ETHD_FIT_VERTEX_MEAN]);
   ck_assert_double_le(half[ETHD_FIT_ROBUST], 0.13);
   ck_assert_double_le(half[ETHD_FIT_KASA], 1.05 * half[ETHD_FIT_COUNT]);
   ck_assert_double_le(outlier[ETHD_FIT_ROBUST], 0.10);
@@ -429,9 +420,8 @@ START_TEST(test_refusals) {
     double p[ETHD_PARAMS_MAX] = {bad[i].gate};
     ethd_fit fit = {.ring_radius = 42};
     ethd_error error;
-    ck_assert_int_eq(
-        ethd_fit_prepare((ethd_fit_method)bad[i].method, p, bad[i].ring, bad[i].finger, &fit, &error),
-        bad[i].status);
+    ck_assert_int_eq(ethd_fit_prepare((ethd_fit_method)bad[i].method, p, bad[i].ring, bad[i].finger, &fit, &error),
+                     bad[i].status);
     ck_assert_str_eq(error.name, bad[i].name);
     ck_assert(fit.ring_radius == 42);
   }

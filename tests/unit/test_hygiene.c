@@ -32,9 +32,9 @@ int main(void) {
 
 /* ---- in the way ---- */
 
-static volatile int in_step; /* a control thread is stepping */
+static volatile int in_step;       /* a control thread is stepping */
 static volatile long allowed = -1; /* allocations until one fails; < 0: none does */
-static volatile int live;  /* blocks held, counted while `counting` */
+static volatile int live;          /* blocks held, counted while `counting` */
 static volatile int counting;
 
 static void forbid(const char *what) {
@@ -60,11 +60,11 @@ void *__libc_realloc(void *, size_t);
 void *__libc_memalign(size_t, size_t);
 void __libc_free(void *);
 
-#define HAND_OUT(call)                 \
-  forbid(__func__);                    \
-  if (refused()) return NULL;          \
-  void *block = (call);                \
-  if (counting && block) live++;       \
+#define HAND_OUT(call)           \
+  forbid(__func__);              \
+  if (refused()) return NULL;    \
+  void *block = (call);          \
+  if (counting && block) live++; \
   return block
 
 ETHD_API void *malloc(size_t n) { HAND_OUT(__libc_malloc(n)); }
@@ -112,8 +112,10 @@ static ethd_status make_controller(void) {
   ethd_control *control;
   ethd_error error;
   ethd_status status = ethd_control_create(&setup, &control, &error);
-  if (status == ETHD_OK) ethd_control_destroy(control);
-  else well_said = control == NULL && error.status == status;
+  if (status == ETHD_OK)
+    ethd_control_destroy(control);
+  else
+    well_said = control == NULL && error.status == status;
   return status;
 }
 
@@ -121,8 +123,10 @@ static ethd_status parse_scene(void) {
   ethd_scene *scene;
   ethd_error error;
   ethd_status status = ethd_scene_parse(scene_text, strlen(scene_text), &scene, &error);
-  if (status == ETHD_OK) ethd_scene_destroy(scene);
-  else well_said = scene == NULL && error.status == status;
+  if (status == ETHD_OK)
+    ethd_scene_destroy(scene);
+  else
+    well_said = scene == NULL && error.status == status;
   return status;
 }
 
@@ -133,8 +137,10 @@ static ethd_status make_scene(void) {
   ethd_scene *scene;
   ethd_error error;
   ethd_status status = ethd_scene_create(&def, &scene, &error);
-  if (status == ETHD_OK) ethd_scene_destroy(scene);
-  else well_said = scene == NULL && error.status == status;
+  if (status == ETHD_OK)
+    ethd_scene_destroy(scene);
+  else
+    well_said = scene == NULL && error.status == status;
   return status;
 }
 
@@ -145,8 +151,10 @@ static ethd_status prune_scene(void) {
   ethd_error error;
   if (!whole) whole = rig_scene("circle 0.1 0 0.01\ncircle 9 0 0.01\npolyline 0 0 1 0 1 1 2 1 2 2 3 3\n");
   ethd_status status = ethd_scene_prune(whole, &arm, 0.02, &scene, &error);
-  if (status == ETHD_OK) ethd_scene_destroy(scene);
-  else well_said = scene == NULL && error.status == status;
+  if (status == ETHD_OK)
+    ethd_scene_destroy(scene);
+  else
+    well_said = scene == NULL && error.status == status;
   return status;
 }
 
@@ -156,8 +164,10 @@ static ethd_status load_config(void) {
   ethd_config *config;
   char message[ETHD_MESSAGE_MAX];
   ethd_status status = ethd_config_load(ini, &config, message);
-  if (status == ETHD_OK) ethd_config_free(config);
-  else well_said = strlen(message) > 0;
+  if (status == ETHD_OK)
+    ethd_config_free(config);
+  else
+    well_said = strlen(message) > 0;
   return status;
 }
 
@@ -238,12 +248,15 @@ static ethd_scene *large_scene(void) {
 /* Every law, estimator and filter; posts, scenes, faults, events. */
 START_TEST(test_a_tap) {
   const ethd_transition_law *const laws[] = {&ethd_transition_abrupt, &ethd_transition_smooth, &ethd_transition_offset};
-  const ethd_contact_law *const contacts[] = {&ethd_contact_kelvin_voigt, &ethd_contact_spring, &ethd_contact_hunt_crossley};
+  const ethd_contact_law *const contacts[] = {&ethd_contact_kelvin_voigt, &ethd_contact_spring,
+                                              &ethd_contact_hunt_crossley};
   rig r;
   int faults = 0, taken = 0;
   rig_open(&r, NULL);
-  ethd_scene *scenes[] = {rig_scene("halfplane -1 0 -0.238\nsegment 0.2 0.1 0.2 0.4\n"),
-                          rig_scene("polyline 0.2 0.1 0.239 0.25 0.2 0.4\ncircle 0.2 0.3 0.02\nbox 0.3 0.2 0.01 0.01 0.3\n"), large_scene()};
+  ethd_scene *scenes[] = {
+      rig_scene("halfplane -1 0 -0.238\nsegment 0.2 0.1 0.2 0.4\n"),
+      rig_scene("polyline 0.2 0.1 0.239 0.25 0.2 0.4\ncircle 0.2 0.3 0.02\nbox 0.3 0.2 0.01 0.01 0.3\n"),
+      large_scene()};
   rig_start(&r);
   for (int tick = 0; tick < 4000; tick++) {
     double d = 0.004 - 0.008 * ((tick % 100) / 100.0);
@@ -265,7 +278,8 @@ START_TEST(test_a_tap) {
       rig_post(&r);
     }
     step_guarded(&r, &s, tick);
-    for (ethd_event e; (e = rig_poll(&r)).kind != 0;) faults += e.kind == ETHD_EVENT_FAULT, taken += e.kind == ETHD_EVENT_TAKEN;
+    for (ethd_event e; (e = rig_poll(&r)).kind != 0;)
+      faults += e.kind == ETHD_EVENT_FAULT, taken += e.kind == ETHD_EVENT_TAKEN;
   }
   ck_assert_int_ge(faults, 10);
   ck_assert_int_ge(taken, 400);

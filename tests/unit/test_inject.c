@@ -59,10 +59,19 @@ static ethd_status plain_stop(void *d) { return (void)d, ETHD_OK; }
 static void plain_close(void *d) { (void)d; }
 static ethd_limits plain_limits(const void *d) { return (void)d, ethd_limits_none(); }
 
-static const ethd_driver driver = {.size = sizeof driver, .abi = ETHD_DRIVER_ABI, .id = "plain", .brief = "plain",
-                                   .open = plain_open, .start = plain_start, .read = plain_read,
-                                   .write = plain_write, .units = plain_units, .service = plain_service,
-                                   .safe = plain_safe, .stop = plain_stop, .close = plain_close,
+static const ethd_driver driver = {.size = sizeof driver,
+                                   .abi = ETHD_DRIVER_ABI,
+                                   .id = "plain",
+                                   .brief = "plain",
+                                   .open = plain_open,
+                                   .start = plain_start,
+                                   .read = plain_read,
+                                   .write = plain_write,
+                                   .units = plain_units,
+                                   .service = plain_service,
+                                   .safe = plain_safe,
+                                   .stop = plain_stop,
+                                   .close = plain_close,
                                    .limits = plain_limits};
 static const ethd_driver *const only[] = {&driver, NULL};
 
@@ -114,8 +123,10 @@ START_TEST(test_values) {
     const ethd_sense *s = sample(&x);
     double q1 = ms >= 2 && ms < 5 ? at(2) : ms == 7 ? 2 * at(6) - at(7) : ms == 11 ? 7 : at(ms);
     double q2 = ms == 3 ? 2 * at(3) + 0.5 : ms == 7 ? 4 * at(6) - 2 * at(7) : ms == 10 ? -4 * at(10) : 2 * at(ms);
-    if (ms == 9) ck_assert(isnan(s->q[0]));
-    else ck_assert_double_eq_tol(s->q[0], q1, 1e-12);
+    if (ms == 9)
+      ck_assert(isnan(s->q[0]));
+    else
+      ck_assert_double_eq_tol(s->q[0], q1, 1e-12);
     ck_assert_double_eq_tol(s->q[1], q2, 1e-12);
     ck_assert_int_eq(s->time_ns, (41 + ms) * (int64_t)MS + (ms == 12 ? 100 * MS : 0));
     ck_assert_int_eq((s->have & ETHD_HAVE_RAYS) != 0, ms % 3 == 0);
@@ -155,8 +166,10 @@ START_TEST(test_readings) {
     double sampled = ms == 13 ? 9 : ms, content = ms == 15 || ms == 18 ? 9 : sampled;
     ck_assert_int_eq(s->sample_ns, (41 + (int64_t)sampled) * MS);
     if (ms <= 3) ck_assert(isnan(s->rays[4]));
-    if (ms == 21) ck_assert(s->rays[0] == 0.01 && s->rays[15] == 0.01);
-    else ck_assert_double_eq_tol(s->rays[7], 7 + at(content), 1e-12);
+    if (ms == 21)
+      ck_assert(s->rays[0] == 0.01 && s->rays[15] == 0.01);
+    else
+      ck_assert_double_eq_tol(s->rays[7], 7 + at(content), 1e-12);
   }
   close_script(&x);
 }
@@ -280,7 +293,8 @@ END_TEST
 START_TEST(test_mutations) {
   static const char seed[] = "# a script\n0.5 q1 freeze for=0.1\n612t rays nan for=inf\n0.7 reading delay by=0.02\n"
                              "0.9 fault9 set\n1 write scale by=-1e0 for=1\n";
-  static const char *const words[] = {"ray16", "fault38", " for=", " by=", "inf", "nan", "t", "\n", "#", "\t", "1e9", NULL};
+  static const char *const words[] = {"ray16", "fault38", " for=", " by=", "inf", "nan",
+                                      "t",     "\n",      "#",     "\t",   "1e9", NULL};
   char text[512], message[ETHD_MESSAGE_MAX];
   int good = 0;
   for (uint64_t i = 0; i < 20000; i++) {

@@ -5,8 +5,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "text/text.h"
 #include "study/journal.h"
+#include "text/text.h"
 #include "unit/rig.h"
 
 static char folder[] = "/tmp/ethd-journal-XXXXXX", path[64], message[ETHD_MESSAGE_MAX];

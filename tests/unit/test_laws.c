@@ -84,8 +84,7 @@ static ethd_contact contact_at(double d_re, double v, double d_fe) {
   return c;
 }
 
-static ethd_ruling rule(const ethd_transition_law *law, const double *p, void *state,
-                        const ethd_contact *c) {
+static ethd_ruling rule(const ethd_transition_law *law, const double *p, void *state, const ethd_contact *c) {
   ethd_ruling r;
   memset(&r, 0, sizeof r);
   r.beta = 1;
@@ -149,8 +148,14 @@ static void walk(const double *p, const arrow *a) {
 
 static const arrow arrows[][9] = {
     /* in, stop, rest, out: one arrow a tick, although the ring stands still when it enters */
-    {{0, 0.4, 0, 0}, {-1e-9, 0, 1, 0}, {-0.002, 0.4, 1, 0}, {-0.0024, 0.0199, 2, 0.0024},
-     {-0.0034, 0.5, 2, 0.0024}, {0.004, -1, 2, 0.0024}, {0.00401, -1, 0, 0}, LAST},
+    {{0, 0.4, 0, 0},
+     {-1e-9, 0, 1, 0},
+     {-0.002, 0.4, 1, 0},
+     {-0.0024, 0.0199, 2, 0.0024},
+     {-0.0034, 0.5, 2, 0.0024},
+     {0.004, -1, 2, 0.0024},
+     {0.00401, -1, 0, 0},
+     LAST},
     /* v_th is strict, either way */
     {{-0.001, 0.4, 1, 0}, {-0.001, 0.020, 1, 0}, {-0.001, -0.020, 1, 0}, {-0.001, -0.0199, 2, 0.001}, LAST},
     /* pulled back fast: out at once above d_beta, not at it */
@@ -158,8 +163,13 @@ static const arrow arrows[][9] = {
     /* v_th goes first, even far outside: eps < 0 */
     {{-0.001, 0.4, 1, 0}, {0.0051, 0.001, 2, -0.0051}, {0.0051, 0.001, 0, 0}, LAST},
     /* no second braking in vo; after transparent there is one */
-    {{-0.001, 0.4, 1, 0}, {-0.001, 0, 2, 0.001}, {0.0039, -1, 2, 0.001}, {-0.009, 1, 2, 0.001},
-     {0.0041, -1, 0, 0}, {-0.001, 1, 1, 0}, LAST},
+    {{-0.001, 0.4, 1, 0},
+     {-0.001, 0, 2, 0.001},
+     {0.0039, -1, 2, 0.001},
+     {-0.009, 1, 2, 0.001},
+     {0.0041, -1, 0, 0},
+     {-0.001, 1, 1, 0},
+     LAST},
     /* a state machine of one arrow per tick: out and in again takes two */
     {{-0.001, 0.4, 1, 0}, {-0.001, 0, 2, 0.001}, {0.0041, -9, 0, 0}, {-0.0001, 9, 1, 0}, {-0.0001, 0, 2, 0.0001}, LAST},
 };
@@ -185,7 +195,11 @@ START_TEST(test_cap_of_time) {
     for (int tick = 0; tick <= 200; tick++) {
       ethd_contact c = contact_at(out && tick == 50 ? 0.0041 : -0.001, 0.1, 0.01);
       int state = rule(&ethd_transition_offset, product, capped, &c).state;
-      ck_assert_int_eq(state, tick < 50 ? ETHD_BRAKING : !out ? ETHD_VO : tick == 50 ? ETHD_TRANSPARENT : tick < 101 ? ETHD_BRAKING : ETHD_VO);
+      ck_assert_int_eq(state, tick < 50    ? ETHD_BRAKING
+                              : !out       ? ETHD_VO
+                              : tick == 50 ? ETHD_TRANSPARENT
+                              : tick < 101 ? ETHD_BRAKING
+                                           : ETHD_VO);
       if (!out) ck_assert_int_eq(rule(&ethd_transition_offset, paper, paper_like, &c).state, ETHD_BRAKING);
     }
   }

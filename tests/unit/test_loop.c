@@ -28,8 +28,8 @@ END_TEST
    instant is in time. */
 static const struct {
   int64_t busy, missed;
-} busy_ticks[] = {{PERIOD / 2, 0},     {PERIOD, 0},         {PERIOD + 1, 1},     {2 * PERIOD - 1, 1},
-                  {2 * PERIOD, 1},     {2 * PERIOD + 1, 2}, {7 * PERIOD / 2, 3}, {100 * PERIOD, 99}};
+} busy_ticks[] = {{PERIOD / 2, 0}, {PERIOD, 0},         {PERIOD + 1, 1},     {2 * PERIOD - 1, 1},
+                  {2 * PERIOD, 1}, {2 * PERIOD + 1, 2}, {7 * PERIOD / 2, 3}, {100 * PERIOD, 99}};
 
 START_TEST(test_overruns_are_counted_and_realigned) {
   bench b;
@@ -215,13 +215,13 @@ START_TEST(test_refused_defs) {
   bench b;
   ethd_error error;
   bench_open(&b);
-#define REFUSED(field, value, code)                                         \
-  do {                                                                      \
-    ethd_loop_def def = b.def;                                              \
-    def.field = value;                                                      \
-    ck_assert_int_eq(ethd_loop_create(&def, &b.loop, &error), code);        \
-    ck_assert_ptr_null(b.loop);                                             \
-    if (code == ETHD_E_RANGE) ck_assert_str_eq(error.name, #field);         \
+#define REFUSED(field, value, code)                                  \
+  do {                                                               \
+    ethd_loop_def def = b.def;                                       \
+    def.field = value;                                               \
+    ck_assert_int_eq(ethd_loop_create(&def, &b.loop, &error), code); \
+    ck_assert_ptr_null(b.loop);                                      \
+    if (code == ETHD_E_RANGE) ck_assert_str_eq(error.name, #field);  \
   } while (0)
   REFUSED(cookie, 0, ETHD_E_ARGUMENT);
   REFUSED(driver, NULL, ETHD_E_ARGUMENT);

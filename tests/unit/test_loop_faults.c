@@ -14,9 +14,12 @@ static const struct {
   int64_t busy; /* ns of tick 3 */
   int limited;
   int64_t rows; /* of tick 4 */
-} late_ticks[] = {{PERIOD, 0, 0},           {PERIOD + 1, 0, BIT(OVERRUN)},
-                  {20 * PERIOD, 0, BIT(OVERRUN)}, {PERIOD + 1, 1, BIT(OVERRUN)},
-                  {6 * PERIOD, 1, BIT(OVERRUN)},  {6 * PERIOD + 1, 1, BIT(OVERRUN) | BIT(OVERRUNS)}};
+} late_ticks[] = {{PERIOD, 0, 0},
+                  {PERIOD + 1, 0, BIT(OVERRUN)},
+                  {20 * PERIOD, 0, BIT(OVERRUN)},
+                  {PERIOD + 1, 1, BIT(OVERRUN)},
+                  {6 * PERIOD, 1, BIT(OVERRUN)},
+                  {6 * PERIOD + 1, 1, BIT(OVERRUN) | BIT(OVERRUNS)}};
 
 START_TEST(test_late) {
   bench b;

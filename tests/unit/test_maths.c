@@ -39,13 +39,9 @@ static double of_bits(uint64_t u) {
 }
 
 /* Uniform in [a, b). */
-static double uniform(uint64_t i, double a, double b) {
-  return a + (b - a) * ((double)(mix(i) >> 11) * 0x1p-53);
-}
+static double uniform(uint64_t i, double a, double b) { return a + (b - a) * ((double)(mix(i) >> 11) * 0x1p-53); }
 
-static double nudge(double x, uint64_t i) {
-  return x == 0 ? x : of_bits(bits_of(x) + mix(i ^ 0x5555) % 9 - 4);
-}
+static double nudge(double x, uint64_t i) { return x == 0 ? x : of_bits(bits_of(x) + mix(i ^ 0x5555) % 9 - 4); }
 
 static double any_finite(uint64_t i) {
   uint64_t u = mix(i);
@@ -102,35 +98,35 @@ typedef struct accuracy {
 } accuracy;
 
 static const accuracy accuracies[] = {
-  {"sin, an eighth of a turn", ethd_sin, sinl, quarter, 0.86},
-  {"sin, turns", ethd_sin, sinl, turns, 0.86},
-  {"sin, many turns", ethd_sin, sinl, many_turns, 0.86},
-  {"sin, border of the methods", ethd_sin, sinl, at_method_border, 0.86},
-  {"sin, near multiples of pi/4", ethd_sin, sinl, near_eighth_turns, 0.86},
-  {"sin, near zero", ethd_sin, sinl, near_zero, 0.86},
-  {"sin, any", ethd_sin, sinl, any_finite, 0.86},
-  {"cos, an eighth of a turn", ethd_cos, cosl, quarter, 0.86},
-  {"cos, turns", ethd_cos, cosl, turns, 0.86},
-  {"cos, many turns", ethd_cos, cosl, many_turns, 0.86},
-  {"cos, border of the methods", ethd_cos, cosl, at_method_border, 0.86},
-  {"cos, near multiples of pi/4", ethd_cos, cosl, near_eighth_turns, 0.86},
-  {"cos, near zero", ethd_cos, cosl, near_zero, 0.86},
-  {"cos, any", ethd_cos, cosl, any_finite, 0.86},
-  {"exp, small", ethd_exp, expl, small_powers, 0.57},
-  {"exp, whole range", ethd_exp, expl, all_powers, 0.57},
-  {"exp, near zero", ethd_exp, expl, near_zero, 0.57},
-  {"exp, table borders", ethd_exp, expl, power_borders, 0.57},
-  {"exp, subnormal results", ethd_exp, expl, subnormal_powers, 0.78},
-  {"exp, any", ethd_exp, expl, any_finite, 0.78},
-  {"log, near one", ethd_log, logl, near_one, 0.56},
-  {"log, an octave", ethd_log, logl, octave, 0.56},
-  {"log, subnormal", ethd_log, logl, subnormal, 0.56},
-  {"log, any", ethd_log, logl, any_positive, 0.56},
-  {"tanh, small", ethd_tanh, tanhl, small, 0.60},
-  {"tanh, middling", ethd_tanh, tanhl, middling, 0.60},
-  {"tanh, wide", ethd_tanh, tanhl, wide, 0.60},
-  {"tanh, near zero", ethd_tanh, tanhl, near_zero, 0.60},
-  {"tanh, any", ethd_tanh, tanhl, any_finite, 0.60},
+    {"sin, an eighth of a turn", ethd_sin, sinl, quarter, 0.86},
+    {"sin, turns", ethd_sin, sinl, turns, 0.86},
+    {"sin, many turns", ethd_sin, sinl, many_turns, 0.86},
+    {"sin, border of the methods", ethd_sin, sinl, at_method_border, 0.86},
+    {"sin, near multiples of pi/4", ethd_sin, sinl, near_eighth_turns, 0.86},
+    {"sin, near zero", ethd_sin, sinl, near_zero, 0.86},
+    {"sin, any", ethd_sin, sinl, any_finite, 0.86},
+    {"cos, an eighth of a turn", ethd_cos, cosl, quarter, 0.86},
+    {"cos, turns", ethd_cos, cosl, turns, 0.86},
+    {"cos, many turns", ethd_cos, cosl, many_turns, 0.86},
+    {"cos, border of the methods", ethd_cos, cosl, at_method_border, 0.86},
+    {"cos, near multiples of pi/4", ethd_cos, cosl, near_eighth_turns, 0.86},
+    {"cos, near zero", ethd_cos, cosl, near_zero, 0.86},
+    {"cos, any", ethd_cos, cosl, any_finite, 0.86},
+    {"exp, small", ethd_exp, expl, small_powers, 0.57},
+    {"exp, whole range", ethd_exp, expl, all_powers, 0.57},
+    {"exp, near zero", ethd_exp, expl, near_zero, 0.57},
+    {"exp, table borders", ethd_exp, expl, power_borders, 0.57},
+    {"exp, subnormal results", ethd_exp, expl, subnormal_powers, 0.78},
+    {"exp, any", ethd_exp, expl, any_finite, 0.78},
+    {"log, near one", ethd_log, logl, near_one, 0.56},
+    {"log, an octave", ethd_log, logl, octave, 0.56},
+    {"log, subnormal", ethd_log, logl, subnormal, 0.56},
+    {"log, any", ethd_log, logl, any_positive, 0.56},
+    {"tanh, small", ethd_tanh, tanhl, small, 0.60},
+    {"tanh, middling", ethd_tanh, tanhl, middling, 0.60},
+    {"tanh, wide", ethd_tanh, tanhl, wide, 0.60},
+    {"tanh, near zero", ethd_tanh, tanhl, near_zero, 0.60},
+    {"tanh, any", ethd_tanh, tanhl, any_finite, 0.60},
 };
 
 enum { ACCURACIES = sizeof accuracies / sizeof accuracies[0] };
@@ -182,8 +178,8 @@ END_TEST
 
 /* ---- special cases ---- */
 
-#define SAME(got, want) \
-  do { \
+#define SAME(got, want)                                                             \
+  do {                                                                              \
     if (bits_of(got) != bits_of(want)) ck_abort_msg("%s: %a", #got, (double)(got)); \
   } while (0)
 #define IS_NAN(got) SAME(got, (double)NAN)
@@ -343,9 +339,7 @@ static uint64_t golden(void) {
 
 static const uint64_t golden_hash = 0x6cba1c17bc660b0bu;
 
-START_TEST(test_golden) {
-  ck_assert_uint_eq(golden(), golden_hash);
-}
+START_TEST(test_golden) { ck_assert_uint_eq(golden(), golden_hash); }
 END_TEST
 
 #ifdef __SSE2__

@@ -32,7 +32,6 @@ static void setup(void) {
   }
 }
 
-
 static ethd__metrics measure(void) {
   ethd__metrics m;
   ethd__metrics_of(&rows, &rule, &m);
@@ -74,8 +73,7 @@ END_TEST
 START_TEST(test_first_rebound) {
   const double depth[] = {0.2, 0.6, 0.585, 1.0, 0.99, 0.8, 0.6, 0.615, 0.6, 0.63, 0.1, 0.1};
   enum { N = sizeof depth / sizeof *depth };
-  for (int i = 50; i < COUNT; i++)
-    truth[i].ring[0] = 0.25 - 1e-3 * depth[i - 50 < N ? i - 50 : N - 1];
+  for (int i = 50; i < COUNT; i++) truth[i].ring[0] = 0.25 - 1e-3 * depth[i - 50 < N ? i - 50 : N - 1];
   ck_assert_double_eq_tol(measure().d_max, 0.4e-3, 1e-12);
 }
 END_TEST

@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "ethd/record.h"
-#include "record/npy_parts.h"
 #include "mutate.h"
+#include "record/npy_parts.h"
 
 typedef struct row {
   int64_t n;
@@ -76,8 +76,7 @@ START_TEST(test_layout) {
   ck_assert_uint_eq(n, 10 + header + 5 * sizeof(row));
   ck_assert(memcmp(file + 10, dict, sizeof dict - 1) == 0);
   ck_assert(memcmp(file + 10 + sizeof dict - 1, "5,), }", 6) == 0);
-  for (const char *p = file + 10 + sizeof dict - 1 + 6; p < file + 9 + header; p++)
-    ck_assert_int_eq(*p, ' ');
+  for (const char *p = file + 10 + sizeof dict - 1 + 6; p < file + 9 + header; p++) ck_assert_int_eq(*p, ' ');
   ck_assert_int_eq(file[9 + header], '\n');
   ck_assert_uint_ge(header - (sizeof dict - 1), 6 + 19 + 1); /* room for any count */
   for (int i = 0; i < 5; i++) {
@@ -149,8 +148,7 @@ START_TEST(test_bad_files) {
 END_TEST
 
 START_TEST(test_bad_columns) {
-  static const ethd_column gap[] = {
-      {"n", "1", 1, 0, 'i'}, {"y", "m", 1, 136, 'f'}, {NULL, NULL, 0, 0, 0}};
+  static const ethd_column gap[] = {{"n", "1", 1, 0, 'i'}, {"y", "m", 1, 136, 'f'}, {NULL, NULL, 0, 0, 0}};
   ethd_npy *npy;
   ck_assert_int_eq(ethd_npy_create(path, gap, sizeof(row), &npy, message), ETHD_E_ARGUMENT);
   ck_assert_ptr_null(npy);
@@ -172,8 +170,7 @@ START_TEST(test_trace_columns) {
   for (const ethd_column *c = ethd_trace_columns; c->name; c++, count++) {
     ck_assert_uint_eq(c->offset, at);
     at += c->count * (size_t)8;
-    for (const ethd_column *other = ethd_trace_columns; other < c; other++)
-      ck_assert_str_ne(other->name, c->name);
+    for (const ethd_column *other = ethd_trace_columns; other < c; other++) ck_assert_str_ne(other->name, c->name);
   }
   ck_assert_uint_eq(at, sizeof(ethd_trace));
   ck_assert_str_eq(ethd_trace_columns[0].name, "time_ns");

@@ -86,12 +86,18 @@ START_TEST(test_values) {
     double value;
     ethd_status status;
   } cases[] = {
-      {0, 0, ETHD_OK},          {0, 1e6, ETHD_OK},
-      {0, -1e-9, ETHD_E_RANGE}, {0, 1.0000001e6, ETHD_E_RANGE},
-      {0, NAN, ETHD_E_NOT_FINITE}, {0, INFINITY, ETHD_E_NOT_FINITE},
-      {0, -INFINITY, ETHD_E_NOT_FINITE}, {1, INFINITY, ETHD_OK},
-      {1, -INFINITY, ETHD_E_NOT_FINITE}, {1, NAN, ETHD_E_NOT_FINITE},
-      {2, 2, ETHD_OK}, {2, 1.5, ETHD_E_RANGE},
+      {0, 0, ETHD_OK},
+      {0, 1e6, ETHD_OK},
+      {0, -1e-9, ETHD_E_RANGE},
+      {0, 1.0000001e6, ETHD_E_RANGE},
+      {0, NAN, ETHD_E_NOT_FINITE},
+      {0, INFINITY, ETHD_E_NOT_FINITE},
+      {0, -INFINITY, ETHD_E_NOT_FINITE},
+      {1, INFINITY, ETHD_OK},
+      {1, -INFINITY, ETHD_E_NOT_FINITE},
+      {1, NAN, ETHD_E_NOT_FINITE},
+      {2, 2, ETHD_OK},
+      {2, 1.5, ETHD_E_RANGE},
       {2, 3, ETHD_E_RANGE},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

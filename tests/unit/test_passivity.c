@@ -16,7 +16,7 @@
 typedef struct run {
   double early, late; /* m: swing of the depth in the first and the last 0.25 s */
   ethd_fault fault;
-  int64_t seen; /* rows told, as bits */
+  int64_t seen;      /* rows told, as bits */
   double most_force; /* N, along n: positive would pull */
 } run;
 

@@ -8,8 +8,7 @@
 
 #define PI 3.14159265358979323846
 
-static const ethd_path reach = {
-    .from = {0.30, 0.24}, .to_x = 0.20, .speed = 0.4, .ramp_up = 0.08, .ramp_down = 0.03};
+static const ethd_path reach = {.from = {0.30, 0.24}, .to_x = 0.20, .speed = 0.4, .ramp_up = 0.08, .ramp_down = 0.03};
 
 /* 0.1 m = 0.4 m/s (0.11 s / 2 + cruise): 0.195 s of cruise. */
 static double speed_of_reach(double t) {
@@ -153,8 +152,7 @@ static void derivatives_agree(const ethd_path *path, double from, double to) {
     ethd__piece piece;
     ethd__path_piece(path, t, &piece);
     ck_assert(piece.begin <= t && t < piece.end);
-    ethd__motion a = ethd__piece_at(&piece, t - h), m = ethd__piece_at(&piece, t),
-                 b = ethd__piece_at(&piece, t + h);
+    ethd__motion a = ethd__piece_at(&piece, t - h), m = ethd__piece_at(&piece, t), b = ethd__piece_at(&piece, t + h);
     ck_assert_double_eq_tol(m.v.x, (b.x.x - a.x.x) / (2 * h), 1e-4);
     ck_assert_double_eq_tol(m.v.y, (b.x.y - a.x.y) / (2 * h), 1e-4);
     ck_assert_double_eq_tol(m.a.x, (b.v.x - a.v.x) / (2 * h), 1e-3 + 1e-6 * fabs(m.a.x));

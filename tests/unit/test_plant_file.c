@@ -20,9 +20,7 @@ static void load(const char *name) {
   ck_assert_msg(ethd_plant_load(path, &plant, message) == ETHD_OK, "%s", message);
 }
 
-static void is(double value, double expected) {
-  ck_assert_double_le(fabs(value - expected), 1e-12 * fabs(expected));
-}
+static void is(double value, double expected) { ck_assert_double_le(fabs(value - expected), 1e-12 * fabs(expected)); }
 
 START_TEST(test_n) {
   load("n");
@@ -56,14 +54,12 @@ START_TEST(test_n) {
                         plant.speed_spread,
                         plant.band_low,
                         plant.band_high};
-  const double expected[] = {
-      0.1173,  0.25,   0,       5.357, 0.398,   1.267,   71e-6,   2 * PI / (4000 * 9.80),
-      0.0675,  284.7,  4.27,    27436, 1.06,    7.32e-3, 0.43e-3, 300,
-      1.93e-3, 0.1e-3, 31.6e-3, 5e-3,  55.5e-3, 0.35,    0.08,    0.03,
-      0.5e-3,  0.197,  0.521,   0.19,  0.06,    0.08};
+  const double expected[] = {0.1173,  0.25,   0,       5.357, 0.398,   1.267,   71e-6,   2 * PI / (4000 * 9.80),
+                             0.0675,  284.7,  4.27,    27436, 1.06,    7.32e-3, 0.43e-3, 300,
+                             1.93e-3, 0.1e-3, 31.6e-3, 5e-3,  55.5e-3, 0.35,    0.08,    0.03,
+                             0.5e-3,  0.197,  0.521,   0.19,  0.06,    0.08};
   for (size_t i = 0; i < sizeof got / sizeof *got; i++) is(got[i], expected[i]);
-  ck_assert(isinf(plant.stiffness) && !plant.count_phase && !plant.rays && !plant.reference &&
-            !plant.metrics_side);
+  ck_assert(isinf(plant.stiffness) && !plant.count_phase && !plant.rays && !plant.reference && !plant.metrics_side);
 }
 END_TEST
 
@@ -86,17 +82,15 @@ START_TEST(test_p) {
   load("p");
   double reduced = plant.motor_mass * (plant.mass[0] - plant.motor_mass) / plant.mass[0];
   ck_assert_double_eq_tol(sqrt(plant.stiffness / reduced) / (2 * PI), 88.1, 0.1);
-  const double got[] = {plant.mass[0],       plant.mass[1],     plant.motor_mass,     plant.damping,
-                        plant.force_limit,   plant.friction,    plant.viscous,        plant.delay,
-                        plant.count,         plant.finger_mass, plant.hand_stiffness, plant.hand_damping,
-                        plant.pad_stiffness, plant.pad_damping, plant.finger_radius,  plant.finger_radius_sd,
-                        plant.latency,       plant.start,       plant.overshoot,      plant.overshoot_spread,
-                        plant.speed_low,     plant.speed_high,  plant.speed_spread,   plant.band_low,
-                        plant.band_high};
-  const double expected[] = {0.09475,  0.09475,   0.01322,  5.132,    2.6313,   0.18266, 0.03008,
-                             121.3e-6, 157.95e-6, 0.0410,   82.39,    2.568,    1e4,     0.5,
-                             6.224e-3, 0.45e-3,   1.001e-3, 77.51e-3, 14.89e-3, 0.5595,  0.2050,
-                             0.4713,   0.2726,    0.0339,   0.0577};
+  const double got[] = {
+      plant.mass[0],          plant.mass[1],      plant.motor_mass,    plant.damping,     plant.force_limit,
+      plant.friction,         plant.viscous,      plant.delay,         plant.count,       plant.finger_mass,
+      plant.hand_stiffness,   plant.hand_damping, plant.pad_stiffness, plant.pad_damping, plant.finger_radius,
+      plant.finger_radius_sd, plant.latency,      plant.start,         plant.overshoot,   plant.overshoot_spread,
+      plant.speed_low,        plant.speed_high,   plant.speed_spread,  plant.band_low,    plant.band_high};
+  const double expected[] = {0.09475,  0.09475, 0.01322, 5.132,  2.6313, 0.18266,  0.03008, 121.3e-6, 157.95e-6,
+                             0.0410,   82.39,   2.568,   1e4,    0.5,    6.224e-3, 0.45e-3, 1.001e-3, 77.51e-3,
+                             14.89e-3, 0.5595,  0.2050,  0.4713, 0.2726, 0.0339,   0.0577};
   for (size_t i = 0; i < sizeof got / sizeof *got; i++) is(got[i], expected[i]);
   ck_assert(plant.count_phase && plant.reference && plant.metrics_side && !plant.rays);
 }
@@ -135,8 +129,7 @@ static void refused(const char *was, const char *now, const char *why) {
 START_TEST(test_refused) {
   read_n();
   ck_assert_int_eq(try(text, strlen(text)), ETHD_OK);
-  refused("force_limit = 5.357", "force_limit = 5.357x",
-          ":7: device.force_limit: found \"5.357x\", 0 to 1000000 N");
+  refused("force_limit = 5.357", "force_limit = 5.357x", ":7: device.force_limit: found \"5.357x\", 0 to 1000000 N");
   refused("force_limit = 5.357", "force_limit = nan", ":7: device.force_limit");
   refused("force_limit = 5.357", "force_limit = inf", ":7: device.force_limit");
   refused("force_limit = 5.357", "force_limit = 0x5", ":7: device.force_limit");

@@ -170,8 +170,8 @@ START_TEST(test_my_law) {
   r.setup.transition_p[1] = 5; /* v^2 m / (2 F) = 1.92 mm, within d_beta */
   double ahead = standstill(&r);
   rig_close(&r);
-  ck_assert_double_lt(behind, -0.0004);       /* VO-B: m / B_d (v - v_th) behind the wall at least */
-  ck_assert_double_gt(ahead, -0.0004);        /* a tick's way is 0.4 mm */
+  ck_assert_double_lt(behind, -0.0004); /* VO-B: m / B_d (v - v_th) behind the wall at least */
+  ck_assert_double_gt(ahead, -0.0004);  /* a tick's way is 0.4 mm */
   ck_assert_double_lt(ahead, 0.0004);
 }
 END_TEST

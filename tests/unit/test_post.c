@@ -333,7 +333,7 @@ START_TEST(test_refusals) {
   ck_assert_int_eq(ethd_control_create(&s, &control, NULL), c->status);
   ck_assert_ptr_null(control);
   if (status != ETHD_E_RANGE || c->at == AT(ring_radius)) return; /* the finger must fit the ring */
-  memcpy((char *)&s + c->at, &error.min, sizeof error.min); /* what is said to be allowed is */
+  memcpy((char *)&s + c->at, &error.min, sizeof error.min);       /* what is said to be allowed is */
   ck_assert_int_eq(ethd_setup_check(&s, NULL), ETHD_OK);
   memcpy((char *)&s + c->at, &error.max, sizeof error.max);
   ck_assert_int_eq(ethd_setup_check(&s, NULL), ETHD_OK);

@@ -94,8 +94,7 @@ static void run(program *p, int ticks) {
 
 static void record(void) {
   program p = {.setup = config->setup};
-  ck_assert_msg(ethd_recording_create(recording_folder, config, &p.recording, message) == ETHD_OK, "%s",
-                message);
+  ck_assert_msg(ethd_recording_create(recording_folder, config, &p.recording, message) == ETHD_OK, "%s", message);
   create(&p);
   run(&p, 100);
   event(&p, "start", "tap 1, \"again\"");
@@ -159,9 +158,8 @@ static char *read_text(const char *name) {
 START_TEST(test_files) {
   record();
   char *text = read_text("config.ini");
-  ck_assert_str_eq(text,
-                   "# a wall\n[scene]\nfile = scene.scene\n[transition]\nb_d = 70\n[limits]\nspeed = 5\n"
-                   "[velocity]\nmethod = kalman\n");
+  ck_assert_str_eq(text, "# a wall\n[scene]\nfile = scene.scene\n[transition]\nb_d = 70\n[limits]\nspeed = 5\n"
+                         "[velocity]\nmethod = kalman\n");
   free(text);
   text = read_text("scene.scene");
   ck_assert_str_eq(text, "halfplane -1 0 -0.238\n");
@@ -225,8 +223,7 @@ START_TEST(test_events_matter) {
     char changed[2048];
     char *at = strstr(text, changes[i][0]);
     ck_assert_ptr_nonnull(at);
-    snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, changes[i][1],
-             at + strlen(changes[i][0]));
+    snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, changes[i][1], at + strlen(changes[i][0]));
     write_text(recording_folder, "events.csv", changed);
     ck_assert_msg(ethd_recording_verify(recording_folder, message) < 0, "%s passed", changes[i][1]);
   }
@@ -266,10 +263,8 @@ START_TEST(test_bad_events) {
       {"row,kind,detail\n5,heat,0.5\n", "events.csv:2: heat: two numbers from 0 to 1e9 are allowed"},
       {"row,kind,detail\n5,heat,0.5 inf\n", "events.csv:2: heat: two numbers from 0 to 1e9 are allowed"},
       {"row,kind,detail\n5,set,contact.k_e\n", "events.csv:2: set: section.key value is allowed"},
-      {"row,kind,detail\n5,set,contact.k_e -1\n",
-       "events.csv:2: set: contact.k_e: found -1, 0 to 1000000 N/m"},
-      {"row,kind,detail\n5,transition,odd\n",
-       "events.csv:2: transition: transition.law: found \"odd\", abrupt"}};
+      {"row,kind,detail\n5,set,contact.k_e -1\n", "events.csv:2: set: contact.k_e: found -1, 0 to 1000000 N/m"},
+      {"row,kind,detail\n5,transition,odd\n", "events.csv:2: transition: transition.law: found \"odd\", abrupt"}};
   char says[256];
   record();
   for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {

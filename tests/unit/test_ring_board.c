@@ -99,7 +99,8 @@ typedef struct run {
 
 static ethd_status open_driver(boards *b, const char *baud, void **device) {
   static ethd_setup setup;
-  const ethd_setting settings[] = {{"port", "port", 1}, {"calibration", "ring.ini", 2}, {"baud", baud, 3}, {"patience", "5", 4}};
+  const ethd_setting settings[] = {
+      {"port", "port", 1}, {"calibration", "ring.ini", 2}, {"baud", baud, 3}, {"patience", "5", 4}};
   char path[80];
   setup = ethd_setup_default();
   snprintf(path, sizeof path, "%s/ring.ini", folder);
@@ -187,7 +188,8 @@ static void follow_finger(const char *option, const char *baud) {
     worst = fmax(worst, e), sum += e, readings++;
     ck_assert_int_le(r.sense.sample_ns, r.now_ns);
   }
-  printf("%s Bd: %d readings in 1 s; finger to %.3f mm in the mean, %.3f at most\n", baud, readings, 1e3 * sum / readings, 1e3 * worst);
+  printf("%s Bd: %d readings in 1 s; finger to %.3f mm in the mean, %.3f at most\n", baud, readings,
+         1e3 * sum / readings, 1e3 * worst);
   ck_assert_int_ge(readings, 298);
   ck_assert_int_le(readings, 302);
   ck_assert_double_le(worst, 0.5e-3); /* at up to 0.3 m/s: ticks, skew and what the clock's envelope leaves */
@@ -217,11 +219,11 @@ static const struct {
   ethd_fault row;
   int most; /* ticks until the row is seen */
 } faults[] = {
-    {"mute 5", "unmute 5", ETHD_FAULT_SENSOR, 30},       {"short 12", "unshort 12", ETHD_FAULT_SENSOR, 30},
-    {"scl 2", "unscl 2", ETHD_FAULT_SENSOR, 30},         {"hang 3", NULL, ETHD_FAULT_SENSOR, 30},
-    {"corrupt 9", NULL, ETHD_FAULT_FRAME_LOST, 15},      {"lose 20", NULL, ETHD_FAULT_FRAME_LOST, 15},
-    {"reset 0", NULL, ETHD_FAULT_BOARD_CLOCK, 30},       {"hang 0", NULL, ETHD_FAULT_FRAME_LOST, 30},
-    {"link-short", "link-free", ETHD_FAULT_SENSOR, 30},  {"unplug", "plug", ETHD_FAULT_FRAME_LOST, 15},
+    {"mute 5", "unmute 5", ETHD_FAULT_SENSOR, 30},      {"short 12", "unshort 12", ETHD_FAULT_SENSOR, 30},
+    {"scl 2", "unscl 2", ETHD_FAULT_SENSOR, 30},        {"hang 3", NULL, ETHD_FAULT_SENSOR, 30},
+    {"corrupt 9", NULL, ETHD_FAULT_FRAME_LOST, 15},     {"lose 20", NULL, ETHD_FAULT_FRAME_LOST, 15},
+    {"reset 0", NULL, ETHD_FAULT_BOARD_CLOCK, 30},      {"hang 0", NULL, ETHD_FAULT_FRAME_LOST, 30},
+    {"link-short", "link-free", ETHD_FAULT_SENSOR, 30}, {"unplug", "plug", ETHD_FAULT_FRAME_LOST, 15},
 };
 
 static void meet_fault(run *r, int i) {
@@ -240,7 +242,8 @@ static void meet_fault(run *r, int i) {
     readings++;
     ck_assert_double_le(error(r), 1e-3);
   }
-  ck_assert_msg(rows == 0 && readings >= 29, "%s: rows %#llx, %u readings", faults[i].command, (unsigned long long)rows, readings);
+  ck_assert_msg(rows == 0 && readings >= 29, "%s: rows %#llx, %u readings", faults[i].command, (unsigned long long)rows,
+                readings);
 }
 
 /* Each is seen as its row, and gone after it. */

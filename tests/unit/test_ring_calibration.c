@@ -4,8 +4,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "text/text.h"
 #include "mutate.h"
+#include "text/text.h"
 #include "unit/rig.h"
 #include "unit/ring_rod.h"
 
@@ -34,8 +34,7 @@ START_TEST(test_table) {
   memcpy(s->above, (double[]){40000, 20000, 10000}, 3 * sizeof(double));
   memcpy(s->at, (double[]){1e-3, 2e-3, 4e-3}, 3 * sizeof(double));
   double half = 0.5 * (1 / sqrt(40000) + 1 / sqrt(20000)), middle = rint(1000 + 1 / (half * half));
-  const double at[][2] = {{41000, 1e-3}, {middle, 1.5e-3}, {21000, 2e-3}, {11000, 4e-3},
-                          {1000, ETHD__DISTANCE_MAX}};
+  const double at[][2] = {{41000, 1e-3}, {middle, 1.5e-3}, {21000, 2e-3}, {11000, 4e-3}, {1000, ETHD__DISTANCE_MAX}};
   for (size_t i = 0; i < sizeof at / sizeof *at; i++)
     ck_assert_double_eq_tol(ethd__sensor_distance(s, (uint16_t)at[i][0]), at[i][1], 1e-7);
   for (double d = 1e-3; d < 6e-3; d += 0.1e-3)
@@ -59,7 +58,8 @@ static double recovery(const ethd__calibration *truth, const ethd__calibration *
 static ethd__calibration fitted(ethd__level level, const ethd__calibration *truth, double noise, uint64_t seed) {
   ethd__place_reading at[ROD_PLACES];
   ethd__calibration c = ethd__calibration_default();
-  for (int k = 0; k < ETHD_RAYS; k++) c.sensors[k].dark = truth->sensors[k].dark + noise * draw_normal(seed * 77 + (uint64_t)k);
+  for (int k = 0; k < ETHD_RAYS; k++)
+    c.sensors[k].dark = truth->sensors[k].dark + noise * draw_normal(seed * 77 + (uint64_t)k);
   for (int i = 0; i < ROD_PLACES; i++) at[i] = rod_reading(truth, rod_place(i), noise, seed * 100 + (uint64_t)i);
   ethd_status status = ethd__calibration_fit(level, (ethd__place_readings){at, ROD_PLACES}, &c, message);
   ck_assert_msg(status == ETHD_OK, "%s", message);
@@ -94,7 +94,8 @@ START_TEST(test_exact) {
       at[i].counts[k] = isnan(at[i].distance[k]) ? 0 : ethd__sensor_counts(&truth.sensors[k], at[i].distance[k]);
   }
   for (int k = 0; k < ETHD_RAYS; k++) c.sensors[k].dark = truth.sensors[k].dark;
-  ck_assert_int_eq(ethd__calibration_fit(ETHD__LEVEL_LAW, (ethd__place_readings){at, ROD_PLACES}, &c, message), ETHD_OK);
+  ck_assert_int_eq(ethd__calibration_fit(ETHD__LEVEL_LAW, (ethd__place_readings){at, ROD_PLACES}, &c, message),
+                   ETHD_OK);
   ck_assert_double_le(c.residual, 1e-9);
   for (int k = 0; k < ETHD_RAYS; k++) {
     ck_assert_double_eq_tol(c.sensors[k].p, truth.sensors[k].p, 1e-5);
@@ -144,12 +145,14 @@ static const struct {
   const char *text, *says;
 } bads[] = {
     {"", "x: calibration.level is missing"},
-    {"[calibration]\nlevel = best\n", "x:2: calibration.level: found \"best\", none, common, gain, law or table is allowed"},
+    {"[calibration]\nlevel = best\n",
+     "x:2: calibration.level: found \"best\", none, common, gain, law or table is allowed"},
     {"[calibration]\nlevel = none\n[law]\na = 1\n", "x:4: [law]: level none has none"},
     {"[calibration]\nlevel = common\n[law]\na = 1x\n", "x:4: law.a: found \"1x\", a decimal number is allowed"},
     {"[calibration]\nlevel = common\n[law]\np = 9\n", "x:4: law.p: found \"9\", 0.5 to 8 is allowed"},
     {"[calibration]\nlevel = common\n[law]\na = nan\n", "x:4: law.a: found \"nan\", 1e-09 to 1000000000 is allowed"},
-    {"[calibration]\nlevel = common\n[law]\ndark = 1\n", "x:4: law.dark: unknown key at level common; a, p, d0 are allowed"},
+    {"[calibration]\nlevel = common\n[law]\ndark = 1\n",
+     "x:4: law.dark: unknown key at level common; a, p, d0 are allowed"},
     {"[calibration]\nlevel = common\n[sensor 3]\na = 1\n",
      "x:4: sensor 3.a: unknown key at level common; dark, residual, serial are allowed"},
     {"[calibration]\nlevel = gain\n[sensor 3]\np = 1\n", "x:4: sensor 3.p: unknown key at level gain"},
@@ -158,7 +161,8 @@ static const struct {
     {"[calibration]\nlevel = none\n[sensor 01]\ndark = 2\n", "x:3: [\"sensor 01\"]: unknown section"},
     {"[calibration]\nlevel = none\nlevel = law\n", "x:3:"},
     {"[calibration]\nlevel = table\n[sensor 0]\npoint1 = 2 1\n", "x:4: sensor 0.point1: unknown key at level table"},
-    {"[calibration]\nlevel = table\n[sensor 0]\npoint0 = 2\n", "x:4: sensor 0.point0: found \"2\", COUNTS_ABOVE_DARK METRES"},
+    {"[calibration]\nlevel = table\n[sensor 0]\npoint0 = 2\n",
+     "x:4: sensor 0.point0: found \"2\", COUNTS_ABOVE_DARK METRES"},
     {"[calibration]\nlevel = table\n[sensor 0]\npoint0 = 2 1e-3\npoint1 = 2 2e-3\n", "x:5: sensor 0.point1: found"},
     {"[calibration]\nlevel = table\n[sensor 0]\npoint0 = 2 1e-3\npoint1 = 1 1e-3\n", "x:5: sensor 0.point1: found"},
 };
@@ -166,16 +170,19 @@ static const struct {
 START_TEST(test_bad_texts) {
   for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {
     ethd__calibration c;
-    ck_assert_msg(ethd__calibration_parse(bads[i].text, strlen(bads[i].text), "x", &c, message) < 0, "%s", bads[i].text);
+    ck_assert_msg(ethd__calibration_parse(bads[i].text, strlen(bads[i].text), "x", &c, message) < 0, "%s",
+                  bads[i].text);
     ck_assert_msg(!strncmp(message, bads[i].says, strlen(bads[i].says)), "%s\nsays %s", bads[i].text, message);
   }
 }
 END_TEST
 
 START_TEST(test_mutations) {
-  static const char *const words[] = {"[sensor 3]\n", "[law]\n", "point0 = 1 1\n", "a = 1\n", "nan", "-", "level = gain\n", NULL};
-  static const char seed[] = "[calibration]\nlevel = table\ndate = x\nresidual = 1e-4\n[sensor 0]\ndark = 2e3\nserial = 1\n"
-                             "point0 = 60000 1e-3\npoint1 = 30000 2e-3\n[sensor 1]\npoint0 = 5e4 1e-3\n";
+  static const char *const words[] = {"[sensor 3]\n", "[law]\n", "point0 = 1 1\n", "a = 1\n",
+                                      "nan",          "-",       "level = gain\n", NULL};
+  static const char seed[] =
+      "[calibration]\nlevel = table\ndate = x\nresidual = 1e-4\n[sensor 0]\ndark = 2e3\nserial = 1\n"
+      "point0 = 60000 1e-3\npoint1 = 30000 2e-3\n[sensor 1]\npoint0 = 5e4 1e-3\n";
   char text[1024];
   const char *wanted = getenv("ETHD_FUZZ");
   uint64_t runs = wanted ? strtoull(wanted, NULL, 10) : 20000;

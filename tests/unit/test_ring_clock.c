@@ -59,9 +59,9 @@ START_TEST(test_steady) {
       {0, 0, 0, 2e-6, 2e-6},
       {50e-6, 200e-6, 0, 0.5e-3, 40e-6},
       {-50e-6, 200e-6, 0, 0.5e-3, 40e-6},
-      {50e-6, 200e-6, 1e-3, 1.5e-3, 0.4e-3},  /* a USB adapter, low latency */
-      {50e-6, 200e-6, 16e-3, 18e-3, 1.5e-3},  /* and as it comes */
-      {5e-3, 200e-6, 1e-3, 4e-3, 0.4e-3},      /* a ceramic resonator */
+      {50e-6, 200e-6, 1e-3, 1.5e-3, 0.4e-3}, /* a USB adapter, low latency */
+      {50e-6, 200e-6, 16e-3, 18e-3, 1.5e-3}, /* and as it comes */
+      {5e-3, 200e-6, 1e-3, 4e-3, 0.4e-3},    /* a ceramic resonator */
       {-5e-3, 200e-6, 1e-3, 4e-3, 0.4e-3},
   };
   for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
@@ -71,8 +71,10 @@ START_TEST(test_steady) {
       double first = run(&c, &b, 0, SECOND), soon = run(&c, &b, SECOND, 8 * SECOND);
       double later = run(&c, &b, 8 * SECOND, 60 * SECOND);
       if (key == 0)
-        printf("drift %5.0f ppm, jitter %.0f us, hold %2.0f ms: largest error %7.1f us in the first second, %6.1f to 8 s, "
-               "%6.1f then\n", 1e6 * b.drift, 1e6 * b.jitter, 1e3 * b.hold, 1e6 * first, 1e6 * soon, 1e6 * later);
+        printf(
+            "drift %5.0f ppm, jitter %.0f us, hold %2.0f ms: largest error %7.1f us in the first second, %6.1f to 8 s, "
+            "%6.1f then\n",
+            1e6 * b.drift, 1e6 * b.jitter, 1e3 * b.hold, 1e6 * first, 1e6 * soon, 1e6 * later);
       ck_assert_msg(first <= rows[k].first_second, "row %zu: %g s at first", k, first);
       ck_assert_msg(later <= rows[k].later, "row %zu: %g s then", k, later);
       ck_assert_uint_eq(c.jumps + c.doubts, 0);

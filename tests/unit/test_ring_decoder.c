@@ -38,8 +38,7 @@ END_TEST
 
 START_TEST(test_pieces) {
   ring_wire(0, COUNT, wire);
-  for (size_t i = 0; i < sizeof wire; i++)
-    ck_assert((wire[i] == 0) == (i % ETHD__FRAME_WIRE == ETHD__FRAME_WIRE - 1));
+  for (size_t i = 0; i < sizeof wire; i++) ck_assert((wire[i] == 0) == (i % ETHD__FRAME_WIRE == ETHD__FRAME_WIRE - 1));
   for (size_t piece = 1; piece <= sizeof wire; piece += piece < 100 ? 1 : 97) {
     ethd__decoder d = {0};
     ck_assert_uint_eq(decode(&d, wire, sizeof wire, piece), COUNT);

@@ -58,7 +58,8 @@ static void send_frame(const board *b, const ethd__frame *frame) {
 
 static ethd__frame empty_frame(const ring_scene *s, uint32_t i) {
   ethd__frame f = scene_frame(s, i);
-  for (int k = 0; k < ETHD_RAYS; k++) f.counts[k] = (uint16_t)rod_counts(&s->truth, k, (double)NAN, 5, i * 16ull + (uint64_t)k);
+  for (int k = 0; k < ETHD_RAYS; k++)
+    f.counts[k] = (uint16_t)rod_counts(&s->truth, k, (double)NAN, 5, i * 16ull + (uint64_t)k);
   return f;
 }
 
@@ -128,7 +129,8 @@ static void drain(const board *b) {
 
 /* A ring with its calibration in a file, opened; the line is quiet. */
 static void *open_ring(board *b) {
-  static const ethd_setting settings[] = {{"port", "port", 1}, {"calibration", "ring.ini", 2}, {"delay", "0.0042", 3}, {"patience", "30", 4}};
+  static const ethd_setting settings[] = {
+      {"port", "port", 1}, {"calibration", "ring.ini", 2}, {"delay", "0.0042", 3}, {"patience", "30", 4}};
   char path[80];
   void *device;
   *b = (board){.scene = {rod_truth(1), 5, VIRTUAL}, .master = -1};
@@ -241,7 +243,10 @@ START_TEST(test_readings) {
     memcpy(reading.rays, r.sense.rays, sizeof reading.rays);
     ck_assert_double_le(scene_error(&reading, frame), 0.08e-3);
     /* arrivals are seen at ticks: the envelope finds those that weren't late */
-    if (i > 1000) ck_assert_int_le(llabs(r.sense.sample_ns - VIRTUAL - (int64_t)(1e9 * scene_time(frame)) - 1000 * (int64_t)ETHD__MIDDLE_US), 400000);
+    if (i > 1000)
+      ck_assert_int_le(
+          llabs(r.sense.sample_ns - VIRTUAL - (int64_t)(1e9 * scene_time(frame)) - 1000 * (int64_t)ETHD__MIDDLE_US),
+          400000);
     ck_assert_int_eq(r.sense.faults | r.sense.grave, 0);
   }
   ck_assert_uint_eq(r.rays, r.next);
@@ -259,8 +264,14 @@ END_TEST
 
 static uint32_t onset;
 
-static bool lose_one(ethd__frame *f, uint32_t i) { (void)f; return i != onset; }
-static bool lose_all(ethd__frame *f, uint32_t i) { (void)f; return i < onset; }
+static bool lose_one(ethd__frame *f, uint32_t i) {
+  (void)f;
+  return i != onset;
+}
+static bool lose_all(ethd__frame *f, uint32_t i) {
+  (void)f;
+  return i < onset;
+}
 static bool reset_board(ethd__frame *f, uint32_t i) {
   if (i < onset) return true;
   f->seq = (uint16_t)(i - onset);
@@ -324,7 +335,8 @@ START_TEST(test_rows) {
     ck_assert_msg(ticks >= 0 && ticks <= rows[_i].most, "%s, phase %u: %d ticks", rows[_i].what, phase, ticks);
     if (ticks > worst) worst = ticks;
   }
-  printf("%-26s row %d%s seen at most %d ticks after it\n", rows[_i].what, (int)rows[_i].row, rows[_i].grave ? ", grave," : "", worst);
+  printf("%-26s row %d%s seen at most %d ticks after it\n", rows[_i].what, (int)rows[_i].row,
+         rows[_i].grave ? ", grave," : "", worst);
 }
 END_TEST
 
@@ -354,7 +366,8 @@ START_TEST(test_replug) {
   uint32_t n = driver->figures(r.device, figures, ETHD_FIGURES_MAX);
   for (uint32_t i = 0; i < n; i++)
     if (!strcmp(figures[i].name, "ring port opened")) ck_assert(figures[i].value == replugs + 1);
-  printf("unplugged and plugged in again %d times, %llu readings, none lost while it was plugged in\n", replugs, (unsigned long long)r.rays);
+  printf("unplugged and plugged in again %d times, %llu readings, none lost while it was plugged in\n", replugs,
+         (unsigned long long)r.rays);
   end(&r);
 }
 END_TEST

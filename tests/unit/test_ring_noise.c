@@ -18,7 +18,7 @@ static ethd__frame scene[LOOP];
 typedef struct count {
   uint64_t damaged, passed_crc, used, good_lost;
   double worst, sum; /* m, m^2: the largest error of a used damaged frame's centre; squares */
-  uint64_t off; /* used ones whose centre is over 0.5 mm off */
+  uint64_t off;      /* used ones whose centre is over 0.5 mm off */
 } count;
 
 /* Frame i of a stream that never ends: there and back through the scene, so that the finger never leaps. */
@@ -86,11 +86,16 @@ static void feed_forged(count *c, uint64_t i) {
   for (uint64_t k = 0, changes = 1 + draw_bits(i * 8 + 5) % 6; k < changes; k++) {
     uint64_t x = draw_bits((i * 8 + k) ^ 0x5555555555);
     uint32_t at = (uint32_t)(x >> 8) % ETHD__FRAME_AT_CRC, bit = 1u << (x >> 40 & 7);
-    if (at == 1) f.flags ^= (uint8_t)bit;
-    else if (at < 2) continue;
-    else if (at < 4) f.seq ^= (uint16_t)(bit << 8 * (at - 2));
-    else if (at < 8) f.t_us ^= bit << 8 * (at - 4);
-    else f.counts[(at - 8) / 2] ^= (uint16_t)(x & 1 ? bit << 8 * (at & 1) : x >> 16);
+    if (at == 1)
+      f.flags ^= (uint8_t)bit;
+    else if (at < 2)
+      continue;
+    else if (at < 4)
+      f.seq ^= (uint16_t)(bit << 8 * (at - 2));
+    else if (at < 8)
+      f.t_us ^= bit << 8 * (at - 4);
+    else
+      f.counts[(at - 8) / 2] ^= (uint16_t)(x & 1 ? bit << 8 * (at & 1) : x >> 16);
   }
   if (ring_same(&f, &was)) return;
   c->damaged++;
@@ -110,8 +115,10 @@ static count run(uint64_t frames, void (*feed)(count *, uint64_t)) {
   for (uint64_t i = 0; i < 300; i++) feed_good(&c, i);
   ck_assert_uint_eq(c.good_lost, 0);
   for (uint64_t i = 300; c.damaged < frames; i++) {
-    if (i % 2) feed(&c, i);
-    else feed_good(&c, i);
+    if (i % 2)
+      feed(&c, i);
+    else
+      feed_good(&c, i);
   }
   return c;
 }
@@ -174,7 +181,8 @@ START_TEST(test_speed) {
     clock_gettime(CLOCK_MONOTONIC, &from);
     for (size_t at = 0; at < sizeof wire; at += 4096) {
       const uint8_t *p = wire + at, *end = p + (sizeof wire - at < 4096 ? sizeof wire - at : 4096);
-      while (ethd__decoder_next(&d, &p, end, &f)) {}
+      while (ethd__decoder_next(&d, &p, end, &f)) {
+      }
     }
     clock_gettime(CLOCK_MONOTONIC, &to);
     ck_assert_uint_eq(d.counters.frames, FRAMES);

@@ -20,7 +20,9 @@ START_TEST(test_clean) {
       ethd__frame f = scene_frame(&s, i);
       ethd__reading reading;
       ck_assert(scene_feed(&r, &f, scene_arrival(&s, i), &reading));
-      ck_assert_int_le(llabs(reading.sample_ns - s.start_ns - (int64_t)(1e9 * scene_time(i)) - 1000 * (int64_t)ETHD__MIDDLE_US), 2000);
+      ck_assert_int_le(
+          llabs(reading.sample_ns - s.start_ns - (int64_t)(1e9 * scene_time(i)) - 1000 * (int64_t)ETHD__MIDDLE_US),
+          2000);
       ck_assert_uint_eq(reading.out, 0);
       double e = scene_error(&reading, i);
       sum += e * e;
@@ -67,7 +69,8 @@ START_TEST(test_sensor_faults) {
     for (int phase = 0; phase < 20; phase++) {
       uint32_t noticed, forgiven;
       watch(kind, (phase * 7) % 16, 300 + 13 * (uint32_t)phase, &noticed, &forgiven);
-      ck_assert_msg(noticed >= 1 && forgiven >= 1, "%s, phase %d: noticed %u, forgiven %u", names[kind], phase, noticed, forgiven);
+      ck_assert_msg(noticed >= 1 && forgiven >= 1, "%s, phase %d: noticed %u, forgiven %u", names[kind], phase, noticed,
+                    forgiven);
       if (noticed > worst) worst = noticed;
       if (forgiven > longest) longest = forgiven;
     }
@@ -139,7 +142,8 @@ START_TEST(test_reset) {
     if (i == 600) f.flags |= ETHD__FRAME_FIRST;
     ck_assert(scene_feed(&r, &f, scene_arrival(&s, i), &reading));
     ck_assert_uint_eq(r.counts.board_clock, i >= 600);
-    ck_assert_int_le(llabs(reading.sample_ns - s.start_ns - (int64_t)(1e9 * scene_time(i)) - 1000 * (int64_t)ETHD__MIDDLE_US), 3000);
+    ck_assert_int_le(
+        llabs(reading.sample_ns - s.start_ns - (int64_t)(1e9 * scene_time(i)) - 1000 * (int64_t)ETHD__MIDDLE_US), 3000);
   }
   ck_assert_uint_eq(r.counts.frame_lost, 0);
 }
@@ -152,7 +156,8 @@ START_TEST(test_leap) {
   for (uint32_t i = 0; i < 312; i++) {
     ethd__frame f = scene_frame(&s, i);
     if (i >= 300)
-      for (int k = 0; k < ETHD_RAYS; k++) f.counts[k] = (uint16_t)rod_counts(&s.truth, k, k < 8 ? 8.2e-3 : 0.8e-3, 5, i);
+      for (int k = 0; k < ETHD_RAYS; k++)
+        f.counts[k] = (uint16_t)rod_counts(&s.truth, k, k < 8 ? 8.2e-3 : 0.8e-3, 5, i);
     bool got = scene_feed(&r, &f, scene_arrival(&s, i), &reading);
     ck_assert_int_eq(got, i < 300 || (i - 300) % 3 == 2); /* no finger's shape: a third of the frames */
   }

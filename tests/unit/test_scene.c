@@ -17,8 +17,10 @@ static real by_golden_section(real ax, real ay, real bx, real by, real x, real y
     real s = hi - g * (hi - lo), t = lo + g * (hi - lo);
     real ds = hypotl(ax + s * (bx - ax) - x, ay + s * (by - ay) - y);
     real dt = hypotl(ax + t * (bx - ax) - x, ay + t * (by - ay) - y);
-    if (ds < dt) hi = t;
-    else lo = s;
+    if (ds < dt)
+      hi = t;
+    else
+      lo = s;
   }
   real t = (lo + hi) / 2;
   return fminl(fminl(hypotl(ax - x, ay - y), hypotl(bx - x, by - y)),
@@ -87,13 +89,17 @@ START_TEST(test_mixed) {
       int which = -1;
       for (int k = 0; k < OBJECTS; k++) {
         real d = scene_expected(&o[k], x.x, x.y);
-        if (d < least) second = least, least = d, which = k;
-        else if (d < second) second = d;
+        if (d < least)
+          second = least, least = d, which = k;
+        else if (d < second)
+          second = d;
       }
       ethd_scene_query(scene, x, &q);
       ck_assert(fabsl(q.distance - least) <= SCENE_TIGHT);
-      if (second - least > 2 * SCENE_TIGHT) ck_assert_int_eq(q.object, which);
-      else ties++;
+      if (second - least > 2 * SCENE_TIGHT)
+        ck_assert_int_eq(q.object, which);
+      else
+        ties++;
     }
     ethd_scene_destroy(scene);
   }
@@ -152,9 +158,9 @@ START_TEST(test_corners_of_an_l) {
     CHECK_AT(s, 1.25, 1.125, 0.125, 0, -1);        /* outside, in its notch */
     CHECK_AT(s, 2.5, 1.5, sqrt(0.5), -r, -r);      /* off a convex corner */
     CHECK_AT(s, -1, -1, sqrt(2), r, r);
-    CHECK_AT(s, 1, 1, 0, -r, -r);     /* on the reflex corner */
-    CHECK_AT(s, 0, 0, 0, r, r);       /* on a convex one */
-    CHECK_AT(s, 1, 0, 0, 0, 1);       /* on an edge */
+    CHECK_AT(s, 1, 1, 0, -r, -r); /* on the reflex corner */
+    CHECK_AT(s, 0, 0, 0, r, r);   /* on a convex one */
+    CHECK_AT(s, 1, 0, 0, 0, 1);   /* on an edge */
     CHECK_AT(s, 1.5, 0.9375, -0.0625, 0, -1);
     CHECK_AT(s, 3, 0.5, 1, -1, 0);
     ethd_scene_destroy(s);

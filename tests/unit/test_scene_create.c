@@ -53,9 +53,9 @@ static const refusal refusals[] = {
     {ETHD_E_GEOMETRY, ETHD_POLYGON, 8, {0, 0, 1, 0, 1, 0, 0, 1}},
     {ETHD_E_GEOMETRY, ETHD_POLYGON, 6, {0, 0, 1, 1, 2, 2}},
     {ETHD_E_GEOMETRY, ETHD_POLYGON, 8, {0, 0, 1, 1, 1, 0, 0, 1}},
-    {ETHD_E_GEOMETRY, ETHD_POLYGON, 10, {0, 0, 2, 0, 2, 2, 1, 0, 0, 2}},         /* a vertex on an edge */
-    {ETHD_E_GEOMETRY, ETHD_POLYGON, 12, {0, 0, 1, 1, 2, 0, 2, 2, 1, 1, 0, 2}},   /* a vertex twice */
-    {ETHD_E_GEOMETRY, ETHD_POLYGON, 8, {0, 0, 2, 0, 1, 0, 1, 1}},                /* back over itself */
+    {ETHD_E_GEOMETRY, ETHD_POLYGON, 10, {0, 0, 2, 0, 2, 2, 1, 0, 0, 2}},       /* a vertex on an edge */
+    {ETHD_E_GEOMETRY, ETHD_POLYGON, 12, {0, 0, 1, 1, 2, 0, 2, 2, 1, 1, 0, 2}}, /* a vertex twice */
+    {ETHD_E_GEOMETRY, ETHD_POLYGON, 8, {0, 0, 2, 0, 1, 0, 1, 1}},              /* back over itself */
     {ETHD_OK, ETHD_POLYLINE, 8, {0, 0, 1, 1, 1, 0, 0, 1}},
     {ETHD_OK, ETHD_POLYGON, 8, {0, 0, 1, 0, 2, 0, 1, 1}}, /* a straight vertex */
     {ETHD_OK, ETHD_CAPSULE, 5, {1, 1, 1, 1, 0.1}},

@@ -6,9 +6,12 @@
 #include "scene_objects.h"
 
 START_TEST(test_describe) {
-  object o[] = {{ETHD_HALFPLANE, 3, {0, 1, 5}},          {ETHD_CIRCLE, 3, {1, 2, 0.5}},
-                {ETHD_POLYGON, 8, {0, 0, 3, 0, 3, 1, 0, 1}}, {ETHD_POLYLINE, 6, {-2, 0, -1, 0, -1, -4}},
-                {ETHD_SEGMENT, 4, {0, 0, 1, 1}},         {ETHD_CIRCLE, 3, {0, 0, 0.1}}};
+  object o[] = {{ETHD_HALFPLANE, 3, {0, 1, 5}},
+                {ETHD_CIRCLE, 3, {1, 2, 0.5}},
+                {ETHD_POLYGON, 8, {0, 0, 3, 0, 3, 1, 0, 1}},
+                {ETHD_POLYLINE, 6, {-2, 0, -1, 0, -1, -4}},
+                {ETHD_SEGMENT, 4, {0, 0, 1, 1}},
+                {ETHD_CIRCLE, 3, {0, 0, 0.1}}};
   ethd_scene *s = scene_build(o, 6);
   ethd_scene_info info;
   ethd_scene_describe(s, &info);
@@ -30,8 +33,7 @@ START_TEST(test_describe) {
   ck_assert(fabs(info.y_max - 3) <= SCENE_TIGHT);
   ethd_scene_destroy(s);
   for (int i = 0; i < ETHD_SHAPE_COUNT; i++)
-    for (int k = 0; k < i; k++)
-      ck_assert_str_ne(ethd_shape_name((ethd_shape)i), ethd_shape_name((ethd_shape)k));
+    for (int k = 0; k < i; k++) ck_assert_str_ne(ethd_shape_name((ethd_shape)i), ethd_shape_name((ethd_shape)k));
   ck_assert_str_eq(ethd_shape_name(ETHD_HALFPLANE), "halfplane");
 }
 END_TEST

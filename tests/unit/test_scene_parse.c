@@ -96,12 +96,27 @@ static uint64_t draw(void) {
 }
 
 START_TEST(test_numbers) {
-  static const char *const words[] = {
-      "0", "-0", "1", "+1", "1.", ".5", "-.5e1", "1e5", "1E-5", "1e+05", "0.1", "123456.789012345678901",
-      "1e-400", "0.000000000000000000000000000001e30", "100000000000000000000000000000e-30",
-      "4.9406564584124654e-324", "2.2250738585072011e-308", "9007199254740993e-10",
-      "0.1000000000000000055511151231257827021181583404541015625", "1e-0000000000000000000001",
-      "0e999999999999999999999"};
+  static const char *const words[] = {"0",
+                                      "-0",
+                                      "1",
+                                      "+1",
+                                      "1.",
+                                      ".5",
+                                      "-.5e1",
+                                      "1e5",
+                                      "1E-5",
+                                      "1e+05",
+                                      "0.1",
+                                      "123456.789012345678901",
+                                      "1e-400",
+                                      "0.000000000000000000000000000001e30",
+                                      "100000000000000000000000000000e-30",
+                                      "4.9406564584124654e-324",
+                                      "2.2250738585072011e-308",
+                                      "9007199254740993e-10",
+                                      "0.1000000000000000055511151231257827021181583404541015625",
+                                      "1e-0000000000000000000001",
+                                      "0e999999999999999999999"};
   for (size_t i = 0; i < sizeof words / sizeof *words; i++) check_number(words[i]);
   seed = 1;
   for (int i = 0; i < 20000; i++) {
@@ -231,10 +246,10 @@ static const refusal refusals[] = {
     {"\npolygon 0 0 1 1 1 0 0 1", ETHD_E_GEOMETRY, 2, "polygon: edges 0 and 2"},
     {"polygon 0 0 2 0 1 0", ETHD_E_GEOMETRY, 1, "polygon: edges"},
     {"polygon 0 0 1 1 2 2 3 3", ETHD_E_GEOMETRY, 1, "polygon: edges"},
-    {"polygon 0 0 4 0 2 0 2 3", ETHD_E_GEOMETRY, 1, "polygon: edges"},                    /* back along itself */
-    {"polygon 0 0 4 0 4 4 2 0 0 4", ETHD_E_GEOMETRY, 1, "polygon: edges"},                /* a corner on an edge */
-    {"polygon 0 0 2 2 4 0 4 4 2 2 0 4", ETHD_E_GEOMETRY, 1, "polygon: edges"},            /* a corner on a corner */
-    {"polygon 0 0 9 0 9 9 5 9 5 5 5 9 0 9", ETHD_E_GEOMETRY, 1, "polygon: edges"},        /* a slit */
+    {"polygon 0 0 4 0 2 0 2 3", ETHD_E_GEOMETRY, 1, "polygon: edges"},             /* back along itself */
+    {"polygon 0 0 4 0 4 4 2 0 0 4", ETHD_E_GEOMETRY, 1, "polygon: edges"},         /* a corner on an edge */
+    {"polygon 0 0 2 2 4 0 4 4 2 2 0 4", ETHD_E_GEOMETRY, 1, "polygon: edges"},     /* a corner on a corner */
+    {"polygon 0 0 9 0 9 9 5 9 5 5 5 9 0 9", ETHD_E_GEOMETRY, 1, "polygon: edges"}, /* a slit */
     {"polygon 0 0 1 0 1 1 1 1", ETHD_E_GEOMETRY, 1, "polygon: points 2 and 3"},
     {"polygon 1e9 0 1 0 1 1", ETHD_E_RANGE, 1, "polygon x"},
     {"segment 0 0 0 1e9", ETHD_E_RANGE, 1, "segment y"},
@@ -251,8 +266,8 @@ START_TEST(test_refusals) {
     ethd_status status = ethd_scene_parse(r->text, strlen(r->text), &s, &error);
     ck_assert_msg(status == r->status, "\"%s\": %s", r->text, ethd_status_sentence(status));
     ck_assert_ptr_null(s);
-    ck_assert_msg(error.status == status && error.line == r->line && strstr(error.name, r->name),
-                  "\"%s\": line %d, %s", r->text, error.line, error.name);
+    ck_assert_msg(error.status == status && error.line == r->line && strstr(error.name, r->name), "\"%s\": line %d, %s",
+                  r->text, error.line, error.name);
     ck_assert_int_eq(ethd_scene_parse(r->text, strlen(r->text), &s, NULL), r->status);
   }
 }
@@ -329,8 +344,9 @@ START_TEST(test_broken_texts) {
       "halfplane -1 0 -0.238 material=soft\ncircle 1 2 3 # c\nmaterial soft k_e=2500 b_e=45\n"
       "capsule 0 0 1 1 0.5\nbox 1 2 3e0 4 -0.5\npolygon 0 0 4 0 4 4 2 2 0 4\nsegment 0 0 1 1 material=hard\n"
       "polyline 0 0 1 1 1 0 0 1\nmaterial hard k_e=1e4\n";
-  static const char *const bits[] = {" ", "\n", "#", "=", "-", ".", "e", "0", "9", "1e9", "nan", "material", "circle ",
-                                     "polygon ", "material=", "\r", "\t", "0 0", "1e-320", "e308"};
+  static const char *const bits[] = {" ",         "\n", "#",   "=",   "-",        ".",       "e",
+                                     "0",         "9",  "1e9", "nan", "material", "circle ", "polygon ",
+                                     "material=", "\r", "\t",  "0 0", "1e-320",   "e308"};
   enum { BITS = sizeof bits / sizeof *bits };
   long taken = 0, refused = 0;
   seed = 7;
@@ -342,24 +358,22 @@ START_TEST(test_broken_texts) {
       size_t at = draw() % n, length = 1 + draw() % 6;
       const char *bit = bits[draw() % BITS];
       switch (draw() % 6) {
-        case 0: text[at] = (char)draw(); break;
-        case 1: text[at] ^= (char)(1 << draw() % 8); break;
-        case 2: n = draw() % 8 ? n : at; break;
-        case 3: /* take out */
-          length = at + length < n ? length : n - at;
-          memmove(text + at, text + at + length, n - at - length);
-          n -= length;
-          break;
-        case 4: /* put in */
-          length = strlen(bit);
-          if (n + length > ROOM) break;
-          memmove(text + at + length, text + at, n - at);
-          memcpy(text + at, bit, length);
-          n += length;
-          break;
-        default: /* over it */
-          length = strlen(bit) < n - at ? strlen(bit) : n - at;
-          memcpy(text + at, bit, length);
+      case 0: text[at] = (char)draw(); break;
+      case 1: text[at] ^= (char)(1 << draw() % 8); break;
+      case 2: n = draw() % 8 ? n : at; break;
+      case 3: /* take out */
+        length = at + length < n ? length : n - at;
+        memmove(text + at, text + at + length, n - at - length);
+        n -= length;
+        break;
+      case 4: /* put in */
+        length = strlen(bit);
+        if (n + length > ROOM) break;
+        memmove(text + at + length, text + at, n - at);
+        memcpy(text + at, bit, length);
+        n += length;
+        break;
+      default: /* over it */ length = strlen(bit) < n - at ? strlen(bit) : n - at; memcpy(text + at, bit, length);
       }
     }
     char *exact = malloc(n ? n : 1);

@@ -112,7 +112,9 @@ START_TEST(test_objects_come_back) {
 END_TEST
 
 #define FAR_AWAY "circle 9 9 1 material=soft\n"
-#define NEAR_BY "halfplane -1 0 -0.238\npolyline 0.2 0.1 0.236 0.25 0.2 0.4\ncircle 0.26 0.28 0.01 material=soft\nmaterial soft k_e=500\n"
+#define NEAR_BY                                                                                                     \
+  "halfplane -1 0 -0.238\npolyline 0.2 0.1 0.236 0.25 0.2 0.4\ncircle 0.26 0.28 0.01 material=soft\nmaterial soft " \
+  "k_e=500\n"
 
 static ethd_scene *prune_for(const ethd_setup *setup) {
   ethd_scene *pruned;

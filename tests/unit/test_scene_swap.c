@@ -117,7 +117,8 @@ START_TEST(test_swapped_in_a_tap) {
   ck_assert_int_gt(touched, 300);
   ck_assert_int_gt(most, 0);
   ck_assert_int_gt((int)((last - first) / page), 1000);
-  printf("%s: at most %d of %d pages read in a tick\n", _i ? "segments" : "outline", most, (int)((last - first) / page));
+  printf("%s: at most %d of %d pages read in a tick\n", _i ? "segments" : "outline", most,
+         (int)((last - first) / page));
   rig_close(&r);
   ethd_scene_destroy(held);
 }

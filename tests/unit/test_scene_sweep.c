@@ -4,8 +4,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "scene/scene.h"
 #include "scene/check.h"
+#include "scene/scene.h"
 
 static uint64_t seed;
 

@@ -212,8 +212,7 @@ START_TEST(test_order_and_overflow) {
     }
     for (size_t room = 0; room <= n; room++) {
       ck_assert_uint_eq(ethd_scene_touches(scene, x, 0.4, few, room), n);
-      for (size_t i = 0; i < room; i++)
-        ck_assert(few[i].object == all[i].object && few[i].feature == all[i].feature);
+      for (size_t i = 0; i < room; i++) ck_assert(few[i].object == all[i].object && few[i].feature == all[i].feature);
     }
     ethd_scene_destroy(scene);
   }

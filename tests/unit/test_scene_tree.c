@@ -31,7 +31,9 @@ START_TEST(test_bits) {
   static const struct {
     const char *kind;
     uint64_t hash;
-  } expected[] = {{"circles", 0xef25ffb4a1277017}, {"capsules", 0xa404c44faf998228}, {"boxes", 0x0ece58aab813b1fa}, {"segments", 0x13044bdef500b14a}, {"polylines", 0xc1dc8b3e90ee90d4}, {"scribble", 0x03843c38c005fbf0}, {"lattice", 0xbd1a18dec93146b1}};
+  } expected[] = {{"circles", 0xef25ffb4a1277017},  {"capsules", 0xa404c44faf998228},  {"boxes", 0x0ece58aab813b1fa},
+                  {"segments", 0x13044bdef500b14a}, {"polylines", 0xc1dc8b3e90ee90d4}, {"scribble", 0x03843c38c005fbf0},
+                  {"lattice", 0xbd1a18dec93146b1}};
   scene_seed(3000);
   for (size_t i = 0; i < sizeof expected / sizeof *expected; i++)
     for (int k = 0; k < scene_kind_count; k++) {
@@ -70,7 +72,8 @@ START_TEST(test_many) {
   ethd_scene_info info;
   ethd_scene_describe(scene, &info);
   ck_assert_uint_le(info.bytes, 120 * (size_t)many);
-  if (wanted) printf("%d objects: built in %.3g s of processor time, %.1f MB\n", many, spent, 1e-6 * (double)info.bytes);
+  if (wanted)
+    printf("%d objects: built in %.3g s of processor time, %.1f MB\n", many, spent, 1e-6 * (double)info.bytes);
   ethd_scene_hint hint = {0};
   for (int i = 0; i < (wanted ? 20 : 200); i++) {
     ethd_vec x = {scene_uniform(-1, 1), 0.3};

@@ -18,7 +18,8 @@ static void inside(const ethd__room *r, ethd_vec x) {
 START_TEST(test_stays_inside) {
   ethd__room r = room();
   uint64_t seed = 5;
-  for (int k = 0; k < 100000; k++) inside(&r, (ethd_vec){draw(seed + 2 * (uint64_t)k, -1, 1), draw(seed + 2 * (uint64_t)k + 1, -1, 1)});
+  for (int k = 0; k < 100000; k++)
+    inside(&r, (ethd_vec){draw(seed + 2 * (uint64_t)k, -1, 1), draw(seed + 2 * (uint64_t)k + 1, -1, 1)});
   inside(&r, (ethd_vec){(double)NAN, (double)INFINITY});
   inside(&r, (ethd_vec){-(double)INFINITY, 1e300});
   ethd_vec within = {0.26, 0.251}, same = ethd__room_avatar(&r, within);
@@ -32,7 +33,8 @@ START_TEST(test_pixels) {
   static const int sizes[][2] = {{1280, 720}, {320, 200}, {720, 1280}, {16384, 300}};
   for (int i = 0; i < 4; i++) {
     ethd__room r = ethd__room_of(0.238, 0.2816, 0.25, 0.0075, sizes[i][0], sizes[i][1]);
-    ethd_vec low = ethd__room_pixel(&r, (ethd_vec){r.left, r.bottom}), high = ethd__room_pixel(&r, (ethd_vec){r.right, r.top});
+    ethd_vec low = ethd__room_pixel(&r, (ethd_vec){r.left, r.bottom}),
+             high = ethd__room_pixel(&r, (ethd_vec){r.right, r.top});
     ck_assert(low.x > 0 && high.x < sizes[i][0] && high.y > 0 && low.y < sizes[i][1] && high.y < low.y);
     ethd_vec back = ethd__room_point(&r, high.x, high.y);
     ck_assert(fabs(back.x - r.right) < 1e-12 && fabs(back.y - r.top) < 1e-12);
@@ -51,7 +53,8 @@ START_TEST(test_hand_is_causal) {
   ck_assert_int_eq(ethd__hand_create(&hand, pointer, 3), ETHD_OK);
   ethd_path path = ethd__hand_path(&hand);
   for (int k = 0; k < TICKS; k++) {
-    if (k < TICKS / 2 && k % 16 == 0) pointer = (ethd_vec){draw(seed + 2 * (uint64_t)k, 0.2, 0.3), draw(seed + 2 * (uint64_t)k + 1, 0.2, 0.3)};
+    if (k < TICKS / 2 && k % 16 == 0)
+      pointer = (ethd_vec){draw(seed + 2 * (uint64_t)k, 0.2, 0.3), draw(seed + 2 * (uint64_t)k + 1, 0.2, 0.3)};
     ethd__hand_lead(&hand, 1e-3 * k, pointer);
     ethd_path_at(&path, 1e-3 * k + 0.00099, &seen[k], &speed[k]);
   }

@@ -34,12 +34,13 @@ static SDL_Color colour(uint64_t k) {
 
 /* One of a few shapes at one of a few places, some of them over the edges. */
 static void put(ethd__window *w, uint64_t k) {
-  static const char *const texts[] = {"", "tap", "too slow: be a bit quicker, and then a word more than fits the line", "(2 of 5)"};
+  static const char *const texts[] = {"", "tap", "too slow: be a bit quicker, and then a word more than fits the line",
+                                      "(2 of 5)"};
   double x = draw(k + 1, -40, WIDTH + 40), y = draw(k + 2, -40, HEIGHT + 40), size = draw(k + 3, 0, 60);
   switch (draw_bits(k) % 3) {
-    case 0: ethd__window_box(w, x, y, size, draw(k + 4, -5, 40), colour(k + 5)); return;
-    case 1: ethd__window_disc(w, x, y, size, colour(k + 5)); return;
-    default: ethd__window_text(w, draw_bits(k + 4) & 1, x, y, texts[draw_bits(k + 8) % 4], colour(k + 5));
+  case 0: ethd__window_box(w, x, y, size, draw(k + 4, -5, 40), colour(k + 5)); return;
+  case 1: ethd__window_disc(w, x, y, size, colour(k + 5)); return;
+  default: ethd__window_text(w, draw_bits(k + 4) & 1, x, y, texts[draw_bits(k + 8) % 4], colour(k + 5));
   }
 }
 
@@ -81,7 +82,8 @@ START_TEST(test_says_what_changed) {
     ethd__window_draw(&w, now);
     for (size_t i = 0; i < w.changed_count; i++) {
       SDL_Rect from = w.changed[i], to = from;
-      ck_assert(from.x >= 0 && from.y >= 0 && from.w > 0 && from.h > 0 && from.x + from.w <= WIDTH && from.y + from.h <= HEIGHT);
+      ck_assert(from.x >= 0 && from.y >= 0 && from.w > 0 && from.h > 0 && from.x + from.w <= WIDTH &&
+                from.y + from.h <= HEIGHT);
       SDL_BlitSurface(now, &from, before, &to);
     }
     ck_assert_msg(!memcmp(before->pixels, now->pixels, (size_t)(now->pitch * HEIGHT)), "frame %d", (int)number);

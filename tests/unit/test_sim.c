@@ -115,8 +115,7 @@ END_TEST
 static void follow(ethd_sim *sim) {
   ethd_truth t = sim_truth(sim);
   double ex = t.finger[0] - t.ring[0], ey = t.finger[1] - t.ring[1];
-  double fx = 640 * ex + 30 * (t.finger_v[0] - t.ring_v[0]),
-         fy = 640 * ey + 30 * (t.finger_v[1] - t.ring_v[1]);
+  double fx = 640 * ex + 30 * (t.finger_v[0] - t.ring_v[0]), fy = 640 * ey + 30 * (t.finger_v[1] - t.ring_v[1]);
   double q[2] = {sim_sense(sim).q[0], sim_sense(sim).q[1]};
   sim_push(sim, 0.25 * (cos(q[0]) * fy - sin(q[0]) * fx), 0.25 * (cos(q[1]) * fy - sin(q[1]) * fx));
 }
@@ -130,8 +129,7 @@ START_TEST(test_free_finger) {
   if (_i) {
     for (int i = 0; i < COUNT; i++) {
       double t = 0.00147 * i;
-      samples[i] =
-          (ethd_path_sample){t, 0.29 - 0.1 * t + draw((uint64_t)i, -1e-5, 1e-5), 0.25 + 0.01 * sin(9 * t)};
+      samples[i] = (ethd_path_sample){t, 0.29 - 0.1 * t + draw((uint64_t)i, -1e-5, 1e-5), 0.25 + 0.01 * sin(9 * t)};
     }
     tap.path = (ethd_path){.samples = samples, .sample_count = COUNT};
   }
@@ -256,11 +254,11 @@ START_TEST(test_refused_taps) {
   ethd_path_sample s[3] = {{0, 0.29, 0.25}, {0.1, 0.28, 0.25}, {0.2, 0.27, 0.25}};
   ethd_sim_tap good = sim_tap(), t;
   ethd_sim *sim = sim_open(&def, &good);
-#define REFUSED(status, change)                                                                              \
-  do {                                                                                                       \
-    t = good;                                                                                                \
-    change;                                                                                                  \
-    ck_assert_int_eq(ethd_sim_start(sim, &t), status);                                                       \
+#define REFUSED(status, change)                        \
+  do {                                                 \
+    t = good;                                          \
+    change;                                            \
+    ck_assert_int_eq(ethd_sim_start(sim, &t), status); \
   } while (0)
   REFUSED(ETHD_E_RANGE, t.finger_radius = 0.012);
   REFUSED(ETHD_E_RANGE, t.finger_radius = NAN);

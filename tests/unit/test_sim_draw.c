@@ -12,8 +12,7 @@ static double cut_sd(double c) {
 }
 
 /* Back to standard numbers: speed, radius, start, overshoot, lateral; phase within 0 to 1. */
-static void standard(const ethd_plant *p, const ethd_sim_tap *t, double speed, ethd_vec meet,
-                     double z[DRAWN]) {
+static void standard(const ethd_plant *p, const ethd_sim_tap *t, double speed, ethd_vec meet, double z[DRAWN]) {
   z[0] = (t->commanded / speed - 1) / p->speed_spread;
   z[1] = (t->finger_radius - p->finger_radius) / p->finger_radius_sd;
   z[2] = (t->path.from.x - meet.x - p->start) / p->start_sd;

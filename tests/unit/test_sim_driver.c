@@ -46,8 +46,7 @@ START_TEST(test_table) {
   ck_assert_uint_eq(ethd_driver_sim.size, sizeof(ethd_driver));
   ck_assert_uint_eq(ethd_driver_sim.abi, ETHD_DRIVER_ABI);
   ethd_error error;
-  ck_assert_int_eq(ethd_params_check_table(ethd_driver_sim.params, ethd_driver_sim.param_count, &error),
-                   ETHD_OK);
+  ck_assert_int_eq(ethd_params_check_table(ethd_driver_sim.params, ethd_driver_sim.param_count, &error), ETHD_OK);
 }
 END_TEST
 

@@ -217,8 +217,7 @@ START_TEST(test_rays) {
     if (s.have & ETHD_HAVE_RAYS) {
       double begin = 0.7e-3 + frames / 300.0;
       ck_assert_int_eq(s.sample_ns, (int64_t)floor(1e9 * (begin + def.plant.ray_skew / 2) + 0.5));
-      ck_assert_int_ge(1000000 * (int64_t)k,
-                       s.sample_ns + (int64_t)(1e9 * (def.plant.ray_skew / 2 + 1.93e-3)) - 1);
+      ck_assert_int_ge(1000000 * (int64_t)k, s.sample_ns + (int64_t)(1e9 * (def.plant.ray_skew / 2 + 1.93e-3)) - 1);
       ck_assert_double_eq_tol(s.ring[0], 0.29, 1e-12);
       for (int j = 0; j < 16; j++) {
         ethd_vec x, v;
@@ -250,8 +249,7 @@ START_TEST(test_ray_noise) {
     ethd_sense s = sim_sense(sim);
     if (s.have & ETHD_HAVE_RAYS) {
       for (int j = 0; j < 16; j++) {
-        double e = (s.rays[j] - (0.012 - 0.0073)) / 3e-4,
-               before = (s.rays[(j + 15) % 16] - (0.012 - 0.0073)) / 3e-4;
+        double e = (s.rays[j] - (0.012 - 0.0073)) / 3e-4, before = (s.rays[(j + 15) % 16] - (0.012 - 0.0073)) / 3e-4;
         square[j] += e * e;
         pairs += e * before / 16;
       }

@@ -12,20 +12,14 @@
 #define LINK 0.25
 
 static ethd_loop loop_of(ethd_velocity_method method, double stiffness, double damping) {
-  ethd_loop l = {.mass = M,
-                 .period = T,
-                 .stiffness = stiffness,
-                 .damping = damping,
-                 .method = method,
-                 .link = LINK};
+  ethd_loop l = {.mass = M, .period = T, .stiffness = stiffness, .damping = damping, .method = method, .link = LINK};
   const ethd_method *m = &ethd_velocity_methods[method];
   ethd_params_default(m->params, m->param_count, l.p);
   return l;
 }
 
 static void check_near(double value, double expected, double share, const char *what) {
-  ck_assert_msg(fabs(value - expected) <= share * fabs(expected), "%s: %.10g, not %.10g", what, value,
-                expected);
+  ck_assert_msg(fabs(value - expected) <= share * fabs(expected), "%s: %.10g, not %.10g", what, value, expected);
 }
 
 /* The curve's own points: a gain over it is unstable, under it stable, within 0.5 %. */
@@ -40,8 +34,7 @@ START_TEST(test_boundary) {
       l.delay = n;
       check_near(ethd__loop_radius(&l), 1, 1e-6, "radius on the curve");
       check_near(ethd__loop_stiffness_max(&l), k, 5e-3, "largest K");
-      if (i >= 4)
-        check_near(ethd__loop_mass_min(&l), M, 5e-3, "smallest mass"); /* below it hardly matters */
+      if (i >= 4) check_near(ethd__loop_mass_min(&l), M, 5e-3, "smallest mass"); /* below it hardly matters */
     }
 }
 END_TEST
@@ -60,8 +53,7 @@ START_TEST(test_published_numbers) {
     check_near(ethd__loop_damping_free(M, T, n), largest_b[n] * M / T, 1e-3, "largest B");
     ethd_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, 0, 1);
     l.delay = n;
-    check_near(ethd__loop_damping_max(&l), 2 * M / T * tan(M_PI / (4 * (n + 1))), 1e-3,
-               "largest B of the loop");
+    check_near(ethd__loop_damping_max(&l), 2 * M / T * tan(M_PI / (4 * (n + 1))), 1e-3, "largest B of the loop");
   }
   ethd_loop l = loop_of(ETHD_VELOCITY_LSQ, 0, 100); /* a 15 ms window: unstable under 0.4 kg */
   l.p[0] = 16;
@@ -75,8 +67,7 @@ START_TEST(test_small_gains) {
     for (int n = 0; n < 3; n++) {
       ethd_loop l = loop_of((ethd_velocity_method)method, 1, 0.02);
       l.delay = n;
-      check_near(ethd__loop_stiffness_max(&l), 0.02 / (T * (n + 0.5)), 0.02,
-                 ethd_velocity_methods[method].id);
+      check_near(ethd__loop_stiffness_max(&l), 0.02 / (T * (n + 0.5)), 0.02, ethd_velocity_methods[method].id);
     }
 }
 END_TEST
@@ -124,15 +115,14 @@ static double growth(const ethd_loop *l, int ticks) {
 /* Just over the largest stable damping the motion grows, just under it it dies. foaw stands at its
    longest window only while samples lie on a line, so its loop is the least squares'. */
 static void check_estimators(double late) {
-  static const ethd_velocity_method methods[] = {ETHD_VELOCITY_LOWPASS, ETHD_VELOCITY_DIFFERENCE,
-                                                 ETHD_VELOCITY_LSQ, ETHD_VELOCITY_KALMAN};
+  static const ethd_velocity_method methods[] = {ETHD_VELOCITY_LOWPASS, ETHD_VELOCITY_DIFFERENCE, ETHD_VELOCITY_LSQ,
+                                                 ETHD_VELOCITY_KALMAN};
   for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
     for (int n = 0; n < 3; n++)
       for (double k = 0; k < 3000; k += 1000) {
         ethd_loop l = loop_of(methods[i], k, 10);
         const char *id = ethd_velocity_methods[methods[i]].id;
-        if (methods[i] == ETHD_VELOCITY_KALMAN)
-          l.p[2] = 0.8 * M * LINK * LINK; /* not quite the true inertia */
+        if (methods[i] == ETHD_VELOCITY_KALMAN) l.p[2] = 0.8 * M * LINK * LINK; /* not quite the true inertia */
         l.delay = n;
         l.late = late;
         double largest = ethd__loop_damping_max(&l);

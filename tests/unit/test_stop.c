@@ -24,8 +24,7 @@ START_TEST(test_speed_is_the_margin_s_end) {
   double v = ethd__stop_speed(&s);
   ck_assert_double_eq_tol(ethd__stop_margin(&s, v), 0, 1e-12);
   ck_assert(ethd__stop_margin(&s, 1.01 * v) < 0 && ethd__stop_margin(&s, 0.99 * v) > 0);
-  ck_assert_double_eq_tol(ethd__stop_lag(&s, 0.4), 0.398 / 640 + 1.267 * 0.4 / 640 + 0.4 * 0.0019,
-                          1e-12);
+  ck_assert_double_eq_tol(ethd__stop_lag(&s, 0.4), 0.398 / 640 + 1.267 * 0.4 / 640 + 0.4 * 0.0019, 1e-12);
   s.stiffness = 50; /* friction alone takes more than the gap */
   ck_assert(ethd__stop_speed(&s) == 0);
 }
@@ -36,8 +35,7 @@ static void integrate(const ethd_stop *s, const ethd_braking *k, double v, doubl
   const double h = 1e-7;
   *time = *way = 0;
   for (; v > k->v_th; *time += h) {
-    double pull = k->damping * v,
-           a = pull > s->force ? (s->force + s->friction) / s->mass : pull / s->mass;
+    double pull = k->damping * v, a = pull > s->force ? (s->force + s->friction) / s->mass : pull / s->mass;
     *way += v * h;
     v -= a * h;
   }

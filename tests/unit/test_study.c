@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "study/sha256.h"
 #include "study/order.h"
 #include "study/people.h"
 #include "study/row.h"
+#include "study/sha256.h"
 #include "unit/mutate.h"
 #include "unit/rig.h"
 
@@ -38,7 +38,8 @@ static const char everything[] =
     "[study]\nname = all\nseed = 18446744073709551615\nparticipants = 1000000\nstrategies = a, b ,c\nspeeds = low,0.3\n"
     "order = latin\ntraining = 0\ntaps = 100000\nattempts = 1000000\nsurvey = on\nrecord = none\n"
     "[device]\nconfig = c.ini\nplant = p\n[hand]\nsource = recorded\nmotion = free\nbetween = 1\nhand_spread = 0\n"
-    "[validity]\nband_low = 0.05\nband_high = 0.1\ngraze = 0\nlift = 0.01\n[grid]\ncontact.k_e = 1,2,3\ntransition.b_d = 5,6\n";
+    "[validity]\nband_low = 0.05\nband_high = 0.1\ngraze = 0\nlift = 0.01\n[grid]\ncontact.k_e = 1,2,3\ntransition.b_d "
+    "= 5,6\n";
 
 START_TEST(test_every_key) {
   read(everything);
@@ -74,7 +75,8 @@ END_TEST
 
 /* Whatever is refused says one line with the file, and leaves nothing behind for a sanitizer to find. */
 START_TEST(test_mutations) {
-  static const char *const words[] = {"[grid]", "[hand]\n", "taps = ", "1e999", "nan", ",", "=", "\n", "latin", "\0x", "-", NULL};
+  static const char *const words[] = {"[grid]", "[hand]\n", "taps = ", "1e999", "nan", ",",
+                                      "=",      "\n",       "latin",   "\0x",   "-",   NULL};
   static char text[8192];
   const char *more = getenv("ETHD_FUZZ");
   uint64_t count = more ? strtoull(more, NULL, 10) : 20000, taken = 0;
@@ -104,7 +106,8 @@ static const char *order_of(uint32_t participant) {
   size_t count = ethd__order_of(&protocol, participant, blocks);
   *text = 0;
   for (size_t i = 0; i < count; i++)
-    sprintf(text + strlen(text), "%s%c%zu", blocks[i].training ? "t" : "", (char)('A' + blocks[i].strategy), blocks[i].speed);
+    sprintf(text + strlen(text), "%s%c%zu", blocks[i].training ? "t" : "", (char)('A' + blocks[i].strategy),
+            blocks[i].speed);
   return text;
 }
 
@@ -218,8 +221,13 @@ START_TEST(test_row_keys) {
   ethd__tap_key key;
   ck_assert(ethd__tap_row_key("P02,3,test,17,offset,low,5,9,1,ok,0.2", &key));
   ck_assert(key.person == 1 && key.number == 3 && key.attempt == 17 && key.valid);
-  const char *const bad[] = {"", "P02", "X02,3,test,17,offset,low,5,9,1,", "P0,3,test,17,offset,low,5,9,1,",
-                             "P02,0,test,17,offset,low,5,9,1,", "P02,3,test,x,offset,low,5,9,1,", "P02,999,test,1,a,b,5,9,1,"};
+  const char *const bad[] = {"",
+                             "P02",
+                             "X02,3,test,17,offset,low,5,9,1,",
+                             "P0,3,test,17,offset,low,5,9,1,",
+                             "P02,0,test,17,offset,low,5,9,1,",
+                             "P02,3,test,x,offset,low,5,9,1,",
+                             "P02,999,test,1,a,b,5,9,1,"};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) ck_assert(!ethd__tap_row_key(bad[i], &key));
 }
 END_TEST

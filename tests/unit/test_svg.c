@@ -49,9 +49,15 @@ static const expected elements[] = {
     {"<circle cx='1mm' cy='2px' r='1pt' transform='scale(2)'/>", ETHD_CIRCLE, 3, {2 * 96 / 25.4, 46, 2 * 96 / 72.0}},
     {"<circle r='5' transform='translate(10 20) rotate(30)'/>", ETHD_CIRCLE, 3, {10, 30, 5}},
     {"<rect x='10' y='10' width='20' height='6'/>", ETHD_BOX, 5, {20, 37, 10, 3, 0}},
-    {"<rect x='10' y='10' width='20' height='6' transform='rotate(90 20 13)'/>", ETHD_BOX, 5, {20, 37, 10, 3, -M_PI_2 * 1e3}},
+    {"<rect x='10' y='10' width='20' height='6' transform='rotate(90 20 13)'/>",
+     ETHD_BOX,
+     5,
+     {20, 37, 10, 3, -M_PI_2 * 1e3}},
     {"<rect x='1' y='1' width='2' height='3' fill='none'/>", ETHD_POLYLINE, 10, {1, 49, 3, 49, 3, 46, 1, 46, 1, 49}},
-    {"<rect x='1' y='1' width='2' height='3' transform='matrix(1 0 1 1 0 0)'/>", ETHD_POLYGON, 8, {2, 49, 4, 49, 7, 46, 5, 46}},
+    {"<rect x='1' y='1' width='2' height='3' transform='matrix(1 0 1 1 0 0)'/>",
+     ETHD_POLYGON,
+     8,
+     {2, 49, 4, 49, 7, 46, 5, 46}},
     {"<path d='M1 2L3 4'/>", ETHD_SEGMENT, 4, {1, 48, 3, 46}},
     {"<path d='m1 2 2 2-1-3'/>", ETHD_POLYLINE, 6, {1, 48, 3, 46, 2, 49}},
     {"<path d='M1,2H5V8h-2v-1'/>", ETHD_POLYLINE, 10, {1, 48, 5, 48, 5, 42, 3, 42, 3, 43}},
@@ -72,7 +78,8 @@ START_TEST(test_elements) {
   ck_assert_msg(o.shape == e->shape && o.count == e->count, "%s: %s with %zu numbers", e->element,
                 ethd_shape_name(o.shape), o.count);
   for (size_t k = 0; k < o.count; k++)
-    ck_assert_msg(fabs(o.numbers[k] - 1e-3 * e->numbers[k]) <= 1e-15, "%s: number %zu is %.17g", e->element, k, o.numbers[k]);
+    ck_assert_msg(fabs(o.numbers[k] - 1e-3 * e->numbers[k]) <= 1e-15, "%s: number %zu is %.17g", e->element, k,
+                  o.numbers[k]);
   ethd_scene_destroy(s);
 }
 END_TEST
@@ -127,7 +134,8 @@ START_TEST(test_curves_within_tolerance) {
   static const double tolerances[] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
   size_t last = 0;
   for (int i = 0; i < 5; i++) {
-    char text[600], shape[200] = "<g transform='rotate(30 50 25)'><ellipse cx='50' cy='25' rx='20' ry='8' fill='none'/></g>";
+    char text[600],
+        shape[200] = "<g transform='rotate(30 50 25)'><ellipse cx='50' cy='25' rx='20' ry='8' fill='none'/></g>";
     if (curves[_i].data) snprintf(shape, sizeof shape, "<path fill='none' d='%s'/>", curves[_i].data);
     snprintf(text, sizeof text, OPEN "%s" CLOSE, shape);
     options.tolerance = tolerances[i];
@@ -187,12 +195,12 @@ END_TEST
 
 START_TEST(test_skipped) {
   ethd_scene *s = scene_of("<?xml version='1.0'?>\n<!DOCTYPE svg PUBLIC 'x' 'y'>\n<!-- a comment -->"
-                       "<svg xmlns='http://www.w3.org/2000/svg' xmlns:i='http://i' width='10mm' height='10mm'>"
-                       "<title>t</title><desc>d<b/></desc><metadata><i:x><path d='nonsense'/></i:x></metadata>"
-                       "<defs><text/><path d='nonsense'/></defs><i:grid><path d='M0 0'/></i:grid>"
-                       "<g display='none'><text>hidden</text></g><rect style=' visibility:hidden ' width='-1'/>"
-                       "<path/><path d=''/><path d='M1 1 1 1z'/><circle r='0'/><polyline/>"
-                       "<circle id='c' class='x' stroke='red' stroke-width='3' cx='1' cy='1' r='1'/></svg>");
+                           "<svg xmlns='http://www.w3.org/2000/svg' xmlns:i='http://i' width='10mm' height='10mm'>"
+                           "<title>t</title><desc>d<b/></desc><metadata><i:x><path d='nonsense'/></i:x></metadata>"
+                           "<defs><text/><path d='nonsense'/></defs><i:grid><path d='M0 0'/></i:grid>"
+                           "<g display='none'><text>hidden</text></g><rect style=' visibility:hidden ' width='-1'/>"
+                           "<path/><path d=''/><path d='M1 1 1 1z'/><circle r='0'/><polyline/>"
+                           "<circle id='c' class='x' stroke='red' stroke-width='3' cx='1' cy='1' r='1'/></svg>");
   ethd_scene_info info;
   ethd_scene_describe(s, &info);
   ck_assert_uint_eq(info.objects, 1);
@@ -238,7 +246,8 @@ static const struct {
     {"<g>", "t.svg:2: no XML: "},
     {"</g>", "t.svg:2: no XML"},
     {"&nothing;", "t.svg:2: no XML: undefined entity"},
-    {"<!DOCTYPE svg [<!ENTITY a \"b\">]><svg width='1' height='1'>&a;</svg>", "t.svg:1: entities aren't taken: found \"a\""},
+    {"<!DOCTYPE svg [<!ENTITY a \"b\">]><svg width='1' height='1'>&a;</svg>",
+     "t.svg:1: entities aren't taken: found \"a\""},
     {"<html/>", "t.svg:1: a drawing must begin with svg: found \"html\""},
     {"<svg xmlns='http://other' width='1'/>", "a drawing must begin with svg"},
     {"<svg/>", "t.svg:1: no width or height"},
@@ -298,9 +307,10 @@ static char *print(const ethd_scene *scene) {
 }
 
 START_TEST(test_print) {
-  ethd_scene *s = rig_scene("material a k_e=1.5 b_e=0.1\nhalfplane 0.6 0.8 0.30000000000000004 material=a\ncircle 1 2 1e-7\n"
-                            "capsule 0 0 1 1 .5\nbox 1 2 3 4 0.5 material=b\npolygon 0 0 1 0 1 1\nsegment 0 0 1 1\nmaterial b\n"
-                            "polyline 0.1 0.2 0.30000000000000004 1 1 0 0.1 0.2\nhalfplane 0.70710678118654746 0.70710678118654757 1\n");
+  ethd_scene *s = rig_scene(
+      "material a k_e=1.5 b_e=0.1\nhalfplane 0.6 0.8 0.30000000000000004 material=a\ncircle 1 2 1e-7\n"
+      "capsule 0 0 1 1 .5\nbox 1 2 3 4 0.5 material=b\npolygon 0 0 1 0 1 1\nsegment 0 0 1 1\nmaterial b\n"
+      "polyline 0.1 0.2 0.30000000000000004 1 1 0 0.1 0.2\nhalfplane 0.70710678118654746 0.70710678118654757 1\n");
   char *text = print(s);
   ck_assert_str_eq(text, "material a k_e=1.5 b_e=0.1\nmaterial b\nhalfplane 0.6 0.8 0.30000000000000004 material=a\n"
                          "circle 1 2 1e-07\ncapsule 0 0 1 1 0.5\nbox 1 2 3 4 0.5 material=b\npolygon 0 0 1 0 1 1\n"
@@ -324,9 +334,31 @@ START_TEST(test_broken_drawings) {
            "<path style='fill:none' d='M10 10C20 40 40-10 50 20s5 5 6 6A3 4 5 0 1 60 40z'/><circle cx='9' r='2'/>"
            "<rect x='1' y='2' width='3' height='4' rx='1'/><ellipse rx='3' ry='2'/><polygon points='0 0 3 0 3 3'/>"
            "<polyline points='1,1 2,3 4,4'/><line x2='5mm'/><title>x</title>" CLOSE;
-  static const char *const words[] = {"<g>", "</g>", "<path d='M0 0L1 1'/>", "'", "e9", "e-9", "-", ".", "0", "NaN", "A",
-                                      "C", "M", "Z", "1e308", "matrix(1 2 3 4 5 6)", "&lt;", "<!--", "-->", "fill='none'",
-                                      "display='none'", " ", "\n", "/>", NULL};
+  static const char *const words[] = {"<g>",
+                                      "</g>",
+                                      "<path d='M0 0L1 1'/>",
+                                      "'",
+                                      "e9",
+                                      "e-9",
+                                      "-",
+                                      ".",
+                                      "0",
+                                      "NaN",
+                                      "A",
+                                      "C",
+                                      "M",
+                                      "Z",
+                                      "1e308",
+                                      "matrix(1 2 3 4 5 6)",
+                                      "&lt;",
+                                      "<!--",
+                                      "-->",
+                                      "fill='none'",
+                                      "display='none'",
+                                      " ",
+                                      "\n",
+                                      "/>",
+                                      NULL};
   const char *wanted = getenv("ETHD_FUZZ");
   uint64_t cases = wanted ? strtoull(wanted, NULL, 10) : 20000, taken = 0;
   char text[2 * sizeof seed + 64];

@@ -90,15 +90,17 @@ END_TEST
 /* ---- ten thousand random ones ---- */
 
 static const char *const scenes[] = {
-    RIG_WALL, RIG_WALL "halfplane 0 -1 -0.237\n",
-    "segment 0.238 0.1 0.238 0.4\ncircle 0.2 0.23 0.035\n",
+    RIG_WALL, RIG_WALL "halfplane 0 -1 -0.237\n", "segment 0.238 0.1 0.238 0.4\ncircle 0.2 0.23 0.035\n",
     "material soft k_e=300\npolygon 0 0 0.6 0 0.6 0.238 0.238 0.238 0.238 0.6 0 0.6 material=soft\n"};
 
 static void random_p(const ethd_param *rows, uint32_t count, uint64_t n, double *p) {
   for (uint32_t i = 0; i < count; i++) {
-    if (ethd_param_words(&rows[i])) p[i] = draw(n + i, 0, 1) < 0.5 ? 0 : 1;
-    else if (isfinite(rows[i].max) || draw(n + i + 20, 0, 1) < 0.8) p[i] = rows[i].def * draw(n + i, 0.5, 1.5);
-    else p[i] = INFINITY;
+    if (ethd_param_words(&rows[i]))
+      p[i] = draw(n + i, 0, 1) < 0.5 ? 0 : 1;
+    else if (isfinite(rows[i].max) || draw(n + i + 20, 0, 1) < 0.8)
+      p[i] = rows[i].def * draw(n + i, 0.5, 1.5);
+    else
+      p[i] = INFINITY;
     if (p[i] < rows[i].min) p[i] = rows[i].min;
     if (p[i] > rows[i].max) p[i] = rows[i].max;
     if (!strcmp(rows[i].name, "window")) p[i] = floor(p[i]);
@@ -225,7 +227,8 @@ END_TEST
 /* Simulated taps on plant n, another law every few ticks: the hand feels no bump. */
 START_TEST(test_simulated_taps) {
   char message[ETHD_MESSAGE_MAX];
-  ethd_sim_def def = {.arm = {ETHD_ARM_PARALLEL, 0.25, 0.25}, .ring_radius = 0.012, .period = 0.001, .step = 50e-6, .tolerance = 1e-10};
+  ethd_sim_def def = {
+      .arm = {ETHD_ARM_PARALLEL, 0.25, 0.25}, .ring_radius = 0.012, .period = 0.001, .step = 50e-6, .tolerance = 1e-10};
   ethd_sim *sim;
   ethd_sim_tap how;
   rig r;

@@ -92,8 +92,7 @@ START_TEST(test_lsq_is_the_line) {
   ck_assert(ethd_velocity_step(&v, &s, q[0], 0, dt[0]) == 0);
   for (int k = 1; k < TICKS; k++) {
     int n = k + 1 < window ? k + 1 : (int)window;
-    ck_assert_double_le(fabs((double)(ethd_velocity_step(&v, &s, q[k], 0, dt[k]) - line_slope(k, n))),
-                        1e-11);
+    ck_assert_double_le(fabs((double)(ethd_velocity_step(&v, &s, q[k], 0, dt[k]) - line_slope(k, n))), 1e-11);
   }
 }
 END_TEST
@@ -122,8 +121,7 @@ START_TEST(test_foaw_window) {
     int n = 2;
     while (n < k + 1 && n < 24 && passes(k, n + 1, p[1])) n++;
     seen[n]++;
-    ck_assert_double_le(fabs((double)(ethd_velocity_step(&v, &s, q[k], 0, dt[k]) - line_slope(k, n))),
-                        1e-11);
+    ck_assert_double_le(fabs((double)(ethd_velocity_step(&v, &s, q[k], 0, dt[k]) - line_slope(k, n))), 1e-11);
   }
   for (int n = 0; n <= W; n++) kinds += seen[n] > 0;
   ck_assert_int_gt(kinds, 8);
@@ -146,8 +144,7 @@ START_TEST(test_kalman_as_matrices) {
       for (int j = 0; j < 2; j++) fc[i][j] = f[i][0] * c[0][j] + f[i][1] * c[1][j];
     }
     for (int i = 0; i < 2; i++)
-      for (int j = 0; j < 2; j++)
-        n[i][j] = fc[i][0] * f[j][0] + fc[i][1] * f[j][1] + p[1] * p[1] * g[i] * g[j];
+      for (int j = 0; j < 2; j++) n[i][j] = fc[i][0] * f[j][0] + fc[i][1] * f[j][1] + p[1] * p[1] * g[i] * g[j];
     long double gain[2] = {n[0][0] / (n[0][0] + p[0] * p[0]), n[1][0] / (n[0][0] + p[0] * p[0])};
     for (int i = 0; i < 2; i++) {
       x[i] = y[i] + gain[i] * (q[k] - y[0]);
@@ -279,8 +276,7 @@ static figure measure(ethd_velocity_method method, const double *p) {
 
 START_TEST(test_lag_against_noise) {
   const double fifty = 50, wide[] = {32, 132e-6}, count[] = {16, 132e-6}, kalman[] = {38e-6, 50, 0.0073};
-  figure difference = measure(ETHD_VELOCITY_DIFFERENCE, NULL),
-         slow = measure(ETHD_VELOCITY_LOWPASS, &fifty);
+  figure difference = measure(ETHD_VELOCITY_DIFFERENCE, NULL), slow = measure(ETHD_VELOCITY_LOWPASS, &fifty);
   figure lowpass = measure(ETHD_VELOCITY_LOWPASS, NULL), lsq = measure(ETHD_VELOCITY_LSQ, NULL);
   figure foaw = measure(ETHD_VELOCITY_FOAW, count), foaw32 = measure(ETHD_VELOCITY_FOAW, wide);
   figure filter = measure(ETHD_VELOCITY_KALMAN, kalman);
@@ -327,14 +323,12 @@ START_TEST(test_refusals) {
     double p[ETHD_PARAMS_MAX] = {bad[i].p0, bad[i].p1, 1};
     ethd_velocity v = {.period = 42};
     ethd_error error;
-    ethd_status status =
-        ethd_velocity_prepare((ethd_velocity_method)bad[i].method, p, bad[i].period, &v, &error);
+    ethd_status status = ethd_velocity_prepare((ethd_velocity_method)bad[i].method, p, bad[i].period, &v, &error);
     ck_assert_int_eq(status, bad[i].status);
     ck_assert_int_eq(error.status, bad[i].status);
     ck_assert_str_eq(error.name, bad[i].name);
     ck_assert(v.period == 42);
-    ck_assert_int_eq(
-        ethd_velocity_prepare((ethd_velocity_method)bad[i].method, p, bad[i].period, &v, NULL), status);
+    ck_assert_int_eq(ethd_velocity_prepare((ethd_velocity_method)bad[i].method, p, bad[i].period, &v, NULL), status);
   }
 }
 END_TEST

@@ -63,7 +63,7 @@ void nearest(void *self, const double x[2], double limit, int warm, double out[3
 
 void destroy(void *self) { delete static_cast<Scene *>(self); }
 
-}  // namespace
+} // namespace
 
 extern "C" const ethd__peer_scene peer_scene;
 extern "C" const ethd__peer_scene peer_scene = {"CGAL " CGAL_VERSION_STR, create, nearest, nullptr, destroy};

@@ -11,7 +11,7 @@
 namespace {
 
 using Matrix = Eigen::Matrix3d;
-using Axes = Eigen::Matrix<double, 3, 2>;  // x v a of both axes
+using Axes = Eigen::Matrix<double, 3, 2>; // x v a of both axes
 
 struct Filter {
   double period, jerk, memory, noise;
@@ -79,7 +79,7 @@ void work(void *self, const double (*in)[3], double (*out)[2], size_t count) {
 
 void destroy(void *self) { delete static_cast<Filter *>(self); }
 
-}  // namespace
+} // namespace
 
 extern "C" const ethd__peer_filter peer_filter;
 extern "C" const ethd__peer_filter peer_filter = {

@@ -93,7 +93,7 @@ void destroy(void *self) {
   delete s;
 }
 
-}  // namespace
+} // namespace
 
 extern "C" const ethd__peer_scene peer_scene;
 extern "C" const ethd__peer_scene peer_scene = {"Embree " TEXT(RTC_VERSION_MAJOR) "." TEXT(RTC_VERSION_MINOR), create,

@@ -47,7 +47,7 @@ void work(void *self, const double (*in)[6], double (*out)[6], size_t count) {
 
 void destroy(void *self) { delete static_cast<Arm *>(self); }
 
-}  // namespace
+} // namespace
 
 extern "C" const ethd__peer_kinematics peer_kinematics;
 extern "C" const ethd__peer_kinematics peer_kinematics = {"KDL " KDL_VERSION_STRING, create, work, destroy};

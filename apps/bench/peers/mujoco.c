@@ -11,12 +11,10 @@
 
 enum { HALF = ETHD__ODE_SIZE / 2 };
 
-#define BODY                                                                                            \
-  "<body><joint type='slide' axis='1 0 0'/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></body>"
+#define BODY "<body><joint type='slide' axis='1 0 0'/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></body>"
 
-static const char model[] =
-    "<mujoco><option gravity='0 0 0'><flag constraint='disable' contact='disable'/></option>"
-    "<worldbody>" BODY BODY BODY BODY "</worldbody></mujoco>";
+static const char model[] = "<mujoco><option gravity='0 0 0'><flag constraint='disable' contact='disable'/></option>"
+                            "<worldbody>" BODY BODY BODY BODY "</worldbody></mujoco>";
 
 typedef struct solver {
   ethd__ode ode;

@@ -17,13 +17,10 @@ template <class Stepper> struct Solver {
   Stepper plain;
   double h = 1e-4;
   Solver(const ethd__ode &o, double tolerance)
-      : ode(o),
-        controlled(typename odeint::controlled_runge_kutta<Stepper>::error_checker_type(tolerance, 0)) {}
+      : ode(o), controlled(typename odeint::controlled_runge_kutta<Stepper>::error_checker_type(tolerance, 0)) {}
 
   void work(double t, double end, double *out) {
-    auto rate = [this](const State &y, State &dydt, double at) {
-      ode.rate(ode.self, at, y.data(), dydt.data());
-    };
+    auto rate = [this](const State &y, State &dydt, double at) { ode.rate(ode.self, at, y.data(), dydt.data()); };
     State y;
     std::copy(out, out + y.size(), y.begin());
     reset(controlled);
@@ -66,9 +63,7 @@ template <class Stepper> struct Solver {
   }
 
   /* What keeps the last step's rates must forget them. */
-  template <class T> static auto forget(T &stepper, int) -> decltype(stepper.reset(), void()) {
-    stepper.reset();
-  }
+  template <class T> static auto forget(T &stepper, int) -> decltype(stepper.reset(), void()) { stepper.reset(); }
   template <class T> static void forget(T &, long) {}
   template <class T> static void reset(T &stepper) { forget(stepper, 0); }
 };
@@ -76,15 +71,9 @@ template <class Stepper> struct Solver {
 using Dopri5 = Solver<odeint::runge_kutta_dopri5<State>>;
 using Fehlberg78 = Solver<odeint::runge_kutta_fehlberg78<State>>;
 
-template <class S> void *create(const ethd__ode *ode, double tolerance) {
-  return new S(*ode, tolerance);
-}
-template <class S> void work(void *self, double t, double end, double *y) {
-  static_cast<S *>(self)->work(t, end, y);
-}
-template <class S> void destroy(void *self) {
-  delete static_cast<S *>(self);
-}
+template <class S> void *create(const ethd__ode *ode, double tolerance) { return new S(*ode, tolerance); }
+template <class S> void work(void *self, double t, double end, double *y) { static_cast<S *>(self)->work(t, end, y); }
+template <class S> void destroy(void *self) { delete static_cast<S *>(self); }
 
 } // namespace
 

@@ -1,7 +1,7 @@
 #include "link.h"
 
-#include <string.h>
 #include <avr/interrupt.h>
+#include <string.h>
 #include <util/twi.h>
 
 #include "board.h"
@@ -15,7 +15,8 @@ static volatile bool fetched;
 
 /* Polynomial x^8 + x^2 + x + 1, four bits at a time. */
 static uint8_t crc8(const uint8_t *bytes) {
-  static const uint8_t step[16] = {0x00, 0x07, 0x0E, 0x09, 0x1C, 0x1B, 0x12, 0x15, 0x38, 0x3F, 0x36, 0x31, 0x24, 0x23, 0x2A, 0x2D};
+  static const uint8_t step[16] = {0x00, 0x07, 0x0E, 0x09, 0x1C, 0x1B, 0x12, 0x15,
+                                   0x38, 0x3F, 0x36, 0x31, 0x24, 0x23, 0x2A, 0x2D};
   uint8_t crc = 0xFF;
   for (uint8_t n = 0; n < LINK_SIZE - 1; n++) {
     crc ^= bytes[n];
@@ -126,6 +127,8 @@ link_result link_fetch(uint8_t board, link_block *out) {
 
 void link_open(uint8_t board) {
   TWBR = (F_CPU / 400000UL - 16) / 2;
-  if (board) TWAR = (uint8_t)((LINK_ADDRESS + board - 1) << 1);
-  else clock_free();
+  if (board)
+    TWAR = (uint8_t)((LINK_ADDRESS + board - 1) << 1);
+  else
+    clock_free();
 }

@@ -1,7 +1,7 @@
 /* Firmware of the proximity ring's boards: one image, the straps say which board it is on. */
+#include <avr/wdt.h>
 #include <stdbool.h>
 #include <string.h>
-#include <avr/wdt.h>
 #include <util/crc16.h>
 
 #include "board.h"
