@@ -66,6 +66,25 @@ static inline ethd_vec ethd_mat_mul_transposed(const double m[4], ethd_vec v) ET
   return r;
 }
 
+/* V = J dq: joint speeds, rad/s, to the ring's velocity, m/s. [any, rt-safe] */
+static inline ethd_vec ethd_pose_velocity(const ethd_pose *pose, const double dq[2]) ETHD_RT {
+  return ethd_mat_mul(pose->j, ethd_vec_of(dq));
+}
+
+/* tau = J^T F: a force on the ring, N, to the joint torques that give it, Nm. [any, rt-safe] */
+static inline void ethd_pose_torques(const ethd_pose *pose, ethd_vec force, double torque[2]) ETHD_RT {
+  ethd_vec tau = ethd_mat_mul_transposed(pose->j, force);
+  torque[0] = tau.x;
+  torque[1] = tau.y;
+}
+
+/* J^-1 x: a motion of the ring, m or m/s, to that of the joints, rad or rad/s. [any, rt-safe] */
+static inline void ethd_pose_joints(const ethd_pose *pose, ethd_vec x, double joints[2]) ETHD_RT {
+  ethd_vec q = ethd_mat_mul(pose->j_inv, x);
+  joints[0] = q.x;
+  joints[1] = q.y;
+}
+
 ETHD_END_DECLS
 
 #endif

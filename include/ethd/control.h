@@ -148,9 +148,10 @@ ETHD_API void ethd_control_clear(ethd_control *control);
    [any, rt-safe] */
 ETHD_API double ethd_control_clean(const ethd_control *control) ETHD_RT;
 
-/* One tick. trace may be NULL. Always fills command; a negative status says that this tick's command is
-   the safe one and why: ETHD_E_NOT_FINITE, ETHD_E_LAW, ETHD_E_BUDGET, ETHD_E_RANGE (guard stop),
-   ETHD_E_DEVICE (any other row of the fault table). [rt] */
+/* One tick. trace may be NULL. Always fills command. A negative status says that a fault rules this tick, and why:
+   ETHD_E_NOT_FINITE, ETHD_E_LAW, ETHD_E_BUDGET, ETHD_E_RANGE (the guard stops the ring), ETHD_E_DEVICE (any other row
+   of the fault table). The command is then zero torque with `safe` set, or, while a stop still damps the ring, the
+   damping torque without `safe`. [rt] */
 ETHD_API ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, ethd_command *command,
                                        ethd_trace *trace) ETHD_RT;
 

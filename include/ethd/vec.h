@@ -10,6 +10,17 @@ typedef struct ethd_vec {
   double x, y;
 } ethd_vec;
 
+/* From two numbers in memory, and back. */
+static inline ethd_vec ethd_vec_of(const double v[2]) ETHD_RT {
+  ethd_vec r = {v[0], v[1]};
+  return r;
+}
+
+static inline void ethd_vec_put(ethd_vec a, double out[2]) ETHD_RT {
+  out[0] = a.x;
+  out[1] = a.y;
+}
+
 static inline ethd_vec ethd_vec_add(ethd_vec a, ethd_vec b) ETHD_RT {
   ethd_vec r = {a.x + b.x, a.y + b.y};
   return r;

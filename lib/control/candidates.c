@@ -4,60 +4,67 @@
    edges has several local minima around each of its corners, and would push as many times. */
 #define SAME_WAY 0.96592582628906829 /* cos 15 deg */
 
-/* Everything that can count lies within: d_re < d_beta, or d_fe <= d_beta however far the finger is ahead. */
-static double reach(const ethd__plan *plan, const ethd_trace *t) ETHD_RT {
-  ethd_vec ahead = {t->xf[0] - t->x[0], t->xf[1] - t->x[1]};
-  return plan->setup.ring_radius + plan->d_beta + ethd_vec_norm(ahead);
+/* Everything that can count lies within this range of the ring's centre: d_re < d_beta, or d_fe <= d_beta however
+   far ahead the finger is. */
+static double range_of(const ethd__tick *t) ETHD_RT {
+  return t->plan->setup.ring_radius + t->plan->d_beta + ethd_vec_norm(ethd_vec_sub(t->finger.x, t->ring.x));
 }
+
+/* A place as this tick sees it: the ring's centre x is in the place's frame. */
+typedef struct view {
+  const ethd_scene *scene;
+  int place;
+  ethd__frame frame;
+  ethd_vec x;
+} view;
 
 /* ---- what is near ---- */
 
-static void append(ethd__candidates *c, const ethd_touch *touch, const ethd__frame *frame, int place,
-                   int slot) ETHD_RT {
+static void append(ethd__candidates *c, const view *from, const ethd_touch *touch, int slot) ETHD_RT {
   ethd__candidate *k = &c->at[c->count++];
   k->touch = *touch;
   k->local = touch->point;
-  k->place = place;
+  k->place = from->place;
   k->slot = slot;
   k->v = (ethd_vec){0, 0};
-  if (place == 0) return;
-  k->touch.n = ethd__frame_turn(frame, touch->n);
-  k->touch.point = ethd__frame_out(frame, touch->point);
-  k->v = ethd__frame_velocity(frame, k->touch.point);
+  if (from->place == 0) return;
+  k->touch.n = ethd__frame_turn(&from->frame, touch->n);
+  k->touch.point = ethd__frame_out(&from->frame, touch->point);
+  k->v = ethd__frame_velocity(&from->frame, k->touch.point);
 }
 
-/* The deeper one of two that face the same way stays. */
-static int is_same_face(const ethd_touch *touches, int i) ETHD_RT {
+/* Of two touches that face the same way the deeper one, which comes first, stays. */
+static bool is_same_face(const ethd_touch *touches, int i) ETHD_RT {
   for (int k = 0; k < i; k++)
-    if (touches[k].object == touches[i].object && ethd_vec_dot(touches[k].n, touches[i].n) > SAME_WAY) return 1;
-  return 0;
+    if (touches[k].object == touches[i].object && ethd_vec_dot(touches[k].n, touches[i].n) > SAME_WAY) return true;
+  return false;
 }
 
 static unsigned slots_in_use(const ethd__state *state) ETHD_RT {
   unsigned bits = 0;
-  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) bits |= (unsigned)(state->slots[i].used != 0) << i;
+  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) bits |= (unsigned)state->slots[i].used << i;
   return bits;
 }
 
-static int is_live(const ethd__state *state, unsigned in_use, int place) ETHD_RT {
+static bool is_live(const ethd__state *state, unsigned in_use, int place) ETHD_RT {
   for (; in_use; in_use &= in_use - 1)
-    if (state->slots[__builtin_ctz(in_use)].place == place) return 1;
-  return 0;
+    if (state->slots[__builtin_ctz(in_use)].place == place) return true;
+  return false;
 }
 
-static void look_around(const ethd_scene *scene, ethd__state *state, int place, const ethd__frame *frame, ethd_vec x,
-                        double range, ethd__candidates *c) ETHD_RT {
+/* Asks a scene for its touches, unless the ring can't have come near anything since it was last asked. */
+static void ask(const view *from, ethd__state *state, double range, ethd__candidates *c) ETHD_RT {
   ethd_touch touches[ETHD__TOUCHES];
-  ethd__place *p = &state->places[place];
-  if (ethd__place_is_far(p, x, range) && !is_live(state, c->live, place)) return;
-  c->queried = 1;
-  size_t found = ethd_scene_touches(scene, x, range, touches, ETHD__TOUCHES);
+  ethd__place *p = &state->places[from->place];
+  if (ethd__place_is_far(p, from->x, range) && !is_live(state, c->live, from->place)) return;
+  c->queried = true;
+  size_t found = ethd_scene_touches(from->scene, from->x, range, touches, ETHD__TOUCHES);
   int kept = (int)(found < ETHD__TOUCHES ? found : ETHD__TOUCHES);
   c->overflow += (int)(found - (size_t)kept);
   for (int i = 0; i < kept; i++)
-    if (!is_same_face(touches, i)) append(c, &touches[i], frame, place, -1);
+    if (!is_same_face(touches, i)) append(c, from, &touches[i], -1);
   if (found == 0)
-    ethd__place_clear(p, scene, x);
+    ethd__place_clear(p, from->scene, from->x);
   else
     ethd__place_forget(p);
 }
@@ -92,17 +99,16 @@ static int index_of(const ethd__candidates *c, const ethd_touch *touch, int plac
   return -1;
 }
 
-/* A contact that jumped or is out of reach: the scene says which local minimum it is. It lives on until
-   its state is transparent. */
-static void follow(const ethd_scene *scene, const ethd__slot *slot, int i, const ethd__frame *frame, ethd_vec x,
-                   ethd__candidates *c) ETHD_RT {
+/* A contact that jumped or is out of reach: the scene says which local minimum it is. It lives on until its state is
+   transparent. */
+static void follow(const view *from, const ethd__slot *slot, int i, ethd__candidates *c) ETHD_RT {
   ethd_touch touch;
-  ethd_scene_follow(scene, slot->object, x, slot->point, &touch);
+  ethd_scene_follow(from->scene, slot->object, from->x, slot->point, &touch);
   int k = index_of(c, &touch, slot->place);
   if (k >= 0) {
     if (c->at[k].slot < 0) c->at[k].slot = i;
   } else if (slot->state != ETHD_TRANSPARENT) {
-    append(c, &touch, frame, slot->place, i);
+    append(c, from, &touch, i);
   }
 }
 
@@ -134,23 +140,30 @@ static void sort(ethd__candidates *c) ETHD_RT {
   }
 }
 
-void ethd__candidates_collect(const ethd__plan *plan, ethd__state *state, const ethd_trace *t, ethd__candidates *out) {
-  ethd__frame frames[ETHD__PLACES];
-  ethd_vec x[ETHD__PLACES];
-  double range = reach(plan, t);
-  out->count = out->overflow = out->queried = 0;
+static view view_of(const ethd__tick *t, int place) ETHD_RT {
+  view v;
+  v.scene = ethd__place_scene(&t->plan->setup, place);
+  v.place = place;
+  v.frame = ethd__frame_of(&t->state->places[place]);
+  v.x = ethd__frame_in(&v.frame, t->ring.x);
+  return v;
+}
+
+void ethd__candidates_collect(const ethd__tick *t, ethd__candidates *out) {
+  view views[ETHD__PLACES];
+  ethd__state *state = t->state;
+  double range = range_of(t);
+  out->count = out->overflow = 0;
+  out->queried = false;
   out->live = slots_in_use(state);
-  for (int place = 0; place < plan->places; place++) {
-    const ethd_scene *scene = ethd__place_scene(&plan->setup, place);
-    if (!scene || !state->places[place].there) continue;
-    frames[place] = ethd__frame_of(&state->places[place]);
-    x[place] = ethd__frame_in(&frames[place], (ethd_vec){t->x[0], t->x[1]});
-    look_around(scene, state, place, &frames[place], x[place], range, out);
+  for (int place = 0; place < t->plan->places; place++) {
+    if (!ethd__place_scene(&t->plan->setup, place) || !state->places[place].there) continue;
+    views[place] = view_of(t, place);
+    ask(&views[place], state, range, out);
   }
-  for (unsigned open = match(plan, state, out); open; open &= open - 1) {
+  for (unsigned open = match(t->plan, state, out); open; open &= open - 1) {
     int i = __builtin_ctz(open);
-    const ethd__slot *slot = &state->slots[i];
-    follow(ethd__place_scene(&plan->setup, slot->place), slot, i, &frames[slot->place], x[slot->place], out);
+    follow(&views[state->slots[i].place], &state->slots[i], i, out);
   }
   for (int k = 0; k < out->count; k++)
     if (out->at[k].slot >= 0) keep_side(&out->at[k].touch, &state->slots[out->at[k].slot]);

@@ -3,6 +3,7 @@
 #define ETHD__CANDIDATES_H
 
 #include "control/places.h"
+#include "control/tick.h"
 
 #define ETHD__TOUCHES (ETHD_CONTACTS_MAX + 8) /* looked at within reach in one place; the deepest */
 #define ETHD__CANDIDATES (ETHD__PLACES * ETHD__TOUCHES + ETHD_CONTACTS_MAX)
@@ -20,11 +21,10 @@ typedef struct ethd__candidates {
   int count;
   unsigned live; /* slots in use as the tick began, as bits */
   int overflow;  /* touches within reach that weren't looked at */
-  int queried;   /* 1: a scene was asked */
+  bool queried;  /* a scene was asked */
 } ethd__candidates;
 
-/* Ring and finger as in t->x, t->xf. [rt] */
-void ethd__candidates_collect(const ethd__plan *plan, ethd__state *state, const ethd_trace *t,
-                              ethd__candidates *out) ETHD_RT;
+/* Ring and finger as the tick has estimated them. [rt] */
+void ethd__candidates_collect(const ethd__tick *t, ethd__candidates *out) ETHD_RT;
 
 #endif

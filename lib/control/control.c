@@ -2,17 +2,8 @@
 
 #include "control/controller.h"
 
-static const ethd_status status_of[ETHD_FAULT_COUNT] = {
-    [ETHD_FAULT_NONE] = ETHD_OK,           [ETHD_FAULT_INPUT] = ETHD_E_NOT_FINITE,
-    [ETHD_FAULT_LAW] = ETHD_E_LAW,         [ETHD_FAULT_FINITE] = ETHD_E_NOT_FINITE,
-    [ETHD_FAULT_BUDGET] = ETHD_E_BUDGET,   [ETHD_FAULT_SPEED] = ETHD_E_RANGE,
-    [ETHD_FAULT_WORKSPACE] = ETHD_E_RANGE,
-};
-
-static void push(ethd_control *control, int64_t tick, ethd_event_kind kind, int32_t code, double value,
-                 const ethd_scene *scene) ETHD_RT {
-  ethd_event event = {kind, code, tick, value, scene};
-  if (!ethd__events_push(&control->events, &event)) control->state.counters.events_dropped++;
+static void push(ethd_control *control, const ethd_event *event) ETHD_RT {
+  if (!ethd__events_push(&control->events, event)) control->state.counters.events_dropped++;
 }
 
 /* A posted setup is taken only while its event has room: a replaced scene is never lost. */
@@ -37,47 +28,49 @@ static const ethd_scene *released(const ethd_setup *from, const ethd_setup *now,
 /* [main] may free the old scenes and post again only when this tick is through with both. */
 static void give_back(ethd_control *control, int64_t tick, const ethd__plan *from) ETHD_RT {
   const ethd_setup *now = &control->plans[control->ruling].setup;
-  push(control, tick, ETHD_EVENT_TAKEN, 0, 0, released(&from->setup, now, 0));
+  push(control, &(ethd_event){.kind = ETHD_EVENT_TAKEN, .tick = tick, .scene = released(&from->setup, now, 0)});
   for (int place = 1; place < ETHD__PLACES; place++) {
     const ethd_scene *scene = released(&from->setup, now, place);
-    if (scene) push(control, tick, ETHD_EVENT_RELEASED, place, 0, scene);
+    if (scene) push(control, &(ethd_event){.kind = ETHD_EVENT_RELEASED, .code = place, .tick = tick, .scene = scene});
   }
   atomic_store_explicit(&control->posted, 0, memory_order_release);
 }
 
 /* Periods add up to the clean time only within rounding. */
-static int clean_enough(const ethd_control *control) ETHD_RT {
+static bool clean_enough(const ethd_control *control) ETHD_RT {
   double clean_time = control->plans[control->ruling].setup.limits.clean_time;
   return ethd_control_clean(control) >= clean_time * (1 - 1e-9);
 }
 
-static int take_clear(ethd_control *control) ETHD_RT {
-  if (!atomic_load_explicit(&control->clear, memory_order_relaxed)) return 0;
+static bool take_clear(ethd_control *control) ETHD_RT {
+  if (!atomic_load_explicit(&control->clear, memory_order_relaxed)) return false;
   atomic_store_explicit(&control->clear, 0, memory_order_relaxed);
-  if (!control->state.fault || !clean_enough(control)) return 0;
+  if (!control->state.fault || !clean_enough(control)) return false;
   ethd__resume(&control->plans[control->ruling], &control->state);
-  push(control, (int64_t)control->state.counters.ticks, ETHD_EVENT_CLEARED, 0, 0, NULL);
-  return 1;
+  push(control, &(ethd_event){.kind = ETHD_EVENT_CLEARED, .tick = (int64_t)control->state.counters.ticks});
+  return true;
 }
 
 /* Clamps are frequent: an event when they last. */
 #define TOLD_WHEN_GRAVE (ETHD_FAULT_BIT(ETHD_FAULT_TORQUE) | ETHD_FAULT_BIT(ETHD_FAULT_TORQUE_RATE))
 
-static void report(ethd_control *control, int64_t tick, const ethd__failure *failure) ETHD_RT {
+/* Counts and tells the occurrences that begin at this tick. */
+static void report(ethd_control *control, int64_t tick) ETHD_RT {
   ethd__state *s = &control->state;
   const ethd__plan *plan = &control->plans[control->ruling];
-  int same = s->met.faults == s->before.faults && s->met.grave == s->before.grave;
-  if (same && (plan->setup.limits.latch || !ethd__rows_any(&s->met))) return;
+  const ethd__rows *met = &s->met.rows;
+  bool same = met->faults == s->before.faults && met->grave == s->before.grave;
+  if (same && (plan->setup.limits.latch || !ethd__rows_any(met))) return;
   ethd__rows begun = ethd__rows_begun(plan, s);
   for (int64_t left = begun.faults | begun.grave; left; left &= left - 1) {
     int32_t row = __builtin_ctzll((uint64_t)left);
     int64_t bit = left & -left;
-    double value = (s->met.grave & bit) != 0;
-    if (row == (int32_t)failure->fault) value = failure->value;
+    double value = s->met.valued & bit ? s->met.value[row] : (met->grave & bit) != 0;
     if (begun.faults & bit) s->counters.faults[row]++;
-    if (begun.grave & bit || !(bit & TOLD_WHEN_GRAVE)) push(control, tick, ETHD_EVENT_FAULT, row, value, NULL);
+    if (begun.grave & bit || !(bit & TOLD_WHEN_GRAVE))
+      push(control, &(ethd_event){.kind = ETHD_EVENT_FAULT, .code = row, .tick = tick, .value = value});
   }
-  s->before = s->met;
+  s->before = *met;
 }
 
 static ethd_status finish(const ethd_trace *out, ethd_command *command) ETHD_RT {
@@ -86,34 +79,46 @@ static ethd_status finish(const ethd_trace *out, ethd_command *command) ETHD_RT 
   /* not while the guard still damps the ring: a device takes safe for zero torque */
   command->safe = out->fault != ETHD_FAULT_NONE && out->tau[0] == 0 && out->tau[1] == 0;
   command->reserved = 0;
-  return out->fault && !status_of[out->fault] ? ETHD_E_DEVICE : status_of[out->fault];
+  return ethd__rows_status((ethd_fault)out->fault);
 }
 
 ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, ethd_command *command,
                               ethd_trace *trace) {
-  ethd_trace own, *out = trace ? trace : &own;
-  int soft = take_clear(control);
-  const ethd__plan *from = take_posted(control);
-  ethd__entry e = {&control->plans[control->ruling], from, soft};
-  ethd__failure failure = ethd__tick(&e, &control->state, &control->scratch, sense, out);
-  if (from) give_back(control, out->tick, from);
-  report(control, out->tick, &failure);
-  return finish(out, command);
+  ethd_trace own;
+  ethd__tick t;
+  t.soft = take_clear(control);
+  t.from = take_posted(control);
+  t.plan = &control->plans[control->ruling];
+  t.state = &control->state;
+  t.scratch = &control->scratch;
+  t.sense = sense;
+  t.trace = trace ? trace : &own;
+  ethd__tick_run(&t);
+  if (t.from) give_back(control, t.trace->tick, t.from);
+  report(control, t.trace->tick);
+  return finish(t.trace, command);
 }
 
 ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense, ethd_command *command) {
-  ethd_trace out;
+  ethd_trace own;
+  ethd__tick t;
   memcpy(&control->scratch, &control->state, sizeof control->scratch);
-  ethd__entry e = {&control->plans[control->ruling], NULL, 0};
-  (void)ethd__tick(&e, &control->scratch, NULL, sense, &out);
-  return finish(&out, command);
+  t.soft = false;
+  t.from = NULL;
+  t.plan = &control->plans[control->ruling];
+  t.state = &control->scratch;
+  t.scratch = NULL;
+  t.sense = sense;
+  t.trace = &own;
+  ethd__tick_run(&t);
+  return finish(t.trace, command);
 }
 
 void ethd_control_reset(ethd_control *control) {
   const ethd__plan *plan = &control->plans[control->ruling];
   memset(&control->state, 0, sizeof control->state);
   control->state.finger_radius = (double)NAN;
-  control->state.places[0].there = 1;
+  control->state.places[0].there = true;
   ethd__resume(plan, &control->state);
 }
 

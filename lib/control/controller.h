@@ -7,7 +7,7 @@
 
 #include <stdatomic.h>
 
-#include "control/control.h"
+#include "control/tick.h"
 
 #define ETHD__EVENTS 64
 
@@ -18,7 +18,7 @@ typedef struct ethd__events {
 } ethd__events;
 
 /* False when there is no room. [rt] */
-int ethd__events_push(ethd__events *events, const ethd_event *event) ETHD_RT;
+bool ethd__events_push(ethd__events *events, const ethd_event *event) ETHD_RT;
 unsigned ethd__events_room(ethd__events *events) ETHD_RT;
 
 struct ethd_control {

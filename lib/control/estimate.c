@@ -1,14 +1,21 @@
-#include "control/control.h"
+#include "control/tick.h"
 #include "estimate/fit_methods.h"
+
+/* v - v is 0 for a finite number, and NaN for any other. */
+static bool is_finite(double v) ETHD_RT { return v - v == 0; }
 
 /* ---- ring ---- */
 
-static void joint_speeds(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt,
-                         double qd[2]) ETHD_RT {
-  for (int i = 0; i < 2; i++)
-    qd[i] = sense->have & ETHD_HAVE_DQ
-                ? sense->dq[i]
-                : ethd_velocity_step(&plan->velocity, &state->velocity[i], sense->q[i], state->guard.last[i], dt);
+/* A torque out of all measure, which an estimator may take as its input, must not spoil it for ever. */
+static double joint_speed(const ethd__tick *t, int i) ETHD_RT {
+  ethd_velocity_state *s = &t->state->velocity[i];
+  double speed = ethd_velocity_step(&t->plan->velocity, s, t->sense->q[i], t->state->guard.last[i], t->dt);
+  if (!is_finite(speed)) memset(s, 0, sizeof *s);
+  return speed;
+}
+
+static void joint_speeds(const ethd__tick *t, double qd[2]) ETHD_RT {
+  for (int i = 0; i < 2; i++) qd[i] = t->sense->have & ETHD_HAVE_DQ ? t->sense->dq[i] : joint_speed(t, i);
 }
 
 static void remember(ethd__state *state, int64_t time_ns, ethd_vec x) ETHD_RT {
@@ -19,6 +26,11 @@ static void remember(ethd__state *state, int64_t time_ns, ethd_vec x) ETHD_RT {
 
 /* b - a for any a <= b. */
 static double seconds(int64_t a, int64_t b) ETHD_RT { return 1e-9 * (double)((uint64_t)b - (uint64_t)a); }
+
+/* An instant `s` seconds before another one; wraps round like the clock. */
+static int64_t before(int64_t instant, double s) ETHD_RT {
+  return (int64_t)((uint64_t)instant - (uint64_t)(int64_t)(1e9 * s));
+}
 
 /* Where the ring stood at an earlier instant: linear between ticks, held beyond the history. */
 static ethd_vec ring_at(const ethd__state *state, int64_t time_ns) ETHD_RT {
@@ -35,108 +47,112 @@ static ethd_vec ring_at(const ethd__state *state, int64_t time_ns) ETHD_RT {
   return ethd_vec_add(a, ethd_vec_scale(share, ethd_vec_sub(b, a)));
 }
 
-/* ---- finger ---- */
+/* ---- the finger's readings ---- */
 
-static ethd_vec reference(const ethd__plan *plan, const ethd__state *state, const ethd_sense *sense,
-                          ethd_vec now) ETHD_RT {
-  if (plan->filter.reference == ETHD_REFERENCE_TICK) return now;
-  if (sense->have & ETHD_HAVE_RING) return (ethd_vec){sense->ring[0], sense->ring[1]};
-  return ring_at(state, sense->sample_ns);
+/* Where the ring stood when the reading was taken, as the filter's `reference` says. */
+static ethd_vec reference(const ethd__tick *t) ETHD_RT {
+  if (t->plan->filter.reference == ETHD_REFERENCE_TICK) return t->ring.x;
+  if (t->sense->have & ETHD_HAVE_RING) return ethd_vec_of(t->sense->ring);
+  return ring_at(t->state, t->sense->sample_ns);
 }
 
-/* Of finger and ring, between the first of a frame's rays and the last. */
-static ethd_vec relative_speed(const ethd__plan *plan, const ethd__state *state, const ethd_sense *sense) ETHD_RT {
-  int64_t first = sense->sample_ns - (int64_t)(1e9 * plan->lag_most);
-  int64_t last = sense->sample_ns - (int64_t)(1e9 * plan->lag_least);
-  ethd_vec way = ethd_vec_sub(ring_at(state, last), ring_at(state, first));
-  ethd_vec v = {state->filter.v[0], state->filter.v[1]};
-  return ethd_vec_sub(v, ethd_vec_scale(1 / (plan->lag_most - plan->lag_least), way));
+/* Finger velocity minus mean ring velocity while the frame's rays were taken. */
+static ethd_vec relative_velocity(const ethd__tick *t) ETHD_RT {
+  const ethd__plan *plan = t->plan;
+  ethd_vec first = ring_at(t->state, before(t->sense->sample_ns, plan->lag_most));
+  ethd_vec last = ring_at(t->state, before(t->sense->sample_ns, plan->lag_least));
+  ethd_vec ring_v = ethd_vec_scale(1 / (plan->lag_most - plan->lag_least), ethd_vec_sub(last, first));
+  return ethd_vec_sub(ethd_vec_of(t->state->filter.v), ring_v);
 }
 
-static ethd_status fit(const ethd__plan *plan, const ethd__state *state, const ethd_sense *sense,
-                       ethd_finger *out) ETHD_RT {
-  if (plan->lag_least == plan->lag_most || !state->filter.started) return ethd_fit_step(&plan->fit, sense->rays, out);
-  return ethd__fit_moving(&plan->fit, sense->rays, plan->setup.ray_lag, relative_speed(plan, state, sense), out);
+static ethd_status fit(const ethd__tick *t, ethd_finger *out) ETHD_RT {
+  const ethd__plan *plan = t->plan;
+  if (plan->lag_least == plan->lag_most || !t->state->filter.started)
+    return ethd_fit_step(&plan->fit, t->sense->rays, out);
+  return ethd__fit_moving(&plan->fit, t->sense->rays, plan->setup.ray_lag, relative_velocity(t), out);
 }
 
-/* The reading of this tick relative to the ring; false: none, or not usable. */
-static int reading(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, ethd_vec *out) ETHD_RT {
-  if (sense->have & ETHD_HAVE_CENTRE) {
-    *out = (ethd_vec){sense->centre[0], sense->centre[1]};
-    return isfinite(out->x) && isfinite(out->y);
+#define CENTRE_MAX 1e6 /* m: no reading of a ring */
+
+/* The reading of this tick, relative to the ring; false: it isn't usable. */
+static bool reading(const ethd__tick *t, ethd_vec *out) ETHD_RT {
+  if (t->sense->have & ETHD_HAVE_CENTRE) {
+    *out = ethd_vec_of(t->sense->centre);
+    return fabs(out->x) <= CENTRE_MAX && fabs(out->y) <= CENTRE_MAX;
   }
   ethd_finger finger;
-  if (fit(plan, state, sense, &finger) != ETHD_OK) return 0;
-  state->finger_radius = finger.radius;
+  if (fit(t, &finger) != ETHD_OK) return false;
+  t->state->finger_radius = finger.radius;
   *out = finger.centre;
-  return 1;
+  return true;
 }
 
-/* From the past, and not the last one once more: ages, as sums of periods, wouldn't tell it from a reading
-   that is newer by their rounding. */
-static int is_new(const ethd__state *state, const ethd_sense *sense) ETHD_RT {
-  return sense->sample_ns <= sense->time_ns && (state->filter.used == 0 || sense->sample_ns != state->reading_ns);
+/* The reading is from the past and isn't the last one once more. Stamps are compared, because ages, as sums of
+   periods, couldn't tell the same reading from one that is newer by their rounding. */
+static bool is_new(const ethd__tick *t) ETHD_RT {
+  return t->sense->sample_ns <= t->sense->time_ns &&
+         (t->state->filter.used == 0 || t->sense->sample_ns != t->state->reading_ns);
 }
 
-/* No: not used. The finger's centre can't be outside of the ring; what the filter gates out isn't plausible
-   either. */
-static int use(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, ethd_vec relative,
-               ethd_vec ring) ETHD_RT {
-  int watched = ethd__is_watched(plan), outside = watched && !(ethd_vec_norm(relative) <= plan->setup.ring_radius);
-  uint32_t gated = state->filter.gated;
-  ethd_vec x = ethd_vec_add(relative, reference(plan, state, sense, ring));
-  ethd_status status =
-      outside ? ETHD_STALE
-              : ethd_filter_update(&plan->filter, &state->filter, x, seconds(sense->sample_ns, sense->time_ns));
-  if (watched) ethd__finger_doubt(state, outside || state->filter.gated != gated);
+/* Corrects the filter. A reading is dropped (false) when it puts the finger's centre outside the ring or when the
+   filter's gate rejects it. */
+static bool use(const ethd__tick *t, ethd_vec relative) ETHD_RT {
+  const ethd__plan *plan = t->plan;
+  ethd_filter_state *filter = &t->state->filter;
+  bool outside = plan->watches_finger && !(ethd_vec_norm(relative) <= plan->setup.ring_radius);
+  uint32_t gated = filter->gated;
+  ethd_vec x = ethd_vec_add(relative, reference(t));
+  double age = seconds(t->sense->sample_ns, t->sense->time_ns);
+  ethd_status status = outside ? ETHD_STALE : ethd_filter_update(&plan->filter, filter, x, age);
+  if (plan->watches_finger) ethd__finger_doubt(t->state, outside || filter->gated != gated);
   return status == ETHD_OK;
 }
 
-static void correct(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, ethd_vec ring) ETHD_RT {
+static void correct(const ethd__tick *t) ETHD_RT {
   ethd_vec relative;
-  if (is_new(state, sense) && reading(plan, state, sense, &relative) && use(plan, state, sense, relative, ring))
-    state->reading_ns = sense->sample_ns;
+  if (is_new(t) && reading(t, &relative) && use(t, relative))
+    t->state->reading_ns = t->sense->sample_ns;
   else
-    state->counters.readings_dropped++;
+    t->state->counters.readings_dropped++;
 }
 
-static void finger(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt, ethd_vec ring,
-                   ethd_vec ring_v, ethd_vec *x, ethd_vec *v) ETHD_RT {
-  if (sense->have & ETHD_HAVE_FINGER) {
-    *x = (ethd_vec){sense->finger[0], sense->finger[1]};
-    *v = (ethd_vec){sense->finger_v[0], sense->finger_v[1]};
-    return;
-  }
-  if (sense->have & ETHD_HAVE_START)
-    ethd_filter_start(&plan->filter, &state->filter, (ethd_vec){sense->finger[0], sense->finger[1]}, (ethd_vec){0, 0});
-  else if (state->filter.started)
-    ethd_filter_predict(&plan->filter, &state->filter, dt);
-  if (sense->have & (ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS)) correct(plan, state, sense, ring);
-  if (ethd__is_watched(plan)) ethd__finger_watch(plan, state, sense, dt);
-  if (state->filter.started) {
-    ethd_filter_output(&plan->filter, &state->filter, x, v);
-  } else { /* never seen: nothing to follow */
-    *x = ring;
-    *v = ring_v;
-  }
+/* ---- the finger ---- */
+
+static void filter(const ethd__tick *t) ETHD_RT {
+  const ethd_filter *method = &t->plan->filter;
+  ethd_filter_state *s = &t->state->filter;
+  if (t->sense->have & ETHD_HAVE_START)
+    ethd_filter_start(method, s, ethd_vec_of(t->sense->finger), (ethd_vec){0, 0});
+  else if (s->started)
+    ethd_filter_predict(method, s, t->dt);
+  if (t->sense->have & (ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS)) correct(t);
+  if (t->plan->watches_finger) ethd__finger_watch(t);
+  if (!(is_finite(s->x[0] + s->x[1]) && is_finite(s->v[0] + s->v[1]))) memset(s, 0, sizeof *s);
 }
 
-static void put(double to[2], ethd_vec from) ETHD_RT {
-  to[0] = from.x;
-  to[1] = from.y;
+/* A finger that was never seen stands in the ring and moves with it: there is nothing to follow. */
+static ethd__motion finger(const ethd__tick *t) ETHD_RT {
+  ethd__motion m;
+  if (t->sense->have & ETHD_HAVE_FINGER)
+    return (ethd__motion){ethd_vec_of(t->sense->finger), ethd_vec_of(t->sense->finger_v)};
+  filter(t);
+  if (!t->state->filter.started) return t->ring;
+  ethd_filter_output(&t->plan->filter, &t->state->filter, &m.x, &m.v);
+  return m;
 }
 
-void ethd__estimate(const ethd__plan *plan, ethd__state *state, const ethd_sense *sense, double dt, ethd_pose *pose,
-                    ethd_trace *out) {
-  joint_speeds(plan, state, sense, dt, out->qd);
-  ethd_arm_pose(&plan->setup.arm, sense->q, pose);
-  ethd_vec v = ethd_mat_mul(pose->j, (ethd_vec){out->qd[0], out->qd[1]});
-  remember(state, sense->time_ns, pose->x);
-  ethd_vec xf, vf;
-  finger(plan, state, sense, dt, pose->x, v, &xf, &vf);
-  put(out->x, pose->x);
-  put(out->v, v);
-  put(out->xf, xf);
-  put(out->vf, vf);
-  out->rf = state->finger_radius;
+/* ---- both ---- */
+
+void ethd__estimate(ethd__tick *t) {
+  ethd_trace *out = t->trace;
+  joint_speeds(t, out->qd);
+  ethd_arm_pose(&t->plan->setup.arm, t->sense->q, &t->pose);
+  t->ring = (ethd__motion){t->pose.x, ethd_pose_velocity(&t->pose, out->qd)};
+  remember(t->state, t->sense->time_ns, t->ring.x);
+  t->finger = finger(t);
+  ethd_vec_put(t->ring.x, out->x);
+  ethd_vec_put(t->ring.v, out->v);
+  ethd_vec_put(t->finger.x, out->xf);
+  ethd_vec_put(t->finger.v, out->vf);
+  out->rf = t->state->finger_radius;
 }

@@ -5,12 +5,12 @@ unsigned ethd__events_room(ethd__events *e) {
          (atomic_load_explicit(&e->head, memory_order_relaxed) - atomic_load_explicit(&e->tail, memory_order_acquire));
 }
 
-int ethd__events_push(ethd__events *e, const ethd_event *event) {
-  if (ethd__events_room(e) == 0) return 0;
+bool ethd__events_push(ethd__events *e, const ethd_event *event) {
+  if (ethd__events_room(e) == 0) return false;
   unsigned head = atomic_load_explicit(&e->head, memory_order_relaxed);
   e->at[head % ETHD__EVENTS] = *event;
   atomic_store_explicit(&e->head, head + 1, memory_order_release);
-  return 1;
+  return true;
 }
 
 ethd_status ethd_control_poll(ethd_control *control, ethd_event *out) {

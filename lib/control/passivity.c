@@ -10,7 +10,7 @@
                                 what it will give next; without it for RESPITE, damping has helped
 
    A contact that begins anew soon after the last one, a bounce, goes on with what that gave away.        */
-#include "control/control.h"
+#include "control/tick.h"
 
 #define MEMORY 0.5       /* s */
 #define DAMPING_MAX 20.0 /* Ns/m, as the guard's stop */
@@ -37,23 +37,23 @@ static void begin(ethd__slot *slot, const ethd__state *state, double period) ETH
 
 /* Noticed over the bound, done with under half of it. */
 static double damping(ethd__slot *slot, double given, double bound, double v, double period) ETHD_RT {
-  if (given > bound) slot->giving = 1;
-  if (given <= bound / 2) slot->giving = 0;
+  if (given > bound) slot->giving = true;
+  if (given <= bound / 2) slot->giving = false;
   if (!slot->giving || v == 0) return 0;
   return fmin((given - bound / 2) / (v * v * period), DAMPING_MAX);
 }
 
-static int persists(ethd__state *state, double period) ETHD_RT {
+static bool persists(ethd__state *state, double period) ETHD_RT {
   uint64_t now = state->counters.ticks + 1;
   if (state->excess_at == 0 || (double)(now - state->excess_at) * period > RESPITE) state->excess_from = now;
   state->excess_at = now;
   return (double)(now - state->excess_from) * period > EXCESS_MAX - period / 2;
 }
 
-double ethd__passivity(const ethd__plan *plan, ethd__state *state, ethd__slot *slot, const ethd_contact *c, double wall,
-                       double brake) {
-  const double bound = plan->setup.limits.energy;
-  if (slot->periods == 0) begin(slot, state, plan->setup.period);
+double ethd__passivity(const ethd__tick *t, ethd__slot *slot, const ethd_contact *c, double wall, double brake) {
+  ethd__state *state = t->state;
+  const double bound = t->plan->setup.limits.energy, period = t->plan->setup.period;
+  if (slot->periods == 0) begin(slot, state, period);
   observe(slot, c);
   double given = -fmin(slot->energy[0], slot->energy[1]);
   double added = -damping(slot, given, bound, c->v, c->period) * c->v;
@@ -62,7 +62,7 @@ double ethd__passivity(const ethd__plan *plan, ethd__state *state, ethd__slot *s
   slot->force[0] = wall + added + brake;
   state->given = fmax(given, 0);
   state->given_at = state->counters.ticks;
-  if (slot->giving) state->met.faults |= ETHD_FAULT_BIT(ETHD_FAULT_ENERGY);
-  if (given > 2 * bound && persists(state, plan->setup.period)) state->met.grave |= ETHD_FAULT_BIT(ETHD_FAULT_ENERGY);
+  if (slot->giving) ethd__note(state, ETHD_FAULT_ENERGY);
+  if (given > 2 * bound && persists(state, period)) ethd__note_grave(state, ETHD_FAULT_ENERGY);
   return added;
 }

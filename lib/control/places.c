@@ -16,16 +16,16 @@ void ethd__places_take(ethd__state *state, const ethd_sense *sense) {
   for (int i = 0; i < ETHD_BODIES_MAX && (sense->have & ETHD__HAVE_BODIES); i++) {
     if (!(sense->have & ((int64_t)ETHD_HAVE_BODY << i))) continue;
     memcpy(state->places[1 + i].pose, sense->bodies + 6 * i, sizeof state->places[1 + i].pose);
-    state->places[1 + i].there = 1;
+    state->places[1 + i].there = true;
   }
 }
 
 void ethd__place_forget(ethd__place *place) { place->clearance = -1; }
 
-int ethd__place_is_far(const ethd__place *p, ethd_vec x, double range) {
+bool ethd__place_is_far(const ethd__place *p, ethd_vec x, double range) {
   double left = p->clearance - range - MARGIN;
-  ethd_vec way = ethd_vec_sub(x, p->at);
-  return left > 0 && ethd_vec_dot(way, way) < left * left;
+  ethd_vec travelled = ethd_vec_sub(x, p->at);
+  return left > 0 && ethd_vec_dot(travelled, travelled) < left * left;
 }
 
 void ethd__place_clear(ethd__place *place, const ethd_scene *scene, ethd_vec x) {

@@ -5,7 +5,7 @@
 #ifndef ETHD__PLACES_H
 #define ETHD__PLACES_H
 
-#include "control/control.h"
+#include "control/state.h"
 
 /* Any of them. */
 #define ETHD__HAVE_BODIES (((int64_t)ETHD_HAVE_BODY << ETHD_BODIES_MAX) - ETHD_HAVE_BODY)
@@ -45,7 +45,7 @@ void ethd__place_forget(ethd__place *place) ETHD_RT;
 
 /* True while the ring, now at x in the place's frame, can't be within `range` of anything: it hasn't
    travelled far enough since it was last asked. Touches no memory of the scene. */
-int ethd__place_is_far(const ethd__place *place, ethd_vec x, double range) ETHD_RT;
+bool ethd__place_is_far(const ethd__place *place, ethd_vec x, double range) ETHD_RT;
 
 /* Nothing is within reach at x: asks how far it is. */
 void ethd__place_clear(ethd__place *place, const ethd_scene *scene, ethd_vec x) ETHD_RT;

@@ -1,7 +1,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "control/control.h"
+#include "control/plan.h"
 #include "control/setup.h"
 #include "error.h"
 #include "scene/scene.h"
@@ -98,8 +98,8 @@ static ethd_status check_scene(const ethd_setup *s, int place, ethd_error *error
                       scene->outer);
 }
 
-static int looks_further(const ethd_limits *l) {
-  int ranges = !isinf(l->reach[0]) || !isinf(l->reach[1]);
+static bool has_rare_limits(const ethd_limits *l) {
+  bool ranges = !isinf(l->reach[0]) || !isinf(l->reach[1]);
   for (int i = 0; i < 4; i++) ranges |= !isinf(l->joints[i]);
   return ranges || l->gap < (double)INFINITY || l->nominal_torque < (double)INFINITY;
 }
@@ -111,7 +111,9 @@ ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error 
   TRY(check_laws(s, error));
   TRY(within("limits", ethd_limits_check(&s->limits, error), error));
   out->setup = *s;
-  out->looks_further = looks_further(&s->limits);
+  out->has_rare_limits = has_rare_limits(&s->limits);
+  out->watches_finger = s->limits.finger_age < (double)INFINITY;
+  out->watches_energy = s->limits.energy < (double)INFINITY;
   out->d_beta = s->ring_radius - s->finger_radius_max;
   TRY(within("velocity", ethd_velocity_prepare(s->velocity, s->velocity_p, s->period, &out->velocity, error), error));
   TRY(within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error),

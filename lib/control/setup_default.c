@@ -1,7 +1,7 @@
 #include <string.h>
 
-#include "control/control.h"
 #include "control/setup.h"
+#include "ethd/control.h"
 
 double ethd_setup_range(const ethd_setup *s) { return 2 * s->ring_radius + (s->ring_radius - s->finger_radius_max); }
 

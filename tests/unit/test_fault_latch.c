@@ -198,25 +198,65 @@ START_TEST(test_failure_at_a_swap) {
 }
 END_TEST
 
-/* Angles out of all measure spoil a speed for ever, unless a clear heals it. */
-START_TEST(test_absurd_angle) {
+/* Numbers beyond any mechanism are refused, so that no estimator keeps them, also while a clear is waited for. */
+START_TEST(test_absurd_numbers) {
+  const struct {
+    size_t offset;
+    int64_t have;
+    double value, most, refused;
+  } cases[] = {{offsetof(ethd_sense, q), 0, 0, 6.2831853071795865e6, 1e306},
+               {offsetof(ethd_sense, dq[1]), ETHD_HAVE_DQ, ETHD_HAVE_DQ, 1e6, 1.0001e6},
+               {offsetof(ethd_sense, finger[1]), 0, ETHD_HAVE_FINGER, 1e6, -1e300},
+               {offsetof(ethd_sense, finger_v), 0, ETHD_HAVE_FINGER, 1e6, 1e7},
+               {offsetof(ethd_sense, ring), ETHD_HAVE_RING, ETHD_HAVE_RING, 1e6, -2e6},
+               {offsetof(ethd_sense, bodies[1]), ETHD_HAVE_BODY, ETHD_HAVE_BODY, 1e6, 1e300},
+               {offsetof(ethd_sense, bodies[2]), ETHD_HAVE_BODY, ETHD_HAVE_BODY, 6.2831853071795865e6, -1e8},
+               {offsetof(ethd_sense, bodies[5]), ETHD_HAVE_BODY, ETHD_HAVE_BODY, 1e6, 1e6 + 1}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    rig r;
+    moody_open(&r, 1);
+    r.setup.limits.speed = 10;
+    rig_post(&r);
+    ethd_sense s = moody_sense(&r), absurd;
+    s.have = ETHD_HAVE_FINGER;
+    rig_try(&r, &s);
+    while (rig_poll(&r).kind != ETHD_EVENT_TAKEN) continue;
+    absurd = s;
+    absurd.have |= cases[i].have;
+    *(double *)(void *)((char *)&absurd + cases[i].offset) = cases[i].refused;
+    rig_try(&r, &absurd);
+    moody_expect_safe(&r, ETHD_E_NOT_FINITE, ETHD_FAULT_INPUT);
+    moody_expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_INPUT, cases[i].value);
+    rig_try(&r, &s);
+    ck_assert_double_eq(r.trace.qd[0], 0);
+    ethd_control_clear(r.control);
+    ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
+    *(double *)(void *)((char *)&absurd + cases[i].offset) = copysign(cases[i].most, cases[i].refused);
+    rig_try(&r, &absurd);
+    ck_assert_int_ne(r.trace.fault, ETHD_FAULT_INPUT);
+    rig_close(&r);
+  }
+}
+END_TEST
+
+/* A torque out of all measure, in a setup without a limit of it, is forgotten with the tick in which the Kalman
+   filter took it for its input. */
+START_TEST(test_absurd_torque) {
   rig r;
   moody_open(&r, 1);
-  r.setup.limits.speed = 10;
+  ethd_setup_velocity(&r.setup, ETHD_VELOCITY_KALMAN);
   rig_post(&r);
-  ethd_sense s = moody_sense(&r), absurd;
+  ethd_sense s = moody_sense(&r);
   s.have = ETHD_HAVE_FINGER;
   rig_try(&r, &s);
-  absurd = s;
-  absurd.q[0] = 1e308;
-  rig_try(&r, &absurd);
-  ck_assert_int_lt(r.status, 0);
+  mood.tracking = MOODY_BAD;
+  mood.value = 1e308;
   rig_try(&r, &s);
-  ck_assert(!isfinite(r.trace.qd[0]));
-  ethd_control_clear(r.control);
-  ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
-  for (int i = 0; i < 3; i++) ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
-  ck_assert_double_eq(r.trace.qd[0], 0);
+  mood.tracking = MOODY_WELL;
+  rig_try(&r, &s);
+  ck_assert(!isfinite(r.trace.qd[1]));
+  for (int i = 0; i < 3; i++) rig_try(&r, &s);
+  ck_assert_double_eq(r.trace.qd[1], 0);
   rig_close(&r);
 }
 END_TEST
@@ -257,7 +297,8 @@ int main(void) {
   tcase_add_test(t, test_estimators_go_on);
   tcase_add_test(t, test_gap_of_measurements);
   tcase_add_test(t, test_failure_at_a_swap);
-  tcase_add_test(t, test_absurd_angle);
+  tcase_add_test(t, test_absurd_numbers);
+  tcase_add_test(t, test_absurd_torque);
   tcase_add_test(t, test_without_latch);
   suite_add_tcase(suite, t);
   return rig_run(suite);

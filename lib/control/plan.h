@@ -1,0 +1,39 @@
+/* A plan: a posted setup with all that [main] can work out of it, so that no tick has to. */
+#ifndef ETHD__CONTROL_PLAN_H
+#define ETHD__CONTROL_PLAN_H
+
+#include <stdbool.h>
+
+#include "ethd/control.h"
+
+/* Where objects are: 0 is the scene that stands still, i is bodies[i - 1]. */
+#define ETHD__PLACES (1 + ETHD_BODIES_MAX)
+
+static inline const ethd_scene *ethd__place_scene(const ethd_setup *setup, int place) ETHD_RT {
+  return place == 0 ? setup->scene : setup->bodies[place - 1];
+}
+
+typedef struct ethd__plan {
+  ethd_setup setup;
+  double d_beta;          /* R_r - R_f,max, m */
+  int places;             /* places from here on have no scene */
+  bool has_rare_limits;   /* a limit of clock, joints, reach or heat is set */
+  bool watches_finger;    /* limits.finger_age is set */
+  bool watches_energy;    /* limits.energy is set */
+  ethd_velocity velocity; /* estimators, prepared */
+  ethd_fit fit;
+  ethd_filter filter;
+  double lag_least, lag_most; /* least and largest of setup.ray_lag and 0, s; equal: no ray lags */
+  /* the contact law's parameters for each material of each place */
+  double material_p[ETHD__PLACES][ETHD_MATERIALS_MAX][ETHD_PARAMS_MAX];
+} ethd__plan;
+
+/* Checks the setup and works the plan out; a failure leaves the plan undefined. [main] */
+ethd_status ethd__plan_prepare(const ethd_setup *setup, ethd__plan *out, ethd_error *error);
+
+/* The parameters of the contact law on a material, -1: none. [rt] */
+static inline const double *ethd__contact_p(const ethd__plan *plan, int place, int32_t material) ETHD_RT {
+  return material < 0 ? plan->setup.contact_p : plan->material_p[place][material];
+}
+
+#endif

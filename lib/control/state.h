@@ -1,0 +1,91 @@
+/* The controller's state: one flat block, so that a tick can run on a copy, and a reset is one memset. */
+#ifndef ETHD__CONTROL_STATE_H
+#define ETHD__CONTROL_STATE_H
+
+#include <string.h>
+
+#include "control/plan.h"
+
+/* A law's state block. */
+typedef double ethd__block[ETHD_STATE_MAX / sizeof(double)];
+
+/* Zeroes the block, then lets the law fill it. [rt] */
+static inline void ethd__block_reset(const ethd_law *law, const double *p, double *block) ETHD_RT {
+  memset(block, 0, sizeof(ethd__block));
+  if (law->reset) law->reset(p, block);
+}
+
+/* A contact that counted at the last tick. */
+typedef struct ethd__slot {
+  bool used;
+  bool leaving;                /* the branch of eq. 3, with v_hysteresis */
+  int32_t place, object, side; /* whose surface; side of a thin wall on which the contact began, 0: no side */
+  int32_t state;               /* the transition law's */
+  int64_t periods;             /* since it began to count */
+  ethd_vec point;              /* touched, in the place's frame */
+  ethd__block transition, contact;
+  /* passivity observer, where limits.energy is set */
+  bool giving;                           /* damping is added */
+  double energy[2], force[2], depth_was; /* J, N along n, m */
+} ethd__slot;
+
+/* A place as the ring meets it. */
+typedef struct ethd__place {
+  double pose[6];   /* as in the sense; zeros for what stands still */
+  ethd_vec at;      /* ring's centre in the place's frame when the clearance was asked for */
+  double clearance; /* distance from there to the nearest object, m; negative: not known */
+  ethd_scene_hint hint;
+  bool there; /* false: a body that has no pose yet */
+} ethd__place;
+
+/* Rows of the fault table as bits, as a sense has them. */
+typedef struct ethd__rows {
+  int64_t faults, grave;
+} ethd__rows;
+
+/* What a tick has met: rows, and the value of those that have one. */
+typedef struct ethd__met {
+  ethd__rows rows;
+  int64_t valued; /* bits: rows with a value below */
+  double value[ETHD_FAULT_COUNT];
+} ethd__met;
+
+#define ETHD__HISTORY 32 /* ticks of ring positions, for readings that are late */
+
+typedef struct ethd__state {
+  ethd_counters counters;
+  /* faults */
+  int64_t fault;     /* the latched row; [any] reads it and the next */
+  int64_t clean;     /* periods since the last tick that called for a stop */
+  ethd__met met;     /* at this tick */
+  ethd__rows before; /* at the last */
+  int64_t time_ns;   /* of the last tick */
+  int64_t blind;     /* periods since the last tick that had a measurement */
+  /* estimates */
+  ethd_velocity_state velocity[2];
+  ethd_filter_state filter;
+  int64_t reading_ns;   /* stamp of the reading that was used last */
+  double finger_radius; /* of the last fit, NaN: none */
+  double absent;        /* share of the tracking torque that has faded because the finger isn't seen */
+  int64_t implausible;  /* readings in a row */
+  struct {
+    int64_t time_ns;
+    ethd_vec x;
+  } history[ETHD__HISTORY];
+  uint64_t remembered; /* positions ever put there; a tick without measurement leaves none */
+  /* contacts */
+  ethd__slot slots[ETHD_CONTACTS_MAX];
+  ethd__place places[ETHD__PLACES];
+  double given;                    /* J that the last contact gave away */
+  uint64_t given_at;               /* tick */
+  uint64_t excess_from, excess_at; /* steps after which it was far too much: first, last; 0: never */
+  /* torque */
+  ethd__block tracking;
+  struct {
+    double delta[2]; /* old - new torque at the swap, Nm */
+    double elapsed;  /* s since then; INFINITY: no fade */
+  } fade;
+  ethd_guard_state guard;
+} ethd__state;
+
+#endif

@@ -1,0 +1,99 @@
+/* A swap without a bump: at its tick the torque is what the old plan gives, and the difference to the new plan's
+   torque fades linearly to 0 over swap_time. */
+#include "control/places.h"
+#include "control/tick.h"
+
+/* ---- the fade ---- */
+
+void ethd__fade_start(ethd__state *state, const double from[2], const double to[2]) {
+  for (int i = 0; i < 2; i++) state->fade.delta[i] = from[i] - to[i];
+  state->fade.elapsed = 0;
+}
+
+/* What is left of the difference after `t` s. */
+static double fade_share(double t, double swap_time) ETHD_RT { return t < swap_time ? 1 - t / swap_time : 0; }
+
+void ethd__fade(ethd__tick *t) {
+  ethd__state *state = t->state;
+  if (isinf(state->fade.elapsed)) return;
+  state->fade.elapsed += t->dt;
+  double share = fade_share(state->fade.elapsed, t->plan->setup.swap_time);
+  if (share < 1e-9) { /* periods add up to swap_time only within rounding */
+    state->fade.elapsed = (double)INFINITY;
+    return;
+  }
+  t->trace->tau_raw[0] += share * state->fade.delta[0];
+  t->trace->tau_raw[1] += share * state->fade.delta[1];
+  state->guard.steep = 0; /* the fade's slope is no law's */
+}
+
+/* ---- the state ---- */
+
+static void swap_velocity(const ethd__plan *from, const ethd__plan *to, ethd__state *state) ETHD_RT {
+  if (from->velocity.method == to->velocity.method &&
+      memcmp(from->velocity.p, to->velocity.p, sizeof from->velocity.p) == 0)
+    return;
+  for (int i = 0; i < 2; i++) {
+    double speed = state->velocity[i].speed;
+    memset(&state->velocity[i], 0, sizeof state->velocity[i]);
+    state->velocity[i].speed = speed;
+  }
+}
+
+static void swap_filter(const ethd__plan *from, const ethd__plan *to, ethd__state *state) ETHD_RT {
+  ethd_vec x, v;
+  if (!state->filter.started ||
+      (from->filter.method == to->filter.method && memcmp(from->filter.p, to->filter.p, sizeof from->filter.p) == 0))
+    return;
+  ethd_filter_output(&from->filter, &state->filter, &x, &v);
+  ethd_filter_start(&to->filter, &state->filter, x, v);
+}
+
+static bool has_same_scene(const ethd__plan *a, const ethd__plan *b, int place) ETHD_RT {
+  return ethd__place_scene(&a->setup, place) == ethd__place_scene(&b->setup, place);
+}
+
+static void swap_slot(const ethd__plan *from, const ethd__plan *to, ethd__slot *slot) ETHD_RT {
+  if (!has_same_scene(from, to, slot->place)) slot->used = false;
+  if (from->setup.transition != to->setup.transition)
+    ethd__block_reset(&to->setup.transition->law, to->setup.transition_p, slot->transition);
+  if (from->setup.contact != to->setup.contact)
+    ethd__block_reset(&to->setup.contact->law, to->setup.contact_p, slot->contact);
+}
+
+void ethd__swap_state(const ethd__plan *from, const ethd__plan *to, ethd__state *state) {
+  swap_velocity(from, to, state);
+  swap_filter(from, to, state);
+  for (int place = 0; place < ETHD__PLACES; place++)
+    if (!has_same_scene(from, to, place)) ethd__place_forget(&state->places[place]);
+  if (from->setup.tracking != to->setup.tracking)
+    ethd__block_reset(&to->setup.tracking->law, to->setup.tracking_p, state->tracking);
+  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) swap_slot(from, to, &state->slots[i]);
+}
+
+/* ---- the tick of a swap ---- */
+
+/* The old plan's torque, worked out on a copy of the state, which can't tell the new plan's apart from its own. */
+static bool evaluate_old(ethd__tick *t, double torque[2]) ETHD_RT {
+  memcpy(t->scratch, t->state, sizeof *t->scratch);
+  ethd__tick old = *t;
+  old.plan = t->from;
+  old.state = t->scratch;
+  bool held = ethd__evaluate(&old);
+  if (held) ethd__fade(&old);
+  memcpy(torque, t->trace->tau_raw, sizeof t->trace->tau_raw);
+  if (!held) t->state->met = t->scratch->met; /* the law that failed */
+  return held;
+}
+
+void ethd__swap(ethd__tick *t) {
+  double old[2];
+  bool held = evaluate_old(t, old);
+  ethd__swap_state(t->from, t->plan, t->state);
+  if (!held) {
+    ethd__estimate(t);
+  } else if (ethd__evaluate(t)) {
+    ethd__fade_start(t->state, old, t->trace->tau_raw);
+    memcpy(t->trace->tau_raw, old, sizeof old);
+  }
+}
