@@ -104,6 +104,8 @@ static bool use(const ethd__tick *t, ethd_vec relative) ETHD_RT {
   ethd_vec x = ethd_vec_add(relative, reference(t));
   double age = seconds(t->sense->sample_ns, t->sense->time_ns);
   ethd_status status = outside ? ETHD_STALE : ethd_filter_update(&plan->filter, filter, x, age);
+  if (!is_finite(filter->x[0] + filter->x[1]) || !is_finite(filter->v[0] + filter->v[1]))
+    memset(filter, 0, sizeof *filter); /* spoilt; it starts anew with the next reading */
   if (plan->watches_finger) ethd__finger_doubt(t->state, outside || filter->gated != gated);
   return status == ETHD_OK;
 }
@@ -127,18 +129,17 @@ static void filter(const ethd__tick *t) ETHD_RT {
     ethd_filter_predict(method, s, t->dt);
   if (t->sense->have & (ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS)) correct(t);
   if (t->plan->watches_finger) ethd__finger_watch(t);
-  if (!(is_finite(s->x[0] + s->x[1]) && is_finite(s->v[0] + s->v[1]))) memset(s, 0, sizeof *s);
 }
 
 /* A finger that was never seen stands in the ring and moves with it: there is nothing to follow. */
-static ethd__motion finger(const ethd__tick *t) ETHD_RT {
-  ethd__motion m;
-  if (t->sense->have & ETHD_HAVE_FINGER)
-    return (ethd__motion){ethd_vec_of(t->sense->finger), ethd_vec_of(t->sense->finger_v)};
+static void finger(ethd__tick *t) ETHD_RT {
+  t->finger = t->ring;
+  if (t->sense->have & ETHD_HAVE_FINGER) {
+    t->finger = (ethd__motion){ethd_vec_of(t->sense->finger), ethd_vec_of(t->sense->finger_v)};
+    return;
+  }
   filter(t);
-  if (!t->state->filter.started) return t->ring;
-  ethd_filter_output(&t->plan->filter, &t->state->filter, &m.x, &m.v);
-  return m;
+  if (t->state->filter.started) ethd_filter_output(&t->plan->filter, &t->state->filter, &t->finger.x, &t->finger.v);
 }
 
 /* ---- both ---- */
@@ -149,7 +150,7 @@ void ethd__estimate(ethd__tick *t) {
   ethd_arm_pose(&t->plan->setup.arm, t->sense->q, &t->pose);
   t->ring = (ethd__motion){t->pose.x, ethd_pose_velocity(&t->pose, out->qd)};
   remember(t->state, t->sense->time_ns, t->ring.x);
-  t->finger = finger(t);
+  finger(t);
   ethd_vec_put(t->ring.x, out->x);
   ethd_vec_put(t->ring.v, out->v);
   ethd_vec_put(t->finger.x, out->xf);

@@ -12,9 +12,10 @@ static const int64_t all = 0 ETHD_FAULTS(ALL);
 static const int64_t stop_1 = 0 ETHD_FAULTS(STOP_1), stop_2 = 0 ETHD_FAULTS(STOP_2);
 static const int64_t zero_1 = 0 ETHD_FAULTS(ZERO_1), zero_2 = 0 ETHD_FAULTS(ZERO_2);
 
-/* The rows among these whose due reaction is STOP, and those where it is ZERO. */
+/* Rows among these whose due reaction stops the ring. */
 static int64_t stops(const ethd__rows *r) ETHD_RT { return (r->faults & ~r->grave & stop_1) | (r->grave & stop_2); }
-static int64_t zeros(const ethd__rows *r) ETHD_RT { return (r->faults & ~r->grave & zero_1) | (r->grave & zero_2); }
+
+int64_t ethd__rows_zero(const ethd__rows *r) { return (r->faults & ~r->grave & zero_1) | (r->grave & zero_2); }
 
 static ethd_fault lowest(int64_t rows) ETHD_RT { return (ethd_fault)__builtin_ctzll((uint64_t)rows); }
 
@@ -33,10 +34,9 @@ void ethd__note_law(ethd__state *state, ethd_kind kind, ethd_status status) {
     ethd__note_value(state, ETHD_FAULT_FINITE, (double)kind);
 }
 
-void ethd__rows_begin(ethd__state *state, const ethd_sense *sense) {
+void ethd__rows_take(ethd__state *state, const ethd_sense *sense) {
   state->met.rows.faults = sense->faults & all;
   state->met.rows.grave = sense->grave & all;
-  state->met.valued = 0;
 }
 
 #define CUT_MAX (0.1 + 1e-9) /* s, as a sum of periods: a torque that is cut for longer is told */
@@ -54,10 +54,8 @@ static void note_guard(ethd__state *state, int64_t bits) ETHD_RT {
 
 /* ---- reactions ---- */
 
-bool ethd__rows_forbid(const ethd__state *state) { return state->fault || zeros(&state->met.rows); }
-
 void ethd__rows_stop(ethd__state *state) {
-  int64_t zero = zeros(&state->met.rows);
+  int64_t zero = ethd__rows_zero(&state->met.rows);
   if (!zero && !stops(&state->met.rows)) return;
   state->guard.stopping |= ETHD_GUARD_FAULT;
   if (zero) state->guard.stopped = 1;
@@ -72,7 +70,7 @@ static ethd_fault latch(ethd__state *state, ethd_fault first, int64_t zero) ETHD
 
 ethd_fault ethd__judge(const ethd__plan *plan, ethd__state *state, int64_t guard_bits, int64_t periods) {
   if (guard_bits) note_guard(state, guard_bits);
-  int64_t zero = zeros(&state->met.rows), calls = zero | stops(&state->met.rows);
+  int64_t zero = ethd__rows_zero(&state->met.rows), calls = zero | stops(&state->met.rows);
   if (!calls) {
     __atomic_store_n(&state->clean, state->clean + periods, __ATOMIC_RELAXED);
     return (ethd_fault)state->fault;
@@ -89,7 +87,7 @@ ethd_fault ethd__judge(const ethd__plan *plan, ethd__state *state, int64_t guard
 ethd__rows ethd__rows_begun(const ethd__plan *plan, const ethd__state *state) {
   const ethd__rows *met = &state->met.rows, *before = &state->before;
   ethd__rows begun = {(met->faults | met->grave) & ~(before->faults | before->grave), met->grave & ~before->grave};
-  if (!plan->setup.limits.latch) begun.faults |= zeros(met) | stops(met); /* each tick is judged alone */
+  if (!plan->setup.limits.latch) begun.faults |= ethd__rows_zero(met) | stops(met); /* each tick is judged alone */
   return begun;
 }
 

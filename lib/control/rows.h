@@ -28,13 +28,24 @@ static inline bool ethd__law_is_good(ethd__state *state, ethd_kind kind, ethd_st
   return false;
 }
 
-/* A tick begins: nothing is met but what device and loop say. */
-void ethd__rows_begin(ethd__state *state, const ethd_sense *sense) ETHD_RT;
+/* Takes the rows that device and loop say. */
+void ethd__rows_take(ethd__state *state, const ethd_sense *sense) ETHD_RT;
+
+/* A tick begins: nothing is met but those. */
+static inline void ethd__rows_begin(ethd__state *state, const ethd_sense *sense) ETHD_RT {
+  state->met.rows.faults = state->met.rows.grave = state->met.valued = 0;
+  if (sense->faults | sense->grave) ethd__rows_take(state, sense);
+}
 
 static inline bool ethd__rows_any(const ethd__rows *rows) ETHD_RT { return (rows->faults | rows->grave) != 0; }
 
+/* Rows among these whose due reaction takes the torque away. */
+int64_t ethd__rows_zero(const ethd__rows *rows) ETHD_RT;
+
 /* True where a row that was met, or the latched one, takes the torque away. */
-bool ethd__rows_forbid(const ethd__state *state) ETHD_RT;
+static inline bool ethd__rows_forbid(const ethd__state *state) ETHD_RT {
+  return state->fault || (ethd__rows_any(&state->met.rows) && ethd__rows_zero(&state->met.rows));
+}
 
 /* Tells the guard to stop the ring or to let it go, where a row that was met calls for it. */
 void ethd__rows_stop(ethd__state *state) ETHD_RT;
