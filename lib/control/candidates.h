@@ -2,8 +2,8 @@
 #ifndef ETHD__CANDIDATES_H
 #define ETHD__CANDIDATES_H
 
+#include "control/context.h"
 #include "control/places.h"
-#include "control/tick.h"
 
 #define ETHD__TOUCHES (ETHD_CONTACTS_MAX + 8) /* looked at within reach in one place; the deepest */
 #define ETHD__CANDIDATES (ETHD__PLACES * ETHD__TOUCHES + ETHD_CONTACTS_MAX)

@@ -1,4 +1,8 @@
+#include "control/contacts.h"
+
 #include "control/candidates.h"
+#include "control/passivity.h"
+#include "control/rows.h"
 
 /* ---- one contact ---- */
 

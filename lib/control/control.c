@@ -1,6 +1,8 @@
 #include <string.h>
 
 #include "control/controller.h"
+#include "control/rows.h"
+#include "control/tick.h"
 
 static void push(ethd_control *control, const ethd_event *event) ETHD_RT {
   if (!ethd__events_push(&control->events, event)) control->state.counters.events_dropped++;

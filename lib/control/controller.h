@@ -7,7 +7,7 @@
 
 #include <stdatomic.h>
 
-#include "control/tick.h"
+#include "control/state.h"
 
 #define ETHD__EVENTS 64
 

@@ -1,4 +1,6 @@
-#include "control/tick.h"
+#include "control/estimate.h"
+
+#include "control/finger_watch.h"
 #include "estimate/fit_methods.h"
 
 /* v - v is 0 for a finite number, and NaN for any other. */

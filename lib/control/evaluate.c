@@ -1,4 +1,8 @@
-#include "control/tick.h"
+#include "control/evaluate.h"
+
+#include "control/contacts.h"
+#include "control/estimate.h"
+#include "control/rows.h"
 
 /* The tracking law's torque before beta, tau. */
 static bool track(const ethd__tick *t, double tau[2]) ETHD_RT {

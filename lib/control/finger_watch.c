@@ -1,5 +1,7 @@
 /* How old and how plausible the finger's readings are: the rows FINGER_OLD, FINGER_LOST and ESTIMATE. */
-#include "control/tick.h"
+#include "control/finger_watch.h"
+
+#include "control/rows.h"
 
 #define FADE 0.020        /* s in which tracking fades out and in */
 #define IMPLAUSIBLE_MAX 5 /* in a row */

@@ -10,7 +10,9 @@
                                 what it will give next; without it for RESPITE, damping has helped
 
    A contact that begins anew soon after the last one, a bounce, goes on with what that gave away.        */
-#include "control/tick.h"
+#include "control/passivity.h"
+
+#include "control/rows.h"
 
 #define MEMORY 0.5       /* s */
 #define DAMPING_MAX 20.0 /* Ns/m, as the guard's stop */

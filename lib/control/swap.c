@@ -1,7 +1,10 @@
 /* A swap without a bump: at its tick the torque is what the old plan gives, and the difference to the new plan's
    torque fades linearly to 0 over swap_time. */
+#include "control/swap.h"
+
+#include "control/estimate.h"
+#include "control/evaluate.h"
 #include "control/places.h"
-#include "control/tick.h"
 
 /* ---- the fade ---- */
 

@@ -12,7 +12,11 @@
    6. The rows that were met say what latches, and the trace how the tick ended (rows.c). */
 #include "control/tick.h"
 
+#include "control/estimate.h"
+#include "control/evaluate.h"
 #include "control/places.h"
+#include "control/rows.h"
+#include "control/swap.h"
 
 #define GAP_MAX 1000000 /* periods: a longer gap is no longer a gap of a loop */
 

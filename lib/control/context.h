@@ -1,0 +1,29 @@
+/* A tick in the making: the one context that every stage works on. What the device measured comes in at the top, each
+   stage adds what it worked out, and the trace shows it all. */
+#ifndef ETHD__CONTROL_CONTEXT_H
+#define ETHD__CONTROL_CONTEXT_H
+
+#include "control/state.h"
+
+typedef struct ethd__motion {
+  ethd_vec x, v; /* m, m/s, in R_0 */
+} ethd__motion;
+
+typedef struct ethd__tick {
+  /* what it starts from */
+  const ethd__plan *plan; /* the one that rules */
+  const ethd__plan *from; /* the one that was replaced at this tick, NULL: none */
+  ethd__state *state;
+  ethd__state *scratch; /* needed where `from` is set */
+  const ethd_sense *sense;
+  bool soft; /* a fault was acknowledged: the torque starts from zero */
+  /* what it works out */
+  int64_t periods; /* since the last tick, missed ones included */
+  double dt;       /* s since the last tick that had a measurement */
+  ethd_pose pose;  /* of the arm; unknown on a tick without measurement, where nothing needs it */
+  ethd__motion ring, finger;
+  ethd_vec shift; /* m, of the tracking's reference: the contact's that rules beta */
+  ethd_trace *trace;
+} ethd__tick;
+
+#endif

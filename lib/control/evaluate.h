@@ -1,0 +1,10 @@
+#ifndef ETHD__CONTROL_EVALUATE_H
+#define ETHD__CONTROL_EVALUATE_H
+
+#include "control/context.h"
+
+/* Estimates, contacts and tracking -> the torque of the laws, trace->tau_raw. False: a law failed, which is noted.
+   [rt] */
+bool ethd__evaluate(ethd__tick *t) ETHD_RT;
+
+#endif

@@ -1,0 +1,18 @@
+#ifndef ETHD__CONTROL_SWAP_H
+#define ETHD__CONTROL_SWAP_H
+
+#include "control/context.h"
+
+/* The old plan's torque into trace->tau_raw, and the difference to the new plan's begins to fade. [rt] */
+void ethd__swap(ethd__tick *t) ETHD_RT;
+
+/* The state of the old plan becomes one of the new: what stays keeps its state, what is new starts from zero. [rt] */
+void ethd__swap_state(const ethd__plan *from, const ethd__plan *to, ethd__state *state) ETHD_RT;
+
+/* `from` - `to`, Nm, fades from here on. [rt] */
+void ethd__fade_start(ethd__state *state, const double from[2], const double to[2]) ETHD_RT;
+
+/* Adds what is left of a fade to trace->tau_raw. [rt] */
+void ethd__fade(ethd__tick *t) ETHD_RT;
+
+#endif
