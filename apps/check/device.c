@@ -7,11 +7,6 @@
 #define POSE_X 0.25
 #define POSE_Y 0.25
 
-double ethd__law_value(const ethd_law *law, const double *p, const char *name) {
-  int i = ethd_params_find(law->params, law->param_count, name);
-  return i < 0 ? NAN : p[i];
-}
-
 void ethd__velocity_text(const ethd_setup *s, char *out, size_t room) {
   const ethd_method *m = &ethd_velocity_methods[s->velocity];
   if (!m->param_count) {
@@ -33,13 +28,12 @@ static void at_ring(const double ji[4], double k, double out[3]) {
 /* A gain that the law doesn't have is 0; without the first it isn't a law that is known here. */
 static void feel(ethd__subject *s) {
   const ethd_setup *setup = &s->config->setup;
-  const ethd_law *law = &setup->tracking->law;
-  double k_t = ethd__law_value(law, setup->tracking_p, "k_t"), b_t = ethd__law_value(law, setup->tracking_p, "b_t");
+  double k_t = ethd_setup_get(setup, "tracking.k_t"), b_t = ethd_setup_get(setup, "tracking.b_t");
   double q[2], k[3], d[3];
   ethd_pose pose;
   s->k[0] = s->k[1] = s->d[0] = s->d[1] = NAN;
   if (isnan(k_t)) {
-    printf("tracking     %s has no k_t: its stiffness at the ring isn't known\n", law->id);
+    printf("tracking     %s has no k_t: its stiffness at the ring isn't known\n", setup->tracking->law.id);
     return;
   }
   if (ethd_arm_angles(&setup->arm, (ethd_vec){POSE_X, POSE_Y}, -1, q)) {

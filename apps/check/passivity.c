@@ -9,8 +9,7 @@
 /* Sufficient, not necessary: no bound is exceeded when they fail. */
 int ethd__report_passivity(const ethd__subject *s) {
   const ethd_setup *setup = &s->config->setup;
-  const ethd_law *law = &setup->contact->law;
-  double K = ethd__law_value(law, setup->contact_p, "k_e"), B = ethd__law_value(law, setup->contact_p, "b_e");
+  double K = ethd_setup_get(setup, "contact.k_e"), B = ethd_setup_get(setup, "contact.b_e");
   double T = setup->period, b = s->device.viscous, fc = s->device.friction;
   double count = s->device.count * fmax(setup->arm.link1, setup->arm.link2);
   if (isnan(K)) return 0;
@@ -62,7 +61,7 @@ static const char *smoother(const ethd_setup *setup) {
 
 int ethd__report_threshold(const ethd__subject *s) {
   const ethd_setup *setup = &s->config->setup;
-  double v_th = ethd__law_value(&setup->transition->law, setup->transition_p, "v_th");
+  double v_th = ethd_setup_get(setup, "transition.v_th");
   double link = fmax(setup->arm.link1, setup->arm.link2), count = s->device.count;
   char velocity[96];
   if (isnan(v_th)) return 0;

@@ -34,9 +34,6 @@ int ethd__report_stop(const ethd__subject *subject);
 int ethd__report_threshold(const ethd__subject *subject);
 int ethd__report_tick(const ethd__subject *subject);
 
-/* A law's parameter by name; NaN: it has none of that name. */
-double ethd__law_value(const ethd_law *law, const double *p, const char *name);
-
 /* "lowpass, cutoff 133.4 Hz" */
 void ethd__velocity_text(const ethd_setup *setup, char *out, size_t room);
 

@@ -138,7 +138,6 @@ static int report_loop(const ethd__subject *s, gains *g, int axis) {
 
 static int tracking(const ethd__subject *s, int axis) {
   const ethd_setup *setup = &s->config->setup;
-  const ethd_law *law = &setup->tracking->law;
   gains g = {.what = "tracking",
              .stiffness_key = "tracking.k_t",
              .damping_key = "tracking.b_t",
@@ -147,19 +146,19 @@ static int tracking(const ethd__subject *s, int axis) {
   if (isnan(s->k[axis])) return 0;
   g.stiffness = s->k[axis];
   g.damping = s->d[axis];
-  g.stiffness_scale = ethd__law_value(law, setup->tracking_p, "k_t") / g.stiffness;
-  g.damping_scale = ethd__law_value(law, setup->tracking_p, "b_t") / g.damping;
+  g.stiffness_scale = ethd_setup_get(setup, "tracking.k_t") / g.stiffness;
+  g.damping_scale = ethd_setup_get(setup, "tracking.b_t") / g.damping;
   return report_loop(s, &g, axis);
 }
 
 static double or_zero(double value) { return isnan(value) ? 0 : value; }
 
-static int wall(const ethd__subject *s, const char *what, const double *p, int axis) {
-  const ethd_law *law = &s->config->setup.contact->law;
+/* `setup` has the numbers of the wall's material. */
+static int wall(const ethd__subject *s, const char *what, const ethd_setup *setup, int axis) {
   gains g = {.stiffness_key = "contact.k_e",
              .damping_key = "contact.b_e",
-             .stiffness = or_zero(ethd__law_value(law, p, "k_e")),
-             .damping = or_zero(ethd__law_value(law, p, "b_e")),
+             .stiffness = or_zero(ethd_setup_get(setup, "contact.k_e")),
+             .damping = or_zero(ethd_setup_get(setup, "contact.b_e")),
              .stiffness_scale = 1,
              .damping_scale = 1,
              .stiffness_unit = "N/m",
@@ -168,32 +167,32 @@ static int wall(const ethd__subject *s, const char *what, const double *p, int a
   return report_loop(s, &g, axis);
 }
 
-/* The contact law's numbers on a material. */
-static void on_material(const ethd_setup *setup, const ethd_material *m, double p[ETHD_PARAMS_MAX]) {
-  const ethd_law *law = &setup->contact->law;
-  memcpy(p, setup->contact_p, sizeof setup->contact_p);
+/* The setup, with a material's numbers in the contact law; those that another law knows don't count. */
+static ethd_setup on_material(const ethd_setup *setup, const ethd_material *m) {
+  ethd_setup changed = *setup;
   for (uint32_t i = 0; i < m->count; i++) {
-    int k = ethd_params_find(law->params, law->param_count, m->values[i].name);
-    if (k >= 0) p[k] = m->values[i].value;
+    char name[64];
+    snprintf(name, sizeof name, "contact.%s", m->values[i].name);
+    (void)!ethd_setup_set(&changed, name, m->values[i].value, NULL);
   }
+  return changed;
 }
 
 static int walls(const ethd__subject *s) {
   const ethd_setup *setup = &s->config->setup;
   const ethd_material *m;
   int exceeded = 0;
-  for (int axis = 0; axis < 2; axis++) exceeded += wall(s, "wall", setup->contact_p, axis);
+  for (int axis = 0; axis < 2; axis++) exceeded += wall(s, "wall", setup, axis);
   for (size_t i = 0; setup->scene && (m = ethd_scene_material(setup->scene, i)) != NULL; i++) {
-    double p[ETHD_PARAMS_MAX];
+    ethd_setup changed = on_material(setup, m);
     char what[48];
-    on_material(setup, m, p);
     snprintf(what, sizeof what, "wall of %s", m->name);
-    for (int axis = 0; axis < 2; axis++) exceeded += wall(s, what, p, axis);
+    for (int axis = 0; axis < 2; axis++) exceeded += wall(s, what, &changed, axis);
   }
-  double c_e = ethd__law_value(&setup->contact->law, setup->contact_p, "c_e");
+  double c_e = ethd_setup_get(setup, "contact.c_e");
   if (c_e > 0)
     printf("  wall's damping K_e c_e p grows with the depth p, %.4g Ns/m at 1 mm: not counted\n",
-           c_e * or_zero(ethd__law_value(&setup->contact->law, setup->contact_p, "k_e")) * 1e-3);
+           c_e * or_zero(ethd_setup_get(setup, "contact.k_e")) * 1e-3);
   return exceeded;
 }
 
@@ -201,7 +200,7 @@ static int braking(const ethd__subject *s, int axis) {
   const ethd_setup *setup = &s->config->setup;
   gains g = {.what = "braking",
              .damping_key = "transition.b_d",
-             .damping = or_zero(ethd__law_value(&setup->transition->law, setup->transition_p, "b_d")),
+             .damping = or_zero(ethd_setup_get(setup, "transition.b_d")),
              .damping_scale = 1,
              .damping_unit = "Ns/m"};
   return report_loop(s, &g, axis);

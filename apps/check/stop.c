@@ -9,9 +9,7 @@
 /* What an estimate of the finger is behind: the readings' age, unless the filter makes up for it. */
 static double behind(const ethd__subject *s) {
   const ethd_setup *setup = &s->config->setup;
-  const ethd_method *m = &ethd_filter_methods[setup->filter];
-  int i = ethd_params_find(m->params, m->param_count, "compensation");
-  if (i >= 0 && setup->filter_p[i] == ETHD_COMPENSATION_STAMP) return 0;
+  if (ethd_setup_get(setup, "finger_filter.compensation") == ETHD_COMPENSATION_STAMP) return 0;
   return isnan(s->device.latency) ? 0 : s->device.latency;
 }
 
@@ -52,10 +50,9 @@ static void braking(const ethd__subject *s, int axis, double damping) {
   const ethd_setup *setup = &s->config->setup;
   ethd_stop stop = stop_of(s, axis);
   double delay = isnan(s->device.delay) ? 0 : s->device.delay;
-  double eps_max = ethd__law_value(&setup->transition->law, setup->transition_p, "eps_max");
-  double t_max = ethd__law_value(&setup->transition->law, setup->transition_p, "t_max");
-  ethd_braking b = {damping, ethd__law_value(&setup->transition->law, setup->transition_p, "v_th"), setup->period,
-                    delay};
+  double eps_max = ethd_setup_get(setup, "transition.eps_max");
+  double t_max = ethd_setup_get(setup, "transition.t_max");
+  ethd_braking b = {damping, ethd_setup_get(setup, "transition.v_th"), setup->period, delay};
   for (int i = 0; i < 2; i++) {
     double time = ethd__braking_time(&stop, &b, speeds[i]), eps = ethd__braking_depth(&stop, &b, speeds[i]);
     printf("  saturated braking, %c     at %.1f m/s: Delta_s = %.3g ms, eps = %.3g mm%s\n", 'x' + axis, speeds[i],
@@ -67,11 +64,10 @@ static void braking(const ethd__subject *s, int axis, double damping) {
 }
 
 static void creep(const ethd_setup *setup, double damping) {
-  const ethd_law *law = &setup->transition->law;
-  const double *p = setup->transition_p;
-  int capped = isfinite(ethd__law_value(law, p, "eps_max")) || isfinite(ethd__law_value(law, p, "t_max"));
+  int capped =
+      isfinite(ethd_setup_get(setup, "transition.eps_max")) || isfinite(ethd_setup_get(setup, "transition.t_max"));
   printf("  creep                  a push over B_d v_th = %.3g N goes on braking, at F/B_d, %s\n",
-         damping * ethd__law_value(law, p, "v_th"),
+         damping * ethd_setup_get(setup, "transition.v_th"),
          capped ? "until transition.eps_max or t_max" : "for ever: transition.eps_max and t_max would end it");
 }
 
@@ -87,7 +83,7 @@ static void say_missing(const ethd__subject *s) {
 int ethd__report_stop(const ethd__subject *s) {
   const ethd__figures *f = &s->device;
   const ethd_setup *setup = &s->config->setup;
-  double b_d = ethd__law_value(&setup->transition->law, setup->transition_p, "b_d");
+  double b_d = ethd_setup_get(setup, "transition.b_d");
   int said = 0;
   printf("\nstop         at a wall across each axis, with the motors' force at once%s\n",
          isnan(f->friction) || isnan(f->viscous) ? " (friction unknown, taken as 0)" : "");

@@ -8,6 +8,7 @@
 
 #include "cli/cli.h"
 #include "ethd/control.h"
+#include "stress/rig.h"
 #include "stress/stress.h"
 
 #define K_T 40.0
@@ -76,7 +77,7 @@ static sweep through(const place *p, int64_t steps) {
   ethd_error error;
   sweep r = {0, 0, 0};
   setup.arm = p->arm;
-  setup.tracking_p[1] = 0;
+  ethd__set(&setup, "tracking.b_t", 0);
   if (ethd_control_create(&setup, &control, &error) < 0)
     ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));
   double last[2] = {0, 0};

@@ -33,12 +33,11 @@ static double growth(const point *p, double scale) {
   double k = scale * p->stiffness, b = scale * p->damping, most = 10 * SWING;
   double push = 4 * most * (k + b * p->th / PERIOD);
   ethd__rig_open(&rig, MASS, -push / k);
-  ethd_setup_velocity(&rig.setup, p->curve->method);
+  ethd__rig_velocity(&rig, p->curve->method, p->curve->value);
   ethd_setup_transition(&rig.setup, &ethd_transition_smooth);
-  rig.setup.velocity_p[0] = p->curve->value;
-  rig.setup.contact_p[0] = k;
-  rig.setup.contact_p[1] = b;
-  rig.setup.v_hysteresis = 1;
+  ethd__set(&rig.setup, "contact.k_e", k);
+  ethd__set(&rig.setup, "contact.b_e", b);
+  ethd__set(&rig.setup, "transition.v_hysteresis", 1);
   rig.delay = p->curve->delay;
   rig.push.x = -push;
   ethd__rig_start(&rig, SWING * p->th / PERIOD);

@@ -25,11 +25,8 @@ static void enter(ethd__rig *rig, double damping) {
 static double growth(const ethd__curve *c, double damping) {
   ethd__rig rig;
   ethd__rig_open(&rig, MASS, 0.2 * CREEP);
-  ethd_setup_velocity(&rig.setup, c->method);
-  rig.setup.velocity_p[0] = c->value;
-  rig.setup.transition_p[0] = damping;
-  rig.setup.transition_p[1] = 1e-6;                                         /* v_th */
-  rig.setup.transition_p[3] = rig.setup.transition_p[4] = (double)INFINITY; /* eps_max, t_max */
+  ethd__rig_velocity(&rig, c->method, c->value);
+  ethd__rig_brakes(&rig, damping, 1e-6);
   rig.delay = c->delay;
   enter(&rig, damping);
   ethd__swing swing = {.order = 2, .settle = 100, .span = 400, .floor = 1e-6 * SWING, .ceiling = SWING};

@@ -13,9 +13,9 @@
 static void open_pushed(ethd__rig *rig, double force, double eps_max, double t_max) {
   ethd__rig_open(rig, MASS, -1e-9);
   rig->setup.arm.link1 = ETHD__RIG_STRAIGHT;
-  rig->setup.transition_p[0] = DAMPING;
-  rig->setup.transition_p[3] = eps_max;
-  rig->setup.transition_p[4] = t_max;
+  ethd__set(&rig->setup, "transition.b_d", DAMPING);
+  ethd__set(&rig->setup, "transition.eps_max", eps_max);
+  ethd__set(&rig->setup, "transition.t_max", t_max);
   rig->measured = 1;
   rig->push.x = -force;
   ethd__rig_start(rig, force / DAMPING);

@@ -36,7 +36,7 @@ static outcome rest(int64_t still, int rounds) {
   ethd_sense s;
   ethd_command c;
   setup.scene = scene;
-  setup.velocity_p[0] = CUTOFF;
+  ethd__set(&setup, "velocity.cutoff", CUTOFF);
   if (ethd_control_create(&setup, &control, &error) < 0)
     ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));
   memset(&s, 0, sizeof s);

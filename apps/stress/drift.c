@@ -31,8 +31,8 @@ static ethd_control *make(const ethd_transition_law *law, double t_max, const et
   ethd_error error;
   ethd_setup_transition(&setup, law);
   setup.scene = scene;
-  setup.transition_p[3] = (double)INFINITY;
-  setup.transition_p[4] = t_max;
+  ethd__set(&setup, "transition.eps_max", (double)INFINITY);
+  ethd__set(&setup, "transition.t_max", t_max);
   if (ethd_control_create(&setup, &control, &error) < 0)
     ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));
   return control;

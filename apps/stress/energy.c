@@ -21,7 +21,7 @@ static void smooth(ethd__stress_log *log, double stiffness, double depth) {
   ethd__rig_open(&rig, MASS, -depth);
   ethd_setup_transition(&rig.setup, &ethd_transition_smooth);
   rig.setup.arm.link1 = ETHD__RIG_STRAIGHT;
-  rig.setup.contact_p[0] = stiffness;
+  ethd__set(&rig.setup, "contact.k_e", stiffness);
   rig.measured = 1;
   ethd__rig_start(&rig, 0);
   double steps = 0, before = depth, left = depth;
@@ -55,7 +55,8 @@ static void offset(ethd__stress_log *log, double speed) {
   rig.measured = 1;
   ethd__rig_start(&rig, speed);
   while (ethd__rig_step(&rig)->state != ETHD_VO) ethd__rig_move(&rig);
-  double v = ethd__rig_speed(&rig), kept = MASS * v * v / 2, most = 0, K = rig.setup.contact_p[0], steps = 0;
+  double K = ethd_setup_get(&rig.setup, "contact.k_e");
+  double v = ethd__rig_speed(&rig), kept = MASS * v * v / 2, most = 0, steps = 0;
   double stored = rig.trace.d_re + rig.trace.eps;
   ethd__stress_within(log, "N", hypot(rig.trace.fe[0], rig.trace.fe[1]), 0, 0, "offset: force at the switch");
   ethd__stress_within(log, "J", K * stored * stored / 2, 0, 0, "offset: energy stored at the switch");

@@ -66,7 +66,7 @@ static void cap(ethd__stress_log *log, uint64_t seed) {
   ethd__rig rig;
   ethd__rig_open(&rig, 0.3, -1e-9);
   rig.setup.arm.link1 = ETHD__RIG_STRAIGHT;
-  rig.setup.transition_p[3] = (double)INFINITY;
+  ethd__set(&rig.setup, "transition.eps_max", (double)INFINITY);
   rig.measured = 1;
   rig.push.x = -10;
   ethd__rig_start(&rig, 0.1);
@@ -93,7 +93,7 @@ static void fade(ethd__stress_log *log) {
   ethd__rig_start(&rig, 0);
   ethd__rig_step(&rig);
   double before = rig.trace.tau[0], after = before * 2, most = 0;
-  rig.setup.contact_p[0] *= 2;
+  ethd__set(&rig.setup, "contact.k_e", 2 * ethd_setup_get(&rig.setup, "contact.k_e"));
   if (ethd_control_post(rig.control, &rig.setup, &error) < 0) return;
   ethd__rig_step(&rig);
   for (int t = 0, k = 0; t <= 30; k++) {
@@ -115,9 +115,9 @@ static void closed(ethd__stress_log *log) {
   ethd__rig_open(&rig, mass, -10 / k);
   ethd_setup_velocity(&rig.setup, ETHD_VELOCITY_DIFFERENCE);
   ethd_setup_transition(&rig.setup, &ethd_transition_smooth);
-  rig.setup.contact_p[0] = k;
-  rig.setup.contact_p[1] = b;
-  rig.setup.v_hysteresis = 1;
+  ethd__set(&rig.setup, "contact.k_e", k);
+  ethd__set(&rig.setup, "contact.b_e", b);
+  ethd__set(&rig.setup, "transition.v_hysteresis", 1);
   rig.push.x = -10;
   ethd__rig_start(&rig, 1e-3);
   double first = 0, last = 0;

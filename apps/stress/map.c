@@ -34,12 +34,11 @@ static double growth(const ethd__curve *c, double k, double b) {
   ethd__rig rig;
   double most = 10 * SWING, push = 20 * most * (k + b / PERIOD);
   ethd__rig_open(&rig, c->mass, -push / k);
-  ethd_setup_velocity(&rig.setup, c->method);
+  ethd__rig_velocity(&rig, c->method, c->value);
   ethd_setup_transition(&rig.setup, &ethd_transition_smooth);
-  if (c->value > 0) rig.setup.velocity_p[0] = c->value;
-  rig.setup.contact_p[0] = k;
-  rig.setup.contact_p[1] = b;
-  rig.setup.v_hysteresis = 1;
+  ethd__set(&rig.setup, "contact.k_e", k);
+  ethd__set(&rig.setup, "contact.b_e", b);
+  ethd__set(&rig.setup, "transition.v_hysteresis", 1);
   rig.delay = c->delay;
   rig.push.x = -push;
   ethd__rig_start(&rig, SWING / PERIOD);

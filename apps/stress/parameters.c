@@ -3,6 +3,8 @@
    comes but those that a limit of 0 is there for. As in the programs, the device's torque limit counts.
  */
 #include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "ethd/finger_fit.h"
@@ -11,10 +13,10 @@
 
 #define KNOBS_MAX 64
 #define FORCE 5.357 /* N: the device's limit */
+#define SPARE 1e-5  /* m: so far finger.radius_max stays from the ring */
 
 typedef struct knob {
   char name[64];
-  size_t offset; /* of the double in the setup */
   double ends[2];
 } knob;
 
@@ -25,57 +27,40 @@ typedef struct knobs {
 
 /* ---- what there is to turn ---- */
 
-static void add(knobs *all, const char *section, const char *name, size_t offset, double min, double max) {
-  knob *k = &all->at[all->count++];
-  snprintf(k->name, sizeof k->name, "%s.%s", section, name);
-  k->offset = offset;
-  k->ends[0] = min;
-  k->ends[1] = max;
+/* Every single number but the arm's mechanism; of the limits those that act on every tap. */
+static bool is_turned(const ethd_setup_key *key) {
+  static const char *const limits[] = {"torque", "torque_rate", "speed", "step_time"};
+  if (key->count > 1 || (!strcmp(key->section, "arm") && ethd_param_words(&key->param))) return false;
+  if (strcmp(key->section, "limits")) return true;
+  for (size_t i = 0; i < sizeof limits / sizeof *limits; i++)
+    if (!strcmp(limits[i], key->param.name)) return true;
+  return false;
 }
 
-static void add_table(knobs *all, const char *section, const ethd_param *rows, uint32_t count, size_t offset) {
-  for (uint32_t i = 0; i < count; i++)
-    add(all, section, rows[i].name, offset + i * sizeof(double), rows[i].min, rows[i].max);
-}
-
-#define AT(member) offsetof(ethd_setup, member)
-
-/* The ring's radius comes first: the finger's go with it. */
 static void collect(const ethd_setup *s, knobs *all) {
-  const double inf = (double)INFINITY;
+  ethd_setup_key key;
   all->count = 0;
-  add(all, "ring", "radius", AT(ring_radius), 1e-4, 1);
-  add(all, "finger", "radius", AT(finger_radius), 1e-4, s->ring_radius);
-  add(all, "finger", "radius_max", AT(finger_radius_max), 1e-5, s->ring_radius - 1e-5);
-  add(all, "loop", "period", AT(period), 1e-5, 0.1);
-  add(all, "arm", "link1", AT(arm.link1), ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX);
-  add(all, "arm", "link2", AT(arm.link2), ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX);
-  add(all, "transition", "swap_time", AT(swap_time), 0, 1);
-  add(all, "transition", "v_hysteresis", AT(v_hysteresis), 0, 1);
-  add(all, "limits", "torque", AT(limits.torque), 0, inf);
-  add(all, "limits", "torque_rate", AT(limits.torque_rate), 0, inf);
-  add(all, "limits", "speed", AT(limits.speed), 0, inf);
-  add(all, "limits", "step_time", AT(limits.step_time), 1e-9, inf);
-  add_table(all, "tracking", s->tracking->law.params, s->tracking->law.param_count, AT(tracking_p));
-  add_table(all, "contact", s->contact->law.params, s->contact->law.param_count, AT(contact_p));
-  add_table(all, "transition", s->transition->law.params, s->transition->law.param_count, AT(transition_p));
-  const ethd_method *v = &ethd_velocity_methods[s->velocity], *f = &ethd_fit_methods[s->fit],
-                    *g = &ethd_filter_methods[s->filter];
-  add_table(all, "velocity", v->params, v->param_count, AT(velocity_p));
-  add_table(all, "finger_fit", f->params, f->param_count, AT(fit_p));
-  add_table(all, "finger_filter", g->params, g->param_count, AT(filter_p));
+  for (uint32_t i = 0; ethd_setup_key_at(s, i, &key) == ETHD_OK; i++) {
+    if (!is_turned(&key)) continue;
+    knob *k = &all->at[all->count++];
+    snprintf(k->name, sizeof k->name, "%s.%s", key.section, key.param.name);
+    k->ends[0] = key.param.min;
+    k->ends[1] = key.param.max;
+  }
 }
 
+/* The finger's radii go with the ring's, and end where it does. The ring is turned before them. */
 static void turn(ethd_setup *s, const knob *k, int end) {
-  if (k->offset == AT(ring_radius)) {
-    s->finger_radius *= k->ends[end] / s->ring_radius;
-    if (s->finger_radius < 1e-4) s->finger_radius = 1e-4;
-    s->finger_radius_max *= k->ends[end] / s->ring_radius;
-  }
   double value = k->ends[end];
-  if (k->offset == AT(finger_radius) && end) value = s->ring_radius;
-  if (k->offset == AT(finger_radius_max) && end) value = s->ring_radius - 1e-5;
-  memcpy((char *)s + k->offset, &value, sizeof value);
+  if (!strcmp(k->name, "ring.radius")) {
+    s->finger_radius = fmax(s->finger_radius * value / s->ring_radius, 1e-4);
+    s->finger_radius_max *= value / s->ring_radius;
+  } else if (end && !strcmp(k->name, "finger.radius")) {
+    value = s->ring_radius;
+  } else if (end && !strcmp(k->name, "finger.radius_max")) {
+    value = s->ring_radius - SPARE;
+  }
+  ethd__set(s, k->name, value);
 }
 
 /* ---- a tap ---- */

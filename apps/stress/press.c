@@ -12,7 +12,7 @@ static void press(ethd__stress_log *log, const ethd_contact_law *contact, double
   ethd__rig rig;
   ethd__rig_open(&rig, MASS, -1e-6);
   ethd_setup_contact(&rig.setup, contact);
-  rig.setup.contact_p[0] = stiffness;
+  ethd__set(&rig.setup, "contact.k_e", stiffness);
   rig.measured = 1;
   ethd__rig_start(&rig, 0.2);
   while (ethd__rig_tick(&rig)->state != ETHD_VO && rig.tick < 1000) continue;

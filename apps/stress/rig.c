@@ -1,6 +1,7 @@
 #include "stress/rig.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "cli/cli.h"
@@ -17,10 +18,36 @@ ethd_scene *ethd__rig_wall(double c) {
   return scene;
 }
 
+static void refused(const ethd_error *error) {
+  ethd__fail(ETHD_EXIT_FAILED, "%s: %s (found %g, from %g to %g)", error->name, ethd_status_sentence(error->status),
+             error->found, error->min, error->max);
+}
+
+void ethd__set(ethd_setup *setup, const char *name, double value) {
+  ethd_error error;
+  if (ethd_setup_set(setup, name, value, &error) < 0) refused(&error);
+}
+
+void ethd__rig_velocity(ethd__rig *rig, ethd_velocity_method method, double value) {
+  char name[64];
+  ethd_setup_velocity(&rig->setup, method);
+  if (!ethd_velocity_methods[method].param_count) return;
+  snprintf(name, sizeof name, "velocity.%s", ethd_velocity_methods[method].params[0].name);
+  ethd__set(&rig->setup, name, value);
+}
+
+void ethd__rig_brakes(ethd__rig *rig, double damping, double v_th) {
+  ethd__set(&rig->setup, "transition.b_d", damping);
+  ethd__set(&rig->setup, "transition.v_th", v_th);
+  ethd__set(&rig->setup, "transition.eps_max", (double)INFINITY);
+  ethd__set(&rig->setup, "transition.t_max", (double)INFINITY);
+}
+
 void ethd__rig_open(ethd__rig *rig, double mass, double gap) {
   memset(rig, 0, sizeof *rig);
   rig->setup = ethd_setup_default();
-  rig->setup.tracking_p[0] = rig->setup.tracking_p[1] = 0; /* k_t, b_t */
+  ethd__set(&rig->setup, "tracking.k_t", 0);
+  ethd__set(&rig->setup, "tracking.b_t", 0);
   rig->mass = mass;
   rig->force_limit = (double)INFINITY;
   rig->gap = gap;
@@ -47,9 +74,7 @@ void ethd__rig_start(ethd__rig *rig, double speed) {
   ethd_error error;
   rig->scene = ethd__rig_wall(rig->gap + rig->setup.ring_radius - rig->setup.arm.link2);
   rig->setup.scene = rig->scene;
-  if (ethd_control_create(&rig->setup, &rig->control, &error) < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s: %s (found %g, from %g to %g)", error.name, ethd_status_sentence(error.status),
-               error.found, error.min, error.max);
+  if (ethd_control_create(&rig->setup, &rig->control, &error) < 0) refused(&error);
   rig->q[0] = M_PI / 2;
   rig->q[1] = 0;
   rig->w[0] = speed / rig->setup.arm.link1;

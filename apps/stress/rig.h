@@ -37,6 +37,15 @@ typedef struct ethd__rig {
 /* The default setup without tracking, without friction, `gap` m from the wall (d_re; < 0: inside). */
 void ethd__rig_open(ethd__rig *rig, double mass, double gap);
 
+/* Sets a number of a setup by its name; exits where that is refused. */
+void ethd__set(ethd_setup *setup, const char *name, double value);
+
+/* Chooses the velocity estimator; `value` is its first parameter where it has one: a cutoff or a window. */
+void ethd__rig_velocity(ethd__rig *rig, ethd_velocity_method method, double value);
+
+/* Brakes with `damping` Ns/m until the ring is slower than v_th m/s, however long and deep that gets. */
+void ethd__rig_brakes(ethd__rig *rig, double damping, double v_th);
+
 /* Controller and ring at its place, `speed` m/s into the wall. Exits when the setup is refused. */
 void ethd__rig_start(ethd__rig *rig, double speed);
 void ethd__rig_close(ethd__rig *rig);

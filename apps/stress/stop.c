@@ -30,9 +30,7 @@ static outcome measure(const stop *s, double speed, double late, int delay, int 
   ethd__rig_open(&rig, s->mass, speed * (coast - late));
   ethd_setup_velocity(&rig.setup, ETHD_VELOCITY_DIFFERENCE);
   rig.setup.arm.link1 = ETHD__RIG_STRAIGHT;
-  rig.setup.transition_p[0] = s->damping;
-  rig.setup.transition_p[1] = s->v_th;
-  rig.setup.transition_p[3] = rig.setup.transition_p[4] = (double)INFINITY;
+  ethd__rig_brakes(&rig, s->damping, s->v_th);
   rig.measured = measured;
   rig.force_limit = s->force;
   rig.delay = delay;

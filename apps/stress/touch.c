@@ -29,9 +29,7 @@ static int early(const plant *p, const braking *b, double speed, double lag) {
   double gap = rig.setup.ring_radius - p->finger_radius;
   rig.setup.arm.link1 = ETHD__RIG_STRAIGHT;
   rig.setup.period = b->period;
-  rig.setup.transition_p[0] = b->damping;
-  rig.setup.transition_p[1] = b->still;
-  rig.setup.transition_p[3] = rig.setup.transition_p[4] = (double)INFINITY;
+  ethd__rig_brakes(&rig, b->damping, b->still);
   rig.measured = rig.has_finger = 1;
   rig.force_limit = p->force;
   ethd__rig_start(&rig, speed);

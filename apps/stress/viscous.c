@@ -17,9 +17,7 @@
 static void open_braking(ethd__rig *rig, double damping) {
   ethd__rig_open(rig, MASS, -1e-12);
   rig->setup.arm.link1 = ETHD__RIG_STRAIGHT;
-  rig->setup.transition_p[0] = damping;
-  rig->setup.transition_p[1] = STILL;
-  rig->setup.transition_p[3] = rig->setup.transition_p[4] = (double)INFINITY;
+  ethd__rig_brakes(rig, damping, STILL);
 }
 
 /* Ticks of braking, and eps, when speeds are measured. */
@@ -59,8 +57,7 @@ static double off_modes(double cutoff, double damping) {
   ethd__rig rig;
   double v0, v1, worst = 0, a = cutoff > 0 ? 1 - exp(-2 * M_PI * cutoff * PERIOD) : 1;
   open_braking(&rig, damping);
-  ethd_setup_velocity(&rig.setup, cutoff > 0 ? ETHD_VELOCITY_LOWPASS : ETHD_VELOCITY_DIFFERENCE);
-  if (cutoff > 0) rig.setup.velocity_p[0] = cutoff;
+  ethd__rig_velocity(&rig, cutoff > 0 ? ETHD_VELOCITY_LOWPASS : ETHD_VELOCITY_DIFFERENCE, cutoff);
   ethd__rig_start(&rig, SPEED);
   ethd__rig_tick(&rig); /* nothing is known of the speed yet */
   v0 = ethd__rig_speed(&rig);

@@ -73,6 +73,55 @@ ETHD_API void ethd_setup_velocity(ethd_setup *setup, ethd_velocity_method method
 ETHD_API void ethd_setup_fit(ethd_setup *setup, ethd_fit_method method);
 ETHD_API void ethd_setup_filter(ethd_setup *setup, ethd_filter_method method);
 
+/* ---- a setup by names, as a configuration has them ---- */
+
+/* A part of a setup that is chosen by its id and brings parameters of its own: three methods, three laws. */
+typedef struct ethd_setup_part {
+  const char *section, *chooser; /* "velocity", "method"; "contact", "law" */
+  const ethd_method *methods;    /* what can be chosen; NULL: a law of `kind` */
+  uint32_t count;                /* of methods */
+  ethd_kind kind;                /* of laws */
+  uint32_t chosen, values;       /* where the choice and its parameters stand in ethd_setup, bytes */
+} ethd_setup_part;
+
+#define ETHD_SETUP_PARTS 6
+ETHD_API extern const ethd_setup_part ethd_setup_parts[ETHD_SETUP_PARTS];
+
+/* The part of a section; NULL: the section has nothing to choose. [any] */
+ETHD_API const ethd_setup_part *ethd_setup_part_of(const char *section);
+
+/* What the setup has chosen there; all zero where a law is NULL. [any] */
+ETHD_API ethd_method ethd_setup_chosen(const ethd_setup *setup, const ethd_setup_part *part);
+
+/* Chooses by id, with default parameters: a method ("velocity", "lsq"), or one of `laws` ("contact", "spring"),
+   which end with NULL (ethd_laws, or those of a configuration). ETHD_E_UNKNOWN with the section or the id as
+   name; the setup is then untouched. [any] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_choose(ethd_setup *setup, const char *section, const char *id,
+                                                       const ethd_law *const *laws, ethd_error *error);
+
+/* One number of a setup, or several under one name. */
+typedef struct ethd_setup_key {
+  const char *section; /* "contact" */
+  ethd_param param;    /* "k_e", with its unit and range; def is NaN for limits */
+  uint32_t count;      /* 1, or how many numbers the key holds: workspace 4, reach 2, joints 4, lag 16 */
+} ethd_setup_key;
+
+/* The keys that hold numbers under the laws and methods which the setup has chosen, `index` from 0 on;
+   ETHD_EMPTY after the last. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_key_at(const ethd_setup *setup, uint32_t index, ethd_setup_key *out);
+
+/* Sets one number by its name in the configuration: "contact.k_e", "ring.radius", "limits.torque"; the third
+   of four is "limits.workspace[2]". A choice of words ("tracking.derivative") takes the word's index.
+   ETHD_E_UNKNOWN: no such key under the chosen laws. ETHD_E_ARGUMENT: a key of several numbers without index, or
+   a setup that ethd_setup_default didn't make. ETHD_E_RANGE, ETHD_E_NOT_FINITE: the value or the index isn't in
+   its range, as `error` says. Relations between numbers are left to ethd_setup_check. A refusal changes nothing.
+   [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_set(ethd_setup *setup, const char *name, double value,
+                                                    ethd_error *error);
+
+/* The number of that name; NaN where ethd_setup_set would not find it. [main] */
+ETHD_API double ethd_setup_get(const ethd_setup *setup, const char *name);
+
 /* 2 R_r + d_beta, m: what is farther than this from the ring's centre can't count, as long as the finger is
    within the ring. For ethd_scene_prune. [any] */
 ETHD_API double ethd_setup_range(const ethd_setup *setup);

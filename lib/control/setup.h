@@ -1,7 +1,25 @@
+/* The numbers of a setup as rows, by which they get their defaults, are checked, and are set by name. */
 #ifndef ETHD__SETUP_H
 #define ETHD__SETUP_H
 
+#include "ethd/control.h"
+
 /* Refuses a setup that ethd_setup_default didn't make. */
 #define ETHD__SETUP_COOKIE 0x45544844u
+
+#define ETHD__D_BETA_MIN 1e-5 /* m: so far R_f,max stays from R_r */
+
+/* `offset`: in ethd_setup, bytes; doubles, but for the arm's mechanism. */
+typedef struct ethd__setup_field {
+  ethd_setup_key key;
+  uint32_t offset;
+} ethd__setup_field;
+
+/* Those that neither a law, nor a method, nor the limits bring. */
+#define ETHD__SETUP_FIELDS 10
+extern const ethd__setup_field ethd__setup_fields[ETHD__SETUP_FIELDS];
+
+double ethd__setup_field_get(const ethd_setup *setup, const ethd__setup_field *field, uint32_t index);
+void ethd__setup_field_set(ethd_setup *setup, const ethd__setup_field *field, uint32_t index, double value);
 
 #endif

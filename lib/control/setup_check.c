@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "control/plan.h"
@@ -18,16 +19,26 @@ static ethd_status within(const char *section, ethd_status status, ethd_error *e
   return status;
 }
 
-#define D_BETA_MIN 1e-5 /* m: so far R_f,max stays from R_r */
+/* The finger fits into the ring. */
+static double most_of(const ethd_setup *s, const ethd__setup_field *field) {
+  if (field->offset == offsetof(ethd_setup, finger_radius)) return s->ring_radius;
+  if (field->offset == offsetof(ethd_setup, finger_radius_max)) return s->ring_radius - ETHD__D_BETA_MIN;
+  return field->key.param.max;
+}
 
-static ethd_status check_geometry(const ethd_setup *s, ethd_error *error) {
-  TRY(ethd__check_number(error, "loop.period", s->period, 1e-5, 0.1));
+static ethd_status check_field(const ethd_setup *s, const ethd__setup_field *field, ethd_error *error) {
+  const ethd_setup_key *key = &field->key;
+  for (uint32_t i = 0; i < key->count; i++)
+    TRY(ethd__check_number(error, key->param.name, ethd__setup_field_get(s, field, i), key->param.min,
+                           most_of(s, field)));
+  return ETHD_OK;
+}
+
+static ethd_status check_fields(const ethd_setup *s, ethd_error *error) {
   TRY(within("arm", ethd_arm_check(&s->arm, error), error));
-  TRY(ethd__check_number(error, "ring.radius", s->ring_radius, 1e-4, 1));
-  TRY(ethd__check_number(error, "finger.radius", s->finger_radius, 1e-4, s->ring_radius));
-  TRY(ethd__check_number(error, "finger.radius_max", s->finger_radius_max, 1e-5, s->ring_radius - D_BETA_MIN));
-  TRY(ethd__check_number(error, "transition.swap_time", s->swap_time, 0, 1));
-  return ethd__check_number(error, "transition.v_hysteresis", s->v_hysteresis, 0, 1);
+  for (const ethd__setup_field *f = ethd__setup_fields; f < ethd__setup_fields + ETHD__SETUP_FIELDS; f++)
+    TRY(within(f->key.section, check_field(s, f, error), error));
+  return ETHD_OK;
 }
 
 static ethd_status check_values(const ethd_law *law, const double *p, ethd_error *error) {
@@ -75,16 +86,12 @@ static ethd_status prepare_materials(const ethd_setup *s, int place, ethd__plan 
   return ETHD_OK;
 }
 
-#define LAG_MAX 0.01 /* s */
-
-static ethd_status prepare_lags(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
+static void prepare_lags(const ethd_setup *s, ethd__plan *out) {
   out->lag_least = out->lag_most = 0;
   for (int k = 0; k < ETHD_RAYS; k++) {
-    TRY(ethd__check_number(error, "finger_fit.lag", s->ray_lag[k], -LAG_MAX, LAG_MAX));
     out->lag_least = fmin(out->lag_least, s->ray_lag[k]);
     out->lag_most = fmax(out->lag_most, s->ray_lag[k]);
   }
-  return ETHD_OK;
 }
 
 /* A scene pruned for another arm may lack what this one meets; a body can come from anywhere. */
@@ -107,7 +114,7 @@ static bool has_rare_limits(const ethd_limits *l) {
 ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
   if (!s || s->cookie != ETHD__SETUP_COOKIE)
     return ethd__error(error, ETHD_E_ARGUMENT, "setup (made by ethd_setup_default?)");
-  TRY(check_geometry(s, error));
+  TRY(check_fields(s, error));
   TRY(check_laws(s, error));
   TRY(within("limits", ethd_limits_check(&s->limits, error), error));
   out->setup = *s;
@@ -119,7 +126,7 @@ ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error 
   TRY(within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error),
              error));
   TRY(within("finger_filter", ethd_filter_prepare(s->filter, s->filter_p, s->period, &out->filter, error), error));
-  TRY(prepare_lags(s, out, error));
+  prepare_lags(s, out);
   out->places = 0;
   for (int place = 0; place < ETHD__PLACES; place++) {
     if (ethd__place_scene(s, place)) out->places = place + 1;

@@ -44,19 +44,14 @@ ethd_setup ethd_setup_default(void) {
   ethd_setup s;
   memset(&s, 0, sizeof s);
   s.cookie = ETHD__SETUP_COOKIE;
-  s.period = 0.001;
-  s.arm = (ethd_arm){ETHD_ARM_PARALLEL, 0.25, 0.25};
-  s.ring_radius = 0.012;
-  s.finger_radius = 0.0075;
-  s.finger_radius_max = 0.0095;
+  for (const ethd__setup_field *f = ethd__setup_fields; f < ethd__setup_fields + ETHD__SETUP_FIELDS; f++)
+    for (uint32_t i = 0; i < f->key.count; i++) ethd__setup_field_set(&s, f, i, f->key.param.def);
   ethd_setup_velocity(&s, ETHD_VELOCITY_LOWPASS);
   ethd_setup_fit(&s, ETHD_FIT_KASA);
   ethd_setup_filter(&s, ETHD_FILTER_CA);
   ethd_setup_tracking(&s, &ethd_tracking_pd);
   ethd_setup_contact(&s, &ethd_contact_kelvin_voigt);
   ethd_setup_transition(&s, &ethd_transition_offset);
-  s.swap_time = 0.020;
-  s.v_hysteresis = 0;
   s.limits = ethd_limits_none();
   return s;
 }
