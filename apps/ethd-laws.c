@@ -45,12 +45,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 
 /* ---- one table ---- */
 
-typedef struct listed {
-  const char *section, *id, *brief;
-  const ethd_param *params;
-  uint32_t count;
-} listed;
-
 static const char *text_of(const ethd_param *row, double value, char out[32]) {
   const char *at = row->unit;
   if (!ethd_param_words(row)) {
@@ -62,11 +56,11 @@ static const char *text_of(const ethd_param *row, double value, char out[32]) {
   return out;
 }
 
-static void print(const listed *l) {
+static void print(const char *section, const ethd_method *m) {
   char def[32];
-  printf("%s %s: %s\n", l->section, l->id, l->brief);
-  for (uint32_t i = 0; i < l->count; i++) {
-    const ethd_param *row = &l->params[i];
+  printf("%s %s: %s\n", section, m->id, m->brief);
+  for (uint32_t i = 0; i < m->param_count; i++) {
+    const ethd_param *row = &m->params[i];
     text_of(row, row->def, def);
     if (ethd_param_words(row))
       printf("    %-14s %-12s %s: %s\n", row->name, def, row->unit, row->brief);
@@ -75,10 +69,10 @@ static void print(const listed *l) {
   }
 }
 
-static void write_row(ethd_csv_out *csv, const listed *l, const ethd_param *row) {
+static void write_row(ethd_csv_out *csv, const char *section, const ethd_method *m, const ethd_param *row) {
   char def[32] = "";
-  ethd_csv_word(csv, l->section);
-  ethd_csv_word(csv, l->id);
+  ethd_csv_word(csv, section);
+  ethd_csv_word(csv, m->id);
   ethd_csv_word(csv, row ? row->name : "");
   ethd_csv_word(csv, row ? row->unit : "");
   ethd_csv_number(csv, row ? row->min : NAN);
@@ -87,33 +81,25 @@ static void write_row(ethd_csv_out *csv, const listed *l, const ethd_param *row)
     ethd_csv_word(csv, text_of(row, row->def, def));
   else
     ethd_csv_number(csv, row ? row->def : NAN);
-  ethd_csv_word(csv, row ? row->brief : l->brief);
+  ethd_csv_word(csv, row ? row->brief : m->brief);
   ethd_csv_row(csv);
 }
 
-static void show(const listed *l, ethd_csv_out *csv) {
-  print(l);
+static void show(const char *section, const ethd_method *m, ethd_csv_out *csv) {
+  print(section, m);
   if (!csv) return;
-  write_row(csv, l, NULL);
-  for (uint32_t i = 0; i < l->count; i++) write_row(csv, l, &l->params[i]);
+  write_row(csv, section, m, NULL);
+  for (uint32_t i = 0; i < m->param_count; i++) write_row(csv, section, m, &m->params[i]);
 }
 
-/* ---- all tables ---- */
-
-static void show_methods(const char *section, const ethd_method *methods, int count, ethd_csv_out *csv) {
-  for (int i = 0; i < count; i++) {
-    const listed l = {section, methods[i].id, methods[i].brief, methods[i].params, methods[i].param_count};
-    show(&l, csv);
-  }
-}
-
-static void show_laws(const ethd_law *const *laws, ethd_csv_out *csv) {
-  static const char *const kinds[] = {"tracking", "contact", "transition"};
-  for (uint32_t kind = 0; kind < 3; kind++)
-    for (const ethd_law *const *law = laws; *law; law++) {
-      const listed l = {kinds[kind], (*law)->id, (*law)->brief, (*law)->params, (*law)->param_count};
-      if ((*law)->kind == kind) show(&l, csv);
+static void show_all(const ethd_law *const *laws, ethd_csv_out *csv) {
+  for (const ethd_setup_part *part = ethd_setup_parts; part < ethd_setup_parts + ETHD_SETUP_PARTS; part++) {
+    for (uint32_t i = 0; i < part->count; i++) show(part->section, &part->methods[i], csv);
+    for (const ethd_law *const *law = laws; !part->methods && *law; law++) {
+      const ethd_method m = {(*law)->id, (*law)->brief, (*law)->params, (*law)->param_count};
+      if ((*law)->kind == part->kind) show(part->section, &m, csv);
     }
+  }
 }
 
 /* Plugins are loaded as a configuration loads them. */
@@ -138,10 +124,7 @@ int main(int argc, char **argv) {
   ethd_csv_out *csv = NULL;
   if (arg.csv && !(csv = ethd_csv_create(arg.csv, "section,id,param,unit,min,max,default,brief", message)))
     ethd__fail(ETHD_EXIT_FAILED, "%s", message);
-  show_methods("velocity", ethd_velocity_methods, ETHD_VELOCITY_COUNT, csv);
-  show_methods("finger_fit", ethd_fit_methods, ETHD_FIT_COUNT, csv);
-  show_methods("finger_filter", ethd_filter_methods, ETHD_FILTER_COUNT, csv);
-  show_laws(config->laws, csv);
+  show_all(config->laws, csv);
   if (csv && ethd_csv_close(csv, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   ethd_config_free(config);
   return ethd__end(ETHD_EXIT_DONE);

@@ -16,6 +16,16 @@ setup "$folder/a" >"$folder/again.ini"
 "$check" "$folder/again.ini" >"$folder/b"
 setup "$folder/b" | cmp - "$folder/again.ini" || fail "the setup isn't what it was read from"
 
+# Also of what the shipped ones leave out.
+{ printf '[arm]\nmechanism = serial\nlink1 = 0.3\n[limits]\nworkspace = 0.1 0.4 -1 1\ntorque = 1.5\n[finger_fit]\nlag ='
+  seq -f ' %g' 0.001 0.0005 0.0085 | tr -d '\n'; } >"$folder/all.ini"
+"$check" "$folder/all.ini" >"$folder/a2"
+says "$folder/a2" '^lag  *= 0.001 0.0015 .* 0.008 0.0085 ;'
+says "$folder/a2" '^workspace  *= 0.1 0.4 -1 1 ;'
+setup "$folder/a2" >"$folder/again2.ini"
+"$check" "$folder/again2.ini" >"$folder/b2"
+setup "$folder/b2" | cmp - "$folder/again2.ini" || fail "the setup isn't what it was read from"
+
 # Each bound by the name of its formula, the device's figures from the plant.
 for words in 'spectral radius' 'Colgate' 'Abbott and Okamura' 'rest at touch' 'saturated braking' 'highest speed' \
   'v_th' 'rehearsed' 'no bound: this process' 'force 5.357 N' 'delay 0.071 ms' '^0 bounds exceeded'; do

@@ -1,12 +1,11 @@
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "check/report.h"
 #include "settings/config_parts.h"
-
-static void head(const char *section) { printf("[%s]\n", section); }
 
 static void word(const char *key, const char *value, const char *brief) {
   printf("%-13s = %-12s ; %s\n", key, value, brief);
@@ -32,86 +31,87 @@ static void choice(const ethd_param *row, double value) {
   printf("%-13s = %-12.*s ; %s\n", row->name, (int)strcspn(at, "|"), at, row->brief);
 }
 
-static void table(const ethd__section *section) {
-  for (uint32_t i = 0; i < section->count; i++) {
-    const ethd_param *row = &section->params[i];
-    if (ethd_param_words(row))
-      choice(row, section->values[i]);
-    else
-      number(row->name, section->values[i], row->unit, row->brief);
+/* Several numbers under one key, unless they are all what they are without it. */
+static void numbers(const ethd_setup *setup, const ethd_setup_key *key) {
+  char line[512] = "";
+  bool differs = false;
+  for (uint32_t i = 0; i < key->count; i++) {
+    char name[96], text[32];
+    snprintf(name, sizeof name, "%s.%s[%u]", key->section, key->param.name, i);
+    double value = ethd_setup_get(setup, name);
+    exact(value, text);
+    strcat(strcat(line, " "), text);
+    differs |= value != key->param.def;
+  }
+  if (differs) printf("%-13s =%s ; %s, %s\n", key->param.name, line, key->param.unit, key->param.brief);
+}
+
+static void value(const ethd_setup *setup, const ethd_setup_key *key) {
+  char name[96];
+  snprintf(name, sizeof name, "%s.%s", key->section, key->param.name);
+  if (key->count > 1)
+    numbers(setup, key);
+  else if (ethd_param_words(&key->param))
+    choice(&key->param, ethd_setup_get(setup, name));
+  else
+    number(key->param.name, ethd_setup_get(setup, name), key->param.unit, key->param.brief);
+}
+
+/* What is chosen, and the numbers; of the limits those that are given. */
+static void section(const ethd_config *c, const char *name) {
+  const ethd_setup *s = &c->setup;
+  const ethd_setup_part *part = ethd_setup_part_of(name);
+  ethd_setup_key key;
+  printf("%s[%s]\n", strcmp(name, "arm") ? "\n" : "", name);
+  if (part) word(part->chooser, ethd_setup_chosen(s, part).id, ethd_setup_chosen(s, part).brief);
+  for (uint32_t i = 0; ethd_setup_key_at(s, i, &key) == ETHD_OK; i++) {
+    int limit = ethd__config_limit(key.section, key.param.name);
+    if (strcmp(key.section, name) == 0 && (limit < 0 || (c->limits_given >> limit & 1))) value(s, &key);
   }
 }
 
-static void chosen(ethd_setup *setup, const char *name, const char *brief) {
-  ethd__section section = {0};
-  (void)ethd__config_section(setup, name, &section);
-  printf("\n");
-  head(name);
-  word(ethd__config_chooser(name), section.id, brief);
-  table(&section);
-}
-
-static void geometry(const ethd_config *c) {
-  const ethd_setup *s = &c->setup;
-  head("arm");
-  word("mechanism", s->arm.mechanism == ETHD_ARM_SERIAL ? "serial" : "parallel", "what q2 is relative to");
-  number("link1", s->arm.link1, "m", "");
-  number("link2", s->arm.link2, "m", "");
+/* What a section has besides. */
+static void masses(const ethd_config *c) {
   if (!isnan(c->mass_x)) number("mass_x", c->mass_x, "kg", "at the ring");
   if (!isnan(c->mass_y)) number("mass_y", c->mass_y, "kg", "at the ring");
-  printf("\n[ring]\n");
-  number("radius", s->ring_radius, "m", "inner radius (R_r)");
-  printf("\n[finger]\n");
-  number("radius", s->finger_radius, "m", "R_f");
-  number("radius_max", s->finger_radius_max, "m", "R_f,max");
-  printf("; d_beta = R_r - R_f,max = %.10g m\n\n[loop]\n", s->ring_radius - s->finger_radius_max);
-  number("period", s->period, "s", "T");
 }
 
-static void limits(const ethd_config *c) {
-  ethd_limits l = c->setup.limits;
-  printf("\n[limits]\n");
-  for (int i = 0; i < ETHD_LIMITS; i++) {
-    const ethd_limit *row = &ethd_limit_rows[i];
-    if (!(c->limits_given >> i & 1)) continue;
-    printf("%-13s =", row->name);
-    for (uint32_t k = 0; k < row->count; k++) {
-      char text[32];
-      exact(ethd_limit_of(&l, row)[k], text);
-      printf(" %s", text);
-    }
-    printf(" ; %s, %s\n", row->unit, row->brief);
-  }
+static void difference(const ethd_config *c) {
+  printf("; d_beta = R_r - R_f,max = %.10g m\n", c->setup.ring_radius - c->setup.finger_radius_max);
+}
+
+static void other_limits(const ethd_config *c) {
   if (c->limits_given != (1u << ETHD_LIMITS) - 1) printf("; the others are the device's own\n");
 }
 
-static void surroundings(const ethd_config *c) {
-  const ethd_ini *ini = &ethd__config_whole(c)->ini;
-  const ethd_ini_key *scene = ethd_ini_find(ini, "scene", "file");
+static void scene(const ethd_config *c) {
+  const ethd_ini_key *file = ethd_ini_find(&ethd__config_whole(c)->ini, "scene", "file");
   ethd_scene_info info;
-  printf("\n[scene]\n");
-  if (scene) {
-    ethd_scene_describe(c->scene, &info);
-    printf("file          = %s ; %zu objects, %zu materials, %zu out of the arm's reach\n", scene->value, info.objects,
-           info.materials, ethd_scene_out_of_reach(c->scene, &c->setup.arm, c->setup.ring_radius));
-  }
-  printf("\n[device]\ndriver        = %s\n", c->device);
+  if (!file) return;
+  ethd_scene_describe(c->scene, &info);
+  printf("file          = %s ; %zu objects, %zu materials, %zu out of the arm's reach\n", file->value, info.objects,
+         info.materials, ethd_scene_out_of_reach(c->scene, &c->setup.arm, c->setup.ring_radius));
+}
+
+static void device(const ethd_config *c) {
+  printf("driver        = %s\n", c->device);
   for (uint32_t i = 0; i < c->setting_count; i++) printf("%-13s = %s\n", c->settings[i].key, c->settings[i].value);
-  if (c->plugin_count) printf("\n[plugins]\n");
+}
+
+static void plugins(const ethd_config *c) {
   for (uint32_t i = 0; i < c->plugin_count; i++) printf("file          = %s\n", c->plugins[i]);
 }
 
 void ethd__report_setup(const ethd_config *config) {
-  ethd_setup s = config->setup;
-  geometry(config);
-  chosen(&s, "velocity", ethd_velocity_methods[s.velocity].brief);
-  chosen(&s, "finger_fit", ethd_fit_methods[s.fit].brief);
-  chosen(&s, "finger_filter", ethd_filter_methods[s.filter].brief);
-  chosen(&s, "tracking", s.tracking->law.brief);
-  chosen(&s, "contact", s.contact->law.brief);
-  chosen(&s, "transition", s.transition->law.brief);
-  number("swap_time", s.swap_time, "s", "a change of laws fades over this time");
-  number("v_hysteresis", s.v_hysteresis, "m/s", "entering until v < -v_hysteresis, leaving until v > it");
-  limits(config);
-  surroundings(config);
+  static const struct {
+    const char *section;
+    void (*print)(const ethd_config *config);
+  } besides[] = {{"arm", masses},  {"finger", difference}, {"limits", other_limits},
+                 {"scene", scene}, {"device", device},     {"plugins", plugins}};
+  for (int i = 0; i < ETHD__SECTIONS; i++) {
+    const char *name = ethd__sections[i].name;
+    section(config, name);
+    for (size_t k = 0; k < sizeof besides / sizeof *besides; k++)
+      if (strcmp(besides[k].section, name) == 0) besides[k].print(config);
+  }
 }

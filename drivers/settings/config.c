@@ -11,7 +11,6 @@
 #include "text/text.h"
 
 #define SCENE_BYTES_MAX ((size_t)256 << 20)
-#define MASS_MAX 1e6 /* kg */
 
 typedef struct reading {
   ethd__config *whole;
@@ -23,99 +22,36 @@ static ethd_status no_memory(const reading *r) {
   return ethd__say(r->message, ETHD_E_MEMORY, "%s: %s", r->name, ethd_status_sentence(ETHD_E_MEMORY));
 }
 
-static ethd__key key_of(const reading *r, const ethd_ini_key *k) {
-  return (ethd__key){r->name, k->line, k->section, k->key, k->value, r->message};
-}
+/* ---- the scene ---- */
 
-static bool is(const ethd_ini_key *k, const char *section, const char *key) {
-  return strcmp(k->section, section) == 0 && strcmp(k->key, key) == 0;
-}
-
-static bool chooses(const ethd_ini_key *k) {
-  const char *chooser = ethd__config_chooser(k->section);
-  return chooser && strcmp(chooser, k->key) == 0;
-}
-
-/* ---- single keys ---- */
-
-static ethd_status parse_scene(const reading *r, size_t length) {
-  ethd_config *c = &r->whole->config;
+static ethd_status parse_scene(ethd__config *whole, size_t length, char message[ETHD_MESSAGE_MAX]) {
+  ethd_config *c = &whole->config;
   ethd_error error;
   const char *zero = memchr(c->scene_text, 0, length);
   if (zero) {
     int line = 1;
     for (const char *p = c->scene_text; p < zero; p++) line += *p == '\n';
-    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%d: a byte 0: this is no text", r->whole->scene_path, line);
+    return ethd__say(message, ETHD_E_SYNTAX, "%s:%d: a byte 0: this is no text", whole->scene_path, line);
   }
   ethd_status status = ethd_scene_parse(c->scene_text, length, &c->scene, &error);
-  if (status) ethd__scene_refusal(r->whole->scene_path, &error, r->message);
+  if (status) ethd__scene_refusal(whole->scene_path, &error, message);
   c->setup.scene = c->scene;
   return status;
 }
 
-static ethd_status load_scene(const reading *r, const ethd_ini_key *k) {
-  ethd__key key = key_of(r, k);
-  ethd_config *c = &r->whole->config;
+ethd_status ethd__config_scene(ethd__config *whole, const ethd__key *key) {
+  ethd_config *c = &whole->config;
   char what[ETHD_MESSAGE_MAX];
   size_t length;
-  r->whole->scene_path = ethd__path_join(c->folder, k->value);
-  if (!r->whole->scene_path) return no_memory(r);
-  ethd_status status = ethd_text_read(r->whole->scene_path, SCENE_BYTES_MAX, &c->scene_text, &length, what);
-  if (status) return ethd__key_refuse(&key, status, "%s", what);
-  return parse_scene(r, length);
+  whole->scene_path = ethd__path_join(c->folder, key->value);
+  if (!whole->scene_path)
+    return ethd__say(key->message, ETHD_E_MEMORY, "%s: %s", key->file, ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status = ethd_text_read(whole->scene_path, SCENE_BYTES_MAX, &c->scene_text, &length, what);
+  if (status) return ethd__key_refuse(key, status, "%s", what);
+  return parse_scene(whole, length, key->message);
 }
 
-static ethd_status device_key(const reading *r, const ethd_ini_key *k) {
-  ethd__key key = key_of(r, k);
-  ethd_config *c = &r->whole->config;
-  if (!is(k, "device", "driver")) {
-    c->settings[c->setting_count++] = (ethd_setting){k->key, k->value, k->line};
-    return ETHD_OK;
-  }
-  if (strlen(k->value) >= sizeof c->device) return ethd__key_found(&key, ETHD_E_SYNTAX, "at most 95 characters");
-  strcpy(c->device, k->value);
-  return ETHD_OK;
-}
-
-static ethd_status mass_key(const reading *r, const ethd_ini_key *k, double *out) {
-  ethd__key key = key_of(r, k);
-  double value;
-  if (!ethd__number(k->value, strlen(k->value), &value) || !(value > 0 && value <= MASS_MAX))
-    return ethd__key_found(&key, ETHD_E_RANGE, "a mass over 0 up to 1e6 kg");
-  *out = value;
-  return ETHD_OK;
-}
-
-/* ---- passes: what a key means depends on plugins, laws and preset, not on where it stands ---- */
-
-static ethd_status plugin_pass(const reading *r, const ethd_ini_key *k) {
-  ethd__key key = key_of(r, k);
-  return is(k, "plugins", "file") ? ethd__config_plugin(r->whole, &key) : ETHD_OK;
-}
-
-static ethd_status law_pass(const reading *r, const ethd_ini_key *k) {
-  ethd__key key = key_of(r, k);
-  ethd_config *c = &r->whole->config;
-  return chooses(k) ? ethd__config_choose(c, &key, &c->setup) : ETHD_OK;
-}
-
-static ethd_status preset_pass(const reading *r, const ethd_ini_key *k) {
-  ethd__key key = key_of(r, k);
-  return is(k, "transition", "preset") ? ethd__config_preset(&key, &r->whole->config.setup) : ETHD_OK;
-}
-
-static ethd_status key_pass(const reading *r, const ethd_ini_key *k) {
-  ethd__key key = key_of(r, k);
-  ethd_config *c = &r->whole->config;
-  if (is(k, "plugins", "file") || chooses(k) || is(k, "transition", "preset")) return ETHD_OK;
-  if (is(k, "scene", "file")) return load_scene(r, k);
-  if (strcmp(k->section, "device") == 0) return device_key(r, k);
-  if (is(k, "arm", "mass_x")) return mass_key(r, k, &c->mass_x);
-  if (is(k, "arm", "mass_y")) return mass_key(r, k, &c->mass_y);
-  int limit = ethd__config_limit(k->section, k->key);
-  if (limit >= 0) c->limits_given |= 1u << limit;
-  return ethd__config_apply(&key, &c->setup);
-}
+/* ---- keys together ---- */
 
 static const ethd_ini_key *find_key(const reading *r, const char *name) {
   char section[64];
@@ -162,20 +98,18 @@ static ethd_status drop_unreachable(const reading *r) {
   return ETHD_OK;
 }
 
-static ethd_status apply_keys(const reading *r) {
-  static ethd_status (*const passes[])(const reading *, const ethd_ini_key *) = {plugin_pass, law_pass, preset_pass,
-                                                                                 key_pass};
+static ethd_status read_keys(const reading *r) {
   const ethd_ini *ini = &r->whole->ini;
-  for (uint32_t i = 0; i < ini->section_count; i++) {
-    ethd_status status = ethd__config_section_known(&ini->sections[i], r->name, &r->whole->config.setup, r->message);
-    if (status) return status;
-  }
-  for (size_t pass = 0; pass < sizeof passes / sizeof *passes; pass++)
-    for (uint32_t i = 0; i < ini->count; i++) {
-      ethd_status status = passes[pass](r, &ini->keys[i]);
-      if (status) return status;
+  ethd_status status = ETHD_OK;
+  for (uint32_t i = 0; !status && i < ini->section_count; i++)
+    status = ethd__config_section_known(&ini->sections[i], r->name, r->message);
+  for (int pass = 0; pass < ETHD__PASSES; pass++)
+    for (uint32_t i = 0; !status && i < ini->count; i++) {
+      const ethd_ini_key *k = &ini->keys[i];
+      const ethd__key key = {r->name, k->line, k->section, k->key, k->value, r->message};
+      status = ethd__config_read(r->whole, &key, (ethd__pass)pass);
     }
-  ethd_status status = check_setup(r);
+  if (!status) status = check_setup(r);
   return status ? status : drop_unreachable(r);
 }
 
@@ -216,7 +150,7 @@ ethd_status ethd_config_parse(const char *text, size_t length, const char *name,
   if (!r.whole) return no_memory(&r);
   ethd_status status = fill(&r.whole->config, text, length, name, folder) ? ETHD_OK : no_memory(&r);
   if (!status) status = ethd_ini_parse(text, length, r.name, "plugins.file", &r.whole->ini, message);
-  if (!status) status = apply_keys(&r);
+  if (!status) status = read_keys(&r);
   if (status)
     ethd_config_free(&r.whole->config);
   else

@@ -2,6 +2,8 @@
 #ifndef ETHD_FILE_CONFIG_PARTS_H
 #define ETHD_FILE_CONFIG_PARTS_H
 
+#include <stdbool.h>
+
 #include "ethd/config.h"
 #include "text/ini.h"
 
@@ -28,36 +30,61 @@ ethd_status ethd__key_refuse(const ethd__key *key, ethd_status status, const cha
 /* "... found "value", ALLOWED is allowed" */
 ethd_status ethd__key_found(const ethd__key *key, ethd_status status, const char *allowed);
 
-/* One key that needs no other: ranges of parameters are checked, relations are left to
+/* ---- config_sections.c: one row for each section ---- */
+
+/* Keys that don't hold a number are read before those that do: what a number means depends on them, wherever they
+   stand in the file. */
+typedef enum ethd__pass { ETHD__PASS_PLUGINS, ETHD__PASS_CHOICES, ETHD__PASS_PRESET, ETHD__PASS_REST } ethd__pass;
+#define ETHD__PASSES 4
+
+/* A key that stands in files only. */
+typedef struct ethd__file_key {
+  const char *key; /* "*": any, as of [device] */
+  ethd__pass pass;
+  ethd_status (*read)(ethd__config *config, const ethd__key *key);
+} ethd__file_key;
+
+/* Besides these a section has what ethd_setup_part_of(name) chooses and the numbers that the setup has by its name. */
+typedef struct ethd__section {
+  const char *name;
+  ethd__file_key keys[2];
+} ethd__section;
+
+#define ETHD__SECTIONS 14
+extern const ethd__section ethd__sections[ETHD__SECTIONS];
+
+/* Reads the key if it belongs to this pass. */
+ethd_status ethd__config_read(ethd__config *config, const ethd__key *key, ethd__pass pass);
+
+/* Whether commands can't set the key. */
+bool ethd__config_in_files_only(const char *section, const char *key);
+
+/* The refusal of a key that its section doesn't have under the laws of the setup. */
+ethd_status ethd__config_unknown(const ethd__key *key, const ethd_setup *setup);
+
+/* Refuses a section that no configuration has: it may stand without any key. */
+ethd_status ethd__config_section_known(const ethd_ini_section *section, const char *file,
+                                       char message[ETHD_MESSAGE_MAX]);
+
+/* ---- config_keys.c: numbers ---- */
+
+/* Reads a number, a word or several numbers into the setup. Ranges are checked, relations between keys are left to
    ethd_setup_check. */
-ethd_status ethd__config_apply(const ethd__key *key, ethd_setup *setup);
+ethd_status ethd__config_number(const ethd__key *key, ethd_setup *setup);
 
 /* Index in ethd_limit_rows, -1: the key is no limit. */
 int ethd__config_limit(const char *section, const char *key);
 
-/* The refusal of a key that its section has not under the laws of the setup. */
-ethd_status ethd__config_unknown(const ethd__key *key, ethd_setup *setup);
+/* ---- the keys of files ---- */
 
-/* Refuses a section that no configuration has: it may stand without any key. */
-ethd_status ethd__config_section_known(const ethd_ini_section *section, const char *file, ethd_setup *setup,
-                                       char message[ETHD_MESSAGE_MAX]);
-
-/* The section's own table in a setup: law or method, its parameters and their values. */
-typedef struct ethd__section {
-  const char *id; /* of the law or method that rules */
-  const ethd_param *params;
-  uint32_t count;
-  double *values;
-} ethd__section;
-int ethd__config_section(ethd_setup *setup, const char *section, ethd__section *out);
-
-/* law = ..., method = ...: with the law's defaults. */
+/* law = ..., method = ...: with default parameters. */
 ethd_status ethd__config_choose(const ethd_config *config, const ethd__key *key, ethd_setup *setup);
-/* "law", "method" or NULL */
-const char *ethd__config_chooser(const char *section);
+
+/* [scene] file: reads the scene. */
+ethd_status ethd__config_scene(ethd__config *config, const ethd__key *key);
 
 /* preset = paper on whatever the transition law has; a no-op for product. */
-ethd_status ethd__config_preset(const ethd__key *key, ethd_setup *setup);
+ethd_status ethd__config_preset(ethd__config *config, const ethd__key *key);
 
 /* [plugins] file: opens, and adds its laws to config->laws. */
 ethd_status ethd__config_plugin(ethd__config *config, const ethd__key *key);

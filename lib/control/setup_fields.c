@@ -5,19 +5,19 @@
 #define AT(member) (uint32_t)offsetof(ethd_setup, member)
 
 const ethd__setup_field ethd__setup_fields[ETHD__SETUP_FIELDS] = {
-    {{"arm", {"mechanism", "parallel|serial", 0, 1, ETHD_ARM_PARALLEL, "what the second angle is measured from"}, 1},
+    {{"arm", {"mechanism", "parallel|serial", 0, 1, ETHD_ARM_PARALLEL, "what q2 is relative to"}, 1},
      AT(arm.mechanism)},
     {{"arm", {"link1", "m", ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX, 0.25, "from the base to the elbow"}, 1},
      AT(arm.link1)},
     {{"arm", {"link2", "m", ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX, 0.25, "from the elbow to the ring"}, 1},
      AT(arm.link2)},
-    {{"loop", {"period", "s", 1e-5, 0.1, 0.001, "time between two ticks"}, 1}, AT(period)},
-    {{"ring", {"radius", "m", 1e-4, 1, 0.012, "inner radius of the ring"}, 1}, AT(ring_radius)},
-    {{"finger", {"radius", "m", 1e-4, 1, 0.0075, "radius of the finger"}, 1}, AT(finger_radius)},
-    {{"finger", {"radius_max", "m", 1e-5, 1, 0.0095, "largest radius of a finger"}, 1}, AT(finger_radius_max)},
+    {{"loop", {"period", "s", 1e-5, 0.1, 0.001, "time between two ticks, T"}, 1}, AT(period)},
+    {{"ring", {"radius", "m", 1e-4, 1, 0.012, "inner radius of the ring, R_r"}, 1}, AT(ring_radius)},
+    {{"finger", {"radius", "m", 1e-4, 1, 0.0075, "radius of the finger, R_f"}, 1}, AT(finger_radius)},
+    {{"finger", {"radius_max", "m", 1e-5, 1, 0.0095, "largest radius of a finger, R_f,max"}, 1}, AT(finger_radius_max)},
     {{"finger_fit", {"lag", "s", -0.01, 0.01, 0, "a time in s for each of the 16 rays"}, ETHD_RAYS}, AT(ray_lag)},
-    {{"transition", {"swap_time", "s", 0, 1, 0.020, "how long the difference of a swap fades"}, 1}, AT(swap_time)},
-    {{"transition", {"v_hysteresis", "m/s", 0, 1, 0, "speed by which entering and leaving are kept apart"}, 1},
+    {{"transition", {"swap_time", "s", 0, 1, 0.020, "a change of laws fades over this time"}, 1}, AT(swap_time)},
+    {{"transition", {"v_hysteresis", "m/s", 0, 1, 0, "entering until v < -v_hysteresis, leaving until v > it"}, 1},
      AT(v_hysteresis)},
 };
 

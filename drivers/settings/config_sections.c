@@ -1,0 +1,126 @@
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "settings/config_parts.h"
+#include "text/error_text.h"
+#include "text/text.h"
+
+#define MASS_MAX 1e6 /* kg */
+
+/* ---- keys that stand in files only ---- */
+
+static ethd_status read_mass(const ethd__key *key, double *out) {
+  double value;
+  if (!ethd__number(key->value, strlen(key->value), &value) || !(value > 0 && value <= MASS_MAX))
+    return ethd__key_found(key, ETHD_E_RANGE, "a mass over 0 up to 1e6 kg");
+  *out = value;
+  return ETHD_OK;
+}
+
+static ethd_status mass_x(ethd__config *c, const ethd__key *key) { return read_mass(key, &c->config.mass_x); }
+static ethd_status mass_y(ethd__config *c, const ethd__key *key) { return read_mass(key, &c->config.mass_y); }
+
+static ethd_status driver(ethd__config *c, const ethd__key *key) {
+  if (strlen(key->value) >= sizeof c->config.device)
+    return ethd__key_found(key, ETHD_E_SYNTAX, "at most 95 characters");
+  strcpy(c->config.device, key->value);
+  return ETHD_OK;
+}
+
+static ethd_status device_setting(ethd__config *c, const ethd__key *key) {
+  c->config.settings[c->config.setting_count++] = (ethd_setting){key->key, key->value, key->line};
+  return ETHD_OK;
+}
+
+const ethd__section ethd__sections[ETHD__SECTIONS] = {
+    {"arm", {{"mass_x", ETHD__PASS_REST, mass_x}, {"mass_y", ETHD__PASS_REST, mass_y}}},
+    {"ring", {{0}}},
+    {"finger", {{0}}},
+    {"loop", {{0}}},
+    {"velocity", {{0}}},
+    {"finger_fit", {{0}}},
+    {"finger_filter", {{0}}},
+    {"tracking", {{0}}},
+    {"contact", {{0}}},
+    {"transition", {{"preset", ETHD__PASS_PRESET, ethd__config_preset}}},
+    {"scene", {{"file", ETHD__PASS_REST, ethd__config_scene}}},
+    {"limits", {{0}}},
+    {"device", {{"driver", ETHD__PASS_REST, driver}, {"*", ETHD__PASS_REST, device_setting}}},
+    {"plugins", {{"file", ETHD__PASS_PLUGINS, ethd__config_plugin}}},
+};
+
+static const ethd__section *find_section(const char *name) {
+  for (const ethd__section *s = ethd__sections; s < ethd__sections + ETHD__SECTIONS; s++)
+    if (strcmp(s->name, name) == 0) return s;
+  return NULL;
+}
+
+static const ethd__file_key *find_file_key(const char *section, const char *key) {
+  const ethd__section *s = find_section(section);
+  for (size_t i = 0; s && i < sizeof s->keys / sizeof *s->keys && s->keys[i].key; i++)
+    if (strcmp(s->keys[i].key, key) == 0 || strcmp(s->keys[i].key, "*") == 0) return &s->keys[i];
+  return NULL;
+}
+
+static bool chooses(const char *section, const char *key) {
+  const ethd_setup_part *part = ethd_setup_part_of(section);
+  return part && strcmp(part->chooser, key) == 0;
+}
+
+bool ethd__config_in_files_only(const char *section, const char *key) {
+  return find_file_key(section, key) || chooses(section, key);
+}
+
+/* ---- any key ---- */
+
+ethd_status ethd__config_read(ethd__config *whole, const ethd__key *key, ethd__pass pass) {
+  ethd_config *c = &whole->config;
+  const ethd__file_key *file_key = find_file_key(key->section, key->key);
+  if (file_key) return file_key->pass == pass ? file_key->read(whole, key) : ETHD_OK;
+  if (chooses(key->section, key->key))
+    return pass == ETHD__PASS_CHOICES ? ethd__config_choose(c, key, &c->setup) : ETHD_OK;
+  if (pass != ETHD__PASS_REST) return ETHD_OK;
+  int limit = ethd__config_limit(key->section, key->key);
+  if (limit >= 0) c->limits_given |= 1u << limit;
+  return ethd__config_number(key, &c->setup);
+}
+
+/* ---- what is none ---- */
+
+static void add(char list[ETHD_MESSAGE_MAX], const char *word) {
+  size_t n = strlen(list);
+  snprintf(list + n, ETHD_MESSAGE_MAX - n, "%s%s", n ? ", " : "", word);
+}
+
+/* "unknown section; arm, ... are allowed" */
+static const char *unknown_section(char out[ETHD_MESSAGE_MAX]) {
+  char list[ETHD_MESSAGE_MAX] = "";
+  for (const ethd__section *s = ethd__sections; s < ethd__sections + ETHD__SECTIONS; s++) add(list, s->name);
+  snprintf(out, ETHD_MESSAGE_MAX, "unknown section; %.*s are allowed", ETHD_MESSAGE_MAX - 64, list);
+  return out;
+}
+
+ethd_status ethd__config_section_known(const ethd_ini_section *section, const char *file,
+                                       char message[ETHD_MESSAGE_MAX]) {
+  char what[ETHD_MESSAGE_MAX];
+  if (find_section(section->name)) return ETHD_OK;
+  return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: [%s]: %s", file, section->line, section->name,
+                   unknown_section(what));
+}
+
+ethd_status ethd__config_unknown(const ethd__key *key, const ethd_setup *setup) {
+  const ethd__section *section = find_section(key->section);
+  const ethd_setup_part *part = ethd_setup_part_of(key->section);
+  char list[ETHD_MESSAGE_MAX] = "";
+  ethd_setup_key row;
+  if (!section) return ethd__key_refuse(key, ETHD_E_UNKNOWN, "%s", unknown_section(list));
+  if (part) add(list, part->chooser);
+  for (size_t i = 0; i < sizeof section->keys / sizeof *section->keys && section->keys[i].key; i++)
+    add(list, section->keys[i].key);
+  for (uint32_t i = 0; ethd_setup_key_at(setup, i, &row) == ETHD_OK; i++)
+    if (strcmp(row.section, key->section) == 0) add(list, row.param.name);
+  if (!part) return ethd__key_refuse(key, ETHD_E_UNKNOWN, "unknown key; %s are allowed", list);
+  return ethd__key_refuse(key, ETHD_E_UNKNOWN, "not a key of %s, which has %s", ethd_setup_chosen(setup, part).id,
+                          list);
+}
