@@ -1,4 +1,4 @@
-# libethd. Targets: all firmware demo check check-xenomai bench stress ci install uninstall clean.
+# libethd. Targets: all firmware demo check check-xenomai bench stress ci format format-check install uninstall clean.
 # Variables: CC CXX CFLAGS CPPFLAGS LDFLAGS PREFIX DESTDIR BUILD, and
 #   SAN=address|thread|undefined|address,undefined   a sanitizer build, in a tree of its own
 #   RT=posix|mercury|cobalt   plain Linux, or a core of Xenomai 3 (XENO_CONFIG=its xeno-config), likewise
@@ -21,7 +21,7 @@ LOOP_SIDE := drivers/loop/cycle.c drivers/loop/histogram.c drivers/loop/watch.c 
 SHELL := /bin/sh
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: all firmware demo check check-xenomai bench bench-quick stress ci install install-files uninstall clean tests FORCE
+.PHONY: all firmware demo check check-xenomai bench bench-quick stress ci format format-check install install-files uninstall clean tests FORCE
 .DEFAULT_GOAL := all
 
 comma := ,
@@ -266,7 +266,7 @@ PEERS := $(patsubst apps/bench/peers/%,$(B)/peers/%.so,$(basename $(wildcard app
 define peer
 $(B)/peers/$(basename $(notdir $(1))).so: $(1) $(wildcard apps/bench/*.h) $(HEADERS) $(B)/flags
 	$$(call say,PEER,$$@)
-	@CC='$$(CC)' CXX='$$(CXX)' CFLAGS='$$(CFLAGS)' sh .ci/peer $$< $$@
+	@BUILD='$(B)' CC='$$(CC)' CXX='$$(CXX)' CFLAGS='$$(CFLAGS)' sh .ci/peer $$< $$@
 endef
 $(foreach p,$(wildcard apps/bench/peers/*.c apps/bench/peers/*.cc),$(eval $(call peer,$(p))))
 
@@ -297,6 +297,12 @@ check-xenomai:
 
 ci:
 	@BUILD='$(BUILD)' MAKE='$(MAKE)' bash .ci/ci
+
+# C and C++ as .clang-format says, by a clang-format of one version.
+format:
+	@BUILD='$(BUILD)' sh .ci/format
+format-check:
+	@BUILD='$(BUILD)' sh .ci/format check
 
 # ---- install --------------------------------------------------------------------------------
 

@@ -29,10 +29,7 @@ refuse 'tick.npy' "$folder/cut" "$folder/old.mcap"
 
 # ---- what others read ----
 python3=$(sh .ci/setup python) || { echo "SKIP: no python3 with numpy"; exit 77; }
-venv=$BUILD/peers/mcap
-[ -x "$venv/bin/python" ] && "$venv/bin/python" -c 'import mcap' 2>/dev/null ||
-  { "$python3" -m venv --system-site-packages "$venv" && "$venv/bin/pip" -q --disable-pip-version-check install mcap==1.6.0; } >"$folder/pip" 2>&1 ||
-  { [ $failed = 0 ] || exit 1; tail -n 3 "$folder/pip"; echo "SKIP: the Python package mcap can't be had"; exit 77; }
+venv=$(sh .ci/venv mcap mcap==1.6.0) || { [ $failed = 0 ] || exit 1; echo "SKIP: the Python package mcap can't be had"; exit 77; }
 cat >"$folder/read.py" <<'EOF2'
 import csv, json, math, sys
 import numpy as np
