@@ -21,8 +21,13 @@ static void rest(long ns) {
 
 /* ---- rows, on the recorder's thread ---- */
 
+/* An acknowledged device was enabled shortly before the tap enables it again, and where the recorder is late that row
+   comes first: the tap begins with the last row that was started. */
 static void begin(ethd__station *s, const ethd_loop_row *row) {
   s->phase = ETHD_PHASE_TAP;
+  s->stage.rows.count = 0;
+  s->approach = (ethd__approach){0};
+  s->last = (size_t)(SECONDS / s->rule.period);
   s->begin_ns = row->trace.sense.time_ns;
   memcpy(s->stage.heat, row->heat, sizeof row->heat);
 }
@@ -44,7 +49,8 @@ static void add(ethd__station *s, const ethd_loop_row *row) {
 static void take(void *self, const ethd_loop_row *row) {
   ethd__station *s = self;
   pthread_mutex_lock(&s->lock);
-  if (s->phase == ETHD_PHASE_DUE && row->marks & ETHD_ROW_STARTED) begin(s, row);
+  bool waits = s->phase == ETHD_PHASE_DUE || s->phase == ETHD_PHASE_TAP;
+  if (waits && row->marks & ETHD_ROW_STARTED) begin(s, row);
   if (s->phase == ETHD_PHASE_TAP) add(s, row);
   pthread_mutex_unlock(&s->lock);
 }
@@ -97,10 +103,7 @@ static void make_ready(ethd__station *s, const ethd__taken *taken) {
   s->stage.study = &s->desk->study;
   s->stage.law = taken->stage->law;
   s->stage.setup = s->session.setup;
-  s->stage.rows.count = 0;
   s->rule = ethd__stage_rule(&s->stage, taken->speed, s->stage.setup.finger_radius);
-  s->approach = (ethd__approach){0};
-  s->last = (size_t)(SECONDS / s->rule.period);
   s->status = ETHD_OK;
 }
 
