@@ -106,7 +106,7 @@ endif
 LIB_C := $(wildcard lib/*.c lib/*/*.c)
 DRIVERS_C := $(wildcard drivers/*.c drivers/*/*.c)
 PROGRAMS_C := $(wildcard apps/ethd-*.c)
-APPS_C := $(wildcard apps/*/*.c)
+APPS_C := $(filter-out apps/examples/%,$(wildcard apps/*/*.c))
 PLUGINS_C := $(wildcard tests/plugins/*.c)
 TESTS_C := $(filter-out $(PLUGINS_C),$(wildcard tests/*/test_*.c))
 HELPERS_C := $(filter-out $(PLUGINS_C) $(TESTS_C) tests/fuzz/% tests/simavr/%,$(wildcard tests/*/*.c))
@@ -124,7 +124,8 @@ UNIT := $(addprefix $(B)/tests/,$(notdir $(TESTS_C:.c=)))
 PLUGINS := $(patsubst tests/plugins/%.c,$(B)/tests/plugins/%.so,$(PLUGINS_C))
 SHARE := $(patsubst apps/config/%,$(B)/share/ethd/%,$(shell find apps/config -type f 2>/dev/null)) \
          $(patsubst apps/plot/%,$(B)/share/ethd/plot/%,$(wildcard apps/plot/*.gp)) \
-         $(patsubst apps/cluster/%,$(B)/share/ethd/cluster/%,$(wildcard apps/cluster/*.sh))
+         $(patsubst apps/cluster/%,$(B)/share/ethd/cluster/%,$(wildcard apps/cluster/*.sh)) \
+         $(patsubst tests/motion/%,$(B)/share/ethd/motion/%,$(shell find tests/motion -type f 2>/dev/null))
 ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a
 LIBRARIES := $(B)/libethd.a $(B)/libethd-drivers.a $(B)/libethd.so.0 $(B)/libethd.so
 
@@ -202,9 +203,11 @@ $(PLUGINS): $(B)/tests/plugins/%.so: tests/plugins/%.c $(B)/flags
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CPPFLAGS) $(FLAGS_plugin) $(LDFLAGS) -MMD -MP -MF $(@:.so=.d) -shared -o $@ $<
 
-$(filter-out $(B)/share/ethd/plot/% $(B)/share/ethd/cluster/%,$(SHARE)): $(B)/share/ethd/%: apps/config/%
+$(filter-out $(addprefix $(B)/share/ethd/,plot/% cluster/% motion/%),$(SHARE)): $(B)/share/ethd/%: apps/config/%
 	@mkdir -p $(@D) && cp $< $@
 $(filter $(B)/share/ethd/plot/% $(B)/share/ethd/cluster/%,$(SHARE)): $(B)/share/ethd/%: apps/%
+	@mkdir -p $(@D) && cp $< $@
+$(filter $(B)/share/ethd/motion/%,$(SHARE)): $(B)/share/ethd/%: tests/%
 	@mkdir -p $(@D) && cp $< $@
 
 # ---- the proximity ring's firmware, and four of its boards in simavr ------------------------

@@ -31,7 +31,8 @@ static const char doc[] =
     "Examples:\n"
     "  ethd-tap\n"
     "  ethd-tap --taps 400 --csv taps.csv --trace traces\n"
-    "  ethd-tap --finger reach.csv --speed high,0.3 --record taps";
+    "  ethd-tap --finger motion/avraham_free_mit/avraham_ND_s02_be38_free.csv --speed high,0.3 --record taps\n"
+    "Eight recorded movements come with the programs, in motion: a FILE.csv that isn't there is looked for among them.";
 
 enum { OPTION_SCALE = 256, OPTION_TRACE, OPTION_RECORD, OPTION_CSV };
 
@@ -185,7 +186,11 @@ int main(int argc, char **argv) {
   study.speeds = load_speeds(&study.plant);
   study.speed_count = arg.speeds.count;
   study.seed = arg.seed;
-  if (arg.finger) check(ethd__movement_load(arg.finger, arg.scale, &study.movement, message), message);
+  if (arg.finger) {
+    char *finger = ethd__given_or_data(arg.finger);
+    check(ethd__movement_load(finger, arg.scale, &study.movement, message), message);
+    free(finger);
+  }
   check(ethd__study_prepare(&study, message), message);
   const ethd__plan plan = {&study, arg.laws.words, arg.laws.count, (uint64_t)arg.taps};
   check(ethd__plan_check(&plan, message), message);

@@ -17,9 +17,8 @@ for plant in n p; do
 done
 
 # Recorded movements, one that starts with the ring in the wall among them.
-motion=${ETHD_MOTION_DIR:-../shared/motion}
+motion=${ETHD_MOTION_DIR:-tests/motion}
 for file in optotrak_tap_mit/tathum_par1_trial035_tap.csv avraham_free_mit/avraham_ND_s02_be38_free.csv; do
-  [ -f "$motion/$file" ] || continue
   rm -rf "$folder/f"
   "$tap" --finger "$motion/$file" --taps 3 --record "$folder/f" >"$folder/out"
   "$python" tests/record_metrics.py "$folder/f" n

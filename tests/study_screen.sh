@@ -65,8 +65,7 @@ for name in files:
             break
 if not finger:
     run.kill()
-    print("SKIP: no recorded movements in " + os.environ["ETHD_MOTION_DIR"])
-    sys.exit(77)
+    sys.exit("no recorded movements in " + os.environ["ETHD_MOTION_DIR"])
 last, at = min(x for _, x, _ in finger), finger[[x for _, x, _ in finger].index(min(x for _, x, _ in finger))][2]
 
 # Where the machine grants realtime priority, a tap's thread has it.
@@ -119,7 +118,6 @@ EOF2
 "$python3" "$folder/drive.py" "$study" "$folder" >"$folder/out" 2>&1
 code=$?
 cat "$folder/out"
-[ $code = 77 ] && exit 77
 [ $code = 0 ] || fail "the session: $(cat "$folder/err")"
 grep -q '^P1\|^P01' "$folder/session/taps.csv" || fail "no tap in its table"
 grep -q ',note,no letter of this is lost$' "$folder/session/events.csv" || fail "no note: $(cat "$folder/session/events.csv")"

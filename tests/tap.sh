@@ -77,11 +77,15 @@ grep -q 'swing.csv, not scaled' "$folder/f.txt" || fail "it doesn't say that the
 grep -q 'SCALED by 2' "$folder/f.txt" || fail "it doesn't say that the movement was scaled"
 grep -q ',too-slow,' "$folder/g.csv" && fail "0.5 m/s is too slow"
 
-motion=${ETHD_MOTION_DIR:-../shared/motion}
-for file in "$motion"/*/*_tap.csv "$motion"/*/*_reach.csv "$motion"/*/*_free.csv "$motion"/*/*_move*.csv; do
-  case $file in *1.csv | *01_*) ;; *) continue ;; esac
-  [ -f "$file" ] && { "$tap" --finger "$file" --taps 1 >/dev/null || fail "$file: exit $?"; }
+motion=${ETHD_MOTION_DIR:-tests/motion}
+for file in tests/motion/*/*.csv "$motion"/*/*_tap.csv "$motion"/*/*_reach.csv "$motion"/*/*_free.csv "$motion"/*/*_move*.csv; do
+  case $file in tests/* | *1.csv | *01_*) ;; *) continue ;; esac
+  "$tap" --finger "$file" --taps 1 >/dev/null || fail "$file: exit $?"
 done
+# The example of --help, from a folder that has no such file: one that came with the programs.
+example=$("$tap" --help | tr -s ' \n' ' ' | grep -o 'ethd-tap --finger [^ ]*')
+(cd "$folder" && "$tap" --finger "${example##* }" --speed high --taps 2 --csv h.csv >/dev/null) || fail "$example: exit $?"
+grep -q ',ok,' "$folder/h.csv" || fail "$example: no valid tap"
 
 # Wrong usage and bad input: exit 2, one line, nothing written over.
 echo precious >"$folder/kept.csv"

@@ -120,12 +120,13 @@ static char *folder_name(const char *folder) {
 }
 
 size_t ethd__tracks_recorded(double latency, ethd__tracks *out, size_t room) {
-  const char *root = getenv("ETHD_MOTION_DIR");
+  char *root = ethd__motion_folder();
   char pattern[4096];
   glob_t folders;
   size_t sets = 0;
   uint64_t seed = 1000;
-  snprintf(pattern, sizeof pattern, "%s/*/", root && *root ? root : "../shared/motion");
+  snprintf(pattern, sizeof pattern, "%s/*/", root);
+  free(root);
   if (glob(pattern, 0, NULL, &folders) != 0) return 0;
   for (size_t i = 0; i < folders.gl_pathc && sets < room; i++) {
     ethd__tracks set = read_folder(folders.gl_pathv[i], latency, &seed);

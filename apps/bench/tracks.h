@@ -27,7 +27,7 @@ typedef struct ethd__tracks {
  * after. */
 ethd__tracks ethd__tracks_reaches(size_t count, double latency);
 
-/* The recorded movements below $ETHD_MOTION_DIR (default ../shared/motion), a set for each folder, at
+/* The recorded movements of ethd__motion_folder, a set for each folder, at
    most `room`; the number of sets, 0: there are none. */
 size_t ethd__tracks_recorded(double latency, ethd__tracks *out, size_t room);
 

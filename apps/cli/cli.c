@@ -115,11 +115,35 @@ static char *data_folder(void) {
   return folder;
 }
 
-char *ethd__data_path(const char *name) {
+static char *in_data_folder(const char *name) {
   char *folder = data_folder();
   char *path = folder ? ethd__path_join(folder, name) : NULL;
   free(folder);
   if (!path) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  return path;
+}
+
+static char *copy_of(const char *text) {
+  char *copy = strdup(text);
+  if (!copy) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  return copy;
+}
+
+char *ethd__given_or_data(const char *name) {
+  char *path = access(name, R_OK) == 0 ? NULL : in_data_folder(name);
+  if (path && access(path, R_OK) == 0) return path;
+  free(path);
+  return copy_of(name);
+}
+
+char *ethd__motion_folder(void) {
+  const char *given = getenv("ETHD_MOTION_DIR"), *larger = "../shared/motion";
+  if (given && *given) return copy_of(given);
+  return access(larger, R_OK) == 0 ? copy_of(larger) : in_data_folder("motion");
+}
+
+char *ethd__data_path(const char *name) {
+  char *path = in_data_folder(name);
   if (access(path, R_OK) != 0)
     ethd__fail(ETHD_EXIT_FAILED, "%s: %s; ETHD_DATA_DIR may name the folder it is in", path, strerror(errno));
   return path;

@@ -37,6 +37,13 @@ void ethd__option_list(const char *option, const char *text, void (*each)(const 
    program's folder. Freed by the caller; exit 1 when it isn't there. */
 char *ethd__data_path(const char *name);
 
+/* The file as it is named, or, where there is none, one of that name that came with the programs. Freed by the caller. */
+char *ethd__given_or_data(const char *name);
+
+/* The folder of recorded movements: $ETHD_MOTION_DIR, ../shared/motion, or the one that came with the programs. Freed by
+   the caller. */
+char *ethd__motion_folder(void);
+
 /* A bar on stderr when that is a terminal, else nothing; redrawn at most ten times a second. done =
    total removes it. */
 void ethd__progress(uint64_t done, uint64_t total, const char *what);

@@ -4,12 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/cli.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
 static char *folder_of(const ethd__protocol *p) {
-  const char *given = getenv("ETHD_MOTION_DIR");
-  return ethd__path_join(given && *given ? given : "../shared/motion", p->motion);
+  char *root = ethd__motion_folder(), *folder = ethd__path_join(root, p->motion);
+  free(root);
+  return folder;
 }
 
 static int is_csv(const struct dirent *entry) {
