@@ -1,12 +1,14 @@
 # libethd. Targets: all firmware demo check check-xenomai bench stress ci format format-check install uninstall clean.
-# Variables: CC CXX CFLAGS CPPFLAGS LDFLAGS PREFIX DESTDIR BUILD, and
+# Variables: CC CXX CFLAGS CPPFLAGS LDFLAGS PREFIX LIBDIR DESTDIR BUILD, and
 #   SAN=address|thread|undefined|address,undefined   a sanitizer build, in a tree of its own
 #   RT=posix|mercury|cobalt   plain Linux, or a core of Xenomai 3 (XENO_CONFIG=its xeno-config), likewise
+#   SETUP=no   builds with what there is: looks for no package, installs none
 #   WERROR=1   warnings are errors        V=1   whole command lines
 #   WHAT=...   make bench: only this question
 #   TESTS=...  only these tests, by name; % matches anything: TESTS='test_% golden'
 
 PREFIX ?= /usr/local
+LIBDIR ?= $(PREFIX)/lib
 BUILD ?= build
 CXX ?= g++
 PKG_CONFIG ?= pkg-config
@@ -60,10 +62,12 @@ KINDS := $(if $(filter all demo check bench bench-quick stress ci install tests,
          $(if $(filter check stress ci tests,$(GOALS)),check) $(if $(filter demo stress,$(GOALS)),demo) \
          $(if $(filter bench bench-quick,$(GOALS)),bench)
 DRY := $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
+ifneq ($(filter-out no,$(or $(SETUP),yes)),)
 ifneq ($(strip $(KINDS)),)
 ifeq ($(DRY),)
 ifneq ($(shell CC='$(CC)' CXX='$(CXX)' PKG_CONFIG='$(PKG_CONFIG)' SAN='$(SAN)' sh .ci/setup $(KINDS)),ready)
 $(error the set-up stopped, as said above)
+endif
 endif
 endif
 endif
@@ -127,7 +131,9 @@ SHARE := $(patsubst apps/config/%,$(B)/share/ethd/%,$(shell find apps/config -ty
          $(patsubst apps/cluster/%,$(B)/share/ethd/cluster/%,$(wildcard apps/cluster/*.sh)) \
          $(patsubst tests/motion/%,$(B)/share/ethd/motion/%,$(shell find tests/motion -type f 2>/dev/null))
 ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a
-LIBRARIES := $(B)/libethd.a $(B)/libethd-drivers.a $(B)/libethd.so.0 $(B)/libethd.so
+LIBRARIES := $(foreach l,ethd ethd-drivers,$(B)/lib$(l).a $(B)/lib$(l).so.0 $(B)/lib$(l).so)
+# What the drivers' library needs of others.
+DRIVERS_LIBS := -linih -lmodbus -lz -lexpat
 
 all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
 tests: all $(addprefix $(B)/tests/,$(call wanted,$(notdir $(UNIT)))) $(PLUGINS) $(TOOLS_C:%.c=$(B)/%) $(RING_PARTS)
@@ -168,8 +174,12 @@ $(B)/libethd.so.0: $(LIB_O) lib/libethd.map $(B)/sources
 	$(call say,LINK,$@)
 	$(Q)$(LINK) -shared -Wl,-soname,libethd.so.0 -Wl,--version-script=lib/libethd.map \
 	  -Wl,-Bsymbolic-functions -Wl,-z,now $(if $(SAN),,-Wl,-z,defs) -o $@ $(LIB_O) -lm -ldl
-$(B)/libethd.so: $(B)/libethd.so.0
-	@ln -sf libethd.so.0 $@
+$(B)/libethd-drivers.so.0: $(call obj,$(DRIVERS_C)) drivers/libethd-drivers.map $(B)/libethd.so $(B)/sources
+	$(call say,LINK,$@)
+	$(Q)$(LINK) -shared -Wl,-soname,libethd-drivers.so.0 -Wl,--version-script=drivers/libethd-drivers.map \
+	  -Wl,-Bsymbolic-functions -Wl,-z,now $(if $(SAN),,-Wl,-z,defs) -o $@ $(filter %.o,$^) -L$(B) -lethd $(DRIVERS_LIBS) $(LIBS)
+$(B)/%.so: $(B)/%.so.0
+	@ln -sf $(<F) $@
 
 # Programs hold the whole of libethd and show its public names to the plugins they load: a plugin
 # calls the very code that its host runs, calls within the tick stay direct, and programs run from
@@ -181,7 +191,7 @@ $(B)/bin/ethd-study $(B)/tests/test_shapes: LIBS += -lSDL2_ttf -lSDL2
 $(PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES) $(B)/libethd.a
 	$(call say,LINK,$@)
 	@mkdir -p $(@D)
-	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) -linih -lmodbus -lz -lexpat $(LIBS)
+	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) $(DRIVERS_LIBS) $(LIBS)
 
 define test_program
 $(B)/tests/$(notdir $(1:.c=)): $(B)/obj/$(1:.c=.o) $(B)/libethd-tests.a $(ARCHIVES) $(B)/libethd.a
@@ -196,7 +206,7 @@ $(foreach t,$(TESTS_C),$(eval $(call test_program,$(t))))
 $(TOOLS_C:%.c=$(B)/%): $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libethd-tests.a $(ARCHIVES) $(B)/libethd.a
 	$(call say,LINK,$@)
 	@mkdir -p $(@D)
-	$(Q)$(LINK) -o $@ $< $(B)/libethd-tests.a $(ARCHIVES) $(WHOLE) -linih -lmodbus -lz -lexpat $(LIBS)
+	$(Q)$(LINK) -o $@ $< $(B)/libethd-tests.a $(ARCHIVES) $(WHOLE) $(DRIVERS_LIBS) $(LIBS)
 
 $(PLUGINS): $(B)/tests/plugins/%.so: tests/plugins/%.c $(B)/flags
 	$(call say,PLUGIN,$@)
@@ -310,30 +320,15 @@ format-check:
 # ---- install --------------------------------------------------------------------------------
 
 VERSION = $(shell sed -n 's/.*define ETHD_VERSION "\(.*\)".*/\1/p' include/ethd/ethd.h)
-bindir := $(DESTDIR)$(PREFIX)/bin
-libdir := $(DESTDIR)$(PREFIX)/lib
-incdir := $(DESTDIR)$(PREFIX)/include/ethd
-sharedir := $(DESTDIR)$(PREFIX)/share/ethd
-INSTALLED := $(PROGRAMS:$(B)/bin/%=$(bindir)/%) $(HEADERS:include/ethd/%=$(incdir)/%) \
-  $(SHARE:$(B)/share/ethd/%=$(sharedir)/%) $(libdir)/libethd.a $(libdir)/libethd-drivers.a \
-  $(libdir)/libethd.so.0 $(libdir)/libethd.so $(libdir)/pkgconfig/ethd.pc
+run_install = PREFIX='$(PREFIX)' LIBDIR='$(LIBDIR)' DESTDIR='$(DESTDIR)' B='$(B)' VERSION='$(VERSION)' \
+  PROGRAMS='$(notdir $(PROGRAMS))' SHARE='$(SHARE:$(B)/share/ethd/%=%)' sh .packaging/install
 
 install: all
 	@$(MAKE) --no-print-directory install-files
-
 install-files:
-	install -d $(sort $(dir $(INSTALLED)))
-	$(if $(PROGRAMS),install -m 755 $(PROGRAMS) $(bindir))
-	$(if $(HEADERS),install -m 644 $(HEADERS) $(incdir))
-	install -m 644 $(B)/libethd.a $(B)/libethd-drivers.a $(B)/libethd.so.0 $(libdir)
-	ln -sf libethd.so.0 $(libdir)/libethd.so
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' lib/ethd.pc.in >$(libdir)/pkgconfig/ethd.pc
-	@$(foreach f,$(SHARE:$(B)/share/ethd/%=%),install -m 644 $(B)/share/ethd/$(f) $(sharedir)/$(f) &&) :
-
-# What was installed, and the folders that are ours alone; shared ones stay.
+	@$(run_install) files
 uninstall:
-	rm -f $(INSTALLED)
-	@for d in $(incdir) $(sharedir); do if [ -d $$d ]; then find $$d -depth -type d -empty -delete; fi; done
+	@$(run_install) remove
 
 clean:
 	@for d in $(BUILD) $(BUILD)-san-* $(BUILD)-mercury* $(BUILD)-cobalt*; do if [ -f $$d/flags ] || [ -d $$d/ci ]; then rm -rf $$d; fi; done

@@ -1,35 +1,139 @@
 #!/bin/sh
-# Installed into an empty DESTDIR: everything there, readable, found by pkg-config; uninstalled: nothing left.
+# Installed: all is there, readable, found by pkg-config and CMake, moves as a whole, links shared and static; a path with
+# spaces does; uninstalled: nothing is left but what was there.
 set -eu
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-root=$work/root
-prefix=/opt/ethd
-at=$root$prefix
-run() { $MAKE --no-print-directory -s B="$BUILD" DESTDIR="$root" PREFIX=$prefix "$@"; }
-fail() { echo "$*"; exit 1; }
+fail() { echo "FAILED $*"; exit 1; }
+run() { # ROOT PREFIX TARGET...
+  root=$1 prefix=$2
+  shift 2
+  $MAKE --no-print-directory -s B="$BUILD" DESTDIR="$root" PREFIX="$prefix" "$@" >"$work/log" 2>&1 || { cat "$work/log"; return 1; }
+}
+sanitizer=${SAN:+-fsanitize=$SAN}
 
-run install-files >"$work/log" 2>&1 || { cat "$work/log"; fail "make install failed"; }
-mkdir -p "$at/share/other" && : >"$at/share/other/file" && : >"$at/include/other.h"
-
+# ---- into an empty root ----
+root=$work/root at=$work/root/opt/ethd
+mkdir -p "$root/opt/ethd/lib" "$root/opt/ethd/share/other" && : >"$root/opt/ethd/share/other/file"
+run "$root" /opt/ethd install-files || fail "make install"
 for header in include/ethd/*.h; do cmp "$header" "$at/$header"; done
-for program in "$BUILD"/bin/ethd-*; do
-  [ -x "$at/bin/${program##*/}" ] || fail "${program##*/} isn't installed"
+for program in "$BUILD"/bin/ethd-*; do [ -x "$at/bin/${program##*/}" ] || fail "${program##*/} isn't installed"; done
+for library in libethd libethd-drivers; do
+  [ -f "$at/lib/$library.a" ] || fail "lib/$library.a isn't installed"
+  [ "$(readlink "$at/lib/$library.so")" = $library.so.0 ] || fail "$library.so isn't a link to $library.so.0"
+  readelf -d "$at/lib/$library.so.0" | grep -q "SONAME.*\[$library.so.0\]" || fail "the SONAME isn't $library.so.0"
 done
-for file in libethd.a libethd-drivers.a libethd.so.0 pkgconfig/ethd.pc; do
-  [ -f "$at/lib/$file" ] || fail "lib/$file isn't installed"
-done
-[ "$(readlink "$at/lib/libethd.so")" = libethd.so.0 ] || fail "libethd.so isn't a link to libethd.so.0"
-readelf -d "$at/lib/libethd.so.0" | grep -q 'SONAME.*\[libethd.so.0\]' || fail "the SONAME isn't libethd.so.0"
 [ -z "$(find "$root" -type f ! -perm -444)" ] || fail "installed, but not readable by all"
-diff -r "$BUILD/share/ethd" "$at/share/ethd" || fail "share/ethd differs"
-if grep -rIlF -e "$PWD" -e "$BUILD" "$at/lib/pkgconfig" "$at/include" "$at/share"; then fail "holds a path of the build"; fi
-
+diff -r -x installed "$BUILD/share/ethd" "$at/share/ethd" || fail "share/ethd differs"
+if grep -rIlF -e "$PWD" -e "$BUILD" -e "$work" "$at/lib" "$at/include" "$at/share"; then fail "holds a path of the build"; fi
 version=$(sed -n 's/.*define ETHD_VERSION "\(.*\)".*/\1/p' include/ethd/ethd.h)
-found=$(PKG_CONFIG_PATH=$at/lib/pkgconfig $PKG_CONFIG --modversion ethd)
-[ -n "$version" ] && [ "$found" = "$version" ] || fail "ethd.pc says version '$found', ethd.h '$version'"
+for name in ethd ethd-drivers; do
+  found=$(PKG_CONFIG_PATH=$at/lib/pkgconfig $PKG_CONFIG --modversion $name)
+  [ -n "$version" ] && [ "$found" = "$version" ] || fail "$name.pc says version '$found', ethd.h '$version'"
+done
+echo '/opt/ethd/share/ethd/of_an_earlier_version' >>"$at/share/ethd/installed" && : >"$at/share/ethd/of_an_earlier_version"
+run "$root" /opt/ethd install-files || fail "make install, again"
+[ ! -e "$at/share/ethd/of_an_earlier_version" ] || fail "an earlier version's file stays"
 
-run uninstall >"$work/log" 2>&1 || { cat "$work/log"; fail "make uninstall failed"; }
-left=$(cd "$at" && find . ! -type d | sort | tr '\n' ' ')
-[ "$left" = "./include/other.h ./share/other/file " ] || fail "after uninstall there is: $left"
-[ ! -d "$at/include/ethd" ] && [ ! -d "$at/share/ethd" ] || fail "uninstall left our folders"
+# ---- moved, to a path with spaces; every public inline function and both libraries link ----
+moved="$work/a tree"
+mv "$at" "$moved"
+export PKG_CONFIG_PATH="$moved/lib/pkgconfig" LD_LIBRARY_PATH="$moved/lib"
+cat >"$work/inline.c" <<'END'
+#include <ethd/vec.h>
+#include <stdio.h>
+int main(int argc, char **argv) {
+  ethd_vec v = {3.0 * argc, 4.0 * argc};
+  (void)argv;
+  return printf("%g\n", ethd_vec_norm(v)) != 2;
+}
+END
+cat >"$work/drivers.c" <<'END'
+#include <ethd/config.h>
+#include <ethd/conform.h>
+#include <ethd/ethd.h>
+#include <ethd/loop.h>
+#include <ethd/record.h>
+#include <ethd/sim.h>
+#include <stdio.h>
+int main(void) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd_config *config;
+  ethd_loop_def def = ethd_loop_default();
+  if (ethd_config_load(NULL, &config, message)) return puts(message), 1;
+  int drivers = 0;
+  while (ethd_drivers[drivers]) drivers++;
+  printf("%s, %d drivers, %g s\n", config->setup.transition->law.id, drivers, def.period);
+  ethd_config_free(config);
+  return ethd_recording_verify("/nowhere", message) == ETHD_OK;
+}
+END
+links() { # NAME FLAGS...: as pkg-config says it, words with spaces and all
+  name=$1
+  shift
+  eval "$CC -O0 $sanitizer -Wall -Wextra -Werror '$work/$name.c' -o '$work/$name' $*" || fail "$name doesn't link: $*"
+}
+links inline "$($PKG_CONFIG --cflags --libs ethd)"
+[ "$("$work/inline")" = 5 ] || fail "inline"
+links drivers "$($PKG_CONFIG --cflags --libs ethd-drivers)"
+shared=$("$work/drivers") || fail "the drivers' library: $shared"
+readelf -d "$work/drivers" | grep -q 'NEEDED.*libethd-drivers.so.0' || fail "not the shared library"
+if [ -z "$sanitizer" ]; then
+  links inline "-static $($PKG_CONFIG --static --cflags --libs ethd)"
+  [ "$("$work/inline")" = 5 ] || fail "inline, static"
+  rm "$moved"/lib/*.so
+  links drivers "$($PKG_CONFIG --static --cflags --libs ethd-drivers)"
+  [ "$(env -u LD_LIBRARY_PATH "$work/drivers")" = "$shared" ] || fail "the drivers' archive"
+  for library in libethd libethd-drivers; do ln -s $library.so.0 "$moved/lib/$library.so"; done
+fi
+cat >"$work/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.16)
+project(try C)
+find_package(ethd 0.1 REQUIRED)
+foreach(kind "" "-static")
+  add_executable(inline${kind} inline.c)
+  target_link_libraries(inline${kind} ethd::ethd${kind})
+  add_executable(drivers${kind} drivers.c)
+  target_link_libraries(drivers${kind} ethd::drivers${kind})
+endforeach()
+if(NOT EXISTS "${ETHD_DATA_DIR}/n.plant")
+  message(FATAL_ERROR "ETHD_DATA_DIR is ${ETHD_DATA_DIR}")
+endif()
+find_package(ethd 0.2 QUIET)
+if(ethd_FOUND)
+  message(FATAL_ERROR "0.2 is found")
+endif()
+END
+if command -v cmake >/dev/null; then
+  env -u LD_LIBRARY_PATH CFLAGS="$sanitizer" cmake -S "$work" -B "$work/cmake" -DCMAKE_C_COMPILER="${CC%% *}" -DCMAKE_PREFIX_PATH="$moved" >"$work/log" 2>&1 &&
+    env -u LD_LIBRARY_PATH cmake --build "$work/cmake" >>"$work/log" 2>&1 || { cat "$work/log"; fail "CMake"; }
+  for kind in "" -static; do
+    [ "$("$work/cmake/inline$kind")" = 5 ] && [ "$("$work/cmake/drivers$kind")" = "$shared" ] || fail "CMake's programs$kind"
+  done
+else
+  fail "no cmake, which .ci/setup check brings"
+fi
+unset PKG_CONFIG_PATH LD_LIBRARY_PATH
+mv "$moved" "$at"
+
+# ---- uninstalled ----
+run "$root" /opt/ethd uninstall || fail "make uninstall"
+left=$(cd "$root/opt/ethd" && find . | sort | tr '\n' ' ')
+[ "$left" = ". ./lib ./share ./share/other ./share/other/file " ] || fail "after uninstall there is: $left"
+run "$root" /opt/ethd uninstall && fail "uninstalled twice"
+grep -q "nothing of ours is installed in $root/opt/ethd" "$work/log" || fail "twice: $(cat "$work/log")"
+
+# ---- into the system: said what the loader needs; a path with spaces; no rights ----
+run "" "$work/my tools" install-files || fail "a path with spaces"
+grep -q "the loader doesn't search $work/my tools/lib yet: .* or set LD_LIBRARY_PATH=$work/my tools/lib" "$work/log" || fail "no word on the loader: $(cat "$work/log")"
+eval "$CC $sanitizer '$work/drivers.c' -o '$work/drivers' $(PKG_CONFIG_PATH="$work/my tools/lib/pkgconfig" $PKG_CONFIG --cflags --libs ethd-drivers)"
+[ "$(LD_LIBRARY_PATH="$work/my tools/lib" "$work/drivers")" = "$shared" ] || fail "from a path with spaces"
+[ -n "$sanitizer" ] || "$work/my tools/bin/ethd-tap" --taps 1 >/dev/null || fail "ethd-tap from a path with spaces"
+run "" "$work/my tools" uninstall || fail "uninstall from a path with spaces"
+[ ! -e "$work/my tools" ] || fail "left: $(find "$work/my tools")"
+: >"$work/file"
+run "" "$work/file/x" install-files && fail "below a file"
+[ "$(grep -c 'sudo make install' "$work/log")" = 1 ] || fail "no rights: $(cat "$work/log")"
+run "" relative install-files && fail "a relative path"
+grep -q 'relative: PREFIX and LIBDIR begin with /' "$work/log" || fail "a relative path: $(cat "$work/log")"
+echo "$shared"

@@ -17,7 +17,7 @@ grep -q 'ethd_plugin' "$work/2.c" || fail "the second block of C has no ethd_plu
 
 $MAKE --no-print-directory -s B="$BUILD" DESTDIR="$work/root" PREFIX=/opt/ethd install-files >"$work/log" 2>&1 ||
   { cat "$work/log"; fail "make install failed"; }
-export PKG_CONFIG_PATH="$work/root/opt/ethd/lib/pkgconfig" PKG_CONFIG_SYSROOT_DIR="$work/root"
+export PKG_CONFIG_PATH="$work/root/opt/ethd/lib/pkgconfig"
 export LD_LIBRARY_PATH="$work/root/opt/ethd/lib"
 strict="-std=gnu11 -O2 -Wall -Wextra -Werror ${SAN:+-fsanitize=$SAN}"
 

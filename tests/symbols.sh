@@ -1,11 +1,10 @@
 #!/bin/sh
-# What libethd.so shows and what it needs; what the control side's objects need.
-#   BUILD=build sh tests/symbols.sh renew    writes tests/exported-symbols.txt anew
+# What libethd.so and libethd-drivers.so show, what libethd.so needs; what the control side's objects need.
+#   BUILD=build sh tests/symbols.sh renew    writes tests/exported-symbols*.txt anew
 set -u
 LC_ALL=C
 export LC_ALL
 so=$BUILD/libethd.so.0
-list=tests/exported-symbols.txt
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 failed=0
@@ -41,27 +40,33 @@ declared() {
     }' | grep -vx ethd_plugin | sort -u
 }
 
-nm -D --defined-only "$so" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort -u >"$work/exported"
+exported() { nm -D --defined-only "$1" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort -u; }
+exported "$so" >"$work/exported"
+exported "$BUILD/libethd-drivers.so.0" >"$work/exported-drivers"
 if [ "${1:-}" = renew ]; then
-  cp "$work/exported" "$list"
-  echo "$list: $(wc -l <"$list") symbols"
+  for kind in '' -drivers; do
+    cp "$work/exported$kind" "tests/exported-symbols$kind.txt"
+    echo "tests/exported-symbols$kind.txt: $(wc -l <"$work/exported$kind") symbols"
+  done
   exit
 fi
 if [ -n "${SAN:-}" ]; then echo "SKIP: a sanitizer's build needs the sanitizer's symbols"; exit 77; fi
 
-grep -vE '^ethd_[a-z]' "$work/exported" >"$work/foreign" && fail "exported, but not called ethd_*:" && cat "$work/foreign"
+cat "$work/exported" "$work/exported-drivers" | grep -vE '^ethd_[a-z]' >"$work/foreign" && fail "exported, but not called ethd_*:" && cat "$work/foreign"
 for archive in libethd.a libethd-drivers.a; do
   nm -g --defined-only "$BUILD/$archive" | awk 'NF == 3 { print $3 }' | grep -v '^ethd_' >"$work/foreign" &&
     fail "$archive: global, but not called ethd_*:" && cat "$work/foreign"
 done
-if ! diff "$list" "$work/exported" >"$work/diff"; then
+for kind in '' -drivers; do
+  list=tests/exported-symbols$kind.txt
+  diff "$list" "$work/exported$kind" >"$work/diff" && continue
   fail "exported symbols (>) differ from $list (<); if that is meant: BUILD=$BUILD sh tests/symbols.sh renew"
   cat "$work/diff"
-fi
-# A declaration belongs to libethd.so or, of the drivers' headers, to libethd-drivers.a.
+done
+# A declaration belongs to libethd.so or, of the drivers' headers, to libethd-drivers.so.
 declared >"$work/declared"
-nm -g --defined-only "$BUILD/libethd-drivers.a" | awk 'NF == 3 { print $3 }' | sort -u >"$work/drivers"
-comm -13 "$work/declared" "$work/exported" >"$work/unmarked"
+cp "$work/exported-drivers" "$work/drivers"
+sort "$work/exported" "$work/exported-drivers" | comm -13 "$work/declared" - >"$work/unmarked"
 [ -s "$work/unmarked" ] && fail "exported without an ETHD_API declaration:" && cat "$work/unmarked"
 sort -u "$work/exported" "$work/drivers" | comm -23 "$work/declared" - >"$work/undefined"
 [ -s "$work/undefined" ] && fail "declared ETHD_API, defined nowhere:" && cat "$work/undefined"
