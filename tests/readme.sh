@@ -12,6 +12,10 @@ awk -v to="$work" '
   /^```/ { out = "" }
   out != "" { print >out }' README.md
 [ -f "$work/2.c" ] || fail "fewer than two blocks of C"
+for n in 1 2; do
+  example=apps/examples/$(echo 'wall law' | cut -d' ' -f$n).c
+  sed '1,/[*][/]$/d' "$example" | cmp - "$work/$n.c" || fail "block $n isn't $example behind its first comment"
+done
 grep -q 'main *(' "$work/1.c" || fail "the first block of C has no main"
 grep -q 'ethd_plugin' "$work/2.c" || fail "the second block of C has no ethd_plugin"
 

@@ -1,0 +1,132 @@
+/* A driver of one's own, for amplifiers on a bus that answers slowly: the control thread only ever touches two cells, an
+   I/O thread does the exchanges. The amplifiers are a model here (J dw/dt = torque - b w); put yours into `exchange`.
+   The program asks whether the driver keeps its contract, then holds the ring on a finger for a second.
+
+     cc driver.c $(pkg-config --cflags --libs ethd-drivers) -o driver && ./driver */
+#include <ethd/cell.h>
+#include <ethd/conform.h>
+#include <ethd/loop.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define INERTIA 0.02      /* kg m^2 */
+#define FRICTION 0.05     /* Nms/rad */
+#define WATCHDOG 20000000 /* ns without an exchange: the amplifiers let go */
+
+typedef struct order {
+  double torque[2]; /* Nm */
+} order;
+typedef struct answer {
+  double q[2]; /* rad */
+  int64_t at;  /* ns */
+} answer;
+
+typedef struct bus {
+  ethd_cell *orders, *answers;
+  _Atomic int32_t safe; /* any thread's: no torque until the next start */
+  answer seen;          /* the control thread's */
+  order taken;          /* the I/O thread's, and the rest */
+  double q[2], w[2];    /* the model */
+  int64_t now, heard;   /* ns */
+} bus;
+
+/* One exchange: torques out, angles back. Here a real driver blocks for as long as its bus takes. */
+static answer exchange(bus *b, const order *o, int64_t now_ns) {
+  double dt = b->now ? 1e-9 * (double)(now_ns - b->now) : 0;
+  int alive = now_ns - b->heard <= WATCHDOG;
+  for (int i = 0; i < 2; i++) {
+    b->w[i] += dt / INERTIA * ((alive ? o->torque[i] : 0) - FRICTION * b->w[i]);
+    b->q[i] += dt * b->w[i];
+  }
+  b->now = now_ns;
+  return (answer){{b->q[0], b->q[1]}, now_ns};
+}
+
+static ethd_status open_bus(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
+  bus *b = *device = calloc(1, sizeof *b);
+  ethd_error error;
+  (void)message;
+  if (!b || ethd_cell_create(sizeof(order), &b->orders, &error) ||
+      ethd_cell_create(sizeof(answer), &b->answers, &error))
+    return ETHD_E_MEMORY;
+  return ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, b->q);
+}
+
+/* At rest where it stands, with no torque from before, and an answer to begin with. */
+static ethd_status start(void *device) {
+  bus *b = device;
+  b->taken = (order){{0, 0}};
+  b->w[0] = b->w[1] = 0;
+  b->now = b->heard = 0;
+  ethd_cell_put(b->orders, &b->taken);
+  b->seen = (answer){{b->q[0], b->q[1]}, 0};
+  ethd_cell_put(b->answers, &b->seen);
+  b->safe = 0;
+  return ETHD_OK;
+}
+
+static uint32_t units(const void *device) { return (void)device, 1; }
+
+static ethd_status service(void *device, uint32_t unit, int64_t now_ns) {
+  bus *b = device;
+  (void)unit;
+  if (ethd_cell_take(b->orders, &b->taken) == ETHD_OK) b->heard = now_ns;
+  if (b->safe) b->taken = (order){{0, 0}};
+  answer a = exchange(b, &b->taken, now_ns);
+  ethd_cell_put(b->answers, &a);
+  return ETHD_OK;
+}
+
+static ethd_status read_joints(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
+  bus *b = device;
+  ethd_status status = ethd_cell_take(b->answers, &b->seen);
+  (void)now_ns;
+  for (int i = 0; i < 2; i++) out->q[i] = b->seen.q[i];
+  out->time_ns = b->seen.at;
+  return status; /* ETHD_STALE: the loop waits for the next one */
+}
+
+static ethd_status write_torque(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT {
+  bus *b = device;
+  order o = {{command->torque[0], command->torque[1]}};
+  (void)now_ns;
+  ethd_cell_put(b->orders, &o);
+  return ETHD_OK;
+}
+
+static void safe(void *device) ETHD_RT { ((bus *)device)->safe = 1; }
+static ethd_limits limits(const void *device) { return (void)device, ethd_limits_torque(1); }
+
+static void close_bus(void *device) {
+  bus *b = device;
+  ethd_cell_destroy(b->orders);
+  ethd_cell_destroy(b->answers);
+  free(b);
+}
+
+static const ethd_driver mine = {.size = sizeof mine,
+                                 .abi = ETHD_DRIVER_ABI,
+                                 .id = "mine",
+                                 .brief = "two amplifiers on a slow bus",
+                                 .open = open_bus,
+                                 .start = start,
+                                 .read = read_joints,
+                                 .write = write_torque,
+                                 .units = units,
+                                 .service = service,
+                                 .safe = safe,
+                                 .close = close_bus,
+                                 .limits = limits};
+
+int main(void) {
+  static const char *const words[] = {"kept", "BROKEN", "at risk", "not asked"};
+  const ethd_driver *const drivers[] = {&mine, NULL};
+  ethd_setup setup = ethd_setup_default();
+  const ethd_device_def device = {.setup = &setup, .folder = "."};
+  const ethd_conform_def questions = {"mine", drivers, &device, 0.1, 1};
+  ethd_conform_answer answers[ETHD_QUESTIONS];
+  ethd_status status = ethd_conform(&questions, answers);
+  for (int i = 0; i < ETHD_QUESTIONS; i++)
+    printf("%-9s %-10s %s\n", answers[i].question, words[answers[i].verdict], answers[i].found);
+  return status ? 1 : 0;
+}
