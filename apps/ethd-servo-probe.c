@@ -18,6 +18,8 @@ static const char doc[] =
     "  ethd-servo-probe --map svd48v.map\n"
     "  ethd-servo-probe --map plant.map --port 127.0.0.1:1502 --duration 10";
 
+#define ASKS 3 /* questions, before a drive is said not to answer */
+
 enum { OPTION_PORT = 256 };
 
 static const struct argp_option options[] = {
@@ -61,6 +63,40 @@ static void load(void) {
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   if (arg.port && strlen(arg.port) >= sizeof map.port) ethd__fail(ETHD_EXIT_INPUT, "--port: too long");
   if (arg.port) strcpy(map.port, arg.port);
+}
+
+static const char *const orders[] = {"low-first", "high-first"};
+
+/* Whether anything comes back in this order of the checksum. */
+static bool answers(int32_t crc) {
+  static ethd__servo_map other;
+  static ethd__servo_plan plan;
+  char message[ETHD_MESSAGE_MAX];
+  ethd__servo_bus bus;
+  other = map;
+  other.crc = crc;
+  ethd__servo_plan_make(&other, &plan);
+  if (ethd__servo_bus_open(&other, &bus, message)) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd__servo_outcome got = ETHD__SERVO_MISSING;
+  for (int i = 0; i < ASKS && (got == ETHD__SERVO_MISSING || got == ETHD__SERVO_GARBLED); i++) {
+    (void)!ethd__servo_bus_drain(&bus);
+    got = ethd__servo_bus_read(&bus, plan.reads[0].space, plan.reads[0].address, plan.reads[0].count,
+                               plan.reads[0].words);
+  }
+  ethd__servo_bus_close(&bus);
+  return got != ETHD__SERVO_MISSING && got != ETHD__SERVO_GARBLED && got != ETHD__SERVO_LOST;
+}
+
+/* A serial drive that answers only in the other order is measured in that one, and the map's is named. */
+static void find_order(void) {
+  bool heard[2];
+  if (map.transport != ETHD__SERVO_RTU) return;
+  for (int32_t crc = 0; crc < 2; crc++) heard[crc] = answers(crc);
+  printf("%-10s low-first: %s, high-first: %s\n", "checksum", heard[0] ? "it answers" : "no answer",
+         heard[1] ? "it answers" : "no answer");
+  if (heard[map.crc] || !heard[!map.crc]) return;
+  printf("%-10s crc = %s is needed, the map says %s; measured so\n", "mend", orders[!map.crc], orders[map.crc]);
+  map.crc = !map.crc;
 }
 
 /* Connected and identified, or the reason why not. */
@@ -123,6 +159,7 @@ int main(int argc, char **argv) {
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   ethd__catch_interrupt();
   load();
+  find_order();
   reach();
   double seconds = measure();
   print_rate(seconds);

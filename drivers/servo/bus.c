@@ -7,6 +7,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "servo/bus_parts.h"
 #include "text/error_text.h"
 
 #define DRAINS 10 /* times the quiet that is asked for, before giving up for now */
@@ -20,6 +21,9 @@ static int64_t now(void) {
 static int64_t nanoseconds(double seconds) { return (int64_t)(1e9 * seconds); }
 
 /* ---- opening ---- */
+
+/* What libmodbus can't frame. */
+static bool is_own(const ethd__servo_map *map) { return map->crc == ETHD__SERVO_CRC_HIGH_FIRST || map->local_echo; }
 
 /* libmodbus frames and checks; lines and connections are ours, so none of its recoveries. */
 static modbus_t *context(const ethd__servo_map *map, int fd) {
@@ -40,8 +44,9 @@ ethd_status ethd__servo_bus_open(const ethd__servo_map *map, ethd__servo_bus *bu
   *bus = (ethd__servo_bus){.map = map, .fd = -1};
   ethd_status status = ethd__servo_port_open(map, &bus->fd, message);
   if (status) return status;
-  bus->modbus = context(map, bus->fd);
   bus->quiet_ns = now();
+  if (is_own(map)) return ETHD_OK;
+  bus->modbus = context(map, bus->fd);
   if (bus->modbus) return ETHD_OK;
   ethd__servo_bus_close(bus);
   return ethd__say(message, ETHD_E_ARGUMENT, "%s: unit %u isn't allowed here", map->port, map->unit);
@@ -101,6 +106,24 @@ static ethd__servo_outcome end(ethd__servo_bus *bus, int got, uint32_t count) {
   return result;
 }
 
+/* In our framing; as libmodbus has it: how many words, -1 with errno. */
+static int ask(const ethd__servo_bus *bus, const ethd__servo_frame *f, uint32_t count, uint16_t *words) {
+  errno = ethd__servo_ask(bus, f, words);
+  return errno ? -1 : (int)count;
+}
+
+static int own_read(const ethd__servo_bus *bus, int32_t space, uint32_t address, uint32_t count, uint16_t *words) {
+  ethd__servo_frame f;
+  ethd__servo_frame_read(bus->map, space, address, count, &f);
+  return ask(bus, &f, count, words);
+}
+
+static int own_write(const ethd__servo_bus *bus, uint32_t address, uint32_t count, const uint16_t *words) {
+  ethd__servo_frame f;
+  ethd__servo_frame_write(bus->map, address, count, words, &f);
+  return ask(bus, &f, count, NULL);
+}
+
 static ethd__servo_outcome gone(ethd__servo_bus *bus) {
   bus->error = ENOTCONN;
   return ETHD__SERVO_LOST;
@@ -108,25 +131,35 @@ static ethd__servo_outcome gone(ethd__servo_bus *bus) {
 
 ethd__servo_outcome ethd__servo_bus_read(ethd__servo_bus *bus, int32_t space, uint32_t address, uint32_t count,
                                          uint16_t *words) {
-  if (!bus->modbus) return gone(bus);
+  if (bus->fd < 0) return gone(bus);
   keep_silence(bus);
-  int got = space == ETHD__SERVO_INPUT ? modbus_read_input_registers(bus->modbus, (int)address, (int)count, words)
-                                       : modbus_read_registers(bus->modbus, (int)address, (int)count, words);
+  int got = !bus->modbus                 ? own_read(bus, space, address, count, words)
+            : space == ETHD__SERVO_INPUT ? modbus_read_input_registers(bus->modbus, (int)address, (int)count, words)
+                                         : modbus_read_registers(bus->modbus, (int)address, (int)count, words);
   return end(bus, got, count);
 }
 
 ethd__servo_outcome ethd__servo_bus_write(ethd__servo_bus *bus, uint32_t address, uint32_t count,
                                           const uint16_t *words) {
-  if (!bus->modbus) return gone(bus);
+  if (bus->fd < 0) return gone(bus);
   keep_silence(bus);
-  return end(bus, modbus_write_registers(bus->modbus, (int)address, (int)count, words), count);
+  int got = bus->modbus ? modbus_write_registers(bus->modbus, (int)address, (int)count, words)
+                        : own_write(bus, address, count, words);
+  return end(bus, got, count);
 }
 
 ethd__servo_outcome ethd__servo_bus_both(ethd__servo_bus *bus, uint32_t to, uint32_t written, const uint16_t *out,
                                          uint32_t from, uint32_t count, uint16_t *in) {
-  if (!bus->modbus) return gone(bus);
+  if (bus->fd < 0) return gone(bus);
   keep_silence(bus);
-  int got = modbus_write_and_read_registers(bus->modbus, (int)to, (int)written, out, (int)from, (int)count, in);
+  int got;
+  if (bus->modbus) {
+    got = modbus_write_and_read_registers(bus->modbus, (int)to, (int)written, out, (int)from, (int)count, in);
+  } else {
+    ethd__servo_frame f;
+    ethd__servo_frame_both(bus->map, (ethd__servo_span){to, written}, out, (ethd__servo_span){from, count}, &f);
+    got = ask(bus, &f, count, in);
+  }
   return end(bus, got, count);
 }
 
@@ -135,7 +168,7 @@ ethd__servo_outcome ethd__servo_bus_both(ethd__servo_bus *bus, uint32_t to, uint
 ethd__servo_outcome ethd__servo_bus_drain(ethd__servo_bus *bus) {
   unsigned char rest[512];
   int64_t quiet = nanoseconds(bus->map->drain), since = now(), give_up = since + DRAINS * quiet;
-  while (bus->modbus) {
+  while (bus->fd >= 0) {
     int64_t at = now(), left = since + quiet - at;
     struct pollfd wait = {bus->fd, POLLIN, 0};
     struct timespec t = {left / 1000000000, left % 1000000000};

@@ -1,4 +1,5 @@
-/* Questions and answers on a Modbus, one at a time, through libmodbus. All [main] or one I/O thread. */
+/* Questions and answers on a Modbus, one at a time: through libmodbus, or in our own framing what that doesn't speak.
+   All [main] or one I/O thread. */
 #ifndef ETHD_SERVO_BUS_H
 #define ETHD_SERVO_BUS_H
 
@@ -16,7 +17,7 @@ typedef enum ethd__servo_outcome {
 
 typedef struct ethd__servo_bus {
   const ethd__servo_map *map;
-  void *modbus;
+  void *modbus;     /* NULL: our own framing */
   int fd;           /* -1: closed */
   int error;        /* errno of the last failure, libmodbus's included */
   int64_t quiet_ns; /* CLOCK_MONOTONIC: when the line was left */

@@ -5,6 +5,7 @@
      port = /dev/ttyUSB0
      baud = 500000               any
      format = 8N1
+     crc = low-first             high-first: against the standard, but some drives have it so
      unit = 1                    station on the bus
      [register torque1]          one section a register; address as in the drive's manual (0x or decimal)
      direction = write
@@ -49,6 +50,7 @@ enum { ETHD__SERVO_U16, ETHD__SERVO_I16, ETHD__SERVO_U32, ETHD__SERVO_I32, ETHD_
 enum { ETHD__SERVO_HIGH_FIRST, ETHD__SERVO_LOW_FIRST, ETHD__SERVO_NO_ORDER };
 enum { ETHD__SERVO_SEPARATE, ETHD__SERVO_COMBINED }; /* 16 then 3, or 0x17 */
 enum { ETHD__SERVO_BY_WORD, ETHD__SERVO_BY_VALUE };
+enum { ETHD__SERVO_CRC_LOW_FIRST, ETHD__SERVO_CRC_HIGH_FIRST };
 enum { ETHD__SERVO_WATCH_NONE, ETHD__SERVO_WATCH_SILENCE, ETHD__SERVO_WATCH_COUNTER };
 
 /* Names with a meaning, in the order of ethd__servo_roles. */
@@ -114,6 +116,7 @@ enum { ETHD__SERVO_IDENTIFY, ETHD__SERVO_ENABLE, ETHD__SERVO_DISABLE, ETHD__SERV
 
 typedef struct ethd__servo_map {
   int32_t transport, format, exchange, addressing;
+  int32_t crc, local_echo; /* of rtu: order of the checksum's bytes; 1: what is sent comes back first */
   char port[ETHD__SERVO_PORT_MAX];
   double baud;
   uint32_t unit, base, divisor, gap;

@@ -33,6 +33,12 @@ static const row bus[] = {
     {CHOICE,
      {"addressing", "words|values", 0, 1, 0, "what an address counts; values: each is asked for alone"},
      AT(map, addressing)},
+    {CHOICE,
+     {"crc", "low-first|high-first", 0, 1, 0, "of an rtu frame's two bytes of checksum; low-first is the standard"},
+     AT(map, crc)},
+    {CHOICE,
+     {"local_echo", "no|yes", 0, 1, 0, "rtu: what is sent comes back, as on a two-wire line with an open receiver"},
+     AT(map, local_echo)},
     {CHOICE, {"exchange", "separate|combined", 0, 1, 0, "16 then 3, or 0x17"}, AT(map, exchange)},
     {NUMBER, {"connect", "s", 1e-3, 60, 1, "time to connect"}, AT(map, connect)},
     {NUMBER, {"response", "s", 1e-4, 10, 0.02, "time for an answer"}, AT(map, response)},
@@ -193,6 +199,9 @@ ethd_status ethd__servo_read_bus(const ethd__servo_source *s, int line, ethd__se
     return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: bus.baud is missing: rtu needs it", s->name, line);
   if (map->baud != rint(map->baud))
     return ethd__servo_refuse(s, ethd_ini_find(s->ini, "bus", "baud"), "a whole number");
+  const char *serial_only = map->crc ? "crc" : map->local_echo ? "local_echo" : NULL;
+  if (serial_only && map->transport != ETHD__SERVO_RTU)
+    return ethd__servo_refuse(s, ethd_ini_find(s->ini, "bus", serial_only), "transport = rtu");
   if (map->silence < 0) map->silence = map->transport == ETHD__SERVO_RTU ? 3.5 * 11 / map->baud : 0;
   return ETHD_OK;
 }

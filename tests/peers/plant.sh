@@ -1,12 +1,5 @@
-# For tests: the simulated plant, and pymodbus as the server of a drive in front of it. Wants $folder, $BUILD, $venv, fail();
+# For tests: the simulated plant, and pymodbus as the server of a drive in front of it. Wants pymodbus.sh, $folder, $BUILD, $venv, fail();
 # appends to $children what must be killed; $alone, where a test sets it, goes before both.
-await() { # FILE PATTERN
-  for _ in $(seq 400); do
-    grep -q -e "$2" "$1" 2>/dev/null && return
-    sleep 0.05
-  done
-  fail "no $2 in $1: $(cat "$1")"
-}
 plant() { # NAME ARGUMENTS...: its port in $plant, what it says in NAME.plant; it lives until descriptor 8 is closed
   name=$1
   shift

@@ -103,8 +103,8 @@ static int frame(const mock *m, const uint8_t *head, const uint8_t *q, const uin
   memcpy(out + at, pdu, (size_t)length);
   if (!m->is_rtu) return at + length;
   uint16_t crc = mock_crc(out, 1 + length);
-  out[1 + length] = (uint8_t)crc;
-  out[2 + length] = (uint8_t)(crc >> 8);
+  out[1 + length + m->crc_high] = (uint8_t)crc;
+  out[2 + length - m->crc_high] = (uint8_t)(crc >> 8);
   return 3 + length;
 }
 
@@ -152,9 +152,21 @@ static void reply(mock *m, const uint8_t *head, const uint8_t *q, mock_act act) 
   send_all(m, out + first, bytes - first);
 }
 
+static int request_length(const uint8_t *q) { return q[1] == 16 ? 9 + q[6] : q[1] == 23 ? 13 + q[10] : 8; }
+
+/* Whether its checksum is this drive's; what was sent comes back where it should. */
+static int heard(const mock *m, const uint8_t *q) {
+  int n = request_length(q);
+  uint16_t crc = mock_crc(q, n - 2);
+  if (!m->is_rtu) return 1;
+  if (m->mirror) send_all(m, q, n);
+  return q[n - 2 + m->crc_high] == (crc & 0xFF) && q[n - 1 - m->crc_high] == crc >> 8;
+}
+
 static void serve(mock *m) {
   uint8_t head[HEAD], q[600];
   while (!atomic_load(&m->stop) && read_request(m, head, q)) {
+    if (!heard(m, q)) continue;
     uint64_t n = atomic_fetch_add(&m->requests, 1);
     mock_act act = {MOCK_ANSWER, 0, 0};
     mock_plan plan = m->act;

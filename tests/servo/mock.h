@@ -36,6 +36,8 @@ typedef struct mock {
   atomic_int frozen; /* 1: the motors stay as they were */
   atomic_int stuck;  /* not 0: what torque1 holds whatever is written */
   int is_rtu;
+  atomic_int crc_high; /* rtu: its checksum has the high byte first; what has another isn't heard */
+  atomic_int mirror;   /* rtu: what is sent to it comes back first */
   atomic_uint_fast64_t requests, connections;
   atomic_int stop, released, holding;
   int listener, line; /* line: connection, or the terminal's other end */

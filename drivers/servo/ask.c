@@ -1,0 +1,72 @@
+/* Questions in our own framing, over the bus's line; the deadline is one for the whole answer, as libmodbus's. */
+#include <errno.h>
+#include <modbus/modbus.h>
+#include <poll.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "servo/bus_parts.h"
+
+static int64_t now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+/* Until the line is ready; 0, or an errno. */
+static int await(int fd, short events, int64_t until) {
+  for (;;) {
+    int64_t left = until - now();
+    struct timespec t = {left / 1000000000, left % 1000000000};
+    struct pollfd wait = {fd, events, 0};
+    if (left <= 0) return ETIMEDOUT;
+    int ready = ppoll(&wait, 1, &t, NULL);
+    if (ready > 0) return wait.revents & (POLLHUP | POLLERR | POLLNVAL) ? EIO : 0;
+    if (ready < 0 && errno != EINTR) return errno;
+  }
+}
+
+static int send_all(int fd, const uint8_t *bytes, int length, int64_t until) {
+  for (int sent = 0; sent < length;) {
+    ssize_t n = write(fd, bytes + sent, (size_t)(length - sent));
+    if (n > 0) sent += (int)n;
+    if (n < 0 && errno != EAGAIN && errno != EINTR) return errno;
+    int failure = n > 0 ? 0 : await(fd, POLLOUT, until);
+    if (failure) return failure;
+  }
+  return 0;
+}
+
+/* Bytes from `*got` up to `length`. */
+static int receive(int fd, uint8_t *bytes, int *got, int length, int64_t until) {
+  while (*got < length) {
+    ssize_t n = read(fd, bytes + *got, (size_t)(length - *got));
+    if (n > 0) *got += (int)n;
+    if (n < 0 && errno != EAGAIN && errno != EINTR) return errno;
+    int failure = n > 0 ? 0 : await(fd, POLLIN, until);
+    if (failure) return failure;
+  }
+  return 0;
+}
+
+/* On two wires the transmitter is heard: what comes back must be what was sent. */
+static int hear_itself(const ethd__servo_bus *bus, const ethd__servo_frame *f, int64_t until) {
+  uint8_t back[ETHD__SERVO_FRAME_MAX];
+  int got = 0, failure = receive(bus->fd, back, &got, f->length, until);
+  if (failure) return failure;
+  return memcmp(back, f->bytes, (size_t)f->length) == 0 ? 0 : EMBBADDATA;
+}
+
+int ethd__servo_ask(const ethd__servo_bus *bus, const ethd__servo_frame *f, uint16_t *words) {
+  uint8_t answer[ETHD__SERVO_FRAME_MAX];
+  int64_t until = now() + (int64_t)(1e9 * bus->map->response);
+  int got = 0, whole = 0;
+  int failure = send_all(bus->fd, f->bytes, f->length, until);
+  if (!failure && bus->map->local_echo) failure = hear_itself(bus, f, until);
+  while (!failure && !(whole && got == whole)) {
+    failure = receive(bus->fd, answer, &got, whole ? whole : got + 1, until);
+    if (!failure && !whole) whole = ethd__servo_frame_whole(bus->map, f, answer, got);
+  }
+  return failure ? failure : ethd__servo_frame_take(bus->map, f, answer, got, words);
+}

@@ -1,0 +1,44 @@
+/* Modbus questions as bytes, for what libmodbus doesn't speak: a serial line whose checksum has its high byte first, or
+   on which one's own bytes come back; and for the guardian, which has no time to ask a library.
+
+     rtu   unit | function, data | checksum              checksum low byte first by the standard
+     tcp   number, 0, length | unit | function, data */
+#ifndef ETHD_SERVO_FRAME_H
+#define ETHD_SERVO_FRAME_H
+
+#include "servo/map.h"
+
+#define ETHD__SERVO_FRAME_MAX 264
+
+typedef struct ethd__servo_frame {
+  uint8_t bytes[ETHD__SERVO_FRAME_MAX];
+  int length; /* of the question */
+  int answer; /* bytes that a good answer has */
+} ethd__servo_frame;
+
+/* Functions 3 or 4, 16, and 0x17. [any] */
+void ethd__servo_frame_read(const ethd__servo_map *map, int32_t space, uint32_t address, uint32_t count,
+                            ethd__servo_frame *out);
+void ethd__servo_frame_write(const ethd__servo_map *map, uint32_t address, uint32_t count, const uint16_t *words,
+                             ethd__servo_frame *out);
+
+typedef struct ethd__servo_span {
+  uint32_t address, count;
+} ethd__servo_span;
+
+void ethd__servo_frame_both(const ethd__servo_map *map, ethd__servo_span to, const uint16_t *words,
+                            ethd__servo_span from, ethd__servo_frame *out);
+
+/* How many bytes the answer has that begins so; 0: more must come to know it. */
+int ethd__servo_frame_whole(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
+                            int length);
+
+/* A whole answer's words into `words`, NULL where none are awaited. 0, or an errno as libmodbus has it: EMBBADCRC,
+   EMBBADDATA for an answer to something else, EMBXILADD and its like for what the drive refuses. [any] */
+int ethd__servo_frame_take(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
+                           int length, uint16_t *words);
+
+/* CRC-16 of Modbus. [any] */
+uint16_t ethd__servo_crc(const uint8_t *bytes, int length);
+
+#endif

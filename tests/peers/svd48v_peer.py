@@ -1,0 +1,243 @@
+"""A UUMotor SVD48V as its manual (V2.0) has it, by pymodbus, independent of ours and of libmodbus: its registers, its
+checksum with the high byte first, its refusals, and two joints that its currents move.
+
+svd48v_peer.py (--serial DEVICE | --tcp PORT) [--crc low-first] [--unit N]
+Says "ready NAME CONTROL": CONTROL is a UDP port of 127.0.0.1 that takes one command a datagram and answers with one line:
+  state          instant, amperes of both motors, running of both, angles of both, instant of the last set-point that
+                 wasn't zero, instant since when no torque acts (0: it acts)                          [s, A, -, rad, s]
+  alarm          the drive stops with an alarm, until control command 2       volts V      its supply
+  cycle          its power goes and comes back: counters from 0, as delivered  turn Q1 Q2  joints are put there, rad
+  frozen N       encoder of joint N stands still                              reversed N  it counts the other way round
+  dead           motors don't follow their set-points                         well        all of this ends
+  mute N         N answers don't come         late N MS    N come late        garble N    N have a bit wrong
+  stale N        N are those of the question before                           requests    how many came
+"""
+import argparse
+import asyncio
+import math
+import socket
+import time
+
+from pymodbus import FramerType
+from pymodbus.datastore import ModbusServerContext
+from pymodbus.datastore.context import ModbusBaseSlaveContext
+from pymodbus.framer.rtu import FramerRTU
+from pymodbus.server import ModbusSerialServer, ModbusTcpServer
+
+COUNTS = 4000 * 12 / (2 * math.pi)  # a radian of the joint
+TORQUE = 0.0389 * 12                # Nm at the joint, an ampere
+INERTIA, VISCOUS, FRICTION = 0.01, 0.02, 0.05
+STOPS = (-1.0, 1.0)                 # rad, hard
+STEP = 1e-4                         # s
+
+# The tables of the manual, p. 15 and 25; those of the second motor by its pattern.
+WRITABLE = {0x3008, 0x5100, 0x5101, 0x5300, 0x5301, 0x5304, 0x5305, 0x5308, 0x5309}
+READABLE = WRITABLE | {0x3001, 0x5400, 0x5401, 0x5404, 0x5405, 0x5408, 0x540C, 0x540D, 0x5410, 0x5411, 0x5414, 0x5415,
+                       0x5418, 0x5419, 0x541A, 0x541B}
+
+
+def signed(word):
+    return word - 65536 if word & 0x8000 else word
+
+
+class Drive(ModbusBaseSlaveContext):
+    def __init__(self):
+        self.q, self.w = [0.0, 0.0], [0.0, 0.0]
+        self.at = time.monotonic()
+        self.volts, self.alarm = 480, False
+        self.frozen, self.reversed, self.dead = [False] * 2, [False] * 2, False
+        self.last_torque_at, self.zero_since = 0.0, self.at
+        self.power_on()
+
+    def power_on(self):
+        self.words = dict.fromkeys(WRITABLE, 0)
+        self.origin = list(self.q)
+        self.running, self.alarm = [0, 0], False
+        self.held = [None, None]
+
+    # ---- the joints ----
+
+    def current(self, i):
+        """Tenths of an ampere that flow."""
+        works = self.running[i] and self.words[0x3008] == 1 and self.words[0x5100 + i] == 2 and not self.dead
+        return signed(self.words[0x5308 + i]) if works else 0
+
+    def advance(self):
+        now = time.monotonic()
+        steps = min(int((now - self.at) / STEP), 20000)
+        self.at = self.at + steps * STEP if steps < 20000 else now
+        for _ in range(steps):
+            for i in range(2):
+                torque = TORQUE * 0.1 * self.current(i) - VISCOUS * self.w[i]
+                if self.w[i] == 0 and abs(torque) <= FRICTION:
+                    continue
+                torque -= math.copysign(FRICTION, self.w[i] or torque)
+                w = self.w[i] + torque / INERTIA * STEP
+                self.w[i] = 0.0 if self.w[i] * w < 0 else w
+                self.q[i] += self.w[i] * STEP
+                if not STOPS[0] <= self.q[i] <= STOPS[1]:
+                    self.q[i] = min(max(self.q[i], STOPS[0]), STOPS[1])
+                    self.w[i] = 0.0
+
+    def count(self, i):
+        n = round((self.q[i] - self.origin[i]) * COUNTS)
+        if not self.frozen[i]:
+            self.held[i] = None
+        elif self.held[i] is None:
+            self.held[i] = n
+        n = n if self.held[i] is None else self.held[i]
+        return (-n if self.reversed[i] else n) & 0xFFFFFFFF
+
+    def mark(self, before):
+        """When torque ends or begins."""
+        acts = any(self.current(i) for i in range(2))
+        if acts:
+            self.last_torque_at, self.zero_since = time.monotonic(), 0.0
+        elif before:
+            self.zero_since = time.monotonic()
+
+    # ---- registers ----
+
+    def reset(self):
+        pass
+
+    def validate(self, fc_as_hex, address, count=1):
+        table = READABLE if fc_as_hex == 3 else WRITABLE
+        return fc_as_hex in (3, 6, 16) and all(address + k in table for k in range(count))
+
+    def word(self, a):
+        if a in WRITABLE:
+            return self.words[a]
+        if a in (0x5400, 0x5401):
+            return self.running[a - 0x5400]
+        if a == 0x5408:
+            return self.volts
+        if a in (0x5414, 0x5415):
+            return self.current(a - 0x5414) & 0xFFFF
+        if 0x5418 <= a <= 0x541B:  # low order first, p. 11
+            return self.count((a - 0x5418) // 2) >> (16 * (a % 2)) & 0xFFFF
+        return 1 if a == 0x3001 else 250
+
+    def getValues(self, fc_as_hex, address, count=1):
+        self.advance()
+        return [self.word(address + k) for k in range(count)]
+
+    def setValues(self, fc_as_hex, address, values):
+        self.advance()
+        before = any(self.current(i) for i in range(2))
+        for k, value in enumerate(values):
+            a = address + k
+            self.words[a] = value
+            if a in (0x5300, 0x5301):
+                if value == 2:
+                    self.alarm = False
+                self.running[a - 0x5300] = int(value == 1 and not self.alarm)
+        self.mark(before)
+
+    # ---- what a test makes it do ----
+
+    def command(self, text):
+        self.advance()
+        before = any(self.current(i) for i in range(2))
+        word, *rest = text.split()
+        if word == "alarm":
+            self.alarm, self.running = True, [0, 0]
+        elif word == "volts":
+            self.volts = round(10 * float(rest[0]))
+        elif word == "cycle":
+            self.power_on()
+        elif word == "turn":
+            self.q, self.w = [float(r) for r in rest], [0.0, 0.0]
+        elif word == "frozen":
+            self.frozen[int(rest[0]) - 1] = True
+        elif word == "reversed":
+            self.reversed[int(rest[0]) - 1] = True
+        elif word == "dead":
+            self.dead = True
+        elif word == "well":
+            self.frozen, self.reversed, self.dead, self.volts = [False] * 2, [False] * 2, False, 480
+        elif word != "state":
+            return "unknown"
+        self.mark(before)
+        return " ".join(f"{x:.6f}" for x in (time.monotonic(), *(0.1 * self.current(i) for i in range(2)), *self.running,
+                                             *self.q, self.last_torque_at, self.zero_since))
+
+
+class Line:
+    """What happens to answers on their way."""
+
+    def __init__(self):
+        self.left, self.kind, self.wait, self.before, self.requests = 0, "", 0.0, b"", 0
+
+    def pass_by(self, sending, data):
+        if not sending:
+            self.requests += 1
+            return data
+        before, self.before = self.before, data
+        if self.left <= 0:
+            return data
+        self.left -= 1
+        if self.kind == "mute":
+            return b""
+        if self.kind == "late":
+            time.sleep(self.wait)
+        if self.kind == "garble":
+            data = data[:3] + bytes([data[3] ^ 16]) + data[4:]
+        return before if self.kind == "stale" and len(before) == len(data) else data
+
+    def command(self, text):
+        word, *rest = text.split()
+        if word == "requests":
+            return str(self.requests)
+        self.kind, self.left = word, int(rest[0])
+        self.wait = 1e-3 * float(rest[1]) if len(rest) > 1 else 0.0
+        return "ok"
+
+
+class Control(asyncio.DatagramProtocol):
+    def __init__(self, drive, line):
+        self.drive, self.line = drive, line
+
+    def connection_made(self, transport):
+        self.transport = transport
+
+    def datagram_received(self, data, addr):
+        text = data.decode()
+        to = self.line if text.split()[0] in ("mute", "late", "garble", "stale", "requests") else self.drive
+        self.transport.sendto(to.command(text).encode(), addr)
+
+
+async def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--serial")
+    parser.add_argument("--tcp", type=int)
+    parser.add_argument("--crc", default="high-first")
+    parser.add_argument("--unit", type=int, default=1)
+    arg = parser.parse_args()
+    if arg.crc == "high-first":  # every frame of the manual: EE 03 54 10 00 01 60 83
+        standard = FramerRTU.compute_CRC
+        FramerRTU.compute_CRC = classmethod(lambda cls, data: (lambda c: c >> 8 | (c & 0xFF) << 8)(standard(data)))
+    drive, line = Drive(), Line()
+    context = ModbusServerContext(slaves={arg.unit: drive}, single=False)
+    options = {"ignore_missing_slaves": True, "trace_packet": line.pass_by}
+    if arg.serial:
+        server = ModbusSerialServer(context, framer=FramerType.RTU, port=arg.serial, baudrate=115200, **options)
+        name = arg.serial
+    else:
+        port = arg.tcp
+        if not port:
+            with socket.socket() as s:
+                s.bind(("127.0.0.1", 0))
+                port = s.getsockname()[1]
+        server = ModbusTcpServer(context, address=("127.0.0.1", port), **options)
+        name = f"127.0.0.1:{port}"
+    loop = asyncio.get_running_loop()
+    control, _ = await loop.create_datagram_endpoint(lambda: Control(drive, line), local_addr=("127.0.0.1", 0))
+    task = asyncio.create_task(server.serve_forever())
+    while not server.transport:
+        await asyncio.sleep(0.01)
+    print("ready", name, control.get_extra_info("sockname")[1], flush=True)
+    await task
+
+
+asyncio.run(main())
