@@ -46,6 +46,16 @@ typedef struct ethd__servo_device {
   ethd_histogram trip;
 } ethd__servo_device;
 
+enum { ETHD__SERVO_Q1, ETHD__SERVO_Q2, ETHD__SERVO_JOINT, ETHD__SERVO_SPEED, ETHD__SERVO_PARAMS };
+
+extern const ethd_param ethd__servo_params[ETHD__SERVO_PARAMS];
+extern const char *const ethd__servo_keys[];
+
+/* The driver's functions. */
+ethd_status ethd__servo_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]);
+ethd_status ethd__servo_start(void *device);
+ethd_status ethd__servo_stop(void *device);
+void ethd__servo_close(void *device);
 ethd_status ethd__servo_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT;
 ethd_status ethd__servo_write(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT;
 void ethd__servo_safe(void *device) ETHD_RT;
@@ -53,6 +63,9 @@ ethd_status ethd__servo_service(void *device, uint32_t unit, int64_t now_ns);
 
 /* ns: feedback or a command older than this is too old. [any] */
 int64_t ethd__servo_old(const ethd__servo_device *d) ETHD_RT;
+
+/* Connects and identifies, at the first time. [main] */
+ETHD_MUST_CHECK ethd_status ethd__servo_meet(ethd__servo_device *d);
 
 /* One turn of the link and what it tells; the device is locked. */
 ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double torque[2]);

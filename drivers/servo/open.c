@@ -1,0 +1,135 @@
+/* From a configuration to a servo whose drive has answered. [main] */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "servo/device.h"
+#include "text/error_text.h"
+#include "text/text.h"
+
+const ethd_param ethd__servo_params[ETHD__SERVO_PARAMS] = {
+    [ETHD__SERVO_Q1] = {"q1", "rad", -100, 100, 0, "joint 1 when the device is opened; without: as its register says"},
+    [ETHD__SERVO_Q2] = {"q2", "rad", -100, 100, 0, "joint 2, likewise"},
+    [ETHD__SERVO_JOINT] = {"joint", "1", 1, 2, 1, "of a map with one axis: which joint that is"},
+    [ETHD__SERVO_SPEED] = {"speed", "m/s", 0.01, 10, 1.2, "of the ring: faster is row 24 of the fault table"},
+};
+
+const char *const ethd__servo_keys[] = {"map", "port", NULL};
+
+typedef struct settings {
+  const ethd_setting *map, *port;
+  double p[ETHD__SERVO_PARAMS]; /* NAN: not given */
+} settings;
+
+/* ---- settings ---- */
+
+static const char *file(const ethd_device_def *def) { return def->file ? def->file : "the defaults"; }
+
+static ethd_status read_settings(const ethd_device_def *def, settings *out, char *message) {
+  const ethd_setting *texts[2] = {NULL, NULL};
+  *out = (settings){.p = {NAN, NAN, NAN, ethd__servo_params[ETHD__SERVO_SPEED].def}};
+  ethd_status status = ethd_settings_read(&ethd_driver_servo, def, out->p, texts, message);
+  out->map = texts[0];
+  out->port = texts[1];
+  if (!status && !out->map)
+    status =
+        ethd__say(message, ETHD_E_ARGUMENT, "%s: device.map is missing: a servo needs its register map", file(def));
+  if (!status && !isnan(out->p[ETHD__SERVO_JOINT]) && out->p[ETHD__SERVO_JOINT] != rint(out->p[ETHD__SERVO_JOINT]))
+    status = ethd__say(message, ETHD_E_RANGE, "%s: device.joint: found %g, 1 and 2 are allowed", file(def),
+                       out->p[ETHD__SERVO_JOINT]);
+  return status;
+}
+
+static ethd_status load_map(const ethd_device_def *def, const settings *s, ethd__servo_map *map, char *message) {
+  char *path = ethd__path_join(def->folder, s->map->value);
+  if (!path) return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status = ethd__servo_map_load(path, s->map->value, map, message);
+  free(path);
+  if (status || !s->port) return status;
+  if (strlen(s->port->value) >= sizeof map->port)
+    return ethd__say(message, ETHD_E_RANGE, "%s:%d: device.port: too long", file(def), s->port->line);
+  strcpy(map->port, s->port->value);
+  return ETHD_OK;
+}
+
+/* ---- opening ---- */
+
+static ethd_status place_axes(ethd__servo_device *d, const ethd_device_def *def, const settings *s, char *message) {
+  int both = 1;
+  for (int i = 0; i < 2; i++) {
+    d->joint[i] = d->map.roles[ETHD__SERVO_TORQUE1 + i] >= 0 ? i : -1;
+    both &= d->joint[i] >= 0;
+    d->feedback.home[i] = NAN;
+  }
+  int given = !isnan(s->p[ETHD__SERVO_JOINT]);
+  if (both && given) return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.joint: the map has both joints", file(def));
+  for (int i = 0; i < 2; i++) {
+    if (d->joint[i] < 0) continue;
+    if (!both && given) d->joint[i] = (int32_t)s->p[ETHD__SERVO_JOINT] - 1;
+    d->feedback.home[i] = s->p[d->joint[i] ? ETHD__SERVO_Q2 : ETHD__SERVO_Q1];
+  }
+  return ETHD_OK;
+}
+
+static ethd_status make_cells(ethd__servo_device *d, char *message) {
+  if (!ethd_cell_create(sizeof d->command, &d->commands, NULL) &&
+      !ethd_cell_create(sizeof d->newest, &d->samples, NULL))
+    return ETHD_OK;
+  return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+}
+
+static void count_unconfirmed(ethd__servo_device *d) {
+  uint32_t n = ethd__servo_unconfirmed(&d->map);
+  if (n)
+    snprintf(d->unconfirmed, sizeof d->unconfirmed,
+             "%u of %u registers are unconfirmed: check their addresses in the drive's manual", n, d->map.count);
+}
+
+static ethd_status make_feedback(ethd__servo_device *d, const ethd_device_def *def, const settings *s, char *message) {
+  ethd_error error;
+  ethd_status status = ethd__servo_feedback_make(&d->feedback, &d->map, def->setup->limits.torque,
+                                                 1e-9 * (double)d->exchange_ns, &error);
+  if (status) ethd_error_text(s->map->value, &error, message);
+  return status;
+}
+
+/* Its first answer, and what it says of itself. */
+static ethd_status meet(ethd__servo_device *d, const settings *s, char *message) {
+  ethd__servo_link_make(&d->map, &d->link);
+  ethd_status status = ethd__servo_meet(d);
+  return status ? ethd__say(message, status, "%s: %.*s", s->map->value, ETHD_MESSAGE_MAX / 2, d->link.message)
+                : ETHD_OK;
+}
+
+ethd_status ethd__servo_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
+  settings s;
+  *out = NULL;
+  ethd_status status = read_settings(def, &s, message);
+  if (status) return status;
+  ethd__servo_device *d = *out = calloc(1, sizeof *d);
+  if (!d) return ETHD_E_MEMORY;
+  d->link.bus.fd = -1;
+  pthread_mutex_init(&d->lock, NULL);
+  atomic_init(&d->safe, 1);
+  d->speed = s.p[ETHD__SERVO_SPEED];
+  d->period_ns = (int64_t)rint(1e9 * def->setup->period);
+  status = load_map(def, &s, &d->map, message);
+  d->exchange_ns = d->period_ns * d->map.divisor;
+  if (!status) status = place_axes(d, def, &s, message);
+  if (!status) status = make_cells(d, message);
+  if (!status) status = make_feedback(d, def, &s, message);
+  if (!status) status = meet(d, &s, message);
+  if (!status) count_unconfirmed(d);
+  return status;
+}
+
+void ethd__servo_close(void *device) {
+  ethd__servo_device *d = device;
+  if (!d) return;
+  ethd__servo_link_close(&d->link);
+  ethd_cell_destroy(d->commands);
+  ethd_cell_destroy(d->samples);
+  pthread_mutex_destroy(&d->lock);
+  free(d);
+}

@@ -1,0 +1,110 @@
+/* Start and stop: sequences that [main] runs, while the loop keeps its hands off. */
+#include <time.h>
+
+#include "servo/device.h"
+#include "text/error_text.h"
+
+#define START_MOST 10.0 /* s beyond the steps' own times */
+#define ZEROES 3        /* good exchanges with zero torque before anything is enabled */
+#define PAUSE 200000    /* ns between the turns of a start */
+
+static int64_t monotonic(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+/* A first exchange or more, until the drive has identified itself. */
+static ethd_status identify(ethd__servo_device *d, double seconds) {
+  const double zero[2] = {0, 0};
+  const struct timespec pause = {.tv_nsec = PAUSE};
+  for (int64_t begin = monotonic(), now = begin; 1e-9 * (double)(now - begin) < seconds; now = monotonic()) {
+    if (d->link.state == ETHD__SERVO_UP && d->link.sequence < 0)
+      ethd__servo_link_begin(&d->link, ETHD__SERVO_IDENTIFY, now);
+    (void)!ethd__servo_turn(d, now, zero);
+    if (d->link.state >= ETHD__SERVO_IDENTIFIED) return ETHD_OK;
+    nanosleep(&pause, NULL);
+  }
+  return ETHD_E_DEVICE;
+}
+
+static double steps_time(const ethd__servo_map *map, int sequence) {
+  double sum = map->connect;
+  for (uint32_t i = 0; i < map->sequences[sequence].count; i++)
+    if (map->sequences[sequence].at[i].kind != ETHD__SERVO_STEP_WRITE) sum += map->sequences[sequence].at[i].value;
+  return sum;
+}
+
+ethd_status ethd__servo_meet(ethd__servo_device *d) {
+  ethd_status status = ethd__servo_link_connect(&d->link, monotonic());
+  return status ? status : identify(d, steps_time(&d->map, ETHD__SERVO_IDENTIFY));
+}
+
+/* ---- start: zero first, seen by the drive, then the steps ---- */
+
+static ethd_status zero_and_verify(ethd__servo_device *d, double seconds) {
+  const double zero[2] = {0, 0};
+  const struct timespec pause = {.tv_nsec = PAUSE};
+  int good = 0;
+  for (int64_t begin = monotonic(), now = begin; good < ZEROES; now = monotonic()) {
+    if (1e-9 * (double)(now - begin) > seconds || d->link.state < ETHD__SERVO_IDENTIFIED) return ETHD_E_DEVICE;
+    good = ethd__servo_turn(d, now, zero) ? 0 : good + 1;
+    nanosleep(&pause, NULL);
+  }
+  return ETHD_OK;
+}
+
+/* The steps of a sequence, one a turn, under zero torque. */
+static ethd_status run(ethd__servo_device *d, int32_t sequence) {
+  const double zero[2] = {0, 0};
+  const struct timespec pause = {.tv_nsec = PAUSE};
+  double most = steps_time(&d->map, sequence) + 1;
+  int64_t begin = monotonic();
+  ethd__servo_link_begin(&d->link, sequence, begin);
+  for (int64_t now = begin; d->link.sequence == sequence; now = monotonic()) {
+    if (1e-9 * (double)(now - begin) > most) return ETHD_E_DEVICE;
+    (void)!ethd__servo_turn(d, now, zero);
+    nanosleep(&pause, NULL);
+  }
+  return d->link.result;
+}
+
+static ethd_status start_locked(ethd__servo_device *d) {
+  atomic_store(&d->safe, 1);
+  atomic_fetch_add(&d->epoch, 1); /* commands from before count no more */
+  d->link.attempt_ns = 0;
+  d->link.set_point_stays = false;
+  for (int i = 0; i < 2; i++) d->feedback.axes[i].since_ns = 0;
+  ethd_status status = identify(d, START_MOST / 10 + steps_time(&d->map, ETHD__SERVO_IDENTIFY));
+  if (status) return status;
+  /* an old set-point must be gone, and be seen to be gone, before the drive moves anything */
+  status = zero_and_verify(d, 0.5);
+  d->link.set_point_stays = status && d->link.echo_failed;
+  if (d->link.set_point_stays) d->link.rows[ETHD_FAULT_SET_POINT]++;
+  if (!status) status = run(d, ETHD__SERVO_ENABLE);
+  if (status) return status;
+  atomic_store(&d->safe, 0);
+  return ETHD_OK;
+}
+
+ethd_status ethd__servo_start(void *device) {
+  ethd__servo_device *d = device;
+  pthread_mutex_lock(&d->lock);
+  ethd_status status = start_locked(d);
+  pthread_mutex_unlock(&d->lock);
+  return status ? ETHD_E_DEVICE : ETHD_OK;
+}
+
+/* Zero torque even where the drive doesn't answer to the steps. */
+ethd_status ethd__servo_stop(void *device) {
+  ethd__servo_device *d = device;
+  pthread_mutex_lock(&d->lock);
+  atomic_store(&d->safe, 1);
+  ethd_status status = ETHD_OK;
+  if (d->link.state >= ETHD__SERVO_UP) {
+    d->link.state = d->link.state > ETHD__SERVO_IDENTIFIED ? ETHD__SERVO_IDENTIFIED : d->link.state;
+    status = run(d, ETHD__SERVO_DISABLE);
+  }
+  pthread_mutex_unlock(&d->lock);
+  return status ? ETHD_E_DEVICE : ETHD_OK;
+}
