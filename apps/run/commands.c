@@ -73,8 +73,11 @@ static void status(ethd__session *s, ethd__commands *c, char *rest) {
 
 static bool faulty(ethd__session *s) { return ethd__recorder_latest(&s->recorder).trace.fault != 0; }
 
+/* The device is asked to leave a fault of its own at once, the controller's goes when nothing has gone wrong for long
+   enough: where the device had one, at the second ack. */
 static void ack(ethd__session *s, ethd__commands *c, char *rest) {
   (void)c, (void)rest;
+  s->driver->clear(s->device);
   if (!faulty(s)) {
     answer("error: there is no fault to acknowledge");
     return;
@@ -97,8 +100,9 @@ static void enable(ethd__session *s, ethd__commands *c, char *rest) {
            ethd_fault_sentence((ethd_fault)ethd__recorder_latest(&s->recorder).trace.fault));
   } else {
     ethd_status failure = ethd__session_enable(s);
+    const char *why = s->driver->why(s->device);
     if (failure)
-      answer("error: %s", ethd_status_sentence(failure));
+      answer("error: %s%s%s", ethd_status_sentence(failure), why[0] ? ": " : "", why);
     else
       answer("ok: enabled");
   }

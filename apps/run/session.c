@@ -110,6 +110,12 @@ static ethd_status refuse_start(const ethd__session *s, ethd_status status, cons
   return ethd__say(message, status, "--require-rt: %s; mend: %s", first, bits ? ethd_shortfall_mend(bits & -bits) : "");
 }
 
+static ethd_status refuse_device(const ethd__session *s, ethd_status status, char *message) {
+  const char *why = s->driver->why(s->device);
+  return ethd__say(message, status, "device %s: start: %.*s", s->config->device, ETHD_MESSAGE_MAX / 2,
+                   why[0] ? why : ethd_status_sentence(status));
+}
+
 static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, char *message) {
   ethd_loop_def def = o->loop;
   ethd_error error = {0};
@@ -128,8 +134,7 @@ static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, c
   s->recorder.loop = s->loop;
   ethd__recorder_begin(&s->recorder, def.period);
   status = s->driver->start(s->device);
-  if (status)
-    return ethd__say(message, status, "device %s: start: %s", s->config->device, ethd_status_sentence(status));
+  if (status) return refuse_device(s, status, message);
   s->started = true;
   status = ethd_loop_start(s->loop, &error);
   if (status) return refuse_start(s, status, &error, message);

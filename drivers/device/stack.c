@@ -126,6 +126,31 @@ static const char *remark(const void *stack, uint32_t i) {
   return own;
 }
 
+static void clear(void *stack) {
+  const ethd__stack *s = stack;
+  for (uint32_t i = 0; i < s->count; i++)
+    if (s->at[i].driver->clear) s->at[i].driver->clear(s->at[i].device);
+}
+
+static ethd_status home(void *stack, const double q[2]) {
+  const ethd__stack *s = stack;
+  ethd_status status = ETHD_E_ARGUMENT; /* none of them has anything to find out */
+  for (uint32_t i = 0; i < s->count; i++) {
+    if (!s->at[i].driver->home) continue;
+    status = s->at[i].driver->home(s->at[i].device, q);
+    if (status) return status;
+  }
+  return status;
+}
+
+static const char *why(const void *stack) {
+  const ethd__stack *s = stack;
+  const char *says = "";
+  for (uint32_t i = 0; i < s->count && !says[0]; i++)
+    if (s->at[i].driver->why) says = s->at[i].driver->why(s->at[i].device);
+  return says;
+}
+
 const ethd_driver ethd__driver_stack = {
     .size = sizeof(ethd_driver),
     .abi = ETHD_DRIVER_ABI,
@@ -142,4 +167,7 @@ const ethd_driver ethd__driver_stack = {
     .limits = limits,
     .figures = figures,
     .remark = remark,
+    .clear = clear,
+    .home = home,
+    .why = why,
 };

@@ -28,6 +28,9 @@ typedef struct counter {
   double torque[2]; /* of the last command */
   uint64_t marks[2];
   int32_t lost; /* a jump was grave: the angle isn't known any more */
+
+  /* any thread */
+  int32_t clear; /* 1: wrong marks are acknowledged */
 } counter;
 
 /* ---- I/O ---- */
@@ -62,9 +65,18 @@ static void step(counter *c, int j, ethd_sense *out) ETHD_RT {
   out->dq[j] = c->encoder[j].dq;
 }
 
+/* The next mark is the first again. */
+static void forget_marks(counter *c) ETHD_RT {
+  for (int j = 0; j < 2; j++) c->encoder[j].misindexed = c->encoder[j].marks = 0;
+}
+
 static ethd_status counter_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
   counter *c = device;
   (void)now_ns;
+  if (__atomic_load_n(&c->clear, __ATOMIC_RELAXED)) {
+    __atomic_store_n(&c->clear, 0, __ATOMIC_RELAXED);
+    forget_marks(c);
+  }
   if (__atomic_load_n(&c->failed, __ATOMIC_RELAXED)) return ETHD_E_DEVICE;
   if (ethd_cell_take(c->cell, &c->taken) != ETHD_OK) return ETHD_STALE;
   for (int j = 0; j < 2; j++) step(c, j, out);
@@ -174,6 +186,17 @@ static ethd_status counter_start(void *device) {
   return status;
 }
 
+/* Their counts, as they are, mean these angles. */
+static ethd_status counter_home(void *device, const double q[2]) {
+  counter *c = device;
+  if (!q) return ETHD_OK; /* by index marks it is start's */
+  pthread_mutex_lock(&c->lock);
+  for (int j = 0; j < 2; j++) ethd__encoder_place(&c->def[j], &c->encoder[j], q[j]);
+  c->lost = 0;
+  pthread_mutex_unlock(&c->lock);
+  return ETHD_OK;
+}
+
 /* ---- for people ---- */
 
 /* Figures are read while they rise. */
@@ -181,12 +204,18 @@ static double seen(const uint64_t *count) { return (double)__atomic_load_n(count
 
 static uint32_t counter_units(const void *device) { return (void)device, 1; }
 
+/* Whoever acknowledges has looked at the coupling. */
+static void counter_clear(void *device) { __atomic_store_n(&((counter *)device)->clear, 1, __ATOMIC_RELAXED); }
+
+static const char *counter_why(const void *device) {
+  return is_misindexed(device) ? "an encoder's index marks had a wrong distance: check its coupling, then ack" : "";
+}
+
 static const char *counter_remark(const void *device, uint32_t i) {
   const counter *c = device;
   const char *said[4] = {NULL};
   uint32_t n = 0;
-  if (is_misindexed(c))
-    said[n++] = "an encoder's index marks had a wrong distance: check its coupling, then open it anew";
+  if (is_misindexed(c)) said[n++] = "an encoder's index marks had a wrong distance: check its coupling, then ack";
   if (isinf(c->def[0].freeze_torque)) said[n++] = "counter.freeze_torque is inf: a frozen encoder isn't noticed";
   if (isinf(c->def[0].reverse_torque)) said[n++] = "counter.reverse_torque is inf: a reversed encoder isn't noticed";
   return i < n ? said[i] : NULL;
@@ -220,4 +249,7 @@ const ethd_driver ethd_driver_counter = {
     .close = counter_close,
     .figures = counter_figures,
     .remark = counter_remark,
+    .clear = counter_clear,
+    .home = counter_home,
+    .why = counter_why,
 };

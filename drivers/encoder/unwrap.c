@@ -196,3 +196,9 @@ void ethd__encoder_pause(ethd__encoder *e) {
   e->edges = e->jumped = 0;
   forget_motion(e);
 }
+
+void ethd__encoder_place(const ethd__encoder_def *def, ethd__encoder *e, double q) {
+  e->home = e->position - (int64_t)rint((q - def->offset) / angle_per_count(def));
+  e->homed = 1;
+  e->q = q;
+}

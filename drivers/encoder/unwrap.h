@@ -94,6 +94,9 @@ void ethd__encoder_restart(ethd__encoder *encoder) ETHD_RT;
    ceiling; position and home stay. */
 void ethd__encoder_pause(ethd__encoder *encoder) ETHD_RT;
 
+/* From now on the count that it has is this angle, rad. [main] while nobody steps it */
+void ethd__encoder_place(const ethd__encoder_def *def, ethd__encoder *encoder, double q);
+
 /* One sample, newer than the last. torque: Nm at the joint since that one, NAN if it isn't known.
    Returns ETHD_FAULT_BIT of ENCODER_JUMP, ENCODER_FROZEN, ENCODER_REVERSED, INDEX as they are seen in this
    sample, and ors rows that are at their worst into *grave: a second jump in 10 ms. */

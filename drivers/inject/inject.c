@@ -254,6 +254,21 @@ static const char *inject_remark(const void *device, uint32_t i) {
   return in->driver->remark(in->device, i - 1);
 }
 
+static void inject_clear(void *device) {
+  inject *in = device;
+  in->driver->clear(in->device);
+}
+
+static ethd_status inject_home(void *device, const double q[2]) {
+  inject *in = device;
+  return in->driver->home(in->device, q);
+}
+
+static const char *inject_why(const void *device) {
+  const inject *in = device;
+  return in->driver->why(in->device);
+}
+
 const ethd_driver ethd__driver_inject = {
     .size = sizeof(ethd_driver),
     .abi = ETHD_DRIVER_ABI,
@@ -270,4 +285,7 @@ const ethd_driver ethd__driver_inject = {
     .limits = inject_limits,
     .figures = inject_figures,
     .remark = inject_remark,
+    .clear = inject_clear,
+    .home = inject_home,
+    .why = inject_why,
 };

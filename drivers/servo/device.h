@@ -27,6 +27,7 @@ typedef struct ethd__servo_device {
 
   /* any thread */
   atomic_int safe;   /* 1: zero torque until the next start */
+  atomic_int clear;  /* 1: [clear] is to run */
   atomic_uint epoch; /* starts */
 
   /* [rt] */
@@ -43,6 +44,7 @@ typedef struct ethd__servo_device {
   ethd__servo_feedback feedback;
   ethd__servo_command command;
   int64_t due_ns;
+  char why[ETHD_MESSAGE_MAX]; /* the last start failed; empty: it didn't */
   ethd_histogram trip;
 } ethd__servo_device;
 
@@ -56,6 +58,8 @@ ethd_status ethd__servo_open(const ethd_device_def *def, void **out, char messag
 ethd_status ethd__servo_start(void *device);
 ethd_status ethd__servo_stop(void *device);
 void ethd__servo_close(void *device);
+void ethd__servo_clear(void *device);
+const char *ethd__servo_why(const void *device);
 ethd_status ethd__servo_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT;
 ethd_status ethd__servo_write(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT;
 void ethd__servo_safe(void *device) ETHD_RT;

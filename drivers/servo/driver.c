@@ -73,4 +73,6 @@ const ethd_driver ethd_driver_servo = {
     .limits = limits,
     .figures = figures,
     .remark = remark,
+    .clear = ethd__servo_clear,
+    .why = ethd__servo_why,
 };

@@ -69,6 +69,8 @@ ethd_status ethd__servo_service(void *device, uint32_t unit, int64_t now_ns) {
   command(d, now_ns, torque);
   if (d->link.state == ETHD__SERVO_ENABLED && atomic_load_explicit(&d->safe, memory_order_relaxed))
     ethd__servo_link_begin(&d->link, ETHD__SERVO_DISABLE, now_ns);
+  if (d->link.state == ETHD__SERVO_IDENTIFIED && d->link.sequence < 0 && atomic_exchange(&d->clear, 0))
+    ethd__servo_link_begin(&d->link, ETHD__SERVO_CLEAR, now_ns);
   status = ethd__servo_turn(d, now_ns, torque);
   if (d->link.state != ETHD__SERVO_DOWN && status < 0) status = ETHD_OK; /* counted there, and soon again */
   pthread_mutex_unlock(&d->lock);

@@ -9,13 +9,13 @@
 #include "text/text.h"
 
 static const char register_prefix[] = "register ";
-static const char *const sequences[ETHD__SERVO_SEQUENCES] = {"identify", "enable", "disable"};
+const char *const ethd__servo_sequences[ETHD__SERVO_SEQUENCES] = {"identify", "enable", "disable", "clear"};
 
 static bool is_register(const char *section) { return !strncmp(section, register_prefix, sizeof register_prefix - 1); }
 
 static bool is_known(const char *section) {
   for (size_t i = 0; i < ETHD__SERVO_SEQUENCES; i++)
-    if (!strcmp(section, sequences[i])) return true;
+    if (!strcmp(section, ethd__servo_sequences[i])) return true;
   return is_register(section) || !strcmp(section, "bus") || !strcmp(section, "watchdog");
 }
 
@@ -37,7 +37,7 @@ static ethd_status check_sections(const ethd__servo_source *s) {
     const ethd_ini_section *section = &s->ini->sections[i];
     if (!is_known(section->name))
       return ethd__say(s->message, ETHD_E_UNKNOWN,
-                       "%s:%d: found [%s], bus, watchdog, register NAME, identify, enable, disable are allowed",
+                       "%s:%d: found [%s], bus, watchdog, register NAME, identify, enable, disable, clear are allowed",
                        s->name, section->line, section->name);
     int first = section_line(s->ini, section->name);
     if (first != section->line)
@@ -125,7 +125,7 @@ static ethd_status fill(const ethd__servo_source *s, ethd__servo_map *map) {
   if (!status) status = ethd__servo_read_watchdog(s, section_line(s->ini, "watchdog"), map);
   if (!status) status = read_registers(s, map);
   for (int i = 0; i < ETHD__SERVO_SEQUENCES && !status; i++)
-    status = ethd__servo_read_steps(s, sequences[i], map, &map->sequences[i]);
+    status = ethd__servo_read_steps(s, ethd__servo_sequences[i], map, &map->sequences[i]);
   return status ? status : ethd__servo_map_check(s, map);
 }
 

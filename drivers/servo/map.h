@@ -23,6 +23,7 @@
      step2 = wait status 0x0008 0x0008 0.5     NAME MASK BITS SECONDS
      step3 = pause 0.01
      [disable]
+     [clear]                     at an acknowledgement: what makes the drive leave its fault
      [identify]                  once after connecting
      [watchdog]
      kind = silence              the drive stops by itself when the bus is silent for `time`
@@ -112,7 +113,10 @@ typedef struct ethd__servo_steps {
   uint32_t count;
 } ethd__servo_steps;
 
-enum { ETHD__SERVO_IDENTIFY, ETHD__SERVO_ENABLE, ETHD__SERVO_DISABLE, ETHD__SERVO_SEQUENCES };
+enum { ETHD__SERVO_IDENTIFY, ETHD__SERVO_ENABLE, ETHD__SERVO_DISABLE, ETHD__SERVO_CLEAR, ETHD__SERVO_SEQUENCES };
+
+/* Their sections. */
+extern const char *const ethd__servo_sequences[ETHD__SERVO_SEQUENCES];
 
 typedef struct ethd__servo_map {
   int32_t transport, format, exchange, addressing;

@@ -262,7 +262,7 @@ static bool all_count(const ethd__servo_map *map) {
 }
 
 const char *ethd__servo_risk(const ethd__servo_map *map, uint32_t i) {
-  const char *risks[10];
+  const char *risks[12];
   uint32_t n = 0;
   if (map->watchdog == ETHD__SERVO_WATCH_NONE)
     risks[n++] = "no watchdog: when this computer dies, the drive holds its last torque";
@@ -280,6 +280,8 @@ const char *ethd__servo_risk(const ethd__servo_map *map, uint32_t i) {
     if (!reaches(map, reverses_at, 1)) risks[n++] = "reverse_torque is out of reach: a reversed encoder isn't noticed";
   }
   if (map->roles[ETHD__SERVO_BUS_VOLTAGE] < 0) risks[n++] = "no bus_voltage: the supply isn't watched";
+  if (any_mask(map) && !map->sequences[ETHD__SERVO_CLEAR].count)
+    risks[n++] = "no [clear] steps: a fault of the drive's is left only as its manual says";
   if (!map->sequences[ETHD__SERVO_DISABLE].count) risks[n++] = "no [disable] steps: a stop only writes zero torque";
   return i < n ? risks[i] : NULL;
 }

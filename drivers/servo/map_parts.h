@@ -25,7 +25,7 @@ ethd_status ethd__servo_read_watchdog(const ethd__servo_source *s, int line, eth
 ethd_status ethd__servo_read_register(const ethd__servo_source *s, const ethd_ini_section *section,
                                       const ethd__servo_map *map, ethd__servo_register *out);
 
-/* The steps of [identify], [enable], [disable]. */
+/* The steps of one sequence. */
 ethd_status ethd__servo_read_steps(const ethd__servo_source *s, const char *section, const ethd__servo_map *map,
                                    ethd__servo_steps *out);
 

@@ -1,9 +1,7 @@
-/* Steps of [identify], [enable] and [disable], one a turn. */
+/* Steps of [identify], [enable], [disable] and [clear], one a turn. */
 #include "servo/link.h"
 #include "servo/words.h"
 #include "text/error_text.h"
-
-static const char *const names[ETHD__SERVO_SEQUENCES] = {"identify", "enable", "disable"};
 
 static void finish(ethd__servo_link *l, ethd_status result) {
   int32_t which = l->sequence;
@@ -42,7 +40,7 @@ static ethd__servo_outcome wait_step(ethd__servo_link *l, const ethd__servo_step
   if (got || *done || 1e-9 * (double)(now_ns - l->step_ns) < s->value) return got;
   const ethd__servo_register *r = &l->map->registers[s->at];
   finish(l, ethd__say(l->message, ETHD_E_DEVICE, "%s.step%u: %s is 0x%X after %g s, 0x%X of 0x%X was awaited",
-                      names[l->sequence], l->step + 1, r->name, bits, s->value, s->bits, s->mask));
+                      ethd__servo_sequences[l->sequence], l->step + 1, r->name, bits, s->value, s->bits, s->mask));
   return got;
 }
 

@@ -91,9 +91,14 @@ ethd_status ethd__servo_start(void *device) {
   ethd__servo_device *d = device;
   pthread_mutex_lock(&d->lock);
   ethd_status status = start_locked(d);
+  ethd__say(d->why, status, "%s", status ? d->link.message : "");
   pthread_mutex_unlock(&d->lock);
   return status ? ETHD_E_DEVICE : ETHD_OK;
 }
+
+void ethd__servo_clear(void *device) { atomic_store(&((ethd__servo_device *)device)->clear, 1); }
+
+const char *ethd__servo_why(const void *device) { return ((const ethd__servo_device *)device)->why; }
 
 /* Zero torque even where the drive doesn't answer to the steps. */
 ethd_status ethd__servo_stop(void *device) {

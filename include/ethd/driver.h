@@ -85,6 +85,13 @@ struct ethd_driver {
   uint32_t (*figures)(const void *device, ethd_figure *out, uint32_t max);
   /* What people should know of the device: the i-th sentence, a risk that stays open; NULL behind the last. [main] */
   const char *(*remark)(const void *device, uint32_t i);
+  /* Asks the device to leave a fault of its own, which its service then does; nothing is enabled by it. [any] */
+  void (*clear)(void *device);
+  /* Finds out where the joints stand: q, rad, where they stand now, or NULL: as the device's settings say, which may
+     move them, slowly. Blocks; the device is stopped before and after. [main] */
+  ethd_status (*home)(void *device, const double q[2]);
+  /* Why the last start or home failed, one line; "" where there is nothing to say. [main] */
+  const char *(*why)(const void *device);
 };
 
 ETHD_API extern const ethd_driver ethd_driver_sim, ethd_driver_hello;

@@ -388,6 +388,45 @@ START_TEST(test_drive_fault) {
 }
 END_TEST
 
+/* A fault that stays until the drive is told to leave it: without [clear] it could never be acknowledged. */
+START_TEST(test_clear) {
+  start_device();
+  for (int i = 0; i < 20; i++) tick(0.1, 0);
+  drive.words[MOCK_STATUS] |= 1;
+  ck_assert_int_eq(ticks_until(ETHD_FAULT_DRIVE, 5), 1);
+  servo->safe(device);
+  for (int i = 0; i < 200; i++) {
+    tick(0, 0);
+    ck_assert(shows(ETHD_FAULT_DRIVE));
+  }
+  servo->clear(device);
+  for (int i = 0; i < 5; i++) tick(0, 0);
+  for (int i = 0; i < 1100; i++) {
+    tick(0, 0);
+    ck_assert_int_eq(sense.faults, 0);
+  }
+  ck_assert_int_eq(raw(MOCK_STATUS), 0); /* cleared, and not enabled by it */
+  ck_assert_int_eq(servo->start(device), ETHD_OK);
+  ck_assert_str_eq(servo->why(device), "");
+  servo->clear(device); /* while it is enabled nothing is written */
+  for (int i = 0; i < 20; i++) ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
+  ck_assert_int_eq(raw(MOCK_CONTROL), 1);
+  close_device();
+}
+END_TEST
+
+/* Why a start failed is said. */
+START_TEST(test_why) {
+  start_device();
+  servo->safe(device);
+  for (int i = 0; i < 5; i++) tick(0, 0);
+  drive.stuck = 700;
+  ck_assert_int_eq(servo->start(device), ETHD_E_DEVICE);
+  ck_assert_msg(strstr(servo->why(device), "doesn't show what was written"), "%s", servo->why(device));
+  close_device();
+}
+END_TEST
+
 START_TEST(test_bus_voltage) {
   start_device();
   tick(0, 0);
@@ -596,6 +635,8 @@ int main(void) {
   tcase_add_test(t, test_stale_answer);
   tcase_add_test(t, test_bad_answers);
   tcase_add_test(t, test_drive_fault);
+  tcase_add_test(t, test_clear);
+  tcase_add_test(t, test_why);
   tcase_add_test(t, test_bus_voltage);
   tcase_add_test(t, test_not_followed);
   tcase_add_test(t, test_unplugged);
