@@ -9,6 +9,7 @@
 #include "cli/cli.h"
 #include "ethd/loop.h"
 #include "servo/link.h"
+#include "servo/wire.h"
 #include "servo/words.h"
 
 static const char doc[] =
@@ -25,19 +26,21 @@ enum { OPTION_PORT = 256 };
 static const struct argp_option options[] = {
     {"map", 'm', "F.map", 0, "register map of the drive", 0},
     {"port", OPTION_PORT, "PORT", 0, "HOST:PORT or a serial device, instead of the map's", 0},
+    {"period", 'p', "S", 0, "of the loop that is to live on it: 0.001", 0},
     {"duration", 'd', "S", 0, "measures for so long: 2", 0},
     {0},
 };
 
 static struct {
   const char *map, *port;
-  double duration; /* s */
-} arg = {.duration = 2};
+  double duration, period; /* s */
+} arg = {.duration = 2, .period = 1e-3};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
   case 'm': arg.map = text; return 0;
   case OPTION_PORT: arg.port = text; return 0;
+  case 'p': arg.period = ethd__option_number("--period", text, 1e-5, 1); return 0;
   case 'd': arg.duration = ethd__option_number("--duration", text, 0.01, 86400); return 0;
   case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
   case ARGP_KEY_END:
@@ -140,6 +143,29 @@ static void print_rate(double seconds) {
          floor(1 / slow), (double)trip.count / seconds);
 }
 
+/* What the wire takes by its rate and bytes; the rest of what was measured is the drive's, and the line's driver's. */
+static void print_wire(void) {
+  ethd__servo_wire wire = ethd__servo_wire_of(&map, 0);
+  double usual = 1e-9 * (double)ethd_histogram_at(&trip, 0.5);
+  if (map.transport != ETHD__SERVO_RTU) return;
+  double turnaround = fmax(0, usual - wire.usual) / wire.questions;
+  printf("%-10s %u bytes in %u questions: %.3f ms of wire and silence; turnaround %.3f ms each (the map says %g)\n",
+         "wire", wire.bytes, wire.questions, 1e3 * wire.usual, 1e3 * turnaround, 1e3 * map.turnaround);
+}
+
+/* Whether the map's exchanges end before the next begins. */
+static void print_divisor(void) {
+  double slow = 1e-9 * (double)ethd_histogram_at(&trip, 0.99);
+  uint32_t needed = ethd__servo_divisor_for(slow, arg.period);
+  printf("%-10s %u holds at %g ms ticks: %s", "divisor", map.divisor, 1e3 * arg.period,
+         map.divisor >= needed ? "yes" : "no");
+  if (map.divisor < needed)
+    printf(", 99 %% of the exchanges need %.3g ms; %u would hold", 1e3 * slow, needed);
+  else if (map.divisor > needed)
+    printf(", and so would %u", needed);
+  printf("\n");
+}
+
 static void print_values(void) {
   for (uint32_t i = 0; i < map.count; i++) {
     const ethd__servo_register *r = &map.registers[i];
@@ -163,6 +189,8 @@ int main(int argc, char **argv) {
   reach();
   double seconds = measure();
   print_rate(seconds);
+  print_wire();
+  print_divisor();
   print_values();
   uint32_t unconfirmed = ethd__servo_unconfirmed(&map);
   if (unconfirmed)

@@ -5,8 +5,8 @@
 
 #include "loop/loop.h"
 
-#define REHEARSALS 3 /* after an early wake-up */
-#define HOLD_MAX 20  /* ticks without a newer joint sample; more is a device that can't be read */
+#define REHEARSALS 3      /* after an early wake-up */
+#define HOLD_MAX 60000000 /* ns without a newer joint sample, over a slow bus's 50 ms; then the device can't be read */
 
 /* ---- clock ---- */
 
@@ -105,12 +105,12 @@ static int read_device(ethd_loop *l) ETHD_RT {
   if (!l->held) memset(&l->sense, 0, sizeof l->sense);
   ethd_status status = l->def.driver->read(l->def.device, l->due, &l->sense);
   ethd__loop_rows(l, &l->sense);
-  if (status == ETHD_STALE && l->held < HOLD_MAX && !is_pressing(&l->sense)) {
+  if (status == ETHD_STALE && l->held * l->period < HOLD_MAX && !is_pressing(&l->sense)) {
     l->held++;
     l->missed++;
     return 0;
   }
-  if (status < 0 || (status == ETHD_STALE && (l->held == HOLD_MAX || !l->joints.known)))
+  if (status < 0 || (status == ETHD_STALE && (l->held * l->period >= HOLD_MAX || !l->joints.known)))
     blind(l);
   else
     remember_joints(l, status);

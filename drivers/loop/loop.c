@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,10 +61,11 @@ static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
 
 static int64_t nanoseconds(double s) { return s < 1e9 ? llrint(1e9 * s) : INT64_MAX; }
 
-/* The narrower of the application's and the device's. */
+/* The narrower of the application's and what any device stands: how far apart a slow device's own samples are says
+   nothing of the loop's lateness. */
 static double gap_of(const ethd_loop_def *d) {
-  if (!d->driver->limits || !d->device) return d->gap;
-  return fmin(d->gap, d->driver->limits(d->device).gap);
+  bool is_limited = d->driver->limits && d->device && isfinite(d->driver->limits(d->device).gap);
+  return is_limited ? fmin(d->gap, ethd_limits_device().gap) : d->gap;
 }
 
 ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_error *error) {

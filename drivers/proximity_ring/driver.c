@@ -224,7 +224,9 @@ static uint32_t units(const void *device) {
 
 static ethd_limits limits(const void *device) {
   (void)device;
-  return ethd_limits_device();
+  ethd_limits limits = ethd_limits_device();
+  limits.gap = (double)INFINITY; /* the joints' samples aren't its own */
+  return limits;
 }
 
 static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {

@@ -10,6 +10,8 @@
 #include "ethd/loop.h"
 #include "servo/feedback.h"
 
+#define ETHD__SERVO_OLD_MOST 50000000 /* ns: feedback older than this ends the torque however slow the bus is */
+
 typedef struct ethd__servo_command {
   int64_t stamp_ns;
   uint32_t epoch;

@@ -12,8 +12,14 @@ static uint32_t units(const void *device) {
 
 static ethd_limits limits(const void *device) {
   const ethd__servo_device *d = device;
+  int32_t count = d->map.roles[ETHD__SERVO_READING_COUNT];
   ethd_limits limits = ethd_limits_device();
   limits.speed = d->speed;
+  /* what measures the finger says how often: three readings are missed, nine are */
+  limits.finger_age = count < 0 ? (double)INFINITY : 3 / d->map.registers[count].rate;
+  limits.finger_lost = 3 * limits.finger_age;
+  /* from one sample to the next, and once more where an answer is missing */
+  limits.gap = 1e-9 * (double)ethd__servo_old(d);
   for (int i = 0; i < 2; i++) {
     int32_t r = d->map.roles[ETHD__SERVO_TORQUE1 + i];
     if (r >= 0) limits.torque = fmin(limits.torque, ethd__servo_most(&d->map.registers[r]));

@@ -88,6 +88,10 @@ static void take_reading(ethd__servo_feedback *f, const ethd__servo_link *l) {
 
 /* ---- a drive that doesn't follow ---- */
 
+static void put(int64_t *bits, ethd_fault row, bool on) {
+  *bits = on ? *bits | ETHD_FAULT_BIT(row) : *bits & ~ETHD_FAULT_BIT(row);
+}
+
 static double scale_at_joint(const ethd__servo_register *r) {
   return fabs((ethd__servo_joint(r, 1) - ethd__servo_joint(r, 0)) / r->scale);
 }
@@ -102,18 +106,30 @@ static bool follows(ethd__servo_axis *a, const ethd__servo_link *l, int i, doubl
   return fabs(measured - torque) <= most || fabs(measured - before) <= most;
 }
 
+static bool is_measured_now(const ethd__servo_link *l, int i) {
+  int32_t r = l->map->roles[ETHD__SERVO_MEASURED1 + i];
+  return r < 0 || ethd__servo_plan_fresh(&l->plan, r);
+}
+
+/* Between two readings of a slow register what the last one said still holds. */
+static void compare(ethd__servo_feedback *f, const ethd__servo_link *l, int i, double torque) {
+  ethd__servo_axis *a = &f->axes[i];
+  bool fine = follows(a, l, i, torque) || l->state != ETHD__SERVO_ENABLED;
+  if (!is_measured_now(l, i) && !(fine && l->state != ETHD__SERVO_ENABLED)) return;
+  if (fine)
+    a->since_ns = 0;
+  else if (!a->since_ns)
+    a->since_ns = f->sample.stamp_ns;
+}
+
 static void watch_torque(ethd__servo_feedback *f, const ethd__servo_link *l, const double torque[2]) {
-  f->sample.levels &= ~ETHD_FAULT_BIT(ETHD_FAULT_NOT_FOLLOWED);
+  bool lasts = false;
   for (int i = 0; i < 2; i++) {
-    ethd__servo_axis *a = &f->axes[i];
-    bool fine = follows(a, l, i, torque[i]) || l->state != ETHD__SERVO_ENABLED;
-    if (fine)
-      a->since_ns = 0;
-    else if (!a->since_ns)
-      a->since_ns = f->sample.stamp_ns;
-    if (a->since_ns && 1e-9 * (double)(f->sample.stamp_ns - a->since_ns) >= ETHD__SERVO_FOLLOW)
-      f->sample.levels |= ETHD_FAULT_BIT(ETHD_FAULT_NOT_FOLLOWED);
+    compare(f, l, i, torque[i]);
+    int64_t since = f->axes[i].since_ns;
+    lasts |= since && 1e-9 * (double)(f->sample.stamp_ns - since) >= ETHD__SERVO_FOLLOW;
   }
+  put(&f->sample.levels, ETHD_FAULT_NOT_FOLLOWED, lasts);
 }
 
 void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *l, int64_t stamp_ns,
@@ -150,10 +166,6 @@ static bool voltage_fault(const ethd__servo_link *l) {
   const ethd__servo_register *r = role(l, ETHD__SERVO_BUS_VOLTAGE, &raw);
   double volts = r ? ethd__servo_joint(r, raw) : 0;
   return r && !(volts >= r->min && volts <= r->max);
-}
-
-static void put(int64_t *bits, ethd_fault row, bool on) {
-  *bits = on ? *bits | ETHD_FAULT_BIT(row) : *bits & ~ETHD_FAULT_BIT(row);
 }
 
 void ethd__servo_feedback_judge(ethd__servo_feedback *f, const ethd__servo_link *l) {

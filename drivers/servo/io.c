@@ -23,7 +23,9 @@ static void command(ethd__servo_device *d, int64_t now_ns, double torque[2]) {
   int good = !atomic_load_explicit(&d->safe, memory_order_relaxed) && now_ns - c->stamp_ns <= ethd__servo_old(d) &&
              c->epoch == atomic_load_explicit(&d->epoch, memory_order_relaxed);
   for (int i = 0; i < 2; i++) torque[i] = good ? c->torque[i] : 0;
-  d->due_ns = fresh ? c->stamp_ns + d->exchange_ns + (int64_t)(PHASE * (double)d->period_ns) : now_ns + d->exchange_ns;
+  /* a while after one of the loop's ticks: a command's instant says where those are */
+  int64_t behind = fresh ? (now_ns - c->stamp_ns) % d->period_ns - (int64_t)(PHASE * (double)d->period_ns) : 0;
+  d->due_ns = now_ns - behind + d->exchange_ns;
 }
 
 /* One turn of the link and what it tells; the device is locked. */
@@ -72,7 +74,10 @@ ethd_status ethd__servo_service(void *device, uint32_t unit, int64_t now_ns) {
   if (d->link.state == ETHD__SERVO_IDENTIFIED && d->link.sequence < 0 && atomic_exchange(&d->clear, 0))
     ethd__servo_link_begin(&d->link, ETHD__SERVO_CLEAR, now_ns);
   status = ethd__servo_turn(d, now_ns, torque);
-  if (d->link.state != ETHD__SERVO_DOWN && status < 0) status = ETHD_OK; /* counted there, and soon again */
+  if (d->link.state != ETHD__SERVO_DOWN && status < 0) {
+    status = ETHD_OK;   /* counted there */
+    d->due_ns = now_ns; /* and asked again at once: where exchanges are rare, the next would come too late */
+  }
   pthread_mutex_unlock(&d->lock);
   return status;
 }

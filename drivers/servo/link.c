@@ -38,7 +38,7 @@ ethd_status ethd__servo_link_connect(ethd__servo_link *l, int64_t now_ns) {
   }
   l->counts.connects++;
   l->state = ETHD__SERVO_UP;
-  l->draining = true;
+  l->draining = l->plan.all = true;
   l->heard_ns = now_ns;
   ethd__servo_link_begin(l, ETHD__SERVO_IDENTIFY, now_ns);
   return ETHD_OK;
@@ -111,7 +111,8 @@ static bool echoes(ethd__servo_link *l) {
 
 static void unpack(ethd__servo_link *l) {
   for (uint32_t i = 0; i < l->map->count; i++)
-    if (l->plan.block[i] >= 0 && l->map->registers[i].direction == ETHD__SERVO_READ)
+    if (l->plan.block[i] >= 0 && l->map->registers[i].direction == ETHD__SERVO_READ &&
+        ethd__servo_plan_fresh(&l->plan, (int32_t)i))
       l->raw[i] = ethd__servo_unpack(&l->map->registers[i], ethd__servo_plan_words(&l->plan, l->map, (int32_t)i));
 }
 

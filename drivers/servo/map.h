@@ -40,6 +40,7 @@
 
 #define ETHD__SERVO_REGISTERS_MAX 48u
 #define ETHD__SERVO_STEPS_MAX 24u
+#define ETHD__SERVO_EVERY_MAX 100u
 #define ETHD__SERVO_NAME_MAX 24u
 #define ETHD__SERVO_PORT_MAX 160u
 #define ETHD__SERVO_BYTES_MAX ((size_t)1 << 16)
@@ -92,6 +93,8 @@ typedef struct ethd__servo_register {
   double speed_max;                  /* rad/s of the joint: a counter that is faster jumped */
   double freeze_torque, freeze_time; /* Nm, s: as in encoder/unwrap.h; a torque of 0: a share of the largest */
   double reverse_torque, reverse_time, inertia;
+  uint32_t every;                 /* exchanges from one reading to the next; 1: in each */
+  double rate;                    /* 1/s, of the readings that a reading_count counts */
   double tolerance;               /* of measured torque, in its unit; 0: not watched */
   uint32_t fault_mask, healthy;   /* (raw & fault_mask) != healthy: the drive reports a fault */
   uint32_t enabled_mask, enabled; /* (raw & enabled_mask) == enabled: the drive is enabled */
@@ -124,6 +127,7 @@ typedef struct ethd__servo_map {
   char port[ETHD__SERVO_PORT_MAX];
   double baud;
   uint32_t unit, base, divisor, gap;
+  double turnaround; /* s: from the end of a question to the begin of its answer; 0: not known */
   double connect, response, drain, silence, back_off; /* s */
   int32_t watchdog, resumes;
   double watchdog_time; /* s */

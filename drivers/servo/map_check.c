@@ -178,6 +178,24 @@ static bool in_steps(const ethd__servo_map *map, uint32_t i) {
   return false;
 }
 
+static bool is_echo(const ethd__servo_map *map, int32_t i) {
+  for (uint32_t k = 0; k < map->count; k++)
+    if (map->registers[k].echo == i) return true;
+  return false;
+}
+
+/* What the loop lives on is read each time. */
+static ethd_status check_every(const ethd__servo_source *s, const ethd__servo_map *map) {
+  for (uint32_t i = 0; i < map->count; i++) {
+    const ethd__servo_register *r = &map->registers[i];
+    bool may = r->role < 0 || r->role == ETHD__SERVO_MEASURED1 || r->role == ETHD__SERVO_MEASURED2 ||
+               r->role == ETHD__SERVO_BUS_VOLTAGE;
+    if (r->every > 1 && (r->direction != R || !may || is_echo(map, (int32_t)i)))
+      return refuse(s, r, "every", "only measured torques, bus_voltage and masks are read less often, echoes aren't");
+  }
+  return ETHD_OK;
+}
+
 static ethd_status check_use(const ethd__servo_source *s, ethd__servo_map *map) {
   for (uint32_t i = 0; i < map->count; i++) {
     ethd__servo_register *r = &map->registers[i];
@@ -218,6 +236,7 @@ ethd_status ethd__servo_map_check(const ethd__servo_source *s, ethd__servo_map *
   for (uint32_t i = 0; i < map->count && !status; i++) status = link_echo(s, map, &map->registers[i]);
   if (!status) status = check_overlaps(s, map);
   if (!status) status = check_use(s, map);
+  if (!status) status = check_every(s, map);
   return status ? status : check_roles(s, map);
 }
 

@@ -94,6 +94,16 @@ static ethd_status make_feedback(ethd__servo_device *d, const ethd_device_def *d
   return status;
 }
 
+/* The loop may hold a torque for two exchanges, and no longer than 50 ms. */
+static ethd_status check_pace(const ethd__servo_device *d, const settings *s, char *message) {
+  int64_t most = ETHD__SERVO_OLD_MOST / 2;
+  if (d->exchange_ns <= most) return ETHD_OK;
+  return ethd__say(message, ETHD_E_RANGE,
+                   "%s: bus.divisor: found %u, an exchange in %g ms; at most %g ms are allowed: choose up to %lld",
+                   s->map->value, d->map.divisor, 1e-6 * (double)d->exchange_ns, 1e-6 * (double)most,
+                   (long long)(most / d->period_ns));
+}
+
 /* Its first answer, and what it says of itself. */
 static ethd_status meet(ethd__servo_device *d, const settings *s, char *message) {
   ethd__servo_link_make(&d->map, &d->link);
@@ -117,6 +127,7 @@ ethd_status ethd__servo_open(const ethd_device_def *def, void **out, char messag
   status = load_map(def, &s, &d->map, message);
   d->exchange_ns = d->period_ns * d->map.divisor;
   if (!status) status = place_axes(d, def, &s, message);
+  if (!status) status = check_pace(d, &s, message);
   if (!status) status = make_cells(d, message);
   if (!status) status = make_feedback(d, def, &s, message);
   if (!status) status = meet(d, &s, message);

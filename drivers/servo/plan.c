@@ -4,14 +4,14 @@
 
 #include "servo/words.h"
 
-/* The cyclic register of this direction that comes next behind (space, address, number); -1: none. */
-static int32_t next(const ethd__servo_map *map, int32_t direction, int64_t after) {
+/* The cyclic register of this direction and pace that comes next behind (space, address, number); -1: none. */
+static int32_t next(const ethd__servo_map *map, int32_t direction, uint32_t every, int64_t after) {
   int32_t best = -1;
   int64_t best_key = INT64_MAX;
   for (uint32_t i = 0; i < map->count; i++) {
     const ethd__servo_register *r = &map->registers[i];
     int64_t key = ((int64_t)r->space << 32 | r->address) << 8 | i;
-    if (!r->cyclic || r->direction != direction || key <= after || key >= best_key) continue;
+    if (!r->cyclic || r->direction != direction || r->every != every || key <= after || key >= best_key) continue;
     best = (int32_t)i;
     best_key = key;
   }
@@ -25,17 +25,19 @@ static bool joins(const ethd__servo_map *map, const ethd__servo_block *b, const 
   return r->address <= b->address + b->count + gap && r->address + ethd__servo_words(r) - b->address <= most;
 }
 
-static uint32_t arrange(const ethd__servo_map *map, int32_t direction, ethd__servo_block *blocks,
+/* Behind the first n of them; how many there are then. */
+static uint32_t arrange(const ethd__servo_map *map, int32_t direction, uint32_t every, uint32_t n,
                         ethd__servo_plan *out) {
-  uint32_t n = 0, gap = direction == ETHD__SERVO_READ ? map->gap : 0;
+  ethd__servo_block *blocks = direction == ETHD__SERVO_READ ? out->reads : out->writes;
+  uint32_t first = n, gap = direction == ETHD__SERVO_READ ? map->gap : 0;
   uint32_t most = direction == ETHD__SERVO_READ ? ETHD__SERVO_READ_MAX : ETHD__SERVO_WRITE_MAX;
   for (int64_t after = -1;;) {
-    int32_t i = next(map, direction, after);
+    int32_t i = next(map, direction, every, after);
     if (i < 0) return n;
     const ethd__servo_register *r = &map->registers[i];
     after = ((int64_t)r->space << 32 | r->address) << 8 | i;
-    if (!n || !joins(map, &blocks[n - 1], r, gap, most))
-      blocks[n++] = (ethd__servo_block){.space = r->space, .address = r->address};
+    if (n == first || !joins(map, &blocks[n - 1], r, gap, most))
+      blocks[n++] = (ethd__servo_block){.space = r->space, .address = r->address, .every = every, .phase = n % every};
     ethd__servo_block *b = &blocks[n - 1];
     out->block[i] = (int32_t)n - 1;
     out->offset[i] = r->address - b->address;
@@ -47,8 +49,10 @@ static uint32_t arrange(const ethd__servo_map *map, int32_t direction, ethd__ser
 void ethd__servo_plan_make(const ethd__servo_map *map, ethd__servo_plan *out) {
   memset(out, 0, sizeof *out);
   memset(out->block, -1, sizeof out->block);
-  out->write_count = arrange(map, ETHD__SERVO_WRITE, out->writes, out);
-  out->read_count = arrange(map, ETHD__SERVO_READ, out->reads, out);
+  out->all = true;
+  out->write_count = arrange(map, ETHD__SERVO_WRITE, 1, 0, out);
+  for (uint32_t every = 1; every <= ETHD__SERVO_EVERY_MAX; every++)
+    out->read_count = arrange(map, ETHD__SERVO_READ, every, out->read_count, out);
   out->combined = map->exchange == ETHD__SERVO_COMBINED && out->reads[0].space == ETHD__SERVO_HOLDING;
 }
 
@@ -57,16 +61,28 @@ uint16_t *ethd__servo_plan_words(ethd__servo_plan *plan, const ethd__servo_map *
   return &blocks[plan->block[r]].words[plan->offset[r]];
 }
 
+bool ethd__servo_plan_fresh(const ethd__servo_plan *plan, int32_t r) { return plan->reads[plan->block[r]].fresh; }
+
+/* Which are due. */
+static void choose(ethd__servo_plan *plan) {
+  for (uint32_t i = 0; i < plan->read_count; i++)
+    plan->reads[i].fresh = plan->all || plan->turn % plan->reads[i].every == plan->reads[i].phase;
+  plan->turn++;
+}
+
 ethd__servo_outcome ethd__servo_plan_ask(ethd__servo_plan *plan, ethd__servo_bus *bus) {
   ethd__servo_outcome done = ETHD__SERVO_DONE;
   uint32_t joined = plan->combined;
+  choose(plan);
   for (uint32_t i = joined; i < plan->write_count && !done; i++)
     done = ethd__servo_bus_write(bus, plan->writes[i].address, plan->writes[i].count, plan->writes[i].words);
   if (joined && !done)
     done = ethd__servo_bus_both(bus, plan->writes[0].address, plan->writes[0].count, plan->writes[0].words,
                                 plan->reads[0].address, plan->reads[0].count, plan->reads[0].words);
   for (uint32_t i = joined; i < plan->read_count && !done; i++)
-    done = ethd__servo_bus_read(bus, plan->reads[i].space, plan->reads[i].address, plan->reads[i].count,
-                                plan->reads[i].words);
+    if (plan->reads[i].fresh)
+      done = ethd__servo_bus_read(bus, plan->reads[i].space, plan->reads[i].address, plan->reads[i].count,
+                                  plan->reads[i].words);
+  if (!done) plan->all = false;
   return done;
 }

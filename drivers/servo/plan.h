@@ -1,4 +1,5 @@
-/* The questions of one exchange: registers that stand side by side go together. */
+/* The questions of one exchange: registers that stand side by side, and are read equally often, go together. Those about
+   slow registers are spread over the exchanges. */
 #ifndef ETHD_SERVO_PLAN_H
 #define ETHD_SERVO_PLAN_H
 
@@ -10,6 +11,8 @@
 typedef struct ethd__servo_block {
   int32_t space;
   uint32_t address, count;
+  uint32_t every, phase; /* asked when the exchange's number modulo every is phase */
+  bool fresh;            /* asked in the last exchange */
   uint16_t words[ETHD__SERVO_READ_MAX];
 } ethd__servo_block;
 
@@ -18,6 +21,8 @@ typedef struct ethd__servo_plan {
   uint32_t write_count, read_count;
   int32_t block[ETHD__SERVO_REGISTERS_MAX];   /* of a cyclic register; -1: none */
   uint32_t offset[ETHD__SERVO_REGISTERS_MAX]; /* its first word there */
+  uint32_t turn;                              /* exchanges so far */
+  bool all;                                   /* the next one asks for everything: nothing is known yet */
   bool combined;                              /* the first write and the first read are one question */
 } ethd__servo_plan;
 
@@ -26,6 +31,9 @@ void ethd__servo_plan_make(const ethd__servo_map *map, ethd__servo_plan *out);
 
 /* The words of a cyclic register. [any] */
 uint16_t *ethd__servo_plan_words(ethd__servo_plan *plan, const ethd__servo_map *map, int32_t r);
+
+/* The register was read in the last exchange. [any] */
+bool ethd__servo_plan_fresh(const ethd__servo_plan *plan, int32_t r);
 
 /* Asks them in order, writes first; stops at the first that isn't DONE. */
 ethd__servo_outcome ethd__servo_plan_ask(ethd__servo_plan *plan, ethd__servo_bus *bus);

@@ -19,16 +19,18 @@ static ethd__servo_outcome write_step(ethd__servo_link *l, const ethd__servo_ste
   return ethd__servo_bus_write(&l->bus, r->address, ethd__servo_words(r), words);
 }
 
-/* What was read within this turn counts; other registers are asked for. */
+/* What was read within this turn counts; other registers, and slow ones, are asked for. */
 static ethd__servo_outcome look(ethd__servo_link *l, const ethd__servo_step *s, uint32_t *bits) {
   const ethd__servo_register *r = &l->map->registers[s->at];
   uint16_t words[2];
   ethd__servo_outcome got = ETHD__SERVO_DONE;
-  if (r->cyclic) {
+  if (r->cyclic && ethd__servo_plan_fresh(&l->plan, s->at)) {
     *bits = ethd__servo_bits(r, ethd__servo_plan_words(&l->plan, l->map, s->at));
   } else {
     got = ethd__servo_bus_read(&l->bus, r->space, r->address, ethd__servo_words(r), words);
-    if (!got) *bits = ethd__servo_bits(r, words);
+    if (got) return got;
+    *bits = ethd__servo_bits(r, words);
+    l->raw[s->at] = ethd__servo_unpack(r, words);
   }
   return got;
 }

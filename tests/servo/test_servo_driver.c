@@ -61,6 +61,27 @@ static ethd_status tick(double torque1, double torque2) {
   return last;
 }
 
+/* The plant's map with one line changed, opened. */
+static ethd_status open_changed(const char *was, const char *now_) {
+  char *text, path[64];
+  size_t length;
+  snprintf(path, sizeof path, "%s/plant.map", folder);
+  ck_assert_int_eq(ethd_text_read(path, 1 << 16, &text, &length, message), ETHD_OK);
+  char *at = strstr(text, was), *all;
+  ck_assert_msg(at != NULL, "no %s", was);
+  ck_assert_int_ge(asprintf(&all, "%.*s%s%s", (int)(at - text), text, now_, at + strlen(was)), 0);
+  snprintf(path, sizeof path, "%s/changed.map", folder);
+  ck_assert_int_eq(ethd_text_write(path, all, strlen(all), message), ETHD_OK);
+  free(text);
+  free(all);
+  mock_start(&drive, 0);
+  ethd_setting settings[] = {{"map", "changed.map", 1}, {"port", drive.port, 2}};
+  ethd_status status = open_with(settings, 2);
+  now = 0;
+  unlink(path);
+  return status;
+}
+
 static int shows(ethd_fault row) { return (sense.faults & ETHD_FAULT_BIT(row)) != 0; }
 
 /* Ticks until a row shows; most + 1: it doesn't. */
@@ -441,6 +462,31 @@ START_TEST(test_bus_voltage) {
 }
 END_TEST
 
+/* A slow register costs its question every tenth time, and its row comes so much later. */
+START_TEST(test_every) {
+  ck_assert_msg(open_changed("[register bus_voltage]\n", "[register bus_voltage]\nevery = 10\n") == ETHD_OK, "%s",
+                message);
+  ck_assert_int_eq(servo->start(device), ETHD_OK);
+  for (int i = 0; i < 20; i++) tick(0, 0);
+  uint64_t before = drive.requests;
+  for (int i = 0; i < 100; i++) tick(0, 0);
+  /* torques and counter; what stands before the voltage; its own words; what stands behind it */
+  ck_assert_uint_eq(drive.requests - before, 100 * 3 + 10);
+  int worst = 0;
+  for (int k = 0; k < 20; k++) {
+    for (int i = 0; i < 10 + k; i++) tick(0, 0);
+    ck_assert(!shows(ETHD_FAULT_BUS_VOLTAGE));
+    drive.words[MOCK_VOLTAGE] = 230;
+    int n = ticks_until(ETHD_FAULT_BUS_VOLTAGE, 20);
+    if (n > worst) worst = n;
+    drive.words[MOCK_VOLTAGE] = 480;
+    for (int i = 0; i < 10; i++) tick(0, 0);
+  }
+  ck_assert_int_eq(worst, 10);
+  close_device();
+}
+END_TEST
+
 START_TEST(test_not_followed) {
   start_device();
   for (int i = 0; i < 20; i++) tick(0.1, 0);
@@ -453,6 +499,134 @@ START_TEST(test_not_followed) {
   drive.frozen = 0;
   tick(1, 0);
   ck_assert(!shows(ETHD_FAULT_NOT_FOLLOWED));
+  close_device();
+}
+END_TEST
+
+/* ---- slow buses ---- */
+
+static ethd_control *control;
+static ethd_loop *loop;
+static ethd_driver driven; /* the servo, whose I/O may stand still */
+static uint32_t no_units(const void *d) { return (void)d, 0; }
+
+static void open_loop(void) {
+  ethd_loop_def def = ethd_loop_default();
+  ethd_error error;
+  ethd_limits own = servo->limits(device);
+  setup.limits = ethd_limits_narrower(&own, &setup.limits);
+  driven = *servo;
+  def.driver = &driven;
+  def.device = device;
+  def.clock = &now;
+  def.gap = setup.limits.gap;
+  ck_assert_int_eq(servo->start(device), ETHD_OK);
+  ck_assert_int_eq(ethd_control_create(&setup, &control, &error), ETHD_OK);
+  def.control = control;
+  ck_assert_int_eq(ethd_loop_create(&def, &loop, &error), ETHD_OK);
+  ck_assert_int_eq(ethd_loop_start(loop, &error), ETHD_OK);
+}
+
+static void close_loop(void) {
+  ethd_loop_destroy(loop);
+  ethd_control_destroy(control);
+}
+
+static int64_t rows_seen(void) {
+  ethd_loop_stats stats;
+  int64_t rows = 0;
+  ethd_loop_read(loop, &stats);
+  for (int i = 1; i < ETHD_FAULT_COUNT; i++)
+    if (stats.faults[i]) rows |= ETHD_FAULT_BIT(i);
+  return rows;
+}
+
+/* However rarely a bus answers, down to 40 ms twice: the loop lives on it, a missing answer is only counted, and a bus that
+   stays silent is row 5 after the larger of 5 ms and two exchanges. */
+START_TEST(test_divisors) {
+  char line[32];
+  int divisor = _i;
+  snprintf(line, sizeof line, "divisor = %d", divisor);
+  ck_assert_msg(open_changed("divisor = 1", line) == ETHD_OK, "%s", message);
+  open_loop();
+  for (int i = 0; i < 1500; i++) ethd_loop_tick(loop);
+  ck_assert_int_eq(rows_seen(), 0);
+  ck_assert(ethd_loop_armed(loop));
+  ck_assert_uint_le(((ethd__servo_device *)device)->link.counts.exchanges, (uint64_t)(1500 / divisor + 20));
+  ck_assert_uint_ge(((ethd__servo_device *)device)->link.counts.exchanges, (uint64_t)(1500 / divisor));
+  spoil(1, MOCK_DROP, 0);
+  for (int i = 0; i < 200; i++) ethd_loop_tick(loop);
+  ck_assert_int_eq(rows_seen(), ETHD_FAULT_BIT(ETHD_FAULT_REPLY_MISSING));
+  ck_assert(ethd_loop_armed(loop));
+  driven.units = no_units; /* nothing comes any more, and no true time goes by */
+  int n = 0;
+  for (; n < 100 && ethd_loop_armed(loop); n++) ethd_loop_tick(loop);
+  int bound = 2 * divisor > 5 ? 2 * divisor : 5;
+  ck_assert_int_ge(n, bound - divisor);
+  ck_assert_int_le(n, bound + 2); /* behind a tick of age, and in the next one */
+  ck_assert(rows_seen() & ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD));
+  close_loop();
+  close_device();
+}
+END_TEST
+
+START_TEST(test_too_slow) {
+  ck_assert_int_eq(open_changed("divisor = 1", "divisor = 26"), ETHD_E_RANGE);
+  ck_assert_msg(
+      strstr(message, "bus.divisor: found 26, an exchange in 26 ms; at most 25 ms are allowed: choose up to 25"), "%s",
+      message);
+  mock_stop(&drive);
+  ck_assert_msg(open_changed("divisor = 1", "divisor = 25") == ETHD_OK, "%s", message);
+  close_device();
+}
+END_TEST
+
+/* A camera at 90 Hz behind the drive: without its rate every reading would be late. */
+START_TEST(test_camera) {
+  static const struct {
+    const char *key;
+    double age;
+    int late;
+  } all[] = {{"rate = 90\n", 3 / 90.0, 0}, {"", 0.010, 1}};
+  for (int k = 0; k < 2; k++) {
+    char section[64];
+    snprintf(section, sizeof section, "[register reading_count]\n%s", all[k].key);
+    ck_assert_msg(open_changed("[register reading_count]\n", section) == ETHD_OK, "%s", message);
+    ck_assert_double_eq_tol(servo->limits(device).finger_age, all[k].age, 1e-12);
+    ck_assert_double_eq_tol(servo->limits(device).finger_lost, 3 * all[k].age, 1e-12);
+    drive.words[MOCK_POSITION1 + 1] = (uint16_t)lrint(0.2 / COUNT); /* a pose that isn't singular */
+    drive.words[MOCK_POSITION2 + 1] = (uint16_t)lrint(1.5 / COUNT);
+    open_loop();
+    int late = 0;
+    for (int i = 0; i < 3000; i++) {
+      if (i * 90 / 1000 != (i - 1) * 90 / 1000) drive.words[MOCK_READING_COUNT]++;
+      drive.words[MOCK_READING_AGE] = (uint16_t)(i * 1000 % 11111 / 1000 * 1000);
+      ethd_loop_tick(loop);
+    }
+    late = (rows_seen() & ETHD_FAULT_BIT(ETHD_FAULT_FINGER_OLD)) != 0;
+    ck_assert_int_eq(late, all[k].late);
+    close_loop();
+    close_device();
+  }
+}
+END_TEST
+
+/* What measures says how often; a servo without a finger says nothing of it. */
+START_TEST(test_no_finger) {
+  char *text, path[64];
+  size_t length;
+  snprintf(path, sizeof path, "%s/plant.map", folder);
+  ck_assert_int_eq(ethd_text_read(path, 1 << 16, &text, &length, message), ETHD_OK);
+  char *from = strstr(text, "[register reading_x]"), *to = strstr(text, "[enable]");
+  memset(from, '\n', (size_t)(to - from));
+  snprintf(path, sizeof path, "%s/blind.map", folder);
+  ck_assert_int_eq(ethd_text_write(path, text, length, message), ETHD_OK);
+  free(text);
+  mock_start(&drive, 0);
+  ethd_setting settings[] = {{"map", "blind.map", 1}, {"port", drive.port, 2}};
+  ck_assert_msg(open_with(settings, 2) == ETHD_OK, "%s", message);
+  ck_assert(isinf(servo->limits(device).finger_age) && isinf(servo->limits(device).finger_lost));
+  unlink(path);
   close_device();
 }
 END_TEST
@@ -639,6 +813,11 @@ int main(void) {
   tcase_add_test(t, test_why);
   tcase_add_test(t, test_bus_voltage);
   tcase_add_test(t, test_not_followed);
+  tcase_add_test(t, test_every);
+  tcase_add_loop_test(t, test_divisors, 1, 21);
+  tcase_add_test(t, test_too_slow);
+  tcase_add_test(t, test_camera);
+  tcase_add_test(t, test_no_finger);
   tcase_add_test(t, test_unplugged);
   tcase_add_test(t, test_first_is_zero);
   tcase_add_test(t, test_old_set_point);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "servo/wire.h"
 #include "servo/words.h"
 #include "text/text.h"
 #include "unit/mutate.h"
@@ -67,6 +68,30 @@ START_TEST(test_plant) {
 }
 END_TEST
 
+/* The SVD48V at 500 kBd, by hand: a byte has 10 bits, a silence 3.5 bytes of 11. Writing two words is 13 + 8 bytes,
+   reading n of them 8 + 5 + 2 n; currents and running bits come every second time, the voltage every 50th. */
+START_TEST(test_wire) {
+  const double byte = 10 / 500e3, silence = 3.5 * 11 / 500e3;
+  read_map("apps/config/svd48v.map");
+  ck_assert_msg(try(text) == ETHD_OK, "%s", message);
+  ethd__servo_wire w = ethd__servo_wire_of(&map, 0);
+  ck_assert_uint_eq(w.questions, 3);
+  ck_assert_uint_eq(w.bytes, 13 + 8 + (8 + 9) + (8 + 13));
+  ck_assert_double_eq_tol(w.usual, 59 * byte + 3 * silence, 1e-12);
+  ck_assert_double_eq_tol(w.most, w.usual + (17 + 15) * byte + 2 * silence, 1e-12);
+  ck_assert_double_eq_tol(ethd__servo_wire_of(&map, 1e-4).usual, w.usual + 3e-4, 1e-12);
+  map.turnaround = 2e-4;
+  ck_assert_double_eq_tol(ethd__servo_wire_of(&map, (double)NAN).usual, w.usual + 6e-4, 1e-12);
+  map.format = 1; /* parity */
+  ck_assert_double_eq_tol(ethd__servo_wire_of(&map, 0).usual, 59 * 1.1 * byte + 3 * silence, 1e-12);
+  ck_assert_uint_eq(ethd__servo_divisor_for(2.2e-3, 1e-3), 3);
+  ck_assert_uint_eq(ethd__servo_divisor_for(0.1e-3, 1e-3), 1);
+  ck_assert_uint_eq(ethd__servo_divisor_for(1 / 1.1 * 4e-3, 1e-3), 4);
+  /* the map's divisor holds what its wire takes, with turnarounds of 0.2 ms */
+  ck_assert_uint_ge(map.divisor, ethd__servo_divisor_for(w.most + 5 * 2e-4, 1e-3));
+}
+END_TEST
+
 /* Rows 12 and 13 are watched unless a map says otherwise, and then it is said. */
 START_TEST(test_watched) {
   static const struct {
@@ -96,9 +121,10 @@ START_TEST(test_roboteq) {
     const char *name;
     uint32_t id, index, address; /* address: as a driver that isn't ours has it */
   } known[] = {
-      {"torque1", 0x2000, 1, 0x0001}, {"torque2", 0x2000, 2, 0x0002},   {"seen1", 0x2101, 1, 0x2021},
-      {"seen2", 0x2101, 2, 0x2022},   {"position1", 0x2104, 1, 0x2081}, {"position2", 0x2104, 2, 0x2082},
-      {"faults", 0x2112, 0, 0x2240},  {"emergency", 0x200C, 0, 0x0180}, {"release", 0x200D, 0, 0x01A0},
+      {"torque1", 0x2000, 1, 0x0001}, {"torque2", 0x2000, 2, 0x0002},     {"seen1", 0x2101, 1, 0x2021},
+      {"seen2", 0x2101, 2, 0x2022},   {"position1", 0x2104, 1, 0x2081},   {"position2", 0x2104, 2, 0x2082},
+      {"faults", 0x2112, 0, 0x2240},  {"bus_voltage", 0x210D, 2, 0x21A2}, {"emergency", 0x200C, 0, 0x0180},
+      {"release", 0x200D, 0, 0x01A0},
   };
   ck_assert_uint_eq(roboteq(0x2106, 1), 0x20C1);
   read_map("apps/config/roboteq.map");
@@ -232,6 +258,12 @@ START_TEST(test_register_refused) {
   refused_behind("[register position2]", "address = 7", "address = 6", "register position2.address: overlaps");
   refused_behind("[register position1]", "counts = 4000", "counts = 4000\nbits = 33", "register position1.bits");
   refused_behind("[register measured1]", "unit = Nm", "unit = Nm\nbits = 17", "its words have 16");
+  refused_behind("[register position1]", "counts = 4000", "counts = 4000\nevery = 2",
+                 "register position1.every: only measured");
+  refused_behind("[register seen1]", "type = i16", "type = i16\nevery = 2", "register seen1.every: only measured");
+  refused_behind("[register control]", "type = u16", "type = u16\nevery = 2", "register control.every: only measured");
+  refused_behind("[register status]", "fault_mask = 0x0001", "fault_mask = 1\nevery = 101", "register status.every");
+  refused_behind("[register reading_count]", "type = u16", "type = u16\nrate = 0", "register reading_count.rate");
   refused_behind("[register torque2]", "address = 2", "address = 1", "writes there too");
   refused_behind("[register status]", "fault_mask = 0x0001", "fault_mask = 0x10000", "is wider than the register");
   refused_behind("[register status]", "fault_mask = 0x0001", "fault_mask = 1\nhealthy = 2", "register status.healthy");
@@ -410,6 +442,7 @@ int main(void) {
   tcase_set_timeout(t, 300);
   tcase_add_test(t, test_plant);
   tcase_add_test(t, test_makers);
+  tcase_add_test(t, test_wire);
   tcase_add_test(t, test_watched);
   tcase_add_test(t, test_roboteq);
   tcase_add_test(t, test_svd48v);
