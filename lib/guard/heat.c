@@ -1,12 +1,12 @@
-/* I2t: a motor's winding is a body of one temperature. h: rise over the surroundings, as a share of the rise
-   that the nominal torque leads to:
+/* I2t: a motor's winding is a body of one temperature. Its rise over the surroundings is h, as a share of the rise that
+   the nominal torque leads to:
 
         h' = ((tau / nominal)^2 - h) / heat_time        exactly solved for a torque that is held
 
-   The torque it may have falls from any at h = FOLD to the nominal at 1, where h rises no more. */
+   The torque that it may have falls from any at h = FOLD to the nominal torque at h = 1, where h rises no more. */
 #include "guard/parts.h"
 
-#define FOLD 0.9
+#define FOLD 0.9 /* the last tenth of the heat is where the torque folds back */
 
 double ethd_guard_heat(const ethd_limits *limits, ethd_guard_state *s, double dt) {
   double share = 1 - ethd_exp(-dt / limits->heat_time);

@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "error.h"
@@ -25,14 +26,14 @@ const ethd_limit ethd_limit_rows[ETHD_LIMITS] = {
     {"clean_time", "s", AT(clean_time), 1, ETHD_LIMIT_LEAST, 0, 1e6, "before an acknowledgement"},
 };
 
-/* What no limit is; 2 numbers are a range. */
+/* The value that means "no limit"; of a range, number i. */
 static double none(const ethd_limit *row, uint32_t i) {
   if (row->kind == ETHD_LIMIT_LEAST) return row->min;
   return row->kind == ETHD_LIMIT_RANGES && i % 2 == 0 ? -INF : INF;
 }
 
 static double narrower(const ethd_limit *row, uint32_t i, double a, double b) {
-  int rises = row->kind == ETHD_LIMIT_LEAST || (row->kind == ETHD_LIMIT_RANGES && i % 2 == 0);
+  bool rises = row->kind == ETHD_LIMIT_LEAST || (row->kind == ETHD_LIMIT_RANGES && i % 2 == 0);
   return rises ? fmax(a, b) : fmin(a, b);
 }
 

@@ -5,6 +5,7 @@
           |//////:    ring                                                                          */
 #include "guard/parts.h"
 
+/* A fifth of the paper's K_e and B_e (eq. 10): stable on any device that renders its walls. */
 #define WALL_STIFFNESS 500.0 /* N/m */
 #define WALL_DAMPING 10.0    /* Ns/m */
 
@@ -16,7 +17,7 @@ static double push_both(double lo, double hi, double margin, double x, double v)
   return push(lo + margin - x, -v) - push(x - (hi - margin), v);
 }
 
-int ethd__guard_wall(const ethd_limits *l, const ethd_pose *pose, ethd_vec v, double torque[2]) {
+bool ethd__guard_wall(const ethd_limits *l, const ethd_pose *pose, ethd_vec v, double torque[2]) {
   ethd_vec f = {push_both(l->workspace[0], l->workspace[1], l->margin, pose->x.x, v.x),
                 push_both(l->workspace[2], l->workspace[3], l->margin, pose->x.y, v.y)};
   double r = ethd_vec_norm(pose->x);
@@ -24,9 +25,9 @@ int ethd__guard_wall(const ethd_limits *l, const ethd_pose *pose, ethd_vec v, do
     ethd_vec n = ethd_vec_scale(1 / r, pose->x);
     f = ethd_vec_add(f, ethd_vec_scale(push_both(l->reach[0], l->reach[1], l->margin, r, ethd_vec_dot(n, v)), n));
   }
-  if (!(f.x != 0 || f.y != 0)) return 0;
-  ethd_vec tau = ethd_mat_mul_transposed(pose->j, f);
-  torque[0] += tau.x;
-  torque[1] += tau.y;
-  return 1;
+  if (!(f.x != 0 || f.y != 0)) return false;
+  double tau[2];
+  ethd_pose_torques(pose, f, tau);
+  for (int i = 0; i < 2; i++) torque[i] += tau[i];
+  return true;
 }
