@@ -3,23 +3,24 @@
 # study with its report.
 # TAPS and PLANT may be set: TAPS=1000 PLANT=b make demo
 set -eu
-here=$(dirname "$0")
+here=$(cd "$(dirname "$0")" && pwd)
 BUILD=${BUILD:-build} TAPS=${TAPS:-400} PLANT=${PLANT:-n}
 out=$BUILD/demo
 mkdir -p "$out/traces"
 
-"$BUILD/bin/ethd-tap" --plant "$PLANT" --taps "$TAPS" --csv "$out/taps.csv" --trace "$out/traces" >"$out/table.txt"
+"$BUILD/bin/ethd-tap" --plant "$PLANT" --taps "$TAPS" --csv "$out/taps.csv" --trace "$out/traces" --force >"$out/table.txt"
 cat "$out/table.txt"
 echo
 
-plant=$(basename "$PLANT" .plant)
+# Of the words that gnuplot gets none is a path: a quote in one would end its string.
+plant=$(basename "$PLANT" .plant | tr -cd '[:alnum:]_.-')
+plot() { (cd "$out" && gnuplot -e "$1" "$here/plot/$2"); }
 for law in abrupt smooth offset; do
   for speed in low high; do
-    gnuplot -e "in='$out/traces/$law-$speed.csv'; out='$out/$law-$speed.png'; title='$law, $speed speed'; plant='$plant'" \
-      "$here/plot/tap.gp"
+    plot "in='traces/$law-$speed.csv'; out='$law-$speed.png'; title='$law, $speed speed'; plant='$plant'" tap.gp
   done
 done
-gnuplot -e "in='$out/taps.csv'; out='$out/boxes.png'; plant='$plant'" "$here/plot/boxes.gp"
+plot "in='taps.csv'; out='boxes.png'; plant='$plant'" boxes.gp
 
 # The paper's study as it was done, with three people; and a crowd of 400 beside it.
 rm -rf "$out/study" "$out/crowd"

@@ -1,12 +1,11 @@
 /* Benchmarks: run time against error. */
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "bench/bench.h"
 #include "cli/cli.h"
+#include "text/claim.h"
 #include "text/text.h"
 
 static const ethd__bench *const benches[] = {
@@ -21,8 +20,11 @@ static const char doc[] = "Measures libethd, and other libraries beside it where
                           "Absolute times mean this machine at this moment; compare within one run.\n\n"
                           "Example:\n  ethd-bench tick --quick";
 
+enum { OPTION_FORCE = 256 };
+
 static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "folder of the CSV files (default: bench)", 0},
+    {"force", OPTION_FORCE, NULL, 0, "replace the CSV files that are there", 0},
     {"quick", 'q', NULL, 0, "fewer rounds", 0},
     {"peers", 'p', "DIR", 0, "folder of the other libraries' shared objects (default: beside the program's)", 0},
     {"about", 'a', "TEXT", 0, "goes into each CSV's head: commit, compiler, flags", 0},
@@ -33,12 +35,14 @@ static const struct argp_option options[] = {
 static struct {
   const char *what, *folder, *peers;
   int quick, list;
-} arg = {NULL, "bench", NULL, 0, 0};
+  bool force;
+} arg = {.folder = "bench"};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
   case 'o': arg.folder = text; return 0;
   case 'q': arg.quick = 1; return 0;
+  case OPTION_FORCE: arg.force = true; return 0;
   case 'p': arg.peers = text; return 0;
   case 'a': ethd__bench_about(text); return 0;
   case 'l': arg.list = 1; return 0;
@@ -84,8 +88,14 @@ int main(int argc, char **argv) {
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   for (size_t i = 0; arg.list && i < BENCH_COUNT; i++) printf("%-12s %s\n", benches[i]->name, benches[i]->brief);
   if (!arg.what) return ethd__end(ETHD_EXIT_DONE);
-  if (mkdir(arg.folder, 0777) != 0 && errno != EEXIST)
-    ethd__fail(ETHD_EXIT_FAILED, "%s: %s", arg.folder, strerror(errno));
+  char message[ETHD_MESSAGE_MAX], file[128];
+  ethd__claim claim;
+  const char *const files[] = {file, NULL};
+  snprintf(file, sizeof file, "%.100s.csv", strcmp(arg.what, "all") ? arg.what : "*");
+  ethd_status status = ethd__claim_folder(arg.folder, files, arg.force, &claim, message);
+  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   find_peers();
-  return ethd__end(run_wanted());
+  int code = run_wanted();
+  ethd__claim_release(&claim);
+  return ethd__end(code);
 }

@@ -91,7 +91,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case 'R': g->record = text; return 0;
   case 'o': arg.out = text; return 0;
   case 'c': arg.csv = text; return 0;
-  case 'P': arg.plot = text; return 0;
+  case 'P': arg.plot = ethd__option_picture("--plot", text); return 0;
   case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
   case ARGP_KEY_END: check_usage(state); return 0;
   default: return ARGP_ERR_UNKNOWN;
@@ -125,6 +125,8 @@ static void date_it(ethd__calibration *c) {
 
 static void write_files(const ethd__places *p, ethd__calibration *c) {
   char message[ETHD_MESSAGE_MAX];
+  const char *const outputs[][2] = {{"--out", arg.out}, {"--csv", arg.csv}, {"--plot", arg.plot}};
+  for (int i = 0; i < 3; i++) ethd__refuse_input(outputs[i][0], outputs[i][1], "--in", arg.in);
   ethd_status status = ETHD_OK;
   date_it(c);
   if (arg.serial) strcpy(c->serial, arg.serial);

@@ -52,6 +52,11 @@ static char *within(const char *name) {
   return path;
 }
 
+static void refuse_inputs(void) {
+  if (ethd__recording_holds(arg.folder, arg.out))
+    ethd__fail(ETHD_EXIT_INPUT, "%s: is a file of the recording, which is only read; another name is needed", arg.out);
+}
+
 static recording open_recording(void) {
   char message[ETHD_MESSAGE_MAX];
   recording r = {0};
@@ -95,6 +100,11 @@ static char *csv_header(void) {
   return text;
 }
 
+/* Half of a recording takes nobody's place. */
+static ethd_status stopped(char *message) {
+  return ethd__say(message, ETHD_E_FILE, "%s: not written: stopped", arg.out);
+}
+
 static ethd_status to_csv(const recording *r, char *message) {
   char *header = csv_header();
   ethd_csv_out *out = ethd_csv_create(arg.out, header, message);
@@ -110,7 +120,9 @@ static ethd_status to_csv(const recording *r, char *message) {
     ethd_csv_row(out);
     ethd__progress(k, r->count, arg.out);
   }
-  return ethd_csv_close(out, message);
+  if (!ethd__stop) return ethd_csv_close(out, message);
+  ethd_csv_abandon(out);
+  return stopped(message);
 }
 
 /* ---- MCAP ---- */
@@ -221,7 +233,9 @@ static ethd_status to_mcap(const recording *r, char *message) {
   put_messages(r, mcap, &t);
   if (t.file) fclose(t.file);
   free(t.at);
-  return ethd_mcap_close(mcap, message);
+  if (!ethd__stop) return ethd_mcap_close(mcap, message);
+  ethd_mcap_abandon(mcap);
+  return stopped(message);
 }
 
 /* ---- main ---- */
@@ -240,11 +254,12 @@ int main(int argc, char **argv) {
   if (!is_csv && !ends_in(arg.out, ".mcap"))
     ethd__fail(ETHD_EXIT_INPUT, "%s: a name that ends in .csv or .mcap is allowed", arg.out);
   ethd__catch_interrupt();
+  refuse_inputs();
   recording r = open_recording();
   ethd_status status = (is_csv ? to_csv : to_mcap)(&r, message);
   ethd__progress(1, 1, arg.out);
   if (status) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
-  printf("%s: %zu ticks, %zu events%s\n", arg.out, r.count, r.events.count, ethd__stop ? ", cut short" : "");
+  printf("%s: %zu ticks, %zu events\n", arg.out, r.count, r.events.count);
   free(r.rows);
   ethd__record_events_free(&r.events);
   return ethd__end(ETHD_EXIT_DONE);

@@ -74,14 +74,14 @@ static void write_row(ethd_csv_out *csv, const char *section, const ethd_method 
   ethd_csv_word(csv, section);
   ethd_csv_word(csv, m->id);
   ethd_csv_word(csv, row ? row->name : "");
-  ethd_csv_word(csv, row ? row->unit : "");
+  ethd_csv_text(csv, row ? row->unit : "");
   ethd_csv_number(csv, row ? row->min : NAN);
   ethd_csv_number(csv, row ? row->max : NAN);
   if (row && ethd_param_words(row))
     ethd_csv_word(csv, text_of(row, row->def, def));
   else
     ethd_csv_number(csv, row ? row->def : NAN);
-  ethd_csv_word(csv, row ? row->brief : m->brief);
+  ethd_csv_text(csv, row ? row->brief : m->brief);
   ethd_csv_row(csv);
 }
 

@@ -16,16 +16,20 @@ static const char doc[] =
     "  ethd-replay --config smooth.ini --in finger.csv --out torque.csv\n"
     "  ethd-replay --verify recording/";
 
+enum { OPTION_PLUGINS = 256 };
+
 static const struct argp_option options[] = {
     {"config", 'c', "C.ini", 0, "configuration; defaults without", 0},
     {"in", 'i', "IN.csv", 0, "recorded input", 0},
     {"out", 'o', "OUT.csv", 0, "the law's answer, a row per tick", 0},
     {"verify", 'v', "DIR", 0, "replay a recording and compare every field bit for bit", 0},
+    {"plugins", OPTION_PLUGINS, NULL, 0, "with --verify: run the plugins that the recording names", 0},
     {0},
 };
 
 static struct {
   const char *config, *in, *out, *verify;
+  bool plugins;
 } arg;
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -34,10 +38,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case 'i': arg.in = text; return 0;
   case 'o': arg.out = text; return 0;
   case 'v': arg.verify = text; return 0;
+  case OPTION_PLUGINS: arg.plugins = true; return 0;
   case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
   case ARGP_KEY_END:
     if (arg.verify && (arg.in || arg.out || arg.config))
       argp_error(state, "--verify stands alone: a recording brings its own configuration");
+    else if (arg.plugins && !arg.verify)
+      argp_error(state, "--plugins belongs to --verify; a configuration of yours runs its plugins");
     else if (!arg.verify && (!arg.in || !arg.out))
       argp_error(state, "--in and --out are needed, or --verify");
     return 0;
@@ -138,10 +145,15 @@ static int replay(void) {
     ethd_error_text(arg.config, &error, message);
     ethd__fail(ethd__exit_code(status), "%s", message);
   }
+  ethd__refuse_input("--out", arg.out, "--in", arg.in);
+  ethd__refuse_input("--out", arg.out, "--config", arg.config);
   ethd_csv_out *out = open_out(in.ring, message);
   if (!out) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   int code = run(control, &in, out);
-  if (ethd_csv_close(out, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  if (ethd__stop)
+    ethd_csv_abandon(out);
+  else if (ethd_csv_close(out, message) < 0)
+    ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   say(control, config->scene, &in);
   ethd_control_destroy(control);
   ethd__trace_in_free(&in);
@@ -151,7 +163,7 @@ static int replay(void) {
 
 static int verify(void) {
   char message[ETHD_MESSAGE_MAX];
-  ethd_status status = ethd_recording_verify(arg.verify, message);
+  ethd_status status = ethd_recording_verify(arg.verify, arg.plugins, message);
   if (status >= 0) {
     printf("%s\n", message);
     return ETHD_EXIT_DONE;

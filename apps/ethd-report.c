@@ -8,9 +8,8 @@
 
 #include "cli/cli.h"
 #include "ethd/ethd.h"
-#include "report/html.h"
-#include "report/picture.h"
 #include "report/report.h"
+#include "text/claim.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
@@ -23,13 +22,15 @@ static const char doc[] =
     "  ethd-report session\n"
     "  ethd-report session --beside crowd --tap P02-06-004";
 
-enum { OPTION_BESIDE = 256, OPTION_TAP, OPTION_POINT, OPTION_SEED };
+enum { OPTION_BESIDE = 256, OPTION_TAP, OPTION_POINT, OPTION_SEED, OPTION_PLUGINS, OPTION_FORCE };
 
 static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "where the report goes: report in the study's folder", 0},
     {"beside", OPTION_BESIDE, "DIR", 0, "another folder of taps, to stand beside this one's", 0},
     {"tap", OPTION_TAP, "NAME", 0, "draw this tap (P02-06-004), not the typical one of each cell", 0},
     {"point", OPTION_POINT, "K", 0, "of a grid: the point that is shown in full: 0", 0},
+    {"plugins", OPTION_PLUGINS, NULL, 0, "run the plugins that the folder's configuration names", 0},
+    {"force", OPTION_FORCE, NULL, 0, "replace a report that is there", 0},
     {"seed", OPTION_SEED, "S", 0, "of the bootstrap: 1", 0},
     {0},
 };
@@ -38,6 +39,7 @@ static struct {
   const char *folder, *out, *beside, *tap;
   int64_t point;
   uint64_t seed;
+  bool plugins, force;
 } arg = {.seed = 1};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -47,6 +49,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_TAP: arg.tap = text; return 0;
   case OPTION_POINT: arg.point = ethd__option_integer("--point", text, 0, ETHD_STUDY_POINTS); return 0;
   case OPTION_SEED: arg.seed = ethd__option_seed("--seed", text); return 0;
+  case OPTION_PLUGINS: arg.plugins = true; return 0;
+  case OPTION_FORCE: arg.force = true; return 0;
   case ARGP_KEY_ARG:
     if (arg.folder) argp_error(state, "\"%s\": one folder is allowed", text);
     arg.folder = text;
@@ -69,7 +73,7 @@ static void check_job(ethd_status status, const char *message) {
 
 static void load(const char *folder, size_t point, ethd__folder *out, ethd__data *data) {
   char message[ETHD_MESSAGE_MAX], *taps = ethd__folder_path(folder, ETHD_STUDY_TAPS);
-  check(ethd__folder_open(folder, out, message), message);
+  check(ethd__folder_open(folder, arg.plugins, out, message), message);
   if (access(taps, F_OK) != 0)
     ethd__fail(ETHD_EXIT_INPUT, "%s: No such file; ethd-study --resume %s or --merge %s makes it", taps, folder,
                folder);
@@ -92,18 +96,20 @@ static bool led_by_people(const ethd__report *r) {
 
 static void print_origin(ethd__report *r) {
   if (ethd__report_measured(r)) {
-    fprintf(r->page,
-            "<b>Measured</b> on the device <code>%s</code> of config.ini, with people's fingers in it: the ring as the "
-            "encoders have it, the finger as its filter has it. A finger counts as touching %.2g mm from the ring on.",
-            r->folder->loaded.config->device, 1e3 * r->folder->protocol.slack);
+    ethd__html_print(
+        &r->page,
+        "<b>Measured</b> on the device <code>%s</code> of config.ini, with people's fingers in it: the ring as the "
+        "encoders have it, the finger as its filter has it. A finger counts as touching %.2g mm from the ring on.",
+        r->folder->loaded.config->device, 1e3 * r->folder->protocol.slack);
     return;
   }
-  fputs("<b>Simulated, not measured.</b> ", r->page);
-  fputs(led_by_people(r)
-            ? "People led the hand; device and finger are plausible: the plant was fitted to Table 1 of the paper."
-            : "Device, finger and people are plausible: the plant was fitted to Table 1 of the paper, the spread "
-              "between people is assumed.",
-        r->page);
+  ethd__html_markup(&r->page, "<b>Simulated, not measured.</b> ");
+  ethd__html_markup(
+      &r->page,
+      led_by_people(r)
+          ? "People led the hand; device and finger are plausible: the plant was fitted to Table 1 of the paper."
+          : "Device, finger and people are plausible: the plant was fitted to Table 1 of the paper, the spread "
+            "between people is assumed.");
 }
 
 static void print_lead(ethd__report *r) {
@@ -113,28 +119,30 @@ static void print_lead(ethd__report *r) {
     taps += d->group[i].cell.count;
     valid += ethd__cell_valid(&d->group[i].cell);
   }
-  fprintf(r->page,
-          "<p class=\"lead\">%zu participants, %zu cells, %zu test taps, %zu of them valid; %zu training taps.</p>\n",
-          d->people_count, d->group_count, taps, valid, d->training);
-  fputs("<p class=\"note\">", r->page);
+  ethd__html_print(
+      &r->page,
+      "<p class=\"lead\">%zu participants, %zu cells, %zu test taps, %zu of them valid; %zu training taps.</p>\n",
+      d->people_count, d->group_count, taps, valid, d->training);
+  ethd__html_markup(&r->page, "<p class=\"note\">");
   print_origin(r);
-  fputs(" Laws and gains are those of the configuration, the paper's unless it says otherwise.</p>\n", r->page);
-  fputs("<nav>", r->page);
+  ethd__html_markup(&r->page,
+                    " Laws and gains are those of the configuration, the paper's unless it says otherwise.</p>\n");
+  ethd__html_markup(&r->page, "<nav>");
   static const char *const links[][2] = {{"table1", "Table 1"},   {"figures", "Figures"},  {"delay", "Delay"},
                                          {"valid", "Valid taps"}, {"pairs", "Comparison"}, {"survey", "Survey"},
                                          {"traces", "Traces"},    {"methods", "Methods"}};
   for (size_t i = 0; i < sizeof links / sizeof *links; i++)
-    fprintf(r->page, "<a href=\"#%s\">%s</a>", links[i][0], links[i][1]);
-  fputs("</nav>\n", r->page);
+    ethd__html_print(&r->page, "<a href=\"#%s\">%s</a>", links[i][0], links[i][1]);
+  ethd__html_markup(&r->page, "</nav>\n");
 }
 
 static void print_foot(ethd__report *r) {
-  ethd__html_heading(r->page, "data", "Data");
-  fputs("<p>The folder's README.md says what every file and column is. ", r->page);
-  fprintf(r->page,
-          "Study hash <code>%s</code>; libethd %s. Any recorded tap repeats bit for bit: "
-          "<code>ethd-replay --verify DIR/taps/NAME</code>.</p>\n",
-          r->folder->hash, ETHD_VERSION);
+  ethd__html_heading(&r->page, "data", "Data");
+  ethd__html_markup(&r->page, "<p>The folder's README.md says what every file and column is. ");
+  ethd__html_print(&r->page,
+                   "Study hash <code>%s</code>; libethd %s. Any recorded tap repeats bit for bit: "
+                   "<code>ethd-replay --verify DIR/taps/NAME</code>.</p>\n",
+                   r->folder->hash, ETHD_VERSION);
 }
 
 static ethd_status sections(ethd__report *r) {
@@ -144,27 +152,32 @@ static ethd_status sections(ethd__report *r) {
   ethd_status status = ETHD_OK;
   char title[128];
   snprintf(title, sizeof title, "Tapping study: %s", r->folder->protocol.name);
-  ethd__html_begin(r->page, title);
+  ethd__html_begin(&r->page, title);
   print_lead(r);
   for (size_t i = 0; !status && i < sizeof each / sizeof *each; i++) status = each[i](r);
   if (status) return status;
   ethd__report_methods(r);
   print_foot(r);
-  ethd__html_end(r->page);
+  ethd__html_end(&r->page);
   return ETHD_OK;
 }
 
 static void write_page(ethd__report *r) {
+  static const char *const files[] = {"report.html", "*.csv", "*.png", NULL};
   char *path = ethd__report_path(r, "report.html");
   ethd_replace replace;
-  if (mkdir(r->out, 0777) != 0 && errno != EEXIST) ethd__fail(ETHD_EXIT_FAILED, "%s: %s", r->out, strerror(errno));
+  ethd__claim claim;
+  if (ethd__claim_holds(r->folder->path, NULL, r->out))
+    ethd__fail(ETHD_EXIT_INPUT, "--out: %s is the study's own folder; another one is needed", r->out);
+  check(ethd__claim_folder(r->out, files, arg.force, &claim, r->message), r->message);
   check_job(ethd__picture_ready(r->message), r->message);
   check_job(ethd_replace_begin(path, &replace, r->message), r->message);
-  r->page = replace.file;
+  r->page.file = replace.file;
   ethd_status status = sections(r);
   if (status) ethd_replace_abandon(&replace);
   check_job(status, r->message);
   check_job(ethd_replace_commit(&replace, r->message), r->message);
+  ethd__claim_release(&claim);
   printf("%s\n", path);
   free(path);
 }

@@ -40,17 +40,22 @@ enum {
   OPTION_REQUIRE,
   OPTION_EARLY,
   OPTION_DMA,
-  OPTION_SOFT
+  OPTION_SOFT,
+  OPTION_FORCE,
+  OPTION_GROUP
 };
 
 static const struct argp_option options[] = {
     {"config", 'c', "C.ini", 0, "configuration; the simulated device without", 0},
     {"duration", 'd', "S", 0, "ends after so many seconds; needed with --virtual", 0},
     {"record", OPTION_RECORD, "DIR", 0, "every tick, for ethd-replay --verify", 0},
+    {"force", OPTION_FORCE, NULL, 0, "replace a recording that is there", 0},
     {"snapshot", OPTION_SNAPSHOT, "FILE.npy", 0,
      "the ticks around the first fault: 2 s before, 1 s after; snapshot.npy in DIR with --record", 0},
     {"faults", OPTION_FAULTS, NULL, 0, "print what may go wrong and what is done then, and end", 0},
     {"telemetry", OPTION_TELEMETRY, "HOST:PORT", 0, "UDP, JSON, 100 Hz: PlotJuggler's UDP server reads it", 0},
+    {"telemetry-group", OPTION_GROUP, NULL, 0,
+     "let --telemetry name a multicast or broadcast address: everybody there sees what the ring does", 0},
     {"virtual", OPTION_VIRTUAL, NULL, 0, "lock-step on a virtual clock, no threads", 0},
     {"cpu", OPTION_CPU, "N|auto|none", 0, "processor of the loop: none; auto: the highest isolated one", 1},
     {"priority", OPTION_PRIORITY, "N", 0, "of SCHED_FIFO: 80", 1},
@@ -81,6 +86,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_SNAPSHOT: arg.session.snapshot = text; return 0;
   case OPTION_FAULTS: ethd__faults_print(stdout); exit(ethd__end(ETHD_EXIT_DONE));
   case OPTION_TELEMETRY: arg.session.telemetry = text; return 0;
+  case OPTION_FORCE: arg.session.replace = true; return 0;
+  case OPTION_GROUP: arg.session.group = true; return 0;
   case OPTION_VIRTUAL: arg.session.is_virtual = true; return 0;
   case OPTION_CPU: loop->cpu = parse_cpu(text); return 0;
   case OPTION_PRIORITY: loop->priority = (int32_t)ethd__option_integer("--priority", text, 1, 99); return 0;

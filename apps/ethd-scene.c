@@ -81,13 +81,6 @@ static ethd_vec origin(const char *text) {
   return o;
 }
 
-static const char *picture(const char *text) {
-  size_t n = strlen(text);
-  if (n < 5 || strcmp(text + n - 4, ".png") != 0)
-    ethd__fail(ETHD_EXIT_INPUT, "--plot: found \"%s\", a file .png is needed", text);
-  return text;
-}
-
 static error_t parse(int key, char *text, struct argp_state *state) {
   arg.svg_given |= key == 't' || key == 'l' || key == 'O';
   switch (key) {
@@ -95,7 +88,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case 'i': arg.in = text; return 0;
   case 'o': arg.out = text; return 0;
   case 'c': arg.config = text; return 0;
-  case 'p': arg.plot = picture(text); return 0;
+  case 'p': arg.plot = ethd__option_picture("--plot", text); return 0;
   case 't': arg.svg.tolerance = ethd__option_number("--tolerance", text, 1e-9, 1e3); return 0;
   case 'l': arg.svg.scale = ethd__option_number("--scale", text, 1e-9, 1e6); return 0;
   case 'O': arg.svg.origin = origin(text); return 0;

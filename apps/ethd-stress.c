@@ -1,10 +1,10 @@
 /* Numerical stress: what the library does at its limits, against formulas. */
-#include <errno.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "cli/cli.h"
 #include "stress/stress.h"
+#include "text/claim.h"
+#include "text/text.h"
 
 static const ethd__stress *const tests[] = {
     &ethd__stress_boundary,  &ethd__stress_braking, &ethd__stress_viscous,    &ethd__stress_stop,
@@ -22,11 +22,14 @@ static const char doc[] =
     "  ethd-stress all --quick\n"
     "  ethd-stress boundary --out pictures";
 
+enum { OPTION_FORCE = 256 };
+
 static const struct argp_option options[] = {
     {"quick", 'q', NULL, 0, "fewer points: all in a few seconds", 0},
     {"long", 'l', NULL, 0, "1e9 ticks where the default has 1e7: minutes", 0},
     {"csv", 'c', "FILE", 0, "every result, one a row", 0},
-    {"out", 'o', "DIR", 0, "folder for the data of pictures (plot/stability.gp draws them)", 0},
+    {"out", 'o', "DIR", 0, "folder for the data of pictures (plot/stability-*.gp draw them)", 0},
+    {"force", OPTION_FORCE, NULL, 0, "replace the data that is there", 0},
     {"list", 'L', NULL, 0, "names the tests", 0},
     {0},
 };
@@ -35,6 +38,7 @@ static struct {
   const char *name, *csv, *folder;
   ethd__effort effort;
   int list;
+  bool force;
 } arg = {.effort = ETHD__NORMAL};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -44,6 +48,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case 'c': arg.csv = text; return 0;
   case 'o': arg.folder = text; return 0;
   case 'L': arg.list = 1; return 0;
+  case OPTION_FORCE: arg.force = true; return 0;
   case ARGP_KEY_ARG:
     if (arg.name) argp_error(state, "\"%s\": one NAME at a time", text);
     arg.name = text;
@@ -56,12 +61,26 @@ static int wanted(const ethd__stress *test) {
   return !arg.name || strcmp(arg.name, "all") == 0 || strcmp(arg.name, test->name) == 0;
 }
 
-static void open_outputs(ethd__stress_log *log) {
-  if (arg.folder && mkdir(arg.folder, 0777) != 0 && errno != EEXIST)
-    ethd__fail(ETHD_EXIT_FAILED, "%s: %s", arg.folder, strerror(errno));
-  if (!arg.csv) return;
-  log->csv = fopen(arg.csv, "w");
-  if (!log->csv) ethd__fail(ETHD_EXIT_FAILED, "%s: %s", arg.csv, strerror(errno));
+typedef struct outputs {
+  ethd__claim folder;
+  ethd_replace csv;
+} outputs;
+
+static void close_outputs(outputs *out) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd__claim_release(&out->folder);
+  if (out->csv.file && ethd_replace_commit(&out->csv, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+}
+
+static void open_outputs(ethd__stress_log *log, outputs *out) {
+  char message[ETHD_MESSAGE_MAX], file[128];
+  const char *const files[] = {file, NULL};
+  snprintf(file, sizeof file, "%.100s*.csv", arg.name && strcmp(arg.name, "all") ? arg.name : "");
+  ethd_status status = arg.folder ? ethd__claim_folder(arg.folder, files, arg.force, &out->folder, message) : ETHD_OK;
+  if (!status && arg.csv) status = ethd_replace_begin(arg.csv, &out->csv, message);
+  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  log->csv = out->csv.file;
+  if (!log->csv) return;
   fprintf(log->csv, "test,what,measured,relation,analytic,unit,allowed,pass\n");
 }
 
@@ -79,7 +98,8 @@ int main(int argc, char **argv) {
   if (arg.list) return ethd__end(ETHD_EXIT_DONE);
   check_name();
   ethd__stress_log log = {.effort = arg.effort, .folder = arg.folder};
-  open_outputs(&log);
+  outputs out = {.folder = ETHD_CLAIM_NONE};
+  open_outputs(&log, &out);
   for (size_t i = 0; i < COUNT; i++) {
     if (!wanted(tests[i])) continue;
     printf("%s: %s\n", tests[i]->name, tests[i]->brief);
@@ -87,7 +107,7 @@ int main(int argc, char **argv) {
     tests[i]->run(&log);
     ethd__stress_flush(&log);
   }
-  ethd__stress_close(log.csv);
+  close_outputs(&out);
   if (log.failures)
     printf("%llu FAILED\n", (unsigned long long)log.failures);
   else

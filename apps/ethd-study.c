@@ -1,5 +1,4 @@
 /* A tapping study: people, strategies, speeds; every tap judged at once, nothing lost. */
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -165,7 +164,7 @@ static void make_folder(void) {
   ethd__folder_device(&protocol, &loaded);
   check_study(&protocol, &loaded);
   status = ethd__folder_make(arg.out, &protocol, &loaded, arg.finger, message);
-  if (status) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  if (status) ethd__fail(status == ETHD_E_FILE ? ETHD_EXIT_FAILED : ethd__exit_code(status), "%s", message);
   ethd__loaded_free(&loaded);
   ethd__protocol_free(&protocol);
 }
@@ -213,7 +212,7 @@ static int run_shard(void) {
   uint64_t taps;
   bool over;
   make_folder();
-  check(ethd__folder_open(arg.out, &folder, message), message);
+  check(ethd__folder_open(arg.out, true, &folder, message), message);
   folder.protocol.participants = (uint32_t)arg.simulate;
   check(ethd__desk_open(&folder.protocol, &folder.loaded, folder.finger, &desk, message), message);
   ethd__catch_interrupt();
@@ -229,7 +228,7 @@ static int merge(void) {
   char message[ETHD_MESSAGE_MAX] = "";
   ethd__folder folder;
   uint64_t taps;
-  check(ethd__folder_open(arg.merge, &folder, message), message);
+  check(ethd__folder_read(arg.merge, &folder, message), message);
   ethd_status status = ethd__shards_merge(&folder, &taps, message);
   if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   printf("%s/%s: %llu taps of %u participants at %zu points\n", arg.merge, ETHD_STUDY_TAPS, (unsigned long long)taps,
@@ -241,7 +240,6 @@ static int merge(void) {
 int main(int argc, char **argv) {
   static const struct argp argp = {options, parse, "[STUDY]", doc, NULL, NULL, NULL};
   ethd__begin();
-  signal(SIGXFSZ, SIG_IGN); /* a full quota is an answer of write, not the end */
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   return ethd__end(arg.merge ? merge() : arg.simulate ? run_shard() : run_session());
 }

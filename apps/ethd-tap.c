@@ -4,9 +4,11 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "record/recording_parts.h"
 #include "tap/load.h"
 #include "tap/run.h"
 #include "tap/table.h"
+#include "text/claim.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
@@ -34,7 +36,7 @@ static const char doc[] =
     "  ethd-tap --finger motion/avraham_free_mit/avraham_ND_s02_be38_free.csv --speed high,0.3 --record taps\n"
     "Eight recorded movements come with the programs, in motion: a FILE.csv that isn't there is looked for among them.";
 
-enum { OPTION_SCALE = 256, OPTION_TRACE, OPTION_RECORD, OPTION_CSV };
+enum { OPTION_SCALE = 256, OPTION_TRACE, OPTION_RECORD, OPTION_CSV, OPTION_FORCE };
 
 static const struct argp_option options[] = {
     {"config", 'c', "C.ini", 0, "the controller's configuration; the plant's own without", 0},
@@ -49,6 +51,7 @@ static const struct argp_option options[] = {
     {"csv", OPTION_CSV, "OUT.csv", 0, "a row per tap", 0},
     {"record", OPTION_RECORD, "DIR", 0,
      "every tick of every tap: a recording for ethd-replay --verify, with truth.npy and taps.csv beside it", 0},
+    {"force", OPTION_FORCE, NULL, 0, "replace a recording or traces that are there", 0},
     {"trace", OPTION_TRACE, "DIR", 0, "DIR/LAW-SPEED.csv: the typical tap of each cell, a row per tick, for plots", 0},
     {0},
 };
@@ -61,7 +64,7 @@ typedef struct list {
 static struct {
   const char *config, *plant, *finger, *csv, *record, *trace;
   double scale;
-  bool scaled;
+  bool scaled, force;
   int64_t taps;
   uint64_t seed;
   list laws, speeds;
@@ -110,6 +113,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_CSV: arg.csv = text; return 0;
   case OPTION_RECORD: arg.record = text; return 0;
   case OPTION_TRACE: arg.trace = text; return 0;
+  case OPTION_FORCE: arg.force = true; return 0;
   case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
   case ARGP_KEY_END:
     if (arg.scaled && !arg.finger) argp_error(state, "--scale needs --finger");
@@ -153,19 +157,38 @@ static ethd__speed *load_speeds(const ethd_plant *plant) {
 
 /* ---- the study ---- */
 
+static const char *const trace_files[] = {"*.csv", NULL};
+
+/* What was read isn't written over. */
+static void refuse_inputs(void) {
+  const char *const inputs[][2] = {{"--finger", arg.finger}, {"--config", arg.config}, {"--plant", arg.plant}};
+  for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++) {
+    const char *input = inputs[i][1];
+    ethd__refuse_input("--csv", arg.csv, inputs[i][0], input);
+    if (input && ((arg.record && ethd__recording_holds(arg.record, input)) ||
+                  (arg.trace && ethd__claim_holds(arg.trace, trace_files, input))))
+      ethd__fail(ETHD_EXIT_INPUT, "%s: %s would be written over; another folder is needed", inputs[i][0], input);
+  }
+}
+
 static int run(const ethd__plan *plan, const ethd__heading *heading) {
   char message[ETHD_MESSAGE_MAX];
   const ethd__study *study = plan->study;
   ethd__output output;
   ethd__cell *cells = ethd__cells_create(plan);
   if (!cells) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
-  check_job(ethd__output_open(arg.csv, arg.record, study->config, &output, message), message);
+  const ethd__output_paths paths = {arg.csv, arg.record, arg.force};
+  ethd__claim traces = ETHD_CLAIM_NONE;
+  refuse_inputs();
+  if (arg.trace) check(ethd__claim_folder(arg.trace, trace_files, arg.force, &traces, message), message);
+  check(ethd__output_open(&paths, study->config, &output, message), message);
   ethd_status status = ethd__cells_run(plan, &output, cells, message), closed;
   char left[ETHD_MESSAGE_MAX];
   closed = ethd__output_close(&output, left);
   check_job(status, message);
   check_job(closed, left);
   if (arg.trace && !ethd__stop) check_job(ethd__cells_trace(plan, arg.trace, cells, message), message);
+  ethd__claim_release(&traces);
   ethd__table_print(stdout, study, heading, cells, plan->law_count * study->speed_count);
   ethd__cells_free(cells);
   if (ethd__stop) fprintf(stderr, "%s: stopped; what was done is kept\n", program_invocation_short_name);
@@ -180,7 +203,7 @@ int main(int argc, char **argv) {
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   fill_in();
-  ethd__load(arg.config, arg.plant, true, &loaded);
+  ethd__load(arg.config, arg.plant, true, true, &loaded);
   study.config = loaded.config;
   study.plant = loaded.plant;
   study.speeds = load_speeds(&study.plant);

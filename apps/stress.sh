@@ -2,18 +2,18 @@
 # make stress: every stress test at full length, its results as CSV, and pictures, in $BUILD/stress; then how long
 # the study's screen takes for a frame. EFFORT=--quick or EFFORT= (1e7 ticks instead of 1e9) makes it shorter.
 set -eu
-here=$(dirname "$0")
+here=$(cd "$(dirname "$0")" && pwd)
 BUILD=${BUILD:-build} EFFORT=${EFFORT---long} out=$BUILD/stress
 mkdir -p "$out"
 
 code=0
-"$BUILD/bin/ethd-stress" all $EFFORT --out "$out" --csv "$out/results.csv" || code=$?
+"$BUILD/bin/ethd-stress" all $EFFORT --out "$out" --force --csv "$out/results.csv" || code=$?
 
+plot() { (cd "$out" && gnuplot -e "$1" "$here/plot/$2"); }
 draw() {
-  gnuplot -e "in='$out/boundary.csv'; out='$out/boundary.png'" "$here/plot/stability-boundary.gp"
+  plot "in='boundary.csv'; out='boundary.png'" stability-boundary.gp
   for velocity in difference lowpass; do
-    gnuplot -e "map='$out/map.csv'; curve='$out/map_curve.csv'; velocity='$velocity'; out='$out/map-$velocity.png'" \
-      "$here/plot/stability-map.gp"
+    plot "map='map.csv'; curve='map_curve.csv'; velocity='$velocity'; out='map-$velocity.png'" stability-map.gp
   done
   echo
   echo "results: $out/results.csv; pictures, drawn from the CSV beside them:"

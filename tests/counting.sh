@@ -33,7 +33,7 @@ cmp "$folder/pd.csv" "$folder/counting.csv"
 cut -d, -f7 "$folder/pd.csv" | grep -q 2 || fail "the movement never touches the wall"
 
 "$BUILD/bin/ethd-tap" --config "$folder/counting.ini" --taps 2 --transition offset --record "$folder/rec" >/dev/null
-ticks=$("$BUILD/bin/ethd-replay" --verify "$folder/rec" | grep -o '[0-9]* ticks' | cut -d' ' -f1)
+ticks=$("$BUILD/bin/ethd-replay" --verify "$folder/rec" --plugins | grep -o '[0-9]* ticks' | cut -d' ' -f1)
 [ "${ticks:-0}" -gt 500 ] || fail "ethd-tap: only ${ticks:-0} ticks"
 [ "$(wc -l <"$COUNTING_FILE")" = 2 ] && [ "$(sort -u "$COUNTING_FILE")" = "$ticks" ] ||
   fail "ethd-tap, ethd-replay --verify: $(tr '\n' ' ' <"$COUNTING_FILE")steps, not $ticks each"

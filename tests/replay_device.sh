@@ -37,7 +37,7 @@ rows() { sed -n "s/^.*$2  *\([0-9][0-9]*\) *$/\1/p" "$1"; }
 printf "$script" | "$run" --virtual --duration 3 --config "$work/faulty.ini" --record "$work/faulty" >"$work/out" 2>&1 ||
   fail "commanded: $(cat "$work/out")"
 grep -q '^ok: enabled' "$work/out" || fail "it isn't enabled again: $(cat "$work/out")"
-printf "$script" | "$run" --virtual --duration 3 --config "$work/commanded.ini" --record "$work/again" >"$work/out" 2>&1 ||
+printf "$script" | "$run" --virtual --duration 3 --config "$work/commanded.ini" --record "$work/again" --force >"$work/out" 2>&1 ||
   fail "replaying with commands: $(cat "$work/out")"
 cmp "$work/faulty/tick.npy" "$work/again/tick.npy" || fail "the session that was commanded again differs"
 [ "$(rows "$work/out" 'compared commands')" = "$(rows "$work/out" 'recorded ticks')" ] || fail "not all is compared: $(cat "$work/out")"

@@ -42,7 +42,7 @@ fi
 drawn() {
   where=$1
   shift
-  "$report" "$@" >"$folder/out" 2>"$folder/err" || { fail "$*: $(cat "$folder/err")"; return; }
+  "$report" --force "$@" >"$folder/out" 2>"$folder/err" || { fail "$*: $(cat "$folder/err")"; return; }
   grep . "$folder/err" && fail "$*: says something"
   page=$where/report.html
   [ "$(cat "$folder/out")" = "$page" ] || fail "$*: it says $(cat "$folder/out")"
@@ -132,7 +132,9 @@ bad() { # SED PATTERN: a table that was changed
 refuse 2 'DIR is needed'
 refuse 2 'nowhere/study.ini: No such file' "$folder/nowhere"
 refuse 2 'no test tap at point 9 of 4' "$folder/grid" --point 9
-refuse 1 'no test tap P09-01-001' "$here" --tap P09-01-001
+refuse 1 'no test tap P09-01-001' "$here" --force --tap P09-01-001
+refuse 2 "report: holds .* already; --force" "$here"
+refuse 2 "is the study's own folder" "$here" --out "$here" --force
 bad '3s/,ok,/,fine,/' 'taps.csv:[0-9]*: reason: found "fine"\|'
 bad '1s/,reason,/,why,/' 'taps.csv:1: no column reason'
 bad '4s/$/,1/' 'taps.csv:4: 27 cells, the header has 26'
@@ -141,7 +143,7 @@ bad '2,$d' 'no test tap'
 rm "$folder/bad/taps.csv"
 refuse 2 'taps.csv: No such file; ethd-study --resume' "$folder/bad"
 echo untouched >"$folder/grid/report/report.html"
-(ulimit -f 100; exec "$report" "$folder/grid") >"$folder/out" 2>"$folder/err" && fail "a quota for the page"
+(ulimit -f 100; exec "$report" --force "$folder/grid") >"$folder/out" 2>"$folder/err" && fail "a quota for the page"
 [ "$(cat "$folder/grid/report/report.html")" = untouched ] || fail "a page that was cut"
 
 [ $failed = 0 ] && echo "$(ls "$here"/report/*.png | wc -l) pictures on $(wc -c <"$here/report/report.html") bytes of page"

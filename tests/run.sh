@@ -107,7 +107,7 @@ else
 fi
 
 # ---- signals: a controlled stop; a killed run ----
-for signal in TERM INT HUP; do
+for signal in TERM INT HUP QUIT USR1; do
   # a shell's background jobs ignore SIGINT
   python3 -c 'import signal, subprocess, sys, time
 signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -125,7 +125,10 @@ size() { if [ -f "$1" ]; then wc -c <"$1"; else echo 0; fi; }
 while [ "$(size "$folder/killed/tick.npy")" -lt 500000 ]; do sleep 0.05; done
 kill -KILL $killed
 wait $killed 2>/dev/null
-replays "$folder/killed"
+$verify "$folder/killed" >"$folder/verify" 2>&1
+[ $? = 1 ] || fail "a killed run's recording counts as whole"
+says "$folder/verify" 'killed: [0-9]* ticks, equal to the bit, but the recording was never closed'
+replays "$folder/v1"
 
 # ---- ethd-latency: a histogram that adds up, and its picture ----
 "$BUILD/bin/ethd-latency" --alone --duration 0.3 --csv "$folder/latency.csv" >"$folder/latency.out" 2>&1 || fail "ethd-latency: $(cat "$folder/latency.out")"
@@ -155,6 +158,56 @@ refuse 'seed.ini:2: .*seed' --config "$folder/seed.ini"
 refuse 'duration: found "0"' --duration 0
 refuse 'virtual needs --duration' --virtual
 refuse 'telemetry: found "nowhere"' --telemetry nowhere --virtual --duration 1
+for port in 0 99999 65536; do
+  refuse "telemetry: found \"127.0.0.1:$port\"; a port from 1 to 65535" --telemetry 127.0.0.1:$port --virtual --duration 1
+done
+for address in 239.1.2.3:9870 255.255.255.255:9870 '[ff02::1]:9870'; do
+  refuse "telemetry: .* many may listen; --telemetry-group" --telemetry "$address" --virtual --duration 1
+done
+
+# ---- a folder of output is never replaced in silence ----
+before=$(md5sum "$folder/v1/tick.npy")
+refuse 'v1: holds .* already; --force' --virtual --duration 1 --record "$folder/v1"
+[ "$(md5sum "$folder/v1/tick.npy")" = "$before" ] || fail "a recording was written over"
+"$run" --virtual --duration 1 --record "$folder/v2" --force </dev/null >"$folder/out" 2>&1 || fail "--force: $(cat "$folder/out")"
+replays "$folder/v2"
+[ ! -e "$folder/v2/snapshot.npy" ] || fail "--force leaves an earlier snapshot"
+mkdir "$folder/own"
+cp "$folder/device.ini" "$folder/own/config.ini"
+cp "$folder/wall.scene" "$folder/own"
+cp "$folder/own/config.ini" "$folder/before"
+(cd "$folder/own" && "$run" --virtual --duration 1 --config config.ini --record . --force </dev/null) >"$folder/out" 2>&1 &&
+  fail "recorded over its own configuration"
+says "$folder/out" 'what is recorded comes from this folder'
+refuse 'own: holds files of these names, but no recording' --virtual --duration 1 --record "$folder/own" --force
+cmp "$folder/own/config.ini" "$folder/before" || fail "the configuration was changed"
+# two at once: one records, the other is told
+(sleep 2) | "$run" --virtual --duration 1000000 --record "$folder/two" >"$folder/first" 2>&1 &
+first=$!
+while ! [ -s "$folder/two/events.csv" ]; do sleep 0.02; done
+refuse 'two: another program writes there now' --virtual --duration 1 --record "$folder/two"
+refuse 'two: another program writes there now' --virtual --duration 1 --record "$folder/two" --force
+kill -TERM $first
+wait $first 2>/dev/null
+
+# ---- a disk that is full: said at once, counted, marked, exit 1 ----
+for limit in 1000 1; do
+  (ulimit -f $limit; exec "$run" --virtual --duration 5 --record "$folder/full$limit" </dev/null) >"$folder/out" 2>"$folder/err"
+  code=$?
+  [ $code = 1 ] || [ $limit = 1 ] || fail "a full disk: exit $code"
+  [ $code -lt 128 ] || fail "a full disk ends the program: $code"
+  grep -q "full$limit.*: File too large" "$folder/err" || fail "a full disk: $(cat "$folder/err")"
+done
+says "$folder/err" 'File too large'
+(ulimit -f 1000; exec "$run" --virtual --duration 5 --record "$folder/full" </dev/null) >"$folder/out" 2>"$folder/err"
+says "$folder/err" 'full/tick.npy: File too large; ticks from [0-9]* on are lost$'
+kept=$(sed -n 's/.*ticks from \([0-9]*\) on.*/\1/p;' "$folder/err" | head -n 1)
+says "$folder/out" "^recorded  *.*full: $kept of [0-9]* ticks, [0-9]* are lost\$"
+says "$folder/full/events.csv" "^$kept,fault,the recorder lost rows: File too large\$"
+$verify "$folder/full" >"$folder/verify" 2>&1
+[ $? = 1 ] || fail "half a recording counts as whole"
+says "$folder/verify" "full: $kept ticks, equal to the bit, but the recording was never closed"
+replays "$folder/v1"
 refuse 'cpu: found "x"' --cpu x
 refuse 'early_wake' --early-wake 900 --duration 1
 

@@ -69,13 +69,6 @@ ethd_status ethd__calibration_csv(const ethd__places *p, const ethd__calibration
 }
 
 ethd_status ethd__calibration_draw(const char *csv, const char *png, char message[ETHD_MESSAGE_MAX]) {
-  char settings[2 * ETHD_MESSAGE_MAX], *in = ethd__picture_quote(csv), *out = ethd__picture_quote(png);
-  ethd_status status =
-      in && out ? ETHD_OK : ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
-  if (!status && (size_t)snprintf(settings, sizeof settings, "in='%s'; out='%s'", in, out) >= sizeof settings)
-    status = ethd__say(message, ETHD_E_RANGE, "--plot: too long a path");
-  if (!status) status = ethd__picture_draw("calibration.gp", settings, message);
-  free(in);
-  free(out);
-  return status;
+  const ethd__picture_value values[] = {{"in", csv, true}, {"out", png, true}, {NULL, NULL, false}};
+  return ethd__picture_draw("calibration.gp", NULL, values, message);
 }

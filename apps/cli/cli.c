@@ -7,9 +7,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/terminal.h"
 #include "denormals.h"
 #include "ethd/ethd.h"
 #include "text/error_text.h"
@@ -18,6 +20,8 @@
 void ethd__flush_denormals(void) { (void)ethd__denormals_flush(); }
 
 void ethd__begin(void) {
+  signal(SIGXFSZ, SIG_IGN);
+  ethd__terminals_plain();
   argp_program_version = "libethd " ETHD_VERSION;
   argp_err_exit_status = ETHD_EXIT_INPUT;
   ethd__flush_denormals();
@@ -50,6 +54,7 @@ int ethd__exit_code(ethd_status status) {
   case ETHD_E_BUDGET:
   case ETHD_E_FULL:
   case ETHD_E_DEVICE:
+  case ETHD_E_UNFINISHED:
   case ETHD_E_DIFFERS: return ETHD_EXIT_FAILED;
   default: return status < 0 ? ETHD_EXIT_INPUT : ETHD_EXIT_DONE;
   }
@@ -89,6 +94,22 @@ uint64_t ethd__option_seed(const char *option, const char *text) {
     ethd__fail(ETHD_EXIT_INPUT, "%s: found %s, a whole number from 0 to %" PRIu64 " is allowed", option,
                ethd__quote(text, strlen(text), quote), UINT64_MAX);
   return value;
+}
+
+const char *ethd__option_picture(const char *option, const char *text) {
+  char quote[ETHD_QUOTE_MAX];
+  size_t n = strlen(text);
+  if (n < 5 || strcmp(text + n - 4, ".png") != 0 || strchr("|<", *text))
+    ethd__fail(ETHD_EXIT_INPUT, "%s: found %s, a file .png is needed", option, ethd__quote(text, n, quote));
+  return text;
+}
+
+void ethd__refuse_input(const char *option, const char *output, const char *input_option, const char *input) {
+  struct stat out, in;
+  if (!output || !input || stat(output, &out) != 0 || stat(input, &in) != 0) return;
+  if (!S_ISREG(out.st_mode) || out.st_ino != in.st_ino || out.st_dev != in.st_dev) return;
+  ethd__fail(ETHD_EXIT_INPUT, "%s: %s is the file of %s, which is only read; another name is needed", option, output,
+             input_option);
 }
 
 void ethd__option_list(const char *option, const char *text, void (*each)(const char *word, void *user), void *user) {
@@ -158,13 +179,15 @@ void ethd__progress(uint64_t done, uint64_t total, const char *what) {
   clock_gettime(CLOCK_MONOTONIC, &now);
   double t = (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
   if (done >= total) {
-    if (shown > 0) fprintf(stderr, "\r\033[K");
+    if (shown > 0) dprintf(STDERR_FILENO, "\r\033[K");
     shown = 0;
   } else if (t - shown >= 0.1) {
     double share = (double)done / (double)total;
     int filled = (int)(share * 40);
-    fprintf(stderr, "\r\033[K%s [%.*s%*s] %3.0f %%", what, filled, "########################################",
-            40 - filled, "", 100 * share);
+    fflush(stderr);
+    dprintf(STDERR_FILENO, "\r\033[K");
+    fprintf(stderr, "%s [%.*s%*s] %3.0f %%", what, filled, "########################################", 40 - filled, "",
+            100 * share);
     shown = t;
   }
   fflush(stderr);
@@ -196,8 +219,7 @@ void ethd__catch_interrupt(void) {
 }
 
 void ethd__catch_end(void) {
-  catch (ask, SIGINT);
-  catch (ask, SIGTERM);
-  catch (ask, SIGHUP);
+  static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2};
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) catch (ask, numbers[i]);
   signal(SIGPIPE, SIG_IGN);
 }

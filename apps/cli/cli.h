@@ -13,7 +13,8 @@
 
 enum { ETHD_EXIT_DONE = 0, ETHD_EXIT_FAILED = 1, ETHD_EXIT_INPUT = 2 };
 
-/* First in main: version text, exit code of wrong usage, FTZ and DAZ. */
+/* First in main: version text, exit code of wrong usage, FTZ and DAZ; a full quota is an answer of write, not the end; a
+   terminal gets no control characters from stdout and stderr. */
 void ethd__begin(void);
 
 /* Last in main: `return ethd__end(code)`. Exit 1 when stdout could not be written. */
@@ -29,6 +30,12 @@ int ethd__exit_code(ethd_status status);
 double ethd__option_number(const char *option, const char *text, double min, double max);
 int64_t ethd__option_integer(const char *option, const char *text, int64_t min, int64_t max);
 uint64_t ethd__option_seed(const char *option, const char *text);
+
+/* A picture's file, which ends in .png and begins like no command; else exit 2. */
+const char *ethd__option_picture(const char *option, const char *text);
+
+/* Exit 2 when the output is the input's file; NULL is none. */
+void ethd__refuse_input(const char *option, const char *output, const char *input_option, const char *input);
 
 /* Calls `each` for every word of a comma-separated list; exit 2 on an empty word. */
 void ethd__option_list(const char *option, const char *text, void (*each)(const char *word, void *user), void *user);
@@ -51,7 +58,7 @@ void ethd__progress(uint64_t done, uint64_t total, const char *what);
 /* From here on Ctrl-C and SIGTERM set ethd__stop; a second one ends the program at once. */
 void ethd__catch_interrupt(void);
 
-/* For what moves: these and SIGHUP set it, as often as they come: a stop under control isn't cut short. A
+/* For what moves: these, SIGHUP, SIGQUIT, SIGUSR1 and SIGUSR2 set it, as often as they come: a stop under control isn't cut short. A
    reader of our lines that leaves ends nothing. */
 void ethd__catch_end(void);
 extern volatile sig_atomic_t ethd__stop;

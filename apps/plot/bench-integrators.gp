@@ -6,6 +6,11 @@ if (!exists("in") || !exists("out")) { print "bench-integrators.gp: set in and o
 set terminal pngcairo size 1200,800 font "Sans,14" background "#ffffff"
 set output out
 set datafile separator comma
+# The names in order of appearance; NaN drops the rows of the others.
+array names[99]
+count = 0
+known(name) = count == 0 ? 0 : sum [k = 1:count] (names[k] eq name)
+stats in using (known(strcol(1)) || strcol(1) eq "method" ? 0 : (count = count + 1, names[count] = strcol(1)), 0) nooutput
 
 grey = "#7a7a7a"
 set border 3 lc rgb grey
@@ -22,9 +27,6 @@ set format y "10^{%T}"
 set yrange [1e-13:1e-3]
 set ylabel "largest error of ring or finger, m" offset 0.5
 set key outside right top Left reverse samplen 2 spacing 1.3 noenhanced
-# names in order of appearance, and the rows of one
-names = system(sprintf("sed -n 's/^\"\\([^\"]*\\)\".*/\\1/p' '%s' | awk '!($0 in n) {n[$0]; gsub(/ /, \"~\"); print}'", in))
-rows(i) = sprintf("< grep '^\"%s\"' '%s'", system(sprintf("echo '%s' | tr '~' ' '", word(names, i))), in)
 array colour[13] = [0xc0392b, 0xe59866, 0xcfcfcf, 0xa8a8a8, 0x707070, 0x303030, 0x1f5fa8, 0x7fb0e0, 0x7d3c98, 0x2e8b57, 0x8fcfa8, 0xb7950b, 0x117a8b]
-plot for [i = 1:words(names)] rows(i) using 4:3 with linespoints pt 7 ps (i == 1 ? 1.5 : 0.9) lw (i == 1 ? 3 : 1.5) \
-  lc rgb colour[i] title system(sprintf("echo '%s' | tr '~' ' '", word(names, i)))
+plot for [i = 1:count] in using 4:(strcol(1) eq names[i] ? $3 : NaN) with linespoints pt 7 ps (i == 1 ? 1.5 : 0.9) lw (i == 1 ? 3 : 1.5) \
+  lc rgb colour[i] title names[i]

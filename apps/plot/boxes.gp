@@ -23,7 +23,10 @@ unset key
 
 # NaN drops a row
 pick(law, speed, name, scale) = (strcol("transition") eq law && strcol("speed") eq speed && column("valid") == 1 ? scale*column(name) : NaN)
-count(law, speed) = int(system(sprintf("awk -F, '$2==\"%s\" && $3==\"%s\" && $5==1' '%s' | wc -l", law, speed, in)))
+array taps[4] = [0, 0, 0, 0]
+array laws[4] = ["smooth", "offset", "smooth", "offset"]
+array speeds[4] = ["low", "low", "high", "high"]
+do for [k=1:4] { stats in using (taps[k] = taps[k] + (pick(laws[k], speeds[k], "valid", 1) == 1), 0) nooutput }
 panel = 'plot zero with lines lc rgb "#999999" lw 1, \
   in using (1):(pick("smooth", "low", name, scale)) lc rgb a lw 1.8, \
   in using (2):(pick("offset", "low", name, scale)) lc rgb b lw 1.8, \
@@ -34,8 +37,7 @@ zero = 0
 set multiplot
 set label 1 "Taps on a virtual wall: medians, quartiles, extremes" at screen 0.075,0.968 font "Sans Bold,18"
 set label 2 "simulated; plant ".plant." is fitted to Table 1, not measured. Valid taps: ". \
-  sprintf("A low %d, B low %d, A high %d, B high %d.", count("smooth", "low"), count("offset", "low"), \
-          count("smooth", "high"), count("offset", "high")) \
+  sprintf("A low %d, B low %d, A high %d, B high %d.", taps[1], taps[2], taps[3], taps[4]) \
   at screen 0.075,0.938 font "Sans,13" textcolor rgb grey
 set label 3 "A" at screen 0.69,0.968 font "Sans Bold,15" textcolor rgb a
 set label 4 "smooth (VO-A)" at screen 0.707,0.968 font "Sans,15" textcolor rgb "#333333"

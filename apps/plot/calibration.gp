@@ -7,8 +7,12 @@ set terminal pngcairo size 1200,860 font "Sans,14" background "#ffffff"
 set output out
 set datafile separator comma
 
-rms = real(system(sprintf("awk -F, 'NR > 1 { n++; s += $6 * $6 } END { print (n ? 1e3 * sqrt(s / n) : 0) }' '%s'", in)))
-most = real(system(sprintf("awk -F, 'NR > 1 { e = $6 < 0 ? -$6 : $6; if (e > m) m = e } END { print (m > 0 ? 1e3 * m : 1e-3) }' '%s'", in)))
+n = 0
+squares = 0.0
+most = 0.0
+stats in using (n = n + 1, squares = squares + $6**2, most = abs($6) > most ? abs($6) : most, 0) skip 1 nooutput
+rms = n > 0 ? 1e3*sqrt(squares/n) : 0
+most = most > 0 ? 1e3*most : 1e-3
 
 grey = "#7a7a7a"
 set border 3 lc rgb grey

@@ -32,8 +32,10 @@ title(m) = m eq "v_rvo" ? "Ring's speed as it meets the wall, v_r(t_{r/vo})" : \
   m eq "v_rmin" ? "Ring's smallest speed after the touch, v_{r min}" : m eq "delay" ? "Touch felt after it is seen, t_{of/r} - t_{seen}" : \
   m eq "delta_s" ? "Time of braking, {/Symbol D}s" : m eq "eps" ? "Offset of the wall, {/Symbol e}" : m
 unit(m) = m eq "d_max" || m eq "eps" ? "mm" : m eq "delay" || m eq "delta_s" ? "ms" : "m/s"
-of(m, file) = sprintf("< awk -F, 'NR == 1 || $1 == \"%s\"' '%s'", m, file)
-last(m) = system(sprintf("awk -F, '$1==\"%s\"{x=$2} END{print x}' '%s'", m, in)) + 0
+# The rows of a metric stand together: from first to last, counted from 0. NaN drops those of other metrics.
+only(value) = strcol("metric") eq m ? value : NaN
+find_rows = 'row = -1; first = -1; last = -1; x_last = 0; \
+  stats in using (row = row + 1, strcol("metric") eq m ? (first = first < 0 ? row : first, last = row, x_last = column("x")) : 0, 0) nooutput'
 
 left(i) = n > 1 ? (i % 2 ? 0.59 : 0.085) : 0.13
 right(i) = n > 1 ? left(i) + 0.39 : 0.96
@@ -46,11 +48,12 @@ set label 1 heading at screen left(0),1 - 24.0/high font "Sans Bold,18"
 set label 2 note at screen left(0),1 - 52.0/high font "Sans,13" textcolor rgb grey
 do for [i=0:n-1] {
   m = word(metrics, i + 1)
+  eval(find_rows)
   set lmargin at screen left(i); set rmargin at screen right(i)
   set tmargin at screen top(i); set bmargin at screen bottom(i)
   set title title(m) font "Sans,15" offset 0,-0.4
   set ylabel unit(m) offset 1
-  set xrange [0.4:last(m) + 0.6]
+  set xrange [0.4:x_last + 0.6]
   set yrange [*:*]
   if (m eq "d_max" || m eq "eps" || m eq "delta_s" || m eq "v_rvo") { set yrange [0:*] }
   unset object
@@ -60,10 +63,10 @@ do for [i=0:n-1] {
     set yrange [-25:60]
   }
   plot 0 with lines lc rgb "#b0b0b0" lw 1, \
-    of(m, in) using "x":"q1":"min":"max":"q3":(tint(strcol("transition"))):xtic(strcol("transition")."\n".strcol("speed")."\nn = ".strcol("n")) \
+    in every ::first::last using "x":"q1":"min":"max":"q3":(tint(strcol("transition"))):xtic(strcol("transition")."\n".strcol("speed")."\nn = ".strcol("n")) \
       with candlesticks lc rgb variable lw 1.8 whiskerbars 0.4, \
-    of(m, points) using "x":"value" with points pt 7 ps 0.45 lc rgb "#c0333333", \
-    of(m, in) using (column("x") - 0.26):"median":(0.52):(0) with vectors nohead lc rgb "#c00000" lw 3
+    points using (only(column("x"))):"value" with points pt 7 ps 0.45 lc rgb "#c0333333", \
+    in using (only(column("x")) - 0.26):"median":(0.52):(0) with vectors nohead lc rgb "#c00000" lw 3
   unset label
 }
 unset multiplot

@@ -4,11 +4,12 @@
 if (!exists("in") || !exists("out")) { print "report-reasons.gp: set in and out: gnuplot -e \"in='reasons.csv'; out='reasons.png'\" report-reasons.gp"; exit status 2 }
 if (!exists("note")) note = ""
 
-n = system("awk 'END{print NR - 1}' '".in."'") + 0
-set terminal pngcairo size 1000,150 + 62*n font "Sans,15" background "#ffffff"
-set output out
 set datafile separator comma
 set datafile columnheaders
+n = 0
+stats in using (n = n + 1, 0) nooutput
+set terminal pngcairo size 1000,150 + 62*n font "Sans,15" background "#ffffff"
+set output out
 grey = "#7a7a7a"
 array keys[8] = ["ok", "early-contact", "too-slow", "too-fast", "no-contact", "grazing", "double", "fault"]
 array tints[8] = [0x6a9e6a, 0xc0652b, 0x9db7d5, 0x5b7fa6, 0xc9c9c9, 0xe0c060, 0x8a6aa8, 0x333333]

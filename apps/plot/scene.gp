@@ -10,19 +10,21 @@ set datafile separator comma
 set datafile columnheaders
 
 is(what) = strcol("what") eq what
-bounded(v) = is("wall") || is("solid") || is("box") ? v : NaN
+bounded(x) = is("wall") || is("solid") || is("box")
+pieces = 0
+boxes = 0
+stats in using (pieces = pieces + bounded(0), boxes = boxes + is("box"), 0) nooutput
 # What the picture shows: the bounded objects; half-planes alone: the arm's reach.
-STATS_records = 0
-stats in using (bounded(column("x_m"))) nooutput name "X"
-if (X_records > 0) {
-  stats in using (bounded(column("y_m"))) nooutput name "Y"
-} else {
-  stats in using (is("reach") ? column("x_m") : NaN) nooutput name "X"
-  stats in using (is("reach") ? column("y_m") : NaN) nooutput name "Y"
+shown(v) = (pieces > 0 ? bounded(0) : is("reach")) ? v : NaN
+stats in using (shown(column("x_m"))) nooutput name "X"
+stats in using (shown(column("y_m"))) nooutput name "Y"
+least = 1
+levels = 0
+if (boxes > 0) {
+  stats in using (is("box") ? column("number") : NaN) nooutput name "L"
+  least = int(L_min)
+  levels = int(L_max)
 }
-stats in using (is("box") ? column("number") : NaN) nooutput name "L"
-levels = L_records > 0 ? int(L_max) : 0
-least = L_records > 0 ? int(L_min) : 1
 margin = 0.06 * (X_max - X_min > Y_max - Y_min ? X_max - X_min : Y_max - Y_min)
 if (margin == 0) margin = 0.1
 if (!exists("x0")) x0 = X_min - margin

@@ -2,7 +2,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "report/html.h"
 #include "report/report.h"
 #include "text/csv.h"
 
@@ -69,13 +68,17 @@ static bool braked(const ethd__data *data) {
 
 static ethd_status draw(ethd__report *r, const char *prefix, const char *picture, const char *metrics,
                         const char *heading, const char *caption) {
-  char name[64];
+  char name[64], boxes[64], points[64];
+  const char *note = ethd__report_measured(r)
+                         ? "measured. Valid taps: medians (red), quartiles, extremes"
+                         : "simulated: plausible, fitted, not measured. Valid taps: medians (red), quartiles, extremes";
   snprintf(name, sizeof name, "%s%s.png", prefix, picture);
-  return ethd__report_picture(r, "report-boxes.gp", name, caption,
-                              "in='%sboxes.csv'; points='%spoints.csv'; metrics='%s'; heading='%s'; "
-                              "note='%s. Valid taps: medians (red), quartiles, extremes'",
-                              prefix, prefix, metrics, heading,
-                              ethd__report_measured(r) ? "measured" : "simulated: plausible, fitted, not measured");
+  snprintf(boxes, sizeof boxes, "%sboxes.csv", prefix);
+  snprintf(points, sizeof points, "%spoints.csv", prefix);
+  const ethd__picture_value values[] = {{"in", boxes, true},         {"points", points, true},
+                                        {"metrics", metrics, false}, {"heading", heading, false},
+                                        {"note", note, false},       {NULL, NULL, false}};
+  return ethd__report_picture(r, "report-boxes.gp", name, caption, values);
 }
 
 static ethd_status pictures(ethd__report *r, const ethd__data *data, const char *prefix, const char *whose) {
@@ -122,7 +125,7 @@ static void print_median(ethd__report *r, const ethd__group *group, const ethd__
                          n ? q : "-",
                          isnan(interval.low) ? "-" : i,
                          NULL};
-  if (n) ethd__html_row(r->page, cells, 3);
+  if (n) ethd__html_row(&r->page, cells, 3);
   const double figures[] = {s.mean, s.sd, s.min, s.q1, s.median, s.q3, s.max, interval.low, interval.high};
   ethd_csv_word(csv, quantity->key);
   ethd_csv_word(csv, quantity->unit);
@@ -145,26 +148,27 @@ static ethd_status medians(ethd__report *r) {
       r->message);
   free(path);
   if (!csv) return ETHD_E_FILE;
-  ethd__html_table(r->page, "Every figure by cell: valid test taps", header, 3);
+  ethd__html_table(&r->page, "Every figure by cell: valid test taps", header, 3);
   for (int q = 0; q < ETHD_QUANTITIES; q++)
     for (size_t i = 0; i < r->data.group_count; i++) print_median(r, &r->data.group[i], &ethd__quantities[q], csv);
-  ethd__html_table_end(r->page);
+  ethd__html_table_end(&r->page);
   return ethd_csv_close(csv, r->message);
 }
 
 ethd_status ethd__report_boxes(ethd__report *r) {
-  ethd__html_heading(r->page, "figures", "Speeds, rebounds, braking");
+  ethd__html_heading(&r->page, "figures", "Speeds, rebounds, braking");
   ethd_status status = pictures(r, &r->data, "", "this study");
   if (!status && r->beside.group_count) status = pictures(r, &r->beside, "beside-", r->beside_name);
   if (!status) status = medians(r);
   if (status) return status;
-  ethd__html_heading(r->page, "delay", "Visual and haptic delay");
-  fputs("<p>When the touch is felt, less when it is seen: positive, felt late; negative, felt early. A delay under 45 "
-        "ms is "
-        "not noticed (Vogels 2004); in a tap, touch before sight is noticed from about 15 ms, touch after sight from "
-        "about 50 ms "
-        "(Di Luca and Mahnan 2019). A screen's own delay comes on top of what is seen, and makes these figures "
-        "smaller.</p>\n",
-        r->page);
+  ethd__html_heading(&r->page, "delay", "Visual and haptic delay");
+  ethd__html_markup(
+      &r->page,
+      "<p>When the touch is felt, less when it is seen: positive, felt late; negative, felt early. A delay under 45 "
+      "ms is "
+      "not noticed (Vogels 2004); in a tap, touch before sight is noticed from about 15 ms, touch after sight from "
+      "about 50 ms "
+      "(Di Luca and Mahnan 2019). A screen's own delay comes on top of what is seen, and makes these figures "
+      "smaller.</p>\n");
   return draw(r, "", "delay", "delay", "Touch felt after it is seen", "Signed delay between sight and touch, by cell.");
 }

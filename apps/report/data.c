@@ -1,10 +1,13 @@
 #include "report/data.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "study/protocol.h"
 #include "text/error_text.h"
+#include "text/file_name.h"
 
 /* ---- quantities ---- */
 
@@ -147,13 +150,32 @@ static bool grow(ethd__group *group) {
   return results && who;
 }
 
+/* Words of the table that stand in names of files. */
+static ethd_status check_words(const reading *r, size_t row) {
+  static const struct {
+    const char *name;
+    size_t column;
+  } words[] = {{"participant", offsetof(reading, participant)},
+               {"transition", offsetof(reading, word[TRANSITION])},
+               {"speed", offsetof(reading, word[SPEED])}};
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+    const char *word = ethd__sheet_cell(&r->out->sheet, row, *(const int *)((const char *)r + words[i].column));
+    if (!ethd__file_word(word) || strchr("+-", *word)) return refuse(r, row, words[i].name, word, ETHD_FILE_WORD);
+  }
+  return ETHD_OK;
+}
+
 static ethd_status take(reading *r, size_t row) {
   double point = 0;
   const ethd__sheet *sheet = &r->out->sheet;
   if (r->at_point >= 0 && !ethd__sheet_number(sheet, row, r->at_point, &point))
     return refuse(r, row, "point", ethd__sheet_cell(sheet, row, r->at_point), "a number");
+  if (!(point >= 0 && point <= ETHD_STUDY_POINTS))
+    return refuse(r, row, "point", ethd__sheet_cell(sheet, row, r->at_point), "a point of the grid");
   if (point >= (double)r->out->points) r->out->points = (size_t)point + 1;
   if (point != (double)r->point) return ETHD_OK;
+  ethd_status status = check_words(r, row);
+  if (status) return status;
   bool training = !strcmp(ethd__sheet_cell(sheet, row, r->part), "training");
   r->out->training += training;
   if (training) return ETHD_OK;
@@ -162,7 +184,7 @@ static ethd_status take(reading *r, size_t row) {
     return refuse(r, row, "speed", ethd__sheet_cell(sheet, row, r->word[SPEED]), "low, high or a number, in 64 cells,");
   if (!grow(group))
     return ethd__say(r->message, ETHD_E_MEMORY, "%s: %s", sheet->path, ethd_status_sentence(ETHD_E_MEMORY));
-  ethd_status status = read_result(r, row, &group->cell.results[group->cell.count]);
+  status = read_result(r, row, &group->cell.results[group->cell.count]);
   if (status) return status;
   group->who[group->cell.count++] = (ethd__who){person_of(r, row), row};
   return ETHD_OK;

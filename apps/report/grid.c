@@ -1,7 +1,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "report/html.h"
 #include "report/report.h"
 #include "text/csv.h"
 
@@ -17,7 +16,7 @@ static void write_row(ethd__report *r, const ethd__protocol *p, size_t point, co
   ethd_csv_integer(csv, (int64_t)point);
   for (size_t i = 0; i < p->axis_count; i++) {
     const char *value = ethd__protocol_value(p, point, i);
-    ethd_csv_word(csv, value);
+    ethd_csv_text(csv, value);
     if (used < sizeof gains) used += (size_t)snprintf(gains + used, sizeof gains - used, "%s%s", i ? ", " : "", value);
   }
   ethd_csv_word(csv, group->cell.law);
@@ -37,7 +36,7 @@ static void write_row(ethd__report *r, const ethd__protocol *p, size_t point, co
     ethd_csv_number(csv, s.median);
   }
   ethd_csv_row(csv);
-  if (page) ethd__html_row(r->page, cells, 2);
+  if (page) ethd__html_row(&r->page, cells, 2);
 }
 
 static char *csv_header(const ethd__protocol *p) {
@@ -78,16 +77,16 @@ ethd_status ethd__report_grid(ethd__report *r) {
   free(path);
   if (!csv) return ETHD_E_FILE;
   for (int i = 0; i < SHOWN; i++) header[4 + i] = ethd__quantities[shown[i]].key;
-  ethd__html_heading(r->page, "grid", "The grid of gains");
-  fputs("<p>Medians of the valid taps; speeds in m/s, lengths in mm, times in ms. Gains: ", r->page);
+  ethd__html_heading(&r->page, "grid", "The grid of gains");
+  ethd__html_markup(&r->page, "<p>Medians of the valid taps; speeds in m/s, lengths in mm, times in ms. Gains: ");
   for (size_t i = 0; i < p->axis_count; i++) {
-    fputs(i ? ", " : "", r->page);
-    ethd__html_text(r->page, p->axes[i].key);
+    ethd__html_markup(&r->page, i ? ", " : "");
+    ethd__html_text(&r->page, p->axes[i].key);
   }
-  fprintf(r->page, ". The other sections show point %zu of %zu.</p>\n", r->point, r->data.points);
-  ethd__html_table(r->page, "All points", header, 2);
+  ethd__html_print(&r->page, ". The other sections show point %zu of %zu.</p>\n", r->point, r->data.points);
+  ethd__html_table(&r->page, "All points", header, 2);
   ethd_status status = points(r, p, csv);
-  ethd__html_table_end(r->page);
+  ethd__html_table_end(&r->page);
   ethd_status closed = ethd_csv_close(csv, r->message);
   return status ? status : closed;
 }

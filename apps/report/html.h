@@ -1,4 +1,5 @@
-/* Pieces of a page that stands alone: no script, no other file. All [main]. */
+/* Pieces of a page that stands alone: no script, no other file. Whatever isn't markup of our own is escaped here, and
+   nothing else writes to a page. All [main]. */
 #ifndef ETHD_REPORT_HTML_H
 #define ETHD_REPORT_HTML_H
 
@@ -7,20 +8,30 @@
 
 #include "ethd/config.h"
 
-void ethd__html_begin(FILE *page, const char *title);
-void ethd__html_end(FILE *page);
+typedef struct ethd__html {
+  FILE *file; /* of html.c alone */
+} ethd__html;
 
-/* &, <, >, quotes as a page needs them. */
-void ethd__html_text(FILE *page, const char *text);
+void ethd__html_begin(ethd__html *page, const char *title);
+void ethd__html_end(ethd__html *page);
 
-void ethd__html_heading(FILE *page, const char *id, const char *text);
+/* Markup that stands in our source. */
+void ethd__html_markup(ethd__html *page, const char *literal);
+
+/* printf with %s, %d, %u, %zu, %llu, %g: the format is our markup, each %s is text and escaped. */
+void ethd__html_print(ethd__html *page, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Text: &, <, >, quotes as a page needs them, control characters as ?. */
+void ethd__html_text(ethd__html *page, const char *text);
+
+void ethd__html_heading(ethd__html *page, const char *id, const char *text);
 
 /* The PNG itself, within the page, with words for those who can't see it. False: it can't be read. */
-bool ethd__html_picture(FILE *page, const char *path, const char *caption);
+bool ethd__html_picture(ethd__html *page, const char *path, const char *caption);
 
 /* Header cells, then rows: each a list that NULL ends. Cells from `numbers` on are set to the right. */
-void ethd__html_table(FILE *page, const char *caption, const char *const *header, int numbers);
-void ethd__html_row(FILE *page, const char *const *cells, int numbers);
-void ethd__html_table_end(FILE *page);
+void ethd__html_table(ethd__html *page, const char *caption, const char *const *header, int numbers);
+void ethd__html_row(ethd__html *page, const char *const *cells, int numbers);
+void ethd__html_table_end(ethd__html *page);
 
 #endif

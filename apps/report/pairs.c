@@ -2,7 +2,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "report/html.h"
 #include "report/report.h"
 #include "text/csv.h"
 
@@ -61,7 +60,7 @@ static void compare(ethd__report *r, const ethd__group *a, const ethd__group *b,
                          p,
                          NULL};
   if (n) {
-    ethd__html_row(r->page, cells, 3);
+    ethd__html_row(&r->page, cells, 3);
     ethd_csv_word(csv, quantity->key);
     ethd_csv_word(csv, quantity->unit);
     ethd_csv_word(csv, a->cell.law);
@@ -87,18 +86,19 @@ ethd_status ethd__report_pairs(ethd__report *r) {
       r->message);
   free(path);
   if (!csv) return ETHD_E_FILE;
-  ethd__html_heading(r->page, "pairs", "Strategies compared within participants");
+  ethd__html_heading(&r->page, "pairs", "Strategies compared within participants");
   if (r->data.people_count < ETHD_STATS_PAIRS)
-    fprintf(r->page,
-            "<p class=\"note\">%zu participants: <b>no significance is claimed</b>. The smallest two-sided p that %zu "
-            "pairs can have is %.3g.</p>\n",
-            r->data.people_count, r->data.people_count, 2 / exp2((double)r->data.people_count));
-  ethd__html_table(r->page, "Differences of participants' medians", header, 3);
+    ethd__html_print(
+        &r->page,
+        "<p class=\"note\">%zu participants: <b>no significance is claimed</b>. The smallest two-sided p that %zu "
+        "pairs can have is %.3g.</p>\n",
+        r->data.people_count, r->data.people_count, 2 / exp2((double)r->data.people_count));
+  ethd__html_table(&r->page, "Differences of participants' medians", header, 3);
   for (int q = 0; q < ETHD_QUANTITIES; q++)
     for (size_t a = 0; a < r->data.group_count; a++)
       for (size_t b = a + 1; b < r->data.group_count; b++)
         if (!strcmp(r->data.group[a].speed.word, r->data.group[b].speed.word))
           compare(r, &r->data.group[a], &r->data.group[b], &ethd__quantities[q], csv);
-  ethd__html_table_end(r->page);
+  ethd__html_table_end(&r->page);
   return ethd_csv_close(csv, r->message);
 }

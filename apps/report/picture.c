@@ -14,25 +14,65 @@
 
 extern char **environ;
 
-/* Runs gnuplot with what it says on stderr caught: its first line, if any. */
-static int run(char *const argv[], char said[ETHD_MESSAGE_MAX / 2]) {
+/* ---- what gnuplot is told ---- */
+
+/* gnuplot reads nothing within '..' but the doubled quote; a line end would end the string. */
+static void put_string(FILE *to, const char *text) {
+  putc('\'', to);
+  for (; *text; text++) {
+    if (*text == '\'') putc('\'', to);
+    putc((unsigned char)*text < ' ' ? ' ' : *text, to);
+  }
+  putc('\'', to);
+}
+
+static void put_path(FILE *to, const char *path) {
+  char *plain;
+  if (*path == '/' || asprintf(&plain, "./%s", path) < 0) {
+    put_string(to, path);
+    return;
+  }
+  put_string(to, plain);
+  free(plain);
+}
+
+static void put_value(FILE *to, const ethd__picture_value *v) {
+  fprintf(to, "%s = ", v->name);
+  (v->is_file ? put_path : put_string)(to, v->text);
+  putc('\n', to);
+}
+
+/* ---- running it ---- */
+
+/* gnuplot's last line on stderr, which says most. */
+static void listen(int end, char said[ETHD_MESSAGE_MAX / 2]) {
+  FILE *in = fdopen(end, "r");
+  char line[256];
+  *said = 0;
+  while (in && fgets(line, sizeof line, in))
+    if (line[strspn(line, " ^\r\n")]) snprintf(said, ETHD_MESSAGE_MAX / 2, "%.*s", (int)strcspn(line, "\r\n"), line);
+  if (in)
+    fclose(in);
+  else
+    close(end);
+}
+
+/* -1: it can't be started, errno says why. */
+static int run(FILE *commands, char said[ETHD_MESSAGE_MAX / 2]) {
+  char *argv[] = {(char *)"gnuplot", (char *)"--default-settings", NULL};
   posix_spawn_file_actions_t actions;
   int ends[2], code = -1;
   pid_t pid;
   *said = 0;
-  if (pipe2(ends, O_CLOEXEC) != 0) return -1;
+  if (fflush(commands) != 0 || fseek(commands, 0, SEEK_SET) != 0 || pipe2(ends, O_CLOEXEC) != 0) return -1;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, fileno(commands), STDIN_FILENO);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  int failed = posix_spawnp(&pid, "gnuplot", &actions, NULL, argv, environ);
+  int failed = posix_spawnp(&pid, argv[0], &actions, NULL, argv, environ);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
-  FILE *in = fdopen(ends[0], "r");
-  char line[256];
-  while (in && fgets(line, sizeof line, in)) /* the last line says most */
-    if (line[strspn(line, " ^\r\n")]) snprintf(said, ETHD_MESSAGE_MAX / 2, "%.*s", (int)strcspn(line, "\r\n"), line);
-  if (in) fclose(in);
+  listen(ends[0], said);
   if (failed) {
     errno = failed;
     return -1;
@@ -49,32 +89,45 @@ static ethd_status said_no(const char *what, int code, const char *said, char *m
   return ethd__say(message, ETHD_E_FILE, "gnuplot: %s: %s", what, *said ? said : "failed");
 }
 
+static ethd_status no_commands(char *message) {
+  return ethd__say(message, ETHD_E_FILE, "gnuplot: its commands can't be written: %s", strerror(errno));
+}
+
 ethd_status ethd__picture_ready(char message[ETHD_MESSAGE_MAX]) {
   char said[ETHD_MESSAGE_MAX / 2];
-  char *argv[] = {(char *)"gnuplot", (char *)"-e", (char *)"set terminal pngcairo", NULL};
-  int code = run(argv, said);
-  return code ? said_no("pngcairo", code, said, message) : ETHD_OK;
+  FILE *commands = tmpfile();
+  if (!commands) return no_commands(message);
+  fputs("set terminal pngcairo\n", commands);
+  int code = run(commands, said);
+  ethd_status status = code ? said_no("pngcairo", code, said, message) : ETHD_OK;
+  fclose(commands);
+  return status;
 }
 
-ethd_status ethd__picture_draw(const char *script, const char *settings, char message[ETHD_MESSAGE_MAX]) {
+/* The script's own path is whole: the folder changes. */
+static void put_commands(FILE *to, const char *script, const char *folder, const ethd__picture_value *values) {
+  if (folder) fputs("cd ", to), put_path(to, folder), putc('\n', to);
+  for (; values->name; values++) put_value(to, values);
+  fputs("load ", to);
+  put_path(to, script);
+  putc('\n', to);
+}
+
+ethd_status ethd__picture_draw(const char *script, const char *folder, const ethd__picture_value *values,
+                               char message[ETHD_MESSAGE_MAX]) {
   char said[ETHD_MESSAGE_MAX / 2], name[64];
   snprintf(name, sizeof name, "plot/%s", script);
-  char *found = ethd__data_path(name), *path = realpath(found, NULL); /* the settings may change the folder */
+  char *found = ethd__data_path(name), *path = realpath(found, NULL);
   free(found);
-  if (!path) return ethd__say(message, ETHD_E_FILE, "%s: %s", name, strerror(errno));
-  char *argv[] = {(char *)"gnuplot", (char *)"-e", (char *)settings, path, NULL};
-  int code = run(argv, said);
-  free(path);
-  return code ? said_no(script, code, said, message) : ETHD_OK;
-}
-
-char *ethd__picture_quote(const char *text) {
-  char *out = malloc(2 * strlen(text) + 1), *to = out;
-  if (!out) return NULL;
-  for (; *text; text++) {
-    if (*text == '\'') *to++ = '\'';
-    *to++ = (unsigned char)*text < ' ' ? ' ' : *text;
+  FILE *commands = path ? tmpfile() : NULL;
+  if (!commands) {
+    free(path);
+    return no_commands(message);
   }
-  *to = 0;
-  return out;
+  put_commands(commands, path, folder, values);
+  int code = run(commands, said);
+  ethd_status status = code ? said_no(script, code, said, message) : ETHD_OK;
+  fclose(commands);
+  free(path);
+  return status;
 }

@@ -1,7 +1,6 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-#include "report/html.h"
 #include "report/report.h"
 #include "text/csv.h"
 
@@ -36,7 +35,7 @@ static void write_row(ethd__report *r, size_t index, ethd_csv_out *csv) {
     ethd_csv_integer(csv, (int64_t)count);
   }
   ethd_csv_row(csv);
-  ethd__html_row(r->page, cells, 1);
+  ethd__html_row(&r->page, cells, 1);
 }
 
 ethd_status ethd__report_reasons(ethd__report *r) {
@@ -47,16 +46,17 @@ ethd_status ethd__report_reasons(ethd__report *r) {
       path, "transition,speed,row,taps,ok,early-contact,too-slow,too-fast,no-contact,grazing,double,fault", r->message);
   free(path);
   if (!csv) return ETHD_E_FILE;
-  ethd__html_heading(r->page, "valid", "Valid taps");
-  fputs(
+  ethd__html_heading(&r->page, "valid", "Valid taps");
+  ethd__html_markup(
+      &r->page,
       "<p>A tap is valid when the ring met the wall before the finger touched it, at a speed within the band, and the "
-      "finger pressed once. The paper's participants needed 10 to 15 taps for three valid ones.</p>\n",
-      r->page);
-  ethd__html_table(r->page, "Taps by reason", header, 1);
+      "finger pressed once. The paper's participants needed 10 to 15 taps for three valid ones.</p>\n");
+  ethd__html_table(&r->page, "Taps by reason", header, 1);
   for (size_t i = 0; i < r->data.group_count; i++) write_row(r, i, csv);
-  ethd__html_table_end(r->page);
+  ethd__html_table_end(&r->page);
   ethd_status status = ethd_csv_close(csv, r->message);
   if (status) return status;
-  return ethd__report_picture(r, "report-reasons.gp", "reasons.png", "Why taps count or don't, by cell.",
-                              "in='reasons.csv'; note='test taps of this study'");
+  static const ethd__picture_value values[] = {
+      {"in", "reasons.csv", true}, {"note", "test taps of this study", false}, {NULL, NULL, false}};
+  return ethd__report_picture(r, "report-reasons.gp", "reasons.png", "Why taps count or don't, by cell.", values);
 }

@@ -39,12 +39,14 @@ void ethd__recordings_free(ethd__recordings *r) {
   *r = (ethd__recordings){0};
 }
 
-void ethd__recording_name(const ethd__sheet *sheet, size_t row, char out[ETHD_RECORDING_NAME]) {
+void ethd__recording_name(const ethd__sheet *sheet, size_t row, char out[ETHD_FILE_NAME_MAX]) {
+  char block[16], attempt[16];
   int point = ethd__sheet_column(sheet, "point");
-  snprintf(out, ETHD_RECORDING_NAME, "%.20s%s%.20s-%02d-%03d", ethd__sheet_cell(sheet, row, point),
-           point < 0 ? "" : "-", ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "participant")),
-           atoi(ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "block"))),
-           atoi(ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "attempt"))));
+  snprintf(block, sizeof block, "%02d", atoi(ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "block"))));
+  snprintf(attempt, sizeof attempt, "%03d", atoi(ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "attempt"))));
+  const char *words[] = {ethd__sheet_cell(sheet, row, point),
+                         ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "participant")), block, attempt, NULL};
+  ethd__file_name(point < 0 ? words + 1 : words, "", out);
 }
 
 char *ethd__recording_path(const ethd__recordings *r, const char *name) {

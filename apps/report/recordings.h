@@ -4,8 +4,7 @@
 #define ETHD_REPORT_RECORDINGS_H
 
 #include "report/sheet.h"
-
-#define ETHD_RECORDING_NAME 96
+#include "text/file_name.h"
 
 typedef struct ethd__recordings {
   char **folder;
@@ -17,7 +16,7 @@ void ethd__recordings_find(const char *study, ethd__recordings *out);
 void ethd__recordings_free(ethd__recordings *recordings);
 
 /* Of a row of taps.csv. */
-void ethd__recording_name(const ethd__sheet *sheet, size_t row, char out[ETHD_RECORDING_NAME]);
+void ethd__recording_name(const ethd__sheet *sheet, size_t row, char out[ETHD_FILE_NAME_MAX]);
 
 /* The folder of that name, freed by the caller; NULL: there is none. */
 char *ethd__recording_path(const ethd__recordings *recordings, const char *name);

@@ -1,7 +1,6 @@
 #include "report/report.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,23 +11,16 @@
 
 char *ethd__report_path(const ethd__report *report, const char *name) { return ethd__folder_path(report->out, name); }
 
+#define VALUES_MAX 8
+
 ethd_status ethd__report_picture(ethd__report *r, const char *script, const char *name, const char *caption,
-                                 const char *format, ...) {
-  char *settings = NULL, *whole = NULL, *folder = ethd__picture_quote(r->out), *png = ethd__report_path(r, name);
-  ethd_status status = ETHD_E_MEMORY;
-  va_list args;
-  va_start(args, format);
-  if (vasprintf(&settings, format, args) < 0) settings = NULL;
-  va_end(args);
-  if (settings && folder && asprintf(&whole, "cd '%s'; out='%s'; %s", folder, name, settings) >= 0)
-    status = ethd__picture_draw(script, whole, r->message);
-  else
-    (void)ethd__say(r->message, status, "%s", ethd_status_sentence(status));
-  if (!status && !ethd__html_picture(r->page, png, caption))
+                                 const ethd__picture_value *values) {
+  ethd__picture_value all[VALUES_MAX] = {{"out", name, true}};
+  for (int i = 1; values->name && i < VALUES_MAX - 1; i++) all[i] = *values++;
+  char *png = ethd__report_path(r, name);
+  ethd_status status = ethd__picture_draw(script, r->out, all, r->message);
+  if (!status && !ethd__html_picture(&r->page, png, caption))
     status = ethd__say(r->message, ETHD_E_FILE, "%s: can't be read", png);
-  free(whole);
-  free(settings);
-  free(folder);
   free(png);
   return status;
 }
@@ -84,15 +76,13 @@ void ethd__report_methods(ethd__report *report) {
       "n points into the wall: speeds are positive toward it, negative away. t(seen) is the instant at which the "
       "finger's front reaches the wall that a screen without delay would show.",
   };
-  ethd__html_heading(report->page, "methods", "Methods");
-  fputs("<ul>\n", report->page);
+  ethd__html_heading(&report->page, "methods", "Methods");
+  ethd__html_markup(&report->page, "<ul>\n");
   for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
-    fputs("<li>", report->page);
-    ethd__html_text(report->page, methods[i]);
-    fputs("</li>\n", report->page);
+    ethd__html_print(&report->page, "<li>%s</li>\n", methods[i]);
   }
-  fprintf(report->page,
-          "<li>Bootstrap and tests draw their random numbers under seed %llu: %u draws, %u for medians of "
-          "over 4000 taps.</li>\n</ul>\n",
-          (unsigned long long)report->seed, ETHD_STATS_DRAWS, ETHD_STATS_FEW_DRAWS);
+  ethd__html_print(&report->page,
+                   "<li>Bootstrap and tests draw their random numbers under seed %llu: %u draws, %u for medians of "
+                   "over 4000 taps.</li>\n</ul>\n",
+                   (unsigned long long)report->seed, ETHD_STATS_DRAWS, ETHD_STATS_FEW_DRAWS);
 }

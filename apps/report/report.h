@@ -5,6 +5,8 @@
 #include <stdio.h>
 
 #include "report/data.h"
+#include "report/html.h"
+#include "report/picture.h"
 #include "report/stats.h"
 #include "study/folder.h"
 
@@ -17,7 +19,7 @@ typedef struct ethd__report {
   const char *tap; /* a recording whose traces are drawn, NULL: the typical one of each cell */
   size_t point;
   uint64_t seed; /* of the bootstrap */
-  FILE *page;
+  ethd__html page;
   char *message;
 } ethd__report;
 
@@ -27,11 +29,10 @@ bool ethd__report_measured(const ethd__report *report);
 /* out/name; exit 1 without memory. */
 char *ethd__report_path(const ethd__report *report, const char *name);
 
-/* Draws NAME with a script that came with the programs, and puts it on the page. settings: gnuplot's, with files
-   by their names in report->out; `format` makes them. */
+/* Draws NAME with a script that came with the programs, and puts it on the page. values: the script's but for `out`,
+   ended by a NULL name; files by their names in report->out. */
 ETHD_MUST_CHECK ethd_status ethd__report_picture(ethd__report *report, const char *script, const char *name,
-                                                 const char *caption, const char *format, ...)
-    __attribute__((format(printf, 5, 6)));
+                                                 const char *caption, const ethd__picture_value *values);
 
 /* "smooth, low" and the like. */
 const char *ethd__group_label(const ethd__group *group, char out[80]);

@@ -3,7 +3,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "report/html.h"
 #include "report/report.h"
 #include "study/dictionary.h"
 #include "text/csv.h"
@@ -51,7 +50,7 @@ static void write_row(ethd__report *r, const ethd__group *group, const answers *
   }
   ethd_csv_row(csv);
   const char *cells[] = {ethd__group_label(group, label), n, mean[0], mean[1], mean[2], NULL};
-  ethd__html_row(r->page, cells, 1);
+  ethd__html_row(&r->page, cells, 1);
 }
 
 static ethd_status with_answers(ethd__report *r, const ethd__sheet *sheet) {
@@ -60,25 +59,27 @@ static ethd_status with_answers(ethd__report *r, const ethd__sheet *sheet) {
   ethd_csv_out *csv = ethd_csv_create(path, "transition,speed,n,q1,q2,q3", r->message);
   ethd_status status = csv ? ETHD_OK : ETHD_E_FILE;
   if (csv) {
-    fputs("<ol>\n", r->page);
+    ethd__html_markup(&r->page, "<ol>\n");
     for (int q = 0; q < 3; q++) {
-      fputs("<li>", r->page);
-      ethd__html_text(r->page, ethd__questions[q]);
-      fputs("</li>\n", r->page);
+      ethd__html_markup(&r->page, "<li>");
+      ethd__html_text(&r->page, ethd__questions[q]);
+      ethd__html_markup(&r->page, "</li>\n");
     }
-    fputs("</ol>\n", r->page);
-    ethd__html_table(r->page, "Mean answers, of participants who answered", header, 1);
+    ethd__html_markup(&r->page, "</ol>\n");
+    ethd__html_table(&r->page, "Mean answers, of participants who answered", header, 1);
     for (size_t i = 0; i < r->data.group_count; i++) {
       answers a = of_group(sheet, &r->data.group[i]);
       write_row(r, &r->data.group[i], &a, csv);
     }
-    ethd__html_table_end(r->page);
+    ethd__html_table_end(&r->page);
     status = ethd_csv_close(csv, r->message);
   }
   free(path);
   if (status) return status;
+  static const ethd__picture_value values[] = {
+      {"in", "survey-means.csv", true}, {"note", "dashed: the ideal answer", false}, {NULL, NULL, false}};
   return ethd__report_picture(r, "report-survey.gp", "survey.png", "As figure 18 of the paper: mean answers by cell.",
-                              "in='survey-means.csv'; note='dashed: the ideal answer'");
+                              values);
 }
 
 ethd_status ethd__report_survey(ethd__report *r) {
@@ -89,13 +90,14 @@ ethd_status ethd__report_survey(ethd__report *r) {
   free(path);
   if (status) return status;
   for (size_t i = 0; i < r->data.group_count; i++) given += of_group(&sheet, &r->data.group[i]).n;
-  ethd__html_heading(r->page, "survey", "Survey");
+  ethd__html_heading(&r->page, "survey", "Survey");
   if (given)
     status = with_answers(r, &sheet);
   else
-    fputs("<p>Nobody has answered. Simulated participants feel nothing: their answers are left empty, never made "
-          "up.</p>\n",
-          r->page);
+    ethd__html_markup(
+        &r->page,
+        "<p>Nobody has answered. Simulated participants feel nothing: their answers are left empty, never made "
+        "up.</p>\n");
   ethd__sheet_free(&sheet);
   return status;
 }

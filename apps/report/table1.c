@@ -2,10 +2,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "report/html.h"
 #include "report/report.h"
 #include "tap/claims.h"
-#include "text/error_text.h"
+#include "text/csv.h"
 
 #define NINE 9    /* taps behind each figure of the paper */
 #define FEWEST 30 /* taps to draw nine from */
@@ -54,7 +53,7 @@ static const char *percent(double share, char out[32]) {
   return out;
 }
 
-static void print_row(const ethd__report *r, const line *row, FILE *csv) {
+static void print_row(ethd__report *r, const line *row, ethd_csv_out *csv) {
   char name[64], paper[48], here[48], beside[48], n[24], besides[24], m[32], s[32];
   ethd__summary5 study, other;
   summary_of(&r->data, row, &study);
@@ -79,9 +78,9 @@ static void print_row(const ethd__report *r, const line *row, FILE *csv) {
                          percent(row->mean_share, m),
                          percent(row->sd_share, s),
                          NULL};
-  ethd__html_row(r->page, cells, 1);
-  for (int i = 0; cells[i]; i++) fprintf(csv, "%s\"%s\"", i ? "," : "", cells[i]);
-  fputc('\n', csv);
+  ethd__html_row(&r->page, cells, 1);
+  for (int i = 0; cells[i]; i++) ethd_csv_text(csv, cells[i]);
+  ethd_csv_row(csv);
 }
 
 static ethd_status print_table(ethd__report *r) {
@@ -101,23 +100,20 @@ static ethd_status print_table(ethd__report *r) {
   ethd__cell cells[ETHD_REPORT_CELLS];
   size_t count = ethd__data_cells(largest(r), cells);
   char *path = ethd__report_path(r, "table1.csv");
-  FILE *csv = fopen(path, "we");
-  if (!csv) {
-    ethd_status status = ethd__say(r->message, ETHD_E_FILE, "%s: can't be written", path);
-    free(path);
-    return status;
-  }
+  ethd_csv_out *csv = ethd_csv_create(
+      path, "what,paper,study,study_n,beside,beside_n,mean_verdict,sd_verdict,mean_as_far_off,sd_as_far_off",
+      r->message);
   free(path);
+  if (!csv) return ETHD_E_FILE;
   ethd__means(cells, count, means);
-  fputs("what,paper,study,study_n,beside,beside_n,mean_verdict,sd_verdict,mean_as_far_off,sd_as_far_off\n", csv);
-  ethd__html_table(r->page, "Table 1: mean (sample standard deviation), n", header, 1);
+  ethd__html_table(&r->page, "Table 1: mean (sample standard deviation), n", header, 1);
   for (int i = 0; i < ETHD_TAP_MEANS; i++) {
     line row = {&means[i], &ethd__quantities[quantity[i]], i >= 2, NAN, NAN};
     resample(r, &row);
     print_row(r, &row, csv);
   }
-  ethd__html_table_end(r->page);
-  return fclose(csv) ? ethd__say(r->message, ETHD_E_FILE, "table1.csv: a write failed; is there room?") : ETHD_OK;
+  ethd__html_table_end(&r->page);
+  return ethd_csv_close(csv, r->message);
 }
 
 /* ---- claims ---- */
@@ -129,29 +125,31 @@ static void print_claims(ethd__report *r) {
   ethd__claim claims[ETHD_TAP_CLAIMS_MAX];
   ethd__cell cells[ETHD_REPORT_CELLS];
   size_t count = ethd__data_cells(largest(r), cells), n = ethd__claims(cells, count, claims);
-  ethd__html_table(r->page,
+  ethd__html_table(&r->page,
                    r->beside.group_count ? "Claims, judged by the taps beside the study, which are more"
                                          : "Claims, judged by this study's taps",
                    header, 3);
   for (size_t i = 0; i < n; i++) {
     const char *row[] = {claims[i].text, claims[i].verdict ? claims[i].here : "-", words[claims[i].verdict], NULL};
-    ethd__html_row(r->page, row, 3);
+    ethd__html_row(&r->page, row, 3);
   }
-  ethd__html_table_end(r->page);
+  ethd__html_table_end(&r->page);
 }
 
 ethd_status ethd__report_table1(ethd__report *r) {
   if (!offset_at(&r->data, false) && !offset_at(&r->data, true)) return ETHD_OK;
-  ethd__html_heading(r->page, "table1", "Table 1 and the paper's claims");
-  fputs(was_measured(r)
-            ? "<p>A mean counts as reproduced "
-            : "<p>The simulated device and finger were <b>fitted to the four means of Table 1</b>, not measured: "
-              "that the means agree is no evidence. What was not fitted, the spreads and the claims, says "
-              "more. A mean counts as fitted ",
-        r->page);
-  fputs("when it is within one published standard deviation plus two standard errors of the paper's; a spread as "
-        "reproduced when at least 5 % of samples of nine taps have one as far off as the paper's, two-sided.</p>\n",
-        r->page);
+  ethd__html_heading(&r->page, "table1", "Table 1 and the paper's claims");
+  ethd__html_markup(
+      &r->page,
+      was_measured(r)
+          ? "<p>A mean counts as reproduced "
+          : "<p>The simulated device and finger were <b>fitted to the four means of Table 1</b>, not measured: "
+            "that the means agree is no evidence. What was not fitted, the spreads and the claims, says "
+            "more. A mean counts as fitted ");
+  ethd__html_markup(
+      &r->page,
+      "when it is within one published standard deviation plus two standard errors of the paper's; a spread as "
+      "reproduced when at least 5 % of samples of nine taps have one as far off as the paper's, two-sided.</p>\n");
   ethd_status status = print_table(r);
   print_claims(r);
   return status;

@@ -1,7 +1,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "report/html.h"
 #include "report/recordings.h"
 #include "report/report.h"
 #include "tap/ticks.h"
@@ -21,12 +20,12 @@ static ethd_status view_of(const ethd__report *r, const ethd__group *group, cons
 /* The tap to be drawn; no such index: none. */
 typedef struct choice {
   size_t index;
-  char name[ETHD_RECORDING_NAME], *recording;
+  char name[ETHD_FILE_NAME_MAX], *recording;
 } choice;
 
 /* The typical one of those whose ticks are there. */
 static size_t typical(const ethd__report *r, const ethd__group *group, const ethd__recordings *recordings) {
-  char name[ETHD_RECORDING_NAME];
+  char name[ETHD_FILE_NAME_MAX];
   ethd__cell there = group->cell;
   there.results = malloc((there.count + 1) * sizeof *there.results);
   if (!there.results) return group->cell.count;
@@ -44,7 +43,7 @@ static size_t typical(const ethd__report *r, const ethd__group *group, const eth
 
 /* The one that was asked for, if it is of this group. */
 static size_t asked_for(const ethd__report *r, const ethd__group *group) {
-  char name[ETHD_RECORDING_NAME];
+  char name[ETHD_FILE_NAME_MAX];
   size_t i = 0;
   for (; i < group->cell.count; i++) {
     ethd__recording_name(&r->data.sheet, group->who[i].row, name);
@@ -62,6 +61,11 @@ static bool choose(const ethd__report *r, const ethd__group *group, const ethd__
   return out->recording != NULL;
 }
 
+static void trace_name(const ethd__group *group, const char *suffix, char out[ETHD_FILE_NAME_MAX]) {
+  const char *parts[] = {"trace", group->cell.law, group->speed.word, NULL};
+  ethd__file_name(parts, suffix, out);
+}
+
 static ethd_status write_trace(ethd__report *r, const ethd__group *group, size_t index, const char *recording,
                                const char *csv) {
   ethd__rows rows;
@@ -74,17 +78,19 @@ static ethd_status write_trace(ethd__report *r, const ethd__group *group, size_t
   return status;
 }
 
-static ethd_status draw(ethd__report *r, const ethd__group *group, const char *tap) {
-  char caption[256], name[96];
-  snprintf(name, sizeof name, "trace-%s-%s.png", group->cell.law, group->speed.word);
+static ethd_status draw(ethd__report *r, const ethd__group *group, const char *csv, const char *tap) {
+  char caption[256], name[ETHD_FILE_NAME_MAX], title[96];
+  const char *plant = r->folder->protocol.plant ? r->folder->protocol.plant : "n";
+  trace_name(group, ".png", name);
+  snprintf(title, sizeof title, "%s, %s speed", group->cell.law, group->speed.word);
   snprintf(caption, sizeof caption, "As figures 9 to 12 of the paper: %s, %s, tap %s%s.", group->cell.law,
            group->speed.word, tap,
            r->tap ? "" : ", of the valid ones that are recorded the one nearest to their means");
-  return ethd__report_picture(r, "tap.gp", name, caption, "in='trace-%s-%s.csv'; title='%s, %s speed'; plant='%.60s'",
-                              group->cell.law, group->speed.word, group->cell.law, group->speed.word,
-                              ethd__report_measured(r)    ? ""
-                              : r->folder->protocol.plant ? r->folder->protocol.plant
-                                                          : "n");
+  const ethd__picture_value values[] = {{"in", csv, true},
+                                        {"title", title, false},
+                                        {"plant", ethd__report_measured(r) ? "" : plant, false},
+                                        {NULL, NULL, false}};
+  return ethd__report_picture(r, "tap.gp", name, caption, values);
 }
 
 /* What the picture of the states shows. */
@@ -95,13 +101,13 @@ typedef struct states {
 
 static ethd_status trace_group(ethd__report *r, const ethd__group *group, const ethd__recordings *recordings,
                                states *out) {
-  char name[96];
+  char name[ETHD_FILE_NAME_MAX];
   choice tap;
   if (!choose(r, group, recordings, &tap)) return ETHD_OK;
-  snprintf(name, sizeof name, "trace-%s-%s.csv", group->cell.law, group->speed.word);
+  trace_name(group, ".csv", name);
   char *csv = ethd__report_path(r, name);
   ethd_status status = write_trace(r, group, tap.index, tap.recording, csv);
-  if (!status) status = draw(r, group, tap.name);
+  if (!status) status = draw(r, group, name, tap.name);
   fprintf(out->names, "%s%s", out->count ? " " : "", name);
   fprintf(out->titles, "%s%s-%s", out->count ? " " : "", group->cell.law, group->speed.word);
   out->count++;
@@ -111,11 +117,13 @@ static ethd_status trace_group(ethd__report *r, const ethd__group *group, const 
 }
 
 static ethd_status draw_states(ethd__report *r, const char *names, const char *titles) {
+  const ethd__picture_value values[] = {
+      {"in", names, false}, {"titles", titles, false}, {"note", "the taps above", false}, {NULL, NULL, false}};
   return ethd__report_picture(
       r, "report-states.gp", "states.png",
       "As figure 6 of the paper: the active state, and the weight of the tracking torque, which stays "
       "continuous while the wall moves. Where a strategy has no states, vo stands for the ring in the wall.",
-      "in='%s'; titles='%s'; note='the taps above'", names, titles);
+      values);
 }
 
 ethd_status ethd__report_traces(ethd__report *r) {
@@ -124,7 +132,7 @@ ethd_status ethd__report_traces(ethd__report *r) {
   ethd_status status = ETHD_OK;
   ethd__recordings recordings;
   states drawn = {.names = open_memstream(&names, &length), .titles = open_memstream(&titles, &length)};
-  ethd__html_heading(r->page, "traces", "Traces of single taps");
+  ethd__html_heading(&r->page, "traces", "Traces of single taps");
   ethd__recordings_find(r->folder->path, &recordings);
   for (size_t i = 0; drawn.names && drawn.titles && !status && i < r->data.group_count; i++)
     status = trace_group(r, &r->data.group[i], &recordings, &drawn);
@@ -133,7 +141,8 @@ ethd_status ethd__report_traces(ethd__report *r) {
   if (!status && !drawn.count && r->tap)
     status = ethd__say(r->message, ETHD_E_RANGE, "--tap: no test tap %s is recorded here", r->tap);
   if (!status && drawn.count) status = draw_states(r, names, titles);
-  if (!status && !drawn.count) fputs("<p>No ticks were recorded: there is nothing to draw.</p>\n", r->page);
+  if (!status && !drawn.count)
+    ethd__html_markup(&r->page, "<p>No ticks were recorded: there is nothing to draw.</p>\n");
   ethd__recordings_free(&recordings);
   free(names);
   free(titles);

@@ -49,8 +49,10 @@ static bool tell_fault(ethd__recorder *r, int64_t fault) {
   return true;
 }
 
-/* The loop is told once what the recorder loses. */
+/* The loop and the user are told once what the recorder loses. */
 static void tell_loop(ethd__recorder *r, uint64_t lost, bool failed_before) {
+  if (r->failed && !failed_before)
+    fprintf(stderr, "%s: %s\n", program_invocation_short_name, ethd_recording_failure(r->recording));
   if (lost || r->failed != failed_before) ethd_loop_raise(r->loop, ETHD_FAULT_RECORDER);
 }
 

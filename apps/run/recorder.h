@@ -43,6 +43,7 @@ typedef struct ethd__recorder {
   int waiting; /* posts */
   ethd_loop_row latest;
   uint64_t rows, lost, swaps;
+  uint64_t kept; /* rows in the recording, once it is closed */
   uint64_t faults[ETHD_FAULT_COUNT];
   bool failed; /* the recording couldn't be written */
 } ethd__recorder;

@@ -80,10 +80,9 @@ static ethd_status open_device(ethd__session *s, const char *folder, char *messa
   return status;
 }
 
-/* In the recording's folder, if not elsewhere; one of an earlier recording goes. */
+/* In the recording's folder, if not elsewhere. */
 static ethd_status open_snapshot(ethd__session *s, const ethd__session_options *o, char *message) {
   char *path = o->snapshot ? strdup(o->snapshot) : ethd__path_join(o->record, "snapshot.npy");
-  if (path && !o->snapshot) unlink(path);
   ethd_status status = path ? ethd__snapshot_open(&s->recorder.snapshot, path, s->setup.period) : ETHD_E_MEMORY;
   free(path);
   return status ? ethd__say(message, status, "--snapshot: %s", ethd_status_sentence(status)) : ETHD_OK;
@@ -93,10 +92,10 @@ static ethd_status open_recorder(ethd__session *s, const ethd__session_options *
   ethd__recorder *r = &s->recorder;
   ethd_status status = ETHD_OK;
   r->telemetry = -1;
-  if (o->telemetry) status = ethd__telemetry_open(o->telemetry, &r->telemetry, message);
+  if (o->telemetry) status = ethd__telemetry_open(o->telemetry, o->group, &r->telemetry, message);
   if (!status && (o->snapshot || o->record)) status = open_snapshot(s, o, message);
   if (status || !o->record) return status;
-  status = ethd_recording_create(o->record, s->config, &r->recording, message);
+  status = ethd_recording_create(o->record, s->config, o->replace, &r->recording, message);
   if (status) return status;
   status = ethd__limits_event(r->recording, &s->config->setup.limits, &s->setup.limits);
   return status ? ethd__say(message, status, "%s: %s", o->record, ethd_status_sentence(status)) : ETHD_OK;
@@ -212,16 +211,17 @@ void ethd__session_halt(ethd__session *s, bool told) {
 
 static ethd_status close_recording(ethd__session *s, char *message) {
   ethd__recorder *r = &s->recorder;
-  ethd_status status = ethd_recording_close(r->recording);
+  uint64_t kept = r->recording ? ethd_recording_kept(r->recording) : 0;
+  ethd_status status = ethd_recording_close(r->recording, message);
+  r->kept = status ? kept : r->rows;
   r->recording = NULL;
   if (r->telemetry >= 0) close(r->telemetry);
   r->telemetry = -1;
-  if (!status && !r->failed) return ETHD_OK;
-  return ethd__say(message, ETHD_E_FILE, "--record: %s", ethd_status_sentence(ETHD_E_FILE));
+  return status;
 }
 
 ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]) {
-  ethd_status status = ETHD_OK, closed;
+  ethd_status status = ETHD_OK;
   if (s->loop) {
     ethd_loop_stop(s->loop);
     status = ethd_loop_join(s->loop);
@@ -232,8 +232,10 @@ ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]) 
   if (stopped < 0 && !status)
     status = ethd__say(message, stopped, "device %s: stop: %s", s->config->device, ethd_status_sentence(stopped));
   s->started = false;
-  closed = close_recording(s, message);
-  return status ? status : closed;
+  char lost[ETHD_MESSAGE_MAX];
+  ethd_status closed = close_recording(s, lost);
+  if (closed && !status) return ethd__say(message, closed, "%s", lost);
+  return status;
 }
 
 void ethd__session_free(ethd__session *s) {

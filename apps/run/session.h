@@ -21,6 +21,8 @@ typedef struct ethd__session {
 
 typedef struct ethd__session_options {
   const char *config, *record, *telemetry, *snapshot; /* NULL: none; a recording has a snapshot of its own */
+  bool replace;                                       /* an earlier recording */
+  bool group;                                         /* telemetry may go to a multicast or broadcast address */
   const char *folder; /* where relative paths of [device] start; NULL: where the configuration is */
   ethd__sink sink;
   bool is_virtual;

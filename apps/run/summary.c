@@ -98,6 +98,14 @@ void ethd__faults_print(FILE *out) {
             ethd_fault_sentence((ethd_fault)i));
 }
 
+static void print_recorded(FILE *out, const char *record, const ethd__recorder *r) {
+  if (r->kept == r->rows)
+    fprintf(out, "%-10s %s: %" PRIu64 " ticks\n", "recorded", record, r->rows);
+  else
+    fprintf(out, "%-10s %s: %" PRIu64 " of %" PRIu64 " ticks, %" PRIu64 " are lost\n", "recorded", record, r->kept,
+            r->rows, r->rows - r->kept);
+}
+
 void ethd__summary_print(FILE *out, const ethd__session *s, const char *record) {
   static ethd_loop_stats stats;
   ethd_loop_read(s->loop, &stats);
@@ -113,7 +121,7 @@ void ethd__summary_print(FILE *out, const ethd__session *s, const char *record) 
   print_device(out, &stats);
   print_skipped(out, s, &stats);
   print_figures(out, s);
-  if (record) fprintf(out, "%-10s %s: %" PRIu64 " ticks\n", "recorded", record, s->recorder.rows);
+  if (record) print_recorded(out, record, &s->recorder);
   print_snapshot(out, &s->recorder.snapshot);
   if (!s->is_virtual && !ethd_loop_shortfalls(s->loop)) fprintf(out, "%-10s none\n", "shortfalls");
   if (!s->is_virtual) ethd__shortfalls_print(out, ethd_loop_shortfalls(s->loop));

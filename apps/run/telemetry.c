@@ -1,11 +1,13 @@
 #include "run/telemetry.h"
 
+#include <arpa/inet.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <netdb.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -16,7 +18,7 @@
 
 /* ---- address ---- */
 
-static int split(const char *address, char host[HOST_MAX], const char **port) {
+static bool split(const char *address, char host[HOST_MAX], const char **port) {
   const char *colon = strrchr(address, ':');
   if (!colon || colon == address || !colon[1] || colon[1 + strspn(colon + 1, "0123456789")]) return 0;
   size_t length = (size_t)(colon - address);
@@ -28,10 +30,35 @@ static int split(const char *address, char host[HOST_MAX], const char **port) {
   memcpy(host, address, length);
   host[length] = 0;
   *port = colon + 1;
-  return strlen(*port) <= 5;
+  return true;
 }
 
-ethd_status ethd__telemetry_open(const char *address, int *out, char message[ETHD_MESSAGE_MAX]) {
+static bool is_port(const char *digits) {
+  return strlen(digits) <= 5 && strtoul(digits, NULL, 10) >= 1 && strtoul(digits, NULL, 10) <= 65535;
+}
+
+/* A network's own broadcast address shows only when the kernel refuses it. */
+static bool is_group(const struct addrinfo *a) {
+  const struct sockaddr_in *four = (const void *)a->ai_addr;
+  const struct sockaddr_in6 *six = (const void *)a->ai_addr;
+  if (a->ai_family == AF_INET6) return IN6_IS_ADDR_MULTICAST(&six->sin6_addr);
+  in_addr_t address = ntohl(four->sin_addr.s_addr);
+  return IN_MULTICAST(address) || address == INADDR_BROADCAST;
+}
+
+/* -1: errno says why. */
+static int connected(const struct addrinfo *a, bool group) {
+  int s = socket(a->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0), on = group;
+  if (s < 0) return -1;
+  if (setsockopt(s, SOL_SOCKET, SO_BROADCAST, &on, sizeof on) == 0 && connect(s, a->ai_addr, a->ai_addrlen) == 0)
+    return s;
+  int reason = errno;
+  close(s);
+  errno = reason;
+  return -1;
+}
+
+ethd_status ethd__telemetry_open(const char *address, bool group, int *out, char message[ETHD_MESSAGE_MAX]) {
   char host[HOST_MAX], quote[ETHD_QUOTE_MAX];
   const char *port;
   struct addrinfo hints = {.ai_socktype = SOCK_DGRAM}, *found;
@@ -39,18 +66,20 @@ ethd_status ethd__telemetry_open(const char *address, int *out, char message[ETH
   if (!split(address, host, &port))
     return ethd__say(message, ETHD_E_SYNTAX, "--telemetry: found %s, HOST:PORT is allowed",
                      ethd__quote(address, strlen(address), quote));
+  if (!is_port(port))
+    return ethd__say(message, ETHD_E_RANGE, "--telemetry: found %s; a port from 1 to 65535 is allowed",
+                     ethd__quote(address, strlen(address), quote));
   int failure = getaddrinfo(host, port, &hints, &found);
   if (failure) return ethd__say(message, ETHD_E_UNKNOWN, "--telemetry: %s: %s", host, gai_strerror(failure));
-  int s = socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  failure = s < 0 || connect(s, found->ai_addr, found->ai_addrlen) != 0;
+  bool many = is_group(found);
+  *out = many && !group ? -1 : connected(found, group);
+  int reason = errno;
   freeaddrinfo(found);
-  if (!failure) {
-    *out = s;
-    return ETHD_OK;
-  }
-  (void)ethd__say(message, ETHD_E_FILE, "--telemetry: %s: %s", address, strerror(errno));
-  if (s >= 0) close(s);
-  return ETHD_E_FILE;
+  if (*out >= 0) return ETHD_OK;
+  if (many || reason == EACCES)
+    return ethd__say(message, ETHD_E_ARGUMENT,
+                     "--telemetry: %.200s: many may listen; --telemetry-group says that they shall", address);
+  return ethd__say(message, ETHD_E_FILE, "--telemetry: %s: %s", address, strerror(reason));
 }
 
 /* ---- datagram ---- */

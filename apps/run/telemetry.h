@@ -2,11 +2,15 @@
 #ifndef ETHD_APPS_RUN_TELEMETRY_H
 #define ETHD_APPS_RUN_TELEMETRY_H
 
+#include <stdbool.h>
+
 #include "ethd/config.h"
 #include "ethd/loop.h"
 
-/* HOST:PORT, [HOST]:PORT for numbers with colons; *out is the socket. */
-ETHD_MUST_CHECK ethd_status ethd__telemetry_open(const char *address, int *out, char message[ETHD_MESSAGE_MAX]);
+/* HOST:PORT, [HOST]:PORT for numbers with colons; *out is the socket. A multicast or broadcast address is refused, unless
+   `group`; the refusal names the option --telemetry-group. */
+ETHD_MUST_CHECK ethd_status ethd__telemetry_open(const char *address, bool group, int *out,
+                                                 char message[ETHD_MESSAGE_MAX]);
 
 /* Never waits: a datagram that can't leave is dropped. */
 void ethd__telemetry_send(int socket, const ethd_loop_row *row);

@@ -59,6 +59,7 @@ int ethd__scene_convert(const ethd__scene_args *arg) {
   if (!drawing && arg->svg_given)
     ethd__fail(ETHD_EXIT_INPUT, "--scale, --tolerance and --origin are for drawings, %s is none", arg->in);
   ethd_scene *scene = drawing ? read_drawing(arg, &notes) : ethd__scene_load(arg->in, &seconds);
+  ethd__refuse_input("--out", arg->out, "--in", arg->in);
   write_scene(scene, arg->out);
   ethd_scene_describe(scene, &info);
   printf("%s: %zu objects, %zu segments, of %s\n", arg->out, info.objects, info.segments, arg->in);

@@ -149,26 +149,20 @@ static char *csv_beside(const char *png) {
   return csv;
 }
 
-static char *settings_of(const char *name, const char *csv, const char *png) {
-  char *words[] = {ethd__picture_quote(csv), ethd__picture_quote(png), ethd__picture_quote(name)}, *settings;
-  if (!words[0] || !words[1] || !words[2] ||
-      asprintf(&settings, "in='%s'; out='%s'; name='%s'", words[0], words[1], words[2]) < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
-  for (int i = 0; i < 3; i++) free(words[i]);
-  return settings;
-}
-
 int ethd__scene_plot(const ethd__scene_args *arg, const ethd_scene *scene, const ethd_setup *setup) {
   char message[ETHD_MESSAGE_MAX], *csv = csv_beside(arg->plot);
+  ethd__refuse_input("--plot", arg->plot, "info", arg->scene);
+  ethd__refuse_input("--plot", csv, "info", arg->scene);
+  ethd__refuse_input("--plot", csv, "--config", arg->config);
   ethd_csv_out *out = ethd_csv_create(csv, "what,number,x_m,y_m,dx_m,dy_m", message);
   if (!out) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   draw_all(out, scene, setup);
   if (ethd_csv_close(out, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
-  char *settings = settings_of(arg->scene, csv, arg->plot);
-  if (ethd__picture_ready(message) < 0 || ethd__picture_draw("scene.gp", settings, message) < 0)
+  const ethd__picture_value values[] = {
+      {"in", csv, true}, {"out", arg->plot, true}, {"name", arg->scene, false}, {NULL, NULL, false}};
+  if (ethd__picture_ready(message) < 0 || ethd__picture_draw("scene.gp", NULL, values, message) < 0)
     ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   printf("picture:      %s, drawn from %s\n", arg->plot, csv);
-  free(settings);
   free(csv);
   return ETHD_EXIT_DONE;
 }

@@ -42,6 +42,8 @@ int ethd__scene_query(const ethd__scene_args *arg) {
     coordinate(&points, row, x);
     coordinate(&points, row, y);
   }
+  ethd__refuse_input("--out", arg->out, "--in", arg->in);
+  ethd__refuse_input("--out", arg->out, "--scene", arg->scene);
   ethd_csv_out *out = ethd_csv_create(arg->out, "distance_m,nx,ny,object", message);
   if (!out) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   for (size_t row = 0; row < points.rows && !ethd__stop; row++) {
@@ -51,7 +53,10 @@ int ethd__scene_query(const ethd__scene_args *arg) {
     write_nearest(out, &nearest);
     ethd__progress(row + 1, points.rows, "points");
   }
-  if (ethd_csv_close(out, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  if (ethd__stop)
+    ethd_csv_abandon(out);
+  else if (ethd_csv_close(out, message) < 0)
+    ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   ethd_csv_free(&points);
   ethd_scene_destroy(scene);
   return ethd__stop ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE;

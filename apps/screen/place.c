@@ -58,7 +58,7 @@ static void take_front(ethd__place *at, const ethd__place_options *o) {
 void ethd__place_open(const ethd__place_options *o, ethd__place *out) {
   char message[ETHD_MESSAGE_MAX] = "";
   const ethd__protocol *protocol = &out->folder.protocol;
-  check(ethd__folder_open(o->path, &out->folder, message), message);
+  check(ethd__folder_open(o->path, true, &out->folder, message), message);
   bool people = protocol->hands == ETHD_HANDS_PEOPLE;
   if (o->is_virtual && !people)
     ethd__fail(ETHD_EXIT_INPUT, "--virtual: %s: hand.source: people is needed", protocol->path);

@@ -5,13 +5,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "cli/cli.h"
 #include "ethd/ethd.h"
 #include "record/recording_parts.h"
 #include "study/dictionary.h"
+#include "text/claim.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
@@ -50,7 +50,7 @@ void ethd__folder_device(const ethd__protocol *p, ethd__loaded *out) {
   char *config = p->config ? find(p, p->config) : NULL;
   bool letter = p->plant && !p->plant[strcspn(p->plant, "/.")] && strlen(p->plant) == 1;
   char *plant = p->plant && !letter ? find(p, p->plant) : NULL;
-  ethd__load(config, plant ? plant : p->plant, p->hands != ETHD_HANDS_PEOPLE, out);
+  ethd__load(config, plant ? plant : p->plant, p->hands != ETHD_HANDS_PEOPLE, true, out);
   free(config);
   free(plant);
 }
@@ -121,17 +121,92 @@ static ethd_status settle(const char *folder, char *message) {
   return failed ? ethd__say(message, ETHD_E_FILE, "%s: %s", folder, strerror(reason)) : ETHD_OK;
 }
 
-ethd_status ethd__folder_make(const char *folder, const ethd__protocol *protocol, const ethd__loaded *loaded,
-                              const char *finger, char message[ETHD_MESSAGE_MAX]) {
-  if (mkdir(folder, 0777) != 0 && errno != EEXIST)
-    return ethd__say(message, ETHD_E_FILE, "%s: %s", folder, strerror(errno));
+static ethd_status write_files(const char *folder, const ethd__protocol *protocol, const ethd__loaded *loaded,
+                               const char *finger, char *message) {
   ethd_status status = write_text(folder, ETHD_STUDY_FILE, protocol->text, message);
   if (!status) status = write_device(folder, loaded, message);
   if (!status && finger) status = copy(finger, folder, MOVEMENT, message);
   if (!status && protocol->hands == ETHD_HANDS_PEOPLE) status = write_device_folder(folder, loaded, message);
-  if (!status) status = write_versions(folder, message);
   if (!status) status = write_text(folder, "README.md", ethd__dictionary, message);
+  if (!status) status = write_versions(folder, message);
   return status ? status : settle(folder, message);
+}
+
+/* ---- what is there already ---- */
+
+static const char *const own[] = {ETHD_STUDY_FILE, ETHD_RECORDING_CONFIG, ETHD_RECORDING_SCENE, PLANT,
+                                  MOVEMENT,        DEVICE_FOLDER,         "README.md",          VERSIONS,
+                                  ETHD_STUDY_TAPS, ETHD_STUDY_SURVEY,     ETHD_STUDY_EVENTS,    NULL};
+
+/* Whether a file of the folder says the same; without such a file it doesn't. */
+static bool says(const char *folder, const char *name, const char *text, size_t length) {
+  char unsaid[ETHD_MESSAGE_MAX], *path = ethd__folder_path(folder, name), *there;
+  size_t n;
+  bool same = !ethd_text_read(path, BYTES_MAX, &there, &n, unsaid) && n == length && !memcmp(there, text, n);
+  free(there);
+  free(path);
+  return same;
+}
+
+static bool says_file(const char *folder, const char *name, const char *from) {
+  char unsaid[ETHD_MESSAGE_MAX], *text;
+  size_t n;
+  bool same = !ethd_text_read(from, BYTES_MAX, &text, &n, unsaid) && says(folder, name, text, n);
+  free(text);
+  return same;
+}
+
+static bool is_same_study(const char *folder, const ethd__protocol *protocol, const ethd__loaded *loaded,
+                          const char *finger) {
+  char *config = ethd__record_config_text(loaded->config);
+  const char *scene = loaded->config->scene_text;
+  bool same = config && says(folder, ETHD_RECORDING_CONFIG, config, strlen(config)) &&
+              says(folder, ETHD_STUDY_FILE, protocol->text, strlen(protocol->text)) &&
+              says(folder, ETHD_RECORDING_SCENE, scene, strlen(scene)) &&
+              says_file(folder, PLANT, loaded->plant_path) && (!finger || says_file(folder, MOVEMENT, finger));
+  free(config);
+  return same;
+}
+
+static bool exists(const char *folder, const char *name) {
+  char *path = ethd__folder_path(folder, name);
+  bool there = access(path, F_OK) == 0;
+  free(path);
+  return there;
+}
+
+static bool is_input(const char *folder, const ethd__protocol *protocol, const ethd__loaded *loaded,
+                     const char *finger) {
+  const char *const inputs[] = {protocol->path, loaded->path, loaded->plant_path, finger};
+  for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++)
+    if (inputs[i] && ethd__claim_holds(folder, own, inputs[i])) return true;
+  return false;
+}
+
+/* Nothing of another study is written over, nor what the study is made of. versions.txt is written last: a folder
+   without it is one that a killed program began, or somebody's own. */
+static ethd_status make(const char *folder, const ethd__protocol *protocol, const ethd__loaded *loaded,
+                        const char *finger, char *message) {
+  size_t length = strlen(protocol->text);
+  if (is_input(folder, protocol, loaded, finger))
+    return ethd__say(message, ETHD_E_ARGUMENT, "%s: the study is made of files in it; another folder is needed",
+                     folder);
+  if (exists(folder, VERSIONS) && is_same_study(folder, protocol, loaded, finger)) return ETHD_OK;
+  bool begun = !exists(folder, VERSIONS) && says(folder, ETHD_STUDY_FILE, protocol->text, length);
+  for (int i = 0; own[i] && !begun; i++)
+    if (exists(folder, own[i]))
+      return ethd__say(message, ETHD_E_ARGUMENT, "%s: holds %s, of another study or your own; another folder is needed",
+                       folder, own[i]);
+  return write_files(folder, protocol, loaded, finger, message);
+}
+
+ethd_status ethd__folder_make(const char *folder, const ethd__protocol *protocol, const ethd__loaded *loaded,
+                              const char *finger, char message[ETHD_MESSAGE_MAX]) {
+  ethd__claim claim;
+  ethd_status status = ethd__claim_wait(folder, &claim, message);
+  if (!status) status = make(folder, protocol, loaded, finger, message);
+  ethd__claim_release(&claim);
+  return status;
 }
 
 /* ---- opening ---- */
@@ -144,15 +219,22 @@ static ethd_status read_device_folder(const char *folder, char **out, char *mess
   return status;
 }
 
-ethd_status ethd__folder_open(const char *folder, ethd__folder *out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__folder_read(const char *folder, ethd__folder *out, char message[ETHD_MESSAGE_MAX]) {
   *out = (ethd__folder){.path = ethd__folder_path(folder, "")};
   out->path[strlen(out->path) - 1] = 0;
-  char *study = ethd__folder_path(folder, ETHD_STUDY_FILE), *config = ethd__folder_path(folder, ETHD_RECORDING_CONFIG),
-       *plant = ethd__folder_path(folder, PLANT);
+  char *study = ethd__folder_path(folder, ETHD_STUDY_FILE);
   ethd_status status = ethd__protocol_load(study, &out->protocol, message);
   if (!status) status = hash(folder, out->hash, message);
-  if (!status) ethd__load(config, plant, out->protocol.hands != ETHD_HANDS_PEOPLE, &out->loaded);
   free(study);
+  if (status) ethd__folder_close(out);
+  return status;
+}
+
+ethd_status ethd__folder_open(const char *folder, bool plugins, ethd__folder *out, char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = ethd__folder_read(folder, out, message);
+  if (status) return status;
+  char *config = ethd__folder_path(folder, ETHD_RECORDING_CONFIG), *plant = ethd__folder_path(folder, PLANT);
+  ethd__load(config, plant, out->protocol.hands != ETHD_HANDS_PEOPLE, plugins, &out->loaded);
   free(config);
   free(plant);
   out->finger = ethd__folder_path(folder, MOVEMENT);
@@ -160,7 +242,7 @@ ethd_status ethd__folder_open(const char *folder, ethd__folder *out, char messag
     free(out->finger);
     out->finger = NULL;
   }
-  if (!status && out->protocol.hands == ETHD_HANDS_PEOPLE) status = read_device_folder(folder, &out->device, message);
+  if (out->protocol.hands == ETHD_HANDS_PEOPLE) status = read_device_folder(folder, &out->device, message);
   if (status) ethd__folder_close(out);
   return status;
 }

@@ -23,7 +23,9 @@
 /* The device that the protocol names. Exit 2 on a bad configuration or plant. */
 void ethd__folder_device(const ethd__protocol *protocol, ethd__loaded *out);
 
-/* Makes the folder, unless it is there, and its files. finger: a recorded movement for all hands, or NULL. */
+/* Makes the folder, unless it is there, and its files; leaves it as it is when it holds just this study. A folder with
+   another study's files is refused, and one that the study itself is read from. finger: a recorded movement for all
+   hands, or NULL. */
 ETHD_MUST_CHECK ethd_status ethd__folder_make(const char *folder, const ethd__protocol *protocol,
                                               const ethd__loaded *loaded, const char *finger,
                                               char message[ETHD_MESSAGE_MAX]);
@@ -37,8 +39,11 @@ typedef struct ethd__folder {
   char hash[ETHD_SHA256_TEXT];
 } ethd__folder;
 
-/* Back from the folder's own files alone. Exit 2 on a bad configuration or plant. */
-ETHD_MUST_CHECK ethd_status ethd__folder_open(const char *folder, ethd__folder *out, char message[ETHD_MESSAGE_MAX]);
+/* Back from the folder's own files alone, without the device: `loaded` is empty. */
+ETHD_MUST_CHECK ethd_status ethd__folder_read(const char *folder, ethd__folder *out, char message[ETHD_MESSAGE_MAX]);
+/* With the device. Exit 2 on a bad configuration or plant, and without `plugins` on a configuration that needs one. */
+ETHD_MUST_CHECK ethd_status ethd__folder_open(const char *folder, bool plugins, ethd__folder *out,
+                                              char message[ETHD_MESSAGE_MAX]);
 void ethd__folder_close(ethd__folder *folder);
 
 /* folder/name; exit 1 without memory. */

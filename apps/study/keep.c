@@ -69,14 +69,12 @@ static ethd_status write_fresh(const char *fresh, const ethd_config *config, con
                                const char *words, const char *row, char *message) {
   ethd__ticks ticks;
   char left[ETHD_MESSAGE_MAX];
-  errno = 0;
-  ethd_status status = ethd__ticks_open(fresh, config, &ticks, message);
+  ethd_status status = ethd__ticks_open(fresh, config, false, &ticks, message);
   if (status) return status;
   status = ethd__ticks_stage(&ticks, taken->stage, message);
   if (!status) status = ethd__ticks_tap(&ticks, words, &taken->stage->rows, message);
   ethd_status closed = ethd__ticks_close(&ticks, left);
   if (!status && closed) status = ethd__say(message, closed, "%s", left);
-  if (status == ETHD_E_FILE && errno) return refuse(fresh, message); /* a disk that is full says so here */
   return status ? status : write_row(fresh, row, message);
 }
 

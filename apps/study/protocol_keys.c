@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "text/error_text.h"
+#include "text/file_name.h"
 #include "text/text.h"
 
 typedef struct key_row key_row;
@@ -102,13 +103,8 @@ static ethd_status set_text(const ethd__entry *e, const key_row *row, void *at) 
 }
 
 /* It stands in tables and file names. */
-static bool plain(const char *word) {
-  return *word && strlen(word) < 32 &&
-         !word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+-")] && *word != '.';
-}
-
 static ethd_status set_name(const ethd__entry *e, const key_row *row, void *at) {
-  if (!plain(e->key->value)) return found(e, e->key->value, "a word of up to 31 letters, digits, _ . + -");
+  if (!ethd__file_word(e->key->value)) return found(e, e->key->value, ETHD_FILE_WORD);
   return set_text(e, row, at);
 }
 
@@ -139,8 +135,8 @@ static ethd_status set_words(const ethd__entry *e, const key_row *row, void *at)
   while (!status && (word = strsep(&rest, ","))) {
     word += strspn(word, " \t");
     word[strcspn(word, " \t")] = 0;
-    status =
-        plain(word) ? add_word(e, words, word) : found(e, e->key->value, "word,word.. of letters, digits, _ . + -");
+    status = ethd__file_word(word) ? add_word(e, words, word)
+                                   : found(e, e->key->value, "word,word.. of letters, digits, _ . + -");
   }
   free(list);
   return status;

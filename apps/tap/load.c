@@ -66,16 +66,16 @@ static ethd_config *with_wall(ethd_config *config, const char *path) {
   return walled;
 }
 
-static void load_config(const char *config, const char *plant, ethd__loaded *out) {
+static void load_config(const char *config, const char *plant, bool plugins, ethd__loaded *out) {
   char message[ETHD_MESSAGE_MAX];
   out->path = config ? had(strdup(config)) : beside_plant(plant ? plant : "n", ".ini");
-  check(ethd_config_load(out->path, &out->config, message), message);
+  check((plugins ? ethd_config_load : ethd_config_load_received)(out->path, &out->config, message), message);
   if (!out->config->scene) out->config = with_wall(out->config, out->path);
 }
 
-void ethd__load(const char *config, const char *plant, bool simulated, ethd__loaded *out) {
+void ethd__load(const char *config, const char *plant, bool simulated, bool plugins, ethd__loaded *out) {
   *out = (ethd__loaded){0};
-  load_config(config, plant, out);
+  load_config(config, plant, plugins, out);
   load_plant(plant || config ? plant : "n", simulated, out);
 }
 

@@ -14,8 +14,10 @@ static ethd_status open_csv(const char *path, ethd_csv_out **out, char *message)
   return *out ? ETHD_OK : ETHD_E_FILE;
 }
 
-static ethd_status open_ticks(const char *folder, const ethd_config *config, ethd__output *out, char *message) {
-  ethd_status status = ethd__ticks_open(folder, config, &out->ticks, message);
+static ethd_status open_ticks(const ethd__output_paths *paths, const ethd_config *config, ethd__output *out,
+                              char *message) {
+  const char *folder = paths->folder;
+  ethd_status status = ethd__ticks_open(folder, config, paths->replace, &out->ticks, message);
   if (status) return status;
   char *taps = ethd__path_join(folder, "taps.csv");
   status = taps ? open_csv(taps, &out->taps, message)
@@ -24,12 +26,12 @@ static ethd_status open_ticks(const char *folder, const ethd_config *config, eth
   return status;
 }
 
-ethd_status ethd__output_open(const char *csv, const char *folder, const ethd_config *config, ethd__output *out,
+ethd_status ethd__output_open(const ethd__output_paths *paths, const ethd_config *config, ethd__output *out,
                               char message[ETHD_MESSAGE_MAX]) {
   char unsaid[ETHD_MESSAGE_MAX];
   *out = (ethd__output){0};
-  ethd_status status = csv ? open_csv(csv, &out->csv, message) : ETHD_OK;
-  if (!status && folder) status = open_ticks(folder, config, out, message);
+  ethd_status status = paths->csv ? open_csv(paths->csv, &out->csv, message) : ETHD_OK;
+  if (!status && paths->folder) status = open_ticks(paths, config, out, message);
   if (!status) return ETHD_OK;
   ethd_csv_abandon(out->csv);
   out->csv = NULL;

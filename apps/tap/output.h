@@ -17,8 +17,13 @@ typedef struct ethd__output {
   ethd__ticks ticks;
 } ethd__output;
 
-/* csv, folder: NULL for none. */
-ETHD_MUST_CHECK ethd_status ethd__output_open(const char *csv, const char *folder, const ethd_config *config,
+/* Where it goes, NULL: not at all. */
+typedef struct ethd__output_paths {
+  const char *csv, *folder;
+  bool replace; /* a recording in the folder */
+} ethd__output_paths;
+
+ETHD_MUST_CHECK ethd_status ethd__output_open(const ethd__output_paths *paths, const ethd_config *config,
                                               ethd__output *out, char message[ETHD_MESSAGE_MAX]);
 
 /* From here on taps run on this stage. */

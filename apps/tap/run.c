@@ -1,13 +1,12 @@
 #include "tap/run.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
 
 #include "cli/cli.h"
 #include "text/error_text.h"
+#include "text/file_name.h"
+#include "text/text.h"
 
 static size_t cell_count(const ethd__plan *plan) { return plan->law_count * plan->study->speed_count; }
 
@@ -94,10 +93,12 @@ ethd_status ethd__cells_run(const ethd__plan *plan, ethd__output *output, ethd__
 static ethd_status trace_cell(const ethd__plan *plan, const char *folder, const ethd__cell *cell, char *message) {
   ethd__stage stage;
   ethd__result result;
-  char *path;
+  char name[ETHD_FILE_NAME_MAX];
+  const char *words[] = {cell->law, cell->speed->word, NULL};
   uint64_t number = ethd__cell_typical(cell);
-  if (asprintf(&path, "%s/%s-%s.csv", folder, cell->law, cell->speed->word) < 0)
-    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  ethd__file_name(words, ".csv", name);
+  char *path = ethd__path_join(folder, name);
+  if (!path) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
   ethd_status status = ethd__stage_open(plan->study, cell->law, &stage, message);
   if (!status) {
     status = ethd__stage_run(&stage, cell->speed, number, &result, message);
@@ -113,8 +114,6 @@ static ethd_status trace_cell(const ethd__plan *plan, const char *folder, const 
 
 ethd_status ethd__cells_trace(const ethd__plan *plan, const char *folder, const ethd__cell *cells,
                               char message[ETHD_MESSAGE_MAX]) {
-  if (mkdir(folder, 0777) != 0 && errno != EEXIST)
-    return ethd__say(message, ETHD_E_FILE, "%s: %s", folder, strerror(errno));
   ethd_status status = ETHD_OK;
   for (size_t i = 0; !status && i < cell_count(plan); i++)
     if (cells[i].count) status = trace_cell(plan, folder, &cells[i], message);

@@ -1,10 +1,12 @@
 #include "tap/ticks.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "record/limits_event.h"
+#include "record/npy_parts.h"
 #include "record/recording_parts.h"
 #include "text/error_text.h"
 #include "text/text.h"
@@ -22,15 +24,17 @@ static ethd_status in_folder(const char *folder, const char *name, char **out, c
   return *out ? ETHD_OK : ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
 }
 
-static ethd_status said(ethd_status status, char *message) {
-  return status ? ethd__say(message, status, "the recording: %s", ethd_status_sentence(status)) : ETHD_OK;
+static ethd_status said(const ethd__ticks *ticks, ethd_status status, char *message) {
+  if (!status) return ETHD_OK;
+  const char *failure = ethd_recording_failure(ticks->recording);
+  return ethd__say(message, status, "%s", *failure ? failure : ethd_status_sentence(status));
 }
 
-ethd_status ethd__ticks_open(const char *folder, const ethd_config *config, ethd__ticks *out,
+ethd_status ethd__ticks_open(const char *folder, const ethd_config *config, bool replace, ethd__ticks *out,
                              char message[ETHD_MESSAGE_MAX]) {
   char *truth = NULL, unsaid[ETHD_MESSAGE_MAX];
   *out = (ethd__ticks){0};
-  ethd_status status = ethd_recording_create(folder, config, &out->recording, message);
+  ethd_status status = ethd_recording_create(folder, config, replace, &out->recording, message);
   if (!status) status = in_folder(folder, TRUTH, &truth, message);
   if (!status) status = ethd_npy_create(truth, ethd__truth_columns, sizeof(ethd_truth), &out->truth, message);
   free(truth);
@@ -51,23 +55,25 @@ ethd_status ethd__ticks_stage(ethd__ticks *ticks, const ethd__stage *stage, char
   if (!status) status = ethd__limits_event(recording, &stage->study->config->setup.limits, &stage->setup.limits);
   snprintf(detail, sizeof detail, "%.17g %.17g", stage->heat[0], stage->heat[1]);
   if (!status && (stage->heat[0] > 0 || stage->heat[1] > 0)) status = ethd_recording_event(recording, "heat", detail);
-  return said(status, message);
+  return said(ticks, status, message);
 }
 
 ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *words, const ethd__rows *rows,
                             char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = ethd_recording_event(ticks->recording, "start", words);
   for (size_t i = 0; !status && i < rows->count; i++) status = ethd_recording_tick(ticks->recording, &rows->trace[i]);
-  if (!status) status = ethd_npy_append(ticks->truth, rows->truth, rows->count);
-  if (!status) status = ethd_npy_flush(ticks->truth);
-  return said(status, message);
+  if (!status && (ethd_npy_append(ticks->truth, rows->truth, rows->count) || ethd_npy_flush(ticks->truth)))
+    status = ethd__recording_fail(ticks->recording, TRUTH, ethd__npy_reason(ticks->truth));
+  return said(ticks, status, message);
 }
 
+/* Without all of the truth the recording has no end either. */
 ethd_status ethd__ticks_close(ethd__ticks *ticks, char message[ETHD_MESSAGE_MAX]) {
-  ethd_status truth = ethd_npy_close(ticks->truth), ticked = ethd_recording_close(ticks->recording);
+  errno = 0;
+  if (ethd_npy_close(ticks->truth)) (void)!ethd__recording_fail(ticks->recording, TRUTH, errno ? errno : EIO);
+  ethd_status status = ethd_recording_close(ticks->recording, message);
   *ticks = (ethd__ticks){0};
-  if (truth) return ethd__say(message, truth, "the recording's %s: %s", TRUTH, ethd_status_sentence(truth));
-  return said(ticked, message);
+  return status;
 }
 
 /* ---- reading ---- */

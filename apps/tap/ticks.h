@@ -16,9 +16,9 @@ typedef struct ethd__ticks {
   ethd_npy *truth;
 } ethd__ticks;
 
-/* Makes the folder. On failure nothing is open. */
-ETHD_MUST_CHECK ethd_status ethd__ticks_open(const char *folder, const ethd_config *config, ethd__ticks *out,
-                                             char message[ETHD_MESSAGE_MAX]);
+/* Makes the folder, as ethd_recording_create does. On failure nothing is open. */
+ETHD_MUST_CHECK ethd_status ethd__ticks_open(const char *folder, const ethd_config *config, bool replace,
+                                             ethd__ticks *out, char message[ETHD_MESSAGE_MAX]);
 
 /* From here on taps run on this stage, under its law. */
 ETHD_MUST_CHECK ethd_status ethd__ticks_stage(ethd__ticks *ticks, const ethd__stage *stage,

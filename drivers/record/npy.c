@@ -26,7 +26,7 @@ struct ethd_npy {
   size_t shape;   /* where the count stands in the header */
   uint64_t count; /* rows in the file */
   size_t waiting; /* rows in the buffer */
-  bool failed;
+  int reason;     /* errno of the write that failed, 0: none did */
   char *header, *buffer;
 };
 
@@ -65,6 +65,7 @@ static bool write_at(int fd, const char *bytes, size_t length, uint64_t offset) 
   while (length) {
     ssize_t done = pwrite(fd, bytes, length, (off_t)offset);
     if (done < 0 && errno == EINTR) continue;
+    if (done == 0) errno = ENOSPC;
     if (done <= 0) return false;
     bytes += done;
     length -= (size_t)done;
@@ -123,22 +124,29 @@ ethd_status ethd_npy_create(const char *path, const ethd_column *columns, size_t
   return status;
 }
 
+static ethd_status failed(ethd_npy *npy) {
+  npy->reason = errno ? errno : EIO;
+  return ETHD_E_FILE;
+}
+
+int ethd__npy_reason(const ethd_npy *npy) { return npy->reason; }
+
+uint64_t ethd__npy_rows(const ethd_npy *npy) { return npy->count; }
+
 /* Rows first, then the count that covers them: a reader never counts a row that isn't there. */
 ethd_status ethd_npy_flush(ethd_npy *npy) {
-  if (npy->failed) return ETHD_E_FILE;
+  if (npy->reason) return ETHD_E_FILE;
   if (!npy->waiting) return ETHD_OK;
   uint64_t end = npy->header_bytes + npy->count * npy->row_bytes;
-  npy->failed = !write_at(npy->fd, npy->buffer, npy->waiting * npy->row_bytes, end);
-  if (npy->failed) return ETHD_E_FILE;
+  if (!write_at(npy->fd, npy->buffer, npy->waiting * npy->row_bytes, end)) return failed(npy);
   npy->count += npy->waiting;
   npy->waiting = 0;
-  npy->failed = !write_header(npy);
-  return npy->failed ? ETHD_E_FILE : ETHD_OK;
+  return write_header(npy) ? ETHD_OK : failed(npy);
 }
 
 ethd_status ethd_npy_append(ethd_npy *npy, const void *rows, size_t count) {
   const char *from = rows;
-  while (count && !npy->failed) {
+  while (count && !npy->reason) {
     size_t room = BUFFER_ROWS - npy->waiting, n = count < room ? count : room;
     memcpy(npy->buffer + npy->waiting * npy->row_bytes, from, n * npy->row_bytes);
     npy->waiting += n;
@@ -146,7 +154,7 @@ ethd_status ethd_npy_append(ethd_npy *npy, const void *rows, size_t count) {
     count -= n;
     if (npy->waiting == BUFFER_ROWS && ethd_npy_flush(npy)) break;
   }
-  return npy->failed ? ETHD_E_FILE : ETHD_OK;
+  return npy->reason ? ETHD_E_FILE : ETHD_OK;
 }
 
 ethd_status ethd_npy_close(ethd_npy *npy) {

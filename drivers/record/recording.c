@@ -1,17 +1,19 @@
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "ethd/record.h"
+#include "record/npy_parts.h"
 #include "record/recording_parts.h"
 #include "settings/config_parts.h"
 #include "text/csv.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
+#define ROOM 256 /* bytes of events.csv: a row about what can't be written */
 #define LETTER_double 'f'
 #define LETTER_int64_t 'i'
 #define SENSE_COLUMN(type, name, count, unit, brief) \
@@ -24,7 +26,9 @@ const ethd_column ethd_trace_columns[] = {ETHD_SENSE_FIELDS(SENSE_COLUMN)
 struct ethd_recording {
   ethd_npy *ticks;
   FILE *events;
-  uint64_t rows;
+  uint64_t rows; /* that came, in the file or lost */
+  ethd__claim claim;
+  char *folder, failure[ETHD_MESSAGE_MAX]; /* "": none */
 };
 
 /* ---- config.ini ---- */
@@ -82,13 +86,8 @@ static ethd_status write_config(const char *folder, const ethd_config *config, c
   return status;
 }
 
-static ethd_status make_folder(const char *folder, char *message) {
-  struct stat info;
-  if (mkdir(folder, 0777) == 0) return ETHD_OK;
-  int reason = errno;
-  if (reason == EEXIST && stat(folder, &info) == 0 && S_ISDIR(info.st_mode)) return ETHD_OK;
-  return ethd__say(message, ETHD_E_FILE, "%s: %s", folder, strerror(reason));
-}
+/* The next row of events.csv finds its place on a disk that is full by then, where the file system can. */
+static void keep_room(FILE *events) { (void)!fallocate(fileno(events), FALLOC_FL_KEEP_SIZE, ftello(events), ROOM); }
 
 static ethd_status open_files(const char *folder, ethd_recording *recording, char *message) {
   char *ticks = ethd__path_join(folder, ETHD_RECORDING_TICK);
@@ -102,45 +101,98 @@ static ethd_status open_files(const char *folder, ethd_recording *recording, cha
     status = ethd_npy_create(ticks, ethd_trace_columns, sizeof(ethd_trace), &recording->ticks, message);
   free(ticks);
   free(events);
-  if (!status) fputs(ETHD_RECORDING_HEADER "\n", recording->events);
+  if (status) return status;
+  fputs(ETHD_RECORDING_HEADER "\n", recording->events);
+  fflush(recording->events);
+  keep_room(recording->events);
   return status;
 }
 
-ethd_status ethd_recording_create(const char *folder, const ethd_config *config, ethd_recording **out,
+ethd_status ethd_recording_create(const char *folder, const ethd_config *config, bool replace, ethd_recording **out,
                                   char message[ETHD_MESSAGE_MAX]) {
+  char unsaid[ETHD_MESSAGE_MAX];
   *out = NULL;
   ethd_recording *recording = calloc(1, sizeof *recording);
   if (!recording) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
-  ethd_status status = make_folder(folder, message);
+  recording->claim = ETHD_CLAIM_NONE;
+  recording->folder = strdup(folder);
+  ethd_status status = ethd__recording_claim(folder, config, replace, &recording->claim, message);
   if (!status) status = open_files(folder, recording, message);
   if (!status) status = write_config(folder, config, message);
   if (!status && config->scene_text) status = write_file(folder, ETHD_RECORDING_SCENE, config->scene_text, message);
   if (status)
-    (void)!ethd_recording_close(recording);
+    (void)!ethd_recording_close(recording, unsaid);
   else
     *out = recording;
   return status;
 }
 
-/* Events are few and tell how to read the ticks behind them: both reach the file together. */
-ethd_status ethd_recording_event(ethd_recording *recording, const char *kind, const char *detail) {
+/* ---- what can't be written ---- */
+
+static ethd_status put_event(ethd_recording *recording, uint64_t row, const char *kind, const char *detail) {
   FILE *file = recording->events;
-  ethd_status status = ethd_npy_flush(recording->ticks);
-  fprintf(file, "%" PRIu64 ",%s,", recording->rows, kind);
+  fprintf(file, "%" PRIu64 ",%s,", row, kind);
   ethd__csv_put_word(file, detail);
   putc('\n', file);
-  return fflush(file) == 0 && !ferror(file) ? status : ETHD_E_FILE;
+  if (fflush(file) != 0 || ferror(file)) return ETHD_E_FILE;
+  keep_room(file);
+  return ETHD_OK;
+}
+
+/* The first failure is told; later ones follow from it. */
+ethd_status ethd__recording_fail(ethd_recording *recording, const char *name, int reason) {
+  char detail[128];
+  if (recording->failure[0]) return ETHD_E_FILE;
+  uint64_t kept = ethd_recording_kept(recording);
+  snprintf(detail, sizeof detail, "%s: %s", ethd_fault_sentence(ETHD_FAULT_RECORDER), strerror(reason));
+  (void)!put_event(recording, kept, "fault", detail);
+  return ethd__say(recording->failure, ETHD_E_FILE, "%s/%s: %s; ticks from %" PRIu64 " on are lost", recording->folder,
+                   name, strerror(reason), kept);
+}
+
+const char *ethd_recording_failure(const ethd_recording *recording) { return recording->failure; }
+
+uint64_t ethd_recording_kept(const ethd_recording *recording) { return ethd__npy_rows(recording->ticks); }
+
+static ethd_status ticks_failed(ethd_recording *recording) {
+  return ethd__recording_fail(recording, ETHD_RECORDING_TICK, ethd__npy_reason(recording->ticks));
+}
+
+/* Events are few and tell how to read the ticks behind them: both reach the file together. */
+ethd_status ethd_recording_event(ethd_recording *recording, const char *kind, const char *detail) {
+  ethd_status status = ethd_npy_flush(recording->ticks) ? ticks_failed(recording) : ETHD_OK;
+  errno = 0;
+  if (!put_event(recording, recording->rows, kind, detail)) return status;
+  return ethd__recording_fail(recording, ETHD_RECORDING_EVENTS, errno ? errno : EIO);
 }
 
 ethd_status ethd_recording_tick(ethd_recording *recording, const ethd_trace *trace) {
   recording->rows++;
-  return ethd_npy_append(recording->ticks, trace, 1);
+  return ethd_npy_append(recording->ticks, trace, 1) ? ticks_failed(recording) : ETHD_OK;
 }
 
-ethd_status ethd_recording_close(ethd_recording *recording) {
+/* The last event stands behind ticks that are all there. */
+static ethd_status finish(ethd_recording *recording) {
+  if (recording->failure[0]) return ETHD_E_FILE;
+  return ethd_recording_event(recording, "end", "closed");
+}
+
+static ethd_status close_files(ethd_recording *recording) {
+  if (recording->ticks && ethd_npy_close(recording->ticks)) return ETHD_E_FILE;
+  return ETHD_OK;
+}
+
+ethd_status ethd_recording_close(ethd_recording *recording, char message[ETHD_MESSAGE_MAX]) {
   if (!recording) return ETHD_OK;
-  ethd_status status = ethd_npy_close(recording->ticks);
+  ethd_status status = recording->ticks && recording->events ? finish(recording) : ETHD_OK;
+  const char *failure = recording->failure;
+  if (close_files(recording) && !status) status = ETHD_E_FILE;
   if (recording->events && fclose(recording->events) != 0) status = ETHD_E_FILE;
+  if (status)
+    (void)ethd__say(message, status, "%s%s", *failure ? failure : recording->folder,
+                    *failure ? "" : ": a write failed at the end");
+  ethd__claim_release(&recording->claim);
+  free(recording->folder);
   free(recording);
   return status;
 }

@@ -3,6 +3,7 @@
 #define ETHD_FILE_RECORDING_PARTS_H
 
 #include "ethd/record.h"
+#include "text/claim.h"
 
 #define ETHD_RECORDING_TICK "tick.npy"
 #define ETHD_RECORDING_CONFIG "config.ini"
@@ -21,6 +22,17 @@ typedef struct ethd__record_events {
   ethd__record_event *events;
   size_t count;
 } ethd__record_events;
+
+/* Tells once that the file `name` of the recording can't be written, as a failure of its own files is told; ETHD_E_FILE.
+   [main] */
+ethd_status ethd__recording_fail(ethd_recording *recording, const char *name, int reason);
+
+/* The folder of a new recording, locked and without an earlier one; see ethd_recording_create. [main] */
+ETHD_MUST_CHECK ethd_status ethd__recording_claim(const char *folder, const ethd_config *config, bool replace,
+                                                  ethd__claim *out, char message[ETHD_MESSAGE_MAX]);
+
+/* Whether `path` is the folder or one of the files that a recording in it is made of. [main] */
+bool ethd__recording_holds(const char *folder, const char *path);
 
 /* events.csv, rows rising. [main] */
 ETHD_MUST_CHECK ethd_status ethd__record_events_read(const char *path, ethd__record_events *out,

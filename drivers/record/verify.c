@@ -10,6 +10,7 @@
 
 typedef struct replay {
   const char *folder;
+  bool plugins;
   char *events_path;
   ethd_config *config;
   ethd__record_events events;
@@ -26,7 +27,7 @@ typedef struct replay {
 static ethd_status open_config(replay *r) {
   char *path = ethd__path_join(r->folder, ETHD_RECORDING_CONFIG);
   if (!path) return ethd__say(r->message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
-  ethd_status status = ethd_config_load(path, &r->config, r->message);
+  ethd_status status = (r->plugins ? ethd_config_load : ethd_config_load_received)(path, &r->config, r->message);
   free(path);
   if (!status) r->setup = r->config->setup;
   return status;
@@ -92,10 +93,10 @@ static ethd_status apply(replay *r, const ethd__record_event *e, int *done) {
   } else if (strcmp(e->kind, "heat") == 0) {
     status = take_heat(r, e->detail, what);
     *done |= HOT;
-  } else if (strcmp(e->kind, "fault") != 0) {
+  } else if (strcmp(e->kind, "fault") != 0 && strcmp(e->kind, "end") != 0) {
     status = ethd__say(what, ETHD_E_UNKNOWN,
                        "an unknown kind of event; setup, start, transition, set, clear, "
-                       "heat, fault are allowed");
+                       "heat, fault, end are allowed");
   }
   if (!status) return ETHD_OK;
   return ethd__say(r->message, status, "%s:%zu: %s: %s", r->events_path, e->line, e->kind, what);
@@ -171,6 +172,19 @@ static ethd_status compare(const replay *r, size_t row, const ethd_trace *replay
   return ETHD_OK;
 }
 
+/* A program that was killed, or whose disk was full, left no end. */
+static ethd_status judge_end(const replay *r) {
+  const ethd__record_event *last = r->events.count ? &r->events.events[r->events.count - 1] : NULL;
+  if (!last || strcmp(last->kind, "end") != 0)
+    return ethd__say(r->message, ETHD_E_UNFINISHED,
+                     "%s: %zu ticks, equal to the bit, but the recording was never closed: later ones may be lost",
+                     r->folder, r->count);
+  if (last->row != r->count)
+    return ethd__say(r->message, ETHD_E_DIFFERS, "%s:%zu: end: row: found %" PRIu64 ", but there are %zu ticks",
+                     r->events_path, last->line, last->row, r->count);
+  return ethd__say(r->message, ETHD_OK, "%s: %zu ticks, equal to the bit", r->folder, r->count);
+}
+
 static ethd_status run(replay *r) {
   for (size_t row = 0; row < r->count; row++) {
     ethd_trace trace;
@@ -183,11 +197,11 @@ static ethd_status run(replay *r) {
     status = compare(r, row, &trace);
     if (status) return status;
   }
-  return ethd__say(r->message, ETHD_OK, "%s: %zu ticks, equal to the bit", r->folder, r->count);
+  return judge_end(r);
 }
 
-ethd_status ethd_recording_verify(const char *folder, char message[ETHD_MESSAGE_MAX]) {
-  replay r = {.folder = folder, .message = message};
+ethd_status ethd_recording_verify(const char *folder, bool plugins, char message[ETHD_MESSAGE_MAX]) {
+  replay r = {.folder = folder, .plugins = plugins, .message = message};
   uint64_t before = ethd__denormals_flush();
   ethd_status status = open_config(&r);
   if (!status) status = open_rows(&r);

@@ -14,6 +14,7 @@
 
 typedef struct reading {
   ethd__config *whole;
+  bool received;    /* from somebody else */
   const char *name; /* of the file */
   char *message;
 } reading;
@@ -143,13 +144,15 @@ static bool fill(ethd_config *c, const char *text, size_t length, const char *na
   return (!name || c->path) && c->text && c->folder && c->settings && c->laws;
 }
 
-ethd_status ethd_config_parse(const char *text, size_t length, const char *name, const char *folder, ethd_config **out,
-                              char message[ETHD_MESSAGE_MAX]) {
-  reading r = {calloc(1, sizeof *r.whole), name ? name : "configuration", message};
+/* r: all but the configuration. */
+static ethd_status parse(reading r, const char *text, size_t length, const char *name, const char *folder,
+                         ethd_config **out) {
+  r.whole = calloc(1, sizeof *r.whole);
   *out = NULL;
   if (!r.whole) return no_memory(&r);
+  r.whole->received = r.received;
   ethd_status status = fill(&r.whole->config, text, length, name, folder) ? ETHD_OK : no_memory(&r);
-  if (!status) status = ethd_ini_parse(text, length, r.name, "plugins.file", &r.whole->ini, message);
+  if (!status) status = ethd_ini_parse(text, length, r.name, "plugins.file", &r.whole->ini, r.message);
   if (!status) status = read_keys(&r);
   if (status)
     ethd_config_free(&r.whole->config);
@@ -158,21 +161,35 @@ ethd_status ethd_config_parse(const char *text, size_t length, const char *name,
   return status;
 }
 
-ethd_status ethd_config_load(const char *path, ethd_config **out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd_config_parse(const char *text, size_t length, const char *name, const char *folder, ethd_config **out,
+                              char message[ETHD_MESSAGE_MAX]) {
+  const reading r = {.name = name ? name : "configuration", .message = message};
+  return parse(r, text, length, name, folder, out);
+}
+
+static ethd_status load(const char *path, bool received, ethd_config **out, char *message) {
+  const reading r = {.received = received, .name = path, .message = message};
   char *text;
   size_t length;
   *out = NULL;
-  if (!path) return ethd_config_parse("", 0, NULL, NULL, out, message);
   ethd_status status = ethd_text_read(path, ETHD_INI_BYTES_MAX, &text, &length, message);
   if (status) return status;
   char *folder = ethd__path_folder(path);
   if (folder)
-    status = ethd_config_parse(text, length, path, folder, out, message);
+    status = parse(r, text, length, path, folder, out);
   else
     status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
   free(folder);
   free(text);
   return status;
+}
+
+ethd_status ethd_config_load(const char *path, ethd_config **out, char message[ETHD_MESSAGE_MAX]) {
+  return path ? load(path, false, out, message) : ethd_config_parse("", 0, NULL, NULL, out, message);
+}
+
+ethd_status ethd_config_load_received(const char *path, ethd_config **out, char message[ETHD_MESSAGE_MAX]) {
+  return load(path, true, out, message);
 }
 
 void ethd_config_free(ethd_config *config) {

@@ -116,6 +116,9 @@ static ethd_status open_plugin(ethd_config *config, const char *path, const ethd
 }
 
 ethd_status ethd__config_plugin(ethd__config *whole, const ethd__key *key) {
+  if (whole->received)
+    return ethd__key_refuse(key, ETHD_E_LOAD, "%s is a program, which a folder brings along; --plugins lets it run",
+                            key->value);
   char *joined = ethd__path_join(whole->config.folder, key->value);
   char *path = joined ? realpath(joined, NULL) : NULL;
   ethd_status status;

@@ -51,7 +51,10 @@ ethd_csv_out *ethd_csv_create(const char *path, const char *header, char message
 void ethd_csv_number(ethd_csv_out *out, double value);
 void ethd_csv_integer(ethd_csv_out *out, int64_t value);
 void ethd_csv_word(ethd_csv_out *out, const char *word);
-/* A word as a cell: in quotes when it has to be, line ends as spaces. */
+/* Words for people that nothing of ours reads back: spreadsheets take a cell that begins with = + - @ for a formula,
+   so an apostrophe goes before it, unless it is a number. */
+void ethd_csv_text(ethd_csv_out *out, const char *text);
+/* A word as a cell: in quotes when it has to be, control characters as spaces. */
 void ethd__csv_put_word(FILE *file, const char *word);
 /* Ends the row, which must have as many cells as the header has names. */
 void ethd_csv_row(ethd_csv_out *out);

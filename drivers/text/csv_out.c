@@ -41,20 +41,40 @@ void ethd_csv_number(ethd_csv_out *out, double value) {
 
 void ethd_csv_integer(ethd_csv_out *out, int64_t value) { fprintf(next_cell(out), "%" PRId64, value); }
 
+static bool is_control(char c) { return (unsigned char)c < ' ' || c == 0x7f; }
+
+static bool needs_quotes(const char *word) {
+  for (; *word; word++)
+    if (strchr(",\"", *word) || is_control(*word)) return true;
+  return false;
+}
+
 void ethd__csv_put_word(FILE *file, const char *word) {
-  if (!word[strcspn(word, ",\"\r\n")]) {
+  if (!needs_quotes(word)) {
     fputs(word, file);
     return;
   }
   putc('"', file);
   for (; *word; word++) {
     if (*word == '"') putc('"', file);
-    putc(*word == '\n' || *word == '\r' ? ' ' : *word, file);
+    putc(is_control(*word) ? ' ' : *word, file);
   }
   putc('"', file);
 }
 
 void ethd_csv_word(ethd_csv_out *out, const char *word) { ethd__csv_put_word(next_cell(out), word); }
+
+void ethd_csv_text(ethd_csv_out *out, const char *text) {
+  char *plain;
+  double number;
+  if (!*text || !text[1] || ethd__number(text, strlen(text), &number) || !strchr("=+-@", *text) ||
+      asprintf(&plain, "'%s", text) < 0) {
+    ethd_csv_word(out, text);
+    return;
+  }
+  ethd_csv_word(out, plain);
+  free(plain);
+}
 
 void ethd_csv_row(ethd_csv_out *out) {
   out->ragged |= out->cell != out->columns;

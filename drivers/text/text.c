@@ -1,11 +1,13 @@
 #include "text/text.h"
 
 #include <ctype.h>
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -67,11 +69,64 @@ ethd_status ethd_text_read(const char *path, size_t most, char **text, size_t *l
 
 /* ---- writing ---- */
 
-static ethd_status in_place(const char *path, ethd_replace *out, char *message) {
-  out->file = fopen(path, "wbe");
+static bool same_file(const struct stat *a, const struct stat *b) {
+  return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
+
+/* Our own standard output under its name: /dev/stdout, which may be a file. -1: it isn't. */
+static int own_stream(const struct stat *info) {
+  struct stat stream;
+  for (int fd = STDOUT_FILENO; fd <= STDERR_FILENO; fd++)
+    if (fstat(fd, &stream) == 0 && same_file(&stream, info)) return fd;
+  return -1;
+}
+
+/* What isn't a file of its own is written through. */
+static ethd_status in_place(const char *path, int stream, ethd_replace *out, char *message) {
+  fflush(NULL);
+  int fd = stream >= 0 ? fcntl(stream, F_DUPFD_CLOEXEC, 3) : open(path, O_WRONLY | O_CLOEXEC);
+  out->file = fd >= 0 ? fdopen(fd, "wb") : NULL;
   if (!out->file) return refuse(path, message);
   out->path = strdup(path);
   return ETHD_OK;
+}
+
+/* ---- what a killed program left: PATH.PID-COUNT.new, locked as long as its writer lives ---- */
+
+static bool is_left(const char *name, const char *target) {
+  size_t n = strlen(target), digits;
+  if (strncmp(name, target, n) || name[n] != '.') return false;
+  name += n + 1;
+  digits = strspn(name, "0123456789");
+  if (!digits || name[digits] != '-') return false;
+  name += digits + 1;
+  digits = strspn(name, "0123456789");
+  return digits && !strcmp(name + digits, ".new");
+}
+
+static void remove_left(const char *path) {
+  char *folder = ethd__path_folder(path);
+  const char *slash = strrchr(path, '/'), *target = slash ? slash + 1 : path;
+  DIR *entries = folder ? opendir(folder) : NULL;
+  const struct dirent *entry;
+  while (entries && (entry = readdir(entries))) {
+    int fd = is_left(entry->d_name, target)
+                 ? openat(dirfd(entries), entry->d_name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)
+                 : -1;
+    if (fd < 0) continue;
+    if (flock(fd, LOCK_EX | LOCK_NB) == 0) unlinkat(dirfd(entries), entry->d_name, 0);
+    close(fd);
+  }
+  if (entries) closedir(entries);
+  free(folder);
+}
+
+/* Locked before another program took it for left. */
+static FILE *locked(int fd) {
+  struct stat info;
+  if (flock(fd, LOCK_EX | LOCK_NB) == 0 && fstat(fd, &info) == 0 && info.st_nlink > 0) return fdopen(fd, "wb");
+  close(fd);
+  return NULL;
 }
 
 /* A fresh file in the target's own folder, so that the rename stays within one file system. */
@@ -80,9 +135,10 @@ static FILE *beside(const char *path, mode_t mode, char **temporary) {
   for (int attempt = 0; attempt < 100; attempt++) {
     if (asprintf(temporary, "%s.%ld-%u.new", path, (long)getpid(), count++) < 0) break;
     int fd = open(*temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-    if (fd >= 0) return fdopen(fd, "wb");
+    FILE *file = fd >= 0 ? locked(fd) : NULL;
+    if (file) return file;
     free(*temporary);
-    if (errno != EEXIST) break;
+    if (fd < 0 && errno != EEXIST) break;
   }
   *temporary = NULL;
   return NULL;
@@ -92,12 +148,14 @@ ethd_status ethd_replace_begin(const char *path, ethd_replace *out, char message
   struct stat info;
   *out = (ethd_replace){0};
   bool exists = stat(path, &info) == 0;
+  int stream = exists ? own_stream(&info) : -1;
   if (exists && S_ISDIR(info.st_mode))
     return ethd__say(message, ETHD_E_FILE, "%s: is a folder, a file's name is needed", path);
-  if (exists && !S_ISREG(info.st_mode)) return in_place(path, out, message);
+  if (exists && (stream >= 0 || !S_ISREG(info.st_mode))) return in_place(path, stream, out, message);
   if (exists && access(path, W_OK) != 0) return refuse(path, message);
   out->path = exists ? realpath(path, NULL) : strdup(path);
   if (!out->path) return refuse(path, message);
+  remove_left(out->path);
   out->file = beside(out->path, exists ? info.st_mode & 0777 : 0666, &out->temporary);
   if (out->file) return ETHD_OK;
   ethd_status status = refuse(path, message);
@@ -112,9 +170,11 @@ static void release(ethd_replace *replace) {
   *replace = (ethd_replace){0};
 }
 
+/* The lock outlives the file's closing, which may fail, and the renaming. */
 ethd_status ethd_replace_commit(ethd_replace *replace, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = ETHD_OK;
   const char *path = replace->path ? replace->path : "output";
+  int lock = replace->temporary ? fcntl(fileno(replace->file), F_DUPFD_CLOEXEC, 3) : -1;
   errno = 0;
   bool failed = ferror(replace->file) != 0;
   failed |= fclose(replace->file) != 0;
@@ -124,6 +184,7 @@ ethd_status ethd_replace_commit(ethd_replace *replace, char message[ETHD_MESSAGE
         errno ? refuse(path, message) : ethd__say(message, ETHD_E_FILE, "%s: a write failed; is there room?", path);
     if (replace->temporary) unlink(replace->temporary);
   }
+  if (lock >= 0) close(lock);
   release(replace);
   return status;
 }

@@ -33,6 +33,11 @@ typedef struct ethd_config {
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_load(const char *path, ethd_config **out,
                                                       char message[ETHD_MESSAGE_MAX]);
 
+/* The same of a file that somebody else made, in a recording or a study's folder: nothing of theirs runs. A plugin is
+   refused, with a hint at the programs' option --plugins. */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_load_received(const char *path, ethd_config **out,
+                                                               char message[ETHD_MESSAGE_MAX]);
+
 /* The same from text; `name` stands for the file in messages, relative paths start at `folder`. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_parse(const char *text, size_t length, const char *name,
                                                        const char *folder, ethd_config **out,

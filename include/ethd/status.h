@@ -32,7 +32,8 @@ ETHD_BEGIN_DECLS
   X(E_FULL, -18, "no room is left")                                            \
   X(E_FILE, -19, "a file that cannot be read or written")                      \
   X(E_DEVICE, -20, "the device refused or failed")                             \
-  X(E_DIFFERS, -21, "a replay that differs from its recording")
+  X(E_DIFFERS, -21, "a replay that differs from its recording")                \
+  X(E_UNFINISHED, -22, "a recording that its program did not close")
 
 typedef enum ethd_status {
 #define ETHD_STATUS_VALUE(name, value, sentence) ETHD_##name = (value),

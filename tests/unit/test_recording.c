@@ -94,7 +94,7 @@ static void run(program *p, int ticks) {
 
 static void record(void) {
   program p = {.setup = config->setup};
-  ck_assert_msg(ethd_recording_create(recording_folder, config, &p.recording, message) == ETHD_OK, "%s", message);
+  ck_assert_msg(ethd_recording_create(recording_folder, config, true, &p.recording, message) == ETHD_OK, "%s", message);
   create(&p);
   run(&p, 100);
   event(&p, "start", "tap 1, \"again\"");
@@ -132,7 +132,7 @@ static void record(void) {
   post(&p);
   ethd_control_clear(p.control);
   run(&p, 60);
-  ck_assert_int_eq(ethd_recording_close(p.recording), ETHD_OK);
+  ck_assert_int_eq(ethd_recording_close(p.recording, message), ETHD_OK);
   ethd_control_destroy(p.control);
 }
 
@@ -141,7 +141,7 @@ static void record(void) {
 START_TEST(test_replays_to_the_bit) {
   char says[256];
   record();
-  ck_assert_msg(ethd_recording_verify(recording_folder, message) == ETHD_OK, "%s", message);
+  ck_assert_msg(ethd_recording_verify(recording_folder, true, message) == ETHD_OK, "%s", message);
   snprintf(says, sizeof says, "%s: 700 ticks, equal to the bit", recording_folder);
   ck_assert_str_eq(message, says);
 }
@@ -168,7 +168,7 @@ START_TEST(test_files) {
   ck_assert_str_eq(text, "row,kind,detail\n100,start,\"tap 1, \"\"again\"\"\"\n200,transition,smooth\n"
                          "250,set,contact.k_e 2000\n250,set,contact.b_e 30\n300,transition,offset\n"
                          "400,setup,offset\n400,set,limits.torque 0.5\n600,set,limits.speed 0.01\n"
-                         "620,fault,the ring is too fast\n640,set,limits.speed 5\n640,clear,\n");
+                         "620,fault,the ring is too fast\n640,set,limits.speed 5\n640,clear,\n700,end,closed\n");
   free(text);
 }
 END_TEST
@@ -199,12 +199,12 @@ START_TEST(test_says_what_differs) {
   record();
   for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
     flip(changes[i].row, changes[i].offset, 1);
-    ck_assert_int_eq(ethd_recording_verify(recording_folder, message), ETHD_E_DIFFERS);
+    ck_assert_int_eq(ethd_recording_verify(recording_folder, true, message), ETHD_E_DIFFERS);
     snprintf(says, sizeof says, "%s: %s", recording_folder, changes[i].says);
     ck_assert_msg(strncmp(message, says, strlen(says)) == 0, "%s", message);
     flip(changes[i].row, changes[i].offset, 1);
   }
-  ck_assert_int_eq(ethd_recording_verify(recording_folder, message), ETHD_OK);
+  ck_assert_int_eq(ethd_recording_verify(recording_folder, true, message), ETHD_OK);
 }
 END_TEST
 
@@ -225,7 +225,7 @@ START_TEST(test_events_matter) {
     ck_assert_ptr_nonnull(at);
     snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, changes[i][1], at + strlen(changes[i][0]));
     write_text(recording_folder, "events.csv", changed);
-    ck_assert_msg(ethd_recording_verify(recording_folder, message) < 0, "%s passed", changes[i][1]);
+    ck_assert_msg(ethd_recording_verify(recording_folder, true, message) < 0, "%s passed", changes[i][1]);
   }
   free(text);
 }
@@ -237,15 +237,15 @@ START_TEST(test_heat) {
   const double heat[2] = {0.93, 1.01};
   p.setup.limits.nominal_torque = 0.05;
   for (int told = 0; told < 2; told++) {
-    ck_assert_int_eq(ethd_recording_create(recording_folder, config, &p.recording, message), ETHD_OK);
+    ck_assert_int_eq(ethd_recording_create(recording_folder, config, true, &p.recording, message), ETHD_OK);
     event(&p, "set", "limits.nominal_torque 0.05");
     if (told) event(&p, "heat", "0.93000000000000005 1.01");
     event(&p, "start", "in the middle");
     create(&p);
     ethd_control_heated(p.control, heat);
     run(&p, 100);
-    ck_assert_int_eq(ethd_recording_close(p.recording), ETHD_OK);
-    ck_assert_int_eq(ethd_recording_verify(recording_folder, message), told ? ETHD_OK : ETHD_E_DIFFERS);
+    ck_assert_int_eq(ethd_recording_close(p.recording, message), ETHD_OK);
+    ck_assert_int_eq(ethd_recording_verify(recording_folder, true, message), told ? ETHD_OK : ETHD_E_DIFFERS);
   }
   ethd_control_destroy(p.control);
 }
@@ -269,7 +269,7 @@ START_TEST(test_bad_events) {
   record();
   for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {
     write_text(recording_folder, "events.csv", bads[i][0]);
-    ck_assert_int_lt(ethd_recording_verify(recording_folder, message), 0);
+    ck_assert_int_lt(ethd_recording_verify(recording_folder, true, message), 0);
     snprintf(says, sizeof says, "%s/%s", recording_folder, bads[i][1]);
     ck_assert_msg(strncmp(message, says, strlen(says)) == 0, "%s\nsays %s", bads[i][0], message);
   }
@@ -279,13 +279,13 @@ END_TEST
 START_TEST(test_missing_files) {
   static const char *const names[] = {"config.ini", "tick.npy", "events.csv", "scene.scene"};
   char from[128], to[128];
-  ck_assert_int_lt(ethd_recording_verify(recording_folder, message), 0);
+  ck_assert_int_lt(ethd_recording_verify(recording_folder, true, message), 0);
   record();
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
     snprintf(from, sizeof from, "%s/%s", recording_folder, names[i]);
     snprintf(to, sizeof to, "%s/hidden", folder);
     ck_assert_int_eq(rename(from, to), 0);
-    ck_assert_int_lt(ethd_recording_verify(recording_folder, message), 0);
+    ck_assert_int_lt(ethd_recording_verify(recording_folder, true, message), 0);
     ck_assert_msg(strstr(message, names[i]) && strstr(message, "No such file"), "%s", message);
     ck_assert_int_eq(rename(to, from), 0);
   }
@@ -295,10 +295,11 @@ END_TEST
 START_TEST(test_no_place) {
   ethd_recording *recording;
   char path[128];
-  snprintf(path, sizeof path, "%s/c.ini", folder);
-  ck_assert_int_eq(ethd_recording_create(path, config, &recording, message), ETHD_E_FILE);
+  snprintf(path, sizeof path, "%s/file", folder);
+  write_text(folder, "file", "no folder");
+  ck_assert_int_eq(ethd_recording_create(path, config, false, &recording, message), ETHD_E_FILE);
   ck_assert_ptr_null(recording);
-  ck_assert_int_eq(ethd_recording_create("/nowhere/rec", config, &recording, message), ETHD_E_FILE);
+  ck_assert_int_eq(ethd_recording_create("/nowhere/rec", config, false, &recording, message), ETHD_E_FILE);
   ck_assert_str_eq(message, "/nowhere/rec: No such file or directory");
 }
 END_TEST

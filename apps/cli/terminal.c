@@ -1,0 +1,56 @@
+#include "cli/terminal.h"
+
+#include <errno.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/cli.h"
+
+/* Names and words of files may hold sequences that a terminal obeys: of control characters it gets tabs and line ends.
+   In UTF-8 those from 0x80 to 0x9f come as two bytes. */
+static void make_plain(char *text, size_t length, char *last) {
+  for (size_t i = 0; i < length; i++) {
+    unsigned char c = (unsigned char)text[i];
+    bool control = (c < ' ' && c != '\n' && c != '\t') || c == 0x7f;
+    bool second = *last == '\xc2' && c >= 0x80 && c < 0xa0;
+    *last = text[i];
+    if (control) text[i] = '?';
+    if (second) text[i] = '\xbf';
+  }
+}
+
+typedef struct terminal {
+  int fd;
+  char last;
+} terminal;
+
+static ssize_t put_plain(void *cookie, const char *text, size_t length) {
+  terminal *t = cookie;
+  char plain[1024];
+  size_t n = length < sizeof plain ? length : sizeof plain, done = 0;
+  memcpy(plain, text, n);
+  make_plain(plain, n, &t->last);
+  while (done < n) {
+    ssize_t wrote = write(t->fd, plain + done, n - done);
+    if (wrote < 0 && errno == EINTR) continue;
+    if (wrote < 0) return 0;
+    done += (size_t)wrote;
+  }
+  return (ssize_t)n;
+}
+
+static FILE *plain_stream(terminal *t, FILE *stream, int mode) {
+  if (!isatty(t->fd)) return stream;
+  FILE *plain = fopencookie(t, "w", (cookie_io_functions_t){.write = put_plain});
+  if (!plain) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  setvbuf(plain, NULL, mode, BUFSIZ);
+  return plain;
+}
+
+void ethd__terminals_plain(void) {
+  static terminal out = {.fd = STDOUT_FILENO}, err = {.fd = STDERR_FILENO};
+  stdout = plain_stream(&out, stdout, _IOLBF);
+  stderr = plain_stream(&err, stderr, _IONBF);
+}

@@ -1,0 +1,56 @@
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "record/recording_parts.h"
+#include "settings/config_parts.h"
+#include "text/error_text.h"
+#include "text/text.h"
+
+/* The files of a recording and those that programs put beside it. */
+static const char *const own[] = {ETHD_RECORDING_TICK,
+                                  ETHD_RECORDING_CONFIG,
+                                  ETHD_RECORDING_SCENE,
+                                  ETHD_RECORDING_EVENTS,
+                                  "truth.npy",
+                                  "snapshot.npy",
+                                  "taps.csv",
+                                  "tap.csv",
+                                  NULL};
+
+bool ethd__recording_holds(const char *folder, const char *path) { return ethd__claim_holds(folder, own, path); }
+
+/* Whether the configuration was read from what would be written over. */
+static bool is_input(const char *folder, const ethd_config *config) {
+  const char *scene = ethd__config_whole(config)->scene_path;
+  bool held =
+      (config->path && ethd__recording_holds(folder, config->path)) || (scene && ethd__recording_holds(folder, scene));
+  for (uint32_t i = 0; !held && i < config->setting_count; i++) {
+    char *path = ethd__path_join(config->folder, config->settings[i].value);
+    held = path && ethd__recording_holds(folder, path);
+    free(path);
+  }
+  return held;
+}
+
+static ethd_status remove_earlier(const char *folder, char *message) {
+  char *ticks = ethd__path_join(folder, ETHD_RECORDING_TICK);
+  bool is_recording = ticks && access(ticks, F_OK) == 0;
+  free(ticks);
+  if (!is_recording)
+    return ethd__say(message, ETHD_E_ARGUMENT, "%s: holds files of these names, but no recording; nothing is replaced",
+                     folder);
+  return ethd__claim_empty(folder, own, message);
+}
+
+ethd_status ethd__recording_claim(const char *folder, const ethd_config *config, bool replace, ethd__claim *out,
+                                  char message[ETHD_MESSAGE_MAX]) {
+  char unsaid[ETHD_MESSAGE_MAX];
+  if (is_input(folder, config))
+    return ethd__say(message, ETHD_E_ARGUMENT, "%s: what is recorded comes from this folder; another one is needed",
+                     folder);
+  ethd_status status = ethd__claim_folder(folder, own, false, out, message);
+  if (!status || !replace) return status;
+  status = ethd__claim_folder(folder, own, true, out, unsaid);
+  if (status) return status;
+  return remove_earlier(folder, message);
+}
