@@ -1,4 +1,4 @@
-# libethd. Targets: all firmware demo check check-xenomai bench stress ci format format-check install uninstall clean.
+# libethd. Targets: all firmware demo check check-xenomai bench stress ci format format-check tidy install uninstall clean.
 # Variables: CC CXX CFLAGS CPPFLAGS LDFLAGS PREFIX LIBDIR DESTDIR BUILD, and
 #   SAN=address|thread|undefined|address,undefined   a sanitizer build, in a tree of its own
 #   RT=posix|mercury|cobalt   plain Linux, or a core of Xenomai 3 (XENO_CONFIG=its xeno-config), likewise
@@ -23,7 +23,7 @@ LOOP_SIDE := drivers/loop/cycle.c drivers/loop/histogram.c drivers/loop/watch.c 
 SHELL := /bin/sh
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: all firmware demo check check-xenomai bench bench-quick stress ci format format-check install install-files uninstall clean tests FORCE
+.PHONY: all firmware demo check check-xenomai bench bench-quick stress ci format format-check tidy install install-files uninstall clean tests FORCE
 .DEFAULT_GOAL := all
 
 comma := ,
@@ -316,6 +316,9 @@ format:
 	@BUILD='$(BUILD)' sh .ci/format
 format-check:
 	@BUILD='$(BUILD)' sh .ci/format check
+# What clang-tidy finds, by .clang-tidy's list.
+tidy:
+	@sh .ci/tidy
 
 # ---- install --------------------------------------------------------------------------------
 

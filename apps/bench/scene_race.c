@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-enum { BLOCK = 100, BLOCKS = ETHD__BENCH_POINTS / BLOCK, CALM = 400 };
+enum { BLOCK = 100, BLOCKS = ETHD__BENCH_POINTS / BLOCK, CALM = 400, STRIDE_MAX = BLOCKS / 3 };
 const size_t ethd__contest_sizes[SIZES] = {1, 10, 100, 1000, 10000, 100000};
 
 static const ethd_vec *points_of(const ethd__contest *t, ethd__ask ask) {
@@ -35,7 +35,7 @@ static void start_lap(ethd__contest *t, int i, ethd__ask ask, lap *l) {
   for (int k = 0; k < 50 && typical < 1e4; k++) typical = fmin(typical, ask_one(t, i, ask, 390 * k));
   int n = affordable(t, typical + 10);
   l->block = typical < 1e4 ? BLOCK : 1;
-  l->stride = (int)fmin(BLOCKS / 3, fmax(1, ceil((double)(l->block * BLOCKS) / n)));
+  l->stride = (int)fmin(STRIDE_MAX, fmax(1, ceil((double)(l->block * BLOCKS) / n)));
   for (int b = 0; b < BLOCKS; b++) l->best[b] = INFINITY;
 }
 

@@ -12,8 +12,6 @@
 #include "cli/cli.h"
 #include "text/error_text.h"
 
-extern char **environ;
-
 /* ---- what gnuplot is told ---- */
 
 /* gnuplot reads nothing within '..' but the doubled quote; a line end would end the string. */

@@ -131,7 +131,8 @@ ethd_status ethd__report_traces(ethd__report *r) {
   size_t length;
   ethd_status status = ETHD_OK;
   ethd__recordings recordings;
-  states drawn = {.names = open_memstream(&names, &length), .titles = open_memstream(&titles, &length)};
+  states drawn = {.names = open_memstream(&names, &length)};
+  drawn.titles = open_memstream(&titles, &length);
   ethd__html_heading(&r->page, "traces", "Traces of single taps");
   ethd__recordings_find(r->folder->path, &recordings);
   for (size_t i = 0; drawn.names && drawn.titles && !status && i < r->data.group_count; i++)

@@ -52,7 +52,8 @@ static ethd_status find_columns(ethd__trace_in *in, char message[ETHD_MESSAGE_MA
   if (find(in, Q, 2, in->q) < 2) return no_column(in, missing(in, Q, 2), message);
   if (find(in, DQ, 2, in->dq) == 1) return no_column(in, missing(in, DQ, 2), message);
   int finger = find(in, FINGER, 4, in->finger);
-  int ring = find(in, RAYS, ETHD_RAYS, in->rays) + find(in, T_RING, 1, &in->t_ring);
+  int ring = find(in, RAYS, ETHD_RAYS, in->rays);
+  ring += find(in, T_RING, 1, &in->t_ring);
   in->ring = finger == 0 && ring > 0;
   if (in->ring && ring < ETHD_RAYS + 1) return no_column(in, missing(in, T_RING, ETHD_RAYS + 1), message);
   if (!in->ring && finger < 4) return no_column(in, missing(in, FINGER, 4), message);

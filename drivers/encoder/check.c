@@ -35,6 +35,6 @@ ethd_status ethd__encoder_check(const ethd__encoder_def *d, double period, ethd_
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
     if (!(rows[i].value >= rows[i].min && rows[i].value <= rows[i].max))
       return refuse(error, rows[i].name, rows[i].value, rows[i].min, rows[i].max);
-  double most = (double)(d->ceiling / 2) / (counts_per_radian(d) * period);
+  double most = trunc((double)d->ceiling / 2) / (counts_per_radian(d) * period);
   return d->speed_max <= most ? ETHD_OK : refuse(error, "speed_max", d->speed_max, 1e-3, most);
 }

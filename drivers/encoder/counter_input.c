@@ -78,7 +78,10 @@ static int take_count(ethd__counter_input *in, int j) {
 ethd_status ethd__counter_sample(ethd__counter_input *in, int64_t now_ns) {
   int bad = 0;
   in->latest.time_ns = now_ns;
-  for (int j = 0; j < 2; j++) bad |= take_events(in, j) | take_count(in, j);
+  for (int j = 0; j < 2; j++) {
+    bad |= take_events(in, j); /* may bring the edge that take_count asks for */
+    bad |= take_count(in, j);
+  }
   if (!bad) return ETHD_OK;
   raise_by_one(&in->failures);
   return ETHD_E_DEVICE;

@@ -180,7 +180,10 @@ int64_t ethd__encoder_step(const ethd__encoder_def *def, ethd__encoder *e, const
   if (s->flags & ETHD__COUNT_INDEX) faults |= pass_mark(def, e, s->index);
   time_edges(def, e, s);
   double dt = 1e-9 * (double)e->step_ns;
-  if (dt > 0) faults |= check_still(def, e, dt, torque) | check_direction(def, e, dt, torque);
+  if (dt > 0) {
+    faults |= check_still(def, e, dt, torque);
+    faults |= check_direction(def, e, dt, torque);
+  }
   e->q = def->offset + angle_per_count(def) * (double)(e->position - e->home);
   return faults;
 }

@@ -164,7 +164,8 @@ ETHD__INLINE void accelerate(work *w, kind has, int k) {
   if (has.touch == ETHD__PRESSING) {
     relate(w, k + 1);
     measure(w, k + 1);
-    g += w->length * press(w, k);
+    two pressed = press(w, k); /* sets the forces that the next line reads */
+    g += w->length * pressed;
     f -= (two){w->force_x[k][0], w->force_y[k][0]};
   }
   w->link_a[k] = has.coupled ? couple(w, g, k) : g * w->inverse_inertia;
@@ -185,7 +186,7 @@ ETHD__INLINE double speed(const work *w, kind has, int k) {
    that ring and finger's way beside its path stay under. */
 ETHD__INLINE double expand(work *w, kind has) {
   ethd__series *s = w->out;
-  double tolerance = w->body->tolerance, h = s->step, reach = h, most, before, term;
+  double tolerance = w->body->tolerance, h = s->step, reach, most, before, term;
   accelerate(w, has, 0);
   accelerate(w, has, 1);
   accelerate(w, has, 2);

@@ -177,8 +177,9 @@ static ethd_status read_all(reader *r, const char *text, size_t length) {
   if (r->drawing.status || XML_GetErrorCode(r->xml) == XML_ERROR_NO_MEMORY)
     return say(r, ETHD_E_MEMORY, ethd_status_sentence(ETHD_E_MEMORY));
   if (good) return ETHD_OK;
-  return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%lu: no XML: %s", r->name,
-                   (unsigned long)XML_GetCurrentLineNumber(r->xml), XML_ErrorString(XML_GetErrorCode(r->xml)));
+  unsigned long line = XML_GetCurrentLineNumber(r->xml);
+  return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%lu: no XML: %s", r->name, line,
+                   XML_ErrorString(XML_GetErrorCode(r->xml)));
 }
 
 static ethd_status build(reader *r, ethd_scene **out) {

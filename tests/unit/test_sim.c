@@ -100,7 +100,8 @@ START_TEST(test_safe) {
   ethd_sim_tap tap = sim_tap();
   ethd_sim *sim = sim_open(&def, &tap);
   ethd_command safe = {{1, 1}, 1, 0}, no_number = {{NAN, -NAN}, 0, 0};
-  double q[2] = {sim_sense(sim).q[0], sim_sense(sim).q[1]};
+  ethd_sense sense = sim_sense(sim);
+  const double *q = sense.q;
   for (int k = 0; k < 20; k++) {
     ethd_sim_write(sim, k & 1 ? &safe : &no_number);
     ck_assert(sim_sense(sim).q[0] == q[0] && sim_sense(sim).q[1] == q[1]);
@@ -116,7 +117,8 @@ static void follow(ethd_sim *sim) {
   ethd_truth t = sim_truth(sim);
   double ex = t.finger[0] - t.ring[0], ey = t.finger[1] - t.ring[1];
   double fx = 640 * ex + 30 * (t.finger_v[0] - t.ring_v[0]), fy = 640 * ey + 30 * (t.finger_v[1] - t.ring_v[1]);
-  double q[2] = {sim_sense(sim).q[0], sim_sense(sim).q[1]};
+  ethd_sense sense = sim_sense(sim);
+  const double *q = sense.q;
   sim_push(sim, 0.25 * (cos(q[0]) * fy - sin(q[0]) * fx), 0.25 * (cos(q[1]) * fy - sin(q[1]) * fx));
 }
 
