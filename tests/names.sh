@@ -24,7 +24,7 @@ def definitions(text):
     for m in re.finditer(r"^[ \t]*#[ \t]*define[ \t]+(\w+)(.*)$", text, re.M):
         if not re.search(rf"^[ \t]*#[ \t]*undef[ \t]+{m.group(1)}\b", text, re.M):
             macros[m.group(1)] = macros.get(m.group(1), "") + m.group(2)
-    yield from (("#define " + name, body) for name, body in macros.items())
+    yield from (("constant " + name, body.strip()) for name, body in macros.items())
     for m in HEAD.finditer(text):
         end = body_end(text, m.end() - 1)
         body = m.group(2) + text[m.end() - 1:end + 1]
@@ -33,7 +33,7 @@ def definitions(text):
                 yield name, body
         if m.group(2) == "enum":
             for name, value in re.findall(r"[{,]\s*([A-Z]\w+)\s*(=[^,}]*)?(?=[,}])", body):
-                yield "enumerator " + name, value or body # without a value, where it stands says which it has
+                yield "constant " + name, value.lstrip("= ") or body # without a value, where it stands says which it has
     for m in PLAIN.finditer(text):
         whole = m.group(1)
         if name := re.search(r"\(\s*\*?(\w+)\s*\)\s*\(|(\w+)\s*(?:\[[^\]]*\]|ETHD_\w+|__attribute__.*)*$", whole):

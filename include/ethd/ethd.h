@@ -2,7 +2,13 @@
 #ifndef ETHD_ETHD_H
 #define ETHD_ETHD_H
 
+/* The version of these headers, as text, in parts, and as one number that grows from version to version, for
+   #if ETHD_VERSION_NUMBER >= 200 (0.2.0). What may change between versions stands in include/README.md. */
 #define ETHD_VERSION "0.1.0"
+#define ETHD_VERSION_MAJOR 0
+#define ETHD_VERSION_MINOR 1
+#define ETHD_VERSION_PATCH 0
+#define ETHD_VERSION_NUMBER (10000 * ETHD_VERSION_MAJOR + 100 * ETHD_VERSION_MINOR + ETHD_VERSION_PATCH)
 
 #include "ethd/arm.h"
 #include "ethd/attributes.h"

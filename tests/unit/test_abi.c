@@ -2,9 +2,11 @@
    the tables of every law that the library brings. */
 #include <float.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "ethd/control.h"
+#include "ethd/ethd.h"
 #include "ethd/plugin.h"
 #include "unit/rig.h"
 
@@ -223,6 +225,23 @@ START_TEST(test_state_blocks) {
 }
 END_TEST
 
+/* The version's text and its numbers say the same. */
+START_TEST(test_version) {
+  int major, minor, patch, end = 0;
+  ck_assert_int_eq(sscanf(ETHD_VERSION, "%d.%d.%d%n", &major, &minor, &patch, &end), 3);
+  ck_assert_uint_eq(end, strlen(ETHD_VERSION));
+  ck_assert_int_eq(major, ETHD_VERSION_MAJOR);
+  ck_assert_int_eq(minor, ETHD_VERSION_MINOR);
+  ck_assert_int_eq(patch, ETHD_VERSION_PATCH);
+  ck_assert_int_eq(10000 * major + 100 * minor + patch, ETHD_VERSION_NUMBER);
+  ck_assert(minor < 100 && patch < 100); /* else the number doesn't grow with the version */
+}
+END_TEST
+
+#if ETHD_VERSION_NUMBER < 100
+#error "the preprocessor compares versions"
+#endif
+
 int main(void) {
   Suite *suite = suite_create("abi");
   TCase *t = tcase_create("abi");
@@ -231,6 +250,7 @@ int main(void) {
   tcase_add_test(t, test_sizes_of_laws);
   tcase_add_test(t, test_law_check);
   tcase_add_test(t, test_state_blocks);
+  tcase_add_test(t, test_version);
   suite_add_tcase(suite, t);
   return rig_run(suite);
 }
