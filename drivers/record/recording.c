@@ -87,7 +87,10 @@ static ethd_status write_config(const char *folder, const ethd_config *config, c
 }
 
 /* The next row of events.csv finds its place on a disk that is full by then, where the file system can. */
-static void keep_room(FILE *events) { (void)!fallocate(fileno(events), FALLOC_FL_KEEP_SIZE, ftello(events), ROOM); }
+static void keep_room(FILE *events) {
+  off_t end = ftello(events);
+  (void)!fallocate(fileno(events), FALLOC_FL_KEEP_SIZE, end, ROOM);
+}
 
 static ethd_status open_files(const char *folder, ethd_recording *recording, char *message) {
   char *ticks = ethd__path_join(folder, ETHD_RECORDING_TICK);

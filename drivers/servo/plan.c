@@ -36,8 +36,10 @@ static uint32_t arrange(const ethd__servo_map *map, int32_t direction, uint32_t 
     if (i < 0) return n;
     const ethd__servo_register *r = &map->registers[i];
     after = ((int64_t)r->space << 32 | r->address) << 8 | i;
-    if (n == first || !joins(map, &blocks[n - 1], r, gap, most))
-      blocks[n++] = (ethd__servo_block){.space = r->space, .address = r->address, .every = every, .phase = n % every};
+    if (n == first || !joins(map, &blocks[n - 1], r, gap, most)) {
+      blocks[n] = (ethd__servo_block){.space = r->space, .address = r->address, .every = every, .phase = n % every};
+      n++;
+    }
     ethd__servo_block *b = &blocks[n - 1];
     out->block[i] = (int32_t)n - 1;
     out->offset[i] = r->address - b->address;
