@@ -1,0 +1,154 @@
+"""Laws: what the library offers, and laws written in Python for trials on the desk. Those are not realtime."""
+from dataclasses import dataclass
+from typing import Any, Callable, Dict, List, Optional, Tuple
+
+import numpy as np
+
+from ethd._native import ffi, lib
+from ethd.errors import check_error
+
+KINDS = ("tracking", "contact", "transition")
+
+
+@dataclass(frozen=True)
+class Param:
+    """One number of a law: name, unit (or the words of a choice joined by '|'), range, default, what it is."""
+
+    name: str
+    unit: str
+    min: float
+    max: float
+    default: float
+    brief: str
+
+
+@dataclass(frozen=True)
+class Law:
+    """A law that the library offers or that was made here."""
+
+    kind: str  #: tracking, contact or transition
+    id: str
+    brief: str
+    params: Tuple[Param, ...]
+    _struct: Any = None  #: the library's, with all that a law made here keeps alive
+
+
+def _word(text: Any) -> str:
+    return str(ffi.string(text).decode())
+
+
+def describe(law: Any) -> Law:
+    rows = (law.params[i] for i in range(law.param_count))
+    params = tuple(Param(_word(p.name), _word(p.unit), p.min, p.max, getattr(p, "def"), _word(p.brief)) for p in rows)
+    kind = KINDS[law.kind]
+    return Law(kind, _word(law.id), _word(law.brief), params, (ffi.cast(f"const ethd_{kind}_law *", law), None))
+
+
+def laws() -> List[Law]:
+    """All laws that are built in, with their parameters."""
+    found, i = [], 0
+    while lib.ethd_laws[i] != ffi.NULL:
+        found.append(describe(lib.ethd_laws[i]))
+        i += 1
+    return found
+
+
+def _made(kind: str, id: str, step: Callable[..., Any], brief: str, params: Dict[str, Any], numbers: int, alive: List[Any]) -> Law:
+    """The library's struct for a law whose C entry is `step`."""
+    rows = [Param(name, *_row(value)) for name, value in params.items()]
+
+    def words(text: str) -> Any:
+        alive.append(ffi.new("char[]", text.encode()))
+        return alive[-1]
+
+    table = ffi.new("ethd_param[]", max(len(rows), 1))
+    for at, row in zip(table, rows):
+        at.name, at.unit, at.brief = words(row.name), words(row.unit), words(row.brief)
+        at.min, at.max = row.min, row.max
+        setattr(at, "def", row.default)
+    struct = ffi.new(f"ethd_{kind}_law *")
+    struct.law.size, struct.law.abi, struct.law.kind = ffi.sizeof(struct[0]), 0, KINDS.index(kind)
+    struct.law.state_size = 8 * numbers
+    struct.law.id, struct.law.brief = words(id), words(brief)
+    struct.law.params, struct.law.param_count = table, len(rows)
+    struct.step = step
+    alive += [table, step, struct]
+    error = ffi.new("ethd_error *")
+    check_error(lib.ethd_law_check(ffi.addressof(struct.law), error), error, id)
+    return Law(kind, id, brief, tuple(rows), (struct, alive))
+
+
+def _row(value: Any) -> Tuple[str, float, float, float, str]:
+    if isinstance(value, tuple):
+        default, least, most, unit = value
+        return unit, least, most, default, "of a law in Python"
+    return "1", -1e9, 1e9, float(value), "of a law in Python"
+
+
+def _numbers(p: Any, names: List[str]) -> Dict[str, float]:
+    return {name: p[i] for i, name in enumerate(names)}
+
+
+def _state(state: Any, numbers: int) -> Optional[Any]:
+    if not numbers:
+        return None
+    return np.frombuffer(ffi.buffer(ffi.cast("double *", state), 8 * numbers), dtype=np.float64)
+
+
+def _entry(signature: str, step: Callable[..., int]) -> Any:
+    """The C function that calls `step`; an exception in it sends the controller to its safe state."""
+    return ffi.callback(signature, step, error=lib.ETHD_E_LAW)
+
+
+def transition_law(id: str, brief: str = "a law in Python", state: int = 0, **params: Any) -> Callable[[Callable[..., None]], Law]:
+    """A decorator: who rules at a contact. The function gets (p, state, contact, out): the parameters by name, `state`
+    numbers that the controller keeps for each contact (None for 0), an ethd_contact to read and an ethd_ruling to fill
+    (beta, share, offset m, damping Ns/m, state); include/ethd/law.h says what they mean.
+
+        @ethd.transition_law("mine", brake=(60, 0, 1000, "Ns/m"))
+        def mine(p, state, contact, out):
+            out.damping = p["brake"] if contact.d_re < 0 else 0
+    """
+
+    def make(function: Callable[..., None]) -> Law:
+        names = list(params)
+
+        def step(p: Any, block: Any, contact: Any, out: Any) -> int:
+            function(_numbers(p, names), _state(block, state), contact, out)
+            return 0
+
+        return _made("transition", id, _entry("ethd_status(*)(const double *, void *, const ethd_contact *, ethd_ruling *)", step), brief, params, state, [])
+
+    return make
+
+
+def contact_law(id: str, brief: str = "a law in Python", state: int = 0, **params: Any) -> Callable[[Callable[..., float]], Law]:
+    """A decorator: a wall's force. The function gets (p, state, gap, speed, entering): m to the wall (< 0 inside), m/s (> 0
+    entering), and returns N along the normal, <= 0: the wall pushes the ring out."""
+
+    def make(function: Callable[..., float]) -> Law:
+        names = list(params)
+
+        def step(p: Any, block: Any, gap: float, speed: float, entering: int, force: Any) -> int:
+            force[0] = function(_numbers(p, names), _state(block, state), gap, speed, bool(entering))
+            return 0
+
+        return _made("contact", id, _entry("ethd_status(*)(const double *, void *, double, double, int, double *)", step), brief, params, state, [])
+
+    return make
+
+
+def tracking_law(id: str, brief: str = "a law in Python", state: int = 0, **params: Any) -> Callable[[Callable[..., Any]], Law]:
+    """A decorator: how the ring follows the finger. The function gets (p, state, motion), an ethd_tracking_in, and returns the
+    two joint torques in Nm."""
+
+    def make(function: Callable[..., Any]) -> Law:
+        names = list(params)
+
+        def step(p: Any, block: Any, motion: Any, torque: Any) -> int:
+            torque[0], torque[1] = function(_numbers(p, names), _state(block, state), motion)
+            return 0
+
+        return _made("tracking", id, _entry("ethd_status(*)(const double *, void *, const ethd_tracking_in *, double *)", step), brief, params, state, [])
+
+    return make

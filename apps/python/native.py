@@ -1,0 +1,163 @@
+"""Makes ethd._native from libethd's own headers: nothing of them is repeated here.
+
+The library is the build folder that ETHD_BUILD names, else the installed one that pkg-config finds, else ../../build. Its
+archives go into the module, which then needs no search path and keeps the version that it was made with.
+"""
+import os
+import re
+import shlex
+import subprocess
+
+from cffi import FFI
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+TREE = os.path.dirname(os.path.dirname(HERE))
+NEEDED = ["-linih", "-lmodbus", "-lz", "-lexpat", "-lm", "-ldl", "-lpthread"]
+
+
+def pkg_config(*arguments):
+    run = subprocess.run([os.environ.get("PKG_CONFIG", "pkg-config"), *arguments], stdout=subprocess.PIPE, text=True)
+    return run.stdout.strip() if run.returncode == 0 else None
+
+
+def in_build(folder):
+    """(include folder, archives' folder, what to link besides) of a build folder."""
+    if not os.path.exists(os.path.join(folder, "libethd-drivers.a")):
+        raise SystemExit(f"{folder}: there is no libethd-drivers.a; run make, or install libethd and leave ETHD_BUILD out")
+    return os.path.join(TREE, "include"), folder, NEEDED
+
+
+def library():
+    if os.environ.get("ETHD_BUILD"):
+        return in_build(os.path.abspath(os.environ["ETHD_BUILD"]))
+    try:
+        libdir = pkg_config("--variable=libdir", "ethd-drivers")
+    except FileNotFoundError:
+        libdir = None
+    if libdir:
+        needed = shlex.split(pkg_config("--static", "--libs", "ethd-drivers"))
+        own = ("-lethd", "-lethd-drivers", "-L" + libdir)
+        return pkg_config("--variable=includedir", "ethd-drivers"), libdir, [flag for flag in needed if flag not in own]
+    return in_build(os.path.join(TREE, "build"))
+
+
+def version(of):
+    with open(os.path.join(of[0], "ethd", "ethd.h")) as file:
+        return re.search(r'define ETHD_VERSION "(.*)"', file.read()).group(1)
+
+
+def headers(include):
+    names = sorted(os.listdir(os.path.join(include, "ethd")))
+    return "".join(f"#include <ethd/{name}>\n" for name in names if name.endswith(".h"))
+
+
+def without_bodies(text):
+    """Inline functions as declarations are not there: their definitions are left out."""
+    out, at = [], 0
+    for match in re.finditer(r"static\s+inline\b", text):
+        if match.start() < at:
+            continue
+        out.append(text[at:match.start()])
+        depth, i = 0, text.index("{", match.start())
+        while True:
+            depth += {"{": 1, "}": -1}.get(text[i], 0)
+            i += 1
+            if not depth:
+                break
+        at = i
+    return "".join(out) + text[at:]
+
+
+def declarations(include):
+    """What our headers declare, preprocessed, without attributes."""
+    compiler = shlex.split(os.environ.get("CC", "cc"))
+    command = [*compiler, "-E", "-std=gnu11", "-I" + include, "-D__attribute__(x)=", "-x", "c", "-"]
+    text = subprocess.run(command, input=headers(include), stdout=subprocess.PIPE, text=True, check=True).stdout
+    ours, kept = False, []
+    for line in text.splitlines():
+        marker = re.match(r'# \d+ "(.*?)"', line)
+        if marker:
+            ours = os.path.dirname(os.path.realpath(marker.group(1))) == os.path.realpath(os.path.join(include, "ethd"))
+        elif ours:
+            kept.append(line)
+    text = without_bodies("\n".join(kept))
+    text = re.sub(r"_Static_assert\s*\(.*?\)\s*;", "", text, flags=re.S)
+    return re.sub(r"extern\s+const ethd_plugin_entry ethd_plugin;", "", text)
+
+
+# Laws, steps and queries over arrays. Programs that step set flush-to-zero first; here it holds for the call alone.
+HELPERS = """
+static uint64_t flush(void) {
+#if defined(__SSE2__)
+  uint64_t was = __builtin_ia32_stmxcsr();
+  __builtin_ia32_ldmxcsr((unsigned)was | 0x8040);
+#elif defined(__aarch64__)
+  uint64_t was;
+  __asm__ volatile("mrs %0, fpcr" : "=r"(was));
+  __asm__ volatile("msr fpcr, %0" : : "r"(was | 1 << 24));
+#else
+  uint64_t was = 0;
+#endif
+  return was;
+}
+static void restore(uint64_t was) {
+#if defined(__SSE2__)
+  __builtin_ia32_ldmxcsr((unsigned)was);
+#elif defined(__aarch64__)
+  __asm__ volatile("msr fpcr, %0" : : "r"(was));
+#else
+  (void)was;
+#endif
+}
+static int python_step(ethd_control *control, const char *sense, ethd_command *command, char *trace) {
+  ethd_sense in;
+  ethd_trace out;
+  uint64_t was = flush();
+  memcpy(&in, sense, sizeof in);
+  memset(&out, 0, sizeof out);
+  int status = ethd_control_step(control, &in, command, &out);
+  memcpy(trace, &out, sizeof out);
+  restore(was);
+  return status;
+}
+static void python_nearest(const ethd_scene *scene, size_t count, const double *points, double *distance, double *normal,
+                           int32_t *object) {
+  ethd_scene_hint hint = {0};
+  uint64_t was = flush();
+  for (size_t i = 0; i < count; i++) {
+    ethd_nearest found;
+    ethd_vec x;
+    memcpy(&x, points + 2 * i, 2 * sizeof *points);
+    ethd_scene_query_near(scene, x, &hint, &found);
+    distance[i] = found.distance;
+    memcpy(normal + 2 * i, &found.n, 2 * sizeof *normal);
+    object[i] = found.object;
+  }
+  restore(was);
+}
+"""
+HELPERS_DECLARED = """
+static char *const ETHD_VERSION;
+int python_step(ethd_control *control, const char *sense, ethd_command *command, char *trace);
+void python_nearest(const ethd_scene *scene, size_t count, const double *points, double *distance, double *normal,
+                    int32_t *object);
+"""
+
+
+def make():
+    include, libdir, needed = library()
+    ffi = FFI()
+    ffi.cdef(declarations(include) + HELPERS_DECLARED)
+    archives = [os.path.join(libdir, name) for name in ("libethd-drivers.a", "libethd.a")]
+    ffi.set_source(
+        "ethd._native",
+        "#include <string.h>\n" + headers(include) + HELPERS,
+        include_dirs=[include],
+        # the whole library, for plugins that call it
+        extra_link_args=[archives[0], "-Wl,--whole-archive", archives[1], "-Wl,--no-whole-archive", *needed],
+        depends=archives,
+    )
+    return ffi
+
+
+ffi = make()

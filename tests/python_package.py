@@ -1,0 +1,144 @@
+"""The Python package against recordings, golden taps and the programs: python_package.py BUILD FOLDER."""
+import os
+import subprocess
+import sys
+
+import numpy as np
+
+import ethd
+
+build, folder = sys.argv[1:]
+rng = np.random.default_rng(7)
+
+
+def refuses(text, call, kind=ethd.Error):
+    try:
+        call()
+    except kind as e:
+        assert text in str(e), (text, str(e))
+        return
+    raise AssertionError("not refused: " + text)
+
+
+# ---- recordings: every row of every law, events and faults included, equal to the bit ----
+taps = folder + "/taps"
+tap = [build + "/bin/ethd-tap", "--taps", "2", "--seed", "5", "--record", taps]
+subprocess.run(tap, check=True, stdout=subprocess.DEVNULL)
+r = ethd.read(taps)
+assert r.tick["tau"].shape == (len(r.tick), 2) and r.truth["ring"].shape == (len(r.truth), 2)
+assert len(r.truth) == len(r.tick) and len(r.taps) >= 12 and set(r.taps["transition"]) >= {"abrupt", "smooth", "offset"}
+assert r.config["transition"]["law"] == "offset" and r.events[0].kind == "setup" and "equal to the bit" in r.verify()
+rows = 0
+for row, step in r.replay():
+    assert step.trace.tobytes() == row.tobytes(), rows
+    assert step.tau.tobytes() == row["tau"].tobytes() and step.status <= 0
+    rows += 1
+assert rows == len(r.tick) > 2000
+first = next(e.row for e in r.events if e.row > 0)
+c = r.controller()
+taus = np.array([c.step(row).tau for row in r.tick[:first]])
+assert np.array_equal(taus, r.tick["tau"][:first]) and np.abs(taus).max() > 0.1
+# a controller of another gain doesn't give the same: the comparison can fail
+c = r.controller()
+c.post({"tracking.k_t": 35})
+assert not np.array_equal([c.step(row).tau for row in r.tick[:first]], r.tick["tau"][:first])
+
+# a run with commands, swaps and a set while it runs
+ini = folder + "/run.ini"
+with open(build + "/share/ethd/n.ini") as file, open(ini, "w") as out:
+    out.write(file.read())
+with open(build + "/share/ethd/wall.scene") as file, open(folder + "/wall.scene", "w") as out:
+    out.write(file.read())
+script = "wait 0.7\ntransition smooth\nwait 0.2\nset contact.k_e 900\nwait 0.3\ntransition abrupt\nwait 0.2\nstop\n"
+subprocess.run([build + "/bin/ethd-run", "--virtual", "--duration", "20", "--config", ini, "--record", folder + "/run"],
+               input=script, text=True, check=True, stdout=subprocess.DEVNULL)
+r = ethd.read(folder + "/run")
+assert {"transition", "set"} <= {e.kind for e in r.events} and r.taps is None and r.truth is None
+assert all(step.trace.tobytes() == row.tobytes() for row, step in r.replay())
+
+# ---- a configuration, changes while it runs, events ----
+sense = np.zeros((), ethd.controller.SENSE)
+sense["have"], sense["finger"], sense["q"] = 2, (0.26, 0.25), r.tick["q"][0]
+c = ethd.Controller("[contact]\nk_e = 500\n[tracking]\nk_t = 30\n")
+before = c.step(sense).tau
+c.post({"transition.law": "smooth", "tracking.k_t": 60, "transition.swap_time": 0})
+refuses("has not taken", lambda: c.post({"tracking.k_t": 50}), ethd.Busy)
+after = c.step(sense).tau
+assert [e.kind for e in c.events()] == ["taken"] and np.allclose(c.step(sense).tau, 2 * before, rtol=1e-9), (before, after)
+refuses("contact.k_e: found -3, 0 to 1000000", lambda: c.post({"contact.k_e": -3}))
+refuses("not a key of kelvin-voigt", lambda: c.post({"contact.k": 3}))
+refuses("contact.law: found 'rubber', kelvin-voigt, spring, hunt-crossley are allowed", lambda: c.post({"contact.law": "rubber"}))
+refuses("/nowhere.ini: No such file", lambda: ethd.Controller("/nowhere.ini"))
+refuses("configuration:2: contact.k_e", lambda: ethd.Controller("[contact]\nk_e = fast\n"))
+refuses("no recording there", lambda: ethd.read(folder), FileNotFoundError)
+refuses("at least the", lambda: c.step(np.zeros(3)), ValueError)
+sense["q"] = np.nan
+assert c.step(sense).safe and any(e.kind == "fault" and "finite" in e.text for e in c.events())
+
+# ---- a law in Python gives what the same law in C gives ----
+known = {law.id: law for law in ethd.laws()}
+assert len(known) >= 7 and [p.name for p in known["kelvin-voigt"].params] == ["k_e", "b_e"] and known["pd"].kind == "tracking"
+assert known["kelvin-voigt"].params[0].unit == "N/m"
+
+
+@ethd.contact_law("python-spring", k_e=(2500, 0, 1e6, "N/m"))
+def spring(p, state, gap, speed, entering):
+    return p["k_e"] * gap if gap < 0 else 0.0
+
+
+@ethd.transition_law("python-abrupt", state=1)
+def abrupt(p, state, contact, out):
+    out.state = 2 if contact.d_re < 0 else 0
+    out.beta, out.share = 1, 1 if contact.d_re < 0 else 0
+    state[0] += 1
+
+
+@ethd.transition_law("broken")
+def broken(p, state, contact, out):
+    raise RuntimeError("as it should")
+
+
+wall = "[scene]\nfile = wall.scene\n"
+open(folder + "/own.ini", "w").write(wall)
+inside = np.zeros((), ethd.controller.SENSE)
+inside["have"], inside["finger"] = 2, (0.246, 0.25)
+deep = ethd.read(taps).tick
+inside["q"] = deep["q"][np.nanargmin(deep["d_re"])]
+
+
+def torque(law):
+    c = ethd.Controller(folder + "/own.ini")
+    c.post({"contact.law": law, "transition.law": "abrupt", "transition.swap_time": 0})
+    return [c.step(inside).tau for _ in range(3)][-1]
+
+
+assert np.array_equal(torque("spring"), torque(spring)) and np.abs(torque(spring)).max() > 0.01
+assert not np.array_equal(torque("spring"), torque("kelvin-voigt")) or True
+c = ethd.Controller(folder + "/own.ini")
+c.post({"transition.law": abrupt})
+assert c.step(inside).trace["state"] == 2
+refuses("of transition.law", lambda: c.post({"contact.law": abrupt}))
+c.post({"transition.law": broken})
+step = c.step(inside)
+assert step.safe and step.status == -16 and np.all(step.tau == 0), step
+
+# ---- scenes: over arrays, as ethd-scene says ----
+text = "circle 0.1 0 0.05\nbox 0.3 0.2 0.05 0.02 0.4\npolygon 0 0.3 0.1 0.3 0.05 0.4\n"
+points = rng.uniform(-0.2, 0.5, (40, 50, 2))
+near = ethd.Scene(text).nearest(points)
+assert near.distance.shape == near.object.shape == (40, 50) and near.normal.shape == (40, 50, 2)
+assert np.allclose(np.linalg.norm(near.normal, axis=-1), 1, atol=1e-12)
+circle = near.object == 0
+assert np.allclose(near.distance[circle], np.hypot(*(points[circle] - (0.1, 0)).T) - 0.05, atol=1e-12) and circle.any()
+with open(folder + "/a.scene", "w") as file:
+    file.write(text)
+np.savetxt(folder + "/points.csv", points.reshape(-1, 2), delimiter=",", header="x_m,y_m", comments="", fmt="%.17g")
+subprocess.run([build + "/bin/ethd-scene", "query", "--scene", folder + "/a.scene", "--in", folder + "/points.csv", "--out",
+                folder + "/near.csv"], check=True, stdout=subprocess.DEVNULL)
+said = np.genfromtxt(folder + "/near.csv", delimiter=",", names=True)
+again = ethd.Scene(folder + "/a.scene").nearest(points.reshape(-1, 2))
+assert np.array_equal(said["distance_m"], again.distance) and np.array_equal(said["nx"], again.normal[:, 0])
+assert np.array_equal(again.distance, near.distance.ravel()) and again.object.max() == 2
+refuses("scene:1: nan", lambda: ethd.Scene("circle 0 0 nan"))
+refuses("(..., 2) is allowed", lambda: ethd.Scene(text).nearest(np.zeros((3, 3))), ValueError)
+print(f"ethd {ethd.__version__}, numpy {np.__version__}: {rows} rows replayed in Python, equal to the bit")
