@@ -1,4 +1,4 @@
-# libethd. Targets: all firmware demo check check-xenomai bench stress ci format format-check tidy install uninstall clean.
+# libethd. Targets: all man firmware demo check check-xenomai bench stress ci format format-check tidy install uninstall clean.
 # Variables: CC CXX CFLAGS CPPFLAGS LDFLAGS PREFIX LIBDIR DESTDIR BUILD, and
 #   SAN=address|thread|undefined|address,undefined   a sanitizer build, in a tree of its own
 #   RT=posix|mercury|cobalt   plain Linux, or a core of Xenomai 3 (XENO_CONFIG=its xeno-config), likewise
@@ -23,7 +23,7 @@ LOOP_SIDE := drivers/loop/cycle.c drivers/loop/histogram.c drivers/loop/watch.c 
 SHELL := /bin/sh
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: all firmware demo check check-xenomai bench bench-quick stress ci format format-check tidy install install-files uninstall clean tests FORCE
+.PHONY: all man firmware demo check check-xenomai bench bench-quick stress ci format format-check tidy install install-files uninstall clean tests FORCE
 .DEFAULT_GOAL := all
 
 comma := ,
@@ -136,7 +136,7 @@ LIBRARIES := $(foreach l,ethd ethd-drivers,$(B)/lib$(l).a $(B)/lib$(l).so.0 $(B)
 DRIVERS_LIBS := -linih -lmodbus -lz -lexpat
 
 all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
-tests: all $(addprefix $(B)/tests/,$(call wanted,$(notdir $(UNIT)))) $(PLUGINS) $(TOOLS_C:%.c=$(B)/%) $(RING_PARTS)
+tests: all $(if $(SAN),,man) $(addprefix $(B)/tests/,$(call wanted,$(notdir $(UNIT)))) $(PLUGINS) $(TOOLS_C:%.c=$(B)/%) $(RING_PARTS)
 
 # ---- build ----------------------------------------------------------------------------------
 
@@ -326,7 +326,14 @@ VERSION = $(shell sed -n 's/.*define ETHD_VERSION "\(.*\)".*/\1/p' include/ethd/
 run_install = PREFIX='$(PREFIX)' LIBDIR='$(LIBDIR)' DESTDIR='$(DESTDIR)' B='$(B)' VERSION='$(VERSION)' \
   PROGRAMS='$(notdir $(PROGRAMS))' SHARE='$(SHARE:$(B)/share/ethd/%=%)' sh .packaging/install
 
-install: all
+# Manual pages; without help2man (Debian: help2man) none are made, and that is said.
+man: $(B)/man/libethd.3
+$(B)/man/libethd.3: $(PROGRAMS) $(wildcard .packaging/*) $(HEADERS)
+	$(call say,MAN,$(@D))
+	@if command -v help2man >/dev/null; then B='$(B)' VERSION='$(VERSION)' PROGRAMS='$(notdir $(PROGRAMS))' sh .packaging/man; \
+	  else echo 'no help2man (Debian: help2man): no manual pages'; fi
+
+install: all man
 	@$(MAKE) --no-print-directory install-files
 install-files:
 	@$(run_install) files
