@@ -1,4 +1,4 @@
-# libethd. Targets: all man deb firmware demo check check-xenomai bench stress ci format format-check tidy install uninstall clean.
+# libethd. Targets: all man doc deb firmware demo check check-xenomai bench stress ci format format-check tidy install uninstall clean.
 # Variables: CC CXX CFLAGS CPPFLAGS LDFLAGS PREFIX LIBDIR DESTDIR BUILD, and
 #   SAN=address|thread|undefined|address,undefined   a sanitizer build, in a tree of its own
 #   RT=posix|mercury|cobalt   plain Linux, or a core of Xenomai 3 (XENO_CONFIG=its xeno-config), likewise
@@ -23,7 +23,7 @@ LOOP_SIDE := drivers/loop/cycle.c drivers/loop/histogram.c drivers/loop/watch.c 
 SHELL := /bin/sh
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: all man deb firmware demo check check-xenomai bench bench-quick stress ci format format-check tidy install install-files uninstall clean tests FORCE
+.PHONY: all man doc deb firmware demo check check-xenomai bench bench-quick stress ci format format-check tidy install install-files uninstall clean tests FORCE
 .DEFAULT_GOAL := all
 
 comma := ,
@@ -60,7 +60,7 @@ say = $(if $(V),@:,@printf '  %-6s %s\n' $(1) $(2))
 GOALS := $(or $(MAKECMDGOALS),all)
 KINDS := $(if $(filter all demo check bench bench-quick stress ci install tests,$(GOALS)),build) \
          $(if $(filter check stress ci tests,$(GOALS)),check) $(if $(filter demo stress,$(GOALS)),demo) \
-         $(if $(filter bench bench-quick,$(GOALS)),bench) $(if $(filter deb,$(GOALS)),build deb)
+         $(if $(filter bench bench-quick,$(GOALS)),bench) $(if $(filter deb,$(GOALS)),build deb) $(if $(filter doc,$(GOALS)),doc)
 DRY := $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 ifneq ($(filter-out no,$(or $(SETUP),yes)),)
 ifneq ($(strip $(KINDS)),)
@@ -332,6 +332,10 @@ $(B)/man/libethd.3: $(PROGRAMS) $(wildcard .packaging/*) $(HEADERS)
 	$(call say,MAN,$(@D))
 	@if command -v help2man >/dev/null; then B='$(B)' VERSION='$(VERSION)' PROGRAMS='$(notdir $(PROGRAMS))' sh .packaging/man; \
 	  else echo 'no help2man (Debian: help2man): no manual pages'; fi
+
+# Pages of the public headers, $(B)/doc/html: every public function with its contract, no warning.
+doc:
+	@B='$(B)' VERSION='$(VERSION)' sh .packaging/doc
 
 # Debian packages.
 deb:

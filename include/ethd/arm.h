@@ -61,6 +61,7 @@ static inline ethd_vec ethd_mat_mul(const double m[4], ethd_vec v) ETHD_RT {
   return r;
 }
 
+/* m^T v: a force at the ring, N, to joint torques, Nm, with m = J. [any, rt-safe] */
 static inline ethd_vec ethd_mat_mul_transposed(const double m[4], ethd_vec v) ETHD_RT {
   ethd_vec r = {m[0] * v.x + m[2] * v.y, m[1] * v.x + m[3] * v.y};
   return r;

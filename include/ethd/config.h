@@ -43,6 +43,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_parse(const char *text, size_t 
                                                        const char *folder, ethd_config **out,
                                                        char message[ETHD_MESSAGE_MAX]);
 
+/* The configuration with its scene; controllers made of it are destroyed before. NULL is fine. [main] */
 ETHD_API void ethd_config_free(ethd_config *config);
 
 /* Changes the transition law in `setup`: values that were chosen for keys that the new law has too are

@@ -49,6 +49,7 @@ typedef struct ethd_limit {
 #define ETHD_LIMITS 15
 ETHD_API extern const ethd_limit ethd_limit_rows[ETHD_LIMITS];
 
+/* The first of the row's numbers in these limits. [any, rt-safe] */
 static inline double *ethd_limit_of(ethd_limits *limits, const ethd_limit *row) ETHD_RT {
   return (double *)(void *)((char *)limits + row->offset);
 }

@@ -132,6 +132,7 @@ typedef struct ethd_scene_info {
   size_t bytes;                      /* memory held */
 } ethd_scene_info;
 
+/* What a scene holds. [any] */
 ETHD_API void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out);
 
 /* A turned box of a tree, m. Level 1: around one thing; level l: around eight of the level below. */

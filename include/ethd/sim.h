@@ -63,7 +63,7 @@ typedef struct ethd_path {
 /* Position and velocity of the path at t. [any, rt-safe] */
 ETHD_API void ethd_path_at(const ethd_path *path, double t, ethd_vec *x, ethd_vec *v) ETHD_RT;
 
-/* When the synthetic path or the recording ends, s. */
+/* When the synthetic path or the recording ends, s. [any] */
 ETHD_API double ethd_path_end(const ethd_path *path);
 
 /* One tap's circumstances. */
@@ -76,7 +76,7 @@ typedef struct ethd_sim_tap {
 } ethd_sim_tap;
 
 /* Draws a synthetic tap at commanded speed `speed` toward the wall that the ring meets with its centre at
-   `meet` (the wall on the left). Normal draws are cut at 2 sd, the speed at 2.5. */
+   `meet` (the wall on the left). Normal draws are cut at 2 sd, the speed at 2.5. [any] */
 ETHD_API void ethd_sim_draw(const ethd_plant *plant, uint64_t seed, uint64_t tap, double speed, ethd_vec meet,
                             ethd_sim_tap *out);
 
@@ -96,16 +96,20 @@ typedef struct ethd_sim_def {
 
 typedef struct ethd_sim ethd_sim;
 
+/* A device of this plant, not yet started. ETHD_E_RANGE, ETHD_E_NOT_FINITE with the name, ETHD_E_MEMORY. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_sim_create(const ethd_sim_def *def, ethd_sim **out, ethd_error *error);
+
+/* NULL is fine. [main] */
 ETHD_API void ethd_sim_destroy(ethd_sim *sim);
 
 /* Time 0: ring centred on the finger at the start of the path, both at rest. ETHD_E_UNREACHABLE: the
-   path starts out of the arm's reach. */
+   path starts out of the arm's reach. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_sim_start(ethd_sim *sim, const ethd_sim_tap *tap);
 
-/* Measures at the present tick (have START at the first), then write advances by one period: the torque
-   takes effect `delay` after the tick. */
+/* Measures at the present tick (have START at the first). [rt] */
 ETHD_API void ethd_sim_read(ethd_sim *sim, ethd_sense *out) ETHD_RT;
+
+/* Advances by one period: the torque, Nm, takes effect `delay` after the tick. [rt] */
 ETHD_API void ethd_sim_write(ethd_sim *sim, const ethd_command *command) ETHD_RT;
 
 /* Truth at the present tick. X as in ETHD_TRACE_FIELDS. */
@@ -125,6 +129,7 @@ typedef struct ethd_truth {
   ETHD_TRUTH_FIELDS(ETHD_FIELD)
 } ethd_truth;
 
+/* What the device is like at the present tick, whatever its sensors say. [any] between ticks. */
 ETHD_API void ethd_sim_truth(const ethd_sim *sim, ethd_truth *out);
 
 ETHD_END_DECLS

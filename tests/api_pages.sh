@@ -1,0 +1,26 @@
+#!/bin/sh
+# make doc: a page for every public function, no warning; a function without a contract, or whose contract doesn't say which
+# threads may call it, is found.
+set -u
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+made() { B=$work/build VERSION=1 sh .packaging/doc >"$work/out" 2>&1; }
+made || { cat "$work/out"; exit 1; }
+cat "$work/out"
+for name in $(cat tests/exported-symbols*.txt | grep '^ethd_[a-z]'); do
+  grep -rqw "$name" "$work"/build/doc/html/*_8h.html || fail "no page has $name"
+done
+mkdir -p "$work/tree" && cp -r include .packaging "$work/tree" && cd "$work/tree" || exit 1
+cat >>include/ethd/vec.h <<'END'
+
+ETHD_API void ethd_nothing_said(int x);
+
+/* Says what it does. */
+ETHD_API void ethd_no_thread(int x);
+END
+made && fail "functions without a contract pass"
+grep -q 'ethd_nothing_said(int x) (function) .* is not documented' "$work/out" || fail "ethd_nothing_said: $(cat "$work/out")"
+grep -q "vec.h: ethd_no_thread: its contract doesn't say which thread" "$work/out" || fail "ethd_no_thread: $(cat "$work/out")"
+exit $failed
