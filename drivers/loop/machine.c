@@ -26,6 +26,9 @@ static const struct {
      "/etc/udev/rules.d/99-ethd.rules"},
     {"the kernel isn't a realtime one: latencies have no bound",
      "boot a kernel with PREEMPT_RT (Debian: linux-image-rt-amd64), or Xenomai"},
+    {"no real-time priority for the device's I/O: two busy programs are enough to make its feedback too old",
+     "as for the loop: \"@realtime - rtprio 95\" in /etc/security/limits.d/ethd.conf, or setcap cap_sys_nice+ep "
+     "PROGRAM"},
 };
 
 static int place(int32_t bit) {

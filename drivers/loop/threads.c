@@ -105,39 +105,45 @@ static int start_control(ethd_loop *l, int cpu) {
   return l->def.require_rt ? EPERM : create_control(l, cpu, SCHED_OTHER);
 }
 
-static int start_units(ethd_loop *l) {
+/* An ordinary thread's attributes, but for its priority. */
+static int create(pthread_t *thread, int policy, int priority, void *(*run)(void *), void *of) {
   pthread_attr_t attr;
-  int failure = 0;
-  pthread_attr_init(&attr);
-  pthread_attr_setstacksize(&attr, SERVICE_STACK);
-  for (uint32_t i = 0, n = ethd__loop_units(l); !failure && i < n; i++) {
-    l->unit[i] = (ethd__unit){.loop = l, .number = i};
-    failure = __STD(pthread_create)(&l->unit[i].thread, &attr, run_unit, &l->unit[i]);
-    if (!failure) l->units++;
-  }
-  pthread_attr_destroy(&attr);
-  return failure;
-}
-
-/* Above the loop in priority, where that is granted. */
-static int create_watch(ethd_loop *l, int policy) {
-  pthread_attr_t attr;
-  int top = l->def.priority < 99 ? l->def.priority + 1 : 99;
-  struct sched_param param = {.sched_priority = policy == SCHED_FIFO ? top : 0};
+  struct sched_param param = {.sched_priority = policy == SCHED_FIFO ? priority : 0};
   pthread_attr_init(&attr);
   pthread_attr_setstacksize(&attr, SERVICE_STACK);
   pthread_attr_setinheritsched(&attr, PTHREAD_EXPLICIT_SCHED);
   pthread_attr_setschedpolicy(&attr, policy);
   pthread_attr_setschedparam(&attr, &param);
-  int failure = __STD(pthread_create)(&l->watch, &attr, run_watch, l);
+  int failure = __STD(pthread_create)(thread, &attr, run, of);
   pthread_attr_destroy(&attr);
   return failure;
 }
 
+/* Below the loop in priority, so that no exchange delays a tick, and over everything else, so that nothing delays an
+   exchange. */
+static int start_unit(ethd_loop *l, ethd__unit *unit) {
+  int priority = l->def.priority > ETHD_IO_BELOW ? l->def.priority - ETHD_IO_BELOW : 1;
+  int failure = create(&unit->thread, SCHED_FIFO, priority, run_unit, unit);
+  if (failure != EPERM) return failure;
+  l->shortfalls |= ETHD_SHORT_IO;
+  return l->def.require_rt ? EPERM : create(&unit->thread, SCHED_OTHER, 0, run_unit, unit);
+}
+
+static int start_units(ethd_loop *l) {
+  int failure = 0;
+  for (uint32_t i = 0, n = ethd__loop_units(l); !failure && i < n; i++) {
+    l->unit[i] = (ethd__unit){.loop = l, .number = i};
+    failure = start_unit(l, &l->unit[i]);
+    if (!failure) l->units++;
+  }
+  return failure;
+}
+
+/* Above the loop in priority, where that is granted. */
 static int start_watch(ethd_loop *l) {
   if (l->gap == INT64_MAX) return 0;
-  int failure = create_watch(l, SCHED_FIFO);
-  if (failure == EPERM) failure = create_watch(l, SCHED_OTHER);
+  int failure = create(&l->watch, SCHED_FIFO, l->def.priority < 99 ? l->def.priority + 1 : 99, run_watch, l);
+  if (failure == EPERM) failure = create(&l->watch, SCHED_OTHER, 0, run_watch, l);
   l->has_watch = !failure;
   return failure;
 }

@@ -62,3 +62,8 @@ bool ethd__line_low_latency(int fd) {
   line.flags |= ASYNC_LOW_LATENCY;
   return ioctl(fd, TIOCSSERIAL, &line) == 0;
 }
+
+bool ethd__line_rs485(int fd, bool high) {
+  struct serial_rs485 line = {.flags = SER_RS485_ENABLED | (high ? SER_RS485_RTS_ON_SEND : SER_RS485_RTS_AFTER_SEND)};
+  return ioctl(fd, TIOCSRS485, &line) == 0;
+}

@@ -15,6 +15,10 @@ typedef enum ethd__line_format { ETHD__LINE_8N1 = 0, ETHD__LINE_8E1, ETHD__LINE_
 ETHD_MUST_CHECK ethd_status ethd__line_open(const char *path, ethd__line_format format, uint32_t baud, int *fd,
                                             char message[ETHD_MESSAGE_MAX]);
 
+/* Lets the kernel's driver switch an RS-485 transceiver's direction by RTS: high while it sends, or low. false: it
+   can't, errno says why; most adapters do it by themselves. */
+bool ethd__line_rs485(int fd, bool high);
+
 /* Asks the kernel's driver to hand bytes over at once; false: it doesn't know how. */
 bool ethd__line_low_latency(int fd);
 

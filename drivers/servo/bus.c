@@ -42,7 +42,7 @@ static modbus_t *context(const ethd__servo_map *map, int fd) {
 
 ethd_status ethd__servo_bus_open(const ethd__servo_map *map, ethd__servo_bus *bus, char message[ETHD_MESSAGE_MAX]) {
   *bus = (ethd__servo_bus){.map = map, .fd = -1};
-  ethd_status status = ethd__servo_port_open(map, &bus->fd, message);
+  ethd_status status = ethd__servo_port_open(map, &bus->fd, &bus->at_once, message);
   if (status) return status;
   bus->quiet_ns = now();
   if (is_own(map)) return ETHD_OK;

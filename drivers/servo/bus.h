@@ -19,6 +19,7 @@ typedef struct ethd__servo_bus {
   const ethd__servo_map *map;
   void *modbus;     /* NULL: our own framing */
   int fd;           /* -1: closed */
+  bool at_once;     /* the serial line hands bytes over at once; of tcp too */
   int error;        /* errno of the last failure, libmodbus's included */
   int64_t quiet_ns; /* CLOCK_MONOTONIC: when the line was left */
 } ethd__servo_bus;
@@ -47,6 +48,7 @@ ethd__servo_outcome ethd__servo_bus_drain(ethd__servo_bus *bus);
 const char *ethd__servo_bus_error(const ethd__servo_bus *bus);
 
 /* The descriptor of map->port, connected and set up; libmodbus would take an unknown baud for 9600. */
-ETHD_MUST_CHECK ethd_status ethd__servo_port_open(const ethd__servo_map *map, int *fd, char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__servo_port_open(const ethd__servo_map *map, int *fd, bool *at_once,
+                                                  char message[ETHD_MESSAGE_MAX]);
 
 #endif

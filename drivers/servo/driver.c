@@ -52,11 +52,16 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
   return n;
 }
 
-/* The registers that nobody confirms, then what the map leaves open. */
+/* The registers that nobody confirms, the line's own delay, then what the map leaves open. */
 static const char *remark(const void *device, uint32_t i) {
   const ethd__servo_device *d = device;
-  bool some = d->unconfirmed[0] != 0;
-  return some && i == 0 ? d->unconfirmed : ethd__servo_risk(&d->map, i - some);
+  const char *own[2];
+  uint32_t n = 0;
+  if (d->unconfirmed[0]) own[n++] = d->unconfirmed;
+  if (!d->link.bus.at_once)
+    own[n++] = "the serial line's driver doesn't hand bytes over at once: answers may come late (FTDI: 1 into "
+               "/sys/bus/usb-serial/devices/ttyUSB0/latency_timer)";
+  return i < n ? own[i] : ethd__servo_risk(&d->map, i - n);
 }
 
 const ethd_driver ethd_driver_servo = {

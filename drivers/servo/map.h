@@ -124,6 +124,7 @@ extern const char *const ethd__servo_sequences[ETHD__SERVO_SEQUENCES];
 typedef struct ethd__servo_map {
   int32_t transport, format, exchange, addressing;
   int32_t crc, local_echo; /* of rtu: order of the checksum's bytes; 1: what is sent comes back first */
+  int32_t rs485;           /* who switches its direction: 0 the adapter, 1 RTS high while sending, 2 RTS low */
   char port[ETHD__SERVO_PORT_MAX];
   double baud;
   uint32_t unit, base, divisor, gap;

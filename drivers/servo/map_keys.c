@@ -37,6 +37,10 @@ static const row bus[] = {
      {"crc", "low-first|high-first", 0, 1, 0, "of an rtu frame's two bytes of checksum; low-first is the standard"},
      AT(map, crc)},
     {CHOICE,
+     {"rs485", "adapter|rts|rts-low", 0, 2, 0,
+      "rtu: what switches the direction of a two-wire line: the adapter, or RTS, high or low while sending"},
+     AT(map, rs485)},
+    {CHOICE,
      {"local_echo", "no|yes", 0, 1, 0, "rtu: what is sent comes back, as on a two-wire line with an open receiver"},
      AT(map, local_echo)},
     {CHOICE, {"exchange", "separate|combined", 0, 1, 0, "16 then 3, or 0x17"}, AT(map, exchange)},
@@ -208,7 +212,7 @@ ethd_status ethd__servo_read_bus(const ethd__servo_source *s, int line, ethd__se
     return ethd__say(s->message, ETHD_E_UNKNOWN, "%s:%d: bus.baud is missing: rtu needs it", s->name, line);
   if (map->baud != rint(map->baud))
     return ethd__servo_refuse(s, ethd_ini_find(s->ini, "bus", "baud"), "a whole number");
-  const char *serial_only = map->crc ? "crc" : map->local_echo ? "local_echo" : NULL;
+  const char *serial_only = map->crc ? "crc" : map->local_echo ? "local_echo" : map->rs485 ? "rs485" : NULL;
   if (serial_only && map->transport != ETHD__SERVO_RTU)
     return ethd__servo_refuse(s, ethd_ini_find(s->ini, "bus", serial_only), "transport = rtu");
   if (map->silence < 0) map->silence = map->transport == ETHD__SERVO_RTU ? 3.5 * 11 / map->baud : 0;

@@ -61,7 +61,12 @@ static ethd_status open_tcp(const ethd__servo_map *map, int *fd, char *message) 
 
 /* The map's formats are the line's. */
 static ethd_status open_rtu(const ethd__servo_map *map, int *fd, char *message) {
-  return ethd__line_open(map->port, (ethd__line_format)map->format, (uint32_t)map->baud, fd, message);
+  ethd_status status = ethd__line_open(map->port, (ethd__line_format)map->format, (uint32_t)map->baud, fd, message);
+  if (status || !map->rs485 || ethd__line_rs485(*fd, map->rs485 == 1)) return status;
+  return ethd__say(
+      message, ETHD_E_DEVICE,
+      "%s: RTS can't switch its direction (%s): take an adapter that does it by itself, and rs485 = adapter", map->port,
+      strerror(errno));
 }
 
 /* libmodbus waits in select, which can't hold a higher descriptor and ends the process. */
@@ -71,11 +76,12 @@ static ethd_status check_number(const ethd__servo_map *map, int fd, char *messag
                    map->port, fd, FD_SETSIZE);
 }
 
-ethd_status ethd__servo_port_open(const ethd__servo_map *map, int *fd, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__servo_port_open(const ethd__servo_map *map, int *fd, bool *at_once, char message[ETHD_MESSAGE_MAX]) {
   *fd = -1;
   ethd_status status = map->transport == ETHD__SERVO_TCP ? open_tcp(map, fd, message) : open_rtu(map, fd, message);
   if (!status) status = check_number(map, *fd, message);
   if (status && *fd >= 0) close(*fd);
   if (status) *fd = -1;
+  *at_once = map->transport == ETHD__SERVO_TCP || (*fd >= 0 && ethd__line_low_latency(*fd));
   return status;
 }

@@ -54,9 +54,10 @@ enum {
   ETHD_SHORT_MLOCK = 2,       /* memory isn't locked */
   ETHD_SHORT_AFFINITY = 4,    /* not bound to the cpu that was asked for */
   ETHD_SHORT_DMA_LATENCY = 8, /* the processor may sleep deeply, though that was to be prevented */
-  ETHD_SHORT_PREEMPT = 16     /* the kernel isn't a realtime one */
+  ETHD_SHORT_PREEMPT = 16,    /* the kernel isn't a realtime one */
+  ETHD_SHORT_IO = 32          /* SCHED_FIFO for the device's I/O threads: they run at ordinary priority */
 };
-#define ETHD_SHORT_COUNT 5
+#define ETHD_SHORT_COUNT 6
 
 /* What is short, and what mends it, one sentence each; `bit` is one of the above. [any] */
 ETHD_API const char *ethd_shortfall_sentence(int32_t bit);
@@ -64,6 +65,7 @@ ETHD_API const char *ethd_shortfall_mend(int32_t bit);
 
 /* ---- the loop ---- */
 
+#define ETHD_IO_BELOW 5    /* in priority, at least 1 */
 #define ETHD_CPU_NONE (-1) /* wherever the kernel puts it */
 #define ETHD_CPU_AUTO (-2) /* the highest isolated one, else none */
 
@@ -75,7 +77,7 @@ typedef struct ethd_loop_def {
   ethd_control *control;     /* stepped by nobody else while the loop lives */
   double period;             /* s, the controller's; 1e-5 to 1 */
   int32_t cpu;               /* number of a processor, ETHD_CPU_NONE or ETHD_CPU_AUTO */
-  int32_t priority;          /* of SCHED_FIFO, 1 to 99 */
+  int32_t priority;          /* of SCHED_FIFO, 1 to 99; the device's I/O threads come ETHD_IO_BELOW under it */
   int32_t require_rt;        /* 1: start fails at any shortfall */
   int32_t dma_latency;       /* us, held while the loop runs; -1: not held */
   double early_wake;         /* s, 0 to period / 2: wakes so early, warms the caches, then spins to the tick */

@@ -286,6 +286,21 @@ START_TEST(test_baud) {
 }
 END_TEST
 
+/* A line that can't do what its map wants isn't opened; one that hands bytes over late says so. */
+START_TEST(test_line_keys) {
+  ethd__servo_bus bus;
+  open_mock(1);
+  ck_assert_int_eq(ethd__servo_bus_open(&map, &bus, message), ETHD_OK);
+  ck_assert(!bus.at_once); /* a pseudo terminal knows no such thing */
+  ethd__servo_bus_close(&bus);
+  map.rs485 = 1;
+  ck_assert_int_lt(ethd__servo_bus_open(&map, &bus, message), 0);
+  ck_assert_msg(strstr(message, "RTS can't switch its direction") && strstr(message, "rs485 = adapter"), "%s", message);
+  ck_assert_int_eq(bus.fd, -1);
+  mock_stop(&drive);
+}
+END_TEST
+
 START_TEST(test_no_delay) {
   int on = 0;
   socklen_t size = sizeof on;
@@ -602,6 +617,7 @@ int main(void) {
   tcase_add_test(t, test_other_checksum);
   tcase_add_test(t, test_old_answers);
   tcase_add_test(t, test_baud);
+  tcase_add_test(t, test_line_keys);
   tcase_add_test(t, test_no_delay);
   tcase_add_test(t, test_unplugged);
   tcase_add_test(t, test_byte_timeout);

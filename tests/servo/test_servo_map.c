@@ -215,6 +215,11 @@ START_TEST(test_bus_refused) {
   refused("unit = 1", "unit = 1\nbase = 2", "bus.base");
   refused("unit = 1", "unit = 1\naddressing = bytes", "bus.addressing");
   refused("unit = 1", "unit = 1\nexchange = both", "bus.exchange");
+  refused("unit = 1", "unit = 1\ncrc = high-first", "bus.crc: found \"high-first\", transport = rtu is allowed");
+  refused("unit = 1", "unit = 1\nlocal_echo = yes", "bus.local_echo: found \"yes\", transport = rtu is allowed");
+  refused("unit = 1", "unit = 1\nrs485 = rts", "bus.rs485: found \"rts\", transport = rtu is allowed");
+  refused("unit = 1", "unit = 1\nrs485 = yes", "bus.rs485");
+  refused("unit = 1", "unit = 1\nturnaround = -1", "bus.turnaround");
   refused("kind = silence", "kind = dog", "watchdog.kind");
   refused("time = 0.05", "", "watchdog.time is missing");
   refused("time = 0.05", "tim = 0.05", "watchdog.tim: a map has no such key");

@@ -4,6 +4,8 @@
 #include <linux/filter.h>
 #include <linux/seccomp.h>
 #include <math.h>
+#include <pthread.h>
+#include <sched.h>
 #include <stdatomic.h>
 #include <stddef.h>
 #include <string.h>
@@ -33,8 +35,8 @@ typedef struct device {
   long filtered;     /* what the filter's installation returned */
   int inside;        /* reads and writes now; never while start runs */
   atomic_int reads, starts, overlaps;
-  atomic_int services;
-  double nan_at; /* read at which q isn't a number, 0: never */
+  atomic_int services, policy, priority; /* of the I/O thread */
+  double nan_at;                         /* read at which q isn't a number, 0: never */
   ethd_sense sense;
 } device;
 
@@ -91,6 +93,12 @@ static uint32_t dev_units(const void *d) { return (void)d, 1; }
 static ethd_status dev_service(void *d, uint32_t unit, int64_t now) {
   struct timespec t = {.tv_nsec = 1000000};
   (void)unit, (void)now;
+  struct sched_param param;
+  int policy;
+  if (!pthread_getschedparam(pthread_self(), &policy, &param)) {
+    atomic_store(&((device *)d)->policy, policy);
+    atomic_store(&((device *)d)->priority, param.sched_priority);
+  }
   atomic_fetch_add(&((device *)d)->services, 1);
   nanosleep(&t, NULL);
   return ETHD_OK;
@@ -198,6 +206,26 @@ START_TEST(test_rows_while_running) {
 }
 END_TEST
 
+/* I/O runs below the loop and over everything ordinary, or it is said that it doesn't. */
+START_TEST(test_io_priority) {
+  open_loop(0);
+  ck_assert_int_eq(ethd_loop_start(loop, NULL), ETHD_OK);
+  for (int i = 0; i < 2000 && !atomic_load(&d.services); i++) {
+    struct timespec t = {.tv_nsec = 1000000};
+    nanosleep(&t, NULL);
+  }
+  ck_assert_int_gt(atomic_load(&d.services), 0);
+  if (ethd_loop_shortfalls(loop) & ETHD_SHORT_IO) {
+    ck_assert_int_eq(atomic_load(&d.policy), SCHED_OTHER);
+    ck_assert_int_ne(ethd_loop_shortfalls(loop) & ETHD_SHORT_FIFO, 0);
+  } else {
+    ck_assert_int_eq(atomic_load(&d.policy), SCHED_FIFO);
+    ck_assert_int_eq(atomic_load(&d.priority), ethd_loop_default().priority - ETHD_IO_BELOW);
+  }
+  close_loop();
+}
+END_TEST
+
 /* A machine without PREEMPT_RT or rights is refused, with all its reasons; nothing ran. */
 START_TEST(test_require_rt) {
   rig_open(&r, RIG_WALL);
@@ -230,6 +258,7 @@ int main(void) {
     tcase_add_test_raise_signal(t, test_a_call_is_fatal, 31 /* SIGSYS */);
   tcase_add_test(t, test_enable_between_ticks);
   tcase_add_test(t, test_rows_while_running);
+  tcase_add_test(t, test_io_priority);
   tcase_add_test(t, test_require_rt);
   tcase_set_timeout(t, 60);
   suite_add_tcase(suite, t);
