@@ -9,6 +9,7 @@
 #include "ethd/driver.h"
 #include "ethd/loop.h"
 #include "servo/feedback.h"
+#include "servo/guardian.h"
 
 #define ETHD__SERVO_OLD_MOST 50000000 /* ns: feedback older than this ends the torque however slow the bus is */
 
@@ -43,6 +44,8 @@ typedef struct ethd__servo_device {
   /* I/O thread, or [main] in start and stop: who holds the lock */
   pthread_mutex_t lock;
   ethd__servo_link link;
+  ethd__guardian guardian; /* without a process where the drive has a watchdog */
+  char guarded[160];       /* the remark about it; empty: there is none */
   ethd__servo_feedback feedback;
   ethd__servo_command command;
   int64_t due_ns;

@@ -45,6 +45,7 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
       {"servo answers damaged or refused", "1", (double)(c->garbled + c->busy + c->refused + c->failed)},
       {"servo links lost", "1", (double)c->lost},
       {"servo links made", "1", (double)c->connects},
+      {"guardian acted", "1", d->guardian.page ? (double)atomic_load(&d->guardian.page->acts) : 0},
   };
   uint32_t n = sizeof all / sizeof *all;
   if (n > max) n = max;
@@ -55,9 +56,10 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
 /* The registers that nobody confirms, the line's own delay, then what the map leaves open. */
 static const char *remark(const void *device, uint32_t i) {
   const ethd__servo_device *d = device;
-  const char *own[2];
+  const char *own[3];
   uint32_t n = 0;
   if (d->unconfirmed[0]) own[n++] = d->unconfirmed;
+  if (d->guarded[0]) own[n++] = d->guarded;
   if (!d->link.bus.at_once)
     own[n++] = "the serial line's driver doesn't hand bytes over at once: answers may come late (FTDI: 1 into "
                "/sys/bus/usb-serial/devices/ttyUSB0/latency_timer)";

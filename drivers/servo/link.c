@@ -44,8 +44,8 @@ ethd_status ethd__servo_link_connect(ethd__servo_link *l, int64_t now_ns) {
   return ETHD_OK;
 }
 
-static void lose(ethd__servo_link *l, int64_t now_ns) {
-  ethd__say(l->message, ETHD_E_DEVICE, "%s: %s", l->map->port, ethd__servo_bus_error(&l->bus));
+void ethd__servo_link_lose(ethd__servo_link *l, const char *why, int64_t now_ns) {
+  ethd__say(l->message, ETHD_E_DEVICE, "%s: %s", l->map->port, why);
   ethd__servo_link_close(l);
   l->counts.lost++;
   l->rows[ETHD_FAULT_LINK_LOST]++;
@@ -68,7 +68,7 @@ static void count(ethd__servo_link *l, ethd__servo_outcome got) {
 static ethd_status fail(ethd__servo_link *l, ethd__servo_outcome got, int64_t now_ns) {
   double silent = fmax(SILENT_LEAST, SILENT_ANSWERS * (l->map->response + l->map->drain));
   if (got == ETHD__SERVO_LOST) {
-    lose(l, now_ns);
+    ethd__servo_link_lose(l, ethd__servo_bus_error(&l->bus), now_ns);
     return ETHD_E_DEVICE;
   }
   count(l, got);
@@ -76,7 +76,7 @@ static ethd_status fail(ethd__servo_link *l, ethd__servo_outcome got, int64_t no
   if (got != ETHD__SERVO_MISSING) l->bucket += got == ETHD__SERVO_REFUSED ? BUCKET_REFUSED : BUCKET_ADD;
   if (l->bucket > 2 * BUCKET_REFUSED) l->bucket = 2 * BUCKET_REFUSED;
   l->draining = got != ETHD__SERVO_BUSY;
-  if (now_ns - l->heard_ns > nanoseconds(silent)) lose(l, now_ns);
+  if (now_ns - l->heard_ns > nanoseconds(silent)) ethd__servo_link_lose(l, ethd__servo_bus_error(&l->bus), now_ns);
   return ETHD_E_DEVICE;
 }
 

@@ -62,6 +62,9 @@ ETHD_MUST_CHECK ethd_status ethd__servo_link_turn(ethd__servo_link *link, int64_
 /* Begins [enable] or [disable]; turns do the rest. Enabling ends in ENABLED; disabling leaves it at once. */
 void ethd__servo_link_begin(ethd__servo_link *link, int32_t sequence, int64_t now_ns);
 
+/* The line is gone, by what is said: closed, and opened again after the back-off. */
+void ethd__servo_link_lose(ethd__servo_link *link, const char *why, int64_t now_ns);
+
 /* Closes the line. */
 void ethd__servo_link_close(ethd__servo_link *link);
 

@@ -27,6 +27,7 @@
      [identify]                  once after connecting
      [watchdog]
      kind = silence              the drive stops by itself when the bus is silent for `time`
+     guardian = auto             where it doesn't (kind = none), a process of ours does
 
    Names with a meaning: torque1 torque2 (written), position1 position2, speed1 speed2, measured1 measured2
    (torque or current), bus_voltage, reading_x reading_y reading_count reading_age (a finger's place relative
@@ -53,6 +54,7 @@ enum { ETHD__SERVO_HIGH_FIRST, ETHD__SERVO_LOW_FIRST, ETHD__SERVO_NO_ORDER };
 enum { ETHD__SERVO_SEPARATE, ETHD__SERVO_COMBINED }; /* 16 then 3, or 0x17 */
 enum { ETHD__SERVO_BY_WORD, ETHD__SERVO_BY_VALUE };
 enum { ETHD__SERVO_CRC_LOW_FIRST, ETHD__SERVO_CRC_HIGH_FIRST };
+enum { ETHD__SERVO_GUARD_AUTO, ETHD__SERVO_GUARD_NEVER, ETHD__SERVO_GUARD_ALWAYS };
 enum { ETHD__SERVO_WATCH_NONE, ETHD__SERVO_WATCH_SILENCE, ETHD__SERVO_WATCH_COUNTER };
 
 /* Names with a meaning, in the order of ethd__servo_roles. */
@@ -131,6 +133,7 @@ typedef struct ethd__servo_map {
   double turnaround; /* s: from the end of a question to the begin of its answer; 0: not known */
   double connect, response, drain, silence, back_off; /* s */
   int32_t watchdog, resumes;
+  int32_t guardian; /* a process that writes zero when we are silent: where the drive has no watchdog, never, always */
   double watchdog_time; /* s */
   ethd__servo_register registers[ETHD__SERVO_REGISTERS_MAX];
   uint32_t count;

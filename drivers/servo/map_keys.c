@@ -60,6 +60,10 @@ static const row bus[] = {
 static const row watchdog[] = {
     {CHOICE, {"kind", "none|silence|counter", 0, 2, 0, "what stops the drive without us"}, AT(map, watchdog)},
     {NUMBER, {"time", "s", 1e-3, 60, 0, "after which it stops"}, AT(map, watchdog_time)},
+    {CHOICE,
+     {"guardian", "auto|no|yes", 0, 2, 0,
+      "a process of ours that writes zero torque when we are silent: where kind = none"},
+     AT(map, guardian)},
     {CHOICE, {"resumes", "no|yes", 0, 1, 0, "goes on by itself when the bus does"}, AT(map, resumes)},
 };
 

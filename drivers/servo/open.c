@@ -104,9 +104,21 @@ static ethd_status check_pace(const ethd__servo_device *d, const settings *s, ch
                    (long long)(most / d->period_ns));
 }
 
+/* Before the first connection: no line of the program's is open yet. */
+static ethd_status set_guard(ethd__servo_device *d, char *message) {
+  bool wanted = d->map.guardian == ETHD__SERVO_GUARD_ALWAYS ||
+                (d->map.guardian == ETHD__SERVO_GUARD_AUTO && d->map.watchdog == ETHD__SERVO_WATCH_NONE);
+  ethd__servo_link_make(&d->map, &d->link);
+  if (!wanted) return ETHD_OK;
+  ethd__guardian_make(&d->map, &d->link.plan, d->exchange_ns, &d->guardian);
+  snprintf(d->guarded, sizeof d->guarded,
+           "a guardian process writes zero torque within %.3g ms of this program's end or silence, then disables",
+           1e-6 * (double)ethd__guardian_bound(&d->map, d->exchange_ns));
+  return ethd__guardian_start(&d->guardian, message);
+}
+
 /* Its first answer, and what it says of itself. */
 static ethd_status meet(ethd__servo_device *d, const settings *s, char *message) {
-  ethd__servo_link_make(&d->map, &d->link);
   ethd_status status = ethd__servo_meet(d);
   return status ? ethd__say(message, status, "%s: %.*s", s->map->value, ETHD_MESSAGE_MAX / 2, d->link.message)
                 : ETHD_OK;
@@ -130,6 +142,7 @@ ethd_status ethd__servo_open(const ethd_device_def *def, void **out, char messag
   if (!status) status = check_pace(d, &s, message);
   if (!status) status = make_cells(d, message);
   if (!status) status = make_feedback(d, def, &s, message);
+  if (!status) status = set_guard(d, message);
   if (!status) status = meet(d, &s, message);
   if (!status) count_unconfirmed(d);
   return status;
@@ -138,6 +151,7 @@ ethd_status ethd__servo_open(const ethd_device_def *def, void **out, char messag
 void ethd__servo_close(void *device) {
   ethd__servo_device *d = device;
   if (!d) return;
+  ethd__guardian_end(&d->guardian);
   ethd__servo_link_close(&d->link);
   ethd_cell_destroy(d->commands);
   ethd_cell_destroy(d->samples);

@@ -1,0 +1,108 @@
+/* What the guardian does when it must. Its process is in guardian_process.c. */
+#include "servo/guardian.h"
+
+#include <errno.h>
+#include <math.h>
+#include <poll.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "servo/bus_parts.h"
+#include "servo/words.h"
+
+#define LEAST 20000000 /* ns */
+#define SHARE 0.6      /* of the bound: how long silence may last; the rest is for looking, quiet and the message */
+#define TRIES 5
+
+int64_t ethd__guardian_bound(const ethd__servo_map *map, int64_t exchange_ns) {
+  int64_t unanswered = (int64_t)(1e9 * (map->response + map->drain));
+  int64_t spacing = exchange_ns > unanswered ? exchange_ns : unanswered;
+  return 2 * spacing > LEAST ? 2 * spacing : LEAST;
+}
+
+/* ---- frames ---- */
+
+static void make_zeros(const ethd__servo_plan *plan, ethd__guardian *g) {
+  ethd__servo_plan zero = *plan;
+  for (int i = 0; i < 2; i++) {
+    int32_t r = g->map->roles[ETHD__SERVO_TORQUE1 + i];
+    if (r < 0) continue;
+    const ethd__servo_register *torque = &g->map->registers[r];
+    ethd__servo_pack(torque, ethd__servo_raw(torque, 0), ethd__servo_plan_words(&zero, g->map, r));
+  }
+  for (uint32_t i = 0; i < zero.write_count; i++)
+    ethd__servo_frame_write(g->map, zero.writes[i].address, zero.writes[i].count, zero.writes[i].words, &g->zeros[i]);
+  g->zero_count = zero.write_count;
+}
+
+static void make_disables(ethd__guardian *g) {
+  const ethd__servo_steps *steps = &g->map->sequences[ETHD__SERVO_DISABLE];
+  for (uint32_t i = 0; i < steps->count; i++) {
+    uint16_t words[2];
+    const ethd__servo_step *s = &steps->at[i];
+    if (s->kind != ETHD__SERVO_STEP_WRITE) continue;
+    const ethd__servo_register *r = &g->map->registers[s->at];
+    ethd__servo_pack(r, s->value, words);
+    ethd__servo_frame_write(g->map, r->address, ethd__servo_words(r), words, &g->disables[g->disable_count++]);
+  }
+}
+
+void ethd__guardian_make(const ethd__servo_map *map, const ethd__servo_plan *plan, int64_t exchange_ns,
+                         ethd__guardian *out) {
+  memset(out, 0, sizeof *out);
+  out->map = map;
+  out->socket = out->line = -1;
+  out->limit_ns = (int64_t)(SHARE * (double)ethd__guardian_bound(map, exchange_ns));
+  make_zeros(plan, out);
+  make_disables(out);
+}
+
+/* ---- the I/O thread's side ---- */
+
+void ethd__guardian_arm(ethd__guardian *g, bool armed) {
+  if (g->page) atomic_store(&g->page->armed, armed);
+}
+
+bool ethd__guardian_due(const ethd__guardian *g, int64_t now_ns) {
+  return atomic_load(&g->page->armed) && now_ns - atomic_load(&g->page->beat_ns) > g->limit_ns;
+}
+
+/* ---- acting ---- */
+
+/* Until nothing came for `drain`, or ten times that. On a serial line an answer may be under way to the one that was
+   silenced; a connection's messages have numbers. */
+static void quiet(const ethd__servo_bus *bus) {
+  if (bus->map->transport == ETHD__SERVO_RTU) (void)!ethd__servo_bus_drain((ethd__servo_bus *)bus);
+}
+
+static bool send(const ethd__servo_bus *bus, const ethd__servo_frame *frames, uint32_t count) {
+  bool good = true;
+  for (uint32_t i = 0; i < count; i++) {
+    int failure = ETIMEDOUT;
+    for (int k = 0; k < TRIES && failure; k++) {
+      failure = ethd__servo_ask(bus, &frames[i], NULL);
+      if (failure) quiet(bus);
+    }
+    good &= !failure;
+  }
+  return good;
+}
+
+bool ethd__guardian_act(ethd__guardian *g) {
+  int ours = ETHD__GUARDIAN_OURS;
+  if (!atomic_compare_exchange_strong(&g->page->line, &ours, ETHD__GUARDIAN_ITS)) return false;
+  const ethd__servo_bus bus = {.map = g->map, .fd = g->line};
+  bool good = g->line >= 0;
+  if (good) {
+    quiet(&bus);
+    good = send(&bus, g->zeros, g->zero_count);
+    good &= send(&bus, g->disables, g->disable_count);
+  }
+  if (g->line >= 0) close(g->line);
+  g->line = -1;
+  atomic_fetch_add(&g->page->acts, 1);
+  atomic_store(&g->page->armed, 0);
+  atomic_store(&g->page->line, ETHD__GUARDIAN_FREE);
+  return good;
+}
