@@ -291,9 +291,11 @@ bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
 # The long ones: minutes.
 stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_svg $(B)/tests/test_fuzz_decoder \
   $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study $(B)/tests/test_servo_driver \
-  $(B)/tests/test_fuzz_map
+  $(B)/tests/test_fuzz_map $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link
 	ETHD_SCENE_QUERIES=1000000 ETHD_SCENE_OBJECTS=10000000 $(B)/tests/test_scene_tree
 	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
+	for k in 1 2 3 4 5; do ETHD_STRESS=1 $(B)/tests/test_servo_guardian || exit 1; done
+	ETHD_SERVO_CYCLES=50000 $(B)/tests/test_servo_link
 	ETHD_FUZZ_RUNS=10000000 $(B)/tests/test_fuzz_map
 	ETHD_FUZZ=10000000 $(B)/tests/test_scene_parse
 	ETHD_FUZZ=10000000 $(B)/tests/test_svg
