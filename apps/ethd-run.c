@@ -20,6 +20,8 @@ static const char doc[] =
     "  status                  where ring and controller are\n"
     "  ack                     acknowledges a fault\n"
     "  enable                  starts a disabled device anew, torque rising from zero\n"
+    "  home [Q1 Q2]            where the joints stand: in a jig, at these angles; or found by moving, as [device] "
+    "says\n"
     "  wait S                  the next command waits for S seconds of the loop\n"
     "  stop                    ends the run\n"
     "The end of the input doesn't end the run. With --virtual there is no real time: the device is stepped as "
@@ -42,7 +44,8 @@ enum {
   OPTION_DMA,
   OPTION_SOFT,
   OPTION_FORCE,
-  OPTION_GROUP
+  OPTION_GROUP,
+  OPTION_HOME
 };
 
 static const struct argp_option options[] = {
@@ -57,6 +60,7 @@ static const struct argp_option options[] = {
     {"telemetry-group", OPTION_GROUP, NULL, 0,
      "let --telemetry name a multicast or broadcast address: everybody there sees what the ring does", 0},
     {"virtual", OPTION_VIRTUAL, NULL, 0, "lock-step on a virtual clock, no threads", 0},
+    {"home", OPTION_HOME, NULL, 0, "first the joints are found, as [device] says: the arm moves, slowly", 0},
     {"cpu", OPTION_CPU, "N|auto|none", 0, "processor of the loop: none; auto: the highest isolated one", 1},
     {"priority", OPTION_PRIORITY, "N", 0, "of SCHED_FIFO: 80", 1},
     {"require-rt", OPTION_REQUIRE, NULL, 0, "refuse to run when the machine grants less than realtime", 1},
@@ -94,6 +98,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_REQUIRE: loop->require_rt = 1; return 0;
   case OPTION_EARLY: loop->early_wake = 1e-6 * ethd__option_number("--early-wake", text, 0, 1e5); return 0;
   case OPTION_DMA: loop->dma_latency = (int32_t)ethd__option_integer("--dma-latency", text, 0, 1000000); return 0;
+  case OPTION_HOME: arg.session.home = true; return 0;
   case OPTION_SOFT: loop->soft_start = ethd__option_number("--soft-start", text, 0, 10); return 0;
   case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
   case ARGP_KEY_END:

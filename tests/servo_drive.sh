@@ -39,5 +39,29 @@ drive svd48v --crc low-first
 says "$folder/probe" '^mend .*crc = low-first is needed, the map says high-first'
 drive_ends
 
-[ $failed = 0 ] && echo "probed in both orders"
+# ---- homing: refused without, found at its stops, lost with its power ----
+run=$BUILD/bin/ethd-run
+cp apps/config/wall.scene "$folder"
+drive svd48v
+tell turn 0.2 -0.4 >/dev/null
+servo_ini lost svd48v.map
+"$run" --config "$folder/lost.ini" --duration 1 >"$folder/lost" 2>&1 </dev/null && fail "started without a reference"
+says "$folder/lost" 'nobody knows where joint 1 stands: home it; or stand the arm in its jig'
+servo_ini home svd48v.map 'home = stop' 'q1 = 1.25' 'q2 = -0.75' 'home_way2 = -1' 'home_speed = 0.5'
+printf 'status\nstop\n' | "$run" --config "$folder/home.ini" --home --record "$folder/homed" >"$folder/home" 2>&1 ||
+  fail "homing: exit $?: $(cat "$folder/home")"
+says "$folder/home" '^device: a guardian process writes zero torque within' '^device: .* registers are unconfirmed' '^ok: t '
+# the joints stand at the drive's stops, 1 and -1, or where they rolled to, and are read 0.25 more
+"$python3" - "$folder/homed/tick.npy" $(tell state) <<'END' || fail "the joints aren't where they were found: $(cat "$folder/home")"
+import sys
+import numpy as np
+q = np.load(sys.argv[1])["q"][-1]
+true = [float(v) for v in sys.argv[7:9]]
+print("joints", q, "the drive's", true)
+assert abs(q[0] - true[0] - 0.25) < 2e-3 and abs(q[1] - true[1] - 0.25) < 2e-3
+assert true[0] > 0.9 and true[1] < -0.9
+END
+drive_ends
+
+[ $failed = 0 ] && echo "probed in both orders, homed at its stops"
 exit $failed

@@ -108,6 +108,28 @@ static void enable(ethd__session *s, ethd__commands *c, char *rest) {
   }
 }
 
+/* "home": as the device's settings say, by moving; "home Q1 Q2": the arm stands in its jig, at these angles. */
+static void home(ethd__session *s, ethd__commands *c, char *rest) {
+  double q[2];
+  size_t n = strcspn(rest, " \t");
+  char *second = rest + n + strspn(rest + n, " \t");
+  (void)c;
+  if (*rest && !(ethd__number(rest, n, &q[0]) && ethd__number(second, strlen(second), &q[1]))) {
+    answer("error: home, or home Q1 Q2, the joints' angles in rad");
+    return;
+  }
+  if (ethd_loop_armed(s->loop)) {
+    answer("error: the device is enabled");
+    return;
+  }
+  ethd_status failure = ethd_loop_home(s->loop, *rest ? q : NULL);
+  const char *why = s->driver->why(s->device);
+  if (failure)
+    answer("error: %s%s%s", ethd_status_sentence(failure), why[0] ? ": " : "", why);
+  else
+    answer("ok: the joints are found; enable starts the device");
+}
+
 static void stop(ethd__session *s, ethd__commands *c, char *rest) {
   (void)s, (void)rest;
   c->stop = true;
@@ -128,8 +150,9 @@ static const struct {
   const char *word;
   void (*run)(ethd__session *s, ethd__commands *c, char *rest);
   bool alone;
-} table[] = {{"transition", transition, false}, {"set", set, false},  {"status", status, true}, {"ack", ack, true},
-             {"enable", enable, true},          {"stop", stop, true}, {"wait", wait_for, false}};
+} table[] = {
+    {"transition", transition, false}, {"set", set, false},   {"status", status, true}, {"ack", ack, true},
+    {"enable", enable, true},          {"home", home, false}, {"stop", stop, true},     {"wait", wait_for, false}};
 
 /* ---- lines ---- */
 
@@ -147,7 +170,7 @@ static void run(ethd__commands *c, ethd__session *s) {
       table[i].run(s, c, rest);
     return;
   }
-  answer("error: found %s; transition, set, status, ack, enable, stop, wait are allowed",
+  answer("error: found %s; transition, set, status, ack, enable, home, stop, wait are allowed",
          ethd__quote(word, length, quote));
 }
 

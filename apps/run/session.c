@@ -132,7 +132,8 @@ static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, c
   }
   s->recorder.loop = s->loop;
   ethd__recorder_begin(&s->recorder, def.period);
-  status = s->driver->start(s->device);
+  if (o->home) status = s->driver->home(s->device, NULL);
+  if (!status) status = s->driver->start(s->device);
   if (status) return refuse_device(s, status, message);
   s->started = true;
   status = ethd_loop_start(s->loop, &error);

@@ -26,6 +26,7 @@ typedef struct ethd__session_options {
   const char *folder; /* where relative paths of [device] start; NULL: where the configuration is */
   ethd__sink sink;
   bool is_virtual;
+  bool home;          /* the device finds out where its joints stand, before it is started */
   ethd_loop_def loop; /* its device, controller, period and clock are filled in */
 } ethd__session_options;
 

@@ -227,6 +227,15 @@ ethd_status ethd_loop_enable(ethd_loop *l) {
   return status;
 }
 
+ethd_status ethd_loop_home(ethd_loop *l, const double *q) {
+  if (!l->def.driver->home) return ETHD_E_ARGUMENT;
+  if (ethd_loop_armed(l) || !take_over(l)) return ETHD_BUSY;
+  ethd_status status = l->def.driver->home(l->def.device, q);
+  if (!status && !l->row.trace.fault) ethd_control_restart(l->def.control);
+  atomic_store_explicit(&l->mode, ETHD__LOOP_RUNS, memory_order_release);
+  return status;
+}
+
 ethd_status ethd_loop_join(ethd_loop *l) {
   if (l->def.clock && !ethd_loop_ended(l)) {
     ethd__loop_rest(l);

@@ -10,6 +10,7 @@
 #include "ethd/loop.h"
 #include "servo/feedback.h"
 #include "servo/guardian.h"
+#include "servo/homing.h"
 
 #define ETHD__SERVO_OLD_MOST 50000000 /* ns: feedback older than this ends the torque however slow the bus is */
 
@@ -24,8 +25,10 @@ typedef struct ethd__servo_device {
   ethd__servo_map map;
   char unconfirmed[96]; /* the remark about registers that nobody confirms; empty: there are none */
   int64_t period_ns, exchange_ns;
-  double speed;     /* m/s of the ring, at most */
-  int32_t joint[2]; /* joint, from 0, of the map's axes; -1: none */
+  double speed;               /* m/s of the ring, at most */
+  ethd__homing_def homing[2]; /* of the map's axes */
+  double home[2];             /* rad: in the jig, at the stop or at the mark; NAN: not given */
+  int32_t joint[2];           /* joint, from 0, of the map's axes; -1: none */
   ethd_cell *commands, *samples;
 
   /* any thread */
@@ -53,7 +56,18 @@ typedef struct ethd__servo_device {
   ethd_histogram trip;
 } ethd__servo_device;
 
-enum { ETHD__SERVO_Q1, ETHD__SERVO_Q2, ETHD__SERVO_JOINT, ETHD__SERVO_SPEED, ETHD__SERVO_PARAMS };
+enum {
+  ETHD__SERVO_Q1,
+  ETHD__SERVO_Q2,
+  ETHD__SERVO_JOINT,
+  ETHD__SERVO_SPEED,
+  ETHD__SERVO_HOME,
+  ETHD__SERVO_HOME_SPEED,
+  ETHD__SERVO_HOME_TORQUE,
+  ETHD__SERVO_HOME_WAY1,
+  ETHD__SERVO_HOME_WAY2,
+  ETHD__SERVO_PARAMS
+};
 
 extern const ethd_param ethd__servo_params[ETHD__SERVO_PARAMS];
 extern const char *const ethd__servo_keys[];
@@ -64,6 +78,7 @@ ethd_status ethd__servo_start(void *device);
 ethd_status ethd__servo_stop(void *device);
 void ethd__servo_close(void *device);
 void ethd__servo_clear(void *device);
+ethd_status ethd__servo_home(void *device, const double q[2]);
 const char *ethd__servo_why(const void *device);
 ethd_status ethd__servo_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT;
 ethd_status ethd__servo_write(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT;
@@ -72,6 +87,13 @@ ethd_status ethd__servo_service(void *device, uint32_t unit, int64_t now_ns);
 
 /* ns: feedback or a command older than this is too old. [any] */
 int64_t ethd__servo_old(const ethd__servo_device *d) ETHD_RT;
+
+/* Zero, seen by the drive, then [enable]; and [disable], from any state. Why not: the link's message. [main], locked */
+ETHD_MUST_CHECK ethd_status ethd__servo_enable(ethd__servo_device *d);
+ETHD_MUST_CHECK ethd_status ethd__servo_disable(ethd__servo_device *d);
+
+/* The joint, from 1, whose angle isn't known; 0: all are. */
+int32_t ethd__servo_lost(const ethd__servo_device *d);
 
 /* Connects and identifies, at the first time. [main] */
 ETHD_MUST_CHECK ethd_status ethd__servo_meet(ethd__servo_device *d);

@@ -87,5 +87,6 @@ const ethd_driver ethd_driver_servo = {
     .figures = figures,
     .remark = remark,
     .clear = ethd__servo_clear,
+    .home = ethd__servo_home,
     .why = ethd__servo_why,
 };

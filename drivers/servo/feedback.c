@@ -21,6 +21,7 @@ ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo
   for (int i = 0; i < 2 && !status; i++) {
     int32_t at = map->roles[ETHD__SERVO_POSITION1 + i];
     const ethd__servo_register *r = at < 0 ? NULL : &map->registers[at];
+    f->absolute[i] = !r || r->absolute;
     if (!r || !(r->counts > 0) || r->type == ETHD__SERVO_F32) continue;
     double most = fmin(torque, ethd__servo_most(&map->registers[map->roles[ETHD__SERVO_TORQUE1 + i]]));
     f->axes[i].counts = true;
@@ -39,11 +40,18 @@ ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo
   return status;
 }
 
+static bool is_absolute(const ethd__servo_feedback *f, const ethd__servo_axis *a) { return f->absolute[a - f->axes]; }
+
 /* A counter's angle; rows that it shows are counted. */
 static double follow(ethd__servo_feedback *f, ethd__servo_axis *a, double raw) {
   int64_t grave = 0;
   const ethd__count count = {.time_ns = f->sample.stamp_ns, .raw = (uint64_t)(int64_t)raw & a->def.ceiling};
-  int64_t seen = ethd__encoder_step(&a->def, &a->encoder, &count, a->torque, &grave);
+  int64_t seen = ethd__encoder_step(&a->def, &a->encoder, &count, f->homing ? (double)NAN : a->torque, &grave);
+  /* twice in a row, however far apart a slow bus's samples are: the counter began anew, or lost its way */
+  bool jumps = (seen & ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP)) != 0;
+  if (jumps && a->jumped) grave |= ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP);
+  if (grave & ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP)) a->referenced = is_absolute(f, a);
+  a->jumped = jumps;
   for (int row = ETHD_FAULT_ENCODER_JUMP; row <= ETHD_FAULT_INDEX; row++) {
     f->rows[row] += (seen & ETHD_FAULT_BIT(row)) != 0;
     f->sample.worst[row] += (grave & ETHD_FAULT_BIT(row)) != 0;
@@ -57,7 +65,10 @@ static void take_axis(ethd__servo_feedback *f, const ethd__servo_link *l, int i)
   const ethd__servo_register *r = role(l, ETHD__SERVO_POSITION1 + i, &raw);
   if (!r) return;
   double q = a->counts ? follow(f, a, raw) : ethd__servo_joint(r, raw);
-  if (!a->started) a->offset = isnan(f->home[i]) ? 0 : f->home[i] - q;
+  if (!a->started) {
+    a->offset = isnan(f->home[i]) ? 0 : f->home[i] - q;
+    a->referenced = is_absolute(f, a) || !isnan(f->home[i]);
+  }
   a->started = true;
   f->sample.q[i] = q + a->offset;
   r = role(l, ETHD__SERVO_SPEED1 + i, &speed);
@@ -142,10 +153,18 @@ void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *
   if (other_clock) f->sample.has &= ~ETHD__SERVO_HAS_READING; /* its stamp would lie in another time */
   /* while the line was away the arm may have gone anywhere; a start may be by another clock than what follows */
   for (int i = 0; i < 2 && unseen; i++) ethd__encoder_pause(&f->axes[i].encoder);
+  for (int i = 0; i < 2 && f->connects && f->connects != l->counts.connects; i++)
+    f->axes[i].referenced &= f->absolute[i]; /* the drive may have been without power */
   f->connects = l->counts.connects;
   for (int i = 0; i < 2; i++) take_axis(f, l, i);
   take_reading(f, l);
   watch_torque(f, l, torque);
+}
+
+void ethd__servo_feedback_place(ethd__servo_feedback *f, int axis, double q) {
+  f->axes[axis].offset += q - f->sample.q[axis];
+  f->axes[axis].referenced = true;
+  f->sample.q[axis] = q;
 }
 
 /* ---- what lasts ---- */

@@ -29,6 +29,8 @@ typedef struct ethd__servo_sample {
 } ethd__servo_sample;
 
 typedef struct ethd__servo_axis {
+  bool referenced;      /* its angle is the joint's */
+  bool jumped;          /* its last sample was dropped */
   bool started, counts; /* counts: its position is a counter, unwrapped and watched */
   ethd__encoder_def def;
   ethd__encoder encoder;
@@ -39,6 +41,8 @@ typedef struct ethd__servo_axis {
 
 typedef struct ethd__servo_feedback {
   ethd__servo_axis axes[2];
+  bool absolute[2];                /* the position means the same after the drive was without power */
+  bool homing;                     /* the torque isn't what the encoders are watched against */
   double home[2];                  /* rad: where the joints stand at the first sample; NaN: as the register says */
   double count;                    /* the reading's, last */
   uint32_t rows[ETHD_FAULT_COUNT]; /* of the encoders */
@@ -54,6 +58,9 @@ ETHD_MUST_CHECK ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, c
 /* After a turn of the link that went well; torque is what went out (Nm). I/O side. */
 void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *link, int64_t stamp_ns,
                                const double torque[2]);
+
+/* The axis stands at q now, rad, by its last sample. I/O side. */
+void ethd__servo_feedback_place(ethd__servo_feedback *f, int axis, double q);
 
 /* After any turn: what lasts. I/O side. */
 void ethd__servo_feedback_judge(ethd__servo_feedback *f, const ethd__servo_link *link);

@@ -30,7 +30,7 @@
      guardian = auto             where it doesn't (kind = none), a process of ours does
 
    Names with a meaning: torque1 torque2 (written), position1 position2, speed1 speed2, measured1 measured2
-   (torque or current), bus_voltage, reading_x reading_y reading_count reading_age (a finger's place relative
+   (torque or current), bus_voltage, index1 index2 (a position's count at its last index mark), reading_x reading_y reading_count reading_age (a finger's place relative
    to the ring), counter (a word of ours that the drive keeps). All others are for steps, echoes, or masks. */
 #ifndef ETHD_SERVO_MAP_H
 #define ETHD_SERVO_MAP_H
@@ -69,6 +69,8 @@ enum {
   ETHD__SERVO_MEASURED1,
   ETHD__SERVO_MEASURED2,
   ETHD__SERVO_BUS_VOLTAGE,
+  ETHD__SERVO_INDEX1,
+  ETHD__SERVO_INDEX2,
   ETHD__SERVO_READING_X,
   ETHD__SERVO_READING_Y,
   ETHD__SERVO_READING_COUNT,
@@ -101,6 +103,7 @@ typedef struct ethd__servo_register {
   uint32_t fault_mask, healthy;   /* (raw & fault_mask) != healthy: the drive reports a fault */
   uint32_t enabled_mask, enabled; /* (raw & enabled_mask) == enabled: the drive is enabled */
   int32_t echo;                   /* register that then holds the same raw; -1 none */
+  int32_t absolute;               /* 1: a position that means the same angle after the drive was without power */
   bool cyclic;                    /* part of every exchange */
   bool unconfirmed;               /* its address's line says so: no document of the maker's has it */
 } ethd__servo_register;

@@ -23,6 +23,8 @@ const ethd__servo_role ethd__servo_roles[ETHD__SERVO_ROLES] = {
     [ETHD__SERVO_MEASURED1] = {"measured1", "A|Nm", R},
     [ETHD__SERVO_MEASURED2] = {"measured2", "A|Nm", R},
     [ETHD__SERVO_BUS_VOLTAGE] = {"bus_voltage", "V", R},
+    [ETHD__SERVO_INDEX1] = {"index1", "count", R},
+    [ETHD__SERVO_INDEX2] = {"index2", "count", R},
     [ETHD__SERVO_READING_X] = {"reading_x", "m", R},
     [ETHD__SERVO_READING_Y] = {"reading_y", "m", R},
     [ETHD__SERVO_READING_COUNT] = {"reading_count", "1", R},
@@ -126,6 +128,8 @@ static ethd_status check_register(const ethd__servo_source *s, const ethd__servo
   if (status) return status;
   if (r->role == ETHD__SERVO_BUS_VOLTAGE && !(has(s, r, "min") && has(s, r, "max") && r->min < r->max))
     return refuse(s, r, "min", "min < max are needed: outside of them the supply is a fault");
+  if (r->absolute && r->role != ETHD__SERVO_POSITION1 && r->role != ETHD__SERVO_POSITION2)
+    return refuse(s, r, "absolute", "only position1 and position2 can be");
   if (r->tolerance > 0 && r->role != ETHD__SERVO_MEASURED1 && r->role != ETHD__SERVO_MEASURED2)
     return refuse(s, r, "tolerance", "only measured1 and measured2 have one");
   return ETHD_OK;
@@ -189,9 +193,10 @@ static ethd_status check_every(const ethd__servo_source *s, const ethd__servo_ma
   for (uint32_t i = 0; i < map->count; i++) {
     const ethd__servo_register *r = &map->registers[i];
     bool may = r->role < 0 || r->role == ETHD__SERVO_MEASURED1 || r->role == ETHD__SERVO_MEASURED2 ||
-               r->role == ETHD__SERVO_BUS_VOLTAGE;
+               r->role == ETHD__SERVO_BUS_VOLTAGE || r->role == ETHD__SERVO_INDEX1 || r->role == ETHD__SERVO_INDEX2;
     if (r->every > 1 && (r->direction != R || !may || is_echo(map, (int32_t)i)))
-      return refuse(s, r, "every", "only measured torques, bus_voltage and masks are read less often, echoes aren't");
+      return refuse(s, r, "every",
+                    "only measured torques, index marks, bus_voltage and masks are read less often, echoes aren't");
   }
   return ETHD_OK;
 }
@@ -225,6 +230,11 @@ static ethd_status check_roles(const ethd__servo_source *s, const ethd__servo_ma
       !both_or_none(map, ETHD__SERVO_READING_X, ETHD__SERVO_READING_COUNT) ||
       (roles[ETHD__SERVO_READING_AGE] >= 0 && roles[ETHD__SERVO_READING_X] < 0))
     wrong = "reading_x, reading_y and reading_count go together";
+  for (int i = 0; i < 2; i++)
+    if (roles[ETHD__SERVO_INDEX1 + i] >= 0 &&
+        (roles[ETHD__SERVO_POSITION1 + i] < 0 ||
+         map->registers[roles[ETHD__SERVO_INDEX1 + i]].type != map->registers[roles[ETHD__SERVO_POSITION1 + i]].type))
+      wrong = "index1 and index2 are counts of position1 and position2, of the same type";
   if (map->watchdog == ETHD__SERVO_WATCH_COUNTER && roles[ETHD__SERVO_COUNTER] < 0)
     wrong = "watchdog.kind = counter needs a [register counter]";
   return wrong ? ethd__say(s->message, ETHD_E_UNKNOWN, "%s: %s", s->name, wrong) : ETHD_OK;

@@ -5,14 +5,23 @@
 #include <string.h>
 
 #include "servo/device.h"
+#include "servo/words.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
 const ethd_param ethd__servo_params[ETHD__SERVO_PARAMS] = {
-    [ETHD__SERVO_Q1] = {"q1", "rad", -100, 100, 0, "joint 1 when the device is opened; without: as its register says"},
+    [ETHD__SERVO_Q1] = {"q1", "rad", -100, 100, 0,
+                        "joint 1 in the jig, at the stop or at the mark; in the jig when the device is opened"},
     [ETHD__SERVO_Q2] = {"q2", "rad", -100, 100, 0, "joint 2, likewise"},
     [ETHD__SERVO_JOINT] = {"joint", "1", 1, 2, 1, "of a map with one axis: which joint that is"},
     [ETHD__SERVO_SPEED] = {"speed", "m/s", 0.01, 10, 1.2, "of the ring: faster is row 24 of the fault table"},
+    [ETHD__SERVO_HOME] = {"home", "jig|stop|index", 0, 2, 0,
+                          "how the joints are found: by hand in a jig, or by themselves"},
+    [ETHD__SERVO_HOME_SPEED] = {"home_speed", "rad/s", 1e-3, 2, 0.1, "towards stop or mark"},
+    [ETHD__SERVO_HOME_TORQUE] = {"home_torque", "Nm", 0, 100, 0, "at most; 0: 0.15 of the largest"},
+    [ETHD__SERVO_HOME_WAY1] = {"home_way1", "1", -1, 1, 1,
+                               "1 or -1: towards joint 1's stop or mark its angle rises or falls"},
+    [ETHD__SERVO_HOME_WAY2] = {"home_way2", "1", -1, 1, 1, "likewise of joint 2"},
 };
 
 const char *const ethd__servo_keys[] = {"map", "port", NULL};
@@ -28,7 +37,8 @@ static const char *file(const ethd_device_def *def) { return def->file ? def->fi
 
 static ethd_status read_settings(const ethd_device_def *def, settings *out, char *message) {
   const ethd_setting *texts[2] = {NULL, NULL};
-  *out = (settings){.p = {NAN, NAN, NAN, ethd__servo_params[ETHD__SERVO_SPEED].def}};
+  *out = (settings){.map = NULL};
+  for (int i = 0; i < ETHD__SERVO_PARAMS; i++) out->p[i] = i < ETHD__SERVO_SPEED ? NAN : ethd__servo_params[i].def;
   ethd_status status = ethd_settings_read(&ethd_driver_servo, def, out->p, texts, message);
   out->map = texts[0];
   out->port = texts[1];
@@ -38,6 +48,10 @@ static ethd_status read_settings(const ethd_device_def *def, settings *out, char
   if (!status && !isnan(out->p[ETHD__SERVO_JOINT]) && out->p[ETHD__SERVO_JOINT] != rint(out->p[ETHD__SERVO_JOINT]))
     status = ethd__say(message, ETHD_E_RANGE, "%s: device.joint: found %g, 1 and 2 are allowed", file(def),
                        out->p[ETHD__SERVO_JOINT]);
+  for (int i = ETHD__SERVO_HOME_WAY1; i <= ETHD__SERVO_HOME_WAY2 && !status; i++)
+    if (fabs(out->p[i]) != 1)
+      status = ethd__say(message, ETHD_E_RANGE, "%s: device.%s: found %g, 1 and -1 are allowed", file(def),
+                         ethd__servo_params[i].name, out->p[i]);
   return status;
 }
 
@@ -67,7 +81,9 @@ static ethd_status place_axes(ethd__servo_device *d, const ethd_device_def *def,
   for (int i = 0; i < 2; i++) {
     if (d->joint[i] < 0) continue;
     if (!both && given) d->joint[i] = (int32_t)s->p[ETHD__SERVO_JOINT] - 1;
-    d->feedback.home[i] = s->p[d->joint[i] ? ETHD__SERVO_Q2 : ETHD__SERVO_Q1];
+    double q = s->p[d->joint[i] ? ETHD__SERVO_Q2 : ETHD__SERVO_Q1];
+    d->home[d->joint[i]] = q;
+    d->feedback.home[i] = s->p[ETHD__SERVO_HOME] == ETHD__HOMING_JIG ? q : NAN;
   }
   return ETHD_OK;
 }
@@ -92,6 +108,30 @@ static ethd_status make_feedback(ethd__servo_device *d, const ethd_device_def *d
                                                  1e-9 * (double)d->exchange_ns, &error);
   if (status) ethd_error_text(s->map->value, &error, message);
   return status;
+}
+
+/* Friction is a tenth of the largest torque or less, and the stop must bear it. */
+#define HOME_SHARE 0.15
+
+static ethd_status set_homing(ethd__servo_device *d, const ethd_device_def *def, const settings *s, char *message) {
+  ethd__homing_method method = (ethd__homing_method)s->p[ETHD__SERVO_HOME];
+  for (int i = 0; i < 2; i++) {
+    int32_t torque = d->map.roles[ETHD__SERVO_TORQUE1 + i];
+    if (torque < 0) continue;
+    double most = fmin(ethd__servo_most(&d->map.registers[torque]), def->setup->limits.torque);
+    double given = s->p[ETHD__SERVO_HOME_TORQUE];
+    d->homing[i] = (ethd__homing_def){.method = method,
+                                      .direction = s->p[ETHD__SERVO_HOME_WAY1 + d->joint[i]],
+                                      .speed = s->p[ETHD__SERVO_HOME_SPEED],
+                                      .torque = given > 0 ? fmin(given, most) : HOME_SHARE * most};
+    if (method != ETHD__HOMING_JIG && isnan(d->home[d->joint[i]]))
+      return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.q%d is missing: its angle at the %s", file(def),
+                       d->joint[i] + 1, method == ETHD__HOMING_STOP ? "stop" : "index mark");
+    if (method == ETHD__HOMING_INDEX && d->map.roles[ETHD__SERVO_INDEX1 + i] < 0)
+      return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.home = index needs a [register index%d] in %s", file(def),
+                       i + 1, s->map->value);
+  }
+  return ETHD_OK;
 }
 
 /* The loop may hold a torque for two exchanges, and no longer than 50 ms. */
@@ -139,6 +179,7 @@ ethd_status ethd__servo_open(const ethd_device_def *def, void **out, char messag
   status = load_map(def, &s, &d->map, message);
   d->exchange_ns = d->period_ns * d->map.divisor;
   if (!status) status = place_axes(d, def, &s, message);
+  if (!status) status = set_homing(d, def, &s, message);
   if (!status) status = check_pace(d, &s, message);
   if (!status) status = make_cells(d, message);
   if (!status) status = make_feedback(d, def, &s, message);

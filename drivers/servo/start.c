@@ -69,7 +69,7 @@ static ethd_status run(ethd__servo_device *d, int32_t sequence) {
   return d->link.result;
 }
 
-static ethd_status start_locked(ethd__servo_device *d) {
+ethd_status ethd__servo_enable(ethd__servo_device *d) {
   atomic_store(&d->safe, 1);
   atomic_fetch_add(&d->epoch, 1); /* commands from before count no more */
   d->link.attempt_ns = 0;
@@ -81,10 +81,18 @@ static ethd_status start_locked(ethd__servo_device *d) {
   status = zero_and_verify(d, 0.5);
   d->link.set_point_stays = status && d->link.echo_failed;
   if (d->link.set_point_stays) d->link.rows[ETHD_FAULT_SET_POINT]++;
-  if (!status) status = run(d, ETHD__SERVO_ENABLE);
-  if (status) return status;
-  atomic_store(&d->safe, 0);
-  return ETHD_OK;
+  return status ? status : run(d, ETHD__SERVO_ENABLE);
+}
+
+static ethd_status start_locked(ethd__servo_device *d) {
+  int32_t lost = ethd__servo_lost(d);
+  if (lost)
+    return ethd__say(d->link.message, ETHD_E_DEVICE,
+                     "nobody knows where joint %d stands: home it; or stand the arm in its jig and give device.q1, q2",
+                     lost);
+  ethd_status status = ethd__servo_enable(d);
+  if (!status) atomic_store(&d->safe, 0);
+  return status;
 }
 
 ethd_status ethd__servo_start(void *device) {
@@ -101,15 +109,17 @@ void ethd__servo_clear(void *device) { atomic_store(&((ethd__servo_device *)devi
 const char *ethd__servo_why(const void *device) { return ((const ethd__servo_device *)device)->why; }
 
 /* Zero torque even where the drive doesn't answer to the steps. */
+ethd_status ethd__servo_disable(ethd__servo_device *d) {
+  atomic_store(&d->safe, 1);
+  if (d->link.state < ETHD__SERVO_UP) return ETHD_OK;
+  if (d->link.state > ETHD__SERVO_IDENTIFIED) d->link.state = ETHD__SERVO_IDENTIFIED;
+  return run(d, ETHD__SERVO_DISABLE);
+}
+
 ethd_status ethd__servo_stop(void *device) {
   ethd__servo_device *d = device;
   pthread_mutex_lock(&d->lock);
-  atomic_store(&d->safe, 1);
-  ethd_status status = ETHD_OK;
-  if (d->link.state >= ETHD__SERVO_UP) {
-    d->link.state = d->link.state > ETHD__SERVO_IDENTIFIED ? ETHD__SERVO_IDENTIFIED : d->link.state;
-    status = run(d, ETHD__SERVO_DISABLE);
-  }
+  ethd_status status = ethd__servo_disable(d);
   pthread_mutex_unlock(&d->lock);
   return status ? ETHD_E_DEVICE : ETHD_OK;
 }

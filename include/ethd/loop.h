@@ -160,6 +160,10 @@ ETHD_API void ethd_loop_clear(ethd_loop *loop);
    Not while a posted setup waits. ETHD_BUSY: the loop didn't let go within a second. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_enable(ethd_loop *loop);
 
+/* The device's home, while it is disarmed and the loop leaves it alone: where the joints stand, or NULL, see driver.h.
+   A controller without a fault begins anew, as the pose may jump. ETHD_BUSY: the loop didn't let go, or is armed. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_home(ethd_loop *loop, const double *q);
+
 /* Asks the threads to end; zero torque is the last thing written. [any] */
 ETHD_API void ethd_loop_stop(ethd_loop *loop);
 

@@ -34,3 +34,8 @@ END
 slow_map() { # MAP OUT: a machine that is busy answers late; how late isn't what is tried
   sed -e 's/^response = .*/response = 0.5/' -e 's/^drain = .*/drain = 0.02/' "$1" >"$2"
 }
+servo_ini() { # NAME MAP LINES...: a configuration of the servo alone, behind $line
+  name=$1 map_=$2
+  shift 2
+  { sed '/^\[device\]/,$d' apps/config/n.ini; printf '[device]\ndriver = servo\nmap = %s\nport = %s\n' "$map_" "$line"; printf '%s\n' "$@"; } >"$folder/$name.ini"
+}

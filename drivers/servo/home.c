@@ -1,0 +1,114 @@
+/* Where the joints stand: said by whoever stood the arm in its jig, or found by moving it. [main] */
+#include <math.h>
+#include <time.h>
+
+#include "servo/device.h"
+#include "servo/words.h"
+#include "text/error_text.h"
+
+#define PAUSE 200000 /* ns */
+#define FAILURES 20  /* bad turns in a row, which end it */
+
+static int64_t monotonic(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
+int32_t ethd__servo_lost(const ethd__servo_device *d) {
+  for (int i = 0; i < 2; i++)
+    if (d->joint[i] >= 0 && !(d->feedback.axes[i].started && d->feedback.axes[i].referenced)) return d->joint[i] + 1;
+  return 0;
+}
+
+/* ---- one turn, an exchange long ---- */
+
+static ethd_status turn(ethd__servo_device *d, const double torque[2]) {
+  const struct timespec pause = {.tv_nsec = PAUSE};
+  int64_t begin = monotonic();
+  ethd_status status = ethd__servo_turn(d, begin, torque);
+  do nanosleep(&pause, NULL);
+  while (monotonic() - begin < d->exchange_ns);
+  return status;
+}
+
+/* What ends it: the drive, the supply, the line, a motor that doesn't follow. */
+static bool is_ill(const ethd__servo_device *d) {
+  return d->link.state != ETHD__SERVO_ENABLED || d->feedback.sample.levels;
+}
+
+static double index_of(const ethd__servo_device *d, int axis) {
+  int32_t r = d->map.roles[ETHD__SERVO_INDEX1 + axis];
+  return r < 0 ? 0 : d->link.raw[r];
+}
+
+/* rad that the joint has gone since its mark passed. */
+static double past_mark(const ethd__servo_device *d, int axis) {
+  int32_t at = d->map.roles[ETHD__SERVO_POSITION1 + axis];
+  const ethd__servo_register *r = &d->map.registers[at];
+  uint32_t ceiling = (uint32_t)ethd__count_ceiling(r->bits);
+  uint32_t since = ((uint32_t)(int64_t)d->link.raw[at] - (uint32_t)(int64_t)index_of(d, axis)) & ceiling;
+  double counts = since > ceiling / 2 ? -(double)(ceiling - since) - 1 : since;
+  return counts * (ethd__servo_joint(r, 1) - ethd__servo_joint(r, 0));
+}
+
+/* ---- by moving it ---- */
+
+/* The joint is found, or why it isn't. */
+static ethd_status find(ethd__servo_device *d, int axis) {
+  const ethd__homing_def *def = &d->homing[axis];
+  ethd__homing homing = {.begun = false};
+  ethd__servo_sample *s = &d->feedback.sample;
+  double torque[2] = {0, 0}, mark = index_of(d, axis);
+  int64_t last = s->stamp_ns;
+  ethd_status status = ETHD_BUSY;
+  for (int bad = 0; status == ETHD_BUSY && bad < FAILURES;) {
+    bad = turn(d, torque) ? bad + 1 : 0;
+    if (bad) continue;
+    if (is_ill(d)) return ethd__say(d->link.message, ETHD_E_DEVICE, "joint %d: the drive lets go", d->joint[axis] + 1);
+    status = ethd__homing_turn(def, &homing, s->q[axis], 1e-9 * (double)(s->stamp_ns - last), index_of(d, axis) != mark,
+                               &torque[axis]);
+    last = s->stamp_ns;
+  }
+  if (status < 0) return ethd__say(d->link.message, status, "joint %d: %s", d->joint[axis] + 1, homing.failure);
+  if (status) return ETHD_E_DEVICE; /* the line's own message stands */
+  double past = def->method == ETHD__HOMING_INDEX ? past_mark(d, axis) : 0;
+  ethd__servo_feedback_place(&d->feedback, axis, d->home[d->joint[axis]] + past);
+  return ETHD_OK;
+}
+
+static ethd_status find_all(ethd__servo_device *d) {
+  if (d->homing[0].method == ETHD__HOMING_JIG && d->homing[1].method == ETHD__HOMING_JIG)
+    return ethd__say(d->link.message, ETHD_E_ARGUMENT,
+                     "device.home is jig: stand the arm in it, and say where its joints are");
+  ethd_status status = ethd__servo_enable(d);
+  d->feedback.homing = true; /* a joint stands under torque here */
+  for (int i = 0; i < 2 && !status; i++)
+    if (d->joint[i] >= 0) status = find(d, i);
+  d->feedback.homing = false;
+  ethd_status stopped = ethd__servo_disable(d);
+  return status ? status : stopped;
+}
+
+/* ---- by what is said ---- */
+
+static ethd_status place(ethd__servo_device *d, const double q[2]) {
+  const double zero[2] = {0, 0};
+  int bad = 0;
+  while (turn(d, zero) && ++bad < FAILURES) continue;
+  if (bad == FAILURES) return ETHD_E_DEVICE;
+  for (int i = 0; i < 2; i++)
+    if (d->joint[i] >= 0) ethd__servo_feedback_place(&d->feedback, i, q[d->joint[i]]);
+  return ETHD_OK;
+}
+
+ethd_status ethd__servo_home(void *device, const double q[2]) {
+  ethd__servo_device *d = device;
+  pthread_mutex_lock(&d->lock);
+  atomic_store(&d->safe, 1);
+  ethd_status status = q ? place(d, q) : find_all(d);
+  ethd__say(d->why, status, "%s", status ? d->link.message : "");
+  ethd_cell_put(d->samples, &d->feedback.sample);
+  pthread_mutex_unlock(&d->lock);
+  return status ? ETHD_E_DEVICE : ETHD_OK;
+}

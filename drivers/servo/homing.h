@@ -1,0 +1,37 @@
+/* Where a joint stands, found by moving it: slowly, with little torque, until it meets its stop or its encoder's index
+   mark. One joint at a time, one call an exchange; the other joint gets no torque.
+
+     stop    away from it a little (an encoder that doesn't follow is found out here), then towards it until it stands
+             under nearly all of the torque for a while: that place is `angle`
+     index   towards the mark until it has passed: that count is `angle` */
+#ifndef ETHD_SERVO_HOMING_H
+#define ETHD_SERVO_HOMING_H
+
+#include <stdbool.h>
+
+#include "ethd/status.h"
+
+typedef enum ethd__homing_method { ETHD__HOMING_JIG, ETHD__HOMING_STOP, ETHD__HOMING_INDEX } ethd__homing_method;
+
+typedef struct ethd__homing_def {
+  ethd__homing_method method; /* STOP or INDEX */
+  double direction;           /* 1 or -1: of the joint's angle, towards stop or mark */
+  double speed;               /* rad/s */
+  double torque;              /* Nm, the most that is used; over the joint's friction */
+} ethd__homing_def;
+
+/* Zeroed: ready. */
+typedef struct ethd__homing {
+  double begin, last, v, sum; /* rad, rad, rad/s filtered, Nm */
+  double time, still, travel; /* s, s, rad: since the begin; stood for so long; went so far in this leg */
+  bool begun, towards;
+  const char *failure;
+} ethd__homing;
+
+/* A sample of the joint, dt s after the one before; mark: the index mark has passed since. ETHD_BUSY: *torque is what to
+   ask for until the next. ETHD_OK: found, the joint is at the place now (STOP) or was when the mark passed (INDEX).
+   ETHD_E_DEVICE: `failure` says why not. *torque is zero when it isn't BUSY. */
+ETHD_MUST_CHECK ethd_status ethd__homing_turn(const ethd__homing_def *def, ethd__homing *homing, double q, double dt,
+                                              bool mark, double *torque);
+
+#endif
