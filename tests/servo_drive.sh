@@ -42,7 +42,7 @@ drive_ends
 # ---- homing: refused without, found at its stops, lost with its power ----
 run=$BUILD/bin/ethd-run
 cp apps/config/wall.scene "$folder"
-drive svd48v
+drive svd48v --lock-step 0.004
 tell turn 0.2 -0.4 >/dev/null
 servo_ini lost svd48v.map
 "$run" --config "$folder/lost.ini" --duration 1 >"$folder/lost" 2>&1 </dev/null && fail "started without a reference"
@@ -63,5 +63,36 @@ assert true[0] > 0.9 and true[1] < -0.9
 END
 drive_ends
 
-[ $failed = 0 ] && echo "probed in both orders, homed at its stops"
+# ---- what goes wrong at the drive, in its own time: 4 ms an exchange, in lock-step with a virtual clock. A hand holds the
+# joints, a wall pushes with 0.3 Nm, 0.64 A; s until no torque is asked for any more, and what ethd-run says of it ----
+broken() { # NAME COMMAND BOUND SENTENCE
+  drive svd48v --lock-step 0.004
+  tell hold >/dev/null
+  servo_ini "$1" svd48v.map 'q1 = 1.5747963' 'q2 = 0' # the ring is 1 mm in the wall
+  printf '\n[contact]\nk_e = 1200\n' >>"$folder/$1.ini"
+  sed -i 's/^law = offset/law = abrupt/; /^preset/d' "$folder/$1.ini"
+  tell at 0.6 "$2" >/dev/null
+  printf 'wait 0.4\nstatus\nwait 0.8\nstatus\n%s\nstop\n' "${5:-}" |
+    "$run" --config "$folder/$1.ini" --virtual --duration 9 >"$folder/$1.out" 2>&1 || fail "$1: exit $?: $(cat "$folder/$1.out")"
+  reaction=$(tell reaction)
+  drive_ends
+  says "$folder/$1.out" '^ok: t 0.4.* enabled, abrupt, .* torque -0.3000 .* no fault$'
+  printf '%-12s no torque after %s s, allowed are %s\n' "$1" "$reaction" "$3"
+  if [ "$3" = never ]; then
+    says "$folder/$1.out" '^ok: t 1.2.* enabled, abrupt, .* no fault$'
+  else
+    says "$folder/$1.out" "^ok: t 1.2.* disabled, .* $4\$"
+    awk -v is="$reaction" -v most="$3" 'BEGIN { exit !(is >= 0 && is <= most) }' || fail "$1: zero torque after $reaction s, not $3"
+  fi
+}
+# a row of one exchange, where its register is read every second time: 8 ms, and two exchanges until zero is there
+broken alarm alarm 0.016 'the drive reports a fault'
+broken supply 'volts 70' 0.208 "the drive's supply is out of its range"
+broken dead dead 0.036 "the drive doesn't follow the torque"
+broken garbled 'garble 1' never
+broken stale 'stale 1' never
+# its power goes and comes: the drive has stopped, and where the joints stand nobody knows any more
+broken cycled cycle 0.016 'the drive reports a fault' 'wait 1\nack\nenable'
+
+[ $failed = 0 ] && echo "probed in both orders, homed at its stops, broken in six ways"
 exit $failed

@@ -1,7 +1,8 @@
 """A UUMotor SVD48V as its manual (V2.0) has it, by pymodbus, independent of ours and of libmodbus: its registers, its
 checksum with the high byte first, its refusals, and two joints that its currents move.
 
-svd48v_peer.py (--serial DEVICE | --tcp PORT) [--crc low-first] [--unit N]
+svd48v_peer.py (--serial DEVICE | --tcp PORT) [--crc low-first] [--unit N] [--lock-step S]
+--lock-step: its time goes on by S with each set-point, and stands otherwise.
 Says "ready NAME CONTROL": CONTROL is a UDP port of 127.0.0.1 that takes one command a datagram and answers with one line:
   state          instant, amperes of both motors, running of both, angles of both, instant of the last set-point that
                  wasn't zero, instant since when no torque acts (0: it acts)                          [s, A, -, rad, s]
@@ -9,6 +10,8 @@ Says "ready NAME CONTROL": CONTROL is a UDP port of 127.0.0.1 that takes one com
   cycle          its power goes and comes back: counters from 0, as delivered  turn Q1 Q2  joints are put there, rad
   frozen N       encoder of joint N stands still                              reversed N  it counts the other way round
   dead           motors don't follow their set-points                         well        all of this ends
+  hold           a hand holds the joints         at T WORDS...  a command at that instant of its time
+  reaction       s from the last command that was due by "at" until no torque was asked for, -1: it is still
   mute N         N answers don't come         late N MS    N come late        garble N    N have a bit wrong
   stale N        N are those of the question before                           requests    how many came
 """
@@ -41,9 +44,12 @@ def signed(word):
 
 
 class Drive(ModbusBaseSlaveContext):
-    def __init__(self):
+    def __init__(self, lock_step):
+        self.lock_step, self.stepped = lock_step, 0.0
+        self.asked_until = 0.0
+        self.due, self.broken_at, self.held_by_hand, self.line = [], -1.0, False, None
         self.q, self.w = [0.0, 0.0], [0.0, 0.0]
-        self.at = time.monotonic()
+        self.at = self.now()
         self.volts, self.alarm = 480, False
         self.frozen, self.reversed, self.dead = [False] * 2, [False] * 2, False
         self.last_torque_at, self.zero_since = 0.0, self.at
@@ -55,6 +61,9 @@ class Drive(ModbusBaseSlaveContext):
         self.running, self.alarm = [0, 0], False
         self.held = [None, None]
 
+    def now(self):
+        return self.stepped if self.lock_step else time.monotonic()
+
     # ---- the joints ----
 
     def current(self, i):
@@ -63,11 +72,11 @@ class Drive(ModbusBaseSlaveContext):
         return signed(self.words[0x5308 + i]) if works else 0
 
     def advance(self):
-        now = time.monotonic()
+        now = self.now()
         steps = min(int((now - self.at) / STEP), 20000)
         self.at = self.at + steps * STEP if steps < 20000 else now
         for _ in range(steps):
-            for i in range(2):
+            for i in range(0 if self.held_by_hand else 2):
                 torque = TORQUE * 0.1 * self.current(i) - VISCOUS * self.w[i]
                 if self.w[i] == 0 and abs(torque) <= FRICTION:
                     continue
@@ -78,6 +87,9 @@ class Drive(ModbusBaseSlaveContext):
                 if not STOPS[0] <= self.q[i] <= STOPS[1]:
                     self.q[i] = min(max(self.q[i], STOPS[0]), STOPS[1])
                     self.w[i] = 0.0
+
+    def asks(self):
+        return any(self.words[0x5308 + i] and self.words[0x5300 + i] == 1 for i in range(2))
 
     def count(self, i):
         n = round((self.q[i] - self.origin[i]) * COUNTS)
@@ -92,9 +104,9 @@ class Drive(ModbusBaseSlaveContext):
         """When torque ends or begins."""
         acts = any(self.current(i) for i in range(2))
         if acts:
-            self.last_torque_at, self.zero_since = time.monotonic(), 0.0
+            self.last_torque_at, self.zero_since = self.now(), 0.0
         elif before:
-            self.zero_since = time.monotonic()
+            self.zero_since = self.now()
 
     # ---- registers ----
 
@@ -123,8 +135,13 @@ class Drive(ModbusBaseSlaveContext):
         return [self.word(address + k) for k in range(count)]
 
     def setValues(self, fc_as_hex, address, values):
+        if address <= 0x5308 < address + len(values):
+            self.stepped += self.lock_step
+        while self.due and self.due[0][0] <= self.now() + 1e-9:
+            self.broken_at = self.now()
+            self.command(self.due.pop(0)[1])
         self.advance()
-        before = any(self.current(i) for i in range(2))
+        before, asked = any(self.current(i) for i in range(2)), self.asks()
         for k, value in enumerate(values):
             a = address + k
             self.words[a] = value
@@ -133,14 +150,24 @@ class Drive(ModbusBaseSlaveContext):
                     self.alarm = False
                 self.running[a - 0x5300] = int(value == 1 and not self.alarm)
         self.mark(before)
+        if asked and not self.asks():
+            self.asked_until = self.now()
 
     # ---- what a test makes it do ----
 
     def command(self, text):
         self.advance()
-        before = any(self.current(i) for i in range(2))
+        before, asked = any(self.current(i) for i in range(2)), self.asks()
         word, *rest = text.split()
-        if word == "alarm":
+        if word in ("mute", "late", "garble", "stale"):
+            return self.line.command(text)
+        if word == "at":
+            self.due.append((float(rest[0]), " ".join(rest[1:])))
+        elif word == "reaction":
+            return f"{self.asked_until - self.broken_at if not self.asks() else -1:.6f}"
+        elif word == "hold":
+            self.held_by_hand = True
+        elif word == "alarm":
             self.alarm, self.running = True, [0, 0]
         elif word == "volts":
             self.volts = round(10 * float(rest[0]))
@@ -159,7 +186,9 @@ class Drive(ModbusBaseSlaveContext):
         elif word != "state":
             return "unknown"
         self.mark(before)
-        return " ".join(f"{x:.6f}" for x in (time.monotonic(), *(0.1 * self.current(i) for i in range(2)), *self.running,
+        if asked and not self.asks():
+            self.asked_until = self.now()
+        return " ".join(f"{x:.6f}" for x in (self.now(), *(0.1 * self.current(i) for i in range(2)), *self.running,
                                              *self.q, self.last_torque_at, self.zero_since))
 
 
@@ -213,11 +242,13 @@ async def main():
     parser.add_argument("--tcp", type=int)
     parser.add_argument("--crc", default="high-first")
     parser.add_argument("--unit", type=int, default=1)
+    parser.add_argument("--lock-step", type=float, default=0.0)
     arg = parser.parse_args()
     if arg.crc == "high-first":  # every frame of the manual: EE 03 54 10 00 01 60 83
         standard = FramerRTU.compute_CRC
         FramerRTU.compute_CRC = classmethod(lambda cls, data: (lambda c: c >> 8 | (c & 0xFF) << 8)(standard(data)))
-    drive, line = Drive(), Line()
+    drive, line = Drive(arg.lock_step), Line()
+    drive.line = line
     context = ModbusServerContext(slaves={arg.unit: drive}, single=False)
     options = {"ignore_missing_slaves": True, "trace_packet": line.pass_by}
     if arg.serial:
