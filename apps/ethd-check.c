@@ -68,7 +68,7 @@ static void check_device(const ethd_config *config) {
   char message[ETHD_MESSAGE_MAX];
   const ethd_driver *driver;
   void *device;
-  const ethd_device_def def = {&config->setup, config->settings, config->setting_count, config->folder, arg.config};
+  const ethd_device_def def = {&config->setup, config->settings, config->setting_count, config->folder, arg.config, 0};
   if (strcmp(config->device, ethd_driver_sim.id) != 0)
     ethd__fail(ETHD_EXIT_INPUT, "%s:%d: device.driver: found \"%s\", sim is allowed", arg.config,
                ethd_ini_find(&ethd__config_whole(config)->ini, "device", "driver")->line, config->device);

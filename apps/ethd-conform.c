@@ -49,9 +49,9 @@ int main(int argc, char **argv) {
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   ethd_status status = ethd_config_load(arg.config, &config, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
-  const ethd_device_def device = {&config->setup, config->settings, config->setting_count, config->folder,
-                                  config->path};
-  const ethd_conform_def def = {config->device, NULL, &device, arg.move ? arg.torque : 0, arg.is_virtual};
+  const ethd_device_def device = {&config->setup, config->settings, config->setting_count,
+                                  config->folder, config->path,     arg.is_virtual};
+  const ethd_conform_def def = {config->device, NULL, &device, arg.move ? arg.torque : 0};
   status = ethd_conform(&def, answers);
   for (int i = 0; i < ETHD_QUESTIONS; i++)
     printf("%-9s %-10s %s\n", answers[i].question, words[answers[i].verdict], answers[i].found);

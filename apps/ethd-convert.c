@@ -48,7 +48,7 @@ typedef struct recording {
 
 static char *within(const char *name) {
   char *path = ethd__path_join(arg.folder, name);
-  if (!path) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!path) ethd__fail_memory();
   return path;
 }
 
@@ -89,7 +89,7 @@ static char *csv_header(void) {
   char *text = NULL;
   size_t length;
   FILE *out = open_memstream(&text, &length);
-  if (!out) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!out) ethd__fail_memory();
   for (const ethd_column *c = ethd_trace_columns; c->name; c++)
     for (uint32_t i = 0; i < c->count; i++) {
       fprintf(out, "%s%s", c == ethd_trace_columns && !i ? "" : ",", c->name);
@@ -176,7 +176,7 @@ typedef struct text {
 
 static FILE *again(text *t) {
   if (!t->file) t->file = open_memstream(&t->at, &t->length);
-  if (!t->file) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!t->file) ethd__fail_memory();
   rewind(t->file);
   return t->file;
 }

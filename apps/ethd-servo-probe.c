@@ -4,9 +4,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "cli/cli.h"
+#include "clock.h"
 #include "ethd/loop.h"
 #include "servo/link.h"
 #include "servo/wire.h"
@@ -54,12 +54,6 @@ static ethd__servo_map map;
 static ethd__servo_link drive;
 static ethd_histogram trip;
 
-static int64_t now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
-
 static void load(void) {
   char message[ETHD_MESSAGE_MAX];
   ethd_status status = ethd__servo_map_load(arg.map, arg.map, &map, message);
@@ -106,20 +100,20 @@ static void find_order(void) {
 static void reach(void) {
   const double zero[2] = {0, 0};
   ethd__servo_link_make(&map, &drive);
-  ethd_status status = ethd__servo_link_connect(&drive, now());
+  ethd_status status = ethd__servo_link_connect(&drive, ethd__clock_now());
   if (status) ethd__fail(ethd__exit_code(status), "%s", drive.message);
-  int64_t end = now() + (int64_t)(1e9 * (map.connect + 1));
-  while (drive.state == ETHD__SERVO_UP && drive.sequence >= 0 && now() < end)
-    (void)!ethd__servo_link_turn(&drive, now(), zero);
+  int64_t end = ethd__clock_now() + (int64_t)(1e9 * (map.connect + 1));
+  while (drive.state == ETHD__SERVO_UP && drive.sequence >= 0 && ethd__clock_now() < end)
+    (void)!ethd__servo_link_turn(&drive, ethd__clock_now(), zero);
   if (drive.state < ETHD__SERVO_IDENTIFIED) ethd__fail(ETHD_EXIT_FAILED, "%s", drive.message);
 }
 
 static double measure(void) {
   const double zero[2] = {0, 0};
-  int64_t begin = now(), at = begin, end = begin + (int64_t)(1e9 * arg.duration);
+  int64_t begin = ethd__clock_now(), at = begin, end = begin + (int64_t)(1e9 * arg.duration);
   for (; at < end && !ethd__stop; ethd__progress((uint64_t)(at - begin), (uint64_t)(end - begin), "exchanges")) {
     ethd_status status = ethd__servo_link_turn(&drive, at, zero);
-    int64_t after = now();
+    int64_t after = ethd__clock_now();
     if (!status) ethd_histogram_add(&trip, after - at);
     at = after;
   }

@@ -157,7 +157,7 @@ static void make_folder(void) {
     ethd__fail(ETHD_EXIT_INPUT, "%s: holds a session; --resume %s goes on with it", arg.out, arg.out);
   free(journal);
   char *study = arg.study ? strdup(arg.study) : ethd__data_path("paper.study");
-  if (!study) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!study) ethd__fail_memory();
   ethd_status status = ethd__protocol_load(study, &protocol, message);
   free(study);
   check(status, message);

@@ -86,7 +86,7 @@ static void add(const char *word, void *user) {
   if (to->list->count == LIST_MAX)
     ethd__fail(ETHD_EXIT_INPUT, "%s: at most %d words are allowed", to->option, LIST_MAX);
   char *copy = strdup(word);
-  if (!copy) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!copy) ethd__fail_memory();
   to->list->words[to->list->count++] = copy;
 }
 
@@ -147,7 +147,7 @@ static const char *base_name(const char *path) {
 static ethd__speed *load_speeds(const ethd_plant *plant) {
   char quote[ETHD_QUOTE_MAX];
   ethd__speed *speeds = calloc(arg.speeds.count, sizeof *speeds);
-  if (!speeds) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!speeds) ethd__fail_memory();
   for (size_t i = 0; i < arg.speeds.count; i++)
     if (!ethd__speed_parse(arg.speeds.words[i], plant, &speeds[i]))
       ethd__fail(ETHD_EXIT_INPUT, "--speed: found %s; low, high and numbers from 0.01 to 2 are allowed",
@@ -176,7 +176,7 @@ static int run(const ethd__plan *plan, const ethd__heading *heading) {
   const ethd__study *study = plan->study;
   ethd__output output;
   ethd__cell *cells = ethd__cells_create(plan);
-  if (!cells) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!cells) ethd__fail_memory();
   const ethd__output_paths paths = {arg.csv, arg.record, arg.force};
   ethd__claim traces = ETHD_CLAIM_NONE;
   refuse_inputs();

@@ -11,13 +11,10 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
+#include "clock.h"
 #include "ethd/ethd.h"
 
-int64_t ethd__bench_now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
+int64_t ethd__bench_now(void) { return ethd__clock_now(); }
 
 static int ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;

@@ -4,18 +4,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "check/report.h"
+#include "clock.h"
 #include "ethd/finger_fit.h"
 
 #define TICKS 20000
-
-static int64_t now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
 
 /* All over the joints' range, the finger ahead, with a frame of rays every third tick. */
 static void sense_at(const ethd_setup *setup, int k, ethd_sense *s) {
@@ -46,9 +40,9 @@ static int measure(const ethd_setup *own, double *ns) {
   if (ethd_control_create(&setup, &control, NULL) < 0) return 0;
   for (int k = 0; k < TICKS; k++) {
     sense_at(&setup, k, &s);
-    int64_t start = now();
+    int64_t start = ethd__clock_now();
     (void)ethd_control_step(control, &s, &c, NULL);
-    ns[k] = (double)(now() - start);
+    ns[k] = (double)(ethd__clock_now() - start);
   }
   ethd_control_destroy(control);
   return 1;

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "cli/terminal.h"
+#include "clock.h"
 #include "denormals.h"
 #include "ethd/ethd.h"
 #include "text/error_text.h"
@@ -46,6 +47,8 @@ void ethd__fail(int code, const char *format, ...) {
   fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);
   exit(code);
 }
+
+void ethd__fail_memory(void) { ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY)); }
 
 int ethd__exit_code(ethd_status status) {
   switch (status) {
@@ -114,7 +117,7 @@ void ethd__refuse_input(const char *option, const char *output, const char *inpu
 
 void ethd__option_list(const char *option, const char *text, void (*each)(const char *word, void *user), void *user) {
   char *words = strdup(text), *rest = words, *word;
-  if (!words) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!words) ethd__fail_memory();
   while ((word = strsep(&rest, ","))) {
     if (!*word) ethd__fail(ETHD_EXIT_INPUT, "%s: an empty word in the list", option);
     each(word, user);
@@ -140,13 +143,13 @@ static char *in_data_folder(const char *name) {
   char *folder = data_folder();
   char *path = folder ? ethd__path_join(folder, name) : NULL;
   free(folder);
-  if (!path) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!path) ethd__fail_memory();
   return path;
 }
 
 static char *copy_of(const char *text) {
   char *copy = strdup(text);
-  if (!copy) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!copy) ethd__fail_memory();
   return copy;
 }
 
@@ -174,10 +177,8 @@ char *ethd__data_path(const char *name) {
 
 void ethd__progress(uint64_t done, uint64_t total, const char *what) {
   static double shown;
-  struct timespec now;
   if (!isatty(STDERR_FILENO)) return;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  double t = (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+  double t = 1e-9 * (double)ethd__clock_now();
   if (done >= total) {
     if (shown > 0) dprintf(STDERR_FILENO, "\r\033[K");
     shown = 0;

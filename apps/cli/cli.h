@@ -23,6 +23,9 @@ int ethd__end(int code);
 /* "program: message" as one line on stderr, then exit. */
 _Noreturn void ethd__fail(int code, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* The same for no memory. */
+_Noreturn void ethd__fail_memory(void);
+
 /* Exit code for a failure of the library or of drivers: 1 for no memory, device and the like, else 2. */
 int ethd__exit_code(ethd_status status);
 

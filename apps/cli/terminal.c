@@ -44,7 +44,7 @@ static ssize_t put_plain(void *cookie, const char *text, size_t length) {
 static FILE *plain_stream(terminal *t, FILE *stream, int mode) {
   if (!isatty(t->fd)) return stream;
   FILE *plain = fopencookie(t, "w", (cookie_io_functions_t){.write = put_plain});
-  if (!plain) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!plain) ethd__fail_memory();
   setvbuf(plain, NULL, mode, BUFSIZ);
   return plain;
 }

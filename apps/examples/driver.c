@@ -122,8 +122,8 @@ int main(void) {
   static const char *const words[] = {"kept", "BROKEN", "at risk", "not asked"};
   const ethd_driver *const drivers[] = {&mine, NULL};
   ethd_setup setup = ethd_setup_default();
-  const ethd_device_def device = {.setup = &setup, .folder = "."};
-  const ethd_conform_def questions = {"mine", drivers, &device, 0.1, 1};
+  const ethd_device_def device = {.setup = &setup, .folder = ".", .is_virtual = 1};
+  const ethd_conform_def questions = {"mine", drivers, &device, 0.1};
   ethd_conform_answer answers[ETHD_QUESTIONS];
   ethd_status status = ethd_conform(&questions, answers);
   for (int i = 0; i < ETHD_QUESTIONS; i++)

@@ -117,7 +117,7 @@ static int lead(int fd, ethd_loop *loop, ethd_control *control, ethd_setup *setu
 static int ring(int fd, double seconds) {
   const ethd_setting hand[] = {{"sim.speed", "0.2", 0}, {"sim.meet_x", "0.26", 0}};
   ethd_setup setup = ethd_setup_default();
-  const ethd_device_def device = {&setup, hand, 2, ".", NULL};
+  const ethd_device_def device = {&setup, hand, 2, ".", NULL, 0};
   ethd_loop_def def = ethd_loop_default();
   struct sockaddr from;
   socklen_t size = sizeof from;

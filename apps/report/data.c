@@ -182,8 +182,7 @@ static ethd_status take(reading *r, size_t row) {
   ethd__group *group = group_of(r, row);
   if (!group)
     return refuse(r, row, "speed", ethd__sheet_cell(sheet, row, r->word[SPEED]), "low, high or a number, in 64 cells,");
-  if (!grow(group))
-    return ethd__say(r->message, ETHD_E_MEMORY, "%s: %s", sheet->path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!grow(group)) return ethd__no_memory(r->message, sheet->path);
   status = read_result(r, row, &group->cell.results[group->cell.count]);
   if (status) return status;
   group->who[group->cell.count++] = (ethd__who){person_of(r, row), row};
@@ -206,9 +205,7 @@ static ethd_status take_all(reading *r) {
   ethd__data *out = r->out;
   out->points = 1;
   out->people = calloc(out->sheet.rows + 1, sizeof *out->people);
-  ethd_status status = out->people ? find_columns(r)
-                                   : ethd__say(r->message, ETHD_E_MEMORY, "%s: %s", out->sheet.path,
-                                               ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status = out->people ? find_columns(r) : ethd__no_memory(r->message, out->sheet.path);
   for (size_t row = 0; !status && row < out->sheet.rows; row++) status = take(r, row);
   if (!status && !out->group_count)
     status = ethd__say(r->message, ETHD_E_RANGE, "%s: no test tap at point %zu of %zu", out->sheet.path, r->point,

@@ -25,7 +25,7 @@ void ethd__recordings_find(const char *study, ethd__recordings *out) {
   while (folder && (entry = readdir(folder))) {
     if (!holds_taps(entry->d_name)) continue;
     char **longer = realloc(out->folder, (out->count + 1) * sizeof *longer);
-    if (!longer) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+    if (!longer) ethd__fail_memory();
     out->folder = longer;
     out->folder[out->count++] = ethd__folder_path(study, entry->d_name);
   }

@@ -74,7 +74,7 @@ ethd_status ethd__sheet_parse(const char *text, size_t length, const char *name,
   out->cell = calloc(most_cells(text, length), sizeof *out->cell);
   ethd_status status = ETHD_OK;
   if (!out->path || !out->text || !out->cell)
-    status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", name, ethd_status_sentence(ETHD_E_MEMORY));
+    status = ethd__no_memory(message, name);
   else if (!length)
     status = ethd__say(message, ETHD_E_SYNTAX, "%s: is empty", name);
   else if (memchr(text, 0, length))

@@ -68,8 +68,9 @@ static void await_tick(ethd__session *s) {
 
 static ethd_status open_device(ethd__session *s, const char *folder, char *message) {
   ethd_error error = {0};
-  const ethd_device_def def = {&s->config->setup, s->config->settings, s->config->setting_count,
-                               folder ? folder : s->config->folder, s->config->path};
+  const ethd_device_def def = {&s->config->setup,        s->config->settings,
+                               s->config->setting_count, folder ? folder : s->config->folder,
+                               s->config->path,          s->is_virtual};
   ethd_status status = ethd_device_open(s->config->device, NULL, &def, &s->driver, &s->device, message);
   if (status) return status;
   const ethd_limits limits = s->driver->limits(s->device);

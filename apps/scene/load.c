@@ -1,18 +1,12 @@
 #include <stdlib.h>
-#include <time.h>
 
 #include "cli/cli.h"
+#include "clock.h"
 #include "scene/scene.h"
 #include "settings/scene_file.h"
 #include "text/text.h"
 
 #define SCENE_BYTES_MAX ((size_t)1 << 30)
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 ethd_scene *ethd__scene_load(const char *path, double *seconds) {
   char message[ETHD_MESSAGE_MAX], *text;
@@ -21,9 +15,9 @@ ethd_scene *ethd__scene_load(const char *path, double *seconds) {
   ethd_error error;
   ethd_status status = ethd_text_read(path, SCENE_BYTES_MAX, &text, &length, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
-  double start = now();
+  double start = 1e-9 * (double)ethd__clock_now();
   status = ethd_scene_parse(text, length, &scene, &error);
-  *seconds = now() - start;
+  *seconds = 1e-9 * (double)ethd__clock_now() - start;
   free(text);
   if (status >= 0) return scene;
   ethd__scene_refusal(path, &error, message);

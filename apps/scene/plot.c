@@ -144,7 +144,7 @@ static void draw_all(ethd_csv_out *out, const ethd_scene *scene, const ethd_setu
 
 static char *csv_beside(const char *png) {
   char *csv = strdup(png);
-  if (!csv) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!csv) ethd__fail_memory();
   memcpy(csv + strlen(csv) - 4, ".csv", 4);
   return csv;
 }

@@ -7,16 +7,11 @@
 #include <time.h>
 
 #include "cli/cli.h"
+#include "clock.h"
 
 #define PRIORITY 10 /* of SCHED_FIFO: under a device's loop */
 
 /* ---- the thread ---- */
-
-static int64_t now_ns(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
 
 static void await(int64_t instant) {
   struct timespec t = {.tv_sec = (time_t)(instant / 1000000000), .tv_nsec = (long)(instant % 1000000000)};
@@ -43,12 +38,12 @@ static void *run(void *live) {
   ethd__live *l = live;
   ethd__tapping tapping;
   ethd_vec pointer = l->hand.smooth;
-  int64_t period = llrint(1e9 * l->rule.period), due = now_ns();
+  int64_t period = llrint(1e9 * l->rule.period), due = ethd__clock_now();
   ethd__flush_denormals();
   l->status = ethd__tapping_begin(l->stage->sim, l->stage->control, &l->tap, &l->rule, &l->stage->rows, &tapping);
   while (!l->status && !atomic_load_explicit(&l->stop, memory_order_relaxed)) {
     await(due);
-    l->late += now_ns() - due >= period;
+    l->late += ethd__clock_now() - due >= period;
     due += period;
     lead(l, &pointer, (double)l->stage->rows.count * l->rule.period);
     l->status = ethd__tapping_step(&tapping);

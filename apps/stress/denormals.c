@@ -4,21 +4,15 @@
 #include <float.h>
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 #include "cli/cli.h"
+#include "clock.h"
 #include "denormals.h"
 #include "stress/rig.h"
 #include "stress/stress.h"
 
 #define TICKS 500
 #define CUTOFF 10.0 /* Hz */
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 typedef struct outcome {
   double tick;  /* s, the least over rounds */
@@ -48,9 +42,9 @@ static outcome rest(int64_t still, int rounds) {
   s.q[0] += 1e-3, s.q[1] += 1e-3;
   for (int64_t k = 0; k < still; k++) (void)ethd_control_step(control, &s, &c, NULL);
   for (int r = 0; r < rounds; r++) {
-    double start = now();
+    double start = 1e-9 * (double)ethd__clock_now();
     for (int k = 0; k < TICKS; k++) (void)ethd_control_step(control, &s, &c, &o.trace);
-    o.tick = fmin(o.tick, (now() - start) / TICKS);
+    o.tick = fmin(o.tick, (1e-9 * (double)ethd__clock_now() - start) / TICKS);
   }
   o.speed = o.trace.qd[0];
   ethd_control_destroy(control);

@@ -25,7 +25,7 @@ static const char *const hashed[] = {ETHD_STUDY_FILE, ETHD_RECORDING_CONFIG, ETH
 
 char *ethd__folder_path(const char *folder, const char *name) {
   char *path = ethd__path_join(folder, name);
-  if (!path) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!path) ethd__fail_memory();
   return path;
 }
 
@@ -67,7 +67,7 @@ static ethd_status copy(const char *from, const char *folder, const char *name, 
 
 static ethd_status write_device(const char *folder, const ethd__loaded *loaded, char *message) {
   char *config = ethd__record_config_text(loaded->config);
-  if (!config) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!config) return ethd__no_memory(message, folder);
   ethd_status status = write_text(folder, ETHD_RECORDING_CONFIG, config, message);
   free(config);
   if (!status) status = write_text(folder, ETHD_RECORDING_SCENE, loaded->config->scene_text, message);

@@ -53,8 +53,7 @@ static size_t count_lines(const char *text, size_t length) {
 static ethd_status part(ethd__journal *journal, size_t length, char *message) {
   char *at = journal->text, *end = at + length;
   journal->lines = calloc(count_lines(at, length), sizeof *journal->lines);
-  if (!journal->lines)
-    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", journal->path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!journal->lines) return ethd__no_memory(message, journal->path);
   while (at < end) {
     char *newline = memchr(at, '\n', (size_t)(end - at));
     if (!newline || !part_line(at, (size_t)(newline - at), &journal->lines[journal->count])) break;
@@ -72,8 +71,8 @@ static ethd_status part(ethd__journal *journal, size_t length, char *message) {
 ethd_status ethd__journal_read(const char *path, ethd__journal *out, char message[ETHD_MESSAGE_MAX]) {
   size_t length;
   *out = (ethd__journal){.fd = -1, .path = strdup(path)};
-  ethd_status status = out->path ? ethd_text_read(path, BYTES_MAX, &out->text, &length, message)
-                                 : ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status =
+      out->path ? ethd_text_read(path, BYTES_MAX, &out->text, &length, message) : ethd__no_memory(message, NULL);
   if (!status) status = part(out, length, message);
   if (status) ethd__journal_close(out);
   return status;
@@ -135,7 +134,7 @@ ethd_status ethd__journal_append(ethd__journal *journal, const char *kind, const
                                  char message[ETHD_MESSAGE_MAX]) {
   char *line, sum[ETHD_SHA256_TEXT];
   int body = asprintf(&line, "%s %s #%*s\n", kind, text, SUM, "");
-  if (body < 0) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", journal->path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (body < 0) return ethd__no_memory(message, journal->path);
   size_t length = (size_t)body;
   sum_of(line, length - SUM - 3, sum);
   memcpy(line + length - SUM - 1, sum, SUM);

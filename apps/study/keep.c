@@ -58,8 +58,8 @@ static void discard(const char *path) {
 static ethd_status write_row(const char *fresh, const char *row, char *message) {
   char *path = ethd__folder_path(fresh, ROW), *text;
   int length = asprintf(&text, "%s\n%s\n", ETHD_STUDY_TAPS_HEADER, row);
-  ethd_status status = length < 0 ? ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY))
-                                  : ethd_text_write(path, text, (size_t)length, message);
+  ethd_status status =
+      length < 0 ? ethd__no_memory(message, NULL) : ethd_text_write(path, text, (size_t)length, message);
   if (length >= 0) free(text);
   free(path);
   return status;

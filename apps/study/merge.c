@@ -20,9 +20,7 @@ typedef struct merge {
   char *message;
 } merge;
 
-static ethd_status no_memory(const merge *m) {
-  return ethd__say(m->message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
-}
+static ethd_status no_memory(const merge *m) { return ethd__no_memory(m->message, NULL); }
 
 /* ---- which there are ---- */
 

@@ -55,5 +55,5 @@ ethd_status ethd__movements_find(const ethd__protocol *protocol, const char *fin
   *files = calloc(1, sizeof **files);
   char *copy = *files ? strdup(finger) : NULL;
   if (copy) (*files)[(*count)++] = copy;
-  return copy ? ETHD_OK : ethd__say(message, ETHD_E_MEMORY, "%s: %s", finger, ethd_status_sentence(ETHD_E_MEMORY));
+  return copy ? ETHD_OK : ethd__no_memory(message, finger);
 }

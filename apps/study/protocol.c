@@ -93,7 +93,7 @@ ethd_status ethd__protocol_parse(const char *text, size_t length, const char *na
   out->text = strndup(text, length);
   out->folder = strdup(folder);
   if (status || !out->path || !out->text || !out->folder)
-    status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", name, ethd_status_sentence(ETHD_E_MEMORY));
+    status = ethd__no_memory(message, name);
   else
     status = fill(&ini, name, out, message);
   ethd_ini_free(&ini);
@@ -106,8 +106,7 @@ ethd_status ethd__protocol_load(const char *path, ethd__protocol *out, char mess
   size_t length;
   *out = (ethd__protocol){0};
   ethd_status status = ethd_text_read(path, ETHD_STUDY_TEXT_MAX, &text, &length, message);
-  if (!status && !folder)
-    status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!status && !folder) status = ethd__no_memory(message, path);
   if (!status) status = ethd__protocol_parse(text, length, path, folder, out, message);
   free(text);
   free(folder);

@@ -19,9 +19,7 @@ bool ethd__block_over(const ethd__protocol *protocol, const ethd__block *block, 
   return valid >= protocol->taps || taken >= protocol->attempts;
 }
 
-static ethd_status no_memory(char *message) {
-  return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
-}
+static ethd_status no_memory(char *message) { return ethd__no_memory(message, NULL); }
 
 /* ---- the journal ---- */
 

@@ -58,7 +58,7 @@ static ethd_status run_tap(work *w, size_t point, const ethd__turn *turn, bool *
   ethd_status status = w->source.tap(w->source.self, turn, &taken, w->message);
   char *row = status ? NULL : ethd__tap_row(p, &taken);
   if (status) return status;
-  if (!row) return ethd__say(w->message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!row) return ethd__no_memory(w->message, NULL);
   *valid = taken.result.metrics.reason == ETHD_TAP_OK;
   ethd__participant_id(p, turn->person, id);
   if (w->shard->record) status = keep(w, point, id, &taken, row);

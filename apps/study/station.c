@@ -204,7 +204,7 @@ ethd_status ethd__station_open(ethd__desk *desk, const char *config, const char 
   if (is_virtual || out->kept) return ETHD_OK;
   char unsaid[ETHD_MESSAGE_MAX];
   (void)!ethd__station_close(out, unsaid);
-  return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  return ethd__no_memory(message, NULL);
 }
 
 ethd_status ethd__station_close(ethd__station *s, char message[ETHD_MESSAGE_MAX]) {

@@ -9,7 +9,7 @@
 #define HASH_DIGITS 12
 
 static char *had(char *text, int length) {
-  if (length < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (length < 0) ethd__fail_memory();
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "clock.h"
 #define IDLE 1000000 /* ns, of an I/O thread that had nothing to do */
 #define STEPS 8      /* of the angle: less is no acceleration */
 #define LOOK 0.01    /* s: does it move? */
@@ -22,19 +23,13 @@ ethd_verdict ethd__rig_answer(ethd_conform_answer *a, ethd_verdict verdict, cons
 
 /* ---- time ---- */
 
-static int64_t monotonic(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
-
 static void await_tick(ethd__rig *r) {
   struct timespec t;
   r->now += r->period;
-  if (r->def->is_virtual) return;
+  if (r->def->device->is_virtual) return;
   t = (struct timespec){.tv_sec = (time_t)(r->now / 1000000000), .tv_nsec = (long)(r->now % 1000000000)};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, NULL)) continue;
-  r->late = fmax(r->late, 1e-9 * (double)(monotonic() - r->now));
+  r->late = fmax(r->late, 1e-9 * (double)(ethd__clock_now() - r->now));
 }
 
 /* ---- I/O, as the loop has it done: by threads, or with the tick of a virtual clock ---- */
@@ -44,13 +39,13 @@ static void *run_unit(void *unit_) {
   ethd__rig *r = unit->rig;
   const struct timespec pause = {.tv_nsec = IDLE};
   while (!atomic_load(&r->stop))
-    if (r->driver->service(r->device, unit->number, monotonic())) nanosleep(&pause, NULL);
+    if (r->driver->service(r->device, unit->number, ethd__clock_now())) nanosleep(&pause, NULL);
   return NULL;
 }
 
 static void start_units(ethd__rig *r) {
   atomic_store(&r->stop, 0);
-  for (uint32_t u = 0, n = r->driver->units(r->device); u < n && !r->def->is_virtual; u++) {
+  for (uint32_t u = 0, n = r->driver->units(r->device); u < n && !r->def->device->is_virtual; u++) {
     r->unit[u] = (ethd__rig_unit){.rig = r, .number = u};
     if (pthread_create(&r->unit[u].thread, NULL, run_unit, &r->unit[u])) return;
     r->units++;
@@ -68,7 +63,7 @@ int ethd__rig_open(const ethd_conform_def *def, ethd__rig *r) {
   memset(r, 0, sizeof *r);
   r->def = def;
   r->period = llrint(1e9 * def->device->setup->period);
-  r->now = def->is_virtual ? 0 : monotonic();
+  r->now = def->device->is_virtual ? 0 : ethd__clock_now();
   r->resolution = (double)INFINITY;
   r->finite = 1;
   return ethd_device_open(def->ids, def->from, def->device, &r->driver, &r->device, r->message) == ETHD_OK;
@@ -86,7 +81,7 @@ ethd_status ethd__rig_start(ethd__rig *r) {
   ethd_status status = r->driver->start(r->device);
   if (status < 0) return status;
   start_units(r);
-  if (!r->def->is_virtual) r->now = monotonic(); /* a start takes its time */
+  if (!r->def->device->is_virtual) r->now = ethd__clock_now(); /* a start takes its time */
   return status;
 }
 
@@ -111,14 +106,14 @@ static void look(ethd__rig *r, const ethd_sense *s) {
     r->speed = fmax(r->speed, step / dt);
   }
   r->backwards += r->samples && dt < 0;
-  r->ahead += s->time_ns > (r->def->is_virtual ? r->now : monotonic());
+  r->ahead += s->time_ns > (r->def->device->is_virtual ? r->now : ethd__clock_now());
   r->samples++;
 }
 
 /* Of the finger, from whatever kind of sensor. */
 static void look_at_reading(ethd__rig *r, const ethd_sense *s) {
   if (!(s->have & (ETHD_HAVE_FINGER | ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS))) return;
-  r->ahead += s->sample_ns > (r->def->is_virtual ? r->now : monotonic());
+  r->ahead += s->sample_ns > (r->def->device->is_virtual ? r->now : ethd__clock_now());
   r->backwards += r->readings && s->sample_ns < r->reading_ns;
   r->reading_ns = s->sample_ns;
   r->readings++;
@@ -130,7 +125,7 @@ static void tick(ethd__rig *r, const double *torque) {
   ethd_command command = {.safe = torque == NULL};
   if (torque) memcpy(command.torque, torque, sizeof command.torque);
   await_tick(r);
-  for (uint32_t u = 0, n = r->driver->units(r->device); u < n && r->def->is_virtual; u++)
+  for (uint32_t u = 0, n = r->driver->units(r->device); u < n && r->def->device->is_virtual; u++)
     (void)!r->driver->service(r->device, u, r->now);
   ethd_status status = r->driver->read(r->device, r->now, &s);
   r->failed += status < 0;

@@ -94,7 +94,7 @@ static ethd_status open_one(ethd__stack *s, uint32_t i, const ethd_device_def *d
   if (driver->write && !driver->safe)
     return ethd__say(message, ETHD_E_ARGUMENT, "device.driver: %s takes torque and has no safe to let go", driver->id);
   ethd_setting *settings = calloc(def->setting_count + 1, sizeof *settings);
-  if (!settings) return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!settings) return ethd__no_memory(message, NULL);
   ethd_device_def own = *def;
   own.settings = settings;
   own.setting_count = own_settings(s, i, def, settings);
@@ -122,8 +122,8 @@ static ethd_status inject(const ethd_device_def *def, const char *file, const et
                           char *message) {
   ethd__script script = {.count = 0};
   char *path = ethd__path_join(def->folder, file);
-  ethd_status status = path ? ethd__script_load(path, def->setup->period, &script, message)
-                            : ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status =
+      path ? ethd__script_load(path, def->setup->period, &script, message) : ethd__no_memory(message, NULL);
   free(path);
   void *inner = *device;
   *device = NULL;
@@ -148,7 +148,7 @@ ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from, co
   *driver = NULL;
   *device = NULL;
   ethd__stack *s = calloc(1, sizeof *s);
-  if (!s) return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!s) return ethd__no_memory(message, NULL);
   ethd_status status = open_all(s, ids, from ? from : ethd_drivers, def, message);
   if (status) {
     ethd__driver_stack.close(s);

@@ -215,7 +215,7 @@ ethd_status ethd__script_parse(const char *text, size_t length, const char *name
                                char message[ETHD_MESSAGE_MAX]) {
   reader r = {.name = name, .message = message, .line = 1, .period = period};
   *out = (ethd__script){.at = calloc(ETHD_INJECT_LINES_MAX, sizeof *out->at)};
-  if (!out->at) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", name, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!out->at) return ethd__no_memory(message, name);
   ethd_status status = read_lines(&r, text, length, out);
   if (status) ethd__script_free(out);
   return status;

@@ -5,8 +5,8 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "clock.h"
 #include "ethd/cell.h"
 #include "ethd/fault.h"
 #include "proximity_ring/empty.h"
@@ -17,7 +17,6 @@
 
 #define WAIT_MS 20                             /* for bytes, in a service */
 #define ROOM 4096                              /* bytes of one read */
-#define NOT_OURS 1000000000                    /* ns: a clock that is further from CLOCK_MONOTONIC is a virtual one */
 #define GAP_NS (1500000000 / ETHD__FRAME_RATE) /* without a frame: one is lost, at least */
 
 /* What the I/O thread hands over. */
@@ -29,6 +28,7 @@ typedef struct sample {
 
 typedef struct ring {
   ethd__ring_settings settings;
+  bool is_virtual;      /* the clock */
   pthread_mutex_t lock; /* of the I/O thread's part, for figures */
   ethd_cell *cell;
 
@@ -43,12 +43,6 @@ typedef struct ring {
 } ring;
 
 /* ---- I/O ---- */
-
-static int64_t monotonic(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
 
 static void take(ring *r, const uint8_t *bytes, size_t count, int64_t arrival_ns) {
   const uint8_t *at = bytes;
@@ -80,9 +74,8 @@ static ethd_status service(void *device, uint32_t unit, int64_t now_ns) {
     pthread_mutex_unlock(&r->lock);
     if (status) return status;
   }
-  bool is_virtual = llabs(monotonic() - now_ns) > NOT_OURS;
-  int64_t got = ethd__ring_port_read(&r->port, is_virtual ? 0 : WAIT_MS, bytes, sizeof bytes);
-  int64_t arrival_ns = is_virtual ? now_ns : monotonic();
+  int64_t got = ethd__ring_port_read(&r->port, r->is_virtual ? 0 : WAIT_MS, bytes, sizeof bytes);
+  int64_t arrival_ns = r->is_virtual ? now_ns : ethd__clock_now();
   if (got <= 0) return got < 0 ? ETHD_E_DEVICE : ETHD_OK;
   pthread_mutex_lock(&r->lock);
   take(r, bytes, (size_t)got, arrival_ns);
@@ -136,7 +129,7 @@ static ethd_status load_calibration(const ethd_device_def *def, ring *r, char *m
   r->receiver.calibration = ethd__calibration_default();
   if (!s) return ETHD_OK;
   char *path = ethd__path_join(def->folder, s->value);
-  if (!path) return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!path) return ethd__no_memory(message, NULL);
   ethd_status status = ethd__calibration_load(path, &r->receiver.calibration, message);
   free(path);
   return status;
@@ -154,7 +147,7 @@ static ethd_status prepare(const ethd_device_def *def, ring *r, char *message) {
   r->port = (ethd__ring_port){
       .path = ethd__path_join(def->folder, r->settings.port->value), .baud = (uint32_t)p[ETHD__RING_BAUD], .fd = -1};
   if (!status && (!r->port.path || ethd_cell_create(sizeof(sample), &r->cell, NULL)))
-    status = ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+    status = ethd__no_memory(message, NULL);
   return status;
 }
 
@@ -172,8 +165,8 @@ static ethd_status listen_first(ring *r, ethd__empty *empty, char *message) {
   ethd__decoder d = {0};
   uint8_t bytes[ROOM];
   uint64_t all = 0;
-  int64_t end = monotonic() + (int64_t)(1e9 * r->settings.p[ETHD__RING_PATIENCE]);
-  while (empty->frames < ETHD__EMPTY_FRAMES && monotonic() < end) {
+  int64_t end = ethd__clock_now() + (int64_t)(1e9 * r->settings.p[ETHD__RING_PATIENCE]);
+  while (empty->frames < ETHD__EMPTY_FRAMES && ethd__clock_now() < end) {
     int64_t got = ethd__ring_port_read(&r->port, WAIT_MS, bytes, sizeof bytes);
     if (got < 0) return ethd__say(message, ETHD_E_DEVICE, "%s: the line is gone", r->port.path);
     const uint8_t *at = bytes;
@@ -195,7 +188,7 @@ static ethd_status check_darks(const ring *r, char *message) {
 static ethd_status listen_to(ring *r, double ring_radius, char *message) {
   char what[ETHD_MESSAGE_MAX];
   ethd__empty empty = {0};
-  ethd_status status = ethd__ring_port_open(&r->port, monotonic(), message);
+  ethd_status status = ethd__ring_port_open(&r->port, ethd__clock_now(), message);
   if (!status) status = listen_first(r, &empty, message);
   if (status) return status;
   if (r->settings.p[ETHD__RING_EMPTY] == 1) return check_darks(r, message);
@@ -211,6 +204,7 @@ static ethd_status ring_open(const ethd_device_def *def, void **out, char messag
   ring *r = *out = calloc(1, sizeof *r);
   if (!r) return ETHD_E_MEMORY;
   r->settings = settings;
+  r->is_virtual = def->is_virtual;
   r->port.fd = -1;
   pthread_mutex_init(&r->lock, NULL);
   status = prepare(def, r, message);

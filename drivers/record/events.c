@@ -75,7 +75,7 @@ ethd_status ethd__record_events_read(const char *path, ethd__record_events *out,
   if (strlen(out->text) != length)
     status = ethd__say(message, ETHD_E_SYNTAX, "%s: a byte 0: this is no text", path);
   else if (!(out->events = calloc(count_lines(out->text), sizeof *out->events)))
-    status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+    status = ethd__no_memory(message, path);
   else
     status = parse(path, out, message);
   if (status) ethd__record_events_free(out);

@@ -14,7 +14,7 @@
 ethd_status ethd_mcap_create(const char *path, ethd_mcap **out, char message[ETHD_MESSAGE_MAX]) {
   ethd_mcap *m = calloc(1, sizeof *m);
   *out = NULL;
-  if (!m) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!m) return ethd__no_memory(message, path);
   ethd_status status = ethd_replace_begin(path, &m->replace, message);
   if (status) {
     free(m);
@@ -153,7 +153,7 @@ ethd_status ethd_mcap_close(ethd_mcap *m, char message[ETHD_MESSAGE_MAX]) {
   ethd__mcap_write_out(m, MAGIC, 8);
   if (m->failed && !ferror(m->replace.file)) {
     ethd_mcap_abandon(m);
-    return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+    return ethd__no_memory(message, NULL);
   }
   ethd_status status = ethd_replace_commit(&m->replace, message);
   release(m);

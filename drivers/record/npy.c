@@ -105,7 +105,7 @@ ethd_status ethd_npy_create(const char *path, const ethd_column *columns, size_t
   *out = NULL;
   if (!dense(columns, row_bytes)) return ethd__say(message, ETHD_E_ARGUMENT, "%s: columns that don't fill a row", path);
   ethd_npy *npy = calloc(1, sizeof *npy);
-  if (!npy) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!npy) return ethd__no_memory(message, path);
   npy->row_bytes = row_bytes;
   npy->header = malloc(HEADER_MAX);
   npy->buffer = malloc(BUFFER_ROWS * row_bytes);
@@ -114,7 +114,7 @@ ethd_status ethd_npy_create(const char *path, const ethd_column *columns, size_t
   if (npy->fd < 0)
     status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
   else if (!npy->header || !npy->buffer || !start_header(npy, columns))
-    status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+    status = ethd__no_memory(message, path);
   else if (!write_header(npy))
     status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
   if (status)
@@ -189,7 +189,7 @@ static ethd_status read_header(const char *text, size_t length, const char *path
   size_t n = dict ? write_dict(columns, dict, HEADER_MAX) : 0;
   bool same = n && n <= header && memcmp(text + PREFIX, dict, n) == 0;
   free(dict);
-  if (!n) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!n) return ethd__no_memory(message, path);
   if (!same) return ethd__say(message, ETHD_E_SYNTAX, "%s: other columns than those of this version of libethd", path);
   if (!read_count(text + PREFIX + n, text + PREFIX + header, count))
     return ethd__say(message, ETHD_E_SYNTAX, "%s: its header's shape isn't one count of rows", path);

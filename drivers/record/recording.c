@@ -73,7 +73,7 @@ char *ethd__record_config_text(const ethd_config *config) {
 
 static ethd_status write_file(const char *folder, const char *name, const char *text, char *message) {
   char *path = text ? ethd__path_join(folder, name) : NULL;
-  if (!path) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!path) return ethd__no_memory(message, folder);
   ethd_status status = ethd_text_write(path, text, strlen(text), message);
   free(path);
   return status;
@@ -97,7 +97,7 @@ static ethd_status open_files(const char *folder, ethd_recording *recording, cha
   char *events = ethd__path_join(folder, ETHD_RECORDING_EVENTS);
   ethd_status status = ETHD_OK;
   if (!ticks || !events)
-    status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+    status = ethd__no_memory(message, folder);
   else if (!(recording->events = fopen(events, "we")))
     status = ethd__say(message, ETHD_E_FILE, "%s: %s", events, strerror(errno));
   else
@@ -116,7 +116,7 @@ ethd_status ethd_recording_create(const char *folder, const ethd_config *config,
   char unsaid[ETHD_MESSAGE_MAX];
   *out = NULL;
   ethd_recording *recording = calloc(1, sizeof *recording);
-  if (!recording) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!recording) return ethd__no_memory(message, folder);
   recording->claim = ETHD_CLAIM_NONE;
   recording->folder = strdup(folder);
   ethd_status status = ethd__recording_claim(folder, config, replace, &recording->claim, message);

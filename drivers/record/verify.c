@@ -26,7 +26,7 @@ typedef struct replay {
 
 static ethd_status open_config(replay *r) {
   char *path = ethd__path_join(r->folder, ETHD_RECORDING_CONFIG);
-  if (!path) return ethd__say(r->message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!path) return ethd__no_memory(r->message, NULL);
   ethd_status status = (r->plugins ? ethd_config_load : ethd_config_load_received)(path, &r->config, r->message);
   free(path);
   if (!status) r->setup = r->config->setup;
@@ -36,7 +36,7 @@ static ethd_status open_config(replay *r) {
 static ethd_status open_rows(replay *r) {
   void *rows = NULL;
   char *path = ethd__path_join(r->folder, ETHD_RECORDING_TICK);
-  if (!path) return ethd__say(r->message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!path) return ethd__no_memory(r->message, NULL);
   ethd_status status = ethd_npy_read(path, ethd_trace_columns, sizeof(ethd_trace), &rows, &r->count, r->message);
   free(path);
   r->rows = rows;
@@ -45,7 +45,7 @@ static ethd_status open_rows(replay *r) {
 
 static ethd_status open_events(replay *r) {
   r->events_path = ethd__path_join(r->folder, ETHD_RECORDING_EVENTS);
-  if (!r->events_path) return ethd__say(r->message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!r->events_path) return ethd__no_memory(r->message, NULL);
   return ethd__record_events_read(r->events_path, &r->events, r->message);
 }
 

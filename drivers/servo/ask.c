@@ -6,18 +6,13 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "clock.h"
 #include "servo/bus_parts.h"
-
-static int64_t now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
 
 /* Until the line is ready; 0, or an errno. */
 static int await(int fd, short events, int64_t until) {
   for (;;) {
-    int64_t left = until - now();
+    int64_t left = until - ethd__clock_now();
     struct timespec t = {left / 1000000000, left % 1000000000};
     struct pollfd wait = {fd, events, 0};
     if (left <= 0) return ETIMEDOUT;
@@ -60,7 +55,7 @@ static int hear_itself(const ethd__servo_bus *bus, const ethd__servo_frame *f, i
 
 int ethd__servo_ask(const ethd__servo_bus *bus, const ethd__servo_frame *f, uint16_t *words) {
   uint8_t answer[ETHD__SERVO_FRAME_MAX];
-  int64_t until = now() + (int64_t)(1e9 * bus->map->response);
+  int64_t until = ethd__clock_now() + (int64_t)(1e9 * bus->map->response);
   int got = 0, whole = 0;
   int failure = send_all(bus->fd, f->bytes, f->length, until);
   if (!failure && bus->map->local_echo) failure = hear_itself(bus, f, until);

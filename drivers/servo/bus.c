@@ -7,16 +7,11 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "clock.h"
 #include "servo/bus_parts.h"
 #include "text/error_text.h"
 
 #define DRAINS 10 /* times the quiet that is asked for, before giving up for now */
-
-static int64_t now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
 
 static int64_t nanoseconds(double seconds) { return (int64_t)(1e9 * seconds); }
 
@@ -44,7 +39,7 @@ ethd_status ethd__servo_bus_open(const ethd__servo_map *map, ethd__servo_bus *bu
   *bus = (ethd__servo_bus){.map = map, .fd = -1};
   ethd_status status = ethd__servo_port_open(map, &bus->fd, &bus->at_once, message);
   if (status) return status;
-  bus->quiet_ns = now();
+  bus->quiet_ns = ethd__clock_now();
   if (is_own(map)) return ETHD_OK;
   bus->modbus = context(map, bus->fd);
   if (bus->modbus) return ETHD_OK;
@@ -91,7 +86,7 @@ static ethd__servo_outcome outcome(int error) {
 
 /* A frame's end on a serial line is the silence behind it. */
 static void keep_silence(const ethd__servo_bus *bus) {
-  int64_t left = bus->quiet_ns + nanoseconds(bus->map->silence) - now();
+  int64_t left = bus->quiet_ns + nanoseconds(bus->map->silence) - ethd__clock_now();
   struct timespec t = {left / 1000000000, left % 1000000000};
   if (left > 0) nanosleep(&t, NULL);
 }
@@ -102,7 +97,7 @@ static ethd__servo_outcome end(ethd__servo_bus *bus, int got, uint32_t count) {
     bus->error = got < 0 ? errno : EMBBADDATA;
     result = outcome(bus->error);
   }
-  bus->quiet_ns = bus->map->silence > 0 ? now() : 0;
+  bus->quiet_ns = bus->map->silence > 0 ? ethd__clock_now() : 0;
   return result;
 }
 
@@ -167,9 +162,9 @@ ethd__servo_outcome ethd__servo_bus_both(ethd__servo_bus *bus, uint32_t to, uint
 
 ethd__servo_outcome ethd__servo_bus_drain(ethd__servo_bus *bus) {
   unsigned char rest[512];
-  int64_t quiet = nanoseconds(bus->map->drain), since = now(), give_up = since + DRAINS * quiet;
+  int64_t quiet = nanoseconds(bus->map->drain), since = ethd__clock_now(), give_up = since + DRAINS * quiet;
   while (bus->fd >= 0) {
-    int64_t at = now(), left = since + quiet - at;
+    int64_t at = ethd__clock_now(), left = since + quiet - at;
     struct pollfd wait = {bus->fd, POLLIN, 0};
     struct timespec t = {left / 1000000000, left % 1000000000};
     if (left <= 0) return ETHD__SERVO_DONE;
@@ -179,7 +174,7 @@ ethd__servo_outcome ethd__servo_bus_drain(ethd__servo_bus *bus) {
     if (ready < 1) continue;
     ssize_t n = read(bus->fd, rest, sizeof rest);
     if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) break;
-    if (n > 0) since = now();
+    if (n > 0) since = ethd__clock_now();
     /* a line that hung up is readable for ever, and empty */
     else if (wait.revents & (POLLHUP | POLLERR))
       break;

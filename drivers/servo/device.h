@@ -4,6 +4,7 @@
 
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdbool.h>
 
 #include "ethd/cell.h"
 #include "ethd/driver.h"
@@ -26,6 +27,7 @@ typedef struct ethd__servo_device {
   char unconfirmed[96]; /* the remark about registers that nobody confirms; empty: there are none */
   int64_t period_ns, exchange_ns;
   double speed;               /* m/s of the ring, at most */
+  bool is_virtual;            /* the clock */
   ethd__homing_def homing[2]; /* of the map's axes */
   double home[2];             /* rad: in the jig, at the stop or at the mark; NAN: not given */
   int32_t joint[2];           /* joint, from 0, of the map's axes; -1: none */

@@ -1,20 +1,11 @@
 /* The I/O thread's side of the servo: one turn of the link an exchange. */
-#include <stdlib.h>
 #include <time.h>
 
+#include "clock.h"
 #include "servo/device.h"
 
-#define PHASE 0.2     /* of a period: exchanges begin so long after a tick, when its command is there */
-#define FAR 100000000 /* ns: a clock so far from the system's is a virtual one */
-#define BEHIND 3      /* exchanges: nothing is due later */
-
-static int64_t monotonic(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
-
-static int is_virtual(int64_t now_ns) { return llabs(now_ns - monotonic()) > FAR; }
+#define PHASE 0.2 /* of a period: exchanges begin so long after a tick, when its command is there */
+#define BEHIND 3  /* exchanges: nothing is due later */
 
 /* The newest command, unless it is of an earlier start, or of a loop that is gone: then zero. */
 static void command(ethd__servo_device *d, int64_t now_ns, double torque[2]) {
@@ -30,18 +21,18 @@ static void command(ethd__servo_device *d, int64_t now_ns, double torque[2]) {
 
 /* One turn of the link and what it tells; the device is locked. */
 ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double torque[2]) {
-  int64_t begin = monotonic();
+  int64_t begin = ethd__clock_now();
   bool may_push = d->link.state == ETHD__SERVO_ENABLED || d->link.sequence == ETHD__SERVO_ENABLE;
   if (!ethd__guardian_enter(&d->guardian, begin, d->link.bus.fd, d->link.counts.connects))
     ethd__servo_link_lose(&d->link, "the guardian has taken the line: this program was silent for too long", now_ns);
-  ethd__guardian_arm(&d->guardian, may_push && !is_virtual(now_ns)); /* a virtual clock may stand still */
+  ethd__guardian_arm(&d->guardian, may_push && !d->is_virtual); /* a virtual clock may stand still */
   ethd_status status = ethd__servo_link_turn(&d->link, now_ns, torque);
-  int64_t took = monotonic() - begin;
+  int64_t took = ethd__clock_now() - begin;
   if (!status) {
     const double none[2] = {0, 0};
     ethd_histogram_add(&d->trip, took);
     /* the joints' words come last */
-    ethd__servo_feedback_take(&d->feedback, &d->link, is_virtual(now_ns) ? now_ns : begin + took * 3 / 4,
+    ethd__servo_feedback_take(&d->feedback, &d->link, d->is_virtual ? now_ns : begin + took * 3 / 4,
                               d->link.state == ETHD__SERVO_ENABLED ? torque : none);
   }
   ethd__servo_feedback_judge(&d->feedback, &d->link);
@@ -55,13 +46,13 @@ static ethd_status await(const ethd__servo_device *d, int64_t *now_ns) {
   int64_t left = d->due_ns - *now_ns;
   struct timespec t = {left / 1000000000, left % 1000000000};
   if (left <= 0) return ETHD_OK;
-  if (is_virtual(*now_ns)) {
+  if (d->is_virtual) {
     if (left >= d->period_ns) return ETHD_STALE;
     return ETHD_OK;
   }
   if (left > BEHIND * d->exchange_ns) return ETHD_OK;
   nanosleep(&t, NULL);
-  *now_ns = monotonic();
+  *now_ns = ethd__clock_now();
   return ETHD_OK;
 }
 

@@ -57,7 +57,7 @@ static ethd_status read_settings(const ethd_device_def *def, settings *out, char
 
 static ethd_status load_map(const ethd_device_def *def, const settings *s, ethd__servo_map *map, char *message) {
   char *path = ethd__path_join(def->folder, s->map->value);
-  if (!path) return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!path) return ethd__no_memory(message, NULL);
   ethd_status status = ethd__servo_map_load(path, s->map->value, map, message);
   free(path);
   if (status || !s->port) return status;
@@ -92,7 +92,7 @@ static ethd_status make_cells(ethd__servo_device *d, char *message) {
   if (!ethd_cell_create(sizeof d->command, &d->commands, NULL) &&
       !ethd_cell_create(sizeof d->newest, &d->samples, NULL))
     return ETHD_OK;
-  return ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  return ethd__no_memory(message, NULL);
 }
 
 static void count_unconfirmed(ethd__servo_device *d) {
@@ -175,6 +175,7 @@ ethd_status ethd__servo_open(const ethd_device_def *def, void **out, char messag
   pthread_mutex_init(&d->lock, NULL);
   atomic_init(&d->safe, 1);
   d->speed = s.p[ETHD__SERVO_SPEED];
+  d->is_virtual = def->is_virtual;
   d->period_ns = (int64_t)rint(1e9 * def->setup->period);
   status = load_map(def, &s, &d->map, message);
   d->exchange_ns = d->period_ns * d->map.divisor;

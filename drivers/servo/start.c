@@ -1,6 +1,7 @@
 /* Start and stop: sequences that [main] runs, while the loop keeps its hands off. */
 #include <time.h>
 
+#include "clock.h"
 #include "servo/device.h"
 #include "text/error_text.h"
 
@@ -8,17 +9,12 @@
 #define ZEROES 3        /* good exchanges with zero torque before anything is enabled */
 #define PAUSE 200000    /* ns between the turns of a start */
 
-static int64_t monotonic(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
-
 /* A first exchange or more, until the drive has identified itself. */
 static ethd_status identify(ethd__servo_device *d, double seconds) {
   const double zero[2] = {0, 0};
   const struct timespec pause = {.tv_nsec = PAUSE};
-  for (int64_t begin = monotonic(), now = begin; 1e-9 * (double)(now - begin) < seconds; now = monotonic()) {
+  for (int64_t begin = ethd__clock_now(), now = begin; 1e-9 * (double)(now - begin) < seconds;
+       now = ethd__clock_now()) {
     if (d->link.state == ETHD__SERVO_UP && d->link.sequence < 0)
       ethd__servo_link_begin(&d->link, ETHD__SERVO_IDENTIFY, now);
     (void)!ethd__servo_turn(d, now, zero);
@@ -36,7 +32,7 @@ static double steps_time(const ethd__servo_map *map, int sequence) {
 }
 
 ethd_status ethd__servo_meet(ethd__servo_device *d) {
-  ethd_status status = ethd__servo_link_connect(&d->link, monotonic());
+  ethd_status status = ethd__servo_link_connect(&d->link, ethd__clock_now());
   return status ? status : identify(d, steps_time(&d->map, ETHD__SERVO_IDENTIFY));
 }
 
@@ -46,7 +42,7 @@ static ethd_status zero_and_verify(ethd__servo_device *d, double seconds) {
   const double zero[2] = {0, 0};
   const struct timespec pause = {.tv_nsec = PAUSE};
   int good = 0;
-  for (int64_t begin = monotonic(), now = begin; good < ZEROES; now = monotonic()) {
+  for (int64_t begin = ethd__clock_now(), now = begin; good < ZEROES; now = ethd__clock_now()) {
     if (1e-9 * (double)(now - begin) > seconds || d->link.state < ETHD__SERVO_IDENTIFIED) return ETHD_E_DEVICE;
     good = ethd__servo_turn(d, now, zero) ? 0 : good + 1;
     nanosleep(&pause, NULL);
@@ -59,9 +55,9 @@ static ethd_status run(ethd__servo_device *d, int32_t sequence) {
   const double zero[2] = {0, 0};
   const struct timespec pause = {.tv_nsec = PAUSE};
   double most = steps_time(&d->map, sequence) + 1;
-  int64_t begin = monotonic();
+  int64_t begin = ethd__clock_now();
   ethd__servo_link_begin(&d->link, sequence, begin);
-  for (int64_t now = begin; d->link.sequence == sequence; now = monotonic()) {
+  for (int64_t now = begin; d->link.sequence == sequence; now = ethd__clock_now()) {
     if (1e-9 * (double)(now - begin) > most) return ETHD_E_DEVICE;
     (void)!ethd__servo_turn(d, now, zero);
     nanosleep(&pause, NULL);

@@ -19,9 +19,7 @@ typedef struct reading {
   char *message;
 } reading;
 
-static ethd_status no_memory(const reading *r) {
-  return ethd__say(r->message, ETHD_E_MEMORY, "%s: %s", r->name, ethd_status_sentence(ETHD_E_MEMORY));
-}
+static ethd_status no_memory(const reading *r) { return ethd__no_memory(r->message, r->name); }
 
 /* ---- the scene ---- */
 
@@ -45,8 +43,7 @@ ethd_status ethd__config_scene(ethd__config *whole, const ethd__key *key) {
   char what[ETHD_MESSAGE_MAX];
   size_t length;
   whole->scene_path = ethd__path_join(c->folder, key->value);
-  if (!whole->scene_path)
-    return ethd__say(key->message, ETHD_E_MEMORY, "%s: %s", key->file, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!whole->scene_path) return ethd__no_memory(key->message, key->file);
   ethd_status status = ethd_text_read(whole->scene_path, SCENE_BYTES_MAX, &c->scene_text, &length, what);
   if (status) return ethd__key_refuse(key, status, "%s", what);
   return parse_scene(whole, length, key->message);
@@ -178,7 +175,7 @@ static ethd_status load(const char *path, bool received, ethd_config **out, char
   if (folder)
     status = parse(r, text, length, path, folder, out);
   else
-    status = ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+    status = ethd__no_memory(message, path);
   free(folder);
   free(text);
   return status;

@@ -21,8 +21,7 @@ typedef struct device {
 
 static ethd_status load_plant(const ethd_device_def *def, const ethd_setting *setting, ethd_plant *out, char *message) {
   char *path = ethd__plant_path(setting ? setting->value : "n", def->folder);
-  ethd_status status = path ? ethd_plant_load(path, out, message)
-                            : ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status = path ? ethd_plant_load(path, out, message) : ethd__no_memory(message, NULL);
   free(path);
   return status;
 }

@@ -204,7 +204,7 @@ ethd_status ethd_svg_parse(const char *text, size_t length, const char *name, co
   reader *r = calloc(1, sizeof *r);
   *out = NULL;
   *notes = (ethd_svg_notes){0};
-  if (!r) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", name, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!r) return ethd__no_memory(message, name);
   r->name = name, r->options = options, r->notes = notes, r->message = message;
   r->drawing.tolerance = options->tolerance;
   r->xml = XML_ParserCreateNS(NULL, *between);

@@ -48,8 +48,7 @@ static ethd_status load(const ethd_device_def *def, replay *r, char *message) {
     return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.folder: the replay needs the folder of a recording",
                      def->file ? def->file : "the defaults");
   char *path = ethd__path_join(def->folder, folder->value);
-  status = path ? ethd__tape_load(path, &r->tape, message)
-                : ethd__say(message, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  status = path ? ethd__tape_load(path, &r->tape, message) : ethd__no_memory(message, NULL);
   free(path);
   return status;
 }

@@ -8,9 +8,7 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-static ethd_status no_memory(const char *folder, char *message) {
-  return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
-}
+static ethd_status no_memory(const char *folder, char *message) { return ethd__no_memory(message, folder); }
 
 /* What the device allowed stands before the first row. */
 static ethd_status take_limits(const ethd__record_events *events, ethd_limits *out, char *message) {

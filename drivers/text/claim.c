@@ -60,7 +60,7 @@ static bool is_at(int fd, const char *path) {
 
 static ethd_status lock(const char *folder, int how, ethd__claim *out, char *message) {
   out->path = ethd__path_join(folder, LOCK);
-  if (!out->path) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!out->path) return ethd__no_memory(message, folder);
   for (int i = 0; i < TRIES; i++) {
     out->fd = open(out->path, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (out->fd < 0) return refuse(out->path, message);

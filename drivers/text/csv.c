@@ -30,9 +30,7 @@ static ethd_status refuse(const reader *r, ethd_status status, const char *colum
                    what);
 }
 
-static ethd_status no_memory(const reader *r) {
-  return ethd__say(r->message, ETHD_E_MEMORY, "%s: %s", r->name, ethd_status_sentence(ETHD_E_MEMORY));
-}
+static ethd_status no_memory(const reader *r) { return ethd__no_memory(r->message, r->name); }
 
 /* ---- lines and cells ---- */
 

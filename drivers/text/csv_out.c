@@ -16,7 +16,7 @@ struct ethd_csv_out {
 ethd_csv_out *ethd_csv_create(const char *path, const char *header, char message[ETHD_MESSAGE_MAX]) {
   ethd_csv_out *out = calloc(1, sizeof *out);
   if (!out) {
-    (void)ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+    (void)ethd__no_memory(message, path);
     return NULL;
   }
   if (ethd_replace_begin(path, &out->replace, message)) {

@@ -19,6 +19,11 @@ ethd_status ethd__say(char message[ETHD_MESSAGE_MAX], ethd_status status, const 
   return status;
 }
 
+ethd_status ethd__no_memory(char message[ETHD_MESSAGE_MAX], const char *name) {
+  return ethd__say(message, ETHD_E_MEMORY, "%s%s%s", name ? name : "", name ? ": " : "",
+                   ethd_status_sentence(ETHD_E_MEMORY));
+}
+
 const char *ethd__quote(const char *word, size_t length, char out[ETHD_QUOTE_MAX]) {
   const size_t room = ETHD_QUOTE_MAX - 6;
   size_t shown = length < room ? length : room, n = 0;

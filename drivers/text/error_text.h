@@ -10,6 +10,9 @@
 ethd_status ethd__say(char message[ETHD_MESSAGE_MAX], ethd_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* "NAME: no memory", without a name where it is NULL; returns ETHD_E_MEMORY. [main] */
+ethd_status ethd__no_memory(char message[ETHD_MESSAGE_MAX], const char *name);
+
 /* A word of the input for a message: in quotes, cut to fit, anything but printable ASCII as '?'. [any] */
 const char *ethd__quote(const char *word, size_t length, char out[ETHD_QUOTE_MAX]);
 

@@ -170,7 +170,7 @@ ethd_status ethd_ini_parse(const char *text, size_t length, const char *name, co
                     .sections = calloc(ETHD_INI_SECTIONS_MAX, sizeof *out->sections)};
   if (!out->keys || !out->sections) {
     ethd_ini_free(out);
-    return ethd__say(message, ETHD_E_MEMORY, "%s: %s", name, ethd_status_sentence(ETHD_E_MEMORY));
+    return ethd__no_memory(message, name);
   }
   if (length > ETHD_INI_BYTES_MAX)
     REFUSE(&f, ETHD_E_RANGE, "%s: %zu bytes, at most %zu are allowed", name, length, ETHD_INI_BYTES_MAX);

@@ -38,7 +38,7 @@ static ethd_status read_all(FILE *file, const char *path, size_t most, char **te
       room *= 2;
     }
   }
-  if (!buffer) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!buffer) return ethd__no_memory(message, path);
   if (ferror(file)) {
     free(buffer);
     return refuse(path, message);

@@ -32,8 +32,7 @@ typedef struct ethd_conform_def {
   const char *ids;                /* as for ethd_device_open */
   const ethd_driver *const *from; /* likewise */
   const ethd_device_def *device;
-  double torque;      /* Nm, pushes each joint in turn, for 0.15 s at most; 0: nothing may move */
-  int32_t is_virtual; /* 1: time is only counted, for a device that needs none to pass */
+  double torque; /* Nm, pushes each joint in turn, for 0.15 s at most; 0: nothing may move */
 } ethd_conform_def;
 
 /* Puts all questions; ETHD_OK: nothing is broken, ETHD_E_DEVICE: something is. */

@@ -49,6 +49,8 @@ typedef struct ethd_device_def {
   uint32_t setting_count;
   const char *folder; /* relative paths in settings start here */
   const char *file;   /* of the settings, for messages; NULL: they weren't in a file */
+  int32_t is_virtual; /* 1: instants come from a virtual clock, and service waits for nothing; 0: they are
+                         CLOCK_MONOTONIC's */
 } ethd_device_def;
 
 /* A number about the device for people: "feedback age p99", "s", 0.0012. */

@@ -6,6 +6,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "clock.h"
 #include "ethd/driver.h"
 #include "servo/device.h"
 #include "servo/mock.h"
@@ -27,7 +28,7 @@ static ethd_status last;
 
 static ethd_status open_with(ethd_setting *settings, uint32_t count) {
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, count, folder, "d.ini"};
+  const ethd_device_def def = {&setup, settings, count, folder, "d.ini", 1};
   ethd_status status = servo->open(&def, &device, message);
   if (status && device) servo->close(device), device = NULL;
   return status;
@@ -118,6 +119,19 @@ START_TEST(test_goes_and_comes) {
             servo->limits(device).clean_time == 1); /* a real device */
   ck_assert_int_eq(servo->stop(device), ETHD_OK);
   ck_assert_int_eq(raw(MOCK_TORQUE1) | raw(MOCK_CONTROL) | raw(MOCK_STATUS), 0);
+  close_device();
+}
+END_TEST
+
+/* Virtual instants stay what they are, also where they happen to be near the system's: nothing waits, and what is
+   read is stamped with the tick's own. */
+START_TEST(test_virtual_near_the_clock) {
+  start_device();
+  now = ethd__clock_now() - 20 * TICK;
+  for (int i = 0; i < 20; i++) {
+    ck_assert_int_eq(tick(0, 0), ETHD_OK);
+    ck_assert_int_eq(sense.time_ns, now);
+  }
   close_device();
 }
 END_TEST
@@ -795,6 +809,7 @@ int main(void) {
   if (write_map(path)) return 1;
   tcase_set_timeout(t, 240);
   tcase_add_test(t, test_goes_and_comes);
+  tcase_add_test(t, test_virtual_near_the_clock);
   tcase_add_test(t, test_reading);
   tcase_add_test(t, test_unwraps);
   tcase_add_test(t, test_encoder_jump);

@@ -113,7 +113,7 @@ static char message[ETHD_MESSAGE_MAX];
 static ethd_status try(const char *ids, const char *k0, const char *k1) {
   const ethd_setting settings[] = {{k0, "1", 7}, {k1, "2", 8}};
   const ethd_setup setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, (k0 != NULL) + (k1 != NULL), ".", "c.ini"};
+  const ethd_device_def def = {&setup, settings, (k0 != NULL) + (k1 != NULL), ".", "c.ini", 1};
   log_[0] = message[0] = 0;
   return ethd_device_open(ids, both, &def, &driver, &device, message);
 }
@@ -172,7 +172,7 @@ static const ethd_driver *const only_bare[] = {&bare, &a, NULL};
 
 static ethd_status open_bare(const char *ids) {
   const ethd_setup setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, NULL, 0, ".", NULL};
+  const ethd_device_def def = {&setup, NULL, 0, ".", NULL, 1};
   log_[0] = message[0] = 0;
   return ethd_device_open(ids, only_bare, &def, &driver, &device, message);
 }
@@ -235,7 +235,7 @@ static const struct {
 START_TEST(test_settings) {
   const ethd_setting one = {settings[_i].key, settings[_i].value, 7}, *text[2] = {NULL, NULL};
   const ethd_setup setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, &one, 1, ".", "c.ini"};
+  const ethd_device_def def = {&setup, &one, 1, ".", "c.ini", 1};
   double values[2] = {-1, -2};
   bare = (ethd_driver){.id = "bare"};
   message[0] = 0;

@@ -92,7 +92,7 @@ static spoilt open_script(const char *text) {
   fclose(f);
   ethd_setup setup = ethd_setup_default();
   const ethd_setting settings[] = {{"inject", name, 3}};
-  const ethd_device_def def = {&setup, settings, 1, NULL, "c.ini"};
+  const ethd_device_def def = {&setup, settings, 1, NULL, "c.ini", 1};
   spoilt x = {.now = 41 * (int64_t)MS};
   ck_assert_msg(!ethd_device_open("plain", only, &def, &x.driver, &x.device, message), "%s", message);
   ck_assert_ptr_eq(x.driver, &ethd__driver_inject);
@@ -280,7 +280,7 @@ END_TEST
 START_TEST(test_no_file) {
   ethd_setup setup = ethd_setup_default();
   const ethd_setting settings[] = {{"inject", "missing.inject", 3}};
-  const ethd_device_def def = {&setup, settings, 1, "/nowhere", "c.ini"};
+  const ethd_device_def def = {&setup, settings, 1, "/nowhere", "c.ini", 1};
   const ethd_driver *d;
   void *device;
   char message[ETHD_MESSAGE_MAX] = "";

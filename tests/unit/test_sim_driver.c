@@ -18,7 +18,7 @@ static ethd_status open_or_close(const ethd_device_def *def, void **device, char
 
 static ethd_status try(const ethd_setting *settings, uint32_t count, void **device, char *message) {
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, count, FOLDER, "c.ini"};
+  const ethd_device_def def = {&setup, settings, count, FOLDER, "c.ini", 1};
   message[0] = 0;
   return open_or_close(&def, device, message);
 }
@@ -133,10 +133,10 @@ END_TEST
 START_TEST(test_where_plants_are) {
   const ethd_setting letter = {"plant", "b", 1}, path = {"plant", "../../" FOLDER "/b.plant", 1};
   setup = ethd_setup_default();
-  const ethd_device_def defs[] = {{&setup, &letter, 1, FOLDER, NULL},
-                                  {&setup, &letter, 1, "tests", NULL},
-                                  {&setup, &path, 1, FOLDER, NULL},
-                                  {&setup, &path, 1, "tests", NULL}};
+  const ethd_device_def defs[] = {{&setup, &letter, 1, FOLDER, NULL, 1},
+                                  {&setup, &letter, 1, "tests", NULL, 1},
+                                  {&setup, &path, 1, FOLDER, NULL, 1},
+                                  {&setup, &path, 1, "tests", NULL, 1}};
   ck_assert_int_eq(setenv("ETHD_DATA_DIR", FOLDER, 1), 0);
   for (size_t i = 0; i < 4; i++) {
     void *device;
