@@ -32,17 +32,14 @@ static void tell_lost(ethd__recorder *r, uint64_t lost) {
   event(r, "fault", text);
 }
 
-static void tell_posts(ethd__recorder *r, uint64_t swaps) {
-  for (; r->swaps < swaps && r->waiting; r->swaps++) {
-    event(r, r->posts[0].kind, r->posts[0].detail);
-    memmove(r->posts, r->posts + 1, (size_t)--r->waiting * sizeof r->posts[0]);
-  }
+static void tell_posts(ethd__recorder *r, const ethd__post *posts, int count) {
+  for (int i = 0; i < count; i++) event(r, posts[i].kind, posts[i].detail);
 }
 
 /* True: a fault that stops the ring begins. */
 static bool tell_fault(ethd__recorder *r, int64_t fault) {
   const char *sentence = ethd_fault_sentence((ethd_fault)fault);
-  if (!fault || fault == r->latest.trace.fault || atomic_load(&r->stopping)) return false;
+  if (!fault || fault == r->fault || atomic_load(&r->stopping)) return false;
   if (fault > 0 && fault < ETHD_FAULT_COUNT) r->faults[fault]++;
   event(r, "fault", sentence);
   fprintf(stderr, "%s: fault: %s\n", program_invocation_short_name, sentence);
@@ -56,18 +53,38 @@ static void tell_loop(ethd__recorder *r, uint64_t lost, bool failed_before) {
   if (lost || r->failed != failed_before) ethd_loop_raise(r->loop, ETHD_FAULT_RECORDER);
 }
 
-static void take(ethd__recorder *r, const ethd_loop_row *row) {
-  bool failed_before = r->failed;
+/* What the main thread shares: the newest row, and the posts that wait. Those that rule from this row on are handed
+   to `taken`; their number is returned. */
+static int share(ethd__recorder *r, const ethd_loop_row *row, ethd__post taken[ETHD__POSTS_MAX]) {
+  int count = 0;
   pthread_mutex_lock(&r->lock);
+  for (; r->swaps < row->swaps && count < r->waiting; r->swaps++) count++;
+  memcpy(taken, r->posts, (size_t)count * sizeof *taken);
+  r->waiting -= count;
+  memmove(r->posts, r->posts + count, (size_t)r->waiting * sizeof *taken);
+  r->latest = *row;
+  pthread_mutex_unlock(&r->lock);
+  return count;
+}
+
+/* The row and what happened before it, in the order of a recording. True: a fault that stops the ring begins. */
+static bool record(ethd__recorder *r, const ethd_loop_row *row, const ethd__post *posts, int count) {
   tell_lost(r, row->lost);
   if (row->marks & ETHD_ROW_STARTED && r->rows) event(r, "start", "enabled");
-  tell_posts(r, row->swaps);
+  tell_posts(r, posts, count);
   if (row->marks & ETHD_ROW_CLEARED) event(r, "clear", "");
   bool begins = tell_fault(r, row->trace.fault);
   if (r->recording && ethd_recording_tick(r->recording, &row->trace)) r->failed = true;
-  r->latest = *row;
+  r->fault = row->trace.fault;
   r->rows++;
-  pthread_mutex_unlock(&r->lock);
+  return begins;
+}
+
+static void take(ethd__recorder *r, const ethd_loop_row *row) {
+  bool failed_before = r->failed;
+  ethd__post posts[ETHD__POSTS_MAX];
+  int count = share(r, row, posts);
+  bool begins = record(r, row, posts, count);
   tell_loop(r, row->lost, failed_before);
   if (r->sink.take) r->sink.take(r->sink.self, row);
   ethd__snapshot_take(&r->snapshot, &row->trace, begins);

@@ -38,11 +38,15 @@ typedef struct ethd__recorder {
 
   ethd__snapshot snapshot;
 
-  pthread_mutex_t lock; /* for what follows */
+  pthread_mutex_t lock; /* for what the main thread shares with the recorder's; no file is written under it */
   ethd__post posts[ETHD__POSTS_MAX];
   int waiting; /* posts */
+  uint64_t swaps;
   ethd_loop_row latest;
-  uint64_t rows, lost, swaps;
+
+  /* of the recorder's thread, until it has ended */
+  uint64_t rows, lost;
+  int64_t fault; /* of the last row */
   uint64_t kept; /* rows in the recording, once it is closed */
   uint64_t faults[ETHD_FAULT_COUNT];
   bool failed; /* the recording couldn't be written */

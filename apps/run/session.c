@@ -41,17 +41,7 @@ static void pass(ethd__session *s) {
   }
 }
 
-static uint64_t ticks(const ethd__session *s) {
-  static ethd_loop_stats stats;
-  ethd_loop_read(s->loop, &stats);
-  return stats.ticks;
-}
-
-double ethd__session_time(const ethd__session *s) {
-  static ethd_loop_stats stats;
-  ethd_loop_read(s->loop, &stats);
-  return (double)(stats.ticks + stats.missed) * s->setup.period;
-}
+double ethd__session_time(const ethd__session *s) { return (double)ethd_loop_periods(s->loop) * s->setup.period; }
 
 /* Until `posted` setups are taken. */
 static bool settle(ethd__session *s) {
@@ -60,8 +50,8 @@ static bool settle(ethd__session *s) {
 }
 
 static void await_tick(ethd__session *s) {
-  uint64_t before = ticks(s);
-  for (int i = 0; ticks(s) == before && i < PATIENCE && !ethd_loop_ended(s->loop); i++) pass(s);
+  uint64_t before = ethd_loop_periods(s->loop);
+  for (int i = 0; ethd_loop_periods(s->loop) == before && i < PATIENCE && !ethd_loop_ended(s->loop); i++) pass(s);
 }
 
 /* ---- opening ---- */

@@ -143,6 +143,8 @@ ethd_status ethd_loop_take(ethd_loop *l, ethd_loop_row *out) {
 
 static uint64_t seen(const uint64_t *count) { return __atomic_load_n(count, __ATOMIC_RELAXED); }
 
+uint64_t ethd_loop_periods(const ethd_loop *l) { return seen(&l->stats.ticks) + seen(&l->stats.missed); }
+
 static void read_histogram(const ethd_histogram *h, ethd_histogram *out) {
   for (uint32_t i = 0; i < ETHD_BINS; i++) out->count += out->counts[i] = seen(&h->counts[i]);
   out->max = __atomic_load_n(&h->max, __ATOMIC_RELAXED);

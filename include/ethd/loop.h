@@ -179,6 +179,9 @@ ETHD_API int32_t ethd_loop_shortfalls(const ethd_loop *loop);
 /* 1: the loop's thread has ended, by ethd_loop_stop or by itself. [any] */
 ETHD_API int32_t ethd_loop_ended(const ethd_loop *loop);
 
+/* Periods since the start, ticks and missed ones: the loop's time over its period. [any] */
+ETHD_API uint64_t ethd_loop_periods(const ethd_loop *loop);
+
 /* Numbers while it runs are a tick apart at most. [main] */
 ETHD_API void ethd_loop_read(const ethd_loop *loop, ethd_loop_stats *out);
 

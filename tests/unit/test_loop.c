@@ -18,6 +18,7 @@ START_TEST(test_ticks_stand_on_the_grid) {
   ck_assert_uint_eq(s.ticks, 10);
   ck_assert_uint_eq(s.overruns, 0);
   ck_assert_uint_eq(s.missed, 0);
+  ck_assert_uint_eq(ethd_loop_periods(b.loop), 10);
   ck_assert_int_eq(s.wake.max, 0);
   ck_assert_int_eq(b.d.services, 10);
   bench_close(&b);
@@ -42,6 +43,7 @@ START_TEST(test_overruns_are_counted_and_realigned) {
   for (int i = 0; i < 10; i++) ck_assert_int_eq(b.d.read_at[i], (6 + i + (i > 3 ? missed : 0)) * (int64_t)PERIOD);
   ethd_loop_read(b.loop, &s);
   ck_assert_uint_eq(s.overruns, missed > 0);
+  ck_assert_uint_eq(ethd_loop_periods(b.loop), (uint64_t)(10 + missed));
   ck_assert_uint_eq(s.missed, (uint64_t)missed);
   ck_assert_int_eq(s.tick.max, busy_ticks[_i].busy);
   bench_close(&b);
