@@ -108,7 +108,7 @@ static ethd_config *load(void) {
   ethd_config *config;
   if (ethd_config_load(NULL, &config, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   for (int i = 0; i < arg.plugin_count; i++) {
-    ethd__key key = {NULL, 0, "plugins", "file", arg.plugins[i], message};
+    ethd__config_key key = {NULL, 0, "plugins", "file", arg.plugins[i], message};
     ethd_status status = ethd__config_plugin((ethd__config *)config, &key);
     if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
   }

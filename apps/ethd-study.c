@@ -185,7 +185,7 @@ static int end(const ethd__sitting *sitting, const char *folder, ethd_status sta
 }
 
 static int run_session(void) {
-  static ethd__place place;
+  static ethd__screen_place place;
   char message[ETHD_MESSAGE_MAX] = "";
   const ethd__place_options wanted = {.path = arg.resume ? arg.resume : arg.out,
                                       .participant = arg.participant,

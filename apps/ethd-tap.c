@@ -171,7 +171,7 @@ static void refuse_inputs(void) {
   }
 }
 
-static int run(const ethd__plan *plan, const ethd__heading *heading) {
+static int run(const ethd__tap_plan *plan, const ethd__heading *heading) {
   char message[ETHD_MESSAGE_MAX];
   const ethd__study *study = plan->study;
   ethd__output output;
@@ -215,7 +215,7 @@ int main(int argc, char **argv) {
     free(finger);
   }
   check(ethd__study_prepare(&study, message), message);
-  const ethd__plan plan = {&study, arg.laws.words, arg.laws.count, (uint64_t)arg.taps};
+  const ethd__tap_plan plan = {&study, arg.laws.words, arg.laws.count, (uint64_t)arg.taps};
   check(ethd__plan_check(&plan, message), message);
   const ethd__heading heading = {loaded.plant_name, arg.config ? arg.config : base_name(loaded.path), arg.finger,
                                  arg.scale, arg.scaled};

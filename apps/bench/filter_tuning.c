@@ -52,7 +52,7 @@ typedef struct sum {
 
 static double ticks_out[ETHD__TRACK_MAX][2];
 
-static void add_errors(const ethd__contender *c, const ethd__tracks *set, sum *to) {
+static void add_errors(const ethd__filter_contender *c, const ethd__tracks *set, sum *to) {
   for (size_t t = 0; t < set->count; t++) {
     const ethd__track *track = &set->at[t];
     c->work(c->self, (const double(*)[3])track->in, ticks_out, track->count);
@@ -65,7 +65,7 @@ static void add_errors(const ethd__contender *c, const ethd__tracks *set, sum *t
   }
 }
 
-double ethd__contender_error(const ethd__contender *c, const ethd__tracks *sets, size_t count) {
+double ethd__filter_contender_error(const ethd__filter_contender *c, const ethd__tracks *sets, size_t count) {
   sum all = {0, 0};
   for (size_t s = 0; s < count; s++) add_errors(c, &sets[s], &all);
   return sqrt(all.squares / all.count);
@@ -88,8 +88,8 @@ ethd_filter ethd__tuning_filter(ethd_filter_method method, const ethd__tuning *t
 
 double ethd__tuning_error(ethd_filter_method method, const ethd__tuning *t, const ethd__tracks *sets, size_t count) {
   ethd_filter f = ethd__tuning_filter(method, t);
-  ethd__contender c = {NULL, ethd__filter_work, &f};
-  return ethd__contender_error(&c, sets, count);
+  ethd__filter_contender c = {NULL, ethd__filter_work, &f};
+  return ethd__filter_contender_error(&c, sets, count);
 }
 
 /* The first row from `from` on, each 1.25 times the one before; the second's values

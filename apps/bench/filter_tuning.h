@@ -6,11 +6,11 @@
 #include "ethd/finger_filter.h"
 
 /* One way to say where the finger is; it starts anew with every call. */
-typedef struct ethd__contender {
+typedef struct ethd__filter_contender {
   const char *name;
   void (*work)(void *self, const double (*in)[3], double (*out)[2], size_t count);
   void *self;
-} ethd__contender;
+} ethd__filter_contender;
 
 /* `self`: an ethd_filter. */
 void ethd__filter_work(void *self, const double (*in)[3], double (*out)[2], size_t count);
@@ -19,7 +19,7 @@ void ethd__filter_work(void *self, const double (*in)[3], double (*out)[2], size
 void ethd__two_readings(void *self, const double (*in)[3], double (*out)[2], size_t count);
 
 /* rms over both axes, m; the first 30 ms of a track don't count. */
-double ethd__contender_error(const ethd__contender *c, const ethd__tracks *sets, size_t count);
+double ethd__filter_contender_error(const ethd__filter_contender *c, const ethd__tracks *sets, size_t count);
 
 /* Up to two rows of a method's table; all others at their defaults. */
 typedef struct ethd__tuning {

@@ -20,7 +20,7 @@ static const double goals[LATENCIES] = {0.15, 0.25, 0.30}; /* share by which ca 
 static double ticks_out[ETHD__TRACK_MAX][2];
 
 typedef struct timed {
-  ethd__contender c;
+  ethd__filter_contender c;
   const ethd__track *track;
 } timed;
 
@@ -29,7 +29,7 @@ static void work(void *data) {
   t->c.work(t->c.self, (const double(*)[3])t->track->in, ticks_out, t->track->count);
 }
 
-static void race(ethd__contender *list, size_t count, const ethd__track *track, double seconds, double *ns) {
+static void race(ethd__filter_contender *list, size_t count, const ethd__track *track, double seconds, double *ns) {
   timed t[8];
   ethd__bench_entry entries[8];
   for (size_t i = 0; i < count; i++) {
@@ -44,12 +44,13 @@ static void race(ethd__contender *list, size_t count, const ethd__track *track, 
 
 static FILE *csv;
 
-static void row(const char *set, double latency, const ethd__contender *c, double ns, double error, const char *tuned) {
+static void row(const char *set, double latency, const ethd__filter_contender *c, double ns, double error,
+                const char *tuned) {
   fprintf(csv, "%s,%.17g,%s,%.17g,%.17g,%s\n", set, 1e3 * latency, c->name, ns, 1e3 * error, tuned);
 }
 
 typedef struct field {
-  ethd__contender list[6];
+  ethd__filter_contender list[6];
   size_t count;
   ethd_filter filters[ETHD_FILTER_COUNT];
   char tuned[6][64];
@@ -66,15 +67,15 @@ static void gather(field *f, const ethd__tracks *reaches, const ethd__peer_filte
     ethd__tuning t = ethd__tuning_best(m, reaches, 1);
     f->filters[m] = ethd__tuning_filter(m, &t);
     ethd__tuning_text(&t, f->tuned[f->count]);
-    f->list[f->count++] = (ethd__contender){ethd_filter_methods[m].id, ethd__filter_work, &f->filters[m]};
+    f->list[f->count++] = (ethd__filter_contender){ethd_filter_methods[m].id, ethd__filter_work, &f->filters[m]};
     if (i == 0) {
       f->tuned[f->count][0] = 0;
-      f->list[f->count++] = (ethd__contender){"two readings", ethd__two_readings, NULL};
+      f->list[f->count++] = (ethd__filter_contender){"two readings", ethd__two_readings, NULL};
     }
     if (m == ETHD_FILTER_CA && peer) {
       strcpy(f->tuned[f->count], f->tuned[f->count - 1]);
       void *self = peer->create(ETHD__TRACK_PERIOD, t.value[0], t.value[1], ETHD__TRACK_NOISE);
-      f->list[f->count++] = (ethd__contender){peer->name, peer->work, self};
+      f->list[f->count++] = (ethd__filter_contender){peer->name, peer->work, self};
     }
   }
 }
@@ -105,7 +106,7 @@ static void print_errors(const char *set, double latency, const double *errors, 
 static void compare(const field *f, const char *set, double latency, const ethd__tracks *sets, size_t count,
                     const double *ns, double *errors) {
   for (size_t i = 0; i < f->count; i++) {
-    errors[i] = ethd__contender_error(&f->list[i], sets, count);
+    errors[i] = ethd__filter_contender_error(&f->list[i], sets, count);
     row(set, latency, &f->list[i], ns[i], errors[i], f->tuned[i]);
   }
   print_errors(set, latency, errors, f->count);

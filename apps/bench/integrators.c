@@ -28,14 +28,14 @@ static void tolerate(ethd__body *body, double tolerance) {
   if (body->tolerance != tolerance) ethd__body_tolerate(body, tolerance);
 }
 
-static void ours(void *user, ethd__body *body, const ethd__stretch *s, ethd__state *state) {
+static void ours(void *user, ethd__body *body, const ethd__stretch *s, ethd__sim_state *state) {
   const contender *c = user;
   tolerate(body, c->setting);
   ethd__body_advance(body, &s->piece, s->begin, s->end - s->begin, state);
 }
 
 /* Steps of order 4, all alike; the setting is their length. */
-static void ours_fixed(void *user, ethd__body *body, const ethd__stretch *s, ethd__state *state) {
+static void ours_fixed(void *user, ethd__body *body, const ethd__stretch *s, ethd__sim_state *state) {
   const contender *c = user;
   double length = s->end - s->begin;
   int n = (int)ceil(length / c->setting - 1e-9);

@@ -6,22 +6,22 @@ enum { N = ETHD__ODE_SIZE, HALF = N / 2 };
 
 /* ---- the plant ---- */
 
-static void unpack(const double *y, ethd__touch touch, ethd__state *s) {
+static void unpack(const double *y, ethd__touch touch, ethd__sim_state *s) {
   memcpy(s->q, y, HALF * sizeof *y);
   memcpy(s->v, y + HALF, HALF * sizeof *y);
   s->touch = touch;
 }
 
-static void pack(const ethd__state *s, double *y) {
+static void pack(const ethd__sim_state *s, double *y) {
   memcpy(y, s->q, HALF * sizeof *y);
   memcpy(y + HALF, s->v, HALF * sizeof *y);
 }
 
 static void rate(void *self, double t, const double *y, double *out) {
   ethd__plain *p = self;
-  ethd__motion hand = ethd__piece_at(p->piece, t);
+  ethd__sim_motion hand = ethd__piece_at(p->piece, t);
   if (p->live) {
-    ethd__state s;
+    ethd__sim_state s;
     unpack(y, ETHD__APART, &s);
     p->touch = ethd__body_touch(p->body, &s);
   }
@@ -32,7 +32,7 @@ static void rate(void *self, double t, const double *y, double *out) {
 /* Apart: -p; touching: p and 1 + c p', or the latter's opposite while the pad leaves. */
 static void watch(void *self, double t, const double *y, double out[2]) {
   const ethd__plain *p = self;
-  ethd__state s;
+  ethd__sim_state s;
   ethd_vec x, v;
   (void)t;
   unpack(y, p->touch, &s);
@@ -196,7 +196,7 @@ static void march(ethd__runner *r, double t, double end, double *y, double *k1) 
   }
 }
 
-void ethd__runner_stretch(void *user, ethd__body *body, const ethd__stretch *s, ethd__state *state) {
+void ethd__runner_stretch(void *user, ethd__body *body, const ethd__stretch *s, ethd__sim_state *state) {
   ethd__runner *r = user;
   double y[N], k1[N];
   r->plain.body = body;

@@ -38,6 +38,6 @@ typedef struct ethd__runner {
   void *peer_self;
 } ethd__runner;
 
-void ethd__runner_stretch(void *runner, ethd__body *body, const ethd__stretch *stretch, ethd__state *state);
+void ethd__runner_stretch(void *runner, ethd__body *body, const ethd__stretch *stretch, ethd__sim_state *state);
 
 #endif

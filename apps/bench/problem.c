@@ -103,7 +103,7 @@ void ethd__problem_play(const ethd__problem *p, ethd__play *stretch, void *user,
   for (int i = 0; i < p->tap_count; i++) {
     const ethd__played *tap = &p->taps[i];
     ethd__body body = tap->body;
-    ethd__state state = tap->start;
+    ethd__sim_state state = tap->start;
     for (int k = 0; k < tap->count; k++) {
       const ethd__stretch *s = &tap->stretches[k];
       memcpy(body.torque, s->torque, sizeof body.torque);

@@ -15,7 +15,7 @@ typedef struct ethd__stretch {
 
 typedef struct ethd__played {
   ethd__body body;
-  ethd__state start;
+  ethd__sim_state start;
   ethd__stretch *stretches;
   int count;
 } ethd__played;
@@ -34,7 +34,7 @@ ethd__problem ethd__problem_record(int taps);
 void ethd__problem_free(ethd__problem *problem);
 
 /* Plays all taps: `stretch` moves the state through one. */
-typedef void ethd__play(void *user, ethd__body *body, const ethd__stretch *stretch, ethd__state *state);
+typedef void ethd__play(void *user, ethd__body *body, const ethd__stretch *stretch, ethd__sim_state *state);
 void ethd__problem_play(const ethd__problem *problem, ethd__play *stretch, void *user, ethd__mark *out);
 
 /* Largest distance of ring or finger from where `reference` has it, m. */

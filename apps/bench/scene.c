@@ -16,7 +16,7 @@ static void write_csv(const ethd__contest *t, FILE *csv) {
     for (int size = 0; size < SIZES; size++)
       for (int ask = 0; ask < ETHD__ASKS; ask++)
         for (int i = 0; i < CONTENDERS; i++) {
-          const ethd__result *r = &t->results[kind][size][ask][i];
+          const ethd__race_result *r = &t->results[kind][size][ask][i];
           if (!r->there) continue;
           fprintf(csv, "%s,%zu,%s,%s", ethd__world_names[kind], ethd__contest_sizes[size], ethd__ask_names[ask],
                   name_of(t, i));
@@ -45,11 +45,11 @@ static void print_question(const ethd__contest *t, int kind, int ask) {
   for (int size = 0; size < SIZES; size++) printf("%9zu", ethd__contest_sizes[size]);
   printf(" |%9s%9s%9s |%9s%9s\n", "p99", "p99.9", "max", "cold 50%", "p99");
   for (int i = 0; i < CONTENDERS; i++) {
-    const ethd__result(*r)[ETHD__ASKS][CONTENDERS] = t->results[kind];
+    const ethd__race_result(*r)[ETHD__ASKS][CONTENDERS] = t->results[kind];
     if (!r[SIZES - 1][ask][i].there) continue;
     printf("    %-16s", name_of(t, i));
     for (int size = 0; size < SIZES; size++) print_short(r[size][ask][i].mean);
-    const ethd__result *last = &r[SIZES - 1][ask][i];
+    const ethd__race_result *last = &r[SIZES - 1][ask][i];
     printf(" |");
     print_short(last->each.p99);
     print_short(last->each.p999);
@@ -64,7 +64,7 @@ static void print_question(const ethd__contest *t, int kind, int ask) {
 static void print_builds(const ethd__contest *t) {
   printf("  build of %zu, ms of processor time (MB):", ethd__contest_sizes[SIZES - 1]);
   for (int i = 0; i < CONTENDERS; i++) {
-    const ethd__result *r = &t->results[i == LOOSE ? ETHD__CONTOUR : ETHD__RANDOM][SIZES - 1][0][i];
+    const ethd__race_result *r = &t->results[i == LOOSE ? ETHD__CONTOUR : ETHD__RANDOM][SIZES - 1][0][i];
     if (!r->there) continue;
     printf(" %s %.0f", name_of(t, i), 1e3 * r->build);
     if (r->bytes > 0) printf(" (%.1f)", 1e-6 * r->bytes);
@@ -75,7 +75,7 @@ static void print_builds(const ethd__contest *t) {
 /* ---- goals ---- */
 
 static void goal_ratio(const ethd__contest *t, ethd__world_kind kind, int size, ethd__ask ask, int peer, double least) {
-  const ethd__result *r = t->results[kind][size][ask];
+  const ethd__race_result *r = t->results[kind][size][ask];
   if (!r[peer].there) return;
   double times = r[peer].mean / r[OURS].mean;
   printf("  goal: %s %zu %s: %s takes %.1f times as long: %.2f, %s\n", ethd__world_names[kind],
@@ -89,7 +89,7 @@ static void goal_incoherent(const ethd__contest *t) {
     int met = 1;
     printf("  goal: %s incoherent: Embree never quicker; it takes", ethd__world_names[kind]);
     for (int size = 0; size < SIZES; size++) {
-      const ethd__result *r = t->results[kind][size][ETHD__COLD];
+      const ethd__race_result *r = t->results[kind][size][ETHD__COLD];
       met &= r[EMBREE].mean >= r[OURS].mean;
       printf(" %.2f", r[EMBREE].mean / r[OURS].mean);
     }
@@ -107,8 +107,8 @@ static void print_goals(const ethd__contest *t) {
   goal_ratio(t, ETHD__CONTOUR, TEN, ETHD__WARM, CGAL, 3);
   goal_ratio(t, ETHD__RANDOM, TEN, ETHD__WARM, EMBREE, 1.4);
   goal_incoherent(t);
-  const ethd__result *contour = &t->results[ETHD__CONTOUR][HUNDRED][ETHD__WARM][OURS];
-  const ethd__result *random = &t->results[ETHD__RANDOM][HUNDRED][ETHD__WARM][OURS];
+  const ethd__race_result *contour = &t->results[ETHD__CONTOUR][HUNDRED][ETHD__WARM][OURS];
+  const ethd__race_result *random = &t->results[ETHD__RANDOM][HUNDRED][ETHD__WARM][OURS];
   goal_most("contour 100000 warm, p99", contour->each.p99, 500, "ns");
   goal_most("build of 100000", 1e3 * fmax(contour->build, random->build), 36, "ms");
   goal_most("memory of 100000", 1e-6 * fmax(contour->bytes, random->bytes), 12, "MB");
@@ -128,7 +128,7 @@ static int run(const char *folder, int quick) {
   t.contenders[OURS].name = "libethd";
   t.contenders[LOOSE].name = "libethd loose";
   for (size_t k = 0; k < sizeof peers / sizeof *peers; k++) {
-    ethd__contender *c = &t.contenders[peers[k].i];
+    ethd__scene_contender *c = &t.contenders[peers[k].i];
     c->peer = ethd__bench_peer(peers[k].file, "peer_scene");
     if (c->peer) c->name = c->peer->name;
   }

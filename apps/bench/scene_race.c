@@ -41,7 +41,7 @@ static void start_lap(ethd__contest *t, int i, ethd__ask ask, lap *l) {
 
 static void run_block(ethd__contest *t, int i, ethd__ask ask, lap *l, int b) {
   const ethd_vec *x = points_of(t, ask) + BLOCK * b;
-  ethd__contender *c = &t->contenders[i];
+  ethd__scene_contender *c = &t->contenders[i];
   double sum = ethd__contender_nearest(c, ask, x[b ? -1 : 0]);
   int64_t start = ethd__bench_now();
   for (int k = 0; k < l->block; k++) sum += ethd__contender_nearest(c, ask, x[k]);
@@ -58,7 +58,7 @@ static double mean_of(const lap *l) {
 }
 
 /* In turns, each over all its blocks: caches and branch predictors are its own. */
-static void race(ethd__contest *t, ethd__ask ask, ethd__result *results) {
+static void race(ethd__contest *t, ethd__ask ask, ethd__race_result *results) {
   static lap laps[CONTENDERS];
   for (int i = 0; i < CONTENDERS; i++)
     if (results[i].there) start_lap(t, i, ask, &laps[i]);
@@ -101,7 +101,7 @@ static ethd__bench_times calm_query(ethd__contest *t, int i, ethd__ask ask, doub
 
 /* ---- one world ---- */
 
-static void compare_answers(ethd__contest *t, int i, ethd__ask ask, ethd__result *r) {
+static void compare_answers(ethd__contest *t, int i, ethd__ask ask, ethd__race_result *r) {
   const ethd_vec *x = points_of(t, ask);
   for (int k = 0; k < affordable(t, 10 * r->mean); k++) {
     double d = ethd__contender_nearest(&t->contenders[i], ask, x[k]);
@@ -126,7 +126,7 @@ static void run_world(ethd__contest *t, ethd__world_kind kind, int size) {
     }
   }
   for (int ask = 0; ask < ETHD__ASKS; ask++) {
-    ethd__result *results = t->results[kind][size][ask];
+    ethd__race_result *results = t->results[kind][size][ask];
     race(t, (ethd__ask)ask, results);
     for (int i = 0; i < CONTENDERS; i++) {
       if (!results[i].there) continue;

@@ -10,19 +10,19 @@ enum { SIZES = 6, CALM_FROM = 3 }; /* from this size on the caches matter */
 extern const size_t ethd__contest_sizes[SIZES];
 
 /* What one contender gave in one world, asked one way. ns. */
-typedef struct ethd__result {
+typedef struct ethd__race_result {
   int there;
   double mean, build, bytes, apart;
   ethd__bench_times each, calm; /* query by query; with cold caches */
-} ethd__result;
+} ethd__race_result;
 
 typedef struct ethd__contest {
-  ethd__contender contenders[CONTENDERS];
+  ethd__scene_contender contenders[CONTENDERS];
   ethd_vec path[ETHD__BENCH_POINTS], anywhere[ETHD__BENCH_POINTS];
   double expected[ETHD__BENCH_POINTS];
   int rounds, quick;
   double clock;
-  ethd__result results[ETHD__WORLDS][SIZES][ETHD__ASKS][CONTENDERS];
+  ethd__race_result results[ETHD__WORLDS][SIZES][ETHD__ASKS][CONTENDERS];
 } ethd__contest;
 
 /* All worlds, sizes and ways to ask. Contenders have names; those who have a peer or are ours take part. */

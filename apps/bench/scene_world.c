@@ -75,7 +75,7 @@ static ethd_scene *our_scene(const ethd__world *w, const ethd_object_def *object
   return scene;
 }
 
-static double create_ours(ethd__contender *c, const ethd__world *w) {
+static double create_ours(ethd__scene_contender *c, const ethd__world *w) {
   size_t objects = c->chain ? 1 : w->count;
   ethd_object_def *defs = malloc(objects * sizeof *defs);
   double *points = malloc(2 * (w->count + 1) * sizeof *points);
@@ -97,7 +97,7 @@ static double create_ours(ethd__contender *c, const ethd__world *w) {
   return seconds;
 }
 
-double ethd__contender_create(ethd__contender *c, const ethd__world *w) {
+double ethd__contender_create(ethd__scene_contender *c, const ethd__world *w) {
   c->hint = (ethd_scene_hint){0};
   c->clearance = -INFINITY;
   if (!c->peer) return create_ours(c, w);
@@ -106,14 +106,14 @@ double ethd__contender_create(ethd__contender *c, const ethd__world *w) {
   return cpu_time() - start;
 }
 
-void ethd__contender_destroy(ethd__contender *c) {
+void ethd__contender_destroy(ethd__scene_contender *c) {
   if (c->peer)
     c->peer->destroy(c->self);
   else
     ethd_scene_destroy(c->self);
 }
 
-size_t ethd__contender_bytes(const ethd__contender *c) {
+size_t ethd__contender_bytes(const ethd__scene_contender *c) {
   ethd_scene_info info;
   if (c->peer) return c->peer->bytes ? c->peer->bytes(c->self) : 0;
   ethd_scene_describe(c->self, &info);
@@ -121,7 +121,7 @@ size_t ethd__contender_bytes(const ethd__contender *c) {
 }
 
 /* As a controller does it: nothing can be within the horizon until the way there has been travelled. */
-static double ours_within(ethd__contender *c, ethd_vec x) {
+static double ours_within(ethd__scene_contender *c, ethd_vec x) {
   ethd_vec way = ethd_vec_sub(x, c->asked);
   double left = c->clearance - ETHD__BENCH_HORIZON;
   ethd_nearest nearest;
@@ -132,7 +132,7 @@ static double ours_within(ethd__contender *c, ethd_vec x) {
   return nearest.distance <= ETHD__BENCH_HORIZON ? nearest.distance : INFINITY;
 }
 
-double ethd__contender_nearest(ethd__contender *c, ethd__ask ask, ethd_vec x) {
+double ethd__contender_nearest(ethd__scene_contender *c, ethd__ask ask, ethd_vec x) {
   ethd_nearest nearest;
   double out[3];
   if (c->peer) {

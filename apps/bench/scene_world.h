@@ -28,7 +28,7 @@ void ethd__world_path(ethd_vec *points);
 void ethd__world_anywhere(ethd_vec *points);
 
 /* A contender. `chain`: a contour as one polyline. NULL peer: ours. */
-typedef struct ethd__contender {
+typedef struct ethd__scene_contender {
   const char *name;
   const ethd__peer_scene *peer;
   int chain;
@@ -37,12 +37,12 @@ typedef struct ethd__contender {
   ethd_scene_hint hint; /* ours: the last answer, */
   ethd_vec asked;       /* where it was asked for, */
   double clearance;     /* and its distance */
-} ethd__contender;
+} ethd__scene_contender;
 
 /* Seconds of processor time that it took. */
-double ethd__contender_create(ethd__contender *c, const ethd__world *world);
-void ethd__contender_destroy(ethd__contender *c);
-size_t ethd__contender_bytes(const ethd__contender *c); /* 0: unknown */
+double ethd__contender_create(ethd__scene_contender *c, const ethd__world *world);
+void ethd__contender_destroy(ethd__scene_contender *c);
+size_t ethd__contender_bytes(const ethd__scene_contender *c); /* 0: unknown */
 
 typedef enum ethd__ask {
   ETHD__COLD,    /* nothing known */
@@ -55,6 +55,6 @@ extern const char *const ethd__ask_names[ETHD__ASKS];
 #define ETHD__BENCH_HORIZON 0.04 /* m */
 
 /* Distance of the nearest, INFINITY beyond the horizon. */
-double ethd__contender_nearest(ethd__contender *c, ethd__ask ask, ethd_vec x);
+double ethd__contender_nearest(ethd__scene_contender *c, ethd__ask ask, ethd_vec x);
 
 #endif

@@ -30,7 +30,7 @@ typedef struct sums {
   int frames;
 } sums;
 
-static void add(sums *to, const ethd__frame *f) {
+static void add(sums *to, const ethd__ring_frame *f) {
   to->frames++;
   for (int k = 0; k < ETHD_RAYS; k++) {
     double c = f->counts[k];
@@ -58,7 +58,7 @@ static ethd_status collect(guided *g, sums *out) {
     int64_t got = ethd__ring_port_read(&g->port, WAIT_MS, bytes, sizeof bytes);
     int before = out->frames;
     const uint8_t *at = bytes;
-    ethd__frame f;
+    ethd__ring_frame f;
     if (got < 0) return ethd__say(g->message, ETHD_E_DEVICE, "%s: the line is gone", g->o->port);
     while (ethd__decoder_next(&g->decoder, &at, bytes + got, &f)) add(out, &f);
     silent = out->frames > before ? 0 : silent + 1;

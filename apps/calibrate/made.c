@@ -8,13 +8,13 @@
 
 #define STEP 0.25e-3 /* m */
 
-static double spread(ethd__key key, uint32_t number, double share) {
+static double spread(ethd__sim_key key, uint32_t number, double share) {
   return 1 + share * (2 * ethd__uniform(key, ETHD__STREAM_RAY, number) - 1);
 }
 
 ethd__calibration ethd__made_ring(uint64_t seed) {
   ethd__calibration c = ethd__calibration_default();
-  ethd__key key = {seed, 0};
+  ethd__sim_key key = {seed, 0};
   for (uint32_t k = 0; k < ETHD_RAYS; k++) {
     ethd__sensor *s = &c.sensors[k];
     s->a *= spread(key, 4 * k, 0.15);
@@ -27,7 +27,7 @@ ethd__calibration ethd__made_ring(uint64_t seed) {
 }
 
 /* The mean of many readings, each whole and within what the chip can count. */
-static double mean_counts(double light, double noise, int frames, ethd__key key, uint32_t stream) {
+static double mean_counts(double light, double noise, int frames, ethd__sim_key key, uint32_t stream) {
   double sum = 0;
   for (int i = 0; i < frames; i++)
     sum += fmin(fmax(rint(light + noise * ethd__normal(key, stream, (uint32_t)i)), 1), ETHD__FRAME_SATURATED);
@@ -41,14 +41,14 @@ void ethd__made_places(const ethd__calibration *truth, uint64_t seed, double noi
   out->ring_radius = ring_radius;
   out->rod = rod;
   for (uint32_t k = 0; k < ETHD_RAYS; k++)
-    out->dark[k] = mean_counts(truth->sensors[k].dark, noise, frames, (ethd__key){seed, 1}, k);
+    out->dark[k] = mean_counts(truth->sensors[k].dark, noise, frames, (ethd__sim_key){seed, 1}, k);
   for (int i = 0; i < ETHD__PLACES_GUIDED; i++) {
     ethd_vec at = ethd__place_at(ring_radius, rod, i);
     ethd__place_reading expected = ethd__place_expected(ring_radius, rod, at);
     for (uint32_t k = 0; k < ETHD_RAYS; k++) {
       const ethd__sensor *s = &truth->sensors[k];
       double d = expected.distance[k], light = isnan(d) ? s->dark : ethd__sensor_counts(s, d);
-      counts[k] = mean_counts(light, noise, frames, (ethd__key){seed, 2 + (uint64_t)i}, k);
+      counts[k] = mean_counts(light, noise, frames, (ethd__sim_key){seed, 2 + (uint64_t)i}, k);
     }
     (void)ethd__places_add(out, at, counts);
   }

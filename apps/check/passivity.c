@@ -13,8 +13,8 @@ int ethd__report_passivity(const ethd__subject *s) {
   double T = setup->period, b = s->device.viscous, fc = s->device.friction;
   double count = s->device.count * fmax(setup->arm.link1, setup->arm.link2);
   if (isnan(K)) return 0;
-  ethd_loop loop = {.period = T, .stiffness = K, .damping = isnan(B) ? 0 : B};
-  double needed = ethd__loop_passive_friction(&loop);
+  ethd__sampled_loop loop = {.period = T, .stiffness = K, .damping = isnan(B) ? 0 : B};
+  double needed = ethd__sampled_passive_friction(&loop);
   printf("\npassivity    sufficient for any hand, not necessary: a stable wall may fail it\n");
   printf("  Colgate and Schenkel     b > K_e T/2 + B_e = %.4g Ns/m of friction", needed);
   if (isnan(b))

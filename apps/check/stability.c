@@ -18,18 +18,18 @@ typedef struct gains {
   const char *stiffness_unit, *damping_unit;
 } gains;
 
-static ethd_loop loop_of(const ethd__subject *s, const gains *g, int axis) {
+static ethd__sampled_loop loop_of(const ethd__subject *s, const gains *g, int axis) {
   const ethd_setup *setup = &s->config->setup;
   double delay = isnan(s->device.delay) ? 0 : s->device.delay, mass = s->device.mass[axis];
   int ticks = (int)floor(delay / setup->period * (1 + 1e-12));
-  ethd_loop loop = {.mass = isnan(mass) ? 1 : mass,
-                    .period = setup->period,
-                    .stiffness = g->stiffness,
-                    .damping = g->damping,
-                    .delay = ticks,
-                    .late = fmax(0, delay - ticks * setup->period),
-                    .method = setup->velocity,
-                    .link = axis ? setup->arm.link2 : setup->arm.link1};
+  ethd__sampled_loop loop = {.mass = isnan(mass) ? 1 : mass,
+                             .period = setup->period,
+                             .stiffness = g->stiffness,
+                             .damping = g->damping,
+                             .delay = ticks,
+                             .late = fmax(0, delay - ticks * setup->period),
+                             .method = setup->velocity,
+                             .link = axis ? setup->arm.link2 : setup->arm.link1};
   if (loop.late < 1e-9 * setup->period) loop.late = 0;
   memcpy(loop.p, setup->velocity_p, sizeof loop.p);
   return loop;
@@ -59,9 +59,9 @@ static void gain_rows(gains *g, int axis, double most_k, double most_b) {
 }
 
 /* What the same gains bear of everything else. */
-static void other_rows(const ethd__subject *s, gains *g, int axis, const ethd_loop *loop) {
-  double mass = loop->mass, least = ethd__loop_mass_min(loop), delay = loop->delay * loop->period + loop->late;
-  double longest = ethd__loop_delay_max(loop), end = ethd__loop_velocity_end(loop);
+static void other_rows(const ethd__subject *s, gains *g, int axis, const ethd__sampled_loop *loop) {
+  double mass = loop->mass, least = ethd__sampled_mass_min(loop), delay = loop->delay * loop->period + loop->late;
+  double longest = ethd__sampled_delay_max(loop), end = ethd__sampled_velocity_end(loop);
   if (isfinite(least)) row(g, axis, axis ? "mass in y" : "mass in x", mass, ">=", least, mass / least, "kg");
   if (longest >= 0)
     row(g, axis, isnan(s->device.delay) ? "delay (unknown)" : "delay", 1e3 * delay, "<=", 1e3 * longest,
@@ -83,7 +83,8 @@ static const char *quicker(const ethd_setup *s) {
 }
 
 /* An unstable loop with a gain under its largest value is so for want of it. */
-static void say_change(const ethd__subject *s, const gains *g, const ethd_loop *loop, double most_k, double most_b) {
+static void say_change(const ethd__subject *s, const gains *g, const ethd__sampled_loop *loop, double most_k,
+                       double most_b) {
   printf("  to change:           ");
   if (g->stiffness > 0 && most_k > 0) printf("%s at most %.4g, or ", g->stiffness_key, most_k * g->stiffness_scale);
   if (g->damping < most_b)
@@ -97,8 +98,8 @@ static void say_change(const ethd__subject *s, const gains *g, const ethd_loop *
 /* ---- one loop ---- */
 
 /* Only a damper, or friction, can make up for what the hold takes. */
-static int undamped(const ethd__subject *s, const gains *g, const ethd_loop *loop) {
-  double needed = ethd__loop_damping_needed(loop), b = s->device.viscous;
+static int undamped(const ethd__subject *s, const gains *g, const ethd__sampled_loop *loop) {
+  double needed = ethd__sampled_damping_needed(loop), b = s->device.viscous;
   printf("  %-20s has no damping: the hold takes K (T (n + 1/2) + t_d) = %.4g Ns/m, for friction to give; ", g->what,
          needed);
   if (isnan(b))
@@ -111,8 +112,8 @@ static int undamped(const ethd__subject *s, const gains *g, const ethd_loop *loo
   return b < needed;
 }
 
-static int unknown_mass(const gains *g, int axis, const ethd_loop *loop) {
-  double least = ethd__loop_mass_min(loop);
+static int unknown_mass(const gains *g, int axis, const ethd__sampled_loop *loop) {
+  double least = ethd__sampled_mass_min(loop);
   if (isinf(least))
     printf("  %-20s %c unstable at any mass: EXCEEDED\n", g->what, 'x' + axis);
   else
@@ -122,14 +123,14 @@ static int unknown_mass(const gains *g, int axis, const ethd_loop *loop) {
 }
 
 static int report_loop(const ethd__subject *s, gains *g, int axis) {
-  ethd_loop loop = loop_of(s, g, axis);
+  ethd__sampled_loop loop = loop_of(s, g, axis);
   if (!(g->stiffness > 0) && !(g->damping > 0)) return 0;
   if (!(g->damping > 0)) return axis ? 0 : undamped(s, g, &loop);
   if (isnan(s->device.mass[axis])) return unknown_mass(g, axis, &loop);
-  double most_k = g->stiffness > 0 ? ethd__loop_stiffness_max(&loop) : 0, most_b = ethd__loop_damping_max(&loop);
+  double most_k = g->stiffness > 0 ? ethd__sampled_stiffness_max(&loop) : 0, most_b = ethd__sampled_damping_max(&loop);
   gain_rows(g, axis, most_k, most_b);
   other_rows(s, g, axis, &loop);
-  if (ethd__loop_stable(&loop)) return 0;
+  if (ethd__sampled_stable(&loop)) return 0;
   say_change(s, g, &loop, most_k, most_b);
   return 1;
 }

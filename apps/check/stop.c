@@ -13,22 +13,22 @@ static double behind(const ethd__subject *s) {
   return isnan(s->device.latency) ? 0 : s->device.latency;
 }
 
-static ethd_stop stop_of(const ethd__subject *s, int axis) {
+static ethd__bounds_stop stop_of(const ethd__subject *s, int axis) {
   const ethd_setup *setup = &s->config->setup;
   const ethd__figures *f = &s->device;
-  return (ethd_stop){.mass = f->mass[axis],
-                     .force = f->force[axis],
-                     .friction = isnan(f->friction) ? 0 : f->friction,
-                     .viscous = isnan(f->viscous) ? 0 : f->viscous,
-                     .stiffness = s->k[axis],
-                     .behind = behind(s),
-                     .gap = setup->ring_radius - setup->finger_radius};
+  return (ethd__bounds_stop){.mass = f->mass[axis],
+                             .force = f->force[axis],
+                             .friction = isnan(f->friction) ? 0 : f->friction,
+                             .viscous = isnan(f->viscous) ? 0 : f->viscous,
+                             .stiffness = s->k[axis],
+                             .behind = behind(s),
+                             .gap = setup->ring_radius - setup->finger_radius};
 }
 
 static const double speeds[] = {0.2, 0.4};
 
 static void rest_at_touch(const ethd__subject *s, int axis) {
-  ethd_stop stop = stop_of(s, axis);
+  ethd__bounds_stop stop = stop_of(s, axis);
   double most = ethd__stop_speed(&stop);
   printf("  rest at touch, %c         gap - lag >= v^2/(2a), a = (F_sat + f_c)/m = %.4g m/s^2, gap %.4g "
          "mm\n",
@@ -48,11 +48,11 @@ static void rest_at_touch(const ethd__subject *s, int axis) {
 
 static void braking(const ethd__subject *s, int axis, double damping) {
   const ethd_setup *setup = &s->config->setup;
-  ethd_stop stop = stop_of(s, axis);
+  ethd__bounds_stop stop = stop_of(s, axis);
   double delay = isnan(s->device.delay) ? 0 : s->device.delay;
   double eps_max = ethd_setup_get(setup, "transition.eps_max");
   double t_max = ethd_setup_get(setup, "transition.t_max");
-  ethd_braking b = {damping, ethd_setup_get(setup, "transition.v_th"), setup->period, delay};
+  ethd__bounds_braking b = {damping, ethd_setup_get(setup, "transition.v_th"), setup->period, delay};
   for (int i = 0; i < 2; i++) {
     double time = ethd__braking_time(&stop, &b, speeds[i]), eps = ethd__braking_depth(&stop, &b, speeds[i]);
     printf("  saturated braking, %c     at %.1f m/s: Delta_s = %.3g ms, eps = %.3g mm%s\n", 'x' + axis, speeds[i],

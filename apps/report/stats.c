@@ -47,7 +47,7 @@ void ethd__summarise(double *values, size_t n, ethd__summary5 *out) {
   out->max = values[n - 1];
 }
 
-static size_t draw_below(ethd__key key, uint32_t stream, uint32_t index, size_t count) {
+static size_t draw_below(ethd__sim_key key, uint32_t stream, uint32_t index, size_t count) {
   return (size_t)(ethd__uniform(key, stream, index) * (double)count);
 }
 
@@ -71,7 +71,7 @@ static void by_person(const double *values, const uint32_t *person, size_t n, si
   free(at);
 }
 
-static double draw_median(const double *values, const size_t *first, const size_t *who, size_t count, ethd__key key,
+static double draw_median(const double *values, const size_t *first, const size_t *who, size_t count, ethd__sim_key key,
                           double *room) {
   size_t n = 0;
   for (size_t i = 0; i < count; i++) {
@@ -105,7 +105,7 @@ ethd__interval ethd__bootstrap_median(const double *values, const uint32_t *pers
     interval.people = list_people(first, people, who, &most);
     room = interval.people > 1 ? malloc(most * sizeof *room) : NULL;
     for (uint32_t k = 0; room && k < count; k++)
-      draws[k] = draw_median(own, first, who, interval.people, (ethd__key){seed, k}, room);
+      draws[k] = draw_median(own, first, who, interval.people, (ethd__sim_key){seed, k}, room);
     if (room) interval = percentiles(draws, count, interval.people);
   }
   free(own);
@@ -123,7 +123,7 @@ static double flipped(const double *differences, size_t n, uint64_t signs) {
   return fabs(sum);
 }
 
-static double drawn_flip(const double *differences, size_t n, ethd__key key) {
+static double drawn_flip(const double *differences, size_t n, ethd__sim_key key) {
   double sum = 0;
   for (size_t i = 0; i < n; i++) sum += ethd__uniform(key, FLIP, (uint32_t)i) < 0.5 ? -differences[i] : differences[i];
   return fabs(sum);
@@ -133,7 +133,7 @@ static double sign_flip(const double *differences, size_t n, uint64_t seed) {
   double here = flipped(differences, n, 0) * (1 - 1e-12);
   uint64_t as_far = 0, all = n <= EXACT ? (uint64_t)1 << n : FLIPS;
   for (uint64_t k = 0; k < all; k++)
-    as_far += (n <= EXACT ? flipped(differences, n, k) : drawn_flip(differences, n, (ethd__key){seed, k})) >= here;
+    as_far += (n <= EXACT ? flipped(differences, n, k) : drawn_flip(differences, n, (ethd__sim_key){seed, k})) >= here;
   return n <= EXACT ? (double)as_far / (double)all : (double)(as_far + 1) / (double)(all + 1);
 }
 
@@ -152,7 +152,7 @@ void ethd__compare(const double *differences, size_t n, uint64_t seed, ethd__pai
   for (size_t i = 0; i < n; i++) out->positive += differences[i] > 0;
   for (uint32_t k = 0; n > 1 && k < ETHD_STATS_DRAWS; k++) {
     draws[k] = 0;
-    for (size_t i = 0; i < n; i++) draws[k] += differences[draw_below((ethd__key){seed, k}, MEAN, (uint32_t)i, n)];
+    for (size_t i = 0; i < n; i++) draws[k] += differences[draw_below((ethd__sim_key){seed, k}, MEAN, (uint32_t)i, n)];
     draws[k] /= (double)n;
   }
   if (n > 1) out->interval = percentiles(draws, ETHD_STATS_DRAWS, n);
@@ -171,7 +171,7 @@ void ethd__resample(const double *values, size_t n, size_t size, double mean, do
     return;
   }
   for (uint32_t k = 0; k < ETHD_STATS_DRAWS; k++) {
-    for (size_t i = 0; i < size; i++) room[i] = values[draw_below((ethd__key){seed, k}, RESAMPLE, (uint32_t)i, n)];
+    for (size_t i = 0; i < size; i++) room[i] = values[draw_below((ethd__sim_key){seed, k}, RESAMPLE, (uint32_t)i, n)];
     double m = mean_of(room, size), s = sd_of(room, size, m);
     above[0] += m >= mean, below[0] += m <= mean;
     above[1] += s >= sd, below[1] += s <= sd;

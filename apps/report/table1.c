@@ -122,7 +122,7 @@ static void print_claims(ethd__report *r) {
   static const char *const header[] = {"what the paper says", "here", "", NULL};
   static const char *const words[] = {
       [ETHD_TAP_UNKNOWN] = "too few taps", [ETHD_TAP_MET] = "reproduced", [ETHD_TAP_NOT_MET] = "not"};
-  ethd__claim claims[ETHD_TAP_CLAIMS_MAX];
+  ethd__tap_claim claims[ETHD_TAP_CLAIMS_MAX];
   ethd__cell cells[ETHD_REPORT_CELLS];
   size_t count = ethd__data_cells(largest(r), cells), n = ethd__claims(cells, count, claims);
   ethd__html_table(&r->page,

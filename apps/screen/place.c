@@ -21,7 +21,7 @@ static void choose(ethd__sitting *sitting, const ethd__protocol *protocol, int64
 }
 
 /* Before all else that follows: nothing moves any more. */
-static void close_device(ethd__place *at) {
+static void close_device(ethd__screen_place *at) {
   char message[ETHD_MESSAGE_MAX];
   if (at->device.self && ethd__station_close(&at->station, message) < 0)
     fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);
@@ -29,7 +29,7 @@ static void close_device(ethd__place *at) {
 }
 
 /* It says of itself what isn't realtime and what risk stays. */
-static void take_device(ethd__place *at, const ethd__place_options *o) {
+static void take_device(ethd__screen_place *at, const ethd__place_options *o) {
   char message[ETHD_MESSAGE_MAX], *config = ethd__folder_path(o->path, ETHD_RECORDING_CONFIG);
   ethd_status status = ethd__station_open(&at->desk, config, at->folder.device, o->is_virtual, &at->station, message);
   free(config);
@@ -40,7 +40,7 @@ static void take_device(ethd__place *at, const ethd__place_options *o) {
 }
 
 /* The window, where one is asked for; else lines. */
-static void take_front(ethd__place *at, const ethd__place_options *o) {
+static void take_front(ethd__screen_place *at, const ethd__place_options *o) {
   char message[ETHD_MESSAGE_MAX];
   bool people = at->device.self != NULL;
   at->sitting.front = ethd__console_front(&at->console);
@@ -55,7 +55,7 @@ static void take_front(ethd__place *at, const ethd__place_options *o) {
   at->sitting.front = ethd__screen_front(&at->screen);
 }
 
-void ethd__place_open(const ethd__place_options *o, ethd__place *out) {
+void ethd__place_open(const ethd__place_options *o, ethd__screen_place *out) {
   char message[ETHD_MESSAGE_MAX] = "";
   const ethd__protocol *protocol = &out->folder.protocol;
   check(ethd__folder_open(o->path, true, &out->folder, message), message);
@@ -72,7 +72,7 @@ void ethd__place_open(const ethd__place_options *o, ethd__place *out) {
   take_front(out, o);
 }
 
-ethd_status ethd__place_run(ethd__place *at, bool *over, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__place_run(ethd__screen_place *at, bool *over, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = ethd__sitting_run(&at->sitting, over, message);
   close_device(at);
   if (!at->has_screen) return status;
@@ -81,7 +81,7 @@ ethd_status ethd__place_run(ethd__place *at, bool *over, char message[ETHD_MESSA
   return status;
 }
 
-void ethd__place_close(ethd__place *at) {
+void ethd__place_close(ethd__screen_place *at) {
   ethd__sitting_close(&at->sitting);
   ethd__desk_close(&at->desk);
   ethd__folder_close(&at->folder);

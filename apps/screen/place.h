@@ -13,7 +13,7 @@ typedef struct ethd__place_options {
   int width, height; /* px of the screen; 0: none */
 } ethd__place_options;
 
-typedef struct ethd__place {
+typedef struct ethd__screen_place {
   ethd__folder folder;
   ethd__desk desk;
   ethd__station station;
@@ -22,14 +22,14 @@ typedef struct ethd__place {
   ethd__sitting sitting;
   ethd__source device; /* people's; its self is NULL without */
   bool has_screen;
-} ethd__place;
+} ethd__screen_place;
 
 /* Ends the program on bad input, a device or a window that can't be had: then nothing moves. */
-void ethd__place_open(const ethd__place_options *options, ethd__place *out);
+void ethd__place_open(const ethd__place_options *options, ethd__screen_place *out);
 
 /* Until all is done or somebody stops it; the device is at rest and closed when this returns. */
-ETHD_MUST_CHECK ethd_status ethd__place_run(ethd__place *place, bool *over, char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__place_run(ethd__screen_place *place, bool *over, char message[ETHD_MESSAGE_MAX]);
 
-void ethd__place_close(ethd__place *place);
+void ethd__place_close(ethd__screen_place *place);
 
 #endif

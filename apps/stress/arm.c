@@ -77,7 +77,7 @@ static sweep through(const place *p, int64_t steps) {
   ethd_error error;
   sweep r = {0, 0, 0};
   setup.arm = p->arm;
-  ethd__set(&setup, "tracking.b_t", 0);
+  ethd__stress_set(&setup, "tracking.b_t", 0);
   if (ethd_control_create(&setup, &control, &error) < 0)
     ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));
   double last[2] = {0, 0};

@@ -29,21 +29,21 @@ typedef struct point {
 
 /* Growth per tick with both gains `scale` times those of the curve: as a mass 1 / scale as large. */
 static double growth(const point *p, double scale) {
-  ethd__rig rig;
+  ethd__stress_rig rig;
   double k = scale * p->stiffness, b = scale * p->damping, most = 10 * SWING;
   double push = 4 * most * (k + b * p->th / PERIOD);
-  ethd__rig_open(&rig, MASS, -push / k);
-  ethd__rig_velocity(&rig, p->curve->method, p->curve->value);
+  ethd__stress_rig_open(&rig, MASS, -push / k);
+  ethd__stress_rig_velocity(&rig, p->curve->method, p->curve->value);
   ethd_setup_transition(&rig.setup, &ethd_transition_smooth);
-  ethd__set(&rig.setup, "contact.k_e", k);
-  ethd__set(&rig.setup, "contact.b_e", b);
-  ethd__set(&rig.setup, "transition.v_hysteresis", 1);
+  ethd__stress_set(&rig.setup, "contact.k_e", k);
+  ethd__stress_set(&rig.setup, "contact.b_e", b);
+  ethd__stress_set(&rig.setup, "transition.v_hysteresis", 1);
   rig.delay = p->curve->delay;
   rig.push.x = -push;
-  ethd__rig_start(&rig, SWING * p->th / PERIOD);
+  ethd__stress_rig_start(&rig, SWING * p->th / PERIOD);
   ethd__swing swing = {.order = 1, .settle = 200, .span = 1800, .floor = 1e-3 * SWING * p->th, .ceiling = most * p->th};
-  double rate = ethd__rig_growth(&rig, &swing);
-  ethd__rig_close(&rig);
+  double rate = ethd__stress_rig_growth(&rig, &swing);
+  ethd__stress_rig_close(&rig);
   return rate;
 }
 

@@ -14,24 +14,24 @@
 #define SWING 1e-6 /* m a tick: at most half of the creep */
 
 /* Coasts into the wall, long enough for the estimator; the tick at which braking begins is done. */
-static void enter(ethd__rig *rig, double damping) {
-  ethd__rig_start(rig, CREEP);
-  while (ethd__rig_step(rig)->state != ETHD_BRAKING) ethd__rig_move(rig);
-  ethd__rig_push(rig, (ethd_vec){-CREEP * damping, 0});
-  ethd__rig_move(rig);
+static void enter(ethd__stress_rig *rig, double damping) {
+  ethd__stress_rig_start(rig, CREEP);
+  while (ethd__stress_rig_step(rig)->state != ETHD_BRAKING) ethd__stress_rig_move(rig);
+  ethd__stress_rig_push(rig, (ethd_vec){-CREEP * damping, 0});
+  ethd__stress_rig_move(rig);
   rig->w[0] += SWING / 10 / PERIOD / rig->setup.arm.link1;
 }
 
 static double growth(const ethd__curve *c, double damping) {
-  ethd__rig rig;
-  ethd__rig_open(&rig, MASS, 0.2 * CREEP);
-  ethd__rig_velocity(&rig, c->method, c->value);
-  ethd__rig_brakes(&rig, damping, 1e-6);
+  ethd__stress_rig rig;
+  ethd__stress_rig_open(&rig, MASS, 0.2 * CREEP);
+  ethd__stress_rig_velocity(&rig, c->method, c->value);
+  ethd__stress_rig_brakes(&rig, damping, 1e-6);
   rig.delay = c->delay;
   enter(&rig, damping);
   ethd__swing swing = {.order = 2, .settle = 100, .span = 400, .floor = 1e-6 * SWING, .ceiling = SWING};
-  double rate = ethd__rig_growth(&rig, &swing);
-  ethd__rig_close(&rig);
+  double rate = ethd__stress_rig_growth(&rig, &swing);
+  ethd__stress_rig_close(&rig);
   return rate;
 }
 

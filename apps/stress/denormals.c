@@ -23,14 +23,14 @@ typedef struct outcome {
 /* The ring stood still for `still` ticks after a turn. */
 static outcome rest(int64_t still, int rounds) {
   ethd_setup setup = ethd_setup_default();
-  ethd_scene *scene = ethd__rig_wall(-0.238);
+  ethd_scene *scene = ethd__stress_rig_wall(-0.238);
   ethd_control *control;
   ethd_error error;
   outcome o = {.tick = INFINITY};
   ethd_sense s;
   ethd_command c;
   setup.scene = scene;
-  ethd__set(&setup, "velocity.cutoff", CUTOFF);
+  ethd__stress_set(&setup, "velocity.cutoff", CUTOFF);
   if (ethd_control_create(&setup, &control, &error) < 0)
     ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));
   memset(&s, 0, sizeof s);

@@ -31,8 +31,8 @@ static ethd_control *make(const ethd_transition_law *law, double t_max, const et
   ethd_error error;
   ethd_setup_transition(&setup, law);
   setup.scene = scene;
-  ethd__set(&setup, "transition.eps_max", (double)INFINITY);
-  ethd__set(&setup, "transition.t_max", t_max);
+  ethd__stress_set(&setup, "transition.eps_max", (double)INFINITY);
+  ethd__stress_set(&setup, "transition.t_max", t_max);
   if (ethd_control_create(&setup, &control, &error) < 0)
     ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));
   return control;
@@ -148,7 +148,7 @@ static void taps(ethd__stress_log *log, const ethd_scene *scene, int64_t ticks) 
 }
 
 static void run(ethd__stress_log *log) {
-  ethd_scene *scene = ethd__rig_wall(-0.238);
+  ethd_scene *scene = ethd__stress_rig_wall(-0.238);
   int64_t ticks = ethd__stress_pick(log, 1000000, 10000000, 1000000000);
   press(log, scene, ticks);
   lost(log, scene);

@@ -17,21 +17,21 @@
 #define PERIOD 0.001
 
 static void smooth(ethd__stress_log *log, double stiffness, double depth) {
-  ethd__rig rig;
-  ethd__rig_open(&rig, MASS, -depth);
+  ethd__stress_rig rig;
+  ethd__stress_rig_open(&rig, MASS, -depth);
   ethd_setup_transition(&rig.setup, &ethd_transition_smooth);
-  rig.setup.arm.link1 = ETHD__RIG_STRAIGHT;
-  ethd__set(&rig.setup, "contact.k_e", stiffness);
+  rig.setup.arm.link1 = ETHD__STRESS_RIG_STRAIGHT;
+  ethd__stress_set(&rig.setup, "contact.k_e", stiffness);
   rig.measured = 1;
-  ethd__rig_start(&rig, 0);
+  ethd__stress_rig_start(&rig, 0);
   double steps = 0, before = depth, left = depth;
   while (left > 0 && rig.tick < 10000) {
-    ethd__rig_tick(&rig);
-    left = depth + ethd__rig_depth(&rig);
+    ethd__stress_rig_tick(&rig);
+    left = depth + ethd__stress_rig_depth(&rig);
     steps += stiffness * (before - left) * (before - left) / 2;
     before = left;
   }
-  double v = ethd__rig_speed(&rig), gained = MASS * v * v / 2, stored = stiffness * depth * depth / 2;
+  double v = ethd__stress_rig_speed(&rig), gained = MASS * v * v / 2, stored = stiffness * depth * depth / 2;
   double k = stiffness * PERIOD * PERIOD / MASS, r = sqrt(1 + k / 2), th = acos((2 - k / 2) / (2 * r));
   double c = (1 - k / 2 - r * cos(th)) / (r * sin(th)), j = (double)rig.tick;
   /* v_j from x_j and x_j-1: the force of j-1 was held */
@@ -43,33 +43,34 @@ static void smooth(ethd__stress_log *log, double stiffness, double depth) {
   ethd__stress_near(log, "J", gained, MASS * speed * speed / 2, 1e-5,
                     "smooth: given back, by the closed form of the motion");
   ethd__stress_bound(log, "J", gained, stored + steps, "smooth: given back <= K_e d^2/2 + the hold's share");
-  ethd__rig_close(&rig);
+  ethd__stress_rig_close(&rig);
 }
 
 /* After braking: the ring keeps at most the energy it still has at the switch, and what the hold adds on
    the little way that is left. */
 static void offset(ethd__stress_log *log, double speed) {
-  ethd__rig rig;
-  ethd__rig_open(&rig, MASS, -1e-9);
-  rig.setup.arm.link1 = ETHD__RIG_STRAIGHT;
+  ethd__stress_rig rig;
+  ethd__stress_rig_open(&rig, MASS, -1e-9);
+  rig.setup.arm.link1 = ETHD__STRESS_RIG_STRAIGHT;
   rig.measured = 1;
-  ethd__rig_start(&rig, speed);
-  while (ethd__rig_step(&rig)->state != ETHD_VO) ethd__rig_move(&rig);
+  ethd__stress_rig_start(&rig, speed);
+  while (ethd__stress_rig_step(&rig)->state != ETHD_VO) ethd__stress_rig_move(&rig);
   double K = ethd_setup_get(&rig.setup, "contact.k_e");
-  double v = ethd__rig_speed(&rig), kept = MASS * v * v / 2, most = 0, steps = 0;
+  double v = ethd__stress_rig_speed(&rig), kept = MASS * v * v / 2, most = 0, steps = 0;
   double stored = rig.trace.d_re + rig.trace.eps;
   ethd__stress_within(log, "N", hypot(rig.trace.fe[0], rig.trace.fe[1]), 0, 0, "offset: force at the switch");
   ethd__stress_within(log, "J", K * stored * stored / 2, 0, 0, "offset: energy stored at the switch");
   for (int i = 0; i < 500; i++) {
-    double x = ethd__rig_depth(&rig);
-    ethd__rig_move(&rig);
-    double out = x - ethd__rig_depth(&rig);
+    double x = ethd__stress_rig_depth(&rig);
+    ethd__stress_rig_move(&rig);
+    double out = x - ethd__stress_rig_depth(&rig);
     steps += K * out * out / 2;
-    ethd__rig_step(&rig);
-    if (ethd__rig_speed(&rig) < 0) most = fmax(most, MASS * ethd__rig_speed(&rig) * ethd__rig_speed(&rig) / 2);
+    ethd__stress_rig_step(&rig);
+    if (ethd__stress_rig_speed(&rig) < 0)
+      most = fmax(most, MASS * ethd__stress_rig_speed(&rig) * ethd__stress_rig_speed(&rig) / 2);
   }
   ethd__stress_bound(log, "J", most, kept + steps + 1e-15, "offset: given back <= what was left + the hold's share");
-  ethd__rig_close(&rig);
+  ethd__stress_rig_close(&rig);
 }
 
 /* Whatever depth and speed: the wall pushes out. */
@@ -77,14 +78,14 @@ static void never_pulls(ethd__stress_log *log, const ethd_contact_law *law) {
   double most = -INFINITY;
   for (double depth = 0; depth < 0.01; depth += 5e-4)
     for (double speed = -4; speed <= 4; speed += 0.25) {
-      ethd__rig rig;
-      ethd__rig_open(&rig, MASS, -depth);
+      ethd__stress_rig rig;
+      ethd__stress_rig_open(&rig, MASS, -depth);
       ethd_setup_transition(&rig.setup, &ethd_transition_smooth);
       ethd_setup_contact(&rig.setup, law);
       rig.measured = 1;
-      ethd__rig_start(&rig, speed);
-      most = fmax(most, -ethd__rig_step(&rig)->fe[0]); /* along n = (-1, 0) */
-      ethd__rig_close(&rig);
+      ethd__stress_rig_start(&rig, speed);
+      most = fmax(most, -ethd__stress_rig_step(&rig)->fe[0]); /* along n = (-1, 0) */
+      ethd__stress_rig_close(&rig);
     }
   ethd__stress_bound(log, "N", most, 0, "%s: largest pull", law->law.id);
 }

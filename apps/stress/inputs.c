@@ -239,7 +239,7 @@ static void frozen(ethd__stress_log *log, const ethd_arm *arm, ethd_filter_metho
 
 static void run(ethd__stress_log *log) {
   ethd_arm arm = ethd_setup_default().arm;
-  ethd_scene *scene = ethd__rig_wall(-0.238);
+  ethd_scene *scene = ethd__stress_rig_wall(-0.238);
   all_words(log, &arm, scene);
   ethd_scene_destroy(scene);
   for (int m = 0; m < ETHD_FILTER_COUNT; m++) frozen(log, &arm, (ethd_filter_method)m);

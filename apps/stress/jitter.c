@@ -14,7 +14,7 @@
 
 #define PERIOD 0.001
 #define SPEED 2.0 /* rad/s */
-#define KEY ((ethd__key){1, 1})
+#define KEY ((ethd__sim_key){1, 1})
 
 static double draw(uint64_t i) { return ethd__uniform(KEY, ETHD__STREAM_ENCODER, (uint32_t)i); }
 
@@ -63,73 +63,73 @@ static void lost(ethd__stress_log *log, ethd_velocity_method method) {
 
 /* Braking that only t_max ends, ticks lost at random: it ends with the first tick at or after t_max. */
 static void cap(ethd__stress_log *log, uint64_t seed) {
-  ethd__rig rig;
-  ethd__rig_open(&rig, 0.3, -1e-9);
-  rig.setup.arm.link1 = ETHD__RIG_STRAIGHT;
-  ethd__set(&rig.setup, "transition.eps_max", (double)INFINITY);
+  ethd__stress_rig rig;
+  ethd__stress_rig_open(&rig, 0.3, -1e-9);
+  rig.setup.arm.link1 = ETHD__STRESS_RIG_STRAIGHT;
+  ethd__stress_set(&rig.setup, "transition.eps_max", (double)INFINITY);
   rig.measured = 1;
   rig.push.x = -10;
-  ethd__rig_start(&rig, 0.1);
-  ethd__rig_tick(&rig);
+  ethd__stress_rig_start(&rig, 0.1);
+  ethd__stress_rig_tick(&rig);
   int64_t due = 0;
   for (uint64_t i = 0; rig.trace.state == ETHD_BRAKING && i < 1000; i++) {
     int64_t skip = (int64_t)floor(4 * draw(1000 * seed + i));
-    while (skip-- > 0) ethd__rig_move(&rig);
+    while (skip-- > 0) ethd__stress_rig_move(&rig);
     if (!due && rig.tick >= 50) due = rig.tick;
-    ethd__rig_tick(&rig);
+    ethd__stress_rig_tick(&rig);
   }
   ethd__stress_within(log, "ticks", (double)(rig.tick - 1), (double)due, 0,
                       "t_max = 50 ms with lost ticks: braking ends at");
-  ethd__rig_close(&rig);
+  ethd__stress_rig_close(&rig);
 }
 
 /* A swap's difference fades by seconds: tau = tau_new + delta (1 - t / swap_time). */
 static void fade(ethd__stress_log *log) {
-  ethd__rig rig;
+  ethd__stress_rig rig;
   ethd_error error;
-  ethd__rig_open(&rig, 0.3, -0.001);
+  ethd__stress_rig_open(&rig, 0.3, -0.001);
   ethd_setup_transition(&rig.setup, &ethd_transition_smooth);
   rig.measured = 1;
-  ethd__rig_start(&rig, 0);
-  ethd__rig_step(&rig);
+  ethd__stress_rig_start(&rig, 0);
+  ethd__stress_rig_step(&rig);
   double before = rig.trace.tau[0], after = before * 2, most = 0;
-  ethd__set(&rig.setup, "contact.k_e", 2 * ethd_setup_get(&rig.setup, "contact.k_e"));
+  ethd__stress_set(&rig.setup, "contact.k_e", 2 * ethd_setup_get(&rig.setup, "contact.k_e"));
   if (ethd_control_post(rig.control, &rig.setup, &error) < 0) return;
-  ethd__rig_step(&rig);
+  ethd__stress_rig_step(&rig);
   for (int t = 0, k = 0; t <= 30; k++) {
     int64_t skip = (int64_t)floor(3 * draw((uint64_t)k));
     rig.missed = skip;
     t += 1 + (int)skip;
     double share = fmax(0, 1 - t * PERIOD / rig.setup.swap_time);
-    ethd__rig_step(&rig);
+    ethd__stress_rig_step(&rig);
     most = fmax(most, fabs(rig.trace.tau[0] - (after + share * (before - after))));
   }
   ethd__stress_bound(log, "Nm", most, 1e-9, "a swap's fade with lost ticks: torque off the line");
-  ethd__rig_close(&rig);
+  ethd__stress_rig_close(&rig);
 }
 
 /* A tenth of the ticks lost, gains at a third of the boundary of a loop that is three times as slow. */
 static void closed(ethd__stress_log *log) {
   const double mass = 0.3, slow = 3 * PERIOD, b = 2 * mass / slow / 6, k = b / slow / 3;
-  ethd__rig rig;
-  ethd__rig_open(&rig, mass, -10 / k);
+  ethd__stress_rig rig;
+  ethd__stress_rig_open(&rig, mass, -10 / k);
   ethd_setup_velocity(&rig.setup, ETHD_VELOCITY_DIFFERENCE);
   ethd_setup_transition(&rig.setup, &ethd_transition_smooth);
-  ethd__set(&rig.setup, "contact.k_e", k);
-  ethd__set(&rig.setup, "contact.b_e", b);
-  ethd__set(&rig.setup, "transition.v_hysteresis", 1);
+  ethd__stress_set(&rig.setup, "contact.k_e", k);
+  ethd__stress_set(&rig.setup, "contact.b_e", b);
+  ethd__stress_set(&rig.setup, "transition.v_hysteresis", 1);
   rig.push.x = -10;
-  ethd__rig_start(&rig, 1e-3);
+  ethd__stress_rig_start(&rig, 1e-3);
   double first = 0, last = 0;
   for (uint64_t i = 0; i < 4000; i++) {
-    if (i == 0 || draw(i) >= 0.1) ethd__rig_step(&rig);
-    ethd__rig_move(&rig);
-    double speed = fabs(ethd__rig_speed(&rig));
+    if (i == 0 || draw(i) >= 0.1) ethd__stress_rig_step(&rig);
+    ethd__stress_rig_move(&rig);
+    double speed = fabs(ethd__stress_rig_speed(&rig));
     if (i < 50) first = fmax(first, speed);
     if (i >= 3950) last = fmax(last, speed);
   }
   ethd__stress_bound(log, "m/s", last, 1e-6 * first, "a tenth of the ticks lost: what is left of a swing of 1 mm/s");
-  ethd__rig_close(&rig);
+  ethd__stress_rig_close(&rig);
 }
 
 static void run(ethd__stress_log *log) {

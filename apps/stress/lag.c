@@ -14,13 +14,13 @@
 
 /* Ring at (L, L) when the finger is; all is slow against the loop, so that it is steady all the way. */
 static ethd_vec measure(ethd_mechanism mechanism, ethd_vec direction, double speed, ethd_pose *pose) {
-  ethd__rig rig;
-  ethd__rig_open(&rig, 0.1173, 1);
+  ethd__stress_rig rig;
+  ethd__stress_rig_open(&rig, 0.1173, 1);
   const double L = rig.setup.arm.link1, ahead = 0.3 * speed;
   rig.setup.arm.mechanism = mechanism;
   ethd_setup_tracking(&rig.setup, &ethd_tracking_pd);
   rig.measured = rig.has_finger = 1;
-  ethd__rig_start(&rig, 0);
+  ethd__stress_rig_start(&rig, 0);
   ethd_vec start = {L - ahead * direction.x, L - ahead * direction.y};
   if (ethd_arm_angles(&rig.setup.arm, start, -1, rig.q) < 0) return (ethd_vec){NAN, NAN};
   rig.finger = start;
@@ -29,12 +29,12 @@ static ethd_vec measure(ethd_mechanism mechanism, ethd_vec direction, double spe
   for (int k = 0; k <= 300; k++) {
     double t = (k - 300) * rig.setup.period;
     rig.finger = (ethd_vec){L + speed * t * direction.x, L + speed * t * direction.y};
-    ethd__rig_step(&rig);
-    if (k < 300) ethd__rig_move(&rig);
+    ethd__stress_rig_step(&rig);
+    if (k < 300) ethd__stress_rig_move(&rig);
   }
   ethd_arm_pose(&rig.setup.arm, rig.q, pose);
   ethd_vec behind = ethd_vec_sub(rig.finger, pose->x);
-  ethd__rig_close(&rig);
+  ethd__stress_rig_close(&rig);
   return behind;
 }
 

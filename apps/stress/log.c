@@ -7,7 +7,7 @@
 #include "stress/stress.h"
 
 /* 0 exact, 1 just allowed, over 1 failed; what isn't a number has failed. */
-static double load(const ethd__result *r) {
+static double load(const ethd__stress_result *r) {
   double off = r->bound ? r->measured : fabs(r->measured - r->analytic);
   double most = r->bound ? r->analytic : r->allowed;
   if (off <= most) return most > 0 ? off / most : 0;
@@ -16,12 +16,12 @@ static double load(const ethd__result *r) {
 }
 
 /* Of two results with the same words: bounds of 0 have no load to tell them apart. */
-static int worse(const ethd__result *r, const ethd__result *than) {
+static int worse(const ethd__stress_result *r, const ethd__stress_result *than) {
   double a = load(r), b = load(than);
   return a > b || (a == b && r->bound && r->measured > than->measured);
 }
 
-static void print(const ethd__result *r) {
+static void print(const ethd__stress_result *r) {
   char count[48] = "";
   if (r->count > 1) snprintf(count, sizeof count, ", worst of %llu", (unsigned long long)r->count);
   printf("  %-62s %12.6g %s %-12.6g %-6s", r->what, r->measured, r->bound ? "<=" : "= ", r->analytic, r->unit);
@@ -39,7 +39,7 @@ void ethd__stress_flush(ethd__stress_log *log) {
 }
 
 /* The line with these words, new ones at the end. */
-static ethd__result *line_of(ethd__stress_log *log, const char *what) {
+static ethd__stress_result *line_of(ethd__stress_log *log, const char *what) {
   for (int i = 0; i < log->count; i++)
     if (strcmp(log->lines[i].what, what) == 0) return &log->lines[i];
   if (log->count == ETHD__STRESS_LINES) ethd__stress_flush(log);
@@ -47,8 +47,8 @@ static ethd__result *line_of(ethd__stress_log *log, const char *what) {
   return &log->lines[log->count++];
 }
 
-static void add(ethd__stress_log *log, const ethd__result *r) {
-  ethd__result *line = line_of(log, r->what);
+static void add(ethd__stress_log *log, const ethd__stress_result *r) {
+  ethd__stress_result *line = line_of(log, r->what);
   uint64_t count = line->count;
   int passed = load(r) <= 1;
   if (count == 0 || worse(r, line)) *line = *r;
@@ -69,7 +69,7 @@ static void add(ethd__stress_log *log, const ethd__result *r) {
 
 void ethd__stress_near(ethd__stress_log *log, const char *unit, double measured, double analytic, double share,
                        const char *what, ...) {
-  ethd__result r = {.unit = unit, .measured = measured, .analytic = analytic};
+  ethd__stress_result r = {.unit = unit, .measured = measured, .analytic = analytic};
   r.allowed = share * fabs(analytic);
   WORDS(r, what);
   add(log, &r);
@@ -77,13 +77,13 @@ void ethd__stress_near(ethd__stress_log *log, const char *unit, double measured,
 
 void ethd__stress_within(ethd__stress_log *log, const char *unit, double measured, double analytic, double distance,
                          const char *what, ...) {
-  ethd__result r = {.unit = unit, .measured = measured, .analytic = analytic, .allowed = distance};
+  ethd__stress_result r = {.unit = unit, .measured = measured, .analytic = analytic, .allowed = distance};
   WORDS(r, what);
   add(log, &r);
 }
 
 void ethd__stress_bound(ethd__stress_log *log, const char *unit, double measured, double bound, const char *what, ...) {
-  ethd__result r = {.unit = unit, .measured = measured, .analytic = bound, .bound = 1};
+  ethd__stress_result r = {.unit = unit, .measured = measured, .analytic = bound, .bound = 1};
   WORDS(r, what);
   add(log, &r);
 }

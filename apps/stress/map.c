@@ -31,20 +31,20 @@ static double margin(const ethd__curve *c, double end, double K, double B) {
 }
 
 static double growth(const ethd__curve *c, double k, double b) {
-  ethd__rig rig;
+  ethd__stress_rig rig;
   double most = 10 * SWING, push = 20 * most * (k + b / PERIOD);
-  ethd__rig_open(&rig, c->mass, -push / k);
-  ethd__rig_velocity(&rig, c->method, c->value);
+  ethd__stress_rig_open(&rig, c->mass, -push / k);
+  ethd__stress_rig_velocity(&rig, c->method, c->value);
   ethd_setup_transition(&rig.setup, &ethd_transition_smooth);
-  ethd__set(&rig.setup, "contact.k_e", k);
-  ethd__set(&rig.setup, "contact.b_e", b);
-  ethd__set(&rig.setup, "transition.v_hysteresis", 1);
+  ethd__stress_set(&rig.setup, "contact.k_e", k);
+  ethd__stress_set(&rig.setup, "contact.b_e", b);
+  ethd__stress_set(&rig.setup, "transition.v_hysteresis", 1);
   rig.delay = c->delay;
   rig.push.x = -push;
-  ethd__rig_start(&rig, SWING / PERIOD);
+  ethd__stress_rig_start(&rig, SWING / PERIOD);
   ethd__swing swing = {.order = 1, .settle = 500, .span = 500, .floor = 1e-5 * SWING, .ceiling = most};
-  double rate = ethd__rig_growth(&rig, &swing);
-  ethd__rig_close(&rig);
+  double rate = ethd__stress_rig_growth(&rig, &swing);
+  ethd__stress_rig_close(&rig);
   return rate;
 }
 

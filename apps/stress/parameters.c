@@ -60,7 +60,7 @@ static void turn(ethd_setup *s, const knob *k, int end) {
   } else if (end && !strcmp(k->name, "finger.radius_max")) {
     value = s->ring_radius - SPARE;
   }
-  ethd__set(s, k->name, value);
+  ethd__stress_set(s, k->name, value);
 }
 
 /* ---- a tap ---- */
@@ -96,7 +96,7 @@ static int expected(const ethd_setup *s, int64_t fault) {
 }
 
 /* The finger comes as frames of rays and readings of the centre by turns, a little ahead. */
-static void read_finger(const ethd__rig *rig, ethd_sense *s) {
+static void read_finger(const ethd__stress_rig *rig, ethd_sense *s) {
   ethd_vec centre = {-0.1 * rig->setup.ring_radius, 0.02 * rig->setup.ring_radius};
   ethd_pose pose;
   s->step_ns = 1000;
@@ -114,16 +114,16 @@ static void read_finger(const ethd__rig *rig, ethd_sense *s) {
   }
 }
 
-static void tap(ethd__rig *rig, int ticks, const char *name, tally *t) {
+static void tap(ethd__stress_rig *rig, int ticks, const char *name, tally *t) {
   ethd_setup other = rig->setup;
   ethd_error error;
   ethd_setup_transition(&other, &ethd_transition_smooth);
   for (int k = 0; k < ticks; k++) {
     if (k == ticks / 2 && ethd_control_post(rig->control, &other, &error) < 0) t->refused++;
-    ethd_sense sense = ethd__rig_sense(rig);
+    ethd_sense sense = ethd__stress_rig_sense(rig);
     read_finger(rig, &sense);
     (void)ethd_control_step(rig->control, &sense, &rig->command, &rig->trace);
-    ethd__rig_move(rig);
+    ethd__stress_rig_move(rig);
     if (rig->trace.fault && expected(&rig->setup, rig->trace.fault)) {
       t->stopped++;
     } else if (rig->trace.fault) {
@@ -139,10 +139,10 @@ static void tap(ethd__rig *rig, int ticks, const char *name, tally *t) {
 }
 
 static void one(const ethd_setup *setup, int ticks, const char *name, tally *t) {
-  ethd__rig rig;
+  ethd__stress_rig rig;
   ethd_error error;
   ethd_limits device = ethd_limits_none();
-  ethd__rig_open(&rig, 0.1173, 0.0002);
+  ethd__stress_rig_open(&rig, 0.1173, 0.0002);
   rig.setup = *setup;
   device.torque = FORCE * fmin(setup->arm.link1, setup->arm.link2);
   rig.setup.limits = ethd_limits_narrower(&device, &setup->limits);
@@ -153,9 +153,9 @@ static void one(const ethd_setup *setup, int ticks, const char *name, tally *t) 
     snprintf(t->refusal, sizeof t->refusal, "%s: %s", name, error.name);
     return;
   }
-  ethd__rig_start(&rig, 0.3);
+  ethd__stress_rig_start(&rig, 0.3);
   tap(&rig, ticks, name, t);
-  ethd__rig_close(&rig);
+  ethd__stress_rig_close(&rig);
 }
 
 /* ---- all ends ---- */

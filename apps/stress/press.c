@@ -9,24 +9,24 @@
 
 /* Brakes from 0.2 m/s, then F pushes, with some friction so that the springy ring comes to rest. */
 static void press(ethd__stress_log *log, const ethd_contact_law *contact, double stiffness, double force) {
-  ethd__rig rig;
-  ethd__rig_open(&rig, MASS, -1e-6);
+  ethd__stress_rig rig;
+  ethd__stress_rig_open(&rig, MASS, -1e-6);
   ethd_setup_contact(&rig.setup, contact);
-  ethd__set(&rig.setup, "contact.k_e", stiffness);
+  ethd__stress_set(&rig.setup, "contact.k_e", stiffness);
   rig.measured = 1;
-  ethd__rig_start(&rig, 0.2);
-  while (ethd__rig_tick(&rig)->state != ETHD_VO && rig.tick < 1000) continue;
+  ethd__stress_rig_start(&rig, 0.2);
+  while (ethd__stress_rig_tick(&rig)->state != ETHD_VO && rig.tick < 1000) continue;
   double eps = rig.trace.eps;
   int changed = 0;
   for (int k = 0; k < TICKS; k++) {
-    rig.push.x = 10 * ethd__rig_speed(&rig) - force;
-    changed += ethd__rig_tick(&rig)->eps != eps;
+    rig.push.x = 10 * ethd__stress_rig_speed(&rig) - force;
+    changed += ethd__stress_rig_tick(&rig)->eps != eps;
   }
   const char *id = contact->law.id;
   ethd__stress_near(log, "m", -(rig.trace.d_re + rig.trace.eps), force / stiffness, 1e-6,
                     "%s: penetration beyond x_eps = F / K_e", id);
   ethd__stress_within(log, "ticks", changed, 0, 0, "%s: ticks on which eps changed", id);
-  ethd__rig_close(&rig);
+  ethd__stress_rig_close(&rig);
 }
 
 static void run(ethd__stress_log *log) {

@@ -7,7 +7,7 @@
 #include "cli/cli.h"
 #include "stress/stress.h"
 
-ethd_scene *ethd__rig_wall(double c) {
+ethd_scene *ethd__stress_rig_wall(double c) {
   double numbers[3] = {-1, 0, c};
   ethd_object_def wall = {ETHD_HALFPLANE, -1, numbers, 3, 0};
   ethd_scene_def def = {&wall, 1, NULL, 0};
@@ -23,45 +23,45 @@ static void refused(const ethd_error *error) {
              error->found, error->min, error->max);
 }
 
-void ethd__set(ethd_setup *setup, const char *name, double value) {
+void ethd__stress_set(ethd_setup *setup, const char *name, double value) {
   ethd_error error;
   if (ethd_setup_set(setup, name, value, &error) < 0) refused(&error);
 }
 
-void ethd__rig_velocity(ethd__rig *rig, ethd_velocity_method method, double value) {
+void ethd__stress_rig_velocity(ethd__stress_rig *rig, ethd_velocity_method method, double value) {
   char name[64];
   ethd_setup_velocity(&rig->setup, method);
   if (!ethd_velocity_methods[method].param_count) return;
   snprintf(name, sizeof name, "velocity.%s", ethd_velocity_methods[method].params[0].name);
-  ethd__set(&rig->setup, name, value);
+  ethd__stress_set(&rig->setup, name, value);
 }
 
-void ethd__rig_brakes(ethd__rig *rig, double damping, double v_th) {
-  ethd__set(&rig->setup, "transition.b_d", damping);
-  ethd__set(&rig->setup, "transition.v_th", v_th);
-  ethd__set(&rig->setup, "transition.eps_max", (double)INFINITY);
-  ethd__set(&rig->setup, "transition.t_max", (double)INFINITY);
+void ethd__stress_rig_brakes(ethd__stress_rig *rig, double damping, double v_th) {
+  ethd__stress_set(&rig->setup, "transition.b_d", damping);
+  ethd__stress_set(&rig->setup, "transition.v_th", v_th);
+  ethd__stress_set(&rig->setup, "transition.eps_max", (double)INFINITY);
+  ethd__stress_set(&rig->setup, "transition.t_max", (double)INFINITY);
 }
 
-void ethd__rig_open(ethd__rig *rig, double mass, double gap) {
+void ethd__stress_rig_open(ethd__stress_rig *rig, double mass, double gap) {
   memset(rig, 0, sizeof *rig);
   rig->setup = ethd_setup_default();
-  ethd__set(&rig->setup, "tracking.k_t", 0);
-  ethd__set(&rig->setup, "tracking.b_t", 0);
+  ethd__stress_set(&rig->setup, "tracking.k_t", 0);
+  ethd__stress_set(&rig->setup, "tracking.b_t", 0);
   rig->mass = mass;
   rig->force_limit = (double)INFINITY;
   rig->gap = gap;
 }
 
 /* J^T push at the present pose. */
-static ethd_vec pushed(const ethd__rig *rig) {
+static ethd_vec pushed(const ethd__stress_rig *rig) {
   ethd_pose pose;
   if (rig->push.x == 0 && rig->push.y == 0) return (ethd_vec){0, 0};
   ethd_arm_pose(&rig->setup.arm, rig->q, &pose);
   return ethd_mat_mul_transposed(pose.j, rig->push);
 }
 
-void ethd__rig_push(ethd__rig *rig, ethd_vec push) {
+void ethd__stress_rig_push(ethd__stress_rig *rig, ethd_vec push) {
   rig->push = push;
   ethd_vec out = pushed(rig);
   for (int i = 0; i < rig->delay; i++) {
@@ -70,24 +70,24 @@ void ethd__rig_push(ethd__rig *rig, ethd_vec push) {
   }
 }
 
-void ethd__rig_start(ethd__rig *rig, double speed) {
+void ethd__stress_rig_start(ethd__stress_rig *rig, double speed) {
   ethd_error error;
-  rig->scene = ethd__rig_wall(rig->gap + rig->setup.ring_radius - rig->setup.arm.link2);
+  rig->scene = ethd__stress_rig_wall(rig->gap + rig->setup.ring_radius - rig->setup.arm.link2);
   rig->setup.scene = rig->scene;
   if (ethd_control_create(&rig->setup, &rig->control, &error) < 0) refused(&error);
   rig->q[0] = M_PI / 2;
   rig->q[1] = 0;
   rig->w[0] = speed / rig->setup.arm.link1;
   rig->w[1] = 0;
-  ethd__rig_push(rig, rig->push);
+  ethd__stress_rig_push(rig, rig->push);
 }
 
-void ethd__rig_close(ethd__rig *rig) {
+void ethd__stress_rig_close(ethd__stress_rig *rig) {
   ethd_control_destroy(rig->control);
   ethd_scene_destroy(rig->scene);
 }
 
-ethd_sense ethd__rig_sense(const ethd__rig *rig) {
+ethd_sense ethd__stress_rig_sense(const ethd__stress_rig *rig) {
   ethd_sense s;
   memset(&s, 0, sizeof s);
   s.time_ns = (int64_t)rint((double)rig->tick * (1e9 * rig->setup.period));
@@ -100,15 +100,15 @@ ethd_sense ethd__rig_sense(const ethd__rig *rig) {
   return s;
 }
 
-const ethd_trace *ethd__rig_step(ethd__rig *rig) {
-  ethd_sense sense = ethd__rig_sense(rig);
+const ethd_trace *ethd__stress_rig_step(ethd__stress_rig *rig) {
+  ethd_sense sense = ethd__stress_rig_sense(rig);
   rig->status = ethd_control_step(rig->control, &sense, &rig->command, &rig->trace);
   rig->missed = -1; /* the move that follows belongs to this step */
   return &rig->trace;
 }
 
 /* What the motors give now: the command of `delay` ticks ago, limited. */
-static void torque(ethd__rig *rig, double out[2]) {
+static void torque(ethd__stress_rig *rig, double out[2]) {
   const ethd_arm *arm = &rig->setup.arm;
   double *slot = rig->way[rig->delay ? rig->tick % rig->delay : 0];
   for (int j = 0; j < 2; j++) {
@@ -118,7 +118,7 @@ static void torque(ethd__rig *rig, double out[2]) {
   }
 }
 
-void ethd__rig_move(ethd__rig *rig) {
+void ethd__stress_rig_move(ethd__stress_rig *rig) {
   const ethd_arm *arm = &rig->setup.arm;
   double tau[2], T = rig->setup.period;
   ethd_vec out = pushed(rig);
@@ -133,15 +133,15 @@ void ethd__rig_move(ethd__rig *rig) {
   rig->missed++;
 }
 
-const ethd_trace *ethd__rig_tick(ethd__rig *rig) {
-  ethd__rig_step(rig);
-  ethd__rig_move(rig);
+const ethd_trace *ethd__stress_rig_tick(ethd__stress_rig *rig) {
+  ethd__stress_rig_step(rig);
+  ethd__stress_rig_move(rig);
   return &rig->trace;
 }
 
-double ethd__rig_depth(const ethd__rig *rig) { return (rig->q[0] - M_PI / 2) * rig->setup.arm.link1; }
+double ethd__stress_rig_depth(const ethd__stress_rig *rig) { return (rig->q[0] - M_PI / 2) * rig->setup.arm.link1; }
 
-double ethd__rig_speed(const ethd__rig *rig) { return rig->w[0] * rig->setup.arm.link1; }
+double ethd__stress_rig_speed(const ethd__stress_rig *rig) { return rig->w[0] * rig->setup.arm.link1; }
 
 /* ---- growth ---- */
 
@@ -165,13 +165,13 @@ static amplitude measure(const double y[3]) {
 
 static int is_swing(amplitude a) { return a.c > 1e-5 * a.y * a.y; }
 
-double ethd__rig_growth(ethd__rig *rig, const ethd__swing *s) {
+double ethd__stress_rig_growth(ethd__stress_rig *rig, const ethd__swing *s) {
   double x[3] = {0}, y[3] = {0};
   amplitude first = {0, 0}, last = {0, 0};
   double peak = 0;
   for (int k = 0; k <= s->settle + s->span; k++) {
-    ethd__rig_tick(rig);
-    shift(x, 3, ethd__rig_depth(rig));
+    ethd__stress_rig_tick(rig);
+    shift(x, 3, ethd__stress_rig_depth(rig));
     if (k < s->order) continue;
     shift(y, 3, difference(x, s->order));
     if (k < s->order + 2) continue;

@@ -9,10 +9,10 @@
 
 #include "ethd/control.h"
 
-#define ETHD__RIG_DELAY_MAX 16
-#define ETHD__RIG_STRAIGHT ETHD_ARM_LINK_MAX /* m: links on which a joint's turn is a straight line */
+#define ETHD__STRESS_RIG_DELAY_MAX 16
+#define ETHD__STRESS_RIG_STRAIGHT ETHD_ARM_LINK_MAX /* m: links on which a joint's turn is a straight line */
 
-typedef struct ethd__rig {
+typedef struct ethd__stress_rig {
   ethd_setup setup; /* changed before start */
   double mass;      /* kg at the ring, both joints alike */
   double gap;       /* m to the wall at the start */
@@ -26,46 +26,46 @@ typedef struct ethd__rig {
   ethd_scene *scene;
   ethd_control *control;
   double q[2], w[2]; /* rad, rad/s: true at the present tick */
-  double way[ETHD__RIG_DELAY_MAX][2];
+  double way[ETHD__STRESS_RIG_DELAY_MAX][2];
   int64_t tick;
   int64_t missed; /* periods that went by since the last step without one */
   ethd_status status;
   ethd_command command;
   ethd_trace trace; /* of the last tick */
-} ethd__rig;
+} ethd__stress_rig;
 
 /* The default setup without tracking, without friction, `gap` m from the wall (d_re; < 0: inside). */
-void ethd__rig_open(ethd__rig *rig, double mass, double gap);
+void ethd__stress_rig_open(ethd__stress_rig *rig, double mass, double gap);
 
 /* Sets a number of a setup by its name; exits where that is refused. */
-void ethd__set(ethd_setup *setup, const char *name, double value);
+void ethd__stress_set(ethd_setup *setup, const char *name, double value);
 
 /* Chooses the velocity estimator; `value` is its first parameter where it has one: a cutoff or a window. */
-void ethd__rig_velocity(ethd__rig *rig, ethd_velocity_method method, double value);
+void ethd__stress_rig_velocity(ethd__stress_rig *rig, ethd_velocity_method method, double value);
 
 /* Brakes with `damping` Ns/m until the ring is slower than v_th m/s, however long and deep that gets. */
-void ethd__rig_brakes(ethd__rig *rig, double damping, double v_th);
+void ethd__stress_rig_brakes(ethd__stress_rig *rig, double damping, double v_th);
 
 /* Controller and ring at its place, `speed` m/s into the wall. Exits when the setup is refused. */
-void ethd__rig_start(ethd__rig *rig, double speed);
-void ethd__rig_close(ethd__rig *rig);
+void ethd__stress_rig_start(ethd__stress_rig *rig, double speed);
+void ethd__stress_rig_close(ethd__stress_rig *rig);
 
 /* From now on this push, and torques on their way that bear it (start does it for rig->push). */
-void ethd__rig_push(ethd__rig *rig, ethd_vec push);
+void ethd__stress_rig_push(ethd__stress_rig *rig, ethd_vec push);
 
 /* One tick: step, then the mass moves on for a period. */
-const ethd_trace *ethd__rig_tick(ethd__rig *rig);
+const ethd_trace *ethd__stress_rig_tick(ethd__stress_rig *rig);
 
 /* Its two halves. A move without a step before it is a tick that was lost: the torque stays. */
-const ethd_trace *ethd__rig_step(ethd__rig *rig);
-void ethd__rig_move(ethd__rig *rig);
+const ethd_trace *ethd__stress_rig_step(ethd__stress_rig *rig);
+void ethd__stress_rig_move(ethd__stress_rig *rig);
 
 /* A tick's sense as the rig stands. */
-ethd_sense ethd__rig_sense(const ethd__rig *rig);
+ethd_sense ethd__stress_rig_sense(const ethd__stress_rig *rig);
 
 /* How far and how fast the ring is along n, m and m/s: joint 1's angle times L. */
-double ethd__rig_depth(const ethd__rig *rig);
-double ethd__rig_speed(const ethd__rig *rig);
+double ethd__stress_rig_depth(const ethd__stress_rig *rig);
+double ethd__stress_rig_speed(const ethd__stress_rig *rig);
 
 /* How a swing grows, ln per tick: a pair of modes z, z* of x_k, the `order`-th differences of the
    motion, has x_k^2 - x_k+1 x_k-1 proportional to |z|^2k exactly, whatever its phase (of one real mode
@@ -76,9 +76,9 @@ typedef struct ethd__swing {
   double floor, ceiling;
 } ethd__swing;
 
-double ethd__rig_growth(ethd__rig *rig, const ethd__swing *swing);
+double ethd__stress_rig_growth(ethd__stress_rig *rig, const ethd__swing *swing);
 
 /* A half-plane scene; exits without memory. */
-ethd_scene *ethd__rig_wall(double c);
+ethd_scene *ethd__stress_rig_wall(double c);
 
 #endif

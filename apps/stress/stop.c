@@ -26,26 +26,27 @@ typedef struct outcome {
 /* The ring meets the wall `late` s before the tick that sees it, and has coasted for a while. */
 static outcome measure(const stop *s, double speed, double late, int delay, int measured) {
   const double coast = 5 * s->period;
-  ethd__rig rig;
-  ethd__rig_open(&rig, s->mass, speed * (coast - late));
+  ethd__stress_rig rig;
+  ethd__stress_rig_open(&rig, s->mass, speed * (coast - late));
   ethd_setup_velocity(&rig.setup, ETHD_VELOCITY_DIFFERENCE);
-  rig.setup.arm.link1 = ETHD__RIG_STRAIGHT;
-  ethd__rig_brakes(&rig, s->damping, s->v_th);
+  rig.setup.arm.link1 = ETHD__STRESS_RIG_STRAIGHT;
+  ethd__stress_rig_brakes(&rig, s->damping, s->v_th);
   rig.measured = measured;
   rig.force_limit = s->force;
   rig.delay = delay;
-  ethd__rig_start(&rig, speed);
-  while (ethd__rig_step(&rig)->state != ETHD_BRAKING) ethd__rig_move(&rig);
+  ethd__stress_rig_start(&rig, speed);
+  while (ethd__stress_rig_step(&rig)->state != ETHD_BRAKING) ethd__stress_rig_move(&rig);
   int64_t begin = rig.tick;
   double depth = 0, left = speed;
   while (rig.trace.state == ETHD_BRAKING) {
     if (rig.tick - begin >= delay) rig.push.x = s->friction; /* with the motors, out of the wall */
-    ethd__rig_move(&rig);
-    if (ethd__rig_speed(&rig) > 0) depth = ethd__rig_depth(&rig) - rig.gap, left = ethd__rig_speed(&rig);
-    ethd__rig_step(&rig);
+    ethd__stress_rig_move(&rig);
+    if (ethd__stress_rig_speed(&rig) > 0)
+      depth = ethd__stress_rig_depth(&rig) - rig.gap, left = ethd__stress_rig_speed(&rig);
+    ethd__stress_rig_step(&rig);
   }
   outcome o = {(double)(rig.tick - begin) * s->period, rig.trace.eps, depth, left};
-  ethd__rig_close(&rig);
+  ethd__stress_rig_close(&rig);
   return o;
 }
 

@@ -11,13 +11,13 @@
 
 typedef enum ethd__effort { ETHD__QUICK, ETHD__NORMAL, ETHD__LONG } ethd__effort;
 
-typedef struct ethd__result {
+typedef struct ethd__stress_result {
   char what[96];
   const char *unit;
   double measured, analytic, allowed; /* allowed: the distance; a bound's is 0 */
   int bound;                          /* 1: measured <= analytic */
   uint64_t count;                     /* results of which this is the worst */
-} ethd__result;
+} ethd__stress_result;
 
 #define ETHD__STRESS_LINES 64
 
@@ -27,7 +27,7 @@ typedef struct ethd__stress_log {
   FILE *csv;          /* NULL: none */
   const char *test;
   uint64_t failures;
-  ethd__result lines[ETHD__STRESS_LINES]; /* of this test, not yet printed */
+  ethd__stress_result lines[ETHD__STRESS_LINES]; /* of this test, not yet printed */
   int count;
 } ethd__stress_log;
 

@@ -24,23 +24,23 @@ typedef struct braking {
 
 /* Does the finger arrive while the ring still moves? */
 static int early(const plant *p, const braking *b, double speed, double lag) {
-  ethd__rig rig;
-  ethd__rig_open(&rig, p->mass, -1e-12);
+  ethd__stress_rig rig;
+  ethd__stress_rig_open(&rig, p->mass, -1e-12);
   double gap = rig.setup.ring_radius - p->finger_radius;
-  rig.setup.arm.link1 = ETHD__RIG_STRAIGHT;
+  rig.setup.arm.link1 = ETHD__STRESS_RIG_STRAIGHT;
   rig.setup.period = b->period;
-  ethd__rig_brakes(&rig, b->damping, b->still);
+  ethd__stress_rig_brakes(&rig, b->damping, b->still);
   rig.measured = rig.has_finger = 1;
   rig.force_limit = p->force;
-  ethd__rig_start(&rig, speed);
+  ethd__stress_rig_start(&rig, speed);
   rig.push.x = p->friction;
   double ahead = lag;
-  while (ethd__rig_speed(&rig) > b->still && ahead < gap) {
-    rig.finger = (ethd_vec){rig.setup.arm.link2 - ethd__rig_depth(&rig) - ahead, ETHD__RIG_STRAIGHT};
-    ethd__rig_tick(&rig);
-    ahead = lag + speed * (double)rig.tick * b->period - ethd__rig_depth(&rig);
+  while (ethd__stress_rig_speed(&rig) > b->still && ahead < gap) {
+    rig.finger = (ethd_vec){rig.setup.arm.link2 - ethd__stress_rig_depth(&rig) - ahead, ETHD__STRESS_RIG_STRAIGHT};
+    ethd__stress_rig_tick(&rig);
+    ahead = lag + speed * (double)rig.tick * b->period - ethd__stress_rig_depth(&rig);
   }
-  ethd__rig_close(&rig);
+  ethd__stress_rig_close(&rig);
   return ahead >= gap;
 }
 

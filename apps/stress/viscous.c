@@ -14,26 +14,26 @@
 #define SPEED 0.2
 #define STILL 0.001 /* v_th */
 
-static void open_braking(ethd__rig *rig, double damping) {
-  ethd__rig_open(rig, MASS, -1e-12);
-  rig->setup.arm.link1 = ETHD__RIG_STRAIGHT;
-  ethd__rig_brakes(rig, damping, STILL);
+static void open_braking(ethd__stress_rig *rig, double damping) {
+  ethd__stress_rig_open(rig, MASS, -1e-12);
+  rig->setup.arm.link1 = ETHD__STRESS_RIG_STRAIGHT;
+  ethd__stress_rig_brakes(rig, damping, STILL);
 }
 
 /* Ticks of braking, and eps, when speeds are measured. */
 static void measured(ethd__stress_log *log, double damping) {
-  ethd__rig rig;
+  ethd__stress_rig rig;
   double b = damping * PERIOD / MASS;
   open_braking(&rig, damping);
   rig.measured = 1;
-  ethd__rig_start(&rig, SPEED);
-  while (ethd__rig_tick(&rig)->state != ETHD_VO && rig.tick < 100000) continue;
+  ethd__stress_rig_start(&rig, SPEED);
+  while (ethd__stress_rig_tick(&rig)->state != ETHD_VO && rig.tick < 100000) continue;
   double ticks = ceil(log1p(STILL / SPEED - 1) / log1p(-b)), left = exp(ticks * log1p(-b));
   double eps = PERIOD * SPEED * (1 - left) / b * (1 - b / 2);
   ethd__stress_within(log, "ticks", (double)rig.trace.tick, ticks, 0,
                       "ticks of braking = ceil(ln(v_th/v0) / ln(1 - b))");
   ethd__stress_near(log, "m", rig.trace.eps, eps, 1e-6, "eps = T v0 (1 - (1 - b)^N) (1/b - 1/2)");
-  ethd__rig_close(&rig);
+  ethd__stress_rig_close(&rig);
 }
 
 /* v_k = p z^k + r y^k, from its first two. */
@@ -54,21 +54,21 @@ static double speed_at(const modes *m, int k) { return creal(m->p * cpow(m->z, k
 
 /* The largest distance from the modes while it brakes, as a share of the first speed. */
 static double off_modes(double cutoff, double damping) {
-  ethd__rig rig;
+  ethd__stress_rig rig;
   double v0, v1, worst = 0, a = cutoff > 0 ? 1 - exp(-2 * M_PI * cutoff * PERIOD) : 1;
   open_braking(&rig, damping);
-  ethd__rig_velocity(&rig, cutoff > 0 ? ETHD_VELOCITY_LOWPASS : ETHD_VELOCITY_DIFFERENCE, cutoff);
-  ethd__rig_start(&rig, SPEED);
-  ethd__rig_tick(&rig); /* nothing is known of the speed yet */
-  v0 = ethd__rig_speed(&rig);
-  ethd__rig_tick(&rig);
-  v1 = ethd__rig_speed(&rig);
+  ethd__stress_rig_velocity(&rig, cutoff > 0 ? ETHD_VELOCITY_LOWPASS : ETHD_VELOCITY_DIFFERENCE, cutoff);
+  ethd__stress_rig_start(&rig, SPEED);
+  ethd__stress_rig_tick(&rig); /* nothing is known of the speed yet */
+  v0 = ethd__stress_rig_speed(&rig);
+  ethd__stress_rig_tick(&rig);
+  v1 = ethd__stress_rig_speed(&rig);
   modes m = modes_of(a, damping * PERIOD / MASS, v0, v1);
   for (int k = 2; rig.trace.state == ETHD_BRAKING; k++) {
-    ethd__rig_tick(&rig);
-    if (rig.trace.state == ETHD_BRAKING) worst = fmax(worst, fabs(ethd__rig_speed(&rig) - speed_at(&m, k)) / v0);
+    ethd__stress_rig_tick(&rig);
+    if (rig.trace.state == ETHD_BRAKING) worst = fmax(worst, fabs(ethd__stress_rig_speed(&rig) - speed_at(&m, k)) / v0);
   }
-  ethd__rig_close(&rig);
+  ethd__stress_rig_close(&rig);
   return worst;
 }
 

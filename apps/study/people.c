@@ -11,18 +11,18 @@
 enum { SEED, RADIUS, PACE, REACH, STIFFNESS, DAMPING, BELOW };
 
 uint64_t ethd__person_seed(uint64_t seed, uint32_t person) {
-  const ethd__key key = {seed, person};
+  const ethd__sim_key key = {seed, person};
   return (uint64_t)(ethd__uniform(key, SEED, 0) * 0x1p53);
 }
 
 uint32_t ethd__person_below(uint64_t seed, uint32_t person, uint32_t index, uint32_t count) {
-  const ethd__key key = {seed, person};
+  const ethd__sim_key key = {seed, person};
   return (uint32_t)(ethd__uniform(key, BELOW, index) * count);
 }
 
 ethd_plant ethd__person_plant(const ethd_plant *plant, uint64_t seed, uint32_t person, double between,
                               double hand_spread) {
-  const ethd__key key = {seed, person};
+  const ethd__sim_key key = {seed, person};
   ethd_plant own = *plant;
   double of = sqrt(between), within = sqrt(1 - between);
   double pace = 1 + of * plant->speed_spread * ethd__normal_cut(key, PACE, CUT);

@@ -59,7 +59,7 @@ static both both_of(const ethd__cell *cells, size_t count, const char *speed, si
   return b;
 }
 
-static void rebound(const ethd__cell *cells, size_t count, ethd__claim *out) {
+static void rebound(const ethd__cell *cells, size_t count, ethd__tap_claim *out) {
   both d = both_of(cells, count, "high", ETHD_TAP_FIELD(d_max));
   out->text = "high: d_max of smooth is several times (>= 3) that of offset";
   snprintf(out->here, sizeof out->here, "%.2f / %.2f mm = %.1f x", 1e3 * d.smooth.mean, 1e3 * d.offset.mean,
@@ -67,21 +67,21 @@ static void rebound(const ethd__cell *cells, size_t count, ethd__claim *out) {
   out->verdict = verdict(d.known, d.smooth.mean >= 3 * d.offset.mean);
 }
 
-static void rebound_speed(const ethd__cell *cells, size_t count, ethd__claim *out) {
+static void rebound_speed(const ethd__cell *cells, size_t count, ethd__tap_claim *out) {
   both v = both_of(cells, count, "high", ETHD_TAP_FIELD(v_rmin));
   out->text = "high: |v_rmin| is much smaller (<= 1/2) under offset";
   snprintf(out->here, sizeof out->here, "%.3f -> %.3f m/s", v.smooth.mean, v.offset.mean);
   out->verdict = verdict(v.known, fabs(v.offset.mean) <= fabs(v.smooth.mean) / 2);
 }
 
-static void speed_at_touch(const ethd__cell *cells, size_t count, ethd__claim *out) {
+static void speed_at_touch(const ethd__cell *cells, size_t count, ethd__tap_claim *out) {
   both v = both_of(cells, count, "high", ETHD_TAP_FIELD(v_of));
   out->text = "high: mean v_of is against the finger (< 0) under smooth, not so under offset";
   snprintf(out->here, sizeof out->here, "%+.3f -> %+.3f m/s", v.smooth.mean, v.offset.mean);
   out->verdict = verdict(v.known, v.smooth.mean < 0 && v.offset.mean > 0);
 }
 
-static void positive_at_touch(const ethd__cell *cells, size_t count, ethd__claim *out) {
+static void positive_at_touch(const ethd__cell *cells, size_t count, ethd__tap_claim *out) {
   const ethd__cell *cell = ethd__cell_find(cells, count, "offset", "high");
   bool known = cell && ethd__cell_valid(cell) >= FEWEST;
   double share = known ? ethd__cell_share(cell, ETHD_TAP_FIELD(v_of), 0x1p-1022, INFINITY) : NAN;
@@ -90,7 +90,7 @@ static void positive_at_touch(const ethd__cell *cells, size_t count, ethd__claim
   out->verdict = verdict(known, share >= 0.25);
 }
 
-static void alike(const ethd__cell *cells, size_t count, ethd__claim *out) {
+static void alike(const ethd__cell *cells, size_t count, ethd__tap_claim *out) {
   both d = both_of(cells, count, "low", ETHD_TAP_FIELD(d_max));
   double a = ethd__figure_error(&d.smooth), b = ethd__figure_error(&d.offset), error = sqrt(a * a + b * b);
   out->text = "low: smooth and offset are alike (d_max within 25 %, 2 std. errors)";
@@ -99,7 +99,7 @@ static void alike(const ethd__cell *cells, size_t count, ethd__claim *out) {
       verdict(d.known, fabs(d.smooth.mean - d.offset.mean) <= 0.25 * fmax(d.smooth.mean, d.offset.mean) + 2 * error);
 }
 
-static void early(const ethd__cell *cells, size_t count, ethd__claim *out) {
+static void early(const ethd__cell *cells, size_t count, ethd__tap_claim *out) {
   double from = ethd__cells_early_from(cells, count);
   out->text = "the finger touches before the wall from about 0.5 m/s on (0.4 to 0.6)";
   if (isnan(from))
@@ -110,7 +110,7 @@ static void early(const ethd__cell *cells, size_t count, ethd__claim *out) {
 }
 
 /* The paper: 10 to 15 taps for three valid ones. */
-static void valid_share(const ethd__cell *cells, size_t count, ethd__claim *out) {
+static void valid_share(const ethd__cell *cells, size_t count, ethd__tap_claim *out) {
   size_t taps = 0, valid = 0, each = 0;
   for (size_t i = 0; i < count; i++) {
     if (strcmp(cells[i].speed->word, "high")) continue;
@@ -124,8 +124,8 @@ static void valid_share(const ethd__cell *cells, size_t count, ethd__claim *out)
   out->verdict = verdict(each >= FEWEST, share >= 0.2 - 2 * error && share <= 0.3 + 2 * error);
 }
 
-size_t ethd__claims(const ethd__cell *cells, size_t count, ethd__claim out[ETHD_TAP_CLAIMS_MAX]) {
-  static void (*const claims[])(const ethd__cell *, size_t, ethd__claim *) = {
+size_t ethd__claims(const ethd__cell *cells, size_t count, ethd__tap_claim out[ETHD_TAP_CLAIMS_MAX]) {
+  static void (*const claims[])(const ethd__cell *, size_t, ethd__tap_claim *) = {
       rebound, rebound_speed, speed_at_touch, positive_at_touch, alike, early, valid_share};
   size_t n = sizeof claims / sizeof *claims;
   for (size_t i = 0; i < n; i++) claims[i](cells, count, &out[i]);

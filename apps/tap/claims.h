@@ -20,14 +20,14 @@ typedef struct ethd__mean {
 enum { ETHD_TAP_MEANS = 4 };
 void ethd__means(const ethd__cell *cells, size_t count, ethd__mean out[ETHD_TAP_MEANS]);
 
-typedef struct ethd__claim {
+typedef struct ethd__tap_claim {
   const char *text;
   char here[64];
   ethd__verdict verdict; /* unknown: its cells weren't run or hold too few valid taps */
-} ethd__claim;
+} ethd__tap_claim;
 
 /* How many were written. */
-size_t ethd__claims(const ethd__cell *cells, size_t count, ethd__claim out[ETHD_TAP_CLAIMS_MAX]);
+size_t ethd__claims(const ethd__cell *cells, size_t count, ethd__tap_claim out[ETHD_TAP_CLAIMS_MAX]);
 
 const ethd__cell *ethd__cell_find(const ethd__cell *cells, size_t count, const char *law, const char *speed);
 

@@ -8,9 +8,9 @@
 #include "text/file_name.h"
 #include "text/text.h"
 
-static size_t cell_count(const ethd__plan *plan) { return plan->law_count * plan->study->speed_count; }
+static size_t cell_count(const ethd__tap_plan *plan) { return plan->law_count * plan->study->speed_count; }
 
-ethd__cell *ethd__cells_create(const ethd__plan *plan) {
+ethd__cell *ethd__cells_create(const ethd__tap_plan *plan) {
   size_t count = cell_count(plan), speeds = plan->study->speed_count;
   ethd__cell *cells = calloc(count, sizeof *cells);
   ethd__result *results = calloc(count * plan->taps, sizeof *results);
@@ -31,7 +31,7 @@ void ethd__cells_free(ethd__cell *cells) {
 
 /* ---- running ---- */
 
-static ethd_status check_law(const ethd__plan *plan, const char *law, char *message) {
+static ethd_status check_law(const ethd__tap_plan *plan, const char *law, char *message) {
   ethd__stage stage;
   ethd_sim_tap tap;
   ethd_status status = ethd__stage_open(plan->study, law, &stage, message);
@@ -46,13 +46,13 @@ static ethd_status check_law(const ethd__plan *plan, const char *law, char *mess
   return status;
 }
 
-ethd_status ethd__plan_check(const ethd__plan *plan, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__plan_check(const ethd__tap_plan *plan, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = ETHD_OK;
   for (size_t law = 0; !status && law < plan->law_count; law++) status = check_law(plan, plan->laws[law], message);
   return status;
 }
 
-static ethd_status run_cell(const ethd__plan *plan, ethd__stage *stage, ethd__output *output, ethd__cell *cells,
+static ethd_status run_cell(const ethd__tap_plan *plan, ethd__stage *stage, ethd__output *output, ethd__cell *cells,
                             size_t index, char *message) {
   ethd__cell *cell = &cells[index];
   ethd_status status = ETHD_OK;
@@ -67,7 +67,8 @@ static ethd_status run_cell(const ethd__plan *plan, ethd__stage *stage, ethd__ou
   return status;
 }
 
-static ethd_status run_law(const ethd__plan *plan, size_t law, ethd__output *output, ethd__cell *cells, char *message) {
+static ethd_status run_law(const ethd__tap_plan *plan, size_t law, ethd__output *output, ethd__cell *cells,
+                           char *message) {
   ethd__stage stage;
   size_t speeds = plan->study->speed_count;
   ethd_status status = ethd__stage_open(plan->study, plan->laws[law], &stage, message);
@@ -79,7 +80,7 @@ static ethd_status run_law(const ethd__plan *plan, size_t law, ethd__output *out
   return status;
 }
 
-ethd_status ethd__cells_run(const ethd__plan *plan, ethd__output *output, ethd__cell *cells,
+ethd_status ethd__cells_run(const ethd__tap_plan *plan, ethd__output *output, ethd__cell *cells,
                             char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = ETHD_OK;
   for (size_t law = 0; !status && law < plan->law_count && !ethd__stop; law++)
@@ -90,7 +91,7 @@ ethd_status ethd__cells_run(const ethd__plan *plan, ethd__output *output, ethd__
 
 /* ---- typical taps ---- */
 
-static ethd_status trace_cell(const ethd__plan *plan, const char *folder, const ethd__cell *cell, char *message) {
+static ethd_status trace_cell(const ethd__tap_plan *plan, const char *folder, const ethd__cell *cell, char *message) {
   ethd__stage stage;
   ethd__result result;
   char name[ETHD_FILE_NAME_MAX];
@@ -112,7 +113,7 @@ static ethd_status trace_cell(const ethd__plan *plan, const char *folder, const 
   return status;
 }
 
-ethd_status ethd__cells_trace(const ethd__plan *plan, const char *folder, const ethd__cell *cells,
+ethd_status ethd__cells_trace(const ethd__tap_plan *plan, const char *folder, const ethd__cell *cells,
                               char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = ETHD_OK;
   for (size_t i = 0; !status && i < cell_count(plan); i++)

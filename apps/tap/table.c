@@ -114,7 +114,7 @@ static void print_means(FILE *file, const char *plant, const ethd__cell *cells, 
 }
 
 static void print_claims(FILE *file, const ethd__cell *cells, size_t count) {
-  ethd__claim claims[ETHD_TAP_CLAIMS_MAX];
+  ethd__tap_claim claims[ETHD_TAP_CLAIMS_MAX];
   size_t n = ethd__claims(cells, count, claims);
   fprintf(file, "\n%-77s %s\n", "The paper's claims", "here");
   for (size_t i = 0; i < n; i++)

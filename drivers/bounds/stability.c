@@ -12,7 +12,7 @@ enum { X, V, ESTIMATE, FILTER, LAST, WAY, STATE_MAX = WAY + ETHD_LOOP_DELAY_MAX 
 typedef double matrix[STATE_MAX][STATE_MAX];
 
 typedef struct model {
-  const ethd_loop *loop;
+  const ethd__sampled_loop *loop;
   int ways, past, size;               /* forces on their way; index of x_k-1; length of the state */
   int samples;                        /* last positions kept */
   double w[ETHD_VELOCITY_WINDOW_MAX]; /* v^ from x_k, x_k-1, ... */
@@ -46,7 +46,7 @@ static void use_kalman(model *m) {
   m->inertia = p[2] / (m->loop->link * m->loop->link);
 }
 
-static void prepare(const ethd_loop *loop, model *m) {
+static void prepare(const ethd__sampled_loop *loop, model *m) {
   *m = (model){.loop = loop};
   switch (loop->method) {
   case ETHD_VELOCITY_LOWPASS: use_difference(m, 1 - ethd_exp(-2 * M_PI * loop->p[0] * loop->period)); break;
@@ -74,7 +74,7 @@ static double estimate(const model *m, const double *s, double *filter) {
 
 /* For `late` the force of one tick earlier still acts. */
 static void tick(const model *m, const double *s, double *next) {
-  const ethd_loop *l = m->loop;
+  const ethd__sampled_loop *l = m->loop;
   double T = l->period, late = l->late, rest = T - late, filter = 0;
   double v = estimate(m, s, &filter);
   double f = -l->stiffness * s[X] - l->damping * v;
@@ -124,7 +124,7 @@ static void square(matrix a, matrix out, int n) {
   memcpy(a, out, sizeof(matrix));
 }
 
-double ethd__loop_radius(const ethd_loop *loop) {
+double ethd__sampled_radius(const ethd__sampled_loop *loop) {
   matrix a, scratch;
   model m;
   memset(scratch, 0, sizeof scratch);
@@ -141,17 +141,17 @@ double ethd__loop_radius(const ethd_loop *loop) {
 }
 
 /* A free ring's position is neither stable nor unstable: radius 1. */
-bool ethd__loop_stable(const ethd_loop *loop) { return ethd__loop_radius(loop) <= 1 + 1e-7; }
+bool ethd__sampled_stable(const ethd__sampled_loop *loop) { return ethd__sampled_radius(loop) <= 1 + 1e-7; }
 
 /* ---- searches ---- */
 
 #define STEPS_PER_DECADE 16
 
 /* Between a stable and an unstable value, to 1e-6 of it. */
-static double bisect(ethd_loop *loop, double *value, double stable, double unstable) {
+static double bisect(ethd__sampled_loop *loop, double *value, double stable, double unstable) {
   while (fabs(unstable / stable - 1) > 1e-6) {
     *value = sqrt(stable * unstable);
-    if (ethd__loop_stable(loop))
+    if (ethd__sampled_stable(loop))
       stable = *value;
     else
       unstable = *value;
@@ -163,14 +163,16 @@ static double grid(int i) { return exp(i * log(10) / STEPS_PER_DECADE); }
 
 /* At a large mass all is slow, and hold and delay take K (T (n + 1/2) + late) off the damping, whatever
    the estimator. */
-double ethd__loop_damping_needed(const ethd_loop *l) { return l->stiffness * (l->period * (l->delay + 0.5) + l->late); }
+double ethd__sampled_damping_needed(const ethd__sampled_loop *l) {
+  return l->stiffness * (l->period * (l->delay + 0.5) + l->late);
+}
 
-double ethd__loop_mass_min(const ethd_loop *loop) {
-  ethd_loop l = *loop;
-  if (l.damping < ethd__loop_damping_needed(&l)) return (double)INFINITY;
+double ethd__sampled_mass_min(const ethd__sampled_loop *loop) {
+  ethd__sampled_loop l = *loop;
+  if (l.damping < ethd__sampled_damping_needed(&l)) return (double)INFINITY;
   for (int i = 4 * STEPS_PER_DECADE; i >= -7 * STEPS_PER_DECADE; i--) {
     l.mass = grid(i);
-    if (ethd__loop_stable(&l)) continue;
+    if (ethd__sampled_stable(&l)) continue;
     return i == 4 * STEPS_PER_DECADE ? (double)INFINITY : bisect(&l, &l.mass, grid(i + 1), grid(i));
   }
   return 0;
@@ -178,33 +180,33 @@ double ethd__loop_mass_min(const ethd_loop *loop) {
 
 /* In units of what the mass and the period set. A stable band may be narrower than the grid: the value
    that is there counts too. */
-static double gain_max(ethd_loop *l, double *gain, double unit) {
-  double own = ethd__loop_stable(l) ? *gain : 0;
+static double gain_max(ethd__sampled_loop *l, double *gain, double unit) {
+  double own = ethd__sampled_stable(l) ? *gain : 0;
   for (int i = STEPS_PER_DECADE; i >= -6 * STEPS_PER_DECADE; i--) {
     *gain = unit * grid(i);
-    if (ethd__loop_stable(l)) return fmax(own, bisect(l, gain, *gain, unit * grid(i + 1)));
+    if (ethd__sampled_stable(l)) return fmax(own, bisect(l, gain, *gain, unit * grid(i + 1)));
   }
   return own;
 }
 
-double ethd__loop_stiffness_max(const ethd_loop *loop) {
-  ethd_loop l = *loop;
+double ethd__sampled_stiffness_max(const ethd__sampled_loop *loop) {
+  ethd__sampled_loop l = *loop;
   return gain_max(&l, &l.stiffness, l.mass / (l.period * l.period));
 }
 
-double ethd__loop_damping_max(const ethd_loop *loop) {
-  ethd_loop l = *loop;
+double ethd__sampled_damping_max(const ethd__sampled_loop *loop) {
+  ethd__sampled_loop l = *loop;
   return gain_max(&l, &l.damping, l.mass / l.period);
 }
 
-static bool stable_with(ethd_loop *l, double delay) {
+static bool stable_with(ethd__sampled_loop *l, double delay) {
   l->delay = (int)floor(delay / l->period * (1 + 1e-12));
   l->late = fmax(0, delay - l->delay * l->period);
-  return ethd__loop_stable(l);
+  return ethd__sampled_stable(l);
 }
 
-double ethd__loop_delay_max(const ethd_loop *loop) {
-  ethd_loop l = *loop;
+double ethd__sampled_delay_max(const ethd__sampled_loop *loop) {
+  ethd__sampled_loop l = *loop;
   double T = l.period, low = 0, high = 0, most = ETHD_LOOP_DELAY_MAX * T;
   if (!stable_with(&l, 0)) return -1;
   for (high = T / 4; high < most && stable_with(&l, high); high += T / 4) low = high;
@@ -219,27 +221,27 @@ double ethd__loop_delay_max(const ethd_loop *loop) {
   return low;
 }
 
-static double cutoff_min(ethd_loop *l) {
+static double cutoff_min(ethd__sampled_loop *l) {
   const double step = exp(log(10) / STEPS_PER_DECADE);
   double high = l->p[0];
   for (l->p[0] = high / step; l->p[0] > 1; l->p[0] = high / step) {
-    if (!ethd__loop_stable(l)) return bisect(l, &l->p[0], high, high / step);
+    if (!ethd__sampled_stable(l)) return bisect(l, &l->p[0], high, high / step);
     high /= step;
   }
   return 1;
 }
 
-static double window_max(ethd_loop *l) {
+static double window_max(ethd__sampled_loop *l) {
   while (l->p[0] < ETHD_VELOCITY_WINDOW_MAX) {
     l->p[0]++;
-    if (!ethd__loop_stable(l)) return l->p[0] - 1;
+    if (!ethd__sampled_stable(l)) return l->p[0] - 1;
   }
   return l->p[0];
 }
 
-double ethd__loop_velocity_end(const ethd_loop *loop) {
-  ethd_loop l = *loop;
-  if (!ethd__loop_stable(&l)) return NAN;
+double ethd__sampled_velocity_end(const ethd__sampled_loop *loop) {
+  ethd__sampled_loop l = *loop;
+  if (!ethd__sampled_stable(&l)) return NAN;
   if (l.method == ETHD_VELOCITY_LOWPASS) return cutoff_min(&l);
   if (l.method == ETHD_VELOCITY_LSQ || l.method == ETHD_VELOCITY_FOAW) return window_max(&l);
   return NAN;
@@ -247,14 +249,16 @@ double ethd__loop_velocity_end(const ethd_loop *loop) {
 
 /* ---- closed forms ---- */
 
-void ethd__loop_boundary(double mass, double period, int delay, double th, double *stiffness, double *damping) {
+void ethd__sampled_boundary(double mass, double period, int delay, double th, double *stiffness, double *damping) {
   double t = tan(th / 2), k = 4 * t * t * cos((delay + 1) * th);
   *stiffness = k * mass / (period * period);
   *damping = (2 * t * sin((delay + 1) * th) - k / 2) * mass / period;
 }
 
-double ethd__loop_damping_free(double mass, double period, int delay) {
+double ethd__sampled_damping_free(double mass, double period, int delay) {
   return 2 * mass / period * tan(M_PI / (4 * (delay + 1)));
 }
 
-double ethd__loop_passive_friction(const ethd_loop *loop) { return loop->stiffness * loop->period / 2 + loop->damping; }
+double ethd__sampled_passive_friction(const ethd__sampled_loop *loop) {
+  return loop->stiffness * loop->period / 2 + loop->damping;
+}

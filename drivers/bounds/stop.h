@@ -8,32 +8,32 @@
 #ifndef ETHD_CHECK_STOP_H
 #define ETHD_CHECK_STOP_H
 
-typedef struct ethd_stop {
+typedef struct ethd__bounds_stop {
   double mass;              /* kg at the ring, along one axis */
   double force;             /* F_sat, N: the torque limit / L */
   double friction, viscous; /* f_c N, b_v Ns/m */
   double stiffness;         /* K_x of tracking along the motion, N/m at the ring */
   double behind;            /* s by which the finger's estimate is behind the finger */
   double gap;               /* m */
-} ethd_stop;
+} ethd__bounds_stop;
 
-double ethd__stop_deceleration(const ethd_stop *stop);
+double ethd__stop_deceleration(const ethd__bounds_stop *stop);
 
 /* Steady lag: (f_c + b_v v)/K_x, and what an estimate adds that is behind, m. */
-double ethd__stop_lag(const ethd_stop *stop, double speed);
+double ethd__stop_lag(const ethd__bounds_stop *stop, double speed);
 
 /* Rest at touch: the ring stands when the finger reaches it iff gap - lag - v^2/(2a) >= 0; this, m. */
-double ethd__stop_margin(const ethd_stop *stop, double speed);
+double ethd__stop_margin(const ethd__bounds_stop *stop, double speed);
 
 /* The highest speed with margin >= 0, m/s; 0: none. */
-double ethd__stop_speed(const ethd_stop *stop);
+double ethd__stop_speed(const ethd__bounds_stop *stop);
 
 /* Saturated braking from `speed` down to v_th with B_d, `delay` s late: Delta_s, s, and eps, m. */
-typedef struct ethd_braking {
+typedef struct ethd__bounds_braking {
   double damping, v_th, period, delay;
-} ethd_braking;
+} ethd__bounds_braking;
 
-double ethd__braking_time(const ethd_stop *stop, const ethd_braking *braking, double speed);
-double ethd__braking_depth(const ethd_stop *stop, const ethd_braking *braking, double speed);
+double ethd__braking_time(const ethd__bounds_stop *stop, const ethd__bounds_braking *braking, double speed);
+double ethd__braking_depth(const ethd__bounds_stop *stop, const ethd__bounds_braking *braking, double speed);
 
 #endif

@@ -20,20 +20,22 @@
 static ethd_verdict judge_table(const ethd_driver *d, ethd_conform_answer *a) {
   ethd_error error;
   if (d->size < sizeof *d || d->abi != ETHD_DRIVER_ABI)
-    return ethd__rig_answer(a, ETHD_BROKEN, "%s: another ABI: %u bytes, version %u", d->id, d->size, d->abi);
-  if (!d->brief || !d->brief[0]) return ethd__rig_answer(a, ETHD_BROKEN, "%s has no brief", d->id);
-  if (d->units && !d->service) return ethd__rig_answer(a, ETHD_BROKEN, "%s has units of I/O and no service", d->id);
+    return ethd__conform_rig_answer(a, ETHD_BROKEN, "%s: another ABI: %u bytes, version %u", d->id, d->size, d->abi);
+  if (!d->brief || !d->brief[0]) return ethd__conform_rig_answer(a, ETHD_BROKEN, "%s has no brief", d->id);
+  if (d->units && !d->service)
+    return ethd__conform_rig_answer(a, ETHD_BROKEN, "%s has units of I/O and no service", d->id);
   if (d->param_count && ethd_params_check_table(d->params, d->param_count, &error))
-    return ethd__rig_answer(a, ETHD_BROKEN, "%s: its table of settings: %s", d->id, error.name);
+    return ethd__conform_rig_answer(a, ETHD_BROKEN, "%s: its table of settings: %s", d->id, error.name);
   return ETHD_KEPT;
 }
 
 /* Of several: each. */
 static ethd_verdict ask_table(const ethd_conform_def *def, ethd_conform_answer *a) {
-  ethd__rig r;
-  if (!ethd__rig_open(def, &r)) return ethd__rig_answer(a, ETHD_BROKEN, "open: %.140s", r.message);
+  ethd__conform_rig r;
+  if (!ethd__conform_rig_open(def, &r)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "open: %.140s", r.message);
   const ethd__stack *s = r.driver == &ethd__driver_stack ? r.device : NULL;
-  ethd__rig_answer(a, ETHD_KEPT, "%s: %s", def->ids, s && s->count == 1 ? s->at[0].driver->brief : r.driver->brief);
+  ethd__conform_rig_answer(a, ETHD_KEPT, "%s: %s", def->ids,
+                           s && s->count == 1 ? s->at[0].driver->brief : r.driver->brief);
   for (uint32_t i = 0; s && i < s->count && a->verdict == ETHD_KEPT; i++) judge_table(s->at[i].driver, a);
   r.driver->close(r.device);
   return a->verdict;
@@ -49,42 +51,44 @@ static int descriptors(void) {
 
 /* Also started, also twice; what was opened is closed. */
 static ethd_verdict ask_open(const ethd_conform_def *def, ethd_conform_answer *a) {
-  ethd__rig r;
+  ethd__conform_rig r;
   int before = 0;
   for (int k = 0; k < OPENINGS; k++) {
-    if (!ethd__rig_begin(def, &r, a)) return a->verdict;
-    if (k % 2) ethd__rig_run(&r, 0.005, 0, 0);
-    ethd__rig_end(&r);
+    if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
+    if (k % 2) ethd__conform_rig_run(&r, 0.005, 0, 0);
+    ethd__conform_rig_end(&r);
     if (!k) before = descriptors();
   }
   int left = descriptors() - before;
-  if (left) return ethd__rig_answer(a, ETHD_BROKEN, "%d descriptors are left open after %d times", left, OPENINGS - 1);
-  return ethd__rig_answer(a, ETHD_KEPT, "%d times open, start, stop, close", OPENINGS);
+  if (left)
+    return ethd__conform_rig_answer(a, ETHD_BROKEN, "%d descriptors are left open after %d times", left, OPENINGS - 1);
+  return ethd__conform_rig_answer(a, ETHD_KEPT, "%d times open, start, stop, close", OPENINGS);
 }
 
 static ethd_verdict ask_limits(const ethd_conform_def *def, ethd_conform_answer *a) {
-  ethd__rig r;
+  ethd__conform_rig r;
   ethd_error error;
-  if (!ethd__rig_begin(def, &r, a)) return a->verdict;
-  ethd__rig_run(&r, 0.02, 0, 0);
+  if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
+  ethd__conform_rig_run(&r, 0.02, 0, 0);
   ethd_limits l = r.driver->limits(r.device);
   ethd_pose pose;
   ethd_arm_pose(&def->device->setup->arm, r.sense.q, &pose);
   const double *w = l.workspace;
   if (ethd_limits_check(&l, &error))
-    ethd__rig_answer(a, ETHD_BROKEN, "%s: %s", error.name, ethd_status_sentence(error.status));
+    ethd__conform_rig_answer(a, ETHD_BROKEN, "%s: %s", error.name, ethd_status_sentence(error.status));
   else if (!(pose.x.x >= w[0] && pose.x.x <= w[1] && pose.x.y >= w[2] && pose.x.y <= w[3]))
-    ethd__rig_answer(a, ETHD_BROKEN, "the ring stands at %.3f %.3f m, outside of its workspace", pose.x.x, pose.x.y);
+    ethd__conform_rig_answer(a, ETHD_BROKEN, "the ring stands at %.3f %.3f m, outside of its workspace", pose.x.x,
+                             pose.x.y);
   else if (!isfinite(l.torque))
-    ethd__rig_answer(a, ETHD_AT_RISK, "the device names no torque limit: only the configuration's holds");
+    ethd__conform_rig_answer(a, ETHD_AT_RISK, "the device names no torque limit: only the configuration's holds");
   else
-    ethd__rig_answer(a, ETHD_KEPT, "torque %.4g Nm, speed %.4g m/s", l.torque, l.speed);
-  ethd__rig_end(&r);
+    ethd__conform_rig_answer(a, ETHD_KEPT, "torque %.4g Nm, speed %.4g m/s", l.torque, l.speed);
+  ethd__conform_rig_end(&r);
   return a->verdict;
 }
 
 /* The row that leads to the hardest reaction; 0: none was seen. */
-static ethd_fault worst_row(const ethd__rig *r, ethd_reaction *reaction) {
+static ethd_fault worst_row(const ethd__conform_rig *r, ethd_reaction *reaction) {
   ethd_fault worst = ETHD_FAULT_NONE;
   *reaction = ETHD_REACTION_NONE;
   for (int64_t rows = r->faults | r->grave; rows; rows &= rows - 1) {
@@ -98,161 +102,165 @@ static ethd_fault worst_row(const ethd__rig *r, ethd_reaction *reaction) {
 }
 
 /* A row that is only counted is no break: late answers come. Nor is what a machine sees that is late itself. */
-static ethd_verdict judge_samples(const ethd__rig *r, ethd_conform_answer *a) {
+static ethd_verdict judge_samples(const ethd__conform_rig *r, ethd_conform_answer *a) {
   char readings[48] = "";
   ethd_reaction reaction;
   ethd_fault row = worst_row(r, &reaction);
   if (row)
-    return ethd__rig_answer(a, reaction >= ETHD_REACTION_STOP && r->late <= AGE_MAX ? ETHD_BROKEN : ETHD_AT_RISK,
-                            "it reports: %s; ticks were up to %.3g ms late", ethd_fault_sentence(row), 1e3 * r->late);
+    return ethd__conform_rig_answer(
+        a, reaction >= ETHD_REACTION_STOP && r->late <= AGE_MAX ? ETHD_BROKEN : ETHD_AT_RISK,
+        "it reports: %s; ticks were up to %.3g ms late", ethd_fault_sentence(row), 1e3 * r->late);
   if (r->readings) snprintf(readings, sizeof readings, "; %d readings of the finger", r->readings);
-  return ethd__rig_answer(a, r->age > AGE_MAX ? ETHD_AT_RISK : ETHD_KEPT, "%d samples, the oldest used at %.3g ms%s",
-                          r->samples, 1e3 * r->age, readings);
+  return ethd__conform_rig_answer(a, r->age > AGE_MAX ? ETHD_AT_RISK : ETHD_KEPT,
+                                  "%d samples, the oldest used at %.3g ms%s", r->samples, 1e3 * r->age, readings);
 }
 
 static ethd_verdict ask_sense(const ethd_conform_def *def, ethd_conform_answer *a) {
-  ethd__rig r;
-  if (!ethd__rig_begin(def, &r, a)) return a->verdict;
-  ethd__rig_run(&r, 5 * PUSH, 0, 0);
+  ethd__conform_rig r;
+  if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
+  ethd__conform_rig_run(&r, 5 * PUSH, 0, 0);
   if (!r.samples)
-    ethd__rig_answer(a, ETHD_BROKEN, "no joint sample in %g s", 5 * PUSH);
+    ethd__conform_rig_answer(a, ETHD_BROKEN, "no joint sample in %g s", 5 * PUSH);
   else if (r.failed || !r.finite)
-    ethd__rig_answer(a, ETHD_BROKEN, "%d failed calls%s", r.failed, r.finite ? "" : ", angles that aren't finite");
+    ethd__conform_rig_answer(a, ETHD_BROKEN, "%d failed calls%s", r.failed,
+                             r.finite ? "" : ", angles that aren't finite");
   else if (r.backwards || r.ahead)
-    ethd__rig_answer(a, ETHD_BROKEN, "%d samples go back in time, %d come from the future", r.backwards, r.ahead);
+    ethd__conform_rig_answer(a, ETHD_BROKEN, "%d samples go back in time, %d come from the future", r.backwards,
+                             r.ahead);
   else
     judge_samples(&r, a);
-  ethd__rig_end(&r);
+  ethd__conform_rig_end(&r);
   return a->verdict;
 }
 
 static ethd_verdict ask_zero(const ethd_conform_def *def, ethd_conform_answer *a) {
-  ethd__rig r;
-  if (!ethd__rig_begin(def, &r, a)) return a->verdict;
-  ethd__rig_settle(&r);
+  ethd__conform_rig r;
+  if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
+  ethd__conform_rig_settle(&r);
   double q[2] = {r.sense.q[0], r.sense.q[1]};
-  ethd__rig_run(&r, PUSH, 0, 0);
+  ethd__conform_rig_run(&r, PUSH, 0, 0);
   double moved = fmax(fabs(r.sense.q[0] - q[0]), fabs(r.sense.q[1] - q[1]));
-  ethd__rig_end(&r);
-  return ethd__rig_answer(a, moved <= STILL ? ETHD_KEPT : ETHD_BROKEN, "%.3g rad in %g s without torque, %g is allowed",
-                          moved, PUSH, STILL);
+  ethd__conform_rig_end(&r);
+  return ethd__conform_rig_answer(a, moved <= STILL ? ETHD_KEPT : ETHD_BROKEN,
+                                  "%.3g rad in %g s without torque, %g is allowed", moved, PUSH, STILL);
 }
 
 static ethd_verdict ask_sign(const ethd_conform_def *def, ethd_conform_answer *a) {
   double moved[2][2];
   for (int joint = 0; joint < 2; joint++)
     for (int minus = 0; minus < 2; minus++) {
-      ethd__rig r;
-      if (!ethd__rig_begin(def, &r, a)) return a->verdict;
-      ethd__rig_settle(&r);
+      ethd__conform_rig r;
+      if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
+      ethd__conform_rig_settle(&r);
       double q = r.sense.q[joint];
-      ethd__rig_run(&r, PUSH, joint, minus ? -def->torque : def->torque);
+      ethd__conform_rig_run(&r, PUSH, joint, minus ? -def->torque : def->torque);
       moved[joint][minus] = r.sense.q[joint] - q;
-      ethd__rig_end(&r);
+      ethd__conform_rig_end(&r);
     }
   int right = moved[0][0] > 0 && moved[0][1] < 0 && moved[1][0] > 0 && moved[1][1] < 0;
-  return ethd__rig_answer(a, right ? ETHD_KEPT : ETHD_BROKEN,
-                          "+-%g Nm moved joint 1 by %+.3g %+.3g, joint 2 by %+.3g %+.3g rad", def->torque, moved[0][0],
-                          moved[0][1], moved[1][0], moved[1][1]);
+  return ethd__conform_rig_answer(a, right ? ETHD_KEPT : ETHD_BROKEN,
+                                  "+-%g Nm moved joint 1 by %+.3g %+.3g, joint 2 by %+.3g %+.3g rad", def->torque,
+                                  moved[0][0], moved[0][1], moved[1][0], moved[1][1]);
 }
 
 static ethd_verdict ask_counts(const ethd_conform_def *def, ethd_conform_answer *a) {
-  ethd__rig r;
-  if (!ethd__rig_begin(def, &r, a)) return a->verdict;
-  ethd__rig_settle(&r);
-  ethd__rig_run(&r, PUSH, 0, def->torque);
-  ethd__rig_end(&r);
-  if (!(r.speed <= SPEED_MAX)) return ethd__rig_answer(a, ETHD_BROKEN, "the angles jump: %.3g rad/s", r.speed);
-  if (isinf(r.resolution)) return ethd__rig_answer(a, ETHD_BROKEN, "the angles didn't change under torque");
-  return ethd__rig_answer(a, ETHD_KEPT, "smallest step %.3g rad, fastest %.3g rad/s", r.resolution, r.speed);
+  ethd__conform_rig r;
+  if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
+  ethd__conform_rig_settle(&r);
+  ethd__conform_rig_run(&r, PUSH, 0, def->torque);
+  ethd__conform_rig_end(&r);
+  if (!(r.speed <= SPEED_MAX)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "the angles jump: %.3g rad/s", r.speed);
+  if (isinf(r.resolution)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "the angles didn't change under torque");
+  return ethd__conform_rig_answer(a, ETHD_KEPT, "smallest step %.3g rad, fastest %.3g rad/s", r.resolution, r.speed);
 }
 
 /* No: such a push is lost in the steps of the angle, and what it leads to is no answer. */
-static int is_pushed(const ethd__rig *r, double acceleration, ethd_conform_answer *a) {
-  double least = ethd__rig_least(r, LAPSE / 2);
+static int is_pushed(const ethd__conform_rig *r, double acceleration, ethd_conform_answer *a) {
+  double least = ethd__conform_rig_least(r, LAPSE / 2);
   if (acceleration > 0 && acceleration >= least) return 1;
-  return ethd__rig_answer(a, ETHD_NOT_ASKED, "%+.3g rad/s^2 under %g Nm, %.3g would show: it needs more torque",
-                          acceleration, r->def->torque, least),
+  return ethd__conform_rig_answer(a, ETHD_NOT_ASKED, "%+.3g rad/s^2 under %g Nm, %.3g would show: it needs more torque",
+                                  acceleration, r->def->torque, least),
          0;
 }
 
 /* First the other way, under a torque that is held: rad/s^2 at the end. A device that gains no more speed then
    has something in its way, and would look the same without a torque: 0, and the answer says so. */
 static double held(const ethd_conform_def *def, ethd_conform_answer *a) {
-  ethd__rig r;
-  if (!ethd__rig_begin(def, &r, a)) return 0;
-  ethd__rig_settle(&r);
-  double pushed = -ethd__rig_acceleration(&r, 0, -def->torque, 1, LAPSE / 2);
-  (void)ethd__rig_acceleration(&r, 0, -def->torque, 1, LAPSE / 2);
-  double end = -ethd__rig_acceleration(&r, 0, -def->torque, 1, LAPSE / 2);
-  ethd__rig_end(&r);
+  ethd__conform_rig r;
+  if (!ethd__conform_rig_begin(def, &r, a)) return 0;
+  ethd__conform_rig_settle(&r);
+  double pushed = -ethd__conform_rig_acceleration(&r, 0, -def->torque, 1, LAPSE / 2);
+  (void)ethd__conform_rig_acceleration(&r, 0, -def->torque, 1, LAPSE / 2);
+  double end = -ethd__conform_rig_acceleration(&r, 0, -def->torque, 1, LAPSE / 2);
+  ethd__conform_rig_end(&r);
   if (!is_pushed(&r, pushed, a)) return 0;
-  if (end >= 0.1 * pushed && end >= ethd__rig_least(&r, LAPSE / 2)) return end;
-  return ethd__rig_answer(a, ETHD_NOT_ASKED,
-                          "%.3g rad/s^2, but %.3g once the torque was held for %g s: something is in its way", pushed,
-                          end, 2 * LAPSE),
+  if (end >= 0.1 * pushed && end >= ethd__conform_rig_least(&r, LAPSE / 2)) return end;
+  return ethd__conform_rig_answer(a, ETHD_NOT_ASKED,
+                                  "%.3g rad/s^2, but %.3g once the torque was held for %g s: something is in its way",
+                                  pushed, end, 2 * LAPSE),
          0;
 }
 
 /* Torque that nobody renews must end. */
 static ethd_verdict ask_watchdog(const ethd_conform_def *def, ethd_conform_answer *a) {
-  ethd__rig r;
+  ethd__conform_rig r;
   double most = 0.25 * held(def, a);
-  if (!(most > 0) || !ethd__rig_begin(def, &r, a)) return a->verdict;
-  ethd__rig_settle(&r);
-  double pushed = ethd__rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
-  (void)ethd__rig_acceleration(&r, 0, def->torque, 0, LAPSE / 2);
-  double left = ethd__rig_acceleration(&r, 0, def->torque, 0, LAPSE / 2);
-  ethd__rig_end(&r);
+  if (!(most > 0) || !ethd__conform_rig_begin(def, &r, a)) return a->verdict;
+  ethd__conform_rig_settle(&r);
+  double pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
+  (void)ethd__conform_rig_acceleration(&r, 0, def->torque, 0, LAPSE / 2);
+  double left = ethd__conform_rig_acceleration(&r, 0, def->torque, 0, LAPSE / 2);
+  ethd__conform_rig_end(&r);
   if (!is_pushed(&r, pushed, a)) return a->verdict;
   if (left <= most)
-    return ethd__rig_answer(a, ETHD_KEPT, "%.3g rad/s^2 under torque, %.3g once nobody had written for %g s", pushed,
-                            left, LAPSE);
-  return ethd__rig_answer(a, ETHD_AT_RISK, "none: still %.3g of %.3g rad/s^2, %g s after the last write", left, pushed,
-                          LAPSE);
+    return ethd__conform_rig_answer(a, ETHD_KEPT, "%.3g rad/s^2 under torque, %.3g once nobody had written for %g s",
+                                    pushed, left, LAPSE);
+  return ethd__conform_rig_answer(a, ETHD_AT_RISK, "none: still %.3g of %.3g rad/s^2, %g s after the last write", left,
+                                  pushed, LAPSE);
 }
 
 static ethd_verdict ask_safe(const ethd_conform_def *def, ethd_conform_answer *a) {
-  ethd__rig r;
-  if (!ethd__rig_open(def, &r)) return ethd__rig_answer(a, ETHD_BROKEN, "open: %.140s", r.message);
+  ethd__conform_rig r;
+  if (!ethd__conform_rig_open(def, &r)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "open: %.140s", r.message);
   r.driver->safe(r.device); /* before it was started */
   r.driver->close(r.device);
   double most = 0.25 * held(def, a);
-  if (!(most > 0) || !ethd__rig_begin(def, &r, a)) return a->verdict;
-  ethd__rig_settle(&r);
-  double pushed = ethd__rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
+  if (!(most > 0) || !ethd__conform_rig_begin(def, &r, a)) return a->verdict;
+  ethd__conform_rig_settle(&r);
+  double pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
   r.driver->safe(r.device);
   r.driver->safe(r.device);
-  ethd__rig_run(&r, 0.01, 0, def->torque);
-  double left = ethd__rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
-  ethd__rig_stop(&r);
+  ethd__conform_rig_run(&r, 0.01, 0, def->torque);
+  double left = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
+  ethd__conform_rig_stop(&r);
   r.driver->safe(r.device); /* and once stopped */
   r.driver->close(r.device);
   if (!is_pushed(&r, pushed, a)) return a->verdict;
-  return ethd__rig_answer(a, left <= most ? ETHD_KEPT : ETHD_BROKEN,
-                          "%.3g rad/s^2 under torque, %.3g with the same torque once safe", pushed, left);
+  return ethd__conform_rig_answer(a, left <= most ? ETHD_KEPT : ETHD_BROKEN,
+                                  "%.3g rad/s^2 under torque, %.3g with the same torque once safe", pushed, left);
 }
 
 static ethd_verdict ask_restart(const ethd_conform_def *def, ethd_conform_answer *a) {
-  ethd__rig r;
-  if (!ethd__rig_begin(def, &r, a)) return a->verdict;
-  ethd__rig_settle(&r);
-  ethd__rig_run(&r, NUDGE, 0, def->torque);
-  ethd__rig_stop(&r);
-  ethd_status status = ethd__rig_start(&r);
+  ethd__conform_rig r;
+  if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
+  ethd__conform_rig_settle(&r);
+  ethd__conform_rig_run(&r, NUDGE, 0, def->torque);
+  ethd__conform_rig_stop(&r);
+  ethd_status status = ethd__conform_rig_start(&r);
   if (status < 0) {
-    ethd__rig_end(&r);
-    return ethd__rig_answer(a, ETHD_BROKEN, "started anew: %s", ethd_status_sentence(status));
+    ethd__conform_rig_end(&r);
+    return ethd__conform_rig_answer(a, ETHD_BROKEN, "started anew: %s", ethd_status_sentence(status));
   }
-  (void)ethd__rig_acceleration(&r, 0, 0, 0, 1e-9 * (double)r.period); /* where it stands now */
+  (void)ethd__conform_rig_acceleration(&r, 0, 0, 0, 1e-9 * (double)r.period); /* where it stands now */
   double q = r.sense.q[0];
-  (void)ethd__rig_acceleration(&r, 0, 0, 0, LAPSE / 2);
-  double moved = r.sense.q[0] - q, pushed = ethd__rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
-  ethd__rig_end(&r);
-  if (fabs(pushed) < ethd__rig_least(&r, LAPSE / 2)) return is_pushed(&r, pushed, a), a->verdict;
+  (void)ethd__conform_rig_acceleration(&r, 0, 0, 0, LAPSE / 2);
+  double moved = r.sense.q[0] - q, pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
+  ethd__conform_rig_end(&r);
+  if (fabs(pushed) < ethd__conform_rig_least(&r, LAPSE / 2)) return is_pushed(&r, pushed, a), a->verdict;
   int right = pushed > 0 && fabs(moved) <= 0.1 * pushed * LAPSE * LAPSE / 2;
-  return ethd__rig_answer(a, right ? ETHD_KEPT : ETHD_BROKEN,
-                          "started anew: %+.3g rad before it is written to, %.3g rad/s^2 under torque", moved, pushed);
+  return ethd__conform_rig_answer(a, right ? ETHD_KEPT : ETHD_BROKEN,
+                                  "started anew: %+.3g rad before it is written to, %.3g rad/s^2 under torque", moved,
+                                  pushed);
 }
 
 static const struct {
@@ -270,9 +278,9 @@ ethd_status ethd_conform(const ethd_conform_def *def, ethd_conform_answer answer
     ethd_conform_answer *a = &answers[i];
     a->question = questions[i].name;
     if (i && answers[0].verdict == ETHD_BROKEN)
-      ethd__rig_answer(a, ETHD_NOT_ASKED, "the device can't be opened, or its table is broken");
+      ethd__conform_rig_answer(a, ETHD_NOT_ASKED, "the device can't be opened, or its table is broken");
     else if (questions[i].moves && !(def->torque > 0))
-      ethd__rig_answer(a, ETHD_NOT_ASKED, "it would move the device");
+      ethd__conform_rig_answer(a, ETHD_NOT_ASKED, "it would move the device");
     else
       broken |= questions[i].ask(def, a) == ETHD_BROKEN;
   }

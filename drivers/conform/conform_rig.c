@@ -13,7 +13,7 @@
 #define SETTLE 200   /* looks */
 #define STANDS 0.02  /* rad/s */
 
-ethd_verdict ethd__rig_answer(ethd_conform_answer *a, ethd_verdict verdict, const char *format, ...) {
+ethd_verdict ethd__conform_rig_answer(ethd_conform_answer *a, ethd_verdict verdict, const char *format, ...) {
   va_list args;
   va_start(args, format);
   vsnprintf(a->found, sizeof a->found, format, args);
@@ -23,7 +23,7 @@ ethd_verdict ethd__rig_answer(ethd_conform_answer *a, ethd_verdict verdict, cons
 
 /* ---- time ---- */
 
-static void await_tick(ethd__rig *r) {
+static void await_tick(ethd__conform_rig *r) {
   struct timespec t;
   r->now += r->period;
   if (r->def->device->is_virtual) return;
@@ -35,31 +35,31 @@ static void await_tick(ethd__rig *r) {
 /* ---- I/O, as the loop has it done: by threads, or with the tick of a virtual clock ---- */
 
 static void *run_unit(void *unit_) {
-  const ethd__rig_unit *unit = unit_;
-  ethd__rig *r = unit->rig;
+  const ethd__conform_rig_unit *unit = unit_;
+  ethd__conform_rig *r = unit->rig;
   const struct timespec pause = {.tv_nsec = IDLE};
   while (!atomic_load(&r->stop))
     if (r->driver->service(r->device, unit->number, ethd__clock_now())) nanosleep(&pause, NULL);
   return NULL;
 }
 
-static void start_units(ethd__rig *r) {
+static void start_units(ethd__conform_rig *r) {
   atomic_store(&r->stop, 0);
   for (uint32_t u = 0, n = r->driver->units(r->device); u < n && !r->def->device->is_virtual; u++) {
-    r->unit[u] = (ethd__rig_unit){.rig = r, .number = u};
+    r->unit[u] = (ethd__conform_rig_unit){.rig = r, .number = u};
     if (pthread_create(&r->unit[u].thread, NULL, run_unit, &r->unit[u])) return;
     r->units++;
   }
 }
 
-static void stop_units(ethd__rig *r) {
+static void stop_units(ethd__conform_rig *r) {
   atomic_store(&r->stop, 1);
   for (; r->units; r->units--) pthread_join(r->unit[r->units - 1].thread, NULL);
 }
 
 /* ---- a device ---- */
 
-int ethd__rig_open(const ethd_conform_def *def, ethd__rig *r) {
+int ethd__conform_rig_open(const ethd_conform_def *def, ethd__conform_rig *r) {
   memset(r, 0, sizeof *r);
   r->def = def;
   r->period = llrint(1e9 * def->device->setup->period);
@@ -69,15 +69,15 @@ int ethd__rig_open(const ethd_conform_def *def, ethd__rig *r) {
   return ethd_device_open(def->ids, def->from, def->device, &r->driver, &r->device, r->message) == ETHD_OK;
 }
 
-int ethd__rig_begin(const ethd_conform_def *def, ethd__rig *r, ethd_conform_answer *a) {
-  if (!ethd__rig_open(def, r)) return ethd__rig_answer(a, ETHD_BROKEN, "open: %.140s", r->message), 0;
-  ethd_status status = ethd__rig_start(r);
+int ethd__conform_rig_begin(const ethd_conform_def *def, ethd__conform_rig *r, ethd_conform_answer *a) {
+  if (!ethd__conform_rig_open(def, r)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "open: %.140s", r->message), 0;
+  ethd_status status = ethd__conform_rig_start(r);
   if (status >= 0) return 1;
   r->driver->close(r->device);
-  return ethd__rig_answer(a, ETHD_BROKEN, "start: %s", ethd_status_sentence(status)), 0;
+  return ethd__conform_rig_answer(a, ETHD_BROKEN, "start: %s", ethd_status_sentence(status)), 0;
 }
 
-ethd_status ethd__rig_start(ethd__rig *r) {
+ethd_status ethd__conform_rig_start(ethd__conform_rig *r) {
   ethd_status status = r->driver->start(r->device);
   if (status < 0) return status;
   start_units(r);
@@ -85,17 +85,17 @@ ethd_status ethd__rig_start(ethd__rig *r) {
   return status;
 }
 
-void ethd__rig_stop(ethd__rig *r) {
+void ethd__conform_rig_stop(ethd__conform_rig *r) {
   stop_units(r);
   (void)!r->driver->stop(r->device);
 }
 
-void ethd__rig_end(ethd__rig *r) {
-  ethd__rig_stop(r);
+void ethd__conform_rig_end(ethd__conform_rig *r) {
+  ethd__conform_rig_stop(r);
   r->driver->close(r->device);
 }
 
-static void look(ethd__rig *r, const ethd_sense *s) {
+static void look(ethd__conform_rig *r, const ethd_sense *s) {
   const ethd_sense *before = &r->sense;
   double dt = 1e-9 * (double)(s->time_ns - before->time_ns);
   for (int i = 0; i < 2; i++) {
@@ -111,7 +111,7 @@ static void look(ethd__rig *r, const ethd_sense *s) {
 }
 
 /* Of the finger, from whatever kind of sensor. */
-static void look_at_reading(ethd__rig *r, const ethd_sense *s) {
+static void look_at_reading(ethd__conform_rig *r, const ethd_sense *s) {
   if (!(s->have & (ETHD_HAVE_FINGER | ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS))) return;
   r->ahead += s->sample_ns > (r->def->device->is_virtual ? r->now : ethd__clock_now());
   r->backwards += r->readings && s->sample_ns < r->reading_ns;
@@ -120,7 +120,7 @@ static void look_at_reading(ethd__rig *r, const ethd_sense *s) {
 }
 
 /* One period: I/O, read, and the torque unless it is NULL. */
-static void tick(ethd__rig *r, const double *torque) {
+static void tick(ethd__conform_rig *r, const double *torque) {
   ethd_sense s = {0};
   ethd_command command = {.safe = torque == NULL};
   if (torque) memcpy(command.torque, torque, sizeof command.torque);
@@ -140,26 +140,26 @@ static void tick(ethd__rig *r, const double *torque) {
   if (torque) r->failed += r->driver->write(r->device, r->now, &command) < 0;
 }
 
-void ethd__rig_run(ethd__rig *r, double seconds, int joint, double torque) {
+void ethd__conform_rig_run(ethd__conform_rig *r, double seconds, int joint, double torque) {
   const double both[2] = {joint == 0 ? torque : 0, joint == 1 ? torque : 0};
   for (int k = 0, n = (int)ceil(seconds * 1e9 / (double)r->period); k < n; k++) tick(r, both);
 }
 
-void ethd__rig_settle(ethd__rig *r) {
+void ethd__conform_rig_settle(ethd__conform_rig *r) {
   double q[2] = {0, 0};
   int moves = 1;
   for (int k = 0; k < SETTLE && moves; k++) {
-    ethd__rig_run(r, LOOK, 0, 0);
+    ethd__conform_rig_run(r, LOOK, 0, 0);
     moves = k == 0 || !(fmax(fabs(r->sense.q[0] - q[0]), fabs(r->sense.q[1] - q[1])) <= LOOK * STANDS);
     memcpy(q, r->sense.q, sizeof q);
   }
 }
 
-double ethd__rig_least(const ethd__rig *r, double window) {
+double ethd__conform_rig_least(const ethd__conform_rig *r, double window) {
   return isinf(r->resolution) ? 0 : STEPS * r->resolution / (window * window);
 }
 
-double ethd__rig_acceleration(ethd__rig *r, int joint, double torque, int write, double window) {
+double ethd__conform_rig_acceleration(ethd__conform_rig *r, int joint, double torque, int write, double window) {
   double q[3], both[2] = {joint == 0 ? torque : 0, joint == 1 ? torque : 0};
   int n = (int)ceil(window * 1e9 / (double)r->period);
   for (int k = 0; k < 3; k++) {

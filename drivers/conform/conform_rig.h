@@ -7,23 +7,23 @@
 
 #include "ethd/conform.h"
 
-typedef struct ethd__rig ethd__rig;
+typedef struct ethd__conform_rig ethd__conform_rig;
 
 /* A thread for a unit of blocking I/O. */
-typedef struct ethd__rig_unit {
-  ethd__rig *rig;
+typedef struct ethd__conform_rig_unit {
+  ethd__conform_rig *rig;
   uint32_t number;
   pthread_t thread;
-} ethd__rig_unit;
+} ethd__conform_rig_unit;
 
-struct ethd__rig {
+struct ethd__conform_rig {
   const ethd_conform_def *def;
   const ethd_driver *driver;
   void *device;
   int64_t now, period; /* ns */
   atomic_int stop;     /* the I/O threads, of which there are `units` */
   uint32_t units;
-  ethd__rig_unit unit[ETHD_UNITS_MAX];
+  ethd__conform_rig_unit unit[ETHD_UNITS_MAX];
   ethd_sense sense;
   char message[ETHD_MESSAGE_MAX];
   /* over all ticks since it was opened */
@@ -33,32 +33,32 @@ struct ethd__rig {
   int backwards, ahead, failed, finite, samples, readings;
 };
 
-ethd_verdict ethd__rig_answer(ethd_conform_answer *a, ethd_verdict verdict, const char *format, ...)
+ethd_verdict ethd__conform_rig_answer(ethd_conform_answer *a, ethd_verdict verdict, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /* False: r->message says why. All [main]. */
-int ethd__rig_open(const ethd_conform_def *def, ethd__rig *r);
+int ethd__conform_rig_open(const ethd_conform_def *def, ethd__conform_rig *r);
 
 /* Open and started, with its I/O threads unless the clock is virtual; false: the answer says why not. */
-int ethd__rig_begin(const ethd_conform_def *def, ethd__rig *r, ethd_conform_answer *a);
+int ethd__conform_rig_begin(const ethd_conform_def *def, ethd__conform_rig *r, ethd_conform_answer *a);
 
 /* Stopped; and closed. */
-void ethd__rig_stop(ethd__rig *r);
-void ethd__rig_end(ethd__rig *r);
+void ethd__conform_rig_stop(ethd__conform_rig *r);
+void ethd__conform_rig_end(ethd__conform_rig *r);
 
 /* Anew, once it was stopped; a failure's status. */
-ethd_status ethd__rig_start(ethd__rig *r);
+ethd_status ethd__conform_rig_start(ethd__conform_rig *r);
 
 /* `seconds` of ticks with `torque`, Nm, on a joint, 0 on the other. */
-void ethd__rig_run(ethd__rig *r, double seconds, int joint, double torque);
+void ethd__conform_rig_run(ethd__conform_rig *r, double seconds, int joint, double torque);
 
 /* No torque until both joints stand: the question before may have left them moving. Gives up after 2 s. */
-void ethd__rig_settle(ethd__rig *r);
+void ethd__conform_rig_settle(ethd__conform_rig *r);
 
 /* The smallest acceleration that such windows can tell from the steps of the angle, rad/s^2. */
-double ethd__rig_least(const ethd__rig *r, double window);
+double ethd__conform_rig_least(const ethd__conform_rig *r, double window);
 
 /* Mean acceleration of a joint over two windows of s, rad/s^2; write 0: nothing is written meanwhile. */
-double ethd__rig_acceleration(ethd__rig *r, int joint, double torque, int write, double window);
+double ethd__conform_rig_acceleration(ethd__conform_rig *r, int joint, double torque, int write, double window);
 
 #endif

@@ -43,7 +43,7 @@ static int sleep_until(const ethd_loop *l, int64_t instant) ETHD_RT {
 
 /* ---- rows ---- */
 
-static int room(const ethd__rows *r) ETHD_RT {
+static int room(const ethd__loop_ring *r) ETHD_RT {
   return atomic_load_explicit(&r->head, memory_order_relaxed) - atomic_load_explicit(&r->tail, memory_order_acquire) <
          r->size;
 }
@@ -51,7 +51,7 @@ static int room(const ethd__rows *r) ETHD_RT {
 static void raise(uint64_t *count, uint64_t by) ETHD_RT { __atomic_store_n(count, *count + by, __ATOMIC_RELAXED); }
 
 static void push(ethd_loop *l) ETHD_RT {
-  ethd__rows *r = &l->rows;
+  ethd__loop_ring *r = &l->rows;
   if (!r->size) return;
   if (!room(r)) {
     l->lost++;

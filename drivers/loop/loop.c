@@ -133,7 +133,7 @@ void ethd_loop_raise(ethd_loop *l, ethd_fault fault) {
 void ethd_loop_stop(ethd_loop *l) { atomic_store_explicit(&l->stop, 1, memory_order_relaxed); }
 
 ethd_status ethd_loop_take(ethd_loop *l, ethd_loop_row *out) {
-  ethd__rows *r = &l->rows;
+  ethd__loop_ring *r = &l->rows;
   unsigned tail = atomic_load_explicit(&r->tail, memory_order_relaxed);
   if (tail == atomic_load_explicit(&r->head, memory_order_acquire)) return ETHD_EMPTY;
   *out = r->at[tail % r->size];

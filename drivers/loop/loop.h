@@ -11,12 +11,12 @@
 /* Who has device and controller: the loop, or [main] while it enables. */
 enum { ETHD__LOOP_RUNS, ETHD__LOOP_ASKED, ETHD__LOOP_PARKED };
 
-typedef struct ethd__rows {
+typedef struct ethd__loop_ring {
   _Alignas(64) atomic_uint head; /* next to write, [rt] */
   _Alignas(64) atomic_uint tail; /* next to read */
   uint32_t size;
   ethd_loop_row *at;
-} ethd__rows;
+} ethd__loop_ring;
 
 typedef struct ethd__unit {
   ethd_loop *loop;
@@ -60,7 +60,7 @@ struct ethd_loop {
   atomic_uint beats;      /* of the application */
   _Atomic int64_t turned; /* ns: the loop's thread was alive then */
   _Atomic int64_t raised; /* rows for the next sense */
-  ethd__rows rows;
+  ethd__loop_ring rows;
 
   /* [main] */
   int32_t shortfalls, locked, has_control, has_watch;

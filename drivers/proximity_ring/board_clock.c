@@ -11,7 +11,7 @@
 /* ---- does a frame follow another? ---- */
 
 /* Board 0 counts time, not frames, while it is late; that frame may itself be lost. */
-static bool follows(uint16_t seq, uint32_t t_us, const ethd__frame *next) ETHD_RT {
+static bool follows(uint16_t seq, uint32_t t_us, const ethd__ring_frame *next) ETHD_RT {
   double steps = (uint16_t)(next->seq - seq), passed = (uint32_t)(next->t_us - t_us);
   double extra = passed - steps * PERIOD_US;
   if (steps == 0 || extra < -TOLERANCE_US) return false;
@@ -21,7 +21,7 @@ static bool follows(uint16_t seq, uint32_t t_us, const ethd__frame *next) ETHD_R
   return may_be_late && whole <= LATE_MAX && rest * rest * PERIOD_US * PERIOD_US <= TOLERANCE_US * TOLERANCE_US;
 }
 
-static bool is_reset(const ethd__frame *frame) ETHD_RT {
+static bool is_reset(const ethd__ring_frame *frame) ETHD_RT {
   return (frame->flags & ETHD__FRAME_FIRST) && frame->seq == 0 && frame->t_us < 1000000;
 }
 
@@ -80,7 +80,7 @@ static void collect(ethd__board_clock *c, ethd__clock_point p) ETHD_RT {
 
 /* ---- frames ---- */
 
-static void begin(ethd__board_clock *c, const ethd__frame *frame, int64_t arrival_ns) ETHD_RT {
+static void begin(ethd__board_clock *c, const ethd__ring_frame *frame, int64_t arrival_ns) ETHD_RT {
   c->base_ns = arrival_ns;
   c->board_us = 0;
   c->offset = 0;
@@ -90,12 +90,12 @@ static void begin(ethd__board_clock *c, const ethd__frame *frame, int64_t arriva
   c->t_us = frame->t_us;
 }
 
-static ethd__clock_point place(const ethd__board_clock *c, const ethd__frame *frame, int64_t arrival_ns) ETHD_RT {
+static ethd__clock_point place(const ethd__board_clock *c, const ethd__ring_frame *frame, int64_t arrival_ns) ETHD_RT {
   int64_t board_us = c->board_us + (uint32_t)(frame->t_us - c->t_us);
   return (ethd__clock_point){1e-6 * (double)board_us, 1e-9 * (double)(arrival_ns - c->base_ns - 1000 * board_us)};
 }
 
-static void accept(ethd__board_clock *c, const ethd__frame *frame, int64_t arrival_ns, int64_t *t_ns) ETHD_RT {
+static void accept(ethd__board_clock *c, const ethd__ring_frame *frame, int64_t arrival_ns, int64_t *t_ns) ETHD_RT {
   ethd__clock_point p = place(c, frame, arrival_ns);
   c->board_us += (uint32_t)(frame->t_us - c->t_us);
   c->t_us = frame->t_us;
@@ -106,12 +106,12 @@ static void accept(ethd__board_clock *c, const ethd__frame *frame, int64_t arriv
   *t_ns = c->base_ns + 1000 * c->board_us + (int64_t)floor_ns;
 }
 
-static bool in_step(const ethd__board_clock *c, const ethd__frame *frame, int64_t arrival_ns) ETHD_RT {
+static bool in_step(const ethd__board_clock *c, const ethd__ring_frame *frame, int64_t arrival_ns) ETHD_RT {
   if (!follows(c->seq, c->t_us, frame)) return false;
   return c->blocks < SETTLED || above(c, place(c, frame, arrival_ns)) > -EARLY_MAX;
 }
 
-ethd__clock_verdict ethd__board_clock_step(ethd__board_clock *c, const ethd__frame *frame, int64_t arrival_ns,
+ethd__clock_verdict ethd__board_clock_step(ethd__board_clock *c, const ethd__ring_frame *frame, int64_t arrival_ns,
                                            int64_t *t_ns) {
   ethd__clock_verdict verdict = c->doubtful ? ETHD__CLOCK_RETURNED : ETHD__CLOCK_GOOD;
   if (c->started && (is_reset(frame) || !in_step(c, frame, arrival_ns))) {

@@ -42,16 +42,16 @@ typedef struct ethd__board_clock {
   uint32_t t_us;    /* of the last good frame */
   uint16_t seq;     /* likewise */
   bool started, doubtful;
-  ethd__frame doubt; /* the frame that didn't follow */
-  uint32_t in_block; /* frames of the block that is being filled */
-  uint32_t blocks;   /* ever, since the base */
+  ethd__ring_frame doubt; /* the frame that didn't follow */
+  uint32_t in_block;      /* frames of the block that is being filled */
+  uint32_t blocks;        /* ever, since the base */
   ethd__clock_point block, points[ETHD__CLOCK_BLOCKS];
   uint64_t jumps, doubts; /* counted */
 } ethd__board_clock;
 
 /* A frame that arrived at arrival_ns (CLOCK_MONOTONIC, its last byte). *t_ns: when its t_us was, unless
    doubtful. */
-ethd__clock_verdict ethd__board_clock_step(ethd__board_clock *clock, const ethd__frame *frame, int64_t arrival_ns,
+ethd__clock_verdict ethd__board_clock_step(ethd__board_clock *clock, const ethd__ring_frame *frame, int64_t arrival_ns,
                                            int64_t *t_ns) ETHD_RT;
 
 /* The port was opened anew: begins with the next frame, the drift stays. */

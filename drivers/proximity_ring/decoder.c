@@ -29,7 +29,7 @@ static bool uncobs(const uint8_t coded[CODED], uint8_t out[ETHD__FRAME_SIZE]) ET
   return at == CODED;
 }
 
-static void unpack(const uint8_t raw[ETHD__FRAME_SIZE], ethd__frame *out) ETHD_RT {
+static void unpack(const uint8_t raw[ETHD__FRAME_SIZE], ethd__ring_frame *out) ETHD_RT {
   const uint8_t *t = raw + ETHD__FRAME_AT_TIME;
   out->type = raw[ETHD__FRAME_AT_TYPE];
   out->flags = raw[ETHD__FRAME_AT_FLAGS];
@@ -39,7 +39,7 @@ static void unpack(const uint8_t raw[ETHD__FRAME_SIZE], ethd__frame *out) ETHD_R
 }
 
 /* How many the sequence misses; a reset of board 0 begins it anew. */
-static void follow(ethd__decoder *d, ethd__frame *frame) ETHD_RT {
+static void follow(ethd__decoder *d, ethd__ring_frame *frame) ETHD_RT {
   uint16_t step = (uint16_t)(frame->seq - d->seq);
   bool fresh = !d->started || (frame->flags & ETHD__FRAME_FIRST);
   frame->lost = fresh || step == 0 ? 0 : step - 1u;
@@ -50,7 +50,7 @@ static void follow(ethd__decoder *d, ethd__frame *frame) ETHD_RT {
   d->started = true;
 }
 
-static bool is_frame(const uint8_t *piece, size_t count, ethd__frame *out) ETHD_RT {
+static bool is_frame(const uint8_t *piece, size_t count, ethd__ring_frame *out) ETHD_RT {
   uint8_t raw[ETHD__FRAME_SIZE];
   if (count != CODED || !uncobs(piece, raw)) return false;
   if (raw[ETHD__FRAME_AT_TYPE] != ETHD__FRAME_TYPE || ethd__frame_crc(raw, sizeof raw) != 0) return false;
@@ -59,7 +59,7 @@ static bool is_frame(const uint8_t *piece, size_t count, ethd__frame *out) ETHD_
 }
 
 /* A piece has ended. Two zeros in a row are no piece. */
-static bool finish(ethd__decoder *d, const uint8_t *piece, size_t count, ethd__frame *out) ETHD_RT {
+static bool finish(ethd__decoder *d, const uint8_t *piece, size_t count, ethd__ring_frame *out) ETHD_RT {
   bool begun = d->in_step;
   d->in_step = true;
   d->held = 0;
@@ -80,7 +80,7 @@ static void hold(ethd__decoder *d, const uint8_t *bytes, size_t count) ETHD_RT {
   d->held += (uint32_t)kept;
 }
 
-bool ethd__decoder_next(ethd__decoder *d, const uint8_t **at, const uint8_t *end, ethd__frame *out) {
+bool ethd__decoder_next(ethd__decoder *d, const uint8_t **at, const uint8_t *end, ethd__ring_frame *out) {
   while (*at < end) {
     const uint8_t *from = *at, *zero = memchr(from, ETHD__FRAME_DELIMITER, (size_t)(end - from));
     size_t count = (size_t)((zero ? zero : end) - from);
@@ -113,7 +113,7 @@ static void cobs(const uint8_t raw[ETHD__FRAME_SIZE], uint8_t out[CODED]) ETHD_R
   out[code] = (uint8_t)(CODED - code);
 }
 
-void ethd__frame_encode(const ethd__frame *frame, uint8_t out[ETHD__FRAME_WIRE]) {
+void ethd__frame_encode(const ethd__ring_frame *frame, uint8_t out[ETHD__FRAME_WIRE]) {
   uint8_t raw[ETHD__FRAME_SIZE];
   raw[ETHD__FRAME_AT_TYPE] = frame->type;
   raw[ETHD__FRAME_AT_FLAGS] = frame->flags;

@@ -11,13 +11,13 @@
 #include "ethd/attributes.h"
 #include "proximity_ring/frame.h"
 
-typedef struct ethd__frame {
+typedef struct ethd__ring_frame {
   uint8_t type, flags; /* ETHD__FRAME_* */
   uint16_t seq;
   uint32_t t_us;
   uint16_t counts[ETHD__FRAME_SENSORS];
   uint32_t lost; /* frames that the sequence misses before this one, corrupt ones among them */
-} ethd__frame;
+} ethd__ring_frame;
 
 typedef struct ethd__decoder_counters {
   uint64_t frames;   /* good ones */
@@ -38,7 +38,7 @@ typedef struct ethd__decoder {
 
 /* The next frame among the bytes from *at to `end`; *at goes behind what was taken. False: no frame, and
    *at == end. */
-bool ethd__decoder_next(ethd__decoder *decoder, const uint8_t **at, const uint8_t *end, ethd__frame *out) ETHD_RT;
+bool ethd__decoder_next(ethd__decoder *decoder, const uint8_t **at, const uint8_t *end, ethd__ring_frame *out) ETHD_RT;
 
 /* Forgets a begun piece and the sequence, as after a reopened port; the counters stay. */
 void ethd__decoder_restart(ethd__decoder *decoder) ETHD_RT;
@@ -47,6 +47,6 @@ void ethd__decoder_restart(ethd__decoder *decoder) ETHD_RT;
 uint16_t ethd__frame_crc(const uint8_t *bytes, size_t count) ETHD_RT;
 
 /* A frame as it goes over the wire; lost doesn't count. */
-void ethd__frame_encode(const ethd__frame *frame, uint8_t out[ETHD__FRAME_WIRE]) ETHD_RT;
+void ethd__frame_encode(const ethd__ring_frame *frame, uint8_t out[ETHD__FRAME_WIRE]) ETHD_RT;
 
 #endif

@@ -21,7 +21,7 @@
 
 /* What the I/O thread hands over. */
 typedef struct sample {
-  ethd__reading reading;
+  ethd__ring_reading reading;
   ethd__receiver_counts counts;
   int64_t arrival_ns; /* of the reading */
 } sample;
@@ -46,7 +46,7 @@ typedef struct ring {
 
 static void take(ring *r, const uint8_t *bytes, size_t count, int64_t arrival_ns) {
   const uint8_t *at = bytes;
-  ethd__reading reading;
+  ethd__ring_reading reading;
   while (ethd__receiver_next(&r->receiver, &at, bytes + count, arrival_ns, &reading)) {
     r->newest.reading = reading;
     r->newest.arrival_ns = arrival_ns;
@@ -170,7 +170,7 @@ static ethd_status listen_first(ring *r, ethd__empty *empty, char *message) {
     int64_t got = ethd__ring_port_read(&r->port, WAIT_MS, bytes, sizeof bytes);
     if (got < 0) return ethd__say(message, ETHD_E_DEVICE, "%s: the line is gone", r->port.path);
     const uint8_t *at = bytes;
-    ethd__frame frame;
+    ethd__ring_frame frame;
     while (ethd__decoder_next(&d, &at, bytes + got, &frame)) ethd__empty_add(empty, &frame);
     all += (uint64_t)got;
   }

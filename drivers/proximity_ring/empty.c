@@ -4,7 +4,7 @@
 
 #include "text/error_text.h"
 
-void ethd__empty_add(ethd__empty *e, const ethd__frame *frame) {
+void ethd__empty_add(ethd__empty *e, const ethd__ring_frame *frame) {
   e->frames++;
   for (int k = 0; k < ETHD_RAYS; k++) {
     uint16_t counts = frame->counts[k];

@@ -18,7 +18,7 @@ typedef struct ethd__empty {
 } ethd__empty;
 
 /* Missing and saturated counts don't count. [any, rt-safe] */
-void ethd__empty_add(ethd__empty *empty, const ethd__frame *frame) ETHD_RT;
+void ethd__empty_add(ethd__empty *empty, const ethd__ring_frame *frame) ETHD_RT;
 
 /* Takes the means for darks of *calibration. Refuses when a sensor counts more above its calibrated dark than what
    an object across the ring, 2 ring_radius away, would send back, or over ETHD__DARK_MOST without one:

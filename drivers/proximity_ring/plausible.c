@@ -28,7 +28,7 @@ static uint32_t bits(uint32_t mask) ETHD_RT {
 
 /* ---- flags ---- */
 
-static uint32_t missing(const ethd__frame *f) ETHD_RT {
+static uint32_t missing(const ethd__ring_frame *f) ETHD_RT {
   uint32_t mask = 0;
   for (int k = 0; k < ETHD_RAYS; k++) mask |= (uint32_t)(f->counts[k] == ETHD__FRAME_MISSING) << k;
   return mask;
@@ -41,7 +41,7 @@ static bool board_missing(uint32_t mask) ETHD_RT {
   return false;
 }
 
-static bool flags_agree(const ethd__frame *f, uint32_t mask) ETHD_RT {
+static bool flags_agree(const ethd__ring_frame *f, uint32_t mask) ETHD_RT {
   if (f->flags & UNUSED_FLAGS) return false;
   if (((f->flags & ETHD__FRAME_SENSOR_MISSING) != 0) != (mask != 0)) return false;
   if ((f->flags & ETHD__FRAME_BOARD_MISSING) && !board_missing(mask)) return false;
@@ -53,7 +53,7 @@ static bool flags_agree(const ethd__frame *f, uint32_t mask) ETHD_RT {
 /* Of what is beyond the ring only that it is. */
 static double seen(const ethd__plausible *p, double d) ETHD_RT { return fmin(d, 2 * p->fit.ring_radius); }
 
-static uint32_t too_fast(const ethd__plausible *p, const ethd__frame *f, const double d[ETHD_RAYS]) ETHD_RT {
+static uint32_t too_fast(const ethd__plausible *p, const ethd__ring_frame *f, const double d[ETHD_RAYS]) ETHD_RT {
   uint32_t passed_us = f->t_us - p->t_us, suspects = 0;
   double most = p->speed * 1e-6 * passed_us + p->slack;
   if (!p->started || passed_us > GONE_US) return 0;
@@ -87,7 +87,7 @@ static uint32_t on_finger(const ethd__plausible *p, const double d[ETHD_RAYS]) E
 /* ---- sensors ---- */
 
 /* met: rays that lie on a finger's circle. */
-static uint32_t symptoms(const ethd__plausible *p, const ethd__calibration *c, const ethd__frame *f,
+static uint32_t symptoms(const ethd__plausible *p, const ethd__calibration *c, const ethd__ring_frame *f,
                          uint32_t met) ETHD_RT {
   uint32_t same = 0, bad = 0;
   for (int k = 0; k < ETHD_RAYS; k++) {
@@ -113,7 +113,7 @@ static void judge_sensors(ethd__plausible *p, uint32_t bad) ETHD_RT {
 
 /* ---- frames ---- */
 
-static void keep(ethd__plausible *p, const ethd__frame *f, const double d[ETHD_RAYS], uint32_t suspects,
+static void keep(ethd__plausible *p, const ethd__ring_frame *f, const double d[ETHD_RAYS], uint32_t suspects,
                  double rays[ETHD_RAYS]) ETHD_RT {
   for (int k = 0; k < ETHD_RAYS; k++) {
     bool left_out = (suspects | p->out) >> k & 1;
@@ -127,13 +127,13 @@ static void keep(ethd__plausible *p, const ethd__frame *f, const double d[ETHD_R
 }
 
 /* Suspect rays among the sensors in use. */
-static uint32_t suspect_rays(const ethd__plausible *p, const ethd__frame *f, const double d[ETHD_RAYS]) ETHD_RT {
+static uint32_t suspect_rays(const ethd__plausible *p, const ethd__ring_frame *f, const double d[ETHD_RAYS]) ETHD_RT {
   uint32_t fast = too_fast(p, f, d);
   if (p->bad_in_a_row >= ETHD__BAD_IN_A_ROW - 1) return off_circle(p, d, p->out) & ~p->out;
   return (fast | off_circle(p, d, p->out | fast)) & ~p->out;
 }
 
-bool ethd__plausible_step(ethd__plausible *p, const ethd__calibration *c, const ethd__frame *f,
+bool ethd__plausible_step(ethd__plausible *p, const ethd__calibration *c, const ethd__ring_frame *f,
                           double rays[ETHD_RAYS]) {
   double d[ETHD_RAYS];
   if (!flags_agree(f, missing(f))) {

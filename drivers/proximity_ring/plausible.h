@@ -39,7 +39,7 @@ ETHD_MUST_CHECK ethd_status ethd__plausible_prepare(double ring_radius, double f
 
 /* The frame's distances into rays; NaN for those left out and sensors out of use. False: a bad frame, rays are
    undefined. */
-bool ethd__plausible_step(ethd__plausible *plausible, const ethd__calibration *calibration, const ethd__frame *frame,
-                          double rays[ETHD_RAYS]) ETHD_RT;
+bool ethd__plausible_step(ethd__plausible *plausible, const ethd__calibration *calibration,
+                          const ethd__ring_frame *frame, double rays[ETHD_RAYS]) ETHD_RT;
 
 #endif

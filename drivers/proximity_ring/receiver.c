@@ -1,6 +1,7 @@
 #include "proximity_ring/receiver.h"
 
-static bool receive(ethd__receiver *r, const ethd__frame *frame, int64_t arrival_ns, ethd__reading *out) ETHD_RT {
+static bool receive(ethd__receiver *r, const ethd__ring_frame *frame, int64_t arrival_ns,
+                    ethd__ring_reading *out) ETHD_RT {
   int64_t t_ns;
   ethd__clock_verdict verdict = ethd__board_clock_step(&r->clock, frame, arrival_ns, &t_ns);
   r->counts.board_clock += verdict == ETHD__CLOCK_DOUBTFUL || verdict == ETHD__CLOCK_JUMPED;
@@ -22,8 +23,8 @@ static void count_corrupt(ethd__receiver *r) ETHD_RT {
 }
 
 bool ethd__receiver_next(ethd__receiver *r, const uint8_t **at, const uint8_t *end, int64_t arrival_ns,
-                         ethd__reading *out) {
-  ethd__frame frame;
+                         ethd__ring_reading *out) {
+  ethd__ring_frame frame;
   while (ethd__decoder_next(&r->decoder, at, end, &frame)) {
     count_corrupt(r);
     if (receive(r, &frame, arrival_ns, out)) return true;

@@ -15,11 +15,11 @@
 #define ETHD__MIDDLE_US (ETHD__FRAME_START_US + ETHD__FRAME_SLOT_US * (ETHD__FRAME_LANES - 1) / 2 + 85)
 #define ETHD__RAY_LAG(k) (1e-6 * ETHD__FRAME_SLOT_US * ((ETHD__FRAME_LANES - 1) / 2.0 - (k) % ETHD__FRAME_LANES))
 
-typedef struct ethd__reading {
+typedef struct ethd__ring_reading {
   int64_t sample_ns; /* CLOCK_MONOTONIC */
   double rays[ETHD_RAYS];
   uint32_t out; /* bits: sensors out of use */
-} ethd__reading;
+} ethd__ring_reading;
 
 typedef struct ethd__receiver_counts {
   uint64_t readings;    /* good ones */
@@ -41,7 +41,7 @@ typedef struct ethd__receiver {
 /* The next reading among the bytes from *at to `end`, of which the last arrived at arrival_ns; *at goes behind
    what was taken. False: no reading, and *at == end. */
 bool ethd__receiver_next(ethd__receiver *receiver, const uint8_t **at, const uint8_t *end, int64_t arrival_ns,
-                         ethd__reading *out) ETHD_RT;
+                         ethd__ring_reading *out) ETHD_RT;
 
 /* The port was opened anew. */
 void ethd__receiver_restart(ethd__receiver *receiver) ETHD_RT;

@@ -18,18 +18,18 @@ typedef struct ethd__config {
 static inline const ethd__config *ethd__config_whole(const ethd_config *config) { return (const ethd__config *)config; }
 
 /* A key that is being applied, for messages. file NULL: a command, not a file. */
-typedef struct ethd__key {
+typedef struct ethd__config_key {
   const char *file;
   int line;
   const char *section, *key, *value;
   char *message;
-} ethd__key;
+} ethd__config_key;
 
 /* "file:line: section.key: ..."; returns `status`. */
-ethd_status ethd__key_refuse(const ethd__key *key, ethd_status status, const char *format, ...)
+ethd_status ethd__key_refuse(const ethd__config_key *key, ethd_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* "... found "value", ALLOWED is allowed" */
-ethd_status ethd__key_found(const ethd__key *key, ethd_status status, const char *allowed);
+ethd_status ethd__key_found(const ethd__config_key *key, ethd_status status, const char *allowed);
 
 /* ---- config_sections.c: one row for each section ---- */
 
@@ -42,7 +42,7 @@ typedef enum ethd__pass { ETHD__PASS_PLUGINS, ETHD__PASS_CHOICES, ETHD__PASS_PRE
 typedef struct ethd__file_key {
   const char *key; /* "*": any, as of [device] */
   ethd__pass pass;
-  ethd_status (*read)(ethd__config *config, const ethd__key *key);
+  ethd_status (*read)(ethd__config *config, const ethd__config_key *key);
 } ethd__file_key;
 
 /* Besides these a section has what ethd_setup_part_of(name) chooses and the numbers that the setup has by its name. */
@@ -55,13 +55,13 @@ typedef struct ethd__section {
 extern const ethd__section ethd__sections[ETHD__SECTIONS];
 
 /* Reads the key if it belongs to this pass. */
-ethd_status ethd__config_read(ethd__config *config, const ethd__key *key, ethd__pass pass);
+ethd_status ethd__config_read(ethd__config *config, const ethd__config_key *key, ethd__pass pass);
 
 /* Whether commands can't set the key. */
 bool ethd__config_in_files_only(const char *section, const char *key);
 
 /* The refusal of a key that its section doesn't have under the laws of the setup. */
-ethd_status ethd__config_unknown(const ethd__key *key, const ethd_setup *setup);
+ethd_status ethd__config_unknown(const ethd__config_key *key, const ethd_setup *setup);
 
 /* Refuses a section that no configuration has: it may stand without any key. */
 ethd_status ethd__config_section_known(const ethd_ini_section *section, const char *file,
@@ -71,7 +71,7 @@ ethd_status ethd__config_section_known(const ethd_ini_section *section, const ch
 
 /* Reads a number, a word or several numbers into the setup. Ranges are checked, relations between keys are left to
    ethd_setup_check. */
-ethd_status ethd__config_number(const ethd__key *key, ethd_setup *setup);
+ethd_status ethd__config_number(const ethd__config_key *key, ethd_setup *setup);
 
 /* Index in ethd_limit_rows, -1: the key is no limit. */
 int ethd__config_limit(const char *section, const char *key);
@@ -79,16 +79,16 @@ int ethd__config_limit(const char *section, const char *key);
 /* ---- the keys of files ---- */
 
 /* law = ..., method = ...: with default parameters. */
-ethd_status ethd__config_choose(const ethd_config *config, const ethd__key *key, ethd_setup *setup);
+ethd_status ethd__config_choose(const ethd_config *config, const ethd__config_key *key, ethd_setup *setup);
 
 /* [scene] file: reads the scene. */
-ethd_status ethd__config_scene(ethd__config *config, const ethd__key *key);
+ethd_status ethd__config_scene(ethd__config *config, const ethd__config_key *key);
 
 /* preset = paper on whatever the transition law has; a no-op for product. */
-ethd_status ethd__config_preset(ethd__config *config, const ethd__key *key);
+ethd_status ethd__config_preset(ethd__config *config, const ethd__config_key *key);
 
 /* [plugins] file: opens, and adds its laws to config->laws. */
-ethd_status ethd__config_plugin(ethd__config *config, const ethd__key *key);
+ethd_status ethd__config_plugin(ethd__config *config, const ethd__config_key *key);
 
 /* ETHD_OK if dlopen may map the file: a complete ELF object for this machine. */
 ethd_status ethd__plugin_file_check(const char *path, char what[ETHD_MESSAGE_MAX]);

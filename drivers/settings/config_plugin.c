@@ -76,7 +76,7 @@ static uint32_t count_laws(const ethd_law *const *laws) {
   return n;
 }
 
-static ethd_status add_laws(ethd_config *config, const ethd_plugin_entry *entry, const ethd__key *key) {
+static ethd_status add_laws(ethd_config *config, const ethd_plugin_entry *entry, const ethd__config_key *key) {
   uint32_t n = count_laws(config->laws);
   const ethd_law **laws = realloc(config->laws, (n + entry->law_count + 1) * sizeof *laws);
   if (!laws) return ethd__key_refuse(key, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
@@ -92,7 +92,7 @@ static ethd_status add_laws(ethd_config *config, const ethd_plugin_entry *entry,
   return ETHD_OK;
 }
 
-static ethd_status add_file(ethd_config *config, char *path, const ethd__key *key) {
+static ethd_status add_file(ethd_config *config, char *path, const ethd__config_key *key) {
   char **plugins = realloc(config->plugins, (config->plugin_count + 1) * sizeof *plugins);
   if (!plugins) {
     free(path);
@@ -103,7 +103,7 @@ static ethd_status add_file(ethd_config *config, char *path, const ethd__key *ke
   return ETHD_OK;
 }
 
-static ethd_status open_plugin(ethd_config *config, const char *path, const ethd__key *key) {
+static ethd_status open_plugin(ethd_config *config, const char *path, const ethd__config_key *key) {
   char what[ETHD_MESSAGE_MAX];
   const ethd_plugin_entry *entry;
   ethd_error error;
@@ -115,7 +115,7 @@ static ethd_status open_plugin(ethd_config *config, const char *path, const ethd
   return ethd__key_refuse(key, status, "%s: %s", key->value, what);
 }
 
-ethd_status ethd__config_plugin(ethd__config *whole, const ethd__key *key) {
+ethd_status ethd__config_plugin(ethd__config *whole, const ethd__config_key *key) {
   if (whole->received)
     return ethd__key_refuse(key, ETHD_E_LOAD, "%s is a program, which a folder brings along; --plugins lets it run",
                             key->value);

@@ -10,7 +10,7 @@
 
 /* ---- keys that stand in files only ---- */
 
-static ethd_status read_mass(const ethd__key *key, double *out) {
+static ethd_status read_mass(const ethd__config_key *key, double *out) {
   double value;
   if (!ethd__number(key->value, strlen(key->value), &value) || !(value > 0 && value <= MASS_MAX))
     return ethd__key_found(key, ETHD_E_RANGE, "a mass over 0 up to 1e6 kg");
@@ -18,17 +18,17 @@ static ethd_status read_mass(const ethd__key *key, double *out) {
   return ETHD_OK;
 }
 
-static ethd_status mass_x(ethd__config *c, const ethd__key *key) { return read_mass(key, &c->config.mass_x); }
-static ethd_status mass_y(ethd__config *c, const ethd__key *key) { return read_mass(key, &c->config.mass_y); }
+static ethd_status mass_x(ethd__config *c, const ethd__config_key *key) { return read_mass(key, &c->config.mass_x); }
+static ethd_status mass_y(ethd__config *c, const ethd__config_key *key) { return read_mass(key, &c->config.mass_y); }
 
-static ethd_status driver(ethd__config *c, const ethd__key *key) {
+static ethd_status driver(ethd__config *c, const ethd__config_key *key) {
   if (strlen(key->value) >= sizeof c->config.device)
     return ethd__key_found(key, ETHD_E_SYNTAX, "at most 95 characters");
   strcpy(c->config.device, key->value);
   return ETHD_OK;
 }
 
-static ethd_status device_setting(ethd__config *c, const ethd__key *key) {
+static ethd_status device_setting(ethd__config *c, const ethd__config_key *key) {
   c->config.settings[c->config.setting_count++] = (ethd_setting){key->key, key->value, key->line};
   return ETHD_OK;
 }
@@ -74,7 +74,7 @@ bool ethd__config_in_files_only(const char *section, const char *key) {
 
 /* ---- any key ---- */
 
-ethd_status ethd__config_read(ethd__config *whole, const ethd__key *key, ethd__pass pass) {
+ethd_status ethd__config_read(ethd__config *whole, const ethd__config_key *key, ethd__pass pass) {
   ethd_config *c = &whole->config;
   const ethd__file_key *file_key = find_file_key(key->section, key->key);
   if (file_key) return file_key->pass == pass ? file_key->read(whole, key) : ETHD_OK;
@@ -109,7 +109,7 @@ ethd_status ethd__config_section_known(const ethd_ini_section *section, const ch
                    unknown_section(what));
 }
 
-ethd_status ethd__config_unknown(const ethd__key *key, const ethd_setup *setup) {
+ethd_status ethd__config_unknown(const ethd__config_key *key, const ethd_setup *setup) {
   const ethd__section *section = find_section(key->section);
   const ethd_setup_part *part = ethd_setup_part_of(key->section);
   char list[ETHD_MESSAGE_MAX] = "";

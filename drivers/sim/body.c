@@ -89,7 +89,7 @@ static pose links(const ethd__body *body, const double *angle) {
 
 static ethd_vec velocity(const pose *p, const double *w) { return ethd_vec_add(turn(w[0], p->a), turn(w[1], p->b)); }
 
-void ethd__body_refer(ethd__body *body, const ethd__state *state) {
+void ethd__body_refer(ethd__body *body, const ethd__sim_state *state) {
   for (int j = 0; j < 2; j++) {
     if (fabs(state->q[ETHD__LINK + j] - body->at[j]) <= NEAR / 2) continue;
     body->at[j] = state->q[ETHD__LINK + j];
@@ -102,20 +102,20 @@ void ethd__body_joints(const ethd__body *body, const double x[ETHD__DOF_MAX], do
   out[1] = body->compliant ? x[ETHD__MOTOR + 1] : x[ETHD__LINK + 1] - (body->serial ? x[ETHD__LINK] : 0);
 }
 
-void ethd__body_place(const ethd__body *body, const double q[2], ethd__state *out) {
+void ethd__body_place(const ethd__body *body, const double q[2], ethd__sim_state *out) {
   double *x = out->q;
   x[ETHD__LINK] = x[ETHD__MOTOR] = q[0];
   x[ETHD__LINK + 1] = body->serial ? q[0] + q[1] : q[1];
   x[ETHD__MOTOR + 1] = q[1];
 }
 
-void ethd__body_ring(const ethd__body *body, const ethd__state *state, ethd_vec *x, ethd_vec *v) {
+void ethd__body_ring(const ethd__body *body, const ethd__sim_state *state, ethd_vec *x, ethd_vec *v) {
   pose p = links(body, state->q);
   *x = ethd_vec_add(p.a, p.b);
   *v = velocity(&p, state->v);
 }
 
-void ethd__body_motor(const ethd__body *body, const ethd__state *state, ethd_vec *x, ethd_vec *v) {
+void ethd__body_motor(const ethd__body *body, const ethd__sim_state *state, ethd_vec *x, ethd_vec *v) {
   double q[2], w[2];
   ethd__body_joints(body, state->q, q);
   ethd__body_joints(body, state->v, w);
@@ -150,7 +150,7 @@ static double damping(const ethd__body *body, const pad *d, const pose *links, c
   return 1 + body->pad_damping * (ethd_vec_dot(d->r, away) / d->distance);
 }
 
-ethd__touch ethd__body_touch(const ethd__body *body, const ethd__state *state) {
+ethd__touch ethd__body_touch(const ethd__body *body, const ethd__sim_state *state) {
   pose l = links(body, state->q);
   pad d = pad_of(body, &l, state->q);
   if (!(d.p > 0)) return ETHD__APART;
@@ -164,7 +164,7 @@ static ethd_vec press(const ethd__body *body, const pose *links, const double *x
   return ethd_vec_scale(force / d.distance, d.r);
 }
 
-void ethd__body_pad(const ethd__body *body, const ethd__state *state, double *p, double *force) {
+void ethd__body_pad(const ethd__body *body, const ethd__sim_state *state, double *p, double *force) {
   pose l = links(body, state->q);
   *p = pad_of(body, &l, state->q).p;
   *force = state->touch == ETHD__PRESSING ? ethd_vec_norm(press(body, &l, state->q, state->v)) : 0;
@@ -202,7 +202,7 @@ static void couple(const ethd__body *b, const pose *links, const double *w, cons
   a[1] = (b->inertia[0] * g1 - hc * g0) / det;
 }
 
-void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, const ethd__motion *hand, const double *q,
+void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, const ethd__sim_motion *hand, const double *q,
                            const double *v, double *out) {
   double g[2];
   drive(b, q, v, g, out);
@@ -227,7 +227,7 @@ void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, const ethd__m
 
 static double square(double x) { return x * x; }
 
-double ethd__body_energy(const ethd__body *b, const ethd__state *s, ethd_vec hand) {
+double ethd__body_energy(const ethd__body *b, const ethd__sim_state *s, ethd_vec hand) {
   const double *q = s->q, *v = s->v;
   pose l = links(b, q);
   double h = b->coupling * ethd_vec_dot(l.a, l.b) / (b->link[0] * b->link[1]);

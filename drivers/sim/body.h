@@ -18,11 +18,11 @@ enum { ETHD__ORDER_MIN = 4, ETHD__ORDER_MAX = 14 };
  */
 typedef enum ethd__touch { ETHD__APART, ETHD__PRESSING, ETHD__LEAVING } ethd__touch;
 
-typedef struct ethd__state {
+typedef struct ethd__sim_state {
   double q[ETHD__DOF_MAX], v[ETHD__DOF_MAX];
   double clearance; /* m: pad and ring are at least so far from touching; 0: nobody knows */
   ethd__touch touch;
-} ethd__state;
+} ethd__sim_state;
 
 /* Numbers of the equations, worked out once. Joint quantities: at the ring times L or L^2. */
 typedef struct ethd__body {
@@ -46,38 +46,38 @@ void ethd__body_prepare(const ethd_sim_def *def, double finger_radius, ethd__bod
 void ethd__body_tolerate(ethd__body *body, double tolerance) ETHD_RT;
 
 /* Joint angles (measured side, if there are two) to coordinates and back. */
-void ethd__body_place(const ethd__body *body, const double q[2], ethd__state *out) ETHD_RT;
+void ethd__body_place(const ethd__body *body, const double q[2], ethd__sim_state *out) ETHD_RT;
 void ethd__body_joints(const ethd__body *body, const double x[ETHD__DOF_MAX], double out[2]) ETHD_RT;
 
 /* Angles stay near these for a while: their sines are worked out by a small turn from here. Does nothing
    while they are near the last ones. */
-void ethd__body_refer(ethd__body *body, const ethd__state *state) ETHD_RT;
+void ethd__body_refer(ethd__body *body, const ethd__sim_state *state) ETHD_RT;
 
 /* Sines and cosines of the links' angles. */
 void ethd__body_waves(const ethd__body *body, ethd__two angle, ethd__two *sine, ethd__two *cosine) ETHD_RT;
 
 /* Ring centre and its velocity; the same as the motor's side has it. */
-void ethd__body_ring(const ethd__body *body, const ethd__state *state, ethd_vec *x, ethd_vec *v) ETHD_RT;
-void ethd__body_motor(const ethd__body *body, const ethd__state *state, ethd_vec *x, ethd_vec *v) ETHD_RT;
+void ethd__body_ring(const ethd__body *body, const ethd__sim_state *state, ethd_vec *x, ethd_vec *v) ETHD_RT;
+void ethd__body_motor(const ethd__body *body, const ethd__sim_state *state, ethd_vec *x, ethd_vec *v) ETHD_RT;
 
 /* Penetration p of the pad and its force under the state's touch. */
-void ethd__body_pad(const ethd__body *body, const ethd__state *state, double *p, double *force) ETHD_RT;
+void ethd__body_pad(const ethd__body *body, const ethd__sim_state *state, double *p, double *force) ETHD_RT;
 
 /* What pad and ring do in this state, whatever state->touch says. */
-ethd__touch ethd__body_touch(const ethd__body *body, const ethd__state *state) ETHD_RT;
+ethd__touch ethd__body_touch(const ethd__body *body, const ethd__sim_state *state) ETHD_RT;
 
 /* Accelerations, for methods that ask for them; series.c has the same equations term by term. An
    undisturbed finger is where the hand wants it: spring and damper act on what a touch changes about the
    path, m (a_f - a) = K (x - x_f) + B (v - v_f) + pad. */
-void ethd__body_accelerate(const ethd__body *body, ethd__touch touch, const ethd__motion *hand, const double *q,
+void ethd__body_accelerate(const ethd__body *body, ethd__touch touch, const ethd__sim_motion *hand, const double *q,
                            const double *v, double *out) ETHD_RT;
 
 /* Kinetic energy plus that of pad, hand and transmission, J, with the path at hand. */
-double ethd__body_energy(const ethd__body *body, const ethd__state *state, ethd_vec hand) ETHD_RT;
+double ethd__body_energy(const ethd__body *body, const ethd__sim_state *state, ethd_vec hand) ETHD_RT;
 
 /* From t to t + h, within which only touch may change, by steps of power series; changes of touch are
    located to 1e-12 s. */
 void ethd__body_advance(const ethd__body *body, const ethd__piece *piece, double t, double h,
-                        ethd__state *state) ETHD_RT;
+                        ethd__sim_state *state) ETHD_RT;
 
 #endif

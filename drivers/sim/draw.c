@@ -7,7 +7,7 @@
 
 void ethd_sim_draw(const ethd_plant *plant, uint64_t seed, uint64_t tap, double speed, ethd_vec meet,
                    ethd_sim_tap *out) {
-  ethd__key key = {seed, tap};
+  ethd__sim_key key = {seed, tap};
   double start = plant->start + plant->start_sd * ethd__normal_cut(key, ETHD__STREAM_START, CUT);
   double spread = plant->overshoot_spread * ethd__normal_cut(key, ETHD__STREAM_OVERSHOOT, CUT);
   double lateral = plant->lateral_sd * ethd__normal_cut(key, ETHD__STREAM_LATERAL, CUT);

@@ -115,9 +115,9 @@ void ethd__path_piece(const ethd_path *path, double t, ethd__piece *out) {
     synthetic_piece(path, t, out);
 }
 
-ethd__motion ethd__piece_at(const ethd__piece *p, double t) {
+ethd__sim_motion ethd__piece_at(const ethd__piece *p, double t) {
   double s = t - p->origin;
-  ethd__motion m;
+  ethd__sim_motion m;
   m.x.x = p->a.x + s * (p->b.x + s * (p->c.x + s * p->d.x));
   m.x.y = p->a.y + s * (p->b.y + s * (p->c.y + s * p->d.y));
   m.v.x = p->b.x + s * (2 * p->c.x + s * (3 * p->d.x));
@@ -133,7 +133,7 @@ ethd__motion ethd__piece_at(const ethd__piece *p, double t) {
   return m;
 }
 
-void ethd__piece_terms(const ethd__piece *p, const ethd__motion *at, ethd__two out[4]) {
+void ethd__piece_terms(const ethd__piece *p, const ethd__sim_motion *at, ethd__two out[4]) {
   double w2 = p->w * p->w;
   out[0] = (ethd__two){at->x.x, at->x.y};
   out[1] = (ethd__two){at->v.x, at->v.y};
@@ -151,7 +151,7 @@ double ethd__piece_travel(const ethd__piece *p, ethd__two v, double h) {
 void ethd_path_at(const ethd_path *path, double t, ethd_vec *x, ethd_vec *v) {
   ethd__piece piece;
   ethd__path_piece(path, t, &piece);
-  ethd__motion m = ethd__piece_at(&piece, t);
+  ethd__sim_motion m = ethd__piece_at(&piece, t);
   *x = m.x;
   *v = m.v;
 }

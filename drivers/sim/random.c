@@ -23,7 +23,7 @@ void ethd__philox(const uint32_t key[2], uint32_t block[4]) {
   block[3] = c3;
 }
 
-static void pair(ethd__key key, uint32_t stream, uint32_t counter, double out[2]) {
+static void pair(ethd__sim_key key, uint32_t stream, uint32_t counter, double out[2]) {
   uint32_t k[2] = {(uint32_t)key.seed, (uint32_t)(key.seed >> 32)};
   uint32_t c[4] = {counter, stream, (uint32_t)key.tap, (uint32_t)(key.tap >> 32)};
   ethd__philox(k, c);
@@ -33,20 +33,20 @@ static void pair(ethd__key key, uint32_t stream, uint32_t counter, double out[2]
   }
 }
 
-double ethd__uniform(ethd__key key, uint32_t stream, uint32_t counter) {
+double ethd__uniform(ethd__sim_key key, uint32_t stream, uint32_t counter) {
   double u[2];
   pair(key, stream, counter, u);
   return u[0];
 }
 
 /* Box and Muller, with 1 - u in (0, 1]. */
-double ethd__normal(ethd__key key, uint32_t stream, uint32_t counter) {
+double ethd__normal(ethd__sim_key key, uint32_t stream, uint32_t counter) {
   double u[2];
   pair(key, stream, counter, u);
   return sqrt(-2 * ethd_log(1 - u[0])) * ethd_cos(TWO_PI * u[1]);
 }
 
-double ethd__normal_cut(ethd__key key, uint32_t stream, double cut) {
+double ethd__normal_cut(ethd__sim_key key, uint32_t stream, double cut) {
   double g;
   uint32_t attempt = 0;
   do g = ethd__normal(key, stream, attempt++);

@@ -9,9 +9,9 @@
 
 #include "ethd/attributes.h"
 
-typedef struct ethd__key {
+typedef struct ethd__sim_key {
   uint64_t seed, tap;
-} ethd__key;
+} ethd__sim_key;
 
 /* What a number is drawn for. */
 enum {
@@ -31,12 +31,12 @@ enum {
 void ethd__philox(const uint32_t key[2], uint32_t block[4]) ETHD_RT;
 
 /* In [0, 1), multiples of 2^-53. */
-double ethd__uniform(ethd__key key, uint32_t stream, uint32_t counter) ETHD_RT;
+double ethd__uniform(ethd__sim_key key, uint32_t stream, uint32_t counter) ETHD_RT;
 
 /* Mean 0, sd 1. */
-double ethd__normal(ethd__key key, uint32_t stream, uint32_t counter) ETHD_RT;
+double ethd__normal(ethd__sim_key key, uint32_t stream, uint32_t counter) ETHD_RT;
 
 /* The same, drawn anew until it is within +-cut (cut > 0). */
-double ethd__normal_cut(ethd__key key, uint32_t stream, double cut) ETHD_RT;
+double ethd__normal_cut(ethd__sim_key key, uint32_t stream, double cut) ETHD_RT;
 
 #endif

@@ -9,29 +9,29 @@
 #define ETHD__READINGS_MAX 64
 
 /* A reading on its way. */
-typedef struct ethd__reading {
+typedef struct ethd__sim_reading {
   int64_t sample_ns, due_ns;
   ethd_vec centre, ring;
   double rays[16];
-} ethd__reading;
+} ethd__sim_reading;
 
 /* A reading is made of parts, each at its instant: one for a centre; for a frame its rays in order, and in
    the middle the instant that stands for the whole. */
 typedef struct ethd__sensors {
   ethd_plant plant;
   double ring_radius, finger_radius, phase;
-  ethd__key key;
+  ethd__sim_key key;
   double count_phase[2]; /* counts */
   uint32_t sample, part; /* what comes next, */
   double next;           /* s: and when */
   uint64_t taken;        /* readings complete */
-  ethd__reading readings[ETHD__READINGS_MAX];
+  ethd__sim_reading readings[ETHD__READINGS_MAX];
 } ethd__sensors;
 
 void ethd__sensors_start(ethd__sensors *sensors, const ethd_sim_def *def, const ethd_sim_tap *tap) ETHD_RT;
 
 /* Takes the next part: the state at its instant. */
-void ethd__sensors_take(ethd__sensors *sensors, const ethd__body *body, const ethd__state *state) ETHD_RT;
+void ethd__sensors_take(ethd__sensors *sensors, const ethd__body *body, const ethd__sim_state *state) ETHD_RT;
 
 /* Into the sense: joint angles, from the coordinates; the newest reading that is due at its time_ns and
    wasn't at since_ns. */

@@ -62,7 +62,7 @@ ETHD__INLINE void measure(work *w, int k) {
   w->out->leaving[k - 1] = k == 1 ? e + ethd__both(1) : e;
 }
 
-static void geometry_begins(work *w, const ethd__piece *piece, const ethd__motion *hand) {
+static void geometry_begins(work *w, const ethd__piece *piece, const ethd__sim_motion *hand) {
   ethd__body_waves(w->body, w->out->link[0], w->sine, w->cosine);
   ethd__piece_terms(piece, hand, w->out->hand);
   relate(w, 0);
@@ -244,7 +244,7 @@ static void watch_touching(work *w, ethd__touch touch) {
 }
 
 /* Far from each other, and how far is only asked when they may have come near. */
-static void keep_clear(work *w, const ethd__piece *piece, const ethd__motion *hand, double clearance, double most) {
+static void keep_clear(work *w, const ethd__piece *piece, const ethd__sim_motion *hand, double clearance, double most) {
   ethd__series *s = w->out;
   double travel = s->step * most + ethd__piece_travel(piece, (two){hand->v.x, hand->v.y}, s->step);
   s->watched = 0;
@@ -257,7 +257,7 @@ static void keep_clear(work *w, const ethd__piece *piece, const ethd__motion *ha
   watch_apart(w);
 }
 
-static void begin(const ethd__motion *hand, const ethd__state *state, ethd__series *s) {
+static void begin(const ethd__sim_motion *hand, const ethd__sim_state *state, ethd__series *s) {
   s->link[0] = ethd__pair(state->q + ETHD__LINK);
   s->link_v[0] = ethd__pair(state->v + ETHD__LINK);
   s->aside[0] = ethd__pair(state->q + ETHD__FINGER) - (two){hand->x.x, hand->x.y};
@@ -266,8 +266,8 @@ static void begin(const ethd__motion *hand, const ethd__state *state, ethd__seri
   s->motor_v[0] = ethd__pair(state->v + ETHD__MOTOR);
 }
 
-void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, const ethd__motion *hand, double step,
-                         const ethd__state *state, ethd__series *out) {
+void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
+                         const ethd__sim_state *state, ethd__series *out) {
   kind has = {b->serial, b->compliant, b->coupling != 0, state->touch};
   work w;
   w.body = b;

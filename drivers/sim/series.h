@@ -22,19 +22,19 @@ typedef struct ethd__series {
 
 /* The motion from this state on, for `step` or as much of it as the tolerance allows. `hand`: the path's at
    that instant. */
-void ethd__series_expand(const ethd__body *body, const ethd__piece *piece, const ethd__motion *hand, double step,
-                         const ethd__state *state, ethd__series *out) ETHD_RT;
+void ethd__series_expand(const ethd__body *body, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
+                         const ethd__sim_state *state, ethd__series *out) ETHD_RT;
 
 /* One step: the motion from `begin` to `end` and what it leads to. */
 typedef struct ethd__leg {
   double begin, end;
-  ethd__motion hand; /* the path at `end` */
-  ethd__state from, to;
+  ethd__sim_motion hand; /* the path at `end` */
+  ethd__sim_state from, to;
   ethd__series series;
 } ethd__leg;
 
 /* A leg of no length, to start from. */
-void ethd__leg_begin(const ethd__piece *piece, double t, const ethd__state *state, ethd__leg *out) ETHD_RT;
+void ethd__leg_begin(const ethd__piece *piece, double t, const ethd__sim_state *state, ethd__leg *out) ETHD_RT;
 
 /* The next one, up to `end` at most: up to where touch changes or the tolerance ends. `cell`: the length of
    all steps that nothing cuts. */
@@ -43,6 +43,6 @@ void ethd__leg_next(const ethd__body *body, const ethd__piece *piece, double end
 /* Within it: the angles of links and motors among the coordinates; the whole state. */
 void ethd__leg_angles(const ethd__body *body, const ethd__leg *leg, double t, double out[ETHD__DOF_MAX]) ETHD_RT;
 void ethd__leg_at(const ethd__body *body, const ethd__piece *piece, const ethd__leg *leg, double t,
-                  ethd__state *out) ETHD_RT;
+                  ethd__sim_state *out) ETHD_RT;
 
 #endif

@@ -59,8 +59,8 @@ static ethd_status check_tap(const ethd_sim *sim, const ethd_sim_tap *tap) {
 
 static double tick_time(const ethd_sim *sim, int64_t tick) { return (double)tick * sim->def.period; }
 
-static ethd__state state_at(const ethd_sim *sim, double t) {
-  ethd__state state;
+static ethd__sim_state state_at(const ethd_sim *sim, double t) {
+  ethd__sim_state state;
   ethd__leg_at(&sim->body, &sim->piece, &sim->leg, t, &state);
   return state;
 }
@@ -68,7 +68,7 @@ static ethd__state state_at(const ethd_sim *sim, double t) {
 /* Samples up to t, which the present step holds. */
 static void take_due(ethd_sim *sim, double t) {
   while (sim->sensors.next <= t) {
-    ethd__state state = state_at(sim, sim->sensors.next);
+    ethd__sim_state state = state_at(sim, sim->sensors.next);
     ethd__sensors_take(&sim->sensors, &sim->body, &state);
   }
 }
@@ -85,7 +85,7 @@ ethd_status ethd_sim_start(ethd_sim *sim, const ethd_sim_tap *tap) {
   sim->tick = 0;
   sim->t = 0;
   sim->cell = sim->def.period / fmax(1, ceil(sim->def.period / sim->def.step - 1e-9));
-  ethd__state state;
+  ethd__sim_state state;
   memset(&state, 0, sizeof state);
   ethd__body_prepare(&sim->def, tap->finger_radius, &sim->body);
   ethd__body_place(&sim->body, q, &state);
@@ -122,7 +122,7 @@ void ethd_sim_read(ethd_sim *sim, ethd_sense *out) {
 
 void ethd_sim_truth(const ethd_sim *sim, ethd_truth *out) {
   ethd_vec x, v, motor, motor_v, hand, hand_v;
-  ethd__state now = state_at(sim, sim->t);
+  ethd__sim_state now = state_at(sim, sim->t);
   ethd__body_ring(&sim->body, &now, &x, &v);
   ethd__body_motor(&sim->body, &now, &motor, &motor_v);
   ethd_path_at(&sim->path, sim->t, &hand, &hand_v);

@@ -102,7 +102,8 @@ static void evaluate(const two *x, const two *v, const two *y, const two *w, int
   out[3] = d;
 }
 
-static void move(const ethd__body *b, const ethd__series *s, const ethd__motion *hand, double h, ethd__state *state) {
+static void move(const ethd__body *b, const ethd__series *s, const ethd__sim_motion *hand, double h,
+                 ethd__sim_state *state) {
   two out[4];
   evaluate(s->link, s->link_v, s->aside, s->aside_v, s->order, h, out);
   put(out[0], state->q + ETHD__LINK);
@@ -115,7 +116,7 @@ static void move(const ethd__body *b, const ethd__series *s, const ethd__motion 
 }
 
 /* Friction far from its turn is constant to the last digit, and a series can't see the turn ahead. */
-static int turns(const ethd__body *b, double most, const ethd__state *from, const ethd__state *to) {
+static int turns(const ethd__body *b, double most, const ethd__sim_state *from, const ethd__sim_state *to) {
   double before[2], after[2];
   ethd__body_joints(b, from->v, before);
   ethd__body_joints(b, to->v, after);
@@ -126,7 +127,7 @@ static int turns(const ethd__body *b, double most, const ethd__state *from, cons
   return 0;
 }
 
-void ethd__leg_begin(const ethd__piece *piece, double t, const ethd__state *state, ethd__leg *out) {
+void ethd__leg_begin(const ethd__piece *piece, double t, const ethd__sim_state *state, ethd__leg *out) {
   out->begin = out->end = t;
   out->from = out->to = *state;
   out->hand = ethd__piece_at(piece, t);
@@ -160,14 +161,14 @@ void ethd__leg_angles(const ethd__body *b, const ethd__leg *leg, double t, doubl
   if (b->compliant) put(at(s->motor, s->order + 1, t - leg->begin), out + ETHD__MOTOR);
 }
 
-void ethd__leg_at(const ethd__body *b, const ethd__piece *piece, const ethd__leg *leg, double t, ethd__state *out) {
+void ethd__leg_at(const ethd__body *b, const ethd__piece *piece, const ethd__leg *leg, double t, ethd__sim_state *out) {
   *out = t < leg->end ? leg->from : leg->to;
   if (t <= leg->begin || t >= leg->end) return;
-  ethd__motion hand = ethd__piece_at(piece, t);
+  ethd__sim_motion hand = ethd__piece_at(piece, t);
   move(b, &leg->series, &hand, t - leg->begin, out);
 }
 
-void ethd__body_advance(const ethd__body *b, const ethd__piece *piece, double t, double h, ethd__state *state) {
+void ethd__body_advance(const ethd__body *b, const ethd__piece *piece, double t, double h, ethd__sim_state *state) {
   ethd__leg leg;
   ethd__leg_begin(piece, t, state, &leg);
   while (leg.end < t + h) ethd__leg_next(b, piece, t + h, h, &leg);

@@ -20,7 +20,8 @@ static pthread_t thread;
 static char folder[64];
 
 static void send_frame(const double *rays, uint32_t t_us) {
-  ethd__frame f = {.type = ETHD__FRAME_TYPE, .seq = (uint16_t)seq, .t_us = t_us, .flags = seq ? 0 : ETHD__FRAME_FIRST};
+  ethd__ring_frame f = {
+      .type = ETHD__FRAME_TYPE, .seq = (uint16_t)seq, .t_us = t_us, .flags = seq ? 0 : ETHD__FRAME_FIRST};
   uint8_t wire[ETHD__FRAME_WIRE];
   for (int k = 0; k < ETHD_RAYS; k++) {
     f.counts[k] = (uint16_t)rod_counts(&truth, k, rays ? rays[k] : (double)NAN, 5, (uint64_t)seq * 16 + (uint64_t)k);

@@ -27,14 +27,14 @@ typedef struct result {
   ethd__decoder_counters counters;
 } result;
 
-static void add(result *r, const ethd__frame *f) {
+static void add(result *r, const ethd__ring_frame *f) {
   uint64_t part = f->seq + ((uint64_t)f->t_us << 16) + ((uint64_t)f->lost << 48);
   for (int k = 0; k < ETHD__FRAME_SENSORS; k++) part = part * 31 + f->counts[k];
   r->sum = (r->sum ^ part) * 0x9e3779b97f4a7c15u;
   r->frames++;
 }
 
-static int encodes_back(const ethd__frame *frame, const uint8_t *end) {
+static int encodes_back(const ethd__ring_frame *frame, const uint8_t *end) {
   uint8_t wire[ETHD__FRAME_WIRE];
   ethd__frame_encode(frame, wire);
   return memcmp(wire, end - ETHD__FRAME_WIRE, sizeof wire) == 0;
@@ -43,7 +43,7 @@ static int encodes_back(const ethd__frame *frame, const uint8_t *end) {
 static int run(const uint8_t *bytes, size_t size, size_t piece) {
   ethd__decoder whole = {0}, parts = {0};
   result a = {0}, b = {0};
-  ethd__frame f;
+  ethd__ring_frame f;
   const uint8_t *at = bytes;
   while (ethd__decoder_next(&whole, &at, bytes + size, &f)) {
     if (at < bytes + ETHD__FRAME_WIRE) return fail("a frame from too few bytes", bytes, size);
@@ -118,7 +118,7 @@ static size_t mutated(uint64_t i, uint8_t *out) {
   memcpy(out, seeds[seed].bytes, n);
   for (uint64_t k = 0; k < 1 + (r >> 32) % 5; k++) n = change(out, n, draw_bits(i * 8 + k + 1));
   if ((r >> 40 & 3) == 0) {
-    ethd__frame frame = ring_frame((uint32_t)i);
+    ethd__ring_frame frame = ring_frame((uint32_t)i);
     size_t at = (r >> 48 & 1) && n > ETHD__FRAME_WIRE ? n - ETHD__FRAME_WIRE : n;
     ethd__frame_encode(&frame, out + at);
     n = at + ETHD__FRAME_WIRE;

@@ -7,8 +7,8 @@
 #include "draw.h"
 #include "proximity_ring/decoder.h"
 
-static inline ethd__frame ring_frame(uint32_t i) {
-  ethd__frame f = {.type = ETHD__FRAME_TYPE, .seq = (uint16_t)i};
+static inline ethd__ring_frame ring_frame(uint32_t i) {
+  ethd__ring_frame f = {.type = ETHD__FRAME_TYPE, .seq = (uint16_t)i};
   f.t_us = (uint32_t)((uint64_t)i * 1000000 / ETHD__FRAME_RATE);
   for (uint32_t k = 0; k < ETHD__FRAME_SENSORS; k++)
     f.counts[k] = (uint16_t)(draw_bits((uint64_t)i * ETHD__FRAME_SENSORS + k) % 65536);
@@ -18,12 +18,12 @@ static inline ethd__frame ring_frame(uint32_t i) {
 /* Frames first .. first + count - 1, one behind the other. */
 static inline void ring_wire(uint32_t first, uint32_t count, uint8_t *out) {
   for (uint32_t i = 0; i < count; i++) {
-    ethd__frame f = ring_frame(first + i);
+    ethd__ring_frame f = ring_frame(first + i);
     ethd__frame_encode(&f, out + (size_t)ETHD__FRAME_WIRE * i);
   }
 }
 
-static inline int ring_same(const ethd__frame *a, const ethd__frame *b) {
+static inline int ring_same(const ethd__ring_frame *a, const ethd__ring_frame *b) {
   return a->type == b->type && a->flags == b->flags && a->seq == b->seq && a->t_us == b->t_us &&
          memcmp(a->counts, b->counts, sizeof a->counts) == 0;
 }

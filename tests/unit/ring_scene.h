@@ -23,8 +23,8 @@ static inline ethd_vec scene_finger(double t) {
 static inline double scene_time(uint32_t i) { return (double)i / ETHD__FRAME_RATE; }
 
 /* Where the finger is at the middle of frame i, and the frame, skew left out. */
-static inline ethd__frame scene_frame(const ring_scene *s, uint32_t i) {
-  ethd__frame f = {.type = ETHD__FRAME_TYPE, .seq = (uint16_t)i, .flags = i ? 0 : ETHD__FRAME_FIRST};
+static inline ethd__ring_frame scene_frame(const ring_scene *s, uint32_t i) {
+  ethd__ring_frame f = {.type = ETHD__FRAME_TYPE, .seq = (uint16_t)i, .flags = i ? 0 : ETHD__FRAME_FIRST};
   double d[ETHD_RAYS];
   ethd_fit_rays(ROD_RING, ROD_RADIUS, scene_finger(scene_time(i)), d);
   f.t_us = (uint32_t)((uint64_t)i * 1000000 / ETHD__FRAME_RATE);
@@ -47,7 +47,8 @@ static inline ring_scene scene_open(uint64_t seed, ethd__receiver *r) {
 }
 
 /* The frame through the receiver; false: no reading. */
-static inline bool scene_feed(ethd__receiver *r, const ethd__frame *frame, int64_t arrival_ns, ethd__reading *out) {
+static inline bool scene_feed(ethd__receiver *r, const ethd__ring_frame *frame, int64_t arrival_ns,
+                              ethd__ring_reading *out) {
   uint8_t wire[ETHD__FRAME_WIRE];
   const uint8_t *at = wire;
   ethd__frame_encode(frame, wire);
@@ -55,7 +56,7 @@ static inline bool scene_feed(ethd__receiver *r, const ethd__frame *frame, int64
 }
 
 /* How far the reading's centre is from the finger, m. */
-static inline double scene_error(const ethd__reading *reading, uint32_t i) {
+static inline double scene_error(const ethd__ring_reading *reading, uint32_t i) {
   static const double p[ETHD_PARAMS_MAX];
   ethd_fit fit;
   ethd_finger finger;

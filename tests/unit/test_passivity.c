@@ -35,10 +35,10 @@ static void poll(ethd_control *control, run *out) {
 /* 3 s pressed with 4 N against a wall of stiffness K, damping B on the way in. */
 static run press(double K, double B, int delay, double energy) {
   enum { TICKS = 3000 };
-  static ethd__rig ring;
+  static ethd__stress_rig ring;
   run out = {.most_force = -INFINITY};
   double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
-  ethd__rig_open(&ring, MASS, -0.001);
+  ethd__stress_rig_open(&ring, MASS, -0.001);
   ring.delay = delay;
   ring.measured = 1;
   ring.push = (ethd_vec){-4, 0};
@@ -48,26 +48,26 @@ static run press(double K, double B, int delay, double energy) {
   const ethd_law *law = &ethd_contact_kelvin_voigt.law;
   ring.setup.contact_p[ethd_params_find(law->params, law->param_count, "k_e")] = K;
   ring.setup.contact_p[ethd_params_find(law->params, law->param_count, "b_e")] = B;
-  ethd__rig_start(&ring, 0);
+  ethd__stress_rig_start(&ring, 0);
   for (int i = 0; i < TICKS; i++) {
-    const ethd_trace *t = ethd__rig_tick(&ring);
+    const ethd_trace *t = ethd__stress_rig_tick(&ring);
     if (t->fault) {
       out.fault = (ethd_fault)t->fault;
       break;
     }
-    if (i < 250) out.early = swing(&lo[0], &hi[0], ethd__rig_depth(&ring));
-    if (i >= TICKS - 250) out.late = swing(&lo[1], &hi[1], ethd__rig_depth(&ring));
+    if (i < 250) out.early = swing(&lo[0], &hi[0], ethd__stress_rig_depth(&ring));
+    if (i >= TICKS - 250) out.late = swing(&lo[1], &hi[1], ethd__stress_rig_depth(&ring));
     out.most_force = fmax(out.most_force, -t->fe[0]); /* n = (-1, 0) */
   }
   poll(ring.control, &out);
-  ethd__rig_close(&ring);
+  ethd__stress_rig_close(&ring);
   return out;
 }
 
 static bool is_stable(double K, double B, int delay) {
-  ethd_loop loop = {.mass = MASS, .period = 1e-3, .stiffness = K, .damping = B, .delay = delay, .link = 0.25};
+  ethd__sampled_loop loop = {.mass = MASS, .period = 1e-3, .stiffness = K, .damping = B, .delay = delay, .link = 0.25};
   loop.method = ETHD_VELOCITY_DIFFERENCE;
-  return ethd__loop_stable(&loop);
+  return ethd__sampled_stable(&loop);
 }
 
 /* A spring is over the bound at any stiffness: it swings up without, and comes to rest with. */

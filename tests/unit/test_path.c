@@ -115,7 +115,7 @@ START_TEST(test_through_samples) {
     ethd__path_piece(&path, i ? s[i - 1].t : 0, &before);
     ethd__path_piece(&path, s[i].t, &after);
     ck_assert(before.end == s[i].t && after.begin == s[i].t);
-    ethd__motion left = ethd__piece_at(&before, s[i].t), right = ethd__piece_at(&after, s[i].t);
+    ethd__sim_motion left = ethd__piece_at(&before, s[i].t), right = ethd__piece_at(&after, s[i].t);
     ck_assert(right.x.x == s[i].x && right.x.y == s[i].y);
     ck_assert_double_eq_tol(left.x.x, s[i].x, 1e-15);
     ck_assert_double_eq_tol(left.x.y, s[i].y, 1e-15);
@@ -152,7 +152,8 @@ static void derivatives_agree(const ethd_path *path, double from, double to) {
     ethd__piece piece;
     ethd__path_piece(path, t, &piece);
     ck_assert(piece.begin <= t && t < piece.end);
-    ethd__motion a = ethd__piece_at(&piece, t - h), m = ethd__piece_at(&piece, t), b = ethd__piece_at(&piece, t + h);
+    ethd__sim_motion a = ethd__piece_at(&piece, t - h), m = ethd__piece_at(&piece, t),
+                     b = ethd__piece_at(&piece, t + h);
     ck_assert_double_eq_tol(m.v.x, (b.x.x - a.x.x) / (2 * h), 1e-4);
     ck_assert_double_eq_tol(m.v.y, (b.x.y - a.x.y) / (2 * h), 1e-4);
     ck_assert_double_eq_tol(m.a.x, (b.v.x - a.v.x) / (2 * h), 1e-3 + 1e-6 * fabs(m.a.x));

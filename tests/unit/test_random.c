@@ -30,7 +30,7 @@ END_TEST
 
 /* Chi square of 32 equal bins: 31 +- 7.9. */
 START_TEST(test_uniform) {
-  ethd__key key = {1, 2};
+  ethd__sim_key key = {1, 2};
   int bins[32] = {0};
   double sum = 0, chi = 0;
   for (uint32_t i = 0; i < MANY; i++) {
@@ -48,7 +48,7 @@ END_TEST
 
 /* Mean, variance, skewness, kurtosis, share within one and two sd; neighbours are independent. */
 START_TEST(test_normal) {
-  ethd__key key = {7, 0};
+  ethd__sim_key key = {7, 0};
   double m[5] = {0}, last = 0, product = 0;
   int within[3] = {0};
   for (uint32_t i = 0; i < MANY; i++) {
@@ -76,7 +76,7 @@ static void cut_is_right(double cut) {
   double square = 0, sum = 0;
   int edge = 0;
   for (uint64_t tap = 0; tap < MANY; tap++) {
-    double g = ethd__normal_cut((ethd__key){5, tap}, 4, cut);
+    double g = ethd__normal_cut((ethd__sim_key){5, tap}, 4, cut);
     ck_assert(fabs(g) <= cut);
     edge += fabs(g) > 0.99 * cut;
     sum += g / MANY;
@@ -99,18 +99,18 @@ END_TEST
 
 /* Every bit of the key counts, and the same key gives the same number. */
 START_TEST(test_key) {
-  const ethd__key key = {0x0123456789abcdef, 42};
+  const ethd__sim_key key = {0x0123456789abcdef, 42};
   double one = ethd__uniform(key, 5, 6);
   ck_assert(one == ethd__uniform(key, 5, 6));
   for (int bit = 0; bit < 64; bit++) {
     uint64_t flip = (uint64_t)1 << bit;
-    ck_assert(one != ethd__uniform((ethd__key){key.seed ^ flip, key.tap}, 5, 6));
-    ck_assert(one != ethd__uniform((ethd__key){key.seed, key.tap ^ flip}, 5, 6));
+    ck_assert(one != ethd__uniform((ethd__sim_key){key.seed ^ flip, key.tap}, 5, 6));
+    ck_assert(one != ethd__uniform((ethd__sim_key){key.seed, key.tap ^ flip}, 5, 6));
     if (bit >= 32) continue;
     ck_assert(one != ethd__uniform(key, 5 ^ (uint32_t)flip, 6));
     ck_assert(one != ethd__uniform(key, 5, 6 ^ (uint32_t)flip));
   }
-  ck_assert(ethd__uniform((ethd__key){1, 2}, 0, 0) != ethd__uniform((ethd__key){2, 1}, 0, 0));
+  ck_assert(ethd__uniform((ethd__sim_key){1, 2}, 0, 0) != ethd__uniform((ethd__sim_key){2, 1}, 0, 0));
 }
 END_TEST
 

@@ -20,8 +20,8 @@ typedef struct board {
 
 static double taken(const board *b, uint32_t i) { return (double)i / ETHD__FRAME_RATE * (1 + b->drift); }
 
-static ethd__frame frame_of(const board *b, uint32_t i) {
-  ethd__frame f = {.type = ETHD__FRAME_TYPE, .seq = (uint16_t)i, .flags = i ? 0 : ETHD__FRAME_FIRST};
+static ethd__ring_frame frame_of(const board *b, uint32_t i) {
+  ethd__ring_frame f = {.type = ETHD__FRAME_TYPE, .seq = (uint16_t)i, .flags = i ? 0 : ETHD__FRAME_FIRST};
   f.t_us = b->first_us + (uint32_t)((uint64_t)i * 1000000 / ETHD__FRAME_RATE);
   return f;
 }
@@ -42,7 +42,7 @@ static double error_of(const board *b, uint32_t i, int64_t t_ns) {
 static double run(ethd__board_clock *c, const board *b, uint32_t from, uint32_t to) {
   double worst = 0;
   for (uint32_t i = from; i < to; i++) {
-    ethd__frame f = frame_of(b, i);
+    ethd__ring_frame f = frame_of(b, i);
     int64_t t_ns;
     ck_assert_int_eq(ethd__board_clock_step(c, &f, arrival(b, i), &t_ns), ETHD__CLOCK_GOOD);
     worst = fmax(worst, fabs(error_of(b, i, t_ns)));
@@ -98,7 +98,7 @@ START_TEST(test_bursts) {
   ethd__board_clock c = {.delay = DELAY};
   double worst = 0;
   for (uint32_t i = 0; i < 60 * SECOND; i++) {
-    ethd__frame f = frame_of(&b, i);
+    ethd__ring_frame f = frame_of(&b, i);
     int64_t at = arrival(&b, i), in_round = (at - b.start_ns) % 5000000000, t_ns;
     if (in_round > 4700000000) at += 5000000000 - in_round;
     ck_assert_int_eq(ethd__board_clock_step(&c, &f, at, &t_ns), ETHD__CLOCK_GOOD);
@@ -129,7 +129,7 @@ START_TEST(test_late) {
       uint32_t periods = late ? 1 + i / 100 % 9 : 0;
       i += periods;
       behind = (uint16_t)(behind + periods);
-      ethd__frame f = frame_of(&b, i);
+      ethd__ring_frame f = frame_of(&b, i);
       f.seq = (uint16_t)(f.seq - behind);
       if (late && lost) continue;
       if (late) f.flags |= ETHD__FRAME_LATE;
@@ -150,7 +150,7 @@ START_TEST(test_reset) {
       int64_t t_ns;
       run(&c, &b, 0, when);
       after.start_ns += 40000000000 + when;
-      ethd__frame f = frame_of(&after, lost);
+      ethd__ring_frame f = frame_of(&after, lost);
       ethd__clock_verdict verdict = ethd__board_clock_step(&c, &f, arrival(&after, lost), &t_ns);
       ck_assert_int_eq(verdict, lost ? ETHD__CLOCK_DOUBTFUL : ETHD__CLOCK_JUMPED);
       f = frame_of(&after, lost + 1);
@@ -171,7 +171,7 @@ START_TEST(test_corrupt_times) {
     ethd__board_clock c = {.delay = DELAY};
     int64_t t_ns;
     run(&c, &b, 0, 9 * SECOND);
-    ethd__frame f = frame_of(&b, 9 * SECOND);
+    ethd__ring_frame f = frame_of(&b, 9 * SECOND);
     if (kind & 1)
       f.t_us ^= 1u << (7 + kind / 2 % 25);
     else
@@ -193,7 +193,7 @@ START_TEST(test_jump_ahead) {
   int64_t t_ns;
   run(&c, &b, 0, 9 * SECOND);
   ahead.start_ns -= 2000000000; /* 2 s */
-  ethd__frame f = frame_of(&ahead, 11 * SECOND);
+  ethd__ring_frame f = frame_of(&ahead, 11 * SECOND);
   ck_assert_int_eq(ethd__board_clock_step(&c, &f, arrival(&ahead, 11 * SECOND), &t_ns), ETHD__CLOCK_DOUBTFUL);
   f = frame_of(&ahead, 11 * SECOND + 1);
   ck_assert_int_eq(ethd__board_clock_step(&c, &f, arrival(&ahead, 11 * SECOND + 1), &t_ns), ETHD__CLOCK_JUMPED);

@@ -13,9 +13,9 @@ static uint32_t decode(ethd__decoder *d, const uint8_t *bytes, size_t size, size
   uint32_t frames = 0;
   for (size_t from = 0; from < size; from += piece) {
     const uint8_t *at = bytes + from, *end = at + (size - from < piece ? size - from : piece);
-    ethd__frame frame;
+    ethd__ring_frame frame;
     while (ethd__decoder_next(d, &at, end, &frame)) {
-      ethd__frame sent = ring_frame(frame.seq);
+      ethd__ring_frame sent = ring_frame(frame.seq);
       ck_assert(ring_same(&frame, &sent));
       frames++;
     }
@@ -50,7 +50,7 @@ END_TEST
 /* Frames that are all zeros or hold none, and every number of zeros between. */
 START_TEST(test_zeros) {
   for (uint32_t mask = 0; mask < 65536; mask += 13) {
-    ethd__frame frame = {.type = ETHD__FRAME_TYPE, .seq = (uint16_t)mask}, got;
+    ethd__ring_frame frame = {.type = ETHD__FRAME_TYPE, .seq = (uint16_t)mask}, got;
     for (int k = 0; k < ETHD__FRAME_SENSORS; k++) frame.counts[k] = mask >> k & 1 ? 0xa5a5 : 0;
     ethd__frame_encode(&frame, wire);
     ck_assert_ptr_eq(memchr(wire, 0, sizeof wire), wire + ETHD__FRAME_WIRE - 1);
@@ -108,8 +108,8 @@ START_TEST(test_flood) {
 }
 END_TEST
 
-static ethd__frame through(ethd__decoder *d, uint16_t seq, uint8_t flags) {
-  ethd__frame frame = ring_frame(seq), got = {0};
+static ethd__ring_frame through(ethd__decoder *d, uint16_t seq, uint8_t flags) {
+  ethd__ring_frame frame = ring_frame(seq), got = {0};
   frame.flags = flags;
   ethd__frame_encode(&frame, wire);
   const uint8_t *at = wire;
@@ -134,7 +134,7 @@ END_TEST
 
 /* A frame of another type is none of ours, be its CRC right. */
 START_TEST(test_type) {
-  ethd__frame frame = ring_frame(1), got;
+  ethd__ring_frame frame = ring_frame(1), got;
   ethd__decoder d = {.in_step = true};
   frame.type = 2;
   ethd__frame_encode(&frame, wire);

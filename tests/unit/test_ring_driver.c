@@ -43,7 +43,7 @@ typedef struct board {
 } board;
 
 /* The kernel hands a pty's bytes over in its own time: a tick waits for them. */
-static void send_frame(const board *b, const ethd__frame *frame) {
+static void send_frame(const board *b, const ethd__ring_frame *frame) {
   struct timespec pause = {.tv_nsec = 20000};
   uint8_t wire[ETHD__FRAME_WIRE];
   int before = 0, now = 0;
@@ -56,8 +56,8 @@ static void send_frame(const board *b, const ethd__frame *frame) {
   }
 }
 
-static ethd__frame empty_frame(const ring_scene *s, uint32_t i) {
-  ethd__frame f = scene_frame(s, i);
+static ethd__ring_frame empty_frame(const ring_scene *s, uint32_t i) {
+  ethd__ring_frame f = scene_frame(s, i);
   for (int k = 0; k < ETHD_RAYS; k++)
     f.counts[k] = (uint16_t)rod_counts(&s->truth, k, (double)NAN, 5, i * 16ull + (uint64_t)k);
   return f;
@@ -69,7 +69,7 @@ static void *send_frames(void *board_) {
   struct timespec pause = {.tv_nsec = 1500000};
   for (uint32_t i = 0; !atomic_load(&b->stop); i++, nanosleep(&pause, NULL)) {
     uint8_t wire[ETHD__FRAME_WIRE];
-    ethd__frame f = b->finger ? scene_frame(&b->scene, i) : empty_frame(&b->scene, i);
+    ethd__ring_frame f = b->finger ? scene_frame(&b->scene, i) : empty_frame(&b->scene, i);
     ethd__frame_encode(&f, wire);
     (void)!write(b->master, wire, sizeof wire); /* when nobody reads they are gone, as a UART's */
   }
@@ -208,13 +208,13 @@ static void begin(run *r) {
 }
 
 /* What may become of frame i; false: it is lost. */
-typedef bool (*mangle)(ethd__frame *frame, uint32_t i);
+typedef bool (*mangle)(ethd__ring_frame *frame, uint32_t i);
 
 /* A tick: the frames that are due are sent, or not; then service and read. */
 static ethd_status tick(run *r, mangle how) {
   r->now_ns += TICK;
   for (; scene_arrival(&r->board.scene, r->next) <= r->now_ns; r->next++) {
-    ethd__frame f = scene_frame(&r->board.scene, r->next);
+    ethd__ring_frame f = scene_frame(&r->board.scene, r->next);
     if (r->board.master >= 0 && (!how || how(&f, r->next))) send_frame(&r->board, &f);
   }
   ethd_status status = driver->service(r->device, 0, r->now_ns);
@@ -239,7 +239,7 @@ START_TEST(test_readings) {
     tick(&r, NULL);
     if (!(r.sense.have & ETHD_HAVE_RAYS)) continue;
     uint32_t frame = r.next - 1;
-    ethd__reading reading = {0};
+    ethd__ring_reading reading = {0};
     memcpy(reading.rays, r.sense.rays, sizeof reading.rays);
     ck_assert_double_le(scene_error(&reading, frame), 0.08e-3);
     /* arrivals are seen at ticks: the envelope finds those that weren't late */
@@ -264,33 +264,33 @@ END_TEST
 
 static uint32_t onset;
 
-static bool lose_one(ethd__frame *f, uint32_t i) {
+static bool lose_one(ethd__ring_frame *f, uint32_t i) {
   (void)f;
   return i != onset;
 }
-static bool lose_all(ethd__frame *f, uint32_t i) {
+static bool lose_all(ethd__ring_frame *f, uint32_t i) {
   (void)f;
   return i < onset;
 }
-static bool reset_board(ethd__frame *f, uint32_t i) {
+static bool reset_board(ethd__ring_frame *f, uint32_t i) {
   if (i < onset) return true;
   f->seq = (uint16_t)(i - onset);
   f->t_us -= onset * 3333;
   if (i == onset) f->flags |= ETHD__FRAME_FIRST, f->t_us = 20;
   return true;
 }
-static bool jump_clock(ethd__frame *f, uint32_t i) {
+static bool jump_clock(ethd__ring_frame *f, uint32_t i) {
   if (i >= onset) f->t_us += 77777;
   return true;
 }
-static bool spoil_sensors(ethd__frame *f, uint32_t i, int count) {
+static bool spoil_sensors(ethd__ring_frame *f, uint32_t i, int count) {
   for (int k = 0; k < count && i >= onset; k++) f->counts[3 * k] = 0;
   if (i >= onset) f->flags |= ETHD__FRAME_SENSOR_MISSING;
   return true;
 }
-static bool spoil_one(ethd__frame *f, uint32_t i) { return spoil_sensors(f, i, 1); }
-static bool spoil_five(ethd__frame *f, uint32_t i) { return spoil_sensors(f, i, 5); }
-static bool implausible(ethd__frame *f, uint32_t i) {
+static bool spoil_one(ethd__ring_frame *f, uint32_t i) { return spoil_sensors(f, i, 1); }
+static bool spoil_five(ethd__ring_frame *f, uint32_t i) { return spoil_sensors(f, i, 5); }
+static bool implausible(ethd__ring_frame *f, uint32_t i) {
   for (int k = 0; k < ETHD_RAYS && i == onset; k++) f->counts[k] = (uint16_t)(3000 + 9000 * (k % 2) + 77 * k);
   return true;
 }

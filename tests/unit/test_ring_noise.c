@@ -13,7 +13,7 @@
 enum { LOOP = 3000 }; /* frames of the scene, over and over: the finger is back where it began after 1000 s only */
 
 static ethd__receiver r;
-static ethd__frame scene[LOOP];
+static ethd__ring_frame scene[LOOP];
 
 typedef struct count {
   uint64_t damaged, passed_crc, used, good_lost;
@@ -27,8 +27,8 @@ static uint32_t part(uint64_t i) {
   return at < LOOP ? at : 2 * LOOP - 2 - at;
 }
 
-static ethd__frame frame_of(uint64_t i) {
-  ethd__frame f = scene[part(i)];
+static ethd__ring_frame frame_of(uint64_t i) {
+  ethd__ring_frame f = scene[part(i)];
   f.flags = i ? 0 : ETHD__FRAME_FIRST;
   f.seq = (uint16_t)i;
   f.t_us = (uint32_t)(i * 1000000 / ETHD__FRAME_RATE);
@@ -37,7 +37,7 @@ static ethd__frame frame_of(uint64_t i) {
 
 static int64_t arrival_of(uint64_t i) { return (int64_t)(i * 1000000000 / ETHD__FRAME_RATE) + 4200000; }
 
-static void note(count *c, const ethd__reading *reading, uint64_t i) {
+static void note(count *c, const ethd__ring_reading *reading, uint64_t i) {
   double e = scene_error(reading, part(i));
   c->used++;
   c->worst = fmax(c->worst, isfinite(e) ? e : 0); /* no centre: no reading for the filter */
@@ -47,8 +47,8 @@ static void note(count *c, const ethd__reading *reading, uint64_t i) {
 
 /* The good one, which must come through; in doubt about the clock one may be spent. */
 static void feed_good(count *c, uint64_t i) {
-  ethd__frame f = frame_of(i);
-  ethd__reading reading;
+  ethd__ring_frame f = frame_of(i);
+  ethd__ring_reading reading;
   if (!scene_feed(&r, &f, arrival_of(i), &reading))
     c->good_lost++;
   else
@@ -56,9 +56,9 @@ static void feed_good(count *c, uint64_t i) {
 }
 
 /* Damage that leaves the frame as it was: undone by itself, or to the zeros between. */
-static bool is_whole(const uint8_t *wire, const uint8_t *end, const ethd__frame *sent) {
+static bool is_whole(const uint8_t *wire, const uint8_t *end, const ethd__ring_frame *sent) {
   ethd__decoder d = {.in_step = true};
-  ethd__frame got;
+  ethd__ring_frame got;
   while (ethd__decoder_next(&d, &wire, end, &got))
     if (ring_same(&got, sent)) return true;
   return false;
@@ -66,8 +66,8 @@ static bool is_whole(const uint8_t *wire, const uint8_t *end, const ethd__frame 
 
 static void feed_damaged(count *c, uint64_t i) {
   uint8_t wire[2 * ETHD__FRAME_WIRE];
-  ethd__frame f = frame_of(i);
-  ethd__reading reading;
+  ethd__ring_frame f = frame_of(i);
+  ethd__ring_reading reading;
   uint64_t frames = r.decoder.counters.frames;
   ethd__frame_encode(&f, wire);
   size_t n = ring_noise(i, wire);
@@ -81,8 +81,8 @@ static void feed_damaged(count *c, uint64_t i) {
 
 /* Fields of a frame changed, its CRC right. */
 static void feed_forged(count *c, uint64_t i) {
-  ethd__frame f = frame_of(i), was = f;
-  ethd__reading reading;
+  ethd__ring_frame f = frame_of(i), was = f;
+  ethd__ring_reading reading;
   for (uint64_t k = 0, changes = 1 + draw_bits(i * 8 + 5) % 6; k < changes; k++) {
     uint64_t x = draw_bits((i * 8 + k) ^ 0x5555555555);
     uint32_t at = (uint32_t)(x >> 8) % ETHD__FRAME_AT_CRC, bit = 1u << (x >> 40 & 7);
@@ -152,7 +152,7 @@ END_TEST
 START_TEST(test_babble) {
   ring_scene s = scene_open(1, &r);
   uint8_t bytes[4096];
-  ethd__reading reading;
+  ethd__ring_reading reading;
   uint64_t used = 0, n = wanted() * ETHD__FRAME_WIRE / sizeof bytes + 1;
   (void)s;
   for (uint64_t i = 0; i < n; i++) {
@@ -177,7 +177,7 @@ START_TEST(test_speed) {
   for (int round = 0; round < 50; round++) {
     struct timespec from, to;
     ethd__decoder d = {0};
-    ethd__frame f;
+    ethd__ring_frame f;
     clock_gettime(CLOCK_MONOTONIC, &from);
     for (size_t at = 0; at < sizeof wire; at += 4096) {
       const uint8_t *p = wire + at, *end = p + (sizeof wire - at < 4096 ? sizeof wire - at : 4096);

@@ -17,8 +17,8 @@ START_TEST(test_clean) {
     ring_scene s = scene_open(seed, &r);
     double sum = 0;
     for (uint32_t i = 0; i < 6000; i++) {
-      ethd__frame f = scene_frame(&s, i);
-      ethd__reading reading;
+      ethd__ring_frame f = scene_frame(&s, i);
+      ethd__ring_reading reading;
       ck_assert(scene_feed(&r, &f, scene_arrival(&s, i), &reading));
       ck_assert_int_le(
           llabs(reading.sample_ns - s.start_ns - (int64_t)(1e9 * scene_time(i)) - 1000 * (int64_t)ETHD__MIDDLE_US),
@@ -38,7 +38,7 @@ END_TEST
 
 typedef enum symptom { STUCK, SATURATED, MISSING, UNDER_DARK, OFF, SYMPTOMS } symptom;
 
-static void spoil(ethd__frame *f, symptom kind, int k, uint16_t held) {
+static void spoil(ethd__ring_frame *f, symptom kind, int k, uint16_t held) {
   static const uint16_t counts[SYMPTOMS] = {0, ETHD__FRAME_SATURATED, ETHD__FRAME_MISSING, 300, 60000};
   f->counts[k] = kind == STUCK ? held : counts[kind];
   if (kind == MISSING) f->flags |= ETHD__FRAME_SENSOR_MISSING;
@@ -50,8 +50,8 @@ static void watch(symptom kind, int k, uint32_t onset, uint32_t *noticed, uint32
   uint16_t held = scene_frame(&s, onset).counts[k];
   *noticed = *forgiven = 0;
   for (uint32_t i = 0; i < onset + 120; i++) {
-    ethd__frame f = scene_frame(&s, i);
-    ethd__reading reading;
+    ethd__ring_frame f = scene_frame(&s, i);
+    ethd__ring_reading reading;
     if (i >= onset && i < onset + 60) spoil(&f, kind, k, held);
     ck_assert(scene_feed(&r, &f, scene_arrival(&s, i), &reading));
     ck_assert_uint_eq(reading.out & ~(1u << k), 0);
@@ -85,9 +85,9 @@ END_TEST
 /* A whole board is missing: four of 16, and the flag says so. */
 START_TEST(test_board_missing) {
   ring_scene s = scene_open(2, &r);
-  ethd__reading reading;
+  ethd__ring_reading reading;
   for (uint32_t i = 0; i < 400; i++) {
-    ethd__frame f = scene_frame(&s, i);
+    ethd__ring_frame f = scene_frame(&s, i);
     if (i >= 300) f.flags |= ETHD__FRAME_BOARD_MISSING | ETHD__FRAME_SENSOR_MISSING;
     for (int k = 8; k < 12 && i >= 300; k++) f.counts[k] = 0;
     ck_assert(scene_feed(&r, &f, scene_arrival(&s, i), &reading));
@@ -101,10 +101,10 @@ END_TEST
 /* Frozen as a whole is no stuck sensor: nothing moves. */
 START_TEST(test_still) {
   ring_scene s = scene_open(2, &r);
-  ethd__frame first = scene_frame(&s, 0);
+  ethd__ring_frame first = scene_frame(&s, 0);
   for (uint32_t i = 0; i < 300; i++) {
-    ethd__frame f = scene_frame(&s, i);
-    ethd__reading reading;
+    ethd__ring_frame f = scene_frame(&s, i);
+    ethd__ring_reading reading;
     memcpy(f.counts, first.counts, sizeof f.counts);
     ck_assert(scene_feed(&r, &f, scene_arrival(&s, i), &reading));
     ck_assert_uint_eq(reading.out, 0);
@@ -116,10 +116,10 @@ END_TEST
 
 START_TEST(test_lost_and_corrupt) {
   ring_scene s = scene_open(3, &r);
-  ethd__reading reading;
+  ethd__ring_reading reading;
   uint64_t expected = 0;
   for (uint32_t i = 0; i < 1000; i++) {
-    ethd__frame f = scene_frame(&s, i);
+    ethd__ring_frame f = scene_frame(&s, i);
     uint8_t wire[ETHD__FRAME_WIRE];
     const uint8_t *at = wire;
     if (i % 10 == 5) continue; /* lost: told by the next one */
@@ -135,9 +135,9 @@ END_TEST
 
 START_TEST(test_reset) {
   ring_scene s = scene_open(3, &r);
-  ethd__reading reading;
+  ethd__ring_reading reading;
   for (uint32_t i = 0; i < 900; i++) {
-    ethd__frame f = scene_frame(&s, i);
+    ethd__ring_frame f = scene_frame(&s, i);
     if (i >= 600) f.seq = (uint16_t)(f.seq - 600), f.t_us -= 2000000;
     if (i == 600) f.flags |= ETHD__FRAME_FIRST;
     ck_assert(scene_feed(&r, &f, scene_arrival(&s, i), &reading));
@@ -152,9 +152,9 @@ END_TEST
 /* A finger that is suddenly elsewhere is believed in the third frame. */
 START_TEST(test_leap) {
   ring_scene s = scene_open(3, &r);
-  ethd__reading reading;
+  ethd__ring_reading reading;
   for (uint32_t i = 0; i < 312; i++) {
-    ethd__frame f = scene_frame(&s, i);
+    ethd__ring_frame f = scene_frame(&s, i);
     if (i >= 300)
       for (int k = 0; k < ETHD_RAYS; k++)
         f.counts[k] = (uint16_t)rod_counts(&s.truth, k, k < 8 ? 8.2e-3 : 0.8e-3, 5, i);
@@ -169,7 +169,7 @@ END_TEST
 static ethd_status check_empty(ring_scene *s, int finger, ethd__calibration *c, uint32_t missing) {
   ethd__empty e = {0};
   for (uint32_t i = 0; i < ETHD__EMPTY_FRAMES; i++) {
-    ethd__frame f = scene_frame(s, i);
+    ethd__ring_frame f = scene_frame(s, i);
     for (int k = 0; k < ETHD_RAYS; k++) {
       if (!finger) f.counts[k] = (uint16_t)rod_counts(&s->truth, k, (double)NAN, 5, i * 16ull + (uint64_t)k);
       if (missing >> k & 1) f.counts[k] = 0;

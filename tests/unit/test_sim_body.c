@@ -27,7 +27,7 @@ static ethd_sim_def quiet(void) {
 
 typedef struct world {
   ethd__body body;
-  ethd__state state;
+  ethd__sim_state state;
   ethd__piece hand; /* held at hand.a */
   double t;
 } world;
@@ -237,13 +237,13 @@ START_TEST(test_equations) {
   double v[2] = {2.3, -1.7}, h = 1e-4, a[ETHD__DOF_MAX], momentum_rate[2], slope[2];
   w.state.v[0] = v[0];
   w.state.v[1] = v[1];
-  ethd__motion hand = {.x = w.hand.a};
+  ethd__sim_motion hand = {.x = w.hand.a};
   ethd__body_accelerate(&w.body, ETHD__APART, &hand, w.state.q, w.state.v, a);
   for (int j = 0; j < 2; j++) {
     double p[2], e[2];
     for (int side = 0; side < 2; side++) {
       double s = side ? h : -h;
-      ethd__state state = w.state;
+      ethd__sim_state state = w.state;
       state.q[j] += s;
       e[side] = ethd__body_energy(&w.body, &state, w.hand.a);
       /* momentum a moment before and after, along the motion */

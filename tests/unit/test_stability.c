@@ -11,8 +11,9 @@
 #define T 0.001
 #define LINK 0.25
 
-static ethd_loop loop_of(ethd_velocity_method method, double stiffness, double damping) {
-  ethd_loop l = {.mass = M, .period = T, .stiffness = stiffness, .damping = damping, .method = method, .link = LINK};
+static ethd__sampled_loop loop_of(ethd_velocity_method method, double stiffness, double damping) {
+  ethd__sampled_loop l = {
+      .mass = M, .period = T, .stiffness = stiffness, .damping = damping, .method = method, .link = LINK};
   const ethd_method *m = &ethd_velocity_methods[method];
   ethd_params_default(m->params, m->param_count, l.p);
   return l;
@@ -27,14 +28,14 @@ START_TEST(test_boundary) {
   for (int n = 0; n <= 4; n++)
     for (int i = 1; i < 16; i++) {
       double th = M_PI / (2 * (n + 1)) * i / 16, t = tan(th / 2), k, b;
-      ethd__loop_boundary(M, T, n, th, &k, &b);
+      ethd__sampled_boundary(M, T, n, th, &k, &b);
       check_near(k * T * T / M, 4 * t * t * cos((n + 1) * th), 1e-12, "K of the page");
       check_near(b * T / M, 2 * t * sin((n + 1) * th) - k * T * T / (2 * M), 1e-12, "B of the page");
-      ethd_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, k, b);
+      ethd__sampled_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, k, b);
       l.delay = n;
-      check_near(ethd__loop_radius(&l), 1, 1e-6, "radius on the curve");
-      check_near(ethd__loop_stiffness_max(&l), k, 5e-3, "largest K");
-      if (i >= 4) check_near(ethd__loop_mass_min(&l), M, 5e-3, "smallest mass"); /* below it hardly matters */
+      check_near(ethd__sampled_radius(&l), 1, 1e-6, "radius on the curve");
+      check_near(ethd__sampled_stiffness_max(&l), k, 5e-3, "largest K");
+      if (i >= 4) check_near(ethd__sampled_mass_min(&l), M, 5e-3, "smallest mass"); /* below it hardly matters */
     }
 }
 END_TEST
@@ -46,18 +47,18 @@ START_TEST(test_published_numbers) {
     double most = 0;
     for (int i = 1; i <= 1000; i++) {
       double k, b;
-      ethd__loop_boundary(M, T, n, M_PI / (2 * (n + 1)) * i / 1000, &k, &b);
+      ethd__sampled_boundary(M, T, n, M_PI / (2 * (n + 1)) * i / 1000, &k, &b);
       most = fmax(most, k);
     }
     check_near(most * T * T / M, largest_k[n], 2e-3, "largest K");
-    check_near(ethd__loop_damping_free(M, T, n), largest_b[n] * M / T, 1e-3, "largest B");
-    ethd_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, 0, 1);
+    check_near(ethd__sampled_damping_free(M, T, n), largest_b[n] * M / T, 1e-3, "largest B");
+    ethd__sampled_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, 0, 1);
     l.delay = n;
-    check_near(ethd__loop_damping_max(&l), 2 * M / T * tan(M_PI / (4 * (n + 1))), 1e-3, "largest B of the loop");
+    check_near(ethd__sampled_damping_max(&l), 2 * M / T * tan(M_PI / (4 * (n + 1))), 1e-3, "largest B of the loop");
   }
-  ethd_loop l = loop_of(ETHD_VELOCITY_LSQ, 0, 100); /* a 15 ms window: unstable under 0.4 kg */
+  ethd__sampled_loop l = loop_of(ETHD_VELOCITY_LSQ, 0, 100); /* a 15 ms window: unstable under 0.4 kg */
   l.p[0] = 16;
-  check_near(ethd__loop_mass_min(&l), 0.4, 0.03, "smallest mass with a window of 15 ms");
+  check_near(ethd__sampled_mass_min(&l), 0.4, 0.03, "smallest mass with a window of 15 ms");
 }
 END_TEST
 
@@ -65,28 +66,28 @@ END_TEST
 START_TEST(test_small_gains) {
   for (int method = 0; method < ETHD_VELOCITY_COUNT; method++)
     for (int n = 0; n < 3; n++) {
-      ethd_loop l = loop_of((ethd_velocity_method)method, 1, 0.02);
+      ethd__sampled_loop l = loop_of((ethd_velocity_method)method, 1, 0.02);
       l.delay = n;
-      check_near(ethd__loop_stiffness_max(&l), 0.02 / (T * (n + 0.5)), 0.02, ethd_velocity_methods[method].id);
+      check_near(ethd__sampled_stiffness_max(&l), 0.02 / (T * (n + 0.5)), 0.02, ethd_velocity_methods[method].id);
     }
 }
 END_TEST
 
 START_TEST(test_trivial_loops) {
-  ethd_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, 0, 0);
-  check_near(ethd__loop_radius(&l), 1, 1e-6, "a free mass");
+  ethd__sampled_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, 0, 0);
+  check_near(ethd__sampled_radius(&l), 1, 1e-6, "a free mass");
   l.stiffness = 1000;
-  ck_assert(!ethd__loop_stable(&l) && isinf(ethd__loop_mass_min(&l)));
-  check_near(ethd__loop_damping_needed(&l), 0.5, 1e-12, "damping that the hold takes");
+  ck_assert(!ethd__sampled_stable(&l) && isinf(ethd__sampled_mass_min(&l)));
+  check_near(ethd__sampled_damping_needed(&l), 0.5, 1e-12, "damping that the hold takes");
   l.damping = 45;
-  check_near(ethd__loop_passive_friction(&l), 45.5, 1e-12, "passivity");
+  check_near(ethd__sampled_passive_friction(&l), 45.5, 1e-12, "passivity");
 }
 END_TEST
 
 /* ---- the estimators themselves ---- */
 
 /* The growth of the motion over `ticks`, the estimator stepped as a controller steps it. */
-static double growth(const ethd_loop *l, int ticks) {
+static double growth(const ethd__sampled_loop *l, int ticks) {
   ethd_velocity velocity;
   ethd_velocity_state state;
   ethd_error error;
@@ -120,21 +121,21 @@ static void check_estimators(double late) {
   for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
     for (int n = 0; n < 3; n++)
       for (double k = 0; k < 3000; k += 1000) {
-        ethd_loop l = loop_of(methods[i], k, 10);
+        ethd__sampled_loop l = loop_of(methods[i], k, 10);
         const char *id = ethd_velocity_methods[methods[i]].id;
         if (methods[i] == ETHD_VELOCITY_KALMAN) l.p[2] = 0.8 * M * LINK * LINK; /* not quite the true inertia */
         l.delay = n;
         l.late = late;
-        double largest = ethd__loop_damping_max(&l);
+        double largest = ethd__sampled_damping_max(&l);
         ck_assert_msg(largest > 0, "%s: no damping is stable", id);
         l.damping = 1.01 * largest;
         ck_assert_msg(growth(&l, 2000) > 1.5, "%s, %d ticks, K %g: %.6g dies", id, n, k, l.damping);
         l.damping = 0.99 * largest;
         ck_assert_msg(growth(&l, 2000) < 0.7, "%s, %d ticks, K %g: %.6g grows", id, n, k, l.damping);
       }
-  ethd_loop foaw = loop_of(ETHD_VELOCITY_FOAW, 1000, 10), lsq = loop_of(ETHD_VELOCITY_LSQ, 1000, 10);
+  ethd__sampled_loop foaw = loop_of(ETHD_VELOCITY_FOAW, 1000, 10), lsq = loop_of(ETHD_VELOCITY_LSQ, 1000, 10);
   lsq.p[0] = foaw.p[0];
-  ck_assert(ethd__loop_radius(&foaw) == ethd__loop_radius(&lsq));
+  ck_assert(ethd__sampled_radius(&foaw) == ethd__sampled_radius(&lsq));
 }
 
 START_TEST(test_estimators) { check_estimators(0); }
@@ -145,54 +146,54 @@ END_TEST
 
 /* What is late by nearly a tick is a tick of delay; in between it is neither. */
 START_TEST(test_late_is_between) {
-  ethd_loop l = loop_of(ETHD_VELOCITY_LOWPASS, 2000, 40);
-  double prompt = ethd__loop_damping_max(&l);
+  ethd__sampled_loop l = loop_of(ETHD_VELOCITY_LOWPASS, 2000, 40);
+  double prompt = ethd__sampled_damping_max(&l);
   l.late = T / 2;
-  double half = ethd__loop_damping_max(&l);
+  double half = ethd__sampled_damping_max(&l);
   l.late = T * (1 - 1e-9);
-  double nearly = ethd__loop_damping_max(&l);
+  double nearly = ethd__sampled_damping_max(&l);
   l.late = 0;
   l.delay = 1;
-  check_near(nearly, ethd__loop_damping_max(&l), 1e-5, "a tick of delay");
+  check_near(nearly, ethd__sampled_damping_max(&l), 1e-5, "a tick of delay");
   ck_assert(half < 0.95 * prompt && half > 1.05 * nearly);
   l.late = 0.25 * T;
-  l.damping = ethd__loop_damping_needed(&l);
+  l.damping = ethd__sampled_damping_needed(&l);
   check_near(l.damping, 2000 * T * 1.75, 1e-12, "damping that hold and delay take");
   l.mass = 10;
   l.damping *= 1.01;
-  ck_assert(ethd__loop_stable(&l));
+  ck_assert(ethd__sampled_stable(&l));
   l.damping *= 0.98;
-  ck_assert(!ethd__loop_stable(&l));
+  ck_assert(!ethd__sampled_stable(&l));
 }
 END_TEST
 
 /* Just within what they say it is stable, just beyond it isn't. */
 START_TEST(test_ends) {
-  ethd_loop l = loop_of(ETHD_VELOCITY_LOWPASS, 2500, 45);
-  double delay = ethd__loop_delay_max(&l), cutoff = ethd__loop_velocity_end(&l);
+  ethd__sampled_loop l = loop_of(ETHD_VELOCITY_LOWPASS, 2500, 45);
+  double delay = ethd__sampled_delay_max(&l), cutoff = ethd__sampled_velocity_end(&l);
   ck_assert(delay > T && delay < 20 * T && cutoff > 1 && cutoff < l.p[0]);
   l.p[0] = 0.999 * cutoff;
-  ck_assert(!ethd__loop_stable(&l));
+  ck_assert(!ethd__sampled_stable(&l));
   l.p[0] = 1.001 * cutoff;
-  ck_assert(ethd__loop_stable(&l));
+  ck_assert(ethd__sampled_stable(&l));
   l = loop_of(ETHD_VELOCITY_LOWPASS, 2500, 45);
   for (int i = -1; i <= 1; i += 2) {
     double d = delay * (1 + 1e-4 * i);
     l.delay = (int)(d / T);
     l.late = d - l.delay * T;
-    ck_assert(ethd__loop_stable(&l) == (i < 0));
+    ck_assert(ethd__sampled_stable(&l) == (i < 0));
   }
   l = loop_of(ETHD_VELOCITY_LSQ, 0, 100);
   l.mass = 0.1;
   l.p[0] = 2;
-  double window = ethd__loop_velocity_end(&l);
+  double window = ethd__sampled_velocity_end(&l);
   l.p[0] = window;
-  ck_assert(window >= 2 && ethd__loop_stable(&l));
+  ck_assert(window >= 2 && ethd__sampled_stable(&l));
   l.p[0]++;
-  ck_assert(!ethd__loop_stable(&l));
-  ck_assert(isnan(ethd__loop_velocity_end(&l)));
+  ck_assert(!ethd__sampled_stable(&l));
+  ck_assert(isnan(ethd__sampled_velocity_end(&l)));
   l = loop_of(ETHD_VELOCITY_DIFFERENCE, 1000, 0);
-  ck_assert(ethd__loop_delay_max(&l) < 0 && isnan(ethd__loop_velocity_end(&l)));
+  ck_assert(ethd__sampled_delay_max(&l) < 0 && isnan(ethd__sampled_velocity_end(&l)));
 }
 END_TEST
 

@@ -6,8 +6,8 @@
 #include "bounds/stop.h"
 
 /* Plants n and b, without lag. */
-static const ethd_stop n = {0.1173, 5.357, 0.398, 0, 1e30, 0, 0.012 - 7.32e-3};
-static const ethd_stop b = {0.1445, 5.369, 0.164, 0, 1e30, 0, 0.012 - 8.15e-3};
+static const ethd__bounds_stop n = {0.1173, 5.357, 0.398, 0, 1e30, 0, 0.012 - 7.32e-3};
+static const ethd__bounds_stop b = {0.1445, 5.369, 0.164, 0, 1e30, 0, 0.012 - 8.15e-3};
 
 START_TEST(test_published_speeds) {
   ck_assert_double_eq_tol(ethd__stop_speed(&n), 0.68, 0.005);
@@ -17,7 +17,7 @@ END_TEST
 
 /* At the highest speed nothing is left; a little faster it is too fast. */
 START_TEST(test_speed_is_the_margin_s_end) {
-  ethd_stop s = n;
+  ethd__bounds_stop s = n;
   s.stiffness = 640;
   s.viscous = 1.267;
   s.behind = 0.0019;
@@ -31,7 +31,7 @@ START_TEST(test_speed_is_the_margin_s_end) {
 END_TEST
 
 /* m v' = -min(F, B v) - [v > v1] f_c, from v to v_th by small steps, as the formula has it. */
-static void integrate(const ethd_stop *s, const ethd_braking *k, double v, double *time, double *way) {
+static void integrate(const ethd__bounds_stop *s, const ethd__bounds_braking *k, double v, double *time, double *way) {
   const double h = 1e-7;
   *time = *way = 0;
   for (; v > k->v_th; *time += h) {
@@ -43,7 +43,7 @@ static void integrate(const ethd_stop *s, const ethd_braking *k, double v, doubl
 
 START_TEST(test_saturated_braking) {
   static const double speeds[] = {0.02, 0.05, 0.2, 0.4, 0.8};
-  const ethd_braking k = {100, 0.020, 0, 0}, ticking = {100, 0.020, 0.001, 0.0002};
+  const ethd__bounds_braking k = {100, 0.020, 0, 0}, ticking = {100, 0.020, 0.001, 0.0002};
   for (int i = 0; i < 5; i++) {
     double time, way, v = speeds[i];
     integrate(&n, &k, v, &time, &way);
