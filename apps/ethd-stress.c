@@ -1,4 +1,5 @@
 /* Numerical stress: what the library does at its limits, against formulas. */
+#include <stdbool.h>
 #include <string.h>
 
 #include "cli/cli.h"
@@ -57,7 +58,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-static int wanted(const ethd__stress *test) {
+static bool wanted(const ethd__stress *test) {
   return !arg.name || strcmp(arg.name, "all") == 0 || strcmp(arg.name, test->name) == 0;
 }
 

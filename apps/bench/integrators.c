@@ -13,7 +13,7 @@ typedef struct contender {
   const char *name;
   const ethd__problem *problem;
   ethd__mark *marks;
-  int fixed;                   /* 1: ours with steps of order 4 */
+  bool fixed;                  /* 1: ours with steps of order 4 */
   double setting, error, time; /* s per simulated s */
   ethd__runner runner;         /* ours: without a method */
 } contender;

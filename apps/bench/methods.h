@@ -2,6 +2,8 @@
 #ifndef ETHD_APPS_BENCH_METHODS_H
 #define ETHD_APPS_BENCH_METHODS_H
 
+#include <stdbool.h>
+
 #include "bench/problem.h"
 
 /* The plant as a system of first order: y = 4 coordinates, 4 speeds. */
@@ -9,7 +11,7 @@ typedef struct ethd__plain {
   const ethd__body *body;
   const ethd__piece *piece;
   ethd__touch touch;
-  int live; /* 1: touch is asked for at every evaluation, nothing is watched */
+  bool live; /* 1: touch is asked for at every evaluation, nothing is watched */
 } ethd__plain;
 
 ethd__ode ethd__plain_ode(ethd__plain *plain);

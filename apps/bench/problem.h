@@ -3,13 +3,15 @@
 #ifndef ETHD_APPS_BENCH_PROBLEM_H
 #define ETHD_APPS_BENCH_PROBLEM_H
 
+#include <stdbool.h>
+
 #include "bench/ode.h"
 #include "sim/body.h"
 
 /* Between two of: tick, torque update, kink of the path. */
 typedef struct ethd__stretch {
   double begin, end, torque[2];
-  int tick; /* 1: begins at one */
+  bool tick; /* 1: begins at one */
   ethd__piece piece;
 } ethd__stretch;
 

@@ -2,6 +2,8 @@
 #ifndef ETHD_APPS_CHECK_REPORT_H
 #define ETHD_APPS_CHECK_REPORT_H
 
+#include <stdbool.h>
+
 #include "ethd/config.h"
 
 /* The setup as it was understood, as a configuration that gives the same setup again. */
@@ -15,7 +17,7 @@ typedef struct ethd__figures {
   double delay;             /* s, from measurement to torque */
   double count;             /* rad per encoder count at the joint; 0: ideal */
   double latency;           /* s, of the readings of the finger */
-  int compliant;            /* 1: between motors and ring something gives way, which no bound counts */
+  bool compliant;           /* 1: between motors and ring something gives way, which no bound counts */
 } ethd__figures;
 
 typedef struct ethd__subject {

@@ -1,6 +1,7 @@
 /* The tick's time, here and now: short, and no bound. */
 #include <math.h>
 #include <sched.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,7 +49,7 @@ static int measure(const ethd_setup *own, double *ns) {
   return 1;
 }
 
-static int is_realtime(void) {
+static bool is_realtime(void) {
   int policy = sched_getscheduler(0);
   return policy == SCHED_FIFO || policy == SCHED_RR;
 }

@@ -64,7 +64,7 @@ static void print_figures(FILE *out, const ethd__session *s) {
   static ethd_figure figures[ETHD_FIGURES_MAX];
   uint32_t n = s->driver->figures(s->device, figures, ETHD_FIGURES_MAX);
   for (uint32_t i = 0; i < n; i++) {
-    int is_time = !strcmp(figures[i].unit, "s");
+    bool is_time = !strcmp(figures[i].unit, "s");
     const char *unit = is_time ? "ms" : strcmp(figures[i].unit, "1") ? figures[i].unit : "";
     fprintf(out, "%-10s %-32s %10.6g %s\n", i ? "" : "figures", figures[i].name, figures[i].value * (is_time ? 1e3 : 1),
             unit);

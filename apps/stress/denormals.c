@@ -3,6 +3,7 @@
    subnormal the results are the same bits. */
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "cli/cli.h"
@@ -56,7 +57,7 @@ static outcome rest(int64_t still, int rounds) {
 static double apart(double a, double b) { return fabs(a - b) <= 1e-300 ? 0 : fabs(a - b); }
 
 /* By its bits: with DAZ it compares as 0. */
-static int subnormal(double x) {
+static bool subnormal(double x) {
   uint64_t bits;
   memcpy(&bits, &x, sizeof bits);
   bits &= ~((uint64_t)1 << 63);

@@ -4,6 +4,7 @@
    is back where one is that never saw it. And readings that stop: what the filters make of them. */
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "cli/cli.h"
@@ -70,9 +71,9 @@ static ethd_control *controller(const ethd_scene *scene, ethd_filter_method filt
 
 /* ---- what the contract says ---- */
 
-static int bad(const double *v) { return !isfinite(v[0]) || !isfinite(v[1]); }
+static bool bad(const double *v) { return !isfinite(v[0]) || !isfinite(v[1]); }
 
-static int is_input_fault(const ethd_sense *s) {
+static bool is_input_fault(const ethd_sense *s) {
   int64_t have = s->have;
   return bad(s->q) || ((have & ETHD_HAVE_DQ) && bad(s->dq)) ||
          ((have & (ETHD_HAVE_FINGER | ETHD_HAVE_START)) && bad(s->finger)) ||
@@ -185,7 +186,7 @@ static void all_words(ethd__stress_log *log, const ethd_arm *arm, const ethd_sce
     undisturbed(arm, scene, BEFORE + ticks + after, calm);
     for (size_t w = 0; w < count; w++)
       for (size_t h = 0; h < (ticks > 1 ? 4 : hold_count); h++) {
-        int is_double = list[w].type == 'f';
+        bool is_double = list[w].type == 'f';
         size_t values = is_double ? sizeof numbers / sizeof *numbers : sizeof integers / sizeof *integers;
         for (size_t v = 0; v < values; v++) {
           disturbance d = {.word = &list[w], .have = holds[h], .ticks = ticks};

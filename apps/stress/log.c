@@ -1,6 +1,7 @@
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "cli/cli.h"
@@ -16,7 +17,7 @@ static double load(const ethd__stress_result *r) {
 }
 
 /* Of two results with the same words: bounds of 0 have no load to tell them apart. */
-static int worse(const ethd__stress_result *r, const ethd__stress_result *than) {
+static bool worse(const ethd__stress_result *r, const ethd__stress_result *than) {
   double a = load(r), b = load(than);
   return a > b || (a == b && r->bound && r->measured > than->measured);
 }

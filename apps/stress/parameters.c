@@ -70,13 +70,13 @@ typedef struct tally {
   char refusal[320], fault[320], breach[320];
 } tally;
 
-static int all_finite(const double *v, int n) {
+static bool all_finite(const double *v, int n) {
   for (int i = 0; i < n; i++)
-    if (!isfinite(v[i])) return 0;
-  return 1;
+    if (!isfinite(v[i])) return false;
+  return true;
 }
 
-static int trace_is_finite(const ethd_trace *t) {
+static bool trace_is_finite(const ethd_trace *t) {
   return all_finite(t->x, 2) && all_finite(t->v, 2) && all_finite(t->xf, 2) && all_finite(t->vf, 2) &&
          all_finite(t->qd, 2) && all_finite(t->eps_q, 2) && all_finite(t->eps_q_dot, 2) && all_finite(&t->beta, 1) &&
          all_finite(t->fe, 2) && all_finite(t->fd, 2) && all_finite(&t->eps, 1) && all_finite(t->tau_raw, 2) &&
@@ -84,12 +84,12 @@ static int trace_is_finite(const ethd_trace *t) {
          (!t->contacts || (all_finite(&t->d_re, 1) && all_finite(&t->d_fe, 1) && all_finite(&t->v_n, 1)));
 }
 
-static int torque_is_held(const ethd_trace *t, double most) {
+static bool torque_is_held(const ethd_trace *t, double most) {
   return fabs(t->tau[0]) <= most && fabs(t->tau[1]) <= most;
 }
 
 /* Limits of 0 are there to stop a ring that moves, a torque that rises, a step that takes time. */
-static int expected(const ethd_setup *s, int64_t fault) {
+static bool expected(const ethd_setup *s, int64_t fault) {
   return (fault == ETHD_FAULT_SPEED && s->limits.speed == 0) ||
          (fault == ETHD_FAULT_TORQUE_RATE && s->limits.torque_rate == 0) ||
          (fault == ETHD_FAULT_BUDGET && s->limits.step_time == 1e-9);

@@ -1,6 +1,7 @@
 #include "stress/rig.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -163,7 +164,7 @@ static amplitude measure(const double y[3]) {
   return (amplitude){fabs(y[1] * y[1] - y[0] * y[2]), fmax(fabs(y[0]), fmax(fabs(y[1]), fabs(y[2])))};
 }
 
-static int is_swing(amplitude a) { return a.c > 1e-5 * a.y * a.y; }
+static bool is_swing(amplitude a) { return a.c > 1e-5 * a.y * a.y; }
 
 double ethd__stress_rig_growth(ethd__stress_rig *rig, const ethd__swing *s) {
   double x[3] = {0}, y[3] = {0};

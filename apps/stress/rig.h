@@ -7,6 +7,8 @@
 #ifndef ETHD_APPS_STRESS_RIG_H
 #define ETHD_APPS_STRESS_RIG_H
 
+#include <stdbool.h>
+
 #include "ethd/control.h"
 
 #define ETHD__STRESS_RIG_DELAY_MAX 16
@@ -17,8 +19,8 @@ typedef struct ethd__stress_rig {
   double mass;      /* kg at the ring, both joints alike */
   double gap;       /* m to the wall at the start */
   int delay;        /* ticks from measurement to torque */
-  int measured;     /* 1: joint speeds are measured, 0: the setup estimates them */
-  int has_finger;
+  bool measured;    /* 1: joint speeds are measured, 0: the setup estimates them */
+  bool has_finger;
   ethd_vec finger, finger_v; /* m, m/s; without one it is where the ring is */
   ethd_vec push;             /* N on the ring from outside */
   double force_limit;        /* N: torque limit of each joint / L; INFINITY: none */

@@ -6,6 +6,7 @@
 #ifndef ETHD_APPS_STRESS_H
 #define ETHD_APPS_STRESS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -15,7 +16,7 @@ typedef struct ethd__stress_result {
   char what[96];
   const char *unit;
   double measured, analytic, allowed; /* allowed: the distance; a bound's is 0 */
-  int bound;                          /* 1: measured <= analytic */
+  bool bound;                         /* 1: measured <= analytic */
   uint64_t count;                     /* results of which this is the worst */
 } ethd__stress_result;
 

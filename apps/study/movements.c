@@ -1,6 +1,7 @@
 #include "study/movements.h"
 
 #include <dirent.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,7 +15,7 @@ static char *folder_of(const ethd__protocol *p) {
   return folder;
 }
 
-static int is_csv(const struct dirent *entry) {
+static bool is_csv(const struct dirent *entry) {
   size_t n = strlen(entry->d_name);
   return n > 4 && entry->d_name[0] != '.' && !strcmp(entry->d_name + n - 4, ".csv");
 }

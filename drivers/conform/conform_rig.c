@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -59,7 +60,7 @@ static void stop_units(ethd__conform_rig *r) {
 
 /* ---- a device ---- */
 
-int ethd__conform_rig_open(const ethd_conform_def *def, ethd__conform_rig *r) {
+bool ethd__conform_rig_open(const ethd_conform_def *def, ethd__conform_rig *r) {
   memset(r, 0, sizeof *r);
   r->def = def;
   r->period = llrint(1e9 * def->device->setup->period);
@@ -69,7 +70,7 @@ int ethd__conform_rig_open(const ethd_conform_def *def, ethd__conform_rig *r) {
   return ethd_device_open(def->ids, def->from, def->device, &r->driver, &r->device, r->message) == ETHD_OK;
 }
 
-int ethd__conform_rig_begin(const ethd_conform_def *def, ethd__conform_rig *r, ethd_conform_answer *a) {
+bool ethd__conform_rig_begin(const ethd_conform_def *def, ethd__conform_rig *r, ethd_conform_answer *a) {
   if (!ethd__conform_rig_open(def, r)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "open: %.140s", r->message), 0;
   ethd_status status = ethd__conform_rig_start(r);
   if (status >= 0) return 1;

@@ -4,6 +4,7 @@
 
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdbool.h>
 
 #include "ethd/conform.h"
 
@@ -37,10 +38,10 @@ ethd_verdict ethd__conform_rig_answer(ethd_conform_answer *a, ethd_verdict verdi
     __attribute__((format(printf, 3, 4)));
 
 /* False: r->message says why. All [main]. */
-int ethd__conform_rig_open(const ethd_conform_def *def, ethd__conform_rig *r);
+bool ethd__conform_rig_open(const ethd_conform_def *def, ethd__conform_rig *r);
 
 /* Open and started, with its I/O threads unless the clock is virtual; false: the answer says why not. */
-int ethd__conform_rig_begin(const ethd_conform_def *def, ethd__conform_rig *r, ethd_conform_answer *a);
+bool ethd__conform_rig_begin(const ethd_conform_def *def, ethd__conform_rig *r, ethd_conform_answer *a);
 
 /* Stopped; and closed. */
 void ethd__conform_rig_stop(ethd__conform_rig *r);

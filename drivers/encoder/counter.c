@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,7 +31,7 @@ typedef struct counter {
   int32_t lost; /* a jump was grave: the angle isn't known any more */
 
   /* any thread */
-  int32_t clear; /* 1: wrong marks are acknowledged */
+  bool clear; /* 1: wrong marks are acknowledged */
 } counter;
 
 /* ---- I/O ---- */
@@ -67,7 +68,10 @@ static void step(counter *c, int j, ethd_sense *out) ETHD_RT {
 
 /* The next mark is the first again. */
 static void forget_marks(counter *c) ETHD_RT {
-  for (int j = 0; j < 2; j++) c->encoder[j].misindexed = c->encoder[j].marks = 0;
+  for (int j = 0; j < 2; j++) {
+    c->encoder[j].misindexed = false;
+    c->encoder[j].marks = 0;
+  }
 }
 
 static ethd_status counter_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
@@ -148,7 +152,7 @@ static ethd_status counter_open(const ethd_device_def *def, void **out, char mes
 
 /* ---- starting ---- */
 
-static int is_homed(const counter *c) { return c->encoder[0].homed && c->encoder[1].homed; }
+static bool is_homed(const counter *c) { return c->encoder[0].homed && c->encoder[1].homed; }
 
 /* By hand: until each encoder's index mark has passed. */
 static ethd_status home(counter *c) {
@@ -166,7 +170,7 @@ static ethd_status home(counter *c) {
   return is_homed(c) ? ETHD_OK : ETHD_E_DEVICE;
 }
 
-static int is_misindexed(const counter *c) { return c->encoder[0].misindexed || c->encoder[1].misindexed; }
+static bool is_misindexed(const counter *c) { return c->encoder[0].misindexed || c->encoder[1].misindexed; }
 
 /* After a grave jump the angles are found anew: by homing, or from the counts as they are. */
 static ethd_status counter_start(void *device) {

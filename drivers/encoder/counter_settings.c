@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "encoder/counter.h"
@@ -52,7 +53,7 @@ static ethd_status set_small(const ethd_device_def *def, const ethd_setting *s, 
   return ETHD_OK;
 }
 
-static int is_whole(int i, double v) {
+static bool is_whole(int i, double v) {
   if (i == ETHD__COUNTER_SIGN1 || i == ETHD__COUNTER_SIGN2) return fabs(v) == 1;
   return (i != ETHD__COUNTER_COUNTS_PER_TURN && i != ETHD__COUNTER_WIDTH) || v == rint(v);
 }

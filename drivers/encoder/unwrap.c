@@ -1,6 +1,7 @@
 #include "encoder/unwrap.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #define JUMPS_NS 10000000 /* a second jump within this is grave */
@@ -156,7 +157,7 @@ static int64_t drop(const ethd__encoder_def *def, ethd__encoder *e, const ethd__
   return bit;
 }
 
-static int is_jump(const ethd__encoder_def *def, const ethd__encoder *e, const ethd__count *s, int64_t step) ETHD_RT {
+static bool is_jump(const ethd__encoder_def *def, const ethd__encoder *e, const ethd__count *s, int64_t step) ETHD_RT {
   double dt = 1e-9 * (double)(s->time_ns - e->time_ns);
   double most = def->speed_max * dt / fabs(angle_per_count(def)) + 1;
   return s->raw > def->ceiling || (step && !(fabs((double)step) <= most));

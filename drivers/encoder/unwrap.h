@@ -12,6 +12,7 @@
 #ifndef ETHD_ENCODER_UNWRAP_H
 #define ETHD_ENCODER_UNWRAP_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "ethd/fault.h"
@@ -45,23 +46,23 @@ typedef struct ethd__encoder_def {
   double reverse_time;     /* s: how long it may all the same, > 0 */
   double inertia;          /* kg m^2 of the joint within a half, > 0: what energy its speed is */
   int32_t sign;            /* 1, or -1: counts rise while the angle falls */
-  int32_t home;            /* 1: the first index mark that passes is the home mark, the whole number of
+  bool home;               /* 1: the first index mark that passes is the home mark, the whole number of
                               turns being the one nearest to what count and offset say; 0: no homing */
-  int32_t stamps;          /* 1: speed from edge_ns where it is known */
+  bool stamps;             /* 1: speed from edge_ns where it is known */
   int32_t reserved;
 } ethd__encoder_def;
 
 /* Zeroed: ready. A driver reads the first part. */
 typedef struct ethd__encoder {
-  double q, dq;       /* rad, rad/s: of the last sample; a dropped one is replaced by going on as before */
-  int64_t position;   /* counts, unwrapped; at first the raw one, those over ceiling / 2 less ceiling + 1 */
-  int32_t has_dq;     /* 1: dq comes from edges */
-  int32_t homed;      /* 1: the home mark has passed */
-  int32_t misindexed; /* 1: index marks had a wrong distance; stays, and the next run is to be refused */
+  double q, dq;     /* rad, rad/s: of the last sample; a dropped one is replaced by going on as before */
+  int64_t position; /* counts, unwrapped; at first the raw one, those over ceiling / 2 less ceiling + 1 */
+  bool has_dq;      /* 1: dq comes from edges */
+  bool homed;       /* 1: the home mark has passed */
+  bool misindexed;  /* 1: index marks had a wrong distance; stays, and the next run is to be refused */
 
   int32_t started, paused, edges, marks;
   int32_t direction; /* of the last edge */
-  int32_t moves;     /* 1: speed is known */
+  bool moves;        /* 1: speed is known */
   uint64_t raw;
   int64_t home; /* count of the angle `offset` */
   int64_t mark, first_mark;

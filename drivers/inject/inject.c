@@ -1,6 +1,7 @@
 #include "inject/inject.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,7 +51,7 @@ ethd_status ethd__inject_around(const ethd_driver *driver, void *device, ethd__s
 
 /* ---- what is due ---- */
 
-static int is_due(const ethd__injection *i, int64_t t) ETHD_RT { return t >= i->from_ns && t < i->until_ns; }
+static bool is_due(const ethd__injection *i, int64_t t) ETHD_RT { return t >= i->from_ns && t < i->until_ns; }
 
 /* The next one of a channel that is due, from `at` on; NULL: none is left. */
 static ethd__injection *next_due(inject *in, ethd__inject_channel channel, uint32_t *at) ETHD_RT {
@@ -63,11 +64,11 @@ static ethd__injection *next_due(inject *in, ethd__inject_channel channel, uint3
   return NULL;
 }
 
-static int is_told(inject *in, ethd__inject_channel channel, ethd__inject_kind kind) ETHD_RT {
+static bool is_told(inject *in, ethd__inject_channel channel, ethd__inject_kind kind) ETHD_RT {
   uint32_t at = 0;
   for (const ethd__injection *i; (i = next_due(in, channel, &at));)
-    if (i->kind == kind) return 1;
-  return 0;
+    if (i->kind == kind) return true;
+  return false;
 }
 
 /* ---- samples ---- */

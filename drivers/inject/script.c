@@ -1,6 +1,7 @@
 #include "inject/script.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,7 +35,7 @@ static const struct {
 
 static const struct {
   const char *name;
-  int by; /* 1: has a number */
+  bool by; /* 1: has a number */
   double min, max;
 } kinds[ETHD__INJECT_KINDS] = {
     [ETHD__INJECT_FREEZE] = {"freeze", 0, 0, 0},   [ETHD__INJECT_OFFSET] = {"offset", 1, -1e6, 1e6},
@@ -75,7 +76,7 @@ static word next_word(const char **at, const char *end) {
   return w;
 }
 
-static int is_word(word w, const char *name) { return strlen(name) == w.length && !memcmp(w.at, name, w.length); }
+static bool is_word(word w, const char *name) { return strlen(name) == w.length && !memcmp(w.at, name, w.length); }
 
 /* Behind a word's `prefix`; an empty word: it has another beginning. */
 static word behind(word w, const char *prefix) {
@@ -96,17 +97,17 @@ static ethd_status read_time(const reader *r, word w, ethd__injection *out) {
 }
 
 /* "ray5": the fifth; "ray": all. */
-static int names(word w, int channel, ethd__injection *out) {
+static bool names(word w, int channel, ethd__injection *out) {
   const char *name = channels[channel].name;
   uint32_t number = 0, numbers = channels[channel].numbers;
   out->first = 0;
   out->count = numbers ? numbers : 1;
   if (is_word(w, name)) return channel != ETHD__INJECT_FAULT;
   word tail = behind(w, name);
-  if (numbers > 2 && channel == ETHD__INJECT_RAY && is_word(w, "rays")) return 1;
-  if (tail.length < 1 || tail.length > 2) return 0;
+  if (numbers > 2 && channel == ETHD__INJECT_RAY && is_word(w, "rays")) return true;
+  if (tail.length < 1 || tail.length > 2) return false;
   for (size_t i = 0; i < tail.length; i++) {
-    if (tail.at[i] < '0' + (i == 0) || tail.at[i] > '9') return 0;
+    if (tail.at[i] < '0' + (i == 0) || tail.at[i] > '9') return false;
     number = 10 * number + (uint32_t)(tail.at[i] - '0');
   }
   if (number > numbers) return 0;
@@ -185,10 +186,10 @@ static ethd_status read_line(const reader *r, const char *at, const char *end, e
 
 /* ---- the file ---- */
 
-static int is_blank(const char *at, const char *end) {
+static bool is_blank(const char *at, const char *end) {
   for (; at < end; at++)
-    if (!*at || !strchr(BLANKS, *at)) return 0;
-  return 1;
+    if (!*at || !strchr(BLANKS, *at)) return false;
+  return true;
 }
 
 static ethd_status read_lines(reader *r, const char *text, size_t length, ethd__script *out) {

@@ -1,6 +1,7 @@
 /* The control thread's way, tick by tick: nothing here allocates, locks, or calls the system but to sleep. */
 #include <errno.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "loop/loop.h"
@@ -43,7 +44,7 @@ static int sleep_until(const ethd_loop *l, int64_t instant) ETHD_RT {
 
 /* ---- rows ---- */
 
-static int room(const ethd__loop_ring *r) ETHD_RT {
+static bool room(const ethd__loop_ring *r) ETHD_RT {
   return atomic_load_explicit(&r->head, memory_order_relaxed) - atomic_load_explicit(&r->tail, memory_order_acquire) <
          r->size;
 }
@@ -79,10 +80,10 @@ static void blind(ethd_loop *l) ETHD_RT {
 }
 
 /* A row that ends the torque doesn't wait for the next sample. */
-static int is_pressing(const ethd_sense *s) ETHD_RT {
+static bool is_pressing(const ethd_sense *s) ETHD_RT {
   for (int64_t rows = s->faults | s->grave; rows; rows &= rows - 1) {
     ethd_fault row = (ethd_fault)__builtin_ctzll((uint64_t)rows);
-    if (ethd_fault_reaction(row, s->grave >> row & 1) >= ETHD_REACTION_STOP) return 1;
+    if (ethd_fault_reaction(row, s->grave >> row & 1) >= ETHD_REACTION_STOP) return true;
   }
   return 0;
 }
@@ -101,14 +102,14 @@ static void remember_joints(ethd_loop *l, ethd_status status) ETHD_RT {
 }
 
 /* No: there is nothing newer than what the last step knew, and the torque holds. */
-static int read_device(ethd_loop *l) ETHD_RT {
+static bool read_device(ethd_loop *l) ETHD_RT {
   if (!l->held) memset(&l->sense, 0, sizeof l->sense);
   ethd_status status = l->def.driver->read(l->def.device, l->due, &l->sense);
   ethd__loop_rows(l, &l->sense);
   if (status == ETHD_STALE && l->held * l->period < HOLD_MAX && !is_pressing(&l->sense)) {
     l->held++;
     l->missed++;
-    return 0;
+    return false;
   }
   if (status < 0 || (status == ETHD_STALE && (l->held * l->period >= HOLD_MAX || !l->joints.known)))
     blind(l);
@@ -213,7 +214,7 @@ static void advance(ethd_loop *l) ETHD_RT {
 }
 
 /* Yes, once asked; unless [main] has lost its patience at this very moment. */
-static int parked(ethd_loop *l) ETHD_RT {
+static bool parked(ethd_loop *l) ETHD_RT {
   int mode = ETHD__LOOP_ASKED;
   return atomic_compare_exchange_strong_explicit(&l->mode, &mode, ETHD__LOOP_PARKED, memory_order_acq_rel,
                                                  memory_order_acquire) ||
@@ -238,7 +239,7 @@ int ethd__loop_turn(ethd_loop *l) {
 }
 
 /* Not while [main] has the device. */
-static int told_to_stop(ethd_loop *l) ETHD_RT {
+static bool told_to_stop(ethd_loop *l) ETHD_RT {
   return atomic_load_explicit(&l->stop, memory_order_relaxed) &&
          atomic_load_explicit(&l->mode, memory_order_acquire) == ETHD__LOOP_RUNS;
 }

@@ -4,6 +4,7 @@
 #define ETHD_LOOP_PARTS_H
 
 #include <stdatomic.h>
+#include <stdbool.h>
 
 #include "ethd/loop.h"
 #include "loop/rt.h"
@@ -28,7 +29,7 @@ typedef struct ethd__unit {
 typedef struct ethd__joints {
   int64_t time_ns, have;
   double q[2], dq[2];
-  int32_t known;
+  bool known;
 } ethd__joints;
 
 struct ethd_loop {
@@ -41,9 +42,10 @@ struct ethd_loop {
   int64_t missed; /* periods since the last step */
   int64_t step;   /* ns: duration of the last step */
   int64_t ramp;   /* armed ticks since the start */
-  int32_t dry;    /* 1: the next step is rehearsed first */
+  bool dry;       /* 1: the next step is rehearsed first */
   int32_t held;   /* ticks since the last that stepped */
-  int32_t marks, was_armed;
+  int32_t marks;
+  bool was_armed;
   int64_t late;    /* ns: the longest overrun since the last step */
   int64_t ahead;   /* ns by which CLOCK_BOOTTIME is ahead of the loop's clock, at most */
   int64_t slept;   /* ns for which the machine was suspended since the last step */
@@ -63,7 +65,8 @@ struct ethd_loop {
   ethd__loop_ring rows;
 
   /* [main] */
-  int32_t shortfalls, locked, has_control, has_watch;
+  int32_t shortfalls;
+  bool locked, has_control, has_watch;
   uint64_t faults[ETHD_FAULT_COUNT]; /* of controllers that were reset */
   uint32_t units;                    /* of blocking I/O that have a thread */
   ethd__unit unit[ETHD_UNITS_MAX];

@@ -1,6 +1,7 @@
 /* What a realtime thread asks of the machine, and what to say when it isn't granted. */
 #include <fcntl.h>
 #include <sched.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -47,18 +48,18 @@ const char *ethd_shortfall_mend(int32_t bit) { return place(bit) < 0 ? "" : word
 
 static int first_line(const char *path, char *out, int size) {
   FILE *file = fopen(path, "re");
-  int good = file && fgets(out, size, file);
+  bool good = file && fgets(out, size, file);
   if (file) fclose(file);
   return good;
 }
 
-static int kernel_is_realtime(void) {
+static bool kernel_is_realtime(void) {
 #if defined(__COBALT__)
-  return 1;
+  return true;
 #else
   char line[16];
   struct utsname name;
-  if (first_line("/sys/kernel/realtime", line, sizeof line) && line[0] == '1') return 1;
+  if (first_line("/sys/kernel/realtime", line, sizeof line) && line[0] == '1') return true;
   return uname(&name) == 0 && strstr(name.version, "PREEMPT_RT");
 #endif
 }
@@ -77,16 +78,16 @@ static int highest_isolated(void) {
 }
 
 /* The calling thread tries for the other, and comes back. */
-static int may_run_on(int cpu) {
+static bool may_run_on(int cpu) {
   cpu_set_t before, one;
   CPU_ZERO(&one);
   CPU_SET((unsigned)cpu, &one);
-  if (sched_getaffinity(0, sizeof before, &before) != 0) return 0;
-  if (sched_setaffinity(0, sizeof one, &one) != 0) return 0;
+  if (sched_getaffinity(0, sizeof before, &before) != 0) return false;
+  if (sched_setaffinity(0, sizeof one, &one) != 0) return false;
   return sched_setaffinity(0, sizeof before, &before) == 0;
 }
 
-static int hold_dma_latency(ethd_loop *l) {
+static bool hold_dma_latency(ethd_loop *l) {
   l->dma_latency = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
   return l->dma_latency >= 0 &&
          write(l->dma_latency, &l->def.dma_latency, sizeof l->def.dma_latency) == sizeof l->def.dma_latency;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <sched.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -202,12 +203,12 @@ ethd_status ethd_loop_start(ethd_loop *l, ethd_error *error) {
 /* ---- while it runs ---- */
 
 /* The loop lets go between two ticks; then device and controller are [main]'s. */
-static int take_over(ethd_loop *l) {
+static bool take_over(ethd_loop *l) {
   int asked = ETHD__LOOP_ASKED;
   if (!l->has_control || ethd_loop_ended(l)) return l->def.clock != NULL;
   atomic_store_explicit(&l->mode, ETHD__LOOP_ASKED, memory_order_release);
   for (int i = 0; i < PATIENCE; i++) {
-    if (atomic_load_explicit(&l->mode, memory_order_acquire) == ETHD__LOOP_PARKED) return 1;
+    if (atomic_load_explicit(&l->mode, memory_order_acquire) == ETHD__LOOP_PARKED) return true;
     pause_a_little();
   }
   return !atomic_compare_exchange_strong(&l->mode, &asked, ETHD__LOOP_RUNS);

@@ -1,6 +1,7 @@
 #include "proximity_ring/calibration_fit.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "ethd/maths.h"
@@ -26,7 +27,7 @@ typedef struct pair {
   double above, distance;
 } pair;
 
-static int usable(const ethd__calibration *c, const ethd__place_reading *place, int k, pair *out) {
+static bool usable(const ethd__calibration *c, const ethd__place_reading *place, int k, pair *out) {
   *out = (pair){place->counts[k] - c->sensors[k].dark, place->distance[k]};
   return place->counts[k] > 0 && place->counts[k] < CEILING && out->above > 1 && isfinite(out->distance);
 }

@@ -1,16 +1,17 @@
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "record/mcap_parts.h"
 
-static int room_for(ethd__bytes *b, size_t more) {
-  if (b->length + more <= b->room) return 1;
+static bool room_for(ethd__bytes *b, size_t more) {
+  if (b->length + more <= b->room) return true;
   size_t room = 2 * b->room + more + 256;
   char *at = realloc(b->at, room);
-  if (!at) return 0;
+  if (!at) return false;
   b->at = at;
   b->room = room;
-  return 1;
+  return true;
 }
 
 void ethd__mcap_put(ethd_mcap *m, ethd__bytes *b, const void *data, size_t length) {

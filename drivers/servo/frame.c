@@ -1,6 +1,7 @@
 #include "servo/frame.h"
 
 #include <modbus/modbus.h>
+#include <stdbool.h>
 #include <string.h>
 
 #define HEAD 6 /* bytes of a tcp frame before the unit */
@@ -98,11 +99,11 @@ int ethd__servo_frame_whole(const ethd__servo_map *map, const ethd__servo_frame 
 static int refusal(uint8_t code) { return code >= 1 && code <= 11 ? MODBUS_ENOBASE + code : EMBBADEXC; }
 
 /* The answer is to this question: same unit, same function, same number, as many bytes as were asked for. */
-static int is_to(const ethd__servo_map *map, const ethd__servo_frame *q, const uint8_t *a, int length) {
+static bool is_to(const ethd__servo_map *map, const ethd__servo_frame *q, const uint8_t *a, int length) {
   int h = head(map), read = q->bytes[h + 1] != WRITE;
-  if (h && (memcmp(a, q->bytes, 4) != 0 || (int)get(a + 4) != length - h)) return 0;
-  if (a[h] != q->bytes[h] || (a[h + 1] & ~REFUSED) != q->bytes[h + 1]) return 0;
-  if (a[h + 1] & REFUSED) return 1;
+  if (h && (memcmp(a, q->bytes, 4) != 0 || (int)get(a + 4) != length - h)) return false;
+  if (a[h] != q->bytes[h] || (a[h + 1] & ~REFUSED) != q->bytes[h + 1]) return false;
+  if (a[h + 1] & REFUSED) return true;
   return read ? a[h + 2] == q->answer - h - 3 - tail(map) : memcmp(a + h + 2, q->bytes + h + 2, 4) == 0;
 }
 

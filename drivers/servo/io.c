@@ -11,8 +11,8 @@
 static void command(ethd__servo_device *d, int64_t now_ns, double torque[2]) {
   int fresh = ethd_cell_take(d->commands, &d->command) == ETHD_OK;
   const ethd__servo_command *c = &d->command;
-  int good = !atomic_load_explicit(&d->safe, memory_order_relaxed) && now_ns - c->stamp_ns <= ethd__servo_old(d) &&
-             c->epoch == atomic_load_explicit(&d->epoch, memory_order_relaxed);
+  bool good = !atomic_load_explicit(&d->safe, memory_order_relaxed) && now_ns - c->stamp_ns <= ethd__servo_old(d) &&
+              c->epoch == atomic_load_explicit(&d->epoch, memory_order_relaxed);
   for (int i = 0; i < 2; i++) torque[i] = good ? c->torque[i] : 0;
   /* a while after one of the loop's ticks: a command's instant says where those are */
   int64_t behind = fresh ? (now_ns - c->stamp_ns) % d->period_ns - (int64_t)(PHASE * (double)d->period_ns) : 0;

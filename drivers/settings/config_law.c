@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -24,7 +25,7 @@ ethd_status ethd__config_choose(const ethd_config *config, const ethd__config_ke
 
 static const char *const preset_keys[] = {"eps_max", "t_max"};
 
-static int is_paper(const ethd_config *config) {
+static bool is_paper(const ethd_config *config) {
   const ethd_ini_key *preset = ethd_ini_find(&ethd__config_whole(config)->ini, "transition", "preset");
   return preset && strcmp(preset->value, "paper") == 0;
 }

@@ -14,7 +14,7 @@ typedef struct device {
   ethd_sim_def def;
   ethd_sim_tap tap;
   int32_t safe;
-  int32_t written;   /* 1: `held` and `due_ns` are known */
+  bool written;      /* 1: `held` and `due_ns` are known */
   int64_t due_ns;    /* the tick at which the next read is expected */
   ethd_command held; /* of the last write */
 } device;

@@ -1,5 +1,6 @@
 #include <limits.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -48,11 +49,11 @@ static ethd_status set(const char *path, const ethd__plant_row *row, const ethd_
   return set_number(path, row, key, at, message);
 }
 
-static int is_known(const ethd_ini_key *key) {
+static bool is_known(const ethd_ini_key *key) {
   for (size_t i = 0; i < ethd__plant_row_count; i++)
     if (!strcmp(ethd__plant_rows[i].section, key->section) && !strcmp(ethd__plant_rows[i].param.name, key->key))
-      return 1;
-  return 0;
+      return true;
+  return false;
 }
 
 static ethd_status fill(const char *path, const ethd_ini *ini, ethd_plant *out, char *message) {

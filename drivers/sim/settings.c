@@ -1,6 +1,7 @@
 #include "sim/settings.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "sim/plant.h"
@@ -25,7 +26,9 @@ static ethd_status refuse(ethd_error *error, ethd_status status, const ethd_sett
   return status;
 }
 
-static int is_whole(int i, double value) { return (i != ETHD__SIM_SEED && i != ETHD__SIM_TAP) || value == rint(value); }
+static bool is_whole(int i, double value) {
+  return (i != ETHD__SIM_SEED && i != ETHD__SIM_TAP) || value == rint(value);
+}
 
 static ethd_status set_number(const ethd_setting *s, ethd__sim_settings *out, ethd_error *error) {
   int i = ethd_params_find(ethd__sim_params, ETHD__SIM_PARAMS, s->key);

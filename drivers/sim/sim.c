@@ -1,3 +1,4 @@
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,16 +37,16 @@ void ethd_sim_destroy(ethd_sim *sim) { free(sim); }
 
 /* ---- start ---- */
 
-static int samples_rise(const ethd_path *path) {
+static bool samples_rise(const ethd_path *path) {
   for (size_t i = 0; i < path->sample_count; i++) {
     const ethd_path_sample *s = path->samples + i;
-    if (!(isfinite(s->t) && isfinite(s->x) && isfinite(s->y))) return 0;
-    if (i && !(s[0].t > s[-1].t)) return 0;
+    if (!(isfinite(s->t) && isfinite(s->x) && isfinite(s->y))) return false;
+    if (i && !(s[0].t > s[-1].t)) return false;
   }
   return 1;
 }
 
-static int shape_is_good(const ethd_path *p) {
+static bool shape_is_good(const ethd_path *p) {
   return isfinite(p->from.x) && isfinite(p->from.y) && isfinite(p->to_x) && p->speed > 0 && isfinite(p->speed) &&
          p->ramp_up >= 0 && isfinite(p->ramp_up) && p->ramp_down >= 0 && isfinite(p->ramp_down);
 }

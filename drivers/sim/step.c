@@ -1,4 +1,5 @@
 /* Steps by power series, with changes of touch located. */
+#include <stdbool.h>
 #include <string.h>
 
 #include "sim/series.h"
@@ -116,13 +117,13 @@ static void move(const ethd__body *b, const ethd__series *s, const ethd__sim_mot
 }
 
 /* Friction far from its turn is constant to the last digit, and a series can't see the turn ahead. */
-static int turns(const ethd__body *b, double most, const ethd__sim_state *from, const ethd__sim_state *to) {
+static bool turns(const ethd__body *b, double most, const ethd__sim_state *from, const ethd__sim_state *to) {
   double before[2], after[2];
   ethd__body_joints(b, from->v, before);
   ethd__body_joints(b, to->v, after);
   for (int j = 0; j < 2; j++) {
     double u = fabs(b->sharpness[j] * before[j]), moved = fabs(b->sharpness[j] * (after[j] - before[j]));
-    if (b->friction[j] > 0 && !(moved <= fmax(most, u - RUBBING))) return 1;
+    if (b->friction[j] > 0 && !(moved <= fmax(most, u - RUBBING))) return true;
   }
   return 0;
 }

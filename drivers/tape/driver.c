@@ -15,6 +15,7 @@
    on the standard input of ethd-run --virtual; what is left out shows as a difference. ethd-replay --verify takes
    the commands from the recording itself. */
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,7 +33,7 @@ typedef struct replay {
   double share;    /* of the last command */
   uint64_t compared, different;
   double first; /* row that differs, -1: none */
-  int32_t runs; /* 1: started anew while it plays, after a fault: it plays on */
+  bool runs;    /* 1: started anew while it plays, after a fault: it plays on */
   char remark[288];
 } replay;
 
@@ -100,14 +101,14 @@ static ethd_status replay_read(void *device, int64_t now_ns, ethd_sense *out) ET
   return ETHD_OK;
 }
 
-static int same_share(const double torque[2], const double recorded[2], double share) ETHD_RT {
+static bool same_share(const double torque[2], const double recorded[2], double share) ETHD_RT {
   for (int j = 0; j < 2; j++)
-    if (!(fabs(torque[j] - share * recorded[j]) <= 1e-15 * fabs(recorded[j]))) return 0;
-  return 1;
+    if (!(fabs(torque[j] - share * recorded[j]) <= 1e-15 * fabs(recorded[j]))) return false;
+  return true;
 }
 
 /* The command of a row; in *share what of the recorded torque it lets through. */
-static int is_same(const replay *r, const ethd_trace *row, const ethd_command *c, double *share) ETHD_RT {
+static bool is_same(const replay *r, const ethd_trace *row, const ethd_command *c, double *share) ETHD_RT {
   int big = fabs(row->tau[1]) > fabs(row->tau[0]);
   *share = r->share;
   if (c->safe) {

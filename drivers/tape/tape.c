@@ -1,5 +1,6 @@
 #include "tape/tape.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,7 +32,7 @@ static ethd_status take_limits(const ethd__record_events *events, ethd_limits *o
   return status;
 }
 
-static int changes(const ethd__record_event *e) { return strcmp(e->kind, "fault") != 0; }
+static bool changes(const ethd__record_event *e) { return strcmp(e->kind, "fault") != 0; }
 
 /* The first that somebody gave while it ran. */
 static void take_change(const ethd__record_events *events, ethd__tape *tape) {
