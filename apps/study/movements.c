@@ -15,7 +15,7 @@ static char *folder_of(const ethd__protocol *p) {
   return folder;
 }
 
-static bool is_csv(const struct dirent *entry) {
+static int is_csv(const struct dirent *entry) {
   size_t n = strlen(entry->d_name);
   return n > 4 && entry->d_name[0] != '.' && !strcmp(entry->d_name + n - 4, ".csv");
 }

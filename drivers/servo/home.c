@@ -2,18 +2,13 @@
 #include <math.h>
 #include <time.h>
 
+#include "clock.h"
 #include "servo/device.h"
 #include "servo/words.h"
 #include "text/error_text.h"
 
 #define PAUSE 200000 /* ns */
 #define FAILURES 20  /* bad turns in a row, which end it */
-
-static int64_t monotonic(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
 
 int32_t ethd__servo_lost(const ethd__servo_device *d) {
   for (int i = 0; i < 2; i++)
@@ -25,10 +20,10 @@ int32_t ethd__servo_lost(const ethd__servo_device *d) {
 
 static ethd_status turn(ethd__servo_device *d, const double torque[2]) {
   const struct timespec pause = {.tv_nsec = PAUSE};
-  int64_t begin = monotonic();
+  int64_t begin = ethd__clock_now();
   ethd_status status = ethd__servo_turn(d, begin, torque);
   do nanosleep(&pause, NULL);
-  while (monotonic() - begin < d->exchange_ns);
+  while (ethd__clock_now() - begin < d->exchange_ns);
   return status;
 }
 
