@@ -39,10 +39,8 @@ void ethd__fail(int code, const char *format, ...) {
   char message[ETHD_MESSAGE_MAX];
   va_list args;
   va_start(args, format);
-  vsnprintf(message, sizeof message, format, args);
+  ethd__say_all(message, format, args);
   va_end(args);
-  for (char *p = message; *p; p++)
-    if ((unsigned char)*p < ' ') *p = '?';
   fflush(stdout);
   fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);
   exit(code);

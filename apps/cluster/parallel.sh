@@ -8,11 +8,15 @@ set -eu
 study=$1 participants=$2 out=$3 workers=${4:-$(nproc)}
 program=${ETHD_STUDY:-ethd-study}
 
+case $workers in '' | *[!0-9]*) echo "parallel.sh: \"$workers\": a number of workers is needed" >&2; exit 2 ;; esac
+
+# What runs for each number that comes: names stand in the environment, since GNU parallel makes a shell's command of
+# its words, and it as well as xargs replaces {} in them.
+export ETHD_PROGRAM="$program" ETHD_FILE="$study" ETHD_PEOPLE="$participants" ETHD_WORKERS="$workers" ETHD_OUT="$out"
+export ETHD_SHARD='exec "$ETHD_PROGRAM" "$ETHD_FILE" --simulate "$ETHD_PEOPLE" --shard "$1/$ETHD_WORKERS" --out "$ETHD_OUT"'
 if parallel --version 2>/dev/null | grep -q GNU; then
-  seq "$workers" | parallel --will-cite --halt now,fail=1 -j "$workers" \
-    "$program" "$study" --simulate "$participants" --shard "{}/$workers" --out "$out"
+  seq "$workers" | parallel --will-cite --halt now,fail=1 -j "$workers" 'sh -c "$ETHD_SHARD" shard {}'
 else
-  seq "$workers" | xargs -P "$workers" -I{} \
-    "$program" "$study" --simulate "$participants" --shard "{}/$workers" --out "$out"
+  seq "$workers" | xargs -P "$workers" -n 1 sh -c "$ETHD_SHARD" shard
 fi
 "$program" --merge "$out"

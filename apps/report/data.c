@@ -1,6 +1,7 @@
 #include "report/data.h"
 
 #include <math.h>
+#include <search.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,42 +9,6 @@
 #include "study/protocol.h"
 #include "text/error_text.h"
 #include "text/file_name.h"
-
-/* ---- quantities ---- */
-
-#define OF(name, expression) \
-  static double name(const ethd__metrics *m) { return expression; }
-OF(v_rvo, m->v_rvo)
-OF(v_of, m->v_of)
-OF(d_max, 1e3 * m->d_max)
-OF(v_rmin, m->v_rmin)
-OF(delta_s, m->delta_s)
-OF(eps, 1e3 * m->eps)
-OF(delay, 1e3 * (m->t_of - m->t_seen))
-OF(force, m->peak_force)
-
-const ethd__quantity ethd__quantities[ETHD_QUANTITIES] = {
-    [ETHD_Q_V_RVO] = {"v_rvo", "Ring's speed as it meets the wall", "m/s", v_rvo, 3},
-    [ETHD_Q_V_OF] = {"v_of", "Ring's speed as the finger touches it", "m/s", v_of, 3},
-    [ETHD_Q_D_MAX] = {"d_max", "First rebound", "mm", d_max, 3},
-    [ETHD_Q_V_RMIN] = {"v_rmin", "Ring's smallest speed after the touch", "m/s", v_rmin, 3},
-    [ETHD_Q_DELTA_S] = {"delta_s", "Time of braking", "ms", delta_s, 2},
-    [ETHD_Q_EPS] = {"eps", "Offset of the wall", "mm", eps, 3},
-    [ETHD_Q_DELAY] = {"delay", "Touch felt after it is seen", "ms", delay, 1},
-    [ETHD_Q_FORCE] = {"peak_force", "Largest rendered force", "N", force, 2},
-};
-
-size_t ethd__group_values(const ethd__group *group, const ethd__quantity *quantity, double *out, uint32_t *person) {
-  size_t n = 0;
-  for (size_t i = 0; i < group->cell.count; i++) {
-    const ethd__metrics *m = &group->cell.results[i].metrics;
-    double value = quantity->of(m);
-    if (m->reason != ETHD_TAP_OK || isnan(value)) continue;
-    if (person) person[n] = group->who[i].person;
-    out[n++] = value;
-  }
-  return n;
-}
 
 /* ---- reading ---- */
 
@@ -76,6 +41,7 @@ typedef struct reading {
   const ethd_plant *plant;
   size_t point;
   int word[WORDS], figure[FIGURES], participant, part, at_point;
+  void *ids; /* a tree of participants */
   char *message;
 } reading;
 
@@ -129,15 +95,21 @@ static ethd_status read_result(const reading *r, size_t row, ethd__result *out) 
   return ETHD_OK;
 }
 
-/* Participants' rows stand together, but for another point's. */
-static uint32_t person_of(reading *r, size_t row) {
+static int by_id(const void *a, const void *b) { return strcmp(*(const char *const *)a, *(const char *const *)b); }
+
+/* The tree's entries are places in data->people. False: no memory. */
+static bool find_person(reading *r, size_t row, uint32_t *out) {
   ethd__data *data = r->out;
-  const char *id = ethd__sheet_cell(&data->sheet, row, r->participant);
-  for (size_t i = data->people_count; i-- > 0;)
-    if (!strcmp(data->people[i], id)) return (uint32_t)i;
-  data->people[data->people_count] = id;
-  return (uint32_t)data->people_count++;
+  const char **next = &data->people[data->people_count];
+  *next = ethd__sheet_cell(&data->sheet, row, r->participant);
+  const char ***found = tsearch(next, &r->ids, by_id);
+  if (!found) return false;
+  *out = (uint32_t)(*found - data->people);
+  data->people_count += *found == next;
+  return true;
 }
+
+static void keep(void *place) { (void)place; }
 
 static bool grow(ethd__group *group) {
   size_t n = group->cell.count;
@@ -165,15 +137,10 @@ static ethd_status check_words(const reading *r, size_t row) {
   return ETHD_OK;
 }
 
+static ethd_status no_memory(const reading *r) { return ethd__no_memory(r->message, r->out->sheet.path); }
+
 static ethd_status take(reading *r, size_t row) {
-  double point = 0;
   const ethd__sheet *sheet = &r->out->sheet;
-  if (r->at_point >= 0 && !ethd__sheet_number(sheet, row, r->at_point, &point))
-    return refuse(r, row, "point", ethd__sheet_cell(sheet, row, r->at_point), "a number");
-  if (!(point >= 0 && point <= ETHD_STUDY_POINTS))
-    return refuse(r, row, "point", ethd__sheet_cell(sheet, row, r->at_point), "a point of the grid");
-  if (point >= (double)r->out->points) r->out->points = (size_t)point + 1;
-  if (point != (double)r->point) return ETHD_OK;
   ethd_status status = check_words(r, row);
   if (status) return status;
   bool training = !strcmp(ethd__sheet_cell(sheet, row, r->part), "training");
@@ -182,11 +149,45 @@ static ethd_status take(reading *r, size_t row) {
   ethd__group *group = group_of(r, row);
   if (!group)
     return refuse(r, row, "speed", ethd__sheet_cell(sheet, row, r->word[SPEED]), "low, high or a number, in 64 cells,");
-  if (!grow(group)) return ethd__no_memory(r->message, sheet->path);
+  if (!grow(group)) return no_memory(r);
   status = read_result(r, row, &group->cell.results[group->cell.count]);
   if (status) return status;
-  group->who[group->cell.count++] = (ethd__who){person_of(r, row), row};
+  ethd__who *who = &group->who[group->cell.count++];
+  who->row = row;
+  return find_person(r, row, &who->person) ? ETHD_OK : no_memory(r);
+}
+
+/* ---- points of a grid ---- */
+
+static ethd_status point_of(const reading *r, size_t row, size_t *out) {
+  double point = 0;
+  if (r->at_point >= 0 &&
+      (!ethd__sheet_number(&r->out->sheet, row, r->at_point, &point) || !(point >= 0 && point <= ETHD_STUDY_POINTS)))
+    return refuse(r, row, "point", ethd__sheet_cell(&r->out->sheet, row, r->at_point), "a point of the grid");
+  *out = (size_t)point;
   return ETHD_OK;
+}
+
+/* The rows in the order of their points: each point reads its own alone. */
+static ethd_status index_points(const reading *r) {
+  ethd__data *data = r->out;
+  size_t rows = data->sheet.rows, *point = malloc((rows + 1) * sizeof *point);
+  ethd_status status = ETHD_OK;
+  data->points = 1;
+  data->row = malloc((rows + 1) * sizeof *data->row);
+  for (size_t i = 0; point && !status && i < rows; i++) {
+    status = point_of(r, i, &point[i]);
+    if (!status && point[i] >= data->points) data->points = point[i] + 1;
+  }
+  data->first = calloc(data->points + 2, sizeof *data->first);
+  if (!status && (!point || !data->row || !data->first)) status = no_memory(r);
+  if (!status) { /* first[p + 1] counts up from where p begins to where it ends */
+    for (size_t i = 0; i < rows; i++) data->first[point[i] + 2]++;
+    for (size_t p = 2; p < data->points + 2; p++) data->first[p] += data->first[p - 1];
+    for (size_t i = 0; i < rows; i++) data->row[data->first[point[i] + 1]++] = i;
+  }
+  free(point);
+  return status;
 }
 
 /* Low before high, then as found; strategies by name from the one that brakes least. */
@@ -200,13 +201,15 @@ static int by_speed(const void *a, const void *b) {
   return i != j ? i - j : strcmp(p->cell.law, q->cell.law);
 }
 
-/* out->sheet is there. */
+/* out->sheet and its points are there. */
 static ethd_status take_all(reading *r) {
   ethd__data *out = r->out;
-  out->points = 1;
-  out->people = calloc(out->sheet.rows + 1, sizeof *out->people);
-  ethd_status status = out->people ? find_columns(r) : ethd__no_memory(r->message, out->sheet.path);
-  for (size_t row = 0; !status && row < out->sheet.rows; row++) status = take(r, row);
+  size_t at = r->point < out->points ? out->first[r->point] : 0;
+  size_t end = r->point < out->points ? out->first[r->point + 1] : 0;
+  out->people = calloc(end - at + 1, sizeof *out->people);
+  ethd_status status = out->people ? ETHD_OK : no_memory(r);
+  for (; !status && at < end; at++) status = take(r, out->row[at]);
+  tdestroy(r->ids, keep);
   if (!status && !out->group_count)
     status = ethd__say(r->message, ETHD_E_RANGE, "%s: no test tap at point %zu of %zu", out->sheet.path, r->point,
                        out->points);
@@ -224,16 +227,20 @@ ethd_status ethd__data_read(const char *path, const ethd_plant *plant, size_t po
   reading r = {.out = out, .plant = plant, .point = point, .message = message};
   memset(out, 0, sizeof *out);
   ethd_status status = ethd__sheet_read(path, &out->sheet, message);
+  if (status) return status;
+  status = find_columns(&r);
+  if (!status) status = index_points(&r);
+  if (status) ethd__data_free(out);
   return status ? status : take_all(&r);
 }
 
 ethd_status ethd__data_at(const ethd__data *whole, const ethd_plant *plant, size_t point, ethd__data *out,
                           char message[ETHD_MESSAGE_MAX]) {
   reading r = {.out = out, .plant = plant, .point = point, .message = message};
-  memset(out, 0, sizeof *out);
-  out->sheet = whole->sheet;
-  out->borrowed = true;
-  return take_all(&r);
+  *out = (ethd__data){
+      .sheet = whole->sheet, .row = whole->row, .first = whole->first, .points = whole->points, .borrowed = true};
+  ethd_status status = find_columns(&r);
+  return status ? status : take_all(&r);
 }
 
 void ethd__data_free(ethd__data *data) {
@@ -242,8 +249,13 @@ void ethd__data_free(ethd__data *data) {
     free(data->group[i].who);
   }
   free(data->people);
-  if (!data->borrowed) ethd__sheet_free(&data->sheet);
+  if (!data->borrowed) {
+    ethd__sheet_free(&data->sheet);
+    free(data->row);
+    free(data->first);
+  }
   data->people = NULL;
+  data->row = data->first = NULL;
   data->group_count = 0;
 }
 

@@ -22,7 +22,8 @@ typedef struct ethd__group {
 
 typedef struct ethd__data {
   ethd__sheet sheet;
-  bool borrowed;                        /* the sheet is another's */
+  size_t *row, *first;                  /* rows of point p: row[first[p]] up to row[first[p + 1]] */
+  bool borrowed;                        /* sheet, row and first are another's */
   ethd__group group[ETHD_REPORT_CELLS]; /* speeds in order of the table, strategies within */
   size_t group_count;
   const char **people; /* ids */

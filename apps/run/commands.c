@@ -102,7 +102,7 @@ static void enable(ethd__session *s, ethd__commands *c, char *rest) {
     ethd_status failure = ethd__session_enable(s);
     const char *why = s->driver->why(s->device);
     if (failure)
-      answer("error: %s%s%s", ethd_status_sentence(failure), why[0] ? ": " : "", why);
+      answer("error: starting the device again: %s%s%s", ethd_status_sentence(failure), why[0] ? ": " : "", why);
     else
       answer("ok: enabled");
   }

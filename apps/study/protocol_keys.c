@@ -21,10 +21,10 @@ struct key_row {
 };
 
 ethd_status ethd__entry_refuse(const ethd__entry *e, ethd_status status, const char *format, ...) {
-  char what[ETHD_MESSAGE_MAX / 2];
+  char what[ETHD_MESSAGE_MAX];
   va_list args;
   va_start(args, format);
-  vsnprintf(what, sizeof what, format, args);
+  ethd__say_all(what, format, args);
   va_end(args);
   return ethd__say(e->message, status, "%s:%d: %s.%s: %s", e->file, e->key->line, e->key->section, e->key->key, what);
 }

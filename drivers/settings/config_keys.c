@@ -14,7 +14,7 @@ ethd_status ethd__key_refuse(const ethd__config_key *key, ethd_status status, co
   char what[ETHD_MESSAGE_MAX];
   va_list args;
   va_start(args, format);
-  vsnprintf(what, sizeof what, format, args);
+  ethd__say_all(what, format, args);
   va_end(args);
   if (!key->file) return ethd__say(key->message, status, "%s.%s: %s", key->section, key->key, what);
   return ethd__say(key->message, status, "%s:%d: %s.%s: %s", key->file, key->line, key->section, key->key, what);

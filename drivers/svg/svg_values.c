@@ -61,11 +61,11 @@ bool ethd__svg_property(ethd__attributes a, const char *name, char value[64]) {
 
 /* ---- numbers ---- */
 
-/* Leaves *p behind the number itself. */
+/* Leaves *p behind the number itself. A text holds many: none but the next is looked at. */
 static bool number(const char **p, double *out) {
   char text[128];
-  const char *start = *p, *end = start + (*start == '+' || *start == '-');
-  end = ethd__decimal(end, end + strlen(end));
+  const char *start = *p, *limit = start + strnlen(start, sizeof text);
+  const char *end = ethd__decimal(start + (*start == '+' || *start == '-'), limit);
   if (!end || (size_t)(end - start) >= sizeof text) return false;
   memcpy(text, start, (size_t)(end - start));
   text[end - start] = 0;

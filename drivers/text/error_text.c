@@ -2,20 +2,37 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+#define HEAD 200 /* bytes of a cut message before the cut */
 
 static void keep_one_line(char *text) {
   for (; *text; text++)
     if ((unsigned char)*text < 0x20 || *text == 0x7f) *text = '?';
 }
 
+/* A path may be longer than a message: what stands before and behind its middle says more. */
+void ethd__say_all(char message[ETHD_MESSAGE_MAX], const char *format, va_list args) {
+  char *whole;
+  int length = vasprintf(&whole, format, args);
+  if (length < 0) {
+    snprintf(message, ETHD_MESSAGE_MAX, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+    return;
+  }
+  if (length < ETHD_MESSAGE_MAX)
+    memcpy(message, whole, (size_t)length + 1);
+  else
+    snprintf(message, ETHD_MESSAGE_MAX, "%.*s...%s", HEAD, whole, whole + length - (ETHD_MESSAGE_MAX - 4 - HEAD));
+  free(whole);
+  keep_one_line(message);
+}
+
 ethd_status ethd__say(char message[ETHD_MESSAGE_MAX], ethd_status status, const char *format, ...) {
   va_list args;
   va_start(args, format);
-  int length = vsnprintf(message, ETHD_MESSAGE_MAX, format, args);
+  ethd__say_all(message, format, args);
   va_end(args);
-  if (length >= ETHD_MESSAGE_MAX) memcpy(message + ETHD_MESSAGE_MAX - 4, "...", 4);
-  keep_one_line(message);
   return status;
 }
 

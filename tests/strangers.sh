@@ -1,0 +1,158 @@
+#!/bin/sh
+# Folders, drawings and names from a stranger: they are looked at and nothing of theirs runs, nothing is written elsewhere,
+# and a terminal obeys none of their words.
+set -u
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+bin=$BUILD/bin
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+python=${PYTHON:-python3}
+
+# Every way to run a command or to leave the folder ends in this file.
+canary=$folder/canary
+export canary
+quiet() { # WHAT
+  [ ! -e "$canary" ] || { fail "$1: a command of theirs ran"; rm -f "$canary"; }
+}
+
+# No script of the plots has a shell: neither system(), nor backquotes, nor a file that is a command.
+! grep -nE 'system\(|`|"<|output *"\||shell|popen' apps/plot/*.gp || fail "a plot script runs commands"
+# One module runs gnuplot and one writes the page.
+[ "$(grep -l 'spawnp' -r apps drivers --include='*.c')" = apps/report/picture.c ] || fail "gnuplot is run elsewhere"
+[ -z "$(grep -nE 'f(printf|puts|putc|write)\([^;]*page' -r apps/report apps/ethd-report.c | grep -v '^apps/report/html.c')" ] ||
+  fail "a page is written elsewhere: $(grep -nE 'f(printf|puts|putc|write)\([^;]*page' -r apps/report apps/ethd-report.c)"
+
+# ---- a study's folder ----
+printf '[study]\nname = small\nparticipants = 2\ntaps = 1\nattempts = 8\ntraining = 1\nsurvey = off\n' >"$folder/small.study"
+"$bin/ethd-study" --quiet "$folder/small.study" --out "$folder/good" >"$folder/said" 2>&1 || fail "$(cat "$folder/said")"
+pictures=no
+gnuplot -e 'set terminal pngcairo' </dev/null 2>/dev/null && pictures=yes
+copy() { rm -rf "$folder/bad"; cp -r "$folder/good" "$folder/bad"; }
+report() { "$bin/ethd-report" "$folder/bad" --force "$@" >"$folder/said" 2>"$folder/err"; }
+
+# A plant's name is a word for the picture; the same in every quoting that a shell or gnuplot knows.
+for plant in "n'; system('touch \$canary'); x='" 'n"; system("touch $canary"); x="' '`touch $canary`' '$(touch $canary)' "n'.system('touch \$canary').'"; do
+  copy
+  printf "[device]\nplant = %s\n" "$plant" >>"$folder/bad/study.ini"
+  report
+  code=$?
+  [ $pictures = no ] || [ $code = 0 ] || fail "plant $plant: exit $code: $(cat "$folder/err")"
+  quiet "plant $plant"
+done
+
+# A law's name stands in file names.
+for law in '/../../../x' "x'; system('touch \$canary'); '" '|touch $canary' '<touch $canary' '-e'; do
+  copy
+  awk -F, -v OFS=, -v law="$law" 'NR > 1 { $5 = law } 1' "$folder/good/taps.csv" >"$folder/bad/taps.csv"
+  report
+  code=$?
+  [ $code = 2 ] && grep -q 'taps.csv:[0-9]*: transition: found .*, a word of up to 31 letters' "$folder/err" ||
+    fail "transition $law: exit $code: $(cat "$folder/err")"
+  quiet "transition $law"
+  [ "$(find "$folder" -newer "$folder/bad/taps.csv" -name '*trace*' ! -path '*/report/*' | wc -l)" = 0 ] || fail "$law: written elsewhere"
+done
+copy
+awk -F, -v OFS=, 'NR > 1 { $1 = "../../good/taps/P01" } 1' "$folder/good/taps.csv" >"$folder/bad/taps.csv"
+report && fail "a participant who is a path"
+grep -q 'participant: found' "$folder/err" || fail "a participant who is a path: $(cat "$folder/err")"
+
+# The configuration's words are text on the page.
+if [ $pictures = yes ]; then
+  copy
+  printf '[hand]\nsource = people\n' >>"$folder/bad/study.ini"
+  echo /nowhere >"$folder/bad/device.folder"
+  { cat "$folder/good/config.ini"; printf '\n[device]\ndriver = <script>alert(1)</script>&\n'; } | grep -v '^driver = sim' >"$folder/bad/config.ini"
+  report
+  page=$folder/bad/report/report.html
+  if [ -e "$page" ]; then
+    grep -q '&lt;script&gt;alert(1)&lt;/script&gt;&amp;' "$page" || fail "the driver isn't on the page"
+    ! grep -q '<script' "$page" || fail "the driver is markup on the page"
+  else
+    fail "a driver's name: $(cat "$folder/err")"
+  fi
+  # a folder and a picture whose names are commands
+  cp -r "$folder/good" "$folder/a 'b\`touch \$canary\`"
+  "$bin/ethd-report" "$folder/a 'b\`touch \$canary\`" --out "$folder/|touch \$canary;" >"$folder/said" 2>"$folder/err" || fail "names: $(cat "$folder/err")"
+  quiet "a folder's name"
+  [ -s "$folder/|touch \$canary;/report.html" ] || fail "no page in a folder with an odd name"
+fi
+
+# ---- plugins that a folder brings along ----
+cat >"$folder/evil.c" <<'END'
+#include <stdio.h>
+#include <stdlib.h>
+__attribute__((constructor)) static void run(void) { FILE *f = fopen(getenv("canary"), "w"); if (f) fclose(f); }
+int ethd_plugin;
+END
+${CC:-cc} -shared -fPIC -o "$folder/evil.so" "$folder/evil.c" 2>"$folder/err" || fail "$(cat "$folder/err")"
+copy
+printf '\n[plugins]\nfile = %s\n' "$folder/evil.so" >>"$folder/bad/config.ini"
+report && fail "a report with a plugin"
+grep -q 'config.ini:[0-9]*: plugins.file: .*evil.so is a program, .*--plugins' "$folder/err" || fail "a plugin: $(cat "$folder/err")"
+quiet "ethd-report"
+"$bin/ethd-tap" --taps 1 --transition offset --speed low --record "$folder/rec" >/dev/null || fail "a recording"
+printf '\n[plugins]\nfile = %s\n' "$folder/evil.so" >>"$folder/rec/config.ini"
+"$bin/ethd-replay" --verify "$folder/rec" >"$folder/said" 2>"$folder/err" && fail "a recording with a plugin is verified"
+grep -q 'evil.so is a program, .*--plugins' "$folder/err" || fail "a recording's plugin: $(cat "$folder/err")"
+"$bin/ethd-convert" "$folder/rec" "$folder/rec.csv" >"$folder/said" 2>&1 || fail "converting: $(cat "$folder/said")"
+"$bin/ethd-study" --merge "$folder/bad" >"$folder/said" 2>&1
+quiet "looking at a recording"
+"$bin/ethd-replay" --verify "$folder/rec" --plugins >"$folder/said" 2>"$folder/err"
+[ -e "$canary" ] || fail "--plugins doesn't load the plugin: the test sees nothing"
+rm -f "$canary"
+
+# ---- pictures ----
+echo 'halfplane -1 0 -0.238' >"$folder/wall.scene"
+for picture in '|touch $canary;.png' '<touch $canary.png' '| touch $canary #.png'; do
+  (cd "$folder" && "$bin/ethd-scene" info wall.scene --plot "$picture") >"$folder/said" 2>"$folder/err"
+  [ $? = 2 ] && grep -q -e '--plot: found .*, a file .png is needed' "$folder/err" || fail "--plot $picture: $(cat "$folder/err")"
+  (cd "$folder" && "$bin/ethd-calibrate" --self-test --csv ring.csv --plot "$picture") >"$folder/said" 2>"$folder/err"
+  [ $? = 2 ] || fail "ethd-calibrate --plot $picture: $(cat "$folder/err")"
+  quiet "--plot $picture"
+done
+if [ $pictures = yes ]; then
+  cp "$folder/wall.scene" "$folder/|touch \$canary;'.scene"
+  (cd "$folder" && "$bin/ethd-scene" info "|touch \$canary;'.scene" --plot "-odd'\`name\`.png") >"$folder/said" 2>&1 &&
+    [ -s "$folder/-odd'\`name\`.png" ] || fail "a scene of an odd name: $(cat "$folder/said")"
+  quiet "a scene's name"
+fi
+
+# ---- a study's and an output's name on many cores ----
+mkdir "$folder/a b;touch \$canary"
+cp "$folder/small.study" "$folder/a b;touch \$canary/s'{}.study"
+ETHD_STUDY=$bin/ethd-study sh apps/cluster/parallel.sh "$folder/a b;touch \$canary/s'{}.study" 2 "$folder/o {};touch \$canary" 2 >"$folder/said" 2>&1 ||
+  fail "parallel.sh: $(cat "$folder/said")"
+quiet "parallel.sh"
+[ -s "$folder/o {};touch \$canary/taps.csv" ] || fail "parallel.sh: no taps"
+
+# ---- a terminal ----
+cat >"$folder/terminal.py" <<'END'
+import os, pty, sys
+pid, fd = pty.fork()
+if pid == 0:
+    os.execv(sys.argv[2], sys.argv[2:])
+out = b""
+while True:
+    try:
+        data = os.read(fd, 65536)
+    except OSError:
+        break
+    if not data:
+        break
+    out += data
+os.waitpid(pid, 0)
+open(sys.argv[1], "wb").write(out)
+END
+odd=$(printf 'evil\033]0;owned\007\233\302\233.scene')
+cp "$folder/wall.scene" "$folder/$odd"
+"$python" "$folder/terminal.py" "$folder/tty" "$bin/ethd-scene" info "$folder/$odd" </dev/null >/dev/null 2>&1
+grep -aq 'evil?\]0;owned?' "$folder/tty" || fail "on a terminal: $(od -c "$folder/tty" | head)"
+"$python" -c 'import sys; d = open(sys.argv[1], "rb").read().replace(b"\r\n", b""); sys.exit(any(c < 32 and c != 9 for c in d) or b"\xc2\x9b" in d)' "$folder/tty" ||
+  fail "a terminal gets control characters: $(od -c "$folder/tty" | head)"
+"$python" "$folder/terminal.py" "$folder/tty" "$bin/ethd-scene" info "$folder/no$odd" </dev/null >/dev/null 2>&1
+! grep -aq "$(printf '\033')" "$folder/tty" || fail "a refusal on a terminal: $(od -c "$folder/tty" | head)"
+"$bin/ethd-scene" info "$folder/$odd" | grep -aq "$(printf 'evil\033')" || fail "a pipe doesn't get the name as it is"
+
+[ $failed = 0 ] && [ $pictures = no ] && { echo "SKIP: gnuplot (Debian: gnuplot-nox); all else passed"; exit 77; }
+exit $failed
