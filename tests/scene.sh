@@ -94,6 +94,44 @@ if gnuplot -e 'set terminal pngcairo' </dev/null 2>/dev/null; then
     "$program" info $scene.scene --plot "$scene's.png" >plot.txt 2>&1 || fail "no picture of $scene: $(cat plot.txt)"
     [ "$(head -c 4 "$scene's.png" | tail -c 3)" = PNG ] || fail "$scene's picture is no PNG"
   done
+  # The scenes that came along: half-planes alone. What is drawn is told by its colour: how many of its pixels, and where.
+  cat >pixels.py <<'END'
+import struct, sys, zlib
+data = open(sys.argv[1], "rb").read()
+w, h, depth, kind = struct.unpack(">IIBB", data[16:26])
+assert (w, h) == (1400, 1250) and depth == 8 and kind in (2, 6), (w, h, depth, kind)
+at, packed = 8, b""
+while at < len(data):
+    n, = struct.unpack(">I", data[at:at + 4])
+    if data[at + 4:at + 8] == b"IDAT": packed += data[at + 8:at + 8 + n]
+    at += n + 12
+raw, size = zlib.decompress(packed), 3 if kind == 2 else 4
+rows, before, line = [], bytearray(w * size), w * size + 1
+for y in range(h):
+    f, row = raw[y * line], bytearray(raw[y * line + 1:(y + 1) * line])
+    for i in range(len(row)) if f else ():
+        a, b, c = (row[i - size], before[i], before[i - size]) if i >= size else (0, before[i], 0)
+        if f == 1: d = a
+        elif f == 2: d = b
+        elif f == 3: d = (a + b) // 2
+        else: d = a if abs(b - c) <= abs(a - c) and abs(b - c) <= abs(a + b - 2 * c) else b if abs(a - c) <= abs(a + b - 2 * c) else c
+        row[i] = (row[i] + d) & 255
+    rows.append(row)
+    before = row
+def has(x, y, colour): return any(tuple(rows[y][size * i:size * i + 3]) == colour for i in range(x - 2, x + 3))
+orange, grey = (0xd9, 0x8a, 0), (0x7a, 0x7a, 0x7a)
+reach = [i for i in range(120, 1085) for y in range(140, 1110, 7) if tuple(rows[y][size * i:size * i + 3]) == orange]
+scale, middle = (max(reach) - min(reach)), (max(reach) + min(reach)) / 2 # 1 m
+column = lambda m: sum(has(round(middle + m * scale), y, grey) for y in range(140, 1110))
+print(scale, column(0.238), column(0.368), column(-0.238))
+END
+  for scene in wall room; do
+    "$program" info "$BUILD/share/ethd/$scene.scene" --plot $scene-shipped.png >plot.txt 2>&1 || fail "no picture of $scene.scene: $(cat plot.txt)"
+    "${PYTHON:-python3}" pixels.py $scene-shipped.png >$scene.pixels || fail "$scene.scene: $(cat $scene.pixels)"
+  done
+  # The arm's reach is 1 m wide and nearly fills the picture; the wall at x = 0.238 m crosses it, the room's other at 0.368.
+  awk 'NR == 1 { exit !($1 > 800 && $2 > 900 && $3 < 50 && $4 < 50) }' wall.pixels || fail "the wall isn't where it is: $(cat wall.pixels)"
+  awk 'NR == 1 { exit !($1 > 800 && $2 > 900 && $3 > 900 && $4 < 50) }' room.pixels || fail "the room isn't where it is: $(cat room.pixels)"
   gnuplot -e "in='room''s.csv'; out='again.png'" "$BUILD/share/ethd/plot/scene.gp" && [ -s again.png ] ||
     fail "the script doesn't draw the CSV alone"
 else
