@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "settings/scene_file.h"
 #include "svg/svg.h"
@@ -389,6 +390,36 @@ START_TEST(test_broken_drawings) {
 }
 END_TEST
 
+/* A drawing of n points; CPU time of the best of three, s. */
+static double time_of(int n) {
+  char *text;
+  size_t length;
+  double best = INFINITY;
+  FILE *out = open_memstream(&text, &length);
+  fputs(OPEN "<polyline points=\"", out);
+  for (int i = 0; i < n; i++) fprintf(out, "%d.%d,%d ", i % 97, i % 10, i % 43);
+  fputs("\"/><path fill=\"none\" d=\"M0 0", out);
+  for (int i = 0; i < n; i++) fprintf(out, "L%d %d.5", i % 89, i % 47);
+  fputs("\"/>" CLOSE, out);
+  fclose(out);
+  for (int i = 0; i < 3; i++) {
+    clock_t start = clock();
+    ethd_scene *scene = scene_of(text);
+    best = fmin(best, (double)(clock() - start) / CLOCKS_PER_SEC);
+    ethd_scene_destroy(scene);
+  }
+  free(text);
+  return best;
+}
+
+/* Eight times as many points in eight times as long, and half as much again for what grows by a logarithm; looking at the
+   rest of the text for each would take 64 times. */
+START_TEST(test_time_is_linear) {
+  double one = time_of(8000), eight = time_of(64000);
+  ck_assert_msg(eight < 24 * one, "8 times the points took %.3g s, not %.3g s", eight, 8 * one);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("svg");
   TCase *all = tcase_create("all");
@@ -401,6 +432,7 @@ int main(void) {
   tcase_add_test(all, test_depth);
   tcase_add_test(all, test_print);
   tcase_add_test(all, test_broken_drawings);
+  tcase_add_test(all, test_time_is_linear);
   suite_add_tcase(suite, all);
   return rig_run(suite);
 }
