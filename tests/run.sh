@@ -190,6 +190,15 @@ refuse 'two: another program writes there now' --virtual --duration 1 --record "
 kill -TERM $first
 wait $first 2>/dev/null
 
+# a snapshot that can't be written is no success, and one that stands there stays
+echo earlier >"$folder/earlier.npy"
+printf 'wait 1\nset limits.speed 0.001\n' >"$folder/faulty"
+(ulimit -f 100; exec "$run" --virtual --duration 4 --snapshot "$folder/earlier.npy" <"$folder/faulty") >"$folder/out" 2>"$folder/err"
+[ $? = 1 ] || fail "a snapshot that isn't written is a success"
+says "$folder/err" 'the snapshot: .*earlier.npy: File too large'
+[ "$(cat "$folder/earlier.npy")" = earlier ] || fail "half a snapshot in an earlier one's place"
+[ "$(ls "$folder" | grep -c 'npy.*new$')" = 0 ] || fail "left behind: $(ls "$folder")"
+
 # ---- a disk that is full: said at once, counted, marked, exit 1 ----
 for limit in 1000 1; do
   (ulimit -f $limit; exec "$run" --virtual --duration 5 --record "$folder/full$limit" </dev/null) >"$folder/out" 2>"$folder/err"

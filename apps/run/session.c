@@ -226,8 +226,9 @@ ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]) 
   s->started = false;
   char lost[ETHD_MESSAGE_MAX];
   ethd_status closed = close_recording(s, lost);
-  if (closed && !status) return ethd__say(message, closed, "%s", lost);
-  return status;
+  if (closed && !status) status = ethd__say(message, closed, "%s", lost);
+  const char *snapshot = s->recorder.snapshot.message;
+  return *snapshot && !status ? ethd__say(message, ETHD_E_FILE, "the snapshot: %s", snapshot) : status;
 }
 
 void ethd__session_free(ethd__session *s) {

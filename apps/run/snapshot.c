@@ -1,8 +1,13 @@
 #include "run/snapshot.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "record/npy_parts.h"
+#include "text/error_text.h"
+#include "text/text.h"
 
 #define BEFORE 2.0 /* s */
 #define AFTER 1.0
@@ -25,23 +30,37 @@ ethd_status ethd__snapshot_open(ethd__snapshot *s, const char *path, double peri
 }
 
 /* The oldest first. */
-static ethd_status write_rows(ethd__snapshot *s) {
+static ethd_status write_rows(ethd__snapshot *s, const char *path, size_t n) {
   ethd_npy *npy;
-  size_t n = s->count < s->room ? s->count : s->room;
-  ethd_status status = ethd_npy_create(s->path, ethd_trace_columns, sizeof *s->rows, &npy, s->message);
+  ethd_status status = ethd_npy_create(path, ethd_trace_columns, sizeof *s->rows, &npy, s->message);
   if (status) return status;
   for (size_t i = s->count - n; !status && i < s->count; i++) status = ethd_npy_append(npy, &s->rows[i % s->room], 1);
+  if (!status) status = ethd_npy_flush(npy);
+  int reason = ethd__npy_reason(npy);
   ethd_status closed = ethd_npy_close(npy);
-  s->written = n;
+  if (status || closed) (void)ethd__say(s->message, ETHD_E_FILE, "%s: %s", s->path, strerror(reason ? reason : errno));
   return status ? status : closed;
 }
 
+/* An earlier file stays until this one is whole. */
+static ethd_status replace_file(ethd__snapshot *s, size_t n) {
+  ethd_replace replace;
+  ethd_status status = ethd_replace_begin(s->path, &replace, s->message);
+  if (status) return status;
+  status = write_rows(s, replace.temporary ? replace.temporary : s->path, n);
+  if (!status) return ethd_replace_commit(&replace, s->message);
+  ethd_replace_abandon(&replace);
+  return status;
+}
+
 static void write_file(ethd__snapshot *s) {
+  size_t n = s->count < s->room ? s->count : s->room;
   s->left = 0;
-  ethd_status status = write_rows(s);
-  if (!status) return;
-  s->written = 0;
-  if (!s->message[0]) strcpy(s->message, ethd_status_sentence(status));
+  ethd_status status = replace_file(s, n);
+  if (!status)
+    s->written = n;
+  else if (!s->message[0])
+    strcpy(s->message, ethd_status_sentence(status));
 }
 
 void ethd__snapshot_take(ethd__snapshot *s, const ethd_trace *trace, int begins) {

@@ -231,6 +231,30 @@ START_TEST(test_events_matter) {
 }
 END_TEST
 
+/* A program that was killed leaves no end; a tick.npy that was cut isn't what the end says. */
+START_TEST(test_the_end_counts) {
+  static const struct {
+    const char *end, *says;
+    ethd_status status;
+  } ends[] = {{"", "700 ticks, equal to the bit, but the recording was never closed: later ones may be lost",
+               ETHD_E_UNFINISHED},
+              {"700,fault,the recorder lost rows\n", "but the recording was never closed", ETHD_E_UNFINISHED},
+              {"701,end,closed\n", "end: row: found 701, but there are 700 ticks", ETHD_E_DIFFERS},
+              {"700,end,closed\n", "700 ticks, equal to the bit", ETHD_OK}};
+  char changed[2048];
+  record();
+  char *text = read_text("events.csv"), *end = strstr(text, "700,end,closed\n");
+  ck_assert_ptr_nonnull(end);
+  for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+    snprintf(changed, sizeof changed, "%.*s%s", (int)(end - text), text, ends[i].end);
+    write_text(recording_folder, "events.csv", changed);
+    ck_assert_int_eq(ethd_recording_verify(recording_folder, true, message), ends[i].status);
+    ck_assert_msg(strstr(message, ends[i].says) != NULL, "%s", message);
+  }
+  free(text);
+}
+END_TEST
+
 /* A recording may begin with hot motors, of which its rows know nothing. */
 START_TEST(test_heat) {
   program p = {.setup = config->setup};
@@ -313,6 +337,7 @@ int main(void) {
   tcase_add_test(all, test_files);
   tcase_add_test(all, test_says_what_differs);
   tcase_add_test(all, test_events_matter);
+  tcase_add_test(all, test_the_end_counts);
   tcase_add_test(all, test_heat);
   tcase_add_test(all, test_bad_events);
   tcase_add_test(all, test_missing_files);
