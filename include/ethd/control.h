@@ -208,6 +208,10 @@ ETHD_API ethd_status ethd_control_step(ethd_control *control, const ethd_sense *
 ETHD_API ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense,
                                            ethd_command *command) ETHD_RT;
 
+/* The law that a step runs at this moment, where that is none of the built-in ones; NULL: none. A step that
+   doesn't return hangs in it. [any, rt-safe] */
+ETHD_API const ethd_law *ethd_control_law(const ethd_control *control) ETHD_RT;
+
 /* [any] between steps. */
 ETHD_API void ethd_control_counters(const ethd_control *control, ethd_counters *out) ETHD_RT;
 

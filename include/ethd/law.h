@@ -9,7 +9,9 @@
    Its state is a block of numbers (no pointers) that is zeroed before reset, copied, recorded, hashed.
    Parameters were checked against the table when the setup was posted: step trusts them.
    A law that returns a negative status or a number that isn't finite sends the controller to its safe
-   state. ABI 0 may break until 1.0; ethd_param and ethd_contact are frozen within an ABI, law structs
+   state. So does a law that isn't built in and writes outside of its state block (ETHD_E_FENCE), as far as
+   around it a pattern of some words shows it, or that leaves the processor with another rounding mode, other
+   flushing of small numbers or other traps than it found (ETHD_E_FENV): both are put back. ABI 0 may break until 1.0; ethd_param and ethd_contact are frozen within an ABI, law structs
    grow at their end and say their size. */
 #ifndef ETHD_LAW_H
 #define ETHD_LAW_H

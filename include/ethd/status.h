@@ -33,7 +33,9 @@ ETHD_BEGIN_DECLS
   X(E_FILE, -19, "a file that cannot be read or written")                      \
   X(E_DEVICE, -20, "the device refused or failed")                             \
   X(E_DIFFERS, -21, "a replay that differs from its recording")                \
-  X(E_UNFINISHED, -22, "a recording that its program did not close")
+  X(E_UNFINISHED, -22, "a recording that its program did not close")           \
+  X(E_FENCE, -23, "a law wrote outside of its state block")                    \
+  X(E_FENV, -24, "a law changed rounding or flushing of numbers")
 
 typedef enum ethd_status {
 #define ETHD_STATUS_VALUE(name, value, sentence) ETHD_##name = (value),

@@ -1,6 +1,7 @@
 #include "control/contacts.h"
 
 #include "control/candidates.h"
+#include "control/fence.h"
 #include "control/passivity.h"
 #include "control/rows.h"
 
@@ -49,7 +50,7 @@ static bool rule(const ethd__tick *t, work *w) ETHD_RT {
   memset(r, 0, sizeof *r);
   r->beta = 1;
   r->argument = w->contact.d_fe;
-  ethd_status status = setup->transition->step(setup->transition_p, w->slot->transition, &w->contact, r);
+  ethd_status status = t->plan->rule(setup->transition_p, w->slot->transition.at, &w->contact, r);
   return ethd__law_is_good(t->state, ETHD_TRANSITION, status, ruling_is_good(r));
 }
 
@@ -70,7 +71,7 @@ static bool wall(const ethd__tick *t, const work *w, double *force) ETHD_RT {
   *force = 0;
   if (!(w->ruling.share > 0)) return true;
   double gap = c->d_re + w->ruling.offset;
-  ethd_status status = t->plan->setup.contact->step(p, w->slot->contact, gap, c->v, in, force);
+  ethd_status status = t->plan->push(p, w->slot->contact.at, gap, c->v, in, force);
   if (!ethd__law_is_good(t->state, ETHD_CONTACT, status, isfinite(*force))) return false;
   *force = *force < 0 ? w->ruling.share * *force : 0;
   return true;
@@ -138,8 +139,8 @@ static ethd__slot *free_slot(const ethd__tick *t) ETHD_RT {
     ethd__slot *slot = &t->state->slots[i];
     if (slot->used) continue;
     memset(slot, 0, sizeof *slot);
-    ethd__block_reset(&setup->transition->law, setup->transition_p, slot->transition);
-    ethd__block_reset(&setup->contact->law, setup->contact_p, slot->contact);
+    ethd__block_reset(t->plan, &setup->transition->law, setup->transition_p, &slot->transition);
+    ethd__block_reset(t->plan, &setup->contact->law, setup->contact_p, &slot->contact);
     return slot;
   }
   return NULL;

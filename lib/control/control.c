@@ -1,6 +1,7 @@
 #include <string.h>
 
 #include "control/controller.h"
+#include "control/fence.h"
 #include "control/rows.h"
 #include "control/tick.h"
 
@@ -144,6 +145,11 @@ void ethd_control_clear(ethd_control *control) { atomic_store_explicit(&control-
 double ethd_control_clean(const ethd_control *control) {
   if (!__atomic_load_n(&control->state.fault, __ATOMIC_RELAXED)) return (double)INFINITY;
   return (double)__atomic_load_n(&control->state.clean, __ATOMIC_RELAXED) * control->period;
+}
+
+const ethd_law *ethd_control_law(const ethd_control *control) {
+  const ethd_law *law = ethd__fence_runs(&control->state);
+  return law ? law : ethd__fence_runs(&control->scratch);
 }
 
 void ethd_control_counters(const ethd_control *control, ethd_counters *out) {

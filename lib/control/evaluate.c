@@ -16,7 +16,7 @@ static bool track(const ethd__tick *t, double tau[2]) ETHD_RT {
   ethd_pose_joints(&t->pose, in.eps_v, in.eps_q_dot);
   memcpy(out->eps_q, in.eps_q, sizeof out->eps_q);
   memcpy(out->eps_q_dot, in.eps_q_dot, sizeof out->eps_q_dot);
-  ethd_status status = setup->tracking->step(setup->tracking_p, t->state->tracking, &in, tau);
+  ethd_status status = t->plan->track(setup->tracking_p, t->state->tracking.at, &in, tau);
   return ethd__law_is_good(t->state, ETHD_TRACKING, status, isfinite(tau[0]) && isfinite(tau[1]));
 }
 

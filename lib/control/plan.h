@@ -15,11 +15,16 @@ static inline const ethd_scene *ethd__place_scene(const ethd_setup *setup, int p
 
 typedef struct ethd__plan {
   ethd_setup setup;
-  double d_beta;          /* R_r - R_f,max, m */
-  int places;             /* places from here on have no scene */
-  bool has_rare_limits;   /* a limit of clock, joints, reach or heat is set */
-  bool watches_finger;    /* limits.finger_age is set */
-  bool watches_energy;    /* limits.energy is set */
+  double d_beta;        /* R_r - R_f,max, m */
+  int places;           /* places from here on have no scene */
+  bool has_rare_limits; /* a limit of clock, joints, reach or heat is set */
+  bool watches_finger;  /* limits.finger_age is set */
+  bool watches_energy;  /* limits.energy is set */
+  int foreign;          /* bits: kinds whose law isn't the library's own */
+  /* the laws' steps as a tick calls them, see fence.h */
+  ethd_status (*track)(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) ETHD_RT;
+  ethd_status (*push)(const double *p, void *state, double gap, double speed, int entering, double *force) ETHD_RT;
+  ethd_status (*rule)(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) ETHD_RT;
   ethd_velocity velocity; /* estimators, prepared */
   ethd_fit fit;
   ethd_filter filter;

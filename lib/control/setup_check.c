@@ -2,7 +2,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "control/plan.h"
+#include "control/fence.h"
 #include "control/setup.h"
 #include "error.h"
 #include "scene/scene.h"
@@ -118,6 +118,7 @@ ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error 
   TRY(check_laws(s, error));
   TRY(within("limits", ethd_limits_check(&s->limits, error), error));
   out->setup = *s;
+  ethd__fence_prepare(out);
   out->has_rare_limits = has_rare_limits(&s->limits);
   out->watches_finger = s->limits.finger_age < (double)INFINITY;
   out->watches_energy = s->limits.energy < (double)INFINITY;

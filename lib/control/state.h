@@ -6,14 +6,17 @@
 
 #include "control/plan.h"
 
-/* A law's state block. */
-typedef double ethd__block[ETHD_STATE_MAX / sizeof(double)];
+#define ETHD__FENCE 2 /* words */
 
-/* Zeroes the block, then lets the law fill it. [rt] */
-static inline void ethd__block_reset(const ethd_law *law, const double *p, double *block) ETHD_RT {
-  memset(block, 0, sizeof(ethd__block));
-  if (law->reset) law->reset(p, block);
-}
+/* A law's state block, as fence.c watches over it; of a built-in law only `at` is used. */
+typedef struct ethd__block {
+  const ethd_law *law; /* whose it is: a foreign law */
+  int64_t running;     /* 1: its code runs; [any] reads it and the law */
+  int64_t failed;      /* ethd_status of its reset */
+  uint64_t before[ETHD__FENCE];
+  double at[ETHD_STATE_MAX / sizeof(double)];
+  uint64_t after[ETHD__FENCE];
+} ethd__block;
 
 /* A contact that counted at the last tick. */
 typedef struct ethd__slot {

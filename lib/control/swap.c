@@ -4,6 +4,7 @@
 
 #include "control/estimate.h"
 #include "control/evaluate.h"
+#include "control/fence.h"
 #include "control/places.h"
 
 /* ---- the fade ---- */
@@ -59,9 +60,9 @@ static bool has_same_scene(const ethd__plan *a, const ethd__plan *b, int place) 
 static void swap_slot(const ethd__plan *from, const ethd__plan *to, ethd__slot *slot) ETHD_RT {
   if (!has_same_scene(from, to, slot->place)) slot->used = false;
   if (from->setup.transition != to->setup.transition)
-    ethd__block_reset(&to->setup.transition->law, to->setup.transition_p, slot->transition);
+    ethd__block_reset(to, &to->setup.transition->law, to->setup.transition_p, &slot->transition);
   if (from->setup.contact != to->setup.contact)
-    ethd__block_reset(&to->setup.contact->law, to->setup.contact_p, slot->contact);
+    ethd__block_reset(to, &to->setup.contact->law, to->setup.contact_p, &slot->contact);
 }
 
 void ethd__swap_state(const ethd__plan *from, const ethd__plan *to, ethd__state *state) {
@@ -70,7 +71,7 @@ void ethd__swap_state(const ethd__plan *from, const ethd__plan *to, ethd__state 
   for (int place = 0; place < ETHD__PLACES; place++)
     if (!has_same_scene(from, to, place)) ethd__place_forget(&state->places[place]);
   if (from->setup.tracking != to->setup.tracking)
-    ethd__block_reset(&to->setup.tracking->law, to->setup.tracking_p, state->tracking);
+    ethd__block_reset(to, &to->setup.tracking->law, to->setup.tracking_p, &state->tracking);
   for (int i = 0; i < ETHD_CONTACTS_MAX; i++) swap_slot(from, to, &state->slots[i]);
 }
 

@@ -14,6 +14,7 @@
 
 #include "control/estimate.h"
 #include "control/evaluate.h"
+#include "control/fence.h"
 #include "control/places.h"
 #include "control/rows.h"
 #include "control/swap.h"
@@ -183,5 +184,5 @@ void ethd__resume(const ethd__plan *plan, ethd__state *state) {
   state->guard.stopping = state->guard.stopped = 0;
   state->fade.elapsed = (double)INFINITY;
   for (int i = 0; i < ETHD_CONTACTS_MAX; i++) state->slots[i].used = false;
-  ethd__block_reset(&plan->setup.tracking->law, plan->setup.tracking_p, state->tracking);
+  ethd__block_reset(plan, &plan->setup.tracking->law, plan->setup.tracking_p, &state->tracking);
 }

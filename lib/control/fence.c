@@ -1,0 +1,188 @@
+#include "control/fence.h"
+
+#include <stddef.h>
+
+/* ---- the processor's floating-point control: rounding, flushing, traps ---- */
+
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#define CONTROL_BITS 0xffc0u /* of MXCSR; the others are flags that any operation may raise */
+
+typedef struct control {
+  uint32_t sse;
+  uint16_t x87;
+} control;
+
+static control control_now(void) ETHD_RT {
+  control c = {_mm_getcsr() & CONTROL_BITS, 0};
+  __asm__ volatile("fnstcw %0" : "=m"(c.x87));
+  return c;
+}
+
+static void control_set(control c) ETHD_RT {
+  __asm__ volatile("fnclex\n\tfldcw %0" : : "m"(c.x87)); /* a pending trap would be taken at the load */
+  _mm_setcsr(c.sse);
+}
+
+static bool control_is(control a, control b) ETHD_RT { return a.sse == b.sse && a.x87 == b.x87; }
+#elif defined(__aarch64__)
+typedef uint64_t control;
+
+static control control_now(void) ETHD_RT {
+  control c;
+  __asm__ volatile("mrs %0, fpcr" : "=r"(c));
+  return c;
+}
+
+static void control_set(control c) ETHD_RT { __asm__ volatile("msr fpcr, %0" : : "r"(c)); }
+static bool control_is(control a, control b) ETHD_RT { return a == b; }
+#elif defined(__riscv_flen)
+typedef uint64_t control;
+
+static control control_now(void) ETHD_RT {
+  control c;
+  __asm__ volatile("csrr %0, frm" : "=r"(c));
+  return c;
+}
+
+static void control_set(control c) ETHD_RT { __asm__ volatile("csrw frm, %0" : : "r"(c)); }
+static bool control_is(control a, control b) ETHD_RT { return a == b; }
+#else
+typedef int control; /* not known here: not watched */
+
+static control control_now(void) ETHD_RT { return 0; }
+static void control_set(control c) ETHD_RT { (void)c; }
+static bool control_is(control a, control b) ETHD_RT { return a == b; }
+#endif
+
+/* ---- fences: a pattern from the end of the law's state on, and before it ---- */
+
+#define PATTERN 0xfe9ce5fe9ce5fe9cu /* no number that a law writes by accident: a NaN, not the default one */
+
+static void put_words(void *to, size_t bytes) ETHD_RT {
+  const uint64_t word = PATTERN;
+  for (size_t i = 0; i < bytes; i += sizeof word)
+    memcpy((char *)to + i, &word, bytes - i < sizeof word ? bytes - i : sizeof word);
+}
+
+static bool holds(const void *from, size_t bytes) ETHD_RT {
+  const uint64_t pattern = PATTERN;
+  uint64_t word, changed = 0;
+  size_t i = 0;
+  for (; i + sizeof word <= bytes; i += sizeof word) {
+    memcpy(&word, (const char *)from + i, sizeof word);
+    changed |= word ^ pattern;
+  }
+  return !changed && memcmp((const char *)from + i, &pattern, bytes - i) == 0;
+}
+
+/* Behind the state, the fence after the block included. */
+static size_t rest_of(const ethd_law *law) ETHD_RT {
+  return sizeof(ethd__block) - offsetof(ethd__block, at) - law->state_size;
+}
+
+static void put_fences(const ethd_law *law, ethd__block *b) ETHD_RT {
+  put_words(b->before, sizeof b->before);
+  put_words((char *)b->at + law->state_size, rest_of(law));
+}
+
+static bool fences_hold(const ethd_law *law, const ethd__block *b) ETHD_RT {
+  return b->law == law && holds(b->before, sizeof b->before) &&
+         holds((const char *)b->at + law->state_size, rest_of(law));
+}
+
+/* ---- a call of foreign code ---- */
+
+typedef struct call {
+  const ethd_law *law;
+  ethd__block *block;
+  control before;
+} call;
+
+static call enter(const ethd_law *law, ethd__block *b) ETHD_RT {
+  __atomic_store_n(&b->law, law, __ATOMIC_RELAXED);
+  __atomic_store_n(&b->running, 1, __ATOMIC_RELEASE);
+  return (call){law, b, control_now()};
+}
+
+/* What the law did beside its job; mends it. */
+static ethd_status leave(const call *c, ethd_status status) ETHD_RT {
+  ethd__block *b = c->block;
+  if (!control_is(control_now(), c->before)) {
+    control_set(c->before);
+    status = ETHD_E_FENV;
+  }
+  if (!fences_hold(c->law, b)) {
+    put_fences(c->law, b);
+    b->law = c->law;
+    b->failed = 0;
+    status = ETHD_E_FENCE;
+  }
+  __atomic_store_n(&b->running, 0, __ATOMIC_RELEASE);
+  return status;
+}
+
+/* A reset that failed fails the step after it. */
+static ethd_status leave_step(const call *c, ethd_status status) ETHD_RT {
+  ethd_status found = leave(c, status), reset = (ethd_status)c->block->failed;
+  c->block->failed = 0;
+  return reset ? reset : found;
+}
+
+static ethd__block *block_of(void *state) ETHD_RT {
+  return (ethd__block *)(void *)((char *)state - offsetof(ethd__block, at));
+}
+
+void ethd__fence_reset(const ethd_law *law, const double *p, ethd__block *b) {
+  put_fences(law, b);
+  b->failed = 0;
+  call c = enter(law, b);
+  if (law->reset) law->reset(p, b->at);
+  b->failed = leave(&c, ETHD_OK);
+}
+
+const ethd_law *ethd__fence_runs(const ethd__state *s) {
+  for (int i = -1; i < 2 * ETHD_CONTACTS_MAX; i++) {
+    const ethd__block *b = &s->tracking;
+    if (i >= 0) b = i % 2 ? &s->slots[i / 2].contact : &s->slots[i / 2].transition;
+    if (__atomic_load_n(&b->running, __ATOMIC_ACQUIRE) == 1) return __atomic_load_n(&b->law, __ATOMIC_RELAXED);
+  }
+  return NULL;
+}
+
+/* ---- the fenced steps ---- */
+
+static ethd_status track(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) ETHD_RT {
+  const ethd_law *law = block_of(state)->law;
+  call c = enter(law, block_of(state));
+  return leave_step(&c, ((const ethd_tracking_law *)(const void *)law)->step(p, state, in, tau));
+}
+
+static ethd_status push(const double *p, void *state, double gap, double speed, int entering, double *force) ETHD_RT {
+  const ethd_law *law = block_of(state)->law;
+  call c = enter(law, block_of(state));
+  return leave_step(&c, ((const ethd_contact_law *)(const void *)law)->step(p, state, gap, speed, entering, force));
+}
+
+static ethd_status rule(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) ETHD_RT {
+  const ethd_law *law = block_of(state)->law;
+  call c = enter(law, block_of(state));
+  return leave_step(&c, ((const ethd_transition_law *)(const void *)law)->step(p, state, contact, out));
+}
+
+bool ethd__law_is_foreign(const ethd_law *law) {
+  for (const ethd_law *const *l = ethd_laws; *l; l++)
+    if (*l == law) return false;
+  return true;
+}
+
+void ethd__fence_prepare(ethd__plan *plan) {
+  const ethd_setup *s = &plan->setup;
+  bool foreign[] = {ethd__law_is_foreign(&s->tracking->law), ethd__law_is_foreign(&s->contact->law),
+                    ethd__law_is_foreign(&s->transition->law)};
+  plan->foreign = foreign[ETHD_TRACKING] << ETHD_TRACKING | foreign[ETHD_CONTACT] << ETHD_CONTACT |
+                  foreign[ETHD_TRANSITION] << ETHD_TRANSITION;
+  plan->track = foreign[ETHD_TRACKING] ? track : s->tracking->step;
+  plan->push = foreign[ETHD_CONTACT] ? push : s->contact->step;
+  plan->rule = foreign[ETHD_TRANSITION] ? rule : s->transition->step;
+}
