@@ -1,5 +1,6 @@
 /* What a scene holds, how far points are from it, and drawings as scenes. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "cli/cli.h"
@@ -20,7 +21,8 @@ static const char doc[] =
     "Example:\n"
     "  ethd-scene query --scene walls.scene --in points.csv --out distances.csv\n"
     "  ethd-scene info walls.scene --plot walls.png\n"
-    "  ethd-scene convert --in drawing.svg --out walls.scene --origin 0.1,0.2";
+    "  ethd-scene convert --in drawing.svg --out walls.scene --origin 0.1,0.2\n\n"
+    "A line of a scene is one of:";
 
 static const struct argp_option options[] = {
     {"scene", 's', "F", 0, "query: the scene", 0},
@@ -98,8 +100,23 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
+/* The help's last lines come from the library's shapes. */
+static char *help(int key, const char *text, void *input) {
+  (void)input;
+  if (key != ARGP_KEY_HELP_POST_DOC || !text) return (char *)(uintptr_t)text;
+  char *out;
+  size_t size;
+  FILE *to = open_memstream(&out, &size);
+  if (!to) return (char *)(uintptr_t)text;
+  fputs(text, to);
+  for (int i = 0; i < ETHD_SHAPE_COUNT; i++)
+    fprintf(to, "\n  %s %s [material=NAME]", ethd_shape_name((ethd_shape)i), ethd_shape_form((ethd_shape)i));
+  fputs("\n  material NAME [KEY=NUMBER...]", to);
+  return fclose(to) ? (char *)(uintptr_t)text : out;
+}
+
 int main(int argc, char **argv) {
-  static const struct argp argp = {options, parse, "query\ninfo F\nconvert", doc, NULL, NULL, NULL};
+  static const struct argp argp = {options, parse, "query\ninfo F\nconvert", doc, NULL, help, NULL};
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   ethd__catch_interrupt();

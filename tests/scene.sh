@@ -62,6 +62,7 @@ printf 'x_m,y_m\n1,2\n' >one.csv
 grep -q '^inf,.*,-1$' empty.csv || fail "an empty scene has a nearest object"
 
 "$program" --help | grep -q 'ethd-scene query --scene' || fail "no example in --help"
+"$program" --help | grep -qx '  box X Y HALF_W HALF_H ANGLE \[material=NAME\]' || fail "--help doesn't show a box"
 "$program" --version | grep -q . || fail "no version"
 
 cat >drawing.svg <<'END'
@@ -137,6 +138,10 @@ END
 else
   "$program" info walls.scene --plot "walls's.png" >plot.txt 2>&1 && fail "a picture without gnuplot?"
 fi
+awk -F, '$1 == "solid" && $2 == 1 { r = sqrt(($3 - 3) ^ 2 + ($4 - 4) ^ 2); n += r > 0.999999 && r < 1.000001 } END { exit n != 96 }' "walls's.csv" ||
+  fail "the circle isn't in the picture's CSV"
+awk -F, '$1 == "solid" && $2 == 2 { x = $3 - 3; y = $4 + 4; if (x < 0) x = -x; if (y < 0) y = -y; n++; bad += x > 0.500001 || y > 1.000001; corners += x > 0.499999 && y > 0.999999 } END { exit n != 96 || bad || corners < 4 }' "walls's.csv" ||
+  fail "the box isn't in the picture's CSV"
 grep -q '^solid,3,10,0,2,0$' "walls's.csv" || fail "the polygon isn't in the picture's CSV"
 
 # refuse PATTERN ARGUMENTS...: exit 2, one line with the pattern (usage: argp's two), nothing written over.
@@ -166,7 +171,7 @@ printf 'x_m,y_m,x_m\n1,2,3\n' >twice.csv
 printf 'x_m,y_m\n1,2e10\n' >far.csv
 : >empty.csv2
 q() { pattern=$1; scene=$2; points=$3; refuse "$pattern" query --scene "$scene" --in "$points" --out kept.csv; }
-q 'count.scene:3: .*circle.*found 2' count.scene one.csv
+q 'count.scene:3: .*circle.*found 2.*; circle X Y R is allowed' count.scene one.csv
 q 'bow.scene:1: .*edges 0 and 2' bow.scene one.csv
 q 'mud.scene:1: material=mud' mud.scene one.csv
 q 'zero.scene:1: ' zero.scene one.csv

@@ -58,13 +58,15 @@ static void draw_box(pen *p, ethd_vec centre, double cosine, double sine, double
 
 /* ---- objects ---- */
 
-static void draw_capsule(pen *p, const double *v) {
-  ethd_vec a = {v[0], v[1]}, b = {v[2], v[3]}, e = ethd_vec_sub(b, a);
-  double along = ethd_atan2(e.y, e.x);
-  draw_arc(p, b, v[4], along - TURN / 4, TURN / 2);
-  line_to(p, on_circle(a, v[4], along + TURN / 4));
-  draw_arc(p, a, v[4], along + TURN / 4, TURN / 2);
-  line_to(p, on_circle(b, v[4], along - TURN / 4));
+/* A convex solid is outlined by the points that are nearest as seen from far away in every direction. */
+static void draw_solid(pen *p, const ethd_scene *scene, double size) {
+  ethd_touch touch;
+  for (int k = 0; k <= ARC; k++) {
+    ethd_vec from = on_circle((ethd_vec){0, 0}, 1e3 * size, TURN * k / ARC);
+    ethd_scene_follow(scene, p->number, from, from, &touch);
+    if (k) line_to(p, touch.point);
+    p->at = touch.point;
+  }
 }
 
 static void draw_chain(pen *p, const ethd_object_def *o) {
@@ -83,21 +85,25 @@ static void draw_halfplane(pen *p, const double *v, double size) {
   line_to(p, ethd_vec_add(foot, ethd_vec_scale(0.02 * size, (ethd_vec){v[0], v[1]})));
 }
 
-static void draw_object(pen *p, const ethd_object_def *o, double size) {
-  const double *v = o->numbers;
-  double sine, cosine;
-  p->what = o->shape == ETHD_HALFPLANE                              ? "halfplane"
-            : o->shape == ETHD_SEGMENT || o->shape == ETHD_POLYLINE ? "wall"
-                                                                    : "solid";
+static void draw_object(pen *p, const ethd_scene *scene, const ethd_object_def *o, double size) {
   switch (o->shape) {
-  case ETHD_HALFPLANE: draw_halfplane(p, v, size); break;
-  case ETHD_CIRCLE: draw_arc(p, (ethd_vec){v[0], v[1]}, v[2], 0, TURN); break;
-  case ETHD_CAPSULE: draw_capsule(p, v); break;
-  case ETHD_BOX:
-    ethd_sincos(v[4], &sine, &cosine);
-    draw_box(p, (ethd_vec){v[0], v[1]}, cosine, sine, v[2], v[3]);
+  case ETHD_HALFPLANE:
+    p->what = "halfplane";
+    draw_halfplane(p, o->numbers, size);
     break;
-  default: draw_chain(p, o);
+  case ETHD_SEGMENT:
+  case ETHD_POLYLINE:
+    p->what = "wall";
+    draw_chain(p, o);
+    break;
+  case ETHD_POLYGON:
+    p->what = "solid";
+    draw_chain(p, o);
+    break;
+  default:
+    p->what = "solid";
+    draw_solid(p, scene, size);
+    break;
   }
 }
 
@@ -135,7 +141,7 @@ static void draw_all(ethd_csv_out *out, const ethd_scene *scene, const ethd_setu
   double inner, size;
   ethd_arm_reach(&setup->arm, &inner, &size);
   if (info.x_min <= info.x_max) size = fmax(size, hypot(fmax(-info.x_min, info.x_max), fmax(-info.y_min, info.y_max)));
-  for (size_t i = 0; (p.number = ethd_scene_object(scene, i, &o)) >= 0; i++) draw_object(&p, &o, 4 * size);
+  for (size_t i = 0; (p.number = ethd_scene_object(scene, i, &o)) >= 0; i++) draw_object(&p, scene, &o, 4 * size);
   draw_trees(&p, scene, &info);
   draw_reach(&p, setup);
 }

@@ -10,6 +10,20 @@
 
 #define REFERENCE "material="
 
+static bool ends_in(const char *text, const char *end) {
+  size_t n = strlen(text), m = strlen(end);
+  return n > m && !strcmp(text + n - m, end) && text[n - m - 1] == ' ';
+}
+
+/* What a line with the wrong count of numbers should have been: the error's name ends in its shape's. */
+static void say_form(const ethd_error *error, const char *plain, char message[ETHD_MESSAGE_MAX]) {
+  const char *form = "", *name = "SHAPE NUMBERS [material=NAME] or material NAME [KEY=NUMBER...]";
+  for (int i = 0; i < ETHD_SHAPE_COUNT && isfinite(error->found); i++)
+    if (ends_in(error->name, ethd_shape_name((ethd_shape)i)))
+      name = ethd_shape_name((ethd_shape)i), form = ethd_shape_form((ethd_shape)i);
+  ethd__say(message, error->status, "%s; %s%s%s is allowed", plain, name, *form ? " " : "", form);
+}
+
 void ethd__scene_refusal(const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]) {
   char shapes[160] = "", plain[ETHD_MESSAGE_MAX];
   ethd_error_text(path, error, plain);
@@ -22,9 +36,8 @@ void ethd__scene_refusal(const char *path, const ethd_error *error, char message
               (int)(sizeof error->name - strlen(REFERENCE)), error->name + strlen(REFERENCE));
   else if (error->status == ETHD_E_UNKNOWN)
     ethd__say(message, error->status, "%s; %smaterial are allowed", plain, shapes);
-  else if (error->status == ETHD_E_SYNTAX && isnan(error->found))
-    ethd__say(message, error->status, "%s; SHAPE NUMBERS [material=NAME] or material NAME [KEY=NUMBER...] are allowed",
-              plain);
+  else if (error->status == ETHD_E_SYNTAX)
+    say_form(error, plain, message);
   else
     ethd__say(message, error->status, "%s", plain);
 }

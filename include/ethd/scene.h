@@ -162,8 +162,11 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_prune(const ethd_scene *scene, c
 /* Material i of the scene; NULL past the end. [any, rt-safe] */
 ETHD_API const ethd_material *ethd_scene_material(const ethd_scene *scene, size_t i) ETHD_RT;
 
-/* "halfplane", "circle", ... [any] */
+/* "halfplane", "circle", ...; "" of none. [any] */
 ETHD_API const char *ethd_shape_name(ethd_shape shape);
+
+/* The numbers of a shape as a line of text has them: "X Y R"; "..." stands for more points. "" of none. [any] */
+ETHD_API const char *ethd_shape_form(ethd_shape shape);
 
 ETHD_END_DECLS
 

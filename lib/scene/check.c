@@ -4,25 +4,9 @@
 #include <string.h>
 
 #include "error.h"
-#include "scene/scene.h"
+#include "scene/shapes.h"
 
 #define POINTS_MAX (INT32_MAX / 2 - 1) /* a feature's number is twice a point's, plus 1 */
-
-/* What each shape's numbers are. `sizes`: from this one on, up to `count`, they are lengths over 0. */
-typedef struct form {
-  size_t count, sizes;
-  const char *names[5];
-} form;
-
-static const form forms[ETHD_SHAPE_COUNT] = {
-    [ETHD_HALFPLANE] = {3, 3, {"halfplane nx", "halfplane ny", "halfplane c"}},
-    [ETHD_CIRCLE] = {3, 2, {"circle x", "circle y", "circle r"}},
-    [ETHD_CAPSULE] = {5, 4, {"capsule x1", "capsule y1", "capsule x2", "capsule y2", "capsule r"}},
-    [ETHD_BOX] = {5, 2, {"box x", "box y", "box half_w", "box half_h", "box angle"}},
-    [ETHD_POLYGON] = {6, 6, {"polygon x", "polygon y"}},
-    [ETHD_SEGMENT] = {4, 4, {"segment x", "segment y"}},
-    [ETHD_POLYLINE] = {4, 4, {"polyline x", "polyline y"}},
-};
 
 static ethd_status refuse_object(const ethd_object_def *def, ethd_status status, const char *name, double found,
                                  double min, double max, ethd_error *error) {
@@ -47,35 +31,33 @@ static size_t append_number(char name[64], size_t at, size_t value) {
 }
 
 ethd_status ethd__check_count(ethd_shape shape, size_t count, ethd_status status, ethd_error *error) {
-  size_t least = forms[shape].count;
-  bool open = shape == ETHD_POLYGON || shape == ETHD_POLYLINE, pairs = !open || count % 2 == 0;
-  if (count >= least && (open || count == least) && pairs) return ETHD_OK;
+  const ethd__shape *s = &ethd__shapes[shape];
+  bool pairs = !s->is_list || count % 2 == 0;
+  if (count >= s->count && (s->is_list || count == s->count) && pairs) return ETHD_OK;
   char name[64];
   size_t n = append(name, 0, pairs ? "numbers after " : "an even count of numbers after ");
-  append(name, n, ethd_shape_name(shape));
-  return ethd__refuse(error, status, name, (double)count, (double)least, open ? INFINITY : (double)least);
+  append(name, n, s->name);
+  return ethd__refuse(error, status, name, (double)count, (double)s->count, s->is_list ? INFINITY : (double)s->count);
 }
 
-static bool is_size(ethd_shape shape, size_t k) { return k >= forms[shape].sizes && !(shape == ETHD_BOX && k == 4); }
+static ethd_status refuse_number(const ethd_object_def *def, size_t k, ethd_error *error) {
+  const ethd__shape *s = &ethd__shapes[def->shape];
+  double v = def->numbers[k], max = ETHD__COORDINATE_MAX;
+  char name[64];
+  size_t n = append(name, 0, s->name), i = ethd__number_of(s, k);
+  append(name, append(name, n, " "), s->numbers[i].name);
+  return refuse_object(def, isfinite(v) ? ETHD_E_RANGE : ETHD_E_NOT_FINITE, name, v,
+                       s->numbers[i].kind == ETHD__LENGTH ? 0 : -max, max, error);
+}
 
 static ethd_status check_numbers(const ethd_object_def *def, ethd_error *error) {
-  const form *f = &forms[def->shape];
-  bool chain = ethd__is_chain(def->shape);
+  const ethd__shape *s = &ethd__shapes[def->shape];
   for (size_t k = 0; k < def->count; k++) {
-    double v = def->numbers[k], max = ETHD__COORDINATE_MAX;
-    bool size = !chain && is_size(def->shape, k);
-    if (fabs(v) <= max && (!size || v > 0)) continue;
-    ethd_status status = isfinite(v) ? ETHD_E_RANGE : ETHD_E_NOT_FINITE;
-    return refuse_object(def, status, f->names[chain ? k % 2 : k], v, size ? 0 : -max, max, error);
+    double v = def->numbers[k];
+    bool fits = v > 0 || s->numbers[ethd__number_of(s, k)].kind != ETHD__LENGTH;
+    if (!(fabs(v) <= ETHD__COORDINATE_MAX && fits)) return refuse_number(def, k, error);
   }
   return ETHD_OK;
-}
-
-static ethd_status check_halfplane(const ethd_object_def *def, ethd_error *error) {
-  ethd_vec n = {def->numbers[0], def->numbers[1]};
-  double length = ethd_vec_norm(n);
-  if (fabs(length - 1) <= 1e-6) return ETHD_OK;
-  return refuse_object(def, ETHD_E_RANGE, "halfplane |n|", length, 1 - 1e-6, 1 + 1e-6, error);
 }
 
 /* Not told apart by rounding, or too near for their distance's square. */
@@ -114,11 +96,11 @@ static ethd_status check_chain(const ethd_object_def *def, void *room, ethd_erro
   if (n > POINTS_MAX) return refuse_object(def, ETHD_E_FULL, "points", (double)n, 0, POINTS_MAX, error);
   for (size_t k = 0; k < n; k++) {
     size_t next = k + 1 < n ? k + 1 : 0;
-    if (!next && def->shape != ETHD_POLYGON) break;
+    if (!next && !ethd__shapes[def->shape].is_closed) break;
     if (are_equal(point(def->numbers, k), point(def->numbers, next)))
       return refuse_pair(def, ": points ", k, next, " are equal", error);
   }
-  return def->shape == ETHD_POLYGON ? check_simple(def, room, error) : ETHD_OK;
+  return ethd__shapes[def->shape].is_closed ? check_simple(def, room, error) : ETHD_OK;
 }
 
 static ethd_status check_object(const ethd_scene_def *def, const ethd_object_def *o, void *room, ethd_error *error) {
@@ -127,15 +109,13 @@ static ethd_status check_object(const ethd_scene_def *def, const ethd_object_def
   if (!o->numbers) return refuse_object(o, ETHD_E_ARGUMENT, "numbers", NAN, NAN, NAN, error);
   if (o->material < -1 || o->material >= (int32_t)def->material_count)
     return refuse_object(o, ETHD_E_RANGE, "material", o->material, -1, (double)def->material_count - 1, error);
+  const ethd__shape *shape = &ethd__shapes[o->shape];
   ethd_status status = ethd__check_count(o->shape, o->count, ETHD_E_ARGUMENT, error);
-  if (status) {
-    if (error) error->line = o->line;
-    return status;
-  }
-  status = check_numbers(o, error);
-  if (status) return status;
-  if (o->shape == ETHD_HALFPLANE) return check_halfplane(o, error);
-  return ethd__is_chain(o->shape) ? check_chain(o, room, error) : ETHD_OK;
+  if (!status) status = check_numbers(o, error);
+  if (!status && shape->check) status = shape->check(o, error);
+  if (!status && shape->is_chain) status = check_chain(o, room, error);
+  if (status && error) error->line = o->line;
+  return status;
 }
 
 static ethd_status refuse_material(const ethd_material *m, ethd_status status, const char *name, double found,
@@ -169,7 +149,8 @@ size_t ethd__check_room(const ethd_scene_def *def) {
   size_t most = 0;
   for (size_t i = 0; i < def->object_count && def->objects; i++) {
     const ethd_object_def *o = &def->objects[i];
-    if (o->shape == ETHD_POLYGON && o->count / 2 > most && o->count / 2 <= POINTS_MAX) most = o->count / 2;
+    bool closed = (unsigned)o->shape < ETHD_SHAPE_COUNT && ethd__shapes[o->shape].is_closed;
+    if (closed && o->count / 2 > most && o->count / 2 <= POINTS_MAX) most = o->count / 2;
   }
   return ethd__simple_room(most) + 1;
 }

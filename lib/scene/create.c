@@ -3,17 +3,18 @@
 #include <string.h>
 
 #include "error.h"
-#include "ethd/maths.h"
 #include "scene/build.h"
 #include "scene/check.h"
-
-/* Boxes keep the cosine and the sine of their angle too, polygons their first point twice. */
-static size_t kept_numbers(const ethd_object_def *o) {
-  return o->count + (o->shape == ETHD_BOX || o->shape == ETHD_POLYGON ? 2 : 0);
-}
+#include "scene/shapes.h"
 
 static uint32_t edges_of(const ethd_object_def *o) {
-  return ethd__is_chain(o->shape) ? (uint32_t)(kept_numbers(o) / 2 - 1) : 0;
+  return ethd__shapes[o->shape].is_chain ? (uint32_t)(ethd__kept_count(o) / 2 - 1) : 0;
+}
+
+/* An endless object has no bounds and no place in a tree. */
+static bool is_endless(const ethd_object_def *o) {
+  const ethd__shape *s = &ethd__shapes[o->shape];
+  return !s->is_chain && !s->discs;
 }
 
 /* ---- sizes ---- */
@@ -28,12 +29,12 @@ static size_t reserve(size_t *bytes, size_t size) {
 static ethd_status plan(const ethd_scene_def *def, ethd_scene *s, ethd_error *error) {
   size_t numbers = 0, nodes = 0, endless = 0;
   for (size_t i = 0; i < def->object_count; i++) {
-    numbers += kept_numbers(&def->objects[i]);
+    numbers += ethd__kept_count(&def->objects[i]);
     if (edges_of(&def->objects[i]) > ETHD__FLAT) {
       nodes += ethd__node_count(edges_of(&def->objects[i]));
       s->tree_count++;
     }
-    endless += def->objects[i].shape == ETHD_HALFPLANE;
+    endless += is_endless(&def->objects[i]);
   }
   if (numbers > UINT32_MAX) return ethd__refuse(error, ETHD_E_FULL, "numbers", (double)numbers, 0, UINT32_MAX);
   s->object_count = (uint32_t)def->object_count;
@@ -60,30 +61,24 @@ typedef struct box {
 
 static const box nowhere = {INFINITY, -INFINITY, INFINITY, -INFINITY};
 
-static box around(double x, double y, double w, double h) {
-  box b = {x - w, x + w, y - h, y + h};
-  return b;
-}
-
 static box together(box a, box b) {
   box r = {fmin(a.x_min, b.x_min), fmax(a.x_max, b.x_max), fmin(a.y_min, b.y_min), fmax(a.y_max, b.y_max)};
   return r;
 }
 
+static box around(ethd__disc d) {
+  box b = {d.centre.x - d.radius, d.centre.x + d.radius, d.centre.y - d.radius, d.centre.y + d.radius};
+  return b;
+}
+
 static box bounds_of(const ethd_object_def *def) {
-  const double *p = def->numbers;
-  double c, s;
+  const ethd__shape *s = &ethd__shapes[def->shape];
+  double room[ETHD__KEPT_MAX];
+  const double *kept = s->is_chain ? def->numbers : room;
+  size_t discs = s->is_chain ? def->count / 2 : s->discs;
   box b = nowhere;
-  switch (def->shape) {
-  case ETHD_HALFPLANE: return nowhere;
-  case ETHD_CIRCLE: return around(p[0], p[1], p[2], p[2]);
-  case ETHD_CAPSULE: return together(around(p[0], p[1], p[4], p[4]), around(p[2], p[3], p[4], p[4]));
-  case ETHD_BOX:
-    ethd_sincos(p[4], &s, &c);
-    return around(p[0], p[1], fabs(c) * p[2] + fabs(s) * p[3], fabs(s) * p[2] + fabs(c) * p[3]);
-  default: break;
-  }
-  for (size_t k = 0; k < def->count; k += 2) b = together(b, around(p[k], p[k + 1], 0, 0));
+  if (!s->is_chain) ethd__keep(def, room);
+  for (size_t k = 0; k < discs; k++) b = together(b, around(ethd__disc_at(s, kept, k)));
   return b;
 }
 
@@ -100,11 +95,12 @@ static void frame(ethd_scene *s, box b) {
   s->scale = ldexp(1, exponent < -400 ? 400 : -exponent); /* its square is finite */
 }
 
-/* Of its lengths: neither a half-plane's normal nor a box's angle is one. */
+/* The largest of an object's coordinates and lengths: rounding is judged by it. */
 static double largest(const ethd_object_def *def) {
+  const ethd__shape *s = &ethd__shapes[def->shape];
   double most = 0;
-  size_t first = def->shape == ETHD_HALFPLANE ? 2 : 0, end = def->shape == ETHD_BOX ? 4 : def->count;
-  for (size_t k = first; k < end; k++) most = fmax(most, fabs(def->numbers[k]));
+  for (size_t k = 0; k < def->count; k++)
+    if (s->numbers[ethd__number_of(s, k)].kind != ETHD__DIRECTION) most = fmax(most, fabs(def->numbers[k]));
   return most;
 }
 
@@ -121,17 +117,6 @@ static int turn_of(const double *p, size_t n) {
   for (size_t i = 1; i < n; i++)
     if (p[2 * i] < p[2 * k] || (p[2 * i] == p[2 * k] && p[2 * i + 1] < p[2 * k + 1])) k = i;
   return ethd__orient(point(p, k ? k - 1 : n - 1), point(p, k), point(p, k + 1 < n ? k + 1 : 0));
-}
-
-static void keep_numbers(const ethd_object_def *def, double *kept) {
-  const double *p = def->numbers;
-  memcpy(kept, p, def->count * sizeof *p);
-  if (def->shape == ETHD_BOX) ethd_sincos(p[4], &kept[6], &kept[5]);
-  if (def->shape == ETHD_POLYGON) memcpy(kept + def->count, p, 2 * sizeof *p);
-  if (def->shape != ETHD_HALFPLANE) return;
-  double length = sqrt(p[0] * p[0] + p[1] * p[1]);
-  if (fabs(length - 1) <= 4 * DBL_EPSILON) return; /* divided once is divided for good */
-  for (int i = 0; i < 3; i++) kept[i] = p[i] / length;
 }
 
 static bool is_closed(const double *points, uint32_t edges) {
@@ -154,12 +139,12 @@ static uint32_t step_of(const ethd_scene *s, double low, double high, double cen
   return (uint32_t)((v + 1) / 2 * UINT32_MAX);
 }
 
-/* The order of the leaves, half-planes last. */
+/* The order of the leaves, endless objects last. */
 static void order(const ethd_scene_def *def, const ethd_scene *s, ethd__item *items) {
   uint32_t n = 0, last = s->tree.leaves;
   for (uint32_t i = 0; i < s->object_count; i++) {
     box b = bounds_of(&def->objects[i]);
-    if (def->objects[i].shape == ETHD_HALFPLANE) {
+    if (is_endless(&def->objects[i])) {
       items[last++].id = i;
     } else {
       items[n++] =
@@ -178,17 +163,17 @@ static void fill(const ethd_scene_def *def, const int32_t *ids, ethd_scene *s, c
     const ethd_object_def *d = &def->objects[items[i].id];
     uint32_t edges = edges_of(d);
     double *numbers = (double *)(void *)(base + s->numbers_at) + number;
-    keep_numbers(d, numbers);
+    ethd__keep(d, numbers);
     objects[i] = (ethd__object){.id = ids ? ids[items[i].id] : (int32_t)items[i].id,
                                 .material = d->material,
                                 .first = number,
                                 .edges = edges,
                                 .tree = tree,
                                 .shape = (int8_t)d->shape};
-    if (d->shape == ETHD_POLYGON) objects[i].turn = (int8_t)turn_of(d->numbers, d->count / 2);
+    if (ethd__shapes[d->shape].is_closed) objects[i].turn = (int8_t)turn_of(d->numbers, d->count / 2);
     if (edges) objects[i].closed = is_closed(numbers, edges);
     places[items[i].id] = i;
-    number += (uint32_t)kept_numbers(d);
+    number += (uint32_t)ethd__kept_count(d);
     if (edges <= ETHD__FLAT) continue;
     ethd__tree_set(&trees[tree++], edges, node);
     node += ethd__node_count(edges);

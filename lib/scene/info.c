@@ -1,3 +1,4 @@
+#include "scene/shapes.h"
 #include "scene/tree.h"
 
 void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out) {
@@ -17,29 +18,17 @@ void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out) {
   }
 }
 
-static double norm(double x, double y) { return sqrt(x * x + y * y); }
-
-static double farthest_of_chain(const ethd_scene *scene, const ethd__object *o) {
-  ethd__chain chain = ethd__chain_of(scene, o);
-  double most = 0;
-  for (size_t k = 0; k <= chain.edges; k++) most = fmax(most, ethd_vec_norm(chain.points[k]));
-  return most;
-}
-
-/* The base joint seen from the box's frame, and the corner farthest from there. */
-static double farthest_of_box(const double *p) {
-  double u = p[5] * p[0] + p[6] * p[1], v = p[5] * p[1] - p[6] * p[0];
-  return norm(fabs(u) + p[2], fabs(v) + p[3]);
-}
-
-/* How far an object's farthest point is from the base joint. */
+/* How far an object's farthest point is from the base joint: no point of a hull is farther than its discs. */
 static double farthest(const ethd_scene *scene, const ethd__object *o) {
-  if (o->shape == ETHD_HALFPLANE) return INFINITY;
-  if (ethd__is_chain((ethd_shape)o->shape)) return farthest_of_chain(scene, o);
-  const double *p = ethd__numbers(scene, o);
-  if (o->shape == ETHD_CIRCLE) return norm(p[0], p[1]) + p[2];
-  if (o->shape == ETHD_CAPSULE) return fmax(norm(p[0], p[1]), norm(p[2], p[3])) + p[4];
-  return farthest_of_box(p);
+  const ethd__shape *s = &ethd__shapes[o->shape];
+  const double *kept = ethd__numbers(scene, o);
+  size_t discs = ethd__disc_count(o);
+  double most = discs ? 0 : INFINITY;
+  for (size_t k = 0; k < discs; k++) {
+    ethd__disc d = ethd__disc_at(s, kept, k);
+    most = fmax(most, ethd_vec_norm(d.centre) + d.radius);
+  }
+  return most;
 }
 
 /* Objects are connected: one whose nearest point lies within the outer circle and whose farthest lies
@@ -67,20 +56,15 @@ size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, dou
 
 /* ---- what it is made of ---- */
 
-static size_t given_numbers(const ethd__object *o) {
-  switch ((ethd_shape)o->shape) {
-  case ETHD_HALFPLANE:
-  case ETHD_CIRCLE: return 3;
-  case ETHD_CAPSULE:
-  case ETHD_BOX: return 5;
-  default: return 2 * (o->edges + (o->shape != ETHD_POLYGON ? (size_t)1 : 0));
-  }
+static size_t given_count(const ethd__object *o) {
+  const ethd__shape *s = &ethd__shapes[o->shape];
+  return o->edges ? 2 * (o->edges + (s->is_closed ? 0 : (size_t)1)) : s->count;
 }
 
 int32_t ethd_scene_object(const ethd_scene *scene, size_t i, ethd_object_def *out) {
   if (i >= scene->object_count) return -1;
   const ethd__object *o = ethd__object_at(scene, ETHD__ARRAY(scene, uint32_t, places_at)[i]);
-  *out = (ethd_object_def){(ethd_shape)o->shape, o->material, ethd__numbers(scene, o), given_numbers(o), 0};
+  *out = (ethd_object_def){(ethd_shape)o->shape, o->material, ethd__numbers(scene, o), given_count(o), 0};
   return o->id;
 }
 
@@ -119,18 +103,4 @@ ethd_status ethd_scene_box_at(const ethd_scene *scene, size_t i, ethd_scene_box 
 
 const ethd_material *ethd_scene_material(const ethd_scene *scene, size_t i) {
   return i < scene->material_count ? ETHD__ARRAY(scene, ethd_material, materials_at) + i : NULL;
-}
-
-const char *ethd_shape_name(ethd_shape shape) {
-  switch (shape) {
-  case ETHD_HALFPLANE: return "halfplane";
-  case ETHD_CIRCLE: return "circle";
-  case ETHD_CAPSULE: return "capsule";
-  case ETHD_BOX: return "box";
-  case ETHD_POLYGON: return "polygon";
-  case ETHD_SEGMENT: return "segment";
-  case ETHD_POLYLINE: return "polyline";
-  case ETHD_SHAPE_COUNT: break;
-  }
-  return "";
 }

@@ -1,6 +1,7 @@
 #include <float.h>
 
 #include "scene/build.h"
+#include "scene/shapes.h"
 
 typedef struct build {
   ethd_scene *scene;
@@ -11,14 +12,9 @@ typedef struct build {
   size_t *start; /* the object at place i has the discs from start[i] on */
 } build;
 
-static size_t discs_of(const ethd__object *o) {
-  if (o->shape == ETHD_CIRCLE) return 1;
-  return o->shape == ETHD_CAPSULE ? 2 : o->shape == ETHD_BOX ? 4 : o->edges + (size_t)1;
-}
-
 static size_t disc_count(const ethd_scene *s) {
   size_t count = 0;
-  for (uint32_t i = 0; i < s->tree.leaves; i++) count += discs_of(ethd__object_at(s, i));
+  for (uint32_t i = 0; i < s->tree.leaves; i++) count += ethd__disc_count(ethd__object_at(s, i));
   return count;
 }
 
@@ -28,27 +24,16 @@ size_t ethd__nodes_room(const ethd_scene *s) {
 
 /* ---- what spans an object ---- */
 
-static size_t put(build *b, size_t n, double x, double y, double r) {
-  const ethd_scene *s = b->scene;
-  b->points[n] = ethd_vec_scale(s->scale, ethd_vec_sub((ethd_vec){x, y}, s->centre));
-  b->radii[n] = s->scale * r;
-  return n + 1;
-}
-
-static size_t put_corners(build *b, size_t n, const double *p) {
-  for (int k = 0; k < 4; k++) {
-    double u = k & 1 ? p[2] : -p[2], v = k & 2 ? p[3] : -p[3];
-    n = put(b, n, p[0] + (p[5] * u - p[6] * v), p[1] + (p[6] * u + p[5] * v), 0);
-  }
-  return n;
-}
-
 static size_t put_object(build *b, size_t n, const ethd__object *o) {
-  const double *p = ethd__numbers(b->scene, o);
-  if (o->shape == ETHD_CIRCLE) return put(b, n, p[0], p[1], p[2]);
-  if (o->shape == ETHD_CAPSULE) return put(b, put(b, n, p[0], p[1], p[4]), p[2], p[3], p[4]);
-  if (o->shape == ETHD_BOX) return put_corners(b, n, p);
-  for (size_t k = 0; k <= o->edges; k++) n = put(b, n, p[2 * k], p[2 * k + 1], 0);
+  const ethd_scene *s = b->scene;
+  const ethd__shape *shape = &ethd__shapes[o->shape];
+  const double *kept = ethd__numbers(s, o);
+  size_t discs = ethd__disc_count(o);
+  for (size_t k = 0; k < discs; k++, n++) {
+    ethd__disc d = ethd__disc_at(shape, kept, k);
+    b->points[n] = ethd_vec_scale(s->scale, ethd_vec_sub(d.centre, s->centre));
+    b->radii[n] = s->scale * d.radius;
+  }
   return n;
 }
 

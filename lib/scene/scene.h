@@ -1,10 +1,10 @@
 /* A scene in memory: one block without pointers, every array found by its offset.
 
-     objects    what each is and where its numbers are; in the order of the tree's leaves, half-planes last
+     objects    what each is and where its numbers are; in the order of the tree's leaves, endless ones last
      places     of the objects, in the order of their ids
-     numbers    halfplane {nx, ny, c}, circle {x, y, r}, capsule {x1, y1, x2, y2, r},
-                box {x, y, half_w, half_h, angle, cos, sin}; chains: the points, closed ones repeat their first
-     trees      of the chains with a tree of their own (scene_tree.h)
+     numbers    as the object was given, and what its shape's row (shapes.h) adds; of a polygon the points, the
+                first of them once more at the end
+     trees      of the chains with a tree of their own (tree.h)
      nodes      of those, then of the tree of all objects
      slopes     one for each box of a chain's tree */
 #ifndef ETHD_LIB_SCENE_H
@@ -20,12 +20,12 @@
 typedef struct ethd__object {
   int32_t id; /* its number in the file */
   int32_t material;
-  uint32_t first; /* of its numbers */
-  uint32_t edges; /* of a chain, else 0 */
-  uint32_t tree;  /* of a chain, its own */
+  uint32_t first; /* its numbers start here */
+  uint32_t edges; /* of a chain; 0: a closed form */
+  uint32_t tree;  /* index of a chain's own tree */
   int8_t shape;
-  int8_t turn;   /* polygon: +1 counter-clockwise, -1 clockwise; thin walls: 0 */
-  int8_t closed; /* chain: the last point is the first */
+  int8_t turn; /* polygon: +1 counter-clockwise, -1 clockwise; thin walls: 0 */
+  bool closed; /* the chain's last point is its first */
 } ethd__object;
 
 #define ETHD__LEVELS 12 /* 8^11 leaves are more than there can be */
@@ -68,10 +68,6 @@ typedef struct ethd__chain {
   bool closed;
   double slack; /* the scene's */
 } ethd__chain;
-
-static inline bool ethd__is_chain(ethd_shape shape) {
-  return shape == ETHD_POLYGON || shape == ETHD_SEGMENT || shape == ETHD_POLYLINE;
-}
 
 static inline ethd__chain ethd__chain_of(const ethd_scene *scene, const ethd__object *o) {
   const ethd_vec *points = (const ethd_vec *)(const void *)ethd__numbers(scene, o);

@@ -2,7 +2,9 @@
 #include <check.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "scene/shapes.h"
 #include "scene_objects.h"
 
 START_TEST(test_describe) {
@@ -35,6 +37,28 @@ START_TEST(test_describe) {
   for (int i = 0; i < ETHD_SHAPE_COUNT; i++)
     for (int k = 0; k < i; k++) ck_assert_str_ne(ethd_shape_name((ethd_shape)i), ethd_shape_name((ethd_shape)k));
   ck_assert_str_eq(ethd_shape_name(ETHD_HALFPLANE), "halfplane");
+}
+END_TEST
+
+/* A shape's form names its numbers in their order: those that messages name. */
+START_TEST(test_forms) {
+  for (int i = 0; i < ETHD_SHAPE_COUNT; i++) {
+    const ethd__shape *row = &ethd__shapes[i];
+    char form[80], *rest = form;
+    ck_assert_str_eq(ethd_shape_name((ethd_shape)i), row->name);
+    ck_assert_uint_lt(strlen(ethd_shape_form((ethd_shape)i)), sizeof form);
+    strcpy(form, ethd_shape_form((ethd_shape)i));
+    size_t words = 0;
+    for (char *w; (w = strtok_r(rest, " ", &rest)) != NULL && strcmp(w, "...") != 0; words++) {
+      const char *name = row->numbers[row->is_chain ? words % 2 : words].name;
+      ck_assert_int_eq(strncasecmp(w, name, row->is_chain ? 1 : strlen(w) + 1), 0);
+    }
+    ck_assert_uint_eq(words, row->count);
+    ck_assert_int_eq(strstr(row->form, "...") != NULL, row->is_list);
+    ck_assert_int_eq(row->nearest != NULL, !row->is_chain);
+  }
+  ck_assert_str_eq(ethd_shape_form(ETHD_BOX), "X Y HALF_W HALF_H ANGLE");
+  ck_assert_str_eq(ethd_shape_form(ETHD_SHAPE_COUNT), "");
 }
 END_TEST
 
@@ -119,6 +143,7 @@ int main(void) {
   TCase *all = tcase_create("all");
   tcase_set_timeout(all, 60);
   tcase_add_test(all, test_describe);
+  tcase_add_test(all, test_forms);
   tcase_add_test(all, test_out_of_reach);
   tcase_add_test(all, test_boxes);
   suite_add_tcase(suite, all);

@@ -1,0 +1,74 @@
+/* What a scene knows of each shape: one row of a table. Nothing else in lib asks for a shape by its name.
+
+   A closed form (half-plane, circle ...) has a fixed count of numbers and brings its nearest point. A chain (polygon,
+   segment, polyline) is a list of points; chain.c does for all of them. */
+#ifndef ETHD_LIB_SCENE_SHAPES_H
+#define ETHD_LIB_SCENE_SHAPES_H
+
+#include "scene/scene.h"
+
+#define ETHD__GIVEN_MAX 5 /* numbers of a closed form as they are given, */
+#define ETHD__KEPT_MAX 7  /* and as a scene keeps them */
+
+typedef enum ethd__number_kind {
+  ETHD__COORDINATE, /* m, of either sign; counts for the scene's extent */
+  ETHD__LENGTH,     /* m, above 0; counts likewise */
+  ETHD__DIRECTION   /* a share or an angle: says nothing about the scene's extent */
+} ethd__number_kind;
+
+typedef struct ethd__disc {
+  ethd_vec centre;
+  double radius;
+} ethd__disc;
+
+typedef struct ethd__shape {
+  const char *name;
+  const char *form; /* the numbers as a scene's file has them, for messages and help */
+  struct {
+    const char *name;
+    ethd__number_kind kind;
+  } numbers[ETHD__GIVEN_MAX]; /* of a chain: x and y of every point */
+  size_t count;               /* of numbers; of a list: at least */
+  bool is_chain;
+  bool is_list;   /* the chain may have any more points */
+  bool is_closed; /* the chain is closed by an edge to its first point and bounds a solid */
+
+  /* All of the following belong to closed forms. `kept` numbers are the given ones and what `keep` adds. */
+
+  /* What a single number's range can't say; NULL: nothing. [main] */
+  ethd_status (*check)(const ethd_object_def *def, ethd_error *error);
+  /* Writes what a scene keeps over a copy of the given numbers; NULL: the copy will do. [main] */
+  void (*keep)(double *kept);
+  size_t added; /* numbers that `keep` puts behind the given ones */
+  /* The object is the convex hull of these discs; 0: it is endless, and in no tree. [main] */
+  size_t discs;
+  ethd__disc (*disc)(const double *kept, size_t k);
+  /* The nearest point of the surface: sets distance, point and n. */
+  void (*nearest)(const double *kept, ethd_vec x, ethd_touch *out) ETHD_RT;
+} ethd__shape;
+
+extern const ethd__shape ethd__shapes[ETHD_SHAPE_COUNT];
+
+/* Where number k of an object stands in its shape's row. */
+static inline size_t ethd__number_of(const ethd__shape *s, size_t k) { return s->is_chain ? k % 2 : k; }
+
+/* Numbers that a scene keeps of an object: polygons repeat their first point. */
+static inline size_t ethd__kept_count(const ethd_object_def *o) {
+  const ethd__shape *s = &ethd__shapes[o->shape];
+  return o->count + (s->is_closed ? 2 : s->added);
+}
+
+/* `kept`: ethd__kept_count numbers. [main] */
+void ethd__keep(const ethd_object_def *o, double *kept);
+
+static inline size_t ethd__disc_count(const ethd__object *o) {
+  return o->edges ? o->edges + (size_t)1 : ethd__shapes[o->shape].discs;
+}
+
+/* A chain's are its points. */
+static inline ethd__disc ethd__disc_at(const ethd__shape *s, const double *kept, size_t k) {
+  if (s->is_chain) return (ethd__disc){{kept[2 * k], kept[2 * k + 1]}, 0};
+  return s->disc(kept, k);
+}
+
+#endif
