@@ -9,7 +9,8 @@
 
 ethd_status ethd_cell_create(size_t size, ethd_cell **out, ethd_error *error) {
   *out = NULL;
-  if (size < 1 || size > SIZE_MOST) return ethd__refuse(error, ETHD_E_RANGE, "cell", (double)size, 1, SIZE_MOST);
+  if (size < 1 || size > SIZE_MOST)
+    return ethd__refuse(error, ETHD_E_RANGE, "cell", (ethd__found){(double)size, 1, SIZE_MOST});
   size_t stride = (size + LINE - 1) / LINE * LINE, bytes = sizeof(ethd_cell) + 3 * stride;
   ethd_cell *cell = aligned_alloc(LINE, (bytes + LINE - 1) / LINE * LINE);
   if (!cell) return ethd__error(error, ETHD_E_MEMORY, "cell");

@@ -1,6 +1,5 @@
 #include "error.h"
 
-#include <math.h>
 #include <string.h>
 
 static void copy_name(char *to, size_t room, const char *from) {
@@ -10,21 +9,20 @@ static void copy_name(char *to, size_t room, const char *from) {
   to[n] = 0;
 }
 
-ethd_status ethd__refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
-                         double max) {
+ethd_status ethd__refuse(ethd_error *error, ethd_status status, const char *name, ethd__found found) {
   if (error) {
     memset(error, 0, sizeof *error);
     error->status = status;
-    error->found = found;
-    error->min = min;
-    error->max = max;
+    error->found = found.value;
+    error->min = found.min;
+    error->max = found.max;
     copy_name(error->name, sizeof error->name, name ? name : "");
   }
   return status;
 }
 
 ethd_status ethd__error(ethd_error *error, ethd_status status, const char *name) {
-  return ethd__refuse(error, status, name, (double)NAN, (double)NAN, (double)NAN);
+  return ethd__refuse(error, status, name, ethd__unsaid);
 }
 
 void ethd__error_prefix(ethd_error *error, const char *prefix) {
@@ -40,5 +38,5 @@ void ethd__error_prefix(ethd_error *error, const char *prefix) {
 
 ethd_status ethd__check_number(ethd_error *error, const char *name, double value, double min, double max) {
   if (value >= min && value <= max) return ETHD_OK;
-  return ethd__refuse(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, value, min, max);
+  return ethd__refuse(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, (ethd__found){value, min, max});
 }

@@ -2,10 +2,20 @@
 #ifndef ETHD__ERROR_H
 #define ETHD__ERROR_H
 
+#include <math.h>
+
 #include "ethd/status.h"
 
+/* A number that was found, and the range that is allowed; NaN: there is nothing to say. */
+typedef struct ethd__found {
+  double value, min, max;
+} ethd__found;
+
+static const ethd__found ethd__unsaid = {(double)NAN, (double)NAN, (double)NAN};
+
+/* `error` may be NULL. */
 ethd_status ethd__error(ethd_error *error, ethd_status status, const char *name);
-ethd_status ethd__refuse(ethd_error *error, ethd_status status, const char *name, double found, double min, double max);
+ethd_status ethd__refuse(ethd_error *error, ethd_status status, const char *name, ethd__found found);
 
 /* Puts "prefix." before the name: "contact" + "k_e". */
 void ethd__error_prefix(ethd_error *error, const char *prefix);

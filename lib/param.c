@@ -62,12 +62,13 @@ static bool is_row(const ethd_param *row) {
 }
 
 ethd_status ethd_params_check_table(const ethd_param *params, uint32_t count, ethd_error *error) {
-  if (count > ETHD_PARAMS_MAX) return ethd__refuse(error, ETHD_E_TABLE, "param_count", count, 0, ETHD_PARAMS_MAX);
-  if (count && !params) return ethd__refuse(error, ETHD_E_TABLE, "params", NAN, NAN, NAN);
+  if (count > ETHD_PARAMS_MAX)
+    return ethd__refuse(error, ETHD_E_TABLE, "param_count", (ethd__found){count, 0, ETHD_PARAMS_MAX});
+  if (count && !params) return ethd__error(error, ETHD_E_TABLE, "params");
   for (uint32_t i = 0; i < count; i++) {
     const char *name = params[i].name ? params[i].name : "";
     if (!is_name(name) || !is_row(&params[i]) || ethd_params_find(params, i, name) >= 0)
-      return ethd__refuse(error, ETHD_E_TABLE, name, NAN, NAN, NAN);
+      return ethd__error(error, ETHD_E_TABLE, name);
   }
   return ETHD_OK;
 }
@@ -80,7 +81,7 @@ ethd_status ethd_params_check(const ethd_param *params, uint32_t count, const do
     bool whole = !ethd_param_words(row) || v == floor(v);
     if (inside && whole) continue;
     ethd_status status = isfinite(v) ? ETHD_E_RANGE : ETHD_E_NOT_FINITE;
-    return ethd__refuse(error, status, row->name, v, row->min, row->max);
+    return ethd__refuse(error, status, row->name, (ethd__found){v, row->min, row->max});
   }
   return ETHD_OK;
 }

@@ -28,7 +28,8 @@ ethd_status ethd_control_post(ethd_control *control, const ethd_setup *setup, et
   ethd_status status = ethd__plan_prepare(setup, spare, error);
   if (status < 0) return status;
   if (setup->period != control->period)
-    return ethd__refuse(error, ETHD_E_ARGUMENT, "loop.period", setup->period, control->period, control->period);
+    return ethd__refuse(error, ETHD_E_ARGUMENT, "loop.period",
+                        (ethd__found){setup->period, control->period, control->period});
   atomic_store_explicit(&control->posted, 1, memory_order_release);
   return ETHD_OK;
 }

@@ -101,8 +101,8 @@ static ethd_status check_scene(const ethd_setup *s, int place, ethd_error *error
   if (!scene) return ETHD_OK;
   if (place == 0) ethd__scene_annulus(&s->arm, ethd_setup_range(s), &inner, &outer);
   if (scene->inner <= fmax(inner, 0) && scene->outer >= outer) return ETHD_OK;
-  return ethd__refuse(error, ETHD_E_RANGE, "scene was pruned for another arm or ring; reach", outer, scene->inner,
-                      scene->outer);
+  return ethd__refuse(error, ETHD_E_RANGE, "scene was pruned for another arm or ring; reach",
+                      (ethd__found){outer, scene->inner, scene->outer});
 }
 
 static bool has_rare_limits(const ethd_limits *l) {

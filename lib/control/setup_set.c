@@ -124,10 +124,10 @@ static ethd_status find(const ethd_setup *setup, const char *name, ethd__setup_f
   for (uint32_t i = 0; !rest && find_at(setup, i, out); i++) rest = after(&out->key, name);
   if (!rest) return ethd__error(error, ETHD_E_UNKNOWN, name);
   if (!*rest && out->key.count > 1)
-    return ethd__refuse(error, ETHD_E_ARGUMENT, name, (double)NAN, 0, out->key.count - 1);
+    return ethd__refuse(error, ETHD_E_ARGUMENT, name, (ethd__found){(double)NAN, 0, out->key.count - 1});
   *index = *rest ? index_of(rest) : 0;
   if (*index >= out->key.count || (*rest && out->key.count == 1))
-    return ethd__refuse(error, ETHD_E_RANGE, name, (double)NAN, 0, out->key.count - 1);
+    return ethd__refuse(error, ETHD_E_RANGE, name, (ethd__found){(double)NAN, 0, out->key.count - 1});
   return ETHD_OK;
 }
 

@@ -54,7 +54,7 @@ const ethd_method ethd_filter_methods[ETHD_FILTER_COUNT] = {
 
 static ethd_status check(ethd_filter_method method, const double *p, double period, ethd_error *error) {
   if ((uint32_t)method >= ETHD_FILTER_COUNT)
-    return ethd__refuse(error, ETHD_E_UNKNOWN, "method", (double)method, 0, ETHD_FILTER_COUNT - 1);
+    return ethd__refuse(error, ETHD_E_UNKNOWN, "method", (ethd__found){(double)method, 0, ETHD_FILTER_COUNT - 1});
   const ethd_method *m = &ethd_filter_methods[method];
   ethd_status status = ethd__check_number(error, "period", period, 1e-6, 1);
   if (!status) status = ethd_params_check(m->params, m->param_count, p, error);

@@ -5,8 +5,13 @@
 
 #include "estimate/filter_methods.h"
 
-static void place(ethd_filter_state *s, ethd_vec x, ethd_vec v, double xx, double vv, double aa) {
-  double p[6] = {xx, 0, 0, vv, 0, aa};
+/* Variances of what a filter starts from, of each axis. An acceleration is known to be 0 but in `ca`. */
+typedef struct doubt {
+  double x, v, a; /* m^2, m^2/s^2, m^2/s^4 */
+} doubt;
+
+static void begin(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, ethd_vec v, doubt d) {
+  double p[6] = {d.x, 0, 0, d.v, 0, f->method == ETHD_FILTER_CA ? d.a : 0};
   s->x[0] = x.x, s->x[1] = x.y;
   s->v[0] = v.x, s->v[1] = v.y;
   s->a[0] = s->a[1] = 0;
@@ -15,16 +20,14 @@ static void place(ethd_filter_state *s, ethd_vec x, ethd_vec v, double xx, doubl
   s->gated_in_a_row = 0;
 }
 
-static double start_aa(const ethd_filter *f, double aa) { return f->method == ETHD_FILTER_CA ? aa : 0; }
-
 void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, ethd_vec v) {
-  place(state, x, v, 1e-6, 1e-4, start_aa(filter, 1));
+  begin(filter, state, x, v, (doubt){1e-6, 1e-4, 1});
   state->age = filter->compensation == ETHD_COMPENSATION_STAMP ? -filter->p[FILTER_LATENCY] : INFINITY;
 }
 
 static void start_from_reading(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, double age) {
   double noise = ethd__filter_is_kalman(f) ? f->p[KALMAN_NOISE] : 0;
-  place(s, x, (ethd_vec){0, 0}, noise * noise, 1, start_aa(f, 100));
+  begin(f, s, x, (ethd_vec){0, 0}, (doubt){noise * noise, 1, 100});
   s->age = age;
   s->used++;
 }

@@ -22,7 +22,7 @@ const ethd_method ethd_fit_methods[ETHD_FIT_COUNT] = {
 static ethd_status check(ethd_fit_method method, const double *p, double ring_radius, double finger_radius,
                          ethd_error *error) {
   if ((uint32_t)method >= ETHD_FIT_COUNT)
-    return ethd__refuse(error, ETHD_E_UNKNOWN, "method", (double)method, 0, ETHD_FIT_COUNT - 1);
+    return ethd__refuse(error, ETHD_E_UNKNOWN, "method", (ethd__found){(double)method, 0, ETHD_FIT_COUNT - 1});
   const ethd_method *m = &ethd_fit_methods[method];
   ethd_status status = ethd__check_number(error, "ring_radius", ring_radius, RADIUS_MIN, RADIUS_MAX);
   if (!status) status = ethd__check_number(error, "finger_radius", finger_radius, RADIUS_MIN, ring_radius);

@@ -47,13 +47,14 @@ static uint32_t window(ethd_velocity_method method, const double *p) {
 
 static ethd_status check(ethd_velocity_method method, const double *p, double period, ethd_error *error) {
   if ((uint32_t)method >= ETHD_VELOCITY_COUNT)
-    return ethd__refuse(error, ETHD_E_UNKNOWN, "method", (double)method, 0, ETHD_VELOCITY_COUNT - 1);
+    return ethd__refuse(error, ETHD_E_UNKNOWN, "method", (ethd__found){(double)method, 0, ETHD_VELOCITY_COUNT - 1});
   const ethd_method *m = &ethd_velocity_methods[method];
   ethd_status status = ethd__check_number(error, "period", period, PERIOD_MIN, PERIOD_MAX);
   if (!status) status = ethd_params_check(m->params, m->param_count, p, error);
   if (status) return status;
   if (method == ETHD_VELOCITY_LSQ || method == ETHD_VELOCITY_FOAW)
-    if (p[0] != floor(p[0])) return ethd__refuse(error, ETHD_E_RANGE, "window", p[0], 2, ETHD_VELOCITY_WINDOW_MAX);
+    if (p[0] != floor(p[0]))
+      return ethd__refuse(error, ETHD_E_RANGE, "window", (ethd__found){p[0], 2, ETHD_VELOCITY_WINDOW_MAX});
   return ETHD_OK;
 }
 

@@ -23,14 +23,16 @@ static int has_step(const ethd_law *law) {
 /* ABI first: nothing behind it can be trusted when it differs. */
 ethd_status ethd_law_check(const ethd_law *law, ethd_error *error) {
   if (!law) return ethd__error(error, ETHD_E_ARGUMENT, "law");
-  if (law->abi != ETHD_ABI) return ethd__refuse(error, ETHD_E_ABI, "abi", law->abi, ETHD_ABI, ETHD_ABI);
-  if (law->kind > ETHD_TRANSITION) return ethd__refuse(error, ETHD_E_ARGUMENT, "kind", law->kind, 0, ETHD_TRANSITION);
+  if (law->abi != ETHD_ABI) return ethd__refuse(error, ETHD_E_ABI, "abi", (ethd__found){law->abi, ETHD_ABI, ETHD_ABI});
+  if (law->kind > ETHD_TRANSITION)
+    return ethd__refuse(error, ETHD_E_ARGUMENT, "kind", (ethd__found){law->kind, 0, ETHD_TRANSITION});
   if (law->size < smallest[law->kind])
-    return ethd__refuse(error, ETHD_E_SIZE, "size", law->size, (double)smallest[law->kind], (double)INFINITY);
+    return ethd__refuse(error, ETHD_E_SIZE, "size",
+                        (ethd__found){law->size, (double)smallest[law->kind], (double)INFINITY});
   if (!id_is_good(law->id)) return ethd__error(error, ETHD_E_ARGUMENT, "id");
   if (!law->brief || !law->brief[0]) return ethd__error(error, ETHD_E_ARGUMENT, law->id);
   if (law->state_size > ETHD_STATE_MAX)
-    return ethd__refuse(error, ETHD_E_STATE, law->id, law->state_size, 0, ETHD_STATE_MAX);
+    return ethd__refuse(error, ETHD_E_STATE, law->id, (ethd__found){law->state_size, 0, ETHD_STATE_MAX});
   if (!has_step(law)) return ethd__error(error, ETHD_E_ARGUMENT, law->id);
   ethd_status status = ethd_params_check_table(law->params, law->param_count, error);
   if (status < 0) ethd__error_prefix(error, law->id);

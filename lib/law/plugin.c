@@ -19,12 +19,14 @@ static ethd_status check_laws(const ethd_plugin_entry *entry, ethd_error *error)
 }
 
 static ethd_status check_entry(const ethd_plugin_entry *entry, ethd_error *error) {
-  if (entry->abi != ETHD_ABI) return ethd__refuse(error, ETHD_E_ABI, "ethd_plugin.abi", entry->abi, ETHD_ABI, ETHD_ABI);
+  if (entry->abi != ETHD_ABI)
+    return ethd__refuse(error, ETHD_E_ABI, "ethd_plugin.abi", (ethd__found){entry->abi, ETHD_ABI, ETHD_ABI});
   if (entry->size < ETHD_PLUGIN_MIN)
-    return ethd__refuse(error, ETHD_E_SIZE, "ethd_plugin.size", entry->size, (double)ETHD_PLUGIN_MIN, (double)INFINITY);
+    return ethd__refuse(error, ETHD_E_SIZE, "ethd_plugin.size",
+                        (ethd__found){entry->size, (double)ETHD_PLUGIN_MIN, (double)INFINITY});
   if (!entry->id || !entry->version || !entry->laws) return ethd__error(error, ETHD_E_ARGUMENT, "ethd_plugin");
   if (entry->law_count < 1 || entry->law_count > LAWS_MAX)
-    return ethd__refuse(error, ETHD_E_RANGE, "ethd_plugin.law_count", entry->law_count, 1, LAWS_MAX);
+    return ethd__refuse(error, ETHD_E_RANGE, "ethd_plugin.law_count", (ethd__found){entry->law_count, 1, LAWS_MAX});
   return check_laws(entry, error);
 }
 

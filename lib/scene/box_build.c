@@ -30,9 +30,17 @@ static void widen(span *s, double v, double r) {
   s->max = v + r > s->max ? v + r : s->max;
 }
 
-static box around(const ethd__cloud *k, size_t from, size_t to, size_t step, float c, float s) {
+/* Discs of a cloud, from one on, before another, every step-th. */
+typedef struct run {
+  const ethd__cloud *cloud;
+  size_t from, to, step;
+} run;
+
+/* Around a run, u along (c, s). */
+static box around(const run *of, float c, float s) {
+  const ethd__cloud *k = of->cloud;
   box b = {c, s, {INFINITY, -INFINITY}, {INFINITY, -INFINITY}};
-  for (size_t i = from; i < to; i += step) {
+  for (size_t i = of->from; i < of->to; i += of->step) {
     ethd_vec p = k->points[i];
     double r = k->radii ? k->radii[i] : 0;
     widen(&b.u, c * p.x + s * p.y, r);
@@ -50,22 +58,22 @@ static double cost(const box *b) {
 }
 
 /* From the first disc to the last. */
-static box along(const ethd__cloud *k, size_t from, size_t to, size_t step) {
-  ethd_vec e = ethd_vec_sub(k->points[to - 1], k->points[from]);
+static box along(const run *of) {
+  ethd_vec e = ethd_vec_sub(of->cloud->points[of->to - 1], of->cloud->points[of->from]);
   double length = ethd_vec_norm(e);
   bool any = length > 0;
-  return around(k, from, to, step, any ? (float)(e.x / length) : 1, any ? (float)(e.y / length) : 0);
+  return around(of, any ? (float)(e.x / length) : 1, any ? (float)(e.y / length) : 0);
 }
 
 static box fit(const ethd__cloud *k, size_t from, size_t to) {
-  if (to - from <= 2) return along(k, from, to, 1);
-  size_t step = (to - from + SAMPLES - 1) / SAMPLES;
-  box best = along(k, from, to, step);
+  run all = {k, from, to, 1}, some = {k, from, to, (to - from + SAMPLES - 1) / SAMPLES};
+  if (to - from <= 2) return along(&all);
+  box best = along(&some);
   for (int i = 0; i < DIRECTIONS; i++) {
-    box b = around(k, from, to, step, directions[i][0], directions[i][1]);
+    box b = around(&some, directions[i][0], directions[i][1]);
     if (cost(&b) < cost(&best)) best = b;
   }
-  return around(k, from, to, 1, best.c, best.s);
+  return around(&all, best.c, best.s);
 }
 
 /* What rounding takes from the half is given back. */

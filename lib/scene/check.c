@@ -8,9 +8,9 @@
 
 #define POINTS_MAX (INT32_MAX / 2 - 1) /* a feature's number is twice a point's, plus 1 */
 
-static ethd_status refuse_object(const ethd_object_def *def, ethd_status status, const char *name, double found,
-                                 double min, double max, ethd_error *error) {
-  ethd__refuse(error, status, name, found, min, max);
+static ethd_status refuse_object(const ethd_object_def *def, ethd_status status, const char *name, ethd__found found,
+                                 ethd_error *error) {
+  ethd__refuse(error, status, name, found);
   if (error) error->line = def->line;
   return status;
 }
@@ -37,7 +37,8 @@ ethd_status ethd__check_count(ethd_shape shape, size_t count, ethd_status status
   char name[64];
   size_t n = append(name, 0, pairs ? "numbers after " : "an even count of numbers after ");
   append(name, n, s->name);
-  return ethd__refuse(error, status, name, (double)count, (double)s->count, s->is_list ? INFINITY : (double)s->count);
+  return ethd__refuse(error, status, name,
+                      (ethd__found){(double)count, (double)s->count, s->is_list ? INFINITY : (double)s->count});
 }
 
 static ethd_status refuse_number(const ethd_object_def *def, size_t k, ethd_error *error) {
@@ -46,8 +47,8 @@ static ethd_status refuse_number(const ethd_object_def *def, size_t k, ethd_erro
   char name[64];
   size_t n = append(name, 0, s->name), i = ethd__number_of(s, k);
   append(name, append(name, n, " "), s->numbers[i].name);
-  return refuse_object(def, isfinite(v) ? ETHD_E_RANGE : ETHD_E_NOT_FINITE, name, v,
-                       s->numbers[i].kind == ETHD__LENGTH ? 0 : -max, max, error);
+  return refuse_object(def, isfinite(v) ? ETHD_E_RANGE : ETHD_E_NOT_FINITE, name,
+                       (ethd__found){v, s->numbers[i].kind == ETHD__LENGTH ? 0 : -max, max}, error);
 }
 
 static ethd_status check_numbers(const ethd_object_def *def, ethd_error *error) {
@@ -73,42 +74,44 @@ static ethd_vec point(const double *numbers, size_t k) {
   return p;
 }
 
-static ethd_status refuse_pair(const ethd_object_def *def, const char *what, size_t i, size_t j, const char *end,
+/* "polygon: edges 0 and 2 meet" */
+static ethd_status refuse_pair(const ethd_object_def *def, const char *what, const size_t pair[2], const char *fault,
                                ethd_error *error) {
   char name[64];
   size_t n = append(name, 0, ethd_shape_name(def->shape));
   n = append(name, n, what);
-  n = append_number(name, n, i);
+  n = append_number(name, n, pair[0]);
   n = append(name, n, " and ");
-  n = append_number(name, n, j);
-  append(name, n, end);
-  return refuse_object(def, ETHD_E_GEOMETRY, name, NAN, NAN, NAN, error);
+  n = append_number(name, n, pair[1]);
+  append(name, n, fault);
+  return refuse_object(def, ETHD_E_GEOMETRY, name, ethd__unsaid, error);
 }
 
 static ethd_status check_simple(const ethd_object_def *def, void *room, ethd_error *error) {
   size_t n = def->count / 2, meet[2] = {0, 0};
   if (ethd__is_simple(def->numbers, n, room, meet)) return ETHD_OK;
-  return refuse_pair(def, ": edges ", meet[0], meet[1], " meet", error);
+  return refuse_pair(def, ": edges ", meet, " meet", error);
 }
 
 static ethd_status check_chain(const ethd_object_def *def, void *room, ethd_error *error) {
   size_t n = def->count / 2;
-  if (n > POINTS_MAX) return refuse_object(def, ETHD_E_FULL, "points", (double)n, 0, POINTS_MAX, error);
+  if (n > POINTS_MAX) return refuse_object(def, ETHD_E_FULL, "points", (ethd__found){(double)n, 0, POINTS_MAX}, error);
   for (size_t k = 0; k < n; k++) {
-    size_t next = k + 1 < n ? k + 1 : 0;
+    size_t next = k + 1 < n ? k + 1 : 0, pair[2] = {k, next};
     if (!next && !ethd__shapes[def->shape].is_closed) break;
     if (are_equal(point(def->numbers, k), point(def->numbers, next)))
-      return refuse_pair(def, ": points ", k, next, " are equal", error);
+      return refuse_pair(def, ": points ", pair, " are equal", error);
   }
   return ethd__shapes[def->shape].is_closed ? check_simple(def, room, error) : ETHD_OK;
 }
 
 static ethd_status check_object(const ethd_scene_def *def, const ethd_object_def *o, void *room, ethd_error *error) {
   if ((int)o->shape < 0 || o->shape >= ETHD_SHAPE_COUNT)
-    return refuse_object(o, ETHD_E_UNKNOWN, "shape", (double)o->shape, 0, ETHD_SHAPE_COUNT - 1, error);
-  if (!o->numbers) return refuse_object(o, ETHD_E_ARGUMENT, "numbers", NAN, NAN, NAN, error);
+    return refuse_object(o, ETHD_E_UNKNOWN, "shape", (ethd__found){(double)o->shape, 0, ETHD_SHAPE_COUNT - 1}, error);
+  if (!o->numbers) return refuse_object(o, ETHD_E_ARGUMENT, "numbers", ethd__unsaid, error);
   if (o->material < -1 || o->material >= (int32_t)def->material_count)
-    return refuse_object(o, ETHD_E_RANGE, "material", o->material, -1, (double)def->material_count - 1, error);
+    return refuse_object(o, ETHD_E_RANGE, "material", (ethd__found){o->material, -1, (double)def->material_count - 1},
+                         error);
   const ethd__shape *shape = &ethd__shapes[o->shape];
   ethd_status status = ethd__check_count(o->shape, o->count, ETHD_E_ARGUMENT, error);
   if (!status) status = check_numbers(o, error);
@@ -118,9 +121,9 @@ static ethd_status check_object(const ethd_scene_def *def, const ethd_object_def
   return status;
 }
 
-static ethd_status refuse_material(const ethd_material *m, ethd_status status, const char *name, double found,
-                                   double max, ethd_error *error) {
-  ethd__refuse(error, status, name, found, isnan(max) ? NAN : 0, max);
+static ethd_status refuse_material(const ethd_material *m, ethd_status status, const char *name, ethd__found found,
+                                   ethd_error *error) {
+  ethd__refuse(error, status, name, found);
   if (error) error->line = m->line;
   return status;
 }
@@ -129,18 +132,19 @@ static bool is_name(const char name[ETHD_NAME_MAX]) { return name[0] && memchr(n
 
 static ethd_status check_material(const ethd_scene_def *def, size_t i, ethd_error *error) {
   const ethd_material *m = &def->materials[i];
-  if (!is_name(m->name)) return refuse_material(m, ETHD_E_ARGUMENT, "material", NAN, NAN, error);
+  if (!is_name(m->name)) return refuse_material(m, ETHD_E_ARGUMENT, "material", ethd__unsaid, error);
   for (size_t k = 0; k < i; k++)
     if (ethd__same(m->name, def->materials[k].name))
-      return refuse_material(m, ETHD_E_DUPLICATE, m->name, NAN, NAN, error);
-  if (m->count > ETHD_PARAMS_MAX) return refuse_material(m, ETHD_E_FULL, m->name, m->count, ETHD_PARAMS_MAX, error);
+      return refuse_material(m, ETHD_E_DUPLICATE, m->name, ethd__unsaid, error);
+  if (m->count > ETHD_PARAMS_MAX)
+    return refuse_material(m, ETHD_E_FULL, m->name, (ethd__found){m->count, 0, ETHD_PARAMS_MAX}, error);
   for (uint32_t k = 0; k < m->count; k++) {
     const char *name = m->values[k].name;
-    if (!is_name(name)) return refuse_material(m, ETHD_E_ARGUMENT, m->name, NAN, NAN, error);
+    if (!is_name(name)) return refuse_material(m, ETHD_E_ARGUMENT, m->name, ethd__unsaid, error);
     if (!isfinite(m->values[k].value))
-      return refuse_material(m, ETHD_E_NOT_FINITE, name, m->values[k].value, NAN, error);
+      return refuse_material(m, ETHD_E_NOT_FINITE, name, (ethd__found){m->values[k].value, NAN, NAN}, error);
     for (uint32_t l = 0; l < k; l++)
-      if (ethd__same(name, m->values[l].name)) return refuse_material(m, ETHD_E_DUPLICATE, name, NAN, NAN, error);
+      if (ethd__same(name, m->values[l].name)) return refuse_material(m, ETHD_E_DUPLICATE, name, ethd__unsaid, error);
   }
   return ETHD_OK;
 }
@@ -157,12 +161,12 @@ size_t ethd__check_room(const ethd_scene_def *def) {
 
 ethd_status ethd__check_scene(const ethd_scene_def *def, void *room, ethd_error *error) {
   if ((def->object_count && !def->objects) || (def->material_count && !def->materials))
-    return ethd__refuse(error, ETHD_E_ARGUMENT, "scene", NAN, NAN, NAN);
+    return ethd__error(error, ETHD_E_ARGUMENT, "scene");
   if (def->material_count > ETHD_MATERIALS_MAX)
-    return refuse_material(&def->materials[ETHD_MATERIALS_MAX], ETHD_E_FULL, "materials", (double)def->material_count,
-                           ETHD_MATERIALS_MAX, error);
+    return refuse_material(&def->materials[ETHD_MATERIALS_MAX], ETHD_E_FULL, "materials",
+                           (ethd__found){(double)def->material_count, 0, ETHD_MATERIALS_MAX}, error);
   if (def->object_count > INT32_MAX)
-    return ethd__refuse(error, ETHD_E_FULL, "objects", (double)def->object_count, 0, INT32_MAX);
+    return ethd__refuse(error, ETHD_E_FULL, "objects", (ethd__found){(double)def->object_count, 0, INT32_MAX});
   ethd_status status = ETHD_OK;
   for (size_t i = 0; i < def->material_count && !status; i++) status = check_material(def, i, error);
   for (size_t i = 0; i < def->object_count && !status; i++) status = check_object(def, &def->objects[i], room, error);

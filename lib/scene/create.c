@@ -36,7 +36,8 @@ static ethd_status plan(const ethd_scene_def *def, ethd_scene *s, ethd_error *er
     }
     endless += is_endless(&def->objects[i]);
   }
-  if (numbers > UINT32_MAX) return ethd__refuse(error, ETHD_E_FULL, "numbers", (double)numbers, 0, UINT32_MAX);
+  if (numbers > UINT32_MAX)
+    return ethd__refuse(error, ETHD_E_FULL, "numbers", (ethd__found){(double)numbers, 0, UINT32_MAX});
   s->object_count = (uint32_t)def->object_count;
   s->material_count = (uint32_t)def->material_count;
   s->number_count = (uint32_t)numbers;
@@ -185,7 +186,7 @@ static void fill(const ethd_scene_def *def, const int32_t *ids, ethd_scene *s, c
 
 static ethd_status check(const ethd_scene_def *def, ethd_error *error) {
   void *room = malloc(ethd__check_room(def));
-  if (!room) return ethd__refuse(error, ETHD_E_MEMORY, "scene", NAN, NAN, NAN);
+  if (!room) return ethd__error(error, ETHD_E_MEMORY, "scene");
   ethd_status status = ethd__check_scene(def, room, error);
   free(room);
   return status;
@@ -219,7 +220,7 @@ ethd_status ethd__scene_make(const ethd_scene_def *def, const int32_t *ids, ethd
   }
   if (!scene || !build(def, ids, scene)) {
     free(scene);
-    return ethd__refuse(error, ETHD_E_MEMORY, "scene", NAN, NAN, NAN);
+    return ethd__error(error, ETHD_E_MEMORY, "scene");
   }
   *out = scene;
   return ETHD_OK;

@@ -29,17 +29,17 @@ typedef struct draft {
   size_t lines, words; /* that aren't materials': bounds of objects and numbers */
 } draft;
 
-static ethd_status refuse(reader *r, ethd_status status, word w, double found, double min, double max) {
+static ethd_status refuse(reader *r, ethd_status status, word w, ethd__found found) {
   char name[64];
   size_t n = w.length < sizeof name - 1 ? w.length : sizeof name - 1;
   for (size_t i = 0; i < n; i++) name[i] = w.at[i] >= ' ' && w.at[i] < 127 ? w.at[i] : '?';
   name[n] = 0;
-  ethd__refuse(r->error, status, name, found, min, max);
+  ethd__refuse(r->error, status, name, found);
   if (r->error) r->error->line = r->number;
   return status;
 }
 
-static ethd_status refuse_word(reader *r, ethd_status status, word w) { return refuse(r, status, w, NAN, NAN, NAN); }
+static ethd_status refuse_word(reader *r, ethd_status status, word w) { return refuse(r, status, w, ethd__unsaid); }
 
 /* ---- lines and words ---- */
 
@@ -159,8 +159,9 @@ static ethd_status read_value(reader *r, word w, ethd_material *m) {
   word key, value;
   double number_read;
   if (!split(w, &key, &value) || !is_name(key) || !number(value, &number_read)) return refuse_word(r, ETHD_E_SYNTAX, w);
-  if (m->count == ETHD_PARAMS_MAX) return refuse(r, ETHD_E_FULL, key, ETHD_PARAMS_MAX + 1, 0, ETHD_PARAMS_MAX);
-  if (!isfinite(number_read)) return refuse(r, ETHD_E_NOT_FINITE, key, number_read, NAN, NAN);
+  if (m->count == ETHD_PARAMS_MAX)
+    return refuse(r, ETHD_E_FULL, key, (ethd__found){ETHD_PARAMS_MAX + 1, 0, ETHD_PARAMS_MAX});
+  if (!isfinite(number_read)) return refuse(r, ETHD_E_NOT_FINITE, key, (ethd__found){number_read, NAN, NAN});
   copy_name(m->values[m->count].name, key);
   m->values[m->count++].value = number_read;
   return ETHD_OK;
@@ -172,7 +173,7 @@ static ethd_status read_material(reader *r, draft *d, word keyword) {
   if (!next_word(r, &w)) return refuse_word(r, ETHD_E_SYNTAX, keyword);
   if (!is_name(w)) return refuse_word(r, ETHD_E_SYNTAX, w);
   if (d->material_count == ETHD_MATERIALS_MAX)
-    return refuse(r, ETHD_E_FULL, w, ETHD_MATERIALS_MAX + 1, 0, ETHD_MATERIALS_MAX);
+    return refuse(r, ETHD_E_FULL, w, (ethd__found){ETHD_MATERIALS_MAX + 1, 0, ETHD_MATERIALS_MAX});
   ethd_material *m = &d->materials[d->material_count++];
   copy_name(m->name, w);
   m->line = r->number;
@@ -250,16 +251,16 @@ static ethd_status read_all(reader r, draft *d) {
   if (status) return status;
   d->objects = malloc((d->lines + 1) * sizeof *d->objects);
   d->numbers = malloc((d->words + 1) * sizeof *d->numbers);
-  if (!d->objects || !d->numbers) return ethd__refuse(r.error, ETHD_E_MEMORY, "scene", NAN, NAN, NAN);
+  if (!d->objects || !d->numbers) return ethd__error(r.error, ETHD_E_MEMORY, "scene");
   return read_objects(r, d);
 }
 
 ethd_status ethd_scene_parse(const char *text, size_t length, ethd_scene **out, ethd_error *error) {
   *out = NULL;
-  if (!text && length) return ethd__refuse(error, ETHD_E_ARGUMENT, "text", NAN, NAN, NAN);
+  if (!text && length) return ethd__error(error, ETHD_E_ARGUMENT, "text");
   if (!text) text = "";
   draft *d = calloc(1, sizeof *d);
-  if (!d) return ethd__refuse(error, ETHD_E_MEMORY, "scene", NAN, NAN, NAN);
+  if (!d) return ethd__error(error, ETHD_E_MEMORY, "scene");
   ethd_status status = read_all((reader){.at = text, .end = text + length, .error = error}, d);
   if (!status) {
     ethd_scene_def def = {d->objects, d->object_count, d->materials, d->material_count};

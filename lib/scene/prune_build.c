@@ -32,7 +32,7 @@ ethd_status ethd_scene_prune(const ethd_scene *scene, const ethd_arm *arm, doubl
   ethd_object_def *defs = malloc((scene->object_count + (size_t)1) * sizeof *defs);
   int32_t *ids = malloc((scene->object_count + (size_t)1) * sizeof *ids);
   if (!defs || !ids) {
-    status = ethd__refuse(error, ETHD_E_MEMORY, "scene", NAN, NAN, NAN);
+    status = ethd__error(error, ETHD_E_MEMORY, "scene");
   } else {
     ethd_scene_def def = {defs, gather(scene, inner, outer, defs, ids), ethd_scene_material(scene, 0),
                           scene->material_count};

@@ -24,7 +24,7 @@ static void set(ethd_touch *out, double distance, ethd_vec point, ethd_vec n) {
 static ethd_status check_normal(const ethd_object_def *def, ethd_error *error) {
   double length = ethd_vec_norm(vec(def->numbers[0], def->numbers[1]));
   if (fabs(length - 1) <= 1e-6) return ETHD_OK;
-  return ethd__refuse(error, ETHD_E_RANGE, "halfplane |n|", length, 1 - 1e-6, 1 + 1e-6);
+  return ethd__refuse(error, ETHD_E_RANGE, "halfplane |n|", (ethd__found){length, 1 - 1e-6, 1 + 1e-6});
 }
 
 static void keep_unit(double *p) {

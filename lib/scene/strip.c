@@ -6,37 +6,6 @@ static const float *slopes(const ethd_scene *scene, const ethd__probe *p) {
   return ethd__is_true_to(p) ? ETHD__ARRAY(scene, float, slopes_at) : NULL;
 }
 
-/* ---- the nearest edge ---- */
-
-static void take(const ethd__chain *c, uint32_t k, ethd_vec x, ethd__nearest_edge *best) {
-  double squared = ethd__beside_edge(c->points[k], c->points[k + 1], x).squared;
-  if (!(squared < best->squared || (squared == best->squared && k < best->edge))) return;
-  best->squared = squared;
-  best->edge = k;
-}
-
-void ethd__strip_nearest(const ethd_scene *scene, const ethd__object *o, const ethd__probe *p, ethd_vec x,
-                         uint32_t first, double limit, ethd__nearest_edge *out) {
-  ethd__chain c = ethd__chain_of(scene, o);
-  const ethd__tree *tree = ethd__tree_at(scene, o);
-  ethd__walk walk;
-  ethd__place at;
-  *out = (ethd__nearest_edge){limit, ETHD__NONE, false};
-  ethd__walk_start(&walk, tree, p, slopes(scene, p));
-  if (first < o->edges) {
-    take(&c, first, x, out);
-    ethd__walk_around(&walk, first, ethd__bound(p, out->squared));
-  } else {
-    first = ethd__walk_down(&walk);
-    take(&c, first, x, out);
-    ethd__walk_on(&walk, first, ethd__bound(p, out->squared));
-  }
-  while ((at = ethd__walk_next(&walk)).index != ETHD__NONE) {
-    take(&c, at.index, x, out);
-    walk.bound = ethd__bound(p, out->squared);
-  }
-}
-
 /* ---- inside or outside ---- */
 
 /* The ray from x to the right may meet what is in these boxes. */
@@ -55,7 +24,9 @@ static unsigned ahead(const ethd__node *n, float x, float y) {
 
 /* By the parity of the edges that a ray to the right crosses. Beyond the frame that all objects lie in nothing
    is inside, and boxes would be wrong by more than they are inflated. */
-static bool contains(const ethd__chain *c, const ethd__tree *tree, const ethd__probe *p, ethd_vec x) {
+static bool contains(const ethd__strip *s, const ethd__chain *c) {
+  const ethd__tree *tree = ethd__tree_at(s->scene, s->object);
+  const ethd__probe *p = s->probe;
   struct {
     uint32_t level, index;
   } stack[(ETHD__WIDE - 1) * ETHD__LEVELS + 1] = {{tree->levels, 0}}, at;
@@ -64,7 +35,7 @@ static bool contains(const ethd__chain *c, const ethd__tree *tree, const ethd__p
   for (int count = 1; count > 0;) {
     at = stack[--count];
     if (at.level == 0) {
-      inside ^= ethd__edge_crossed(c->points[at.index], c->points[at.index + 1], x);
+      inside ^= ethd__edge_crossed(c->points[at.index], c->points[at.index + 1], s->x);
       continue;
     }
     const ethd__node *n = p->nodes + tree->first[at.level] + at.index;
@@ -82,43 +53,58 @@ typedef struct faces {
 } faces;
 
 /* The nearest face decides, unless one of the other kind is as near up to rounding. */
-static bool is_inside(const ethd__chain *c, const ethd__tree *tree, const ethd__probe *p, ethd_vec x, const faces *f) {
+static bool is_inside(const ethd__strip *s, const ethd__chain *c, const faces *f) {
   double outer = sqrt(f->outer), inner = sqrt(f->inner);
   double rounding = 4 * c->slack + 64 * DBL_EPSILON * fmin(outer, inner);
-  return fabs(outer - inner) > rounding ? inner < outer : contains(c, tree, p, x);
+  return fabs(outer - inner) > rounding ? inner < outer : contains(s, c);
 }
 
-static void take_face(const ethd__chain *c, uint32_t k, ethd_vec x, ethd__nearest_edge *best, faces *f) {
+/* ---- the walk ---- */
+
+/* Keeps edge k if it is the nearest so far; where faces are asked for, its face counts whether it is or not. */
+ETHD__INLINE void take(const ethd__chain *c, uint32_t k, ethd_vec x, faces *f, ethd__nearest_edge *best) {
   ethd__beside s = ethd__beside_edge(c->points[k], c->points[k + 1], x);
-  double in = c->turn * s.across;
   if (s.squared < best->squared || (s.squared == best->squared && k < best->edge)) {
     best->squared = s.squared;
     best->edge = k;
   }
+  if (!f) return;
+  double in = c->turn * s.across;
   if (!(in > s.doubt) && s.squared < f->outer) f->outer = s.squared;
   if (!(in < -s.doubt) && s.squared < f->inner) f->inner = s.squared;
 }
 
-void ethd__strip_signed(const ethd_scene *scene, const ethd__object *o, const ethd__probe *p, ethd_vec x,
-                        uint32_t first, ethd__nearest_edge *out) {
-  ethd__chain c = ethd__chain_of(scene, o);
-  const ethd__tree *tree = ethd__tree_at(scene, o);
-  faces f = {INFINITY, INFINITY};
+/* The likely edge first, or the one that is found by always taking the nearest box; its distance bounds the rest. Two
+   copies are compiled of it, with faces and without. */
+ETHD__INLINE void visit(const ethd__strip *s, const ethd__chain *c, uint32_t first, faces *f, ethd__nearest_edge *out) {
+  const ethd__probe *p = s->probe;
   ethd__walk walk;
   ethd__place at;
-  *out = (ethd__nearest_edge){INFINITY, 0, false};
-  ethd__walk_start(&walk, tree, p, slopes(scene, p));
-  if (first < o->edges) {
-    take_face(&c, first, x, out, &f);
+  ethd__walk_start(&walk, ethd__tree_at(s->scene, s->object), p, slopes(s->scene, p));
+  if (first < s->object->edges) {
+    take(c, first, s->x, f, out);
     ethd__walk_around(&walk, first, ethd__bound(p, out->squared));
   } else {
     first = ethd__walk_down(&walk);
-    take_face(&c, first, x, out, &f);
+    take(c, first, s->x, f, out);
     ethd__walk_on(&walk, first, ethd__bound(p, out->squared));
   }
   while ((at = ethd__walk_next(&walk)).index != ETHD__NONE) {
-    take_face(&c, at.index, x, out, &f);
+    take(c, at.index, s->x, f, out);
     walk.bound = ethd__bound(p, out->squared);
   }
-  out->inside = is_inside(&c, tree, p, x, &f);
+}
+
+void ethd__strip_nearest(const ethd__strip *strip, uint32_t first, double limit, ethd__nearest_edge *out) {
+  ethd__chain c = ethd__chain_of(strip->scene, strip->object);
+  *out = (ethd__nearest_edge){limit, ETHD__NONE, false};
+  visit(strip, &c, first, NULL, out);
+}
+
+void ethd__strip_signed(const ethd__strip *strip, uint32_t first, ethd__nearest_edge *out) {
+  ethd__chain c = ethd__chain_of(strip->scene, strip->object);
+  faces f = {INFINITY, INFINITY};
+  *out = (ethd__nearest_edge){INFINITY, 0, false};
+  visit(strip, &c, first, &f, out);
+  out->inside = is_inside(strip, &c, &f);
 }

@@ -4,41 +4,50 @@
 
 #include "scene/tree.h"
 
-/* The edge of a chain nearest to x, among those within the root of `limit` (m2); ETHD__NONE: there is
-   none. `first`: an edge to start from, ETHD__NONE: any. */
+/* A chain with a tree, as it is asked from x. */
+typedef struct ethd__strip {
+  const ethd_scene *scene;
+  const ethd__object *object;
+  const ethd__probe *probe; /* of x */
+  ethd_vec x;
+} ethd__strip;
+
+/* The edge nearest to x, the first of those that are as near; ETHD__NONE: none is within the limit. */
 typedef struct ethd__nearest_edge {
-  double squared;
+  double squared; /* of the distance, m2 */
   uint32_t edge;
   bool inside; /* of a polygon, if that was asked: x is */
 } ethd__nearest_edge;
 
-void ethd__strip_nearest(const ethd_scene *scene, const ethd__object *o, const ethd__probe *p, ethd_vec x,
-                         uint32_t first, double limit, ethd__nearest_edge *out) ETHD_RT;
+/* Among the edges nearer than the root of `limit` (m2). `first`: an edge that is likely to be near; ETHD__NONE: nobody
+   knows one. */
+void ethd__strip_nearest(const ethd__strip *strip, uint32_t first, double limit, ethd__nearest_edge *out) ETHD_RT;
 
-/* The same of a polygon, however far, and whether x is inside. */
-void ethd__strip_signed(const ethd_scene *scene, const ethd__object *o, const ethd__probe *p, ethd_vec x,
-                        uint32_t first, ethd__nearest_edge *out) ETHD_RT;
+/* Of a polygon, however far, and whether x is inside. */
+void ethd__strip_signed(const ethd__strip *strip, uint32_t first, ethd__nearest_edge *out) ETHD_RT;
 
-/* The local minima of the distance from x to such a chain whose points lie within `bound` of `centre`, in
-   no order. Boxes are left out whose edges all lean one way as seen from x (Johnson and Cohen 2001). */
+/* The local minima of the distance from x to the chain, in no order: those whose points lie within `bound` of a
+   centre. A box is left out when all of its edges lean one way as seen from x: along them the distance only rises or
+   only falls, so none of them, nor a vertex between them, is a local minimum (Johnson and Cohen 2001). */
 typedef struct ethd__minima {
   ethd__chain chain;
   const ethd__tree *tree;
   ethd__probe at_x, at_centre;
   ethd_vec x;
-  float bound; /* see ethd__bound */
+  float bound; /* see ethd__bound; may shrink between two calls of ethd__minima_next */
   const float *slopes;
-  bool apart; /* x and the centre */
-  bool end;   /* of an open chain is still to come */
+  bool apart; /* x and the centre aren't one point */
+  bool end;   /* the end of an open chain is still to come */
   int count;
   struct {
     uint32_t level, index;
   } stack[(ETHD__WIDE - 1) * ETHD__LEVELS + 1];
 } ethd__minima;
 
-/* The probes: of x and of the centre. */
-void ethd__minima_start(ethd__minima *m, const ethd_scene *scene, const ethd__object *o, ethd_vec x,
-                        const ethd__probe *at_x, const ethd__probe *at_centre) ETHD_RT;
+/* `at_centre`: strip->probe where x is the centre. The bound is none as yet. */
+void ethd__minima_start(ethd__minima *m, const ethd__strip *strip, const ethd__probe *at_centre) ETHD_RT;
+
+/* False: there are no more. */
 bool ethd__minima_next(ethd__minima *m, ethd_touch *out) ETHD_RT;
 
 #endif

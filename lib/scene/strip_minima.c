@@ -29,16 +29,15 @@ static void push_top(ethd__minima *m) {
   }
 }
 
-void ethd__minima_start(ethd__minima *m, const ethd_scene *scene, const ethd__object *o, ethd_vec x,
-                        const ethd__probe *at_x, const ethd__probe *at_centre) {
-  m->chain = ethd__chain_of(scene, o);
-  m->tree = ethd__tree_at(scene, o);
-  m->at_x = *at_x;
+void ethd__minima_start(ethd__minima *m, const ethd__strip *s, const ethd__probe *at_centre) {
+  m->chain = ethd__chain_of(s->scene, s->object);
+  m->tree = ethd__tree_at(s->scene, s->object);
+  m->at_x = *s->probe;
   m->at_centre = *at_centre;
-  m->x = x;
-  m->apart = at_x != at_centre;
+  m->x = s->x;
+  m->apart = s->probe != at_centre;
   m->bound = ethd__bound(&m->at_centre, INFINITY);
-  m->slopes = ethd__is_true_to(&m->at_x) ? ETHD__ARRAY(scene, float, slopes_at) : NULL;
+  m->slopes = ethd__is_true_to(&m->at_x) ? ETHD__ARRAY(s->scene, float, slopes_at) : NULL;
   m->end = true;
   m->count = 0;
   push_top(m);

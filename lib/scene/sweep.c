@@ -48,7 +48,9 @@ static int orient(const sweep *s, uint32_t a, uint32_t b, uint32_t c) {
 
 /* ---- order of the points: merge sort ---- */
 
-static void merge(const sweep *s, const uint32_t *from, uint32_t *to, size_t low, size_t middle, size_t high) {
+/* Two sorted runs of `width` that start at `low`; the last ones may be shorter. */
+static void merge(const sweep *s, const uint32_t *from, uint32_t *to, size_t low, size_t width) {
+  size_t middle = low + width < s->n ? low + width : s->n, high = middle + width < s->n ? middle + width : s->n;
   size_t i = low, j = middle;
   for (size_t k = low; k < high; k++)
     to[k] = i < middle && (j >= high || !precedes(s, from[j], from[i])) ? from[i++] : from[j++];
@@ -58,10 +60,7 @@ static void sort(sweep *s, uint32_t *a, uint32_t *b) {
   size_t n = s->n;
   for (size_t k = 0; k < n; k++) a[k] = (uint32_t)k;
   for (size_t width = 1; width < n; width *= 2) {
-    for (size_t low = 0; low < n; low += 2 * width) {
-      size_t middle = low + width < n ? low + width : n, high = middle + width < n ? middle + width : n;
-      merge(s, a, b, low, middle, high);
-    }
+    for (size_t low = 0; low < n; low += 2 * width) merge(s, a, b, low, width);
     uint32_t *t = a;
     a = b;
     b = t;

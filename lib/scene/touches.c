@@ -46,52 +46,53 @@ static void add_object(const ethd_scene *scene, const ethd__object *o, ethd_vec 
 }
 
 /* Of a polygon with a tree: whether it has one touch only, as yet without a label. */
-static bool only_touch(const ethd_scene *scene, const ethd__object *o, const ethd__probe *p, ethd_vec x,
-                       ethd_touch *out) {
-  ethd__chain chain = ethd__chain_of(scene, o);
+static bool only_touch(const ethd__strip *strip, ethd_touch *out) {
+  ethd__chain chain = ethd__chain_of(strip->scene, strip->object);
   ethd__nearest_edge near;
-  ethd__strip_signed(scene, o, p, x, ETHD__NONE, &near);
-  ethd__chain_touch(&chain, near.edge, x, near.inside, out);
-  return has_one(scene, o, out->distance);
+  ethd__strip_signed(strip, ETHD__NONE, &near);
+  ethd__chain_touch(&chain, near.edge, strip->x, near.inside, out);
+  return has_one(strip->scene, strip->object, out->distance);
 }
 
-static void add_strip(const ethd_scene *scene, const ethd__object *o, const ethd__probe *p, ethd_vec x,
-                      bool maybe_inside, double squared, list *l) {
+static void add_strip(const ethd__strip *strip, bool maybe_inside, float bound, list *l) {
+  const ethd__object *o = strip->object;
   ethd_touch touch;
   ethd__minima minima;
-  if (o->turn && maybe_inside && only_touch(scene, o, p, x, &touch)) {
+  if (o->turn && maybe_inside && only_touch(strip, &touch)) {
     ethd__label(o, &touch);
     add(l, &touch);
     return;
   }
-  ethd__minima_start(&minima, scene, o, x, p, p);
-  minima.bound = ethd__bound(p, squared);
+  ethd__minima_start(&minima, strip, strip->probe);
+  minima.bound = bound;
   while (ethd__minima_next(&minima, &touch)) {
     ethd__label(o, &touch);
     add(l, &touch);
   }
 }
 
-static void add_leaf(const ethd_scene *scene, const ethd__probe *p, ethd__place at, ethd_vec x, double squared,
-                     list *l) {
-  const ethd__object *o = ethd__object_at(scene, at.index);
-  if (ethd__has_tree(o))
-    add_strip(scene, o, p, x, at.squared == 0, squared, l);
+/* Puts the leaf's object into `leaf`. A box at no distance may have x inside. */
+static void add_leaf(ethd__strip *leaf, ethd__place at, float bound, list *l) {
+  leaf->object = ethd__object_at(leaf->scene, at.index);
+  if (ethd__has_tree(leaf->object))
+    add_strip(leaf, at.squared == 0, bound, l);
   else
-    add_object(scene, o, x, l);
+    add_object(leaf->scene, leaf->object, leaf->x, l);
 }
 
 static void add_tree(const ethd_scene *scene, ethd_vec x, double reach, list *l) {
   ethd__probe p = ethd__probe_at(scene, x);
+  ethd__strip leaf = {scene, NULL, &p, x};
   ethd__walk walk;
   ethd__place at = {0, 0, 0};
+  float bound = ethd__bound(&p, reach * reach);
   if (scene->tree.leaves == 1) {
-    add_leaf(scene, &p, at, x, reach * reach, l);
+    add_leaf(&leaf, at, bound, l);
     return;
   }
   ethd__walk_start(&walk, &scene->tree, &p, NULL);
-  ethd__walk_around(&walk, 0, ethd__bound(&p, reach * reach));
-  for (; at.index != ETHD__NONE; at = ethd__walk_next(&walk)) add_leaf(scene, &p, at, x, reach * reach, l);
+  ethd__walk_around(&walk, 0, bound);
+  for (; at.index != ETHD__NONE; at = ethd__walk_next(&walk)) add_leaf(&leaf, at, bound, l);
 }
 
 size_t ethd_scene_touches(const ethd_scene *scene, ethd_vec x, double range, ethd_touch *out, size_t room) {
@@ -116,11 +117,12 @@ static void take(const ethd_touch *touch, ethd_vec from, double *least, ethd_tou
 
 static void follow_strip(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_vec from, ethd_touch *out) {
   ethd__probe at_x = ethd__probe_at(scene, x), at_from = ethd__probe_at(scene, from);
+  ethd__strip strip = {scene, o, &at_x, x};
   ethd_touch touch;
   ethd__minima minima;
   double least = INFINITY;
-  if (o->turn && only_touch(scene, o, &at_x, x, out)) return;
-  ethd__minima_start(&minima, scene, o, x, &at_x, &at_from);
+  if (o->turn && only_touch(&strip, out)) return;
+  ethd__minima_start(&minima, &strip, &at_from);
   while (ethd__minima_next(&minima, &touch)) {
     take(&touch, from, &least, out);
     minima.bound = ethd__bound(&at_from, least);

@@ -2,8 +2,7 @@
 #include "scene/strip.h"
 
 typedef struct search {
-  const ethd_scene *scene;
-  ethd_vec x;
+  ethd__strip at; /* scene, x and the object at hand */
   ethd__probe probe;
   double squared;       /* of the distance of the nearest so far; 0 inside of it */
   double distance;      /* INFINITY while the nearest is thin */
@@ -12,7 +11,7 @@ typedef struct search {
 } search;
 
 static bool goes_first(const search *q, uint32_t place) {
-  return q->place == ETHD__NONE || ethd__object_at(q->scene, place)->id < ethd__object_at(q->scene, q->place)->id;
+  return q->place == ETHD__NONE || ethd__object_at(q->at.scene, place)->id < ethd__object_at(q->at.scene, q->place)->id;
 }
 
 /* Thin things wait with their touch until it is clear which is the nearest. */
@@ -35,48 +34,50 @@ static void take_solid(search *q, uint32_t place, uint32_t edge, const ethd_touc
 }
 
 static void take_polygon(search *q, uint32_t place, const ethd__object *o, bool maybe_inside, uint32_t first) {
-  ethd__chain c = ethd__chain_of(q->scene, o);
+  ethd__chain c = ethd__chain_of(q->at.scene, o);
   ethd__nearest_edge near;
   ethd_touch touch;
+  q->at.object = o;
   if (maybe_inside)
-    ethd__strip_signed(q->scene, o, &q->probe, q->x, first, &near);
+    ethd__strip_signed(&q->at, first, &near);
   else
-    ethd__strip_nearest(q->scene, o, &q->probe, q->x, first, q->squared, &near);
+    ethd__strip_nearest(&q->at, first, q->squared, &near);
   if (near.edge == ETHD__NONE) return;
-  ethd__chain_touch(&c, near.edge, q->x, near.inside, &touch);
+  ethd__chain_touch(&c, near.edge, q->at.x, near.inside, &touch);
   take_solid(q, place, near.edge, &touch);
 }
 
 static void take(search *q, uint32_t place, bool maybe_inside, uint32_t first) {
-  const ethd__object *o = ethd__object_at(q->scene, place);
+  const ethd__object *o = ethd__object_at(q->at.scene, place);
   if (o->edges == 1) {
-    const ethd_vec *p = ethd__chain_of(q->scene, o).points;
-    take_thin(q, place, 0, ethd__beside_edge(p[0], p[1], q->x).squared);
+    const ethd_vec *p = ethd__chain_of(q->at.scene, o).points;
+    take_thin(q, place, 0, ethd__beside_edge(p[0], p[1], q->at.x).squared);
   } else if (!ethd__has_tree(o)) {
     ethd_touch touch;
-    ethd__object_nearest(q->scene, o, q->x, &touch);
+    ethd__object_nearest(q->at.scene, o, q->at.x, &touch);
     take_solid(q, place, 0, &touch);
   } else if (o->turn) {
     take_polygon(q, place, o, maybe_inside, first);
   } else {
     ethd__nearest_edge near;
-    ethd__strip_nearest(q->scene, o, &q->probe, q->x, first, q->squared, &near);
+    q->at.object = o;
+    ethd__strip_nearest(&q->at, first, q->squared, &near);
     if (near.edge != ETHD__NONE) take_thin(q, place, near.edge, near.squared);
   }
 }
 
 static void answer(search *q, ethd_nearest *out) {
-  const ethd__object *o = ethd__object_at(q->scene, q->place);
+  const ethd__object *o = ethd__object_at(q->at.scene, q->place);
   if (o->edges == 1 || (ethd__has_tree(o) && !o->turn)) {
-    ethd__chain c = ethd__chain_of(q->scene, o);
-    ethd__chain_touch(&c, q->edge, q->x, false, &q->touch);
+    ethd__chain c = ethd__chain_of(q->at.scene, o);
+    ethd__chain_touch(&c, q->edge, q->at.x, false, &q->touch);
   }
   *out = (ethd_nearest){q->touch.distance, q->touch.point, q->touch.n, o->id};
 }
 
 /* As far along the chain as last time, once more. */
 static uint32_t guess_edge(const search *q, uint32_t leaf, const ethd_scene_hint *hint) {
-  uint32_t guess = hint->edge + (uint32_t)hint->step, edges = ethd__object_at(q->scene, leaf)->edges;
+  uint32_t guess = hint->edge + (uint32_t)hint->step, edges = ethd__object_at(q->at.scene, leaf)->edges;
   return guess < edges ? guess : hint->edge;
 }
 
@@ -89,12 +90,12 @@ static void search_tree(search *q, const ethd_scene_hint *hint) {
   ethd__walk walk;
   ethd__place at;
   uint32_t first = hint->leaf - 1; /* no hint: ETHD__NONE */
-  if (q->scene->tree.leaves == 1) {
+  if (q->at.scene->tree.leaves == 1) {
     take(q, 0, true, first == 0 ? guess_edge(q, 0, hint) : ETHD__NONE);
     return;
   }
-  ethd__walk_start(&walk, &q->scene->tree, &q->probe, NULL);
-  if (first < q->scene->tree.leaves) {
+  ethd__walk_start(&walk, &q->at.scene->tree, &q->probe, NULL);
+  if (first < q->at.scene->tree.leaves) {
     take(q, first, true, guess_edge(q, first, hint));
     ethd__walk_around(&walk, first, ethd__bound(&q->probe, q->squared));
   } else {
@@ -112,8 +113,9 @@ void ethd_scene_query_near(const ethd_scene *scene, ethd_vec x, ethd_scene_hint 
   *out = (ethd_nearest){INFINITY, x, {1, 0}, -1};
   if (!isfinite(x.x) || !isfinite(x.y)) return;
   search q;
-  q.scene = scene;
-  q.x = x;
+  q.at.scene = scene;
+  q.at.x = x;
+  q.at.probe = &q.probe;
   q.probe = ethd__probe_at(scene, x);
   q.squared = q.distance = INFINITY;
   q.place = ETHD__NONE;
