@@ -1,18 +1,19 @@
 #include "ethd/arm.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 #include "error.h"
 #include "ethd/maths.h"
 #include "maths/two_waves.h"
 
-ethd_status ethd_arm_check(const ethd_arm *arm, ethd_error *error) {
-  ethd_status status =
-      ethd__check_number(error, "mechanism", (double)arm->mechanism, ETHD_ARM_PARALLEL, ETHD_ARM_SERIAL);
-  if (!status) status = ethd__check_number(error, "link1", arm->link1, ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX);
-  if (!status) status = ethd__check_number(error, "link2", arm->link2, ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX);
-  return status;
-}
+/* What an arm is; to add one, write its row and its name in ethd_mechanism. */
+typedef struct arm_row {
+  const char *name;
+  void (*pose)(const ethd_arm *arm, const double q[2], ethd_pose *out) ETHD_RT;
+  ethd_status (*angles)(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) ETHD_RT;
+  void (*reach)(const ethd_arm *arm, double *inner, double *outer) ETHD_RT;
+} arm_row;
 
 /* Damped least squares J^T (J J^T + lambda^2 I)^-1. With J^T adj(J J^T) = det(J) adj(J) it is
 
@@ -41,20 +42,22 @@ static void invert(const double j[4], double w0, double out[4]) {
   memcpy(out + 2, &bottom, sizeof bottom);
 }
 
-void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) {
-  int serial = arm->mechanism == ETHD_ARM_SERIAL;
-  two_waves w = two_sincos((two){q[0], serial ? q[0] + q[1] : q[1]});
+/* ---- two links ---- */
+
+/* From the link vectors a and b; the second link turns with the first joint where q2 is relative. */
+static inline void pose_of_links(const ethd_arm *arm, two angles, bool relative, ethd_pose *out) {
+  two_waves w = two_sincos(angles);
   ethd_vec a = {arm->link1 * w.cosine[0], arm->link1 * w.sine[0]};
   ethd_vec b = {arm->link2 * w.cosine[1], arm->link2 * w.sine[1]};
   out->x = ethd_vec_add(a, b);
-  out->j[0] = serial ? -(a.y + b.y) : -a.y;
+  out->j[0] = relative ? -(a.y + b.y) : -a.y;
   out->j[1] = -b.y;
-  out->j[2] = serial ? a.x + b.x : a.x;
+  out->j[2] = relative ? a.x + b.x : a.x;
   out->j[3] = b.x;
   invert(out->j, ETHD_ARM_SINGULAR * arm->link1 * arm->link2, out->j_inv);
 }
 
-void ethd_arm_reach(const ethd_arm *arm, double *inner, double *outer) {
+static void links_reach(const ethd_arm *arm, double *inner, double *outer) {
   *inner = fabs(arm->link1 - arm->link2);
   *outer = arm->link1 + arm->link2;
 }
@@ -66,20 +69,76 @@ static double wrap(double a) {
   return a;
 }
 
-/* With the angle th between the links, r^2 = L1^2 + L2^2 + 2 L1 L2 cos th, so
+/* The angle of link 1, and th from it to link 2. r^2 = L1^2 + L2^2 + 2 L1 L2 cos th, so
      4 L1 L2 sin^2(th/2) = outer^2 - r^2,   4 L1 L2 cos^2(th/2) = r^2 - inner^2:
    both factors keep their digits at the ends of the reach, where acos would lose half of them. */
-ethd_status ethd_arm_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) {
+static ethd_status links_angles(const ethd_arm *arm, ethd_vec x, int elbow, double *q1, double *th) {
   double inner, outer, r = ethd_vec_norm(x);
-  ethd_arm_reach(arm, &inner, &outer);
+  links_reach(arm, &inner, &outer);
   if (!(r >= inner && r <= outer)) return ETHD_E_UNREACHABLE;
   double s = sqrt((outer - r) * (outer + r)), c = sqrt((r - inner) * (r + inner));
   double side = elbow < 0 ? -1 : 1;
-  double th = side * 2 * ethd_atan2(s, c);
+  *th = side * 2 * ethd_atan2(s, c);
   /* The ring's centre across and along link 1, both times 2 L1. */
   double along = r * r + arm->link1 * arm->link1 - arm->link2 * arm->link2;
-  double q1 = ethd_atan2(x.y, x.x) - ethd_atan2(side * s * c, along);
-  q[0] = wrap(q1);
-  q[1] = wrap(arm->mechanism == ETHD_ARM_SERIAL ? th : q1 + th);
+  *q1 = ethd_atan2(x.y, x.x) - ethd_atan2(side * s * c, along);
   return ETHD_OK;
+}
+
+/* ---- parallel: both angles are absolute ---- */
+
+static void parallel_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) {
+  pose_of_links(arm, (two){q[0], q[1]}, false, out);
+}
+
+static ethd_status parallel_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) {
+  double q1, th;
+  ethd_status status = links_angles(arm, x, elbow, &q1, &th);
+  if (status < 0) return status;
+  q[0] = wrap(q1);
+  q[1] = wrap(q1 + th);
+  return ETHD_OK;
+}
+
+/* ---- serial: q2 is relative to link 1 ---- */
+
+static void serial_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) {
+  pose_of_links(arm, (two){q[0], q[0] + q[1]}, true, out);
+}
+
+static ethd_status serial_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) {
+  double q1, th;
+  ethd_status status = links_angles(arm, x, elbow, &q1, &th);
+  if (status < 0) return status;
+  q[0] = wrap(q1);
+  q[1] = wrap(th);
+  return ETHD_OK;
+}
+
+/* ---- the table ---- */
+
+static const arm_row rows[] = {
+    [ETHD_ARM_PARALLEL] = {"parallel", parallel_pose, parallel_angles, links_reach},
+    [ETHD_ARM_SERIAL] = {"serial", serial_pose, serial_angles, links_reach},
+};
+
+#define ROWS (sizeof rows / sizeof *rows)
+
+ethd_status ethd_arm_check(const ethd_arm *arm, ethd_error *error) {
+  ethd_status status = ethd__check_number(error, "mechanism", (double)arm->mechanism, 0, (double)(ROWS - 1));
+  if (!status) status = ethd__check_number(error, "link1", arm->link1, ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX);
+  if (!status) status = ethd__check_number(error, "link2", arm->link2, ETHD_ARM_LINK_MIN, ETHD_ARM_LINK_MAX);
+  return status;
+}
+
+const char *ethd_arm_name(ethd_mechanism mechanism) { return (unsigned)mechanism < ROWS ? rows[mechanism].name : ""; }
+
+void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) { rows[arm->mechanism].pose(arm, q, out); }
+
+ethd_status ethd_arm_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) {
+  return rows[arm->mechanism].angles(arm, x, elbow, q);
+}
+
+void ethd_arm_reach(const ethd_arm *arm, double *inner, double *outer) {
+  rows[arm->mechanism].reach(arm, inner, outer);
 }

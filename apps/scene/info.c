@@ -40,8 +40,7 @@ int ethd__scene_info(const ethd__scene_args *arg) {
   printf("memory:       %zu bytes\n", info.bytes);
   printf("out of reach: %zu of %zu objects, which a controller drops (%s arm %g + %g m, ring %g m)\n",
          ethd_scene_out_of_reach(scene, &setup.arm, ethd_setup_range(&setup)), info.objects,
-         setup.arm.mechanism == ETHD_ARM_SERIAL ? "serial" : "parallel", setup.arm.link1, setup.arm.link2,
-         setup.ring_radius);
+         ethd_arm_name(setup.arm.mechanism), setup.arm.link1, setup.arm.link2, setup.ring_radius);
   int code = arg->plot ? ethd__scene_plot(arg, scene, &setup) : ETHD_EXIT_DONE;
   ethd_scene_destroy(scene);
   return code;

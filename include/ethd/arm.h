@@ -44,6 +44,9 @@ typedef struct ethd_pose {
    is one of the two. [any] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_arm_check(const ethd_arm *arm, ethd_error *error);
 
+/* "parallel" or "serial"; "" of none. [any] */
+ETHD_API const char *ethd_arm_name(ethd_mechanism mechanism);
+
 /* Forward kinematics, Jacobian and its (damped) inverse at joint angles q, rad. [any, rt-safe] */
 ETHD_API void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) ETHD_RT;
 

@@ -13,7 +13,7 @@ typedef struct edge {
 
 typedef enum part { AT_START, BETWEEN, AT_END } part;
 
-static inline ethd_vec point(const ethd__chain *chain, size_t k) { return chain->points[k]; }
+static inline ethd_vec point(const ethd__chain *chain, size_t k) { return ethd__chain_point(chain, k); }
 
 static inline ethd_vec direction(const ethd__chain *chain, size_t k) {
   return ethd_vec_sub(point(chain, k + 1), point(chain, k));

@@ -62,7 +62,7 @@ static inline const double *ethd__numbers(const ethd_scene *scene, const ethd__o
 
 /* A run of edges. */
 typedef struct ethd__chain {
-  const ethd_vec *points; /* edges + 1 */
+  const double *points; /* {x, y} of edges + 1 points */
   size_t edges;
   int turn;
   bool closed;
@@ -70,9 +70,12 @@ typedef struct ethd__chain {
 } ethd__chain;
 
 static inline ethd__chain ethd__chain_of(const ethd_scene *scene, const ethd__object *o) {
-  const ethd_vec *points = (const ethd_vec *)(const void *)ethd__numbers(scene, o);
-  ethd__chain chain = {points, o->edges, o->turn, o->closed, scene->slack};
+  ethd__chain chain = {ethd__numbers(scene, o), o->edges, o->turn, o->closed, scene->slack};
   return chain;
+}
+
+static inline ethd_vec ethd__chain_point(const ethd__chain *chain, size_t k) {
+  return ethd_vec_of(chain->points + 2 * k);
 }
 
 /* The nearest point of a chain; of a polygon the distance is signed. Sets distance, point, n, feature;

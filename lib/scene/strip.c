@@ -35,7 +35,7 @@ static bool contains(const ethd__strip *s, const ethd__chain *c) {
   for (int count = 1; count > 0;) {
     at = stack[--count];
     if (at.level == 0) {
-      inside ^= ethd__edge_crossed(c->points[at.index], c->points[at.index + 1], s->x);
+      inside ^= ethd__edge_crossed(ethd__chain_point(c, at.index), ethd__chain_point(c, at.index + 1), s->x);
       continue;
     }
     const ethd__node *n = p->nodes + tree->first[at.level] + at.index;
@@ -63,7 +63,7 @@ static bool is_inside(const ethd__strip *s, const ethd__chain *c, const faces *f
 
 /* Keeps edge k if it is the nearest so far; where faces are asked for, its face counts whether it is or not. */
 ETHD__INLINE void take(const ethd__chain *c, uint32_t k, ethd_vec x, faces *f, ethd__nearest_edge *best) {
-  ethd__beside s = ethd__beside_edge(c->points[k], c->points[k + 1], x);
+  ethd__beside s = ethd__beside_edge(ethd__chain_point(c, k), ethd__chain_point(c, k + (size_t)1), x);
   if (s.squared < best->squared || (s.squared == best->squared && k < best->edge)) {
     best->squared = s.squared;
     best->edge = k;

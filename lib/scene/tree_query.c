@@ -50,8 +50,8 @@ static void take_polygon(search *q, uint32_t place, const ethd__object *o, bool 
 static void take(search *q, uint32_t place, bool maybe_inside, uint32_t first) {
   const ethd__object *o = ethd__object_at(q->at.scene, place);
   if (o->edges == 1) {
-    const ethd_vec *p = ethd__chain_of(q->at.scene, o).points;
-    take_thin(q, place, 0, ethd__beside_edge(p[0], p[1], q->at.x).squared);
+    const double *p = ethd__numbers(q->at.scene, o);
+    take_thin(q, place, 0, ethd__beside_edge(ethd_vec_of(p), ethd_vec_of(p + 2), q->at.x).squared);
   } else if (!ethd__has_tree(o)) {
     ethd_touch touch;
     ethd__object_nearest(q->at.scene, o, q->at.x, &touch);

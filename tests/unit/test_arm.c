@@ -3,8 +3,10 @@
 
 #include <check.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "draw.h"
+#include "ethd/control.h"
 
 enum { POINTS = 20000 };
 
@@ -226,7 +228,22 @@ START_TEST(test_check) {
   }
   ck_assert_int_eq(ethd_arm_check(&(ethd_arm){ETHD_ARM_SERIAL, NAN, 0.25}, &error), ETHD_E_NOT_FINITE);
   ck_assert_str_eq(error.name, "link1");
-  ck_assert_int_eq(ethd_arm_check(&(ethd_arm){(ethd_mechanism)2, 0.25, 0.25}, NULL), ETHD_E_RANGE);
+  ck_assert_int_eq(ethd_arm_check(&(ethd_arm){(ethd_mechanism)2, 0.25, 0.25}, &error), ETHD_E_RANGE);
+  ck_assert(error.found == 2 && error.min == 0 && error.max == 1);
+}
+END_TEST
+
+/* The words of the configuration are the arms' names, in their order. */
+START_TEST(test_names) {
+  ethd_setup setup = ethd_setup_default();
+  ethd_setup_key key;
+  uint32_t i = 0;
+  do ck_assert_int_eq(ethd_setup_key_at(&setup, i++, &key), ETHD_OK);
+  while (strcmp(key.section, "arm") != 0 || strcmp(key.param.name, "mechanism") != 0);
+  ck_assert_uint_eq(ethd_param_words(&key.param), 2);
+  for (int m = 0; m < 2; m++) ck_assert_int_eq(ethd_param_word(&key.param, ethd_arm_name((ethd_mechanism)m)), m);
+  ck_assert_str_eq(ethd_arm_name(ETHD_ARM_SERIAL), "serial");
+  ck_assert_str_eq(ethd_arm_name((ethd_mechanism)2), "");
 }
 END_TEST
 
@@ -244,6 +261,7 @@ int main(void) {
   tcase_add_test(tc, test_angles_at_the_ends);
   tcase_add_test(tc, test_unreachable);
   tcase_add_test(tc, test_check);
+  tcase_add_test(tc, test_names);
   suite_add_tcase(suite, tc);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_ENV);
