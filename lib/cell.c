@@ -11,10 +11,10 @@ void ethd_cell_put(ethd_cell *cell, const void *value) {
 }
 
 ethd_status ethd_cell_take(ethd_cell *cell, void *value) {
-  int fresh = (atomic_load_explicit(&cell->middle, memory_order_relaxed) & ETHD__CELL_FRESH) != 0;
+  bool fresh = atomic_load_explicit(&cell->middle, memory_order_relaxed) & ETHD__CELL_FRESH;
   if (fresh) {
     cell->front = atomic_exchange_explicit(&cell->middle, cell->front, memory_order_acq_rel) & ~ETHD__CELL_FRESH;
-    cell->taken = 1;
+    cell->taken = true;
   }
   if (cell->taken) memcpy(value, slot(cell, cell->front), cell->size);
   return fresh ? ETHD_OK : ETHD_STALE;

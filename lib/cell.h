@@ -2,6 +2,7 @@
 #define ETHD__CELL_H
 
 #include <stdatomic.h>
+#include <stdbool.h>
 
 #include "ethd/cell.h"
 
@@ -12,7 +13,7 @@ struct ethd_cell {
   _Alignas(64) atomic_uint middle; /* slot that is nobody's, and FRESH */
   _Alignas(64) unsigned back;      /* the writer's slot */
   _Alignas(64) unsigned front;     /* the reader's slot */
-  int taken;                       /* the reader's slot holds a value */
+  bool taken;                      /* the reader's slot holds a value */
   _Alignas(64) unsigned char slots[];
 };
 

@@ -16,9 +16,9 @@
   [FILTER_LATENCY] = {"latency", "s", 0, 0.1, 0,                                   \
       "from the sample to its stamp, made up for as well (stamp only)"}
 #define NOISE                                                                      \
-  [KALMAN_NOISE] = {"noise", "m", 1e-7, 1e-2, 0.1e-3, "sd of a reading, each axis"}
+  [FILTER_NOISE] = {"noise", "m", 1e-7, 1e-2, 0.1e-3, "sd of a reading, each axis"}
 #define GATE                                                                       \
-  [KALMAN_GATE] = {"gate", "1", 1, INFINITY, 25,                                   \
+  [FILTER_GATE] = {"gate", "1", 1, INFINITY, 25,                                   \
       "sd of the innovation over which a reading is dropped; a finger on glass makes 20"}
 
 static const ethd_param hold[] = {REFERENCE};
@@ -33,13 +33,13 @@ static const ethd_param alpha_beta[] = {
 
 static const ethd_param cv[] = {
     REFERENCE, COMPENSATION, LATENCY, NOISE, GATE,
-    [KALMAN_DRIVE] = {"acceleration", "m/s^2", 1e-3, 1e5, 8, "rms acceleration of the finger"},
+    [FILTER_DRIVE] = {"acceleration", "m/s^2", 1e-3, 1e5, 8, "rms acceleration of the finger"},
 };
 
 static const ethd_param ca[] = {
     REFERENCE, COMPENSATION, LATENCY, NOISE, GATE,
-    [KALMAN_DRIVE] = {"jerk", "m/s^3", 1e-2, 1e7, 400, "rms jerk of the finger"},
-    [CA_MEMORY] = {"memory", "s", 1e-3, INFINITY, 0.08, "how long an acceleration lasts; inf: it stays"},
+    [FILTER_DRIVE] = {"jerk", "m/s^3", 1e-2, 1e7, 400, "rms jerk of the finger"},
+    [FILTER_MEMORY] = {"memory", "s", 1e-3, INFINITY, 0.08, "how long an acceleration lasts; inf: it stays"},
 };
 /* clang-format on */
 

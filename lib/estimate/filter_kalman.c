@@ -5,9 +5,9 @@
 enum { XX, XV, XA, VV, VA, AA };
 
 /* P <- F P F^T + g g^T,  F = [1 t ax; 0 1 av; 0 0 aa]. */
-void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__way w) {
-  double t = w.t, h = t * t / 2, drive = f->p[KALMAN_DRIVE], *p = s->cov;
-  int jerk = f->method == ETHD_FILTER_CA;
+void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__filter_motion w) {
+  double t = w.t, h = t * t / 2, drive = f->p[FILTER_DRIVE], *p = s->cov;
+  bool jerk = f->method == ETHD_FILTER_CA;
   double gx = drive * (jerk ? h * t / 3 : h), gv = drive * (jerk ? h : t), ga = jerk ? drive * t : 0;
   double x = p[XX] + t * p[XV] + w.ax * p[XA], xv = p[XV] + t * p[VV] + w.ax * p[VA];
   double xa = p[XA] + t * p[VA] + w.ax * p[AA];
@@ -20,10 +20,10 @@ void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__way w
   p[AA] = w.aa * w.aa * p[AA] + ga * ga;
 }
 
-int ethd__filter_correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec r) {
-  double noise = f->p[KALMAN_NOISE], gate = f->p[KALMAN_GATE], *p = s->cov;
+bool ethd__filter_correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec r) {
+  double noise = f->p[FILTER_NOISE], gate = f->p[FILTER_GATE], *p = s->cov;
   double variance = p[XX] + noise * noise;
-  if (!(ethd_vec_dot(r, r) <= gate * gate * variance)) return 0;
+  if (!(ethd_vec_dot(r, r) <= gate * gate * variance)) return false;
   double kx = p[XX] / variance, kv = p[XV] / variance, ka = p[XA] / variance;
   double left = noise * noise / variance, axis[2] = {r.x, r.y};
   for (int i = 0; i < 2; i++) {
@@ -37,5 +37,5 @@ int ethd__filter_correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec r)
   p[XX] *= left;
   p[XV] *= left;
   p[XA] *= left;
-  return 1;
+  return true;
 }

@@ -26,14 +26,14 @@ void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd
 }
 
 static void start_from_reading(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, double age) {
-  double noise = ethd__filter_is_kalman(f) ? f->p[KALMAN_NOISE] : 0;
+  double noise = ethd__filter_is_kalman(f) ? f->p[FILTER_NOISE] : 0;
   begin(f, s, x, (ethd_vec){0, 0}, (doubt){noise * noise, 1, 100});
   s->age = age;
   s->used++;
 }
 
 static void advance(const ethd_filter *f, ethd_filter_state *s, double t) {
-  ethd__way w = ethd__filter_way(f, t);
+  ethd__filter_motion w = ethd__filter_motion_over(f, t);
   for (int i = 0; i < 2; i++) {
     s->x[i] += s->v[i] * t + s->a[i] * w.ax;
     s->v[i] += s->a[i] * w.av;
@@ -47,16 +47,16 @@ void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, do
   if (filter->compensation == ETHD_COMPENSATION_NONE) advance(filter, state, dt);
 }
 
-static int correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, double elapsed) {
+static bool correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, double elapsed) {
   ethd_vec r = {x.x - s->x[0], x.y - s->x[1]};
   if (ethd__filter_is_kalman(f)) return ethd__filter_correct(f, s, r);
-  int hold = f->method == ETHD_FILTER_HOLD;
+  bool hold = f->method == ETHD_FILTER_HOLD;
   double alpha = hold ? 1 : f->p[ALPHA_BETA_ALPHA], beta = hold ? 0 : f->p[ALPHA_BETA_BETA];
   s->x[0] += alpha * r.x;
   s->x[1] += alpha * r.y;
   s->v[0] += beta * r.x / elapsed;
   s->v[1] += beta * r.y / elapsed;
-  return 1;
+  return true;
 }
 
 static ethd_status gated(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, double age) {
@@ -92,9 +92,9 @@ ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *sta
 }
 
 void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x, ethd_vec *v) {
-  int stamp = filter->compensation == ETHD_COMPENSATION_STAMP;
+  bool stamp = filter->compensation == ETHD_COMPENSATION_STAMP;
   double t = stamp ? state->age + filter->p[FILTER_LATENCY] : 0;
-  ethd__way w = ethd__filter_way(filter, t);
+  ethd__filter_motion w = ethd__filter_motion_over(filter, t);
   const double *p = state->x, *q = state->v, *a = state->a;
   *x = (ethd_vec){p[0] + (q[0] * t + a[0] * w.ax), p[1] + (q[1] * t + a[1] * w.ax)};
   *v = (ethd_vec){q[0] + a[0] * w.av, q[1] + a[1] * w.av};

@@ -43,7 +43,7 @@ static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec c
   out->reserved = 0;
 }
 
-static int find(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
+static bool find(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
   switch (fit->method) {
   case ETHD_FIT_VERTEX_MEAN: return ethd__fit_vertex_mean(points, centre);
   case ETHD_FIT_CENTROID: return ethd__fit_centroid(points, centre);

@@ -29,13 +29,13 @@ static inline void shift(moments *m, ethd_vec s) {
   m->zy = o.zy - 2 * (o.xy * s.x + o.yy * s.y) + ss * o.y - s.y * z;
 }
 
-/* sum u u^T s = (g, h); 0 for points on one line, and for fewer than two. */
-static inline int solve(const moments *m, double g, double h, ethd_vec *s) {
+/* sum u u^T s = (g, h); false for points on one line, and for fewer than two. */
+static inline bool solve(const moments *m, double g, double h, ethd_vec *s) {
   double det = m->xx * m->yy - m->xy * m->xy, trace = m->xx + m->yy;
-  if (!(det > FLAT * trace * trace)) return 0;
+  if (!(det > FLAT * trace * trace)) return false;
   s->x = (m->yy * g - m->xy * h) / det;
   s->y = (m->xx * h - m->xy * g) / det;
-  return 1;
+  return true;
 }
 
 /* Of the points that count, about `origin`. */
@@ -66,29 +66,29 @@ static inline moments of(const ethd__points *points, ethd_vec origin) {
 /* About the mean the linear terms vanish, so that the centre parts from the radius:
      sum u u^T s = 1/2 sum |u|^2 u;   R^2 is then the mean of |p - c|^2.
    The moments move to the centre. */
-static inline int kasa(moments *m, ethd_vec *centre) {
+static inline bool kasa(moments *m, ethd_vec *centre) {
   ethd_vec mean = {m->x / m->n, m->y / m->n}, s;
   shift(m, mean);
-  if (!solve(m, m->zx / 2, m->zy / 2, &s)) return 0;
+  if (!solve(m, m->zx / 2, m->zy / 2, &s)) return false;
   *centre = ethd_vec_add(mean, s);
   shift(m, s);
-  return 1;
+  return true;
 }
 
-int ethd__fit_kasa(const ethd__points *points, ethd_vec *centre) {
+bool ethd__fit_kasa(const ethd__points *points, ethd_vec *centre) {
   moments m = of(points, (ethd_vec){0, 0});
   return kasa(&m, centre);
 }
 
 /* Gauss-Newton from the moments' origin: sum u u^T s = 1/2 sum (|u|^2 - R^2) u. */
-static inline int step(moments *m, double radius, ethd_vec *centre, double *moved) {
+static inline bool step(moments *m, double radius, ethd_vec *centre, double *moved) {
   ethd_vec s;
   double square = radius * radius;
-  if (!solve(m, (m->zx - square * m->x) / 2, (m->zy - square * m->y) / 2, &s)) return 0;
+  if (!solve(m, (m->zx - square * m->x) / 2, (m->zy - square * m->y) / 2, &s)) return false;
   *centre = ethd_vec_add(*centre, s);
   *moved = ethd_vec_dot(s, s);
   shift(m, s);
-  return 1;
+  return true;
 }
 
 /* (|u|^2 - R^2) / (2 R) is |u| - R nearly. */
@@ -109,8 +109,8 @@ static inline void add(moments *m, double sign, ethd_vec u) {
 
 /* Leaves out those beyond the gate among the rays that are `there`; false: they stay the same. The moments,
    about the centre, follow: by the one point that comes or goes, or anew. */
-static inline int choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS], ethd__points *points, ethd_vec centre,
-                         moments *m) {
+static inline bool choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS], ethd__points *points, ethd_vec centre,
+                          moments *m) {
   double square = fit->finger_radius * fit->finger_radius, most = gate(fit);
   uint32_t before = points->used;
   for (int i = 0; i < ETHD__PAIRS; i++) {
@@ -119,23 +119,23 @@ static inline int choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS],
   }
   points->used = ethd__points_used(points->counts);
   uint32_t changed = before ^ points->used;
-  if (!changed) return 0;
+  if (!changed) return false;
   if ((changed & (changed - 1)) == 0)
     add(m, points->used > before ? 1 : -1, ethd_vec_sub(ethd__point(points, __builtin_ctz(changed)), centre));
   else
     *m = of(points, centre);
-  return 1;
+  return true;
 }
 
 /* Kasa's centre is a start if it is a finger's: within the ring, the radius within the gate. Few rays or
    an outlier make others; the ring's middle, and a step from there, is never far. */
-static inline int start(const ethd_fit *fit, const ethd__points *points, moments *m, ethd_vec *centre) {
+static inline bool start(const ethd_fit *fit, const ethd__points *points, moments *m, ethd_vec *centre) {
   moments all = of(points, (ethd_vec){0, 0});
   double square = fit->finger_radius * fit->finger_radius, gap = fit->ring_radius - fit->finger_radius;
   *m = all;
   if (kasa(m, centre) && fabs(m->xx + m->yy - square * m->n) <= gate(fit) * m->n &&
       ethd_vec_dot(*centre, *centre) <= gap * gap)
-    return 1;
+    return true;
   double moved;
   *m = all;
   *centre = (ethd_vec){0, 0};
@@ -144,12 +144,12 @@ static inline int start(const ethd_fit *fit, const ethd__points *points, moments
 
 /* A step with all points first, so that an outlier's pull on the start doesn't gate good ones. A step of s
    leaves |s|^2 / 2 R: short ones by the same points end it. */
-int ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
+bool ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
   two_bits there[ETHD__PAIRS];
   double radius = fit->finger_radius, moved = 0;
   moments m;
   memcpy(there, points->counts, sizeof there);
-  int found = start(fit, points, &m, centre) && step(&m, radius, centre, &moved);
+  bool found = start(fit, points, &m, centre) && step(&m, radius, centre, &moved);
   for (int pass = 0; pass < 2 && found; pass++) {
     if (!choose(fit, there, points, *centre, &m) && moved <= SHORT * radius * radius) break;
     found = step(&m, radius, centre, &moved);

@@ -2,6 +2,8 @@
 #ifndef ETHD_LIB_FIT_METHODS_H
 #define ETHD_LIB_FIT_METHODS_H
 
+#include <stdbool.h>
+
 #include "ethd/finger_fit.h"
 #include "maths/two.h"
 
@@ -22,11 +24,11 @@ static inline ethd_vec ethd__point(const ethd__points *points, int ray) {
   return (ethd_vec){points->x[ray / 2][ray % 2], points->y[ray / 2][ray % 2]};
 }
 
-/* 0: the points don't determine a centre. [rt] */
-int ethd__fit_kasa(const ethd__points *points, ethd_vec *centre) ETHD_RT;
-int ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) ETHD_RT;
-int ethd__fit_vertex_mean(const ethd__points *points, ethd_vec *centre) ETHD_RT;
-int ethd__fit_centroid(const ethd__points *points, ethd_vec *centre) ETHD_RT;
+/* False: the points don't determine a centre. [rt] */
+bool ethd__fit_kasa(const ethd__points *points, ethd_vec *centre) ETHD_RT;
+bool ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) ETHD_RT;
+bool ethd__fit_vertex_mean(const ethd__points *points, ethd_vec *centre) ETHD_RT;
+bool ethd__fit_centroid(const ethd__points *points, ethd_vec *centre) ETHD_RT;
 
 /* As ethd_fit_step, ray k measured lag[k] s before the others' common instant by a finger that moved at v
    m/s relative to the ring: its point is carried on by as much. [rt] */

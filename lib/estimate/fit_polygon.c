@@ -5,20 +5,20 @@
 
 #define SLIM 1e-9 /* area over squared size under which a polygon has none */
 
-int ethd__fit_vertex_mean(const ethd__points *points, ethd_vec *centre) {
+bool ethd__fit_vertex_mean(const ethd__points *points, ethd_vec *centre) {
   double count = ethd__count(points->used);
   two x = {0, 0}, y = {0, 0};
-  if (count < 3) return 0;
+  if (count < 3) return false;
   for (int i = 0; i < ETHD__PAIRS; i++) x += points->x[i], y += points->y[i];
   *centre = ethd_vec_scale(1 / count, (ethd_vec){two_sum(x), two_sum(y)});
-  return 1;
+  return true;
 }
 
 /* As a fan of triangles (0, u, w) from the first vertex: centroids (u + w) / 3, areas u x w / 2. */
-int ethd__fit_centroid(const ethd__points *points, ethd_vec *centre) {
+bool ethd__fit_centroid(const ethd__points *points, ethd_vec *centre) {
   double area = 0, size = 0;
   ethd_vec sum = {0, 0}, u = {0, 0};
-  if (!points->used) return 0;
+  if (!points->used) return false;
   ethd_vec first = ethd__point(points, __builtin_ctz(points->used));
   for (uint32_t rest = points->used & (points->used - 1); rest; rest &= rest - 1) {
     ethd_vec w = ethd_vec_sub(ethd__point(points, __builtin_ctz(rest)), first);
@@ -28,7 +28,7 @@ int ethd__fit_centroid(const ethd__points *points, ethd_vec *centre) {
     sum = ethd_vec_add(sum, ethd_vec_scale(cross / 3, ethd_vec_add(u, w)));
     u = w;
   }
-  if (!(fabs(area) > SLIM * size)) return 0;
+  if (!(fabs(area) > SLIM * size)) return false;
   *centre = ethd_vec_add(first, ethd_vec_scale(1 / area, sum));
-  return 1;
+  return true;
 }

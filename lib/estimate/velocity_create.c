@@ -20,10 +20,10 @@ static const ethd_param foaw[] = {
 };
 
 static const ethd_param kalman[] = {
-    [KALMAN_NOISE] = {"noise", "rad", 1e-9, 1, 46e-6, "sd of a position: an encoder count / sqrt(12)"},
-    [KALMAN_ACCELERATION] = {"acceleration", "rad/s^2", 1e-3, 1e6, 50,
-                             "rms of what the torque doesn't explain: friction, contacts, wrong inertia"},
-    [KALMAN_INERTIA] = {"inertia", "kg m^2", 1e-6, 1e3, 0.1173 * 0.0625, "of each joint, mass L^2"},
+    [VELOCITY_NOISE] = {"noise", "rad", 1e-9, 1, 46e-6, "sd of a position: an encoder count / sqrt(12)"},
+    [VELOCITY_ACCELERATION] = {"acceleration", "rad/s^2", 1e-3, 1e6, 50,
+                               "rms of what the torque doesn't explain: friction, contacts, wrong inertia"},
+    [VELOCITY_INERTIA] = {"inertia", "kg m^2", 1e-6, 1e3, 0.1173 * 0.0625, "of each joint, mass L^2"},
 };
 
 #define ROWS(table) table, sizeof table / sizeof *table
@@ -74,7 +74,7 @@ ethd_status ethd_velocity_prepare(ethd_velocity_method method, const double *p, 
 /* Steady gains alpha, beta of the filter (Kalata 1984) with the tracking index m. In a steady parabola
    the innovation r stays: beta r = a T^2 and (v - v_hat) T = alpha r - a T^2 / 2. */
 static double kalman_lag(const ethd_velocity *v) {
-  double m = v->p[KALMAN_ACCELERATION] * v->period * v->period / v->p[KALMAN_NOISE];
+  double m = v->p[VELOCITY_ACCELERATION] * v->period * v->period / v->p[VELOCITY_NOISE];
   double root = (4 + m - sqrt(m * (8 + m))) / 4;
   double alpha = 1 - root * root, beta = 2 * (1 - root) * (1 - root);
   return (alpha / beta - 0.5) * v->period;

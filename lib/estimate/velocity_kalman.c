@@ -7,7 +7,7 @@
 #define SPEED_VARIANCE 1.0 /* rad^2/s^2: of the speed that the filter starts from */
 
 static void start(const ethd_velocity *v, ethd_velocity_state *s) {
-  double noise = v->p[KALMAN_NOISE];
+  double noise = v->p[VELOCITY_NOISE];
   s->position = s->q[s->head];
   s->cov[0] = noise * noise;
   s->cov[1] = 0;
@@ -16,8 +16,8 @@ static void start(const ethd_velocity *v, ethd_velocity_state *s) {
 
 static void predict(const ethd_velocity *v, ethd_velocity_state *s, double torque) {
   double dt = s->dt[s->head], *c = s->cov;
-  double u = torque / v->p[KALMAN_INERTIA];
-  double g0 = v->p[KALMAN_ACCELERATION] * dt * dt / 2, g1 = v->p[KALMAN_ACCELERATION] * dt;
+  double u = torque / v->p[VELOCITY_INERTIA];
+  double g0 = v->p[VELOCITY_ACCELERATION] * dt * dt / 2, g1 = v->p[VELOCITY_ACCELERATION] * dt;
   s->position += (s->speed + u * dt / 2) * dt;
   s->speed += u * dt;
   c[0] += (2 * c[1] + c[2] * dt) * dt + g0 * g0;
@@ -26,7 +26,7 @@ static void predict(const ethd_velocity *v, ethd_velocity_state *s, double torqu
 }
 
 static void correct(const ethd_velocity *v, ethd_velocity_state *s) {
-  double noise = v->p[KALMAN_NOISE], *c = s->cov;
+  double noise = v->p[VELOCITY_NOISE], *c = s->cov;
   double r = noise * noise, variance = c[0] + r;
   double innovation = s->q[s->head] - s->position;
   s->position += c[0] / variance * innovation;

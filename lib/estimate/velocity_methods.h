@@ -8,7 +8,7 @@
 enum { LOWPASS_CUTOFF };
 enum { LSQ_WINDOW };
 enum { FOAW_WINDOW, FOAW_NOISE };
-enum { KALMAN_NOISE, KALMAN_ACCELERATION, KALMAN_INERTIA };
+enum { VELOCITY_NOISE, VELOCITY_ACCELERATION, VELOCITY_INERTIA };
 
 /* Index of the sample i before the newest, i < count. */
 static inline uint32_t ethd__velocity_back(const ethd_velocity_state *s, uint32_t i) {

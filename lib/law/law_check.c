@@ -1,3 +1,4 @@
+#include <stdbool.h>
 #include <string.h>
 
 #include "error.h"
@@ -6,18 +7,18 @@
 /* The smallest size of a law's struct in ABI 0, by kind. */
 static const size_t smallest[] = {ETHD_TRACKING_LAW_MIN, ETHD_CONTACT_LAW_MIN, ETHD_TRANSITION_LAW_MIN};
 
-static int id_is_good(const char *id) {
+static bool id_is_good(const char *id) {
   size_t n = id ? strlen(id) : 0;
   return n >= 1 && n <= 31 && strspn(id, "abcdefghijklmnopqrstuvwxyz0123456789-") == n;
 }
 
-static int has_step(const ethd_law *law) {
+static bool has_step(const ethd_law *law) {
   switch ((ethd_kind)law->kind) {
-  case ETHD_TRACKING: return ((const ethd_tracking_law *)(const void *)law)->step ? 1 : 0;
-  case ETHD_CONTACT: return ((const ethd_contact_law *)(const void *)law)->step ? 1 : 0;
-  case ETHD_TRANSITION: return ((const ethd_transition_law *)(const void *)law)->step ? 1 : 0;
+  case ETHD_TRACKING: return ((const ethd_tracking_law *)(const void *)law)->step != NULL;
+  case ETHD_CONTACT: return ((const ethd_contact_law *)(const void *)law)->step != NULL;
+  case ETHD_TRANSITION: return ((const ethd_transition_law *)(const void *)law)->step != NULL;
   }
-  return 0;
+  return false;
 }
 
 /* ABI first: nothing behind it can be trusted when it differs. */

@@ -12,21 +12,21 @@ static const ethd_param params[COUNT] = {
      "eps_q_dot: J^-1 (V_f - V_r), or the backward difference of eps_q"},
 };
 
-typedef struct state {
+typedef struct pd_state {
   double eps_q[2];
   double started;
-} state;
+} pd_state;
 
-_Static_assert(sizeof(state) <= ETHD_STATE_MAX, "state");
+_Static_assert(sizeof(pd_state) <= ETHD_STATE_MAX, "state");
 
-static double difference(state *s, const ethd_tracking_in *in, int i) ETHD_RT {
+static double difference(pd_state *s, const ethd_tracking_in *in, int i) ETHD_RT {
   double d = s->started != 0 ? (in->eps_q[i] - s->eps_q[i]) / in->period : 0;
   s->eps_q[i] = in->eps_q[i];
   return d;
 }
 
 static ethd_status step(const double *p, void *block, const ethd_tracking_in *in, double tau[2]) ETHD_RT {
-  state *s = block;
+  pd_state *s = block;
   for (int i = 0; i < 2; i++) {
     double d = p[DERIVATIVE] == DIFFERENCE ? difference(s, in, i) : in->eps_q_dot[i];
     tau[i] = p[K_T] * in->eps_q[i] + p[B_T] * d;
@@ -36,7 +36,7 @@ static ethd_status step(const double *p, void *block, const ethd_tracking_in *in
 }
 
 const ethd_tracking_law ethd_tracking_pd = {
-    .law = {sizeof(ethd_tracking_law), ETHD_ABI, ETHD_TRACKING, sizeof(state), "pd",
+    .law = {sizeof(ethd_tracking_law), ETHD_ABI, ETHD_TRACKING, sizeof(pd_state), "pd",
             "spring and damper between finger and ring, in joint space", params, COUNT, NULL, NULL},
     .step = step,
 };

@@ -1,10 +1,12 @@
 #include "ethd/law.h"
 
+#include <stdbool.h>
+
 /* Either tracking or the wall: the baseline that the paper names. */
 
 static ethd_status step(const double *p, void *block, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
   (void)p, (void)block;
-  int inside = c->d_re < 0;
+  bool inside = c->d_re < 0;
   out->beta = inside ? 0 : 1;
   out->share = inside ? 1 : 0;
   out->state = inside ? ETHD_VO : ETHD_TRANSPARENT;

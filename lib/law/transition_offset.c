@@ -20,31 +20,31 @@ static const ethd_param params[COUNT] = {
     {"t_max", "s", 0, (double)INFINITY, 0.050, "braking ends after this time; inf: never, as in the paper"},
 };
 
-typedef struct state {
+typedef struct offset_state {
   double phase;        /* ETHD_TRANSPARENT, ETHD_BRAKING, ETHD_VO */
   double eps;          /* wall offset, 0 outside of vo */
   double braked, rest; /* s since braking began, and what its sum still owes (Kahan 1965) */
-} state;
+} offset_state;
 
-_Static_assert(sizeof(state) <= ETHD_STATE_MAX, "state");
+_Static_assert(sizeof(offset_state) <= ETHD_STATE_MAX, "state");
 
 /* Periods add up to t_max only within rounding. */
 #define TIME_TOLERANCE 1e-9
 
-static void enter(state *s, int phase, double eps) ETHD_RT {
+static void enter(offset_state *s, int phase, double eps) ETHD_RT {
   s->phase = phase;
   s->eps = eps;
   s->braked = s->rest = 0;
 }
 
 /* A sum of any length, right within a rounding. */
-static void add_time(state *s, double period) ETHD_RT {
+static void add_time(offset_state *s, double period) ETHD_RT {
   double term = period - s->rest, sum = s->braked + term;
   s->rest = sum - s->braked - term;
   s->braked = sum;
 }
 
-static void brake(const double *p, state *s, const ethd_contact *c) ETHD_RT {
+static void brake(const double *p, offset_state *s, const ethd_contact *c) ETHD_RT {
   add_time(s, c->period);
   if (fabs(c->v) < p[V_TH])
     enter(s, ETHD_VO, -c->d_re);
@@ -54,7 +54,7 @@ static void brake(const double *p, state *s, const ethd_contact *c) ETHD_RT {
     enter(s, ETHD_VO, -c->d_re);
 }
 
-static void advance(const double *p, state *s, const ethd_contact *c) ETHD_RT {
+static void advance(const double *p, offset_state *s, const ethd_contact *c) ETHD_RT {
   if (s->phase == ETHD_BRAKING)
     brake(p, s, c);
   else if (s->phase == ETHD_VO && c->d_re > c->d_beta)
@@ -64,7 +64,7 @@ static void advance(const double *p, state *s, const ethd_contact *c) ETHD_RT {
 }
 
 static ethd_status step(const double *p, void *block, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
-  state *s = block;
+  offset_state *s = block;
   advance(p, s, c);
   out->state = (int32_t)s->phase;
   out->offset = s->eps;
@@ -76,7 +76,7 @@ static ethd_status step(const double *p, void *block, const ethd_contact *c, eth
 }
 
 const ethd_transition_law ethd_transition_offset = {
-    .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, sizeof(state), "offset",
+    .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, sizeof(offset_state), "offset",
             "VO-B: brake, then the wall where the ring stopped", params, COUNT, NULL, NULL},
     .step = step,
 };

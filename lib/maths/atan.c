@@ -11,6 +11,7 @@
 #include "ethd/maths.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 #include "maths/double.h"
 
@@ -58,7 +59,7 @@ static double add(pair base, double sign, pair a) {
 }
 
 /* Angle of (x, y), y > 0 in effect, from low = min(|x|, y), high = max(|x|, y). */
-static double upper_half(double low, double high, int steep, int left) {
+static double upper_half(double low, double high, bool steep, bool left) {
   if (low < high * 0x1p-60) {
     if (!steep && !left) return low / high;
     low = 0;
@@ -70,7 +71,7 @@ static double upper_half(double low, double high, int steep, int left) {
 
 double ethd_atan2(double y, double x) {
   double ax = fabs(x), ay = fabs(y);
-  int steep = ay > ax;
+  bool steep = ay > ax;
   double low = steep ? ax : ay, high = steep ? ay : ax;
 
   if (isnan(x) || isnan(y)) return NAN;

@@ -7,6 +7,7 @@
 #include "ethd/maths.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 #include "maths/double.h"
 
@@ -71,14 +72,14 @@ static angle reduce_exactly(double x) {
   multiply((u & 0x000fffffffffffff) | 0x0010000000000000, first, p);
   unsigned n = (unsigned)window(p, point) & 3;
   uint64_t f1 = window(p, point - 64), f0 = window(p, point - 128);
-  int above = f1 >> 63;
+  bool above = f1 >> 63;
   if (above) { /* more than half: count down from the next multiple */
     f0 = ~f0 + 1;
     f1 = ~f1 + (f0 == 0);
     n++;
   }
   pair r = turn(f1, f0);
-  int negative = u >> 63;
+  bool negative = u >> 63;
   if (negative != above) r = (pair){-r.hi, -r.lo};
   return (angle){r, negative ? 0 - n : n};
 }

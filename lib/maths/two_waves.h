@@ -1,9 +1,10 @@
-/* Sine and cosine of two angles side by side, operation by operation as in maths_trig.c: the same bits
+/* Sine and cosine of two angles side by side, operation by operation as in trig.c: the same bits
    as ethd_sin and ethd_cos in half the time. */
 #ifndef ETHD_MATHS_TWO_H
 #define ETHD_MATHS_TWO_H
 
 #include <math.h>
+#include <stdbool.h>
 
 #include "ethd/maths.h"
 #include "maths/two.h"
@@ -43,7 +44,7 @@ static inline two two_cosine(two x, two rest) {
 }
 
 /* Huge, tiny, or next to a multiple of pi/2: rare. NaN too. */
-static inline int two_is_plain(double x, double r) { return fabs(x) < 0x1p20 && fabs(r) >= 0x1p-36; }
+static inline bool two_is_plain(double x, double r) { return fabs(x) < 0x1p20 && fabs(r) >= 0x1p-36; }
 
 /* A quadrant exchanges the two and turns signs: by bits, for nobody can foresee which it will be. */
 static inline two_waves two_sincos(two x) {

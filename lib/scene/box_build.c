@@ -20,10 +20,10 @@ typedef struct span {
   double min, max;
 } span;
 
-typedef struct box {
+typedef struct rectangle {
   float c, s;
   span u, v;
-} box;
+} rectangle;
 
 static void widen(span *s, double v, double r) {
   s->min = v - r < s->min ? v - r : s->min;
@@ -37,9 +37,9 @@ typedef struct run {
 } run;
 
 /* Around a run, u along (c, s). */
-static box around(const run *of, float c, float s) {
+static rectangle around(const run *of, float c, float s) {
   const ethd__cloud *k = of->cloud;
-  box b = {c, s, {INFINITY, -INFINITY}, {INFINITY, -INFINITY}};
+  rectangle b = {c, s, {INFINITY, -INFINITY}, {INFINITY, -INFINITY}};
   for (size_t i = of->from; i < of->to; i += of->step) {
     ethd_vec p = k->points[i];
     double r = k->radii ? k->radii[i] : 0;
@@ -52,25 +52,25 @@ static box around(const run *of, float c, float s) {
 static double width(span s) { return s.max - s.min; }
 
 /* How many places are nearer to the box than `near`, less what any box has: few is good. */
-static double cost(const box *b) {
+static double cost(const rectangle *b) {
   double w = width(b->u), h = width(b->v), near = 0.01;
   return w * h + near * (w + h);
 }
 
 /* From the first disc to the last. */
-static box along(const run *of) {
+static rectangle along(const run *of) {
   ethd_vec e = ethd_vec_sub(of->cloud->points[of->to - 1], of->cloud->points[of->from]);
   double length = ethd_vec_norm(e);
   bool any = length > 0;
   return around(of, any ? (float)(e.x / length) : 1, any ? (float)(e.y / length) : 0);
 }
 
-static box fit(const ethd__cloud *k, size_t from, size_t to) {
+static rectangle fit(const ethd__cloud *k, size_t from, size_t to) {
   run all = {k, from, to, 1}, some = {k, from, to, (to - from + SAMPLES - 1) / SAMPLES};
   if (to - from <= 2) return along(&all);
-  box best = along(&some);
+  rectangle best = along(&some);
   for (int i = 0; i < DIRECTIONS; i++) {
-    box b = around(&some, directions[i][0], directions[i][1]);
+    rectangle b = around(&some, directions[i][0], directions[i][1]);
     if (cost(&b) < cost(&best)) best = b;
   }
   return around(&all, best.c, best.s);
@@ -84,7 +84,7 @@ static void set(span s, float *middle, float *half) {
 }
 
 void ethd__box_fit(const ethd__cloud *k, size_t from, size_t to, ethd__node *node, size_t lane) {
-  box b = fit(k, from, to);
+  rectangle b = fit(k, from, to);
   node->c[lane] = b.c;
   node->s[lane] = b.s;
   set(b.u, &node->u[lane], &node->w[lane]);

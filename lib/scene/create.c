@@ -56,35 +56,35 @@ static ethd_status plan(const ethd_scene_def *def, ethd_scene *s, ethd_error *er
 
 /* ---- bounds ---- */
 
-typedef struct box {
+typedef struct bounds {
   double x_min, x_max, y_min, y_max;
-} box;
+} bounds;
 
-static const box nowhere = {INFINITY, -INFINITY, INFINITY, -INFINITY};
+static const bounds nowhere = {INFINITY, -INFINITY, INFINITY, -INFINITY};
 
-static box together(box a, box b) {
-  box r = {fmin(a.x_min, b.x_min), fmax(a.x_max, b.x_max), fmin(a.y_min, b.y_min), fmax(a.y_max, b.y_max)};
+static bounds together(bounds a, bounds b) {
+  bounds r = {fmin(a.x_min, b.x_min), fmax(a.x_max, b.x_max), fmin(a.y_min, b.y_min), fmax(a.y_max, b.y_max)};
   return r;
 }
 
-static box around(ethd__disc d) {
-  box b = {d.centre.x - d.radius, d.centre.x + d.radius, d.centre.y - d.radius, d.centre.y + d.radius};
+static bounds around(ethd__disc d) {
+  bounds b = {d.centre.x - d.radius, d.centre.x + d.radius, d.centre.y - d.radius, d.centre.y + d.radius};
   return b;
 }
 
-static box bounds_of(const ethd_object_def *def) {
+static bounds bounds_of(const ethd_object_def *def) {
   const ethd__shape *s = &ethd__shapes[def->shape];
   double room[ETHD__KEPT_MAX];
   const double *kept = s->is_chain ? def->numbers : room;
   size_t discs = s->is_chain ? def->count / 2 : s->discs;
-  box b = nowhere;
+  bounds b = nowhere;
   if (!s->is_chain) ethd__keep(def, room);
   for (size_t k = 0; k < discs; k++) b = together(b, around(ethd__disc_at(s, kept, k)));
   return b;
 }
 
 /* The trees' frame: everything within [-1, 1]. */
-static void frame(ethd_scene *s, box b) {
+static void frame(ethd_scene *s, bounds b) {
   int exponent = 0;
   s->x_min = b.x_min, s->x_max = b.x_max, s->y_min = b.y_min, s->y_max = b.y_max;
   s->scale = 1;
@@ -125,7 +125,7 @@ static bool is_closed(const double *points, uint32_t edges) {
 }
 
 static void measure(const ethd_scene_def *def, ethd_scene *s) {
-  box all = nowhere;
+  bounds all = nowhere;
   double extent = 0;
   for (uint32_t i = 0; i < s->object_count; i++) {
     all = together(all, bounds_of(&def->objects[i]));
@@ -144,7 +144,7 @@ static uint32_t step_of(const ethd_scene *s, double low, double high, double cen
 static void order(const ethd_scene_def *def, const ethd_scene *s, ethd__item *items) {
   uint32_t n = 0, last = s->tree.leaves;
   for (uint32_t i = 0; i < s->object_count; i++) {
-    box b = bounds_of(&def->objects[i]);
+    bounds b = bounds_of(&def->objects[i]);
     if (is_endless(&def->objects[i])) {
       items[last++].id = i;
     } else {

@@ -79,7 +79,7 @@ ETHD__INLINE void take(const ethd__chain *c, uint32_t k, ethd_vec x, faces *f, e
 ETHD__INLINE void visit(const ethd__strip *s, const ethd__chain *c, uint32_t first, faces *f, ethd__nearest_edge *out) {
   const ethd__probe *p = s->probe;
   ethd__walk walk;
-  ethd__place at;
+  ethd__scene_place at;
   ethd__walk_start(&walk, ethd__tree_at(s->scene, s->object), p, slopes(s->scene, p));
   if (first < s->object->edges) {
     take(c, first, s->x, f, out);

@@ -72,7 +72,7 @@ static void add_strip(const ethd__strip *strip, bool maybe_inside, float bound, 
 }
 
 /* Puts the leaf's object into `leaf`. A box at no distance may have x inside. */
-static void add_leaf(ethd__strip *leaf, ethd__place at, float bound, list *l) {
+static void add_leaf(ethd__strip *leaf, ethd__scene_place at, float bound, list *l) {
   leaf->object = ethd__object_at(leaf->scene, at.index);
   if (ethd__has_tree(leaf->object))
     add_strip(leaf, at.squared == 0, bound, l);
@@ -84,7 +84,7 @@ static void add_tree(const ethd_scene *scene, ethd_vec x, double reach, list *l)
   ethd__probe p = ethd__probe_at(scene, x);
   ethd__strip leaf = {scene, NULL, &p, x};
   ethd__walk walk;
-  ethd__place at = {0, 0, 0};
+  ethd__scene_place at = {0, 0, 0};
   float bound = ethd__bound(&p, reach * reach);
   if (scene->tree.leaves == 1) {
     add_leaf(&leaf, at, bound, l);

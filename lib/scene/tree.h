@@ -132,10 +132,10 @@ ETHD__INLINE uint32_t ethd__nearest_lane(const float squared[ETHD__WIDE]) {
 
 /* ---- the leaves within a bound that may shrink ---- */
 
-typedef struct ethd__place {
+typedef struct ethd__scene_place {
   float squared;
   uint32_t level, index;
-} ethd__place;
+} ethd__scene_place;
 
 typedef struct ethd__eight {
   _Alignas(16) float squared[ETHD__WIDE];
@@ -150,7 +150,7 @@ typedef struct ethd__walk {
   unsigned lanes;               /* leaves still to come of the node at hand */
   uint32_t leaf;                /* its first */
   ethd__eight at[ETHD__LEVELS]; /* [1]: the node at hand; after walk_down, those on the way */
-  ethd__place stack[(ETHD__WIDE - 1) * ETHD__LEVELS + 1];
+  ethd__scene_place stack[(ETHD__WIDE - 1) * ETHD__LEVELS + 1];
 } ethd__walk;
 
 ETHD__INLINE void ethd__look(ethd__walk *w, uint32_t level, uint32_t index, float squared[ETHD__WIDE]) {
@@ -166,7 +166,7 @@ static inline void ethd__push(ethd__walk *w, const float squared[ETHD__WIDE], un
     uint32_t lane = (uint32_t)__builtin_ctz(lanes);
     int i = w->count++;
     for (; i > start && w->stack[i - 1].squared < squared[lane]; i--) w->stack[i] = w->stack[i - 1];
-    w->stack[i] = (ethd__place){squared[lane], level - 1, ETHD__WIDE * index + lane};
+    w->stack[i] = (ethd__scene_place){squared[lane], level - 1, ETHD__WIDE * index + lane};
   }
 }
 
@@ -217,7 +217,7 @@ static inline void ethd__walk_on(ethd__walk *w, uint32_t found, float bound) {
 }
 
 /* The next leaf; ETHD__NONE: no more. */
-static inline ethd__place ethd__walk_next(ethd__walk *w) {
+static inline ethd__scene_place ethd__walk_next(ethd__walk *w) {
   for (;;) {
     if (w->lanes) w->lanes &= ethd__lanes_within(w->at[1].squared, w->bound);
     if (w->lanes) {
@@ -227,10 +227,10 @@ static inline ethd__place ethd__walk_next(ethd__walk *w) {
         if (w->at[1].squared[other] < w->at[1].squared[lane]) lane = other;
       }
       w->lanes ^= 1u << lane;
-      return (ethd__place){w->at[1].squared[lane], 0, w->leaf + lane};
+      return (ethd__scene_place){w->at[1].squared[lane], 0, w->leaf + lane};
     }
-    if (!w->count) return (ethd__place){0, 0, ETHD__NONE};
-    ethd__place at = w->stack[--w->count];
+    if (!w->count) return (ethd__scene_place){0, 0, ETHD__NONE};
+    ethd__scene_place at = w->stack[--w->count];
     if (!(at.squared <= w->bound)) continue;
     if (at.level == 1) {
       ethd__look(w, 1, at.index, w->at[1].squared);

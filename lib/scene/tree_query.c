@@ -88,7 +88,7 @@ static void renew(const search *q, ethd_scene_hint *hint) {
 
 static void search_tree(search *q, const ethd_scene_hint *hint) {
   ethd__walk walk;
-  ethd__place at;
+  ethd__scene_place at;
   uint32_t first = hint->leaf - 1; /* no hint: ETHD__NONE */
   if (q->at.scene->tree.leaves == 1) {
     take(q, 0, true, first == 0 ? guess_edge(q, 0, hint) : ETHD__NONE);
