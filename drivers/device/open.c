@@ -101,7 +101,8 @@ static ethd_status open_one(ethd__stack *s, uint32_t i, const ethd_device_def *d
   message[0] = 0;
   ethd_status status = driver->open(&own, &s->at[i].device, message);
   free(settings);
-  if (status && !message[0]) ethd__say(message, status, "device %s: open: %s", driver->id, ethd_status_sentence(status));
+  if (status && !message[0])
+    ethd__say(message, status, "device %s: open: %s", driver->id, ethd_status_sentence(status));
   return status;
 }
 
