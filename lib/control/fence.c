@@ -4,56 +4,49 @@
 
 /* ---- the processor's floating-point control: rounding, flushing, traps ---- */
 
+typedef struct fp_control {
+  uint64_t word; /* MXCSR, FPCR, frm */
+  uint16_t x87;
+} fp_control;
+
 #if defined(__SSE__)
 #include <xmmintrin.h>
 #define CONTROL_BITS 0xffc0u /* of MXCSR; the others are flags that any operation may raise */
 
-typedef struct control {
-  uint32_t sse;
-  uint16_t x87;
-} control;
-
-static control control_now(void) ETHD_RT {
-  control c = {_mm_getcsr() & CONTROL_BITS, 0};
+static fp_control control_now(void) ETHD_RT {
+  fp_control c = {_mm_getcsr() & CONTROL_BITS, 0};
   __asm__ volatile("fnstcw %0" : "=m"(c.x87));
   return c;
 }
 
-static void control_set(control c) ETHD_RT {
+static void control_set(fp_control c) ETHD_RT {
   __asm__ volatile("fnclex\n\tfldcw %0" : : "m"(c.x87)); /* a pending trap would be taken at the load */
-  _mm_setcsr(c.sse);
+  _mm_setcsr((uint32_t)c.word);
 }
 
-static bool control_is(control a, control b) ETHD_RT { return a.sse == b.sse && a.x87 == b.x87; }
 #elif defined(__aarch64__)
-typedef uint64_t control;
-
-static control control_now(void) ETHD_RT {
-  control c;
-  __asm__ volatile("mrs %0, fpcr" : "=r"(c));
+static fp_control control_now(void) ETHD_RT {
+  fp_control c = {0, 0};
+  __asm__ volatile("mrs %0, fpcr" : "=r"(c.word));
   return c;
 }
 
-static void control_set(control c) ETHD_RT { __asm__ volatile("msr fpcr, %0" : : "r"(c)); }
-static bool control_is(control a, control b) ETHD_RT { return a == b; }
+static void control_set(fp_control c) ETHD_RT { __asm__ volatile("msr fpcr, %0" : : "r"(c.word)); }
 #elif defined(__riscv_flen)
-typedef uint64_t control;
-
-static control control_now(void) ETHD_RT {
-  control c;
-  __asm__ volatile("csrr %0, frm" : "=r"(c));
+static fp_control control_now(void) ETHD_RT {
+  fp_control c = {0, 0};
+  __asm__ volatile("csrr %0, frm" : "=r"(c.word));
   return c;
 }
 
-static void control_set(control c) ETHD_RT { __asm__ volatile("csrw frm, %0" : : "r"(c)); }
-static bool control_is(control a, control b) ETHD_RT { return a == b; }
+static void control_set(fp_control c) ETHD_RT { __asm__ volatile("csrw frm, %0" : : "r"(c.word)); }
 #else
-typedef int control; /* not known here: not watched */
-
-static control control_now(void) ETHD_RT { return 0; }
-static void control_set(control c) ETHD_RT { (void)c; }
-static bool control_is(control a, control b) ETHD_RT { return a == b; }
+/* Not known here: not watched. */
+static fp_control control_now(void) ETHD_RT { return (fp_control){0, 0}; }
+static void control_set(fp_control c) ETHD_RT { (void)c; }
 #endif
+
+static bool control_is(fp_control a, fp_control b) ETHD_RT { return a.word == b.word && a.x87 == b.x87; }
 
 /* ---- fences: a pattern from the end of the law's state on, and before it ---- */
 
@@ -96,7 +89,7 @@ static bool fences_hold(const ethd_law *law, const ethd__block *b) ETHD_RT {
 typedef struct call {
   const ethd_law *law;
   ethd__block *block;
-  control before;
+  fp_control before;
 } call;
 
 static call enter(const ethd_law *law, ethd__block *b) ETHD_RT {
