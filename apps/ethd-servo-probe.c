@@ -14,19 +14,22 @@
 
 static const char doc[] =
     "Measures the bus to a servo drive by its register map: connects, identifies, writes zero torque and reads, as "
-    "fast as the bus goes, and says which rate it can hold. The drive isn't enabled, nothing moves.\v"
+    "fast as the bus goes, and says which rate it can hold. The drive isn't enabled, nothing moves, but with "
+    "--try-watchdog.\v"
     "Examples:\n"
     "  ethd-servo-probe --map svd48v.map\n"
     "  ethd-servo-probe --map plant.map --port 127.0.0.1:1502 --duration 10";
 
 #define ASKS 3 /* questions, before a drive is said not to answer */
 
-enum { OPTION_PORT = 256 };
+enum { OPTION_PORT = 256, OPTION_WATCHDOG };
 
 static const struct argp_option options[] = {
     {"map", 'm', "F.map", 0, "register map of the drive", 0},
     {"port", OPTION_PORT, "PORT", 0, "HOST:PORT or a serial device, instead of the map's", 0},
     {"period", 'p', "S", 0, "of the loop that is to live on it: 0.001", 0},
+    {"try-watchdog", OPTION_WATCHDOG, NULL, 0,
+     "enables at zero torque, is silent, and says whether the drive let go by itself: keep clear of the arm", 0},
     {"duration", 'd', "S", 0, "measures for so long: 2", 0},
     {0},
 };
@@ -34,11 +37,13 @@ static const struct argp_option options[] = {
 static struct {
   const char *map, *port;
   double duration, period; /* s */
+  bool watchdog;
 } arg = {.duration = 2, .period = 1e-3};
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
   case 'm': arg.map = text; return 0;
+  case OPTION_WATCHDOG: arg.watchdog = true; return 0;
   case OPTION_PORT: arg.port = text; return 0;
   case 'p': arg.period = ethd__option_number("--period", text, 1e-5, 1); return 0;
   case 'd': arg.duration = ethd__option_number("--duration", text, 0.01, 86400); return 0;
@@ -121,6 +126,45 @@ static double measure(void) {
   return 1e-9 * (double)(at - begin);
 }
 
+/* ---- whether it has a watchdog ---- */
+
+#define SILENCE 1.0 /* s, or three times what the map says */
+
+static bool is_enabled(void) {
+  for (uint32_t i = 0; i < map.count; i++) {
+    const ethd__servo_register *r = &map.registers[i];
+    if (r->enabled_mask && ((uint32_t)(int64_t)drive.raw[i] & r->enabled_mask) != r->enabled) return false;
+  }
+  return true;
+}
+
+static void turns(int32_t sequence, double seconds) {
+  const double zero[2] = {0, 0};
+  int64_t end = now() + (int64_t)(1e9 * seconds);
+  if (sequence >= 0) ethd__servo_link_begin(&drive, sequence, now());
+  while ((drive.sequence >= 0 || sequence < 0) && now() < end) (void)!ethd__servo_link_turn(&drive, now(), zero);
+}
+
+/* Enabled under zero torque, nobody speaks for a while; then the drive says what it did. */
+static void try_watchdog(void) {
+  double silence = fmax(SILENCE, 3 * map.watchdog_time);
+  bool shows = false;
+  for (uint32_t i = 0; i < map.count; i++) shows |= map.registers[i].enabled_mask != 0;
+  if (!shows) ethd__fail(ETHD_EXIT_INPUT, "%s: no enabled_mask: the drive can't be seen to let go", arg.map);
+  turns(ETHD__SERVO_ENABLE, 30);
+  if (drive.state != ETHD__SERVO_ENABLED) ethd__fail(ETHD_EXIT_FAILED, "it can't be enabled: %s", drive.message);
+  turns(-1, 0.2);
+  if (!is_enabled()) ethd__fail(ETHD_EXIT_FAILED, "it lets go while it is spoken to");
+  nanosleep(&(struct timespec){(time_t)silence, (long)(1e9 * (silence - floor(silence)))}, NULL);
+  drive.plan.all = true; /* slow registers, too, as they are now */
+  (void)!ethd__servo_link_turn(&drive, now(), (const double[2]){0, 0});
+  bool let_go = !is_enabled();
+  printf("%-10s %s after %g s of silence: %s; the map says %s\n", "watchdog",
+         let_go ? "it let go" : "it is enabled still", silence, let_go ? "it has one" : "it has none",
+         map.watchdog == ETHD__SERVO_WATCH_NONE ? "none" : "it has one");
+  turns(ETHD__SERVO_DISABLE, 30);
+}
+
 /* ---- the report ---- */
 
 static void print_rate(double seconds) {
@@ -183,6 +227,7 @@ int main(int argc, char **argv) {
   reach();
   double seconds = measure();
   print_rate(seconds);
+  if (arg.watchdog) try_watchdog();
   print_wire();
   print_divisor();
   print_values();

@@ -73,6 +73,9 @@ port=$at
 configure live "127.0.0.1:$port"
 $alone "$BUILD/bin/ethd-servo-probe" --map "$folder/plant.map" --port "127.0.0.1:$port" --duration 0.5 >"$folder/probe" 2>&1 ||
   fail "probe: exit $?: $(cat "$folder/probe")"
+"$BUILD/bin/ethd-servo-probe" --map "$folder/plant.map" --port "127.0.0.1:$port" --duration 0.2 --try-watchdog >"$folder/tried" 2>&1 ||
+  fail "watchdog: exit $?: $(cat "$folder/tried")"
+says "$folder/tried" '^watchdog .*it let go after 1 s of silence: it has one; the map says it has one'
 says "$folder/probe" '^round trip p50 .* p99 .* max .* ms' 'this bus can do [1-9][0-9]* Hz' ' position1  *raw' ' bus_voltage  *raw 480 *48 V'
 mkfifo "$folder/commands"
 $alone "$run" --config "$folder/live.ini" --record "$folder/live" <"$folder/commands" >"$folder/live.out" 2>"$folder/live.err" 8>&- &
@@ -123,7 +126,8 @@ kill -KILL $live
 wait $live 2>/dev/null
 exec 9>&-
 sleep 0.3
-$verify "$folder/live" >"$folder/verify" 2>&1 && grep -q 'equal to the bit' "$folder/verify" || fail "killed: $(cat "$folder/verify")"
+$verify "$folder/live" >"$folder/verify" 2>&1 # says that it was never closed
+grep -q 'equal to the bit' "$folder/verify" || fail "killed: $(cat "$folder/verify")"
 "$python3" - "$folder/live/tick.npy" <<'END2' || fail "records are missing"
 import sys
 import numpy as np

@@ -26,6 +26,9 @@ slow_map apps/config/svd48v.map "$folder/svd48v.map"
 probe=$BUILD/bin/ethd-servo-probe
 "$probe" --map "$folder/svd48v.map" --port "$line" --duration 0.5 >"$folder/probe" 2>&1 || fail "probe: exit $?: $(cat "$folder/probe")"
 says "$folder/probe" '^checksum .*low-first: no answer, high-first: it answers' ' bus_voltage  *raw 480 *48 V' ' position2 .*address unconfirmed'
+says "$folder/probe" '^divisor .* at 1 ms ticks: ' '^wire .* 93 bytes in 5 questions: 2.245 ms of wire and silence'
+"$probe" --map "$folder/svd48v.map" --port "$line" --duration 0.2 --try-watchdog >"$folder/tried" 2>&1 || fail "watchdog: exit $?: $(cat "$folder/tried")"
+says "$folder/tried" '^watchdog .*it is enabled still after 1 s of silence: it has none; the map says none'
 says "$folder/probe" '^answers .* 0 damaged or refused' '^unconfirmed .*of .* registers'
 sed 's/^crc = .*/crc = low-first/' "$folder/svd48v.map" >"$folder/other.map"
 "$probe" --map "$folder/other.map" --port "$line" --duration 0.3 >"$folder/probe" 2>&1 || fail "other order: exit $?: $(cat "$folder/probe")"
@@ -42,7 +45,7 @@ drive_ends
 # ---- homing: refused without, found at its stops, lost with its power ----
 run=$BUILD/bin/ethd-run
 cp apps/config/wall.scene "$folder"
-drive svd48v --lock-step 0.004
+drive svd48v --lock-step 0.005
 tell turn 0.2 -0.4 >/dev/null
 servo_ini lost svd48v.map
 "$run" --config "$folder/lost.ini" --duration 1 >"$folder/lost" 2>&1 </dev/null && fail "started without a reference"
@@ -63,10 +66,10 @@ assert true[0] > 0.9 and true[1] < -0.9
 END
 drive_ends
 
-# ---- what goes wrong at the drive, in its own time: 4 ms an exchange, in lock-step with a virtual clock. A hand holds the
+# ---- what goes wrong at the drive, in its own time: 5 ms an exchange, in lock-step with a virtual clock. A hand holds the
 # joints, a wall pushes with 0.3 Nm, 0.64 A; s until no torque is asked for any more, and what ethd-run says of it ----
 broken() { # NAME COMMAND BOUND SENTENCE
-  drive svd48v --lock-step 0.004
+  drive svd48v --lock-step 0.005
   tell hold >/dev/null
   servo_ini "$1" svd48v.map 'q1 = 1.5747963' 'q2 = 0' # the ring is 1 mm in the wall
   printf '\n[contact]\nk_e = 1200\n' >>"$folder/$1.ini"
@@ -85,14 +88,14 @@ broken() { # NAME COMMAND BOUND SENTENCE
     awk -v is="$reaction" -v most="$3" 'BEGIN { exit !(is >= 0 && is <= most) }' || fail "$1: zero torque after $reaction s, not $3"
   fi
 }
-# a row of one exchange, where its register is read every second time: 8 ms, and two exchanges until zero is there
-broken alarm alarm 0.016 'the drive reports a fault'
-broken supply 'volts 70' 0.208 "the drive's supply is out of its range"
-broken dead dead 0.036 "the drive doesn't follow the torque"
+# a row of one exchange, where its register is read every second time: 10 ms, and two exchanges until zero is there
+broken alarm alarm 0.02 'the drive reports a fault'
+broken supply 'volts 70' 0.26 "the drive's supply is out of its range"
+broken dead dead 0.04 "the drive doesn't follow the torque"
 broken garbled 'garble 1' never
 broken stale 'stale 1' never
 # its power goes and comes: the drive has stopped, and where the joints stand nobody knows any more
-broken cycled cycle 0.016 'the drive reports a fault' 'wait 1\nack\nenable'
+broken cycled cycle 0.02 'the drive reports a fault' 'wait 1\nack\nenable'
 
 [ $failed = 0 ] && echo "probed in both orders, homed at its stops, broken in six ways"
 exit $failed

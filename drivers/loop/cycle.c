@@ -127,8 +127,9 @@ static void disarm(ethd_loop *l) ETHD_RT {
   l->was_armed = 0;
 }
 
-/* The share of the torque that the device gets. */
+/* The share of the torque that the device gets. Periods that a slow bus leaves without a step count as well. */
 static double share(ethd_loop *l) ETHD_RT {
+  if (l->ramp) l->ramp += l->sense.missed;
   double t = (double)l->ramp++ * l->def.period;
   return t < l->def.soft_start ? t / l->def.soft_start : 1;
 }

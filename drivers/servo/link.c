@@ -87,6 +87,13 @@ static void set(ethd__servo_link *l, int role, double raw) {
   if (r >= 0) ethd__servo_pack(&l->map->registers[r], raw, ethd__servo_plan_words(&l->plan, l->map, r));
 }
 
+/* From 0 to the register's max: a borrowed register, a speed that isn't used, say, counts only as far as does no harm. */
+static uint16_t next_count(const ethd__servo_link *l) {
+  int32_t r = l->map->roles[ETHD__SERVO_COUNTER];
+  double most = r < 0 ? UINT16_MAX : fmin(l->map->registers[r].max, UINT16_MAX);
+  return l->counter >= most ? 0 : (uint16_t)(l->counter + 1);
+}
+
 static void fill(ethd__servo_link *l, const double torque[2]) {
   const int roles[2] = {ETHD__SERVO_TORQUE1, ETHD__SERVO_TORQUE2};
   for (int i = 0; i < 2; i++) {
@@ -94,7 +101,7 @@ static void fill(ethd__servo_link *l, const double torque[2]) {
     double joint = l->state == ETHD__SERVO_ENABLED ? torque[i] : 0;
     if (r >= 0) set(l, roles[i], ethd__servo_raw(&l->map->registers[r], joint));
   }
-  set(l, ETHD__SERVO_COUNTER, ++l->counter);
+  set(l, ETHD__SERVO_COUNTER, l->counter = next_count(l));
 }
 
 /* What the drive shows is what was written to it just now: else the answer is of another question. */

@@ -128,6 +128,8 @@ static ethd_status check_register(const ethd__servo_source *s, const ethd__servo
   if (status) return status;
   if (r->role == ETHD__SERVO_BUS_VOLTAGE && !(has(s, r, "min") && has(s, r, "max") && r->min < r->max))
     return refuse(s, r, "min", "min < max are needed: outside of them the supply is a fault");
+  if (r->role == ETHD__SERVO_COUNTER && !(r->max >= 1 && r->max == rint(fmin(r->max, 1e12))))
+    return refuse(s, r, "max", "a counter counts to a whole number from 1");
   if (r->absolute && r->role != ETHD__SERVO_POSITION1 && r->role != ETHD__SERVO_POSITION2)
     return refuse(s, r, "absolute", "only position1 and position2 can be");
   if (r->tolerance > 0 && r->role != ETHD__SERVO_MEASURED1 && r->role != ETHD__SERVO_MEASURED2)

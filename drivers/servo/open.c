@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "servo/device.h"
+#include "servo/wire.h"
 #include "servo/words.h"
 #include "text/error_text.h"
 #include "text/text.h"
@@ -134,9 +135,17 @@ static ethd_status set_homing(ethd__servo_device *d, const ethd_device_def *def,
   return ETHD_OK;
 }
 
-/* The loop may hold a torque for two exchanges, and no longer than 50 ms. */
+/* The loop may hold a torque for two exchanges, and no longer than 50 ms; and a wire has its own time. */
 static ethd_status check_pace(const ethd__servo_device *d, const settings *s, char *message) {
   int64_t most = ETHD__SERVO_OLD_MOST / 2;
+  ethd__servo_wire wire = ethd__servo_wire_of(&d->map, (double)NAN);
+  if (1e9 * wire.usual > (double)d->exchange_ns)
+    return ethd__say(
+        message, ETHD_E_RANGE,
+        "%s: bus.divisor: found %u, an exchange in %g ms; its %u messages take %.3g ms of wire, silence and "
+        "turnaround: choose from %u, a faster line, or fewer registers",
+        s->map->value, d->map.divisor, 1e-6 * (double)d->exchange_ns, wire.questions, 1e3 * wire.usual,
+        ethd__servo_divisor_for(wire.usual, 1e-9 * (double)d->period_ns));
   if (d->exchange_ns <= most) return ETHD_OK;
   return ethd__say(message, ETHD_E_RANGE,
                    "%s: bus.divisor: found %u, an exchange in %g ms; at most %g ms are allowed: choose up to %lld",

@@ -555,6 +555,18 @@ static int64_t rows_seen(void) {
   return rows;
 }
 
+/* s of the loop until the device had all of the torque, by its rows. */
+static double soft_start(void) {
+  static double whole;
+  ethd_loop_row row;
+  int64_t ticks = 0;
+  while (ethd_loop_take(loop, &row) == ETHD_OK) {
+    ticks += 1 + row.trace.sense.missed;
+    if (row.share < 1) whole = 1e-3 * (double)ticks;
+  }
+  return whole;
+}
+
 /* However rarely a bus answers, down to 40 ms twice: the loop lives on it, a missing answer is only counted, and a bus that
    stays silent is row 5 after the larger of 5 ms and two exchanges. */
 START_TEST(test_divisors) {
@@ -566,6 +578,8 @@ START_TEST(test_divisors) {
   for (int i = 0; i < 1500; i++) ethd_loop_tick(loop);
   ck_assert_int_eq(rows_seen(), 0);
   ck_assert(ethd_loop_armed(loop));
+  ck_assert_double_ge(soft_start(), 0.099 - 1e-3 * divisor); /* however seldom it steps */
+  ck_assert_double_le(soft_start(), 0.1 + 2e-3 * divisor);
   ck_assert_uint_le(((ethd__servo_device *)device)->link.counts.exchanges, (uint64_t)(1500 / divisor + 20));
   ck_assert_uint_ge(((ethd__servo_device *)device)->link.counts.exchanges, (uint64_t)(1500 / divisor));
   spoil(1, MOCK_DROP, 0);
@@ -596,6 +610,35 @@ START_TEST(test_too_slow) {
 END_TEST
 
 /* A camera at 90 Hz behind the drive: without its rate every reading would be late. */
+/* What the wire itself takes is refused before anything is tried. */
+START_TEST(test_wire_too_slow) {
+  ck_assert_int_eq(open_changed("transport = tcp", "transport = rtu\nbaud = 115200"), ETHD_E_RANGE);
+  ck_assert_msg(strstr(message, "bus.divisor: found 1, an exchange in 1 ms; its 2 messages take") &&
+                    strstr(message, "choose from 8, a faster line, or fewer registers"),
+                "%s", message);
+  mock_stop(&drive);
+}
+END_TEST
+
+/* A borrowed register counts only as far as does no harm, and still shows an answer of the exchange before. */
+START_TEST(test_small_counter) {
+  ck_assert_msg(open_changed("[register counter]  ", "[register counter]\nmax = 3\n#") == ETHD_OK, "%s", message);
+  ck_assert_int_eq(servo->start(device), ETHD_OK);
+  int seen = 0;
+  for (int i = 0; i < 40; i++) {
+    ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
+    ck_assert_uint_le(drive.words[MOCK_COUNTER], 3);
+    seen |= 1 << drive.words[MOCK_COUNTER];
+  }
+  ck_assert_int_eq(seen, 15);
+  spoil(2, MOCK_OLD, 0); /* under the same torque as before */
+  ck_assert_int_eq(tick(0.1, 0), ETHD_STALE);
+  ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
+  ck_assert_int_eq(sense.faults, ETHD_FAULT_BIT(ETHD_FAULT_REPLY_STALE));
+  close_device();
+}
+END_TEST
+
 START_TEST(test_camera) {
   static const struct {
     const char *key;
@@ -831,6 +874,8 @@ int main(void) {
   tcase_add_test(t, test_every);
   tcase_add_loop_test(t, test_divisors, 1, 21);
   tcase_add_test(t, test_too_slow);
+  tcase_add_test(t, test_wire_too_slow);
+  tcase_add_test(t, test_small_counter);
   tcase_add_test(t, test_camera);
   tcase_add_test(t, test_no_finger);
   tcase_add_test(t, test_unplugged);

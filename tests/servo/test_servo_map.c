@@ -75,20 +75,20 @@ START_TEST(test_wire) {
   read_map("apps/config/svd48v.map");
   ck_assert_msg(try(text) == ETHD_OK, "%s", message);
   ethd__servo_wire w = ethd__servo_wire_of(&map, 0);
-  ck_assert_uint_eq(w.questions, 3);
-  ck_assert_uint_eq(w.bytes, 13 + 8 + (8 + 9) + (8 + 13));
-  ck_assert_double_eq_tol(w.usual, 59 * byte + 3 * silence, 1e-12);
+  ck_assert_uint_eq(w.questions, 5);
+  ck_assert_uint_eq(w.bytes, 13 + 8 + (8 + 9) + (8 + 13) + 11 + 8 + (8 + 7)); /* and the counter, there and back */
+  ck_assert_double_eq_tol(w.usual, 93 * byte + 5 * silence, 1e-12);
   ck_assert_double_eq_tol(w.most, w.usual + (17 + 15) * byte + 2 * silence, 1e-12);
-  ck_assert_double_eq_tol(ethd__servo_wire_of(&map, 1e-4).usual, w.usual + 3e-4, 1e-12);
+  ck_assert_double_eq_tol(ethd__servo_wire_of(&map, 1e-4).usual, w.usual + 5e-4, 1e-12);
   map.turnaround = 2e-4;
-  ck_assert_double_eq_tol(ethd__servo_wire_of(&map, (double)NAN).usual, w.usual + 6e-4, 1e-12);
+  ck_assert_double_eq_tol(ethd__servo_wire_of(&map, (double)NAN).usual, w.usual + 10e-4, 1e-12);
   map.format = 1; /* parity */
-  ck_assert_double_eq_tol(ethd__servo_wire_of(&map, 0).usual, 59 * 1.1 * byte + 3 * silence, 1e-12);
+  ck_assert_double_eq_tol(ethd__servo_wire_of(&map, 0).usual, 93 * 1.1 * byte + 5 * silence, 1e-12);
   ck_assert_uint_eq(ethd__servo_divisor_for(2.2e-3, 1e-3), 3);
   ck_assert_uint_eq(ethd__servo_divisor_for(0.1e-3, 1e-3), 1);
   ck_assert_uint_eq(ethd__servo_divisor_for(1 / 1.1 * 4e-3, 1e-3), 4);
   /* the map's divisor holds what its wire takes, with turnarounds of 0.2 ms */
-  ck_assert_uint_ge(map.divisor, ethd__servo_divisor_for(w.most + 5 * 2e-4, 1e-3));
+  ck_assert_uint_ge(map.divisor, ethd__servo_divisor_for(w.most + 7 * 2e-4, 1e-3));
 }
 END_TEST
 
@@ -147,9 +147,9 @@ START_TEST(test_svd48v) {
   static const struct {
     const char *name;
     uint32_t address;
-  } known[] = {{"input", 0x3008},       {"mode1", 0x5100},     {"control2", 0x5301}, {"torque1", 0x5308},
-               {"torque2", 0x5309},     {"seen1", 0x5308},     {"seen2", 0x5309},    {"running1", 0x5400},
-               {"bus_voltage", 0x5408}, {"measured1", 0x5414}, {"position1", 0x5418}};
+  } known[] = {{"input", 0x3008},    {"mode1", 0x5100},       {"seen_mode1", 0x5100}, {"control2", 0x5301},
+               {"torque1", 0x5308},  {"torque2", 0x5309},     {"seen1", 0x5308},      {"seen2", 0x5309},
+               {"running1", 0x5400}, {"bus_voltage", 0x5408}, {"measured1", 0x5414},  {"position1", 0x5418}};
   uint32_t n = sizeof known / sizeof *known;
   read_map("apps/config/svd48v.map");
   ck_assert_msg(try(text) == ETHD_OK, "%s", message);
@@ -187,6 +187,8 @@ START_TEST(test_makers) {
   ck_assert_uint_eq(ethd__servo_unconfirmed(&map), 6);
   ck_assert(!named("torque1")->unconfirmed && named("control")->unconfirmed);
   ck_assert_ptr_nonnull(strstr(ethd__servo_risk(&map, 0), "no watchdog"));
+  /* 20 ms between messages: no exchange ends within the 25 ms that one may take */
+  ck_assert_double_ge(ethd__servo_wire_of(&map, (double)NAN).usual, 0.04);
 }
 END_TEST
 
@@ -269,6 +271,10 @@ START_TEST(test_register_refused) {
   refused_behind("[register control]", "type = u16", "type = u16\nevery = 2", "register control.every: only measured");
   refused_behind("[register status]", "fault_mask = 0x0001", "fault_mask = 1\nevery = 101", "register status.every");
   refused_behind("[register reading_count]", "type = u16", "type = u16\nrate = 0", "register reading_count.rate");
+  refused_behind("[register counter]", "type = u16", "type = u16\nmax = 0.5", "register counter.max: a counter counts");
+  refused_behind("[register position1]", "order = high-first", "order = high-first\nabsolute = maybe",
+                 "position1.absolute");
+  refused_behind("[register seen1]", "type = i16", "type = i16\nabsolute = yes", "only position1 and position2 can be");
   refused_behind("[register torque2]", "address = 2", "address = 1", "writes there too");
   refused_behind("[register status]", "fault_mask = 0x0001", "fault_mask = 0x10000", "is wider than the register");
   refused_behind("[register status]", "fault_mask = 0x0001", "fault_mask = 1\nhealthy = 2", "register status.healthy");
