@@ -120,7 +120,7 @@ static ethd_status open_servo(const ethd_setting *more, uint32_t count) {
   ethd_setting settings[8] = {{"map", "plant.map", 1}, {"port", drive.port, 2}};
   memcpy(settings + 2, more, count * sizeof *more);
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, 2 + count, folder, "d.ini"};
+  const ethd_device_def def = {&setup, settings, 2 + count, folder, "d.ini", 1};
   ethd_status status = servo->open(&def, &device, message);
   if (status && device) servo->close(device), device = NULL;
   virtual_ns = 0;
