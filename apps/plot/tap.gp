@@ -1,14 +1,15 @@
 # One tap, in the manner of the paper's figures 9 to 12.
 #   gnuplot -e "in='offset-high.csv'; out='offset-high.png'; title='offset, high speed'" tap.gp
-# in: a file of ethd-tap --trace. title, from, to (ms) may be left out; plant names the plant in the title,
-# empty: the tap was measured.
+# in: a file of ethd-tap --trace. title, from, to (ms), scale (of the picture) may be left out; plant names the plant
+# in the title, empty: the tap was measured.
 if (!exists("in") || !exists("out")) { print "tap.gp: set in and out: gnuplot -e \"in='x.csv'; out='x.png'\" tap.gp"; exit status 2 }
 if (!exists("title")) title = in
 if (!exists("plant")) plant = "n"
 if (!exists("from")) from = -40
 if (!exists("to")) to = 90
+if (!exists("scale")) scale = 1.0
 
-set terminal pngcairo size 1200,1300 font "Sans,15" background "#ffffff"
+set terminal pngcairo size 1200*scale,1300*scale font "Sans,15" fontscale scale linewidth scale background "#ffffff"
 set output out
 set datafile separator comma
 set datafile columnheaders
@@ -53,9 +54,11 @@ set ylabel "position along n, mm" offset 1.2
 set yrange [bottom:top]
 set object 1 rectangle from graph 0, first 0 to graph 1, graph 1 fc rgb "#f3f1ec" fs solid noborder behind
 set label 3 "virtual wall" at graph 0.012, first (top - 0.07*(top - bottom)) textcolor rgb grey font "Sans Italic,13"
+offset_style = moved_any ? 5 : 4 # where the wall didn't move, its line once more: a curve without a point is warned of
 plot in using (t(0)):(1e3*column("hand_m")) with lines ls 3 title "hand's path", \
      0 with lines ls 4 title "wall x_e", \
-     in using (t(0)):(1e3*column("offset_wall_m")) with lines ls 5 title (moved_any ? "wall x_{/Symbol e}" : ""), \
+     in using (t(0)):(moved_any ? 1e3*column("offset_wall_m") : 0) with lines ls offset_style \
+       title (moved_any ? "wall x_{/Symbol e}" : ""), \
      in using (t(0)):(1e3*column("finger_m")) with lines ls 2 title "finger's pad", \
      in using (t(0)):(1e3*column("ring_m")) with lines ls 1 title "ring's front"
 unset object 1
