@@ -1,13 +1,13 @@
 /* Path data. Points are in user units until they are drawn. */
 #include <ctype.h>
 #include <math.h>
+#include <search.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "ethd/maths.h"
 #include "svg/svg_parts.h"
 
-#define CLOSED_MAX 10000 /* closed parts of a filled path */
 #define TURN 6.28318530717958647692
 
 /* Of a closed part that is filled. */
@@ -199,23 +199,64 @@ static box box_of(const ethd__drawing *d, const ethd__drawn *o) {
   return b;
 }
 
+/* Where a box begins or ends in x. */
+typedef struct edge {
+  double x;
+  const box *of;
+  bool ends;
+} edge;
+
+/* What touches has begun before the other ends. */
+static int by_x(const void *a, const void *b) {
+  const edge *p = a, *q = b;
+  if (p->x != q->x) return p->x < q->x ? -1 : 1;
+  return (int)p->ends - (int)q->ends;
+}
+
+/* Boxes that share a height are equal here. */
+static int by_y(const void *a, const void *b) {
+  const box *p = a, *q = b;
+  return p->y_max < q->y_min ? -1 : p->y_min > q->y_max;
+}
+
+static void keep(void *of) { (void)of; }
+
+/* From left to right, with a tree of the boxes that have begun and not ended: they lie apart in height, or two overlap.
+   True without memory. */
+static bool any_overlap(edge *edges, size_t count) {
+  void *tree = NULL;
+  bool overlap = false;
+  qsort(edges, count, sizeof *edges, by_x);
+  for (size_t i = 0; i < count && !overlap; i++) {
+    if (edges[i].ends) {
+      tdelete(edges[i].of, &tree, by_y);
+    } else {
+      const box **there = tsearch(edges[i].of, &tree, by_y);
+      overlap = !there || *there != edges[i].of;
+    }
+  }
+  tdestroy(tree, keep);
+  return overlap;
+}
+
 /* Parts of one filled path that lie side by side are solids of their own; else one may be a hole. */
 static bool may_have_holes(const path *q) {
   const ethd__drawing *d = q->d;
   size_t n = 0, count = d->object_count - q->objects;
   if (!q->filled || count < 2 || d->status) return false;
-  if (count > CLOSED_MAX) return true;
   box *boxes = malloc(count * sizeof *boxes);
-  bool holes = !boxes;
-  for (size_t i = 0; boxes && i < count; i++) {
+  edge *edges = malloc(2 * count * sizeof *edges);
+  for (size_t i = 0; boxes && edges && i < count; i++) {
     const ethd__drawn *o = &d->objects[q->objects + i];
     if (o->shape != ETHD_POLYGON) continue;
-    box a = boxes[n++] = box_of(d, o);
-    for (size_t k = 0; k + 1 < n; k++)
-      holes |= a.x_min <= boxes[k].x_max && boxes[k].x_min <= a.x_max && a.y_min <= boxes[k].y_max &&
-               boxes[k].y_min <= a.y_max;
+    boxes[n] = box_of(d, o);
+    edges[2 * n] = (edge){boxes[n].x_min, &boxes[n], false};
+    edges[2 * n + 1] = (edge){boxes[n].x_max, &boxes[n], true};
+    n++;
   }
+  bool holes = !boxes || !edges || any_overlap(edges, 2 * n);
   free(boxes);
+  free(edges);
   return holes;
 }
 

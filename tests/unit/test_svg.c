@@ -2,12 +2,14 @@
    drawings broken at random. ETHD_FUZZ: so many of those. */
 #include <check.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
 #include "settings/scene_file.h"
+#include "sim/random.h"
 #include "svg/svg.h"
 #include "unit/mutate.h"
 #include "unit/rig.h"
@@ -390,6 +392,34 @@ START_TEST(test_broken_drawings) {
 }
 END_TEST
 
+/* Parts of a path that touch or overlap are refused, all others are taken: every pair is looked at here. */
+START_TEST(test_parts_that_overlap) {
+  int taken = 0;
+  for (uint64_t i = 0; i < 3000; i++) {
+    char text[1024] = OPEN "<path d='";
+    int n = 2 + (int)(i % 6), corner[7][4];
+    bool overlap = false;
+    for (int k = 0; k < n; k++) {
+      int *b = corner[k];
+      for (int c = 0; c < 2; c++) {
+        b[c] = (int)(12 * ethd__uniform((ethd__key){i, (uint64_t)k}, (uint32_t)c, 0));
+        b[c + 2] = b[c] + 1 + (int)(3 * ethd__uniform((ethd__key){i, (uint64_t)k}, (uint32_t)c, 1));
+      }
+      for (int j = 0; j < k; j++)
+        overlap |= b[0] <= corner[j][2] && corner[j][0] <= b[2] && b[1] <= corner[j][3] && corner[j][1] <= b[3];
+      snprintf(text + strlen(text), sizeof text - strlen(text), "M%d %dH%dV%dH%dz", b[0], b[1], b[2], b[3], b[0]);
+    }
+    strcat(text, "'/>" CLOSE);
+    ethd_scene *scene;
+    ethd_status status = ethd_svg_parse(text, strlen(text), "t.svg", &options, &scene, &notes, message);
+    ck_assert_msg((status < 0) == overlap, "%s: %s", text, message);
+    taken += !overlap;
+    ethd_scene_destroy(scene);
+  }
+  ck_assert(taken > 500 && taken < 2500);
+}
+END_TEST
+
 /* A drawing of n points; CPU time of the best of three, s. */
 static double time_of(int n) {
   char *text;
@@ -400,6 +430,8 @@ static double time_of(int n) {
   for (int i = 0; i < n; i++) fprintf(out, "%d.%d,%d ", i % 97, i % 10, i % 43);
   fputs("\"/><path fill=\"none\" d=\"M0 0", out);
   for (int i = 0; i < n; i++) fprintf(out, "L%d %d.5", i % 89, i % 47);
+  fputs("\"/><path d=\"", out); /* a stack of closed parts, which may be each other's holes */
+  for (int i = 0; i < n / 4; i++) fprintf(out, "M0 %d.5h1v.25h-1z", i);
   fputs("\"/>" CLOSE, out);
   fclose(out);
   for (int i = 0; i < 3; i++) {
@@ -432,6 +464,7 @@ int main(void) {
   tcase_add_test(all, test_depth);
   tcase_add_test(all, test_print);
   tcase_add_test(all, test_broken_drawings);
+  tcase_add_test(all, test_parts_that_overlap);
   tcase_add_test(all, test_time_is_linear);
   suite_add_tcase(suite, all);
   return rig_run(suite);
