@@ -135,6 +135,32 @@ trace 'time stands still' 'bad.csv:3: t_s: ' "$names\n0$row\n0$row\n"
 trace 'time runs back' 'bad.csv:4: t_s: ' "$names\n0$row\n2$row\n1$row\n"
 trace 'time is NaN' 'bad.csv:3: t_s: ' "$names\n0$row\nnan$row\n"
 
+# ---- an output that is an input ----
+cp "$folder/good.csv" "$folder/bad.csv"
+same() { # PATTERN COMMAND...
+  pattern=$1
+  shift
+  "$@" >"$folder/stdout" 2>"$folder/stderr"
+  [ $? = 2 ] && grep -q -e "$pattern" "$folder/stderr" || fail "$*: $(cat "$folder/stderr")"
+  cmp "$folder/good.csv" "$folder/bad.csv" || fail "$*: its input was written over"
+}
+ln -s bad.csv "$folder/bad.link"
+same 'out: .*bad.csv is the file of --in' "$bin/ethd-replay" --in "$folder/bad.csv" --out "$folder/bad.csv"
+same 'out: .*bad.link is the file of --in' "$bin/ethd-replay" --in "$folder/bad.csv" --out "$folder/bad.link"
+cp "$folder/good.scene" "$folder/bad.scene"
+"$bin/ethd-scene" convert --in "$folder/bad.scene" --out "$folder/bad.scene" >"$folder/stdout" 2>"$folder/stderr"
+[ $? = 2 ] && grep -q 'out: .*bad.scene is the file of --in' "$folder/stderr" || fail "ethd-scene: $(cat "$folder/stderr")"
+awk 'BEGIN { print "t_s,x_m,y_m"; for (i = 0; i < 120; i++) { t = i / 200; printf "%.4f,%.6f,0\n", t, 0.1 * cos(5 * t) } }' >"$folder/bad.csv"
+cp "$folder/bad.csv" "$folder/bad.before"
+for option in --csv --record --trace; do
+  "$bin/ethd-tap" --taps 1 --speed 0.2 --finger "$folder/bad.csv" $option "$folder$([ $option != --csv ] || echo /bad.csv)" --force >"$folder/stdout" 2>"$folder/stderr"
+  code=$?
+  [ $option = --record ] || [ $code = 2 ] || fail "ethd-tap $option over its finger: exit $code: $(cat "$folder/stderr")"
+  cmp "$folder/bad.csv" "$folder/bad.before" || fail "ethd-tap $option: its finger was written over"
+done
+rm -f "$folder"/tick.npy "$folder"/truth.npy "$folder"/taps.csv "$folder"/config.ini "$folder"/scene.scene "$folder"/events.csv
+rm -f "$folder/bad.csv" "$folder/bad.link" "$folder/bad.before"
+
 # ---- movements ----
 finger() { # WHAT PATTERN TEXT
   printf "$3" >"$folder/bad.csv"
