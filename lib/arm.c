@@ -7,7 +7,7 @@
 #include "ethd/maths.h"
 #include "maths/two_waves.h"
 
-/* What an arm is; to add one, write its row and its name in ethd_mechanism. */
+/* What differs from arm to arm. A new one gets a row here and a name in ethd_mechanism. */
 typedef struct arm_row {
   const char *name;
   void (*pose)(const ethd_arm *arm, const double q[2], ethd_pose *out) ETHD_RT;
@@ -44,7 +44,7 @@ static void invert(const double j[4], double w0, double out[4]) {
 
 /* ---- two links ---- */
 
-/* From the link vectors a and b; the second link turns with the first joint where q2 is relative. */
+/* a and b are the links as vectors, at their angles from the x axis. Where q2 is relative, link 2 turns with joint 1. */
 static inline void pose_of_links(const ethd_arm *arm, two angles, bool relative, ethd_pose *out) {
   two_waves w = two_sincos(angles);
   ethd_vec a = {arm->link1 * w.cosine[0], arm->link1 * w.sine[0]};
@@ -62,14 +62,14 @@ static void links_reach(const ethd_arm *arm, double *inner, double *outer) {
   *outer = arm->link1 + arm->link2;
 }
 
-/* To (-pi, pi], for |a| < 3 pi. */
+/* Brings an angle, |a| < 3 pi, to (-pi, pi]. */
 static double wrap(double a) {
   if (a > M_PI) a -= 2 * M_PI;
   if (a <= -M_PI) a += 2 * M_PI;
   return a;
 }
 
-/* The angle of link 1, and th from it to link 2. r^2 = L1^2 + L2^2 + 2 L1 L2 cos th, so
+/* q1 is the angle of link 1, th the angle from it to link 2. r^2 = L1^2 + L2^2 + 2 L1 L2 cos th, so
      4 L1 L2 sin^2(th/2) = outer^2 - r^2,   4 L1 L2 cos^2(th/2) = r^2 - inner^2:
    both factors keep their digits at the ends of the reach, where acos would lose half of them. */
 static ethd_status links_angles(const ethd_arm *arm, ethd_vec x, int elbow, double *q1, double *th) {
@@ -79,7 +79,7 @@ static ethd_status links_angles(const ethd_arm *arm, ethd_vec x, int elbow, doub
   double s = sqrt((outer - r) * (outer + r)), c = sqrt((r - inner) * (r + inner));
   double side = elbow < 0 ? -1 : 1;
   *th = side * 2 * ethd_atan2(s, c);
-  /* The ring's centre across and along link 1, both times 2 L1. */
+  /* side s c and along are where the ring's centre lies across and along link 1, both times 2 L1. */
   double along = r * r + arm->link1 * arm->link1 - arm->link2 * arm->link2;
   *q1 = ethd_atan2(x.y, x.x) - ethd_atan2(side * s * c, along);
   return ETHD_OK;

@@ -21,7 +21,7 @@ static bool is_name(const char *name) {
   return n >= 1 && n <= NAME_MAX_LENGTH;
 }
 
-/* The end of the first of the words joined by '|'. */
+/* Words are joined by '|'; returns the end of the first one. */
 static const char *word_end(const char *words) {
   while (*words && *words != '|') words++;
   return words;

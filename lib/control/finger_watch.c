@@ -3,15 +3,19 @@
 
 #include "control/rows.h"
 
-#define FADE 0.020        /* s in which tracking fades out and in */
-#define IMPLAUSIBLE_MAX 5 /* in a row */
+/* s in which tracking fades out and in: as long as a swap of laws takes by default (transition.swap_time). */
+#define FADE 0.020
+
+/* Implausible readings in a row that stop the device: as many as make the filter start anew (ETHD_FILTER_GATED_MAX). The
+   proximity ring, at 300 Hz, takes 17 ms for them. */
+#define IMPLAUSIBLE_MAX 5
 
 /* The age counts from the sample's instant: a reading's latency is part of it. The half nanosecond keeps a reading
    that is exactly as old as the limit on its side of it. */
 void ethd__finger_watch(const ethd__tick *t) {
   const ethd_limits *limits = &t->plan->setup.limits;
   ethd__state *state = t->state;
-  if (state->filter.used == 0) return; /* no reading was ever used */
+  if (state->filter.used == 0) return; /* no finger was seen yet, so none can be lost */
   double age = 1e-9 * ((double)((uint64_t)t->sense->time_ns - (uint64_t)state->reading_ns) - 0.5);
   bool old = !(age <= limits->finger_age);
   if (old) ethd__note(state, ETHD_FAULT_FINGER_OLD);

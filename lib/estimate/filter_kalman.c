@@ -1,5 +1,5 @@
-/* Kalman filters of position, velocity and acceleration; cv is the same with an acceleration that is 0
-   and known to be. P = [xx xv xa; . vv va; . . aa], z = x + noise. */
+/* Kalman filters of position, velocity and acceleration, with one covariance for both axes. cv is the same filter with an
+   acceleration that is known to be 0. P = [xx xv xa; . vv va; . . aa], z = x + noise. */
 #include "estimate/filter_methods.h"
 
 enum { XX, XV, XA, VV, VA, AA };

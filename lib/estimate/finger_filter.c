@@ -5,7 +5,7 @@
 
 #include "estimate/filter_methods.h"
 
-/* Variances of what a filter starts from, of each axis. An acceleration is known to be 0 but in `ca`. */
+/* How far off a filter's start may be: variances of each axis. Only ca doubts that the acceleration is 0. */
 typedef struct doubt {
   double x, v, a; /* m^2, m^2/s^2, m^2/s^4 */
 } doubt;
@@ -21,13 +21,13 @@ static void begin(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, ethd_v
 }
 
 void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, ethd_vec v) {
-  begin(filter, state, x, v, (doubt){1e-6, 1e-4, 1});
+  begin(filter, state, x, v, (doubt){1e-6, 1e-4, 1}); /* sd 1 mm, 1 cm/s, 1 m/s^2: the start is known */
   state->age = filter->compensation == ETHD_COMPENSATION_STAMP ? -filter->p[FILTER_LATENCY] : INFINITY;
 }
 
 static void start_from_reading(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, double age) {
   double noise = ethd__filter_is_kalman(f) ? f->p[FILTER_NOISE] : 0;
-  begin(f, s, x, (ethd_vec){0, 0}, (doubt){noise * noise, 1, 100});
+  begin(f, s, x, (ethd_vec){0, 0}, (doubt){noise * noise, 1, 100}); /* sd 1 m/s, 10 m/s^2: a finger in full motion */
   s->age = age;
   s->used++;
 }

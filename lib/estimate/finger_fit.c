@@ -24,8 +24,8 @@ static void collect(const ethd_fit *fit, const double r[ETHD_RAYS], ethd__points
   out->used = ethd__points_used(out->counts);
 }
 
-/* From e = |p - c|^2 - R_f^2, small wherever the finger is what it is said to be, so that the variance
-   keeps its digits. */
+/* Radius and residual by e = |p - c|^2 - R_f^2, which is small where the finger is as thick as it is said to be; the
+   variance of small numbers keeps its digits. */
 static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec centre, ethd_finger *out) {
   double square = fit->finger_radius * fit->finger_radius, n = ethd__count(points->used);
   two sum = {0, 0}, sum2 = {0, 0};

@@ -1,7 +1,7 @@
 /* Circles through points: least squares of |p - c|^2 - R^2, radius sought or known.
 
-   All of it stands in the moments of u = p - origin: one pass over the points, then any number of
-   steps, for a shift of the origin by s needs the moments only:
+   Everything is worked out from the moments of u = p - origin. They take one pass over the points; after that any number
+   of steps is cheap, for moving the origin by s needs no point again:
 
      sum |u - s|^2 (u - s) = sum |u|^2 u - 2 sum u u^T s + |s|^2 sum u - s sum |u - s|^2            */
 #include <math.h>
@@ -9,8 +9,8 @@
 
 #include "estimate/fit_methods.h"
 
-#define SHORT 1e-4 /* of the squared radius: squared steps that leave 1/20000 of the radius */
-#define FLAT 1e-9  /* determinant over squared trace under which points count as collinear */
+#define SHORT 1e-4 /* squared step over squared radius under which a fit is done: 1/20000 of the radius is left then */
+#define FLAT 1e-9  /* determinant over squared trace under which the points count as on one line */
 
 typedef struct moments {
   double n, x, y, xx, xy, yy, zx, zy; /* z = |u|^2 */
@@ -29,7 +29,7 @@ static inline void shift(moments *m, ethd_vec s) {
   m->zy = o.zy - 2 * (o.xy * s.x + o.yy * s.y) + ss * o.y - s.y * z;
 }
 
-/* sum u u^T s = (g, h); false for points on one line, and for fewer than two. */
+/* Solves sum u u^T s = (g, h) for s; false: the points lie on one line, or are fewer than two. */
 static inline bool solve(const moments *m, double g, double h, ethd_vec *s) {
   double det = m->xx * m->yy - m->xy * m->xy, trace = m->xx + m->yy;
   if (!(det > FLAT * trace * trace)) return false;
@@ -38,7 +38,7 @@ static inline bool solve(const moments *m, double g, double h, ethd_vec *s) {
   return true;
 }
 
-/* Of the points that count, about `origin`. */
+/* The moments of the points that count, about `origin`. */
 static inline moments of(const ethd__points *points, ethd_vec origin) {
   two x = {0, 0}, y = x, xx = x, xy = x, yy = x, zx = x, zy = x;
   for (int i = 0; i < ETHD__PAIRS; i++) {
@@ -91,10 +91,10 @@ static inline bool step(moments *m, double radius, ethd_vec *centre, double *mov
   return true;
 }
 
-/* (|u|^2 - R^2) / (2 R) is |u| - R nearly. */
+/* How far |u|^2 - R^2 may be from 0; divided by 2 R that is nearly |u| - R, which the gate is about. */
 static inline double gate(const ethd_fit *fit) { return 2 * fit->finger_radius * fit->p[ROBUST_GATE]; }
 
-/* One more point, or with sign -1 one less. */
+/* Adds a point to the moments, or with sign -1 takes it out. */
 static inline void add(moments *m, double sign, ethd_vec u) {
   double z = ethd_vec_dot(u, u), x = sign * u.x, y = sign * u.y;
   m->n += sign;
@@ -107,8 +107,8 @@ static inline void add(moments *m, double sign, ethd_vec u) {
   m->zy += z * y;
 }
 
-/* Leaves out those beyond the gate among the rays that are `there`; false: they stay the same. The moments,
-   about the centre, follow: by the one point that comes or goes, or anew. */
+/* Chooses anew, of the rays that are `there`, those within the gate; false: they are the same as before. The moments about
+   the centre follow: by the one point that came or went, else by another pass. */
 static inline bool choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS], ethd__points *points, ethd_vec centre,
                           moments *m) {
   double square = fit->finger_radius * fit->finger_radius, most = gate(fit);
@@ -127,8 +127,8 @@ static inline bool choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS]
   return true;
 }
 
-/* Kasa's centre is a start if it is a finger's: within the ring, the radius within the gate. Few rays or
-   an outlier make others; the ring's middle, and a step from there, is never far. */
+/* Starts from Kasa's circle if it can be a finger: within the ring, and of the right radius within the gate. Few rays or an
+   outlier may give another circle; then a step from the ring's middle, which is never far off, is the start. */
 static inline bool start(const ethd_fit *fit, const ethd__points *points, moments *m, ethd_vec *centre) {
   moments all = of(points, (ethd_vec){0, 0});
   double square = fit->finger_radius * fit->finger_radius, gap = fit->ring_radius - fit->finger_radius;
@@ -142,8 +142,8 @@ static inline bool start(const ethd_fit *fit, const ethd__points *points, moment
   return step(m, fit->finger_radius, centre, &moved);
 }
 
-/* A step with all points first, so that an outlier's pull on the start doesn't gate good ones. A step of s
-   leaves |s|^2 / 2 R: short ones by the same points end it. */
+/* The first step uses all points, so that an outlier that has pulled the start doesn't gate good ones. A step s leaves an
+   error of |s|^2 / 2 R, so a short one by the same points is the last. */
 bool ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
   two_bits there[ETHD__PAIRS];
   double radius = fit->finger_radius, moved = 0;

@@ -7,17 +7,17 @@
 #include "ethd/finger_fit.h"
 #include "maths/two.h"
 
-/* Rows of robust's table. */
+/* Rows of the table of the robust fit. */
 enum { ROBUST_GATE };
 
 enum { ETHD__PAIRS = ETHD_RAYS / 2 };
 
-/* Where the rays met the finger, relative to the ring's centre: rays 2 i and 2 i + 1 in the i-th pair. A
-   fit takes rays out of `counts` and `used`. */
+/* Where the rays met the finger, relative to the ring's centre; pair i holds rays 2 i and 2 i + 1. A fit that drops a ray
+   clears it in `counts` and `used`. */
 typedef struct ethd__points {
-  two x[ETHD__PAIRS], y[ETHD__PAIRS]; /* 0 where there is none */
-  two_bits counts[ETHD__PAIRS];       /* all bits, or none */
-  uint32_t used;                      /* bits of the rays that count */
+  two x[ETHD__PAIRS], y[ETHD__PAIRS]; /* 0 where a ray met nothing */
+  two_bits counts[ETHD__PAIRS];       /* all bits of a ray that counts, else none */
+  uint32_t used;                      /* bit k: ray k counts */
 } ethd__points;
 
 static inline ethd_vec ethd__point(const ethd__points *points, int ray) {
@@ -30,8 +30,8 @@ bool ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centr
 bool ethd__fit_vertex_mean(const ethd__points *points, ethd_vec *centre) ETHD_RT;
 bool ethd__fit_centroid(const ethd__points *points, ethd_vec *centre) ETHD_RT;
 
-/* As ethd_fit_step, ray k measured lag[k] s before the others' common instant by a finger that moved at v
-   m/s relative to the ring: its point is carried on by as much. [rt] */
+/* As ethd_fit_step, for rays that weren't measured at one instant: ray k was lag[k] s early. The finger moves at v m/s
+   relative to the ring, so each point is carried on by v lag[k]. [rt] */
 ethd_status ethd__fit_moving(const ethd_fit *fit, const double r[ETHD_RAYS], const double lag[ETHD_RAYS], ethd_vec v,
                              ethd_finger *out) ETHD_RT;
 
@@ -41,7 +41,7 @@ static inline uint32_t ethd__points_used(const two_bits counts[ETHD__PAIRS]) {
   return (uint32_t)(used[0] | used[1]);
 }
 
-/* How many of 16 bits are set: in pairs, fours, eights. */
+/* How many of 16 bits are set; summed up in pairs, fours and eights. */
 static inline double ethd__count(uint32_t bits) {
   bits -= bits >> 1 & 0x5555;
   bits = (bits & 0x3333) + (bits >> 2 & 0x3333);

@@ -1,9 +1,9 @@
-/* Centres of the polygon whose vertices are the points. */
+/* Two centres of the polygon whose vertices are the points: the mean of the vertices, and the centroid of the area. */
 #include <math.h>
 
 #include "estimate/fit_methods.h"
 
-#define SLIM 1e-9 /* area over squared size under which a polygon has none */
+#define SLIM 1e-9 /* area over squared size under which a polygon counts as a line */
 
 bool ethd__fit_vertex_mean(const ethd__points *points, ethd_vec *centre) {
   double count = ethd__count(points->used);
@@ -14,7 +14,7 @@ bool ethd__fit_vertex_mean(const ethd__points *points, ethd_vec *centre) {
   return true;
 }
 
-/* As a fan of triangles (0, u, w) from the first vertex: centroids (u + w) / 3, areas u x w / 2. */
+/* The polygon is a fan of triangles (0, u, w) from its first vertex, each with centroid (u + w) / 3 and area u x w / 2. */
 bool ethd__fit_centroid(const ethd__points *points, ethd_vec *centre) {
   double area = 0, size = 0;
   ethd_vec sum = {0, 0}, u = {0, 0};

@@ -4,7 +4,7 @@
      Q = acceleration^2 (dt^2 / 2, dt)(dt^2 / 2, dt)^T,  z = q + noise                               */
 #include "estimate/velocity_methods.h"
 
-#define SPEED_VARIANCE 1.0 /* rad^2/s^2: of the speed that the filter starts from */
+#define SPEED_VARIANCE 1.0 /* rad^2/s^2: how well the speed is known at the start, sd 1 rad/s */
 
 static void start(const ethd_velocity *v, ethd_velocity_state *s) {
   double noise = v->p[VELOCITY_NOISE];

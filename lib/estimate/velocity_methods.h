@@ -4,13 +4,13 @@
 
 #include "ethd/velocity.h"
 
-/* Rows of the methods' tables. */
+/* Rows of the methods' tables; the last are kalman's. */
 enum { LOWPASS_CUTOFF };
 enum { LSQ_WINDOW };
 enum { FOAW_WINDOW, FOAW_NOISE };
 enum { VELOCITY_NOISE, VELOCITY_ACCELERATION, VELOCITY_INERTIA };
 
-/* Index of the sample i before the newest, i < count. */
+/* Where the i-th sample before the newest stands, i < count. */
 static inline uint32_t ethd__velocity_back(const ethd_velocity_state *s, uint32_t i) {
   return (s->head - i) & (ETHD_VELOCITY_WINDOW_MAX - 1);
 }
@@ -18,7 +18,7 @@ static inline uint32_t ethd__velocity_back(const ethd_velocity_state *s, uint32_
 /* a = 1 - exp(-2 pi cutoff dt). [any, rt-safe] */
 double ethd__velocity_gain(double cutoff, double dt) ETHD_RT;
 
-/* Speed with the newest sample in the ring, count >= 2 (kalman: >= 1). [rt] */
+/* The speed, once the newest sample is in the ring; count >= 2, for kalman >= 1. [rt] */
 double ethd__velocity_lsq(const ethd_velocity *v, const ethd_velocity_state *s) ETHD_RT;
 double ethd__velocity_foaw(const ethd_velocity *v, const ethd_velocity_state *s) ETHD_RT;
 double ethd__velocity_kalman(const ethd_velocity *v, ethd_velocity_state *s, double torque) ETHD_RT;

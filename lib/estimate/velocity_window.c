@@ -3,8 +3,8 @@
 
 #include "estimate/velocity_methods.h"
 
-/* Sums over samples with age t behind the newest and position y relative to it, so that neither the
-   clock nor the position's size costs digits; the newest itself adds nothing but n. */
+/* Sums over samples, each with its age t and its position y relative to the newest sample. So neither the clock nor
+   the position's size costs digits, and the newest itself adds nothing but n. */
 typedef struct line {
   double n, t, tt, y, ty;
 } line;
@@ -17,7 +17,7 @@ static void line_add(line *l, double t, double y) {
   l->ty += t * y;
 }
 
-/* Ages run backwards: the slope's sign turns. */
+/* The slope over time; ages run backwards, so its sign is turned. */
 static double line_slope(const line *l) { return (l->t * l->y - l->n * l->ty) / (l->n * l->tt - l->t * l->t); }
 
 static uint32_t samples(const ethd_velocity *v, const ethd_velocity_state *s) {
@@ -35,7 +35,7 @@ double ethd__velocity_lsq(const ethd_velocity *v, const ethd_velocity_state *s) 
 }
 
 /* A line through the newest sample passes within `noise` of the sample at age t iff its slope lies in
-   (rise -+ noise) / t. [low, high] is what the samples so far leave, so one look at each is enough. */
+   (rise -+ noise) / t. [low, high] are the slopes that all samples so far allow, so each sample is looked at once. */
 double ethd__velocity_foaw(const ethd_velocity *v, const ethd_velocity_state *s) {
   double noise = v->p[FOAW_NOISE];
   line l = {.n = 1};

@@ -15,7 +15,7 @@ static inline double ethd__beta(double beta_min, double d_beta, double d) ETHD_R
   return beta_min;
 }
 
-/* The row that smooth and offset share. */
+/* The parameter that smooth and offset have in common. */
 #define ETHD__BETA_MIN_PARAM {"beta_min", "1", 0, 1, 0.1, "share of tracking that is left at the wall (beta_min)"}
 
 #endif

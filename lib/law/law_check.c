@@ -4,7 +4,7 @@
 #include "error.h"
 #include "ethd/law.h"
 
-/* The smallest size of a law's struct in ABI 0, by kind. */
+/* The size that a law's struct has at least in ABI 0, by kind. */
 static const size_t smallest[] = {ETHD_TRACKING_LAW_MIN, ETHD_CONTACT_LAW_MIN, ETHD_TRANSITION_LAW_MIN};
 
 static bool id_is_good(const char *id) {
@@ -21,7 +21,7 @@ static bool has_step(const ethd_law *law) {
   return false;
 }
 
-/* ABI first: nothing behind it can be trusted when it differs. */
+/* The ABI comes first: when it differs, nothing behind it can be trusted. */
 ethd_status ethd_law_check(const ethd_law *law, ethd_error *error) {
   if (!law) return ethd__error(error, ETHD_E_ARGUMENT, "law");
   if (law->abi != ETHD_ABI) return ethd__refuse(error, ETHD_E_ABI, "abi", (ethd__found){law->abi, ETHD_ABI, ETHD_ABI});

@@ -32,7 +32,7 @@ static ethd_status check_entry(const ethd_plugin_entry *entry, ethd_error *error
 
 ethd_status ethd_plugin_open(const char *path, const ethd_plugin_entry **out, ethd_error *error) {
   *out = NULL;
-  if (!path || !path[0]) return ethd__error(error, ETHD_E_LOAD, "path"); /* dlopen would give the program */
+  if (!path || !path[0]) return ethd__error(error, ETHD_E_LOAD, "path"); /* dlopen would open the program itself */
   void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
   if (!handle) return ethd__error(error, ETHD_E_LOAD, path);
   const ethd_plugin_entry *entry = dlsym(handle, "ethd_plugin");

@@ -2,7 +2,7 @@
 
 #include <stdbool.h>
 
-/* Either tracking or the wall: the baseline that the paper names. */
+/* Tracking outside the wall, the wall inside, nothing between: the baseline that the paper compares with. */
 
 static ethd_status step(const double *p, void *block, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
   (void)p, (void)block;

@@ -22,13 +22,13 @@ static const ethd_param params[COUNT] = {
 
 typedef struct offset_state {
   double phase;        /* ETHD_TRANSPARENT, ETHD_BRAKING, ETHD_VO */
-  double eps;          /* wall offset, 0 outside of vo */
-  double braked, rest; /* s since braking began, and what its sum still owes (Kahan 1965) */
+  double eps;          /* m, offset of the wall; 0 in any phase but vo */
+  double braked, rest; /* s since braking began, and the rounding that its sum still owes (Kahan 1965) */
 } offset_state;
 
 _Static_assert(sizeof(offset_state) <= ETHD_STATE_MAX, "state");
 
-/* Periods add up to t_max only within rounding. */
+/* s: periods add up to t_max only within rounding. */
 #define TIME_TOLERANCE 1e-9
 
 static void enter(offset_state *s, int phase, double eps) ETHD_RT {
@@ -37,7 +37,7 @@ static void enter(offset_state *s, int phase, double eps) ETHD_RT {
   s->braked = s->rest = 0;
 }
 
-/* A sum of any length, right within a rounding. */
+/* Adds a period; the sum of any number of them is right within one rounding. */
 static void add_time(offset_state *s, double period) ETHD_RT {
   double term = period - s->rest, sum = s->braked + term;
   s->rest = sum - s->braked - term;

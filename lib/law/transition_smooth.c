@@ -1,6 +1,6 @@
 #include "law/beta.h"
 
-/* VO-A (Gonzalez et al. 2015a; eq. 3, 4): tracking fades as the finger nears the wall. No state. */
+/* VO-A (Gonzalez et al. 2015a; eq. 3, 4): tracking fades as the finger nears the wall. It has no state. */
 
 enum { BETA_MIN, COUNT };
 

@@ -2,8 +2,8 @@
 
      atan q = atan c + atan t,  t = (low - c high)/(high + c low),  |t| <= 1/16.
 
-   t is kept to some 70 bits: numerator and denominator are exact (c has three bits), and the quotient is
-   a short one, times the denominator exact, plus the remainder's.
+   t is kept to some 70 bits. Numerator and denominator are exact, for c has three bits; the quotient is a short one, whose
+   product with the denominator is exact, plus what the remainder gives.
 
    Coefficients: (atan(t)/t - 1)/z, z = t^2, interpolated with 80 digits at the zeros of a Chebyshev
    polynomial stretched so that its first zero lies on z = 0 and its range ends at 1/16^2, then rounded.
@@ -31,7 +31,7 @@ static const pair atan_eighths[9] = {
     {0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55},
 };
 
-/* t = hi + lo with hi of 16 bits. */
+/* t = hi + lo, where hi has 16 bits. */
 static pair quotient(double low, double high, double c) {
   double l1 = head(low, 27), l2 = low - l1, h1 = head(high, 27), h2 = high - h1;
   pair a = sum(low - c * h1, -c * h2);

@@ -1,5 +1,5 @@
 /* The bits of a double, and sums and products whose rounding error is kept (Dekker 1971, Knuth 4.2.2).
-   Splitting by mask instead of fma(): the same bits with and without FMA. */
+   Doubles are split by masks, not by fma(), so that machines with and without FMA give the same bits. */
 #ifndef ETHD_MATHS_DOUBLE_H
 #define ETHD_MATHS_DOUBLE_H
 
@@ -7,10 +7,10 @@
 #include <stdint.h>
 #include <string.h>
 
-/* 16: as 0, on CPUs with half-precision arithmetic. */
+/* 16 is what CPUs with half-precision arithmetic say; for doubles it means 0. */
 _Static_assert(FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 16, "excess precision would change the bits");
 
-/* hi + lo, unevaluated; |lo| <= ulp(hi)/2 unless said otherwise. */
+/* The number hi + lo, kept as two; |lo| <= ulp(hi)/2 unless said otherwise. */
 typedef struct pair {
   double hi, lo;
 } pair;
@@ -48,7 +48,7 @@ static inline pair sum(double a, double b) {
   return (pair){s, (a - (s - t)) + (b - t)};
 }
 
-/* a b, to 2^-105 of it. */
+/* a b, within 2^-105 of it. */
 static inline pair product(double a, double b) {
   double p = a * b, a1 = head(a, 27), b1 = head(b, 27), a2 = a - a1, b2 = b - b1;
   return (pair){p, (((a1 * b1 - p) + a1 * b2) + a2 * b1) + a2 * b2};

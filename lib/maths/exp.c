@@ -15,7 +15,7 @@
 
 #include "maths/double.h"
 
-/* 2^(j/16); the last row serves log. */
+/* 2^(j/16); only log needs the last row. */
 static const pair root[17] = {
     {0x1.0000000000000p+0, 0},
     {0x1.0b5586cf9890fp+0, 0x1.8a62e4adc610bp-54},
@@ -36,7 +36,7 @@ static const pair root[17] = {
     {0x1.0000000000000p+1, 0},
 };
 
-/* ln 2 / 16: n times the first part (37 bits) is exact for every n in use. */
+/* ln 2 / 16; the first part has 37 bits, so that n times it is exact for every n in use. */
 static const pair step = {0x1.62e42fefap-5, 0x1.cf79abc9e3b3ap-44};
 
 /* e^x = (m.hi + m.lo) 2^k, 1 <= m.hi < 2, |m.lo| < 0.022 m.hi. */
@@ -107,7 +107,7 @@ static double tanh_small(double x) {
   return x + x * z * p;
 }
 
-/* The quotient's first 26 bits times the denominator's are exact; the remainder gives the rest. */
+/* The quotient's first 26 bits times the denominator's first 26 are exact; what remains gives the rest. */
 static double tanh_large(double x) {
   power e = raise(2 * x);
   double scale = power_of_two(e.k), h = e.m.hi * scale, l = e.m.lo * scale;

@@ -73,7 +73,7 @@ static angle reduce_exactly(double x) {
   unsigned n = (unsigned)window(p, point) & 3;
   uint64_t f1 = window(p, point - 64), f0 = window(p, point - 128);
   bool above = f1 >> 63;
-  if (above) { /* more than half: count down from the next multiple */
+  if (above) { /* more than half a quarter turn: count down from the next multiple */
     f0 = ~f0 + 1;
     f1 = ~f1 + (f0 == 0);
     n++;

@@ -2,7 +2,7 @@
 
 #include "scene/build.h"
 
-#define DIRECTIONS 8 /* over a quarter turn; a box looks the same a quarter turn further */
+#define DIRECTIONS 8 /* that are tried, over a quarter turn: a box looks the same a quarter turn further */
 #define SAMPLES 32   /* discs that a direction is judged by */
 
 static const float directions[DIRECTIONS][2] = {
@@ -30,13 +30,13 @@ static void widen(span *s, double v, double r) {
   s->max = v + r > s->max ? v + r : s->max;
 }
 
-/* Discs of a cloud, from one on, before another, every step-th. */
+/* Every step-th disc of a cloud, from `from` up to, without, `to`. */
 typedef struct run {
   const ethd__cloud *cloud;
   size_t from, to, step;
 } run;
 
-/* Around a run, u along (c, s). */
+/* The rectangle around a run whose u axis is (c, s). */
 static rectangle around(const run *of, float c, float s) {
   const ethd__cloud *k = of->cloud;
   rectangle b = {c, s, {INFINITY, -INFINITY}, {INFINITY, -INFINITY}};
@@ -51,13 +51,14 @@ static rectangle around(const run *of, float c, float s) {
 
 static double width(span s) { return s.max - s.min; }
 
-/* How many places are nearer to the box than `near`, less what any box has: few is good. */
+/* The area from which the box is nearer than `near`, less what is the same for any box: the smaller, the fewer queries
+   open it. */
 static double cost(const rectangle *b) {
   double w = width(b->u), h = width(b->v), near = 0.01;
   return w * h + near * (w + h);
 }
 
-/* From the first disc to the last. */
+/* Turned along the line from the first disc to the last. */
 static rectangle along(const run *of) {
   ethd_vec e = ethd_vec_sub(of->cloud->points[of->to - 1], of->cloud->points[of->from]);
   double length = ethd_vec_norm(e);
@@ -76,7 +77,7 @@ static rectangle fit(const ethd__cloud *k, size_t from, size_t to) {
   return around(&all, best.c, best.s);
 }
 
-/* What rounding takes from the half is given back. */
+/* The middle is rounded to a float; the half grows by what that may have cut off. */
 static void set(span s, float *middle, float *half) {
   *middle = (float)((s.min + s.max) / 2);
   double reach = fmax(s.max - (double)*middle, (double)*middle - s.min);

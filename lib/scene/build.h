@@ -4,29 +4,28 @@
 
 #include "scene/tree.h"
 
-/* An object before it has its place. */
+/* An object whose place among the leaves is still sought. */
 typedef struct ethd__item {
-  uint32_t at[2]; /* the middle of its bounds, in the scene's from 0 to UINT32_MAX */
-  uint32_t id;
+  uint32_t at[2]; /* middle of its bounds: 0 to UINT32_MAX across the scene's extent in x and y */
+  uint32_t id;    /* its index in the definition */
 } ethd__item;
 
-/* Puts items into an order in which every node of a tree over them holds neighbours. */
+/* Orders items so that every node of a tree over them holds neighbours. */
 void ethd__order_build(ethd__item *items, uint32_t count);
 
-/* Discs about points, in the trees' frame; radii NULL: points. */
+/* Discs in the trees' frame, by centre and radius; radii NULL: all are 0. */
 typedef struct ethd__cloud {
   const ethd_vec *points;
   const double *radii;
 } ethd__cloud;
 
-/* Lane `lane`: a small box around all discs from `from` on, before `to`. */
+/* Makes lane `lane` a small box around the discs from `from` up to, without, `to`. */
 void ethd__box_fit(const ethd__cloud *cloud, size_t from, size_t to, ethd__node *node, size_t lane);
 
-/* Nothing in this lane. */
+/* Marks a lane as empty. */
 void ethd__box_clear(ethd__node *node, size_t lane);
 
-/* Nodes and slopes of a scene that has all else; both ask that. `room`: nodes_room bytes, aligned like
-   malloc's. */
+/* Builds nodes and slopes of a scene that is complete but for them. `room`: ethd__nodes_room bytes, aligned like malloc's. */
 size_t ethd__nodes_room(const ethd_scene *scene);
 void ethd__nodes_build(ethd_scene *scene, void *room);
 

@@ -27,19 +27,21 @@ static inline edge edge_of(const ethd__chain *chain, size_t k, ethd_vec x) {
 
 static inline part part_of(const edge *g) { return g->along <= 0 ? AT_START : g->along >= g->ee ? AT_END : BETWEEN; }
 
-/* The same, but a foot that rounding can't tell from a vertex is at the vertex, for both of its edges. */
+/* The same, but where rounding can't tell the foot from a vertex it is at the vertex. Both edges there agree on
+   it. */
 static part settled_part_of(const edge *g) {
   double e = fabs(g->e.x) + fabs(g->e.y), u = fabs(g->u.x) + fabs(g->u.y);
   double margin = 8 * DBL_EPSILON * e * (e + u);
   return g->along <= margin ? AT_START : g->along >= g->ee - margin ? AT_END : BETWEEN;
 }
 
-/* The edges that end and start at point k; false where the chain has none. */
+/* The edge that ends at point k; false: the chain has none. */
 static bool edge_before(const ethd__chain *chain, size_t k, size_t *out) {
   *out = k ? k - 1 : chain->edges - 1;
   return k || chain->closed;
 }
 
+/* The edge that starts at point k; false: the chain has none. */
 static bool edge_after(const ethd__chain *chain, size_t k, size_t *out) {
   *out = k < chain->edges ? k : 0;
   return k < chain->edges || chain->closed;
@@ -54,11 +56,12 @@ static ethd_vec left_of(ethd_vec v) {
 
 /* ---- vertices ---- */
 
-/* A vertex and its edges' directions, one of them twice at an end. */
+/* A vertex and the directions of its edges; at an end, the one edge's direction stands for both. */
 typedef struct vertex {
   ethd_vec p, in, out;
-  int turn; /* sharp turns (of 90 degrees and more): +1 left, -1 right, 0 a reversal */
-  bool blunt, end;
+  int turn;   /* of a sharp turn: +1 left, -1 right, 0 straight back */
+  bool blunt; /* the turn is less than 90 degrees */
+  bool end;
 } vertex;
 
 static vertex vertex_of(const ethd__chain *chain, size_t k) {
@@ -72,8 +75,8 @@ static vertex vertex_of(const ethd__chain *chain, size_t k) {
   return v;
 }
 
-/* +1: x, nearest to this vertex, stands on the left, -1 right, 0: beyond an end or a reversal. A sharp
-   turn is seen from its outer side only. */
+/* On which side x stands, which this vertex is nearest to: +1 left, -1 right, 0 beyond an end or where the chain turns
+   straight back. A vertex with a sharp turn is nearest only to points on its outer side. */
 static int side_of(const vertex *v, ethd_vec x) {
   if (v->end) return 0;
   if (!v->blunt) return -v->turn;
@@ -81,7 +84,7 @@ static int side_of(const vertex *v, ethd_vec x) {
   return ethd_vec_cross(along, ethd_vec_sub(x, v->p)) >= 0 ? 1 : -1;
 }
 
-/* The normal to the left, at the vertex itself. */
+/* The normal to the left for an x that is at the vertex itself. */
 static ethd_vec left_normal(const vertex *v) {
   ethd_vec s = unit(v->in), t = unit(v->out);
   if (v->blunt || !v->turn) return unit(left_of(v->blunt ? ethd_vec_add(s, t) : t));
@@ -90,7 +93,7 @@ static ethd_vec left_normal(const vertex *v) {
 
 /* ---- touches ---- */
 
-/* n of a surface whose left normal is given: into a polygon, away from x at a thin wall. */
+/* n from a surface's left normal: into a polygon; at a thin wall, away from x. */
 static ethd_vec inward(const ethd__chain *chain, int side, ethd_vec left) {
   return ethd_vec_scale(chain->turn ? chain->turn : side > 0 ? -1 : 1, left);
 }
@@ -104,7 +107,7 @@ static void touch_edge(const ethd__chain *chain, size_t k, const edge *g, ethd_t
   out->feature = (int32_t)(2 * k);
 }
 
-/* All but the side, which costs the most. */
+/* Sets all but the side, which costs the most to find. */
 static void meet_vertex(const ethd__chain *chain, size_t k, ethd_vec x, ethd_touch *out) {
   ethd_vec p = point(chain, k), gap = ethd_vec_sub(p, x);
   out->distance = ethd_vec_norm(gap);
@@ -141,7 +144,8 @@ static bool touch_if_between(const ethd__chain *chain, size_t k, ethd_vec x, eth
   return true;
 }
 
-/* The nearest of edge k, or of an edge beside it that rounding hid behind the vertex between them. */
+/* The nearest point of edge k; where that is a vertex, the edge beyond it is tried too, for rounding may have hidden its
+   foot. */
 static void touch_nearest(const ethd__chain *chain, size_t k, ethd_vec x, ethd_touch *out) {
   edge g = edge_of(chain, k, x);
   part p = part_of(&g);
@@ -169,8 +173,8 @@ static bool contains(const ethd__chain *chain, ethd_vec x) {
   return inside;
 }
 
-/* n comes as seen from outside. An edge that is nearest up to rounding may show x its other face (beyond a
-   needle's tip); on the surface itself an edge's own normal stays. */
+/* Turns n and the distance's sign by whether x is inside; n comes as seen from outside. Near a needle's tip the edge that
+   rounding makes the nearest may show x its other face. On the surface itself an edge's own normal stays. */
 static void sign(const ethd__chain *chain, bool inside, ethd_touch *out) {
   bool at_vertex = out->feature % 2;
   bool turned = at_vertex ? inside && out->distance > ETHD__TINY
@@ -196,7 +200,8 @@ void ethd__chain_nearest(const ethd__chain *chain, ethd_vec x, ethd_touch *out) 
 
 /* ---- local minima ---- */
 
-/* Before the start of an open chain lies an edge that x is past. */
+/* Where x stands against the edge before vertex k. At the start of an open chain it is past that edge, which isn't
+   there. */
 static part part_before(const ethd__chain *chain, size_t k, ethd_vec x) {
   size_t i;
   if (!edge_before(chain, k, &i)) return AT_END;

@@ -6,7 +6,7 @@
 #include "error.h"
 #include "scene/shapes.h"
 
-#define POINTS_MAX (INT32_MAX / 2 - 1) /* a feature's number is twice a point's, plus 1 */
+#define POINTS_MAX (INT32_MAX / 2 - 1) /* a vertex is feature 2 k + 1, which must fit into an int32_t */
 
 static ethd_status refuse_object(const ethd_object_def *def, ethd_status status, const char *name, ethd__found found,
                                  ethd_error *error) {
@@ -61,7 +61,7 @@ static ethd_status check_numbers(const ethd_object_def *def, ethd_error *error) 
   return ETHD_OK;
 }
 
-/* Not told apart by rounding, or too near for their distance's square. */
+/* Whether rounding can't tell two points apart, or the square of their distance would be lost. */
 static bool are_equal(ethd_vec a, ethd_vec b) {
   ethd_vec e = ethd_vec_sub(b, a);
   double largest = fmax(fmax(fabs(a.x), fabs(a.y)), fmax(fabs(b.x), fabs(b.y)));

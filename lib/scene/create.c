@@ -25,7 +25,8 @@ static size_t reserve(size_t *bytes, size_t size) {
   return at;
 }
 
-/* Nodes of chains come first, for their slopes. */
+/* Works out how much of everything there is, and where it goes. The nodes of chains come first, so that slopes, which
+   only they have, need no places for others. */
 static ethd_status plan(const ethd_scene_def *def, ethd_scene *s, ethd_error *error) {
   size_t numbers = 0, nodes = 0, endless = 0;
   for (size_t i = 0; i < def->object_count; i++) {
@@ -83,7 +84,7 @@ static bounds bounds_of(const ethd_object_def *def) {
   return b;
 }
 
-/* The trees' frame: everything within [-1, 1]. */
+/* The trees' frame: centre and scale bring the bounds to within [-1, 1]. */
 static void frame(ethd_scene *s, bounds b) {
   int exponent = 0;
   s->x_min = b.x_min, s->x_max = b.x_max, s->y_min = b.y_min, s->y_max = b.y_max;
@@ -112,7 +113,7 @@ static ethd_vec point(const double *p, size_t k) {
   return r;
 }
 
-/* The turn at the first point in the order of x, then y: the polygon is convex there. */
+/* A polygon's winding: the turn at its first point in the order of x, then y, where it is convex. */
 static int turn_of(const double *p, size_t n) {
   size_t k = 0;
   for (size_t i = 1; i < n; i++)
@@ -140,7 +141,7 @@ static uint32_t step_of(const ethd_scene *s, double low, double high, double cen
   return (uint32_t)((v + 1) / 2 * UINT32_MAX);
 }
 
-/* The order of the leaves, endless objects last. */
+/* Puts the objects into the order of the leaves; endless ones come last. */
 static void order(const ethd_scene_def *def, const ethd_scene *s, ethd__item *items) {
   uint32_t n = 0, last = s->tree.leaves;
   for (uint32_t i = 0; i < s->object_count; i++) {

@@ -31,8 +31,8 @@ static double farthest(const ethd_scene *scene, const ethd__object *o) {
   return most;
 }
 
-/* Objects are connected: one whose nearest point lies within the outer circle and whose farthest lies
-   beyond the inner one has points between them. */
+/* An object is in one piece: if its nearest point lies within the outer circle and its farthest beyond the inner one, then
+   some of it lies between the two. */
 bool ethd__object_is_within(const ethd_scene *scene, const ethd__object *o, double inner, double outer) {
   ethd_touch nearest;
   ethd__object_nearest(scene, o, (ethd_vec){0, 0}, &nearest);
@@ -70,7 +70,7 @@ int32_t ethd_scene_object(const ethd_scene *scene, size_t i, ethd_object_def *ou
 
 /* ---- its trees ---- */
 
-/* The tree that has this node: trees stand in the order of their nodes. */
+/* The tree that a node belongs to, by bisection: trees stand in the order of their nodes. */
 static const ethd__tree *tree_of(const ethd_scene *scene, uint32_t node) {
   const ethd__tree *trees = ETHD__ARRAY(scene, ethd__tree, trees_at);
   uint32_t low = 0, high = scene->tree_count;

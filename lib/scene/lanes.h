@@ -17,7 +17,7 @@
 typedef float ethd__floats __attribute__((vector_size(16), may_alias));
 typedef int32_t ethd__words __attribute__((vector_size(16)));
 
-/* `at`: a multiple of 16. */
+/* `at` is aligned to 16 bytes. */
 ETHD__INLINE ethd__floats ethd__load(const float *at) { return *(const ethd__floats *)(const void *)at; }
 ETHD__INLINE void ethd__store(float *at, ethd__floats v) { *(ethd__floats *)(void *)at = v; }
 
@@ -47,7 +47,7 @@ ETHD__INLINE ethd__floats ethd__min(ethd__floats a, ethd__floats b) {
 #endif
 }
 
-/* The least of four, in every lane. */
+/* All lanes become the least of the four. */
 ETHD__INLINE ethd__floats ethd__least(ethd__floats v) {
 #if ETHD__SSE2
   v = ethd__min(v, (ethd__floats)_mm_shuffle_ps((__m128)v, (__m128)v, _MM_SHUFFLE(1, 0, 3, 2)));
@@ -58,7 +58,7 @@ ETHD__INLINE ethd__floats ethd__least(ethd__floats v) {
 #endif
 }
 
-/* A bit for each lane that holds. */
+/* Bit k is set if lane k is true. */
 ETHD__INLINE unsigned ethd__bits(ethd__words m) {
 #if ETHD__SSE2
   return (unsigned)_mm_movemask_ps((__m128)m);

@@ -7,7 +7,7 @@ typedef struct build {
   ethd_scene *scene;
   ethd__node *nodes;
   float *slopes;
-  ethd_vec *points; /* with radii: discs that span the objects, in the order of the leaves */
+  ethd_vec *points; /* centres of the discs that span the objects, in the order of the leaves */
   double *radii;
   size_t *start; /* the object at place i has the discs from start[i] on */
 } build;
@@ -63,18 +63,19 @@ typedef struct strip {
   bool closed;
 } strip;
 
-/* |across| / along of edge k in the frame of (c, s); INFINITY: it goes the other way. */
+/* |across| / along of edge k against the axis; INFINITY: it goes the other way. */
 static double slope_of(const strip *t, size_t k, ethd_vec axis) {
   ethd_vec e = ethd_vec_sub(t->points[k + 1], t->points[k]);
   double along = ethd_vec_dot(axis, e);
   return along > 0 ? fabs(ethd_vec_cross(axis, e)) / along : INFINITY;
 }
 
-/* A place across is known to 2^-20 of its distance: times this and more, that is no longer little. */
+/* How far across x stands is known to 2^-20 of its distance; a steeper slope would multiply that error by too much. */
 #define STEEPEST 8
 
-/* Of edges [from, to) and of one more on each side, on which the vertices there depend; at the ends of an
-   open chain everything is possible. */
+/* The steepest slope of edges [from, to) against the box's axis (c, s), and of one more edge on each side, for the vertices
+   at both ends depend on it. FLT_MAX, which rules nothing out, where that slope can't be used and at the ends of an open
+   chain. */
 static float steepest(const strip *t, size_t from, size_t to, float c, float s) {
   if (!t->closed && (from == 0 || to == t->edges)) return FLT_MAX;
   ethd_vec axis = {c, s};

@@ -1,8 +1,11 @@
+/* The order of the leaves. All items are split in two by a median in x or y, whichever they are wider in, and each part
+   again, until a part fits into one box of the level; then the next level is split likewise. Parts are whole numbers of full
+   boxes, so only the last node of a level stays partly empty. */
 #include "scene/build.h"
 
 #define SMALL 12 /* items that are sorted by insertion */
 
-/* No two are equal. */
+/* What items are ordered by on one side; the id makes all ranks different. */
 static uint64_t rank(const ethd__item *i, int side) { return (uint64_t)i->at[side] << 32 | i->id; }
 
 static void swap(ethd__item *a, ethd__item *b) {
@@ -21,7 +24,7 @@ static uint64_t median(uint64_t a, uint64_t b, uint64_t c) {
   return c < low ? low : c > high ? high : c;
 }
 
-/* Neither the first nor the last of all: of nine, the median of three medians. */
+/* The median of three medians of nine items, so it is neither the first nor the last of all. */
 static uint64_t pivot(const ethd__item *p, size_t n, int side) {
   uint64_t m[3];
   for (size_t i = 0; i < 3; i++)
@@ -29,7 +32,7 @@ static uint64_t pivot(const ethd__item *p, size_t n, int side) {
   return median(m[0], m[1], m[2]);
 }
 
-/* Those up to the pivot come first; how many. No branch depends on the order of items. */
+/* Moves the items up to rank `most` to the front; returns how many they are. No branch depends on the items' order. */
 static size_t divide(ethd__item *p, size_t n, uint64_t most, int side) {
   size_t low = 0;
   for (size_t i = 0; i < n; i++) {
@@ -40,7 +43,7 @@ static size_t divide(ethd__item *p, size_t n, uint64_t most, int side) {
   return low;
 }
 
-/* The first `m` of `n` come first (Hoare 1961). */
+/* Moves the m lowest of n items to the front (Hoare 1961). */
 static void part(ethd__item *p, size_t n, size_t m, int side) {
   while (n > SMALL && m > 0 && m < n) {
     size_t low = divide(p, n, pivot(p, n, side), side);
@@ -66,14 +69,13 @@ static int wider_side(const ethd__item *p, size_t n) {
   return high[1] - low[1] > high[0] - low[0];
 }
 
-/* Items that one thing of this level holds. */
+/* Items that one node, or one box of it, of this level holds. */
 typedef struct range {
   ethd__item *items;
   size_t count;
   uint32_t level;
 } range;
 
-/* Halves of whole things of the level below, until there is one. */
 void ethd__order_build(ethd__item *items, uint32_t count) {
   range stack[4 * ETHD__LEVELS];
   int depth = 0;

@@ -1,5 +1,5 @@
-/* Twice over the text: the first pass counts and takes the materials, so that an object may name one that
-   is defined below it; the second takes the objects. */
+/* Reads the text twice: the first pass counts lines and takes the materials, so that an object may name one that is
+   defined below it; the second takes the objects. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,7 +26,7 @@ typedef struct draft {
   ethd_object_def *objects;
   double *numbers;
   size_t material_count, object_count, number_count;
-  size_t lines, words; /* that aren't materials': bounds of objects and numbers */
+  size_t lines, words; /* of objects: there are no more objects and numbers than these */
 } draft;
 
 static ethd_status refuse(reader *r, ethd_status status, word w, ethd__found found) {
@@ -70,7 +70,7 @@ static bool next_word(reader *r, word *out) {
 
 static bool is(word w, const char *text) { return strlen(text) == w.length && !memcmp(w.at, text, w.length); }
 
-/* "key=value": false without '='. */
+/* Splits "key=value"; false: there is no '='. */
 static bool split(word w, word *key, word *value) {
   const char *sign = memchr(w.at, '=', w.length);
   if (!sign) return false;
@@ -89,7 +89,7 @@ static size_t digits(const char *at, const char *end, char *out) {
   return n;
 }
 
-/* [+-] digits after an 'e'; far too large ones stay far too large. */
+/* Reads [+-] digits after an 'e'. One that is far too large stops growing, but stays far too large. */
 static bool read_exponent(const char **at, const char *end, long *out) {
   bool minus = *at < end && **at == '-';
   if (*at < end && (**at == '+' || **at == '-')) ++*at;
@@ -113,8 +113,8 @@ static void write_exponent(char *to, long exponent) {
   memcpy(to, digits_of + n, sizeof digits_of - n);
 }
 
-/* [+-] digits [. digits] [e [+-] digits], a digit before or after the point. The point is taken out and
-   goes into the exponent, for strtod expects the locale's. */
+/* [+-] digits [. digits] [e [+-] digits], with a digit before or after the point. strtod expects the locale's decimal
+   point, so it gets none: the exponent makes up for it. */
 static bool number(word w, double *out) {
   char text[NUMBER_LENGTH + 32], *to = text;
   const char *at = w.at, *end = w.at + w.length;

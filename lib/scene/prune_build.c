@@ -3,7 +3,7 @@
 #include "error.h"
 #include "scene/scene.h"
 
-/* Those of the scene's objects that stay, in the order of their ids; how many. */
+/* Collects the objects that stay, in the order of their ids; returns how many they are. */
 static size_t gather(const ethd_scene *scene, double inner, double outer, ethd_object_def *defs, int32_t *ids) {
   const uint32_t *places = ETHD__ARRAY(scene, uint32_t, places_at);
   size_t n = 0;
@@ -15,7 +15,8 @@ static size_t gather(const ethd_scene *scene, double inner, double outer, ethd_o
   return n;
 }
 
-/* Decisions that depend on rounding stay what they were in the whole scene. */
+/* Takes over the slack, so that decisions which depend on rounding stay what they were in the whole scene, and notes what
+   was left out. */
 static void mark(const ethd_scene *whole, double inner, double outer, ethd_scene *scene) {
   scene->slack = whole->slack;
   scene->dropped = whole->dropped + (whole->object_count - scene->object_count);

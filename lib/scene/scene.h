@@ -15,7 +15,7 @@
 #include "ethd/scene.h"
 
 #define ETHD__COORDINATE_MAX 1e6 /* m */
-#define ETHD__TINY 1e-140        /* m: the square of anything less may lose digits */
+#define ETHD__TINY 1e-140        /* m: squares of smaller lengths lose digits */
 
 typedef struct ethd__object {
   int32_t id; /* its number in the file */
@@ -30,7 +30,7 @@ typedef struct ethd__object {
 
 #define ETHD__LEVELS 12 /* 8^11 leaves are more than there can be */
 
-/* Level l's nodes start at first[l]. */
+/* The nodes of level l start at first[l]; see tree.h. */
 typedef struct ethd__tree {
   uint32_t leaves, levels;
   uint32_t first[ETHD__LEVELS];
@@ -39,19 +39,19 @@ typedef struct ethd__tree {
 struct ethd_scene {
   ethd_vec centre; /* the trees' frame: X = scale (x - centre), scale a power of two */
   double scale;
-  double slack; /* m: what rounding may do to a distance, and more */
+  double slack; /* m: more than rounding can change a distance by */
   size_t nodes_at, objects_at, numbers_at, trees_at, places_at, slopes_at, materials_at;
   ethd__tree tree;
   uint32_t object_count, number_count, tree_count, node_count, material_count;
-  uint32_t dropped;    /* objects that aren't here, for an arm can't reach them */
-  double inner, outer; /* m from the base: between them nothing is missing */
+  uint32_t dropped;    /* objects that were left out because an arm can't reach them */
+  double inner, outer; /* m: nothing is left out between these distances from the base */
   size_t bytes;
-  double x_min, x_max, y_min, y_max; /* of all but half-planes; min > max: nothing */
+  double x_min, x_max, y_min, y_max; /* extent of all but endless objects; min > max: there are none */
 };
 
 #define ETHD__ARRAY(scene, type, at) ((const type *)(const void *)((const char *)(scene) + (scene)->at))
 
-/* An object is meant by its place. */
+/* `place`: its index in the order of the leaves. */
 static inline const ethd__object *ethd__object_at(const ethd_scene *scene, uint32_t place) {
   return ETHD__ARRAY(scene, ethd__object, objects_at) + place;
 }
@@ -78,27 +78,26 @@ static inline ethd_vec ethd__chain_point(const ethd__chain *chain, size_t k) {
   return ethd_vec_of(chain->points + 2 * k);
 }
 
-/* The nearest point of a chain; of a polygon the distance is signed. Sets distance, point, n, feature;
-   `side` means nothing. */
+/* The nearest point of a chain; a polygon's distance is signed. Sets distance, point, n and feature; `side` is left
+   without a meaning. */
 void ethd__chain_nearest(const ethd__chain *chain, ethd_vec x, ethd_touch *out) ETHD_RT;
 
-/* The same when edge k is known to be the nearest, and, of a polygon, whether x is inside. */
+/* The same where edge k is known to be nearest and, of a polygon, whether x is inside. */
 void ethd__chain_touch(const ethd__chain *chain, size_t k, ethd_vec x, bool inside, ethd_touch *out) ETHD_RT;
 
-/* The first local minimum of the distance at edge `from` or later, vertex k standing before edge k; the
-   place to go on from, 0 when there is none. Of a polygon only surfaces that face x, which stands
-   outside. */
+/* The first local minimum of the distance at edge `from` or later; vertex k comes before edge k. Returns the edge to go on
+   from, 0 when there is no minimum. Of a polygon, which x is outside of, only surfaces that face x count. */
 size_t ethd__chain_minimum(const ethd__chain *chain, ethd_vec x, size_t from, ethd_touch *out) ETHD_RT;
 
-/* The one at edge k or at vertex k before it; k = edges: at the end. x comes by its address: gcc 12 stores a
-   pair in two halves, loads it whole and waits. */
+/* Whether edge k, or vertex k before it, has a local minimum; k = edges is the chain's end. x comes by its address
+   because gcc 12 stores a pair in two halves, then loads it whole and waits for both. */
 bool ethd__chain_minimum_at(const ethd__chain *chain, size_t k, const ethd_vec *x, ethd_touch *out) ETHD_RT;
 
-/* Whether an edge is crossed by the ray from x to the right, exactly. */
+/* Whether the ray from x to the right crosses the edge from a to b; exact. */
 bool ethd__edge_crossed(ethd_vec a, ethd_vec b, ethd_vec x) ETHD_RT;
 
-/* What a touch of this object has whatever its place: object, material, and no feature and side where the
-   contract has none. */
+/* Sets what every touch of this object has: its number and material, and 0 for the feature and the side where the
+   contract says so. */
 static inline void ethd__label(const ethd__object *o, ethd_touch *out) {
   out->object = o->id;
   out->material = o->material;
@@ -106,18 +105,18 @@ static inline void ethd__label(const ethd__object *o, ethd_touch *out) {
   if (o->turn) out->side = 0;
 }
 
-/* The nearest point of an object, by its closed form or edge by edge: a complete touch but for a chain's
+/* The nearest point of an object, by its closed form or edge by edge. The touch is complete but for a chain's
    side. */
 void ethd__object_nearest(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_touch *out) ETHD_RT;
 
-/* Builds from what is known to be right. ids: their numbers, rising; NULL: 0, 1, ... [main] */
+/* Builds a scene from what has been checked. `ids`: the objects' numbers, rising; NULL: 0, 1, ... [main] */
 ethd_status ethd__scene_make(const ethd_scene_def *def, const int32_t *ids, ethd_scene **out, ethd_error *error);
 
-/* Where things count for this arm, m from the base. */
+/* Distances from the base between which things count for this arm, m. */
 void ethd__scene_annulus(const ethd_arm *arm, double radius, double *inner, double *outer);
 bool ethd__object_is_within(const ethd_scene *scene, const ethd__object *o, double inner, double outer);
 
-/* Sign of the area of a, b, c, exactly: +1 counter-clockwise, -1 clockwise, 0 on a line. */
+/* The turn from a over b to c: +1 counter-clockwise, -1 clockwise, 0 on a line; exact. */
 int ethd__orient(ethd_vec a, ethd_vec b, ethd_vec c) ETHD_RT;
 
 #endif

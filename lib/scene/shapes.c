@@ -1,4 +1,4 @@
-/* The rows of all shapes and the closed forms behind them. Nothing here needs the system, so one file serves both
+/* The rows of all shapes, and the closed forms behind them. Nothing here needs the system, so one file serves both
    sides. */
 #include "scene/shapes.h"
 
@@ -29,7 +29,7 @@ static ethd_status check_normal(const ethd_object_def *def, ethd_error *error) {
 
 static void keep_unit(double *p) {
   double length = sqrt(p[0] * p[0] + p[1] * p[1]);
-  if (fabs(length - 1) <= 4 * DBL_EPSILON) return; /* divided once is divided for good */
+  if (fabs(length - 1) <= 4 * DBL_EPSILON) return; /* a normal that was divided before stays as it is */
   for (int i = 0; i < 3; i++) p[i] /= length;
 }
 
@@ -41,7 +41,7 @@ static void halfplane(const double *p, ethd_vec x, ethd_touch *out) {
 
 /* ---- circle {x, y, r} and capsule {x1, y1, x2, y2, r} ---- */
 
-/* A disc about c; `any` is n at its centre. */
+/* The disc about c. At its centre, where every direction is as good, n is `any`. */
 static void disc(ethd_vec c, double r, ethd_vec any, ethd_vec x, ethd_touch *out) {
   ethd_vec gap = ethd_vec_sub(c, x);
   double distance = ethd_vec_norm(gap);
@@ -77,13 +77,13 @@ static ethd__disc capsule_disc(const double *p, size_t k) { return (ethd__disc){
 
 static void keep_turn(double *p) { ethd_sincos(p[4], &p[6], &p[5]); }
 
-/* Its corners. */
+/* The corners, as discs of no radius. */
 static ethd__disc box_disc(const double *p, size_t k) {
   double u = k & 1 ? p[2] : -p[2], v = k & 2 ? p[3] : -p[3];
   return (ethd__disc){vec(p[0] + (p[5] * u - p[6] * v), p[1] + (p[6] * u + p[5] * v)), 0};
 }
 
-/* In the box's frame, folded into its first quadrant: (u, v) from the centre, (du, dv) beyond the faces. */
+/* Works in the box's frame, folded into its first quadrant: x stands (u, v) from the centre, (du, dv) beyond the faces. */
 static void box(const double *p, ethd_vec x, ethd_touch *out) {
   double c = p[5], s = p[6];
   ethd_vec r = ethd_vec_sub(x, vec(p[0], p[1]));

@@ -30,20 +30,21 @@ typedef struct ethd__shape {
   } numbers[ETHD__GIVEN_MAX]; /* of a chain: x and y of every point */
   size_t count;               /* of numbers; of a list: at least */
   bool is_chain;
-  bool is_list;   /* the chain may have any more points */
+  bool is_list;   /* the chain may have any number of points */
   bool is_closed; /* the chain is closed by an edge to its first point and bounds a solid */
 
   /* All of the following belong to closed forms. `kept` numbers are the given ones and what `keep` adds. */
 
-  /* What a single number's range can't say; NULL: nothing. [main] */
+  /* Checks what a single number's range can't say; NULL: there is nothing to check. [main] */
   ethd_status (*check)(const ethd_object_def *def, ethd_error *error);
   /* Writes what a scene keeps over a copy of the given numbers; NULL: the copy will do. [main] */
   void (*keep)(double *kept);
   size_t added; /* numbers that `keep` puts behind the given ones */
-  /* The object is the convex hull of these discs; 0: it is endless, and in no tree. [main] */
+  /* The object lies in the convex hull of these discs, best as close as it can, for bounds and reach are the hull's.
+     0 discs: it is endless, and in no tree. [main] */
   size_t discs;
   ethd__disc (*disc)(const double *kept, size_t k);
-  /* The nearest point of the surface: sets distance, point and n. */
+  /* Sets distance, point and n of the nearest point of the surface. */
   void (*nearest)(const double *kept, ethd_vec x, ethd_touch *out) ETHD_RT;
 } ethd__shape;
 
@@ -65,7 +66,7 @@ static inline size_t ethd__disc_count(const ethd__object *o) {
   return o->edges ? o->edges + (size_t)1 : ethd__shapes[o->shape].discs;
 }
 
-/* A chain's are its points. */
+/* Disc k of an object; a chain's are its points. */
 static inline ethd__disc ethd__disc_at(const ethd__shape *s, const double *kept, size_t k) {
   if (s->is_chain) return (ethd__disc){{kept[2 * k], kept[2 * k + 1]}, 0};
   return s->disc(kept, k);

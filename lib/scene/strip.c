@@ -8,7 +8,7 @@ static const float *slopes(const ethd_scene *scene, const ethd__probe *p) {
 
 /* ---- inside or outside ---- */
 
-/* The ray from x to the right may meet what is in these boxes. */
+/* Bits of the boxes whose contents the ray from x to the right may meet. */
 static unsigned ahead(const ethd__node *n, float x, float y) {
   unsigned meet = 0;
   for (int i = 0; i < ETHD__WIDE; i += 4) {
@@ -22,8 +22,8 @@ static unsigned ahead(const ethd__node *n, float x, float y) {
   return meet;
 }
 
-/* By the parity of the edges that a ray to the right crosses. Beyond the frame that all objects lie in nothing
-   is inside, and boxes would be wrong by more than they are inflated. */
+/* Whether x is inside, by the parity of the edges that a ray to the right crosses. Far outside the frame, where boxes
+   would be wrong by more than they are inflated, nothing is inside. */
 static bool contains(const ethd__strip *s, const ethd__chain *c) {
   const ethd__tree *tree = ethd__tree_at(s->scene, s->object);
   const ethd__probe *p = s->probe;
@@ -47,12 +47,12 @@ static bool contains(const ethd__strip *s, const ethd__chain *c) {
   return inside;
 }
 
-/* Squared distances of the nearest edges that may show x their outer face, and their inner face. */
+/* Squared distances of the nearest edge that may show x its outer face, and of the nearest that may show its inner one. */
 typedef struct faces {
   double outer, inner;
 } faces;
 
-/* The nearest face decides, unless one of the other kind is as near up to rounding. */
+/* The nearest face decides. Where one of the other kind is as near up to rounding, edges are counted instead. */
 static bool is_inside(const ethd__strip *s, const ethd__chain *c, const faces *f) {
   double outer = sqrt(f->outer), inner = sqrt(f->inner);
   double rounding = 4 * c->slack + 64 * DBL_EPSILON * fmin(outer, inner);

@@ -2,7 +2,8 @@
 
 #include <float.h>
 
-/* Near the centre, and not leaning as seen from x, which is the centre unless they are `apart`. */
+/* Bits of the boxes near the centre that may hold a minimum as seen from x. The two are one point unless they are
+   `apart`. */
 static unsigned open_lanes(const ethd__minima *m, uint32_t place) {
   const ethd__node *n = m->at_x.nodes + place;
   const float *slopes = m->slopes ? m->slopes + ETHD__WIDE * (size_t)place : NULL;
@@ -19,7 +20,8 @@ static void open_node(ethd__minima *m, uint32_t level, uint32_t index) {
   }
 }
 
-/* The root, or its children if they are two: opening them takes no longer than asking it which to open. */
+/* Starts with the root; or, where it has two children, with both, for asking the root which to open takes as long as
+   opening them. */
 static void push_top(ethd__minima *m) {
   uint32_t level = m->tree->levels, roots = 1;
   if (level > 1 && m->tree->first[level] - m->tree->first[level - 1] == 2) level--, roots = 2;

@@ -7,7 +7,7 @@
 
 #define NONE UINT32_MAX
 
-/* One for each edge: its place in the tree, and its neighbours along the sweep line. */
+/* An edge in the tree, and its neighbours along the sweep line. */
 typedef struct node {
   uint32_t parent, child[2]; /* [0] below, [1] above */
   uint32_t beside[2];
@@ -72,8 +72,8 @@ static void sort(sweep *s, uint32_t *a, uint32_t *b) {
 
 static bool share(const sweep *s, uint32_t e, uint32_t f) { return f == next(s, e) || e == next(s, f); }
 
-/* Edges side by side with a common point leave it to one side: they go over each other iff they leave it
-   in one direction. */
+/* Two neighbours with a common point leave it towards the same side of the sweep line, so they overlap exactly if they
+   leave it in the same direction. */
 static bool fold(const sweep *s, uint32_t e, uint32_t f) {
   uint32_t p = f == next(s, e) ? f : e;
   return orient(s, p, previous(s, p), next(s, p)) == 0;
@@ -104,7 +104,7 @@ static void put_in_place(sweep *s, uint32_t parent, uint32_t old, uint32_t new) 
   if (new != NONE) s->nodes[new].parent = parent;
 }
 
-/* Raises e above its parent. */
+/* Lifts e above its parent. */
 static void rotate(sweep *s, uint32_t e) {
   node *t = s->nodes;
   uint32_t p = t[e].parent;
@@ -128,7 +128,7 @@ static uint32_t scrambled(uint32_t k) {
   return k ^ (k >> 16);
 }
 
-/* Between neighbours one has no child on the side of the other: there is the place. */
+/* Of two neighbours one has no child on the side of the other: e goes there. */
 static void insert(sweep *s, uint32_t e, uint32_t below, uint32_t above) {
   node *t = s->nodes;
   t[e] = (node){NONE, {NONE, NONE}, {NONE, NONE}, scrambled(e)};
@@ -157,7 +157,7 @@ static void take_out(sweep *s, uint32_t e) {
   link_beside(s, t[e].beside[0], t[e].beside[1]);
 }
 
-/* e ends where f starts: f takes its place. */
+/* Puts f in the place of e, which ends where f starts. */
 static void replace(sweep *s, uint32_t e, uint32_t f) {
   node *t = s->nodes;
   t[f] = t[e];

@@ -24,7 +24,8 @@ static void add(list *l, const ethd_touch *touch) {
   l->touches[i] = *touch;
 }
 
-/* A solid around x has one touch only; so has one that x is at. */
+/* Whether only the nearest point counts: a closed form is convex, and a solid has one touch where x is inside or at its
+   surface. */
 static bool has_one(const ethd_scene *scene, const ethd__object *o, double distance) {
   return !o->edges || (o->turn && distance <= scene->slack);
 }
@@ -45,7 +46,7 @@ static void add_object(const ethd_scene *scene, const ethd__object *o, ethd_vec 
   }
 }
 
-/* Of a polygon with a tree: whether it has one touch only, as yet without a label. */
+/* The nearest point of a polygon with a tree, as yet without a label; true: it is the only touch. */
 static bool only_touch(const ethd__strip *strip, ethd_touch *out) {
   ethd__chain chain = ethd__chain_of(strip->scene, strip->object);
   ethd__nearest_edge near;
@@ -71,7 +72,7 @@ static void add_strip(const ethd__strip *strip, bool maybe_inside, float bound, 
   }
 }
 
-/* Puts the leaf's object into `leaf`. A box at no distance may have x inside. */
+/* Adds the touches of the object at `at`, which is put into `leaf`. Only a box at no distance may have x inside. */
 static void add_leaf(ethd__strip *leaf, ethd__scene_place at, float bound, list *l) {
   leaf->object = ethd__object_at(leaf->scene, at.index);
   if (ethd__has_tree(leaf->object))
@@ -106,7 +107,7 @@ size_t ethd_scene_touches(const ethd_scene *scene, ethd_vec x, double range, eth
 
 /* ---- one touch again ---- */
 
-/* The first in the order of the chain, if several are as near. */
+/* Keeps the touch nearest to `from`; of several that are as near, the first along the chain. */
 static void take(const ethd_touch *touch, ethd_vec from, double *least, ethd_touch *out) {
   ethd_vec u = ethd_vec_sub(touch->point, from);
   double d = ethd_vec_dot(u, u);
@@ -139,7 +140,7 @@ static void follow_object(const ethd_scene *scene, const ethd__object *o, ethd_v
   for (size_t k = 0; (k = ethd__chain_minimum(&chain, x, k, &touch)) != 0;) take(&touch, from, &least, out);
 }
 
-/* Where none was dropped, its id is its rank. */
+/* By bisection over the ids, which rise; where no object was left out, an id is its own index. */
 static const ethd__object *object_of(const ethd_scene *scene, int32_t id) {
   const uint32_t *places = ETHD__ARRAY(scene, uint32_t, places_at);
   uint32_t low = scene->dropped ? 0 : (uint32_t)id, high = scene->dropped ? scene->object_count : low + 1;

@@ -1,16 +1,23 @@
-/* Bounds of everything in a scene: packed trees, eight wide, of turned boxes.
+/* The trees that a query walks: boxes around everything in a scene, eight to a node, each turned to fit what it holds.
 
-     level 0   leaves: objects; of a chain of more than four edges, which has a tree of its own, its edges
+   The idea: a box is never farther from x than what is in it. Once something has been found at a distance, every box that
+   is farther can be left out with all that it holds. So a walk goes down into the nearest box first, and the answer that it
+   finds there bounds what else it looks into.
+
+     level 0   leaves: objects; or, in the tree that a chain of more than four edges has to itself, its edges
      level l   nodes, each with the boxes of eight things of the level below: node i has those from 8 i on
 
-   Nodes are full but for the last of each level, so nothing points anywhere. Boxes are floats in the trees'
-   frame, in which the bounded objects lie within [-1, 1]. They are larger than what they hold by more than
-   floats can err there, so a box is never farther than what is in it:
+   Edges stand in their chain's order, objects in one in which neighbours are near each other (order_build.c). Every node is full but for the last
+   of its level, so indices take the place of pointers: above leaf k, on level l, stands node k >> 3 l, and the box in it
+   that holds the leaf is in lane (k >> 3 (l - 1)) % 8.
 
-     17 2^-24   X rounded, c X + s Y, - u, - w: every rounding at most 2^-24 of its result, |X|, |Y| <= 2
+   Boxes are floats in the trees' frame, in which all bounded objects lie within [-1, 1]. They are drawn larger than what
+   they hold by more than floats can err there:
+
+     17 2^-24   X is rounded, c X + s Y, - u, - w: each rounding at most 2^-24 of its result, |X|, |Y| <= 2
      2^-22      of the distance: (c, s) isn't quite of unit length, squares and their sum are rounded
      2^-18      of the distance: all that, when X is farther away
-   The first is less than ETHD__INFLATE; bounds are stretched by more than the others. */
+   ETHD__INFLATE is more than the first of these; bounds are stretched by more than the others. */
 #ifndef ETHD_LIB_SCENE_TREE_H
 #define ETHD_LIB_SCENE_TREE_H
 
@@ -18,18 +25,19 @@
 #include "scene/scene.h"
 
 #define ETHD__WIDE 8
-#define ETHD__FLAT 4 /* edges that are looked at one by one */
+#define ETHD__FLAT 4 /* a chain of so many edges has no tree: they are looked at one by one */
 #define ETHD__INFLATE 0x1.8p-20f
 #define ETHD__STRETCH_NEAR (1 + 0x1p-20)
 #define ETHD__STRETCH_FAR (1 + 0x1p-16)
 #define ETHD__NONE UINT32_MAX
 
-/* Lane j: the box |c X + s Y - u| <= w, |c Y - s X - v| <= h; nothing: u = inf. */
+/* Lane j is the box |c X + s Y - u| <= w, |c Y - s X - v| <= h. An empty lane has u = inf. */
 typedef struct ethd__node {
   _Alignas(64) float c[ETHD__WIDE];
   float s[ETHD__WIDE], u[ETHD__WIDE], v[ETHD__WIDE], w[ETHD__WIDE], h[ETHD__WIDE];
 } ethd__node;
 
+/* A tree of so many leaves whose nodes start at `first`, level 1 before level 2. */
 static inline void ethd__tree_set(ethd__tree *t, uint32_t leaves, uint32_t first) {
   t->leaves = leaves;
   t->levels = 0;
@@ -46,6 +54,7 @@ static inline uint32_t ethd__node_count(uint32_t leaves) {
   return count;
 }
 
+/* Whether a chain has a tree to itself. */
 static inline bool ethd__has_tree(const ethd__object *o) { return o->edges > ETHD__FLAT; }
 
 static inline const ethd__tree *ethd__tree_at(const ethd_scene *scene, const ethd__object *o) {
@@ -56,13 +65,14 @@ static inline const ethd__tree *ethd__tree_at(const ethd_scene *scene, const eth
 
 typedef struct ethd__probe {
   const ethd__node *nodes;
-  double squares; /* from m2 to bounds */
-  float x, y;
+  double squares; /* factor from m2 to bounds of squared distances, stretched */
+  float x, y;     /* rounded */
 } ethd__probe;
 
+/* v, brought to within [-most, most]. */
 static inline double ethd__within(double v, double most) { return v > most ? most : v < -most ? -most : v; }
 
-/* Beyond 1e15 the nearest point of that square stands for x: no box is farther from it. */
+/* Beyond 1e15 the nearest point of that square stands for x: no box is farther from it than from x. */
 static inline ethd__probe ethd__probe_at(const ethd_scene *scene, ethd_vec x) {
   double s = scene->scale, u = s * (x.x - scene->centre.x), v = s * (x.y - scene->centre.y);
   bool near = fabs(u) <= 2 && fabs(v) <= 2;
@@ -71,11 +81,12 @@ static inline ethd__probe ethd__probe_at(const ethd_scene *scene, ethd_vec x) {
   return p;
 }
 
+/* False where another point stands for x. */
 static inline bool ethd__is_true_to(const ethd__probe *p) {
   return fabs((double)p->x) < 1e15 && fabs((double)p->y) < 1e15;
 }
 
-/* A squared distance in metres as a bound for boxes. */
+/* A squared distance in m2 as a bound that boxes may be compared with. */
 static inline float ethd__bound(const ethd__probe *p, double squared) {
   double b = squared * p->squares;
   return (float)(b < 1e37 ? b : 1e37);
@@ -83,9 +94,12 @@ static inline float ethd__bound(const ethd__probe *p, double squared) {
 
 /* ---- boxes ---- */
 
-/* Four lanes' squared distances, inf where `slopes` (NULL: nowhere) tells that no edge in the box can be the
-   nearest, nor one of its vertices: all lean one way as seen from x, which is farther along the box's axis
-   than the steepest edge makes up for across it (Johnson and Cohen 2001). */
+/* Squared distances of four lanes from `i` on.
+
+   `slopes` (NULL: not used) holds for each box of a chain the steepest slope of its edges against the box's axis. Where x lies
+   so far beyond the box's end that no edge is steep enough to make up for it, the distance falls along all of them towards
+   that end: none of them is nearest inside the box, nor a vertex between two, and the lane's distance becomes inf (Johnson
+   and Cohen 2001). */
 ETHD__INLINE ethd__floats ethd__four_squared(const ethd__node *n, const float *slopes, int i, ethd__floats x,
                                              ethd__floats y) {
   ethd__floats c = ethd__load(n->c + i), s = ethd__load(n->s + i), zero = ethd__all(0);
@@ -106,7 +120,7 @@ ETHD__INLINE void ethd__eight_squared(const ethd__node *n, const float *slopes, 
   ethd__store(squared + 4, high);
 }
 
-/* The lanes that are not beyond, without their distances. */
+/* Bits of the lanes that lie within the bound, where their distances aren't needed. */
 ETHD__INLINE unsigned ethd__lanes_near(const ethd__node *n, const float *slopes, const ethd__probe *p, float bound) {
   ethd__floats x = ethd__all(p->x), y = ethd__all(p->y), most = ethd__all(bound);
   ethd__floats low, high;
@@ -117,21 +131,22 @@ ETHD__INLINE unsigned ethd__lanes_near(const ethd__node *n, const float *slopes,
   return ethd__bits(low <= most) | ethd__bits(high <= most) << 4;
 }
 
-/* The lanes that are not beyond. */
+/* Bits of the lanes that lie within the bound. */
 ETHD__INLINE unsigned ethd__lanes_within(const float squared[ETHD__WIDE], float bound) {
   ethd__floats most = ethd__all(bound);
   return ethd__bits(ethd__load(squared) <= most) | ethd__bits(ethd__load(squared + 4) <= most) << 4;
 }
 
-/* The first of the nearest ones. */
+/* The nearest lane, the first if several are as near. */
 ETHD__INLINE uint32_t ethd__nearest_lane(const float squared[ETHD__WIDE]) {
   ethd__floats low = ethd__load(squared), high = ethd__load(squared + 4), m = ethd__least(ethd__min(low, high));
   unsigned lanes = ethd__bits(low == m) | ethd__bits(high == m) << 4;
   return lanes ? (uint32_t)__builtin_ctz(lanes) : 0;
 }
 
-/* ---- the leaves within a bound that may shrink ---- */
+/* ---- a walk: the leaves within a bound that its user may lower ---- */
 
+/* A node, or a leaf on level 0, and its box's squared distance. */
 typedef struct ethd__scene_place {
   float squared;
   uint32_t level, index;
@@ -141,24 +156,36 @@ typedef struct ethd__eight {
   _Alignas(16) float squared[ETHD__WIDE];
 } ethd__eight;
 
+/* Boxes that are still to be opened wait on a stack, of each node the nearest on top. The leaves of one node of level 1, the
+   node at hand, wait beside it as bits, since most walks never need the stack.
+
+   A walk begins at one leaf that its user looks at himself, which gives a bound. There are two ways:
+
+     walk_around   the leaf is known, say from the last query. The nodes above it follow from its index, so all levels
+                   are read at once: at each, the boxes beside the path to the leaf are kept
+     walk_down     none is known: the nearest box is taken on each level, and its node's eight distances are noted.
+     walk_on       Once the leaf found there has given a bound, the boxes beside that path are kept
+
+   then walk_next gives one leaf after the other, none twice. */
 typedef struct ethd__walk {
   const ethd__tree *tree;
   const ethd__probe *probe;
   const float *slopes;
-  float bound;
-  int count;
-  unsigned lanes;               /* leaves still to come of the node at hand */
-  uint32_t leaf;                /* its first */
-  ethd__eight at[ETHD__LEVELS]; /* [1]: the node at hand; after walk_down, those on the way */
+  float bound;                  /* of squared distances; may be lowered between two leaves */
+  int count;                    /* of the stack */
+  unsigned lanes;               /* bits of the leaves still to come of the node at hand */
+  uint32_t leaf;                /* the first leaf of that node */
+  ethd__eight at[ETHD__LEVELS]; /* distances: [1] of the node at hand; after walk_down, of a node on each level */
   ethd__scene_place stack[(ETHD__WIDE - 1) * ETHD__LEVELS + 1];
 } ethd__walk;
 
+/* The squared distances of a node's eight boxes. */
 ETHD__INLINE void ethd__look(ethd__walk *w, uint32_t level, uint32_t index, float squared[ETHD__WIDE]) {
   uint32_t n = w->tree->first[level] + index;
   ethd__eight_squared(w->probe->nodes + n, w->slopes ? w->slopes + ETHD__WIDE * (size_t)n : NULL, w->probe, squared);
 }
 
-/* These lanes of a node, nearer ones on top. */
+/* Puts these lanes of a node on the stack, nearer ones on top. */
 static inline void ethd__push(ethd__walk *w, const float squared[ETHD__WIDE], unsigned lanes, uint32_t level,
                               uint32_t index) {
   int start = w->count;
@@ -178,7 +205,7 @@ static inline void ethd__walk_start(ethd__walk *w, const ethd__tree *tree, const
   w->lanes = 0;
 }
 
-/* Of node `index`, in `at`, all lanes within the bound but this one. */
+/* Keeps the lanes of node `index` that lie within the bound, but for the one on the path. */
 ETHD__INLINE void ethd__walk_beside(ethd__walk *w, const float squared[ETHD__WIDE], uint32_t level, uint32_t index,
                                     uint32_t but) {
   unsigned lanes = ethd__lanes_within(squared, w->bound) & ~(1u << but % ETHD__WIDE);
@@ -190,7 +217,7 @@ ETHD__INLINE void ethd__walk_beside(ethd__walk *w, const float squared[ETHD__WID
   }
 }
 
-/* Everything but leaf `taken`: what is beside it on each level, so no load waits for another. */
+/* Keeps what stands beside the path to leaf `taken`, level by level; no load waits for another. */
 static inline void ethd__walk_around(ethd__walk *w, uint32_t taken, float bound) {
   w->bound = bound;
   for (uint32_t level = w->tree->levels; level > 0; level--) {
@@ -199,7 +226,7 @@ static inline void ethd__walk_around(ethd__walk *w, uint32_t taken, float bound)
   }
 }
 
-/* The leaf that is found by always taking the nearest box. The tree isn't empty. */
+/* The leaf to which the nearest box of each level leads. The tree has one. */
 static inline uint32_t ethd__walk_down(ethd__walk *w) {
   uint32_t index = 0;
   for (uint32_t level = w->tree->levels; level > 0; level--) {
@@ -209,14 +236,14 @@ static inline uint32_t ethd__walk_down(ethd__walk *w) {
   return index;
 }
 
-/* What is beside the leaf that walk_down found. */
+/* Keeps what stands beside the path that walk_down took. */
 static inline void ethd__walk_on(ethd__walk *w, uint32_t found, float bound) {
   w->bound = bound;
   for (uint32_t level = w->tree->levels; level > 0; level--)
     ethd__walk_beside(w, w->at[level].squared, level, found >> 3 * level, found >> 3 * (level - 1));
 }
 
-/* The next leaf; ETHD__NONE: no more. */
+/* The next leaf within the bound; its index is ETHD__NONE when there are no more. */
 static inline ethd__scene_place ethd__walk_next(ethd__walk *w) {
   for (;;) {
     if (w->lanes) w->lanes &= ethd__lanes_within(w->at[1].squared, w->bound);
@@ -246,10 +273,10 @@ static inline ethd__scene_place ethd__walk_next(ethd__walk *w) {
 
 /* ---- one edge ---- */
 
-/* Where x is beside an edge, without a branch: u from the nearest point to x. */
+/* Where x stands beside an edge e that starts at a, u = x - a; found without a branch. */
 typedef struct ethd__beside {
-  double squared;
-  double across, doubt; /* e x u and what it may be wrong by */
+  double squared;       /* of the distance, m2 */
+  double across, doubt; /* e x u, and the most that it may be wrong by */
 } ethd__beside;
 
 static inline ethd__beside ethd__beside_edge(ethd_vec a, ethd_vec b, ethd_vec x) {

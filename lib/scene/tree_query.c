@@ -1,20 +1,23 @@
-/* The nearest object. */
+/* The nearest object. A walk over the scene's tree hands out objects, nearest boxes first; each that is nearer lowers the
+   walk's bound. A hint says where the last query found its answer: the walk then starts there, mostly has nothing left to open,
+   and gives the same answer as without it. */
 #include "scene/strip.h"
 
 typedef struct search {
   ethd__strip at; /* scene, x and the object at hand */
   ethd__probe probe;
-  double squared;       /* of the distance of the nearest so far; 0 inside of it */
-  double distance;      /* INFINITY while the nearest is thin */
-  uint32_t place, edge; /* the nearest so far; ETHD__NONE: none */
-  ethd_touch touch;     /* its, unless it is thin */
+  double squared;       /* of the distance of the nearest so far; 0 where x is inside it */
+  double distance;      /* of the nearest so far; INFINITY while there is none */
+  uint32_t place, edge; /* where the nearest so far stands; ETHD__NONE: there is none */
+  ethd_touch touch;     /* of the nearest so far, unless it is a thin wall */
 } search;
 
+/* Of objects as near as each other the one with the lowest number is the answer. */
 static bool goes_first(const search *q, uint32_t place) {
   return q->place == ETHD__NONE || ethd__object_at(q->at.scene, place)->id < ethd__object_at(q->at.scene, q->place)->id;
 }
 
-/* Thin things wait with their touch until it is clear which is the nearest. */
+/* Keeps a thin wall if it is nearer. Its touch is worked out at the end, when it is clear that it is the nearest. */
 static void take_thin(search *q, uint32_t place, uint32_t edge, double squared) {
   if (q->distance < 0 || !(squared < q->squared || (squared == q->squared && goes_first(q, place)))) return;
   q->squared = squared;
@@ -75,12 +78,13 @@ static void answer(search *q, ethd_nearest *out) {
   *out = (ethd_nearest){q->touch.distance, q->touch.point, q->touch.n, o->id};
 }
 
-/* As far along the chain as last time, once more. */
+/* The edge to try first: the last query's, and as many edges on as it had moved before. */
 static uint32_t guess_edge(const search *q, uint32_t leaf, const ethd_scene_hint *hint) {
   uint32_t guess = hint->edge + (uint32_t)hint->step, edges = ethd__object_at(q->at.scene, leaf)->edges;
   return guess < edges ? guess : hint->edge;
 }
 
+/* Leaf numbers in a hint start at 1, so that zeros are no hint. */
 static void renew(const search *q, ethd_scene_hint *hint) {
   bool same = hint->leaf == q->place + 1;
   *hint = (ethd_scene_hint){q->place + 1, q->edge, same ? (int32_t)(q->edge - hint->edge) : 0};
