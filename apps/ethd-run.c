@@ -110,7 +110,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 static bool over(const ethd__session *s) {
-  return ethd__stop || ethd_loop_ended(s->loop) ||
+  return ethd__stop || !ethd__session_lives(s) ||
          (arg.duration > 0 && ethd__session_time(s) >= arg.duration * (1 - 1e-12));
 }
 

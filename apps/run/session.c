@@ -43,15 +43,19 @@ static void pass(ethd__session *s) {
 
 double ethd__session_time(const ethd__session *s) { return (double)ethd_loop_periods(s->loop) * s->setup.period; }
 
+bool ethd__session_lives(const ethd__session *s) {
+  return !ethd_loop_ended(s->loop) && !ethd_loop_hangs(s->loop, NULL);
+}
+
 /* Until `posted` setups are taken. */
 static bool settle(ethd__session *s) {
-  for (int i = 0; s->posted && i < PATIENCE && !ethd_loop_ended(s->loop); i++) pass(s);
+  for (int i = 0; s->posted && i < PATIENCE && ethd__session_lives(s); i++) pass(s);
   return !s->posted;
 }
 
 static void await_tick(ethd__session *s) {
   uint64_t before = ethd_loop_periods(s->loop);
-  for (int i = 0; ethd_loop_periods(s->loop) == before && i < PATIENCE && !ethd_loop_ended(s->loop); i++) pass(s);
+  for (int i = 0; ethd_loop_periods(s->loop) == before && i < PATIENCE && ethd__session_lives(s); i++) pass(s);
 }
 
 /* ---- opening ---- */
@@ -194,7 +198,7 @@ void ethd__session_halt(ethd__session *s, bool told) {
   }
   setup.limits.speed = 0;
   if (ethd_loop_armed(s->loop) && !ethd__session_post(s, &setup, "set", "limits.speed 0", message))
-    for (int i = 0; ethd_loop_armed(s->loop) && i < PATIENCE && !ethd_loop_ended(s->loop); i++) pass(s);
+    for (int i = 0; ethd_loop_armed(s->loop) && i < PATIENCE && ethd__session_lives(s); i++) pass(s);
   ethd_loop_disarm(s->loop);
   await_tick(s);
 }
@@ -212,15 +216,38 @@ static ethd_status close_recording(ethd__session *s, char *message) {
   return status;
 }
 
+/* Why it failed, also for the recording. */
+static void tell_hang(ethd__session *s, ethd_status status, char *message) {
+  const ethd_law *law;
+  (void)ethd_loop_hangs(s->loop, &law);
+  if (law)
+    (void)ethd__say(message, status, "the law %s doesn't return; its step hangs, and the device was let go", law->id);
+  else
+    (void)ethd__say(message, status, "the device %s doesn't return; the loop hangs in its code", s->config->device);
+  if (s->recorder.recording) (void)!ethd_recording_event(s->recorder.recording, "fault", message);
+}
+
+static ethd_status end_loop(ethd__session *s, char *message) {
+  ethd_loop_stop(s->loop);
+  ethd_status status = ethd_loop_join(s->loop);
+  ethd__recorder_end(&s->recorder);
+  s->left = status && !ethd_loop_ended(s->loop);
+  if (s->left)
+    tell_hang(s, status, message);
+  else if (status)
+    (void)ethd__say(message, status, "the clock failed; the loop ended by itself");
+  return status;
+}
+
+/* No second thread into a device that one hangs in. */
+static bool may_touch_device(const ethd__session *s) {
+  const ethd_law *law = NULL;
+  return !s->left || (ethd_loop_hangs(s->loop, &law) && law);
+}
+
 ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]) {
-  ethd_status status = ETHD_OK;
-  if (s->loop) {
-    ethd_loop_stop(s->loop);
-    status = ethd_loop_join(s->loop);
-    if (status) (void)ethd__say(message, status, "the clock failed; the loop ended by itself");
-    ethd__recorder_end(&s->recorder);
-  }
-  ethd_status stopped = s->started ? s->driver->stop(s->device) : ETHD_OK;
+  ethd_status status = s->loop ? end_loop(s, message) : ETHD_OK;
+  ethd_status stopped = s->started && may_touch_device(s) ? s->driver->stop(s->device) : ETHD_OK;
   if (stopped < 0 && !status)
     status = ethd__say(message, stopped, "device %s: stop: %s", s->config->device, ethd_status_sentence(stopped));
   s->started = false;
@@ -232,8 +259,9 @@ ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]) 
 }
 
 void ethd__session_free(ethd__session *s) {
-  ethd_loop_destroy(s->loop);
   ethd__snapshot_close(&s->recorder.snapshot);
+  if (s->left) return;
+  ethd_loop_destroy(s->loop);
   if (s->device) s->driver->close(s->device);
   ethd_control_destroy(s->control);
   if (s->config) ethd_config_free(s->config);

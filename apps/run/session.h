@@ -16,6 +16,7 @@ typedef struct ethd__session {
   ethd_loop *loop;
   ethd__recorder recorder;
   bool is_virtual, posted, started;
+  bool left;     /* the loop's thread hangs: what it may touch stays */
   int64_t clock; /* of a virtual session, ns */
 } ethd__session;
 
@@ -38,7 +39,11 @@ ETHD_MUST_CHECK ethd_status ethd__session_open(const ethd__session_options *opti
 /* Damps the ring until it is still, then disables. told: a signal asked for it. */
 void ethd__session_halt(ethd__session *s, bool told);
 
-/* Ends the loop and the device: numbers can be read, nothing moves. ETHD_E_DEVICE: the clock had failed. */
+/* False: the loop's thread has ended or hangs. */
+bool ethd__session_lives(const ethd__session *s);
+
+/* Ends the loop and the device: numbers can be read, nothing moves. ETHD_E_DEVICE: the clock had failed, or the device
+   hangs; ETHD_E_LAW: a law hangs. */
 ETHD_MUST_CHECK ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]);
 void ethd__session_free(ethd__session *s);
 

@@ -6,8 +6,7 @@
 
 #include "loop/loop.h"
 
-#define REHEARSALS 3      /* after an early wake-up */
-#define HOLD_MAX 60000000 /* ns without a newer joint sample, over a slow bus's 50 ms; then the device can't be read */
+#define REHEARSALS 3 /* after an early wake-up */
 
 /* ---- clock ---- */
 
@@ -101,17 +100,26 @@ static void remember_joints(ethd_loop *l, ethd_status status) ETHD_RT {
   memcpy(s->dq, l->joints.dq, sizeof s->dq);
 }
 
+/* A torque isn't held for longer than two steps may be apart. Before the first step after a start none is held, and
+   the device may take a little longer. */
+static void watch_age(ethd_loop *l, ethd_status status) ETHD_RT {
+  l->stale = status == ETHD_STALE ? l->stale + 1 : 0;
+  if (l->stale > (l->ramp ? l->hold : ETHD__HOLD_MAX / l->period))
+    l->sense.faults |= ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD);
+}
+
 /* No: there is nothing newer than what the last step knew, and the torque holds. */
 static bool read_device(ethd_loop *l) ETHD_RT {
   if (!l->held) memset(&l->sense, 0, sizeof l->sense);
   ethd_status status = l->def.driver->read(l->def.device, l->due, &l->sense);
+  watch_age(l, status);
   ethd__loop_rows(l, &l->sense);
-  if (status == ETHD_STALE && l->held * l->period < HOLD_MAX && !is_pressing(&l->sense)) {
+  if (status == ETHD_STALE && !is_pressing(&l->sense)) {
     l->held++;
     l->missed++;
     return false;
   }
-  if (status < 0 || (status == ETHD_STALE && (l->held * l->period >= HOLD_MAX || !l->joints.known)))
+  if (status < 0 || (status == ETHD_STALE && !l->joints.known))
     blind(l);
   else
     remember_joints(l, status);
@@ -151,17 +159,34 @@ static void write_device(ethd_loop *l, ethd_command *command) ETHD_RT {
   disarm(l);
 }
 
+/* The watching thread sees since when a step runs. */
+static int64_t begin_step(ethd_loop *l) ETHD_RT {
+  int64_t now = ethd__loop_now(l);
+  atomic_store_explicit(&l->stepping, now, memory_order_relaxed);
+  return now;
+}
+
+static void end_step(ethd_loop *l) ETHD_RT { atomic_store_explicit(&l->stepping, 0, memory_order_relaxed); }
+
+/* Given up by [main] while it hung: should it live again, the device and all else are no longer its own. */
+static void stay_if_left(ethd_loop *l) ETHD_RT {
+  while (atomic_load_explicit(&l->left, memory_order_acquire)) (void)!sleep_until(l, ethd__loop_now(l) + 1000000000);
+}
+
 static void step(ethd_loop *l, ethd_command *command) ETHD_RT {
   if (atomic_load_explicit(&l->clear, memory_order_relaxed)) {
     atomic_store_explicit(&l->clear, 0, memory_order_relaxed);
     ethd_control_clear(l->def.control);
     l->marks |= ETHD_ROW_CLEARED;
   }
+  int64_t begin = begin_step(l);
   if (l->dry) (void)!ethd_control_rehearse(l->def.control, &l->sense, command);
+  if (l->dry) begin = ethd__loop_now(l);
   l->dry = 0;
-  int64_t begin = ethd__loop_now(l);
   (void)!ethd_control_step(l->def.control, &l->sense, command, &l->row.trace);
   l->step = ethd__loop_now(l) - begin;
+  end_step(l);
+  stay_if_left(l);
   l->swaps += l->row.trace.swap != 0;
   l->missed = 0;
 }
@@ -200,7 +225,10 @@ static int wait(ethd_loop *l) ETHD_RT {
   ethd_histogram_add(&l->stats.wake, late);
   if (l->early && !l->dry) {
     ethd_command command;
+    (void)begin_step(l);
     for (int i = 0; i < REHEARSALS; i++) (void)!ethd_control_rehearse(l->def.control, &l->sense, &command);
+    end_step(l);
+    stay_if_left(l);
     while (!l->def.clock && (now = ethd__loop_now(l)) < l->due) continue;
   }
   if (now - l->due >= l->period) overrun(l, now - l->due, (now - l->due) / l->period);

@@ -68,6 +68,12 @@ static double gap_of(const ethd_loop_def *d) {
   return is_limited ? fmin(d->gap, ethd_limits_device().gap) : d->gap;
 }
 
+/* s: so far two joint samples may lie apart, by the application and the device. */
+static double between_samples(const ethd_loop_def *d) {
+  if (!d->driver->limits || !d->device) return d->gap;
+  return fmin(d->gap, d->driver->limits(d->device).gap);
+}
+
 ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_error *error) {
   *out = NULL;
   ethd_status status = check(def, error);
@@ -80,6 +86,9 @@ ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_err
   l->period = llrint(1e9 * def->period);
   l->early = llrint(1e9 * def->early_wake);
   l->gap = nanoseconds(gap_of(def));
+  int64_t apart =
+      nanoseconds(fmin(between_samples(def), 1)) + 1; /* a gap that isn't exact in binary counts as what it's meant */
+  l->hold = (apart < ETHD__HOLD_MAX ? apart : ETHD__HOLD_MAX) / l->period - 1;
   l->heartbeat = nanoseconds(def->heartbeat);
   l->dma_latency = -1;
   l->rows.size = def->rows;
@@ -96,6 +105,7 @@ void ethd_loop_destroy(ethd_loop *l) {
   if (!l) return;
   ethd_loop_stop(l);
   (void)!ethd_loop_join(l);
+  if (atomic_load_explicit(&l->left, memory_order_relaxed)) return; /* a hung thread may still live in it */
   free(l->rows.at);
   free(l);
 }
@@ -120,6 +130,13 @@ void ethd_loop_tick(ethd_loop *l) {
 
 int32_t ethd_loop_armed(const ethd_loop *l) { return atomic_load_explicit(&l->armed, memory_order_relaxed); }
 int32_t ethd_loop_ended(const ethd_loop *l) { return atomic_load_explicit(&l->ended, memory_order_acquire); }
+
+int32_t ethd_loop_hangs(const ethd_loop *l, const ethd_law **law) {
+  int32_t hangs = atomic_load_explicit(&l->hangs, memory_order_acquire);
+  if (law) *law = hangs ? ethd_control_law(l->def.control) : NULL;
+  return hangs;
+}
+
 int32_t ethd_loop_shortfalls(const ethd_loop *l) { return l->shortfalls; }
 void ethd_loop_disarm(ethd_loop *l) { atomic_store_explicit(&l->armed, 0, memory_order_relaxed); }
 void ethd_loop_clear(ethd_loop *l) { atomic_store_explicit(&l->clear, 1, memory_order_relaxed); }
@@ -150,11 +167,17 @@ static void read_histogram(const ethd_histogram *h, ethd_histogram *out) {
   out->max = __atomic_load_n(&h->max, __ATOMIC_RELAXED);
 }
 
-/* The controller's own count is whole only between two of its steps. */
+/* The controller's own count is whole only between two of its steps. A thread that hangs takes no rows: they count
+   here. */
 static void read_faults(const ethd_loop *l, uint64_t out[ETHD_FAULT_COUNT]) {
   ethd_counters now = {0};
-  if (l->def.clock || ethd_loop_ended(l)) ethd_control_counters(l->def.control, &now);
-  for (int i = 0; i < ETHD_FAULT_COUNT; i++) out[i] = l->faults[i] + now.faults[i];
+  int64_t raised = 0;
+  if (l->def.clock || ethd_loop_ended(l))
+    ethd_control_counters(l->def.control, &now);
+  else if (ethd_loop_hangs(l, NULL))
+    raised = atomic_load_explicit(&l->raised, memory_order_relaxed);
+  for (int i = 0; i < ETHD_FAULT_COUNT; i++)
+    out[i] = l->faults[i] + now.faults[i] + ((raised & ETHD_FAULT_BIT(i)) != 0);
 }
 
 void ethd_loop_read(const ethd_loop *l, ethd_loop_stats *out) {

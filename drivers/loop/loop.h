@@ -12,6 +12,10 @@
 /* Who has device and controller: the loop, or [main] while it enables. */
 enum { ETHD__LOOP_RUNS, ETHD__LOOP_ASKED, ETHD__LOOP_PARKED };
 
+#define ETHD__HOLD_MAX 60000000   /* ns without a newer joint sample, over a slow bus's 50 ms; more is too old anyway */
+#define ETHD__LOOP_HANG 500000000 /* ns: a thread that hasn't turned for so long, and four periods, hangs */
+#define ETHD__LOOP_STEP_MAX 100000000 /* ns: no step may take longer, whatever limits.step_time says */
+
 typedef struct ethd__loop_ring {
   _Alignas(64) atomic_uint head; /* next to write, [rt] */
   _Alignas(64) atomic_uint tail; /* next to read */
@@ -44,6 +48,8 @@ struct ethd_loop {
   int64_t ramp;   /* armed ticks since the start */
   bool dry;       /* 1: the next step is rehearsed first */
   int32_t held;   /* ticks since the last that stepped */
+  int64_t stale;  /* ticks since the last joint sample */
+  int64_t hold;   /* ticks for which a torque may be held without one */
   int32_t marks;
   bool was_armed;
   int64_t late;    /* ns: the longest overrun since the last step */
@@ -59,9 +65,12 @@ struct ethd_loop {
   ethd_loop_stats stats;
 
   _Alignas(64) atomic_int mode, armed, clear, stop, ended, failed;
-  atomic_uint beats;      /* of the application */
-  _Atomic int64_t turned; /* ns: the loop's thread was alive then */
-  _Atomic int64_t raised; /* rows for the next sense */
+  atomic_uint beats;        /* of the application */
+  _Atomic int64_t turned;   /* ns: the loop's thread was alive then */
+  _Atomic int64_t stepping; /* ns: a step runs since then; 0: none does */
+  atomic_int hangs;         /* 1: the loop's thread hasn't turned for ETHD__LOOP_HANG */
+  atomic_int left;          /* ethd_status that join returned when it gave up that thread; 0: it didn't */
+  _Atomic int64_t raised;   /* rows for the next sense */
   ethd__loop_ring rows;
 
   /* [main] */

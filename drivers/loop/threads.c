@@ -48,24 +48,50 @@ static void *run_unit(void *unit_) {
   return NULL;
 }
 
-/* The loop's thread is dead when it hasn't turned for `gap` while the device gets torques: then the loop, should
-   it live again at this very moment, is told, and the device is let go from here. */
+/* ---- the thread that watches ---- */
+
+typedef struct watch {
+  int64_t now, turned, alive; /* ns */
+  int64_t silent;             /* ns, as this thread has seen them pass: a process that was stopped isn't silent */
+} watch;
+
+/* ns until the loop's thread counts as dead: by its silence, where gap is set, or by a step that doesn't end. */
+static int64_t left_to_live(const ethd_loop *l, const watch *w) {
+  int64_t step = atomic_load_explicit(&l->stepping, memory_order_relaxed);
+  int64_t gap = l->gap > 2 * l->period ? l->gap : 2 * l->period; /* a period lies between two turns */
+  int64_t by_gap = l->gap < INT64_MAX ? w->alive + gap - w->now : INT64_MAX;
+  int64_t by_step = step ? step + ETHD__LOOP_STEP_MAX - w->now : INT64_MAX;
+  return by_gap < by_step ? by_gap : by_step;
+}
+
+/* The loop, should it live again at this very moment, is told, and the device is let go from here. */
+static void let_go(ethd_loop *l) {
+  ethd_loop_raise(l, ETHD_FAULT_LOOP);
+  ethd_loop_disarm(l);
+  l->def.driver->safe(l->def.device);
+}
+
+static void look(ethd_loop *l, watch *w) {
+  int64_t turned = atomic_load_explicit(&l->turned, memory_order_relaxed), now = ethd__loop_now(l);
+  int64_t hang = ETHD__LOOP_HANG > 4 * l->period ? ETHD__LOOP_HANG : 4 * l->period;
+  w->silent = turned == w->turned ? w->silent + (now - w->now < 2 * LOOK_MAX ? now - w->now : 2 * LOOK_MAX) : 0;
+  w->turned = turned;
+  w->now = now;
+  if (turned > w->alive) w->alive = turned;
+  if (!ethd_loop_armed(l)) w->alive = now;
+  atomic_store_explicit(&l->hangs, w->silent >= hang, memory_order_release);
+}
+
+/* The loop's thread is dead when it hasn't turned for `gap` while the device gets torques. */
 static void *run_watch(void *loop) {
   ethd_loop *l = loop;
-  int64_t gap = l->gap > 2 * l->period ? l->gap : 2 * l->period; /* a period lies between two turns */
-  int64_t alive = ethd__loop_now(l), left = gap;
-  while (!atomic_load_explicit(&l->stop, memory_order_relaxed) && !ethd_loop_ended(l)) {
-    struct timespec t = {.tv_nsec = left < LOOK_MAX ? left : LOOK_MAX};
+  watch w = {.now = ethd__loop_now(l), .alive = ethd__loop_now(l)};
+  while (!ethd_loop_ended(l) && !atomic_load_explicit(&l->left, memory_order_relaxed)) {
+    int64_t left = left_to_live(l, &w);
+    struct timespec t = {.tv_nsec = left < 1 ? 1 : left < LOOK_MAX ? left : LOOK_MAX};
     __STD(nanosleep)(&t, NULL);
-    int64_t turned = atomic_load_explicit(&l->turned, memory_order_relaxed), now = ethd__loop_now(l);
-    if (turned > alive) alive = turned;
-    if (!ethd_loop_armed(l)) alive = now;
-    left = alive + gap - now;
-    if (left > 0) continue;
-    ethd_loop_raise(l, ETHD_FAULT_LOOP);
-    l->def.driver->safe(l->def.device);
-    alive = now;
-    left = gap;
+    look(l, &w);
+    if (ethd_loop_armed(l) && left_to_live(l, &w) <= 0) let_go(l);
   }
   return NULL;
 }
@@ -142,7 +168,6 @@ static int start_units(ethd_loop *l) {
 
 /* Above the loop in priority, where that is granted. */
 static int start_watch(ethd_loop *l) {
-  if (l->gap == INT64_MAX) return 0;
   int failure = create(&l->watch, SCHED_FIFO, l->def.priority < 99 ? l->def.priority + 1 : 99, run_watch, l);
   if (failure == EPERM) failure = create(&l->watch, SCHED_OTHER, 0, run_watch, l);
   l->has_watch = !failure;
@@ -168,7 +193,7 @@ static int start_threads(ethd_loop *l, int cpu) {
 static void arm(ethd_loop *l) {
   int64_t now = ethd__loop_now(l);
   l->ahead = ethd__loop_boot(l) - now;
-  l->missed = l->step = l->ramp = l->bucket = l->late = l->slept = l->beat_at = 0;
+  l->missed = l->step = l->stale = l->ramp = l->bucket = l->late = l->slept = l->beat_at = 0;
   l->dry = 1;
   l->marks |= ETHD_ROW_STARTED;
   ethd_control_heat(l->def.control, l->row.heat);
@@ -237,18 +262,32 @@ ethd_status ethd_loop_home(ethd_loop *l, const double *q) {
   return status;
 }
 
+/* A thread that hangs can't be ended: it is left to itself, with all that it may touch. */
+static void join_control(ethd_loop *l) {
+  const ethd_law *law = NULL;
+  while (l->has_watch && !ethd_loop_ended(l) && !ethd_loop_hangs(l, &law)) pause_a_little();
+  if (l->has_watch && !ethd_loop_ended(l)) {
+    atomic_store_explicit(&l->left, law ? ETHD_E_LAW : ETHD_E_DEVICE, memory_order_release);
+    pthread_detach(l->control);
+  } else {
+    __RT(pthread_join)(l->control, NULL);
+  }
+  l->has_control = 0;
+}
+
 ethd_status ethd_loop_join(ethd_loop *l) {
   if (l->def.clock && !ethd_loop_ended(l)) {
     ethd__loop_rest(l);
     atomic_store_explicit(&l->ended, 1, memory_order_release);
   }
-  if (l->has_control) __RT(pthread_join)(l->control, NULL);
-  l->has_control = 0;
+  if (l->has_control) join_control(l);
+  ethd_status left = (ethd_status)atomic_load_explicit(&l->left, memory_order_relaxed);
   if (l->has_watch) __STD(pthread_join)(l->watch, NULL);
   l->has_watch = 0;
   for (; l->units; l->units--) __STD(pthread_join)(l->unit[l->units - 1].thread, NULL);
-  if (l->stack) munmap(l->stack, l->def.stack);
+  if (l->stack && !left) munmap(l->stack, l->def.stack);
   l->stack = NULL;
   ethd__loop_release_machine(l);
+  if (left) return left;
   return atomic_load_explicit(&l->failed, memory_order_relaxed) ? ETHD_E_DEVICE : ETHD_OK;
 }

@@ -45,6 +45,7 @@ static int64_t heartbeat(ethd_loop *l) ETHD_RT {
 }
 
 void ethd__loop_rows(ethd_loop *l, ethd_sense *sense) {
+  if (l->step > ETHD__LOOP_STEP_MAX) sense->faults |= ETHD_FAULT_BIT(ETHD_FAULT_BUDGET);
   if (atomic_load_explicit(&l->raised, memory_order_relaxed))
     sense->faults |= atomic_exchange_explicit(&l->raised, 0, memory_order_relaxed);
   if (l->late || l->bucket) sense->faults |= overruns(l);

@@ -16,6 +16,13 @@
    each; require_rt makes it a failure. With a virtual clock there are no threads: ethd_loop_tick does one
    tick, the driver's service included, and equal inputs give equal bits.
 
+   A step that runs for more than 0.1 s is over its budget (row 29), whatever limits.step_time says. A thread of
+   real time watches over the loop's: at a step over that budget, or at silence over `gap`, the device is made safe
+   from there, and row 3 is raised. Half a second and four periods without a turn is a thread that hangs, for code
+   that it called doesn't return: ethd_loop_hangs says so, and in which law. No thread can be ended from outside, so
+   ethd_loop_join then leaves it to itself and fails; loop, controller, setup and laws stay in memory for it until the
+   process ends.
+
    The loop, its device and its controller outlive each other in this order: destroy the loop first. */
 #ifndef ETHD_LOOP_H
 #define ETHD_LOOP_H
@@ -81,8 +88,8 @@ typedef struct ethd_loop_def {
   int32_t require_rt;        /* 1: start fails at any shortfall */
   int32_t dma_latency;       /* us, held while the loop runs; -1: not held */
   double early_wake;         /* s, 0 to period / 2: wakes so early, warms the caches, then spins to the tick */
-  double gap;                /* s, from a period on: lateness and silence over it are faults, and a thread watches
-                            over the loop's; INFINITY: they are only counted. The device's own limit holds too */
+  double gap;                /* s, from a period on: lateness, silence and joint samples older than it are faults;
+                            INFINITY: lateness is only counted. The device's own limit holds too */
   double heartbeat;          /* s, from a period on: the application's longest silence; INFINITY: any */
   double soft_start;         /* s, 0 to 10: time in which the torque's share rises from 0 to 1 after enabling */
   size_t stack;              /* bytes of the loop's stack, 65536 to 2^26 */
@@ -129,7 +136,8 @@ typedef struct ethd_loop_stats {
 /* ETHD_E_ARGUMENT, ETHD_E_RANGE with the field's name, ETHD_E_MEMORY. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_error *error);
 
-/* Stops and joins if need be. NULL is fine. [main] */
+/* Stops and joins if need be. NULL is fine. Where join failed with a thread that hangs, nothing is freed, and neither
+   are the controller and, after ETHD_E_DEVICE, the device to be destroyed. [main] */
 ETHD_API void ethd_loop_destroy(ethd_loop *loop);
 
 /* Threads: the loop's, one for each unit of the device's blocking I/O. One dry tick, then the device is armed. With a virtual
@@ -167,7 +175,9 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_home(ethd_loop *loop, const doubl
 /* Asks the threads to end; zero torque is the last thing written. [any] */
 ETHD_API void ethd_loop_stop(ethd_loop *loop);
 
-/* Waits for them. ETHD_E_DEVICE: the clock failed. [main] */
+/* Waits for them, for a second at most once they were told to stop (at periods over 0.1 s: eight periods). ETHD_E_LAW:
+   the loop's thread hangs in a law, and will never touch the device again. ETHD_E_DEVICE: the clock failed, or, where
+   ethd_loop_ended is 0, the thread hangs in the device. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_join(ethd_loop *loop);
 
 /* The next row, in order; ETHD_EMPTY when there is none. One reader at a time. [any] */
@@ -181,6 +191,10 @@ ETHD_API int32_t ethd_loop_ended(const ethd_loop *loop);
 
 /* Periods since the start, ticks and missed ones: the loop's time over its period. [any] */
 ETHD_API uint64_t ethd_loop_periods(const ethd_loop *loop);
+
+/* 1: the loop's thread hangs, as said above; *law is the law in which it does, NULL: the device's code. 0 else. law
+   may be NULL. [any] */
+ETHD_API int32_t ethd_loop_hangs(const ethd_loop *loop, const ethd_law **law);
 
 /* Numbers while it runs are a tick apart at most. [main] */
 ETHD_API void ethd_loop_read(const ethd_loop *loop, ethd_loop_stats *out);
