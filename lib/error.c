@@ -2,10 +2,10 @@
 
 #include <string.h>
 
+/* A name may come from a plugin: nothing that steers a terminal goes on. */
 static void copy_name(char *to, size_t room, const char *from) {
-  size_t n = strlen(from);
-  if (n > room - 1) n = room - 1;
-  memcpy(to, from, n);
+  size_t n = 0;
+  for (; n < room - 1 && from[n]; n++) to[n] = (unsigned char)from[n] < ' ' || from[n] == 0x7f ? '?' : from[n];
   to[n] = 0;
 }
 

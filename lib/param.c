@@ -4,6 +4,7 @@
 #include <stdbool.h>
 
 #include "error.h"
+#include "line.h"
 
 #define NAME_MAX_LENGTH 31
 
@@ -54,7 +55,7 @@ static bool has_empty_word(const char *words) {
 }
 
 static bool is_row(const ethd_param *row) {
-  if (!row->unit || !row->unit[0] || !row->brief || !row->brief[0]) return false;
+  if (!ethd__is_line(row->unit, ETHD_BRIEF_MAX) || !ethd__is_line(row->brief, ETHD_BRIEF_MAX)) return false;
   if (!(isfinite(row->min) && row->min <= row->def && row->def <= row->max)) return false;
   uint32_t words = ethd_param_words(row);
   if (!words) return true;

@@ -15,6 +15,7 @@
 #include "clock.h"
 #include "denormals.h"
 #include "ethd/ethd.h"
+#include "settings/config_parts.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
@@ -26,9 +27,11 @@ void ethd__begin(void) {
   argp_program_version = "libethd " ETHD_VERSION;
   argp_err_exit_status = ETHD_EXIT_INPUT;
   ethd__flush_denormals();
+  ethd__foreign_code = ethd__foreign;
 }
 
 int ethd__end(int code) {
+  ethd__leave();
   bool failed = fflush(stdout) != 0 || ferror(stdout);
   if (!failed) return code;
   fprintf(stderr, "%s: standard output: %s\n", program_invocation_short_name, strerror(errno ? errno : EIO));
@@ -43,6 +46,7 @@ void ethd__fail(int code, const char *format, ...) {
   va_end(args);
   fflush(stdout);
   fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);
+  ethd__leave();
   exit(code);
 }
 

@@ -17,6 +17,14 @@ enum { ETHD_EXIT_DONE = 0, ETHD_EXIT_FAILED = 1, ETHD_EXIT_INPUT = 2 };
    terminal gets no control characters from stdout and stderr. */
 void ethd__begin(void);
 
+/* Code of a plugin runs on this thread from here on (what it is, for people), or no longer (NULL): if it doesn't return
+   within 5 s, the program says so and exits 1. Once it has run, an exit that isn't the program's own, which a plugin
+   can call at any time, is said and becomes exit 1. ethd__begin hooks it into the reading of configurations. */
+void ethd__foreign(const char *what);
+
+/* The program ends by its own will. */
+void ethd__leave(void);
+
 /* Last in main: `return ethd__end(code)`. Exit 1 when stdout could not be written. */
 int ethd__end(int code);
 

@@ -18,10 +18,24 @@
 
 /* ---- time ---- */
 
+/* Which law it was, and what it did. */
+static void tell_law(const ethd__session *s, const ethd_event *e) {
+  const ethd_law *laws[] = {&s->setup.tracking->law, &s->setup.contact->law, &s->setup.transition->law};
+  static const char *const kinds[] = {"tracking", "contact", "transition"};
+  int value = (int)e->value, kind = e->code == ETHD_FAULT_LAW ? value / 100 : value;
+  ethd_status status = e->code == ETHD_FAULT_LAW ? (ethd_status) - (value % 100) : ETHD_E_NOT_FINITE;
+  if ((e->code != ETHD_FAULT_LAW && e->code != ETHD_FAULT_FINITE) || kind < 0 || kind > ETHD_TRANSITION) return;
+  fprintf(stderr, "%s: the %s law %s: %s\n", program_invocation_short_name, kinds[kind], laws[kind]->id,
+          ethd_status_sentence(status));
+}
+
 void ethd__session_poll(ethd__session *s) {
   ethd_event event;
   while (ethd_control_poll(s->control, &event) == ETHD_OK)
-    if (event.kind == ETHD_EVENT_TAKEN) s->posted = false;
+    if (event.kind == ETHD_EVENT_TAKEN)
+      s->posted = false;
+    else if (event.kind == ETHD_EVENT_FAULT)
+      tell_law(s, &event);
   if (s->loop) ethd_loop_beat(s->loop);
 }
 
@@ -164,7 +178,9 @@ ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const 
   if (!settle(s)) return ethd__say(message, ETHD_BUSY, "%s", ethd_status_sentence(ETHD_BUSY));
   if (!ethd__recorder_expect(&s->recorder, kind, detail))
     return ethd__say(message, ETHD_E_FULL, "%s", ethd_status_sentence(ETHD_E_FULL));
+  if (s->config->plugin_count) ethd__foreign("the check of a plugin's law");
   ethd_status status = ethd_control_post(s->control, setup, &error);
+  ethd__foreign(NULL);
   if (status) {
     ethd__recorder_withdraw(&s->recorder);
     ethd_error_text(NULL, &error, message);

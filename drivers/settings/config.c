@@ -72,7 +72,7 @@ static const ethd_ini_key *find_cause(const reading *r, const char *name) {
 static ethd_status check_setup(const reading *r) {
   ethd_error error;
   char what[ETHD_MESSAGE_MAX];
-  ethd_status status = ethd_setup_check(&r->whole->config.setup, &error);
+  ethd_status status = ethd__config_check(&r->whole->config, &r->whole->config.setup, &error);
   if (!status) return ETHD_OK;
   bool material = strncmp(error.name, "material.", 9) == 0;
   const ethd_ini_key *own = material ? NULL : find_key(r, error.name), *cause = own ? NULL : find_cause(r, error.name);

@@ -71,7 +71,7 @@ ethd_status ethd_config_transition(const ethd_config *config, const char *id, et
   const ethd_law *to = &changed.transition->law;
   if (is_paper(config)) open_caps(to, changed.transition_p);
   keep_common(config, from, setup->transition_p, to, changed.transition_p);
-  status = ethd_setup_check(&changed, &error);
+  status = ethd__config_check(config, &changed, &error);
   if (status < 0) {
     ethd_error_text(NULL, &error, message);
     return status;

@@ -87,6 +87,13 @@ ethd_status ethd__config_scene(ethd__config *config, const ethd__config_key *key
 /* preset = paper on whatever the transition law has; a no-op for product. */
 ethd_status ethd__config_preset(ethd__config *config, const ethd__config_key *key);
 
+/* Code of a plugin runs from here on (what: its file, or what it does), or no longer (NULL): a program that wants to
+   end it when it doesn't return hooks in here. NULL: nobody does. [main] */
+extern void (*ethd__foreign_code)(const char *what);
+
+/* ethd_setup_check, in which laws of the configuration's plugins may run. */
+ethd_status ethd__config_check(const ethd_config *config, const ethd_setup *setup, ethd_error *error);
+
 /* [plugins] file: opens, and adds its laws to config->laws. */
 ethd_status ethd__config_plugin(ethd__config *config, const ethd__config_key *key);
 

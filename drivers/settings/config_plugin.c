@@ -103,13 +103,28 @@ static ethd_status add_file(ethd_config *config, char *path, const ethd__config_
   return ETHD_OK;
 }
 
+void (*ethd__foreign_code)(const char *what);
+
+static void foreign(const char *what) {
+  if (ethd__foreign_code) ethd__foreign_code(what);
+}
+
+ethd_status ethd__config_check(const ethd_config *config, const ethd_setup *setup, ethd_error *error) {
+  if (config->plugin_count) foreign("the check of a plugin's law");
+  ethd_status status = ethd_setup_check(setup, error);
+  foreign(NULL);
+  return status;
+}
+
 static ethd_status open_plugin(ethd_config *config, const char *path, const ethd__config_key *key) {
   char what[ETHD_MESSAGE_MAX];
   const ethd_plugin_entry *entry;
   ethd_error error;
   ethd_status status = ethd__plugin_file_check(path, what);
   if (status) return ethd__key_refuse(key, status, "%s", what);
+  foreign(path);
   status = ethd_plugin_open(path, &entry, &error);
+  foreign(NULL);
   if (!status) return add_laws(config, entry, key);
   ethd_error_text(NULL, &error, what);
   return ethd__key_refuse(key, status, "%s: %s", key->value, what);

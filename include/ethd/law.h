@@ -36,7 +36,7 @@ typedef struct ethd_law {
   uint32_t kind;       /* ethd_kind */
   uint32_t state_size; /* bytes, <= ETHD_STATE_MAX; contact and transition: one block per contact */
   const char *id;      /* a-z 0-9 - , 1 to 31 characters */
-  const char *brief;   /* one line */
+  const char *brief;   /* one line: 1 to ETHD_BRIEF_MAX printable ASCII characters */
   const ethd_param *params;
   uint32_t param_count;
   /* Relations between parameters that rows can't say; NULL: none. Negative refuses the post. [main] */

@@ -18,7 +18,7 @@
 
    A step that runs for more than 0.1 s is over its budget (row 29), whatever limits.step_time says. A thread of
    real time watches over the loop's: at a step over that budget, or at silence over `gap`, the device is made safe
-   from there, and row 3 is raised. Half a second and four periods without a turn is a thread that hangs, for code
+   from there and disarmed, and row 3 is raised. Half a second and four periods without a turn is a thread that hangs, for code
    that it called doesn't return: ethd_loop_hangs says so, and in which law. No thread can be ended from outside, so
    ethd_loop_join then leaves it to itself and fails; loop, controller, setup and laws stay in memory for it until the
    process ends.

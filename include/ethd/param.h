@@ -10,6 +10,7 @@ ETHD_BEGIN_DECLS
 
 /* At most so many parameters in one table. Frozen within an ABI. */
 #define ETHD_PARAMS_MAX 16
+#define ETHD_BRIEF_MAX 200 /* characters of a unit or a brief: printable ASCII, one line */
 
 /* One number. `unit` is an SI unit ("N/m", "1"), or the words of a choice joined by '|'
    ("velocity|difference"): the value is then the word's index. A value is valid iff min <= value <= max;
@@ -30,7 +31,7 @@ typedef struct ethd_method {
 } ethd_method;
 
 /* ETHD_E_TABLE with the offending name unless: at most ETHD_PARAMS_MAX; names of 1 to 31 characters
-   a-z 0-9 _ , unique; unit and brief present; min <= def <= max, min finite, nothing NaN; a choice has
+   a-z 0-9 _ , unique; unit and brief of 1 to ETHD_BRIEF_MAX printable ASCII characters; min <= def <= max, min finite, nothing NaN; a choice has
    min 0, max its words - 1 and a whole default. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_params_check_table(const ethd_param *params, uint32_t count,
                                                              ethd_error *error);

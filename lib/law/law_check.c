@@ -3,6 +3,7 @@
 
 #include "error.h"
 #include "ethd/law.h"
+#include "line.h"
 
 /* The size that a law's struct has at least in ABI 0, by kind. */
 static const size_t smallest[] = {ETHD_TRACKING_LAW_MIN, ETHD_CONTACT_LAW_MIN, ETHD_TRANSITION_LAW_MIN};
@@ -31,7 +32,7 @@ ethd_status ethd_law_check(const ethd_law *law, ethd_error *error) {
     return ethd__refuse(error, ETHD_E_SIZE, "size",
                         (ethd__found){law->size, (double)smallest[law->kind], (double)INFINITY});
   if (!id_is_good(law->id)) return ethd__error(error, ETHD_E_ARGUMENT, "id");
-  if (!law->brief || !law->brief[0]) return ethd__error(error, ETHD_E_ARGUMENT, law->id);
+  if (!ethd__is_line(law->brief, ETHD_BRIEF_MAX)) return ethd__error(error, ETHD_E_ARGUMENT, law->id);
   if (law->state_size > ETHD_STATE_MAX)
     return ethd__refuse(error, ETHD_E_STATE, law->id, (ethd__found){law->state_size, 0, ETHD_STATE_MAX});
   if (!has_step(law)) return ethd__error(error, ETHD_E_ARGUMENT, law->id);

@@ -4,8 +4,10 @@
 #include <string.h>
 
 #include "error.h"
+#include "line.h"
 
 #define LAWS_MAX 64
+#define WORD_MAX 31
 
 static ethd_status check_laws(const ethd_plugin_entry *entry, ethd_error *error) {
   for (uint32_t i = 0; i < entry->law_count; i++) {
@@ -24,7 +26,8 @@ static ethd_status check_entry(const ethd_plugin_entry *entry, ethd_error *error
   if (entry->size < ETHD_PLUGIN_MIN)
     return ethd__refuse(error, ETHD_E_SIZE, "ethd_plugin.size",
                         (ethd__found){entry->size, (double)ETHD_PLUGIN_MIN, (double)INFINITY});
-  if (!entry->id || !entry->version || !entry->laws) return ethd__error(error, ETHD_E_ARGUMENT, "ethd_plugin");
+  if (!ethd__is_line(entry->id, WORD_MAX) || !ethd__is_line(entry->version, WORD_MAX) || !entry->laws)
+    return ethd__error(error, ETHD_E_ARGUMENT, "ethd_plugin");
   if (entry->law_count < 1 || entry->law_count > LAWS_MAX)
     return ethd__refuse(error, ETHD_E_RANGE, "ethd_plugin.law_count", (ethd__found){entry->law_count, 1, LAWS_MAX});
   return check_laws(entry, error);

@@ -21,6 +21,12 @@ static ethd_status step(const double *p, void *state, const ethd_contact *contac
 }
 #define STEP step
 #endif
+#ifndef BRIEF
+#define BRIEF "does nothing"
+#endif
+#ifndef CHECK
+#define CHECK NULL
+#endif
 #ifndef ENTRY
 #define ENTRY ethd_plugin
 #endif
@@ -32,7 +38,7 @@ static ethd_status step(const double *p, void *state, const ethd_contact *contac
 #endif
 
 static const ethd_transition_law law = {
-    .law = {SIZE, ETHD_ABI, ETHD_TRANSITION, STATE, "broken", "does nothing", PARAMS, PARAM_COUNT, NULL, NULL},
+    .law = {SIZE, ETHD_ABI, ETHD_TRANSITION, STATE, "broken", BRIEF, PARAMS, PARAM_COUNT, CHECK, NULL},
     .step = STEP,
 };
 static const ethd_law *const laws[] = {&law.law, &law.law};

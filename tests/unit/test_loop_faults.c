@@ -231,6 +231,78 @@ START_TEST(test_ends_without_a_sample) {
 }
 END_TEST
 
+/* Ticks from the last sample to the one that ends the torque, by the gap in periods: so far two steps may be apart. The
+   row that is named is the device's, and lasts as long as the samples are old. */
+static const struct {
+  double gap; /* periods; 0: none */
+  int ticks;
+} olds[] = {{0, 21}, {100, 21}, {21, 21}, {20.5, 20}, {5, 5}, {2, 2}, {1, 1}};
+
+START_TEST(test_old_samples) {
+  bench b;
+  ethd_driver own;
+  ethd_loop_row row = {.armed = 0}, last;
+  bench_open(&b);
+  own = *b.def.driver;
+  own.read = gappy_read;
+  b.def.driver = &own;
+  if (olds[_i].gap > 0) b.def.gap = olds[_i].gap * 1e-9 * PERIOD;
+  gap.from = 4, gap.until = 40, gap.faults = 0;
+  bench_start(&b);
+  for (int i = 0; i < 4; i++) ck_assert(rows_made(&b, &last));
+  ck_assert(last.armed && last.trace.fault == 0);
+  for (int i = 1; i < olds[_i].ticks; i++) ck_assert(!rows_made(&b, &row));
+  ck_assert_int_eq(b.d.safes, 0);
+  for (int i = olds[_i].ticks; i < 30; i++) {
+    ck_assert(rows_made(&b, &row));
+    ck_assert_int_eq(row.trace.fault, ETHD_FAULT_FEEDBACK_OLD);
+    ck_assert(row.trace.sense.faults == BIT(FEEDBACK_OLD) && !row.armed && row.trace.tau[0] == 0);
+    ck_assert(row.trace.sense.q[0] == b.d.sense.q[0]);
+    ck_assert_int_eq(b.d.safes, 1);
+  }
+  ethd_event e;
+  ck_assert_int_eq(ethd_control_poll(b.r.control, &e), ETHD_OK);
+  ck_assert(e.kind == ETHD_EVENT_FAULT && e.code == ETHD_FAULT_FEEDBACK_OLD);
+  ck_assert_int_eq(ethd_control_poll(b.r.control, &e), ETHD_EMPTY);
+  bench_close(&b);
+}
+END_TEST
+
+/* A law that takes its time: 0.1 s is the step's budget without any limit. */
+static int64_t *law_clock, law_takes;
+
+static ethd_status dawdle(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) {
+  *law_clock += law_takes;
+  return ethd_tracking_pd.step(p, state, in, tau);
+}
+
+START_TEST(test_budget_without_a_limit) {
+  const int64_t takes[] = {100000000, 100000001};
+  for (int over = 0; over < 2; over++) {
+    bench b;
+    ethd_tracking_law law = ethd_tracking_pd;
+    law.step = dawdle;
+    bench_open(&b);
+    double p[ETHD_PARAMS_MAX];
+    memcpy(p, b.r.setup.tracking_p, sizeof p);
+    ethd_setup_tracking(&b.r.setup, &law);
+    memcpy(b.r.setup.tracking_p, p, sizeof p);
+    law_clock = &b.clock;
+    law_takes = 0;
+    rig_post(&b.r);
+    bench_start(&b);
+    ck_assert_int_eq(bench_tick(&b).trace.fault, 0);
+    law_takes = takes[over];
+    ck_assert_int_eq(bench_tick(&b).trace.fault, 0);
+    law_takes = 0;
+    ethd_loop_row row = bench_tick(&b);
+    ck_assert_int_eq(row.trace.sense.step_ns, takes[over]);
+    ck_assert_int_eq(row.trace.fault, over ? ETHD_FAULT_BUDGET : 0);
+    bench_close(&b);
+  }
+}
+END_TEST
+
 START_TEST(test_bad_bounds) {
   const double bad[] = {NAN, -1, 0, 0.0009};
   bench b;
@@ -259,6 +331,8 @@ int main(void) {
   tcase_add_test(t, test_counts_over_an_enabling);
   tcase_add_test(t, test_holds_without_a_sample);
   tcase_add_test(t, test_ends_without_a_sample);
+  tcase_add_loop_test(t, test_old_samples, 0, sizeof olds / sizeof *olds);
+  tcase_add_test(t, test_budget_without_a_limit);
   tcase_add_test(t, test_bad_bounds);
   suite_add_tcase(suite, t);
   return rig_run(suite);

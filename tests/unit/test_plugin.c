@@ -42,6 +42,9 @@ static const refusal refusals[] = {
     {"no_symbol", ETHD_E_SYMBOL, "ethd_plugin", "a plugin without the symbol ethd_plugin"},
     {"no_step", ETHD_E_ARGUMENT, "broken", "an argument is missing or contradicts another"},
     {"twice", ETHD_E_DUPLICATE, "broken", "a name or key stands twice"},
+    {"brief_escapes", ETHD_E_ARGUMENT, "broken", "an argument is missing or contradicts another"},
+    {"brief_lines", ETHD_E_ARGUMENT, "broken", "an argument is missing or contradicts another"},
+    {"brief_long", ETHD_E_ARGUMENT, "broken", "an argument is missing or contradicts another"},
     {"no_law", ETHD_E_RANGE, "ethd_plugin.law_count", "a value is out of its range"},
     {"not_there", ETHD_E_LOAD, NULL, "a file that cannot be loaded as a plugin"},
 };

@@ -1,0 +1,60 @@
+#!/bin/sh
+# Plugins that hang or end the program, seen from the programs: they say which one it was, and exit 1 in time.
+set -u
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+
+echo 'halfplane -1 0 -0.238' >"$folder/wall.scene"
+config() { printf '[plugins]\nfile = %s/tests/plugins/%s.so\n[scene]\nfile = wall.scene\n[transition]\nlaw = broken\n' "$BUILD" "$1" >"$folder/$1.ini"; }
+for plugin in hangs hangs_check exits exits_later writes_past rounds brief_escapes; do config $plugin; done
+
+# ends PLUGIN SECONDS PATTERN COMMAND...: exit 1 within so many seconds, and one line that says so
+ends() {
+  plugin=$1 most=$2 pattern=$3
+  shift 3
+  before=$(date +%s%N)
+  timeout -s KILL 60 "$@" >"$folder/out" 2>"$folder/err" </dev/null
+  code=$?
+  spent=$((($(date +%s%N) - before) / 1000000))
+  [ $code = 1 ] || fail "$plugin: exit $code: $(cat "$folder/out" "$folder/err")"
+  grep -q -e "$pattern" "$folder/err" || fail "$plugin: no $pattern in: $(cat "$folder/err")"
+  [ -n "${SAN:-}" ] || [ $spent -le $((most * 1000)) ] || fail "$plugin: $spent ms, $most s are allowed"
+  echo "$plugin: exit $code after $spent ms: $(grep -e "$pattern" "$folder/err" | head -n 1)"
+}
+
+# A step that hangs: the simulated finger reaches the wall within the first second.
+case ${SAN:-} in
+  *thread*) ;; # its threads don't fit into the loop's stack
+  *)
+    ends hangs 20 "ethd-run: the law broken doesn't return" "$BUILD/bin/ethd-run" --config "$folder/hangs.ini" --record "$folder/hung" --duration 30
+    grep -q "fault,\"the law broken doesn't return" "$folder/hung/events.csv" || fail "hangs: events.csv: $(cat "$folder/hung/events.csv")"
+    grep -q "1 x the loop's thread doesn't run" "$folder/out" || fail "hangs: no row 3 in: $(cat "$folder/out")"
+    "$BUILD/bin/ethd-replay" --help >/dev/null || fail "--help"
+    ;;
+esac
+
+# A check that hangs, at load.
+ends hangs_check 15 "ethd-check: the check of a plugin's law doesn't return" "$BUILD/bin/ethd-check" "$folder/hangs_check.ini"
+
+# exit(0) in a constructor and in a step.
+ends exits 5 "exits.so ended the program" "$BUILD/bin/ethd-check" "$folder/exits.ini"
+ends exits 5 "exits.so ended the program" "$BUILD/bin/ethd-laws" --plugin "$BUILD/tests/plugins/exits.so"
+ends exits_later 10 "a plugin ended the program" "$BUILD/bin/ethd-run" --virtual --duration 30 --config "$folder/exits_later.ini"
+ends exits_later 10 "a plugin ended the program" "$BUILD/bin/ethd-tap" --config "$folder/exits_later.ini" --taps 1 --transition broken
+
+# A law that writes past its state or rounds otherwise: the run goes on safely, and its end says what it was.
+for plugin in writes_past rounds; do
+  "$BUILD/bin/ethd-run" --virtual --duration 3 --config "$folder/$plugin.ini" >"$folder/out" 2>"$folder/err" </dev/null ||
+    fail "$plugin: exit $?: $(cat "$folder/err")"
+  grep -q 'fault: a law reported a failure' "$folder/err" || fail "$plugin: $(cat "$folder/err")"
+  grep -q 'the transition law broken: a law ' "$folder/err" || fail "$plugin: which law? $(cat "$folder/err")"
+done
+
+# No text of a plugin steers the terminal.
+"$BUILD/bin/ethd-laws" --plugin "$BUILD/tests/plugins/brief_escapes.so" >"$folder/out" 2>&1
+[ $? = 2 ] || fail "brief_escapes: $(cat "$folder/out")"
+if LC_ALL=C grep -q '[[:cntrl:]]' "$folder/out"; then fail "brief_escapes: a control character"; fi
+[ $failed = 0 ] && echo 'every one of them is named'
+exit $failed

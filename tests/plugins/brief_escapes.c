@@ -1,0 +1,3 @@
+/* Its brief would clear a terminal. */
+#define BRIEF "\033[2Jgone"
+#include "broken.h"
