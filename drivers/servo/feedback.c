@@ -85,14 +85,18 @@ static double value(const ethd__servo_link *l, int which) {
   return r ? ethd__servo_joint(r, raw) : 0;
 }
 
+#define READING_AGE_MAX 10.0 /* s: more, less than none, or NaN is no age of a reading that was ever of use */
+
 static void take_reading(ethd__servo_feedback *f, const ethd__servo_link *l) {
   double count;
   const ethd__servo_register *r = role(l, ETHD__SERVO_READING_COUNT, &count);
   if (!r || (f->sample.readings && count == f->count)) return;
   f->count = count;
+  double age = value(l, ETHD__SERVO_READING_AGE);
+  if (!(age >= 0 && age <= READING_AGE_MAX)) return;
   f->sample.reading[0] = value(l, ETHD__SERVO_READING_X);
   f->sample.reading[1] = value(l, ETHD__SERVO_READING_Y);
-  f->sample.reading_ns = f->sample.stamp_ns - (int64_t)(1e9 * value(l, ETHD__SERVO_READING_AGE));
+  f->sample.reading_ns = f->sample.stamp_ns - (int64_t)(1e9 * age);
   f->sample.readings++;
   f->sample.has |= ETHD__SERVO_HAS_READING;
 }

@@ -57,6 +57,10 @@ void ethd__draw_point(ethd__drawing *d, ethd_vec p) {
 
 void ethd__draw_end(ethd__drawing *d, bool closed, bool filled) {
   if (d->status) return;
+  if (d->number_count == d->chain) { /* no point at all: there may be no memory yet */
+    d->blank++;
+    return;
+  }
   const double *first = d->numbers + d->chain;
   while (closed && d->number_count > d->chain + 2 && same(first, d->numbers + d->number_count - 2))
     d->number_count -= 2;
