@@ -291,7 +291,7 @@ bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
 # The long ones: minutes.
 stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_svg $(B)/tests/test_fuzz_decoder \
   $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study $(B)/tests/test_servo_driver \
-  $(B)/tests/test_fuzz_map $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link
+  $(B)/tests/test_fuzz_map $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile
 	ETHD_SCENE_QUERIES=1000000 ETHD_SCENE_OBJECTS=10000000 $(B)/tests/test_scene_tree
 	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
 	for k in 1 2 3 4 5; do ETHD_STRESS=1 $(B)/tests/test_servo_guardian || exit 1; done
@@ -304,6 +304,8 @@ stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/te
 	ETHD_REPLUGS=100 $(B)/tests/test_ring_driver
 	ETHD_FUZZ=1000000 $(B)/tests/test_study
 	@BUILD='$(abspath $(B))' CC='$(CC)' SAN='$(SAN)' ETHD_STUDY_KILLS=50 sh tests/study.sh
+	@ETHD_MODELS=large sh tests/models.sh
+	ETHD_HOSTILE=100000 $(B)/tests/test_hostile
 	@BUILD='$(B)' SAN='$(SAN)' sh apps/stress.sh
 
 # A real Xenomai, where there is one.

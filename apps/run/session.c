@@ -248,6 +248,7 @@ static ethd_status end_loop(ethd__session *s, char *message) {
   ethd_status status = ethd_loop_join(s->loop);
   ethd__recorder_end(&s->recorder);
   s->left = status && !ethd_loop_ended(s->loop);
+  s->lost = s->left && status != ETHD_E_LAW; /* no second thread into a device that one hangs in */
   if (s->left)
     tell_hang(s, status, message);
   else if (status)
@@ -255,15 +256,9 @@ static ethd_status end_loop(ethd__session *s, char *message) {
   return status;
 }
 
-/* No second thread into a device that one hangs in. */
-static bool may_touch_device(const ethd__session *s) {
-  const ethd_law *law = NULL;
-  return !s->left || (ethd_loop_hangs(s->loop, &law) && law);
-}
-
 ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = s->loop ? end_loop(s, message) : ETHD_OK;
-  ethd_status stopped = s->started && may_touch_device(s) ? s->driver->stop(s->device) : ETHD_OK;
+  ethd_status stopped = s->started && !s->lost ? s->driver->stop(s->device) : ETHD_OK;
   if (stopped < 0 && !status)
     status = ethd__say(message, stopped, "device %s: stop: %s", s->config->device, ethd_status_sentence(stopped));
   s->started = false;

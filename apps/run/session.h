@@ -17,6 +17,7 @@ typedef struct ethd__session {
   ethd__recorder recorder;
   bool is_virtual, posted, started;
   bool left;     /* the loop's thread hangs: what it may touch stays */
+  bool lost;     /* likewise, in the device */
   int64_t clock; /* of a virtual session, ns */
 } ethd__session;
 

@@ -166,11 +166,10 @@ static int64_t begin_step(ethd_loop *l) ETHD_RT {
   return now;
 }
 
-static void end_step(ethd_loop *l) ETHD_RT { atomic_store_explicit(&l->stepping, 0, memory_order_relaxed); }
-
-/* Given up by [main] while it hung: should it live again, the device and all else are no longer its own. */
-static void stay_if_left(ethd_loop *l) ETHD_RT {
-  while (atomic_load_explicit(&l->left, memory_order_acquire)) (void)!sleep_until(l, ethd__loop_now(l) + 1000000000);
+/* [main] gave this thread up while the step hung: device and all else are no longer its own. */
+static void end_step(ethd_loop *l) ETHD_RT {
+  if (atomic_exchange_explicit(&l->stepping, 0, memory_order_acq_rel) != ETHD__LOOP_LEFT) return;
+  for (;;) (void)!sleep_until(l, ethd__loop_now(l) + 1000000000);
 }
 
 static void step(ethd_loop *l, ethd_command *command) ETHD_RT {
@@ -186,7 +185,6 @@ static void step(ethd_loop *l, ethd_command *command) ETHD_RT {
   (void)!ethd_control_step(l->def.control, &l->sense, command, &l->row.trace);
   l->step = ethd__loop_now(l) - begin;
   end_step(l);
-  stay_if_left(l);
   l->swaps += l->row.trace.swap != 0;
   l->missed = 0;
 }
@@ -228,7 +226,6 @@ static int wait(ethd_loop *l) ETHD_RT {
     (void)begin_step(l);
     for (int i = 0; i < REHEARSALS; i++) (void)!ethd_control_rehearse(l->def.control, &l->sense, &command);
     end_step(l);
-    stay_if_left(l);
     while (!l->def.clock && (now = ethd__loop_now(l)) < l->due) continue;
   }
   if (now - l->due >= l->period) overrun(l, now - l->due, (now - l->due) / l->period);

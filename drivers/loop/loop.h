@@ -14,6 +14,7 @@ enum { ETHD__LOOP_RUNS, ETHD__LOOP_ASKED, ETHD__LOOP_PARKED };
 
 #define ETHD__HOLD_MAX 60000000   /* ns without a newer joint sample, over a slow bus's 50 ms; more is too old anyway */
 #define ETHD__LOOP_HANG 500000000 /* ns: a thread that hasn't turned for so long, and four periods, hangs */
+#define ETHD__LOOP_LEFT (-1)      /* in `stepping`: [main] has given up the thread that steps */
 #define ETHD__LOOP_STEP_MAX 100000000 /* ns: no step may take longer, whatever limits.step_time says */
 
 typedef struct ethd__loop_ring {

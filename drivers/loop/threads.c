@@ -262,12 +262,18 @@ ethd_status ethd_loop_home(ethd_loop *l, const double *q) {
   return status;
 }
 
+/* Of two, the one that comes first has the device: the thread, as its step ends, or [main]. */
+static ethd_status give_up_thread(ethd_loop *l) {
+  int64_t step = atomic_load_explicit(&l->stepping, memory_order_acquire);
+  bool taken = step > 0 && atomic_compare_exchange_strong(&l->stepping, &step, ETHD__LOOP_LEFT);
+  return taken ? ETHD_E_LAW : ETHD_E_DEVICE;
+}
+
 /* A thread that hangs can't be ended: it is left to itself, with all that it may touch. */
 static void join_control(ethd_loop *l) {
-  const ethd_law *law = NULL;
-  while (l->has_watch && !ethd_loop_ended(l) && !ethd_loop_hangs(l, &law)) pause_a_little();
+  while (l->has_watch && !ethd_loop_ended(l) && !ethd_loop_hangs(l, NULL)) pause_a_little();
   if (l->has_watch && !ethd_loop_ended(l)) {
-    atomic_store_explicit(&l->left, law ? ETHD_E_LAW : ETHD_E_DEVICE, memory_order_release);
+    atomic_store_explicit(&l->left, give_up_thread(l), memory_order_relaxed);
     pthread_detach(l->control);
   } else {
     __RT(pthread_join)(l->control, NULL);

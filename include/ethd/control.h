@@ -168,7 +168,8 @@ ETHD_API void ethd_control_destroy(ethd_control *control);
 /* Checks a whole setup and hands it over; the next step takes it, without a bump: at that tick the torque
    is what the old setup gives, and the difference to the new one fades linearly to 0 over the new
    swap_time. ETHD_BUSY: the last one hasn't been taken yet; post again. Any refusal leaves everything as
-   it was. The period can't change (ETHD_E_ARGUMENT). No heap. [main] */
+   it was. The period can't change (ETHD_E_ARGUMENT). A scene that another post has replaced may be posted again only
+   once an event has handed it back; until then that event may come at any moment. No heap. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_post(ethd_control *control, const ethd_setup *setup,
                                                        ethd_error *error);
 
