@@ -80,7 +80,6 @@ ethd_status ethd_config_set(const ethd_config *config, const char *name, const c
                             char message[ETHD_MESSAGE_MAX]) {
   char section[64], quote[ETHD_QUOTE_MAX];
   ethd_error error;
-  (void)config;
   const char *dot = strchr(name, '.');
   if (!dot || (size_t)(dot - name) >= sizeof section)
     return ethd__say(message, ETHD_E_SYNTAX, "found %s, section.key is allowed",
@@ -93,7 +92,7 @@ ethd_status ethd_config_set(const ethd_config *config, const char *name, const c
   ethd_setup changed = *setup;
   ethd_status status = ethd__config_number(&key, &changed);
   if (status) return status;
-  status = ethd_setup_check(&changed, &error);
+  status = ethd__config_check(config, &changed, &error);
   if (status < 0) {
     ethd_error_text(NULL, &error, message);
     return status;
