@@ -17,7 +17,7 @@ static const ethd__bench *const benches[] = {
 static const char doc[] = "Measures libethd, and other libraries beside it where they are installed: "
                           "for each question a table and "
                           "DIR/WHAT.csv. WHAT is one of those listed by --list, or all.\v"
-                          "Absolute times mean this machine at this moment; compare within one run.\n\n"
+                          "Absolute times hold for this machine at this moment: compare times of one run only.\n\n"
                           "Example:\n  ethd-bench tick --quick";
 
 enum { OPTION_FORCE = 256 };
@@ -27,7 +27,7 @@ static const struct argp_option options[] = {
     {"force", OPTION_FORCE, NULL, 0, "replace the CSV files that are there", 0},
     {"quick", 'q', NULL, 0, "fewer rounds", 0},
     {"peers", 'p', "DIR", 0, "folder of the other libraries' shared objects (default: beside the program's)", 0},
-    {"about", 'a', "TEXT", 0, "goes into each CSV's head: commit, compiler, flags", 0},
+    {"about", 'a', "TEXT", 0, "text for the head of each CSV file: commit, compiler, flags", 0},
     {"list", 'l', NULL, 0, "list the questions", 0},
     {0},
 };

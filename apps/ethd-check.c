@@ -16,8 +16,8 @@ static const char doc[] = "Validates a configuration, prints the setup as it was
                           "stability, passivity, rest at touch, quantisation, the tick's time; each "
                           "with its formula and with what to "
                           "change.\v"
-                          "Figures of the device come from the plant when it is the simulated one, else "
-                          "from options; options win. "
+                          "The simulated device's figures come from its plant; an option replaces them, "
+                          "and says what they are for any other device. "
                           "The exit code is 0 for every valid configuration, whether bounds are "
                           "exceeded or not; 2 with one line for "
                           "one that isn't.\n\n"
@@ -27,7 +27,7 @@ static const char doc[] = "Validates a configuration, prints the setup as it was
 
 static const struct argp_option options[] = {
     {"counts", 'c', "N", 0, "encoder counts per joint turn", 0},
-    {"delay", 'd', "TICKS", 0, "ticks from measurement to torque, 0 to 20; parts count", 0},
+    {"delay", 'd', "TICKS", 0, "ticks from measurement to torque, 0 to 20; 1.5 is allowed", 0},
     {"force-limit", 'f', "N", 0, "force at the ring: torque limit of a joint / its link", 0},
     {"friction", 'r', "N", 0, "Coulomb friction at the ring", 0},
     {"viscous", 'b', "NSPM", 0, "viscous friction at the ring, Ns/m", 0},

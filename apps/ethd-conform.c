@@ -17,8 +17,8 @@ static const char doc[] =
 static const struct argp_option options[] = {
     {"config", 'c', "FILE", 0, "the configuration; its [device] is asked", 0},
     {"move", 'm', NULL, 0, "the device may move", 0},
-    {"torque", 't', "NM", 0, "the push, 0.1 by default", 0},
-    {"virtual", 'v', NULL, 0, "time is only counted: for a simulated device", 0},
+    {"torque", 't', "NM", 0, "torque of the push (0.1)", 0},
+    {"virtual", 'v', NULL, 0, "count time instead of waiting: for a simulated device", 0},
     {0},
 };
 

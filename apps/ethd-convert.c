@@ -16,7 +16,8 @@
 static const char doc[] =
     "Converts a recording to CSV, or to MCAP for PlotJuggler and Foxglove.\v"
     "CSV has a column per number (q_1_rad, q_2_rad, ...) and an empty cell where a number isn't defined. MCAP has the "
-    "topics /tick and /events; where time starts anew in the recording, as with each tap, it goes on there.\n\n"
+    "topics /tick and /events; where the recording's time starts again, as it does with"
+    " each tap, MCAP's time goes on.\n\n"
     "Example:\n"
     "  ethd-run --duration 10 --record session\n"
     "  ethd-convert session session.mcap";

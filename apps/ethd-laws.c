@@ -13,14 +13,14 @@
 static const char doc[] =
     "Lists the laws and methods that a configuration can name, with each parameter's unit, range and "
     "default, built in and of plugins.\v"
-    "The first of a kind is the default, but for the transition, which is offset.\n\n"
+    "The first of each kind is the default, except that the default transition is offset.\n\n"
     "Example:\n"
     "  ethd-laws\n"
     "  ethd-laws --plugin mylaw.so --csv laws.csv";
 
 static const struct argp_option options[] = {
-    {"plugin", 'p', "FILE", 0, "laws of this plugin too; may repeat", 0},
-    {"csv", 'c', "FILE", 0, "a row per parameter into this file", 0},
+    {"plugin", 'p', "FILE", 0, "list this plugin's laws too; may be given more than once", 0},
+    {"csv", 'c', "FILE", 0, "write a row for each parameter", 0},
     {0},
 };
 

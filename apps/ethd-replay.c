@@ -19,9 +19,9 @@ static const char doc[] =
 enum { OPTION_PLUGINS = 256 };
 
 static const struct argp_option options[] = {
-    {"config", 'c', "C.ini", 0, "configuration; defaults without", 0},
+    {"config", 'c', "C.ini", 0, "configuration (default: built in)", 0},
     {"in", 'i', "IN.csv", 0, "recorded input", 0},
-    {"out", 'o', "OUT.csv", 0, "the law's answer, a row per tick", 0},
+    {"out", 'o', "OUT.csv", 0, "the law's answer, a row for each tick", 0},
     {"verify", 'v', "DIR", 0, "replay a recording and compare every field bit for bit", 0},
     {"plugins", OPTION_PLUGINS, NULL, 0, "with --verify: run the plugins that the recording names", 0},
     {0},

@@ -14,10 +14,10 @@
 #include "text/text.h"
 
 static const char doc[] =
-    "Draws and counts what a study has left: traces of taps, states and beta, box plots, Table 1 beside the paper's, "
+    "Counts and draws the taps of a study: traces of taps, states and beta, box plots, Table 1 beside the paper's, "
     "delays between sight and touch, reasons, survey, strategies compared within participants.\v"
     "The folder is one of ethd-study's, a session or a simulation. DIR/report holds report.html, which stands alone, "
-    "and the pictures and tidy CSV files behind it. Needs gnuplot.\n\n"
+    "and the pictures and tidy CSV files behind it. It needs gnuplot.\n\n"
     "Examples:\n"
     "  ethd-report session\n"
     "  ethd-report session --beside crowd --tap P02-06-004";
@@ -25,13 +25,13 @@ static const char doc[] =
 enum { OPTION_BESIDE = 256, OPTION_TAP, OPTION_POINT, OPTION_SEED, OPTION_PLUGINS, OPTION_FORCE };
 
 static const struct argp_option options[] = {
-    {"out", 'o', "DIR", 0, "where the report goes: report in the study's folder", 0},
+    {"out", 'o', "DIR", 0, "where the report goes (default: report, in the study's folder)", 0},
     {"beside", OPTION_BESIDE, "DIR", 0, "another folder of taps, to stand beside this one's", 0},
     {"tap", OPTION_TAP, "NAME", 0, "draw this tap (P02-06-004), not the typical one of each cell", 0},
-    {"point", OPTION_POINT, "K", 0, "of a grid: the point that is shown in full: 0", 0},
+    {"point", OPTION_POINT, "K", 0, "point of a grid that is shown in full (0)", 0},
     {"plugins", OPTION_PLUGINS, NULL, 0, "run the plugins that the folder's configuration names", 0},
     {"force", OPTION_FORCE, NULL, 0, "replace a report that is there", 0},
-    {"seed", OPTION_SEED, "S", 0, "of the bootstrap: 1", 0},
+    {"seed", OPTION_SEED, "S", 0, "seed of the bootstrap (1)", 0},
     {0},
 };
 

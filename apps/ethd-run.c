@@ -24,8 +24,9 @@ static const char doc[] =
     "says\n"
     "  wait S                  the next command waits for S seconds of the loop\n"
     "  stop                    ends the run\n"
-    "The end of the input doesn't end the run. With --virtual there is no real time: the device is stepped as "
-    "fast as it goes, time passes in wait and, after the input, up to the duration, and equal input gives "
+    "The end of the input doesn't end the run. With --virtual time is only counted: it passes in wait and, "
+    "after the input's end, up to the duration. The device is stepped as fast as the machine can, and equal input "
+    "gives "
     "equal bytes.\n\n"
     "Examples:\n"
     "  ethd-run --config device.ini --record session\n"
@@ -49,9 +50,9 @@ enum {
 };
 
 static const struct argp_option options[] = {
-    {"config", 'c', "C.ini", 0, "configuration; the simulated device without", 0},
-    {"duration", 'd', "S", 0, "ends after so many seconds; needed with --virtual", 0},
-    {"record", OPTION_RECORD, "DIR", 0, "every tick, for ethd-replay --verify", 0},
+    {"config", 'c', "C.ini", 0, "configuration (default: the simulated device)", 0},
+    {"duration", 'd', "S", 0, "end after so many seconds; needed with --virtual", 0},
+    {"record", OPTION_RECORD, "DIR", 0, "record every tick, for ethd-replay --verify", 0},
     {"force", OPTION_FORCE, NULL, 0, "replace a recording that is there", 0},
     {"snapshot", OPTION_SNAPSHOT, "FILE.npy", 0,
      "the ticks around the first fault: 2 s before, 1 s after; snapshot.npy in DIR with --record", 0},
@@ -62,11 +63,11 @@ static const struct argp_option options[] = {
     {"virtual", OPTION_VIRTUAL, NULL, 0, "lock-step on a virtual clock, no threads", 0},
     {"home", OPTION_HOME, NULL, 0, "first the joints are found, as [device] says: the arm moves, slowly", 0},
     {"cpu", OPTION_CPU, "N|auto|none", 0, "processor of the loop: none; auto: the highest isolated one", 1},
-    {"priority", OPTION_PRIORITY, "N", 0, "of SCHED_FIFO: 80", 1},
+    {"priority", OPTION_PRIORITY, "N", 0, "SCHED_FIFO priority of the loop (80)", 1},
     {"require-rt", OPTION_REQUIRE, NULL, 0, "refuse to run when the machine grants less than realtime", 1},
-    {"early-wake", OPTION_EARLY, "US", 0, "wake so much early, warm the caches, spin to the tick: 0", 1},
+    {"early-wake", OPTION_EARLY, "US", 0, "wake so much earlier, warm the caches and spin until the tick (0)", 1},
     {"dma-latency", OPTION_DMA, "US", 0, "hold /dev/cpu_dma_latency at this", 1},
-    {"soft-start", OPTION_SOFT, "S", 0, "time in which the torque rises after enabling: 0.1", 1},
+    {"soft-start", OPTION_SOFT, "S", 0, "time in which the torque rises after enabling (0.1)", 1},
     {0},
 };
 

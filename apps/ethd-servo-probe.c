@@ -27,10 +27,10 @@ enum { OPTION_PORT = 256, OPTION_WATCHDOG };
 static const struct argp_option options[] = {
     {"map", 'm', "F.map", 0, "register map of the drive", 0},
     {"port", OPTION_PORT, "PORT", 0, "HOST:PORT or a serial device, instead of the map's", 0},
-    {"period", 'p', "S", 0, "of the loop that is to live on it: 0.001", 0},
+    {"period", 'p', "S", 0, "period of the loop that the bus has to serve (0.001)", 0},
     {"try-watchdog", OPTION_WATCHDOG, NULL, 0,
      "enables at zero torque, is silent, and says whether the drive let go by itself: keep clear of the arm", 0},
-    {"duration", 'd', "S", 0, "measures for so long: 2", 0},
+    {"duration", 'd', "S", 0, "how long it measures (2)", 0},
     {0},
 };
 

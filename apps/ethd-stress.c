@@ -16,9 +16,9 @@ static const ethd__stress *const tests[] = {
 #define COUNT (sizeof tests / sizeof *tests)
 
 static const char doc[] =
-    "Measures the library's real code at its limits and compares with closed forms: measured, analytic, "
-    "verdict. Exit 1 when one fails. NAME: all (default) or one of `--list`.\v"
-    "Where many points make one line, it is the worst of them; --csv has them all.\n\n"
+    "Measures the library's real code at its limits and prints each result beside its closed form, with a "
+    "verdict. The exit code is 1 when one fails. NAME is all (the default) or one of those listed by --list.\v"
+    "Where one line stands for many points, it shows the worst of them; --csv has them all.\n\n"
     "Example:\n"
     "  ethd-stress all --quick\n"
     "  ethd-stress boundary --out pictures";
@@ -28,7 +28,7 @@ enum { OPTION_FORCE = 256 };
 static const struct argp_option options[] = {
     {"quick", 'q', NULL, 0, "fewer points: all in a few seconds", 0},
     {"long", 'l', NULL, 0, "1e9 ticks where the default has 1e7: minutes", 0},
-    {"csv", 'c', "FILE", 0, "every result, one a row", 0},
+    {"csv", 'c', "FILE", 0, "write every result, one in a row", 0},
     {"out", 'o', "DIR", 0, "folder for the data of pictures (plot/stability-*.gp draw them)", 0},
     {"force", OPTION_FORCE, NULL, 0, "replace the data that is there", 0},
     {"list", 'L', NULL, 0, "names the tests", 0},

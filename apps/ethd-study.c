@@ -12,7 +12,7 @@ static const char doc[] =
     "Runs a tapping study: participants tap a virtual wall under each strategy at each speed until enough taps "
     "are valid; every tap is judged at once, recorded tick by tick, and kept whatever happens. Or simulates "
     "thousands of participants over a grid of gains.\v"
-    "STUDY is an INI file; paper.study, which comes along, is the paper's. The folder of --out holds all data and "
+    "STUDY is an INI file; paper.study, which is installed, is the paper's. The folder of --out holds all data and "
     "a README.md that says what each file and column is; ethd-report draws it. A session that was stopped, killed "
     "or ran out of disk goes on with --resume: no tap is lost, repeated or torn. Simulated participants are "
     "plausible, not measured; they answer no survey. With \"[hand] source = people\" the configuration's device is "
@@ -44,17 +44,17 @@ enum {
 static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "folder of a new session, or of a simulation", 0},
     {"resume", OPTION_RESUME, "DIR", 0, "go on with the session in DIR", 0},
-    {"participant", OPTION_PARTICIPANT, "K", 0, "only this one, from 1; the others another time", 0},
+    {"participant", OPTION_PARTICIPANT, "K", 0, "only participant K, from 1; the others another time", 0},
     {"finger", OPTION_FINGER, "FILE.csv", 0, "every hand's path is this recorded movement", 0},
     {"ask", OPTION_ASK, NULL, 0, "take commands on stdin", 0},
     {"screen", OPTION_SCREEN, "WxH", OPTION_ARG_OPTIONAL,
      "in a window, 1280x720 by default; the mouse is the finger, unless people's are", 0},
     {"virtual", OPTION_VIRTUAL, NULL, 0, "with people: the device in lock-step, as fast as it goes", 0},
-    {"quiet", 'q', NULL, 0, "no line per tap", 0},
-    {"simulate", OPTION_SIMULATE, "N", 0, "N participants at every point of the study's [grid]", 1},
-    {"shard", OPTION_SHARD, "I/N", 0, "only this share of the simulation: 1/1", 1},
-    {"ticks", OPTION_TICKS, NULL, 0, "of a simulation: every tick of every tap, 300 kB each", 1},
-    {"merge", OPTION_MERGE, "DIR", 0, "all shards in DIR into DIR/taps.csv", 1},
+    {"quiet", 'q', NULL, 0, "print no line for each tap", 0},
+    {"simulate", OPTION_SIMULATE, "N", 0, "simulate N participants at every point of the study's [grid]", 1},
+    {"shard", OPTION_SHARD, "I/N", 0, "simulate only this share (1/1)", 1},
+    {"ticks", OPTION_TICKS, NULL, 0, "record every tick of a simulation, 300 kB a tap", 1},
+    {"merge", OPTION_MERGE, "DIR", 0, "merge all shards in DIR into DIR/taps.csv", 1},
     {0},
 };
 

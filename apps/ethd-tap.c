@@ -39,16 +39,16 @@ static const char doc[] =
 enum { OPTION_SCALE = 256, OPTION_TRACE, OPTION_RECORD, OPTION_CSV, OPTION_FORCE };
 
 static const struct argp_option options[] = {
-    {"config", 'c', "C.ini", 0, "the controller's configuration; the plant's own without", 0},
+    {"config", 'c', "C.ini", 0, "the controller's configuration (default: the plant's own)", 0},
     {"transition", 't', "LAW[,LAW..]", 0, "transition laws: abrupt,smooth,offset", 0},
     {"speed", 's', "low|high|V[,..]", 0, "speeds: low,high; V in m/s, 0.01 to 2", 0},
-    {"taps", 'n', "N", 0, "attempts per law and speed: 100; 10 with --finger", 0},
-    {"seed", 'r', "S", 0, "key of every random number: 1", 0},
+    {"taps", 'n', "N", 0, "attempts for each law and speed (100; 10 with --finger)", 0},
+    {"seed", 'r', "S", 0, "seed of every random number (1)", 0},
     {"plant", 'p', "n|b|p|FILE", 0,
      "the simulated device and finger: that of --config, or n; FILE.plant with FILE.ini beside it", 0},
     {"finger", 'f', "FILE.csv", 0, "a recorded movement is the hand's voluntary path", 0},
     {"scale", OPTION_SCALE, "K", 0, "multiply the recorded positions by K, 0.01 to 100", 0},
-    {"csv", OPTION_CSV, "OUT.csv", 0, "a row per tap", 0},
+    {"csv", OPTION_CSV, "OUT.csv", 0, "write a row for each tap", 0},
     {"record", OPTION_RECORD, "DIR", 0,
      "every tick of every tap: a recording for ethd-replay --verify, with truth.npy and taps.csv beside it", 0},
     {"force", OPTION_FORCE, NULL, 0, "replace a recording or traces that are there", 0},
