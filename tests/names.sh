@@ -20,11 +20,10 @@ def body_end(text, start):
 def definitions(text):
     """(name, body) of everything that a file defines at its outermost level."""
     text = COMMENT.sub(lambda m: m.group(1) or " ", text).replace("\\\n", " ")
-    macros = {} # the branches of an #if belong together; what its file takes back is a name of that file's alone
     for m in re.finditer(r"^[ \t]*#[ \t]*define[ \t]+(\w+)(.*)$", text, re.M):
+        # what its file takes back is a name of that file's alone
         if not re.search(rf"^[ \t]*#[ \t]*undef[ \t]+{m.group(1)}\b", text, re.M):
-            macros[m.group(1)] = macros.get(m.group(1), "") + m.group(2)
-    yield from (("constant " + name, body.strip()) for name, body in macros.items())
+            yield "constant " + m.group(1), m.group(2).strip()
     for m in HEAD.finditer(text):
         end = body_end(text, m.end() - 1)
         body = m.group(2) + text[m.end() - 1:end + 1]
@@ -44,8 +43,11 @@ def definitions(text):
 bodies = {}
 for top in ("include", "lib", "drivers", "apps"):
     for path in sorted(pathlib.Path(top).rglob("*.[ch]")):
+        here = {} # what a file defines twice stands in branches of an #if, and is one thing
         for name, body in definitions(path.read_text()):
-            bodies.setdefault(name, {}).setdefault(" ".join(body.split()), []).append(path.as_posix())
+            here.setdefault(name, set()).add(" ".join(body.split()))
+        for name, found in here.items():
+            bodies.setdefault(name, {}).setdefault(" | ".join(sorted(found)), []).append(path.as_posix())
 seen = {name for name, found in bodies.items() if any(f.endswith(".h") for files in found.values() for f in files)}
 twice = {name: found for name, found in bodies.items() if len(found) > 1 and (" " not in name or name in seen)}
 allowed = set(line for line in pathlib.Path("tests/names.allowed").read_text().splitlines() if not line.startswith("# "))

@@ -25,7 +25,7 @@ static void paint_row(uint32_t *pixel, int count, double dx, double dy, double r
   }
 }
 
-static void paint_disc(ethd__screen_shape *s) {
+static void paint_disc(ethd__window_shape *s) {
   double r = s->width;
   uint32_t colour = (uint32_t)s->colour.r << 16 | (uint32_t)s->colour.g << 8 | s->colour.b;
   s->at = hull(floor(s->x - r) - 1, floor(s->y - r) - 1, ceil(s->x + r) + 1, ceil(s->y + r) + 1);
@@ -35,7 +35,7 @@ static void paint_disc(ethd__screen_shape *s) {
               s->y - s->at.y - 0.5 - row, r, colour);
 }
 
-static void paint_text(const ethd__window *w, ethd__screen_shape *s) {
+static void paint_text(const ethd__window *w, ethd__window_shape *s) {
   if (!*s->text) return;
   s->picture = TTF_RenderUTF8_Blended_Wrapped(w->font[s->size], s->text, s->colour, (uint32_t)(0.9 * w->width));
   if (!s->picture) return;
@@ -43,7 +43,7 @@ static void paint_text(const ethd__window *w, ethd__screen_shape *s) {
   s->at = (SDL_Rect){(int)(s->x - s->picture->w / 2.0), (int)fmin(s->y, low), s->picture->w, s->picture->h};
 }
 
-static void paint(const ethd__window *w, ethd__screen_shape *s) {
+static void paint(const ethd__window *w, ethd__window_shape *s) {
   if (s->kind == BOX) s->at = hull(s->x, s->y, s->x + s->width, s->y + s->height);
   if (s->kind == DISC) paint_disc(s);
   if (s->kind == TEXT) paint_text(w, s);
@@ -51,20 +51,20 @@ static void paint(const ethd__window *w, ethd__screen_shape *s) {
 
 /* ---- the list ---- */
 
-static bool same(const ethd__screen_shape *a, const ethd__screen_shape *b) {
+static bool same(const ethd__window_shape *a, const ethd__window_shape *b) {
   return a->kind == b->kind && a->size == b->size && a->x == b->x && a->y == b->y && a->width == b->width &&
          a->height == b->height && !memcmp(&a->colour, &b->colour, sizeof a->colour) && !strcmp(a->text, b->text);
 }
 
-static void drop(ethd__screen_shape *s) {
+static void drop(ethd__window_shape *s) {
   SDL_FreeSurface(s->picture);
-  *s = (ethd__screen_shape){0};
+  *s = (ethd__window_shape){0};
 }
 
-static void put(ethd__window *w, const ethd__screen_shape *shape) {
+static void put(ethd__window *w, const ethd__window_shape *shape) {
   if (w->shape_count == ETHD_SHAPES_MAX) return;
   size_t i = w->shape_count++;
-  ethd__screen_shape *s = &w->shape[i];
+  ethd__window_shape *s = &w->shape[i];
   if (i < w->shape_before && same(s, shape)) return;
   SDL_Rect before = s->at;
   drop(s);
@@ -74,15 +74,15 @@ static void put(ethd__window *w, const ethd__screen_shape *shape) {
 }
 
 void ethd__window_box(ethd__window *w, double x, double y, double width, double height, SDL_Color c) {
-  put(w, &(ethd__screen_shape){.kind = BOX, .x = x, .y = y, .width = width, .height = height, .colour = c});
+  put(w, &(ethd__window_shape){.kind = BOX, .x = x, .y = y, .width = width, .height = height, .colour = c});
 }
 
 void ethd__window_disc(ethd__window *w, double x, double y, double radius, SDL_Color c) {
-  put(w, &(ethd__screen_shape){.kind = DISC, .x = x, .y = y, .width = radius, .colour = c});
+  put(w, &(ethd__window_shape){.kind = DISC, .x = x, .y = y, .width = radius, .colour = c});
 }
 
 void ethd__window_text(ethd__window *w, int size, double x, double y, const char *text, SDL_Color c) {
-  ethd__screen_shape shape = {.kind = TEXT, .size = size, .x = x, .y = y, .colour = c};
+  ethd__window_shape shape = {.kind = TEXT, .size = size, .x = x, .y = y, .colour = c};
   SDL_strlcpy(shape.text, text, sizeof shape.text);
   put(w, &shape);
 }
@@ -105,7 +105,7 @@ static void end_list(ethd__window *w) {
   w->shape_count = 0;
 }
 
-static void draw_shape(const ethd__screen_shape *s, SDL_Surface *onto) {
+static void draw_shape(const ethd__window_shape *s, SDL_Surface *onto) {
   SDL_Rect at = s->at;
   if (s->picture)
     SDL_BlitSurface(s->picture, NULL, onto, &at);

@@ -15,14 +15,14 @@
 
 enum { ETHD_TEXT_SMALL, ETHD_TEXT_LARGE, ETHD_TEXTS };
 
-typedef struct ethd__screen_shape {
+typedef struct ethd__window_shape {
   int kind, size;             /* size: of a text, ETHD_TEXT_SMALL .. */
   double x, y, width, height; /* px, as asked for; width: a disc's radius */
   SDL_Color colour;
   char text[256];
   SDL_Rect at;          /* px that it may touch */
   SDL_Surface *picture; /* of a text, a disc */
-} ethd__screen_shape;
+} ethd__window_shape;
 
 typedef struct ethd__window {
   SDL_Window *window;
@@ -36,7 +36,7 @@ typedef struct ethd__window {
   uint64_t begun;        /* of the present frame, in SDL's performance counts */
   uint64_t due;          /* likewise, of the next */
   ethd_histogram frames; /* ns from a frame's begin to its end on the screen, of those that changed something */
-  ethd__screen_shape shape[ETHD_SHAPES_MAX];
+  ethd__window_shape shape[ETHD_SHAPES_MAX];
   size_t shape_count, shape_before; /* of this frame so far, of the one before */
   SDL_Rect changed[ETHD_SHAPES_MAX];
   size_t changed_count;

@@ -29,15 +29,15 @@ static int64_t now(void) {
 
 /* ---- descriptors over the socket ---- */
 
-typedef union ethd__guardian_control {
+typedef union ancillary {
   struct cmsghdr head;
   char room[CMSG_SPACE(sizeof(int))];
-} control;
+} ancillary;
 
 static int pass_on(int socket, int fd) {
   char byte = fd >= 0;
   struct iovec data = {&byte, 1};
-  control c = {.room = {0}};
+  ancillary c = {.room = {0}};
   struct msghdr m = {.msg_iov = &data, .msg_iovlen = 1};
   if (fd >= 0) {
     m.msg_control = &c;
@@ -55,7 +55,7 @@ static int pass_on(int socket, int fd) {
 static int receive(ethd__guardian *g) {
   char byte;
   struct iovec data = {&byte, 1};
-  control c;
+  ancillary c;
   struct msghdr m = {.msg_iov = &data, .msg_iovlen = 1, .msg_control = &c, .msg_controllen = sizeof c.room};
   ssize_t n = recvmsg(g->socket, &m, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
   if (n < 0) return errno == EAGAIN || errno == EINTR;
