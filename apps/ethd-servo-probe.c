@@ -140,9 +140,10 @@ static bool is_enabled(void) {
 
 static void turns(int32_t sequence, double seconds) {
   const double zero[2] = {0, 0};
-  int64_t end = now() + (int64_t)(1e9 * seconds);
-  if (sequence >= 0) ethd__servo_link_begin(&drive, sequence, now());
-  while ((drive.sequence >= 0 || sequence < 0) && now() < end) (void)!ethd__servo_link_turn(&drive, now(), zero);
+  int64_t end = ethd__clock_now() + (int64_t)(1e9 * seconds);
+  if (sequence >= 0) ethd__servo_link_begin(&drive, sequence, ethd__clock_now());
+  while ((drive.sequence >= 0 || sequence < 0) && ethd__clock_now() < end)
+    (void)!ethd__servo_link_turn(&drive, ethd__clock_now(), zero);
 }
 
 /* Enabled under zero torque, nobody speaks for a while; then the drive says what it did. */
@@ -157,7 +158,7 @@ static void try_watchdog(void) {
   if (!is_enabled()) ethd__fail(ETHD_EXIT_FAILED, "it lets go while it is spoken to");
   nanosleep(&(struct timespec){(time_t)silence, (long)(1e9 * (silence - floor(silence)))}, NULL);
   drive.plan.all = true; /* slow registers, too, as they are now */
-  (void)!ethd__servo_link_turn(&drive, now(), (const double[2]){0, 0});
+  (void)!ethd__servo_link_turn(&drive, ethd__clock_now(), (const double[2]){0, 0});
   bool let_go = !is_enabled();
   printf("%-10s %s after %g s of silence: %s; the map says %s\n", "watchdog",
          let_go ? "it let go" : "it is enabled still", silence, let_go ? "it has one" : "it has none",

@@ -78,7 +78,7 @@ ethd_fault ethd__judge(const ethd__plan *plan, ethd__state *state, int64_t guard
   ethd_fault first = lowest(zero ? zero : calls);
   __atomic_store_n(&state->clean, 0, __ATOMIC_RELAXED);
   if (plan->setup.limits.latch || state->fault) return latch(state, first, zero); /* also of the setup before */
-  state->guard.stopping = state->guard.stopped = 0; /* the next tick is judged alone */
+  state->guard.stopping = state->guard.stopped = 0;                               /* the next tick is judged alone */
   return first;
 }
 

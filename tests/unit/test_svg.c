@@ -402,8 +402,8 @@ START_TEST(test_parts_that_overlap) {
     for (int k = 0; k < n; k++) {
       int *b = corner[k];
       for (int c = 0; c < 2; c++) {
-        b[c] = (int)(12 * ethd__uniform((ethd__key){i, (uint64_t)k}, (uint32_t)c, 0));
-        b[c + 2] = b[c] + 1 + (int)(3 * ethd__uniform((ethd__key){i, (uint64_t)k}, (uint32_t)c, 1));
+        b[c] = (int)(12 * ethd__uniform((ethd__sim_key){i, (uint64_t)k}, (uint32_t)c, 0));
+        b[c + 2] = b[c] + 1 + (int)(3 * ethd__uniform((ethd__sim_key){i, (uint64_t)k}, (uint32_t)c, 1));
       }
       for (int j = 0; j < k; j++)
         overlap |= b[0] <= corner[j][2] && corner[j][0] <= b[2] && b[1] <= corner[j][3] && corner[j][1] <= b[3];
