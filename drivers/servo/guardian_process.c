@@ -11,21 +11,15 @@
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "clock.h"
 #include "servo/guardian.h"
 #include "text/error_text.h"
 
 #define LOOK 1      /* ms */
 #define PRIORITY 90 /* over the loop's, should that run away; where it is granted */
 #define SOCKET 3
-
-static int64_t now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
-}
 
 /* ---- descriptors over the socket ---- */
 
@@ -98,7 +92,8 @@ static void watch(ethd__guardian *g) {
     int ready = poll(&wait, 1, LOOK);
     int alive = ready < 1 || receive(g);
     if (atomic_load(&g->page->closing)) return;
-    if (ethd__guardian_due(g, now()) || (!alive && atomic_load(&g->page->armed))) (void)!ethd__guardian_act(g);
+    if (ethd__guardian_due(g, ethd__clock_now()) || (!alive && atomic_load(&g->page->armed)))
+      (void)!ethd__guardian_act(g);
     if (!alive) return;
   }
 }
