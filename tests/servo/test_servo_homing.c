@@ -217,6 +217,58 @@ START_TEST(test_given) {
 }
 END_TEST
 
+/* A drive whose joints turn while it is enabled and pushes: 5 counts a set-point, past a mark at 1200. */
+#define MARK 1200
+static mock_act turning(void *user, uint64_t n, int function) {
+  static int64_t at[2];
+  (void)user;
+  if (n == 0) at[0] = at[1] = 0;
+  for (int i = 0; i < 2 && function == 16 && drive.words[MOCK_STATUS] & 2; i++) {
+    int16_t torque = (int16_t)drive.words[MOCK_TORQUE1 + i];
+    int64_t before = at[i];
+    at[i] += torque > 0 ? 5 : torque < 0 ? -5 : 0;
+    if ((before < MARK) != (at[i] < MARK)) count(i ? 22 : 20, MARK);
+    count(i ? MOCK_POSITION2 : MOCK_POSITION1, at[i]);
+  }
+  return (mock_act){MOCK_ANSWER, 0, 0};
+}
+
+/* By index marks, through the driver: what the joint went past its mark while the answer was under way counts. */
+START_TEST(test_index) {
+  char *text, *all, path[64];
+  size_t length;
+  snprintf(path, sizeof path, "%s/plant.map", folder);
+  ck_assert_int_eq(ethd_text_read(path, 1 << 16, &text, &length, message), ETHD_OK);
+  const char marks[] = "direction = read\ntype = i32\norder = high-first\nunit = count\ncounts = 4000\nratio = 9.80\n";
+  char *at = strstr(text, "[enable]");
+  ck_assert_int_ge(asprintf(&all, "%.*s[register index1]\naddress = 20\n%s[register index2]\naddress = 22\n%s%s",
+                            (int)(at - text), text, marks, marks, at),
+                   0);
+  ck_assert_int_eq(ethd_text_write(path, all, strlen(all), message), ETHD_OK);
+  free(all);
+  mock_start(&drive, 0);
+  drive.act = turning;
+  ethd_setting index[] = {{"q1", "0.7", 3}, {"q2", "-0.3", 4}, {"home", "index", 5}, {"home_speed", "1", 6}};
+  ck_assert_msg(open_servo(index, 4) == ETHD_OK, "%s", message);
+  refused_for(1);
+  ck_assert_msg(servo->home(device, NULL) == ETHD_OK, "%s", servo->why(device));
+  ck_assert(!(drive.words[MOCK_STATUS] & 2)); /* it is off again */
+  drive.act = (mock_plan)0;
+  ck_assert_int_eq(servo->start(device), ETHD_OK);
+  const ethd_sense s = tick();
+  for (int i = 0; i < 2; i++) {
+    const _Atomic uint16_t *w = drive.words + (i ? MOCK_POSITION2 : MOCK_POSITION1);
+    double past = (double)((int32_t)((uint32_t)w[0] << 16 | w[1]) - MARK) * COUNT;
+    ck_assert(past > -1e-3 && past < 0.02);
+    ck_assert_double_eq_tol(s.q[i], (i ? -0.3 : 0.7) + past, 1e-9);
+  }
+  servo->close(device);
+  mock_stop(&drive);
+  ck_assert_int_eq(ethd_text_write(path, text, length, message), ETHD_OK);
+  free(text);
+}
+END_TEST
+
 static int write_map(const char *path) {
   char *text;
   size_t length;
@@ -242,6 +294,7 @@ int main(void) {
   tcase_add_test(t, test_not_found);
   tcase_add_test(t, test_reference);
   tcase_add_test(t, test_given);
+  tcase_add_test(t, test_index);
   suite_add_tcase(suite, t);
   int failed = rig_run(suite);
   unlink(path);
