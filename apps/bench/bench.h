@@ -24,7 +24,7 @@ extern const ethd__bench ethd__bench_integrators, ethd__bench_hours;
 /* CLOCK_MONOTONIC, ns. */
 int64_t ethd__bench_now(void);
 
-/* What two clock reads in a row cost, ns: the median of many. */
+/* The cost of two clock readings in a row, ns: the median of many. */
 double ethd__bench_clock_cost(void);
 
 /* ---- races ---- */

@@ -59,7 +59,7 @@ typedef struct field {
 static const ethd_filter_method order[ETHD_FILTER_COUNT] = {ETHD_FILTER_HOLD, ETHD_FILTER_ALPHA_BETA, ETHD_FILTER_CV,
                                                             ETHD_FILTER_CA};
 
-/* hold, two readings, alpha-beta, cv, ca, the peer. */
+/* The contenders: hold, two readings, alpha-beta, cv, ca, the peer. */
 static void gather(field *f, const ethd__tracks *reaches, const ethd__peer_filter *peer) {
   f->count = 0;
   for (int i = 0; i < ETHD_FILTER_COUNT; i++) {

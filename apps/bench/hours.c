@@ -90,7 +90,7 @@ static double cpu(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* CPU seconds of a simulated one, with the truth recorded or not. */
+/* CPU seconds per simulated second, with the truth recorded or not. */
 static double cost(loop *l, double tolerance, int truth) {
   size_t ticks = 0;
   use(l, tolerance, 0);
@@ -99,7 +99,7 @@ static double cost(loop *l, double tolerance, int truth) {
   return (cpu() - start) / ((double)ticks * l->stage.setup.period);
 }
 
-/* All in turns; the lower quartile counts, which nobody else has disturbed. */
+/* Contenders run in turns; the lower quartile counts, because other programs disturb it least. */
 static void race(loop *l, int rounds, double out[TOLERANCES][2]) {
   static double each[TOLERANCES][2][ROUNDS_MAX];
   for (int r = 0; r < rounds; r++)

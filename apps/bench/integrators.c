@@ -137,7 +137,7 @@ static double cpu(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* All in turns; the fastest round counts, in CPU time. */
+/* Contenders run in turns; the fastest round counts, in CPU time. */
 static void race(int rounds) {
   for (int i = 0; i < field.count; i++) field.all[i].time = INFINITY;
   for (int r = 0; r < rounds; r++)

@@ -19,7 +19,7 @@ typedef struct work {
   void *peer_self;
 } work;
 
-/* Everywhere but near a singularity, where ours damps and others don't. */
+/* Poses lie everywhere but near a singularity, where our inverse is damped and others' are not. */
 static void make_places(work *w) {
   for (uint64_t i = 0; i < PLACES; i++) {
     double *in = w->in[i], side = i % 2 ? 1 : -1;

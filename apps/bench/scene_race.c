@@ -9,7 +9,7 @@ static const ethd_vec *points_of(const ethd__contest *t, ethd__ask ask) {
   return ask == ETHD__COLD ? t->anywhere : t->path;
 }
 
-/* Who is slow is asked less: that many queries a round, at least 3, at most all. */
+/* Queries a round for a contender: slow ones are asked less, from 3 up to all. */
 static int affordable(const ethd__contest *t, double ns) {
   double budget = t->quick ? 2.5e6 : 2e7;
   return (int)fmin(ETHD__BENCH_POINTS, fmax(3, budget / ns));
@@ -25,7 +25,7 @@ static double ask_one(ethd__contest *t, int i, ethd__ask ask, int k) {
 
 /* Queries go in blocks, and each block has its best time of all rounds: nobody interrupted that one. */
 typedef struct lap {
-  int block, stride; /* queries in a block; every so manieth block is run */
+  int block, stride; /* queries in a block; of so many blocks one is run */
   double best[BLOCKS];
 } lap;
 
@@ -57,7 +57,7 @@ static double mean_of(const lap *l) {
   return sum / n;
 }
 
-/* In turns, each over all its blocks: caches and branch predictors are its own. */
+/* Contenders run in turns, each over all its blocks, so that caches and branch predictors are warm for it. */
 static void race(ethd__contest *t, ethd__ask ask, ethd__race_result *results) {
   static lap laps[CONTENDERS];
   for (int i = 0; i < CONTENDERS; i++)

@@ -1,4 +1,4 @@
-/* Who asks the scene's contenders, and measures them. */
+/* Asks the scene's contenders and measures them. */
 #ifndef ETHD_APPS_BENCH_SCENE_RACE_H
 #define ETHD_APPS_BENCH_SCENE_RACE_H
 
@@ -9,7 +9,7 @@ enum { OURS, LOOSE, EMBREE, CGAL, GEOS, CHIPMUNK, CONTENDERS };
 enum { SIZES = 6, CALM_FROM = 3 }; /* from this size on the caches matter */
 extern const size_t ethd__contest_sizes[SIZES];
 
-/* What one contender gave in one world, asked one way. ns. */
+/* One contender's times in one world for one order of queries, ns. */
 typedef struct ethd__race_result {
   int there;
   double mean, build, bytes, apart;

@@ -122,7 +122,7 @@ typedef struct hot {
   size_t at[LAWS][FINGERS][SCENES]; /* index into entries */
 } hot;
 
-/* The default law with everything; the others with all that works. */
+/* The default law runs in every combination, the others in those that work. */
 static void gather(hot *h) {
   h->count = 0;
   for (int l = 0; l < LAWS; l++)
@@ -212,7 +212,8 @@ static int run(const char *folder, int quick) {
   gather(&h);
   ethd__bench_times times[LAWS * FINGERS * SCENES];
   for (size_t i = 0; i < h.count; i++) {
-    ethd__bench_race(&h.entries[i], 1, quick ? 0.05 : 0.5); /* one after the other: each in a warm cache */
+    ethd__bench_race(&h.entries[i], 1,
+                     quick ? 0.05 : 0.5); /* the parts run one after the other, each in a warm cache */
     time_ticks(h.entries[i].data, ns, count);
     ethd__bench_times quiet = quiet_times(ns, count);
     quiet.mean = h.entries[i].ns;

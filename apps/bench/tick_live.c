@@ -27,7 +27,7 @@ static void evict(unsigned char *buffer) {
   for (size_t i = 0; i < EVICT; i += 64) buffer[i]++;
 }
 
-/* Every fifth tick is cold, so that the whole tap is seen. */
+/* Every fifth tick runs with cold caches, so that all phases of a tap are sampled. */
 void ethd__tick_cold(FILE *csv, int quick) {
 
   size_t count = quick ? 100 : 1000;

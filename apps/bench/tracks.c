@@ -23,7 +23,7 @@ static void *room_for(size_t count, size_t size) {
   return p;
 }
 
-/* Noise and phase are those of `seed`, whatever the latency. */
+/* The same seed gives the same noise and phase at any latency. */
 static ethd__track read_path(path_at at, const void *path, double duration, double latency, uint64_t seed) {
   size_t count = (size_t)fmin(ETHD__TRACK_MAX, duration / ETHD__TRACK_PERIOD);
   ethd__track t = {count, room_for(count, sizeof *t.in), room_for(count, sizeof *t.truth)};

@@ -10,7 +10,7 @@
 #include "text/error_text.h"
 
 #define WAIT_MS 20
-#define SILENCE 100 /* waits without a frame before the line is called silent */
+#define SILENCE 100 /* waits without a frame until the line counts as silent */
 #define TRIES 5
 #define SPREAD 0.01 /* of the counts, sd: more is a rod that moves */
 #define SPREAD_LEAST 40

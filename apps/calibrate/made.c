@@ -19,7 +19,7 @@ ethd__calibration ethd__made_ring(uint64_t seed) {
     ethd__sensor *s = &c.sensors[k];
     s->a *= spread(key, 4 * k, 0.15);
     s->p *= spread(key, 4 * k + 1, 0.03);
-    s->a *= ethd_exp((s->p - 2) * ethd_log(7e-3)); /* another exponent, as bright in the middle */
+    s->a *= ethd_exp((s->p - 2) * ethd_log(7e-3)); /* another exponent with the same brightness in the middle */
     s->d0 *= spread(key, 4 * k + 2, 0.12);
     s->dark = 2000 * spread(key, 4 * k + 3, 0.25);
   }

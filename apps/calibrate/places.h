@@ -19,7 +19,7 @@ typedef struct ethd__places {
 /* Guided place i: 0 the middle, then touching the ring at sensor i - 1. */
 ethd_vec ethd__place_at(double ring_radius, double rod, int i);
 
-/* Adds a place with mean counts; full: not. */
+/* Adds a place with mean counts, unless the table is full. */
 bool ethd__places_add(ethd__places *places, ethd_vec at, const double counts[ETHD_RAYS]);
 
 /* The default calibration with the places' darks, fitted to `level`. */

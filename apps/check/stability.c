@@ -58,7 +58,7 @@ static void gain_rows(gains *g, int axis, double most_k, double most_b) {
   row(g, axis, g->damping_key, b * g->damping_scale, "<=", most_b * g->damping_scale, most_b / b, g->damping_unit);
 }
 
-/* What the same gains bear of everything else. */
+/* How much delay, sampling period and so on the same gains tolerate. */
 static void other_rows(const ethd__subject *s, gains *g, int axis, const ethd__sampled_loop *loop) {
   double mass = loop->mass, least = ethd__sampled_mass_min(loop), delay = loop->delay * loop->period + loop->late;
   double longest = ethd__sampled_delay_max(loop), end = ethd__sampled_velocity_end(loop);
@@ -82,7 +82,7 @@ static const char *quicker(const ethd_setup *s) {
   }
 }
 
-/* An unstable loop with a gain under its largest value is so for want of it. */
+/* An unstable loop whose gain is below its largest stable value needs more of that gain. */
 static void say_change(const ethd__subject *s, const gains *g, const ethd__sampled_loop *loop, double most_k,
                        double most_b) {
   printf("  to change:           ");

@@ -6,7 +6,7 @@
 
 #include "check/report.h"
 
-/* What an estimate of the finger is behind: the readings' age, unless the filter makes up for it. */
+/* The delay of the finger's estimate: the readings' age, unless the filter compensates it. */
 static double behind(const ethd__subject *s) {
   const ethd_setup *setup = &s->config->setup;
   if (ethd_setup_get(setup, "finger_filter.compensation") == ETHD_COMPENSATION_STAMP) return 0;

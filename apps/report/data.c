@@ -181,7 +181,7 @@ static ethd_status index_points(const reading *r) {
   }
   data->first = calloc(data->points + 2, sizeof *data->first);
   if (!status && (!point || !data->row || !data->first)) status = no_memory(r);
-  if (!status) { /* first[p + 1] counts up from where p begins to where it ends */
+  if (!status) { /* here first[p + 1] moves from the beginning of p to its end */
     for (size_t i = 0; i < rows; i++) data->first[point[i] + 2]++;
     for (size_t p = 2; p < data->points + 2; p++) data->first[p] += data->first[p - 1];
     for (size_t i = 0; i < rows; i++) data->row[data->first[point[i] + 1]++] = i;

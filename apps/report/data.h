@@ -7,7 +7,7 @@
 
 #define ETHD_REPORT_CELLS 64
 
-/* Of which participant a result is, and where its ticks may be. */
+/* The participant of a result, and where its ticks may be. */
 typedef struct ethd__who {
   uint32_t person;
   size_t row; /* of the sheet */

@@ -9,7 +9,7 @@
 
 #define BYTES_MAX ((size_t)1 << 32)
 
-/* Where the text is being parted, in place. */
+/* The position at which the text is split, in place. */
 typedef struct scan {
   char *at, *end;
   size_t line;

@@ -82,7 +82,7 @@ static double draw_median(const double *values, const size_t *first, const size_
   return ethd__quantile(room, n, 0.5);
 }
 
-/* People who have any, and the most taps that as many draws of them can hold. */
+/* Counts the people who have values, and the most taps that as many draws of people can hold. */
 static size_t list_people(const size_t *first, size_t people, size_t *who, size_t *most) {
   size_t count = 0, largest = 0;
   for (size_t p = 0; p < people; p++) {

@@ -9,7 +9,7 @@
 #define NINE 9    /* taps behind each figure of the paper */
 #define FEWEST 30 /* taps to draw nine from */
 
-/* The larger sample: what is beside, else the study. */
+/* The larger sample: the taps beside the study where there are any, else the study's. */
 static const ethd__data *largest(const ethd__report *r) { return r->beside.group_count ? &r->beside : &r->data; }
 
 static const ethd__group *offset_at(const ethd__data *data, bool high) {
@@ -28,7 +28,7 @@ typedef struct line {
   const ethd__mean *mean; /* of the larger sample */
   const ethd__quantity *quantity;
   bool high;
-  double mean_share, sd_share; /* of nine taps from it, as far off as the paper's */
+  double mean_share, sd_share; /* share of samples of nine taps that lie as far off as the paper's */
 } line;
 
 static void resample(const ethd__report *r, line *row) {

@@ -6,7 +6,7 @@
 #include "tap/ticks.h"
 #include "text/error_text.h"
 
-/* What a tap is drawn by: the wall of the folder's scene. */
+/* The position of the wall, from the folder's scene, at which taps are drawn. */
 static ethd_status view_of(const ethd__report *r, const ethd__group *group, const ethd__result *result,
                            ethd__view *out) {
   ethd__study study = {.config = r->folder->loaded.config, .plant = r->folder->loaded.plant};
@@ -17,7 +17,7 @@ static ethd_status view_of(const ethd__report *r, const ethd__group *group, cons
   return ETHD_OK;
 }
 
-/* The tap to be drawn; no such index: none. */
+/* The index of the tap to draw; an index that isn't there means none. */
 typedef struct choice {
   size_t index;
   char name[ETHD_FILE_NAME_MAX], *recording;

@@ -36,7 +36,7 @@ static void tell_posts(ethd__recorder *r, const ethd__post *posts, int count) {
   for (int i = 0; i < count; i++) event(r, posts[i].kind, posts[i].detail);
 }
 
-/* True: a fault that stops the ring begins. */
+/* Reports a new fault; true when it stops the ring. */
 static bool tell_fault(ethd__recorder *r, int64_t fault) {
   const char *sentence = ethd_fault_sentence((ethd_fault)fault);
   if (!fault || fault == r->fault || atomic_load(&r->stopping)) return false;
@@ -46,7 +46,7 @@ static bool tell_fault(ethd__recorder *r, int64_t fault) {
   return true;
 }
 
-/* The loop and the user are told once what the recorder loses. */
+/* Reports once to the loop and to the user what the recorder loses. */
 static void tell_loop(ethd__recorder *r, uint64_t lost, bool failed_before) {
   if (r->failed && !failed_before)
     fprintf(stderr, "%s: %s\n", program_invocation_short_name, ethd_recording_failure(r->recording));

@@ -33,7 +33,7 @@ typedef struct ethd__recorder {
   int telemetry;             /* socket, -1 none */
   uint64_t every;            /* rows from one datagram to the next */
   pthread_t thread;
-  atomic_int stop, stopping; /* stopping: a controlled stop's fault is none */
+  atomic_int stop, stopping; /* stopping: the fault by which a controlled stop works is not reported */
   bool threaded;
 
   ethd__snapshot snapshot;
@@ -56,7 +56,7 @@ typedef struct ethd__recorder {
 void ethd__recorder_begin(ethd__recorder *recorder, double period);
 ETHD_MUST_CHECK ethd_status ethd__recorder_start(ethd__recorder *recorder);
 
-/* Takes what is there. Not while the thread runs. */
+/* Takes all rows that are there. Not while the thread runs. */
 void ethd__recorder_drain(ethd__recorder *recorder);
 
 /* Ends the thread and takes the rest. */

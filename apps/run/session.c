@@ -89,7 +89,7 @@ static ethd_status open_device(ethd__session *s, const char *folder, char *messa
   return status;
 }
 
-/* In the recording's folder, if not elsewhere. */
+/* The snapshot stands in the recording's folder unless another path is given. */
 static ethd_status open_snapshot(ethd__session *s, const ethd__session_options *o, char *message) {
   char *path = o->snapshot ? strdup(o->snapshot) : ethd__path_join(o->record, "snapshot.npy");
   ethd_status status = path ? ethd__snapshot_open(&s->recorder.snapshot, path, s->setup.period) : ETHD_E_MEMORY;
@@ -203,7 +203,7 @@ ethd_status ethd__session_enable(ethd__session *s) {
   return status;
 }
 
-/* A speed limit of 0: the guard damps the ring, and lets go when it stands. */
+/* Stops by a speed limit of 0: the guard damps the ring and lets go when it stands. */
 void ethd__session_halt(ethd__session *s, bool told) {
   char message[ETHD_MESSAGE_MAX];
   ethd_setup setup = s->setup;

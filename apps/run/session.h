@@ -52,10 +52,10 @@ void ethd__session_free(ethd__session *s);
 ETHD_MUST_CHECK ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const char *kind,
                                                const char *detail, char message[ETHD_MESSAGE_MAX]);
 
-/* The device from its start, the controller reset, torque from zero. */
+/* Starts the device again and resets the controller; the torque rises from zero. */
 ETHD_MUST_CHECK ethd_status ethd__session_enable(ethd__session *s);
 
-/* Takes the controller's events; call it now and then. */
+/* Takes the controller's events and sends the application's beat; call it more often than every heartbeat. */
 void ethd__session_poll(ethd__session *s);
 
 /* A tick of a virtual session. */

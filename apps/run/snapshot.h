@@ -10,7 +10,7 @@ typedef struct ethd__snapshot {
   ethd_trace *rows;
   size_t room, count;             /* rows; taken since the start */
   size_t after;                   /* rows that follow the fault */
-  size_t left;                    /* of them to come, 0: no fault yet, or written */
+  size_t left;                    /* ticks still to come; 0 before the fault and after the file is written */
   ethd_fault fault;               /* the first; ETHD_FAULT_NONE: none yet */
   size_t written;                 /* rows in the file */
   char message[ETHD_MESSAGE_MAX]; /* why it couldn't be written, else empty */

@@ -59,7 +59,7 @@ static void print_device(FILE *out, const ethd_loop_stats *stats) {
   if (stats->relaxes) fprintf(out, "%-10s %" PRIu64 " switches to secondary mode\n", "relaxes", stats->relaxes);
 }
 
-/* What the device counted itself; durations in ms. */
+/* Prints the device's own figures, durations in ms. */
 static void print_figures(FILE *out, const ethd__session *s) {
   static ethd_figure figures[ETHD_FIGURES_MAX];
   uint32_t n = s->driver->figures(s->device, figures, ETHD_FIGURES_MAX);

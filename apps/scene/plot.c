@@ -76,7 +76,7 @@ static void draw_chain(pen *p, const ethd_object_def *o) {
   if (o->shape == ETHD_POLYGON) line_to(p, (ethd_vec){v[0], v[1]});
 }
 
-/* As long as can be seen; the tick shows its inside. */
+/* The wall is drawn as long as the picture shows; a short line marks its solid side. */
 static void draw_halfplane(pen *p, const double *v, double size) {
   ethd_vec foot = {v[0] * v[2], v[1] * v[2]}, along = {-v[1] * size, v[0] * size};
   p->at = ethd_vec_sub(foot, along);

@@ -33,7 +33,7 @@ static void lead(ethd__live *l, ethd_vec *pointer, double t) {
   ethd__hand_lead(&l->hand, t, *pointer);
 }
 
-/* A late tick is made up for: simulated time is the pointer's. */
+/* Late ticks are made up for, because simulated time must keep up with the pointer. */
 static void *run(void *live) {
   ethd__live *l = live;
   ethd__tapping tapping;

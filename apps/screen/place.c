@@ -20,7 +20,7 @@ static void choose(ethd__sitting *sitting, const ethd__protocol *protocol, int64
   sitting->last = (uint32_t)participant;
 }
 
-/* Before all else that follows: nothing moves any more. */
+/* This comes before all else, so that nothing moves any more. */
 static void close_device(ethd__screen_place *at) {
   char message[ETHD_MESSAGE_MAX];
   if (at->device.self && ethd__station_close(&at->station, message) < 0)
@@ -28,7 +28,7 @@ static void close_device(ethd__screen_place *at) {
   at->device.self = NULL;
 }
 
-/* It says of itself what isn't realtime and what risk stays. */
+/* Prints what isn't realtime on this machine and which risks remain. */
 static void take_device(ethd__screen_place *at, const ethd__place_options *o) {
   char message[ETHD_MESSAGE_MAX], *config = ethd__folder_path(o->path, ETHD_RECORDING_CONFIG);
   ethd_status status = ethd__station_open(&at->desk, config, at->folder.device, o->is_virtual, &at->station, message);
@@ -39,7 +39,7 @@ static void take_device(ethd__screen_place *at, const ethd__place_options *o) {
   at->sitting.source = at->device;
 }
 
-/* The window, where one is asked for; else lines. */
+/* Opens the window where one is asked for; else the terminal is used. */
 static void take_front(ethd__screen_place *at, const ethd__place_options *o) {
   char message[ETHD_MESSAGE_MAX];
   bool people = at->device.self != NULL;

@@ -27,7 +27,7 @@ typedef struct ethd__screen_place {
 /* Ends the program on bad input, a device or a window that can't be had: then nothing moves. */
 void ethd__place_open(const ethd__place_options *options, ethd__screen_place *out);
 
-/* Until all is done or somebody stops it; the device is at rest and closed when this returns. */
+/* Runs until all is done or somebody stops it; the device is at rest and closed when this returns. */
 ETHD_MUST_CHECK ethd_status ethd__place_run(ethd__screen_place *place, bool *over, char message[ETHD_MESSAGE_MAX]);
 
 void ethd__place_close(ethd__screen_place *place);

@@ -56,7 +56,7 @@ static void block(void *self, const char *participant, const ethd__turn *turn) {
 
 /* ---- before a tap ---- */
 
-/* By one letter, which may be several bytes. */
+/* Removes one letter, which may be several bytes. */
 static size_t shorter(const char *line, size_t n) {
   while (n && (line[--n] & 0xc0) == 0x80) continue;
   return n;
@@ -143,13 +143,13 @@ static void show(ethd__screen *s, double t, ethd_vec finger) {
   ethd__window_end(&s->window);
 }
 
-static bool look(void *self, double t, ethd_vec finger) {
+static bool show_tap(void *self, double t, ethd_vec finger) {
   ethd__screen *s = self;
   if (begin(s)) show(s, t, finger);
   return !s->stop;
 }
 
-ethd__watcher ethd__screen_watcher(ethd__screen *s) { return (ethd__watcher){s, look}; }
+ethd__watcher ethd__screen_watcher(ethd__screen *s) { return (ethd__watcher){s, show_tap}; }
 
 static void follow(ethd__screen *s, ethd__live *live, ethd_vec from) {
   ethd__glimpse g = {.finger = from};

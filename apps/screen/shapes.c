@@ -95,7 +95,7 @@ void ethd__window_forget(ethd__window *w) {
 
 /* ---- drawing ---- */
 
-/* The shapes that are left of a longer list. */
+/* Clears the shapes that are left of a longer list. */
 static void end_list(ethd__window *w) {
   for (size_t i = w->shape_count; i < w->shape_before; i++) {
     w->changed[w->changed_count++] = w->shape[i].at;

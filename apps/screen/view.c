@@ -29,7 +29,7 @@ ethd_vec ethd__room_point(const ethd__room *f, double px, double py) {
                     (f->bottom + f->top) / 2 - (py - f->height / 2.0) / f->scale};
 }
 
-/* A number that is none stays at the low end. */
+/* NaN is clamped to the low end. */
 static double between(double value, double low, double high) { return value > low ? fmin(value, high) : low; }
 
 ethd_vec ethd__room_avatar(const ethd__room *f, ethd_vec x) {

@@ -19,7 +19,7 @@ typedef struct place {
   const char *name;
 } place;
 
-/* Joint angles with the links `bend` apart. */
+/* Joint angles that leave an angle of `bend` between the links. */
 static void at(const ethd_arm *arm, double bend, double q[2]) {
   q[0] = 1;
   q[1] = arm->mechanism == ETHD_ARM_SERIAL ? bend : 1 + bend;

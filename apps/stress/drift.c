@@ -17,7 +17,7 @@
 
 /* ---- braking, then pressing, for ever ---- */
 
-/* offset, and a look at the contact it is given. */
+/* The law offset, which also notes the age of the contact it is given. */
 static double age_seen;
 
 static ethd_status watch(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) {

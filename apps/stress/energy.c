@@ -34,7 +34,7 @@ static void smooth(ethd__stress_log *log, double stiffness, double depth) {
   double v = ethd__stress_rig_speed(&rig), gained = MASS * v * v / 2, stored = stiffness * depth * depth / 2;
   double k = stiffness * PERIOD * PERIOD / MASS, r = sqrt(1 + k / 2), th = acos((2 - k / 2) / (2 * r));
   double c = (1 - k / 2 - r * cos(th)) / (r * sin(th)), j = (double)rig.tick;
-  /* v_j from x_j and x_j-1: the force of j-1 was held */
+  /* v_j follows from x_j and x_j-1, because the force of tick j - 1 was held */
   double x = depth * pow(r, j) * (cos(j * th) + c * sin(j * th));
   double past = depth * pow(r, j - 1) * (cos((j - 1) * th) + c * sin((j - 1) * th));
   double speed = (x - past) / PERIOD - k / (2 * PERIOD) * past;
@@ -73,7 +73,7 @@ static void offset(ethd__stress_log *log, double speed) {
   ethd__stress_rig_close(&rig);
 }
 
-/* Whatever depth and speed: the wall pushes out. */
+/* At any depth and speed the wall only pushes out. */
 static void never_pulls(ethd__stress_log *log, const ethd_contact_law *law) {
   double most = -INFINITY;
   for (double depth = 0; depth < 0.01; depth += 5e-4)

@@ -140,7 +140,7 @@ static void disturb(const ethd_arm *arm, const ethd_scene *scene, const disturba
     }
     ethd_status status = ethd_control_step(control, &s, &c, &t);
     if (now) judge(&s, status, &c, &t, sum);
-    /* what is huge faults again until it has left the filters */
+    /* a huge number causes faults until it has left the filters */
     if (t.fault && k >= BEFORE + d->ticks && k < BEFORE + d->ticks + 1000) ethd_control_clear(control);
   }
   double off = hypot(c.torque[0] - undisturbed[0], c.torque[1] - undisturbed[1]);
@@ -176,7 +176,7 @@ static void undisturbed(const ethd_arm *arm, const ethd_scene *scene, int ticks,
 }
 
 static void all_words(ethd__stress_log *log, const ethd_arm *arm, const ethd_scene *scene) {
-  const int after = 1600; /* what is huge takes that long to fade from a low-pass */
+  const int after = 1600; /* ticks that a huge number takes to fade from a low-pass */
   word list[WORDS_OF_SENSE];
   size_t count = words(list), hold_count = log->effort == ETHD__QUICK ? 2 : sizeof holds / sizeof *holds;
   tally sum = {0};

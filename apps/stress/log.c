@@ -39,7 +39,7 @@ void ethd__stress_flush(ethd__stress_log *log) {
   log->count = 0;
 }
 
-/* The line with these words, new ones at the end. */
+/* Finds the line with these words, or adds one at the end. */
 static ethd__stress_result *line_of(ethd__stress_log *log, const char *what) {
   for (int i = 0; i < log->count; i++)
     if (strcmp(log->lines[i].what, what) == 0) return &log->lines[i];

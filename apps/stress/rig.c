@@ -108,7 +108,7 @@ const ethd_trace *ethd__stress_rig_step(ethd__stress_rig *rig) {
   return &rig->trace;
 }
 
-/* What the motors give now: the command of `delay` ticks ago, limited. */
+/* The motors' present torque: the command of `delay` ticks ago, limited. */
 static void torque(ethd__stress_rig *rig, double out[2]) {
   const ethd_arm *arm = &rig->setup.arm;
   double *slot = rig->way[rig->delay ? rig->tick % rig->delay : 0];

@@ -52,13 +52,13 @@ void ethd__stress_rig_brakes(ethd__stress_rig *rig, double damping, double v_th)
 void ethd__stress_rig_start(ethd__stress_rig *rig, double speed);
 void ethd__stress_rig_close(ethd__stress_rig *rig);
 
-/* From now on this push, and torques on their way that bear it (start does it for rig->push). */
+/* From now on this push acts, and the delayed torques already balance it (start does it for rig->push). */
 void ethd__stress_rig_push(ethd__stress_rig *rig, ethd_vec push);
 
 /* One tick: step, then the mass moves on for a period. */
 const ethd_trace *ethd__stress_rig_tick(ethd__stress_rig *rig);
 
-/* Its two halves. A move without a step before it is a tick that was lost: the torque stays. */
+/* The two halves of a tick. A move without a step before it is a lost tick: the torque stays. */
 const ethd_trace *ethd__stress_rig_step(ethd__stress_rig *rig);
 void ethd__stress_rig_move(ethd__stress_rig *rig);
 

@@ -49,17 +49,17 @@ void ethd__stress_within(ethd__stress_log *log, const char *unit, double measure
 void ethd__stress_bound(ethd__stress_log *log, const char *unit, double measured, double bound, const char *what, ...)
     __attribute__((format(printf, 5, 6)));
 
-/* A figure without a verdict, below the lines so far. */
+/* Prints a figure without a verdict below the lines so far. */
 void ethd__stress_note(ethd__stress_log *log, const char *text, ...) __attribute__((format(printf, 2, 3)));
 
 /* Prints the lines so far. */
 void ethd__stress_flush(ethd__stress_log *log);
 
-/* folder/name for writing with a header row; NULL when there is no folder; exits when it can't. */
+/* Opens folder/name for writing and writes the header row; NULL when there is no folder; exits when it can't. */
 FILE *ethd__stress_data(const ethd__stress_log *log, const char *name, const char *header);
 void ethd__stress_close(FILE *data);
 
-/* Of the three efforts' values the present one. */
+/* The value for the present effort. */
 static inline int64_t ethd__stress_pick(const ethd__stress_log *log, int64_t quick, int64_t normal, int64_t most) {
   return log->effort == ETHD__QUICK ? quick : log->effort == ETHD__NORMAL ? normal : most;
 }

@@ -22,7 +22,7 @@ typedef struct braking {
   double period, damping, still; /* s, Ns/m, m/s */
 } braking;
 
-/* Does the finger arrive while the ring still moves? */
+/* Whether the finger arrives while the ring still moves. */
 static int early(const plant *p, const braking *b, double speed, double lag) {
   ethd__stress_rig rig;
   ethd__stress_rig_open(&rig, p->mass, -1e-12);

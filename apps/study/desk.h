@@ -28,7 +28,7 @@ void ethd__desk_close(ethd__desk *desk);
 /* From here on with the gains of this point of the grid. */
 void ethd__desk_point(ethd__desk *desk, size_t point);
 
-/* Whatever a tap needs but the finger: the person's study, the strategy's stage. */
+/* Prepares everything that a tap needs but the finger: the person's study and the strategy's stage. */
 ETHD_MUST_CHECK ethd_status ethd__desk_prepare(ethd__desk *desk, const ethd__turn *turn, ethd__taken *out,
                                                char message[ETHD_MESSAGE_MAX]);
 

@@ -112,7 +112,7 @@ static ethd_status write_versions(const char *folder, char *message) {
   return write_text(folder, VERSIONS, text, message);
 }
 
-/* All of it reaches the disk before a journal tells of it. */
+/* The whole tap reaches the disk before a journal mentions it. */
 static ethd_status settle(const char *folder, char *message) {
   int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   bool failed = fd < 0 || syncfs(fd) != 0;

@@ -25,7 +25,7 @@ typedef struct ethd__front {
   bool (*survey)(void *self, const ethd__turn *turn, int answers[3]);
 } ethd__front;
 
-/* What to do otherwise, for whoever taps. [any] */
+/* Shows the participant what to do. [any] */
 const char *ethd__advice(ethd__reason reason);
 
 /* Lines on stdout, commands and answers on stdin when `ask`. */

@@ -30,7 +30,7 @@ ETHD_MUST_CHECK ethd_status ethd__journal_create(const char *path, ethd__journal
 /* To go on; locked likewise. */
 ETHD_MUST_CHECK ethd_status ethd__journal_open(const char *path, ethd__journal *out, char message[ETHD_MESSAGE_MAX]);
 
-/* Only to read: lines that come later are missing, nothing is cut or locked. */
+/* Opens the journal for reading only: lines that come later are missing, nothing is cut or locked. */
 ETHD_MUST_CHECK ethd_status ethd__journal_read(const char *path, ethd__journal *out, char message[ETHD_MESSAGE_MAX]);
 
 /* On failure the file is as it was. `text` has no line ends. */

@@ -20,7 +20,7 @@ static int is_csv(const struct dirent *entry) {
   return n > 4 && entry->d_name[0] != '.' && !strcmp(entry->d_name + n - 4, ".csv");
 }
 
-/* Bytes, not the locale: the same order everywhere. */
+/* Compares bytes, so that the order is the same in every locale. */
 static int by_name(const struct dirent **a, const struct dirent **b) { return strcmp((*a)->d_name, (*b)->d_name); }
 
 static ethd_status list(const char *folder, char ***files, size_t *count, char *message) {

@@ -7,7 +7,7 @@
 
 #define CUT 2.0 /* sd, as for taps */
 
-/* Streams of a person; a tap's are another key's. */
+/* Random streams of a person; those of a tap have another key. */
 enum { SEED, RADIUS, PACE, REACH, STIFFNESS, DAMPING, BELOW };
 
 uint64_t ethd__person_seed(uint64_t seed, uint32_t person) {

@@ -18,7 +18,7 @@ void ethd__participant_id(const ethd__protocol *protocol, uint32_t person, char 
 /* The row of taps.csv without its line end; freed by the caller, NULL: no memory. */
 char *ethd__tap_row(const ethd__protocol *protocol, const ethd__taken *taken);
 
-/* What of a row of taps.csv a session goes on from. */
+/* The cells of a row of taps.csv that a resumed session needs. */
 typedef struct ethd__tap_key {
   uint32_t person, attempt;
   size_t number;

@@ -32,7 +32,7 @@ typedef struct ethd__sitting {
 ETHD_MUST_CHECK ethd_status ethd__sitting_open(ethd__folder *folder, ethd__sitting *out,
                                                char message[ETHD_MESSAGE_MAX]);
 
-/* Until all is done, somebody stops it or ethd__stop is set. *over: all is done. */
+/* Runs until all is done, somebody stops it or ethd__stop is set. *over: all is done. */
 ETHD_MUST_CHECK ethd_status ethd__sitting_run(ethd__sitting *s, bool *over, char message[ETHD_MESSAGE_MAX]);
 
 void ethd__sitting_close(ethd__sitting *s);

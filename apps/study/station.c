@@ -11,7 +11,7 @@
 
 #define SECONDS 6.0   /* of a tap at most */
 #define BEAT 20000000 /* ns */
-#define LOOK 1000000  /* ns from look to look at a tap */
+#define LOOK 1000000  /* ns between two looks at a tap */
 #define CLEAN 3.0     /* s in which an acknowledged device must have come to rest */
 
 static void rest(long ns) {
@@ -115,18 +115,18 @@ static double time_of(ethd__station *s, const ethd_loop_row *row) {
   return t;
 }
 
-static bool look(ethd__station *s) {
+static bool tell_watcher(ethd__station *s) {
   ethd_loop_row row = latest(s);
   double t = time_of(s, &row);
   return !s->watcher.look || s->watcher.look(s->watcher.self, t, (ethd_vec){row.trace.xf[0], row.trace.xf[1]});
 }
 
-/* Until the tap is over; false: somebody stops it before. */
+/* Waits until the tap is over; false when it is stopped before. */
 static bool follow(ethd__station *s) {
   bool go = true;
   while (go && phase_of(s) != ETHD_PHASE_OVER) {
     pass(s);
-    go = !ethd__stop && !ethd_loop_ended(s->session.loop) && look(s);
+    go = !ethd__stop && !ethd_loop_ended(s->session.loop) && tell_watcher(s);
   }
   return set_phase(s, ETHD_PHASE_IDLE) == ETHD_PHASE_OVER;
 }
@@ -136,7 +136,7 @@ static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, cha
   ethd_status status = ethd__desk_prepare(s->desk, turn, out, message);
   if (!status) status = take_strategy(s, out->stage->law, message);
   if (status) return status;
-  if (stopped(s)) return ETHD_EMPTY; /* enabling would forget what nobody has acknowledged */
+  if (stopped(s)) return ETHD_EMPTY; /* enabling would clear a fault that nobody has acknowledged */
   make_ready(s, out);
   set_phase(s, ETHD_PHASE_DUE);
   status = ethd__session_enable(&s->session);

@@ -31,7 +31,7 @@ typedef struct ethd__station {
   int64_t begin_ns;
   ethd_status status; /* of its rows */
 
-  pthread_t keeper; /* says to the loop that the program lives, and that it was told to end */
+  pthread_t keeper; /* sends the loop the program's beat, and the signal to end */
   atomic_int end;
   bool kept;
 } ethd__station;

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define SECONDS_MAX 9e9 /* ns fit, and so do dates: seconds since 1970 */
+#define SECONDS_MAX 9e9 /* the largest time, s: dates as seconds since 1970 fit, and int64 nanoseconds hold them */
 
 static const char *const columns[] = {"t_s",     "q1_rad",  "q2_rad",   "dq1_radps", "dq2_radps", "xf_m", "yf_m",
                                       "vxf_mps", "vyf_mps", "t_ring_s", "r0_m",      "r1_m",      "r2_m", "r3_m",
@@ -22,7 +22,7 @@ static ethd_status refuse(const ethd__trace_in *in, size_t row, int column, cons
   return ETHD_E_RANGE;
 }
 
-/* How many of `count` names from `first` on are there; their columns. */
+/* How many of `count` names from `first` on the file has; fills their columns. */
 static int find(const ethd__trace_in *in, int first, int count, int *out) {
   int found = 0;
   for (int i = 0; i < count; i++) {

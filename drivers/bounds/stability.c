@@ -5,8 +5,8 @@
 
 #include "ethd/maths.h"
 
-/* One tick as a linear map of: position, speed, estimate, filter position, force of the last tick,
-   forces on their way, last positions. Its matrix is read off by applying it to unit vectors. */
+/* One tick is a linear map of position, speed, estimate, filter position, the last tick's force, the delayed forces
+   and the last positions. Its matrix is read off by applying it to unit vectors. */
 enum { X, V, ESTIMATE, FILTER, LAST, WAY, STATE_MAX = WAY + ETHD_LOOP_DELAY_MAX + 1 + ETHD_VELOCITY_WINDOW_MAX };
 
 typedef double matrix[STATE_MAX][STATE_MAX];
@@ -72,7 +72,7 @@ static double estimate(const model *m, const double *s, double *filter) {
 
 /* ---- the tick ---- */
 
-/* For `late` the force of one tick earlier still acts. */
+/* For `late` seconds the force of one tick earlier still acts. */
 static void tick(const model *m, const double *s, double *next) {
   const ethd__sampled_loop *l = m->loop;
   double T = l->period, late = l->late, rest = T - late, filter = 0;
@@ -147,7 +147,7 @@ bool ethd__sampled_stable(const ethd__sampled_loop *loop) { return ethd__sampled
 
 #define STEPS_PER_DECADE 16
 
-/* Between a stable and an unstable value, to 1e-6 of it. */
+/* Bisects between a stable and an unstable value, to 1e-6 of it. */
 static double bisect(ethd__sampled_loop *loop, double *value, double stable, double unstable) {
   while (fabs(unstable / stable - 1) > 1e-6) {
     *value = sqrt(stable * unstable);
@@ -178,8 +178,8 @@ double ethd__sampled_mass_min(const ethd__sampled_loop *loop) {
   return 0;
 }
 
-/* In units of what the mass and the period set. A stable band may be narrower than the grid: the value
-   that is there counts too. */
+/* Values are in units of what mass and period set. A stable band may be narrower than the grid, so the value that is
+   there is tried too. */
 static double gain_max(ethd__sampled_loop *l, double *gain, double unit) {
   double own = ethd__sampled_stable(l) ? *gain : 0;
   for (int i = STEPS_PER_DECADE; i >= -6 * STEPS_PER_DECADE; i--) {

@@ -16,7 +16,7 @@
 
 /* ---- questions ---- */
 
-/* What a driver shows of itself, before it is asked for anything. */
+/* What a driver's table says, before any of its functions is called. */
 static ethd_verdict judge_table(const ethd_driver *d, ethd_conform_answer *a) {
   ethd_error error;
   if (d->size < sizeof *d || d->abi != ETHD_DRIVER_ABI)
@@ -49,7 +49,7 @@ static int descriptors(void) {
   return n;
 }
 
-/* Also started, also twice; what was opened is closed. */
+/* Opens, starts and closes the device again and again; no descriptor may stay open. */
 static ethd_verdict ask_open(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__conform_rig r;
   int before = 0;
@@ -87,7 +87,7 @@ static ethd_verdict ask_limits(const ethd_conform_def *def, ethd_conform_answer 
   return a->verdict;
 }
 
-/* The row that leads to the hardest reaction; 0: none was seen. */
+/* The fault row with the hardest reaction among those that were seen; 0 when none was. */
 static ethd_fault worst_row(const ethd__conform_rig *r, ethd_reaction *reaction) {
   ethd_fault worst = ETHD_FAULT_NONE;
   *reaction = ETHD_REACTION_NONE;
@@ -101,7 +101,8 @@ static ethd_fault worst_row(const ethd__conform_rig *r, ethd_reaction *reaction)
   return worst;
 }
 
-/* A row that is only counted is no break: late answers come. Nor is what a machine sees that is late itself. */
+/* A fault row that is only counted breaks nothing, because answers do come late now and then. Nor does a row that
+   comes from this machine being late. */
 static ethd_verdict judge_samples(const ethd__conform_rig *r, ethd_conform_answer *a) {
   char readings[48] = "";
   ethd_reaction reaction;
@@ -174,7 +175,7 @@ static ethd_verdict ask_counts(const ethd_conform_def *def, ethd_conform_answer 
   return ethd__conform_rig_answer(a, ETHD_KEPT, "smallest step %.3g rad, fastest %.3g rad/s", r.resolution, r.speed);
 }
 
-/* No: such a push is lost in the steps of the angle, and what it leads to is no answer. */
+/* False when such a push would be lost in the steps of the angle: its result would answer nothing. */
 static int is_pushed(const ethd__conform_rig *r, double acceleration, ethd_conform_answer *a) {
   double least = ethd__conform_rig_least(r, LAPSE / 2);
   if (acceleration > 0 && acceleration >= least) return 1;
@@ -201,7 +202,7 @@ static double held(const ethd_conform_def *def, ethd_conform_answer *a) {
          0;
 }
 
-/* Torque that nobody renews must end. */
+/* A torque that is not renewed must end. */
 static ethd_verdict ask_watchdog(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__conform_rig r;
   double most = 0.25 * held(def, a);

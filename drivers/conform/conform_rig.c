@@ -8,8 +8,8 @@
 #include <time.h>
 
 #include "clock.h"
-#define IDLE 1000000 /* ns, of an I/O thread that had nothing to do */
-#define STEPS 8      /* of the angle: less is no acceleration */
+#define IDLE 1000000 /* ns that an I/O thread sleeps when it had nothing to do */
+#define STEPS 8      /* steps of the angle below which no acceleration is seen */
 #define LOOK 0.01    /* s: does it move? */
 #define SETTLE 200   /* looks */
 #define STANDS 0.02  /* rad/s */
@@ -96,7 +96,7 @@ void ethd__conform_rig_end(ethd__conform_rig *r) {
   r->driver->close(r->device);
 }
 
-static void look(ethd__conform_rig *r, const ethd_sense *s) {
+static void note_joints(ethd__conform_rig *r, const ethd_sense *s) {
   const ethd_sense *before = &r->sense;
   double dt = 1e-9 * (double)(s->time_ns - before->time_ns);
   for (int i = 0; i < 2; i++) {
@@ -111,8 +111,8 @@ static void look(ethd__conform_rig *r, const ethd_sense *s) {
   r->samples++;
 }
 
-/* Of the finger, from whatever kind of sensor. */
-static void look_at_reading(ethd__conform_rig *r, const ethd_sense *s) {
+/* Notes a reading of the finger, of whatever sensor. */
+static void note_reading(ethd__conform_rig *r, const ethd_sense *s) {
   if (!(s->have & (ETHD_HAVE_FINGER | ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS))) return;
   r->ahead += s->sample_ns > (r->def->device->is_virtual ? r->now : ethd__clock_now());
   r->backwards += r->readings && s->sample_ns < r->reading_ns;
@@ -120,7 +120,7 @@ static void look_at_reading(ethd__conform_rig *r, const ethd_sense *s) {
   r->readings++;
 }
 
-/* One period: I/O, read, and the torque unless it is NULL. */
+/* One period: does the I/O, reads, and writes the torque unless it is NULL. */
 static void tick(ethd__conform_rig *r, const double *torque) {
   ethd_sense s = {0};
   ethd_command command = {.safe = torque == NULL};
@@ -132,9 +132,9 @@ static void tick(ethd__conform_rig *r, const double *torque) {
   r->failed += status < 0;
   r->faults |= s.faults;
   r->grave |= s.grave;
-  look_at_reading(r, &s);
+  note_reading(r, &s);
   if (status == ETHD_OK) {
-    look(r, &s);
+    note_joints(r, &s);
     r->sense = s;
   }
   if (r->samples) r->age = fmax(r->age, 1e-9 * (double)(r->now - r->sense.time_ns));

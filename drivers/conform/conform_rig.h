@@ -27,7 +27,7 @@ struct ethd__conform_rig {
   ethd__conform_rig_unit unit[ETHD_UNITS_MAX];
   ethd_sense sense;
   char message[ETHD_MESSAGE_MAX];
-  /* over all ticks since it was opened */
+  /* over all ticks since the device was opened */
   double resolution, speed, age; /* smallest step, rad; fastest, rad/s; oldest, s */
   double late;                   /* s: the latest that a tick came, through no fault of the device */
   int64_t faults, grave, reading_ns;
@@ -47,13 +47,14 @@ bool ethd__conform_rig_begin(const ethd_conform_def *def, ethd__conform_rig *r, 
 void ethd__conform_rig_stop(ethd__conform_rig *r);
 void ethd__conform_rig_end(ethd__conform_rig *r);
 
-/* Anew, once it was stopped; a failure's status. */
+/* Starts the device again after a stop; returns its status. */
 ethd_status ethd__conform_rig_start(ethd__conform_rig *r);
 
-/* `seconds` of ticks with `torque`, Nm, on a joint, 0 on the other. */
+/* Runs ticks for `seconds` with `torque`, Nm, on one joint and 0 on the other. */
 void ethd__conform_rig_run(ethd__conform_rig *r, double seconds, int joint, double torque);
 
-/* No torque until both joints stand: the question before may have left them moving. Gives up after 2 s. */
+/* Applies no torque until both joints stand still, because the question before may have left them moving. Gives up
+   after 2 s. */
 void ethd__conform_rig_settle(ethd__conform_rig *r);
 
 /* The smallest acceleration that such windows can tell from the steps of the angle, rad/s^2. */

@@ -55,7 +55,7 @@ static ethd_status name_drivers(ethd__stack *s, const char *ids, const ethd_driv
 
 /* ---- settings ---- */
 
-/* Behind "id."; NULL: the key isn't this driver's. */
+/* The key without its prefix "id."; NULL when the key isn't this driver's. */
 static const char *own_key(const char *key, const char *id) {
   size_t length = strlen(id);
   return strncmp(key, id, length) == 0 && key[length] == '.' ? key + length + 1 : NULL;

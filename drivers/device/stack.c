@@ -134,7 +134,7 @@ static void clear(void *stack) {
 
 static ethd_status home(void *stack, const double q[2]) {
   const ethd__stack *s = stack;
-  ethd_status status = ETHD_E_ARGUMENT; /* none of them has anything to find out */
+  ethd_status status = ETHD_E_ARGUMENT; /* none of the drivers has anything to find out */
   for (uint32_t i = 0; i < s->count; i++) {
     if (!s->at[i].driver->home) continue;
     status = s->at[i].driver->home(s->at[i].device, q);

@@ -21,7 +21,7 @@ typedef struct counter {
   /* I/O thread, and start */
   pthread_mutex_t lock;
   ethd__counter_input input;
-  int32_t failed; /* also [rt]'s: the count can't be read */
+  int32_t failed; /* read by [rt] too: the count can't be read */
 
   /* [rt], and start */
   ethd__counter_snapshot taken;
@@ -154,7 +154,7 @@ static ethd_status counter_open(const ethd_device_def *def, void **out, char mes
 
 static bool is_homed(const counter *c) { return c->encoder[0].homed && c->encoder[1].homed; }
 
-/* By hand: until each encoder's index mark has passed. */
+/* Homing by hand: waits until each encoder's index mark has passed. */
 static ethd_status home(counter *c) {
   int64_t most = (int64_t)rint(c->settings.p[ETHD__COUNTER_HOME_TIME] * 1e9 / HOME_PAUSE), t = 0;
   for (; !is_homed(c) && t < most; t++) {
@@ -190,7 +190,7 @@ static ethd_status counter_start(void *device) {
   return status;
 }
 
-/* Their counts, as they are, mean these angles. */
+/* From now on the present counts mean these angles. */
 static ethd_status counter_home(void *device, const double q[2]) {
   counter *c = device;
   if (!q) return ETHD_OK; /* by index marks it is start's */
@@ -203,7 +203,7 @@ static ethd_status counter_home(void *device, const double q[2]) {
 
 /* ---- for people ---- */
 
-/* Figures are read while they rise. */
+/* Figures are read while the I/O thread counts. */
 static double seen(const uint64_t *count) { return (double)__atomic_load_n(count, __ATOMIC_RELAXED); }
 
 static uint32_t counter_units(const void *device) { return (void)device, 1; }

@@ -4,7 +4,7 @@
 #include <linux/counter.h>
 
 #define EVENTS 64    /* in one call */
-#define CALLS_MAX 64 /* in one sample: the rest waits for the next */
+#define CALLS_MAX 64 /* events in one sample: the rest waits for the next */
 
 /* ---- opening ---- */
 
@@ -50,7 +50,7 @@ static void take_event(ethd__counter_input *in, int device, const struct counter
   }
 }
 
-/* All that wait. -1: the device is gone. */
+/* Reads all events that wait; -1 when the device is gone. */
 static int take_events(ethd__counter_input *in, int j) {
   struct counter_event events[EVENTS];
   if (in->counts[j].shared) return 0;

@@ -65,7 +65,7 @@ static int put(const ethd__counter_calls *calls, const char *path, const char *t
   return n < 0 ? -1 : 0;
 }
 
-/* What the count counts is what was asked for: read back, not believed. */
+/* The setting is read back, because a kernel may accept one that it doesn't take. */
 static ethd_status set_function(const ethd__counter_calls *calls, const ethd__counter_settings *s, int j,
                                 char *message) {
   char path[160], now[ETHD_COUNTER_TEXT_MAX];
@@ -80,7 +80,7 @@ static ethd_status set_function(const ethd__counter_calls *calls, const ethd__co
   return put(calls, path, "1") && errno != ENOENT ? say_errno(path, "can't be enabled", message) : ETHD_OK;
 }
 
-/* A whole number and nothing else; -1: it isn't. */
+/* Parses a whole number and nothing else; -1 for any other text. */
 static int to_count(const char *text, uint64_t *out) {
   char *end;
   if (text[0] < '0' || text[0] > '9') return -1;

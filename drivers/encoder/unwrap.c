@@ -32,7 +32,7 @@ static int64_t away(int64_t d) ETHD_RT { return d < 0 ? -d : d; }
 
 /* ---- index marks ---- */
 
-/* What a distance of marks has over whole turns. */
+/* By how much the distance of two marks differs from whole turns. */
 static int64_t rest(int64_t distance, int64_t turn) ETHD_RT {
   int64_t r = distance % turn;
   if (2 * r >= turn) r -= turn;
@@ -145,7 +145,7 @@ static void begin(const ethd__encoder_def *def, ethd__encoder *e, const ethd__co
   forget_motion(e);
 }
 
-/* Goes on at the last step's speed. */
+/* Extrapolates with the last step's speed. */
 static int64_t drop(const ethd__encoder_def *def, ethd__encoder *e, const ethd__count *s, int64_t *grave) ETHD_RT {
   int64_t bit = ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP);
   if (e->jumped && s->time_ns - e->jump_ns <= JUMPS_NS) *grave |= bit;

@@ -26,7 +26,7 @@ typedef struct inject {
   ethd__script script;
   int64_t start_ns; /* of the first sample */
   int64_t now;      /* since then */
-  int32_t started;  /* written by [rt], read by I/O threads, as start_ns before it */
+  int32_t started;  /* like start_ns above: written by [rt], read by I/O threads */
   uint64_t done;    /* things that were done wrong */
   uint64_t commands, readings;
   ethd_sense last; /* reading */
@@ -53,7 +53,7 @@ ethd_status ethd__inject_around(const ethd_driver *driver, void *device, ethd__s
 
 static bool is_due(const ethd__injection *i, int64_t t) ETHD_RT { return t >= i->from_ns && t < i->until_ns; }
 
-/* The next one of a channel that is due, from `at` on; NULL: none is left. */
+/* The channel's next due injection from `at` on; NULL when none is left. */
 static ethd__injection *next_due(inject *in, ethd__inject_channel channel, uint32_t *at) ETHD_RT {
   while (*at < in->script.count) {
     ethd__injection *i = &in->script.at[(*at)++];
@@ -96,7 +96,7 @@ static void hold_reading(inject *in, double delay, const ethd_sense *s) ETHD_RT 
   r->sense = *s;
 }
 
-/* The newest that is due; it and those before it are gone then. */
+/* Takes the newest sample that is due; it and all older ones leave the queue. */
 static void release_readings(inject *in, ethd_sense *s) ETHD_RT {
   for (uint64_t back = 0; back < READINGS_MAX && back < in->readings; back++) {
     reading *r = &in->held[(in->readings - 1 - back) % READINGS_MAX];
@@ -130,7 +130,7 @@ static void raise_faults(inject *in, ethd_sense *s) ETHD_RT {
   }
 }
 
-/* What the driver added, onto what is there. */
+/* Adds the driver's own part to the sense. */
 static void add(const ethd_sense *s, ethd_status status, ethd_sense *out) ETHD_RT {
   out->faults |= s->faults;
   out->grave |= s->grave;
@@ -248,7 +248,7 @@ static uint32_t inject_figures(const void *device, ethd_figure *out, uint32_t ma
   return n;
 }
 
-/* That it does wrong, before what the other one says. */
+/* The first remark says that this device does wrong by a script; the wrapped device's own follow. */
 static const char *inject_remark(const void *device, uint32_t i) {
   const inject *in = device;
   if (i == 0) return "faults are injected: this is no run to trust";

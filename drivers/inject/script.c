@@ -78,7 +78,7 @@ static word next_word(const char **at, const char *end) {
 
 static bool is_word(word w, const char *name) { return strlen(name) == w.length && !memcmp(w.at, name, w.length); }
 
-/* Behind a word's `prefix`; an empty word: it has another beginning. */
+/* The rest of a word after `prefix`; an empty word when it begins differently. */
 static word behind(word w, const char *prefix) {
   size_t n = strlen(prefix);
   if (w.length <= n || memcmp(w.at, prefix, n) != 0) return (word){w.at, 0};

@@ -40,7 +40,7 @@ typedef enum ethd__inject_channel {
 typedef enum ethd__inject_kind {
   ETHD__INJECT_FREEZE,  /* stays what it was when this began */
   ETHD__INJECT_OFFSET,  /* by is added */
-  ETHD__INJECT_REVERSE, /* moves the other way from where this began */
+  ETHD__INJECT_REVERSE, /* the angle moves the other way from where it was when the injection began */
   ETHD__INJECT_SCALE,   /* times by */
   ETHD__INJECT_NOISE,   /* uniform within by to both sides */
   ETHD__INJECT_SET_TO,  /* is by */
@@ -55,7 +55,7 @@ typedef enum ethd__inject_kind {
 } ethd__inject_kind;
 
 typedef struct ethd__injection {
-  int64_t from_ns, until_ns; /* since the first sample; until is not of it */
+  int64_t from_ns, until_ns; /* since the first sample; [from, until) */
   ethd__inject_channel channel;
   ethd__inject_kind kind;
   uint32_t first, count; /* numbers of the channel */

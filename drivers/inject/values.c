@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-/* Where a channel's numbers are; NULL: they aren't in this sample. */
+/* Where the sample holds a channel's numbers; NULL when it doesn't hold them. */
 static double *numbers(ethd__inject_channel channel, int joints, ethd_sense *s) ETHD_RT {
   switch (channel) {
   case ETHD__INJECT_Q: return joints ? s->q : NULL;
@@ -15,7 +15,7 @@ static double *numbers(ethd__inject_channel channel, int joints, ethd_sense *s) 
   }
 }
 
-/* In [-1, 1), of a line, a number of its channel and an instant. */
+/* Deterministic noise in [-1, 1) for one channel of one line at one instant. */
 static double draw(int line, uint32_t i, int64_t t) ETHD_RT {
   uint64_t z = ((uint64_t)line << 40) + ((uint64_t)i << 56) + (uint64_t)t;
   z = (z + 0x9e3779b97f4a7c15u) * 0xbf58476d1ce4e5b9u;

@@ -1,4 +1,4 @@
-/* The control thread's way, tick by tick: nothing here allocates, locks, or calls the system but to sleep. */
+/* What the control thread does in each tick. Nothing here allocates, locks, or calls the system but to sleep. */
 #include <errno.h>
 #include <math.h>
 #include <stdbool.h>
@@ -70,7 +70,7 @@ static void push(ethd_loop *l) ETHD_RT {
 
 /* ---- one tick ---- */
 
-/* A device that can't be read isn't known: the controller's input fault follows. */
+/* Nothing is known of a device that can't be read, so the controller gets NaN and reports its input fault. */
 static void blind(ethd_loop *l) ETHD_RT {
   raise(&l->stats.read_failures, 1);
   l->sense.have = 0;
@@ -78,7 +78,7 @@ static void blind(ethd_loop *l) ETHD_RT {
   l->sense.q[0] = l->sense.q[1] = (double)NAN;
 }
 
-/* A row that ends the torque doesn't wait for the next sample. */
+/* A fault row that ends the torque is acted on at once, without waiting for the next sample. */
 static bool is_pressing(const ethd_sense *s) ETHD_RT {
   for (int64_t rows = s->faults | s->grave; rows; rows &= rows - 1) {
     ethd_fault row = (ethd_fault)__builtin_ctzll((uint64_t)rows);
@@ -87,7 +87,7 @@ static bool is_pressing(const ethd_sense *s) ETHD_RT {
   return 0;
 }
 
-/* Of a step without a newer sample, what is known of the joints is the last one. */
+/* A step without a newer sample uses the last one for the joints. */
 static void remember_joints(ethd_loop *l, ethd_status status) ETHD_RT {
   ethd_sense *s = &l->sense;
   if (status == ETHD_OK) {
@@ -108,7 +108,7 @@ static void watch_age(ethd_loop *l, ethd_status status) ETHD_RT {
     l->sense.faults |= ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD);
 }
 
-/* No: there is nothing newer than what the last step knew, and the torque holds. */
+/* False when there is no newer sample than at the last step: the torque is then held. */
 static bool read_device(ethd_loop *l) ETHD_RT {
   if (!l->held) memset(&l->sense, 0, sizeof l->sense);
   ethd_status status = l->def.driver->read(l->def.device, l->due, &l->sense);
@@ -215,7 +215,7 @@ static void overrun(ethd_loop *l, int64_t late, int64_t periods) ETHD_RT {
   l->due += periods * l->period;
 }
 
-/* Until the tick; with early wake the caches are warm and the start is exact. */
+/* Sleeps until the tick. With early wake the caches are then warm and the start is exact. */
 static int wait(ethd_loop *l) ETHD_RT {
   int failure = sleep_until(l, l->due - l->early);
   if (failure) return failure;
@@ -232,14 +232,14 @@ static int wait(ethd_loop *l) ETHD_RT {
   return 0;
 }
 
-/* The next instant of the grid that isn't over. */
+/* Sets the next tick to the grid's next instant in the future. */
 static void advance(ethd_loop *l) ETHD_RT {
   l->due += l->period;
   int64_t late = ethd__loop_now(l) - l->due;
   if (late > 0) overrun(l, late, (late + l->period - 1) / l->period);
 }
 
-/* Yes, once asked; unless [main] has lost its patience at this very moment. */
+/* True once [main] has asked for the device, unless it withdraws at this very moment. */
 static bool parked(ethd_loop *l) ETHD_RT {
   int mode = ETHD__LOOP_ASKED;
   return atomic_compare_exchange_strong_explicit(&l->mode, &mode, ETHD__LOOP_PARKED, memory_order_acq_rel,

@@ -1,6 +1,6 @@
 #include "ethd/loop.h"
 
-#define EXACT 32 /* values under it have a bin each; so many bins per factor of two follow */
+#define EXACT 32 /* values below this have a bin each; from there on there are so many bins per factor of two */
 #define EXACT_BITS 5
 
 static uint32_t bin_of(uint64_t ns) ETHD_RT {
@@ -18,7 +18,7 @@ int64_t ethd_histogram_first(uint32_t bin) {
 
 int64_t ethd_histogram_last(uint32_t bin) { return ethd_histogram_first(bin + 1) - 1; }
 
-/* One writer; whoever reads meanwhile sees whole numbers. */
+/* There is one writer; a reader at the same time sees whole numbers. */
 static void raise(uint64_t *count) ETHD_RT { __atomic_store_n(count, *count + 1, __ATOMIC_RELAXED); }
 
 void ethd_histogram_add(ethd_histogram *h, int64_t ns) {

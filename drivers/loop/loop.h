@@ -9,7 +9,7 @@
 #include "ethd/loop.h"
 #include "loop/rt.h"
 
-/* Who has device and controller: the loop, or [main] while it enables. */
+/* Who may use device and controller: the loop, or [main] while it enables the device. */
 enum { ETHD__LOOP_RUNS, ETHD__LOOP_ASKED, ETHD__LOOP_PARKED };
 
 #define ETHD__HOLD_MAX 60000000   /* ns without a newer joint sample, over a slow bus's 50 ms; more is too old anyway */
@@ -17,6 +17,13 @@ enum { ETHD__LOOP_RUNS, ETHD__LOOP_ASKED, ETHD__LOOP_PARKED };
 #define ETHD__LOOP_LEFT (-1)      /* in `stepping`: [main] has given up the thread that steps */
 #define ETHD__LOOP_STEP_MAX 100000000 /* ns: no step may take longer, whatever limits.step_time says */
 
+/* Rows on their way from the loop to one reader. head and tail only grow; a row's slot is its number modulo the size,
+   and head - tail rows wait. The writer fills a slot and then releases head, so a reader that acquires head sees whole
+   rows; the reader copies a row and then releases tail, so the writer that acquires tail overwrites nothing unread. A
+   full ring loses the new row, which the next one counts in `lost`.
+
+   The controller's events come through a ring of its own. The two have no common order: a row's `swaps`, the posts that
+   were taken up to it, says before which row an event "taken" belongs. */
 typedef struct ethd__loop_ring {
   _Alignas(64) atomic_uint head; /* next to write, [rt] */
   _Alignas(64) atomic_uint tail; /* next to read */
@@ -89,10 +96,10 @@ struct ethd_loop {
 int64_t ethd__loop_now(const ethd_loop *loop) ETHD_RT;
 int64_t ethd__loop_boot(const ethd_loop *loop) ETHD_RT;
 
-/* Sleep, tick, count: until it is told to stop. 0, or what the sleep failed with. [rt] */
+/* Sleeps, ticks and counts until it is told to stop; 0, or the error with which the sleep failed. [rt] */
 int ethd__loop_cycle(ethd_loop *loop) ETHD_RT;
 
-/* Once round; 0 or what the sleep failed with. [rt] */
+/* One turn: sleep and tick; 0, or the error with which the sleep failed. [rt] */
 int ethd__loop_turn(ethd_loop *loop) ETHD_RT;
 
 /* A tick was due `ns` ago. [rt] */
@@ -107,8 +114,8 @@ void ethd__loop_rows(ethd_loop *loop, ethd_sense *sense) ETHD_RT;
 /* Zero torque, as the last thing. [rt] */
 void ethd__loop_rest(ethd_loop *loop) ETHD_RT;
 
-/* What the machine grants, before there is a thread: locks memory, holds the dma latency, finds the
-   processor; the bits of what it refuses. [main] */
+/* Asks the machine, before any thread runs, to lock memory and to hold the DMA latency, and finds the processor;
+   returns the bits of what it refuses. [main] */
 int32_t ethd__loop_ask_machine(ethd_loop *loop, int *cpu);
 void ethd__loop_release_machine(ethd_loop *loop);
 

@@ -77,7 +77,7 @@ static int highest_isolated(void) {
   return highest;
 }
 
-/* The calling thread tries for the other, and comes back. */
+/* The calling thread tries the processor on the loop's behalf, and comes back. */
 static bool may_run_on(int cpu) {
   cpu_set_t before, one;
   CPU_ZERO(&one);

@@ -14,7 +14,7 @@
 #define SERVICE_STACK ((size_t)256 << 10)
 #define PAUSE 1000000     /* ns */
 #define PATIENCE 1000     /* pauses */
-#define LOOK_MAX 10000000 /* ns from one look at the loop's thread to the next */
+#define LOOK_MAX 10000000 /* ns between two checks of the loop's thread */
 
 static void pause_a_little(void) {
   struct timespec t = {.tv_nsec = PAUSE};
@@ -98,7 +98,7 @@ static void *run_watch(void *loop) {
 
 /* ---- starting ---- */
 
-/* Present before the first tick, so that no page of it faults in one; its lowest page is a fence. */
+/* Touch the whole stack before the first tick, so that no tick takes a page fault; its lowest page is a guard page. */
 static void *make_stack(size_t size) {
   void *stack = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK | MAP_POPULATE, -1, 0);
   if (stack == MAP_FAILED) return NULL;
@@ -132,7 +132,7 @@ static int start_control(ethd_loop *l, int cpu) {
   return l->def.require_rt ? EPERM : create_control(l, cpu, SCHED_OTHER);
 }
 
-/* An ordinary thread's attributes, but for its priority. */
+/* Attributes of an ordinary thread; the priority is set afterwards. */
 static int create(pthread_t *thread, int policy, int priority, void *(*run)(void *), void *of) {
   pthread_attr_t attr;
   struct sched_param param = {.sched_priority = policy == SCHED_FIFO ? priority : 0};
@@ -174,7 +174,8 @@ static int start_watch(ethd_loop *l) {
   return failure;
 }
 
-/* Signals are the application's: none reaches these threads, but the one by which Cobalt complains. */
+/* Signals belong to the application, so these threads block all but the one by which Cobalt reports a switch of
+   mode. */
 static int start_threads(ethd_loop *l, int cpu) {
   sigset_t all, before;
   sigfillset(&all);

@@ -1,7 +1,7 @@
-/* Rows of the fault table that the loop itself sees. The thread that watches over it is in threads.c. */
+/* Rows of the fault table that the loop itself sees. The thread that watches the loop is in threads.c. */
 #include "loop/loop.h"
 
-/* A leaky bucket: lateness that comes often is as bad as long lateness. */
+/* A leaky bucket, because frequent short lateness is as bad as one long one. */
 #define POUR 10
 #define FULL 50
 #define BRIM 100 /* no more is remembered */
@@ -35,7 +35,7 @@ static int64_t overruns(ethd_loop *l) ETHD_RT {
   return rows;
 }
 
-/* Beats are counted by the application, and dated here. */
+/* The application counts its beats; the loop notes the tick at which it saw a new one. */
 static int64_t heartbeat(ethd_loop *l) ETHD_RT {
   unsigned beats = atomic_load_explicit(&l->beats, memory_order_relaxed);
   int armed = atomic_load_explicit(&l->armed, memory_order_relaxed);

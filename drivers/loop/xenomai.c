@@ -31,7 +31,7 @@ static void count(int signal) {
   atomic_fetch_add_explicit(&relaxes, 1, memory_order_relaxed);
 }
 
-/* Without Cobalt in the kernel xenomai_init ends the process: look first. */
+/* xenomai_init ends the process on a kernel without Cobalt, so the kernel is checked first. */
 int ethd__xenomai_begin(void) {
   const char *given = getenv("ETHD_XENOMAI_VERSION_FILE");
   if (access(given ? given : "/proc/xenomai/version", R_OK) != 0) return -1;

@@ -5,7 +5,7 @@
 #define PERIOD_US (1e6 / ETHD__FRAME_RATE)
 #define TOLERANCE_US 100 /* of a frame's time against its sequence; it counts whole us */
 #define LATE_MAX 150     /* periods that board 0 may lose at once */
-#define EARLY_MAX 0.005  /* s under a settled envelope that a clock in step can't come */
+#define EARLY_MAX 0.005  /* s below a settled envelope that no clock without a jump can come */
 #define SETTLED 4        /* blocks */
 
 /* ---- does a frame follow another? ---- */
@@ -36,7 +36,7 @@ static double turn(ethd__clock_point a, ethd__clock_point b, ethd__clock_point c
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/* Of the last blocks, oldest first; their lower hull takes their place. Returns its corners. */
+/* Replaces the last blocks' points, oldest first, by their lower hull; returns the number of its corners. */
 static uint32_t hull(const ethd__board_clock *c, ethd__clock_point out[ETHD__CLOCK_BLOCKS], double *mean) ETHD_RT {
   uint32_t count = c->blocks < ETHD__CLOCK_BLOCKS ? c->blocks : ETHD__CLOCK_BLOCKS, n = 0;
   *mean = 0;

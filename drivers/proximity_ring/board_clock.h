@@ -22,7 +22,7 @@ enum { ETHD__CLOCK_BLOCK = 16, ETHD__CLOCK_BLOCKS = 128 };
 
 typedef enum ethd__clock_verdict {
   ETHD__CLOCK_GOOD = 0,
-  ETHD__CLOCK_DOUBTFUL, /* the frame's time doesn't follow: don't use it */
+  ETHD__CLOCK_DOUBTFUL, /* the frame's time contradicts its sequence: don't use it */
   ETHD__CLOCK_JUMPED,   /* aligned anew, from this frame on: the board was reset, or its clock jumped */
   ETHD__CLOCK_RETURNED  /* the doubtful frame before this one was corrupt; this one is good */
 } ethd__clock_verdict;

@@ -27,7 +27,7 @@ static double between(double x, double x0, double y0, double x1, double y1) ETHD
   return y0 + (y1 - y0) * ((x - x0) / (x1 - x0));
 }
 
-/* What points are joined in: a law with p = 2 is straight in it. */
+/* The coordinate in which points are joined by straight lines: a law with p = 2 is straight in it. */
 static double straight(double above) ETHD_RT { return 1 / sqrt(above); }
 
 /* Carried on beyond both ends. */

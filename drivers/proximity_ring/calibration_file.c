@@ -23,7 +23,7 @@ typedef struct row {
   const char *key;
   double min, max;
   size_t offset;
-  ethd__level from, to; /* levels at which a sensor may have one of its own */
+  ethd__level from, to; /* bits of the levels at which a sensor may have such a key of its own */
 } row;
 
 #define AT(member) offsetof(ethd__sensor, member)

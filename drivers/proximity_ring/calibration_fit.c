@@ -77,7 +77,7 @@ static void add(normal *to, const ethd__sensor *s, pair one) {
   to->cost += e * e;
 }
 
-/* Sensor k's pairs, all sensors' for k = -1, under the law of `s`. */
+/* Sums over sensor k's pairs (k = -1: all sensors') under the law of `s`. */
 static size_t collect(const ethd__calibration *c, ethd__place_readings readings, int sensor, const ethd__sensor *s,
                       normal *out) {
   size_t count = 0;

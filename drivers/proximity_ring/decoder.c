@@ -17,7 +17,7 @@ uint16_t ethd__frame_crc(const uint8_t *bytes, size_t count) {
 
 static uint32_t word(const uint8_t *at) ETHD_RT { return at[0] | (uint32_t)at[1] << 8; }
 
-/* Every code says how far the next one is, and stands where a zero was. */
+/* COBS: each code byte stands where a zero was and says how far the next code is. */
 static bool uncobs(const uint8_t coded[CODED], uint8_t out[ETHD__FRAME_SIZE]) ETHD_RT {
   memcpy(out, coded + 1, ETHD__FRAME_SIZE);
   uint32_t at = coded[0];
@@ -38,7 +38,7 @@ static void unpack(const uint8_t raw[ETHD__FRAME_SIZE], ethd__ring_frame *out) E
   for (int k = 0; k < ETHD__FRAME_SENSORS; k++) out->counts[k] = (uint16_t)word(raw + ETHD__FRAME_AT_COUNTS + 2 * k);
 }
 
-/* How many the sequence misses; a reset of board 0 begins it anew. */
+/* How many frames the sequence misses; a reset of board 0 restarts the sequence. */
 static void follow(ethd__decoder *d, ethd__ring_frame *frame) ETHD_RT {
   uint16_t step = (uint16_t)(frame->seq - d->seq);
   bool fresh = !d->started || (frame->flags & ETHD__FRAME_FIRST);
@@ -58,7 +58,7 @@ static bool is_frame(const uint8_t *piece, size_t count, ethd__ring_frame *out) 
   return true;
 }
 
-/* A piece has ended. Two zeros in a row are no piece. */
+/* Handles the end of a piece. Two zeros in a row enclose none. */
 static bool finish(ethd__decoder *d, const uint8_t *piece, size_t count, ethd__ring_frame *out) ETHD_RT {
   bool begun = d->in_step;
   d->in_step = true;
@@ -72,7 +72,7 @@ static bool finish(ethd__decoder *d, const uint8_t *piece, size_t count, ethd__r
   return false;
 }
 
-/* Keeps the beginning of a piece; of one that is too long only that it is. */
+/* Keeps a piece's bytes; of one that is too long, only the fact that it is. */
 static void hold(ethd__decoder *d, const uint8_t *bytes, size_t count) ETHD_RT {
   size_t room = d->held < ETHD__FRAME_WIRE ? ETHD__FRAME_WIRE - d->held : 0;
   size_t kept = count < room ? count : room;

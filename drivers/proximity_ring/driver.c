@@ -160,7 +160,7 @@ static ethd_status no_frames(const ring *r, const ethd__decoder *d, uint64_t byt
                    (unsigned long long)bytes, (unsigned long long)d->counters.frames, seconds, r->port.baud);
 }
 
-/* The first frames: is the line what it should be? They tell the darks. */
+/* Listens to the first frames: they show whether the line is right, and they measure the darks. */
 static ethd_status listen_first(ring *r, ethd__empty *empty, char *message) {
   ethd__decoder d = {0};
   uint8_t bytes[ROOM];

@@ -17,7 +17,7 @@ typedef struct ethd__empty {
   double sum[ETHD_RAYS];
 } ethd__empty;
 
-/* Missing and saturated counts don't count. [any, rt-safe] */
+/* Adds a frame; missing and saturated counts are left out. [any, rt-safe] */
 void ethd__empty_add(ethd__empty *empty, const ethd__ring_frame *frame) ETHD_RT;
 
 /* Takes the means for darks of *calibration. Refuses when a sensor counts more above its calibrated dark than what

@@ -50,7 +50,7 @@ static bool flags_agree(const ethd__ring_frame *f, uint32_t mask) ETHD_RT {
 
 /* ---- slew and geometry: bits of suspect rays ---- */
 
-/* Of what is beyond the ring only that it is. */
+/* Beyond the ring the distance doesn't count, only that nothing is nearer. */
 static double seen(const ethd__plausible *p, double d) ETHD_RT { return fmin(d, 2 * p->fit.ring_radius); }
 
 static uint32_t too_fast(const ethd__plausible *p, const ethd__ring_frame *f, const double d[ETHD_RAYS]) ETHD_RT {

@@ -17,7 +17,8 @@ typedef struct ethd__ring_port {
 /* One attempt, now; the next is due after the back-off. [main] or I/O */
 ETHD_MUST_CHECK ethd_status ethd__ring_port_open(ethd__ring_port *port, int64_t now_ns, char message[ETHD_MESSAGE_MAX]);
 
-/* What has come, at most `room` bytes; waits up to wait_ms for the first. -1: the line is gone, and closed. */
+/* Reads what has come, at most `room` bytes, and waits up to wait_ms for the first. -1: the line is gone and has
+   been closed. */
 int64_t ethd__ring_port_read(ethd__ring_port *port, int wait_ms, uint8_t *out, size_t room);
 
 void ethd__ring_port_close(ethd__ring_port *port);

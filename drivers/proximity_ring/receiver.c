@@ -16,7 +16,7 @@ static bool receive(ethd__receiver *r, const ethd__ring_frame *frame, int64_t ar
   return true;
 }
 
-/* A corrupt frame is known before the sequence tells that it is lost. */
+/* A corrupt frame counts as lost at once, before the gap in the sequence shows it. */
 static void count_corrupt(ethd__receiver *r) ETHD_RT {
   r->counts.frame_lost += r->decoder.counters.corrupt != r->corrupt;
   r->corrupt = r->decoder.counters.corrupt;

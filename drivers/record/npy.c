@@ -26,7 +26,7 @@ struct ethd_npy {
   size_t shape;   /* where the count stands in the header */
   uint64_t count; /* rows in the file */
   size_t waiting; /* rows in the buffer */
-  int reason;     /* errno of the write that failed, 0: none did */
+  int reason;     /* errno of the write that failed; 0 when none did */
   char *header, *buffer;
 };
 

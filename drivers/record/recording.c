@@ -142,7 +142,7 @@ static ethd_status put_event(ethd_recording *recording, uint64_t row, const char
   return ETHD_OK;
 }
 
-/* The first failure is told; later ones follow from it. */
+/* Only the first failure is reported, because later ones follow from it. */
 ethd_status ethd__recording_fail(ethd_recording *recording, const char *name, int reason) {
   char detail[128];
   if (recording->failure[0]) return ETHD_E_FILE;

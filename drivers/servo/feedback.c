@@ -42,7 +42,7 @@ ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo
 
 static bool is_absolute(const ethd__servo_feedback *f, const ethd__servo_axis *a) { return f->absolute[a - f->axes]; }
 
-/* A counter's angle; rows that it shows are counted. */
+/* The angle of a counter; the fault rows that it shows are counted. */
 static double follow(ethd__servo_feedback *f, ethd__servo_axis *a, double raw) {
   int64_t grave = 0;
   const ethd__count count = {.time_ns = f->sample.stamp_ns, .raw = (uint64_t)(int64_t)raw & a->def.ceiling};
@@ -111,7 +111,7 @@ static double scale_at_joint(const ethd__servo_register *r) {
   return fabs((ethd__servo_joint(r, 1) - ethd__servo_joint(r, 0)) / r->scale);
 }
 
-/* Answers may be of the set-point before, so either counts. */
+/* An answer may belong to the set-point before, so either one counts as followed. */
 static bool follows(ethd__servo_axis *a, const ethd__servo_link *l, int i, double torque) {
   double raw, before = a->torque;
   const ethd__servo_register *r = role(l, ETHD__SERVO_MEASURED1 + i, &raw);
@@ -126,7 +126,7 @@ static bool is_measured_now(const ethd__servo_link *l, int i) {
   return r < 0 || ethd__servo_plan_fresh(&l->plan, r);
 }
 
-/* Between two readings of a slow register what the last one said still holds. */
+/* A slow register keeps its last value between two readings. */
 static void compare(ethd__servo_feedback *f, const ethd__servo_link *l, int i, double torque) {
   ethd__servo_axis *a = &f->axes[i];
   bool fine = follows(a, l, i, torque) || l->state != ETHD__SERVO_ENABLED;

@@ -20,8 +20,8 @@ static void measure(const ethd__homing_def *def, ethd__homing *h, double q, doub
   h->travel = fabs(q - h->begin);
 }
 
-/* Towards a speed, with all of the torque at most. */
-static double drive(const ethd__homing_def *def, ethd__homing *h, double speed, double dt) {
+/* The torque that brings the joint to a speed, at most def->torque. */
+static double torque_towards(const ethd__homing_def *def, ethd__homing *h, double speed, double dt) {
   double gain = def->torque / def->speed, error = speed - h->v;
   h->sum = fmin(fmax(h->sum + gain * error * dt / RESET, -def->torque), def->torque);
   return fmin(fmax(gain * error + h->sum, -def->torque), def->torque);
@@ -52,7 +52,7 @@ ethd_status ethd__homing_turn(const ethd__homing_def *def, ethd__homing *h, doub
   if (fabs(h->v) > AWAY_FROM * def->speed)
     return fail(h, "it runs away: its encoder counts the other way round, or its torque does");
   if (h->time > PATIENCE) return fail(h, "neither stop nor mark within a minute");
-  double asked = drive(def, h, (h->towards ? 1 : -1) * def->direction * def->speed, dt);
+  double asked = torque_towards(def, h, (h->towards ? 1 : -1) * def->direction * def->speed, dt);
   bool stood = stands(def, h, asked, dt);
   if (!h->towards && (stood || h->travel >= AWAY))
     turn_round(h);

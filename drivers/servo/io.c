@@ -14,7 +14,7 @@ static void command(ethd__servo_device *d, int64_t now_ns, double torque[2]) {
   bool good = !atomic_load_explicit(&d->safe, memory_order_relaxed) && now_ns - c->stamp_ns <= ethd__servo_old(d) &&
               c->epoch == atomic_load_explicit(&d->epoch, memory_order_relaxed);
   for (int i = 0; i < 2; i++) torque[i] = good ? c->torque[i] : 0;
-  /* a while after one of the loop's ticks: a command's instant says where those are */
+  /* exchanges begin a while after a tick of the loop, whose instants are known from its commands */
   int64_t behind = fresh ? (now_ns - c->stamp_ns) % d->period_ns - (int64_t)(PHASE * (double)d->period_ns) : 0;
   d->due_ns = now_ns - behind + d->exchange_ns;
 }
@@ -41,7 +41,7 @@ ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double
   return status;
 }
 
-/* Until the exchange is due. A virtual clock never waits for the system's. */
+/* Waits until the exchange is due; on a virtual clock nothing waits. */
 static ethd_status await(const ethd__servo_device *d, int64_t *now_ns) {
   int64_t left = d->due_ns - *now_ns;
   struct timespec t = {left / 1000000000, left % 1000000000};
@@ -71,7 +71,7 @@ ethd_status ethd__servo_service(void *device, uint32_t unit, int64_t now_ns) {
   status = ethd__servo_turn(d, now_ns, torque);
   if (d->link.state != ETHD__SERVO_DOWN && status < 0) {
     status = ETHD_OK;   /* counted there */
-    d->due_ns = now_ns; /* and asked again at once: where exchanges are rare, the next would come too late */
+    d->due_ns = now_ns; /* asks again at once, because where exchanges are rare the next one would come too late */
   }
   pthread_mutex_unlock(&d->lock);
   return status;

@@ -64,7 +64,7 @@ static void count(ethd__servo_link *l, ethd__servo_outcome got) {
   }
 }
 
-/* The line stays; nothing is sent until it is quiet. */
+/* The line stays open; nothing is sent until it is quiet. */
 static ethd_status fail(ethd__servo_link *l, ethd__servo_outcome got, int64_t now_ns) {
   double silent = fmax(SILENT_LEAST, SILENT_ANSWERS * (l->map->response + l->map->drain));
   if (got == ETHD__SERVO_LOST) {
@@ -104,7 +104,7 @@ static void fill(ethd__servo_link *l, const double torque[2]) {
   set(l, ETHD__SERVO_COUNTER, l->counter = next_count(l));
 }
 
-/* What the drive shows is what was written to it just now: else the answer is of another question. */
+/* The drive echoes what was just written; anything else is the answer to another question. */
 static bool echoes(ethd__servo_link *l) {
   for (uint32_t i = 0; i < l->map->count; i++) {
     const ethd__servo_register *r = &l->map->registers[i];

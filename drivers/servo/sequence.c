@@ -20,7 +20,7 @@ static ethd__servo_outcome write_step(ethd__servo_link *l, const ethd__servo_ste
 }
 
 /* What was read within this turn counts; other registers, and slow ones, are asked for. */
-static ethd__servo_outcome look(ethd__servo_link *l, const ethd__servo_step *s, uint32_t *bits) {
+static ethd__servo_outcome read_bits(ethd__servo_link *l, const ethd__servo_step *s, uint32_t *bits) {
   const ethd__servo_register *r = &l->map->registers[s->at];
   uint16_t words[2];
   ethd__servo_outcome got = ETHD__SERVO_DONE;
@@ -37,7 +37,7 @@ static ethd__servo_outcome look(ethd__servo_link *l, const ethd__servo_step *s, 
 
 static ethd__servo_outcome wait_step(ethd__servo_link *l, const ethd__servo_step *s, int64_t now_ns, bool *done) {
   uint32_t bits = 0;
-  ethd__servo_outcome got = look(l, s, &bits);
+  ethd__servo_outcome got = read_bits(l, s, &bits);
   *done = !got && (bits & s->mask) == s->bits;
   if (got || *done || 1e-9 * (double)(now_ns - l->step_ns) < s->value) return got;
   const ethd__servo_register *r = &l->map->registers[s->at];

@@ -176,8 +176,8 @@ static double rub(const ethd__body *b, int j, double w) {
   return b->friction[j] * ethd_tanh(b->sharpness[j] * w) + b->viscous[j] * w;
 }
 
-/* Drive torques of the joints, and the motors' accelerations where they have their own. */
-static void drive(const ethd__body *b, const double *q, const double *v, double d[2], double *a) {
+/* The torques that drive the joints, and the motors' accelerations where they have their own. */
+static void joint_torques(const ethd__body *b, const double *q, const double *v, double d[2], double *a) {
   for (int j = 0; j < 2; j++) {
     int relative = j && b->serial;
     double w = v[ETHD__LINK + j] - (relative ? v[ETHD__LINK] : 0);
@@ -205,7 +205,7 @@ static void couple(const ethd__body *b, const pose *links, const double *w, cons
 void ethd__body_accelerate(const ethd__body *b, ethd__touch touch, const ethd__sim_motion *hand, const double *q,
                            const double *v, double *out) {
   double g[2];
-  drive(b, q, v, g, out);
+  joint_torques(b, q, v, g, out);
   ethd_vec f = {b->hand_stiffness * (hand->x.x - q[2]) + b->hand_damping * (hand->v.x - v[2]),
                 b->hand_stiffness * (hand->x.y - q[3]) + b->hand_damping * (hand->v.y - v[3])};
   if (touch == ETHD__PRESSING || b->coupling != 0) {

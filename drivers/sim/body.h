@@ -1,4 +1,4 @@
-/* The plant in motion: arm, motors, finger. Equations and one integration step. */
+/* The plant in motion (arm, motors, finger): its equations and one integration step. */
 #ifndef ETHD_SIM_BODY_H
 #define ETHD_SIM_BODY_H
 
@@ -20,11 +20,11 @@ typedef enum ethd__touch { ETHD__APART, ETHD__PRESSING, ETHD__LEAVING } ethd__to
 
 typedef struct ethd__sim_state {
   double q[ETHD__DOF_MAX], v[ETHD__DOF_MAX];
-  double clearance; /* m: pad and ring are at least so far from touching; 0: nobody knows */
+  double clearance; /* m: a lower bound of the distance between pad and ring; 0 when none is known */
   ethd__touch touch;
 } ethd__sim_state;
 
-/* Numbers of the equations, worked out once. Joint quantities: at the ring times L or L^2. */
+/* Coefficients of the equations, worked out once. Joint quantities are those at the ring times L or L^2. */
 typedef struct ethd__body {
   int dof, serial, compliant;
   double link[2];
@@ -35,7 +35,7 @@ typedef struct ethd__body {
   double gap, pad_stiffness, pad_damping;
   double finger_mass, hand_stiffness, hand_damping;
   double tolerance;                 /* m/s: of a step's last terms */
-  int order_max;                    /* of steps: what that tolerance is reached with most cheaply */
+  int order_max;                    /* of steps: the order that reaches the tolerance at the least cost */
   double at[2], sine[2], cosine[2]; /* of angles near the present ones */
 } ethd__body;
 
@@ -63,7 +63,7 @@ void ethd__body_motor(const ethd__body *body, const ethd__sim_state *state, ethd
 /* Penetration p of the pad and its force under the state's touch. */
 void ethd__body_pad(const ethd__body *body, const ethd__sim_state *state, double *p, double *force) ETHD_RT;
 
-/* What pad and ring do in this state, whatever state->touch says. */
+/* Whether pad and ring touch in this state, whatever state->touch says. */
 ethd__touch ethd__body_touch(const ethd__body *body, const ethd__sim_state *state) ETHD_RT;
 
 /* Accelerations, for methods that ask for them; series.c has the same equations term by term. An

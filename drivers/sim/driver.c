@@ -73,7 +73,7 @@ static ethd_status start(void *device_) {
 
 static int64_t period_ns(const device *d) ETHD_RT { return (int64_t)rint(1e9 * d->def.period); }
 
-/* Periods that the loop has missed pass all the same, under the torque that it left. */
+/* Simulates the periods that the loop missed, under the torque that it left. */
 static void catch_up(device *d, int64_t now_ns) ETHD_RT {
   for (int i = 0; d->written && i < CATCH_UP_MAX && now_ns - d->due_ns >= period_ns(d); i++) {
     ethd_sim_write(d->sim, &d->held);

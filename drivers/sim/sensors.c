@@ -18,7 +18,7 @@ void ethd__sensors_joints(const ethd__sensors *s, const ethd__body *body, const 
 
 /* ---- proximity ---- */
 
-/* Share of the skew at which a part of a frame is taken. */
+/* The instant of a part of a frame, as a share of the skew. */
 static double place(uint32_t part) {
   if (part == STAMP) return 0.5;
   return (double)(part < STAMP ? part : part - 1) / (ETHD_RAYS - 1);

@@ -1,5 +1,9 @@
-/* Terms of y = x': y_k = (k+1) x_(k+1); of products: terms.h. So each equation of body.c gives term k of an
-   acceleration from the terms up to k of angles and speeds, and functions come from their own:
+/* The idea: within a step every quantity of the motion is a power series about the step's beginning t0,
+   x(t) = sum x_k (t - t0)^k, and the equations of motion give its terms one after the other. The terms up to k of angles
+   and speeds give term k of each acceleration by the equations of body.c; term k of an acceleration gives term k + 1 of
+   the speed, because y = x' means y_k = (k+1) x_(k+1); and so on to the order that the tolerance asks for. A step is as
+   long as its last terms stay below the tolerance (Jorba and Zou 2005). Products are sums over terms (terms.h), and a
+   function's terms follow from the differential equation that it solves:
 
      u = tanh(s w):         u' = s w' (1 - u^2)
      (C, S) = e^(i th):     C' = -th' S, S' = th' C
@@ -11,7 +15,7 @@
 
 typedef ethd__two two;
 
-/* What is needed on the way only. Numbers stand in both halves of a pair where they multiply pairs. */
+/* Intermediate terms. A number stands in both halves of a pair where it multiplies pairs. */
 typedef struct work {
   const ethd__body *body;
   ethd__series *out;
@@ -33,7 +37,7 @@ static const double INVERSE[ETHD__TERMS + 1] = {0,        1.0,      1.0 / 2,  1.
                                                 1.0 / 6,  1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11,
                                                 1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16};
 
-/* From the links' absolute angles, or what derives from them, to the joints'. */
+/* Converts the links' absolute angles, or their derivatives, to the joints'. */
 static inline two joint(int serial, two link) { return serial ? (two){link[0], link[1] - link[0]} : link; }
 
 /* ---- geometry ---- */
@@ -44,7 +48,7 @@ ETHD__INLINE void rotate(work *w, int k) {
   w->sine[k] = ethd__product(v, w->cosine, k - 1) * ethd__both(INVERSE[k]);
 }
 
-/* Term k of what is between ring and finger. */
+/* Term k of the vector from ring to finger. */
 ETHD__INLINE void relate(work *w, int k) {
   if (k > 0) rotate(w, k);
   if (k > 3) w->out->hand[k] = w->out->hand[k - 2] * ethd__both(w->swing * (INVERSE[k] * INVERSE[k - 1]));
@@ -104,7 +108,7 @@ ETHD__INLINE two rub(work *w, int k) {
   return w->friction * w->rub[k] + w->viscous * w->slip[k];
 }
 
-/* What sets plants apart; touch changes from step to step. */
+/* The cases in which plants differ, for which the series are compiled apart; touch changes from step to step. */
 typedef struct kind {
   int serial, compliant, coupled;
   ethd__touch touch;
@@ -218,7 +222,7 @@ ETHD__INLINE double expand(work *w, kind has) {
   return most;
 }
 
-/* The paper's arm apart, since it is what runs most. */
+/* The paper's arm has a compiled case of its own, because it runs most. */
 static double expand_kind(work *w, kind has) {
   if (has.serial || has.compliant || has.coupled) return expand(w, has);
   if (has.touch == ETHD__PRESSING) return expand(w, (kind){0, 0, 0, ETHD__PRESSING});
@@ -243,7 +247,7 @@ static void watch_touching(work *w, ethd__touch touch) {
   for (int k = measured + 1; k <= s->watched; k++) measure(w, k);
 }
 
-/* Far from each other, and how far is only asked when they may have come near. */
+/* While pad and ring are known to be apart, their distance is only worked out when they may have come near. */
 static void keep_clear(work *w, const ethd__piece *piece, const ethd__sim_motion *hand, double clearance, double most) {
   ethd__series *s = w->out;
   double travel = s->step * most + ethd__piece_travel(piece, (two){hand->v.x, hand->v.y}, s->step);

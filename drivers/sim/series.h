@@ -1,4 +1,5 @@
-/* The motion as a power series in time. Terms follow from one another, so a step has any order. */
+/* The motion as a power series in time; series.c explains the idea. Each term follows from those before it, so a step may
+   have any order. */
 #ifndef ETHD_SIM_SERIES_H
 #define ETHD_SIM_SERIES_H
 

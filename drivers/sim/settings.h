@@ -24,7 +24,7 @@ typedef struct ethd__sim_settings {
   int rays;                  /* -1: as the plant says */
 } ethd__sim_settings;
 
-/* The error's line is the setting's. [main] */
+/* Reads the settings; a refusal's line is the setting's. [main] */
 ethd_status ethd__sim_settings_read(const ethd_device_def *def, ethd__sim_settings *out, ethd_error *error);
 
 #endif

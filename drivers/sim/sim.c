@@ -66,7 +66,7 @@ static ethd__sim_state state_at(const ethd_sim *sim, double t) {
   return state;
 }
 
-/* Samples up to t, which the present step holds. */
+/* Takes the proximity samples up to t, which lies in the present step. */
 static void take_due(ethd_sim *sim, double t) {
   while (sim->sensors.next <= t) {
     ethd__sim_state state = state_at(sim, sim->sensors.next);
@@ -140,7 +140,7 @@ void ethd_sim_truth(const ethd_sim *sim, ethd_truth *out) {
 
 /* ---- write ---- */
 
-/* What the motors give: 0 for a safe command or a number that isn't one. */
+/* The motors' torque: 0 for a safe command or a NaN. */
 static void saturate(const ethd_sim *sim, const ethd_command *command, double out[2]) {
   for (int j = 0; j < 2; j++) {
     double torque = command->torque[j], most = sim->body.torque_max[j];

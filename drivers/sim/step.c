@@ -116,7 +116,7 @@ static void move(const ethd__body *b, const ethd__series *s, const ethd__sim_mot
   put(at(s->motor_v, s->order, h), state->v + ETHD__MOTOR);
 }
 
-/* Friction far from its turn is constant to the last digit, and a series can't see the turn ahead. */
+/* Far from its reversal friction is constant to the last digit, so a series can't see the reversal coming. */
 static bool turns(const ethd__body *b, double most, const ethd__sim_state *from, const ethd__sim_state *to) {
   double before[2], after[2];
   ethd__body_joints(b, from->v, before);

@@ -4,7 +4,7 @@
 
 #include "sim/two.h"
 
-/* Sums of a length that is known at compile time, and what a plant doesn't have, leave no trace. */
+/* All is inlined: sums have lengths known at compile time, and terms that a plant doesn't have disappear. */
 #define ETHD__INLINE static inline __attribute__((always_inline))
 
 /* x_1 y_(k-1) + ... + x_(k-1) y_1 */
@@ -17,7 +17,7 @@ ETHD__INLINE ethd__two ethd__middle(const ethd__two *x, const ethd__two *y, int 
   return s;
 }
 
-/* Term k of x y. What took longest to work out, term k of x, comes last: all else is summed meanwhile. */
+/* Term k of x y. Term k of x, which is ready last, is added last, so that the processor sums the others meanwhile. */
 ETHD__INLINE ethd__two ethd__product(const ethd__two *x, const ethd__two *y, int k) {
   if (k == 0) return x[0] * y[0];
   return (ethd__middle(x, y, k) + x[0] * y[k]) + x[k] * y[0];

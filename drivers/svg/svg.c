@@ -61,7 +61,7 @@ static bool view_box(reader *r, ethd__attributes a, double v[4]) {
   return true;
 }
 
-/* User units to metres, y turned over. */
+/* Converts user units to metres and turns y over. */
 static void open_page(reader *r, ethd__attributes a) {
   double w = page_length(r, a, "width"), h = page_length(r, a, "height");
   double v[4] = {0, 0, w / ETHD_SVG_PX, h / ETHD_SVG_PX}, scale = r->options->scale;

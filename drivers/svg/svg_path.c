@@ -10,7 +10,7 @@
 
 #define TURN 6.28318530717958647692
 
-/* Of a closed part that is filled. */
+/* A closed part that is filled. */
 typedef struct box {
   double x_min, x_max, y_min, y_max;
 } box;

@@ -32,7 +32,7 @@ static double length_of(const shape *s, const char *name, double otherwise) {
   return ethd__svg_length_of(s->a, name, otherwise, s->wrong);
 }
 
-/* What has no size isn't drawn. */
+/* A shape without size is not drawn. */
 static bool is_positive(const shape *s, double v, const char *name) {
   if (v > 0) return true;
   if (v < 0)

@@ -85,7 +85,7 @@ static ethd_status replay_start(void *device) {
 
 /* ---- [rt] ---- */
 
-/* Periods that were missed before a sample pass again, without one. */
+/* Plays the periods that were missed before a sample: they bring no sample. */
 static ethd_status replay_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
   replay *r = device;
   (void)now_ns;

@@ -34,7 +34,7 @@ static ethd_status take_limits(const ethd__record_events *events, ethd_limits *o
 
 static bool changes(const ethd__record_event *e) { return strcmp(e->kind, "fault") != 0; }
 
-/* The first that somebody gave while it ran. */
+/* The first command that was given while the recording ran. */
 static void take_change(const ethd__record_events *events, ethd__tape *tape) {
   tape->changed = tape->count;
   for (size_t i = 0; i < events->count; i++) {

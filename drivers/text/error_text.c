@@ -55,7 +55,7 @@ const char *ethd__quote(const char *word, size_t length, char out[ETHD_QUOTE_MAX
   return out;
 }
 
-/* Nothing meant leaves nothing said. */
+/* Numbers that are NaN are not mentioned. */
 static void numbers(const ethd_error *error, char *out, size_t room) {
   int n = 0;
   out[0] = 0;

@@ -42,7 +42,7 @@ typedef struct ethd_setup {
   double velocity_p[ETHD_PARAMS_MAX];
   ethd_fit_method fit;
   double fit_p[ETHD_PARAMS_MAX];
-  double ray_lag[ETHD_RAYS]; /* s: ray k was measured so long before sample_ns, -0.01 to 0.01; 0: with it */
+  double ray_lag[ETHD_RAYS]; /* s by which ray k was measured before sample_ns, -0.01 to 0.01 */
   ethd_filter_method filter;
   double filter_p[ETHD_PARAMS_MAX];
 
@@ -162,7 +162,7 @@ typedef struct ethd_control ethd_control;
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_create(const ethd_setup *setup, ethd_control **out,
                                                          ethd_error *error);
 
-/* NULL is fine. The setup's scene is the application's. [main] */
+/* Frees the controller; NULL is allowed. The scenes stay the application's. [main] */
 ETHD_API void ethd_control_destroy(ethd_control *control);
 
 /* Checks a whole setup and hands it over; the next step takes it, without a bump: at that tick the torque
@@ -176,12 +176,11 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_post(ethd_control *control, co
 /* The next event, in order; ETHD_EMPTY when there is none. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_poll(ethd_control *control, ethd_event *out);
 
-/* Forgets: state as after create, with the setup that rules now; a posted one stays posted. Not while
-   step runs. [main] */
+/* Resets the state to that after create, with the setup that rules now; a posted one stays posted. Not while step
+   runs. [main] */
 ETHD_API void ethd_control_reset(ethd_control *control);
 
-/* The same, but the motors are as hot as they are: for a device that is enabled anew. Not while step runs.
-   [main] */
+/* Resets all but the motors' heat, for a device that is enabled again. Not while step runs. [main] */
 ETHD_API void ethd_control_restart(ethd_control *control);
 
 /* How hot the motors are by limits.nominal_torque and heat_time: rise over the surroundings, as a share of
@@ -205,7 +204,8 @@ ETHD_API double ethd_control_clean(const ethd_control *control) ETHD_RT;
 ETHD_API ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, ethd_command *command,
                                        ethd_trace *trace) ETHD_RT;
 
-/* The same tick on a copy of the state: nothing changes, no event. Warms caches before arming. [rt] */
+/* Runs the same tick on a copy of the state, which changes nothing and makes no event; it warms the caches before
+   arming. [rt] */
 ETHD_API ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense,
                                            ethd_command *command) ETHD_RT;
 
