@@ -63,8 +63,12 @@ typedef struct bounds {
 
 static const bounds nowhere = {INFINITY, -INFINITY, INFINITY, -INFINITY};
 
+/* Comparisons are quicker than fmin and fmax, which also know what to do with NaN. */
+static double lesser(double a, double b) { return a < b ? a : b; }
+static double greater(double a, double b) { return a > b ? a : b; }
+
 static bounds together(bounds a, bounds b) {
-  bounds r = {fmin(a.x_min, b.x_min), fmax(a.x_max, b.x_max), fmin(a.y_min, b.y_min), fmax(a.y_max, b.y_max)};
+  bounds r = {lesser(a.x_min, b.x_min), greater(a.x_max, b.x_max), lesser(a.y_min, b.y_min), greater(a.y_max, b.y_max)};
   return r;
 }
 
@@ -102,7 +106,7 @@ static double largest(const ethd_object_def *def) {
   const ethd__shape *s = &ethd__shapes[def->shape];
   double most = 0;
   for (size_t k = 0; k < def->count; k++)
-    if (s->numbers[ethd__number_of(s, k)].kind != ETHD__DIRECTION) most = fmax(most, fabs(def->numbers[k]));
+    if (s->numbers[ethd__number_of(s, k)].kind != ETHD__DIRECTION) most = greater(most, fabs(def->numbers[k]));
   return most;
 }
 
@@ -130,7 +134,7 @@ static void measure(const ethd_scene_def *def, ethd_scene *s) {
   double extent = 0;
   for (uint32_t i = 0; i < s->object_count; i++) {
     all = together(all, bounds_of(&def->objects[i]));
-    extent = fmax(extent, largest(&def->objects[i]));
+    extent = greater(extent, largest(&def->objects[i]));
   }
   s->slack = 16 * DBL_EPSILON * extent;
   frame(s, all);
