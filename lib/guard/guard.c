@@ -51,17 +51,18 @@ static int32_t steep(const ethd_limits *limits, ethd_guard_state *s, double dt, 
   return ETHD_GUARD_STEEP;
 }
 
-static int32_t limit(double most, int32_t bit, double *torque) ETHD_RT { return clamp(0, most, torque) ? bit : 0; }
-
 /* The limits are kept within the rate's window around the last torque. Where that window lies outside of them,
    because a limit has just become narrower, the limit is what counts: it has the last word. */
 static int32_t bound(const ethd_limits *limits, const ethd_guard_state *s, int i, double rise, double *torque) ETHD_RT {
-  const double heat =
-      limits->nominal_torque < (double)INFINITY ? ethd__guard_cool(limits, s->heat[i]) : (double)INFINITY;
-  int32_t bits = limit(heat, ETHD_GUARD_HEAT, torque) | limit(limits->torque, ETHD_GUARD_TORQUE, torque);
+  const bool may_be_hot = limits->nominal_torque < (double)INFINITY;
+  const double heat = may_be_hot ? ethd__guard_cool(limits, s->heat[i]) : (double)INFINITY;
+  int32_t bits = 0;
+  if (clamp(0, heat, torque)) bits |= ETHD_GUARD_HEAT;
+  if (clamp(0, limits->torque, torque)) bits |= ETHD_GUARD_TORQUE;
   if (!clamp(s->last[i], rise, torque)) return bits;
-  return bits | ETHD_GUARD_RATE | limit(heat, ETHD_GUARD_HEAT, torque) |
-         limit(limits->torque, ETHD_GUARD_TORQUE, torque);
+  if (clamp(0, heat, torque)) bits |= ETHD_GUARD_HEAT;
+  if (clamp(0, limits->torque, torque)) bits |= ETHD_GUARD_TORQUE;
+  return bits | ETHD_GUARD_RATE;
 }
 
 int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *s, const ethd_pose *pose, ethd_vec v, double dt,
