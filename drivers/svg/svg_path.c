@@ -10,7 +10,7 @@
 
 #define TURN 6.28318530717958647692
 
-/* A closed part that is filled. */
+/* Of a closed part that is filled. */
 typedef struct box {
   double x_min, x_max, y_min, y_max;
 } box;
@@ -200,15 +200,15 @@ static box box_of(const ethd__drawing *d, const ethd__drawn *o) {
 }
 
 /* Where a box begins or ends in x. */
-typedef struct side {
+typedef struct box_edge {
   double x;
   const box *of;
   bool ends;
-} side;
+} box_edge;
 
 /* What touches has begun before the other ends. */
 static int by_x(const void *a, const void *b) {
-  const side *p = a, *q = b;
+  const box_edge *p = a, *q = b;
   if (p->x != q->x) return p->x < q->x ? -1 : 1;
   return (int)p->ends - (int)q->ends;
 }
@@ -223,7 +223,7 @@ static void keep(void *of) { (void)of; }
 
 /* From left to right, with a tree of the boxes that have begun and not ended: they lie apart in height, or two overlap.
    True without memory. */
-static bool any_overlap(side *edges, size_t count) {
+static bool any_overlap(box_edge *edges, size_t count) {
   void *tree = NULL;
   bool overlap = false;
   qsort(edges, count, sizeof *edges, by_x);
@@ -245,13 +245,13 @@ static bool may_have_holes(const path *q) {
   size_t n = 0, count = d->object_count - q->objects;
   if (!q->filled || count < 2 || d->status) return false;
   box *boxes = malloc(count * sizeof *boxes);
-  side *edges = malloc(2 * count * sizeof *edges);
+  box_edge *edges = malloc(2 * count * sizeof *edges);
   for (size_t i = 0; boxes && edges && i < count; i++) {
     const ethd__drawn *o = &d->objects[q->objects + i];
     if (o->shape != ETHD_POLYGON) continue;
     boxes[n] = box_of(d, o);
-    edges[2 * n] = (side){boxes[n].x_min, &boxes[n], false};
-    edges[2 * n + 1] = (side){boxes[n].x_max, &boxes[n], true};
+    edges[2 * n] = (box_edge){boxes[n].x_min, &boxes[n], false};
+    edges[2 * n + 1] = (box_edge){boxes[n].x_max, &boxes[n], true};
     n++;
   }
   bool holes = !boxes || !edges || any_overlap(edges, 2 * n);
