@@ -118,7 +118,7 @@ static int64_t virtual_ns;
 
 static ethd_status open_servo(const ethd_setting *more, uint32_t count) {
   ethd_setting settings[8] = {{"map", "plant.map", 1}, {"port", drive.port, 2}};
-  memcpy(settings + 2, more, count * sizeof *more);
+  if (count) memcpy(settings + 2, more, count * sizeof *more);
   setup = ethd_setup_default();
   const ethd_device_def def = {&setup, settings, 2 + count, folder, "d.ini", 1};
   ethd_status status = servo->open(&def, &device, message);
