@@ -2,7 +2,7 @@
 
    = lib/cell.c: memcpy(slot(cell, cell->back), value, cell->size);
    = lib/cell.c: atomic_exchange_explicit(&cell->middle, cell->back | ETHD__CELL_FRESH, memory_order_acq_rel) & ~ETHD__CELL_FRESH;
-   = lib/cell.c: int fresh = (atomic_load_explicit(&cell->middle, memory_order_relaxed) & ETHD__CELL_FRESH) != 0;
+   = lib/cell.c: bool fresh = atomic_load_explicit(&cell->middle, memory_order_relaxed) & ETHD__CELL_FRESH;
    = lib/cell.c: cell->front = atomic_exchange_explicit(&cell->middle, cell->front, memory_order_acq_rel) & ~ETHD__CELL_FRESH;
 
    Kept: a value is never torn, never older than the one before; the last one put is taken in the end. */

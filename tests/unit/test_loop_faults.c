@@ -236,7 +236,7 @@ END_TEST
 static const struct {
   double gap; /* periods; 0: none */
   int ticks;
-} olds[] = {{0, 21}, {100, 21}, {21, 21}, {20.5, 20}, {5, 5}, {2, 2}, {1, 1}};
+} olds[] = {{0, 60}, {100, 60}, {20.5, 20}, {5, 5}, {2, 2}, {1, 1}};
 
 START_TEST(test_old_samples) {
   bench b;
@@ -247,13 +247,13 @@ START_TEST(test_old_samples) {
   own.read = gappy_read;
   b.def.driver = &own;
   if (olds[_i].gap > 0) b.def.gap = olds[_i].gap * 1e-9 * PERIOD;
-  gap.from = 4, gap.until = 40, gap.faults = 0;
+  gap.from = 4, gap.until = 90, gap.faults = 0;
   bench_start(&b);
   for (int i = 0; i < 4; i++) ck_assert(rows_made(&b, &last));
   ck_assert(last.armed && last.trace.fault == 0);
   for (int i = 1; i < olds[_i].ticks; i++) ck_assert(!rows_made(&b, &row));
   ck_assert_int_eq(b.d.safes, 0);
-  for (int i = olds[_i].ticks; i < 30; i++) {
+  for (int i = olds[_i].ticks; i < olds[_i].ticks + 8; i++) {
     ck_assert(rows_made(&b, &row));
     ck_assert_int_eq(row.trace.fault, ETHD_FAULT_FEEDBACK_OLD);
     ck_assert(row.trace.sense.faults == BIT(FEEDBACK_OLD) && !row.armed && row.trace.tau[0] == 0);
