@@ -8,8 +8,8 @@ double nondet_double(void);
 double fmin(double a, double b) { return a < b ? a : b; }
 double fmax(double a, double b) { return a > b ? a : b; }
 double rint(double v) {
-  double whole = (double)(long long)v; /* toward zero: within one of the nearest */
-  return whole;
+  __CPROVER_assert(v >= -4294967296.0 && v <= 4294967296.0, "what is converted fits");
+  return (double)(long long)v; /* toward zero: within one of the nearest */
 }
 
 #include "../../drivers/servo/words.c"
@@ -26,5 +26,8 @@ int main(void) {
   __CPROVER_assert(back >= min && back <= max, "within the register's type");
   if (raw >= min && raw <= max && raw == (double)(long long)raw)
     __CPROVER_assert(back == raw, "a whole number comes back");
+  if (raw > max) __CPROVER_assert(back == max, "what is more becomes the most");
+  if (raw < min) __CPROVER_assert(back == min, "what is less becomes the least");
+  if (raw != raw) __CPROVER_assert(back == 0, "what is no number becomes 0");
   return 0;
 }
