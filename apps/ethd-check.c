@@ -117,8 +117,8 @@ static ethd__figures figures(const ethd_config *config) {
     option("--force-limit", arg.force, 1e6, &f.force[i]);
     f.force[i] = fmin(f.force[i], setup->limits.torque / links[i]); /* fmin: of the one that is known */
   }
-  if (!isnan(config->mass_x)) f.mass[0] = config->mass_x;
-  if (!isnan(config->mass_y)) f.mass[1] = config->mass_y;
+  if (!isnan(config->setup.dynamics.mass[0])) f.mass[0] = config->setup.dynamics.mass[0];
+  if (!isnan(config->setup.dynamics.mass[1])) f.mass[1] = config->setup.dynamics.mass[1];
   return f;
 }
 

@@ -16,6 +16,8 @@
 #define TAPS 100u       /* per cell */
 #define TAPS_FINGER 10u /* with a recorded movement */
 #define TAPS_MAX 1000000
+#define LEARN_MAX 1000
+#define GAINS_MAX 32
 
 static const char doc[] =
     "Taps a virtual wall with a simulated encounter-type haptic display and a simulated or recorded finger, "
@@ -36,11 +38,11 @@ static const char doc[] =
     "  ethd-tap --finger motion/avraham_free_mit/avraham_ND_s02_be38_free.csv --speed high,0.3 --record taps\n"
     "Eight recorded movements come with the programs, in motion: a FILE.csv that isn't there is looked for among them.";
 
-enum { OPTION_SCALE = 256, OPTION_TRACE, OPTION_RECORD, OPTION_CSV, OPTION_FORCE };
+enum { OPTION_SCALE = 256, OPTION_TRACE, OPTION_RECORD, OPTION_CSV, OPTION_FORCE, OPTION_VALIDITY, OPTION_LEARN, OPTION_SET };
 
 static const struct argp_option options[] = {
     {"config", 'c', "C.ini", 0, "the controller's configuration (default: the plant's own)", 0},
-    {"transition", 't', "LAW[,LAW..]", 0, "transition laws: abrupt,smooth,offset", 0},
+    {"transition", 't', "LAW[,LAW..]", 0, "transition laws: abrupt,smooth,offset,predictive", 0},
     {"speed", 's', "low|high|V[,..]", 0, "speeds: low,high; V in m/s, 0.01 to 2", 0},
     {"taps", 'n', "N", 0, "attempts for each law and speed (100; 10 with --finger)", 0},
     {"seed", 'r', "S", 0, "seed of every random number (1)", 0},
@@ -48,6 +50,11 @@ static const struct argp_option options[] = {
      "the simulated device and finger: that of --config, or n; FILE.plant with FILE.ini beside it", 0},
     {"finger", 'f', "FILE.csv", 0, "a recorded movement is the hand's voluntary path", 0},
     {"scale", OPTION_SCALE, "K", 0, "multiply the recorded positions by K, 0.01 to 100", 0},
+    {"validity", OPTION_VALIDITY, "paper|finger", 0,
+     "judge taps by the ring's meeting with the wall (the default), or by the finger alone, whatever the law", 0},
+    {"learn", OPTION_LEARN, "K", 0, "K taps before each counted one, from which a law that learns does so: 0", 0},
+    {"set", OPTION_SET, "KEY=VALUE", 0,
+     "change a section.key of the configuration, or what the law is told of the device (arm.mass_x); repeat it", 0},
     {"csv", OPTION_CSV, "OUT.csv", 0, "write a row for each tap", 0},
     {"record", OPTION_RECORD, "DIR", 0,
      "every tick of every tap: a recording for ethd-replay --verify, with truth.npy and taps.csv beside it", 0},
@@ -68,6 +75,10 @@ static struct {
   int64_t taps;
   uint64_t seed;
   list laws, speeds;
+  ethd__validity validity;
+  uint32_t learn;
+  ethd__gain gains[GAINS_MAX];
+  size_t gain_count;
 } arg = {.scale = 1, .seed = 1};
 
 /* ---- options ---- */
@@ -97,6 +108,25 @@ static void set_list(list *words, const char *option, const char *text) {
   ethd__option_list(option, text, add, &to);
 }
 
+static ethd__validity validity_of(const char *text) {
+  char quote[ETHD_QUOTE_MAX];
+  if (strcmp(text, "finger") && strcmp(text, "paper"))
+    ethd__fail(ETHD_EXIT_INPUT, "--validity: found %s, paper or finger is allowed",
+               ethd__quote(text, strlen(text), quote));
+  return strcmp(text, "finger") ? ETHD_TAP_BY_PAPER : ETHD_TAP_BY_FINGER;
+}
+
+/* The option's text is cut in two where it stands. */
+static void add_gain(char *text) {
+  char quote[ETHD_QUOTE_MAX], *equals = strchr(text, '=');
+  if (!equals || !strchr(text, '.') || strchr(text, '.') > equals)
+    ethd__fail(ETHD_EXIT_INPUT, "--set: found %s, section.key=value is allowed",
+               ethd__quote(text, strlen(text), quote));
+  if (arg.gain_count == GAINS_MAX) ethd__fail(ETHD_EXIT_INPUT, "--set: at most %d are allowed", GAINS_MAX);
+  *equals = 0;
+  arg.gains[arg.gain_count++] = (ethd__gain){text, equals + 1};
+}
+
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
   case 'c': arg.config = text; return 0;
@@ -112,6 +142,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_CSV: arg.csv = text; return 0;
   case OPTION_RECORD: arg.record = text; return 0;
+  case OPTION_VALIDITY: arg.validity = validity_of(text); return 0;
+  case OPTION_LEARN: arg.learn = (uint32_t)ethd__option_integer("--learn", text, 0, LEARN_MAX); return 0;
+  case OPTION_SET: add_gain(text); return 0;
   case OPTION_TRACE: arg.trace = text; return 0;
   case OPTION_FORCE: arg.force = true; return 0;
   case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
@@ -123,7 +156,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 static void fill_in(void) {
-  if (!arg.laws.count) set_list(&arg.laws, "--transition", "abrupt,smooth,offset");
+  if (!arg.laws.count) set_list(&arg.laws, "--transition", "abrupt,smooth,offset,predictive");
   if (!arg.speeds.count) set_list(&arg.speeds, "--speed", "low,high");
   if (!arg.taps) arg.taps = arg.finger ? TAPS_FINGER : TAPS;
 }
@@ -209,6 +242,10 @@ int main(int argc, char **argv) {
   study.speeds = load_speeds(&study.plant);
   study.speed_count = arg.speeds.count;
   study.seed = arg.seed;
+  study.validity = arg.validity;
+  study.learn = arg.learn;
+  study.gains = arg.gains;
+  study.gain_count = arg.gain_count;
   if (arg.finger) {
     char *finger = ethd__given_or_data(arg.finger);
     check(ethd__movement_load(finger, arg.scale, &study.movement, message), message);

@@ -142,3 +142,21 @@ ethd_status ethd_arm_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q
 void ethd_arm_reach(const ethd_arm *arm, double *inner, double *outer) {
   rows[arm->mechanism].reach(arm, inner, outer);
 }
+
+/* ---- what moves it ---- */
+
+ethd_dynamics ethd_dynamics_unknown(void) {
+  const double unknown = (double)NAN;
+  return (ethd_dynamics){{unknown, unknown}, unknown, unknown, unknown};
+}
+
+static double known(double first, double second) { return isnan(first) ? second : first; }
+
+ethd_dynamics ethd_dynamics_known(const ethd_dynamics *first, const ethd_dynamics *second) {
+  return (ethd_dynamics){
+      {known(first->mass[0], second->mass[0]), known(first->mass[1], second->mass[1])},
+      known(first->friction, second->friction),
+      known(first->viscous, second->viscous),
+      known(first->delay, second->delay),
+  };
+}

@@ -40,11 +40,19 @@ replays() { # FOLDER
   done
 }
 
-run() { # FOLDER: every plant, law and speed
+run() { # FOLDER: every plant, law and speed; the paper's laws in the columns that they had without the other
   mkdir "$1"
   for plant in n b p; do
-    "$bin/ethd-tap" --plant $plant --taps 3 --seed 7 --csv "$1/$plant.csv" --record "$1/$plant" >/dev/null
-    rm "$1/$plant/config.ini" # names this machine's folders
+    "$bin/ethd-tap" --plant $plant --taps 3 --seed 7 --transition abrupt,smooth,offset --csv "$1/$plant.csv" \
+      --record "$1/$plant" >/dev/null
+    for table in "$1/$plant.csv" "$1/$plant/taps.csv"; do
+      cut -d, -f1-15 "$table" >"$work/cut"
+      mv "$work/cut" "$table"
+    done
+    "$bin/ethd-tap" --plant $plant --taps 3 --seed 7 --transition offset,predictive --learn 2 \
+      --set transition.learn=0.3 --validity finger --csv "$1/$plant-predictive.csv" \
+      --record "$1/$plant-predictive" >/dev/null
+    rm "$1/$plant/config.ini" "$1/$plant-predictive/config.ini" # name this machine's folders
   done
   replays "$1"
   (cd "$1" && find . -type f | LC_ALL=C sort | xargs sha256sum)

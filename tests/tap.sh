@@ -13,9 +13,9 @@ fail() { echo "$*"; exit 1; }
 cmp "$folder/a.csv" "$folder/b.csv"
 cmp "$folder/a.txt" "$folder/b.txt"
 cmp -s "$folder/a.csv" "$folder/c.csv" && fail "seed 2 gives what seed 1 gives"
-header=tap,transition,speed,seed,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m,t_rvo_s,t_of_s,peak_force_n
+header=tap,transition,speed,seed,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m,t_rvo_s,t_of_s,peak_force_n,v_hand_mps,touch_depth_m,eps_felt_m
 [ "$(head -n 1 "$folder/a.csv")" = "$header" ] || fail "the header is $(head -n 1 "$folder/a.csv")"
-[ "$(wc -l <"$folder/a.csv")" = 37 ] || fail "not 6 taps in 6 cells"
+[ "$(wc -l <"$folder/a.csv")" = 49 ] || fail "not 6 taps in 8 cells"
 
 # A tap is a function of seed and number: alone, with others, in any order.
 "$tap" --taps 4 --transition offset --speed high,low --csv "$folder/d.csv" >/dev/null
@@ -66,14 +66,25 @@ for law in smooth offset; do
   head -n 1 "$folder/traces/$law-0.3.csv" | grep -q '^t_s,since_wall_s,ring_m,' || fail "no trace of $law"
 done
 
+# By the finger: a law that stops the ring before the wall is judged by the same hands as the others; and options.
+"$tap" --taps 20 --speed low --transition offset,predictive --validity finger --csv "$folder/v.csv" >/dev/null
+awk -F, 'NR > 1 { n[$2] += $5; if ($5 && $18 != "") { s[$2] += $18; m[$2]++ } hand[$1, $2] = $16 }
+  END { for (i = 0; i < 20; i++) if (hand[i, "offset"] != hand[i, "predictive"]) exit 1
+        exit !(n["predictive"] >= 15 && s["predictive"] / m["predictive"] < 1e-4 && s["offset"] / m["offset"] > 2e-4) }' \
+  "$folder/v.csv" || fail "by the finger: $(cat "$folder/v.csv")"
+"$tap" --taps 2 --speed high --transition predictive --learn 2 --set transition.learn=0.3 --set arm.mass_x=0.15 \
+  --record "$folder/learnt" >/dev/null
+grep -q ',learned,' "$folder/learnt/events.csv" || fail "what was learnt isn't in the recording"
+"$BUILD/bin/ethd-replay" --verify "$folder/learnt" >/dev/null
+
 # A movement: said, never scaled unless asked for.
 awk 'BEGIN { print "t_s,x_m,y_m"; for (i = 0; i < 120; i++) { t = i / 200; printf "%.4f,%.6f,0\n", t, 0.05 * cos(5 * t) } }' \
   >"$folder/swing.csv"
 "$tap" --finger "$folder/swing.csv" --speed 0.2 --taps 2 >"$folder/f.txt"
 grep -q 'swing.csv, not scaled' "$folder/f.txt" || fail "it doesn't say that the movement wasn't scaled"
 "$tap" --finger "$folder/swing.csv" --speed high --taps 2 --csv "$folder/f.csv" >/dev/null
-[ "$(grep -c ',too-slow,' "$folder/f.csv")" = 6 ] || fail "a movement of 0.25 m/s isn't too slow for 0.4"
-"$tap" --finger "$folder/swing.csv" --scale 2 --speed high --taps 2 --csv "$folder/g.csv" >"$folder/f.txt"
+[ "$(grep -c ',too-slow,' "$folder/f.csv")" = 8 ] || fail "a movement of 0.25 m/s isn't too slow for 0.4"
+"$tap" --finger "$folder/swing.csv" --scale 2 --transition abrupt,smooth,offset --speed high --taps 2 --csv "$folder/g.csv" >"$folder/f.txt"
 grep -q 'SCALED by 2' "$folder/f.txt" || fail "it doesn't say that the movement was scaled"
 grep -q ',too-slow,' "$folder/g.csv" && fail "0.5 m/s is too slow"
 
@@ -107,6 +118,11 @@ refuse 'low, high and numbers' --speed 0
 refuse 'twice' --speed low,low
 refuse 'empty word' --transition offset,
 refuse 'abrupt' --transition bumpy
+refuse 'paper or finger' --validity hand
+refuse '1000' --learn 1001
+refuse 'section.key=value' --set force
+refuse 'mass_x' --set arm.mass_x=-1
+refuse 'range' --transition predictive --set transition.range=9
 refuse 'whole number from 0' --seed -1
 refuse 'no-such' --plant "$folder/no-such"
 refuse 'no-such' --config "$folder/no-such.ini"
@@ -134,7 +150,7 @@ code=0
 wait $pid || code=$?
 [ $code = 1 ] || fail "after Ctrl-C: exit $code, not 1"
 grep -q 'what was done is kept' "$folder/err" || fail "it doesn't say that it was stopped"
-[ "$(tail -n +2 "$folder/cut.csv" | awk -F, 'NF != 15' | wc -l)" = 0 ] || fail "a cut row"
+[ "$(tail -n +2 "$folder/cut.csv" | awk -F, 'NF != 18' | wc -l)" = 0 ] || fail "a cut row"
 [ "$(wc -l <"$folder/cut.csv")" -gt 1 ] || fail "nothing was kept"
 "$BUILD/bin/ethd-replay" --verify "$folder/cut" >/dev/null
 exit 0

@@ -25,7 +25,8 @@ static void call_tracking(void *data) {
   double tau[2] = {0, 0}, sum = 0, state[ETHD_STATE_MAX / 8] = {0};
   for (int k = 0; k < ETHD__TAP_TICKS; k++) {
     const double *j = c->poses[k].j_inv;
-    ethd_tracking_in in = {{j[0] * 1e-3, j[2] * 1e-3}, {j[1] * 1e-2, j[3] * 1e-2}, {1e-3, 0}, {0, 1e-2}, 1e-3};
+    ethd_tracking_in in = {
+        {j[0] * 1e-3, j[2] * 1e-3}, {j[1] * 1e-2, j[3] * 1e-2}, {1e-3, 0}, {0, 1e-2}, 1e-3, {0, 0}};
     (void)!c->setup.tracking->step(c->setup.tracking_p, state, &in, tau);
     sum += tau[0];
   }
@@ -52,7 +53,7 @@ static void call_transition(void *data) {
   double state[ETHD_STATE_MAX / 8] = {0}, sum = 0;
   for (int k = 0; k < ETHD__TAP_TICKS; k++) {
     double w = 2 * M_PI * k / ETHD__TAP_TICKS, d = 3e-3 * cos(w), v = 0.02 * sin(w);
-    ethd_contact contact = {{0.238, 0.25}, {-1, 0}, d, d, d - 2.5e-3, v, v, 2.5e-3, 1e-3, 0, 0, 0};
+    ethd_contact contact = {{0.238, 0.25}, {-1, 0}, d, d, d - 2.5e-3, v, v, 2.5e-3, 1e-3, 0, 0, 0, NULL};
     ethd_ruling r = {1, 0, 0, 0, 0, {0, 0}, d, 0, 0};
     (void)!law->step(c->setup.transition_p, state, &contact, &r);
     double force = 0, block[1] = {0};

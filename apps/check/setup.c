@@ -49,6 +49,7 @@ static void numbers(const ethd_setup *setup, const ethd_setup_key *key) {
 static void value(const ethd_setup *setup, const ethd_setup_key *key) {
   char name[96];
   snprintf(name, sizeof name, "%s.%s", key->section, key->param.name);
+  if (isnan(key->param.def) && isnan(ethd_setup_get(setup, name))) return; /* not known */
   if (key->count > 1)
     numbers(setup, key);
   else if (ethd_param_words(&key->param))
@@ -71,11 +72,6 @@ static void section(const ethd_config *c, const char *name) {
 }
 
 /* What a section has besides. */
-static void masses(const ethd_config *c) {
-  if (!isnan(c->mass_x)) number("mass_x", c->mass_x, "kg", "at the ring");
-  if (!isnan(c->mass_y)) number("mass_y", c->mass_y, "kg", "at the ring");
-}
-
 static void difference(const ethd_config *c) {
   printf("; d_beta = R_r - R_f,max = %.10g m\n", c->setup.ring_radius - c->setup.finger_radius_max);
 }
@@ -106,7 +102,7 @@ void ethd__report_setup(const ethd_config *config) {
   static const struct {
     const char *section;
     void (*print)(const ethd_config *config);
-  } besides[] = {{"arm", masses},  {"finger", difference}, {"limits", other_limits},
+  } besides[] = {{"finger", difference}, {"limits", other_limits},
                  {"scene", scene}, {"device", device},     {"plugins", plugins}};
   for (int i = 0; i < ETHD__SECTIONS; i++) {
     const char *name = ethd__sections[i].name;

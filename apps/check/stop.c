@@ -71,6 +71,22 @@ static void creep(const ethd_setup *setup, double damping) {
          capped ? "until transition.eps_max or t_max" : "for ever: transition.eps_max and t_max would end it");
 }
 
+/* How far before the wall the law is asked, beside the way that a stop takes there. */
+static int looks_ahead(const ethd__subject *s, int axis) {
+  const ethd_setup *setup = &s->config->setup;
+  ethd__bounds_stop stop = stop_of(s, axis);
+  int short_of = 0;
+  if (!ETHD_LAW_HAS(setup->transition, range)) return 0;
+  for (int i = 0; i < 2; i++) {
+    double v = speeds[i], needed = v * v / (2 * ethd__stop_deceleration(&stop));
+    double asked = fmax(setup->transition->range(setup->transition_p, v), setup->ring_radius - setup->finger_radius_max);
+    printf("  looks ahead, %c         at %.1f m/s: asked %.3g mm before the wall, v^2/(2a) = %.3g mm: %s\n", 'x' + axis,
+           v, 1e3 * asked, 1e3 * needed, asked > needed ? "in time" : "TOO LATE, raise transition.range");
+    short_of += !(asked > needed);
+  }
+  return short_of;
+}
+
 static void say_missing(const ethd__subject *s) {
   const ethd__figures *f = &s->device;
   printf("  needs");
@@ -84,12 +100,13 @@ int ethd__report_stop(const ethd__subject *s) {
   const ethd__figures *f = &s->device;
   const ethd_setup *setup = &s->config->setup;
   double b_d = ethd_setup_get(setup, "transition.b_d");
-  int said = 0;
+  int said = 0, exceeded = 0;
   printf("\nstop         at a wall across each axis, with the motors' force at once%s\n",
          isnan(f->friction) || isnan(f->viscous) ? " (friction unknown, taken as 0)" : "");
   for (int axis = 0; axis < 2; axis++) {
     if (isnan(f->mass[axis]) || !isfinite(f->force[axis]) || isnan(s->k[axis])) continue;
     rest_at_touch(s, axis);
+    exceeded += looks_ahead(s, axis);
     if (b_d > 0) braking(s, axis, b_d);
     said = 1;
   }
@@ -101,5 +118,5 @@ int ethd__report_stop(const ethd__subject *s) {
   printf("  to change:             a lighter ring, more force, a larger gap (ring.radius - "
          "finger.radius), a higher\n");
   printf("                         tracking.k_t%s\n", behind(s) > 0 ? ", finger_filter.compensation = stamp" : "");
-  return 0;
+  return exceeded;
 }

@@ -84,6 +84,8 @@ static ethd_status open_device(ethd__session *s, const char *folder, char *messa
   const ethd_limits limits = s->driver->limits(s->device);
   s->setup = s->config->setup;
   s->setup.limits = ethd_limits_narrower(&limits, &s->config->setup.limits);
+  const ethd_dynamics dynamics = s->driver->dynamics(s->device);
+  s->setup.dynamics = ethd_dynamics_known(&dynamics, &s->config->setup.dynamics);
   status = ethd_control_create(&s->setup, &s->control, &error);
   if (status) ethd_error_text(s->config->path, &error, message);
   return status;
@@ -106,7 +108,7 @@ static ethd_status open_recorder(ethd__session *s, const ethd__session_options *
   if (status || !o->record) return status;
   status = ethd_recording_create(o->record, s->config, o->replace, &r->recording, message);
   if (status) return status;
-  status = ethd__limits_event(r->recording, &s->config->setup.limits, &s->setup.limits);
+  status = ethd__device_event(r->recording, &s->config->setup, &s->setup);
   return status ? ethd__say(message, status, "%s: %s", o->record, ethd_status_sentence(status)) : ETHD_OK;
 }
 

@@ -180,7 +180,8 @@ static void pairs(const ethd_setup *base, int ticks, tally *t) {
 static const ethd_contact_law *const contacts[] = {&ethd_contact_kelvin_voigt, &ethd_contact_spring,
                                                    &ethd_contact_hunt_crossley};
 static const ethd_transition_law *const transitions[] = {&ethd_transition_offset, &ethd_transition_smooth,
-                                                         &ethd_transition_abrupt};
+                                                         &ethd_transition_abrupt, &ethd_transition_predictive};
+enum { TRANSITIONS = sizeof transitions / sizeof *transitions };
 
 static void run(ethd__stress_log *log) {
   int quick = log->effort == ETHD__QUICK, ticks = quick ? 60 : 300;

@@ -177,6 +177,7 @@ ethd_status ethd__desk_open(const ethd__protocol *protocol, const ethd__loaded *
                              .speeds = out->speeds,
                              .speed_count = protocol->speeds.count,
                              .gains = out->gains,
+                             .validity = protocol->validity,
                              .graze = protocol->graze,
                              .single = true,
                              .lift = protocol->lift};

@@ -72,7 +72,7 @@ static ethd_status write_fresh(const char *fresh, const ethd_config *config, con
   ethd_status status = ethd__ticks_open(fresh, config, false, &ticks, message);
   if (status) return status;
   status = ethd__ticks_stage(&ticks, taken->stage, message);
-  if (!status) status = ethd__ticks_tap(&ticks, words, &taken->stage->rows, message);
+  if (!status) status = ethd__ticks_tap(&ticks, words, taken->stage, message);
   ethd_status closed = ethd__ticks_close(&ticks, left);
   if (!status && closed) status = ethd__say(message, closed, "%s", left);
   return status ? status : write_row(fresh, row, message);

@@ -15,7 +15,7 @@
 
      [device]                             [grid]                  --simulate: every combination
      config = n.ini                       contact.k_e = 1000,2500
-     plant = n
+     plant = n                            [validity] by = paper   finger: by the finger alone, for any law
 
    With people, the configuration's [device] is opened as ethd-run does; the plant then only says how fast
    low and high are.
@@ -27,6 +27,7 @@
 #include <stdbool.h>
 
 #include "ethd/config.h"
+#include "tap/metrics.h"
 
 #define ETHD_STUDY_WORDS 8 /* strategies, speeds, values of a gain */
 #define ETHD_STUDY_GAINS 6 /* keys of a grid */
@@ -62,6 +63,7 @@ typedef struct ethd__protocol {
   double between, hand_spread;
   double band_low, band_high; /* m/s, NaN: the plant's */
   double graze, lift, slack;
+  ethd__validity validity;
   ethd__axis axes[ETHD_STUDY_GAINS];
   size_t axis_count;
 } ethd__protocol;

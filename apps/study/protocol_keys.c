@@ -165,6 +165,7 @@ static const key_row rows[] = {
     {"hand", "hand_spread", set_number, AT(hand_spread), 0, 1, NULL},
     {"validity", "band_low", set_number, AT(band_low), 0.001, 0.2, NULL},
     {"validity", "band_high", set_number, AT(band_high), 0.001, 0.4, NULL},
+    {"validity", "by", set_choice, AT(validity), 0, 0, "paper|finger"},
     {"validity", "graze", set_number, AT(graze), 0, 0.15, NULL},
     {"validity", "slack", set_number, AT(slack), 0, 0.002, NULL},
     {"validity", "lift", set_number, AT(lift), 0.001, 0.1, NULL},

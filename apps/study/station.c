@@ -104,6 +104,7 @@ static void make_ready(ethd__station *s, const ethd__taken *taken) {
   s->stage.law = taken->stage->law;
   s->stage.setup = s->session.setup;
   s->rule = ethd__stage_rule(&s->stage, taken->speed, s->stage.setup.finger_radius);
+  s->rule.carried = true;
   s->status = ETHD_OK;
 }
 

@@ -55,10 +55,11 @@ ethd_status ethd__tapping_step(ethd__tapping *t) {
   return ETHD_OK;
 }
 
-ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap, const ethd__rule *rule,
-                          ethd__rows *rows) {
+ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap, const double *learned,
+                          const ethd__rule *rule, ethd__rows *rows) {
   ethd__tapping tapping;
   ethd_status status = ethd__tapping_begin(sim, control, tap, rule, rows, &tapping);
+  ethd_control_taught(control, learned);
   while (!status) status = ethd__tapping_step(&tapping);
   return status < 0 ? status : ETHD_OK;
 }

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "tap/felt.h"
+
 const char *const ethd__reason_words[ETHD_TAP_REASON_COUNT] = {
 #define ETHD_TAP_WORD(name, word) word,
     ETHD_TAP_REASONS(ETHD_TAP_WORD)
@@ -122,44 +124,66 @@ static bool faulted(const ethd__rows *rows) {
   return false;
 }
 
-static ethd__reason judge(const ethd__rows *rows, const ethd__rule *rule, size_t begin, size_t meeting, size_t touch,
-                          double v_rvo) {
-  if (faulted(rows)) return ETHD_TAP_FAULT;
-  if (rule->never_fast) return ETHD_TAP_TOO_SLOW;
-  if (meeting == rows->count) return ETHD_TAP_NO_CONTACT;
-  if (touch_from(rows, begin) < meeting) return ETHD_TAP_EARLY_CONTACT;
-  if (!(v_rvo >= rule->speed - rule->band)) return ETHD_TAP_TOO_SLOW;
-  if (!(v_rvo <= rule->speed + rule->band)) return ETHD_TAP_TOO_FAST;
+/* What a touch must be, once it is known to be in time. */
+static ethd__reason judge_touch(const ethd__rows *rows, const ethd__rule *rule, size_t touch) {
   if (touch == rows->count) return ETHD_TAP_NO_CONTACT;
   if (pressing(rows, rule, touch) < rule->graze) return ETHD_TAP_GRAZING;
   return rule->single && comes_back(rows, rule, touch) ? ETHD_TAP_DOUBLE : ETHD_TAP_OK;
 }
 
+static ethd__reason judge_speed(const ethd__rule *rule, double speed) {
+  if (!(speed >= rule->speed - rule->band)) return ETHD_TAP_TOO_SLOW;
+  return speed <= rule->speed + rule->band ? ETHD_TAP_OK : ETHD_TAP_TOO_FAST;
+}
+
+static ethd__reason judge_by_paper(const ethd__rows *rows, const ethd__rule *rule, size_t begin, size_t meeting,
+                                   size_t touch, double v_rvo) {
+  if (meeting == rows->count) return ETHD_TAP_NO_CONTACT;
+  if (touch_from(rows, begin) < meeting) return ETHD_TAP_EARLY_CONTACT;
+  ethd__reason reason = judge_speed(rule, v_rvo);
+  return reason ? reason : judge_touch(rows, rule, touch);
+}
+
+static ethd__reason judge_by_finger(const ethd__rows *rows, const ethd__rule *rule, size_t touch,
+                                    const ethd__felt *felt) {
+  ethd__reason reason = isnan(felt->v_hand) ? ETHD_TAP_NO_CONTACT : judge_speed(rule, felt->v_hand);
+  if (!reason && touch < rows->count && felt->early) reason = ETHD_TAP_EARLY_CONTACT;
+  return reason ? reason : judge_touch(rows, rule, touch);
+}
+
+static void measure_meeting(const ethd__rows *rows, const ethd__rule *rule, size_t meeting, ethd__metrics *out) {
+  if (meeting == rows->count) return;
+  out->v_rvo = speed_at(rows, rule, meeting);
+  out->t_rvo = rows->truth[meeting].t;
+  out->d_max = rebound(rows, rule, meeting);
+  braking(rows, rule, meeting, out);
+}
+
+static void measure_touch(const ethd__rows *rows, const ethd__rule *rule, size_t touch, ethd__metrics *out) {
+  if (touch == rows->count) return;
+  out->v_of = speed_at(rows, rule, touch);
+  out->t_of = rows->truth[touch].t;
+  out->v_rmin = slowest(rows, rule, touch);
+}
+
 void ethd__metrics_of(const ethd__rows *rows, const ethd__rule *rule, ethd__metrics *out) {
-  size_t begin, meeting = approach_of(rows, rule, &begin);
-  size_t touch = touch_from(rows, meeting);
-  *out = (ethd__metrics){.v_rvo = NAN,
-                         .v_of = NAN,
-                         .d_max = NAN,
-                         .v_rmin = NAN,
-                         .delta_s = NAN,
-                         .eps = NAN,
-                         .t_rvo = NAN,
-                         .t_of = NAN,
-                         .t_seen = NAN,
+  size_t begin, meeting = approach_of(rows, rule, &begin), first = touch_from(rows, begin);
+  bool by_finger = rule->validity == ETHD_TAP_BY_FINGER;
+  size_t touch = by_finger ? first : touch_from(rows, meeting), sight = sight_from(rows, rule, begin);
+  const ethd__felt felt = ethd__felt_of(rows, rule, begin, first);
+  *out = (ethd__metrics){.v_rvo = NAN, .v_of = NAN, .d_max = NAN, .v_rmin = NAN, .delta_s = NAN,
+                         .eps = NAN, .t_rvo = NAN, .t_of = NAN, .t_seen = NAN,
+                         .v_hand = felt.v_hand, .touch_depth = felt.depth, .eps_felt = felt.eps,
                          .peak_force = strongest(rows)};
-  if (meeting < rows->count) {
-    out->v_rvo = speed_at(rows, rule, meeting);
-    out->t_rvo = rows->truth[meeting].t;
-    out->d_max = rebound(rows, rule, meeting);
-    braking(rows, rule, meeting, out);
-  }
-  if (touch < rows->count) {
-    out->v_of = speed_at(rows, rule, touch);
-    out->t_of = rows->truth[touch].t;
-    out->v_rmin = slowest(rows, rule, touch);
-  }
-  size_t sight = sight_from(rows, rule, begin);
+  measure_meeting(rows, rule, meeting, out);
+  measure_touch(rows, rule, touch, out);
   if (sight < rows->count) out->t_seen = rows->truth[sight].t;
-  out->reason = judge(rows, rule, begin, meeting, touch, out->v_rvo);
+  if (faulted(rows))
+    out->reason = ETHD_TAP_FAULT;
+  else if (rule->never_fast)
+    out->reason = ETHD_TAP_TOO_SLOW;
+  else if (by_finger)
+    out->reason = judge_by_finger(rows, rule, touch, &felt);
+  else
+    out->reason = judge_by_paper(rows, rule, begin, meeting, touch, out->v_rvo);
 }

@@ -26,6 +26,12 @@ typedef struct ethd__rows {
   size_t count, room;
 } ethd__rows;
 
+/* By what a tap is valid.
+     paper    the ring met the wall before the finger touched it, at the speed asked for
+     finger   the hand's own path crosses the wall's touch plane at that speed, and the finger didn't touch before the
+              ring was there (felt.h): a law that stops the ring before the wall is judged by the same taps */
+typedef enum ethd__validity { ETHD_TAP_BY_PAPER, ETHD_TAP_BY_FINGER } ethd__validity;
+
 /* What a tap is judged by. */
 typedef struct ethd__rule {
   ethd_vec n;         /* of the wall, into it */
@@ -36,6 +42,8 @@ typedef struct ethd__rule {
   double d_beta;      /* m */
   bool never_fast;    /* the recorded movement never was that fast: too slow */
   double seen;        /* m: the finger's centre along n as its pad's front is at the wall */
+  ethd__validity validity;
+  bool carried;       /* a device's tap: nobody knows the hand's path, the finger's speed before the touch stands for it */
   double graze;       /* s: a tap whose pad touches for less in all is grazing; 0: none */
   bool single;        /* a finger that leaves the wall by `lift` after its touch and comes back makes a */
   double lift;        /* m: double tap */
@@ -80,6 +88,9 @@ typedef struct ethd__metrics {
   double eps;         /* m: offset at that vo tick */
   double t_rvo, t_of; /* s of the tap */
   double t_seen;      /* s of the tap: the finger's avatar reaches the wall that is seen */
+  double v_hand;      /* m/s: these three as in ethd__felt */
+  double touch_depth; /* m */
+  double eps_felt;    /* m */
   double peak_force;  /* N: largest |F_e| of the tap */
 } ethd__metrics;
 

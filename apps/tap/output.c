@@ -55,8 +55,8 @@ static void write_row(ethd_csv_out *csv, const ethd__stage *stage, const char *l
   ethd_csv_word(csv, seed);
   ethd_csv_integer(csv, m->reason == ETHD_TAP_OK);
   ethd_csv_word(csv, ethd__reason_words[m->reason]);
-  const double figures[] = {m->v_rvo, m->v_of,  m->d_max, m->v_rmin,    m->delta_s,
-                            m->eps,   m->t_rvo, m->t_of,  m->peak_force};
+  const double figures[] = {m->v_rvo, m->v_of, m->d_max,      m->v_rmin, m->delta_s,     m->eps,
+                            m->t_rvo, m->t_of, m->peak_force, m->v_hand, m->touch_depth, m->eps_felt};
   for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) ethd_csv_number(csv, figures[i]);
   ethd_csv_row(csv);
 }
@@ -69,7 +69,7 @@ ethd_status ethd__output_tap(ethd__output *output, const ethd__stage *stage, con
   char words[128];
   snprintf(words, sizeof words, "tap %" PRIu64 " %s %s%s", tap, law, speed->word,
            speed->touchdown.never_fast ? " never that fast" : "");
-  return ethd__ticks_tap(&output->ticks, words, &stage->rows, message);
+  return ethd__ticks_tap(&output->ticks, words, stage, message);
 }
 
 ethd_status ethd__output_close(ethd__output *output, char message[ETHD_MESSAGE_MAX]) {

@@ -9,7 +9,7 @@
 /* A row per tap. `speed` as given, `valid` 1 or 0, empty where a figure isn't defined. */
 #define ETHD_TAP_HEADER                                                                            \
   "tap,transition,speed,seed,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m," \
-  "t_rvo_s,t_of_s,peak_force_n"
+  "t_rvo_s,t_of_s,peak_force_n,v_hand_mps,touch_depth_m,eps_felt_m"
 
 /* The folder of the ticks holds taps.csv (ETHD_TAP_HEADER) too. */
 typedef struct ethd__output {

@@ -110,6 +110,8 @@ ethd_status ethd__stage_open(const ethd__study *study, const char *law, ethd__st
   ethd_error error = {.status = ETHD_E_MEMORY, .found = NAN, .min = NAN, .max = NAN};
   const ethd_limits device = device_limits(study);
   *out = (ethd__stage){.study = study, .law = law, .setup = config->setup};
+  const ethd_dynamics dynamics = ethd_plant_dynamics(&study->plant);
+  out->setup.dynamics = ethd_dynamics_known(&dynamics, &out->setup.dynamics);
   ethd_status status = ethd_config_transition(config, law, &out->setup, message);
   if (!status) status = set_gains(study, &out->setup, message);
   if (status) return status;
@@ -154,6 +156,7 @@ ethd__rule ethd__stage_rule(const ethd__stage *stage, const ethd__speed *speed, 
                       .seen = meet + stage->setup.ring_radius - finger_radius,
                       .d_beta = stage->setup.ring_radius - stage->setup.finger_radius_max,
                       .never_fast = speed->touchdown.never_fast,
+                      .validity = study->validity,
                       .graze = study->graze,
                       .single = study->single,
                       .lift = study->lift};
@@ -180,12 +183,31 @@ void ethd__stage_judge(const ethd__stage *stage, const ethd__rule *rule, const e
   count_ticks(&stage->rows, out);
 }
 
+/* Their numbers are out of the way of the taps that count. */
+#define LEARNING (UINT64_C(1) << 40)
+
+/* The law forgets, then learns from `study->learn` taps of the same kind in a row. */
+static ethd_status learn(ethd__stage *stage, const ethd__speed *speed, uint64_t tap) {
+  ethd_sim_tap circumstances;
+  ethd_status status = ETHD_OK;
+  memset(stage->learned, 0, sizeof stage->learned);
+  for (uint64_t k = 0; !status && k < stage->study->learn; k++) {
+    status = ethd__stage_draw(stage, speed, LEARNING + tap * stage->study->learn + k, &circumstances);
+    const ethd__rule rule = ethd__stage_rule(stage, speed, circumstances.finger_radius);
+    if (!status)
+      status = ethd__tap_run(stage->sim, stage->control, &circumstances, stage->learned, &rule, &stage->rows);
+    ethd_control_learned(stage->control, stage->learned);
+  }
+  return status;
+}
+
 ethd_status ethd__stage_run(ethd__stage *stage, const ethd__speed *speed, uint64_t tap, ethd__result *out,
                             char message[ETHD_MESSAGE_MAX]) {
-  ethd_sim_tap circumstances;
-  ethd_status status = ethd__stage_draw(stage, speed, tap, &circumstances);
+  ethd_sim_tap circumstances = {0};
+  ethd_status status = learn(stage, speed, tap);
+  if (!status) status = ethd__stage_draw(stage, speed, tap, &circumstances);
   const ethd__rule rule = ethd__stage_rule(stage, speed, circumstances.finger_radius);
-  if (!status) status = ethd__tap_run(stage->sim, stage->control, &circumstances, &rule, &stage->rows);
+  if (!status) status = ethd__tap_run(stage->sim, stage->control, &circumstances, stage->learned, &rule, &stage->rows);
   if (status)
     return ethd__say(message, status, "tap %llu at %s: %s", (unsigned long long)tap, speed->word,
                      ethd_status_sentence(status));

@@ -37,6 +37,8 @@ typedef struct ethd__study {
   const ethd__gain *gains; /* on top of the configuration; a law without such a parameter goes without */
   size_t gain_count;
   double graze, lift; /* as in ethd__rule */
+  ethd__validity validity;
+  uint32_t learn; /* taps before each counted one, from which a law that learns does so */
   bool single;
   /* worked out by ethd__study_prepare */
   ethd_vec meet; /* m: the ring's centre as it meets the wall */
@@ -57,6 +59,7 @@ typedef struct ethd__stage {
   ethd_sim *sim;
   ethd_control *control;
   ethd__rows rows; /* of the last tap */
+  double learned[ETHD_MEMORY]; /* by the law, as the last tap began */
   double heat[2];  /* of the motors as it began, see ethd_control_heat */
   ethd_path_sample *samples;
 } ethd__stage;

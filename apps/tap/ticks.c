@@ -52,15 +52,28 @@ ethd_status ethd__ticks_stage(ethd__ticks *ticks, const ethd__stage *stage, char
     snprintf(detail, sizeof detail, "%s %s", gain->key, gain->value);
     status = ethd_recording_event(recording, "set", detail);
   }
-  if (!status) status = ethd__limits_event(recording, &stage->study->config->setup.limits, &stage->setup.limits);
+  if (!status) status = ethd__device_event(recording, &stage->study->config->setup, &stage->setup);
   snprintf(detail, sizeof detail, "%.17g %.17g", stage->heat[0], stage->heat[1]);
   if (!status && (stage->heat[0] > 0 || stage->heat[1] > 0)) status = ethd_recording_event(recording, "heat", detail);
   return said(ticks, status, message);
 }
 
-ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *words, const ethd__rows *rows,
+/* Where it isn't nothing. */
+static ethd_status tell_learned(ethd_recording *recording, const double learned[ETHD_MEMORY]) {
+  char text[32 * ETHD_MEMORY] = "";
+  bool any = false;
+  for (size_t i = 0; i < ETHD_MEMORY; i++) {
+    any |= learned[i] != 0;
+    snprintf(text + strlen(text), sizeof text - strlen(text), "%s%.17g", i ? " " : "", learned[i]);
+  }
+  return any ? ethd_recording_event(recording, "learned", text) : ETHD_OK;
+}
+
+ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *words, const ethd__stage *stage,
                             char message[ETHD_MESSAGE_MAX]) {
+  const ethd__rows *rows = &stage->rows;
   ethd_status status = ethd_recording_event(ticks->recording, "start", words);
+  if (!status) status = tell_learned(ticks->recording, stage->learned);
   for (size_t i = 0; !status && i < rows->count; i++) status = ethd_recording_tick(ticks->recording, &rows->trace[i]);
   if (!status && (ethd_npy_append(ticks->truth, rows->truth, rows->count) || ethd_npy_flush(ticks->truth)))
     status = ethd__recording_fail(ticks->recording, TRUTH, ethd__npy_reason(ticks->truth));

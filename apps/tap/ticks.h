@@ -24,8 +24,8 @@ ETHD_MUST_CHECK ethd_status ethd__ticks_open(const char *folder, const ethd_conf
 ETHD_MUST_CHECK ethd_status ethd__ticks_stage(ethd__ticks *ticks, const ethd__stage *stage,
                                               char message[ETHD_MESSAGE_MAX]);
 
-/* A whole tap; `words` for people. */
-ETHD_MUST_CHECK ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *words, const ethd__rows *rows,
+/* The stage's last tap, whole; `words` for people. */
+ETHD_MUST_CHECK ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *words, const ethd__stage *stage,
                                             char message[ETHD_MESSAGE_MAX]);
 
 /* NULL recording is fine. */

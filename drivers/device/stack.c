@@ -151,6 +151,18 @@ static const char *why(const void *stack) {
   return says;
 }
 
+/* What the first knows stands; the next ones add to it. */
+static ethd_dynamics dynamics(const void *stack) {
+  const ethd__stack *s = stack;
+  ethd_dynamics all = ethd_dynamics_unknown();
+  for (uint32_t i = 0; i < s->count; i++) {
+    if (!s->at[i].driver->dynamics) continue;
+    ethd_dynamics own = s->at[i].driver->dynamics(s->at[i].device);
+    all = ethd_dynamics_known(&all, &own);
+  }
+  return all;
+}
+
 const ethd_driver ethd__driver_stack = {
     .size = sizeof(ethd_driver),
     .abi = ETHD_DRIVER_ABI,
@@ -170,4 +182,5 @@ const ethd_driver ethd__driver_stack = {
     .clear = clear,
     .home = home,
     .why = why,
+    .dynamics = dynamics,
 };

@@ -270,6 +270,11 @@ static const char *inject_why(const void *device) {
   return in->driver->why(in->device);
 }
 
+static ethd_dynamics inject_dynamics(const void *device) {
+  const inject *in = device;
+  return in->driver->dynamics(in->device);
+}
+
 const ethd_driver ethd__driver_inject = {
     .size = sizeof(ethd_driver),
     .abi = ETHD_DRIVER_ABI,
@@ -289,4 +294,5 @@ const ethd_driver ethd__driver_inject = {
     .clear = inject_clear,
     .home = inject_home,
     .why = inject_why,
+    .dynamics = inject_dynamics,
 };

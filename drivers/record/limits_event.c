@@ -1,5 +1,6 @@
 #include "record/limits_event.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -12,7 +13,7 @@ static ethd_status tell(ethd_recording *recording, const ethd_limit *row, const 
   return ethd_recording_event(recording, "set", text);
 }
 
-ethd_status ethd__limits_event(ethd_recording *recording, const ethd_limits *was, const ethd_limits *is) {
+static ethd_status limits(ethd_recording *recording, const ethd_limits *was, const ethd_limits *is) {
   ethd_limits before = *was, now = *is;
   ethd_status status = ETHD_OK;
   for (const ethd_limit *row = ethd_limit_rows; !status && row < ethd_limit_rows + ETHD_LIMITS; row++) {
@@ -21,4 +22,23 @@ ethd_status ethd__limits_event(ethd_recording *recording, const ethd_limits *was
       status = tell(recording, row, values);
   }
   return status;
+}
+
+static ethd_status dynamics(ethd_recording *recording, const ethd_setup *was, const ethd_setup *is) {
+  static const char *const names[] = {"arm.mass_x", "arm.mass_y", "arm.friction", "arm.viscous", "arm.delay"};
+  char text[TEXT_MAX];
+  ethd_status status = ETHD_OK;
+  for (size_t i = 0; !status && i < sizeof names / sizeof *names; i++) {
+    double now = ethd_setup_get(is, names[i]);
+    if (isnan(now) || now == ethd_setup_get(was, names[i])) continue;
+    snprintf(text, sizeof text, "%s %.17g", names[i], now);
+    status = ethd_recording_event(recording, "set", text);
+  }
+  return status;
+}
+
+ethd_status ethd__device_event(ethd_recording *recording, const ethd_setup *was, const ethd_setup *is) {
+  ethd_status status = limits(recording, &was->limits, &is->limits);
+  int told = ETHD_LAW_HAS(is->transition, range); /* to no other law */
+  return status || !told ? status : dynamics(recording, was, is);
 }

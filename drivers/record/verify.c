@@ -1,4 +1,5 @@
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,6 +19,7 @@ typedef struct replay {
   size_t count, next; /* rows; next event */
   ethd_setup setup;
   double heat[2]; /* of the motors, by the last event of that kind */
+  double learned[ETHD_MEMORY]; /* by the law, likewise */
   ethd_control *control;
   char *message;
 } replay;
@@ -53,7 +55,7 @@ static ethd_status open_events(replay *r) {
 
 #define HEAT_MOST 1e9
 
-enum { CHANGED = 1, FRESH = 2, CLEAR = 4, WARM = 8, HOT = 16 };
+enum { CHANGED = 1, FRESH = 2, CLEAR = 4, WARM = 8, HOT = 16, TAUGHT = 32 };
 
 static ethd_status take_heat(replay *r, const char *detail, char *what) {
   const char *space = strchr(detail, ' ');
@@ -61,6 +63,17 @@ static ethd_status take_heat(replay *r, const char *detail, char *what) {
                  ethd__number(space + 1, strlen(space + 1), &r->heat[1]);
   if (numbers && r->heat[0] >= 0 && r->heat[0] < HEAT_MOST && r->heat[1] >= 0 && r->heat[1] < HEAT_MOST) return ETHD_OK;
   return ethd__say(what, ETHD_E_SYNTAX, "two numbers from 0 to 1e9 are allowed");
+}
+
+static ethd_status take_learned(replay *r, const char *detail, char *what) {
+  const char *p = detail;
+  for (size_t i = 0; i < ETHD_MEMORY; i++) {
+    size_t n = strcspn(p, " ");
+    if (!ethd__number(p, n, &r->learned[i]) || !isfinite(r->learned[i]) || (p[n] == 0) != (i + 1 == ETHD_MEMORY))
+      return ethd__say(what, ETHD_E_SYNTAX, "%u numbers are allowed", ETHD_MEMORY);
+    p += n + 1;
+  }
+  return ETHD_OK;
 }
 
 static ethd_status set(replay *r, const char *detail, char *what) {
@@ -93,10 +106,13 @@ static ethd_status apply(replay *r, const ethd__record_event *e, int *done) {
   } else if (strcmp(e->kind, "heat") == 0) {
     status = take_heat(r, e->detail, what);
     *done |= HOT;
+  } else if (strcmp(e->kind, "learned") == 0) {
+    status = take_learned(r, e->detail, what);
+    *done |= TAUGHT;
   } else if (strcmp(e->kind, "fault") != 0 && strcmp(e->kind, "end") != 0) {
     status = ethd__say(what, ETHD_E_UNKNOWN,
                        "an unknown kind of event; setup, start, transition, set, clear, "
-                       "heat, fault, end are allowed");
+                       "heat, learned, fault, end are allowed");
   }
   if (!status) return ETHD_OK;
   return ethd__say(r->message, status, "%s:%zu: %s: %s", r->events_path, e->line, e->kind, what);
@@ -105,7 +121,7 @@ static ethd_status apply(replay *r, const ethd__record_event *e, int *done) {
 static ethd_status renew(replay *r, int done) {
   ethd_error error = {0};
   ethd_status status = ETHD_OK;
-  if ((done & ~HOT) == WARM && r->control) {
+  if ((done & ~(HOT | TAUGHT)) == WARM && r->control) {
     ethd_control_restart(r->control);
   } else if (done & (FRESH | WARM)) {
     ethd_control_destroy(r->control);
@@ -115,6 +131,7 @@ static ethd_status renew(replay *r, int done) {
   }
   if (done & CLEAR && r->control) ethd_control_clear(r->control);
   if (done & HOT && !status) ethd_control_heated(r->control, r->heat);
+  if (done & TAUGHT && !status) ethd_control_taught(r->control, r->learned);
   if (status) ethd_error_text(r->events_path, &error, r->message);
   return status;
 }

@@ -83,12 +83,24 @@ static ethd_status check_setup(const reading *r) {
 }
 
 /* What this arm's ring can never meet is not kept. */
+/* The range that any of the transition laws needs: one of them may be swapped in. */
+static double widest_range(const ethd_config *c) {
+  double range = ethd_setup_range(&c->setup);
+  for (const ethd_law *const *law = c->laws; *law; law++) {
+    ethd_setup setup = c->setup;
+    if ((*law)->kind != ETHD_TRANSITION) continue;
+    ethd_setup_transition(&setup, (const ethd_transition_law *)(const void *)*law);
+    range = fmax(range, ethd_setup_range(&setup));
+  }
+  return range;
+}
+
 static ethd_status drop_unreachable(const reading *r) {
   ethd_config *c = &r->whole->config;
   ethd_scene *pruned = NULL;
   ethd_error error;
   if (!c->scene) return ETHD_OK;
-  ethd_status status = ethd_scene_prune(c->scene, &c->setup.arm, ethd_setup_range(&c->setup), &pruned, &error);
+  ethd_status status = ethd_scene_prune(c->scene, &c->setup.arm, widest_range(c), &pruned, &error);
   if (status) ethd_error_text(r->whole->scene_path, &error, r->message);
   if (!pruned) return status;
   ethd_scene_destroy(c->scene);
@@ -131,7 +143,6 @@ static char *copy_text(const char *text, size_t length) {
 
 static bool fill(ethd_config *c, const char *text, size_t length, const char *name, const char *folder) {
   c->setup = ethd_setup_default();
-  c->mass_x = c->mass_y = (double)NAN;
   strcpy(c->device, "sim");
   c->path = name ? strdup(name) : NULL;
   c->text = copy_text(text, length);

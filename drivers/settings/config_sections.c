@@ -6,20 +6,7 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-#define MASS_MAX 1e6 /* kg */
-
 /* ---- keys that stand in files only ---- */
-
-static ethd_status read_mass(const ethd__config_key *key, double *out) {
-  double value;
-  if (!ethd__number(key->value, strlen(key->value), &value) || !(value > 0 && value <= MASS_MAX))
-    return ethd__key_found(key, ETHD_E_RANGE, "a mass over 0 up to 1e6 kg");
-  *out = value;
-  return ETHD_OK;
-}
-
-static ethd_status mass_x(ethd__config *c, const ethd__config_key *key) { return read_mass(key, &c->config.mass_x); }
-static ethd_status mass_y(ethd__config *c, const ethd__config_key *key) { return read_mass(key, &c->config.mass_y); }
 
 static ethd_status driver(ethd__config *c, const ethd__config_key *key) {
   if (strlen(key->value) >= sizeof c->config.device)
@@ -34,7 +21,7 @@ static ethd_status device_setting(ethd__config *c, const ethd__config_key *key) 
 }
 
 const ethd__section ethd__sections[ETHD__SECTIONS] = {
-    {"arm", {{"mass_x", ETHD__PASS_REST, mass_x}, {"mass_y", ETHD__PASS_REST, mass_y}}},
+    {"arm", {{0}}},
     {"ring", {{0}}},
     {"finger", {{0}}},
     {"loop", {{0}}},

@@ -116,6 +116,10 @@ static ethd_limits limits(const void *device_) {
   return ethd_limits_torque(d->def.plant.force_limit * fmin(d->def.arm.link1, d->def.arm.link2));
 }
 
+static ethd_dynamics dynamics(const void *device_) {
+  return ethd_plant_dynamics(&((const device *)device_)->def.plant);
+}
+
 const ethd_driver ethd_driver_sim = {
     .size = sizeof(ethd_driver),
     .abi = ETHD_DRIVER_ABI,
@@ -131,4 +135,5 @@ const ethd_driver ethd_driver_sim = {
     .safe = safe,
     .close = close_device,
     .limits = limits,
+    .dynamics = dynamics,
 };

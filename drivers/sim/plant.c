@@ -124,3 +124,8 @@ ethd_status ethd__sim_check(const ethd_sim_def *def, ethd_error *error) {
   if (!status) status = within(error, "ring.radius", def->ring_radius, p->finger_radius + 2 * p->finger_radius_sd, 10);
   return status;
 }
+
+/* Fitted plants have one coupling at most, which an effective mass along a wall's normal leaves out. */
+ethd_dynamics ethd_plant_dynamics(const ethd_plant *plant) {
+  return (ethd_dynamics){{plant->mass[0], plant->mass[1]}, plant->friction, plant->viscous, plant->delay};
+}

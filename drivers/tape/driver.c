@@ -147,6 +147,8 @@ static ethd_status replay_stop(void *device) {
 
 static ethd_limits replay_limits(const void *device) { return ((const replay *)device)->tape.limits; }
 
+static ethd_dynamics replay_dynamics(const void *device) { return ((const replay *)device)->tape.dynamics; }
+
 static uint32_t replay_figures(const void *device, ethd_figure *out, uint32_t max) {
   const replay *r = device;
   const ethd_figure all[] = {{"recorded ticks", "1", (double)r->tape.count},
@@ -179,6 +181,7 @@ const ethd_driver ethd_driver_replay = {
     .stop = replay_stop,
     .close = replay_close,
     .limits = replay_limits,
+    .dynamics = replay_dynamics,
     .figures = replay_figures,
     .remark = replay_remark,
 };

@@ -12,7 +12,7 @@
 static ethd_status no_memory(const char *folder, char *message) { return ethd__no_memory(message, folder); }
 
 /* What the device allowed stands before the first row. */
-static ethd_status take_limits(const ethd__record_events *events, ethd_limits *out, char *message) {
+static ethd_status take_device(const ethd__record_events *events, ethd__tape *out, char *message) {
   ethd_config *config;
   ethd_status status = ethd_config_load(NULL, &config, message);
   if (status) return status;
@@ -22,12 +22,14 @@ static ethd_status take_limits(const ethd__record_events *events, ethd_limits *o
     char key[64];
     const ethd__record_event *e = &events->events[i];
     size_t n = strcspn(e->detail, " ");
-    if (strcmp(e->kind, "set") != 0 || strncmp(e->detail, "limits.", 7) != 0 || n >= sizeof key) continue;
+    if (strcmp(e->kind, "set") != 0 || n >= sizeof key) continue;
+    if (strncmp(e->detail, "limits.", 7) != 0 && strncmp(e->detail, "arm.", 4) != 0) continue;
     memcpy(key, e->detail, n);
     key[n] = 0;
     status = ethd_config_set(config, key, e->detail + n + (e->detail[n] == ' '), &setup, message);
   }
-  *out = setup.limits;
+  out->limits = setup.limits;
+  out->dynamics = setup.dynamics;
   ethd_config_free(config);
   return status;
 }
@@ -53,7 +55,7 @@ static ethd_status take_events(const char *folder, ethd__tape *tape, char *messa
   free(path);
   if (status) return status;
   take_change(&events, tape);
-  status = take_limits(&events, &tape->limits, message);
+  status = take_device(&events, tape, message);
   ethd__record_events_free(&events);
   return status;
 }

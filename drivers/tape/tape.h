@@ -10,6 +10,7 @@ typedef struct ethd__tape {
   size_t changed;   /* the first row behind a command that changed something; count: there was none */
   char change[128]; /* that command, as events.csv has it: "transition smooth" */
   ethd_limits limits;
+  ethd_dynamics dynamics;
 } ethd__tape;
 
 /* A folder that a run has recorded. On failure *out is empty and message holds the one line. [main] */

@@ -58,6 +58,21 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_arm_angles(const ethd_arm *arm, ethd_v
 /* The reachable annulus about the base joint: inner = |L1 - L2|, outer = L1 + L2, m. [any, rt-safe] */
 ETHD_API void ethd_arm_reach(const ethd_arm *arm, double *inner, double *outer) ETHD_RT;
 
+/* What moves the ring, as the device's driver knows it (or a configuration's [arm]), for laws that look ahead. Doubles
+   only; NaN: not known. */
+typedef struct ethd_dynamics {
+  double mass[2];  /* kg at the ring of joint 1 and joint 2: the inertia of a link's absolute angle is mass L^2 */
+  double friction; /* N at the ring: torque L friction sign(dq) of each joint */
+  double viscous;  /* Ns/m at the ring: torque L^2 viscous dq of each joint */
+  double delay;    /* s from the joint sample to the torque */
+} ethd_dynamics;
+
+/* All of it unknown. [any] */
+ETHD_API ethd_dynamics ethd_dynamics_unknown(void);
+
+/* What `first` knows, and where it doesn't, what `second` does. [any] */
+ETHD_API ethd_dynamics ethd_dynamics_known(const ethd_dynamics *first, const ethd_dynamics *second);
+
 /* 2x2 row-major products with J or J^-1. [any, rt-safe] */
 static inline ethd_vec ethd_mat_mul(const double m[4], ethd_vec v) ETHD_RT {
   ethd_vec r = {m[0] * v.x + m[1] * v.y, m[2] * v.x + m[3] * v.y};

@@ -19,7 +19,6 @@ typedef struct ethd_config {
   char *text;                         /* as it was read, for recordings */
   char *scene_text;                   /* likewise; NULL without a scene */
   char *folder;                       /* relative paths start here */
-  double mass_x, mass_y;              /* kg at the ring, for stability checks; NaN: not given */
   uint32_t limits_given;              /* bit i: of ethd_limit_rows[i] */
   char device[ETHD_DRIVERS_TEXT_MAX]; /* the drivers' ids as written, "sim" by default */
   ethd_setting *settings;             /* the other keys of [device] */

@@ -60,6 +60,7 @@ typedef struct ethd_setup {
   const ethd_scene *scene;                   /* stands still, in R_0 */
   const ethd_scene *bodies[ETHD_BODIES_MAX]; /* each moves as a rigid body; its pose comes with the sense */
   ethd_limits limits;
+  ethd_dynamics dynamics;
 } ethd_setup;
 
 /* parallel 0.25 m arm, lowpass, kasa, ca, pd, kelvin-voigt, offset, no scene, no limits, 1 kHz. [any] */
@@ -122,8 +123,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_set(ethd_setup *setup, const cha
 /* The number of that name; NaN where ethd_setup_set would not find it. [main] */
 ETHD_API double ethd_setup_get(const ethd_setup *setup, const char *name);
 
-/* 2 R_r + d_beta, m: what is farther than this from the ring's centre can't count, as long as the finger is
-   within the ring. For ethd_scene_prune. [any] */
+/* 2 R_r + d_beta, m, or farther for a law that looks ahead: what is farther than this from the ring's centre can't
+   count, as long as the finger is within the ring. For ethd_scene_prune. [any] */
 ETHD_API double ethd_setup_range(const ethd_setup *setup);
 
 /* Everything that create and post check: names as in the configuration ("contact.k_e"), materials of the
@@ -180,7 +181,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_poll(ethd_control *control, et
    runs. [main] */
 ETHD_API void ethd_control_reset(ethd_control *control);
 
-/* Resets all but the motors' heat, for a device that is enabled again. Not while step runs. [main] */
+/* Resets all but the motors' heat and what the transition law has learnt of them, for a device that is enabled again.
+   Not while step runs. [main] */
 ETHD_API void ethd_control_restart(ethd_control *control);
 
 /* How hot the motors are by limits.nominal_torque and heat_time: rise over the surroundings, as a share of
@@ -188,6 +190,11 @@ ETHD_API void ethd_control_restart(ethd_control *control);
    the middle. Not while step runs. [main] */
 ETHD_API void ethd_control_heat(const ethd_control *control, double out[2]);
 ETHD_API void ethd_control_heated(ethd_control *control, const double heat[2]);
+
+/* What the transition law has learnt of the device (ethd_facts.memory), kept by restart and forgotten by reset; and
+   to go on as if it had, likewise. Not while step runs. [main] */
+ETHD_API void ethd_control_learned(const ethd_control *control, double out[ETHD_MEMORY]);
+ETHD_API void ethd_control_taught(ethd_control *control, const double memory[ETHD_MEMORY]);
 
 /* Acknowledges a latched fault; taken at the next step, which starts softly from zero torque. Before
    limits.clean_time is over it means nothing. [any] */

@@ -94,6 +94,8 @@ struct ethd_driver {
   ethd_status (*home)(void *device, const double q[2]);
   /* Why the last start or home failed, one line; "" where there is nothing to say. [main] */
   const char *(*why)(const void *device);
+  /* What moves the ring, as far as the driver knows; what it doesn't, [arm] may say. [main] */
+  ethd_dynamics (*dynamics)(const void *device);
 };
 
 ETHD_API extern const ethd_driver ethd_driver_sim, ethd_driver_hello;

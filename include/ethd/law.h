@@ -5,14 +5,20 @@
    and once:                                    tracking    finger relative to ring -> torque
    The controller composes them:  tau = beta tau_t + J^T sum (share F_e - damping v + feed) n.
 
+   What can't be touched yet isn't shown to a law, unless it looks ahead (`range`): then it also learns what the
+   device can do (`facts`), so that it can act in time.
+
    A law is stateless code: numbers in, numbers out. It never allocates, never blocks, keeps nothing.
    Its state is a block of numbers (no pointers) that is zeroed before reset, copied, recorded, hashed.
    Parameters were checked against the table when the setup was posted: step trusts them.
    A law that returns a negative status or a number that isn't finite sends the controller to its safe
    state. So does a law that isn't built in and writes outside of its state block (ETHD_E_FENCE), as far as
    around it a pattern of some words shows it, or that leaves the processor with another rounding mode, other
-   flushing of small numbers or other traps than it found (ETHD_E_FENV): both are put back. ABI 0 may break until 1.0; ethd_param and ethd_contact are frozen within an ABI, law structs
-   grow at their end and say their size. */
+   flushing of small numbers or other traps than it found (ETHD_E_FENV): both are put back.
+
+   ABI 0 may break until 1.0. Within an ABI ethd_param is frozen; what a step is given (ethd_contact,
+   ethd_tracking_in, ethd_facts) and the law structs grow at their end, and a law says how large its struct is:
+   one that was built against an older header runs as it did. include/README.md has the policy. */
 #ifndef ETHD_LAW_H
 #define ETHD_LAW_H
 
@@ -53,6 +59,7 @@ typedef struct ethd_tracking_in {
   ethd_vec eps_x;      /* X_f - X_r, m, in R_0 */
   ethd_vec eps_v;      /* V_f - V_r, m/s */
   double period;       /* s since the last step */
+  ethd_vec finger_v;   /* V_f, m/s, in R_0: what a law needs to lead the finger before a contact exists */
 } ethd_tracking_in;
 
 typedef struct ethd_tracking_law {
@@ -69,7 +76,32 @@ typedef struct ethd_tracking_law {
                                       |//////     d_fr = n.(P - X_f) - R_r       finger grown to the ring
    Minima of one object that face the same way within 15 deg are one contact, the deepest: a curve drawn
    with short edges pushes once.
-   Lengths in m, < 0: penetrating. v = n.(V_r - V of the surface) in m/s, > 0: entering. */
+   Lengths in m, < 0: penetrating. v = n.(V_r - V of the surface) in m/s, > 0: entering.
+
+   A contact *counts* while any of these holds: d_re < d_beta; d_fr <= d_beta before its law has been asked and
+   ruling.argument <= d_beta afterwards; d_re < range, for a law that looks ahead; its state isn't
+   ETHD_TRANSPARENT. Only contacts that count have a law asked, a state block and a place in the trace, and at
+   most ETHD_CONTACTS_MAX do, the deepest. A contact that stops counting is forgotten. */
+
+/* What the device and its estimators can do along a contact's n, for a law that looks ahead. NaN: not known. The
+   controller works it out from what the device's driver says (ethd_dynamics), from the limits and the arm. */
+typedef struct ethd_facts {
+  double mass;          /* kg: effective mass of the ring along n */
+  double force;         /* N: the guard lets so much through now against n (INFINITY: no limit is set) */
+  double applied;       /* N along n: what the torque of the last tick amounts to, after the guard */
+  double friction;      /* N: Coulomb friction along n */
+  double viscous;       /* Ns/m */
+  double delay;         /* s from the joint sample to the force */
+  double lag;           /* s by which v is late (ethd_velocity_lag) */
+  double ring_radius;   /* R_r, m */
+  double finger_radius; /* R_f, m */
+  double finger_age;    /* s: the finger's estimate shows where it was so long ago; NaN: it hasn't been seen */
+  double finger_a;      /* m/s^2: acceleration of the finger's estimate along n */
+  double *memory;       /* ETHD_MEMORY numbers of the law's own that outlive its contacts: zeroed by create, reset and
+                           a change of the law, recorded and replayed */
+} ethd_facts;
+#define ETHD_MEMORY 4u
+
 typedef struct ethd_contact {
   ethd_vec point, n;
   double d_re, d_fe, d_fr;
@@ -80,6 +112,7 @@ typedef struct ethd_contact {
   double age;     /* s since this contact began to count */
   int32_t object; /* number in its scene */
   int32_t body;   /* 0: the scene that stands still, i: bodies[i - 1] of the setup */
+  const ethd_facts *facts; /* NULL: the law doesn't look ahead */
 } ethd_contact;
 
 /* ---- contact: depth and speed to force ---- */
@@ -110,16 +143,36 @@ typedef struct ethd_ruling {
   int32_t reserved;
 } ethd_ruling;
 
+/* A live contact as the law that was replaced leaves it, at the tick of the swap. */
+typedef struct ethd_past {
+  double offset;  /* eps of the last ruling, m */
+  double d_re, v; /* of the contact, m and m/s */
+  double age;     /* s since it began to count */
+  double since;   /* s since its state is what it is */
+  int32_t state;  /* of the last ruling: ETHD_TRANSPARENT, .. */
+  int32_t reserved;
+} ethd_past;
+
 typedef struct ethd_transition_law {
   ethd_law law;
   /* `out` comes zeroed but for beta = 1 and argument = d_fe. [rt] */
   ethd_status (*step)(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) ETHD_RT;
+  /* From here on optional, NULL: not needed; a shorter struct has none of it. */
+  /* How far ahead the law wants to be asked, m of d_re, at this speed of the ring, m/s. Not finite or below d_beta:
+     d_beta. Scenes are passed over by this distance, so ask for what you need. [rt] */
+  double (*range)(const double *p, double speed) ETHD_RT;
+  /* Takes over a live contact at a swap of laws: the state block has been reset. NULL: the contact begins anew. [rt] */
+  void (*adopt)(const double *p, void *state, const ethd_past *past) ETHD_RT;
 } ethd_transition_law;
 
 /* The smallest size of each kind in ABI 0: up to the end of its last field. */
 #define ETHD_TRACKING_LAW_MIN (offsetof(ethd_tracking_law, step) + sizeof(void (*)(void)))
 #define ETHD_CONTACT_LAW_MIN (offsetof(ethd_contact_law, step) + sizeof(void (*)(void)))
 #define ETHD_TRANSITION_LAW_MIN (offsetof(ethd_transition_law, step) + sizeof(void (*)(void)))
+
+/* The optional functions of a transition law of any size. [any, rt-safe] */
+#define ETHD_LAW_HAS(law_, field)                                                                              \
+  ((law_)->law.size >= offsetof(ethd_transition_law, field) + sizeof((law_)->field) && (law_)->field != NULL)
 
 /* ABI, size, kind, state, id, table and entry points of a law; one status each. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_law_check(const ethd_law *law, ethd_error *error);
@@ -128,7 +181,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_law_check(const ethd_law *law, ethd_er
 
 ETHD_API extern const ethd_tracking_law ethd_tracking_pd;
 ETHD_API extern const ethd_contact_law ethd_contact_kelvin_voigt, ethd_contact_spring, ethd_contact_hunt_crossley;
-ETHD_API extern const ethd_transition_law ethd_transition_abrupt, ethd_transition_smooth, ethd_transition_offset;
+ETHD_API extern const ethd_transition_law ethd_transition_abrupt, ethd_transition_smooth, ethd_transition_offset,
+    ethd_transition_predictive;
 
 /* All of them, by kind then as in the documentation; the array ends with NULL. [any] */
 ETHD_API extern const ethd_law *const ethd_laws[];

@@ -44,6 +44,9 @@ typedef struct ethd_plant {
 /* Reads a plant file (INI, every key required once, strict). [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_plant_load(const char *path, ethd_plant *out, char message[ETHD_MESSAGE_MAX]);
 
+/* What a plant knows of the device that it is: ETHD_DYNAMICS numbers for a setup. [any] */
+ETHD_API ethd_dynamics ethd_plant_dynamics(const ethd_plant *plant);
+
 /* The hand's voluntary path: the paper's synthetic reach, or samples of a recorded movement. */
 typedef struct ethd_path_sample {
   double t, x, y; /* s, m, m in R_0 */

@@ -21,8 +21,8 @@ ETHD_BEGIN_DECLS
   X(E_SYNTAX, -7, "text that cannot be read")                                  \
   X(E_GEOMETRY, -8, "a shape that cannot be: degenerate or self-intersecting") \
   X(E_UNREACHABLE, -9, "out of the arm's reach")                               \
-  X(E_ABI, -10, "a plugin of another ABI")                                     \
-  X(E_SIZE, -11, "a struct shorter than its ABI asks")                         \
+  X(E_ABI, -10, "a plugin of another ABI; rebuild it against these headers")   \
+  X(E_SIZE, -11, "a struct that is none of this ABI; rebuild it")              \
   X(E_STATE, -12, "a law's state is over 512 bytes")                           \
   X(E_TABLE, -13, "a bad parameter table")                                     \
   X(E_SYMBOL, -14, "a plugin without the symbol ethd_plugin")                  \

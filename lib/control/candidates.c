@@ -4,10 +4,11 @@
    edges has several local minima around each of its corners, and would push as many times. */
 #define SAME_WAY 0.96592582628906829 /* cos 15 deg */
 
-/* Everything that can count lies within this range of the ring's centre: d_re < d_beta, or d_fe <= d_beta however
-   far ahead the finger is. */
+/* Everything that can count lies within this range of the ring's centre: d_re < near, or d_fe <= d_beta however far
+   ahead the finger is. */
 static double range_of(const ethd__tick *t) ETHD_RT {
-  return t->plan->setup.ring_radius + t->plan->d_beta + ethd_vec_norm(ethd_vec_sub(t->finger.x, t->ring.x));
+  double behind = t->plan->d_beta + ethd_vec_norm(ethd_vec_sub(t->finger.x, t->ring.x));
+  return t->plan->setup.ring_radius + (behind > t->near ? behind : t->near);
 }
 
 /* A place as this tick sees it: the ring's centre x is in the place's frame. */
@@ -112,10 +113,35 @@ static void follow(const view *from, const ethd__slot *slot, int i, ethd__candid
   }
 }
 
+/* A surface of a new scene is the old one's where this tick's touches of the two differ by no more than: */
+#define SAME_PLACE 1e-6 /* m, and rad of the normals */
+
+static bool continues(const ethd__slot *slot, const ethd__candidate *k) ETHD_RT {
+  /* a thin wall's normal is the one on whose side the contact began */
+  double side = slot->side != 0 && k->touch.side == -slot->side ? -1 : 1;
+  return k->slot < 0 && k->place == slot->place &&
+         ethd_vec_norm(ethd_vec_sub(k->local, slot->point)) <= SAME_PLACE &&
+         ethd_vec_norm(ethd_vec_sub(ethd_vec_scale(side, k->touch.n), slot->past.n)) <= SAME_PLACE;
+}
+
+/* Contacts whose scene was replaced go on where the new one has the same surface, whatever its number there, and end
+   elsewhere. */
+static void settle_orphans(ethd__state *state, ethd__candidates *c) ETHD_RT {
+  for (unsigned left = state->orphans & c->live; left; left &= left - 1) {
+    int i = __builtin_ctz(left), k = 0;
+    while (k < c->count && !continues(&state->slots[i], &c->at[k])) k++;
+    state->slots[i].used = k < c->count;
+    if (k < c->count) c->at[k].slot = i;
+  }
+  c->live = slots_in_use(state);
+}
+
 /* The closest pairs first, so that a contact that ends doesn't leave its state to another one. The rest
    stays open. */
-static unsigned match(const ethd__plan *plan, const ethd__state *state, ethd__candidates *c) ETHD_RT {
-  unsigned open = c->live;
+static unsigned match(const ethd__plan *plan, ethd__state *state, ethd__candidates *c) ETHD_RT {
+  if (state->orphans) settle_orphans(state, c);
+  unsigned open = c->live & ~state->orphans;
+  state->orphans = 0;
   for (int i = 0, k; (k = closest(state, open, plan->setup.ring_radius, c, &i)) >= 0;) {
     c->at[k].slot = i;
     open &= ~(1u << i);

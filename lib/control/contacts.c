@@ -1,6 +1,7 @@
 #include "control/contacts.h"
 
 #include "control/candidates.h"
+#include "control/facts.h"
 #include "control/fence.h"
 #include "control/passivity.h"
 #include "control/rows.h"
@@ -13,6 +14,7 @@ typedef struct work {
   ethd__slot *slot;
   ethd_contact contact;
   ethd_ruling ruling;
+  ethd_facts facts; /* for a law that looks ahead */
 } work;
 
 /* Without its age. */
@@ -47,6 +49,10 @@ static bool ruling_is_good(const ethd_ruling *r) ETHD_RT {
 static bool rule(const ethd__tick *t, work *w) ETHD_RT {
   const ethd_setup *setup = &t->plan->setup;
   ethd_ruling *r = &w->ruling;
+  if (t->plan->range) {
+    ethd__facts(t, &w->contact, &w->facts);
+    w->contact.facts = &w->facts;
+  }
   memset(r, 0, sizeof *r);
   r->beta = 1;
   r->argument = w->contact.d_fe;
@@ -112,6 +118,19 @@ static void claim(ethd__slot *slot, const ethd__candidate *k) ETHD_RT {
   slot->side = k->touch.side;
 }
 
+static void change_state(ethd__slot *slot, int32_t state) ETHD_RT {
+  if (slot->state != state) slot->changed = slot->periods;
+  slot->state = state;
+}
+
+/* What a new plan may want to know of a contact: only the old one's run at a swap, on the scratch, tells. */
+static void tell(ethd__slot *slot, const ethd_contact *c, const ethd_ruling *r) ETHD_RT {
+  slot->past.n = c->n;
+  slot->past.offset = r->offset;
+  slot->past.d_re = c->d_re;
+  slot->past.v = c->v;
+}
+
 /* Runs the laws on one contact. False: one of them failed. */
 static bool work_out(ethd__tick *t, work *w) ETHD_RT {
   ethd__slot *slot = w->slot;
@@ -121,11 +140,12 @@ static bool work_out(ethd__tick *t, work *w) ETHD_RT {
   c->age = (double)slot->periods * t->plan->setup.period;
   claim(slot, w->candidate);
   if (!rule(t, w)) return false;
-  slot->used = c->d_re < c->d_beta || r->argument <= c->d_beta || r->state != ETHD_TRANSPARENT;
+  slot->used = c->d_re < t->near || r->argument <= c->d_beta || r->state != ETHD_TRANSPARENT;
   if (!slot->used) return true;
   if (!wall(t, w, &force)) return false;
   if (t->plan->watches_energy) force += ethd__passivity(t, slot, c, force, r->feed - r->damping * c->v);
-  slot->state = r->state;
+  change_state(slot, r->state);
+  if (t->state == t->scratch) tell(slot, c, r);
   slot->periods += (int64_t)rint(c->period / t->plan->setup.period); /* whole periods, so that the age doesn't drift */
   add(t, w, force);
   return true;
@@ -192,8 +212,15 @@ static void begin(ethd__tick *t) ETHD_RT {
   t->shift = (ethd_vec){0, 0};
 }
 
-static bool could_count(const ethd_contact *c, const ethd__slot *slot) ETHD_RT {
-  return c->d_re < c->d_beta || c->d_fr <= c->d_beta || (slot && slot->state != ETHD_TRANSPARENT);
+static double near_of(const ethd__tick *t) ETHD_RT {
+  const ethd__plan *plan = t->plan;
+  if (!plan->range) return plan->d_beta;
+  double range = plan->range(plan->setup.transition_p, ethd_vec_norm(t->ring.v));
+  return range > plan->d_beta && range < (double)INFINITY ? range : plan->d_beta;
+}
+
+static bool could_count(const ethd_contact *c, double near, const ethd__slot *slot) ETHD_RT {
+  return c->d_re < near || c->d_fr <= c->d_beta || (slot && slot->state != ETHD_TRANSPARENT);
 }
 
 /* Candidates come from the deepest to the shallowest: where there is no room, the shallowest go. */
@@ -203,7 +230,7 @@ static bool work_out_all(ethd__tick *t, ethd__candidates *c) ETHD_RT {
     w.candidate = &c->at[k];
     w.contact = measure(t, w.candidate);
     w.slot = c->at[k].slot < 0 ? NULL : &t->state->slots[c->at[k].slot];
-    bool counts = could_count(&w.contact, w.slot);
+    bool counts = could_count(&w.contact, t->near, w.slot);
     if (counts && taken < ETHD_CONTACTS_MAX) {
       if (!w.slot) w.slot = new_slot(t, c, k);
       if (!work_out(t, &w)) return false;
@@ -220,6 +247,7 @@ bool ethd__contacts(ethd__tick *t) {
   ethd__candidates c;
   begin(t);
   if (!t->plan->places) return true;
+  t->near = near_of(t);
   ethd__candidates_collect(t, &c);
   t->trace->queried = c.queried;
   t->state->counters.queried += (uint64_t)c.queried;

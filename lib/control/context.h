@@ -22,6 +22,7 @@ typedef struct ethd__tick {
   double dt;       /* s since the last tick that had a measurement */
   ethd_pose pose;  /* of the arm; unknown on a tick without measurement, where nothing needs it */
   ethd__motion ring, finger;
+  double near;    /* m: contacts with d_re below it count: d_beta, or as far as the law looks ahead */
   ethd_vec shift; /* m, of the tracking's reference: the contact's that rules beta */
   ethd_trace *trace;
 } ethd__tick;

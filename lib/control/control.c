@@ -126,10 +126,20 @@ void ethd_control_reset(ethd_control *control) {
 }
 
 void ethd_control_restart(ethd_control *control) {
-  double heat[2];
+  double heat[2], memory[ETHD_MEMORY];
   ethd_control_heat(control, heat);
+  ethd_control_learned(control, memory);
   ethd_control_reset(control);
   ethd_control_heated(control, heat);
+  ethd_control_taught(control, memory);
+}
+
+void ethd_control_learned(const ethd_control *control, double out[ETHD_MEMORY]) {
+  memcpy(out, control->state.memory, sizeof control->state.memory);
+}
+
+void ethd_control_taught(ethd_control *control, const double memory[ETHD_MEMORY]) {
+  memcpy(control->state.memory, memory, sizeof control->state.memory);
 }
 
 void ethd_control_heat(const ethd_control *control, double out[2]) {

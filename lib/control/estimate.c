@@ -114,10 +114,12 @@ static bool use(const ethd__tick *t, ethd_vec relative) ETHD_RT {
 
 static void correct(const ethd__tick *t) ETHD_RT {
   ethd_vec relative;
-  if (is_new(t) && reading(t, &relative) && use(t, relative))
-    t->state->reading_ns = t->sense->sample_ns;
-  else
+  if (!is_new(t) || !reading(t, &relative) || !use(t, relative)) {
     t->state->counters.readings_dropped++;
+    return;
+  }
+  t->state->reading_ns = t->sense->sample_ns;
+  t->state->reading_age = seconds(t->sense->sample_ns, t->sense->time_ns);
 }
 
 /* ---- the finger ---- */

@@ -12,6 +12,7 @@ static bool track(const ethd__tick *t, double tau[2]) ETHD_RT {
   in.eps_x = ethd_vec_sub(ethd_vec_add(t->finger.x, t->shift), t->ring.x);
   in.eps_v = ethd_vec_sub(t->finger.v, t->ring.v);
   in.period = t->dt;
+  in.finger_v = t->finger.v;
   ethd_pose_joints(&t->pose, in.eps_x, in.eps_q);
   ethd_pose_joints(&t->pose, in.eps_v, in.eps_q_dot);
   memcpy(out->eps_q, in.eps_q, sizeof out->eps_q);

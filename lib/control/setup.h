@@ -9,14 +9,14 @@
 
 #define ETHD__D_BETA_MIN 1e-5 /* m: so far R_f,max stays from R_r */
 
-/* `offset`: in ethd_setup, bytes; doubles, but for the arm's mechanism. */
+/* `offset`: in ethd_setup, bytes; doubles, but for the arm's mechanism. A default of NaN: may stay unknown. */
 typedef struct ethd__setup_field {
   ethd_setup_key key;
   uint32_t offset;
 } ethd__setup_field;
 
 /* Those that neither a law, nor a method, nor the limits bring. */
-#define ETHD__SETUP_FIELDS 10
+#define ETHD__SETUP_FIELDS 15
 extern const ethd__setup_field ethd__setup_fields[ETHD__SETUP_FIELDS];
 
 double ethd__setup_field_get(const ethd_setup *setup, const ethd__setup_field *field, uint32_t index);

@@ -28,9 +28,11 @@ static double most_of(const ethd_setup *s, const ethd__setup_field *field) {
 
 static ethd_status check_field(const ethd_setup *s, const ethd__setup_field *field, ethd_error *error) {
   const ethd_setup_key *key = &field->key;
-  for (uint32_t i = 0; i < key->count; i++)
-    TRY(ethd__check_number(error, key->param.name, ethd__setup_field_get(s, field, i), key->param.min,
-                           most_of(s, field)));
+  for (uint32_t i = 0; i < key->count; i++) {
+    double value = ethd__setup_field_get(s, field, i);
+    if (isnan(key->param.def) && isnan(value)) continue; /* not known */
+    TRY(ethd__check_number(error, key->param.name, value, key->param.min, most_of(s, field)));
+  }
   return ETHD_OK;
 }
 
@@ -105,6 +107,13 @@ static ethd_status check_scene(const ethd_setup *s, int place, ethd_error *error
                       (ethd__found){outer, scene->inner, scene->outer});
 }
 
+static void prepare_ahead(const ethd_setup *s, ethd__plan *out) {
+  const double links[2] = {s->arm.link1, s->arm.link2};
+  out->range = ETHD_LAW_HAS(s->transition, range) ? s->transition->range : NULL;
+  out->lag = ethd_velocity_lag(&out->velocity);
+  for (int i = 0; i < 2; i++) out->mobility[i] = 1 / (s->dynamics.mass[i] * links[i] * links[i]);
+}
+
 static bool has_rare_limits(const ethd_limits *l) {
   bool ranges = !isinf(l->reach[0]) || !isinf(l->reach[1]);
   for (int i = 0; i < 4; i++) ranges |= !isinf(l->joints[i]);
@@ -127,6 +136,7 @@ ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error 
   TRY(within("finger_fit", ethd_fit_prepare(s->fit, s->fit_p, s->ring_radius, s->finger_radius, &out->fit, error),
              error));
   TRY(within("finger_filter", ethd_filter_prepare(s->filter, s->filter_p, s->period, &out->filter, error), error));
+  prepare_ahead(s, out);
   prepare_lags(s, out);
   out->places = 0;
   for (int place = 0; place < ETHD__PLACES; place++) {

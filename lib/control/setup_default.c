@@ -3,7 +3,17 @@
 #include "control/setup.h"
 #include "ethd/control.h"
 
-double ethd_setup_range(const ethd_setup *s) { return 2 * s->ring_radius + (s->ring_radius - s->finger_radius_max); }
+/* As far as the law looks ahead at any speed. */
+static double ahead(const ethd_setup *s) {
+  if (!s->transition || !ETHD_LAW_HAS(s->transition, range)) return 0;
+  double range = s->transition->range(s->transition_p, (double)INFINITY);
+  return range > 0 && range < (double)INFINITY ? s->ring_radius + range : 0;
+}
+
+double ethd_setup_range(const ethd_setup *s) {
+  double near = 2 * s->ring_radius + (s->ring_radius - s->finger_radius_max), far = ahead(s);
+  return far > near ? far : near;
+}
 
 static void defaults(const ethd_param *params, uint32_t count, double *p) {
   memset(p, 0, ETHD_PARAMS_MAX * sizeof *p);

@@ -24,8 +24,12 @@ typedef struct ethd__slot {
   bool leaving;                /* the branch of eq. 3, with v_hysteresis */
   int32_t place, object, side; /* whose surface; side of a thin wall on which the contact began, 0: no side */
   int32_t state;               /* the transition law's */
-  int64_t periods;             /* since it began to count */
+  int64_t periods, changed;    /* since it began to count; of these, before its state became what it is */
   ethd_vec point;              /* touched, in the place's frame */
+  struct {
+    ethd_vec n;             /* in R_0 */
+    double offset, d_re, v; /* as in ethd_past */
+  } past;                   /* at the tick of a swap, as the old plan has it */
   ethd__block transition, contact;
   /* passivity observer, where limits.energy is set */
   bool giving;                           /* damping is added */
@@ -68,6 +72,7 @@ typedef struct ethd__state {
   ethd_velocity_state velocity[2];
   ethd_filter_state filter;
   int64_t reading_ns;   /* stamp of the reading that was used last */
+  double reading_age;   /* s: how old it was when it was used */
   double finger_radius; /* of the last fit, NaN: none */
   double absent;        /* share of the tracking torque that has faded because the finger isn't seen */
   int64_t implausible;  /* readings in a row */
@@ -79,6 +84,8 @@ typedef struct ethd__state {
   /* contacts */
   ethd__slot slots[ETHD_CONTACTS_MAX];
   ethd__place places[ETHD__PLACES];
+  double memory[ETHD_MEMORY];      /* of the transition law */
+  unsigned orphans;                /* slots, as bits, whose scene was replaced at this tick */
   double given;                    /* J that the last contact gave away */
   uint64_t given_at;               /* tick */
   uint64_t excess_from, excess_at; /* steps after which it was far too much: first, last; 0: never */

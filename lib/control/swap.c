@@ -57,22 +57,50 @@ static bool has_same_scene(const ethd__plan *a, const ethd__plan *b, int place) 
   return ethd__place_scene(&a->setup, place) == ethd__place_scene(&b->setup, place);
 }
 
-static void swap_slot(const ethd__plan *from, const ethd__plan *to, ethd__slot *slot) ETHD_RT {
-  if (!has_same_scene(from, to, slot->place)) slot->used = false;
-  if (from->setup.transition != to->setup.transition)
-    ethd__block_reset(to, &to->setup.transition->law, to->setup.transition_p, &slot->transition);
+/* Its object's number means nothing in the new scene: the touch is kept, by which it may go on there. */
+static void orphan(ethd__state *state, int i, const ethd__state *old) ETHD_RT {
+  ethd__slot *slot = &state->slots[i];
+  slot->used = slot->used && old && old->slots[i].used;
+  if (!slot->used) return;
+  slot->point = old->slots[i].point;
+  slot->past.n = old->slots[i].past.n;
+  state->orphans |= 1u << i;
+}
+
+/* The contact as the old law leaves it after this tick is handed to a new law that takes it. */
+static void adopt(const ethd__plan *to, const ethd__slot *was, ethd__slot *slot) ETHD_RT {
+  const ethd_transition_law *law = to->setup.transition;
+  const double *p = to->setup.transition_p;
+  ethd__block_reset(to, &law->law, p, &slot->transition);
+  if (!slot->used || !was || !was->used || !ETHD_LAW_HAS(law, adopt)) return;
+  const double period = to->setup.period;
+  const ethd_past past = {.offset = was->past.offset,
+                          .d_re = was->past.d_re,
+                          .v = was->past.v,
+                          .age = (double)was->periods * period,
+                          .since = (double)(was->periods - was->changed) * period,
+                          .state = was->state};
+  law->adopt(p, slot->transition.at, &past); /* what it writes around its block is found by the next step */
+}
+
+static void swap_slot(const ethd__plan *from, const ethd__plan *to, const ethd__slot *was, ethd__slot *slot) ETHD_RT {
+  if (from->setup.transition != to->setup.transition) adopt(to, was, slot);
   if (from->setup.contact != to->setup.contact)
     ethd__block_reset(to, &to->setup.contact->law, to->setup.contact_p, &slot->contact);
 }
 
-void ethd__swap_state(const ethd__plan *from, const ethd__plan *to, ethd__state *state) {
+void ethd__swap_state(const ethd__plan *from, const ethd__plan *to, ethd__state *state, const ethd__state *old) {
   swap_velocity(from, to, state);
   swap_filter(from, to, state);
   for (int place = 0; place < ETHD__PLACES; place++)
     if (!has_same_scene(from, to, place)) ethd__place_forget(&state->places[place]);
   if (from->setup.tracking != to->setup.tracking)
     ethd__block_reset(to, &to->setup.tracking->law, to->setup.tracking_p, &state->tracking);
-  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) swap_slot(from, to, &state->slots[i]);
+  if (from->setup.transition != to->setup.transition) memset(state->memory, 0, sizeof state->memory);
+  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
+    if (!has_same_scene(from, to, state->slots[i].place)) orphan(state, i, old);
+    swap_slot(from, to, old ? &old->slots[i] : NULL, &state->slots[i]);
+  }
 }
 
 /* ---- the tick of a swap ---- */
@@ -93,7 +121,7 @@ static bool evaluate_old(ethd__tick *t, double torque[2]) ETHD_RT {
 void ethd__swap(ethd__tick *t) {
   double old[2];
   bool held = evaluate_old(t, old);
-  ethd__swap_state(t->from, t->plan, t->state);
+  ethd__swap_state(t->from, t->plan, t->state, held ? t->scratch : NULL);
   if (!held) {
     ethd__estimate(t);
   } else if (ethd__evaluate(t)) {

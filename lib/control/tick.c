@@ -113,12 +113,12 @@ static void start_from_zero(ethd__tick *t) ETHD_RT {
 /* trace->tau_raw; a tick whose law fails leaves it undefined and a row that forbids it. */
 static void work_out_torque(ethd__tick *t) ETHD_RT {
   if (ethd__rows_forbid(t->state)) {
-    if (t->from) ethd__swap_state(t->from, t->plan, t->state);
+    if (t->from) ethd__swap_state(t->from, t->plan, t->state, NULL);
     ethd__estimate(t);
   } else if (t->from && !t->soft) {
     ethd__swap(t);
   } else {
-    if (t->from) ethd__swap_state(t->from, t->plan, t->state);
+    if (t->from) ethd__swap_state(t->from, t->plan, t->state, NULL);
     if (!ethd__evaluate(t)) return;
     ethd__fade(t);
     if (t->soft) start_from_zero(t);
@@ -168,7 +168,7 @@ void ethd__tick_run(ethd__tick *t) {
     ethd__places_take(state, t->sense);
     work_out_torque(t);
   } else if (t->from) {
-    ethd__swap_state(t->from, t->plan, state);
+    ethd__swap_state(t->from, t->plan, state, NULL);
   }
   if (ethd__rows_forbid(state)) take_torque_away(t);
   if (measured) guard(t);

@@ -5,8 +5,10 @@
 #include "ethd/law.h"
 #include "line.h"
 
-/* The size that a law's struct has at least in ABI 0, by kind. */
+/* The sizes of a law's struct, by kind: the smallest of ABI 0, and this library's. A longer one was built against a newer
+   header, whose functions and fields this library doesn't know. */
 static const size_t smallest[] = {ETHD_TRACKING_LAW_MIN, ETHD_CONTACT_LAW_MIN, ETHD_TRANSITION_LAW_MIN};
+static const size_t largest[] = {sizeof(ethd_tracking_law), sizeof(ethd_contact_law), sizeof(ethd_transition_law)};
 
 static bool id_is_good(const char *id) {
   size_t n = id ? strlen(id) : 0;
@@ -28,9 +30,9 @@ ethd_status ethd_law_check(const ethd_law *law, ethd_error *error) {
   if (law->abi != ETHD_ABI) return ethd__refuse(error, ETHD_E_ABI, "abi", (ethd__found){law->abi, ETHD_ABI, ETHD_ABI});
   if (law->kind > ETHD_TRANSITION)
     return ethd__refuse(error, ETHD_E_ARGUMENT, "kind", (ethd__found){law->kind, 0, ETHD_TRANSITION});
-  if (law->size < smallest[law->kind])
+  if (law->size < smallest[law->kind] || law->size > largest[law->kind])
     return ethd__refuse(error, ETHD_E_SIZE, "size",
-                        (ethd__found){law->size, (double)smallest[law->kind], (double)INFINITY});
+                        (ethd__found){law->size, (double)smallest[law->kind], (double)largest[law->kind]});
   if (!id_is_good(law->id)) return ethd__error(error, ETHD_E_ARGUMENT, "id");
   if (!ethd__is_line(law->brief, ETHD_BRIEF_MAX)) return ethd__error(error, ETHD_E_ARGUMENT, law->id);
   if (law->state_size > ETHD_STATE_MAX)

@@ -50,7 +50,7 @@ START_TEST(test_defaults) {
     ck_assert(transition_value(s, "beta_min") == 0.1 && transition_value(s, "eps_max") == 0.006);
     ck_assert(transition_value(s, "t_max") == 0.050 && s->swap_time == 0.020 && s->v_hysteresis == 0);
     ck_assert(isinf(s->limits.torque) && isinf(s->limits.step_time) && c->limits_given == 0);
-    ck_assert(isnan(c->mass_x) && isnan(c->mass_y) && !c->scene && !s->scene);
+    ck_assert(isnan(s->dynamics.mass[0]) && isnan(s->dynamics.mass[1]) && !c->scene && !s->scene);
     ck_assert_str_eq(c->device, "sim");
     ethd_config_free(c);
   }
@@ -66,7 +66,7 @@ START_TEST(test_every_key) {
   ethd_config *c = parse(everything);
   const ethd_setup *s = &c->setup;
   ck_assert_int_eq(s->arm.mechanism, ETHD_ARM_SERIAL);
-  ck_assert(s->arm.link1 == 0.31 && s->arm.link2 == 0.32 && c->mass_x == 0.5 && c->mass_y == 0.6);
+  ck_assert(s->arm.link1 == 0.31 && s->arm.link2 == 0.32 && s->dynamics.mass[0] == 0.5 && s->dynamics.mass[1] == 0.6);
   ck_assert(s->ring_radius == 0.013 && s->finger_radius == 0.0071 && s->finger_radius_max == 0.0091);
   ck_assert(s->period == 0.002 && s->velocity == ETHD_VELOCITY_LSQ && s->velocity_p[0] == 9);
   ck_assert(s->fit == ETHD_FIT_ROBUST && s->filter == ETHD_FILTER_CV);
@@ -162,7 +162,7 @@ START_TEST(test_transition) {
   s = c->setup;
   ethd_setup before = s;
   ck_assert_int_eq(ethd_config_transition(c, "kelvin-voigt", &s, message), ETHD_E_UNKNOWN);
-  ck_assert_str_eq(message, "transition.law: found \"kelvin-voigt\", abrupt, smooth, offset is allowed");
+  ck_assert_str_eq(message, "transition.law: found \"kelvin-voigt\", abrupt, smooth, offset, predictive is allowed");
   ck_assert(memcmp(&before, &s, sizeof s) == 0);
   ethd_config_free(c);
 }
@@ -181,7 +181,6 @@ START_TEST(test_set) {
                                            {"device.driver", "a"},
                                            {"device.x", "a"},
                                            {"transition.preset", "paper"},
-                                           {"arm.mass_x", "1"},
                                            {"k_e", "1"},
                                            {".", "1"},
                                            {"", "1"},

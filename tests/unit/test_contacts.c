@@ -89,8 +89,9 @@ static ethd_status saying_step(const double *p, void *state, const ethd_contact 
 }
 
 static const ethd_transition_law saying = {
-    {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 0, "saying", "says it all", NULL, 0, NULL, NULL},
-    saying_step};
+    .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 0, "saying", "says it all", NULL, 0, NULL, NULL},
+    .step = saying_step,
+};
 
 START_TEST(test_rulings_together) {
   for (int swapped = 0; swapped < 2; swapped++) { /* whichever is the deeper */
@@ -237,9 +238,11 @@ static ethd_status lingering_step(const double *p, void *state, const ethd_conta
   return ETHD_OK;
 }
 
-static const ethd_transition_law lingering = {{sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, sizeof(double),
-                                               "lingering", "lives 20 ticks", NULL, 0, NULL, NULL},
-                                              lingering_step};
+static const ethd_transition_law lingering = {
+    .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, sizeof(double), "lingering", "lives 20 ticks", NULL, 0,
+            NULL, NULL},
+    .step = lingering_step,
+};
 
 START_TEST(test_contact_lives_out_of_reach) {
   rig r;

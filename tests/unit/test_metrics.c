@@ -222,6 +222,48 @@ START_TEST(test_start_close_to_the_wall) {
 }
 END_TEST
 
+/* ---- by the finger ---- */
+
+/* The hand goes at 0.4 m/s through the touch plane at tick 50; the finger touches at `touch`, when the ring is `depth`
+   behind the wall at `v`. The ring never meets the wall by the controller. */
+static ethd__metrics by_finger(int touch, double depth, double v, double eps) {
+  for (int i = 0; i < COUNT; i++) {
+    double s = rule.seen + 0.4 * 1e-3 * (i - 49.5);
+    truth[i].hand[0] = truth[i].finger[0] = -s;
+    truth[i].ring[0] = -(rule.meet + (i < touch ? -0.02 : depth));
+    truth[i].ring_v[0] = i < touch ? -0.4 : -v;
+    truth[i].pad = i >= touch ? 1e-5 : -1e-3;
+    trace[i].state = i >= touch + 5 ? ETHD_VO : ETHD_TRANSPARENT;
+    trace[i].eps = i == touch + 60 ? eps : 1;
+    trace[i].d_re = 0.001;
+  }
+  return measure();
+}
+
+START_TEST(test_by_finger) {
+  rule.validity = ETHD_TAP_BY_FINGER;
+  rule.speed = 0.4, rule.band = 0.08, rule.seen = -0.245;
+  ethd__metrics m = by_finger(60, -0.2e-3, 0.01, 0.0012);
+  ck_assert_int_eq(m.reason, ETHD_TAP_OK);
+  ck_assert_double_eq_tol(m.v_hand, 0.4, 1e-9);
+  ck_assert_double_eq_tol(m.touch_depth, -0.2e-3, 1e-12);
+  ck_assert(m.eps_felt == 0.0012 && fabs(m.v_of - 0.01) < 1e-12 && isnan(m.v_rvo));
+  ck_assert_int_eq(by_finger(60, -0.2e-3, 0.03, 0).reason, ETHD_TAP_EARLY_CONTACT); /* near, but it moves */
+  ck_assert_int_eq(by_finger(60, -0.4e-3, 0.01, 0).reason, ETHD_TAP_EARLY_CONTACT); /* it stands too far off */
+  ck_assert_int_eq(by_finger(60, 0.1e-3, 0.3, 0).reason, ETHD_TAP_OK);              /* behind the wall */
+  rule.speed = 0.5;
+  ck_assert_int_eq(by_finger(60, 0, 0, 0).reason, ETHD_TAP_TOO_SLOW);
+  rule.speed = 0.3;
+  ck_assert_int_eq(by_finger(60, 0, 0, 0).reason, ETHD_TAP_TOO_FAST);
+  rule.speed = 0.4;
+  ck_assert_int_eq(by_finger(1000, 0, 0, 0).reason, ETHD_TAP_NO_CONTACT);
+  rule.validity = ETHD_TAP_BY_PAPER; /* for the paper, that ring never met the wall */
+  ck_assert_int_eq(by_finger(60, 0.1e-3, 0.3, 0).reason, ETHD_TAP_NO_CONTACT);
+  rule.validity = ETHD_TAP_BY_FINGER, rule.carried = true; /* a device: the finger's own speed before the touch */
+  ck_assert_double_eq_tol(by_finger(60, 0, 0, 0).v_hand, 0.4, 1e-9);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("metrics");
   TCase *all = tcase_create("all");
@@ -242,6 +284,7 @@ int main(void) {
   tcase_add_test(all, test_peak_force);
   tcase_add_test(all, test_start_in_the_wall);
   tcase_add_test(all, test_start_close_to_the_wall);
+  tcase_add_test(all, test_by_finger);
   suite_add_tcase(suite, all);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_ENV);

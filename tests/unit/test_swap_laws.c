@@ -11,8 +11,8 @@ static const ethd_trace *swap_to(rig *r, const ethd_transition_law *law, const m
   return rig_step(r, m);
 }
 
-/* Into VO-B inside the wall: braking, even at rest; then one arrow a tick as ever. Out of it: eps is
-   forgotten and comes not back. */
+/* Into VO-B inside the wall: a ring at rest keeps the wall that it stands in, a moving one is braked; then one arrow a
+   tick as ever. Out of it eps is forgotten and doesn't come back. */
 START_TEST(test_into_offset_and_out) {
   rig r;
   rig_open(&r, RIG_WALL);
@@ -21,13 +21,19 @@ START_TEST(test_into_offset_and_out) {
   motion m = rig_at(-0.002, 0, 0);
   ck_assert_int_eq(rig_step(&r, &m)->state, ETHD_VO);
   const ethd_trace *t = swap_to(&r, &ethd_transition_offset, &m);
-  ck_assert(t->state == ETHD_BRAKING && t->eps == 0);
+  ck_assert(t->state == ETHD_VO && t->eps == 0 && fabs(t->fe[0] - 5) < 1e-10);
+  swap_to(&r, &ethd_transition_smooth, &m);
+  m = rig_at(-0.002, 0.1, 0);
+  rig_step(&r, &m);
+  t = swap_to(&r, &ethd_transition_offset, &m);
+  ck_assert(t->state == ETHD_BRAKING && t->eps == 0 && fabs(t->fd[0] - 10) < 1e-10);
+  m = rig_at(-0.002, 0, 0);
   t = rig_step(&r, &m);
   ck_assert(t->state == ETHD_VO && fabs(t->eps - 0.002) < 1e-15);
   t = swap_to(&r, &ethd_transition_smooth, &m);
   ck_assert(t->state == ETHD_VO && t->eps == 0 && fabs(t->fe[0] - 5) < 1e-10);
   t = swap_to(&r, &ethd_transition_offset, &m);
-  ck_assert(t->state == ETHD_BRAKING && t->eps == 0);
+  ck_assert(t->state == ETHD_VO && t->eps == 0);
   /* outside of the wall it starts transparent */
   t = swap_to(&r, &ethd_transition_abrupt, &m);
   m = rig_at(0.001, 0.1, 0);

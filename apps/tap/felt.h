@@ -1,0 +1,26 @@
+/* What the finger did and felt, whatever the law: no law's own idea of a meeting is used.
+
+        hand's path      touch plane                 depth   how far the ring is behind the wall at the touch
+          o-----------------|-->  v_hand             early   touched before the ring was behind the wall, or within
+       ring  ( o  )         |//// wall                       ETHD_TAP_NEAR of it and slower than ETHD_TAP_STILL */
+#ifndef ETHD_TAP_FELT_H
+#define ETHD_TAP_FELT_H
+
+#include "tap/metrics.h"
+
+#define ETHD_TAP_FELT 0.06    /* s after the touch at which the wall's offset counts as felt */
+#define ETHD_TAP_CARRIED 0.02 /* s before the touch over which a device's finger says how it goes on */
+#define ETHD_TAP_NEAR 0.3e-3  /* m */
+#define ETHD_TAP_STILL 0.02   /* m/s: the paper's v_th */
+
+typedef struct ethd__felt {
+  double v_hand; /* m/s, as the hand's own path crosses the plane at which a finger touches the wall; NaN: it doesn't */
+  double depth;  /* m, of the true ring at the touch; NaN: no touch */
+  double eps;    /* m: the wall's offset ETHD_TAP_FELT after it; NaN: no wall came */
+  bool early;    /* true without a touch */
+} ethd__felt;
+
+/* begin: the tap's first tick; touch: the pad's first from there on, rows->count: none. */
+ethd__felt ethd__felt_of(const ethd__rows *rows, const ethd__rule *rule, size_t begin, size_t touch);
+
+#endif

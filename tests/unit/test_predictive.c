@@ -1,0 +1,337 @@
+/* The law that brakes before the wall: closed forms of its curve, what it does without facts, what it never does. */
+#include <math.h>
+#include <string.h>
+
+#include "unit/sim_rig.h"
+
+static double p[ETHD_PARAMS_MAX];
+
+static int param(const char *name) {
+  const ethd_law *law = &ethd_transition_predictive.law;
+  int i = ethd_params_find(law->params, law->param_count, name);
+  ck_assert_msg(i >= 0, "no parameter %s", name);
+  return i;
+}
+
+static void set_up(void) {
+  ethd_params_default(ethd_transition_predictive.law.params, ethd_transition_predictive.law.param_count, p);
+}
+
+static double memory[ETHD_MEMORY];
+
+static ethd_facts facts_of(double mass, double force, double friction) {
+  memset(memory, 0, sizeof memory);
+  return (ethd_facts){.mass = mass, .force = force, .friction = friction, .viscous = 0, .delay = 0, .lag = 0,
+                      .ring_radius = 0.012, .finger_radius = 0.0075, .finger_age = 0, .finger_a = NAN,
+                      .memory = memory};
+}
+
+static ethd_ruling rule(double *state, const ethd_contact *c) {
+  ethd_ruling r = {.beta = 1, .argument = c->d_fe};
+  ck_assert_int_eq(ethd_transition_predictive.step(p, state, c, &r), ETHD_OK);
+  ck_assert(r.beta >= 0 && r.beta <= 1 && r.share >= 0 && r.share <= 1 && isfinite(r.feed) && isfinite(r.offset));
+  return r;
+}
+
+/* A ring without friction under the law's force alone, exactly: moves, then measures. The finger is `lag` ahead and
+   goes on at `speed`. */
+typedef struct ride {
+  double d, v, finger, mass, force;
+  double state[ETHD_STATE_MAX / sizeof(double)];
+  ethd_facts facts;
+} ride;
+
+static ethd_contact contact_of(ride *x, double speed) {
+  return (ethd_contact){.point = {0.238, 0.25}, .n = {-1, 0}, .d_re = x->d, .d_fe = x->finger + 0.0045,
+                        .d_fr = x->finger, .v = x->v, .v_f = speed, .d_beta = 0.0025, .period = 1e-3,
+                        .facts = &x->facts};
+}
+
+static ethd_ruling tick(ride *x, double speed, double real_mass) {
+  ethd_contact c = contact_of(x, speed);
+  ethd_ruling r = rule(x->state, &c);
+  double force = r.feed - r.damping * x->v, a = force / real_mass;
+  x->facts.applied = force;
+  x->d -= x->v * 1e-3 + a * 1e-6 / 2;
+  x->v += a * 1e-3;
+  x->finger -= speed * 1e-3;
+  return r;
+}
+
+static ride ride_at(double speed, double mass, double force) {
+  ride x = {.d = 0.014, .v = speed, .finger = 0.013, .mass = mass, .force = force};
+  x.facts = facts_of(mass, force, 0);
+  return x;
+}
+
+/* Braking begins v^2/(2a) + d_l/2 before the place aimed at, a = effort F/m and d_l = a/rate^2, within a tick's way;
+   and the ring stands at that place. */
+START_TEST(test_curve) {
+  const double speeds[] = {0.1, 0.2, 0.4, 0.6};
+  double v = speeds[_i], mass = 0.12, force = 5, a = p[param("effort")] * force / mass, rate = p[param("rate")];
+  ride x = ride_at(v, mass, force);
+  double began = NAN;
+  for (int i = 0; i < 400 && !(fabs(x.v) < 1e-4); i++) {
+    double d = x.d;
+    if (tick(&x, isnan(began) ? v : 1e-3, mass).state == ETHD_BRAKING && isnan(began)) began = d;
+  }
+  double closed = v * v / (2 * a) + a / (rate * rate) / 2 - p[param("aim")];
+  if (rate * a / (rate * rate) > v) closed = v / rate - p[param("aim")]; /* within the linear end */
+  ck_assert_msg(began > closed - v * 1e-3 && began < closed + 1.5 * v * 1e-3, "begins at %g m, %g +- a tick", began, closed);
+  ck_assert_double_eq_tol(x.d, -p[param("aim")], 3e-5);
+}
+END_TEST
+
+/* v* = sqrt(2 a g): below it the ring stands before the finger is at the rim, above it it doesn't. */
+START_TEST(test_limit_speed) {
+  double mass = 0.12, force = 5, a = p[param("effort")] * force / mass, lag = 0.001, gap = 0.0045 - lag;
+  double limit = sqrt(2 * a * gap);
+  for (int above = 0; above < 2; above++) {
+    double v = limit * (above ? 1.15 : 0.85);
+    ride x = ride_at(v, mass, force);
+    x.finger = x.d - lag;
+    double rim = 0;
+    for (int i = 0; i < 100 && x.v > 0.02; i++) {
+      tick(&x, v, mass);
+      rim = x.finger - x.d + 0.0045; /* way between finger and rim, m */
+    }
+    ck_assert_msg(above ? rim < 0 : rim > 0, "%g m/s, v* %g: %g m left as the ring stands", v, limit, rim);
+  }
+}
+END_TEST
+
+/* The hold: pushed aside by a millimetre the ring comes back to where it was held, while no finger is there. */
+START_TEST(test_hold) {
+  ride x = ride_at(0.2, 0.12, 5);
+  for (int i = 0; i < 110; i++) tick(&x, i < 60 ? 0.2 : 1e-3, 0.12);
+  ck_assert_double_eq_tol(x.d, -p[param("aim")], 3e-5);
+  p[param("t_max")] = INFINITY;
+  x.d += 1e-3;
+  for (int i = 0; i < 40; i++) ck_assert_int_eq(tick(&x, 1e-3, 0.12).state, ETHD_BRAKING);
+  ck_assert_double_eq_tol(x.d, -p[param("aim")], 1e-4);
+}
+END_TEST
+
+/* A ring 30 % heavier than the facts say: after some brakings k = 1/1.3, and the facts are right after all. */
+START_TEST(test_learning) {
+  p[param("learn")] = 0.3;
+  double kept[ETHD_MEMORY] = {0};
+  for (int tap = 0; tap < 8; tap++) {
+    ride x = ride_at(0.4, 0.12, 5);
+    memcpy(memory, kept, sizeof kept);
+    for (int i = 0; i < 120; i++) tick(&x, i < 34 ? 0.4 : 1e-3, 1.3 * 0.12);
+    memcpy(kept, memory, sizeof kept);
+  }
+  ck_assert_double_eq_tol(kept[0] / kept[1], 1 / 1.3, 0.03);
+  p[param("learn")] = 0;
+  ride x = ride_at(0.4, 0.12, 5);
+  for (int i = 0; i < 120; i++) tick(&x, i < 34 ? 0.4 : 1e-3, 0.12);
+  for (size_t i = 0; i < ETHD_MEMORY; i++) ck_assert(memory[i] == 0); /* no learning unless it is asked for */
+}
+END_TEST
+
+/* Without facts, with any one of those it needs unknown, or without a finger, it is offset to the bit. */
+START_TEST(test_is_offset_when_blind) {
+  ethd_facts facts = facts_of(0.12, 5, 0.4);
+  const ethd_facts *given = &facts;
+  if (_i == 0) given = NULL;
+  if (_i == 1) facts.mass = NAN;
+  if (_i == 2) facts.force = INFINITY;
+  if (_i == 3) facts.force = 0;
+  if (_i == 4) facts.finger_age = NAN;
+  double a[ETHD_STATE_MAX / sizeof(double)] = {0}, b[ETHD_STATE_MAX / sizeof(double)] = {0}, q[ETHD_PARAMS_MAX];
+  ethd_params_default(ethd_transition_offset.law.params, ethd_transition_offset.law.param_count, q);
+  for (int i = 0; i < 400; i++) {
+    double w = 0.02 * i, d = 4e-3 * cos(w), v = 0.08 * sin(w);
+    ethd_contact c = {{0, 0}, {-1, 0}, d, d + 1e-3, d - 3e-3, v, v, 2.5e-3, 1e-3, 0, 0, 0, given};
+    ethd_ruling r = rule(a, &c), o = {.beta = 1, .argument = c.d_fe};
+    ck_assert_int_eq(ethd_transition_offset.step(q, b, &c, &o), ETHD_OK);
+    ck_assert(memcmp(&r, &o, sizeof r) == 0);
+  }
+}
+END_TEST
+
+/* Unknown friction and delay are none, not a reason to be blind. */
+START_TEST(test_unknown_friction) {
+  ride x = ride_at(0.3, 0.12, 5);
+  x.facts.friction = x.facts.viscous = x.facts.delay = NAN;
+  int braked = 0;
+  for (int i = 0; i < 46; i++) braked |= tick(&x, 0.3, 0.12).state == ETHD_BRAKING && x.d > 5e-4;
+  ck_assert(braked);
+}
+END_TEST
+
+/* Numbers of any kind: what it rules stays possible, and its force within what the guard lets through. */
+START_TEST(test_any_input) {
+  const double odd[] = {0, 1e-9, -1e-9, 1e-4, -1e-4, 3e-3, -3e-3, 0.05, -0.05, 1, -1, 1e3, -1e3};
+  enum { ODD = sizeof odd / sizeof *odd };
+  double state[ETHD_STATE_MAX / sizeof(double)] = {0};
+  unsigned seed = 12345u + (unsigned)_i;
+  for (int i = 0; i < 20000; i++) {
+    double x[8];
+    for (int k = 0; k < 8; k++) x[k] = odd[(seed = seed * 1664525u + 1013904223u) >> 8 & 0xffff ? (seed >> 8) % ODD : 0];
+    ethd_facts facts = facts_of(fabs(x[0]) + 1e-3, fabs(x[1]) + 1e-3, fabs(x[2]));
+    facts.applied = x[3];
+    facts.finger_age = fabs(x[4]);
+    ethd_contact c = {{0, 0}, {-1, 0}, x[5], x[5] + x[6], x[6], x[7], x[4], 2.5e-3, i % 97 ? 1e-3 : 0.5, 0, 0, 0,
+                      i % 13 ? &facts : NULL};
+    ethd_ruling r = rule(state, &c);
+    if (r.state == ETHD_BRAKING) ck_assert(fabs(r.feed) <= facts.force);
+    if (i % 501 == 0) memset(state, 0, sizeof state);
+  }
+}
+END_TEST
+
+/* ---- in the controller, on the simulated device ---- */
+
+/* Which scene, what of the finger, the device. Torque stays within its limit and no law fails. */
+typedef struct bad {
+  const char *scene;
+  int facts, finger, swap, body;
+} bad;
+
+static const bad cases[] = {
+    {RIG_WALL, 1, 1, 0, 0},                                      /* as it should be */
+    {RIG_WALL, 0, 1, 0, 0},                                      /* the device says nothing */
+    {RIG_WALL, 1, 0, 0, 0},                                      /* a finger that is never seen */
+    {NULL, 1, 1, 1, 0},                                          /* a wall appears inside the ring, and goes */
+    {RIG_WALL "halfplane 0 -1 -0.2385\n", 1, 1, 0, 0},           /* a corner */
+    {RIG_WALL "halfplane 0 1 0.262\n", 1, 1, 1, 0},              /* a narrow channel, and swaps in every state */
+    {"segment 0.238 0.1 0.238 0.4\n", 1, 1, 1, 0},               /* a thin wall */
+    {"# nothing\n", 1, 1, 0, 1},                                 /* a body that comes to meet the ring */
+};
+enum { CASES = sizeof cases / sizeof *cases };
+
+static const ethd_transition_law *const others[] = {&ethd_transition_offset, &ethd_transition_predictive,
+                                                    &ethd_transition_smooth, &ethd_transition_predictive,
+                                                    &ethd_transition_abrupt, &ethd_transition_predictive};
+
+START_TEST(test_bad_input) {
+  const bad *b = &cases[_i];
+  ethd_sim_def def = sim_def();
+  ethd_sim_tap tap = sim_tap();
+  ethd_sim *sim = sim_open(&def, &tap);
+  ethd_setup setup = ethd_setup_default();
+  ethd_control *control;
+  ethd_scene *scene = b->scene ? rig_scene(b->scene) : NULL, *wall = rig_scene(RIG_WALL),
+             *body = rig_scene("circle 0 0 0.02\n");
+  setup.scene = scene;
+  ethd_setup_transition(&setup, &ethd_transition_predictive);
+  setup.limits.torque = 1.3;
+  if (b->facts) setup.dynamics = ethd_plant_dynamics(&def.plant);
+  if (b->body) setup.bodies[0] = body;
+  ck_assert_int_eq(ethd_control_create(&setup, &control, NULL), ETHD_OK);
+  for (int i = 0; i < 600; i++) {
+    ethd_sense sense = sim_sense(sim);
+    ethd_command command;
+    ethd_trace trace;
+    if (!b->finger) sense.have &= ~(int64_t)(ETHD_HAVE_START | ETHD_HAVE_CENTRE);
+    if (b->body) {
+      sense.have |= ETHD_HAVE_BODY;
+      sense.bodies[0] = 0.19 + 2e-4 * i;
+      sense.bodies[1] = 0.25;
+      sense.bodies[3] = 0.2;
+    }
+    if (b->swap && i % 7 == 0) {
+      if (!b->scene) setup.scene = i % 14 ? wall : NULL;
+      if (b->scene) ethd_setup_transition(&setup, others[i / 7 % 6]);
+      (void)!ethd_control_post(control, &setup, NULL);
+    }
+    ethd_event event;
+    while (ethd_control_poll(control, &event) == ETHD_OK) ck_assert_msg(event.kind != ETHD_EVENT_FAULT || event.code == ETHD_FAULT_TORQUE, "fault %d at tick %d", event.code, i);
+    ck_assert_int_eq(ethd_control_step(control, &sense, &command, &trace), ETHD_OK);
+    ck_assert(fabs(command.torque[0]) <= 1.3 && fabs(command.torque[1]) <= 1.3);
+    ethd_sim_write(sim, &command);
+  }
+  ethd_control_destroy(control);
+  ethd_scene_destroy(scene);
+  ethd_scene_destroy(wall);
+  ethd_scene_destroy(body);
+  ethd_sim_destroy(sim);
+}
+END_TEST
+
+/* It asks in time: the contact is in the trace from the range on, and for no other law before d_beta. */
+START_TEST(test_range) {
+  rig r;
+  for (int looks = 0; looks < 2; looks++) {
+    rig_open(&r, RIG_WALL);
+    if (looks) ethd_setup_transition(&r.setup, &ethd_transition_predictive);
+    rig_start(&r);
+    motion m = rig_at(0.0149, 0.5, 0);
+    ck_assert_int_eq(rig_step(&r, &m)->contacts, looks);
+    m = rig_at(0.0151, 0.5, 0);
+    ck_assert_int_eq(rig_step(&r, &m)->contacts, 0);
+    m = rig_at(0.0071, 0.2, 0); /* slower: not so far */
+    ck_assert_int_eq(rig_step(&r, &m)->contacts, 0);
+    m = rig_at(0.0069, 0.2, 0);
+    ck_assert_int_eq(rig_step(&r, &m)->contacts, looks);
+    rig_close(&r);
+  }
+}
+END_TEST
+
+/* Facts in closed form: a serial and a parallel arm with the same links feel the same mass along any n. */
+typedef struct spy {
+  ethd_facts facts;
+} spy;
+static spy seen;
+
+static ethd_status look(const double *q, void *state, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
+  (void)q, (void)state, (void)out;
+  seen.facts = *c->facts;
+  return ETHD_OK;
+}
+static double far_range(const double *q, double speed) ETHD_RT { return (void)q, (void)speed, 0.1; }
+static const ethd_transition_law spying = {
+    .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, 0, "spy", "looks", NULL, 0, NULL, NULL},
+    .step = look,
+    .range = far_range,
+};
+
+START_TEST(test_facts) {
+  double mass[2];
+  for (int serial = 0; serial < 2; serial++) {
+    rig r;
+    rig_open(&r, _i ? "halfplane -0.6 -0.8 -0.33\n" : RIG_WALL);
+    r.setup.arm.mechanism = serial ? ETHD_ARM_SERIAL : ETHD_ARM_PARALLEL;
+    ethd_setup_transition(&r.setup, &spying);
+    r.setup.dynamics = (ethd_dynamics){{0.2, 0.3}, 0.4, 1.5, 2e-4};
+    r.setup.limits.torque = 1.25;
+    rig_start(&r);
+    motion m = {{0.25, 0.25}, {0, 0}, {0.25, 0.25}, {0, 0}};
+    rig_step(&r, &m);
+    mass[serial] = seen.facts.mass;
+    ck_assert(seen.facts.delay == 2e-4 && seen.facts.ring_radius == 0.012 && seen.facts.finger_age == 0);
+    ck_assert(isnan(seen.facts.finger_a));
+    if (!_i && !serial) { /* joint 1 alone moves x, by 0.25 m/rad */
+      ck_assert_double_eq_tol(seen.facts.force, 5, 1e-9);
+      ck_assert_double_eq_tol(seen.facts.friction, 0.4, 1e-9);
+      ck_assert_double_eq_tol(seen.facts.viscous, 1.5, 1e-9);
+    }
+    rig_close(&r);
+  }
+  /* 1/m = n_x^2/m_x + n_y^2/m_y, as link angles of 90 and 0 deg part x and y */
+  double expected = _i ? 1 / (0.36 / 0.2 + 0.64 / 0.3) : 0.2;
+  ck_assert_double_eq_tol(mass[0], expected, 1e-9);
+  ck_assert_double_eq_tol(mass[1], expected, 1e-9);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("predictive");
+  TCase *all = tcase_create("all");
+  tcase_add_checked_fixture(all, set_up, NULL);
+  tcase_add_loop_test(all, test_curve, 0, 4);
+  tcase_add_test(all, test_limit_speed);
+  tcase_add_test(all, test_hold);
+  tcase_add_test(all, test_learning);
+  tcase_add_loop_test(all, test_is_offset_when_blind, 0, 5);
+  tcase_add_test(all, test_unknown_friction);
+  tcase_add_loop_test(all, test_any_input, 0, 4);
+  tcase_add_loop_test(all, test_bad_input, 0, CASES);
+  tcase_add_test(all, test_range);
+  tcase_add_loop_test(all, test_facts, 0, 2);
+  suite_add_tcase(suite, all);
+  return rig_run(suite);
+}
