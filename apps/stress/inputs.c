@@ -71,13 +71,14 @@ static ethd_control *controller(const ethd_scene *scene, ethd_filter_method filt
 
 /* ---- what the contract says ---- */
 
-static bool bad(const double *v) { return !isfinite(v[0]) || !isfinite(v[1]); }
+static bool bad(const double *v, double most) { return !(fabs(v[0]) <= most && fabs(v[1]) <= most); }
 
 static bool is_input_fault(const ethd_sense *s) {
   int64_t have = s->have;
-  return bad(s->q) || ((have & ETHD_HAVE_DQ) && bad(s->dq)) ||
-         ((have & (ETHD_HAVE_FINGER | ETHD_HAVE_START)) && bad(s->finger)) ||
-         ((have & ETHD_HAVE_FINGER) && bad(s->finger_v)) || ((have & ETHD_HAVE_RING) && bad(s->ring));
+  return bad(s->q, ETHD_SENSE_ANGLE_MAX) || ((have & ETHD_HAVE_DQ) && bad(s->dq, ETHD_SENSE_SPEED_MAX)) ||
+         ((have & (ETHD_HAVE_FINGER | ETHD_HAVE_START)) && bad(s->finger, ETHD_SENSE_LENGTH_MAX)) ||
+         ((have & ETHD_HAVE_FINGER) && bad(s->finger_v, ETHD_SENSE_SPEED_MAX)) ||
+         ((have & ETHD_HAVE_RING) && bad(s->ring, ETHD_SENSE_LENGTH_MAX));
 }
 
 typedef struct tally {

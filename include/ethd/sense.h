@@ -15,6 +15,12 @@ ETHD_BEGIN_DECLS
 
 #define ETHD_BODIES_MAX 4 /* scenes that move */
 
+/* A sense whose numbers are beyond these, or aren't finite, is refused: row INPUT of the fault table. No mechanism
+   gets there, and what is smaller can't overflow in what a tick works out. */
+#define ETHD_SENSE_ANGLE_MAX 6.2831853071795865e6 /* rad: a million turns */
+#define ETHD_SENSE_SPEED_MAX 1e6                  /* rad/s, m/s */
+#define ETHD_SENSE_LENGTH_MAX 1e6                 /* m */
+
 /* What the sense holds, as bits of `have`. */
 enum {
   ETHD_HAVE_DQ = 1,     /* dq: used as it is, else the setup's velocity estimator works on q */

@@ -119,8 +119,7 @@ static void follow(const view *from, const ethd__slot *slot, int i, ethd__candid
 static bool continues(const ethd__slot *slot, const ethd__candidate *k) ETHD_RT {
   /* a thin wall's normal is the one on whose side the contact began */
   double side = slot->side != 0 && k->touch.side == -slot->side ? -1 : 1;
-  return k->slot < 0 && k->place == slot->place &&
-         ethd_vec_norm(ethd_vec_sub(k->local, slot->point)) <= SAME_PLACE &&
+  return k->slot < 0 && k->place == slot->place && ethd_vec_norm(ethd_vec_sub(k->local, slot->point)) <= SAME_PLACE &&
          ethd_vec_norm(ethd_vec_sub(ethd_vec_scale(side, k->touch.n), slot->past.n)) <= SAME_PLACE;
 }
 

@@ -74,13 +74,11 @@ static ethd_status fit(const ethd__tick *t, ethd_finger *out) ETHD_RT {
   return ethd__fit_moving(&plan->fit, t->sense->rays, plan->setup.ray_lag, relative_velocity(t), out);
 }
 
-#define CENTRE_MAX 1e6 /* m: no reading of a ring */
-
 /* The reading of this tick, relative to the ring; false: it isn't usable. */
 static bool reading(const ethd__tick *t, ethd_vec *out) ETHD_RT {
   if (t->sense->have & ETHD_HAVE_CENTRE) {
     *out = ethd_vec_of(t->sense->centre);
-    return fabs(out->x) <= CENTRE_MAX && fabs(out->y) <= CENTRE_MAX;
+    return fabs(out->x) <= ETHD_SENSE_LENGTH_MAX && fabs(out->y) <= ETHD_SENSE_LENGTH_MAX;
   }
   ethd_finger finger;
   if (fit(t, &finger) != ETHD_OK) return false;

@@ -25,17 +25,12 @@ static int64_t at_most(int64_t periods) ETHD_RT { return periods < GAP_MAX ? per
 
 /* ---- what is already wrong ---- */
 
-/* Beyond any mechanism; smaller numbers can't overflow in what follows. */
-#define ANGLE_MAX 6.2831853071795865e6 /* rad: a million turns */
-#define SPEED_MAX 1e6                  /* rad/s, m/s */
-#define LENGTH_MAX 1e6                 /* m */
-
 /* NaN fails. */
 static bool within(const double v[2], double most) ETHD_RT { return fabs(v[0]) <= most && fabs(v[1]) <= most; }
 
 static bool pose_is_possible(const double pose[6]) ETHD_RT {
-  return within(pose, LENGTH_MAX) && fabs(pose[2]) <= ANGLE_MAX && within(pose + 3, SPEED_MAX) &&
-         fabs(pose[5]) <= SPEED_MAX;
+  return within(pose, ETHD_SENSE_LENGTH_MAX) && fabs(pose[2]) <= ETHD_SENSE_ANGLE_MAX &&
+         within(pose + 3, ETHD_SENSE_SPEED_MAX) && fabs(pose[5]) <= ETHD_SENSE_SPEED_MAX;
 }
 
 static bool bodies_are_possible(const ethd_sense *s) ETHD_RT {
@@ -47,14 +42,14 @@ static bool bodies_are_possible(const ethd_sense *s) ETHD_RT {
 /* True: every number that will be used is possible. Else the ETHD_HAVE_* bit of what isn't, 0 for q. */
 static bool input_is_possible(const ethd_sense *s, double *which) ETHD_RT {
   *which = 0;
-  if (!within(s->q, ANGLE_MAX)) return false;
+  if (!within(s->q, ETHD_SENSE_ANGLE_MAX)) return false;
   *which = ETHD_HAVE_DQ;
-  if ((s->have & ETHD_HAVE_DQ) && !within(s->dq, SPEED_MAX)) return false;
+  if ((s->have & ETHD_HAVE_DQ) && !within(s->dq, ETHD_SENSE_SPEED_MAX)) return false;
   *which = ETHD_HAVE_FINGER;
-  if ((s->have & (ETHD_HAVE_FINGER | ETHD_HAVE_START)) && !within(s->finger, LENGTH_MAX)) return false;
-  if ((s->have & ETHD_HAVE_FINGER) && !within(s->finger_v, SPEED_MAX)) return false;
+  if ((s->have & (ETHD_HAVE_FINGER | ETHD_HAVE_START)) && !within(s->finger, ETHD_SENSE_LENGTH_MAX)) return false;
+  if ((s->have & ETHD_HAVE_FINGER) && !within(s->finger_v, ETHD_SENSE_SPEED_MAX)) return false;
   *which = ETHD_HAVE_RING;
-  if ((s->have & ETHD_HAVE_RING) && !within(s->ring, LENGTH_MAX)) return false;
+  if ((s->have & ETHD_HAVE_RING) && !within(s->ring, ETHD_SENSE_LENGTH_MAX)) return false;
   *which = ETHD_HAVE_BODY;
   return !(s->have & ETHD__HAVE_BODIES) || bodies_are_possible(s);
 }
