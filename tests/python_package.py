@@ -70,6 +70,11 @@ refuses("not a key of kelvin-voigt", lambda: c.post({"contact.k": 3}))
 refuses("contact.law: found 'rubber', kelvin-voigt, spring, hunt-crossley are allowed", lambda: c.post({"contact.law": "rubber"}))
 refuses("/nowhere.ini: No such file", lambda: ethd.Controller("/nowhere.ini"))
 refuses("configuration:2: contact.k_e", lambda: ethd.Controller("[contact]\nk_e = fast\n"))
+with open(folder + "/run/config.ini", "a") as file:
+    file.write("\n[plugins]\nfile = somebodys.so\n")
+refuses("plug", lambda: ethd.read(folder + "/run").controller())
+refuses("plug", lambda: ethd.read(folder + "/run").verify())
+refuses("somebodys.so", lambda: ethd.read(folder + "/run", plugins=True).controller())
 refuses("no recording there", lambda: ethd.read(folder), FileNotFoundError)
 refuses("at least the", lambda: c.step(np.zeros(3)), ValueError)
 sense["q"] = np.nan

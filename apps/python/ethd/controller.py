@@ -54,14 +54,15 @@ class Event(NamedTuple):
 class Config:
     """A configuration that was read; owns its scene."""
 
-    def __init__(self, source: Optional[Path]):
+    def __init__(self, source: Optional[Path], plugins: bool = True):
         made, message = ffi.new("ethd_config **"), text()
         path = os.fspath(source) if source is not None else None
         if path is not None and "\n" in path:
             data = path.encode()
             status = lib.ethd_config_parse(data, len(data), b"configuration", os.getcwd().encode(), made, message)
         else:
-            status = lib.ethd_config_load(os.fsencode(path) if path is not None else ffi.NULL, made, message)
+            load = lib.ethd_config_load if plugins else lib.ethd_config_load_received
+            status = load(os.fsencode(path) if path is not None else ffi.NULL, made, message)
         check(status, message)
         self.c = ffi.gc(made[0], lib.ethd_config_free)
 
@@ -69,11 +70,12 @@ class Config:
 class Controller:
     """A controller for a configuration: a file's path, the text itself (of several lines), or None for all defaults.
 
-    Relative paths in a file start at its folder. Nothing of it is realtime.
+    Relative paths in a file start at its folder. Nothing of it is realtime. With plugins=False a configuration that names
+    plug-ins is refused: they are programs that a folder of somebody else's brings along.
     """
 
-    def __init__(self, config: Optional[Path] = None):
-        self._config = Config(config)
+    def __init__(self, config: Optional[Path] = None, plugins: bool = True):
+        self._config = Config(config, plugins)
         self._setup = ffi.new("ethd_setup *", self._config.c.setup)
         self._command = ffi.new("ethd_command *")
         self._kept: List[Any] = [self._config]  # configurations whose scenes may still be used

@@ -23,8 +23,9 @@ class RecordedEvent(NamedTuple):
 class Recording:
     """A recording's folder. `tick` is mapped from its file, not copied; what it hasn't got is None."""
 
-    def __init__(self, folder: str):
+    def __init__(self, folder: str, plugins: bool = False):
         self.folder = folder
+        self._plugins = plugins
         self.tick: NDArray[Any] = np.load(os.path.join(folder, "tick.npy"), mmap_mode="r")
         self.truth: Optional[NDArray[Any]] = self._array("truth.npy")
         self.taps: Optional[NDArray[Any]] = self._table("taps.csv")
@@ -51,13 +52,13 @@ class Recording:
 
     def controller(self) -> Controller:
         """A controller set up as the recording began: its configuration, then the events before row 0."""
-        c = Controller(os.path.join(self.folder, "config.ini"))
+        c = Controller(os.path.join(self.folder, "config.ini"), self._plugins)
         _Replay(c).before([e for e in self.events if e.row == 0], first=True)
         return c
 
     def replay(self) -> Iterator[Tuple[np.void, Step]]:
         """Each recorded row with what the library gives for it now, the recording's events taken at their rows."""
-        c = Controller(os.path.join(self.folder, "config.ini"))
+        c = Controller(os.path.join(self.folder, "config.ini"), self._plugins)
         replay, rows = _Replay(c), self._by_row()
         for i in range(len(self.tick)):
             if i == 0 or i in rows:
@@ -74,7 +75,7 @@ class Recording:
     def verify(self) -> str:
         """Replays the folder within the library; its sentence. Error: the first tick and field that differ."""
         message = text()
-        check(lib.ethd_recording_verify(os.fsencode(self.folder), message), message)
+        check(lib.ethd_recording_verify(os.fsencode(self.folder), self._plugins, message), message)
         return str(ffi.string(message).decode())
 
 
@@ -115,9 +116,12 @@ class _Replay:
         return ("warm" if e.detail == "enabled" else "fresh") if e.kind == "start" else kinds.get(e.kind, "")
 
 
-def read(folder: Union[str, "os.PathLike[str]"]) -> Recording:
-    """A recording: .tick (structured array), .events, .config, .truth and .taps where there are any."""
+def read(folder: Union[str, "os.PathLike[str]"], plugins: bool = False) -> Recording:
+    """A recording: .tick (structured array), .events, .config, .truth and .taps where there are any.
+
+    With plugins=True the plug-ins that it names are loaded for its controllers: they are programs that run with your rights.
+    """
     path = os.fspath(folder)
     if not os.path.exists(os.path.join(path, "tick.npy")):
         raise FileNotFoundError(f"{path}: no recording there: it has no tick.npy")
-    return Recording(path)
+    return Recording(path, plugins)
