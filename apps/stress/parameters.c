@@ -194,7 +194,7 @@ static void run(ethd__stress_log *log) {
       ethd_setup_filter(&base, (ethd_filter_method)f);
       ethd_setup_fit(&base, (ethd_fit_method)((v + f) % ETHD_FIT_COUNT));
       ethd_setup_contact(&base, contacts[(v + f) % 3]);
-      ethd_setup_transition(&base, transitions[v % 3 == 0 ? 0 : (v + 2 * f) % 3]);
+      ethd_setup_transition(&base, transitions[v % 3 == 0 ? 0 : (v + 2 * f) % TRANSITIONS]);
       pairs(&base, ticks, &t);
     }
   ethd__stress_within(log, "setups", (double)t.refused, 0, 0, "setups refused of those tried");
