@@ -38,7 +38,16 @@ static const char doc[] =
     "  ethd-tap --finger motion/avraham_free_mit/avraham_ND_s02_be38_free.csv --speed high,0.3 --record taps\n"
     "Eight recorded movements come with the programs, in motion: a FILE.csv that isn't there is looked for among them.";
 
-enum { OPTION_SCALE = 256, OPTION_TRACE, OPTION_RECORD, OPTION_CSV, OPTION_FORCE, OPTION_VALIDITY, OPTION_LEARN, OPTION_SET };
+enum {
+  OPTION_SCALE = 256,
+  OPTION_TRACE,
+  OPTION_RECORD,
+  OPTION_CSV,
+  OPTION_FORCE,
+  OPTION_VALIDITY,
+  OPTION_LEARN,
+  OPTION_SET
+};
 
 static const struct argp_option options[] = {
     {"config", 'c', "C.ini", 0, "the controller's configuration (default: the plant's own)", 0},

@@ -25,8 +25,7 @@ static void call_tracking(void *data) {
   double tau[2] = {0, 0}, sum = 0, state[ETHD_STATE_MAX / 8] = {0};
   for (int k = 0; k < ETHD__TAP_TICKS; k++) {
     const double *j = c->poses[k].j_inv;
-    ethd_tracking_in in = {
-        {j[0] * 1e-3, j[2] * 1e-3}, {j[1] * 1e-2, j[3] * 1e-2}, {1e-3, 0}, {0, 1e-2}, 1e-3, {0, 0}};
+    ethd_tracking_in in = {{j[0] * 1e-3, j[2] * 1e-3}, {j[1] * 1e-2, j[3] * 1e-2}, {1e-3, 0}, {0, 1e-2}, 1e-3, {0, 0}};
     (void)!c->setup.tracking->step(c->setup.tracking_p, state, &in, tau);
     sum += tau[0];
   }

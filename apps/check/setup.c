@@ -102,8 +102,8 @@ void ethd__report_setup(const ethd_config *config) {
   static const struct {
     const char *section;
     void (*print)(const ethd_config *config);
-  } besides[] = {{"finger", difference}, {"limits", other_limits},
-                 {"scene", scene}, {"device", device},     {"plugins", plugins}};
+  } besides[] = {
+      {"finger", difference}, {"limits", other_limits}, {"scene", scene}, {"device", device}, {"plugins", plugins}};
   for (int i = 0; i < ETHD__SECTIONS; i++) {
     const char *name = ethd__sections[i].name;
     section(config, name);

@@ -79,7 +79,8 @@ static int looks_ahead(const ethd__subject *s, int axis) {
   if (!ETHD_LAW_HAS(setup->transition, range)) return 0;
   for (int i = 0; i < 2; i++) {
     double v = speeds[i], needed = v * v / (2 * ethd__stop_deceleration(&stop));
-    double asked = fmax(setup->transition->range(setup->transition_p, v), setup->ring_radius - setup->finger_radius_max);
+    double asked =
+        fmax(setup->transition->range(setup->transition_p, v), setup->ring_radius - setup->finger_radius_max);
     printf("  looks ahead, %c         at %.1f m/s: asked %.3g mm before the wall, v^2/(2a) = %.3g mm: %s\n", 'x' + axis,
            v, 1e3 * asked, 1e3 * needed, asked > needed ? "in time" : "TOO LATE, raise transition.range");
     short_of += !(asked > needed);

@@ -171,9 +171,18 @@ void ethd__metrics_of(const ethd__rows *rows, const ethd__rule *rule, ethd__metr
   bool by_finger = rule->validity == ETHD_TAP_BY_FINGER;
   size_t touch = by_finger ? first : touch_from(rows, meeting), sight = sight_from(rows, rule, begin);
   const ethd__felt felt = ethd__felt_of(rows, rule, begin, first);
-  *out = (ethd__metrics){.v_rvo = NAN, .v_of = NAN, .d_max = NAN, .v_rmin = NAN, .delta_s = NAN,
-                         .eps = NAN, .t_rvo = NAN, .t_of = NAN, .t_seen = NAN,
-                         .v_hand = felt.v_hand, .touch_depth = felt.depth, .eps_felt = felt.eps,
+  *out = (ethd__metrics){.v_rvo = NAN,
+                         .v_of = NAN,
+                         .d_max = NAN,
+                         .v_rmin = NAN,
+                         .delta_s = NAN,
+                         .eps = NAN,
+                         .t_rvo = NAN,
+                         .t_of = NAN,
+                         .t_seen = NAN,
+                         .v_hand = felt.v_hand,
+                         .touch_depth = felt.depth,
+                         .eps_felt = felt.eps,
                          .peak_force = strongest(rows)};
   measure_meeting(rows, rule, meeting, out);
   measure_touch(rows, rule, touch, out);

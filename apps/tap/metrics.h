@@ -43,10 +43,10 @@ typedef struct ethd__rule {
   bool never_fast;    /* the recorded movement never was that fast: too slow */
   double seen;        /* m: the finger's centre along n as its pad's front is at the wall */
   ethd__validity validity;
-  bool carried;       /* a device's tap: nobody knows the hand's path, the finger's speed before the touch stands for it */
-  double graze;       /* s: a tap whose pad touches for less in all is grazing; 0: none */
-  bool single;        /* a finger that leaves the wall by `lift` after its touch and comes back makes a */
-  double lift;        /* m: double tap */
+  bool carried; /* a device's tap: nobody knows the hand's path, the finger's speed before the touch stands for it */
+  double graze; /* s: a tap whose pad touches for less in all is grazing; 0: none */
+  bool single;  /* a finger that leaves the wall by `lift` after its touch and comes back makes a */
+  double lift;  /* m: double tap */
 } ethd__rule;
 
 /* Looks for t_r/vo tick by tick: all zeros, then every tick in turn. */

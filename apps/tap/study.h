@@ -58,9 +58,9 @@ typedef struct ethd__stage {
   ethd_setup setup;
   ethd_sim *sim;
   ethd_control *control;
-  ethd__rows rows; /* of the last tap */
+  ethd__rows rows;             /* of the last tap */
   double learned[ETHD_MEMORY]; /* by the law, as the last tap began */
-  double heat[2];  /* of the motors as it began, see ethd_control_heat */
+  double heat[2];              /* of the motors as it began, see ethd_control_heat */
   ethd_path_sample *samples;
 } ethd__stage;
 

@@ -18,7 +18,7 @@ typedef struct replay {
   ethd_trace *rows;
   size_t count, next; /* rows; next event */
   ethd_setup setup;
-  double heat[2]; /* of the motors, by the last event of that kind */
+  double heat[2];              /* of the motors, by the last event of that kind */
   double learned[ETHD_MEMORY]; /* by the law, likewise */
   ethd_control *control;
   char *message;

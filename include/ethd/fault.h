@@ -83,7 +83,7 @@ typedef enum ethd_reaction {
   X(34, APPLICATION, STOP, STOP, "100 ms", "the application is gone or told to end")                      \
   X(35, CLOCK, COUNT, STOP, "1 tick", "the clock jumped by more than 5 ms")                               \
   X(36, SET_POINT, ZERO, ZERO, "the sequence", "the drive still holds an old set-point")                  \
-  X(37, INPUT, ZERO, ZERO, "same tick", "a measurement isn't a possible number")                            \
+  X(37, INPUT, ZERO, ZERO, "same tick", "a measurement isn't a possible number")                          \
   X(38, LAW, ZERO, ZERO, "same tick", "a law reported a failure")
 
 typedef enum ethd_fault {

@@ -105,13 +105,13 @@ typedef struct ethd_facts {
 typedef struct ethd_contact {
   ethd_vec point, n;
   double d_re, d_fe, d_fr;
-  double v;       /* of the ring */
-  double v_f;     /* of the finger, likewise along n */
-  double d_beta;  /* R_r - R_f,max, m */
-  double period;  /* s since the last step */
-  double age;     /* s since this contact began to count */
-  int32_t object; /* number in its scene */
-  int32_t body;   /* 0: the scene that stands still, i: bodies[i - 1] of the setup */
+  double v;                /* of the ring */
+  double v_f;              /* of the finger, likewise along n */
+  double d_beta;           /* R_r - R_f,max, m */
+  double period;           /* s since the last step */
+  double age;              /* s since this contact began to count */
+  int32_t object;          /* number in its scene */
+  int32_t body;            /* 0: the scene that stands still, i: bodies[i - 1] of the setup */
   const ethd_facts *facts; /* NULL: the law doesn't look ahead */
 } ethd_contact;
 
@@ -171,7 +171,7 @@ typedef struct ethd_transition_law {
 #define ETHD_TRANSITION_LAW_MIN (offsetof(ethd_transition_law, step) + sizeof(void (*)(void)))
 
 /* The optional functions of a transition law of any size. [any, rt-safe] */
-#define ETHD_LAW_HAS(law_, field)                                                                              \
+#define ETHD_LAW_HAS(law_, field) \
   ((law_)->law.size >= offsetof(ethd_transition_law, field) + sizeof((law_)->field) && (law_)->field != NULL)
 
 /* ABI, size, kind, state, id, table and entry points of a law; one status each. [main] */

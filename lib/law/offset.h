@@ -7,10 +7,9 @@
 /* The first parameters of such a law, in this order. */
 enum { ETHD__B_D, ETHD__V_TH, ETHD__BETA_MIN, ETHD__EPS_MAX, ETHD__T_MAX, ETHD__OFFSET_COUNT };
 
-#define ETHD__OFFSET_PARAMS                                                                                  \
-  {"b_d", "Ns/m", 0, 1e4, 100, "damping while braking (B_d)"},                                               \
-      {"v_th", "m/s", 1e-6, 10, 0.020, "below this speed the ring stands still (v_th)"},                     \
-      ETHD__BETA_MIN_PARAM,                                                                                  \
+#define ETHD__OFFSET_PARAMS                                                                                    \
+  {"b_d", "Ns/m", 0, 1e4, 100, "damping while braking (B_d)"},                                                 \
+      {"v_th", "m/s", 1e-6, 10, 0.020, "below this speed the ring stands still (v_th)"}, ETHD__BETA_MIN_PARAM, \
       {"eps_max", "m", 0, (double)INFINITY, 0.006, "braking ends at this depth; inf: never, as in the paper"}, \
       {"t_max", "s", 0, (double)INFINITY, 0.050, "braking ends after this time; inf: never, as in the paper"}
 

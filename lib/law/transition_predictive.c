@@ -50,19 +50,19 @@ static const ethd_param params[COUNT] = {
 #define LEARN_END 5e-4 /* m: a braking is learnt from until the finger is so near */
 #define PRIOR 0.3e-3   /* m: way of the braking that stands for the facts */
 #define STRAYED 2e-3   /* m: the ring isn't where it was predicted: another surface, or ticks are missing */
-#define APPROACH 0.035  /* s before the wall at which it begins, within `range` */
+#define APPROACH 0.035 /* s before the wall at which it begins, within `range` */
 #define SLOW 0.05      /* m/s of the finger over which the approach comes in */
 #define STICTION 5e-3  /* m/s over which friction changes its sign */
 
-typedef struct state {
+typedef struct predictive_state {
   ethd__offset offset;
-  double started, d, v, w; /* the observer's: m to x_e, m/s, m/s^2 */
-  double ahead, time;      /* 1: brakes and holds; s since then */
-  double stood, eps;       /* 1: the ring has stood; in what depth, m, at least */
+  double started, d, v, w;                         /* the observer's: m to x_e, m/s, m/s^2 */
+  double ahead, time;                              /* 1: brakes and holds; s since then */
+  double stood, eps;                               /* 1: the ring has stood; in what depth, m, at least */
   double from, v_from, w_from, way, speed, learnt; /* of this braking, for k */
-} state;
+} predictive_state;
 
-_Static_assert(sizeof(state) <= ETHD_STATE_MAX, "state");
+_Static_assert(sizeof(predictive_state) <= ETHD_STATE_MAX, "state");
 
 static double least(double a, double b) ETHD_RT { return a < b ? a : b; }
 static double most(double a, double b) ETHD_RT { return a > b ? a : b; }
@@ -103,7 +103,7 @@ static double friction(const ability *m, double v) ETHD_RT {
 
 /* ---- where it is ---- */
 
-static void observe(const double *p, state *s, const ethd_contact *c, const ability *m) ETHD_RT {
+static void observe(const double *p, predictive_state *s, const ethd_contact *c, const ability *m) ETHD_RT {
   const double T = c->period, b = p[MEMORY], g = 1 - b;
   double model = (c->facts->applied - friction(m, s->v)) / m->mass, a = model + s->w;
   s->way += s->speed * T + model * T * T / 2;
@@ -135,13 +135,13 @@ static double curve(const ability *m, double d) ETHD_RT {
 }
 
 /* To the place aimed at, when this tick's force begins to act. */
-static double distance(const double *p, const state *s, const ethd_facts *f) ETHD_RT {
+static double distance(const double *p, const predictive_state *s, const ethd_facts *f) ETHD_RT {
   return s->d + p[AIM] - s->v * known(f->delay);
 }
 
 /* ---- learning ---- */
 
-static void learn(const double *p, state *s, const ethd_contact *c, double k) ETHD_RT {
+static void learn(const double *p, predictive_state *s, const ethd_contact *c, double k) ETHD_RT {
   double *memory = c->facts->memory, x = s->way / k;
   double y = s->from - c->d_re - s->v_from * s->time - s->w_from * s->time * s->time / 2;
   s->learnt = 1;
@@ -155,7 +155,7 @@ static void learn(const double *p, state *s, const ethd_contact *c, double k) ET
 
 /* ---- the three phases before the wall ---- */
 
-static void begin(state *s) ETHD_RT {
+static void begin(predictive_state *s) ETHD_RT {
   s->ahead = 1;
   s->time = s->stood = s->eps = s->learnt = s->way = s->speed = 0;
   s->from = s->d;
@@ -163,14 +163,14 @@ static void begin(state *s) ETHD_RT {
   s->w_from = s->w;
 }
 
-static int meets_curve(const double *p, const state *s, const ethd_contact *c, const ability *m) ETHD_RT {
+static bool meets_curve(const double *p, const predictive_state *s, const ethd_contact *c, const ability *m) ETHD_RT {
   double d = distance(p, s, c->facts) - s->v * c->period / 2;
   return s->v > 0 && c->v_f > 0 && s->v >= curve(m, d);
 }
 
 /* The finger's lead over the ring is brought down, by a shift, to what leaves the ring room to stop. */
-static void approach(const double *p, const state *s, const ethd_contact *c, const ability *m, ethd_ruling *out)
-    ETHD_RT {
+static void approach(const double *p, const predictive_state *s, const ethd_contact *c, const ability *m,
+                     ethd_ruling *out) ETHD_RT {
   const ethd_facts *f = c->facts;
   double late = c->v_f * f->finger_age, gap = f->ring_radius - f->finger_radius;
   double stop = c->v_f * c->v_f / (2 * m->a) + c->v_f * (known(f->delay) + c->period) + p[MARGIN];
@@ -180,7 +180,8 @@ static void approach(const double *p, const state *s, const ethd_contact *c, con
   out->shift = ethd_vec_scale(share * (late - lag), c->n);
 }
 
-static void brake(const double *p, const state *s, const ethd_contact *c, const ability *m, ethd_ruling *out) ETHD_RT {
+static void brake(const double *p, const predictive_state *s, const ethd_contact *c, const ability *m,
+                  ethd_ruling *out) ETHD_RT {
   double d = distance(p, s, c->facts), a = d > m->linear ? -m->a : -m->rate * s->v;
   a += m->rate * (curve(m, d) - s->v) - s->w;
   out->state = ETHD_BRAKING;
@@ -190,7 +191,7 @@ static void brake(const double *p, const state *s, const ethd_contact *c, const 
 }
 
 /* True: the wall takes over, where the ring has stood. The finger's push doesn't count. */
-static int is_over(const double *p, state *s, const ethd_contact *c, double k) ETHD_RT {
+static bool is_over(const double *p, predictive_state *s, const ethd_contact *c, double k) ETHD_RT {
   double left = clearance(c), depth = most(0, -c->d_re);
   int stands = fabs(s->v) < p[ETHD__V_TH];
   s->time += c->period;
@@ -207,7 +208,7 @@ static int is_over(const double *p, state *s, const ethd_contact *c, double k) E
 }
 
 static ethd_status step(const double *p, void *block, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
-  state *s = block;
+  predictive_state *s = block;
   if (!sees(c->facts)) {
     if (s->ahead != 0) ethd__offset_enter(&s->offset, c->d_re < 0 ? ETHD_BRAKING : ETHD_TRANSPARENT, 0);
     s->ahead = s->started = 0;
@@ -234,11 +235,11 @@ static ethd_status step(const double *p, void *block, const ethd_contact *c, eth
 static double range(const double *p, double speed) ETHD_RT { return least(p[RANGE], APPROACH * speed); }
 
 static void adopt(const double *p, void *block, const ethd_past *past) ETHD_RT {
-  ethd__offset_adopt(p, &((state *)block)->offset, past);
+  ethd__offset_adopt(p, &((predictive_state *)block)->offset, past);
 }
 
 const ethd_transition_law ethd_transition_predictive = {
-    .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, sizeof(state), "predictive",
+    .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, sizeof(predictive_state), "predictive",
             "brakes before the wall: the ring stands when the finger comes", params, COUNT, NULL, NULL},
     .step = step,
     .range = range,

@@ -51,8 +51,8 @@ static ethd_status track(const double *p, void *state, const ethd_tracking_in *i
 #define ROW(name) {name, "1", 0, 1e9, 0, "the number"}
 static const ethd_param params[] = {ROW("a"), ROW("b"), ROW("c"), ROW("d"), ROW("e"), ROW("f")};
 #define LAW(type, kind) {sizeof(type), ETHD_ABI, kind, 16, "same", "all the same number", params, 6, NULL, NULL}
-static const ethd_transition_law transitions[2] = {{LAW(ethd_transition_law, ETHD_TRANSITION), rule},
-                                                   {LAW(ethd_transition_law, ETHD_TRANSITION), rule}};
+static const ethd_transition_law transitions[2] = {{.law = LAW(ethd_transition_law, ETHD_TRANSITION), .step = rule},
+                                                   {.law = LAW(ethd_transition_law, ETHD_TRANSITION), .step = rule}};
 static const ethd_contact_law contact = {LAW(ethd_contact_law, ETHD_CONTACT), touch};
 static const ethd_tracking_law tracking = {LAW(ethd_tracking_law, ETHD_TRACKING), track};
 

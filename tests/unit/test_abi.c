@@ -133,7 +133,8 @@ _Static_assert(sizeof(ethd_sense) == 8 * (0 ETHD_SENSE_FIELDS(COUNT)), "sense");
 _Static_assert(sizeof(ethd_trace) == sizeof(ethd_sense) + 8 * (0 ETHD_TRACE_FIELDS(COUNT)), "trace");
 
 START_TEST(test_every_law) {
-  const char *const ids[] = {"pd", "kelvin-voigt", "spring", "hunt-crossley", "abrupt", "smooth", "offset", "predictive", NULL};
+  const char *const ids[] = {"pd",     "kelvin-voigt", "spring", "hunt-crossley", "abrupt", "smooth",
+                             "offset", "predictive",   NULL};
   ethd_error error;
   for (int i = 0; ids[i] || ethd_laws[i]; i++) {
     ck_assert(ids[i] && ethd_laws[i]);

@@ -239,8 +239,8 @@ static ethd_status lingering_step(const double *p, void *state, const ethd_conta
 }
 
 static const ethd_transition_law lingering = {
-    .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, sizeof(double), "lingering", "lives 20 ticks", NULL, 0,
-            NULL, NULL},
+    .law = {sizeof(ethd_transition_law), ETHD_ABI, ETHD_TRANSITION, sizeof(double), "lingering", "lives 20 ticks", NULL,
+            0, NULL, NULL},
     .step = lingering_step,
 };
 

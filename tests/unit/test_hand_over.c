@@ -102,8 +102,8 @@ START_TEST(test_laws_in_steady_press) {
   }
   int forgets = from == &ethd_transition_offset && (to == laws[0] || to == laws[1]);
   double most = forgets ? without + 1.5 * slope : 1.1 * fmax(without, slope) + 1e-9;
-  ck_assert_msg(with <= most, "%s -> %s: %.4f Nm a tick; %.4f without, fade %.4f",
-                from->law.id, to->law.id, with, without, slope);
+  ck_assert_msg(with <= most, "%s -> %s: %.4f Nm a tick; %.4f without, fade %.4f", from->law.id, to->law.id, with,
+                without, slope);
 }
 END_TEST
 

@@ -21,8 +21,16 @@ static double memory[ETHD_MEMORY];
 
 static ethd_facts facts_of(double mass, double force, double friction) {
   memset(memory, 0, sizeof memory);
-  return (ethd_facts){.mass = mass, .force = force, .friction = friction, .viscous = 0, .delay = 0, .lag = 0,
-                      .ring_radius = 0.012, .finger_radius = 0.0075, .finger_age = 0, .finger_a = NAN,
+  return (ethd_facts){.mass = mass,
+                      .force = force,
+                      .friction = friction,
+                      .viscous = 0,
+                      .delay = 0,
+                      .lag = 0,
+                      .ring_radius = 0.012,
+                      .finger_radius = 0.0075,
+                      .finger_age = 0,
+                      .finger_a = NAN,
                       .memory = memory};
 }
 
@@ -42,8 +50,15 @@ typedef struct ride {
 } ride;
 
 static ethd_contact contact_of(ride *x, double speed) {
-  return (ethd_contact){.point = {0.238, 0.25}, .n = {-1, 0}, .d_re = x->d, .d_fe = x->finger + 0.0045,
-                        .d_fr = x->finger, .v = x->v, .v_f = speed, .d_beta = 0.0025, .period = 1e-3,
+  return (ethd_contact){.point = {0.238, 0.25},
+                        .n = {-1, 0},
+                        .d_re = x->d,
+                        .d_fe = x->finger + 0.0045,
+                        .d_fr = x->finger,
+                        .v = x->v,
+                        .v_f = speed,
+                        .d_beta = 0.0025,
+                        .period = 1e-3,
                         .facts = &x->facts};
 }
 
@@ -77,7 +92,8 @@ START_TEST(test_curve) {
   }
   double closed = v * v / (2 * a) + a / (rate * rate) / 2 - p[param("aim")];
   if (rate * a / (rate * rate) > v) closed = v / rate - p[param("aim")]; /* within the linear end */
-  ck_assert_msg(began > closed - v * 1e-3 && began < closed + 1.5 * v * 1e-3, "begins at %g m, %g +- a tick", began, closed);
+  ck_assert_msg(began > closed - v * 1e-3 && began < closed + 1.5 * v * 1e-3, "begins at %g m, %g +- a tick", began,
+                closed);
   ck_assert_double_eq_tol(x.d, -p[param("aim")], 3e-5);
 }
 END_TEST
@@ -169,12 +185,13 @@ START_TEST(test_any_input) {
   unsigned seed = 12345u + (unsigned)_i;
   for (int i = 0; i < 20000; i++) {
     double x[8];
-    for (int k = 0; k < 8; k++) x[k] = odd[(seed = seed * 1664525u + 1013904223u) >> 8 & 0xffff ? (seed >> 8) % ODD : 0];
+    for (int k = 0; k < 8; k++)
+      x[k] = odd[(seed = seed * 1664525u + 1013904223u) >> 8 & 0xffff ? (seed >> 8) % ODD : 0];
     ethd_facts facts = facts_of(fabs(x[0]) + 1e-3, fabs(x[1]) + 1e-3, fabs(x[2]));
     facts.applied = x[3];
     facts.finger_age = fabs(x[4]);
-    ethd_contact c = {{0, 0}, {-1, 0}, x[5], x[5] + x[6], x[6], x[7], x[4], 2.5e-3, i % 97 ? 1e-3 : 0.5, 0, 0, 0,
-                      i % 13 ? &facts : NULL};
+    ethd_contact c = {{0, 0}, {-1, 0}, x[5], x[5] + x[6],           x[6], x[7], x[4], 2.5e-3, i % 97 ? 1e-3 : 0.5,
+                      0,      0,       0,    i % 13 ? &facts : NULL};
     ethd_ruling r = rule(state, &c);
     if (r.state == ETHD_BRAKING) ck_assert(fabs(r.feed) <= facts.force);
     if (i % 501 == 0) memset(state, 0, sizeof state);
@@ -191,14 +208,14 @@ typedef struct bad {
 } bad;
 
 static const bad cases[] = {
-    {RIG_WALL, 1, 1, 0, 0},                                      /* as it should be */
-    {RIG_WALL, 0, 1, 0, 0},                                      /* the device says nothing */
-    {RIG_WALL, 1, 0, 0, 0},                                      /* a finger that is never seen */
-    {NULL, 1, 1, 1, 0},                                          /* a wall appears inside the ring, and goes */
-    {RIG_WALL "halfplane 0 -1 -0.2385\n", 1, 1, 0, 0},           /* a corner */
-    {RIG_WALL "halfplane 0 1 0.262\n", 1, 1, 1, 0},              /* a narrow channel, and swaps in every state */
-    {"segment 0.238 0.1 0.238 0.4\n", 1, 1, 1, 0},               /* a thin wall */
-    {"# nothing\n", 1, 1, 0, 1},                                 /* a body that comes to meet the ring */
+    {RIG_WALL, 1, 1, 0, 0},                            /* as it should be */
+    {RIG_WALL, 0, 1, 0, 0},                            /* the device says nothing */
+    {RIG_WALL, 1, 0, 0, 0},                            /* a finger that is never seen */
+    {NULL, 1, 1, 1, 0},                                /* a wall appears inside the ring, and goes */
+    {RIG_WALL "halfplane 0 -1 -0.2385\n", 1, 1, 0, 0}, /* a corner */
+    {RIG_WALL "halfplane 0 1 0.262\n", 1, 1, 1, 0},    /* a narrow channel, and swaps in every state */
+    {"segment 0.238 0.1 0.238 0.4\n", 1, 1, 1, 0},     /* a thin wall */
+    {"# nothing\n", 1, 1, 0, 1},                       /* a body that comes to meet the ring */
 };
 enum { CASES = sizeof cases / sizeof *cases };
 
@@ -238,7 +255,9 @@ START_TEST(test_bad_input) {
       (void)!ethd_control_post(control, &setup, NULL);
     }
     ethd_event event;
-    while (ethd_control_poll(control, &event) == ETHD_OK) ck_assert_msg(event.kind != ETHD_EVENT_FAULT || event.code == ETHD_FAULT_TORQUE, "fault %d at tick %d", event.code, i);
+    while (ethd_control_poll(control, &event) == ETHD_OK)
+      ck_assert_msg(event.kind != ETHD_EVENT_FAULT || event.code == ETHD_FAULT_TORQUE, "fault %d at tick %d",
+                    event.code, i);
     ck_assert_int_eq(ethd_control_step(control, &sense, &command, &trace), ETHD_OK);
     ck_assert(fabs(command.torque[0]) <= 1.3 && fabs(command.torque[1]) <= 1.3);
     ethd_sim_write(sim, &command);
