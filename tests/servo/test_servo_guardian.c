@@ -2,6 +2,7 @@
    a drive without a watchdog, with the program killed, stopped, and ended in order. Times are asserted where
    ETHD_STRESS is set: a busy machine's processes wake when they wake. */
 #include <math.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -268,6 +269,8 @@ int main(void) {
   char path[64];
   Suite *suite = suite_create("servo_guardian");
   TCase *t = tcase_create("servo_guardian");
+  const struct sched_param first = {.sched_priority = 50};
+  if (getenv("ETHD_STRESS")) (void)!sched_setscheduler(0, SCHED_FIFO, &first); /* a drive has a processor of its own */
   signal(SIGPIPE, SIG_IGN); /* the drive answers to programs that were killed */
   if (!mkdtemp(folder)) return 1;
   snprintf(path, sizeof path, "%s/plant.map", folder);
