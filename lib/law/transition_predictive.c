@@ -1,5 +1,7 @@
 #include "law/offset.h"
 
+#include <stdbool.h>
+
 /* Brake before the wall: the ring stands in it, still, when the finger comes.
 
                    v >= f(d)                     stood, and the finger is at the rim
@@ -91,7 +93,7 @@ static ability ability_of(const double *p, const ethd_contact *c) ETHD_RT {
   return out;
 }
 
-static int sees(const ethd_facts *f) ETHD_RT {
+static bool sees(const ethd_facts *f) ETHD_RT {
   return f && f->mass > 0 && f->mass < (double)INFINITY && f->force > 0 && f->force < (double)INFINITY &&
          f->finger_age >= 0;
 }
@@ -201,10 +203,10 @@ static bool is_over(const double *p, predictive_state *s, const ethd_contact *c,
     s->stood = 1;
   }
   int behind = c->d_re - c->d_fr < RIM - (c->facts->ring_radius - c->facts->finger_radius);
-  if (!(left < RIM && s->stood != 0) && !(c->v_f < -p[ETHD__V_TH]) && !behind && s->time < p[ETHD__T_MAX]) return 0;
+  if (!(left < RIM && s->stood != 0) && !(c->v_f < -p[ETHD__V_TH]) && !behind && s->time < p[ETHD__T_MAX]) return false;
   ethd__offset_enter(&s->offset, ETHD_VO, s->stood != 0 ? s->eps : depth);
   s->ahead = 0;
-  return 1;
+  return true;
 }
 
 static ethd_status step(const double *p, void *block, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
