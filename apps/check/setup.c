@@ -49,9 +49,10 @@ static void numbers(const ethd_setup *setup, const ethd_setup_key *key) {
 static void value(const ethd_setup *setup, const ethd_setup_key *key) {
   char name[96];
   snprintf(name, sizeof name, "%s.%s", key->section, key->param.name);
-  if (isnan(key->param.def) && isnan(ethd_setup_get(setup, name))) return; /* not known */
   if (key->count > 1)
     numbers(setup, key);
+  else if (isnan(ethd_setup_get(setup, name)))
+    return; /* not known */
   else if (ethd_param_words(&key->param))
     choice(&key->param, ethd_setup_get(setup, name));
   else

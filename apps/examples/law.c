@@ -17,6 +17,6 @@ static ethd_status step(const double *p, void *state, const ethd_contact *contac
 }
 
 static const ethd_transition_law mine = {
-    {sizeof mine, ETHD_ABI, ETHD_TRANSITION, 0, "mine", "damped wall", params, 1, NULL, NULL}, step};
+    .law = {sizeof mine, ETHD_ABI, ETHD_TRANSITION, 0, "mine", "damped wall", params, 1, NULL, NULL}, .step = step};
 static const ethd_law *const laws[] = {&mine.law};
 const ethd_plugin_entry ethd_plugin = {sizeof ethd_plugin, ETHD_ABI, "mine", "1.0", laws, 1};

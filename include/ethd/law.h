@@ -158,8 +158,8 @@ typedef struct ethd_transition_law {
   /* `out` comes zeroed but for beta = 1 and argument = d_fe. [rt] */
   ethd_status (*step)(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) ETHD_RT;
   /* From here on optional, NULL: not needed; a shorter struct has none of it. */
-  /* How far ahead the law wants to be asked, m of d_re, at this speed of the ring, m/s. Not finite or below d_beta:
-     d_beta. Scenes are passed over by this distance, so ask for what you need. [rt] */
+  /* How far ahead the law wants to be asked, m of d_re, at this speed of the ring, m/s; d_beta is what counts where it
+     isn't finite or is less. Scenes are passed over by this distance, so ask for what you need. [rt] */
   double (*range)(const double *p, double speed) ETHD_RT;
   /* Takes over a live contact at a swap of laws: the state block has been reset. NULL: the contact begins anew. [rt] */
   void (*adopt)(const double *p, void *state, const ethd_past *past) ETHD_RT;

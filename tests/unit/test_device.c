@@ -162,7 +162,7 @@ START_TEST(test_undone) {
   ck_assert_str_eq(log_, "oaobcbca");
   ck_assert_str_eq(message, "refused");
   ck_assert_int_eq(try("a,b", "b.mute", NULL), ETHD_E_DEVICE);
-  ck_assert_str_eq(message, "device b: the device refused or failed");
+  ck_assert_str_eq(message, "device b: open: the device refused or failed");
 }
 END_TEST
 

@@ -110,8 +110,9 @@ START_TEST(test_scene_comes_back) {
 }
 END_TEST
 
-/* A new scene restarts its contacts, though the wall is the same: braking again. */
-START_TEST(test_new_scene_restarts_contacts) {
+/* A wall that stands where one stood goes on under the ring, whatever scene it is of; one that stands elsewhere is a
+   new contact: braking again. */
+START_TEST(test_new_wall_restarts_contacts) {
   rig r;
   rig_open(&r, RIG_WALL);
   rig_start(&r);
@@ -123,6 +124,11 @@ START_TEST(test_new_scene_restarts_contacts) {
   ck_assert_int_eq(rig_step(&r, &m)->state, ETHD_VO); /* the same scene: it stays */
   ethd_scene *old = r.scene;
   r.setup.scene = r.scene = rig_scene(RIG_WALL);
+  rig_post(&r);
+  ck_assert_int_eq(rig_step(&r, &m)->state, ETHD_VO);
+  ethd_scene_destroy(old);
+  old = r.scene;
+  r.setup.scene = r.scene = rig_scene("halfplane -1 0 -0.2385");
   rig_post(&r);
   ck_assert_int_eq(rig_step(&r, &m)->state, ETHD_BRAKING);
   ethd_scene_destroy(old);
@@ -373,7 +379,7 @@ int main(void) {
   tcase_add_test(t, test_refusal_changes_nothing);
   tcase_add_test(t, test_period_cannot_change);
   tcase_add_test(t, test_scene_comes_back);
-  tcase_add_test(t, test_new_scene_restarts_contacts);
+  tcase_add_test(t, test_new_wall_restarts_contacts);
   tcase_add_test(t, test_full_ring);
   tcase_add_test(t, test_ring_goes_round);
   tcase_add_test(t, test_reset);
