@@ -1,4 +1,4 @@
-# How wrong facts and sensors reach the finger: mean felt offset under `predictive` against what is off.
+# How wrong facts and sensors reach the finger: mean felt offset under predictive against what is off.
 #   gnuplot -e "in='off.csv'; out='off.png'" ahead-sensitivity.gp
 # in: what, value, low and high mm (first taps), low and high mm (after ten taps of learning), as apps/ahead.sh makes it.
 if (!exists("in") || !exists("out")) { print "ahead-sensitivity.gp: set in and out"; exit status 2 }

@@ -149,7 +149,7 @@ typedef struct ethd_past {
   double d_re, v; /* of the contact, m and m/s */
   double age;     /* s since it began to count */
   double since;   /* s since its state is what it is */
-  int32_t state;  /* of the last ruling: ETHD_TRANSPARENT, .. */
+  int32_t state;  /* of the last ruling: ETHD_TRANSPARENT or another */
   int32_t reserved;
 } ethd_past;
 
@@ -157,9 +157,9 @@ typedef struct ethd_transition_law {
   ethd_law law;
   /* `out` comes zeroed but for beta = 1 and argument = d_fe. [rt] */
   ethd_status (*step)(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) ETHD_RT;
-  /* From here on optional, NULL: not needed; a shorter struct has none of it. */
   /* How far ahead the law wants to be asked, m of d_re, at this speed of the ring, m/s; d_beta is what counts where it
-     isn't finite or is less. Scenes are passed over by this distance, so ask for what you need. [rt] */
+     isn't finite or is less. Scenes are passed over by this distance, so ask for what you need. From here on all is
+     optional: NULL, or a shorter struct, says that it isn't needed. [rt] */
   double (*range)(const double *p, double speed) ETHD_RT;
   /* Takes over a live contact at a swap of laws: the state block has been reset. NULL: the contact begins anew. [rt] */
   void (*adopt)(const double *p, void *state, const ethd_past *past) ETHD_RT;
