@@ -69,7 +69,7 @@ static double wrap(double a) {
   return a;
 }
 
-/* q1 is the angle of link 1, th the angle from it to link 2. r^2 = L1^2 + L2^2 + 2 L1 L2 cos th, so
+/* Finds q1, the angle of link 1, and th, the angle from it to link 2. r^2 = L1^2 + L2^2 + 2 L1 L2 cos th, so
      4 L1 L2 sin^2(th/2) = outer^2 - r^2,   4 L1 L2 cos^2(th/2) = r^2 - inner^2:
    both factors keep their digits at the ends of the reach, where acos would lose half of them. */
 static ethd_status links_angles(const ethd_arm *arm, ethd_vec x, int elbow, double *q1, double *th) {
@@ -79,7 +79,7 @@ static ethd_status links_angles(const ethd_arm *arm, ethd_vec x, int elbow, doub
   double s = sqrt((outer - r) * (outer + r)), c = sqrt((r - inner) * (r + inner));
   double side = elbow < 0 ? -1 : 1;
   *th = side * 2 * ethd_atan2(s, c);
-  /* side s c and along are where the ring's centre lies across and along link 1, both times 2 L1. */
+  /* The ring's centre lies side s c / (2 L1) across link 1 and along / (2 L1) along it. */
   double along = r * r + arm->link1 * arm->link1 - arm->link2 * arm->link2;
   *q1 = ethd_atan2(x.y, x.x) - ethd_atan2(side * s * c, along);
   return ETHD_OK;

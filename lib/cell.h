@@ -6,8 +6,8 @@
 
 #include "ethd/cell.h"
 
-/* Three slots: the writer fills its own, the reader reads its own, and the third waits in the middle. Either side exchanges
-   its slot for the middle one by a single atomic step, so neither ever waits for the other. */
+/* There are three slots: the writer fills its own, the reader reads its own, and the third waits in the middle. Either
+   side exchanges its slot for the middle one by a single atomic step, so neither ever waits for the other. */
 #define ETHD__CELL_FRESH 4u /* a bit of `middle`: the reader hasn't taken that slot yet */
 
 struct ethd_cell {

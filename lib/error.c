@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* A name may come from a plugin: nothing that steers a terminal goes on. */
+/* Copies a name without its control characters: it may come from a plugin, and terminals obey them. */
 static void copy_name(char *to, size_t room, const char *from) {
   size_t n = 0;
   for (; n < room - 1 && from[n]; n++) to[n] = (unsigned char)from[n] < ' ' || from[n] == 0x7f ? '?' : from[n];
@@ -16,7 +16,7 @@ ethd_status ethd__refuse(ethd_error *error, ethd_status status, const char *name
     error->found = found.value;
     error->min = found.min;
     error->max = found.max;
-    copy_name(error->name, sizeof error->name, name ? name : "");
+    copy_name(error->name, sizeof error->name, name);
   }
   return status;
 }
@@ -29,7 +29,7 @@ void ethd__error_prefix(ethd_error *error, const char *prefix) {
   if (!error) return;
   char name[sizeof error->name];
   size_t n = strlen(prefix);
-  if (n > sizeof name - 2) n = sizeof name - 2;
+  if (n > sizeof name - 2) n = sizeof name - 2; /* unreachable: ids and names of at most 31 characters come here */
   memcpy(name, prefix, n);
   name[n] = '.';
   copy_name(name + n + 1, sizeof name - n - 1, error->name);

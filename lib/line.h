@@ -1,11 +1,11 @@
-/* Text of a plugin that programs show to people. */
+/* Checks text of a plugin that programs show to people. */
 #ifndef ETHD__LINE_H
 #define ETHD__LINE_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* 1 to `most` printable ASCII characters: nothing that steers a terminal, and no second line. */
+/* Returns true for 1 to `most` printable ASCII characters: no control characters, which terminals obey, and one line. */
 static inline bool ethd__is_line(const char *text, size_t most) {
   size_t n = 0;
   if (!text) return false;

@@ -40,26 +40,26 @@ typedef struct ethd_pose {
   double j_inv[4]; /* rad/m: J^-1, damped near a singularity; in a singular J's null direction 0 */
 } ethd_pose;
 
-/* ETHD_E_RANGE, ETHD_E_NOT_FINITE for NaN, unless both links are within their limits and the mechanism
-   is one of the two. [any] */
+/* Checks that both links are within their limits and that the mechanism is one of the two: ETHD_E_RANGE, for NaN
+   ETHD_E_NOT_FINITE. [any] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_arm_check(const ethd_arm *arm, ethd_error *error);
 
-/* "parallel" or "serial"; "" of none. [any] */
+/* Returns "parallel" or "serial", or "" for any other number. [any] */
 ETHD_API const char *ethd_arm_name(ethd_mechanism mechanism);
 
-/* Forward kinematics, Jacobian and its (damped) inverse at joint angles q, rad. [any, rt-safe] */
+/* Works out forward kinematics, Jacobian and its (damped) inverse at joint angles q, rad. [any, rt-safe] */
 ETHD_API void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) ETHD_RT;
 
-/* Joint angles that put the ring's centre at x. elbow >= 0: link 2 turned counter-clockwise from link 1,
-   < 0: clockwise. ETHD_E_UNREACHABLE outside of the annulus of ethd_arm_reach (q then untouched).
-   Angles in (-pi, pi]. [any, rt-safe] */
+/* Finds the joint angles, in (-pi, pi], that put the ring's centre at x. With elbow >= 0 link 2 is turned
+   counter-clockwise from link 1, with elbow < 0 clockwise. ETHD_E_UNREACHABLE: x lies outside the annulus of
+   ethd_arm_reach; q is untouched. [any, rt-safe] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_arm_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) ETHD_RT;
 
-/* The reachable annulus about the base joint: inner = |L1 - L2|, outer = L1 + L2, m. [any, rt-safe] */
+/* Gives the reachable annulus about the base joint: inner = |L1 - L2|, outer = L1 + L2, m. [any, rt-safe] */
 ETHD_API void ethd_arm_reach(const ethd_arm *arm, double *inner, double *outer) ETHD_RT;
 
-/* What moves the ring, as the device's driver knows it (or a configuration's [arm]), for laws that look ahead. Doubles
-   only; NaN: not known. */
+/* What moves the ring, as the device's driver or a configuration's [arm] knows it, for laws that look ahead. All
+   members are doubles; NaN: not known. */
 typedef struct ethd_dynamics {
   double mass[2];  /* kg at the ring of joint 1 and joint 2: the inertia of a link's absolute angle is mass L^2 */
   double friction; /* N at the ring: torque L friction sign(dq) of each joint */
@@ -67,37 +67,37 @@ typedef struct ethd_dynamics {
   double delay;    /* s from the joint sample to the torque */
 } ethd_dynamics;
 
-/* All of it unknown. [any] */
+/* Returns dynamics of which nothing is known. [any] */
 ETHD_API ethd_dynamics ethd_dynamics_unknown(void);
 
-/* What `first` knows, and where it doesn't, what `second` does. [any] */
+/* Returns `first`, with each number that it doesn't know taken from `second`. [any] */
 ETHD_API ethd_dynamics ethd_dynamics_known(const ethd_dynamics *first, const ethd_dynamics *second);
 
-/* 2x2 row-major products with J or J^-1. [any, rt-safe] */
+/* Returns m v for a row-major 2x2 matrix such as J or J^-1. [any, rt-safe] */
 static inline ethd_vec ethd_mat_mul(const double m[4], ethd_vec v) ETHD_RT {
   ethd_vec r = {m[0] * v.x + m[1] * v.y, m[2] * v.x + m[3] * v.y};
   return r;
 }
 
-/* m^T v: a force at the ring, N, to joint torques, Nm, with m = J. [any, rt-safe] */
+/* Returns m^T v: with m = J, the joint torques, Nm, of a force at the ring, N. [any, rt-safe] */
 static inline ethd_vec ethd_mat_mul_transposed(const double m[4], ethd_vec v) ETHD_RT {
   ethd_vec r = {m[0] * v.x + m[2] * v.y, m[1] * v.x + m[3] * v.y};
   return r;
 }
 
-/* V = J dq: joint speeds, rad/s, to the ring's velocity, m/s. [any, rt-safe] */
+/* Returns V = J dq, the ring's velocity, m/s, at these joint speeds, rad/s. [any, rt-safe] */
 static inline ethd_vec ethd_pose_velocity(const ethd_pose *pose, const double dq[2]) ETHD_RT {
   return ethd_mat_mul(pose->j, ethd_vec_of(dq));
 }
 
-/* tau = J^T F: a force on the ring, N, to the joint torques that give it, Nm. [any, rt-safe] */
+/* Gives tau = J^T F, the joint torques, Nm, that produce a force on the ring, N. [any, rt-safe] */
 static inline void ethd_pose_torques(const ethd_pose *pose, ethd_vec force, double torque[2]) ETHD_RT {
   ethd_vec tau = ethd_mat_mul_transposed(pose->j, force);
   torque[0] = tau.x;
   torque[1] = tau.y;
 }
 
-/* J^-1 x: a motion of the ring, m or m/s, to that of the joints, rad or rad/s. [any, rt-safe] */
+/* Gives J^-1 x, the joints' motion, rad or rad/s, for a motion of the ring, m or m/s. [any, rt-safe] */
 static inline void ethd_pose_joints(const ethd_pose *pose, ethd_vec x, double joints[2]) ETHD_RT {
   ethd_vec q = ethd_mat_mul(pose->j_inv, x);
   joints[0] = q.x;

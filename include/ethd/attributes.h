@@ -4,7 +4,7 @@
      [main]  the thread that created the object; may allocate and block
      [rt]    the control thread: bounded work, no heap, lock, system call, errno or stdio
      [any]   any thread, as said there
-   ETHD_RT stands on prototypes and on function-pointer types of the [rt] side; clang 20 and later
+   ETHD_RT marks prototypes and function-pointer types of the [rt] side; clang 20 and later
    checks it with -Wfunction-effects. */
 #ifndef ETHD_ATTRIBUTES_H
 #define ETHD_ATTRIBUTES_H

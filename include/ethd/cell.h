@@ -11,17 +11,17 @@ ETHD_BEGIN_DECLS
 
 typedef struct ethd_cell ethd_cell;
 
-/* A cell for values of `size` bytes, 1 to 65536. [main] */
+/* Creates a cell for values of `size` bytes, 1 to 65536. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_cell_create(size_t size, ethd_cell **out, ethd_error *error);
 
-/* NULL is fine. [main] */
+/* Frees the cell; NULL is allowed. [main] */
 ETHD_API void ethd_cell_destroy(ethd_cell *cell);
 
-/* One writer at a time. [any, rt-safe] */
+/* Puts a value, which replaces one that hasn't been taken. One writer at a time. [any, rt-safe] */
 ETHD_API void ethd_cell_put(ethd_cell *cell, const void *value) ETHD_RT;
 
-/* One reader at a time. ETHD_STALE: nothing newer than what was taken last; `value` then holds that
-   again, or is untouched if nothing ever came. [any, rt-safe] */
+/* Takes the newest value. ETHD_STALE: nothing newer than the last one has come; `value` then holds that one again, or
+   is untouched if nothing ever came. One reader at a time. [any, rt-safe] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_cell_take(ethd_cell *cell, void *value) ETHD_RT;
 
 ETHD_END_DECLS

@@ -1,10 +1,10 @@
-/* Does a driver keep its contract? Questions put to a device at its own boundary, one answer each.
+/* Does a driver keep its contract? Questions are asked of a device through its own functions, with one answer each.
    Links from libethd-drivers and libethd.
 
-   The device is opened, started, stopped and closed many times; with `torque` it moves: keep clear of it, and
-   keep what it moves clear of everything: ring empty, arm in the middle of its room. Its I/O is done as the loop
-   does it: by a thread for each unit, or with each tick of a virtual clock. A push that is lost in the steps of
-   the angle, or that something stops, is no answer: that question is then not asked. All [main]. */
+   The device is opened, started, stopped and closed many times, and with `torque` it moves: keep clear of it, leave its
+   ring empty and put its arm in the middle of its room. Its I/O is done as the loop does it: by a thread for each unit,
+   or with each tick of a virtual clock. A push that moves the angle by too few of its steps, or that something stops,
+   answers nothing: that question then counts as not asked. All [main]. */
 #ifndef ETHD_CONFORM_H
 #define ETHD_CONFORM_H
 
@@ -17,7 +17,7 @@ typedef enum ethd_verdict {
   ETHD_KEPT = 0,
   ETHD_BROKEN = 1,
   ETHD_AT_RISK = 2,  /* allowed, but people should know */
-  ETHD_NOT_ASKED = 3 /* says why */
+  ETHD_NOT_ASKED = 3 /* `found` says why */
 } ethd_verdict;
 
 typedef struct ethd_conform_answer {
@@ -26,16 +26,16 @@ typedef struct ethd_conform_answer {
   char found[160]; /* one line */
 } ethd_conform_answer;
 
-#define ETHD_QUESTIONS 10
+#define ETHD_QUESTIONS 11
 
 typedef struct ethd_conform_def {
   const char *ids;                /* as for ethd_device_open */
   const ethd_driver *const *from; /* likewise */
   const ethd_device_def *device;
-  double torque; /* Nm, pushes each joint in turn, for 0.15 s at most; 0: nothing may move */
+  double torque; /* Nm by which each joint is pushed in turn, for 0.15 s at most; 0: nothing may move */
 } ethd_conform_def;
 
-/* Puts all questions; ETHD_OK: nothing is broken, ETHD_E_DEVICE: something is. */
+/* Asks all questions. ETHD_OK: nothing is broken; ETHD_E_DEVICE: something is. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_conform(const ethd_conform_def *def,
                                                   ethd_conform_answer answers[ETHD_QUESTIONS]);
 

@@ -31,7 +31,7 @@ ETHD_BEGIN_DECLS
 
 /* Made by ethd_setup_default, then changed field by field. */
 typedef struct ethd_setup {
-  uint32_t cookie; /* set by ethd_setup_default, refuses structs that were not */
+  uint32_t cookie; /* set by ethd_setup_default; a setup without it is refused */
   double period;   /* T, s */
   ethd_arm arm;
   double ring_radius;       /* R_r, m: inner radius */
@@ -54,7 +54,7 @@ typedef struct ethd_setup {
   const ethd_transition_law *transition;
   double transition_p[ETHD_PARAMS_MAX];
   double swap_time;    /* s: how long a swap's difference fades, 0 to 1 */
-  double v_hysteresis; /* m/s: entering until v < -v_hysteresis, leaving until v > v_hysteresis */
+  double v_hysteresis; /* m/s: leaving begins where v < -v_hysteresis, entering where v > v_hysteresis */
 
   /* NULL: none. Scenes live until an event hands them back. */
   const ethd_scene *scene;                   /* stands still, in R_0 */
@@ -63,7 +63,8 @@ typedef struct ethd_setup {
   ethd_dynamics dynamics;
 } ethd_setup;
 
-/* parallel 0.25 m arm, lowpass, kasa, ca, pd, kelvin-voigt, offset, no scene, no limits, 1 kHz. [any] */
+/* Returns a setup with a parallel 0.25 m arm, lowpass, kasa, ca, pd, kelvin-voigt, offset, no scene, no limits, at
+   1 kHz. [any] */
 ETHD_API ethd_setup ethd_setup_default(void);
 
 /* Choose a law and set its parameters to their defaults. [any] */
@@ -82,16 +83,16 @@ typedef struct ethd_setup_part {
   const ethd_method *methods;    /* what can be chosen; NULL: a law of `kind` */
   uint32_t count;                /* of methods */
   ethd_kind kind;                /* of laws */
-  uint32_t chosen, values;       /* where the choice and its parameters stand in ethd_setup, bytes */
+  uint32_t chosen, values;       /* where the choice and its parameters are in ethd_setup, bytes */
 } ethd_setup_part;
 
 #define ETHD_SETUP_PARTS 6
 ETHD_API extern const ethd_setup_part ethd_setup_parts[ETHD_SETUP_PARTS];
 
-/* The part of a section; NULL: the section has nothing to choose. [any] */
+/* Returns the part of a section, NULL if the section has nothing to choose. [any] */
 ETHD_API const ethd_setup_part *ethd_setup_part_of(const char *section);
 
-/* What the setup has chosen there; all zero where a law is NULL. [any] */
+/* Returns what the setup has chosen there; all zero if it is a law that is NULL. [any] */
 ETHD_API ethd_method ethd_setup_chosen(const ethd_setup *setup, const ethd_setup_part *part);
 
 /* Chooses by id, with default parameters: a method ("velocity", "lsq"), or one of `laws` ("contact", "spring"),
@@ -107,8 +108,8 @@ typedef struct ethd_setup_key {
   uint32_t count;      /* 1, or how many numbers the key holds: workspace 4, reach 2, joints 4, lag 16 */
 } ethd_setup_key;
 
-/* The keys that hold numbers under the laws and methods which the setup has chosen, `index` from 0 on;
-   ETHD_EMPTY after the last. [main] */
+/* Gives the keys that hold numbers under the chosen laws and methods one by one, with `index` from 0 on; ETHD_EMPTY
+   after the last. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_key_at(const ethd_setup *setup, uint32_t index, ethd_setup_key *out);
 
 /* Sets one number by its name in the configuration: "contact.k_e", "ring.radius", "limits.torque"; the third
@@ -120,22 +121,22 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_key_at(const ethd_setup *setup, 
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_set(ethd_setup *setup, const char *name, double value,
                                                     ethd_error *error);
 
-/* The number of that name; NaN where ethd_setup_set would not find it. [main] */
+/* Returns the number of that name, NaN where ethd_setup_set would not find it. [main] */
 ETHD_API double ethd_setup_get(const ethd_setup *setup, const char *name);
 
-/* 2 R_r + d_beta, m, or farther for a law that looks ahead: what is farther than this from the ring's centre can't
-   count, as long as the finger is within the ring. For ethd_scene_prune. [any] */
+/* Returns the distance from the ring's centre, m, beyond which nothing can count while the finger is within the ring:
+   2 R_r + d_beta, or more for a law that looks ahead. ethd_scene_prune takes it as its radius. [any] */
 ETHD_API double ethd_setup_range(const ethd_setup *setup);
 
-/* Everything that create and post check: names as in the configuration ("contact.k_e"), materials of the
-   scene against the contact law included. [main] */
+/* Checks everything that create and post check, also the scenes' materials against the contact law. Names in errors are
+   those of the configuration ("contact.k_e"). [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_check(const ethd_setup *setup, ethd_error *error);
 
 /* ---- events ---- */
 
 typedef enum ethd_event_kind {
-  ETHD_EVENT_FAULT = 1,   /* an occurrence. code: ethd_fault, value as said in fault.h */
-  ETHD_EVENT_TAKEN = 2,   /* a posted setup rules from this tick; scene: the replaced one, if no longer used */
+  ETHD_EVENT_FAULT = 1,   /* an occurrence of a fault. code: ethd_fault; value: see fault.h */
+  ETHD_EVENT_TAKEN = 2,   /* a posted setup rules from this tick on; scene: the replaced one, if no longer used */
   ETHD_EVENT_CLEARED = 3, /* faults were acknowledged */
   ETHD_EVENT_RELEASED = 4 /* scene: a replaced body's, no longer used */
 } ethd_event_kind;
@@ -145,10 +146,10 @@ typedef struct ethd_event {
   int32_t code;
   int64_t tick;
   double value;
-  const ethd_scene *scene; /* [main] may free it now; NULL: none */
+  const ethd_scene *scene; /* which [main] may now free; NULL: none */
 } ethd_event;
 
-/* Ticks since create or reset, by what happened; of faults the occurrences. */
+/* How many ticks since create or reset had each of these; for faults, how many occurrences there were. */
 typedef struct ethd_counters {
   uint64_t ticks, queried, swaps, contacts_lost, readings_dropped, events_dropped;
   uint64_t faults[ETHD_FAULT_COUNT];
@@ -169,44 +170,48 @@ ETHD_API void ethd_control_destroy(ethd_control *control);
 /* Checks a whole setup and hands it over; the next step takes it, without a bump: at that tick the torque
    is what the old setup gives, and the difference to the new one fades linearly to 0 over the new
    swap_time. ETHD_BUSY: the last one hasn't been taken yet; post again. Any refusal leaves everything as
-   it was. The period can't change (ETHD_E_ARGUMENT). A scene that another post has replaced may be posted again only
-   once an event has handed it back; until then that event may come at any moment. No heap. [main] */
+   it was. The period can't change (ETHD_E_ARGUMENT). A scene that a post has replaced may be posted again only after an
+   event has handed it back, since that event may come at any moment. Takes nothing from the heap. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_post(ethd_control *control, const ethd_setup *setup,
                                                        ethd_error *error);
 
-/* The next event, in order; ETHD_EMPTY when there is none. [main] */
+/* Takes the next event, in order; ETHD_EMPTY when there is none. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_poll(ethd_control *control, ethd_event *out);
 
-/* Resets the state to that after create, with the setup that rules now; a posted one stays posted. Not while step
-   runs. [main] */
+/* Resets the state to that after create, under the setup that rules now; a posted one stays posted. Must not be called
+   while step runs. [main] */
 ETHD_API void ethd_control_reset(ethd_control *control);
 
-/* Resets all but the motors' heat and what the transition law has learnt of them, for a device that is enabled again.
-   Not while step runs. [main] */
+/* Resets all but the motors' heat and what the transition law has learnt of the device, for a device that is enabled
+   again. Must not be called while step runs. [main] */
 ETHD_API void ethd_control_restart(ethd_control *control);
 
-/* How hot the motors are by limits.nominal_torque and heat_time: rise over the surroundings, as a share of
-   the rise that the nominal torque leads to; and to go on as if they were so, for a replay that begins in
-   the middle. Not while step runs. [main] */
+/* Gives the motors' heat as limits.nominal_torque and heat_time model it: each motor's rise over its surroundings, as a
+   share of the rise that the nominal torque leads to. Must not be called while step runs. [main] */
 ETHD_API void ethd_control_heat(const ethd_control *control, double out[2]);
+
+/* Sets the motors' heat, for a replay that begins in the middle. Must not be called while step runs. [main] */
 ETHD_API void ethd_control_heated(ethd_control *control, const double heat[2]);
 
-/* What the transition law has learnt of the device (ethd_facts.memory), kept by restart and forgotten by reset; and
-   to go on as if it had, likewise. Not while step runs. [main] */
+/* Gives what the transition law has learnt of the device (ethd_facts.memory); restart keeps it, reset forgets it. Must
+   not be called while step runs. [main] */
 ETHD_API void ethd_control_learned(const ethd_control *control, double out[ETHD_MEMORY]);
+
+/* Sets what the transition law has learnt, for a replay that begins in the middle. Must not be called while step runs.
+   [main] */
 ETHD_API void ethd_control_taught(ethd_control *control, const double memory[ETHD_MEMORY]);
 
-/* Acknowledges a latched fault; taken at the next step, which starts softly from zero torque. Before
-   limits.clean_time is over it means nothing. [any] */
+/* Acknowledges a latched fault. If limits.clean_time is over at the next step, that step clears the fault and lets the
+   torque rise from zero over swap_time; if not, the acknowledgement is dropped. [any] */
 ETHD_API void ethd_control_clear(ethd_control *control);
 
-/* s for which nothing has called for a stop since a fault was latched; INFINITY: none is latched.
+/* Returns for how long, s, nothing has called for a stop since a fault was latched; INFINITY: none is latched.
    [any, rt-safe] */
 ETHD_API double ethd_control_clean(const ethd_control *control) ETHD_RT;
 
-/* One tick. trace may be NULL. Always fills command. A negative status says that a fault rules this tick, and why:
-   ETHD_E_NOT_FINITE, ETHD_E_LAW, ETHD_E_BUDGET, ETHD_E_RANGE (the guard stops the ring), ETHD_E_DEVICE (any other row
-   of the fault table). The command is then zero torque with `safe` set, or, while a stop still damps the ring, the
+/* Runs one tick and always fills command; trace may be NULL. A negative status says that a fault rules this tick, and
+   why: ETHD_E_NOT_FINITE, ETHD_E_LAW, ETHD_E_BUDGET, ETHD_E_RANGE (the guard stops the ring), ETHD_E_DEVICE (any other
+   row of the fault table). The command is then zero torque with `safe` set, or, while a stop still damps the ring, the
    damping torque without `safe`. [rt] */
 ETHD_API ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, ethd_command *command,
                                        ethd_trace *trace) ETHD_RT;
@@ -216,11 +221,11 @@ ETHD_API ethd_status ethd_control_step(ethd_control *control, const ethd_sense *
 ETHD_API ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense,
                                            ethd_command *command) ETHD_RT;
 
-/* The law that a step runs at this moment, where that is none of the built-in ones; NULL: none. A step that
-   doesn't return hangs in it. [any, rt-safe] */
+/* Returns the law whose code a step runs at this moment, NULL if it is a built-in law or none. A step that doesn't
+   return hangs in it. [any, rt-safe] */
 ETHD_API const ethd_law *ethd_control_law(const ethd_control *control) ETHD_RT;
 
-/* [any] between steps. */
+/* Gives the counters. [any], between steps. */
 ETHD_API void ethd_control_counters(const ethd_control *control, ethd_counters *out) ETHD_RT;
 
 ETHD_END_DECLS

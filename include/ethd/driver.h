@@ -5,19 +5,23 @@
    that a run with the same drivers repeats bit for bit; safe [any thread, any state] can't fail: zero torque
    from now on; stop [main] disables; close [main] frees. The simulated device is a driver like any other.
 
-   A driver has what it has something to say in: any function but open and close may be NULL, and then there
-   is nothing to do, to read or to limit. Only what takes torque must be able to let go: no write without safe.
+   Any function but open and close may be NULL: the driver then has nothing to do, to read or to limit there. But a
+   driver that has write must have safe too, because what takes a torque must be able to let go of it.
 
-   Several drivers may stand behind one device (a servo, its encoders, a proximity ring): each adds what it
+   One device may consist of several drivers (a servo, its encoders, a proximity ring): each adds what it
    knows to the sense, and takes from the command what is its own.
 
         [device]                                  ethd_device_open
         driver = servo, ring                        servo  --.
         servo.map = svd48v.map                               +--> one driver, one device
-        ring.port = /dev/ttyUSB0                    ring   --'                                            */
+        ring.port = /dev/ttyUSB0                    ring   --'
+
+   A driver may be a file of its own, a shared object (driver = servo, file:mine.so), so that what needs a vendor's SDK
+   or another licence stays outside of this library; see ethd_driver_plugin. */
 #ifndef ETHD_DRIVER_H
 #define ETHD_DRIVER_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "ethd/guard.h"
@@ -27,14 +31,16 @@
 ETHD_BEGIN_DECLS
 
 #define ETHD_DRIVER_ABI 0u
-#define ETHD_DRIVERS_MAX 4       /* behind one device */
-#define ETHD_DRIVERS_TEXT_MAX 96 /* bytes of their ids in a row, the closing 0 included */
-#define ETHD_UNITS_MAX 8         /* of blocking I/O, of all drivers together */
-#define ETHD_FIGURES_MAX 64      /* likewise */
+#define ETHD_DRIVERS_MAX 4         /* behind one device */
+#define ETHD_DRIVERS_TEXT_MAX 1024 /* bytes of their ids and files in a row, the closing 0 included */
+#define ETHD_DRIVER_FILE "file:"   /* before a path, among drivers' ids */
+#define ETHD_UNITS_MAX 8           /* of blocking I/O, of all drivers together */
+#define ETHD_FIGURES_MAX 64        /* likewise */
+#define ETHD_REMARKS_MAX 64        /* of one driver */
 
 typedef struct ethd_driver ethd_driver;
 
-/* One key of a configuration's [device] section, as text; keys the driver doesn't know are errors. */
+/* One key of a configuration's [device] section, as text; a key that the driver doesn't know is an error. */
 typedef struct ethd_setting {
   const char *key, *value;
   int line;
@@ -44,11 +50,11 @@ struct ethd_setup; /* of control.h, for drivers that look into it */
 
 /* What a device is opened with. */
 typedef struct ethd_device_def {
-  const struct ethd_setup *setup; /* arm, ring, period that the controller assumes */
+  const struct ethd_setup *setup; /* the controller's: arm, ring, period */
   const ethd_setting *settings;
   uint32_t setting_count;
   const char *folder; /* relative paths in settings start here */
-  const char *file;   /* of the settings, for messages; NULL: they weren't in a file */
+  const char *file;   /* of the settings, for messages; NULL: they don't come from a file */
   int32_t is_virtual; /* 1: instants come from a virtual clock, and service waits for nothing; 0: they are
                          CLOCK_MONOTONIC's */
 } ethd_device_def;
@@ -60,64 +66,92 @@ typedef struct ethd_figure {
 } ethd_figure;
 
 struct ethd_driver {
-  uint32_t size, abi;
-  const char *id, *brief;
+  uint32_t size, abi;       /* sizeof(ethd_driver) as compiled; ETHD_DRIVER_ABI, exact */
+  const char *id, *brief;   /* 1 to 31 of a-z 0-9 - _; 1 to ETHD_BRIEF_MAX printable ASCII characters */
   const ethd_param *params; /* its settings that are numbers or one of several words; may be NULL */
   uint32_t param_count;
   const char *const *keys; /* its other settings, ended by NULL; may be NULL */
-  /* On failure message holds one line: file:line, what was found, what is allowed; left empty, it is the
-     status's sentence. What open leaves in *device is closed, also after a failure, unless it is NULL. */
+  /* On failure message holds one line: file:line, what was found, what is allowed; if it is left empty, the status's
+     sentence takes its place. What open leaves in *device is closed, also after a failure, unless it is NULL. */
   ethd_status (*open)(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]);
   ethd_status (*start)(void *device);
-  /* Adds what is new to *out, which is zero when a step is over. ETHD_STALE: a joint sample is due from
-     this driver and there is no newer one; the loop then holds the torque and steps when there is, or at
-     once, with the last sample, when *out names a fault that ends the torque. Negative: nothing can be known of
-     the device. */
+  /* Adds what is new to *out, which is zero again after each step. ETHD_STALE: this driver gives the joint samples and
+     has no newer one; the loop then holds the torque and steps when there is one, or at once, with the last sample,
+     if *out reports a fault that ends the torque. Negative: nothing is known of the device any more. */
   ethd_status (*read)(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT;
-  /* Torque is zero where the command is the safe one. */
+  /* A command with `safe` set has zero torque. */
   ethd_status (*write)(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT;
   uint32_t (*units)(const void *device); /* of blocking I/O */
   /* unit: 0 .. units - 1. A positive status: there was nothing to do. */
   ethd_status (*service)(void *device, uint32_t unit, int64_t now_ns);
   void (*safe)(void *device) ETHD_RT;
-  ethd_status (*stop)(void *device); /* NULL: as safe */
+  ethd_status (*stop)(void *device); /* NULL: safe is enough */
   void (*close)(void *device);
   ethd_limits (*limits)(const void *device);
-  /* At most `max` figures, since the start; returns how many. [main], while it runs too. */
+  /* Writes at most `max` figures about the time since the start and returns how many. [main], also while it runs. */
   uint32_t (*figures)(const void *device, ethd_figure *out, uint32_t max);
-  /* What people should know of the device: the i-th sentence, a risk that stays open; NULL behind the last. [main] */
+  /* Returns the i-th sentence that people should know about the device, such as a risk that remains; NULL after the
+     last. [main] */
   const char *(*remark)(const void *device, uint32_t i);
-  /* Asks the device to leave a fault of its own, which its service then does; nothing is enabled by it. [any] */
+  /* Asks the device to clear a fault of its own, which its service then does; this enables nothing. [any] */
   void (*clear)(void *device);
-  /* Finds out where the joints stand: q, rad, where they stand now, or NULL: as the device's settings say, which may
-     move them, slowly. Blocks; the device is stopped before and after. [main] */
+  /* Tells the device the angles at which its joints are now: q, rad. With q NULL the device finds them as its settings
+     say, which may move them, slowly. Blocks; the device is stopped before and after. [main] */
   ethd_status (*home)(void *device, const double q[2]);
-  /* Why the last start or home failed, one line; "" where there is nothing to say. [main] */
+  /* Says in one line why the last start or home failed; "" if there is nothing to say. [main] */
   const char *(*why)(const void *device);
-  /* What moves the ring, as far as the driver knows; what it doesn't, [arm] may say. [main] */
+  /* Returns what moves the ring, as far as the driver knows; [arm] may say the rest. [main] */
   ethd_dynamics (*dynamics)(const void *device);
+  /* As open, but for the device itself, which isn't touched: settings and files are read and checked. What it leaves in
+     *device is asked for limits, dynamics, figures and remarks, and closed. NULL: all of that is known once it is open.
+     [main] */
+  ethd_status (*prepare)(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]);
 };
 
 ETHD_API extern const ethd_driver ethd_driver_sim, ethd_driver_hello;
 ETHD_API extern const ethd_driver ethd_driver_servo;
 ETHD_API extern const ethd_driver ethd_driver_ring;    /* a proximity ring, beside a driver that moves */
+ETHD_API extern const ethd_driver ethd_driver_zones;   /* likewise: on-off light barriers */
+ETHD_API extern const ethd_driver ethd_driver_nail;    /* likewise: a plate on the nail */
+ETHD_API extern const ethd_driver ethd_driver_camera;  /* likewise: a motion capture */
 ETHD_API extern const ethd_driver ethd_driver_replay;  /* a recorded session, fed and compared */
 ETHD_API extern const ethd_driver ethd_driver_counter; /* encoders, beside a driver that moves */
+ETHD_API extern const ethd_driver ethd_driver_excite;  /* sines that show what an arm is, beside a driver that moves */
 
-/* All that are built in, ended by NULL. */
+/* All built-in drivers; the array ends with NULL. */
 ETHD_API extern const ethd_driver *const ethd_drivers[];
 
-/* Opens the drivers that `ids` names ("sim", "servo, ring"), in that order, out of `from` (ended by NULL;
-   NULL: ethd_drivers), as one. With several, a setting's key carries its driver's id ("ring.port"); with one
-   it may. *driver and *device then go together, and *driver has all functions but open; device is closed by
-   driver->close. Limits are the narrowest of all. [main] */
+/* What a shared object has to define to be a driver, as plugin.h has it for laws; the object needs no other symbol:
+
+        const ethd_driver ethd_driver_plugin = {.size = sizeof(ethd_driver), .abi = ETHD_DRIVER_ABI, .id = "mine", ...};
+        cc -shared -fPIC mine.c -o mine.so $(pkg-config --cflags ethd-drivers)
+
+   It stays loaded as long as the process lives. Like a law's file it is a program with your rights: its constructors
+   run before anything can be looked at, and what is checked is for mistakes, not against an attacker. One that was
+   compiled with an older header of the same ABI may be shorter, down to ETHD_DRIVER_MIN; a longer one is refused. */
+extern ETHD_API const ethd_driver ethd_driver_plugin;
+
+#define ETHD_DRIVER_MIN (offsetof(ethd_driver, limits) + sizeof(void (*)(void)))
+
+/* Opens the drivers that `ids` names ("sim", "servo, ring", "servo, file:mine.so"), in that order, out of `from` (ended
+   by NULL; NULL: ethd_drivers) and of files, whose paths start at def->folder, as one. With several, a setting's key
+   carries its driver's id ("ring.port"); with one it may. *driver and *device then go together, and *driver has all
+   functions but open; device is closed by driver->close. Limits are the narrowest of all. Before a driver is opened its
+   table is checked: size, ABI, id, brief, settings, and functions that need each other (write and safe, units and
+   service). [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from,
                                                       const ethd_device_def *def, const ethd_driver **driver,
                                                       void **device, char message[ETHD_MESSAGE_MAX]);
 
-/* For a driver's open: what the configuration says by the driver's own table, values[i] of its params and
-   texts[i] of its keys; where it says nothing they stay as they are. Keys that the table hasn't, and values
-   that it doesn't allow, are refused by file and line. values, texts: NULL where the table has none. [main] */
+/* The same by the drivers' `prepare`, which touches nothing. Of a driver without it only the name is checked, and its
+   remark says so. *device may be asked for limits, dynamics, figures and remarks, and closed. [main] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_prepare(const char *ids, const ethd_device_def *def,
+                                                         const ethd_driver **driver, void **device,
+                                                         char message[ETHD_MESSAGE_MAX]);
+
+/* Reads a driver's settings, for its open: values[i] of its params and texts[i] of its keys, which stay as they are
+   where the configuration says nothing. A key that the table doesn't have, or a value that it doesn't allow, is refused
+   with file and line. values, texts: NULL where the table has none. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_settings_read(const ethd_driver *driver, const ethd_device_def *def,
                                                         double *values, const ethd_setting **texts,
                                                         char message[ETHD_MESSAGE_MAX]);

@@ -3,7 +3,7 @@
 #define ETHD_ETHD_H
 
 /* The version of these headers, as text, in parts, and as one number that grows from version to version, for
-   #if ETHD_VERSION_NUMBER >= 200 (0.2.0). What may change between versions stands in include/README.md. */
+   #if ETHD_VERSION_NUMBER >= 200 (0.2.0). include/README.md says what may change between versions. */
 #define ETHD_VERSION "0.1.0"
 #define ETHD_VERSION_MAJOR 0
 #define ETHD_VERSION_MINOR 1

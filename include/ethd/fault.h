@@ -4,24 +4,24 @@
    Reactions, from mild to hard:
      COUNT    go on; it is counted
      DEGRADE  go on with less: without a sensor, by prediction, with less torque
-     STOP     damp the ring until it stands, then as ZERO
+     STOP     damp the ring until it stands still, then do as ZERO does
      ZERO     no torque, the device is disabled; latched until acknowledged
-   A zero torque is a safe state because the arm is counterweighted. A row's first reaction meets it when it
-   is seen; where it comes to the worst (often, long, twice: as the sentence says), the second. Rows of one
-   reaction have it twice. REFUSE rows are met before anything moves; in a sense they are only counted.
+   Zero torque is a safe state because the arm is counterweighted. A row has two reactions. The first is due as soon as
+   the row is seen, the second when it has become grave: often, long or twice, as its sentence says. A row that has only
+   one reaction names it twice. REFUSE rows are met before anything moves; in a sense they are only counted.
 
-   Who sees a row sets its bit: device and loop in the sense, bit i of `faults` for row i, in every tick in
-   which it lasts; bit i of `grave` where the second reaction is due, with or without the other. A bit that
-   comes is one occurrence: counted, and told by one event. Ticks of one occurrence follow each other. The
-   controller's own rows are met in the same way.
+   Device and loop report a row in the sense: they set bit i of `faults` for row i in every tick in which it lasts, and
+   bit i of `grave` while the second reaction is due, with or without the other bit. The ticks of one occurrence follow
+   each other without a gap; each occurrence is counted and reported by one event. Rows that the controller itself sees
+   are treated in the same way.
 
-        faults  _____######______##____    two occurrences
-        grave   ________###___________     the second reaction; told by an event more
+        faults  _____######______##____    two occurrences, two events
+        grave   ________###___________     the second reaction is due: one more event
 
-   The controller does what the rows say. STOP and ZERO latch: the first of them (of one tick's, a ZERO
-   before a STOP, then the lowest row) stands in trace.fault until it is acknowledged, whatever else comes;
-   a ZERO ends a STOP that still damps. An acknowledgement counts once no row has called for STOP or ZERO
-   for limits.clean_time. Replaying the senses replays the faults. */
+   The controller does what the rows say. STOP and ZERO latch: the first such row stays in trace.fault until it is
+   acknowledged, whatever else comes. If one tick has several, ZERO comes before STOP, then the lowest number counts. A
+   ZERO also ends a STOP that is still damping. An acknowledgement counts once no row has called for STOP or ZERO for
+   limits.clean_time. Replaying the senses replays the faults. */
 #ifndef ETHD_FAULT_H
 #define ETHD_FAULT_H
 
@@ -40,7 +40,8 @@ typedef enum ethd_reaction {
   ETHD_REACTION_REFUSE = 5
 } ethd_reaction;
 
-/* X(row, NAME, first reaction, second, bound, sentence); bound: how soon it is noticed, in words. SPEED looks at
+/* X(row, NAME, first reaction, second, bound, sentence); bound: how soon it is noticed, in words; "x every": its register
+   is read in each `every`-th exchange, as the servo's map says. SPEED looks at
    the speed that is estimated, which lags behind the true one by ethd_velocity_lag: 1.3 ms by the low-pass that is
    the default, half a tick by differences.
    Event values: FINITE kind of law; LAW 100 kind - status; BUDGET ns; SPEED m/s; INPUT which, ETHD_HAVE_*
@@ -53,9 +54,9 @@ typedef enum ethd_reaction {
   X(4, REPLY_MISSING, COUNT, COUNT, "1 tick", "the servo didn't answer once")                             \
   X(5, FEEDBACK_OLD, ZERO, ZERO, "5 ms or 2 exchanges", "the servo's feedback is too old")                \
   X(6, REPLY_STALE, COUNT, COUNT, "1 exchange", "the servo's answer belonged to another question")        \
-  X(7, REPLY_BAD, COUNT, ZERO, "1 exchange", "the servo's answers are damaged or refusals, too often")    \
+  X(7, REPLY_BAD, COUNT, ZERO, "2 exchanges", "the servo's answers are damaged or refusals, too often")   \
   X(8, LINK_LOST, ZERO, ZERO, "1 exchange", "the link to the servo is lost")                              \
-  X(9, DRIVE, ZERO, ZERO, "1 exchange", "the drive reports a fault")                                      \
+  X(9, DRIVE, ZERO, ZERO, "1 exchange x every", "the drive reports a fault")                              \
   X(10, NOT_FOLLOWED, ZERO, ZERO, "20 ms", "the drive doesn't follow the torque")                         \
   X(11, ENCODER_JUMP, COUNT, ZERO, "1 tick", "an encoder jumped, twice in 10 ms")                         \
   X(12, ENCODER_FROZEN, ZERO, ZERO, "50 ms", "an encoder stands still under torque")                      \
@@ -74,7 +75,7 @@ typedef enum ethd_reaction {
   X(25, WORKSPACE, DEGRADE, STOP, "1 tick", "the ring is out of its workspace")                           \
   X(26, HEAT, DEGRADE, ZERO, "model", "a motor is too hot")                                               \
   X(27, ENERGY, DEGRADE, STOP, "50 ms", "a contact gives energy away and goes on after damping")          \
-  X(28, BUS_VOLTAGE, ZERO, ZERO, "1 exchange", "the drive's supply is out of its range")                  \
+  X(28, BUS_VOLTAGE, ZERO, ZERO, "1 exchange x every", "the drive's supply is out of its range")          \
   X(29, BUDGET, ZERO, ZERO, "1 tick", "a step ran over its time budget")                                  \
   X(30, PLUGIN, REFUSE, REFUSE, "load", "a plugin of another ABI, or with a bad table")                   \
   X(31, CONFIGURATION, REFUSE, REFUSE, "start", "an error in the configuration")                          \
@@ -97,13 +98,13 @@ typedef enum ethd_fault {
 /* The bit of a row in a sense. */
 #define ETHD_FAULT_BIT(fault) ((int64_t)1 << (fault))
 
-/* One sentence each; "no fault" for 0. [any, rt-safe] */
+/* Returns a row's sentence, "no fault" for 0. [any, rt-safe] */
 ETHD_API const char *ethd_fault_sentence(ethd_fault fault) ETHD_RT;
 
-/* How soon a row is noticed, in words. [any, rt-safe] */
+/* Returns in words how soon a row is noticed. [any, rt-safe] */
 ETHD_API const char *ethd_fault_bound(ethd_fault fault) ETHD_RT;
 
-/* What a row leads to; grave: when it comes to the worst. ETHD_REACTION_NONE outside the table. [any, rt-safe] */
+/* Returns a row's first reaction, or with `grave` its second; ETHD_REACTION_NONE outside the table. [any, rt-safe] */
 ETHD_API ethd_reaction ethd_fault_reaction(ethd_fault fault, int32_t grave) ETHD_RT;
 
 ETHD_END_DECLS

@@ -2,11 +2,11 @@
 
    Every tick predicts; a reading corrects at the tick at which it has arrived.
 
-     compensation = stamp   the state stands at the last reading's sample instant, `latency` before its
-                            stamp; a reading takes it from there to its own; the output is extrapolated
-                            from there to now. Lost frames only make the way longer
-     compensation = none    the state stands at now, moved on every tick; a reading counts as if it had
-                            been taken now
+     compensation = stamp   the state is that of the last reading's sample instant, `latency` before its
+                            stamp; the next reading moves it on to its own instant; the output is
+                            extrapolated from the state to now. A lost frame only makes that interval longer
+     compensation = none    the state is that of now and moves on with every tick; a reading counts as if
+                            it had been taken now
 
    Both axes have the same noise, so they share the covariance. */
 #ifndef ETHD_FINGER_FILTER_H
@@ -19,7 +19,7 @@ ETHD_BEGIN_DECLS
 
 typedef enum ethd_filter_method {
   ETHD_FILTER_CA = 0,     /* Kalman, constant acceleration: Q = jerk^2 g g^T, g = (T^3/6, T^2/2, T) for
-                             each way of T s, a tick's (none) or a reading's (stamp). The acceleration
+                             each step of T s, a tick's (none) or a reading's (stamp). The acceleration
                              fades with the time constant `memory` (Singer 1970); inf: it doesn't */
   ETHD_FILTER_HOLD,       /* the last reading, at rest */
   ETHD_FILTER_ALPHA_BETA, /* fixed gains: x += alpha r, v += beta r / (time since the last reading) */
@@ -29,7 +29,8 @@ typedef enum ethd_filter_method {
 
 ETHD_API extern const ethd_method ethd_filter_methods[ETHD_FILTER_COUNT];
 
-/* Where the ring stood for a reading that is relative to it ([finger_filter] reference). */
+/* Which of the ring's positions a relative reading is added to ([finger_filter] reference): the one at the sample's
+   instant, or that of the tick. */
 enum { ETHD_REFERENCE_SAMPLE = 0, ETHD_REFERENCE_TICK = 1 };
 
 /* [finger_filter] compensation. */
@@ -44,12 +45,12 @@ typedef struct ethd_filter {
   double p[ETHD_PARAMS_MAX]; /* as posted */
 } ethd_filter;
 
-/* Numbers only. Zeroed: not started. */
+/* State of the filter: numbers only. Zeroed: not started. */
 typedef struct ethd_filter_state {
   double x[2], v[2], a[2]; /* m, m/s, m/s^2 */
   double cov[6];           /* of one axis: xx xv xa vv va aa */
-  double age;              /* s, from the last used reading's stamp to now. After a start: -latency (stamp: older
-                 readings are late), inf (none) */
+  double age;              /* s from the last used reading's stamp to now. After a start: -latency (stamp: so that
+                              older readings are late), inf (none) */
   uint32_t started;
   uint32_t used, late, gated, restarts; /* readings counted */
   uint32_t gated_in_a_row;
@@ -57,27 +58,26 @@ typedef struct ethd_filter_state {
 
 #define ETHD_FILTER_GATED_MAX 5
 
-/* Checks p against the method's table and the period (1e-6 to 1 s); out is untouched on failure.
-   [main] */
+/* Checks p against the method's table, and the period (1e-6 to 1 s); out is untouched on failure. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_filter_prepare(ethd_filter_method method, const double *p, double period,
                                                          ethd_filter *out, ethd_error *error);
 
-/* Starts at x with speed v, now, with the covariance diag(1e-6 m^2, 1e-4 m^2/s^2, 1 m^2/s^4). Counters
+/* Starts the filter now at x with velocity v and the covariance diag(1e-6 m^2, 1e-4 m^2/s^2, 1 m^2/s^4). Counters
    stay. [rt] */
 ETHD_API void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, ethd_vec v) ETHD_RT;
 
-/* dt s pass. [rt] */
+/* Lets dt s pass. [rt] */
 ETHD_API void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, double dt) ETHD_RT;
 
-/* A reading of the finger's position in R_0, stamped `age` s ago. Starts the filter there when it hasn't
-   been: at rest, within 1 m/s and 10 m/s^2 (sd). ETHD_STALE, counted and not used: not newer than the
-   last one used (late), not finite, or over `gate` standard deviations, innovation of both axes together
-   against sqrt(P_xx + noise^2), from where it was expected (gated). The ETHD_FILTER_GATED_MAX-th gated
-   in a row starts the filter anew, for then it is the filter that is wrong. [rt] */
+/* Takes a reading of the finger's position in R_0, stamped `age` s ago. A filter that isn't started starts there, at
+   rest, with standard deviations of 1 m/s and 10 m/s^2. ETHD_STALE: the reading is counted but not used, because it is
+   not newer than the last used one (late), not finite, or over `gate` standard deviations from where it was expected,
+   by the innovation of both axes together against sqrt(P_xx + noise^2) (gated). The ETHD_FILTER_GATED_MAX-th gated
+   reading in a row starts the filter anew, since then the filter is wrong, not the readings. [rt] */
 ETHD_API ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x,
                                         double age) ETHD_RT;
 
-/* Where the finger is now. [rt] */
+/* Gives where the finger is now. [rt] */
 ETHD_API void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x,
                                  ethd_vec *v) ETHD_RT;
 

@@ -5,8 +5,8 @@
        (  o   |         r_k is the free distance along it, so the finger's surface lies at
         '-----'         p_k = (R_r - r_k) (cos, sin).
 
-   A ray counts iff |r_k| < R_r. NaN: it is missing. At or beyond R_r it has met nothing. At or below 0
-   the finger touches there, within noise: to drop those would push the centre away from the ring. */
+   A ray counts iff |r_k| < R_r. NaN: it is missing. At R_r or more it has met nothing. At 0 or less the finger touches
+   the ring there, within noise; dropping such rays would push the centre away from the ring. */
 #ifndef ETHD_FINGER_FIT_H
 #define ETHD_FINGER_FIT_H
 
@@ -44,17 +44,17 @@ typedef struct ethd_finger {
   uint32_t reserved;
 } ethd_finger;
 
-/* Checks p against the method's table and 1e-4 m <= finger_radius <= ring_radius <= 1 m; out is
+/* Checks p against the method's table, and 1e-4 m <= finger_radius <= ring_radius <= 1 m; out is
    untouched on failure. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_prepare(ethd_fit_method method, const double *p, double ring_radius,
                                                       double finger_radius, ethd_fit *out, ethd_error *error);
 
-/* ETHD_STALE when the rays that count don't determine a centre within the ring: under 3 (robust: 2), or
-   on one line; out is then untouched. [rt] */
+/* Fits the finger to one frame of rays. ETHD_STALE: the rays that count don't determine a centre within the ring, since
+   there are under 3 (robust: 2) or they lie on one line; out is then untouched. [rt] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_step(const ethd_fit *fit, const double r[ETHD_RAYS],
                                                    ethd_finger *out) ETHD_RT;
 
-/* The distances that a finger of this radius and centre gives, the fit's inverse; NaN where the ray
+/* Gives the distances that a finger of this radius and centre would have, the fit's inverse; NaN where a ray
    meets the ring's centre first, or nothing. [any, rt-safe] */
 ETHD_API void ethd_fit_rays(double ring_radius, double finger_radius, ethd_vec centre, double r[ETHD_RAYS]) ETHD_RT;
 

@@ -1,4 +1,4 @@
-/* The guard: the last to touch a torque before the device. Links from libethd. */
+/* The guard: the last to change a torque before the device gets it. Links from libethd. */
 #ifndef ETHD_GUARD_H
 #define ETHD_GUARD_H
 
@@ -8,8 +8,8 @@
 
 ETHD_BEGIN_DECLS
 
-/* Each may be INFINITY (workspace: -INFINITY, INFINITY): no limit. 0 is a limit of 0. A limit that isn't
-   set costs nothing. */
+/* INFINITY, or -INFINITY as a lower bound, means that there is no limit; for margin and clean_time 0 does. Elsewhere 0
+   is a limit of 0. A limit that isn't set costs nothing. */
 typedef struct ethd_limits {
   double torque;         /* Nm, each joint, >= 0 */
   double torque_rate;    /* Nm/s, each joint, >= 0 */
@@ -17,24 +17,24 @@ typedef struct ethd_limits {
   double workspace[4];   /* m: x_min, x_max, y_min, y_max of the ring's centre */
   double reach[2];       /* m: least and most distance of the ring's centre from the base */
   double joints[4];      /* rad: q1_min, q1_max, q2_min, q2_max */
-  double margin;         /* m inside of workspace and reach: there a wall pushes back, >= 0 */
+  double margin;         /* m: within this of the bounds of workspace and reach a wall pushes back, >= 0 */
   double energy;         /* J that a contact may give away within half a second before damping is added, > 0 */
-  double nominal_torque; /* Nm: what each motor can give for ever, > 0 */
-  double heat_time;      /* s: time constant of a motor's heat, > 0; narrower is shorter */
+  double nominal_torque; /* Nm: what each motor can give continuously, > 0 */
+  double heat_time;      /* s: time constant of a motor's heat, > 0; shorter is stricter */
   double step_time;      /* s: time budget of one step, > 0 */
-  double gap;            /* s: longest time between two steps, and by which a clock may jump, > 0 */
-  double finger_age;     /* s: older readings of the finger: tracking fades out; INFINITY: none is judged */
-  double finger_lost;    /* s: older ones: the ring is stopped */
-  double clean_time;     /* s without anything that stops before an acknowledgement counts, >= 0, finite;
-                          narrower is longer */
+  double gap;            /* s: longest time between two steps, and the most that a clock may jump, > 0 */
+  double finger_age;     /* s: when the finger's reading is older, tracking fades out; INFINITY: age isn't judged */
+  double finger_lost;    /* s: when it is older than this, the ring is stopped */
+  double clean_time;     /* s without a reason to stop before an acknowledgement counts, >= 0, finite;
+                          longer is stricter */
   int32_t latch;         /* 1: faults latch until cleared; 0: each tick is judged alone (replay) */
   int32_t reserved;
 } ethd_limits;
 
 /* A row for each limit, by which they are read, written and compared. */
 typedef enum ethd_limit_kind {
-  ETHD_LIMIT_MOST,  /* the smaller, the narrower; INFINITY: none */
-  ETHD_LIMIT_LEAST, /* the larger, the narrower; min: none */
+  ETHD_LIMIT_MOST,  /* a smaller number is stricter; INFINITY is no limit */
+  ETHD_LIMIT_LEAST, /* a larger number is stricter; the row's min is no limit */
   ETHD_LIMIT_RANGES /* pairs of a least and a most */
 } ethd_limit_kind;
 
@@ -49,25 +49,25 @@ typedef struct ethd_limit {
 #define ETHD_LIMITS 15
 ETHD_API extern const ethd_limit ethd_limit_rows[ETHD_LIMITS];
 
-/* The first of the row's numbers in these limits. [any, rt-safe] */
+/* Returns where the first of the row's numbers is in these limits. [any, rt-safe] */
 static inline double *ethd_limit_of(ethd_limits *limits, const ethd_limit *row) ETHD_RT {
   return (double *)(void *)((char *)limits + row->offset);
 }
 
-/* No limits, latching, no clean time. [any] */
+/* Returns no limits, but with `latch` set. [any] */
 ETHD_API ethd_limits ethd_limits_none(void);
 
-/* As none, but for the torque, Nm. [any] */
+/* Returns ethd_limits_none with a limit of the torque, Nm. [any] */
 ETHD_API ethd_limits ethd_limits_torque(double torque);
 
-/* What a driver of a real device begins with: gap 5 ms, clean_time 1 s, finger_age 10 ms, finger_lost 30 ms;
-   the rest as none. [any] */
+/* Returns what a driver of a real device begins with: gap 5 ms, clean_time 1 s, finger_age 10 ms, finger_lost 30 ms,
+   and no other limit. [any] */
 ETHD_API ethd_limits ethd_limits_device(void);
 
-/* ETHD_E_RANGE or ETHD_E_NOT_FINITE with the limit's name. [main] */
+/* Checks each number against its row: ETHD_E_RANGE or ETHD_E_NOT_FINITE with the limit's name. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_limits_check(const ethd_limits *limits, ethd_error *error);
 
-/* The narrower of two, limit by limit; latches if either does. [any] */
+/* Returns the stricter of two, limit by limit; it latches if either does. [any] */
 ETHD_API ethd_limits ethd_limits_narrower(const ethd_limits *a, const ethd_limits *b);
 
 /* What the guard did, as bits; the counters count ticks. */
@@ -80,8 +80,8 @@ enum {
   ETHD_GUARD_FAULT = 32,     /* a row of the fault table stops the ring: likewise */
   ETHD_GUARD_MARGIN = 64,    /* the workspace's wall pushed */
   ETHD_GUARD_HEAT = 128,     /* clamped to what a hot motor may have */
-  ETHD_GUARD_STEEP = 256     /* what was asked for rose over the rate for ETHD_STEEP_MAX ticks in a row, where
-                                limits latch: damped as for speed */
+  ETHD_GUARD_STEEP = 256     /* the torque asked for changed faster than the rate for ETHD_STEEP_MAX ticks in a row,
+                                and limits latch: damped as for speed */
 };
 #define ETHD_GUARD_COUNT 9
 #define ETHD_STEEP_MAX 20
@@ -89,20 +89,22 @@ enum {
 typedef struct ethd_guard_state {
   double last[2];  /* torque of the last tick, Nm */
   double asked[2]; /* what it was before it was limited, Nm */
-  double heat[2];  /* of each motor; 1: as its nominal torque leads to */
+  double heat[2];  /* of each motor; 1 is what its nominal torque leads to */
   double cut;      /* s for which the torque has been clamped without a break */
   int64_t steep;   /* ticks in a row with too steep a torque */
   uint64_t counts[ETHD_GUARD_COUNT];
-  int32_t stopping; /* what stops the ring, ETHD_GUARD_* bits, 0: nothing; may be set from outside */
-  int32_t stopped;  /* 1: it stands still, or has to be let go: zero torque until cleared */
+  int32_t stopping; /* ETHD_GUARD_* bits of what stops the ring, 0: nothing does; callers may set it */
+  int32_t stopped;  /* 1: the ring stands still or must be let go, so the torque is zero until this is cleared */
 } ethd_guard_state;
 
-/* The last torque has heated the motors for dt s; the hotter one's heat. Only where nominal_torque is a limit.
-   [rt] */
+/* Adds the heat of the last torque, held for dt s, and returns that of the hotter motor. Only to be called where
+   nominal_torque is a limit. [rt] */
 ETHD_API double ethd_guard_heat(const ethd_limits *limits, ethd_guard_state *state, double dt) ETHD_RT;
 
-/* Limits `torque` in place; returns the bits of what it did. Order: speed and workspace (replace the
-   torque by damping), margin, finite, torque, heat, rate. pose and v are the ring's. [rt] */
+/* Limits `torque` in place and returns the bits of what it did; pose and v are the ring's. In this order: if the ring
+   is being stopped (speed, workspace, a fault), damping replaces the torque, else the margin's wall pushes; a torque
+   that isn't finite becomes zero; heat and torque bound each joint; unless the ring is being stopped, the rate bounds
+   the change, and heat and torque bound the result once more. [rt] */
 ETHD_API int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *state, const ethd_pose *pose, ethd_vec v,
                                  double dt, double torque[2]) ETHD_RT;
 

@@ -5,16 +5,17 @@
    and once:                                    tracking    finger relative to ring -> torque
    The controller composes them:  tau = beta tau_t + J^T sum (share F_e - damping v + feed) n.
 
-   What can't be touched yet isn't shown to a law, unless it looks ahead (`range`): then it also learns what the
-   device can do (`facts`), so that it can act in time.
+   A law is asked about surfaces that are near. A transition law that looks ahead (`range`) is asked about farther ones
+   too and is given what the device can do (`facts`), so that it can act in time.
 
-   A law is stateless code: numbers in, numbers out. It never allocates, never blocks, keeps nothing.
+   A law is stateless code: numbers in, numbers out. It never allocates, never blocks, and keeps nothing of its own.
    Its state is a block of numbers (no pointers) that is zeroed before reset, copied, recorded, hashed.
    Parameters were checked against the table when the setup was posted: step trusts them.
-   A law that returns a negative status or a number that isn't finite sends the controller to its safe
-   state. So does a law that isn't built in and writes outside of its state block (ETHD_E_FENCE), as far as
-   around it a pattern of some words shows it, or that leaves the processor with another rounding mode, other
-   flushing of small numbers or other traps than it found (ETHD_E_FENV): both are put back.
+   A law that has nothing to say returns ETHD_OK too: a contact law that doesn't push sets the force to 0. A negative
+   status, or a number that isn't finite, sends the controller to its safe state. So do two mistakes for which a law
+   that isn't built in is watched: writing outside of its state block, which words with a known pattern around it show
+   (ETHD_E_FENCE), and changing the processor's rounding mode, flushing of small numbers or traps (ETHD_E_FENV). The
+   controller puts both back.
 
    ABI 0 may break until 1.0. Within an ABI ethd_param is frozen; what a step is given (ethd_contact,
    ethd_tracking_in, ethd_facts) and the law structs grow at their end, and a law says how large its struct is:
@@ -87,7 +88,7 @@ typedef struct ethd_tracking_law {
    controller works it out from what the device's driver says (ethd_dynamics), from the limits and the arm. */
 typedef struct ethd_facts {
   double mass;          /* kg: effective mass of the ring along n */
-  double force;         /* N: the guard lets so much through now against n (INFINITY: no limit is set) */
+  double force;         /* N: the largest force against n that the guard lets through now (INFINITY: no limit is set) */
   double applied;       /* N along n: what the torque of the last tick amounts to, after the guard */
   double friction;      /* N: Coulomb friction along n */
   double viscous;       /* Ns/m */
@@ -95,7 +96,7 @@ typedef struct ethd_facts {
   double lag;           /* s by which v is late (ethd_velocity_lag) */
   double ring_radius;   /* R_r, m */
   double finger_radius; /* R_f, m */
-  double finger_age;    /* s: the finger's estimate shows where it was so long ago; NaN: it hasn't been seen */
+  double finger_age;    /* s: how long ago the finger was where its estimate shows it; NaN: it hasn't been seen */
   double finger_a;      /* m/s^2: acceleration of the finger's estimate along n */
   double *memory;       /* ETHD_MEMORY numbers of the law's own that outlive its contacts: zeroed by create, reset and
                            a change of the law, recorded and replayed */
@@ -105,8 +106,8 @@ typedef struct ethd_facts {
 typedef struct ethd_contact {
   ethd_vec point, n;
   double d_re, d_fe, d_fr;
-  double v;                /* of the ring */
-  double v_f;              /* of the finger, likewise along n */
+  double v;                /* of the ring along n, relative to the surface */
+  double v_f;              /* of the finger, likewise */
   double d_beta;           /* R_r - R_f,max, m */
   double period;           /* s since the last step */
   double age;              /* s since this contact began to count */
@@ -119,26 +120,26 @@ typedef struct ethd_contact {
 
 typedef struct ethd_contact_law {
   ethd_law law;
-  /* gap: m, to the (offset) wall, < 0 inside; speed: n.V_r, m/s, > 0 entering; entering: the branch of
-     eq. 3, with v_hysteresis applied. force: N along n, <= 0: pushes the ring out (the controller cuts
-     an attractive one to 0). [rt] */
+  /* gap: m, to the (offset) wall, < 0 inside; speed: ethd_contact.v, m/s, > 0 entering; entering: the branch of
+     eq. 3, with v_hysteresis applied. force: N along n, to be set by every call: < 0 pushes the ring
+     out, 0 where it doesn't push; the controller cuts an attractive one to 0. [rt] */
   ethd_status (*step)(const double *p, void *state, double gap, double speed, int entering, double *force) ETHD_RT;
 } ethd_contact_law;
 
 /* ---- transition: who rules ---- */
 
-/* What the paper calls the states; a law of another kind of machine may use 3 and up.
-   A contact lives while its state isn't ETHD_TRANSPARENT. */
+/* The paper's states. A law may number states of its own from 3 up.
+   A contact goes on as long as its state isn't ETHD_TRANSPARENT. */
 enum { ETHD_TRANSPARENT = 0, ETHD_BRAKING = 1, ETHD_VO = 2 };
 
 typedef struct ethd_ruling {
   double beta;     /* share of the tracking torque, 0 to 1; the smallest over the contacts counts */
   double share;    /* share of the contact law's force, 0 to 1 */
-  double offset;   /* eps, m: the wall stands so much deeper */
+  double offset;   /* eps, m: how much deeper the wall lies */
   double damping;  /* bilateral along n, Ns/m (eq. 6): F = -damping v n */
-  double feed;     /* feed-forward force along n, N; adds */
-  ethd_vec shift;  /* reference shift, m, added to X_f - X_r; of the contact that rules beta */
-  double argument; /* the distance that beta is a function of, m (recorded) */
+  double feed;     /* feed-forward force along n, N, added to the contact law's */
+  ethd_vec shift;  /* m, added to X_f - X_r; the shift of the contact with the smallest beta counts */
+  double argument; /* the distance on which beta depends, m (recorded as trace.d_fe) */
   int32_t state;
   int32_t reserved;
 } ethd_ruling;
@@ -148,7 +149,7 @@ typedef struct ethd_past {
   double offset;  /* eps of the last ruling, m */
   double d_re, v; /* of the contact, m and m/s */
   double age;     /* s since it began to count */
-  double since;   /* s since its state is what it is */
+  double since;   /* s since its state last changed */
   int32_t state;  /* of the last ruling: ETHD_TRANSPARENT or another */
   int32_t reserved;
 } ethd_past;
@@ -157,11 +158,15 @@ typedef struct ethd_transition_law {
   ethd_law law;
   /* `out` comes zeroed but for beta = 1 and argument = d_fe. [rt] */
   ethd_status (*step)(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) ETHD_RT;
-  /* How far ahead the law wants to be asked, m of d_re, at this speed of the ring, m/s; d_beta is what counts where it
-     isn't finite or is less. Scenes are passed over by this distance, so ask for what you need. From here on all is
-     optional: NULL, or a shorter struct, says that it isn't needed. [rt] */
+
+  /* All that follows is optional: NULL, or a struct that ends before it, says that the law doesn't have it. */
+
+  /* Returns how far ahead the law wants to be asked, m of d_re, when the ring moves at this speed, m/s. A result that
+     is less than d_beta or isn't finite counts as d_beta. Scenes are searched this far, so ask for no more than you
+     need. ethd_setup_range asks with an infinite speed. [rt] */
   double (*range)(const double *p, double speed) ETHD_RT;
-  /* Takes over a live contact at a swap of laws: the state block has been reset. NULL: the contact begins anew. [rt] */
+  /* Takes over a live contact at a swap of laws, into a state block that has been reset. NULL: the contact begins anew.
+     [rt] */
   void (*adopt)(const double *p, void *state, const ethd_past *past) ETHD_RT;
 } ethd_transition_law;
 
@@ -170,21 +175,21 @@ typedef struct ethd_transition_law {
 #define ETHD_CONTACT_LAW_MIN (offsetof(ethd_contact_law, step) + sizeof(void (*)(void)))
 #define ETHD_TRANSITION_LAW_MIN (offsetof(ethd_transition_law, step) + sizeof(void (*)(void)))
 
-/* The optional functions of a transition law of any size. [any, rt-safe] */
+/* True if a transition law, of whatever size, has this optional function. [any, rt-safe] */
 #define ETHD_LAW_HAS(law_, field) \
   ((law_)->law.size >= offsetof(ethd_transition_law, field) + sizeof((law_)->field) && (law_)->field != NULL)
 
-/* ABI, size, kind, state, id, table and entry points of a law; one status each. [main] */
+/* Checks ABI, size, kind, state, id, table and entry points of a law; each has a status of its own. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_law_check(const ethd_law *law, ethd_error *error);
 
-/* ---- built in: nothing special about them ---- */
+/* ---- built in; there is nothing special about them ---- */
 
 ETHD_API extern const ethd_tracking_law ethd_tracking_pd;
 ETHD_API extern const ethd_contact_law ethd_contact_kelvin_voigt, ethd_contact_spring, ethd_contact_hunt_crossley;
 ETHD_API extern const ethd_transition_law ethd_transition_abrupt, ethd_transition_smooth, ethd_transition_offset,
     ethd_transition_predictive;
 
-/* All of them, by kind then as in the documentation; the array ends with NULL. [any] */
+/* All of them, ordered by kind; the array ends with NULL. [any] */
 ETHD_API extern const ethd_law *const ethd_laws[];
 
 ETHD_END_DECLS

@@ -5,25 +5,25 @@
 
    The thread waits on CLOCK_MONOTONIC for absolute instants on a grid of whole periods. A tick that isn't
    done when the next one is due is an overrun: the whole periods that were lost are counted, handed to the
-   next step as `missed`, and the loop goes on at the next instant of the grid, never in a burst. On the
-   thread's way there is no mutex and no system call but the sleep (a clock is read without one).
+   next step as `missed`, and the loop goes on at the next instant of the grid, never in a burst. In a tick the
+   thread takes no mutex and makes no system call but the sleep (a clock is read without one).
 
-   CLOCK_MONOTONIC stands still while the machine is suspended, CLOCK_BOOTTIME doesn't: what it gains on the
-   other from tick to tick is missed as well, and row 35 of the fault table. Not on Xenomai's Cobalt, which
-   has a clock of its own.
+   CLOCK_MONOTONIC stands still while the machine is suspended, CLOCK_BOOTTIME doesn't. What the second gains on the
+   first from tick to tick counts as missed too, and is row CLOCK of the fault table. This doesn't hold on Xenomai's
+   Cobalt, which has a clock of its own.
 
    What the machine refuses (real-time priority, locked memory, ...) is data, a set of bits with a sentence
    each; require_rt makes it a failure. With a virtual clock there are no threads: ethd_loop_tick does one
    tick, the driver's service included, and equal inputs give equal bits.
 
-   A step that runs for more than 0.1 s is over its budget (row 29), whatever limits.step_time says. A thread of
-   real time watches over the loop's: at a step over that budget, or at silence over `gap`, the device is made safe
-   from there and disarmed, and row 3 is raised. Half a second and four periods without a turn is a thread that hangs, for code
-   that it called doesn't return: ethd_loop_hangs says so, and in which law. No thread can be ended from outside, so
-   ethd_loop_join then leaves it to itself and fails; loop, controller, setup and laws stay in memory for it until the
-   process ends.
+   A step that runs for more than 0.1 s is over its budget (row BUDGET), whatever limits.step_time says. A second
+   realtime thread watches over the loop's: when a step is over that budget, or the loop is silent for longer than
+   `gap`, it makes the device safe, disarms it and raises row LOOP. A loop that hasn't begun a tick for half a second
+   and for four periods hangs, because code that it called doesn't return: ethd_loop_hangs says so, and in which law. No
+   thread can be ended from outside, so ethd_loop_join then gives up and fails; loop, controller, setup and laws stay in
+   memory until the process ends.
 
-   The loop, its device and its controller outlive each other in this order: destroy the loop first. */
+   Destroy the loop before its device and its controller. */
 #ifndef ETHD_LOOP_H
 #define ETHD_LOOP_H
 
@@ -34,7 +34,7 @@ ETHD_BEGIN_DECLS
 
 /* ---- histogram ---- */
 
-/* Durations in ns, to 1/32: values under 32 exactly, then 32 bins per factor of two. */
+/* Durations in ns, exact under 32, then in 32 bins per factor of two. */
 #define ETHD_BINS 1024
 
 typedef struct ethd_histogram {
@@ -43,63 +43,63 @@ typedef struct ethd_histogram {
   int64_t max; /* ns, exact */
 } ethd_histogram;
 
-/* Negative durations count as 0, longer ones than the last bin's in the last. [any, rt-safe] */
+/* Counts a duration, a negative one as 0, one beyond the last bin in that. [any, rt-safe] */
 ETHD_API void ethd_histogram_add(ethd_histogram *histogram, int64_t ns) ETHD_RT;
 
-/* First and last duration of a bin, ns. [any, rt-safe] */
+/* Return the first and the last duration of a bin, ns. [any, rt-safe] */
 ETHD_API int64_t ethd_histogram_first(uint32_t bin) ETHD_RT;
 ETHD_API int64_t ethd_histogram_last(uint32_t bin) ETHD_RT;
 
-/* The smallest duration that at least `share` (0 to 1) of all don't exceed: the end of its bin, never over
-   max; 0 when empty. [any, rt-safe] */
+/* Returns the duration that at least `share` (0 to 1) of all don't exceed, rounded up to the end of its bin but never
+   over max; 0 if there are none. [any, rt-safe] */
 ETHD_API int64_t ethd_histogram_at(const ethd_histogram *histogram, double share) ETHD_RT;
 
 /* ---- what the machine refuses ---- */
 
 enum {
-  ETHD_SHORT_FIFO = 1,        /* SCHED_FIFO: the loop runs at ordinary priority */
+  ETHD_SHORT_FIFO = 1,        /* no SCHED_FIFO: the loop runs at ordinary priority */
   ETHD_SHORT_MLOCK = 2,       /* memory isn't locked */
   ETHD_SHORT_AFFINITY = 4,    /* not bound to the cpu that was asked for */
-  ETHD_SHORT_DMA_LATENCY = 8, /* the processor may sleep deeply, though that was to be prevented */
+  ETHD_SHORT_DMA_LATENCY = 8, /* dma_latency couldn't be held: the processor may sleep deeply */
   ETHD_SHORT_PREEMPT = 16,    /* the kernel isn't a realtime one */
-  ETHD_SHORT_IO = 32          /* SCHED_FIFO for the device's I/O threads: they run at ordinary priority */
+  ETHD_SHORT_IO = 32          /* no SCHED_FIFO for the device's I/O threads: they run at ordinary priority */
 };
 #define ETHD_SHORT_COUNT 6
 
-/* What is short, and what mends it, one sentence each; `bit` is one of the above. [any] */
+/* Say in one sentence each what is short and what mends it; `bit` is one of the above. [any] */
 ETHD_API const char *ethd_shortfall_sentence(int32_t bit);
 ETHD_API const char *ethd_shortfall_mend(int32_t bit);
 
 /* ---- the loop ---- */
 
-#define ETHD_IO_BELOW 5    /* in priority, at least 1 */
+#define ETHD_IO_BELOW 5    /* by how much the I/O threads' priority is lower; it stays at least 1 */
 #define ETHD_CPU_NONE (-1) /* wherever the kernel puts it */
-#define ETHD_CPU_AUTO (-2) /* the highest isolated one, else none */
+#define ETHD_CPU_AUTO (-2) /* the isolated processor with the highest number, if there is one */
 
 /* Made by ethd_loop_default, then changed field by field. */
 typedef struct ethd_loop_def {
   uint32_t cookie;           /* set by ethd_loop_default */
   const ethd_driver *driver; /* of ethd_device_open; or one that has start, read, write and safe */
   void *device;              /* open and started */
-  ethd_control *control;     /* stepped by nobody else while the loop lives */
+  ethd_control *control;     /* which nobody else steps while the loop exists */
   double period;             /* s, the controller's; 1e-5 to 1 */
   int32_t cpu;               /* number of a processor, ETHD_CPU_NONE or ETHD_CPU_AUTO */
   int32_t priority;          /* of SCHED_FIFO, 1 to 99; the device's I/O threads come ETHD_IO_BELOW under it */
   int32_t require_rt;        /* 1: start fails at any shortfall */
   int32_t dma_latency;       /* us, held while the loop runs; -1: not held */
-  double early_wake;         /* s, 0 to period / 2: wakes so early, warms the caches, then spins to the tick */
-  double gap;                /* s, from a period on: lateness, silence and joint samples older than it are faults;
+  double early_wake;         /* s, 0 to period / 2: the loop wakes this early, warms the caches and spins to the tick */
+  double gap;                /* s, at least a period: longer lateness, silence and older joint samples are faults;
                             INFINITY: lateness is only counted. The device's own limit holds too */
-  double heartbeat;          /* s, from a period on: the application's longest silence; INFINITY: any */
+  double heartbeat;          /* s, at least a period: the longest time between two beats; INFINITY: none is needed */
   double soft_start;         /* s, 0 to 10: time in which the torque's share rises from 0 to 1 after enabling */
   size_t stack;              /* bytes of the loop's stack, 65536 to 2^26 */
   uint32_t rows;             /* of the ring, a power of two up to 2^20; 0: no rows are kept */
   int64_t *clock;            /* NULL: the system's. Else a virtual clock, ns: the loop sets it to each tick's
                             instant, a driver may move it on */
-  const int64_t *suspended;  /* ns for which a virtual clock has stood still so far; NULL: it never does */
+  const int64_t *suspended;  /* ns for which a virtual clock has stood still so far; NULL: it never stands still */
 } ethd_loop_def;
 
-/* 1 ms, no cpu, priority 80, early_wake 0, dma_latency -1, no gap, no heartbeat, soft_start 0.1 s,
+/* Returns 1 ms, no cpu, priority 80, early_wake 0, dma_latency -1, no gap, no heartbeat, soft_start 0.1 s,
    256 KiB, 4096 rows. [any] */
 ETHD_API ethd_loop_def ethd_loop_default(void);
 
@@ -111,14 +111,14 @@ enum {
   ETHD_ROW_CLEARED = 2  /* ethd_control_clear was called */
 };
 
-/* A tick as it was. The device got `share` of the trace's torque. */
+/* One tick. The device got `share` of the trace's torque. */
 typedef struct ethd_loop_row {
   ethd_trace trace;
   double share;   /* 0 to 1; 0 while disabled */
   uint64_t lost;  /* rows before this one that found no room */
   uint64_t swaps; /* posted setups taken up to this tick, lost rows included */
   int32_t marks, armed;
-  double heat[2]; /* of the motors as the device was started last, see ethd_control_heat */
+  double heat[2]; /* of the motors when the device was last started, see ethd_control_heat */
 } ethd_loop_row;
 
 typedef struct ethd_loop_stats {
@@ -133,70 +133,73 @@ typedef struct ethd_loop_stats {
   ethd_histogram tick;               /* read, step, write */
 } ethd_loop_stats;
 
-/* ETHD_E_ARGUMENT, ETHD_E_RANGE with the field's name, ETHD_E_MEMORY. [main] */
+/* Creates a loop, which doesn't run yet: ETHD_E_ARGUMENT, ETHD_E_RANGE with the field's name, ETHD_E_MEMORY. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_error *error);
 
-/* Stops and joins if need be. NULL is fine. Where join failed with a thread that hangs, nothing is freed, and neither
-   are the controller and, after ETHD_E_DEVICE, the device to be destroyed. [main] */
+/* Stops, joins and frees the loop; NULL is allowed. If join failed because a thread hangs, nothing is freed; then don't
+   destroy the controller either nor, after ETHD_E_DEVICE, the device. [main] */
 ETHD_API void ethd_loop_destroy(ethd_loop *loop);
 
-/* Threads: the loop's, one for each unit of the device's blocking I/O. One dry tick, then the device is armed. With a virtual
-   clock there are none. Failures: ETHD_E_DEVICE, its name says of what ("require_rt", "thread",
-   "xenomai"); with require_rt nothing runs. [main] */
+/* Starts the loop's thread and one for each unit of the device's blocking I/O (on a virtual clock none), runs one dry
+   tick and arms the device. ETHD_E_DEVICE: error->name says what failed: "require_rt", after which nothing runs,
+   "thread", "xenomai" (this kernel has no Cobalt), "clock" (Cobalt's and Linux's differ, by error->found s). [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_start(ethd_loop *loop, ethd_error *error);
 
-/* One tick on the virtual clock. [main] */
+/* Runs one tick on the virtual clock. [main] */
 ETHD_API void ethd_loop_tick(ethd_loop *loop);
 
 /* Disarms: from the next tick on the device gets zero torque; the loop goes on reading. [any] */
 ETHD_API void ethd_loop_disarm(ethd_loop *loop);
 
-/* 1: the device gets torques. A controller's safe command or a device's failure disarms. [any] */
+/* Returns 1 while the device gets torques. A safe command of the controller or a failure of the device disarms. [any]
+   */
 ETHD_API int32_t ethd_loop_armed(const ethd_loop *loop);
 
-/* The application is alive: within every `heartbeat` while the device is armed, or it is stopped. [any] */
+/* Says that the application is alive. While the device is armed it is stopped if no beat comes within `heartbeat`.
+   [any] */
 ETHD_API void ethd_loop_beat(ethd_loop *loop);
 
-/* A row of the fault table that the application sees, an emergency stop or a signal: its bit stands in the
-   next sense, once; raise it again while it lasts. [any] */
+/* Reports a row of the fault table that the application sees, such as an emergency stop or a signal. Its bit is set in
+   the next sense only; raise it again while it lasts. [any] */
 ETHD_API void ethd_loop_raise(ethd_loop *loop, ethd_fault fault);
 
 /* Acknowledges the controller's fault before the next step. [any] */
 ETHD_API void ethd_loop_clear(ethd_loop *loop);
 
-/* Starts the device anew, restarts the controller and arms, softly; meanwhile the loop leaves both alone.
-   Not while a posted setup waits. ETHD_BUSY: the loop didn't let go within a second. [main] */
+/* Starts the device again, restarts the controller and arms, with a soft start; meanwhile the loop leaves both alone.
+   Must not be called while a posted setup waits. ETHD_BUSY: the loop didn't let go within a second. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_enable(ethd_loop *loop);
 
-/* The device's home, while it is disarmed and the loop leaves it alone: where the joints stand, or NULL, see driver.h.
-   A controller without a fault begins anew, as the pose may jump. ETHD_BUSY: the loop didn't let go, or is armed. [main] */
+/* Calls the device's home, with the joints' angles or NULL (driver.h), while it is disarmed and the loop leaves it
+   alone. A controller without a fault is then reset, since the pose may jump. ETHD_BUSY: the loop didn't let go, or
+   is armed. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_home(ethd_loop *loop, const double *q);
 
 /* Asks the threads to end; zero torque is the last thing written. [any] */
 ETHD_API void ethd_loop_stop(ethd_loop *loop);
 
-/* Waits for them, for a second at most once they were told to stop (at periods over 0.1 s: eight periods). ETHD_E_LAW:
-   the loop's thread hangs in a law, and will never touch the device again. ETHD_E_DEVICE: the clock failed, or, where
+/* Waits for the threads, after ethd_loop_stop for a second at most (eight periods if they are over 0.1 s). ETHD_E_LAW:
+   the loop's thread hangs in a law and will never touch the device again. ETHD_E_DEVICE: the clock failed or, if
    ethd_loop_ended is 0, the thread hangs in the device. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_join(ethd_loop *loop);
 
-/* The next row, in order; ETHD_EMPTY when there is none. One reader at a time. [any] */
+/* Takes the next row, in order; ETHD_EMPTY when there is none. One reader at a time. [any] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_take(ethd_loop *loop, ethd_loop_row *out);
 
-/* ETHD_SHORT_* bits, known once started; 0 on a virtual clock. [main] */
+/* Returns ETHD_SHORT_* bits, known once it has started; 0 on a virtual clock. [main] */
 ETHD_API int32_t ethd_loop_shortfalls(const ethd_loop *loop);
 
-/* 1: the loop's thread has ended, by ethd_loop_stop or by itself. [any] */
+/* Returns 1 when the loop's thread has ended, by ethd_loop_stop or by itself. [any] */
 ETHD_API int32_t ethd_loop_ended(const ethd_loop *loop);
 
-/* Periods since the start, ticks and missed ones: the loop's time over its period. [any] */
+/* Returns the periods since the start, missed ones included: the loop's time over its period. [any] */
 ETHD_API uint64_t ethd_loop_periods(const ethd_loop *loop);
 
-/* 1: the loop's thread hangs, as said above; *law is the law in which it does, NULL: the device's code. 0 else. law
-   may be NULL. [any] */
+/* Returns 1 while the loop's thread hangs, as said above; *law is then the law that it hangs in, NULL if it is the
+   device's code. law may be NULL. [any] */
 ETHD_API int32_t ethd_loop_hangs(const ethd_loop *loop, const ethd_law **law);
 
-/* Numbers while it runs are a tick apart at most. [main] */
+/* Gives the loop's numbers; while it runs, they may come from two neighbouring ticks. [main] */
 ETHD_API void ethd_loop_read(const ethd_loop *loop, ethd_loop_stats *out);
 
 ETHD_END_DECLS

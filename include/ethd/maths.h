@@ -1,7 +1,7 @@
 /* Elementary functions that give the same bits everywhere. Links from libethd.
 
    A C library picks its variant of sin or exp by the CPU it finds (with or without FMA), so the same
-   seed would give other bits on another machine. These use only + - * / and integers in a fixed order,
+   seed would give other bits on another machine. These functions use only + - * / and integers in a fixed order,
    and give equal bits for every compiler and CPU with IEEE 754 doubles, as long as they are built
    without contraction or value-changing optimisation (-ffp-contract=off, never -ffast-math).
 
@@ -17,28 +17,28 @@
 
 ETHD_BEGIN_DECLS
 
-/* Sine and cosine of every finite x, however large: error < 0.86 ulp.
+/* Return the sine and the cosine of any finite x, however large: error < 0.86 ulp.
    sin(+-0) = +-0; NaN for infinite x. Odd and even to the bit. [any, rt-safe] */
 ETHD_API double ethd_sin(double x) ETHD_RT;
 ETHD_API double ethd_cos(double x) ETHD_RT;
 
-/* Both at once, the same bits as ethd_sin and ethd_cos. [any, rt-safe] */
+/* Gives both at once, with the same bits as ethd_sin and ethd_cos. [any, rt-safe] */
 ETHD_API void ethd_sincos(double x, double *sine, double *cosine) ETHD_RT;
 
-/* Angle of the point (x, y) from the x axis, in [-pi, pi], with the sign of y: error < 0.51 ulp.
+/* Returns the angle of the point (x, y) from the x axis, in [-pi, pi], with the sign of y: error < 0.51 ulp.
    Zeros and infinities as in C11 F.10.1.4: atan2(+-0, -0) = +-pi, atan2(+-0, +0) = +-0,
    atan2(+-inf, -inf) = +-3 pi/4, and so on. [any, rt-safe] */
 ETHD_API double ethd_atan2(double y, double x) ETHD_RT;
 
-/* e^x: error < 0.57 ulp, < 0.78 ulp where the result is subnormal. exp(+-0) = 1, exp(-inf) = 0,
+/* Returns e^x: error < 0.57 ulp, < 0.78 ulp where the result is subnormal. exp(+-0) = 1, exp(-inf) = 0,
    +inf above 709.7827, 0 below -745.1332. [any, rt-safe] */
 ETHD_API double ethd_exp(double x) ETHD_RT;
 
-/* Natural logarithm, of subnormal x too: error < 0.56 ulp. log(1) = +0, log(+-0) = -inf,
+/* Returns the natural logarithm, of subnormal x too: error < 0.56 ulp. log(1) = +0, log(+-0) = -inf,
    log(+inf) = +inf, NaN for x < 0. [any, rt-safe] */
 ETHD_API double ethd_log(double x) ETHD_RT;
 
-/* Hyperbolic tangent: error < 0.60 ulp, |tanh| <= 1, odd to the bit. tanh(+-0) = +-0,
+/* Returns the hyperbolic tangent: error < 0.60 ulp, |tanh| <= 1, odd to the bit. tanh(+-0) = +-0,
    tanh(+-inf) = +-1. [any, rt-safe] */
 ETHD_API double ethd_tanh(double x) ETHD_RT;
 

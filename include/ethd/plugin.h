@@ -1,9 +1,9 @@
 /* Laws from a shared object. Links from libethd.
 
    A plugin exports one data symbol:   const ethd_plugin_entry ethd_plugin = {sizeof(ethd_plugin_entry),
-   ETHD_ABI, "mine", "1.0", laws, 1};  A host reads what a file offers without calling any of its functions, but
-   not without running it: the system's loader runs a file's constructors before anything can be looked at. A plugin is
-   trusted as the program itself is. What is checked and fenced (law.h) is for mistakes, not against an attacker. */
+   ETHD_ABI, "mine", "1.0", laws, 1};  A host reads what a file offers without calling any of its functions, but the
+   system's loader runs a file's constructors before anything can be looked at. So a plugin is trusted as the program
+   itself is. The checks and fences (law.h) find mistakes; they don't stop an attacker. */
 #ifndef ETHD_PLUGIN_H
 #define ETHD_PLUGIN_H
 
@@ -24,8 +24,8 @@ typedef struct ethd_plugin_entry {
 /* Defined by the plugin, not by the library. */
 extern ETHD_API const ethd_plugin_entry ethd_plugin;
 
-/* Loads a plugin (RTLD_NOW | RTLD_LOCAL) and checks it and every law in it; it stays loaded as long as
-   the process lives. Refusals: ETHD_E_LOAD (not a loadable file), ETHD_E_SYMBOL, ETHD_E_ABI, ETHD_E_SIZE,
+/* Loads a plugin (RTLD_NOW | RTLD_LOCAL) and checks it and every law in it; it stays loaded until the process ends.
+   Refusals: ETHD_E_LOAD (not a loadable file), ETHD_E_SYMBOL, ETHD_E_ABI, ETHD_E_SIZE,
    ETHD_E_STATE, ETHD_E_TABLE, ETHD_E_ARGUMENT (a law without step, or with a bad id or brief), ETHD_E_DUPLICATE (an id
    twice in the file). error->name says which law or parameter. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_plugin_open(const char *path, const ethd_plugin_entry **out,

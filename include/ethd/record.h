@@ -1,7 +1,7 @@
 /* Recordings: a folder with tick.npy (one ethd_trace a row), config.ini, the scene, events.csv.
    Links from libethd-drivers and libethd.
 
-   tick.npy is a NumPy structured array whose header's count is raised after each flush: a killed run
+   tick.npy is a NumPy structured array. Its header's count is raised after each flush, so a killed run
    leaves a readable file. All [main]. */
 #ifndef ETHD_RECORD_H
 #define ETHD_RECORD_H
@@ -26,58 +26,67 @@ ETHD_API extern const ethd_column ethd_trace_columns[];
 
 typedef struct ethd_npy ethd_npy;
 
-/* A new .npy of rows of `columns`; written to path, which must not exist or is replaced. */
+/* Creates a .npy file of rows of `columns`; a file that is already at path is replaced. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_create(const char *path, const ethd_column *columns, size_t row_bytes,
                                                      ethd_npy **out, char message[ETHD_MESSAGE_MAX]);
+
+/* Appends rows. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_append(ethd_npy *npy, const void *rows, size_t count);
+
+/* Writes what was appended to the file, then the header's count. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_flush(ethd_npy *npy);
+
 /* Flushes, closes, frees. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_close(ethd_npy *npy);
 
-/* Whole file into memory, with exactly these columns; *rows is freed by the caller. */
+/* Reads a whole file, which must have exactly these columns, into memory; the caller frees *rows. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_read(const char *path, const ethd_column *columns, size_t row_bytes,
                                                    void **rows, size_t *count, char message[ETHD_MESSAGE_MAX]);
 
 typedef struct ethd_recording ethd_recording;
 
-/* Makes the folder and the files of a recording: config.ini is the configuration's text with the scene's
-   file renamed to scene.scene, plugins to absolute paths. The folder is locked until the recording is closed. One that
-   holds a recording's files is refused; with `replace` an earlier recording's files are removed first. Refused too: a
-   folder whose files the configuration was read from. */
+/* Makes the folder and the files of a recording. config.ini is the configuration's text, in which the scene's file is
+   now scene.scene and plugins have absolute paths. The folder is locked until the recording is closed. A folder that
+   holds a recording's files is refused; with `replace` those files are removed first. A folder whose files the
+   configuration was read from is refused too. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, const ethd_config *config, bool replace,
                                                            ethd_recording **out, char message[ETHD_MESSAGE_MAX]);
 
-/* events.csv: row,kind,detail; the events of a row of tick.npy come before it, in order. kind:
-     setup       detail: law. The configuration's setup with this transition law, in a fresh controller
-     start       detail: free words. A fresh controller (or a reset one) with the present setup; "enabled":
-                 the running one restarted, its motors as hot as they are
+/* Writes an event to events.csv (row,kind,detail); the events of a row of tick.npy come before it, in order. kind:
+     setup       detail: law. The configuration's setup with this transition law, in a new controller
+     start       detail: free words. A new controller (or a reset one) with the present setup; with "enabled" the
+                 running one was restarted and its motors keep their heat
      transition  detail: law. Changes the transition law of the present setup
      set         detail: section.key value. Changes the present setup
      clear       faults were acknowledged
-     heat        detail: h1 h2. The motors are so hot, see ethd_control_heat
-     fault       detail: a sentence; for people
-     end         the last one: the recording was closed, its ticks are as many as the row says
-   A row's events make one setup: with setup or start among them the fresh controller starts with it,
-   else it was posted, whole, to the running one. Before the first row a fresh controller is implied. */
+     heat        detail: h1 h2. The motors' heat, see ethd_control_heat
+     fault       detail: a sentence for people
+     lost        detail: how many ticks are missing before this row, which therefore can't be replayed
+     thinned     detail: how. tick.npy holds only some of the ticks, so the recording can't be replayed
+     end         the last event: the recording was closed, and its row is the number of its ticks
+   A row's events make one setup. If setup or start is among them, a new controller starts with it, else it was posted
+   as a whole to the running one. Before the first row there is always a new controller. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_event(ethd_recording *recording, const char *kind,
                                                           const char *detail);
+
+/* Adds a row to tick.npy. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_tick(ethd_recording *recording, const ethd_trace *trace);
 
-/* Why a file of the recording couldn't be written, with its path; "" while all could. What comes after the first failure
-   is lost: events.csv gets a fault's row there, for which it keeps room on a full disk. */
+/* Says why a file of the recording couldn't be written, with its path; "" while all could. What comes after the first
+   failure is lost: there events.csv gets a row of kind fault, for which it keeps room on a full disk. */
 ETHD_API const char *ethd_recording_failure(const ethd_recording *recording);
 
-/* Ticks that are in the file. */
+/* Returns how many ticks are in the file. */
 ETHD_API uint64_t ethd_recording_kept(const ethd_recording *recording);
 
-/* Writes the rest and the event `end`, frees. A failure now or before is told in message. */
+/* Writes the rest and the event `end`, and frees the recording. message says what failed, now or before. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_close(ethd_recording *recording, char message[ETHD_MESSAGE_MAX]);
 
 /* Replays a recording through the library and compares every field bit for bit. ETHD_OK: equal, and
-   message says how many ticks. ETHD_E_DIFFERS: the first tick and field that differ. ETHD_E_UNFINISHED: those that are
-   there are equal, but the recording wasn't closed, so that later ones may be lost. Otherwise
-   negative: why it can't be read. Without `plugins` a recording that needs one is refused, since a plugin is a program
-   that the folder brings along. */
+   message says how many ticks. ETHD_E_DIFFERS: message names the first tick and field that differ. ETHD_E_UNFINISHED:
+   the ticks that are there are equal, but the recording wasn't closed, so later ones may be lost; or ticks are missing
+   in between, and what follows can't be replayed. Any other negative status: message says why it can't be read. Without `plugins` a recording that needs one is refused, since a plugin is
+   a program that the folder brings along. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_verify(const char *folder, bool plugins,
                                                            char message[ETHD_MESSAGE_MAX]);
 

@@ -2,7 +2,7 @@
 
        outside            inside
          x ----- n ---->|/////////     d > 0 outside, < 0 inside
-            d           P  object      n = -grad d: into the object, the same way from inside
+            d           P  object      n = -grad d: into the object, also when seen from inside
                         |/////////
    A scene is built once and immutable while used: any number of controllers may share it. */
 #ifndef ETHD_SCENE_H
@@ -17,9 +17,9 @@
 
 ETHD_BEGIN_DECLS
 
-/* numbers of each shape: halfplane {nx, ny, c}; circle {x, y, r}; capsule {x1, y1, x2, y2, r};
+/* The numbers of each shape: halfplane {nx, ny, c}; circle {x, y, r}; capsule {x1, y1, x2, y2, r};
    box {x, y, half_w, half_h, angle}; segment {x1, y1, x2, y2}; polygon and polyline {x1, y1, x2, y2, ...}.
-   Segments and polylines are thin walls: no inside. Polygons are simple, of either winding. */
+   Segments and polylines are thin walls without an inside. Polygons are simple, of either winding. */
 typedef enum ethd_shape {
   ETHD_HALFPLANE = 0,
   ETHD_CIRCLE,
@@ -50,7 +50,7 @@ typedef struct ethd_object_def {
   int32_t material; /* index, -1: none */
   const double *numbers;
   size_t count; /* of numbers */
-  int32_t line; /* where it stands in the text, for error messages; 0 without text */
+  int32_t line; /* of the text, for error messages; 0 without text */
 } ethd_object_def;
 
 typedef struct ethd_scene_def {
@@ -62,48 +62,48 @@ typedef struct ethd_scene_def {
 
 typedef struct ethd_scene ethd_scene;
 
-/* Copies and checks. Half-plane normals within 1e-6 of unit length are divided by their length (and c
-   with them). Coordinates and sizes up to 1e6 m. ETHD_E_NOT_FINITE, ETHD_E_RANGE, ETHD_E_GEOMETRY (points
-   that rounding can't tell apart, self-intersecting), ETHD_E_ARGUMENT (a wrong count of numbers),
-   ETHD_E_DUPLICATE, ETHD_E_FULL, ETHD_E_MEMORY; error->line is the object's. [main] */
+/* Checks the objects and makes a scene of copies of them. Half-plane normals within 1e-6 of unit length are divided by
+   their length, and c with them. Coordinates and sizes may be up to 1e6 m. ETHD_E_NOT_FINITE, ETHD_E_RANGE,
+   ETHD_E_GEOMETRY (points that rounding can't tell apart, self-intersecting), ETHD_E_ARGUMENT (a wrong count of
+   numbers), ETHD_E_DUPLICATE, ETHD_E_FULL, ETHD_E_MEMORY; error->line is the object's. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_create(const ethd_scene_def *def, ethd_scene **out, ethd_error *error);
 
-/* The same from text, one object a line, '#' comments:
+/* Makes a scene of text with one object on each line and '#' for comments:
      halfplane NX NY C | circle X Y R | capsule X1 Y1 X2 Y2 R | box X Y HALF_W HALF_H ANGLE
      polygon X1 Y1 ... | segment X1 Y1 X2 Y2 | polyline X1 Y1 ...      each may end in material=NAME
      material NAME k_e=.. b_e=..
-   `text` need not end in 0. ETHD_E_SYNTAX, ETHD_E_UNKNOWN, ETHD_E_DUPLICATE and those of create, with
+   `text` need not end in 0. ETHD_E_SYNTAX, ETHD_E_UNKNOWN, ETHD_E_DUPLICATE and the statuses of create, with
    error->line and the word in error->name. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_parse(const char *text, size_t length, ethd_scene **out,
                                                       ethd_error *error);
 
-/* NULL is fine. [main] */
+/* Frees the scene; NULL is allowed. [main] */
 ETHD_API void ethd_scene_destroy(ethd_scene *scene);
 
 /* The nearest object. */
 typedef struct ethd_nearest {
   double distance; /* signed; thin walls: >= 0 */
   ethd_vec point, n;
-  int32_t object; /* ties: the lowest; -1 and distance = inf in an empty scene */
+  int32_t object; /* of several as near the lowest; -1 and distance = inf in an empty scene */
 } ethd_nearest;
 
-/* Exact to 1e-12 times the scene's extent. n is a unit vector always; where the gradient is undefined
-   (on a segment, at a circle's centre) any. [any, rt-safe] */
+/* Finds the nearest object, exact to 1e-12 times the scene's extent. n is always a unit vector; where the gradient is
+   undefined (on a segment, at a circle's centre) it may be any. [any, rt-safe] */
 ETHD_API void ethd_scene_query(const ethd_scene *scene, ethd_vec x, ethd_nearest *out) ETHD_RT;
 
-/* Where a query found its answer: the next one near there is quicker for it, and never different. {0} to
-   start with; one for each thing that moves, and for any scene. */
+/* Where a query found its answer. It makes the next query near there quicker and never changes its answer. Start with
+   {0} and keep one for each thing that moves; a hint may be used with any scene. */
 typedef struct ethd_scene_hint {
   uint32_t leaf, edge;
   int32_t step;
 } ethd_scene_hint;
 
-/* As ethd_scene_query; `hint` is read, then renewed. [any, rt-safe] */
+/* Does what ethd_scene_query does, and reads and renews `hint`. [any, rt-safe] */
 ETHD_API void ethd_scene_query_near(const ethd_scene *scene, ethd_vec x, ethd_scene_hint *hint,
                                     ethd_nearest *out) ETHD_RT;
 
-/* A local minimum of the distance between x and the points of one object: a solid's surface has none where
-   it turns its back to x. A polyline whose last point is its first has no ends. */
+/* A local minimum of the distance between x and the points of one object. Surfaces of a solid that face away from x
+   have none. A polyline whose last point is its first has no ends. */
 typedef struct ethd_touch {
   double distance; /* signed */
   ethd_vec point, n;
@@ -113,29 +113,28 @@ typedef struct ethd_touch {
   int32_t material;
 } ethd_touch;
 
-/* All local minima with distance <= range, the deepest first (ties: lowest object, then feature).
-   At most `room` are written; the return value counts all. Solids give one contact when x is inside.
-   [any, rt-safe] */
+/* Finds all local minima with distance <= range, the deepest first (of equal ones the lowest object, then feature).
+   At most `room` are written; the return value counts all. A solid gives one when x is inside. [any, rt-safe] */
 ETHD_API size_t ethd_scene_touches(const ethd_scene *scene, ethd_vec x, double range, ethd_touch *out,
                                    size_t room) ETHD_RT;
 
-/* The touch of one object at x that continues an earlier one: the local minimum whose point is nearest
-   to `from`, whatever its distance. For contacts that live on out of range. [any, rt-safe] */
+/* Finds the touch of one object at x that continues an earlier one: the local minimum whose point is nearest
+   to `from`, whatever its distance. For contacts that go on beyond the range. [any, rt-safe] */
 ETHD_API void ethd_scene_follow(const ethd_scene *scene, int32_t object, ethd_vec x, ethd_vec from,
                                 ethd_touch *out) ETHD_RT;
 
 typedef struct ethd_scene_info {
   size_t objects, by_shape[ETHD_SHAPE_COUNT], segments, materials;
   size_t dropped;                    /* objects that ethd_scene_prune left out */
-  size_t boxes;                      /* places for boxes of its trees */
+  size_t boxes;                      /* how many boxes its trees have room for */
   double x_min, x_max, y_min, y_max; /* of the bounded objects; min > max when there are none */
   size_t bytes;                      /* memory held */
 } ethd_scene_info;
 
-/* What a scene holds. [any] */
+/* Says what a scene holds. [any] */
 ETHD_API void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out);
 
-/* A turned box of a tree, m. Level 1: around one thing; level l: around eight of the level below. */
+/* A turned box of a tree, m. A box of level 1 is around one thing, one of level l around eight of the level below. */
 typedef struct ethd_scene_box {
   ethd_vec centre;
   double cosine, sine, half_u, half_v; /* u along (cosine, sine) */
@@ -143,29 +142,30 @@ typedef struct ethd_scene_box {
   int32_t of_chain; /* 1: the things are edges of a chain, 0: objects */
 } ethd_scene_box;
 
-/* What stands at place i, for pictures; ETHD_EMPTY: nothing. [any] */
+/* Gives box i, from 0 up to ethd_scene_info.boxes, for pictures; ETHD_EMPTY: there is none. [any] */
 ETHD_API ethd_status ethd_scene_box_at(const ethd_scene *scene, size_t i, ethd_scene_box *out);
 
-/* Object i in the order of their numbers: what it is made of, as it was given (a half-plane's divided by
-   |n|), `line` 0. The numbers belong to the scene. Its number in the file; -1 past the end. [any] */
+/* Gives object i in the order of their numbers, as it was given (a half-plane's divided by |n|), with `line` 0; the
+   numbers belong to the scene. Returns its number in the file, -1 past the end. [any] */
 ETHD_API int32_t ethd_scene_object(const ethd_scene *scene, size_t i, ethd_object_def *out);
 
-/* How many objects lie wholly farther than `radius` from wherever this arm can hold the ring's centre. [any] */
+/* Returns how many objects lie wholly farther than `radius` from wherever this arm can hold the ring's centre. [any] */
 ETHD_API size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, double radius);
 
-/* A scene without those objects, for one arm; the others keep their numbers and give the same touches to the
-   bit. *out is NULL when none would go: the scene itself will do. A setup whose arm or ring reaches farther
-   refuses it, and so does a body. ETHD_E_MEMORY. [main] */
+/* Makes a scene without those objects, for one arm; the others keep their numbers and give the same touches to the
+   bit. *out is NULL when no object would go: use the scene itself. A setup whose arm or ring reaches farther refuses
+   a pruned scene, and no body may have one. ETHD_E_MEMORY. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_prune(const ethd_scene *scene, const ethd_arm *arm, double radius,
                                                       ethd_scene **out, ethd_error *error);
 
-/* Material i of the scene; NULL past the end. [any, rt-safe] */
+/* Returns material i of the scene, NULL past the end. [any, rt-safe] */
 ETHD_API const ethd_material *ethd_scene_material(const ethd_scene *scene, size_t i) ETHD_RT;
 
-/* "halfplane", "circle", ...; "" of none. [any] */
+/* Returns "halfplane", "circle", ..., or "" for any other number. [any] */
 ETHD_API const char *ethd_shape_name(ethd_shape shape);
 
-/* The numbers of a shape as a line of text has them: "X Y R"; "..." stands for more points. "" of none. [any] */
+/* Returns the numbers of a shape as a line of text has them, "X Y R"; "..." means that more points may follow. "" for
+   any other number. [any] */
 ETHD_API const char *ethd_shape_form(ethd_shape shape);
 
 ETHD_END_DECLS

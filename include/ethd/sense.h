@@ -1,5 +1,5 @@
-/* One tick from outside: what a device measured (sense), what it is told (command), and all that was worked out
-   in between (trace). Links from libethd; a driver needs no more of the controller than this.
+/* One tick as seen from outside: what a device measured (sense), what it is commanded (command), and all that was
+   worked out in between (trace). Links from libethd; a driver needs no more of the controller than this.
 
      device --- sense ---> ethd_control_step --- command ---> device
                                   |
@@ -15,21 +15,23 @@ ETHD_BEGIN_DECLS
 
 #define ETHD_BODIES_MAX 4 /* scenes that move */
 
-/* A sense whose numbers are beyond these, or aren't finite, is refused: row INPUT of the fault table. No mechanism
-   gets there, and what is smaller can't overflow in what a tick works out. */
+/* A sense with a number beyond these limits, or with one that isn't finite, is refused as row INPUT of the fault table.
+   No mechanism reaches them, and no smaller number can overflow in a tick. */
 #define ETHD_SENSE_ANGLE_MAX 6.2831853071795865e6 /* rad: a million turns */
 #define ETHD_SENSE_SPEED_MAX 1e6                  /* rad/s, m/s */
 #define ETHD_SENSE_LENGTH_MAX 1e6                 /* m */
 
 /* What the sense holds, as bits of `have`. */
 enum {
-  ETHD_HAVE_DQ = 1,     /* dq: used as it is, else the setup's velocity estimator works on q */
-  ETHD_HAVE_FINGER = 2, /* finger, finger_v: known for now, no fit, no filter */
+  ETHD_HAVE_DQ = 1,     /* dq: used as it is; without it the setup's velocity estimator works on q */
+  ETHD_HAVE_FINGER = 2, /* finger, finger_v: used as they are at this tick, without fit or filter */
   ETHD_HAVE_START = 4,  /* finger: starts the filter there, at rest */
   ETHD_HAVE_CENTRE = 8, /* centre: a reading relative to the ring has arrived, taken at sample_ns */
   ETHD_HAVE_RAYS = 16,  /* rays: a frame of distances has arrived, taken at sample_ns */
   ETHD_HAVE_RING = 32,  /* ring: where the ring stood at sample_ns, as the device knows it */
-  ETHD_HAVE_BODY = 64   /* ETHD_HAVE_BODY << i: bodies i has a new pose; else the last one holds */
+  ETHD_HAVE_BODY = 64,  /* ETHD_HAVE_BODY << i: bodies i has a new pose; else the last one holds; i < ETHD_BODIES_MAX */
+  ETHD_HAVE_WORLD =
+      1024 /* centre: stands in R_0, as a camera sees it, and not relative to the ring; ring isn't asked */
 };
 
 /* X(type, name, count, unit, brief); every field is 8 bytes wide. */
@@ -48,9 +50,11 @@ enum {
   X(double, centre, 2, "m", "reading: finger centre relative to the ring's")          \
   X(double, ring, 2, "m", "ring centre at the reading's instant")                     \
   X(double, rays, 16, "m", "reading: 16 free distances, NaN missing")                 \
-  X(double, bodies, 24, "m, rad, s", "6 of each body: x, y, angle, their speeds")
+  X(double, bodies, 24, "m, rad, s", "6 of each body: x, y, angle, their speeds")     \
+  X(double, finger_noise, 1, "m", "sd of the reading, each axis; 0: as [finger_filter] noise says")
 
-/* X as above. What a tick worked out. Where no contact counts, d_re, d_fe and v_n are NaN. */
+/* X as above. What a tick worked out. Where no contact counts, d_re, d_fe and v_n are NaN. d_fe holds what the
+   transition law returned as ethd_ruling.argument: offset returns d_fr + eps, a law that leaves it alone d_fe. */
 #define ETHD_TRACE_FIELDS(X)                                                       \
   X(int64_t, tick, 1, "1", "steps since create or reset")                          \
   X(int64_t, fault, 1, "1", "0, or the latched ethd_fault")                        \
@@ -75,13 +79,15 @@ enum {
   X(double, fd, 2, "N", "sum of the braking forces")                               \
   X(double, eps, 1, "m", "wall offset of the deepest contact")                     \
   X(double, d_re, 1, "m", "its ring distance")                                     \
-  X(double, d_fe, 1, "m", "its finger distance, beta's argument")                  \
+  X(double, d_fe, 1, "m", "its ruling's argument, on which beta depends")          \
   X(double, v_n, 1, "m/s", "its ring speed along n")                               \
   X(double, tau_raw, 2, "Nm", "torque before the guard")                           \
-  X(double, tau, 2, "Nm", "torque commanded")
+  X(double, tau, 2, "Nm", "torque commanded")                                      \
+  X(double, learnt, 4, "1", "the transition law's memory, where it looks ahead")
 
 #define ETHD_FIELD_1(type, name) type name;
 #define ETHD_FIELD_2(type, name) type name[2];
+#define ETHD_FIELD_4(type, name) type name[4];
 #define ETHD_FIELD_16(type, name) type name[16];
 #define ETHD_FIELD_24(type, name) type name[24];
 #define ETHD_FIELD(type, name, count, unit, brief) ETHD_FIELD_##count(type, name)
@@ -91,7 +97,7 @@ typedef struct ethd_sense {
   ETHD_SENSE_FIELDS(ETHD_FIELD)
 } ethd_sense;
 
-/* One tick, whole: replaying `sense` gives the other fields to the bit. */
+/* One whole tick: replaying `sense` gives the other fields to the bit. */
 typedef struct ethd_trace {
   ethd_sense sense;
   ETHD_TRACE_FIELDS(ETHD_FIELD)

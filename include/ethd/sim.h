@@ -1,18 +1,28 @@
 /* The simulated device: arm, motors, ring, encoders, proximity ring, and a finger with a hand behind it.
    Links from libethd-drivers and libethd.
 
-   Plausible and fitted to the paper's Table 1, not measured: say so wherever a number of it is shown.
-   Plants are data (files *.plant). The finger moves on its voluntary path; what the ring pushes it aside
-   works against the hand's spring and damper about that path; where pad and ring meet, Hunt-Crossley. Steps
-   of power series go from torque update to torque update, cut where a contact changes; ticks and samples are
-   read off them. Everything is deterministic to the bit: every random number is a function of (seed, tap,
-   stream, counter). */
+   Its numbers are plausible and fitted to the paper's Table 1, not measured: say so wherever one is shown.
+   Plants are data (files *.plant). The finger moves on its voluntary path; when the ring pushes it aside, the hand's
+   spring and damper about that path push back. Where pad and ring meet, the force is Hunt and Crossley's. The motion is
+   worked out in steps of power series that reach from one torque update to the next and end where a contact changes;
+   ticks and samples are read from them. Everything is deterministic to the bit: every random number is a function of
+   (seed, tap, stream, counter). */
 #ifndef ETHD_SIM_H
 #define ETHD_SIM_H
 
 #include "ethd/config.h"
 
 ETHD_BEGIN_DECLS
+
+/* What measures the finger. */
+enum {
+  ETHD_READING_CENTRE, /* its centre, by whatever */
+  ETHD_READING_RAYS,   /* frames of 16 distances: the paper's ring */
+  ETHD_READING_ZONES,  /* a ring of on-off light barriers (Yoshikawa and Nagura 1997) */
+  ETHD_READING_NAIL,   /* one distance, to a plate on the nail (Nakagawara 2005, Fang 2009) */
+  ETHD_READING_CAMERA, /* positions in R_0 */
+  ETHD_READING_COUNT
+};
 
 typedef struct ethd_plant {
   double mass[2];                             /* kg at the ring, x (joint 1) and y (joint 2): inertia = mass L^2 */
@@ -29,22 +39,32 @@ typedef struct ethd_plant {
   double pad_stiffness, pad_damping;          /* K N/m, c s/m: K p (1 + c p_dot) */
   double finger_radius, finger_radius_sd;     /* m */
   double rate, latency, noise;                /* Hz, s, m: proximity readings of the centre */
-  int32_t rays;                               /* 0: readings of the centre; 1: frames of 16 rays */
+  int32_t reading;                            /* ETHD_READING_* */
   int32_t reference;                          /* what `ring` of the sense is: 0 true ring, 1 motor side */
   double ray_noise, ray_skew;                 /* m; s from ray 0 to ray 15, in ray order */
-  double start, start_sd;                     /* D0, m before the ring would meet the wall */
-  double overshoot, overshoot_spread;         /* O m, s: aims O exp(s g) behind it */
+  double start, start_sd;                     /* D0, m before the place where the ring would meet the wall */
+  double overshoot, overshoot_spread;         /* O m, s: the finger aims O exp(s g) behind it */
   double ramp_up, ramp_down;                  /* s */
   double lateral_sd;                          /* m, y offset */
   double speed_low, speed_high, speed_spread; /* m/s, m/s, coefficient of variation */
   int32_t metrics_side;                       /* 0: the ring's true speed; 1: the encoder's (motor) side */
   double band_low, band_high;                 /* m/s: valid within 0.2 +- band_low, 0.4 +- band_high */
+  /* of the sensors that a plant file doesn't describe; ethd_plant_finger fills them */
+  int32_t zones;          /* light barriers, 8 to 16 */
+  double zone_reach;      /* m: a barrier is lit while the finger is nearer */
+  double zone_hysteresis; /* share by which it must be further to go dark */
+  double nail_angle;      /* rad: toward the sensor that sees the plate */
+  double nail_step;       /* m: one step of its converter */
 } ethd_plant;
 
 /* Reads a plant file (INI, every key required once, strict). [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_plant_load(const char *path, ethd_plant *out, char message[ETHD_MESSAGE_MAX]);
 
-/* What a plant knows of the device that it is: ETHD_DYNAMICS numbers for a setup. [any] */
+/* Puts another sensor of the finger (ETHD_READING_*) into the plant, with figures of such hardware; the ring's (centre,
+   rays) are the plant's own. sim/finger.c says where they come from. [any] */
+ETHD_API void ethd_plant_finger(ethd_plant *plant, int32_t reading);
+
+/* Returns what a plant knows of its device, for ethd_setup.dynamics. [any] */
 ETHD_API ethd_dynamics ethd_plant_dynamics(const ethd_plant *plant);
 
 /* The hand's voluntary path: the paper's synthetic reach, or samples of a recorded movement. */
@@ -63,18 +83,18 @@ typedef struct ethd_path {
   size_t sample_count;
 } ethd_path;
 
-/* Position and velocity of the path at t. [any, rt-safe] */
+/* Gives position and velocity of the path at t. [any, rt-safe] */
 ETHD_API void ethd_path_at(const ethd_path *path, double t, ethd_vec *x, ethd_vec *v) ETHD_RT;
 
-/* When the synthetic path or the recording ends, s. [any] */
+/* Returns when the synthetic path or the recording ends, s. [any] */
 ETHD_API double ethd_path_end(const ethd_path *path);
 
 /* One tap's circumstances. */
 typedef struct ethd_sim_tap {
-  uint64_t seed, tap;   /* key of every random number */
+  uint64_t seed, tap;   /* on which all random numbers depend */
   double finger_radius; /* m */
   double phase;         /* s: first proximity sample */
-  double commanded;     /* m/s: V drawn */
+  double commanded;     /* m/s: the V that was drawn */
   ethd_path path;
 } ethd_sim_tap;
 
@@ -83,8 +103,8 @@ typedef struct ethd_sim_tap {
 ETHD_API void ethd_sim_draw(const ethd_plant *plant, uint64_t seed, uint64_t tap, double speed, ethd_vec meet,
                             ethd_sim_tap *out);
 
-/* Tolerances with steps of a period: a tap stays within 1e-8 m of the exact solution (any plant), within
-   1e-6 m (plant n). */
+/* Tolerances for steps of at most a period. With the first, a tap stays within 1e-8 m of the exact solution on every
+   plant; with the second, within 1e-6 m on plant n. */
 #define ETHD_SIM_GOLDEN 1e-10
 #define ETHD_SIM_FAST 1e-4
 
@@ -93,29 +113,30 @@ typedef struct ethd_sim_def {
   ethd_arm arm;
   double ring_radius, period;
   double step;      /* s: longest integration step */
-  double tolerance; /* m/s: the last term of a step's power series, over which steps are cut; INFINITY: steps
-                       of order 4, all of length `step` */
+  double tolerance; /* m/s: a step is shortened until the last term of its power series is below this; INFINITY: all
+                       steps have order 4 and length `step` */
 } ethd_sim_def;
 
 typedef struct ethd_sim ethd_sim;
 
-/* A device of this plant, not yet started. ETHD_E_RANGE, ETHD_E_NOT_FINITE with the name, ETHD_E_MEMORY. [main] */
+/* Creates a device of this plant, which isn't started yet. ETHD_E_RANGE, ETHD_E_NOT_FINITE with the name,
+   ETHD_E_MEMORY. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_sim_create(const ethd_sim_def *def, ethd_sim **out, ethd_error *error);
 
-/* NULL is fine. [main] */
+/* Frees the device; NULL is allowed. [main] */
 ETHD_API void ethd_sim_destroy(ethd_sim *sim);
 
-/* Time 0: ring centred on the finger at the start of the path, both at rest. ETHD_E_UNREACHABLE: the
-   path starts out of the arm's reach. [main] */
+/* Starts a tap at time 0 with the ring centred on the finger at the start of the path, both at rest.
+   ETHD_E_UNREACHABLE: the path starts out of the arm's reach. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_sim_start(ethd_sim *sim, const ethd_sim_tap *tap);
 
-/* Measures at the present tick (have START at the first). [rt] */
+/* Measures at the present tick; the first sense has ETHD_HAVE_START. [rt] */
 ETHD_API void ethd_sim_read(ethd_sim *sim, ethd_sense *out) ETHD_RT;
 
 /* Advances by one period: the torque, Nm, takes effect `delay` after the tick. [rt] */
 ETHD_API void ethd_sim_write(ethd_sim *sim, const ethd_command *command) ETHD_RT;
 
-/* Truth at the present tick. X as in ETHD_TRACE_FIELDS. */
+/* The true state at the present tick. X as in ETHD_TRACE_FIELDS. */
 #define ETHD_TRUTH_FIELDS(X)                                                        \
   X(double, t, 1, "s", "time of the tap")                                           \
   X(double, ring, 2, "m", "ring centre")                                            \
@@ -132,7 +153,7 @@ typedef struct ethd_truth {
   ETHD_TRUTH_FIELDS(ETHD_FIELD)
 } ethd_truth;
 
-/* What the device is like at the present tick, whatever its sensors say. [any] between ticks. */
+/* Gives the device's true state at the present tick, whatever its sensors say. [any], between ticks. */
 ETHD_API void ethd_sim_truth(const ethd_sim *sim, ethd_truth *out);
 
 ETHD_END_DECLS

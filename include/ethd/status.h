@@ -17,7 +17,7 @@ ETHD_BEGIN_DECLS
   X(E_NOT_FINITE, -3, "a value is not a finite number")                        \
   X(E_MEMORY, -4, "no memory")                                                 \
   X(E_UNKNOWN, -5, "an unknown name")                                          \
-  X(E_DUPLICATE, -6, "a name or key stands twice")                             \
+  X(E_DUPLICATE, -6, "a name or key occurs twice")                             \
   X(E_SYNTAX, -7, "text that cannot be read")                                  \
   X(E_GEOMETRY, -8, "a shape that cannot be: degenerate or self-intersecting") \
   X(E_UNREACHABLE, -9, "out of the arm's reach")                               \
@@ -43,7 +43,7 @@ typedef enum ethd_status {
 #undef ETHD_STATUS_VALUE
 } ethd_status;
 
-/* The sentence of a status; "an unknown status" for any other number. [any, rt-safe] */
+/* Returns the sentence of a status, or "an unknown status" for any other number. [any, rt-safe] */
 ETHD_API const char *ethd_status_sentence(ethd_status status) ETHD_RT;
 
 #define ETHD_MESSAGE_MAX 512 /* bytes: room for one line to people about a failure */

@@ -1,6 +1,6 @@
 /* Joint speed from encoder positions, one estimator per joint. Links from libethd.
 
-   Lag against noise decides what a controller survives: ethd-check prints its bounds. */
+   Less noise costs more lag, and both bound the gains that stay stable: ethd-check prints these bounds. */
 #ifndef ETHD_VELOCITY_H
 #define ETHD_VELOCITY_H
 
@@ -39,25 +39,25 @@ typedef struct ethd_velocity {
 /* State of one joint: numbers only. Zeroed: nothing known. */
 typedef struct ethd_velocity_state {
   double q[ETHD_VELOCITY_WINDOW_MAX];  /* rad: last positions, a ring */
-  double dt[ETHD_VELOCITY_WINDOW_MAX]; /* s: from the sample before to each */
+  double dt[ETHD_VELOCITY_WINDOW_MAX]; /* s: from the previous sample to each */
   double speed;                        /* rad/s: the last result */
   double position, cov[3];             /* kalman: rad; rad^2, rad^2/s, rad^2/s^2 */
   uint32_t count, head;                /* samples held, the newest's index */
 } ethd_velocity_state;
 
-/* Checks p against the method's table and the period (1e-6 to 1 s), works out the coefficients; out is
+/* Checks p against the method's table, and the period (1e-6 to 1 s), and works out the coefficients; out is
    untouched on failure. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_velocity_prepare(ethd_velocity_method method, const double *p, double period,
                                                            ethd_velocity *out, ethd_error *error);
 
-/* Next speed, rad/s. q: rad; torque: the joint's last commanded torque, Nm (kalman only); dt > 0: s
+/* Returns the next speed, rad/s. q: rad; torque: the joint's last commanded torque, Nm (kalman only); dt > 0: s
    since the last step, a whole number of periods when ticks were missed. After a zeroed state the first
-   call gives 0 (no difference yet); a state with count = 0 but speed set starts from that speed. Nothing
-   accumulates over time. What isn't finite stays until the state is zeroed. [rt] */
+   call gives 0 (no difference yet); a state with count = 0 but speed set starts from that speed. Errors don't
+   accumulate over time, but a number that isn't finite stays until the state is zeroed. [rt] */
 ETHD_API double ethd_velocity_step(const ethd_velocity *velocity, ethd_velocity_state *state, double q, double torque,
                                    double dt) ETHD_RT;
 
-/* By how much the speed lags under slow constant acceleration (kalman: all of it unknown), s:
+/* Returns by how much the speed lags under slow constant acceleration (kalman: all of it unknown), s:
    difference T/2, lowpass T/2 + T (1 - a) / a, lsq and, at its longest, foaw (window - 1) T/2. [any] */
 ETHD_API double ethd_velocity_lag(const ethd_velocity *velocity);
 

@@ -1,11 +1,11 @@
 #include "control/candidates.h"
 
-/* Feet on edges of one object that face the same way within this are one contact: a curve drawn with short
-   edges has several local minima around each of its corners, and would push as many times. */
+/* Touches of one object whose normals differ by less than this angle are one contact, the deepest. A curve drawn with
+   short edges has several local minima around each of its corners and would push as many times. */
 #define SAME_WAY 0.96592582628906829 /* cos 15 deg */
 
-/* Everything that can count lies within this range of the ring's centre: d_re < near, or d_fe <= d_beta however far
-   ahead the finger is. */
+/* Returns the distance from the ring's centre within which all that can count lies: d_re < near, or d_fr <= d_beta
+   however far ahead the finger is. */
 static double range_of(const ethd__tick *t) ETHD_RT {
   double behind = t->plan->d_beta + ethd_vec_norm(ethd_vec_sub(t->finger.x, t->ring.x));
   return t->plan->setup.ring_radius + (behind > t->near ? behind : t->near);
@@ -15,7 +15,7 @@ static double range_of(const ethd__tick *t) ETHD_RT {
 typedef struct view {
   const ethd_scene *scene;
   int place;
-  ethd__frame frame;
+  ethd__frame frame; /* of a body */
   ethd_vec x;
 } view;
 
@@ -34,7 +34,7 @@ static void append(ethd__candidates *c, const view *from, const ethd_touch *touc
   k->v = ethd__frame_velocity(&from->frame, k->touch.point);
 }
 
-/* Of two touches that face the same way the deeper one, which comes first, stays. */
+/* Returns true if an earlier touch, which is deeper, is on the same object and faces the same way. */
 static bool is_same_face(const ethd_touch *touches, int i) ETHD_RT {
   for (int k = 0; k < i; k++)
     if (touches[k].object == touches[i].object && ethd_vec_dot(touches[k].n, touches[i].n) > SAME_WAY) return true;
@@ -72,8 +72,8 @@ static void ask(const view *from, ethd__state *state, double range, ethd__candid
 
 /* ---- which touch continues which contact ---- */
 
-/* The closest touch and contact of the same object among those that are open, at most `limit` m apart;
-   the touch's index, -1: none. */
+/* Finds the closest pair of a touch and an open contact on the same object, at most `limit` m apart. Returns the
+   touch's index, -1 if there is no such pair; *slot is the contact's. */
 static int closest(const ethd__state *state, unsigned open, double limit, const ethd__candidates *c,
                    int *slot) ETHD_RT {
   int best = -1;
@@ -100,8 +100,8 @@ static int index_of(const ethd__candidates *c, const ethd_touch *touch, int plac
   return -1;
 }
 
-/* A contact that jumped or is out of reach: the scene says which local minimum it is. It lives on until its state is
-   transparent. */
+/* Continues a contact that no near touch matches, because it jumped or is out of range: the scene finds the local
+   minimum nearest to it. If that one isn't a candidate, the contact goes on until its state is transparent. */
 static void follow(const view *from, const ethd__slot *slot, int i, ethd__candidates *c) ETHD_RT {
   ethd_touch touch;
   ethd_scene_follow(from->scene, slot->object, from->x, slot->point, &touch);
@@ -113,34 +113,35 @@ static void follow(const view *from, const ethd__slot *slot, int i, ethd__candid
   }
 }
 
-/* A surface of a new scene is the old one's where this tick's touches of the two differ by no more than: */
+/* A surface of a new scene counts as the old scene's if this tick's touches of both differ by no more than this. */
 #define SAME_PLACE 1e-6 /* m, and rad of the normals */
 
 static bool continues(const ethd__slot *slot, const ethd__candidate *k) ETHD_RT {
-  /* a thin wall's normal is the one on whose side the contact began */
+  /* a thin wall keeps the normal of the side on which the contact began */
   double side = slot->side != 0 && k->touch.side == -slot->side ? -1 : 1;
   return k->slot < 0 && k->place == slot->place && ethd_vec_norm(ethd_vec_sub(k->local, slot->point)) <= SAME_PLACE &&
          ethd_vec_norm(ethd_vec_sub(ethd_vec_scale(side, k->touch.n), slot->past.n)) <= SAME_PLACE;
 }
 
-/* Contacts whose scene was replaced go on where the new one has the same surface, whatever its number there, and end
-   elsewhere. */
-static void settle_orphans(ethd__state *state, ethd__candidates *c) ETHD_RT {
+/* Contacts whose scene was replaced go on if the new scene has the same surface, whatever its number there, and end if
+   not. Returns the other contacts' slots. */
+static unsigned settle_orphans(ethd__state *state, ethd__candidates *c) ETHD_RT {
   for (unsigned left = state->orphans & c->live; left; left &= left - 1) {
     int i = __builtin_ctz(left), k = 0;
     while (k < c->count && !continues(&state->slots[i], &c->at[k])) k++;
     state->slots[i].used = k < c->count;
     if (k < c->count) c->at[k].slot = i;
   }
+  unsigned others = c->live & ~state->orphans;
   c->live = slots_in_use(state);
+  state->orphans = 0;
+  return others;
 }
 
-/* The closest pairs first, so that a contact that ends doesn't leave its state to another one. The rest
-   stays open. */
+/* Pairs touches with contacts, the closest first, so that a contact that ends doesn't pass its state on to another.
+   Returns the slots that stay open. */
 static unsigned match(const ethd__plan *plan, ethd__state *state, ethd__candidates *c) ETHD_RT {
-  if (state->orphans) settle_orphans(state, c);
-  unsigned open = c->live & ~state->orphans;
-  state->orphans = 0;
+  unsigned open = state->orphans ? settle_orphans(state, c) : c->live;
   for (int i = 0, k; (k = closest(state, open, plan->setup.ring_radius, c, &i)) >= 0;) {
     c->at[k].slot = i;
     open &= ~(1u << i);
@@ -148,7 +149,7 @@ static unsigned match(const ethd__plan *plan, ethd__state *state, ethd__candidat
   return open;
 }
 
-/* A thin wall's side is the one on which the contact began, until the ring has gone round an end. */
+/* Keeps the side of a thin wall on which the contact began, until the ring has gone round an end. */
 static void keep_side(ethd_touch *touch, const ethd__slot *slot) ETHD_RT {
   if (slot->side == 0 || touch->side != -slot->side) return;
   touch->n = ethd_vec_scale(-1, touch->n);
@@ -165,13 +166,14 @@ static void sort(ethd__candidates *c) ETHD_RT {
   }
 }
 
-static view view_of(const ethd__tick *t, int place) ETHD_RT {
-  view v;
-  v.scene = ethd__place_scene(&t->plan->setup, place);
-  v.place = place;
-  v.frame = ethd__frame_of(&t->state->places[place]);
-  v.x = ethd__frame_in(&v.frame, t->ring.x);
-  return v;
+/* What stands still needs no frame: it is R_0's, and nobody asks for it. */
+static void look_from(const ethd__tick *t, int place, view *out) ETHD_RT {
+  out->scene = ethd__place_scene(&t->plan->setup, place);
+  out->place = place;
+  out->x = t->ring.x;
+  if (place == 0) return;
+  out->frame = ethd__frame_of(&t->state->places[place]);
+  out->x = ethd__frame_in(&out->frame, t->ring.x);
 }
 
 void ethd__candidates_collect(const ethd__tick *t, ethd__candidates *out) {
@@ -183,7 +185,7 @@ void ethd__candidates_collect(const ethd__tick *t, ethd__candidates *out) {
   out->live = slots_in_use(state);
   for (int place = 0; place < t->plan->places; place++) {
     if (!ethd__place_scene(&t->plan->setup, place) || !state->places[place].there) continue;
-    views[place] = view_of(t, place);
+    look_from(t, place, &views[place]);
     ask(&views[place], state, range, out);
   }
   for (unsigned open = match(t->plan, state, out); open; open &= open - 1) {

@@ -1,11 +1,11 @@
 /* The touches that a tick looks at: what is newly near, and the live contacts wherever they are. */
-#ifndef ETHD__CANDIDATES_H
-#define ETHD__CANDIDATES_H
+#ifndef ETHD__CONTROL_CANDIDATES_H
+#define ETHD__CONTROL_CANDIDATES_H
 
 #include "control/context.h"
 #include "control/places.h"
 
-#define ETHD__TOUCHES (ETHD_CONTACTS_MAX + 8) /* looked at within reach in one place; the deepest */
+#define ETHD__TOUCHES (ETHD_CONTACTS_MAX + 8) /* the most touches that are looked at in one place, the deepest */
 #define ETHD__CANDIDATES (ETHD__PLACES * ETHD__TOUCHES + ETHD_CONTACTS_MAX)
 
 typedef struct ethd__candidate {
@@ -20,11 +20,11 @@ typedef struct ethd__candidates {
   ethd__candidate at[ETHD__CANDIDATES]; /* the deepest first; equal depths keep the scenes' order */
   int count;
   unsigned live; /* slots in use as the tick began, as bits */
-  int overflow;  /* touches within reach that weren't looked at */
+  int overflow;  /* touches within range that weren't looked at */
   bool queried;  /* a scene was asked */
 } ethd__candidates;
 
-/* Ring and finger as the tick has estimated them. [rt] */
+/* Collects the candidates for ring and finger as the tick has estimated them. [rt] */
 void ethd__candidates_collect(const ethd__tick *t, ethd__candidates *out) ETHD_RT;
 
 #endif

@@ -1,3 +1,13 @@
+/* What is touched, and what that does to the torque.
+
+   1. The candidates are the touches near the ring and those that continue a contact, deepest first (candidates.c).
+   2. Contacts that no candidate continues end.
+   3. Each candidate that could count, up to ETHD_CONTACTS_MAX of them, gets a slot: that of its contact, a free one, or
+      the shallowest contact's.
+   4. The transition law rules: share of tracking (beta), share of the wall, offset, damping, feed and shift. A contact
+      that doesn't count by its ruling gives its slot back.
+   5. The contact law gives the force of the wall at its offset, to which the passivity observer may add damping.
+   6. The forces of all contacts are added up. The smallest beta counts, with the shift of its contact. */
 #include "control/contacts.h"
 
 #include "control/candidates.h"
@@ -8,16 +18,16 @@
 
 /* ---- one contact ---- */
 
-/* A contact as it is worked out. */
-typedef struct work {
+/* A contact while it is worked out. */
+typedef struct contact_work {
   const ethd__candidate *candidate;
   ethd__slot *slot;
   ethd_contact contact;
   ethd_ruling ruling;
   ethd_facts facts; /* for a law that looks ahead */
-} work;
+} contact_work;
 
-/* Without its age. */
+/* Measures the contact at a candidate, all but its age. */
 static ethd_contact measure(const ethd__tick *t, const ethd__candidate *k) ETHD_RT {
   const ethd_touch *touch = &k->touch;
   const ethd_setup *setup = &t->plan->setup;
@@ -45,8 +55,8 @@ static bool ruling_is_good(const ethd_ruling *r) ETHD_RT {
          isfinite(r->argument);
 }
 
-/* Who rules. */
-static bool rule(const ethd__tick *t, work *w) ETHD_RT {
+/* Asks the transition law who rules. */
+static bool rule(const ethd__tick *t, contact_work *w) ETHD_RT {
   const ethd_setup *setup = &t->plan->setup;
   ethd_ruling *r = &w->ruling;
   if (t->plan->range) {
@@ -60,7 +70,7 @@ static bool rule(const ethd__tick *t, work *w) ETHD_RT {
   return ethd__law_is_good(t->state, ETHD_TRANSITION, status, ruling_is_good(r));
 }
 
-/* Entering until v < -h, leaving until v > h. */
+/* Returns true while the ring enters. It counts as leaving once v < -h, and as entering again once v > h. */
 static bool entering(ethd__slot *slot, double v, double h) ETHD_RT {
   if (v < -h)
     slot->leaving = true;
@@ -70,7 +80,7 @@ static bool entering(ethd__slot *slot, double v, double h) ETHD_RT {
 }
 
 /* Force of the (offset) wall along n, N; never attractive. */
-static bool wall(const ethd__tick *t, const work *w, double *force) ETHD_RT {
+static bool wall(const ethd__tick *t, const contact_work *w, double *force) ETHD_RT {
   const ethd_contact *c = &w->contact;
   const double *p = ethd__contact_p(t->plan, c->body, w->candidate->touch.material);
   bool in = entering(w->slot, c->v, t->plan->setup.v_hysteresis);
@@ -88,8 +98,8 @@ static void add_force(double to[2], double force, ethd_vec n) ETHD_RT {
   to[1] += force * n.y;
 }
 
-/* To what the other contacts gave. */
-static void add(ethd__tick *t, const work *w, double force) ETHD_RT {
+/* Adds a contact to what the other contacts gave. */
+static void add(ethd__tick *t, const contact_work *w, double force) ETHD_RT {
   const ethd_contact *c = &w->contact;
   const ethd_ruling *r = &w->ruling;
   ethd_trace *out = t->trace;
@@ -110,7 +120,7 @@ static void add(ethd__tick *t, const work *w, double force) ETHD_RT {
   add_force(out->fd, -r->damping * c->v, c->n);
 }
 
-/* Whose the slot is stands in it before a law may fail. */
+/* Writes into the slot whose surface it is, before a law can fail. */
 static void claim(ethd__slot *slot, const ethd__candidate *k) ETHD_RT {
   slot->object = k->touch.object;
   slot->place = k->place;
@@ -123,7 +133,7 @@ static void change_state(ethd__slot *slot, int32_t state) ETHD_RT {
   slot->state = state;
 }
 
-/* What a new plan may want to know of a contact: only the old one's run at a swap, on the scratch, tells. */
+/* Keeps what a new plan may adopt of a contact. Only the old plan's run at a swap, on the scratch, needs to do so. */
 static void tell(ethd__slot *slot, const ethd_contact *c, const ethd_ruling *r) ETHD_RT {
   slot->past.n = c->n;
   slot->past.offset = r->offset;
@@ -131,8 +141,15 @@ static void tell(ethd__slot *slot, const ethd_contact *c, const ethd_ruling *r) 
   slot->past.v = c->v;
 }
 
+/* What acts beside the wall and can reach a finger, N along n. Where a law renders no wall nobody is there to take what
+   its feed gives: as with tracking's torque it becomes friction's heat and the ring's motion. */
+static double bare_force(const ethd_ruling *r, double v) ETHD_RT {
+  double braking = -r->damping * v;
+  return r->share > 0 ? r->feed + braking : braking;
+}
+
 /* Runs the laws on one contact. False: one of them failed. */
-static bool work_out(ethd__tick *t, work *w) ETHD_RT {
+static bool work_out(ethd__tick *t, contact_work *w) ETHD_RT {
   ethd__slot *slot = w->slot;
   ethd_contact *c = &w->contact;
   const ethd_ruling *r = &w->ruling;
@@ -143,7 +160,8 @@ static bool work_out(ethd__tick *t, work *w) ETHD_RT {
   slot->used = c->d_re < t->near || r->argument <= c->d_beta || r->state != ETHD_TRANSPARENT;
   if (!slot->used) return true;
   if (!wall(t, w, &force)) return false;
-  if (t->plan->watches_energy) force += ethd__passivity(t, slot, c, force, r->feed - r->damping * c->v);
+  slot->watched &= t->plan->watches_energy;
+  if (t->plan->watches_energy) force += ethd__passivity(t, slot, c, force, bare_force(r, c->v));
   change_state(slot, r->state);
   if (t->state == t->scratch) tell(slot, c, r);
   slot->periods += (int64_t)rint(c->period / t->plan->setup.period); /* whole periods, so that the age doesn't drift */
@@ -166,7 +184,7 @@ static ethd__slot *free_slot(const ethd__tick *t) ETHD_RT {
   return NULL;
 }
 
-/* Contacts that no touch continues end here. */
+/* Ends the contacts that no touch continues. */
 static void end_lost(ethd__state *state, const ethd__candidates *c) ETHD_RT {
   unsigned lost = c->live;
   for (int k = 0; k < c->count; k++)
@@ -185,6 +203,7 @@ static void no_room(ethd__tick *t, int count) ETHD_RT {
 
 /* Frees the slot of the shallowest contact, which comes after candidate k in the list. */
 static void make_room(ethd__state *state, ethd__candidates *c, int k) ETHD_RT {
+  /* unreachable: the loop's end, for fewer than all slots belong to candidates up to k */
   for (int i = c->count - 1; i > k; i--) {
     if (c->at[i].slot < 0) continue;
     state->slots[c->at[i].slot].used = false;
@@ -212,21 +231,25 @@ static void begin(ethd__tick *t) ETHD_RT {
   t->shift = (ethd_vec){0, 0};
 }
 
-static double near_of(const ethd__tick *t) ETHD_RT {
+/* Sets t->near. False: the law failed. */
+static bool look_ahead(ethd__tick *t) ETHD_RT {
   const ethd__plan *plan = t->plan;
-  if (!plan->range) return plan->d_beta;
-  double range = plan->range(plan->setup.transition_p, ethd_vec_norm(t->ring.v));
-  return range > plan->d_beta && range < (double)INFINITY ? range : plan->d_beta;
+  double range;
+  t->near = plan->d_beta;
+  if (!plan->range) return true;
+  ethd_status status = ethd__fence_range(plan, t->state, ethd_vec_norm(t->ring.v), &range);
+  if (range > plan->d_beta && range < (double)INFINITY) t->near = range;
+  return ethd__law_is_good(t->state, ETHD_TRANSITION, status, true);
 }
 
 static bool could_count(const ethd_contact *c, double near, const ethd__slot *slot) ETHD_RT {
   return c->d_re < near || c->d_fr <= c->d_beta || (slot && slot->state != ETHD_TRANSPARENT);
 }
 
-/* Candidates come from the deepest to the shallowest: where there is no room, the shallowest go. */
+/* Takes the candidates from the deepest to the shallowest, so that the shallowest go when there is no room. */
 static bool work_out_all(ethd__tick *t, ethd__candidates *c) ETHD_RT {
   for (int k = 0, taken = 0; k < c->count; k++) {
-    work w;
+    contact_work w;
     w.candidate = &c->at[k];
     w.contact = measure(t, w.candidate);
     w.slot = c->at[k].slot < 0 ? NULL : &t->state->slots[c->at[k].slot];
@@ -247,7 +270,7 @@ bool ethd__contacts(ethd__tick *t) {
   ethd__candidates c;
   begin(t);
   if (!t->plan->places) return true;
-  t->near = near_of(t);
+  if (!look_ahead(t)) return false;
   ethd__candidates_collect(t, &c);
   t->trace->queried = c.queried;
   t->state->counters.queried += (uint64_t)c.queried;

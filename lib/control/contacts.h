@@ -3,8 +3,8 @@
 
 #include "control/context.h"
 
-/* Ring and finger -> what is touched: trace->beta, fe, fd and the row of the deepest contact; t->shift. False: a law
-   failed, which is noted. [rt] */
+/* Works out from ring and finger what is touched: trace->beta, fe and fd, t->shift, and the trace's fields of the
+   deepest contact. Returns false if a law failed, which is noted. [rt] */
 bool ethd__contacts(ethd__tick *t) ETHD_RT;
 
 #endif

@@ -9,7 +9,8 @@ static void push(ethd_control *control, const ethd_event *event) ETHD_RT {
   if (!ethd__events_push(&control->events, event)) control->state.counters.events_dropped++;
 }
 
-/* A posted setup is taken only while its event has room: a replaced scene is never lost. */
+/* Takes a posted setup, but only while there is room for its events, so that no replaced scene is lost. Returns the old
+   plan, NULL if nothing was taken. */
 static const ethd__plan *take_posted(ethd_control *control) ETHD_RT {
   if (!atomic_load_explicit(&control->posted, memory_order_acquire)) return NULL;
   if (ethd__events_room(&control->events) < ETHD__PLACES) return NULL;
@@ -19,8 +20,8 @@ static const ethd__plan *take_posted(ethd_control *control) ETHD_RT {
   return from;
 }
 
-/* The scene of a place of the replaced setup, if nothing uses it any more; a scene in two places is
-   handed back once. */
+/* Returns the replaced setup's scene in this place if nothing uses it any more; one that was in two places is returned
+   for the first only. */
 static const ethd_scene *released(const ethd_setup *from, const ethd_setup *now, int place) ETHD_RT {
   const ethd_scene *scene = ethd__place_scene(from, place);
   for (int i = 0; i < ETHD__PLACES; i++)
@@ -28,7 +29,7 @@ static const ethd_scene *released(const ethd_setup *from, const ethd_setup *now,
   return scene;
 }
 
-/* [main] may free the old scenes and post again only when this tick is through with both. */
+/* Hands the old scenes back and lets [main] post again, at the end of the tick, which needs both plans till then. */
 static void give_back(ethd_control *control, int64_t tick, const ethd__plan *from) ETHD_RT {
   const ethd_setup *now = &control->plans[control->ruling].setup;
   push(control, &(ethd_event){.kind = ETHD_EVENT_TAKEN, .tick = tick, .scene = released(&from->setup, now, 0)});
@@ -39,7 +40,7 @@ static void give_back(ethd_control *control, int64_t tick, const ethd__plan *fro
   atomic_store_explicit(&control->posted, 0, memory_order_release);
 }
 
-/* Periods add up to the clean time only within rounding. */
+/* The tolerance is for the rounding of a sum of periods. */
 static bool clean_enough(const ethd_control *control) ETHD_RT {
   double clean_time = control->plans[control->ruling].setup.limits.clean_time;
   return ethd_control_clean(control) >= clean_time * (1 - 1e-9);
@@ -54,17 +55,17 @@ static bool take_clear(ethd_control *control) ETHD_RT {
   return true;
 }
 
-/* Clamps are frequent: an event when they last. */
+/* Clamps are frequent, so they make an event only when they last. */
 #define TOLD_WHEN_GRAVE (ETHD_FAULT_BIT(ETHD_FAULT_TORQUE) | ETHD_FAULT_BIT(ETHD_FAULT_TORQUE_RATE))
 
-/* Counts and tells the occurrences that begin at this tick. */
+/* Counts the occurrences that begin at this tick and makes their events. */
 static void report(ethd_control *control, int64_t tick) ETHD_RT {
   ethd__state *s = &control->state;
   const ethd__plan *plan = &control->plans[control->ruling];
-  const ethd__rows *met = &s->met.rows;
+  const ethd__fault_rows *met = &s->met.rows;
   bool same = met->faults == s->before.faults && met->grave == s->before.grave;
   if (same && (plan->setup.limits.latch || !ethd__rows_any(met))) return;
-  ethd__rows begun = ethd__rows_begun(plan, s);
+  ethd__fault_rows begun = ethd__rows_begun(plan, s);
   for (int64_t left = begun.faults | begun.grave; left; left &= left - 1) {
     int32_t row = __builtin_ctzll((uint64_t)left);
     int64_t bit = left & -left;
@@ -79,7 +80,7 @@ static void report(ethd_control *control, int64_t tick) ETHD_RT {
 static ethd_status finish(const ethd_trace *out, ethd_command *command) ETHD_RT {
   command->torque[0] = out->tau[0];
   command->torque[1] = out->tau[1];
-  /* not while the guard still damps the ring: a device takes safe for zero torque */
+  /* false while the guard still damps the ring, because a device takes `safe` for zero torque */
   command->safe = out->fault != ETHD_FAULT_NONE && out->tau[0] == 0 && out->tau[1] == 0;
   command->reserved = 0;
   return ethd__rows_status((ethd_fault)out->fault);

@@ -1,6 +1,7 @@
 #include "control/estimate.h"
 
 #include "control/finger_watch.h"
+#include "estimate/filter_methods.h"
 #include "estimate/fit_methods.h"
 
 /* v - v is 0 for a finite number, and NaN for any other. */
@@ -8,7 +9,7 @@ static bool is_finite(double v) ETHD_RT { return v - v == 0; }
 
 /* ---- ring ---- */
 
-/* A torque out of all measure, which an estimator may take as its input, must not spoil it for ever. */
+/* An enormous torque, which an estimator may take as its input, must not spoil its state for good. */
 static double joint_speed(const ethd__tick *t, int i) ETHD_RT {
   ethd_velocity_state *s = &t->state->velocity[i];
   double speed = ethd_velocity_step(&t->plan->velocity, s, t->sense->q[i], t->state->guard.last[i], t->dt);
@@ -26,15 +27,15 @@ static void remember(ethd__state *state, int64_t time_ns, ethd_vec x) ETHD_RT {
   state->history[i].x = x;
 }
 
-/* b - a for any a <= b. */
+/* Returns b - a in s, for any a <= b. */
 static double seconds(int64_t a, int64_t b) ETHD_RT { return 1e-9 * (double)((uint64_t)b - (uint64_t)a); }
 
-/* An instant `s` seconds before another one; wraps round like the clock. */
+/* Returns the instant `s` seconds before another one; wraps round like the clock. */
 static int64_t before(int64_t instant, double s) ETHD_RT {
   return (int64_t)((uint64_t)instant - (uint64_t)(int64_t)(1e9 * s));
 }
 
-/* Where the ring stood at an earlier instant: linear between ticks, held beyond the history. */
+/* Returns where the ring was at an earlier instant: linear between ticks, constant before the history. */
 static ethd_vec ring_at(const ethd__state *state, int64_t time_ns) ETHD_RT {
   uint64_t now = state->remembered - 1;
   uint64_t oldest = now >= ETHD__HISTORY ? now - ETHD__HISTORY + 1 : 0;
@@ -51,14 +52,14 @@ static ethd_vec ring_at(const ethd__state *state, int64_t time_ns) ETHD_RT {
 
 /* ---- the finger's readings ---- */
 
-/* Where the ring stood when the reading was taken, as the filter's `reference` says. */
+/* What the reading is relative to: where the ring stood when it was taken, as the filter's `reference` says. */
 static ethd_vec reference(const ethd__tick *t) ETHD_RT {
   if (t->plan->filter.reference == ETHD_REFERENCE_TICK) return t->ring.x;
   if (t->sense->have & ETHD_HAVE_RING) return ethd_vec_of(t->sense->ring);
   return ring_at(t->state, t->sense->sample_ns);
 }
 
-/* Finger velocity minus mean ring velocity while the frame's rays were taken. */
+/* Returns the finger's velocity minus the ring's mean velocity while the frame's rays were taken. */
 static ethd_vec relative_velocity(const ethd__tick *t) ETHD_RT {
   const ethd__plan *plan = t->plan;
   ethd_vec first = ring_at(t->state, before(t->sense->sample_ns, plan->lag_most));
@@ -74,7 +75,11 @@ static ethd_status fit(const ethd__tick *t, ethd_finger *out) ETHD_RT {
   return ethd__fit_moving(&plan->fit, t->sense->rays, plan->setup.ray_lag, relative_velocity(t), out);
 }
 
-/* The reading of this tick, relative to the ring; false: it isn't usable. */
+static bool is_world(const ethd__tick *t) ETHD_RT {
+  return (t->sense->have & (ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD)) == (ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD);
+}
+
+/* The reading of this tick, relative to the ring, or to R_0 where it is the world's; false: it isn't usable. */
 static bool reading(const ethd__tick *t, ethd_vec *out) ETHD_RT {
   if (t->sense->have & ETHD_HAVE_CENTRE) {
     *out = ethd_vec_of(t->sense->centre);
@@ -87,32 +92,44 @@ static bool reading(const ethd__tick *t, ethd_vec *out) ETHD_RT {
   return true;
 }
 
-/* The reading is from the past and isn't the last one once more. Stamps are compared, because ages, as sums of
-   periods, couldn't tell the same reading from one that is newer by their rounding. */
+/* Returns true if the reading isn't from the future and isn't the last one again. Stamps are compared because ages are
+   sums of periods, whose rounding could make the same reading look newer. */
 static bool is_new(const ethd__tick *t) ETHD_RT {
   return t->sense->sample_ns <= t->sense->time_ns &&
          (t->state->filter.used == 0 || t->sense->sample_ns != t->state->reading_ns);
 }
 
+/* NaN fails. */
+static bool noise_is_possible(const ethd__tick *t) ETHD_RT {
+  return t->sense->finger_noise >= 0 && t->sense->finger_noise <= ETHD_SENSE_LENGTH_MAX;
+}
+
+/* Whether a reading puts the finger's centre outside the ring. */
+static bool is_outside(const ethd__tick *t, ethd_vec reading) ETHD_RT {
+  if (is_world(t)) reading = ethd_vec_sub(reading, ring_at(t->state, t->sense->sample_ns));
+  return !(ethd_vec_norm(reading) <= t->plan->setup.ring_radius);
+}
+
 /* Corrects the filter. A reading is dropped (false) when it puts the finger's centre outside the ring or when the
    filter's gate rejects it. */
-static bool use(const ethd__tick *t, ethd_vec relative) ETHD_RT {
+static bool use(const ethd__tick *t, ethd_vec reading) ETHD_RT {
   const ethd__plan *plan = t->plan;
   ethd_filter_state *filter = &t->state->filter;
-  bool outside = plan->watches_finger && !(ethd_vec_norm(relative) <= plan->setup.ring_radius);
+  bool outside = plan->watches_finger && is_outside(t, reading);
   uint32_t gated = filter->gated;
-  ethd_vec x = ethd_vec_add(relative, reference(t));
+  ethd_vec x = is_world(t) ? reading : ethd_vec_add(reading, reference(t));
   double age = seconds(t->sense->sample_ns, t->sense->time_ns);
-  ethd_status status = outside ? ETHD_STALE : ethd_filter_update(&plan->filter, filter, x, age);
+  ethd_status status =
+      outside ? ETHD_STALE : ethd__filter_update(&plan->filter, filter, x, age, t->sense->finger_noise);
   if (!is_finite(filter->x[0] + filter->x[1]) || !is_finite(filter->v[0] + filter->v[1]))
-    memset(filter, 0, sizeof *filter); /* spoilt; it starts anew with the next reading */
+    memset(filter, 0, sizeof *filter); /* unreachable: likewise; it would start anew with the next reading */
   if (plan->watches_finger) ethd__finger_doubt(t->state, outside || filter->gated != gated);
   return status == ETHD_OK;
 }
 
 static void correct(const ethd__tick *t) ETHD_RT {
-  ethd_vec relative;
-  if (!is_new(t) || !reading(t, &relative) || !use(t, relative)) {
+  ethd_vec seen;
+  if (!is_new(t) || !noise_is_possible(t) || !reading(t, &seen) || !use(t, seen)) {
     t->state->counters.readings_dropped++;
     return;
   }
@@ -133,7 +150,7 @@ static void filter(const ethd__tick *t) ETHD_RT {
   if (t->plan->watches_finger) ethd__finger_watch(t);
 }
 
-/* A finger that was never seen stands in the ring and moves with it: there is nothing to follow. */
+/* A finger that was never seen is taken to be in the ring's centre and to move with it, so there is nothing to follow. */
 static void finger(ethd__tick *t) ETHD_RT {
   t->finger = t->ring;
   if (t->sense->have & ETHD_HAVE_FINGER) {

@@ -3,7 +3,7 @@
 
 #include "control/context.h"
 
-/* Sense -> where ring and finger are: joint speeds, pose, ring, finger. [rt] */
+/* Works out from the sense where ring and finger are: joint speeds, pose, ring, finger. [rt] */
 void ethd__estimate(ethd__tick *t) ETHD_RT;
 
 #endif

@@ -1,10 +1,16 @@
+/* The torque of the laws, tau = beta tau_t + J^T sum (share F_e - damping v + feed) n   (eq. 5 and figure 7).
+
+   1. Ring and finger are estimated from the sense (estimate.c).
+   2. The contacts give beta, the sums of their forces, fe (with feed) and fd (damping), and a shift (contacts.c).
+   3. The tracking law turns the finger's place and velocity relative to the ring, with the shift, into tau_t.
+   4. While the finger isn't seen, beta fades (finger_watch.c). */
 #include "control/evaluate.h"
 
 #include "control/contacts.h"
 #include "control/estimate.h"
 #include "control/rows.h"
 
-/* The tracking law's torque before beta, tau. */
+/* Asks the tracking law for its torque before beta, tau. */
 static bool track(const ethd__tick *t, double tau[2]) ETHD_RT {
   const ethd_setup *setup = &t->plan->setup;
   ethd_trace *out = t->trace;
@@ -21,7 +27,6 @@ static bool track(const ethd__tick *t, double tau[2]) ETHD_RT {
   return ethd__law_is_good(t->state, ETHD_TRACKING, status, isfinite(tau[0]) && isfinite(tau[1]));
 }
 
-/* tau = beta tau_t + J^T (F_e + F_d) (eq. 5 and figure 7) */
 bool ethd__evaluate(ethd__tick *t) {
   ethd_trace *out = t->trace;
   double tau_t[2] = {0, 0}, tau_f[2];

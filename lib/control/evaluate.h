@@ -3,8 +3,8 @@
 
 #include "control/context.h"
 
-/* Estimates, contacts and tracking -> the torque of the laws, trace->tau_raw. False: a law failed, which is noted.
-   [rt] */
+/* Works out the torque of the laws, trace->tau_raw, from estimates, contacts and tracking. Returns false if a law
+   failed, which is noted. [rt] */
 bool ethd__evaluate(ethd__tick *t) ETHD_RT;
 
 #endif

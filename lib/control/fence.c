@@ -41,14 +41,14 @@ static fp_control control_now(void) ETHD_RT {
 
 static void control_set(fp_control c) ETHD_RT { __asm__ volatile("csrw frm, %0" : : "r"(c.word)); }
 #else
-/* Not known here: not watched. */
+/* This processor's control word isn't known, so it isn't watched. */
 static fp_control control_now(void) ETHD_RT { return (fp_control){0, 0}; }
 static void control_set(fp_control c) ETHD_RT { (void)c; }
 #endif
 
 static bool control_is(fp_control a, fp_control b) ETHD_RT { return a.word == b.word && a.x87 == b.x87; }
 
-/* ---- fences: a pattern from the end of the law's state on, and before it ---- */
+/* ---- fences: a pattern before the law's state and from its end on ---- */
 
 #define PATTERN 0xfe9ce5fe9ce5fe9cu /* no number that a law writes by accident: a NaN, not the default one */
 
@@ -69,17 +69,17 @@ static bool holds(const void *from, size_t bytes) ETHD_RT {
   return !changed && memcmp((const char *)from + i, &pattern, bytes - i) == 0;
 }
 
-/* Behind the state, the fence after the block included. */
+/* Returns the bytes behind the law's state, up to the end of the fence after its block. */
 static size_t rest_of(const ethd_law *law) ETHD_RT {
-  return sizeof(ethd__block) - offsetof(ethd__block, at) - law->state_size;
+  return sizeof(ethd__law_block) - offsetof(ethd__law_block, at) - law->state_size;
 }
 
-static void put_fences(const ethd_law *law, ethd__block *b) ETHD_RT {
+static void put_fences(const ethd_law *law, ethd__law_block *b) ETHD_RT {
   put_words(b->before, sizeof b->before);
   put_words((char *)b->at + law->state_size, rest_of(law));
 }
 
-static bool fences_hold(const ethd_law *law, const ethd__block *b) ETHD_RT {
+static bool fences_hold(const ethd_law *law, const ethd__law_block *b) ETHD_RT {
   return b->law == law && holds(b->before, sizeof b->before) &&
          holds((const char *)b->at + law->state_size, rest_of(law));
 }
@@ -88,19 +88,19 @@ static bool fences_hold(const ethd_law *law, const ethd__block *b) ETHD_RT {
 
 typedef struct call {
   const ethd_law *law;
-  ethd__block *block;
+  ethd__law_block *block;
   fp_control before;
 } call;
 
-static call enter(const ethd_law *law, ethd__block *b) ETHD_RT {
+static call enter(const ethd_law *law, ethd__law_block *b) ETHD_RT {
   __atomic_store_n(&b->law, law, __ATOMIC_RELAXED);
   __atomic_store_n(&b->running, 1, __ATOMIC_RELEASE);
   return (call){law, b, control_now()};
 }
 
-/* What the law did beside its job; mends it. */
+/* Finds what the law changed that it must not change, and undoes it. */
 static ethd_status leave(const call *c, ethd_status status) ETHD_RT {
-  ethd__block *b = c->block;
+  ethd__law_block *b = c->block;
   if (!control_is(control_now(), c->before)) {
     control_set(c->before);
     status = ETHD_E_FENV;
@@ -122,11 +122,11 @@ static ethd_status leave_step(const call *c, ethd_status status) ETHD_RT {
   return reset ? reset : found;
 }
 
-static ethd__block *block_of(void *state) ETHD_RT {
-  return (ethd__block *)(void *)((char *)state - offsetof(ethd__block, at));
+static ethd__law_block *block_of(void *state) ETHD_RT {
+  return (ethd__law_block *)(void *)((char *)state - offsetof(ethd__law_block, at));
 }
 
-void ethd__fence_reset(const ethd_law *law, const double *p, ethd__block *b) {
+void ethd__fence_reset(const ethd_law *law, const double *p, ethd__law_block *b) {
   put_fences(law, b);
   b->failed = 0;
   call c = enter(law, b);
@@ -134,9 +134,38 @@ void ethd__fence_reset(const ethd_law *law, const double *p, ethd__block *b) {
   b->failed = leave(&c, ETHD_OK);
 }
 
+/* What it did beside its job fails the step after it, as a reset's does. */
+void ethd__fence_adopt(const ethd__plan *plan, ethd__law_block *b, const ethd_past *past) {
+  const ethd_transition_law *law = plan->setup.transition;
+  if (!(plan->foreign & 1 << ETHD_TRANSITION)) {
+    law->adopt(plan->setup.transition_p, b->at, past);
+    return;
+  }
+  const int64_t before = b->failed;
+  call c = enter(&law->law, b);
+  law->adopt(plan->setup.transition_p, b->at, past);
+  const ethd_status found = leave(&c, ETHD_OK);
+  b->failed = found ? found : before;
+}
+
+/* It has no state: only the processor is looked at. Any block can say that it runs. */
+ethd_status ethd__fence_range(const ethd__plan *plan, ethd__state *s, double speed, double *range) {
+  ethd__law_block *b = &s->slots[0].transition;
+  if (!(plan->foreign & 1 << ETHD_TRANSITION)) {
+    *range = plan->range(plan->setup.transition_p, speed);
+    return ETHD_OK;
+  }
+  const call c = enter(&plan->setup.transition->law, b);
+  *range = plan->range(plan->setup.transition_p, speed);
+  const bool kept = control_is(control_now(), c.before);
+  if (!kept) control_set(c.before);
+  __atomic_store_n(&b->running, 0, __ATOMIC_RELEASE);
+  return kept ? ETHD_OK : ETHD_E_FENV;
+}
+
 const ethd_law *ethd__fence_runs(const ethd__state *s) {
   for (int i = -1; i < 2 * ETHD_CONTACTS_MAX; i++) {
-    const ethd__block *b = &s->tracking;
+    const ethd__law_block *b = &s->tracking;
     if (i >= 0) b = i % 2 ? &s->slots[i / 2].contact : &s->slots[i / 2].transition;
     if (__atomic_load_n(&b->running, __ATOMIC_ACQUIRE) == 1) return __atomic_load_n(&b->law, __ATOMIC_RELAXED);
   }

@@ -1,34 +1,39 @@
 /* Foreign laws: code that isn't the library's own. Their calls are fenced: they may write their state block and
-   nothing around it, and leave the processor's floating-point control as it was. What is found fails the call
-   (ETHD_E_FENCE, ETHD_E_FENV), so the fault table's row LAW names the kind of law and what it did, and what was
-   changed is put back.
+   nothing around it, and must leave the processor's floating-point control as it was. A change fails the call
+   (ETHD_E_FENCE, ETHD_E_FENV), so the value of row LAW names the kind of law and what it did, and is undone.
 
-   A plan holds the steps that its ticks call: the laws' own, or the fenced ones. So built-in laws pay nothing. */
+   A plan holds the steps that its ticks call: the laws' own, or the fenced ones. So built-in laws cost nothing more. */
 #ifndef ETHD__CONTROL_FENCE_H
 #define ETHD__CONTROL_FENCE_H
 
 #include "control/state.h"
 
-/* True for a law that isn't one of ethd_laws. [main] */
+/* Returns true for a law that isn't one of ethd_laws. [main] */
 bool ethd__law_is_foreign(const ethd_law *law);
 
-/* Fills plan->foreign and the three steps from its setup. [main] */
+/* Fills plan->foreign and the plan's three steps (track, push, rule) from its setup. [main] */
 void ethd__fence_prepare(ethd__plan *plan);
 
 /* Fences the block and lets the law fill it. [rt] */
-void ethd__fence_reset(const ethd_law *law, const double *p, ethd__block *block) ETHD_RT;
+void ethd__fence_reset(const ethd_law *law, const double *p, ethd__law_block *block) ETHD_RT;
 
 /* Zeroes the block, then lets the law fill it. [rt] */
 static inline void ethd__block_reset(const ethd__plan *plan, const ethd_law *law, const double *p,
-                                     ethd__block *block) ETHD_RT {
+                                     ethd__law_block *block) ETHD_RT {
   memset(block->at, 0, sizeof block->at);
   if (plan->foreign & 1 << law->kind)
     ethd__fence_reset(law, p, block);
-  else if (law->reset)
+  else if (law->reset) /* unreachable: no built-in law has one; the next one may */
     law->reset(p, block->at);
 }
 
-/* The foreign law whose code runs on this state, NULL: none. [any] */
+/* Hands a contact over to the plan's transition law, which has `adopt`. [rt] */
+void ethd__fence_adopt(const ethd__plan *plan, ethd__law_block *block, const ethd_past *past) ETHD_RT;
+
+/* Asks the plan's transition law, which has `range`, how far it looks ahead, m. ETHD_E_FENV. [rt] */
+ethd_status ethd__fence_range(const ethd__plan *plan, ethd__state *state, double speed, double *range) ETHD_RT;
+
+/* Returns the foreign law whose code runs on this state, NULL if none does. [any] */
 const ethd_law *ethd__fence_runs(const ethd__state *state) ETHD_RT;
 
 #endif

@@ -3,15 +3,15 @@
 
 #include "control/rows.h"
 
-/* s in which tracking fades out and in: as long as a swap of laws takes by default (transition.swap_time). */
+/* s in which tracking fades out or in, as long as a swap takes by default (transition.swap_time). */
 #define FADE 0.020
 
-/* Implausible readings in a row that stop the device: as many as make the filter start anew (ETHD_FILTER_GATED_MAX). The
-   proximity ring, at 300 Hz, takes 17 ms for them. */
+/* Implausible readings in a row that stop the device: as many as make the filter start anew (ETHD_FILTER_GATED_MAX).
+   The proximity ring, at 300 Hz, takes 17 ms for them. */
 #define IMPLAUSIBLE_MAX 5
 
-/* The age counts from the sample's instant: a reading's latency is part of it. The half nanosecond keeps a reading
-   that is exactly as old as the limit on its side of it. */
+/* The age counts from the sample's instant, so it includes the reading's latency. The half nanosecond makes a reading
+   that is exactly as old as the limit count as young enough. */
 void ethd__finger_watch(const ethd__tick *t) {
   const ethd_limits *limits = &t->plan->setup.limits;
   ethd__state *state = t->state;

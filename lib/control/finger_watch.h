@@ -3,10 +3,12 @@
 
 #include "control/context.h"
 
-/* Once a tick, where limits.finger_age is set: notes how old the last used reading is. [rt] */
+/* Notes when the last used reading is too old, and fades tracking. To be called once a tick where limits.finger_age is
+   set. [rt] */
 void ethd__finger_watch(const ethd__tick *t) ETHD_RT;
 
-/* A reading has come, where limits.finger_age is set; implausible ones aren't used. [rt] */
+/* Counts implausible readings in a row and notes them. To be called for each reading where limits.finger_age is set.
+   [rt] */
 void ethd__finger_doubt(ethd__state *state, bool implausible) ETHD_RT;
 
 #endif

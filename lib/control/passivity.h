@@ -3,8 +3,8 @@
 
 #include "control/context.h"
 
-/* The force along n that keeps a contact passive, N, to be added to the wall's force; brake: what else acts there,
-   N. Once a tick and contact, only where limits.energy is set. [rt] */
+/* Returns the force along n, N, that is to be added to the wall's to keep a contact passive; brake: what else acts
+   along n, N. To be called once for each contact in a tick, and only where limits.energy is set. [rt] */
 double ethd__passivity(const ethd__tick *t, ethd__slot *slot, const ethd_contact *c, double wall, double brake) ETHD_RT;
 
 #endif

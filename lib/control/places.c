@@ -1,21 +1,19 @@
 #include "control/places.h"
 
-#include <string.h>
-
 #include "ethd/maths.h"
 
-#define MARGIN 1e-9 /* m: what rounding may do to distances; scenes are a million times coarser */
+#define MARGIN 1e-9 /* m: more than rounding changes a distance; what matters in a scene is far coarser */
 
 ethd__frame ethd__frame_of(const ethd__place *p) {
-  ethd__frame f = {{p->pose[0], p->pose[1]}, {p->pose[3], p->pose[4]}, 1, 0, p->pose[5]};
-  if (p->pose[2] != 0) ethd_sincos(p->pose[2], &f.sine, &f.cosine);
+  ethd__frame f = {p->pose.x, p->pose.v, 1, 0, p->pose.rate};
+  if (p->pose.angle != 0) ethd_sincos(p->pose.angle, &f.sine, &f.cosine);
   return f;
 }
 
 void ethd__places_take(ethd__state *state, const ethd_sense *sense) {
   for (int i = 0; i < ETHD_BODIES_MAX && (sense->have & ETHD__HAVE_BODIES); i++) {
     if (!(sense->have & ((int64_t)ETHD_HAVE_BODY << i))) continue;
-    memcpy(state->places[1 + i].pose, sense->bodies + 6 * i, sizeof state->places[1 + i].pose);
+    state->places[1 + i].pose = ethd__body_pose_of(sense, i);
     state->places[1 + i].there = true;
   }
 }

@@ -1,4 +1,4 @@
-/* A plan: a posted setup with all that [main] can work out of it, so that no tick has to. */
+/* A plan: a posted setup with all that [main] can work out from it, so that no tick has to. */
 #ifndef ETHD__CONTROL_PLAN_H
 #define ETHD__CONTROL_PLAN_H
 
@@ -17,7 +17,7 @@ typedef struct ethd__plan {
   ethd_setup setup;
   double d_beta;        /* R_r - R_f,max, m */
   int places;           /* places from here on have no scene */
-  bool has_rare_limits; /* a limit of clock, joints, reach or heat is set */
+  bool has_rare_limits; /* a limit of gap, joints, reach or heat is set */
   bool watches_finger;  /* limits.finger_age is set */
   bool watches_energy;  /* limits.energy is set */
   int foreign;          /* bits: kinds whose law isn't the library's own */
@@ -36,10 +36,10 @@ typedef struct ethd__plan {
   double material_p[ETHD__PLACES][ETHD_MATERIALS_MAX][ETHD_PARAMS_MAX];
 } ethd__plan;
 
-/* Checks the setup and works the plan out; a failure leaves the plan undefined. [main] */
+/* Checks the setup and works out the plan; a failure leaves the plan undefined. [main] */
 ethd_status ethd__plan_prepare(const ethd_setup *setup, ethd__plan *out, ethd_error *error);
 
-/* The parameters of the contact law on a material, -1: none. [rt] */
+/* Returns the contact law's parameters on a material of a place; -1 is no material. [rt] */
 static inline const double *ethd__contact_p(const ethd__plan *plan, int place, int32_t material) ETHD_RT {
   return material < 0 ? plan->setup.contact_p : plan->material_p[place][material];
 }

@@ -1,4 +1,5 @@
-/* From the rows of the fault table that a tick met to what is done: the table's reactions as masks. */
+/* What follows from the rows of the fault table that a tick noted. The table's reactions become four masks: the rows
+   that stop the ring or take the torque away by their first reaction, and those that do so by their second. */
 #include "control/rows.h"
 
 #define IF(reaction, wanted, row) (ETHD_REACTION_##reaction == ETHD_REACTION_##wanted ? ETHD_FAULT_BIT(row) : 0)
@@ -12,10 +13,12 @@ static const int64_t all = 0 ETHD_FAULTS(ALL);
 static const int64_t stop_1 = 0 ETHD_FAULTS(STOP_1), stop_2 = 0 ETHD_FAULTS(STOP_2);
 static const int64_t zero_1 = 0 ETHD_FAULTS(ZERO_1), zero_2 = 0 ETHD_FAULTS(ZERO_2);
 
-/* Rows among these whose due reaction stops the ring. */
-static int64_t stops(const ethd__rows *r) ETHD_RT { return (r->faults & ~r->grave & stop_1) | (r->grave & stop_2); }
+/* Returns those of the rows whose due reaction is STOP. */
+static int64_t stops(const ethd__fault_rows *r) ETHD_RT {
+  return (r->faults & ~r->grave & stop_1) | (r->grave & stop_2);
+}
 
-int64_t ethd__rows_zero(const ethd__rows *r) { return (r->faults & ~r->grave & zero_1) | (r->grave & zero_2); }
+int64_t ethd__rows_zero(const ethd__fault_rows *r) { return (r->faults & ~r->grave & zero_1) | (r->grave & zero_2); }
 
 static ethd_fault lowest(int64_t rows) ETHD_RT { return (ethd_fault)__builtin_ctzll((uint64_t)rows); }
 
@@ -39,7 +42,7 @@ void ethd__rows_take(ethd__state *state, const ethd_sense *sense) {
   state->met.rows.grave = sense->grave & all;
 }
 
-#define CUT_MAX (0.1 + 1e-9) /* s, as a sum of periods: a torque that is cut for longer is told */
+#define CUT_MAX (0.1 + 1e-9) /* s; a torque that is cut for longer makes an event (sums of periods are rounded) */
 
 static void note_guard(ethd__state *state, int64_t bits) ETHD_RT {
   if (bits & ETHD_GUARD_WORKSPACE) ethd__note_grave(state, ETHD_FAULT_WORKSPACE);
@@ -61,7 +64,7 @@ void ethd__rows_stop(ethd__state *state) {
   if (zero) state->guard.stopped = 1;
 }
 
-/* The first fault latches and stays; a later ZERO ends a STOP that still damps. */
+/* Latches the first fault, which stays; a later ZERO ends a STOP that is still damping. Returns the latched fault. */
 static ethd_fault latch(ethd__state *state, ethd_fault first, int64_t zero) ETHD_RT {
   if (zero) ethd__rows_stop(state);
   if (!state->fault) __atomic_store_n(&state->fault, first, __ATOMIC_RELAXED);
@@ -77,17 +80,20 @@ ethd_fault ethd__judge(const ethd__plan *plan, ethd__state *state, int64_t guard
   }
   ethd_fault first = lowest(zero ? zero : calls);
   __atomic_store_n(&state->clean, 0, __ATOMIC_RELAXED);
-  if (plan->setup.limits.latch || state->fault) return latch(state, first, zero); /* also of the setup before */
-  state->guard.stopping = state->guard.stopped = 0;                               /* the next tick is judged alone */
+  /* a fault that an earlier setup latched stays latched under this one */
+  if (plan->setup.limits.latch || state->fault) return latch(state, first, zero);
+  state->guard.stopping = state->guard.stopped = 0; /* without latching each tick is judged on its own */
   return first;
 }
 
-/* ---- what is told ---- */
+/* ---- what is reported ---- */
 
-ethd__rows ethd__rows_begun(const ethd__plan *plan, const ethd__state *state) {
-  const ethd__rows *met = &state->met.rows, *before = &state->before;
-  ethd__rows begun = {(met->faults | met->grave) & ~(before->faults | before->grave), met->grave & ~before->grave};
-  if (!plan->setup.limits.latch) begun.faults |= ethd__rows_zero(met) | stops(met); /* each tick is judged alone */
+ethd__fault_rows ethd__rows_begun(const ethd__plan *plan, const ethd__state *state) {
+  const ethd__fault_rows *met = &state->met.rows, *before = &state->before;
+  ethd__fault_rows begun = {(met->faults | met->grave) & ~(before->faults | before->grave),
+                            met->grave & ~before->grave};
+  /* without latching each tick is judged on its own */
+  if (!plan->setup.limits.latch) begun.faults |= ethd__rows_zero(met) | stops(met);
   return begun;
 }
 

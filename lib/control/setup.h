@@ -1,21 +1,22 @@
 /* The numbers of a setup as rows, by which they get their defaults, are checked, and are set by name. */
-#ifndef ETHD__SETUP_H
-#define ETHD__SETUP_H
+#ifndef ETHD__CONTROL_SETUP_H
+#define ETHD__CONTROL_SETUP_H
 
 #include "ethd/control.h"
 
 /* Refuses a setup that ethd_setup_default didn't make. */
 #define ETHD__SETUP_COOKIE 0x45544844u
 
-#define ETHD__D_BETA_MIN 1e-5 /* m: so far R_f,max stays from R_r */
+#define ETHD__D_BETA_MIN 1e-5 /* m: the least R_r - R_f,max */
 
-/* `offset`: in ethd_setup, bytes; doubles, but for the arm's mechanism. A default of NaN: may stay unknown. */
+/* `offset`: in ethd_setup, bytes; all are doubles but the arm's mechanism. If the default is NaN, the number may stay
+   unknown. */
 typedef struct ethd__setup_field {
   ethd_setup_key key;
   uint32_t offset;
 } ethd__setup_field;
 
-/* Those that neither a law, nor a method, nor the limits bring. */
+/* The numbers that belong neither to a law nor to a method nor to the limits. */
 #define ETHD__SETUP_FIELDS 15
 extern const ethd__setup_field ethd__setup_fields[ETHD__SETUP_FIELDS];
 

@@ -13,13 +13,13 @@
     if (status_ < 0) return status_;    \
   } while (0)
 
-/* The section that a failure belongs to. */
+/* Puts the section into a failure's name. */
 static ethd_status within(const char *section, ethd_status status, ethd_error *error) {
   if (status < 0) ethd__error_prefix(error, section);
   return status;
 }
 
-/* The finger fits into the ring. */
+/* Returns the most that a number may be: the finger must fit into the ring. */
 static double most_of(const ethd_setup *s, const ethd__setup_field *field) {
   if (field->offset == offsetof(ethd_setup, finger_radius)) return s->ring_radius;
   if (field->offset == offsetof(ethd_setup, finger_radius_max)) return s->ring_radius - ETHD__D_BETA_MIN;
@@ -62,7 +62,7 @@ static ethd_status check_laws(const ethd_setup *s, ethd_error *error) {
   return check_law("transition", ETHD_TRANSITION, s->transition ? &s->transition->law : NULL, s->transition_p, error);
 }
 
-/* The contact law's parameters on one material: the setup's, with the material's own in their place. */
+/* Makes the contact law's parameters on one material: the setup's, replaced by the material's own where it has some. */
 static ethd_status prepare_material(const ethd_setup *s, const ethd_material *m, double *p, ethd_error *error) {
   const ethd_law *law = &s->contact->law;
   memcpy(p, s->contact_p, sizeof s->contact_p);
@@ -96,7 +96,7 @@ static void prepare_lags(const ethd_setup *s, ethd__plan *out) {
   }
 }
 
-/* A scene pruned for another arm may lack what this one meets; a body can come from anywhere. */
+/* Refuses a pruned scene that may lack what this arm meets. A body can come from anywhere, so it must not be pruned. */
 static ethd_status check_scene(const ethd_setup *s, int place, ethd_error *error) {
   const ethd_scene *scene = ethd__place_scene(s, place);
   double inner = 0, outer = (double)INFINITY;
@@ -114,6 +114,8 @@ static void prepare_ahead(const ethd_setup *s, ethd__plan *out) {
   for (int i = 0; i < 2; i++) out->mobility[i] = 1 / (s->dynamics.mass[i] * links[i] * links[i]);
 }
 
+/* Returns true if a limit is set that only tick.c's note_rare_limits or its reach check looks at. A new limit that is
+   enforced there must be named here. */
 static bool has_rare_limits(const ethd_limits *l) {
   bool ranges = !isinf(l->reach[0]) || !isinf(l->reach[1]);
   for (int i = 0; i < 4; i++) ranges |= !isinf(l->joints[i]);

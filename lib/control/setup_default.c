@@ -3,7 +3,7 @@
 #include "control/setup.h"
 #include "ethd/control.h"
 
-/* As far as the law looks ahead at any speed. */
+/* Returns how far the law looks ahead at most, from the ring's centre, m; 0: it doesn't. */
 static double ahead(const ethd_setup *s) {
   if (!s->transition || !ETHD_LAW_HAS(s->transition, range)) return 0;
   double range = s->transition->range(s->transition_p, (double)INFINITY);

@@ -24,7 +24,7 @@ const ethd__setup_field ethd__setup_fields[ETHD__SETUP_FIELDS] = {
     {{"finger", {"radius_max", "m", 1e-5, 1, 0.0095, "largest radius of a finger, R_f,max"}, 1}, AT(finger_radius_max)},
     {{"finger_fit", {"lag", "s", -0.01, 0.01, 0, "a time in s for each of the 16 rays"}, ETHD_RAYS}, AT(ray_lag)},
     {{"transition", {"swap_time", "s", 0, 1, 0.020, "a change of laws fades over this time"}, 1}, AT(swap_time)},
-    {{"transition", {"v_hysteresis", "m/s", 0, 1, 0, "entering until v < -v_hysteresis, leaving until v > it"}, 1},
+    {{"transition", {"v_hysteresis", "m/s", 0, 1, 0, "leaving begins at v < -v_hysteresis, entering at v > it"}, 1},
      AT(v_hysteresis)},
 };
 

@@ -29,7 +29,7 @@ const ethd_setup_part *ethd_setup_part_of(const char *section) {
   return NULL;
 }
 
-/* A law as one looks at a method. */
+/* Describes a law in the terms of a method. */
 static ethd_method described(const ethd_law *law) {
   return law ? (ethd_method){law->id, law->brief, law->params, law->param_count} : (ethd_method){0};
 }
@@ -74,7 +74,7 @@ static ethd__setup_field field_of_limit(const ethd_limit *limit) {
       AT(limits) + limit->offset};
 }
 
-/* The `index`-th number of a setup: fields of its own, then limits, then parameters of what is chosen. */
+/* Finds the `index`-th number of a setup: its own fields, then limits, then parameters of what is chosen. */
 static bool find_at(const ethd_setup *setup, uint32_t index, ethd__setup_field *out) {
   if (index < ETHD__SETUP_FIELDS) return *out = ethd__setup_fields[index], true;
   index -= ETHD__SETUP_FIELDS;
@@ -99,7 +99,7 @@ ethd_status ethd_setup_key_at(const ethd_setup *setup, uint32_t index, ethd_setu
   return ETHD_OK;
 }
 
-/* What follows "section.key" in a name; NULL: the name is another's. */
+/* Returns what follows "section.key" in a name, NULL if the name is another key's. */
 static const char *after(const ethd_setup_key *key, const char *name) {
   size_t section = strlen(key->section), own = strlen(key->param.name);
   if (strncmp(name, key->section, section) != 0 || name[section] != '.') return NULL;
@@ -108,7 +108,7 @@ static const char *after(const ethd_setup_key *key, const char *name) {
   return *name == 0 || *name == '[' ? name : NULL;
 }
 
-/* "[2]" to 2; what isn't an index is ETHD_RAYS, which no key has. */
+/* Turns "[2]" into 2, and what isn't an index into ETHD_RAYS, which no key has. */
 static uint32_t index_of(const char *text) {
   uint32_t index = 0;
   const char *at = text + 1;

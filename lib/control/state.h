@@ -8,51 +8,60 @@
 
 #define ETHD__FENCE 2 /* words */
 
-/* A law's state block, as fence.c watches over it; of a built-in law only `at` is used. */
-typedef struct ethd__block {
-  const ethd_law *law; /* whose it is: a foreign law */
-  int64_t running;     /* 1: its code runs; [any] reads it and the law */
+/* A law's state block, fenced by fence.c if the law is foreign; for a built-in law only `at` is used. */
+typedef struct ethd__law_block {
+  const ethd_law *law; /* the foreign law whose state this is */
+  int64_t running;     /* 1: its code runs; [any] reads this and the law */
   int64_t failed;      /* ethd_status of its reset */
   uint64_t before[ETHD__FENCE];
   double at[ETHD_STATE_MAX / sizeof(double)];
   uint64_t after[ETHD__FENCE];
-} ethd__block;
+} ethd__law_block;
 
 /* A contact that counted at the last tick. */
 typedef struct ethd__slot {
   bool used;
   bool leaving;                /* the branch of eq. 3, with v_hysteresis */
-  int32_t place, object, side; /* whose surface; side of a thin wall on which the contact began, 0: no side */
+  int32_t place, object, side; /* of the surface; side of a thin wall on which the contact began, 0: none */
   int32_t state;               /* the transition law's */
   int64_t periods, changed;    /* since it began to count; of these, before its state became what it is */
   ethd_vec point;              /* touched, in the place's frame */
   struct {
     ethd_vec n;             /* in R_0 */
     double offset, d_re, v; /* as in ethd_past */
-  } past;                   /* at the tick of a swap, as the old plan has it */
-  ethd__block transition, contact;
+  } past;                   /* at the tick of a swap, under the old plan */
+  ethd__law_block transition, contact;
   /* passivity observer, where limits.energy is set */
+  bool watched;                          /* at its last tick too */
   bool giving;                           /* damping is added */
   double energy[2], force[2], depth_was; /* J, N along n, m */
 } ethd__slot;
 
-/* A place as the ring meets it. */
+/* A body's frame in R_0 and how it moves, laid out as the sense's six numbers of a body. */
+typedef struct ethd__body_pose {
+  ethd_vec x;   /* origin, m */
+  double angle; /* rad */
+  ethd_vec v;   /* m/s */
+  double rate;  /* rad/s */
+} ethd__body_pose;
+
+/* A place, and what is known of the ring's distance to it. */
 typedef struct ethd__place {
-  double pose[6];   /* as in the sense; zeros for what stands still */
-  ethd_vec at;      /* ring's centre in the place's frame when the clearance was asked for */
-  double clearance; /* distance from there to the nearest object, m; negative: not known */
+  ethd__body_pose pose; /* zeros for what stands still */
+  ethd_vec at;          /* the ring's centre in the place's frame when the clearance was last found */
+  double clearance;     /* distance from there to the nearest object, m; negative: not known */
   ethd_scene_hint hint;
   bool there; /* false: a body that has no pose yet */
 } ethd__place;
 
 /* Rows of the fault table as bits, as a sense has them. */
-typedef struct ethd__rows {
+typedef struct ethd__fault_rows {
   int64_t faults, grave;
-} ethd__rows;
+} ethd__fault_rows;
 
-/* What a tick has met: rows, and the value of those that have one. */
+/* What a tick has noted: rows, and the value of those that have one. */
 typedef struct ethd__met {
-  ethd__rows rows;
+  ethd__fault_rows rows;
   int64_t valued; /* bits: rows with a value below */
   double value[ETHD_FAULT_COUNT];
 } ethd__met;
@@ -62,25 +71,25 @@ typedef struct ethd__met {
 typedef struct ethd__state {
   ethd_counters counters;
   /* faults */
-  int64_t fault;     /* the latched row; [any] reads it and the next */
-  int64_t clean;     /* periods since the last tick that called for a stop */
-  ethd__met met;     /* at this tick */
-  ethd__rows before; /* at the last */
-  int64_t time_ns;   /* of the last tick */
-  int64_t blind;     /* periods since the last tick that had a measurement */
+  int64_t fault;           /* the latched row; [any] reads it and the next */
+  int64_t clean;           /* periods since the last tick that called for a stop */
+  ethd__met met;           /* at this tick */
+  ethd__fault_rows before; /* at the last */
+  int64_t time_ns;         /* of the last tick */
+  int64_t blind;           /* periods since the last tick with a possible measurement */
   /* estimates */
   ethd_velocity_state velocity[2];
   ethd_filter_state filter;
   int64_t reading_ns;   /* stamp of the reading that was used last */
   double reading_age;   /* s: how old it was when it was used */
   double finger_radius; /* of the last fit, NaN: none */
-  double absent;        /* share of the tracking torque that has faded because the finger isn't seen */
+  double absent;        /* 0 to 1: how far tracking has faded because the finger isn't seen */
   int64_t implausible;  /* readings in a row */
   struct {
     int64_t time_ns;
     ethd_vec x;
   } history[ETHD__HISTORY];
-  uint64_t remembered; /* positions ever put there; a tick without measurement leaves none */
+  uint64_t remembered; /* how many positions were ever put there; a tick without measurement adds none */
   /* contacts */
   ethd__slot slots[ETHD_CONTACTS_MAX];
   ethd__place places[ETHD__PLACES];
@@ -88,9 +97,9 @@ typedef struct ethd__state {
   unsigned orphans;                /* slots, as bits, whose scene was replaced at this tick */
   double given;                    /* J that the last contact gave away */
   uint64_t given_at;               /* tick */
-  uint64_t excess_from, excess_at; /* steps after which it was far too much: first, last; 0: never */
+  uint64_t excess_from, excess_at; /* first and last step after which it was far too much; 0: never */
   /* torque */
-  ethd__block tracking;
+  ethd__law_block tracking;
   struct {
     double delta[2]; /* old - new torque at the swap, Nm */
     double elapsed;  /* s since then; INFINITY: no fade */

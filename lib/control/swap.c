@@ -9,9 +9,20 @@
 
 /* ---- the fade ---- */
 
-void ethd__fade_start(ethd__state *state, const double from[2], const double to[2]) {
-  for (int i = 0; i < 2; i++) state->fade.delta[i] = from[i] - to[i];
-  state->fade.elapsed = 0;
+/* What the guard would cut is no part of a fade: it would be over as soon as the rest is at the limit, too early and
+   too steep. */
+static double within_limit(const ethd__tick *t, double torque) ETHD_RT {
+  double most = t->plan->setup.limits.torque;
+  if (torque > most) return most;
+  return torque < -most ? -most : torque;
+}
+
+void ethd__fade_start(ethd__tick *t, const double from[2]) {
+  for (int i = 0; i < 2; i++) {
+    t->state->fade.delta[i] = within_limit(t, from[i]) - within_limit(t, t->trace->tau_raw[i]);
+    t->trace->tau_raw[i] = from[i];
+  }
+  t->state->fade.elapsed = 0;
 }
 
 /* What is left of the difference after `t` s. */
@@ -26,8 +37,8 @@ void ethd__fade(ethd__tick *t) {
     state->fade.elapsed = (double)INFINITY;
     return;
   }
-  t->trace->tau_raw[0] += share * state->fade.delta[0];
-  t->trace->tau_raw[1] += share * state->fade.delta[1];
+  for (int i = 0; i < 2; i++)
+    t->trace->tau_raw[i] = within_limit(t, t->trace->tau_raw[i]) + share * state->fade.delta[i];
   state->guard.steep = 0; /* the fade's slope is no law's */
 }
 
@@ -57,7 +68,8 @@ static bool has_same_scene(const ethd__plan *a, const ethd__plan *b, int place) 
   return ethd__place_scene(&a->setup, place) == ethd__place_scene(&b->setup, place);
 }
 
-/* Its object's number means nothing in the new scene: the touch is kept, by which it may go on there. */
+/* Makes a contact an orphan when its scene was replaced. Its object's number means nothing in the new scene, so its
+   touch is kept, by which candidates.c finds the same surface there. */
 static void orphan(ethd__state *state, int i, const ethd__state *old) ETHD_RT {
   ethd__slot *slot = &state->slots[i];
   slot->used = slot->used && old && old->slots[i].used;
@@ -67,7 +79,7 @@ static void orphan(ethd__state *state, int i, const ethd__state *old) ETHD_RT {
   state->orphans |= 1u << i;
 }
 
-/* The contact as the old law leaves it after this tick is handed to a new law that takes it. */
+/* Resets the new law's state, and hands it the contact as the old law leaves it after this tick if it can adopt one. */
 static void adopt(const ethd__plan *to, const ethd__slot *was, ethd__slot *slot) ETHD_RT {
   const ethd_transition_law *law = to->setup.transition;
   const double *p = to->setup.transition_p;
@@ -80,7 +92,7 @@ static void adopt(const ethd__plan *to, const ethd__slot *was, ethd__slot *slot)
                           .age = (double)was->periods * period,
                           .since = (double)(was->periods - was->changed) * period,
                           .state = was->state};
-  law->adopt(p, slot->transition.at, &past); /* what it writes around its block is found by the next step */
+  ethd__fence_adopt(to, &slot->transition, &past);
 }
 
 static void swap_slot(const ethd__plan *from, const ethd__plan *to, const ethd__slot *was, ethd__slot *slot) ETHD_RT {
@@ -105,7 +117,8 @@ void ethd__swap_state(const ethd__plan *from, const ethd__plan *to, ethd__state 
 
 /* ---- the tick of a swap ---- */
 
-/* The old plan's torque, worked out on a copy of the state, which can't tell the new plan's apart from its own. */
+/* Works out the old plan's torque on a copy of the state, so that this run leaves no mark in the state on which the new
+   plan goes on. Returns false if a law failed, which is then noted in the state too. */
 static bool evaluate_old(ethd__tick *t, double torque[2]) ETHD_RT {
   memcpy(t->scratch, t->state, sizeof *t->scratch);
   ethd__tick old = *t;
@@ -114,7 +127,7 @@ static bool evaluate_old(ethd__tick *t, double torque[2]) ETHD_RT {
   bool held = ethd__evaluate(&old);
   if (held) ethd__fade(&old);
   memcpy(torque, t->trace->tau_raw, sizeof t->trace->tau_raw);
-  if (!held) t->state->met = t->scratch->met; /* the law that failed */
+  if (!held) t->state->met = t->scratch->met; /* the row of the law that failed */
   return held;
 }
 
@@ -122,10 +135,8 @@ void ethd__swap(ethd__tick *t) {
   double old[2];
   bool held = evaluate_old(t, old);
   ethd__swap_state(t->from, t->plan, t->state, held ? t->scratch : NULL);
-  if (!held) {
+  if (!held)
     ethd__estimate(t);
-  } else if (ethd__evaluate(t)) {
-    ethd__fade_start(t->state, old, t->trace->tau_raw);
-    memcpy(t->trace->tau_raw, old, sizeof old);
-  }
+  else if (ethd__evaluate(t))
+    ethd__fade_start(t, old);
 }

@@ -1,15 +1,16 @@
-/* One tick: from what the device measured to the torque that it is told.
+/* One tick: from what the device measured to the torque that it is commanded.
 
-   1. What is already wrong is noted as rows of the fault table: numbers that can't be, clock, joints, heat, the step
-      budget, and what device and loop saw.
+   1. What is already wrong is noted as rows of the fault table: impossible numbers, clock, joints, heat, the step
+      budget, and what device and loop reported.
    2. Moving bodies take their new poses.
-   3. The laws work the torque out (evaluate.c). A tick that may not push, for a row forbids it or a fault is latched,
-      only estimates, so that the trace is right and a later tick goes on from where things are. A tick without
-      measurement does nothing.
-   4. At a swap the old plan's torque is the tick's, and the difference to the new plan's fades (swap.c).
-      After an acknowledged fault the torque starts from zero in the same way.
-   5. The guard has the last word: it bounds the torque, damps a stop, or lets the ring go.
-   6. The rows that were met say what latches, and the trace how the tick ended (rows.c). */
+   3. The laws work out the torque (evaluate.c). If a noted row forbids a torque, or a fault is latched, the tick only
+      estimates, so that the trace is right and a later tick can go on from there.
+   4. At a swap the tick's torque is that of the old plan, and its difference to the new plan's fades (swap.c).
+      After an acknowledged fault the torque rises from zero in the same way.
+   5. The guard has the last word: it bounds the torque, damps the ring to a stop, or lets it go.
+   6. The noted rows decide what latches, and the trace shows how the tick ended (rows.c).
+
+   When the measurement is impossible there are no steps 2 to 5, and the torque is zero. */
 #include "control/tick.h"
 
 #include "control/estimate.h"
@@ -19,27 +20,32 @@
 #include "control/rows.h"
 #include "control/swap.h"
 
-#define GAP_MAX 1000000 /* periods: a longer gap is no longer a gap of a loop */
+#define GAP_MAX 1000000 /* periods: a longer gap counts as this one, so that sums stay small */
 
 static int64_t at_most(int64_t periods) ETHD_RT { return periods < GAP_MAX ? periods : GAP_MAX; }
 
 /* ---- what is already wrong ---- */
 
-/* NaN fails. */
+/* Returns false for NaN too. */
 static bool within(const double v[2], double most) ETHD_RT { return fabs(v[0]) <= most && fabs(v[1]) <= most; }
 
-static bool pose_is_possible(const double pose[6]) ETHD_RT {
-  return within(pose, ETHD_SENSE_LENGTH_MAX) && fabs(pose[2]) <= ETHD_SENSE_ANGLE_MAX &&
-         within(pose + 3, ETHD_SENSE_SPEED_MAX) && fabs(pose[5]) <= ETHD_SENSE_SPEED_MAX;
+static bool pose_is_possible(const ethd__body_pose *pose) ETHD_RT {
+  return fabs(pose->x.x) <= ETHD_SENSE_LENGTH_MAX && fabs(pose->x.y) <= ETHD_SENSE_LENGTH_MAX &&
+         fabs(pose->angle) <= ETHD_SENSE_ANGLE_MAX && fabs(pose->v.x) <= ETHD_SENSE_SPEED_MAX &&
+         fabs(pose->v.y) <= ETHD_SENSE_SPEED_MAX && fabs(pose->rate) <= ETHD_SENSE_SPEED_MAX;
 }
 
 static bool bodies_are_possible(const ethd_sense *s) ETHD_RT {
-  for (int i = 0; i < ETHD_BODIES_MAX; i++)
-    if ((s->have & ((int64_t)ETHD_HAVE_BODY << i)) && !pose_is_possible(s->bodies + 6 * i)) return false;
+  for (int i = 0; i < ETHD_BODIES_MAX; i++) {
+    if (!(s->have & ((int64_t)ETHD_HAVE_BODY << i))) continue;
+    ethd__body_pose pose = ethd__body_pose_of(s, i);
+    if (!pose_is_possible(&pose)) return false;
+  }
   return true;
 }
 
-/* True: every number that will be used is possible. Else the ETHD_HAVE_* bit of what isn't, 0 for q. */
+/* Returns true if every number that will be used is possible; else *which is the ETHD_HAVE_* bit of the one that isn't,
+   0 for q. */
 static bool input_is_possible(const ethd_sense *s, double *which) ETHD_RT {
   *which = 0;
   if (!within(s->q, ETHD_SENSE_ANGLE_MAX)) return false;
@@ -54,8 +60,9 @@ static bool input_is_possible(const ethd_sense *s, double *which) ETHD_RT {
   return !(s->have & ETHD__HAVE_BODIES) || bodies_are_possible(s);
 }
 
-/* No two steps are further apart than the limit, on either clock. A bus's first sample may be from before the loop
-   ran: its age says nothing about the clock. */
+/* Returns true unless this step comes later than limits.gap after the last, by the loop's periods, or the device's
+   clock differs from those periods by more. The first two ticks compare no clocks, since a bus's first sample may be
+   older than the loop. */
 static bool clock_is_good(const ethd__tick *t) ETHD_RT {
   const double most = t->plan->setup.limits.gap, expected = (double)t->periods * t->plan->setup.period;
   if (isinf(most)) return true;
@@ -72,9 +79,9 @@ static bool reach_is_good(const double reach[2], ethd_vec x) ETHD_RT {
   return r >= reach[0] && r <= reach[1];
 }
 
-#define HOT 1.05 /* times the heat that a motor stands for ever */
+#define HOT 1.05 /* times the heat that the nominal torque leads to */
 
-/* Limits that most setups don't have. */
+/* Notes the rows of limits that most setups don't have. */
 static void note_rare_limits(ethd__tick *t) ETHD_RT {
   const ethd_limits *limits = &t->plan->setup.limits;
   if (!clock_is_good(t)) ethd__note_grave(t->state, ETHD_FAULT_CLOCK);
@@ -99,13 +106,7 @@ static bool note_what_is_wrong(ethd__tick *t) ETHD_RT {
 
 /* ---- the torque of the laws ---- */
 
-static void start_from_zero(ethd__tick *t) ETHD_RT {
-  const double zero[2] = {0, 0};
-  ethd__fade_start(t->state, zero, t->trace->tau_raw);
-  memset(t->trace->tau_raw, 0, sizeof t->trace->tau_raw);
-}
-
-/* trace->tau_raw; a tick whose law fails leaves it undefined and a row that forbids it. */
+/* Sets trace->tau_raw. If a law fails, tau_raw stays undefined, but a row is noted that forbids a torque. */
 static void work_out_torque(ethd__tick *t) ETHD_RT {
   if (ethd__rows_forbid(t->state)) {
     if (t->from) ethd__swap_state(t->from, t->plan, t->state, NULL);
@@ -116,13 +117,12 @@ static void work_out_torque(ethd__tick *t) ETHD_RT {
     if (t->from) ethd__swap_state(t->from, t->plan, t->state, NULL);
     if (!ethd__evaluate(t)) return;
     ethd__fade(t);
-    if (t->soft) start_from_zero(t);
+    if (t->soft) ethd__fade_start(t, (const double[2]){0, 0});
   }
 }
 
 /* ---- the guard ---- */
 
-/* A row that forbids the torque takes it away at once, not at the rate's pace. */
 static void guard(ethd__tick *t) ETHD_RT {
   ethd__state *state = t->state;
   const ethd_limits *limits = &t->plan->setup.limits;
@@ -145,6 +145,7 @@ static void begin_trace(const ethd_sense *sense, ethd_trace *out) ETHD_RT {
   out->rf = out->d_re = out->d_fe = out->v_n = (double)NAN;
 }
 
+/* Takes the torque away at once: without its last torque the guard has no slope to limit. */
 static void take_torque_away(ethd__tick *t) ETHD_RT {
   memset(t->trace->tau_raw, 0, sizeof t->trace->tau_raw);
   memset(t->state->guard.last, 0, sizeof t->state->guard.last);
@@ -169,13 +170,13 @@ void ethd__tick_run(ethd__tick *t) {
   if (measured) guard(t);
   if (t->trace->guard || state->fault || ethd__rows_any(&state->met.rows))
     t->trace->fault = ethd__judge(t->plan, state, t->trace->guard, t->periods);
+  if (t->plan->range) memcpy(t->trace->learnt, state->memory, sizeof state->memory);
   t->trace->tick = (int64_t)state->counters.ticks++;
 }
 
-/* After an acknowledged fault contacts begin anew. */
 void ethd__resume(const ethd__plan *plan, ethd__state *state) {
   __atomic_store_n(&state->fault, ETHD_FAULT_NONE, __ATOMIC_RELAXED);
-  state->before = (ethd__rows){0, 0}; /* what lasts is a new occurrence */
+  state->before = (ethd__fault_rows){0, 0}; /* so a row that lasts counts as a new occurrence */
   state->guard.stopping = state->guard.stopped = 0;
   state->fade.elapsed = (double)INFINITY;
   for (int i = 0; i < ETHD_CONTACTS_MAX; i++) state->slots[i].used = false;

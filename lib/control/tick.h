@@ -3,10 +3,11 @@
 
 #include "control/context.h"
 
-/* A whole tick: changes the state, fills the trace. [rt] */
+/* Runs a whole tick: changes the state and fills the trace. [rt] */
 void ethd__tick_run(ethd__tick *t) ETHD_RT;
 
-/* Forgets contacts, fade and fault; the estimators stay. [rt] */
+/* Forgets the fault after it was acknowledged, and with it the fade, the contacts and the tracking law's state, which
+   begin anew; the estimators stay. [rt] */
 void ethd__resume(const ethd__plan *plan, ethd__state *state) ETHD_RT;
 
 #endif

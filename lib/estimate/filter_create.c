@@ -8,18 +8,18 @@
 /* clang-format off */
 #define REFERENCE                                                                  \
   [FILTER_REFERENCE] = {"reference", "sample|tick", 0, 1, ETHD_REFERENCE_SAMPLE,   \
-      "where the ring stood for a reading: at its sample instant or at this tick"}
+      "where the ring was for a reading: at its sample instant or at this tick"}
 #define COMPENSATION                                                               \
   [FILTER_COMPENSATION] = {"compensation", "stamp|none", 0, 1,                     \
-      ETHD_COMPENSATION_STAMP, "age of a reading: made up for by its stamp, or ignored"}
+      ETHD_COMPENSATION_STAMP, "age of a reading: compensated by its stamp, or ignored"}
 #define LATENCY                                                                    \
   [FILTER_LATENCY] = {"latency", "s", 0, 0.1, 0,                                   \
-      "from the sample to its stamp, made up for as well (stamp only)"}
+      "from the sample to its stamp, compensated as well (stamp only)"}
 #define NOISE                                                                      \
   [FILTER_NOISE] = {"noise", "m", 1e-7, 1e-2, 0.1e-3, "sd of a reading, each axis"}
 #define GATE                                                                       \
   [FILTER_GATE] = {"gate", "1", 1, INFINITY, 25,                                   \
-      "sd of the innovation over which a reading is dropped; a finger on glass makes 20"}
+      "sd of the innovation over which a reading is dropped; a finger on glass reaches 20"}
 
 static const ethd_param hold[] = {REFERENCE};
 

@@ -1,5 +1,5 @@
-/* Kalman filters of position, velocity and acceleration, with one covariance for both axes. cv is the same filter with an
-   acceleration that is known to be 0. P = [xx xv xa; . vv va; . . aa], z = x + noise. */
+/* Kalman filters of position, velocity and acceleration, with one covariance for both axes. cv is the same filter with
+   an acceleration that is known to be 0. P = [xx xv xa; . vv va; . . aa], z = x + noise. */
 #include "estimate/filter_methods.h"
 
 enum { XX, XV, XA, VV, VA, AA };
@@ -20,8 +20,8 @@ void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__filte
   p[AA] = w.aa * w.aa * p[AA] + ga * ga;
 }
 
-bool ethd__filter_correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec r) {
-  double noise = f->p[FILTER_NOISE], gate = f->p[FILTER_GATE], *p = s->cov;
+bool ethd__filter_correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec r, double noise) {
+  double gate = f->p[FILTER_GATE], *p = s->cov;
   double variance = p[XX] + noise * noise;
   if (!(ethd_vec_dot(r, r) <= gate * gate * variance)) return false;
   double kx = p[XX] / variance, kv = p[XV] / variance, ka = p[XA] / variance;

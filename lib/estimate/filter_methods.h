@@ -1,6 +1,6 @@
 /* The filters behind ethd_filter_update. */
-#ifndef ETHD_LIB_FILTER_METHODS_H
-#define ETHD_LIB_FILTER_METHODS_H
+#ifndef ETHD__ESTIMATE_FILTER_METHODS_H
+#define ETHD__ESTIMATE_FILTER_METHODS_H
 
 #include <stdbool.h>
 
@@ -15,8 +15,8 @@ static inline bool ethd__filter_is_kalman(const ethd_filter *f) {
   return f->method == ETHD_FILTER_CV || f->method == ETHD_FILTER_CA;
 }
 
-/* What happens within t s: x += v t + a ax, v += a av, a = a aa. An acceleration fades, a' = -a / memory, which the
-   trapezoidal rule integrates; for memory = inf it stays, and ax, av, aa are t^2 / 2, t and 1 exactly. */
+/* The motion within t s: x += v t + a ax, v += a av, a = a aa. An acceleration fades, a' = -a / memory, which the
+   trapezoidal rule integrates; for memory = inf it stays, and ax, av, aa are exactly t^2 / 2, t and 1. */
 typedef struct ethd__filter_motion {
   double t, ax, av, aa;
 } ethd__filter_motion;
@@ -30,7 +30,12 @@ static inline ethd__filter_motion ethd__filter_motion_over(const ethd_filter *f,
 /* Carries the covariance over t s and adds the process noise. [rt] */
 void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__filter_motion w) ETHD_RT;
 
-/* Corrects with the innovation r; false: it was gated, and nothing is done. [rt] */
-bool ethd__filter_correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec r) ETHD_RT;
+/* Corrects with the innovation r of a reading whose noise is known, m; false: it was gated, and nothing is done. [rt] */
+bool ethd__filter_correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec r, double noise) ETHD_RT;
+
+/* ethd_filter_update for readings whose noise differs from one to the next: sd of each axis, m; 0: as the filter's
+   parameter says. Filters of fixed gains don't ask. [rt] */
+ethd_status ethd__filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, double age,
+                                double noise) ETHD_RT;
 
 #endif

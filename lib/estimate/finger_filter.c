@@ -5,7 +5,7 @@
 
 #include "estimate/filter_methods.h"
 
-/* How far off a filter's start may be: variances of each axis. Only ca doubts that the acceleration is 0. */
+/* How far off a filter's start may be: variances of each axis. Only ca takes its acceleration as uncertain. */
 typedef struct doubt {
   double x, v, a; /* m^2, m^2/s^2, m^2/s^4 */
 } doubt;
@@ -25,10 +25,16 @@ void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd
   state->age = filter->compensation == ETHD_COMPENSATION_STAMP ? -filter->p[FILTER_LATENCY] : INFINITY;
 }
 
-static void start_from_reading(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, double age) {
-  double noise = ethd__filter_is_kalman(f) ? f->p[FILTER_NOISE] : 0;
-  begin(f, s, x, (ethd_vec){0, 0}, (doubt){noise * noise, 1, 100}); /* sd 1 m/s, 10 m/s^2: a finger in full motion */
-  s->age = age;
+/* What a reading says: where, how long ago, and how far off it may be (sd of each axis). */
+typedef struct sighting {
+  ethd_vec x;
+  double age, noise; /* s, m */
+} sighting;
+
+static void start_from(const ethd_filter *f, ethd_filter_state *s, const sighting *seen) {
+  double square = seen->noise * seen->noise;
+  begin(f, s, seen->x, (ethd_vec){0, 0}, (doubt){square, 1, 100}); /* sd 1 m/s, 10 m/s^2: a finger in full motion */
+  s->age = seen->age;
   s->used++;
 }
 
@@ -47,9 +53,9 @@ void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, do
   if (filter->compensation == ETHD_COMPENSATION_NONE) advance(filter, state, dt);
 }
 
-static bool correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, double elapsed) {
-  ethd_vec r = {x.x - s->x[0], x.y - s->x[1]};
-  if (ethd__filter_is_kalman(f)) return ethd__filter_correct(f, s, r);
+static bool correct(const ethd_filter *f, ethd_filter_state *s, const sighting *seen, double elapsed) {
+  ethd_vec r = {seen->x.x - s->x[0], seen->x.y - s->x[1]};
+  if (ethd__filter_is_kalman(f)) return ethd__filter_correct(f, s, r, seen->noise);
   bool hold = f->method == ETHD_FILTER_HOLD;
   double alpha = hold ? 1 : f->p[ALPHA_BETA_ALPHA], beta = hold ? 0 : f->p[ALPHA_BETA_BETA];
   s->x[0] += alpha * r.x;
@@ -59,21 +65,24 @@ static bool correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, doub
   return true;
 }
 
-static ethd_status gated(const ethd_filter *f, ethd_filter_state *s, ethd_vec x, double age) {
+static ethd_status gated(const ethd_filter *f, ethd_filter_state *s, const sighting *seen) {
   s->gated++;
   if (++s->gated_in_a_row < ETHD_FILTER_GATED_MAX) return ETHD_STALE;
-  start_from_reading(f, s, x, age);
+  start_from(f, s, seen);
   s->restarts++;
   return ETHD_OK;
 }
 
-ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, double age) {
+ethd_status ethd__filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, double age,
+                                double noise) {
+  if (!(noise > 0)) noise = ethd__filter_is_kalman(filter) ? filter->p[FILTER_NOISE] : 0;
+  const sighting seen = {x, age, noise};
   if (!isfinite(x.x) || !isfinite(x.y) || !isfinite(age)) {
     state->gated++;
     return ETHD_STALE;
   }
   if (!state->started) {
-    start_from_reading(filter, state, x, age);
+    start_from(filter, state, &seen);
     return ETHD_OK;
   }
   double elapsed = state->age - age;
@@ -83,12 +92,16 @@ ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *sta
   }
   ethd_filter_state next = *state;
   if (filter->compensation == ETHD_COMPENSATION_STAMP) advance(filter, &next, elapsed);
-  if (!correct(filter, &next, x, elapsed)) return gated(filter, state, x, age);
+  if (!correct(filter, &next, &seen, elapsed)) return gated(filter, state, &seen);
   next.age = age;
   next.used++;
   next.gated_in_a_row = 0;
   *state = next;
   return ETHD_OK;
+}
+
+ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, double age) {
+  return ethd__filter_update(filter, state, x, age, 0);
 }
 
 void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x, ethd_vec *v) {

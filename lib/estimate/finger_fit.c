@@ -24,7 +24,7 @@ static void collect(const ethd_fit *fit, const double r[ETHD_RAYS], ethd__points
   out->used = ethd__points_used(out->counts);
 }
 
-/* Radius and residual by e = |p - c|^2 - R_f^2, which is small where the finger is as thick as it is said to be; the
+/* Works out radius and residual from e = |p - c|^2 - R_f^2. It is small when the finger has the given radius, and the
    variance of small numbers keeps its digits. */
 static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec centre, ethd_finger *out) {
   double square = fit->finger_radius * fit->finger_radius, n = ethd__count(points->used);

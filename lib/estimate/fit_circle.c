@@ -1,7 +1,7 @@
 /* Circles through points: least squares of |p - c|^2 - R^2, radius sought or known.
 
-   Everything is worked out from the moments of u = p - origin. They take one pass over the points; after that any number
-   of steps is cheap, for moving the origin by s needs no point again:
+   Everything is worked out from the moments of u = p - origin. They take one pass over the points; after that any
+   number of steps is cheap, since moving the origin by s doesn't need the points again:
 
      sum |u - s|^2 (u - s) = sum |u|^2 u - 2 sum u u^T s + |s|^2 sum u - s sum |u - s|^2            */
 #include <math.h>
@@ -29,7 +29,7 @@ static inline void shift(moments *m, ethd_vec s) {
   m->zy = o.zy - 2 * (o.xy * s.x + o.yy * s.y) + ss * o.y - s.y * z;
 }
 
-/* Solves sum u u^T s = (g, h) for s; false: the points lie on one line, or are fewer than two. */
+/* Solves sum u u^T s = (g, h) for s; returns false if the points lie on one line or are fewer than two. */
 static inline bool solve(const moments *m, double g, double h, ethd_vec *s) {
   double det = m->xx * m->yy - m->xy * m->xy, trace = m->xx + m->yy;
   if (!(det > FLAT * trace * trace)) return false;
@@ -38,7 +38,7 @@ static inline bool solve(const moments *m, double g, double h, ethd_vec *s) {
   return true;
 }
 
-/* The moments of the points that count, about `origin`. */
+/* Returns the moments of the points that count, about `origin`. */
 static inline moments of(const ethd__points *points, ethd_vec origin) {
   two x = {0, 0}, y = x, xx = x, xy = x, yy = x, zx = x, zy = x;
   for (int i = 0; i < ETHD__PAIRS; i++) {
@@ -63,9 +63,9 @@ static inline moments of(const ethd__points *points, ethd_vec origin) {
                    two_sum(zy)};
 }
 
-/* About the mean the linear terms vanish, so that the centre parts from the radius:
-     sum u u^T s = 1/2 sum |u|^2 u;   R^2 is then the mean of |p - c|^2.
-   The moments move to the centre. */
+/* Fits Kasa's circle and moves the moments to its centre. About the mean the linear terms vanish, which separates the
+   centre from the radius:
+     sum u u^T s = 1/2 sum |u|^2 u;   R^2 is then the mean of |p - c|^2. */
 static inline bool kasa(moments *m, ethd_vec *centre) {
   ethd_vec mean = {m->x / m->n, m->y / m->n}, s;
   shift(m, mean);
@@ -80,7 +80,7 @@ bool ethd__fit_kasa(const ethd__points *points, ethd_vec *centre) {
   return kasa(&m, centre);
 }
 
-/* Gauss-Newton from the moments' origin: sum u u^T s = 1/2 sum (|u|^2 - R^2) u. */
+/* Takes a Gauss-Newton step from the moments' origin: sum u u^T s = 1/2 sum (|u|^2 - R^2) u. */
 static inline bool step(moments *m, double radius, ethd_vec *centre, double *moved) {
   ethd_vec s;
   double square = radius * radius;
@@ -91,7 +91,7 @@ static inline bool step(moments *m, double radius, ethd_vec *centre, double *mov
   return true;
 }
 
-/* How far |u|^2 - R^2 may be from 0; divided by 2 R that is nearly |u| - R, which the gate is about. */
+/* Returns how far |u|^2 - R^2 may be from 0; divided by 2 R it is nearly |u| - R, for which the gate is given. */
 static inline double gate(const ethd_fit *fit) { return 2 * fit->finger_radius * fit->p[ROBUST_GATE]; }
 
 /* Adds a point to the moments, or with sign -1 takes it out. */
@@ -107,8 +107,8 @@ static inline void add(moments *m, double sign, ethd_vec u) {
   m->zy += z * y;
 }
 
-/* Chooses anew, of the rays that are `there`, those within the gate; false: they are the same as before. The moments about
-   the centre follow: by the one point that came or went, else by another pass. */
+/* Chooses anew those of the rays that are `there` which lie within the gate; returns false if they are the same as
+   before. The moments about the centre are updated by the one point that came or went, or else by another pass. */
 static inline bool choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS], ethd__points *points, ethd_vec centre,
                           moments *m) {
   double square = fit->finger_radius * fit->finger_radius, most = gate(fit);
@@ -127,8 +127,9 @@ static inline bool choose(const ethd_fit *fit, const two_bits there[ETHD__PAIRS]
   return true;
 }
 
-/* Starts from Kasa's circle if it can be a finger: within the ring, and of the right radius within the gate. Few rays or an
-   outlier may give another circle; then a step from the ring's middle, which is never far off, is the start. */
+/* Starts from Kasa's circle if it can be the finger: within the ring, and of the right radius to within the gate. Few
+   rays or an outlier may give another circle; then a step from the ring's centre, which is never far off, is the
+   start. */
 static inline bool start(const ethd_fit *fit, const ethd__points *points, moments *m, ethd_vec *centre) {
   moments all = of(points, (ethd_vec){0, 0});
   double square = fit->finger_radius * fit->finger_radius, gap = fit->ring_radius - fit->finger_radius;
@@ -142,8 +143,8 @@ static inline bool start(const ethd_fit *fit, const ethd__points *points, moment
   return step(m, fit->finger_radius, centre, &moved);
 }
 
-/* The first step uses all points, so that an outlier that has pulled the start doesn't gate good ones. A step s leaves an
-   error of |s|^2 / 2 R, so a short one by the same points is the last. */
+/* The first step uses all points, so that a start which an outlier has pulled aside doesn't gate good ones. A step s
+   leaves an error of about |s|^2 / 2 R, so a short one with the same points is the last. */
 bool ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
   two_bits there[ETHD__PAIRS];
   double radius = fit->finger_radius, moved = 0;

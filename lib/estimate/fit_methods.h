@@ -1,6 +1,6 @@
 /* The fits behind ethd_fit_step. */
-#ifndef ETHD_LIB_FIT_METHODS_H
-#define ETHD_LIB_FIT_METHODS_H
+#ifndef ETHD__ESTIMATE_FIT_METHODS_H
+#define ETHD__ESTIMATE_FIT_METHODS_H
 
 #include <stdbool.h>
 
@@ -12,11 +12,11 @@ enum { ROBUST_GATE };
 
 enum { ETHD__PAIRS = ETHD_RAYS / 2 };
 
-/* Where the rays met the finger, relative to the ring's centre; pair i holds rays 2 i and 2 i + 1. A fit that drops a ray
-   clears it in `counts` and `used`. */
+/* Where the rays met the finger, relative to the ring's centre; pair i holds rays 2 i and 2 i + 1. A fit that drops a
+   ray clears it in `counts` and `used`. */
 typedef struct ethd__points {
   two x[ETHD__PAIRS], y[ETHD__PAIRS]; /* 0 where a ray met nothing */
-  two_bits counts[ETHD__PAIRS];       /* all bits of a ray that counts, else none */
+  two_bits counts[ETHD__PAIRS];       /* all bits set for a ray that counts, else none */
   uint32_t used;                      /* bit k: ray k counts */
 } ethd__points;
 
@@ -24,14 +24,14 @@ static inline ethd_vec ethd__point(const ethd__points *points, int ray) {
   return (ethd_vec){points->x[ray / 2][ray % 2], points->y[ray / 2][ray % 2]};
 }
 
-/* False: the points don't determine a centre. [rt] */
+/* Each fits the points and returns false if they don't determine a centre. [rt] */
 bool ethd__fit_kasa(const ethd__points *points, ethd_vec *centre) ETHD_RT;
 bool ethd__fit_robust(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) ETHD_RT;
 bool ethd__fit_vertex_mean(const ethd__points *points, ethd_vec *centre) ETHD_RT;
 bool ethd__fit_centroid(const ethd__points *points, ethd_vec *centre) ETHD_RT;
 
-/* As ethd_fit_step, for rays that weren't measured at one instant: ray k was lag[k] s early. The finger moves at v m/s
-   relative to the ring, so each point is carried on by v lag[k]. [rt] */
+/* Does what ethd_fit_step does, for rays that weren't measured at one instant: ray k was measured lag[k] s early. The
+   finger moves at v m/s relative to the ring, so each point is moved on by v lag[k]. [rt] */
 ethd_status ethd__fit_moving(const ethd_fit *fit, const double r[ETHD_RAYS], const double lag[ETHD_RAYS], ethd_vec v,
                              ethd_finger *out) ETHD_RT;
 
@@ -41,7 +41,7 @@ static inline uint32_t ethd__points_used(const two_bits counts[ETHD__PAIRS]) {
   return (uint32_t)(used[0] | used[1]);
 }
 
-/* How many of 16 bits are set; summed up in pairs, fours and eights. */
+/* Returns how many of 16 bits are set, summed up in pairs, fours and eights. */
 static inline double ethd__count(uint32_t bits) {
   bits -= bits >> 1 & 0x5555;
   bits = (bits & 0x3333) + (bits >> 2 & 0x3333);

@@ -16,7 +16,7 @@ static const ethd_param lsq[] = {
 static const ethd_param foaw[] = {
     [FOAW_WINDOW] = {"window", "1", 2, ETHD_VELOCITY_WINDOW_MAX, 16, "samples the line is fitted through at most"},
     [FOAW_NOISE] = {"noise", "rad", 1e-9, 1, 160e-6,
-                    "how far a sample may lie from the line: one encoder count, quantisation makes no more"},
+                    "how far a sample may lie from the line: one encoder count, the most that quantisation makes"},
 };
 
 static const ethd_param kalman[] = {

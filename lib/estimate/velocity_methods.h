@@ -1,6 +1,6 @@
 /* The estimators behind ethd_velocity_step. */
-#ifndef ETHD_LIB_VELOCITY_METHODS_H
-#define ETHD_LIB_VELOCITY_METHODS_H
+#ifndef ETHD__ESTIMATE_VELOCITY_METHODS_H
+#define ETHD__ESTIMATE_VELOCITY_METHODS_H
 
 #include "ethd/velocity.h"
 
@@ -10,15 +10,15 @@ enum { LSQ_WINDOW };
 enum { FOAW_WINDOW, FOAW_NOISE };
 enum { VELOCITY_NOISE, VELOCITY_ACCELERATION, VELOCITY_INERTIA };
 
-/* Where the i-th sample before the newest stands, i < count. */
+/* Returns the index of the i-th sample before the newest, i < count. */
 static inline uint32_t ethd__velocity_back(const ethd_velocity_state *s, uint32_t i) {
   return (s->head - i) & (ETHD_VELOCITY_WINDOW_MAX - 1);
 }
 
-/* a = 1 - exp(-2 pi cutoff dt). [any, rt-safe] */
+/* Returns a = 1 - exp(-2 pi cutoff dt). [any, rt-safe] */
 double ethd__velocity_gain(double cutoff, double dt) ETHD_RT;
 
-/* The speed, once the newest sample is in the ring; count >= 2, for kalman >= 1. [rt] */
+/* Each returns the speed once the newest sample is in the ring; count >= 2, for kalman >= 1. [rt] */
 double ethd__velocity_lsq(const ethd_velocity *v, const ethd_velocity_state *s) ETHD_RT;
 double ethd__velocity_foaw(const ethd_velocity *v, const ethd_velocity_state *s) ETHD_RT;
 double ethd__velocity_kalman(const ethd_velocity *v, ethd_velocity_state *s, double torque) ETHD_RT;

@@ -3,13 +3,13 @@
 
 #include "estimate/velocity_methods.h"
 
-/* Sums over samples, each with its age t and its position y relative to the newest sample. So neither the clock nor
-   the position's size costs digits, and the newest itself adds nothing but n. */
-typedef struct line {
+/* Sums over samples, each with its age t and its position y relative to the newest sample. So the size of clock and
+   position costs no digits, and the newest sample itself adds only to n. */
+typedef struct slope_line {
   double n, t, tt, y, ty;
-} line;
+} slope_line;
 
-static void line_add(line *l, double t, double y) {
+static void line_add(slope_line *l, double t, double y) {
   l->n += 1;
   l->t += t;
   l->tt += t * t;
@@ -17,15 +17,15 @@ static void line_add(line *l, double t, double y) {
   l->ty += t * y;
 }
 
-/* The slope over time; ages run backwards, so its sign is turned. */
-static double line_slope(const line *l) { return (l->t * l->y - l->n * l->ty) / (l->n * l->tt - l->t * l->t); }
+/* Returns the slope over time. Ages run backwards, so the sign is turned. */
+static double line_slope(const slope_line *l) { return (l->t * l->y - l->n * l->ty) / (l->n * l->tt - l->t * l->t); }
 
 static uint32_t samples(const ethd_velocity *v, const ethd_velocity_state *s) {
   return s->count < v->window ? s->count : v->window;
 }
 
 double ethd__velocity_lsq(const ethd_velocity *v, const ethd_velocity_state *s) {
-  line l = {.n = 1};
+  slope_line l = {.n = 1};
   double age = 0;
   for (uint32_t i = 1, n = samples(v, s); i < n; i++) {
     age += s->dt[ethd__velocity_back(s, i - 1)];
@@ -38,7 +38,7 @@ double ethd__velocity_lsq(const ethd_velocity *v, const ethd_velocity_state *s) 
    (rise -+ noise) / t. [low, high] are the slopes that all samples so far allow, so each sample is looked at once. */
 double ethd__velocity_foaw(const ethd_velocity *v, const ethd_velocity_state *s) {
   double noise = v->p[FOAW_NOISE];
-  line l = {.n = 1};
+  slope_line l = {.n = 1};
   double age = 0, low = -INFINITY, high = INFINITY;
   for (uint32_t i = 1, n = samples(v, s); i < n; i++) {
     age += s->dt[ethd__velocity_back(s, i - 1)];

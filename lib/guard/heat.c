@@ -1,9 +1,10 @@
-/* I2t: a motor's winding is a body of one temperature. Its rise over the surroundings is h, as a share of the rise that
-   the nominal torque leads to:
+/* I2t: a motor's winding is modelled as a body of one temperature. Its rise over the surroundings is h, as a share of
+   the rise that the nominal torque leads to:
 
-        h' = ((tau / nominal)^2 - h) / heat_time        exactly solved for a torque that is held
+        h' = ((tau / nominal)^2 - h) / heat_time        solved exactly for a torque that is held
 
-   The torque that it may have falls from any at h = FOLD to the nominal torque at h = 1, where h rises no more. */
+   The motor's torque is unbounded up to h = FOLD. Above it the bound falls and reaches the nominal torque at h = 1,
+   where h rises no more. */
 #include "guard/parts.h"
 
 #define FOLD 0.9 /* the last tenth of the heat is where the torque folds back */

@@ -13,20 +13,24 @@ const ethd_limit ethd_limit_rows[ETHD_LIMITS] = {
     {"torque_rate", "Nm/s", AT(torque_rate), 1, ETHD_LIMIT_MOST, 0, INF, "of each joint"},
     {"speed", "m/s", AT(speed), 1, ETHD_LIMIT_MOST, 0, INF, "of the ring"},
     {"workspace", "m", AT(workspace), 4, ETHD_LIMIT_RANGES, -INF, INF, "x_min x_max y_min y_max"},
-    {"step_time", "s", AT(step_time), 1, ETHD_LIMIT_MOST, 1e-9, INF, "budget of one step"},
+    {"step_time", "s", AT(step_time), 1, ETHD_LIMIT_MOST, 1e-9, INF, "time budget of one step"},
     {"reach", "m", AT(reach), 2, ETHD_LIMIT_RANGES, -INF, INF, "r_min r_max"},
     {"joints", "rad", AT(joints), 4, ETHD_LIMIT_RANGES, -INF, INF, "q1_min q1_max q2_min q2_max"},
-    {"margin", "m", AT(margin), 1, ETHD_LIMIT_LEAST, 0, 1, "of workspace and reach: a wall pushes back"},
-    {"energy", "J", AT(energy), 1, ETHD_LIMIT_MOST, 1e-9, INF, "that a contact may give away"},
-    {"nominal_torque", "Nm", AT(nominal_torque), 1, ETHD_LIMIT_MOST, 1e-9, INF, "of each motor, for ever"},
+    {"margin", "m", AT(margin), 1, ETHD_LIMIT_LEAST, 0, 1, "inside of workspace and reach, where a wall pushes back"},
+    {"energy", "J", AT(energy), 1, ETHD_LIMIT_MOST, 1e-9, INF, "that a contact may give away before it is damped"},
+    {"nominal_torque", "Nm", AT(nominal_torque), 1, ETHD_LIMIT_MOST, 1e-9, INF,
+     "that each motor can give continuously"},
     {"heat_time", "s", AT(heat_time), 1, ETHD_LIMIT_MOST, 1e-3, INF, "time constant of a motor's heat"},
-    {"gap", "s", AT(gap), 1, ETHD_LIMIT_MOST, 1e-9, INF, "between two steps"},
-    {"finger_age", "s", AT(finger_age), 1, ETHD_LIMIT_MOST, 1e-4, INF, "of the reading that tracking needs"},
-    {"finger_lost", "s", AT(finger_lost), 1, ETHD_LIMIT_MOST, 1e-4, INF, "of the reading that moving needs"},
-    {"clean_time", "s", AT(clean_time), 1, ETHD_LIMIT_LEAST, 0, 1e6, "before an acknowledgement"},
+    {"gap", "s", AT(gap), 1, ETHD_LIMIT_MOST, 1e-9, INF, "longest time between two steps"},
+    {"finger_age", "s", AT(finger_age), 1, ETHD_LIMIT_MOST, 1e-4, INF,
+     "age of the finger's reading at which tracking fades out"},
+    {"finger_lost", "s", AT(finger_lost), 1, ETHD_LIMIT_MOST, 1e-4, INF,
+     "age of the finger's reading at which the ring is stopped"},
+    {"clean_time", "s", AT(clean_time), 1, ETHD_LIMIT_LEAST, 0, 1e6,
+     "without a fault before an acknowledgement counts"},
 };
 
-/* The value that means "no limit"; of a range, number i. */
+/* Returns the value that means "no limit", for number i of the row. */
 static double none(const ethd_limit *row, uint32_t i) {
   if (row->kind == ETHD_LIMIT_LEAST) return row->min;
   return row->kind == ETHD_LIMIT_RANGES && i % 2 == 0 ? -INF : INF;

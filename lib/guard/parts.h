@@ -7,10 +7,10 @@
 #include "ethd/guard.h"
 #include "ethd/maths.h"
 
-/* Adds the workspace's wall to the torque; false: the ring doesn't touch it. */
+/* Adds the push of the workspace's wall to the torque; returns false if the ring doesn't touch it. */
 bool ethd__guard_wall(const ethd_limits *limits, const ethd_pose *pose, ethd_vec v, double torque[2]) ETHD_RT;
 
-/* The torque that a motor so hot may have, Nm. */
+/* Returns the largest torque, Nm, that a motor of this heat may give. */
 double ethd__guard_cool(const ethd_limits *limits, double heat) ETHD_RT;
 
 #endif

@@ -1,4 +1,4 @@
-/* The workspace's own wall, inside its bounds by the margin, so that the hard bound is met softly:
+/* The wall of the workspace, which lies inside the bounds by the margin and slows the ring down before it meets them:
 
         x_min   x_min + margin                F = -(WALL_STIFFNESS depth + WALL_DAMPING speed into it),
           |//////:                            never pulling

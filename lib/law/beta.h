@@ -1,6 +1,6 @@
-/* The share of tracking near a surface. */
-#ifndef ETHD__BETA_H
-#define ETHD__BETA_H
+/* How the share of tracking falls near a surface. */
+#ifndef ETHD__LAW_BETA_H
+#define ETHD__LAW_BETA_H
 
 #include "ethd/law.h"
 

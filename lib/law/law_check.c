@@ -5,8 +5,8 @@
 #include "ethd/law.h"
 #include "line.h"
 
-/* The sizes of a law's struct, by kind: the smallest of ABI 0, and this library's. A longer one was built against a newer
-   header, whose functions and fields this library doesn't know. */
+/* The sizes of a law's struct, by kind: the smallest of ABI 0, and this library's. A longer one was built against a
+   newer header, whose functions and fields this library doesn't know. */
 static const size_t smallest[] = {ETHD_TRACKING_LAW_MIN, ETHD_CONTACT_LAW_MIN, ETHD_TRANSITION_LAW_MIN};
 static const size_t largest[] = {sizeof(ethd_tracking_law), sizeof(ethd_contact_law), sizeof(ethd_transition_law)};
 
@@ -16,15 +16,12 @@ static bool id_is_good(const char *id) {
 }
 
 static bool has_step(const ethd_law *law) {
-  switch ((ethd_kind)law->kind) {
-  case ETHD_TRACKING: return ((const ethd_tracking_law *)(const void *)law)->step != NULL;
-  case ETHD_CONTACT: return ((const ethd_contact_law *)(const void *)law)->step != NULL;
-  case ETHD_TRANSITION: return ((const ethd_transition_law *)(const void *)law)->step != NULL;
-  }
-  return false;
+  if (law->kind == ETHD_TRACKING) return ((const ethd_tracking_law *)(const void *)law)->step != NULL;
+  if (law->kind == ETHD_CONTACT) return ((const ethd_contact_law *)(const void *)law)->step != NULL;
+  return ((const ethd_transition_law *)(const void *)law)->step != NULL;
 }
 
-/* The ABI comes first: when it differs, nothing behind it can be trusted. */
+/* The ABI is checked first, since nothing after it can be trusted when it differs. */
 ethd_status ethd_law_check(const ethd_law *law, ethd_error *error) {
   if (!law) return ethd__error(error, ETHD_E_ARGUMENT, "law");
   if (law->abi != ETHD_ABI) return ethd__refuse(error, ETHD_E_ABI, "abi", (ethd__found){law->abi, ETHD_ABI, ETHD_ABI});

@@ -1,6 +1,6 @@
-/* VO-B's machine, for laws that do something before it. */
-#ifndef ETHD__OFFSET_H
-#define ETHD__OFFSET_H
+/* The state machine of VO-B, for laws that put something before it. */
+#ifndef ETHD__LAW_OFFSET_H
+#define ETHD__LAW_OFFSET_H
 
 #include "law/beta.h"
 
@@ -25,7 +25,7 @@ typedef struct ethd__offset {
 void ethd__offset_enter(ethd__offset *s, int phase, double eps) ETHD_RT;
 void ethd__offset_step(const double *p, ethd__offset *s, const ethd_contact *c, ethd_ruling *out) ETHD_RT;
 
-/* A resting contact keeps its wall; a moving one is met anew, and braked. */
+/* Lets a resting contact keep its wall; a moving one begins anew and is braked. */
 void ethd__offset_adopt(const double *p, ethd__offset *s, const ethd_past *past) ETHD_RT;
 
 #endif

@@ -2,7 +2,7 @@
 
 #include <stdbool.h>
 
-/* Tracking outside the wall, the wall inside, nothing between: the baseline that the paper compares with. */
+/* Outside the wall the ring tracks, inside it the wall pushes, and nothing is between: the paper's baseline. */
 
 static ethd_status step(const double *p, void *block, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
   (void)p, (void)block;

@@ -8,14 +8,13 @@
         |  '---- d_re > d_beta -----'                                            |
         '----------------------------- d_re > d_beta ----------------------------'
 
-   At most one arrow per tick, before the forces. */
+   A tick follows at most one arrow, before it works out the forces. */
 
 static const ethd_param params[ETHD__OFFSET_COUNT] = {ETHD__OFFSET_PARAMS};
 
 _Static_assert(sizeof(ethd__offset) <= ETHD_STATE_MAX, "state");
 
-/* s: periods add up to t_max only within rounding. */
-#define TIME_TOLERANCE 1e-9
+#define TIME_TOLERANCE 1e-9 /* s: more than the rounding of a sum of periods */
 
 void ethd__offset_enter(ethd__offset *s, int phase, double eps) {
   s->phase = phase;
@@ -23,7 +22,7 @@ void ethd__offset_enter(ethd__offset *s, int phase, double eps) {
   s->braked = s->rest = 0;
 }
 
-/* A sum of any length, right within a rounding. */
+/* Adds a period to the time of braking by Kahan's summation, so that a long sum is right but for one rounding. */
 static void add_time(ethd__offset *s, double period) ETHD_RT {
   double term = period - s->rest, sum = s->braked + term;
   s->rest = sum - s->braked - term;

@@ -2,8 +2,8 @@
 
      atan q = atan c + atan t,  t = (low - c high)/(high + c low),  |t| <= 1/16.
 
-   t is kept to some 70 bits. Numerator and denominator are exact, for c has three bits; the quotient is a short one, whose
-   product with the denominator is exact, plus what the remainder gives.
+   t is kept to some 70 bits. Numerator and denominator are exact, since c has three bits; the quotient is a short one,
+   whose product with the denominator is exact, plus what the remainder gives.
 
    Coefficients: (atan(t)/t - 1)/z, z = t^2, interpolated with 80 digits at the zeros of a Chebyshev
    polynomial stretched so that its first zero lies on z = 0 and its range ends at 1/16^2, then rounded.
@@ -15,11 +15,11 @@
 
 #include "maths/double.h"
 
-static const pair pi = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
-static const pair half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
+static const double_pair pi = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
+static const double_pair half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 
 /* atan(j/8) */
-static const pair atan_eighths[9] = {
+static const double_pair atan_eighths[9] = {
     {0, 0},
     {0x1.fd5ba9aac2f6ep-4, -0x1.cd37686760c17p-59},
     {0x1.f5b75f92c80ddp-3, 0x1.8ab6e3cf7afbdp-57},
@@ -32,29 +32,29 @@ static const pair atan_eighths[9] = {
 };
 
 /* t = hi + lo, where hi has 16 bits. */
-static pair quotient(double low, double high, double c) {
+static double_pair quotient(double low, double high, double c) {
   double l1 = head(low, 27), l2 = low - l1, h1 = head(high, 27), h2 = high - h1;
-  pair a = sum(low - c * h1, -c * h2);
+  double_pair a = sum(low - c * h1, -c * h2);
   double d1 = h1 + c * l1, d2 = h2 + c * l2;
   double inverse = 1 / (d1 + d2);
   double t = head(a.hi * inverse, 37);
-  return (pair){t, (((a.hi - t * d1) - t * d2) + a.lo) * inverse};
+  return (double_pair){t, (((a.hi - t * d1) - t * d2) + a.lo) * inverse};
 }
 
 /* atan(low/high), 2^-60 high < low <= high, or low = 0. */
-static pair first_octant(double low, double high) {
+static double_pair first_octant(double low, double high) {
   int j = (int)(8 * (low / high) + 0.5);
-  pair t = quotient(low, high, 0.125 * j);
+  double_pair t = quotient(low, high, 0.125 * j);
   double x = t.hi + t.lo, z = x * x, w = z * z;
   double p = -0x1.5555555555536p-2 + (z * (0x1.9999999962d43p-3 + z * -0x1.249248289836ap-3) +
                                       z * w * (0x1.c7187d83e3f22p-4 + z * -0x1.70c11e1b6c468p-4));
-  pair c = atan_eighths[j], a = sum_ordered(c.hi, t.hi);
-  return (pair){a.hi, a.lo + (t.lo + (c.lo + x * z * p))};
+  double_pair c = atan_eighths[j], a = sum_ordered(c.hi, t.hi);
+  return (double_pair){a.hi, a.lo + (t.lo + (c.lo + x * z * p))};
 }
 
 /* base + sign a, rounded. */
-static double add(pair base, double sign, pair a) {
-  pair s = sum_ordered(base.hi, sign * a.hi);
+static double add(double_pair base, double sign, double_pair a) {
+  double_pair s = sum_ordered(base.hi, sign * a.hi);
   return s.hi + (sign * a.lo + (base.lo + s.lo));
 }
 
@@ -64,7 +64,7 @@ static double upper_half(double low, double high, bool steep, bool left) {
     if (!steep && !left) return low / high;
     low = 0;
   }
-  pair a = first_octant(low, high);
+  double_pair a = first_octant(low, high);
   if (steep) return add(half_pi, left ? 1 : -1, a);
   return left ? add(pi, -1, a) : a.hi + a.lo;
 }

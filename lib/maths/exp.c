@@ -16,7 +16,7 @@
 #include "maths/double.h"
 
 /* 2^(j/16); only log needs the last row. */
-static const pair root[17] = {
+static const double_pair root[17] = {
     {0x1.0000000000000p+0, 0},
     {0x1.0b5586cf9890fp+0, 0x1.8a62e4adc610bp-54},
     {0x1.172b83c7d517bp+0, -0x1.19041b9d78a76p-55},
@@ -37,11 +37,11 @@ static const pair root[17] = {
 };
 
 /* ln 2 / 16; the first part has 37 bits, so that n times it is exact for every n in use. */
-static const pair step = {0x1.62e42fefap-5, 0x1.cf79abc9e3b3ap-44};
+static const double_pair step = {0x1.62e42fefap-5, 0x1.cf79abc9e3b3ap-44};
 
 /* e^x = (m.hi + m.lo) 2^k, 1 <= m.hi < 2, |m.lo| < 0.022 m.hi. */
 typedef struct power {
-  pair m;
+  double_pair m;
   int64_t k;
 } power;
 
@@ -55,7 +55,7 @@ static power raise(double x) {
   double p =
       (0x1.0000000000001p-1 + r * 0x1.5555555555556p-3) +
       z * ((0x1.55555554e93b7p-5 + r * 0x1.11111110e1059p-7) + z * (0x1.6c17ed5c1f49ep-10 + r * 0x1.a01b0c3c80bbcp-13));
-  pair t = root[i & 15];
+  double_pair t = root[i & 15];
   return (power){{t.hi, t.lo + t.hi * (r + z * p)}, floor_16(i)};
 }
 
@@ -85,9 +85,9 @@ static double log_scaled(double x, int64_t k) {
   int64_t i = 16 * e + (int64_t)nearest(f * (23.1121 + f * (-12.0037 + f * 7.09835)));
   double half = from_bits(u - ((uint64_t)(floor_16(i) + 1) << 52)), n = (double)(i + 16 * k);
 
-  pair t = root[16 - (i & 15)], m = product(half, t.hi);
-  pair r = sum(m.hi - 1, m.lo + half * t.lo);
-  pair a = sum_ordered(n * step.hi, r.hi);
+  double_pair t = root[16 - (i & 15)], m = product(half, t.hi);
+  double_pair r = sum(m.hi - 1, m.lo + half * t.lo);
+  double_pair a = sum_ordered(n * step.hi, r.hi);
   return a.hi + (a.lo + (n * step.lo + (r.lo + log_tail(r.hi))));
 }
 
@@ -111,7 +111,7 @@ static double tanh_small(double x) {
 static double tanh_large(double x) {
   power e = raise(2 * x);
   double scale = power_of_two(e.k), h = e.m.hi * scale, l = e.m.lo * scale;
-  pair a = sum_ordered(h, -1), b = sum_ordered(h, 1);
+  double_pair a = sum_ordered(h, -1), b = sum_ordered(h, 1);
   double b1 = head(b.hi, 27), b2 = (b.hi - b1) + (b.lo + l), inverse = 1 / (b.hi + l);
   a = sum_ordered(a.hi, a.lo + l);
   double q = head(a.hi * inverse, 27);

@@ -13,11 +13,11 @@
 
 /* r.hi + r.lo = x - (quadrant + 4 k) pi/2. */
 typedef struct angle {
-  pair r;
+  double_pair r;
   unsigned quadrant;
 } angle;
 
-static const pair half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
+static const double_pair half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 
 /* The first 1184 bits of 2/pi. */
 static const uint32_t two_over_pi[37] = {
@@ -53,10 +53,10 @@ static uint64_t window(const uint32_t p[LIMBS], int b) {
 }
 
 /* (f1 + f0 2^-64) 2^-64 pi/2. */
-static pair turn(uint64_t f1, uint64_t f0) {
-  pair f = sum_ordered((double)(f1 >> 32) * 0x1p-32, (double)(f1 & UINT32_MAX) * 0x1p-64);
+static double_pair turn(uint64_t f1, uint64_t f0) {
+  double_pair f = sum_ordered((double)(f1 >> 32) * 0x1p-32, (double)(f1 & UINT32_MAX) * 0x1p-64);
   f = sum_ordered(f.hi, f.lo + (double)f0 * 0x1p-128);
-  pair r = product(f.hi, half_pi.hi);
+  double_pair r = product(f.hi, half_pi.hi);
   return sum_ordered(r.hi, r.lo + (f.hi * half_pi.lo + f.lo * half_pi.hi));
 }
 
@@ -78,9 +78,9 @@ static angle reduce_exactly(double x) {
     f1 = ~f1 + (f0 == 0);
     n++;
   }
-  pair r = turn(f1, f0);
+  double_pair r = turn(f1, f0);
   bool negative = u >> 63;
-  if (negative != above) r = (pair){-r.hi, -r.lo};
+  if (negative != above) r = (double_pair){-r.hi, -r.lo};
   return (angle){r, negative ? 0 - n : n};
 }
 
@@ -91,13 +91,13 @@ static angle reduce(double x) {
   if (!(fabs(x) < 0x1p20)) return isfinite(x) ? reduce_exactly(x) : (angle){{NAN, 0}, 0};
 
   double n = nearest(x * 0x1.45f306dc9c883p-1);
-  pair a = sum(x - n * 0x1.921fb544p+0, n * -0x1.0b4611a6p-34);
-  pair r = sum_ordered(a.hi, a.lo - n * 0x1.3198a2e037073p-69);
+  double_pair a = sum(x - n * 0x1.921fb544p+0, n * -0x1.0b4611a6p-34);
+  double_pair r = sum_ordered(a.hi, a.lo - n * 0x1.3198a2e037073p-69);
   if (fabs(r.hi) < 0x1p-36) return reduce_exactly(x);
   return (angle){r, (unsigned)(int)n};
 }
 
-static double sine(pair r) {
+static double sine(double_pair r) {
   double x = r.hi, z = x * x, w = z * z;
   double p = (-0x1.5555555555549p-3 + z * 0x1.111111110f87ap-7) +
              w * ((-0x1.a01a019c1191dp-13 + z * 0x1.71de3577ba15bp-19) +
@@ -105,12 +105,12 @@ static double sine(pair r) {
   return x + (x * z * p + r.lo * (1 - 0.5 * z));
 }
 
-static double cosine(pair r) {
+static double cosine(double_pair r) {
   double x = r.hi, z = x * x, w = z * z;
   double p = (0x1.5555555555552p-5 + z * -0x1.6c16c16c15fc8p-10) +
              w * ((0x1.a01a019e155bbp-16 + z * -0x1.27e4f9083357fp-22) +
                   w * (0x1.1eea9659172d2p-29 + z * -0x1.900572f8dbd04p-37));
-  pair a = sum_ordered(1, -0.5 * z);
+  double_pair a = sum_ordered(1, -0.5 * z);
   return a.hi + (a.lo + (w * p - x * r.lo));
 }
 

@@ -1,6 +1,7 @@
-/* Two doubles side by side. SSE2 and NEON hold them in one register; elsewhere the compiler works on one after the other. */
-#ifndef ETHD_TWO_H
-#define ETHD_TWO_H
+/* Two doubles side by side. SSE2 and NEON hold them in one register; elsewhere the compiler works on one after the
+   other. */
+#ifndef ETHD__MATHS_TWO_H
+#define ETHD__MATHS_TWO_H
 
 #include <stdint.h>
 

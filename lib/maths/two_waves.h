@@ -1,7 +1,7 @@
 /* Sine and cosine of two angles side by side. Every operation is that of trig.c, so the bits are those of ethd_sin and
    ethd_cos, in half the time. */
-#ifndef ETHD_MATHS_TWO_H
-#define ETHD_MATHS_TWO_H
+#ifndef ETHD__MATHS_TWO_WAVES_H
+#define ETHD__MATHS_TWO_WAVES_H
 
 #include <math.h>
 #include <stdbool.h>
@@ -13,7 +13,7 @@ typedef struct two_waves {
   two sine, cosine;
 } two_waves;
 
-/* x - n pi/2 = r + rest, |r| <= pi/4. For |x| up to pi/4, n = 0 and r = x. */
+/* The reduced angles: x - n pi/2 = r + rest, |r| <= pi/4. For |x| up to pi/4, n = 0 and r = x. */
 typedef struct two_angles {
   two r, rest;
   two_bits n; /* in its last bits */
@@ -43,10 +43,10 @@ static inline two two_cosine(two x, two rest) {
   return a + ((m - (a - 1)) + (w * p - x * rest));
 }
 
-/* False, which is rare, for angles that are huge, tiny, next to a multiple of pi/2, or NaN: those go the long way. */
+/* Returns false, which is rare, for angles that are huge, tiny, next to a multiple of pi/2, or NaN: trig.c does those. */
 static inline bool two_is_plain(double x, double r) { return fabs(x) < 0x1p20 && fabs(r) >= 0x1p-36; }
 
-/* The quadrant n exchanges sine and cosine and turns signs. Masks do it, for branches on n would be mispredicted. */
+/* The quadrant n exchanges sine and cosine and turns signs. Masks do so, since branches on n would be mispredicted. */
 static inline two_waves two_sincos(two x) {
   two_angles a = two_reduce(x);
   if (!two_is_plain(x[0], a.r[0]) || !two_is_plain(x[1], a.r[1]))

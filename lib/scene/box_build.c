@@ -2,8 +2,8 @@
 
 #include "scene/build.h"
 
-#define DIRECTIONS 8 /* that are tried, over a quarter turn: a box looks the same a quarter turn further */
-#define SAMPLES 32   /* discs that a direction is judged by */
+#define DIRECTIONS 8 /* how many are tried over a quarter turn, after which a box looks the same */
+#define SAMPLES 32   /* discs by which a direction is judged */
 
 static const float directions[DIRECTIONS][2] = {
     {1, 0},
@@ -16,27 +16,27 @@ static const float directions[DIRECTIONS][2] = {
     {0.19509032f, 0.98078528f},
 };
 
-typedef struct span {
+typedef struct box_span {
   double min, max;
-} span;
+} box_span;
 
 typedef struct rectangle {
   float c, s;
-  span u, v;
+  box_span u, v;
 } rectangle;
 
-static void widen(span *s, double v, double r) {
+static void widen(box_span *s, double v, double r) {
   s->min = v - r < s->min ? v - r : s->min;
   s->max = v + r > s->max ? v + r : s->max;
 }
 
-/* Every step-th disc of a cloud, from `from` up to, without, `to`. */
+/* Every step-th disc of a cloud, from `from` on, up to but without `to`. */
 typedef struct run {
   const ethd__cloud *cloud;
   size_t from, to, step;
 } run;
 
-/* The rectangle around a run whose u axis is (c, s). */
+/* Finds the rectangle around a run whose u axis is (c, s). */
 static rectangle around(const run *of, float c, float s) {
   const ethd__cloud *k = of->cloud;
   rectangle b = {c, s, {INFINITY, -INFINITY}, {INFINITY, -INFINITY}};
@@ -49,16 +49,16 @@ static rectangle around(const run *of, float c, float s) {
   return b;
 }
 
-static double width(span s) { return s.max - s.min; }
+static double width(box_span s) { return s.max - s.min; }
 
-/* The area from which the box is nearer than `near`, less what is the same for any box: the smaller, the fewer queries
-   open it. */
+/* Returns the area from which the box is nearer than `near`, less what is the same for any box. The smaller it is, the
+   fewer queries open the box. */
 static double cost(const rectangle *b) {
   double w = width(b->u), h = width(b->v), near = 0.01;
   return w * h + near * (w + h);
 }
 
-/* Turned along the line from the first disc to the last. */
+/* Finds the rectangle that is turned along the line from the first disc to the last. */
 static rectangle along(const run *of) {
   ethd_vec e = ethd_vec_sub(of->cloud->points[of->to - 1], of->cloud->points[of->from]);
   double length = ethd_vec_norm(e);
@@ -77,8 +77,8 @@ static rectangle fit(const ethd__cloud *k, size_t from, size_t to) {
   return around(&all, best.c, best.s);
 }
 
-/* The middle is rounded to a float; the half grows by what that may have cut off. */
-static void set(span s, float *middle, float *half) {
+/* Rounds the middle to a float and lets the half width grow by as much as that may cut off. */
+static void set(box_span s, float *middle, float *half) {
   *middle = (float)((s.min + s.max) / 2);
   double reach = fmax(s.max - (double)*middle, (double)*middle - s.min);
   *half = (float)(reach * (1 + 4 * (double)FLT_EPSILON)) + ETHD__INFLATE;

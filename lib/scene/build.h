@@ -1,6 +1,6 @@
 /* Building a scene's tree. [main] */
-#ifndef ETHD_LIB_SCENE_BUILD_H
-#define ETHD_LIB_SCENE_BUILD_H
+#ifndef ETHD__SCENE_BUILD_H
+#define ETHD__SCENE_BUILD_H
 
 #include "scene/tree.h"
 
@@ -13,19 +13,19 @@ typedef struct ethd__item {
 /* Orders items so that every node of a tree over them holds neighbours. */
 void ethd__order_build(ethd__item *items, uint32_t count);
 
-/* Discs in the trees' frame, by centre and radius; radii NULL: all are 0. */
+/* Discs in the trees' frame, by centre and radius; radii NULL: all radii are 0. */
 typedef struct ethd__cloud {
   const ethd_vec *points;
   const double *radii;
 } ethd__cloud;
 
-/* Makes lane `lane` a small box around the discs from `from` up to, without, `to`. */
+/* Makes lane `lane` a small box around the discs from `from` on, up to but without `to`. */
 void ethd__box_fit(const ethd__cloud *cloud, size_t from, size_t to, ethd__node *node, size_t lane);
 
 /* Marks a lane as empty. */
 void ethd__box_clear(ethd__node *node, size_t lane);
 
-/* Builds nodes and slopes of a scene that is complete but for them. `room`: ethd__nodes_room bytes, aligned like malloc's. */
+/* Builds the nodes and slopes of a scene that has all else. `room`: ethd__nodes_room bytes, aligned like malloc's. */
 size_t ethd__nodes_room(const ethd_scene *scene);
 void ethd__nodes_build(ethd_scene *scene, void *room);
 

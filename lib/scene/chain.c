@@ -2,7 +2,7 @@
 
 #include <float.h>
 
-/* Where x stands against edge k from a to b: e = b - a, u = x - a.
+/* Where x lies relative to edge k from a to b: e = b - a, u = x - a.
 
      along = e.u        0 at a, e.e at b
      across = e x u     > 0: x to the left; |across|/|e| is the distance from the line */
@@ -27,15 +27,14 @@ static inline edge edge_of(const ethd__chain *chain, size_t k, ethd_vec x) {
 
 static inline part part_of(const edge *g) { return g->along <= 0 ? AT_START : g->along >= g->ee ? AT_END : BETWEEN; }
 
-/* The same, but where rounding can't tell the foot from a vertex it is at the vertex. Both edges there agree on
-   it. */
+/* Does the same, but a foot that rounding can't tell from a vertex counts as at the vertex, for both edges there. */
 static part settled_part_of(const edge *g) {
   double e = fabs(g->e.x) + fabs(g->e.y), u = fabs(g->u.x) + fabs(g->u.y);
   double margin = 8 * DBL_EPSILON * e * (e + u);
   return g->along <= margin ? AT_START : g->along >= g->ee - margin ? AT_END : BETWEEN;
 }
 
-/* The edge that ends at point k; false: the chain has none. */
+/* Finds the edge that ends at point k; returns false if the chain has none. */
 static bool edge_before(const ethd__chain *chain, size_t k, size_t *out) {
   *out = k ? k - 1 : chain->edges - 1;
   return k || chain->closed;
@@ -56,7 +55,7 @@ static ethd_vec left_of(ethd_vec v) {
 
 /* ---- vertices ---- */
 
-/* A vertex and the directions of its edges; at an end, the one edge's direction stands for both. */
+/* A vertex and the directions of its edges; at an end both are that of its one edge. */
 typedef struct vertex {
   ethd_vec p, in, out;
   int turn;   /* of a sharp turn: +1 left, -1 right, 0 straight back */
@@ -75,7 +74,7 @@ static vertex vertex_of(const ethd__chain *chain, size_t k) {
   return v;
 }
 
-/* On which side x stands, which this vertex is nearest to: +1 left, -1 right, 0 beyond an end or where the chain turns
+/* Returns the side of x, which this vertex is nearest to: +1 left, -1 right, 0 beyond an end or where the chain turns
    straight back. A vertex with a sharp turn is nearest only to points on its outer side. */
 static int side_of(const vertex *v, ethd_vec x) {
   if (v->end) return 0;
@@ -84,7 +83,7 @@ static int side_of(const vertex *v, ethd_vec x) {
   return ethd_vec_cross(along, ethd_vec_sub(x, v->p)) >= 0 ? 1 : -1;
 }
 
-/* The normal to the left for an x that is at the vertex itself. */
+/* Returns the normal to the left for an x at the vertex itself. */
 static ethd_vec left_normal(const vertex *v) {
   ethd_vec s = unit(v->in), t = unit(v->out);
   if (v->blunt || !v->turn) return unit(left_of(v->blunt ? ethd_vec_add(s, t) : t));
@@ -93,7 +92,7 @@ static ethd_vec left_normal(const vertex *v) {
 
 /* ---- touches ---- */
 
-/* n from a surface's left normal: into a polygon; at a thin wall, away from x. */
+/* Returns n from a surface's left normal: into a polygon, or at a thin wall away from x. */
 static ethd_vec inward(const ethd__chain *chain, int side, ethd_vec left) {
   return ethd_vec_scale(chain->turn ? chain->turn : side > 0 ? -1 : 1, left);
 }
@@ -144,8 +143,8 @@ static bool touch_if_between(const ethd__chain *chain, size_t k, ethd_vec x, eth
   return true;
 }
 
-/* The nearest point of edge k; where that is a vertex, the edge beyond it is tried too, for rounding may have hidden its
-   foot. */
+/* Finds the nearest point of edge k. If that is a vertex, the edge beyond it is tried too, since rounding may have
+   hidden its foot. */
 static void touch_nearest(const ethd__chain *chain, size_t k, ethd_vec x, ethd_touch *out) {
   edge g = edge_of(chain, k, x);
   part p = part_of(&g);
@@ -166,15 +165,15 @@ bool ethd__edge_crossed(ethd_vec a, ethd_vec b, ethd_vec x) {
   return (ethd__orient(a, b, x) > 0) == (b.y > a.y);
 }
 
-/* By the parity of the edges that a ray to the right crosses. */
+/* Returns true if x is inside, by the parity of the edges that a ray to the right crosses. */
 static bool contains(const ethd__chain *chain, ethd_vec x) {
   bool inside = false;
   for (size_t k = 0; k < chain->edges; k++) inside ^= ethd__edge_crossed(point(chain, k), point(chain, k + 1), x);
   return inside;
 }
 
-/* Turns n and the distance's sign by whether x is inside; n comes as seen from outside. Near a needle's tip the edge that
-   rounding makes the nearest may show x its other face. On the surface itself an edge's own normal stays. */
+/* Turns n and the distance's sign by whether x is inside; n comes as seen from outside. Near a needle's tip the edge
+   that rounding makes the nearest may show x its other face. On the surface itself an edge's own normal stays. */
 static void sign(const ethd__chain *chain, bool inside, ethd_touch *out) {
   bool at_vertex = out->feature % 2;
   bool turned = at_vertex ? inside && out->distance > ETHD__TINY
@@ -200,8 +199,8 @@ void ethd__chain_nearest(const ethd__chain *chain, ethd_vec x, ethd_touch *out) 
 
 /* ---- local minima ---- */
 
-/* Where x stands against the edge before vertex k. At the start of an open chain it is past that edge, which isn't
-   there. */
+/* Returns where x lies along the edge before vertex k. At the start of an open chain, where there is no such edge, x
+   counts as past it. */
 static part part_before(const ethd__chain *chain, size_t k, ethd_vec x) {
   size_t i;
   if (!edge_before(chain, k, &i)) return AT_END;

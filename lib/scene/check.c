@@ -16,7 +16,7 @@ static ethd_status refuse_object(const ethd_object_def *def, ethd_status status,
 }
 
 static size_t append(char name[64], size_t at, const char *word) {
-  while (*word && at < 63) name[at++] = *word++;
+  while (*word && at < 63) name[at++] = *word++; /* unreachable: the cut, for the longest name has 53 characters */
   name[at] = 0;
   return at;
 }
@@ -61,7 +61,7 @@ static ethd_status check_numbers(const ethd_object_def *def, ethd_error *error) 
   return ETHD_OK;
 }
 
-/* Whether rounding can't tell two points apart, or the square of their distance would be lost. */
+/* Returns true if rounding can't tell two points apart, or the square of their distance would be lost. */
 static bool are_equal(ethd_vec a, ethd_vec b) {
   ethd_vec e = ethd_vec_sub(b, a);
   double largest = fmax(fmax(fabs(a.x), fabs(a.y)), fmax(fabs(b.x), fabs(b.y)));
@@ -95,6 +95,7 @@ static ethd_status check_simple(const ethd_object_def *def, void *room, ethd_err
 
 static ethd_status check_chain(const ethd_object_def *def, void *room, ethd_error *error) {
   size_t n = def->count / 2;
+  /* unreachable: in a test, for it takes 17 GB of numbers */
   if (n > POINTS_MAX) return refuse_object(def, ETHD_E_FULL, "points", (ethd__found){(double)n, 0, POINTS_MAX}, error);
   for (size_t k = 0; k < n; k++) {
     size_t next = k + 1 < n ? k + 1 : 0, pair[2] = {k, next};
@@ -106,7 +107,7 @@ static ethd_status check_chain(const ethd_object_def *def, void *room, ethd_erro
 }
 
 static ethd_status check_object(const ethd_scene_def *def, const ethd_object_def *o, void *room, ethd_error *error) {
-  if ((int)o->shape < 0 || o->shape >= ETHD_SHAPE_COUNT)
+  if ((unsigned)o->shape >= ETHD_SHAPE_COUNT)
     return refuse_object(o, ETHD_E_UNKNOWN, "shape", (ethd__found){(double)o->shape, 0, ETHD_SHAPE_COUNT - 1}, error);
   if (!o->numbers) return refuse_object(o, ETHD_E_ARGUMENT, "numbers", ethd__unsaid, error);
   if (o->material < -1 || o->material >= (int32_t)def->material_count)
@@ -165,7 +166,7 @@ ethd_status ethd__check_scene(const ethd_scene_def *def, void *room, ethd_error 
   if (def->material_count > ETHD_MATERIALS_MAX)
     return refuse_material(&def->materials[ETHD_MATERIALS_MAX], ETHD_E_FULL, "materials",
                            (ethd__found){(double)def->material_count, 0, ETHD_MATERIALS_MAX}, error);
-  if (def->object_count > INT32_MAX)
+  if (def->object_count > INT32_MAX) /* unreachable: in a test, for it takes 80 GB of objects */
     return ethd__refuse(error, ETHD_E_FULL, "objects", (ethd__found){(double)def->object_count, 0, INT32_MAX});
   ethd_status status = ETHD_OK;
   for (size_t i = 0; i < def->material_count && !status; i++) status = check_material(def, i, error);

@@ -11,7 +11,7 @@ static uint32_t edges_of(const ethd_object_def *o) {
   return ethd__shapes[o->shape].is_chain ? (uint32_t)(ethd__kept_count(o) / 2 - 1) : 0;
 }
 
-/* An endless object has no bounds and no place in a tree. */
+/* Returns true for an object without bounds, which is in no tree. */
 static bool is_endless(const ethd_object_def *o) {
   const ethd__shape *s = &ethd__shapes[o->shape];
   return !s->is_chain && !s->discs;
@@ -26,7 +26,7 @@ static size_t reserve(size_t *bytes, size_t size) {
 }
 
 /* Works out how much of everything there is, and where it goes. The nodes of chains come first, so that slopes, which
-   only they have, need no places for others. */
+   only they have, take no room for others. */
 static ethd_status plan(const ethd_scene_def *def, ethd_scene *s, ethd_error *error) {
   size_t numbers = 0, nodes = 0, endless = 0;
   for (size_t i = 0; i < def->object_count; i++) {
@@ -37,7 +37,7 @@ static ethd_status plan(const ethd_scene_def *def, ethd_scene *s, ethd_error *er
     }
     endless += is_endless(&def->objects[i]);
   }
-  if (numbers > UINT32_MAX)
+  if (numbers > UINT32_MAX) /* unreachable: in a test, for it takes 34 GB of numbers */
     return ethd__refuse(error, ETHD_E_FULL, "numbers", (ethd__found){(double)numbers, 0, UINT32_MAX});
   s->object_count = (uint32_t)def->object_count;
   s->material_count = (uint32_t)def->material_count;
@@ -63,7 +63,7 @@ typedef struct bounds {
 
 static const bounds nowhere = {INFINITY, -INFINITY, INFINITY, -INFINITY};
 
-/* Comparisons are quicker than fmin and fmax, which also know what to do with NaN. */
+/* Comparisons are quicker than fmin and fmax, which take care of NaN too. */
 static double lesser(double a, double b) { return a < b ? a : b; }
 static double greater(double a, double b) { return a > b ? a : b; }
 
@@ -101,7 +101,7 @@ static void frame(ethd_scene *s, bounds b) {
   s->scale = ldexp(1, exponent < -400 ? 400 : -exponent); /* its square is finite */
 }
 
-/* The largest of an object's coordinates and lengths: rounding is judged by it. */
+/* Returns the largest of an object's coordinates and lengths, by which rounding is judged. */
 static double largest(const ethd_object_def *def) {
   const ethd__shape *s = &ethd__shapes[def->shape];
   double most = 0;
@@ -117,7 +117,7 @@ static ethd_vec point(const double *p, size_t k) {
   return r;
 }
 
-/* A polygon's winding: the turn at its first point in the order of x, then y, where it is convex. */
+/* Returns a polygon's winding, which is its turn at the first point in the order of x, then y, where it is convex. */
 static int turn_of(const double *p, size_t n) {
   size_t k = 0;
   for (size_t i = 1; i < n; i++)
@@ -217,7 +217,7 @@ ethd_status ethd__scene_make(const ethd_scene_def *def, const int32_t *ids, ethd
   empty.outer = INFINITY;
   *out = NULL;
   ethd_status status = plan(def, &empty, error);
-  if (status) return status;
+  if (status) return status; /* unreachable: only more numbers than a test has fail */
   ethd_scene *scene = aligned_alloc(64, empty.bytes);
   if (scene) {
     memset(scene, 0, empty.bytes);

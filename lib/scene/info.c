@@ -18,7 +18,7 @@ void ethd_scene_describe(const ethd_scene *scene, ethd_scene_info *out) {
   }
 }
 
-/* How far an object's farthest point is from the base joint: no point of a hull is farther than its discs. */
+/* Returns how far an object's farthest point is from the base joint: no point of a hull is farther than its discs. */
 static double farthest(const ethd_scene *scene, const ethd__object *o) {
   const ethd__shape *s = &ethd__shapes[o->shape];
   const double *kept = ethd__numbers(scene, o);
@@ -31,8 +31,8 @@ static double farthest(const ethd_scene *scene, const ethd__object *o) {
   return most;
 }
 
-/* An object is in one piece: if its nearest point lies within the outer circle and its farthest beyond the inner one, then
-   some of it lies between the two. */
+/* An object is in one piece: if its nearest point lies within the outer circle and its farthest beyond the inner one,
+   then some of it lies between the two. */
 bool ethd__object_is_within(const ethd_scene *scene, const ethd__object *o, double inner, double outer) {
   ethd_touch nearest;
   ethd__object_nearest(scene, o, (ethd_vec){0, 0}, &nearest);
@@ -70,7 +70,7 @@ int32_t ethd_scene_object(const ethd_scene *scene, size_t i, ethd_object_def *ou
 
 /* ---- its trees ---- */
 
-/* The tree that a node belongs to, by bisection: trees stand in the order of their nodes. */
+/* Finds the tree of a node by bisection: trees are in the order of their nodes. */
 static const ethd__tree *tree_of(const ethd_scene *scene, uint32_t node) {
   const ethd__tree *trees = ETHD__ARRAY(scene, ethd__tree, trees_at);
   uint32_t low = 0, high = scene->tree_count;

@@ -1,7 +1,7 @@
 /* Four floats at a time. Arithmetic is the compiler's own on vector types, so every machine gets the same
    bits; -DETHD_NO_SIMD leaves out the two instructions that compilers don't find by themselves. */
-#ifndef ETHD_LIB_LANES_H
-#define ETHD_LIB_LANES_H
+#ifndef ETHD__SCENE_LANES_H
+#define ETHD__SCENE_LANES_H
 
 #include <stdint.h>
 
@@ -15,7 +15,7 @@
 #define ETHD__INLINE static inline __attribute__((always_inline))
 
 typedef float ethd__floats __attribute__((vector_size(16), may_alias));
-typedef int32_t ethd__words __attribute__((vector_size(16)));
+typedef int32_t ethd__ints __attribute__((vector_size(16)));
 
 /* `at` is aligned to 16 bytes. */
 ETHD__INLINE ethd__floats ethd__load(const float *at) { return *(const ethd__floats *)(const void *)at; }
@@ -24,7 +24,7 @@ ETHD__INLINE void ethd__store(float *at, ethd__floats v) { *(ethd__floats *)(voi
 ETHD__INLINE ethd__floats ethd__all(float v) { return (ethd__floats){v, v, v, v}; }
 
 ETHD__INLINE ethd__floats ethd__abs(ethd__floats v) {
-  return (ethd__floats)((ethd__words)v & (ethd__words){INT32_MAX, INT32_MAX, INT32_MAX, INT32_MAX});
+  return (ethd__floats)((ethd__ints)v & (ethd__ints){INT32_MAX, INT32_MAX, INT32_MAX, INT32_MAX});
 }
 
 /* a > b ? a : b */
@@ -32,8 +32,8 @@ ETHD__INLINE ethd__floats ethd__max(ethd__floats a, ethd__floats b) {
 #if ETHD__SSE2
   return (ethd__floats)_mm_max_ps((__m128)a, (__m128)b);
 #else
-  ethd__words over = a > b;
-  return (ethd__floats)((over & (ethd__words)a) | (~over & (ethd__words)b));
+  ethd__ints over = a > b;
+  return (ethd__floats)((over & (ethd__ints)a) | (~over & (ethd__ints)b));
 #endif
 }
 
@@ -42,12 +42,12 @@ ETHD__INLINE ethd__floats ethd__min(ethd__floats a, ethd__floats b) {
 #if ETHD__SSE2
   return (ethd__floats)_mm_min_ps((__m128)a, (__m128)b);
 #else
-  ethd__words under = a < b;
-  return (ethd__floats)((under & (ethd__words)a) | (~under & (ethd__words)b));
+  ethd__ints under = a < b;
+  return (ethd__floats)((under & (ethd__ints)a) | (~under & (ethd__ints)b));
 #endif
 }
 
-/* All lanes become the least of the four. */
+/* Sets all lanes to the least of the four. */
 ETHD__INLINE ethd__floats ethd__least(ethd__floats v) {
 #if ETHD__SSE2
   v = ethd__min(v, (ethd__floats)_mm_shuffle_ps((__m128)v, (__m128)v, _MM_SHUFFLE(1, 0, 3, 2)));
@@ -58,8 +58,8 @@ ETHD__INLINE ethd__floats ethd__least(ethd__floats v) {
 #endif
 }
 
-/* Bit k is set if lane k is true. */
-ETHD__INLINE unsigned ethd__bits(ethd__words m) {
+/* Returns bit k set if lane k is true. */
+ETHD__INLINE unsigned ethd__bits(ethd__ints m) {
 #if ETHD__SSE2
   return (unsigned)_mm_movemask_ps((__m128)m);
 #else

@@ -63,19 +63,19 @@ typedef struct strip {
   bool closed;
 } strip;
 
-/* |across| / along of edge k against the axis; INFINITY: it goes the other way. */
+/* Returns |across| / along of edge k against the axis, INFINITY if it goes the other way. */
 static double slope_of(const strip *t, size_t k, ethd_vec axis) {
   ethd_vec e = ethd_vec_sub(t->points[k + 1], t->points[k]);
   double along = ethd_vec_dot(axis, e);
   return along > 0 ? fabs(ethd_vec_cross(axis, e)) / along : INFINITY;
 }
 
-/* How far across x stands is known to 2^-20 of its distance; a steeper slope would multiply that error by too much. */
+/* How far across x lies is known to 2^-20 of its distance; a steeper slope would multiply that error by too much. */
 #define STEEPEST 8
 
-/* The steepest slope of edges [from, to) against the box's axis (c, s), and of one more edge on each side, for the vertices
-   at both ends depend on it. FLT_MAX, which rules nothing out, where that slope can't be used and at the ends of an open
-   chain. */
+/* Returns the steepest slope of edges [from, to) against the box's axis (c, s), and of one more edge on each side, on
+   which the vertices at both ends depend. It is FLT_MAX, which rules nothing out, when that slope can't be used and at
+   the ends of an open chain. */
 static float steepest(const strip *t, size_t from, size_t to, float c, float s) {
   if (!t->closed && (from == 0 || to == t->edges)) return FLT_MAX;
   ethd_vec axis = {c, s};
@@ -115,7 +115,8 @@ void ethd__nodes_build(ethd_scene *s, void *room) {
   b.start[0] = 0;
   for (uint32_t i = 0; i < s->tree.leaves; i++) {
     const ethd__object *o = ethd__object_at(s, i);
-    b.start[i + 1] = put_object(&b, b.start[i], o);
+    size_t next = put_object(&b, b.start[i], o);
+    b.start[i + 1] = next;
     if (ethd__has_tree(o)) build_strip(&b, o, b.points + b.start[i]);
   }
   build_tree(&b, &s->tree);

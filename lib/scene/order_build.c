@@ -1,11 +1,11 @@
 /* The order of the leaves. All items are split in two by a median in x or y, whichever they are wider in, and each part
-   again, until a part fits into one box of the level; then the next level is split likewise. Parts are whole numbers of full
-   boxes, so only the last node of a level stays partly empty. */
+   is split again until it fits into one box of the level; then the next level is split in the same way. Parts are whole
+   numbers of full boxes, so only the last node of a level stays partly empty. */
 #include "scene/build.h"
 
 #define SMALL 12 /* items that are sorted by insertion */
 
-/* What items are ordered by on one side; the id makes all ranks different. */
+/* Returns the rank by which items are ordered along one axis; the id makes all ranks different. */
 static uint64_t rank(const ethd__item *i, int side) { return (uint64_t)i->at[side] << 32 | i->id; }
 
 static void swap(ethd__item *a, ethd__item *b) {
@@ -24,7 +24,7 @@ static uint64_t median(uint64_t a, uint64_t b, uint64_t c) {
   return c < low ? low : c > high ? high : c;
 }
 
-/* The median of three medians of nine items, so it is neither the first nor the last of all. */
+/* Returns the median of three medians of nine items, which is neither the first nor the last of all. */
 static uint64_t pivot(const ethd__item *p, size_t n, int side) {
   uint64_t m[3];
   for (size_t i = 0; i < 3; i++)
@@ -43,9 +43,9 @@ static size_t divide(ethd__item *p, size_t n, uint64_t most, int side) {
   return low;
 }
 
-/* Moves the m lowest of n items to the front (Hoare 1961). */
+/* Moves the m < n lowest of n items to the front (Hoare 1961). */
 static void part(ethd__item *p, size_t n, size_t m, int side) {
-  while (n > SMALL && m > 0 && m < n) {
+  while (n > SMALL && m > 0) {
     size_t low = divide(p, n, pivot(p, n, side), side);
     if (m < low) {
       n = low;
@@ -55,7 +55,7 @@ static void part(ethd__item *p, size_t n, size_t m, int side) {
       m -= low;
     }
   }
-  if (m > 0 && m < n) sort(p, n, side);
+  if (m > 0) sort(p, n, side);
 }
 
 static int wider_side(const ethd__item *p, size_t n) {
@@ -69,7 +69,7 @@ static int wider_side(const ethd__item *p, size_t n) {
   return high[1] - low[1] > high[0] - low[0];
 }
 
-/* Items that one node, or one box of it, of this level holds. */
+/* Returns how many items one node of this level, or one box of it, holds. */
 typedef struct range {
   ethd__item *items;
   size_t count;

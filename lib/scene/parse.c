@@ -9,17 +9,17 @@
 
 #define NUMBER_LENGTH 127 /* bytes of a number's text */
 
-typedef struct word {
+typedef struct scene_word {
   const char *at;
   size_t length;
-} word;
+} scene_word;
 
-typedef struct reader {
+typedef struct scene_reader {
   const char *at, *end; /* what is left of the text */
-  word line;            /* what is left of the line */
+  scene_word line;      /* what is left of the line */
   int number;           /* of the line, from 1 */
   ethd_error *error;
-} reader;
+} scene_reader;
 
 typedef struct draft {
   ethd_material materials[ETHD_MATERIALS_MAX];
@@ -29,7 +29,7 @@ typedef struct draft {
   size_t lines, words; /* of objects: there are no more objects and numbers than these */
 } draft;
 
-static ethd_status refuse(reader *r, ethd_status status, word w, ethd__found found) {
+static ethd_status refuse(scene_reader *r, ethd_status status, scene_word w, ethd__found found) {
   char name[64];
   size_t n = w.length < sizeof name - 1 ? w.length : sizeof name - 1;
   for (size_t i = 0; i < n; i++) name[i] = w.at[i] >= ' ' && w.at[i] < 127 ? w.at[i] : '?';
@@ -39,16 +39,18 @@ static ethd_status refuse(reader *r, ethd_status status, word w, ethd__found fou
   return status;
 }
 
-static ethd_status refuse_word(reader *r, ethd_status status, word w) { return refuse(r, status, w, ethd__unsaid); }
+static ethd_status refuse_word(scene_reader *r, ethd_status status, scene_word w) {
+  return refuse(r, status, w, ethd__unsaid);
+}
 
 /* ---- lines and words ---- */
 
-static bool next_line(reader *r) {
+static bool next_line(scene_reader *r) {
   if (r->at == r->end) return false;
   size_t left = (size_t)(r->end - r->at);
   const char *stop = memchr(r->at, '\n', left);
   size_t length = stop ? (size_t)(stop - r->at) : left;
-  r->line = (word){r->at, length};
+  r->line = (scene_word){r->at, length};
   r->at += length + (stop != NULL);
   r->number++;
   return true;
@@ -56,27 +58,27 @@ static bool next_line(reader *r) {
 
 static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
-static bool next_word(reader *r, word *out) {
-  word *l = &r->line;
+static bool next_word(scene_reader *r, scene_word *out) {
+  scene_word *l = &r->line;
   while (l->length && is_space(*l->at)) l->at++, l->length--;
   size_t n = 0;
   while (n < l->length && !is_space(l->at[n]) && l->at[n] != '#') n++;
-  *out = (word){l->at, n};
+  *out = (scene_word){l->at, n};
   if (n == 0) l->length = 0;
   l->at += n;
   l->length -= n;
   return n > 0;
 }
 
-static bool is(word w, const char *text) { return strlen(text) == w.length && !memcmp(w.at, text, w.length); }
+static bool is(scene_word w, const char *text) { return strlen(text) == w.length && !memcmp(w.at, text, w.length); }
 
-/* Splits "key=value"; false: there is no '='. */
-static bool split(word w, word *key, word *value) {
+/* Splits "key=value"; returns false if there is no '='. */
+static bool split(scene_word w, scene_word *key, scene_word *value) {
   const char *sign = memchr(w.at, '=', w.length);
   if (!sign) return false;
   size_t n = (size_t)(sign - w.at);
-  *key = (word){w.at, n};
-  *value = (word){sign + 1, w.length - n - 1};
+  *key = (scene_word){w.at, n};
+  *value = (scene_word){sign + 1, w.length - n - 1};
   return true;
 }
 
@@ -113,9 +115,9 @@ static void write_exponent(char *to, long exponent) {
   memcpy(to, digits_of + n, sizeof digits_of - n);
 }
 
-/* [+-] digits [. digits] [e [+-] digits], with a digit before or after the point. strtod expects the locale's decimal
-   point, so it gets none: the exponent makes up for it. */
-static bool number(word w, double *out) {
+/* Reads [+-] digits [. digits] [e [+-] digits], with a digit before or after the point. strtod expects the locale's
+   decimal point, so it gets the digits without a point and a smaller exponent. */
+static bool number(scene_word w, double *out) {
   char text[NUMBER_LENGTH + 32], *to = text;
   const char *at = w.at, *end = w.at + w.length;
   size_t whole, parts = 0;
@@ -141,7 +143,7 @@ static bool number(word w, double *out) {
 
 /* ---- materials ---- */
 
-static bool is_name(word w) {
+static bool is_name(scene_word w) {
   for (size_t i = 0; i < w.length; i++) {
     char c = w.at[i];
     bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
@@ -150,13 +152,13 @@ static bool is_name(word w) {
   return w.length >= 1 && w.length < ETHD_NAME_MAX;
 }
 
-static void copy_name(char name[ETHD_NAME_MAX], word w) {
+static void copy_name(char name[ETHD_NAME_MAX], scene_word w) {
   memcpy(name, w.at, w.length);
   name[w.length] = 0;
 }
 
-static ethd_status read_value(reader *r, word w, ethd_material *m) {
-  word key, value;
+static ethd_status read_value(scene_reader *r, scene_word w, ethd_material *m) {
+  scene_word key, value;
   double number_read;
   if (!split(w, &key, &value) || !is_name(key) || !number(value, &number_read)) return refuse_word(r, ETHD_E_SYNTAX, w);
   if (m->count == ETHD_PARAMS_MAX)
@@ -167,8 +169,8 @@ static ethd_status read_value(reader *r, word w, ethd_material *m) {
   return ETHD_OK;
 }
 
-static ethd_status read_material(reader *r, draft *d, word keyword) {
-  word w;
+static ethd_status read_material(scene_reader *r, draft *d, scene_word keyword) {
+  scene_word w;
   ethd_status status = ETHD_OK;
   if (!next_word(r, &w)) return refuse_word(r, ETHD_E_SYNTAX, keyword);
   if (!is_name(w)) return refuse_word(r, ETHD_E_SYNTAX, w);
@@ -183,7 +185,7 @@ static ethd_status read_material(reader *r, draft *d, word keyword) {
 
 /* ---- objects ---- */
 
-static ethd_status read_shape(reader *r, word w, ethd_shape *out) {
+static ethd_status read_shape(scene_reader *r, scene_word w, ethd_shape *out) {
   for (int i = 0; i < ETHD_SHAPE_COUNT; i++) {
     *out = (ethd_shape)i;
     if (is(w, ethd_shape_name(*out))) return ETHD_OK;
@@ -191,8 +193,8 @@ static ethd_status read_shape(reader *r, word w, ethd_shape *out) {
   return refuse_word(r, ETHD_E_UNKNOWN, w);
 }
 
-static ethd_status read_reference(reader *r, const draft *d, word w, ethd_object_def *o) {
-  word key, name, rest;
+static ethd_status read_reference(scene_reader *r, const draft *d, scene_word w, ethd_object_def *o) {
+  scene_word key, name, rest;
   if (!split(w, &key, &name) || !is(key, "material") || !is_name(name)) return refuse_word(r, ETHD_E_SYNTAX, w);
   if (next_word(r, &rest)) return refuse_word(r, ETHD_E_SYNTAX, rest);
   for (size_t i = 0; i < d->material_count; i++)
@@ -200,13 +202,13 @@ static ethd_status read_reference(reader *r, const draft *d, word w, ethd_object
   return o->material < 0 ? refuse_word(r, ETHD_E_UNKNOWN, w) : ETHD_OK;
 }
 
-static ethd_status read_object(reader *r, draft *d, word keyword) {
+static ethd_status read_object(scene_reader *r, draft *d, scene_word keyword) {
   ethd_object_def *o = &d->objects[d->object_count++];
   double *numbers = d->numbers + d->number_count;
   *o = (ethd_object_def){.material = -1, .numbers = numbers, .line = r->number};
   ethd_status status = read_shape(r, keyword, &o->shape);
   if (status) return status;
-  word w;
+  scene_word w;
   while (next_word(r, &w)) {
     if (!number(w, &numbers[o->count])) {
       status = read_reference(r, d, w, o);
@@ -222,10 +224,10 @@ static ethd_status read_object(reader *r, draft *d, word keyword) {
 
 /* ---- the whole ---- */
 
-static ethd_status survey(reader r, draft *d) {
-  word w;
+static ethd_status survey(scene_reader r, draft *d) {
+  scene_word w;
   while (next_line(&r)) {
-    if (memchr(r.line.at, 0, r.line.length)) return refuse_word(&r, ETHD_E_SYNTAX, (word){"a NUL byte", 10});
+    if (memchr(r.line.at, 0, r.line.length)) return refuse_word(&r, ETHD_E_SYNTAX, (scene_word){"a NUL byte", 10});
     if (!next_word(&r, &w)) continue;
     if (is(w, "material")) {
       ethd_status status = read_material(&r, d, w);
@@ -238,15 +240,15 @@ static ethd_status survey(reader r, draft *d) {
   return ETHD_OK;
 }
 
-static ethd_status read_objects(reader r, draft *d) {
-  word w;
+static ethd_status read_objects(scene_reader r, draft *d) {
+  scene_word w;
   ethd_status status = ETHD_OK;
   while (!status && next_line(&r))
     if (next_word(&r, &w) && !is(w, "material")) status = read_object(&r, d, w);
   return status;
 }
 
-static ethd_status read_all(reader r, draft *d) {
+static ethd_status read_all(scene_reader r, draft *d) {
   ethd_status status = survey(r, d);
   if (status) return status;
   d->objects = malloc((d->lines + 1) * sizeof *d->objects);
@@ -261,7 +263,7 @@ ethd_status ethd_scene_parse(const char *text, size_t length, ethd_scene **out, 
   if (!text) text = "";
   draft *d = calloc(1, sizeof *d);
   if (!d) return ethd__error(error, ETHD_E_MEMORY, "scene");
-  ethd_status status = read_all((reader){.at = text, .end = text + length, .error = error}, d);
+  ethd_status status = read_all((scene_reader){.at = text, .end = text + length, .error = error}, d);
   if (!status) {
     ethd_scene_def def = {d->objects, d->object_count, d->materials, d->material_count};
     status = ethd_scene_create(&def, out, error);

@@ -15,8 +15,8 @@ static size_t gather(const ethd_scene *scene, double inner, double outer, ethd_o
   return n;
 }
 
-/* Takes over the slack, so that decisions which depend on rounding stay what they were in the whole scene, and notes what
-   was left out. */
+/* Takes over the slack, so that decisions which depend on rounding are those of the whole scene, and notes what was
+   left out. */
 static void mark(const ethd_scene *whole, double inner, double outer, ethd_scene *scene) {
   scene->slack = whole->slack;
   scene->dropped = whole->dropped + (whole->object_count - scene->object_count);

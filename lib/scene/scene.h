@@ -2,13 +2,13 @@
 
      objects    what each is and where its numbers are; in the order of the tree's leaves, endless ones last
      places     of the objects, in the order of their ids
-     numbers    as the object was given, and what its shape's row (shapes.h) adds; of a polygon the points, the
-                first of them once more at the end
-     trees      of the chains with a tree of their own (tree.h)
-     nodes      of those, then of the tree of all objects
+     numbers    those that were given for the object, and what its shape's row (shapes.h) adds; of a polygon the
+                points, with the first of them again at the end
+     trees      of the chains that have a tree of their own (tree.h)
+     nodes      of those trees, then of the tree of all objects
      slopes     one for each box of a chain's tree */
-#ifndef ETHD_LIB_SCENE_H
-#define ETHD_LIB_SCENE_H
+#ifndef ETHD__SCENE_SCENE_H
+#define ETHD__SCENE_SCENE_H
 
 #include <stdbool.h>
 
@@ -51,7 +51,7 @@ struct ethd_scene {
 
 #define ETHD__ARRAY(scene, type, at) ((const type *)(const void *)((const char *)(scene) + (scene)->at))
 
-/* `place`: its index in the order of the leaves. */
+/* Returns the object at `place`, its index in the order of the leaves. */
 static inline const ethd__object *ethd__object_at(const ethd_scene *scene, uint32_t place) {
   return ETHD__ARRAY(scene, ethd__object, objects_at) + place;
 }
@@ -78,22 +78,22 @@ static inline ethd_vec ethd__chain_point(const ethd__chain *chain, size_t k) {
   return ethd_vec_of(chain->points + 2 * k);
 }
 
-/* The nearest point of a chain; a polygon's distance is signed. Sets distance, point, n and feature; `side` is left
-   without a meaning. */
+/* Finds the nearest point of a chain; a polygon's distance is signed. Sets distance, point, n and feature; `side` means
+   nothing then. */
 void ethd__chain_nearest(const ethd__chain *chain, ethd_vec x, ethd_touch *out) ETHD_RT;
 
-/* The same where edge k is known to be nearest and, of a polygon, whether x is inside. */
+/* Does the same when edge k is known to be nearest and, for a polygon, whether x is inside. */
 void ethd__chain_touch(const ethd__chain *chain, size_t k, ethd_vec x, bool inside, ethd_touch *out) ETHD_RT;
 
-/* The first local minimum of the distance at edge `from` or later; vertex k comes before edge k. Returns the edge to go on
-   from, 0 when there is no minimum. Of a polygon, which x is outside of, only surfaces that face x count. */
+/* Finds the first local minimum of the distance at edge `from` or later; vertex k comes before edge k. Returns the edge
+   to go on from, 0 when there is no minimum. x is outside of a polygon, of which only surfaces that face x count. */
 size_t ethd__chain_minimum(const ethd__chain *chain, ethd_vec x, size_t from, ethd_touch *out) ETHD_RT;
 
-/* Whether edge k, or vertex k before it, has a local minimum; k = edges is the chain's end. x comes by its address
-   because gcc 12 stores a pair in two halves, then loads it whole and waits for both. */
+/* Returns true if edge k, or vertex k before it, has a local minimum; k = edges is the chain's end. x is passed by its
+   address because gcc 12 stores a pair in two halves, then loads it whole and waits for both. */
 bool ethd__chain_minimum_at(const ethd__chain *chain, size_t k, const ethd_vec *x, ethd_touch *out) ETHD_RT;
 
-/* Whether the ray from x to the right crosses the edge from a to b; exact. */
+/* Returns true if the ray from x to the right crosses the edge from a to b; exact. */
 bool ethd__edge_crossed(ethd_vec a, ethd_vec b, ethd_vec x) ETHD_RT;
 
 /* Sets what every touch of this object has: its number and material, and 0 for the feature and the side where the
@@ -105,18 +105,20 @@ static inline void ethd__label(const ethd__object *o, ethd_touch *out) {
   if (o->turn) out->side = 0;
 }
 
-/* The nearest point of an object, by its closed form or edge by edge. The touch is complete but for a chain's
+/* Finds the nearest point of an object, by its closed form or edge by edge. The touch is complete but for a chain's
    side. */
 void ethd__object_nearest(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_touch *out) ETHD_RT;
 
-/* Builds a scene from what has been checked. `ids`: the objects' numbers, rising; NULL: 0, 1, ... [main] */
+/* Builds a scene from a definition that has been checked. `ids`: the objects' numbers, rising; NULL: 0, 1, ... [main] */
 ethd_status ethd__scene_make(const ethd_scene_def *def, const int32_t *ids, ethd_scene **out, ethd_error *error);
 
-/* Distances from the base between which things count for this arm, m. */
+/* Gives the distances from the base between which objects count for this arm, m. */
 void ethd__scene_annulus(const ethd_arm *arm, double radius, double *inner, double *outer);
+
+/* Returns true if any of the object lies between these distances from the base. */
 bool ethd__object_is_within(const ethd_scene *scene, const ethd__object *o, double inner, double outer);
 
-/* The turn from a over b to c: +1 counter-clockwise, -1 clockwise, 0 on a line; exact. */
+/* Returns the turn from a over b to c: +1 counter-clockwise, -1 clockwise, 0 on a line; exact. */
 int ethd__orient(ethd_vec a, ethd_vec b, ethd_vec c) ETHD_RT;
 
 #endif

@@ -1,5 +1,5 @@
-/* The rows of all shapes, and the closed forms behind them. Nothing here needs the system, so one file serves both
-   sides. */
+/* The rows of all shapes, and the closed forms behind them. Nothing here needs the system, so the file may be on both
+   threads' sides. */
 #include "scene/shapes.h"
 
 #include <float.h>
@@ -41,7 +41,7 @@ static void halfplane(const double *p, ethd_vec x, ethd_touch *out) {
 
 /* ---- circle {x, y, r} and capsule {x1, y1, x2, y2, r} ---- */
 
-/* The disc about c. At its centre, where every direction is as good, n is `any`. */
+/* Finds the nearest point of the disc about c. At its centre, where every direction is as good, n is `any`. */
 static void disc(ethd_vec c, double r, ethd_vec any, ethd_vec x, ethd_touch *out) {
   ethd_vec gap = ethd_vec_sub(c, x);
   double distance = ethd_vec_norm(gap);
@@ -83,7 +83,7 @@ static ethd__disc box_disc(const double *p, size_t k) {
   return (ethd__disc){vec(p[0] + (p[5] * u - p[6] * v), p[1] + (p[6] * u + p[5] * v)), 0};
 }
 
-/* Works in the box's frame, folded into its first quadrant: x stands (u, v) from the centre, (du, dv) beyond the faces. */
+/* Works in the box's frame, folded into its first quadrant: x is (u, v) from the centre and (du, dv) beyond the faces. */
 static void box(const double *p, ethd_vec x, ethd_touch *out) {
   double c = p[5], s = p[6];
   ethd_vec r = ethd_vec_sub(x, vec(p[0], p[1]));

@@ -1,19 +1,19 @@
 /* What a scene knows of each shape: one row of a table. Nothing else in lib asks for a shape by its name.
 
-   A closed form (half-plane, circle ...) has a fixed count of numbers and brings its nearest point. A chain (polygon,
-   segment, polyline) is a list of points; chain.c does for all of them. */
-#ifndef ETHD_LIB_SCENE_SHAPES_H
-#define ETHD_LIB_SCENE_SHAPES_H
+   A closed form (half-plane, circle ...) has a fixed count of numbers and a function for its nearest point. A chain
+   (polygon, segment, polyline) is a list of points; chain.c works for all of them. */
+#ifndef ETHD__SCENE_SHAPES_H
+#define ETHD__SCENE_SHAPES_H
 
 #include "scene/scene.h"
 
-#define ETHD__GIVEN_MAX 5 /* numbers of a closed form as they are given, */
-#define ETHD__KEPT_MAX 7  /* and as a scene keeps them */
+#define ETHD__GIVEN_MAX 5 /* the most numbers that a closed form is given by */
+#define ETHD__KEPT_MAX 7  /* the most that a scene keeps of one */
 
 typedef enum ethd__number_kind {
-  ETHD__COORDINATE, /* m, of either sign; counts for the scene's extent */
-  ETHD__LENGTH,     /* m, above 0; counts likewise */
-  ETHD__DIRECTION   /* a share or an angle: says nothing about the scene's extent */
+  ETHD__COORDINATE, /* m, of either sign; part of the scene's extent */
+  ETHD__LENGTH,     /* m, above 0; part of the scene's extent */
+  ETHD__DIRECTION   /* a component of a unit vector or an angle: no part of the scene's extent */
 } ethd__number_kind;
 
 typedef struct ethd__disc {
@@ -28,19 +28,19 @@ typedef struct ethd__shape {
     const char *name;
     ethd__number_kind kind;
   } numbers[ETHD__GIVEN_MAX]; /* of a chain: x and y of every point */
-  size_t count;               /* of numbers; of a list: at least */
+  size_t count;               /* of numbers; for a list the least */
   bool is_chain;
   bool is_list;   /* the chain may have any number of points */
   bool is_closed; /* the chain is closed by an edge to its first point and bounds a solid */
 
   /* All of the following belong to closed forms. `kept` numbers are the given ones and what `keep` adds. */
 
-  /* Checks what a single number's range can't say; NULL: there is nothing to check. [main] */
+  /* Checks what the range of one number can't express; NULL: there is nothing to check. [main] */
   ethd_status (*check)(const ethd_object_def *def, ethd_error *error);
-  /* Writes what a scene keeps over a copy of the given numbers; NULL: the copy will do. [main] */
+  /* Turns a copy of the given numbers into what a scene keeps; NULL: the copy is kept as it is. [main] */
   void (*keep)(double *kept);
   size_t added; /* numbers that `keep` puts behind the given ones */
-  /* The object lies in the convex hull of these discs, best as close as it can, for bounds and reach are the hull's.
+  /* The object lies in the convex hull of these discs, which should fit closely, since bounds and reach are the hull's.
      0 discs: it is endless, and in no tree. [main] */
   size_t discs;
   ethd__disc (*disc)(const double *kept, size_t k);
@@ -50,23 +50,23 @@ typedef struct ethd__shape {
 
 extern const ethd__shape ethd__shapes[ETHD_SHAPE_COUNT];
 
-/* Where number k of an object stands in its shape's row. */
+/* Returns where number k of an object is in its shape's row. */
 static inline size_t ethd__number_of(const ethd__shape *s, size_t k) { return s->is_chain ? k % 2 : k; }
 
-/* Numbers that a scene keeps of an object: polygons repeat their first point. */
+/* Returns how many numbers a scene keeps of an object: polygons repeat their first point. */
 static inline size_t ethd__kept_count(const ethd_object_def *o) {
   const ethd__shape *s = &ethd__shapes[o->shape];
   return o->count + (s->is_closed ? 2 : s->added);
 }
 
-/* `kept`: ethd__kept_count numbers. [main] */
+/* Writes the numbers that a scene keeps, ethd__kept_count of them. [main] */
 void ethd__keep(const ethd_object_def *o, double *kept);
 
 static inline size_t ethd__disc_count(const ethd__object *o) {
   return o->edges ? o->edges + (size_t)1 : ethd__shapes[o->shape].discs;
 }
 
-/* Disc k of an object; a chain's are its points. */
+/* Returns disc k of an object; a chain's discs are its points. */
 static inline ethd__disc ethd__disc_at(const ethd__shape *s, const double *kept, size_t k) {
   if (s->is_chain) return (ethd__disc){{kept[2 * k], kept[2 * k + 1]}, 0};
   return s->disc(kept, k);

@@ -8,7 +8,7 @@ static const float *slopes(const ethd_scene *scene, const ethd__probe *p) {
 
 /* ---- inside or outside ---- */
 
-/* Bits of the boxes whose contents the ray from x to the right may meet. */
+/* Returns the bits of the boxes whose contents the ray from x to the right may meet. */
 static unsigned ahead(const ethd__node *n, float x, float y) {
   unsigned meet = 0;
   for (int i = 0; i < ETHD__WIDE; i += 4) {
@@ -22,8 +22,8 @@ static unsigned ahead(const ethd__node *n, float x, float y) {
   return meet;
 }
 
-/* Whether x is inside, by the parity of the edges that a ray to the right crosses. Far outside the frame, where boxes
-   would be wrong by more than they are inflated, nothing is inside. */
+/* Returns true if x is inside, by the parity of the edges that a ray to the right crosses. Far outside the frame, where
+   boxes would be wrong by more than they are inflated, nothing is inside. */
 static bool contains(const ethd__strip *s, const ethd__chain *c) {
   const ethd__tree *tree = ethd__tree_at(s->scene, s->object);
   const ethd__probe *p = s->probe;
@@ -52,7 +52,7 @@ typedef struct faces {
   double outer, inner;
 } faces;
 
-/* The nearest face decides. Where one of the other kind is as near up to rounding, edges are counted instead. */
+/* Lets the nearest face decide. If a face of the other kind is as near but for rounding, edges are counted instead. */
 static bool is_inside(const ethd__strip *s, const ethd__chain *c, const faces *f) {
   double outer = sqrt(f->outer), inner = sqrt(f->inner);
   double rounding = 4 * c->slack + 64 * DBL_EPSILON * fmin(outer, inner);
@@ -61,7 +61,7 @@ static bool is_inside(const ethd__strip *s, const ethd__chain *c, const faces *f
 
 /* ---- the walk ---- */
 
-/* Keeps edge k if it is the nearest so far; where faces are asked for, its face counts whether it is or not. */
+/* Keeps edge k if it is the nearest so far; if faces are asked for, its face counts in any case. */
 ETHD__INLINE void take(const ethd__chain *c, uint32_t k, ethd_vec x, faces *f, ethd__nearest_edge *best) {
   ethd__beside s = ethd__beside_edge(ethd__chain_point(c, k), ethd__chain_point(c, k + (size_t)1), x);
   if (s.squared < best->squared || (s.squared == best->squared && k < best->edge)) {
@@ -74,8 +74,8 @@ ETHD__INLINE void take(const ethd__chain *c, uint32_t k, ethd_vec x, faces *f, e
   if (!(in < -s.doubt) && s.squared < f->inner) f->inner = s.squared;
 }
 
-/* The likely edge first, or the one that is found by always taking the nearest box; its distance bounds the rest. Two
-   copies are compiled of it, with faces and without. */
+/* Visits the likely edge first, or the one that is found by always taking the nearest box; its distance bounds the
+   rest. Two copies of it are compiled, with faces and without. */
 ETHD__INLINE void visit(const ethd__strip *s, const ethd__chain *c, uint32_t first, faces *f, ethd__nearest_edge *out) {
   const ethd__probe *p = s->probe;
   ethd__walk walk;

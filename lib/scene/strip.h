@@ -1,10 +1,10 @@
-/* Chains through their trees. */
-#ifndef ETHD_LIB_SCENE_STRIP_H
-#define ETHD_LIB_SCENE_STRIP_H
+/* Queries of a chain that use its tree. */
+#ifndef ETHD__SCENE_STRIP_H
+#define ETHD__SCENE_STRIP_H
 
 #include "scene/tree.h"
 
-/* A chain with a tree, as it is asked from x. */
+/* A chain with a tree, and the point x from which it is asked. */
 typedef struct ethd__strip {
   const ethd_scene *scene;
   const ethd__object *object;
@@ -12,18 +12,18 @@ typedef struct ethd__strip {
   ethd_vec x;
 } ethd__strip;
 
-/* The edge nearest to x, the first of those that are as near; ETHD__NONE: none is within the limit. */
+/* The edge nearest to x, the first if several are as near; ETHD__NONE: none is within the limit. */
 typedef struct ethd__nearest_edge {
   double squared; /* of the distance, m2 */
   uint32_t edge;
-  bool inside; /* of a polygon, if that was asked: x is */
+  bool inside; /* x is inside the polygon, if that was asked */
 } ethd__nearest_edge;
 
-/* Among the edges nearer than the root of `limit` (m2). `first`: an edge that is likely to be near; ETHD__NONE: nobody
-   knows one. */
+/* Finds the nearest among the edges nearer than the root of `limit` (m2). `first`: an edge that is likely to be near;
+   ETHD__NONE: none is known. */
 void ethd__strip_nearest(const ethd__strip *strip, uint32_t first, double limit, ethd__nearest_edge *out) ETHD_RT;
 
-/* Of a polygon, however far, and whether x is inside. */
+/* Finds the nearest edge of a polygon, however far, and whether x is inside. */
 void ethd__strip_signed(const ethd__strip *strip, uint32_t first, ethd__nearest_edge *out) ETHD_RT;
 
 /* The local minima of the distance from x to the chain, in no order: those whose points lie within `bound` of a
@@ -44,10 +44,10 @@ typedef struct ethd__minima {
   } stack[(ETHD__WIDE - 1) * ETHD__LEVELS + 1];
 } ethd__minima;
 
-/* `at_centre`: strip->probe where x is the centre. The bound is none as yet. */
+/* Starts without a bound. `at_centre`: the centre's probe, or strip->probe itself if x is the centre. */
 void ethd__minima_start(ethd__minima *m, const ethd__strip *strip, const ethd__probe *at_centre) ETHD_RT;
 
-/* False: there are no more. */
+/* Gives the next local minimum; returns false if there are no more. */
 bool ethd__minima_next(ethd__minima *m, ethd_touch *out) ETHD_RT;
 
 #endif

@@ -2,8 +2,8 @@
 
 #include <float.h>
 
-/* Bits of the boxes near the centre that may hold a minimum as seen from x. The two are one point unless they are
-   `apart`. */
+/* Returns the bits of the boxes near the centre that may hold a minimum as seen from x. The two are one point unless
+   they are `apart`. */
 static unsigned open_lanes(const ethd__minima *m, uint32_t place) {
   const ethd__node *n = m->at_x.nodes + place;
   const float *slopes = m->slopes ? m->slopes + ETHD__WIDE * (size_t)place : NULL;
@@ -20,7 +20,7 @@ static void open_node(ethd__minima *m, uint32_t level, uint32_t index) {
   }
 }
 
-/* Starts with the root; or, where it has two children, with both, for asking the root which to open takes as long as
+/* Starts with the root or, if it has two children, with both of them: asking the root which to open takes as long as
    opening them. */
 static void push_top(ethd__minima *m) {
   uint32_t level = m->tree->levels, roots = 1;

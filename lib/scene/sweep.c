@@ -1,7 +1,7 @@
 /* Is a closed chain a simple polygon? A line sweeps over its points in the order of x, then y. The edges
    that it crosses are kept in their order along it, in a tree balanced by random priorities (treap). The
-   first two edges that meet stand side by side before they do (Shamos and Hoey 1976), so it is enough to
-   test new neighbours. Every decision is exact. O(n log n). */
+   first two edges that meet are neighbours before they do (Shamos and Hoey 1976), so it is enough to
+   test new neighbours. Every decision is exact, and the time is O(n log n). */
 #include "scene/check.h"
 #include "scene/scene.h"
 
@@ -48,7 +48,7 @@ static int orient(const sweep *s, uint32_t a, uint32_t b, uint32_t c) {
 
 /* ---- order of the points: merge sort ---- */
 
-/* Two sorted runs of `width` that start at `low`; the last ones may be shorter. */
+/* Merges two sorted runs of `width` that start at `low`; the last ones may be shorter. */
 static void merge(const sweep *s, const uint32_t *from, uint32_t *to, size_t low, size_t width) {
   size_t middle = low + width < s->n ? low + width : s->n, high = middle + width < s->n ? middle + width : s->n;
   size_t i = low, j = middle;
@@ -72,17 +72,17 @@ static void sort(sweep *s, uint32_t *a, uint32_t *b) {
 
 static bool share(const sweep *s, uint32_t e, uint32_t f) { return f == next(s, e) || e == next(s, f); }
 
-/* Two neighbours with a common point leave it towards the same side of the sweep line, so they overlap exactly if they
-   leave it in the same direction. */
+/* Returns true if two neighbours with a common point overlap. They leave it towards the same side of the sweep line, so
+   they overlap exactly if they leave it in the same direction. */
 static bool fold(const sweep *s, uint32_t e, uint32_t f) {
   uint32_t p = f == next(s, e) ? f : e;
   return orient(s, p, previous(s, p), next(s, p)) == 0;
 }
 
+/* Neighbours on one line overlap: where they didn't, the line wouldn't cross both. */
 static bool cross(const sweep *s, uint32_t e, uint32_t f) {
   uint32_t a = start_of(s, e), b = end_of(s, e), c = start_of(s, f), d = end_of(s, f);
   int oc = orient(s, a, b, c), od = orient(s, a, b, d);
-  if (!oc && !od) return !precedes(s, b, c) && !precedes(s, d, a);
   return oc * od <= 0 && orient(s, c, d, a) * orient(s, c, d, b) <= 0;
 }
 
@@ -128,7 +128,7 @@ static uint32_t scrambled(uint32_t k) {
   return k ^ (k >> 16);
 }
 
-/* Of two neighbours one has no child on the side of the other: e goes there. */
+/* Inserts e between two neighbours, one of which has no child on the side of the other: e goes there. */
 static void insert(sweep *s, uint32_t e, uint32_t below, uint32_t above) {
   node *t = s->nodes;
   t[e] = (node){NONE, {NONE, NONE}, {NONE, NONE}, scrambled(e)};

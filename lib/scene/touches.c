@@ -2,11 +2,11 @@
 
 /* ---- all touches ---- */
 
-typedef struct list {
+typedef struct touch_list {
   ethd_touch *touches;
   size_t room, count;
   double range;
-} list;
+} touch_list;
 
 static bool deeper(const ethd_touch *a, const ethd_touch *b) {
   if (a->distance != b->distance) return a->distance < b->distance;
@@ -14,7 +14,7 @@ static bool deeper(const ethd_touch *a, const ethd_touch *b) {
   return a->feature < b->feature;
 }
 
-static void add(list *l, const ethd_touch *touch) {
+static void add(touch_list *l, const ethd_touch *touch) {
   if (!(touch->distance <= l->range)) return;
   size_t kept = l->count < l->room ? l->count : l->room, i = kept;
   l->count++;
@@ -24,13 +24,13 @@ static void add(list *l, const ethd_touch *touch) {
   l->touches[i] = *touch;
 }
 
-/* Whether only the nearest point counts: a closed form is convex, and a solid has one touch where x is inside or at its
-   surface. */
+/* Returns true if only the nearest point counts: a closed form is convex, and a solid has one touch when x is inside or
+   at its surface. */
 static bool has_one(const ethd_scene *scene, const ethd__object *o, double distance) {
   return !o->edges || (o->turn && distance <= scene->slack);
 }
 
-static void add_object(const ethd_scene *scene, const ethd__object *o, ethd_vec x, list *l) {
+static void add_object(const ethd_scene *scene, const ethd__object *o, ethd_vec x, touch_list *l) {
   ethd__chain chain = ethd__chain_of(scene, o);
   ethd_touch touch;
   if (!o->edges || o->turn) {
@@ -46,7 +46,7 @@ static void add_object(const ethd_scene *scene, const ethd__object *o, ethd_vec 
   }
 }
 
-/* The nearest point of a polygon with a tree, as yet without a label; true: it is the only touch. */
+/* Finds the nearest point of a polygon with a tree, without its label; returns true if it is the only touch. */
 static bool only_touch(const ethd__strip *strip, ethd_touch *out) {
   ethd__chain chain = ethd__chain_of(strip->scene, strip->object);
   ethd__nearest_edge near;
@@ -55,7 +55,7 @@ static bool only_touch(const ethd__strip *strip, ethd_touch *out) {
   return has_one(strip->scene, strip->object, out->distance);
 }
 
-static void add_strip(const ethd__strip *strip, bool maybe_inside, float bound, list *l) {
+static void add_strip(const ethd__strip *strip, bool maybe_inside, float bound, touch_list *l) {
   const ethd__object *o = strip->object;
   ethd_touch touch;
   ethd__minima minima;
@@ -72,8 +72,9 @@ static void add_strip(const ethd__strip *strip, bool maybe_inside, float bound, 
   }
 }
 
-/* Adds the touches of the object at `at`, which is put into `leaf`. Only a box at no distance may have x inside. */
-static void add_leaf(ethd__strip *leaf, ethd__scene_place at, float bound, list *l) {
+/* Adds the touches of the object at `at`, which is put into `leaf`. x can be inside an object only if its box is at
+   distance 0. */
+static void add_leaf(ethd__strip *leaf, ethd__scene_place at, float bound, touch_list *l) {
   leaf->object = ethd__object_at(leaf->scene, at.index);
   if (ethd__has_tree(leaf->object))
     add_strip(leaf, at.squared == 0, bound, l);
@@ -81,7 +82,7 @@ static void add_leaf(ethd__strip *leaf, ethd__scene_place at, float bound, list 
     add_object(leaf->scene, leaf->object, leaf->x, l);
 }
 
-static void add_tree(const ethd_scene *scene, ethd_vec x, double reach, list *l) {
+static void add_tree(const ethd_scene *scene, ethd_vec x, double reach, touch_list *l) {
   ethd__probe p = ethd__probe_at(scene, x);
   ethd__strip leaf = {scene, NULL, &p, x};
   ethd__walk walk;
@@ -97,7 +98,7 @@ static void add_tree(const ethd_scene *scene, ethd_vec x, double reach, list *l)
 }
 
 size_t ethd_scene_touches(const ethd_scene *scene, ethd_vec x, double range, ethd_touch *out, size_t room) {
-  list l = {out, room, 0, range};
+  touch_list l = {out, room, 0, range};
   if (!isfinite(x.x) || !isfinite(x.y) || isnan(range)) return 0;
   for (uint32_t i = scene->tree.leaves; i < scene->object_count; i++)
     add_object(scene, ethd__object_at(scene, i), x, &l);
@@ -140,7 +141,7 @@ static void follow_object(const ethd_scene *scene, const ethd__object *o, ethd_v
   for (size_t k = 0; (k = ethd__chain_minimum(&chain, x, k, &touch)) != 0;) take(&touch, from, &least, out);
 }
 
-/* By bisection over the ids, which rise; where no object was left out, an id is its own index. */
+/* Finds an object by bisection over the ids, which rise; if no object was left out, an id is its own index. */
 static const ethd__object *object_of(const ethd_scene *scene, int32_t id) {
   const uint32_t *places = ETHD__ARRAY(scene, uint32_t, places_at);
   uint32_t low = scene->dropped ? 0 : (uint32_t)id, high = scene->dropped ? scene->object_count : low + 1;

@@ -1,31 +1,31 @@
 /* The trees that a query walks: boxes around everything in a scene, eight to a node, each turned to fit what it holds.
 
-   The idea: a box is never farther from x than what is in it. Once something has been found at a distance, every box that
-   is farther can be left out with all that it holds. So a walk goes down into the nearest box first, and the answer that it
+   The idea: a box is never farther from x than what is in it. Once something has been found at some distance, every box
+   that is farther can be left out with all that it holds. So a walk goes down into the nearest box first, and what it
    finds there bounds what else it looks into.
 
-     level 0   leaves: objects; or, in the tree that a chain of more than four edges has to itself, its edges
+     level 0   leaves: objects or, in the tree that each chain of more than four edges has of its own, its edges
      level l   nodes, each with the boxes of eight things of the level below: node i has those from 8 i on
 
-   Edges stand in their chain's order, objects in one in which neighbours are near each other (order_build.c). Every node is full but for the last
-   of its level, so indices take the place of pointers: above leaf k, on level l, stands node k >> 3 l, and the box in it
-   that holds the leaf is in lane (k >> 3 (l - 1)) % 8.
+   Edges keep their chain's order; objects are ordered so that neighbours are near each other (order_build.c). Every
+   node is full but for the last of its level, so indices take the place of pointers: above leaf k, on level l, is node
+   k >> 3 l, and the box in it that holds the leaf is in lane (k >> 3 (l - 1)) % 8.
 
-   Boxes are floats in the trees' frame, in which all bounded objects lie within [-1, 1]. They are drawn larger than what
-   they hold by more than floats can err there:
+   Boxes are floats in the trees' frame, in which all bounded objects lie within [-1, 1]. They are drawn larger than
+   what they hold, by more than the error of floats there:
 
      17 2^-24   X is rounded, c X + s Y, - u, - w: each rounding at most 2^-24 of its result, |X|, |Y| <= 2
-     2^-22      of the distance: (c, s) isn't quite of unit length, squares and their sum are rounded
-     2^-18      of the distance: all that, when X is farther away
+     2^-22      of the distance: (c, s) isn't exactly of unit length, squares and their sum are rounded
+     2^-18      of the distance: all of that, when X is farther away
    ETHD__INFLATE is more than the first of these; bounds are stretched by more than the others. */
-#ifndef ETHD_LIB_SCENE_TREE_H
-#define ETHD_LIB_SCENE_TREE_H
+#ifndef ETHD__SCENE_TREE_H
+#define ETHD__SCENE_TREE_H
 
 #include "scene/lanes.h"
 #include "scene/scene.h"
 
 #define ETHD__WIDE 8
-#define ETHD__FLAT 4 /* a chain of so many edges has no tree: they are looked at one by one */
+#define ETHD__FLAT 4 /* the most edges of a chain without a tree: they are looked at one by one */
 #define ETHD__INFLATE 0x1.8p-20f
 #define ETHD__STRETCH_NEAR (1 + 0x1p-20)
 #define ETHD__STRETCH_FAR (1 + 0x1p-16)
@@ -37,7 +37,7 @@ typedef struct ethd__node {
   float s[ETHD__WIDE], u[ETHD__WIDE], v[ETHD__WIDE], w[ETHD__WIDE], h[ETHD__WIDE];
 } ethd__node;
 
-/* A tree of so many leaves whose nodes start at `first`, level 1 before level 2. */
+/* Sets up a tree with this many leaves whose nodes start at `first`, level 1 before level 2. */
 static inline void ethd__tree_set(ethd__tree *t, uint32_t leaves, uint32_t first) {
   t->leaves = leaves;
   t->levels = 0;
@@ -54,7 +54,7 @@ static inline uint32_t ethd__node_count(uint32_t leaves) {
   return count;
 }
 
-/* Whether a chain has a tree to itself. */
+/* Returns true if a chain has a tree of its own. */
 static inline bool ethd__has_tree(const ethd__object *o) { return o->edges > ETHD__FLAT; }
 
 static inline const ethd__tree *ethd__tree_at(const ethd_scene *scene, const ethd__object *o) {
@@ -69,24 +69,27 @@ typedef struct ethd__probe {
   float x, y;     /* rounded */
 } ethd__probe;
 
-/* v, brought to within [-most, most]. */
+/* Returns v, clamped to [-most, most]. */
 static inline double ethd__within(double v, double most) { return v > most ? most : v < -most ? -most : v; }
 
-/* Beyond 1e15 the nearest point of that square stands for x: no box is farther from it than from x. */
+#define ETHD__FAR 0x1p50 /* a float too, so that a coordinate there is recognised */
+
+/* Makes the probe of x. Beyond ETHD__FAR the nearest point of that square takes the place of x: no box is farther from it
+   than from x. */
 static inline ethd__probe ethd__probe_at(const ethd_scene *scene, ethd_vec x) {
   double s = scene->scale, u = s * (x.x - scene->centre.x), v = s * (x.y - scene->centre.y);
   bool near = fabs(u) <= 2 && fabs(v) <= 2;
   ethd__probe p = {ETHD__ARRAY(scene, ethd__node, nodes_at), s * s * (near ? ETHD__STRETCH_NEAR : ETHD__STRETCH_FAR),
-                   (float)ethd__within(u, 1e15), (float)ethd__within(v, 1e15)};
+                   (float)ethd__within(u, ETHD__FAR), (float)ethd__within(v, ETHD__FAR)};
   return p;
 }
 
-/* False where another point stands for x. */
+/* Returns false if another point takes the place of x. */
 static inline bool ethd__is_true_to(const ethd__probe *p) {
-  return fabs((double)p->x) < 1e15 && fabs((double)p->y) < 1e15;
+  return fabs((double)p->x) < ETHD__FAR && fabs((double)p->y) < ETHD__FAR;
 }
 
-/* A squared distance in m2 as a bound that boxes may be compared with. */
+/* Turns a squared distance, m2, into a bound that boxes may be compared with. */
 static inline float ethd__bound(const ethd__probe *p, double squared) {
   double b = squared * p->squares;
   return (float)(b < 1e37 ? b : 1e37);
@@ -94,12 +97,12 @@ static inline float ethd__bound(const ethd__probe *p, double squared) {
 
 /* ---- boxes ---- */
 
-/* Squared distances of four lanes from `i` on.
+/* Returns the squared distances of four lanes from `i` on.
 
-   `slopes` (NULL: not used) holds for each box of a chain the steepest slope of its edges against the box's axis. Where x lies
-   so far beyond the box's end that no edge is steep enough to make up for it, the distance falls along all of them towards
-   that end: none of them is nearest inside the box, nor a vertex between two, and the lane's distance becomes inf (Johnson
-   and Cohen 2001). */
+   `slopes` (NULL: not used) holds for each box of a chain the steepest slope of its edges against the box's axis. If x
+   lies so far beyond the box's end that no edge is steep enough to make up for it, the distance falls along all of them
+   towards that end. Then neither an edge nor a vertex between two edges of the box holds a minimum, and the lane's
+   distance becomes inf (Johnson and Cohen 2001). */
 ETHD__INLINE ethd__floats ethd__four_squared(const ethd__node *n, const float *slopes, int i, ethd__floats x,
                                              ethd__floats y) {
   ethd__floats c = ethd__load(n->c + i), s = ethd__load(n->s + i), zero = ethd__all(0);
@@ -108,8 +111,8 @@ ETHD__INLINE ethd__floats ethd__four_squared(const ethd__node *n, const float *s
   ethd__floats v = ethd__abs(c * y - s * x - ethd__load(n->v + i));
   ethd__floats du = ethd__max(u - w, zero), dv = ethd__max(v - h, zero), d = du * du + dv * dv;
   if (!slopes) return d;
-  ethd__words leaning = du > ethd__load(slopes + i) * (v + h);
-  return ethd__max(d, (ethd__floats)(leaning & (ethd__words)ethd__all(INFINITY)));
+  ethd__ints leaning = du > ethd__load(slopes + i) * (v + h);
+  return ethd__max(d, (ethd__floats)(leaning & (ethd__ints)ethd__all(INFINITY)));
 }
 
 ETHD__INLINE void ethd__eight_squared(const ethd__node *n, const float *slopes, const ethd__probe *p,
@@ -120,7 +123,7 @@ ETHD__INLINE void ethd__eight_squared(const ethd__node *n, const float *slopes, 
   ethd__store(squared + 4, high);
 }
 
-/* Bits of the lanes that lie within the bound, where their distances aren't needed. */
+/* Returns the bits of the lanes within the bound, when their distances aren't needed. */
 ETHD__INLINE unsigned ethd__lanes_near(const ethd__node *n, const float *slopes, const ethd__probe *p, float bound) {
   ethd__floats x = ethd__all(p->x), y = ethd__all(p->y), most = ethd__all(bound);
   ethd__floats low, high;
@@ -131,17 +134,17 @@ ETHD__INLINE unsigned ethd__lanes_near(const ethd__node *n, const float *slopes,
   return ethd__bits(low <= most) | ethd__bits(high <= most) << 4;
 }
 
-/* Bits of the lanes that lie within the bound. */
+/* Returns the bits of the lanes within the bound. */
 ETHD__INLINE unsigned ethd__lanes_within(const float squared[ETHD__WIDE], float bound) {
   ethd__floats most = ethd__all(bound);
   return ethd__bits(ethd__load(squared) <= most) | ethd__bits(ethd__load(squared + 4) <= most) << 4;
 }
 
-/* The nearest lane, the first if several are as near. */
+/* Returns the nearest lane, the first if several are as near. */
 ETHD__INLINE uint32_t ethd__nearest_lane(const float squared[ETHD__WIDE]) {
   ethd__floats low = ethd__load(squared), high = ethd__load(squared + 4), m = ethd__least(ethd__min(low, high));
   unsigned lanes = ethd__bits(low == m) | ethd__bits(high == m) << 4;
-  return lanes ? (uint32_t)__builtin_ctz(lanes) : 0;
+  return lanes ? (uint32_t)__builtin_ctz(lanes) : 0; /* unreachable: the least of eight numbers is one of them */
 }
 
 /* ---- a walk: the leaves within a bound that its user may lower ---- */
@@ -156,30 +159,31 @@ typedef struct ethd__eight {
   _Alignas(16) float squared[ETHD__WIDE];
 } ethd__eight;
 
-/* Boxes that are still to be opened wait on a stack, of each node the nearest on top. The leaves of one node of level 1, the
-   node at hand, wait beside it as bits, since most walks never need the stack.
+/* Boxes that are still to be opened wait on a stack, the nearest box of each node on top. The leaves of one node of
+   level 1, the current node, wait beside the stack as bits, since most walks never need the stack.
 
-   A walk begins at one leaf that its user looks at himself, which gives a bound. There are two ways:
+   The caller looks at one leaf itself, which gives a bound. It gets there in one of two ways:
 
-     walk_around   the leaf is known, say from the last query. The nodes above it follow from its index, so all levels
-                   are read at once: at each, the boxes beside the path to the leaf are kept
-     walk_down     none is known: the nearest box is taken on each level, and its node's eight distances are noted.
-     walk_on       Once the leaf found there has given a bound, the boxes beside that path are kept
+     walk_around   The caller knows a leaf, perhaps from the last query. The nodes above it follow from its index, so
+     all
+                   levels can be read at once; on each, the boxes beside the path to the leaf are kept.
+     walk_down     The caller knows none. On each level the nearest box is taken, and its node's eight distances are
+     noted. walk_on       When the leaf found there has given a bound, the boxes beside that path are kept.
 
-   then walk_next gives one leaf after the other, none twice. */
+   After that, walk_next gives one leaf after the other, none twice. */
 typedef struct ethd__walk {
   const ethd__tree *tree;
   const ethd__probe *probe;
   const float *slopes;
   float bound;                  /* of squared distances; may be lowered between two leaves */
   int count;                    /* of the stack */
-  unsigned lanes;               /* bits of the leaves still to come of the node at hand */
+  unsigned lanes;               /* bits of the leaves of the current node that are still to come */
   uint32_t leaf;                /* the first leaf of that node */
-  ethd__eight at[ETHD__LEVELS]; /* distances: [1] of the node at hand; after walk_down, of a node on each level */
+  ethd__eight at[ETHD__LEVELS]; /* distances: [1] of the current node; after walk_down, of a node on each level */
   ethd__scene_place stack[(ETHD__WIDE - 1) * ETHD__LEVELS + 1];
 } ethd__walk;
 
-/* The squared distances of a node's eight boxes. */
+/* Gives the squared distances of a node's eight boxes. */
 ETHD__INLINE void ethd__look(ethd__walk *w, uint32_t level, uint32_t index, float squared[ETHD__WIDE]) {
   uint32_t n = w->tree->first[level] + index;
   ethd__eight_squared(w->probe->nodes + n, w->slopes ? w->slopes + ETHD__WIDE * (size_t)n : NULL, w->probe, squared);
@@ -205,7 +209,7 @@ static inline void ethd__walk_start(ethd__walk *w, const ethd__tree *tree, const
   w->lanes = 0;
 }
 
-/* Keeps the lanes of node `index` that lie within the bound, but for the one on the path. */
+/* Keeps the lanes of node `index` within the bound, except the one on the path. */
 ETHD__INLINE void ethd__walk_beside(ethd__walk *w, const float squared[ETHD__WIDE], uint32_t level, uint32_t index,
                                     uint32_t but) {
   unsigned lanes = ethd__lanes_within(squared, w->bound) & ~(1u << but % ETHD__WIDE);
@@ -217,7 +221,7 @@ ETHD__INLINE void ethd__walk_beside(ethd__walk *w, const float squared[ETHD__WID
   }
 }
 
-/* Keeps what stands beside the path to leaf `taken`, level by level; no load waits for another. */
+/* Keeps the boxes beside the path to leaf `taken`, level by level; no load waits for another. */
 static inline void ethd__walk_around(ethd__walk *w, uint32_t taken, float bound) {
   w->bound = bound;
   for (uint32_t level = w->tree->levels; level > 0; level--) {
@@ -226,7 +230,7 @@ static inline void ethd__walk_around(ethd__walk *w, uint32_t taken, float bound)
   }
 }
 
-/* The leaf to which the nearest box of each level leads. The tree has one. */
+/* Returns the leaf to which the nearest box of each level leads. The tree isn't empty. */
 static inline uint32_t ethd__walk_down(ethd__walk *w) {
   uint32_t index = 0;
   for (uint32_t level = w->tree->levels; level > 0; level--) {
@@ -236,14 +240,14 @@ static inline uint32_t ethd__walk_down(ethd__walk *w) {
   return index;
 }
 
-/* Keeps what stands beside the path that walk_down took. */
+/* Keeps the boxes beside the path that walk_down took. */
 static inline void ethd__walk_on(ethd__walk *w, uint32_t found, float bound) {
   w->bound = bound;
   for (uint32_t level = w->tree->levels; level > 0; level--)
     ethd__walk_beside(w, w->at[level].squared, level, found >> 3 * level, found >> 3 * (level - 1));
 }
 
-/* The next leaf within the bound; its index is ETHD__NONE when there are no more. */
+/* Returns the next leaf within the bound; its index is ETHD__NONE when there are no more. */
 static inline ethd__scene_place ethd__walk_next(ethd__walk *w) {
   for (;;) {
     if (w->lanes) w->lanes &= ethd__lanes_within(w->at[1].squared, w->bound);
@@ -273,7 +277,7 @@ static inline ethd__scene_place ethd__walk_next(ethd__walk *w) {
 
 /* ---- one edge ---- */
 
-/* Where x stands beside an edge e that starts at a, u = x - a; found without a branch. */
+/* Where x lies beside an edge e that starts at a, u = x - a; found without a branch. */
 typedef struct ethd__beside {
   double squared;       /* of the distance, m2 */
   double across, doubt; /* e x u, and the most that it may be wrong by */

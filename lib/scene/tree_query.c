@@ -1,6 +1,6 @@
-/* The nearest object. A walk over the scene's tree hands out objects, nearest boxes first; each that is nearer lowers the
-   walk's bound. A hint says where the last query found its answer: the walk then starts there, mostly has nothing left to open,
-   and gives the same answer as without it. */
+/* The nearest object. A walk over the scene's tree gives objects, those in the nearest boxes first, and each one that
+   is nearer lowers the walk's bound. A hint says where the last query found its answer: the walk then starts there and
+   mostly has nothing left to open, and it gives the same answer as without the hint. */
 #include "scene/strip.h"
 
 typedef struct search {
@@ -8,11 +8,11 @@ typedef struct search {
   ethd__probe probe;
   double squared;       /* of the distance of the nearest so far; 0 where x is inside it */
   double distance;      /* of the nearest so far; INFINITY while there is none */
-  uint32_t place, edge; /* where the nearest so far stands; ETHD__NONE: there is none */
+  uint32_t place, edge; /* of the nearest so far; ETHD__NONE: there is none */
   ethd_touch touch;     /* of the nearest so far, unless it is a thin wall */
 } search;
 
-/* Of objects as near as each other the one with the lowest number is the answer. */
+/* Returns true if an object at the same distance comes first: the one with the lowest number is the answer. */
 static bool goes_first(const search *q, uint32_t place) {
   return q->place == ETHD__NONE || ethd__object_at(q->at.scene, place)->id < ethd__object_at(q->at.scene, q->place)->id;
 }
@@ -78,7 +78,7 @@ static void answer(search *q, ethd_nearest *out) {
   *out = (ethd_nearest){q->touch.distance, q->touch.point, q->touch.n, o->id};
 }
 
-/* The edge to try first: the last query's, and as many edges on as it had moved before. */
+/* Returns the edge to try first: the last query's, moved on by as many edges as it moved before. */
 static uint32_t guess_edge(const search *q, uint32_t leaf, const ethd_scene_hint *hint) {
   uint32_t guess = hint->edge + (uint32_t)hint->step, edges = ethd__object_at(q->at.scene, leaf)->edges;
   return guess < edges ? guess : hint->edge;
