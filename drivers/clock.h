@@ -1,11 +1,11 @@
-/* The clock that loop, I/O threads and drivers share where time isn't virtual. */
-#ifndef ETHD_CLOCK_H
-#define ETHD_CLOCK_H
+/* The clock that loop, I/O threads and drivers share when time isn't virtual. */
+#ifndef ETHD__CLOCK_H
+#define ETHD__CLOCK_H
 
 #include <stdint.h>
 #include <time.h>
 
-/* CLOCK_MONOTONIC, ns. [any, rt-safe] */
+/* Returns CLOCK_MONOTONIC's time, ns. [any, rt-safe] */
 static inline int64_t ethd__clock_now(void) {
   struct timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);

@@ -1,7 +1,7 @@
 /* FTZ and DAZ: subnormal numbers count as 0, which keeps every step equally quick. flush sets them for this
    thread and keep clears them; both return what was set before, for restore. [any] */
-#ifndef ETHD_COMMON_DENORMALS_H
-#define ETHD_COMMON_DENORMALS_H
+#ifndef ETHD__DENORMALS_H
+#define ETHD__DENORMALS_H
 
 #include <stdint.h>
 

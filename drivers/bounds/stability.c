@@ -5,15 +5,26 @@
 
 #include "ethd/maths.h"
 
-/* One tick is a linear map of position, speed, estimate, filter position, the last tick's force, the delayed forces
-   and the last positions. Its matrix is read off by applying it to unit vectors. */
-enum { X, V, ESTIMATE, FILTER, LAST, WAY, STATE_MAX = WAY + ETHD_LOOP_DELAY_MAX + 1 + ETHD_VELOCITY_WINDOW_MAX };
+/* One tick is a linear map of position, speed, the lead of the link over the motor's side and its speed, estimate, filter
+   position, the last tick's force, the delayed forces and the last positions. Its matrix is read off by applying it to
+   unit vectors. */
+enum {
+  X,
+  V,
+  LEAD,
+  LEAD_V,
+  ESTIMATE,
+  FILTER,
+  LAST,
+  WAY,
+  STATE_MAX = WAY + ETHD_LOOP_DELAY_MAX + 1 + ETHD_VELOCITY_WINDOW_MAX
+};
 
 typedef double matrix[STATE_MAX][STATE_MAX];
 
 typedef struct model {
   const ethd__sampled_loop *loop;
-  int ways, past, size;               /* forces on their way; index of x_k-1; length of the state */
+  int ways, past, size;               /* forces that don't act yet; index of x_k-1; length of the state */
   int samples;                        /* last positions kept */
   double w[ETHD_VELOCITY_WINDOW_MAX]; /* v^ from x_k, x_k-1, ... */
   double keep;                        /* share of the last estimate (lowpass) */
@@ -29,14 +40,14 @@ static void use_difference(model *m, double share) {
   m->w[1] = -m->w[0];
 }
 
-/* Slope of the least-squares line through n samples at -i T. */
+/* Uses the slope of the least-squares line through n samples at -i T. */
 static void use_line(model *m, int n) {
   double mean = (n - 1) / 2.0, sum = n * ((double)n * n - 1) / 12;
   m->samples = n - 1;
   for (int i = 0; i < n; i++) m->w[i] = (mean - i) / (sum * m->loop->period);
 }
 
-/* Steady gains of the filter driven by white acceleration (Kalata 1984). */
+/* Uses the steady gains of the filter driven by white acceleration (Kalata 1984). */
 static void use_kalman(model *m) {
   const double *p = m->loop->p; /* noise, acceleration, inertia */
   double index = p[1] * m->loop->period * m->loop->period / p[0];
@@ -72,6 +83,27 @@ static double estimate(const model *m, const double *s, double *filter) {
 
 /* ---- the tick ---- */
 
+/* The lead r obeys mu r'' = -k r - c r' - (mu / motor_mass) F with mu = motor_mass (mass - motor_mass) / mass, which swings or
+   creeps about where F holds it. */
+static void swing(const ethd__sampled_loop *l, double force, double h, double *s) {
+  double other = l->mass - l->motor_mass, mu = l->motor_mass * other / l->mass;
+  double a = l->damper / (2 * mu), w2 = l->spring / mu - a * a, w = sqrt(fabs(w2)), turn = w * h;
+  double rest = -force * other / (l->mass * l->spring), r = s[LEAD] - rest, v = s[LEAD_V];
+  double wave = w2 > 0 ? cos(turn) : cosh(turn), slope = turn < 1e-6 ? h : (w2 > 0 ? sin(turn) : sinh(turn)) / w;
+  double fade = exp(-a * h);
+  s[LEAD] = rest + fade * (r * wave + (v + a * r) * slope);
+  s[LEAD_V] = fade * (v * wave - (a * v + l->spring / mu * r) * slope);
+}
+
+/* A force acts for h seconds: the centre of mass follows it, the motor's side stands behind that by its share of the lead. */
+static void push(const ethd__sampled_loop *l, double force, double h, double *s) {
+  bool gives = ethd__sampled_gives_way(l);
+  double share = gives ? (l->mass - l->motor_mass) / l->mass : 0, lead = s[LEAD], lead_v = s[LEAD_V];
+  if (gives) swing(l, force, h, s);
+  s[X] += h * s[V] + force * h * h / 2 / l->mass + share * (lead + h * lead_v - s[LEAD]);
+  s[V] += force * h / l->mass + share * (lead_v - s[LEAD_V]);
+}
+
 /* For `late` seconds the force of one tick earlier still acts. */
 static void tick(const model *m, const double *s, double *next) {
   const ethd__sampled_loop *l = m->loop;
@@ -79,8 +111,9 @@ static void tick(const model *m, const double *s, double *next) {
   double v = estimate(m, s, &filter);
   double f = -l->stiffness * s[X] - l->damping * v;
   double now = l->delay ? s[WAY + m->ways - l->delay] : f, before = late > 0 ? s[WAY] : 0;
-  next[X] = s[X] + T * s[V] + (before * late * (T - late / 2) + now * rest * rest / 2) / l->mass;
-  next[V] = s[V] + (before * late + now * rest) / l->mass;
+  memcpy(next, s, ESTIMATE * sizeof *next);
+  if (late > 0) push(l, before, late, next);
+  push(l, now, rest, next);
   next[ESTIMATE] = v;
   next[FILTER] = filter;
   next[LAST] = f;
@@ -88,11 +121,11 @@ static void tick(const model *m, const double *s, double *next) {
   for (int i = 0; i < m->samples; i++) next[m->past + i] = i ? s[m->past + i - 1] : s[X];
 }
 
-/* Lengths in m, times in T, forces in what moves the mass by 1 m in T: entries of like size. */
+/* Fills the matrix in units that make its entries alike in size: m, T, and the force that moves the mass by 1 m in T. */
 static void fill(const model *m, matrix a) {
   double unit[STATE_MAX], column[STATE_MAX], scale[STATE_MAX];
   double T = m->loop->period, force = m->loop->mass / (T * T);
-  for (int i = 0; i < m->size; i++) scale[i] = i == V || i == ESTIMATE ? 1 / T : 1;
+  for (int i = 0; i < m->size; i++) scale[i] = i == V || i == LEAD_V || i == ESTIMATE ? 1 / T : 1;
   for (int i = LAST; i < m->past; i++) scale[i] = force;
   for (int j = 0; j < m->size; j++) {
     memset(unit, 0, sizeof unit);
@@ -142,110 +175,6 @@ double ethd__sampled_radius(const ethd__sampled_loop *loop) {
 
 /* A free ring's position is neither stable nor unstable: radius 1. */
 bool ethd__sampled_stable(const ethd__sampled_loop *loop) { return ethd__sampled_radius(loop) <= 1 + 1e-7; }
-
-/* ---- searches ---- */
-
-#define STEPS_PER_DECADE 16
-
-/* Bisects between a stable and an unstable value, to 1e-6 of it. */
-static double bisect(ethd__sampled_loop *loop, double *value, double stable, double unstable) {
-  while (fabs(unstable / stable - 1) > 1e-6) {
-    *value = sqrt(stable * unstable);
-    if (ethd__sampled_stable(loop))
-      stable = *value;
-    else
-      unstable = *value;
-  }
-  return stable;
-}
-
-static double grid(int i) { return exp(i * log(10) / STEPS_PER_DECADE); }
-
-/* At a large mass all is slow, and hold and delay take K (T (n + 1/2) + late) off the damping, whatever
-   the estimator. */
-double ethd__sampled_damping_needed(const ethd__sampled_loop *l) {
-  return l->stiffness * (l->period * (l->delay + 0.5) + l->late);
-}
-
-double ethd__sampled_mass_min(const ethd__sampled_loop *loop) {
-  ethd__sampled_loop l = *loop;
-  if (l.damping < ethd__sampled_damping_needed(&l)) return (double)INFINITY;
-  for (int i = 4 * STEPS_PER_DECADE; i >= -7 * STEPS_PER_DECADE; i--) {
-    l.mass = grid(i);
-    if (ethd__sampled_stable(&l)) continue;
-    return i == 4 * STEPS_PER_DECADE ? (double)INFINITY : bisect(&l, &l.mass, grid(i + 1), grid(i));
-  }
-  return 0;
-}
-
-/* Values are in units of what mass and period set. A stable band may be narrower than the grid, so the value that is
-   there is tried too. */
-static double gain_max(ethd__sampled_loop *l, double *gain, double unit) {
-  double own = ethd__sampled_stable(l) ? *gain : 0;
-  for (int i = STEPS_PER_DECADE; i >= -6 * STEPS_PER_DECADE; i--) {
-    *gain = unit * grid(i);
-    if (ethd__sampled_stable(l)) return fmax(own, bisect(l, gain, *gain, unit * grid(i + 1)));
-  }
-  return own;
-}
-
-double ethd__sampled_stiffness_max(const ethd__sampled_loop *loop) {
-  ethd__sampled_loop l = *loop;
-  return gain_max(&l, &l.stiffness, l.mass / (l.period * l.period));
-}
-
-double ethd__sampled_damping_max(const ethd__sampled_loop *loop) {
-  ethd__sampled_loop l = *loop;
-  return gain_max(&l, &l.damping, l.mass / l.period);
-}
-
-static bool stable_with(ethd__sampled_loop *l, double delay) {
-  l->delay = (int)floor(delay / l->period * (1 + 1e-12));
-  l->late = fmax(0, delay - l->delay * l->period);
-  return ethd__sampled_stable(l);
-}
-
-double ethd__sampled_delay_max(const ethd__sampled_loop *loop) {
-  ethd__sampled_loop l = *loop;
-  double T = l.period, low = 0, high = 0, most = ETHD_LOOP_DELAY_MAX * T;
-  if (!stable_with(&l, 0)) return -1;
-  for (high = T / 4; high < most && stable_with(&l, high); high += T / 4) low = high;
-  if (high >= most) return most;
-  for (int i = 0; i < 20; i++) {
-    double middle = (low + high) / 2;
-    if (stable_with(&l, middle))
-      low = middle;
-    else
-      high = middle;
-  }
-  return low;
-}
-
-static double cutoff_min(ethd__sampled_loop *l) {
-  const double step = exp(log(10) / STEPS_PER_DECADE);
-  double high = l->p[0];
-  for (l->p[0] = high / step; l->p[0] > 1; l->p[0] = high / step) {
-    if (!ethd__sampled_stable(l)) return bisect(l, &l->p[0], high, high / step);
-    high /= step;
-  }
-  return 1;
-}
-
-static double window_max(ethd__sampled_loop *l) {
-  while (l->p[0] < ETHD_VELOCITY_WINDOW_MAX) {
-    l->p[0]++;
-    if (!ethd__sampled_stable(l)) return l->p[0] - 1;
-  }
-  return l->p[0];
-}
-
-double ethd__sampled_velocity_end(const ethd__sampled_loop *loop) {
-  ethd__sampled_loop l = *loop;
-  if (!ethd__sampled_stable(&l)) return NAN;
-  if (l.method == ETHD_VELOCITY_LOWPASS) return cutoff_min(&l);
-  if (l.method == ETHD_VELOCITY_LSQ || l.method == ETHD_VELOCITY_FOAW) return window_max(&l);
-  return NAN;
-}
 
 /* ---- closed forms ---- */
 

@@ -1,12 +1,12 @@
-/* Stopping at a wall, in closed form: the ring meets it at v behind a finger that goes on at v.
+/* Stopping at a wall, in closed form: the ring meets the wall at v, and the finger ahead of it goes on at v.
 
-        finger   ring        |//////     lag      finger ahead of the ring's centre
-          ( o   )    --> v   |//////     gap      R_r - R_f: the pad touches when it is that far ahead
-        |<-lag->|            |//////     a        (F_sat + f_c)/m: no ring stops quicker
-   Ticks are left out, but for half a period until the contact is seen and half a period of hold. Pure
+        finger   ring        |//////     lag      how far the finger is ahead of the ring's centre
+          ( o   )    --> v   |//////     gap      R_r - R_f: the pad touches when the finger is that far ahead
+        |<-lag->|            |//////     a        (F_sat + f_c)/m: the quickest stop
+   Ticks are left out, except half a period until the contact is seen and half a period of hold. Pure
    functions. [any] */
-#ifndef ETHD_CHECK_STOP_H
-#define ETHD_CHECK_STOP_H
+#ifndef ETHD__BOUNDS_STOP_H
+#define ETHD__BOUNDS_STOP_H
 
 typedef struct ethd__bounds_stop {
   double mass;              /* kg at the ring, along one axis */
@@ -19,13 +19,13 @@ typedef struct ethd__bounds_stop {
 
 double ethd__stop_deceleration(const ethd__bounds_stop *stop);
 
-/* Steady lag: (f_c + b_v v)/K_x, and what an estimate adds that is behind, m. */
+/* Returns the steady lag, m: (f_c + b_v v)/K_x, and what the estimate's delay adds. */
 double ethd__stop_lag(const ethd__bounds_stop *stop, double speed);
 
-/* Rest at touch: the ring stands when the finger reaches it iff gap - lag - v^2/(2a) >= 0; this, m. */
+/* Returns the margin gap - lag - v^2/(2a), m. If it is >= 0, the ring rests when the finger touches it. */
 double ethd__stop_margin(const ethd__bounds_stop *stop, double speed);
 
-/* The highest speed with margin >= 0, m/s; 0: none. */
+/* Returns the highest speed with margin >= 0, m/s, 0 if there is none. */
 double ethd__stop_speed(const ethd__bounds_stop *stop);
 
 /* Saturated braking from `speed` down to v_th with B_d, `delay` s late: Delta_s, s, and eps, m. */

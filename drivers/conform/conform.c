@@ -4,12 +4,11 @@
 #include <string.h>
 
 #include "conform/conform_rig.h"
+#include "conform/letting_go.h"
 #include "device/stack.h"
 
 #define OPENINGS 20
 #define PUSH 0.1       /* s */
-#define LAPSE 0.05     /* s after which no torque may be left, then half of this twice to see it */
-#define NUDGE 0.002    /* s: a torque that a driver may remember, but that moves next to nothing */
 #define STILL 0.01     /* rad in PUSH without torque */
 #define SPEED_MAX 50.0 /* rad/s: faster is a jump */
 #define AGE_MAX 0.005  /* s of a joint sample */
@@ -175,103 +174,21 @@ static ethd_verdict ask_counts(const ethd_conform_def *def, ethd_conform_answer 
   return ethd__conform_rig_answer(a, ETHD_KEPT, "smallest step %.3g rad, fastest %.3g rad/s", r.resolution, r.speed);
 }
 
-/* False when such a push would be lost in the steps of the angle: its result would answer nothing. */
-static int is_pushed(const ethd__conform_rig *r, double acceleration, ethd_conform_answer *a) {
-  double least = ethd__conform_rig_least(r, LAPSE / 2);
-  if (acceleration > 0 && acceleration >= least) return 1;
-  return ethd__conform_rig_answer(a, ETHD_NOT_ASKED, "%+.3g rad/s^2 under %g Nm, %.3g would show: it needs more torque",
-                                  acceleration, r->def->torque, least),
-         0;
-}
-
-/* First the other way, under a torque that is held: rad/s^2 at the end. A device that gains no more speed then
-   has something in its way, and would look the same without a torque: 0, and the answer says so. */
-static double held(const ethd_conform_def *def, ethd_conform_answer *a) {
-  ethd__conform_rig r;
-  if (!ethd__conform_rig_begin(def, &r, a)) return 0;
-  ethd__conform_rig_settle(&r);
-  double pushed = -ethd__conform_rig_acceleration(&r, 0, -def->torque, 1, LAPSE / 2);
-  (void)ethd__conform_rig_acceleration(&r, 0, -def->torque, 1, LAPSE / 2);
-  double end = -ethd__conform_rig_acceleration(&r, 0, -def->torque, 1, LAPSE / 2);
-  ethd__conform_rig_end(&r);
-  if (!is_pushed(&r, pushed, a)) return 0;
-  if (end >= 0.1 * pushed && end >= ethd__conform_rig_least(&r, LAPSE / 2)) return end;
-  return ethd__conform_rig_answer(a, ETHD_NOT_ASKED,
-                                  "%.3g rad/s^2, but %.3g once the torque was held for %g s: something is in its way",
-                                  pushed, end, 2 * LAPSE),
-         0;
-}
-
-/* A torque that is not renewed must end. */
-static ethd_verdict ask_watchdog(const ethd_conform_def *def, ethd_conform_answer *a) {
-  ethd__conform_rig r;
-  double most = 0.25 * held(def, a);
-  if (!(most > 0) || !ethd__conform_rig_begin(def, &r, a)) return a->verdict;
-  ethd__conform_rig_settle(&r);
-  double pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
-  (void)ethd__conform_rig_acceleration(&r, 0, def->torque, 0, LAPSE / 2);
-  double left = ethd__conform_rig_acceleration(&r, 0, def->torque, 0, LAPSE / 2);
-  ethd__conform_rig_end(&r);
-  if (!is_pushed(&r, pushed, a)) return a->verdict;
-  if (left <= most)
-    return ethd__conform_rig_answer(a, ETHD_KEPT, "%.3g rad/s^2 under torque, %.3g once nobody had written for %g s",
-                                    pushed, left, LAPSE);
-  return ethd__conform_rig_answer(a, ETHD_AT_RISK, "none: still %.3g of %.3g rad/s^2, %g s after the last write", left,
-                                  pushed, LAPSE);
-}
-
-static ethd_verdict ask_safe(const ethd_conform_def *def, ethd_conform_answer *a) {
-  ethd__conform_rig r;
-  if (!ethd__conform_rig_open(def, &r)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "open: %.140s", r.message);
-  r.driver->safe(r.device); /* before it was started */
-  r.driver->close(r.device);
-  double most = 0.25 * held(def, a);
-  if (!(most > 0) || !ethd__conform_rig_begin(def, &r, a)) return a->verdict;
-  ethd__conform_rig_settle(&r);
-  double pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
-  r.driver->safe(r.device);
-  r.driver->safe(r.device);
-  ethd__conform_rig_run(&r, 0.01, 0, def->torque);
-  double left = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
-  ethd__conform_rig_stop(&r);
-  r.driver->safe(r.device); /* and once stopped */
-  r.driver->close(r.device);
-  if (!is_pushed(&r, pushed, a)) return a->verdict;
-  return ethd__conform_rig_answer(a, left <= most ? ETHD_KEPT : ETHD_BROKEN,
-                                  "%.3g rad/s^2 under torque, %.3g with the same torque once safe", pushed, left);
-}
-
-static ethd_verdict ask_restart(const ethd_conform_def *def, ethd_conform_answer *a) {
-  ethd__conform_rig r;
-  if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
-  ethd__conform_rig_settle(&r);
-  ethd__conform_rig_run(&r, NUDGE, 0, def->torque);
-  ethd__conform_rig_stop(&r);
-  ethd_status status = ethd__conform_rig_start(&r);
-  if (status < 0) {
-    ethd__conform_rig_end(&r);
-    return ethd__conform_rig_answer(a, ETHD_BROKEN, "started anew: %s", ethd_status_sentence(status));
-  }
-  (void)ethd__conform_rig_acceleration(&r, 0, 0, 0, 1e-9 * (double)r.period); /* where it stands now */
-  double q = r.sense.q[0];
-  (void)ethd__conform_rig_acceleration(&r, 0, 0, 0, LAPSE / 2);
-  double moved = r.sense.q[0] - q, pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, LAPSE / 2);
-  ethd__conform_rig_end(&r);
-  if (fabs(pushed) < ethd__conform_rig_least(&r, LAPSE / 2)) return is_pushed(&r, pushed, a), a->verdict;
-  int right = pushed > 0 && fabs(moved) <= 0.1 * pushed * LAPSE * LAPSE / 2;
-  return ethd__conform_rig_answer(a, right ? ETHD_KEPT : ETHD_BROKEN,
-                                  "started anew: %+.3g rad before it is written to, %.3g rad/s^2 under torque", moved,
-                                  pushed);
-}
-
 static const struct {
   const char *name;
   ethd_verdict (*ask)(const ethd_conform_def *def, ethd_conform_answer *a);
   int moves;
-} questions[ETHD_QUESTIONS] = {{"table", ask_table, 0},    {"open", ask_open, 0},         {"limits", ask_limits, 0},
-                               {"sense", ask_sense, 0},    {"zero", ask_zero, 0},         {"sign", ask_sign, 1},
-                               {"counts", ask_counts, 1},  {"watchdog", ask_watchdog, 1}, {"safe", ask_safe, 1},
-                               {"restart", ask_restart, 1}};
+} questions[ETHD_QUESTIONS] = {{"table", ask_table, 0},
+                               {"open", ask_open, 0},
+                               {"limits", ask_limits, 0},
+                               {"sense", ask_sense, 0},
+                               {"zero", ask_zero, 0},
+                               {"sign", ask_sign, 1},
+                               {"counts", ask_counts, 1},
+                               {"watchdog", ethd__conform_watchdog, 1},
+                               {"silence", ethd__conform_silence, 1},
+                               {"safe", ethd__conform_safe, 1},
+                               {"restart", ethd__conform_restart, 1}};
 
 ethd_status ethd_conform(const ethd_conform_def *def, ethd_conform_answer answers[ETHD_QUESTIONS]) {
   int broken = 0;

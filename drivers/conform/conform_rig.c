@@ -8,6 +8,9 @@
 #include <time.h>
 
 #include "clock.h"
+
+#define CLEARING 0.3 /* s */
+#define PAUSED 0.1   /* s between two samples: nobody asked for one */
 #define IDLE 1000000 /* ns that an I/O thread sleeps when it had nothing to do */
 #define STEPS 8      /* steps of the angle below which no acceleration is seen */
 #define LOOK 0.01    /* s: does it move? */
@@ -78,8 +81,23 @@ bool ethd__conform_rig_begin(const ethd_conform_def *def, ethd__conform_rig *r, 
   return ethd__conform_rig_answer(a, ETHD_BROKEN, "start: %s", ethd_status_sentence(status)), 0;
 }
 
+/* Lets the device do its I/O for a while, without a loop. */
+static void serve(ethd__conform_rig *r, double seconds) {
+  const struct timespec pause = {.tv_nsec = IDLE};
+  for (int64_t left = (int64_t)(1e9 * seconds); left > 0; left -= r->period) {
+    int64_t now = r->def->device->is_virtual ? (r->now += r->period) : ethd__clock_now();
+    for (uint32_t u = 0, n = r->driver->units(r->device); u < n; u++) (void)!r->driver->service(r->device, u, now);
+    if (!r->def->device->is_virtual) nanosleep(&pause, NULL);
+  }
+}
+
 ethd_status ethd__conform_rig_start(ethd__conform_rig *r) {
   ethd_status status = r->driver->start(r->device);
+  if (status < 0) {
+    r->driver->clear(r->device);
+    serve(r, CLEARING);
+    status = r->driver->start(r->device);
+  }
   if (status < 0) return status;
   start_units(r);
   if (!r->def->device->is_virtual) r->now = ethd__clock_now(); /* a start takes its time */
@@ -96,6 +114,14 @@ void ethd__conform_rig_end(ethd__conform_rig *r) {
   r->driver->close(r->device);
 }
 
+void ethd__conform_rig_hush(ethd__conform_rig *r, double seconds) {
+  const struct timespec t = {(time_t)seconds, (long)(1e9 * (seconds - floor(seconds)))};
+  stop_units(r);
+  nanosleep(&t, NULL);
+  start_units(r);
+  r->now = ethd__clock_now();
+}
+
 static void note_joints(ethd__conform_rig *r, const ethd_sense *s) {
   const ethd_sense *before = &r->sense;
   double dt = 1e-9 * (double)(s->time_ns - before->time_ns);
@@ -107,6 +133,10 @@ static void note_joints(ethd__conform_rig *r, const ethd_sense *s) {
     r->speed = fmax(r->speed, step / dt);
   }
   r->backwards += r->samples && dt < 0;
+  if (r->samples && dt > 0 && dt < PAUSED) {
+    r->span += dt;
+    r->spans++;
+  }
   r->ahead += s->time_ns > (r->def->device->is_virtual ? r->now : ethd__clock_now());
   r->samples++;
 }
@@ -160,12 +190,17 @@ double ethd__conform_rig_least(const ethd__conform_rig *r, double window) {
   return isinf(r->resolution) ? 0 : STEPS * r->resolution / (window * window);
 }
 
+double ethd__conform_rig_spacing(const ethd__conform_rig *r) { return r->spans ? r->span / r->spans : 0; }
+
 double ethd__conform_rig_acceleration(ethd__conform_rig *r, int joint, double torque, int write, double window) {
-  double q[3], both[2] = {joint == 0 ? torque : 0, joint == 1 ? torque : 0};
+  double q[3], t[3], both[2] = {joint == 0 ? torque : 0, joint == 1 ? torque : 0};
+  int64_t begin = r->sense.time_ns;
   int n = (int)ceil(window * 1e9 / (double)r->period);
   for (int k = 0; k < 3; k++) {
     for (int i = 0; k && i < n; i++) tick(r, write ? both : NULL);
     q[k] = r->sense.q[joint];
+    t[k] = 1e-9 * (double)(r->sense.time_ns - begin);
   }
-  return (q[2] - 2 * q[1] + q[0]) / (window * window);
+  if (!(t[2] > t[1] && t[1] > t[0])) return 0; /* nothing came that could show it */
+  return 2 * ((q[2] - q[1]) / (t[2] - t[1]) - (q[1] - q[0]) / (t[1] - t[0])) / (t[2] - t[0]);
 }

@@ -1,27 +1,40 @@
 /* From names and settings to an open device. */
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/driver_file.h"
 #include "device/stack.h"
 #include "inject/inject.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
 #define BLANKS " \t"
-#define INJECT "inject" /* the key that is no driver's */
+#define INJECT "inject"       /* the keys that are no driver's: a script of what is to go wrong, */
+#define HANG_TIME "hang_time" /* and for how long code of a driver's file may not return, s */
+#define HANG_TIME_DEFAULT 30  /* s: a fieldbus needs up to some ten to come up */
+
+static const char *file_of(const ethd_device_def *def) { return def->file ? def->file : "the defaults"; }
+
+static bool is_common(const char *key) { return !strcmp(key, INJECT) || !strcmp(key, HANG_TIME); }
 
 /* ---- names ---- */
 
-static ethd_status refuse_name(const ethd_device_def *def, const ethd_driver *const *from, const char *name,
-                               size_t length, char *message) {
+typedef struct naming {
+  ethd__stack *stack;
+  const ethd_driver *const *from;
+  const ethd_device_def *def;
+  char *message;
+} naming;
+
+static ethd_status refuse_name(const naming *n, const char *name, size_t length) {
   char quote[ETHD_QUOTE_MAX], list[ETHD_MESSAGE_MAX / 2] = "";
-  for (size_t i = 0; from[i]; i++) {
+  for (size_t i = 0; n->from[i]; i++) {
     if (i) strncat(list, ", ", sizeof list - strlen(list) - 1);
-    strncat(list, from[i]->id, sizeof list - strlen(list) - 1);
+    strncat(list, n->from[i]->id, sizeof list - strlen(list) - 1);
   }
-  return ethd__say(message, ETHD_E_UNKNOWN, "%s: device.driver: found %s; %s %s allowed",
-                   def->file ? def->file : "the defaults", ethd__quote(name, length, quote), list,
-                   from[1] ? "are" : "is");
+  return ethd__say(n->message, ETHD_E_UNKNOWN, "%s: device.driver: found %s; %s and file:PATH are allowed",
+                   file_of(n->def), ethd__quote(name, length, quote), list);
 }
 
 static const ethd_driver *find(const ethd_driver *const *from, const char *name, size_t length) {
@@ -30,26 +43,60 @@ static const ethd_driver *find(const ethd_driver *const *from, const char *name,
   return NULL;
 }
 
-/* "servo, ring" into the stack's rows. */
-static ethd_status name_drivers(ethd__stack *s, const char *ids, const ethd_driver *const *from,
-                                const ethd_device_def *def, char *message) {
+/* "file:mine.so", so many bytes, into row i. */
+static ethd_status load_driver(const naming *n, uint32_t i, const char *name, size_t length) {
+  char what[ETHD_MESSAGE_MAX], quote[ETHD_QUOTE_MAX];
+  ethd__stack *s = n->stack;
+  char *given = strndup(name + strlen(ETHD_DRIVER_FILE), length - strlen(ETHD_DRIVER_FILE));
+  char *path = given ? ethd__path_join(n->def->folder, given) : NULL;
+  ethd_status status = path ? ethd__driver_load(path, &s->at[i].loaded, what) : ethd__no_memory(what, NULL);
+  free(path);
+  free(given);
+  s->at[i].driver = &s->at[i].loaded;
+  s->at[i].is_foreign = true;
+  if (!status) return ETHD_OK;
+  const char *slash = memrchr(name, '/', length), *last = slash ? slash + 1 : name;
+  return ethd__say(n->message, status, "%s: device.driver: %s: %.*s", file_of(n->def),
+                   ethd__quote(last, (size_t)(name + length - last), quote), ETHD_MESSAGE_MAX / 2, what);
+}
+
+static ethd_status check_driver(const naming *n, const ethd_driver *driver) {
+  char what[ETHD_MESSAGE_MAX];
+  ethd_status status = ethd__driver_check(driver, what);
+  if (!status) return ETHD_OK;
+  return ethd__say(n->message, status, "%s: device.driver: %.*s", file_of(n->def), ETHD_MESSAGE_MAX / 2, what);
+}
+
+/* One name of so many bytes into the stack's next row. */
+static ethd_status add_driver(const naming *n, const char *name, size_t length) {
+  ethd__stack *s = n->stack;
+  size_t mark = strlen(ETHD_DRIVER_FILE);
+  bool is_file = length > mark && !strncmp(name, ETHD_DRIVER_FILE, mark);
+  const ethd_driver *known = is_file ? NULL : find(n->from, name, length);
+  if (!is_file && !known) return refuse_name(n, name, length);
+  if (s->count == ETHD_DRIVERS_MAX)
+    return ethd__say(n->message, ETHD_E_FULL, "%s: device.driver: at most %d drivers stand behind one device",
+                     file_of(n->def), ETHD_DRIVERS_MAX);
+  uint32_t i = s->count;
+  s->at[i].driver = known;
+  ethd_status status = is_file ? load_driver(n, i, name, length) : check_driver(n, known);
+  for (uint32_t k = 0; !status && k < i; k++)
+    if (!strcmp(s->at[k].driver->id, s->at[i].driver->id))
+      status = ethd__say(n->message, ETHD_E_DUPLICATE, "%s: device.driver: %s occurs twice", file_of(n->def),
+                         s->at[i].driver->id);
+  s->count += !status;
+  return status;
+}
+
+/* "servo, ring, file:mine.so" into the stack's rows. */
+static ethd_status name_drivers(const naming *n, const char *ids) {
   for (const char *id = ids;; id++) {
     id += strspn(id, BLANKS);
-    size_t length = strcspn(id, BLANKS ",");
-    const ethd_driver *driver = find(from, id, length);
-    if (!driver) return refuse_name(def, from, id, length, message);
-    for (uint32_t i = 0; i < s->count; i++)
-      if (s->at[i].driver == driver)
-        return ethd__say(message, ETHD_E_DUPLICATE, "%s: device.driver: %s stands twice",
-                         def->file ? def->file : "the defaults", driver->id);
-    if (s->count == ETHD_DRIVERS_MAX)
-      return ethd__say(message, ETHD_E_FULL, "%s: device.driver: at most %d drivers stand behind one device",
-                       def->file ? def->file : "the defaults", ETHD_DRIVERS_MAX);
-    s->at[s->count++].driver = driver;
-    id += length;
-    id += strspn(id, BLANKS);
-    if (!*id) return ETHD_OK;
-    if (*id != ',') return refuse_name(def, from, ids, strlen(ids), message);
+    size_t length = strcspn(id, ","), rest = length;
+    while (length && strchr(BLANKS, id[length - 1])) length--;
+    ethd_status status = add_driver(n, id, length);
+    id += rest;
+    if (status || !*id) return status;
   }
 }
 
@@ -64,7 +111,7 @@ static const char *own_key(const char *key, const char *id) {
 /* Every key has an owner, so that each driver is given all of its own and nothing is left over. */
 static ethd_status check_owners(const ethd__stack *s, const ethd_device_def *def, char *message) {
   for (uint32_t k = 0; s->count > 1 && k < def->setting_count; k++) {
-    int owned = !strcmp(def->settings[k].key, INJECT);
+    bool owned = is_common(def->settings[k].key);
     for (uint32_t i = 0; i < s->count; i++) owned |= own_key(def->settings[k].key, s->at[i].driver->id) != NULL;
     if (!owned)
       return ethd__say(message, ETHD_E_UNKNOWN,
@@ -75,11 +122,17 @@ static ethd_status check_owners(const ethd__stack *s, const ethd_device_def *def
   return ETHD_OK;
 }
 
+static const ethd_setting *find_common(const ethd_device_def *def, const char *key) {
+  for (uint32_t k = 0; k < def->setting_count; k++)
+    if (!strcmp(def->settings[k].key, key)) return &def->settings[k];
+  return NULL;
+}
+
 static uint32_t own_settings(const ethd__stack *s, uint32_t i, const ethd_device_def *def, ethd_setting *out) {
   uint32_t n = 0;
   for (uint32_t k = 0; k < def->setting_count; k++) {
     const char *key = own_key(def->settings[k].key, s->at[i].driver->id);
-    if ((!key && s->count > 1) || !strcmp(def->settings[k].key, INJECT)) continue;
+    if ((!key && s->count > 1) || is_common(def->settings[k].key)) continue;
     out[n] = def->settings[k];
     if (key) out[n].key = key;
     n++;
@@ -89,30 +142,64 @@ static uint32_t own_settings(const ethd__stack *s, uint32_t i, const ethd_device
 
 /* ---- opening ---- */
 
+/* What an open driver says of itself: what nobody else checks. */
+static ethd_status check_open(ethd__stack *s, uint32_t i, char *message) {
+  const ethd_driver *driver = s->at[i].driver;
+  ethd_error error;
+  s->at[i].units = driver->units ? driver->units(s->at[i].device) : 0;
+  if (s->at[i].units > ETHD_UNITS_MAX || ethd__driver_stack.units(s) > ETHD_UNITS_MAX)
+    return ethd__say(message, ETHD_E_FULL, "device: the drivers ask for more than %d I/O threads", ETHD_UNITS_MAX);
+  if (!driver->limits) return ETHD_OK;
+  ethd_limits limits = driver->limits(s->at[i].device);
+  ethd_status status = ethd_limits_check(&limits, &error);
+  return status ? ethd__say(message, status, "device %s: limits: %s: %s", driver->id, error.name,
+                            ethd_status_sentence(status))
+                : ETHD_OK;
+}
+
+/* One line, whatever a file's code left there. */
+static void one_line(char message[ETHD_MESSAGE_MAX]) {
+  message[ETHD_MESSAGE_MAX - 1] = 0;
+  for (char *p = message; *p; p++)
+    if ((unsigned char)*p < ' ' || *p == 0x7f) *p = '?';
+}
+
 static ethd_status open_one(ethd__stack *s, uint32_t i, const ethd_device_def *def, char *message) {
   const ethd_driver *driver = s->at[i].driver;
-  if (driver->write && !driver->safe)
-    return ethd__say(message, ETHD_E_ARGUMENT, "device.driver: %s takes torque and has no safe to let go", driver->id);
   ethd_setting *settings = calloc(def->setting_count + 1, sizeof *settings);
   if (!settings) return ethd__no_memory(message, NULL);
   ethd_device_def own = *def;
   own.settings = settings;
   own.setting_count = own_settings(s, i, def, settings);
   message[0] = 0;
+  ethd__stack_foreign(s, i, "open");
   ethd_status status = driver->open(&own, &s->at[i].device, message);
+  ethd__stack_foreign(s, i, NULL);
   free(settings);
+  one_line(message);
   if (status && !message[0])
     ethd__say(message, status, "device %s: open: %s", driver->id, ethd_status_sentence(status));
-  return status;
+  return status ? status : check_open(s, i, message);
+}
+
+static ethd_status read_hang_time(ethd__stack *s, const ethd_device_def *def, char *message) {
+  char quote[ETHD_QUOTE_MAX];
+  double value = HANG_TIME_DEFAULT;
+  const ethd_setting *own = find_common(def, HANG_TIME);
+  if (own && (!ethd__number(own->value, strlen(own->value), &value) || !(value >= 1 && value <= 3600)))
+    return ethd__say(message, ETHD_E_RANGE, "%s:%d: device.%s: found %s, 1 to 3600 s is allowed", file_of(def),
+                     own->line, own->key, ethd__quote(own->value, strlen(own->value), quote));
+  s->hang_time = (unsigned)value;
+  return ETHD_OK;
 }
 
 static ethd_status open_all(ethd__stack *s, const char *ids, const ethd_driver *const *from, const ethd_device_def *def,
                             char *message) {
-  ethd_status status = name_drivers(s, ids, from, def, message);
+  const naming n = {s, from, def, message};
+  ethd_status status = name_drivers(&n, ids);
   if (!status) status = check_owners(s, def, message);
+  if (!status) status = read_hang_time(s, def, message);
   for (uint32_t i = 0; !status && i < s->count; i++) status = open_one(s, i, def, message);
-  if (!status && ethd__driver_stack.units(s) > ETHD_UNITS_MAX)
-    status = ethd__say(message, ETHD_E_FULL, "device: the drivers ask for more than %d I/O threads", ETHD_UNITS_MAX);
   return status;
 }
 
@@ -138,12 +225,6 @@ static ethd_status inject(const ethd_device_def *def, const char *file, const et
   return status;
 }
 
-static const char *script_of(const ethd_device_def *def) {
-  for (uint32_t k = 0; k < def->setting_count; k++)
-    if (!strcmp(def->settings[k].key, INJECT)) return def->settings[k].value;
-  return NULL;
-}
-
 ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from, const ethd_device_def *def,
                              const ethd_driver **driver, void **device, char message[ETHD_MESSAGE_MAX]) {
   *driver = NULL;
@@ -157,6 +238,6 @@ ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from, co
   }
   *driver = &ethd__driver_stack;
   *device = s;
-  const char *script = script_of(def);
-  return script ? inject(def, script, driver, device, message) : ETHD_OK;
+  const ethd_setting *script = find_common(def, INJECT);
+  return script ? inject(def, script->value, driver, device, message) : ETHD_OK;
 }

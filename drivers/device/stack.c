@@ -1,6 +1,15 @@
 #include "device/stack.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+
+#include "settings/config_parts.h"
+
+void ethd__stack_foreign(ethd__stack *s, uint32_t i, const char *doing) {
+  if (!s->at[i].is_foreign || !ethd__foreign_code) return;
+  if (doing) snprintf(s->doing, sizeof s->doing, "%s of the driver %s", doing, s->at[i].driver->id);
+  ethd__foreign_code(doing ? s->doing : NULL, s->hang_time);
+}
 
 /* ---- [rt] ---- */
 
@@ -33,21 +42,17 @@ static void safe_all(void *stack) ETHD_RT {
 
 /* ---- I/O ---- */
 
-static uint32_t units_of(const ethd__stack *s, uint32_t i) {
-  return s->at[i].driver->units ? s->at[i].driver->units(s->at[i].device) : 0;
-}
-
 static uint32_t units(const void *stack) {
   const ethd__stack *s = stack;
   uint32_t sum = 0;
-  for (uint32_t i = 0; i < s->count; i++) sum += units_of(s, i);
+  for (uint32_t i = 0; i < s->count; i++) sum += s->at[i].units;
   return sum;
 }
 
 static ethd_status service(void *stack, uint32_t unit, int64_t now_ns) {
   const ethd__stack *s = stack;
   for (uint32_t i = 0; i < s->count; i++) {
-    uint32_t own = units_of(s, i);
+    uint32_t own = s->at[i].units;
     if (unit < own) return s->at[i].driver->service(s->at[i].device, unit, now_ns);
     unit -= own;
   }
@@ -56,20 +61,29 @@ static ethd_status service(void *stack, uint32_t unit, int64_t now_ns) {
 
 /* ---- [main] ---- */
 
-static ethd_status start_one(const ethd__stack *s, uint32_t i) {
-  return s->at[i].driver->start ? s->at[i].driver->start(s->at[i].device) : ETHD_OK;
+static ethd_status start_one(ethd__stack *s, uint32_t i) {
+  if (!s->at[i].driver->start) return ETHD_OK;
+  ethd__stack_foreign(s, i, "start");
+  ethd_status status = s->at[i].driver->start(s->at[i].device);
+  ethd__stack_foreign(s, i, NULL);
+  return status;
 }
 
-static ethd_status stop_one(const ethd__stack *s, uint32_t i) {
+static ethd_status stop_one(ethd__stack *s, uint32_t i) {
   const ethd_driver *driver = s->at[i].driver;
-  if (driver->stop) return driver->stop(s->at[i].device);
-  if (driver->safe) driver->safe(s->at[i].device);
-  return ETHD_OK;
+  ethd_status status = ETHD_OK;
+  ethd__stack_foreign(s, i, "stop");
+  if (driver->stop)
+    status = driver->stop(s->at[i].device);
+  else if (driver->safe)
+    driver->safe(s->at[i].device);
+  ethd__stack_foreign(s, i, NULL);
+  return status;
 }
 
 /* Measuring drivers may come after the one that moves; all start, or those that did are stopped. */
 static ethd_status start(void *stack) {
-  const ethd__stack *s = stack;
+  ethd__stack *s = stack;
   for (uint32_t i = 0; i < s->count; i++) {
     ethd_status status = start_one(s, i);
     if (status >= 0) continue;
@@ -80,7 +94,7 @@ static ethd_status start(void *stack) {
 }
 
 static ethd_status stop(void *stack) {
-  const ethd__stack *s = stack;
+  ethd__stack *s = stack;
   ethd_status status = ETHD_OK;
   for (uint32_t i = s->count; i--;) status = worse(status, stop_one(s, i));
   return status;
@@ -108,8 +122,11 @@ static ethd_limits limits(const void *stack) {
 static uint32_t figures(const void *stack, ethd_figure *out, uint32_t max) {
   const ethd__stack *s = stack;
   uint32_t n = 0;
-  for (uint32_t i = 0; i < s->count; i++)
-    if (s->at[i].driver->figures) n += s->at[i].driver->figures(s->at[i].device, out + n, max - n);
+  for (uint32_t i = 0; i < s->count; i++) {
+    if (!s->at[i].driver->figures) continue;
+    uint32_t own = s->at[i].driver->figures(s->at[i].device, out + n, max - n);
+    n += own < max - n ? own : max - n;
+  }
   return n;
 }
 
@@ -119,7 +136,7 @@ static const char *remark(const void *stack, uint32_t i) {
   for (uint32_t k = 0; k < s->count && !own; k++) {
     if (!s->at[k].driver->remark) continue;
     uint32_t n = 0;
-    while (s->at[k].driver->remark(s->at[k].device, n)) n++;
+    while (n < ETHD_REMARKS_MAX && s->at[k].driver->remark(s->at[k].device, n)) n++;
     if (i < n) own = s->at[k].driver->remark(s->at[k].device, i);
     i -= i < n ? i : n;
   }
@@ -145,10 +162,10 @@ static ethd_status home(void *stack, const double q[2]) {
 
 static const char *why(const void *stack) {
   const ethd__stack *s = stack;
-  const char *says = "";
-  for (uint32_t i = 0; i < s->count && !says[0]; i++)
+  const char *says = NULL;
+  for (uint32_t i = 0; i < s->count && !(says && says[0]); i++)
     if (s->at[i].driver->why) says = s->at[i].driver->why(s->at[i].device);
-  return says;
+  return says ? says : "";
 }
 
 /* What the first knows stands; the next ones add to it. */

@@ -1,6 +1,8 @@
 /* Drivers in a row as one driver, which has all functions, whatever one or several have. */
-#ifndef ETHD_DEVICE_STACK_H
-#define ETHD_DEVICE_STACK_H
+#ifndef ETHD__DEVICE_STACK_H
+#define ETHD__DEVICE_STACK_H
+
+#include <stdbool.h>
 
 #include "ethd/driver.h"
 
@@ -9,10 +11,19 @@ extern const ethd_driver ethd__driver_stack;
 
 typedef struct ethd__stack {
   uint32_t count;
+  unsigned hang_time; /* s in which code of a file must return */
+  char doing[96];     /* what a file's code does, for people */
   struct {
     const ethd_driver *driver;
-    void *device; /* NULL: not open */
+    ethd_driver loaded; /* a file's table, whole: what the file's header didn't have yet is NULL */
+    bool is_foreign;    /* driver == &loaded */
+    void *device;       /* NULL: not open */
+    uint32_t units;
   } at[ETHD_DRIVERS_MAX];
 } ethd__stack;
+
+/* Code of driver i's file runs from here on, or no longer (doing NULL): a program that watches over plugins ends when it
+   doesn't return. Nothing for the built-in ones. [main] */
+void ethd__stack_foreign(ethd__stack *stack, uint32_t i, const char *doing);
 
 #endif

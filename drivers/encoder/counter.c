@@ -121,12 +121,11 @@ static ethd__encoder_def define(const ethd__counter_settings *s, int j, uint64_t
                              .stamps = p[ETHD__COUNTER_STAMPS] != 0};
 }
 
-static ethd_status prepare(counter *c, const ethd_device_def *def, char *message) {
-  ethd_status status = ethd__counter_settings_read(def, &c->settings, message);
-  if (!status) status = ethd__counter_input_open(&c->settings, &c->input, message);
+static ethd_status define_both(counter *c, const ethd_device_def *def, const uint64_t ceilings[2], char *message) {
+  ethd_status status = ETHD_OK;
   for (int j = 0; j < 2 && !status; j++) {
     ethd_error error = {0};
-    c->def[j] = define(&c->settings, j, c->input.counts[j].ceiling);
+    c->def[j] = define(&c->settings, j, ceilings[j]);
     status = ethd__encoder_check(&c->def[j], c->period, &error);
     if (status) ethd_error_text(def->file, &error, message);
   }
@@ -141,13 +140,24 @@ static void counter_close(void *device) {
   free(c);
 }
 
-static ethd_status counter_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
+/* A count's ceiling is the kernel's to say; until it is asked, `width` stands. */
+static ethd_status counter_prepare(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
   counter *c = *out = calloc(1, sizeof *c);
   if (!c) return ETHD_E_MEMORY;
   c->period = def->setup->period;
   pthread_mutex_init(&c->lock, NULL);
   ethd_status status = ethd_cell_create(sizeof(ethd__counter_snapshot), &c->cell, NULL);
-  return status ? status : prepare(c, def, message);
+  if (!status) status = ethd__counter_settings_read(def, &c->settings, message);
+  uint64_t ceiling = ethd__count_ceiling((uint32_t)c->settings.p[ETHD__COUNTER_WIDTH]);
+  return status ? status : define_both(c, def, (const uint64_t[2]){ceiling, ceiling}, message);
+}
+
+static ethd_status counter_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = counter_prepare(def, out, message);
+  counter *c = *out;
+  if (!status) status = ethd__counter_input_open(&c->settings, &c->input, message);
+  if (status) return status;
+  return define_both(c, def, (const uint64_t[2]){c->input.counts[0].ceiling, c->input.counts[1].ceiling}, message);
 }
 
 /* ---- starting ---- */
@@ -227,10 +237,12 @@ static const char *counter_remark(const void *device, uint32_t i) {
 
 static uint32_t counter_figures(const void *device, ethd_figure *out, uint32_t max) {
   const counter *c = device;
-  const ethd_figure all[] = {{"counter events", "1", seen(&c->input.events)},
-                             {"counter events with a failure", "1", seen(&c->input.bad_events)},
-                             {"counter reads that failed", "1", seen(&c->input.failures)}};
-  uint32_t n = max < 3 ? max : 3;
+  const ethd_figure all[] = {
+      {"counter events", "1", seen(&c->input.events)},
+      {"counter events with a failure", "1", seen(&c->input.bad_events)},
+      {"counter reads that failed", "1", seen(&c->input.failures)},
+      {"joint angle a count", "rad", 2 * M_PI / ((double)c->def[0].counts_per_turn * c->def[0].ratio)}};
+  uint32_t n = max < 4 ? max : 4;
   memcpy(out, all, n * sizeof *out);
   return n;
 }
@@ -256,4 +268,5 @@ const ethd_driver ethd_driver_counter = {
     .clear = counter_clear,
     .home = counter_home,
     .why = counter_why,
+    .prepare = counter_prepare,
 };

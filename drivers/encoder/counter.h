@@ -12,8 +12,8 @@
 
    This driver was never run on hardware: the kernels at hand had no counter. It was tested with a stand-in
    for the system calls below. A kernel's counter is slow or quick; here a thread reads it, never the loop. */
-#ifndef ETHD_ENCODER_COUNTER_H
-#define ETHD_ENCODER_COUNTER_H
+#ifndef ETHD__ENCODER_COUNTER_H
+#define ETHD__ENCODER_COUNTER_H
 
 #include <stdbool.h>
 #include <sys/types.h>

@@ -2,8 +2,8 @@
    they stand.
 
      index event   -> index, marks      edge event -> edge_ns, raw      count's attribute -> raw      */
-#ifndef ETHD_ENCODER_COUNTER_INPUT_H
-#define ETHD_ENCODER_COUNTER_INPUT_H
+#ifndef ETHD__ENCODER_COUNTER_INPUT_H
+#define ETHD__ENCODER_COUNTER_INPUT_H
 
 #include "encoder/counter.h"
 

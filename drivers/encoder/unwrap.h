@@ -9,8 +9,8 @@
 
    A driver gives each sample once, with the torque that its joint was under; the rows of the fault table
    that one encoder can show come back as bits. All [rt] but the check. */
-#ifndef ETHD_ENCODER_UNWRAP_H
-#define ETHD_ENCODER_UNWRAP_H
+#ifndef ETHD__ENCODER_UNWRAP_H
+#define ETHD__ENCODER_UNWRAP_H
 
 #include <stdbool.h>
 #include <stdint.h>

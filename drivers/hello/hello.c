@@ -1,10 +1,16 @@
 /* A driver to copy: two motors that aren't there, J dw/dt = torque - b w. What a real one puts in place of
-   the model: its encoders in `read`, its amplifier in `write`, its brake or enable line in `start` and `safe`. */
+   the model: its encoders in `read`, its amplifier in `write`, its brake or enable line in `start` and `safe`.
+
+   Built in, [device] driver = hello; or as a file of its own, driver = file:hello.so:
+     cc -shared -fPIC -DHELLO=ethd_driver_plugin hello.c -o hello.so $(pkg-config --cflags ethd-drivers) */
 #include <stdlib.h>
 
 #include "ethd/control.h"
 #include "ethd/driver.h"
 
+#ifndef HELLO
+#define HELLO ethd_driver_hello
+#endif
 #define INERTIA 0.02      /* kg m^2 */
 #define FRICTION 0.05     /* Nms/rad */
 #define WATCHDOG 20000000 /* ns without a write: no torque */
@@ -17,7 +23,7 @@ typedef struct hello {
 
 static ethd_status open_hello(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
   hello *h = *device = calloc(1, sizeof *h);
-  ethd_status status = h ? ethd_settings_read(&ethd_driver_hello, def, NULL, NULL, message) : ETHD_E_MEMORY;
+  ethd_status status = h ? ethd_settings_read(&HELLO, def, NULL, NULL, message) : ETHD_E_MEMORY;
   return status ? status : ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, h->q);
 }
 
@@ -48,14 +54,15 @@ static ethd_status write_torque(void *device, int64_t now_ns, const ethd_command
 static void safe(void *device) ETHD_RT { ((hello *)device)->safe = 1; }
 static ethd_limits limits(const void *device) { return (void)device, ethd_limits_torque(1); }
 
-const ethd_driver ethd_driver_hello = {.size = sizeof(ethd_driver),
-                                       .abi = ETHD_DRIVER_ABI,
-                                       .id = "hello",
-                                       .brief = "two motors that aren't there, to copy from",
-                                       .open = open_hello,
-                                       .start = start,
-                                       .read = read_joints,
-                                       .write = write_torque,
-                                       .safe = safe,
-                                       .close = free,
-                                       .limits = limits};
+const ethd_driver HELLO = {.size = sizeof(ethd_driver),
+                           .abi = ETHD_DRIVER_ABI,
+                           .id = "hello",
+                           .brief = "two motors that aren't there, to copy from",
+                           .open = open_hello,
+                           .start = start,
+                           .read = read_joints,
+                           .write = write_torque,
+                           .safe = safe,
+                           .close = free,
+                           .limits = limits,
+                           .prepare = open_hello /* it touches nothing */};

@@ -15,10 +15,10 @@ typedef struct stamped {
   ethd_command command;
 } stamped;
 
-typedef struct reading {
+typedef struct held_reading {
   int64_t due;
   ethd_sense sense;
-} reading;
+} held_reading;
 
 typedef struct inject {
   const ethd_driver *driver;
@@ -30,7 +30,7 @@ typedef struct inject {
   uint64_t done;    /* things that were done wrong */
   uint64_t commands, readings;
   ethd_sense last; /* reading */
-  reading held[READINGS_MAX];
+  held_reading held[READINGS_MAX];
   stamped written[COMMANDS_MAX];
 } inject;
 
@@ -91,7 +91,7 @@ static void copy_reading(const ethd_sense *from, ethd_sense *to) ETHD_RT {
 }
 
 static void hold_reading(inject *in, double delay, const ethd_sense *s) ETHD_RT {
-  reading *r = &in->held[in->readings++ % READINGS_MAX];
+  held_reading *r = &in->held[in->readings++ % READINGS_MAX];
   r->due = in->now + (int64_t)rint(1e9 * delay);
   r->sense = *s;
 }
@@ -99,7 +99,7 @@ static void hold_reading(inject *in, double delay, const ethd_sense *s) ETHD_RT 
 /* Takes the newest sample that is due; it and all older ones leave the queue. */
 static void release_readings(inject *in, ethd_sense *s) ETHD_RT {
   for (uint64_t back = 0; back < READINGS_MAX && back < in->readings; back++) {
-    reading *r = &in->held[(in->readings - 1 - back) % READINGS_MAX];
+    held_reading *r = &in->held[(in->readings - 1 - back) % READINGS_MAX];
     if (r->due > in->now) continue;
     if (!(s->have & READING)) copy_reading(&r->sense, s);
     for (; back < READINGS_MAX && back < in->readings; back++)
@@ -204,7 +204,7 @@ static ethd_status inject_start(void *device) {
   in->now = 0;
   in->commands = in->readings = 0;
   in->last.have = 0;
-  for (uint32_t i = 0; i < in->script.count; i++) in->script.at[i].begun = 0;
+  for (uint32_t i = 0; i < in->script.count; i++) in->script.at[i].begun = false;
   if (is_told(in, ETHD__INJECT_START, ETHD__INJECT_FAIL)) return ETHD_E_DEVICE;
   return in->driver->start(in->device);
 }

@@ -49,26 +49,26 @@ static const struct {
 
 /* ---- words ---- */
 
-typedef struct reader {
+typedef struct script_reader {
   const char *name;
   char *message;
   int line;
   double period;
-} reader;
+} script_reader;
 
-typedef struct word {
+typedef struct script_word {
   const char *at;
   size_t length;
-} word;
+} script_word;
 
-static ethd_status refuse(const reader *r, ethd_status status, word w, const char *allowed) {
+static ethd_status refuse(const script_reader *r, ethd_status status, script_word w, const char *allowed) {
   char quote[ETHD_QUOTE_MAX];
   return ethd__say(r->message, status, "%s:%d: found %s; %s", r->name, r->line,
                    w.length ? ethd__quote(w.at, w.length, quote) : "the line's end", allowed);
 }
 
-static word next_word(const char **at, const char *end) {
-  word w;
+static script_word next_word(const char **at, const char *end) {
+  script_word w;
   while (*at < end && strchr(BLANKS, **at) && **at) ++*at;
   w.at = *at;
   while (*at < end && !(strchr(BLANKS, **at) && **at)) ++*at;
@@ -76,18 +76,20 @@ static word next_word(const char **at, const char *end) {
   return w;
 }
 
-static bool is_word(word w, const char *name) { return strlen(name) == w.length && !memcmp(w.at, name, w.length); }
+static bool is_word(script_word w, const char *name) {
+  return strlen(name) == w.length && !memcmp(w.at, name, w.length);
+}
 
 /* The rest of a word after `prefix`; an empty word when it begins differently. */
-static word behind(word w, const char *prefix) {
+static script_word behind(script_word w, const char *prefix) {
   size_t n = strlen(prefix);
-  if (w.length <= n || memcmp(w.at, prefix, n) != 0) return (word){w.at, 0};
-  return (word){w.at + n, w.length - n};
+  if (w.length <= n || memcmp(w.at, prefix, n) != 0) return (script_word){w.at, 0};
+  return (script_word){w.at + n, w.length - n};
 }
 
 /* ---- one line ---- */
 
-static ethd_status read_time(const reader *r, word w, ethd__injection *out) {
+static ethd_status read_time(const script_reader *r, script_word w, ethd__injection *out) {
   int ticks = w.length > 1 && w.at[w.length - 1] == 't';
   double t, unit = ticks ? r->period : 1;
   if (!ethd__number(w.at, w.length - (size_t)ticks, &t) || !(t >= 0 && t * unit <= 1e6))
@@ -97,26 +99,26 @@ static ethd_status read_time(const reader *r, word w, ethd__injection *out) {
 }
 
 /* "ray5": the fifth; "ray": all. */
-static bool names(word w, int channel, ethd__injection *out) {
+static bool names(script_word w, int channel, ethd__injection *out) {
   const char *name = channels[channel].name;
   uint32_t number = 0, numbers = channels[channel].numbers;
   out->first = 0;
   out->count = numbers ? numbers : 1;
   if (is_word(w, name)) return channel != ETHD__INJECT_FAULT;
-  word tail = behind(w, name);
+  script_word tail = behind(w, name);
   if (numbers > 2 && channel == ETHD__INJECT_RAY && is_word(w, "rays")) return true;
   if (tail.length < 1 || tail.length > 2) return false;
   for (size_t i = 0; i < tail.length; i++) {
     if (tail.at[i] < '0' + (i == 0) || tail.at[i] > '9') return false;
     number = 10 * number + (uint32_t)(tail.at[i] - '0');
   }
-  if (number > numbers) return 0;
+  if (number > numbers) return false;
   out->first = number - 1;
   out->count = 1;
-  return 1;
+  return true;
 }
 
-static ethd_status read_channel(const reader *r, word w, ethd__injection *out) {
+static ethd_status read_channel(const script_reader *r, script_word w, ethd__injection *out) {
   for (int i = 0; i < ETHD__INJECT_CHANNELS; i++)
     if (names(w, i, out)) {
       out->channel = (ethd__inject_channel)i;
@@ -127,7 +129,7 @@ static ethd_status read_channel(const reader *r, word w, ethd__injection *out) {
                 "read write service start fault1..fault38");
 }
 
-static ethd_status read_kind(const reader *r, word w, ethd__injection *out) {
+static ethd_status read_kind(const script_reader *r, script_word w, ethd__injection *out) {
   char list[ETHD_MESSAGE_MAX / 2] = "kinds of this channel are";
   for (int i = 0; i < ETHD__INJECT_KINDS; i++) {
     if (!(channels[out->channel].kinds >> i & 1)) continue;
@@ -141,10 +143,10 @@ static ethd_status read_kind(const reader *r, word w, ethd__injection *out) {
   return refuse(r, ETHD_E_UNKNOWN, w, list);
 }
 
-static ethd_status read_by(const reader *r, word w, word number, ethd__injection *out) {
+static ethd_status read_by(const script_reader *r, script_word w, script_word number, ethd__injection *out) {
   double min = kinds[out->kind].min, max = kinds[out->kind].max;
   if (!kinds[out->kind].by) return refuse(r, ETHD_E_UNKNOWN, w, "this kind has no by=");
-  if (!isnan(out->by)) return refuse(r, ETHD_E_DUPLICATE, w, "by= stands once");
+  if (!isnan(out->by)) return refuse(r, ETHD_E_DUPLICATE, w, "by= may occur once");
   if (!ethd__number(number.at, number.length, &out->by) || !(out->by >= min && out->by <= max)) {
     char allowed[64];
     snprintf(allowed, sizeof allowed, "by= is %g to %g", min, max);
@@ -153,30 +155,30 @@ static ethd_status read_by(const reader *r, word w, word number, ethd__injection
   return ETHD_OK;
 }
 
-static ethd_status read_for(const reader *r, word w, word number, ethd__injection *out) {
+static ethd_status read_for(const script_reader *r, script_word w, script_word number, ethd__injection *out) {
   double t;
-  if (out->until_ns) return refuse(r, ETHD_E_DUPLICATE, w, "for= stands once");
+  if (out->until_ns) return refuse(r, ETHD_E_DUPLICATE, w, "for= may occur once");
   if (!ethd__number(number.at, number.length, &t) || !(t >= 1e-9 && (t <= 1e6 || isinf(t))))
     return refuse(r, ETHD_E_RANGE, w, "for= is 1e-9 to 1e6 s, or inf");
   out->until_ns = isinf(t) ? INT64_MAX : out->from_ns + (int64_t)rint(1e9 * t);
   return ETHD_OK;
 }
 
-static ethd_status read_rest(const reader *r, const char *at, const char *end, ethd__injection *out) {
+static ethd_status read_rest(const script_reader *r, const char *at, const char *end, ethd__injection *out) {
   ethd_status status = ETHD_OK;
-  for (word w = next_word(&at, end); w.length && !status; w = next_word(&at, end)) {
-    word by = behind(w, "by="), duration = behind(w, "for=");
+  for (script_word w = next_word(&at, end); w.length && !status; w = next_word(&at, end)) {
+    script_word by = behind(w, "by="), duration = behind(w, "for=");
     status = by.length         ? read_by(r, w, by, out)
              : duration.length ? read_for(r, w, duration, out)
                                : refuse(r, ETHD_E_SYNTAX, w, "behind the kind stand by=NUMBER and for=SECONDS");
   }
   if (!status && kinds[out->kind].by && isnan(out->by))
-    status = refuse(r, ETHD_E_ARGUMENT, (word){at, 0}, "this kind needs by=NUMBER");
+    status = refuse(r, ETHD_E_ARGUMENT, (script_word){at, 0}, "this kind needs by=NUMBER");
   if (!out->until_ns) out->until_ns = out->from_ns + (int64_t)rint(1e9 * r->period);
   return status;
 }
 
-static ethd_status read_line(const reader *r, const char *at, const char *end, ethd__injection *out) {
+static ethd_status read_line(const script_reader *r, const char *at, const char *end, ethd__injection *out) {
   *out = (ethd__injection){.line = r->line, .by = (double)NAN};
   ethd_status status = read_time(r, next_word(&at, end), out);
   if (!status) status = read_channel(r, next_word(&at, end), out);
@@ -192,7 +194,7 @@ static bool is_blank(const char *at, const char *end) {
   return true;
 }
 
-static ethd_status read_lines(reader *r, const char *text, size_t length, ethd__script *out) {
+static ethd_status read_lines(script_reader *r, const char *text, size_t length, ethd__script *out) {
   const char *end = text + length;
   for (const char *at = text; at < end; r->line++) {
     const char *stop = memchr(at, '\n', (size_t)(end - at));
@@ -214,7 +216,7 @@ static ethd_status read_lines(reader *r, const char *text, size_t length, ethd__
 
 ethd_status ethd__script_parse(const char *text, size_t length, const char *name, double period, ethd__script *out,
                                char message[ETHD_MESSAGE_MAX]) {
-  reader r = {.name = name, .message = message, .line = 1, .period = period};
+  script_reader r = {.name = name, .message = message, .line = 1, .period = period};
   *out = (ethd__script){.at = calloc(ETHD_INJECT_LINES_MAX, sizeof *out->at)};
   if (!out->at) return ethd__no_memory(message, name);
   ethd_status status = read_lines(&r, text, length, out);

@@ -14,6 +14,8 @@
 #ifndef ETHD_INJECT_SCRIPT_H
 #define ETHD_INJECT_SCRIPT_H
 
+#include <stdbool.h>
+
 #include "ethd/driver.h"
 #include "ethd/finger_fit.h"
 
@@ -61,7 +63,7 @@ typedef struct ethd__injection {
   uint32_t first, count; /* numbers of the channel */
   double by;
   int line;
-  int32_t begun; /* while it runs, `held` is known */
+  bool begun; /* while it runs, `held` is known */
   double held[ETHD_RAYS];
 } ethd__injection;
 

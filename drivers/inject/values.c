@@ -3,7 +3,7 @@
 #include <math.h>
 
 /* Where the sample holds a channel's numbers; NULL when it doesn't hold them. */
-static double *numbers(ethd__inject_channel channel, int joints, ethd_sense *s) ETHD_RT {
+static double *numbers(ethd__inject_channel channel, bool joints, ethd_sense *s) ETHD_RT {
   switch (channel) {
   case ETHD__INJECT_Q: return joints ? s->q : NULL;
   case ETHD__INJECT_DQ: return joints && (s->have & ETHD_HAVE_DQ) ? s->dq : NULL;
@@ -36,26 +36,26 @@ static double spoilt(const ethd__injection *in, uint32_t i, int64_t t, double va
   }
 }
 
-static int32_t shift_time(ethd__injection *in, ethd_sense *s) ETHD_RT {
+static bool shift_time(ethd__injection *in, ethd_sense *s) ETHD_RT {
   if (!in->begun) in->held[0] = (double)s->time_ns;
-  in->begun = 1;
+  in->begun = true;
   s->time_ns = in->kind == ETHD__INJECT_FREEZE ? (int64_t)in->held[0] : s->time_ns + (int64_t)rint(1e9 * in->by);
-  return 1;
+  return true;
 }
 
-int32_t ethd__inject_values(ethd__injection *in, int64_t t, int joints, ethd_sense *s) {
+bool ethd__inject_values(ethd__injection *in, int64_t t, bool joints, ethd_sense *s) {
   if (t < in->from_ns || t >= in->until_ns) {
-    in->begun = 0;
-    return 0;
+    in->begun = false;
+    return false;
   }
-  if (in->channel == ETHD__INJECT_TIME) return joints ? shift_time(in, s) : 0;
+  if (in->channel == ETHD__INJECT_TIME) return joints ? shift_time(in, s) : false;
   double *at = numbers(in->channel, joints, s);
-  if (!at) return 0;
+  if (!at) return false;
   for (uint32_t i = 0; i < in->count; i++) {
     double *value = at + in->first + i;
     if (!in->begun) in->held[i] = *value;
     *value = spoilt(in, i, t, *value);
   }
-  in->begun = 1;
-  return 1;
+  in->begun = true;
+  return true;
 }

@@ -4,8 +4,8 @@
 
 #include "inject/script.h"
 
-/* Does one injection to *sense at t, ns since the first sample, if it is of a number and due; joints 0: the
-   sample has no new joint numbers. Returns 1 if something was changed. [rt] */
-int32_t ethd__inject_values(ethd__injection *injection, int64_t t, int joints, ethd_sense *sense) ETHD_RT;
+/* Does one injection to *sense at t, ns since the first sample, if it is of a number and due; joints false: the
+   sample has no new joint numbers. True if something was changed. [rt] */
+bool ethd__inject_values(ethd__injection *injection, int64_t t, bool joints, ethd_sense *sense) ETHD_RT;
 
 #endif

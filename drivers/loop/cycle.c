@@ -24,7 +24,7 @@ int64_t ethd__loop_boot(const ethd_loop *l) {
   return ethd__loop_now(l);
 #else
   struct timespec t;
-  __STD(clock_gettime)(CLOCK_BOOTTIME, &t);
+  clock_gettime(CLOCK_BOOTTIME, &t);
   return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
 #endif
 }

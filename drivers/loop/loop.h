@@ -126,8 +126,9 @@ uint32_t ethd__loop_units(const ethd_loop *loop);
 ethd_status ethd__loop_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
                               double max);
 
-/* Xenomai's initialisation, 0 where there is none to do; switches to secondary mode since. [main] */
-int ethd__xenomai_begin(void);
+/* Xenomai's initialisation, where there is one to do; switches to secondary mode since. Refusals are named "xenomai" (the
+   kernel has no Cobalt), "clock" (found: s by which Cobalt's is ahead of Linux's) and "thread". [main] */
+ethd_status ethd__xenomai_begin(ethd_error *error);
 void ethd__xenomai_watch(void); /* on the loop's thread, before the first tick */
 uint64_t ethd__xenomai_relaxes(void);
 

@@ -1,6 +1,7 @@
-/* The one difference between plain Linux and Xenomai 3: __RT(f) is the core's f, __STD(f) is libc's.
+/* The one difference between plain Linux and Xenomai 3: __RT(f) is the core's f, everywhere else f itself. A plain f is
+   always libc's: xeno-config's skin "cobalt" wraps no name, and libcobalt has no __real_f of each.
 
-   Xenomai's own <boilerplate/wrappers.h> defines both on its two cores; here they are the same. */
+   Xenomai's own <boilerplate/wrappers.h> defines __RT on its two cores. */
 #ifndef ETHD_LOOP_RT_H
 #define ETHD_LOOP_RT_H
 
@@ -12,7 +13,6 @@
 #endif
 #ifndef __RT
 #define __RT(f) f
-#define __STD(f) f
 #endif
 
 #endif

@@ -8,6 +8,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 
+#include "clock.h"
 #include "denormals.h"
 #include "loop/loop.h"
 
@@ -18,7 +19,7 @@
 
 static void pause_a_little(void) {
   struct timespec t = {.tv_nsec = PAUSE};
-  __STD(nanosleep)(&t, NULL);
+  nanosleep(&t, NULL);
 }
 
 /* ---- what runs on them ---- */
@@ -38,10 +39,7 @@ static void *run_unit(void *unit_) {
   const ethd__unit *unit = unit_;
   ethd_loop *l = unit->loop;
   while (!atomic_load_explicit(&l->stop, memory_order_relaxed)) {
-    struct timespec t;
-    __STD(clock_gettime)(CLOCK_MONOTONIC, &t);
-    ethd_status status =
-        l->def.driver->service(l->def.device, unit->number, (int64_t)t.tv_sec * 1000000000 + t.tv_nsec);
+    ethd_status status = l->def.driver->service(l->def.device, unit->number, ethd__clock_now());
     if (status < 0) __atomic_fetch_add(&l->stats.service_failures, 1, __ATOMIC_RELAXED);
     if (status) pause_a_little();
   }
@@ -89,7 +87,7 @@ static void *run_watch(void *loop) {
   while (!ethd_loop_ended(l) && !atomic_load_explicit(&l->left, memory_order_relaxed)) {
     int64_t left = left_to_live(l, &w);
     struct timespec t = {.tv_nsec = left < 1 ? 1 : left < LOOK_MAX ? left : LOOK_MAX};
-    __STD(nanosleep)(&t, NULL);
+    nanosleep(&t, NULL);
     look(l, &w);
     if (ethd_loop_armed(l) && left_to_live(l, &w) <= 0) let_go(l);
   }
@@ -141,7 +139,7 @@ static int create(pthread_t *thread, int policy, int priority, void *(*run)(void
   pthread_attr_setinheritsched(&attr, PTHREAD_EXPLICIT_SCHED);
   pthread_attr_setschedpolicy(&attr, policy);
   pthread_attr_setschedparam(&attr, &param);
-  int failure = __STD(pthread_create)(thread, &attr, run, of);
+  int failure = pthread_create(thread, &attr, run, of);
   pthread_attr_destroy(&attr);
   return failure;
 }
@@ -215,7 +213,8 @@ ethd_status ethd_loop_start(ethd_loop *l, ethd_error *error) {
     return ETHD_OK;
   }
   if (l->has_control || l->units) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "loop", NAN, NAN, NAN);
-  if (ethd__xenomai_begin()) return ethd__loop_refuse(error, ETHD_E_DEVICE, "xenomai", NAN, NAN, NAN);
+  ethd_status status = ethd__xenomai_begin(error);
+  if (status) return status;
   l->stack = make_stack(l->def.stack);
   if (!l->stack) return ethd__loop_refuse(error, ETHD_E_MEMORY, "stack", NAN, NAN, NAN);
   l->shortfalls = ethd__loop_ask_machine(l, &cpu);
@@ -289,9 +288,9 @@ ethd_status ethd_loop_join(ethd_loop *l) {
   }
   if (l->has_control) join_control(l);
   ethd_status left = (ethd_status)atomic_load_explicit(&l->left, memory_order_relaxed);
-  if (l->has_watch) __STD(pthread_join)(l->watch, NULL);
+  if (l->has_watch) pthread_join(l->watch, NULL);
   l->has_watch = 0;
-  for (; l->units; l->units--) __STD(pthread_join)(l->unit[l->units - 1].thread, NULL);
+  for (; l->units; l->units--) pthread_join(l->unit[l->units - 1].thread, NULL);
   if (l->stack && !left) munmap(l->stack, l->def.stack);
   l->stack = NULL;
   ethd__loop_release_machine(l);

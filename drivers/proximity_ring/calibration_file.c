@@ -10,25 +10,25 @@
 #include "text/ini.h"
 #include "text/text.h"
 
-typedef struct reading {
+typedef struct calibration_source {
   const char *name;
   char *message;
   ethd__calibration *out;
   uint32_t listed; /* bits of the sensors that have a section */
-} reading;
+} calibration_source;
 
 /* ---- numbers ---- */
 
-typedef struct row {
+typedef struct sensor_key {
   const char *key;
   double min, max;
   size_t offset;
   ethd__level from, to; /* bits of the levels at which a sensor may have such a key of its own */
-} row;
+} sensor_key;
 
 #define AT(member) offsetof(ethd__sensor, member)
 
-static const row rows[] = {
+static const sensor_key rows[] = {
     {"a", 1e-9, 1e9, AT(a), ETHD__LEVEL_GAIN, ETHD__LEVEL_LAW},
     {"p", 0.5, 8, AT(p), ETHD__LEVEL_LAW, ETHD__LEVEL_LAW},
     {"d0", 0, 0.05, AT(d0), ETHD__LEVEL_GAIN, ETHD__LEVEL_LAW},
@@ -38,18 +38,18 @@ static const row rows[] = {
 
 #define ROWS (sizeof rows / sizeof *rows)
 
-static ethd_status refuse(const reading *r, const ethd_ini_key *k, ethd_status status, const char *allowed) {
+static ethd_status refuse(const calibration_source *r, const ethd_ini_key *k, ethd_status status, const char *allowed) {
   char quote[ETHD_QUOTE_MAX];
   return ethd__say(r->message, status, "%s:%d: %s.%s: found %s, %s is allowed", r->name, k->line, k->section, k->key,
                    ethd__quote(k->value, strlen(k->value), quote), allowed);
 }
 
-static ethd_status unknown(const reading *r, const ethd_ini_key *k, const char *allowed) {
+static ethd_status unknown(const calibration_source *r, const ethd_ini_key *k, const char *allowed) {
   return ethd__say(r->message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: unknown key at level %s; %s are allowed", r->name,
                    k->line, k->section, k->key, ethd__level_names[r->out->level], allowed);
 }
 
-static ethd_status number(const reading *r, const ethd_ini_key *k, double min, double max, double *out) {
+static ethd_status number(const calibration_source *r, const ethd_ini_key *k, double min, double max, double *out) {
   char allowed[64];
   double value;
   snprintf(allowed, sizeof allowed, "%.10g to %.10g", min, max);
@@ -59,23 +59,23 @@ static ethd_status number(const reading *r, const ethd_ini_key *k, double min, d
   return ETHD_OK;
 }
 
-static ethd_status word(const reading *r, const ethd_ini_key *k, char out[ETHD__SERIAL_MAX]) {
+static ethd_status word(const calibration_source *r, const ethd_ini_key *k, char out[ETHD__SERIAL_MAX]) {
   if (strlen(k->value) >= ETHD__SERIAL_MAX) return refuse(r, k, ETHD_E_SYNTAX, "at most 47 characters");
   strcpy(out, k->value);
   return ETHD_OK;
 }
 
-static const row *find(const char *key) {
+static const sensor_key *find(const char *key) {
   for (size_t i = 0; i < ROWS; i++)
     if (!strcmp(rows[i].key, key)) return &rows[i];
   return NULL;
 }
 
-static double *field(ethd__sensor *s, const row *r) { return (double *)((char *)s + r->offset); }
+static double *field(ethd__sensor *s, const sensor_key *r) { return (double *)((char *)s + r->offset); }
 
 /* ---- sections ---- */
 
-static ethd_status read_level(const reading *r, const ethd_ini_key *k) {
+static ethd_status read_level(const calibration_source *r, const ethd_ini_key *k) {
   for (int i = 0; i < ETHD__LEVEL_COUNT; i++)
     if (!strcmp(k->value, ethd__level_names[i])) {
       r->out->level = (ethd__level)i;
@@ -84,7 +84,7 @@ static ethd_status read_level(const reading *r, const ethd_ini_key *k) {
   return refuse(r, k, ETHD_E_UNKNOWN, "none, common, gain, law or table");
 }
 
-static ethd_status read_general(const reading *r, const ethd_ini_key *k) {
+static ethd_status read_general(const calibration_source *r, const ethd_ini_key *k) {
   if (!strcmp(k->key, "level")) return ETHD_OK; /* has been read */
   if (!strcmp(k->key, "date")) return word(r, k, r->out->date);
   if (!strcmp(k->key, "serial")) return word(r, k, r->out->serial);
@@ -92,8 +92,8 @@ static ethd_status read_general(const reading *r, const ethd_ini_key *k) {
   return unknown(r, k, "level, date, serial, residual");
 }
 
-static ethd_status read_law(const reading *r, const ethd_ini_key *k) {
-  const row *which = find(k->key);
+static ethd_status read_law(const calibration_source *r, const ethd_ini_key *k) {
+  const sensor_key *which = find(k->key);
   double value;
   if (!which || which->from == ETHD__LEVEL_NONE) return unknown(r, k, "a, p, d0");
   if (r->out->level == ETHD__LEVEL_NONE || r->out->level == ETHD__LEVEL_TABLE)
@@ -104,7 +104,7 @@ static ethd_status read_law(const reading *r, const ethd_ini_key *k) {
   return status;
 }
 
-static ethd_status read_point(const reading *r, const ethd_ini_key *k, ethd__sensor *s) {
+static ethd_status read_point(const calibration_source *r, const ethd_ini_key *k, ethd__sensor *s) {
   static const char allowed[] = "COUNTS_ABOVE_DARK METRES, counts falling and metres rising from point to point,";
   char expected[16];
   size_t n = strcspn(k->value, " \t"), gap = strspn(k->value + n, " \t");
@@ -123,12 +123,12 @@ static ethd_status read_point(const reading *r, const ethd_ini_key *k, ethd__sen
   return ETHD_OK;
 }
 
-static ethd_status read_sensor(const reading *r, const ethd_ini_key *k, int sensor) {
+static ethd_status read_sensor(const calibration_source *r, const ethd_ini_key *k, int sensor) {
   static const char *const allowed[] = {"dark, residual, serial", "dark, residual, serial",
                                         "dark, residual, serial, a, d0", "dark, residual, serial, a, p, d0",
                                         "dark, residual, serial, point0 to point23"};
   ethd__sensor *s = &r->out->sensors[sensor];
-  const row *which = find(k->key);
+  const sensor_key *which = find(k->key);
   if (!strcmp(k->key, "serial")) return word(r, k, s->serial);
   if (which && which->from <= r->out->level && which->to >= r->out->level)
     return number(r, k, which->min, which->max, field(s, which));
@@ -146,13 +146,13 @@ static int sensor_of(const char *section) {
   return -1;
 }
 
-static ethd_status read_key(const reading *r, const ethd_ini_key *k) {
+static ethd_status read_key(const calibration_source *r, const ethd_ini_key *k) {
   if (!strcmp(k->section, "calibration")) return read_general(r, k);
   if (!strcmp(k->section, "law")) return read_law(r, k);
   return ETHD_OK;
 }
 
-static ethd_status check_sections(reading *r, const ethd_ini *ini) {
+static ethd_status check_sections(calibration_source *r, const ethd_ini *ini) {
   char quote[ETHD_QUOTE_MAX];
   for (uint32_t i = 0; i < ini->section_count; i++) {
     const ethd_ini_section *s = &ini->sections[i];
@@ -167,7 +167,7 @@ static ethd_status check_sections(reading *r, const ethd_ini *ini) {
 }
 
 /* What a level promises must be there. */
-static ethd_status check_whole(const reading *r) {
+static ethd_status check_whole(const calibration_source *r) {
   for (int i = 0; i < ETHD_RAYS && r->out->level >= ETHD__LEVEL_GAIN; i++) {
     if (!(r->listed >> i & 1))
       return ethd__say(r->message, ETHD_E_ARGUMENT, "%s: [sensor %d] is missing; level %s needs all 16", r->name, i,
@@ -179,7 +179,7 @@ static ethd_status check_whole(const reading *r) {
   return ETHD_OK;
 }
 
-static ethd_status read_all(reading *r, const ethd_ini *ini) {
+static ethd_status read_all(calibration_source *r, const ethd_ini *ini) {
   const ethd_ini_key *level = ethd_ini_find(ini, "calibration", "level");
   if (!level) return ethd__say(r->message, ETHD_E_ARGUMENT, "%s: calibration.level is missing", r->name);
   ethd_status status = read_level(r, level);
@@ -195,7 +195,7 @@ static ethd_status read_all(reading *r, const ethd_ini *ini) {
 ethd_status ethd__calibration_parse(const char *text, size_t length, const char *name, ethd__calibration *out,
                                     char message[ETHD_MESSAGE_MAX]) {
   ethd__calibration got = ethd__calibration_default();
-  reading r = {name, message, &got, 0};
+  calibration_source r = {name, message, &got, 0};
   ethd_ini ini = {0};
   ethd_status status = ethd_ini_parse(text, length, name, NULL, &ini, message);
   if (status) return status;

@@ -23,12 +23,12 @@ ethd__place_reading ethd__place_expected(double ring_radius, double rod, ethd_ve
 
 /* ---- one pair of counts above dark and distance ---- */
 
-typedef struct pair {
+typedef struct measured_point {
   double above, distance;
-} pair;
+} measured_point;
 
-static bool usable(const ethd__calibration *c, const ethd__place_reading *place, int k, pair *out) {
-  *out = (pair){place->counts[k] - c->sensors[k].dark, place->distance[k]};
+static bool usable(const ethd__calibration *c, const ethd__place_reading *place, int k, measured_point *out) {
+  *out = (measured_point){place->counts[k] - c->sensors[k].dark, place->distance[k]};
   return place->counts[k] > 0 && place->counts[k] < CEILING && out->above > 1 && isfinite(out->distance);
 }
 
@@ -51,7 +51,7 @@ double ethd__calibration_error(const ethd__calibration *c, ethd__place_readings 
   size_t count = 0;
   for (size_t i = 0; i < readings.count; i++)
     for (int k = 0; k < ETHD_RAYS; k++) {
-      pair one;
+      measured_point one;
       if ((sensor >= 0 && k != sensor) || !usable(c, &readings.at[i], k, &one)) continue;
       double e = any_law(&c->sensors[k], one.above) - one.distance;
       sum += e * e;
@@ -67,7 +67,7 @@ typedef struct normal {
 } normal;
 
 /* d = u - d0 with u = (a / above)^(1/p): dd/d(ln a) = u/p, dd/d(d0) = -1, dd/dp = -u ln(u)/p. */
-static void add(normal *to, const ethd__sensor *s, pair one) {
+static void add(normal *to, const ethd__sensor *s, measured_point one) {
   double u, e = law(s, one.above, &u) - one.distance;
   const double row[UNKNOWNS] = {u / s->p, -1, -u * ethd_log(u) / s->p};
   for (int i = 0; i < UNKNOWNS; i++) {
@@ -84,7 +84,7 @@ static size_t collect(const ethd__calibration *c, ethd__place_readings readings,
   memset(out, 0, sizeof *out);
   for (size_t i = 0; i < readings.count; i++)
     for (int k = 0; k < ETHD_RAYS; k++) {
-      pair one;
+      measured_point one;
       if ((sensor >= 0 && k != sensor) || !usable(c, &readings.at[i], k, &one)) continue;
       add(out, s, one);
       count++;
@@ -144,7 +144,7 @@ typedef struct bin {
   double above, at, weight;
 } bin;
 
-static size_t insert(bin *bins, size_t n, pair one) {
+static size_t insert(bin *bins, size_t n, measured_point one) {
   size_t i = n;
   for (; i > 0 && bins[i - 1].at > one.distance; i--) bins[i] = bins[i - 1];
   bins[i] = (bin){one.above, one.distance, 1};
@@ -174,7 +174,7 @@ enum { PAIRS_MAX = 256 };
 static size_t tabulate(const ethd__calibration *c, ethd__place_readings readings, int k, ethd__sensor *s) {
   bin bins[PAIRS_MAX];
   size_t n = 0, count;
-  pair one;
+  measured_point one;
   for (size_t i = 0; i < readings.count && n < PAIRS_MAX; i++)
     if (usable(c, &readings.at[i], k, &one)) n = insert(bins, n, one);
   count = n;

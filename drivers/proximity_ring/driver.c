@@ -196,7 +196,7 @@ static ethd_status listen_to(ring *r, double ring_radius, char *message) {
   return status ? ethd__say(message, status, "%s: %.*s", r->port.path, ETHD_MESSAGE_MAX / 2, what) : ETHD_OK;
 }
 
-static ethd_status ring_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
+static ethd_status ring_prepare(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
   ethd__ring_settings settings;
   *out = NULL;
   ethd_status status = ethd__ring_settings_read(def, &settings, message);
@@ -207,8 +207,12 @@ static ethd_status ring_open(const ethd_device_def *def, void **out, char messag
   r->is_virtual = def->is_virtual;
   r->port.fd = -1;
   pthread_mutex_init(&r->lock, NULL);
-  status = prepare(def, r, message);
-  return status ? status : listen_to(r, def->setup->ring_radius, message);
+  return prepare(def, r, message);
+}
+
+static ethd_status ring_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = ring_prepare(def, out, message);
+  return status ? status : listen_to(*out, def->setup->ring_radius, message);
 }
 
 static uint32_t units(const void *device) {
@@ -236,6 +240,7 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
       {"ring clock jumps", "1", (double)in->clock.jumps},
       {"ring clock drift", "1", in->clock.drift},
       {"ring port opened", "1", (double)r->port.opened},
+      {"ring reading age", "s", r->settings.p[ETHD__RING_DELAY]},
   };
   pthread_mutex_unlock(&r->lock);
   uint32_t n = sizeof all / sizeof *all;
@@ -247,10 +252,14 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
 static const char *remark(const void *device, uint32_t i) {
   ring *r = (ring *)device;
   pthread_mutex_lock(&r->lock);
-  bool at_once = r->port.low_latency;
+  bool at_once = r->port.low_latency || r->port.fd < 0;
   pthread_mutex_unlock(&r->lock);
-  if (i > 0 || at_once) return NULL;
-  return "the ring's port doesn't know low latency: its bytes may come up to 16 ms late";
+  const char *said[3] = {NULL};
+  uint32_t n = 0;
+  if (!at_once) said[n++] = "the ring's port doesn't know low latency: its bytes may come up to 16 ms late (step 1)";
+  if (r->receiver.calibration.level == ETHD__LEVEL_NONE)
+    said[n++] = "the ring isn't calibrated: distances are a typical sensor's, half a millimetre off (step 6)";
+  return i < n ? said[i] : NULL;
 }
 
 const ethd_driver ethd_driver_ring = {
@@ -269,4 +278,5 @@ const ethd_driver ethd_driver_ring = {
     .limits = limits,
     .figures = figures,
     .remark = remark,
+    .prepare = ring_prepare,
 };

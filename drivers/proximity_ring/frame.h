@@ -12,8 +12,9 @@
    comes first, so that half a frame from before doesn't cost the first one.
 
    Board b has the sensors 4 b .. 4 b + 3. They measure one after another, so that only four of the 16 shine at
-   a time, a quarter turn apart: sensor k begins ETHD__FRAME_START_US + (k % 4) * ETHD__FRAME_SLOT_US after t_us
-   and takes some 170 us.
+   a time: sensor k begins ETHD__FRAME_START_US + ETHD__FRAME_SLOT(k) * ETHD__FRAME_SLOT_US after t_us and takes some
+   170 us. Boards 2 and 3 begin in the middle of their four, so that no sensor shines while the one that faces it
+   measures: across an empty ring that light would be part of the dark, and a finger between them would take it away.
 
    The firmware and the host both include this file: plain C, stdint alone. */
 #ifndef ETHD_PROXIMITY_RING_FRAME_H
@@ -60,5 +61,6 @@
 /* When sensor k measures: see above. */
 #define ETHD__FRAME_START_US 80u
 #define ETHD__FRAME_SLOT_US 430u
+#define ETHD__FRAME_SLOT(k) (((k) + (k) / 8 * 2) % ETHD__FRAME_LANES)
 
 #endif

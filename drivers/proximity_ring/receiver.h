@@ -13,7 +13,7 @@
 /* sample_ns is the middle of a frame's measurements, so long after its t_us; rays lag by this, in s
    ([finger_fit] lag). */
 #define ETHD__MIDDLE_US (ETHD__FRAME_START_US + ETHD__FRAME_SLOT_US * (ETHD__FRAME_LANES - 1) / 2 + 85)
-#define ETHD__RAY_LAG(k) (1e-6 * ETHD__FRAME_SLOT_US * ((ETHD__FRAME_LANES - 1) / 2.0 - (k) % ETHD__FRAME_LANES))
+#define ETHD__RAY_LAG(k) (1e-6 * ETHD__FRAME_SLOT_US * ((ETHD__FRAME_LANES - 1) / 2.0 - ETHD__FRAME_SLOT(k)))
 
 typedef struct ethd__ring_reading {
   int64_t sample_ns; /* CLOCK_MONOTONIC */

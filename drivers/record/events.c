@@ -19,7 +19,7 @@ static char *cut_line(char **rest) {
   return line;
 }
 
-/* Takes a word's quotes away, in place. */
+/* Removes a word's quotes, in place. */
 static void unquote(char *word) {
   if (*word != '"') return;
   char *to = word;
@@ -73,7 +73,7 @@ ethd_status ethd__record_events_read(const char *path, ethd__record_events *out,
   ethd_status status = ethd_text_read(path, BYTES_MAX, &out->text, &length, message);
   if (status) return status;
   if (strlen(out->text) != length)
-    status = ethd__say(message, ETHD_E_SYNTAX, "%s: a byte 0: this is no text", path);
+    status = ethd__say(message, ETHD_E_SYNTAX, "%s: a byte 0: this isn't text", path);
   else if (!(out->events = calloc(count_lines(out->text), sizeof *out->events)))
     status = ethd__no_memory(message, path);
   else

@@ -13,8 +13,8 @@ static ethd_status tell(ethd_recording *recording, const ethd_limit *row, const 
   return ethd_recording_event(recording, "set", text);
 }
 
-static ethd_status limits(ethd_recording *recording, const ethd_limits *was, const ethd_limits *is) {
-  ethd_limits before = *was, now = *is;
+ethd_status ethd__limits_event(ethd_recording *recording, const ethd_setup *was, const ethd_setup *is) {
+  ethd_limits before = was->limits, now = is->limits;
   ethd_status status = ETHD_OK;
   for (const ethd_limit *row = ethd_limit_rows; !status && row < ethd_limit_rows + ETHD_LIMITS; row++) {
     const double *values = ethd_limit_of(&now, row);
@@ -24,7 +24,7 @@ static ethd_status limits(ethd_recording *recording, const ethd_limits *was, con
   return status;
 }
 
-static ethd_status dynamics(ethd_recording *recording, const ethd_setup *was, const ethd_setup *is) {
+ethd_status ethd__dynamics_event(ethd_recording *recording, const ethd_setup *was, const ethd_setup *is) {
   static const char *const names[] = {"arm.mass_x", "arm.mass_y", "arm.friction", "arm.viscous", "arm.delay"};
   char text[TEXT_MAX];
   ethd_status status = ETHD_OK;
@@ -35,10 +35,4 @@ static ethd_status dynamics(ethd_recording *recording, const ethd_setup *was, co
     status = ethd_recording_event(recording, "set", text);
   }
   return status;
-}
-
-ethd_status ethd__device_event(ethd_recording *recording, const ethd_setup *was, const ethd_setup *is) {
-  ethd_status status = limits(recording, &was->limits, &is->limits);
-  int told = ETHD_LAW_HAS(is->transition, range); /* to no other law */
-  return status || !told ? status : dynamics(recording, was, is);
 }

@@ -1,11 +1,15 @@
 /* What a recording's configuration doesn't know: the device's limits and dynamics. [main] */
-#ifndef ETHD_COMMON_LIMITS_EVENT_H
-#define ETHD_COMMON_LIMITS_EVENT_H
+#ifndef ETHD__RECORD_LIMITS_EVENT_H
+#define ETHD__RECORD_LIMITS_EVENT_H
 
 #include "ethd/record.h"
 
-/* An event "set limits.X ..." or "set arm.X ..." for every limit and, where the law looks ahead, for what moves the
-   ring, in which `is` differs from `was`: a replay has no device. */
-ETHD_MUST_CHECK ethd_status ethd__device_event(ethd_recording *recording, const ethd_setup *was, const ethd_setup *is);
+/* Writes an event "set limits.X ..." for every limit in which `is` differs from `was`, because a replay has no device to
+   ask. */
+ETHD_MUST_CHECK ethd_status ethd__limits_event(ethd_recording *recording, const ethd_setup *was, const ethd_setup *is);
+
+/* The same, "set arm.X ...", for what moves the ring: where a law that looks ahead rules, or may be swapped in. */
+ETHD_MUST_CHECK ethd_status ethd__dynamics_event(ethd_recording *recording, const ethd_setup *was,
+                                                 const ethd_setup *is);
 
 #endif

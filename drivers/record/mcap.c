@@ -6,7 +6,7 @@
 #include "record/mcap_parts.h"
 #include "text/error_text.h"
 
-#define CHUNK_BYTES (1u << 20) /* a chunk is closed once it has as many */
+#define CHUNK_BYTES (1u << 20) /* a chunk is closed once it has this many */
 #define MAGIC "\x89MCAP0\r\n"
 
 /* ---- beginning ---- */
@@ -102,7 +102,7 @@ static void end_chunk(ethd_mcap *m) {
   free(b.at);
 }
 
-/* The first chunk brings the topics along, so that a file whose end is lost still reads. */
+/* Begins a chunk. The first one holds the topics too, so that a file whose end is lost can still be read. */
 static void begin_chunk(ethd_mcap *m, uint64_t now) {
   m->open.first = now;
   if (m->chunk_count) return;

@@ -1,6 +1,6 @@
 /* An MCAP file that is being written. */
-#ifndef ETHD_FILE_MCAP_PARTS_H
-#define ETHD_FILE_MCAP_PARTS_H
+#ifndef ETHD__RECORD_MCAP_PARTS_H
+#define ETHD__RECORD_MCAP_PARTS_H
 
 #include "record/mcap.h"
 #include "text/text.h"
@@ -28,14 +28,14 @@ typedef struct ethd__bytes {
 
 typedef struct ethd__chunk {
   uint64_t first, last, start, length, indexes, bytes; /* instants, place and size in the file */
-  uint64_t index[ETHD__MCAP_TOPICS];                   /* where each topic's index stands, 0: none */
+  uint64_t index[ETHD__MCAP_TOPICS];                   /* where each topic's index is, 0: none */
 } ethd__chunk;
 
 struct ethd_mcap {
   ethd_replace replace;
   ethd__bytes records;                  /* of the chunk that is being filled */
   ethd__bytes index[ETHD__MCAP_TOPICS]; /* its messages: instant and offset */
-  ethd__bytes topics;                   /* schemas and channels, for the summary once more */
+  ethd__bytes topics;                   /* schemas and channels, which the summary repeats */
   ethd__bytes schemas;
   ethd__chunk *chunks;
   size_t chunk_count, chunk_room;
@@ -46,19 +46,19 @@ struct ethd_mcap {
   int failed;  /* no memory, or a write */
 };
 
-/* Little endian; a failure is kept in the file's. [main] */
+/* Appends data, little endian; a failure is kept in mcap->failed. [main] */
 void ethd__mcap_put(ethd_mcap *mcap, ethd__bytes *to, const void *data, size_t length);
 void ethd__mcap_number(ethd_mcap *mcap, ethd__bytes *to, uint64_t value, size_t width);
 void ethd__mcap_string(ethd_mcap *mcap, ethd__bytes *to, const char *text);
 
-/* opcode, length, content. [main] */
+/* Appends opcode, length and content. [main] */
 void ethd__mcap_record(ethd_mcap *mcap, ethd__bytes *to, uint8_t opcode, const ethd__bytes *content);
 
-/* Into the file; a record's content is empty afterwards. [main] */
+/* Writes data to the file. [main] */
 void ethd__mcap_write_out(ethd_mcap *mcap, const void *data, size_t length);
 void ethd__mcap_write_record(ethd_mcap *mcap, uint8_t opcode, ethd__bytes *content);
 
-/* Topics, statistics, the chunks' index, and the footer. [main] */
+/* Writes topics, statistics, the chunks' index, and the footer. [main] */
 void ethd__mcap_summary(ethd_mcap *mcap);
 
 #endif

@@ -56,7 +56,7 @@ static void put_group(ethd_mcap *m, ethd__bytes *offsets, uint8_t opcode, uint64
   free(b.at);
 }
 
-/* Groups of records and where they stand, then the footer, whose checksum covers all but itself. */
+/* Writes groups of records and where they are, then the footer, whose checksum covers all but itself. */
 void ethd__mcap_summary(ethd_mcap *m) {
   ethd__bytes s = {0}, offsets = {0};
   uint64_t start = m->at, ends[4];

@@ -23,7 +23,7 @@
 struct ethd_npy {
   int fd;
   size_t row_bytes, header_bytes;
-  size_t shape;   /* where the count stands in the header */
+  size_t shape;   /* where the count is in the header */
   uint64_t count; /* rows in the file */
   size_t waiting; /* rows in the buffer */
   int reason;     /* errno of the write that failed; 0 when none did */
@@ -133,7 +133,7 @@ int ethd__npy_reason(const ethd_npy *npy) { return npy->reason; }
 
 uint64_t ethd__npy_rows(const ethd_npy *npy) { return npy->count; }
 
-/* Rows first, then the count that covers them: a reader never counts a row that isn't there. */
+/* Writes rows first, then the count that covers them, so that a reader never counts a row that isn't there. */
 ethd_status ethd_npy_flush(ethd_npy *npy) {
   if (npy->reason) return ETHD_E_FILE;
   if (!npy->waiting) return ETHD_OK;
@@ -168,7 +168,7 @@ ethd_status ethd_npy_close(ethd_npy *npy) {
 
 /* ---- reading ---- */
 
-/* "12,), }" spaces newline; false unless it is just that. */
+/* Reads "12,), }", spaces and a newline; returns false if there is anything else. */
 static bool read_count(const char *p, const char *end, size_t *count) {
   size_t value = 0, digits = 0;
   for (; p < end && *p >= '0' && *p <= '9' && digits < 18; p++, digits++) value = value * 10 + (size_t)(*p - '0');
@@ -197,7 +197,7 @@ static ethd_status read_header(const char *text, size_t length, const char *path
   return ETHD_OK;
 }
 
-/* Rows behind the header's count were being written when the writer ended: they don't count. */
+/* Rows after the header's count were being written when the writer ended, so they don't count. */
 ethd_status ethd__npy_parse(const char *text, size_t length, const char *path, const ethd_column *columns,
                             size_t row_bytes, size_t *data, size_t *count, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = read_header(text, length, path, columns, data, count, message);

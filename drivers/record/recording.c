@@ -13,7 +13,7 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-#define ROOM 256 /* bytes of events.csv: a row about what can't be written */
+#define ROOM 256 /* bytes kept in events.csv for a row about what can't be written */
 #define LETTER_double 'f'
 #define LETTER_int64_t 'i'
 #define SENSE_COLUMN(type, name, count, unit, brief) \
@@ -33,7 +33,7 @@ struct ethd_recording {
 
 /* ---- config.ini ---- */
 
-/* What the recording's configuration says on a line of the original, NULL: the same. */
+/* What the recording's configuration says for `file` on a line of the original, NULL: the same. */
 static const char *own_value(const ethd_config *config, int line) {
   const ethd_ini *ini = &ethd__config_whole(config)->ini;
   uint32_t plugin = 0;
@@ -47,17 +47,25 @@ static const char *own_value(const ethd_config *config, int line) {
   return NULL;
 }
 
+/* The line that names drivers, where some are files; 0: none. */
+static int driver_files_line(const ethd_config *config) {
+  const ethd_ini_key *key = ethd_ini_find(&ethd__config_whole(config)->ini, "device", "driver");
+  return key && strstr(config->device, ETHD_DRIVER_FILE) ? key->line : 0;
+}
+
 char *ethd__record_config_text(const ethd_config *config) {
   char *text = NULL;
   size_t length;
   FILE *out = open_memstream(&text, &length);
   if (!out) return NULL;
-  int line = 1;
+  int line = 1, drivers = driver_files_line(config);
   for (const char *p = config->text; *p; line++) {
     size_t n = strcspn(p, "\n");
     const char *own = own_value(config, line);
     if (own)
       fprintf(out, "file = %s", own);
+    else if (line == drivers)
+      fprintf(out, "driver = %s", config->device);
     else
       fwrite(p, 1, n, out);
     putc('\n', out);
@@ -86,7 +94,7 @@ static ethd_status write_config(const char *folder, const ethd_config *config, c
   return status;
 }
 
-/* The next row of events.csv finds its place on a disk that is full by then, where the file system can. */
+/* Reserves room for the next row of events.csv, in case the disk is full by then, if the file system can do so. */
 static void keep_room(FILE *events) {
   off_t end = ftello(events);
   (void)!fallocate(fileno(events), FALLOC_FL_KEEP_SIZE, end, ROOM);
@@ -161,7 +169,7 @@ static ethd_status ticks_failed(ethd_recording *recording) {
   return ethd__recording_fail(recording, ETHD_RECORDING_TICK, ethd__npy_reason(recording->ticks));
 }
 
-/* Events are few and tell how to read the ticks behind them: both reach the file together. */
+/* Writes the ticks out before an event. Events are few, and the ticks after one can't be understood without it. */
 ethd_status ethd_recording_event(ethd_recording *recording, const char *kind, const char *detail) {
   ethd_status status = ethd_npy_flush(recording->ticks) ? ticks_failed(recording) : ETHD_OK;
   errno = 0;
@@ -174,7 +182,7 @@ ethd_status ethd_recording_tick(ethd_recording *recording, const ethd_trace *tra
   return ethd_npy_append(recording->ticks, trace, 1) ? ticks_failed(recording) : ETHD_OK;
 }
 
-/* The last event stands behind ticks that are all there. */
+/* Writes the last event after ticks that are all in the file. */
 static ethd_status finish(ethd_recording *recording) {
   if (recording->failure[0]) return ETHD_E_FILE;
   return ethd_recording_event(recording, "end", "closed");

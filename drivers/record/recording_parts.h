@@ -1,6 +1,6 @@
 /* What recording and replaying share. */
-#ifndef ETHD_FILE_RECORDING_PARTS_H
-#define ETHD_FILE_RECORDING_PARTS_H
+#ifndef ETHD__RECORD_RECORDING_PARTS_H
+#define ETHD__RECORD_RECORDING_PARTS_H
 
 #include "ethd/record.h"
 #include "text/claim.h"
@@ -23,24 +23,23 @@ typedef struct ethd__record_events {
   size_t count;
 } ethd__record_events;
 
-/* Tells once that the file `name` of the recording can't be written, as a failure of its own files is told; ETHD_E_FILE.
-   [main] */
+/* Reports, the first time, that the file `name` of the recording can't be written; returns ETHD_E_FILE. [main] */
 ethd_status ethd__recording_fail(ethd_recording *recording, const char *name, int reason);
 
-/* The folder of a new recording, locked and without an earlier one; see ethd_recording_create. [main] */
+/* Makes the folder of a new recording, locks it and removes an earlier one; see ethd_recording_create. [main] */
 ETHD_MUST_CHECK ethd_status ethd__recording_claim(const char *folder, const ethd_config *config, bool replace,
                                                   ethd__claim *out, char message[ETHD_MESSAGE_MAX]);
 
-/* Whether `path` is the folder or one of the files that a recording in it is made of. [main] */
+/* Returns true if `path` is the folder or one of a recording's files in it. [main] */
 bool ethd__recording_holds(const char *folder, const char *path);
 
-/* events.csv, rows rising. [main] */
+/* Reads events.csv, whose rows rise. [main] */
 ETHD_MUST_CHECK ethd_status ethd__record_events_read(const char *path, ethd__record_events *out,
                                                      char message[ETHD_MESSAGE_MAX]);
 void ethd__record_events_free(ethd__record_events *events);
 
-/* The configuration's text with the scene's file called scene.scene and plugins by absolute paths; freed
-   by the caller. NULL: no memory. [main] */
+/* Returns the configuration's text with the scene's file called scene.scene and absolute paths of plugins; the caller
+   frees it. NULL: no memory. [main] */
 char *ethd__record_config_text(const ethd_config *config);
 
 #endif

@@ -6,10 +6,11 @@
 #include "denormals.h"
 #include "ethd/record.h"
 #include "record/recording_parts.h"
+#include "settings/config_parts.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
-typedef struct replay {
+typedef struct verification {
   const char *folder;
   bool plugins;
   char *events_path;
@@ -21,12 +22,13 @@ typedef struct replay {
   double heat[2];              /* of the motors, by the last event of that kind */
   double learned[ETHD_MEMORY]; /* by the law, likewise */
   ethd_control *control;
+  const ethd__record_event *missing; /* says that ticks aren't there; NULL: all are */
   char *message;
-} replay;
+} verification;
 
 /* ---- opening ---- */
 
-static ethd_status open_config(replay *r) {
+static ethd_status open_config(verification *r) {
   char *path = ethd__path_join(r->folder, ETHD_RECORDING_CONFIG);
   if (!path) return ethd__no_memory(r->message, NULL);
   ethd_status status = (r->plugins ? ethd_config_load : ethd_config_load_received)(path, &r->config, r->message);
@@ -35,7 +37,7 @@ static ethd_status open_config(replay *r) {
   return status;
 }
 
-static ethd_status open_rows(replay *r) {
+static ethd_status open_rows(verification *r) {
   void *rows = NULL;
   char *path = ethd__path_join(r->folder, ETHD_RECORDING_TICK);
   if (!path) return ethd__no_memory(r->message, NULL);
@@ -45,7 +47,7 @@ static ethd_status open_rows(replay *r) {
   return status;
 }
 
-static ethd_status open_events(replay *r) {
+static ethd_status open_events(verification *r) {
   r->events_path = ethd__path_join(r->folder, ETHD_RECORDING_EVENTS);
   if (!r->events_path) return ethd__no_memory(r->message, NULL);
   return ethd__record_events_read(r->events_path, &r->events, r->message);
@@ -57,7 +59,7 @@ static ethd_status open_events(replay *r) {
 
 enum { CHANGED = 1, FRESH = 2, CLEAR = 4, WARM = 8, HOT = 16, TAUGHT = 32 };
 
-static ethd_status take_heat(replay *r, const char *detail, char *what) {
+static ethd_status take_heat(verification *r, const char *detail, char *what) {
   const char *space = strchr(detail, ' ');
   bool numbers = space && ethd__number(detail, (size_t)(space - detail), &r->heat[0]) &&
                  ethd__number(space + 1, strlen(space + 1), &r->heat[1]);
@@ -65,7 +67,7 @@ static ethd_status take_heat(replay *r, const char *detail, char *what) {
   return ethd__say(what, ETHD_E_SYNTAX, "two numbers from 0 to 1e9 are allowed");
 }
 
-static ethd_status take_learned(replay *r, const char *detail, char *what) {
+static ethd_status take_learned(verification *r, const char *detail, char *what) {
   const char *p = detail;
   for (size_t i = 0; i < ETHD_MEMORY; i++) {
     size_t n = strcspn(p, " ");
@@ -76,7 +78,7 @@ static ethd_status take_learned(replay *r, const char *detail, char *what) {
   return ETHD_OK;
 }
 
-static ethd_status set(replay *r, const char *detail, char *what) {
+static ethd_status set(verification *r, const char *detail, char *what) {
   char key[128];
   const char *space = strchr(detail, ' ');
   if (!space || (size_t)(space - detail) >= sizeof key)
@@ -86,7 +88,7 @@ static ethd_status set(replay *r, const char *detail, char *what) {
   return ethd_config_set(r->config, key, space + 1, &r->setup, what);
 }
 
-static ethd_status apply(replay *r, const ethd__record_event *e, int *done) {
+static ethd_status apply(verification *r, const ethd__record_event *e, int *done) {
   char what[ETHD_MESSAGE_MAX];
   ethd_status status = ETHD_OK;
   if (strcmp(e->kind, "setup") == 0) {
@@ -109,16 +111,18 @@ static ethd_status apply(replay *r, const ethd__record_event *e, int *done) {
   } else if (strcmp(e->kind, "learned") == 0) {
     status = take_learned(r, e->detail, what);
     *done |= TAUGHT;
+  } else if (strcmp(e->kind, "thinned") == 0 || strcmp(e->kind, "lost") == 0) {
+    r->missing = e;
   } else if (strcmp(e->kind, "fault") != 0 && strcmp(e->kind, "end") != 0) {
     status = ethd__say(what, ETHD_E_UNKNOWN,
-                       "an unknown kind of event; setup, start, transition, set, clear, "
+                       "an unknown kind of event; setup, start, transition, set, clear, thinned, lost, "
                        "heat, learned, fault, end are allowed");
   }
   if (!status) return ETHD_OK;
   return ethd__say(r->message, status, "%s:%zu: %s: %s", r->events_path, e->line, e->kind, what);
 }
 
-static ethd_status renew(replay *r, int done) {
+static ethd_status renew(verification *r, int done) {
   ethd_error error = {0};
   ethd_status status = ETHD_OK;
   if ((done & ~(HOT | TAUGHT)) == WARM && r->control) {
@@ -136,7 +140,7 @@ static ethd_status renew(replay *r, int done) {
   return status;
 }
 
-static ethd_status before_row(replay *r, size_t row) {
+static ethd_status before_row(verification *r, size_t row) {
   int done = row == 0 ? FRESH : 0;
   while (r->next < r->events.count && r->events.events[r->next].row <= row) {
     ethd_status status = apply(r, &r->events.events[r->next++], &done);
@@ -145,7 +149,7 @@ static ethd_status before_row(replay *r, size_t row) {
   return renew(r, done);
 }
 
-/* The event ring stays empty: a setup is taken only while it has room. */
+/* Keeps the event ring empty, because a setup is taken only while it has room. */
 static void drain(ethd_control *control) {
   ethd_event event;
   while (ethd_control_poll(control, &event) == ETHD_OK) continue;
@@ -173,7 +177,7 @@ static void say_number(char type, const unsigned char *at, char out[32]) {
     snprintf(out, 32, "%" PRId64, integer);
 }
 
-static ethd_status compare(const replay *r, size_t row, const ethd_trace *replayed) {
+static ethd_status compare(const verification *r, size_t row, const ethd_trace *replayed) {
   const unsigned char *a = (const unsigned char *)&r->rows[row], *b = (const unsigned char *)replayed;
   char was[32], is[32], index[16] = "";
   for (const ethd_column *c = ethd_trace_columns; c->name; c++)
@@ -189,8 +193,8 @@ static ethd_status compare(const replay *r, size_t row, const ethd_trace *replay
   return ETHD_OK;
 }
 
-/* A program that was killed, or whose disk was full, left no end. */
-static ethd_status judge_end(const replay *r) {
+/* Judges by the event `end`, which a program that was killed, or whose disk was full, didn't write. */
+static ethd_status judge_end(const verification *r) {
   const ethd__record_event *last = r->events.count ? &r->events.events[r->events.count - 1] : NULL;
   if (!last || strcmp(last->kind, "end") != 0)
     return ethd__say(r->message, ETHD_E_UNFINISHED,
@@ -202,23 +206,32 @@ static ethd_status judge_end(const replay *r) {
   return ethd__say(r->message, ETHD_OK, "%s: %zu ticks, equal to the bit", r->folder, r->count);
 }
 
-static ethd_status run(replay *r) {
+/* In front of this tick others are missing, with what the controller learned in them. */
+static ethd_status unreplayable(const verification *r, size_t row) {
+  return ethd__say(r->message, ETHD_E_UNFINISHED,
+                   "%s: %zu of %zu ticks are equal to the bit, the rest can't be replayed: %s (%s:%zu)", r->folder, row,
+                   r->count, r->missing->detail, ETHD_RECORDING_EVENTS, r->missing->line);
+}
+
+static ethd_status run(verification *r) {
   for (size_t row = 0; row < r->count; row++) {
     ethd_trace trace;
     ethd_command command;
     ethd_status status = before_row(r, row);
     if (status) return status;
     memset(&trace, 0, sizeof trace);
+    ethd__config_foreign(r->config, "a plugin's law");
     (void)ethd_control_step(r->control, &r->rows[row].sense, &command, &trace);
+    ethd__config_foreign(r->config, NULL);
     drain(r->control);
     status = compare(r, row, &trace);
-    if (status) return status;
+    if (status) return r->missing ? unreplayable(r, row) : status;
   }
   return judge_end(r);
 }
 
 ethd_status ethd_recording_verify(const char *folder, bool plugins, char message[ETHD_MESSAGE_MAX]) {
-  replay r = {.folder = folder, .plugins = plugins, .message = message};
+  verification r = {.folder = folder, .plugins = plugins, .message = message};
   uint64_t before = ethd__denormals_flush();
   ethd_status status = open_config(&r);
   if (!status) status = open_rows(&r);

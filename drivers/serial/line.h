@@ -1,6 +1,6 @@
-/* A serial line: raw, at any baud, ours alone. A pty will do as well. */
-#ifndef ETHD_COMMON_LINE_H
-#define ETHD_COMMON_LINE_H
+/* A serial line: raw, at any baud rate, for this program alone. A pty works too. */
+#ifndef ETHD__SERIAL_LINE_H
+#define ETHD__SERIAL_LINE_H
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -15,11 +15,11 @@ typedef enum ethd__line_format { ETHD__LINE_8N1 = 0, ETHD__LINE_8E1, ETHD__LINE_
 ETHD_MUST_CHECK ethd_status ethd__line_open(const char *path, ethd__line_format format, uint32_t baud, int *fd,
                                             char message[ETHD_MESSAGE_MAX]);
 
-/* Lets the kernel's driver switch an RS-485 transceiver's direction by RTS: high while it sends, or low. false: it
-   can't, errno says why; most adapters do it by themselves. */
+/* Lets the kernel's driver switch an RS-485 transceiver's direction by RTS, which is high, or else low, while it sends.
+   Returns false if it can't, and errno says why; most adapters switch by themselves. */
 bool ethd__line_rs485(int fd, bool high);
 
-/* Asks the kernel's driver to hand bytes over at once; false: it doesn't know how. */
+/* Asks the kernel's driver to hand bytes over at once; returns false if it can't do so. */
 bool ethd__line_low_latency(int fd);
 
 #endif

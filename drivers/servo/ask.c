@@ -61,6 +61,7 @@ int ethd__servo_ask(const ethd__servo_bus *bus, const ethd__servo_frame *f, uint
   if (!failure && bus->map->local_echo) failure = hear_itself(bus, f, until);
   while (!failure && !(whole && got == whole)) {
     failure = receive(bus->fd, answer, &got, whole ? whole : got + 1, until);
+    if (!failure && !ethd__servo_frame_begins(bus->map, f, answer, got)) failure = EMBBADDATA;
     if (!failure && !whole) whole = ethd__servo_frame_whole(bus->map, f, answer, got);
   }
   return failure ? failure : ethd__servo_frame_take(bus->map, f, answer, got, words);

@@ -24,7 +24,9 @@ typedef struct ethd__servo_command {
 typedef struct ethd__servo_device {
   /* made once */
   ethd__servo_map map;
-  char unconfirmed[96]; /* the remark about registers that nobody confirms; empty: there are none */
+  char map_name[96];     /* as the settings have it */
+  char wire[300];        /* the remark about what an exchange takes */
+  char unconfirmed[128]; /* the remark about registers that nobody confirms; empty: there are none */
   int64_t period_ns, exchange_ns;
   double speed;               /* m/s of the ring, at most */
   bool is_virtual;            /* the clock */
@@ -75,6 +77,7 @@ extern const ethd_param ethd__servo_params[ETHD__SERVO_PARAMS];
 extern const char *const ethd__servo_keys[];
 
 /* The driver's functions. */
+ethd_status ethd__servo_prepare(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]);
 ethd_status ethd__servo_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]);
 ethd_status ethd__servo_start(void *device);
 ethd_status ethd__servo_stop(void *device);

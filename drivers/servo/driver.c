@@ -29,6 +29,17 @@ static ethd_limits limits(const void *device) {
 
 static double at(const ethd_histogram *h, double share) { return 1e-9 * (double)ethd_histogram_at(h, share); }
 
+/* The largest of its joints' angles that one count is; NAN: positions aren't in counts. */
+static double count_of(const ethd__servo_map *map) {
+  double most = (double)NAN;
+  for (int i = 0; i < 2; i++) {
+    int32_t r = map->roles[ETHD__SERVO_POSITION1 + i];
+    if (r < 0 || !(map->registers[r].counts > 0)) continue;
+    most = fmax(most, fabs(ethd__servo_joint(&map->registers[r], 1) - ethd__servo_joint(&map->registers[r], 0)));
+  }
+  return most;
+}
+
 static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
   const ethd__servo_device *d = device;
   const ethd__servo_counts *c = &d->link.counts;
@@ -45,6 +56,8 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
       {"servo answers damaged or refused", "1", (double)(c->garbled + c->busy + c->refused + c->failed)},
       {"servo links lost", "1", (double)c->lost},
       {"servo links made", "1", (double)c->connects},
+      {"joint angle a count", "rad", count_of(&d->map)},
+      {"delay from measurement to torque", "s", 1e-9 * (double)d->exchange_ns},
       {"guardian acted", "1", d->guardian.page ? (double)atomic_load(&d->guardian.page->acts) : 0},
   };
   uint32_t n = sizeof all / sizeof *all;
@@ -53,16 +66,19 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
   return n;
 }
 
-/* The registers that nobody confirms, the line's own delay, then what the map leaves open. */
+/* What an exchange takes, until the drive itself shows it; the registers that nobody confirms, the line's own delay, then what the map leaves open. */
 static const char *remark(const void *device, uint32_t i) {
   const ethd__servo_device *d = device;
-  const char *own[3];
+  const char *own[5];
   uint32_t n = 0;
+  if (!d->link.counts.connects) own[n++] = d->wire;
   if (d->unconfirmed[0]) own[n++] = d->unconfirmed;
   if (d->guarded[0]) own[n++] = d->guarded;
-  if (!d->link.bus.at_once)
+  if (d->link.bus.fd >= 0 && !d->link.bus.at_once)
     own[n++] = "the serial line's driver doesn't hand bytes over at once: answers may come late (FTDI: 1 into "
-               "/sys/bus/usb-serial/devices/ttyUSB0/latency_timer)";
+               "/sys/bus/usb-serial/devices/ttyUSB0/latency_timer; step 1)";
+  if (d->map.transport == ETHD__SERVO_RTU && !(d->map.turnaround > 0))
+    own[n++] = "bus.turnaround is 0: ethd-servo-probe measures how long the drive takes to answer (step 3)";
   return i < n ? own[i] : ethd__servo_risk(&d->map, i - n);
 }
 
@@ -89,4 +105,5 @@ const ethd_driver ethd_driver_servo = {
     .clear = ethd__servo_clear,
     .home = ethd__servo_home,
     .why = ethd__servo_why,
+    .prepare = ethd__servo_prepare,
 };

@@ -89,6 +89,13 @@ void ethd__servo_frame_both(const ethd__servo_map *map, ethd__servo_span to, con
 
 /* ---- answers ---- */
 
+bool ethd__servo_frame_begins(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
+                              int length) {
+  int at = head(map);
+  if (length > at && answer[at] != question->bytes[at]) return false;
+  return length <= at + 1 || (answer[at + 1] & ~REFUSED) == question->bytes[at + 1];
+}
+
 int ethd__servo_frame_whole(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
                             int length) {
   int at = head(map) + 1;

@@ -29,6 +29,11 @@ typedef struct ethd__servo_span {
 void ethd__servo_frame_both(const ethd__servo_map *map, ethd__servo_span to, const uint16_t *words,
                             ethd__servo_span from, ethd__servo_frame *out);
 
+/* Whether what has come so far can be the begin of an answer: of the station and function that were asked. False: garbage,
+   or somebody else's answer; nothing more is to be waited for. [any] */
+bool ethd__servo_frame_begins(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
+                              int length);
+
 /* How many bytes the answer has that begins so; 0: more must come to know it. */
 int ethd__servo_frame_whole(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
                             int length);

@@ -19,12 +19,6 @@ static bool is_known(const char *section) {
   return is_register(section) || !strcmp(section, "bus") || !strcmp(section, "watchdog");
 }
 
-int32_t ethd__servo_find(const ethd__servo_map *map, const char *name, size_t length) {
-  for (uint32_t i = 0; i < map->count; i++)
-    if (strlen(map->registers[i].name) == length && !memcmp(map->registers[i].name, name, length)) return (int32_t)i;
-  return -1;
-}
-
 static int section_line(const ethd_ini *ini, const char *name) {
   for (uint32_t i = 0; i < ini->section_count; i++)
     if (!strcmp(ini->sections[i].name, name)) return ini->sections[i].line;
@@ -41,7 +35,7 @@ static ethd_status check_sections(const ethd__servo_source *s) {
                        s->name, section->line, section->name);
     int first = section_line(s->ini, section->name);
     if (first != section->line)
-      return ethd__say(s->message, ETHD_E_DUPLICATE, "%s:%d: section %s stands twice, first on line %d", s->name,
+      return ethd__say(s->message, ETHD_E_DUPLICATE, "%s:%d: section %s occurs twice, first on line %d", s->name,
                        section->line, ethd__quote(section->name, strlen(section->name), quote), first);
   }
   return ETHD_OK;
@@ -105,12 +99,6 @@ static void mark_unconfirmed(const ethd__servo_source *s, const char *text, size
     const ethd_ini_key *address = ethd_ini_find(s->ini, section, "address");
     map->registers[i].unconfirmed = address && says_unconfirmed(text, length, address->line);
   }
-}
-
-uint32_t ethd__servo_unconfirmed(const ethd__servo_map *map) {
-  uint32_t n = 0;
-  for (uint32_t i = 0; i < map->count; i++) n += map->registers[i].unconfirmed;
-  return n;
 }
 
 /* ---- the whole ---- */

@@ -12,25 +12,6 @@
 #define R ETHD__SERVO_READ
 #define W ETHD__SERVO_WRITE
 
-const ethd__servo_role ethd__servo_roles[ETHD__SERVO_ROLES] = {
-    [ETHD__SERVO_TORQUE1] = {"torque1", "A|Nm", W},
-    [ETHD__SERVO_TORQUE2] = {"torque2", "A|Nm", W},
-    [ETHD__SERVO_COUNTER] = {"counter", "1", W},
-    [ETHD__SERVO_POSITION1] = {"position1", "count|turn|rad", R},
-    [ETHD__SERVO_POSITION2] = {"position2", "count|turn|rad", R},
-    [ETHD__SERVO_SPEED1] = {"speed1", "count/s|rpm|rad/s", R},
-    [ETHD__SERVO_SPEED2] = {"speed2", "count/s|rpm|rad/s", R},
-    [ETHD__SERVO_MEASURED1] = {"measured1", "A|Nm", R},
-    [ETHD__SERVO_MEASURED2] = {"measured2", "A|Nm", R},
-    [ETHD__SERVO_BUS_VOLTAGE] = {"bus_voltage", "V", R},
-    [ETHD__SERVO_INDEX1] = {"index1", "count", R},
-    [ETHD__SERVO_INDEX2] = {"index2", "count", R},
-    [ETHD__SERVO_READING_X] = {"reading_x", "m", R},
-    [ETHD__SERVO_READING_Y] = {"reading_y", "m", R},
-    [ETHD__SERVO_READING_COUNT] = {"reading_count", "1", R},
-    [ETHD__SERVO_READING_AGE] = {"reading_age", "s", R},
-};
-
 /* A refusal at a register's key, or at its section when it hasn't that key. */
 static ethd_status refuse(const ethd__servo_source *s, const ethd__servo_register *r, const char *name,
                           const char *format, ...) __attribute__((format(printf, 4, 5)));
@@ -250,69 +231,4 @@ ethd_status ethd__servo_map_check(const ethd__servo_source *s, ethd__servo_map *
   if (!status) status = check_use(s, map);
   if (!status) status = check_every(s, map);
   return status ? status : check_roles(s, map);
-}
-
-/* ---- what stays open ---- */
-
-static bool any_echo(const ethd__servo_map *map) {
-  for (uint32_t i = 0; i < map->count; i++)
-    if (map->registers[i].echo >= 0) return true;
-  return false;
-}
-
-static bool any_mask(const ethd__servo_map *map) {
-  for (uint32_t i = 0; i < map->count; i++)
-    if (map->registers[i].fault_mask) return true;
-  return false;
-}
-
-static bool is_watched(const ethd__servo_map *map, int torque, int measured) {
-  if (map->roles[torque] < 0) return true;
-  return map->roles[measured] >= 0 && map->registers[map->roles[measured]].tolerance > 0;
-}
-
-/* A threshold that the torque can't reach watches nothing. A frozen joint is told by a change of the torque. */
-static bool reaches(const ethd__servo_map *map, double (*threshold)(const ethd__servo_register *), double swing) {
-  for (int i = 0; i < 2; i++) {
-    int32_t position = map->roles[ETHD__SERVO_POSITION1 + i], torque = map->roles[ETHD__SERVO_TORQUE1 + i];
-    if (position < 0) continue;
-    if (threshold(&map->registers[position]) >= swing * ethd__servo_most(&map->registers[torque])) return false;
-  }
-  return true;
-}
-
-static double freezes_at(const ethd__servo_register *r) { return r->freeze_torque; }
-static double reverses_at(const ethd__servo_register *r) { return r->reverse_torque; }
-
-static bool all_count(const ethd__servo_map *map) {
-  for (int i = 0; i < 2; i++) {
-    int32_t r = map->roles[ETHD__SERVO_POSITION1 + i];
-    if (r >= 0 && !(map->registers[r].counts > 0 && map->registers[r].type != ETHD__SERVO_F32)) return false;
-  }
-  return true;
-}
-
-const char *ethd__servo_risk(const ethd__servo_map *map, uint32_t i) {
-  const char *risks[12];
-  uint32_t n = 0;
-  if (map->watchdog == ETHD__SERVO_WATCH_NONE)
-    risks[n++] = "no watchdog: when this computer dies, the drive holds its last torque";
-  if (map->resumes) risks[n++] = "the drive goes on by itself when the bus comes back: zero is written first";
-  if (!any_echo(map)) risks[n++] = "no echo: a stale answer or a lost set-point isn't noticed";
-  if (!any_mask(map)) risks[n++] = "no fault mask: the drive's faults aren't noticed";
-  if (!is_watched(map, ETHD__SERVO_TORQUE1, ETHD__SERVO_MEASURED1) ||
-      !is_watched(map, ETHD__SERVO_TORQUE2, ETHD__SERVO_MEASURED2))
-    risks[n++] = "no measured torque with a tolerance: a drive that doesn't follow isn't noticed";
-  if (!all_count(map)) {
-    risks[n++] = "a position that isn't in counts: an encoder that jumps, stands still or is reversed isn't noticed";
-  } else {
-    if (!reaches(map, freezes_at, 2))
-      risks[n++] = "freeze_torque is out of reach: an encoder that stands still isn't noticed";
-    if (!reaches(map, reverses_at, 1)) risks[n++] = "reverse_torque is out of reach: a reversed encoder isn't noticed";
-  }
-  if (map->roles[ETHD__SERVO_BUS_VOLTAGE] < 0) risks[n++] = "no bus_voltage: the supply isn't watched";
-  if (any_mask(map) && !map->sequences[ETHD__SERVO_CLEAR].count)
-    risks[n++] = "no [clear] steps: a fault of the drive's is left only as its manual says";
-  if (!map->sequences[ETHD__SERVO_DISABLE].count) risks[n++] = "no [disable] steps: a stop only writes zero torque";
-  return i < n ? risks[i] : NULL;
 }

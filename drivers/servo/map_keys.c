@@ -8,13 +8,13 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-typedef enum { NUMBER, WHOLE, CHOICE } kind;
+typedef enum { NUMBER, WHOLE, CHOICE } key_kind;
 
-typedef struct row {
-  kind kind;
+typedef struct map_key {
+  key_kind kind;
   ethd_param param; /* def NaN: must be given; a choice's words stand in its unit */
   size_t offset;
-} row;
+} map_key;
 
 const char ethd__servo_formats[] = "8N1|8E1|8O1|8N2";
 
@@ -22,7 +22,7 @@ const char ethd__servo_formats[] = "8N1|8E1|8O1|8N2";
 #define OPEN_LIMIT 1e12
 #define WORD_MAX 4294967295.0
 
-static const row bus[] = {
+static const map_key bus[] = {
     {CHOICE, {"transport", "tcp|rtu", 0, 1, (double)NAN, "Modbus/TCP, or RTU on a serial line"}, AT(map, transport)},
     {CHOICE, {"format", ethd__servo_formats, 0, 3, 0, "of a serial byte"}, AT(map, format)},
     {NUMBER, {"baud", "1/s", 1200, 12e6, 0, "of a serial line, any"}, AT(map, baud)},
@@ -57,7 +57,7 @@ static const row bus[] = {
      AT(map, back_off)},
 };
 
-static const row watchdog[] = {
+static const map_key watchdog[] = {
     {CHOICE, {"kind", "none|silence|counter", 0, 2, 0, "what stops the drive without us"}, AT(map, watchdog)},
     {NUMBER, {"time", "s", 1e-3, 60, 0, "after which it stops"}, AT(map, watchdog_time)},
     {CHOICE,
@@ -67,7 +67,7 @@ static const row watchdog[] = {
     {CHOICE, {"resumes", "no|yes", 0, 1, 0, "goes on by itself when the bus does"}, AT(map, resumes)},
 };
 
-static const row keys[] = {
+static const map_key keys[] = {
     {CHOICE, {"direction", "read|write", 0, 1, (double)NAN, "as the loop sees it"}, AT(register, direction)},
     {WHOLE, {"address", "1", 0, 65536, (double)NAN, "as in the manual"}, AT(register, address)},
     {CHOICE, {"space", "holding|input", 0, 1, 0, "functions 3 and 16, or 4"}, AT(register, space)},
@@ -116,27 +116,7 @@ static const row keys[] = {
 
 /* ---- one value ---- */
 
-bool ethd__servo_whole(const char *text, double *out) {
-  size_t n = strlen(text);
-  if (n > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X')) {
-    *out = 0;
-    for (const char *p = text + 2; *p; p++) {
-      const char *hex = "0123456789abcdef0123456789ABCDEF", *at = strchr(hex, *p);
-      if (!at) return false;
-      *out = *out * 16 + (double)((at - hex) % 16);
-    }
-    return n <= 10;
-  }
-  return ethd__number(text, n, out) && *out == rint(*out) && fabs(*out) <= WORD_MAX;
-}
-
-ethd_status ethd__servo_refuse(const ethd__servo_source *s, const ethd_ini_key *key, const char *allowed) {
-  char quote[ETHD_QUOTE_MAX];
-  return ethd__say(s->message, ETHD_E_RANGE, "%s:%d: %s.%s: found %s, %s is allowed", s->name, key->line, key->section,
-                   key->key, ethd__quote(key->value, strlen(key->value), quote), allowed);
-}
-
-static ethd_status refuse_range(const ethd__servo_source *s, const ethd_ini_key *key, const row *r) {
+static ethd_status refuse_range(const ethd__servo_source *s, const ethd_ini_key *key, const map_key *r) {
   char allowed[ETHD_MESSAGE_MAX];
   const char *unit = strcmp(r->param.unit, "1") ? r->param.unit : "";
   ethd__say(allowed, ETHD_OK, "%s%.10g to %.10g%s%s", r->kind == WHOLE ? "a whole number from " : "", r->param.min,
@@ -144,7 +124,7 @@ static ethd_status refuse_range(const ethd__servo_source *s, const ethd_ini_key 
   return ethd__servo_refuse(s, key, allowed);
 }
 
-static void put(const row *r, double value, void *base) {
+static void put(const map_key *r, double value, void *base) {
   char *at = (char *)base + r->offset;
   switch (r->kind) {
   case NUMBER: memcpy(at, &value, sizeof value); break;
@@ -153,7 +133,7 @@ static void put(const row *r, double value, void *base) {
   }
 }
 
-static ethd_status set(const ethd__servo_source *s, const row *r, const ethd_ini_key *key, void *base) {
+static ethd_status set(const ethd__servo_source *s, const map_key *r, const ethd_ini_key *key, void *base) {
   double value;
   if (r->kind == CHOICE) {
     value = ethd_param_word(&r->param, key->value);
@@ -169,8 +149,8 @@ static ethd_status set(const ethd__servo_source *s, const row *r, const ethd_ini
 
 /* ---- a section ---- */
 
-static ethd_status read_rows(const ethd__servo_source *s, const char *section, int line, const row *table, size_t count,
-                             void *base) {
+static ethd_status read_rows(const ethd__servo_source *s, const char *section, int line, const map_key *table,
+                             size_t count, void *base) {
   for (size_t i = 0; i < count; i++) {
     const ethd_ini_key *key = ethd_ini_find(s->ini, section, table[i].param.name);
     ethd_status status = ETHD_OK;
@@ -187,14 +167,14 @@ static ethd_status read_rows(const ethd__servo_source *s, const char *section, i
   return ETHD_OK;
 }
 
-static bool is_row(const char *name, const row *table, size_t count) {
+static bool is_row(const char *name, const map_key *table, size_t count) {
   for (size_t i = 0; i < count; i++)
     if (!strcmp(table[i].param.name, name)) return true;
   return false;
 }
 
 /* `text`: the section's one key whose value is a word of its own. */
-static ethd_status check_known(const ethd__servo_source *s, const char *section, const row *table, size_t count,
+static ethd_status check_known(const ethd__servo_source *s, const char *section, const map_key *table, size_t count,
                                const char *text) {
   for (uint32_t i = 0; i < s->ini->count; i++) {
     const ethd_ini_key *k = &s->ini->keys[i];

@@ -100,7 +100,8 @@ static void count_unconfirmed(ethd__servo_device *d) {
   uint32_t n = ethd__servo_unconfirmed(&d->map);
   if (n)
     snprintf(d->unconfirmed, sizeof d->unconfirmed,
-             "%u of %u registers are unconfirmed: check their addresses in the drive's manual", n, d->map.count);
+             "%u of %u registers are unconfirmed: check their addresses in the drive's manual (step 2)", n,
+             d->map.count);
 }
 
 static ethd_status make_feedback(ethd__servo_device *d, const ethd_device_def *def, const settings *s, char *message) {
@@ -153,27 +154,43 @@ static ethd_status check_pace(const ethd__servo_device *d, const settings *s, ch
                    (long long)(most / d->period_ns));
 }
 
-/* Before the first connection: no line of the program's is open yet. */
-static ethd_status set_guard(ethd__servo_device *d, char *message) {
+static void set_guard(ethd__servo_device *d) {
   bool wanted = d->map.guardian == ETHD__SERVO_GUARD_ALWAYS ||
                 (d->map.guardian == ETHD__SERVO_GUARD_AUTO && d->map.watchdog == ETHD__SERVO_WATCH_NONE);
   ethd__servo_link_make(&d->map, &d->link);
-  if (!wanted) return ETHD_OK;
+  if (!wanted) return;
   ethd__guardian_make(&d->map, &d->link.plan, d->exchange_ns, &d->guardian);
   snprintf(d->guarded, sizeof d->guarded,
            "a guardian process writes zero torque within %.3g ms of this program's end or silence, then disables",
            1e-6 * (double)ethd__guardian_bound(&d->map, d->exchange_ns));
-  return ethd__guardian_start(&d->guardian, message);
+}
+
+/* What an exchange takes, before any drive was asked. */
+static void say_wire(ethd__servo_device *d) {
+  ethd__servo_wire w = ethd__servo_wire_of(&d->map, (double)NAN);
+  uint32_t least = ethd__servo_divisor_for(w.most, 1e-9 * (double)d->period_ns);
+  if (d->map.transport == ETHD__SERVO_TCP)
+    snprintf(
+        d->wire, sizeof d->wire,
+        "an exchange: %u messages, %u bytes, every %g ms; over tcp only ethd-servo-probe can say how long it takes",
+        w.questions, w.bytes, 1e-6 * (double)d->exchange_ns);
+  else
+    snprintf(d->wire, sizeof d->wire,
+             "an exchange: %u messages, %u bytes, %.3g ms of wire, silence and turnaround at %g Bd%s, %.3g with slow "
+             "registers; divisor %u gives it %g ms: %s, %u would hold",
+             w.questions, w.bytes, 1e3 * w.usual, d->map.baud,
+             d->map.turnaround > 0 ? "" : " (turnaround: not known, ethd-servo-probe measures it)", 1e3 * w.most,
+             d->map.divisor, 1e-6 * (double)d->exchange_ns, d->map.divisor >= least ? "it holds" : "it doesn't hold",
+             least);
 }
 
 /* Its first answer, and what it says of itself. */
-static ethd_status meet(ethd__servo_device *d, const settings *s, char *message) {
+static ethd_status meet(ethd__servo_device *d, char *message) {
   ethd_status status = ethd__servo_meet(d);
-  return status ? ethd__say(message, status, "%s: %.*s", s->map->value, ETHD_MESSAGE_MAX / 2, d->link.message)
-                : ETHD_OK;
+  return status ? ethd__say(message, status, "%s: %.*s", d->map_name, ETHD_MESSAGE_MAX / 2, d->link.message) : ETHD_OK;
 }
 
-ethd_status ethd__servo_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__servo_prepare(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
   settings s;
   *out = NULL;
   ethd_status status = read_settings(def, &s, message);
@@ -187,16 +204,26 @@ ethd_status ethd__servo_open(const ethd_device_def *def, void **out, char messag
   d->is_virtual = def->is_virtual;
   d->period_ns = (int64_t)rint(1e9 * def->setup->period);
   status = load_map(def, &s, &d->map, message);
+  snprintf(d->map_name, sizeof d->map_name, "%s", s.map->value);
   d->exchange_ns = d->period_ns * d->map.divisor;
   if (!status) status = place_axes(d, def, &s, message);
   if (!status) status = set_homing(d, def, &s, message);
   if (!status) status = check_pace(d, &s, message);
   if (!status) status = make_cells(d, message);
   if (!status) status = make_feedback(d, def, &s, message);
-  if (!status) status = set_guard(d, message);
-  if (!status) status = meet(d, &s, message);
-  if (!status) count_unconfirmed(d);
-  return status;
+  if (status) return status;
+  set_guard(d);
+  count_unconfirmed(d);
+  say_wire(d);
+  return ETHD_OK;
+}
+
+/* The guardian comes before the first connection: no line of the program's is open yet. */
+ethd_status ethd__servo_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = ethd__servo_prepare(def, out, message);
+  ethd__servo_device *d = *out;
+  if (!status && d->guarded[0]) status = ethd__guardian_start(&d->guardian, message);
+  return status ? status : meet(d, message);
 }
 
 void ethd__servo_close(void *device) {

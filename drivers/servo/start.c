@@ -76,16 +76,20 @@ ethd_status ethd__servo_enable(ethd__servo_device *d) {
   /* an old set-point must be gone, and be seen to be gone, before the drive moves anything */
   status = zero_and_verify(d, 0.5);
   d->link.set_point_stays = status && d->link.echo_failed;
-  if (d->link.set_point_stays) d->link.rows[ETHD_FAULT_SET_POINT]++;
+  if (d->link.set_point_stays) {
+    d->link.rows[ETHD_FAULT_SET_POINT]++;
+    return ethd__say(d->link.message, status, "%s: %s", d->map.port, ethd_fault_sentence(ETHD_FAULT_SET_POINT));
+  }
   return status ? status : run(d, ETHD__SERVO_ENABLE);
 }
 
 static ethd_status start_locked(ethd__servo_device *d) {
   int32_t lost = ethd__servo_lost(d);
   if (lost)
-    return ethd__say(d->link.message, ETHD_E_DEVICE,
-                     "nobody knows where joint %d stands: home it; or stand the arm in its jig and give device.q1, q2",
-                     lost);
+    return ethd__say(
+        d->link.message, ETHD_E_DEVICE,
+        "nobody knows where joint %d stands: home it; or stand the arm in its jig and give device.q1, q2 (step 4)",
+        lost);
   ethd_status status = ethd__servo_enable(d);
   if (!status) atomic_store(&d->safe, 0);
   return status;

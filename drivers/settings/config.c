@@ -12,14 +12,14 @@
 
 #define SCENE_BYTES_MAX ((size_t)256 << 20)
 
-typedef struct reading {
+typedef struct config_reading {
   ethd__config *whole;
   bool received;    /* from somebody else */
   const char *name; /* of the file */
   char *message;
-} reading;
+} config_reading;
 
-static ethd_status no_memory(const reading *r) { return ethd__no_memory(r->message, r->name); }
+static ethd_status no_memory(const config_reading *r) { return ethd__no_memory(r->message, r->name); }
 
 /* ---- the scene ---- */
 
@@ -30,7 +30,7 @@ static ethd_status parse_scene(ethd__config *whole, size_t length, char message[
   if (zero) {
     int line = 1;
     for (const char *p = c->scene_text; p < zero; p++) line += *p == '\n';
-    return ethd__say(message, ETHD_E_SYNTAX, "%s:%d: a byte 0: this is no text", whole->scene_path, line);
+    return ethd__say(message, ETHD_E_SYNTAX, "%s:%d: a byte 0: this isn't text", whole->scene_path, line);
   }
   ethd_status status = ethd_scene_parse(c->scene_text, length, &c->scene, &error);
   if (status) ethd__scene_refusal(whole->scene_path, &error, message);
@@ -51,7 +51,7 @@ ethd_status ethd__config_scene(ethd__config *whole, const ethd__config_key *key)
 
 /* ---- keys together ---- */
 
-static const ethd_ini_key *find_key(const reading *r, const char *name) {
+static const ethd_ini_key *find_key(const config_reading *r, const char *name) {
   char section[64];
   const char *dot = strchr(name, '.');
   if (!dot || (size_t)(dot - name) >= sizeof section) return NULL;
@@ -60,16 +60,16 @@ static const ethd_ini_key *find_key(const reading *r, const char *name) {
   return ethd_ini_find(&r->whole->ini, section, dot + 1);
 }
 
-/* A default that fails does so by another key, which the file has. */
-static const ethd_ini_key *find_cause(const reading *r, const char *name) {
+/* Finds the key to blame. A default fails only because of another key, which the file has. */
+static const ethd_ini_key *find_cause(const config_reading *r, const char *name) {
   static const char *const by[][2] = {{"finger.radius", "ring.radius"}, {"finger.radius_max", "ring.radius"}};
   for (size_t i = 0; i < sizeof by / sizeof *by; i++)
     if (!strcmp(by[i][0], name)) return find_key(r, by[i][1]);
   return NULL;
 }
 
-/* A failure's name is "section.key", or "material.NAME.key" with a line of the scene. */
-static ethd_status check_setup(const reading *r) {
+/* Checks the setup. A failure's name is "section.key", or "material.NAME.key" with a line of the scene. */
+static ethd_status check_setup(const config_reading *r) {
   ethd_error error;
   char what[ETHD_MESSAGE_MAX];
   ethd_status status = ethd__config_check(&r->whole->config, &r->whole->config.setup, &error);
@@ -82,8 +82,8 @@ static ethd_status check_setup(const reading *r) {
   return ethd__say(r->message, status, "%s, by %s.%s = %s", what, cause->section, cause->key, cause->value);
 }
 
-/* What this arm's ring can never meet is not kept. */
-/* The range that any of the transition laws needs: one of them may be swapped in. */
+/* Drops what this arm's ring can never meet. */
+/* Returns the widest range of all transition laws, since any of them may be swapped in. */
 static double widest_range(const ethd_config *c) {
   double range = ethd_setup_range(&c->setup);
   for (const ethd_law *const *law = c->laws; *law; law++) {
@@ -95,7 +95,7 @@ static double widest_range(const ethd_config *c) {
   return range;
 }
 
-static ethd_status drop_unreachable(const reading *r) {
+static ethd_status drop_unreachable(const config_reading *r) {
   ethd_config *c = &r->whole->config;
   ethd_scene *pruned = NULL;
   ethd_error error;
@@ -108,7 +108,7 @@ static ethd_status drop_unreachable(const reading *r) {
   return ETHD_OK;
 }
 
-static ethd_status read_keys(const reading *r) {
+static ethd_status read_keys(const config_reading *r) {
   const ethd_ini *ini = &r->whole->ini;
   ethd_status status = ETHD_OK;
   for (uint32_t i = 0; !status && i < ini->section_count; i++)
@@ -152,8 +152,8 @@ static bool fill(ethd_config *c, const char *text, size_t length, const char *na
   return (!name || c->path) && c->text && c->folder && c->settings && c->laws;
 }
 
-/* r: all but the configuration. */
-static ethd_status parse(reading r, const char *text, size_t length, const char *name, const char *folder,
+/* Parses a configuration; `r` holds all else. */
+static ethd_status parse(config_reading r, const char *text, size_t length, const char *name, const char *folder,
                          ethd_config **out) {
   r.whole = calloc(1, sizeof *r.whole);
   *out = NULL;
@@ -171,12 +171,12 @@ static ethd_status parse(reading r, const char *text, size_t length, const char 
 
 ethd_status ethd_config_parse(const char *text, size_t length, const char *name, const char *folder, ethd_config **out,
                               char message[ETHD_MESSAGE_MAX]) {
-  const reading r = {.name = name ? name : "configuration", .message = message};
+  const config_reading r = {.name = name ? name : "configuration", .message = message};
   return parse(r, text, length, name, folder, out);
 }
 
 static ethd_status load(const char *path, bool received, ethd_config **out, char *message) {
-  const reading r = {.received = received, .name = path, .message = message};
+  const config_reading r = {.received = received, .name = path, .message = message};
   char *text;
   size_t length;
   *out = NULL;

@@ -34,7 +34,7 @@ int ethd__config_limit(const char *section, const char *key) {
   return -1;
 }
 
-/* One number, or as many as the key holds, or the index of a word. */
+/* Reads one number, or as many as the key holds, or the index of a word. */
 static ethd_status read_values(const ethd_setup_key *row, const ethd__config_key *key, double values[ETHD_RAYS]) {
   const char *allowed = row->count == 1 ? "a decimal number" : row->param.brief, *p = key->value;
   if (ethd_param_words(&row->param)) {
@@ -88,7 +88,7 @@ ethd_status ethd_config_set(const ethd_config *config, const char *name, const c
   section[dot - name] = 0;
   ethd__config_key key = {NULL, 0, section, dot + 1, value, message};
   if (ethd__config_in_files_only(section, key.key))
-    return ethd__key_refuse(&key, ETHD_E_ARGUMENT, "can't be set, it stands in the file only");
+    return ethd__key_refuse(&key, ETHD_E_ARGUMENT, "can't be set, only the file can say it");
   ethd_setup changed = *setup;
   ethd_status status = ethd__config_number(&key, &changed);
   if (status) return status;

@@ -12,7 +12,7 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-/* ---- the file: the loader maps it as it is, and a page that isn't there would end the process ---- */
+/* ---- the file: the loader maps it as it is, and a missing page would end the process ---- */
 
 static bool read_at(FILE *file, uint64_t offset, void *out, size_t length) {
   return fseeko(file, (off_t)offset, SEEK_SET) == 0 && fread(out, 1, length, file) == length;
@@ -42,17 +42,18 @@ static const char *segments_fault(FILE *file, const ElfW(Ehdr) * h, uint64_t siz
     if (p.p_offset > size || p.p_filesz > size - p.p_offset) return "is cut short";
     dynamic |= p.p_type == PT_DYNAMIC && p.p_filesz >= sizeof(ElfW(Dyn));
   }
-  return dynamic ? NULL : "is no shared object";
+  return dynamic ? NULL : "isn't a shared object";
 }
 
-/* A linker writes the section headers last: where they are missing, so is what came before them. */
+/* Returns what is wrong with the file. A linker writes the section headers last, so a file without them was cut short. */
 static const char *file_fault(FILE *file, uint64_t size) {
   ElfW(Ehdr) h;
   if (size == 0) return "is empty";
-  if (!read_at(file, 0, &h, sizeof h)) return size < sizeof h ? "is cut short or no shared object" : "can't be read";
-  if (memcmp(h.e_ident, ELFMAG, SELFMAG) != 0) return "is no shared object";
+  if (!read_at(file, 0, &h, sizeof h))
+    return size < sizeof h ? "is cut short or isn't a shared object" : "can't be read";
+  if (memcmp(h.e_ident, ELFMAG, SELFMAG) != 0) return "isn't a shared object";
   if (!for_this_machine(&h)) return "was built for another machine";
-  if (h.e_type != ET_DYN) return "is no shared object";
+  if (h.e_type != ET_DYN) return "isn't a shared object";
   if (h.e_shoff && (h.e_shoff > size || (uint64_t)h.e_shnum * h.e_shentsize > size - h.e_shoff)) return "is cut short";
   return segments_fault(file, &h, size);
 }
@@ -68,6 +69,10 @@ ethd_status ethd__plugin_file_check(const char *path, char what[ETHD_MESSAGE_MAX
   return fault ? ethd__say(what, ETHD_E_LOAD, "%s %s", path, fault) : ETHD_OK;
 }
 
+static ethd_status no_memory(const ethd__config_key *key) {
+  return ethd__key_refuse(key, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+}
+
 /* ---- its laws ---- */
 
 static uint32_t count_laws(const ethd_law *const *laws) {
@@ -79,7 +84,7 @@ static uint32_t count_laws(const ethd_law *const *laws) {
 static ethd_status add_laws(ethd_config *config, const ethd_plugin_entry *entry, const ethd__config_key *key) {
   uint32_t n = count_laws(config->laws);
   const ethd_law **laws = realloc(config->laws, (n + entry->law_count + 1) * sizeof *laws);
-  if (!laws) return ethd__key_refuse(key, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!laws) return no_memory(key);
   config->laws = laws;
   for (uint32_t i = 0; i < entry->law_count; i++) {
     const ethd_law *law = entry->laws[i];
@@ -96,17 +101,21 @@ static ethd_status add_file(ethd_config *config, char *path, const ethd__config_
   char **plugins = realloc(config->plugins, (config->plugin_count + 1) * sizeof *plugins);
   if (!plugins) {
     free(path);
-    return ethd__key_refuse(key, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+    return no_memory(key);
   }
   config->plugins = plugins;
   plugins[config->plugin_count++] = path;
   return ETHD_OK;
 }
 
-void (*ethd__foreign_code)(const char *what);
+void (*ethd__foreign_code)(const char *what, unsigned patience);
+
+void ethd__config_foreign(const ethd_config *config, const char *what) {
+  if (config->plugin_count && ethd__foreign_code) ethd__foreign_code(what, ETHD__PATIENCE);
+}
 
 static void foreign(const char *what) {
-  if (ethd__foreign_code) ethd__foreign_code(what);
+  if (ethd__foreign_code) ethd__foreign_code(what, ETHD__PATIENCE);
 }
 
 ethd_status ethd__config_check(const ethd_config *config, const ethd_setup *setup, ethd_error *error) {
@@ -132,13 +141,13 @@ static ethd_status open_plugin(ethd_config *config, const char *path, const ethd
 
 ethd_status ethd__config_plugin(ethd__config *whole, const ethd__config_key *key) {
   if (whole->received)
-    return ethd__key_refuse(key, ETHD_E_LOAD, "%s is a program, which a folder brings along; --plugins lets it run",
+    return ethd__key_refuse(key, ETHD_E_LOAD, "%s is a program from somebody else's folder; --plugins lets it run",
                             key->value);
   char *joined = ethd__path_join(whole->config.folder, key->value);
   char *path = joined ? realpath(joined, NULL) : NULL;
   ethd_status status;
   if (!joined)
-    status = ethd__key_refuse(key, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+    status = no_memory(key);
   else if (!path)
     status = ethd__key_refuse(key, ETHD_E_FILE, "%s: %s", joined, strerror(errno));
   else

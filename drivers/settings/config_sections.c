@@ -1,18 +1,56 @@
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "settings/config_parts.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
-/* ---- keys that stand in files only ---- */
+/* ---- keys that only files have ---- */
+
+/* The path of a driver's file, whole, so that it means the same in a recording's folder; NULL: no memory. Where no such
+   file is, who opens it says so. */
+static char *whole_path(const ethd__config *c, const char *name, size_t length) {
+  char *relative = strndup(name, length), *joined = relative ? ethd__path_join(c->config.folder, relative) : NULL;
+  char *path = joined ? realpath(joined, NULL) : NULL;
+  free(relative);
+  if (!path) return joined;
+  free(joined);
+  return path;
+}
+
+/* Adds the next of the names, so many bytes. */
+static ethd_status add_driver(ethd__config *c, const ethd__config_key *key, const char *name, size_t length) {
+  const size_t mark = strlen(ETHD_DRIVER_FILE);
+  char *to = c->config.device, *path = NULL;
+  size_t n = strlen(to), room = sizeof c->config.device - n;
+  if (length > mark && strncmp(name, ETHD_DRIVER_FILE, mark) == 0) {
+    path = whole_path(c, name + mark, length - mark);
+    if (!path) return ethd__no_memory(key->message, key->file);
+  }
+  int written = path ? snprintf(to + n, room, "%s%s%s", n ? ", " : "", ETHD_DRIVER_FILE, path)
+                     : snprintf(to + n, room, "%s%.*s", n ? ", " : "", (int)length, name);
+  free(path);
+  if (written >= 0 && (size_t)written < room) return ETHD_OK;
+  return ethd__key_refuse(key, ETHD_E_SYNTAX, "names and paths of drivers together have at most %d bytes",
+                          ETHD_DRIVERS_TEXT_MAX - 1);
+}
 
 static ethd_status driver(ethd__config *c, const ethd__config_key *key) {
-  if (strlen(key->value) >= sizeof c->config.device)
-    return ethd__key_found(key, ETHD_E_SYNTAX, "at most 95 characters");
-  strcpy(c->config.device, key->value);
-  return ETHD_OK;
+  const char *name = key->value;
+  ethd_status status = ETHD_OK;
+  c->config.device[0] = 0;
+  for (bool more = true; !status && more;) {
+    name += strspn(name, " \t");
+    size_t length = strcspn(name, ","), rest = length;
+    while (length && (name[length - 1] == ' ' || name[length - 1] == '\t')) length--;
+    status = add_driver(c, key, name, length);
+    more = name[rest] == ',';
+    name += rest + more;
+  }
+  return status;
 }
 
 static ethd_status device_setting(ethd__config *c, const ethd__config_key *key) {
@@ -73,7 +111,7 @@ ethd_status ethd__config_read(ethd__config *whole, const ethd__config_key *key, 
   return ethd__config_number(key, &c->setup);
 }
 
-/* ---- what is none ---- */
+/* ---- unknown keys and sections ---- */
 
 static void add(char list[ETHD_MESSAGE_MAX], const char *word) {
   size_t n = strlen(list);

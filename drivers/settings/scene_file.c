@@ -15,7 +15,7 @@ static bool ends_in(const char *text, const char *end) {
   return n > m && !strcmp(text + n - m, end) && text[n - m - 1] == ' ';
 }
 
-/* What a line with the wrong count of numbers should have been: the error's name ends in its shape's. */
+/* Says what a line with the wrong count of numbers should be; the error's name ends in the shape's name. */
 static void say_form(const ethd_error *error, const char *plain, char message[ETHD_MESSAGE_MAX]) {
   const char *form = "", *name = "SHAPE NUMBERS [material=NAME] or material NAME [KEY=NUMBER...]";
   for (int i = 0; i < ETHD_SHAPE_COUNT && isfinite(error->found); i++)

@@ -15,7 +15,7 @@
 
 void ethd__body_prepare(const ethd_sim_def *def, double finger_radius, ethd__body *out) {
   const ethd_plant *p = &def->plant;
-  int compliant = p->stiffness < INFINITY;
+  bool compliant = p->stiffness < INFINITY;
   *out = (ethd__body){.dof = compliant ? 6 : 4,
                       .serial = def->arm.mechanism == ETHD_ARM_SERIAL,
                       .compliant = compliant,

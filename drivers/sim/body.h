@@ -2,6 +2,8 @@
 #ifndef ETHD_SIM_BODY_H
 #define ETHD_SIM_BODY_H
 
+#include <stdbool.h>
+
 #include "ethd/sim.h"
 #include "sim/path.h"
 
@@ -26,7 +28,8 @@ typedef struct ethd__sim_state {
 
 /* Coefficients of the equations, worked out once. Joint quantities are those at the ring times L or L^2. */
 typedef struct ethd__body {
-  int dof, serial, compliant;
+  int dof;
+  bool serial, compliant;
   double link[2];
   double inertia[2], coupling, motor_inertia[2]; /* kg m^2 */
   double stiffness[2], damping[2];               /* Nm/rad, Nms/rad of the transmission */

@@ -4,6 +4,7 @@
 
 #include "ethd/driver.h"
 #include "ethd/sim.h"
+#include "finger/limits.h"
 #include "sim/plant.h"
 #include "sim/settings.h"
 #include "text/error_text.h"
@@ -15,6 +16,8 @@ typedef struct device {
   ethd_sim_def def;
   ethd_sim_tap tap;
   int32_t safe;
+  int32_t reading; /* of the settings: ETHD_READING_*, -1: as the plant says */
+  bool no_finger;
   bool written;      /* 1: `held` and `due_ns` are known */
   int64_t due_ns;    /* the tick at which the next read is expected */
   ethd_command held; /* of the last write */
@@ -31,12 +34,19 @@ static ethd_status create(const ethd_device_def *def, const ethd__sim_settings *
   ethd_error error = {0};
   ethd_status status = load_plant(def, s->plant, &d->def.plant, message);
   if (status) return status;
-  if (s->rays >= 0) d->def.plant.rays = s->rays;
+  ethd__sim_settings_finger(s, &d->def.plant);
+  d->reading = s->reading;
+  d->no_finger = s->no_finger;
+  if (d->no_finger) d->def.plant.pad_stiffness = 0;
   status = ethd_sim_create(&d->def, &d->sim, &error);
   if (!status) {
     ethd_vec meet = {s->p[ETHD__SIM_MEET_X], s->p[ETHD__SIM_MEET_Y]};
     ethd_sim_draw(&d->def.plant, (uint64_t)s->p[ETHD__SIM_SEED], (uint64_t)s->p[ETHD__SIM_TAP], s->p[ETHD__SIM_SPEED],
                   meet, &d->tap);
+    if (d->no_finger) { /* the ring stands there */
+      d->tap.path.from = meet;
+      d->tap.path.to_x = meet.x;
+    }
     status = ethd_sim_start(d->sim, &d->tap);
     if (status) ethd__sim_refuse(&error, status, "sim", NAN, NAN, NAN);
   }
@@ -86,6 +96,7 @@ static ethd_status sim_read(void *device_, int64_t now_ns, ethd_sense *out) ETHD
   int64_t faults = out->faults, grave = out->grave; /* others' */
   catch_up(d, now_ns);
   ethd_sim_read(d->sim, out);
+  if (d->no_finger) out->have = 0;
   out->faults |= faults;
   out->grave |= grave;
   return ETHD_OK;
@@ -113,7 +124,11 @@ static void close_device(void *device_) {
 
 static ethd_limits limits(const void *device_) {
   const device *d = device_;
-  return ethd_limits_torque(d->def.plant.force_limit * fmin(d->def.arm.link1, d->def.arm.link2));
+  const ethd_plant *plant = &d->def.plant;
+  ethd_limits limits = ethd_limits_torque(plant->force_limit * fmin(d->def.arm.link1, d->def.arm.link2));
+  if (d->reading <= ETHD_READING_RAYS) return limits;
+  ethd__finger_limits(plant->rate, plant->latency, &limits); /* as the driver of the real sensor says */
+  return limits;
 }
 
 static ethd_dynamics dynamics(const void *device_) {
@@ -136,4 +151,5 @@ const ethd_driver ethd_driver_sim = {
     .close = close_device,
     .limits = limits,
     .dynamics = dynamics,
+    .prepare = sim_open, /* it touches nothing */
 };

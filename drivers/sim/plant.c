@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "finger/zones.h"
 #include "sim/sensors.h"
 
 #define AT(member) offsetof(ethd_plant, member)
@@ -28,7 +29,7 @@ const ethd__plant_row ethd__plant_rows[] = {
     ROW("finger", "pad_damping", "s/m", 0, 1e3, pad_damping, "c, likewise"),
     ROW("finger", "radius", "m", 1e-4, 1, finger_radius, "mean over taps"),
     ROW("finger", "radius_sd", "m", 0, 1, finger_radius_sd, "cut at 2 sd"),
-    ROW("proximity", "reading", "centre|rays", 0, 1, rays, "what a reading holds"),
+    ROW("proximity", "reading", "centre|rays", 0, 1, reading, "what a reading holds"),
     ROW("proximity", "rate", "Hz", 1, 1e5, rate, "readings"),
     ROW("proximity", "latency", "s", 0, 1, latency, "from its last sample to its delivery"),
     ROW("proximity", "noise", "m", 0, 0.1, noise, "sd of a centre, each axis"),
@@ -88,11 +89,28 @@ static ethd_status within(ethd_error *error, const char *name, double found, dou
   return found >= min && found <= max ? ETHD_OK : ethd__sim_refuse(error, ETHD_E_RANGE, name, found, min, max);
 }
 
+static ethd_status check_finger(const ethd_plant *p, ethd_error *error) {
+  ethd_status status = within(error, "finger", p->reading, 0, ETHD_READING_COUNT - 1);
+  if (!status && p->reading == ETHD_READING_ZONES) {
+    status = within(error, "zones", p->zones, ETHD__ZONES_MIN, ETHD__ZONES_MAX);
+    if (!status) status = within(error, "zone_reach", p->zone_reach, 1e-5, 0.1);
+    if (!status) status = within(error, "zone_hysteresis", p->zone_hysteresis, 0, 1);
+  }
+  if (!status && p->reading == ETHD_READING_NAIL) {
+    status = within(error, "nail_angle", p->nail_angle, -7, 7);
+    if (!status) status = within(error, "nail_step", p->nail_step, 0, 1e-3);
+  }
+  return status;
+}
+
 ethd_status ethd__plant_check(const ethd_plant *p, ethd_error *error) {
   ethd_status status = ETHD_OK;
-  for (size_t i = 0; i < ethd__plant_row_count && !status; i++) status = check_row(&ethd__plant_rows[i], p, error);
+  ethd_plant filed = *p;
+  if (p->reading > ETHD_READING_RAYS) filed.reading = ETHD_READING_CENTRE; /* no plant file describes the others */
+  for (size_t i = 0; i < ethd__plant_row_count && !status; i++) status = check_row(&ethd__plant_rows[i], &filed, error);
+  if (!status) status = check_finger(p, error);
   if (status) return status;
-  double least = fmin(p->mass[0], p->mass[1]), frame = p->rays ? p->ray_skew : 0;
+  double least = fmin(p->mass[0], p->mass[1]), frame = p->reading == ETHD_READING_RAYS ? p->ray_skew : 0;
   if (p->stiffness < INFINITY) {
     status = within(error, "transmission.motor_mass", p->motor_mass, 1e-3 * least, (1 - 1e-3) * least);
     if (status) return status;

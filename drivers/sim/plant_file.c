@@ -63,6 +63,7 @@ static ethd_status fill(const char *path, const ethd_ini *ini, ethd_plant *out, 
       return ethd__say(message, ETHD_E_UNKNOWN, "%s:%d: %s.%s: a plant has no such key", path, ini->keys[i].line,
                        ini->keys[i].section, ini->keys[i].key);
   memset(out, 0, sizeof *out);
+  ethd_plant_finger(out, ETHD_READING_CENTRE);
   for (size_t i = 0; i < ethd__plant_row_count; i++) {
     ethd_status status = set(path, &ethd__plant_rows[i], ini, out, message);
     if (status) return status;

@@ -1,8 +1,11 @@
-/* What the device measures: joint angles by counts, the finger by the proximity ring. All [any, rt-safe]. */
+/* What the device measures: joint angles by counts, the finger by one of the sensors of sim.h. All [any, rt-safe] but
+   ethd__sensors_create. */
 #ifndef ETHD_SIM_SENSORS_H
 #define ETHD_SIM_SENSORS_H
 
 #include "ethd/sim.h"
+#include "finger/nail.h"
+#include "finger/zones.h"
 #include "sim/body.h"
 #include "sim/random.h"
 
@@ -10,8 +13,9 @@
 
 /* A reading on its way. */
 typedef struct ethd__sim_reading {
-  int64_t sample_ns, due_ns;
+  int64_t sample_ns, due_ns, have; /* have: ETHD_HAVE_*; 0: the sensor saw nothing that it could use */
   ethd_vec centre, ring;
+  double noise; /* m: as the sensor says; 0: it doesn't */
   double rays[16];
 } ethd__sim_reading;
 
@@ -21,12 +25,18 @@ typedef struct ethd__sensors {
   ethd_plant plant;
   double ring_radius, finger_radius, phase;
   ethd__sim_key key;
+  ethd__zones zones; /* of a finger as the plant has it on average */
+  uint32_t lit;      /* barriers */
+  ethd__nail nail;
   double count_phase[2]; /* counts */
   uint32_t sample, part; /* what comes next, */
   double next;           /* s: and when */
   uint64_t taken;        /* readings complete */
   ethd__sim_reading readings[ETHD__READINGS_MAX];
 } ethd__sensors;
+
+/* What doesn't change from tap to tap. [main] */
+void ethd__sensors_create(ethd__sensors *sensors, const ethd_sim_def *def);
 
 void ethd__sensors_start(ethd__sensors *sensors, const ethd_sim_def *def, const ethd_sim_tap *tap) ETHD_RT;
 

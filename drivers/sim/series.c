@@ -13,67 +13,67 @@
 #include "ethd/maths.h"
 #include "sim/terms.h"
 
-typedef ethd__two two;
-
 /* Intermediate terms. A number stands in both halves of a pair where it multiplies pairs. */
-typedef struct work {
+typedef struct expansion {
   const ethd__body *body;
   ethd__series *out;
-  int related; /* terms of the geometry that are known */
-  int turning; /* 0: friction is constant */
-  two inverse_inertia, length, friction, viscous, sharpness;
-  two slip[ETHD__TERMS], slip_a[ETHD__TERMS], link_a[ETHD__TERMS]; /* slip: speed of what rubs */
-  two rub[ETHD__TERMS], unlike[ETHD__TERMS];                       /* u, 1 - u^2 */
-  two cosine[ETHD__TERMS], sine[ETHD__TERMS], square_v[ETHD__TERMS];
-  double along[ETHD__TERMS], across[ETHD__TERMS];                          /* H cos and H sin of th2 - th1 */
-  two apart[ETHD__TERMS], half_square[ETHD__TERMS], distance[ETHD__TERMS]; /* from ring to finger */
-  two push[ETHD__TERMS], force_x[ETHD__TERMS], force_y[ETHD__TERMS];       /* on the ring; push: by distance */
-  two inverse_distance, stiffness;                                         /* of the pad, the latter by distance */
-  double inverse_mass;                                                     /* of the finger */
-  double swing;                                                            /* of the hand's terms beyond 3 */
-} work;
+  int related;  /* terms of the geometry that are known */
+  bool turning; /* false: friction is constant */
+  ethd__two inverse_inertia, length, friction, viscous, sharpness;
+  ethd__two slip[ETHD__TERMS], slip_a[ETHD__TERMS], link_a[ETHD__TERMS]; /* slip: speed of what rubs */
+  ethd__two rub[ETHD__TERMS], unlike[ETHD__TERMS];                       /* u, 1 - u^2 */
+  ethd__two cosine[ETHD__TERMS], sine[ETHD__TERMS], square_v[ETHD__TERMS];
+  double along[ETHD__TERMS], across[ETHD__TERMS];                                /* H cos and H sin of th2 - th1 */
+  ethd__two apart[ETHD__TERMS], half_square[ETHD__TERMS], distance[ETHD__TERMS]; /* from ring to finger */
+  ethd__two push[ETHD__TERMS], force_x[ETHD__TERMS], force_y[ETHD__TERMS];       /* on the ring; push: by distance */
+  ethd__two inverse_distance, stiffness; /* of the pad, the latter by distance */
+  double inverse_mass;                   /* of the finger */
+  double swing;                          /* of the hand's terms beyond 3 */
+} expansion;
 
 static const double INVERSE[ETHD__TERMS + 1] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,
                                                 1.0 / 6,  1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11,
                                                 1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16};
 
 /* Converts the links' absolute angles, or their derivatives, to the joints'. */
-static inline two joint(int serial, two link) { return serial ? (two){link[0], link[1] - link[0]} : link; }
+static inline ethd__two joint(bool serial, ethd__two link) {
+  return serial ? (ethd__two){link[0], link[1] - link[0]} : link;
+}
 
 /* ---- geometry ---- */
 
-ETHD__INLINE void rotate(work *w, int k) {
-  const two *v = w->out->link_v;
+ETHD__INLINE void rotate(expansion *w, int k) {
+  const ethd__two *v = w->out->link_v;
   w->cosine[k] = -ethd__product(v, w->sine, k - 1) * ethd__both(INVERSE[k]);
   w->sine[k] = ethd__product(v, w->cosine, k - 1) * ethd__both(INVERSE[k]);
 }
 
 /* Term k of the vector from ring to finger. */
-ETHD__INLINE void relate(work *w, int k) {
+ETHD__INLINE void relate(expansion *w, int k) {
   if (k > 0) rotate(w, k);
   if (k > 3) w->out->hand[k] = w->out->hand[k - 2] * ethd__both(w->swing * (INVERSE[k] * INVERSE[k - 1]));
-  two x = w->length * w->cosine[k], y = w->length * w->sine[k];
-  w->apart[k] = (w->out->hand[k] + w->out->aside[k]) - (two){ethd__sum(x), ethd__sum(y)};
+  ethd__two x = w->length * w->cosine[k], y = w->length * w->sine[k];
+  w->apart[k] = (w->out->hand[k] + w->out->aside[k]) - (ethd__two){ethd__sum(x), ethd__sum(y)};
   w->half_square[k] = ethd__both(ethd__sum(ethd__half_square(w->apart, k)));
   w->related = k;
 }
 
 /* Term k > 0 of the distance D, from that of r r / 2, and term k - 1 of 1 + c D'. */
-ETHD__INLINE void measure(work *w, int k) {
-  two d = (w->half_square[k] - ethd__half_middle(w->distance, k)) * w->inverse_distance;
-  two e = ethd__both(w->body->pad_damping * k) * d;
+ETHD__INLINE void measure(expansion *w, int k) {
+  ethd__two d = (w->half_square[k] - ethd__half_middle(w->distance, k)) * w->inverse_distance;
+  ethd__two e = ethd__both(w->body->pad_damping * k) * d;
   w->out->beyond[k] = w->distance[k] = d;
   w->out->leaving[k - 1] = k == 1 ? e + ethd__both(1) : e;
 }
 
-static void geometry_begins(work *w, const ethd__piece *piece, const ethd__sim_motion *hand) {
+static void geometry_begins(expansion *w, const ethd__piece *piece, const ethd__sim_motion *hand) {
   ethd__body_waves(w->body, w->out->link[0], w->sine, w->cosine);
   ethd__piece_terms(piece, hand, w->out->hand);
   relate(w, 0);
   w->distance[0] = ethd__both(sqrt(2 * w->half_square[0][0]));
 }
 
-static void measuring_begins(work *w) {
+static void measuring_begins(expansion *w) {
   w->inverse_distance = 1 / w->distance[0];
   w->stiffness = ethd__both(w->body->pad_stiffness) * w->inverse_distance;
   w->out->beyond[0] = w->distance[0] - ethd__both(w->body->gap);
@@ -81,11 +81,11 @@ static void measuring_begins(work *w) {
 
 /* Torque over length. Force over distance = K p (1 + c p') / D; on the ring along r. Needs the geometry's
    terms up to k + 1. */
-ETHD__INLINE two press(work *w, int k) {
-  two s = w->stiffness * ethd__product(w->out->leaving, w->out->beyond, k);
+ETHD__INLINE ethd__two press(expansion *w, int k) {
+  ethd__two s = w->stiffness * ethd__product(w->out->leaving, w->out->beyond, k);
   if (k > 0) s -= (ethd__middle(w->distance, w->push, k) + w->distance[k] * w->push[0]) * w->inverse_distance;
   w->push[k] = s;
-  two force = ethd__product(w->push, w->apart, k);
+  ethd__two force = ethd__product(w->push, w->apart, k);
   w->force_x[k] = ethd__both(force[0]);
   w->force_y[k] = ethd__both(force[1]);
   return ethd__product(w->force_y, w->cosine, k) - ethd__product(w->force_x, w->sine, k);
@@ -93,10 +93,10 @@ ETHD__INLINE two press(work *w, int k) {
 
 /* ---- accelerations ---- */
 
-ETHD__INLINE two rub(work *w, int k) {
+ETHD__INLINE ethd__two rub(expansion *w, int k) {
   if (k == 0) {
-    two u = w->sharpness * w->slip[0];
-    w->rub[0] = (two){ethd_tanh(u[0]), ethd_tanh(u[1])};
+    ethd__two u = w->sharpness * w->slip[0];
+    w->rub[0] = (ethd__two){ethd_tanh(u[0]), ethd_tanh(u[1])};
     w->unlike[0] = 1 - w->rub[0] * w->rub[0];
     w->turning = ethd__sum(w->unlike[0]) > 0;
   } else if (!w->turning) {
@@ -109,16 +109,16 @@ ETHD__INLINE two rub(work *w, int k) {
 }
 
 /* The cases in which plants differ, for which the series are compiled apart; touch changes from step to step. */
-typedef struct kind {
-  int serial, compliant, coupled;
+typedef struct physics {
+  bool serial, compliant, coupled;
   ethd__touch touch;
-} kind;
+} physics;
 
 /* Torques on the links; the motors' terms k + 1 where they have their own. */
-ETHD__INLINE two drive(work *w, kind has, int k) {
+ETHD__INLINE ethd__two drive(expansion *w, physics has, int k) {
   const ethd__body *b = w->body;
   ethd__series *s = w->out;
-  two torque = k ? ethd__both(0) : ethd__pair(b->torque), d;
+  ethd__two torque = k ? ethd__both(0) : ethd__pair(b->torque), d;
   if (has.compliant) {
     d = ethd__pair(b->stiffness) * (s->motor[k] - joint(has.serial, s->link[k])) +
         ethd__pair(b->damping) * (s->motor_v[k] - joint(has.serial, s->link_v[k]));
@@ -129,13 +129,13 @@ ETHD__INLINE two drive(work *w, kind has, int k) {
     w->slip[k] = joint(has.serial, s->link_v[k]);
     d = torque - rub(w, k);
   }
-  return has.serial ? (two){d[0] - d[1], d[1]} : d;
+  return has.serial ? (ethd__two){d[0] - d[1], d[1]} : d;
 }
 
 /* I1 a1 + along a2 = g1 + across w2^2, along a1 + I2 a2 = g2 - across w1^2. */
-static two couple(work *w, two g, int k) {
+static ethd__two couple(expansion *w, ethd__two g, int k) {
   const ethd__two *c = w->cosine, *s = w->sine;
-  two inertia = ethd__pair(w->body->inertia);
+  ethd__two inertia = ethd__pair(w->body->inertia);
   double h = w->body->coupling;
   if (w->related < k) relate(w, k);
   w->along[k] = w->across[k] = 0;
@@ -144,14 +144,14 @@ static two couple(work *w, two g, int k) {
     w->across[k] += h * (c[i][0] * s[k - i][1] - s[i][0] * c[k - i][1]);
   }
   w->square_v[k] = ethd__product(w->out->link_v, w->out->link_v, k);
-  for (int i = 0; i <= k; i++) g += ethd__both(w->across[i]) * ethd__swapped(w->square_v[k - i]) * (two){1, -1};
+  for (int i = 0; i <= k; i++) g += ethd__both(w->across[i]) * ethd__swapped(w->square_v[k - i]) * (ethd__two){1, -1};
   for (int i = 1; i <= k; i++) g -= ethd__both(w->along[i]) * ethd__swapped(w->link_a[k - i]);
   return (ethd__swapped(inertia) * g - ethd__both(w->along[0]) * ethd__swapped(g)) /
          ethd__both(inertia[0] * inertia[1] - w->along[0] * w->along[0]);
 }
 
 /* Positions' terms k + 1. */
-ETHD__INLINE void integrate(work *w, kind has, int k) {
+ETHD__INLINE void integrate(expansion *w, physics has, int k) {
   ethd__series *s = w->out;
   s->link[k + 1] = s->link_v[k] * INVERSE[k + 1];
   s->aside[k + 1] = s->aside_v[k] * INVERSE[k + 1];
@@ -159,18 +159,18 @@ ETHD__INLINE void integrate(work *w, kind has, int k) {
 }
 
 /* Speeds' terms k + 1 from what is known up to k. */
-ETHD__INLINE void accelerate(work *w, kind has, int k) {
+ETHD__INLINE void accelerate(expansion *w, physics has, int k) {
   const ethd__body *b = w->body;
   ethd__series *s = w->out;
-  two g = drive(w, has, k);
+  ethd__two g = drive(w, has, k);
   integrate(w, has, k);
-  two f = -(ethd__both(b->hand_stiffness) * s->aside[k] + ethd__both(b->hand_damping) * s->aside_v[k]);
+  ethd__two f = -(ethd__both(b->hand_stiffness) * s->aside[k] + ethd__both(b->hand_damping) * s->aside_v[k]);
   if (has.touch == ETHD__PRESSING) {
     relate(w, k + 1);
     measure(w, k + 1);
-    two pressed = press(w, k); /* sets the forces that the next line reads */
+    ethd__two pressed = press(w, k); /* sets the forces that the next line reads */
     g += w->length * pressed;
-    f -= (two){w->force_x[k][0], w->force_y[k][0]};
+    f -= (ethd__two){w->force_x[k][0], w->force_y[k][0]};
   }
   w->link_a[k] = has.coupled ? couple(w, g, k) : g * w->inverse_inertia;
   if (!has.compliant) w->slip_a[k] = joint(has.serial, w->link_a[k]);
@@ -180,7 +180,7 @@ ETHD__INLINE void accelerate(work *w, kind has, int k) {
 
 /* ---- how many terms, how far ---- */
 
-ETHD__INLINE double speed(const work *w, kind has, int k) {
+ETHD__INLINE double speed(const expansion *w, physics has, int k) {
   const ethd__series *s = w->out;
   double m = ethd__size(w->length * s->link_v[k]) + ethd__size(s->aside_v[k]);
   return has.compliant ? m + ethd__size(w->length * s->motor_v[k]) : m;
@@ -188,7 +188,7 @@ ETHD__INLINE double speed(const work *w, kind has, int k) {
 
 /* Terms up to that which no longer counts, and where the last two of all do, a shorter step. Returns a speed
    that ring and finger's way beside its path stay under. */
-ETHD__INLINE double expand(work *w, kind has) {
+ETHD__INLINE double expand(expansion *w, physics has) {
   ethd__series *s = w->out;
   double tolerance = w->body->tolerance, h = s->step, reach, most, before, term;
   accelerate(w, has, 0);
@@ -222,16 +222,18 @@ ETHD__INLINE double expand(work *w, kind has) {
   return most;
 }
 
-/* The paper's arm has a compiled case of its own, because it runs most. */
-static double expand_kind(work *w, kind has) {
+/* The paper's arm has compiled cases of its own, because it runs most; an elastic one where nothing touches. */
+static double expand_kind(expansion *w, physics has) {
+  if (has.compliant && !has.serial && !has.coupled && has.touch == ETHD__APART)
+    return expand(w, (physics){.compliant = true, .touch = ETHD__APART});
   if (has.serial || has.compliant || has.coupled) return expand(w, has);
-  if (has.touch == ETHD__PRESSING) return expand(w, (kind){0, 0, 0, ETHD__PRESSING});
-  return expand(w, (kind){0, 0, 0, ETHD__APART});
+  if (has.touch == ETHD__PRESSING) return expand(w, (physics){.touch = ETHD__PRESSING});
+  return expand(w, (physics){.touch = ETHD__APART});
 }
 
 /* ---- what touches ---- */
 
-static void watch_apart(work *w) {
+static void watch_apart(expansion *w) {
   ethd__series *s = w->out;
   s->watched = s->order + 1;
   while (w->related < s->watched) relate(w, w->related + 1);
@@ -239,7 +241,7 @@ static void watch_apart(work *w) {
   for (int k = 1; k <= s->watched; k++) s->beyond[k] = w->half_square[k];
 }
 
-static void watch_touching(work *w, ethd__touch touch) {
+static void watch_touching(expansion *w, ethd__touch touch) {
   ethd__series *s = w->out;
   int measured = s->order * (touch == ETHD__PRESSING);
   s->watched = s->order + 1;
@@ -248,9 +250,10 @@ static void watch_touching(work *w, ethd__touch touch) {
 }
 
 /* While pad and ring are known to be apart, their distance is only worked out when they may have come near. */
-static void keep_clear(work *w, const ethd__piece *piece, const ethd__sim_motion *hand, double clearance, double most) {
+static void keep_clear(expansion *w, const ethd__piece *piece, const ethd__sim_motion *hand, double clearance,
+                       double most) {
   ethd__series *s = w->out;
-  double travel = s->step * most + ethd__piece_travel(piece, (two){hand->v.x, hand->v.y}, s->step);
+  double travel = s->step * most + ethd__piece_travel(piece, (ethd__two){hand->v.x, hand->v.y}, s->step);
   s->watched = 0;
   s->clearance = clearance - travel;
   if (s->clearance > 0) return;
@@ -264,16 +267,16 @@ static void keep_clear(work *w, const ethd__piece *piece, const ethd__sim_motion
 static void begin(const ethd__sim_motion *hand, const ethd__sim_state *state, ethd__series *s) {
   s->link[0] = ethd__pair(state->q + ETHD__LINK);
   s->link_v[0] = ethd__pair(state->v + ETHD__LINK);
-  s->aside[0] = ethd__pair(state->q + ETHD__FINGER) - (two){hand->x.x, hand->x.y};
-  s->aside_v[0] = ethd__pair(state->v + ETHD__FINGER) - (two){hand->v.x, hand->v.y};
+  s->aside[0] = ethd__pair(state->q + ETHD__FINGER) - (ethd__two){hand->x.x, hand->x.y};
+  s->aside_v[0] = ethd__pair(state->v + ETHD__FINGER) - (ethd__two){hand->v.x, hand->v.y};
   s->motor[0] = ethd__pair(state->q + ETHD__MOTOR);
   s->motor_v[0] = ethd__pair(state->v + ETHD__MOTOR);
 }
 
 void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
                          const ethd__sim_state *state, ethd__series *out) {
-  kind has = {b->serial, b->compliant, b->coupling != 0, state->touch};
-  work w;
+  physics has = {b->serial, b->compliant, b->coupling != 0, state->touch};
+  expansion w;
   w.body = b;
   w.out = out;
   w.related = -1;

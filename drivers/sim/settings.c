@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "finger/zones.h"
 #include "sim/plant.h"
 #include "text/text.h"
 
@@ -15,9 +16,17 @@ const ethd_param ethd__sim_params[ETHD__SIM_PARAMS] = {
     [ETHD__SIM_SPEED] = {"speed", "m/s", 1e-3, 10, 0.4, "commanded speed of the finger"},
     [ETHD__SIM_MEET_X] = {"meet_x", "m", -10, 10, 0.25, "ring's centre where it meets the wall on its left"},
     [ETHD__SIM_MEET_Y] = {"meet_y", "m", -10, 10, 0.25, "likewise"},
+    [ETHD__SIM_FINGER] = {"finger", "centre|rays|zones|nail|camera", 0, ETHD_READING_COUNT - 1, 0,
+                          "what measures the finger; not given: as the plant says"},
+    [ETHD__SIM_RATE] = {"finger_rate", "Hz", 1, 1e5, 300, "readings; not given: the sensor's own"},
+    [ETHD__SIM_LATENCY] = {"finger_latency", "s", 0, 1, 0, "likewise, from a sample to its delivery"},
+    [ETHD__SIM_NOISE] = {"finger_noise", "m", 0, 0.1, 0, "likewise: of a centre, a barrier's reach, a distance; sd"},
+    [ETHD__SIM_ZONES] = {"zones", "1", ETHD__ZONES_MIN, ETHD__ZONES_MAX, 12, "light barriers, whole"},
+    [ETHD__SIM_REACH] = {"zone_reach", "m", 1e-4, 0.1, 3.5e-3, "a barrier is lit while the finger is nearer"},
+    [ETHD__SIM_ANGLE] = {"nail_angle", "rad", -7, 7, 0, "toward the sensor that sees the nail's plate"},
 };
 
-const char *const ethd__sim_keys[] = {"plant", "reading", NULL};
+const char *const ethd__sim_keys[] = {"plant", "reading", "empty", NULL};
 
 static ethd_status refuse(ethd_error *error, ethd_status status, const ethd_setting *s, double found, double min,
                           double max) {
@@ -27,17 +36,25 @@ static ethd_status refuse(ethd_error *error, ethd_status status, const ethd_sett
 }
 
 static bool is_whole(int i, double value) {
-  return (i != ETHD__SIM_SEED && i != ETHD__SIM_TAP) || value == rint(value);
+  return (i != ETHD__SIM_SEED && i != ETHD__SIM_TAP && i != ETHD__SIM_ZONES) || value == rint(value);
+}
+
+/* One of the first `count` of them. */
+static ethd_status set_reading(const ethd_setting *s, int32_t count, ethd__sim_settings *out, ethd_error *error) {
+  out->reading = ethd_param_word(&ethd__sim_params[ETHD__SIM_FINGER], s->value);
+  return out->reading >= 0 && out->reading < count ? ETHD_OK : refuse(error, ETHD_E_UNKNOWN, s, NAN, NAN, NAN);
 }
 
 static ethd_status set_number(const ethd_setting *s, ethd__sim_settings *out, ethd_error *error) {
   int i = ethd_params_find(ethd__sim_params, ETHD__SIM_PARAMS, s->key);
   double value;
   if (i < 0) return refuse(error, ETHD_E_UNKNOWN, s, NAN, NAN, NAN);
+  if (i == ETHD__SIM_FINGER) return set_reading(s, ETHD_READING_COUNT, out, error);
   if (!ethd__number(s->value, strlen(s->value), &value)) return refuse(error, ETHD_E_SYNTAX, s, NAN, NAN, NAN);
   if (!(value >= ethd__sim_params[i].min && value <= ethd__sim_params[i].max) || !is_whole(i, value))
     return refuse(error, ETHD_E_RANGE, s, value, ethd__sim_params[i].min, ethd__sim_params[i].max);
   out->p[i] = value;
+  out->given |= UINT32_C(1) << i;
   return ETHD_OK;
 }
 
@@ -46,15 +63,34 @@ static ethd_status set(const ethd_setting *s, ethd__sim_settings *out, ethd_erro
     out->plant = s;
     return ETHD_OK;
   }
+  if (!strcmp(s->key, "empty")) {
+    out->no_finger = !strcmp(s->value, "yes");
+    if (out->no_finger || !strcmp(s->value, "no")) return ETHD_OK;
+    return refuse(error, ETHD_E_UNKNOWN, s, NAN, NAN, NAN);
+  }
   if (strcmp(s->key, "reading")) return set_number(s, out, error);
-  out->rays = !strcmp(s->value, "rays") ? 1 : !strcmp(s->value, "centre") ? 0 : -1;
-  return out->rays < 0 ? refuse(error, ETHD_E_UNKNOWN, s, NAN, NAN, NAN) : ETHD_OK;
+  return set_reading(s, ETHD_READING_RAYS + 1, out, error);
 }
 
 ethd_status ethd__sim_settings_read(const ethd_device_def *def, ethd__sim_settings *out, ethd_error *error) {
   ethd_status status = ETHD_OK;
-  *out = (ethd__sim_settings){.rays = -1};
+  *out = (ethd__sim_settings){.reading = -1};
   ethd_params_default(ethd__sim_params, ETHD__SIM_PARAMS, out->p);
   for (uint32_t i = 0; i < def->setting_count && !status; i++) status = set(&def->settings[i], out, error);
   return status;
+}
+
+void ethd__sim_settings_finger(const ethd__sim_settings *s, ethd_plant *plant) {
+  double zones;
+  const struct {
+    int key;
+    double *to;
+  } numbers[] = {{ETHD__SIM_RATE, &plant->rate},        {ETHD__SIM_LATENCY, &plant->latency},
+                 {ETHD__SIM_NOISE, &plant->noise},      {ETHD__SIM_ZONES, &zones},
+                 {ETHD__SIM_REACH, &plant->zone_reach}, {ETHD__SIM_ANGLE, &plant->nail_angle}};
+  if (s->reading >= 0) ethd_plant_finger(plant, s->reading);
+  zones = plant->zones;
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+    if (s->given >> numbers[i].key & 1) *numbers[i].to = s->p[numbers[i].key];
+  plant->zones = (int32_t)zones;
 }

@@ -2,7 +2,10 @@
 #ifndef ETHD_SIM_SETTINGS_H
 #define ETHD_SIM_SETTINGS_H
 
+#include <stdbool.h>
+
 #include "ethd/driver.h"
+#include "ethd/sim.h"
 
 enum {
   ETHD__SIM_STEP,
@@ -12,6 +15,13 @@ enum {
   ETHD__SIM_SPEED,
   ETHD__SIM_MEET_X,
   ETHD__SIM_MEET_Y,
+  ETHD__SIM_FINGER,
+  ETHD__SIM_RATE,
+  ETHD__SIM_LATENCY,
+  ETHD__SIM_NOISE,
+  ETHD__SIM_ZONES,
+  ETHD__SIM_REACH,
+  ETHD__SIM_ANGLE,
   ETHD__SIM_PARAMS
 };
 
@@ -21,10 +31,15 @@ extern const char *const ethd__sim_keys[]; /* NULL behind the last */
 typedef struct ethd__sim_settings {
   double p[ETHD__SIM_PARAMS];
   const ethd_setting *plant; /* NULL: n */
-  int rays;                  /* -1: as the plant says */
+  uint32_t given;            /* bit i: p[i] */
+  int32_t reading;           /* ETHD_READING_*, -1: as the plant says */
+  bool no_finger;            /* nobody's finger is in the ring: nothing presses, nothing is read */
 } ethd__sim_settings;
 
 /* Reads the settings; a refusal's line is the setting's. [main] */
 ethd_status ethd__sim_settings_read(const ethd_device_def *def, ethd__sim_settings *out, ethd_error *error);
+
+/* The sensor of the finger that they ask for, into a plant. [any] */
+void ethd__sim_settings_finger(const ethd__sim_settings *settings, ethd_plant *plant);
 
 #endif

@@ -29,6 +29,7 @@ ethd_status ethd_sim_create(const ethd_sim_def *def, ethd_sim **out, ethd_error 
   ethd_sim *sim = calloc(1, sizeof *sim);
   if (!sim) return ethd__sim_refuse(error, ETHD_E_MEMORY, "sim", NAN, NAN, NAN);
   sim->def = *def;
+  ethd__sensors_create(&sim->sensors, def);
   *out = sim;
   return ETHD_OK;
 }
@@ -43,7 +44,7 @@ static bool samples_rise(const ethd_path *path) {
     if (!(isfinite(s->t) && isfinite(s->x) && isfinite(s->y))) return false;
     if (i && !(s[0].t > s[-1].t)) return false;
   }
-  return 1;
+  return true;
 }
 
 static bool shape_is_good(const ethd_path *p) {

@@ -4,29 +4,28 @@
 
 #include "sim/series.h"
 
-#define LOCATED 1e-12 /* s */
-#define RUBBING 10.0  /* tanh is +-1 within 4e-9 beyond it */
-#define TURN 2.0      /* by so much its argument may change in a step that comes nearer to 0, */
-#define PACE 5e3      /* 1/s: and in a short stretch by less, so that halving that halves each step */
+#define LOCATED 1e-12  /* s */
+#define SHORTEST 1e-15 /* s: what turns within so little, or isn't a number, isn't followed */
+#define RUBBING 10.0   /* tanh is +-1 within 4e-9 beyond it */
+#define TURN 2.0       /* by so much its argument may change in a step that comes nearer to 0, */
+#define PACE 5e3       /* 1/s: and in a short stretch by less, so that halving that halves each step */
 
-typedef ethd__two two;
-
-static two at(const two *term, int order, double h) {
-  two y = term[order];
+static ethd__two at(const ethd__two *term, int order, double h) {
+  ethd__two y = term[order];
   for (int k = order - 1; k >= 0; k--) y = y * h + term[k];
   return y;
 }
 
-static double value(const two *term, int order, double h) { return at(term, order, h)[0]; }
+static double value(const ethd__two *term, int order, double h) { return at(term, order, h)[0]; }
 
-static double slope(const two *term, int order, double h) {
+static double slope(const ethd__two *term, int order, double h) {
   double y = order * term[order][0];
   for (int k = order - 1; k > 0; k--) y = y * h + k * term[k][0];
   return y;
 }
 
 /* How far y can go from where it begins within h: every term in full. */
-static double reach(const two *term, int order, double h) {
+static double reach(const ethd__two *term, int order, double h) {
   double y = fabs(term[order][0]);
   for (int k = order - 1; k > 0; k--) y = y * h + fabs(term[k][0]);
   return y * h;
@@ -34,7 +33,8 @@ static double reach(const two *term, int order, double h) {
 
 /* Where f, a value or a slope, times sign passes from below 0 to above, to LOCATED: regula falsi (Illinois).
    The end where it is above. */
-static double locate(double f(const two *, int, double), const two *term, int order, double sign, double high) {
+static double locate(double f(const ethd__two *, int, double), const ethd__two *term, int order, double sign,
+                     double high) {
   double low = 0, below = sign * f(term, order, 0), above = sign * f(term, order, high);
   int side = 0;
   while (high - low > LOCATED) {
@@ -57,7 +57,7 @@ static double locate(double f(const two *, int, double), const two *term, int or
 }
 
 /* Where sign * y becomes positive first within h, to LOCATED; INFINITY: nowhere. */
-static double rises(const two *term, int order, double sign, double h) {
+static double rises(const ethd__two *term, int order, double sign, double h) {
   if (sign * term[0][0] + reach(term, order, h) < 0) return INFINITY;
   if (!(sign * value(term, order, h) > 0)) {
     if (!(sign * term[1][0] > 0 && sign * slope(term, order, h) < 0)) return INFINITY;
@@ -83,14 +83,15 @@ static change next_change(const ethd__series *s, ethd__touch touch) {
   return apart.after <= other.after ? apart : other;
 }
 
-static void put(two x, double *out) {
+static void put(ethd__two x, double *out) {
   out[0] = x[0];
   out[1] = x[1];
 }
 
 /* Four polynomials of n + 1, n, n + 1, n terms, side by side. */
-static void evaluate(const two *x, const two *v, const two *y, const two *w, int n, double h, two out[4]) {
-  two a = x[n + 1], b = v[n], c = y[n + 1], d = w[n];
+static void evaluate(const ethd__two *x, const ethd__two *v, const ethd__two *y, const ethd__two *w, int n, double h,
+                     ethd__two out[4]) {
+  ethd__two a = x[n + 1], b = v[n], c = y[n + 1], d = w[n];
   for (int k = n; k > 0; k--) {
     a = a * h + x[k];
     b = b * h + v[k - 1];
@@ -105,12 +106,12 @@ static void evaluate(const two *x, const two *v, const two *y, const two *w, int
 
 static void move(const ethd__body *b, const ethd__series *s, const ethd__sim_motion *hand, double h,
                  ethd__sim_state *state) {
-  two out[4];
+  ethd__two out[4];
   evaluate(s->link, s->link_v, s->aside, s->aside_v, s->order, h, out);
   put(out[0], state->q + ETHD__LINK);
   put(out[1], state->v + ETHD__LINK);
-  put(out[2] + (two){hand->x.x, hand->x.y}, state->q + ETHD__FINGER);
-  put(out[3] + (two){hand->v.x, hand->v.y}, state->v + ETHD__FINGER);
+  put(out[2] + (ethd__two){hand->x.x, hand->x.y}, state->q + ETHD__FINGER);
+  put(out[3] + (ethd__two){hand->v.x, hand->v.y}, state->v + ETHD__FINGER);
   if (!b->compliant) return;
   put(at(s->motor, s->order + 1, h), state->q + ETHD__MOTOR);
   put(at(s->motor_v, s->order, h), state->v + ETHD__MOTOR);
@@ -146,7 +147,7 @@ void ethd__leg_next(const ethd__body *b, const ethd__piece *piece, double end, d
     leg->end = step < whole ? leg->begin + step : end;
     leg->hand = ethd__piece_at(piece, leg->end);
     move(b, s, &leg->hand, step, &leg->to);
-    if (!turns(b, most, &leg->from, &leg->to)) break;
+    if (!turns(b, most, &leg->from, &leg->to) || step < SHORTEST) break;
   }
   leg->to.clearance = s->clearance;
   if (step == c.after) leg->to.touch = c.touch;

@@ -18,7 +18,7 @@ typedef struct state {
   bool filled;
 } state;
 
-typedef struct reader {
+typedef struct drawing {
   XML_Parser xml;
   const char *name; /* of the file */
   const ethd_svg_options *options;
@@ -28,10 +28,10 @@ typedef struct reader {
   ethd__drawing drawing;
   state states[DEPTH];
   int depth;
-  int within; /* elements deep in one that is skipped, itself included; 0: not in one */
-} reader;
+  int within; /* depth within an element that is skipped, counting itself; 0: in none */
+} drawing;
 
-static void refuse(reader *r, const char *what, const char *found) {
+static void refuse(drawing *r, const char *what, const char *found) {
   char quote[ETHD_QUOTE_MAX];
   if (r->status) return;
   r->status =
@@ -42,8 +42,8 @@ static void refuse(reader *r, const char *what, const char *found) {
 
 /* ---- the page ---- */
 
-/* In m. */
-static double page_length(reader *r, ethd__attributes a, const char *name) {
+/* Returns a length of the page, m. */
+static double page_length(drawing *r, ethd__attributes a, const char *name) {
   const char *text = ethd__svg_attribute(a, name);
   double v = NAN;
   if (!text || strcmp(text, "100%") == 0) return NAN;
@@ -51,7 +51,7 @@ static double page_length(reader *r, ethd__attributes a, const char *name) {
   return v;
 }
 
-static bool view_box(reader *r, ethd__attributes a, double v[4]) {
+static bool view_box(drawing *r, ethd__attributes a, double v[4]) {
   const char *text = ethd__svg_attribute(a, "viewBox"), *p;
   if (!text) return false;
   p = ethd__svg_space(text);
@@ -62,7 +62,7 @@ static bool view_box(reader *r, ethd__attributes a, double v[4]) {
 }
 
 /* Converts user units to metres and turns y over. */
-static void open_page(reader *r, ethd__attributes a) {
+static void open_page(drawing *r, ethd__attributes a) {
   double w = page_length(r, a, "width"), h = page_length(r, a, "height");
   double v[4] = {0, 0, w / ETHD_SVG_PX, h / ETHD_SVG_PX}, scale = r->options->scale;
   bool view = view_box(r, a, v);
@@ -85,29 +85,30 @@ static bool is_hidden(ethd__attributes a) {
   return ethd__svg_property(a, "visibility", v) && (strcmp(v, "hidden") == 0 || strcmp(v, "collapse") == 0);
 }
 
-static void inherit(reader *r, ethd__attributes a, state *s) {
+static void inherit(drawing *r, ethd__attributes a, state *s) {
   static const char *const cutters[] = {"clip-path", "mask"};
   char v[64];
   if (ethd__svg_property(a, "fill", v) && strcmp(v, "inherit") != 0)
     s->filled = strcmp(v, "none") != 0 && strcmp(v, "transparent") != 0;
   for (int i = 0; i < 2; i++)
-    if (ethd__svg_property(a, cutters[i], v) && strcmp(v, "none") != 0) refuse(r, "clip-path and mask aren't taken", v);
+    if (ethd__svg_property(a, cutters[i], v) && strcmp(v, "none") != 0)
+      refuse(r, "clip-path and mask aren't supported", v);
   const char *transform = ethd__svg_attribute(a, "transform");
   if (transform && !ethd__svg_transform(transform, &s->m))
-    refuse(r, "transform: matrix, translate, scale and rotate are taken, that don't squeeze flat", transform);
+    refuse(r, "transform: matrix, translate, scale and rotate are supported, if they don't squeeze flat", transform);
 }
 
-static void skip(reader *r) {
+static void skip(drawing *r) {
   r->within = 1;
   r->notes->skipped++;
 }
 
-static void take(reader *r, const char *name, ethd__attributes a) {
+static void take(drawing *r, const char *name, ethd__attributes a) {
   state s = r->states[r->depth - 1];
   ethd__svg_wrong wrong = {"", NULL};
   int which = ethd__svg_shape(name);
   if (which == ETHD_SVG_UNKNOWN) {
-    refuse(r, "not taken; path, rect, circle, ellipse, line, polyline, polygon and g are", name);
+    refuse(r, "not supported; path, rect, circle, ellipse, line, polyline, polygon and g are", name);
   } else if (which == ETHD_SVG_SKIPPED || is_hidden(a)) {
     skip(r);
   } else if (r->depth == DEPTH) {
@@ -123,7 +124,7 @@ static void take(reader *r, const char *name, ethd__attributes a) {
 }
 
 static void XMLCALL start(void *user, const char *name, const char **attributes) {
-  reader *r = user;
+  drawing *r = user;
   const char *local = strrchr(name, BETWEEN);
   ethd__attributes a = (ethd__attributes)attributes;
   if (r->status) return;
@@ -148,7 +149,7 @@ static void XMLCALL start(void *user, const char *name, const char **attributes)
 }
 
 static void XMLCALL stop(void *user, const char *name) {
-  reader *r = user;
+  drawing *r = user;
   (void)name;
   if (r->within)
     r->within--;
@@ -159,34 +160,29 @@ static void XMLCALL stop(void *user, const char *name) {
 static void XMLCALL entity(void *user, const char *name, int parameter, const char *value, int length, const char *base,
                            const char *system, const char *public, const char *notation) {
   (void)parameter, (void)value, (void)length, (void)base, (void)system, (void)public, (void)notation;
-  refuse(user, "entities aren't taken", name);
+  refuse(user, "entities aren't supported", name);
 }
 
 /* ---- the whole ---- */
 
-static ethd_status say(reader *r, ethd_status status, const char *what) {
-  return ethd__say(r->message, status, "%s: %s", r->name, what);
-}
-
-static ethd_status read_all(reader *r, const char *text, size_t length) {
+static ethd_status read_all(drawing *r, const char *text, size_t length) {
   XML_SetUserData(r->xml, r);
   XML_SetElementHandler(r->xml, start, stop);
   XML_SetEntityDeclHandler(r->xml, entity);
   bool good = XML_Parse(r->xml, text, (int)length, XML_TRUE) == XML_STATUS_OK;
   if (r->status) return r->status;
-  if (r->drawing.status || XML_GetErrorCode(r->xml) == XML_ERROR_NO_MEMORY)
-    return say(r, ETHD_E_MEMORY, ethd_status_sentence(ETHD_E_MEMORY));
+  if (r->drawing.status || XML_GetErrorCode(r->xml) == XML_ERROR_NO_MEMORY) return ethd__no_memory(r->message, r->name);
   if (good) return ETHD_OK;
   unsigned long line = XML_GetCurrentLineNumber(r->xml);
   return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%lu: no XML: %s", r->name, line,
                    XML_ErrorString(XML_GetErrorCode(r->xml)));
 }
 
-static ethd_status build(reader *r, ethd_scene **out) {
+static ethd_status build(drawing *r, ethd_scene **out) {
   const ethd__drawing *d = &r->drawing;
   ethd_object_def *objects = malloc((d->object_count + 1) * sizeof *objects);
   ethd_error error;
-  if (!objects) return say(r, ETHD_E_MEMORY, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!objects) return ethd__no_memory(r->message, r->name);
   for (size_t i = 0; i < d->object_count; i++) {
     const ethd__drawn *o = &d->objects[i];
     objects[i] = (ethd_object_def){o->shape, -1, d->numbers + o->first, o->count, o->line};
@@ -201,15 +197,14 @@ static ethd_status build(reader *r, ethd_scene **out) {
 ethd_status ethd_svg_parse(const char *text, size_t length, const char *name, const ethd_svg_options *options,
                            ethd_scene **out, ethd_svg_notes *notes, char message[ETHD_MESSAGE_MAX]) {
   const char between[] = {BETWEEN, 0};
-  reader *r = calloc(1, sizeof *r);
+  drawing *r = calloc(1, sizeof *r);
   *out = NULL;
   *notes = (ethd_svg_notes){0};
   if (!r) return ethd__no_memory(message, name);
   r->name = name, r->options = options, r->notes = notes, r->message = message;
   r->drawing.tolerance = options->tolerance;
   r->xml = XML_ParserCreateNS(NULL, *between);
-  ethd_status status = r->xml && length <= INT32_MAX ? read_all(r, text, length)
-                                                     : say(r, ETHD_E_MEMORY, ethd_status_sentence(ETHD_E_MEMORY));
+  ethd_status status = r->xml && length <= INT32_MAX ? read_all(r, text, length) : ethd__no_memory(r->message, r->name);
   notes->blank = r->drawing.blank;
   if (!status) status = build(r, out);
   if (r->xml) XML_ParserFree(r->xml);

@@ -13,7 +13,7 @@ static bool fail(ethd__drawing *d, ethd_status status) {
   return false;
 }
 
-/* Room for one more. */
+/* Makes room for one more. */
 static bool grow(ethd__drawing *d, void *array, size_t count, size_t *room, size_t size) {
   void *old, *more;
   if (d->status) return false;
@@ -32,7 +32,7 @@ static void put(ethd__drawing *d, double v) {
   if (grow(d, &d->numbers, d->number_count, &d->number_room, sizeof *d->numbers)) d->numbers[d->number_count++] = v;
 }
 
-/* All numbers since `chain`. */
+/* Makes an object of all numbers since `chain`. */
 static void finish(ethd__drawing *d, ethd_shape shape) {
   if (grow(d, &d->objects, d->object_count, &d->object_room, sizeof *d->objects))
     d->objects[d->object_count++] = (ethd__drawn){shape, d->chain, d->number_count - d->chain, d->line};
@@ -81,7 +81,7 @@ void ethd__draw_end(ethd__drawing *d, bool closed, bool filled) {
 
 /* ---- curves ---- */
 
-/* A whole number of edges from a bound that may be anything. */
+/* Turns a bound, which may be any number, into a whole number of edges. */
 static int edges(ethd__drawing *d, double n) {
   if (n <= ETHD_SVG_POINTS_MAX) return n > 1 ? (int)ceil(n) : 1;
   fail(d, ETHD_E_FULL);
@@ -102,7 +102,7 @@ static ethd_vec between(ethd_vec a, ethd_vec b, double t) {
   return (ethd_vec){a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
 }
 
-/* de Casteljau */
+/* Evaluates a curve by de Casteljau's algorithm. */
 static ethd_vec at(const ethd_vec *p, int degree, double t) {
   ethd_vec q[4];
   memcpy(q, p, ((size_t)degree + 1) * sizeof *p);

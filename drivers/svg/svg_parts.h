@@ -1,6 +1,6 @@
 /* Inside the reader of drawings: text of attributes, and what is drawn. All [main]. */
-#ifndef ETHD_FILE_SVG_PARTS_H
-#define ETHD_FILE_SVG_PARTS_H
+#ifndef ETHD__SVG_SVG_PARTS_H
+#define ETHD__SVG_SVG_PARTS_H
 
 #include <stdbool.h>
 
@@ -13,19 +13,19 @@
 /* name, value, name, value, ..., NULL */
 typedef const char *const *ethd__attributes;
 
-/* NULL: it isn't there. */
+/* Returns the value of an attribute, NULL if there is none of this name. */
 const char *ethd__svg_attribute(ethd__attributes a, const char *name);
 
-/* A property of the style, else the attribute; false: neither. */
+/* Gives a property of the style or else the attribute; returns false if there is neither. */
 bool ethd__svg_property(ethd__attributes a, const char *name, char value[64]);
 
-/* Spaces and at most one comma; where that leads to. */
+/* Skips spaces and at most one comma; returns where that leads. */
 const char *ethd__svg_space(const char *p);
 
-/* The number at *p and what separates it from the next. */
+/* Reads the number at *p and what separates it from the next. */
 bool ethd__svg_number(const char **p, double *out);
 
-/* A number of px, which may go unsaid, mm, cm, in, pt, pc or Q; 96 px are an inch. */
+/* Reads a length with its unit: px, which may be left out, mm, cm, in, pt, pc or Q; 96 px are an inch. */
 bool ethd__svg_length(const char *text, bool in_metres, double *out);
 
 #define ETHD_SVG_PX (0.0254 / 96) /* m */
@@ -35,7 +35,7 @@ typedef struct ethd__matrix {
   double m[6];
 } ethd__matrix;
 
-/* First b, then a. */
+/* Returns the matrix that applies first b, then a. */
 ethd__matrix ethd__matrix_times(const ethd__matrix *a, const ethd__matrix *b);
 
 static inline ethd_vec ethd__matrix_turn(const ethd__matrix *m, double x, double y) {
@@ -46,7 +46,7 @@ static inline ethd_vec ethd__matrix_put(const ethd__matrix *m, double x, double 
   return ethd_vec_add(ethd__matrix_turn(m, x, y), (ethd_vec){m->m[4], m->m[5]});
 }
 
-/* A list of transforms onto `m`; false: not one of those that are taken. */
+/* Applies a list of transforms to `m`; returns false if one isn't supported. */
 bool ethd__svg_transform(const char *text, ethd__matrix *m);
 
 /* ---- what is drawn, in metres: svg_draw.c ---- */
@@ -70,13 +70,14 @@ typedef struct ethd__drawing {
 
 void ethd__draw_object(ethd__drawing *d, ethd_shape shape, const double *numbers, size_t count);
 
-/* A chain of points. */
+/* Adds a point to the chain. */
 void ethd__draw_point(ethd__drawing *d, ethd_vec p);
-/* A Bezier curve from p[0], where the chain is, to p[degree]. */
+/* Adds a Bezier curve from p[0], where the chain is, to p[degree]. */
 void ethd__draw_curve(ethd__drawing *d, const ethd_vec *p, int degree);
-/* centre + u cos a + v sin a, a from `from` on by `turn`; the first point is drawn, the last isn't. */
+/* Adds the arc centre + u cos a + v sin a, where a runs from `from` to `from` + `turn`; the first point is drawn, the
+   last isn't. */
 void ethd__draw_arc(ethd__drawing *d, ethd_vec centre, ethd_vec u, ethd_vec v, double from, double turn);
-/* Makes an object of it, if it has a length. */
+/* Makes an object of the chain, if it has a length. */
 void ethd__draw_end(ethd__drawing *d, bool closed, bool filled);
 
 /* ---- elements: svg_shapes.c, svg_path.c ---- */
@@ -86,12 +87,12 @@ typedef struct ethd__svg_wrong {
   const char *found; /* NULL: nothing to show */
 } ethd__svg_wrong;
 
-/* Absent: `otherwise`. NaN when it is wrong. */
+/* Returns the attribute's length, `otherwise` if there is none, NaN if it is wrong. */
 double ethd__svg_length_of(ethd__attributes a, const char *name, double otherwise, ethd__svg_wrong *wrong);
 
 enum { ETHD_SVG_UNKNOWN = -1, ETHD_SVG_SKIPPED = -2 };
 
-/* Which element this is. */
+/* Returns which element this is. */
 int ethd__svg_shape(const char *name);
 
 void ethd__svg_draw(int which, ethd__drawing *d, ethd__attributes a, const ethd__matrix *m, bool filled,

@@ -10,7 +10,7 @@
 
 #define TURN 6.28318530717958647692
 
-/* Of a closed part that is filled. */
+/* The extent of a closed part that is filled. */
 typedef struct box {
   double x_min, x_max, y_min, y_max;
 } box;
@@ -23,7 +23,7 @@ typedef struct path {
   ethd_vec at, start, control; /* control: the last curve's second last point */
   char last;                   /* the last command, in capitals */
   bool filled, open;           /* open: a part is being drawn */
-  size_t objects;              /* there were before */
+  size_t objects;              /* how many there were before this path */
   const char *wrong;
 } path;
 
@@ -77,8 +77,8 @@ static void curve_to(path *q, const ethd_vec *p, int degree) {
 
 /* ---- arcs ---- */
 
-/* From the two ends to the centre: in the ellipse's own frame, where it is a unit circle about (cx, cy), half
-   the way between the ends is (hx, hy) and the centre lies beside the middle. Radii that are too small grow. */
+/* Finds the centre from the two ends. In the ellipse's own frame it is a unit circle about (cx, cy), half of the vector
+   between the ends is (hx, hy), and the centre lies beside the middle. Radii that are too small grow. */
 static void arc_to(path *q, const double *v, ethd_vec to) {
   double rx = fabs(v[0]), ry = fabs(v[1]), c, s;
   begin(q);
@@ -104,7 +104,7 @@ static void arc_to(path *q, const double *v, ethd_vec to) {
   q->at = to;
 }
 
-/* Flags are one digit each and need no separator. */
+/* Reads a flag, which is one digit and needs no separator. */
 static bool flag(path *q, double *out) {
   if (*q->p != '0' && *q->p != '1') return refuse(q, "a flag of an arc isn't 0 or 1");
   *out = *q->p - '0';
@@ -121,7 +121,7 @@ static bool arc(path *q, bool relative) {
 
 /* ---- commands ---- */
 
-/* The control point of the last curve turned about its end; the end if that was no such curve. */
+/* Returns the control point of the last curve turned about its end, or the end if the last command wasn't such a curve. */
 static ethd_vec mirrored(const path *q, const char *after) {
   return strchr(after, q->last) ? ethd_vec_sub(ethd_vec_scale(2, q->at), q->control) : q->at;
 }
@@ -138,7 +138,7 @@ static bool curve(path *q, char command, bool relative) {
   return true;
 }
 
-/* One set of numbers. */
+/* Reads and draws one set of a command's numbers. */
 static bool once(path *q, char command, bool relative) {
   double v[2];
   switch (command) {
@@ -206,14 +206,14 @@ typedef struct box_edge {
   bool ends;
 } box_edge;
 
-/* What touches has begun before the other ends. */
+/* Orders edges so that one of two boxes that touch begins before the other ends. */
 static int by_x(const void *a, const void *b) {
   const box_edge *p = a, *q = b;
   if (p->x != q->x) return p->x < q->x ? -1 : 1;
   return (int)p->ends - (int)q->ends;
 }
 
-/* Boxes that share a height are equal here. */
+/* Orders boxes by height; boxes that share a height are equal here. */
 static int by_y(const void *a, const void *b) {
   const box *p = a, *q = b;
   return p->y_max < q->y_min ? -1 : p->y_min > q->y_max;
@@ -221,8 +221,8 @@ static int by_y(const void *a, const void *b) {
 
 static void keep(void *of) { (void)of; }
 
-/* From left to right, with a tree of the boxes that have begun and not ended: they lie apart in height, or two overlap.
-   True without memory. */
+/* Sweeps from left to right with a tree of the boxes that have begun and not ended. These lie apart in height, or else
+   two overlap. Returns true also if there is no memory. */
 static bool any_overlap(box_edge *edges, size_t count) {
   void *tree = NULL;
   bool overlap = false;
@@ -239,7 +239,7 @@ static bool any_overlap(box_edge *edges, size_t count) {
   return overlap;
 }
 
-/* Parts of one filled path that lie side by side are solids of their own; else one may be a hole. */
+/* Returns true if a part may be a hole. Parts of one filled path that lie side by side are solids of their own. */
 static bool may_have_holes(const path *q) {
   const ethd__drawing *d = q->d;
   size_t n = 0, count = d->object_count - q->objects;

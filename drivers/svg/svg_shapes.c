@@ -1,4 +1,4 @@
-/* Shapes of a drawing as objects. */
+/* Makes objects of a drawing's shapes. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -32,7 +32,7 @@ static double length_of(const shape *s, const char *name, double otherwise) {
   return ethd__svg_length_of(s->a, name, otherwise, s->wrong);
 }
 
-/* A shape without size is not drawn. */
+/* Returns true if a size is positive, so that the shape is drawn. */
 static bool is_positive(const shape *s, double v, const char *name) {
   if (v > 0) return true;
   if (v < 0)
@@ -44,7 +44,7 @@ static bool is_positive(const shape *s, double v, const char *name) {
 
 /* ---- shapes ---- */
 
-/* What a unit along x and one along y become, in m. */
+/* What a unit along x and a unit along y become, m. */
 typedef struct axes {
   ethd_vec u, v;
   bool square, alike; /* at right angles; and equally long */

@@ -34,7 +34,7 @@ static bool copy(const char *from, size_t n, char value[64]) {
   return true;
 }
 
-/* "name: value; name: value" */
+/* Finds a property in a style such as "name: value; name: value". */
 static bool of_style(const char *style, const char *name, char value[64]) {
   size_t length = strlen(name);
   while (*(style = blanks(style))) {
@@ -61,7 +61,7 @@ bool ethd__svg_property(ethd__attributes a, const char *name, char value[64]) {
 
 /* ---- numbers ---- */
 
-/* Leaves *p behind the number itself. A text holds many: none but the next is looked at. */
+/* Reads a number and leaves *p after it. It looks at no more of the text than this number, since there may be many. */
 static bool number(const char **p, double *out) {
   char text[128];
   const char *start = *p, *limit = start + strnlen(start, sizeof text);
@@ -107,7 +107,7 @@ ethd__matrix ethd__matrix_times(const ethd__matrix *a, const ethd__matrix *b) {
 
 static ethd__matrix moved(double x, double y) { return (ethd__matrix){{1, 0, 0, 1, x, y}}; }
 
-/* Quarter turns are exact. */
+/* Returns a rotation about (x, y); quarter turns are exact. */
 static ethd__matrix rotated(double degrees, double x, double y) {
   double c, s, quarters = degrees / 90;
   if (quarters == rint(quarters)) {

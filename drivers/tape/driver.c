@@ -1,19 +1,19 @@
-/* A recorded session as a device: read gives the samples as they were, write compares the commands with those
-   that answered them. So a session runs anew without its hardware, through the same programs.
+/* A recorded session as a device: read gives the samples as they were, and write compares the commands with those
+   that were recorded. So a session can run again without its hardware, through the same programs.
 
        [device]
        driver = replay
-       folder = session1          as ethd-run --record has written it
+       folder = session1          which ethd-run --record has written
 
-   Compared to the bit: the torque of each tick; while a soft start lets a share of it through, that both joints
-   have one share, and that it rises. Differences are counted and make stop say ETHD_E_DIFFERS. A run in real time
-   that is late anywhere has other periods, and so other commands: on the virtual clock there are none but true
-   ones. Behind the last tick the device can't be read.
+   The torque of each tick must be equal to the bit. While a soft start lets a share of it through, both joints must have
+   the same share, and it must rise. Differences are counted and make stop return ETHD_E_DIFFERS. A run in real time that
+   is late anywhere has other periods and so other commands; on the virtual clock every difference is a real one. After
+   the last tick the device can't be read.
 
-   A device gives samples and takes torques; setups are posted by who runs it. So what was commanded while the
-   session ran (transition, set, ack, enable) must be commanded again at the same instants, as by the same lines
-   on the standard input of ethd-run --virtual; what is left out shows as a difference. ethd-replay --verify takes
-   the commands from the recording itself. */
+   A device gives samples and takes torques, but a program posts the setups. So what was commanded while the session ran
+   (transition, set, ack, enable) must be commanded again at the same instants, for instance by the same lines on the
+   standard input of ethd-run --virtual; what is left out shows as a difference. ethd-replay --verify takes the commands
+   from the recording itself. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -27,13 +27,13 @@
 
 typedef struct replay {
   ethd__tape tape;
-  size_t next;     /* row that read gives */
-  size_t answered; /* rows whose command has come: the safe one of an end is beside them */
-  int64_t waits;   /* periods that it was waited for */
+  size_t next;     /* the row that read gives next */
+  size_t answered; /* rows whose command has come; the safe command at the end isn't one of them */
+  int64_t waits;   /* periods in which there was no sample */
   double share;    /* of the last command */
   uint64_t compared, different;
-  double first; /* row that differs, -1: none */
-  bool runs;    /* 1: started anew while it plays, after a fault: it plays on */
+  double first; /* the first row that differs, -1: none */
+  bool runs;    /* 1: it plays; a start after a fault doesn't begin again */
   char remark[288];
 } replay;
 
@@ -85,7 +85,7 @@ static ethd_status replay_start(void *device) {
 
 /* ---- [rt] ---- */
 
-/* Plays the periods that were missed before a sample: they bring no sample. */
+/* Plays the recording; the periods that were missed before a sample give none. */
 static ethd_status replay_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
   replay *r = device;
   (void)now_ns;
@@ -107,7 +107,7 @@ static bool same_share(const double torque[2], const double recorded[2], double 
   return true;
 }
 
-/* The command of a row; in *share what of the recorded torque it lets through. */
+/* Returns true if a command is the row's; *share is how much of the recorded torque it lets through. */
 static bool is_same(const replay *r, const ethd_trace *row, const ethd_command *c, double *share) ETHD_RT {
   int big = fabs(row->tau[1]) > fabs(row->tau[0]);
   *share = r->share;
@@ -184,4 +184,5 @@ const ethd_driver ethd_driver_replay = {
     .dynamics = replay_dynamics,
     .figures = replay_figures,
     .remark = replay_remark,
+    .prepare = replay_open, /* it touches nothing */
 };

@@ -11,7 +11,7 @@
 
 static ethd_status no_memory(const char *folder, char *message) { return ethd__no_memory(message, folder); }
 
-/* What the device allowed stands before the first row. */
+/* Takes the device's limits from the events before the first row. */
 static ethd_status take_device(const ethd__record_events *events, ethd__tape *out, char *message) {
   ethd_config *config;
   ethd_status status = ethd_config_load(NULL, &config, message);
@@ -34,9 +34,11 @@ static ethd_status take_device(const ethd__record_events *events, ethd__tape *ou
   return status;
 }
 
-static bool changes(const ethd__record_event *e) { return strcmp(e->kind, "fault") != 0; }
+static bool changes(const ethd__record_event *e) {
+  return strcmp(e->kind, "fault") && strcmp(e->kind, "lost") && strcmp(e->kind, "thinned");
+}
 
-/* The first command that was given while the recording ran. */
+/* Takes the first command that was given while the recording ran. */
 static void take_change(const ethd__record_events *events, ethd__tape *tape) {
   tape->changed = tape->count;
   for (size_t i = 0; i < events->count; i++) {

@@ -1,19 +1,19 @@
 /* A recording as a device plays it: samples, the torques that answered them, the device's limits. */
-#ifndef ETHD_REPLAY_TAPE_H
-#define ETHD_REPLAY_TAPE_H
+#ifndef ETHD__TAPE_TAPE_H
+#define ETHD__TAPE_TAPE_H
 
 #include "ethd/record.h"
 
 typedef struct ethd__tape {
   ethd_trace *rows;
   size_t count;
-  size_t changed;   /* the first row behind a command that changed something; count: there was none */
-  char change[128]; /* that command, as events.csv has it: "transition smooth" */
+  size_t changed;   /* the first row after a command that changed something; count: there was none */
+  char change[128]; /* that command as in events.csv: "transition smooth" */
   ethd_limits limits;
   ethd_dynamics dynamics;
 } ethd__tape;
 
-/* A folder that a run has recorded. On failure *out is empty and message holds the one line. [main] */
+/* Loads a folder that a run has recorded. On failure *out is empty and message holds one line. [main] */
 ETHD_MUST_CHECK ethd_status ethd__tape_load(const char *folder, ethd__tape *out, char message[ETHD_MESSAGE_MAX]);
 void ethd__tape_free(ethd__tape *tape);
 

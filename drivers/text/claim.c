@@ -14,7 +14,7 @@
 #include "text/text.h"
 
 #define LOCK ".lock"
-#define TRIES 100 /* a lock whose owner removes it just now is taken anew */
+#define TRIES 100 /* how often to try again when a lock's owner removes it at the same time */
 
 static ethd_status refuse(const char *path, char *message) {
   return ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
@@ -26,7 +26,7 @@ static bool matches(const char *const *own, const char *name) {
   return false;
 }
 
-/* Calls `each` for the entries that match, until it says so; whether it did. */
+/* Calls `each` for the entries that match until it returns true; returns whether it did. */
 static bool any(const char *folder, const char *const *own, bool (*each)(int folder, const char *name, void *user),
                 void *user) {
   DIR *entries = opendir(folder);
@@ -52,7 +52,7 @@ static ethd_status make_folder(const char *folder, char *message) {
   return refuse(folder, message);
 }
 
-/* True: fd is the file that stands there now. */
+/* Returns true if fd is the file that is at this path now. */
 static bool is_at(int fd, const char *path) {
   struct stat own, there;
   return fstat(fd, &own) == 0 && stat(path, &there) == 0 && own.st_ino == there.st_ino && own.st_dev == there.st_dev;
@@ -65,16 +65,16 @@ static ethd_status lock(const char *folder, int how, ethd__claim *out, char *mes
     out->fd = open(out->path, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (out->fd < 0) return refuse(out->path, message);
     if (flock(out->fd, how) != 0)
-      return errno == EWOULDBLOCK ? ethd__say(message, ETHD_E_ARGUMENT, "%s: another program writes there now", folder)
+      return errno == EWOULDBLOCK ? ethd__say(message, ETHD_E_ARGUMENT, "%s: another program is writing there", folder)
                                   : refuse(out->path, message);
     if (is_at(out->fd, out->path)) return ETHD_OK;
     close(out->fd);
     out->fd = -1;
   }
-  return ethd__say(message, ETHD_E_FILE, "%s: other programs write there now", folder);
+  return ethd__say(message, ETHD_E_FILE, "%s: other programs are writing there", folder);
 }
 
-/* Without a claim nothing of the lock's owner is removed. */
+/* Gives up, and doesn't remove the lock if it is another program's. */
 static void let_go(ethd__claim *claim) {
   if (claim->fd >= 0) close(claim->fd);
   free(claim->path);

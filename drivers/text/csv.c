@@ -16,25 +16,25 @@ typedef struct cell {
   size_t length;
 } cell;
 
-typedef struct reader {
+typedef struct table {
   const char *at, *end; /* of the present line */
   const char *rest, *text_end;
   const char *name;
   size_t line;
   bool more; /* cells are left in the line */
   char *message;
-} reader;
+} table;
 
-static ethd_status refuse(const reader *r, ethd_status status, const char *column, const char *what) {
+static ethd_status refuse(const table *r, ethd_status status, const char *column, const char *what) {
   return ethd__say(r->message, status, "%s:%zu: %s%s%s", r->name, r->line, column ? column : "", column ? ": " : "",
                    what);
 }
 
-static ethd_status no_memory(const reader *r) { return ethd__no_memory(r->message, r->name); }
+static ethd_status no_memory(const table *r) { return ethd__no_memory(r->message, r->name); }
 
 /* ---- lines and cells ---- */
 
-static bool next_line(reader *r) {
+static bool next_line(table *r) {
   if (r->rest >= r->text_end) return false;
   const char *newline = memchr(r->rest, '\n', (size_t)(r->text_end - r->rest));
   r->at = r->rest;
@@ -51,19 +51,19 @@ static void trim(cell *c) {
   while (c->length && (c->text[c->length - 1] == ' ' || c->text[c->length - 1] == '\t')) c->length--;
 }
 
-/* A cell in quotes; a doubled quote stands for one and is kept as it is: no name or number has any. */
-static ethd_status quoted_cell(reader *r, cell *out) {
+/* Reads a cell in quotes. A doubled quote means one but is kept as it is, since no name or number has any. */
+static ethd_status quoted_cell(table *r, cell *out) {
   const char *p = r->at + 1;
   while (p < r->end && !(*p == '"' && !(p + 1 < r->end && p[1] == '"'))) p += *p == '"' ? 2 : 1;
   if (p >= r->end) return refuse(r, ETHD_E_SYNTAX, NULL, "a quote that isn't closed on its line");
   *out = (cell){r->at + 1, (size_t)(p - r->at - 1)};
   r->at = p + 1;
   if (r->at < r->end && *r->at != ',')
-    return refuse(r, ETHD_E_SYNTAX, NULL, "text behind a closing quote, a comma is allowed");
+    return refuse(r, ETHD_E_SYNTAX, NULL, "text after a closing quote, a comma is allowed");
   return ETHD_OK;
 }
 
-static ethd_status next_cell(reader *r, cell *out) {
+static ethd_status next_cell(table *r, cell *out) {
   if (r->at < r->end && *r->at == '"') {
     ethd_status status = quoted_cell(r, out);
     if (status) return status;
@@ -80,7 +80,7 @@ static ethd_status next_cell(reader *r, cell *out) {
 
 /* ---- header ---- */
 
-/* map[i]: column of the i-th cell of a row, -1: not kept. */
+/* map[i]: the column of the i-th cell of a row; -1: the cell isn't kept. */
 typedef struct layout {
   size_t cells;
   int map[COLUMNS_MAX];
@@ -94,22 +94,22 @@ static bool is_wanted(const char *const *wanted, const char *name) {
   return false;
 }
 
-static ethd_status check_name(const reader *r, const cell *c, const layout *l) {
+static ethd_status check_name(const table *r, const cell *c, const layout *l) {
   char quote[ETHD_QUOTE_MAX];
   if (!c->length) return refuse(r, ETHD_E_SYNTAX, NULL, "a column without a name; the first line names the columns");
   for (size_t i = 0; i < l->cells; i++)
     if (strlen(l->names[i]) == c->length && memcmp(l->names[i], c->text, c->length) == 0)
-      return ethd__say(r->message, ETHD_E_DUPLICATE, "%s:%zu: the column %s stands twice", r->name, r->line,
+      return ethd__say(r->message, ETHD_E_DUPLICATE, "%s:%zu: the column %s occurs twice", r->name, r->line,
                        ethd__quote(c->text, c->length, quote));
   return ETHD_OK;
 }
 
-/* Columns that nobody asked for may have any name, and none. */
-static ethd_status header_name(const reader *r, const cell *c, layout *l, const char *const *wanted, ethd_csv *out) {
+/* Reads a name. Columns that nobody asked for may have any name, or none. */
+static ethd_status header_name(const table *r, const cell *c, layout *l, const char *const *wanted, ethd_csv *out) {
   char quote[ETHD_QUOTE_MAX];
   double number;
   if (!l->cells && ethd__number(c->text, c->length, &number))
-    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: found %s, but the first line names the columns", r->name,
+    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: found %s, but the first line must name the columns", r->name,
                      r->line, ethd__quote(c->text, c->length, quote));
   if (l->cells == COLUMNS_MAX) return refuse(r, ETHD_E_RANGE, NULL, "over 1024 columns");
   char *name = strndup(c->text, c->length);
@@ -125,7 +125,7 @@ static ethd_status header_name(const reader *r, const cell *c, layout *l, const 
   return ETHD_OK;
 }
 
-static ethd_status keep_names(const reader *r, const layout *l, ethd_csv *out) {
+static ethd_status keep_names(const table *r, const layout *l, ethd_csv *out) {
   out->names = calloc(out->columns + 1, sizeof *out->names);
   if (!out->names) return no_memory(r);
   for (size_t i = 0; i < l->cells; i++)
@@ -133,7 +133,7 @@ static ethd_status keep_names(const reader *r, const layout *l, ethd_csv *out) {
   return ETHD_OK;
 }
 
-static ethd_status read_header(reader *r, layout *l, const char *const *wanted, ethd_csv *out) {
+static ethd_status read_header(table *r, layout *l, const char *const *wanted, ethd_csv *out) {
   cell c;
   if (!next_line(r))
     return ethd__say(r->message, ETHD_E_SYNTAX, "%s: is empty; a first line that names the columns is needed", r->name);
@@ -147,7 +147,7 @@ static ethd_status read_header(reader *r, layout *l, const char *const *wanted, 
 
 /* ---- rows ---- */
 
-static ethd_status store(const reader *r, const cell *c, const char *column, size_t index, ethd_csv *out) {
+static ethd_status store(const table *r, const cell *c, const char *column, size_t index, ethd_csv *out) {
   char quote[ETHD_QUOTE_MAX];
   if (!c->length) {
     out->values[index] = NAN;
@@ -159,7 +159,7 @@ static ethd_status store(const reader *r, const cell *c, const char *column, siz
                    r->line, column, ethd__quote(c->text, c->length, quote));
 }
 
-static ethd_status read_row(reader *r, const layout *l, ethd_csv *out) {
+static ethd_status read_row(table *r, const layout *l, ethd_csv *out) {
   size_t i = 0;
   cell c;
   for (; r->more; i++) {
@@ -185,7 +185,7 @@ static size_t count_lines(const char *p, const char *end) {
   return n;
 }
 
-static ethd_status read_rows(reader *r, const layout *l, ethd_csv *out) {
+static ethd_status read_rows(table *r, const layout *l, ethd_csv *out) {
   size_t room = count_lines(r->rest, r->text_end);
   if (room > ROWS_MAX)
     return ethd__say(r->message, ETHD_E_RANGE, "%s: %zu rows, at most %u are allowed", r->name, room, ROWS_MAX);
@@ -202,16 +202,16 @@ static ethd_status read_rows(reader *r, const layout *l, ethd_csv *out) {
 
 /* ---- files ---- */
 
-static ethd_status check_text(const reader *r) {
+static ethd_status check_text(const table *r) {
   const char *zero = memchr(r->rest, 0, (size_t)(r->text_end - r->rest));
   if (!zero) return ETHD_OK;
-  return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: a byte 0: this is no text", r->name,
+  return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: a byte 0: this isn't text", r->name,
                    count_lines(r->rest, zero) + (zero == r->rest || zero[-1] == '\n'));
 }
 
 ethd_status ethd_csv_parse(const char *text, size_t length, const char *name, const char *const *wanted, ethd_csv *out,
                            char message[ETHD_MESSAGE_MAX]) {
-  reader r = {.rest = text, .text_end = text + length, .name = name, .message = message};
+  table r = {.rest = text, .text_end = text + length, .name = name, .message = message};
   layout *l = calloc(1, sizeof *l);
   *out = (ethd_csv){.path = strdup(name)};
   ethd_status status = l && out->path ? check_text(&r) : no_memory(&r);

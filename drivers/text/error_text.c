@@ -12,7 +12,7 @@ static void keep_one_line(char *text) {
     if ((unsigned char)*text < 0x20 || *text == 0x7f) *text = '?';
 }
 
-/* A path may be longer than a message: what stands before and behind its middle says more. */
+/* A path may be longer than a message. Then its middle is left out, since its ends say more. */
 void ethd__say_all(char message[ETHD_MESSAGE_MAX], const char *format, va_list args) {
   char *whole;
   int length = vasprintf(&whole, format, args);
@@ -55,7 +55,7 @@ const char *ethd__quote(const char *word, size_t length, char out[ETHD_QUOTE_MAX
   return out;
 }
 
-/* Numbers that are NaN are not mentioned. */
+/* Writes the numbers of an error that aren't NaN. */
 static void numbers(const ethd_error *error, char *out, size_t room) {
   int n = 0;
   out[0] = 0;

@@ -7,8 +7,8 @@
 
 #include "text/error_text.h"
 
-#define LINE_MAX_LENGTH 197u /* inih keeps 200 bytes of a line, end included */
-#define NAME_MAX_LENGTH 49u  /* and 50 of a section's name */
+#define LINE_MAX_LENGTH 197u /* inih keeps 200 bytes of a line with its end */
+#define NAME_MAX_LENGTH 49u  /* and 50 bytes of a section's name */
 
 typedef struct feed {
   const char *at, *end;
@@ -23,21 +23,21 @@ typedef struct feed {
 
 /* ---- lines, before inih sees them ---- */
 
-typedef struct span {
+typedef struct key_span {
   const char *text;
   size_t length;
-} span;
+} key_span;
 
 static bool blank(char c) { return c == ' ' || c == '\t'; }
 
-static span trimmed(span s) {
+static key_span trimmed(key_span s) {
   while (s.length && blank(*s.text)) s.text++, s.length--;
   while (s.length && blank(s.text[s.length - 1])) s.length--;
   return s;
 }
 
-/* Up to a comment. Builds of inih differ in what they take for one; this decides for all. */
-static span uncommented(span s) {
+/* Returns a line up to its comment. Builds of inih differ in what they take for a comment, so this decides for all. */
+static key_span uncommented(key_span s) {
   s = trimmed(s);
   if (s.length && (*s.text == '#' || *s.text == ';')) s.length = 0;
   for (size_t i = 1; i < s.length; i++)
@@ -45,60 +45,60 @@ static span uncommented(span s) {
   return trimmed(s);
 }
 
-static span next_line(feed *f) {
+static key_span next_line(feed *f) {
   const char *newline = memchr(f->at, '\n', (size_t)(f->end - f->at));
-  span s = {f->at, (size_t)((newline ? newline : f->end) - f->at)};
+  key_span s = {f->at, (size_t)((newline ? newline : f->end) - f->at)};
   f->at = newline ? newline + 1 : f->end;
   f->line++;
   if (s.length && s.text[s.length - 1] == '\r') s.length--;
   return s;
 }
 
-static void check_text(feed *f, span s) {
+static void check_text(feed *f, key_span s) {
   for (size_t i = 0; i < s.length; i++) {
     unsigned char c = (unsigned char)s.text[i];
     if (c >= ' ' && c != 0x7f) continue;
     if (c == '\t') continue;
-    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a byte %u: this is no text", f->name, f->line, c);
+    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a byte %u: this isn't text", f->name, f->line, c);
     return;
   }
 }
 
-/* inih says nothing of a section without keys. */
-static void keep_section(feed *f, span name) {
+/* Keeps a section here, because inih doesn't report one without keys. */
+static void keep_section(feed *f, key_span name) {
   ethd_ini *ini = f->out;
   if (ini->section_count == ETHD_INI_SECTIONS_MAX) {
     REFUSE(f, ETHD_E_RANGE, "%s:%d: over %u sections", f->name, f->line, ETHD_INI_SECTIONS_MAX);
     return;
   }
   char *copy = strndup(name.text, name.length);
-  if (!copy) REFUSE(f, ETHD_E_MEMORY, "%s: %s", f->name, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!copy) f->status = ethd__no_memory(f->message, f->name);
   if (copy) ini->sections[ini->section_count++] = (ethd_ini_section){copy, f->line};
 }
 
-static void check_section(feed *f, span s) {
+static void check_section(feed *f, key_span s) {
   char quote[ETHD_QUOTE_MAX];
   const char *close = memchr(s.text, ']', s.length);
   if (!close)
     REFUSE(f, ETHD_E_SYNTAX, "%s:%d: found %s, a section needs its ]", f->name, f->line,
            ethd__quote(s.text, s.length, quote));
   else if (close != s.text + s.length - 1)
-    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: found %s, nothing is allowed behind ]", f->name, f->line,
+    REFUSE(f, ETHD_E_SYNTAX, "%s:%d: found %s, nothing is allowed after ]", f->name, f->line,
            ethd__quote(s.text, s.length, quote));
   else if (s.length - 2 > NAME_MAX_LENGTH)
     REFUSE(f, ETHD_E_SYNTAX, "%s:%d: a section's name of %zu characters, at most %u are allowed", f->name, f->line,
            s.length - 2, NAME_MAX_LENGTH);
   else
-    keep_section(f, (span){s.text + 1, s.length - 2});
+    keep_section(f, (key_span){s.text + 1, s.length - 2});
 }
 
-/* inih takes ':' for '=' too. */
-static bool is_pair(span s) {
+/* Returns true for key = value; inih would take ':' for '=' too. */
+static bool is_pair(key_span s) {
   const char *equals = memchr(s.text, '=', s.length);
   return equals && !memchr(s.text, ':', (size_t)(equals - s.text));
 }
 
-static void check_line(feed *f, span s) {
+static void check_line(feed *f, key_span s) {
   char quote[ETHD_QUOTE_MAX];
   check_text(f, s);
   s = uncommented(s);
@@ -113,11 +113,11 @@ static void check_line(feed *f, span s) {
            ethd__quote(s.text, s.length, quote));
 }
 
-/* inih's fgets. A line that starts at its first column is never taken for the last one's continuation. */
+/* Gives inih its lines in place of fgets. It can't take a line that starts in the first column for a continuation. */
 static char *read_line(char *out, int room, void *user) {
   feed *f = user;
   if (f->status || f->at >= f->end) return NULL;
-  span s = next_line(f);
+  key_span s = next_line(f);
   check_line(f, s);
   s = uncommented(s);
   if (!f->status && s.length + 1 > (size_t)room)
@@ -146,7 +146,7 @@ static bool check_key(feed *f, const char *section, const char *key, const char 
   else if (!*value)
     REFUSE(f, ETHD_E_SYNTAX, "%s:%d: %s.%s: found nothing, a value is needed", f->name, f->line, section, key);
   else if (twin && !repeatable(f, section, key))
-    REFUSE(f, ETHD_E_DUPLICATE, "%s:%d: %s.%s: stands twice, first on line %d", f->name, f->line, section, key,
+    REFUSE(f, ETHD_E_DUPLICATE, "%s:%d: %s.%s: occurs twice, first on line %d", f->name, f->line, section, key,
            twin->line);
   else if (f->out->count == ETHD_INI_KEYS_MAX)
     REFUSE(f, ETHD_E_RANGE, "%s:%d: over %u keys", f->name, f->line, ETHD_INI_KEYS_MAX);
@@ -158,8 +158,7 @@ static int take_key(void *user, const char *section, const char *key, const char
   if (f->status || !check_key(f, section, key, value)) return 0;
   ethd_ini_key *k = &f->out->keys[f->out->count++];
   *k = (ethd_ini_key){strdup(section), strdup(key), strdup(value), f->line};
-  if (!k->section || !k->key || !k->value)
-    REFUSE(f, ETHD_E_MEMORY, "%s: %s", f->name, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!k->section || !k->key || !k->value) f->status = ethd__no_memory(f->message, f->name);
   return !f->status;
 }
 

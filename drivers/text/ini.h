@@ -1,11 +1,11 @@
-/* INI files: inih under a strict layer. What inih would cut, join or skip is an error here.
+/* INI files: a strict layer above inih. What inih would cut, join or skip is an error here.
 
      [section]
      key = value      ; a comment        # and ; start comment lines, " ;" ends a line
 
    All [main]. */
-#ifndef ETHD_FILE_INI_H
-#define ETHD_FILE_INI_H
+#ifndef ETHD__TEXT_INI_H
+#define ETHD__TEXT_INI_H
 
 #include "ethd/config.h"
 
@@ -29,14 +29,14 @@ typedef struct ethd_ini {
   uint32_t count, section_count;
 } ethd_ini;
 
-/* `name` stands for the file in messages. `repeats`: "section.key" that may stand more than once, or
-   NULL. Refuses, with file:line: bytes that are no text, lines over 197 characters (comments apart),
-   text behind a section's ']', keys before the first section, keys without '=', empty values, a key
-   twice, over 512 keys or sections. A section may come back. */
+/* Parses text that messages call `name`. `repeats`: a "section.key" that may occur more than once, or
+   NULL. Refuses, with file:line: bytes that aren't text, lines over 197 characters (without their comments),
+   text after a section's ']', keys before the first section, keys without '=', empty values, a key that
+   occurs twice, over 512 keys or sections. A section may be continued later. */
 ETHD_MUST_CHECK ethd_status ethd_ini_parse(const char *text, size_t length, const char *name, const char *repeats,
                                            ethd_ini *out, char message[ETHD_MESSAGE_MAX]);
 
-/* The key's entry, NULL if the file hasn't it. */
+/* Returns the key's entry, NULL if the file doesn't have it. */
 const ethd_ini_key *ethd_ini_find(const ethd_ini *ini, const char *section, const char *key);
 
 void ethd_ini_free(ethd_ini *ini);

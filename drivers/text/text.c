@@ -73,7 +73,8 @@ static bool same_file(const struct stat *a, const struct stat *b) {
   return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
 }
 
-/* Our own standard output under its name: /dev/stdout, which may be a file. -1: it isn't. */
+/* Returns the stream if the path is our own standard output under a name such as /dev/stdout, which may be a file; else
+   -1. */
 static int own_stream(const struct stat *info) {
   struct stat stream;
   for (int fd = STDOUT_FILENO; fd <= STDERR_FILENO; fd++)
@@ -81,7 +82,7 @@ static int own_stream(const struct stat *info) {
   return -1;
 }
 
-/* What isn't a file of its own is written through. */
+/* Writes directly to a device, a pipe or our own stream. */
 static ethd_status in_place(const char *path, int stream, ethd_replace *out, char *message) {
   fflush(NULL);
   int fd = stream >= 0 ? fcntl(stream, F_DUPFD_CLOEXEC, 3) : open(path, O_WRONLY | O_CLOEXEC);
@@ -91,7 +92,7 @@ static ethd_status in_place(const char *path, int stream, ethd_replace *out, cha
   return ETHD_OK;
 }
 
-/* ---- what a killed program left: PATH.PID-COUNT.new, locked as long as its writer lives ---- */
+/* ---- what a killed program left: PATH.PID-COUNT.new, which is locked while its writer runs ---- */
 
 static bool is_left(const char *name, const char *target) {
   size_t n = strlen(target), digits;
@@ -121,7 +122,7 @@ static void remove_left(const char *path) {
   free(folder);
 }
 
-/* Locked before another program took it for left. */
+/* Locks the new file, before another program can take it for one that was left. */
 static FILE *locked(int fd) {
   struct stat info;
   if (flock(fd, LOCK_EX | LOCK_NB) == 0 && fstat(fd, &info) == 0 && info.st_nlink > 0) return fdopen(fd, "wb");
@@ -129,7 +130,7 @@ static FILE *locked(int fd) {
   return NULL;
 }
 
-/* A fresh file in the target's own folder, so that the rename stays within one file system. */
+/* Makes a new file in the target's own folder, so that the rename stays within one file system. */
 static FILE *beside(const char *path, mode_t mode, char **temporary) {
   static unsigned count;
   for (int attempt = 0; attempt < 100; attempt++) {
@@ -170,7 +171,7 @@ static void release(ethd_replace *replace) {
   *replace = (ethd_replace){0};
 }
 
-/* The lock outlives the file's closing, which may fail, and the renaming. */
+/* Keeps the lock until the file is closed, which may fail, and renamed. */
 ethd_status ethd_replace_commit(ethd_replace *replace, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = ETHD_OK;
   const char *path = replace->path ? replace->path : "output";

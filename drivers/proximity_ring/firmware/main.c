@@ -20,12 +20,15 @@ void catch_reset(void) {
   wdt_enable(WDTO_15MS);
 }
 
+/* The slot in which this board's first sensor measures. */
+static uint8_t first_slot;
+
 /* One reading of the four sensors, each in its slot; see frame.h. */
 static bool sample(uint16_t start, uint16_t counts[LANES]) {
-  for (uint8_t lane = 0; lane < LANES; lane++) {
-    period_wait(start + lane * SLOT);
-    sensors_begin(lane);
-    if (lane) continue;
+  for (uint8_t slot = 0; slot < LANES; slot++) {
+    period_wait(start + slot * SLOT);
+    sensors_begin((slot + LANES - first_slot) % LANES);
+    if (slot) continue;
     period_release();
     sensors_settle();
   }
@@ -122,6 +125,7 @@ int main(void) {
   sensors_open(); /* also the time that the straps' pull-ups need */
   uint8_t straps = (uint8_t)~STRAPS_PIN;
   uint8_t board = straps >> STRAP_BOARD & 3;
+  first_slot = ETHD__FRAME_SLOT(LANES * board);
   link_open(board);
   period_open(!board);
   if (board) follow_for_ever();

@@ -1,0 +1,117 @@
+/* Where a sampled loop's stability ends: one number of it at a time, searched on a grid and bisected. */
+#include <math.h>
+
+#include "bounds/stability.h"
+
+#define STEPS_PER_DECADE 16
+
+/* Bisects between a stable and an unstable value, to 1e-6 of it. */
+static double bisect(ethd__sampled_loop *loop, double *value, double stable, double unstable) {
+  while (fabs(unstable / stable - 1) > 1e-6) {
+    *value = sqrt(stable * unstable);
+    if (ethd__sampled_stable(loop))
+      stable = *value;
+    else
+      unstable = *value;
+  }
+  return stable;
+}
+
+static double grid(int i) { return exp(i * log(10) / STEPS_PER_DECADE); }
+
+/* With a large mass all is slow, and hold and delay take K (T (n + 1/2) + late) off the damping, whatever the
+   estimator. */
+double ethd__sampled_damping_needed(const ethd__sampled_loop *l) {
+  return l->stiffness * (l->period * (l->delay + 0.5) + l->late);
+}
+
+double ethd__sampled_mass_min(const ethd__sampled_loop *loop) {
+  ethd__sampled_loop l = *loop;
+  if (l.damping < ethd__sampled_damping_needed(&l)) return (double)INFINITY;
+  for (int i = 4 * STEPS_PER_DECADE; i >= -7 * STEPS_PER_DECADE; i--) {
+    l.mass = grid(i);
+    if (ethd__sampled_stable(&l)) continue;
+    return i == 4 * STEPS_PER_DECADE ? (double)INFINITY : bisect(&l, &l.mass, grid(i + 1), grid(i));
+  }
+  return 0;
+}
+
+/* From a stable value up to the first that isn't, `most` at the highest. */
+static double band_end(ethd__sampled_loop *l, double *gain, double most) {
+  const double step = exp(log(10) / (4 * STEPS_PER_DECADE));
+  for (double stable = *gain; stable < most; stable *= step) {
+    *gain = stable * step;
+    if (!ethd__sampled_stable(l)) return bisect(l, gain, stable, *gain);
+  }
+  return *gain;
+}
+
+/* Values are in units of what mass and period set. A stable band may be narrower than the grid, so the value that is
+   there is tried too. */
+static double gain_max(ethd__sampled_loop *l, double *gain, double unit) {
+  double own = ethd__sampled_stable(l) ? *gain : 0;
+  if (own > 0 && ethd__sampled_gives_way(l)) return band_end(l, gain, 10 * unit);
+  for (int i = STEPS_PER_DECADE; i >= -6 * STEPS_PER_DECADE; i--) {
+    *gain = unit * grid(i);
+    if (ethd__sampled_stable(l)) return fmax(own, bisect(l, gain, *gain, unit * grid(i + 1)));
+  }
+  return own;
+}
+
+double ethd__sampled_stiffness_max(const ethd__sampled_loop *loop) {
+  ethd__sampled_loop l = *loop;
+  return gain_max(&l, &l.stiffness, l.mass / (l.period * l.period));
+}
+
+double ethd__sampled_damping_max(const ethd__sampled_loop *loop) {
+  ethd__sampled_loop l = *loop;
+  return gain_max(&l, &l.damping, l.mass / l.period);
+}
+
+static bool stable_with(ethd__sampled_loop *l, double delay) {
+  l->delay = (int)floor(delay / l->period * (1 + 1e-12));
+  l->late = fmax(0, delay - l->delay * l->period);
+  return ethd__sampled_stable(l);
+}
+
+double ethd__sampled_delay_max(const ethd__sampled_loop *loop) {
+  ethd__sampled_loop l = *loop;
+  double T = l.period, low = 0, high = 0, most = ETHD_LOOP_DELAY_MAX * T;
+  if (!stable_with(&l, 0)) return -1;
+  for (high = T / 4; high < most && stable_with(&l, high); high += T / 4) low = high;
+  if (high >= most) return most;
+  for (int i = 0; i < 20; i++) {
+    double middle = (low + high) / 2;
+    if (stable_with(&l, middle))
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+static double cutoff_min(ethd__sampled_loop *l) {
+  const double step = exp(log(10) / STEPS_PER_DECADE);
+  double high = l->p[0];
+  for (l->p[0] = high / step; l->p[0] > 1; l->p[0] = high / step) {
+    if (!ethd__sampled_stable(l)) return bisect(l, &l->p[0], high, high / step);
+    high /= step;
+  }
+  return 1;
+}
+
+static double window_max(ethd__sampled_loop *l) {
+  while (l->p[0] < ETHD_VELOCITY_WINDOW_MAX) {
+    l->p[0]++;
+    if (!ethd__sampled_stable(l)) return l->p[0] - 1;
+  }
+  return l->p[0];
+}
+
+double ethd__sampled_velocity_end(const ethd__sampled_loop *loop) {
+  ethd__sampled_loop l = *loop;
+  if (!ethd__sampled_stable(&l)) return NAN;
+  if (l.method == ETHD_VELOCITY_LOWPASS) return cutoff_min(&l);
+  if (l.method == ETHD_VELOCITY_LSQ || l.method == ETHD_VELOCITY_FOAW) return window_max(&l);
+  return NAN;
+}

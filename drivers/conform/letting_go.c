@@ -1,0 +1,127 @@
+/* Questions about the end of a torque: not renewed, not spoken to, told to be safe, started anew. */
+#include "conform/letting_go.h"
+
+#include <math.h>
+
+#define LAPSE 0.05  /* s after which no torque may be left, then half of this twice to see it */
+#define SPACINGS 4  /* of joint samples, that such a half has at least: a slow bus needs longer to show it */
+#define NUDGE 0.002 /* s: a torque that a driver may remember, but that moves next to nothing */
+#define LEFT 0.25   /* of an acceleration: so much may be left of it, by friction or a slope */
+#define SILENCE 1.0 /* s without any message */
+
+/* s: half of what it takes to see an acceleration. */
+static double window(const ethd__conform_rig *r) { return fmax(LAPSE / 2, SPACINGS * ethd__conform_rig_spacing(r)); }
+
+/* False when such a push would be lost in the steps of the angle: its result would answer nothing. */
+static bool is_pushed(const ethd__conform_rig *r, double acceleration, ethd_conform_answer *a) {
+  double least = ethd__conform_rig_least(r, window(r));
+  if (acceleration > 0 && acceleration >= least) return true;
+  return ethd__conform_rig_answer(a, ETHD_NOT_ASKED, "%+.3g rad/s^2 under %g Nm, %.3g would show: it needs more torque",
+                                  acceleration, r->def->torque, least),
+         false;
+}
+
+/* First the other way, under a torque that is held: rad/s^2 at the end. A device that gains no more speed then
+   has something in its way, and would look the same without a torque: 0, and the answer says so. */
+static double held(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__conform_rig r;
+  if (!ethd__conform_rig_begin(def, &r, a)) return 0;
+  ethd__conform_rig_settle(&r);
+  double pushed = -ethd__conform_rig_acceleration(&r, 0, -def->torque, 1, window(&r));
+  (void)ethd__conform_rig_acceleration(&r, 0, -def->torque, 1, window(&r));
+  double end = -ethd__conform_rig_acceleration(&r, 0, -def->torque, 1, window(&r));
+  ethd__conform_rig_end(&r);
+  if (!is_pushed(&r, pushed, a)) return 0;
+  if (end >= 0.1 * pushed && end >= ethd__conform_rig_least(&r, window(&r))) return end;
+  return ethd__conform_rig_answer(a, ETHD_NOT_ASKED,
+                                  "%.3g rad/s^2, but %.3g once the torque was held for %g s: something is in its way",
+                                  pushed, end, 4 * window(&r)),
+         0;
+}
+
+/* A torque that is not renewed must end. */
+ethd_verdict ethd__conform_watchdog(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__conform_rig r;
+  double most = LEFT * held(def, a);
+  if (!(most > 0) || !ethd__conform_rig_begin(def, &r, a)) return a->verdict;
+  ethd__conform_rig_settle(&r);
+  double pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, window(&r));
+  (void)ethd__conform_rig_acceleration(&r, 0, def->torque, 0, window(&r));
+  double left = ethd__conform_rig_acceleration(&r, 0, def->torque, 0, window(&r));
+  ethd__conform_rig_end(&r);
+  if (!is_pushed(&r, pushed, a)) return a->verdict;
+  if (left <= most)
+    return ethd__conform_rig_answer(a, ETHD_KEPT, "%.3g rad/s^2 under torque, %.3g once nobody had written for %g s",
+                                    pushed, left, 2 * window(&r));
+  return ethd__conform_rig_answer(a, ETHD_AT_RISK, "none: still %.3g of %.3g rad/s^2, %g s after the last write", left,
+                                  pushed, 2 * window(&r));
+}
+
+/* Enabled and without a word from this computer, not even from the I/O threads, a device should let go by itself. */
+ethd_verdict ethd__conform_silence(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__conform_rig r;
+  if (def->device->is_virtual)
+    return ethd__conform_rig_answer(a, ETHD_NOT_ASKED, "on a virtual clock nothing is silent");
+  if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
+  if (!r.units) {
+    ethd__conform_rig_end(&r);
+    return ethd__conform_rig_answer(a, ETHD_NOT_ASKED, "it isn't spoken to: no driver of it has I/O");
+  }
+  ethd__conform_rig_settle(&r);
+  double pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, window(&r));
+  ethd__conform_rig_settle(&r);
+  ethd__conform_rig_hush(&r, SILENCE);
+  ethd__conform_rig_run(&r, LAPSE, 0, 0);
+  double left = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, window(&r));
+  ethd__conform_rig_end(&r);
+  if (!is_pushed(&r, pushed, a)) return a->verdict;
+  if (left <= LEFT * pushed)
+    return ethd__conform_rig_answer(
+        a, ETHD_KEPT, "it lets go by itself: %.3g rad/s^2 under torque, %.3g after %g s without a message", pushed,
+        left, SILENCE);
+  return ethd__conform_rig_answer(a, ETHD_AT_RISK,
+                                  "no watchdog of its own: after %g s without a message %.3g of %.3g rad/s^2", SILENCE,
+                                  left, pushed);
+}
+
+ethd_verdict ethd__conform_safe(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__conform_rig r;
+  if (!ethd__conform_rig_open(def, &r)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "open: %.140s", r.message);
+  r.driver->safe(r.device); /* before it was started */
+  r.driver->close(r.device);
+  double most = LEFT * held(def, a);
+  if (!(most > 0) || !ethd__conform_rig_begin(def, &r, a)) return a->verdict;
+  ethd__conform_rig_settle(&r);
+  double pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, window(&r));
+  r.driver->safe(r.device);
+  r.driver->safe(r.device);
+  ethd__conform_rig_run(&r, 0.01, 0, def->torque);
+  double left = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, window(&r));
+  ethd__conform_rig_stop(&r);
+  r.driver->safe(r.device); /* and once stopped */
+  r.driver->close(r.device);
+  if (!is_pushed(&r, pushed, a)) return a->verdict;
+  return ethd__conform_rig_answer(a, left <= most ? ETHD_KEPT : ETHD_BROKEN,
+                                  "%.3g rad/s^2 under torque, %.3g with the same torque once safe", pushed, left);
+}
+
+ethd_verdict ethd__conform_restart(const ethd_conform_def *def, ethd_conform_answer *a) {
+  ethd__conform_rig r;
+  if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
+  ethd__conform_rig_settle(&r);
+  ethd__conform_rig_run(&r, NUDGE, 0, def->torque);
+  ethd__conform_rig_stop(&r);
+  ethd_status status = ethd__conform_rig_start(&r);
+  if (status < 0) {
+    ethd__conform_rig_end(&r);
+    return ethd__conform_rig_answer(a, ETHD_BROKEN, "started anew: %s", ethd_status_sentence(status));
+  }
+  /* a sound arm may still roll from the push: what is left of a torque shows in speed that is gained */
+  double left = ethd__conform_rig_acceleration(&r, 0, 0, 0, window(&r));
+  double pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, window(&r));
+  ethd__conform_rig_end(&r);
+  if (!is_pushed(&r, pushed, a)) return a->verdict;
+  return ethd__conform_rig_answer(a, left <= LEFT * pushed ? ETHD_KEPT : ETHD_BROKEN,
+                                  "started anew: %.3g rad/s^2 before it is written to, %.3g under torque", left,
+                                  pushed);
+}

@@ -1,0 +1,19 @@
+/* The questions of ethd_conform about the end of a torque. All [main]. */
+#ifndef ETHD_CONFORM_LETTING_GO_H
+#define ETHD_CONFORM_LETTING_GO_H
+
+#include "conform/conform_rig.h"
+
+/* A torque that is not renewed ends. */
+ethd_verdict ethd__conform_watchdog(const ethd_conform_def *def, ethd_conform_answer *a);
+
+/* A device that isn't spoken to at all lets go by itself. */
+ethd_verdict ethd__conform_silence(const ethd_conform_def *def, ethd_conform_answer *a);
+
+/* A device that was told to be safe stays so, whatever is written. */
+ethd_verdict ethd__conform_safe(const ethd_conform_def *def, ethd_conform_answer *a);
+
+/* A start remembers no torque from before. */
+ethd_verdict ethd__conform_restart(const ethd_conform_def *def, ethd_conform_answer *a);
+
+#endif

@@ -1,0 +1,108 @@
+#include "device/driver_file.h"
+
+#include <dlfcn.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "settings/config_parts.h"
+#include "text/error_text.h"
+
+#define WORD_MAX 31
+#define KEYS_MAX 64
+
+/* ---- tables ---- */
+
+static bool is_word(const char *text) {
+  size_t n = text ? strnlen(text, WORD_MAX + 1) : 0;
+  return n >= 1 && n <= WORD_MAX && strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789_-") == n;
+}
+
+/* One line of printable ASCII: nothing of it steers a terminal. */
+static bool is_line(const char *text) {
+  size_t n = text ? strnlen(text, ETHD_BRIEF_MAX + 1) : 0;
+  for (size_t i = 0; i < n; i++)
+    if (text[i] < ' ' || text[i] > '~') return false;
+  return n >= 1 && n <= ETHD_BRIEF_MAX;
+}
+
+static bool keys_are_words(const char *const *keys) {
+  for (int i = 0; keys && keys[i]; i++)
+    if (i == KEYS_MAX || !is_word(keys[i])) return false;
+  return true;
+}
+
+/* What is wrong with the functions, NULL: nothing. */
+static const char *functions_fault(const ethd_driver *d) {
+  if (!d->open || !d->close) return d->open ? "has no close" : "has no open";
+  if (d->write && !d->safe) return "takes torque and has no safe to let go";
+  if (!d->units != !d->service) return d->units ? "has units of I/O and no service" : "has a service and no units";
+  return NULL;
+}
+
+/* The ABI comes first: when it differs, nothing behind it can be trusted. */
+static ethd_status check_head(const ethd_driver *d, char *what) {
+  if (d->abi != ETHD_DRIVER_ABI)
+    return ethd__say(what, ETHD_E_ABI, "it was built for version %u of the drivers' interface, this is version %u",
+                     d->abi, ETHD_DRIVER_ABI);
+  if (d->size < ETHD_DRIVER_MIN || d->size > sizeof *d)
+    return ethd__say(what, ETHD_E_SIZE, "its table has %u bytes, %zu to %zu are allowed: build it with these headers",
+                     d->size, ETHD_DRIVER_MIN, sizeof *d);
+  return ETHD_OK;
+}
+
+/* A whole table. */
+static ethd_status check_rest(const ethd_driver *d, char *what) {
+  ethd_error error = {.status = ETHD_OK};
+  if (!is_word(d->id)) return ethd__say(what, ETHD_E_ARGUMENT, "its id isn't 1 to 31 of a-z 0-9 - _");
+  if (!is_line(d->brief))
+    return ethd__say(what, ETHD_E_ARGUMENT, "the brief of %s isn't one line of 1 to %d printable characters", d->id,
+                     ETHD_BRIEF_MAX);
+  ethd_status status = ethd_params_check_table(d->params, d->param_count, &error);
+  if (status) return ethd__say(what, status, "%s: params: %s: %s", d->id, error.name, ethd_status_sentence(status));
+  if (!keys_are_words(d->keys))
+    return ethd__say(what, ETHD_E_TABLE, "%s: keys: not words, or no NULL behind them", d->id);
+  const char *fault = functions_fault(d);
+  return fault ? ethd__say(what, ETHD_E_ARGUMENT, "%s %s", d->id, fault) : ETHD_OK;
+}
+
+static void copy_known(const ethd_driver *from, ethd_driver *out) {
+  *out = (ethd_driver){.size = 0};
+  memcpy(out, from, from->size);
+  out->size = sizeof *out;
+}
+
+ethd_status ethd__driver_check(const ethd_driver *driver, char what[ETHD_MESSAGE_MAX]) {
+  ethd_driver whole;
+  ethd_status status = check_head(driver, what);
+  if (status) return status;
+  copy_known(driver, &whole);
+  return check_rest(&whole, what);
+}
+
+/* ---- files ---- */
+
+static void foreign(const char *what) {
+  if (ethd__foreign_code) ethd__foreign_code(what, ETHD__PATIENCE);
+}
+
+static ethd_status load(const char *path, ethd_driver *out, char *what) {
+  void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+  if (!handle) return ethd__say(what, ETHD_E_LOAD, "%s", dlerror());
+  const ethd_driver *table = dlsym(handle, "ethd_driver_plugin");
+  ethd_status status = table ? ethd__driver_check(table, what)
+                             : ethd__say(what, ETHD_E_SYMBOL, "it is no driver: it has no symbol ethd_driver_plugin");
+  if (status)
+    dlclose(handle);
+  else
+    copy_known(table, out);
+  return status;
+}
+
+ethd_status ethd__driver_load(const char *path, ethd_driver *out, char what[ETHD_MESSAGE_MAX]) {
+  ethd_status status = ethd__plugin_file_check(path, what);
+  if (status) return status;
+  foreign(path);
+  status = load(path, out, what);
+  foreign(NULL);
+  return status;
+}

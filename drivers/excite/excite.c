@@ -1,0 +1,125 @@
+/* Moves the arm so that its numbers can be told from the motion: torques of many sines, while a soft spring holds the ring
+   about a place. It is a finger that isn't there, whose position and velocity make the tracking law give these torques:
+
+     tau = K_t J^-1 (X_f - X_r) + B_t J^-1 (V_f - V_r)    with X_f the place, and V_f = J tau_sines / B_t
+
+   so that the law, the guard and the recording are those of any session. It stands behind a driver that moves:
+   [device] driver = servo, excite. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "ethd/control.h"
+#include "ethd/driver.h"
+#include "ethd/maths.h"
+#include "text/error_text.h"
+
+#define TAU 6.28318530717958647692
+#define LOOK 20.0 /* s in which their sum's peak is looked for */
+#define LINES 20  /* sines of each joint */
+#define PEAK 0.7  /* of the limit: the rest is for the spring */
+
+enum { TORQUE, LOW, HIGH, X, Y, HALF, PARAMS };
+
+static const ethd_param params[PARAMS] = {
+    [TORQUE] = {"torque", "Nm", 1e-4, 1e4, 0.1, "the most that a joint gets; the sines take seven tenths of it"},
+    [LOW] = {"low", "Hz", 0.1, 100, 0.5, "lowest frequency"},
+    [HIGH] = {"high", "Hz", 1, 400, 40, "highest frequency"},
+    [X] = {"x", "m", -100, 100, 0.25, "the place about which the ring moves"},
+    [Y] = {"y", "m", -100, 100, 0.25, "likewise"},
+    [HALF] = {"half", "m", 1e-3, 10, 0.05, "half the side of the box about it that the ring mustn't leave"},
+};
+
+typedef struct excite {
+  double p[PARAMS];
+  ethd_arm arm;
+  double damping;                      /* B_t, Nms/rad */
+  double w[2][LINES], phase[2][LINES]; /* rad/s, rad */
+  double size[2];                      /* Nm of each sine */
+  int64_t begin;                       /* ns; INT64_MIN: not yet */
+} excite;
+
+/* ---- sines ---- */
+
+static double sines(const excite *e, int joint, double t) ETHD_RT {
+  double sum = 0;
+  for (int i = 0; i < LINES; i++) sum += ethd_sin(fmod(e->w[joint][i] * t, TAU) + e->phase[joint][i]);
+  return sum;
+}
+
+/* A geometric row, in which joint 2 stands between the lines of joint 1: torques that don't come again, so that each
+   minute says something new. Phases by the golden ratio, so that no instant collects them all. */
+static void lay(excite *e, int joint) {
+  const double golden = 0.61803398874989485;
+  double low = ethd_log(e->p[LOW]), high = ethd_log(e->p[HIGH]), peak = 0;
+  for (int i = 0; i < LINES; i++) {
+    e->w[joint][i] = TAU * ethd_exp(low + (high - low) * (2 * i + joint) / (2 * LINES - 1));
+    e->phase[joint][i] = TAU * fmod((i * (i + 1) / 2 + 7 * joint) * golden, 1);
+  }
+  for (double t = 0; t < LOOK; t += 1e-3) peak = fmax(peak, fabs(sines(e, joint, t)));
+  e->size[joint] = PEAK * e->p[TORQUE] / peak;
+}
+
+/* ---- driver ---- */
+
+static ethd_status open_excite(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
+  excite *e = *device = calloc(1, sizeof *e);
+  if (!e) return ETHD_E_MEMORY;
+  ethd_params_default(params, PARAMS, e->p);
+  ethd_status status = ethd_settings_read(&ethd_driver_excite, def, e->p, NULL, message);
+  if (status) return status;
+  const char *file = def->file ? def->file : "the defaults";
+  e->arm = def->setup->arm;
+  e->damping = ethd_setup_get(def->setup, "tracking.b_t");
+  e->begin = INT64_MIN;
+  if (!(e->damping > 0))
+    return ethd__say(message, ETHD_E_RANGE, "%s: excite acts by tracking.b_t, which must be more than 0", file);
+  if (!(e->p[LOW] < e->p[HIGH] && e->p[HIGH] < 0.5 / def->setup->period))
+    return ethd__say(message, ETHD_E_RANGE,
+                     "%s: device.excite.high: more than low, less than half the ticks' rate is allowed", file);
+  for (int j = 0; j < 2; j++) lay(e, j);
+  return ETHD_OK;
+}
+
+static ethd_status start(void *device) {
+  ((excite *)device)->begin = INT64_MIN;
+  return ETHD_OK;
+}
+
+/* The joints' angles are those that the driver before it has put there. */
+static ethd_status read_finger(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
+  excite *e = device;
+  ethd_pose pose;
+  if (e->begin == INT64_MIN) e->begin = now_ns;
+  double t = 1e-9 * (double)(now_ns - e->begin);
+  ethd_vec v = {e->size[0] * sines(e, 0, t) / e->damping, e->size[1] * sines(e, 1, t) / e->damping};
+  ethd_arm_pose(&e->arm, out->q, &pose);
+  v = ethd_pose_velocity(&pose, (const double[]){v.x, v.y});
+  out->have = (out->have & ~(int64_t)ETHD_HAVE_START) | ETHD_HAVE_FINGER;
+  out->finger[0] = e->p[X];
+  out->finger[1] = e->p[Y];
+  out->finger_v[0] = v.x;
+  out->finger_v[1] = v.y;
+  return ETHD_OK;
+}
+
+static ethd_limits limits(const void *device) {
+  const excite *e = device;
+  ethd_limits l = ethd_limits_torque(e->p[TORQUE]);
+  const double box[4] = {e->p[X] - e->p[HALF], e->p[X] + e->p[HALF], e->p[Y] - e->p[HALF], e->p[Y] + e->p[HALF]};
+  memcpy(l.workspace, box, sizeof box);
+  return l;
+}
+
+const ethd_driver ethd_driver_excite = {
+    .size = sizeof(ethd_driver),
+    .abi = ETHD_DRIVER_ABI,
+    .id = "excite",
+    .brief = "moves an arm by many sines, so that it can be identified; beside a driver that moves",
+    .params = params,
+    .param_count = PARAMS,
+    .open = open_excite,
+    .start = start,
+    .read = read_finger,
+    .close = free,
+    .limits = limits};

@@ -1,0 +1,42 @@
+/* Sensors of the finger on the proximity ring's line: the same frames (proximity_ring/frame.h) with the same CRC, sequence and
+   clock, whose 16 counts mean something else. A sensor's driver adds what they mean. */
+#ifndef ETHD__FINGER_BUS_H
+#define ETHD__FINGER_BUS_H
+
+#include "finger/inbox.h"
+#include "proximity_ring/board_clock.h"
+#include "proximity_ring/port.h"
+
+/* The settings that such drivers have in common come first in their tables. */
+enum { ETHD__BUS_BAUD, ETHD__BUS_DELAY, ETHD__BUS_PATIENCE, ETHD__BUS_PARAMS };
+#define ETHD__BUS_ROWS                                                                                             \
+  [ETHD__BUS_BAUD] = {"baud", "1/s", 9600, 12e6, 500000, "of the line"},                                           \
+  [ETHD__BUS_DELAY] = {"delay", "s", 0, 0.1, 0.0012, "from a frame's sample to its last byte's earliest arrival"}, \
+  [ETHD__BUS_PATIENCE] = {"patience", "s", 0.05, 60, 2, "for the first frames"}
+
+/* A frame's counts as a reading: centre and noise; false: no finger gives them. [I/O] */
+typedef bool ethd__bus_means(const void *sensor, const uint16_t counts[ETHD__FRAME_SENSORS], ethd__sighting *out);
+
+typedef struct ethd__finger_bus {
+  ethd__bus_means *means;
+  const void *sensor;
+  bool is_virtual; /* the clock */
+  ethd__ring_port port;
+  ethd__decoder decoder;
+  ethd__board_clock clock;
+  ethd__inbox inbox;
+} ethd__finger_bus;
+
+/* Opens the port (relative to def->folder) and waits for its first frames. `bus` zeroed, with `means` and `sensor`; it is
+   closed also after a failure. p: the driver's settings. [main] */
+ETHD_MUST_CHECK ethd_status ethd__finger_bus_open(ethd__finger_bus *bus, const ethd_device_def *def, const char *port,
+                                                  const double *p, char message[ETHD_MESSAGE_MAX]);
+void ethd__finger_bus_close(ethd__finger_bus *bus);
+
+/* As a driver's service. */
+ethd_status ethd__finger_bus_service(ethd__finger_bus *bus, int64_t now_ns);
+
+/* What such a driver says of its limits: the joints' samples aren't its own. */
+ethd_limits ethd__finger_bus_limits(const ethd__finger_bus *bus);
+
+#endif

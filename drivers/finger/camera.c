@@ -1,0 +1,117 @@
+#include "finger/camera.h"
+
+#include <string.h>
+
+#include "ethd/sense.h"
+#include "proximity_ring/decoder.h"
+
+#define MAGIC "EFC1"
+#define NOISE_MAX 1.0      /* m */
+#define JUMP_NS 1000000000 /* by which no network holds a datagram back: the sender's clock jumped */
+#define ORDER_MAX 1000     /* exposures by which a datagram may be overtaken; more: the sender began anew */
+
+enum { AT_SEQ = 4, AT_TIME = 8, AT_X = 16, AT_Y = 24, AT_NOISE = 32, AT_FLAGS = 40, AT_CRC = 42 };
+
+/* ---- bytes ---- */
+
+static uint64_t get(const uint8_t *at, int bytes) ETHD_RT {
+  uint64_t word = 0;
+  for (int i = bytes; i--;) word = word << 8 | at[i];
+  return word;
+}
+
+static double get_number(const uint8_t *at) ETHD_RT {
+  uint64_t word = get(at, 8);
+  double number;
+  memcpy(&number, &word, sizeof number);
+  return number;
+}
+
+static void put(uint8_t *at, uint64_t word, int bytes) ETHD_RT {
+  for (int i = 0; i < bytes; i++, word >>= 8) at[i] = (uint8_t)word;
+}
+
+static void put_number(uint8_t *at, double number) ETHD_RT {
+  uint64_t word;
+  memcpy(&word, &number, sizeof word);
+  put(at, word, 8);
+}
+
+/* NaN fails. */
+static bool is_possible(const ethd__exposure *e) ETHD_RT {
+  return e->finger.x >= -ETHD_SENSE_LENGTH_MAX && e->finger.x <= ETHD_SENSE_LENGTH_MAX &&
+         e->finger.y >= -ETHD_SENSE_LENGTH_MAX && e->finger.y <= ETHD_SENSE_LENGTH_MAX && e->noise >= 0 &&
+         e->noise <= NOISE_MAX;
+}
+
+bool ethd__exposure_decode(const uint8_t *bytes, size_t count, ethd__exposure *out) {
+  if (count != ETHD__EXPOSURE_SIZE || memcmp(bytes, MAGIC, 4) != 0) return false;
+  if (ethd__frame_crc(bytes, ETHD__EXPOSURE_SIZE) != 0) return false;
+  *out = (ethd__exposure){.seq = (uint32_t)get(bytes + AT_SEQ, 4),
+                          .t_ns = (int64_t)get(bytes + AT_TIME, 8),
+                          .finger = {get_number(bytes + AT_X), get_number(bytes + AT_Y)},
+                          .noise = get_number(bytes + AT_NOISE),
+                          .flags = (uint16_t)get(bytes + AT_FLAGS, 2)};
+  if (out->flags & ~ETHD__EXPOSURE_SEEN) return false;
+  return !(out->flags & ETHD__EXPOSURE_SEEN) || is_possible(out);
+}
+
+void ethd__exposure_encode(const ethd__exposure *e, uint8_t out[ETHD__EXPOSURE_SIZE]) {
+  memcpy(out, MAGIC, 4);
+  put(out + AT_SEQ, e->seq, 4);
+  put(out + AT_TIME, (uint64_t)e->t_ns, 8);
+  put_number(out + AT_X, e->finger.x);
+  put_number(out + AT_Y, e->finger.y);
+  put_number(out + AT_NOISE, e->noise);
+  put(out + AT_FLAGS, e->flags, 2);
+  put(out + AT_CRC, ethd__frame_crc(out, AT_CRC), 2);
+}
+
+/* ---- clock ---- */
+
+/* Differences wrap round like the clocks: neither one's zero means anything. */
+static int64_t minus(int64_t a, int64_t b) ETHD_RT { return (int64_t)((uint64_t)a - (uint64_t)b); }
+static int64_t plus(int64_t a, int64_t b) ETHD_RT { return (int64_t)((uint64_t)a + (uint64_t)b); }
+
+static int64_t lesser(int64_t a, int64_t b) ETHD_RT { return minus(a, b) < 0 ? a : b; }
+
+static void begin(ethd__camera_clock *c, int64_t late) ETHD_RT {
+  c->jumps += c->started;
+  c->started = true;
+  c->least[0] = c->least[1] = late;
+  c->in_block = 0;
+}
+
+static bool jumped(const ethd__camera_clock *c, const ethd__exposure *e, int64_t late) ETHD_RT {
+  int64_t off = minus(late, lesser(c->least[0], c->least[1]));
+  int32_t step = (int32_t)(e->seq - c->seq);
+  return off > JUMP_NS || off < -JUMP_NS || step > ORDER_MAX || step < -ORDER_MAX;
+}
+
+static void settle(ethd__camera_clock *c, int64_t late) ETHD_RT {
+  if (c->in_block++ == ETHD__CAMERA_BLOCK) {
+    c->least[1] = c->least[0];
+    c->least[0] = late;
+    c->in_block = 1;
+  }
+  c->least[0] = lesser(c->least[0], late);
+}
+
+bool ethd__camera_clock_step(ethd__camera_clock *c, const ethd__exposure *e, int64_t arrival_ns, int64_t *sample_ns) {
+  int64_t late = minus(arrival_ns, e->t_ns);
+  if (!c->started || jumped(c, e, late)) {
+    begin(c, late);
+  } else {
+    int32_t step = (int32_t)(e->seq - c->seq);
+    if (step <= 0 || minus(e->t_ns, c->t_ns) <= 0) {
+      c->lost++;
+      return false;
+    }
+    c->lost += (uint32_t)step - 1;
+  }
+  settle(c, late);
+  c->seq = e->seq;
+  c->t_ns = e->t_ns;
+  *sample_ns = minus(plus(e->t_ns, lesser(c->least[0], c->least[1])), c->delay);
+  return true;
+}

@@ -1,0 +1,52 @@
+/* From a sensor's I/O thread to the control thread: the newest reading, and what went wrong on the way.
+
+     I/O thread   ethd__inbox_put -> cell          [rt]   cell -> ethd__inbox_read -> sense, rows 15, 18, 20      */
+#ifndef ETHD__FINGER_INBOX_H
+#define ETHD__FINGER_INBOX_H
+
+#include <pthread.h>
+#include <stdbool.h>
+
+#include "ethd/cell.h"
+#include "ethd/driver.h"
+
+/* A sensor's reading, with what was counted up to it. */
+typedef struct ethd__sighting {
+  int64_t sample_ns, arrival_ns; /* CLOCK_MONOTONIC, or the virtual clock's */
+  int64_t have;                  /* ETHD_HAVE_* */
+  ethd_vec centre;               /* m */
+  double noise;                  /* m, sd of each axis */
+  uint64_t readings;             /* good ones */
+  uint64_t lost;                 /* damaged, missing by their sequence, or out of order: row 15 */
+  uint64_t refused;              /* well received, but no finger can give them */
+  uint64_t jumps;                /* of the sender's clock: row 20 */
+  uint32_t refused_in_a_row;     /* ETHD__REFUSED_MAX of them: row 18 */
+} ethd__sighting;
+
+#define ETHD__REFUSED_MAX 5
+
+typedef struct ethd__inbox {
+  ethd_cell *cell;
+  pthread_mutex_t lock;  /* of `newest`, for figures */
+  int64_t gap_ns;        /* without a reading: one is lost, at least */
+  ethd__sighting newest; /* the I/O thread's */
+  ethd__sighting taken;  /* the control thread's, as the next */
+  uint64_t read, lost, jumps;
+} ethd__inbox;
+
+/* Zeroed before. rate: Hz. The inbox is closed also after a failure. [main] */
+ETHD_MUST_CHECK ethd_status ethd__inbox_open(ethd__inbox *inbox, double rate);
+void ethd__inbox_close(ethd__inbox *inbox);
+
+/* Hands `newest` over. [I/O] */
+void ethd__inbox_put(ethd__inbox *inbox);
+
+/* Counts a reading that no finger can give, or a good one. [I/O] */
+void ethd__inbox_judge(ethd__inbox *inbox, bool is_good);
+
+void ethd__inbox_read(ethd__inbox *inbox, int64_t now_ns, ethd_sense *out) ETHD_RT;
+
+/* As a driver's figures, at most 4. [main] */
+uint32_t ethd__inbox_figures(ethd__inbox *inbox, ethd_figure *out, uint32_t max);
+
+#endif

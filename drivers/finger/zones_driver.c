@@ -1,0 +1,96 @@
+/* A ring of on-off light barriers on the proximity ring's line, beside a driver that moves: a barrier is lit where its count
+   reaches `level`. */
+#include <stdlib.h>
+
+#include "finger/bus.h"
+#include "finger/zones.h"
+#include "text/error_text.h"
+
+enum { ZONES = ETHD__BUS_PARAMS, REACH, SWITCHING, LEVEL, PARAMS };
+
+static const ethd_param params[PARAMS] = {
+    ETHD__BUS_ROWS,
+    [ZONES] = {"zones", "1", ETHD__ZONES_MIN, ETHD__ZONES_MAX, 12, "light barriers, at counts 0 and up; whole"},
+    [REACH] = {"reach", "m", 1e-4, 0.1, 3.5e-3, "a barrier is lit while the finger is nearer to it"},
+    [SWITCHING] = {"switching", "m", 0, 0.01, 0.1e-3, "sd of the distance at which it switches"},
+    [LEVEL] = {"level", "1", 1, 65535, 32768, "counts of a barrier that is lit, at least"},
+};
+
+static const char *const keys[] = {"port", NULL};
+
+typedef struct zones_ring {
+  ethd__finger_bus bus;
+  ethd__zones zones;
+  double level;
+} zones_ring;
+
+/* A barrier that doesn't answer may be lit or not: then nothing is known. */
+static bool means(const void *sensor, const uint16_t counts[ETHD__FRAME_SENSORS], ethd__sighting *out) {
+  const zones_ring *r = sensor;
+  uint32_t lit = 0;
+  for (uint32_t k = 0; k < r->zones.count; k++) {
+    if (counts[k] == ETHD__FRAME_MISSING) return false;
+    lit |= (uint32_t)(counts[k] >= r->level) << k;
+  }
+  return ethd__zones_centre(&r->zones, lit, &out->centre, &out->noise);
+}
+
+static ethd_status zones_open(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
+  const ethd_setting *port = NULL;
+  double p[PARAMS];
+  *device = NULL;
+  ethd_params_default(params, PARAMS, p);
+  ethd_status status = ethd_settings_read(&ethd_driver_zones, def, p, &port, message);
+  if (status) return status;
+  if (!port || p[ZONES] != (uint32_t)p[ZONES])
+    return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.%s", def->file ? def->file : "the defaults",
+                     port ? "zones: a whole number is allowed"
+                          : "port is missing: the barriers' line, as /dev/ttyUSB0");
+  zones_ring *r = *device = calloc(1, sizeof *r);
+  if (!r) return ETHD_E_MEMORY;
+  ethd__zones_prepare((uint32_t)p[ZONES], p[REACH], def->setup->ring_radius, def->setup->finger_radius, p[SWITCHING],
+                      &r->zones);
+  r->level = p[LEVEL];
+  r->bus.means = means;
+  r->bus.sensor = r;
+  return ethd__finger_bus_open(&r->bus, def, port->value, p, message);
+}
+
+static ethd_status zones_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
+  ethd__inbox_read(&((zones_ring *)device)->bus.inbox, now_ns, out);
+  return ETHD_OK;
+}
+
+static uint32_t units(const void *device) { return (void)device, 1; }
+
+static ethd_status service(void *device, uint32_t unit, int64_t now_ns) {
+  return (void)unit, ethd__finger_bus_service(&((zones_ring *)device)->bus, now_ns);
+}
+
+static ethd_limits limits(const void *device) { return ethd__finger_bus_limits(&((const zones_ring *)device)->bus); }
+
+static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
+  return ethd__inbox_figures(&((zones_ring *)device)->bus.inbox, out, max);
+}
+
+static void zones_close(void *device) {
+  ethd__finger_bus_close(&((zones_ring *)device)->bus);
+  free(device);
+}
+
+const ethd_driver ethd_driver_zones = {
+    .size = sizeof(ethd_driver),
+    .abi = ETHD_DRIVER_ABI,
+    .id = "zones",
+    .brief = "ring of on-off light barriers on a serial port, beside a driver that moves",
+    .params = params,
+    .param_count = PARAMS,
+    .keys = keys,
+    .open = zones_open,
+    .read = zones_read,
+    .units = units,
+    .service = service,
+    .close = zones_close,
+    .limits = limits,
+    .figures = figures,
+};

@@ -1,0 +1,100 @@
+/* A loop from its definition to its end. [main] */
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "loop/loop.h"
+
+#define COOKIE 0x6c6f6f70u
+
+ethd_loop_def ethd_loop_default(void) {
+  return (ethd_loop_def){.cookie = COOKIE,
+                         .period = 1e-3,
+                         .cpu = ETHD_CPU_NONE,
+                         .priority = 80,
+                         .dma_latency = -1,
+                         .soft_start = 0.1,
+                         .gap = (double)INFINITY,
+                         .heartbeat = (double)INFINITY,
+                         .stack = (size_t)256 << 10,
+                         .rows = 4096};
+}
+
+static ethd_status within(ethd_error *error, const char *name, double found, double min, double max) {
+  if (found >= min && found <= max) return ETHD_OK;
+  return ethd__loop_refuse(error, ETHD_E_RANGE, name, found, min, max);
+}
+
+static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
+  if (d->cookie != COOKIE) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "ethd_loop_def", NAN, NAN, NAN);
+  if (!d->driver) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "driver", NAN, NAN, NAN);
+  if (!d->control) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "control", NAN, NAN, NAN);
+  if (d->driver->abi != ETHD_DRIVER_ABI || d->driver->size < sizeof *d->driver)
+    return ethd__loop_refuse(error, ETHD_E_ABI, "driver", NAN, NAN, NAN);
+  if (!d->driver->start || !d->driver->read || !d->driver->write || !d->driver->safe)
+    return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "driver", NAN, NAN, NAN);
+  if (d->rows & (d->rows - 1)) return ethd__loop_refuse(error, ETHD_E_RANGE, "rows", d->rows, 0, 0x1p20);
+  ethd_status status = within(error, "period", d->period, 1e-5, 1);
+  if (!status) status = within(error, "cpu", d->cpu, ETHD_CPU_AUTO, 1023);
+  if (!status) status = within(error, "priority", d->priority, 1, 99);
+  if (!status) status = within(error, "dma_latency", d->dma_latency, -1, 1e6);
+  if (!status) status = within(error, "early_wake", d->early_wake, 0, d->period / 2);
+  if (!status) status = within(error, "soft_start", d->soft_start, 0, 10);
+  if (!status) status = within(error, "gap", d->gap, d->period, (double)INFINITY);
+  if (!status) status = within(error, "heartbeat", d->heartbeat, d->period, (double)INFINITY);
+  if (!status) status = within(error, "stack", (double)d->stack, 65536, 0x1p26);
+  if (!status) status = within(error, "rows", d->rows, 0, 0x1p20);
+  return status;
+}
+
+static int64_t nanoseconds(double s) { return s < 1e9 ? llrint(1e9 * s) : INT64_MAX; }
+
+/* The narrower of the application's and what any device stands: how far apart a slow device's own samples are says
+   nothing of the loop's lateness. */
+static double gap_of(const ethd_loop_def *d) {
+  bool is_limited = d->driver->limits && d->device && isfinite(d->driver->limits(d->device).gap);
+  return is_limited ? fmin(d->gap, ethd_limits_device().gap) : d->gap;
+}
+
+/* s: so far two joint samples may lie apart, by the application and the device. */
+static double between_samples(const ethd_loop_def *d) {
+  if (!d->driver->limits || !d->device) return d->gap;
+  return fmin(d->gap, d->driver->limits(d->device).gap);
+}
+
+ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_error *error) {
+  *out = NULL;
+  ethd_status status = check(def, error);
+  if (status) return status;
+  size_t size = (sizeof(ethd_loop) + 63) / 64 * 64;
+  ethd_loop *l = aligned_alloc(64, size);
+  if (!l) return ethd__loop_refuse(error, ETHD_E_MEMORY, "loop", NAN, NAN, NAN);
+  memset(l, 0, size);
+  l->def = *def;
+  l->period = llrint(1e9 * def->period);
+  l->early = llrint(1e9 * def->early_wake);
+  l->gap = nanoseconds(gap_of(def));
+  int64_t apart =
+      nanoseconds(fmin(between_samples(def), 1)) + 1; /* a gap that isn't exact in binary counts as what it's meant */
+  l->hold = (apart < ETHD__HOLD_MAX ? apart : ETHD__HOLD_MAX) / l->period - 1;
+  l->heartbeat = nanoseconds(def->heartbeat);
+  l->dma_latency = -1;
+  l->rows.size = def->rows;
+  l->rows.at = calloc(def->rows ? def->rows : 1, sizeof *l->rows.at);
+  if (!l->rows.at) {
+    ethd_loop_destroy(l);
+    return ethd__loop_refuse(error, ETHD_E_MEMORY, "rows", NAN, NAN, NAN);
+  }
+  *out = l;
+  return ETHD_OK;
+}
+
+void ethd_loop_destroy(ethd_loop *l) {
+  if (!l) return;
+  ethd_loop_stop(l);
+  (void)!ethd_loop_join(l);
+  if (atomic_load_explicit(&l->left, memory_order_relaxed)) return; /* a hung thread may still live in it */
+  free(l->rows.at);
+  free(l);
+}

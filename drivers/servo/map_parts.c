@@ -1,0 +1,56 @@
+/* What all files that read a map need: names with a meaning, a register by its name, whole numbers, refusals. */
+#include <math.h>
+#include <string.h>
+
+#include "servo/map_parts.h"
+#include "text/error_text.h"
+#include "text/text.h"
+
+#define WORD_MAX 4294967295.0
+#define R ETHD__SERVO_READ
+#define W ETHD__SERVO_WRITE
+
+const ethd__servo_role ethd__servo_roles[ETHD__SERVO_ROLES] = {
+    [ETHD__SERVO_TORQUE1] = {"torque1", "A|Nm", W},
+    [ETHD__SERVO_TORQUE2] = {"torque2", "A|Nm", W},
+    [ETHD__SERVO_COUNTER] = {"counter", "1", W},
+    [ETHD__SERVO_POSITION1] = {"position1", "count|turn|rad", R},
+    [ETHD__SERVO_POSITION2] = {"position2", "count|turn|rad", R},
+    [ETHD__SERVO_SPEED1] = {"speed1", "count/s|rpm|rad/s", R},
+    [ETHD__SERVO_SPEED2] = {"speed2", "count/s|rpm|rad/s", R},
+    [ETHD__SERVO_MEASURED1] = {"measured1", "A|Nm", R},
+    [ETHD__SERVO_MEASURED2] = {"measured2", "A|Nm", R},
+    [ETHD__SERVO_BUS_VOLTAGE] = {"bus_voltage", "V", R},
+    [ETHD__SERVO_INDEX1] = {"index1", "count", R},
+    [ETHD__SERVO_INDEX2] = {"index2", "count", R},
+    [ETHD__SERVO_READING_X] = {"reading_x", "m", R},
+    [ETHD__SERVO_READING_Y] = {"reading_y", "m", R},
+    [ETHD__SERVO_READING_COUNT] = {"reading_count", "1", R},
+    [ETHD__SERVO_READING_AGE] = {"reading_age", "s", R},
+};
+
+int32_t ethd__servo_find(const ethd__servo_map *map, const char *name, size_t length) {
+  for (uint32_t i = 0; i < map->count; i++)
+    if (strlen(map->registers[i].name) == length && !memcmp(map->registers[i].name, name, length)) return (int32_t)i;
+  return -1;
+}
+
+bool ethd__servo_whole(const char *text, double *out) {
+  size_t n = strlen(text);
+  if (n > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X')) {
+    *out = 0;
+    for (const char *p = text + 2; *p; p++) {
+      const char *hex = "0123456789abcdef0123456789ABCDEF", *at = strchr(hex, *p);
+      if (!at) return false;
+      *out = *out * 16 + (double)((at - hex) % 16);
+    }
+    return n <= 10;
+  }
+  return ethd__number(text, n, out) && *out == rint(*out) && fabs(*out) <= WORD_MAX;
+}
+
+ethd_status ethd__servo_refuse(const ethd__servo_source *s, const ethd_ini_key *key, const char *allowed) {
+  char quote[ETHD_QUOTE_MAX];
+  return ethd__say(s->message, ETHD_E_RANGE, "%s:%d: %s.%s: found %s, %s is allowed", s->name, key->line, key->section,
+                   key->key, ethd__quote(key->value, strlen(key->value), quote), allowed);
+}
