@@ -10,9 +10,10 @@ mkdir -p "$folder"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# Mean of eps_felt_m over the valid taps of a law at a speed, mm.
-mean() { # CSV LAW SPEED
-  awk -F, -v law="$2" -v speed="$3" '$2 == law && $3 == speed && $5 == 1 && $18 != "" { s += $18; n++ }
+# Mean of a column over the valid taps of a law at a speed, mm.
+mean() { # CSV LAW SPEED [COLUMN], default: eps_felt_m
+  awk -F, -v law="$2" -v speed="$3" -v name="${4:-eps_felt_m}" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) c = i }
+    $2 == law && $3 == speed && $5 == 1 && $c != "" { s += $c; n++ }
     END { if (n) printf "%.4f", 1e3 * s / n }' "$1"
 }
 
@@ -25,10 +26,13 @@ tap() { # CSV ARGUMENTS
 speeds=0.1,0.15,0.2,0.25,0.3,0.35,0.4,0.45,0.5,0.6,0.7
 for plant in n p; do
   tap "$work/taps.csv" --plant $plant --speed $speeds
-  echo speed_mps,abrupt_mm,smooth_mm,offset_mm,predictive_mm >"$folder/felt-$plant.csv"
+  echo speed_mps,abrupt_mm,smooth_mm,offset_mm,predictive_mm,abrupt_rebound_mm,smooth_rebound_mm,offset_rebound_mm,predictive_rebound_mm \
+    >"$folder/felt-$plant.csv"
   for speed in $(echo $speeds | tr , ' '); do
     line=$speed
-    for law in abrupt smooth offset predictive; do line="$line,$(mean "$work/taps.csv" $law $speed)"; done
+    for column in eps_felt_m d_max_m; do
+      for law in abrupt smooth offset predictive; do line="$line,$(mean "$work/taps.csv" $law "$speed" $column)"; done
+    done
     echo "$line" >>"$folder/felt-$plant.csv"
   done
 done
@@ -74,7 +78,6 @@ gnuplot -e "in='$folder/felt-n.csv'; out='$folder/felt-n.png'; plant='n'; a=49; 
 gnuplot -e "in='$folder/felt-p.csv'; out='$folder/felt-p.png'; plant='p'; a=29.7; gap=0.00549" "$plots/ahead.gp"
 gnuplot -e "in='$folder/off.csv'; out='$folder/off.png'" "$plots/ahead-sensitivity.gp"
 for speed in low high; do
-  gnuplot -e "in='$folder/traces/predictive-$speed.csv'; out='$folder/predictive-$speed.png'; title='predictive, $speed speed'" \
-    "$plots/tap.gp"
+  gnuplot -e "in='$folder/traces'; speed='$speed'; out='$folder/taps-$speed.png'" "$plots/ahead-taps.gp"
 done
 echo "$folder"

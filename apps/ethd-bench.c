@@ -9,13 +9,13 @@
 #include "text/text.h"
 
 static const ethd__bench *const benches[] = {
-    &ethd__bench_integrators, &ethd__bench_hours,      &ethd__bench_fits,  &ethd__bench_filters,
-    &ethd__bench_velocity,    &ethd__bench_kinematics, &ethd__bench_scene, &ethd__bench_tick,
+    &ethd__bench_integrators, &ethd__bench_hours, &ethd__bench_fits, &ethd__bench_filters, &ethd__bench_velocity,
+    &ethd__bench_kinematics,  &ethd__bench_scene, &ethd__bench_tick, &ethd__bench_sensors,
 };
 #define BENCH_COUNT (sizeof benches / sizeof *benches)
 
-static const char doc[] = "Measures libethd, and other libraries beside it where they are installed: "
-                          "for each question a table and "
+static const char doc[] = "Measures libethd, and other libraries beside it if they are installed. "
+                          "Prints a table for each question and writes "
                           "DIR/WHAT.csv. WHAT is one of those listed by --list, or all.\v"
                           "Absolute times hold for this machine at this moment: compare times of one run only.\n\n"
                           "Example:\n  ethd-bench tick --quick";

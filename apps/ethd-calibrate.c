@@ -16,9 +16,9 @@ static const char doc[] =
     "Calibrates the proximity ring with a rod of known radius.\v"
     "Guided (--port): first the empty ring, then the rod in the middle and pressed against the ring at each sensor; "
     "the "
-    "terminal says what to do. --record keeps what was counted, --in fits it again without the ring. Prints what each "
-    "level leaves over, writes the chosen one to --out, for the key calibration of the device's ring.\n"
-    "--self-test does the same with a made ring whose laws are known and says how well they are recovered.\n\n"
+    "terminal says what to do. --record keeps the counts, and --in fits them again without the ring. Prints the error "
+    "that each level leaves, and writes the chosen one to --out, for the key calibration of the device's ring.\n"
+    "--self-test does the same with a simulated ring whose laws are known, and says how well they are recovered.\n\n"
     "Example:\n"
     "  ethd-calibrate --port /dev/ttyUSB0 --rod 0.0075 --record counts.csv --out ring.ini --plot ring.png\n"
     "  ethd-calibrate --in counts.csv --level gain --out ring.ini\n"
@@ -30,15 +30,15 @@ static const struct argp_option options[] = {
     {"port", 'p', "TTY", 0, "the ring's serial port", 0},
     {"baud", BAUD, "B", 0, "baud rate of that port (500000)", 0},
     {"in", 'i', "COUNTS.csv", 0, "fit what --record kept, without a ring", 0},
-    {"self-test", SELF_TEST, NULL, 0, "calibrate a made ring instead of a real one", 0},
-    {"seed", SEED, "S", 0, "seed of the made ring (1)", 0},
-    {"noise", NOISE, "N", 0, "standard deviation of the made ring's counts (30)", 0},
+    {"self-test", SELF_TEST, NULL, 0, "calibrate a simulated ring instead of a real one", 0},
+    {"seed", SEED, "S", 0, "seed of the simulated ring (1)", 0},
+    {"noise", NOISE, "N", 0, "standard deviation of the simulated ring's counts (30)", 0},
     {"frames", FRAMES, "N", 0, "frames that are counted at each place (100)", 0},
     {"ring-radius", RING_RADIUS, "M", 0, "inner radius of the ring (0.012)", 0},
     {"rod", 'r', "M", 0, "radius of the rod (0.0075)", 0},
     {"level", 'l', "LEVEL", 0, "how much is calibrated: none, common, gain, law or table (law)", 0},
     {"serial", SERIAL, "TEXT", 0, "serial number of the ring, kept in the calibration", 0},
-    {"record", 'R', "COUNTS.csv", 0, "keep what was counted, written after every step", 0},
+    {"record", 'R', "COUNTS.csv", 0, "keep the counts, written after every step", 0},
     {"out", 'o', "RING.ini", 0, "write the calibration", 0},
     {"csv", 'c', "OUT.csv", 0, "write a row for each reading: where the rod was, where it was found, the error", 0},
     {"plot", 'P', "OUT.png", 0, "draw the file of --csv (gnuplot)", 0},
@@ -98,7 +98,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   }
 }
 
-/* ---- what was counted ---- */
+/* ---- the counts ---- */
 
 static void get_places(const ethd__calibration *truth, ethd__places *out) {
   char message[ETHD_MESSAGE_MAX];

@@ -1,5 +1,6 @@
 /* Is a configuration valid, how was it understood, and do its gains stay within the stability bounds? */
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,13 +17,16 @@ static const char doc[] = "Validates a configuration, prints the setup as it was
                           "stability, passivity, rest at touch, quantisation, the tick's time; each "
                           "with its formula and with what to "
                           "change.\v"
-                          "The simulated device's figures come from its plant; an option replaces them, "
-                          "and says what they are for any other device. "
+                          "A device isn't touched: what its drivers know from their settings and files is read (a "
+                          "servo's map: the time of an exchange on its wire, the divisor that holds, registers that "
+                          "nobody confirms, what stays unwatched). --open asks the device itself; nothing is enabled. "
+                          "Figures come from the drivers and from [arm], or from an option, which replaces them. "
                           "The exit code is 0 for every valid configuration, whether bounds are "
                           "exceeded or not; 2 with one line for "
                           "one that isn't.\n\n"
                           "Example:\n"
                           "  ethd-check device.ini\n"
+                          "  ethd-check --open device.ini\n"
                           "  ethd-check --counts 39200 --delay 1 --force-limit 5.4 device.ini";
 
 static const struct argp_option options[] = {
@@ -32,11 +36,13 @@ static const struct argp_option options[] = {
     {"friction", 'r', "N", 0, "Coulomb friction at the ring", 0},
     {"viscous", 'b', "NSPM", 0, "viscous friction at the ring, Ns/m", 0},
     {"latency", 'l', "S", 0, "age of the finger's readings when they arrive, s", 0},
+    {"open", 'o', NULL, 0, "open the device too: ports, the drive's identity, the empty ring; nothing is enabled", 0},
     {0},
 };
 
 static struct {
   const char *config, *counts, *delay, *force, *friction, *viscous, *latency;
+  bool open;
 } arg;
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -47,6 +53,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case 'r': arg.friction = text; return 0;
   case 'b': arg.viscous = text; return 0;
   case 'l': arg.latency = text; return 0;
+  case 'o': arg.open = true; return 0;
   case ARGP_KEY_ARG:
     if (arg.config) argp_error(state, "\"%s\": one configuration is checked", text);
     arg.config = text;
@@ -64,17 +71,45 @@ static const ethd_setting *setting(const ethd_config *config, const char *key) {
   return NULL;
 }
 
-static void check_device(const ethd_config *config) {
-  char message[ETHD_MESSAGE_MAX];
+typedef struct checked_device {
   const ethd_driver *driver;
   void *device;
+} checked_device;
+
+static checked_device reach_device(const ethd_config *config) {
+  char message[ETHD_MESSAGE_MAX];
+  checked_device d;
   const ethd_device_def def = {&config->setup, config->settings, config->setting_count, config->folder, arg.config, 0};
-  if (strcmp(config->device, ethd_driver_sim.id) != 0)
-    ethd__fail(ETHD_EXIT_INPUT, "%s:%d: device.driver: found \"%s\", sim is allowed", arg.config,
-               ethd_ini_find(&ethd__config_whole(config)->ini, "device", "driver")->line, config->device);
-  ethd_status status = ethd_device_open(config->device, NULL, &def, &driver, &device, message);
+  ethd_status status = arg.open ? ethd_device_open(config->device, NULL, &def, &d.driver, &d.device, message)
+                                : ethd_device_prepare(config->device, &def, &d.driver, &d.device, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
-  driver->close(device);
+  return d;
+}
+
+/* From now on the setup is the one that the loop would run: the device narrows its limits, and adds what moves it. */
+static void take_over(const checked_device *d, ethd_setup *setup) {
+  ethd_limits limits = d->driver->limits(d->device);
+  ethd_dynamics dynamics = d->driver->dynamics(d->device);
+  setup->limits = ethd_limits_narrower(&limits, &setup->limits);
+  setup->dynamics = ethd_dynamics_known(&dynamics, &setup->dynamics);
+}
+
+/* The largest of the figures of this name. */
+static double named(const checked_device *d, const char *name) {
+  static ethd_figure all[ETHD_FIGURES_MAX];
+  double most = NAN;
+  for (uint32_t i = 0, n = d->driver->figures(d->device, all, ETHD_FIGURES_MAX); i < n; i++)
+    if (strstr(all[i].name, name)) most = fmax(most, all[i].value);
+  return most;
+}
+
+static void from_drivers(const checked_device *d, const ethd_setup *setup, ethd__figures *f) {
+  const ethd_dynamics *known = &setup->dynamics;
+  f->friction = known->friction;
+  f->viscous = known->viscous;
+  f->delay = isnan(known->delay) ? named(d, "delay from measurement to torque") : known->delay;
+  f->count = named(d, "joint angle a count");
+  f->latency = named(d, "reading age");
 }
 
 /* The driver has read it already: it can be. */
@@ -96,16 +131,21 @@ static void from_plant(const ethd_config *config, ethd__figures *f) {
   f->count = p.count;
   f->latency = p.latency;
   f->compliant = isfinite(p.stiffness);
+  f->motor_mass = p.motor_mass;
+  f->spring = p.stiffness;
+  f->damper = p.damping;
 }
 
 static void option(const char *name, const char *text, double max, double *out) {
   if (text) *out = ethd__option_number(name, text, 0, max);
 }
 
-static ethd__figures figures(const ethd_config *config) {
+/* asked: Nm, the torque that the configuration allows, without its device. */
+static ethd__figures figures(const ethd_config *config, const checked_device *d, double asked) {
   const ethd_setup *setup = &config->setup;
-  ethd__figures f = {{NAN, NAN}, {NAN, NAN}, NAN, NAN, NAN, NAN, NAN, 0};
+  ethd__figures f = {{NAN, NAN}, {NAN, NAN}, NAN, NAN, NAN, NAN, NAN, 0, 0, 0, 0};
   double links[2] = {setup->arm.link1, setup->arm.link2}, ticks = NAN;
+  from_drivers(d, setup, &f);
   if (strcmp(config->device, ethd_driver_sim.id) == 0) from_plant(config, &f);
   option("--friction", arg.friction, 1e6, &f.friction);
   option("--viscous", arg.viscous, 1e6, &f.viscous);
@@ -114,8 +154,9 @@ static ethd__figures figures(const ethd_config *config) {
   if (arg.delay) f.delay = ticks * setup->period;
   if (arg.counts) f.count = 2 * M_PI / ethd__option_number("--counts", arg.counts, 1, 1e12);
   for (int i = 0; i < 2; i++) {
+    double most = arg.force ? asked : setup->limits.torque; /* the option replaces the device's */
     option("--force-limit", arg.force, 1e6, &f.force[i]);
-    f.force[i] = fmin(f.force[i], setup->limits.torque / links[i]); /* fmin: of the one that is known */
+    if (isfinite(most)) f.force[i] = fmin(f.force[i], most / links[i]); /* NaN: no other */
   }
   if (!isnan(config->setup.dynamics.mass[0])) f.mass[0] = config->setup.dynamics.mass[0];
   if (!isnan(config->setup.dynamics.mass[1])) f.mass[1] = config->setup.dynamics.mass[1];
@@ -132,11 +173,14 @@ int main(int argc, char **argv) {
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   ethd_status status = ethd_config_load(arg.config, &config, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
-  check_device(config);
-  ethd__subject subject = {.config = config, .device = figures(config)};
+  checked_device device = reach_device(config);
   printf("; %s is valid\n\n", arg.config);
   ethd__report_setup(config);
+  double asked = config->setup.limits.torque;
+  take_over(&device, &config->setup);
+  ethd__subject subject = {.config = config, .device = figures(config, &device, asked)};
   printf("\n");
+  ethd__report_drivers(config, device.driver, device.device, arg.open);
   ethd__report_device(&subject);
   int exceeded = ethd__report_stability(&subject);
   exceeded += ethd__report_passivity(&subject);
@@ -144,6 +188,7 @@ int main(int argc, char **argv) {
   exceeded += ethd__report_threshold(&subject);
   exceeded += ethd__report_tick(&subject);
   printf("\n%d bound%s exceeded\n", exceeded, exceeded == 1 ? "" : "s");
+  device.driver->close(device.device);
   ethd_config_free(config);
   return ethd__end(ETHD_EXIT_DONE);
 }

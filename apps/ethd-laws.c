@@ -1,10 +1,12 @@
-/* Every law and method that a configuration can name, with its parameters. */
+/* Every law, method and driver that a configuration can name, with its parameters. */
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/cli.h"
+#include "device/driver_file.h"
 #include "ethd/config.h"
 #include "ethd/plugin.h"
 #include "settings/config_parts.h"
@@ -12,14 +14,18 @@
 
 static const char doc[] =
     "Lists the laws and methods that a configuration can name, with each parameter's unit, range and "
-    "default, built in and of plugins.\v"
+    "default: the built-in ones and those of plugins.\v"
     "The first of each kind is the default, except that the default transition is offset.\n\n"
     "Example:\n"
     "  ethd-laws\n"
-    "  ethd-laws --plugin mylaw.so --csv laws.csv";
+    "  ethd-laws --plugin mylaw.so --csv laws.csv\n"
+    "  ethd-laws --drivers\n"
+    "  ethd-laws --driver mydriver.so";
 
 static const struct argp_option options[] = {
     {"plugin", 'p', "FILE", 0, "list this plugin's laws too; may be given more than once", 0},
+    {"drivers", 'd', NULL, 0, "list the drivers that are built in", 0},
+    {"driver", 'D', "FILE", 0, "list this file's driver instead, checked as [device] driver = file:FILE checks it", 0},
     {"csv", 'c', "FILE", 0, "write a row for each parameter", 0},
     {0},
 };
@@ -27,8 +33,9 @@ static const struct argp_option options[] = {
 #define PLUGINS_MAX 64
 
 static struct {
-  const char *plugins[PLUGINS_MAX], *csv;
+  const char *plugins[PLUGINS_MAX], *csv, *driver;
   int plugin_count;
+  bool drivers;
 } arg;
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -38,6 +45,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     arg.plugins[arg.plugin_count++] = text;
     return 0;
   case 'c': arg.csv = text; return 0;
+  case 'd': arg.drivers = true; return 0;
+  case 'D': arg.driver = text; return 0;
   case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
   default: return ARGP_ERR_UNKNOWN;
   }
@@ -102,6 +111,29 @@ static void show_all(const ethd_law *const *laws, ethd_csv_out *csv) {
   }
 }
 
+/* ---- drivers ---- */
+
+static void show_driver(const ethd_driver *driver, ethd_csv_out *csv) {
+  const ethd_method m = {driver->id, driver->brief, driver->params, driver->param_count};
+  show("device", &m, csv);
+  for (const char *const *key = driver->keys; key && *key; key++) printf("    %-14s text\n", *key);
+}
+
+static void show_file(const char *path, ethd_csv_out *csv) {
+  char what[ETHD_MESSAGE_MAX];
+  ethd_driver driver;
+  ethd_status status = ethd__driver_load(path, &driver, what);
+  if (status < 0) ethd__fail(ethd__exit_code(status), "--driver: %s: %s", path, what);
+  show_driver(&driver, csv);
+}
+
+static void show_drivers(ethd_csv_out *csv) {
+  for (const ethd_driver *const *d = ethd_drivers; arg.drivers && *d; d++) show_driver(*d, csv);
+  if (arg.driver) show_file(arg.driver, csv);
+}
+
+/* ---- laws ---- */
+
 /* Plugins are loaded as a configuration loads them. */
 static ethd_config *load(void) {
   char message[ETHD_MESSAGE_MAX];
@@ -124,7 +156,10 @@ int main(int argc, char **argv) {
   ethd_csv_out *csv = NULL;
   if (arg.csv && !(csv = ethd_csv_create(arg.csv, "section,id,param,unit,min,max,default,brief", message)))
     ethd__fail(ETHD_EXIT_FAILED, "%s", message);
-  show_all(config->laws, csv);
+  if (arg.drivers || arg.driver)
+    show_drivers(csv);
+  else
+    show_all(config->laws, csv);
   if (csv && ethd_csv_close(csv, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   ethd_config_free(config);
   return ethd__end(ETHD_EXIT_DONE);

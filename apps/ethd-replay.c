@@ -5,6 +5,7 @@
 #include "cli/cli.h"
 #include "cli/dropped.h"
 #include "ethd/record.h"
+#include "settings/config_parts.h"
 #include "trace_in/trace_in.h"
 
 static const char doc[] =
@@ -21,7 +22,7 @@ enum { OPTION_PLUGINS = 256 };
 static const struct argp_option options[] = {
     {"config", 'c', "C.ini", 0, "configuration (default: built in)", 0},
     {"in", 'i', "IN.csv", 0, "recorded input", 0},
-    {"out", 'o', "OUT.csv", 0, "the law's answer, a row for each tick", 0},
+    {"out", 'o', "OUT.csv", 0, "write the law's answer, a row for each tick", 0},
     {"verify", 'v', "DIR", 0, "replay a recording and compare every field bit for bit", 0},
     {"plugins", OPTION_PLUGINS, NULL, 0, "with --verify: run the plugins that the recording names", 0},
     {0},
@@ -98,14 +99,16 @@ static void warn(const ethd__trace_in *in, size_t row, const char *what, const c
 static bool is_guards(int64_t fault) { return fault == ETHD_FAULT_SPEED || fault == ETHD_FAULT_WORKSPACE; }
 
 /* Steps through all rows; the first fault of either kind is said, the rest still runs. */
-static int run(ethd_control *control, const ethd__trace_in *in, ethd_csv_out *out) {
+static int run(ethd_control *control, const ethd__trace_in *in, ethd_csv_out *out, const ethd_config *config) {
   int code = ETHD_EXIT_DONE;
   bool guarded = false;
   for (size_t row = 0; row < in->csv.rows && !ethd__stop; row++) {
     ethd_sense sense = ethd__trace_in_sense(in, row);
     ethd_command command;
     ethd_trace trace;
+    ethd__config_foreign(config, "a plugin's law");
     bool failed = ethd_control_step(control, &sense, &command, &trace) < 0;
+    ethd__config_foreign(config, NULL);
     const char *what = ethd_fault_sentence((ethd_fault)trace.fault);
     if (failed && is_guards(trace.fault)) {
       if (!guarded) warn(in, row, what, "the guard brakes");
@@ -149,7 +152,7 @@ static int replay(void) {
   ethd__refuse_input("--out", arg.out, "--config", arg.config);
   ethd_csv_out *out = open_out(in.ring, message);
   if (!out) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
-  int code = run(control, &in, out);
+  int code = run(control, &in, out, config);
   if (ethd__stop)
     ethd_csv_abandon(out);
   else if (ethd_csv_close(out, message) < 0)

@@ -9,6 +9,8 @@
 #include "cli/cli.h"
 #include "ethd/ethd.h"
 #include "report/report.h"
+#include "statistics/coverage.h"
+#include "study/sums.h"
 #include "text/claim.h"
 #include "text/error_text.h"
 #include "text/text.h"
@@ -16,13 +18,16 @@
 static const char doc[] =
     "Counts and draws the taps of a study: traces of taps, states and beta, box plots, Table 1 beside the paper's, "
     "delays between sight and touch, reasons, survey, strategies compared within participants.\v"
-    "The folder is one of ethd-study's, a session or a simulation. DIR/report holds report.html, which stands alone, "
-    "and the pictures and tidy CSV files behind it. It needs gnuplot.\n\n"
+    "The folder is one of ethd-study's, a session or a simulation; several are stations of one study, with "
+    "participants "
+    "of their own. The first one's report/ holds report.html, which stands alone, and the pictures and tidy CSV files "
+    "behind it. It needs gnuplot.\n\n"
     "Examples:\n"
     "  ethd-report session\n"
+    "  ethd-report left-room right-room --out report\n"
     "  ethd-report session --beside crowd --tap P02-06-004";
 
-enum { OPTION_BESIDE = 256, OPTION_TAP, OPTION_POINT, OPTION_SEED, OPTION_PLUGINS, OPTION_FORCE };
+enum { OPTION_BESIDE = 256, OPTION_TAP, OPTION_POINT, OPTION_SEED, OPTION_PLUGINS, OPTION_FORCE, OPTION_COVERAGE };
 
 static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "where the report goes (default: report, in the study's folder)", 0},
@@ -32,11 +37,17 @@ static const struct argp_option options[] = {
     {"plugins", OPTION_PLUGINS, NULL, 0, "run the plugins that the folder's configuration names", 0},
     {"force", OPTION_FORCE, NULL, 0, "replace a report that is there", 0},
     {"seed", OPTION_SEED, "S", 0, "seed of the bootstrap (1)", 0},
+    {"coverage", OPTION_COVERAGE, "N", 0,
+     "instead of a report, print how often its intervals hold the truth in N simulated studies", 0},
     {0},
 };
 
+#define STATIONS_MAX 64
+
 static struct {
-  const char *folder, *out, *beside, *tap;
+  const char *folder[STATIONS_MAX], *out, *beside, *tap;
+  size_t folders;
+  int64_t coverage;
   int64_t point;
   uint64_t seed;
   bool plugins, force;
@@ -50,13 +61,14 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_POINT: arg.point = ethd__option_integer("--point", text, 0, ETHD_STUDY_POINTS); return 0;
   case OPTION_SEED: arg.seed = ethd__option_seed("--seed", text); return 0;
   case OPTION_PLUGINS: arg.plugins = true; return 0;
+  case OPTION_COVERAGE: arg.coverage = ethd__option_integer("--coverage", text, 1, 1000000); return 0;
   case OPTION_FORCE: arg.force = true; return 0;
   case ARGP_KEY_ARG:
-    if (arg.folder) argp_error(state, "\"%s\": one folder is allowed", text);
-    arg.folder = text;
+    if (arg.folders == STATIONS_MAX) argp_error(state, "\"%s\": %d folders are allowed", text, STATIONS_MAX);
+    arg.folder[arg.folders++] = text;
     return 0;
   case ARGP_KEY_END:
-    if (!arg.folder) argp_error(state, "DIR is needed");
+    if (!arg.folders && !arg.coverage) argp_error(state, "DIR is needed");
     return 0;
   default: return ARGP_ERR_UNKNOWN;
   }
@@ -71,69 +83,56 @@ static void check_job(ethd_status status, const char *message) {
   if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
 }
 
-static void load(const char *folder, size_t point, ethd__folder *out, ethd__data *data) {
-  char message[ETHD_MESSAGE_MAX], *taps = ethd__folder_path(folder, ETHD_STUDY_TAPS);
-  check(ethd__folder_open(folder, arg.plugins, out, message), message);
-  if (access(taps, F_OK) != 0)
-    ethd__fail(ETHD_EXIT_INPUT, "%s: No such file; ethd-study --resume %s or --merge %s makes it", taps, folder,
-               folder);
-  check(ethd__data_read(taps, &out->loaded.plant, point, data, message), message);
-  free(taps);
-}
-
-/* Where people have led the finger, events have a clock. */
-static bool led_by_people(const ethd__report *r) {
-  char *path = ethd__folder_path(r->folder->path, ETHD_STUDY_EVENTS);
-  ethd__sheet events = {0};
-  bool found = access(path, F_OK) == 0 && !ethd__sheet_read(path, &events, r->message);
-  free(path);
-  int utc = found ? ethd__sheet_column(&events, "utc") : -1;
-  bool led = false;
-  for (size_t row = 0; row < events.rows; row++) led |= *ethd__sheet_cell(&events, row, utc) != 0;
-  ethd__sheet_free(&events);
-  return led;
-}
-
-static void print_origin(ethd__report *r) {
-  if (ethd__report_measured(r)) {
-    ethd__html_print(
-        &r->page,
-        "<b>Measured</b> on the device <code>%s</code> of config.ini, with people's fingers in it: the ring as the "
-        "encoders have it, the finger as its filter has it. A finger counts as touching %.2g mm from the ring on.",
-        r->folder->loaded.config->device, 1e3 * r->folder->protocol.slack);
-    return;
+/* The taps of folders of one study; `out` is the first one's. */
+static void load(const ethd__stations *stations, size_t point, ethd__folder *out, ethd__data *data) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd__sheet taps, participants;
+  for (size_t i = 0; i < stations->count; i++) {
+    ethd__folder other;
+    const char *folder = stations->folder[i];
+    check(i ? ethd__folder_read(folder, &other, message) : ethd__folder_open(folder, arg.plugins, out, message),
+          message);
+    char *path = ethd__folder_path(folder, ETHD_STUDY_TAPS);
+    if (access(path, F_OK) != 0)
+      ethd__fail(ETHD_EXIT_INPUT, "%s: No such file; ethd-study --resume %s or --merge %s makes it", path, folder,
+                 folder);
+    free(path);
+    if (i && strcmp(other.hash, out->hash) != 0)
+      ethd__fail(ETHD_EXIT_INPUT, "%s: another study than %s: its study, configuration, walls or plant differ", folder,
+                 stations->folder[0]);
+    if (i) ethd__folder_close(&other);
   }
-  ethd__html_markup(&r->page, "<b>Simulated, not measured.</b> ");
-  ethd__html_markup(
-      &r->page,
-      led_by_people(r)
-          ? "People led the hand; device and finger are plausible: the plant was fitted to Table 1 of the paper."
-          : "Device, finger and people are plausible: the plant was fitted to Table 1 of the paper, the spread "
-            "between people is assumed.");
+  if (stations->count > 1) check(ethd__gather_check(stations, ETHD_STUDY_TAPS, message), message);
+  check(ethd__gather(stations, ETHD_STUDY_TAPS, &taps, message), message);
+  check(ethd__gather(stations, "participants.csv", &participants, message), message);
+  check(ethd__data_of(&taps, &participants, &out->loaded.plant, point, data, message), message);
+  ethd__sheet_free(&participants);
 }
 
-static void print_lead(ethd__report *r) {
-  const ethd__data *d = &r->data;
-  size_t taps = 0, valid = 0;
-  for (size_t i = 0; i < d->group_count; i++) {
-    taps += d->group[i].cell.count;
-    valid += ethd__cell_valid(&d->group[i].cell);
+/* Until all is printed, or Ctrl-C. */
+static void print_coverage(void) {
+  static const size_t people[] = {3, 6, 12, 24};
+  printf("Of %lld simulated studies (normal, %d taps a cell) so many have their truth within the 95 %% interval:\n\n"
+         "participants  bootstrap of a median  bootstrap of Cliff's delta  t of a mean difference  d_z, noncentral t\n",
+         (long long)arg.coverage, ETHD_COVERAGE_TAPS);
+  for (size_t i = 0; i < sizeof people / sizeof *people && !ethd__stop; i++) {
+    ethd__coverage c = ethd__coverage_of(people[i], (size_t)arg.coverage, arg.seed);
+    printf("%12zu  %21.3f  %26.3f  %22.3f  %17.3f\n", c.people, c.median, c.cliff, c.mean, c.effect);
+    fflush(stdout);
   }
-  ethd__html_print(
-      &r->page,
-      "<p class=\"lead\">%zu participants, %zu cells, %zu test taps, %zu of them valid; %zu training taps.</p>\n",
-      d->people_count, d->group_count, taps, valid, d->training);
-  ethd__html_markup(&r->page, "<p class=\"note\">");
-  print_origin(r);
-  ethd__html_markup(&r->page,
-                    " Laws and gains are those of the configuration, the paper's unless it says otherwise.</p>\n");
-  ethd__html_markup(&r->page, "<nav>");
-  static const char *const links[][2] = {{"table1", "Table 1"},   {"figures", "Figures"},  {"delay", "Delay"},
-                                         {"valid", "Valid taps"}, {"pairs", "Comparison"}, {"survey", "Survey"},
-                                         {"traces", "Traces"},    {"methods", "Methods"}};
-  for (size_t i = 0; i < sizeof links / sizeof *links; i++)
-    ethd__html_print(&r->page, "<a href=\"#%s\">%s</a>", links[i][0], links[i][1]);
-  ethd__html_markup(&r->page, "</nav>\n");
+}
+
+/* What was changed is named, and the page goes on: nothing here can tell which of the two is right. */
+static void print_sums(ethd__report *r) {
+  char message[ETHD_MESSAGE_MAX];
+  const char *folder = r->folder->path;
+  size_t files, n = strlen(folder);
+  ethd_status status = ethd__sums_check(folder, &files, message);
+  if (status)
+    ethd__html_print(&r->page, "<p class=\"note\"><b>Check sums:</b> %s.</p>\n",
+                     strncmp(message, folder, n) ? message : message + n + strspn(message + n, "/: "));
+  else
+    ethd__html_print(&r->page, "<p class=\"note\">All %zu files are as SHA256SUMS says.</p>\n", files);
 }
 
 static void print_foot(ethd__report *r) {
@@ -143,17 +142,20 @@ static void print_foot(ethd__report *r) {
                    "Study hash <code>%s</code>; libethd %s. Any recorded tap repeats bit for bit: "
                    "<code>ethd-replay --verify DIR/taps/NAME</code>.</p>\n",
                    r->folder->hash, ETHD_VERSION);
+  print_sums(r);
 }
 
 static ethd_status sections(ethd__report *r) {
-  ethd_status (*const each[])(ethd__report *) = {ethd__report_table1, ethd__report_boxes,  ethd__report_reasons,
-                                                 ethd__report_pairs,  ethd__report_survey, ethd__report_traces,
+  ethd_status (*const each[])(ethd__report *) = {ethd__report_table1,      ethd__report_claims,    ethd__report_boxes,
+                                                 ethd__report_reasons,     ethd__report_validity,  ethd__report_pairs,
+                                                 ethd__report_interaction, ethd__report_survey,    ethd__report_forces,
+                                                 ethd__report_traces,      ethd__report_encounter, ethd__report_tidy,
                                                  ethd__report_grid};
   ethd_status status = ETHD_OK;
   char title[128];
   snprintf(title, sizeof title, "Tapping study: %s", r->folder->protocol.name);
   ethd__html_begin(&r->page, title);
-  print_lead(r);
+  ethd__report_origin(r);
   for (size_t i = 0; !status && i < sizeof each / sizeof *each; i++) status = each[i](r);
   if (status) return status;
   ethd__report_methods(r);
@@ -167,8 +169,9 @@ static void write_page(ethd__report *r) {
   char *path = ethd__report_path(r, "report.html");
   ethd_replace replace;
   ethd__claim claim;
-  if (ethd__claim_holds(r->folder->path, NULL, r->out))
-    ethd__fail(ETHD_EXIT_INPUT, "--out: %s is the study's own folder; another one is needed", r->out);
+  for (size_t i = 0; i < r->stations.count; i++)
+    if (ethd__claim_holds(r->stations.folder[i], NULL, r->out))
+      ethd__fail(ETHD_EXIT_INPUT, "--out: %s is the study's own folder; another one is needed", r->out);
   check(ethd__claim_folder(r->out, files, arg.force, &claim, r->message), r->message);
   check_job(ethd__picture_ready(r->message), r->message);
   check_job(ethd_replace_begin(path, &replace, r->message), r->message);
@@ -183,24 +186,32 @@ static void write_page(ethd__report *r) {
 }
 
 int main(int argc, char **argv) {
-  static const struct argp argp = {options, parse, "DIR", doc, NULL, NULL, NULL};
+  static const struct argp argp = {options, parse, "DIR...", doc, NULL, NULL, NULL};
   char message[ETHD_MESSAGE_MAX] = "";
   static ethd__report report;
   ethd__folder folder, beside;
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
-  char *out = arg.out ? NULL : ethd__folder_path(arg.folder, "report");
+  if (arg.coverage) {
+    ethd__catch_interrupt();
+    print_coverage();
+    return ethd__end(ethd__stop ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE);
+  }
+  char *out = arg.out ? NULL : ethd__folder_path(arg.folder[0], "report");
   report = (ethd__report){.folder = &folder,
+                          .stations = {arg.folder, arg.folders},
                           .out = out ? out : arg.out,
                           .tap = arg.tap,
                           .point = (size_t)arg.point,
                           .seed = arg.seed,
                           .message = message};
-  load(arg.folder, report.point, &folder, &report.data);
+  load(&report.stations, report.point, &folder, &report.data);
   if (arg.beside) {
-    load(arg.beside, 0, &beside, &report.beside);
+    const ethd__stations other = {&arg.beside, 1};
+    load(&other, 0, &beside, &report.beside);
     report.beside_name = beside.protocol.name;
   }
+  ethd__report_led(&report);
   write_page(&report);
   ethd__data_free(&report.data);
   ethd__data_free(&report.beside);

@@ -10,15 +10,14 @@
 static const char doc[] =
     "Says what a scene holds, or the signed distance of points from it; makes scenes of drawings.\v"
     "query: IN needs the columns x_m,y_m; OUT gets distance_m,nx,ny,object, a row per point: the smallest "
-    "signed distance over the objects, the normal into that object there, and its number in the file. Nothing "
-    "is left out.\n"
+    "signed distance over the objects, the normal into that object there, and its number in the file. Objects "
+    "out of the arm's reach count too.\n"
     "info: counts, extent, build time, memory, and what the arm can't reach. A picture shows the objects, the "
     "boxes of the tree by depth, and the arm's reach.\n"
     "convert: IN is a drawing (.svg) or a scene (.scene), OUT a scene. A drawing may hold paths (MLHVCSQTAZ), "
     "rect, circle, ellipse, line, polyline and polygon, in g with matrix, translate, scale and rotate. What is filled "
-    "and "
-    "closed is solid, all else a thin wall. Title, desc, metadata, defs, other namespaces and what is hidden are "
-    "skipped; all else is refused. y is mirrored, so that it points up.\n\n"
+    "and closed is solid, all else is a thin wall. Title, desc, metadata, defs, other namespaces and what is hidden "
+    "are skipped; all else is refused. y is mirrored, so that it points up.\n\n"
     "Example:\n"
     "  ethd-scene query --scene walls.scene --in points.csv --out distances.csv\n"
     "  ethd-scene info walls.scene --plot walls.png\n"
@@ -29,9 +28,9 @@ static const struct argp_option options[] = {
     {"scene", 's', "F", 0, "query: the scene", 0},
     {"in", 'i', "IN", 0, "query: points; convert: .svg or .scene", 0},
     {"out", 'o', "OUT", 0, "query: distances; convert: the scene", 0},
-    {"config", 'c', "C.ini", 0, "info: configuration whose arm and ring are meant (default: built in)", 0},
-    {"plot", 'p', "OUT.png", 0, "info: a picture, and OUT.csv that it is drawn from", 0},
-    {"tolerance", 't', "M", 0, "convert: how far an edge may be off its curve, m (default: 1e-5)", 0},
+    {"config", 'c', "C.ini", 0, "info: configuration with the arm and the ring (default: built in)", 0},
+    {"plot", 'p', "OUT.png", 0, "info: draw a picture, and keep its data in OUT.csv", 0},
+    {"tolerance", 't', "M", 0, "convert: how far an edge may be from its curve, m (default: 1e-5)", 0},
     {"scale", 'l', "M", 0, "convert: m per user unit (default: by width, height and viewBox, 96 px an inch)", 0},
     {"origin", 'O', "X,Y", 0, "convert: where the page's lower left corner goes, m (default: 0,0)", 0},
     {0},

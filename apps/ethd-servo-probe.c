@@ -17,12 +17,12 @@ static const char doc[] =
     "fast as the bus goes, and says which rate it can hold. The drive isn't enabled, nothing moves, but with "
     "--try-watchdog.\v"
     "Examples:\n"
-    "  ethd-servo-probe --map svd48v.map\n"
+    "  ethd-servo-probe --map svd48v.map --by-hand 20\n"
     "  ethd-servo-probe --map plant.map --port 127.0.0.1:1502 --duration 10";
 
 #define ASKS 3 /* questions, before a drive is said not to answer */
 
-enum { OPTION_PORT = 256, OPTION_WATCHDOG };
+enum { OPTION_PORT = 256, OPTION_WATCHDOG, OPTION_BY_HAND };
 
 static const struct argp_option options[] = {
     {"map", 'm', "F.map", 0, "register map of the drive", 0},
@@ -31,12 +31,14 @@ static const struct argp_option options[] = {
     {"try-watchdog", OPTION_WATCHDOG, NULL, 0,
      "enables at zero torque, is silent, and says whether the drive let go by itself: keep clear of the arm", 0},
     {"duration", 'd', "S", 0, "how long it measures (2)", 0},
+    {"by-hand", OPTION_BY_HAND, "S", 0,
+     "then waits for so long, while you turn the joints by hand, and says which angle went which way", 0},
     {0},
 };
 
 static struct {
   const char *map, *port;
-  double duration, period; /* s */
+  double duration, period, by_hand; /* s */
   bool watchdog;
 } arg = {.duration = 2, .period = 1e-3};
 
@@ -45,6 +47,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case 'm': arg.map = text; return 0;
   case OPTION_WATCHDOG: arg.watchdog = true; return 0;
   case OPTION_PORT: arg.port = text; return 0;
+  case OPTION_BY_HAND: arg.by_hand = ethd__option_number("--by-hand", text, 0.1, 3600); return 0;
   case 'p': arg.period = ethd__option_number("--period", text, 1e-5, 1); return 0;
   case 'd': arg.duration = ethd__option_number("--duration", text, 0.01, 86400); return 0;
   case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
@@ -166,6 +169,39 @@ static void try_watchdog(void) {
   turns(ETHD__SERVO_DISABLE, 30);
 }
 
+/* ---- signs ---- */
+
+/* rad of the joint since the count `from`, over the counter's end too. */
+static double turned(const ethd__servo_register *r, double from, double to) {
+  double span = ldexp(1, (int)r->bits), counts = to - from;
+  if (r->counts > 0) counts -= span * rint(counts / span);
+  return ethd__servo_joint(r, counts) - ethd__servo_joint(r, 0);
+}
+
+static void watch_hands(void) {
+  const double zero[2] = {0, 0};
+  double last[2] = {0, 0}, sum[2] = {0, 0};
+  printf("%-10s turn joint 1, then joint 2, so that their angles rise; %g s\n", "by hand", arg.by_hand);
+  fflush(stdout);
+  int64_t begin = ethd__clock_now(), end = begin + (int64_t)(1e9 * arg.by_hand), now = begin;
+  for (bool first = true; now < end && !ethd__stop; now = ethd__clock_now()) {
+    if (ethd__servo_link_turn(&drive, now, zero)) continue;
+    for (int i = 0; i < 2; i++) {
+      int32_t r = map.roles[ETHD__SERVO_POSITION1 + i];
+      if (r < 0) continue;
+      if (!first) sum[i] += turned(&map.registers[r], last[i], drive.raw[r]);
+      last[i] = drive.raw[r];
+    }
+    first = false;
+  }
+  for (int i = 0; i < 2; i++)
+    if (map.roles[ETHD__SERVO_POSITION1 + i] >= 0)
+      printf("%-10s position%d went %+.4f rad: its sign is %s\n", "", i + 1, sum[i],
+             sum[i] == 0  ? "not known, it didn't move"
+             : sum[i] > 0 ? "right if its angle rose"
+                          : "to be turned in the map if its angle rose");
+}
+
 /* ---- the report ---- */
 
 static void print_rate(double seconds) {
@@ -229,6 +265,7 @@ int main(int argc, char **argv) {
   double seconds = measure();
   print_rate(seconds);
   if (arg.watchdog) try_watchdog();
+  if (arg.by_hand > 0) watch_hands();
   print_wire();
   print_divisor();
   print_values();

@@ -12,6 +12,7 @@ static const ethd__stress *const tests[] = {
     &ethd__stress_touch,     &ethd__stress_lag,     &ethd__stress_press,      &ethd__stress_creep,
     &ethd__stress_energy,    &ethd__stress_arm,     &ethd__stress_parameters, &ethd__stress_inputs,
     &ethd__stress_denormals, &ethd__stress_drift,   &ethd__stress_jitter,     &ethd__stress_map,
+    &ethd__stress_hold,
 };
 #define COUNT (sizeof tests / sizeof *tests)
 
@@ -27,11 +28,11 @@ enum { OPTION_FORCE = 256 };
 
 static const struct argp_option options[] = {
     {"quick", 'q', NULL, 0, "fewer points: all in a few seconds", 0},
-    {"long", 'l', NULL, 0, "1e9 ticks where the default has 1e7: minutes", 0},
+    {"long", 'l', NULL, 0, "run 1e9 ticks where the default runs 1e7; takes minutes", 0},
     {"csv", 'c', "FILE", 0, "write every result, one in a row", 0},
-    {"out", 'o', "DIR", 0, "folder for the data of pictures (plot/stability-*.gp draw them)", 0},
-    {"force", OPTION_FORCE, NULL, 0, "replace the data that is there", 0},
-    {"list", 'L', NULL, 0, "names the tests", 0},
+    {"out", 'o', "DIR", 0, "folder for the pictures' data (plot/stability-*.gp draw them)", 0},
+    {"force", OPTION_FORCE, NULL, 0, "replace data that is there", 0},
+    {"list", 'L', NULL, 0, "list the tests", 0},
     {0},
 };
 

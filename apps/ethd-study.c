@@ -2,11 +2,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/cli.h"
-#include "screen/place.h"
-#include "study/shard.h"
+#include "screen/commands.h"
+#include "study/session.h"
 
 static const char doc[] =
     "Runs a tapping study: participants tap a virtual wall under each strategy at each speed until enough taps "
@@ -16,15 +15,30 @@ static const char doc[] =
     "a README.md that says what each file and column is; ethd-report draws it. A session that was stopped, killed "
     "or ran out of disk goes on with --resume: no tap is lost, repeated or torn. Simulated participants are "
     "plausible, not measured; they answer no survey. With \"[hand] source = people\" the configuration's device is "
-    "opened and run as ethd-run does, and a person's finger is in its ring.\n\n"
-    "With --ask, lines on stdin: note WORDS, pause, go, abort (this participant), stop; ack, for a device that has "
-    "stopped itself; and the survey's answers.\n\n"
+    "opened and run as ethd-run does, and a person's finger is in its ring; with \"source = mouse\", or --screen "
+    "alone, "
+    "a pointer leads the simulated device's hand. A session's taps all come from one of these, which stands at each of "
+    "them (device, mouse, simulated, recorded); another one is refused.\n\n"
+    "\"[validity] by = paper\" counts a tap where the ring met the wall at the speed asked for, \"by = finger\" where "
+    "the hand did and the finger didn't come before the ring, for laws that stop the ring before the wall; the columns "
+    "v_hand_mps, touch_depth_m and eps_felt_m say both of any tap.\n\n"
+    "With --ask, lines on stdin: note WORDS, pause, go, abort (this participant), undo (the last abort), stop; ack, "
+    "for "
+    "a device that has stopped itself; and the survey's answers, which are kept one by one, with back to the one "
+    "before.\n\n"
+    "A participant who withdraws or is excluded stays on record with the reason, in participants.csv, and leaves the "
+    "analysis, as one who aborted does.\n\n"
     "Examples:\n"
+    "  ethd-study --plan my.study    (who gets what when, and how balanced that is)\n"
     "  ethd-study --out session\n"
     "  ethd-study my.study --out session --ask\n"
     "  ethd-study --out mine --screen    (tap with the mouse)\n"
-    "  ethd-study device.study --out lab --screen    (source = people, config = device.ini: in its ring)\n"
+    "  ethd-study device.study --out lab --screen    (with a device: source = people)\n"
+    "  ethd-study my.study --out station-a --participant 1-6    (and 7-12 at another station)\n"
+    "  ethd-study --merge station-a station-b --out both\n"
     "  ethd-study --resume session\n"
+    "  ethd-study --resume session --exclude 2 --reason \"was told another task\"\n"
+    "  ethd-study --verify session\n"
     "  ethd-study grid.study --simulate 1000 --shard 1/4 --out bulk    (and 2/4, 3/4, 4/4, anywhere)\n"
     "  ethd-study --merge bulk";
 
@@ -38,33 +52,42 @@ enum {
   OPTION_TICKS,
   OPTION_MERGE,
   OPTION_SCREEN,
-  OPTION_VIRTUAL
+  OPTION_VIRTUAL,
+  OPTION_PLAN,
+  OPTION_VERIFY,
+  OPTION_WITHDRAW,
+  OPTION_EXCLUDE,
+  OPTION_INCLUDE,
+  OPTION_REASON
 };
 
 static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "folder of a new session, or of a simulation", 0},
     {"resume", OPTION_RESUME, "DIR", 0, "go on with the session in DIR", 0},
-    {"participant", OPTION_PARTICIPANT, "K", 0, "only participant K, from 1; the others another time", 0},
+    {"participant", OPTION_PARTICIPANT, "K[-L]", 0,
+     "only participant K, from 1, or K to L; the others another time, or at another station", 0},
     {"finger", OPTION_FINGER, "FILE.csv", 0, "every hand's path is this recorded movement", 0},
     {"ask", OPTION_ASK, NULL, 0, "take commands on stdin", 0},
     {"screen", OPTION_SCREEN, "WxH", OPTION_ARG_OPTIONAL,
      "in a window, 1280x720 by default; the mouse is the finger, unless people's are", 0},
     {"virtual", OPTION_VIRTUAL, NULL, 0, "with people: the device in lock-step, as fast as it goes", 0},
+    {"plan", OPTION_PLAN, NULL, 0, "print everybody's order and its balance; nothing else is done", 0},
+    {"verify", OPTION_VERIFY, "DIR", 0, "compare a folder's files with its SHA256SUMS", 0},
     {"quiet", 'q', NULL, 0, "print no line for each tap", 0},
-    {"simulate", OPTION_SIMULATE, "N", 0, "simulate N participants at every point of the study's [grid]", 1},
-    {"shard", OPTION_SHARD, "I/N", 0, "simulate only this share (1/1)", 1},
-    {"ticks", OPTION_TICKS, NULL, 0, "record every tick of a simulation, 300 kB a tap", 1},
-    {"merge", OPTION_MERGE, "DIR", 0, "merge all shards in DIR into DIR/taps.csv", 1},
+    {"withdraw", OPTION_WITHDRAW, "K", 0, "with --resume: write down that participant K has withdrawn, and end", 1},
+    {"exclude", OPTION_EXCLUDE, "K", 0, "with --resume: take participant K out of the analysis, and end", 1},
+    {"include", OPTION_INCLUDE, "K", 0,
+     "with --resume: take participant K back, to the analysis and to the taps that are missing, and end", 1},
+    {"reason", OPTION_REASON, "WORDS", 0, "why a participant is withdrawn, excluded or included", 1},
+    {"simulate", OPTION_SIMULATE, "N", 0, "simulate N participants at every point of the study's [grid]", 2},
+    {"shard", OPTION_SHARD, "I/N", 0, "simulate only this share (1/1)", 2},
+    {"ticks", OPTION_TICKS, NULL, 0, "record every tick of a simulation, 300 kB a tap", 2},
+    {"merge", OPTION_MERGE, "DIR", 0,
+     "merge all shards in DIR into DIR/taps.csv; or, with --out, the sessions in DIR and in further folders", 2},
     {0},
 };
 
-static struct {
-  const char *study, *out, *resume, *finger, *merge;
-  int64_t participant, simulate;
-  ethd__shard shard;
-  int width, height; /* px of the screen; 0: none */
-  bool ask, quiet, sharded, is_virtual;
-} arg = {.shard = {.index = 1, .count = 1}};
+static ethd__study_options arg = {.shard = {.index = 1, .count = 1}};
 
 static void parse_shard(const char *text) {
   char left[24];
@@ -86,16 +109,36 @@ static void parse_screen(const char *text) {
     ethd__fail(ETHD_EXIT_INPUT, "--screen: found \"%.40s\", WxH from 320x200 to 16384x16384 is allowed", text);
 }
 
+static void parse_participant(const char *text) {
+  const char *to = strchr(text, '-');
+  char *from = strndup(text, to ? (size_t)(to - text) : strlen(text));
+  if (!from) ethd__fail_memory();
+  arg.first = ethd__option_integer("--participant", from, 1, ETHD_STUDY_SESSION_PEOPLE);
+  arg.last = to ? ethd__option_integer("--participant", to + 1, arg.first, ETHD_STUDY_SESSION_PEOPLE) : arg.first;
+  free(from);
+}
+
+static void decide(const char *option, const char *decision, const char *text) {
+  if (arg.decision) ethd__fail(ETHD_EXIT_INPUT, "%s: one of --withdraw, --exclude and --include is allowed", option);
+  arg.decision = decision;
+  arg.decided = ethd__option_integer(option, text, 1, ETHD_STUDY_SESSION_PEOPLE);
+}
+
 /* What goes with what. */
 static void check_options(struct argp_state *state) {
-  if (!!arg.out + !!arg.resume + !!arg.merge != 1)
-    argp_error(state, "--out DIR, --resume DIR or --merge DIR is needed");
-  if (!arg.out && (arg.study || arg.finger)) argp_error(state, "the study is taken from the folder");
+  bool stations = arg.merge && arg.out;
+  if (!stations && arg.word_count > 1) argp_error(state, "\"%s\": one study file is allowed", arg.word[1]);
+  if (!stations && arg.word_count) arg.study = arg.word[0];
+  if (!!arg.out + !!arg.resume + (arg.merge && !stations) + !!arg.verify + arg.plan != 1)
+    argp_error(state, "--out DIR, --resume DIR, --merge DIR, --verify DIR or --plan is needed");
+  if (!arg.out && !arg.plan && (arg.study || arg.finger)) argp_error(state, "the study is taken from the folder");
   if ((arg.sharded || arg.shard.record) && !arg.simulate) argp_error(state, "--shard and --ticks need --simulate N");
   if (arg.width && (arg.ask || arg.simulate || arg.finger || arg.merge))
     argp_error(state, "--screen has a finger of its own, and keys: no --ask, --finger, --simulate, --merge");
-  if (arg.simulate && (!arg.out || arg.ask || arg.participant))
+  if (arg.simulate && (!arg.out || arg.ask || arg.first))
     argp_error(state, "--simulate needs --out DIR, and has nobody to ask or choose");
+  if (!arg.decision != !arg.reason || (arg.decision && !arg.resume))
+    argp_error(state, "--withdraw, --exclude and --include need --resume DIR and --reason WORDS");
 }
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -103,9 +146,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case 'o': arg.out = text; return 0;
   case 'q': arg.quiet = true; return 0;
   case OPTION_RESUME: arg.resume = text; return 0;
-  case OPTION_PARTICIPANT:
-    arg.participant = ethd__option_integer("--participant", text, 1, ETHD_STUDY_SESSION_PEOPLE);
-    return 0;
+  case OPTION_PARTICIPANT: parse_participant(text); return 0;
   case OPTION_FINGER: arg.finger = text; return 0;
   case OPTION_ASK: arg.ask = true; return 0;
   case OPTION_SIMULATE: arg.simulate = ethd__option_integer("--simulate", text, 1, ETHD_STUDY_PEOPLE); return 0;
@@ -114,132 +155,29 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_SCREEN: parse_screen(text); return 0;
   case OPTION_VIRTUAL: arg.is_virtual = true; return 0;
   case OPTION_MERGE: arg.merge = text; return 0;
+  case OPTION_PLAN: arg.plan = true; return 0;
+  case OPTION_VERIFY: arg.verify = text; return 0;
+  case OPTION_WITHDRAW: decide("--withdraw", "withdraw", text); return 0;
+  case OPTION_EXCLUDE: decide("--exclude", "exclude", text); return 0;
+  case OPTION_INCLUDE: decide("--include", "include", text); return 0;
+  case OPTION_REASON: arg.reason = text; return 0;
   case ARGP_KEY_ARG:
-    if (arg.study) argp_error(state, "\"%s\": one study file is allowed", text);
-    arg.study = text;
+    if (arg.word_count == ETHD_STUDY_STATIONS) argp_error(state, "over %d folders", ETHD_STUDY_STATIONS);
+    arg.word[arg.word_count++] = text;
     return 0;
   case ARGP_KEY_END: check_options(state); return 0;
   default: return ARGP_ERR_UNKNOWN;
   }
 }
 
-static void check(ethd_status status, const char *message) {
-  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
-}
-
-/* ---- a session ---- */
-
-/* Nothing is written before all of the input is known to be good. */
-static void check_study(const ethd__protocol *protocol, const ethd__loaded *loaded) {
-  char message[ETHD_MESSAGE_MAX];
-  ethd__desk desk;
-  check(ethd__desk_open(protocol, loaded, arg.finger, &desk, message), message);
-  ethd__desk_close(&desk);
-  bool people = protocol->hands == ETHD_HANDS_PEOPLE;
-  if (people && (arg.simulate || arg.finger))
-    ethd__fail(ETHD_EXIT_INPUT, "%s: hand.source: people have hands of their own; no --simulate, no --finger",
-               protocol->path);
-  if (!people && arg.is_virtual)
-    ethd__fail(ETHD_EXIT_INPUT, "--virtual: %s: hand.source: people is needed; any other has no real time",
-               protocol->path);
-  if (protocol->axis_count && !arg.simulate)
-    ethd__fail(ETHD_EXIT_INPUT, "%s: [grid]: a session has no grid; --simulate has", protocol->path);
-  if (arg.participant > protocol->participants)
-    ethd__fail(ETHD_EXIT_INPUT, "--participant: found %lld, 1 to %u are allowed", (long long)arg.participant,
-               protocol->participants);
-}
-
-static void make_folder(void) {
-  char message[ETHD_MESSAGE_MAX], *journal = ethd__folder_path(arg.out, ETHD_STUDY_JOURNAL);
-  ethd__protocol protocol;
-  ethd__loaded loaded;
-  if (access(journal, F_OK) == 0)
-    ethd__fail(ETHD_EXIT_INPUT, "%s: holds a session; --resume %s goes on with it", arg.out, arg.out);
-  free(journal);
-  char *study = arg.study ? strdup(arg.study) : ethd__data_path("paper.study");
-  if (!study) ethd__fail_memory();
-  ethd_status status = ethd__protocol_load(study, &protocol, message);
-  free(study);
-  check(status, message);
-  ethd__folder_device(&protocol, &loaded);
-  check_study(&protocol, &loaded);
-  status = ethd__folder_make(arg.out, &protocol, &loaded, arg.finger, message);
-  if (status) ethd__fail(status == ETHD_E_FILE ? ETHD_EXIT_FAILED : ethd__exit_code(status), "%s", message);
-  ethd__loaded_free(&loaded);
-  ethd__protocol_free(&protocol);
-}
-
-static int stopped(const char *folder, const char *how) {
-  fprintf(stderr, "%s: stopped; what was done is kept: %s %s goes on\n", program_invocation_short_name, how, folder);
-  return ETHD_EXIT_FAILED;
-}
-
-static int end(const ethd__sitting *sitting, const char *folder, ethd_status status, bool over, const char *message) {
-  if (status < 0)
-    ethd__fail(ETHD_EXIT_FAILED, "%s; what was done is kept: ethd-study --resume %s goes on", message, folder);
-  if (over) {
-    printf("%s: %llu taps; ethd-report %s draws them\n", folder, (unsigned long long)sitting->taps, folder);
-    return ETHD_EXIT_DONE;
-  }
-  return stopped(folder, "ethd-study --resume");
-}
-
-static int run_session(void) {
-  static ethd__screen_place place;
-  char message[ETHD_MESSAGE_MAX] = "";
-  const ethd__place_options wanted = {.path = arg.resume ? arg.resume : arg.out,
-                                      .participant = arg.participant,
-                                      .ask = arg.ask,
-                                      .quiet = arg.quiet,
-                                      .is_virtual = arg.is_virtual,
-                                      .width = arg.width,
-                                      .height = arg.height};
-  bool over = false;
-  if (!arg.resume) make_folder();
-  ethd__place_open(&wanted, &place);
-  ethd_status status = ethd__place_run(&place, &over, message);
-  int code = end(&place.sitting, wanted.path, status, over, message);
-  ethd__place_close(&place);
-  return code;
-}
-
-/* ---- a simulation ---- */
-
-static int run_shard(void) {
-  char message[ETHD_MESSAGE_MAX] = "";
-  ethd__folder folder;
-  ethd__desk desk;
-  uint64_t taps;
-  bool over;
-  make_folder();
-  check(ethd__folder_open(arg.out, true, &folder, message), message);
-  folder.protocol.participants = (uint32_t)arg.simulate;
-  check(ethd__desk_open(&folder.protocol, &folder.loaded, folder.finger, &desk, message), message);
-  ethd__catch_interrupt();
-  ethd_status status = ethd__shard_run(&folder, &desk, &arg.shard, &taps, &over, message);
-  if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s; the same command goes on", message);
-  if (over) printf("%s: shard %u/%u: %llu taps\n", arg.out, arg.shard.index, arg.shard.count, (unsigned long long)taps);
-  ethd__desk_close(&desk);
-  ethd__folder_close(&folder);
-  return over ? ETHD_EXIT_DONE : stopped(arg.out, "the same command, --out");
-}
-
-static int merge(void) {
-  char message[ETHD_MESSAGE_MAX] = "";
-  ethd__folder folder;
-  uint64_t taps;
-  check(ethd__folder_read(arg.merge, &folder, message), message);
-  ethd_status status = ethd__shards_merge(&folder, &taps, message);
-  if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
-  printf("%s/%s: %llu taps of %u participants at %zu points\n", arg.merge, ETHD_STUDY_TAPS, (unsigned long long)taps,
-         folder.protocol.participants, ethd__protocol_points(&folder.protocol));
-  ethd__folder_close(&folder);
-  return ETHD_EXIT_DONE;
-}
-
 int main(int argc, char **argv) {
   static const struct argp argp = {options, parse, "[STUDY]", doc, NULL, NULL, NULL};
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
-  return ethd__end(arg.merge ? merge() : arg.simulate ? run_shard() : run_session());
+  return ethd__end((arg.merge      ? ethd__command_merge
+                    : arg.verify   ? ethd__command_verify
+                    : arg.plan     ? ethd__command_plan
+                    : arg.decision ? ethd__command_decide
+                    : arg.simulate ? ethd__command_shard
+                                   : ethd__command_session)(&arg));
 }

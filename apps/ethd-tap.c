@@ -56,26 +56,29 @@ static const struct argp_option options[] = {
     {"taps", 'n', "N", 0, "attempts for each law and speed (100; 10 with --finger)", 0},
     {"seed", 'r', "S", 0, "seed of every random number (1)", 0},
     {"plant", 'p', "n|b|p|FILE", 0,
-     "the simulated device and finger: that of --config, or n; FILE.plant with FILE.ini beside it", 0},
-    {"finger", 'f', "FILE.csv", 0, "a recorded movement is the hand's voluntary path", 0},
+     "the simulated device and finger (default: that of --config, else n); a FILE.plant has FILE.ini beside it", 0},
+    {"finger", 'f', "FILE.csv", 0, "use a recorded movement as the hand's voluntary path", 0},
     {"scale", OPTION_SCALE, "K", 0, "multiply the recorded positions by K, 0.01 to 100", 0},
     {"validity", OPTION_VALIDITY, "paper|finger", 0,
-     "judge taps by the ring's meeting with the wall (the default), or by the finger alone, whatever the law", 0},
-    {"learn", OPTION_LEARN, "K", 0, "K taps before each counted one, from which a law that learns does so: 0", 0},
+     "judge taps by how the ring meets the wall (paper, the default), or by the finger alone, alike for every law", 0},
+    {"learn", OPTION_LEARN, "K", 0, "taps before each counted one, from which a law can learn (0)", 0},
     {"set", OPTION_SET, "KEY=VALUE", 0,
-     "change a section.key of the configuration, or what the law is told of the device (arm.mass_x); repeat it", 0},
+     "change a section.key of the configuration, or what the law knows of the device (arm.mass_x); may be given more "
+     "than once",
+     0},
     {"csv", OPTION_CSV, "OUT.csv", 0, "write a row for each tap", 0},
     {"record", OPTION_RECORD, "DIR", 0,
-     "every tick of every tap: a recording for ethd-replay --verify, with truth.npy and taps.csv beside it", 0},
+     "record every tick of every tap, for ethd-replay --verify, with truth.npy and taps.csv beside it", 0},
     {"force", OPTION_FORCE, NULL, 0, "replace a recording or traces that are there", 0},
-    {"trace", OPTION_TRACE, "DIR", 0, "DIR/LAW-SPEED.csv: the typical tap of each cell, a row per tick, for plots", 0},
+    {"trace", OPTION_TRACE, "DIR", 0,
+     "write DIR/LAW-SPEED.csv, the typical tap of each cell with a row per tick, for plots", 0},
     {0},
 };
 
-typedef struct list {
+typedef struct choices {
   const char *words[LIST_MAX];
   size_t count;
-} list;
+} choices;
 
 static struct {
   const char *config, *plant, *finger, *csv, *record, *trace;
@@ -83,7 +86,7 @@ static struct {
   bool scaled, force;
   int64_t taps;
   uint64_t seed;
-  list laws, speeds;
+  choices laws, speeds;
   ethd__validity validity;
   uint32_t learn;
   ethd__gain gains[GAINS_MAX];
@@ -93,7 +96,7 @@ static struct {
 /* ---- options ---- */
 
 typedef struct named {
-  list *list;
+  choices *list;
   const char *option;
 } named;
 
@@ -110,10 +113,14 @@ static void add(const char *word, void *user) {
   to->list->words[to->list->count++] = copy;
 }
 
-static void set_list(list *words, const char *option, const char *text) {
-  named to = {words, option};
+static void drop(choices *words) {
   for (size_t i = 0; i < words->count; i++) free((char *)words->words[i]);
   words->count = 0;
+}
+
+static void set_list(choices *words, const char *option, const char *text) {
+  named to = {words, option};
+  drop(words);
   ethd__option_list(option, text, add, &to);
 }
 
@@ -269,8 +276,8 @@ int main(int argc, char **argv) {
   int code = run(&plan, &heading);
   ethd__movement_free(&study.movement);
   ethd__loaded_free(&loaded);
-  set_list(&arg.laws, "", "-");
-  set_list(&arg.speeds, "", "-");
+  drop(&arg.laws);
+  drop(&arg.speeds);
   free(study.speeds);
   return ethd__end(code);
 }

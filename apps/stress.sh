@@ -12,12 +12,13 @@ code=0
 plot() { (cd "$out" && gnuplot -e "$1" "$here/plot/$2"); }
 draw() {
   plot "in='boundary.csv'; out='boundary.png'" stability-boundary.gp
+  plot "in='hold.csv'; out='hold.png'" stability-hold.gp
   for velocity in difference lowpass; do
     plot "map='map.csv'; curve='map_curve.csv'; velocity='$velocity'; out='map-$velocity.png'" stability-map.gp
   done
   echo
   echo "results: $out/results.csv; pictures, drawn from the CSV beside them:"
-  for picture in boundary map-difference map-lowpass; do echo "  $out/$picture.png"; done
+  for picture in boundary hold map-difference map-lowpass; do echo "  $out/$picture.png"; done
 }
 if command -v gnuplot >/dev/null; then draw; else echo "no gnuplot: no pictures"; fi
 

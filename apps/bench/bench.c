@@ -46,7 +46,7 @@ static double turn(const ethd__bench_entry *e, int repeats) {
   return (double)(ethd__bench_now() - start);
 }
 
-/* Doubles until a turn is long enough. */
+/* Doubles the repeats until a turn is long enough. */
 static int repeats_of(const ethd__bench_entry *e) {
   int repeats = 1;
   while (turn(e, repeats) < TURN / 2 && repeats < 1 << 24) repeats *= 2;

@@ -1,10 +1,9 @@
 /* What all benchmarks share: clocks, races, percentiles, peers, CSV.
 
    A benchmark answers one question with a table on the terminal and DIR/WHAT.csv; plot/bench-WHAT.gp
-   draws it. Times are of this machine at this moment: contenders race in turns, and only ratios count.
- */
-#ifndef ETHD_APPS_BENCH_H
-#define ETHD_APPS_BENCH_H
+   draws it. Times are those of this machine at this moment, so contenders race in turns and only ratios count. */
+#ifndef ETHD__BENCH_BENCH_H
+#define ETHD__BENCH_BENCH_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -19,17 +18,17 @@ typedef struct ethd__bench {
 extern const ethd__bench ethd__bench_fits, ethd__bench_filters, ethd__bench_velocity, ethd__bench_kinematics,
     ethd__bench_scene, ethd__bench_tick;
 
-extern const ethd__bench ethd__bench_integrators, ethd__bench_hours;
+extern const ethd__bench ethd__bench_integrators, ethd__bench_hours, ethd__bench_sensors;
 
-/* CLOCK_MONOTONIC, ns. */
+/* Returns CLOCK_MONOTONIC's time, ns. */
 int64_t ethd__bench_now(void);
 
-/* The cost of two clock readings in a row, ns: the median of many. */
+/* Returns the cost of two clock readings in a row, ns: the median of many. */
 double ethd__bench_clock_cost(void);
 
 /* ---- races ---- */
 
-/* work(data) does `items` things; ns is what one of them takes. */
+/* work(data) does `items` things; ns is the time that one of them takes. */
 typedef struct ethd__bench_entry {
   const char *name;
   void (*work)(void *data);
@@ -38,11 +37,11 @@ typedef struct ethd__bench_entry {
   double ns;
 } ethd__bench_entry;
 
-/* Fills ns of all: they work in turns of about 0.2 ms for `seconds` each; the lower quartile of the turns
-   counts, which nobody else has disturbed. */
+/* Fills ns of all: they work in turns of about 0.2 ms for `seconds` each. The lower quartile of the turns
+   counts, since nothing else has disturbed those. */
 void ethd__bench_race(ethd__bench_entry *entries, size_t count, double seconds);
 
-/* Results go here, so that no work is idle. */
+/* Results go here, so that no work is optimised away. */
 extern volatile double ethd__bench_sink;
 
 typedef struct ethd__bench_times {
@@ -54,27 +53,27 @@ ethd__bench_times ethd__bench_percentiles(double *ns, size_t count);
 
 /* ---- random numbers: draw i is the same everywhere ---- */
 
-/* Uniform in [a, b). */
+/* Returns a uniform number in [a, b). */
 double ethd__bench_draw(uint64_t i, double a, double b);
 double ethd__bench_normal(uint64_t i);
 
 /* ---- peers ---- */
 
-/* `symbol` of PEERS/NAME.so (apps/bench/peers/NAME.cc, tables in peers.h). NULL: it isn't there, and a
-   line says so. */
+/* Returns `symbol` of PEERS/NAME.so (apps/bench/peers/NAME.cc, tables in peers.h), or prints that it isn't there and
+   returns NULL. */
 const void *ethd__bench_peer(const char *name, const char *symbol);
 void ethd__bench_peers_in(const char *folder);
 
 /* ---- output ---- */
 
-/* Opens folder/name.csv with '#' lines that say machine, compiler, flags and version, then those of
-   `about` (each ends in a newline), then `header`; exits when it can't. */
+/* Opens folder/name.csv and writes '#' lines with machine, compiler, flags and version, then those of
+   `about` (each ends in a newline), then `header`; exits if it can't. */
 FILE *ethd__bench_csv(const char *folder, const char *name, const char *about, const char *header);
 
-/* Whatever else the '#' lines shall say: commit, flags. */
+/* Sets what else the '#' lines say: commit, flags. */
 void ethd__bench_about(const char *text);
 
-/* "met" or "MISSED". */
+/* Returns "met" or "MISSED". */
 const char *ethd__bench_verdict(int met);
 
 #endif

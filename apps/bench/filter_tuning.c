@@ -92,8 +92,7 @@ double ethd__tuning_error(ethd_filter_method method, const ethd__tuning *t, cons
   return ethd__filter_contender_error(&c, sets, count);
 }
 
-/* The first row from `from` on, each 1.25 times the one before; the second's values
-   are listed. */
+/* Tries the first row from `from` on, each value 1.25 times the one before, and the listed values of the second. */
 ethd__tuning ethd__tuning_best(ethd_filter_method method, const ethd__tracks *sets, size_t count) {
   static const double memories[] = {0.04, 0.08, 0.16, 0.32, (double)INFINITY}, alphas[] = {0.4, 0.5, 0.6, 0.7, 0.8};
   static const struct {

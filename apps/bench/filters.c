@@ -1,5 +1,5 @@
 /* Finger filters: error of the extrapolated position at every tick against ns a tick, on reaches and on
-   recorded movements, each filter with the tuning that suits the reaches best. */
+   recorded movements. Each filter has the tuning that suits the reaches best. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +13,7 @@
 enum { LATENCIES = 3, REACHES = 40, SETS_MAX = 16 };
 
 static const double latencies[LATENCIES] = {0, 3e-3, 6e-3};
-static const double goals[LATENCIES] = {0.15, 0.25, 0.30}; /* share by which ca is under cv */
+static const double goals[LATENCIES] = {0.15, 0.25, 0.30}; /* share by which ca's error is less than cv's */
 
 /* ---- time ---- */
 
@@ -59,7 +59,7 @@ typedef struct field {
 static const ethd_filter_method order[ETHD_FILTER_COUNT] = {ETHD_FILTER_HOLD, ETHD_FILTER_ALPHA_BETA, ETHD_FILTER_CV,
                                                             ETHD_FILTER_CA};
 
-/* The contenders: hold, two readings, alpha-beta, cv, ca, the peer. */
+/* Gathers the contenders: hold, two readings, alpha-beta, cv, ca, the peer. */
 static void gather(field *f, const ethd__tracks *reaches, const ethd__peer_filter *peer) {
   f->count = 0;
   for (int i = 0; i < ETHD_FILTER_COUNT; i++) {
@@ -85,7 +85,7 @@ static int by_error(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* "ca < cv < hold" */
+/* Prints a ranking such as "ca < cv < hold". */
 static void print_ranking(const field *f, const double *errors, size_t count) {
   double sorted[6];
   memcpy(sorted, errors, count * sizeof *sorted);
@@ -95,7 +95,7 @@ static void print_ranking(const field *f, const double *errors, size_t count) {
       if (errors[k] == sorted[i]) printf("%s%s", i ? " < " : "", f->list[k].name);
 }
 
-enum { OURS = 5, CV = 3, CA = 4 }; /* in the field */
+enum { OUR_FILTER = 5, CV = 3, CA = 4 }; /* in the field */
 
 static void print_errors(const char *set, double latency, const double *errors, size_t count) {
   printf("  %-22s %4.0f ms", set, 1e3 * latency);
@@ -150,7 +150,7 @@ static int one_latency(int l, double seconds, const ethd__peer_filter *peer) {
   printf("\n  tuned: alpha-beta %s, cv %s, ca %s\n", f.tuned[2], f.tuned[3], f.tuned[4]);
   if (sets) {
     printf("  ranking on all recorded: ");
-    print_ranking(&f, errors, OURS);
+    print_ranking(&f, errors, OUR_FILTER);
     printf("\n");
     print_cv_ca(&recorded[0], sets);
   }

@@ -1,5 +1,4 @@
-/* Ring fits: the centre's error against the Cramer-Rao bound of the same rays and noise, and ns a fit.
- */
+/* Finger fits: the centre's error against the Cramer-Rao bound of the same rays and noise, and ns a fit. */
 #include <math.h>
 #include <string.h>
 
@@ -30,7 +29,7 @@ static const scenario scenarios[] = {
 };
 enum { SCENARIOS = sizeof scenarios / sizeof *scenarios };
 
-/* What a trial draws. */
+/* What is drawn for a trial. */
 typedef struct trial {
   double r[ETHD_RAYS];
   ethd_vec centre; /* in the middle of the frame's time */
@@ -55,7 +54,7 @@ static void add_information(double m[3][3], ethd_vec c, double reach, int k) {
     for (int j = 0; j < 3; j++) m[i][j] += g[i] * g[j];
 }
 
-/* Trace over the centre of the inverse; a sought radius takes its share of the information (Schur). */
+/* Returns the trace of the inverse over the centre; a sought radius takes its share of the information (Schur). */
 static double bound(double m[3][3], int known) {
   double share = known ? 0 : 1 / m[2][2];
   double a = m[0][0] - share * m[0][2] * m[0][2], b = m[0][1] - share * m[0][2] * m[1][2];
@@ -85,7 +84,7 @@ static void make_trial(uint64_t i, const scenario *what, trial *out) {
   for (int known = 0; known < 2; known++) out->bound[known] = bound(m, known);
 }
 
-/* rms bound over the trials, m. */
+/* Returns the rms bound over the trials, m. */
 static double rms_bound(int count, int known) {
   double sum = 0;
   for (int i = 0; i < count; i++) sum += trials[i].bound[known];
@@ -127,15 +126,15 @@ static double rms_error(const ethd_fit *fit, int count) {
 
 /* ---- goals ---- */
 
-typedef struct figure {
+typedef struct fit_figure {
   double error, ns;
-} figure;
+} fit_figure;
 
 static void goal(const char *what, double value, double most, const char *unit) {
   printf("  goal: %-44s <= %-5g %-12s %.4g, %s\n", what, most, unit, value, ethd__bench_verdict(value <= most));
 }
 
-static void judge(figure f[SCENARIOS][ETHD_FIT_COUNT], double bounds[SCENARIOS][2]) {
+static void judge(fit_figure f[SCENARIOS][ETHD_FIT_COUNT], double bounds[SCENARIOS][2]) {
   double slowest = 0;
   for (int s = 0; s < SCENARIOS; s++) slowest = fmax(slowest, fmax(f[s][ETHD_FIT_KASA].ns, f[s][ETHD_FIT_ROBUST].ns));
   goal("kasa, 16 rays", f[0][ETHD_FIT_KASA].error / bounds[0][0], 1.05, "x the bound");
@@ -145,7 +144,7 @@ static void judge(figure f[SCENARIOS][ETHD_FIT_COUNT], double bounds[SCENARIOS][
   goal("kasa and robust, the slowest of all", slowest, 150, "ns");
 }
 
-static void measure(const scenario *what, int count, double seconds, figure out[ETHD_FIT_COUNT], double bounds[2]) {
+static void measure(const scenario *what, int count, double seconds, fit_figure out[ETHD_FIT_COUNT], double bounds[2]) {
   ethd_fit fits[ETHD_FIT_COUNT];
   ethd__bench_entry entries[ETHD_FIT_COUNT];
   for (int i = 0; i < count; i++) make_trial((uint64_t)i, what, &trials[i]);
@@ -154,12 +153,12 @@ static void measure(const scenario *what, int count, double seconds, figure out[
     entries[m] = (ethd__bench_entry){ethd_fit_methods[m].id, work, &fits[m], TIMED, 0};
   }
   ethd__bench_race(entries, ETHD_FIT_COUNT, seconds);
-  for (int m = 0; m < ETHD_FIT_COUNT; m++) out[m] = (figure){rms_error(&fits[m], count), entries[m].ns};
+  for (int m = 0; m < ETHD_FIT_COUNT; m++) out[m] = (fit_figure){rms_error(&fits[m], count), entries[m].ns};
   for (int known = 0; known < 2; known++) bounds[known] = rms_bound(count, known);
 }
 
 static int run(const char *folder, int quick) {
-  figure f[SCENARIOS][ETHD_FIT_COUNT];
+  fit_figure f[SCENARIOS][ETHD_FIT_COUNT];
   double bounds[SCENARIOS][2];
   FILE *csv = ethd__bench_csv(folder, "fits",
                               "# 16 rays of normal noise, sd 0.173 mm (as +-0.3 mm uniform); ring 12 mm, finger "

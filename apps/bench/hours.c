@@ -15,7 +15,7 @@ static const double tolerances[] = {1e-3, ETHD_SIM_FAST, 1e-5, 1e-6, 1e-7, 1e-8,
 
 enum { TAPS = 8, TICKS = 1500, ROUNDS_MAX = 64, TOLERANCES = sizeof tolerances / sizeof *tolerances };
 
-typedef struct loop {
+typedef struct closed_loop {
   ethd__stage stage;
   ethd__study study;
   ethd__speed speeds[2];
@@ -23,13 +23,13 @@ typedef struct loop {
   ethd_sim *sim;
   ethd_trace trace[TICKS];
   ethd_truth truth[TICKS];
-} loop;
+} closed_loop;
 
 static void check(ethd_status status, const char *message) {
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
 }
 
-static void open_loop(loop *l, const char *law) {
+static void open_loop(closed_loop *l, const char *law) {
   char message[ETHD_MESSAGE_MAX], *plant = ethd__data_path("n.plant"), *controller = ethd__data_path("n.ini");
   check(ethd_config_load(controller, &l->config, message), message);
   check(ethd_plant_load(plant, &l->study.plant, message), message);
@@ -45,14 +45,14 @@ static void open_loop(loop *l, const char *law) {
   free(controller);
 }
 
-static void close_loop(loop *l) {
+static void close_loop(closed_loop *l) {
   ethd__stage_close(&l->stage);
   ethd_config_free(l->config);
 }
 
-/* Ideal encoders for errors: a count that turns over a moment earlier is a step of 40 um, not an error.
- */
-static void use(loop *l, double tolerance, int ideal) {
+/* Errors are measured with ideal encoders, because a count that turns over a moment earlier is a step of 40 um, not an
+   error. */
+static void use(closed_loop *l, double tolerance, int ideal) {
   ethd_sim_def def = {.plant = l->study.plant,
                       .arm = l->stage.setup.arm,
                       .ring_radius = l->stage.setup.ring_radius,
@@ -65,8 +65,8 @@ static void use(loop *l, double tolerance, int ideal) {
   check(ethd_sim_create(&def, &l->sim, &error), error.name);
 }
 
-/* One tap; returns its ticks. */
-static size_t tap(loop *l, int number, int truth) {
+/* Runs one tap; returns its ticks. */
+static size_t tap(closed_loop *l, int number, int truth) {
   ethd_sim_tap circumstances;
   ethd_sense sense;
   ethd_command command;
@@ -90,8 +90,8 @@ static double cpu(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* CPU seconds per simulated second, with the truth recorded or not. */
-static double cost(loop *l, double tolerance, int truth) {
+/* Returns CPU seconds per simulated second, with the truth recorded or not. */
+static double cost(closed_loop *l, double tolerance, int truth) {
   size_t ticks = 0;
   use(l, tolerance, 0);
   double start = cpu();
@@ -100,7 +100,7 @@ static double cost(loop *l, double tolerance, int truth) {
 }
 
 /* Contenders run in turns; the lower quartile counts, because other programs disturb it least. */
-static void race(loop *l, int rounds, double out[TOLERANCES][2]) {
+static void race(closed_loop *l, int rounds, double out[TOLERANCES][2]) {
   static double each[TOLERANCES][2][ROUNDS_MAX];
   for (int r = 0; r < rounds; r++)
     for (int i = 0; i < 2 * TOLERANCES; i++) each[i / 2][i % 2][r] = cost(l, tolerances[i / 2], i % 2);
@@ -112,7 +112,7 @@ static void race(loop *l, int rounds, double out[TOLERANCES][2]) {
 
 static double apart(const double *a, const double *b) { return hypot(a[0] - b[0], a[1] - b[1]); }
 
-static double error_of(loop *l, double tolerance) {
+static double error_of(closed_loop *l, double tolerance) {
   static ethd_truth reference[TAPS][TICKS];
   double worst = 0;
   use(l, TRUEST, 1);
@@ -126,13 +126,13 @@ static double error_of(loop *l, double tolerance) {
     for (size_t k = 0; k < ticks; k++) {
       const ethd_truth *a = &reference[i][k], *b = &l->truth[k];
       double e = fmax(apart(a->ring, b->ring), apart(a->finger, b->finger));
-      worst = e <= worst ? worst : e; /* NaN too */
+      worst = e <= worst ? worst : e; /* takes NaN too */
     }
   }
   return worst;
 }
 
-/* Name of the setting that has this tolerance, "": none. */
+/* Returns the name of the setting that has this tolerance, "" if there is none. */
 static const char *name_of(double tolerance) {
   return tolerance == ETHD_SIM_FAST ? "fast" : tolerance == ETHD_SIM_GOLDEN ? "golden" : "";
 }
@@ -147,7 +147,7 @@ static void judge(double tolerance, double error, double time) {
 }
 
 static int run(const char *folder, int quick) {
-  static loop l;
+  static closed_loop l;
   double times[TOLERANCES][2];
   FILE *csv = ethd__bench_csv(
       folder, "hours",

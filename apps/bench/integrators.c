@@ -9,34 +9,34 @@
 
 enum { CONTENDERS_MAX = 120, TAPS = 4 };
 
-typedef struct contender {
+typedef struct integrator {
   const char *name;
   const ethd__problem *problem;
   ethd__mark *marks;
   bool fixed;                  /* 1: ours with steps of order 4 */
   double setting, error, time; /* s per simulated s */
   ethd__runner runner;         /* ours: without a method */
-} contender;
+} integrator;
 
 static struct {
-  contender all[CONTENDERS_MAX];
+  integrator all[CONTENDERS_MAX];
   int count;
 } field;
 
-/* Once a tap: each has a body of its own. */
+/* Is called once a tap, because each tap has a body of its own. */
 static void tolerate(ethd__body *body, double tolerance) {
   if (body->tolerance != tolerance) ethd__body_tolerate(body, tolerance);
 }
 
 static void ours(void *user, ethd__body *body, const ethd__stretch *s, ethd__sim_state *state) {
-  const contender *c = user;
+  const integrator *c = user;
   tolerate(body, c->setting);
   ethd__body_advance(body, &s->piece, s->begin, s->end - s->begin, state);
 }
 
-/* Steps of order 4, all alike; the setting is their length. */
+/* Takes steps of order 4 and equal length, which is the setting. */
 static void ours_fixed(void *user, ethd__body *body, const ethd__stretch *s, ethd__sim_state *state) {
-  const contender *c = user;
+  const integrator *c = user;
   double length = s->end - s->begin;
   int n = (int)ceil(length / c->setting - 1e-9);
   tolerate(body, INFINITY);
@@ -44,7 +44,7 @@ static void ours_fixed(void *user, ethd__body *body, const ethd__stretch *s, eth
 }
 
 static void play(void *user) {
-  contender *c = user;
+  integrator *c = user;
   c->runner.h = 1e-4;
   if (c->runner.method || c->runner.peer)
     ethd__problem_play(c->problem, ethd__runner_stretch, &c->runner, c->marks);
@@ -52,10 +52,10 @@ static void play(void *user) {
     ethd__problem_play(c->problem, c->fixed ? ours_fixed : ours, c, c->marks);
 }
 
-static contender *enter(const ethd__problem *problem, const char *name, double setting) {
+static integrator *enter(const ethd__problem *problem, const char *name, double setting) {
   if (field.count == CONTENDERS_MAX) ethd__fail(ETHD_EXIT_FAILED, "no room for more contenders");
-  contender *c = &field.all[field.count++];
-  *c = (contender){.name = name, .problem = problem, .setting = setting};
+  integrator *c = &field.all[field.count++];
+  *c = (integrator){.name = name, .problem = problem, .setting = setting};
   c->marks = calloc((size_t)problem->mark_count, sizeof *c->marks);
   if (!c->marks) ethd__fail(ETHD_EXIT_FAILED, "no memory");
   c->runner.setting = setting;
@@ -69,7 +69,7 @@ static void enter_all(const ethd__problem *problem) {
   for (double h = 200e-6; h > 10e-6; h /= 2) enter(problem, "libethd with fixed steps", h)->fixed = 1;
   for (int m = 0; m < ethd__method_count; m++)
     for (int i = 0; i < 8 && ethd__methods[m].settings[i] > 0; i++) {
-      contender *c = enter(problem, ethd__methods[m].name, ethd__methods[m].settings[i]);
+      integrator *c = enter(problem, ethd__methods[m].name, ethd__methods[m].settings[i]);
       c->runner.method = &ethd__methods[m];
       c->runner.plain.live = !ethd__methods[m].events;
     }
@@ -78,7 +78,7 @@ static void enter_all(const ethd__problem *problem) {
     const ethd__peer_ode *peer = ethd__bench_peer(libraries[l], "peer_ode");
     for (; peer && peer->name; peer++)
       for (double t = peer->loosest; t > 0.7 * peer->tightest; t /= peer->ratio) {
-        contender *c = enter(problem, peer->name, t);
+        integrator *c = enter(problem, peer->name, t);
         c->runner.peer = peer;
         c->runner.plain.live = peer->live;
         c->runner.peer_self = peer->create(&c->runner.ode, t);
@@ -91,7 +91,7 @@ static void enter_all(const ethd__problem *problem) {
 static double time_at(const char *name, double error) {
   double best = INFINITY;
   for (int i = 0; i < field.count; i++) {
-    const contender *a = &field.all[i], *b = a + 1;
+    const integrator *a = &field.all[i], *b = a + 1;
     if (!strstr(a->name, name)) continue;
     if (a->error <= error) best = fmin(best, a->time);
     if (b == field.all + field.count || strcmp(a->name, b->name) != 0) continue;
@@ -111,8 +111,8 @@ static void goal(const char *peer, const char *spoken, double error, double time
            ethd__bench_verdict(ratio >= times));
 }
 
-/* What halving a fixed step gains, the mean of halvings. Single ones scatter: where in its step a contact
-   changes or friction turns is another place after each. */
+/* Reports what halving a fixed step gains, as the mean of halvings. Single ones scatter, because a contact changes or
+   friction turns at another place in its step after each. */
 static void order(void) {
   double gain = 0, least = INFINITY, most = 0;
   int halvings = 0;
@@ -142,7 +142,7 @@ static void race(int rounds) {
   for (int i = 0; i < field.count; i++) field.all[i].time = INFINITY;
   for (int r = 0; r < rounds; r++)
     for (int i = 0; i < field.count; i++) {
-      contender *c = &field.all[i];
+      integrator *c = &field.all[i];
       double start = cpu();
       play(c);
       c->time = fmin(c->time, (cpu() - start) / c->problem->duration);
@@ -159,7 +159,7 @@ static int run(const char *folder, int quick) {
          "exact matrix exponential: left out, friction's tanh and the pad's K p (1 + c p') are not linear\n"
          "MuJoCo: the same forces through its passive callback, steps of fixed length, no events\n",
          TAPS, problem.duration);
-  contender *reference = enter(&problem, "reference", 1e-15);
+  integrator *reference = enter(&problem, "reference", 1e-15);
   reference->runner.method = &ethd__methods[ethd__method_count - 1];
   reference->runner.setting = 1e-15;
   play(reference);
@@ -173,7 +173,7 @@ static int run(const char *folder, int quick) {
                       "# or finger from DOPRI5 with events at tolerance 1e-15; CPU time per simulated second\n",
                       "method,setting,error_m,time_s");
   for (int i = 0; i < field.count; i++) {
-    contender *c = &field.all[i];
+    integrator *c = &field.all[i];
     c->error = ethd__problem_error(&problem, c->marks, truth);
     printf("  %-26s %8.1e  %9.2e m %10.1f us/s\n", c->name, c->setting, c->error, 1e6 * c->time);
     fprintf(csv, "\"%s\",%.17g,%.17g,%.17g\n", c->name, c->setting, c->error, c->time);

@@ -12,15 +12,15 @@ enum { PLACES = 1024, NUMBERS = 6 };
 #define LINK 0.25 /* m */
 #define GOAL 14.0
 
-typedef struct work {
+typedef struct workload {
   ethd_arm arm;
   double in[PLACES][NUMBERS], out[PLACES][NUMBERS];
   const ethd__peer_kinematics *peer;
   void *peer_self;
-} work;
+} workload;
 
-/* Poses lie everywhere but near a singularity, where our inverse is damped and others' are not. */
-static void make_places(work *w) {
+/* Makes poses everywhere but near a singularity, where our inverse is damped and others' are not. */
+static void make_places(workload *w) {
   for (uint64_t i = 0; i < PLACES; i++) {
     double *in = w->in[i], side = i % 2 ? 1 : -1;
     in[0] = ethd__bench_draw(8 * i, -M_PI, M_PI);
@@ -40,7 +40,7 @@ static void finish(const double *in, ethd_vec x, const double j[4], const double
 }
 
 static void ours(void *data) {
-  work *w = data;
+  workload *w = data;
   ethd_pose pose;
   for (int i = 0; i < PLACES; i++) {
     ethd_arm_pose(&w->arm, w->in[i], &pose);
@@ -48,9 +48,9 @@ static void ours(void *data) {
   }
 }
 
-/* The same with libm's functions, no damping. */
+/* Does the same with libm's functions, without damping. */
 static void plain(void *data) {
-  work *w = data;
+  workload *w = data;
   for (int i = 0; i < PLACES; i++) {
     double a = w->in[i][0], b = w->in[i][0] + w->in[i][1];
     ethd_vec u = {LINK * cos(a), LINK * sin(a)}, v = {LINK * cos(b), LINK * sin(b)};
@@ -61,13 +61,13 @@ static void plain(void *data) {
 }
 
 static void peer(void *data) {
-  work *w = data;
+  workload *w = data;
   w->peer->work(w->peer_self, (const double(*)[NUMBERS])w->in, w->out, PLACES);
 }
 
 /* ---- error: against the same formulas in long double, each output over its largest value ---- */
 
-static void exact(const work *w, int i, long double out[NUMBERS]) {
+static void exact(const workload *w, int i, long double out[NUMBERS]) {
   const double *in = w->in[i];
   int serial = w->arm.mechanism == ETHD_ARM_SERIAL;
   long double a = in[0], b = serial ? a + in[1] : in[1], l = LINK;
@@ -82,7 +82,7 @@ static void exact(const work *w, int i, long double out[NUMBERS]) {
   out[5] = (j0 * in[5] - j2 * in[4]) / det;
 }
 
-static double error_of(const work *w) {
+static double error_of(const workload *w) {
   double worst = 0;
   for (int k = 0; k < NUMBERS; k++) {
     double most = 0, largest = 0;
@@ -98,8 +98,8 @@ static double error_of(const work *w) {
 }
 
 static int run(const char *folder, int quick) {
-  static work serial = {.arm = {ETHD_ARM_SERIAL, LINK, LINK}}, parallel = {.arm = {ETHD_ARM_PARALLEL, LINK, LINK}};
-  static work libm, kdl;
+  static workload serial = {.arm = {ETHD_ARM_SERIAL, LINK, LINK}}, parallel = {.arm = {ETHD_ARM_PARALLEL, LINK, LINK}};
+  static workload libm, kdl;
   make_places(&serial);
   make_places(&parallel);
   libm = kdl = serial;

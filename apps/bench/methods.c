@@ -138,16 +138,16 @@ const int ethd__method_count = sizeof ethd__methods / sizeof *ethd__methods;
 
 /* ---- many ---- */
 
-typedef struct span {
+typedef struct step_span {
   const ethd__runner *r;
   double t;
   const double *y, *k1;
   double out[N], k_next[N];
   int fresh, which;
-} span;
+} step_span;
 
 static double try_step(void *self, double s) {
-  span *p = self;
+  step_span *p = self;
   double g[2];
   p->r->method->step(&p->r->ode, p->t, s, p->y, p->k1, p->out, p->k_next, &p->fresh);
   watch(p->r->ode.self, p->t + s, p->out, g);
@@ -156,7 +156,7 @@ static double try_step(void *self, double s) {
 
 /* Takes a step of h, or less up to a change; returns what was taken, or 0: too large an error. */
 static double take(ethd__runner *r, double t, double h, double *y, double *k1, double *error) {
-  span p = {.r = r, .t = t, .y = y, .k1 = k1};
+  step_span p = {.r = r, .t = t, .y = y, .k1 = k1};
   double g[2] = {1, 1}, before[2], done = h;
   *error = r->method->step(&r->ode, t, h, y, k1, p.out, p.k_next, &p.fresh);
   if (r->method->adaptive && !(*error <= r->setting)) return 0;

@@ -1,6 +1,6 @@
-/* Ways to move the plant through a stretch, beside the library's own. */
-#ifndef ETHD_APPS_BENCH_METHODS_H
-#define ETHD_APPS_BENCH_METHODS_H
+/* Methods that move the plant through a stretch, beside the library's own. */
+#ifndef ETHD__BENCH_METHODS_H
+#define ETHD__BENCH_METHODS_H
 
 #include <stdbool.h>
 
@@ -11,18 +11,18 @@ typedef struct ethd__plain {
   const ethd__body *body;
   const ethd__piece *piece;
   ethd__touch touch;
-  bool live; /* 1: touch is asked for at every evaluation, nothing is watched */
+  bool live; /* 1: touch is worked out at every evaluation, and no events are watched */
 } ethd__plain;
 
 ethd__ode ethd__plain_ode(ethd__plain *plain);
 
-/* A method of fixed steps (setting: longest step, s), or of a tolerance. */
+/* A method with fixed steps (setting: the longest step, s) or with a tolerance. */
 typedef struct ethd__method {
   const char *name;
   int adaptive, events;
-  double settings[8]; /* 0 ends them */
-  /* From y at t, whose rates are k1, to out; returns the largest estimated error, and k1 for the next
-     step where the method has it (`fresh` 0: it hasn't). */
+  double settings[8]; /* end with 0 */
+  /* Steps from y at t, whose rates are k1, to out; returns the largest estimated error, and k1 for the next
+     step if the method has it (`fresh` 0: it doesn't). */
   double (*step)(const ethd__ode *ode, double t, double h, const double *y, const double *k1, double *out,
                  double *k_next, int *fresh);
 } ethd__method;
@@ -34,7 +34,7 @@ extern const int ethd__method_count;
 typedef struct ethd__runner {
   const ethd__method *method;
   const ethd__peer_ode *peer;
-  double setting, h; /* h: what the last step would have as the next */
+  double setting, h; /* h: the length that the last step proposes for the next */
   ethd__plain plain;
   ethd__ode ode;
   void *peer_self;

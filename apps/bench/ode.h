@@ -1,7 +1,6 @@
-/* What a peer that integrates exports: `peer_ode`, a table that ends with a NULL name (C linkage,
- * const). */
-#ifndef ETHD_APPS_BENCH_ODE_H
-#define ETHD_APPS_BENCH_ODE_H
+/* What a peer that integrates exports: `peer_ode`, a table that ends with a NULL name (C linkage, const). */
+#ifndef ETHD__BENCH_ODE_H
+#define ETHD__BENCH_ODE_H
 
 #include <math.h>
 
@@ -22,23 +21,23 @@ typedef struct ethd__ode {
 
 typedef struct ethd__peer_ode {
   const char *name;
-  double loosest, tightest, ratio; /* tolerances, or lengths of steps, that are worth a point */
-  int live;                        /* it has no events: rate() finds out what touches each time */
+  double loosest, tightest, ratio; /* range and ratio of the tolerances, or lengths of steps, that get a point */
+  int live;                        /* it has no events: rate() works out what touches each time */
   void *(*create)(const ethd__ode *ode, double tolerance);
-  /* From t to `end`, between which only watched numbers interrupt; y in place. */
+  /* Integrates y in place from t to `end`, between which only watched numbers interrupt. */
   void (*work)(void *self, double t, double end, double *y);
   void (*destroy)(void *self);
 } ethd__peer_ode;
 
 #define ETHD__ODE_LOCATED 1e-12 /* s */
 
-/* Number that is negative at the end of a step, the deeper one; -1: none. */
+/* Returns which number is negative at the end of a step, the deeper one if both are, -1 if none is. */
 static inline int ethd__ode_changed(const double g[2]) {
   if (!(g[0] < 0) && !(g[1] < 0)) return -1;
   return g[1] < g[0] ? 1 : 0;
 }
 
-/* For peers without event location: g(s) < 0 first at a step s within h, by regula falsi (Illinois);
+/* For peers without event location: returns the step s within h at which g(s) < 0 first, by regula falsi (Illinois);
    `try_step` takes a step of s and returns g after it. */
 static inline double ethd__ode_locate(double (*try_step)(void *self, double s), void *self, double before, double h,
                                       double after) {

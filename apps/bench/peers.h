@@ -1,6 +1,6 @@
 /* What a peer's shared object exports: one table for each question it answers (C linkage, const). */
-#ifndef ETHD_APPS_BENCH_PEERS_H
-#define ETHD_APPS_BENCH_PEERS_H
+#ifndef ETHD__BENCH_PEERS_H
+#define ETHD__BENCH_PEERS_H
 
 #include <math.h>
 #include <stddef.h>
@@ -18,10 +18,9 @@ typedef struct ethd__peer_kinematics {
   void (*destroy)(void *self);
 } ethd__peer_kinematics;
 
-/* `peer_filter`: Kalman filter of constant acceleration with 3x3 matrices, both axes alike, the finger
-   filter's `ca`: what it starts from, how it fades, how a reading takes it from sample to sample. Items
-   of `in` are a tick's reading x y and its age in s, NaN without one; of `out` x y now. A tick is
-   `period`. */
+/* `peer_filter`: a Kalman filter of constant acceleration with 3x3 matrices, alike for both axes, which does what the
+   finger filter's `ca` does: it has the same start, fades likewise, and moves from sample to sample. An item of `in` is
+   a tick's reading x y and its age in s, NaN without one; an item of `out` is x y now. A tick takes `period`. */
 typedef struct ethd__peer_filter {
   const char *name;
   void *(*create)(double period, double jerk, double memory, double noise);
@@ -29,18 +28,18 @@ typedef struct ethd__peer_filter {
   void (*destroy)(void *self);
 } ethd__peer_filter;
 
-/* `peer_scene`: segments {x1, y1, x2, y2} of the plane, which stay where they are. */
+/* `peer_scene`: segments {x1, y1, x2, y2} of the plane; the array stays where it is. */
 typedef struct ethd__peer_scene {
   const char *name;
   void *(*create)(const double (*segments)[4], size_t count);
-  /* out: distance of the nearest one, INFINITY if that is beyond `limit`, and the point there. `warm`: may
-     start from what it answered last. */
+  /* out: distance of the nearest segment, INFINITY if that is beyond `limit`, and the point there. `warm`: it may
+     start from its last answer. */
   void (*nearest)(void *self, const double x[2], double limit, int warm, double out[3]);
-  size_t (*bytes)(void *self); /* NULL: it can't say */
+  size_t (*bytes)(void *self); /* NULL: unknown */
   void (*destroy)(void *self);
 } ethd__peer_scene;
 
-/* Squared distance from x to a segment. */
+/* Returns the squared distance from x to a segment. */
 static inline double ethd__peer_squared(const double s[4], const double x[2]) {
   double ex = s[2] - s[0], ey = s[3] - s[1], ux = x[0] - s[0], uy = x[1] - s[1];
   double along = ex * ux + ey * uy, ee = ex * ex + ey * ey;
@@ -48,7 +47,7 @@ static inline double ethd__peer_squared(const double s[4], const double x[2]) {
   return along <= 0 ? ux * ux + uy * uy : along >= ee ? wx * wx + wy * wy : across * across / ee;
 }
 
-/* Distance from x to a segment, and the point there. */
+/* Gives the distance from x to a segment, and the point there. */
 static inline void ethd__peer_point(const double s[4], const double x[2], double out[3]) {
   double ex = s[2] - s[0], ey = s[3] - s[1], ux = x[0] - s[0], uy = x[1] - s[1];
   double along = ex * ux + ey * uy, ee = ex * ex + ey * ey;

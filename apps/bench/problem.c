@@ -33,7 +33,7 @@ static void begin(const ethd__stage *stage, const ethd_sim_tap *tap, ethd__playe
   out->start.q[ETHD__FINGER + 1] = x.y;
 }
 
-/* Up to `end`, cut at kinks. */
+/* Adds stretches up to `end`, cut at kinks. */
 static void add(ethd__played *p, const ethd_path *path, double *t, double end, int tick, const double torque[2]) {
   while (*t < end) {
     ethd__stretch *s = &p->stretches[p->count++];
@@ -129,7 +129,7 @@ double ethd__problem_error(const ethd__problem *p, ethd__mark *marks, ethd__mark
       ring(&p->taps[i].body, *marks, a);
       ring(&p->taps[i].body, *reference, b);
       double e = fmax(distance(a, b), distance(*marks + 2, *reference + 2));
-      worst = e <= worst ? worst : e; /* NaN too */
+      worst = e <= worst ? worst : e; /* takes NaN too */
     }
   return worst;
 }

@@ -1,17 +1,17 @@
-/* The plant alone: taps of plant n in closed loop leave their torques behind, which every method then
-   plays to the same plant. */
-#ifndef ETHD_APPS_BENCH_PROBLEM_H
-#define ETHD_APPS_BENCH_PROBLEM_H
+/* The plant alone: the torques of taps of plant n are recorded in closed loop, and every method then
+   applies them to the same plant. */
+#ifndef ETHD__BENCH_PROBLEM_H
+#define ETHD__BENCH_PROBLEM_H
 
 #include <stdbool.h>
 
 #include "bench/ode.h"
 #include "sim/body.h"
 
-/* Between two of: tick, torque update, kink of the path. */
+/* The time between two of these: a tick, an update of the torque, a kink of the path. */
 typedef struct ethd__stretch {
   double begin, end, torque[2];
-  bool tick; /* 1: begins at one */
+  bool tick; /* 1: it begins at a tick */
   ethd__piece piece;
 } ethd__stretch;
 
@@ -22,7 +22,7 @@ typedef struct ethd__played {
   int count;
 } ethd__played;
 
-/* What a method leaves: coordinates at the end of each stretch. */
+/* What a method gives: coordinates at the end of each stretch. */
 typedef double ethd__mark[4];
 
 typedef struct ethd__problem {
@@ -31,7 +31,7 @@ typedef struct ethd__problem {
   double duration;           /* s, of all taps */
 } ethd__problem;
 
-/* Half of the taps at the low speed, half at the high one, under law `offset`. Exits when it can't. */
+/* Records taps under law `offset`, half of them at the low speed, half at the high one. Exits if it can't. */
 ethd__problem ethd__problem_record(int taps);
 void ethd__problem_free(ethd__problem *problem);
 
@@ -39,7 +39,7 @@ void ethd__problem_free(ethd__problem *problem);
 typedef void ethd__play(void *user, ethd__body *body, const ethd__stretch *stretch, ethd__sim_state *state);
 void ethd__problem_play(const ethd__problem *problem, ethd__play *stretch, void *user, ethd__mark *out);
 
-/* Largest distance of ring or finger from where `reference` has it, m. */
+/* Returns the largest distance of ring or finger from its place in `reference`, m. */
 double ethd__problem_error(const ethd__problem *problem, ethd__mark *marks, ethd__mark *reference);
 
 #endif

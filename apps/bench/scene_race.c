@@ -9,7 +9,7 @@ static const ethd_vec *points_of(const ethd__contest *t, ethd__ask ask) {
   return ask == ETHD__COLD ? t->anywhere : t->path;
 }
 
-/* Queries a round for a contender: slow ones are asked less, from 3 up to all. */
+/* Returns how many queries a contender gets in a round, from 3 up to all: slow ones get fewer. */
 static int affordable(const ethd__contest *t, double ns) {
   double budget = t->quick ? 2.5e6 : 2e7;
   return (int)fmin(ETHD__BENCH_POINTS, fmax(3, budget / ns));
@@ -23,9 +23,9 @@ static double ask_one(ethd__contest *t, int i, ethd__ask ask, int k) {
 
 /* ---- hot: the mean without a clock in the loop ---- */
 
-/* Queries go in blocks, and each block has its best time of all rounds: nobody interrupted that one. */
+/* Queries go in blocks, and each block counts with its best time of all rounds, which nothing interrupted. */
 typedef struct lap {
-  int block, stride; /* queries in a block; of so many blocks one is run */
+  int block, stride; /* queries in a block; one of `stride` blocks is run */
   double best[BLOCKS];
 } lap;
 

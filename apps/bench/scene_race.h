@@ -1,6 +1,6 @@
 /* Asks the scene's contenders and measures them. */
-#ifndef ETHD_APPS_BENCH_SCENE_RACE_H
-#define ETHD_APPS_BENCH_SCENE_RACE_H
+#ifndef ETHD__BENCH_SCENE_RACE_H
+#define ETHD__BENCH_SCENE_RACE_H
 
 #include "bench/bench.h"
 #include "bench/scene_world.h"
@@ -25,7 +25,7 @@ typedef struct ethd__contest {
   ethd__race_result results[ETHD__WORLDS][SIZES][ETHD__ASKS][CONTENDERS];
 } ethd__contest;
 
-/* All worlds, sizes and ways to ask. Contenders have names; those who have a peer or are ours take part. */
+/* Runs all worlds, sizes and ways to ask. Contenders that have a peer, or are ours, take part. */
 void ethd__contest_run(ethd__contest *t);
 
 #endif

@@ -59,7 +59,7 @@ void ethd__world_anywhere(ethd_vec *points) {
 
 /* ---- contenders ---- */
 
-/* s, of this process alone: who else works here doesn't count. */
+/* Returns the processor time of this process alone, s, so that other programs don't count. */
 static double cpu_time(void) {
   struct timespec t;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
@@ -120,7 +120,7 @@ size_t ethd__contender_bytes(const ethd__scene_contender *c) {
   return info.bytes;
 }
 
-/* As a controller does it: nothing can be within the horizon until the way there has been travelled. */
+/* Asks as a controller does: nothing can be within the horizon until the ring has travelled the distance to it. */
 static double ours_within(ethd__scene_contender *c, ethd_vec x) {
   ethd_vec way = ethd_vec_sub(x, c->asked);
   double left = c->clearance - ETHD__BENCH_HORIZON;

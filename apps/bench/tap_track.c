@@ -8,18 +8,18 @@
 #include "cli/cli.h"
 
 #define WALL 0.238   /* m */
-#define AHEAD 0.002  /* s: so far the ring is behind the finger */
+#define AHEAD 0.002  /* s by which the ring is behind the finger */
 #define LATENCY 2e-3 /* s */
 #define NOISE 0.1e-3 /* m, of a reading or a ray */
 #define RATE 300.0   /* Hz */
 
-typedef struct place {
+typedef struct path_place {
   ethd_vec ring, finger, v;
-} place;
+} path_place;
 
-static place at(double t) {
+static path_place at(double t) {
   double w = 2 * M_PI / (1e-3 * ETHD__TAP_TICKS), a = 0.022;
-  place p = {
+  path_place p = {
       {0.27 + a * cos(w * t), 0.25 + 0.01 * sin(3 * w * t)}, {0, 0}, {-a * w * sin(w * t), 0.03 * w * cos(3 * w * t)}};
   p.finger = ethd_vec_add(p.ring, ethd_vec_scale(AHEAD, p.v));
   return p;
@@ -31,7 +31,7 @@ static void put(double to[2], ethd_vec from) {
 }
 
 static void add_reading(const ethd_setup *setup, ethd__tap_finger how, uint64_t i, double sampled, ethd_sense *s) {
-  place then = at(sampled);
+  path_place then = at(sampled);
   ethd_vec relative = ethd_vec_sub(then.finger, then.ring);
   s->sample_ns = (int64_t)rint(1e9 * sampled);
   if (how == ETHD__TAP_CENTRE) {
@@ -49,7 +49,7 @@ void ethd__tap_senses(const ethd_setup *setup, ethd__tap_finger how, ethd_sense 
   double next = -LATENCY;
   for (int k = 0; k < ETHD__TAP_TICKS; k++) {
     ethd_sense *s = &senses[k];
-    place p = at(1e-3 * k);
+    path_place p = at(1e-3 * k);
     ethd_pose pose;
     memset(s, 0, sizeof *s);
     s->time_ns = 1000000 * (int64_t)k;
@@ -97,11 +97,18 @@ ethd_scene *ethd__tap_scene(ethd__tap_wall wall, size_t segments) {
   return scene;
 }
 
+/* A law that looks ahead is told of plant n, or it would be offset. */
+static void tell(ethd_setup *setup) {
+  setup->dynamics = (ethd_dynamics){{0.1173, 0.25}, 0.398, 1.267, 0.071e-3};
+  setup->limits.torque = 1.34;
+}
+
 ethd_control *ethd__tap_control(const ethd_transition_law *law, const ethd_scene *scene) {
   ethd_setup setup = ethd_setup_default();
   ethd_control *control;
   ethd_error error;
   ethd_setup_transition(&setup, law);
+  if (ETHD_LAW_HAS(law, range)) tell(&setup);
   setup.scene = scene;
   if (ethd_control_create(&setup, &control, &error) < 0)
     ethd__fail(ETHD_EXIT_FAILED, "%s: %s", error.name, ethd_status_sentence(error.status));

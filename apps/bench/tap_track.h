@@ -1,15 +1,15 @@
 /* A tap for the controller: what a device would sense while finger and ring tap a wall at x = 0.238 m
    once every 1.024 s, and scenes to tap on. */
-#ifndef ETHD_APPS_BENCH_TAP_TRACK_H
-#define ETHD_APPS_BENCH_TAP_TRACK_H
+#ifndef ETHD__BENCH_TAP_TRACK_H
+#define ETHD__BENCH_TAP_TRACK_H
 
 #include "ethd/ethd.h"
 
-enum { ETHD__TAP_TICKS = 1024 }; /* the last leads on to the first */
+enum { ETHD__TAP_TICKS = 1024 }; /* the first follows the last */
 
 /* How the finger is known. */
 typedef enum ethd__tap_finger {
-  ETHD__TAP_KNOWN,   /* position and velocity, and joint speeds: no estimator works */
+  ETHD__TAP_KNOWN,   /* position, velocity and joint speeds are given: no estimator works */
   ETHD__TAP_ENCODER, /* the same without joint speeds */
   ETHD__TAP_CENTRE,  /* readings of the centre at 300 Hz, 2 ms late */
   ETHD__TAP_RAYS,    /* frames of 16 rays at 300 Hz, 2 ms late */
@@ -17,7 +17,7 @@ typedef enum ethd__tap_finger {
 
 void ethd__tap_senses(const ethd_setup *setup, ethd__tap_finger how, ethd_sense senses[ETHD__TAP_TICKS]);
 
-/* What to tap on. Outlines are closed, wavy and around the finger's way. */
+/* What to tap on. Outlines are closed and wavy, and surround the finger's path. */
 typedef enum ethd__tap_wall {
   ETHD__TAP_NOTHING, /* no scene: NULL */
   ETHD__TAP_PLANE,   /* a half-plane */
@@ -27,7 +27,7 @@ typedef enum ethd__tap_wall {
 
 ethd_scene *ethd__tap_scene(ethd__tap_wall wall, size_t segments);
 
-/* A controller with default values but for the transition law and the scene. */
+/* Creates a controller with default values but for the transition law and the scene. */
 ethd_control *ethd__tap_control(const ethd_transition_law *law, const ethd_scene *scene);
 
 #endif

@@ -55,29 +55,29 @@ void ethd__tick_cold(FILE *csv, int quick) {
 /* ---- live ---- */
 
 #define PERIOD 1000000 /* ns */
-#define EARLY 100000   /* ns: so much before the tick an early loop wakes */
+#define EARLY 100000   /* ns by which an early loop wakes before the tick */
 
-typedef struct loop {
+typedef struct live_loop {
   ethd__ticking *tapping;
   int early; /* wake before the tick, rehearse, spin */
   double *ns;
   size_t count;
   int fifo; /* granted */
-} loop;
+} live_loop;
 
 static void sleep_until(int64_t t) {
   struct timespec at = {t / 1000000000, t % 1000000000};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, NULL) == EINTR) continue;
 }
 
-static void warm(loop *l, const ethd_sense *sense, int64_t tick) {
+static void warm(live_loop *l, const ethd_sense *sense, int64_t tick) {
   ethd_command command;
   for (int i = 0; i < 3; i++) (void)!ethd_control_rehearse(l->tapping->control, sense, &command);
   while (ethd__bench_now() < tick) continue;
 }
 
 static void *live(void *data) {
-  loop *l = data;
+  live_loop *l = data;
   struct sched_param priority = {.sched_priority = 80};
   l->fifo = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0;
   ethd__flush_denormals();
@@ -91,12 +91,12 @@ static void *live(void *data) {
     ethd__ticking_step(l->tapping, &sense);
     int64_t end = ethd__bench_now();
     l->ns[i] = fmax(0, (double)(end - start) - cost);
-    while (next + PERIOD < end) next += PERIOD; /* ticks that were missed are not made up for */
+    while (next + PERIOD < end) next += PERIOD; /* ticks that were missed stay missed */
   }
   return NULL;
 }
 
-static void run_loop(loop *l) {
+static void run_loop(live_loop *l) {
   pthread_t thread;
   if (pthread_create(&thread, NULL, live, l) != 0) ethd__fail(ETHD_EXIT_FAILED, "no thread");
   pthread_join(thread, NULL);
@@ -104,13 +104,13 @@ static void run_loop(loop *l) {
 
 void ethd__tick_live(FILE *csv, int quick) {
   static const ethd_transition_law *const laws[] = {&ethd_transition_offset, &ethd_transition_smooth,
-                                                    &ethd_transition_abrupt};
+                                                    &ethd_transition_abrupt, &ethd_transition_predictive};
   size_t count = quick ? 1500 : 20000;
   double *ns = room_for(count);
   int locked = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
-  for (int k = 0; k < (quick ? 1 : 3); k++)
+  for (int k = 0; k < (quick ? 1 : 4); k++)
     for (int early = 0; early < 2; early++) {
-      loop l = {ethd__ticking_create(laws[k], ETHD__TAP_OUTLINE, 1000, ETHD__TAP_RAYS), early, ns, count, 0};
+      live_loop l = {ethd__ticking_create(laws[k], ETHD__TAP_OUTLINE, 1000, ETHD__TAP_RAYS), early, ns, count, 0};
       run_loop(&l);
       if (k == 0 && !early) {
         printf("  live: 1 kHz, clock_nanosleep, %s, memory %s; early: awake 100 us before, three dry "

@@ -23,7 +23,7 @@ static void *room_for(size_t count, size_t size) {
   return p;
 }
 
-/* The same seed gives the same noise and phase at any latency. */
+/* Reads a movement; the same seed gives the same noise and phase at any latency. */
 static ethd__track read_path(path_at at, const void *path, double duration, double latency, uint64_t seed) {
   size_t count = (size_t)fmin(ETHD__TRACK_MAX, duration / ETHD__TRACK_PERIOD);
   ethd__track t = {count, room_for(count, sizeof *t.in), room_for(count, sizeof *t.truth)};
@@ -51,7 +51,7 @@ typedef struct reach {
   double length, duration, angle;
 } reach;
 
-/* s = 10 u^3 - 15 u^4 + 6 u^5, fastest 15/8 length / duration. */
+/* Returns the place on a reach: s = 10 u^3 - 15 u^4 + 6 u^5, whose top speed is 15/8 length / duration. */
 static ethd_vec reach_at(const void *path, double t) {
   const reach *r = path;
   double u = fmin(1, fmax(0, (t - REST) / r->duration)), s = r->length * u * u * u * (10 - u * (15 - 6 * u));
@@ -76,7 +76,7 @@ static ethd_vec recorded_at(const void *path, double t) {
   return x;
 }
 
-/* False: the file holds no movement. */
+/* Adds a file's movement; returns 0 if the file holds none. */
 static int add_file(const char *file, double latency, uint64_t seed, ethd__tracks *set) {
   static const char *const wanted[] = {"t_s", "x_m", "y_m", NULL};
   char message[ETHD_MESSAGE_MAX];
@@ -109,7 +109,7 @@ static ethd__tracks read_folder(const char *folder, double latency, uint64_t *se
   return set;
 }
 
-/* The last part of "a/b/name/". */
+/* Returns the last part of "a/b/name/". */
 static char *folder_name(const char *folder) {
   char *copy = strdup(folder), *end = copy ? strrchr(copy, '/') : NULL;
   if (!end) ethd__fail(ETHD_EXIT_FAILED, "no memory");

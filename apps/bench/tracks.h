@@ -1,7 +1,6 @@
-/* Fingers for the filters: reaches and recorded movements, read at 300 Hz with noise and latency, at 1
- * kHz. */
-#ifndef ETHD_APPS_BENCH_TRACKS_H
-#define ETHD_APPS_BENCH_TRACKS_H
+/* Fingers for the filters: reaches and recorded movements, read at 300 Hz with noise and latency, in ticks of 1 kHz. */
+#ifndef ETHD__BENCH_TRACKS_H
+#define ETHD__BENCH_TRACKS_H
 
 #include <stddef.h>
 
@@ -10,10 +9,10 @@
 
 enum { ETHD__TRACK_MAX = 100000 }; /* ticks */
 
-/* One movement, what is longer is cut. */
+/* One movement, cut if it is longer. */
 typedef struct ethd__track {
   size_t count;    /* ticks */
-  double (*in)[3]; /* each tick's reading x y and its age, NaN without one */
+  double (*in)[3]; /* each tick's reading x y and its age, NaN if it has none */
   double (*truth)[2];
 } ethd__track;
 
@@ -23,12 +22,11 @@ typedef struct ethd__tracks {
   size_t count;
 } ethd__tracks;
 
-/* Minimum-jerk reaches of 0.1 to 0.3 m with peak speeds of 0.5 to 1.1 m/s, 50 ms of rest before and
- * after. */
+/* Makes minimum-jerk reaches of 0.1 to 0.3 m with peak speeds of 0.5 to 1.1 m/s and 50 ms of rest before and after. */
 ethd__tracks ethd__tracks_reaches(size_t count, double latency);
 
-/* The recorded movements of ethd__motion_folder, a set for each folder, at
-   most `room`; the number of sets, 0: there are none. */
+/* Reads the recorded movements of ethd__motion_folder, a set for each folder, at most `room`. Returns the number of
+   sets. */
 size_t ethd__tracks_recorded(double latency, ethd__tracks *out, size_t room);
 
 void ethd__tracks_free(ethd__tracks *tracks);

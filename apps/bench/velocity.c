@@ -72,7 +72,7 @@ static contender all[] = {
     {"kalman with torque", ETHD_VELOCITY_KALMAN, {38e-6, 20, MASS *LINK *LINK}, 1, 1, {0}, ""},
     {"kalman with torque", ETHD_VELOCITY_KALMAN, {38e-6, 50, MASS *LINK *LINK}, 1, 1, {0}, ""},
 };
-enum { CONTENDERS = sizeof all / sizeof *all };
+enum { ESTIMATORS = sizeof all / sizeof *all };
 
 static void prepare(contender *c) {
   ethd_error error;
@@ -90,7 +90,7 @@ static void prepare(contender *c) {
 
 typedef struct figure {
   double steady, braking;      /* m/s rms */
-  double delay, spread, early; /* s after abs(v) < v_th is true: mean, sd; share of runs that declare before */
+  double delay, spread, early; /* s after abs(v) < v_th becomes true: mean, sd; share of runs that declare it before */
   double ns;
 } figure;
 
@@ -108,7 +108,7 @@ static double steady(const contender *c, int runs) {
   return sqrt(sum / ((double)runs * (LONG - BEFORE)));
 }
 
-/* Braking starts anywhere between two ticks. The error counts from then until the ring has been still
+/* Measures braking, which starts anywhere between two ticks. The error counts from then until the ring has been still
    for 3 ms. */
 static void brake(const contender *c, int runs, figure *out) {
   double sum = 0, ticks = 0, delays = 0, squares = 0, early = 0;
@@ -158,12 +158,12 @@ static void put(FILE *csv, const contender *c, const figure *f) {
 }
 
 static int run(const char *folder, int quick) {
-  ethd__bench_entry entries[CONTENDERS];
-  for (int i = 0; i < CONTENDERS; i++) {
+  ethd__bench_entry entries[ESTIMATORS];
+  for (int i = 0; i < ESTIMATORS; i++) {
     prepare(&all[i]);
     entries[i] = (ethd__bench_entry){all[i].name, work, &all[i], LONG, 0};
   }
-  ethd__bench_race(entries, CONTENDERS, quick ? 0.1 : 1);
+  ethd__bench_race(entries, ESTIMATORS, quick ? 0.1 : 1);
   FILE *csv = ethd__bench_csv(folder, "velocity",
                               "# encoder of 48000 counts a joint turn, read every ms; figures at the ring, 0.25 "
                               "m from the joint\n"
@@ -178,7 +178,7 @@ static int run(const char *folder, int quick) {
          1e3 * count * LINK / T);
   printf("  rms error, mm/s               ns   at 30 mm/s     braking     lag, ms   abs(v) < v_th "
          "declared after, ms; early\n");
-  for (int i = 0; i < CONTENDERS; i++) {
+  for (int i = 0; i < ESTIMATORS; i++) {
     figure f = {0};
     f.steady = steady(&all[i], quick ? 20 : 200);
     brake(&all[i], quick ? 300 : RUNS_MAX, &f);

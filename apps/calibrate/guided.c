@@ -12,7 +12,7 @@
 #define WAIT_MS 20
 #define SILENCE 100 /* waits without a frame until the line counts as silent */
 #define TRIES 5
-#define SPREAD 0.01 /* of the counts, sd: more is a rod that moves */
+#define SPREAD 0.01 /* of the counts, sd: if it is more, the rod moves */
 #define SPREAD_LEAST 40
 
 typedef struct guided {
@@ -41,7 +41,7 @@ static void add(sums *to, const ethd__ring_frame *f) {
   }
 }
 
-/* What came while nobody looked is old. */
+/* Drops the frames that came before a step, which are old. */
 static void forget(guided *g) {
   uint8_t bytes[4096];
   while (ethd__ring_port_read(&g->port, 0, bytes, sizeof bytes) > 0) {
@@ -71,7 +71,7 @@ static ethd_status collect(guided *g, sums *out) {
   return ETHD_OK;
 }
 
-/* Means; the sensor that moved most beyond what is allowed, or -1. */
+/* Works out the means; returns the sensor whose counts spread most beyond what is allowed, or -1. */
 static int means(const sums *of, double counts[ETHD_RAYS]) {
   int moved = -1;
   double worst = 1;
@@ -101,7 +101,7 @@ static ethd_status measure(guided *g, double counts[ETHD_RAYS]) {
 
 /* ---- steps ---- */
 
-/* The first letter of the answer, '\n' for Enter alone, 0 at the end of the input. */
+/* Asks, and returns the first letter of the answer, '\n' for Enter alone, 0 at the end of the input. */
 static char ask(const char *what) {
   char line[64];
   printf("%s\n  Enter measures, s skips, b goes back, q ends: ", what);

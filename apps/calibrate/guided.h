@@ -1,6 +1,6 @@
-/* Step by step, on the terminal, with a ring on its port. */
-#ifndef ETHD_CALIBRATE_GUIDED_H
-#define ETHD_CALIBRATE_GUIDED_H
+/* Measures step by step, guided on the terminal, with a ring on its port. */
+#ifndef ETHD__CALIBRATE_GUIDED_H
+#define ETHD__CALIBRATE_GUIDED_H
 
 #include "calibrate/places.h"
 
@@ -12,8 +12,8 @@ typedef struct ethd__guided_options {
   const char *record;      /* kept after every step; NULL: nowhere */
 } ethd__guided_options;
 
-/* Asks on stdout, hears on stdin: Enter measures, s skips the place, b goes back one, q ends. Fails in a sentence
-   when the line goes or the input ends early. */
+/* Asks on stdout and reads answers from stdin: Enter measures, s skips the place, b goes back one, q ends. Fails with a
+   message when the line is lost or the input ends early. */
 ETHD_MUST_CHECK ethd_status ethd__guided_run(const ethd__guided_options *options, ethd__places *out,
                                              char message[ETHD_MESSAGE_MAX]);
 

@@ -38,7 +38,8 @@ static void print_sensor(const ethd__calibration *c, int k) {
 void ethd__calibration_print(const ethd__places *p, const ethd__calibration *chosen) {
   printf("\n%zu places, a rod of %.3f mm in a ring of %.3f mm (radii)\n\n", p->count, 1e3 * p->rod,
          1e3 * p->ring_radius);
-  printf("  %-8s %10s %10s  mm rms; left out: at places that the fit hadn't seen\n", "level", "residual", "left out");
+  printf("  %-8s %10s %10s  mm rms; left out: at places that weren't used in the fit\n", "level", "residual",
+         "left out");
   for (int level = 0; level < ETHD__LEVEL_COUNT; level++)
     print_level(p, (ethd__level)level, (ethd__level)level == chosen->level);
   printf("\n  %-8s %10s  %8s  %10s %8s %8s\n", "sensor", "residual", "dark", "a", "p", "d0 mm");

@@ -70,6 +70,9 @@ void ethd__report_device(ethd__subject *s) {
   figure("delay", f->delay, 1e3, "ms", "--delay");
   figure("; encoder count", f->count * fmax(arm->link1, arm->link2), 1e6, "um at the ring", "--counts");
   figure("; finger's readings", f->latency, 1e3, "ms old", "--latency");
-  printf("\n%s", f->compliant ? "             its transmission gives way: the bounds below are a rigid one's\n" : "");
+  printf("\n%s",
+         f->compliant
+             ? "             its transmission gives way, which stability counts; the other bounds are a rigid one's\n"
+             : "");
   feel(s);
 }

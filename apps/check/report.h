@@ -17,7 +17,9 @@ typedef struct ethd__figures {
   double delay;             /* s, from measurement to torque */
   double count;             /* rad per encoder count at the joint; 0: ideal */
   double latency;           /* s, of the readings of the finger */
-  bool compliant;           /* 1: between motors and ring something gives way, which no bound counts */
+  bool compliant;           /* 1: between motors and ring something gives way, which only stability counts: */
+  double motor_mass;        /* kg on the motor's side; */
+  double spring, damper;    /* N/m, Ns/m at the ring */
 } ethd__figures;
 
 typedef struct ethd__subject {
@@ -25,6 +27,9 @@ typedef struct ethd__subject {
   ethd__figures device;
   double k[2], d[2]; /* N/m, Ns/m: tracking as it is felt at the ring; NaN: unknown law or out of reach */
 } ethd__subject;
+
+/* What the device's drivers say: their remarks, and the limits that rule. is_open: the device itself was asked. */
+void ethd__report_drivers(const ethd_config *config, const ethd_driver *driver, void *device, bool is_open);
 
 /* Fills k and d, and prints what is known. */
 void ethd__report_device(ethd__subject *subject);

@@ -30,6 +30,11 @@ static ethd__sampled_loop loop_of(const ethd__subject *s, const gains *g, int ax
                              .late = fmax(0, delay - ticks * setup->period),
                              .method = setup->velocity,
                              .link = axis ? setup->arm.link2 : setup->arm.link1};
+  if (s->device.compliant) {
+    loop.motor_mass = s->device.motor_mass;
+    loop.spring = s->device.spring;
+    loop.damper = s->device.damper;
+  }
   if (loop.late < 1e-9 * setup->period) loop.late = 0;
   memcpy(loop.p, setup->velocity_p, sizeof loop.p);
   return loop;

@@ -1,12 +1,12 @@
-/* What a controller was spared. */
-#ifndef ETHD_APPS_DROPPED_H
-#define ETHD_APPS_DROPPED_H
+/* Says what was dropped from a scene. */
+#ifndef ETHD__CLI_DROPPED_H
+#define ETHD__CLI_DROPPED_H
 
 #include <stdio.h>
 
 #include "ethd/scene.h"
 
-/* ", 3 objects out of reach dropped", nothing if there are none; scene NULL: none. [main] */
+/* Prints ", 3 objects out of reach dropped", or nothing if there are none or scene is NULL. [main] */
 void ethd__dropped_print(FILE *out, const ethd_scene *scene);
 
 #endif

@@ -6,12 +6,10 @@
 
 #include "cli/cli.h"
 
-#define PATIENCE 5 /* s: no plugin needs longer to be loaded, and no law to check its parameters */
-
 static const char *volatile running; /* NULL: none */
 static volatile sig_atomic_t has_run, is_leaving;
 
-/* As one line, by calls that a signal handler may use; then the end. */
+/* Prints one line, by calls that a signal handler may use, and ends the program. */
 static _Noreturn void fail_now(const char *const words[]) {
   char line[ETHD_MESSAGE_MAX];
   size_t n = 0;
@@ -35,7 +33,7 @@ static void at_exit(void) {
 
 void ethd__leave(void) { is_leaving = 1; }
 
-void ethd__foreign(const char *what) {
+void ethd__foreign(const char *what, unsigned patience) {
   static bool ready;
   if (what && !ready) {
     struct sigaction action = {.sa_handler = too_long};
@@ -45,5 +43,5 @@ void ethd__foreign(const char *what) {
   }
   if (what) has_run = 1;
   running = what;
-  alarm(what ? PATIENCE : 0);
+  alarm(what ? patience : 0);
 }

@@ -8,8 +8,8 @@
 
 #include "cli/cli.h"
 
-/* Names and words of files may hold sequences that a terminal obeys: of control characters it gets tabs and line ends.
-   In UTF-8 those from 0x80 to 0x9f come as two bytes. */
+/* Replaces control characters but for tabs and line ends, since a terminal obeys sequences that names and words of files
+   may hold. In UTF-8 the characters from 0x80 to 0x9f are two bytes long. */
 static void make_plain(char *text, size_t length, char *last) {
   for (size_t i = 0; i < length; i++) {
     unsigned char c = (unsigned char)text[i];

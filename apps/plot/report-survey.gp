@@ -1,34 +1,43 @@
-# Mean answers by cell, in the manner of the paper's figure 18.
-#   gnuplot -e "in='survey-means.csv'; out='survey.png'" report-survey.gp
-# in: a file of ethd-report. note may be left out.
-if (!exists("in") || !exists("out")) { print "report-survey.gp: set in and out: gnuplot -e \"in='survey-means.csv'; out='survey.png'\" report-survey.gp"; exit status 2 }
+# Answers by cell: a bar of shares of the answers 1 to 5, and their median. The paper's figure 18 has the means.
+#   gnuplot -e "in='survey-answers.csv'; out='survey.png'" report-survey.gp
+# in: a file of ethd-report. note may be left out; svg: draw an SVG, whose words can be read.
+if (!exists("in") || !exists("out")) { print "report-survey.gp: set in and out: gnuplot -e \"in='survey-answers.csv'; out='survey.png'\" report-survey.gp"; exit status 2 }
 if (!exists("note")) note = ""
-set terminal pngcairo size 1200,470 font "Sans,15" background "#ffffff"
-set output out
 set datafile separator comma
 set datafile columnheaders
+cells = 0
+stats in using (cells = column("cell") > cells ? column("cell") : cells, 0) nooutput
+each = 74 + 34*cells
+high = 120 + 3*each
+if (exists("svg")) { set terminal svg size 1100,high font "DejaVu Sans,15" background "#ffffff" } else { set terminal pngcairo size 1100,high font "Sans,15" background "#ffffff" }
+set output out
 grey = "#7a7a7a"
-tint(law) = law eq "smooth" ? 0x5b7fa6 : law eq "offset" ? 0xc0652b : law eq "abrupt" ? 0x7a9a55 : 0x8a6aa8
-set border 3 lc rgb grey
-set tics nomirror textcolor rgb "#333333" scale 0.6
-set grid ytics lc rgb "#e4e4e4" lt 1 lw 1
-set yrange [0.8:5.2]
-set ytics 1
-set boxwidth 0.6
-set style fill solid 0.5 border
+array tints[5] = [0x2166ac, 0x92c5de, 0xf2f2f2, 0xf4a582, 0xb2182b]
+set border 0
+set tics nomirror textcolor rgb "#333333" scale 0
+set xrange [0:100]
+set yrange [cells + 0.6:0.4]
 unset key
-array says[3] = ["Q1: the touch came before (1) .. after (5)", "Q2: the wall went left (1) .. right (5)", "Q3: natural (1) .. unnatural (5)"]
-array ideal[3] = [3, 3, 1]
+array says[3] = ["Q1: felt well before (1), just when (3), well after (5) the touch was seen", \
+  "Q2: the wall moved to the left (1), stood still (3), moved to the right (5)", "Q3: very natural (1) to very unnatural (5)"]
+array ideal[3] = ["3", "3", "1"]
+only(q) = column("question") == q && column("n") > 0
+share(k) = 100.0*column(sprintf("n%d", k))/column("n")
+below(k) = k < 1 ? 0 : sum [j=1:k] share(j)
 set multiplot
-set label 1 "Survey: mean answers" at screen 0.05,0.95 font "Sans Bold,18"
-set label 2 note at screen 0.05,0.89 font "Sans,13" textcolor rgb grey
+set label 1 "Survey: how many gave each answer" at screen 0.03,1 - 24.0/high font "Sans Bold,18"
+set label 2 note at screen 0.03,1 - 50.0/high font "Sans,13" textcolor rgb grey
 do for [q=1:3] {
-  set lmargin at screen 0.05 + 0.32*(q - 1); set rmargin at screen 0.05 + 0.32*(q - 1) + 0.27
-  set tmargin at screen 0.78; set bmargin at screen 0.2
-  set title says[q] font "Sans,14" offset 0,-0.4
-  if (q == 1) { set ylabel "score" offset 1 } else { unset ylabel }
-  plot ideal[q] with lines lc rgb "#c00000" lw 1.2 dt (6,4), \
-    in using 0:(column(sprintf("q%d", q))):(tint(strcol("transition"))):xtic(strcol("transition")."\n".strcol("speed")."\nn = ".strcol("n")) with boxes lc rgb variable
+  set lmargin at screen 0.16; set rmargin at screen 0.89
+  set tmargin at screen 1 - (102.0 + (q - 1)*each)/high; set bmargin at screen 1 - (102.0 + (q - 1)*each + 34.0*cells)/high
+  set title says[q]."; ideal ".ideal[q] font "Sans,14" offset 0,-0.5
+  if (q == 3) { set xtics ("0 %%" 0, "50 %%" 50, "100 %%" 100) } else { set xtics ("" 0) }
+  set xtics format ""
+  plot for [k=1:5] in using (only(q) ? (below(k) + below(k - 1))/2 : NaN):"cell":(below(k - 1)):(below(k)):(column("cell") - 0.38):(column("cell") + 0.38):ytic(strcol("transition").", ".strcol("speed")) \
+      with boxxyerror lc rgb tints[k] fs solid 1 border lc rgb "#ffffff", \
+    for [k=1:5] in using (only(q) && share(k) >= 6 ? (below(k) + below(k - 1))/2 : NaN):"cell":(sprintf("%d", k)) \
+      with labels font "Sans,12" textcolor rgb (k == 1 || k == 5 ? "#ffffff" : "#333333"), \
+    in using (only(q) ? 100 : NaN):"cell":(sprintf("  median %g", column("median"))) with labels left font "Sans,12" textcolor rgb "#333333"
   unset label
 }
 unset multiplot

@@ -9,7 +9,7 @@ if (!exists("from")) from = -40
 if (!exists("to")) to = 90
 if (!exists("scale")) scale = 1.0
 
-set terminal pngcairo size 1200*scale,1300*scale font "Sans,15" fontscale scale linewidth scale background "#ffffff"
+if (exists("svg")) { set terminal svg size 1200,1300 font "DejaVu Sans,15" background "#ffffff" } else { set terminal pngcairo size 1200*scale,1300*scale font "Sans,15" fontscale scale linewidth scale background "#ffffff" }
 set output out
 set datafile separator comma
 set datafile columnheaders
@@ -32,6 +32,14 @@ t(x) = 1e3*column("since_wall_s")
 # t_of/r: the first tick at or after t_r/vo with the pad pressing
 touch = NaN
 stats in using (column("since_wall_s") >= -1e-9 && column("pad_force_n") > 0 && touch != touch ? (touch = 1e3*column("since_wall_s")) : 0) nooutput
+# d_max: from the ring's first peak in the wall to the valley after it, each once the ring has turned by 0.02 mm;
+# v_rmin: the ring's smallest speed in the 0.1 s after the touch. As apps/tap/metrics.c has them.
+peak = NaN; valley = NaN; t_peak = NaN; t_valley = NaN; turned = 0; v_rmin = NaN; t_rmin = NaN
+follow(x, at) = at < -1e-9 || turned == 2 ? 0 : turned == 0 ? \
+  (peak != peak || x > peak ? (peak = x, t_peak = at) : x < peak - 0.02 ? (turned = 1, valley = x, t_valley = at) : 0) : \
+  x < valley ? (valley = x, t_valley = at) : x > valley + 0.02 ? (turned = 2) : 0
+stats in using (follow(1e3*column("ring_m"), t(0)), 0) nooutput
+stats in using (touch == touch && t(0) >= touch - 1e-9 && t(0) <= touch + 100 + 1e-9 && (v_rmin != v_rmin || column("v_ring_mps") < v_rmin) ? (v_rmin = column("v_ring_mps"), t_rmin = t(0)) : 0, 0) nooutput
 stats [*:*] in using (t(0) >= from && t(0) <= to ? 1e3*column("ring_m") : NaN) nooutput name "R"
 moved_any = 0
 stats in using (moved_any = moved_any + (strlen(strcol("offset_wall_m")) > 0), 0) nooutput
@@ -54,6 +62,11 @@ set ylabel "position along n, mm" offset 1.2
 set yrange [bottom:top]
 set object 1 rectangle from graph 0, first 0 to graph 1, graph 1 fc rgb "#f3f1ec" fs solid noborder behind
 set label 3 "virtual wall" at graph 0.012, first (top - 0.07*(top - bottom)) textcolor rgb grey font "Sans Italic,13"
+if (turned > 0) {
+  set arrow 3 from t_valley,peak to t_valley,valley heads size 2,90 front lc rgb ring lw 1.6
+  set arrow 4 from t_peak,peak to t_valley,peak nohead front lc rgb ring lw 1.2 dt (2,3)
+  set label 6 sprintf("d_{max} %.2f mm", peak - valley) at t_valley,peak offset 0.6,1.1 textcolor rgb ring font "Sans,13" front
+}
 offset_style = moved_any ? 5 : 4 # where the wall didn't move, its line once more: a curve without a point is warned of
 plot in using (t(0)):(1e3*column("hand_m")) with lines ls 3 title "hand's path", \
      0 with lines ls 4 title "wall x_e", \
@@ -62,7 +75,7 @@ plot in using (t(0)):(1e3*column("hand_m")) with lines ls 3 title "hand's path",
      in using (t(0)):(1e3*column("finger_m")) with lines ls 2 title "finger's pad", \
      in using (t(0)):(1e3*column("ring_m")) with lines ls 1 title "ring's front"
 unset object 1
-unset label 1; unset label 2; unset label 3
+unset label 1; unset label 2; unset label 3; unset label 6; unset arrow 3; unset arrow 4
 
 # ---- speed ----
 set tmargin at screen 0.545
@@ -71,10 +84,13 @@ set ylabel "speed along n, m/s"
 set yrange [*:*]
 if (touch == touch) {set label 4 " finger touches" at touch, graph 0.93 textcolor rgb finger font "Sans,13"}
 set label 5 "ring meets wall " at 0, graph 0.07 right textcolor rgb grey font "Sans,13"
+set label 7 (v_rmin == v_rmin ? sprintf("v_{r min} %.3f m/s", v_rmin) : "") at (v_rmin == v_rmin ? t_rmin : 0),(v_rmin == v_rmin ? v_rmin : 0) offset 1,-0.3 \
+  point pt 6 ps 1.6 lc rgb ring lw 2 textcolor rgb ring font "Sans,13" front
+if (v_rmin != v_rmin) {unset label 7}
 plot 0 with lines lc rgb "#bbbbbb" lw 1 notitle, \
      in using (t(0)):"v_finger_mps" with lines lc rgb finger lw 1.6 title "finger", \
      in using (t(0)):"v_ring_mps" with lines ls 1 title "ring"
-unset label 4; unset label 5
+unset label 4; unset label 5; unset label 7
 
 # ---- state ----
 set tmargin at screen 0.32

@@ -82,7 +82,8 @@ def declarations(include):
             kept.append(line)
     text = without_bodies("\n".join(kept))
     text = re.sub(r"_Static_assert\s*\(.*?\)\s*;", "", text, flags=re.S)
-    return re.sub(r"extern\s+const ethd_plugin_entry ethd_plugin;", "", text)
+    # what plugins define, and the library does not
+    return re.sub(r"extern\s+const (ethd_plugin_entry ethd_plugin|ethd_driver ethd_driver_plugin);", "", text)
 
 
 # Laws, steps and queries over arrays. Programs that step set flush-to-zero first; here it holds for the call alone.

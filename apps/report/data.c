@@ -6,11 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "report/absent.h"
 #include "study/protocol.h"
 #include "text/error_text.h"
 #include "text/file_name.h"
 
-/* ---- reading ---- */
+/* ---- taking ---- */
 
 /* Columns that are needed, in this order. */
 enum { TRANSITION, SPEED, VALID, REASON, WORDS };
@@ -33,31 +34,34 @@ static const struct {
     METRIC("peak_force_n", peak_force),
     {"finger_radius_m", offsetof(ethd__result, finger_radius)},
     {"commanded_mps", offsetof(ethd__result, commanded)},
+    METRIC("v_hand_mps", v_hand), /* from here on: columns that a table may lack */
+    METRIC("touch_depth_m", touch_depth),
+    METRIC("eps_felt_m", eps_felt),
 };
-enum { FIGURES = sizeof figures / sizeof *figures };
+enum { FIGURES = sizeof figures / sizeof *figures, NEEDED = FIGURES - 3 };
 
-typedef struct reading {
+typedef struct taking {
   ethd__data *out;
   const ethd_plant *plant;
   size_t point;
   int word[WORDS], figure[FIGURES], participant, part, at_point;
   void *ids; /* a tree of participants */
   char *message;
-} reading;
+} taking;
 
-static ethd_status refuse(const reading *r, size_t row, const char *column, const char *found, const char *allowed) {
+static ethd_status refuse(const taking *r, size_t row, const char *column, const char *found, const char *allowed) {
   char quote[ETHD_QUOTE_MAX];
   return ethd__say(r->message, ETHD_E_RANGE, "%s:%zu: %s: found %s, %s is allowed", r->out->sheet.path, row + 2, column,
                    ethd__quote(found, strlen(found), quote), allowed);
 }
 
-static ethd_status find_columns(reading *r) {
+static ethd_status find_columns(taking *r) {
   const ethd__sheet *sheet = &r->out->sheet;
   const char *missing = NULL;
   for (int i = 0; i < WORDS; i++)
     if ((r->word[i] = ethd__sheet_column(sheet, word_names[i])) < 0) missing = word_names[i];
   for (int i = 0; i < FIGURES; i++)
-    if ((r->figure[i] = ethd__sheet_column(sheet, figures[i].name)) < 0) missing = figures[i].name;
+    if ((r->figure[i] = ethd__sheet_column(sheet, figures[i].name)) < 0 && i < NEEDED) missing = figures[i].name;
   r->participant = ethd__sheet_column(sheet, "participant");
   r->part = ethd__sheet_column(sheet, "part");
   r->at_point = ethd__sheet_column(sheet, "point");
@@ -67,7 +71,7 @@ static ethd_status find_columns(reading *r) {
                    missing);
 }
 
-static ethd__group *group_of(reading *r, size_t row) {
+static ethd__group *group_of(taking *r, size_t row) {
   ethd__data *data = r->out;
   const char *law = ethd__sheet_cell(&data->sheet, row, r->word[TRANSITION]);
   const char *speed = ethd__sheet_cell(&data->sheet, row, r->word[SPEED]);
@@ -81,7 +85,7 @@ static ethd__group *group_of(reading *r, size_t row) {
   return group;
 }
 
-static ethd_status read_result(const reading *r, size_t row, ethd__result *out) {
+static ethd_status read_result(const taking *r, size_t row, ethd__result *out) {
   const ethd__sheet *sheet = &r->out->sheet;
   const char *reason = ethd__sheet_cell(sheet, row, r->word[REASON]);
   int index = 0;
@@ -98,7 +102,7 @@ static ethd_status read_result(const reading *r, size_t row, ethd__result *out) 
 static int by_id(const void *a, const void *b) { return strcmp(*(const char *const *)a, *(const char *const *)b); }
 
 /* The tree's entries are places in data->people. False: no memory. */
-static bool find_person(reading *r, size_t row, uint32_t *out) {
+static bool find_person(taking *r, size_t row, uint32_t *out) {
   ethd__data *data = r->out;
   const char **next = &data->people[data->people_count];
   *next = ethd__sheet_cell(&data->sheet, row, r->participant);
@@ -117,19 +121,21 @@ static bool grow(ethd__group *group) {
   size_t room = n ? 2 * n : 1;
   ethd__result *results = realloc(group->cell.results, room * sizeof *results);
   if (results) group->cell.results = results;
-  ethd__who *who = realloc(group->who, room * sizeof *who);
-  if (who) group->who = who;
-  return results && who;
+  uint32_t *person = realloc(group->cell.person, room * sizeof *person);
+  if (person) group->cell.person = person;
+  size_t *row = realloc(group->row, room * sizeof *row);
+  if (row) group->row = row;
+  return results && person && row;
 }
 
 /* Words of the table that stand in names of files. */
-static ethd_status check_words(const reading *r, size_t row) {
+static ethd_status check_words(const taking *r, size_t row) {
   static const struct {
     const char *name;
     size_t column;
-  } words[] = {{"participant", offsetof(reading, participant)},
-               {"transition", offsetof(reading, word[TRANSITION])},
-               {"speed", offsetof(reading, word[SPEED])}};
+  } words[] = {{"participant", offsetof(taking, participant)},
+               {"transition", offsetof(taking, word[TRANSITION])},
+               {"speed", offsetof(taking, word[SPEED])}};
   for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
     const char *word = ethd__sheet_cell(&r->out->sheet, row, *(const int *)((const char *)r + words[i].column));
     if (!ethd__file_word(word) || strchr("+-", *word)) return refuse(r, row, words[i].name, word, ETHD_FILE_WORD);
@@ -137,29 +143,33 @@ static ethd_status check_words(const reading *r, size_t row) {
   return ETHD_OK;
 }
 
-static ethd_status no_memory(const reading *r) { return ethd__no_memory(r->message, r->out->sheet.path); }
+static ethd_status no_memory(const taking *r) { return ethd__no_memory(r->message, r->out->sheet.path); }
 
-static ethd_status take(reading *r, size_t row) {
+static ethd_status take(taking *r, size_t row) {
   const ethd__sheet *sheet = &r->out->sheet;
   ethd_status status = check_words(r, row);
   if (status) return status;
   bool training = !strcmp(ethd__sheet_cell(sheet, row, r->part), "training");
   r->out->training += training;
   if (training) return ETHD_OK;
+  if (ethd__absent(r->out, ethd__sheet_cell(sheet, row, r->participant))) {
+    r->out->left_out++;
+    return ETHD_OK;
+  }
   ethd__group *group = group_of(r, row);
   if (!group)
     return refuse(r, row, "speed", ethd__sheet_cell(sheet, row, r->word[SPEED]), "low, high or a number, in 64 cells,");
   if (!grow(group)) return no_memory(r);
   status = read_result(r, row, &group->cell.results[group->cell.count]);
   if (status) return status;
-  ethd__who *who = &group->who[group->cell.count++];
-  who->row = row;
-  return find_person(r, row, &who->person) ? ETHD_OK : no_memory(r);
+  size_t index = group->cell.count++;
+  group->row[index] = row;
+  return find_person(r, row, &group->cell.person[index]) ? ETHD_OK : no_memory(r);
 }
 
 /* ---- points of a grid ---- */
 
-static ethd_status point_of(const reading *r, size_t row, size_t *out) {
+static ethd_status point_of(const taking *r, size_t row, size_t *out) {
   double point = 0;
   if (r->at_point >= 0 &&
       (!ethd__sheet_number(&r->out->sheet, row, r->at_point, &point) || !(point >= 0 && point <= ETHD_STUDY_POINTS)))
@@ -169,7 +179,7 @@ static ethd_status point_of(const reading *r, size_t row, size_t *out) {
 }
 
 /* The rows in the order of their points: each point reads its own alone. */
-static ethd_status index_points(const reading *r) {
+static ethd_status index_points(const taking *r) {
   ethd__data *data = r->out;
   size_t rows = data->sheet.rows, *point = malloc((rows + 1) * sizeof *point);
   ethd_status status = ETHD_OK;
@@ -202,7 +212,7 @@ static int by_speed(const void *a, const void *b) {
 }
 
 /* out->sheet and its points are there. */
-static ethd_status take_all(reading *r) {
+static ethd_status take_all(taking *r) {
   ethd__data *out = r->out;
   size_t at = r->point < out->points ? out->first[r->point] : 0;
   size_t end = r->point < out->points ? out->first[r->point + 1] : 0;
@@ -222,23 +232,37 @@ static ethd_status take_all(reading *r) {
   return ETHD_OK;
 }
 
-ethd_status ethd__data_read(const char *path, const ethd_plant *plant, size_t point, ethd__data *out,
-                            char message[ETHD_MESSAGE_MAX]) {
-  reading r = {.out = out, .plant = plant, .point = point, .message = message};
+ethd_status ethd__data_of(ethd__sheet *sheet, const ethd__sheet *participants, const ethd_plant *plant, size_t point,
+                          ethd__data *out, char message[ETHD_MESSAGE_MAX]) {
+  taking r = {.out = out, .plant = plant, .point = point, .message = message};
   memset(out, 0, sizeof *out);
-  ethd_status status = ethd__sheet_read(path, &out->sheet, message);
-  if (status) return status;
-  status = find_columns(&r);
+  out->sheet = *sheet;
+  *sheet = (ethd__sheet){0};
+  ethd_status status = find_columns(&r);
   if (!status) status = index_points(&r);
+  if (!status && participants && participants->columns) status = ethd__absent_take(out, participants, message);
   if (status) ethd__data_free(out);
   return status ? status : take_all(&r);
 }
 
+ethd_status ethd__data_read(const char *path, const ethd_plant *plant, size_t point, ethd__data *out,
+                            char message[ETHD_MESSAGE_MAX]) {
+  ethd__sheet sheet;
+  memset(out, 0, sizeof *out);
+  ethd_status status = ethd__sheet_read(path, &sheet, message);
+  return status ? status : ethd__data_of(&sheet, NULL, plant, point, out, message);
+}
+
 ethd_status ethd__data_at(const ethd__data *whole, const ethd_plant *plant, size_t point, ethd__data *out,
                           char message[ETHD_MESSAGE_MAX]) {
-  reading r = {.out = out, .plant = plant, .point = point, .message = message};
-  *out = (ethd__data){
-      .sheet = whole->sheet, .row = whole->row, .first = whole->first, .points = whole->points, .borrowed = true};
+  taking r = {.out = out, .plant = plant, .point = point, .message = message};
+  *out = (ethd__data){.sheet = whole->sheet,
+                      .row = whole->row,
+                      .first = whole->first,
+                      .points = whole->points,
+                      .absent = whole->absent,
+                      .absent_count = whole->absent_count,
+                      .borrowed = true};
   ethd_status status = find_columns(&r);
   return status ? status : take_all(&r);
 }
@@ -246,13 +270,15 @@ ethd_status ethd__data_at(const ethd__data *whole, const ethd_plant *plant, size
 void ethd__data_free(ethd__data *data) {
   for (size_t i = 0; i < data->group_count; i++) {
     free(data->group[i].cell.results);
-    free(data->group[i].who);
+    free(data->group[i].cell.person);
+    free(data->group[i].row);
   }
   free(data->people);
   if (!data->borrowed) {
     ethd__sheet_free(&data->sheet);
     free(data->row);
     free(data->first);
+    ethd__absent_free(data);
   }
   data->people = NULL;
   data->row = data->first = NULL;

@@ -3,36 +3,37 @@
 #define ETHD_REPORT_DATA_H
 
 #include "report/sheet.h"
-#include "tap/summary.h"
+#include "statistics/clusters.h"
+#include "tap/people.h"
 
 #define ETHD_REPORT_CELLS 64
 
-/* The participant of a result, and where its ticks may be. */
-typedef struct ethd__who {
-  uint32_t person;
-  size_t row; /* of the sheet */
-} ethd__who;
-
 /* All test taps of one strategy at one speed. */
 typedef struct ethd__group {
-  ethd__cell cell;
+  ethd__cell cell; /* with the person of each result */
   ethd__speed speed;
-  ethd__who *who; /* of each result */
+  size_t *row; /* of the sheet, of each result */
 } ethd__group;
 
 typedef struct ethd__data {
   ethd__sheet sheet;
-  size_t *row, *first;                  /* rows of point p: row[first[p]] up to row[first[p + 1]] */
-  bool borrowed;                        /* sheet, row and first are another's */
+  size_t *row, *first; /* rows of point p: row[first[p]] up to row[first[p + 1]] */
+  char **absent;       /* participants who are left out, by name */
+  size_t absent_count;
+  bool borrowed;                        /* sheet, row, first and absent are another's */
   ethd__group group[ETHD_REPORT_CELLS]; /* speeds in order of the table, strategies within */
   size_t group_count;
-  const char **people; /* ids */
-  size_t people_count, points, training;
+  const char **people;                             /* ids */
+  size_t people_count, points, training, left_out; /* left_out: test taps of participants who aren't analysed */
 } ethd__data;
 
 /* path: a taps.csv of ethd-study; of a grid, only `point` goes into the groups. */
 ETHD_MUST_CHECK ethd_status ethd__data_read(const char *path, const ethd_plant *plant, size_t point, ethd__data *out,
                                             char message[ETHD_MESSAGE_MAX]);
+/* The same of a sheet, which becomes the data's own. participants: a table whose column `analysed` is 0 for those whose
+   taps are left out; NULL or empty: nobody's are. */
+ETHD_MUST_CHECK ethd_status ethd__data_of(ethd__sheet *sheet, const ethd__sheet *participants, const ethd_plant *plant,
+                                          size_t point, ethd__data *out, char message[ETHD_MESSAGE_MAX]);
 /* The same at another point, on the sheet of `whole`, which outlives it. */
 ETHD_MUST_CHECK ethd_status ethd__data_at(const ethd__data *whole, const ethd_plant *plant, size_t point,
                                           ethd__data *out, char message[ETHD_MESSAGE_MAX]);
@@ -44,8 +45,9 @@ size_t ethd__data_cells(const ethd__data *data, ethd__cell out[ETHD_REPORT_CELLS
 /* A figure of a tap as people read it. */
 typedef struct ethd__quantity {
   const char *key, *title, *unit;
-  double (*of)(const ethd__metrics *metrics);
+  ethd__tap_value *of;
   int digits;
+  double grain; /* in which it is counted, 0: it is continuous */
 } ethd__quantity;
 
 enum {
@@ -57,11 +59,20 @@ enum {
   ETHD_Q_EPS,
   ETHD_Q_DELAY,
   ETHD_Q_FORCE,
+  ETHD_Q_V_HAND,
+  ETHD_Q_TOUCH_DEPTH,
+  ETHD_Q_EPS_FELT,
   ETHD_QUANTITIES
 };
 extern const ethd__quantity ethd__quantities[ETHD_QUANTITIES];
 
-/* Values of the valid taps that have it, and whose they are (may be NULL); out has room for cell.count. */
-size_t ethd__group_values(const ethd__group *group, const ethd__quantity *quantity, double *out, uint32_t *person);
+/* Values of the valid taps that have it; out has room for cell.count. */
+size_t ethd__group_values(const ethd__group *group, const ethd__quantity *quantity, double *out);
+
+/* Medians of each person's valid taps, by person, NaN without one; freed by the caller. */
+double *ethd__group_medians(const ethd__data *data, const ethd__group *group, const ethd__quantity *quantity);
+
+/* The valid taps of one group, or of two as sides 0 and 1; freed by the caller. How many. */
+size_t ethd__group_taps(const ethd__group *a, const ethd__group *b, const ethd__quantity *quantity, ethd__tapped **out);
 
 #endif

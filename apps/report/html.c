@@ -9,15 +9,16 @@
 #define BRIEF 30 /* letters of a cell that aren't broken into lines */
 
 static const char style[] =
-    "body{font:16px/1.55 system-ui,'DejaVu Sans',sans-serif;color:#222;background:#fff;max-width:62rem;margin:2rem "
+    "body{font:16px/1.55 system-ui,'DejaVu Sans',sans-serif;color:#222;background:#fff;max-width:74rem;margin:2rem "
     "auto;"
     "padding:0 1.2rem}h1{font-size:1.7rem;line-height:1.25;margin-bottom:.3rem}h2{font-size:1.25rem;margin-top:2.6rem;"
     "border-bottom:1px solid #ddd;padding-bottom:.25rem}p.lead{color:#555}p.note{background:#f6f3ea;padding:.6rem "
     ".9rem;"
     "border-left:4px solid #c9a94e}table{border-collapse:collapse;margin:1rem 0;font-size:.92rem;"
     "font-variant-numeric:tabular-nums}caption{text-align:left;color:#555;padding:.3rem 0;caption-side:top}"
-    "th,td{padding:.28rem .7rem;border-bottom:1px solid #e4e4e4;text-align:left;vertical-align:top}"
-    "th{border-bottom:2px solid #999;font-weight:600}td.n,th.n{text-align:right}td.s{white-space:nowrap}"
+    "th,td{padding:.28rem .6rem;border-bottom:1px solid #e4e4e4;text-align:left;vertical-align:top}"
+    "th{border-bottom:2px solid "
+    "#999;font-weight:600}td.n,th.n{text-align:right}td.s{white-space:nowrap}td.w{font-weight:600;padding-top:.8rem}"
     "tr:hover td{background:#f7f9fb}figure{margin:1.2rem 0}"
     "img{max-width:100%;height:auto;border:1px solid #e4e4e4}figcaption{color:#555;font-size:.92rem}"
     "div.wide{overflow-x:auto}code{background:#f3f3f3;padding:0 .25em}nav a{margin-right:1rem}"
@@ -136,5 +137,9 @@ void ethd__html_table(ethd__html *page, const char *caption, const char *const *
 }
 
 void ethd__html_row(ethd__html *page, const char *const *cell, int numbers) { cells(page, "td", cell, numbers); }
+
+void ethd__html_span(ethd__html *page, const char *text, int columns) {
+  ethd__html_print(page, "<tr><td class=\"w\" colspan=\"%d\">%s</td></tr>\n", columns, text);
+}
 
 void ethd__html_table_end(ethd__html *page) { ethd__html_markup(page, "</tbody>\n</table></div>\n"); }

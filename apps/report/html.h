@@ -32,6 +32,8 @@ bool ethd__html_picture(ethd__html *page, const char *path, const char *caption)
 /* Header cells, then rows: each a list that NULL ends. Cells from `numbers` on are set to the right. */
 void ethd__html_table(ethd__html *page, const char *caption, const char *const *header, int numbers);
 void ethd__html_row(ethd__html *page, const char *const *cells, int numbers);
+/* One cell over so many columns: what the rows below it are about. */
+void ethd__html_span(ethd__html *page, const char *text, int columns);
 void ethd__html_table_end(ethd__html *page);
 
 #endif

@@ -48,9 +48,13 @@ ethd_status ethd__report_reasons(ethd__report *r) {
   if (!csv) return ETHD_E_FILE;
   ethd__html_heading(&r->page, "valid", "Valid taps");
   ethd__html_markup(
-      &r->page,
-      "<p>A tap is valid when the ring met the wall before the finger touched it, at a speed within the band, and the "
-      "finger pressed once. The paper's participants needed 10 to 15 taps for three valid ones.</p>\n");
+      &r->page, r->folder->protocol.validity == ETHD_TAP_BY_FINGER
+                    ? "<p>A tap is valid when the hand's own speed was within the band, the finger didn't touch before "
+                      "the ring was "
+                      "there, and it pressed once. The paper judges by the ring's speed.</p>\n"
+                    : "<p>A tap is valid when the ring met the wall before the finger touched it, at a speed within "
+                      "the band, and the "
+                      "finger pressed once. The paper's participants needed 10 to 15 taps for three valid ones.</p>\n");
   ethd__html_table(&r->page, "Taps by reason", header, 1);
   for (size_t i = 0; i < r->data.group_count; i++) write_row(r, i, csv);
   ethd__html_table_end(&r->page);

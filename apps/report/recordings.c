@@ -18,10 +18,10 @@ static bool holds_taps(const char *name) {
 
 static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
 
-void ethd__recordings_find(const char *study, ethd__recordings *out) {
+static void find_in(const char *study, ethd__recordings *out) {
   DIR *folder = opendir(study);
   const struct dirent *entry;
-  *out = (ethd__recordings){0};
+  size_t first = out->count;
   while (folder && (entry = readdir(folder))) {
     if (!holds_taps(entry->d_name)) continue;
     char **longer = realloc(out->folder, (out->count + 1) * sizeof *longer);
@@ -30,7 +30,12 @@ void ethd__recordings_find(const char *study, ethd__recordings *out) {
     out->folder[out->count++] = ethd__folder_path(study, entry->d_name);
   }
   if (folder) closedir(folder);
-  if (out->count) qsort(out->folder, out->count, sizeof *out->folder, by_name);
+  if (out->count > first) qsort(out->folder + first, out->count - first, sizeof *out->folder, by_name);
+}
+
+void ethd__recordings_find(const ethd__stations *stations, ethd__recordings *out) {
+  *out = (ethd__recordings){0};
+  for (size_t i = 0; i < stations->count; i++) find_in(stations->folder[i], out);
 }
 
 void ethd__recordings_free(ethd__recordings *r) {

@@ -3,7 +3,7 @@
 #ifndef ETHD_REPORT_RECORDINGS_H
 #define ETHD_REPORT_RECORDINGS_H
 
-#include "report/sheet.h"
+#include "report/gather.h"
 #include "text/file_name.h"
 
 typedef struct ethd__recordings {
@@ -12,7 +12,7 @@ typedef struct ethd__recordings {
 } ethd__recordings;
 
 /* Which such folders there are; none is fine. Exit 1 without memory. */
-void ethd__recordings_find(const char *study, ethd__recordings *out);
+void ethd__recordings_find(const ethd__stations *stations, ethd__recordings *out);
 void ethd__recordings_free(ethd__recordings *recordings);
 
 /* Of a row of taps.csv. */

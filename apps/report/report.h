@@ -5,23 +5,44 @@
 #include <stdio.h>
 
 #include "report/data.h"
+#include "report/gather.h"
 #include "report/html.h"
 #include "report/picture.h"
-#include "report/stats.h"
 #include "study/folder.h"
+#include "tap/claims.h"
+
+/* Who led the hand in a tap. */
+typedef enum ethd__leader {
+  ETHD_LED_DEVICE,    /* a person's finger in the device's ring */
+  ETHD_LED_MOUSE,     /* a person, who led the simulated device's hand */
+  ETHD_LED_RECORDED,  /* a recorded movement */
+  ETHD_LED_SIMULATED, /* the plant's synthetic hand */
+  ETHD_LED_KINDS
+} ethd__leader;
 
 typedef struct ethd__report {
-  ethd__folder *folder;
-  const char *out; /* folder of pictures and CSV files */
+  ethd__folder *folder;    /* the first station's */
+  ethd__stations stations; /* where the taps stand: one folder or several */
+  const char *out;         /* folder of pictures and CSV files */
   ethd__data data;
   ethd__data beside; /* taps of another folder, group_count 0: none */
   const char *beside_name;
   const char *tap; /* a recording whose traces are drawn, NULL: the typical one of each cell */
   size_t point;
-  uint64_t seed; /* of the bootstrap */
+  uint64_t seed;              /* of the bootstrap */
+  size_t led[ETHD_LED_KINDS]; /* test taps */
   ethd__html page;
   char *message;
 } ethd__report;
+
+/* Fills report->led: by the taps' column `hand`, and where the table has none by what the study asked for. */
+void ethd__report_led(ethd__report *report);
+
+/* All of the taps were led so. */
+bool ethd__report_only(const ethd__report *report, ethd__leader led);
+
+/* What p values and intervals are about: people, or the assumptions of a simulation. One sentence. */
+const char *ethd__report_caveat(const ethd__report *report);
 
 /* People's fingers on a device that isn't the simulated one: its figures were measured, nothing was fitted. */
 bool ethd__report_measured(const ethd__report *report);
@@ -44,13 +65,32 @@ const char *ethd__number_text(double value, int digits, char out[32]);
 /* Values of a group, summed up. */
 void ethd__group_summary(const ethd__group *group, const ethd__quantity *quantity, ethd__summary5 *out);
 
+/* "1.2 to 3.4", "-" where there is none. */
+const char *ethd__interval_text(ethd__interval interval, int digits, char out[72]);
+/* "0.0312", "< 0.0001", "-" where no test was made. */
+const char *ethd__p_text(double p, char out[32]);
+
+/* How far strategies may differ in this quantity, in its unit, and still be called alike; NaN: no margin is set. */
+double ethd__report_margin(const ethd__report *report, int quantity);
+
+/* Test taps, and of them the valid ones. */
+size_t ethd__data_taps(const ethd__data *data, size_t *valid);
+
 /* Each writes its CSV files and pictures, and its part of the page. */
+void ethd__report_origin(ethd__report *report);
 ETHD_MUST_CHECK ethd_status ethd__report_table1(ethd__report *report);
+ETHD_MUST_CHECK ethd_status ethd__report_claims(ethd__report *report);
 ETHD_MUST_CHECK ethd_status ethd__report_boxes(ethd__report *report);
+ETHD_MUST_CHECK ethd_status ethd__report_summary(ethd__report *report);
 ETHD_MUST_CHECK ethd_status ethd__report_traces(ethd__report *report);
+ETHD_MUST_CHECK ethd_status ethd__report_encounter(ethd__report *report);
 ETHD_MUST_CHECK ethd_status ethd__report_reasons(ethd__report *report);
+ETHD_MUST_CHECK ethd_status ethd__report_validity(ethd__report *report);
+ETHD_MUST_CHECK ethd_status ethd__report_forces(ethd__report *report);
 ETHD_MUST_CHECK ethd_status ethd__report_survey(ethd__report *report);
 ETHD_MUST_CHECK ethd_status ethd__report_pairs(ethd__report *report);
+ETHD_MUST_CHECK ethd_status ethd__report_interaction(ethd__report *report);
+ETHD_MUST_CHECK ethd_status ethd__report_tidy(ethd__report *report);
 ETHD_MUST_CHECK ethd_status ethd__report_grid(ethd__report *report);
 void ethd__report_methods(ethd__report *report);
 

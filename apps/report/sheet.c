@@ -78,7 +78,7 @@ ethd_status ethd__sheet_parse(const char *text, size_t length, const char *name,
   else if (!length)
     status = ethd__say(message, ETHD_E_SYNTAX, "%s: is empty", name);
   else if (memchr(text, 0, length))
-    status = ethd__say(message, ETHD_E_SYNTAX, "%s: a byte 0: this is no text", name);
+    status = ethd__say(message, ETHD_E_SYNTAX, "%s: a byte 0: this isn't text", name);
   if (!status) {
     memcpy(out->text, text, length);
     out->text[length] = 0;

@@ -2,15 +2,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "report/report.h"
-#include "tap/claims.h"
+#include "cli/cli.h"
+#include "report/judged.h"
 #include "text/csv.h"
 
 #define NINE 9    /* taps behind each figure of the paper */
 #define FEWEST 30 /* taps to draw nine from */
 
-/* The larger sample: the taps beside the study where there are any, else the study's. */
-static const ethd__data *largest(const ethd__report *r) { return r->beside.group_count ? &r->beside : &r->data; }
+typedef struct table1_line {
+  const ethd__mean *mean; /* of the judged sample */
+  const ethd__quantity *quantity;
+  bool high;
+  double share[2]; /* of samples of nine taps whose mean, whose sd lies as far off as the paper's */
+} table1_line;
 
 static const ethd__group *offset_at(const ethd__data *data, bool high) {
   for (size_t i = 0; i < data->group_count; i++)
@@ -19,31 +23,19 @@ static const ethd__group *offset_at(const ethd__data *data, bool high) {
   return NULL;
 }
 
-/* ---- Table 1 ---- */
-
-/* The sample that is judged: taps beside the study are simulated. */
-static bool was_measured(const ethd__report *r) { return ethd__report_measured(r) && !r->beside.group_count; }
-
-typedef struct line {
-  const ethd__mean *mean; /* of the larger sample */
-  const ethd__quantity *quantity;
-  bool high;
-  double mean_share, sd_share; /* share of samples of nine taps that lie as far off as the paper's */
-} line;
-
-static void resample(const ethd__report *r, line *row) {
-  const ethd__group *group = offset_at(largest(r), row->high);
-  double *values = group ? malloc((group->cell.count + 1) * sizeof *values) : NULL;
-  size_t n = values ? ethd__group_values(group, row->quantity, values, NULL) : 0;
-  row->mean_share = row->sd_share = NAN;
-  if (n >= FEWEST)
-    ethd__resample(values, n, NINE, row->mean->paper, row->mean->paper_sd, r->seed, &row->mean_share, &row->sd_share);
+static void resample(const ethd__report *r, table1_line *row) {
+  const ethd__group *group = offset_at(ethd__judged_data(r), row->high);
+  double *values = malloc(((group ? group->cell.count : 0) + 1) * sizeof *values);
+  if (!values) ethd__fail_memory();
+  size_t n = group ? ethd__group_values(group, row->quantity, values) : 0;
+  row->share[0] = row->share[1] = NAN;
+  if (n >= FEWEST) ethd__resample(values, n, NINE, row->mean->paper, row->mean->paper_sd, r->seed, row->share);
   free(values);
 }
 
-static void summary_of(const ethd__data *data, const line *row, ethd__summary5 *out) {
+static void summary_of(const ethd__data *data, const table1_line *row, ethd__summary5 *out) {
   const ethd__group *group = offset_at(data, row->high);
-  *out = (ethd__summary5){.n = 0};
+  *out = (ethd__summary5){.n = 0, .mean = NAN, .sd = NAN};
   if (group) ethd__group_summary(group, row->quantity, out);
 }
 
@@ -53,62 +45,66 @@ static const char *percent(double share, char out[32]) {
   return out;
 }
 
-static void print_row(ethd__report *r, const line *row, ethd_csv_out *csv) {
-  char name[64], paper[48], here[48], beside[48], n[24], besides[24], m[32], s[32];
+static void print_row(ethd__report *r, const table1_line *row, ethd_csv_out *csv) {
+  const ethd__mean *m = row->mean;
+  char name[64], paper[48], here[48], beside[48], n[24], besides[24], average[120], interval[72], p[32], share[2][32];
   ethd__summary5 study, other;
   summary_of(&r->data, row, &study);
   summary_of(&r->beside, row, &other);
-  int digits = row->quantity->digits;
-  snprintf(name, sizeof name, "%s %s", row->mean->name, row->mean->unit);
-  snprintf(paper, sizeof paper, "%.3f (%.3f)", row->mean->paper, row->mean->paper_sd);
+  int d = row->quantity->digits;
+  snprintf(name, sizeof name, "%s %s", m->name, m->unit);
+  snprintf(paper, sizeof paper, "%.3f (%.3f)", m->paper, m->paper_sd);
   snprintf(n, sizeof n, "%zu", study.n);
   snprintf(besides, sizeof besides, "%zu", other.n);
-  const char *word = row->mean->verdict == ETHD_TAP_MET       ? was_measured(r) ? "reproduced" : "fitted"
-                     : row->mean->verdict == ETHD_TAP_NOT_MET ? "not"
-                                                              : "too few taps";
-  const char *spread = isnan(row->sd_share) ? "too few taps" : row->sd_share >= 0.05 ? "reproduced" : "not";
+  bool known = m->verdict != ETHD_TAP_UNKNOWN;
+  ethd__interval_text((ethd__interval){known ? m->low : NAN, m->high, 0, 0}, d, interval);
+  snprintf(average, sizeof average, "%.*f (%s)", d, m->average, interval);
   const char *cells[] = {name,
                          paper,
-                         ethd__mean_text(&study, digits, here),
+                         ethd__mean_text(&study, d, here),
                          n,
-                         r->beside.group_count ? ethd__mean_text(&other, digits, beside) : "-",
+                         r->beside.group_count ? ethd__mean_text(&other, d, beside) : "-",
                          r->beside.group_count ? besides : "-",
-                         word,
-                         spread,
-                         percent(row->mean_share, m),
-                         percent(row->sd_share, s),
+                         average,
+                         ethd__verdict_words[m->verdict],
+                         ethd__p_text(known ? m->p : NAN, p),
+                         percent(row->share[0], share[0]),
+                         percent(row->share[1], share[1]),
                          NULL};
   ethd__html_row(&r->page, cells, 1);
-  for (int i = 0; cells[i]; i++) ethd_csv_text(csv, cells[i]);
+  ethd_csv_word(csv, row->quantity->key);
+  ethd_csv_word(csv, row->quantity->unit);
+  ethd_csv_word(csv, row->high ? "high" : "low");
+  const double figures[] = {m->paper,   m->paper_sd, study.mean,         study.sd,      (double)study.n,
+                            other.mean, other.sd,    (double)other.n,    m->average,    (double)m->people,
+                            m->low,     m->high,     known ? m->p : NAN, row->share[0], row->share[1]};
+  for (size_t i = 0; i < sizeof figures / sizeof *figures; i++) ethd_csv_number(csv, figures[i]);
+  ethd_csv_word(csv, ethd__verdict_words[m->verdict]);
   ethd_csv_row(csv);
 }
 
 static ethd_status print_table(ethd__report *r) {
-  static const char *const header[] = {"offset",
-                                       "paper, n = 9",
-                                       "this study",
-                                       "n",
-                                       "beside",
-                                       "n",
-                                       "mean",
-                                       "sd",
-                                       "9 taps: mean as far off",
-                                       "9 taps: sd as far off",
-                                       NULL};
+  static const char *const header[] = {
+      "offset", "paper, n = 9",    "this study",    "n", "beside", "n", "people's mean, 90 %", "agreement",
+      "p",      "mean as far off", "sd as far off", NULL};
   static const int quantity[ETHD_TAP_MEANS] = {ETHD_Q_DELTA_S, ETHD_Q_EPS, ETHD_Q_DELTA_S, ETHD_Q_EPS};
   ethd__mean means[ETHD_TAP_MEANS];
   ethd__cell cells[ETHD_REPORT_CELLS];
-  size_t count = ethd__data_cells(largest(r), cells);
+  ethd__sample sample = ethd__judged_sample(r, cells);
   char *path = ethd__report_path(r, "table1.csv");
   ethd_csv_out *csv = ethd_csv_create(
-      path, "what,paper,study,study_n,beside,beside_n,mean_verdict,sd_verdict,mean_as_far_off,sd_as_far_off",
+      path,
+      "metric,unit,speed,paper_mean,paper_sd,study_mean,study_sd,study_n,beside_mean,beside_sd,beside_n,people_mean,"
+      "people,people_low_90,people_high_90,p_equivalent,mean_as_far_off,sd_as_far_off,verdict",
       r->message);
   free(path);
   if (!csv) return ETHD_E_FILE;
-  ethd__means(cells, count, means);
-  ethd__html_table(&r->page, "Table 1: mean (sample standard deviation), n", header, 1);
+  ethd__means(&sample, means);
+  ethd__html_table(&r->page,
+                   "Table 1: mean (sample standard deviation) of all valid taps, n; then the mean of people's means",
+                   header, 1);
   for (int i = 0; i < ETHD_TAP_MEANS; i++) {
-    line row = {&means[i], &ethd__quantities[quantity[i]], i >= 2, NAN, NAN};
+    table1_line row = {&means[i], &ethd__quantities[quantity[i]], i >= 2, {NAN, NAN}};
     resample(r, &row);
     print_row(r, &row, csv);
   }
@@ -116,41 +112,19 @@ static ethd_status print_table(ethd__report *r) {
   return ethd_csv_close(csv, r->message);
 }
 
-/* ---- claims ---- */
-
-static void print_claims(ethd__report *r) {
-  static const char *const header[] = {"what the paper says", "here", "", NULL};
-  static const char *const words[] = {
-      [ETHD_TAP_UNKNOWN] = "too few taps", [ETHD_TAP_MET] = "reproduced", [ETHD_TAP_NOT_MET] = "not"};
-  ethd__tap_claim claims[ETHD_TAP_CLAIMS_MAX];
-  ethd__cell cells[ETHD_REPORT_CELLS];
-  size_t count = ethd__data_cells(largest(r), cells), n = ethd__claims(cells, count, claims);
-  ethd__html_table(&r->page,
-                   r->beside.group_count ? "Claims, judged by the taps beside the study, which are more"
-                                         : "Claims, judged by this study's taps",
-                   header, 3);
-  for (size_t i = 0; i < n; i++) {
-    const char *row[] = {claims[i].text, claims[i].verdict ? claims[i].here : "-", words[claims[i].verdict], NULL};
-    ethd__html_row(&r->page, row, 3);
-  }
-  ethd__html_table_end(&r->page);
-}
-
 ethd_status ethd__report_table1(ethd__report *r) {
   if (!offset_at(&r->data, false) && !offset_at(&r->data, true)) return ETHD_OK;
-  ethd__html_heading(&r->page, "table1", "Table 1 and the paper's claims");
-  ethd__html_markup(
+  ethd__html_heading(&r->page, "table1", "Table 1 of the paper");
+  if (!ethd__judged_measured(r))
+    ethd__html_markup(&r->page,
+                      "<p>The simulated device and finger were <b>fitted to the four means of this table</b>, not "
+                      "measured: that they agree is no evidence.</p>\n");
+  ethd__html_print(
       &r->page,
-      was_measured(r)
-          ? "<p>A mean counts as reproduced "
-          : "<p>The simulated device and finger were <b>fitted to the four means of Table 1</b>, not measured: "
-            "that the means agree is no evidence. What was not fitted, the spreads and the claims, says "
-            "more. A mean counts as fitted ");
-  ethd__html_markup(
-      &r->page,
-      "when it is within one published standard deviation plus two standard errors of the paper's; a spread as "
-      "reproduced when at least 5 % of samples of nine taps have one as far off as the paper's, two-sided.</p>\n");
-  ethd_status status = print_table(r);
-  print_claims(r);
-  return status;
+      "<p>Agreement is shown when the mean of %s's means lies within one published standard deviation of "
+      "the published mean (two one-sided t tests, p under 0.05); too few people can't show it. The last "
+      "columns say how many samples of nine single taps, as many as the paper has, would have a mean and a "
+      "standard deviation at least as far off as the paper's; small shares speak against agreement.</p>\n",
+      ethd__judged_name(r));
+  return print_table(r);
 }

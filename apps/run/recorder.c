@@ -10,12 +10,20 @@
 #include "run/telemetry.h"
 
 #define STACK ((size_t)512 << 10)
-#define PAUSE 2000000  /* ns */
+#define PAUSE 2000000 /* ns */
+#define FINGER (ETHD_HAVE_FINGER | ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS)
 #define TELEMETRY 0.01 /* s */
 
 void ethd__recorder_begin(ethd__recorder *r, double period) {
   pthread_mutex_init(&r->lock, NULL);
   r->every = (uint64_t)fmax(1, round(TELEMETRY / period));
+  if (!r->keeps) r->keeps = 1;
+}
+
+ethd_status ethd__recorder_thinned(ethd__recorder *r) {
+  char text[80];
+  snprintf(text, sizeof text, "1 tick of %" PRIu64 " is recorded, and those in which a fault begins", r->keeps);
+  return ethd_recording_event(r->recording, "thinned", text);
 }
 
 /* ---- rows ---- */
@@ -29,7 +37,7 @@ static void tell_lost(ethd__recorder *r, uint64_t lost) {
   if (!lost) return;
   r->lost += lost;
   snprintf(text, sizeof text, "%" PRIu64 " ticks before this one found no room", lost);
-  event(r, "fault", text);
+  event(r, "lost", text);
 }
 
 static void tell_posts(ethd__recorder *r, const ethd__post *posts, int count) {
@@ -74,7 +82,10 @@ static bool record(ethd__recorder *r, const ethd_loop_row *row, const ethd__post
   tell_posts(r, posts, count);
   if (row->marks & ETHD_ROW_CLEARED) event(r, "clear", "");
   bool begins = tell_fault(r, row->trace.fault);
-  if (r->recording && ethd_recording_tick(r->recording, &row->trace)) r->failed = true;
+  if (r->rows % r->keeps == 0 || begins) {
+    if (r->recording && ethd_recording_tick(r->recording, &row->trace)) r->failed = true;
+    r->written++;
+  }
   r->fault = row->trace.fault;
   r->rows++;
   return begins;
@@ -86,6 +97,7 @@ static void take(ethd__recorder *r, const ethd_loop_row *row) {
   int count = share(r, row, posts);
   bool begins = record(r, row, posts, count);
   tell_loop(r, row->lost, failed_before);
+  if (row->trace.sense.have & FINGER) atomic_store(&r->sees_finger, 1);
   if (r->sink.take) r->sink.take(r->sink.self, row);
   ethd__snapshot_take(&r->snapshot, &row->trace, begins);
   if (r->telemetry >= 0 && r->rows % r->every == 0) ethd__telemetry_send(r->telemetry, row);

@@ -32,9 +32,11 @@ typedef struct ethd__recorder {
   ethd_recording *recording; /* NULL: none */
   int telemetry;             /* socket, -1 none */
   uint64_t every;            /* rows from one datagram to the next */
+  uint64_t keeps;            /* rows from one that is recorded to the next; 1: each */
   pthread_t thread;
   atomic_int stop, stopping; /* stopping: the fault by which a controlled stop works is not reported */
   bool threaded;
+  atomic_int sees_finger; /* 1: a reading of the finger has come */
 
   ethd__snapshot snapshot;
 
@@ -46,8 +48,9 @@ typedef struct ethd__recorder {
 
   /* of the recorder's thread, until it has ended */
   uint64_t rows, lost;
-  int64_t fault; /* of the last row */
-  uint64_t kept; /* rows in the recording, once it is closed */
+  uint64_t written; /* rows that were to be recorded */
+  int64_t fault;    /* of the last row */
+  uint64_t kept;    /* rows in the recording, once it is closed */
   uint64_t faults[ETHD_FAULT_COUNT];
   bool failed; /* the recording couldn't be written */
 } ethd__recorder;
@@ -61,6 +64,9 @@ void ethd__recorder_drain(ethd__recorder *recorder);
 
 /* Ends the thread and takes the rest. */
 void ethd__recorder_end(ethd__recorder *recorder);
+
+/* Says in the recording that only every keeps-th row will be in it. */
+ETHD_MUST_CHECK ethd_status ethd__recorder_thinned(ethd__recorder *recorder);
 
 /* Before a setup is posted; taken back when the post is refused. False: the detail is too long. */
 bool ethd__recorder_expect(ethd__recorder *recorder, const char *kind, const char *detail);

@@ -9,12 +9,15 @@
 
 #include "cli/cli.h"
 #include "record/limits_event.h"
+#include "run/refusal.h"
 #include "run/telemetry.h"
+#include "settings/config_parts.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
 #define HEARTBEAT 0.1 /* s */
 #define PATIENCE 1000 /* waits of 1 ms, or ticks */
+#define FIRST_FINGER 100
 
 /* ---- time ---- */
 
@@ -40,7 +43,9 @@ void ethd__session_poll(ethd__session *s) {
 }
 
 void ethd__session_tick(ethd__session *s) {
+  ethd__config_foreign(s->config, "a plugin's law");
   ethd_loop_tick(s->loop);
+  ethd__config_foreign(s->config, NULL);
   ethd__recorder_drain(&s->recorder);
   ethd__session_poll(s);
 }
@@ -103,21 +108,16 @@ static ethd_status open_recorder(ethd__session *s, const ethd__session_options *
   ethd__recorder *r = &s->recorder;
   ethd_status status = ETHD_OK;
   r->telemetry = -1;
+  r->keeps = o->keeps;
   if (o->telemetry) status = ethd__telemetry_open(o->telemetry, o->group, &r->telemetry, message);
   if (!status && (o->snapshot || o->record)) status = open_snapshot(s, o, message);
   if (status || !o->record) return status;
   status = ethd_recording_create(o->record, s->config, o->replace, &r->recording, message);
   if (status) return status;
-  status = ethd__device_event(r->recording, &s->config->setup, &s->setup);
+  status = ethd__limits_event(r->recording, &s->config->setup, &s->setup);
+  if (!status) status = ethd__dynamics_event(r->recording, &s->config->setup, &s->setup);
+  if (!status && r->keeps > 1) status = ethd__recorder_thinned(r);
   return status ? ethd__say(message, status, "%s: %s", o->record, ethd_status_sentence(status)) : ETHD_OK;
-}
-
-static ethd_status refuse_start(const ethd__session *s, ethd_status status, const ethd_error *error, char *message) {
-  if (strcmp(error->name, "require_rt"))
-    return ethd__say(message, status, "the loop: %s: %s", error->name, ethd_status_sentence(status));
-  int32_t bits = ethd_loop_shortfalls(s->loop);
-  const char *first = bits ? ethd_shortfall_sentence(bits & -bits) : "";
-  return ethd__say(message, status, "--require-rt: %s; mend: %s", first, bits ? ethd_shortfall_mend(bits & -bits) : "");
 }
 
 static ethd_status refuse_device(const ethd__session *s, ethd_status status, char *message) {
@@ -148,7 +148,7 @@ static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, c
   if (status) return refuse_device(s, status, message);
   s->started = true;
   status = ethd_loop_start(s->loop, &error);
-  if (status) return refuse_start(s, status, &error, message);
+  if (status) return ethd__start_refused(s->loop, status, &error, message);
   if (!o->is_virtual) status = ethd__recorder_start(&s->recorder);
   return status ? ethd__say(message, status, "the recorder: %s", ethd_status_sentence(status)) : ETHD_OK;
 }
@@ -159,7 +159,9 @@ ethd_status ethd__session_open(const ethd__session_options *o, ethd__session *s,
   s->recorder.telemetry = -1;
   s->recorder.sink = o->sink;
   s->is_virtual = o->is_virtual;
-  ethd_status status = ethd_config_load(o->config, &s->config, message);
+  ethd_status status = o->text ? ethd_config_parse(o->text, strlen(o->text), o->config ? o->config : "the defaults",
+                                                   o->folder, &s->config, message)
+                               : ethd_config_load(o->config, &s->config, message);
   if (!status) status = open_device(s, o->folder, message);
   if (!status) status = open_recorder(s, o, message);
   if (!status) status = open_loop(s, o, message);
@@ -172,6 +174,11 @@ ethd_status ethd__session_open(const ethd__session_options *o, ethd__session *s,
   return ETHD_OK;
 }
 
+bool ethd__session_sees_finger(ethd__session *s) {
+  for (int i = 0; i < FIRST_FINGER && !s->is_virtual && !atomic_load(&s->recorder.sees_finger); i++) pass(s);
+  return atomic_load(&s->recorder.sees_finger);
+}
+
 /* ---- while it runs ---- */
 
 ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const char *kind, const char *detail,
@@ -180,9 +187,9 @@ ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const 
   if (!settle(s)) return ethd__say(message, ETHD_BUSY, "%s", ethd_status_sentence(ETHD_BUSY));
   if (!ethd__recorder_expect(&s->recorder, kind, detail))
     return ethd__say(message, ETHD_E_FULL, "%s", ethd_status_sentence(ETHD_E_FULL));
-  if (s->config->plugin_count) ethd__foreign("the check of a plugin's law");
+  ethd__config_foreign(s->config, "the check of a plugin's law");
   ethd_status status = ethd_control_post(s->control, setup, &error);
-  ethd__foreign(NULL);
+  ethd__config_foreign(s->config, NULL);
   if (status) {
     ethd__recorder_withdraw(&s->recorder);
     ethd_error_text(NULL, &error, message);
@@ -227,7 +234,7 @@ static ethd_status close_recording(ethd__session *s, char *message) {
   ethd__recorder *r = &s->recorder;
   uint64_t kept = r->recording ? ethd_recording_kept(r->recording) : 0;
   ethd_status status = ethd_recording_close(r->recording, message);
-  r->kept = status ? kept : r->rows;
+  r->kept = status ? kept : r->written;
   r->recording = NULL;
   if (r->telemetry >= 0) close(r->telemetry);
   r->telemetry = -1;

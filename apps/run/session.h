@@ -23,8 +23,10 @@ typedef struct ethd__session {
 
 typedef struct ethd__session_options {
   const char *config, *record, *telemetry, *snapshot; /* NULL: none; a recording has a snapshot of its own */
+  uint32_t keeps;                                     /* ticks from one that is recorded to the next; 0 or 1: each */
   bool replace;                                       /* an earlier recording */
   bool group;                                         /* telemetry may go to a multicast or broadcast address */
+  const char *text;   /* stands for what the configuration's file holds; NULL: it is read */
   const char *folder; /* where relative paths of [device] start; NULL: where the configuration is */
   ethd__sink sink;
   bool is_virtual;
@@ -36,6 +38,9 @@ typedef struct ethd__session_options {
    all is closed. */
 ETHD_MUST_CHECK ethd_status ethd__session_open(const ethd__session_options *options, ethd__session *s,
                                                char message[ETHD_MESSAGE_MAX]);
+
+/* Whether a reading of the finger has come; a live session is given a moment for its first one. */
+bool ethd__session_sees_finger(ethd__session *s);
 
 /* Damps the ring until it is still, then disables. told: a signal asked for it. */
 void ethd__session_halt(ethd__session *s, bool told);

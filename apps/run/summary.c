@@ -18,10 +18,35 @@ void ethd__shortfalls_print(FILE *out, int32_t bits) {
               ethd_shortfall_mend(1 << i));
 }
 
-void ethd__remarks_print(FILE *out, const ethd__session *s) {
+/* What is missing names its step of "From the box to the first touch", as "(step 3)" or "; step 3)"; 0: none. */
+static int step_of(const char *remark) {
+  const char *at = strstr(remark, "step ");
+  int step = 0;
+  return at && sscanf(at, "step %d)", &step) == 1 ? step : 0;
+}
+
+static void tell(FILE *out, const char *remark, int *next) {
+  int step = step_of(remark);
+  fprintf(out, "device: %s\n", remark);
+  if (step && (!*next || step < *next)) *next = step;
+}
+
+#define RIGHTS (ETHD_SHORT_FIFO | ETHD_SHORT_MLOCK | ETHD_SHORT_IO)
+
+void ethd__remarks_print(FILE *out, ethd__session *s) {
   const char *remark;
-  for (uint32_t i = 0; (remark = s->driver->remark(s->device, i)) != NULL; i++) fprintf(out, "device: %s\n", remark);
-  if (!s->is_virtual) ethd__shortfalls_print(out, ethd_loop_shortfalls(s->loop));
+  int32_t shortfalls = s->is_virtual ? 0 : ethd_loop_shortfalls(s->loop);
+  int next = 0;
+  for (uint32_t i = 0; (remark = s->driver->remark(s->device, i)) != NULL; i++) tell(out, remark, &next);
+  if (!s->is_virtual && !ethd__session_sees_finger(s))
+    tell(out,
+         "nothing measures the finger: the ring stands and follows nothing; name a driver that does, as in driver = "
+         "servo, ring, or reading_x and its like in the map (step 6)",
+         &next);
+  ethd__shortfalls_print(out, shortfalls);
+  if (next && shortfalls & RIGHTS) next = 1;
+  if (next)
+    fprintf(out, "next: step %d of \"From the box to the first touch\" in drivers/README.md, as said above\n", next);
 }
 
 static void print_fault(FILE *out, int fault, uint64_t n, int *none) {
@@ -99,11 +124,11 @@ void ethd__faults_print(FILE *out) {
 }
 
 static void print_recorded(FILE *out, const char *record, const ethd__recorder *r) {
-  if (r->kept == r->rows)
-    fprintf(out, "%-10s %s: %" PRIu64 " ticks\n", "recorded", record, r->rows);
+  if (r->kept == r->written)
+    fprintf(out, "%-10s %s: %" PRIu64 " ticks\n", "recorded", record, r->written);
   else
     fprintf(out, "%-10s %s: %" PRIu64 " of %" PRIu64 " ticks, %" PRIu64 " are lost\n", "recorded", record, r->kept,
-            r->rows, r->rows - r->kept);
+            r->written, r->written - r->kept);
 }
 
 void ethd__summary_print(FILE *out, const ethd__session *s, const char *record) {
@@ -121,6 +146,8 @@ void ethd__summary_print(FILE *out, const ethd__session *s, const char *record) 
   print_device(out, &stats);
   print_skipped(out, s, &stats);
   print_figures(out, s);
+  if (!atomic_load(&s->recorder.sees_finger))
+    fprintf(out, "%-10s never measured: the ring has followed nothing\n", "finger");
   if (record) print_recorded(out, record, &s->recorder);
   print_snapshot(out, &s->recorder.snapshot);
   if (!s->is_virtual && !ethd_loop_shortfalls(s->loop)) fprintf(out, "%-10s none\n", "shortfalls");

@@ -13,7 +13,7 @@ void ethd__summary_print(FILE *out, const ethd__session *s, const char *record);
 void ethd__shortfalls_print(FILE *out, int32_t bits);
 
 /* What people should know before anything moves: the device's remarks, what the machine refuses. */
-void ethd__remarks_print(FILE *out, const ethd__session *s);
+void ethd__remarks_print(FILE *out, ethd__session *s);
 
 /* A line of a histogram: p50, p99, p99.9, max in us. */
 void ethd__durations_print(FILE *out, const char *name, const ethd_histogram *h);

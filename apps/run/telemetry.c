@@ -84,13 +84,13 @@ ethd_status ethd__telemetry_open(const char *address, bool group, int *out, char
 
 /* ---- datagram ---- */
 
-typedef struct text {
+typedef struct telemetry_text {
   char at[2048];
   size_t length;
-} text;
+} telemetry_text;
 
-static void put(text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void put(text *t, const char *format, ...) {
+static void put(telemetry_text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void put(telemetry_text *t, const char *format, ...) {
   va_list args;
   va_start(args, format);
   int n = vsnprintf(t->at + t->length, sizeof t->at - t->length, format, args);
@@ -100,19 +100,19 @@ static void put(text *t, const char *format, ...) {
 }
 
 /* JSON knows no NaN and no infinity. */
-static void put_number(text *t, double v) {
+static void put_number(telemetry_text *t, double v) {
   if (isfinite(v))
     put(t, "%.9g", v);
   else
     put(t, "null");
 }
 
-static void put_one(text *t, const char *name, double v) {
+static void put_one(telemetry_text *t, const char *name, double v) {
   put(t, ",\"%s\":", name);
   put_number(t, v);
 }
 
-static void put_two(text *t, const char *name, const double v[2]) {
+static void put_two(telemetry_text *t, const char *name, const double v[2]) {
   put(t, ",\"%s\":[", name);
   put_number(t, v[0]);
   put(t, ",");
@@ -122,7 +122,7 @@ static void put_two(text *t, const char *name, const double v[2]) {
 
 void ethd__telemetry_send(int socket, const ethd_loop_row *row) {
   const ethd_trace *k = &row->trace;
-  text t = {.length = 0};
+  telemetry_text t = {.length = 0};
   put(&t, "{\"timestamp\":%.9f,\"tick\":%" PRId64, 1e-9 * (double)k->sense.time_ns, k->tick);
   put(&t, ",\"state\":%d,\"fault\":%d,\"armed\":%d", (int)k->state, (int)k->fault, (int)row->armed);
   put(&t, ",\"contacts\":%d,\"missed\":%" PRId64, (int)k->contacts, k->sense.missed);

@@ -1,4 +1,4 @@
-/* Drawings and scenes to scenes. */
+/* Converts drawings and scenes to scenes. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* What a scene holds. */
+/* Says what a scene holds. */
 #include <stdio.h>
 
 #include "cli/cli.h"

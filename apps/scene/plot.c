@@ -1,4 +1,4 @@
-/* A picture of a scene and its trees, as pieces of lines: a CSV that apps/plot/scene.gp draws. */
+/* Writes a picture of a scene and its trees as pieces of lines: a CSV that apps/plot/scene.gp draws. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -58,7 +58,7 @@ static void draw_box(pen *p, ethd_vec centre, double cosine, double sine, double
 
 /* ---- objects ---- */
 
-/* A convex solid is outlined by the points that are nearest as seen from far away in every direction. */
+/* Draws a convex solid: the points nearest to far away ones in every direction outline it. */
 static void draw_solid(pen *p, const ethd_scene *scene, double size) {
   ethd_touch touch;
   for (int k = 0; k <= ARC; k++) {
@@ -76,7 +76,7 @@ static void draw_chain(pen *p, const ethd_object_def *o) {
   if (o->shape == ETHD_POLYGON) line_to(p, (ethd_vec){v[0], v[1]});
 }
 
-/* The wall is drawn as long as the picture shows; a short line marks its solid side. */
+/* Draws a wall as long as the picture; a short line marks its solid side. */
 static void draw_halfplane(pen *p, const double *v, double size) {
   ethd_vec foot = {v[0] * v[2], v[1] * v[2]}, along = {-v[1] * size, v[0] * size};
   p->at = ethd_vec_sub(foot, along);

@@ -1,4 +1,4 @@
-/* How far points are from a scene. */
+/* Says how far points are from a scene. */
 #include "cli/cli.h"
 #include "scene/scene.h"
 #include "text/csv.h"

@@ -1,6 +1,6 @@
 /* The commands of ethd-scene; each returns an exit code. */
-#ifndef ETHD_APPS_SCENE_H
-#define ETHD_APPS_SCENE_H
+#ifndef ETHD__APPS_SCENE_SCENE_H
+#define ETHD__APPS_SCENE_SCENE_H
 
 #include <stdbool.h>
 
@@ -11,17 +11,17 @@ typedef struct ethd__scene_args {
   const char *command, *scene, *in, *out, *config;
   const char *plot; /* ends in .png */
   ethd_svg_options svg;
-  bool svg_given; /* one of its options was */
+  bool svg_given; /* one of the options for drawings was given */
 } ethd__scene_args;
 
-/* A scene file, and how long reading and building took; exits when there is none. */
+/* Loads a scene file and says how long reading and building took; exits if it can't. */
 ethd_scene *ethd__scene_load(const char *path, double *seconds);
 
 int ethd__scene_query(const ethd__scene_args *arg);
 int ethd__scene_info(const ethd__scene_args *arg);
 int ethd__scene_convert(const ethd__scene_args *arg);
 
-/* Draws a scene, its trees and the arm's reach into arg->plot, from the CSV of that name that it leaves. */
+/* Draws a scene, its trees and the arm's reach into arg->plot, from a CSV of the same name that it leaves there. */
 int ethd__scene_plot(const ethd__scene_args *arg, const ethd_scene *scene, const ethd_setup *setup);
 
 #endif

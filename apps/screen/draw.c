@@ -47,9 +47,6 @@ void ethd__draw_room(ethd__screen *s, ethd_vec x, double seconds) {
   ethd__window_disc(&s->window, at.x, at.y, f->scale * f->finger, ethd__white);
 }
 
-void ethd__draw_words(ethd__screen *s, const char *line, SDL_Color colour, const char *keys) {
-  ethd__window *w = &s->window;
-  ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.02 * w->height, s->title, ethd__grey);
-  ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.87 * w->height, line, colour);
-  ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.95 * w->height, keys, ethd__grey);
+double ethd__draw_floor(const ethd__screen *s) {
+  return ceil(ethd__room_pixel(&s->frame, (ethd_vec){s->frame.left, s->frame.bottom - CONTOUR}).y) + 1;
 }

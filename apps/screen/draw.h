@@ -10,8 +10,8 @@ extern const SDL_Color ethd__white, ethd__grey, ethd__green, ethd__red;
    it runs from the start to the wall as fast as asked for. */
 void ethd__draw_room(ethd__screen *screen, ethd_vec x, double seconds);
 
-/* Title above, two lines below. */
-void ethd__draw_words(ethd__screen *screen, const char *line, SDL_Color colour, const char *keys);
+/* Where words may begin under the room, px. */
+double ethd__draw_floor(const ethd__screen *screen);
 
 /* The finger's centre, m: the device's, or the pointer. */
 ethd_vec ethd__draw_finger(const ethd__screen *screen);

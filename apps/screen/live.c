@@ -19,7 +19,7 @@ static void await(int64_t instant) {
 }
 
 static void show(ethd__live *l) {
-  const ethd__rows *rows = &l->stage->rows;
+  const ethd__tap_rows *rows = &l->stage->rows;
   const ethd_truth *truth = &rows->truth[rows->count - 1];
   const ethd__glimpse g = {.t = truth->t,
                            .finger = {truth->finger[0], truth->finger[1]},
@@ -28,24 +28,25 @@ static void show(ethd__live *l) {
   ethd_cell_put(l->glimpse, &g);
 }
 
-static void lead(ethd__live *l, ethd_vec *pointer, double t) {
-  (void)!ethd_cell_take(l->pointer, pointer);
-  ethd__hand_lead(&l->hand, t, *pointer);
+static void lead(ethd__live *l, double t) {
+  ethd__led led;
+  if (ethd_cell_take(l->pointer, &led) == ETHD_OK)
+    ethd__hand_move(&l->hand, 1e-9 * (double)(led.ns - l->began_ns), led.x);
+  ethd__hand_lead(&l->hand, t);
 }
 
 /* Late ticks are made up for, because simulated time must keep up with the pointer. */
 static void *run(void *live) {
   ethd__live *l = live;
   ethd__tapping tapping;
-  ethd_vec pointer = l->hand.smooth;
-  int64_t period = llrint(1e9 * l->rule.period), due = ethd__clock_now();
+  int64_t period = llrint(1e9 * l->rule.period), due = l->began_ns;
   ethd__flush_denormals();
   l->status = ethd__tapping_begin(l->stage->sim, l->stage->control, &l->tap, &l->rule, &l->stage->rows, &tapping);
   while (!l->status && !atomic_load_explicit(&l->stop, memory_order_relaxed)) {
     await(due);
     l->late += ethd__clock_now() - due >= period;
     due += period;
-    lead(l, &pointer, (double)l->stage->rows.count * l->rule.period);
+    lead(l, (double)l->stage->rows.count * l->rule.period);
     l->status = ethd__tapping_step(&tapping);
     if (!l->status) show(l);
   }
@@ -75,7 +76,7 @@ static bool start(ethd__live *l) {
 
 static ethd_status open_cells(ethd__live *l) {
   ethd_error error;
-  ethd_status status = ethd_cell_create(sizeof(ethd_vec), &l->pointer, &error);
+  ethd_status status = ethd_cell_create(sizeof(ethd__led), &l->pointer, &error);
   return status ? status : ethd_cell_create(sizeof(ethd__glimpse), &l->glimpse, &error);
 }
 
@@ -98,6 +99,7 @@ ethd_status ethd__live_start(ethd__live *l, ethd__stage *stage, const ethd__spee
     l->tap.commanded = speed->centre;
     l->tap.path = ethd__hand_path(&l->hand);
     l->rule = ethd__stage_rule(stage, speed, l->tap.finger_radius);
+    l->began_ns = ethd__clock_now();
     l->started = start(l);
     status = l->started ? ETHD_OK : ETHD_E_MEMORY;
   }
@@ -105,7 +107,10 @@ ethd_status ethd__live_start(ethd__live *l, ethd__stage *stage, const ethd__spee
   return status;
 }
 
-void ethd__live_lead(ethd__live *l, ethd_vec x) { ethd_cell_put(l->pointer, &x); }
+void ethd__live_lead(ethd__live *l, int64_t ns, ethd_vec x) {
+  const ethd__led led = {ns, x};
+  ethd_cell_put(l->pointer, &led);
+}
 
 bool ethd__live_look(ethd__live *l, ethd__glimpse *out) {
   (void)!ethd_cell_take(l->glimpse, out);

@@ -18,12 +18,19 @@ typedef struct ethd__glimpse {
   int32_t reserved;
 } ethd__glimpse;
 
+/* Where the pointer came to, and when. */
+typedef struct ethd__led {
+  int64_t ns;
+  ethd_vec x;
+} ethd__led;
+
 typedef struct ethd__live {
   ethd__stage *stage;
   ethd__rule rule;
   ethd_sim_tap tap;
   ethd__hand hand;
-  ethd_cell *pointer, *glimpse; /* ethd_vec in, ethd__glimpse out */
+  ethd_cell *pointer, *glimpse; /* ethd__led in, ethd__glimpse out */
+  int64_t began_ns;             /* the clock's time at the tap's 0 */
   pthread_t thread;
   bool started;
   atomic_int over, stop;
@@ -35,8 +42,8 @@ typedef struct ethd__live {
 ETHD_MUST_CHECK ethd_status ethd__live_start(ethd__live *live, ethd__stage *stage, const ethd__speed *speed,
                                              uint64_t number, ethd_vec x, double seconds);
 
-/* The pointer is at x. [main] */
-void ethd__live_lead(ethd__live *live, ethd_vec x);
+/* The pointer came to x at that instant of the clock. [main] */
+void ethd__live_lead(ethd__live *live, int64_t ns, ethd_vec x);
 
 /* The newest glimpse; false: the tap is over. [main] */
 bool ethd__live_look(ethd__live *live, ethd__glimpse *out);

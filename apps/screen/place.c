@@ -11,13 +11,19 @@ static void check(ethd_status status, const char *message) {
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
 }
 
-static void choose(ethd__sitting *sitting, const ethd__protocol *protocol, int64_t participant) {
-  if (participant > protocol->participants)
-    ethd__fail(ETHD_EXIT_INPUT, "--participant: found %lld, 1 to %u are allowed", (long long)participant,
+static void choose(ethd__sitting *sitting, const ethd__protocol *protocol, const ethd__place_options *o) {
+  if (o->last > protocol->participants)
+    ethd__fail(ETHD_EXIT_INPUT, "--participant: found %lld, 1 to %u are allowed", (long long)o->last,
                protocol->participants);
-  if (!participant) return;
-  sitting->first = (uint32_t)participant - 1;
-  sitting->last = (uint32_t)participant;
+  if (!o->first) return;
+  sitting->first = (uint32_t)o->first - 1;
+  sitting->last = (uint32_t)o->last;
+}
+
+static ethd__hand_source hand_of(const ethd__place_options *o, const ethd__folder *folder) {
+  if (folder->protocol.hands == ETHD_HANDS_PEOPLE) return ETHD_HAND_DEVICE;
+  if (o->width) return ETHD_HAND_MOUSE;
+  return folder->finger ? ETHD_HAND_RECORDED : ETHD_HAND_SIMULATED;
 }
 
 /* This comes before all else, so that nothing moves any more. */
@@ -53,6 +59,12 @@ static void take_front(ethd__screen_place *at, const ethd__place_options *o) {
   if (!people) at->sitting.source = ethd__screen_source(&at->screen);
   if (people) at->station.watcher = ethd__screen_watcher(&at->screen);
   at->sitting.front = ethd__screen_front(&at->screen);
+  ethd__screen_describe(&at->screen, message);
+  char unsaid[ETHD_MESSAGE_MAX];
+  if (ethd__sitting_event(&at->sitting, "", 0, "screen", message, unsaid)) {
+    close_device(at);
+    ethd__fail(ETHD_EXIT_FAILED, "%s", unsaid);
+  }
 }
 
 void ethd__place_open(const ethd__place_options *o, ethd__screen_place *out) {
@@ -62,10 +74,12 @@ void ethd__place_open(const ethd__place_options *o, ethd__screen_place *out) {
   bool people = protocol->hands == ETHD_HANDS_PEOPLE;
   if (o->is_virtual && !people)
     ethd__fail(ETHD_EXIT_INPUT, "--virtual: %s: hand.source: people is needed", protocol->path);
+  if (out->folder.simulated)
+    ethd__fail(ETHD_EXIT_INPUT, "%s: holds a simulation; the same command with --simulate goes on", o->path);
   out->console = (ethd__console){.protocol = protocol, .ask = o->ask, .quiet = o->quiet};
   check(ethd__desk_open(protocol, &out->folder.loaded, out->folder.finger, &out->desk, message), message);
-  check(ethd__sitting_open(&out->folder, &out->sitting, message), message);
-  choose(&out->sitting, protocol, o->participant);
+  check(ethd__sitting_open(&out->folder, hand_of(o, &out->folder), &out->sitting, message), message);
+  choose(&out->sitting, protocol, o);
   out->sitting.source = ethd__desk_source(&out->desk);
   (people ? ethd__catch_end : ethd__catch_interrupt)();
   if (people) take_device(out, o);

@@ -8,7 +8,7 @@
 
 typedef struct ethd__place_options {
   const char *path;    /* the session's folder */
-  int64_t participant; /* only this one, from 1; 0: all */
+  int64_t first, last; /* only these participants, from 1; 0: all */
   bool ask, quiet, is_virtual;
   int width, height; /* px of the screen; 0: none */
 } ethd__place_options;

@@ -6,18 +6,17 @@
 
 #include "cli/cli.h"
 #include "screen/draw.h"
-#include "study/dictionary.h"
 #include "text/error_text.h"
 
-#define SECONDS_MAX 6.0 /* s of a tap */
-#define NEAR 0.004      /* m from the start line, and from the middle */
-#define STILL 0.5       /* s there */
-#define SETTLED 0.02    /* m/s */
+#define STILL 0.5    /* s at the start line */
+#define SETTLED 0.02 /* m/s */
 #define KEYS "P pause   N note   A end this participant   Esc stop"
+
+static const int goes_on[] = {SDLK_SPACE, SDLK_RETURN, 0};
 
 /* ---- frames ---- */
 
-static bool begin(ethd__screen *s) {
+bool ethd__screen_begin(ethd__screen *s) {
   ethd__window_begin(&s->window);
   ethd__draw_fit(s);
   if (s->window.closed || s->window.key == SDLK_ESCAPE || ethd__stop) s->stop = true;
@@ -26,35 +25,19 @@ static bool begin(ethd__screen *s) {
 
 static double now(void) { return (double)SDL_GetPerformanceCounter() / (double)SDL_GetPerformanceFrequency(); }
 
-/* A page of lines until a key is pressed. */
-static void page(ethd__screen *s, const char *first, const char *second, const char *keys) {
-  ethd__window *w = &s->window;
+bool ethd__key_is_one_of(int key, const int *keys) {
+  while (*keys && *keys != key) keys++;
+  return *keys != 0;
+}
+
+int ethd__screen_page(ethd__screen *s, const ethd__page *page, const int *keys) {
   do {
-    if (!begin(s)) return;
-    ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.02 * w->height, s->title, ethd__grey);
-    ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.36 * w->height, first, ethd__white);
-    ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.46 * w->height, second, ethd__grey);
-    ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.95 * w->height, keys, ethd__grey);
-    ethd__window_end(w);
-  } while (w->key != SDLK_SPACE && w->key != SDLK_RETURN);
+    if (!ethd__screen_begin(s)) return SDLK_ESCAPE;
+    ethd__page_draw(&s->window, page);
+    ethd__window_end(&s->window);
+  } while (!ethd__key_is_one_of(s->window.key, keys));
+  return s->window.key;
 }
-
-/* ---- blocks ---- */
-
-static void block(void *self, const char *participant, const ethd__turn *turn) {
-  ethd__screen *s = self;
-  char speed[96];
-  ethd__taken taken;
-  char message[ETHD_MESSAGE_MAX];
-  if (!ethd__desk_prepare(s->desk, turn, &taken, message)) s->speed = *taken.speed;
-  snprintf(s->title, sizeof s->title, "%s   part %zu%s", participant, turn->number,
-           turn->block.training ? ", practice" : "");
-  snprintf(speed, sizeof speed, "as fast as the white mark will move: %.2g m/s", s->speed.centre);
-  s->feedback[0] = 0;
-  page(s, "Tap once on the green wall at the left", speed, "Space goes on   Esc stops");
-}
-
-/* ---- before a tap ---- */
 
 /* Removes one letter, which may be several bytes. */
 static size_t shorter(const char *line, size_t n) {
@@ -62,37 +45,57 @@ static size_t shorter(const char *line, size_t n) {
   return n;
 }
 
-/* A line of text; Enter ends it, Escape forgets it. */
-static bool write_note(ethd__screen *s, char words[ETHD_MESSAGE_MAX]) {
+/* The first frame's letters belong to the key that brought the line. */
+bool ethd__screen_type(ethd__screen *s, const ethd__page *page, char *line, size_t room) {
   ethd__window *w = &s->window;
-  char line[200] = "";
   for (bool first = true;; first = false) {
     ethd__window_begin(w);
     size_t n = strlen(line);
-    if (w->closed || w->key == SDLK_ESCAPE) return false;
-    if (w->key == SDLK_RETURN) break;
+    if (w->closed || ethd__stop) s->stop = true;
+    if (s->stop || w->key == SDLK_ESCAPE || w->key == SDLK_F2) return false;
+    if (!first && (w->key == SDLK_RETURN || w->key == SDLK_KP_ENTER)) return true;
     if (w->key == SDLK_BACKSPACE) line[n = shorter(line, n)] = 0;
-    if (!first && w->typed[0]) snprintf(line + n, sizeof line - n, "%s", w->typed);
-    ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.36 * w->height, "A note", ethd__grey);
-    ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.46 * w->height, line, ethd__white);
-    ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.95 * w->height, "Enter keeps it   Esc forgets it",
-                      ethd__grey);
+    if (!first && w->typed[0]) snprintf(line + n, room - n, "%s", w->typed);
+    ethd__page with = *page;
+    ethd__page_add(&with, ETHD_TEXT_LARGE, *line ? line : "_", ethd__green);
+    ethd__page_draw(w, &with);
     ethd__window_end(w);
   }
+}
+
+/* ---- blocks ---- */
+
+static void block(void *self, const char *participant, const ethd__turn *turn, bool rest) {
+  ethd__screen *s = self;
+  char speed[96], message[ETHD_MESSAGE_MAX];
+  ethd__taken taken;
+  if (!ethd__desk_prepare(s->desk, turn, &taken, message)) s->speed = *taken.speed;
+  snprintf(s->title, sizeof s->title, "%s   part %zu of %zu%s", participant, turn->number, turn->of,
+           turn->block.training ? ", practice" : "");
+  snprintf(speed, sizeof speed, "as fast as the white mark will move: %.2g m/s", s->speed.centre);
+  s->feedback[0] = s->achieved[0] = 0;
+  ethd__page page = {.title = s->title, .keys = "Space goes on   Esc stops"};
+  if (rest) ethd__page_add(&page, ETHD_TEXT_LARGE, "Time for a rest. Go on when you like.", ethd__green);
+  ethd__page_add(&page, ETHD_TEXT_LARGE, "Tap once on the green wall at the left,", ethd__white);
+  ethd__page_add(&page, ETHD_TEXT_LARGE, speed, ethd__grey);
+  (void)ethd__screen_page(s, &page, goes_on);
+}
+
+/* ---- before a tap ---- */
+
+static bool write_note(ethd__screen *s, char words[ETHD_MESSAGE_MAX]) {
+  ethd__page page = {.title = s->title, .keys = "Enter keeps it   Esc forgets it"};
+  char line[200] = "";
+  ethd__page_add(&page, ETHD_TEXT_LARGE, "A note", ethd__grey);
+  if (!ethd__screen_type(s, &page, line, sizeof line)) return false;
   snprintf(words, ETHD_MESSAGE_MAX, "%s", line);
   return *line;
 }
 
 static bool sure(ethd__screen *s) {
-  ethd__window *w = &s->window;
-  do {
-    ethd__window_begin(w);
-    ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.42 * w->height, "End for this participant?", ethd__white);
-    ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.95 * w->height, "Y yes   any other key goes back",
-                      ethd__grey);
-    ethd__window_end(w);
-  } while (!w->key && !w->closed);
-  return w->key == SDLK_y;
+  ethd__page page = {.title = s->title, .keys = "Y yes   N goes back"};
+  ethd__page_add(&page, ETHD_TEXT_LARGE, "End for this participant?", ethd__white);
+  return ethd__screen_page(s, &page, (const int[]){SDLK_y, SDLK_n, SDLK_SPACE, 0}) == SDLK_y;
 }
 
 /* How long the finger has stood at the start line, s. */
@@ -105,28 +108,42 @@ static bool at_start(const ethd__screen *s, waiting *wait) {
   ethd_vec x = ethd__draw_finger(s);
   double t = now(), middle = (s->frame.bottom + s->frame.top) / 2;
   double speed = ethd_vec_norm(ethd_vec_sub(x, wait->last)) / fmax(t - wait->before, 1e-3);
-  bool there = fabs(x.x - s->frame.start) < NEAR && fabs(x.y - middle) < NEAR && speed < SETTLED;
+  bool there =
+      fabs(x.x - s->frame.start) < ETHD_SCREEN_NEAR && fabs(x.y - middle) < ETHD_SCREEN_NEAR && speed < SETTLED;
   wait->last = x;
   wait->before = t;
   if (!there) wait->since = t;
   return t - wait->since > STILL;
 }
 
+void ethd__screen_waiting(ethd__screen *s, ethd_vec finger, double seconds) {
+  ethd__page page = {.title = s->title, .keys = s->device ? "Space now   " KEYS : KEYS, .below = ethd__draw_floor(s)};
+  ethd__page_add(&page, ETHD_TEXT_LARGE, s->feedback, s->good ? ethd__green : ethd__red);
+  ethd__page_add(&page, ETHD_TEXT_SMALL, s->achieved, s->good ? ethd__green : ethd__red);
+  ethd__page_add(&page, ETHD_TEXT_SMALL, "Bring the circle to the grey line, and wait", ethd__white);
+  ethd__page_draw(&s->window, &page);
+  ethd__draw_room(s, finger, seconds);
+}
+
+static ethd__wish pause_page(ethd__screen *s) {
+  ethd__page page = {.title = s->title, .keys = "Space goes on   Esc stops"};
+  ethd__page_add(&page, ETHD_TEXT_LARGE, "Pause", ethd__white);
+  (void)ethd__screen_page(s, &page, goes_on);
+  return s->stop ? ETHD_WISH_STOP : ETHD_WISH_PAUSE;
+}
+
 static ethd__wish wish(void *self, char words[ETHD_MESSAGE_MAX]) {
   ethd__screen *s = self;
   waiting wait = {.since = now(), .before = now()};
   double start = now();
-  while (begin(s)) {
-    SDL_Keycode key = s->window.key;
+  while (ethd__screen_begin(s)) {
+    int key = s->window.key ? s->window.key : s->pending;
+    s->pending = 0;
     if (key == SDLK_a && sure(s)) return ETHD_WISH_ABORT;
     if (key == SDLK_n && write_note(s, words)) return ETHD_WISH_NOTE;
-    if (key == SDLK_p) {
-      page(s, "Pause", "", "Space goes on   Esc stops");
-      return s->stop ? ETHD_WISH_STOP : ETHD_WISH_PAUSE;
-    }
-    ethd__draw_room(s, ethd__draw_finger(s), now() - start);
-    ethd__draw_words(s, s->feedback[0] ? s->feedback : "Bring the circle to the grey line, and wait",
-                     s->feedback[0] && !s->good ? ethd__red : ethd__white, s->device ? "Space now   " KEYS : KEYS);
+    if (key == SDLK_p) return pause_page(s);
+    if (s->stop) break;
+    ethd__screen_waiting(s, ethd__draw_finger(s), now() - start);
     ethd__window_end(&s->window);
     if (s->device && key == SDLK_SPACE) return ETHD_WISH_GO;
     bool stopped = s->device && s->device->stopped(s->device->self);
@@ -135,102 +152,34 @@ static ethd__wish wish(void *self, char words[ETHD_MESSAGE_MAX]) {
   return ETHD_WISH_STOP;
 }
 
-/* ---- a tap ---- */
+/* ---- after a tap ---- */
 
-static void show(ethd__screen *s, double t, ethd_vec finger) {
-  ethd__draw_room(s, finger, t);
-  ethd__draw_words(s, "Tap", ethd__green, "");
-  ethd__window_end(&s->window);
-}
-
-static bool show_tap(void *self, double t, ethd_vec finger) {
-  ethd__screen *s = self;
-  if (begin(s)) show(s, t, finger);
-  return !s->stop;
-}
-
-ethd__watcher ethd__screen_watcher(ethd__screen *s) { return (ethd__watcher){s, show_tap}; }
-
-static void follow(ethd__screen *s, ethd__live *live, ethd_vec from) {
-  ethd__glimpse g = {.finger = from};
-  while (ethd__live_look(live, &g)) {
-    (void)begin(s);
-    if (s->stop) break;
-    ethd__live_lead(live, ethd__draw_finger(s));
-    show(s, g.t, g.finger);
-  }
-}
-
-static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, char message[ETHD_MESSAGE_MAX]) {
-  ethd__screen *s = self;
-  ethd__live live;
-  ethd_vec from = {s->frame.start, (s->frame.bottom + s->frame.top) / 2};
-  ethd_status status = ethd__desk_prepare(s->desk, turn, out, message);
-  if (status) return status;
-  status = ethd__live_start(&live, &s->desk->stage, out->speed, out->tap, from, SECONDS_MAX);
-  if (!status) {
-    follow(s, &live, from);
-    status = ethd__live_join(&live);
-  }
-  if (status) return ethd__say(message, status, "the tap: %s", ethd_status_sentence(status));
-  s->late += live.late;
-  ethd__stage_judge(&s->desk->stage, &live.rule, &live.tap, &out->result);
-  return ETHD_OK;
-}
-
+/* The speed by which the tap is judged, and which speeds count. */
 static void verdict(void *self, const char *participant, const ethd__taken *taken, uint32_t valid, uint32_t wanted) {
   ethd__screen *s = self;
-  ethd__reason reason = taken->result.metrics.reason;
+  const ethd__metrics *m = &taken->result.metrics;
+  const ethd__speed *speed = taken->speed;
+  double v = s->protocol->validity == ETHD_TAP_BY_FINGER ? m->v_hand : m->v_rvo;
+  char count[32] = "";
   (void)participant;
-  s->good = reason == ETHD_TAP_OK;
-  snprintf(s->feedback, sizeof s->feedback, wanted ? "%s   (%u of %u)" : "%s", ethd__advice(reason), valid, wanted);
+  s->good = m->reason == ETHD_TAP_OK;
+  if (wanted) snprintf(count, sizeof count, "   (%u of %u)", valid, wanted);
+  snprintf(s->feedback, sizeof s->feedback, "%s%s", ethd__advice(m->reason), count);
+  s->achieved[0] = 0;
+  if (isfinite(v))
+    snprintf(s->achieved, sizeof s->achieved, "%.2f m/s; from %.2f to %.2f m/s count", v, speed->centre - speed->band,
+             speed->centre + speed->band);
 }
 
 /* ---- a device that has stopped itself ---- */
 
 static bool stopped(void *self, const char *why) {
   ethd__screen *s = self;
-  page(s, "The device has stopped itself", why, "Space: I have seen to it   Esc stops");
+  ethd__page page = {.title = s->title, .keys = "Space: I have seen to it   Esc stops"};
+  ethd__page_add(&page, ETHD_TEXT_LARGE, "The device has stopped itself", ethd__red);
+  ethd__page_add(&page, ETHD_TEXT_LARGE, why, ethd__grey);
+  (void)ethd__screen_page(s, &page, goes_on);
   return !s->stop;
-}
-
-/* ---- the survey ---- */
-
-/* "Question? 1 this, 2 that, ..": the question above, a line for each answer. */
-static void draw_question(ethd__window *w, const char *question) {
-  char text[256], next[8];
-  const char *from = strchr(question, '?') + 1;
-  snprintf(text, sizeof text, "%.*s", (int)(from - question), question);
-  ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, 0.2 * w->height, text, ethd__white);
-  for (int k = 1; k <= 5; k++) {
-    snprintf(next, sizeof next, ", %d ", k + 1);
-    const char *to = strstr(from, next);
-    snprintf(text, sizeof text, "%d   %.*s", k, (int)(to ? to - from - 3 : 200), from + 3);
-    ethd__window_text(w, ETHD_TEXT_LARGE, w->width / 2.0, (0.38 + 0.08 * k) * w->height, text, ethd__green);
-    from = to ? to + 1 : from;
-  }
-}
-
-static bool ask(ethd__screen *s, int number, int *answer) {
-  ethd__window *w = &s->window;
-  for (;;) {
-    if (!begin(s)) return false;
-    if (w->key >= SDLK_1 && w->key <= SDLK_5) return *answer = (int)(w->key - SDLK_0), true;
-    if (w->key >= SDLK_KP_1 && w->key <= SDLK_KP_5) return *answer = (int)(w->key - SDLK_KP_1) + 1, true;
-    if (w->key == SDLK_BACKSPACE) return false;
-    ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.02 * w->height, s->title, ethd__grey);
-    draw_question(w, ethd__questions[number]);
-    ethd__window_text(w, ETHD_TEXT_SMALL, w->width / 2.0, 0.95 * w->height, "1 to 5   Backspace: no answer",
-                      ethd__grey);
-    ethd__window_end(w);
-  }
-}
-
-static bool survey(void *self, const ethd__turn *turn, int answers[3]) {
-  (void)turn;
-  for (int i = 0; i < 3; i++)
-    if (!ask(self, i, &answers[i])) return false;
-  return true;
 }
 
 /* ---- open and close ---- */
@@ -243,6 +192,8 @@ ethd_status ethd__screen_open(ethd__screen *s, ethd__desk *desk, const ethd__sou
   s->protocol = desk->protocol;
   ethd_status status = ethd__window_open(&s->window, "ethd-study", width, height, message);
   if (status) return status;
+  s->window.moved = ethd__screen_moved;
+  s->window.mover = s;
   ethd__draw_fit(s);
   const ethd__room *f = &s->frame;
   ethd_vec zero = ethd__room_pixel(f, (ethd_vec){0, 0});
@@ -252,14 +203,30 @@ ethd_status ethd__screen_open(ethd__screen *s, ethd__desk *desk, const ethd__sou
   return ETHD_OK;
 }
 
-ethd__source ethd__screen_source(ethd__screen *s) { return (ethd__source){.self = s, .tap = tap}; }
-ethd__front ethd__screen_front(ethd__screen *s) { return (ethd__front){s, block, verdict, wish, stopped, survey}; }
+void ethd__screen_describe(const ethd__screen *s, char out[ETHD_MESSAGE_MAX]) {
+  SDL_DisplayMode mode = {0};
+  float dpi = 0;
+  int display = SDL_GetWindowDisplayIndex(s->window.window);
+  if (display >= 0) (void)SDL_GetCurrentDisplayMode(display, &mode);
+  if (display >= 0) (void)SDL_GetDisplayDPI(display, NULL, &dpi, NULL);
+  snprintf(out, ETHD_MESSAGE_MAX,
+           "window %d x %d px; display %d x %d px at %d Hz by %s, %.1f px an inch as it says; %.6g px/m drawn; start "
+           "%.6g %.6g m, wall %.6g m",
+           s->frame.width, s->frame.height, mode.w, mode.h, mode.refresh_rate, SDL_GetCurrentVideoDriver(), (double)dpi,
+           s->frame.scale, s->frame.start, (s->frame.bottom + s->frame.top) / 2, s->frame.left);
+}
+
+ethd__front ethd__screen_front(ethd__screen *s) {
+  return (ethd__front){s, ethd__screen_meet, block, verdict, wish, stopped, ethd__screen_ask};
+}
 
 void ethd__screen_end(ethd__screen *s, bool over) {
   const ethd_histogram *h = &s->window.frames;
   if (over) {
+    ethd__page page = {.title = "", .keys = "Space ends"};
+    ethd__page_add(&page, ETHD_TEXT_LARGE, "That was all. Thank you!", ethd__white);
     s->stop = false;
-    page(s, "That was all. Thank you!", "", "Space ends");
+    (void)ethd__screen_page(s, &page, goes_on);
   }
   printf("frames     p50 %7.3f  p99 %7.3f  max %7.3f ms, %llu shown, %llu late ticks\n",
          1e-6 * (double)ethd_histogram_at(h, 0.5), 1e-6 * (double)ethd_histogram_at(h, 0.99), 1e-6 * (double)h->max,

@@ -5,28 +5,37 @@
 #define ETHD_SCREEN_SCREEN_H
 
 #include "screen/live.h"
+#include "screen/page.h"
 #include "screen/view.h"
-#include "screen/window.h"
 #include "study/desk.h"
 #include "study/front.h"
+
+#define ETHD_SCREEN_NEAR 0.004 /* m from a place that still count as there */
 
 typedef struct ethd__screen {
   ethd__window window;
   ethd__desk *desk;
   const ethd__source *device; /* has a finger of its own; NULL: the pointer is it, on the simulated device */
   const ethd__protocol *protocol;
+  ethd__live *live; /* the tap that the pointer leads now, NULL: none */
   ethd__room frame;
   ethd_vec avatar;   /* as drawn last */
   ethd__speed speed; /* of the present block */
-  char title[96], feedback[160];
-  bool good, stop, told; /* told: the block's page was read */
-  size_t blocks;         /* of the participant */
-  uint64_t late;         /* ticks */
+  char title[96];
+  char feedback[96], achieved[96]; /* of the last tap: how it was, how fast; "": none yet */
+  ethd_vec from;                   /* where the finger was as the tap began */
+  bool left;                       /* it has left the place since */
+  int pending;                     /* a key that ended a tap, and is still to be heard */
+  bool good, stop;
+  uint64_t late; /* ticks */
 } ethd__screen;
 
 /* device: where the finger and the taps come from; NULL: the mouse. It outlives the screen. */
 ETHD_MUST_CHECK ethd_status ethd__screen_open(ethd__screen *screen, ethd__desk *desk, const ethd__source *device,
                                               int width, int height, char message[ETHD_MESSAGE_MAX]);
+
+/* The window, its display and the scale, in words for the study's record. */
+void ethd__screen_describe(const ethd__screen *screen, char out[ETHD_MESSAGE_MAX]);
 
 /* Taps with the mouse. */
 ethd__source ethd__screen_source(ethd__screen *screen);
@@ -38,5 +47,40 @@ ethd__front ethd__screen_front(ethd__screen *screen);
 /* The last page; then how long frames took, as a line on stdout. */
 void ethd__screen_end(ethd__screen *screen, bool over);
 void ethd__screen_close(ethd__screen *screen);
+
+/* ---- within the screen ---- */
+
+/* A frame begins; false once somebody wants to stop. */
+bool ethd__screen_begin(ethd__screen *screen);
+
+/* Shows the page frame by frame until one of the keys is pressed (SDLK_.., 0 ends the list) or somebody stops, which
+   gives SDLK_ESCAPE. */
+int ethd__screen_page(ethd__screen *screen, const ethd__page *page, const int *keys);
+
+/* Whether the key is in the list, which 0 ends. */
+bool ethd__key_is_one_of(int key, const int *keys);
+
+/* The pointer has moved; a tap that it leads is told so. */
+void ethd__screen_moved(void *screen, int64_t ns);
+
+/* A line that somebody types under the page's words. True: Enter ended it. False: Escape or F2, which stands in
+   window.key, or somebody stopped. */
+bool ethd__screen_type(ethd__screen *screen, const ethd__page *page, char *line, size_t room);
+
+/* Parts of the front, see study/front.h. */
+ethd__wish ethd__screen_meet(void *screen, const ethd__meeting *meeting);
+int ethd__screen_ask(void *screen, const ethd__asked *asked);
+
+/* The room between taps: what became of the last one, and what comes next. */
+void ethd__screen_waiting(ethd__screen *screen, ethd_vec finger, double seconds);
+
+/* Their pages; `typed` is what stands on the line so far, `text` room for words. */
+void ethd__page_of_hand_over(const ethd__meeting *meeting, const char *typed, ethd__page *out, char text[256]);
+void ethd__page_of_words(char *const paragraph[ETHD_STUDY_PARAGRAPHS], const char *title, const char *keys,
+                         ethd__page *out);
+void ethd__page_of_question(const ethd__question *question, int chosen, ethd__page *out,
+                            char text[ETHD_STUDY_ANSWERS][256]);
+void ethd__page_of_answers(const ethd__questionnaire *q, const int16_t *answer, ethd__page *out,
+                           char text[ETHD_STUDY_QUESTIONS][256]);
 
 #endif

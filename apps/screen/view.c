@@ -3,7 +3,7 @@
 #include <math.h>
 
 #define BEHIND 0.015 /* m of free space behind the start */
-#define SHARE 0.62   /* of the window that the free space may fill */
+#define SHARE 0.55   /* of the window that the free space may fill */
 
 ethd__room ethd__room_of(double wall, double start, double y, double finger, int width, int height) {
   ethd__room f = {.width = width,

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "clock.h"
 #include "text/error_text.h"
 
 #define RATE 60 /* frames a second */
@@ -22,7 +23,8 @@ static ethd_status refuse(ethd__window *w, const char *what, const char *why, ch
 static int points_of(const ethd__window *w, int size) {
   static const int points[ETHD_TEXTS] = {18, 30}; /* of 720 px */
   int high = points[size] * w->height / 720;
-  return high > 8 ? high : 8;
+  high = (int)((high > 8 ? high : 8) * w->shrink);
+  return high > 4 ? high : 4;
 }
 
 static ethd_status open_fonts(ethd__window *w, char *message) {
@@ -57,6 +59,7 @@ ethd_status ethd__window_open(ethd__window *w, const char *title, int width, int
   memset(w, 0, sizeof *w);
   w->width = width;
   w->height = height;
+  w->shrink = 1;
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
   if (!choose_display()) return refuse(w, NO_DISPLAY, "neither is set", message);
   if (SDL_Init(SDL_INIT_VIDEO)) return refuse(w, NO_DISPLAY, SDL_GetError(), message);
@@ -97,22 +100,37 @@ static void take(ethd__window *w, const SDL_Event *e) {
   if (e->type == SDL_MOUSEMOTION) {
     w->pointer[0] = e->motion.x;
     w->pointer[1] = e->motion.y;
+    if (w->moved) w->moved(w->mover, ethd__clock_now());
   }
 }
 
+/* An event's own time stamp is when it was taken from the system, no earlier: so they are taken every millisecond. */
+static void take_motions(ethd__window *w) {
+  SDL_Event e;
+  SDL_PumpEvents();
+  while (SDL_PeepEvents(&e, 1, SDL_GETEVENT, SDL_MOUSEMOTION, SDL_MOUSEMOTION) > 0) take(w, &e);
+}
+
 static void await_frame(ethd__window *w) {
-  uint64_t rate = SDL_GetPerformanceFrequency(), now = SDL_GetPerformanceCounter();
-  if (now < w->due) SDL_Delay((uint32_t)((w->due - now) * 1000 / rate));
-  now = SDL_GetPerformanceCounter();
+  uint64_t rate = SDL_GetPerformanceFrequency(), now;
+  while ((now = SDL_GetPerformanceCounter()) < w->due) {
+    take_motions(w);
+    SDL_Delay(1);
+  }
   w->due = (now > w->due + rate / RATE ? now : w->due) + rate / RATE;
   w->begun = now;
+}
+
+void ethd__window_shrink(ethd__window *w, double factor) {
+  w->shrink = factor;
+  for (int i = 0; i < ETHD_TEXTS; i++) (void)TTF_SetFontSize(w->font[i], points_of(w, i));
+  ethd__window_forget(w);
 }
 
 /* Texts grow with the window. */
 static void fit(ethd__window *w) {
   SDL_GetWindowSize(w->window, &w->width, &w->height);
-  for (int i = 0; i < ETHD_TEXTS; i++) (void)TTF_SetFontSize(w->font[i], points_of(w, i));
-  ethd__window_forget(w);
+  ethd__window_shrink(w, 1);
   w->resized = false;
 }
 

@@ -11,7 +11,7 @@
 #include "ethd/config.h"
 #include "ethd/loop.h"
 
-#define ETHD_SHAPES_MAX 32 /* of a frame; what is more isn't drawn */
+#define ETHD_SHAPES_MAX 64 /* of a frame; what is more isn't drawn */
 
 enum { ETHD_TEXT_SMALL, ETHD_TEXT_LARGE, ETHD_TEXTS };
 
@@ -27,10 +27,14 @@ typedef struct ethd__window_shape {
 typedef struct ethd__window {
   SDL_Window *window;
   TTF_Font *font[ETHD_TEXTS];
-  int width, height; /* px */
-  double pointer[2]; /* px */
-  int key;           /* SDLK_* pressed since the last frame, 0: none */
-  char typed[64];    /* text likewise */
+  int width, height;                     /* px */
+  double shrink;                         /* of texts, where a page has more of them than there is room */
+  uint64_t fitted;                       /* the page that this was chosen for, see page.h */
+  double pointer[2];                     /* px */
+  void (*moved)(void *user, int64_t ns); /* each motion of the pointer as it comes, between frames too; NULL: nobody */
+  void *mover;
+  int key;        /* SDLK_* pressed since the last frame, 0: none */
+  char typed[64]; /* text likewise */
   bool closed, resized;
   bool covered;          /* what was shown may be gone */
   uint64_t begun;        /* of the present frame, in SDL's performance counts */
@@ -46,6 +50,9 @@ typedef struct ethd__window {
 ETHD_MUST_CHECK ethd_status ethd__window_open(ethd__window *window, const char *title, int width, int height,
                                               char message[ETHD_MESSAGE_MAX]);
 void ethd__window_close(ethd__window *window);
+
+/* Texts are so much smaller from here on: 1 as the window's height asks for, 0.3 at least. */
+void ethd__window_shrink(ethd__window *window, double factor);
 
 /* Waits until a frame is due, takes what keys and pointer did, and begins with black. */
 void ethd__window_begin(ethd__window *window);

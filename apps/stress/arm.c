@@ -13,11 +13,11 @@
 
 #define K_T 40.0
 
-typedef struct place {
+typedef struct singular_place {
   ethd_arm arm;
   double bend; /* rad between the links at the singular pose: 0 stretched, pi folded */
   const char *name;
-} place;
+} singular_place;
 
 /* Joint angles that leave an angle of `bend` between the links. */
 static void at(const ethd_arm *arm, double bend, double q[2]) {
@@ -41,7 +41,7 @@ static double gain_formula(const ethd_arm *arm, const double j[4]) {
   return fmax(damped[0], damped[1]);
 }
 
-static void check_gain(ethd__stress_log *log, const place *p) {
+static void check_gain(ethd__stress_log *log, const singular_place *p) {
   double q[2], s[2], most = 0, begin = 0;
   ethd_pose pose;
   at(&p->arm, p->bend - asin(ETHD_ARM_SINGULAR), q);
@@ -66,16 +66,16 @@ static void check_gain(ethd__stress_log *log, const place *p) {
 
 /* Torques of whole steps on a sweep through the singular pose, the finger 5 mm away: largest torque over
    K_t |J^-1| |eps|, and largest change between neighbours. */
-typedef struct sweep {
+typedef struct torque_sweep {
   double load, jump;
   int bad;
-} sweep;
+} torque_sweep;
 
-static sweep through(const place *p, int64_t steps) {
+static torque_sweep through(const singular_place *p, int64_t steps) {
   ethd_setup setup = ethd_setup_default();
   ethd_control *control;
   ethd_error error;
-  sweep r = {0, 0, 0};
+  torque_sweep r = {0, 0, 0};
   setup.arm = p->arm;
   ethd__stress_set(&setup, "tracking.b_t", 0);
   if (ethd_control_create(&setup, &control, &error) < 0)
@@ -102,7 +102,7 @@ static sweep through(const place *p, int64_t steps) {
 }
 
 static void run(ethd__stress_log *log) {
-  static const place places[] = {
+  static const singular_place places[] = {
       {{ETHD_ARM_PARALLEL, 0.25, 0.25}, 0, "parallel, stretched"},
       {{ETHD_ARM_PARALLEL, 0.25, 0.25}, M_PI, "parallel, folded"},
       {{ETHD_ARM_SERIAL, 0.25, 0.25}, 0, "serial, stretched"},
@@ -112,9 +112,9 @@ static void run(ethd__stress_log *log) {
   };
   int64_t steps = ethd__stress_pick(log, 2000, 20000, 20000);
   for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-    const place *p = &places[i];
+    const singular_place *p = &places[i];
     check_gain(log, p);
-    sweep coarse = through(p, steps), fine = through(p, 10 * steps);
+    torque_sweep coarse = through(p, steps), fine = through(p, 10 * steps);
     ethd__stress_within(log, "ticks", coarse.bad + fine.bad, 0, 0, "%s: steps at fault or not finite", p->name);
     ethd__stress_bound(log, "1", fine.load, 1 + 1e-9, "%s: |tau| <= K_t |J^-1| |eps|", p->name);
     ethd__stress_near(log, "1", fine.jump / coarse.jump, 0.1, 0.05, "%s: a tenth of the step, a tenth of the jump",

@@ -5,6 +5,7 @@
    the entering one, so that a small swing sees F = -K x - B v and nothing else. */
 #include <math.h>
 
+#include "bounds/stability.h"
 #include "stress/curve.h"
 #include "stress/rig.h"
 #include "stress/stress.h"
@@ -81,6 +82,97 @@ static void one_curve(ethd__stress_log *log, FILE *data, const ethd__curve *curv
     ethd__stress_bound(log, "1", -outside[i], 0, "%s, n = %d: 2 %% outside, decay a tick", name, curve->delay);
 }
 
+/* ---- a transmission that gives way ---- */
+
+/* What plant p's arm is like. */
+#define SOFT_MASS 0.09475
+#define SOFT_MOTOR 0.01322
+#define SOFT_SPRING 3489.6
+#define SOFT_DAMPER 5.132
+#define RAYS 10 /* of gains whose ratio stays: 40 points in all */
+
+typedef struct ray {
+  ethd__sampled_loop loop; /* gains on the boundary, by its radius */
+  double th;               /* rad a tick: about how fast it swings */
+} ray;
+
+/* Along the ray from small gains up to the first that aren't stable. */
+static void find_end(ethd__sampled_loop *l) {
+  double k = l->stiffness, b = l->damping, stable = 1e-3, unstable = stable;
+  for (;; unstable *= 1.05) {
+    l->stiffness = unstable * k;
+    l->damping = unstable * b;
+    if (!ethd__sampled_stable(l)) break;
+    stable = unstable;
+  }
+  while (unstable / stable > 1 + 1e-6) {
+    double middle = sqrt(stable * unstable);
+    l->stiffness = middle * k;
+    l->damping = middle * b;
+    if (ethd__sampled_stable(l))
+      stable = middle;
+    else
+      unstable = middle;
+  }
+}
+
+static double soft_growth(const ray *r, double scale) {
+  const ethd__sampled_loop *l = &r->loop;
+  ethd__stress_rig rig;
+  double k = scale * l->stiffness, b = scale * l->damping, most = 10 * SWING;
+  double push = 4 * most * (k + b * r->th / PERIOD);
+  ethd__stress_rig_open(&rig, SOFT_MASS, -push / k);
+  ethd__stress_rig_velocity(&rig, l->method, l->p[0]);
+  ethd_setup_transition(&rig.setup, &ethd_transition_smooth);
+  ethd__stress_set(&rig.setup, "contact.k_e", k);
+  ethd__stress_set(&rig.setup, "contact.b_e", b);
+  ethd__stress_set(&rig.setup, "transition.v_hysteresis", 1);
+  rig.delay = l->delay;
+  rig.motor_mass = SOFT_MOTOR;
+  rig.spring = SOFT_SPRING;
+  rig.damper = SOFT_DAMPER;
+  rig.push.x = -push;
+  ethd__stress_rig_start(&rig, SWING * r->th / PERIOD);
+  ethd__swing swing = {.order = 1, .settle = 200, .span = 1800, .floor = 1e-3 * SWING * r->th, .ceiling = most * r->th};
+  double rate = ethd__stress_rig_growth(&rig, &swing);
+  ethd__stress_rig_close(&rig);
+  return rate;
+}
+
+static double soft_found(const ray *r) {
+  double low = 0.9, high = 1.1;
+  while (high - low > 5e-4) {
+    double middle = (low + high) / 2;
+    if (soft_growth(r, middle) > 0)
+      high = middle;
+    else
+      low = middle;
+  }
+  return (low + high) / 2;
+}
+
+/* Dampings from half as large again as the hold takes off to many times that. */
+static void soft_rays(ethd__stress_log *log, const char *name, ethd_velocity_method method, double value, int delay) {
+  for (int i = 0; i < RAYS; i++) {
+    ray r = {.loop = {.mass = SOFT_MASS,
+                      .motor_mass = SOFT_MOTOR,
+                      .spring = SOFT_SPRING,
+                      .damper = SOFT_DAMPER,
+                      .period = PERIOD,
+                      .delay = delay,
+                      .method = method,
+                      .p = {value},
+                      .link = 0.25},
+             .th = 0.3};
+    r.loop.stiffness = 1000;
+    r.loop.damping = 1000 * PERIOD * (delay + 0.5) * 1.5 * pow(1.4, i);
+    find_end(&r.loop);
+    double scale = soft_found(&r);
+    ethd__stress_near(log, "N/m", scale * r.loop.stiffness, r.loop.stiffness, 5e-3,
+                      "transmission gives way, %s, n = %d: K_e (and B_e) found", name, delay);
+  }
+}
+
 static void run(ethd__stress_log *log) {
   FILE *data = ethd__stress_data(log, "boundary.csv",
                                  "velocity,delay_ticks,mass_kg,period_s,th_rad,k_analytic_npm,"
@@ -91,6 +183,10 @@ static void run(ethd__stress_log *log) {
       one_curve(log, data, &curve, estimators[i].name);
     }
   ethd__stress_close(data);
+  for (int n = 0; n <= 1; n++) {
+    soft_rays(log, "difference", ETHD_VELOCITY_DIFFERENCE, 0, n);
+    soft_rays(log, "lowpass 400 Hz", ETHD_VELOCITY_LOWPASS, 400, n);
+  }
 }
 
 const ethd__stress ethd__stress_boundary = {

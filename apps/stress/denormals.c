@@ -15,19 +15,19 @@
 #define TICKS 500
 #define CUTOFF 10.0 /* Hz */
 
-typedef struct outcome {
+typedef struct rest_found {
   double tick;  /* s, the least over rounds */
   double speed; /* rad/s that is left of joint 1 */
   ethd_trace trace;
-} outcome;
+} rest_found;
 
 /* The ring stood still for `still` ticks after a turn. */
-static outcome rest(int64_t still, int rounds) {
+static rest_found rest(int64_t still, int rounds) {
   ethd_setup setup = ethd_setup_default();
   ethd_scene *scene = ethd__stress_rig_wall(-0.238);
   ethd_control *control;
   ethd_error error;
-  outcome o = {.tick = INFINITY};
+  rest_found o = {.tick = INFINITY};
   ethd_sense s;
   ethd_command c;
   setup.scene = scene;
@@ -67,9 +67,9 @@ static bool subnormal(double x) {
 static void run(ethd__stress_log *log) {
   int rounds = (int)ethd__stress_pick(log, 40, 200, 400);
   uint64_t before = ethd__denormals_flush();
-  outcome calm = rest(100, rounds), flushed = rest(20000, rounds);
+  rest_found calm = rest(100, rounds), flushed = rest(20000, rounds);
   ethd__denormals_keep();
-  outcome kept = rest(20000, rounds);
+  rest_found kept = rest(20000, rounds);
   ethd__denormals_restore(before);
   double off = 0;
   for (int i = 0; i < 2; i++) {

@@ -18,17 +18,17 @@
 #define BEFORE 30
 
 /* Type and name of every word. */
-typedef struct word {
+typedef struct sense_word {
   const char *name;
   size_t offset;
   char type; /* i, f */
-} word;
+} sense_word;
 
-static size_t words(word out[WORDS_OF_SENSE]) {
+static size_t words(sense_word out[WORDS_OF_SENSE]) {
   size_t n = 0;
 #define WORD(kind, field, number, unit, brief) \
   for (size_t i = 0; i < number; i++, n++)     \
-    out[n] = (word){#field, offsetof(ethd_sense, field) + 8 * i, #kind[0] == 'd' ? 'f' : 'i'};
+    out[n] = (sense_word){#field, offsetof(ethd_sense, field) + 8 * i, #kind[0] == 'd' ? 'f' : 'i'};
   ETHD_SENSE_FIELDS(WORD)
 #undef WORD
   return n;
@@ -81,10 +81,10 @@ static bool is_input_fault(const ethd_sense *s) {
          ((have & ETHD_HAVE_RING) && bad(s->ring, ETHD_SENSE_LENGTH_MAX));
 }
 
-typedef struct tally {
+typedef struct inputs_tally {
   int64_t cases, wrong_fault, unsafe, lost;
   double torque, off;
-} tally;
+} inputs_tally;
 
 /* The hardest reaction that the sense's own rows of the fault table call for. */
 static ethd_reaction called_for(const ethd_sense *s) {
@@ -99,12 +99,13 @@ static ethd_reaction called_for(const ethd_sense *s) {
 }
 
 /* A stop ends in zero torque, but damps on its way. */
-static void judge_told(ethd_reaction reaction, const ethd_command *c, const ethd_trace *t, tally *sum) {
+static void judge_told(ethd_reaction reaction, const ethd_command *c, const ethd_trace *t, inputs_tally *sum) {
   if (!t->fault) sum->wrong_fault++;
   if (reaction == ETHD_REACTION_ZERO && (!c->safe || c->torque[0] != 0 || c->torque[1] != 0)) sum->unsafe++;
 }
 
-static void judge(const ethd_sense *s, ethd_status status, const ethd_command *c, const ethd_trace *t, tally *sum) {
+static void judge(const ethd_sense *s, ethd_status status, const ethd_command *c, const ethd_trace *t,
+                  inputs_tally *sum) {
   int input = is_input_fault(s), said = t->fault == ETHD_FAULT_INPUT;
   double most = fmax(fabs(c->torque[0]), fabs(c->torque[1]));
   ethd_reaction told = called_for(s);
@@ -121,14 +122,14 @@ static void judge(const ethd_sense *s, ethd_status status, const ethd_command *c
 /* ---- one disturbance ---- */
 
 typedef struct disturbance {
-  const word *word;
+  const sense_word *word;
   uint64_t bits;
   int64_t have;
   int ticks;
 } disturbance;
 
 static void disturb(const ethd_arm *arm, const ethd_scene *scene, const disturbance *d, int after,
-                    const double undisturbed[2], tally *sum) {
+                    const double undisturbed[2], inputs_tally *sum) {
   ethd_control *control = controller(scene, ETHD_FILTER_CA);
   ethd_command c;
   ethd_trace t;
@@ -178,9 +179,9 @@ static void undisturbed(const ethd_arm *arm, const ethd_scene *scene, int ticks,
 
 static void all_words(ethd__stress_log *log, const ethd_arm *arm, const ethd_scene *scene) {
   const int after = 1600; /* ticks that a huge number takes to fade from a low-pass */
-  word list[WORDS_OF_SENSE];
+  sense_word list[WORDS_OF_SENSE];
   size_t count = words(list), hold_count = log->effort == ETHD__QUICK ? 2 : sizeof holds / sizeof *holds;
-  tally sum = {0};
+  inputs_tally sum = {0};
   for (int ticks = 1; ticks <= 40; ticks += 39) {
     double calm[2];
     if (log->effort == ETHD__QUICK && ticks > 1) break;

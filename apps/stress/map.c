@@ -48,11 +48,11 @@ static double growth(const ethd__curve *c, double k, double b) {
   return rate;
 }
 
-typedef struct tally {
+typedef struct map_tally {
   int64_t cells, judged, wrong, stable;
-} tally;
+} map_tally;
 
-static void fill(FILE *data, const ethd__curve *c, const char *name, int cells, tally *t) {
+static void fill(FILE *data, const ethd__curve *c, const char *name, int cells, map_tally *t) {
   double end = ethd__curve_end(c);
   for (int i = 0; i < cells; i++)
     for (int j = 0; j < cells; j++) {
@@ -94,7 +94,7 @@ static void run(ethd__stress_log *log) {
     for (int m = 0; m < 2; m++)
       for (int n = 0; n <= 2; n++) {
         ethd__curve c = {masses[m], PERIOD, n, estimators[e].method, estimators[e].value};
-        tally t = {0};
+        map_tally t = {0};
         fill(map, &c, estimators[e].name, cells, &t);
         draw_curve(curve, &c, estimators[e].name);
         ethd__stress_within(log, "cells", (double)t.wrong, 0, 0, "%s, %g kg, n = %d: cells on the curve's wrong side",

@@ -65,10 +65,10 @@ static void turn(ethd_setup *s, const knob *k, int end) {
 
 /* ---- a tap ---- */
 
-typedef struct tally {
+typedef struct setups_tally {
   int64_t runs, refused, stopped, faults, broken; /* broken: not finite or over the limit */
   char refusal[320], fault[320], breach[320];
-} tally;
+} setups_tally;
 
 static bool all_finite(const double *v, int n) {
   for (int i = 0; i < n; i++)
@@ -114,7 +114,7 @@ static void read_finger(const ethd__stress_rig *rig, ethd_sense *s) {
   }
 }
 
-static void tap(ethd__stress_rig *rig, int ticks, const char *name, tally *t) {
+static void tap(ethd__stress_rig *rig, int ticks, const char *name, setups_tally *t) {
   ethd_setup other = rig->setup;
   ethd_error error;
   ethd_setup_transition(&other, &ethd_transition_smooth);
@@ -138,7 +138,7 @@ static void tap(ethd__stress_rig *rig, int ticks, const char *name, tally *t) {
   }
 }
 
-static void one(const ethd_setup *setup, int ticks, const char *name, tally *t) {
+static void one(const ethd_setup *setup, int ticks, const char *name, setups_tally *t) {
   ethd__stress_rig rig;
   ethd_error error;
   ethd_limits device = ethd_limits_none();
@@ -160,7 +160,7 @@ static void one(const ethd_setup *setup, int ticks, const char *name, tally *t) 
 
 /* ---- all ends ---- */
 
-static void pairs(const ethd_setup *base, int ticks, tally *t) {
+static void pairs(const ethd_setup *base, int ticks, setups_tally *t) {
   knobs all;
   char name[192];
   collect(base, &all);
@@ -185,7 +185,7 @@ enum { TRANSITIONS = sizeof transitions / sizeof *transitions };
 
 static void run(ethd__stress_log *log) {
   int quick = log->effort == ETHD__QUICK, ticks = quick ? 60 : 300;
-  tally t = {0};
+  setups_tally t = {0};
   for (int v = 0; v < ETHD_VELOCITY_COUNT; v++)
     for (int f = 0; f < ETHD_FILTER_COUNT; f++) {
       if (quick && f != v % ETHD_FILTER_COUNT) continue;

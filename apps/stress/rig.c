@@ -71,6 +71,36 @@ void ethd__stress_rig_push(ethd__stress_rig *rig, ethd_vec push) {
   }
 }
 
+/* The simulator's arm, without friction and finger, at rest or as fast as the rig on both sides. */
+static void place(ethd__stress_rig *rig) {
+  ethd_sim_def def = {.arm = rig->setup.arm,
+                      .ring_radius = 1,
+                      .period = rig->setup.period,
+                      .step = rig->setup.period,
+                      .tolerance = ETHD_SIM_GOLDEN};
+  def.plant.mass[0] = def.plant.mass[1] = rig->mass;
+  def.plant.motor_mass = rig->motor_mass;
+  def.plant.stiffness = rig->spring;
+  def.plant.damping = rig->damper;
+  def.plant.finger_mass = 1;
+  def.plant.force_limit = 1e9;
+  ethd__body_prepare(&def, 0, &rig->body);
+  memset(&rig->state, 0, sizeof rig->state);
+  rig->state.clearance = 1e9;
+  ethd__body_place(&rig->body, rig->q, &rig->state);
+  for (int j = 0; j < 2; j++) rig->state.v[ETHD__LINK + j] = rig->state.v[ETHD__MOTOR + j] = rig->w[j];
+  ethd__body_refer(&rig->body, &rig->state);
+}
+
+static void move_softly(ethd__stress_rig *rig, const double tau[2], ethd_vec out) {
+  const ethd__piece still = {.begin = -(double)INFINITY, .end = (double)INFINITY};
+  rig->body.torque[0] = tau[0] + out.x;
+  rig->body.torque[1] = tau[1] + out.y;
+  ethd__body_advance(&rig->body, &still, 0, rig->setup.period, &rig->state);
+  ethd__body_joints(&rig->body, rig->state.q, rig->q);
+  ethd__body_joints(&rig->body, rig->state.v, rig->w);
+}
+
 void ethd__stress_rig_start(ethd__stress_rig *rig, double speed) {
   ethd_error error;
   rig->scene = ethd__stress_rig_wall(rig->gap + rig->setup.ring_radius - rig->setup.arm.link2);
@@ -81,6 +111,7 @@ void ethd__stress_rig_start(ethd__stress_rig *rig, double speed) {
   rig->w[0] = speed / rig->setup.arm.link1;
   rig->w[1] = 0;
   ethd__stress_rig_push(rig, rig->push);
+  if (rig->motor_mass > 0) place(rig);
 }
 
 void ethd__stress_rig_close(ethd__stress_rig *rig) {
@@ -124,7 +155,8 @@ void ethd__stress_rig_move(ethd__stress_rig *rig) {
   double tau[2], T = rig->setup.period;
   ethd_vec out = pushed(rig);
   torque(rig, tau);
-  for (int j = 0; j < 2; j++) {
+  if (rig->motor_mass > 0) move_softly(rig, tau, out);
+  for (int j = 0; j < 2 && !(rig->motor_mass > 0); j++) {
     double link = j ? arm->link2 : arm->link1;
     double a = (tau[j] + (j ? out.y : out.x)) / (rig->mass * link * link);
     rig->q[j] += T * rig->w[j] + T * T / 2 * a;

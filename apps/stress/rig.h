@@ -4,12 +4,13 @@
         |   |//////  wall           alone, with the inertia m L^2
         v   |//////
      ( ring )|/////   wall on the left: n = (-1, 0), d_re = gap at the start                           */
-#ifndef ETHD_APPS_STRESS_RIG_H
-#define ETHD_APPS_STRESS_RIG_H
+#ifndef ETHD__STRESS_RIG_H
+#define ETHD__STRESS_RIG_H
 
 #include <stdbool.h>
 
 #include "ethd/control.h"
+#include "sim/body.h"
 
 #define ETHD__STRESS_RIG_DELAY_MAX 16
 #define ETHD__STRESS_RIG_STRAIGHT ETHD_ARM_LINK_MAX /* m: links on which a joint's turn is a straight line */
@@ -18,13 +19,18 @@ typedef struct ethd__stress_rig {
   ethd_setup setup; /* changed before start */
   double mass;      /* kg at the ring, both joints alike */
   double gap;       /* m to the wall at the start */
-  int delay;        /* ticks from measurement to torque */
-  bool measured;    /* 1: joint speeds are measured, 0: the setup estimates them */
+  double motor_mass, spring,
+      damper;    /* kg of it on the motor's side, N/m, Ns/m of a transmission that gives way; 0: rigid.
+                                        Then the simulator's arm moves instead, and the push acts on the motor's side */
+  int delay;     /* ticks from measurement to torque */
+  bool measured; /* 1: joint speeds are measured, 0: the setup estimates them */
   bool has_finger;
   ethd_vec finger, finger_v; /* m, m/s; without one it is where the ring is */
   ethd_vec push;             /* N on the ring from outside */
   double force_limit;        /* N: torque limit of each joint / L; INFINITY: none */
 
+  ethd__body body;
+  ethd__sim_state state; /* of both, where the transmission gives way */
   ethd_scene *scene;
   ethd_control *control;
   double q[2], w[2]; /* rad, rad/s: true at the present tick */

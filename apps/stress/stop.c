@@ -18,13 +18,13 @@ static const stop stops[] = {
     {"plant b", 0.1445, 5.369, 0.164, 100, 0.020, 0.001},
 };
 
-typedef struct outcome {
+typedef struct stopped {
   double time, eps;   /* of braking, s, m */
   double depth, left; /* m, and the speed there, at its last tick on the way in */
-} outcome;
+} stopped;
 
 /* The ring meets the wall `late` s before the tick that sees it, and has coasted for a while. */
-static outcome measure(const stop *s, double speed, double late, int delay, int measured) {
+static stopped measure(const stop *s, double speed, double late, int delay, int measured) {
   const double coast = 5 * s->period;
   ethd__stress_rig rig;
   ethd__stress_rig_open(&rig, s->mass, speed * (coast - late));
@@ -45,13 +45,13 @@ static outcome measure(const stop *s, double speed, double late, int delay, int 
       depth = ethd__stress_rig_depth(&rig) - rig.gap, left = ethd__stress_rig_speed(&rig);
     ethd__stress_rig_step(&rig);
   }
-  outcome o = {(double)(rig.tick - begin) * s->period, rig.trace.eps, depth, left};
+  stopped o = {(double)(rig.tick - begin) * s->period, rig.trace.eps, depth, left};
   ethd__stress_rig_close(&rig);
   return o;
 }
 
 /* The same by the two recursions' closed forms. */
-static outcome sampled(const stop *s, double speed, double late) {
+static stopped sampled(const stop *s, double speed, double late) {
   double T = s->period, v1 = s->force / s->damping, a = (s->force + s->friction) / s->mass;
   double b = s->damping * T / s->mass, g = s->friction / s->damping;
   double n1 = fmax(0, ceil((speed - v1) / (a * T))), v = speed - n1 * a * T;
@@ -59,20 +59,20 @@ static outcome sampled(const stop *s, double speed, double late) {
   double way = n1 * T * (speed + v) / 2;
   /* trapezia of the speeds: the force is held */
   way += T * (v + g) * (1 - pow(1 - b, n2)) / b * (1 - b / 2) - g * n2 * T;
-  return (outcome){.time = (n1 + n2) * T, .eps = speed * late + way};
+  return (stopped){.time = (n1 + n2) * T, .eps = speed * late + way};
 }
 
 /* Without ticks: half a period until the contact is seen, the delay, and half a period of hold, which
    makes braking longer but not deeper. */
-static outcome smooth(const stop *s, double speed, int delay) {
+static stopped smooth(const stop *s, double speed, int delay) {
   double v1 = s->force / s->damping, a = (s->force + s->friction) / s->mass, tau = s->mass / s->damping;
   double seen = s->period / 2 + delay * s->period;
-  return (outcome){.time = (speed - v1) / a + tau * log(v1 / s->v_th) + seen + s->period / 2,
+  return (stopped){.time = (speed - v1) / a + tau * log(v1 / s->v_th) + seen + s->period / 2,
                    .eps = (speed * speed - v1 * v1) / (2 * a) + tau * (v1 - s->v_th) + speed * seen};
 }
 
 /* No ring stops quicker than F_sat and f_c let it. */
-static void check_least(ethd__stress_log *log, const stop *s, double speed, double late, int delay, const outcome *o) {
+static void check_least(ethd__stress_log *log, const stop *s, double speed, double late, int delay, const stopped *o) {
   double a = (s->force + s->friction) / s->mass;
   double least = (speed * speed - o->left * o->left) / (2 * a) + speed * (late + delay * s->period);
   if (o->depth > 0)
@@ -82,11 +82,11 @@ static void check_least(ethd__stress_log *log, const stop *s, double speed, doub
 
 /* Means over speeds about `speed` and instants of contact within a tick: what ticks make of a stop. */
 static void compare(ethd__stress_log *log, const stop *s, double speed, int delay) {
-  outcome m = {0}, f = {0};
+  stopped m = {0}, f = {0};
   for (int i = 0; i < 20; i++)
     for (int k = 0; k < 10; k++) {
       double v = speed * (0.95 + 0.1 * (i + 0.5) / 20), late = s->period * (k + 0.5) / 10;
-      outcome one = measure(s, v, late, delay, 0), form = smooth(s, v, delay);
+      stopped one = measure(s, v, late, delay, 0), form = smooth(s, v, delay);
       check_least(log, s, v, late, delay, &one);
       m.time += one.time / 200, m.eps += one.eps / 200;
       f.time += form.time / 200, f.eps += form.eps / 200;
@@ -101,7 +101,7 @@ static void run(ethd__stress_log *log) {
   static const double speeds[] = {0.05, 0.1, 0.2, 0.4, 0.6, 0.8};
   for (size_t p = 0; p < 2; p++)
     for (size_t i = 0; i < 6; i++) {
-      outcome m = measure(&stops[p], speeds[i], 3e-4, 0, 1), f = sampled(&stops[p], speeds[i], 3e-4);
+      stopped m = measure(&stops[p], speeds[i], 3e-4, 0, 1), f = sampled(&stops[p], speeds[i], 3e-4);
       ethd__stress_within(log, "s", m.time, f.time, 1e-9, "time of braking, tick for tick");
       ethd__stress_near(log, "m", m.eps, f.eps, 1e-4, "eps, tick for tick");
     }

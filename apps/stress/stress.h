@@ -3,8 +3,8 @@
    A test measures on the library's real code and works its analytic figure out from a formula of its
    own. Results with the same words make one line on the terminal, that of the worst; the CSV holds them
    all. */
-#ifndef ETHD_APPS_STRESS_H
-#define ETHD_APPS_STRESS_H
+#ifndef ETHD__STRESS_STRESS_H
+#define ETHD__STRESS_STRESS_H
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -67,6 +67,6 @@ static inline int64_t ethd__stress_pick(const ethd__stress_log *log, int64_t qui
 extern const ethd__stress ethd__stress_boundary, ethd__stress_braking, ethd__stress_viscous, ethd__stress_stop,
     ethd__stress_touch, ethd__stress_lag, ethd__stress_press, ethd__stress_creep, ethd__stress_energy, ethd__stress_arm,
     ethd__stress_parameters, ethd__stress_denormals, ethd__stress_drift, ethd__stress_inputs, ethd__stress_jitter,
-    ethd__stress_map;
+    ethd__stress_map, ethd__stress_hold;
 
 #endif

@@ -5,16 +5,18 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "study/dictionary.h"
 #include "study/front.h"
+#include "study/progress.h"
 
 /* ---- lines out ---- */
 
-static void block(void *self, const char *participant, const ethd__turn *turn) {
+static void block(void *self, const char *participant, const ethd__turn *turn, bool rest) {
   const ethd__console *c = self;
   if (c->quiet) return;
-  printf("%s block %zu: %s %s, %s\n", participant, turn->number, c->protocol->strategies.word[turn->block.strategy],
-         c->protocol->speeds.word[turn->block.speed], turn->block.training ? "training" : "test");
+  if (rest && c->ask) printf("time for a rest: pause begins one, go ends it\n");
+  printf("%s block %zu of %zu: %s %s, %s\n", participant, turn->number, turn->of,
+         c->protocol->strategies.word[turn->block.strategy], c->protocol->speeds.word[turn->block.speed],
+         turn->block.training ? "training" : "test");
 }
 
 const char *ethd__advice(ethd__reason reason) {
@@ -66,6 +68,7 @@ static ethd__wish command(ethd__console *c, const char *line, char words[ETHD_ME
     return ETHD_WISH_NOTE;
   }
   if (!strcmp(line, "abort")) return ETHD_WISH_ABORT;
+  if (!strcmp(line, "undo")) return ETHD_WISH_UNDO;
   if (!strcmp(line, "stop")) return ETHD_WISH_STOP;
   if (!strcmp(line, "go")) c->paused = false;
   if (!strcmp(line, "pause") && !c->paused) {
@@ -73,7 +76,7 @@ static ethd__wish command(ethd__console *c, const char *line, char words[ETHD_ME
     return ETHD_WISH_PAUSE;
   }
   if (strcmp(line, "go") && strcmp(line, "pause"))
-    printf("found \"%.40s\"; note WORDS, pause, go, abort, stop are allowed\n", line);
+    printf("found \"%.40s\"; note WORDS, pause, go, abort, undo, stop are allowed\n", line);
   return ETHD_WISH_GO;
 }
 
@@ -100,28 +103,95 @@ static bool stopped(void *self, const char *why) {
   return true;
 }
 
-static bool ask(ethd__console *c, int question, int *answer) {
-  char line[ETHD_MESSAGE_MAX];
-  printf("%s\n", ethd__questions[question]);
-  fflush(stdout);
-  while (read_line(c, true, line, sizeof line)) {
-    if (line[0] >= '1' && line[0] <= '5' && !line[1]) return *answer = line[0] - '0', true;
-    if (!*line) return false;
-    printf("found \"%.40s\"; 1 to 5, or an empty line for no answer\n", line);
-    fflush(stdout);
-  }
-  return false;
+/* ---- a participant begins ---- */
+
+static void print_page(char *const paragraph[ETHD_STUDY_PARAGRAPHS]) {
+  for (int i = 0; i < ETHD_STUDY_PARAGRAPHS; i++)
+    if (paragraph[i]) puts(paragraph[i]);
 }
 
-static bool survey(void *self, const ethd__turn *turn, int answers[3]) {
+/* A line that is one of two words, or stop. The second word may be NULL. */
+static ethd__wish choose(ethd__console *c, const char *const word[2], const ethd__wish wish[2]) {
+  char line[ETHD_MESSAGE_MAX];
+  fflush(stdout);
+  while (read_line(c, true, line, sizeof line)) {
+    for (int i = 0; i < 2; i++)
+      if (word[i] && !strcmp(line, word[i])) return wish[i];
+    if (!strcmp(line, "stop")) return ETHD_WISH_STOP;
+    printf("found \"%.40s\"; %s%s%s or stop is allowed\n", line, word[0], word[1] ? ", " : "", word[1] ? word[1] : "");
+    fflush(stdout);
+  }
+  return ETHD_WISH_STOP;
+}
+
+/* Whoever hands over types the next one's number, which nobody does by chance. */
+static ethd__wish meet(void *self, const ethd__meeting *meeting) {
   ethd__console *c = self;
-  (void)turn;
-  if (!c->ask) return false;
-  for (int i = 0; i < 3; i++)
-    if (!ask(c, i, &answers[i])) return false;
-  return true;
+  const ethd__questionnaire *q = &c->protocol->questionnaire;
+  if (!c->ask) return ETHD_WISH_GO;
+  if (meeting->handed_over) {
+    const char *const words[2] = {meeting->participant, meeting->can_undo ? "undo" : NULL};
+    printf("next is %s: the experimenter types %s when they sit%s\n", meeting->participant, meeting->participant,
+           meeting->can_undo ? ", or undo where the last one was ended by mistake" : "");
+    ethd__wish wish = choose(c, words, (const ethd__wish[]){ETHD_WISH_GO, ETHD_WISH_UNDO});
+    if (wish != ETHD_WISH_GO) return wish;
+  }
+  ethd__wish wish = ETHD_WISH_GO;
+  if (q->consent[0] && !meeting->consented) {
+    print_page(q->consent);
+    puts("yes: I agree; no: I don't");
+    wish = choose(c, (const char *const[]){"yes", "no"}, (const ethd__wish[]){ETHD_WISH_AGREE, ETHD_WISH_ABORT});
+  }
+  if (wish == ETHD_WISH_GO || wish == ETHD_WISH_AGREE) print_page(q->instruction);
+  return wish;
+}
+
+/* ---- the survey ---- */
+
+static void print_question(const ethd__question *q) {
+  char words[ETHD_MESSAGE_MAX];
+  printf("%s", q->text);
+  for (int k = 1; k <= (int)ethd__answer_count(q); k++) {
+    ethd__answer_words(q, k, words, sizeof words);
+    printf("%s %d %s", k > 1 ? "," : "", k, words);
+  }
+  printf("\n");
+  fflush(stdout);
+}
+
+static void print_answers(const ethd__asked *asked) {
+  printf("the answers:");
+  for (size_t i = 0; i < asked->number; i++)
+    if (asked->answer[i] > 0)
+      printf(" %d", asked->answer[i]);
+    else
+      printf(" none");
+  printf("; ok keeps them, back changes them\n");
+  fflush(stdout);
+}
+
+static int ask(void *self, const ethd__asked *asked) {
+  ethd__console *c = self;
+  const ethd__questionnaire *q = &c->protocol->questionnaire;
+  char line[ETHD_MESSAGE_MAX];
+  bool confirm = asked->number == ethd__question_count(q);
+  int most = confirm ? 0 : (int)ethd__answer_count(&q->question[asked->number]);
+  if (!c->ask) return ETHD_ANSWER_NOBODY;
+  (confirm ? print_answers(asked) : print_question(&q->question[asked->number]));
+  while (read_line(c, true, line, sizeof line)) {
+    if (!strcmp(line, "back")) return ETHD_ANSWER_BACK;
+    if (!strcmp(line, "stop")) return ETHD_ANSWER_STOP;
+    if (confirm ? !strcmp(line, "ok") : !*line) return ETHD_ANSWER_NONE;
+    if (line[0] >= '1' && line[0] <= '0' + most && !line[1]) return line[0] - '0';
+    if (confirm)
+      printf("found \"%.40s\"; ok, back or stop is allowed\n", line);
+    else
+      printf("found \"%.40s\"; 1 to %d, back, stop, or an empty line for no answer\n", line, most);
+    fflush(stdout);
+  }
+  return ETHD_ANSWER_STOP;
 }
 
 ethd__front ethd__console_front(ethd__console *console) {
-  return (ethd__front){console, block, verdict, wish, stopped, survey};
+  return (ethd__front){console, meet, block, verdict, wish, stopped, ask};
 }

@@ -51,6 +51,12 @@ static size_t movement_of(const ethd__desk *desk, const ethd__turn *turn) {
   return (k + (turn->block.training ? desk->movement_count / 2 : 0)) % desk->movement_count;
 }
 
+static const char *movement_name(const ethd__desk *desk) {
+  if (!desk->movement_count) return NULL;
+  const char *file = desk->movements[desk->movement], *slash = strrchr(file, '/');
+  return slash ? slash + 1 : file;
+}
+
 static ethd_status take_movement(ethd__desk *desk, const ethd__turn *turn, char *message) {
   if (!desk->movement_count) return ETHD_OK;
   size_t movement = movement_of(desk, turn);
@@ -85,6 +91,8 @@ ethd_status ethd__desk_prepare(ethd__desk *desk, const ethd__turn *turn, ethd__t
   if (!status) status = open_stage(desk, turn->block.strategy, message);
   if (status) return status;
   *out = (ethd__taken){.turn = *turn,
+                       .hand = desk->movement_count ? ETHD_HAND_RECORDED : ETHD_HAND_SIMULATED,
+                       .movement = movement_name(desk),
                        .seed = desk->study.seed,
                        .tap = tap_of(turn),
                        .speed = &desk->speeds[turn->block.speed],
@@ -92,13 +100,18 @@ ethd_status ethd__desk_prepare(ethd__desk *desk, const ethd__turn *turn, ethd__t
   return ETHD_OK;
 }
 
+const char *const ethd__hand_words[ETHD_HAND_SOURCES] = {"device", "mouse", "simulated", "recorded"};
+
 static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, char message[ETHD_MESSAGE_MAX]) {
   ethd__desk *desk = self;
   ethd_status status = ethd__desk_prepare(desk, turn, out, message);
   return status ? status : ethd__stage_run(&desk->stage, out->speed, out->tap, &out->result, message);
 }
 
-ethd__source ethd__desk_source(ethd__desk *desk) { return (ethd__source){.self = desk, .simulated = true, .tap = tap}; }
+ethd__source ethd__desk_source(ethd__desk *desk) {
+  return (ethd__source){
+      .self = desk, .hand = desk->movement_count ? ETHD_HAND_RECORDED : ETHD_HAND_SIMULATED, .tap = tap};
+}
 
 /* ---- opening ---- */
 
@@ -118,7 +131,7 @@ static ethd_status refuse(const ethd__protocol *p, int line, const char *key, co
 }
 
 static ethd_status check_speeds(ethd__desk *desk, char *message) {
-  const ethd__words *speeds = &desk->protocol->speeds;
+  const ethd__word_list *speeds = &desk->protocol->speeds;
   char what[ETHD_MESSAGE_MAX];
   for (size_t i = 0; i < speeds->count; i++) {
     snprintf(what, sizeof what, "found \"%s\"; low, high and numbers from 0.01 to 2 are allowed", speeds->word[i]);
@@ -129,7 +142,7 @@ static ethd_status check_speeds(ethd__desk *desk, char *message) {
 }
 
 static ethd_status check_strategies(ethd__desk *desk, char *message) {
-  const ethd__words *strategies = &desk->protocol->strategies;
+  const ethd__word_list *strategies = &desk->protocol->strategies;
   char why[ETHD_MESSAGE_MAX];
   for (size_t i = 0; i < strategies->count; i++) {
     ethd_setup setup = desk->loaded->config->setup;
@@ -194,8 +207,7 @@ ethd_status ethd__desk_open(const ethd__protocol *protocol, const ethd__loaded *
 
 void ethd__desk_close(ethd__desk *desk) {
   leave(desk);
-  for (size_t i = 0; i < desk->movement_count; i++) free(desk->movements[i]);
-  free(desk->movements);
+  ethd__movements_free(desk->movements, desk->movement_count);
   desk->movements = NULL;
   desk->movement_count = 0;
 }

@@ -1,16 +1,29 @@
 #include "study/dictionary.h"
 
-#define QUESTION_1                                                                                      \
-  "When did you feel the touch, beside the moment at which the circle reached the wall on the screen? " \
-  "1 well before, 2 a little before, 3 just then, 4 a little after, 5 well after"
-#define QUESTION_2                                                                                \
-  "What did the wall do as you touched it? 1 moved clearly to the left, 2 slightly to the left, " \
-  "3 stood still, 4 moved slightly to the right, 5 clearly to the right"
-#define QUESTION_3 "How did the touch feel? 1 very natural, 2 natural, 3 neither, 4 unnatural, 5 very unnatural"
+#include <stdio.h>
+#include <stdlib.h>
 
-const char *const ethd__questions[3] = {QUESTION_1, QUESTION_2, QUESTION_3};
+#include "study/columns.h"
 
-const char ethd__dictionary[] =
+#define QUESTION_1 "When did you feel the touch, beside the moment at which the circle reached the wall on the screen?"
+#define ANSWERS_1 "well before | a little before | just then | a little after | well after"
+#define QUESTION_2 "What did the wall do as you touched it?"
+#define ANSWERS_2                                                                                         \
+  "moved clearly to the left | moved slightly to the left | stood still | moved slightly to the right | " \
+  "moved clearly to the right"
+#define QUESTION_3 "How did the touch feel?"
+#define ANSWERS_3 "very natural | natural | neither | unnatural | very unnatural"
+
+const ethd__question ethd__paper_questions[3] = {
+    {(char *)QUESTION_1, (char *)ANSWERS_1, 0},
+    {(char *)QUESTION_2, (char *)ANSWERS_2, 0},
+    {(char *)QUESTION_3, (char *)ANSWERS_3, 0},
+};
+
+const char *const ethd__questions[3] = {QUESTION_1 " 1 to 5: " ANSWERS_1, QUESTION_2 " 1 to 5: " ANSWERS_2,
+                                        QUESTION_3 " 1 to 5: " ANSWERS_3};
+
+static const char files[] =
     "# What is in this folder\n\n"
     "A tapping study with an encounter-type haptic display, as ethd-study ran it. SI units, unless a column's\n"
     "name says otherwise; an empty cell: not defined, or not asked. Participants are numbers, nothing else.\n\n"
@@ -19,42 +32,30 @@ const char ethd__dictionary[] =
     "| config.ini, scene.scene | the controller's configuration and walls |\n"
     "| device.plant | the simulated device and finger: plausible, fitted, not measured |\n"
     "| movement.csv | the recorded movement, when all hands follow one |\n"
-    "| device.folder | with people: where relative paths of the device's settings start |\n"
-    "| versions.txt | program, compiler, hash of the four files above |\n"
+    "| movements/ | the recorded movements, when hands follow several |\n"
+    "| device.folder | with people in a device: where relative paths of its settings start |\n"
+    "| versions.txt | program, compiler, and the hash of all files above but device.folder |\n"
     "| taps.csv | a row per tap, training too |\n"
     "| survey.csv | a row per participant and cell; simulated participants answer nothing |\n"
-    "| events.csv | begin, pauses, notes, what stopped a device and that somebody saw to it, end |\n"
+    "| events.csv | begin, display, consent, pauses, notes, what stopped a device and that somebody saw to it, end |\n"
+    "| participants.csv | a row per participant: how far, who led the hand, and whether the taps belong to the "
+    "analysis |\n"
+    "| orders.csv | the order that was planned for each participant, as ethd-study --plan prints it |\n"
+    "| taps.json and so on | what each column of a table is, with units and levels, for programs |\n"
+    "| dataset_description.json | what this is and what made it |\n"
     "| journal | of a session: what happened, in order, each line with its check sum; the tables follow from it |\n"
     "| taps/P01-03-004 | participant, block, attempt: every tick of that tap |\n"
-    "| shard-i-of-n.csv | of a simulation: the rows of one worker; taps.csv is all of them, merged |\n\n"
-    "`ethd-report .` draws and counts; `ethd-study --resume .` goes on with a session.\n\n"
-    "## taps.csv\n\n"
-    "| column | unit | meaning |\n|---|---|---|\n"
-    "| study, point | | of a simulation: first 12 digits of the hash; which combination of the grid, from 0 |\n"
-    "| participant | | P01, P02, .. |\n"
-    "| block | | of the participant, from 1: a strategy at a speed |\n"
-    "| part | | training or test |\n"
-    "| attempt | | within the block, from 1 |\n"
-    "| transition, speed | | strategy; low, high, or m/s |\n"
-    "| seed, tap | | key of the simulated finger's random numbers |\n"
-    "| valid, reason | | 1 or 0; ok, fault, early-contact, too-slow, too-fast, no-contact, grazing, double |\n"
-    "| v_rvo_mps | m/s | ring's speed along n as it meets the wall (first tick with d_re < 0) |\n"
-    "| v_of_mps | m/s | ring's speed as the finger's pad first touches it after that |\n"
-    "| d_max_m | m | first rebound: the ring's first maximum along n minus the minimum after it |\n"
-    "| v_rmin_mps | m/s | the ring's smallest speed in the 0.1 s after the touch; < 0: away from the wall |\n"
-    "| delta_s_ms | ms | first braking tick to first vo tick; only strategies that brake have it |\n"
-    "| eps_m | m | how far the wall was moved |\n"
-    "| t_rvo_s, t_of_s | s | of the tap: the ring meets the wall; the pad touches the ring |\n"
-    "| t_seen_s | s | of the tap: the finger's front reaches the wall, which a screen without delay shows |\n"
-    "| peak_force_n | N | largest rendered force |\n"
-    "| finger_radius_m, commanded_mps | m, m/s | drawn for this tap |\n"
-    "| section.key | | of a simulation: the gain at this point of the grid |\n\n"
+    "| shard-i-of-n.csv | of a simulation: the rows of one worker; taps.csv is all of them, merged |\n"
+    "| SHA256SUMS | sums of all files, for ethd-study --verify or sha256sum -c |\n\n"
+    "`ethd-report .` draws and counts; `ethd-study --resume .` goes on with a session.\n\n";
+
+static const char behind[] =
     "n points into the wall; speeds are > 0 toward it. The haptic delay is t_of_s - t_seen_s: > 0, the touch is\n"
-    "felt after it is seen.\n\n"
-    "## survey.csv\n\n"
-    "q1. " QUESTION_1 ".\n\n"
-    "q2. " QUESTION_2 ".\n\n"
-    "q3. " QUESTION_3 ".\n\n"
+    "felt after it is seen. Rows of a simulation begin with study and point, the first 12 digits of the hash and "
+    "which\n"
+    "combination of the grid it is, and end with the gains of that point.\n\n";
+
+static const char ticks[] =
     "## A tap's folder\n\n"
     "tick.npy has a row per tick: what the controller read and what it answered. truth.npy has the same ticks as\n"
     "the simulated device knows them; with people's fingers in a device there is no such knowledge, and it has what\n"
@@ -63,3 +64,22 @@ const char ethd__dictionary[] =
     "scene.scene and events.csv\n"
     "say how to repeat them: `ethd-replay --verify taps/P01-03-004` compares every field bit for bit. tap.csv is\n"
     "the tap's row of taps.csv.\n";
+
+char *ethd__dictionary(const ethd__protocol *protocol) {
+  char *text = NULL;
+  size_t length;
+  FILE *file = open_memstream(&text, &length);
+  if (!file) return NULL;
+  fputs(files, file);
+  for (int i = 0; i < ETHD_TABLES; i++) {
+    fprintf(file, "## %s.csv\n\n", ethd__table_names[i]);
+    ethd__table_describe(file, (ethd__study_table)i, protocol);
+    putc('\n', file);
+    if (i == ETHD_TABLE_TAPS) fputs(behind, file);
+  }
+  fputs(ticks, file);
+  bool failed = ferror(file);
+  if (!fclose(file) && !failed) return text;
+  free(text);
+  return NULL;
+}

@@ -2,38 +2,53 @@
 
      study.ini      the study file, as it was read
      config.ini     the controller's configuration; scene.scene its walls; device.plant the simulated device
-     movement.csv   the recorded movement, when all hands follow one
-     device.folder  with people: where relative paths of the device's settings start
-     versions.txt   program, compiler, and the hash: SHA-256 of those four files one after another
-     README.md      the data dictionary */
+     movement.csv   the recorded movement, when all hands follow one; movements/ when they follow several
+     device.folder  with people in a device: where relative paths of its settings start
+     versions.txt   program, compiler, and the hash: SHA-256 of all of these but device.folder, one after another
+     README.md      the data dictionary, with JSON sidecars for programs; orders.csv, what is planned */
 #ifndef ETHD_STUDY_FOLDER_H
 #define ETHD_STUDY_FOLDER_H
 
 #include "study/protocol.h"
-#include "study/sha256.h"
 #include "tap/load.h"
+#include "text/sha256.h"
 
 #define ETHD_STUDY_FILE "study.ini"
 #define ETHD_STUDY_JOURNAL "journal"
 #define ETHD_STUDY_TAPS "taps.csv"
 #define ETHD_STUDY_SURVEY "survey.csv"
 #define ETHD_STUDY_EVENTS "events.csv"
+#define ETHD_STUDY_PARTICIPANTS "participants.csv"
 #define ETHD_STUDY_RECORDINGS "taps"
+#define ETHD_STUDY_PLANT "device.plant"
+#define ETHD_STUDY_VERSIONS "versions.txt"
+#define ETHD_STUDY_MOVEMENT "movement.csv"
+#define ETHD_STUDY_MOVEMENTS "movements"
+#define ETHD_STUDY_DEVICE_FOLDER "device.folder"
+#define ETHD_STUDY_INPUT_MAX ((size_t)1 << 24) /* bytes of an input */
 
 /* The device that the protocol names. Exit 2 on a bad configuration or plant. */
 void ethd__folder_device(const ethd__protocol *protocol, ethd__loaded *out);
 
-/* Makes the folder, unless it is there, and its files; leaves it as it is when it holds just this study. A folder with
-   another study's files is refused, and one that the study itself is read from. finger: a recorded movement for all
-   hands, or NULL. */
-ETHD_MUST_CHECK ethd_status ethd__folder_make(const char *folder, const ethd__protocol *protocol,
-                                              const ethd__loaded *loaded, const char *finger,
+/* What a folder is made of. */
+typedef struct ethd__folder_parts {
+  const ethd__protocol *protocol;
+  const ethd__loaded *loaded;
+  const char *finger; /* a recorded movement for all hands, NULL: none */
+  uint32_t simulated; /* participants of a simulation; 0: a session */
+} ethd__folder_parts;
+
+/* Makes the folder, unless it is there, and its files; leaves it as it is when it holds just this study. Nothing that is
+   there is written over: a folder with another study's files or somebody's own is refused, and one that the study itself
+   is read from. */
+ETHD_MUST_CHECK ethd_status ethd__folder_make(const char *folder, const ethd__folder_parts *parts,
                                               char message[ETHD_MESSAGE_MAX]);
 
 typedef struct ethd__folder {
   char *path;
-  char *finger; /* the movement for all hands, NULL: none */
-  char *device; /* where relative paths of [device] start, NULL: nothing of the kind is written down */
+  char *finger;       /* the movement for all hands, or the folder of movements; NULL: none */
+  char *device;       /* where relative paths of [device] start, NULL: nothing of the kind is written down */
+  uint32_t simulated; /* participants of a simulation, as the protocol then has them; 0: a session */
   ethd__protocol protocol;
   ethd__loaded loaded;
   char hash[ETHD_SHA256_TEXT];
@@ -45,6 +60,10 @@ ETHD_MUST_CHECK ethd_status ethd__folder_read(const char *folder, ethd__folder *
 ETHD_MUST_CHECK ethd_status ethd__folder_open(const char *folder, bool plugins, ethd__folder *out,
                                               char message[ETHD_MESSAGE_MAX]);
 void ethd__folder_close(ethd__folder *folder);
+
+/* SHA-256 of the folder's inputs, one after another. */
+ETHD_MUST_CHECK ethd_status ethd__folder_hash(const char *folder, char out[ETHD_SHA256_TEXT],
+                                              char message[ETHD_MESSAGE_MAX]);
 
 /* folder/name; exit 1 without memory. */
 char *ethd__folder_path(const char *folder, const char *name);

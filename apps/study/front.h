@@ -6,23 +6,50 @@
 
 typedef enum ethd__wish {
   ETHD_WISH_GO,    /* on with the next tap */
+  ETHD_WISH_AGREE, /* on, with the participant's consent */
   ETHD_WISH_NOTE,  /* write the words down, ask again */
   ETHD_WISH_PAUSE, /* write down that a pause begins, ask again; GO ends it */
-  ETHD_WISH_ABORT, /* this participant wants no more */
-  ETHD_WISH_STOP   /* end the program; the session can be resumed */
+  ETHD_WISH_ABORT, /* this participant wants no more, or doesn't agree to begin */
+  ETHD_WISH_UNDO,  /* the last abort was a mistake */
+  ETHD_WISH_STOP,  /* end the program; the session can be resumed */
+  ETHD_WISHES
 } ethd__wish;
+
+/* A participant's turn to begin, or to go on. */
+typedef struct ethd__meeting {
+  const char *participant;
+  bool handed_over; /* somebody else tapped before: the experimenter has to be there */
+  bool consented;   /* in a sitting before */
+  bool can_undo;    /* somebody was ended in this sitting */
+} ethd__meeting;
+
+/* A question that is due; number == the count of questions: the answers are to be confirmed. */
+typedef struct ethd__asked {
+  const char *participant;
+  const ethd__turn *turn;
+  size_t number;
+  const int16_t *answer; /* to each question so far, ETHD_ANSWER_UNASKED: not yet */
+} ethd__asked;
+
+/* What `ask` says, beside 1 to 9 and ETHD_ANSWER_NONE; any of these two confirms. */
+enum { ETHD_ANSWER_BACK = -2, ETHD_ANSWER_STOP = -3, ETHD_ANSWER_NOBODY = -4 };
 
 typedef struct ethd__front {
   void *self;
-  void (*block)(void *self, const char *participant, const ethd__turn *turn);
+  /* Before a participant's first tap in this sitting: AGREE where consent was asked for and given, GO where nothing was
+     asked, ABORT, UNDO, STOP. */
+  ethd__wish (*meet)(void *self, const ethd__meeting *meeting);
+  /* rest: it is time for one. */
+  void (*block)(void *self, const char *participant, const ethd__turn *turn, bool rest);
   /* Judged at once: valid of wanted so far; a training tap has no number wanted: 0. */
   void (*verdict)(void *self, const char *participant, const ethd__taken *taken, uint32_t valid, uint32_t wanted);
   /* Before each tap. words: of a note. */
   ethd__wish (*wish)(void *self, char words[ETHD_MESSAGE_MAX]);
   /* The device has stopped itself. True: somebody has seen to it, and it may go on. */
   bool (*stopped)(void *self, const char *why);
-  /* 1 to 5 each; false: no answers. */
-  bool (*survey)(void *self, const ethd__turn *turn, int answers[3]);
+  /* An answer, ETHD_ANSWER_BACK to the question before, ETHD_ANSWER_STOP, or ETHD_ANSWER_NOBODY: nobody can be asked
+     here. */
+  int (*ask)(void *self, const ethd__asked *asked);
 } ethd__front;
 
 /* Shows the participant what to do. [any] */

@@ -8,8 +8,8 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include "study/sha256.h"
 #include "text/error_text.h"
+#include "text/sha256.h"
 #include "text/text.h"
 
 #define BYTES_MAX ((size_t)1 << 30)
@@ -130,14 +130,27 @@ static bool write_all(int fd, const char *text, size_t length, uint64_t at) {
   return true;
 }
 
+/* A whole line with its end; NULL: no memory. */
+static char *line_of(const char *kind, const char *text) {
+  char *line, sum[ETHD_SHA256_TEXT];
+  int length = asprintf(&line, "%s %s #%*s\n", kind, text, SUM, "");
+  if (length < 0) return NULL;
+  sum_of(line, (size_t)length - SUM - 3, sum);
+  memcpy(line + length - SUM - 1, sum, SUM);
+  return line;
+}
+
+void ethd__journal_print(FILE *file, const char *kind, const char *text) {
+  char *line = line_of(kind, text);
+  fputs(line ? line : "", file);
+  free(line);
+}
+
 ethd_status ethd__journal_append(ethd__journal *journal, const char *kind, const char *text,
                                  char message[ETHD_MESSAGE_MAX]) {
-  char *line, sum[ETHD_SHA256_TEXT];
-  int body = asprintf(&line, "%s %s #%*s\n", kind, text, SUM, "");
-  if (body < 0) return ethd__no_memory(message, journal->path);
-  size_t length = (size_t)body;
-  sum_of(line, length - SUM - 3, sum);
-  memcpy(line + length - SUM - 1, sum, SUM);
+  char *line = line_of(kind, text);
+  if (!line) return ethd__no_memory(message, journal->path);
+  size_t length = strlen(line);
   bool written = write_all(journal->fd, line, length, journal->length) && fdatasync(journal->fd) == 0;
   int reason = errno;
   free(line);

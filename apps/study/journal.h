@@ -2,12 +2,17 @@
 
      KIND TEXT #8 hex digits        of the SHA-256 of "KIND TEXT"
 
+   begin    the hash of the study's inputs        tap      a row of taps.csv
+   hand     who leads the hand                    answer   participant,block,question,answer
+   event    a row of events.csv                   survey   a row of survey.csv: its answers were confirmed
+
    Lines are appended whole and reach the disk before the next step is taken. A line that a crash has torn is
    the last one: it is cut off. A broken line before good ones is damage, and refused. All [main]. */
 #ifndef ETHD_STUDY_JOURNAL_H
 #define ETHD_STUDY_JOURNAL_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
 #include "ethd/config.h"
 
@@ -36,6 +41,9 @@ ETHD_MUST_CHECK ethd_status ethd__journal_read(const char *path, ethd__journal *
 /* On failure the file is as it was. `text` has no line ends. */
 ETHD_MUST_CHECK ethd_status ethd__journal_append(ethd__journal *journal, const char *kind, const char *text,
                                                  char message[ETHD_MESSAGE_MAX]);
+
+/* The same line into another file, which is to be a journal. */
+void ethd__journal_print(FILE *file, const char *kind, const char *text);
 
 void ethd__journal_close(ethd__journal *journal);
 

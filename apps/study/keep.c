@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "study/columns.h"
 #include "study/folder.h"
 #include "study/row.h"
 #include "text/error_text.h"
@@ -56,11 +57,12 @@ static void discard(const char *path) {
 /* ---- keeping ---- */
 
 static ethd_status write_row(const char *fresh, const char *row, char *message) {
-  char *path = ethd__folder_path(fresh, ROW), *text;
-  int length = asprintf(&text, "%s\n%s\n", ETHD_STUDY_TAPS_HEADER, row);
+  char *path = ethd__folder_path(fresh, ROW), *text, *header = ethd__table_header(ETHD_TABLE_TAPS, NULL);
+  int length = asprintf(&text, "%s\n%s\n", header, row);
   ethd_status status =
       length < 0 ? ethd__no_memory(message, NULL) : ethd_text_write(path, text, (size_t)length, message);
   if (length >= 0) free(text);
+  free(header);
   free(path);
   return status;
 }
@@ -99,10 +101,10 @@ ethd_status ethd__tap_keep(const char *folder, const char *name, const ethd_conf
 /* ---- what is there ---- */
 
 static ethd_status read_row(const char *path, char **row, char *message) {
-  size_t length, header = strlen(ETHD_STUDY_TAPS_HEADER);
-  char *text, *file = ethd__folder_path(path, ROW);
+  char *text, *file = ethd__folder_path(path, ROW), *columns = ethd__table_header(ETHD_TABLE_TAPS, NULL);
+  size_t length, header = strlen(columns);
   ethd_status status = ethd_text_read(file, 1 << 16, &text, &length, message);
-  if (!status && (length < header + 3 || memcmp(text, ETHD_STUDY_TAPS_HEADER, header) != 0 || text[header] != '\n' ||
+  if (!status && (length < header + 3 || memcmp(text, columns, header) != 0 || text[header] != '\n' ||
                   strcspn(text + header + 1, "\n") != length - header - 2))
     status = ethd__say(message, ETHD_E_SYNTAX, "%s: not a tap's row; move the folder away to have the tap again", file);
   if (!status) {
@@ -112,6 +114,7 @@ static ethd_status read_row(const char *path, char **row, char *message) {
   } else {
     free(text);
   }
+  free(columns);
   free(file);
   return status;
 }

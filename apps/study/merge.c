@@ -89,35 +89,15 @@ static ethd_status open_shards(merge *m) {
   return status;
 }
 
-/* Participants, read off the first rows: id widths tell how many digits, the last unit of a point how many. */
-static ethd_status count_people(merge *m, uint64_t *units) {
-  char *path;
-  uint64_t count = 0;
-  for (uint32_t i = 0; i < m->count; i++) {
-    const ethd__shard which = {.index = i + 1, .count = m->count};
-    char *text, *last = NULL;
-    size_t length;
-    path = ethd__shard_path(m->folder, &which, ".csv");
-    ethd_status status = ethd_text_read(path, (size_t)1 << 34, &text, &length, m->message);
-    free(path);
-    if (status) return status;
-    for (char *at = text; at && *at; at = strchr(at, '\n') ? strchr(at, '\n') + 1 : NULL) {
-      size_t n = 0;
-      for (int comma = 0; comma < 3 && at[n]; n++) comma += at[n] == ',';
-      if (at == text) continue;
-      if (!last || strncmp(last, at, n) != 0) count++;
-      last = at;
-    }
-    free(text);
-  }
-  *units = count;
-  size_t points = ethd__protocol_points(&m->folder->protocol);
-  m->folder->protocol.participants = (uint32_t)(count / points);
-  return count && count % points == 0
-             ? ETHD_OK
-             : ethd__say(m->message, ETHD_E_SYNTAX,
-                         "%s: %" PRIu64 " participants at %zu points: the shards don't fit together", m->folder->path,
-                         count, points);
+/* What is left of a shard belongs to nobody. */
+static ethd_status check_ends(const merge *m) {
+  for (uint32_t i = 0; i < m->count; i++)
+    if (m->line[i])
+      return ethd__say(m->message, ETHD_E_SYNTAX,
+                       "%s/shard-%" PRIu32 "-of-%" PRIu32 ".csv: rows of nobody behind those of its participants; "
+                       "remove it and have it made again",
+                       m->folder->path, i + 1, m->count);
+  return ETHD_OK;
 }
 
 static ethd_status merge_unit(merge *m, uint64_t unit) {
@@ -153,8 +133,11 @@ static void release(merge *m) {
 ethd_status ethd__shards_merge(ethd__folder *folder, uint64_t *taps, char message[ETHD_MESSAGE_MAX]) {
   merge m = {.folder = folder, .message = message};
   ethd_replace replace;
-  uint64_t units = 0;
+  uint64_t units = ethd__unit_count(&folder->protocol);
   ethd_status status = count_shards(&m);
+  if (!status && !folder->simulated)
+    status = ethd__say(message, ETHD_E_FILE, "%s/%s: doesn't say how many participants were simulated", folder->path,
+                       ETHD_STUDY_VERSIONS);
   if (status) return status;
   m.file = calloc(m.count, sizeof *m.file);
   m.line = calloc(m.count, sizeof *m.line);
@@ -166,8 +149,8 @@ ethd_status ethd__shards_merge(ethd__folder *folder, uint64_t *taps, char messag
   if (!status) {
     m.out = replace.file;
     status = open_shards(&m);
-    if (!status) status = count_people(&m, &units);
     for (uint64_t unit = 0; !status && unit < units; unit++) status = merge_unit(&m, unit);
+    if (!status) status = check_ends(&m);
     if (status)
       ethd_replace_abandon(&replace);
     else

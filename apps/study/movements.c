@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "cli/cli.h"
 #include "text/error_text.h"
@@ -40,21 +41,32 @@ static ethd_status list(const char *folder, char ***files, size_t *count, char *
                    "%s: no folder with recorded movements (*.csv); ETHD_MOTION_DIR may name the one it is in", folder);
 }
 
+ethd_status ethd__movements_list(const char *path, char ***files, size_t *count, char message[ETHD_MESSAGE_MAX]) {
+  struct stat what;
+  *count = 0;
+  *files = NULL;
+  if (!stat(path, &what) && S_ISDIR(what.st_mode)) return list(path, files, count, message);
+  *files = calloc(1, sizeof **files);
+  char *copy = *files ? strdup(path) : NULL;
+  if (copy) (*files)[(*count)++] = copy;
+  return copy ? ETHD_OK : ethd__no_memory(message, path);
+}
+
 ethd_status ethd__movements_find(const ethd__protocol *protocol, const char *finger, char ***files, size_t *count,
                                  char message[ETHD_MESSAGE_MAX]) {
   *count = 0;
   *files = NULL;
-  if (!finger && !protocol->motion)
+  if (finger) return ethd__movements_list(finger, files, count, message);
+  if (!protocol->motion)
     return ethd__say(message, ETHD_E_ARGUMENT, "%s: hand.source: recorded needs motion = FOLDER or --finger",
                      protocol->path);
-  if (!finger) {
-    char *folder = folder_of(protocol);
-    ethd_status status = folder ? list(folder, files, count, message) : ETHD_E_MEMORY;
-    free(folder);
-    return status;
-  }
-  *files = calloc(1, sizeof **files);
-  char *copy = *files ? strdup(finger) : NULL;
-  if (copy) (*files)[(*count)++] = copy;
-  return copy ? ETHD_OK : ethd__no_memory(message, finger);
+  char *folder = folder_of(protocol);
+  ethd_status status = folder ? list(folder, files, count, message) : ETHD_E_MEMORY;
+  free(folder);
+  return status;
+}
+
+void ethd__movements_free(char **files, size_t count) {
+  for (size_t i = 0; i < count; i++) free(files[i]);
+  free(files);
 }

@@ -17,13 +17,29 @@ static void shuffled(const ethd__protocol *protocol, size_t count, uint32_t part
   }
 }
 
-/* 0, 1, n-1, 2, n-2, .. plus the row; an odd n needs the mirror images too. */
-static void latin(size_t count, uint32_t participant, size_t cell[CELLS]) {
-  size_t row = participant % count;
-  bool mirrored = count % 2 && participant / count % 2;
+/* A permutation of 0 .. count-1 by the study's seed; `draw` tells one from another. */
+static void permutation(uint64_t seed, uint32_t draw, size_t count, size_t out[CELLS * 2]) {
+  for (size_t i = 0; i < count; i++) out[i] = i;
+  for (size_t i = count; i-- > 1;) {
+    size_t j = ethd__person_below(seed, UINT32_MAX - draw, (uint32_t)i, (uint32_t)i + 1), other = out[j];
+    out[j] = out[i];
+    out[i] = other;
+  }
+}
+
+/* The square's row: 0, 1, n-1, 2, n-2, .. plus the row; an odd n needs the mirror images too. A number stands for
+   strategy * speeds + speed, so that going down `speeds` rows turns strategies round within each speed: each is first and
+   last at a speed equally often, too. The seed says which strategy and speed a number means, and which row is whose. */
+static void latin(const ethd__protocol *p, size_t count, uint32_t participant, size_t cell[CELLS]) {
+  size_t strategies = p->strategies.count, speeds = p->speeds.count, rows = count % 2 ? 2 * count : count;
+  size_t strategy[CELLS * 2], speed[CELLS * 2], line[CELLS * 2];
+  permutation(p->seed, 0, strategies, strategy);
+  permutation(p->seed, 1, speeds, speed);
+  permutation(p->seed, 2 + participant / (uint32_t)rows, rows, line);
+  size_t row = line[participant % rows];
   for (size_t i = 0; i < count; i++) {
-    size_t step = i % 2 ? (i + 1) / 2 : (count - i / 2) % count;
-    cell[mirrored ? count - 1 - i : i] = (step + row) % count;
+    size_t step = i % 2 ? (i + 1) / 2 : (count - i / 2) % count, number = (step + row) % count;
+    cell[row >= count ? count - 1 - i : i] = speed[number % speeds] * strategies + strategy[number / speeds];
   }
 }
 
@@ -34,7 +50,7 @@ static size_t last_at(size_t strategies, const size_t cell[CELLS], size_t count,
   return last % strategies;
 }
 
-size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant, ethd__block out[ETHD_STUDY_BLOCKS]) {
+size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant, ethd__study_block out[ETHD_STUDY_BLOCKS]) {
   size_t cell[CELLS], n = 0, strategies = protocol->strategies.count;
   size_t count = strategies * protocol->speeds.count;
   bool trained[ETHD_STUDY_WORDS] = {false};
@@ -43,13 +59,13 @@ size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant, ethd
   else if (protocol->order == ETHD_ORDER_RANDOM)
     shuffled(protocol, count, participant, cell);
   else
-    latin(count, participant, cell);
+    latin(protocol, count, participant, cell);
   for (size_t i = 0; i < count; i++) {
     size_t speed = cell[i] / strategies;
     if (protocol->training && !trained[speed])
-      out[n++] = (ethd__block){true, last_at(strategies, cell, count, speed), speed};
+      out[n++] = (ethd__study_block){true, last_at(strategies, cell, count, speed), speed};
     trained[speed] = true;
-    out[n++] = (ethd__block){false, cell[i] % strategies, speed};
+    out[n++] = (ethd__study_block){false, cell[i] % strategies, speed};
   }
   return n;
 }

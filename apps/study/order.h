@@ -5,7 +5,8 @@
    paper's rule: train A, tap B, tap A; the next one train B, tap A, tap B; the same again at the next speed.
    `random`: all cells shuffled by (seed, participant). `latin`: a balanced Latin square over all cells
    (Williams 1949): over a multiple of the number of cells (twice that, if it is odd) each cell stands at
-   each place and follows each other one equally often. A speed's training comes before its first cell,
+   each place and follows each other one equally often, and each strategy is equally often first and last at each
+   speed; the seed shuffles which cell is which and who gets which row. A speed's training comes before its first cell,
    with the strategy that comes last at it. [any] */
 #ifndef ETHD_STUDY_ORDER_H
 #define ETHD_STUDY_ORDER_H
@@ -14,12 +15,12 @@
 
 #define ETHD_STUDY_BLOCKS (ETHD_STUDY_WORDS * ETHD_STUDY_WORDS + ETHD_STUDY_WORDS)
 
-typedef struct ethd__block {
+typedef struct ethd__study_block {
   bool training;
   size_t strategy, speed; /* of the protocol */
-} ethd__block;
+} ethd__study_block;
 
 /* How many were written. */
-size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant, ethd__block out[ETHD_STUDY_BLOCKS]);
+size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant, ethd__study_block out[ETHD_STUDY_BLOCKS]);
 
 #endif

@@ -20,6 +20,7 @@ static ethd_status defaults(ethd__protocol *p) {
                         .participants = 3,
                         .training = 2,
                         .taps = 3,
+                        .rest = 3,
                         .attempts = 40,
                         .record = true,
                         .between = 0.5,
@@ -28,7 +29,10 @@ static ethd_status defaults(ethd__protocol *p) {
                         .band_high = NAN,
                         .graze = 0.02,
                         .lift = 0.005,
-                        .slack = 0.0004};
+                        .slack = 0.0004,
+                        .margin_d_max = 0.3e-3,
+                        .margin_v_of = 0.02,
+                        .margin_v_rmin = 0.02};
   for (size_t i = 0; i < sizeof text / sizeof *text; i++) {
     ethd_ini_key key = {(char *)"study", (char *)text[i].key, (char *)text[i].value, 0};
     const ethd__entry e = {"the defaults", &key, p, unsaid};
@@ -43,10 +47,20 @@ static ethd_status known_sections(const ethd_ini *ini, const char *name, char *m
     const ethd_ini_section *s = &ini->sections[i];
     if (!ethd__entry_section(s->name))
       return ethd__say(message, ETHD_E_UNKNOWN,
-                       "%s:%d: %s: unknown section; study, device, hand, validity, grid are allowed", name, s->line,
-                       ethd__quote(s->name, strlen(s->name), quote));
+                       "%s:%d: %s: unknown section; study, device, hand, validity, survey, pages, grid are allowed",
+                       name, s->line, ethd__quote(s->name, strlen(s->name), quote));
   }
   return ETHD_OK;
+}
+
+/* A questionnaire is whole, and asked. */
+static ethd_status check_questions(const ethd__entry *last, const ethd__protocol *p) {
+  const char *what;
+  int fault = ethd__questionnaire_fault(&p->questionnaire, &what);
+  if (fault < 0 && (!p->questionnaire.own || p->survey)) return ETHD_OK;
+  int line = p->questionnaire.question[fault < 0 ? 0 : fault].line;
+  return ethd__say(last->message, ETHD_E_RANGE, "%s:%d: survey.q%d: %s", last->file, line, fault < 0 ? 1 : fault + 1,
+                   fault < 0 ? "stands there without study.survey = on" : what);
 }
 
 /* What no key can say alone. */
@@ -79,6 +93,8 @@ static ethd_status fill(const ethd_ini *ini, const char *name, ethd__protocol *p
     e.key = &ini->keys[i];
     status = ethd__entry_set(&e);
   }
+  if (!status && !ethd__questionnaire_fill(&p->questionnaire)) status = ethd__no_memory(message, name);
+  if (!status) status = check_questions(&e, p);
   return status ? status : check(ini, &e, p);
 }
 
@@ -116,11 +132,12 @@ ethd_status ethd__protocol_load(const char *path, ethd__protocol *out, char mess
 void ethd__protocol_free(ethd__protocol *p) {
   char *own[] = {p->path, p->text, p->folder, p->name, p->config, p->plant, p->motion};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) free(own[i]);
-  ethd__words_free(&p->strategies);
-  ethd__words_free(&p->speeds);
+  ethd__word_list_free(&p->strategies);
+  ethd__word_list_free(&p->speeds);
+  ethd__questionnaire_free(&p->questionnaire);
   for (size_t i = 0; i < p->axis_count; i++) {
     free(p->axes[i].key);
-    ethd__words_free(&p->axes[i].values);
+    ethd__word_list_free(&p->axes[i].values);
   }
   *p = (ethd__protocol){0};
 }

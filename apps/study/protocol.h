@@ -1,24 +1,31 @@
 /* A study file: who taps on what, how often, and when a tap counts. INI, strict; all [main].
 
      [study]                              [hand]
-     name = paper                         source = simulated      recorded; people: fingers in a device
+     name = paper                         source = simulated      recorded, people, mouse
      seed = 1                             motion = FOLDER         of recorded movements
      participants = 3                     between = 0.5           share of the plant's variance between people
      strategies = smooth,offset           hand_spread = 0.15      of stiffness and damping, ln, between people
      speeds = low,high
      order = paper     random, latin      [validity]
-     training = 2      per speed          band_low = 0.06         m/s about 0.2; the plant's without
-     taps = 3          valid ones         band_high = 0.08        m/s about 0.4
-     attempts = 40     at most, a cell    graze = 0.02            s of touch that a tap needs at least
-     survey = off      on                 lift = 0.005            m off the wall and back: a double tap
-     record = all      none               slack = 0.0004          m: so near to the ring people's fingers touch it
+     training = 2      per speed          by = paper              finger: by the finger alone, for any law
+     taps = 3          valid ones         band_low = 0.06         m/s about 0.2; the plant's without
+     attempts = 40     at most, a cell    band_high = 0.08        m/s about 0.4
+     survey = off      on                 graze = 0.02            s of touch that a tap needs at least
+     record = all      none               lift = 0.005            m off the wall and back: a double tap
+     rest = 3          blocks, 0: never   slack = 0.0004          m: so near to the ring people's fingers touch it
 
      [device]                             [grid]                  --simulate: every combination
      config = n.ini                       contact.k_e = 1000,2500
-     plant = n                            [validity] by = paper   finger: by the finger alone, for any law
+     plant = n
+                                          [survey], [pages]       see questionnaire.h
 
-   With people, the configuration's [device] is opened as ethd-run does; the plant then only says how fast
-   low and high are.
+     [statistics]                         how far two strategies may differ and still be called alike:
+     margin_d_max = 0.0003                m: what the paper's sensors resolve
+     margin_v_of = 0.02                   m/s: the paper's v_th, below which the ring counts as static
+     margin_v_rmin = 0.02
+
+   source = recorded follows recorded movements, people are fingers in a device, mouse a pointer on the screen. With
+   people, the configuration's [device] is opened as ethd-run does; the plant then only says how fast low and high are.
    All keys have defaults; the figures above are they, but strategies, speeds and order of the paper.
    Files are looked for beside the study file, then among those that came with the programs. */
 #ifndef ETHD_STUDY_PROTOCOL_H
@@ -27,6 +34,7 @@
 #include <stdbool.h>
 
 #include "ethd/config.h"
+#include "study/questionnaire.h"
 #include "tap/metrics.h"
 
 #define ETHD_STUDY_WORDS 8 /* strategies, speeds, values of a gain */
@@ -37,33 +45,35 @@
 
 typedef enum ethd__order { ETHD_ORDER_PAPER, ETHD_ORDER_RANDOM, ETHD_ORDER_LATIN } ethd__order;
 
-/* Whose hands: the simulated device's, on a synthetic or a recorded path, or people's on any device. */
-typedef enum ethd__hands { ETHD_HANDS_SIMULATED, ETHD_HANDS_RECORDED, ETHD_HANDS_PEOPLE } ethd__hands;
+/* Whose hands: the simulated device's, on a synthetic or a recorded path, people's on any device, or the mouse's. */
+typedef enum ethd__hands { ETHD_HANDS_SIMULATED, ETHD_HANDS_RECORDED, ETHD_HANDS_PEOPLE, ETHD_HANDS_MOUSE } ethd__hands;
 
-typedef struct ethd__words {
+typedef struct ethd__word_list {
   char *word[ETHD_STUDY_WORDS];
   size_t count;
   int line; /* of the file, 0: the default */
-} ethd__words;
+} ethd__word_list;
 
 typedef struct ethd__axis {
   char *key; /* section.key */
-  ethd__words values;
+  ethd__word_list values;
 } ethd__axis;
 
 typedef struct ethd__protocol {
   char *path, *text, *folder;           /* as it was read; relative paths start at folder */
   char *name, *config, *plant, *motion; /* NULL where not given, but the name */
   uint64_t seed;
-  uint32_t participants, training, taps, attempts;
-  ethd__words strategies, speeds;
+  uint32_t participants, training, taps, attempts, rest;
+  ethd__word_list strategies, speeds;
   ethd__order order;
   ethd__hands hands;
   bool survey, record;
   double between, hand_spread;
   double band_low, band_high; /* m/s, NaN: the plant's */
   double graze, lift, slack;
+  double margin_d_max, margin_v_of, margin_v_rmin; /* m, m/s: of equivalence, for the report */
   ethd__validity validity;
+  ethd__questionnaire questionnaire;
   ethd__axis axes[ETHD_STUDY_GAINS];
   size_t axis_count;
 } ethd__protocol;

@@ -108,12 +108,12 @@ static ethd_status set_name(const ethd__entry *e, const key_row *row, void *at) 
   return set_text(e, row, at);
 }
 
-void ethd__words_free(ethd__words *words) {
+void ethd__word_list_free(ethd__word_list *words) {
   for (size_t i = 0; i < words->count; i++) free(words->word[i]);
   words->count = 0;
 }
 
-static ethd_status add_word(const ethd__entry *e, ethd__words *words, const char *word) {
+static ethd_status add_word(const ethd__entry *e, ethd__word_list *words, const char *word) {
   for (size_t i = 0; i < words->count; i++)
     if (!strcmp(words->word[i], word)) return ethd__entry_refuse(e, ETHD_E_DUPLICATE, "%s stands there twice", word);
   if (words->count == ETHD_STUDY_WORDS)
@@ -125,12 +125,12 @@ static ethd_status add_word(const ethd__entry *e, ethd__words *words, const char
 }
 
 static ethd_status set_words(const ethd__entry *e, const key_row *row, void *at) {
-  ethd__words *words = at;
+  ethd__word_list *words = at;
   ethd_status status = ETHD_OK;
   char *list = strdup(e->key->value), *rest = list, *word;
   (void)row;
   if (!list) return ethd__entry_refuse(e, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
-  ethd__words_free(words);
+  ethd__word_list_free(words);
   words->line = e->key->line;
   while (!status && (word = strsep(&rest, ","))) {
     word += strspn(word, " \t");
@@ -156,10 +156,11 @@ static const key_row rows[] = {
     {"study", "taps", set_count, AT(taps), 1, 100000, NULL},
     {"study", "attempts", set_count, AT(attempts), 1, 1000000, NULL},
     {"study", "survey", set_switch, AT(survey), 0, 0, "off|on"},
+    {"study", "rest", set_count, AT(rest), 0, 1000, NULL},
     {"study", "record", set_switch, AT(record), 0, 0, "none|all"},
     {"device", "config", set_text, AT(config), 0, 0, NULL},
     {"device", "plant", set_text, AT(plant), 0, 0, NULL},
-    {"hand", "source", set_choice, AT(hands), 0, 0, "simulated|recorded|people"},
+    {"hand", "source", set_choice, AT(hands), 0, 0, "simulated|recorded|people|mouse"},
     {"hand", "motion", set_text, AT(motion), 0, 0, NULL},
     {"hand", "between", set_number, AT(between), 0, 1, NULL},
     {"hand", "hand_spread", set_number, AT(hand_spread), 0, 1, NULL},
@@ -169,6 +170,9 @@ static const key_row rows[] = {
     {"validity", "graze", set_number, AT(graze), 0, 0.15, NULL},
     {"validity", "slack", set_number, AT(slack), 0, 0.002, NULL},
     {"validity", "lift", set_number, AT(lift), 0.001, 0.1, NULL},
+    {"statistics", "margin_d_max", set_number, AT(margin_d_max), 1e-6, 0.1, NULL},
+    {"statistics", "margin_v_of", set_number, AT(margin_v_of), 1e-6, 1, NULL},
+    {"statistics", "margin_v_rmin", set_number, AT(margin_v_rmin), 1e-6, 1, NULL},
 };
 enum { ROWS = sizeof rows / sizeof *rows };
 
@@ -177,6 +181,8 @@ static const key_row *find_row(const char *section, const char *key) {
     if (!strcmp(rows[i].section, section) && (!key || !strcmp(rows[i].key, key))) return &rows[i];
   return NULL;
 }
+
+static bool has_own_words(const char *section) { return !strcmp(section, "survey") || !strcmp(section, "pages"); }
 
 static ethd_status set_axis(const ethd__entry *e) {
   ethd__protocol *p = e->out;
@@ -189,6 +195,17 @@ static ethd_status set_axis(const ethd__entry *e) {
   return set_words(e, NULL, &axis->values);
 }
 
+static ethd_status set_own_words(const ethd__entry *e) {
+  char **at = ethd__questionnaire_at(&e->out->questionnaire, e->key->section, e->key->key);
+  bool survey = !strcmp(e->key->section, "survey");
+  if (!at)
+    return ethd__entry_refuse(e, ETHD_E_UNKNOWN, "no key of this section; %s are allowed",
+                              survey ? "q1 to q9, q1_answers to q9_answers"
+                                     : "consent1 to consent9, instruction1 to instruction9");
+  if (survey) e->out->questionnaire.question[e->key->key[1] - '1'].line = e->key->line;
+  return set_text(e, NULL, at);
+}
+
 static ethd_status unknown_key(const ethd__entry *e) {
   char list[192] = "";
   for (int i = 0; i < ROWS; i++)
@@ -199,8 +216,11 @@ static ethd_status unknown_key(const ethd__entry *e) {
 
 ethd_status ethd__entry_set(const ethd__entry *e) {
   if (!strcmp(e->key->section, "grid")) return set_axis(e);
+  if (has_own_words(e->key->section)) return set_own_words(e);
   const key_row *row = find_row(e->key->section, e->key->key);
   return row ? row->set(e, row, (char *)e->out + row->offset) : unknown_key(e);
 }
 
-bool ethd__entry_section(const char *section) { return !strcmp(section, "grid") || find_row(section, NULL); }
+bool ethd__entry_section(const char *section) {
+  return !strcmp(section, "grid") || has_own_words(section) || find_row(section, NULL);
+}

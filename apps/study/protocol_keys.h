@@ -22,6 +22,6 @@ ETHD_MUST_CHECK ethd_status ethd__entry_set(const ethd__entry *e);
 /* Whether study files have such a section. */
 bool ethd__entry_section(const char *section);
 
-void ethd__words_free(ethd__words *words);
+void ethd__word_list_free(ethd__word_list *words);
 
 #endif

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "text/csv.h"
+
 void ethd__participant_id(const ethd__protocol *protocol, uint32_t person, char out[ETHD_STUDY_ID_MAX]) {
   int digits = 2;
   for (uint32_t n = protocol->participants; n > 99; n /= 10) digits++;
@@ -26,7 +28,10 @@ char *ethd__tap_row(const ethd__protocol *protocol, const ethd__taken *taken) {
                             m->t_seen,
                             m->peak_force,
                             taken->result.finger_radius,
-                            taken->result.commanded};
+                            taken->result.commanded,
+                            m->v_hand,
+                            m->touch_depth,
+                            m->eps_felt};
   char id[ETHD_STUDY_ID_MAX], *text = NULL;
   size_t length;
   FILE *file = open_memstream(&text, &length);
@@ -41,6 +46,9 @@ char *ethd__tap_row(const ethd__protocol *protocol, const ethd__taken *taken) {
       fputc(',', file);
     else
       fprintf(file, ",%.17g", figures[i]);
+  fprintf(file, ",%s,", ethd__hand_words[taken->hand]);
+  ethd__csv_put_word(file, taken->movement ? taken->movement : "");
+  fprintf(file, ",%s", taken->utc);
   bool failed = ferror(file);
   if (fclose(file) == 0 && !failed) return text;
   free(text);
@@ -61,8 +69,22 @@ static bool count_of(const char *cell, unsigned long long most, unsigned long lo
   return *cell && !cell[strspn(cell, "0123456789")] && *out >= 1 && *out <= most;
 }
 
+/* Behind the figures, of which none has quotes: hand,movement,utc. False: no such hand. */
+static bool read_end(const char *row, ethd__tap_key *out) {
+  const char *utc = strrchr(row, ',');
+  char word[16];
+  int hand = 0;
+  enum { FIGURES = 15 };
+  for (int i = 0; i < FIGURES && *row; i++) row += strcspn(row, ",") + (row[strcspn(row, ",")] == ',');
+  if (!ethd__row_cell(&row, word, sizeof word) || !utc || strlen(utc + 1) >= sizeof out->utc) return false;
+  while (hand < ETHD_HAND_SOURCES && strcmp(word, ethd__hand_words[hand])) hand++;
+  out->hand = (ethd__hand_source)hand;
+  snprintf(out->utc, sizeof out->utc, "%s", utc + 1);
+  return hand < ETHD_HAND_SOURCES;
+}
+
 bool ethd__tap_row_key(const char *row, ethd__tap_key *out) {
-  enum { PARTICIPANT, BLOCK, PART, ATTEMPT, TRANSITION, SPEED, SEED, TAP, VALID, CELLS };
+  enum { PARTICIPANT, BLOCK, PART, ATTEMPT, TRANSITION, SPEED, SEED, TAP, VALID, REASON, CELLS };
   char cell[CELLS][40];
   unsigned long long person, number, attempt;
   for (int i = 0; i < CELLS; i++)
@@ -70,6 +92,10 @@ bool ethd__tap_row_key(const char *row, ethd__tap_key *out) {
   if (cell[PARTICIPANT][0] != 'P' || !count_of(cell[PARTICIPANT] + 1, ETHD_STUDY_PEOPLE, &person) ||
       !count_of(cell[BLOCK], ETHD_STUDY_BLOCKS, &number) || !count_of(cell[ATTEMPT], UINT32_MAX, &attempt))
     return false;
-  *out = (ethd__tap_key){(uint32_t)person - 1, (uint32_t)attempt, (size_t)number, cell[VALID][0] == '1'};
-  return true;
+  *out = (ethd__tap_key){.person = (uint32_t)person - 1,
+                         .attempt = (uint32_t)attempt,
+                         .number = (size_t)number,
+                         .training = !strcmp(cell[PART], "training"),
+                         .valid = cell[VALID][0] == '1'};
+  return read_end(row, out);
 }

@@ -5,42 +5,50 @@
 #ifndef ETHD_STUDY_SESSION_H
 #define ETHD_STUDY_SESSION_H
 
-#include "study/folder.h"
 #include "study/front.h"
-#include "study/journal.h"
-
-#define ETHD_STUDY_SESSION_PEOPLE 10000u
-
-/* How far a block has come. */
-typedef struct ethd__progress_of {
-  uint32_t taken, valid;
-  bool surveyed;
-} ethd__progress_of;
+#include "study/progress.h"
 
 typedef struct ethd__sitting {
   ethd__folder *folder;
   ethd__journal journal;
-  ethd__progress_of (*at)[ETHD_STUDY_BLOCKS]; /* by participant and block */
-  bool *aborted;
+  ethd__session_progress progress;
   ethd__source source;
   ethd__front front;
-  uint32_t first, last; /* participants that are asked for */
-  uint64_t taps;        /* done by this program */
+  uint32_t first, last;    /* participants that are asked for */
+  uint64_t taps;           /* done by this program */
+  uint32_t unasked;        /* blocks after which nobody could be asked */
+  ethd__participant *left; /* who was ended last in this sitting, NULL: nobody */
+  bool handed_over, undone;
 } ethd__sitting;
 
-/* A folder without a journal: a new session; with one: goes on. */
-ETHD_MUST_CHECK ethd_status ethd__sitting_open(ethd__folder *folder, ethd__sitting *out,
+/* A folder without a journal: a new session; with one: goes on, if its taps are this hand's. */
+ETHD_MUST_CHECK ethd_status ethd__sitting_open(ethd__folder *folder, ethd__hand_source hand, ethd__sitting *out,
                                                char message[ETHD_MESSAGE_MAX]);
+
+/* Into the journal, and so into what is known of the session. */
+ETHD_MUST_CHECK ethd_status ethd__sitting_put(ethd__sitting *s, const char *kind, const char *text,
+                                              char message[ETHD_MESSAGE_MAX]);
+
+/* Writes down something that isn't a tap; number: of the block, 0: none. participant "": nobody's. */
+ETHD_MUST_CHECK ethd_status ethd__sitting_event(ethd__sitting *s, const char *participant, size_t number,
+                                                const char *event, const char *detail, char message[ETHD_MESSAGE_MAX]);
 
 /* Runs until all is done, somebody stops it or ethd__stop is set. *over: all is done. */
 ETHD_MUST_CHECK ethd_status ethd__sitting_run(ethd__sitting *s, bool *over, char message[ETHD_MESSAGE_MAX]);
 
 void ethd__sitting_close(ethd__sitting *s);
 
-/* taps.csv, survey.csv, events.csv from the folder's journal. */
-ETHD_MUST_CHECK ethd_status ethd__tables_write(const char *folder, char message[ETHD_MESSAGE_MAX]);
+/* Whether questions are to be asked after this block, and asking them: each answer reaches the journal before the next
+   question. *stop: somebody ended it meanwhile. */
+bool ethd__survey_due(const ethd__sitting *s, const ethd__turn *turn);
+ETHD_MUST_CHECK ethd_status ethd__survey_run(ethd__sitting *s, const char *id, const ethd__turn *turn, bool *stop,
+                                             char message[ETHD_MESSAGE_MAX]);
 
-/* A block that needs no more taps. */
-bool ethd__block_over(const ethd__protocol *protocol, const ethd__block *block, uint32_t taken, uint32_t valid);
+/* Takes a participant out of the analysis or back: event is withdraw, exclude or include. Nobody taps. */
+ETHD_MUST_CHECK ethd_status ethd__session_decide(const char *folder, uint32_t person, const char *event,
+                                                 const char *reason, char message[ETHD_MESSAGE_MAX]);
+
+/* taps.csv, survey.csv, events.csv and participants.csv from the folder's journal, and SHA256SUMS of it all. */
+ETHD_MUST_CHECK ethd_status ethd__tables_write(const ethd__folder *folder, char message[ETHD_MESSAGE_MAX]);
 
 #endif

@@ -10,14 +10,59 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
+#include "study/columns.h"
 #include "study/keep.h"
 #include "study/row.h"
 #include "study/session.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
+/* ---- names ---- */
+
+#define HASH_DIGITS 12
+
+static char *had(char *text, int length) {
+  if (length < 0) ethd__fail_memory();
+  return text;
+}
+
+uint64_t ethd__unit_count(const ethd__protocol *protocol) {
+  return (uint64_t)ethd__protocol_points(protocol) * protocol->participants;
+}
+
+char *ethd__shard_path(const ethd__folder *folder, const ethd__shard *shard, const char *suffix) {
+  char *path = NULL;
+  int length =
+      asprintf(&path, "%s/shard-%" PRIu32 "-of-%" PRIu32 "%s", folder->path, shard->index, shard->count, suffix);
+  return had(path, length);
+}
+
+char *ethd__shard_header(const ethd__protocol *protocol) {
+  char *header = NULL, *taps = ethd__table_header(ETHD_TABLE_TAPS, protocol);
+  int length = asprintf(&header, "study,point,%s", taps);
+  free(taps);
+  had(header, length);
+  for (size_t i = 0; i < protocol->axis_count; i++) {
+    char *longer = NULL;
+    length = asprintf(&longer, "%s,%s", header, protocol->axes[i].key);
+    free(header);
+    header = had(longer, length);
+  }
+  return header;
+}
+
+char *ethd__unit_prefix(const ethd__folder *folder, uint64_t unit) {
+  char id[ETHD_STUDY_ID_MAX], *prefix = NULL;
+  uint64_t people = folder->protocol.participants;
+  ethd__participant_id(&folder->protocol, (uint32_t)(unit % people), id);
+  int length = asprintf(&prefix, "%.*s,%" PRIu64 ",%s,", HASH_DIGITS, folder->hash, unit / people, id);
+  return had(prefix, length);
+}
+
+/* ---- a shard at work ---- */
+
 /* A shard at work. */
-typedef struct work {
+typedef struct shard_work {
   ethd__folder *folder;
   ethd__desk *desk;
   const ethd__shard *shard;
@@ -26,15 +71,15 @@ typedef struct work {
   char *path;
   uint64_t taps;
   char *message;
-} work;
+} shard_work;
 
-static ethd_status refuse(const work *w, const char *path) {
+static ethd_status refuse(const shard_work *w, const char *path) {
   return ethd__say(w->message, ETHD_E_FILE, "%s: %s", path, strerror(errno ? errno : EIO));
 }
 
 /* ---- a unit ---- */
 
-static ethd_status keep(work *w, size_t point, const char *id, const ethd__taken *taken, const char *row) {
+static ethd_status keep(shard_work *w, size_t point, const char *id, const ethd__taken *taken, const char *row) {
   const ethd__protocol *p = &w->folder->protocol;
   const ethd__turn *turn = &taken->turn;
   char name[80], words[160], below[48];
@@ -51,7 +96,7 @@ static ethd_status keep(work *w, size_t point, const char *id, const ethd__taken
   return status;
 }
 
-static ethd_status run_tap(work *w, size_t point, const ethd__turn *turn, bool *valid) {
+static ethd_status run_tap(shard_work *w, size_t point, const ethd__turn *turn, bool *valid) {
   const ethd__protocol *p = &w->folder->protocol;
   ethd__taken taken;
   char id[ETHD_STUDY_ID_MAX];
@@ -70,9 +115,9 @@ static ethd_status run_tap(work *w, size_t point, const ethd__turn *turn, bool *
   return status;
 }
 
-static ethd_status run_unit(work *w, uint64_t unit) {
+static ethd_status run_unit(shard_work *w, uint64_t unit) {
   const ethd__protocol *p = &w->folder->protocol;
-  ethd__block blocks[ETHD_STUDY_BLOCKS];
+  ethd__study_block blocks[ETHD_STUDY_BLOCKS];
   uint32_t person = (uint32_t)(unit % p->participants);
   size_t point = (size_t)(unit / p->participants), count = ethd__order_of(p, person, blocks);
   ethd_status status = ETHD_OK;
@@ -93,7 +138,7 @@ static ethd_status run_unit(work *w, uint64_t unit) {
 /* ---- going on ---- */
 
 /* Whole units at the start of the text, but for the last one, which may be torn. */
-static ethd_status units_of(const work *w, const char *text, size_t length, uint64_t *units, size_t *good) {
+static ethd_status units_of(const shard_work *w, const char *text, size_t length, uint64_t *units, size_t *good) {
   char *header = ethd__shard_header(&w->folder->protocol);
   size_t n = strlen(header);
   bool same = length > n && !memcmp(text, header, n) && text[n] == '\n';
@@ -121,7 +166,7 @@ static ethd_status units_of(const work *w, const char *text, size_t length, uint
               : ethd__say(w->message, ETHD_E_SYNTAX, "%s: of another study; remove it to begin anew", w->path);
 }
 
-static ethd_status cut(work *w, uint64_t *units) {
+static ethd_status cut(shard_work *w, uint64_t *units) {
   char *text, *header;
   size_t length, good;
   ethd_status status = ethd_text_read(w->path, (size_t)1 << 34, &text, &length, w->message);
@@ -136,7 +181,7 @@ static ethd_status cut(work *w, uint64_t *units) {
   return ETHD_OK;
 }
 
-static ethd_status open_part(work *w, uint64_t *units) {
+static ethd_status open_part(shard_work *w, uint64_t *units) {
   int fd = open(w->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   w->file = fd < 0 ? NULL : fdopen(fd, "r+");
   if (!w->file) return refuse(w, w->path);
@@ -147,7 +192,7 @@ static ethd_status open_part(work *w, uint64_t *units) {
 
 /* ---- all units ---- */
 
-static ethd_status run_units(work *w, uint64_t done, bool *over) {
+static ethd_status run_units(shard_work *w, uint64_t done, bool *over) {
   uint64_t all = ethd__unit_count(&w->folder->protocol);
   ethd_status status = ETHD_OK;
   uint64_t unit = w->shard->index - 1 + done * w->shard->count;
@@ -161,7 +206,7 @@ static ethd_status run_units(work *w, uint64_t done, bool *over) {
   return status;
 }
 
-static ethd_status finish(work *w, const char *final, bool over) {
+static ethd_status finish(shard_work *w, const char *final, bool over) {
   bool failed = fflush(w->file) != 0 || (over && fsync(fileno(w->file)) != 0);
   if (!failed && over) failed = rename(w->path, final) != 0;
   return failed ? refuse(w, w->path) : ETHD_OK;
@@ -169,7 +214,8 @@ static ethd_status finish(work *w, const char *final, bool over) {
 
 ethd_status ethd__shard_run(ethd__folder *folder, ethd__desk *desk, const ethd__shard *shard, uint64_t *taps,
                             bool *over, char message[ETHD_MESSAGE_MAX]) {
-  work w = {.folder = folder, .desk = desk, .shard = shard, .source = ethd__desk_source(desk), .message = message};
+  shard_work w = {
+      .folder = folder, .desk = desk, .shard = shard, .source = ethd__desk_source(desk), .message = message};
   char *final = ethd__shard_path(folder, shard, ".csv");
   uint64_t done = 0;
   ethd_status status = ETHD_OK;

@@ -5,12 +5,28 @@
 #include "study/order.h"
 #include "tap/ticks.h"
 
+/* Who leads the hand. A session has one source, and so has each of its taps. */
+typedef enum ethd__hand_source {
+  ETHD_HAND_DEVICE,    /* a person's finger in a device's ring */
+  ETHD_HAND_MOUSE,     /* a person's pointer, which leads the simulated device's hand */
+  ETHD_HAND_SIMULATED, /* the plant's synthetic hand */
+  ETHD_HAND_RECORDED,  /* a recorded movement */
+  ETHD_HAND_SOURCES
+} ethd__hand_source;
+
+extern const char *const ethd__hand_words[ETHD_HAND_SOURCES];
+
+/* Nothing is asked of a simulated or recorded hand, and no clock stands in its tables: the same bytes again. [any] */
+static inline bool ethd__hand_is_persons(ethd__hand_source hand) { return hand <= ETHD_HAND_MOUSE; }
+
 /* A tap that is due. */
 typedef struct ethd__turn {
   uint32_t person, attempt; /* person from 0, attempt from 1 */
-  size_t number;            /* of the block within the participant's, from 1 */
-  ethd__block block;
+  size_t number, of;        /* of the block within the participant's, from 1; how many there are */
+  ethd__study_block block;
 } ethd__turn;
+
+#define ETHD_UTC_MAX 32
 
 /* A tap that was done. */
 typedef struct ethd__taken {
@@ -19,12 +35,15 @@ typedef struct ethd__taken {
   ethd__result result;
   const ethd__speed *speed;
   const ethd__stage *stage; /* its ticks, setup and law, until the next tap */
+  ethd__hand_source hand;
+  const char *movement;   /* the recorded movement's file, without its folder; NULL: none */
+  char utc[ETHD_UTC_MAX]; /* when it began; empty unless a person's */
 } ethd__taken;
 
 typedef struct ethd__source {
   void *self;
-  bool simulated; /* people are: nothing is asked of them, and no clock stands in their tables */
-  /* One tap, whatever it takes. ETHD_EMPTY: somebody stops it, there was none. */
+  ethd__hand_source hand;
+  /* One tap, whatever it takes. ETHD_EMPTY: it was stopped, or never begun; there was none. */
   ethd_status (*tap)(void *self, const ethd__turn *turn, ethd__taken *out, char message[ETHD_MESSAGE_MAX]);
   /* Why the device has stopped itself, a sentence; NULL: it hasn't. acknowledge: it may go on. Both NULL
      where nothing stops. */

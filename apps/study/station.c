@@ -33,8 +33,8 @@ static void begin(ethd__station *s, const ethd_loop_row *row) {
 }
 
 static void add(ethd__station *s, const ethd_loop_row *row) {
-  ethd__rows *rows = &s->stage.rows;
-  s->status = row->lost && rows->count ? ETHD_E_FULL : ethd__rows_room(rows);
+  ethd__tap_rows *rows = &s->stage.rows;
+  s->status = row->lost && rows->count ? ETHD_E_FULL : ethd__tap_rows_room(rows);
   if (s->status) {
     s->phase = ETHD_PHASE_OVER;
     return;
@@ -146,6 +146,8 @@ static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, cha
   if (s->status) return ethd__say(message, s->status, "the tap's ticks: %s", ethd_status_sentence(s->status));
   out->stage = &s->stage;
   out->seed = out->tap = 0;
+  out->hand = ETHD_HAND_DEVICE;
+  out->movement = NULL;
   const ethd_sim_tap circumstances = {.finger_radius = s->stage.setup.finger_radius, .commanded = out->speed->centre};
   ethd__stage_judge(&s->stage, &s->rule, &circumstances, &out->result);
   return ETHD_OK;
@@ -173,7 +175,12 @@ static ethd_vec finger(void *self) {
 }
 
 ethd__source ethd__station_source(ethd__station *s) {
-  return (ethd__source){.self = s, .tap = tap, .stopped = stopped, .acknowledge = acknowledge, .finger = finger};
+  return (ethd__source){.self = s,
+                        .hand = ETHD_HAND_DEVICE,
+                        .tap = tap,
+                        .stopped = stopped,
+                        .acknowledge = acknowledge,
+                        .finger = finger};
 }
 
 /* ---- opening, closing ---- */
@@ -214,7 +221,7 @@ ethd_status ethd__station_close(ethd__station *s, char message[ETHD_MESSAGE_MAX]
   if (s->kept) pthread_join(s->keeper, NULL);
   ethd_status status = ethd__session_end(&s->session, message);
   ethd__session_free(&s->session);
-  ethd__rows_free(&s->stage.rows);
+  ethd__tap_rows_free(&s->stage.rows);
   pthread_mutex_destroy(&s->lock);
   return status;
 }

@@ -2,38 +2,131 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "study/columns.h"
 #include "study/row.h"
 #include "study/session.h"
+#include "study/sums.h"
+#include "text/csv.h"
+#include "text/error_text.h"
 #include "text/text.h"
 
-static const struct {
-  const char *file, *header, *kind;
-} tables[] = {
-    {ETHD_STUDY_TAPS, ETHD_STUDY_TAPS_HEADER, "tap"},
-    {ETHD_STUDY_SURVEY, ETHD_STUDY_SURVEY_HEADER, "survey"},
-    {ETHD_STUDY_EVENTS, ETHD_STUDY_EVENTS_HEADER, "event"},
-};
+/* The journal as it stands, and what follows from it. */
+typedef struct ledger {
+  const ethd__folder *folder;
+  ethd__journal journal;
+  ethd__session_progress progress;
+} ledger;
 
-static ethd_status write_table(const char *folder, int table, const ethd__journal *journal, char *message) {
-  char *path = ethd__folder_path(folder, tables[table].file);
+static ethd_status read_ledger(const ethd__folder *folder, ledger *out, char *message) {
+  char *path = ethd__folder_path(folder->path, ETHD_STUDY_JOURNAL);
+  *out = (ledger){.folder = folder, .journal = {.fd = -1}};
+  ethd_status status = ethd__progress_begin(&folder->protocol, &out->progress, message);
+  if (!status) status = ethd__journal_read(path, &out->journal, message);
+  if (!status) status = ethd__progress_read(&out->journal, folder->hash, &out->progress, message);
+  free(path);
+  return status;
+}
+
+static void close_ledger(ledger *l) {
+  ethd__journal_close(&l->journal);
+  ethd__progress_free(&l->progress);
+}
+
+/* ---- rows ---- */
+
+/* The journal's lines of this kind. */
+static void put_lines(const ledger *l, const char *kind, FILE *file) {
+  for (size_t i = 0; i < l->journal.count; i++)
+    if (!strcmp(l->journal.lines[i].kind, kind)) fprintf(file, "%s\n", l->journal.lines[i].text);
+}
+
+static void put_taps(const ledger *l, FILE *file) { put_lines(l, "tap", file); }
+static void put_survey(const ledger *l, FILE *file) { put_lines(l, "survey", file); }
+static void put_events(const ledger *l, FILE *file) { put_lines(l, "event", file); }
+
+/* Of everybody who has tapped, or of whom something was decided. */
+static void put_participants(const ledger *l, FILE *file) {
+  const ethd__protocol *p = &l->folder->protocol;
+  char id[ETHD_STUDY_ID_MAX];
+  for (uint32_t i = 0; i < p->participants; i++) {
+    const ethd__participant *who = &l->progress.person[i];
+    if (!who->tapped && who->standing == ETHD_STANDING_IN && !who->reason) continue;
+    ethd__participant_id(p, i, id);
+    fprintf(file, "%s,%s,%d,", id,
+            who->standing != ETHD_STANDING_IN         ? ethd__standing_words[who->standing]
+            : ethd__participant_over(&l->progress, i) ? "complete"
+                                                      : "incomplete",
+            who->standing == ETHD_STANDING_IN);
+    ethd__csv_put_word(file, who->reason ? who->reason : "");
+    fprintf(file, ",%s,%u,%u,%s,%s\n", who->tapped ? ethd__hand_words[who->hand] : "", who->taps, who->valid,
+            who->first, who->last);
+  }
+}
+
+/* ---- files ---- */
+
+static ethd_status write_table(const ledger *l, ethd__study_table table, char *message) {
+  static void (*const put[ETHD_TABLES])(const ledger *l, FILE *file) = {[ETHD_TABLE_TAPS] = put_taps,
+                                                                        [ETHD_TABLE_SURVEY] = put_survey,
+                                                                        [ETHD_TABLE_EVENTS] = put_events,
+                                                                        [ETHD_TABLE_PARTICIPANTS] = put_participants};
+  char name[32];
+  if (!put[table]) return ETHD_OK; /* written as the folder was made */
+  snprintf(name, sizeof name, "%s.csv", ethd__table_names[table]);
+  char *path = ethd__folder_path(l->folder->path, name);
   ethd_replace replace;
   ethd_status status = ethd_replace_begin(path, &replace, message);
   free(path);
   if (status) return status;
-  fprintf(replace.file, "%s\n", tables[table].header);
-  for (size_t i = 0; i < journal->count; i++)
-    if (!strcmp(journal->lines[i].kind, tables[table].kind)) fprintf(replace.file, "%s\n", journal->lines[i].text);
+  char *header = ethd__table_header(table, &l->folder->protocol);
+  fprintf(replace.file, "%s\n", header);
+  free(header);
+  put[table](l, replace.file);
   return ethd_replace_commit(&replace, message);
 }
 
-ethd_status ethd__tables_write(const char *folder, char message[ETHD_MESSAGE_MAX]) {
-  ethd__journal journal;
-  char *path = ethd__folder_path(folder, ETHD_STUDY_JOURNAL);
-  ethd_status status = ethd__journal_read(path, &journal, message);
-  free(path);
+ethd_status ethd__tables_write(const ethd__folder *folder, char message[ETHD_MESSAGE_MAX]) {
+  ledger l;
+  ethd_status status = read_ledger(folder, &l, message);
+  for (int i = 0; !status && i < ETHD_TABLES; i++) status = write_table(&l, (ethd__study_table)i, message);
+  close_ledger(&l);
+  return status ? status : ethd__sums_write(folder->path, message);
+}
+
+/* ---- decisions ---- */
+
+/* The hand by which the event has a clock: a person's, if there is one. */
+static ethd__hand_source hand_of(const ethd__session_progress *progress) {
+  for (int i = 0; i < ETHD_HAND_SOURCES; i++)
+    if (progress->hand[i]) return (ethd__hand_source)i;
+  return ETHD_HAND_SIMULATED;
+}
+
+static ethd_status decide(ethd__sitting *s, uint32_t person, const char *event, const char *reason, char *message) {
+  char id[ETHD_STUDY_ID_MAX];
+  ethd_status status = ethd__progress_read(&s->journal, s->folder->hash, &s->progress, message);
   if (status) return status;
-  for (int i = 0; !status && i < (int)(sizeof tables / sizeof *tables); i++)
-    status = write_table(folder, i, &journal, message);
-  ethd__journal_close(&journal);
+  s->source.hand = hand_of(&s->progress);
+  ethd__participant_id(&s->folder->protocol, person, id);
+  status = ethd__sitting_event(s, id, 0, event, reason, message);
+  return status ? status : ethd__tables_write(s->folder, message);
+}
+
+ethd_status ethd__session_decide(const char *path, uint32_t person, const char *event, const char *reason,
+                                 char message[ETHD_MESSAGE_MAX]) {
+  ethd__folder folder;
+  ethd_status status = ethd__folder_read(path, &folder, message);
+  if (status) return status;
+  ethd__sitting s = {.folder = &folder, .journal = {.fd = -1}};
+  char *journal = ethd__folder_path(path, ETHD_STUDY_JOURNAL);
+  if (person >= folder.protocol.participants)
+    status = ethd__say(message, ETHD_E_RANGE, "participant %u: 1 to %u are allowed", person + 1,
+                       folder.protocol.participants);
+  if (!status) status = ethd__progress_begin(&folder.protocol, &s.progress, message);
+  if (!status) status = ethd__journal_open(journal, &s.journal, message);
+  if (!status) status = decide(&s, person, event, reason, message);
+  ethd__sitting_close(&s);
+  ethd__folder_close(&folder);
+  free(journal);
   return status;
 }

@@ -1,10 +1,23 @@
 #include "tap/claims.h"
 
 #include <math.h>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#define FEWEST 5 /* valid taps that a verdict needs */
+#include "cli/cli.h"
+#include "statistics/paired.h"
+#include "tap/early.h"
+
+#define LEVEL 0.05
+
+const ethd__margins ethd__margins_default = {0.3e-3, 0.02, 0.02};
+
+const char *const ethd__verdict_words[ETHD_TAP_VERDICTS] = {
+    [ETHD_TAP_UNKNOWN] = "too few people",
+    [ETHD_TAP_SHOWN] = "shown",
+    [ETHD_TAP_OPEN] = "not shown",
+    [ETHD_TAP_CONTRARY] = "the contrary is shown",
+};
 
 const ethd__cell *ethd__cell_find(const ethd__cell *cells, size_t count, const char *law, const char *speed) {
   for (size_t i = 0; i < count; i++)
@@ -12,122 +25,194 @@ const ethd__cell *ethd__cell_find(const ethd__cell *cells, size_t count, const c
   return NULL;
 }
 
-static ethd__figure figure_of(const ethd__cell *cell, size_t field) {
-  return cell ? ethd__cell_figure(cell, field) : (ethd__figure){0, NAN, NAN};
+static double *numbers(size_t n) {
+  double *out = malloc((n + 1) * sizeof *out);
+  if (!out) ethd__fail_memory();
+  return out;
 }
 
-static ethd__verdict verdict(bool known, bool met) {
-  return !known ? ETHD_TAP_UNKNOWN : met ? ETHD_TAP_MET : ETHD_TAP_NOT_MET;
+/* Moves the numbers that there are to the front; how many. */
+static size_t drop_missing(double *values, size_t n) {
+  size_t kept = 0;
+  for (size_t i = 0; i < n; i++)
+    if (!isnan(values[i])) values[kept++] = values[i];
+  return kept;
 }
+
+/* ---- figures of a tap ---- */
+
+#define OF(name, expression) \
+  static double name(const ethd__metrics *m) { return expression; }
+OF(d_max_mm, 1e3 * m->d_max)
+OF(v_of, m->v_of)
+OF(v_of_size, fabs(m->v_of))
+OF(v_rmin, m->v_rmin)
+OF(v_rmin_size, fabs(m->v_rmin))
+OF(delta_s, m->delta_s)
+OF(eps_mm, 1e3 * m->eps)
+OF(with_finger, isnan(m->v_of) ? NAN : 100 * (m->v_of > 0))
+OF(is_valid, 100 * (m->reason == ETHD_TAP_OK))
 
 /* ---- Table 1 ---- */
 
-void ethd__means(const ethd__cell *cells, size_t count, ethd__mean out[ETHD_TAP_MEANS]) {
+void ethd__means(const ethd__sample *t, ethd__mean out[ETHD_TAP_MEANS]) {
   static const struct {
     const char *name, *unit, *speed;
     size_t field;
+    ethd__tap_value *of;
     double scale, mean, sd;
   } table[ETHD_TAP_MEANS] = {
-      {"Delta_s, low", "ms", "low", ETHD_TAP_FIELD(delta_s), 1, 3.111, 2.804},
-      {"eps, low", "mm", "low", ETHD_TAP_FIELD(eps), 1e3, 0.388, 0.251},
-      {"Delta_s, high", "ms", "high", ETHD_TAP_FIELD(delta_s), 1, 14.556, 1.424},
-      {"eps, high", "mm", "high", ETHD_TAP_FIELD(eps), 1e3, 2.434, 0.357},
+      {"Delta_s, low", "ms", "low", ETHD_TAP_FIELD(delta_s), delta_s, 1, 3.111, 2.804},
+      {"eps, low", "mm", "low", ETHD_TAP_FIELD(eps), eps_mm, 1e3, 0.388, 0.251},
+      {"Delta_s, high", "ms", "high", ETHD_TAP_FIELD(delta_s), delta_s, 1, 14.556, 1.424},
+      {"eps, high", "mm", "high", ETHD_TAP_FIELD(eps), eps_mm, 1e3, 2.434, 0.357},
   };
+  double *own = numbers(t->people);
   for (int i = 0; i < ETHD_TAP_MEANS; i++) {
-    ethd__mean *mean = &out[i];
-    *mean = (ethd__mean){table[i].name, table[i].unit, table[i].mean, table[i].sd, {0}, 0, 0};
-    mean->here = figure_of(ethd__cell_find(cells, count, "offset", table[i].speed), table[i].field);
-    mean->here.mean *= table[i].scale;
-    mean->here.sd *= table[i].scale;
-    mean->allowed = mean->paper_sd + 2 * ethd__figure_error(&mean->here);
-    mean->verdict = verdict(mean->here.n >= FEWEST, fabs(mean->here.mean - mean->paper) <= mean->allowed);
+    const ethd__cell *cell = ethd__cell_find(t->cells, t->count, "offset", table[i].speed);
+    ethd__mean *m = &out[i];
+    *m = (ethd__mean){.name = table[i].name, .unit = table[i].unit, .paper = table[i].mean, .paper_sd = table[i].sd};
+    m->here = cell ? ethd__cell_figure(cell, table[i].field) : (ethd__figure){0, NAN, NAN};
+    m->here.mean *= table[i].scale, m->here.sd *= table[i].scale;
+    ethd__people_figure(cell, table[i].of, ETHD_PERSON_MEAN, t->people, own);
+    m->people = drop_missing(own, t->people);
+    m->average = ethd__mean_of(own, m->people);
+    ethd__equivalence e = ethd__equivalent(own, m->people, m->paper - m->paper_sd, m->paper + m->paper_sd);
+    m->low = e.low, m->high = e.high, m->p = e.p;
+    if (m->people < ETHD_STATISTICS_PEOPLE) continue;
+    m->verdict = e.p < LEVEL ? ETHD_TAP_SHOWN : e.outside ? ETHD_TAP_CONTRARY : ETHD_TAP_OPEN;
   }
+  free(own);
 }
 
-/* ---- claims ---- */
+/* ---- contrasts ---- */
 
-/* The same figure under smooth and offset. */
-typedef struct both {
-  ethd__figure smooth, offset;
-  bool known;
-} both;
+enum { SMOOTH_LOW, OFFSET_LOW, SMOOTH_HIGH, OFFSET_HIGH, CELLS };
 
-static both both_of(const ethd__cell *cells, size_t count, const char *speed, size_t field) {
-  both b = {figure_of(ethd__cell_find(cells, count, "smooth", speed), field),
-            figure_of(ethd__cell_find(cells, count, "offset", speed), field), false};
-  b.known = b.smooth.n >= FEWEST && b.offset.n >= FEWEST;
-  return b;
+/* Weights of the four cells; people who lack one with a weight are left out. */
+typedef struct contrast {
+  const char *what, *unit;
+  ethd__tap_value *of;
+  ethd__person_figure figure;
+  double weight[CELLS];
+  double from, to;
+  size_t margin; /* of ethd__margins: the place of a margin that stands for `from` and `to`, in `scale`; */
+  double scale;  /* 0: the two are as they stand */
+} contrast;
+
+typedef struct sentence {
+  const char *text;
+  contrast part[ETHD_TAP_PARTS_MAX];
+} sentence;
+
+#define MARGIN(name, scale) 0, 0, offsetof(ethd__margins, name), scale
+#define ABOVE(x) x, INFINITY, 0, 0
+#define MEDIAN ETHD_PERSON_MEDIAN
+#define MEAN ETHD_PERSON_MEAN
+static const sentence sentences[] = {
+    {"low speed: smooth and offset are alike in d_max, v_of and v_rmin",
+     {{"d_max: offset - smooth", "mm", d_max_mm, MEDIAN, {-1, 1, 0, 0}, MARGIN(d_max, 1e3)},
+      {"v_of: offset - smooth", "m/s", v_of, MEDIAN, {-1, 1, 0, 0}, MARGIN(v_of, 1)},
+      {"v_rmin: offset - smooth", "m/s", v_rmin, MEDIAN, {-1, 1, 0, 0}, MARGIN(v_rmin, 1)}}},
+    {"high speed: smooth rebounds several times as far as offset (more than 3 times)",
+     {{"d_max: smooth - 3 offset", "mm", d_max_mm, MEDIAN, {0, 0, 1, -3}, ABOVE(0)}}},
+    {"high speed: smooth rebounds much faster than offset (more than twice as fast)",
+     {{"|v_rmin|: smooth - 2 offset", "m/s", v_rmin_size, MEDIAN, {0, 0, 1, -2}, ABOVE(0)}}},
+    {"high speed: the ring's speed at the touch is nearer to zero under offset",
+     {{"|v_of|: smooth - offset", "m/s", v_of_size, MEDIAN, {0, 0, 1, -1}, ABOVE(0)}}},
+    {"high speed: in at least 25 % of the taps under offset the ring moves with the finger",
+     {{"share of v_of > 0: offset", "%", with_finger, MEAN, {0, 0, 0, 1}, ABOVE(25)}}},
+    {"the strategies differ more at high speed than at low, in d_max, |v_of| and |v_rmin|",
+     {{"d_max: (smooth - offset), high - low", "mm", d_max_mm, MEDIAN, {-1, 1, 1, -1}, ABOVE(0)},
+      {"|v_of|: (smooth - offset), high - low", "m/s", v_of_size, MEDIAN, {-1, 1, 1, -1}, ABOVE(0)},
+      {"|v_rmin|: (smooth - offset), high - low", "m/s", v_rmin_size, MEDIAN, {-1, 1, 1, -1}, ABOVE(0)}}},
+    {"high speed: 20 to 30 % of the taps are valid, as 10 to 15 taps were needed for three",
+     {{"valid taps: mean of smooth and offset", "%", is_valid, ETHD_PERSON_ATTEMPTS, {0, 0, 0.5, 0.5}, 20, 30, 0, 0}}},
+};
+enum { SENTENCES = sizeof sentences / sizeof *sentences };
+_Static_assert(SENTENCES + 1 == ETHD_TAP_CLAIMS, "and the one of early touches");
+
+/* Each person's contrast; how many people have it. */
+static size_t contrast_of(const ethd__sample *t, const contrast *c, double *out) {
+  static const char *const laws[CELLS] = {"smooth", "offset", "smooth", "offset"}, *const speeds[CELLS] = {
+                                                                                       "low", "low", "high", "high"};
+  double *own = numbers(t->people);
+  for (size_t p = 0; p < t->people; p++) out[p] = 0;
+  for (int k = 0; k < CELLS; k++) {
+    if (c->weight[k] == 0) continue;
+    const ethd__cell *cell = ethd__cell_find(t->cells, t->count, laws[k], speeds[k]);
+    ethd__people_figure(cell, c->of, c->figure, t->people, own);
+    for (size_t p = 0; p < t->people; p++) out[p] += c->weight[k] * own[p];
+  }
+  free(own);
+  return drop_missing(out, t->people);
 }
 
-static void rebound(const ethd__cell *cells, size_t count, ethd__tap_claim *out) {
-  both d = both_of(cells, count, "high", ETHD_TAP_FIELD(d_max));
-  out->text = "high: d_max of smooth is several times (>= 3) that of offset";
-  snprintf(out->here, sizeof out->here, "%.2f / %.2f mm = %.1f x", 1e3 * d.smooth.mean, 1e3 * d.offset.mean,
-           d.smooth.mean / d.offset.mean);
-  out->verdict = verdict(d.known, d.smooth.mean >= 3 * d.offset.mean);
-}
-
-static void rebound_speed(const ethd__cell *cells, size_t count, ethd__tap_claim *out) {
-  both v = both_of(cells, count, "high", ETHD_TAP_FIELD(v_rmin));
-  out->text = "high: |v_rmin| is much smaller (<= 1/2) under offset";
-  snprintf(out->here, sizeof out->here, "%.3f -> %.3f m/s", v.smooth.mean, v.offset.mean);
-  out->verdict = verdict(v.known, fabs(v.offset.mean) <= fabs(v.smooth.mean) / 2);
-}
-
-static void speed_at_touch(const ethd__cell *cells, size_t count, ethd__tap_claim *out) {
-  both v = both_of(cells, count, "high", ETHD_TAP_FIELD(v_of));
-  out->text = "high: mean v_of is against the finger (< 0) under smooth, not so under offset";
-  snprintf(out->here, sizeof out->here, "%+.3f -> %+.3f m/s", v.smooth.mean, v.offset.mean);
-  out->verdict = verdict(v.known, v.smooth.mean < 0 && v.offset.mean > 0);
-}
-
-static void positive_at_touch(const ethd__cell *cells, size_t count, ethd__tap_claim *out) {
-  const ethd__cell *cell = ethd__cell_find(cells, count, "offset", "high");
-  bool known = cell && ethd__cell_valid(cell) >= FEWEST;
-  double share = known ? ethd__cell_share(cell, ETHD_TAP_FIELD(v_of), 0x1p-1022, INFINITY) : NAN;
-  out->text = "high: v_of is > 0 in at least 25 % of the taps under offset";
-  snprintf(out->here, sizeof out->here, "%.0f %%", 100 * share);
-  out->verdict = verdict(known, share >= 0.25);
-}
-
-static void alike(const ethd__cell *cells, size_t count, ethd__tap_claim *out) {
-  both d = both_of(cells, count, "low", ETHD_TAP_FIELD(d_max));
-  double a = ethd__figure_error(&d.smooth), b = ethd__figure_error(&d.offset), error = sqrt(a * a + b * b);
-  out->text = "low: smooth and offset are alike (d_max within 25 %, 2 std. errors)";
-  snprintf(out->here, sizeof out->here, "%.3f / %.3f mm", 1e3 * d.smooth.mean, 1e3 * d.offset.mean);
-  out->verdict =
-      verdict(d.known, fabs(d.smooth.mean - d.offset.mean) <= 0.25 * fmax(d.smooth.mean, d.offset.mean) + 2 * error);
-}
-
-static void early(const ethd__cell *cells, size_t count, ethd__tap_claim *out) {
-  double from = ethd__cells_early_from(cells, count);
-  out->text = "the finger touches before the wall from about 0.5 m/s on (0.4 to 0.6)";
-  if (isnan(from))
-    snprintf(out->here, sizeof out->here, "never");
+static void judge_above(ethd__claim_part *out, double *values, uint64_t seed) {
+  ethd__paired shifted;
+  for (size_t i = 0; i < out->people; i++) values[i] -= out->from;
+  ethd__compare(values, out->people, seed, &shifted);
+  out->p = shifted.p;
+  if (out->from == 0) out->d_z = shifted.d_z;
+  if (!(out->p < LEVEL))
+    out->verdict = ETHD_TAP_OPEN;
   else
-    snprintf(out->here, sizeof out->here, "%.2f m/s", from);
-  out->verdict = verdict(ethd__cell_find(cells, count, "offset", "high") != NULL, from >= 0.4 && from <= 0.6);
+    out->verdict = out->mean > out->from ? ETHD_TAP_SHOWN : ETHD_TAP_CONTRARY;
 }
 
-/* The paper: 10 to 15 taps for three valid ones. */
-static void valid_share(const ethd__cell *cells, size_t count, ethd__tap_claim *out) {
-  size_t taps = 0, valid = 0, each = 0;
-  for (size_t i = 0; i < count; i++) {
-    if (strcmp(cells[i].speed->word, "high")) continue;
-    taps += cells[i].count;
-    valid += ethd__cell_valid(&cells[i]);
-    each = cells[i].count;
+static void judge_between(ethd__claim_part *out, const double *values) {
+  ethd__equivalence e = ethd__equivalent(values, out->people, out->from, out->to);
+  out->p = e.p;
+  out->verdict = e.p < LEVEL ? ETHD_TAP_SHOWN : e.outside ? ETHD_TAP_CONTRARY : ETHD_TAP_OPEN;
+}
+
+static void test_part(const ethd__sample *t, const contrast *c, ethd__claim_part *out) {
+  double margin = c->scale > 0 ? c->scale * *(const double *)((const char *)&t->margins + c->margin) : 0;
+  double *values = numbers(t->people);
+  ethd__paired plain;
+  *out = (ethd__claim_part){.what = c->what, .unit = c->unit, .from = c->from, .to = c->to, .p = NAN, .d_z = NAN};
+  if (c->scale > 0) out->from = -margin, out->to = margin;
+  out->people = contrast_of(t, c, values);
+  ethd__compare(values, out->people, t->seed, &plain);
+  out->mean = plain.mean, out->low = plain.interval.low, out->high = plain.interval.high;
+  if (out->people >= ETHD_STATISTICS_PEOPLE) {
+    if (isinf(out->to))
+      judge_above(out, values, t->seed);
+    else
+      judge_between(out, values);
   }
-  double share = (double)valid / (double)taps, error = sqrt(share * (1 - share) / (double)each);
-  out->text = "20 to 30 % of the high taps are valid (2 std. errors)";
-  snprintf(out->here, sizeof out->here, "%.0f %%", 100 * share);
-  out->verdict = verdict(each >= FEWEST, share >= 0.2 - 2 * error && share <= 0.3 + 2 * error);
+  free(values);
 }
 
-size_t ethd__claims(const ethd__cell *cells, size_t count, ethd__tap_claim out[ETHD_TAP_CLAIMS_MAX]) {
-  static void (*const claims[])(const ethd__cell *, size_t, ethd__tap_claim *) = {
-      rebound, rebound_speed, speed_at_touch, positive_at_touch, alike, early, valid_share};
-  size_t n = sizeof claims / sizeof *claims;
-  for (size_t i = 0; i < n; i++) claims[i](cells, count, &out[i]);
-  return n;
+/* ---- sentences ---- */
+
+static void conclude(ethd__tap_claim *c) {
+  c->p = 0;
+  for (size_t i = 0; i < c->parts; i++) {
+    const ethd__claim_part *part = &c->part[i];
+    /* a part that points the other way speaks for nothing, however small its p */
+    double p = part->verdict == ETHD_TAP_CONTRARY || (isinf(part->to) && part->mean < part->from) ? 1 : part->p;
+    c->p = isnan(p) || isnan(c->p) ? NAN : fmax(c->p, p);
+  }
+}
+
+static ethd__verdict verdict_of(const ethd__tap_claim *c) {
+  bool contrary = false;
+  for (size_t i = 0; i < c->parts; i++) contrary |= c->part[i].verdict == ETHD_TAP_CONTRARY;
+  if (isnan(c->p)) return ETHD_TAP_UNKNOWN;
+  if (contrary) return ETHD_TAP_CONTRARY;
+  return c->holm < LEVEL ? ETHD_TAP_SHOWN : ETHD_TAP_OPEN;
+}
+
+void ethd__claims(const ethd__sample *t, ethd__tap_claim out[ETHD_TAP_CLAIMS]) {
+  double p[ETHD_TAP_CLAIMS];
+  for (int i = 0; i < SENTENCES; i++) {
+    out[i] = (ethd__tap_claim){.text = sentences[i].text};
+    for (int k = 0; k < ETHD_TAP_PARTS_MAX && sentences[i].part[k].what; k++)
+      test_part(t, &sentences[i].part[k], &out[i].part[out[i].parts++]);
+  }
+  ethd__early_claim(t, &out[SENTENCES]);
+  for (int i = 0; i < ETHD_TAP_CLAIMS; i++) conclude(&out[i]), p[i] = out[i].p;
+  ethd__holm(p, ETHD_TAP_CLAIMS);
+  for (int i = 0; i < ETHD_TAP_CLAIMS; i++) out[i].holm = p[i], out[i].verdict = verdict_of(&out[i]);
 }

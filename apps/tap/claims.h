@@ -1,33 +1,75 @@
-/* The paper's figures and claims beside what was simulated. */
-#ifndef ETHD_TAP_CLAIMS_H
-#define ETHD_TAP_CLAIMS_H
+/* The paper's figures and sentences, tested within people: a person has one number of each kind, and its contrasts
+   between strategies and speeds are what is tested, never the pooled taps. */
+#ifndef ETHD__TAP_CLAIMS_H
+#define ETHD__TAP_CLAIMS_H
 
-#include "tap/summary.h"
+#include "tap/people.h"
 
-#define ETHD_TAP_CLAIMS_MAX 16
+#define ETHD_TAP_PARTS_MAX 3
 
-typedef enum ethd__verdict { ETHD_TAP_UNKNOWN, ETHD_TAP_MET, ETHD_TAP_NOT_MET } ethd__verdict;
+/* How far two strategies may differ and still be called alike. */
+typedef struct ethd__margins {
+  double d_max;        /* m */
+  double v_of, v_rmin; /* m/s */
+} ethd__margins;
 
-/* A mean of Table 1: met when |here - paper| <= the paper's sd + 2 standard errors of here. */
+/* 0.3 mm, which the paper's sensors resolve; 0.02 m/s, below which it calls the ring static (v_th). */
+extern const ethd__margins ethd__margins_default;
+
+typedef struct ethd__sample {
+  const ethd__cell *cells;
+  size_t count, people; /* people: above every person of the cells */
+  ethd__margins margins;
+  uint64_t seed; /* of what is drawn */
+} ethd__sample;
+
+typedef enum ethd__verdict {
+  ETHD_TAP_UNKNOWN,  /* its cells weren't run, or by fewer people than a test needs */
+  ETHD_TAP_SHOWN,    /* p < 0.05, of a claim after Holm's correction */
+  ETHD_TAP_OPEN,     /* neither this nor its contrary */
+  ETHD_TAP_CONTRARY, /* a part of it is significantly the other way, or beyond its margin */
+  ETHD_TAP_VERDICTS
+} ethd__verdict;
+
+extern const char *const ethd__verdict_words[ETHD_TAP_VERDICTS];
+
+/* A mean of Table 1: shown to agree when people's mean lies within the paper's sd of the paper's mean (two one-sided
+   t tests). */
 typedef struct ethd__mean {
   const char *name, *unit;
   double paper, paper_sd;
-  ethd__figure here;
-  double allowed; /* of the difference */
+  ethd__figure here;   /* of all taps */
+  size_t people;       /* who have such a tap */
+  double average;      /* mean of their means, */
+  double low, high, p; /* with its 90 % interval */
   ethd__verdict verdict;
 } ethd__mean;
 
 enum { ETHD_TAP_MEANS = 4 };
-void ethd__means(const ethd__cell *cells, size_t count, ethd__mean out[ETHD_TAP_MEANS]);
+void ethd__means(const ethd__sample *sample, ethd__mean out[ETHD_TAP_MEANS]);
 
+/* A contrast of people's figures that must lie above `from`, or, where `to` is finite, between the two. */
+typedef struct ethd__claim_part {
+  const char *what, *unit; /* "d_max: smooth - 3 offset" */
+  double from, to;
+  size_t people;
+  double mean, low, high; /* 95 % */
+  double p;               /* above: the signs of people's values flipped, two-sided; between: two one-sided t tests */
+  double d_z;             /* mean/sd of contrasts that are compared with 0, else NaN */
+  ethd__verdict verdict;
+} ethd__claim_part;
+
+/* A sentence holds when all its parts do: its p is the largest of theirs. */
 typedef struct ethd__tap_claim {
   const char *text;
-  char here[64];
-  ethd__verdict verdict; /* unknown: its cells weren't run or hold too few valid taps */
+  ethd__claim_part part[ETHD_TAP_PARTS_MAX];
+  size_t parts;
+  double p, holm; /* holm: corrected for all claims that could be tested */
+  ethd__verdict verdict;
 } ethd__tap_claim;
 
-/* How many were written. */
-size_t ethd__claims(const ethd__cell *cells, size_t count, ethd__tap_claim out[ETHD_TAP_CLAIMS_MAX]);
+enum { ETHD_TAP_CLAIMS = 8 };
+void ethd__claims(const ethd__sample *sample, ethd__tap_claim out[ETHD_TAP_CLAIMS]);
 
 const ethd__cell *ethd__cell_find(const ethd__cell *cells, size_t count, const char *law, const char *speed);
 

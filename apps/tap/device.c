@@ -14,17 +14,13 @@ static ethd_status check_driver(const ethd_config *config, char *message) {
                    ethd__quote(key->value, strlen(key->value), quote));
 }
 
-ethd_status ethd__device_read(const ethd_config *config, ethd__device *out, char message[ETHD_MESSAGE_MAX]) {
-  ethd__sim_settings settings;
+ethd_status ethd__device_read(const ethd_config *config, ethd__sim_settings *out, char message[ETHD_MESSAGE_MAX]) {
   ethd_error error;
   const ethd_device_def def = {&config->setup, config->settings, config->setting_count,
                                config->folder, config->path,     1};
   ethd_status status = check_driver(config, message);
   if (status) return status;
-  status = ethd__sim_settings_read(&def, &settings, &error);
-  if (status)
-    ethd_error_text(config->path, &error, message);
-  else
-    *out = (ethd__device){settings.plant ? settings.plant->value : NULL, settings.rays};
+  status = ethd__sim_settings_read(&def, out, &error);
+  if (status) ethd_error_text(config->path, &error, message);
   return status;
 }

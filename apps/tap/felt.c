@@ -7,7 +7,7 @@ static double along(ethd_vec n, const double v[2]) { return n.x * v[0] + n.y * v
 static size_t ticks(const ethd__rule *rule, double seconds) { return (size_t)floor(seconds / rule->period + 0.5); }
 
 /* Where the voluntary path crosses the touch plane. */
-static double path_speed(const ethd__rows *rows, const ethd__rule *rule, size_t begin) {
+static double path_speed(const ethd__tap_rows *rows, const ethd__rule *rule, size_t begin) {
   for (size_t i = begin + 1; i < rows->count; i++) {
     double here = along(rule->n, rows->truth[i].hand), before = along(rule->n, rows->truth[i - 1].hand);
     if (here >= rule->seen) return (here - before) / (rows->truth[i].t - rows->truth[i - 1].t);
@@ -16,7 +16,7 @@ static double path_speed(const ethd__rows *rows, const ethd__rule *rule, size_t 
 }
 
 /* A device knows no voluntary path: its finger goes on as it came. */
-static double carried_speed(const ethd__rows *rows, const ethd__rule *rule, size_t begin, size_t touch) {
+static double carried_speed(const ethd__tap_rows *rows, const ethd__rule *rule, size_t begin, size_t touch) {
   size_t back = ticks(rule, ETHD_TAP_CARRIED);
   size_t from = touch > begin + back ? touch - back : begin;
   if (touch >= rows->count || touch == from) return NAN;
@@ -24,12 +24,12 @@ static double carried_speed(const ethd__rows *rows, const ethd__rule *rule, size
   return way / (rows->truth[touch].t - rows->truth[from].t);
 }
 
-static double depth(const ethd__rows *rows, const ethd__rule *rule, size_t i) {
+static double depth(const ethd__tap_rows *rows, const ethd__rule *rule, size_t i) {
   return along(rule->n, rows->truth[i].ring) - rule->meet;
 }
 
 /* First tick at which the ring is behind the wall, or stands at it. */
-static size_t ready_from(const ethd__rows *rows, const ethd__rule *rule, size_t i) {
+static size_t ready_from(const ethd__tap_rows *rows, const ethd__rule *rule, size_t i) {
   for (; i < rows->count; i++) {
     const ethd_truth *truth = &rows->truth[i];
     double speed = fabs(along(rule->n, rule->side ? truth->motor_v : truth->ring_v)), d = depth(rows, rule, i);
@@ -39,7 +39,7 @@ static size_t ready_from(const ethd__rows *rows, const ethd__rule *rule, size_t 
 }
 
 /* The wall's offset a while after the touch; where no wall stands then, the last one's before. */
-static double offset_after(const ethd__rows *rows, const ethd__rule *rule, size_t touch) {
+static double offset_after(const ethd__tap_rows *rows, const ethd__rule *rule, size_t touch) {
   size_t last = touch + ticks(rule, ETHD_TAP_FELT);
   double eps = NAN;
   for (size_t i = touch; i < rows->count && i <= last; i++)
@@ -47,7 +47,7 @@ static double offset_after(const ethd__rows *rows, const ethd__rule *rule, size_
   return eps;
 }
 
-ethd__felt ethd__felt_of(const ethd__rows *rows, const ethd__rule *rule, size_t begin, size_t touch) {
+ethd__felt ethd__felt_of(const ethd__tap_rows *rows, const ethd__rule *rule, size_t begin, size_t touch) {
   ethd__felt out = {NAN, NAN, NAN, true};
   out.v_hand = rule->carried ? carried_speed(rows, rule, begin, touch) : path_speed(rows, rule, begin);
   if (touch >= rows->count) return out;

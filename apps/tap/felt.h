@@ -3,8 +3,8 @@
         hand's path      touch plane                 depth   how far the ring is behind the wall at the touch
           o-----------------|-->  v_hand             early   touched before the ring was behind the wall, or within
        ring  ( o  )         |//// wall                       ETHD_TAP_NEAR of it and slower than ETHD_TAP_STILL */
-#ifndef ETHD_TAP_FELT_H
-#define ETHD_TAP_FELT_H
+#ifndef ETHD__TAP_FELT_H
+#define ETHD__TAP_FELT_H
 
 #include "tap/metrics.h"
 
@@ -21,6 +21,6 @@ typedef struct ethd__felt {
 } ethd__felt;
 
 /* begin: the tap's first tick; touch: the pad's first from there on, rows->count: none. */
-ethd__felt ethd__felt_of(const ethd__rows *rows, const ethd__rule *rule, size_t begin, size_t touch);
+ethd__felt ethd__felt_of(const ethd__tap_rows *rows, const ethd__rule *rule, size_t begin, size_t touch);
 
 #endif

@@ -12,7 +12,7 @@ static void check(ethd_status status, const char *message) {
 }
 
 static char *had(char *text) {
-  if (!text) ethd__fail(ETHD_EXIT_FAILED, "%s", ethd_status_sentence(ETHD_E_MEMORY));
+  if (!text) ethd__fail_memory();
   return text;
 }
 
@@ -37,17 +37,17 @@ static char *beside_plant(const char *plant, const char *suffix) {
 
 static void load_plant(const char *plant, bool simulated, ethd__loaded *out) {
   char message[ETHD_MESSAGE_MAX];
-  ethd__device device = {.rays = -1};
+  ethd__sim_settings device = {.reading = -1};
   if (simulated) check(ethd__device_read(out->config, &device, message), message);
   if (plant) {
     out->plant_path = beside_plant(plant, ".plant");
   } else {
-    plant = device.plant ? device.plant : "n";
+    plant = device.plant ? device.plant->value : "n";
     out->plant_path = had(ethd__plant_path(plant, out->config->folder));
   }
   out->plant_name = had(strdup(plant));
   check(ethd_plant_load(out->plant_path, &out->plant, message), message);
-  if (device.rays >= 0) out->plant.rays = device.rays;
+  ethd__sim_settings_finger(&device, &out->plant);
 }
 
 /* A configuration without a scene gets the paper's wall, as if it named it. */

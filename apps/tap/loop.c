@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-ethd_status ethd__rows_room(ethd__rows *rows) {
+ethd_status ethd__tap_rows_room(ethd__tap_rows *rows) {
   if (rows->count < rows->room) return ETHD_OK;
   size_t room = rows->room ? 2 * rows->room : 1024;
   ethd_trace *trace = realloc(rows->trace, room * sizeof *trace);
@@ -15,10 +15,10 @@ ethd_status ethd__rows_room(ethd__rows *rows) {
   return ETHD_OK;
 }
 
-void ethd__rows_free(ethd__rows *rows) {
+void ethd__tap_rows_free(ethd__tap_rows *rows) {
   free(rows->trace);
   free(rows->truth);
-  *rows = (ethd__rows){0};
+  *rows = (ethd__tap_rows){0};
 }
 
 /* The next row of a tap. A fault's status is part of the row. */
@@ -34,7 +34,7 @@ static void tick(ethd_sim *sim, ethd_control *control, ethd_trace *trace, ethd_t
 static size_t ticks(double seconds, double period) { return (size_t)floor(seconds / period + 0.5); }
 
 ethd_status ethd__tapping_begin(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap, const ethd__rule *rule,
-                                ethd__rows *rows, ethd__tapping *out) {
+                                ethd__tap_rows *rows, ethd__tapping *out) {
   *out = (ethd__tapping){.sim = sim, .control = control, .rule = rule, .rows = rows};
   out->last = ticks(ethd_path_end(&tap->path) + ETHD_TAP_LOST, rule->period);
   rows->count = 0;
@@ -44,7 +44,7 @@ ethd_status ethd__tapping_begin(ethd_sim *sim, ethd_control *control, const ethd
 
 ethd_status ethd__tapping_step(ethd__tapping *t) {
   if (t->rows->count > t->last) return ETHD_EMPTY;
-  ethd_status status = ethd__rows_room(t->rows);
+  ethd_status status = ethd__tap_rows_room(t->rows);
   if (status) return status;
   ethd_trace *trace = &t->rows->trace[t->rows->count];
   ethd_truth *truth = &t->rows->truth[t->rows->count];
@@ -56,7 +56,7 @@ ethd_status ethd__tapping_step(ethd__tapping *t) {
 }
 
 ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap, const double *learned,
-                          const ethd__rule *rule, ethd__rows *rows) {
+                          const ethd__rule *rule, ethd__tap_rows *rows) {
   ethd__tapping tapping;
   ethd_status status = ethd__tapping_begin(sim, control, tap, rule, rows, &tapping);
   ethd_control_taught(control, learned);

@@ -1,6 +1,6 @@
 /* One tap, tick by tick. */
-#ifndef ETHD_TAP_LOOP_H
-#define ETHD_TAP_LOOP_H
+#ifndef ETHD__TAP_LOOP_H
+#define ETHD__TAP_LOOP_H
 
 #include "tap/metrics.h"
 
@@ -11,27 +11,27 @@
    first at time 0. ETHD_E_MEMORY, or what ethd_sim_start says; faults of the controller stand in the rows
    and end nothing. */
 ETHD_MUST_CHECK ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
-                                          const double *learned, const ethd__rule *rule, ethd__rows *rows);
+                                          const double *learned, const ethd__rule *rule, ethd__tap_rows *rows);
 
 /* The same tap by tap's tick, for whoever leads the finger meanwhile. Rule and rows outlive it. */
 typedef struct ethd__tapping {
   ethd_sim *sim;
   ethd_control *control;
   const ethd__rule *rule;
-  ethd__rows *rows;
+  ethd__tap_rows *rows;
   ethd__approach approach;
   size_t last; /* tick, as far as is known */
 } ethd__tapping;
 
 ETHD_MUST_CHECK ethd_status ethd__tapping_begin(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
-                                                const ethd__rule *rule, ethd__rows *rows, ethd__tapping *out);
+                                                const ethd__rule *rule, ethd__tap_rows *rows, ethd__tapping *out);
 
 /* One tick; ETHD_EMPTY: the tap is over. */
 ETHD_MUST_CHECK ethd_status ethd__tapping_step(ethd__tapping *tapping);
 
 /* Room for one row more. ETHD_E_MEMORY. */
-ETHD_MUST_CHECK ethd_status ethd__rows_room(ethd__rows *rows);
+ETHD_MUST_CHECK ethd_status ethd__tap_rows_room(ethd__tap_rows *rows);
 
-void ethd__rows_free(ethd__rows *rows);
+void ethd__tap_rows_free(ethd__tap_rows *rows);
 
 #endif

@@ -12,7 +12,7 @@ const char *const ethd__reason_words[ETHD_TAP_REASON_COUNT] = {
 
 static double along(ethd_vec n, const double v[2]) { return n.x * v[0] + n.y * v[1]; }
 
-static double speed_at(const ethd__rows *rows, const ethd__rule *rule, size_t i) {
+static double speed_at(const ethd__tap_rows *rows, const ethd__rule *rule, size_t i) {
   const ethd_truth *truth = &rows->truth[i];
   return along(rule->n, rule->side ? truth->motor_v : truth->ring_v);
 }
@@ -34,7 +34,7 @@ bool ethd__approach_step(ethd__approach *approach, const ethd__rule *rule, const
   return approach->met = true;
 }
 
-static size_t approach_of(const ethd__rows *rows, const ethd__rule *rule, size_t *begin) {
+static size_t approach_of(const ethd__tap_rows *rows, const ethd__rule *rule, size_t *begin) {
   ethd__approach approach = {0};
   size_t i = 0;
   while (i < rows->count && !ethd__approach_step(&approach, rule, &rows->trace[i], &rows->truth[i])) i++;
@@ -42,18 +42,18 @@ static size_t approach_of(const ethd__rows *rows, const ethd__rule *rule, size_t
   return i;
 }
 
-size_t ethd__metrics_meeting(const ethd__rows *rows, const ethd__rule *rule) {
+size_t ethd__metrics_meeting(const ethd__tap_rows *rows, const ethd__rule *rule) {
   size_t begin;
   return approach_of(rows, rule, &begin);
 }
 
-static size_t touch_from(const ethd__rows *rows, size_t i) {
+static size_t touch_from(const ethd__tap_rows *rows, size_t i) {
   while (i < rows->count && !(rows->truth[i].pad > 0)) i++;
   return i;
 }
 
 /* Each extremum counts once the ring has turned back by the hysteresis. */
-static double rebound(const ethd__rows *rows, const ethd__rule *rule, size_t from) {
+static double rebound(const ethd__tap_rows *rows, const ethd__rule *rule, size_t from) {
   double peak = along(rule->n, rows->truth[from].ring), valley = peak;
   bool turned = false;
   for (size_t i = from; i < rows->count; i++) {
@@ -66,7 +66,7 @@ static double rebound(const ethd__rows *rows, const ethd__rule *rule, size_t fro
   return turned ? peak - valley : 0;
 }
 
-static double slowest(const ethd__rows *rows, const ethd__rule *rule, size_t from) {
+static double slowest(const ethd__tap_rows *rows, const ethd__rule *rule, size_t from) {
   double least = INFINITY;
   size_t end = from + (size_t)floor(ETHD_TAP_REBOUND / rule->period + 0.5);
   for (size_t i = from; i < rows->count && i <= end; i++) least = fmin(least, speed_at(rows, rule, i));
@@ -74,14 +74,14 @@ static double slowest(const ethd__rows *rows, const ethd__rule *rule, size_t fro
 }
 
 /* Periods from row to row, those that a live loop missed among them. */
-static size_t periods(const ethd__rows *rows, size_t from, size_t to) {
+static size_t periods(const ethd__tap_rows *rows, size_t from, size_t to) {
   size_t n = to - from;
   for (size_t i = from + 1; i <= to; i++) n += (size_t)rows->trace[i].sense.missed;
   return n;
 }
 
 /* Delta_s and eps, for laws that brake. */
-static void braking(const ethd__rows *rows, const ethd__rule *rule, size_t from, ethd__metrics *out) {
+static void braking(const ethd__tap_rows *rows, const ethd__rule *rule, size_t from, ethd__metrics *out) {
   size_t i = from;
   while (i < rows->count && rows->trace[i].state != ETHD_BRAKING) i++;
   size_t begin = i;
@@ -92,24 +92,24 @@ static void braking(const ethd__rows *rows, const ethd__rule *rule, size_t from,
 }
 
 /* The pad's front is at the wall that the eye has. */
-static size_t sight_from(const ethd__rows *rows, const ethd__rule *rule, size_t i) {
+static size_t sight_from(const ethd__tap_rows *rows, const ethd__rule *rule, size_t i) {
   while (i < rows->count && !(along(rule->n, rows->truth[i].finger) >= rule->seen)) i++;
   return i;
 }
 
-static double pressing(const ethd__rows *rows, const ethd__rule *rule, size_t touch) {
+static double pressing(const ethd__tap_rows *rows, const ethd__rule *rule, size_t touch) {
   size_t ticks = 0;
   for (size_t i = touch; i < rows->count; i++) ticks += rows->truth[i].pad > 0;
   return (double)ticks * rule->period;
 }
 
-static bool comes_back(const ethd__rows *rows, const ethd__rule *rule, size_t touch) {
+static bool comes_back(const ethd__tap_rows *rows, const ethd__rule *rule, size_t touch) {
   size_t i = sight_from(rows, rule, touch);
   while (i < rows->count && along(rule->n, rows->truth[i].finger) > rule->seen - rule->lift) i++;
   return sight_from(rows, rule, i) < rows->count;
 }
 
-static double strongest(const ethd__rows *rows) {
+static double strongest(const ethd__tap_rows *rows) {
   double force = 0;
   for (size_t i = 0; i < rows->count; i++) {
     const double *f = rows->trace[i].fe;
@@ -118,14 +118,14 @@ static double strongest(const ethd__rows *rows) {
   return force;
 }
 
-static bool faulted(const ethd__rows *rows) {
+static bool faulted(const ethd__tap_rows *rows) {
   for (size_t i = 0; i < rows->count; i++)
     if (rows->trace[i].fault) return true;
   return false;
 }
 
 /* What a touch must be, once it is known to be in time. */
-static ethd__reason judge_touch(const ethd__rows *rows, const ethd__rule *rule, size_t touch) {
+static ethd__reason judge_touch(const ethd__tap_rows *rows, const ethd__rule *rule, size_t touch) {
   if (touch == rows->count) return ETHD_TAP_NO_CONTACT;
   if (pressing(rows, rule, touch) < rule->graze) return ETHD_TAP_GRAZING;
   return rule->single && comes_back(rows, rule, touch) ? ETHD_TAP_DOUBLE : ETHD_TAP_OK;
@@ -136,7 +136,7 @@ static ethd__reason judge_speed(const ethd__rule *rule, double speed) {
   return speed <= rule->speed + rule->band ? ETHD_TAP_OK : ETHD_TAP_TOO_FAST;
 }
 
-static ethd__reason judge_by_paper(const ethd__rows *rows, const ethd__rule *rule, size_t begin, size_t meeting,
+static ethd__reason judge_by_paper(const ethd__tap_rows *rows, const ethd__rule *rule, size_t begin, size_t meeting,
                                    size_t touch, double v_rvo) {
   if (meeting == rows->count) return ETHD_TAP_NO_CONTACT;
   if (touch_from(rows, begin) < meeting) return ETHD_TAP_EARLY_CONTACT;
@@ -144,14 +144,14 @@ static ethd__reason judge_by_paper(const ethd__rows *rows, const ethd__rule *rul
   return reason ? reason : judge_touch(rows, rule, touch);
 }
 
-static ethd__reason judge_by_finger(const ethd__rows *rows, const ethd__rule *rule, size_t touch,
+static ethd__reason judge_by_finger(const ethd__tap_rows *rows, const ethd__rule *rule, size_t touch,
                                     const ethd__felt *felt) {
   ethd__reason reason = isnan(felt->v_hand) ? ETHD_TAP_NO_CONTACT : judge_speed(rule, felt->v_hand);
   if (!reason && touch < rows->count && felt->early) reason = ETHD_TAP_EARLY_CONTACT;
   return reason ? reason : judge_touch(rows, rule, touch);
 }
 
-static void measure_meeting(const ethd__rows *rows, const ethd__rule *rule, size_t meeting, ethd__metrics *out) {
+static void measure_meeting(const ethd__tap_rows *rows, const ethd__rule *rule, size_t meeting, ethd__metrics *out) {
   if (meeting == rows->count) return;
   out->v_rvo = speed_at(rows, rule, meeting);
   out->t_rvo = rows->truth[meeting].t;
@@ -159,14 +159,14 @@ static void measure_meeting(const ethd__rows *rows, const ethd__rule *rule, size
   braking(rows, rule, meeting, out);
 }
 
-static void measure_touch(const ethd__rows *rows, const ethd__rule *rule, size_t touch, ethd__metrics *out) {
+static void measure_touch(const ethd__tap_rows *rows, const ethd__rule *rule, size_t touch, ethd__metrics *out) {
   if (touch == rows->count) return;
   out->v_of = speed_at(rows, rule, touch);
   out->t_of = rows->truth[touch].t;
   out->v_rmin = slowest(rows, rule, touch);
 }
 
-void ethd__metrics_of(const ethd__rows *rows, const ethd__rule *rule, ethd__metrics *out) {
+void ethd__metrics_of(const ethd__tap_rows *rows, const ethd__rule *rule, ethd__metrics *out) {
   size_t begin, meeting = approach_of(rows, rule, &begin), first = touch_from(rows, begin);
   bool by_finger = rule->validity == ETHD_TAP_BY_FINGER;
   size_t touch = by_finger ? first : touch_from(rows, meeting), sight = sight_from(rows, rule, begin);

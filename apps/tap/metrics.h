@@ -9,8 +9,8 @@
    t_r/vo is the first tick with the controller's d_re < 0. A recorded movement may start with the ring in
    the wall: the tap then begins once the ring is clear of it again, and would be if it were centred on the
    hand, both by more than d_beta. */
-#ifndef ETHD_TAP_METRICS_H
-#define ETHD_TAP_METRICS_H
+#ifndef ETHD__TAP_METRICS_H
+#define ETHD__TAP_METRICS_H
 
 #include <stdbool.h>
 
@@ -20,11 +20,11 @@
 #define ETHD_TAP_HYSTERESIS 20e-6 /* m by which the ring must turn back to make an extremum */
 
 /* Ticks of one tap, oldest first; truth[i] belongs to trace[i]. */
-typedef struct ethd__rows {
+typedef struct ethd__tap_rows {
   ethd_trace *trace;
   ethd_truth *truth;
   size_t count, room;
-} ethd__rows;
+} ethd__tap_rows;
 
 /* By what a tap is valid.
      paper    the ring met the wall before the finger touched it, at the speed asked for
@@ -94,9 +94,9 @@ typedef struct ethd__metrics {
   double peak_force;  /* N: largest |F_e| of the tap */
 } ethd__metrics;
 
-void ethd__metrics_of(const ethd__rows *rows, const ethd__rule *rule, ethd__metrics *out);
+void ethd__metrics_of(const ethd__tap_rows *rows, const ethd__rule *rule, ethd__metrics *out);
 
 /* The tick t_r/vo, rows->count if there is none. */
-size_t ethd__metrics_meeting(const ethd__rows *rows, const ethd__rule *rule);
+size_t ethd__metrics_meeting(const ethd__tap_rows *rows, const ethd__rule *rule);
 
 #endif

@@ -20,8 +20,7 @@ static ethd_status open_ticks(const ethd__output_paths *paths, const ethd_config
   ethd_status status = ethd__ticks_open(folder, config, paths->replace, &out->ticks, message);
   if (status) return status;
   char *taps = ethd__path_join(folder, "taps.csv");
-  status = taps ? open_csv(taps, &out->taps, message)
-                : ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  status = taps ? open_csv(taps, &out->taps, message) : ethd__no_memory(message, folder);
   free(taps);
   return status;
 }

@@ -1,6 +1,6 @@
 /* What ethd-tap leaves in files: the CSV, a recording of every tick, traces of typical taps. */
-#ifndef ETHD_TAP_OUTPUT_H
-#define ETHD_TAP_OUTPUT_H
+#ifndef ETHD__TAP_OUTPUT_H
+#define ETHD__TAP_OUTPUT_H
 
 #include "tap/summary.h"
 #include "tap/ticks.h"

@@ -48,7 +48,7 @@ static ethd_status convert(const char *path, const ethd_csv *csv, double scale, 
   for (size_t row = 0; !status && row < csv->rows; row++) status = check_row(path, csv, column, row, message);
   if (status) return status;
   out->samples = malloc(csv->rows * sizeof *out->samples);
-  if (!out->samples) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", path, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!out->samples) return ethd__no_memory(message, path);
   out->count = csv->rows;
   for (size_t row = 0; row < csv->rows; row++) {
     const double *cell = &csv->values[row * csv->columns];

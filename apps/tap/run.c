@@ -20,7 +20,8 @@ ethd__cell *ethd__cells_create(const ethd__tap_plan *plan) {
     return NULL;
   }
   for (size_t i = 0; i < count; i++)
-    cells[i] = (ethd__cell){plan->laws[i / speeds], &plan->study->speeds[i % speeds], results + i * plan->taps, 0};
+    cells[i] = (ethd__cell){
+        .law = plan->laws[i / speeds], .speed = &plan->study->speeds[i % speeds], .results = results + i * plan->taps};
   return cells;
 }
 
@@ -99,7 +100,7 @@ static ethd_status trace_cell(const ethd__tap_plan *plan, const char *folder, co
   uint64_t number = ethd__cell_typical(cell);
   ethd__file_name(words, ".csv", name);
   char *path = ethd__path_join(folder, name);
-  if (!path) return ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  if (!path) return ethd__no_memory(message, folder);
   ethd_status status = ethd__stage_open(plan->study, cell->law, &stage, message);
   if (!status) {
     status = ethd__stage_run(&stage, cell->speed, number, &result, message);

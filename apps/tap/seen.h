@@ -1,6 +1,6 @@
 /* A tap on a device that nobody sees into: what the controller knew stands for the truth. [any] */
-#ifndef ETHD_TAP_SEEN_H
-#define ETHD_TAP_SEEN_H
+#ifndef ETHD__TAP_SEEN_H
+#define ETHD__TAP_SEEN_H
 
 #include "ethd/sim.h"
 

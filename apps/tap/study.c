@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "settings/config_parts.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
@@ -126,7 +127,7 @@ ethd_status ethd__stage_open(const ethd__study *study, const char *law, ethd__st
 void ethd__stage_close(ethd__stage *stage) {
   ethd_control_destroy(stage->control);
   ethd_sim_destroy(stage->sim);
-  ethd__rows_free(&stage->rows);
+  ethd__tap_rows_free(&stage->rows);
   free(stage->samples);
   *stage = (ethd__stage){0};
 }
@@ -170,7 +171,7 @@ ethd__view ethd__stage_view(const ethd__stage *stage, const ethd__speed *speed, 
   return view;
 }
 
-static void count_ticks(const ethd__rows *rows, ethd__result *out) {
+static void count_ticks(const ethd__tap_rows *rows, ethd__result *out) {
   out->ticks = (uint32_t)rows->count;
   out->queried = 0;
   for (size_t i = 0; i < rows->count; i++) out->queried += rows->trace[i].queried != 0;
@@ -186,6 +187,14 @@ void ethd__stage_judge(const ethd__stage *stage, const ethd__rule *rule, const e
 /* Their numbers are out of the way of the taps that count. */
 #define LEARNING (UINT64_C(1) << 40)
 
+static ethd_status run_tap(ethd__stage *stage, const ethd_sim_tap *tap, const ethd__rule *rule) {
+  const ethd_config *config = stage->study->config;
+  ethd__config_foreign(config, "a plugin's law");
+  ethd_status status = ethd__tap_run(stage->sim, stage->control, tap, stage->learned, rule, &stage->rows);
+  ethd__config_foreign(config, NULL);
+  return status;
+}
+
 /* The law forgets, then learns from `study->learn` taps of the same kind in a row. */
 static ethd_status learn(ethd__stage *stage, const ethd__speed *speed, uint64_t tap) {
   ethd_sim_tap circumstances;
@@ -194,8 +203,7 @@ static ethd_status learn(ethd__stage *stage, const ethd__speed *speed, uint64_t 
   for (uint64_t k = 0; !status && k < stage->study->learn; k++) {
     status = ethd__stage_draw(stage, speed, LEARNING + tap * stage->study->learn + k, &circumstances);
     const ethd__rule rule = ethd__stage_rule(stage, speed, circumstances.finger_radius);
-    if (!status)
-      status = ethd__tap_run(stage->sim, stage->control, &circumstances, stage->learned, &rule, &stage->rows);
+    if (!status) status = run_tap(stage, &circumstances, &rule);
     ethd_control_learned(stage->control, stage->learned);
   }
   return status;
@@ -207,7 +215,7 @@ ethd_status ethd__stage_run(ethd__stage *stage, const ethd__speed *speed, uint64
   ethd_status status = learn(stage, speed, tap);
   if (!status) status = ethd__stage_draw(stage, speed, tap, &circumstances);
   const ethd__rule rule = ethd__stage_rule(stage, speed, circumstances.finger_radius);
-  if (!status) status = ethd__tap_run(stage->sim, stage->control, &circumstances, stage->learned, &rule, &stage->rows);
+  if (!status) status = run_tap(stage, &circumstances, &rule);
   if (status)
     return ethd__say(message, status, "tap %llu at %s: %s", (unsigned long long)tap, speed->word,
                      ethd_status_sentence(status));

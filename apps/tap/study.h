@@ -2,8 +2,8 @@
 
    The finger of tap k is a function of (seed, k) alone: laws meet the same person, and any tap can be
    had again on its own. */
-#ifndef ETHD_TAP_STUDY_H
-#define ETHD_TAP_STUDY_H
+#ifndef ETHD__TAP_STUDY_H
+#define ETHD__TAP_STUDY_H
 
 #include "tap/loop.h"
 #include "tap/placement.h"
@@ -58,7 +58,7 @@ typedef struct ethd__stage {
   ethd_setup setup;
   ethd_sim *sim;
   ethd_control *control;
-  ethd__rows rows;             /* of the last tap */
+  ethd__tap_rows rows;         /* of the last tap */
   double learned[ETHD_MEMORY]; /* by the law, as the last tap began */
   double heat[2];              /* of the motors as it began, see ethd_control_heat */
   ethd_path_sample *samples;

@@ -44,8 +44,6 @@ double ethd__cell_median(const ethd__cell *cell, size_t field) {
   return median;
 }
 
-double ethd__figure_error(const ethd__figure *figure) { return figure->sd / sqrt((double)figure->n); }
-
 size_t ethd__cell_valid(const ethd__cell *cell) {
   size_t n = 0;
   for (size_t i = 0; i < cell->count; i++) n += cell->results[i].metrics.reason == ETHD_TAP_OK;
@@ -81,45 +79,4 @@ size_t ethd__cell_typical(const ethd__cell *cell) {
     if (distance < least) least = distance, typical = i;
   }
   return typical;
-}
-
-/* ---- early contact ---- */
-
-typedef struct attempt {
-  double speed;
-  int early;
-} attempt;
-
-static int by_speed(const void *a, const void *b) {
-  const attempt *p = a, *q = b;
-  return p->speed != q->speed ? (p->speed > q->speed) - (p->speed < q->speed) : p->early - q->early;
-}
-
-/* Mistakes of a threshold: early taps below it and others above. */
-static double best_threshold(const attempt *attempts, size_t count, size_t early) {
-  size_t mistakes = count - early, fewest = count;
-  double threshold = NAN;
-  for (size_t i = 0; i + 1 < count; i++) {
-    mistakes += attempts[i].early ? 1 : (size_t)-1;
-    if (mistakes < fewest) fewest = mistakes, threshold = (attempts[i].speed + attempts[i + 1].speed) / 2;
-  }
-  return threshold;
-}
-
-double ethd__cells_early_from(const ethd__cell *cells, size_t count) {
-  size_t total = 0, n = 0, early = 0;
-  for (size_t c = 0; c < count; c++) total += cells[c].count;
-  attempt *attempts = malloc((total + 1) * sizeof *attempts);
-  if (!attempts) return NAN;
-  for (size_t c = 0; c < count; c++) {
-    for (size_t i = 0; i < cells[c].count; i++) {
-      const ethd__result *result = &cells[c].results[i];
-      attempts[n] = (attempt){result->commanded, result->metrics.reason == ETHD_TAP_EARLY_CONTACT};
-      early += (size_t)attempts[n++].early;
-    }
-  }
-  qsort(attempts, n, sizeof *attempts, by_speed);
-  double threshold = early && early < n ? best_threshold(attempts, n, early) : NAN;
-  free(attempts);
-  return threshold;
 }

@@ -1,6 +1,6 @@
 /* Figures of a cell: one law at one speed. */
-#ifndef ETHD_TAP_SUMMARY_H
-#define ETHD_TAP_SUMMARY_H
+#ifndef ETHD__TAP_SUMMARY_H
+#define ETHD__TAP_SUMMARY_H
 
 #include "tap/study.h"
 
@@ -8,7 +8,8 @@ typedef struct ethd__cell {
   const char *law;
   const ethd__speed *speed;
   ethd__result *results;
-  size_t count; /* taps done */
+  uint32_t *person; /* who made each result, NULL: result i is finger i's, the same one in every cell */
+  size_t count;     /* taps done */
 } ethd__cell;
 
 /* A figure of ethd__metrics, over the valid taps that have it. */
@@ -23,9 +24,6 @@ ethd__figure ethd__cell_figure(const ethd__cell *cell, size_t field);
 /* Over the same taps; NaN of none. */
 double ethd__cell_median(const ethd__cell *cell, size_t field);
 
-/* Standard error of the mean. */
-double ethd__figure_error(const ethd__figure *figure);
-
 size_t ethd__cell_valid(const ethd__cell *cell);
 
 /* Share of the valid taps that have the figure and a value of it in [from, to); NaN of none. */
@@ -34,9 +32,5 @@ double ethd__cell_share(const ethd__cell *cell, size_t field, double from, doubl
 /* The valid tap nearest to the cell's means of v_rvo, v_of, d_max and v_rmin, each in its sd; 0 without
    valid taps. */
 size_t ethd__cell_typical(const ethd__cell *cell);
-
-/* The commanded speed above which most taps touch early: of all thresholds the one that mistakes the
-   fewest taps. NaN unless taps of both kinds are there. */
-double ethd__cells_early_from(const ethd__cell *cells, size_t count);
 
 #endif

@@ -21,7 +21,7 @@ const ethd_column ethd__truth_columns[] = {ETHD_TRUTH_FIELDS(COLUMN){NULL, NULL,
 
 static ethd_status in_folder(const char *folder, const char *name, char **out, char *message) {
   *out = ethd__path_join(folder, name);
-  return *out ? ETHD_OK : ethd__say(message, ETHD_E_MEMORY, "%s: %s", folder, ethd_status_sentence(ETHD_E_MEMORY));
+  return *out ? ETHD_OK : ethd__no_memory(message, folder);
 }
 
 static ethd_status said(const ethd__ticks *ticks, ethd_status status, char *message) {
@@ -52,7 +52,9 @@ ethd_status ethd__ticks_stage(ethd__ticks *ticks, const ethd__stage *stage, char
     snprintf(detail, sizeof detail, "%s %s", gain->key, gain->value);
     status = ethd_recording_event(recording, "set", detail);
   }
-  if (!status) status = ethd__device_event(recording, &stage->study->config->setup, &stage->setup);
+  const ethd_setup *was = &stage->study->config->setup, *is = &stage->setup;
+  if (!status) status = ethd__limits_event(recording, was, is);
+  if (!status && ETHD_LAW_HAS(is->transition, range)) status = ethd__dynamics_event(recording, was, is);
   snprintf(detail, sizeof detail, "%.17g %.17g", stage->heat[0], stage->heat[1]);
   if (!status && (stage->heat[0] > 0 || stage->heat[1] > 0)) status = ethd_recording_event(recording, "heat", detail);
   return said(ticks, status, message);
@@ -71,7 +73,7 @@ static ethd_status tell_learned(ethd_recording *recording, const double learned[
 
 ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *words, const ethd__stage *stage,
                             char message[ETHD_MESSAGE_MAX]) {
-  const ethd__rows *rows = &stage->rows;
+  const ethd__tap_rows *rows = &stage->rows;
   ethd_status status = ethd_recording_event(ticks->recording, "start", words);
   if (!status) status = tell_learned(ticks->recording, stage->learned);
   for (size_t i = 0; !status && i < rows->count; i++) status = ethd_recording_tick(ticks->recording, &rows->trace[i]);
@@ -100,10 +102,10 @@ static ethd_status read_npy(const char *folder, const char *name, const ethd_col
   return status;
 }
 
-ethd_status ethd__ticks_read(const char *folder, ethd__rows *out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__ticks_read(const char *folder, ethd__tap_rows *out, char message[ETHD_MESSAGE_MAX]) {
   void *trace = NULL, *truth = NULL;
   size_t count = 0, truths = 0;
-  *out = (ethd__rows){0};
+  *out = (ethd__tap_rows){0};
   ethd_status status =
       read_npy(folder, ETHD_RECORDING_TICK, ethd_trace_columns, sizeof(ethd_trace), &trace, &count, message);
   if (!status) status = read_npy(folder, TRUTH, ethd__truth_columns, sizeof(ethd_truth), &truth, &truths, message);
@@ -111,7 +113,7 @@ ethd_status ethd__ticks_read(const char *folder, ethd__rows *out, char message[E
     status = ethd__say(message, ETHD_E_SYNTAX, "%s: %zu rows in %s, %zu in %s; the same number is allowed", folder,
                        count, ETHD_RECORDING_TICK, truths, TRUTH);
   if (!status) {
-    *out = (ethd__rows){trace, truth, count, count};
+    *out = (ethd__tap_rows){trace, truth, count, count};
     return ETHD_OK;
   }
   free(trace);

@@ -2,8 +2,8 @@
 
    The folder holds, beside a recording's own files, truth.npy: row i belongs to row i of tick.npy.
    events.csv tells where a tap starts. All [main]. */
-#ifndef ETHD_TAP_TICKS_H
-#define ETHD_TAP_TICKS_H
+#ifndef ETHD__TAP_TICKS_H
+#define ETHD__TAP_TICKS_H
 
 #include "ethd/record.h"
 #include "tap/study.h"
@@ -31,7 +31,7 @@ ETHD_MUST_CHECK ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *word
 /* NULL recording is fine. */
 ETHD_MUST_CHECK ethd_status ethd__ticks_close(ethd__ticks *ticks, char message[ETHD_MESSAGE_MAX]);
 
-/* Both files of a folder back into rows, which ethd__rows_free frees. */
-ETHD_MUST_CHECK ethd_status ethd__ticks_read(const char *folder, ethd__rows *out, char message[ETHD_MESSAGE_MAX]);
+/* Both files of a folder back into rows, which ethd__tap_rows_free frees. */
+ETHD_MUST_CHECK ethd_status ethd__ticks_read(const char *folder, ethd__tap_rows *out, char message[ETHD_MESSAGE_MAX]);
 
 #endif

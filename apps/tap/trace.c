@@ -36,7 +36,7 @@ static void write_row(ethd_csv_out *csv, const ethd__view *view, double meeting,
   ethd_csv_row(csv);
 }
 
-ethd_status ethd__trace_write(const char *path, const ethd__view *view, const ethd__rows *rows,
+ethd_status ethd__trace_write(const char *path, const ethd__view *view, const ethd__tap_rows *rows,
                               char message[ETHD_MESSAGE_MAX]) {
   size_t meeting = ethd__metrics_meeting(rows, &view->rule);
   double t = meeting < rows->count ? rows->truth[meeting].t : NAN;

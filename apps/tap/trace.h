@@ -1,6 +1,6 @@
 /* A tap's ticks as a table for plots: depths behind the wall, speeds along n. */
-#ifndef ETHD_TAP_TRACE_H
-#define ETHD_TAP_TRACE_H
+#ifndef ETHD__TAP_TRACE_H
+#define ETHD__TAP_TRACE_H
 
 #include "tap/metrics.h"
 
@@ -13,7 +13,7 @@ typedef struct ethd__view {
 
 /* Time from t_r/vo; depths are those of the ring's front, the finger's and the hand's along n, from the
    wall into it. [main] */
-ETHD_MUST_CHECK ethd_status ethd__trace_write(const char *path, const ethd__view *view, const ethd__rows *rows,
+ETHD_MUST_CHECK ethd_status ethd__trace_write(const char *path, const ethd__view *view, const ethd__tap_rows *rows,
                                               char message[ETHD_MESSAGE_MAX]);
 
 #endif

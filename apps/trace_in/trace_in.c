@@ -22,7 +22,7 @@ static ethd_status refuse(const ethd__trace_in *in, size_t row, int column, cons
   return ETHD_E_RANGE;
 }
 
-/* How many of `count` names from `first` on the file has; fills their columns. */
+/* Fills the columns of `count` names from `first` on; returns how many of them the file has. */
 static int find(const ethd__trace_in *in, int first, int count, int *out) {
   int found = 0;
   for (int i = 0; i < count; i++) {
@@ -71,7 +71,7 @@ static ethd_status check_finite(const ethd__trace_in *in, size_t row, const int 
   return ETHD_OK;
 }
 
-/* A frame stands in a row whole, or not at all; single rays may be NaN. */
+/* Checks that a row has a whole frame or none; single rays may be NaN. */
 static ethd_status check_frame(const ethd__trace_in *in, size_t row, char message[ETHD_MESSAGE_MAX]) {
   bool none = ethd_csv_empty(&in->csv, row, in->t_ring);
   if (!none && !(fabs(cell(in, row, in->t_ring)) <= SECONDS_MAX))

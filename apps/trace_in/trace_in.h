@@ -1,6 +1,6 @@
 /* The input of a replay: a CSV of joint angles and the finger, or the ring's distances. */
-#ifndef ETHD_APPS_TRACE_IN_H
-#define ETHD_APPS_TRACE_IN_H
+#ifndef ETHD__TRACE_IN_TRACE_IN_H
+#define ETHD__TRACE_IN_TRACE_IN_H
 
 #include "text/csv.h"
 
@@ -15,7 +15,7 @@ typedef struct ethd__trace_in {
    finite. */
 ETHD_MUST_CHECK ethd_status ethd__trace_in_read(const char *path, ethd__trace_in *out, char message[ETHD_MESSAGE_MAX]);
 
-/* Row `row` as the controller takes it. */
+/* Returns row `row` as the controller takes it. */
 ethd_sense ethd__trace_in_sense(const ethd__trace_in *in, size_t row);
 
 void ethd__trace_in_free(ethd__trace_in *in);

@@ -13,11 +13,11 @@
 #define STRING(x) #x
 #define TEXT(x) STRING(x)
 
-typedef struct scene {
+typedef struct space_scene {
   cpSpace *space;
   const double (*segments)[4];
   size_t nearest;
-} scene;
+} space_scene;
 
 /* It greets on stdout. */
 static cpSpace *quiet_space(void) {
@@ -33,7 +33,7 @@ static cpSpace *quiet_space(void) {
 }
 
 static void *create(const double (*segments)[4], size_t n) {
-  scene *s = malloc(sizeof *s);
+  space_scene *s = malloc(sizeof *s);
   if (!s) abort();
   s->space = quiet_space();
   s->segments = segments;
@@ -49,7 +49,7 @@ static void *create(const double (*segments)[4], size_t n) {
 }
 
 static void nearest(void *self, const double x[2], double limit, int warm, double out[3]) {
-  scene *s = self;
+  space_scene *s = self;
   double most = limit, known[3];
   if (warm) {
     ethd__peer_point(s->segments[s->nearest], x, known);
@@ -69,7 +69,7 @@ static void free_shape(cpBody *body, cpShape *shape, void *space) {
 }
 
 static void destroy(void *self) {
-  scene *s = self;
+  space_scene *s = self;
   cpBodyEachShape(cpSpaceGetStaticBody(s->space), free_shape, s->space);
   cpSpaceFree(s->space);
   free(s);

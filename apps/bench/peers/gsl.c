@@ -10,7 +10,7 @@
 
 enum { N = ETHD__ODE_SIZE };
 
-typedef struct solver {
+typedef struct gsl_solver {
   ethd__ode ode;
   gsl_odeiv2_system system;
   gsl_odeiv2_step *step, *trial;
@@ -20,16 +20,16 @@ typedef struct solver {
   /* the step that holds a change */
   double t, y[N], rate[N], out[N];
   int which;
-} solver;
+} gsl_solver;
 
 static int rate(double t, const double y[], double out[], void *self) {
-  const solver *s = self;
+  const gsl_solver *s = self;
   s->ode.rate(s->ode.self, t, y, out);
   return GSL_SUCCESS;
 }
 
 static void *create(const ethd__ode *ode, double tolerance, const gsl_odeiv2_step_type *type) {
-  solver *s = calloc(1, sizeof *s);
+  gsl_solver *s = calloc(1, sizeof *s);
   if (!s) return NULL;
   s->ode = *ode;
   s->system = (gsl_odeiv2_system){rate, NULL, N, s};
@@ -49,7 +49,7 @@ static void *create_rk8pd(const ethd__ode *ode, double tolerance) {
 }
 
 static double try_step(void *self, double h) {
-  solver *s = self;
+  gsl_solver *s = self;
   double error[N], g[2];
   memcpy(s->out, s->y, sizeof s->y);
   gsl_odeiv2_step_apply(s->trial, s->t, h, s->out, error, s->rate, NULL, &s->system);
@@ -58,7 +58,7 @@ static double try_step(void *self, double h) {
 }
 
 static void work(void *self, double t, double end, double *y) {
-  solver *s = self;
+  gsl_solver *s = self;
   gsl_odeiv2_step_reset(s->step);
   gsl_odeiv2_evolve_reset(s->evolve);
   while (t < end) {
@@ -82,7 +82,7 @@ static void work(void *self, double t, double end, double *y) {
 }
 
 static void destroy(void *self) {
-  solver *s = self;
+  gsl_solver *s = self;
   gsl_odeiv2_evolve_free(s->evolve);
   gsl_odeiv2_control_free(s->control);
   gsl_odeiv2_step_free(s->trial);

@@ -16,14 +16,14 @@ enum { HALF = ETHD__ODE_SIZE / 2 };
 static const char model[] = "<mujoco><option gravity='0 0 0'><flag constraint='disable' contact='disable'/></option>"
                             "<worldbody>" BODY BODY BODY BODY "</worldbody></mujoco>";
 
-typedef struct solver {
+typedef struct mujoco_solver {
   ethd__ode ode;
   mjModel *model;
   mjData *data;
   double step;
-} solver;
+} mujoco_solver;
 
-static const solver *working; /* its callback knows no user */
+static const mujoco_solver *working; /* its callback knows no user */
 
 static void passive(const mjModel *m, mjData *d) {
   double y[ETHD__ODE_SIZE], rate[ETHD__ODE_SIZE];
@@ -37,7 +37,7 @@ static void passive(const mjModel *m, mjData *d) {
 static void *create(const ethd__ode *ode, double step, mjtIntegrator integrator) {
   static mjVFS files;
   char message[256];
-  solver *s = calloc(1, sizeof *s);
+  mujoco_solver *s = calloc(1, sizeof *s);
   if (!s) return NULL;
   s->ode = *ode;
   s->step = step;
@@ -55,7 +55,7 @@ static void *create_euler(const ethd__ode *ode, double step) { return create(ode
 static void *create_rk4(const ethd__ode *ode, double step) { return create(ode, step, mjINT_RK4); }
 
 static void work(void *self, double t, double end, double *y) {
-  solver *s = self;
+  mujoco_solver *s = self;
   double steps = ceil((end - t) / s->step - 1e-9);
   working = s;
   mjcb_passive = passive;
@@ -69,7 +69,7 @@ static void work(void *self, double t, double end, double *y) {
 }
 
 static void destroy(void *self) {
-  solver *s = self;
+  mujoco_solver *s = self;
   mj_deleteData(s->data);
   mj_deleteModel(s->model);
   free(s);

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ethd._native import ffi, lib
 from ethd.controller import Controller, Step
-from ethd.errors import check, text
+from ethd.errors import Error, check, text
 
 
 class RecordedEvent(NamedTuple):
@@ -50,15 +50,21 @@ class Recording:
         with open(path, encoding="utf-8", newline="") as file:
             return [RecordedEvent(int(e["row"]), e["kind"], e["detail"]) for e in csv.DictReader(file)]
 
+    def _open(self) -> Controller:
+        try:
+            return Controller(os.path.join(self.folder, "config.ini"), self._plugins)
+        except Error as e: # the library names its programs' option
+            raise Error(e.status, str(e).replace("--plugins lets it run", "ethd.read(folder, plugins=True) lets it run")) from None
+
     def controller(self) -> Controller:
         """A controller set up as the recording began: its configuration, then the events before row 0."""
-        c = Controller(os.path.join(self.folder, "config.ini"), self._plugins)
+        c = self._open()
         _Replay(c).before([e for e in self.events if e.row == 0], first=True)
         return c
 
     def replay(self) -> Iterator[Tuple[np.void, Step]]:
         """Each recorded row with what the library gives for it now, the recording's events taken at their rows."""
-        c = Controller(os.path.join(self.folder, "config.ini"), self._plugins)
+        c = self._open()
         replay, rows = _Replay(c), self._by_row()
         for i in range(len(self.tick)):
             if i == 0 or i in rows:

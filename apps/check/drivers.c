@@ -1,0 +1,42 @@
+/* What the drivers of a device say of it, asked or only read about. */
+#include <math.h>
+#include <stdio.h>
+
+#include "check/report.h"
+#include "clock.h"
+
+static void limit(const char *name, double value, const char *unit, double scale) {
+  if (isinf(value))
+    printf("%s no limit", name);
+  else
+    printf("%s %.4g %s", name, scale * value, unit);
+}
+
+/* Where the device says that its joints stand; it was asked once, when it was opened. */
+static void joints(const ethd_config *config, const ethd_driver *driver, void *device) {
+  ethd_sense sense = {.time_ns = 0};
+  ethd_pose pose;
+  if (driver->read(device, ethd__clock_now(), &sense) != ETHD_OK) {
+    printf("joints       not known before it is enabled\n");
+    return;
+  }
+  ethd_arm_pose(&config->setup.arm, sense.q, &pose);
+  printf("joints       %.4f and %.4f rad: the ring's centre at %.4f, %.4f m\n", sense.q[0], sense.q[1], pose.x.x,
+         pose.x.y);
+}
+
+void ethd__report_drivers(const ethd_config *config, const ethd_driver *driver, void *device, bool is_open) {
+  const ethd_limits *l = &config->setup.limits;
+  const char *remark;
+  printf("drivers      %s: %s\n", config->device,
+         is_open ? "opened, nothing enabled" : "read, not touched (--open asks the device)");
+  for (uint32_t i = 0; (remark = driver->remark(device, i)); i++) printf("             %s\n", remark);
+  if (is_open) joints(config, driver, device);
+  limit("limits       torque", l->torque, "Nm", 1);
+  limit(", speed", l->speed, "m/s", 1);
+  limit(", gap between samples", l->gap, "ms", 1e3);
+  printf("\n             ");
+  limit("a finger unseen: tracking fades after", l->finger_age, "ms", 1e3);
+  limit(", it stops after", l->finger_lost, "ms", 1e3);
+  printf("\n");
+}

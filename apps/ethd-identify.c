@@ -1,0 +1,240 @@
+/* From recordings of a device to the numbers of its simulated twin. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "identify/excite.h"
+#include "identify/page.h"
+#include "report/picture.h"
+#include "sim/plant.h"
+#include "text/error_text.h"
+
+#define LEAST_WINDOWS 20
+#define LEAST_WAY 20 /* counts, or as many thousandths of a rad of ideal encoders */
+#define CLIPPED 0.9
+
+static const char doc[] =
+    "Identifies a device: from recordings of its commands and encoders to a plant file, whose numbers have intervals.\v"
+    "DIR is a recording of ethd-run, ethd-tap or ethd-study, or a folder of them; recordings of one device are fitted "
+    "together. The simulator's own prediction over short windows is fitted to the encoders, by least squares; whether "
+    "the "
+    "transmission gives way is decided by an information criterion, and how white the residual is shows whether the "
+    "device does something else as well. What the recordings can't tell keeps its value of --base and is said.\n"
+    "--judge doesn't fit: it says how well a plant predicts recordings that it wasn't fitted to.\n"
+    "--excite makes a recording: it moves the device of a configuration by itself, without a finger, with torques of "
+    "many "
+    "sines inside a box, under the guard, after a dry run on the simulated device. Nobody may be near the arm.\n\n"
+    "Examples:\n"
+    "  ethd-identify --excite --config device.ini --record session\n"
+    "  ethd-identify session --out mine.plant --plot fit.png\n"
+    "  ethd-identify --judge mine.plant taps";
+
+enum { BASE = 256, CSV, PLOT, JUDGE, EXCITE, RECORD, FORCE, SHARE, TORQUE, HALF, AT, VIRTUAL, SECONDS };
+
+static const struct argp_option options[] = {
+    {"out", 'o', "MINE.plant", 0, "write the plant", 0},
+    {"base", BASE, "PLANT", 0, "what isn't seen is kept as in this plant (n)", 0},
+    {"csv", CSV, "OUT.csv", 0, "write a stretch of motion, measured and predicted, and the residual's spectrum", 0},
+    {"plot", PLOT, "OUT.png", 0, "draw it (gnuplot); writes OUT.csv beside it unless --csv says where", 0},
+    {"judge", JUDGE, "PLANT", 0, "say how well this plant predicts the recordings", 0},
+    {"excite", EXCITE, NULL, 0, "make a recording by moving the device of --config", 1},
+    {"config", 'c', "C.ini", 0, "configuration (default: the simulated device)", 1},
+    {"record", RECORD, "DIR", 0, "the recording", 1},
+    {"force", FORCE, NULL, 0, "replace a recording that is there", 1},
+    {"duration", 'd', "S", 0, "so long (60)", 1},
+    {"share", SHARE, "R", 0, "share of the torque limit that may be used (0.5)", 1},
+    {"torque", TORQUE, "NM", 0, "torque limit where neither device nor configuration has one", 1},
+    {"half", HALF, "M", 0, "half the side of the box (0.04)", 1},
+    {"at", AT, "X,Y", 0, "the box's middle, m (0.25,0.25)", 1},
+    {"virtual", VIRTUAL, NULL, 0, "on a virtual clock, for a device that is simulated", 1},
+    {0},
+};
+
+static struct {
+  const char *out, *base, *csv, *plot, *judge;
+  char **folders;
+  int folder_count;
+  bool excite;
+  ethd__excitation excitation;
+} arg = {.base = "n", .excitation = {.seconds = 60, .share = 0.5, .torque = NAN, .half = 0.04, .at = {0.25, 0.25}}};
+
+static void parse_at(const char *text) {
+  char *comma = strchr(text, ','), first[64];
+  if (!comma || comma - text >= (int)sizeof first)
+    ethd__fail(ETHD_EXIT_INPUT, "--at: found \"%s\", X,Y is allowed", text);
+  memcpy(first, text, (size_t)(comma - text));
+  first[comma - text] = 0;
+  arg.excitation.at =
+      (ethd_vec){ethd__option_number("--at", first, -10, 10), ethd__option_number("--at", comma + 1, -10, 10)};
+}
+
+static void check_usage(struct argp_state *state) {
+  bool recording = arg.excitation.record || arg.excitation.config;
+  if (arg.excite && arg.folder_count) argp_error(state, "--excite makes a recording; a folder to fit isn't needed");
+  if (arg.excite && !arg.excitation.record) argp_error(state, "--excite needs --record DIR");
+  if (!arg.excite && recording) argp_error(state, "--config and --record belong to --excite");
+  if (!arg.excite && !arg.folder_count) argp_error(state, "a folder with a recording is needed, or --excite");
+  if (arg.judge && (arg.out || arg.plot || arg.csv))
+    argp_error(state, "--judge fits nothing: no --out, --plot or --csv");
+}
+
+static error_t parse(int key, char *text, struct argp_state *state) {
+  ethd__excitation *x = &arg.excitation;
+  switch (key) {
+  case 'o': arg.out = text; return 0;
+  case BASE: arg.base = text; return 0;
+  case CSV: arg.csv = text; return 0;
+  case PLOT: arg.plot = ethd__option_picture("--plot", text); return 0;
+  case JUDGE: arg.judge = text; return 0;
+  case EXCITE: arg.excite = true; return 0;
+  case 'c': x->config = text; return 0;
+  case RECORD: x->record = text; return 0;
+  case FORCE: x->replace = true; return 0;
+  case 'd': x->seconds = ethd__option_number("--duration", text, 1, 3600); return 0;
+  case SHARE: x->share = ethd__option_number("--share", text, 0.01, 1); return 0;
+  case TORQUE: x->torque = ethd__option_number("--torque", text, 1e-3, 1e3); return 0;
+  case HALF: x->half = ethd__option_number("--half", text, 5e-3, 1); return 0;
+  case AT: parse_at(text); return 0;
+  case VIRTUAL: x->is_virtual = true; return 0;
+  case ARGP_KEY_ARGS:
+    arg.folders = state->argv + state->next;
+    arg.folder_count = state->argc - state->next;
+    return 0;
+  case ARGP_KEY_END: check_usage(state); return 0;
+  default: return ARGP_ERR_UNKNOWN;
+  }
+}
+
+/* ---- input ---- */
+
+static ethd_plant load_plant(const char *name) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd_plant plant;
+  char *path = ethd__plant_path(name, ".");
+  if (!path) ethd__fail_memory();
+  if (ethd__plant_read(path, path, &plant, message)) ethd__fail(ETHD_EXIT_INPUT, "%s", message);
+  free(path);
+  return plant;
+}
+
+static void load_evidence(ethd__evidence *e) {
+  char message[ETHD_MESSAGE_MAX];
+  for (int i = 0; i < arg.folder_count; i++) {
+    ethd_status status = ethd__evidence_add(e, arg.folders[i], message);
+    if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  }
+}
+
+/* Each refusal says what is missing and how to record it. */
+static void check_evidence(const ethd__evidence *e, double count) {
+  double way[2] = {0, 0}, least = LEAST_WAY * (count > 0 ? count : 1e-3);
+  size_t windows = 0, whole = (size_t)rint(ETHD__WINDOW / e->period);
+  for (size_t i = 0; i < e->stretch_count; i++) {
+    const ethd__passage *s = &e->stretches[i];
+    windows += s->count / whole;
+    for (size_t k = s->first + 1; k < s->first + s->count; k++)
+      for (int j = 0; j < 2; j++) way[j] += fabs(e->q[k][j] - e->q[k - 1][j]);
+  }
+  if (windows < LEAST_WINDOWS)
+    ethd__fail(
+        ETHD_EXIT_INPUT,
+        "%s: %zu windows of %g s without a stop, a fault or the finger near, at least %d are needed; record more, "
+        "as ethd-identify --excite does",
+        arg.folders[0], windows, ETHD__WINDOW, LEAST_WINDOWS);
+  if (way[0] + way[1] < least)
+    ethd__fail(ETHD_EXIT_INPUT,
+               "%s: the arm hardly moves, %.3g rad in all: record one that does, as ethd-identify --excite does",
+               arg.folders[0], way[0] + way[1]);
+  if (e->clipped > CLIPPED)
+    ethd__fail(ETHD_EXIT_INPUT,
+               "%s: the guard cut the torque in %.0f %% of the ticks, so that it hardly changes: record with gains or "
+               "excitation below limits.torque, as ethd-identify --excite --share 0.5 does",
+               arg.folders[0], 100 * e->clipped);
+}
+
+/* ---- fitting ---- */
+
+static void check_finding(ethd__finding *f) {
+  uint32_t other;
+  double shift;
+  if (f->fit.unseen[ETHD__MASS_X] && f->fit.unseen[ETHD__MASS_Y])
+    ethd__fail(ETHD_EXIT_FAILED,
+               "%s: the masses can't be told: torque and motion don't change together enough; record with changing "
+               "torques, as ethd-identify --excite does",
+               arg.folders[0]);
+  if (ethd__fit_stranger(&f->problem, &other, &shift))
+    ethd__fail(ETHD_EXIT_INPUT,
+               "%s: of another device than the rest, its masses are %.0f %% %s: give the recordings of one device",
+               f->evidence->folders[other], 100 * fabs(shift), shift > 0 ? "more" : "less");
+}
+
+static char *csv_beside(const char *png) {
+  char *csv = strdup(png);
+  if (!csv) ethd__fail_memory();
+  memcpy(csv + strlen(csv) - 4, ".csv", 4);
+  return csv;
+}
+
+static void write_files(const ethd__finding *f) {
+  char message[ETHD_MESSAGE_MAX], *csv = arg.csv ? strdup(arg.csv) : arg.plot ? csv_beside(arg.plot) : NULL;
+  ethd_status status = ETHD_OK;
+  if (arg.out) status = ethd__page_write(f, arg.out, message);
+  if (!status && csv) status = ethd__page_csv(f, csv, message);
+  if (!status && arg.plot) status = ethd__identify_draw(f, csv, arg.plot, message);
+  if (status) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  free(csv);
+}
+
+static int identify(const ethd__evidence *e) {
+  static ethd__finding f;
+  char message[ETHD_MESSAGE_MAX];
+  f.plant = load_plant(arg.base);
+  f.base = arg.base;
+  f.evidence = e;
+  if (ethd__sensing_find(e, &f.sensing, message)) ethd__fail(ETHD_EXIT_INPUT, "%s", message);
+  check_evidence(e, f.sensing.count);
+  if (arg.plot && ethd__picture_ready(message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd__fit_run(e, &f.plant, f.sensing.count, &f.problem, &f.fit);
+  if (ethd__stop) ethd__fail(ETHD_EXIT_FAILED, "stopped; nothing is written");
+  check_finding(&f);
+  f.residual = calloc(f.problem.rows, sizeof *f.residual);
+  if (!f.residual) ethd__fail_memory();
+  ethd__whiteness_find(&f.problem, f.sensing.count, f.residual, &f.whiteness);
+  ethd__finding_plant(&f);
+  ethd__page_print(stdout, &f);
+  write_files(&f);
+  free(f.residual);
+  ethd__shooting_close(&f.problem);
+  return ETHD_EXIT_DONE;
+}
+
+static int judge(const ethd__evidence *e) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd__sensing sensing;
+  ethd_plant plant = load_plant(arg.judge);
+  if (ethd__sensing_find(e, &sensing, message)) ethd__fail(ETHD_EXIT_INPUT, "%s", message);
+  check_evidence(e, sensing.count);
+  ethd__judgement j = ethd__prediction_judge(e, &plant);
+  double floor = sensing.count / sqrt(12);
+  printf("%zu windows; errors of the prediction, rad rms; a count is %.4g rad, rounding to it leaves %.4g\n", j.windows,
+         sensing.count, floor);
+  for (int i = 0; i < 2; i++)
+    printf("  joint %d   one tick ahead %.4g (%.2f counts), %.0f ms ahead %.4g (%.2f counts)\n", i + 1, j.step[i],
+           j.step[i] / sensing.count, 1e3 * ETHD__AHEAD, j.ahead[i], j.ahead[i] / sensing.count);
+  return ETHD_EXIT_DONE;
+}
+
+int main(int argc, char **argv) {
+  static const struct argp argp = {options, parse, "[DIR...]", doc, NULL, NULL, NULL};
+  static ethd__evidence evidence;
+  ethd__begin();
+  argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  if (arg.excite) return ethd__end(ethd__excite(&arg.excitation));
+  ethd__catch_interrupt();
+  load_evidence(&evidence);
+  int code = arg.judge ? judge(&evidence) : identify(&evidence);
+  ethd__evidence_free(&evidence);
+  return ethd__end(code);
+}

@@ -1,0 +1,186 @@
+/* Finds gains: plant and hands in, the user's configuration with better numbers out. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "cli/cli.h"
+#include "ethd/ethd.h"
+#include "report/picture.h"
+#include "tap/load.h"
+#include "text/error_text.h"
+#include "text/text.h"
+#include "tune/options.h"
+#include "tune/table.h"
+#include "tune/tuned.h"
+
+static ethd__tune_options arg;
+
+static void check(ethd_status status, const char *message) {
+  if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
+}
+
+/* ---- what is searched for ---- */
+
+static void open_space(const ethd_config *config, ethd__tune_space *space) {
+  char message[ETHD_MESSAGE_MAX];
+  const char *law = arg.law ? arg.law : config->setup.transition->law.id;
+  check(ethd__space_open(config, law, space, message), message);
+  for (size_t i = 0; i < arg.range_count; i++) check(ethd__space_range(space, arg.ranges[i], message), message);
+}
+
+/* All that the scores depend on, as text. */
+static char *describe(const ethd__loaded *loaded, const ethd__tune_space *space) {
+  char *out = NULL, *plant = NULL, message[ETHD_MESSAGE_MAX];
+  size_t length, plant_length;
+  FILE *f = open_memstream(&out, &length);
+  if (!f) ethd__fail_memory();
+  check(ethd_text_read(loaded->plant_path, (size_t)1 << 20, &plant, &plant_length, message), message);
+  fprintf(f, "ethd-tune %s\nlaw %s\nseed %llu\npoints %lld\ntaps %lld\nshards %u\nmargin %.17g %.17g%s\nhands",
+          ETHD_VERSION, space->law, (unsigned long long)arg.seed, (long long)arg.points, (long long)arg.taps,
+          arg.shards, arg.margin.gain, arg.margin.delay, arg.passive ? " passive" : "");
+  for (size_t i = 0; i < arg.hands.count; i++) fprintf(f, " %.17g", arg.hands.shares[i]);
+  fprintf(f, "\nprefer %d\n", arg.prefer);
+  for (size_t k = 0; k < space->count; k++)
+    fprintf(f, "%s %.17g %.17g %.17g\n", space->keys[k].name, space->keys[k].own, space->keys[k].low,
+            space->keys[k].high);
+  fprintf(f, "---- plant\n%s---- configuration\n%s---- scene\n%s", plant,
+          space->config->text ? space->config->text : "", space->config->scene_text ? space->config->scene_text : "");
+  free(plant);
+  if (fclose(f)) ethd__fail_memory();
+  return out;
+}
+
+/* ---- results ---- */
+
+static void write_tuned(const ethd__tune_search *search, const ethd__tune_entry *choice, const ethd__loaded *loaded) {
+  char message[ETHD_MESSAGE_MAX], head[256];
+  const ethd__tune_space *space = search->rig->space;
+  snprintf(head, sizeof head, "Tuned by ethd-tune for plant %s (simulated), transition %s, margins %g and %g ms.",
+           loaded->plant_name, space->law, arg.margin.gain, 1e3 * arg.margin.delay);
+  char *folder = ethd__path_folder(arg.out);
+  bool same = folder && space->config->folder && !strcmp(folder, space->config->folder);
+  char *text = ethd__tuned_text(space, &choice->point, head, !same);
+  if (!text) ethd__fail_memory();
+  check(ethd_text_write(arg.out, text, strlen(text), message), message);
+  free(text);
+  free(folder);
+}
+
+static void draw(const ethd__tune_space *space, const ethd__loaded *loaded) {
+  char message[ETHD_MESSAGE_MAX], *heading;
+  if (asprintf(&heading, "Gains for plant %s, transition %s", loaded->plant_name, space->law) < 0) ethd__fail_memory();
+  const ethd__picture_value values[] = {
+      {"in", arg.csv, true}, {"out", arg.plot, true}, {"heading", heading, false}, {0}};
+  ethd_status status = ethd__picture_draw("tune.gp", NULL, values, message);
+  free(heading);
+  if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+}
+
+static int show(const ethd__tune_search *search, const ethd__loaded *loaded) {
+  char message[ETHD_MESSAGE_MAX];
+  const ethd__tune_entry *choice = ethd__search_choice(search);
+  printf("device       plant %s: simulated, plausible, not measured\n", loaded->plant_name);
+  printf("margins      gains %g times, delay %g ms more, with %zu hands: %llu of %llu points keep them\n",
+         arg.margin.gain, 1e3 * arg.margin.delay, arg.hands.count, (unsigned long long)search->kept,
+         (unsigned long long)search->drawn);
+  ethd__tune_print(stdout, search, choice);
+  if (arg.csv) check(ethd__tune_csv(search, choice, arg.csv, message), message);
+  if (arg.plot) draw(search->rig->space, loaded);
+  if (!choice) {
+    printf("\nno point came to rest with gains and delay at their margin, of %d that were tried; the last "
+           "one "
+           "swung\nby %.1f mm/s with %s there and %g of the hand: a smaller --gain-margin or --delay-margin, other "
+           "--hands\n",
+           (int)search->asked, 1e3 * search->verdict.swing, search->verdict.what ? search->verdict.what : "nothing",
+           search->verdict.hand);
+    return ETHD_EXIT_FAILED;
+  }
+  printf("chosen: the least sum of the four goals%s%s, confirmed in time at its margins (%d tried)\n",
+         arg.prefer >= 0 ? ", twice for " : "", arg.prefer >= 0 ? ethd__tune_goal_names[arg.prefer] : "",
+         (int)search->asked);
+  ethd__tune_print_margins(stdout, search->rig, &choice->point);
+  check(ethd__tune_print_gains(stdout, search, choice, message), message);
+  if (arg.out) write_tuned(search, choice, loaded);
+  return ETHD_EXIT_DONE;
+}
+
+/* ---- the whole ---- */
+
+/* Processes of this machine, a shard each; the first goes on here. */
+static void spawn(pid_t *children) {
+  arg.shards = (uint32_t)arg.jobs;
+  for (uint32_t i = 2; i <= arg.shards; i++) {
+    pid_t child = fork();
+    if (child < 0) ethd__fail(ETHD_EXIT_FAILED, "--jobs: no more processes can be had");
+    if (child > 0) {
+      children[i] = child;
+      continue;
+    }
+    arg.shard = i;
+    return;
+  }
+}
+
+static int collect(const pid_t *children, int code) {
+  for (uint32_t i = 2; i <= arg.shards; i++) {
+    int status = 0;
+    if (children[i] && waitpid(children[i], &status, 0) > 0 && status && !code) code = ETHD_EXIT_FAILED;
+  }
+  return code;
+}
+
+static int search_it(ethd__tune_search *search, const char *what, const ethd__loaded *loaded) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd__tune_journal journal;
+  bool over;
+  check(ethd__tune_journal_open(arg.work, what, arg.shard, arg.shards, &journal, message), message);
+  search->journal = &journal;
+  check(ethd__search_run(search, &over, message), message);
+  int code = over ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+  if (over && arg.shard == 1) code = show(search, loaded);
+  if (!over)
+    fprintf(stderr, "%s: stopped%s\n", program_invocation_short_name,
+            arg.work ? "; the same command goes on" : "; with --work the next run would go on");
+  ethd__search_free(search);
+  ethd__tune_journal_close(&journal);
+  return code;
+}
+
+int main(int argc, char **argv) {
+  char message[ETHD_MESSAGE_MAX];
+  pid_t children[ETHD_TUNE_JOBS_MAX + 1] = {0};
+  ethd__loaded loaded;
+  ethd__tune_space space;
+  ethd__speed speeds[ETHD_TUNE_SPEEDS];
+  ethd__begin();
+  ethd__tune_options_read(argc, argv, &arg);
+  ethd__load(arg.config, arg.plant, true, true, &loaded);
+  const char *const inputs[] = {arg.config, loaded.path, loaded.plant_path};
+  for (int i = 0; i < 3; i++) {
+    ethd__refuse_input("--out", arg.out, "--config or --plant", inputs[i]);
+    ethd__refuse_input("--csv", arg.csv, "--config or --plant", inputs[i]);
+  }
+  open_space(loaded.config, &space);
+  if (!ethd__speed_parse("low", &loaded.plant, &speeds[0]) || !ethd__speed_parse("high", &loaded.plant, &speeds[1]))
+    ethd__fail(ETHD_EXIT_INPUT, "%s: a plant's speeds must be positive", loaded.plant_path);
+  ethd__study study = {.config = loaded.config,
+                       .plant = loaded.plant,
+                       .seed = arg.seed,
+                       .speeds = speeds,
+                       .speed_count = ETHD_TUNE_SPEEDS};
+  check(ethd__study_prepare(&study, message), message);
+  if (arg.plot) check(ethd__picture_ready(message), message);
+  const ethd__tune_rig rig = {&study, &space, arg.hands, arg.margin, arg.passive};
+  ethd__tune_search search = {.rig = &rig, .points = (uint32_t)arg.points, .taps = (uint32_t)arg.taps};
+  for (int g = 0; g < ETHD_TUNE_GOALS; g++) search.weights[g] = g == arg.prefer ? 2 : 1;
+  if (arg.jobs > 1) spawn(children);
+  char *what = describe(&loaded, &space);
+  ethd__catch_interrupt();
+  int code = collect(children, search_it(&search, what, &loaded));
+  free(what);
+  ethd__loaded_free(&loaded);
+  return ethd__end(code);
+}

@@ -1,0 +1,197 @@
+#include "identify/excite.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/cli.h"
+#include "run/session.h"
+#include "run/summary.h"
+#include "settings/config_parts.h"
+#include "text/error_text.h"
+
+#define DRY 15.0 /* s of dry run */
+#define TRIES 12 /* with less torque each, until the box is large enough in the dry run, */
+#define LESS 0.75
+#define USED 0.6     /* so that this share of it is used */
+#define SPRING 1.0   /* joint stiffness times box over torque times link */
+#define DAMPING 0.02 /* s: of the spring */
+
+/* What a session did, as its rows come. */
+typedef struct seen {
+  ethd_vec at;
+  double farthest, fastest; /* m, m/s */
+  bool stopped;             /* a fault ended the torque */
+  atomic_bool over;         /* the stop that ends the session isn't one of them */
+} seen;
+
+static void take(void *seen_, const ethd_loop_row *row) {
+  seen *s = seen_;
+  const ethd_trace *t = &row->trace;
+  if (atomic_load(&s->over)) return;
+  s->farthest = fmax(s->farthest, fmax(fabs(t->x[0] - s->at.x), fabs(t->x[1] - s->at.y)));
+  s->fastest = fmax(s->fastest, hypot(t->v[0], t->v[1]));
+  s->stopped |= t->fault && ethd_fault_reaction((ethd_fault)t->fault, 0) >= ETHD_REACTION_STOP;
+}
+
+/* ---- the session's configuration ---- */
+
+static bool stays(const char *section) {
+  static const char *const gone[] = {"tracking", "contact", "transition", "scene", "plugins", "device"};
+  for (size_t i = 0; i < sizeof gone / sizeof *gone; i++)
+    if (!strcmp(gone[i], section)) return false;
+  return true;
+}
+
+/* The device's keys, each with its driver's name. */
+static void put_device(FILE *out, const ethd_config *c) {
+  bool single = !strchr(c->device, ',');
+  for (uint32_t i = 0; i < c->setting_count; i++) {
+    const ethd_setting *s = &c->settings[i];
+    bool named = !single || !strncmp(s->key, c->device, strlen(c->device)) || !strcmp(s->key, "inject");
+    fprintf(out, named ? "%.0s%s = %s\n" : "%s.%s = %s\n", c->device, s->key, s->value);
+  }
+}
+
+/* The configuration's own numbers, but the laws that excite, and excite behind the device. dry: behind a simulated one. */
+static char *compose(const ethd__excitation *x, const ethd_config *c, double torque, bool dry) {
+  char *text = NULL;
+  size_t length;
+  FILE *out = open_memstream(&text, &length);
+  const ethd_ini *ini = &ethd__config_whole(c)->ini;
+  bool sim = !strcmp(c->device, "sim"), simulated = sim || dry;
+  double stiffness = SPRING * x->share * torque * c->setup.arm.link1 / x->half;
+  if (!out) ethd__fail_memory();
+  for (uint32_t i = 0; i < ini->count; i++)
+    if (stays(ini->keys[i].section))
+      fprintf(out, "[%s]\n%s = %s\n", ini->keys[i].section, ini->keys[i].key, ini->keys[i].value);
+  fprintf(out, "[tracking]\nlaw = pd\nk_t = %.6g\nb_t = %.6g\n", stiffness, DAMPING * stiffness);
+  fprintf(out, "[device]\ndriver = %s, excite\n", dry ? "sim" : c->device);
+  if (sim || !dry) put_device(out, c);
+  if (simulated) fprintf(out, "sim.empty = yes\nsim.meet_x = %.10g\nsim.meet_y = %.10g\n", x->at.x, x->at.y);
+  fprintf(out, "excite.torque = %.6g\nexcite.x = %.10g\nexcite.y = %.10g\nexcite.half = %.6g\n", x->share * torque,
+          x->at.x, x->at.y, x->half);
+  if (fclose(out)) ethd__fail_memory();
+  return text;
+}
+
+/* ---- a session ---- */
+
+static bool goes_on(const ethd__session *s, double seconds) {
+  return !ethd__stop && ethd__session_lives(s) && ethd__session_time(s) < seconds * (1 - 1e-12);
+}
+
+static void run(ethd__session *s, double seconds) {
+  while (goes_on(s, seconds)) {
+    ethd__progress((uint64_t)(1e3 * ethd__session_time(s)), (uint64_t)(1e3 * seconds), "exciting");
+    if (s->is_virtual) {
+      ethd__session_tick(s);
+    } else {
+      usleep(5000);
+      ethd__session_poll(s);
+    }
+  }
+  ethd__progress(1, 1, "");
+}
+
+static void dry_run(const ethd__excitation *x, const ethd_config *c, double torque, seen *out) {
+  static ethd__session session;
+  char message[ETHD_MESSAGE_MAX], *text = compose(x, c, torque, true);
+  *out = (seen){.at = x->at};
+  ethd__session_options o = {.config = x->config,
+                             .text = text,
+                             .folder = c->folder,
+                             .is_virtual = true,
+                             .sink = {out, take},
+                             .loop = ethd_loop_default()};
+  ethd_status status = ethd__session_open(&o, &session, message);
+  if (status) ethd__fail(ethd__exit_code(status), "the dry run: %s", message);
+  run(&session, fmin(DRY, x->seconds));
+  atomic_store(&out->over, true);
+  ethd__session_halt(&session, false);
+  if (ethd__session_end(&session, message)) ethd__fail(ETHD_EXIT_FAILED, "the dry run: %s", message);
+  ethd__session_free(&session);
+  free(text);
+}
+
+static int record(const ethd__excitation *x, const ethd_config *c, double torque) {
+  static ethd__session session;
+  char message[ETHD_MESSAGE_MAX], *text = compose(x, c, torque, false);
+  seen out = {.at = x->at};
+  ethd__session_options o = {.config = x->config,
+                             .text = text,
+                             .folder = c->folder,
+                             .record = x->record,
+                             .replace = x->replace,
+                             .is_virtual = x->is_virtual,
+                             .sink = {&out, take},
+                             .loop = ethd_loop_default()};
+  ethd__catch_end();
+  ethd_status status = ethd__session_open(&o, &session, message);
+  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__remarks_print(stderr, &session);
+  run(&session, x->seconds);
+  atomic_store(&out.over, true);
+  ethd__session_halt(&session, ethd__stop);
+  status = ethd__session_end(&session, message);
+  ethd__summary_print(stdout, &session, x->record);
+  if (status) fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);
+  ethd__session_free(&session);
+  free(text);
+  if (!status && out.stopped)
+    fprintf(stderr,
+            "%s: the guard stopped the ring %.3g m from the middle of the box: put it there before the start, or "
+            "use less --share or more --half\n",
+            program_invocation_short_name, out.farthest);
+  return status || out.stopped ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE;
+}
+
+/* ---- how much torque ---- */
+
+static double torque_limit(const ethd__excitation *x, const ethd_config *c) {
+  char message[ETHD_MESSAGE_MAX];
+  const ethd_driver *driver;
+  void *device;
+  const ethd_device_def def = {&c->setup, c->settings, c->setting_count, c->folder, c->path, x->is_virtual};
+  ethd_status status = ethd_device_open(c->device, NULL, &def, &driver, &device, message);
+  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd_limits limits = driver->limits(device);
+  driver->close(device);
+  double most = fmin(limits.torque, c->setup.limits.torque);
+  if (!isnan(x->torque)) most = fmin(most, x->torque);
+  if (!isfinite(most))
+    ethd__fail(ETHD_EXIT_INPUT,
+               "%s: neither device nor configuration limits the torque: set limits.torque, or give --torque",
+               x->config ? x->config : "the defaults");
+  return most;
+}
+
+int ethd__excite(const ethd__excitation *given) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd__excitation x = *given;
+  ethd_config *config;
+  ethd_status status = ethd_config_load(x.config, &config, message);
+  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  double torque = torque_limit(&x, config);
+  seen dry;
+  dry_run(&x, config, torque, &dry);
+  for (int i = 0; i < TRIES && (dry.stopped || dry.farthest > USED * x.half); i++) {
+    x.share *= LESS;
+    dry_run(&x, config, torque, &dry);
+  }
+  if (dry.stopped)
+    ethd__fail(ETHD_EXIT_FAILED, "in the dry run the ring leaves the box with %.3g Nm: give a larger --half",
+               x.share * torque);
+  printf("torques up to %.3g Nm (%.0f %% of the limit), sines from 0.5 to 40 Hz, for %g s\n", x.share * torque,
+         100 * x.share, x.seconds);
+  printf("inside a box of %.3g x %.3g m about (%.3g, %.3g), which the guard holds\n", 2 * x.half, 2 * x.half, x.at.x,
+         x.at.y);
+  printf("dry run       on the simulated device: up to %.3g m from the middle, %.3g m/s\n", dry.farthest, dry.fastest);
+  fflush(stdout);
+  int code = record(&x, config, torque);
+  ethd_config_free(config);
+  return code;
+}

@@ -1,0 +1,49 @@
+/* What was found: for people, as a plant file, as a picture. All [main]. */
+#ifndef ETHD_APPS_IDENTIFY_PAGE_H
+#define ETHD_APPS_IDENTIFY_PAGE_H
+
+#include <stdio.h>
+
+#include "identify/fit.h"
+#include "identify/residual.h"
+#include "identify/sensing.h"
+
+typedef struct ethd__finding {
+  const ethd__evidence *evidence;
+  ethd__shooting problem;
+  ethd__fit fit;
+  ethd__sensing sensing;
+  ethd__whiteness whiteness;
+  double *residual; /* problem.rows, rad */
+  ethd_plant plant; /* all of it: fitted, seen, kept */
+  const char *base; /* what the kept numbers come from */
+} ethd__finding;
+
+/* Puts what was fitted and what the sensors showed into finding->plant, which has the kept numbers; what no plant can
+   be, a friction below 0, becomes its nearest. */
+void ethd__finding_plant(ethd__finding *finding);
+
+void ethd__page_print(FILE *out, const ethd__finding *finding);
+
+/* The plant file: each number with its interval, or that it was kept. */
+ETHD_MUST_CHECK ethd_status ethd__page_write(const ethd__finding *finding, const char *path,
+                                             char message[ETHD_MESSAGE_MAX]);
+
+/* A table of a stretch of motion and of the residual's spectrum; its picture. */
+ETHD_MUST_CHECK ethd_status ethd__page_csv(const ethd__finding *finding, const char *path,
+                                           char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__identify_draw(const ethd__finding *finding, const char *csv, const char *png,
+                                                char message[ETHD_MESSAGE_MAX]);
+
+/* ---- judging a plant that wasn't fitted to these recordings ---- */
+
+typedef struct ethd__judgement {
+  double step[2], ahead[2]; /* rad rms of each joint: a tick and ETHD__AHEAD after the last tick that was seen */
+  size_t windows;
+} ethd__judgement;
+
+#define ETHD__AHEAD 0.05 /* s */
+
+ethd__judgement ethd__prediction_judge(const ethd__evidence *evidence, const ethd_plant *plant);
+
+#endif

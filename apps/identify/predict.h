@@ -1,0 +1,38 @@
+/* The arm's motion over a short window, by the simulator of drivers/sim: encoders from commands, without a finger.
+   [any] */
+#ifndef ETHD_APPS_IDENTIFY_PREDICT_H
+#define ETHD_APPS_IDENTIFY_PREDICT_H
+
+#include "identify/evidence.h"
+#include "sim/body.h"
+
+/* A state at the beginning: what the encoders see, rad and rad/s of both joints; where the transmission gives way also
+   the links' lead over it. */
+enum { ETHD__STATE_RIGID = 4, ETHD__STATE_MOST = 8 };
+
+#define ETHD__WINDOW_MOST 512 /* ticks */
+
+typedef struct ethd__shot {
+  size_t first, begin, end; /* its first tick; those of its stretch, whose commands may be asked for */
+  int count;                /* ticks, the first included */
+  uint32_t recording;
+} ethd__shot;
+
+/* A plant that is asked for many windows. */
+typedef struct ethd__predictor {
+  const ethd__evidence *evidence;
+  ethd__body body;
+  double delay; /* s */
+} ethd__predictor;
+
+/* tolerance: m/s, as in ethd_sim_def. */
+void ethd__predictor_prepare(const ethd__evidence *evidence, const ethd_plant *plant, double tolerance,
+                             ethd__predictor *out);
+
+/* Length of a state. */
+int ethd__predictor_states(const ethd__predictor *predictor);
+
+/* Joint angles at the window's ticks, both of one tick side by side: 2 * window->count numbers. */
+void ethd__predict(ethd__predictor *predictor, const ethd__shot *window, const double *state, double *out);
+
+#endif

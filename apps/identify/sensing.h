@@ -1,0 +1,23 @@
+/* What recordings say of the sensors: encoder counts, readings of the ring. All [main]. */
+#ifndef ETHD_APPS_IDENTIFY_SENSING_H
+#define ETHD_APPS_IDENTIFY_SENSING_H
+
+#include "identify/evidence.h"
+
+/* A number and between which values it lies; NaN: not seen. */
+typedef struct ethd__bracket {
+  double value, low, high;
+} ethd__bracket;
+
+typedef struct ethd__sensing {
+  double count;                 /* rad; 0: angles lie on no lattice */
+  bool count_drawn;             /* the lattice has a phase */
+  ethd__bracket rate;           /* Hz, readings of the finger */
+  ethd__bracket latency, noise; /* s, m; latency's ends hold for certain if it is constant, the noise's by 95 % */
+} ethd__sensing;
+
+/* ETHD_E_ARGUMENT: recordings whose encoders count differently are of two devices. */
+ETHD_MUST_CHECK ethd_status ethd__sensing_find(const ethd__evidence *evidence, ethd__sensing *out,
+                                               char message[ETHD_MESSAGE_MAX]);
+
+#endif

@@ -1,0 +1,84 @@
+/* Levenberg and Marquardt's method on the problem, by cminpack. */
+#include <cminpack-1/cminpack.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/cli.h"
+#include "identify/fit.h"
+
+#define STIFF 1e4     /* 1/s: friction that stops a joint faster would take the simulator thousands of steps a tick */
+#define IMPOSSIBLE 10 /* rad: every residual of a plant that can't be */
+
+typedef struct descent {
+  ethd__shooting *problem;
+  const char *what;
+  uint64_t calls, most;
+} descent;
+
+/* A transmission that swings faster than half the sampling rate, or not at all, can't be told from a rigid one. */
+static bool is_seen(const ethd__evidence *e, const ethd_plant *x, double least) {
+  double reduced = x->motor_mass * (1 - x->motor_mass / least), w = sqrt(x->stiffness / reduced);
+  return x->stiffness > 1 && w * e->period < M_PI && x->damping > -0.1 && x->damping < 4 * reduced * w;
+}
+
+/* A plant that the simulator can't run, or that isn't a device, ends a step there. */
+static bool is_possible(const ethd__shooting *p, const double *coordinates) {
+  const ethd__evidence *e = p->evidence;
+  ethd_plant x = p->plant;
+  ethd__chosen_set(&p->chosen, coordinates, &x);
+  bool compliant = isfinite(x.stiffness);
+  double least = fmin(x.mass[0], x.mass[1]), own = compliant ? x.motor_mass : 0, l = e->arm.link1 * e->arm.link2;
+  if (!(least > 1e-3 && fmax(x.mass[0], x.mass[1]) < 1e3 && x.force_limit > 1e-6 && x.force_limit < 1e6)) return false;
+  double moved = compliant ? own : least; /* by what rubs */
+  if (!(x.friction > -0.05 * (1 + x.force_limit) && x.friction < STIFF * moved * ETHD__STICK)) return false;
+  if (!(x.viscous > -1 && x.viscous < STIFF * moved)) return false;
+  if (!(x.delay > -e->period && x.delay < (ETHD__BACK - 2) * e->period)) return false;
+  if (!(fabs(x.coupling) < 0.95 * l * sqrt((x.mass[0] - own) * (x.mass[1] - own)))) return false;
+  return !compliant || (own > 0.02 * least && own < 0.98 * least && is_seen(e, &x, least));
+}
+
+static int evaluate(void *search_, int m, int n, const double *x, double *residual, double *slopes, int ld, int flag) {
+  descent *s = search_;
+  (void)n;
+  (void)ld;
+  ethd__progress(++s->calls < s->most ? s->calls : s->most - 1, s->most, s->what);
+  if (ethd__stop) return -1;
+  if (flag == 2) {
+    ethd__shooting_slopes(s->problem, x, slopes);
+    return 0;
+  }
+  if (is_possible(s->problem, x)) {
+    ethd__shooting_residual(s->problem, x, residual);
+    return 0;
+  }
+  for (int i = 0; i < m; i++) residual[i] = IMPOSSIBLE;
+  return 0;
+}
+
+static double *numbers(size_t count) {
+  double *at = calloc(count ? count : 1, sizeof *at);
+  if (!at) ethd__fail_memory();
+  return at;
+}
+
+double ethd__fit_squares(ethd__shooting *p, int most, const char *what) {
+  int m = (int)p->rows, n = p->chosen.count, calls = 0, slopes_taken = 0, order[ETHD__UNKNOWNS];
+  double x[ETHD__UNKNOWNS], diag[ETHD__UNKNOWNS], qtf[ETHD__UNKNOWNS], wa[3][ETHD__UNKNOWNS], sum = 0;
+  double *residual = numbers(p->rows), *slopes = numbers(p->rows * (size_t)n), *wa4 = numbers(p->rows);
+  descent s = {p, what, 0, 2 * (uint64_t)most};
+  ethd__chosen_get(&p->chosen, &p->plant, x);
+  ethd__shooting_settle(p);
+  if (n > 0)
+    (void)lmder(evaluate, &s, m, n, x, residual, slopes, m, 1e-9, 1e-7, 0, most, diag, 1, 1, 0, &calls, &slopes_taken,
+                order, qtf, wa[0], wa[1], wa[2], wa4);
+  else
+    ethd__shooting_residual(p, x, residual);
+  ethd__progress(1, 1, what);
+  ethd__chosen_set(&p->chosen, x, &p->plant);
+  for (size_t i = 0; i < p->rows; i++) sum += residual[i] * residual[i];
+  free(residual);
+  free(slopes);
+  free(wa4);
+  return sum;
+}

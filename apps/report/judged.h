@@ -1,0 +1,19 @@
+/* The sample by which the paper's sentences are judged: the taps beside the study where there are any, which are more,
+   else the study's own. All [main]. */
+#ifndef ETHD_REPORT_JUDGED_H
+#define ETHD_REPORT_JUDGED_H
+
+#include "report/report.h"
+
+const ethd__data *ethd__judged_data(const ethd__report *report);
+
+/* cells: where the sample's are put. */
+ethd__sample ethd__judged_sample(const ethd__report *report, ethd__cell cells[ETHD_REPORT_CELLS]);
+
+/* "this study" or the name of the other one. */
+const char *ethd__judged_name(const ethd__report *report);
+
+/* Taps beside the study count as simulated. */
+bool ethd__judged_measured(const ethd__report *report);
+
+#endif

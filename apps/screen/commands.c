@@ -1,0 +1,204 @@
+#include "screen/commands.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/cli.h"
+#include "screen/place.h"
+#include "study/plan.h"
+#include "study/stations.h"
+#include "study/sums.h"
+
+static void check(ethd_status status, const char *message) {
+  if (status) ethd__fail(status == ETHD_E_FILE ? ETHD_EXIT_FAILED : ethd__exit_code(status), "%s", message);
+}
+
+/* ---- a new folder ---- */
+
+/* Nothing is written before all of the input is known to be good. */
+static void check_study(const ethd__study_options *o, const ethd__protocol *p, const ethd__loaded *loaded) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd__desk desk;
+  ethd_status status = ethd__desk_open(p, loaded, o->finger, &desk, message);
+  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  ethd__desk_close(&desk);
+  bool people = p->hands == ETHD_HANDS_PEOPLE;
+  if (people && (o->simulate || o->finger))
+    ethd__fail(ETHD_EXIT_INPUT, "%s: hand.source: people have hands of their own; no --simulate, no --finger", p->path);
+  if (!people && o->is_virtual)
+    ethd__fail(ETHD_EXIT_INPUT, "--virtual: %s: hand.source: people is needed; any other has no real time", p->path);
+  if (p->hands == ETHD_HANDS_MOUSE && (!o->width || o->simulate || o->finger))
+    ethd__fail(ETHD_EXIT_INPUT, "%s: hand.source: mouse needs --screen, and no --simulate or --finger", p->path);
+  if (p->hands == ETHD_HANDS_RECORDED && o->width)
+    ethd__fail(ETHD_EXIT_INPUT, "%s: hand.source: recorded hands need no --screen", p->path);
+  if (p->axis_count && !o->simulate)
+    ethd__fail(ETHD_EXIT_INPUT, "%s: [grid]: a session has no grid; --simulate has", p->path);
+  if (o->last > p->participants)
+    ethd__fail(ETHD_EXIT_INPUT, "--participant: found %lld, 1 to %u are allowed", (long long)o->last, p->participants);
+}
+
+static void load_study(const ethd__study_options *o, ethd__protocol *out) {
+  char message[ETHD_MESSAGE_MAX], *study = o->study ? strdup(o->study) : ethd__data_path("paper.study");
+  if (!study) ethd__fail_memory();
+  ethd_status status = ethd__protocol_load(study, out, message);
+  free(study);
+  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+}
+
+static void make_folder(const ethd__study_options *o) {
+  char message[ETHD_MESSAGE_MAX], *journal = ethd__folder_path(o->out, ETHD_STUDY_JOURNAL);
+  ethd__protocol protocol;
+  ethd__loaded loaded;
+  if (access(journal, F_OK) == 0)
+    ethd__fail(ETHD_EXIT_INPUT, "%s: holds a session; --resume %s goes on with it", o->out, o->out);
+  free(journal);
+  load_study(o, &protocol);
+  ethd__folder_device(&protocol, &loaded);
+  check_study(o, &protocol, &loaded);
+  if (o->simulate) protocol.participants = (uint32_t)o->simulate;
+  const ethd__folder_parts parts = {&protocol, &loaded, o->finger, (uint32_t)o->simulate};
+  check(ethd__folder_make(o->out, &parts, message), message);
+  ethd__loaded_free(&loaded);
+  ethd__protocol_free(&protocol);
+}
+
+/* ---- a session ---- */
+
+/* The whole command that goes on, so that nobody goes on with another hand. */
+static char *going_on(const ethd__study_options *o, const char *folder) {
+  char *text = NULL;
+  size_t length;
+  FILE *file = open_memstream(&text, &length);
+  if (!file) ethd__fail_memory();
+  fprintf(file, strpbrk(folder, " \t'\"\\$`;&|<>()*?") ? "ethd-study --resume '%s'" : "ethd-study --resume %s", folder);
+  if (o->first) fprintf(file, " --participant %lld", (long long)o->first);
+  if (o->last > o->first) fprintf(file, "-%lld", (long long)o->last);
+  if (o->width)
+    fprintf(file, o->width == 1280 && o->height == 720 ? " --screen" : " --screen=%dx%d", o->width, o->height);
+  if (o->ask) fputs(" --ask", file);
+  if (o->is_virtual) fputs(" --virtual", file);
+  if (o->quiet) fputs(" --quiet", file);
+  if (fclose(file)) ethd__fail_memory();
+  return text;
+}
+
+static int end(const ethd__study_options *o, const ethd__sitting *sitting, ethd_status status, bool over,
+               const char *message) {
+  const char *folder = o->resume ? o->resume : o->out;
+  char *command = going_on(o, folder);
+  if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s; what was done is kept: %s goes on", message, command);
+  if (over && sitting->unasked)
+    printf("%s: %u questionnaires weren't asked; ethd-study --resume %s with --ask or --screen asks them\n", folder,
+           sitting->unasked, folder);
+  if (over)
+    printf("%s: %llu taps; ethd-report %s draws them\n", folder, (unsigned long long)sitting->taps, folder);
+  else
+    fprintf(stderr, "%s: stopped; what was done is kept: %s goes on\n", program_invocation_short_name, command);
+  free(command);
+  return over ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+}
+
+int ethd__command_session(const ethd__study_options *o) {
+  static ethd__screen_place place;
+  char message[ETHD_MESSAGE_MAX] = "";
+  const ethd__place_options wanted = {.path = o->resume ? o->resume : o->out,
+                                      .first = o->first,
+                                      .last = o->last,
+                                      .ask = o->ask,
+                                      .quiet = o->quiet,
+                                      .is_virtual = o->is_virtual,
+                                      .width = o->width,
+                                      .height = o->height};
+  bool over = false;
+  if (!o->resume) make_folder(o);
+  ethd__place_open(&wanted, &place);
+  ethd_status status = ethd__place_run(&place, &over, message);
+  int code = end(o, &place.sitting, status, over, message);
+  ethd__place_close(&place);
+  return code;
+}
+
+int ethd__command_decide(const ethd__study_options *o) {
+  char message[ETHD_MESSAGE_MAX];
+  check(ethd__session_decide(o->resume, (uint32_t)o->decided - 1, o->decision, o->reason, message), message);
+  printf("%s: participant %lld: %s, %s; participants.csv says so\n", o->resume, (long long)o->decided, o->decision,
+         o->reason);
+  return ETHD_EXIT_DONE;
+}
+
+/* ---- a simulation ---- */
+
+int ethd__command_shard(const ethd__study_options *o) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  ethd__folder folder;
+  ethd__desk desk;
+  uint64_t taps;
+  bool over;
+  make_folder(o);
+  check(ethd__folder_open(o->out, true, &folder, message), message);
+  check(ethd__desk_open(&folder.protocol, &folder.loaded, folder.finger, &desk, message), message);
+  ethd__catch_interrupt();
+  ethd_status status = ethd__shard_run(&folder, &desk, &o->shard, &taps, &over, message);
+  if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s; the same command goes on", message);
+  bool again = over && !taps;
+  if (again)
+    fprintf(o->sharded ? stdout : stderr, "%s: shard %u/%u was finished before; nothing is added\n", o->out,
+            o->shard.index, o->shard.count);
+  else if (over)
+    printf("%s: shard %u/%u: %llu taps\n", o->out, o->shard.index, o->shard.count, (unsigned long long)taps);
+  else
+    fprintf(stderr, "%s: stopped; what was done is kept: the same command, --out %s goes on\n",
+            program_invocation_short_name, o->out);
+  ethd__desk_close(&desk);
+  ethd__folder_close(&folder);
+  /* workers of a cluster repeat their commands until all shards are there */
+  return over && (!again || o->sharded) ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+}
+
+/* ---- looking at folders ---- */
+
+static int merge_shards(const char *path) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  ethd__folder folder;
+  uint64_t taps;
+  ethd_status status = ethd__folder_read(path, &folder, message);
+  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  status = ethd__shards_merge(&folder, &taps, message);
+  if (!status) status = ethd__sums_write(path, message);
+  if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  printf("%s/%s: %llu taps of %u participants at %zu points\n", path, ETHD_STUDY_TAPS, (unsigned long long)taps,
+         folder.protocol.participants, ethd__protocol_points(&folder.protocol));
+  ethd__folder_close(&folder);
+  return ETHD_EXIT_DONE;
+}
+
+int ethd__command_merge(const ethd__study_options *o) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  const char *folders[ETHD_STUDY_STATIONS + 2] = {o->merge};
+  size_t taps;
+  if (!o->out) return merge_shards(o->merge);
+  memcpy(folders + 1, o->word, o->word_count * sizeof *folders);
+  ethd_status status = ethd__stations_merge(folders, o->word_count + 1, o->out, &taps, message);
+  if (status) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  printf("%s: %zu taps of %zu stations; ethd-report %s draws them\n", o->out, taps, o->word_count + 1, o->out);
+  return ETHD_EXIT_DONE;
+}
+
+int ethd__command_plan(const ethd__study_options *o) {
+  ethd__protocol protocol;
+  load_study(o, &protocol);
+  ethd__plan_print(stdout, &protocol);
+  ethd__protocol_free(&protocol);
+  return ETHD_EXIT_DONE;
+}
+
+int ethd__command_verify(const ethd__study_options *o) {
+  char message[ETHD_MESSAGE_MAX];
+  size_t files;
+  ethd_status status = ethd__sums_check(o->verify, &files, message);
+  if (status) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  printf("%s: %zu files are as they were\n", o->verify, files);
+  return ETHD_EXIT_DONE;
+}

@@ -1,0 +1,40 @@
+/* What ethd-study does with its options: a session, a simulation, a merge, a look. All [main]; each returns the exit
+   code, and ends the program on bad input. */
+#ifndef ETHD_SCREEN_COMMANDS_H
+#define ETHD_SCREEN_COMMANDS_H
+
+#include "study/shard.h"
+
+#define ETHD_STUDY_STATIONS 1000
+
+typedef struct ethd__study_options {
+  const char *study, *out, *resume, *finger, *merge, *verify;
+  const char *decision, *reason;             /* withdraw, exclude, include */
+  const char *word[ETHD_STUDY_STATIONS + 1]; /* that are no options: the study, or further stations */
+  size_t word_count;
+  int64_t first, last; /* participants, from 1; 0: all */
+  int64_t decided, simulate;
+  ethd__shard shard;
+  int width, height; /* px of the screen; 0: none */
+  bool ask, quiet, sharded, is_virtual, plan;
+} ethd__study_options;
+
+/* Begins a session in `out` or goes on with the one in `resume`. */
+int ethd__command_session(const ethd__study_options *o);
+
+/* Works off a shard of a simulation. */
+int ethd__command_shard(const ethd__study_options *o);
+
+/* Shards of one folder, or the sessions of several into `out`. */
+int ethd__command_merge(const ethd__study_options *o);
+
+/* Writes a decision about a participant down. */
+int ethd__command_decide(const ethd__study_options *o);
+
+/* Prints the orders. */
+int ethd__command_plan(const ethd__study_options *o);
+
+/* Checks a folder's sums. */
+int ethd__command_verify(const ethd__study_options *o);
+
+#endif

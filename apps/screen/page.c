@@ -1,0 +1,116 @@
+#include "screen/page.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "screen/draw.h"
+
+#define WIDE 0.88   /* of the window that a line may take */
+#define MARGIN 0.02 /* of its height, above and below */
+#define GAP 0.35    /* of a line, between paragraphs */
+#define STEP 0.92   /* by which letters shrink at a time */
+#define LEAST 0.3   /* to which they do */
+
+void ethd__page_add(ethd__page *page, int size, const char *text, SDL_Color colour) {
+  if (page->count < ETHD_PAGE_PARAGRAPHS && *text)
+    page->paragraph[page->count++] = (ethd__paragraph){size, text, colour};
+}
+
+/* ---- lines ---- */
+
+/* Bytes of the first `letters` letters. */
+static size_t bytes_of(const char *text, int letters) {
+  size_t n = 0;
+  for (; letters > 0 && text[n]; letters--) {
+    n++;
+    while ((text[n] & 0xc0) == 0x80) n++;
+  }
+  return n;
+}
+
+/* Bytes of the text's first line: it ends between words, or within one that is longer than a line. */
+static size_t line_of(const ethd__window *w, int size, const char *text) {
+  int extent, letters = 0;
+  if (TTF_MeasureUTF8(w->font[size], text, (int)(WIDE * w->width), &extent, &letters)) return strlen(text);
+  size_t fits = bytes_of(text, letters > 0 ? letters : 1), n = fits;
+  if (!text[fits]) return fits;
+  while (n && text[n] != ' ') n--;
+  return n ? n : fits;
+}
+
+static double line_height(const ethd__window *w, int size) {
+  return fmax(TTF_FontLineSkip(w->font[size]), TTF_FontHeight(w->font[size]));
+}
+
+/* Breaks the text into lines from y down; draws them where `draws`. The text's height, px. */
+static double put(ethd__window *w, const ethd__paragraph *p, double y, bool draws) {
+  char line[sizeof w->shape->text];
+  double height = 0;
+  for (const char *at = p->text; *at;) {
+    size_t n = line_of(w, p->size, at);
+    snprintf(line, sizeof line, "%.*s", (int)n, at);
+    if (draws) ethd__window_text(w, p->size, w->width / 2.0, y + height, line, p->colour);
+    height += line_height(w, p->size);
+    at += n;
+    at += strspn(at, " ");
+  }
+  return height;
+}
+
+/* ---- the page ---- */
+
+static ethd__paragraph small(const char *text) { return (ethd__paragraph){ETHD_TEXT_SMALL, text, ethd__grey}; }
+
+/* Where the paragraphs may stand, and how much of it they take. */
+typedef struct page_room {
+  double top, bottom, height;
+} page_room;
+
+static page_room measure(ethd__window *w, const ethd__page *page) {
+  const ethd__paragraph title = small(page->title), keys = small(page->keys);
+  double margin = MARGIN * w->height;
+  page_room room = {.top = fmax(margin + put(w, &title, 0, false), page->below),
+                    .bottom = w->height - margin - put(w, &keys, 0, false)};
+  for (size_t i = 0; i < page->count; i++)
+    room.height += put(w, &page->paragraph[i], 0, false) + GAP * line_height(w, page->paragraph[i].size);
+  return room;
+}
+
+static uint64_t mix(uint64_t sum, const char *text) {
+  do sum = (sum ^ (unsigned char)*text) * 1099511628211u;
+  while (*text++);
+  return sum;
+}
+
+/* Tells pages apart, and windows (FNV-1a). */
+static uint64_t sum_of(const ethd__window *w, const ethd__page *page) {
+  uint64_t sum = 14695981039346656037u ^ (uint64_t)w->width << 32 ^ (uint64_t)w->height ^ (uint64_t)page->below << 16;
+  sum = mix(mix(sum, page->title), page->keys);
+  for (size_t i = 0; i < page->count; i++) sum = mix(sum ^ (uint64_t)page->paragraph[i].size, page->paragraph[i].text);
+  return sum;
+}
+
+static void fit(ethd__window *w, const ethd__page *page) {
+  uint64_t sum = sum_of(w, page);
+  if (w->fitted == sum) return;
+  double was = w->shrink;
+  if (was != 1) ethd__window_shrink(w, 1);
+  for (page_room room = measure(w, page); room.top + room.height > room.bottom && w->shrink > LEAST;
+       room = measure(w, page))
+    ethd__window_shrink(w, fmax(STEP * w->shrink, LEAST));
+  w->fitted = sum;
+}
+
+void ethd__page_draw(ethd__window *w, const ethd__page *page) {
+  const ethd__paragraph title = small(page->title), keys = small(page->keys);
+  fit(w, page);
+  page_room room = measure(w, page);
+  double free = fmax(room.bottom - room.top - room.height, 0), y = room.top + (page->below > 0 ? free : free / 2);
+  put(w, &title, MARGIN * w->height, true);
+  for (size_t i = 0; i < page->count; i++) {
+    y += put(w, &page->paragraph[i], y, true);
+    y += GAP * line_height(w, page->paragraph[i].size);
+  }
+  put(w, &keys, room.bottom, true);
+}

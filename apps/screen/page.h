@@ -1,0 +1,29 @@
+/* A page of words: title above, keys below, and between them paragraphs that never overlap, in any window: where there is
+   too little room for them the letters shrink. All [main]. */
+#ifndef ETHD_SCREEN_PAGE_H
+#define ETHD_SCREEN_PAGE_H
+
+#include "screen/window.h"
+
+#define ETHD_PAGE_PARAGRAPHS 16
+
+typedef struct ethd__paragraph {
+  int size; /* ETHD_TEXT_SMALL .. */
+  const char *text;
+  SDL_Color colour;
+} ethd__paragraph;
+
+typedef struct ethd__page {
+  const char *title, *keys; /* "" where there is none */
+  ethd__paragraph paragraph[ETHD_PAGE_PARAGRAPHS];
+  size_t count;
+  double below; /* px: paragraphs stand under this line, down at the keys; 0: in the middle of the page */
+} ethd__page;
+
+/* One more paragraph; an empty text, or one too many, is none. */
+void ethd__page_add(ethd__page *page, int size, const char *text, SDL_Color colour);
+
+/* Adds its texts to the frame's shapes. */
+void ethd__page_draw(ethd__window *window, const ethd__page *page);
+
+#endif

@@ -1,0 +1,133 @@
+/* What is said and asked on the screen between taps: hand-over, consent, instruction, the survey. */
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "screen/draw.h"
+#include "study/progress.h"
+
+/* ---- a participant begins ---- */
+
+void ethd__page_of_hand_over(const ethd__meeting *meeting, const char *typed, ethd__page *out, char text[256]) {
+  snprintf(text, 256, "Experimenter: when %s sits here, type %s and press Enter", meeting->participant,
+           meeting->participant);
+  *out = (ethd__page){.title = meeting->participant,
+                      .keys = meeting->can_undo ? "Enter begins   F2 undoes the end of the one before   Esc stops"
+                                                : "Enter begins   Esc stops"};
+  ethd__page_add(out, ETHD_TEXT_LARGE, "Thank you. Please call the experimenter.", ethd__white);
+  ethd__page_add(out, ETHD_TEXT_SMALL, text, ethd__grey);
+  ethd__page_add(out, ETHD_TEXT_LARGE, *typed ? typed : "_", ethd__green);
+}
+
+/* Nobody types the next one's number by chance. */
+static ethd__wish hand_over(ethd__screen *s, const ethd__meeting *meeting) {
+  char line[32] = "", text[256];
+  ethd__page page;
+  do {
+    ethd__page_of_hand_over(meeting, "", &page, text);
+    page.count--; /* what is typed takes the last paragraph's place */
+    *line = 0;
+    if (!ethd__screen_type(s, &page, line, sizeof line))
+      return s->window.key == SDLK_F2 && meeting->can_undo && !s->stop ? ETHD_WISH_UNDO : ETHD_WISH_STOP;
+  } while (strcasecmp(line, meeting->participant) != 0);
+  return ETHD_WISH_GO;
+}
+
+void ethd__page_of_words(char *const paragraph[ETHD_STUDY_PARAGRAPHS], const char *title, const char *keys,
+                         ethd__page *out) {
+  *out = (ethd__page){.title = title, .keys = keys};
+  for (int i = 0; i < ETHD_STUDY_PARAGRAPHS; i++)
+    ethd__page_add(out, ETHD_TEXT_SMALL, paragraph[i] ? paragraph[i] : "", ethd__white);
+}
+
+static ethd__wish consent(ethd__screen *s, const char *participant) {
+  ethd__page page;
+  ethd__page_of_words(s->protocol->questionnaire.consent, participant, "Y I agree   N I don't   Esc stops", &page);
+  switch (ethd__screen_page(s, &page, (const int[]){SDLK_y, SDLK_n, 0})) {
+  case SDLK_y: return ETHD_WISH_AGREE;
+  case SDLK_n: return ETHD_WISH_ABORT;
+  default: return ETHD_WISH_STOP;
+  }
+}
+
+ethd__wish ethd__screen_meet(void *self, const ethd__meeting *meeting) {
+  ethd__screen *s = self;
+  const ethd__questionnaire *q = &s->protocol->questionnaire;
+  ethd__wish wish = meeting->handed_over ? hand_over(s, meeting) : ETHD_WISH_GO;
+  ethd__page page;
+  s->feedback[0] = s->achieved[0] = 0;
+  if (wish == ETHD_WISH_GO && q->consent[0] && !meeting->consented) wish = consent(s, meeting->participant);
+  if ((wish != ETHD_WISH_GO && wish != ETHD_WISH_AGREE) || !q->instruction[0]) return wish;
+  ethd__page_of_words(q->instruction, meeting->participant, "Space goes on   Esc stops", &page);
+  return ethd__screen_page(s, &page, (const int[]){SDLK_SPACE, SDLK_RETURN, 0}) == SDLK_ESCAPE &&
+                 wish != ETHD_WISH_AGREE
+             ? ETHD_WISH_STOP
+             : wish; /* a consent that was given is kept, and the stop heard next */
+}
+
+/* ---- the survey ---- */
+
+void ethd__page_of_question(const ethd__question *question, int chosen, ethd__page *out,
+                            char text[ETHD_STUDY_ANSWERS][256]) {
+  char words[200];
+  ethd__page_add(out, ETHD_TEXT_LARGE, question->text, ethd__white);
+  for (int k = 1; k <= (int)ethd__answer_count(question); k++) {
+    ethd__answer_words(question, k, words, sizeof words);
+    snprintf(text[k - 1], 256, k == chosen ? "> %d   %s <" : "%d   %s", k, words);
+    ethd__page_add(out, ETHD_TEXT_LARGE, text[k - 1], k == chosen ? ethd__green : ethd__grey);
+  }
+}
+
+void ethd__page_of_answers(const ethd__questionnaire *q, const int16_t *answer, ethd__page *out,
+                           char text[ETHD_STUDY_QUESTIONS][256]) {
+  char words[200];
+  ethd__page_add(out, ETHD_TEXT_LARGE, "Are these your answers?", ethd__white);
+  for (size_t i = 0; i < ethd__question_count(q); i++) {
+    words[0] = 0;
+    if (answer[i] > 0) ethd__answer_words(&q->question[i], answer[i], words, sizeof words);
+    snprintf(text[i], 256, "%zu   %s", i + 1, *words ? words : "no answer");
+    ethd__page_add(out, ETHD_TEXT_SMALL, text[i], *words ? ethd__green : ethd__red);
+  }
+}
+
+static int confirm(ethd__screen *s, const ethd__asked *asked) {
+  char text[ETHD_STUDY_QUESTIONS][256];
+  ethd__page page = {.title = s->title, .keys = "Enter keeps them   Backspace changes them   Esc stops"};
+  ethd__page_of_answers(&s->protocol->questionnaire, asked->answer, &page, text);
+  switch (ethd__screen_page(s, &page, (const int[]){SDLK_RETURN, SDLK_KP_ENTER, SDLK_BACKSPACE, 0})) {
+  case SDLK_BACKSPACE: return ETHD_ANSWER_BACK;
+  case SDLK_ESCAPE: return ETHD_ANSWER_STOP;
+  default: return ETHD_ANSWER_NONE;
+  }
+}
+
+/* The digit that was pressed, -1: none. */
+static int digit_of(int key) {
+  if (key >= SDLK_0 && key <= SDLK_9) return key - SDLK_0;
+  if (key == SDLK_KP_0) return 0;
+  return key >= SDLK_KP_1 && key <= SDLK_KP_9 ? key - SDLK_KP_1 + 1 : -1;
+}
+
+/* A digit chooses and Enter takes: keys that come fast choose again, and answer one question. */
+int ethd__screen_ask(void *self, const ethd__asked *asked) {
+  ethd__screen *s = self;
+  const ethd__questionnaire *q = &s->protocol->questionnaire;
+  if (asked->number == ethd__question_count(q)) return confirm(s, asked);
+  const ethd__question *question = &q->question[asked->number];
+  int chosen = asked->answer[asked->number];
+  char text[ETHD_STUDY_ANSWERS][256], keys[160];
+  snprintf(keys, sizeof keys, "1 to %zu choose, 0 no answer   Enter goes on   Backspace back   Esc stops",
+           ethd__answer_count(question));
+  while (ethd__screen_begin(s)) {
+    int key = s->window.key, digit = digit_of(key);
+    if (key == SDLK_BACKSPACE) return ETHD_ANSWER_BACK;
+    if ((key == SDLK_RETURN || key == SDLK_KP_ENTER) && chosen >= 0) return chosen;
+    if (digit >= 0 && digit <= (int)ethd__answer_count(question)) chosen = digit;
+    ethd__page page = {.title = s->title, .keys = keys};
+    ethd__page_of_question(question, chosen, &page, text);
+    if (!chosen) ethd__page_add(&page, ETHD_TEXT_LARGE, "> no answer <", ethd__green);
+    ethd__page_draw(&s->window, &page);
+    ethd__window_end(&s->window);
+  }
+  return ETHD_ANSWER_STOP;
+}

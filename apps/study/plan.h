@@ -1,0 +1,22 @@
+/* The orders of a study before it begins: who gets what when, and how well that is balanced. All [main]. */
+#ifndef ETHD_STUDY_PLAN_H
+#define ETHD_STUDY_PLAN_H
+
+#include <stdio.h>
+
+#include "study/order.h"
+
+#define ETHD_STUDY_PLANNED 10000u /* participants whose orders are printed at most */
+
+/* orders.csv. */
+void ethd__plan_table(FILE *file, const ethd__protocol *protocol);
+
+/* For people: each participant's order, the balance at every number of participants, and a warning where the study's own
+   number isn't balanced, with the next one that is. Balanced: at each speed each strategy is as often the first, as
+   often the last, and as often directly behind each other one. */
+void ethd__plan_print(FILE *file, const ethd__protocol *protocol);
+
+/* Whether the first `people` participants are balanced. */
+bool ethd__plan_balanced(const ethd__protocol *protocol, uint32_t people);
+
+#endif

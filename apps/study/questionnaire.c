@@ -1,0 +1,93 @@
+#include "study/questionnaire.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "study/dictionary.h"
+
+#define BARE 5 /* answers of a question without words for them */
+
+size_t ethd__question_count(const ethd__questionnaire *q) {
+  size_t n = 0;
+  while (n < ETHD_STUDY_QUESTIONS && q->question[n].text) n++;
+  return n;
+}
+
+size_t ethd__answer_count(const ethd__question *question) {
+  size_t n = 1;
+  if (!question->answers) return BARE;
+  for (const char *p = question->answers; *p; p++) n += *p == '|';
+  return n;
+}
+
+void ethd__answer_words(const ethd__question *question, int answer, char *out, size_t room) {
+  const char *from = question->answers;
+  snprintf(out, room, "%d", answer);
+  for (int i = 1; from && i < answer; i++) {
+    from = strchr(from, '|');
+    from += from != NULL;
+  }
+  if (!from) return;
+  from += strspn(from, " \t");
+  size_t n = strcspn(from, "|");
+  while (n && strchr(" \t", from[n - 1])) n--;
+  if (n) snprintf(out, room, "%.*s", (int)n, from);
+}
+
+/* The number behind the key's name, 1 to 9; 0: another key. */
+static int number_of(const char *key, const char *name, const char *behind) {
+  size_t n = strlen(name);
+  return strncmp(key, name, n) == 0 && key[n] >= '1' && key[n] <= '9' && !strcmp(key + n + 1, behind) ? key[n] - '0'
+                                                                                                      : 0;
+}
+
+char **ethd__questionnaire_at(ethd__questionnaire *q, const char *section, const char *key) {
+  int k;
+  if (!strcmp(section, "survey")) {
+    if ((k = number_of(key, "q", ""))) return &q->question[k - 1].text;
+    if ((k = number_of(key, "q", "_answers"))) return &q->question[k - 1].answers;
+  }
+  if (!strcmp(section, "pages")) {
+    if ((k = number_of(key, "consent", ""))) return &q->consent[k - 1];
+    if ((k = number_of(key, "instruction", ""))) return &q->instruction[k - 1];
+  }
+  return NULL;
+}
+
+bool ethd__questionnaire_fill(ethd__questionnaire *q) {
+  for (int i = 0; i < ETHD_STUDY_QUESTIONS; i++) q->own |= q->question[i].text || q->question[i].answers;
+  if (q->own) return true;
+  for (int i = 0; i < 3; i++) {
+    q->question[i].text = strdup(ethd__paper_questions[i].text);
+    q->question[i].answers = strdup(ethd__paper_questions[i].answers);
+    if (!q->question[i].text || !q->question[i].answers) return false;
+  }
+  return true;
+}
+
+int ethd__questionnaire_fault(const ethd__questionnaire *q, const char **what) {
+  size_t count = ethd__question_count(q);
+  for (int i = 0; i < ETHD_STUDY_QUESTIONS; i++) {
+    const ethd__question *question = &q->question[i];
+    size_t answers = ethd__answer_count(question);
+    *what = answers < 2                    ? "one answer; \"this | that\", two to nine, are allowed"
+            : answers > ETHD_STUDY_ANSWERS ? "over nine answers"
+                                           : "stands there without the questions before it";
+    bool stray = (size_t)i >= count && (question->text || question->answers);
+    if (answers < 2 || answers > ETHD_STUDY_ANSWERS || stray) return i;
+  }
+  return -1;
+}
+
+void ethd__questionnaire_free(ethd__questionnaire *q) {
+  for (int i = 0; i < ETHD_STUDY_QUESTIONS; i++) {
+    free(q->question[i].text);
+    free(q->question[i].answers);
+  }
+  for (int i = 0; i < ETHD_STUDY_PARAGRAPHS; i++) {
+    free(q->consent[i]);
+    free(q->instruction[i]);
+  }
+  *q = (ethd__questionnaire){0};
+}

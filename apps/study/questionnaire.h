@@ -1,0 +1,48 @@
+/* What a participant is told and asked, in the study's own words. [main] but where said.
+
+     [survey]                                     [pages]
+     q1 = How did the touch feel?                 consent1 = The study takes an hour. You may end it at any time.
+     q1_answers = natural | neither | unnatural   instruction1 = Tap once on the green wall.
+
+   Questions are q1 to q9 without a gap; answers are numbered from 1, two to nine of them, five bare numbers without
+   q1_answers. A page has up to nine paragraphs, consent1 to consent9 and instruction1 to instruction9. */
+#ifndef ETHD_STUDY_QUESTIONNAIRE_H
+#define ETHD_STUDY_QUESTIONNAIRE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define ETHD_STUDY_QUESTIONS 9
+#define ETHD_STUDY_ANSWERS 9
+#define ETHD_STUDY_PARAGRAPHS 9
+
+typedef struct ethd__question {
+  char *text, *answers; /* answers: "this|that", blanks around the bars; NULL: the numbers 1 to 5 */
+  int line;             /* of the file */
+} ethd__question;
+
+typedef struct ethd__questionnaire {
+  ethd__question question[ETHD_STUDY_QUESTIONS];
+  char *consent[ETHD_STUDY_PARAGRAPHS], *instruction[ETHD_STUDY_PARAGRAPHS];
+  bool own; /* questions of the study's own, not the paper's */
+} ethd__questionnaire;
+
+/* How many questions there are, and answers to one of them. [any] */
+size_t ethd__question_count(const ethd__questionnaire *q);
+size_t ethd__answer_count(const ethd__question *question);
+
+/* The words of an answer, from 1; its number where it has none. [any] */
+void ethd__answer_words(const ethd__question *question, int answer, char *out, size_t room);
+
+/* The text of a key of [survey] or [pages]; NULL: there is no such key. */
+char **ethd__questionnaire_at(ethd__questionnaire *q, const char *section, const char *key);
+
+/* The paper's questions, in our own words, where the study has none. False: no memory. */
+bool ethd__questionnaire_fill(ethd__questionnaire *q);
+
+/* A question that has too few or too many answers, or none before it; -1: all is well. *what says it. */
+int ethd__questionnaire_fault(const ethd__questionnaire *q, const char **what);
+
+void ethd__questionnaire_free(ethd__questionnaire *q);
+
+#endif

@@ -1,0 +1,23 @@
+/* One number a person: what tests within people begin with. All [main]. */
+#ifndef ETHD_TAP_PEOPLE_H
+#define ETHD_TAP_PEOPLE_H
+
+#include "tap/summary.h"
+
+/* A figure of a tap, NaN where it has none. */
+typedef double ethd__tap_value(const ethd__metrics *metrics);
+
+typedef enum ethd__person_figure {
+  ETHD_PERSON_MEDIAN, /* of the person's valid taps in a cell */
+  ETHD_PERSON_MEAN,
+  ETHD_PERSON_ATTEMPTS, /* the mean over all taps, valid or not */
+} ethd__person_figure;
+
+/* Whose tap result i is: the cell's person, or of an unnamed cell finger i. */
+uint32_t ethd__cell_person(const ethd__cell *cell, size_t i);
+
+/* out[p] of person p below `people`: NaN without such a tap. A NULL cell has none. Exit 1 without memory. */
+void ethd__people_figure(const ethd__cell *cell, ethd__tap_value *of, ethd__person_figure figure, size_t people,
+                         double *out);
+
+#endif

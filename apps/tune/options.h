@@ -1,0 +1,25 @@
+/* ethd-tune's command line. [main] */
+#ifndef ETHD_TUNE_OPTIONS_H
+#define ETHD_TUNE_OPTIONS_H
+
+#include "tune/score.h"
+
+#define ETHD_TUNE_JOBS_MAX 64
+
+typedef struct ethd__tune_options {
+  const char *plant, *config, *law, *out, *work, *csv, *plot;
+  const char *ranges[ETHD_TUNE_KEYS_MAX];
+  size_t range_count;
+  ethd__tune_hands hands;
+  ethd__loop_margin margin;
+  bool passive;
+  int prefer; /* a goal; -1: none */
+  int64_t points, taps, jobs;
+  uint64_t seed;
+  uint32_t shard, shards; /* from 1 */
+} ethd__tune_options;
+
+/* Prints --help, or one line and exit 2. */
+void ethd__tune_options_read(int argc, char **argv, ethd__tune_options *out);
+
+#endif

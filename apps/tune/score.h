@@ -1,0 +1,83 @@
+/* What a point of the space is worth: its margins, and figures of simulated taps. All [main]. */
+#ifndef ETHD_TUNE_SCORE_H
+#define ETHD_TUNE_SCORE_H
+
+#include "bounds/loops.h"
+#include "tune/space.h"
+
+#define ETHD_TUNE_SPEEDS 2 /* low and high */
+
+/* Every figure is better when it is smaller, and there is one for each speed. X(name, unit, what it is). They are means
+   over the taps in which the hand's own path crosses the wall at about that speed; eps, delta_s, d_max and v_touch over
+   those of them whose finger touched, and not early. */
+#define ETHD_TUNE_FIGURES(X)                                                                    \
+  X(early, "1", "share of the taps in which the finger touches before the ring meets the wall") \
+  X(lag, "m", "distance of ring and finger centres, rms, over the 50 ms before the wall")       \
+  X(eps, "m", "wall's offset 60 ms after the touch")                                            \
+  X(delta_s, "ms", "time of braking; 0 for a law that doesn't brake")                           \
+  X(d_max, "m", "first rebound")                                                                \
+  X(v_touch, "m/s", "size of the ring's speed as the finger touches")                           \
+  X(rough, "Nm", "change of the torque from tick to tick, rms, over the same 50 ms")
+
+typedef struct ethd__tune_score {
+#define ETHD_TUNE_FIGURE(name, unit, brief) double name[ETHD_TUNE_SPEEDS];
+  ETHD_TUNE_FIGURES(ETHD_TUNE_FIGURE)
+#undef ETHD_TUNE_FIGURE
+  double taps, touched; /* how many were tapped at each speed, in how many the finger touched, of both speeds */
+} ethd__tune_score;
+
+#define ETHD_TUNE_FIGURE_COUNT (sizeof(ethd__tune_score) / sizeof(double))
+
+extern const char *const ethd__tune_figure_names[ETHD_TUNE_FIGURE_COUNT];
+
+/* What hands lean against the ring: shares of the plant's finger mass, hand stiffness and damping. 0: a free ring. */
+typedef struct ethd__tune_hands {
+  double shares[8];
+  size_t count;
+} ethd__tune_hands;
+
+typedef struct ethd__tune_rig {
+  const ethd__study *study; /* two speeds, without gains */
+  const ethd__tune_space *space;
+  ethd__tune_hands hands;
+  ethd__loop_margin margin;
+  bool passive; /* the wall is to be passive with the device's own viscous friction (Colgate and Schenkel) */
+} ethd__tune_rig;
+
+/* Whether every loop, along each axis, keeps the margin, free and with each hand's mass against the ring. False too for a
+   setup that the configuration refuses. */
+bool ethd__score_keeps(const ethd__tune_rig *rig, const ethd__tune_point *point);
+
+/* Taps 0 to taps - 1 at each speed. */
+ETHD_MUST_CHECK ethd_status ethd__score_run(const ethd__tune_rig *rig, const ethd__tune_point *point, uint32_t taps,
+                                            ethd__tune_score *out, char message[ETHD_MESSAGE_MAX]);
+
+/* What a point's margins came to in time. */
+typedef struct ethd__tune_verdict {
+  bool settles;
+  const char *what; /* tried last: what was at its margin */
+  double hand;      /* with which hand */
+  double swing;     /* m/s: how restless the ring then was at the end of a tap */
+} ethd__tune_verdict;
+
+/* The same margins asked of the whole device in time: taps with gains `margin.gain` times as large, with torques
+   `margin.delay` later, with each hand. It settles where the ring has come to rest in the wall in all of them. */
+ETHD_MUST_CHECK ethd_status ethd__score_confirm(const ethd__tune_rig *rig, const ethd__tune_point *point,
+                                                ethd__tune_verdict *out, char message[ETHD_MESSAGE_MAX]);
+
+/* What a person asks for, each as the mean logarithm of figures over those of a reference: 0 is as good, less is
+   better. */
+typedef enum ethd__tune_goal {
+  ETHD_TUNE_TRACKING,
+  ETHD_TUNE_BRAKE,
+  ETHD_TUNE_WALL,
+  ETHD_TUNE_CALM,
+  ETHD_TUNE_GOALS
+} ethd__tune_goal;
+
+extern const char *const ethd__tune_goal_names[ETHD_TUNE_GOALS];
+
+/* INFINITY where too few fingers touched (a quarter of the reference's) to say anything. */
+void ethd__score_goals(const ethd__tune_score *score, const ethd__tune_score *reference, double out[ETHD_TUNE_GOALS]);
+
+#endif

@@ -1,0 +1,65 @@
+/* What is tuned: numbers of a configuration, each within a range, and points in the box that they span. All [main]. */
+#ifndef ETHD_TUNE_SPACE_H
+#define ETHD_TUNE_SPACE_H
+
+#include "tap/study.h"
+
+#define ETHD_TUNE_KEYS_MAX 16
+#define ETHD_TUNE_KEY_MAX 64
+#define ETHD_TUNE_VALUE_MAX 32
+
+typedef struct ethd__tune_key {
+  char name[ETHD_TUNE_KEY_MAX]; /* "tracking.k_t" */
+  double own, low, high;        /* the configuration's value; the range, 0 < low <= high */
+} ethd__tune_key;
+
+typedef struct ethd__tune_space {
+  const ethd_config *config;
+  const char *law; /* transition */
+  ethd__tune_key keys[ETHD_TUNE_KEYS_MAX];
+  size_t count;
+} ethd__tune_space;
+
+/* A value of every key. */
+typedef struct ethd__tune_point {
+  double value[ETHD_TUNE_KEYS_MAX];
+} ethd__tune_point;
+
+/* The gains and cut-offs that the setup's laws and estimators have, from a share of the configuration's own value to a
+   multiple. Contact stiffness isn't lowered: a softer wall bounces less and is a worse wall. Refuses a law that isn't
+   there, a setup with nothing to tune. */
+ETHD_MUST_CHECK ethd_status ethd__space_open(const ethd_config *config, const char *law, ethd__tune_space *out,
+                                             char message[ETHD_MESSAGE_MAX]);
+
+/* "contact.k_e=500:4000": that range for the key, which becomes one of the space where it wasn't; "contact.k_e=1000": that
+   value and no other. Refuses what the configuration doesn't take. */
+ETHD_MUST_CHECK ethd_status ethd__space_range(ethd__tune_space *space, const char *text,
+                                              char message[ETHD_MESSAGE_MAX]);
+
+/* Where the configuration stands. */
+ethd__tune_point ethd__space_own(const ethd__tune_space *space);
+
+/* Point i of a sequence that fills the box evenly, in the logarithms of the values (the additive recurrence of
+   M. Roberts, 2018: multiples of the powers of the root of x^(d+1) = x + 1). */
+ethd__tune_point ethd__space_at(const ethd__tune_space *space, uint64_t i);
+
+/* A point about another: each logarithm moved by at most `spread` of its range. A function of `number`. */
+ethd__tune_point ethd__space_near(const ethd__tune_space *space, const ethd__tune_point *point, double spread,
+                                  uint64_t number);
+
+/* A value as text: four digits, which is what points have. */
+const char *ethd__space_text(double value, char out[ETHD_TUNE_VALUE_MAX]);
+
+/* The setup at the point, on the stage of a study; gains[] refer to the space and to texts. */
+typedef struct ethd__tune_gains {
+  char text[ETHD_TUNE_KEYS_MAX][ETHD_TUNE_VALUE_MAX];
+  ethd__gain gains[ETHD_TUNE_KEYS_MAX];
+} ethd__tune_gains;
+
+void ethd__space_gains(const ethd__tune_space *space, const ethd__tune_point *point, ethd__tune_gains *out);
+
+/* The configuration's setup at the point. */
+ETHD_MUST_CHECK ethd_status ethd__space_setup(const ethd__tune_space *space, const ethd__tune_point *point,
+                                              ethd_setup *out, char message[ETHD_MESSAGE_MAX]);
+
+#endif
