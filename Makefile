@@ -23,7 +23,7 @@ LOOP_SIDE := drivers/loop/cycle.c drivers/loop/histogram.c drivers/loop/watch.c 
 SHELL := /bin/sh
 .SUFFIXES:
 .DELETE_ON_ERROR:
-.PHONY: all man doc deb firmware demo check check-xenomai bench bench-quick stress ci format format-check tidy install install-files uninstall clean tests FORCE
+.PHONY: all man doc deb firmware demo coverage mutation volume-all check check-xenomai bench bench-quick stress ci format format-check tidy install install-files uninstall clean tests FORCE
 .DEFAULT_GOAL := all
 
 comma := ,
@@ -186,8 +186,10 @@ $(B)/%.so: $(B)/%.so.0
 # the tree and once installed without a search path.
 WHOLE := -Wl,--whole-archive $(B)/libethd.a -Wl,--no-whole-archive -Wl,--export-dynamic-symbol='ethd_*' -Wl,-z,now
 
-# Only the study has a window, and the test of what is drawn into it.
-$(B)/bin/ethd-study $(B)/tests/test_shapes: LIBS += -lSDL2_ttf -lSDL2
+# Only the study has a window, and the tests of what is drawn into it.
+$(B)/bin/ethd-study $(B)/tests/test_shapes $(B)/tests/test_pages: LIBS += -lSDL2_ttf -lSDL2
+# Only identification fits.
+$(B)/bin/ethd-identify: LIBS += -lcminpack
 $(PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES) $(B)/libethd.a
 	$(call say,LINK,$@)
 	@mkdir -p $(@D)
@@ -291,9 +293,11 @@ bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
 # The long ones: minutes.
 stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_svg $(B)/tests/test_fuzz_decoder \
   $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study $(B)/tests/test_servo_driver \
-  $(B)/tests/test_fuzz_map $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile
+  $(B)/tests/test_fuzz_map $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile \
+  $(B)/tests/volume $(B)/tests/day
 	ETHD_SCENE_QUERIES=1000000 ETHD_SCENE_OBJECTS=10000000 $(B)/tests/test_scene_tree
 	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
+	BUILD='$(abspath $(B))' PYTHON="$$(sh .ci/setup python)" PLANTS=20 sh tests/identify.sh
 	for k in 1 2 3 4 5; do ETHD_STRESS=1 $(B)/tests/test_servo_guardian || exit 1; done
 	ETHD_SERVO_CYCLES=50000 $(B)/tests/test_servo_link
 	ETHD_FUZZ_RUNS=10000000 $(B)/tests/test_fuzz_map
@@ -304,10 +308,24 @@ stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/te
 	ETHD_REPLUGS=100 $(B)/tests/test_ring_driver
 	ETHD_FUZZ=1000000 $(B)/tests/test_study
 	@BUILD='$(abspath $(B))' CC='$(CC)' SAN='$(SAN)' ETHD_STUDY_KILLS=50 sh tests/study.sh
+	@BUILD='$(abspath $(B))' PYTHON='$(PYTHON)' SAN='$(SAN)' ETHD_STUDY_WHOLE=1 sh tests/study_whole.sh
 	@ETHD_MODELS=large sh tests/models.sh
 	@ETHD_PROOFS=all sh tests/proofs.sh || [ $$? = 77 ]
 	ETHD_HOSTILE=100000 $(B)/tests/test_hostile
+# These go on where they were, and say what is left: a release runs them to the end, volume-all.
+	@BUILD='$(abspath $(B))' sh tests/volume.sh 1e9 15
+	@$(B)/tests/day $(B)/day 24 10 2>$(B)/day.err
 	@BUILD='$(B)' SAN='$(SAN)' sh apps/stress.sh
+
+# What the tests reach: every branch of lib, 90 % of drivers, the conditions that decide; then how many small bugs they see.
+coverage:
+	@BUILD='$(BUILD)' CC='$(CC)' MAKE='$(MAKE)' sh tests/coverage.sh $(or $(WHAT),lib drivers mcdc)
+mutation:
+	@BUILD='$(BUILD)' MAKE='$(MAKE)' sh tests/mutation.sh $(or $(COUNT),2000)
+# 1e9 inputs over all readers, and a simulated day: hours, again and again until they are through.
+volume-all: $(B)/tests/volume $(B)/tests/day
+	@BUILD='$(abspath $(B))' sh tests/volume.sh 1e9
+	@$(B)/tests/day $(B)/day 24 2>$(B)/day.err
 
 # A real Xenomai, where there is one.
 check-xenomai:

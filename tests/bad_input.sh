@@ -71,7 +71,7 @@ config 'cut in a key' 'bad.ini:2: .*key = value' '[contact]\nk_'
 config 'cut in a value' 'bad.ini:2: contact.k_e: found nothing' '[contact]\nk_e ='
 config 'NaN' 'bad.ini:2: contact.k_e: found "nan"' '[contact]\nk_e = nan\n'
 config 'inf' 'bad.ini:2: contact.k_e: found inf' '[contact]\nk_e = inf\n'
-config 'duplicate' 'bad.ini:3: contact.k_e: stands twice' '[contact]\nk_e = 1\nk_e = 2\n'
+config 'duplicate' 'bad.ini:3: contact.k_e: occurs twice' '[contact]\nk_e = 1\nk_e = 2\n'
 config 'unknown key' 'bad.ini:2: contact.k: ' '[contact]\nk = 1\n'
 config 'unknown section' 'bad.ini:1: .walls.: unknown section' '[walls]\nk = 1\n'
 config 'unknown section, empty' 'bad.ini:2: .walls.: unknown section' '[arm]\n[walls]\n'
@@ -80,7 +80,7 @@ config 'a byte 0' 'bad.ini:2: a byte 0' '[contact]\n\000k_e = 1\n'
 config 'missing scene' 'bad.ini:2: scene.file: .*no.scene: No such file' '[scene]\nfile = no.scene\n'
 
 printf '[device]\ndriver = none\n' >"$folder/bad.ini"
-refuse 'unknown driver' 'bad.ini:2: device.driver: found "none"' "$bin/ethd-check" "$folder/bad.ini"
+refuse 'unknown driver' 'bad.ini: device.driver: found "none"; sim, replay' "$bin/ethd-check" "$folder/bad.ini"
 
 # ---- scenes ----
 scene() { # WHAT PATTERN TEXT
@@ -125,7 +125,7 @@ trace 'NaN in a trace' 'bad.csv:2: q1_rad: ' "$names\n0,nan,0,0.25,0.25,0,0\n"
 trace 'an empty cell in a trace' 'bad.csv:2: q1_rad: ' "$names\n0,,0,0.25,0.25,0,0\n"
 trace 'inf in a trace' 'bad.csv:2: q1_rad: ' "$names\n0,inf,0,0.25,0.25,0,0\n"
 trace 'a word in a trace' 'bad.csv:2: xf_m: found "left"' "$names\n0,1,0,left,0.25,0,0\n"
-trace 'a column twice' 'bad.csv:1: the column "t_s" stands twice' "$names,t_s\n0$row,0\n"
+trace 'a column twice' 'bad.csv:1: the column "t_s" occurs twice' "$names,t_s\n0$row,0\n"
 trace 'a missing column' 'bad.csv:1: ' "t_s,q1_rad\n0,1\n"
 printf "$names\n1763665000.001$row\n1763665000.002$row\n" >"$folder/bad.dates" # seconds since 1970
 good "$bin/ethd-replay" --in "$folder/bad.dates" --out "$folder/out.csv"
@@ -198,8 +198,8 @@ good "$bin/ethd-check" "$folder/bad.ini"
 good "$bin/ethd-laws" --plugin "$folder/good.so"
 plugin 'missing plugin' '.*No such file' no.so
 plugin 'empty plugin' '.*is empty' bad.empty
-plugin 'huge plugin' '.*is no shared object' bad.huge
-plugin 'text as plugin' '.*is no shared object\|.*is cut short' good.csv
+plugin 'huge plugin' '.*isn.t a shared object' bad.huge
+plugin 'text as plugin' '.*isn.t a shared object\|.*is cut short' good.csv
 plugin 'a program as plugin' '.*' bad.binary
 size=$(wc -c <"$folder/good.so")
 for share in 1 5 10 25 50 75 90 99; do

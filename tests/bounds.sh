@@ -9,7 +9,7 @@ says() { grep -q -e "$2" "$1" || { cat "$1"; fail "it doesn't say '$2'"; }; }
 silent() { if grep -q -e "$2" "$1"; then cat "$1"; fail "it says '$2'"; fi; }
 
 # The setup's part is a configuration that gives the same setup.
-setup() { sed '/^device  /,$d' "$1" | grep -v '^; .* is valid$'; }
+setup() { sed '/^drivers  /,$d' "$1" | grep -v '^; .* is valid$'; }
 cp "$BUILD"/share/ethd/n.* "$BUILD/share/ethd/wall.scene" "$folder/"
 "$check" "$folder/n.ini" >"$folder/a"
 setup "$folder/a" >"$folder/again.ini"

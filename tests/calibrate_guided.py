@@ -120,4 +120,5 @@ def main():
     print("guided session: 17 places, one skipped, one measured again; a hand in the ring, an early end, silence")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -40,6 +40,30 @@ replays() { # FOLDER
   done
 }
 
+# Recordings in the columns that they had before readings carried their noise and laws learnt: the numbers of those who use
+# neither stay.
+without() { # COLUMN FILE
+  "${PYTHON:-python3}" - "$1" "$2" <<'END'
+import ast, sys
+column, path = sys.argv[1:]
+raw = open(path, "rb").read()
+data = 10 + int.from_bytes(raw[8:10], "little")
+header = ast.literal_eval(raw[10:data].decode())
+spans, kept, at = [], [], 0
+for field in header["descr"]:
+    size = 8 * (field[2][0] if len(field) > 2 else 1)
+    if field[0] != column:
+        spans.append((at, at + size))
+        kept.append(field)
+    at += size
+text = f"{{'descr': {kept}, 'fortran_order': False, 'shape': ("
+total = (10 + len(text) + 20 + len(",), }\n") + 63) // 64 * 64
+text = (text + f"{header['shape'][0]},), }}").ljust(total - 11) + "\n"
+rows = (raw[i + a:i + b] for i in range(data, data + at * header["shape"][0], at) for a, b in spans)
+open(path, "wb").write(raw[:8] + (total - 10).to_bytes(2, "little") + text.encode() + b"".join(rows))
+END
+}
+
 run() { # FOLDER: every plant, law and speed; the paper's laws in the columns that they had without the other
   mkdir "$1"
   for plant in n b p; do
@@ -52,7 +76,10 @@ run() { # FOLDER: every plant, law and speed; the paper's laws in the columns th
     "$bin/ethd-tap" --plant $plant --taps 3 --seed 7 --transition offset,predictive --learn 2 \
       --set transition.learn=0.3 --validity finger --csv "$1/$plant-predictive.csv" \
       --record "$1/$plant-predictive" >/dev/null
+    without learnt "$1/$plant/tick.npy"
     rm "$1/$plant/config.ini" "$1/$plant-predictive/config.ini" # name this machine's folders
+    without finger_noise "$1/$plant/tick.npy"
+    without finger_noise "$1/$plant-predictive/tick.npy"
   done
   replays "$1"
   (cd "$1" && find . -type f | LC_ALL=C sort | xargs sha256sum)

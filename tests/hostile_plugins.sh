@@ -35,14 +35,24 @@ case ${SAN:-} in
     ;;
 esac
 
+# A step that hangs where no thread watches: the program's own alarm ends it.
+hangs="a plugin's law doesn't return"
+ends hangs 20 "ethd-run: $hangs" "$BUILD/bin/ethd-run" --virtual --duration 30 --config "$folder/hangs.ini"
+ends hangs 20 "ethd-tap: $hangs" "$BUILD/bin/ethd-tap" --config "$folder/hangs.ini" --taps 1 --transition broken
+printf 't_s,q1_rad,q2_rad,xf_m,yf_m,vxf_mps,vyf_mps\n' >"$folder/in.csv"
+awk 'BEGIN { for (i = 0; i < 300; i++) printf "%.4f,1.45,0.15,%.6f,0.25,-0.2,0\n", i / 1000, 0.27 - 0.0002 * i }' >>"$folder/in.csv"
+sed 's/-0.238/-0.275/' "$folder/wall.scene" >"$folder/near.scene"
+sed 's/wall.scene/near.scene/' "$folder/hangs.ini" >"$folder/near.ini"
+ends hangs 20 "ethd-replay: $hangs" "$BUILD/bin/ethd-replay" --config "$folder/near.ini" --in "$folder/in.csv" --out "$folder/out.csv"
+
 # A check that hangs, at load.
 ends hangs_check 15 "ethd-check: the check of a plugin's law doesn't return" "$BUILD/bin/ethd-check" "$folder/hangs_check.ini"
 
 # exit(0) in a constructor and in a step.
 ends exits 5 "exits.so ended the program" "$BUILD/bin/ethd-check" "$folder/exits.ini"
 ends exits 5 "exits.so ended the program" "$BUILD/bin/ethd-laws" --plugin "$BUILD/tests/plugins/exits.so"
-ends exits_later 10 "a plugin ended the program" "$BUILD/bin/ethd-run" --virtual --duration 30 --config "$folder/exits_later.ini"
-ends exits_later 10 "a plugin ended the program" "$BUILD/bin/ethd-tap" --config "$folder/exits_later.ini" --taps 1 --transition broken
+ends exits_later 10 "a plugin's law ended the program" "$BUILD/bin/ethd-run" --virtual --duration 30 --config "$folder/exits_later.ini"
+ends exits_later 10 "a plugin's law ended the program" "$BUILD/bin/ethd-tap" --config "$folder/exits_later.ini" --taps 1 --transition broken
 
 # A law that writes past its state or rounds otherwise: the run goes on safely, and its end says what it was.
 for plugin in writes_past rounds; do

@@ -12,7 +12,7 @@ import numpy
 folder = sys.argv[1]
 ticks = numpy.load(folder + "/tick.npy")
 assert ticks.ndim == 1 and len(ticks) > 100, ticks.shape
-assert ticks.dtype.names[0] == "time_ns" and ticks.dtype.names[-1] == "tau", ticks.dtype.names
+assert ticks.dtype.names[0] == "time_ns" and ticks.dtype.names[-1] == "learnt", ticks.dtype.names
 assert ticks["rays"].shape == (len(ticks), 16) and ticks["q"].shape == (len(ticks), 2)
 assert ticks.dtype["time_ns"] == "<i8" and ticks.dtype["beta"] == "<f8"
 starts = [int(row["row"]) for row in csv.DictReader(open(folder + "/events.csv")) if row["kind"] == "start"]

@@ -38,6 +38,7 @@ one() {
 one words 3 drivers/servo/words.c 's/raw = raw == raw ? fmin(fmax(raw, min), max) : 0;/;/' $memory
 one npy_count 34 drivers/record/npy.c 's/if (!digits || end - p < 6 || /if (!digits || /' $memory
 one decoder 48 drivers/proximity_ring/decoder.c 's/while (at < CODED)/while (at <= CODED)/' $memory
+one param 40 lib/param.c 's/bool inside = v >= row->min \&\& v <= row->max;/bool inside = !(v < row->min) \&\& v <= row->max;/' $memory
 # minutes
 [ "${ETHD_PROOFS:-}" != all ] || one guard 34 lib/guard/guard.c \
   's/return bits | ETHD_GUARD_RATE | limit(heat.*/return bits | ETHD_GUARD_RATE;/; /^         limit(limits->torque, ETHD_GUARD_TORQUE, torque);/d' \

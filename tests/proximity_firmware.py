@@ -170,6 +170,7 @@ def test_rate(*options, baud, seconds):
         at = START_US + slot * SLOT_US
         assert at - 10 < least <= most < at + 40, (slot, least, most)
     assert stats["hurried"] == [0], stats
+    assert stats["faced"] == [0], stats  # no two sensors across the ring shine at a time
     print(f"{len(frames)} frames at {baud} Bd, 0 bad; period {low:.0f} to {high:.0f} cycles; "
           f"{stats['speed'][0]:.1f} times real time")
     print(f"begin {[stats[f'begin{s}_us'][:2] for s in range(4)]} us; put {stats['put_us']} us, get {stats['get_us']} us; "

@@ -72,7 +72,7 @@ refuses("/nowhere.ini: No such file", lambda: ethd.Controller("/nowhere.ini"))
 refuses("configuration:2: contact.k_e", lambda: ethd.Controller("[contact]\nk_e = fast\n"))
 with open(folder + "/run/config.ini", "a") as file:
     file.write("\n[plugins]\nfile = somebodys.so\n")
-refuses("plug", lambda: ethd.read(folder + "/run").controller())
+refuses("ethd.read(folder, plugins=True) lets it run", lambda: ethd.read(folder + "/run").controller())
 refuses("plug", lambda: ethd.read(folder + "/run").verify())
 refuses("somebodys.so", lambda: ethd.read(folder + "/run", plugins=True).controller())
 refuses("no recording there", lambda: ethd.read(folder), FileNotFoundError)

@@ -16,7 +16,8 @@ awk -v to="$work" '
   /^```(sh|python)$/ { n++; out = sprintf("%s/%02d.%s", to, n, substr($0, 4)); next }
   /^```/ { out = "" }
   out != "" { print >out }' apps/README.md
-export PATH="$BUILD/bin:$PATH"
+printf 'Name: ethd\nDescription: the tree\nVersion: 0\nCflags: -I%s/include\n' "$tree" >"$work/ethd.pc"
+export PATH="$BUILD/bin:$PATH" PKG_CONFIG_PATH="$work"
 cd "$work/mine"
 count=0
 for block in "$work"/[0-9]*.*; do
@@ -27,7 +28,7 @@ for block in "$work"/[0-9]*.*; do
   count=$((count + 1))
   [ "${block##*.}" != python ] || cp "$work/out" "$work/${block##*/}.out"
 done
-[ $count -ge 9 ] || fail "$count blocks"
+[ $count -ge 10 ] || fail "$count blocks"
 grep -q '^True$' "$work"/*.python.out || fail "the first torque isn't the recorded one"
 [ -s study/report/report.html ] && [ -s swapped.mcap ] && [ "$(wc -l <out.csv)" = 301 ] || fail "files are missing: $(ls)"
 [ "$(cat "$tree"/apps/plot/offset.png | wc -c)" -lt 100000 ] || fail "README's picture is over 100 kB"

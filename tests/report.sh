@@ -21,9 +21,18 @@ taps = 1
 attempts = 8
 training = 1
 survey = on
+[statistics]
+margin_d_max = 0.0005
 END
 "$study" --quiet "$folder/small.study" --out "$folder/a study's" >"$folder/out" 2>&1 || fail "$(cat "$folder/out")"
 here="$folder/a study's"
+
+for margin in -1 0 nan 1e9; do
+  printf '[statistics]\nmargin_v_of = %s\n' "$margin" >"$folder/margin.study"
+  "$study" "$folder/margin.study" --out "$folder/bad" >"$folder/out" 2>"$folder/err"
+  code=$?
+  [ $code = 2 ] && grep -q 'margin.study:2: statistics.margin_v_of: found' "$folder/err" || fail "a margin of $margin: exit $code, $(cat "$folder/err")"
+done
 
 # Without gnuplot: one line, before anything is drawn.
 mkdir "$folder/empty"
@@ -56,11 +65,14 @@ drawn() {
   done
 }
 drawn "$here/report" "$here"
-for words in 'Simulated, not measured' 'no significance is claimed' 'p that 2 pairs can have is 0.5' 'Nobody has answered' 'early-contact' \
-  'percentile bootstrap' 'under seed 1: 2000 draws' 'sign-flip' 'fitted to the four means'; do
-  grep -q "$words" "$here/report/report.html" || fail "the page doesn't say: $words"
+for words in 'Simulated, not measured' 'No significance is claimed' 'smallest two-sided p is 0.5' 'Nobody has answered' 'early-contact' \
+  'simulated participants, no person' 'under seed 1: 2000 bootstrap samples' 'sign-flip' 'fitted to the four means' \
+  'none of them is evidence about people' 'VO-A: tracking fades' 'medians have no 95 % interval' 'margins of the study file' '&#177;0.5 mm (d_max) and &#177;0.02 and' \
+  'lmer(d_max ~ strategy \* speed' 'second reaches the motors' 'mm into the wall that is asked for: .* the guard lets through at most 5\.[0-9] N'; do
+  grep -q -e "$words" "$here/report/report.html" || fail "the page doesn't say: $words"
 done
-for picture in boxes braking delay reasons states trace-offset-low trace-smooth-high; do
+grep -q 'too few people' "$here/report/report.html" && ! grep -q '<td[^>]*>shown<' "$here/report/report.html" || fail "two people show something"
+for picture in boxes braking delay reasons states encounter trace-offset-low trace-smooth-high; do
   [ -s "$here/report/$picture.png" ] || grep -q "no tap" "$folder/out" || fail "no $picture.png"
 done
 cp "$here/report/report.html" "$folder/before"
@@ -84,7 +96,39 @@ grep -q 'under seed 7' "$folder/other/report.html" || fail "the page doesn't sta
 awk -F, -v OFS=, 'NR > 1 { $5 = 3; $6 = 1 + NR % 5; $7 = 2 } 1' "$here/survey.csv" >"$folder/survey.csv" && cp "$folder/survey.csv" "$here/survey.csv"
 drawn "$here/report" "$here"
 grep -q 'figure 18' "$here/report/report.html" && [ -s "$here/report/survey.png" ] || fail "no survey"
-[ "$(cut -d, -f3 "$here/report/survey-means.csv" | sort -u | tr '\n' ' ')" = '2 n ' ] || fail "not everyone's answers count"
+[ "$(cut -d, -f5 "$here/report/survey-answers.csv" | sort -u | tr '\n' ' ')" = '2 n ' ] || fail "not everyone's answers count"
+
+# What the motors were asked for and what they were given are two things, as the recordings have them.
+"${PYTHON:-python3}" - "$here" <<'END' || fail "the forces aren't those of the recordings"
+import csv, pathlib, sys
+import numpy as np
+study = pathlib.Path(sys.argv[1])
+taps = [t for t in csv.DictReader(open(study / "taps.csv")) if t["part"] == "test" and t["reason"] == "ok"]
+for row in csv.DictReader(open(study / "report/forces.csv")):
+    most = []
+    for t in taps:
+        if (t["transition"], t["speed"]) == (row["transition"], row["speed"]):
+            tick = np.load(study / "taps" / f"{t['participant']}-{int(t['block']):02d}-{int(t['attempt']):03d}" / "tick.npy")
+            most.append((np.abs(tick["tau_raw"]).max(), np.abs(tick["tau"]).max()))
+    most = np.array(most)
+    assert len(most) == int(row["taps"]) > 0
+    assert np.allclose([np.median(most[:, 0]), most[:, 0].max(), np.median(most[:, 1]), most[:, 1].max()],
+                       [float(row[k]) for k in ("asked_nm_median", "asked_nm_max", "let_nm_median", "let_nm_max")], rtol=1e-12)
+    assert float(row["asked_n_max"]) > 2 * float(row["let_n_max"]) and float(row["let_n_max"]) < 6 # plant n has 5.4 N
+END
+
+# Stations: one study in several folders, with other participants in each; some of whom aren't analysed.
+cp -r "$here" "$folder/second"
+rm -rf "$folder/second/report" "$folder/second/SHA256SUMS" "$folder/second/participants.csv"
+sed -i 's/^P0/P1/' "$folder/second/taps.csv" "$folder/second/survey.csv"
+drawn "$folder/both" "$here" "$folder/second" --out "$folder/both"
+grep -q 'at 2 stations of one study' "$folder/both/report.html" || fail "the page doesn't say that there were two stations"
+people_in() { awk -F, '$1 == "v_of" && $3 == "smooth" && $4 == "low" { print $6 }' "$1/summary.csv"; }
+[ "$(people_in "$folder/both")" = 4 ] || fail "not 4 participants at two stations"
+printf 'participant,status,analysed\nP11,excluded,0\nP12,complete,1\n' >"$folder/second/participants.csv"
+drawn "$folder/both" "$folder/second" --out "$folder/both"
+[ "$(people_in "$folder/both")" = 1 ] || fail "the excluded participant's taps are counted"
+grep -q 'who are not analysed' "$folder/both/report.html" || fail "the page doesn't say that somebody is left out"
 
 # A grid.
 printf '[study]\ntraining = 0\ntaps = 1\nattempts = 6\n[grid]\ncontact.k_e = 1000,2500\ntransition.b_d = 50,100\n' >"$folder/grid.study"
@@ -93,6 +137,17 @@ drawn "$folder/grid/report" "$folder/grid" --point 3
 [ "$(wc -l <"$folder/grid/report/grid.csv")" = 17 ] || fail "not 4 points x 4 cells: $(wc -l <"$folder/grid/report/grid.csv")"
 grep -q 'show point 3 of 4' "$folder/grid/report/report.html" || fail "the page doesn't name its point"
 grep -q 'No ticks were recorded' "$folder/grid/report/report.html" || fail "the page draws ticks that aren't there"
+
+# Recorded people's movements are said to be that, and so is who led the hand where the taps differ in it.
+printf '[study]\nparticipants = 1\ntraining = 0\ntaps = 1\nattempts = 2\nspeeds = low\n[hand]\nsource = recorded\nmotion = avraham_free_mit\n' >"$folder/recorded.study"
+"$study" --quiet "$folder/recorded.study" --out "$folder/recorded" >"$folder/out" 2>&1 || fail "$(cat "$folder/out")"
+drawn "$folder/recorded/report" "$folder/recorded"
+grep -q 'move as <b>recorded people</b> did: movements of <code>avraham_free_mit</code>' "$folder/recorded/report/report.html" || fail "the page doesn't say that people were recorded"
+awk -F, -v OFS=, '{ for (i = 1; i <= NF; i++) if ($i == "hand") h = i } NR == 1 && !h { $(NF + 1) = "hand" } NR > 1 { $(h ? h : NF + 1) = NR % 2 ? "mouse" : "recorded" } 1' \
+  "$folder/recorded/taps.csv" >"$folder/taps.csv" && cp "$folder/taps.csv" "$folder/recorded/taps.csv"
+drawn "$folder/recorded/report" "$folder/recorded"
+grep -q 'led the hand with a pointer' "$folder/recorded/report/report.html" && grep -q 'come from several sources' "$folder/recorded/report/report.html" ||
+  fail "the page doesn't say that the taps have several sources"
 
 # A simulation's ticks, of one worker out of two: its taps are drawn, no others.
 printf '[study]\ntraining = 1\ntaps = 1\nattempts = 6\n[grid]\ncontact.k_e = 1000,2500\n' >"$folder/ticks.study"
@@ -130,6 +185,8 @@ bad() { # SED PATTERN: a table that was changed
   refuse 2 "$2" "$folder/bad"
 }
 refuse 2 'DIR is needed'
+refuse 2 'participant P01 has tapped in both' "$here" "$here" --out "$folder/both" --force
+refuse 2 'another study than' "$here" "$folder/ticks" --out "$folder/both" --force
 refuse 2 'nowhere/study.ini: No such file' "$folder/nowhere"
 refuse 2 'no test tap at point 9 of 4' "$folder/grid" --point 9
 refuse 1 'no test tap P09-01-001' "$here" --force --tap P09-01-001
@@ -137,7 +194,7 @@ refuse 2 "report: holds .* already; --force" "$here"
 refuse 2 "is the study's own folder" "$here" --out "$here" --force
 bad '3s/,ok,/,fine,/' 'taps.csv:[0-9]*: reason: found "fine"\|'
 bad '1s/,reason,/,why,/' 'taps.csv:1: no column reason'
-bad '4s/$/,1/' 'taps.csv:4: 27 cells, the header has 26'
+bad '4s/$/,1/' 'taps.csv:4: 33 cells, the header has 32'
 bad 's/,ok,/,ok,x/' 'taps.csv:[0-9]*: v_rvo_mps: found "x'
 bad '2,$d' 'no test tap'
 rm "$folder/bad/taps.csv"

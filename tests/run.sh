@@ -58,6 +58,13 @@ printf 'wait 0.1\nack\nwait 0.01\nenable\nwait 0.5\nstop\n' |
 says "$folder/hot.out" '^ok: enabled$' ' x a motor is too hot$'
 replays "$folder/hot"
 
+# a law that looks ahead, swapped in later, replays with what the device said of itself
+printf '[device]\nplant = n\n[scene]\nfile = wall.scene\n' >"$folder/ahead.ini"
+printf 'wait 0.5\ntransition predictive\nwait 2\nstop\n' |
+  "$run" --virtual --duration 9 --config "$folder/ahead.ini" --record "$folder/ahead" >"$folder/ahead.out" 2>&1 || fail "ahead: exit $?"
+says "$folder/ahead/events.csv" '^0,set,arm.mass_x ' ',transition,predictive$'
+replays "$folder/ahead"
+
 # the ticks around the first fault, for numpy; rows of an earlier fault's are gone
 says "$folder/clean.out" '^snapshot  .*clean/snapshot.npy: [0-9]* ticks around the first fault, the ring is faster'
 "${PYTHON:-python3}" -c 'import numpy, sys
@@ -142,6 +149,32 @@ if command -v gnuplot >/dev/null; then
     fail "latency.gp: $(cat "$folder/plot")"
 fi
 
+# cyclictest gets the loop's own conditions: what it is asked is looked at, and its histogram is the last column
+mkdir "$folder/path"
+cat >"$folder/path/cyclictest" <<END2
+#!/bin/sh
+echo "\$*" >>"$folder/asked"
+echo "# Histogram"
+echo "000003 000007"
+echo "000005 000001"
+END2
+chmod +x "$folder/path/cyclictest"
+PATH="$folder/path:$PATH" "$BUILD/bin/ethd-latency" --duration 0.2 --priority 70 >"$folder/peer.out" 2>&1 || fail "beside cyclictest: $(cat "$folder/peer.out")"
+PATH="$folder/path:$PATH" "$BUILD/bin/ethd-latency" --duration 0.2 --dma-latency 20 >>"$folder/peer.out" 2>&1 || fail "beside cyclictest: $(cat "$folder/peer.out")"
+sed -n 1p "$folder/asked" | grep -q -e '-p 70 -i 1000 -l 200 .* --laptop' || fail "cyclictest holds the DMA latency, the loop doesn't: $(cat "$folder/asked")"
+sed -n 2p "$folder/asked" | grep -q -e ' --latency=20' || fail "cyclictest has another DMA latency: $(cat "$folder/asked")"
+says "$folder/peer.out" '^cyclictest p50  *3.*max  *5.000 us'
+
+# ---- a thinned recording: a tenth of the ticks, the fault's own among them, and one line that it can't be replayed ----
+printf 'wait 0.5\nset limits.speed 0.01\nwait 0.4\nstop\n' | "$run" --virtual --duration 2 --record "$folder/thin" --record-every 10 >"$folder/thin.out" 2>&1 ||
+  fail "thinned: $(cat "$folder/thin.out")"
+rows=$(awk '/^recorded/ { print $3 }' "$folder/thin.out")
+ticks=$(awk '/^ticks/ { print $2 }' "$folder/thin.out")
+[ "$rows" -ge $((ticks / 10)) ] && [ "$rows" -le $((ticks / 10 + 3)) ] || fail "$rows of $ticks ticks: $(cat "$folder/thin.out")"
+$verify "$folder/thin" >"$folder/verify" 2>&1
+[ $? = 1 ] && [ "$(wc -l <"$folder/verify")" = 1 ] || fail "a thinned recording replays: $(cat "$folder/verify")"
+says "$folder/verify" "thin: [0-9]* of $rows ticks are equal to the bit, the rest can't be replayed: 1 tick of 10 is recorded"
+
 # ---- refusals ----
 refuse() { # PATTERN ARGUMENTS...
   pattern=$1
@@ -185,8 +218,8 @@ cmp "$folder/own/config.ini" "$folder/before" || fail "the configuration was cha
 (sleep 2) | "$run" --virtual --duration 1000000 --record "$folder/two" >"$folder/first" 2>&1 &
 first=$!
 while ! [ -s "$folder/two/events.csv" ]; do sleep 0.02; done
-refuse 'two: another program writes there now' --virtual --duration 1 --record "$folder/two"
-refuse 'two: another program writes there now' --virtual --duration 1 --record "$folder/two" --force
+refuse 'two: another program is writing there' --virtual --duration 1 --record "$folder/two"
+refuse 'two: another program is writing there' --virtual --duration 1 --record "$folder/two" --force
 kill -TERM $first
 wait $first 2>/dev/null
 
@@ -219,6 +252,14 @@ says "$folder/verify" "full: $kept ticks, equal to the bit, but the recording wa
 replays "$folder/v1"
 refuse 'cpu: found "x"' --cpu x
 refuse 'early_wake' --early-wake 900 --duration 1
+
+# ---- what is missing, and which step comes next: a device without a finger doesn't enable in silence ----
+printf '[device]\ndriver = hello\n' >"$folder/blind.ini"
+"$run" --config "$folder/blind.ini" --duration 0.3 </dev/null >"$folder/blind" 2>&1 || fail "hello: $(cat "$folder/blind")"
+says "$folder/blind" '^device: nothing measures the finger: the ring stands and follows nothing' '^next: step [16] of "From the box to the first touch" in drivers/README.md' \
+  '^finger  *never measured'
+"$run" --duration 0.3 </dev/null >"$folder/sees" 2>&1 || fail "sim: $(cat "$folder/sees")"
+grep -q -e 'measures the finger' -e '^finger' -e '^next' "$folder/sees" && fail "the simulated device has a finger: $(cat "$folder/sees")"
 
 [ $failed = 0 ] && echo "$(grep -c . "$folder/v1/events.csv") events replayed; $(cat "$folder/verify")"
 exit $failed

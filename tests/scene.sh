@@ -196,7 +196,7 @@ refuse 'frobnicate' info --frobnicate walls.scene
 refuse 'count.scene:3: ' info count.scene
 printf '<svg width="1mm" height="1mm">\n<text/></svg>\n' >text.svg
 cp drawing.svg drawing.txt
-refuse 'text.svg:2: not taken.*text' convert --in text.svg --out kept.csv
+refuse 'text.svg:2: not supported.*text' convert --in text.svg --out kept.csv
 refuse 'drawing.txt.*svg or .scene' convert --in drawing.txt --out kept.csv
 refuse 'nowhere.svg' convert --in nowhere.svg --out kept.csv
 refuse 'convert needs' convert --in drawing.svg

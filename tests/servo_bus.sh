@@ -3,25 +3,8 @@
 # lock-step, equal to the bit; a live run that is unplugged and killed; a serial line at 500 kBd. No time is asserted: a
 # machine too busy for a drive in true time is told from a fault of ours by a program that knows nothing of it.
 set -u
-case ${SAN:-} in *thread*) echo "SKIP: a thread sanitizer's threads don't fit into the loop's stack"; exit 77 ;; esac
-folder=$(mktemp -d)
-children=
-finish() {
-  for child in $children; do kill "$child" 2>/dev/null; done
-  rm -rf "$folder"
-}
-trap finish EXIT
-run=$BUILD/bin/ethd-run
+. tests/peers/desk.sh
 verify="$BUILD/bin/ethd-replay --verify"
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
-says() { # FILE PATTERN...
-  file=$1
-  shift
-  for pattern; do grep -q -e "$pattern" "$file" || { fail "no $pattern in:"; cat "$file"; }; done
-}
-
-. tests/peers/pymodbus.sh
 . tests/peers/plant.sh
 
 cp apps/config/wall.scene "$folder"

@@ -2,22 +2,7 @@
 # The servo before a drive of another's making: an SVD48V as its manual has it, by pymodbus, on a serial line at 500 kBd,
 # with its checksum, its refusals, its faults, and two joints that its currents move. No time is asserted here.
 set -u
-case ${SAN:-} in *thread*) echo "SKIP: a thread sanitizer's threads don't fit into the loop's stack"; exit 77 ;; esac
-folder=$(mktemp -d)
-children=
-finish() {
-  for child in $children; do kill "$child" 2>/dev/null; done
-  rm -rf "$folder"
-}
-trap finish EXIT
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
-says() { # FILE PATTERN...
-  file=$1
-  shift
-  for pattern; do grep -q -e "$pattern" "$file" || { fail "no $pattern in:"; cat "$file"; }; done
-}
-. tests/peers/pymodbus.sh
+. tests/peers/desk.sh
 . tests/peers/drive.sh
 
 # ---- the probe: which checksum answers, what is read ----
@@ -43,7 +28,6 @@ says "$folder/probe" '^mend .*crc = low-first is needed, the map says high-first
 drive_ends
 
 # ---- homing: refused without, found at its stops, lost with its power ----
-run=$BUILD/bin/ethd-run
 cp apps/config/wall.scene "$folder"
 drive svd48v --lock-step 0.005
 tell turn 0.2 -0.4 >/dev/null
@@ -68,26 +52,6 @@ drive_ends
 
 # ---- what goes wrong at the drive, in its own time: 5 ms an exchange, in lock-step with a virtual clock. A hand holds the
 # joints, a wall pushes with 0.3 Nm, 0.64 A; s until no torque is asked for any more, and what ethd-run says of it ----
-broken() { # NAME COMMAND BOUND SENTENCE
-  drive svd48v --lock-step 0.005
-  tell hold >/dev/null
-  servo_ini "$1" svd48v.map 'q1 = 1.5747963' 'q2 = 0' # the ring is 1 mm in the wall
-  printf '\n[contact]\nk_e = 1200\n' >>"$folder/$1.ini"
-  sed -i 's/^law = offset/law = abrupt/; /^preset/d' "$folder/$1.ini"
-  tell at 0.6 "$2" >/dev/null
-  printf 'wait 0.4\nstatus\nwait 0.8\nstatus\n%s\nstop\n' "${5:-}" |
-    "$run" --config "$folder/$1.ini" --virtual --duration 9 >"$folder/$1.out" 2>&1 || fail "$1: exit $?: $(cat "$folder/$1.out")"
-  reaction=$(tell reaction)
-  drive_ends
-  says "$folder/$1.out" '^ok: t 0.4.* enabled, abrupt, .* torque -0.3000 .* no fault$'
-  printf '%-12s no torque after %s s, allowed are %s\n' "$1" "$reaction" "$3"
-  if [ "$3" = never ]; then
-    says "$folder/$1.out" '^ok: t 1.2.* enabled, abrupt, .* no fault$'
-  else
-    says "$folder/$1.out" "^ok: t 1.2.* disabled, .* $4\$"
-    awk -v is="$reaction" -v most="$3" 'BEGIN { exit !(is >= 0 && is <= most) }' || fail "$1: zero torque after $reaction s, not $3"
-  fi
-}
 # a row of one exchange, where its register is read every second time: 10 ms, and two exchanges until zero is there
 broken alarm alarm 0.02 'the drive reports a fault'
 broken supply 'volts 70' 0.26 "the drive's supply is out of its range"

@@ -62,6 +62,7 @@ if [ $pictures = yes ]; then
   copy
   printf '[hand]\nsource = people\n' >>"$folder/bad/study.ini"
   echo /nowhere >"$folder/bad/device.folder"
+  sed -i 's/,simulated,/,device,/' "$folder/bad/taps.csv"
   { cat "$folder/good/config.ini"; printf '\n[device]\ndriver = <script>alert(1)</script>&\n'; } | grep -v '^driver = sim' >"$folder/bad/config.ini"
   report
   page=$folder/bad/report/report.html
@@ -89,12 +90,12 @@ ${CC:-cc} -shared -fPIC -o "$folder/evil.so" "$folder/evil.c" 2>"$folder/err" ||
 copy
 printf '\n[plugins]\nfile = %s\n' "$folder/evil.so" >>"$folder/bad/config.ini"
 report && fail "a report with a plugin"
-grep -q 'config.ini:[0-9]*: plugins.file: .*evil.so is a program, .*--plugins' "$folder/err" || fail "a plugin: $(cat "$folder/err")"
+grep -q 'config.ini:[0-9]*: plugins.file: .*evil.so is a program .*--plugins' "$folder/err" || fail "a plugin: $(cat "$folder/err")"
 quiet "ethd-report"
 "$bin/ethd-tap" --taps 1 --transition offset --speed low --record "$folder/rec" >/dev/null || fail "a recording"
 printf '\n[plugins]\nfile = %s\n' "$folder/evil.so" >>"$folder/rec/config.ini"
 "$bin/ethd-replay" --verify "$folder/rec" >"$folder/said" 2>"$folder/err" && fail "a recording with a plugin is verified"
-grep -q 'evil.so is a program, .*--plugins' "$folder/err" || fail "a recording's plugin: $(cat "$folder/err")"
+grep -q 'evil.so is a program .*--plugins' "$folder/err" || fail "a recording's plugin: $(cat "$folder/err")"
 "$bin/ethd-convert" "$folder/rec" "$folder/rec.csv" >"$folder/said" 2>&1 || fail "converting: $(cat "$folder/said")"
 "$bin/ethd-study" --merge "$folder/bad" >"$folder/said" 2>&1
 quiet "looking at a recording"

@@ -14,7 +14,7 @@ fail() { echo "$*"; exit 1; }
 awk -F, 'NR > 1 && $NF != 1' "$folder/results.csv" | grep . && fail "a row failed, the program didn't"
 [ "$(cut -d, -f1 "$folder/results.csv" | sort -u | wc -l)" = $(($("$stress" --list | wc -l) + 1)) ] ||
   fail "not every test has results"
-for name in boundary map map_curve; do
+for name in boundary hold map map_curve; do
   [ "$(wc -l <"$folder/data/$name.csv")" -gt 50 ] || fail "no $name.csv"
 done
 

@@ -14,7 +14,7 @@ fail() { echo "FAILED $*"; failed=1; }
 # ---- the paper's study: 3 x 3 x 4 ----
 "$study" --out "$folder/paper" >"$folder/out" 2>&1 || fail "the paper's study: $(tail -n 1 "$folder/out")"
 taps=$folder/paper/taps.csv
-header=participant,block,part,attempt,transition,speed,seed,tap,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m,t_rvo_s,t_of_s,t_seen_s,peak_force_n,finger_radius_m,commanded_mps
+header=participant,block,part,attempt,transition,speed,seed,tap,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m,t_rvo_s,t_of_s,t_seen_s,peak_force_n,finger_radius_m,commanded_mps,v_hand_mps,touch_depth_m,eps_felt_m,hand,movement,utc
 [ "$(head -n 1 "$taps")" = "$header" ] || fail "the header: $(head -n 1 "$taps")"
 awk -F, 'NR > 1 && $3 == "test" && $9 { n[$1, $5, $6]++ } END { for (k in n) { cells++; bad += n[k] != 3 } exit cells != 12 || bad }' "$taps" ||
   fail "not three valid taps in each of 12 cells"
@@ -115,12 +115,12 @@ full() { # WHAT: refused in one line, nothing torn; then there is room again
   [ $code = 1 ] && [ "$(grep -c . "$folder/err")" = 1 ] && grep -q 'No space left\|File too large' "$folder/err" ||
     fail "$1: exit $code: $(cat "$folder/err")"
 }
-printf '[study]\nparticipants = 2\ntaps = 1\nattempts = 3\ntraining = 1\nsurvey = on\nrecord = none\nname = small\n' >"$folder/short.study"
-(ulimit -f 4; "$study" "$folder/short.study" --quiet --out "$folder/quota" >/dev/null 2>"$folder/err"; exit $?)
+sed 's/^record = all/record = none/' "$BUILD/share/ethd/paper.study" >"$folder/short.study"
+(ulimit -f 20; "$study" "$folder/short.study" --quiet --out "$folder/quota" >/dev/null 2>"$folder/err"; exit $?)
 code=$?
 full "a quota"
 "$study" --quiet --resume "$folder/quota" >"$folder/out" 2>&1 || fail "after a quota: $(cat "$folder/out")"
-cmp "$folder/whole/taps.csv" "$folder/quota/taps.csv" || fail "a quota has changed the taps"
+cmp "$folder/paper/taps.csv" "$folder/quota/taps.csv" || fail "a quota has changed the taps"
 mkdir "$folder/small"
 if mount -t tmpfs -o size=2m tmpfs "$folder/small" 2>"$folder/err"; then
   mounted=1
@@ -146,7 +146,7 @@ printf 'taps = 2\n' >>"$folder/whole/study.ini"
 [ "$(grep -c . "$folder/err")" = 1 ] || fail "another study file: $(cat "$folder/err")"
 printf 'note finger, cold\nbogus\npause\nnote in it\ngo\nabort\n' |
   "$study" "$folder/small.study" --ask --out "$folder/asked" >"$folder/out" 2>&1 || fail "commands: exit $?: $(cat "$folder/out")"
-grep -q 'note WORDS, pause, go, abort, stop are allowed' "$folder/out" || fail "an unknown command"
+grep -q 'note WORDS, pause, go, abort, undo, stop are allowed' "$folder/out" || fail "an unknown command"
 [ "$(cut -d, -f4- "$folder/asked/events.csv" | tr '\n' ' ')" = 'event,detail open,libethd 0.1.0 note,"finger, cold" pause, note,in it abort, over, ' ] ||
   fail "events: $(cat "$folder/asked/events.csv")"
 grep -q '^P01' "$folder/asked/taps.csv" && fail "P01 went on after abort"
@@ -179,7 +179,7 @@ refuse 'bad.study:2: study.tap: no key of this section; name, seed,' '[study]\nt
 refuse 'bad.study:1: "walls": unknown section; study,' '[walls]\n'
 refuse 'bad.study:2: study.taps: found "0", a whole number from 1 to ' '[study]\ntaps = 0\n'
 refuse 'bad.study:2: study.taps: found "3.5"' '[study]\ntaps = 3.5\n'
-refuse 'bad.study:3: study.taps: stands twice' '[study]\ntaps = 3\ntaps = 3\n'
+refuse 'bad.study:3: study.taps: occurs twice' '[study]\ntaps = 3\ntaps = 3\n'
 refuse 'bad.study:2: study.attempts: 2 attempts ' '[study]\nattempts = 2\n'
 refuse 'bad.study:2: study.order: found "any", paper|random|latin' '[study]\norder = any\n'
 refuse 'bad.study:2: study.strategies: smooth stands there twice' '[study]\nstrategies = smooth,smooth\n'
@@ -207,7 +207,12 @@ cp "$folder/sim/study.ini" "$folder/before"
 "$study" "$folder/other.study" --simulate 1 --out "$folder/sim" >"$folder/out" 2>"$folder/err"
 [ $? = 2 ] && grep -q 'sim: holds study.ini, of another study' "$folder/err" || fail "another study: $(cat "$folder/err")"
 cmp "$folder/sim/study.ini" "$folder/before" || fail "another study's files are written over"
-"$study" "$folder/one.study" --simulate 1 --out "$folder/sim" >/dev/null || fail "the same study again"
+"$study" "$folder/one.study" --simulate 1 --out "$folder/sim" >"$folder/out" 2>"$folder/err"
+[ $? = 1 ] && grep -q 'was finished before; nothing is added' "$folder/err" || fail "the same study again: $(cat "$folder/err")"
+"$study" "$folder/one.study" --simulate 1 --shard 1/1 --out "$folder/sim" >"$folder/out" 2>&1 || fail "a worker's command again: $(cat "$folder/out")"
+"$study" "$folder/one.study" --simulate 2 --out "$folder/sim" >"$folder/out" 2>"$folder/err"
+[ $? = 2 ] && grep -q 'holds a simulation of 1 participants; another folder is needed for 2' "$folder/err" || fail "more people: $(cat "$folder/err")"
+cmp "$folder/sim/study.ini" "$folder/before" || fail "a simulation of more people has written"
 mkdir "$folder/here"
 cp "$BUILD/share/ethd/n.ini" "$folder/here/config.ini"
 cp "$BUILD/share/ethd/wall.scene" "$folder/here"

@@ -32,6 +32,15 @@ training = 0
 taps = 1
 attempts = 2
 survey = on
+rest = 1
+[survey]
+q1 = Wie war's?
+q1_answers = gut | mittel | schlecht | übel
+q2 = Where did the wall stand?
+q3 = How sure are you?
+[pages]
+consent1 = Sie nehmen freiwillig teil.
+instruction1 = Tippen Sie einmal an die grüne Wand.
 EOF2
 cat >"$folder/drive.py" <<'EOF2'
 import csv, glob, os, re, signal, subprocess, sys, time
@@ -95,17 +104,39 @@ def rows():
     path = folder + "/session/journal"
     return [l.split(" ")[0] for l in open(path)] if os.path.exists(path) else []
 
+def surveyed(before):
+    """The questions come as soon as a tap was valid or the second was done: answered, gone back to, confirmed."""
+    taps = [l.split(" ")[1].split(",") for l in open(folder + "/session/journal") if l.startswith("tap ")]
+    mine = [r for r in taps if r[1] == str(before + 1)]
+    if not (mine and (mine[-1][8] == "1" or len(mine) == 2)): return False
+    time.sleep(0.5)
+    for name in "4 4 Return 2 Return BackSpace 3 Return 5 1 5 Return".split(): key(name)
+    assert rows().count("survey") == before, "three answers without a confirmation"
+    key("Return")
+    return True
+
+# Consent, instruction. No key but its own goes on from the first.
+for name in "space Return y space".split(): key(name)
+
+# A tap that isn't begun is none: a pause at the start line, a stop of the hand that lasts longer than a tap.
+key("space")
+move(start, middle); time.sleep(1.2); key("p"); key("space")
+time.sleep(6.5)
+assert rows().count("tap") == 0, rows()
+assert any(",pause," in l for l in open(folder + "/session/journal"))
+key("p")
+
 for _ in range(2):
-    key("space")                     # the block's page
+    key("space")                     # the block's page, or the pause
     before = rows().count("survey")
-    for _ in range(2):
-        tap()
+    for _ in range(1):
+        # Before the tap: one that is valid is followed by the questions at once.
+        move(start, middle); time.sleep(0.5)
         key("n"); say('type --delay 1 "no letter of this is lost"'); time.sleep(0.4); key("Return")
+        tap()
         if rows().count("tap") and rows()[-1] in ("tap", "event"): key("p"); key("space")
     deadline = time.monotonic() + 60
-    while rows().count("survey") == before and time.monotonic() < deadline and run.poll() is None:
-        for answer in "42 5".replace(" ", ""): key(answer)
-        if rows().count("survey") == before: tap()
+    while not surveyed(before) and time.monotonic() < deadline and run.poll() is None: tap()
 deadline = time.monotonic() + 20
 while run.poll() is None and time.monotonic() < deadline: key("space")
 out = line + run.stdout.read()
@@ -121,7 +152,15 @@ cat "$folder/out"
 [ $code = 0 ] || fail "the session: $(cat "$folder/err")"
 grep -q '^P1\|^P01' "$folder/session/taps.csv" || fail "no tap in its table"
 grep -q ',note,no letter of this is lost$' "$folder/session/events.csv" || fail "no note: $(cat "$folder/session/events.csv")"
-grep -Eq ',[1-5],[1-5],[1-5]$' "$folder/session/survey.csv" || fail "no answer: $(cat "$folder/session/survey.csv")"
+[ "$(grep -c ',4,3,5$' "$folder/session/survey.csv")" = 2 ] || fail "no answer: $(cat "$folder/session/survey.csv")"
+grep -q ',P01,,consent,$' "$folder/session/events.csv" || fail "no consent: $(cat "$folder/session/events.csv")"
+grep -q 'window 1280 x 720 px; display 1280 x 720 px' "$folder/session/events.csv" || fail "no screen: $(cat "$folder/session/events.csv")"
+grep -q 'übel' "$folder/session/survey.json" || fail "the survey's sidecar: $(cat "$folder/session/survey.json")"
+awk -F, 'NR > 1 && ($26 != "mouse" || $28 !~ /^20/)' "$folder/session/taps.csv" | grep . && fail "taps without their hand and time"
+"$study" --verify "$folder/session" >"$folder/out" 2>&1 || fail "sums: $(cat "$folder/out")"
+# Without the screen nobody's hand goes on but the mouse's.
+"$study" --resume "$folder/session" >"$folder/out" 2>"$folder/err"
+[ $? = 2 ] && grep -q 'led by a mouse hand; ethd-study --resume .*/session --screen goes on' "$folder/err" || fail "another hand: $(cat "$folder/err")"
 for tap in "$folder"/session/taps/*/; do
   "$BUILD/bin/ethd-replay" --verify "$tap" >"$folder/verify" 2>&1 || fail "$tap: $(cat "$folder/verify")"
 done

@@ -10,8 +10,8 @@ trap 'rm -rf "$work"' EXIT
 failed=0
 fail() { echo "$*"; failed=1; }
 
-# Names marked ETHD_API in the public headers, comments and preprocessor lines left out; ethd_plugin is the
-# one symbol that a plugin defines.
+# Names marked ETHD_API in the public headers, comments and preprocessor lines left out; ethd_plugin, ethd_driver_plugin are
+# the symbols that a plugin defines.
 declared() {
   cat include/ethd/*.h | awk '
     { text = text $0 "\n" }
@@ -37,7 +37,7 @@ declared() {
           for (i = 1; i <= m; i++) { sub(/[ \t]*(\[.*)?$/, "", names[i]); sub(/.*[^A-Za-z0-9_]/, "", names[i]); print names[i] }
         }
       }
-    }' | grep -vx ethd_plugin | sort -u
+    }' | grep -vxE "ethd_plugin|ethd_driver_plugin" | sort -u
 }
 
 exported() { nm -D --defined-only "$1" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort -u; }

@@ -37,7 +37,7 @@ class Node:
 def functions(source, flags):
     """The functions with a body that stand in the project's files, each as a tree."""
     clang = subprocess.run(["clang", "-fsyntax-only", "-w", "-Xclang", "-ast-dump", "-fno-color-diagnostics", *flags, source],
-                           capture_output=True, text=True)
+                           capture_output=True, text=True, env=os.environ | {"CCACHE_DISABLE": "1"}) # a ccache gives another file's tree
     if clang.returncode:
         raise RuntimeError(f"{source}: clang can't read it: {clang.stderr.strip()}")
     file, line, stack, found = source, 0, [], []

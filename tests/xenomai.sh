@@ -1,5 +1,6 @@
 #!/bin/sh
-# RT=cobalt and RT=mercury with a stand-in for Xenomai: refusals, flags, and the Cobalt branch compiled and run.
+# RT=cobalt and RT=mercury with a stand-in for Xenomai: refusals, flags, and the Cobalt branch compiled and run. What the
+# real library has stands in xenomai/cobalt.symbols: neither the stand-in nor our objects know a name beyond it.
 set -u
 [ -z "${SAN:-}" ] || { echo "SKIP: the stand-in is tried without sanitizers"; exit 77; }
 at=$BUILD/xenomai
@@ -10,6 +11,21 @@ here=$PWD/tests/xenomai
 export XENO_STANDIN_LIB="$at/lib"
 mkdir -p "$at/lib"
 $CC -std=gnu11 -O1 -Wall -Wextra -D_GNU_SOURCE -shared -fPIC tests/xenomai/lib/standin.c -o "$at/lib/libxenomai-standin.so" -lpthread || exit 1
+
+# lacks VERSION NAMES...: those that the real library of that version lacks
+lacks() {
+  version=$1
+  shift
+  for name; do
+    grep -qE "^$name( $version)?\$" tests/xenomai/cobalt.symbols || echo "$name"
+  done
+}
+for version in 3.2 3.3; do
+  extra=$(lacks $version $(nm -D --defined-only "$at/lib/libxenomai-standin.so" | awk '$2 == "T" { print $3 }'))
+  [ -z "$extra" ] || fail "the stand-in has what Xenomai $version hasn't: $extra"
+done
+[ "$(lacks 3.3 __real_nanosleep __cobalt_clock_nanosleep)" = __real_nanosleep ] || fail "the list of symbols isn't the real library's"
+
 build() { $MAKE --no-print-directory SAN= WERROR=1 BUILD="$at/build" CFLAGS=-O0 "$@" >"$at/log" 2>&1; }
 
 # refuse PATTERN ARGUMENTS...
@@ -39,9 +55,16 @@ for name in clock_nanosleep clock_gettime; do
   nm -u "$cobalt/obj/drivers/loop/cycle.o" | grep -q " __cobalt_$name" || fail "cobalt: cycle.o doesn't call __cobalt_$name"
   nm -u "$cobalt/obj/drivers/loop/cycle.o" | grep -q " $name" && fail "cobalt: cycle.o calls $name past the core"
 done
+for version in 3.2 3.3; do
+  extra=$(lacks $version $(nm -u "$cobalt"/obj/drivers/loop/*.o "$cobalt/obj/drivers/servo/"*.o | awk '$2 ~ /^(__cobalt_|__real_|__wrap_|xenomai_|pthread_.*_np$)/ { print $2 }' |
+    sort -u | grep -vE '^pthread_(attr_)?[gs]etaffinity_np$'))
+  [ -z "$extra" ] || fail "what Xenomai $version hasn't is called: $extra"
+done
 ETHD_XENOMAI_VERSION_FILE=/nowhere "$cobalt/bin/ethd-run" --duration 1 </dev/null >"$at/out" 2>&1
-[ $? = 1 ] && grep -q 'xenomai' "$at/out" || fail "without Cobalt in the kernel: $(cat "$at/out")"
+[ $? = 1 ] && grep -q "this kernel has no Cobalt core" "$at/out" && [ "$(wc -l <"$at/out")" = 1 ] || fail "without Cobalt in the kernel: $(cat "$at/out")"
 export ETHD_XENOMAI_VERSION_FILE=/proc/version
+XENO_STANDIN_AHEAD=5 "$cobalt/bin/ethd-run" --duration 1 </dev/null >"$at/out" 2>&1
+[ $? = 1 ] && grep -q "Cobalt's clock is 5.000 s away from Linux's" "$at/out" || fail "clocks that differ aren't refused: $(cat "$at/out")"
 "$cobalt/bin/ethd-run" --help >"$at/out" 2>&1 && grep -q -e '--require-rt' "$at/out" || fail "--help isn't ours"
 XENO_STANDIN_SAYS=1 "$cobalt/bin/ethd-run" --duration 0.3 </dev/null >"$at/out" 2>"$at/err" || fail "a run: $(cat "$at/err")"
 grep -q '^stand-in: initialised$' "$at/err" || fail "not initialised: $(cat "$at/err")"

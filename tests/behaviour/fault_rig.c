@@ -124,7 +124,7 @@ static void sim_of(fault_rig *r, uint64_t number) {
                       .step = 1e-3,
                       .tolerance = ETHD_SIM_FAST};
   if (ethd_plant_load("apps/config/n.plant", &def.plant, message)) fault_rig_fail("%s", message);
-  def.plant.rays = r->kind == FAULT_RING;
+  def.plant.reading = r->kind == FAULT_RING;
   def.plant.count = TURN / FAULT_COUNTS;
   r->motor = def.plant.force_limit * r->setup.arm.link1;
   def.plant.force_limit = 1000; /* a hand is stronger */

@@ -28,7 +28,7 @@ static double force_in(const ethd_trace *k) { return -k->fe[0]; } /* along n; < 
 
 static int finite2(const double v[2]) { return isfinite(v[0]) && isfinite(v[1]); }
 
-void assert_finite(const ethd__rows *rows, const char *where) {
+void assert_finite(const ethd__tap_rows *rows, const char *where) {
   for (size_t i = 0; i < rows->count; i++) {
     const ethd_trace *k = &rows->trace[i];
     const ethd_truth *t = &rows->truth[i];
@@ -41,7 +41,7 @@ void assert_finite(const ethd__rows *rows, const char *where) {
   }
 }
 
-void assert_torque_within(const ethd__rows *rows, const gains *with, const char *where) {
+void assert_torque_within(const ethd__tap_rows *rows, const gains *with, const char *where) {
   for (size_t i = 0; i < rows->count; i++)
     for (int j = 0; j < 2; j++)
       require(fabs(rows->trace[i].tau[j]) <= with->torque_max, "%s: tick %zu: torque %g", where, i,
@@ -61,7 +61,7 @@ static double expected_force(const ethd_trace *k, kind law) {
   return wall_force(ring_gap(k), speed_in(k));
 }
 
-void assert_forces(const ethd__rows *rows, kind law, const char *where) {
+void assert_forces(const ethd__tap_rows *rows, kind law, const char *where) {
   for (size_t i = 0; i < rows->count; i++) {
     const ethd_trace *k = &rows->trace[i];
     require(fabs(ring_gap(k) - to_wall(k->x[0], R_R)) <= 1e-12, "%s: tick %zu: d_re %.12g", where, i, k->d_re);
@@ -89,7 +89,7 @@ static double finger_gap(const ethd_trace *k, kind law, const gains *with) {
   return to_wall(k->xf[0], law == OFFSET ? R_R : with->finger_radius);
 }
 
-void assert_beta(const ethd__rows *rows, kind law, const gains *with, const char *where) {
+void assert_beta(const ethd__tap_rows *rows, kind law, const gains *with, const char *where) {
   double d_beta = R_R - with->finger_radius_max;
   for (size_t i = 0; i < rows->count; i++) {
     const ethd_trace *k = &rows->trace[i];
@@ -101,7 +101,7 @@ void assert_beta(const ethd__rows *rows, kind law, const gains *with, const char
 
 /* A tick moves beta by at most the slope times what its argument moved; where the argument's wall changes,
    by what the change itself allows besides: (1 - beta_min) |n.(X_f - X_r)| / d_beta. */
-void assert_beta_jumps(const ethd__rows *rows, kind law, const gains *with, const char *where) {
+void assert_beta_jumps(const ethd__tap_rows *rows, kind law, const gains *with, const char *where) {
   double slope = (1 - BETA_MIN) / (R_R - with->finger_radius_max);
   if (law == ABRUPT) return;
   for (size_t i = 1; i < rows->count; i++) {
@@ -117,7 +117,7 @@ void assert_beta_jumps(const ethd__rows *rows, kind law, const gains *with, cons
 /* ---- energy ---- */
 
 /* Leaving from depth p the wall gives back at most K p^2 / 2, and K step^2 / 2 for each tick's hold. */
-void assert_energy(const ethd__rows *rows, const char *where) {
+void assert_energy(const ethd__tap_rows *rows, const char *where) {
   double given = 0, allowed = 0;
   for (size_t i = 0; i + 1 < rows->count; i++) {
     const ethd_trace *k = &rows->trace[i];

@@ -14,11 +14,11 @@ typedef struct gains {
 } gains;
 
 /* Each asserts; `where` stands in the message. */
-void assert_finite(const ethd__rows *rows, const char *where);
-void assert_torque_within(const ethd__rows *rows, const gains *with, const char *where);
-void assert_forces(const ethd__rows *rows, kind law, const char *where);
-void assert_beta(const ethd__rows *rows, kind law, const gains *with, const char *where);
-void assert_beta_jumps(const ethd__rows *rows, kind law, const gains *with, const char *where);
-void assert_energy(const ethd__rows *rows, const char *where);
+void assert_finite(const ethd__tap_rows *rows, const char *where);
+void assert_torque_within(const ethd__tap_rows *rows, const gains *with, const char *where);
+void assert_forces(const ethd__tap_rows *rows, kind law, const char *where);
+void assert_beta(const ethd__tap_rows *rows, kind law, const gains *with, const char *where);
+void assert_beta_jumps(const ethd__tap_rows *rows, kind law, const gains *with, const char *where);
+void assert_energy(const ethd__tap_rows *rows, const char *where);
 
 #endif

@@ -82,7 +82,7 @@ static void assert_on_path(const recording *r, size_t begin, size_t end, size_t 
   }
 }
 
-static void assert_path(const recording *r, const ethd__rows *rows, const ethd__touchdown *touchdown,
+static void assert_path(const recording *r, const ethd__tap_rows *rows, const ethd__touchdown *touchdown,
                         double finger_radius, const char *where) {
   const double shift[2] = {0.238 + finger_radius - touchdown->x.x, 0.25 - touchdown->x.y};
   size_t begin, end;

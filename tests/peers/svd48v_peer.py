@@ -10,7 +10,9 @@ Says "ready NAME CONTROL": CONTROL is a UDP port of 127.0.0.1 that takes one com
   cycle          its power goes and comes back: counters from 0, as delivered  turn Q1 Q2  joints are put there, rad
   frozen N       encoder of joint N stands still                              reversed N  it counts the other way round
   dead           motors don't follow their set-points                         well        all of this ends
-  hold           a hand holds the joints         at T WORDS...  a command at that instant of its time
+  free           nobody holds the joints        jump N  encoder N jumps by a quarter turn, -N: back
+  old            its set-points stay at 0.5 A              end PID  ends another process, a line's, say
+  hold           a hand holds the joints         at T WORDS...  a command at that instant of its time, or, T = asked, once torque is
   reaction       s from the last command that was due by "at" until no torque was asked for, -1: it is still
   mute N         N answers don't come         late N MS    N come late        garble N    N have a bit wrong
   stale N        N are those of the question before                           requests    how many came
@@ -18,6 +20,8 @@ Says "ready NAME CONTROL": CONTROL is a UDP port of 127.0.0.1 that takes one com
 import argparse
 import asyncio
 import math
+import os
+import signal
 import socket
 import time
 
@@ -47,10 +51,11 @@ class Drive(ModbusBaseSlaveContext):
     def __init__(self, lock_step):
         self.lock_step, self.stepped = lock_step, 0.0
         self.asked_until = 0.0
+        self.when_asked = None
         self.due, self.broken_at, self.held_by_hand, self.line = [], -1.0, False, None
         self.q, self.w = [0.0, 0.0], [0.0, 0.0]
         self.at = self.now()
-        self.volts, self.alarm = 480, False
+        self.volts, self.alarm, self.stuck = 480, False, False
         self.frozen, self.reversed, self.dead = [False] * 2, [False] * 2, False
         self.last_torque_at, self.zero_since = 0.0, self.at
         self.power_on()
@@ -144,12 +149,16 @@ class Drive(ModbusBaseSlaveContext):
         before, asked = any(self.current(i) for i in range(2)), self.asks()
         for k, value in enumerate(values):
             a = address + k
-            self.words[a] = value
+            if not (self.stuck and a in (0x5308, 0x5309)):
+                self.words[a] = value
             if a in (0x5300, 0x5301):
                 if value == 2:
                     self.alarm = False
                 self.running[a - 0x5300] = int(value == 1 and not self.alarm)
         self.mark(before)
+        if self.when_asked and self.asks():
+            command, self.when_asked, self.broken_at = self.when_asked, None, self.now()
+            self.command(command)
         if asked and not self.asks():
             self.asked_until = self.now()
 
@@ -162,11 +171,22 @@ class Drive(ModbusBaseSlaveContext):
         if word in ("mute", "late", "garble", "stale"):
             return self.line.command(text)
         if word == "at":
-            self.due.append((float(rest[0]), " ".join(rest[1:])))
+            if rest[0] == "asked":
+                self.when_asked = " ".join(rest[1:])
+            else:
+                self.due.append((float(rest[0]), " ".join(rest[1:])))
+            self.due.sort(key=lambda due: due[0])
         elif word == "reaction":
             return f"{self.asked_until - self.broken_at if not self.asks() else -1:.6f}"
-        elif word == "hold":
-            self.held_by_hand = True
+        elif word in ("hold", "free"):
+            self.held_by_hand = word == "hold"
+        elif word == "jump":
+            self.origin[abs(int(rest[0])) - 1] += math.copysign(math.pi / 2, int(rest[0]))
+        elif word == "old":
+            self.stuck = True
+            self.words[0x5308] = self.words[0x5309] = 5
+        elif word == "end":
+            os.kill(int(rest[0]), signal.SIGKILL)
         elif word == "alarm":
             self.alarm, self.running = True, [0, 0]
         elif word == "volts":

@@ -30,6 +30,15 @@ static ethd_status step(const double *p, void *state, const ethd_contact *contac
 #ifndef ENTRY
 #define ENTRY ethd_plugin
 #endif
+#ifndef ENTRY_ID
+#define ENTRY_ID "broken"
+#endif
+#ifndef ENTRY_VERSION
+#define ENTRY_VERSION "0"
+#endif
+#ifndef ENTRY_LAWS
+#define ENTRY_LAWS laws
+#endif
 #ifndef ENTRY_SIZE
 #define ENTRY_SIZE ((uint32_t)sizeof(ethd_plugin_entry))
 #endif
@@ -47,6 +56,6 @@ static const ethd_law *const laws[] = {&law.law, &law.law};
 #define LAWS 1
 #endif
 ETHD_API extern const ethd_plugin_entry ENTRY;
-const ethd_plugin_entry ENTRY = {ENTRY_SIZE, ABI, "broken", "0", laws, LAWS};
+const ethd_plugin_entry ENTRY = {ENTRY_SIZE, ABI, ENTRY_ID, ENTRY_VERSION, ENTRY_LAWS, LAWS};
 
 #endif

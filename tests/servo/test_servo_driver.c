@@ -305,7 +305,7 @@ START_TEST(test_unconfirmed) {
   ethd_setting settings[] = {{"map", "guess.map", 1}, {"port", drive.port, 2}};
   ck_assert_msg(open_with(settings, 2) == ETHD_OK, "%s", message);
   ck_assert_str_eq(servo->remark(device, 0),
-                   "1 of 17 registers are unconfirmed: check their addresses in the drive's manual");
+                   "1 of 17 registers are unconfirmed: check their addresses in the drive's manual (step 2)");
   close_device();
   free(text);
   free(all);
@@ -457,7 +457,7 @@ START_TEST(test_why) {
   for (int i = 0; i < 5; i++) tick(0, 0);
   drive.stuck = 700;
   ck_assert_int_eq(servo->start(device), ETHD_E_DEVICE);
-  ck_assert_msg(strstr(servo->why(device), "doesn't show what was written"), "%s", servo->why(device));
+  ck_assert_msg(strstr(servo->why(device), "still holds an old set-point"), "%s", servo->why(device));
   close_device();
 }
 END_TEST

@@ -79,6 +79,23 @@ static void seal(uint8_t *a, int length) {
   a[length - 1] = (uint8_t)crc;
 }
 
+/* Noise is told by its first bytes, without waiting until the answer is due. */
+START_TEST(test_begins) {
+  const uint8_t good[] = {0xEE, 0x03}, refused[] = {0xEE, 0x83}, other[] = {0xEE, 0x10}, noise[] = {0x5A};
+  speak(ETHD__SERVO_RTU, ETHD__SERVO_CRC_HIGH_FIRST, 0xEE);
+  ethd__servo_frame_read(&map, ETHD__SERVO_HOLDING, 0x5410, 1, &f);
+  for (int n = 0; n <= 2; n++) ck_assert(ethd__servo_frame_begins(&map, &f, good, n));
+  ck_assert(ethd__servo_frame_begins(&map, &f, refused, 2));
+  ck_assert(!ethd__servo_frame_begins(&map, &f, other, 2));
+  ck_assert(!ethd__servo_frame_begins(&map, &f, noise, 1));
+  const uint8_t tcp[] = {0, 0, 0, 0, 0, 9, 17, 0x03}, elses[] = {0, 0, 0, 0, 0, 9, 18, 0x03};
+  speak(ETHD__SERVO_TCP, 0, 17);
+  ethd__servo_frame_read(&map, ETHD__SERVO_HOLDING, 0x6B, 3, &f);
+  for (int n = 0; n <= 8; n++) ck_assert(ethd__servo_frame_begins(&map, &f, tcp, n));
+  ck_assert(ethd__servo_frame_begins(&map, &f, elses, 6) && !ethd__servo_frame_begins(&map, &f, elses, 7));
+}
+END_TEST
+
 START_TEST(test_wrong_answers) {
   uint8_t good[] = {1, 3, 4, 0, 7, 0, 2, 0, 0}, refused[] = {1, 0x83, 2, 0, 0};
   speak(ETHD__SERVO_RTU, ETHD__SERVO_CRC_HIGH_FIRST, 1);
@@ -119,6 +136,7 @@ int main(void) {
   tcase_add_test(t, test_svd48v_manual);
   tcase_add_test(t, test_standard);
   tcase_add_test(t, test_wrong_answers);
+  tcase_add_test(t, test_begins);
   suite_add_tcase(suite, t);
   return rig_run(suite);
 }

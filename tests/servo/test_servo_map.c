@@ -206,7 +206,7 @@ START_TEST(test_bus_refused) {
   refused("transport = tcp", "transport = rtu\nbaud = 100", "bus.baud");
   refused("transport = tcp", "transport = tcp\nformat = 7N1", "bus.format");
   refused("unit = 1", "unit = 256", ":6: bus.unit: found \"256\", a whole number from 0 to 255");
-  refused("unit = 1", "unit = 1\nunit = 1", ":7: bus.unit: stands twice");
+  refused("unit = 1", "unit = 1\nunit = 1", ":7: bus.unit: occurs twice");
   refused("unit = 1", "unit = 0x1g", "bus.unit");
   refused("divisor = 1", "divisor = 0", ":7: bus.divisor");
   refused("divisor = 1", "divisor = 1.5", ":7: bus.divisor");
@@ -288,7 +288,7 @@ START_TEST(test_register_refused) {
   refused("[register seen2]", "[register Seen2]", "a register's name has");
   refused("[register seen2]", "[register ]", "a register's name has");
   refused("[register seen2]", "[register a_name_of_more_than_23_letters]", "a register's name has");
-  refused("[register seen2]", "[register seen1]", "stands twice");
+  refused("[register seen2]", "[register seen1]", "occurs twice");
   refused("[register position2]", "[register speed2]", "unit");
   refused_behind("[register seen2]", "type = i16", "type = i16 ; x\nfoo = 1",
                  "register seen2.foo: a map has no such key");

@@ -62,6 +62,7 @@ static void stats(session *s) {
   printf("scl_low_ns %.0f\nscl_high_ns %.0f\nscl_bit_ns %.0f\nhurried %llu\n", (double)t->low_min * ns,
          (double)t->high_min * ns, (double)t->bit_min * ns, (unsigned long long)t->hurried);
   for (int n = 0; n < RING_BOARDS; n++) printf("awake%d %.4f\n", n, (double)r->board[n].awake / (double)r->now);
+  printf("faced %llu\n", (unsigned long long)r->faced);
   printf("link_bytes %llu\nlink_recoveries %llu\nsent_bytes %llu\nlost_bytes %llu\nend\n",
          (unsigned long long)r->link.bytes, (unsigned long long)r->link.recoveries,
          (unsigned long long)s->terminal.sent, (unsigned long long)s->terminal.lost);

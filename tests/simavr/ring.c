@@ -35,7 +35,11 @@ static void level(avr_t *avr, int pin_register, int mask, bool high) {
 
 static void note_begin(ring_board *b, int lane) {
   sensor *s = &b->sensor[lane];
-  if (s->begun) note(&b->ring->begin[lane], s->began - b->ring->start);
+  long board = b - b->ring->board;
+  const sensor *facing = &b->ring->board[(board + 2) % RING_BOARDS].sensor[lane];
+  if (!s->begun) return;
+  note(&b->ring->begin[(lane + board / 2 * 2) % RING_LANES], s->began - b->ring->start);
+  b->ring->faced += facing->measuring && s->began < facing->began + facing->convert;
   s->begun = false;
 }
 

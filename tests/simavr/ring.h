@@ -42,7 +42,8 @@ struct ring {
   bool slow;
   bool started; /* level of the start line: low */
   uint64_t start;
-  ring_range period, begin[RING_LANES], last_byte;
+  ring_range period, begin[RING_LANES], last_byte; /* begin: by slot */
+  uint64_t faced; /* times that a sensor began while the one across the ring was shining */
   void (*sent)(void *context, uint8_t byte);
   void *context;
 };

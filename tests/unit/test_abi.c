@@ -126,6 +126,7 @@ _Static_assert(ETHD_TRANSPARENT == 0 && ETHD_BRAKING == 1 && ETHD_VO == 2, "stat
 /* Recordings are made of these: 8-byte fields without a hole. */
 #define COUNT_1(type, name) +1
 #define COUNT_2(type, name) +2
+#define COUNT_4(type, name) +4
 #define COUNT_16(type, name) +16
 #define COUNT_24(type, name) +24
 #define COUNT(type, name, count, unit, brief) COUNT_##count(type, name)

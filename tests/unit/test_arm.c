@@ -247,6 +247,20 @@ START_TEST(test_names) {
 }
 END_TEST
 
+/* What moves it: what one source doesn't know, the next one may. */
+START_TEST(test_dynamics) {
+  ethd_dynamics none = ethd_dynamics_unknown(), some = {{NAN, 0.3}, 0.4, NAN, 1e-4}, all = {{0.1, 0.2}, 0.5, 0.6, 2e-4};
+  ck_assert(isnan(none.mass[0]) && isnan(none.mass[1]) && isnan(none.friction) && isnan(none.viscous) &&
+            isnan(none.delay));
+  ethd_dynamics d = ethd_dynamics_known(&some, &all);
+  ck_assert(d.mass[0] == 0.1 && d.mass[1] == 0.3 && d.friction == 0.4 && d.viscous == 0.6 && d.delay == 1e-4);
+  d = ethd_dynamics_known(&none, &none);
+  ck_assert(isnan(d.mass[0]) && isnan(d.delay));
+  d = ethd_dynamics_known(&all, &none);
+  ck_assert(memcmp(&d, &all, sizeof d) == 0);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("arm");
   TCase *tc = tcase_create("kinematics");
@@ -262,6 +276,7 @@ int main(void) {
   tcase_add_test(tc, test_unreachable);
   tcase_add_test(tc, test_check);
   tcase_add_test(tc, test_names);
+  tcase_add_test(tc, test_dynamics);
   suite_add_tcase(suite, tc);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_ENV);

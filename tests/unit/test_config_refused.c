@@ -15,9 +15,9 @@ typedef struct bad {
 } bad;
 
 static const bad bads[] = {
-    {"[contact]\nk_e = 1\nk_e = 1\n", "x.ini:3: contact.k_e: stands twice, first on line 2"},
-    {"[contact]\nk_e = 1\n[arm]\n[contact]\nk_e = 2\n", "x.ini:5: contact.k_e: stands twice, first on line 2"},
-    {"[device]\na = 1\na = 1\n", "x.ini:3: device.a: stands twice, first on line 2"},
+    {"[contact]\nk_e = 1\nk_e = 1\n", "x.ini:3: contact.k_e: occurs twice, first on line 2"},
+    {"[contact]\nk_e = 1\n[arm]\n[contact]\nk_e = 2\n", "x.ini:5: contact.k_e: occurs twice, first on line 2"},
+    {"[device]\na = 1\na = 1\n", "x.ini:3: device.a: occurs twice, first on line 2"},
     {"[nothing]\nx = 1\n", "x.ini:1: [nothing]: unknown section; arm, "},
     {"[arm]\n[nothing]\n[ring]\n", "x.ini:2: [nothing]: unknown section; arm, "},
     {"[ arm]\n", "x.ini:1: [ arm]: unknown section"},
@@ -52,13 +52,13 @@ static const bad bads[] = {
     {"[contact]\nk_e: 5\n", "x.ini:2: found \"k_e: 5\", [section] or key = value is allowed"},
     {"k_e = 5\n", "x.ini:1: k_e: a key before the first [section]"},
     {"[contact\nk_e = 5\n", "x.ini:1: found \"[contact\", a section needs its ]"},
-    {"[contact] k_e = 5\n", "x.ini:1: found \"[contact] k_e = 5\", nothing is allowed behind ]"},
+    {"[contact] k_e = 5\n", "x.ini:1: found \"[contact] k_e = 5\", nothing is allowed after ]"},
     {"[" X50 "]\n", "x.ini:1: a section's name of 50 characters, at most 49 are allowed"},
     {"[device]\na = " X50 X50 X50 X50 "\n", "x.ini:2: a line of 204 characters, at most 197 are allowed"},
     {"[contact]\nk_e = 5\n  b_e = 0x4\n", "x.ini:3: contact.b_e: found \"0x4\""}, /* no continuation */
     {"[device]\na = 1\n  and more\n", "x.ini:3: found \"and more\", [section] or key = value is allowed"},
-    {"[contact]\nk_e = 5\001\n", "x.ini:2: a byte 1: this is no text"},
-    {"[contact]\rk_e = 5\r", "x.ini:1: a byte 13: this is no text"},
+    {"[contact]\nk_e = 5\001\n", "x.ini:2: a byte 1: this isn't text"},
+    {"[contact]\rk_e = 5\r", "x.ini:1: a byte 13: this isn't text"},
     {"[finger]\nradius_max = 0.012\n", "x.ini:2: finger.radius_max: a value is out of its range"},
     {"[ring]\nradius = 0\n", "x.ini:2: ring.radius: found 0, 0.0001 to 1 m is allowed"},
     {"[loop]\nperiod = inf\n", "x.ini:2: loop.period: found inf, 1e-05 to 0.1 s is allowed"},
@@ -76,7 +76,6 @@ static const bad bads[] = {
     {"[scene]\nfile = no.scene\n", "x.ini:2: scene.file: /nowhere/no.scene: No such file or directory"},
     {"[scene]\nfiles = no.scene\n", "x.ini:2: scene.files: unknown key; file are allowed"},
     {"[plugins]\nfile = no.so\n", "x.ini:2: plugins.file: /nowhere/no.so: No such file or directory"},
-    {"[device]\ndriver = " X50 X50 "\n", "x.ini:2: device.driver: found"},
 };
 
 START_TEST(test_bad_texts) {

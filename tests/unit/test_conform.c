@@ -29,10 +29,13 @@ enum {
   COARSE,
   COASTS,
   BLOCKED,
+  ROLLS,   /* its stop takes 10 ms, in which the torque still acts, and without friction it rolls on */
+  LATCHES, /* its own watchdog leaves a fault, which refuses the next start until it is cleared */
   WAYS
 };
 
 static int way;
+static int latched, clearing;
 static double coasting[2]; /* rad/s, that a closed device keeps */
 
 typedef struct fake {
@@ -54,9 +57,10 @@ static ethd_status open_fake(const ethd_device_def *def, void **device, char mes
 
 static ethd_status start(void *device) {
   fake *f = device;
+  if (latched) return ETHD_E_DEVICE;
   f->safe = 0;
   f->now = 0;
-  if (way != COASTS) f->w[0] = f->w[1] = 0;
+  if (way != COASTS && way != ROLLS) f->w[0] = f->w[1] = 0;
   if (way != OLD_TORQUE) f->torque[0] = f->torque[1] = 0;
   return ETHD_OK;
 }
@@ -65,6 +69,7 @@ static ethd_status read_fake(void *device, int64_t now, ethd_sense *out) {
   fake *f = device;
   double dt = f->now ? 1e-9 * (double)(now - f->now) : 0;
   int alive = (!f->safe || way == UNSAFE) && (now - f->written <= 20000000 || way == NO_WATCHDOG || way == BLOCKED);
+  latched |= way == LATCHES && !f->safe && !alive && f->torque[0] != 0;
   f->now = now;
   for (int i = 0; i < 2; i++) {
     f->w[i] += dt / 0.02 * (alive ? f->torque[i] : 0) * (way == REVERSED && i ? -1 : 1) + (way == DRIFTS ? dt * 5 : 0);
@@ -93,7 +98,18 @@ static ethd_status write_fake(void *device, int64_t now, const ethd_command *com
 }
 
 static void safe(void *device) { ((fake *)device)->safe = 1; }
-static ethd_status stop(void *device) { return safe(device), ETHD_OK; }
+static ethd_status stop(void *device) {
+  fake *f = device;
+  for (int i = 0; i < 2 && way == ROLLS; i++) f->w[i] += 0.01 / 0.02 * f->torque[i];
+  return safe(device), ETHD_OK;
+}
+static void clear(void *device) { (void)device, clearing = 1; }
+static ethd_status service(void *device, uint32_t unit, int64_t now) {
+  (void)device, (void)unit, (void)now;
+  if (clearing) latched = clearing = 0;
+  return ETHD_OK;
+}
+static uint32_t one(const void *device) { return (void)device, 1; }
 static ethd_limits limits(const void *device) {
   ethd_limits l = ethd_limits_none();
   (void)device;
@@ -120,7 +136,11 @@ static ethd_verdict ask(const char *question, double torque, ethd_status *status
                          .safe = way == NO_SAFE ? NULL : safe,
                          .stop = stop,
                          .close = free,
-                         .units = way == NO_SERVICE ? none : NULL,
+                         .units = way == NO_SERVICE ? none
+                                  : way == LATCHES  ? one
+                                                    : NULL,
+                         .service = way == LATCHES ? service : NULL,
+                         .clear = clear,
                          .params = &unnamed,
                          .param_count = way == BAD_TABLE,
                          .limits = limits};
@@ -149,7 +169,8 @@ static const struct {
                     [JUMPS] = {"counts", ETHD_BROKEN},    [NO_WATCHDOG] = {"watchdog", ETHD_AT_RISK},
                     [UNSAFE] = {"safe", ETHD_BROKEN},     [OLD_TORQUE] = {"restart", ETHD_BROKEN},
                     [COUNTED] = {"sense", ETHD_AT_RISK},  [COARSE] = {"watchdog", ETHD_NOT_ASKED},
-                    [COASTS] = {"restart", ETHD_KEPT},    [BLOCKED] = {"watchdog", ETHD_NOT_ASKED}};
+                    [COASTS] = {"restart", ETHD_KEPT},    [BLOCKED] = {"watchdog", ETHD_NOT_ASKED},
+                    [ROLLS] = {"restart", ETHD_KEPT},     [LATCHES] = {"restart", ETHD_KEPT}};
 
 START_TEST(test_way) {
   ethd_status status;
@@ -164,7 +185,8 @@ START_TEST(test_sound) {
                                     "sign",  "counts", "watchdog", "safe",  "restart"};
   ethd_status status;
   way = SOUND;
-  for (int i = 0; i < ETHD_QUESTIONS; i++) ck_assert_int_eq(ask(all[i], 0.1, &status), ETHD_KEPT);
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) ck_assert_int_eq(ask(all[i], 0.1, &status), ETHD_KEPT);
+  ck_assert_int_eq(ask("silence", 0.1, &status), ETHD_NOT_ASKED); /* on a virtual clock */
   ck_assert_int_eq(status, ETHD_OK);
   ck_assert_int_eq(ask("sign", 0, &status), ETHD_NOT_ASKED);
   ck_assert_int_eq(ask("zero", 0, &status), ETHD_KEPT);

@@ -175,7 +175,7 @@ START_TEST(test_gone) {
   counter_mock.gone = 0;
   sample(d, 4, ETHD_OK);
   ethd_figure f[4];
-  ck_assert_uint_eq(D.figures(d, f, 4), 3);
+  ck_assert_uint_eq(D.figures(d, f, 4), 4);
   ck_assert_double_eq(f[2].value, 2);
   D.close(d);
 }

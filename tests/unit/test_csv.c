@@ -77,11 +77,11 @@ static const struct {
   const char *text, *says;
 } bads[] = {
     {"", "x.csv: is empty; a first line that names the columns is needed"},
-    {"1,2\n", "x.csv:1: found \"1\", but the first line names the columns"},
+    {"1,2\n", "x.csv:1: found \"1\", but the first line must name the columns"},
     {"nan\n", "x.csv:1: found \"nan\", but the first line"},
     {"a,,b\n", "x.csv:1: a column without a name"},
     {"a,b,\n", "x.csv:1: a column without a name"},
-    {"a,b,a\n", "x.csv:1: the column \"a\" stands twice"},
+    {"a,b,a\n", "x.csv:1: the column \"a\" occurs twice"},
     {"a,b\n1,2\n3\n", "x.csv:3: 1 cells, the header names 2 columns"},
     {"a,b\n1,2,3\n", "x.csv:2: 3 cells, the header names 2 columns"},
     {"a,b\n1,2,\n", "x.csv:2: 3 cells"},
@@ -95,7 +95,7 @@ static const struct {
     {"a,b\n1,1 2\n", "x.csv:2: b: found \"1 2\""},
     {"a,b\n1,--1\n", "x.csv:2: b: found \"--1\""},
     {"a,b\n1,\"2\n", "x.csv:2: a quote that isn't closed on its line"},
-    {"a,b\n1,\"2\"3\n", "x.csv:2: text behind a closing quote"},
+    {"a,b\n1,\"2\"3\n", "x.csv:2: text after a closing quote"},
     {"a;b\n1;2\n", "x.csv:2: a;b: found \"1;2\""},
 };
 
@@ -110,7 +110,7 @@ START_TEST(test_bad_texts) {
   }
   ethd_csv c;
   ck_assert_int_lt(ethd_csv_parse("a,b\n1,\0\n", 8, "x.csv", NULL, &c, message), 0);
-  ck_assert_str_eq(message, "x.csv:2: a byte 0: this is no text");
+  ck_assert_str_eq(message, "x.csv:2: a byte 0: this isn't text");
 }
 END_TEST
 

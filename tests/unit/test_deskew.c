@@ -33,7 +33,7 @@ static ethd_vec ring_at(const swing *s, double t) {
 /* Ray by ray round the ring in 3.3 ms, or as the boards do it, four at a time. */
 static void lags(int boards, double out[ETHD_RAYS]) {
   for (int k = 0; k < ETHD_RAYS; k++)
-    out[k] = boards ? 1e-6 * ETHD__FRAME_SLOT_US * (1.5 - k % ETHD__FRAME_LANES) : 3.3e-3 * (0.5 - k / 15.0);
+    out[k] = boards ? 1e-6 * ETHD__FRAME_SLOT_US * (1.5 - ETHD__FRAME_SLOT(k)) : 3.3e-3 * (0.5 - k / 15.0);
 }
 
 static void take(const swing *s, const double lag[ETHD_RAYS], int64_t sample_ns, uint64_t frame,

@@ -252,11 +252,11 @@ START_TEST(test_refused) {
     const char *ids, *key;
     ethd_status status;
     const char *says;
-  } bad[] = {{"c", NULL, ETHD_E_UNKNOWN, "c.ini: device.driver: found \"c\"; a, b are allowed"},
+  } bad[] = {{"c", NULL, ETHD_E_UNKNOWN, "c.ini: device.driver: found \"c\"; a, b and file:PATH are allowed"},
              {"", NULL, ETHD_E_UNKNOWN, "found \"\""},
              {"a,", NULL, ETHD_E_UNKNOWN, "found \"\""},
              {"a b", NULL, ETHD_E_UNKNOWN, "found \"a b\""},
-             {"a, a", NULL, ETHD_E_DUPLICATE, "a stands twice"},
+             {"a, a", NULL, ETHD_E_DUPLICATE, "a occurs twice"},
              {"a, b", "port", ETHD_E_UNKNOWN, "c.ini:7: device.port: with several drivers"},
              {"a, b", "c.port", ETHD_E_UNKNOWN, "c.ini:7: device.c.port"}};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {

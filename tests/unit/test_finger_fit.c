@@ -103,6 +103,36 @@ START_TEST(test_two_rays_with_known_radius) {
 }
 END_TEST
 
+/* Where the first step from the ring's middle goes, by the normal equations of two points: how far from the line between
+   them it ends, times their distance. */
+static double beside_after_a_step(ethd_vec u, ethd_vec v) {
+  double det = ethd_vec_cross(u, v), g = (ethd_vec_dot(u, u) - FINGER * FINGER) / 2,
+         h = (ethd_vec_dot(v, v) - FINGER * FINGER) / 2;
+  ethd_vec s = {(g * v.y - h * u.y) / det, (h * u.x - g * v.x) / det};
+  return ethd_vec_cross(ethd_vec_sub(u, s), ethd_vec_sub(v, s));
+}
+
+/* Two points farther apart than a finger is wide, so that the first step ends on the line between them: there nothing holds
+   the centre across it, and there is no answer. */
+START_TEST(test_two_rays_too_far_apart) {
+  ethd_fit fit = prepared(ETHD_FIT_ROBUST);
+  double low = 0, high = RING - 5e-3, r[ETHD_RAYS];
+  ethd_vec u = {RING, 0}, way = {cos(6 * PI / 8), sin(6 * PI / 8)};
+  int falls = beside_after_a_step(u, ethd_vec_scale(RING - low, way)) > 0;
+  for (int i = 0; i < 60; i++) {
+    double middle = (low + high) / 2;
+    *((beside_after_a_step(u, ethd_vec_scale(RING - middle, way)) > 0) == falls ? &low : &high) = middle;
+  }
+  ck_assert_double_lt(low, RING - 5.1e-3);
+  ethd_finger finger = {.radius = 42};
+  for (int k = 0; k < ETHD_RAYS; k++) r[k] = NAN;
+  r[0] = 0;
+  r[6] = low;
+  ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STALE);
+  ck_assert(finger.radius == 42);
+}
+END_TEST
+
 /* ---- least squares, against a search that knows nothing of normal equations ---- */
 
 typedef struct problem {
@@ -436,6 +466,7 @@ int main(void) {
   tcase_add_loop_test(tc, test_circles_are_exact, ETHD_FIT_KASA, ETHD_FIT_KASA + 1);
   tcase_add_loop_test(tc, test_circles_are_exact, ETHD_FIT_ROBUST, ETHD_FIT_ROBUST + 1);
   tcase_add_test(tc, test_two_rays_with_known_radius);
+  tcase_add_test(tc, test_two_rays_too_far_apart);
   tcase_add_loop_test(tc, test_least_squares, ETHD_FIT_KASA, ETHD_FIT_KASA + 1);
   tcase_add_loop_test(tc, test_least_squares, ETHD_FIT_ROBUST, ETHD_FIT_ROBUST + 1);
   tcase_add_test(tc, test_gate);

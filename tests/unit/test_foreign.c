@@ -7,6 +7,7 @@
 #include <xmmintrin.h>
 #endif
 
+#include "control/state.h"
 #include "ethd/plugin.h"
 #include "unit/rig.h"
 
@@ -78,6 +79,31 @@ static void reset_rounding(const double *p, void *state) {
   fesetround(FE_UPWARD);
 }
 
+/* The last byte of the fence behind the block, which no whole word of the pattern ends at. */
+static ethd_status fills_far(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) {
+  ((char *)state)[sizeof(ethd__law_block) - offsetof(ethd__law_block, at) - 1] ^= 1;
+  return fills(p, state, in, tau);
+}
+
+/* Whose block it is, before it. */
+static ethd_status forgets(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) {
+  memset((char *)state - offsetof(ethd__law_block, at), 0, sizeof(ethd_law *));
+  return fills(p, state, in, tau);
+}
+
+#if defined(__SSE__)
+/* 53 bits instead of 64, of which SSE knows nothing. */
+static ethd_status cuts(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) {
+  unsigned short word;
+  __asm__ volatile("fnstcw %0" : "=m"(word));
+  word = (unsigned short)((word & ~0x300) | 0x200);
+  __asm__ volatile("fldcw %0" : : "m"(word));
+  return fills(p, state, in, tau);
+}
+#else
+#define cuts fills_more
+#endif
+
 START_TEST(test_to_the_byte) {
   static const struct {
     ethd_status (*step)(const double *p, void *state, const ethd_tracking_in *in, double tau[2]);
@@ -85,6 +111,9 @@ START_TEST(test_to_the_byte) {
     ethd_status status;
   } cases[] = {{fills, NULL, ETHD_OK},
                {fills_more, NULL, ETHD_E_FENCE},
+               {fills_far, NULL, ETHD_E_FENCE},
+               {forgets, NULL, ETHD_E_FENCE},
+               {cuts, NULL, cuts == fills_more ? ETHD_E_FENCE : ETHD_E_FENV},
                {fills, reset_more, ETHD_E_FENCE},
                {fills, reset_rounding, ETHD_E_FENV}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -104,6 +133,50 @@ START_TEST(test_to_the_byte) {
     if (cases[i].status) ck_assert(rig_poll(&r).value == told(ETHD_TRACKING, cases[i].status));
     rig_close(&r);
   }
+}
+END_TEST
+
+/* ---- what a law does when it is asked how far it looks, and when it takes a contact over ---- */
+
+static int misdeed;
+
+static double range_of(const double *p, double speed) {
+  (void)p, (void)speed;
+  if (misdeed == 1) fesetround(FE_UPWARD);
+  return 0.01;
+}
+
+static void adopt(const double *p, void *state, const ethd_past *past) {
+  (void)p, (void)past;
+  if (misdeed == 2) fesetround(FE_UPWARD);
+  if (misdeed == 3) ((char *)state)[-1] = 0;
+  if (misdeed == 4) ((char *)state)[ETHD_STATE_MAX] = 0;
+}
+
+/* In contact, a law is swapped in that misbehaves (1: at every tick, also in its very first one). */
+START_TEST(test_range_and_adopt) {
+  const ethd_status found = _i == 0 ? ETHD_OK : _i < 3 ? ETHD_E_FENV : ETHD_E_FENCE;
+  ethd_transition_law law = ethd_transition_smooth;
+  law.range = range_of;
+  law.adopt = adopt;
+  misdeed = 0;
+  rig r;
+  rig_open(&r, RIG_WALL);
+  ethd_setup_transition(&r.setup, &ethd_transition_offset);
+  rig_start(&r);
+  ethd_sense s = sense_at(&r, -0.001);
+  ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
+  ethd_setup_transition(&r.setup, &law);
+  rig_post(&r);
+  misdeed = _i;
+  ck_assert_int_eq(rig_try(&r, &s), found ? ETHD_E_LAW : ETHD_OK);
+  ck_assert_int_eq(fegetround(), FE_TONEAREST);
+  if (found) ck_assert(r.command.torque[0] == 0 && r.command.torque[1] == 0);
+  ethd_event e = rig_poll(&r);
+  while (e.kind && e.kind != ETHD_EVENT_FAULT) e = rig_poll(&r);
+  ck_assert_int_eq(e.kind, found ? ETHD_EVENT_FAULT : 0);
+  if (found) ck_assert(e.code == ETHD_FAULT_LAW && e.value == told(ETHD_TRANSITION, found));
+  rig_close(&r);
 }
 END_TEST
 
@@ -238,6 +311,7 @@ int main(void) {
   TCase *t = tcase_create("foreign");
   tcase_add_loop_test(t, test_writes_past, 0, 6);
   tcase_add_test(t, test_to_the_byte);
+  tcase_add_loop_test(t, test_range_and_adopt, 0, 5);
   tcase_add_test(t, test_fenced_is_the_same);
   tcase_add_loop_test(t, test_rounds, 0, 3);
   tcase_add_test(t, test_running_law);

@@ -81,8 +81,7 @@ static double difference(const ethd_transition_law *from, const ethd_transition_
 }
 
 /* A press on noisy encoders steps without a swap, too. The most that the old law does within 0.4 s, or the fade's own
-   slope, is what a swap may do. Out of offset into a law without memory the wall itself comes back meanwhile: there
-   both add up. */
+   slope, is what a swap may do. */
 START_TEST(test_laws_in_steady_press) {
   const ethd_transition_law *from = laws[_i / LAWS], *to = laws[_i % LAWS];
   double without = 0, with = 0, slope = 0;
@@ -100,8 +99,7 @@ START_TEST(test_laws_in_steady_press) {
     ck_assert_int_eq(p.trace.state, ETHD_VO);
     end(&p);
   }
-  int forgets = from == &ethd_transition_offset && (to == laws[0] || to == laws[1]);
-  double most = forgets ? without + 1.5 * slope : 1.1 * fmax(without, slope) + 1e-9;
+  double most = 1.1 * fmax(without, slope) + 1e-9;
   ck_assert_msg(with <= most, "%s -> %s: %.4f Nm a tick; %.4f without, fade %.4f", from->law.id, to->law.id, with,
                 without, slope);
 }

@@ -11,6 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "ethd/cell.h"
 #include "ethd/config.h"
 #include "unit/rig.h"
 
@@ -119,6 +120,17 @@ static ethd_status make_controller(void) {
   return status;
 }
 
+static ethd_status make_cell(void) {
+  ethd_cell *cell;
+  ethd_error error;
+  ethd_status status = ethd_cell_create(100, &cell, &error);
+  if (status == ETHD_OK)
+    ethd_cell_destroy(cell);
+  else
+    well_said = cell == NULL && error.status == status;
+  return status;
+}
+
 static ethd_status parse_scene(void) {
   ethd_scene *scene;
   ethd_error error;
@@ -192,7 +204,7 @@ static void remove_files(void) {
 
 /* Each says that there is no memory, once for each allocation it makes, and keeps nothing. */
 START_TEST(test_memory_runs_out) {
-  ethd_status (*const makers[])(void) = {make_controller, parse_scene, make_scene, prune_scene, load_config};
+  ethd_status (*const makers[])(void) = {make_controller, parse_scene, make_scene, prune_scene, load_config, make_cell};
   write_files();
   ck_assert_int_eq(makers[_i](), ETHD_OK); /* what the C library keeps for itself is there now */
   int failures = 0;
@@ -306,7 +318,7 @@ END_TEST
 int main(void) {
   Suite *suite = suite_create("hygiene");
   TCase *t = tcase_create("hygiene");
-  tcase_add_loop_test(t, test_memory_runs_out, 0, 5);
+  tcase_add_loop_test(t, test_memory_runs_out, 0, 6);
   tcase_add_test(t, test_a_tap);
   tcase_add_loop_test_raise_signal(t, test_traps, SIGABRT, 0, 7);
   suite_add_tcase(suite, t);

@@ -9,7 +9,7 @@
 enum { COUNT = 300 };
 static ethd_trace trace[COUNT];
 static ethd_truth truth[COUNT];
-static const ethd__rows rows = {trace, truth, COUNT, COUNT};
+static const ethd__tap_rows rows = {trace, truth, COUNT, COUNT};
 static ethd__rule rule;
 
 /* A ring that comes from the right at 0.2 m/s, meets x = 0.25 at tick 50 and stops at tick 60. */

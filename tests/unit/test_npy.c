@@ -174,8 +174,8 @@ START_TEST(test_trace_columns) {
   }
   ck_assert_uint_eq(at, sizeof(ethd_trace));
   ck_assert_str_eq(ethd_trace_columns[0].name, "time_ns");
-  ck_assert_str_eq(ethd_trace_columns[count - 1].name, "tau");
-  ck_assert_uint_eq(ethd_trace_columns[count - 1].offset, offsetof(ethd_trace, tau));
+  ck_assert_str_eq(ethd_trace_columns[count - 1].name, "learnt");
+  ck_assert_uint_eq(ethd_trace_columns[count - 1].offset, offsetof(ethd_trace, learnt));
 }
 END_TEST
 

@@ -62,7 +62,7 @@ START_TEST(test_claim) {
   ethd__claim claim, other;
   ck_assert_msg(!ethd__claim_folder(in("dir"), own, false, &claim, message), "%s", message);
   ck_assert_int_lt(ethd__claim_folder(in("dir"), own, true, &other, message), 0);
-  ck_assert_ptr_nonnull(strstr(message, "dir: another program writes there now"));
+  ck_assert_ptr_nonnull(strstr(message, "dir: another program is writing there"));
   ethd__claim_release(&claim);
   ck_assert_int_eq(access(in("dir/.lock"), F_OK), -1);
   put("dir/a.csv", "1");

@@ -107,12 +107,123 @@ START_TEST(test_passive) {
 }
 END_TEST
 
+/* ---- from within the wall ---- */
+
+/* Rows of energy that were told while the ring moves from one depth to another at 20 mm/s. */
+static int told(rig *r, double from, double to) {
+  const double v = from < to ? 0.02 : -0.02;
+  int rows = 0;
+  ethd_event e;
+  for (double d = from; (to - d) * v > 0; d += v * 1e-3) {
+    motion m = rig_at(d, -v, 0);
+    ethd_sense s = rig_sense(&r->setup.arm, &m);
+    s.time_ns = r->sense.time_ns + 1000000;
+    (void)rig_try(r, &s);
+    while ((e = rig_poll(r)).kind) rows += e.kind == ETHD_EVENT_FAULT && e.code == ETHD_FAULT_ENERGY;
+  }
+  return rows;
+}
+
+/* 4 mm deep, slowly: the paper's wall has stored 20 mJ, ten times the bound. */
+static void go_in(rig *r, double energy) {
+  rig_open(r, RIG_WALL);
+  ethd_setup_transition(&r->setup, &ethd_transition_smooth);
+  r->setup.limits.energy = energy;
+  rig_start(r);
+  ck_assert_int_eq(told(r, 0.004, -0.004), 0);
+}
+
+/* The watch is switched on there; off and on again. */
+START_TEST(test_watched_from_within) {
+  rig r;
+  go_in(&r, _i ? BOUND : INFINITY);
+  for (int swap = 0; swap <= _i; swap++) {
+    r.setup.limits.energy = _i && !swap ? INFINITY : BOUND;
+    rig_post(&r);
+    ck_assert_int_eq(told(&r, -0.004, -0.0039), 0);
+  }
+  ck_assert_int_eq(told(&r, -0.0039, 0.004), 0);
+  ck_assert_int_eq(r.trace.fault, 0);
+  rig_close(&r);
+}
+END_TEST
+
+/* The contact begins anew in the wall after an acknowledged fault. */
+START_TEST(test_acknowledged_within) {
+  rig r;
+  go_in(&r, BOUND);
+  motion m = rig_at(-0.004, 0, 0);
+  ethd_sense s = rig_sense(&r.setup.arm, &m);
+  s.faults = s.grave = ETHD_FAULT_BIT(ETHD_FAULT_FINGER_LOST);
+  ck_assert_int_lt(rig_try(&r, &s), 0);
+  s.faults = s.grave = 0;
+  for (int i = 0; i < 300; i++) (void)rig_try(&r, &s);
+  ethd_control_clear(r.control);
+  while (rig_poll(&r).kind) continue;
+  ck_assert_int_eq(told(&r, -0.004, 0.004), 0);
+  ck_assert_int_eq(r.trace.fault, 0);
+  rig_close(&r);
+}
+END_TEST
+
+/* A body that was pressed and retreats from a ring that stands, with another law since. */
+START_TEST(test_surface_retreats) {
+  rig r;
+  rig_open(&r, NULL);
+  ethd_setup_transition(&r.setup, &ethd_transition_smooth);
+  ethd_scene *body = rig_scene(RIG_WALL);
+  r.setup.bodies[0] = body;
+  rig_start(&r);
+  motion m = rig_at(0, 0, 0);
+  for (int i = 0; i < 800; i++) {
+    ethd_sense s = rig_sense(&r.setup.arm, &m);
+    double way = 2e-5 * (i < 300 ? i : i < 400 ? 300 : 700 - i);
+    s.have |= ETHD_HAVE_BODY;
+    s.bodies[0] = way - 0.002;
+    s.bodies[3] = i < 300 ? 0.02 : i < 400 ? 0 : -0.02;
+    s.time_ns = r.sense.time_ns + 1000000;
+    if (i == 350) {
+      r.setup.limits.energy = BOUND;
+      ethd_setup_transition(&r.setup, &ethd_transition_abrupt);
+      rig_post(&r);
+    }
+    ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
+    if (i == 350) ck_assert_double_gt(r.trace.fe[0], 5);
+    for (ethd_event e; (e = rig_poll(&r)).kind;) ck_assert(e.kind != ETHD_EVENT_FAULT);
+  }
+  ck_assert_double_eq(r.trace.fe[0], 0);
+  ethd_scene_destroy(body);
+  rig_close(&r);
+}
+END_TEST
+
+/* A wall that comes to the ring with a new scene has stored nothing: what it gives is told. */
+START_TEST(test_wall_that_comes) {
+  rig r;
+  rig_open(&r, "halfplane -1 0 0.5\n");
+  ethd_setup_transition(&r.setup, &ethd_transition_smooth);
+  r.setup.limits.energy = BOUND;
+  rig_start(&r);
+  ck_assert_int_eq(told(&r, -0.004, -0.0039), 0);
+  ethd_scene *wall = rig_scene(RIG_WALL);
+  r.setup.scene = wall;
+  rig_post(&r);
+  ck_assert_int_gt(told(&r, -0.0039, 0.004), 0);
+  ethd_scene_destroy(wall);
+  rig_close(&r);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("passivity");
   TCase *t = tcase_create("passivity");
   tcase_add_loop_test(t, test_oscillation, 0, sizeof springs / sizeof *springs);
   tcase_add_test(t, test_beyond_help);
   tcase_add_test(t, test_passive);
+  tcase_add_loop_test(t, test_watched_from_within, 0, 2);
+  tcase_add_test(t, test_acknowledged_within);
+  tcase_add_test(t, test_surface_retreats);
+  tcase_add_test(t, test_wall_that_comes);
   suite_add_tcase(suite, t);
   return rig_run(suite);
 }

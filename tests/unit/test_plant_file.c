@@ -59,7 +59,7 @@ START_TEST(test_n) {
                              1.93e-3, 0.1e-3, 31.6e-3, 5e-3,  55.5e-3, 0.35,    0.08,    0.03,
                              0.5e-3,  0.197,  0.521,   0.19,  0.06,    0.08};
   for (size_t i = 0; i < sizeof got / sizeof *got; i++) is(got[i], expected[i]);
-  ck_assert(isinf(plant.stiffness) && !plant.count_phase && !plant.rays && !plant.reference && !plant.metrics_side);
+  ck_assert(isinf(plant.stiffness) && !plant.count_phase && !plant.reading && !plant.reference && !plant.metrics_side);
 }
 END_TEST
 
@@ -92,7 +92,7 @@ START_TEST(test_p) {
                              0.0410,   82.39,   2.568,   1e4,    0.5,    6.224e-3, 0.45e-3, 1.001e-3, 77.51e-3,
                              14.89e-3, 0.5595,  0.2050,  0.4713, 0.2726, 0.0339,   0.0577};
   for (size_t i = 0; i < sizeof got / sizeof *got; i++) is(got[i], expected[i]);
-  ck_assert(plant.count_phase && plant.reference && plant.metrics_side && !plant.rays);
+  ck_assert(plant.count_phase && plant.reference && plant.metrics_side && !plant.reading);
 }
 END_TEST
 

@@ -41,11 +41,15 @@ static const refusal refusals[] = {
     {"bad_table", ETHD_E_TABLE, "broken.gain", "a bad parameter table"},
     {"no_symbol", ETHD_E_SYMBOL, "ethd_plugin", "a plugin without the symbol ethd_plugin"},
     {"no_step", ETHD_E_ARGUMENT, "broken", "an argument is missing or contradicts another"},
-    {"twice", ETHD_E_DUPLICATE, "broken", "a name or key stands twice"},
+    {"twice", ETHD_E_DUPLICATE, "broken", "a name or key occurs twice"},
     {"brief_escapes", ETHD_E_ARGUMENT, "broken", "an argument is missing or contradicts another"},
     {"brief_lines", ETHD_E_ARGUMENT, "broken", "an argument is missing or contradicts another"},
     {"brief_long", ETHD_E_ARGUMENT, "broken", "an argument is missing or contradicts another"},
     {"no_law", ETHD_E_RANGE, "ethd_plugin.law_count", "a value is out of its range"},
+    {"many_laws", ETHD_E_RANGE, "ethd_plugin.law_count", "a value is out of its range"},
+    {"entry_id", ETHD_E_ARGUMENT, "ethd_plugin", "an argument is missing or contradicts another"},
+    {"entry_version", ETHD_E_ARGUMENT, "ethd_plugin", "an argument is missing or contradicts another"},
+    {"entry_laws", ETHD_E_ARGUMENT, "ethd_plugin", "an argument is missing or contradicts another"},
     {"not_there", ETHD_E_LOAD, NULL, "a file that cannot be loaded as a plugin"},
 };
 
@@ -72,6 +76,15 @@ START_TEST(test_files_that_are_none) {
     ck_assert_int_eq(ethd_plugin_open(paths[i], &entry, &error), ETHD_E_LOAD);
     ck_assert_ptr_null(entry);
   }
+}
+END_TEST
+
+/* An id stands for one law of a kind; laws of different kinds may share it. */
+START_TEST(test_several_laws) {
+  const ethd_plugin_entry *entry;
+  ck_assert_int_eq(ethd_plugin_open(path_of("pair"), &entry, NULL), ETHD_OK);
+  ck_assert_uint_eq(entry->law_count, 3);
+  ck_assert_str_eq(entry->laws[0]->id, entry->laws[2]->id);
 }
 END_TEST
 
@@ -240,6 +253,7 @@ int main(void) {
   TCase *t = tcase_create("plugin");
   tcase_add_loop_test(t, test_refused, 0, sizeof refusals / sizeof *refusals);
   tcase_add_test(t, test_files_that_are_none);
+  tcase_add_test(t, test_several_laws);
   tcase_add_loop_test(t, test_stopped, 0, 2);
   tcase_add_test(t, test_over_its_time_budget);
   tcase_add_test(t, test_my_law);

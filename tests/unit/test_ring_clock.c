@@ -63,6 +63,9 @@ START_TEST(test_steady) {
       {50e-6, 200e-6, 16e-3, 18e-3, 1.5e-3}, /* and as it comes */
       {5e-3, 200e-6, 1e-3, 4e-3, 0.4e-3},    /* a ceramic resonator */
       {-5e-3, 200e-6, 1e-3, 4e-3, 0.4e-3},
+      {20e-3, 200e-6, 0, 8e-3, 0.1e-3}, /* a broken one: the finger isn't lost by it */
+      {-20e-3, 200e-6, 0, 8e-3, 0.1e-3},
+      {-20e-3, 200e-6, 1e-3, 8e-3, 0.4e-3},
   };
   for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
     for (uint32_t key = 0; key < 4; key++) {

@@ -138,6 +138,44 @@ START_TEST(test_boxes) {
 }
 END_TEST
 
+/* Five chains of different lengths, 10 m apart, and circles between them: each box is that of its own chain, and the level
+   that of its own tree. */
+START_TEST(test_boxes_of_several) {
+  enum { CHAINS = 5, MOST = 700 };
+  static double p[CHAINS][2 * MOST], disc[CHAINS][3];
+  const size_t points[CHAINS] = {20, 700, 100, 40, 600}, levels[CHAINS] = {2, 4, 3, 2, 4};
+  ethd_object_def o[2 * CHAINS];
+  for (int c = 0; c < CHAINS; c++) {
+    for (size_t k = 0; k < points[c]; k++) p[c][2 * k] = 10 * c + 0.001 * (double)k, p[c][2 * k + 1] = k % 2 * 0.01;
+    disc[c][0] = 10 * c + 5, disc[c][1] = 0, disc[c][2] = 1;
+    o[2 * c] = (ethd_object_def){ETHD_POLYLINE, -1, p[c], 2 * points[c], 0};
+    o[2 * c + 1] = (ethd_object_def){ETHD_CIRCLE, -1, disc[c], 3, 0};
+  }
+  ethd_scene_def def = {o, 2 * CHAINS, NULL, 0};
+  ethd_scene *s;
+  ck_assert_int_eq(ethd_scene_create(&def, &s, NULL), ETHD_OK);
+  ethd_scene_info info;
+  ethd_scene_describe(s, &info);
+  size_t lowest[CHAINS] = {0}, highest[CHAINS] = {0}, objects = 0;
+  for (size_t i = 0; i < info.boxes; i++) {
+    ethd_scene_box b;
+    if (ethd_scene_box_at(s, i, &b) != ETHD_OK) continue;
+    if (!b.of_chain) {
+      objects += b.level == 1;
+      continue;
+    }
+    int c = (int)floor(b.centre.x / 10 + 0.05);
+    ck_assert(c >= 0 && c < CHAINS && b.centre.x - 10 * c < 0.7);
+    ck_assert(b.centre.x - 10 * c > -0.01);
+    lowest[c] += b.level == 1;
+    if ((size_t)b.level > highest[c]) highest[c] = (size_t)b.level;
+  }
+  ck_assert_uint_eq(objects, 2 * CHAINS);
+  for (int c = 0; c < CHAINS; c++) ck_assert(lowest[c] == points[c] - 1 && highest[c] == levels[c]);
+  ethd_scene_destroy(s);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("scene_info");
   TCase *all = tcase_create("all");
@@ -146,6 +184,7 @@ int main(void) {
   tcase_add_test(all, test_forms);
   tcase_add_test(all, test_out_of_reach);
   tcase_add_test(all, test_boxes);
+  tcase_add_test(all, test_boxes_of_several);
   suite_add_tcase(suite, all);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_ENV);

@@ -55,7 +55,8 @@ START_TEST(test_hand_is_causal) {
   for (int k = 0; k < TICKS; k++) {
     if (k < TICKS / 2 && k % 16 == 0)
       pointer = (ethd_vec){draw(seed + 2 * (uint64_t)k, 0.2, 0.3), draw(seed + 2 * (uint64_t)k + 1, 0.2, 0.3)};
-    ethd__hand_lead(&hand, 1e-3 * k, pointer);
+    if (k % 16 == 0) ethd__hand_move(&hand, 1e-3 * k, pointer);
+    ethd__hand_lead(&hand, 1e-3 * k);
     ethd_path_at(&path, 1e-3 * k + 0.00099, &seen[k], &speed[k]);
   }
   ck_assert_double_eq_tol(seen[TICKS - 1].x, pointer.x, 1e-9);
@@ -69,18 +70,59 @@ START_TEST(test_hand_is_causal) {
 }
 END_TEST
 
-/* A pointer that jumps is followed within 45 ms to a tenth. */
+/* A pointer that jumps is followed within 60 ms to a tenth. */
 START_TEST(test_hand_is_quick) {
   ethd__hand hand;
   ethd_vec x, v;
   ck_assert_int_eq(ethd__hand_create(&hand, (ethd_vec){0.3, 0.25}, 1), ETHD_OK);
   ethd_path path = ethd__hand_path(&hand);
-  for (int k = 0; k < 55; k++) ethd__hand_lead(&hand, 1e-3 * k, (ethd_vec){k < 10 ? 0.3 : 0.2, 0.25});
+  for (int k = 0; k < 71; k++) {
+    if (k == 10) ethd__hand_move(&hand, 1e-3 * k, (ethd_vec){0.2, 0.25});
+    ethd__hand_lead(&hand, 1e-3 * k);
+  }
   ethd_path_at(&path, 0.010, &x, &v);
   ck_assert_double_eq_tol(x.x, 0.3, 1e-12);
-  ethd_path_at(&path, 0.055, &x, &v);
+  ethd_path_at(&path, 0.070, &x, &v);
   ck_assert_double_lt(x.x, 0.21);
   ethd__hand_free(&hand);
+}
+END_TEST
+
+/* A pointer that is led at 0.200 m/s, on whole pixels, heard of `rate` times a second and up to 1 ms late: the hand's
+   speeds from 0.1 s on. */
+static void lead_steadily(double rate, double scale, double *least, double *most, double *mean) {
+  ethd__hand hand;
+  ethd_vec x, v, first = {0, 0};
+  double told = 0;
+  uint64_t seed = 77;
+  ck_assert_int_eq(ethd__hand_create(&hand, (ethd_vec){0.3, 0.25}, 1), ETHD_OK);
+  ethd_path path = ethd__hand_path(&hand);
+  *least = INFINITY, *most = -INFINITY;
+  for (int k = 0; k < 500; k++) {
+    double t = 1e-3 * k;
+    for (; told <= t; told += 1 / rate)
+      ethd__hand_move(&hand, told + draw(seed++, 0, fmin(1e-3, 0.5 / rate)),
+                      (ethd_vec){round((0.3 - 0.2 * told) * scale) / scale, 0.25});
+    ethd__hand_lead(&hand, t);
+    ethd_path_at(&path, t, &x, &v);
+    if (k == 100) first = x;
+    if (k < 100) continue;
+    *least = fmin(*least, -v.x);
+    *most = fmax(*most, -v.x);
+  }
+  *mean = (first.x - x.x) / 0.399;
+  ethd__hand_free(&hand);
+}
+
+START_TEST(test_hand_is_as_fast_as_the_pointer) {
+  static const double rates[] = {60, 90, 125, 500, 1000};
+  for (int i = 0; i < 5; i++)
+    for (double scale = 3500; scale < 20000; scale *= 2) {
+      double least, most, mean;
+      lead_steadily(rates[i], scale, &least, &most, &mean);
+      ck_assert_msg(least > 0.184 && most < 0.216, "%g Hz, %g px/m: %.4f to %.4f m/s", rates[i], scale, least, most);
+      ck_assert_msg(fabs(mean - 0.2) < 0.0004, "%g Hz, %g px/m: %.4f m/s", rates[i], scale, mean);
+    }
 }
 END_TEST
 
@@ -91,6 +133,7 @@ int main(void) {
   tcase_add_test(tests, test_pixels);
   tcase_add_test(tests, test_hand_is_causal);
   tcase_add_test(tests, test_hand_is_quick);
+  tcase_add_test(tests, test_hand_is_as_fast_as_the_pointer);
   suite_add_tcase(suite, tests);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_NORMAL);

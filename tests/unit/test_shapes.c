@@ -10,7 +10,7 @@ enum { WIDTH = 320, HEIGHT = 200 };
 
 static ethd__window fresh(void) {
   const char *font = getenv("ETHD_FONT") ? getenv("ETHD_FONT") : "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
-  ethd__window w = {.width = WIDTH, .height = HEIGHT, .covered = true};
+  ethd__window w = {.width = WIDTH, .height = HEIGHT, .shrink = 1, .covered = true};
   ck_assert_int_eq(TTF_Init(), 0);
   for (int i = 0; i < ETHD_TEXTS; i++) ck_assert_ptr_nonnull(w.font[i] = TTF_OpenFont(font, 9 + 7 * i));
   return w;

@@ -191,7 +191,7 @@ START_TEST(test_same_bytes) {
   static ethd_sense sense[4][TICKS];
   ethd_sim_def def = sim_def();
   def.plant.noise = 1e-4;
-  def.plant.rays = _i;
+  def.plant.reading = _i;
   def.plant.ray_noise = 1e-4;
   ethd_sim_tap tap = sim_tap(), other = sim_tap();
   other.tap++;

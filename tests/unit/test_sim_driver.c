@@ -72,7 +72,7 @@ START_TEST(test_lock_step) {
   char message[ETHD_MESSAGE_MAX];
   ethd_sim_def def = sim_def();
   ck_assert_int_eq(ethd_plant_load(FOLDER "/p.plant", &def.plant, message), ETHD_OK);
-  def.plant.rays = 1;
+  def.plant.reading = 1;
   def.step = ethd_driver_sim.params[0].def;
   def.tolerance = ETHD_SIM_GOLDEN;
   ethd_sim_tap tap;

@@ -204,7 +204,7 @@ static double free_way(double ring, double r, const double c[2], int k) {
 START_TEST(test_rays) {
   ethd_sim_def def = sim_def();
   ethd_sim_tap tap = sim_tap();
-  def.plant.rays = 1;
+  def.plant.reading = 1;
   def.plant.ray_noise = 0;
   def.plant.ray_skew = _i * 1.1e-3;
   sim_hold(&def);
@@ -237,7 +237,7 @@ END_TEST
 START_TEST(test_ray_noise) {
   ethd_sim_def def = sim_def();
   ethd_sim_tap tap = sim_tap();
-  def.plant.rays = 1;
+  def.plant.reading = 1;
   def.plant.ray_noise = 3e-4;
   sim_hold(&def);
   def.step = 1e-3;

@@ -7,7 +7,7 @@
 #include "study/order.h"
 #include "study/people.h"
 #include "study/row.h"
-#include "study/sha256.h"
+#include "text/sha256.h"
 #include "unit/mutate.h"
 #include "unit/rig.h"
 
@@ -99,7 +99,7 @@ END_TEST
 
 /* ---- order ---- */
 
-static ethd__block blocks[ETHD_STUDY_BLOCKS];
+static ethd__study_block blocks[ETHD_STUDY_BLOCKS];
 
 static const char *order_of(uint32_t participant) {
   static char text[512];
@@ -219,15 +219,22 @@ END_TEST
 
 START_TEST(test_row_keys) {
   ethd__tap_key key;
-  ck_assert(ethd__tap_row_key("P02,3,test,17,offset,low,5,9,1,ok,0.2", &key));
-  ck_assert(key.person == 1 && key.number == 3 && key.attempt == 17 && key.valid);
+  ck_assert(ethd__tap_row_key("P02,3,test,17,offset,low,5,9,1,ok,.2,,,,,,,,,,,,,,,mouse,\"a, b\",2026-01-02T03:04:05Z",
+                              &key));
+  ck_assert(key.person == 1 && key.number == 3 && key.attempt == 17 && key.valid && !key.training);
+  ck_assert(key.hand == ETHD_HAND_MOUSE);
+  ck_assert_str_eq(key.utc, "2026-01-02T03:04:05Z");
+  ck_assert(ethd__tap_row_key("P02,3,training,17,offset,low,5,9,0,ok,,,,,,,,,,,,,,,,simulated,,", &key));
+  ck_assert(!key.valid && key.training && key.hand == ETHD_HAND_SIMULATED && !*key.utc);
   const char *const bad[] = {"",
                              "P02",
                              "X02,3,test,17,offset,low,5,9,1,",
                              "P0,3,test,17,offset,low,5,9,1,",
                              "P02,0,test,17,offset,low,5,9,1,",
                              "P02,3,test,x,offset,low,5,9,1,",
-                             "P02,999,test,1,a,b,5,9,1,"};
+                             "P02,999,test,1,a,b,5,9,1,",
+                             "P02,3,test,17,offset,low,5,9,1,ok,.2",
+                             "P02,3,test,17,offset,low,5,9,1,ok,.2,,,,,,,,,,,,,,,paw,,"};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) ck_assert(!ethd__tap_row_key(bad[i], &key));
 }
 END_TEST

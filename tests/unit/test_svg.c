@@ -218,11 +218,11 @@ END_TEST
 static const struct {
   const char *body, *said; /* after OPEN: line 2 on; with "<": the whole */
 } refusals[] = {
-    {"\n<text>x</text>", "t.svg:3: not taken; .*text"},
-    {"<image/>", "t.svg:2: not taken; .*image"},
-    {"<g>\n<use/></g>", "t.svg:3: not taken; .*use"},
-    {"<style>path{fill:none}</style>", "t.svg:2: not taken; .*style"},
-    {"<svg/>", "t.svg:2: not taken; .*svg"},
+    {"\n<text>x</text>", "t.svg:3: not supported; .*text"},
+    {"<image/>", "t.svg:2: not supported; .*image"},
+    {"<g>\n<use/></g>", "t.svg:3: not supported; .*use"},
+    {"<style>path{fill:none}</style>", "t.svg:2: not supported; .*style"},
+    {"<svg/>", "t.svg:2: not supported; .*svg"},
     {"<path d='M0 0 L1'/>", "t.svg:2: a number is missing in a path: found \"L1\""},
     {"<path d='L0 0'/>", "a path must begin with M: found \"L0 0\""},
     {"<path d='M0 0 R 1 1'/>", "not a command of a path.*\"R 1 1\""},
@@ -250,7 +250,7 @@ static const struct {
     {"</g>", "t.svg:2: no XML"},
     {"&nothing;", "t.svg:2: no XML: undefined entity"},
     {"<!DOCTYPE svg [<!ENTITY a \"b\">]><svg width='1' height='1'>&a;</svg>",
-     "t.svg:1: entities aren't taken: found \"a\""},
+     "t.svg:1: entities aren't supported: found \"a\""},
     {"<html/>", "t.svg:1: a drawing must begin with svg: found \"html\""},
     {"<svg xmlns='http://other' width='1'/>", "a drawing must begin with svg"},
     {"<svg/>", "t.svg:1: no width or height"},

@@ -1,0 +1,67 @@
+#!/bin/sh
+# Coverage: sh tests/coverage.sh [lib|drivers|mcdc]... (lib): builds a tree of its own with the compiler's counters, runs the
+# tests in it and names what they don't reach.
+#   lib      every branch of lib by unit tests; what can't be taken is excused beside its line (tests/coverage.py)
+#   drivers  90 % of the branches of drivers, by unit tests and scripts
+#   mcdc     which conditions of lib/control, lib/guard and lib/law were seen to decide on their own (gcc 14's
+#            -fcondition-coverage; skipped by name with another compiler)
+set -u
+top=$(cd "$(dirname "$0")/.." && pwd)
+cd "$top" || exit 1
+MAKE=${MAKE:-make} BUILD=${BUILD:-build} CC=${CC:-cc}
+# Functions that are always inlined would be counted once for each caller.
+flags='-O0 -g --coverage -Dalways_inline='
+export CK_TIMEOUT_MULTIPLIER="${CK_TIMEOUT_MULTIPLIER:-10}" TEST_TIMEOUT="${TEST_TIMEOUT:-1200}" # nothing here is about time
+export CCACHE_DISABLE=1 ETHD_SCENE_QUERIES="${ETHD_SCENE_QUERIES:-2000}"
+failed=0
+
+gcov_of() { # gcc-14 -> gcov-14
+  for gcov in "$(echo "$CC" | sed 's/gcc/gcov/; s/^cc$/gcov/')" gcov; do
+    command -v "$gcov" >/dev/null && { echo "$gcov"; return; }
+  done
+}
+
+# All but those that mostly wait for peers in true time.
+quick() { ls tests/*/test_*.c | sed 's|.*/||; s|[.]c$||' | grep -v -e '^test_injection$' -e '^test_ring_' -e '^test_servo_'; }
+
+# run TREE FLAGS TESTS: what fails under the counters is said and doesn't count against coverage twice
+run() {
+  $MAKE --no-print-directory SETUP=no BUILD="$1" CC="$CC" CFLAGS="$2" SAN= TESTS="$3" check >"$1.log" 2>&1 ||
+    { grep -E '^  FAIL|rror' "$1.log" | head -n 20; failed=1; }
+  grep -E '^[0-9]+ passed' "$1.log"
+}
+
+branches() { # the compiler must be gcc: it counts as gcov reads
+  $CC --version | grep -qi 'gcc\|free software' || { echo 'SKIP: coverage needs gcc'; exit 77; }
+  mkdir -p "$BUILD"
+}
+
+for what in "${@:-lib}"; do
+  branches
+  tree=$BUILD/coverage
+  case $what in
+    lib)
+      run "$tree" "$flags" "$(quick | tr '\n' ' ')"
+      python3 tests/coverage.py --gcov "$(gcov_of)" "$tree" lib || failed=1
+      ;;
+    drivers)
+      run "$tree" "$flags" 'test_% run study replay scene calibrate conform conform_bus convert bad_input servo_drive servo_bus
+        strangers passive replay_device tap hostile_plugins bounds whole_device npy record_metrics'
+      python3 tests/coverage.py --gcov "$(gcov_of)" --least 0.9 "$tree" drivers || failed=1
+      ;;
+    mcdc)
+      if echo 'int main(void) { return 0; }' | $CC -fcondition-coverage -x c -c -o /dev/null - 2>/dev/null; then
+        tree=$BUILD/coverage-mcdc
+        run "$tree" "$flags -fcondition-coverage" "$(quick | tr '\n' ' ')"
+        python3 tests/coverage.py --gcov "$(gcov_of)" --conditions --least 0.95 "$tree" lib/control lib/guard lib/law || failed=1
+      else
+        echo "SKIP: MC/DC: $CC doesn't know -fcondition-coverage (gcc 14 does)"
+      fi
+      ;;
+    *)
+      echo "coverage: $what: lib, drivers and mcdc are known"
+      exit 2
+      ;;
+  esac
+done
+exit $failed

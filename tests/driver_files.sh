@@ -1,0 +1,124 @@
+#!/bin/sh
+# Drivers in files of their own, [device] driver = file:NAME.so: one that is compiled against the installed headers does as
+# the built-in one; several stand behind one device; bad ones get one line and nothing moves; nobody's folder loads one.
+set -u
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+bin=$BUILD/bin
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+prefix=$work/usr
+$MAKE --no-print-directory -s B="$BUILD" DESTDIR= PREFIX="$prefix" install-files >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+export PKG_CONFIG_PATH="$prefix/lib/pkgconfig"
+# as the first lines of its source say
+$CC -shared -fPIC -Wall -Wextra -Werror -DHELLO=ethd_driver_plugin drivers/hello/hello.c -o "$work/hello.so" \
+  $($PKG_CONFIG --cflags ethd-drivers) || fail "hello.so"
+ini() { printf '[device]\ndriver = %s\n' "$2" >"$work/$1.ini"; } # NAME DRIVERS
+
+# ---- a good one ----
+ini file file:hello.so
+ini built_in hello
+"$bin/ethd-conform" --config "$work/file.ini" --virtual --move >"$work/out" 2>&1 || fail "conform: $(cat "$work/out")"
+[ "$(grep -c ' kept ' "$work/out")" = 10 ] || fail "conform: $(cat "$work/out")"
+for how in file built_in; do
+  (cd "$work" && printf 'wait 0.2\ntransition smooth\n' |
+    "$bin/ethd-run" --virtual --duration 0.5 --config "$how.ini" --record "rec_$how" >"$how.out" 2>&1) || fail "$how: $(cat "$work/$how.out")"
+done
+cmp "$work/rec_file/tick.npy" "$work/rec_built_in/tick.npy" || fail "the file does otherwise than the built-in driver"
+# the recording names the file wherever its folder goes, and is verified without it
+grep -qx "driver = file:$work/hello.so" "$work/rec_file/config.ini" || fail "$(cat "$work/rec_file/config.ini")"
+"$bin/ethd-replay" --verify "$work/rec_file" >"$work/out" 2>&1 || fail "verify: $(cat "$work/out")"
+"$bin/ethd-run" --virtual --duration 0.1 --config "$work/rec_file/config.ini" >"$work/out" 2>&1 </dev/null || fail "from the recording: $(cat "$work/out")"
+# several behind one device; a key names its driver; a shorter table is an older one
+cp "$BUILD/tests/plugins/driver_canary.so" "$BUILD/tests/plugins/driver_older.so" "$work"
+ini two 'sim ,  file:driver_canary.so'
+"$bin/ethd-run" --virtual --duration 0.5 --config "$work/two.ini" >"$work/out" 2>&1 </dev/null || fail "two: $(cat "$work/out")"
+ini older 'hello, file:driver_older.so'
+"$bin/ethd-run" --virtual --duration 0.1 --config "$work/older.ini" >"$work/out" 2>&1 </dev/null || fail "older: $(cat "$work/out")"
+if [ -z "${SAN:-}" ]; then # its own time
+  "$bin/ethd-run" --duration 0.2 --config "$work/file.ini" >"$work/out" 2>&1 </dev/null || fail "in real time: $(cat "$work/out")"
+fi
+
+# ---- bad ones: one line, and it ends before anything moves ----
+says() { # NAME EXIT PATTERN FILE: the program's exit, and the one line that says why
+  [ $code = "$2" ] || fail "$1: exit $code: $(cat "$work/out" "$work/err")"
+  [ "$(wc -l <"$4")" = 1 ] && grep -q -e "$3" "$4" || fail "$1: no $3 in: $(cat "$4")"
+  if LC_ALL=C grep -q '[^[:print:]]' "$4"; then fail "$1: a control character"; fi
+}
+refused() { # NAME EXIT PATTERN
+  cp "$BUILD/tests/plugins/$1.so" "$work"
+  ini bad "hello, file:$1.so"
+  printf 'hang_time = 1\n' >>"$work/bad.ini"
+  rm -rf "$work/rec"
+  timeout -s KILL 30 "$bin/ethd-run" --config "$work/bad.ini" --virtual --duration 1 --record "$work/rec" >"$work/out" 2>"$work/err" </dev/null
+  code=$?
+  says "$1" "$2" "$3" "$work/err"
+  [ ! -e "$work/rec/tick.npy" ] || fail "$1: ticks were made"
+  timeout -s KILL 30 "$bin/ethd-conform" --config "$work/bad.ini" --virtual >"$work/out" 2>"$work/err" </dev/null
+  code=$?
+  grep '^table  *BROKEN' "$work/out" >"$work/table" || cp "$work/err" "$work/table" # where the program had to end itself
+  says "$1, conform" 1 "$3" "$work/table"
+}
+refused driver_abi 2 'it was built for version 77 of the drivers. interface, this is version 0'
+refused driver_short 2 'its table has 16 bytes, [0-9]* to [0-9]* are allowed'
+refused driver_long 2 'its table has [0-9]* bytes, [0-9]* to [0-9]* are allowed'
+refused driver_no_symbol 2 'it is no driver: it has no symbol ethd_driver_plugin'
+refused mylaw 2 'it is no driver: it has no symbol ethd_driver_plugin'
+refused driver_id 2 "its id isn't 1 to 31 of a-z 0-9 - _"
+refused driver_no_id 2 "its id isn't 1 to 31 of a-z 0-9 - _"
+refused driver_brief 2 "the brief of broken isn't one line"
+refused driver_no_open 2 'broken has no open'
+refused driver_no_safe 2 'broken takes torque and has no safe to let go'
+refused driver_no_service 2 'broken has units of I/O and no service'
+refused driver_param 2 'broken: params: .*: a bad parameter table'
+refused driver_limits 2 'device broken: limits: speed: '
+refused driver_units 1 'ask for more than 8 I/O threads'
+refused driver_words 1 'AAA?AAA'
+refused driver_hangs 1 "open of the driver broken doesn't return"
+refused driver_exits 1 'open of the driver broken ended the program'
+refused exits 1 'exits.so ended the program'
+ini bad "file:$BUILD/tests/plugins/driver_hangs_start.so"
+printf 'hang_time = 1\n' >>"$work/bad.ini"
+timeout -s KILL 30 "$bin/ethd-run" --config "$work/bad.ini" --virtual --duration 1 >"$work/out" 2>"$work/err" </dev/null
+[ $? = 1 ] && grep -q "start of the driver broken doesn't return" "$work/err" || fail "a start that hangs: $(cat "$work/err")"
+
+words() { # DRIVERS KEYS PATTERN
+  printf '[device]\ndriver = %s\n%b' "$1" "$2" >"$work/bad.ini"
+  "$bin/ethd-run" --config "$work/bad.ini" --virtual --duration 1 >"$work/out" 2>"$work/err" </dev/null
+  code=$?
+  [ $code = 2 ] && [ "$(wc -l <"$work/err")" = 1 ] && grep -q -e "$3" "$work/err" || fail "$1: exit $code: $(cat "$work/err")"
+}
+echo 'no program' >"$work/text.so"
+head -c 3000 "$work/hello.so" >"$work/cut.so"
+words file:missing.so '' 'bad.ini: device.driver: "missing.so": .*missing.so: No such file'
+words file:text.so '' "text.so is .*isn't a shared object"
+words file:cut.so '' 'cut.so is cut short'
+words file:. '' 'is no file'
+words file: '' 'bad.ini: device.driver: found "file:.*file:PATH are allowed'
+words 'file:hello.so, hello' '' 'device.driver: hello occurs twice'
+words 'file:hello.so' 'colour = red\n' 'bad.ini:3: device.colour: hello has no settings'
+words 'sim, file:hello.so' 'hello.colour = red\n' 'bad.ini:3: device.colour: hello has no settings'
+words 'file:hello.so' 'hang_time = 0\n' 'bad.ini:3: device.hang_time: found "0", 1 to 3600 s is allowed'
+
+# ---- what they offer ----
+"$bin/ethd-laws" --driver "$work/hello.so" >"$work/out" 2>&1 || fail "laws: $(cat "$work/out")"
+grep -qx "device hello: two motors that aren't there, to copy from" "$work/out" || fail "laws: $(cat "$work/out")"
+"$bin/ethd-laws" --driver "$BUILD/tests/plugins/driver_abi.so" >"$work/out" 2>"$work/err"
+[ $? = 2 ] && grep -q 'built for version 77' "$work/err" || fail "laws: $(cat "$work/err")"
+"$bin/ethd-laws" --drivers --csv "$work/drivers.csv" >"$work/out" 2>&1 || fail "laws: $(cat "$work/out")"
+for driver in sim counter servo ring zones nail camera hello; do
+  grep -q "^device $driver: " "$work/out" || fail "laws: no $driver in: $(cat "$work/out")"
+done
+grep -q '^device,camera,rate,Hz,1,10000,90,' "$work/drivers.csv" || fail "$(cat "$work/drivers.csv")"
+
+# ---- a stranger's recording: it is looked at, and its driver stays closed ----
+canary=$work/canary
+export canary
+sed -i "s|^driver = .*|driver = file:$work/driver_canary.so|" "$work/rec_file/config.ini"
+"$bin/ethd-replay" --verify "$work/rec_file" >"$work/out" 2>&1 || fail "a stranger's recording: $(cat "$work/out")"
+"$bin/ethd-convert" "$work/rec_file" "$work/out.csv" >"$work/out" 2>&1 || fail "a stranger's recording: $(cat "$work/out")"
+[ ! -e "$canary" ] || fail "a stranger's driver was loaded"
+"$bin/ethd-run" --virtual --duration 0.1 --config "$work/two.ini" >/dev/null 2>&1 </dev/null
+[ -e "$canary" ] || fail "the driver leaves no trace: the test sees nothing"
+[ $failed = 0 ] && echo 'drivers in files do as built-in ones; bad ones are refused'
+exit $failed

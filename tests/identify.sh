@@ -1,0 +1,74 @@
+#!/bin/sh
+# ethd-identify: plants are found again from recordings, an arm of numpy's too; what doesn't fit is said; refusals.
+# PLANTS=20 SECONDS_EACH=12 tries that many random plants and the intervals' coverage.
+set -u
+bin=$BUILD/bin
+tests=$(cd "$(dirname "$0")" && pwd)
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+[ -z "${SAN:-}" ] || { echo "SKIP: a sanitizer is too slow for fits"; exit 77; }
+
+if [ -n "${PLANTS:-}" ]; then
+  exec "$PYTHON" "$tests/identify_plants.py" "$bin" "$tests/../apps/config" "$PLANTS" 5 "${SECONDS_EACH:-12}"
+fi
+
+# refuse CODE 'PATTERN' ARGUMENTS...: one line, nothing written
+refuse() {
+  expected=$1 pattern=$2
+  shift 2
+  "$bin/ethd-identify" "$@" --out none.plant >out 2>err </dev/null
+  code=$?
+  [ $code = "$expected" ] || fail "$*: exit $code: $(cat err)"
+  [ "$(grep -vc '^Try ' err)" = 1 ] || fail "$*: $(wc -l <err) lines: $(cat err)"
+  grep -q -e "$pattern" err || fail "$*: no $pattern in: $(cat err)"
+  [ ! -e none.plant ] || fail "$*: something was written"
+}
+
+# A recording, which repeats to the bit and keeps its box; the same input gives the same plant.
+"$bin/ethd-identify" --excite --virtual --duration 6.158 --record sines >said || fail "excite: exit $?"
+grep -q 'dry run  .*simulated' said || fail "the dry run isn't said"
+"$bin/ethd-replay" --verify sines >/dev/null || fail "the recording doesn't repeat"
+"$bin/ethd-identify" sines --out n.plant >said || fail "sines: exit $?"
+grep -q 'pad_stiffness' said && ! grep -q 'NOT EXPLAINED' said || fail "what is said of n: $(cat said)"
+"$bin/ethd-identify" sines --out again.plant >/dev/null && cmp n.plant again.plant || fail "the same input gives another plant"
+awk '$1 == "mass_x" && ($3 < 0.1138 || $3 > 0.1208) || $1 == "mass_y" && ($3 < 0.2425 || $3 > 0.2575) ||
+  $1 == "friction" && ($3 < 0.34 || $3 > 0.46) || $1 == "delay" && ($3 < 0.041e-3 || $3 > 0.101e-3) ||
+  $1 == "stiffness" && $3 != "inf" { print "FAILED n.plant: " $0; bad = 1 } END { exit bad }' n.plant || failed=1
+grep -q '^hand_damping .*not seen, kept as in n$' n.plant || fail "what isn't seen isn't said"
+
+# It predicts a session that it wasn't fitted to; another plant does so worse.
+"$bin/ethd-identify" --excite --virtual --duration 9 --record more >/dev/null || fail "excite again: exit $?"
+judged() { "$bin/ethd-identify" --judge "$1" more | sed -n 's/.*joint 1.*ahead .* (\(.*\) counts)$/\1/p'; }
+awk -v own="$(judged n.plant)" -v other="$(judged b)" 'BEGIN { exit !(own > 0 && own < 2 && other > 3 * own) }' ||
+  fail "judged: $(judged n.plant) and $(judged b) counts after 50 ms"
+
+# An arm that isn't ours, within its intervals; whose motors are weaker than what is asked; and with play.
+arm() { "$PYTHON" "$tests/identify_arm.py" "$@"; }
+arm make sines arm && "$bin/ethd-identify" arm --out arm.plant >said && arm check arm.plant || fail "numpy's arm"
+if "$PYTHON" -c 'import scipy.optimize' 2>/dev/null; then
+  arm scipy arm arm.plant || fail "scipy comes to other numbers"
+else
+  echo "python3-scipy isn't here: nobody else fits the same windows"
+fi
+arm make sines weak 4.5 && "$bin/ethd-identify" weak --out weak.plant >said && arm check weak.plant force_limit=4.5 || fail "weak motors"
+arm make sines loose inf 0.0006 && "$bin/ethd-identify" loose >said || fail "an arm with play"
+grep -q 'NOT EXPLAINED' said || fail "play isn't told: $(cat said)"
+
+mkdir empty
+refuse 2 'no recording' empty
+mkdir still && sed 's/x/x/' sines/config.ini >still/config.ini && cp sines/events.csv still &&
+  "$PYTHON" -c 'import numpy as n; r = n.load("sines/tick.npy"); r["q"][:] = r["q"][0]; n.save("still/tick.npy", r)'
+refuse 2 'hardly moves.*record' still
+"$bin/ethd-run" --virtual --duration 1 --record short >/dev/null </dev/null
+refuse 2 'windows of .*are needed; record more' short
+mkdir clipped && cp sines/config.ini sines/events.csv clipped &&
+  "$PYTHON" -c 'import numpy as n; r = n.load("sines/tick.npy"); r["guard"][:] = 2; n.save("clipped/tick.npy", r)'
+refuse 2 'the guard cut the torque in 100 %.*record' clipped
+cp -r sines other && sed -i 's/^\[tracking\]/[arm]\nlink1 = 0.3\n[tracking]/' other/config.ini
+refuse 2 'of another arm' sines other
+refuse 2 'two devices are mixed' sines arm
+refuse 2 'needs --record\|excite needs' --excite
+exit $failed

@@ -1,0 +1,3 @@
+/* Built for another version of the drivers' interface. */
+#define ABI 77u
+#include "driver_broken.h"

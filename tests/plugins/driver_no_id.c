@@ -1,0 +1,3 @@
+/* No id at all. */
+#define ID NULL
+#include "driver_broken.h"

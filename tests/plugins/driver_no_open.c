@@ -1,0 +1,3 @@
+/* Nothing opens it. */
+#define OPEN NULL
+#include "driver_broken.h"

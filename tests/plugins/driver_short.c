@@ -1,0 +1,3 @@
+/* Its table ends before the first version's last field. */
+#define SIZE 16u
+#include "driver_broken.h"

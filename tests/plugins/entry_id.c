@@ -1,0 +1,3 @@
+/* Nameless. */
+#define ENTRY_ID NULL
+#include "broken.h"

@@ -1,0 +1,3 @@
+/* More laws than may be. */
+#define LAWS 65
+#include "broken.h"

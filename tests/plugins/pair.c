@@ -1,0 +1,24 @@
+/* Sound: two laws of one kind, and one of another kind with the first one's id. */
+#include <ethd/plugin.h>
+
+static ethd_status rule(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) ETHD_RT {
+  (void)p, (void)state, (void)contact, (void)out;
+  return ETHD_OK;
+}
+
+static ethd_status push(const double *p, void *state, double gap, double speed, int entering, double *force) ETHD_RT {
+  (void)p, (void)state, (void)gap, (void)speed, (void)entering;
+  *force = 0;
+  return ETHD_OK;
+}
+
+static const ethd_transition_law one = {
+    .law = {sizeof one, ETHD_ABI, ETHD_TRANSITION, 0, "one", "does nothing", NULL, 0, NULL, NULL}, .step = rule};
+static const ethd_transition_law two = {
+    .law = {sizeof two, ETHD_ABI, ETHD_TRANSITION, 0, "two", "does nothing", NULL, 0, NULL, NULL}, .step = rule};
+static const ethd_contact_law soft = {
+    .law = {sizeof soft, ETHD_ABI, ETHD_CONTACT, 0, "one", "no wall at all", NULL, 0, NULL, NULL}, .step = push};
+static const ethd_law *const laws[] = {&one.law, &two.law, &soft.law};
+
+ETHD_API extern const ethd_plugin_entry ethd_plugin;
+const ethd_plugin_entry ethd_plugin = {sizeof ethd_plugin, ETHD_ABI, "pair", "1.0", laws, 3};

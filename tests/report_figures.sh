@@ -1,0 +1,19 @@
+#!/bin/sh
+# Every figure of a report, worked out again by SciPy and statsmodels: of made-up taps, of some with ties, of some with
+# missing cells.
+set -u
+python=/usr/bin/python3
+command -v gnuplot >/dev/null || { echo "SKIP: gnuplot (Debian: gnuplot-nox)"; exit 77; }
+$python -c 'import scipy, statsmodels' 2>/dev/null || { echo "SKIP: SciPy and statsmodels (Debian: python3-scipy python3-statsmodels)"; exit 77; }
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failed=0
+printf '[study]\nparticipants = 1\ntaps = 1\ntraining = 0\nattempts = 1\nrecord = none\nsurvey = on\n[validity]\nband_low = 0.06\nband_high = 0.08\n' >"$folder/made.study"
+for kind in plain ties missing; do
+  "$BUILD/bin/ethd-study" --quiet "$folder/made.study" --out "$folder/$kind" >"$folder/out" 2>&1 || { cat "$folder/out"; exit 1; }
+  rm -f "$folder/$kind/SHA256SUMS" # the taps are other ones now
+  $python tests/report_figures.py make $kind "$folder/$kind" &&
+    "$BUILD/bin/ethd-report" "$folder/$kind" >"$folder/out" 2>&1 || { cat "$folder/out"; failed=1; continue; }
+  $python -W ignore tests/report_figures.py check "$folder/$kind" || failed=1
+done
+exit $failed

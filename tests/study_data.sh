@@ -1,0 +1,229 @@
+#!/bin/sh
+# A study's data: whose hand, free text, cut journals, sums, participants who leave, stations, orders, sidecars, refusals.
+set -u
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+study=$BUILD/bin/ethd-study
+python3=${PYTHON:-python3}
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+refuse() { # EXIT PATTERN COMMAND..: one line on stderr, and the folders $kept.. stay as they were
+  code=$1 pattern=$2
+  shift 2
+  "$@" >"$folder/out" 2>"$folder/err" </dev/null
+  got=$?
+  [ $got = "$code" ] && [ "$(grep -c . "$folder/err")" = 1 ] && grep -q -e "$pattern" "$folder/err" ||
+    fail "$pattern: exit $got: $(cat "$folder/err")"
+}
+unchanged() { diff -r "$1" "$2" >"$folder/out" || fail "$3: $(head -n 3 "$folder/out")"; }
+
+printf '[study]\nname = small\nparticipants = 2\ntaps = 1\nattempts = 2\ntraining = 1\nsurvey = on\n' >"$folder/small.study"
+"$study" "$folder/small.study" --quiet --out "$folder/whole" >"$folder/out" 2>&1 || fail "a session: $(cat "$folder/out")"
+cp -r "$folder/whole" "$folder/kept"
+
+# ---- whose hand: each tap says it, another one is refused with the command that goes on ----
+awk -F, 'NR > 1 && ($26 != "simulated" || $27 $28 != "")' "$folder/whole/taps.csv" | grep . && fail "a tap's hand"
+refuse 2 "led by a simulated hand; ethd-study --resume $folder/whole goes on" "$study" --resume "$folder/whole" --screen
+printf '[hand]\nsource = mouse\n' >"$folder/mouse.study"
+refuse 2 'hand.source: mouse needs --screen' "$study" "$folder/mouse.study" --out "$folder/x"
+printf '[study]\nspeeds = 0.2\nparticipants = 2\nattempts = 3\ntraining = 1\n[hand]\nsource = recorded\nmotion = optotrak_tap_mit\n' >"$folder/recorded.study"
+refuse 2 'recorded hands need no --screen' env ETHD_MOTION_DIR=tests/motion "$study" "$folder/recorded.study" --out "$folder/x" --screen
+[ ! -e "$folder/x" ] || fail "a refusal has written"
+
+# ---- recorded movements: in the folder, in the hash, at each tap; nothing else is needed to go on ----
+ETHD_MOTION_DIR=tests/motion "$study" "$folder/recorded.study" --quiet --participant 1 --out "$folder/recorded" >"$folder/out" 2>&1 || fail "recorded: $(cat "$folder/out")"
+env ETHD_MOTION_DIR=/nowhere "$study" --quiet --resume "$folder/recorded" >"$folder/out" 2>&1 || fail "movements of the folder: $(cat "$folder/out")"
+[ "$(awk -F, 'NR > 1 { print $26, $27 }' "$folder/recorded/taps.csv" | sort -u | grep -c '^recorded .*_tap.csv$')" = 2 ] || fail "the movements of the taps: $(cut -d, -f26-27 "$folder/recorded/taps.csv" | sort -u)"
+hash=$(cd "$folder/recorded" && LC_ALL=C && cat study.ini config.ini scene.scene device.plant movements/*.csv | sha256sum | cut -d' ' -f1)
+grep -q "^hash $hash$" "$folder/recorded/versions.txt" || fail "the hash isn't what versions.txt says"
+cp -r "$folder/recorded" "$folder/moved"
+for f in "$folder"/moved/movements/*; do echo >>"$f"; break; done
+refuse 2 'begun with other files' "$study" --resume "$folder/moved"
+
+# ---- free text is data ----
+printf 'note x,P01,2,abort,y\nnote "quoted", =1+1\nnote ,abort,\n' |
+  "$study" "$folder/small.study" --ask --quiet --participant 2 --out "$folder/notes" >"$folder/out" 2>&1 || fail "notes: $(cat "$folder/out")"
+"$study" --quiet --resume "$folder/notes" >"$folder/out" 2>&1 || fail "after notes: $(cat "$folder/out")"
+sort "$folder/notes/taps.csv" >"$folder/a"; sort "$folder/whole/taps.csv" | cmp - "$folder/a" || fail "a note has changed the taps"
+"$python3" - "$folder/notes" <<'END' || fail "the notes"
+import csv, sys
+events = [r["detail"] for r in csv.DictReader(open(sys.argv[1] + "/events.csv", newline="")) if r["event"] == "note"]
+assert events == ["x,P01,2,abort,y", '"quoted", =1+1', ",abort,"], events
+people = {r["participant"]: r["status"] for r in csv.DictReader(open(sys.argv[1] + "/participants.csv", newline=""))}
+assert people == {"P01": "complete", "P02": "complete"}, people
+END
+
+# ---- a journal cut at any byte: gone on with, and the same taps; another damage: refused, nothing written ----
+size=$(wc -c <"$folder/whole/journal") cuts=0
+for at in $("$python3" -c "print(*sorted({0, 1, 5, 70, 90, 100, $size - 1} | set(range(37, $size, 449))))"); do
+  rm -rf "$folder/cut"
+  cp -r "$folder/whole" "$folder/cut"
+  head -c "$at" "$folder/whole/journal" >"$folder/cut/journal"
+  "$study" --quiet --resume "$folder/cut" >"$folder/out" 2>&1 && cmp "$folder/whole/taps.csv" "$folder/cut/taps.csv" && cmp "$folder/whole/survey.csv" "$folder/cut/survey.csv" ||
+    fail "cut at byte $at: $(cat "$folder/out")"
+  "$study" --verify "$folder/cut" >"$folder/out" 2>&1 || fail "sums, cut at byte $at: $(cat "$folder/out")"
+  cuts=$((cuts + 1))
+done
+cp -r "$folder/whole" "$folder/bad"
+"$python3" - "$folder/bad/journal" <<'END'
+import sys
+b = bytearray(open(sys.argv[1], "rb").read()); b[len(b) // 2] ^= 1; open(sys.argv[1], "wb").write(b)
+END
+cp -r "$folder/bad" "$folder/before"
+refuse 2 'journal:[0-9]*: a damaged line before others' "$study" --resume "$folder/bad"
+unchanged "$folder/bad" "$folder/before" "a damaged journal"
+refuse 2 'a damaged line' "$study" --resume "$folder/bad" --exclude 1 --reason x
+unchanged "$folder/bad" "$folder/before" "a damaged journal"
+# of an earlier version, which has no line for the hand
+cp "$folder/whole/journal" "$folder/bad/journal"
+sed -i 2d "$folder/bad/journal" && cp "$folder/bad/journal" "$folder/before/journal"
+refuse 2 "of an earlier version, which didn't keep whose hand tapped" "$study" --resume "$folder/bad"
+unchanged "$folder/bad" "$folder/before" "an earlier version's folder"
+# lines of nobody, of nothing, out of order, though their sums are right
+for line in 'tap P01,1,training,9,smooth,low,1,1,1,ok,,,,,,,,,,,,,,,,simulated,,' 'answer P01,2,9,1' 'answer P01,2,1,6' 'answer P09,2,1,1' \
+  'hand paw' 'survey P01,99,smooth,low,,,' 'event ,P77,1,abort,' 'wish x'; do
+  cp "$folder/whole/journal" "$folder/bad/journal"
+  printf '%s #%.8s\n' "$line" "$(printf %s "$line" | sha256sum)" >>"$folder/bad/journal"
+  refuse 2 'journal:[0-9]*: not a line of this study' "$study" --resume "$folder/bad"
+done
+
+# ---- sums: of every file, as sha256sum has them; what was changed later doesn't get a new one ----
+"$study" --verify "$folder/whole" >"$folder/out" 2>&1 || fail "sums: $(cat "$folder/out")"
+(cd "$folder/whole" && sha256sum --quiet -c SHA256SUMS) || fail "sha256sum"
+[ "$(wc -l <"$folder/whole/SHA256SUMS")" = "$(find "$folder/whole" -type f ! -name SHA256SUMS ! -name '.*' | wc -l)" ] || fail "not every file has a sum"
+tap=$(ls "$folder/whole/taps" | head -n 1)
+for file in "taps/$tap/truth.npy" taps.csv config.ini "taps/$tap/tick.npy"; do
+  rm -rf "$folder/bad"
+  cp -r "$folder/whole" "$folder/bad"
+  printf ' ' >>"$folder/bad/$file"
+  refuse 1 "$file isn't what it was, and so 1 of its files" "$study" --verify "$folder/bad"
+done
+"$study" --quiet --resume "$folder/bad" >"$folder/out" 2>&1
+refuse 1 "tick.npy isn't what it was" "$study" --verify "$folder/bad"
+rm "$folder/bad/taps/$tap/tap.csv"
+"$study" --quiet --resume "$folder/bad" >"$folder/out" 2>&1
+refuse 1 "tap.csv is missing .*, and so 2 of" "$study" --verify "$folder/bad"
+echo mine >"$folder/bad/more.txt"
+refuse 1 "so 3 of" "$study" --verify "$folder/bad"
+rm "$folder/bad/SHA256SUMS"
+refuse 1 'SHA256SUMS: No such file' "$study" --verify "$folder/bad"
+printf '%064d  ../kept/journal\n' 0 >"$folder/bad/SHA256SUMS"
+refuse 1 'SHA256SUMS:1: not a line of sha256sum about a file in this folder' "$study" --verify "$folder/bad"
+
+# ---- who leaves stays on record, and may come back ----
+status() { awk -F, -v id="$2" '$1 == id { print $2, $3 }' "$1/participants.csv"; }
+rm -rf "$folder/bad"
+cp -r "$folder/whole" "$folder/people"
+"$study" --resume "$folder/people" --withdraw 1 --reason 'moved away, "for good"' >"$folder/out" 2>&1 || fail "withdraw: $(cat "$folder/out")"
+[ "$(status "$folder/people" P01)" = 'withdrawn 0' ] && grep -q 'P01,withdrawn,0,"moved away, ""for good""",simulated,' "$folder/people/participants.csv" || fail "withdrawn: $(cat "$folder/people/participants.csv")"
+"$study" --resume "$folder/people" --exclude 2 --reason 'told another task' >"$folder/out" 2>&1
+[ "$(status "$folder/people" P02)" = 'excluded 0' ] || fail "excluded: $(cat "$folder/people/participants.csv")"
+"$study" --resume "$folder/people" --include 2 --reason 'was told the right one' >"$folder/out" 2>&1
+[ "$(status "$folder/people" P02)" = 'complete 1' ] || fail "included: $(cat "$folder/people/participants.csv")"
+cmp "$folder/people/taps.csv" "$folder/whole/taps.csv" && "$study" --verify "$folder/people" >"$folder/out" 2>&1 || fail "a decision has changed the taps: $(cat "$folder/out")"
+refuse 2 'participant 9: 1 to 2 are allowed' "$study" --resume "$folder/people" --exclude 9 --reason x
+refuse 2 'need --resume DIR and --reason WORDS' sh -c "'$study' --resume '$folder/people' --exclude 1 2>&1 | head -n 1 >&2; exit 2"
+echo abort | "$study" "$folder/small.study" --ask --quiet --out "$folder/aborted" >"$folder/out" 2>&1
+[ "$(status "$folder/aborted" P01)" = 'aborted 0' ] && [ "$(status "$folder/aborted" P02)" = 'complete 1' ] || fail "aborted: $(cat "$folder/aborted/participants.csv")"
+"$study" --resume "$folder/aborted" --include 1 --reason 'a wrong key' >"$folder/out" 2>&1 && [ "$(status "$folder/aborted" P01)" = 'incomplete 1' ] || fail "back: $(cat "$folder/aborted/participants.csv")"
+"$study" --resume "$folder/aborted" --quiet >"$folder/out" 2>&1 && [ "$(status "$folder/aborted" P01)" = 'complete 1' ] || fail "back at work: $(cat "$folder/out")"
+sort "$folder/aborted/taps.csv" >"$folder/a"; sort "$folder/whole/taps.csv" | cmp - "$folder/a" || fail "other taps after an abort"
+
+# ---- stations ----
+for k in 1 2; do "$study" "$folder/small.study" --quiet --participant $k --out "$folder/station$k" >"$folder/out" 2>&1 || fail "station $k"; done
+"$study" --merge "$folder/station1" "$folder/station2" --out "$folder/both" >"$folder/out" 2>&1 || fail "stations: $(cat "$folder/out")"
+for what in taps.csv survey.csv participants.csv orders.csv study.ini versions.txt; do cmp "$folder/whole/$what" "$folder/both/$what" || fail "stations: $what"; done
+diff -r "$folder/whole/taps" "$folder/both/taps" >"$folder/out" || fail "stations' taps: $(head -n 3 "$folder/out")"
+"$study" --verify "$folder/both" >"$folder/out" 2>&1 || fail "stations' sums: $(cat "$folder/out")"
+"$study" --quiet --resume "$folder/both" >"$folder/out" 2>&1 && grep -q ': 0 taps' "$folder/out" || fail "going on with stations of one hand: $(cat "$folder/out")"
+cp -r "$folder/both" "$folder/before2"
+refuse 1 "isn't empty; another folder is needed" "$study" --merge "$folder/station1" "$folder/station2" --out "$folder/both"
+unchanged "$folder/both" "$folder/before2" "a merge over another"
+refuse 1 'P01 has tapped there and in' "$study" --merge "$folder/station1" "$folder/whole" --out "$folder/x"
+refuse 1 'its study, configuration, walls or plant are other ones' "$study" --merge "$folder/station1" "$folder/recorded" --out "$folder/x"
+printf ' ' >>"$folder/station2/taps/$(ls "$folder/station2/taps" | head -n 1)/truth.npy"
+refuse 1 "truth.npy isn't what it was" "$study" --merge "$folder/station1" "$folder/station2" --out "$folder/x"
+rm "$folder/station2/SHA256SUMS"
+rm -rf "$folder/x"
+refuse 1 'SHA256SUMS: No such file' "$study" --merge "$folder/station1" "$folder/station2" --out "$folder/x"
+[ ! -e "$folder/x/journal" ] || fail "a merge that failed has a journal"
+
+# ---- orders: printed, kept, and counted here ----
+printf '[study]\nparticipants = 12\nstrategies = abrupt,smooth,offset\norder = latin\ntraining = 1\n' >"$folder/orders.study"
+"$study" "$folder/orders.study" --plan >"$folder/plan" || fail "--plan"
+grep -q '^   12  first  low 4:4:4  high 4:4:4  last  low 4:4:4  high 4:4:4  neighbours 4 to 4  balanced$' "$folder/plan" || fail "the balance: $(tail -n 3 "$folder/plan")"
+grep -q WARNING "$folder/plan" && fail "a warning about 12"
+sed 's/= 12/= 9/' "$folder/orders.study" >"$folder/nine.study"
+"$study" "$folder/nine.study" --plan | grep -q "^WARNING: order = latin isn't balanced with 9 participants; 12 are$" || fail "no warning about 9"
+sed 's/latin/paper/' "$folder/orders.study" >"$folder/paper.study"
+"$study" "$folder/paper.study" --plan | grep -q 'no number near that is, but order = latin with 12$' || fail "no warning about the paper's order"
+sed 's/^order.*/&\nseed = 2/' "$folder/orders.study" >"$folder/seed.study"
+"$study" "$folder/seed.study" --plan | head -n 12 | cmp -s - "$folder/plan" && fail "latin doesn't take the seed"
+"$study" "$folder/orders.study" --quiet --participant 1 --out "$folder/orders" >"$folder/out" 2>&1 || fail "orders: $(cat "$folder/out")"
+"$python3" - "$folder" <<'END' || fail "the orders"
+import collections, csv, sys
+rows = list(csv.DictReader(open(sys.argv[1] + "/orders/orders.csv")))
+plan = [l.split() for l in open(sys.argv[1] + "/plan")][:12]
+for person in plan:
+    mine = [r for r in rows if r["participant"] == person[0]]
+    words = [("(%s-%s)" if r["part"] == "training" else "%s-%s") % (r["transition"], r["speed"]) for r in mine]
+    assert words == person[1:], (words, person)
+for speed in ("low", "high"):
+    first, last, pair = collections.Counter(), collections.Counter(), collections.Counter()
+    for person in plan:
+        order = [r["transition"] for r in rows if r["participant"] == person[0] and r["part"] == "test" and r["speed"] == speed]
+        first[order[0]] += 1; last[order[-1]] += 1; pair.update(zip(order, order[1:]))
+    assert set(first.values()) == set(last.values()) == {4} and len(pair) == 6 and set(pair.values()) == {4}, (first, last, pair)
+done = {r["block"]: (r["part"], r["transition"], r["speed"]) for r in csv.DictReader(open(sys.argv[1] + "/orders/taps.csv"))}
+assert done == {r["block"]: (r["part"], r["transition"], r["speed"]) for r in rows if r["participant"] == "P01"}
+END
+
+# ---- sidecars: every column of every table, with its unit where its name has one ----
+"$python3" - "$folder/whole" <<'END' || fail "the sidecars"
+import csv, json, sys
+units = {"_m": "m", "_mps": "m/s", "_s": "s", "_ms": "ms", "_n": "N"}
+for name in ("taps", "survey", "events", "participants", "orders"):
+    header = next(csv.reader(open(f"{sys.argv[1]}/{name}.csv")))
+    sidecar = json.load(open(f"{sys.argv[1]}/{name}.json"))
+    assert list(sidecar) == header, (name, header)
+    assert all(v["Description"] for v in sidecar.values())
+    for column in header:
+        for end, unit in units.items():
+            if column.endswith(end): assert sidecar[column]["Units"] == unit, column
+taps = json.load(open(sys.argv[1] + "/taps.json"))
+for row in csv.DictReader(open(sys.argv[1] + "/taps.csv")):
+    for column, value in row.items():
+        if "Levels" in taps[column]: assert value in taps[column]["Levels"], (column, value)
+assert json.load(open(sys.argv[1] + "/survey.json"))["q3"]["Levels"]["5"] == "very unnatural"
+assert json.load(open(sys.argv[1] + "/dataset_description.json"))["Name"] == "small"
+END
+
+# ---- nobody's files are written over: a study.ini of somebody's, or the same one beside other files ----
+for what in study.ini config.ini taps.csv taps.json; do
+  mkdir "$folder/foreign"
+  cp "$folder/small.study" "$folder/foreign/study.ini"
+  echo mine >"$folder/foreign/$what"
+  cp -r "$folder/foreign" "$folder/foreign.before"
+  refuse 2 "foreign: holds $what, of another study or your own" "$study" "$folder/small.study" --out "$folder/foreign"
+  rm -f "$folder/foreign/.lock"
+  unchanged "$folder/foreign" "$folder/foreign.before" "a foreign $what"
+  rm -r "$folder/foreign" "$folder/foreign.before"
+done
+
+# ---- study files that can't be ----
+bad() { # PATTERN TEXT
+  printf "$2" >"$folder/bad.study"
+  refuse 2 "$1" "$study" "$folder/bad.study" --out "$folder/nothing"
+  [ ! -e "$folder/nothing" ] || fail "$1: something was written"
+}
+bad 'bad.study:2: survey.q1: stands there without study.survey = on' '[survey]\nq1 = Why?\n'
+bad 'bad.study:4: survey.q2: stands there without the questions before it' '[study]\nsurvey = on\n[survey]\nq2 = Why?\n'
+bad 'bad.study:5: survey.q1: one answer' '[study]\nsurvey = on\n[survey]\nq1 = Why?\nq1_answers = so\n'
+bad 'bad.study:5: survey.q1: over nine answers' '[study]\nsurvey = on\n[survey]\nq1 = Why?\nq1_answers = a|b|c|d|e|f|g|h|i|j\n'
+bad 'bad.study:4: survey.q10: no key of this section; q1 to q9' '[study]\nsurvey = on\n[survey]\nq10 = Why?\n'
+bad 'bad.study:2: pages.welcome: no key of this section; consent1 to' '[pages]\nwelcome = hello\n'
+bad 'bad.study:2: study.rest: found "-1"' '[study]\nrest = -1\n'
+bad 'bad.study:2: hand.source: found "paw", simulated|recorded|people|mouse' '[hand]\nsource = paw\n'
+unchanged "$folder/whole" "$folder/kept" "the session that all of this began with"
+[ $failed = 0 ] && echo "journals cut at $cuts bytes"
+exit $failed

@@ -1,0 +1,205 @@
+"""tests/study_whole.sh: leads two stations through a study, kills them, and judges what is left.
+   study_whole.py STUDY FOLDER | --judge FOLDER TAPS ATTEMPTS"""
+import csv, os, random, re, subprocess, sys, threading, time
+
+KILLS = {"simulated": 6, "mouse": 4}
+ANSWERS = ["2", "4"]  # that the mouse's people give
+
+
+def journal(folder):
+    try:
+        lines = open(folder + "/journal", "rb").read().split(b"\n")[:-1]
+    except FileNotFoundError:
+        return []
+    return [l.decode() for l in lines]
+
+
+class Station:
+    """A session that is begun, or gone on with, and killed so many times at random."""
+
+    def __init__(self, study, folder, name, options):
+        self.command = [study, "--quiet"] + options
+        self.study, self.folder, self.name = folder + "/whole.study", folder + "/" + name, name
+        self.kept = []  # lines of the journal as they stood at the last kill
+        self.random = random.Random(name)
+        self.kills = 0
+
+    def start(self):
+        begun = os.path.exists(self.folder + "/journal")
+        where = ["--resume", self.folder] if begun else [self.study, "--out", self.folder]
+        self.run = subprocess.Popen(self.command + where, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def kill_after(self, seconds):
+        timer = threading.Timer(seconds, self.run.kill)
+        timer.start()
+        return timer
+
+    def ended(self):
+        """After its end: by a kill or by itself. What was written down stays."""
+        out, err = self.run.communicate()
+        now = journal(self.folder)
+        assert now[: len(self.kept)] == self.kept, f"{self.name}: lines are lost"
+        self.kept = now
+        if self.run.returncode == -9:
+            self.kills += 1
+            return False
+        assert self.run.returncode == 0, (self.name, self.run.returncode, out, err)
+        return True
+
+
+def simulated(study, folder):
+    """Killed while it is at work; when it ends sooner, another one begins."""
+    station = Station(study, folder, "simulated", ["--participant", "1-12"])
+    while True:
+        station.start()
+        timer = station.kill_after(station.random.uniform(0, 0.5) if station.kills < KILLS["simulated"] else 3600)
+        over = station.ended()
+        timer.cancel()
+        if over and station.kills >= KILLS["simulated"]:
+            break
+        if over:
+            subprocess.run(["rm", "-r", station.folder], check=True)
+            station.kept = []
+    alone = Station(study, folder, "alone", ["--participant", "1-12"])
+    alone.start()
+    assert alone.ended()
+    for name in ("taps.csv", "survey.csv", "participants.csv"):
+        assert open(f"{folder}/alone/{name}").read() == open(f"{station.folder}/{name}").read(), name
+    return station.kills
+
+
+class Hand:
+    """The pointer and the keys of whoever sits before the screen."""
+
+    def __init__(self, line):
+        number = re.findall(r"-?\d+\.?\d*(?:e[+-]?\d+)?", line)
+        _, _, self.x0, self.scale, self.y0, _, self.start, self.middle, self.wall = map(float, number)
+        self.tool = subprocess.Popen(["xdotool", "-"], stdin=subprocess.PIPE, text=True)
+
+    def say(self, words):
+        self.tool.stdin.write(words + "\n")
+        self.tool.stdin.flush()
+
+    def keys(self, names):
+        for name in names.split():
+            self.say("key " + name)
+            time.sleep(0.1)
+
+    def move(self, x):
+        self.say(f"mousemove {round(self.x0 + self.scale * x)} {round(self.y0 - self.scale * self.middle)}")
+
+    def tap(self):
+        """To the start, a wait there, and at 0.2 m/s into the wall."""
+        self.move(self.start)
+        time.sleep(1.0)
+        begin = time.monotonic()
+        while (t := time.monotonic() - begin) < 0.35:
+            self.move(self.start - min(0.2 * t, self.start - self.wall + 0.006))
+            time.sleep(0.004)
+        time.sleep(0.3)
+
+
+def last_of(folder):
+    """The journal's last tap, answer or survey."""
+    return next((l for l in reversed(journal(folder)) if l.split(" ")[0] in ("tap", "answer", "survey")), "")
+
+
+def answer(hand, station):
+    """What is due by the journal, where questions are asked; after each key that is taken the journal grows."""
+    while station.run.poll() is None:
+        last = last_of(station.folder)
+        kind, cells = last.split(" ")[0], last.split(" ")[-2].split(",") if last else []
+        due = f"{ANSWERS[0]} Return" if kind == "tap" else \
+            "" if kind != "answer" else f"{ANSWERS[1]} Return" if cells[2] == "1" else "Return"
+        if not due:
+            return
+        hand.keys(due)
+        until = time.monotonic() + (5 if kind == "answer" else 1)
+        while last_of(station.folder) == last and station.run.poll() is None:
+            if time.monotonic() > until:
+                return
+            time.sleep(0.05)
+
+
+def cycle(hand, station):
+    """Whatever page is shown, some of these keys are its own and none of them harms: consent, instruction, block, a tap,
+    answers, their confirmation, the hand-over, the end."""
+    lines = journal(station.folder)
+    cells = sum(r["participant"] == "P13" and r["part"] == "test" for r in rows(station.folder + "/orders.csv"))
+    surveyed = [l.split(" ")[1][:3] for l in lines if l.startswith("survey ")]
+    hand.keys("y space")
+    if surveyed.count("P13") == cells and not any(l.startswith("tap P14") for l in lines):
+        hand.keys("Return P 1 4 Return y space")
+    hand.keys("space")
+    hand.tap()
+    answer(hand, station)
+    hand.keys("space")
+
+
+def mouse(study, folder):
+    station = Station(study, folder, "mouse", ["--participant", "13-14", "--screen"])
+    while True:
+        station.start()
+        timer = station.kill_after(station.random.uniform(0.3, 5) if station.kills < KILLS["mouse"] else 3600)
+        line = station.run.stdout.readline()
+        if line:
+            hand = Hand(line)
+            deadline = time.monotonic() + 600
+            while station.run.poll() is None and time.monotonic() < deadline:
+                cycle(hand, station)
+            hand.tool.kill()
+            hand.tool.wait()
+        over = station.ended()
+        timer.cancel()
+        if over:
+            return station.kills
+
+
+def rows(path):
+    return list(csv.DictReader(open(path, newline="")))
+
+
+def judge(folder, taps, attempts):
+    """The merged folder against its plan, its own tap folders, and the stations."""
+    both = folder + "/both"
+    table, plan = rows(both + "/taps.csv"), rows(both + "/orders.csv")
+    planned = {(r["participant"], r["block"]): r for r in plan}
+    blocks = {}
+    for r in table:
+        p = planned[r["participant"], r["block"]]
+        assert all(r[k] == p[k] for k in ("part", "transition", "speed")), ("another block's", r)
+        assert r["hand"] == ("mouse" if r["participant"] > "P12" else "simulated"), ("another hand's", r)
+        assert bool(r["utc"]) == (r["hand"] == "mouse"), r
+        blocks.setdefault((r["participant"], r["block"]), []).append(r)
+    assert set(blocks) == set(planned), ("blocks are missing", set(planned) ^ set(blocks))
+    for key, mine in blocks.items():
+        assert [int(r["attempt"]) for r in mine] == list(range(1, len(mine) + 1)), ("lost or doubled", key)
+        valid = [r["valid"] == "1" for r in mine]
+        if mine[0]["part"] == "test":
+            assert (sum(valid) == taps and valid[-1]) or len(mine) == attempts, ("ended too soon", key)
+    # each row has its folder, which holds the same row, and no folder is without
+    names = {f"{r['participant']}-{int(r['block']):02d}-{int(r['attempt']):03d}": r for r in table}
+    assert len(names) == len(table) and set(os.listdir(both + "/taps")) == set(names), "folders"
+    for name, r in names.items():
+        assert rows(f"{both}/taps/{name}/tap.csv") == [r], name
+    assert len(table) == sum(len(rows(f"{folder}/{s}/taps.csv")) for s in ("simulated", "mouse"))
+    # the survey: once a cell, as it was answered
+    cells = [k for k, p in planned.items() if p["part"] == "test"]
+    survey = rows(both + "/survey.csv")
+    assert sorted((r["participant"], r["block"]) for r in survey) == sorted(cells), "survey"
+    for r in survey:
+        assert [r["q1"], r["q2"]] == (ANSWERS if r["participant"] > "P12" else ["", ""]), r
+    people = rows(both + "/participants.csv")
+    assert [(r["participant"], r["status"], r["analysed"]) for r in people] == \
+        [(f"P{k:02d}", "complete", "1") for k in range(1, 15)], people
+    agreed = [r["participant"] for r in rows(both + "/events.csv") if r["event"] == "consent"]
+    assert agreed == ["P13", "P14"], agreed
+    print(f"{len(table)} taps of {len(people)} people in {len(blocks)} blocks, {len(survey)} questionnaires")
+
+
+if sys.argv[1] == "--judge":
+    judge(sys.argv[2], int(sys.argv[3]), int(sys.argv[4]))
+else:
+    kills = simulated(*sys.argv[1:]), mouse(*sys.argv[1:])
+    assert sum(kills) >= sum(KILLS.values()), kills
+    print(f"killed {kills[0]} and {kills[1]} times")

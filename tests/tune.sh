@@ -1,0 +1,68 @@
+#!/bin/sh
+# ethd-tune: what it chooses is better than what it began from by another program's figures, keeps its margins by another
+# program's bounds, and is the same from one process, two, or one that was killed on the way. Bad input.
+set -u
+bin=$BUILD/bin
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+failed=0
+fail() { echo "FAILED: $*"; failed=1; }
+tune() { "$bin/ethd-tune" --plant n --points 16 --taps 40 "$@"; }
+cd "$folder" || exit 1
+
+tune --out one.ini --csv one.csv --work one >one.txt 2>err || fail "a search: $(cat err)"
+tune --out two.ini --csv two.csv --work two --jobs 2 >two.txt 2>err || fail "two processes: $(cat err)"
+for name in ini csv txt; do cmp one.$name two.$name || fail "two processes give another .$name"; done
+
+# Ended in the middle of a line; the same command goes on.
+mkdir three && cp one/tune.txt three/
+head -c "$(($(wc -c <one/scores-1-of-1.csv) / 2))" one/scores-1-of-1.csv >three/scores-1-of-1.csv
+tune --out three.ini --csv three.csv --work three >three.txt 2>err || fail "gone on: $(cat err)"
+for name in ini csv txt; do cmp one.$name three.$name || fail "a search that was ended gives another .$name"; done
+cmp one/scores-1-of-1.csv three/scores-1-of-1.csv || fail "the scores of the search that was ended differ"
+
+# Its margins are ethd-check's: no bound exceeded, nothing thin.
+"$bin/ethd-check" one.ini >check.txt 2>err || fail "ethd-check refuses it: $(cat err)"
+sed -n '/^stability/,/^passivity/p' check.txt | grep -E 'EXCEEDED|thin' && fail "thin margins by ethd-check"
+
+# Its taps are ethd-tap's: fewer early contacts, and none of the paper's figures of the wall is worse.
+figure() { # CONFIG COLUMN: of the high speed's row
+  "$bin/ethd-tap" --config "$1" --plant n --transition offset --speed high --taps 200 --seed 7 --csv taps.csv >/dev/null 2>err ||
+    fail "ethd-tap $1: $(cat err)"
+  "${PYTHON:-python3}" - "$2" <<'END'
+import csv, sys
+rows = list(csv.DictReader(open("taps.csv")))
+valid = [r for r in rows if r["reason"] == "ok"]
+print(sum(r["reason"] == "early-contact" for r in rows) / len(rows) if sys.argv[1] == "early"
+      else sum(float(r[sys.argv[1]]) for r in valid) / len(valid))
+END
+}
+for what in early eps_m d_max_m; do
+  was=$(figure "$bin/../share/ethd/n.ini" $what) is=$(figure one.ini $what)
+  echo "$what at high speed: $was -> $is"
+  "${PYTHON:-python3}" -c "import sys; sys.exit(not $is <= 1.1 * $was)" || fail "$what got worse: $was -> $is"
+done
+
+refuse() { # CODE TEXT ARGUMENTS...
+  code=$1 text=$2
+  shift 2
+  "$bin/ethd-tune" "$@" >out 2>err
+  is=$?
+  [ $is = "$code" ] && [ "$(wc -l <err)" -le 3 ] && grep -q -- "$text" err || fail "$* gives $is: $(cat err)"
+}
+refuse 2 'plant is needed'
+refuse 2 'section.key=LOW:HIGH' --plant n --range contact.k_e
+refuse 2 'section.key=LOW:HIGH' --plant n --range contact.k_e=4:2
+refuse 2 'nothing' --plant n --range nothing.k=1:2
+refuse 2 'tracking, brake, wall and calm' --plant n --prefer speed
+refuse 2 'I/N' --plant n --work x --shard 3/2
+refuse 2 'need --work' --plant n --jobs 2
+refuse 2 'needs --csv' --plant n --plot x.png
+refuse 2 'hardly any gains' --plant n --points 8 --gain-margin 50
+refuse 2 'no such file\|No such file' --plant nowhere.plant
+refuse 1 'another --work' --plant n --points 16 --taps 40 --seed 2 --work one
+printf 'round,number\n0,1,2\n' >three/scores-1-of-1.csv
+refuse 2 'scores-1-of-1.csv' --plant n --points 16 --taps 40 --work three
+cp one.ini own.ini
+refuse 2 'only read' --config own.ini --out own.ini
+exit $failed

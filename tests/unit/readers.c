@@ -1,0 +1,236 @@
+#include "unit/readers.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "ethd/scene.h"
+#include "inject/script.h"
+#include "proximity_ring/decoder.h"
+#include "record/npy_parts.h"
+#include "report/sheet.h"
+#include "servo/map.h"
+#include "study/protocol.h"
+#include "svg/svg.h"
+#include "text/csv.h"
+#include "text/ini.h"
+
+static int judged(ethd_status status, const char *message) {
+  if (status == ETHD_OK) return 1;
+  return status < 0 && message[0] == 'x' && strchr(message, ':') && !strpbrk(message, "\n\r\033") ? 0 : -1;
+}
+
+/* ---- scenes and drawings ---- */
+
+static int read_scene(const char *text, size_t length) {
+  ethd_scene *scene;
+  ethd_error error;
+  ethd_status status = ethd_scene_parse(text, length, &scene, &error);
+  ethd_scene_destroy(scene);
+  if (status == ETHD_OK) return 1;
+  return !scene && error.status == status && error.name[0] && !strpbrk(error.name, "\n\r\033") ? 0 : -1;
+}
+
+static void grow_scene(FILE *out, int rows) {
+  for (int i = 0; i < rows; i++) fprintf(out, "circle %d.5 %d 0.25 # %d\n", i % 997, i / 997, i);
+}
+
+static int read_svg(const char *text, size_t length) {
+  const ethd_svg_options options = {1e-4, (double)NAN, {0, 0}};
+  char message[ETHD_MESSAGE_MAX] = "";
+  ethd_svg_notes notes;
+  ethd_scene *scene = NULL;
+  ethd_status status = ethd_svg_parse(text, length, "x", &options, &scene, &notes, message);
+  if (status == ETHD_OK) ethd_scene_destroy(scene);
+  return judged(status, message);
+}
+
+static void grow_svg(FILE *out, int rows) {
+  fputs("<svg xmlns='http://www.w3.org/2000/svg' width='9000mm' height='9000mm'>\n", out);
+  for (int i = 0; i < rows; i++) fprintf(out, "<circle cx='%d' cy='%d' r='0.25'/>\n", i % 997, i / 997);
+  fputs("</svg>\n", out);
+}
+
+/* ---- tables ---- */
+
+static int read_ini(const char *text, size_t length) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  ethd_ini ini;
+  ethd_status status = ethd_ini_parse(text, length, "x", "plugins.file", &ini, message);
+  if (status == ETHD_OK) ethd_ini_free(&ini);
+  return judged(status, message);
+}
+
+static void grow_ini(FILE *out, int rows) { /* comments, for keys are at most 512 */
+  fputs("[a]\nkey = 1\n", out);
+  for (int i = 0; i < rows; i++) fprintf(out, "; %d: a comment of some length, and nothing else\n\n", i);
+}
+
+static int read_csv(const char *text, size_t length) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  ethd_csv csv;
+  ethd_status status = ethd_csv_parse(text, length, "x", NULL, &csv, message);
+  if (status == ETHD_OK) ethd_csv_free(&csv);
+  return judged(status, message);
+}
+
+static void grow_csv(FILE *out, int rows) {
+  fputs("t_s,x_m,y_m\n", out);
+  for (int i = 0; i < rows; i++) fprintf(out, "%d.001,0.%d,-1e-%d\n", i, i, i % 99);
+}
+
+static int read_sheet(const char *text, size_t length) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  ethd__sheet sheet;
+  ethd_status status = ethd__sheet_parse(text, length, "x", &sheet, message);
+  if (status == ETHD_OK) ethd__sheet_free(&sheet);
+  return judged(status, message);
+}
+
+static void grow_sheet(FILE *out, int rows) { /* a survey */
+  fputs("participant,strategy,real,note\n", out);
+  for (int i = 0; i < rows; i++) fprintf(out, "p%d,offset,%d,\"it felt \"\"real\"\", mostly\"\n", i, i % 7 + 1);
+}
+
+/* ---- recordings ---- */
+
+static int read_npy(const char *text, size_t length) {
+  static const ethd_column columns[] = {{"n", "1", 1, 0, 'i'}, {"x", "m", 16, 8, 'f'}, {NULL, NULL, 0, 0, 0}};
+  char message[ETHD_MESSAGE_MAX] = "";
+  size_t data = 0, count = 0;
+  ethd_status status = ethd__npy_parse(text, length, "x", columns, 136, &data, &count, message);
+  if (status == ETHD_OK && (data > length || count > (length - data) / 136)) return -1;
+  return judged(status, message);
+}
+
+/* ---- what a device says, and what it is told to do wrong ---- */
+
+static int read_frames(const char *text, size_t length) {
+  ethd__decoder decoder = {0};
+  ethd__ring_frame frame;
+  const uint8_t *at = (const uint8_t *)text, *end = at + length;
+  int frames = 0;
+  for (; ethd__decoder_next(&decoder, &at, end, &frame); frames++) {
+    uint8_t wire[ETHD__FRAME_WIRE];
+    ethd__frame_encode(&frame, wire);
+    if (at - (const uint8_t *)text < ETHD__FRAME_WIRE || memcmp(wire, at - ETHD__FRAME_WIRE, sizeof wire) != 0)
+      return -1;
+  }
+  return frames > 0;
+}
+
+static void grow_frames(FILE *out, int rows) {
+  for (int i = 0; i < rows; i++) {
+    uint8_t wire[ETHD__FRAME_WIRE];
+    ethd__frame_encode(&(ethd__ring_frame){.type = ETHD__FRAME_TYPE, .seq = (uint16_t)i, .t_us = 2000u * (unsigned)i},
+                       wire);
+    fwrite(wire, 1, sizeof wire, out);
+  }
+}
+
+static int read_map(const char *text, size_t length) {
+  static ethd__servo_map map;
+  char message[ETHD_MESSAGE_MAX] = "";
+  return judged(ethd__servo_map_parse(text, length, "x", &map, message), message);
+}
+
+static int read_script(const char *text, size_t length) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  ethd__script script;
+  ethd_status status = ethd__script_parse(text, length, "x", 0.001, &script, message);
+  ethd__script_free(&script);
+  return judged(status, message);
+}
+
+static void grow_script(FILE *out, int rows) {
+  for (int i = 0; i < rows; i++) fprintf(out, "%d.25 q1 offset by=0.5 for=0.1 # %d\n", i, i);
+}
+
+/* ---- studies ---- */
+
+static int read_protocol(const char *text, size_t length) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  ethd__protocol protocol;
+  ethd_status status = ethd__protocol_parse(text, length, "x", ".", &protocol, message);
+  if (status == ETHD_OK) ethd__protocol_free(&protocol);
+  return judged(status, message);
+}
+
+/* ---- the table ---- */
+
+static const char *const table_words[] = {",", "\n",   "\"",    "\"\"",  "nan",          "1e999",
+                                          "-", "\r\n", "0x1p9", "1.2.3", "\xef\xbb\xbf", NULL};
+static const char *const ini_words[] = {"[",     "]",         "=",  "\n",   ";",       "#",
+                                        "[a]\n", "key = 1\n", "\t", "\x01", "plugins", NULL};
+static const char *const scene_words[] = {"circle ",
+                                          "polygon ",
+                                          "box 0 0 1 1 0\n",
+                                          "material a k_e=1\n",
+                                          " material=a",
+                                          "halfplane ",
+                                          "\n",
+                                          "1e999",
+                                          "nan",
+                                          "-1",
+                                          "0",
+                                          "#",
+                                          "segment 0 0 1 1\n",
+                                          NULL};
+static const char *const svg_words[] = {
+    "<g>", "</g>", "<path d='M0 0L1 1'/>", "'", "e9", "e-9", "-", ".", "0", "A", "C", "Z", "z", "1e308", "&lt;", "<!--",
+    "-->", NULL};
+static const char *const map_words[] = {
+    "\n[register torque1]\n", "\n", "=", "0x", "step1=", "1e999", "-0.0", "type=f32\n", "[", NULL};
+static const char *const script_words[] = {"q1", "offset", " by=", " for=",  "inf",   "t",
+                                           "-1", "nan",    "\n",   "fault9", "1e999", NULL};
+static const char *const study_words[] = {"[grid]", "[hand]\n", "taps = ", "1e999", "nan", ",",
+                                          "=",      "\n",       "latin",   "-",     NULL};
+static const char *const npy_words[] = {"'descr'",    "'<f8'", "(",    ")", ", ", "99999999999999999999",
+                                        "'shape': (", "\n",    "True", NULL};
+static const char *const frame_words[] = {"\x01", "\x05zzzz", "\xff", "\x1f", NULL};
+
+#define TEXT(text) (text), sizeof(text) - 1
+
+const text_reader text_readers[] = {
+    {"scene",
+     TEXT("material soft k_e=500 b_e=10\nhalfplane -1 0 -0.238 material=soft\ncircle 0.2 0.2 0.01\nbox 1 1 2 1 0.5\n"
+          "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238\npolyline 0 0 1 1 2 0\ncapsule 0 0 1 0 0.1\n"),
+     scene_words, read_scene, grow_scene, 20000},
+    {"svg",
+     TEXT(
+         "<svg xmlns='http://www.w3.org/2000/svg' width='1000mm' height='1000mm'><g fill='none' transform='rotate(30)'>"
+         "<path d='M1 1h5v5z m2 2q3 4 5 6t3-2'/></g><path style='fill:none' d='M10 10C20 40 40-10 50 20A3 4 5 0 1 60 "
+         "40z'/>"
+         "<rect x='1' y='2' width='3' height='4'/><polygon points='0 0 3 0 3 3'/></svg>"),
+     svg_words, read_svg, grow_svg, 8000},
+    {"ini",
+     TEXT("[a]\nkey = 1\nword = some words ; and why\n[b]\nlist = 1, 2, 3\n# more\n[plugins]\nfile = a\nfile = b\n"),
+     ini_words, read_ini, grow_ini, 2000},
+    {"csv", TEXT("t_s,x_m,y_m\n0,1.5,-2e-3\n0.001,,nan\n0.002,7,8\n"), table_words, read_csv, grow_csv, 20000},
+    {"survey", TEXT("participant,strategy,real,note\np1,offset,7,\"so, so\"\np2,smooth,3,\n"), table_words, read_sheet,
+     grow_sheet, 20000},
+    {"npy",
+     TEXT("\x93NUMPY\x01\x00\x76\x00{'descr': [('n', '<i8'), ('x', '<f8', (16,))], 'fortran_order': False, "
+          "'shape': (0,), }                              \n"),
+     npy_words, read_npy, NULL, 0},
+    {"frames",
+     TEXT("\x03\x01\x04\x01\x01\x01\x01\x01\x01\x01\x21\xe8\x03\xd0\x07\xb8\x0b\xa0\x0f\x88\x13\x70"
+          "\x17\x58\x1b\x40\x1f\x28\x23\x10\x27\xf8\x2a\xe0\x2e\xc8\x32\xb0\x36\x98\x3a\x56\xd9\x00"
+          "\x02\x01\x02\x01\x03\x05\x0d\x01\x02\x01\x21\xe9\x03\xd1\x07\xb9\x0b\xa1\x0f\x89\x13\x71"
+          "\x17\x59\x1b\x41\x1f\x29\x23\x11\x27\xf9\x2a\xe1\x2e\xc9\x32\xb1\x36\x99\x3a\x7b\x55\x00"),
+     frame_words, read_frames, grow_frames, 20000},
+    {"map",
+     TEXT("[bus]\ntransport=tcp\nport=a:1\n[register torque1]\ndirection=write\naddress=0\ntype=i16\nunit=Nm\nmin=-1\n"
+          "max=1\n[register position1]\ndirection=read\naddress=1\ntype=u16\nunit=rad\n"),
+     map_words, read_map, NULL, 0},
+    {"inject",
+     TEXT("0.500 q1 freeze for=0.1 # why\n612t rays nan for=inf\n0.7 reading delay by=0.02 for=0.2\n0.9 fault9 set\n"),
+     script_words, read_script, grow_script, 128},
+    {"study",
+     TEXT(
+         "[study]\nname = all\nseed = 18446744073709551615\nparticipants = 10\nstrategies = a, b ,c\nspeeds = low,0.3\n"
+         "order = latin\ntaps = 10\nattempts = 100\nsurvey = on\n[validity]\nband_low = 0.05\nband_high = 0.1\n[grid]\n"
+         "contact.k_e = 1,2,3\n"),
+     study_words, read_protocol, NULL, 0},
+    {NULL, NULL, 0, NULL, NULL, NULL, 0},
+};

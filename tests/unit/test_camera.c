@@ -1,0 +1,178 @@
+/* The motion capture: bytes, the sender's clock, and the driver on the loopback. */
+#include <arpa/inet.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "ethd/driver.h"
+#include "finger/camera.h"
+#include "unit/draw.h"
+#include "unit/rig.h"
+
+/* As Python's struct packs them, and a CRC worked out by hand of the polynomial (tests/camera.sh sends them so, too). */
+START_TEST(test_bytes) {
+  static const uint8_t wire[ETHD__EXPOSURE_SIZE] = {'E',  'F',  'C',  '1',  0x02, 0x01, 0x00, 0x00, 0x00, 0xca, 0x9a,
+                                                    0x3b, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+                                                    0xd0, 0x3f, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0xd0, 0xbf, 0x00,
+                                                    0x00, 0x00, 0x00, 0x00, 0x00, 0x50, 0x3f, 0x01, 0x00, 0x7e, 0x6d};
+  ethd__exposure e;
+  uint8_t again[ETHD__EXPOSURE_SIZE];
+  ck_assert(ethd__exposure_decode(wire, sizeof wire, &e));
+  ck_assert(e.seq == 258 && e.t_ns == 1000000000 && e.finger.x == 0.25 && e.finger.y == -0.25 && e.flags == 1);
+  ck_assert(e.noise == 0x1p-10);
+  ethd__exposure_encode(&e, again);
+  ck_assert_mem_eq(wire, again, sizeof wire);
+  ck_assert(!ethd__exposure_decode(wire, sizeof wire - 1, &e));
+}
+END_TEST
+
+/* Datagrams that are late at random, now and then much; the sender's quartz is 50 ppm off: instants are right to 0.3 ms. */
+START_TEST(test_clock) {
+  ethd__camera_clock c = {.delay = 11100000};
+  const int64_t zero = INT64_MAX - 500000000; /* the sender's count wraps round on the way */
+  double worst = 0;
+  for (uint32_t i = 0; i < 5000; i++) {
+    double t = i / 90.0, held = -0.2e-3 * log(1 - draw(i, 0, 1)) + (i % 50 == 7 ? 20e-3 : 0);
+    int64_t host_ns = (int64_t)(1e9 * t), arrival = host_ns + c.delay + (int64_t)(1e9 * held), sample;
+    ethd__exposure e = {
+        .seq = i, .t_ns = (int64_t)((uint64_t)zero + (uint64_t)(host_ns + host_ns / 20000)), .flags = 1};
+    ck_assert(ethd__camera_clock_step(&c, &e, arrival, &sample));
+    ck_assert_int_le(sample, arrival - c.delay);
+    if (i > 20) worst = fmax(worst, 1e-9 * fabs((double)(sample - host_ns)));
+  }
+  ck_assert_double_lt(worst, 0.3e-3);
+  ck_assert(c.jumps == 0 && c.lost == 0);
+}
+END_TEST
+
+/* Out of order, twice, missing: counted, and what is older than the last isn't used. A sender that begins anew is followed. */
+START_TEST(test_order) {
+  ethd__camera_clock c = {.delay = 0};
+  const uint32_t seq[] = {10, 11, 13, 12, 13, 14};
+  const bool used[] = {true, true, true, false, false, true};
+  int64_t sample;
+  for (int i = 0; i < 6; i++) {
+    ethd__exposure e = {.seq = seq[i], .t_ns = seq[i] * INT64_C(11111111)};
+    ck_assert_int_eq(ethd__camera_clock_step(&c, &e, e.t_ns + 5, &sample), used[i]);
+  }
+  ck_assert_uint_eq(c.lost, 3);
+  ethd__exposure anew = {.seq = 0, .t_ns = 0};
+  ck_assert(ethd__camera_clock_step(&c, &anew, INT64_C(1000000000000), &sample));
+  ck_assert(sample == INT64_C(1000000000000) && c.jumps == 1);
+}
+END_TEST
+
+/* ---- the driver ---- */
+
+static struct sockaddr_in address;
+
+static int sender(void) {
+  socklen_t length = sizeof address;
+  int fd = socket(AF_INET, SOCK_DGRAM, 0), probe = socket(AF_INET, SOCK_DGRAM, 0);
+  address = (struct sockaddr_in){.sin_family = AF_INET, .sin_addr = {htonl(INADDR_LOOPBACK)}};
+  ck_assert_int_eq(bind(probe, (struct sockaddr *)&address, sizeof address), 0); /* a port that is free */
+  ck_assert_int_eq(getsockname(probe, (struct sockaddr *)&address, &length), 0);
+  close(probe);
+  return fd;
+}
+
+static void send_exposure(int fd, uint32_t seq, ethd_vec finger, uint16_t flags) {
+  ethd__exposure e = {.seq = seq, .t_ns = seq * INT64_C(11000000), .finger = finger, .noise = 2e-4, .flags = flags};
+  uint8_t wire[ETHD__EXPOSURE_SIZE];
+  ethd__exposure_encode(&e, wire);
+  ck_assert_int_eq(sendto(fd, wire, sizeof wire, 0, (struct sockaddr *)&address, sizeof address), sizeof wire);
+}
+
+static ethd_status open_camera(const ethd_setting *settings, uint32_t count, void **device, char *message) {
+  static ethd_setup setup;
+  setup = ethd_setup_default();
+  const ethd_device_def def = {&setup, settings, count, ".", "x.ini", 1};
+  ethd_status status = ethd_driver_camera.open(&def, device, message);
+  if (status && *device) ethd_driver_camera.close(*device), *device = NULL;
+  return status;
+}
+
+START_TEST(test_driver) {
+  char listen[64], message[ETHD_MESSAGE_MAX] = "";
+  int fd = sender();
+  void *device;
+  snprintf(listen, sizeof listen, "127.0.0.1:%u", ntohs(address.sin_port));
+  const ethd_setting settings[] = {{"listen", listen, 2}, {"patience", "0.05", 3}, {"delay", "0.01", 4}};
+  ck_assert_int_eq(open_camera(settings, 3, &device, message), ETHD_E_DEVICE);
+  ck_assert_ptr_nonnull(strstr(message, "no exposure came in 0.05 s, 0 other datagrams: does the bridge run?"));
+  /* a bridge that sends while it is opened: a child of this test */
+  pid_t child = fork();
+  if (child == 0)
+    for (uint32_t i = 0;; i++) send_exposure(fd, i, (ethd_vec){1, 1}, 1), usleep(2000);
+  const ethd_setting patient[] = {{"listen", listen, 2}, {"patience", "30", 3}, {"delay", "0.01", 4}};
+  ethd_status status = open_camera(patient, 3, &device, message);
+  kill(child, SIGKILL);
+  waitpid(child, NULL, 0);
+  ck_assert_msg(status == ETHD_OK, "%s", message);
+  ethd_limits limits = ethd_driver_camera.limits(device);
+  ck_assert_double_eq_tol(limits.finger_age, 0.01 + 3 / 90.0, 1e-12);
+  for (int i = 0; i < 1000; i++) (void)!ethd_driver_camera.service(device, 0, INT64_C(1000000000)); /* its rest */
+  ethd_sense s = {0};
+  (void)!ethd_driver_camera.read(device, INT64_C(1000000000), &s);
+  for (uint32_t i = 0; i < 20; i++) {
+    int64_t now = INT64_C(5000000000) + i * INT64_C(11000000);
+    if (i != 5) send_exposure(fd, 1000000 + i, (ethd_vec){0.25 + 1e-3 * i, 0.2}, i != 9);
+    if (i == 12) (void)!sendto(fd, "garbage", 7, 0, (struct sockaddr *)&address, sizeof address);
+    ck_assert_int_eq(ethd_driver_camera.service(device, 0, now), ETHD_OK);
+    s = (ethd_sense){0};
+    ck_assert_int_eq(ethd_driver_camera.read(device, now, &s), ETHD_OK);
+    ck_assert_int_eq(s.have, i == 5 || i == 9 ? 0 : ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD);
+    if (s.have) ck_assert(s.centre[0] == 0.25 + 1e-3 * i && s.centre[1] == 0.2 && s.finger_noise == 2e-4);
+    if (s.have) ck_assert_int_eq(s.sample_ns, now - 10000000);
+    if (i > 1) /* the first follow an old sender: a jump */
+      ck_assert_int_eq(s.faults, i == 6 || i == 12 ? ETHD_FAULT_BIT(ETHD_FAULT_FRAME_LOST) : 0);
+  }
+  /* silence is told by the next tick that is due */
+  s = (ethd_sense){0};
+  (void)!ethd_driver_camera.read(device, INT64_C(5000000000) + 30 * INT64_C(11000000), &s);
+  ck_assert_int_eq(s.faults, ETHD_FAULT_BIT(ETHD_FAULT_FRAME_LOST));
+  ethd_driver_camera.close(device);
+  close(fd);
+}
+END_TEST
+
+START_TEST(test_refused) {
+  static const struct {
+    const char *listen, *from, *says;
+  } rows[] = {
+      {NULL, NULL, "x.ini: device.listen is missing: an address and a port as 127.0.0.1:9871 is allowed"},
+      {"localhost:9871", NULL, "x.ini:2: device.listen: found \"localhost:9871\", an address and a port"},
+      {"127.0.0.1", NULL, "x.ini:2: device.listen: found \"127.0.0.1\", an address and a port"},
+      {"127.0.0.1:99999", NULL, "x.ini:2: device.listen: "},
+      {"0.0.0.0:9871", NULL, "127.0.0.1 is allowed, and others with `from`: whoever can send there moves the ring"},
+      {"[::]:9871", NULL, "127.0.0.1 is allowed, and others with `from`"},
+      {"127.0.0.1:9871", "bridge", "x.ini:3: device.from: found \"bridge\", the bridge's address"},
+  };
+  char message[ETHD_MESSAGE_MAX];
+  void *device;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    const ethd_setting settings[] = {{"listen", rows[i].listen, 2}, {"from", rows[i].from, 3}};
+    uint32_t count = !rows[i].listen ? 0 : rows[i].from ? 2 : 1;
+    message[0] = 0;
+    ck_assert_int_lt(open_camera(settings, count, &device, message), 0);
+    ck_assert_msg(strstr(message, rows[i].says) != NULL, "%s", message);
+  }
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("camera");
+  TCase *tc = tcase_create("camera");
+  tcase_set_timeout(tc, 60);
+  tcase_add_test(tc, test_bytes);
+  tcase_add_test(tc, test_clock);
+  tcase_add_test(tc, test_order);
+  tcase_add_test(tc, test_driver);
+  tcase_add_test(tc, test_refused);
+  suite_add_tcase(suite, tc);
+  return rig_run(suite);
+}

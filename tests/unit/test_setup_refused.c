@@ -1,0 +1,215 @@
+/* Setups that are refused for what no other test brings: laws that are missing or not what they say, methods and rows
+   that don't exist, names that end in something else; and what a law that looks ahead may ask for. */
+#include <math.h>
+#include <string.h>
+
+#include "ethd/fault.h"
+#include "unit/rig.h"
+
+static ethd_error error;
+
+static ethd_status checked(const ethd_setup *s) {
+  memset(&error, 0, sizeof error);
+  return ethd_setup_check(s, &error);
+}
+
+static void expect(ethd_setup s, ethd_status status, const char *name) {
+  ck_assert_int_eq(checked(&s), status);
+  ck_assert_str_eq(error.name, name);
+  ck_assert_int_eq(ethd_setup_check(&s, NULL), status);
+}
+
+/* ---- laws ---- */
+
+START_TEST(test_no_law) {
+  ethd_setup s = ethd_setup_default();
+  s.tracking = NULL;
+  expect(s, ETHD_E_ARGUMENT, "tracking");
+  s = ethd_setup_default();
+  s.contact = NULL;
+  expect(s, ETHD_E_ARGUMENT, "contact");
+  s = ethd_setup_default();
+  s.transition = NULL;
+  expect(s, ETHD_E_ARGUMENT, "transition");
+  ck_assert(ethd_setup_range(&s) == 2 * s.ring_radius + s.ring_radius - s.finger_radius_max);
+}
+END_TEST
+
+/* A law of another kind, larger and smaller: neither is taken for what the setup calls it. */
+START_TEST(test_law_of_another_kind) {
+  ethd_setup s = ethd_setup_default();
+  s.contact = (const ethd_contact_law *)(const void *)&ethd_transition_smooth;
+  expect(s, ETHD_E_ARGUMENT, "contact");
+  s.contact = (const ethd_contact_law *)(const void *)&ethd_tracking_pd;
+  expect(s, ETHD_E_ARGUMENT, "contact");
+}
+END_TEST
+
+static ethd_status too_stiff(const double *p, ethd_error *e) {
+  if (p[0] <= 1000) return ETHD_OK;
+  if (e) *e = (ethd_error){.status = ETHD_E_RANGE, .name = "k_e"};
+  return ETHD_E_RANGE;
+}
+
+START_TEST(test_foreign_law) {
+  ethd_contact_law law = ethd_contact_kelvin_voigt;
+  ethd_setup s = ethd_setup_default();
+  law.law.check = too_stiff;
+  ethd_setup_contact(&s, &law);
+  s.contact_p[0] = 999;
+  ck_assert_int_eq(checked(&s), ETHD_OK);
+  s.contact_p[0] = 1001;
+  expect(s, ETHD_E_RANGE, "contact.k_e");
+  law.law.abi = ETHD_ABI + 1;
+  expect(s, ETHD_E_ABI, "contact.abi");
+}
+END_TEST
+
+/* ---- how far a law looks ahead ---- */
+
+static double range;
+
+static double range_of(const double *p, double speed) {
+  (void)p, (void)speed;
+  return range;
+}
+
+START_TEST(test_range) {
+  const double none = 2 * 0.012 + 0.012 - 0.0095;
+  ethd_transition_law law = ethd_transition_smooth;
+  ethd_setup s = ethd_setup_default();
+  s.ring_radius = 0.012, s.finger_radius_max = 0.0095;
+  ethd_setup_transition(&s, &law);
+  ck_assert_double_eq_tol(ethd_setup_range(&s), none, 1e-15);
+  law.range = range_of;
+  range = 0.5;
+  ck_assert_double_eq_tol(ethd_setup_range(&s), 0.512, 1e-15);
+  const double ranges[] = {0, -1, INFINITY, NAN};
+  for (int i = 0; i < 4; i++) {
+    range = ranges[i];
+    ck_assert_double_eq_tol(ethd_setup_range(&s), none, 1e-15);
+  }
+  range = 0.5;
+  law.law.size = ETHD_TRANSITION_LAW_MIN; /* built before there was a range */
+  ck_assert_double_eq_tol(ethd_setup_range(&s), none, 1e-15);
+  ck_assert_int_eq(checked(&s), ETHD_OK);
+}
+END_TEST
+
+/* At a distance of 30 mm a law that looks 40 mm ahead has a contact, one of 20 mm has none, and one that says nothing
+   sensible looks as far as the library does. */
+START_TEST(test_range_of_contacts) {
+  static const struct {
+    double range, d;
+    int contacts;
+  } cases[] = {{0.040, 0.030, 1}, {0.020, 0.030, 0},    {INFINITY, 0.030, 0}, {NAN, 0.030, 0},
+               {-1, 0.030, 0},    {INFINITY, 0.002, 1}, {0.001, 0.002, 1}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    ethd_transition_law law = ethd_transition_smooth;
+    rig r;
+    law.range = range_of;
+    range = cases[i].range;
+    rig_open(&r, RIG_WALL);
+    ethd_setup_transition(&r.setup, &law);
+    rig_start(&r);
+    motion m = rig_at(cases[i].d, 0.01, 0.001);
+    ck_assert_int_eq(rig_step(&r, &m)->contacts, cases[i].contacts);
+    rig_close(&r);
+  }
+}
+END_TEST
+
+/* ---- scenes ---- */
+
+START_TEST(test_scene_of_another_reach) {
+  rig r;
+  ethd_scene *pruned;
+  rig_open(&r, "circle 0.1 0 0.01\ncircle 0.3 0 0.01\ncircle 3 0 0.01\n");
+  ethd_arm wide = {ETHD_ARM_PARALLEL, 0.4, 0.1};
+  ck_assert_int_eq(ethd_scene_prune(r.scene, &wide, ethd_setup_range(&r.setup), &pruned, NULL), ETHD_OK);
+  r.setup.scene = pruned;
+  r.setup.arm = (ethd_arm){ETHD_ARM_PARALLEL, 0.3, 0.2}; /* as far out, and farther in */
+  ck_assert_int_eq(checked(&r.setup), ETHD_E_RANGE);
+  r.setup.arm = wide;
+  ck_assert_int_eq(checked(&r.setup), ETHD_OK);
+  ethd_scene_destroy(pruned);
+  r.setup.scene = r.scene;
+  rig_close(&r);
+}
+END_TEST
+
+START_TEST(test_material_without_error) {
+  rig r;
+  rig_open(&r, "material odd k_e=-1\n");
+  ck_assert_int_eq(ethd_setup_check(&r.setup, NULL), ETHD_E_RANGE);
+  rig_close(&r);
+}
+END_TEST
+
+/* ---- methods and names ---- */
+
+START_TEST(test_methods_that_are_none) {
+  ethd_setup s = ethd_setup_default();
+  s.fit = ETHD_FIT_COUNT;
+  expect(s, ETHD_E_UNKNOWN, "finger_fit.method");
+  ck_assert_ptr_null(ethd_setup_chosen(&s, ethd_setup_part_of("finger_fit")).id);
+  s = ethd_setup_default();
+  s.velocity = ETHD_VELOCITY_COUNT;
+  expect(s, ETHD_E_UNKNOWN, "velocity.method");
+  s = ethd_setup_default();
+  s.filter = ETHD_FILTER_COUNT;
+  expect(s, ETHD_E_UNKNOWN, "finger_filter.method");
+}
+END_TEST
+
+START_TEST(test_names_with_a_tail) {
+  ethd_setup s = ethd_setup_default();
+  const char *const names[] = {"limits.reach[1]x", "limits.reach[1", "limits.reach[]", "limits.reach[x]",
+                               "limits.reach[99]"};
+  ck_assert_int_eq(ethd_setup_set(&s, "limits.reach[1]", 0.4, NULL), ETHD_OK);
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    ck_assert_int_eq(ethd_setup_set(&s, names[i], 0.1, &error), ETHD_E_RANGE);
+  ck_assert(s.limits.reach[1] == 0.4);
+}
+END_TEST
+
+START_TEST(test_rows_that_are_none) {
+  const ethd_fault none[] = {(ethd_fault)-1, ETHD_FAULT_COUNT};
+  for (int i = 0; i < 2; i++) {
+    ck_assert_str_eq(ethd_fault_bound(none[i]), "");
+    ck_assert_str_eq(ethd_fault_sentence(none[i]), "an unknown fault");
+    ck_assert(ethd_fault_reaction(none[i], 0) == ETHD_REACTION_NONE);
+  }
+}
+END_TEST
+
+/* A bad parameter's name is told without what steers a terminal, and cut where there is no room for it. */
+START_TEST(test_names_in_errors) {
+  const char *const names[] = {"del\x7f", "a{b", "abcdefghijklmnopqrstuvwxyz_012345",
+                               "0123456789abcdefghijklmnopqrstu"};
+  const char *const told[] = {"del?", "a{b", "abcdefghijklmnopqrstuvwxyz_012345", ""};
+  for (int i = 0; i < 4; i++) {
+    ethd_param row = {names[i], "1", 0, 1, 0, "a number"};
+    ck_assert_int_eq(ethd_params_check_table(&row, 1, &error), i < 3 ? ETHD_E_TABLE : ETHD_OK);
+    if (i < 3) ck_assert_str_eq(error.name, told[i]);
+  }
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("setup refused");
+  TCase *t = tcase_create("setup refused");
+  tcase_add_test(t, test_no_law);
+  tcase_add_test(t, test_law_of_another_kind);
+  tcase_add_test(t, test_foreign_law);
+  tcase_add_test(t, test_range);
+  tcase_add_test(t, test_range_of_contacts);
+  tcase_add_test(t, test_scene_of_another_reach);
+  tcase_add_test(t, test_material_without_error);
+  tcase_add_test(t, test_methods_that_are_none);
+  tcase_add_test(t, test_names_with_a_tail);
+  tcase_add_test(t, test_rows_that_are_none);
+  tcase_add_test(t, test_names_in_errors);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}
