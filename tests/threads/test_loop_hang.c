@@ -91,6 +91,25 @@ static void begin(rig *r, ethd_tracking_law *law, ethd_loop **loop, double gap) 
   ck_assert_int_eq(ethd_loop_start(*loop, NULL), ETHD_OK);
 }
 
+/* Where the machine is so busy that the loop is late by the gap before anything hangs, the device is safe already and
+   no law is asked again: that loop is ended and another begun. */
+static void begin_and_hang(rig *r, ethd_tracking_law *law, ethd_loop **loop, double gap) {
+  ethd_loop_stats stats;
+  begin(r, law, loop, gap);
+  for (int tries = 1;; pause_for(1000000)) {
+    ethd_loop_read(*loop, &stats);
+    if (atomic_load(&hangs)) return;
+    if (!stats.faults[ETHD_FAULT_LOOP]) continue;
+    ck_assert_msg(tries++ < 50, "the machine is too busy for a gap of %g s", gap);
+    ethd_loop_stop(*loop);
+    ck_assert_int_eq(ethd_loop_join(*loop), ETHD_OK);
+    ethd_loop_destroy(*loop);
+    rig_close(r);
+    atomic_store(&reads, 0), atomic_store(&writes, 0), atomic_store(&hangs, 0), atomic_store(&safe, 0);
+    begin(r, law, loop, gap);
+  }
+}
+
 /* Without any limit; only a law can be seen then, and with a gap of 5 ms. */
 START_TEST(test_hangs) {
   static rig r;
@@ -101,8 +120,7 @@ START_TEST(test_hangs) {
   place = _i % PLACES;
   int in_law = place == IN_STEP || place == IN_REHEARSAL;
   int watched = in_law || _i >= PLACES;
-  begin(&r, &law, &loop, _i < PLACES ? (double)INFINITY : 0.005);
-  while (!atomic_load(&hangs)) pause_for(1000000);
+  begin_and_hang(&r, &law, &loop, _i < PLACES ? (double)INFINITY : 0.005);
   int64_t from = now();
   while (!ethd_loop_hangs(loop, &found)) pause_for(1000000);
   ck_assert_ptr_eq(found, in_law ? &law.law : NULL);
