@@ -51,10 +51,10 @@ class Tree:
             program = self.work / "tests" / test.stem
             program.parent.mkdir(parents=True, exist_ok=True)
             archives = [str(self.build / f"libethd-{part}.a") for part in ("tests", "apps", "drivers")]
-            extra = ["-lSDL2_ttf", "-lSDL2"] if test.stem == "test_shapes" else []
             subprocess.run([*self.link, "-rdynamic", "-o", str(program), str(self.build / "obj" / test.with_suffix(".o")),
-                            "-L" + str(self.work), "-Wl,--no-as-needed", "-lmutant", *archives, "-lmutant", *libs, *extra,
-                            "-linih", "-lmodbus", "-lz", "-lexpat", "-lm", "-ldl", "-lpthread"], env=self.env, check=True)
+                            "-L" + str(self.work), "-Wl,--no-as-needed", "-lmutant", *archives, "-lmutant", *libs,
+                            "-Wl,--as-needed", "-lSDL2_ttf", "-lSDL2", "-linih", "-lmodbus", "-lz", "-lexpat", "-lm", "-ldl",
+                            "-lpthread"], env=self.env, check=True)
             tests[test.stem] = test
         return tests
 

@@ -67,7 +67,7 @@ after = c.step(sense).tau
 assert [e.kind for e in c.events()] == ["taken"] and np.allclose(c.step(sense).tau, 2 * before, rtol=1e-9), (before, after)
 refuses("contact.k_e: found -3, 0 to 1000000", lambda: c.post({"contact.k_e": -3}))
 refuses("not a key of kelvin-voigt", lambda: c.post({"contact.k": 3}))
-refuses("contact.law: found 'rubber', kelvin-voigt, spring, hunt-crossley are allowed", lambda: c.post({"contact.law": "rubber"}))
+refuses("contact.law: found 'rubber', kelvin-voigt, spring, ", lambda: c.post({"contact.law": "rubber"}))
 refuses("/nowhere.ini: No such file", lambda: ethd.Controller("/nowhere.ini"))
 refuses("configuration:2: contact.k_e", lambda: ethd.Controller("[contact]\nk_e = fast\n"))
 with open(folder + "/run/config.ini", "a") as file:
@@ -111,14 +111,14 @@ deep = ethd.read(taps).tick
 inside["q"] = deep["q"][np.nanargmin(deep["d_re"])]
 
 
-def torque(law):
+def torque(law, k_e=2500):
     c = ethd.Controller(folder + "/own.ini")
-    c.post({"contact.law": law, "transition.law": "abrupt", "transition.swap_time": 0})
+    c.post({"contact.law": law, "contact.k_e": k_e, "transition.law": "abrupt", "transition.swap_time": 0})
     return [c.step(inside).tau for _ in range(3)][-1]
 
 
 assert np.array_equal(torque("spring"), torque(spring)) and np.abs(torque(spring)).max() > 0.01
-assert not np.array_equal(torque("spring"), torque("kelvin-voigt")) or True
+assert not np.array_equal(torque(spring), torque(spring, 1250))
 c = ethd.Controller(folder + "/own.ini")
 c.post({"transition.law": abrupt})
 assert c.step(inside).trace["state"] == 2

@@ -114,12 +114,26 @@ static void prepare_ahead(const ethd_setup *s, ethd__plan *out) {
   for (int i = 0; i < 2; i++) out->mobility[i] = 1 / (s->dynamics.mass[i] * links[i] * links[i]);
 }
 
-/* Returns true if a limit is set that only tick.c's note_rare_limits or its reach check looks at. A new limit that is
-   enforced there must be named here. */
-static bool has_rare_limits(const ethd_limits *l) {
-  bool ranges = !isinf(l->reach[0]) || !isinf(l->reach[1]);
-  for (int i = 0; i < 4; i++) ranges |= !isinf(l->joints[i]);
-  return ranges || l->gap < (double)INFINITY || l->nominal_torque < (double)INFINITY;
+/* Returns true for a limit that the guard looks at in every tick, or that has a `watches_` of its own. */
+static bool is_common(const ethd_limit *row) {
+  static const size_t common[] = {
+      offsetof(ethd_limits, torque),     offsetof(ethd_limits, torque_rate), offsetof(ethd_limits, speed),
+      offsetof(ethd_limits, workspace),  offsetof(ethd_limits, margin),      offsetof(ethd_limits, step_time),
+      offsetof(ethd_limits, clean_time), offsetof(ethd_limits, heat_time),   offsetof(ethd_limits, energy),
+      offsetof(ethd_limits, finger_age), offsetof(ethd_limits, finger_lost)};
+  for (size_t i = 0; i < sizeof common / sizeof *common; i++)
+    if (common[i] == row->offset) return true;
+  return false;
+}
+
+/* Returns true if any other limit is set. The tick then looks at what note_rare_limits and its reach check enforce. A new
+   limit counts as rare, so that it can't be forgotten here. */
+static bool has_rare_limits(const ethd_limits *limits) {
+  ethd_limits own = *limits, none = ethd_limits_none();
+  for (const ethd_limit *row = ethd_limit_rows; row < ethd_limit_rows + ETHD_LIMITS; row++)
+    for (uint32_t i = 0; i < row->count && !is_common(row); i++)
+      if (ethd_limit_of(&own, row)[i] != ethd_limit_of(&none, row)[i]) return true;
+  return false;
 }
 
 ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
