@@ -73,8 +73,8 @@ static void status(ethd__session *s, ethd__commands *c, char *rest) {
 
 static bool faulty(ethd__session *s) { return ethd__recorder_latest(&s->recorder).trace.fault != 0; }
 
-/* The device is asked to leave a fault of its own at once, the controller's goes when nothing has gone wrong for long
-   enough: where the device had one, at the second ack. */
+/* The device is asked at once to leave a fault of its own. The controller's fault goes when nothing has gone wrong for long
+   enough; where the device had a fault, that is at the second ack. */
 static void ack(ethd__session *s, ethd__commands *c, char *rest) {
   (void)c, (void)rest;
   s->driver->clear(s->device);
@@ -108,7 +108,8 @@ static void enable(ethd__session *s, ethd__commands *c, char *rest) {
   }
 }
 
-/* "home": as the device's settings say, by moving; "home Q1 Q2": the arm stands in its jig, at these angles. */
+/* "home" finds the joints by moving, as the device's settings say. "home Q1 Q2" says that the arm stands in its jig, at
+   these angles. */
 static void home(ethd__session *s, ethd__commands *c, char *rest) {
   double q[2];
   size_t n = strcspn(rest, " \t");

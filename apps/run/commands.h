@@ -1,4 +1,4 @@
-/* Commands of ethd-run: a line in, a line out. All [main]. */
+/* Commands of ethd-run: each line of input is answered by one line. All [main]. */
 #ifndef ETHD_APPS_RUN_COMMANDS_H
 #define ETHD_APPS_RUN_COMMANDS_H
 
@@ -11,10 +11,10 @@ typedef struct ethd__commands {
   size_t length;
   bool overlong, ended; /* ended: no more input */
   bool stop;            /* the command stop was given */
-  double hold;          /* s on the loop's clock: the next command waits for it */
+  double hold;          /* s on the loop's clock; the next command waits until then */
 } ethd__commands;
 
-/* Reads what is there, at most one line, and answers it. wait_ms as for poll(2). */
+/* Reads what is there, at most one line, and answers it. `wait_ms` is as for poll(2). */
 void ethd__commands_read(ethd__commands *c, ethd__session *s, int wait_ms);
 
 #endif

@@ -44,7 +44,7 @@ static void tell_posts(ethd__recorder *r, const ethd__post *posts, int count) {
   for (int i = 0; i < count; i++) event(r, posts[i].kind, posts[i].detail);
 }
 
-/* Reports a new fault; true when it stops the ring. */
+/* Reports a new fault; returns true if it stops the ring. */
 static bool tell_fault(ethd__recorder *r, int64_t fault) {
   const char *sentence = ethd_fault_sentence((ethd_fault)fault);
   if (!fault || fault == r->fault || atomic_load(&r->stopping)) return false;
@@ -61,8 +61,8 @@ static void tell_loop(ethd__recorder *r, uint64_t lost, bool failed_before) {
   if (lost || r->failed != failed_before) ethd_loop_raise(r->loop, ETHD_FAULT_RECORDER);
 }
 
-/* What the main thread shares: the newest row, and the posts that wait. Those that rule from this row on are handed
-   to `taken`; their number is returned. */
+/* Updates what the recorder shares with the main thread: the newest row, and the posts that wait. Hands those that rule
+   from this row on to `taken` and returns their number. */
 static int share(ethd__recorder *r, const ethd_loop_row *row, ethd__post taken[ETHD__POSTS_MAX]) {
   int count = 0;
   pthread_mutex_lock(&r->lock);
@@ -75,7 +75,8 @@ static int share(ethd__recorder *r, const ethd_loop_row *row, ethd__post taken[E
   return count;
 }
 
-/* The row and what happened before it, in the order of a recording. True: a fault that stops the ring begins. */
+/* Writes a row and what happened before it, in the order of a recording. Returns true if a fault that stops the ring
+   begins. */
 static bool record(ethd__recorder *r, const ethd_loop_row *row, const ethd__post *posts, int count) {
   tell_lost(r, row->lost);
   if (row->marks & ETHD_ROW_STARTED && r->rows) event(r, "start", "enabled");
@@ -120,7 +121,7 @@ static void *run(void *recorder) {
   return NULL;
 }
 
-/* Signals are the main thread's. */
+/* Leaves all signals to the main thread. */
 ethd_status ethd__recorder_start(ethd__recorder *r) {
   pthread_attr_t attr;
   sigset_t all, before;
@@ -143,7 +144,7 @@ void ethd__recorder_end(ethd__recorder *r) {
   pthread_mutex_destroy(&r->lock);
 }
 
-/* ---- of the main thread ---- */
+/* ---- called by the main thread ---- */
 
 bool ethd__recorder_expect(ethd__recorder *r, const char *kind, const char *detail) {
   size_t length = strlen(detail);

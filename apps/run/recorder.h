@@ -1,5 +1,5 @@
-/* Takes the loop's rows: into a recording, to telemetry, and keeps the newest for whoever asks. A thread of
-   its own, or, on a virtual clock, after every tick. */
+/* Takes the loop's rows into a recording and to telemetry, and keeps the newest for whoever asks. It runs in a thread of
+   its own or, on a virtual clock, after every tick. */
 #ifndef ETHD_APPS_RUN_RECORDER_H
 #define ETHD_APPS_RUN_RECORDER_H
 
@@ -14,13 +14,13 @@
 #define ETHD__POSTS_MAX 4
 #define ETHD__DETAIL_MAX 256
 
-/* A setup that was posted, as events.csv tells it. */
+/* A setup that was posted, in the words of events.csv. */
 typedef struct ethd__post {
   const char *kind;
   char detail[ETHD__DETAIL_MAX];
 } ethd__post;
 
-/* Whoever else wants every row, as it comes, on the recorder's thread. */
+/* Another taker of every row, called on the recorder's thread. */
 typedef struct ethd__sink {
   void *self;
   void (*take)(void *self, const ethd_loop_row *row); /* NULL: nobody */
@@ -34,7 +34,8 @@ typedef struct ethd__recorder {
   uint64_t every;            /* rows from one datagram to the next */
   uint64_t keeps;            /* rows from one that is recorded to the next; 1: each */
   pthread_t thread;
-  atomic_int stop, stopping; /* stopping: the fault by which a controlled stop works is not reported */
+  atomic_int stop,
+      stopping; /* stopping: a controlled stop has begun, and the fault by which it works is not reported */
   bool threaded;
   atomic_int sees_finger; /* 1: a reading of the finger has come */
 
@@ -59,7 +60,7 @@ typedef struct ethd__recorder {
 void ethd__recorder_begin(ethd__recorder *recorder, double period);
 ETHD_MUST_CHECK ethd_status ethd__recorder_start(ethd__recorder *recorder);
 
-/* Takes all rows that are there. Not while the thread runs. */
+/* Takes all rows that are there. Must not be called while the thread runs. */
 void ethd__recorder_drain(ethd__recorder *recorder);
 
 /* Ends the thread and takes the rest. */
@@ -68,7 +69,8 @@ void ethd__recorder_end(ethd__recorder *recorder);
 /* Says in the recording that only every keeps-th row will be in it. */
 ETHD_MUST_CHECK ethd_status ethd__recorder_thinned(ethd__recorder *recorder);
 
-/* Before a setup is posted; taken back when the post is refused. False: the detail is too long. */
+/* Notes a setup before it is posted; the note is taken back when the post is refused. Returns false if the detail is too
+   long. */
 bool ethd__recorder_expect(ethd__recorder *recorder, const char *kind, const char *detail);
 void ethd__recorder_withdraw(ethd__recorder *recorder);
 

@@ -1,4 +1,4 @@
-/* Why a loop didn't start, and what mends it. [main] */
+/* Says why a loop didn't start, and what mends it. [main] */
 #ifndef ETHD__RUN_REFUSAL_H
 #define ETHD__RUN_REFUSAL_H
 

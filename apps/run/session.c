@@ -21,7 +21,7 @@
 
 /* ---- time ---- */
 
-/* Which law it was, and what it did. */
+/* Names the law that failed and says what it did. */
 static void tell_law(const ethd__session *s, const ethd_event *e) {
   const ethd_law *laws[] = {&s->setup.tracking->law, &s->setup.contact->law, &s->setup.transition->law};
   static const char *const kinds[] = {"tracking", "contact", "transition"};
@@ -66,7 +66,7 @@ bool ethd__session_lives(const ethd__session *s) {
   return !ethd_loop_ended(s->loop) && !ethd_loop_hangs(s->loop, NULL);
 }
 
-/* Until `posted` setups are taken. */
+/* Waits until `posted` setups are taken. */
 static bool settle(ethd__session *s) {
   for (int i = 0; s->posted && i < PATIENCE && ethd__session_lives(s); i++) pass(s);
   return !s->posted;
@@ -96,7 +96,7 @@ static ethd_status open_device(ethd__session *s, const char *folder, char *messa
   return status;
 }
 
-/* The snapshot stands in the recording's folder unless another path is given. */
+/* The snapshot goes into the recording's folder unless another path is given. */
 static ethd_status open_snapshot(ethd__session *s, const ethd__session_options *o, char *message) {
   char *path = o->snapshot ? strdup(o->snapshot) : ethd__path_join(o->record, "snapshot.npy");
   ethd_status status = path ? ethd__snapshot_open(&s->recorder.snapshot, path, s->setup.period) : ETHD_E_MEMORY;
@@ -241,7 +241,7 @@ static ethd_status close_recording(ethd__session *s, char *message) {
   return status;
 }
 
-/* Why it failed, also for the recording. */
+/* Says why the session failed, in the recording too. */
 static void tell_hang(ethd__session *s, ethd_status status, char *message) {
   const ethd_law *law;
   (void)ethd_loop_hangs(s->loop, &law);
@@ -257,7 +257,7 @@ static ethd_status end_loop(ethd__session *s, char *message) {
   ethd_status status = ethd_loop_join(s->loop);
   ethd__recorder_end(&s->recorder);
   s->left = status && !ethd_loop_ended(s->loop);
-  s->lost = s->left && status != ETHD_E_LAW; /* no second thread into a device that one hangs in */
+  s->lost = s->left && status != ETHD_E_LAW; /* no second thread enters a device in which one hangs */
   if (s->left)
     tell_hang(s, status, message);
   else if (status)

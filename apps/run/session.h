@@ -11,27 +11,27 @@ typedef struct ethd__session {
   ethd_config *config;
   const ethd_driver *driver;
   void *device;
-  ethd_setup setup; /* posted last */
+  ethd_setup setup; /* the one that was posted last */
   ethd_control *control;
   ethd_loop *loop;
   ethd__recorder recorder;
   bool is_virtual, posted, started;
-  bool left;     /* the loop's thread hangs: what it may touch stays */
-  bool lost;     /* likewise, in the device */
+  bool left;     /* the loop's thread hangs, so nothing that it may touch is freed */
+  bool lost;     /* it hangs in the device */
   int64_t clock; /* of a virtual session, ns */
 } ethd__session;
 
 typedef struct ethd__session_options {
   const char *config, *record, *telemetry, *snapshot; /* NULL: none; a recording has a snapshot of its own */
   uint32_t keeps;                                     /* ticks from one that is recorded to the next; 0 or 1: each */
-  bool replace;                                       /* an earlier recording */
+  bool replace;                                       /* an earlier recording is replaced */
   bool group;                                         /* telemetry may go to a multicast or broadcast address */
   const char *text;   /* stands for what the configuration's file holds; NULL: it is read */
   const char *folder; /* where relative paths of [device] start; NULL: where the configuration is */
   ethd__sink sink;
   bool is_virtual;
-  bool home;          /* the device finds out where its joints stand, before it is started */
-  ethd_loop_def loop; /* its device, controller, period and clock are filled in */
+  bool home;          /* the device finds its joints' angles before it is started */
+  ethd_loop_def loop; /* the session fills in its device, controller, period and clock */
 } ethd__session_options;
 
 /* Opens and starts the device; the loop runs, or on a virtual clock has made its first tick. On failure
@@ -39,17 +39,17 @@ typedef struct ethd__session_options {
 ETHD_MUST_CHECK ethd_status ethd__session_open(const ethd__session_options *options, ethd__session *s,
                                                char message[ETHD_MESSAGE_MAX]);
 
-/* Whether a reading of the finger has come; a live session is given a moment for its first one. */
+/* Returns whether a reading of the finger has come; waits a moment for the first one of a live session. */
 bool ethd__session_sees_finger(ethd__session *s);
 
-/* Damps the ring until it is still, then disables. told: a signal asked for it. */
+/* Damps the ring until it is still, then disables the device. `told`: a signal asked for it. */
 void ethd__session_halt(ethd__session *s, bool told);
 
-/* False: the loop's thread has ended or hangs. */
+/* Returns false if the loop's thread has ended or hangs. */
 bool ethd__session_lives(const ethd__session *s);
 
-/* Ends the loop and the device: numbers can be read, nothing moves. ETHD_E_DEVICE: the clock had failed, or the device
-   hangs; ETHD_E_LAW: a law hangs. */
+/* Ends the loop and the device; figures can still be read afterwards. Returns ETHD_E_DEVICE if the clock had failed or the
+   device hangs, ETHD_E_LAW if a law hangs. */
 ETHD_MUST_CHECK ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]);
 void ethd__session_free(ethd__session *s);
 
@@ -63,10 +63,10 @@ ETHD_MUST_CHECK ethd_status ethd__session_enable(ethd__session *s);
 /* Takes the controller's events and sends the application's beat; call it more often than every heartbeat. */
 void ethd__session_poll(ethd__session *s);
 
-/* A tick of a virtual session. */
+/* Makes one tick of a virtual session. */
 void ethd__session_tick(ethd__session *s);
 
-/* s on the loop's clock, missed periods included. */
+/* Returns the time since the start, s on the loop's clock, missed periods included. */
 double ethd__session_time(const ethd__session *s);
 
 #endif

@@ -29,7 +29,7 @@ ethd_status ethd__snapshot_open(ethd__snapshot *s, const char *path, double peri
   return ETHD_E_MEMORY;
 }
 
-/* The oldest first. */
+/* Writes the rows, the oldest first. */
 static ethd_status write_rows(ethd__snapshot *s, const char *path, size_t n) {
   ethd_npy *npy;
   ethd_status status = ethd_npy_create(path, ethd_trace_columns, sizeof *s->rows, &npy, s->message);
@@ -42,7 +42,7 @@ static ethd_status write_rows(ethd__snapshot *s, const char *path, size_t n) {
   return status ? status : closed;
 }
 
-/* An earlier file stays until this one is whole. */
+/* An earlier file stays in its place until this one is whole. */
 static ethd_status replace_file(ethd__snapshot *s, size_t n) {
   ethd_replace replace;
   ethd_status status = ethd_replace_begin(s->path, &replace, s->message);

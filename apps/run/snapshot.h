@@ -1,4 +1,4 @@
-/* The ticks around the first fault that stopped the ring: 2 s before it, 1 s after. All of one thread. */
+/* The ticks around the first fault that stopped the ring: 2 s before it and 1 s after it. All calls are one thread's. */
 #ifndef ETHD_APPS_RUN_SNAPSHOT_H
 #define ETHD_APPS_RUN_SNAPSHOT_H
 
@@ -16,13 +16,13 @@ typedef struct ethd__snapshot {
   char message[ETHD_MESSAGE_MAX]; /* why it couldn't be written, else empty */
 } ethd__snapshot;
 
-/* path NULL: nothing is taken. ETHD_E_MEMORY. */
+/* Without a path nothing is taken. Fails with ETHD_E_MEMORY. */
 ETHD_MUST_CHECK ethd_status ethd__snapshot_open(ethd__snapshot *s, const char *path, double period);
 
-/* Every tick, in order; begins: a fault that stops the ring begins at it. */
+/* To be called with every row, in order. `begins`: a fault that stops the ring begins at this row. */
 void ethd__snapshot_take(ethd__snapshot *s, const ethd_trace *trace, int begins);
 
-/* Writes what is there if the run ended too early. */
+/* Writes the rows that are there, if the run ended before all had come. */
 void ethd__snapshot_finish(ethd__snapshot *s);
 void ethd__snapshot_close(ethd__snapshot *s);
 

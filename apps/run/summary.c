@@ -18,7 +18,8 @@ void ethd__shortfalls_print(FILE *out, int32_t bits) {
               ethd_shortfall_mend(1 << i));
 }
 
-/* What is missing names its step of "From the box to the first touch", as "(step 3)" or "; step 3)"; 0: none. */
+/* A remark about something missing names its step of "From the box to the first touch", as "(step 3)" or "; step 3)".
+   Returns the step's number; 0: the remark names none. */
 static int step_of(const char *remark) {
   const char *at = strstr(remark, "step ");
   int step = 0;
@@ -55,7 +56,7 @@ static void print_fault(FILE *out, int fault, uint64_t n, int *none) {
   *none = 0;
 }
 
-/* What stopped the ring comes first. The stop at the end is a speed limit of 0, whose fault is none. */
+/* Faults that stopped the ring come first. The stop at the end works by a speed limit of 0; its fault isn't counted. */
 static void print_faults(FILE *out, const ethd__recorder *r, const ethd_loop_stats *stats) {
   int none = 1;
   for (int i = 0; i < ETHD_FAULT_COUNT; i++) print_fault(out, i, r->faults[i], &none);
@@ -64,7 +65,7 @@ static void print_faults(FILE *out, const ethd__recorder *r, const ethd_loop_sta
   if (none) fprintf(out, "%-10s none\n", "faults");
 }
 
-/* Counters are the controller's, since it was enabled last. */
+/* The counters are the controller's and begin when it is enabled. */
 static void print_skipped(FILE *out, const ethd__session *s, const ethd_loop_stats *stats) {
   ethd_counters c;
   ethd_control_counters(s->control, &c);
@@ -113,8 +114,9 @@ static const char *word(ethd_reaction reaction) {
 void ethd__faults_print(FILE *out) {
   fprintf(out,
           "What may go wrong, how soon it is noticed, and what is done at first and at the worst.\n"
-          "count: it goes on. degrade: with less. stop: the ring is damped until it stands, then as zero.\n"
-          "zero: no torque, the device is disabled, latched until acknowledged. refuse: nothing moves.\n\n"
+          "count: the fault is counted, nothing else. degrade: the ring goes on without the part that failed.\n"
+          "stop: the ring is damped until it stands, then as zero. zero: no torque, the device is disabled, and the\n"
+          "fault is latched until it is acknowledged. refuse: nothing moves.\n\n"
           "row  %-20s%-9s%-9s%s\n",
           "noticed within", "at first", "at worst", "what");
   for (int i = 1; i < ETHD_FAULT_COUNT; i++)

@@ -1,4 +1,4 @@
-/* What a run was, for people. [main]. */
+/* What people are told of a run. All [main]. */
 #ifndef ETHD_APPS_RUN_SUMMARY_H
 #define ETHD_APPS_RUN_SUMMARY_H
 
@@ -6,19 +6,19 @@
 
 #include "run/session.h"
 
-/* After the session's end. */
+/* Prints the run's figures; to be called after the session's end. */
 void ethd__summary_print(FILE *out, const ethd__session *s, const char *record);
 
-/* What the machine refused, a sentence each and what mends it; nothing when nothing was. */
+/* Prints a sentence and a mend for each thing that the machine refused. */
 void ethd__shortfalls_print(FILE *out, int32_t bits);
 
-/* What people should know before anything moves: the device's remarks, what the machine refuses. */
+/* Prints what people should know before anything moves: the device's remarks and what the machine refused. */
 void ethd__remarks_print(FILE *out, ethd__session *s);
 
-/* A line of a histogram: p50, p99, p99.9, max in us. */
+/* Prints one line of a histogram: p50, p99, p99.9 and max, us. */
 void ethd__durations_print(FILE *out, const char *name, const ethd_histogram *h);
 
-/* The fault table as a page. */
+/* Prints the fault table as a page. */
 void ethd__faults_print(FILE *out);
 
 #endif

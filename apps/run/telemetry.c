@@ -37,7 +37,7 @@ static bool is_port(const char *digits) {
   return strlen(digits) <= 5 && strtoul(digits, NULL, 10) >= 1 && strtoul(digits, NULL, 10) <= 65535;
 }
 
-/* A network's own broadcast address shows only when the kernel refuses it. */
+/* Only the kernel's refusal tells that an address is a network's broadcast address. */
 static bool is_group(const struct addrinfo *a) {
   const struct sockaddr_in *four = (const void *)a->ai_addr;
   const struct sockaddr_in6 *six = (const void *)a->ai_addr;
@@ -46,7 +46,7 @@ static bool is_group(const struct addrinfo *a) {
   return IN_MULTICAST(address) || address == INADDR_BROADCAST;
 }
 
-/* -1: errno says why. */
+/* Returns -1 with errno set if there is no way to the address. */
 static int connected(const struct addrinfo *a, bool group) {
   int s = socket(a->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0), on = group;
   if (s < 0) return -1;
@@ -99,7 +99,7 @@ static void put(telemetry_text *t, const char *format, ...) {
   if (t->length >= sizeof t->at) t->length = sizeof t->at - 1;
 }
 
-/* JSON knows no NaN and no infinity. */
+/* JSON has neither NaN nor infinity. */
 static void put_number(telemetry_text *t, double v) {
   if (isfinite(v))
     put(t, "%.9g", v);

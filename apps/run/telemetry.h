@@ -1,4 +1,4 @@
-/* Telemetry: a JSON object a datagram, as PlotJuggler's UDP server reads it. All [main]. */
+/* Telemetry: one JSON object in each datagram, as PlotJuggler's UDP server reads it. All [main]. */
 #ifndef ETHD_APPS_RUN_TELEMETRY_H
 #define ETHD_APPS_RUN_TELEMETRY_H
 
@@ -7,12 +7,12 @@
 #include "ethd/config.h"
 #include "ethd/loop.h"
 
-/* HOST:PORT, [HOST]:PORT for numbers with colons; *out is the socket. A multicast or broadcast address is refused, unless
-   `group`; the refusal names the option --telemetry-group. */
+/* Opens a socket, *out, to HOST:PORT, or [HOST]:PORT for addresses with colons. Refuses a multicast or broadcast address
+   unless `group` is set; the refusal names the option --telemetry-group. */
 ETHD_MUST_CHECK ethd_status ethd__telemetry_open(const char *address, bool group, int *out,
                                                  char message[ETHD_MESSAGE_MAX]);
 
-/* Never waits: a datagram that can't leave is dropped. */
+/* Sends a datagram without waiting; one that can't leave at once is dropped. */
 void ethd__telemetry_send(int socket, const ethd_loop_row *row);
 
 #endif

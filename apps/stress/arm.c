@@ -1,8 +1,7 @@
 /* The arm stretched out, folded, and near both. With J = U diag(s1, s2) V^T the damped inverse is
-   V diag(s_i / (s_i^2 + lambda^2)) U^T, so that its norm is known from s1^2 + s2^2 = |J|^2, s1 s2 = |det
-   J|:
+   V diag(s_i / (s_i^2 + lambda^2)) U^T, so that its norm follows from s1^2 + s2^2 = |J|^2 and s1 s2 = |det J|:
 
-     w = |det J| / (L1 L2) >= w0:  the inverse;  below:  lambda = w0 L1 L2 / |J| (1 - w / w0).      */
+     w = |det J| / (L1 L2) >= w0:  the inverse;  below:  lambda = w0 L1 L2 / |J| (1 - w / w0). */
 #include <math.h>
 #include <string.h>
 

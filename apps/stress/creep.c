@@ -1,6 +1,5 @@
-/* Creep: a finger that pushes with F > B_d v_th keeps the ring braking and moving at F/B_d for ever, in
-   the paper's machine. The product's caps end it: at the first tick with -d_re >= eps_max, or t_max
-   after it began. */
+/* Creep: with the paper's conditions, a finger that pushes with F > B_d v_th keeps the ring braking and moving at F/B_d
+   for ever. Two caps of the library end it: the first tick with -d_re >= eps_max, or t_max after it began. */
 #include <math.h>
 
 #include "stress/rig.h"

@@ -1,6 +1,6 @@
-/* Subnormal numbers: a low-pass that has nothing more to say decays into them and, with rounding to
-   nearest, stays there. The programs set FTZ and DAZ: the tick keeps its pace, and but for what is
-   subnormal the results are the same bits. */
+/* Subnormal numbers: a low-pass whose input stays 0 decays into them and, with rounding to nearest, stays there. The
+   programs set FTZ and DAZ, so that a tick takes no longer then. But for what is subnormal the results are the same
+   bits. */
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
@@ -53,10 +53,10 @@ static rest_found rest(int64_t still, int rounds) {
   return o;
 }
 
-/* 1e-300: far over what is subnormal, far under what moves anything. */
+/* 1e-300 is far above the subnormal numbers and far below what moves anything. */
 static double apart(double a, double b) { return fabs(a - b) <= 1e-300 ? 0 : fabs(a - b); }
 
-/* By its bits: with DAZ it compares as 0. */
+/* Looks at the bits, since with DAZ the number compares as 0. */
 static bool subnormal(double x) {
   uint64_t bits;
   memcpy(&bits, &x, sizeof bits);

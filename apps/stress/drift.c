@@ -1,9 +1,9 @@
 /* A thousand million ticks: nothing that is added up drifts.
 
-     ages and caps   counted in periods: a law sees age = k T, and braking ends t_max / T ticks after it
-   began a static press  the same input gives the same bits taps            readings, filters, braking,
-   vo and back, again and again: the same torques time            stamps are integers, and what is
-   between two of them is theirs                    */
+     ages and caps   are counted in periods: a law sees age = k T, and braking ends t_max / T ticks after it began
+     static press    the same input gives the same bits
+     taps            readings, filters, braking, vo and back, again and again, give the same torques
+     time            stamps are integers, and so are the differences between them */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +17,7 @@
 
 /* ---- braking, then pressing, for ever ---- */
 
-/* The law offset, which also notes the age of the contact it is given. */
+/* The law `offset`, which also notes the age of the contact that it is given. */
 static double age_seen;
 
 static ethd_status watch(const double *p, void *state, const ethd_contact *contact, ethd_ruling *out) {
@@ -71,7 +71,7 @@ static void press(ethd__stress_log *log, const ethd_scene *scene, int64_t ticks)
   ethd_control_destroy(control);
 }
 
-/* Ticks that were lost count too. */
+/* Lost ticks count in ages, too. */
 static void lost(ethd__stress_log *log, const ethd_scene *scene) {
   ethd_transition_law law = ethd_transition_offset;
   law.step = watch;
@@ -112,7 +112,7 @@ static void script(const ethd_arm *arm, ethd_sense senses[CYCLE]) {
   }
 }
 
-/* The largest distance of a cycle's torques from those of another. */
+/* The largest difference between the torques of two cycles. */
 static double apart(const double *a, const double *b) {
   double most = 0;
   for (int i = 0; i < 2 * CYCLE; i++) most = fmax(most, fabs(a[i] - b[i]));

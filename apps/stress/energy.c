@@ -1,7 +1,6 @@
 /* What the wall gives back to a ring that starts at rest at depth d (no damping on the way out):
 
-     K_e d^2/2 - K_e d_N^2/2 + sum of K_e (step)^2/2        work of the held force, d_N beyond the
-   surface
+     K_e d^2/2 - K_e d_N^2/2 + sum of K_e (step)^2/2        work of the held force, d_N beyond the surface
 
    and, since the tick's map x, v has the determinant 1 + k/2 and the trace 2 - k/2 with k = K_e T^2/m,
 
@@ -46,8 +45,8 @@ static void smooth(ethd__stress_log *log, double stiffness, double depth) {
   ethd__stress_rig_close(&rig);
 }
 
-/* After braking: the ring keeps at most the energy it still has at the switch, and what the hold adds on
-   the little way that is left. */
+/* After braking the ring keeps at most the energy that it has at the switch, and what the hold adds on the short way that
+   is left. */
 static void offset(ethd__stress_log *log, double speed) {
   ethd__stress_rig rig;
   ethd__stress_rig_open(&rig, MASS, -1e-9);
@@ -73,8 +72,9 @@ static void offset(ethd__stress_log *log, double speed) {
   ethd__stress_rig_close(&rig);
 }
 
-/* Braked before the wall: with friction that is told but isn't there, whatever the law gives back of it before it brakes
-   is m v^2/2 more at most; from then on the ring has less with every tick, and stands before the wall takes over. */
+/* predictive brakes before the wall. It is told of friction that isn't there. What it gives back against this friction
+   before it brakes is at most m v^2/2; from then on the ring has less energy at every tick, and it stands before the wall
+   takes over. */
 static void ahead(ethd__stress_log *log, double speed, double friction) {
   ethd__stress_rig rig;
   ethd__stress_rig_open(&rig, MASS, 0.02);

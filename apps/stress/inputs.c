@@ -1,7 +1,7 @@
-/* Measurements that aren't: NaN, infinities, huge and subnormal numbers, clocks that jump, in every word
-   of the sense and every combination of what it holds. The tick gives a torque that is finite and within
-   its limit, says ETHD_FAULT_INPUT exactly where the contract does, and once acknowledged the controller
-   is back where one is that never saw it. And readings that stop: what the filters make of them. */
+/* Impossible measurements: NaN, infinities, huge and subnormal numbers and clocks that jump, in every word of the sense
+   and every combination of what it holds. The tick gives a torque that is finite and within its limit, and raises
+   ETHD_FAULT_INPUT exactly where the contract does; once acknowledged, the controller does what one does that never saw
+   the impossible number. Then readings that stop, and what the filters make of them. */
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
@@ -86,7 +86,7 @@ typedef struct inputs_tally {
   double torque, off;
 } inputs_tally;
 
-/* The hardest reaction that the sense's own rows of the fault table call for. */
+/* The most severe reaction that the rows of the fault table in this sense call for. */
 static ethd_reaction called_for(const ethd_sense *s) {
   ethd_reaction most = ETHD_REACTION_NONE;
   for (int row = 1; row < ETHD_FAULT_COUNT; row++) {

@@ -1,9 +1,9 @@
 /* Ticks that come at odd instants, and ticks that never come.
 
-     jitter       a position taken j late is off by w j: white noise of sd w sigma on it. What estimators
-                  make of that: difference sqrt 2, lowpass sqrt(2 a^2 / (2 - a)), lsq of n sqrt(12 / (n
-   (n^2 - 1))), each times w sigma / T lost ticks   a constant speed stays what it is; caps and fades
-   keep to seconds                         */
+     jitter       A position taken j late is off by w j, which is white noise of sd w sigma on it. Estimators make of
+                  it, times w sigma / T: difference sqrt 2, lowpass sqrt(2 a^2 / (2 - a)), lsq of n samples
+                  sqrt(12 / (n (n^2 - 1))).
+     lost ticks   A constant speed stays what it is; caps and fades keep to seconds. */
 #include <math.h>
 #include <string.h>
 
@@ -61,7 +61,7 @@ static void lost(ethd__stress_log *log, ethd_velocity_method method) {
                      ethd_velocity_methods[method].id);
 }
 
-/* Braking that only t_max ends, ticks lost at random: it ends with the first tick at or after t_max. */
+/* Only t_max ends this braking, while ticks are lost at random: it ends with the first tick at or after t_max. */
 static void cap(ethd__stress_log *log, uint64_t seed) {
   ethd__stress_rig rig;
   ethd__stress_rig_open(&rig, 0.3, -1e-9);

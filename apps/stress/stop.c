@@ -2,7 +2,7 @@
    Coulomb friction f_c helps all along. Per tick, with b = B_d T/m and g = f_c/B_d:
 
      v > v1:   v_k+1 = v_k - a T,  a = (F_sat + f_c)/m
-     then:     v_k+1 + g = (1 - b)(v_k + g)                                                     */
+     then:     v_k+1 + g = (1 - b)(v_k + g) */
 #include <math.h>
 
 #include "stress/rig.h"
@@ -23,7 +23,7 @@ typedef struct stopped {
   double depth, left; /* m, and the speed there, at its last tick on the way in */
 } stopped;
 
-/* The ring meets the wall `late` s before the tick that sees it, and has coasted for a while. */
+/* The ring has coasted for a while and meets the wall `late` s before the tick that sees it. */
 static stopped measure(const stop *s, double speed, double late, int delay, int measured) {
   const double coast = 5 * s->period;
   ethd__stress_rig rig;
@@ -62,8 +62,8 @@ static stopped sampled(const stop *s, double speed, double late) {
   return (stopped){.time = (n1 + n2) * T, .eps = speed * late + way};
 }
 
-/* Without ticks: half a period until the contact is seen, the delay, and half a period of hold, which
-   makes braking longer but not deeper. */
+/* In continuous time: half a period until the contact is seen, the delay, and half a period of hold, which makes braking
+   longer but not deeper. */
 static stopped smooth(const stop *s, double speed, int delay) {
   double v1 = s->force / s->damping, a = (s->force + s->friction) / s->mass, tau = s->mass / s->damping;
   double seen = s->period / 2 + delay * s->period;

@@ -1,8 +1,7 @@
 /* Numerical stress with analytic answers: what its tests share.
 
-   A test measures on the library's real code and works its analytic figure out from a formula of its
-   own. Results with the same words make one line on the terminal, that of the worst; the CSV holds them
-   all. */
+   A test measures the library's own code and compares the figure with one that it works out from a formula. Results with
+   the same words make one line on the terminal, the worst of them; the CSV holds them all. */
 #ifndef ETHD__STRESS_STRESS_H
 #define ETHD__STRESS_STRESS_H
 
@@ -59,7 +58,7 @@ void ethd__stress_flush(ethd__stress_log *log);
 FILE *ethd__stress_data(const ethd__stress_log *log, const char *name, const char *header);
 void ethd__stress_close(FILE *data);
 
-/* The value for the present effort. */
+/* Returns the value for the effort that was asked for. */
 static inline int64_t ethd__stress_pick(const ethd__stress_log *log, int64_t quick, int64_t normal, int64_t most) {
   return log->effort == ETHD__QUICK ? quick : log->effort == ETHD__NORMAL ? normal : most;
 }

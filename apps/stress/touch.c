@@ -1,8 +1,7 @@
 /* Rest at touch: the ring meets the wall at v, `lag` behind the finger, which goes on at v. It stands
    still when the finger reaches it iff
 
-       gap - lag >= v^2/(2a),  gap = R_r - R_f,  a = (F_sat + f_c)/m,  so up to v* = sqrt(2a (gap -
-   lag)):
+       gap - lag >= v^2/(2a),  gap = R_r - R_f,  a = (F_sat + f_c)/m,  so up to v* = sqrt(2a (gap - lag)):
 
    while the ring brakes for v/a s and v^2/(2a) m, the finger moves v^2/a. Ticks are made short here and
    braking hard, so that only this is left; at 1 kHz the paper's braking is noted beside it. */

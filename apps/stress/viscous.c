@@ -2,7 +2,7 @@
 
      speeds measured     v_k+1 = (1 - b) v_k
      lowpass of gain a   z^2 - (2 - a - a b/2) z + 1 - a + a b/2 = 0, v_k a sum of its modes;
-                         a = 1 is the backward difference                                        */
+                         a = 1 is the backward difference */
 #include <complex.h>
 #include <math.h>
 
