@@ -6,6 +6,8 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -25,10 +27,17 @@ static int set_raw(int fd, ethd__line_format format) {
   return tcsetattr(fd, TCSANOW, &t);
 }
 
-/* The lock keeps out those whom TIOCEXCL doesn't: the administrator's programs, those that came before. */
+/* The majors of Linux's pseudo-terminals. */
+static bool is_pseudo(int fd) {
+  struct stat s;
+  return fstat(fd, &s) == 0 && major(s.st_rdev) >= 136 && major(s.st_rdev) <= 143;
+}
+
+/* The lock keeps out those whom TIOCEXCL doesn't: the administrator's programs, those that came before. A pseudo-terminal
+   has the lock alone, since it would stay exclusive after this program's end, for as long as its other side is open. */
 static ethd_status hold(int fd, const char *path, char *message) {
   if (!isatty(fd)) return ethd__say(message, ETHD_E_DEVICE, "%s: isn't a serial line", path);
-  if (flock(fd, LOCK_EX | LOCK_NB) == 0 && ioctl(fd, TIOCEXCL) == 0) return ETHD_OK;
+  if (flock(fd, LOCK_EX | LOCK_NB) == 0 && (is_pseudo(fd) || ioctl(fd, TIOCEXCL) == 0)) return ETHD_OK;
   return ethd__say(message, ETHD_E_DEVICE, "%s: another program uses it (%s)", path, strerror(errno));
 }
 

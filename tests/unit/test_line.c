@@ -1,9 +1,13 @@
 /* Serial lines, on a pty. */
+#include <signal.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "serial/line.h"
 #include "unit/pty.h"
@@ -89,6 +93,25 @@ START_TEST(test_ours_alone) {
 }
 END_TEST
 
+/* Another user opens a line after it was closed, and after the program that had it was killed. */
+START_TEST(test_again_without_rights) {
+  int master = pty_open(NULL, path), fd, status;
+  ck_assert_int_eq(chmod(path, 0666), 0);
+  pid_t child = fork();
+  if (child == 0) _exit(ethd__line_open(path, ETHD__LINE_8N1, 500000, &fd, message) == ETHD_OK ? raise(SIGKILL) : 1);
+  ck_assert_int_eq(waitpid(child, &status, 0), child);
+  ck_assert(WIFSIGNALED(status));
+  child = fork();
+  if (child == 0) {
+    if (getuid() == 0 && setuid(65534)) _exit(2);
+    _exit(ethd__line_open(path, ETHD__LINE_8N1, 500000, &fd, message) == ETHD_OK ? 0 : 1);
+  }
+  ck_assert_int_eq(waitpid(child, &status, 0), child);
+  ck_assert(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  close(master);
+}
+END_TEST
+
 START_TEST(test_refused) {
   int fd;
   ck_assert_int_eq(ethd__line_open("/nowhere/ttyUSB0", ETHD__LINE_8N1, 500000, &fd, message), ETHD_E_DEVICE);
@@ -106,6 +129,7 @@ int main(void) {
   tcase_add_test(tc, test_any_rate);
   tcase_add_test(tc, test_every_byte);
   tcase_add_test(tc, test_ours_alone);
+  tcase_add_test(tc, test_again_without_rights);
   tcase_add_test(tc, test_refused);
   suite_add_tcase(suite, tc);
   return rig_run(suite);
