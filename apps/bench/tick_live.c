@@ -3,13 +3,14 @@
 #include <math.h>
 #include <pthread.h>
 #include <sched.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <time.h>
 
 #include "bench/tick.h"
 #include "cli/cli.h"
+#include "locked_memory.h"
 
 static void heading(const char *text) { printf("  %s\n", text); }
 
@@ -107,7 +108,7 @@ void ethd__tick_live(FILE *csv, int quick) {
                                                     &ethd_transition_abrupt, &ethd_transition_predictive};
   size_t count = quick ? 1500 : 20000;
   double *ns = room_for(count);
-  int locked = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+  bool locked = ethd__memory_lock();
   for (int k = 0; k < (quick ? 1 : 4); k++)
     for (int early = 0; early < 2; early++) {
       live_loop l = {ethd__ticking_create(laws[k], ETHD__TAP_OUTLINE, 1000, ETHD__TAP_RAYS), early, ns, count, 0};

@@ -8,6 +8,7 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include "locked_memory.h"
 #include "loop/loop.h"
 
 static const struct {
@@ -93,19 +94,6 @@ static bool hold_dma_latency(ethd_loop *l) {
          write(l->dma_latency, &l->def.dma_latency, sizeof l->def.dma_latency) == sizeof l->def.dma_latency;
 }
 
-#define LOCKED_ROOM ((size_t)256 << 20) /* bytes: threads' stacks, recordings, scenes of the time to come */
-
-/* Locks all memory, now and in future. Where the user's limit leaves too little room for what is still to come, a later
-   allocation would fail for no reason that anybody could see, so nothing is locked then. The mapping is only counted
-   against the limit: it has no pages. */
-static bool lock_memory(void) {
-  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) return false;
-  void *room = mmap(NULL, LOCKED_ROOM, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (room == MAP_FAILED) return munlockall(), false;
-  munmap(room, LOCKED_ROOM);
-  return true;
-}
-
 int32_t ethd__loop_ask_machine(ethd_loop *l, int *cpu) {
   int32_t bits = 0;
   *cpu = l->def.cpu == ETHD_CPU_AUTO ? highest_isolated() : l->def.cpu;
@@ -113,7 +101,7 @@ int32_t ethd__loop_ask_machine(ethd_loop *l, int *cpu) {
     bits |= ETHD_SHORT_AFFINITY;
     *cpu = ETHD_CPU_NONE;
   }
-  l->locked = lock_memory();
+  l->locked = ethd__memory_lock();
   if (!l->locked) bits |= ETHD_SHORT_MLOCK;
   if (l->def.dma_latency >= 0 && !hold_dma_latency(l)) bits |= ETHD_SHORT_DMA_LATENCY;
   if (!kernel_is_realtime()) bits |= ETHD_SHORT_PREEMPT;
