@@ -21,6 +21,10 @@ static const char doc[] = "Validates a configuration, prints the setup as it was
                           "servo's map: the time of an exchange on its wire, the divisor that holds, registers that "
                           "nobody confirms, what stays unwatched). --open asks the device itself; nothing is enabled. "
                           "Figures come from the drivers and from [arm], or from an option, which replaces them. "
+                          "Stability counts a transmission that gives way, and leaves friction out: friction stops "
+                          "small swings only. Where a loop is unstable without it, a line says up to which speed "
+                          "friction stops a swing, and how fast one encoder count makes the motors: where that is "
+                          "faster, the ring chatters for ever, as the simulated device does.\n\n"
                           "The exit code is 0 for every valid configuration, whether bounds are "
                           "exceeded or not; 2 with one line for "
                           "one that isn't.\n\n"
@@ -105,10 +109,10 @@ static double named(const checked_device *d, const char *name) {
 
 static void from_drivers(const checked_device *d, const ethd_setup *setup, ethd__figures *f) {
   const ethd_dynamics *known = &setup->dynamics;
-  f->friction = known->friction;
-  f->viscous = known->viscous;
-  f->delay = isnan(known->delay) ? named(d, "delay from measurement to torque") : known->delay;
-  f->count = named(d, "joint angle a count");
+  f->loop.friction = known->friction;
+  f->loop.viscous = known->viscous;
+  f->loop.delay = isnan(known->delay) ? named(d, "delay from measurement to torque") : known->delay;
+  f->loop.count = named(d, "joint angle a count");
   f->latency = named(d, "reading age");
 }
 
@@ -121,19 +125,9 @@ static void from_plant(const ethd_config *config, ethd__figures *f) {
   ethd_status status = path ? ethd_plant_load(path, &p, message) : ETHD_E_MEMORY;
   free(path);
   if (status) return;
-  for (int i = 0; i < 2; i++) {
-    f->mass[i] = p.mass[i];
-    f->force[i] = p.force_limit;
-  }
-  f->friction = p.friction;
-  f->viscous = p.viscous;
-  f->delay = p.delay;
-  f->count = p.count;
+  for (int i = 0; i < 2; i++) f->force[i] = p.force_limit;
+  f->loop = ethd__bounds_device_of(&p, 0);
   f->latency = p.latency;
-  f->compliant = isfinite(p.stiffness);
-  f->motor_mass = p.motor_mass;
-  f->spring = p.stiffness;
-  f->damper = p.damping;
 }
 
 static void option(const char *name, const char *text, double max, double *out) {
@@ -143,23 +137,24 @@ static void option(const char *name, const char *text, double max, double *out) 
 /* asked: Nm, the torque that the configuration allows, without its device. */
 static ethd__figures figures(const ethd_config *config, const checked_device *d, double asked) {
   const ethd_setup *setup = &config->setup;
-  ethd__figures f = {{NAN, NAN}, {NAN, NAN}, NAN, NAN, NAN, NAN, NAN, 0, 0, 0, 0};
+  ethd__figures f = {
+      .loop = {.mass = {NAN, NAN}, .delay = NAN, .friction = NAN, .viscous = NAN, .count = NAN}, {NAN, NAN}, NAN};
   double links[2] = {setup->arm.link1, setup->arm.link2}, ticks = NAN;
   from_drivers(d, setup, &f);
   if (strcmp(config->device, ethd_driver_sim.id) == 0) from_plant(config, &f);
-  option("--friction", arg.friction, 1e6, &f.friction);
-  option("--viscous", arg.viscous, 1e6, &f.viscous);
+  option("--friction", arg.friction, 1e6, &f.loop.friction);
+  option("--viscous", arg.viscous, 1e6, &f.loop.viscous);
   option("--latency", arg.latency, 1, &f.latency);
   option("--delay", arg.delay, ETHD_LOOP_DELAY_MAX, &ticks);
-  if (arg.delay) f.delay = ticks * setup->period;
-  if (arg.counts) f.count = 2 * M_PI / ethd__option_number("--counts", arg.counts, 1, 1e12);
+  if (arg.delay) f.loop.delay = ticks * setup->period;
+  if (arg.counts) f.loop.count = 2 * M_PI / ethd__option_number("--counts", arg.counts, 1, 1e12);
   for (int i = 0; i < 2; i++) {
     double most = arg.force ? asked : setup->limits.torque; /* the option replaces the device's */
     option("--force-limit", arg.force, 1e6, &f.force[i]);
     if (isfinite(most)) f.force[i] = fmin(f.force[i], most / links[i]); /* NaN: no other */
   }
-  if (!isnan(config->setup.dynamics.mass[0])) f.mass[0] = config->setup.dynamics.mass[0];
-  if (!isnan(config->setup.dynamics.mass[1])) f.mass[1] = config->setup.dynamics.mass[1];
+  if (!isnan(config->setup.dynamics.mass[0])) f.loop.mass[0] = config->setup.dynamics.mass[0];
+  if (!isnan(config->setup.dynamics.mass[1])) f.loop.mass[1] = config->setup.dynamics.mass[1];
   return f;
 }
 
@@ -182,7 +177,7 @@ int main(int argc, char **argv) {
   printf("\n");
   ethd__report_drivers(config, device.driver, device.device, arg.open);
   ethd__report_device(&subject);
-  int exceeded = ethd__report_stability(&subject);
+  int exceeded = ethd__report_stability(&config->setup, &subject.device.loop);
   exceeded += ethd__report_passivity(&subject);
   exceeded += ethd__report_stop(&subject);
   exceeded += ethd__report_threshold(&subject);

@@ -28,6 +28,12 @@ static void open_space(const ethd_config *config, ethd__tune_space *space) {
   char message[ETHD_MESSAGE_MAX];
   const char *law = arg.law ? arg.law : config->setup.transition->law.id;
   check(ethd__space_open(config, law, space, message), message);
+}
+
+/* What the user says of a range has the last word. */
+static void set_ranges(const ethd__tune_rig *rig, ethd__tune_space *space) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd__score_widen(rig, space);
   for (size_t i = 0; i < arg.range_count; i++) check(ethd__space_range(space, arg.ranges[i], message), message);
 }
 
@@ -55,17 +61,32 @@ static char *describe(const ethd__loaded *loaded, const ethd__tune_space *space)
 
 /* ---- results ---- */
 
-static void write_tuned(const ethd__tune_search *search, const ethd__tune_entry *choice, const ethd__loaded *loaded) {
-  char message[ETHD_MESSAGE_MAX], head[256];
+/* What stands at the top of the tuned configuration. */
+static char *head_of(const ethd__tune_search *search, const ethd__tune_entry *choice, const ethd__loaded *loaded,
+                     const ethd__tune_worths *worths) {
   const ethd__tune_space *space = search->rig->space;
-  snprintf(head, sizeof head, "Tuned by ethd-tune for plant %s (simulated), transition %s, margins %g and %g ms.",
-           loaded->plant_name, space->law, arg.margin.gain, 1e3 * arg.margin.delay);
-  char *folder = ethd__path_folder(arg.out);
+  char *out = NULL;
+  size_t length;
+  FILE *f = open_memstream(&out, &length);
+  if (!f) ethd__fail_memory();
+  fprintf(f, "Tuned by ethd-tune for plant %s (simulated), transition %s, margins %g and %g ms.\n", loaded->plant_name,
+          space->law, arg.margin.gain, 1e3 * arg.margin.delay);
+  ethd__tune_print_worths(f, space, &choice->point, worths);
+  if (fclose(f)) ethd__fail_memory();
+  return out;
+}
+
+static void write_tuned(const ethd__tune_search *search, const ethd__tune_entry *choice, const ethd__loaded *loaded,
+                        const ethd__tune_worths *worths) {
+  char message[ETHD_MESSAGE_MAX];
+  const ethd__tune_space *space = search->rig->space;
+  char *folder = ethd__path_folder(arg.out), *head = head_of(search, choice, loaded, worths);
   bool same = folder && space->config->folder && !strcmp(folder, space->config->folder);
   char *text = ethd__tuned_text(space, &choice->point, head, !same);
   if (!text) ethd__fail_memory();
   check(ethd_text_write(arg.out, text, strlen(text), message), message);
   free(text);
+  free(head);
   free(folder);
 }
 
@@ -82,6 +103,7 @@ static void draw(const ethd__tune_space *space, const ethd__loaded *loaded) {
 static int show(const ethd__tune_search *search, const ethd__loaded *loaded) {
   char message[ETHD_MESSAGE_MAX];
   const ethd__tune_entry *choice = ethd__search_choice(search);
+  ethd__tune_worths worths;
   printf("device       plant %s: simulated, plausible, not measured\n", loaded->plant_name);
   printf("margins      gains %g times, delay %g ms more, with %zu hands: %llu of %llu points keep them\n",
          arg.margin.gain, 1e3 * arg.margin.delay, arg.hands.count, (unsigned long long)search->kept,
@@ -101,9 +123,11 @@ static int show(const ethd__tune_search *search, const ethd__loaded *loaded) {
   printf("chosen: the least sum of the four goals%s%s, confirmed in time at its margins (%d tried)\n",
          arg.prefer >= 0 ? ", twice for " : "", arg.prefer >= 0 ? ethd__tune_goal_names[arg.prefer] : "",
          (int)search->asked);
-  ethd__tune_print_margins(stdout, search->rig, &choice->point);
-  check(ethd__tune_print_gains(stdout, search, choice, message), message);
-  if (arg.out) write_tuned(search, choice, loaded);
+  (void)ethd__tune_print_margins(search->rig, &choice->point);
+  check(ethd__tune_weigh(search, choice, &worths, message), message);
+  printf("\n");
+  ethd__tune_print_worths(stdout, search->rig->space, &choice->point, &worths);
+  if (arg.out) write_tuned(search, choice, loaded, &worths);
   return ETHD_EXIT_DONE;
 }
 
@@ -172,8 +196,9 @@ int main(int argc, char **argv) {
                        .speeds = speeds,
                        .speed_count = ETHD_TUNE_SPEEDS};
   check(ethd__study_prepare(&study, message), message);
-  if (arg.plot) check(ethd__picture_ready(message), message);
   const ethd__tune_rig rig = {&study, &space, arg.hands, arg.margin, arg.passive};
+  set_ranges(&rig, &space);
+  if (arg.plot) check(ethd__picture_ready(message), message);
   ethd__tune_search search = {.rig = &rig, .points = (uint32_t)arg.points, .taps = (uint32_t)arg.taps};
   for (int g = 0; g < ETHD_TUNE_GOALS; g++) search.weights[g] = g == arg.prefer ? 2 : 1;
   if (arg.jobs > 1) spawn(children);

@@ -50,6 +50,16 @@ printf '[transition]\nb_d = %s\n' "$(awk -v m="$most" 'BEGIN { print 0.999 * m }
 "$check" "$folder/good.ini" >"$folder/good"
 says "$folder/good" '^0 bounds exceeded'
 
+# What friction does for an unstable loop: with ideal encoders nothing sets it swinging.
+cp "$BUILD"/share/ethd/p.* "$folder/"
+"$check" "$folder/p.ini" >"$folder/p.out"
+says "$folder/p.out" '^4 bounds exceeded'
+says "$folder/p.out" 'stops swings slower than 7.7 mm/s at the motors.*273 mm/s: the ring chatters'
+sed 's/^count  *=.*/count = 0/' "$folder/p.plant" >"$folder/ideal.plant"
+sed 's/^plant = p/plant = ideal/' "$folder/p.ini" >"$folder/ideal.ini"
+"$check" "$folder/ideal.ini" >"$folder/ideal.out"
+says "$folder/ideal.out" 'one encoder count makes 0 mm/s: the ring is quiet until it is pushed'
+
 # A spring lives off friction; delay is taken in parts of a tick; options win over the plant.
 printf '[contact]\nlaw = spring\n' >"$folder/spring.ini"
 "$check" --delay 0 "$folder/spring.ini" >"$folder/out"

@@ -10,8 +10,8 @@
 int ethd__report_passivity(const ethd__subject *s) {
   const ethd_setup *setup = &s->config->setup;
   double K = ethd_setup_get(setup, "contact.k_e"), B = ethd_setup_get(setup, "contact.b_e");
-  double T = setup->period, b = s->device.viscous, fc = s->device.friction;
-  double count = s->device.count * fmax(setup->arm.link1, setup->arm.link2);
+  double T = setup->period, b = s->device.loop.viscous, fc = s->device.loop.friction;
+  double count = s->device.loop.count * fmax(setup->arm.link1, setup->arm.link2);
   if (isnan(K)) return 0;
   ethd__sampled_loop loop = {.period = T, .stiffness = K, .damping = isnan(B) ? 0 : B};
   double needed = ethd__sampled_passive_friction(&loop);
@@ -62,7 +62,7 @@ static const char *smoother(const ethd_setup *setup) {
 int ethd__report_threshold(const ethd__subject *s) {
   const ethd_setup *setup = &s->config->setup;
   double v_th = ethd_setup_get(setup, "transition.v_th");
-  double link = fmax(setup->arm.link1, setup->arm.link2), count = s->device.count;
+  double link = fmax(setup->arm.link1, setup->arm.link2), count = s->device.loop.count;
   char velocity[96];
   if (isnan(v_th)) return 0;
   printf("\nquantisation transition.v_th = %.4g m/s against an encoder count\n", v_th);

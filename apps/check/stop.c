@@ -16,11 +16,11 @@ static double behind(const ethd__subject *s) {
 static ethd__bounds_stop stop_of(const ethd__subject *s, int axis) {
   const ethd_setup *setup = &s->config->setup;
   const ethd__figures *f = &s->device;
-  return (ethd__bounds_stop){.mass = f->mass[axis],
+  return (ethd__bounds_stop){.mass = f->loop.mass[axis],
                              .force = f->force[axis],
-                             .friction = isnan(f->friction) ? 0 : f->friction,
-                             .viscous = isnan(f->viscous) ? 0 : f->viscous,
-                             .stiffness = s->k[axis],
+                             .friction = isnan(f->loop.friction) ? 0 : f->loop.friction,
+                             .viscous = isnan(f->loop.viscous) ? 0 : f->loop.viscous,
+                             .stiffness = s->felt.stiffness[axis],
                              .behind = behind(s),
                              .gap = setup->ring_radius - setup->finger_radius};
 }
@@ -49,7 +49,7 @@ static void rest_at_touch(const ethd__subject *s, int axis) {
 static void braking(const ethd__subject *s, int axis, double damping) {
   const ethd_setup *setup = &s->config->setup;
   ethd__bounds_stop stop = stop_of(s, axis);
-  double delay = isnan(s->device.delay) ? 0 : s->device.delay;
+  double delay = isnan(s->device.loop.delay) ? 0 : s->device.loop.delay;
   double eps_max = ethd_setup_get(setup, "transition.eps_max");
   double t_max = ethd_setup_get(setup, "transition.t_max");
   ethd__bounds_braking b = {damping, ethd_setup_get(setup, "transition.v_th"), setup->period, delay};
@@ -91,9 +91,9 @@ static int looks_ahead(const ethd__subject *s, int axis) {
 static void say_missing(const ethd__subject *s) {
   const ethd__figures *f = &s->device;
   printf("  needs");
-  if (isnan(f->mass[0]) && isnan(f->mass[1])) printf(" arm.mass_x or arm.mass_y");
+  if (isnan(f->loop.mass[0]) && isnan(f->loop.mass[1])) printf(" arm.mass_x or arm.mass_y");
   if (isnan(f->force[0]) && isnan(f->force[1])) printf(" --force-limit or limits.torque");
-  if (isnan(s->k[0])) printf(" a tracking law with k_t");
+  if (isnan(s->felt.stiffness[0])) printf(" a tracking law with k_t");
   printf("\n");
 }
 
@@ -103,9 +103,9 @@ int ethd__report_stop(const ethd__subject *s) {
   double b_d = ethd_setup_get(setup, "transition.b_d");
   int said = 0, exceeded = 0;
   printf("\nstop         at a wall across each axis, with the motors' force at once%s\n",
-         isnan(f->friction) || isnan(f->viscous) ? " (friction unknown, taken as 0)" : "");
+         isnan(f->loop.friction) || isnan(f->loop.viscous) ? " (friction unknown, taken as 0)" : "");
   for (int axis = 0; axis < 2; axis++) {
-    if (isnan(f->mass[axis]) || !isfinite(f->force[axis]) || isnan(s->k[axis])) continue;
+    if (isnan(f->loop.mass[axis]) || !isfinite(f->force[axis]) || isnan(s->felt.stiffness[axis])) continue;
     rest_at_touch(s, axis);
     exceeded += looks_ahead(s, axis);
     if (b_d > 0) braking(s, axis, b_d);

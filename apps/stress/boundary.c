@@ -23,37 +23,49 @@ static const struct {
                   {"lowpass 400 Hz", ETHD_VELOCITY_LOWPASS, 400},
                   {"lsq of 4", ETHD_VELOCITY_LSQ, 4}};
 
-typedef struct point {
-  const ethd__curve *curve;
-  double th, stiffness, damping; /* on the curve */
-} point;
+/* A loop whose gains are on the boundary. */
+typedef struct boundary_loop {
+  ethd__sampled_loop loop;
+  double th; /* rad a tick: how fast it swings there, at least about */
+} boundary_loop;
 
-/* Growth per tick with both gains `scale` times those of the curve: as a mass 1 / scale as large. */
-static double growth(const point *p, double scale) {
+/* The loop in its wall, deep enough for swings of `most` m, with both gains `scale` times as large: where the device is
+   rigid, as a mass 1 / scale as large. */
+static void open_rig(const boundary_loop *e, double scale, double most, ethd__stress_rig *rig) {
+  const ethd__sampled_loop *l = &e->loop;
+  double k = scale * l->stiffness, b = scale * l->damping;
+  double push = 4 * most * (k + b * e->th / PERIOD);
+  ethd__stress_rig_open(rig, l->mass, -push / k);
+  ethd__stress_rig_velocity(rig, l->method, l->p[0]);
+  ethd_setup_transition(&rig->setup, &ethd_transition_smooth);
+  ethd__stress_set(&rig->setup, "contact.k_e", k);
+  ethd__stress_set(&rig->setup, "contact.b_e", b);
+  ethd__stress_set(&rig->setup, "transition.v_hysteresis", 1);
+  rig->delay = l->delay;
+  rig->motor_mass = l->motor_mass;
+  rig->spring = l->spring;
+  rig->damper = l->damper;
+  rig->push.x = -push;
+}
+
+/* Growth per tick. */
+static double growth(const boundary_loop *e, double scale) {
   ethd__stress_rig rig;
-  double k = scale * p->stiffness, b = scale * p->damping, most = 10 * SWING;
-  double push = 4 * most * (k + b * p->th / PERIOD);
-  ethd__stress_rig_open(&rig, MASS, -push / k);
-  ethd__stress_rig_velocity(&rig, p->curve->method, p->curve->value);
-  ethd_setup_transition(&rig.setup, &ethd_transition_smooth);
-  ethd__stress_set(&rig.setup, "contact.k_e", k);
-  ethd__stress_set(&rig.setup, "contact.b_e", b);
-  ethd__stress_set(&rig.setup, "transition.v_hysteresis", 1);
-  rig.delay = p->curve->delay;
-  rig.push.x = -push;
-  ethd__stress_rig_start(&rig, SWING * p->th / PERIOD);
-  ethd__swing swing = {.order = 1, .settle = 200, .span = 1800, .floor = 1e-3 * SWING * p->th, .ceiling = most * p->th};
+  open_rig(e, scale, 10 * SWING, &rig);
+  ethd__stress_rig_start(&rig, SWING * e->th / PERIOD);
+  ethd__swing swing = {
+      .order = 1, .settle = 200, .span = 1800, .floor = 1e-3 * SWING * e->th, .ceiling = 10 * SWING * e->th};
   double rate = ethd__stress_rig_growth(&rig, &swing);
   ethd__stress_rig_close(&rig);
   return rate;
 }
 
 /* The scale at which the swing begins to grow. */
-static double found(const point *p) {
+static double found(const boundary_loop *e) {
   double low = 0.9, high = 1.1;
   while (high - low > 2e-4) {
     double middle = (low + high) / 2;
-    if (growth(p, middle) > 0)
+    if (growth(e, middle) > 0)
       high = middle;
     else
       low = middle;
@@ -61,20 +73,31 @@ static double found(const point *p) {
   return (low + high) / 2;
 }
 
+/* ---- rigid: along the closed form's curve ---- */
+
+static boundary_loop on_curve(const ethd__curve *curve, double th) {
+  boundary_loop e = {.loop = {.mass = curve->mass,
+                              .period = curve->period,
+                              .delay = curve->delay,
+                              .method = curve->method,
+                              .p = {curve->value}},
+                     .th = th};
+  ethd__curve_at(curve, th, &e.loop.stiffness, &e.loop.damping);
+  return e;
+}
+
 static void one_curve(ethd__stress_log *log, FILE *data, const ethd__curve *curve, const char *name) {
   int points = (int)ethd__stress_pick(log, 8, 40, 40);
   double end = ethd__curve_end(curve), inside[40], outside[40];
   for (int i = 0; i < points; i++) {
-    point p = {curve, end * (0.1 + 0.89 * i / (points - 1)), 0, 0};
-    ethd__curve_at(curve, p.th, &p.stiffness, &p.damping);
-    double scale = found(&p);
-    inside[i] = growth(&p, 0.98);
-    outside[i] = growth(&p, 1.02);
-    ethd__stress_near(log, "N/m", scale * p.stiffness, p.stiffness, 5e-3, "%s, n = %d: K_e (and B_e) found", name,
-                      curve->delay);
+    boundary_loop e = on_curve(curve, end * (0.1 + 0.89 * i / (points - 1)));
+    double k = e.loop.stiffness, b = e.loop.damping, scale = found(&e);
+    inside[i] = growth(&e, 0.98);
+    outside[i] = growth(&e, 1.02);
+    ethd__stress_near(log, "N/m", scale * k, k, 5e-3, "%s, n = %d: K_e (and B_e) found", name, curve->delay);
     if (data)
       fprintf(data, "%s,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", name, curve->delay, curve->mass, curve->period,
-              p.th, p.stiffness, p.damping, scale * p.stiffness, scale * p.damping);
+              e.th, k, b, scale * k, scale * b);
   }
   for (int i = 0; i < points; i++)
     ethd__stress_bound(log, "1", inside[i], 0, "%s, n = %d: 2 %% inside, growth a tick", name, curve->delay);
@@ -82,19 +105,30 @@ static void one_curve(ethd__stress_log *log, FILE *data, const ethd__curve *curv
     ethd__stress_bound(log, "1", -outside[i], 0, "%s, n = %d: 2 %% outside, decay a tick", name, curve->delay);
 }
 
-/* ---- a transmission that gives way ---- */
+/* ---- a transmission that gives way: along rays of gains whose ratio stays ---- */
 
 /* What plant p's arm is like. */
 #define SOFT_MASS 0.09475
 #define SOFT_MOTOR 0.01322
 #define SOFT_SPRING 3489.6
 #define SOFT_DAMPER 5.132
-#define RAYS 10 /* of gains whose ratio stays: 40 points in all */
+#define SOFT_FRICTION 0.18266
+#define RAYS 10 /* 40 points in all */
 
-typedef struct ray {
-  ethd__sampled_loop loop; /* gains on the boundary, by its radius */
-  double th;               /* rad a tick: about how fast it swings */
-} ray;
+static boundary_loop soft(ethd_velocity_method method, double value, int delay, double stiffness, double damping) {
+  return (boundary_loop){.loop = {.mass = SOFT_MASS,
+                                  .motor_mass = SOFT_MOTOR,
+                                  .spring = SOFT_SPRING,
+                                  .damper = SOFT_DAMPER,
+                                  .period = PERIOD,
+                                  .stiffness = stiffness,
+                                  .damping = damping,
+                                  .delay = delay,
+                                  .method = method,
+                                  .p = {value},
+                                  .link = 0.25},
+                         .th = 0.3};
+}
 
 /* Along the ray from small gains up to the first that aren't stable. */
 static void find_end(ethd__sampled_loop *l) {
@@ -116,61 +150,46 @@ static void find_end(ethd__sampled_loop *l) {
   }
 }
 
-static double soft_growth(const ray *r, double scale) {
-  const ethd__sampled_loop *l = &r->loop;
-  ethd__stress_rig rig;
-  double k = scale * l->stiffness, b = scale * l->damping, most = 10 * SWING;
-  double push = 4 * most * (k + b * r->th / PERIOD);
-  ethd__stress_rig_open(&rig, SOFT_MASS, -push / k);
-  ethd__stress_rig_velocity(&rig, l->method, l->p[0]);
-  ethd_setup_transition(&rig.setup, &ethd_transition_smooth);
-  ethd__stress_set(&rig.setup, "contact.k_e", k);
-  ethd__stress_set(&rig.setup, "contact.b_e", b);
-  ethd__stress_set(&rig.setup, "transition.v_hysteresis", 1);
-  rig.delay = l->delay;
-  rig.motor_mass = SOFT_MOTOR;
-  rig.spring = SOFT_SPRING;
-  rig.damper = SOFT_DAMPER;
-  rig.push.x = -push;
-  ethd__stress_rig_start(&rig, SWING * r->th / PERIOD);
-  ethd__swing swing = {.order = 1, .settle = 200, .span = 1800, .floor = 1e-3 * SWING * r->th, .ceiling = most * r->th};
-  double rate = ethd__stress_rig_growth(&rig, &swing);
-  ethd__stress_rig_close(&rig);
-  return rate;
-}
-
-static double soft_found(const ray *r) {
-  double low = 0.9, high = 1.1;
-  while (high - low > 5e-4) {
-    double middle = (low + high) / 2;
-    if (soft_growth(r, middle) > 0)
-      high = middle;
-    else
-      low = middle;
-  }
-  return (low + high) / 2;
-}
-
 /* Dampings from half as large again as the hold takes off to many times that. */
 static void soft_rays(ethd__stress_log *log, const char *name, ethd_velocity_method method, double value, int delay) {
   for (int i = 0; i < RAYS; i++) {
-    ray r = {.loop = {.mass = SOFT_MASS,
-                      .motor_mass = SOFT_MOTOR,
-                      .spring = SOFT_SPRING,
-                      .damper = SOFT_DAMPER,
-                      .period = PERIOD,
-                      .delay = delay,
-                      .method = method,
-                      .p = {value},
-                      .link = 0.25},
-             .th = 0.3};
-    r.loop.stiffness = 1000;
-    r.loop.damping = 1000 * PERIOD * (delay + 0.5) * 1.5 * pow(1.4, i);
-    find_end(&r.loop);
-    double scale = soft_found(&r);
-    ethd__stress_near(log, "N/m", scale * r.loop.stiffness, r.loop.stiffness, 5e-3,
+    boundary_loop e = soft(method, value, delay, 1000, 1000 * PERIOD * (delay + 0.5) * 1.5 * pow(1.4, i));
+    find_end(&e.loop);
+    ethd__stress_near(log, "N/m", found(&e) * e.loop.stiffness, e.loop.stiffness, 5e-3,
                       "transmission gives way, %s, n = %d: K_e (and B_e) found", name, delay);
   }
+}
+
+/* ---- friction: how fast a swing of an unstable loop it still stops ---- */
+
+#define LAST 400 /* ticks: by then a swing has died out or grown */
+
+/* The swing's speed at the end, m/s, after a push of the motor's side to `speed`. */
+static double swing_after(const boundary_loop *e, double speed) {
+  ethd__stress_rig rig;
+  double most = 0;
+  open_rig(e, 1, speed * PERIOD / e->th, &rig);
+  rig.friction = SOFT_FRICTION;
+  ethd__stress_rig_start(&rig, 0);
+  rig.state.v[ETHD__MOTOR] = speed / rig.setup.arm.link1;
+  for (int k = 0; k < LAST; k++) {
+    ethd__stress_rig_tick(&rig);
+    if (k >= LAST - 50) most = fmax(most, fabs(ethd__stress_rig_speed(&rig)));
+  }
+  ethd__stress_rig_close(&rig);
+  return most;
+}
+
+/* Without delay it is the speed of the push; with a tick of it, friction takes some before the loop answers. */
+static void held(ethd__stress_log *log, double stiffness, double damping, int delay) {
+  const boundary_loop e = soft(ETHD_VELOCITY_LOWPASS, 389.1, delay, stiffness, damping);
+  double predicted = ethd__sampled_held(ethd__sampled_viscous_needed(&e.loop), SOFT_FRICTION, 0);
+  double speed = 0.2 * predicted;
+  while (swing_after(&e, speed) < speed) speed *= 1.05;
+  ethd__stress_bound(log, "m/s", predicted, speed, "transmission gives way, n = %d: friction stops swings up to",
+                     delay);
+  ethd__stress_bound(log, "m/s", speed, (delay ? 2.5 : 1.2) * predicted,
+                     "transmission gives way, n = %d: and none much faster", delay);
 }
 
 static void run(ethd__stress_log *log) {
@@ -186,6 +205,8 @@ static void run(ethd__stress_log *log) {
   for (int n = 0; n <= 1; n++) {
     soft_rays(log, "difference", ETHD_VELOCITY_DIFFERENCE, 0, n);
     soft_rays(log, "lowpass 400 Hz", ETHD_VELOCITY_LOWPASS, 400, n);
+    for (double damping = 40; damping < 70; damping += 5)
+      for (double stiffness = 500; stiffness < 4000; stiffness += 1000) held(log, stiffness, damping, n);
   }
 }
 

@@ -71,7 +71,7 @@ void ethd__stress_rig_push(ethd__stress_rig *rig, ethd_vec push) {
   }
 }
 
-/* The simulator's arm, without friction and finger, at rest or as fast as the rig on both sides. */
+/* The simulator's arm, without a finger, at rest or as fast as the rig on both sides. */
 static void place(ethd__stress_rig *rig) {
   ethd_sim_def def = {.arm = rig->setup.arm,
                       .ring_radius = 1,
@@ -82,6 +82,7 @@ static void place(ethd__stress_rig *rig) {
   def.plant.motor_mass = rig->motor_mass;
   def.plant.stiffness = rig->spring;
   def.plant.damping = rig->damper;
+  def.plant.friction = rig->friction;
   def.plant.finger_mass = 1;
   def.plant.force_limit = 1e9;
   ethd__body_prepare(&def, 0, &rig->body);

@@ -20,10 +20,11 @@ typedef struct ethd__stress_rig {
   double mass;      /* kg at the ring, both joints alike */
   double gap;       /* m to the wall at the start */
   double motor_mass, spring,
-      damper;    /* kg of it on the motor's side, N/m, Ns/m of a transmission that gives way; 0: rigid.
-                                        Then the simulator's arm moves instead, and the push acts on the motor's side */
-  int delay;     /* ticks from measurement to torque */
-  bool measured; /* 1: joint speeds are measured, 0: the setup estimates them */
+      damper;      /* kg of it on the motor's side, N/m, Ns/m of a transmission that gives way; 0: rigid.
+                                        With one the simulator's arm moves, and the push acts on the motor's side, as does */
+  double friction; /* N at the ring, Coulomb's */
+  int delay;       /* ticks from measurement to torque */
+  bool measured;   /* 1: joint speeds are measured, 0: the setup estimates them */
   bool has_finger;
   ethd_vec finger, finger_v; /* m, m/s; without one it is where the ring is */
   ethd_vec push;             /* N on the ring from outside */

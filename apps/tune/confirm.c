@@ -25,7 +25,8 @@ static double left_over(const line_fit *l) {
   return sqrt(fmax(0, l->vv / l->n - v * v - slope * slope * tt));
 }
 
-/* Goes on with the tap that has just been run. INFINITY: the controller stopped. */
+/* Goes on with the tap that has just been run. Where the transmission gives way the motor's side swings first, and most.
+   INFINITY: the controller stopped. */
 static double swing_of(ethd__stage *stage) {
   line_fit line = {0};
   ethd_sense sense;
@@ -37,7 +38,7 @@ static double swing_of(ethd__stage *stage) {
     ethd_sim_read(stage->sim, &sense);
     if (ethd_control_step(stage->control, &sense, &command, &trace) < 0 || trace.fault) return (double)INFINITY;
     ethd_sim_truth(stage->sim, &truth);
-    if (k >= PRESS - REST) add(&line, k, truth.ring_v[0]);
+    if (k >= PRESS - REST) add(&line, k, truth.motor_v[0]);
     ethd_sim_write(stage->sim, &command);
   }
   return left_over(&line);
@@ -71,7 +72,8 @@ static ethd_status measure(const ethd__tune_rig *rig, const ethd__tune_point *po
   return status;
 }
 
-/* The device's own unrest is no fault of the gains: twice that of the configuration's own is allowed. */
+/* The device's own unrest is no fault of the gains: twice that under the configuration's own gains is allowed, if those
+   keep the margins. */
 static bool rests(const unrest *u, const unrest *own, double *worst) {
   bool good = true;
   *worst = 0;
@@ -129,8 +131,8 @@ static ethd_status try_hand(const ethd__tune_rig *rig, const ethd__tune_point *p
                             ethd__tune_verdict *out, char *message) {
   const ethd__tune_point nominal = ethd__space_own(rig->space);
   const ethd_plant hand = with_hand(&rig->study->plant, share);
-  unrest own, u;
-  ethd_status status = measure(rig, &nominal, &hand, &own, message);
+  unrest own = {{{0}}}, u;
+  ethd_status status = ethd__score_keeps(rig, &nominal) ? measure(rig, &nominal, &hand, &own, message) : ETHD_OK;
   for (size_t i = 0; !status && out->settles && i < sizeof unsettlings / sizeof *unsettlings; i++) {
     status = try_one(rig, point, &hand, &unsettlings[i], &u, message);
     if (!status) *out = (ethd__tune_verdict){.settles = true, .what = unsettlings[i].what, .hand = share};

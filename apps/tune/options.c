@@ -9,26 +9,38 @@
 #define POINTS 384
 #define TAPS 160
 
+#define BUYS(name, low, high, buys) "  " name ": " buys ".\n"
+
 static const char doc[] =
     "Finds gains for a device that is known from its plant file.\v"
     "Tries gains of tracking, contact and transition and the filters' cut-offs, within ranges about the "
-    "configuration's "
-    "own. Whatever doesn't keep the margins in every loop, along both axes and with every hand, is left out; the rest "
-    "is "
-    "tapped on the simulated device, in four rounds of ever fewer points. Shows the points that nothing else beats in "
-    "all of tracking, braking, wall and calm at once, and chooses the one with the least weighted sum of the four "
-    "(mean "
-    "logarithms of their figures over the configuration's own); --prefer doubles one weight. The choice is confirmed "
-    "in "
-    "time, with gains and delay at their margin. The first sieve takes the transmission as rigid; the "
-    "trial in time and ethd-check do not. The plants are simulated: the device itself has the last word.\n\n"
-    "--work DIR keeps what was tapped: the same command goes on where it was ended, and shards in other processes "
-    "share "
-    "the work (--shard 1/4, 2/4, ... with one DIR; shard 1 writes the results). --jobs N does that on this machine.\n\n"
-    "Example:\n"
-    "  ethd-tune --plant n --out tuned.ini --plot tuned.png\n"
-    "  ethd-tune --plant mine.plant --config mine.ini --range contact.k_e=1000 --prefer tracking --out tuned.ini\n"
-    "  ethd-tune --plant n --work search --jobs 2 --out tuned.ini";
+    "configuration's own. What each of them buys:\n\n" ETHD_TUNE_KNOWN(
+        BUYS) "\nWhatever doesn't keep the margins in every loop, along both axes and with every hand, is left out; "
+              "the rest is "
+              "tapped on the simulated device, in four rounds of ever fewer points. Shows the points that nothing else "
+              "beats in "
+              "all of tracking, braking, wall and calm at once, and chooses the one with the least weighted sum of the "
+              "four "
+              "(mean logarithms of their figures over the configuration's own); --prefer doubles one weight. The "
+              "plants are "
+              "simulated: the device itself has the last word.\n\n"
+              "Margins are ethd-check's: a transmission that gives way counts, friction doesn't, for it stops small "
+              "swings only. "
+              "Where the configuration's own gains don't keep them (plant p's wall and brake chatter on the motors' "
+              "side), lower "
+              "dampings are tried, and what that costs is said. The choice is confirmed in time, too, with gains and "
+              "delay at "
+              "their margin.\n\n"
+              "--work DIR keeps what was tapped: the same command goes on where it was ended, and shards in other "
+              "processes "
+              "share "
+              "the work (--shard 1/4, 2/4, ... with one DIR; shard 1 writes the results). --jobs N does that on this "
+              "machine.\n\n"
+              "Example:\n"
+              "  ethd-tune --plant n --out tuned.ini --plot tuned.png\n"
+              "  ethd-tune --plant mine.plant --config mine.ini --range contact.k_e=1000 --prefer tracking --out "
+              "tuned.ini\n"
+              "  ethd-tune --plant n --work search --jobs 2 --out tuned.ini";
 
 enum {
   GAIN_MARGIN = 256,

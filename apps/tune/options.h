@@ -11,7 +11,7 @@ typedef struct ethd__tune_options {
   const char *ranges[ETHD_TUNE_KEYS_MAX];
   size_t range_count;
   ethd__tune_hands hands;
-  ethd__loop_margin margin;
+  ethd__bounds_margin margin;
   bool passive;
   int prefer; /* a goal; -1: none */
   int64_t points, taps, jobs;

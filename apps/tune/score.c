@@ -13,18 +13,20 @@ const char *const ethd__tune_goal_names[ETHD_TUNE_GOALS] = {"tracking", "brake",
 
 /* ---- margins ---- */
 
-static bool loops_keep(const ethd__tune_rig *rig, const ethd_setup *setup, double share) {
-  const ethd_plant *plant = &rig->study->plant;
-  double with = share * plant->finger_mass;
-  const ethd__loop_device device = {{plant->mass[0] + with, plant->mass[1] + with}, plant->delay};
-  for (int kind = 0; kind < ETHD_LOOP_KINDS; kind++)
-    for (int axis = 0; axis < 2; axis++) {
-      ethd__sampled_loop loop;
-      if (!ethd__loop_of(setup, &device, (ethd__loop_kind)kind, axis, &loop)) continue;
-      if (!ethd__loop_keeps(&loop, &rig->margin)) return false;
-      if (rig->passive && kind == ETHD_LOOP_WALL && ethd__sampled_passive_friction(&loop) > plant->viscous)
-        return false;
-    }
+static bool loop_keeps(const ethd__tune_rig *rig, const ethd_setup *setup, ethd__bounds_kind kind, double share) {
+  const ethd__bounds_device device = ethd__bounds_device_of(&rig->study->plant, share);
+  for (int axis = 0; axis < 2; axis++) {
+    ethd__sampled_loop loop;
+    if (!ethd__bounds_of(setup, &device, kind, axis, &loop)) continue;
+    if (!ethd__bounds_keeps(&loop, &rig->margin)) return false;
+    if (rig->passive && kind == ETHD_LOOP_WALL && ethd__sampled_passive_friction(&loop) > device.viscous) return false;
+  }
+  return true;
+}
+
+static bool keeps_with_hands(const ethd__tune_rig *rig, const ethd_setup *setup, ethd__bounds_kind kind) {
+  for (size_t i = 0; i < rig->hands.count; i++)
+    if (!loop_keeps(rig, setup, kind, rig->hands.shares[i])) return false;
   return true;
 }
 
@@ -32,9 +34,21 @@ bool ethd__score_keeps(const ethd__tune_rig *rig, const ethd__tune_point *point)
   char unsaid[ETHD_MESSAGE_MAX];
   ethd_setup setup;
   if (ethd__space_setup(rig->space, point, &setup, unsaid)) return false;
-  for (size_t i = 0; i < rig->hands.count; i++)
-    if (!loops_keep(rig, &setup, rig->hands.shares[i])) return false;
+  for (int kind = 0; kind < ETHD_LOOP_KINDS; kind++)
+    if (!keeps_with_hands(rig, &setup, (ethd__bounds_kind)kind)) return false;
   return true;
+}
+
+#define LOWERED 0.1 /* times the own: a gain of a loop whose own gains don't keep the margin */
+
+void ethd__score_widen(const ethd__tune_rig *rig, ethd__tune_space *space) {
+  static const char *const sections[ETHD_LOOP_KINDS] = {"tracking.b", "contact.b", "transition.b"};
+  char unsaid[ETHD_MESSAGE_MAX];
+  ethd_setup setup;
+  const ethd__tune_point own = ethd__space_own(space);
+  if (ethd__space_setup(space, &own, &setup, unsaid)) return;
+  for (int kind = 0; kind < ETHD_LOOP_KINDS; kind++)
+    if (!keeps_with_hands(rig, &setup, (ethd__bounds_kind)kind)) ethd__space_lower(space, sections[kind], LOWERED);
 }
 
 /* ---- figures of a tap ---- */

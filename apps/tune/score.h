@@ -40,9 +40,13 @@ typedef struct ethd__tune_rig {
   const ethd__study *study; /* two speeds, without gains */
   const ethd__tune_space *space;
   ethd__tune_hands hands;
-  ethd__loop_margin margin;
+  ethd__bounds_margin margin;
   bool passive; /* the wall is to be passive with the device's own viscous friction (Colgate and Schenkel) */
 } ethd__tune_rig;
+
+/* Lowers the range of the damping gain of every loop that doesn't keep the margin under the configuration's own gains, so
+   that the search finds some that do. */
+void ethd__score_widen(const ethd__tune_rig *rig, ethd__tune_space *space);
 
 /* Whether every loop, along each axis, keeps the margin, free and with each hand's mass against the ring. False too for a
    setup that the configuration refuses. */

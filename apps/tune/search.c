@@ -19,7 +19,7 @@ static const struct {
 #define TAPS_LEAST 8 /* with fewer hardly a hand meets the wall at the speed asked for */
 #define LEAST 4      /* points that go on, however small the search */
 #define THIN 4       /* a point in so many that doesn't keep the margin is tapped too, to be seen beside the others */
-#define DRAWS_A_POINT 64 /* tries for a point that keeps the margin */
+#define DRAWS_A_POINT 128 /* tries for a point that keeps the margin */
 
 /* ---- a round's points ---- */
 

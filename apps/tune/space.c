@@ -9,18 +9,13 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-/* How far from the configuration's own value is looked. */
 static const struct {
   const char *name;
   double low, high;
 } known[] = {
-    {"tracking.k_t", 0.5, 8},
-    {"tracking.b_t", 0.5, 8},
-    {"contact.k_e", 1, 4},
-    {"contact.b_e", 0.5, 4},
-    {"transition.b_d", 0.5, 3},
-    {"velocity.cutoff", 0.5, 3},
-    {"finger_filter.acceleration", 0.2, 20},
+#define ROW(name, low, high, buys) {name, low, high},
+    ETHD_TUNE_KNOWN(ROW)
+#undef ROW
 };
 
 #define KNOWN (sizeof known / sizeof *known)
@@ -60,6 +55,14 @@ ethd_status ethd__space_open(const ethd_config *config, const char *law, ethd__t
   if (out->count) return ETHD_OK;
   return ethd__say(message, ETHD_E_ARGUMENT, "%s: nothing to tune: its laws have none of the gains that are known here",
                    config->path ? config->path : "the configuration");
+}
+
+void ethd__space_lower(ethd__tune_space *s, const char *prefix, double share) {
+  for (size_t i = 0; i < s->count; i++)
+    if (!strncmp(s->keys[i].name, prefix, strlen(prefix))) {
+      s->keys[i].low = rounded(s->keys[i].own * share);
+      s->keys[i].high = rounded(s->keys[i].own);
+    }
 }
 
 /* ---- ranges by hand ---- */

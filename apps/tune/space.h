@@ -8,6 +8,17 @@
 #define ETHD_TUNE_KEY_MAX 64
 #define ETHD_TUNE_VALUE_MAX 32
 
+/* What is tuned of a configuration that says nothing else: X(name, least share of its own value, largest multiple, what a
+   larger value buys, and what it costs). */
+#define ETHD_TUNE_KNOWN(X)                                                                                     \
+  X("tracking.k_t", 0.5, 8, "less lag and fewer early contacts; it costs a rougher torque")                    \
+  X("tracking.b_t", 0.5, 8, "a ring that swings less about the finger; it costs encoder counts that are felt") \
+  X("contact.k_e", 1, 4, "a harder wall; it costs rebound")                                                    \
+  X("contact.b_e", 0.5, 4, "less depth on entering; it costs margin")                                          \
+  X("transition.b_d", 0.5, 3, "a shorter stop, until the motors saturate; it costs margin")                    \
+  X("velocity.cutoff", 0.5, 3, "quicker speeds, and so more margin; it costs encoder counts that are felt")    \
+  X("finger_filter.acceleration", 0.2, 20, "a finger that is followed sooner; it costs noise of its sensor")
+
 typedef struct ethd__tune_key {
   char name[ETHD_TUNE_KEY_MAX]; /* "tracking.k_t" */
   double own, low, high;        /* the configuration's value; the range, 0 < low <= high */
@@ -30,6 +41,9 @@ typedef struct ethd__tune_point {
    there, a setup with nothing to tune. */
 ETHD_MUST_CHECK ethd_status ethd__space_open(const ethd_config *config, const char *law, ethd__tune_space *out,
                                              char message[ETHD_MESSAGE_MAX]);
+
+/* Gives the keys whose names begin with `prefix` the range from `share` of their own value to that value. */
+void ethd__space_lower(ethd__tune_space *space, const char *prefix, double share);
 
 /* "contact.k_e=500:4000": that range for the key, which becomes one of the space where it wasn't; "contact.k_e=1000": that
    value and no other. Refuses what the configuration doesn't take. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "check/report.h"
 #include "text/csv.h"
 #include "text/error_text.h"
 
@@ -48,50 +49,45 @@ void ethd__tune_print(FILE *out, const ethd__tune_search *s, const ethd__tune_en
 
 /* ---- margins ---- */
 
-void ethd__tune_print_margins(FILE *out, const ethd__tune_rig *rig, const ethd__tune_point *point) {
+int ethd__tune_print_margins(const ethd__tune_rig *rig, const ethd__tune_point *point) {
   char unsaid[ETHD_MESSAGE_MAX];
-  const ethd_plant *plant = &rig->study->plant;
-  const ethd__loop_device device = {{plant->mass[0], plant->mass[1]}, plant->delay};
+  const ethd__bounds_device device = ethd__bounds_device_of(&rig->study->plant, 0);
   ethd_setup setup;
-  if (ethd__space_setup(rig->space, point, &setup, unsaid)) return;
-  fprintf(out,
-          "\nmargins      of the chosen gains, free ring: times its stiffness, times its damping, ms of delay more\n");
-  for (int kind = 0; kind < ETHD_LOOP_KINDS; kind++)
-    for (int axis = 0; axis < 2; axis++) {
-      ethd__sampled_loop loop;
-      if (!ethd__loop_of(&setup, &device, (ethd__loop_kind)kind, axis, &loop)) continue;
-      double k = loop.stiffness > 0 ? ethd__sampled_stiffness_max(&loop) / loop.stiffness : (double)INFINITY;
-      double b = loop.damping > 0 ? ethd__sampled_damping_max(&loop) / loop.damping : (double)INFINITY;
-      fprintf(out, "  %-9s %c %8.3g %8.3g %8.3g\n", ethd__loop_names[kind], 'x' + axis, k, b,
-              1e3 * (ethd__sampled_delay_max(&loop) - plant->delay));
-    }
+  return ethd__space_setup(rig->space, point, &setup, unsaid) ? 0 : ethd__report_stability(&setup, &device);
 }
 
 /* ---- what each gain buys ---- */
 
-ethd_status ethd__tune_print_gains(FILE *out, const ethd__tune_search *s, const ethd__tune_entry *choice,
-                                   char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__tune_weigh(const ethd__tune_search *s, const ethd__tune_entry *choice, ethd__tune_worths *out,
+                             char message[ETHD_MESSAGE_MAX]) {
   const ethd__tune_space *space = s->rig->space;
   const uint32_t taps = s->rounds[ETHD_TUNE_ROUNDS - 1].taps;
-  ethd_status status = ETHD_OK;
-  fprintf(out, "\nworth        of each gain: the choice with this one gain put back, against the choice, times\n");
-  fprintf(out, "  %-28s %10s %10s  %9s %9s %9s %9s\n", "gain", "own", "chosen", ethd__tune_goal_names[0],
-          ethd__tune_goal_names[1], ethd__tune_goal_names[2], ethd__tune_goal_names[3]);
-  for (size_t k = 0; !status && k < space->count; k++) {
+  for (size_t k = 0; k < space->count; k++) {
     ethd__tune_point back = choice->point;
     ethd__tune_score score;
-    double goals[ETHD_TUNE_GOALS];
-    char own[ETHD_TUNE_VALUE_MAX], chosen[ETHD_TUNE_VALUE_MAX];
     back.value[k] = space->keys[k].own;
-    status = ethd__score_run(s->rig, &back, taps, &score, message);
-    if (status) break;
-    ethd__score_goals(&score, &choice->score, goals);
+    ethd_status status = ethd__score_run(s->rig, &back, taps, &score, message);
+    if (status) return status;
+    ethd__score_goals(&score, &choice->score, out->times[k]);
+    for (int g = 0; g < ETHD_TUNE_GOALS; g++) out->times[k][g] = exp(out->times[k][g]);
+  }
+  return ETHD_OK;
+}
+
+void ethd__tune_print_worths(FILE *out, const ethd__tune_space *space, const ethd__tune_point *choice,
+                             const ethd__tune_worths *worths) {
+  fprintf(out,
+          "What each gain buys: the figures with this gain alone put back, as multiples of the choice's. Over 1 is\n"
+          "what the gain buys, under 1 what it costs.\n");
+  fprintf(out, "  %-28s %10s %10s  %9s %9s %9s %9s\n", "gain", "own", "chosen", ethd__tune_goal_names[0],
+          ethd__tune_goal_names[1], ethd__tune_goal_names[2], ethd__tune_goal_names[3]);
+  for (size_t k = 0; k < space->count; k++) {
+    char own[ETHD_TUNE_VALUE_MAX], chosen[ETHD_TUNE_VALUE_MAX];
     fprintf(out, "  %-28s %10s %10s ", space->keys[k].name, ethd__space_text(space->keys[k].own, own),
-            ethd__space_text(choice->point.value[k], chosen));
-    for (int g = 0; g < ETHD_TUNE_GOALS; g++) fprintf(out, " %9.2f", exp(goals[g]));
+            ethd__space_text(choice->value[k], chosen));
+    for (int g = 0; g < ETHD_TUNE_GOALS; g++) fprintf(out, " %9.2f", worths->times[k][g]);
     fputs("\n", out);
   }
-  return status;
 }
 
 /* ---- the table ---- */

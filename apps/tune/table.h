@@ -6,15 +6,23 @@
 
 #include "tune/search.h"
 
-/* The configuration's own point, the front, the choice, what each gain buys. */
+/* The configuration's own point, the front, the choice. */
 void ethd__tune_print(FILE *out, const ethd__tune_search *search, const ethd__tune_entry *choice);
 
-/* The same point's margins loop by loop, as ethd-check gives them. */
-void ethd__tune_print_margins(FILE *out, const ethd__tune_rig *rig, const ethd__tune_point *point);
+/* Prints the point's margins without a hand, as ethd-check prints them; returns how many of its loops are unstable. */
+int ethd__tune_print_margins(const ethd__tune_rig *rig, const ethd__tune_point *point);
 
-/* One gain of the choice at a time put back to the configuration's: what is lost. ETHD_OK once ethd__stop is set too. */
-ETHD_MUST_CHECK ethd_status ethd__tune_print_gains(FILE *out, const ethd__tune_search *search,
-                                                   const ethd__tune_entry *choice, char message[ETHD_MESSAGE_MAX]);
+/* What each gain of the choice buys: every goal's figure with this gain alone put back to the configuration's, over the
+   choice's. More than 1 is what the gain buys, less than 1 what it costs. */
+typedef struct ethd__tune_worths {
+  double times[ETHD_TUNE_KEYS_MAX][ETHD_TUNE_GOALS];
+} ethd__tune_worths;
+
+ETHD_MUST_CHECK ethd_status ethd__tune_weigh(const ethd__tune_search *search, const ethd__tune_entry *choice,
+                                             ethd__tune_worths *out, char message[ETHD_MESSAGE_MAX]);
+
+void ethd__tune_print_worths(FILE *out, const ethd__tune_space *space, const ethd__tune_point *choice,
+                             const ethd__tune_worths *worths);
 
 /* Every point of every round: its values, figures and goals; keeps, front, chosen as 0 or 1. */
 ETHD_MUST_CHECK ethd_status ethd__tune_csv(const ethd__tune_search *search, const ethd__tune_entry *choice,

@@ -117,7 +117,8 @@ char *ethd__tuned_text(const ethd__tune_space *space, const ethd__tune_point *po
   rewriting w = {.space = space, .other_folder = other_folder};
   if (!(w.out = open_memstream(&out, &length))) return NULL;
   ethd__space_gains(space, point, &w.gains);
-  fprintf(w.out, "# %s\n", head);
+  for (const char *line = head; *line; line += strcspn(line, "\n"), line += *line == '\n')
+    fprintf(w.out, "# %.*s\n", (int)strcspn(line, "\n"), line);
   for (const char *line = space->config->text ? space->config->text : ""; *line;) {
     size_t n = strcspn(line, "\n");
     put_line(&w, line, n && line[n - 1] == '\r' ? n - 1 : n);

@@ -3,36 +3,50 @@
 #include <math.h>
 #include <string.h>
 
-#define FELT_X 0.25
-#define FELT_Y 0.25
+const char *const ethd__bounds_names[ETHD_LOOP_KINDS] = {"tracking", "wall", "braking"};
 
-const char *const ethd__loop_names[ETHD_LOOP_KINDS] = {"tracking", "wall", "braking"};
-
-/* The diagonal of J^-T K J^-1 with K = k I: what a joint gain is at the ring. */
-static void at_ring(const double ji[4], double k, double out[2]) {
-  out[0] = k * (ji[0] * ji[0] + ji[2] * ji[2]);
-  out[1] = k * (ji[1] * ji[1] + ji[3] * ji[3]);
+ethd__bounds_device ethd__bounds_device_of(const ethd_plant *p, double hand) {
+  bool rigid = !isfinite(p->stiffness);
+  double with = hand * p->finger_mass;
+  return (ethd__bounds_device){.mass = {p->mass[0] + with, p->mass[1] + with},
+                               .motor_mass = rigid ? 0 : p->motor_mass,
+                               .spring = rigid ? 0 : p->stiffness,
+                               .damper = rigid ? 0 : p->damping,
+                               .delay = p->delay,
+                               .friction = p->friction,
+                               .viscous = p->viscous,
+                               .count = p->count};
 }
+
+/* ---- gains ---- */
 
 static double or_zero(double value) { return isnan(value) ? 0 : value; }
 
-bool ethd__loop_felt(const ethd_setup *setup, double stiffness[2], double damping[2]) {
+/* J^-T K J^-1 with K = k I. */
+static void at_ring(const double ji[4], double k, double along[2], double *across) {
+  along[0] = k * (ji[0] * ji[0] + ji[2] * ji[2]);
+  along[1] = k * (ji[1] * ji[1] + ji[3] * ji[3]);
+  *across = k * (ji[0] * ji[1] + ji[2] * ji[3]);
+  if (fabs(*across) < 1e-9 * (along[0] + along[1])) *across = 0;
+}
+
+bool ethd__bounds_feel(const ethd_setup *setup, ethd__bounds_felt *out) {
   double k_t = ethd_setup_get(setup, "tracking.k_t"), q[2];
   ethd_pose pose;
-  if (isnan(k_t) || ethd_arm_angles(&setup->arm, (ethd_vec){FELT_X, FELT_Y}, -1, q)) return false;
+  if (isnan(k_t) || ethd_arm_angles(&setup->arm, (ethd_vec){ETHD_LOOP_FELT_X, ETHD_LOOP_FELT_Y}, -1, q)) return false;
   ethd_arm_pose(&setup->arm, q, &pose);
-  at_ring(pose.j_inv, k_t, stiffness);
-  at_ring(pose.j_inv, or_zero(ethd_setup_get(setup, "tracking.b_t")), damping);
+  at_ring(pose.j_inv, k_t, out->stiffness, &out->stiffness_across);
+  at_ring(pose.j_inv, or_zero(ethd_setup_get(setup, "tracking.b_t")), out->damping, &out->damping_across);
   return true;
 }
 
-static bool set_gains(const ethd_setup *setup, ethd__loop_kind kind, int axis, ethd__sampled_loop *out) {
-  double k[2], d[2];
+static bool set_gains(const ethd_setup *setup, ethd__bounds_kind kind, int axis, ethd__sampled_loop *out) {
+  ethd__bounds_felt felt;
   switch (kind) {
   case ETHD_LOOP_TRACKING:
-    if (!ethd__loop_felt(setup, k, d)) return false;
-    out->stiffness = k[axis];
-    out->damping = d[axis];
+    if (!ethd__bounds_feel(setup, &felt)) return false;
+    out->stiffness = felt.stiffness[axis];
+    out->damping = felt.damping[axis];
     return true;
   case ETHD_LOOP_WALL:
     out->stiffness = or_zero(ethd_setup_get(setup, "contact.k_e"));
@@ -42,34 +56,49 @@ static bool set_gains(const ethd_setup *setup, ethd__loop_kind kind, int axis, e
   }
 }
 
-/* Delays that differ from whole ticks by rounding are whole. */
-static void set_delay(ethd__sampled_loop *loop, double delay) {
-  loop->delay = (int)floor(delay / loop->period * (1 + 1e-12));
-  loop->late = fmax(0, delay - loop->delay * loop->period);
-  if (loop->late < 1e-9 * loop->period) loop->late = 0;
-}
-
-bool ethd__loop_of(const ethd_setup *setup, const ethd__loop_device *device, ethd__loop_kind kind, int axis,
-                   ethd__sampled_loop *out) {
-  *out = (ethd__sampled_loop){.mass = device->mass[axis],
+bool ethd__bounds_of(const ethd_setup *setup, const ethd__bounds_device *device, ethd__bounds_kind kind, int axis,
+                     ethd__sampled_loop *out) {
+  *out = (ethd__sampled_loop){.mass = isnan(device->mass[axis]) ? 1 : device->mass[axis],
+                              .motor_mass = device->motor_mass,
+                              .spring = device->spring,
+                              .damper = device->damper,
                               .period = setup->period,
                               .method = setup->velocity,
                               .link = axis ? setup->arm.link2 : setup->arm.link1};
   memcpy(out->p, setup->velocity_p, sizeof out->p);
-  set_delay(out, device->delay);
+  ethd__sampled_set_delay(out, or_zero(device->delay));
   return set_gains(setup, kind, axis, out);
 }
 
-bool ethd__loop_keeps(const ethd__sampled_loop *loop, const ethd__loop_margin *margin) {
-  static const double at[][2] = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
-  if (loop->stiffness <= 0 && loop->damping <= 0) return true;
-  for (int i = 0; i < 4; i++) {
-    ethd__sampled_loop l = *loop;
-    l.stiffness *= 1 + at[i][0] * (margin->gain - 1);
-    l.damping *= 1 + at[i][1] * (margin->gain - 1);
-    if (!ethd__sampled_stable(&l)) return false;
-  }
-  ethd__sampled_loop later = *loop;
-  set_delay(&later, loop->delay * loop->period + loop->late + margin->delay);
-  return later.delay <= ETHD_LOOP_DELAY_MAX && ethd__sampled_stable(&later);
+/* ---- rows ---- */
+
+static void add(ethd__bounds_row *out, int *n, ethd__bounds_number number, double value, double end, bool least) {
+  double margin = least ? value / end : value > 0 ? end / value : (double)NAN;
+  out[(*n)++] = (ethd__bounds_row){number, value, end, least, margin};
+}
+
+int ethd__bounds_rows(const ethd__sampled_loop *l, ethd__bounds_row out[ETHD_LOOP_NUMBERS]) {
+  int n = 0;
+  double k = l->stiffness, b = l->damping, least = ethd__sampled_mass_min(l), longest = ethd__sampled_delay_max(l);
+  double velocity = ethd__sampled_velocity_end(l);
+  if (k > 0) add(out, &n, ETHD_LOOP_STIFFNESS, k, ethd__sampled_stiffness_max(l), false);
+  add(out, &n, ETHD_LOOP_DAMPING, b, ethd__sampled_damping_max(l), false);
+  if (isfinite(least)) add(out, &n, ETHD_LOOP_MASS, l->mass, least, true);
+  if (longest >= 0) add(out, &n, ETHD_LOOP_DELAY, l->delay * l->period + l->late, longest, false);
+  if (!isnan(velocity)) add(out, &n, ETHD_LOOP_VELOCITY, l->p[0], velocity, l->method == ETHD_VELOCITY_LOWPASS);
+  return n;
+}
+
+/* Asks at the margin, which is quicker than to look for the rows' ends. */
+bool ethd__bounds_keeps(const ethd__sampled_loop *l, const ethd__bounds_margin *margin) {
+  if (l->stiffness <= 0 && l->damping <= 0) return true;
+  return ethd__sampled_stable_up_to(l, margin->gain, margin->gain) && ethd__sampled_stable_up_to(l, margin->gain, 1) &&
+         ethd__sampled_stable_up_to(l, 1, margin->gain) && ethd__sampled_stable_later(l, margin->delay);
+}
+
+ethd__bounds_hold ethd__bounds_holds(const ethd__sampled_loop *l, const ethd__bounds_device *device) {
+  double needed = ethd__sampled_viscous_needed(l);
+  return (ethd__bounds_hold){.needed = needed,
+                             .held = ethd__sampled_held(needed, device->friction, device->viscous),
+                             .kick = ethd__sampled_kick(l, device->count * l->link)};
 }

@@ -1,35 +1,88 @@
-/* The sampled loops of a setup on a device: tracking, the wall and braking, along x and along y. Pure functions. [any] */
+/* The sampled loops of a setup on a device: tracking, the wall and braking, along x and along y, and how far each of their
+   numbers is from where the loop becomes unstable. Links from libethd-drivers. Pure functions. [any] */
 #ifndef ETHD_BOUNDS_LOOPS_H
 #define ETHD_BOUNDS_LOOPS_H
 
 #include "bounds/stability.h"
-#include "ethd/control.h"
+#include "ethd/sim.h"
 
-typedef enum ethd__loop_kind { ETHD_LOOP_TRACKING, ETHD_LOOP_WALL, ETHD_LOOP_BRAKING, ETHD_LOOP_KINDS } ethd__loop_kind;
+typedef enum ethd__bounds_kind {
+  ETHD_LOOP_TRACKING,
+  ETHD_LOOP_WALL,
+  ETHD_LOOP_BRAKING,
+  ETHD_LOOP_KINDS
+} ethd__bounds_kind;
 
-extern const char *const ethd__loop_names[ETHD_LOOP_KINDS];
+extern const char *const ethd__bounds_names[ETHD_LOOP_KINDS];
 
-/* What moves, and how late a torque is. */
-typedef struct ethd__loop_device {
-  double mass[2]; /* kg at the ring along x and y, what is pressed against it included */
-  double delay;   /* s from measurement to torque */
-} ethd__loop_device;
+/* What moves, what rubs, how late a torque is and how coarse a reading. NaN: unknown. */
+typedef struct ethd__bounds_device {
+  double mass[2];           /* kg at the ring along x and y, what is pressed against it included */
+  double motor_mass;        /* kg of it on the motor's side of the transmission; 0: the transmission is rigid */
+  double spring, damper;    /* N/m, Ns/m of the transmission */
+  double delay;             /* s from measurement to torque; unknown counts as 0 */
+  double friction, viscous; /* N, Ns/m at the ring */
+  double count;             /* rad per encoder count at the joint; 0: ideal */
+} ethd__bounds_device;
 
-/* Stiffness and damping of tracking as they are felt at the ring at (0.25, 0.25) m, along x and y: the diagonal of
-   J^-T K J^-1, N/m and Ns/m. False: the law has no k_t, or the arm doesn't reach there. */
-bool ethd__loop_felt(const ethd_setup *setup, double stiffness[2], double damping[2]);
+/* The plant's, with that share of its finger's mass against the ring. */
+ethd__bounds_device ethd__bounds_device_of(const ethd_plant *plant, double hand);
 
-/* The loop along an axis (0: x, 1: y). A gain that the law hasn't is 0. False: tracking that ethd__loop_felt can't say. */
-bool ethd__loop_of(const ethd_setup *setup, const ethd__loop_device *device, ethd__loop_kind kind, int axis,
-                   ethd__sampled_loop *out);
+/* Where tracking is felt, m. */
+#define ETHD_LOOP_FELT_X 0.25
+#define ETHD_LOOP_FELT_Y 0.25
+
+/* Stiffness and damping of tracking as they are felt at the ring there: the matrix J^-T K J^-1, N/m and Ns/m. */
+typedef struct ethd__bounds_felt {
+  double stiffness[2], damping[2];         /* along x and y */
+  double stiffness_across, damping_across; /* of its corners */
+} ethd__bounds_felt;
+
+/* False: the law has no k_t, or the arm doesn't reach there. A law without b_t has no damping. */
+bool ethd__bounds_feel(const ethd_setup *setup, ethd__bounds_felt *out);
+
+/* The loop along an axis (0: x, 1: y). A gain that the law doesn't have is 0, an unknown mass 1 kg. False: the stiffness of
+   tracking isn't known. */
+bool ethd__bounds_of(const ethd_setup *setup, const ethd__bounds_device *device, ethd__bounds_kind kind, int axis,
+                     ethd__sampled_loop *out);
+
+/* The numbers of a loop that have an end: gains, mass and delay, and the estimator's cutoff or window. */
+typedef enum ethd__bounds_number {
+  ETHD_LOOP_STIFFNESS,
+  ETHD_LOOP_DAMPING,
+  ETHD_LOOP_MASS,
+  ETHD_LOOP_DELAY,
+  ETHD_LOOP_VELOCITY,
+  ETHD_LOOP_NUMBERS
+} ethd__bounds_number;
+
+typedef struct ethd__bounds_row {
+  ethd__bounds_number number;
+  double value, end; /* SI; where the loop becomes unstable, the others held */
+  bool least;        /* the value must stay above its end, not below */
+  double margin;     /* how many times; NaN: of a value that is 0 */
+} ethd__bounds_row;
+
+/* Fills the rows of a loop with damping, which ethd-check prints; returns how many there are. */
+int ethd__bounds_rows(const ethd__sampled_loop *loop, ethd__bounds_row out[ETHD_LOOP_NUMBERS]);
 
 /* What is asked of every loop. */
-typedef struct ethd__loop_margin {
+typedef struct ethd__bounds_margin {
   double gain;  /* its stiffness, its damping, and both at once may be that many times as large */
   double delay; /* s: a torque may be that much later */
-} ethd__loop_margin;
+} ethd__bounds_margin;
 
-/* Whether the loop is stable as it is and at each of these. A loop without gains is. */
-bool ethd__loop_keeps(const ethd__sampled_loop *loop, const ethd__loop_margin *margin);
+/* Whether the loop's rows have these margins, and both gains at once. A loop without gains does. */
+bool ethd__bounds_keeps(const ethd__sampled_loop *loop, const ethd__bounds_margin *margin);
+
+/* What friction does for a loop that is unstable without it: it stops swings of the motor's side that are slower than
+   `held`. An encoder count that makes it faster than that sets it swinging for good. */
+typedef struct ethd__bounds_hold {
+  double needed; /* Ns/m that the loop lacks; 0: it is stable */
+  double held;   /* m/s; INFINITY: friction stops every swing, NaN: friction isn't known */
+  double kick;   /* m/s of one count; NaN: the count isn't known */
+} ethd__bounds_hold;
+
+ethd__bounds_hold ethd__bounds_holds(const ethd__sampled_loop *loop, const ethd__bounds_device *device);
 
 #endif

@@ -3,17 +3,16 @@
 #include <math.h>
 #include <string.h>
 
+#include "bounds/motion.h"
 #include "ethd/maths.h"
 
-/* One tick is a linear map of position, speed, the lead of the link over the motor's side and its speed, estimate, filter
-   position, the last tick's force, the delayed forces and the last positions. Its matrix is read off by applying it to
-   unit vectors. */
+/* One tick is a linear map of the motion's state, the speed's estimate, the filter's position, the last tick's force, the
+   delayed forces and the last positions. Its matrix is read off by applying it to unit vectors. */
 enum {
-  X,
-  V,
-  LEAD,
-  LEAD_V,
-  ESTIMATE,
+  X = ETHD_MOTION_X,
+  V = ETHD_MOTION_V,
+  LEAD_V = ETHD_MOTION_LEAD_V,
+  ESTIMATE = ETHD_MOTION_STATE,
   FILTER,
   LAST,
   WAY,
@@ -29,6 +28,7 @@ typedef struct model {
   double w[ETHD_VELOCITY_WINDOW_MAX]; /* v^ from x_k, x_k-1, ... */
   double keep;                        /* share of the last estimate (lowpass) */
   double alpha, beta, inertia;        /* kalman at the ring */
+  ethd__bounds_motion before, after;  /* while the last tick's force still acts, and after that */
 } model;
 
 /* ---- estimators: v^_k = keep v^_k-1 + sum w_i x_k-i, but for the Kalman filter ---- */
@@ -67,6 +67,8 @@ static void prepare(const ethd__sampled_loop *loop, model *m) {
   default: use_difference(m, 1);
   }
   m->ways = loop->delay + (loop->late > 0);
+  ethd__bounds_motion_over(loop, loop->late, &m->before);
+  ethd__bounds_motion_over(loop, loop->period - loop->late, &m->after);
   m->past = WAY + m->ways;
   m->size = m->past + m->samples;
 }
@@ -83,37 +85,16 @@ static double estimate(const model *m, const double *s, double *filter) {
 
 /* ---- the tick ---- */
 
-/* The lead r obeys mu r'' = -k r - c r' - (mu / motor_mass) F with mu = motor_mass (mass - motor_mass) / mass, which swings or
-   creeps about where F holds it. */
-static void swing(const ethd__sampled_loop *l, double force, double h, double *s) {
-  double other = l->mass - l->motor_mass, mu = l->motor_mass * other / l->mass;
-  double a = l->damper / (2 * mu), w2 = l->spring / mu - a * a, w = sqrt(fabs(w2)), turn = w * h;
-  double rest = -force * other / (l->mass * l->spring), r = s[LEAD] - rest, v = s[LEAD_V];
-  double wave = w2 > 0 ? cos(turn) : cosh(turn), slope = turn < 1e-6 ? h : (w2 > 0 ? sin(turn) : sinh(turn)) / w;
-  double fade = exp(-a * h);
-  s[LEAD] = rest + fade * (r * wave + (v + a * r) * slope);
-  s[LEAD_V] = fade * (v * wave - (a * v + l->spring / mu * r) * slope);
-}
-
-/* A force acts for h seconds: the centre of mass follows it, the motor's side stands behind that by its share of the lead. */
-static void push(const ethd__sampled_loop *l, double force, double h, double *s) {
-  bool gives = ethd__sampled_gives_way(l);
-  double share = gives ? (l->mass - l->motor_mass) / l->mass : 0, lead = s[LEAD], lead_v = s[LEAD_V];
-  if (gives) swing(l, force, h, s);
-  s[X] += h * s[V] + force * h * h / 2 / l->mass + share * (lead + h * lead_v - s[LEAD]);
-  s[V] += force * h / l->mass + share * (lead_v - s[LEAD_V]);
-}
-
 /* For `late` seconds the force of one tick earlier still acts. */
 static void tick(const model *m, const double *s, double *next) {
   const ethd__sampled_loop *l = m->loop;
-  double T = l->period, late = l->late, rest = T - late, filter = 0;
+  double filter = 0;
   double v = estimate(m, s, &filter);
   double f = -l->stiffness * s[X] - l->damping * v;
-  double now = l->delay ? s[WAY + m->ways - l->delay] : f, before = late > 0 ? s[WAY] : 0;
+  double now = l->delay ? s[WAY + m->ways - l->delay] : f, before = l->late > 0 ? s[WAY] : 0;
   memcpy(next, s, ESTIMATE * sizeof *next);
-  if (late > 0) push(l, before, late, next);
-  push(l, now, rest, next);
+  if (l->late > 0) ethd__bounds_motion_apply(&m->before, before, next);
+  ethd__bounds_motion_apply(&m->after, now, next);
   next[ESTIMATE] = v;
   next[FILTER] = filter;
   next[LAST] = f;
@@ -171,6 +152,15 @@ double ethd__sampled_radius(const ethd__sampled_loop *loop) {
     if (i < SQUARINGS) square(a, scratch, m.size);
   }
   return exp(log_norm);
+}
+
+/* The newest position counts in the estimate by w[0], or by the Kalman filter's beta. */
+double ethd__sampled_kick(const ethd__sampled_loop *loop, double count) {
+  model m;
+  prepare(loop, &m);
+  double newest = loop->method == ETHD_VELOCITY_KALMAN ? m.beta / loop->period : m.w[0];
+  double moved = ethd__sampled_gives_way(loop) ? loop->motor_mass : loop->mass;
+  return (loop->stiffness + loop->damping * newest) * count * loop->period / moved;
 }
 
 /* A free ring's position is neither stable nor unstable: radius 1. */

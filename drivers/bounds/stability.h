@@ -9,8 +9,8 @@
      <---| -(K x + B v^) |<----| estimator|
          '---------------'     '----------'
    Where the transmission gives way, the force acts on the motor's side, which is the one that is measured, and the rest
-   of the mass hangs on it by a spring and a damper: their motion over a tick is exact, too. Friction is left out: it
-   only helps. Pure functions. [any] */
+   of the mass hangs on it by a spring and a damper: their motion over a tick is exact, too. Coulomb friction is left out:
+   it stops small swings only, ethd__sampled_held says how small. Pure functions. [any] */
 #ifndef ETHD_CHECK_STABILITY_H
 #define ETHD_CHECK_STABILITY_H
 
@@ -24,6 +24,7 @@ typedef struct ethd__sampled_loop {
   double mass;               /* m, kg: all of it */
   double motor_mass;         /* kg of it on the motor's side; 0, or not less than mass: the transmission is rigid */
   double spring, damper;     /* N/m, Ns/m of the transmission */
+  double viscous;            /* Ns/m of friction on the motor's side, on all of it where the device is rigid */
   double period;             /* T, s */
   double stiffness, damping; /* K N/m, B Ns/m */
   int delay;                 /* n, whole ticks from measurement to force, 0 to ETHD_LOOP_DELAY_MAX */
@@ -38,6 +39,9 @@ typedef struct ethd__sampled_loop {
 static inline bool ethd__sampled_gives_way(const ethd__sampled_loop *loop) {
   return loop->motor_mass > 0 && loop->motor_mass < loop->mass;
 }
+
+/* Sets delay and late to a delay, s. */
+void ethd__sampled_set_delay(ethd__sampled_loop *loop, double delay);
 
 /* Returns the spectral radius of one tick, exact to 1e-7. */
 double ethd__sampled_radius(const ethd__sampled_loop *loop);
@@ -54,12 +58,31 @@ double ethd__sampled_mass_min(const ethd__sampled_loop *loop);
 double ethd__sampled_stiffness_max(const ethd__sampled_loop *loop);
 double ethd__sampled_damping_max(const ethd__sampled_loop *loop);
 
-/* Returns the longest stable delay, s, which is below 20 ticks; < 0: there is none. */
+/* Whether the loop is stable as it is and all the way to so many times its stiffness and its damping. */
+bool ethd__sampled_stable_up_to(const ethd__sampled_loop *loop, double stiffness_times, double damping_times);
+
+/* Whether it is stable as it is and with each delay that is at most `more` s longer. */
+bool ethd__sampled_stable_later(const ethd__sampled_loop *loop, double more);
+
+/* Returns the longest stable delay, s, which is below 20 ticks, the end of the stretch that the loop's own delay belongs
+   to if that is stable; < 0: there is none. */
 double ethd__sampled_delay_max(const ethd__sampled_loop *loop);
 
 /* Returns how far the estimator may go: the lowest stable cutoff of lowpass (1 is the table's end), the longest stable
    window of lsq and foaw; NaN: it has neither, or the loop is unstable as it is. */
 double ethd__sampled_velocity_end(const ethd__sampled_loop *loop);
+
+/* Returns the least viscous friction, Ns/m on the motor's side, with which the loop is stable; INFINITY: none up to what
+   stops the motor's side within a hundredth of a tick. */
+double ethd__sampled_viscous_needed(const ethd__sampled_loop *loop);
+
+/* Returns the speed, m/s of the motor's side, up to which Coulomb friction `coulomb` N and the viscous friction together
+   stop a swing of a loop that needs `needed` Ns/m: 4 coulomb / (pi (needed - viscous)), by the describing function of
+   Coulomb friction; INFINITY: every swing. */
+double ethd__sampled_held(double needed, double coulomb, double viscous);
+
+/* Returns the speed, m/s, that one step of the encoder, m at the ring, gives the motor's side within a tick. */
+double ethd__sampled_kick(const ethd__sampled_loop *loop, double count);
 
 /* Gives the boundary for the backward difference and whole ticks, in closed form, 0 < th <= pi / (2 (n + 1)):
      K T^2/m = 4 tan^2(th/2) cos((n+1) th),  B T/m = 2 tan(th/2) sin((n+1) th) - K T^2/(2m) */

@@ -68,18 +68,61 @@ double ethd__sampled_damping_max(const ethd__sampled_loop *loop) {
   return gain_max(&l, &l.damping, l.mass / l.period);
 }
 
-static bool stable_with(ethd__sampled_loop *l, double delay) {
+/* The walk from as it is (share 0) to there (share 1), by steps of a band's search; a rigid device's stable gains are one
+   band, so that its end decides. */
+bool ethd__sampled_stable_up_to(const ethd__sampled_loop *loop, double stiffness_times, double damping_times) {
+  const double decades = log10(fmax(stiffness_times, damping_times));
+  const int steps = ethd__sampled_gives_way(loop) ? (int)ceil(4 * STEPS_PER_DECADE * decades) : 1;
+  if (!ethd__sampled_stable(loop)) return false;
+  for (int i = 1; i <= steps; i++) {
+    ethd__sampled_loop l = *loop;
+    l.stiffness *= pow(stiffness_times, (double)i / steps);
+    l.damping *= pow(damping_times, (double)i / steps);
+    if (!ethd__sampled_stable(&l)) return false;
+  }
+  return true;
+}
+
+/* ---- delay ---- */
+
+static double delay_of(const ethd__sampled_loop *l) { return l->delay * l->period + l->late; }
+
+/* Delays that differ from whole ticks by rounding are whole. */
+void ethd__sampled_set_delay(ethd__sampled_loop *l, double delay) {
   l->delay = (int)floor(delay / l->period * (1 + 1e-12));
   l->late = fmax(0, delay - l->delay * l->period);
+  if (l->late < 1e-9 * l->period) l->late = 0;
+}
+
+static bool stable_with(ethd__sampled_loop *l, double delay) {
+  ethd__sampled_set_delay(l, delay);
   return ethd__sampled_stable(l);
+}
+
+/* From a stable delay up by quarters of a tick: the last stable one; *beyond: the first that isn't, or `most`. */
+static double walk_delay(ethd__sampled_loop *l, double from, double most, double *beyond) {
+  double low = from;
+  for (*beyond = fmin(from + l->period / 4, most); stable_with(l, *beyond);
+       *beyond = fmin(*beyond + l->period / 4, most)) {
+    low = *beyond;
+    if (low >= most) break;
+  }
+  return low;
+}
+
+bool ethd__sampled_stable_later(const ethd__sampled_loop *loop, double more) {
+  ethd__sampled_loop l = *loop;
+  double own = delay_of(loop), most = own + more, beyond;
+  if (most > ETHD_LOOP_DELAY_MAX * l.period || !ethd__sampled_stable(loop)) return false;
+  return walk_delay(&l, own, most, &beyond) >= most;
 }
 
 double ethd__sampled_delay_max(const ethd__sampled_loop *loop) {
   ethd__sampled_loop l = *loop;
-  double T = l.period, low = 0, high = 0, most = ETHD_LOOP_DELAY_MAX * T;
-  if (!stable_with(&l, 0)) return -1;
-  for (high = T / 4; high < most && stable_with(&l, high); high += T / 4) low = high;
-  if (high >= most) return most;
+  double most = ETHD_LOOP_DELAY_MAX * l.period, own = ethd__sampled_stable(loop) ? delay_of(loop) : 0, high;
+  if (!stable_with(&l, own)) return -1;
+  double low = walk_delay(&l, own, most, &high);
+  if (low >= most) return most;
   for (int i = 0; i < 20; i++) {
     double middle = (low + high) / 2;
     if (stable_with(&l, middle))
@@ -89,6 +132,26 @@ double ethd__sampled_delay_max(const ethd__sampled_loop *loop) {
   }
   return low;
 }
+
+/* ---- friction ---- */
+
+double ethd__sampled_viscous_needed(const ethd__sampled_loop *loop) {
+  ethd__sampled_loop l = *loop;
+  double unit = (ethd__sampled_gives_way(&l) ? l.motor_mass : l.mass) / l.period;
+  l.viscous = 0;
+  if (ethd__sampled_stable(&l)) return 0;
+  for (int i = -7 * STEPS_PER_DECADE; i <= 2 * STEPS_PER_DECADE; i++) {
+    l.viscous = unit * grid(i);
+    if (ethd__sampled_stable(&l)) return bisect(&l, &l.viscous, unit * grid(i), unit * grid(i - 1));
+  }
+  return (double)INFINITY;
+}
+
+double ethd__sampled_held(double needed, double coulomb, double viscous) {
+  return needed <= viscous ? (double)INFINITY : 4 * coulomb / (M_PI * (needed - viscous));
+}
+
+/* ---- estimator ---- */
 
 static double cutoff_min(ethd__sampled_loop *l) {
   const double step = exp(log(10) / STEPS_PER_DECADE);

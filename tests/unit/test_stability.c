@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bounds/stability.h"
+#include "bounds/loops.h"
+#include "bounds/motion.h"
 
 #define M 0.3
 #define T 0.001
@@ -197,6 +198,106 @@ START_TEST(test_ends) {
 }
 END_TEST
 
+/* ---- the motion of a tick ---- */
+
+/* A mass with friction c under a force f: v = f/c + (v0 - f/c) e^(-c t/m). */
+START_TEST(test_motion_with_friction) {
+  for (double span = 1e-5; span < 2; span *= 10) {
+    ethd__sampled_loop l = {.mass = 0.3, .viscous = 2.5};
+    ethd__bounds_motion motion;
+    double s[ETHD_MOTION_STATE] = {0.1, 0.7}, f = 1.5, end = f / l.viscous, fade = exp(-l.viscous * span / l.mass);
+    ethd__bounds_motion_over(&l, span, &motion);
+    ethd__bounds_motion_apply(&motion, f, s);
+    check_near(s[ETHD_MOTION_V], end + (0.7 - end) * fade, 1e-12, "speed");
+    check_near(s[ETHD_MOTION_X], 0.1 + end * span + (0.7 - end) * (1 - fade) * l.mass / l.viscous, 1e-12, "place");
+  }
+}
+END_TEST
+
+/* Two masses without friction: the centre of mass follows the force, the lead swings about where the force holds it, with
+   the reduced mass mu. */
+static void check_two_masses(double spring, double damper, double span) {
+  ethd__sampled_loop l = {.mass = 0.095, .motor_mass = 0.013, .spring = spring, .damper = damper};
+  ethd__bounds_motion motion;
+  double other = l.mass - l.motor_mass, mu = l.motor_mass * other / l.mass, f = 2;
+  double rest = -f * other / (l.mass * spring), a = damper / (2 * mu), w = sqrt(spring / mu - a * a);
+  double s[ETHD_MOTION_STATE] = {0, 0.4, 1e-3, -0.2}, r = s[2] - rest, v = s[3], h = span;
+  double centre = s[0] + other / l.mass * s[2], centre_v = s[1] + other / l.mass * s[3];
+  ethd__bounds_motion_over(&l, span, &motion);
+  ethd__bounds_motion_apply(&motion, f, s);
+  double lead = rest + exp(-a * h) * (r * cos(w * h) + (v + a * r) / w * sin(w * h));
+  ck_assert_double_eq_tol(s[ETHD_MOTION_LEAD], lead, 1e-12);
+  ck_assert_double_eq_tol(s[0] + other / l.mass * s[2], centre + centre_v * h + f * h * h / (2 * l.mass), 1e-12);
+  ck_assert_double_eq_tol(s[1] + other / l.mass * s[3], centre_v + f * h / l.mass, 1e-12);
+}
+
+START_TEST(test_motion_of_two_masses) {
+  for (double span = 1e-4; span < 0.02; span *= 2) {
+    check_two_masses(3489.6, 5.132, span);
+    check_two_masses(2e5, 0.5, span);
+    check_two_masses(50, 0, span);
+  }
+}
+END_TEST
+
+/* ---- friction ---- */
+
+/* A spring without a damper lacks what hold and delay take. */
+START_TEST(test_viscous_needed) {
+  for (int n = 0; n < 4; n++) {
+    ethd__sampled_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, 500, 0);
+    l.delay = n;
+    check_near(ethd__sampled_viscous_needed(&l), ethd__sampled_damping_needed(&l), 5e-3, "friction needed");
+  }
+  ethd__sampled_loop stable = loop_of(ETHD_VELOCITY_DIFFERENCE, 1000, 45);
+  ck_assert(ethd__sampled_viscous_needed(&stable) == 0);
+  ck_assert(isinf(ethd__sampled_held(1, 0.2, 1.5)));
+  check_near(ethd__sampled_held(11, 0.2, 1), 4 * 0.2 / (M_PI * 10), 1e-12, "swing that is held");
+}
+END_TEST
+
+/* A count's kick by hand: F = (K + B/T) delta at once, m dv = F T. */
+START_TEST(test_kick) {
+  ethd__sampled_loop l = loop_of(ETHD_VELOCITY_DIFFERENCE, 2500, 45);
+  check_near(ethd__sampled_kick(&l, 40e-6), (2500 + 45 / T) * 40e-6 * T / M, 1e-12, "kick");
+  l.motor_mass = 0.01;
+  l.spring = 1e4;
+  check_near(ethd__sampled_kick(&l, 40e-6), (2500 + 45 / T) * 40e-6 * T / 0.01, 1e-12, "kick of the motor's side");
+}
+END_TEST
+
+/* ---- margins: what a search keeps and what the rows say ---- */
+
+static void check_margins(const ethd__sampled_loop *l, int *kept) {
+  const ethd__bounds_margin margin = {1.5, 0.4e-3};
+  ethd__bounds_row rows[ETHD_LOOP_NUMBERS];
+  bool keeps = ethd__bounds_keeps(l, &margin), rows_keep = ethd__sampled_stable(l);
+  int n = ethd__bounds_rows(l, rows);
+  for (int i = 0; i < n; i++) {
+    if (rows[i].number == ETHD_LOOP_STIFFNESS || rows[i].number == ETHD_LOOP_DAMPING)
+      rows_keep &= rows[i].margin >= margin.gain;
+    if (rows[i].number == ETHD_LOOP_DELAY) rows_keep &= rows[i].end - rows[i].value >= margin.delay;
+  }
+  ck_assert_msg(!keeps || rows_keep, "K %g, B %g is kept, and its rows are thinner", l->stiffness, l->damping);
+  if (keeps == rows_keep) ++*kept;
+}
+
+/* They may differ where both gains at once are asked for, which no row says. */
+START_TEST(test_margins_agree) {
+  int agreed = 0, all = 0;
+  for (int soft = 0; soft < 2; soft++)
+    for (double k = 100; k < 2e4; k *= 2)
+      for (double b = 1; b < 200; b *= 1.7, all++) {
+        ethd__sampled_loop l = loop_of(ETHD_VELOCITY_LOWPASS, k, b);
+        l.mass = 0.095;
+        if (soft) l.motor_mass = 0.0132, l.spring = 3490, l.damper = 5.13;
+        ethd__sampled_set_delay(&l, 0.12e-3);
+        check_margins(&l, &agreed);
+      }
+  ck_assert_int_ge(agreed, 9 * all / 10);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("stability");
   TCase *all = tcase_create("all");
@@ -209,6 +310,11 @@ int main(void) {
   tcase_add_test(all, test_late_forces);
   tcase_add_test(all, test_late_is_between);
   tcase_add_test(all, test_ends);
+  tcase_add_test(all, test_motion_with_friction);
+  tcase_add_test(all, test_motion_of_two_masses);
+  tcase_add_test(all, test_viscous_needed);
+  tcase_add_test(all, test_kick);
+  tcase_add_test(all, test_margins_agree);
   suite_add_tcase(suite, all);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_ENV);

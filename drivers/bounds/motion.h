@@ -1,0 +1,26 @@
+/* How the loop's mass moves while its force is constant: x' = A x + B f, solved exactly by the matrix's exponential.
+
+        force   motor's side      transmission     the rest
+       ------> [ motor_mass ]--/\/\ spring /\/\--[ mass - motor_mass ]     lead: how far the rest is ahead of the
+           friction |  x           | damper |                              motor's side; a rigid device has none
+   Pure functions. [any] */
+#ifndef ETHD_BOUNDS_MOTION_H
+#define ETHD_BOUNDS_MOTION_H
+
+#include "bounds/stability.h"
+
+/* Of the motor's side position and speed, then the lead and its speed. */
+enum { ETHD_MOTION_X, ETHD_MOTION_V, ETHD_MOTION_LEAD, ETHD_MOTION_LEAD_V, ETHD_MOTION_STATE };
+
+/* Where the state goes within a stretch of time: state' = of_state state + of_force force. */
+typedef struct ethd__bounds_motion {
+  double of_state[ETHD_MOTION_STATE][ETHD_MOTION_STATE], of_force[ETHD_MOTION_STATE];
+} ethd__bounds_motion;
+
+/* The motion over `span` s. */
+void ethd__bounds_motion_over(const ethd__sampled_loop *loop, double span, ethd__bounds_motion *out);
+
+/* Moves the state on under a force, N. */
+void ethd__bounds_motion_apply(const ethd__bounds_motion *motion, double force, double state[ETHD_MOTION_STATE]);
+
+#endif
