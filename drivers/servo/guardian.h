@@ -54,7 +54,7 @@ int64_t ethd__guardian_bound(const ethd__servo_map *map, int64_t exchange_ns);
 void ethd__guardian_make(const ethd__servo_map *map, const ethd__servo_plan *plan, int64_t exchange_ns,
                          ethd__guardian *out);
 
-/* Starts the process. The map outlives it. [main] */
+/* Starts the process, and returns when it watches. The map outlives it. [main] */
 ETHD_MUST_CHECK ethd_status ethd__guardian_start(ethd__guardian *guardian, char message[ETHD_MESSAGE_MAX]);
 
 /* Before each turn of the link: may it go ahead? Not when the guardian has taken the line: then the link is lost. fd: the

@@ -20,6 +20,7 @@
 #define LOOK 1      /* ms */
 #define PRIORITY 90 /* over the loop's, should that run away; where it is granted */
 #define SOCKET 3
+#define READY 10000 /* ms, within which the process must stand: a busy machine starts one late */
 
 /* ---- descriptors over the socket ---- */
 
@@ -104,6 +105,20 @@ static ethd_status refuse(char *message) {
   return ethd__say(message, ETHD_E_DEVICE, "the guardian of the drive can't be started: %s", strerror(errno));
 }
 
+/* Until the process says that it watches and holds none of our descriptors any more: until then a port that we close and
+   open again would still be taken. */
+static bool stands(const ethd__guardian *g) {
+  struct pollfd wait = {g->socket, POLLIN, 0};
+  char byte;
+  int ready;
+  do ready = poll(&wait, 1, READY);
+  while (ready < 0 && errno == EINTR);
+  if (ready > 0 && recv(g->socket, &byte, 1, MSG_DONTWAIT) == 1) return true;
+  errno = ready ? ESRCH : ETIMEDOUT;
+  kill(g->process, SIGKILL);
+  return false;
+}
+
 ethd_status ethd__guardian_start(ethd__guardian *g, char message[ETHD_MESSAGE_MAX]) {
   int pair[2];
   void *page = mmap(NULL, sizeof *g->page, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -119,12 +134,12 @@ ethd_status ethd__guardian_start(ethd__guardian *g, char message[ETHD_MESSAGE_MA
     g->socket = pair[1];
     settle();
     let_go_of_the_rest(g);
-    watch(g);
+    if (send(g->socket, "", 1, MSG_NOSIGNAL) == 1) watch(g);
     _exit(0);
   }
   close(pair[1]);
   g->socket = pair[0];
-  if (g->process > 0) return ETHD_OK;
+  if (g->process > 0 && stands(g)) return ETHD_OK;
   ethd_status status = refuse(message);
   ethd__guardian_end(g);
   return status;

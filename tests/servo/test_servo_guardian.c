@@ -189,6 +189,19 @@ START_TEST(test_killed_and_stopped) {
 }
 END_TEST
 
+/* Whether a process holds the socket of our descriptor. */
+static bool holds(pid_t process, int fd) {
+  char path[64], ours[64] = "", its[64];
+  snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
+  ck_assert_int_gt(readlink(path, ours, sizeof ours - 1), 0);
+  for (int i = 0; i < 256; i++) {
+    memset(its, 0, sizeof its);
+    snprintf(path, sizeof path, "/proc/%d/fd/%d", (int)process, i);
+    if (readlink(path, its, sizeof its - 1) > 0 && !strcmp(its, ours)) return true;
+  }
+  return false;
+}
+
 /* In order: nothing is left to do, and no process stays. */
 START_TEST(test_ended) {
   void *device;
@@ -197,6 +210,7 @@ START_TEST(test_ended) {
   const ethd__servo_device *d = device;
   pid_t process = d->guardian.process;
   ck_assert_int_gt(process, 0);
+  ck_assert(!holds(process, drive.listener)); /* from the first moment: a port that we close is closed */
   ck_assert_int_eq(kill(process, 0), 0);
   bool said = false;
   for (uint32_t i = 0; servo->remark(device, i); i++)
@@ -253,11 +267,15 @@ START_TEST(test_follows) {
 }
 END_TEST
 
+/* The plant's map without a watchdog. A busy machine's drive answers late, and how late isn't what is tried: only where times
+   are asserted do answers have the map's own time. */
 static int write_map(const char *path) {
   char *text, *all;
   size_t length;
   if (ethd_text_read("apps/config/plant.map", 1 << 16, &text, &length, message)) return 1;
-  char *at = strstr(text, "kind = silence"), *rest = strstr(text, "time = 0.05");
+  char *at = strstr(text, "kind = silence"), *rest = strstr(text, "time = 0.05"),
+       *response = strstr(text, "response = ");
+  if (!getenv("ETHD_STRESS")) memcpy(response, "response = 0.5  ", strlen("response = 0.003"));
   if (asprintf(&all, "%.*skind = none\n%s", (int)(at - text), text, strchr(rest, '\n') + 1) < 0) return 1;
   ethd_status status = ethd_text_write(path, all, strlen(all), message);
   free(text);
