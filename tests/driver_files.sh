@@ -82,6 +82,28 @@ printf 'hang_time = 1\n' >>"$work/bad.ini"
 timeout -s KILL 30 "$bin/ethd-run" --config "$work/bad.ini" --virtual --duration 1 >"$work/out" 2>"$work/err" </dev/null
 [ $? = 1 ] && grep -q "start of the driver broken doesn't return" "$work/err" || fail "a start that hangs: $(cat "$work/err")"
 
+# ---- ethd-check asks a driver's prepare and opens nothing; with --open it opens, and both are watched over ----
+checked() { # NAME EXIT PATTERN [--open]
+  cp "$BUILD/tests/plugins/$1.so" "$work"
+  ini bad "hello, file:$1.so"
+  printf 'hang_time = 1\n' >>"$work/bad.ini"
+  timeout -s KILL 30 "$bin/ethd-check" ${4:-} "$work/bad.ini" >"$work/out" 2>"$work/err" </dev/null
+  code=$?
+  if [ "$2" = 0 ]; then
+    [ $code = 0 ] && [ ! -s "$work/err" ] && grep -q -e "$3" "$work/out" || fail "check, $1: exit $code: $(cat "$work/out" "$work/err")"
+  else
+    says "check, $1" "$2" "$3" "$work/err"
+  fi
+}
+checked driver_hangs 0 'hello, .*driver_hangs.so: read, not touched'
+checked driver_hangs 0 'checks no setting, before it is open'
+checked driver_hangs 1 "open of the driver broken doesn't return" --open
+checked driver_exits 0 'hello, .*driver_exits.so: read, not touched'
+checked driver_exits 1 'open of the driver broken ended the program' --open
+checked driver_hangs_prepare 1 "prepare of the driver broken doesn't return"
+checked driver_exits_prepare 1 'prepare of the driver broken ended the program'
+checked driver_hangs_limits 1 "open of the driver broken doesn't return" --open
+
 words() { # DRIVERS KEYS PATTERN
   printf '[device]\ndriver = %s\n%b' "$1" "$2" >"$work/bad.ini"
   "$bin/ethd-run" --config "$work/bad.ini" --virtual --duration 1 >"$work/out" 2>"$work/err" </dev/null

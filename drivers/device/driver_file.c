@@ -65,17 +65,17 @@ static ethd_status check_rest(const ethd_driver *d, char *what) {
   return fault ? ethd__say(what, ETHD_E_ARGUMENT, "%s %s", d->id, fault) : ETHD_OK;
 }
 
-static void copy_known(const ethd_driver *from, ethd_driver *out) {
-  *out = (ethd_driver){.size = 0};
-  memcpy(out, from, from->size);
-  out->size = sizeof *out;
+ethd_driver ethd__driver_whole(const ethd_driver *driver) {
+  ethd_driver out = {.size = 0};
+  memcpy(&out, driver, driver->size);
+  out.size = sizeof out;
+  return out;
 }
 
 ethd_status ethd__driver_check(const ethd_driver *driver, char what[ETHD_MESSAGE_MAX]) {
-  ethd_driver whole;
   ethd_status status = check_head(driver, what);
   if (status) return status;
-  copy_known(driver, &whole);
+  const ethd_driver whole = ethd__driver_whole(driver);
   return check_rest(&whole, what);
 }
 
@@ -94,7 +94,7 @@ static ethd_status load(const char *path, ethd_driver *out, char *what) {
   if (status)
     dlclose(handle);
   else
-    copy_known(table, out);
+    *out = ethd__driver_whole(table);
   return status;
 }
 

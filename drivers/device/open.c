@@ -20,6 +20,7 @@ static bool is_common(const char *key) { return !strcmp(key, INJECT) || !strcmp(
 
 /* ---- names ---- */
 
+/* What is being opened. */
 typedef struct naming {
   ethd__stack *stack;
   const ethd_driver *const *from;
@@ -49,10 +50,10 @@ static ethd_status load_driver(const naming *n, uint32_t i, const char *name, si
   ethd__stack *s = n->stack;
   char *given = strndup(name + strlen(ETHD_DRIVER_FILE), length - strlen(ETHD_DRIVER_FILE));
   char *path = given ? ethd__path_join(n->def->folder, given) : NULL;
-  ethd_status status = path ? ethd__driver_load(path, &s->at[i].loaded, what) : ethd__no_memory(what, NULL);
+  ethd_status status = path ? ethd__driver_load(path, &s->at[i].own, what) : ethd__no_memory(what, NULL);
   free(path);
   free(given);
-  s->at[i].driver = &s->at[i].loaded;
+  s->at[i].driver = &s->at[i].own;
   s->at[i].is_foreign = true;
   if (!status) return ETHD_OK;
   const char *slash = memrchr(name, '/', length), *last = slash ? slash + 1 : name;
@@ -84,6 +85,10 @@ static ethd_status add_driver(const naming *n, const char *name, size_t length) 
     if (!strcmp(s->at[k].driver->id, s->at[i].driver->id))
       status = ethd__say(n->message, ETHD_E_DUPLICATE, "%s: device.driver: %s occurs twice", file_of(n->def),
                          s->at[i].driver->id);
+  if (!status && s->only_prepares) {
+    s->at[i].own = ethd__driver_prepared(s->at[i].driver);
+    s->at[i].driver = &s->at[i].own;
+  }
   s->count += !status;
   return status;
 }
@@ -172,14 +177,15 @@ static ethd_status open_one(ethd__stack *s, uint32_t i, const ethd_device_def *d
   own.settings = settings;
   own.setting_count = own_settings(s, i, def, settings);
   message[0] = 0;
-  ethd__stack_foreign(s, i, "open");
+  ethd__stack_foreign(s, i, s->only_prepares ? "prepare" : "open");
   ethd_status status = driver->open(&own, &s->at[i].device, message);
-  ethd__stack_foreign(s, i, NULL);
   free(settings);
   one_line(message);
   if (status && !message[0])
     ethd__say(message, status, "device %s: open: %s", driver->id, ethd_status_sentence(status));
-  return status ? status : check_open(s, i, message);
+  if (!status) status = check_open(s, i, message);
+  ethd__stack_foreign(s, i, NULL);
+  return status;
 }
 
 static ethd_status read_hang_time(ethd__stack *s, const ethd_device_def *def, char *message) {
@@ -193,13 +199,12 @@ static ethd_status read_hang_time(ethd__stack *s, const ethd_device_def *def, ch
   return ETHD_OK;
 }
 
-static ethd_status open_all(ethd__stack *s, const char *ids, const ethd_driver *const *from, const ethd_device_def *def,
-                            char *message) {
-  const naming n = {s, from, def, message};
-  ethd_status status = name_drivers(&n, ids);
-  if (!status) status = check_owners(s, def, message);
-  if (!status) status = read_hang_time(s, def, message);
-  for (uint32_t i = 0; !status && i < s->count; i++) status = open_one(s, i, def, message);
+static ethd_status open_all(const naming *n, const char *ids) {
+  ethd__stack *s = n->stack;
+  ethd_status status = name_drivers(n, ids);
+  if (!status) status = check_owners(s, n->def, n->message);
+  if (!status) status = read_hang_time(s, n->def, n->message);
+  for (uint32_t i = 0; !status && i < s->count; i++) status = open_one(s, i, n->def, n->message);
   return status;
 }
 
@@ -225,19 +230,42 @@ static ethd_status inject(const ethd_device_def *def, const char *file, const et
   return status;
 }
 
-ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from, const ethd_device_def *def,
-                             const ethd_driver **driver, void **device, char message[ETHD_MESSAGE_MAX]) {
-  *driver = NULL;
-  *device = NULL;
-  ethd__stack *s = calloc(1, sizeof *s);
-  if (!s) return ethd__no_memory(message, NULL);
-  ethd_status status = open_all(s, ids, from ? from : ethd_drivers, def, message);
+typedef struct opened {
+  const ethd_driver *driver;
+  void *device;
+} opened;
+
+static ethd_status open_stack(const naming *n, const char *ids, opened *out) {
+  ethd__stack *s = n->stack;
+  *out = (opened){.driver = NULL};
+  if (!s) return ethd__no_memory(n->message, NULL);
+  ethd_status status = open_all(n, ids);
   if (status) {
     ethd__driver_stack.close(s);
     return status;
   }
-  *driver = &ethd__driver_stack;
-  *device = s;
-  const ethd_setting *script = find_common(def, INJECT);
-  return script ? inject(def, script->value, driver, device, message) : ETHD_OK;
+  *out = (opened){&ethd__driver_stack, s};
+  const ethd_setting *script = find_common(n->def, INJECT);
+  return script ? inject(n->def, script->value, &out->driver, &out->device, n->message) : ETHD_OK;
+}
+
+ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from, const ethd_device_def *def,
+                             const ethd_driver **driver, void **device, char message[ETHD_MESSAGE_MAX]) {
+  opened out;
+  const naming n = {calloc(1, sizeof(ethd__stack)), from ? from : ethd_drivers, def, message};
+  ethd_status status = open_stack(&n, ids, &out);
+  *driver = out.driver;
+  *device = out.device;
+  return status;
+}
+
+ethd_status ethd_device_prepare(const char *ids, const ethd_device_def *def, const ethd_driver **driver, void **device,
+                                char message[ETHD_MESSAGE_MAX]) {
+  opened out;
+  const naming n = {calloc(1, sizeof(ethd__stack)), ethd_drivers, def, message};
+  if (n.stack) n.stack->only_prepares = true;
+  ethd_status status = open_stack(&n, ids, &out);
+  *driver = out.driver;
+  *device = out.device;
+  return status;
 }

@@ -11,13 +11,14 @@ extern const ethd_driver ethd__driver_stack;
 
 typedef struct ethd__stack {
   uint32_t count;
+  bool only_prepares; /* nothing is touched: each driver's prepare takes the place of its open */
   unsigned hang_time; /* s in which code of a file must return */
   char doing[96];     /* what a file's code does, for people */
   struct {
     const ethd_driver *driver;
-    ethd_driver loaded; /* a file's table, whole: what the file's header didn't have yet is NULL */
-    bool is_foreign;    /* driver == &loaded */
-    void *device;       /* NULL: not open */
+    ethd_driver own; /* a table of ours: a copy of a file's, whole, or one whose open is a prepare */
+    bool is_foreign; /* the driver comes from a file */
+    void *device;    /* NULL: not open */
     uint32_t units;
   } at[ETHD_DRIVERS_MAX];
 } ethd__stack;
