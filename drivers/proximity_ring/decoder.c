@@ -60,7 +60,7 @@ static bool is_frame(const uint8_t *piece, size_t count, ethd__ring_frame *out) 
 
 /* Handles the end of a piece. Two zeros in a row enclose none. */
 static bool finish(ethd__decoder *d, const uint8_t *piece, size_t count, ethd__ring_frame *out) ETHD_RT {
-  bool begun = d->in_step;
+  bool begun = d->in_step, told = d->held > CODED;
   d->in_step = true;
   d->held = 0;
   if (count == 0) return false;
@@ -68,16 +68,19 @@ static bool finish(ethd__decoder *d, const uint8_t *piece, size_t count, ethd__r
     follow(d, out);
     return true;
   }
-  d->counters.corrupt += begun;
+  d->counters.corrupt += begun && !told;
   return false;
 }
 
-/* Keeps a piece's bytes; of one that is too long, only the fact that it is. */
+/* Keeps a piece's bytes; of one that is too long, only the fact that it is. That is counted at once, because noise may go
+   on for long without a zero. */
 static void hold(ethd__decoder *d, const uint8_t *bytes, size_t count) ETHD_RT {
+  bool fitted = d->held <= CODED;
   size_t room = d->held < ETHD__FRAME_WIRE ? ETHD__FRAME_WIRE - d->held : 0;
   size_t kept = count < room ? count : room;
   memcpy(d->piece + (ETHD__FRAME_WIRE - room), bytes, kept);
   d->held += (uint32_t)kept;
+  d->counters.corrupt += fitted && d->held > CODED && d->in_step;
 }
 
 bool ethd__decoder_next(ethd__decoder *d, const uint8_t **at, const uint8_t *end, ethd__ring_frame *out) {

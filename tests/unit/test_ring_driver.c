@@ -43,17 +43,21 @@ typedef struct board {
 } board;
 
 /* The kernel hands a pty's bytes over in its own time: a tick waits for them. */
-static void send_frame(const board *b, const ethd__ring_frame *frame) {
+static void send_bytes(const board *b, const uint8_t wire[ETHD__FRAME_WIRE]) {
   struct timespec pause = {.tv_nsec = 20000};
-  uint8_t wire[ETHD__FRAME_WIRE];
   int before = 0, now = 0;
-  ethd__frame_encode(frame, wire);
   ck_assert_int_eq(ioctl(b->watch, FIONREAD, &before), 0);
-  ck_assert_int_eq(write(b->master, wire, sizeof wire), sizeof wire);
-  for (int i = 0; i < 100000 && now < before + (int)sizeof wire; i++) {
+  ck_assert_int_eq(write(b->master, wire, ETHD__FRAME_WIRE), ETHD__FRAME_WIRE);
+  for (int i = 0; i < 100000 && now < before + ETHD__FRAME_WIRE; i++) {
     ck_assert_int_eq(ioctl(b->watch, FIONREAD, &now), 0);
-    if (now < before + (int)sizeof wire) nanosleep(&pause, NULL);
+    if (now < before + ETHD__FRAME_WIRE) nanosleep(&pause, NULL);
   }
+}
+
+static void send_frame(const board *b, const ethd__ring_frame *frame) {
+  uint8_t wire[ETHD__FRAME_WIRE];
+  ethd__frame_encode(frame, wire);
+  send_bytes(b, wire);
 }
 
 static ethd__ring_frame empty_frame(const ring_scene *s, uint32_t i) {
@@ -63,10 +67,10 @@ static ethd__ring_frame empty_frame(const ring_scene *s, uint32_t i) {
   return f;
 }
 
-/* While the driver opens: frames of an empty ring, twice as fast as real time. */
+/* While the driver opens: frames of an empty ring, many times as fast as real time. */
 static void *send_frames(void *board_) {
   board *b = board_;
-  struct timespec pause = {.tv_nsec = 1500000};
+  struct timespec pause = {.tv_nsec = 200000};
   for (uint32_t i = 0; !atomic_load(&b->stop); i++, nanosleep(&pause, NULL)) {
     uint8_t wire[ETHD__FRAME_WIRE];
     ethd__ring_frame f = b->finger ? scene_frame(&b->scene, i) : empty_frame(&b->scene, i);
@@ -207,15 +211,18 @@ static void begin(run *r) {
   r->now_ns = VIRTUAL;
 }
 
-/* What may become of frame i; false: it is lost. */
+/* What may become of frame i; false: it is lost, or what stands in `noise` comes in its place. */
 typedef bool (*mangle)(ethd__ring_frame *frame, uint32_t i);
+static const uint8_t *noise;
 
 /* A tick: the frames that are due are sent, or not; then service and read. */
 static ethd_status tick(run *r, mangle how) {
   r->now_ns += TICK;
   for (; scene_arrival(&r->board.scene, r->next) <= r->now_ns; r->next++) {
     ethd__ring_frame f = scene_frame(&r->board.scene, r->next);
+    noise = NULL;
     if (r->board.master >= 0 && (!how || how(&f, r->next))) send_frame(&r->board, &f);
+    if (r->board.master >= 0 && noise) send_bytes(&r->board, noise);
   }
   ethd_status status = driver->service(r->device, 0, r->now_ns);
   r->sense = (ethd_sense){.time_ns = r->now_ns};
@@ -272,6 +279,22 @@ static bool lose_all(ethd__ring_frame *f, uint32_t i) {
   (void)f;
   return i < onset;
 }
+/* A line on which something else speaks: bytes that never end a piece, and such that do. */
+static bool noise_without_end(ethd__ring_frame *f, uint32_t i) {
+  static uint8_t bytes[ETHD__FRAME_WIRE];
+  memset(bytes, 0x55, sizeof bytes);
+  (void)f;
+  noise = i < onset ? NULL : bytes;
+  return i < onset;
+}
+static bool noise_in_pieces(ethd__ring_frame *f, uint32_t i) {
+  static uint8_t bytes[ETHD__FRAME_WIRE];
+  memset(bytes, 0x55, sizeof bytes);
+  bytes[20] = 0;
+  (void)f;
+  noise = i < onset ? NULL : bytes;
+  return i < onset;
+}
 static bool reset_board(ethd__ring_frame *f, uint32_t i) {
   if (i < onset) return true;
   f->seq = (uint16_t)(i - onset);
@@ -318,8 +341,10 @@ static const struct {
   bool grave;
   int most; /* ticks after the tick of the arrival */
 } rows[] = {
-    {"a frame lost", lose_one, ETHD_FAULT_FRAME_LOST, false, 6},
-    {"all frames lost", lose_all, ETHD_FAULT_FRAME_LOST, false, 6},
+    {"a frame lost", lose_one, ETHD_FAULT_FRAME_LOST, false, 3},
+    {"all frames lost", lose_all, ETHD_FAULT_FRAME_LOST, false, 3},
+    {"noise in pieces", noise_in_pieces, ETHD_FAULT_FRAME_LOST, false, 0},
+    {"noise without an end", noise_without_end, ETHD_FAULT_FRAME_LOST, false, 0},
     {"a frame implausible", implausible, ETHD_FAULT_FRAME_LOST, false, 0},
     {"a sensor missing", spoil_one, ETHD_FAULT_SENSOR, false, 14},
     {"five sensors missing", spoil_five, ETHD_FAULT_SENSOR, true, 14},
