@@ -16,6 +16,8 @@ Says "ready NAME CONTROL": CONTROL is a UDP port of 127.0.0.1 that takes one com
   reaction       s from the last command that was due by "at" until no torque was asked for, -1: it is still
   mute N         N answers don't come         late N MS    N come late        garble N    N have a bit wrong
   stale N        N are those of the question before                           requests    how many came
+  noise N BYTES  in the place of N answers BYTES come that are none
+  noticed        s from noise to the next question, the least and the most since the last noise command
 """
 import argparse
 import asyncio
@@ -168,7 +170,7 @@ class Drive(ModbusBaseSlaveContext):
         self.advance()
         before, asked = any(self.current(i) for i in range(2)), self.asks()
         word, *rest = text.split()
-        if word in ("mute", "late", "garble", "stale"):
+        if word in LINE:
             return self.line.command(text)
         if word == "at":
             if rest[0] == "asked":
@@ -212,15 +214,22 @@ class Drive(ModbusBaseSlaveContext):
                                              *self.q, self.last_torque_at, self.zero_since))
 
 
+LINE = ("mute", "late", "garble", "stale", "noise", "noticed", "requests")
+
+
 class Line:
     """What happens to answers on their way."""
 
     def __init__(self):
         self.left, self.kind, self.wait, self.before, self.requests = 0, "", 0.0, b"", 0
+        self.noise, self.noise_at, self.noticed = 0, None, []
 
     def pass_by(self, sending, data):
         if not sending:
             self.requests += 1
+            if self.noise_at:
+                self.noticed.append(time.monotonic() - self.noise_at)
+                self.noise_at = None
             return data
         before, self.before = self.before, data
         if self.left <= 0:
@@ -228,6 +237,9 @@ class Line:
         self.left -= 1
         if self.kind == "mute":
             return b""
+        if self.kind == "noise":
+            self.noise_at = time.monotonic()
+            return b"\x55" * self.noise
         if self.kind == "late":
             time.sleep(self.wait)
         if self.kind == "garble":
@@ -238,7 +250,12 @@ class Line:
         word, *rest = text.split()
         if word == "requests":
             return str(self.requests)
+        if word == "noticed":
+            return f"{min(self.noticed, default=-1):.6f} {max(self.noticed, default=-1):.6f}"
         self.kind, self.left = word, int(rest[0])
+        if word == "noise":
+            self.noise, self.noticed = int(rest[1]), []
+            return "ok"
         self.wait = 1e-3 * float(rest[1]) if len(rest) > 1 else 0.0
         return "ok"
 
@@ -252,7 +269,7 @@ class Control(asyncio.DatagramProtocol):
 
     def datagram_received(self, data, addr):
         text = data.decode()
-        to = self.line if text.split()[0] in ("mute", "late", "garble", "stale", "requests") else self.drive
+        to = self.line if text.split()[0] in LINE else self.drive
         self.transport.sendto(to.command(text).encode(), addr)
 
 
