@@ -15,7 +15,6 @@
 #define FINE 1e-9   /* m/s: and for the numbers that are said */
 #define ENOUGH 1.02 /* times what rounding leaves: a residual as small leaves nothing to explain */
 #define SIDE 1.96   /* standard errors to each side of an interval of 95 % */
-#define SURE 3.0    /* so many standard errors from 0 there is a coupling */
 #define UNSURE 0.5  /* a number whose interval is wider to one side than this share of what it could be isn't seen */
 
 static const ethd__chosen rigid = {
@@ -171,7 +170,7 @@ static void set_interval(ethd__fit *f, ethd__unknown u, double coordinate, doubl
 }
 
 /* Few arms have a coupling, and it makes the simulator slow: it is looked for last, by how far one step of Gauss and
-   Newton would go. */
+   Newton would go. It is fitted where 0 lies outside of its interval. */
 static void look_for_coupling(ethd__shooting *p, const ethd_plant *plant, ethd__fit *f, double *errors) {
   double step[ETHD__UNKNOWNS];
   int last = p->chosen.count;
@@ -180,7 +179,7 @@ static void look_for_coupling(ethd__shooting *p, const ethd_plant *plant, ethd__
   ethd__fit_errors(p, errors, step);
   double most = UNSURE * p->evidence->arm.link1 * p->evidence->arm.link2 * sqrt(p->plant.mass[0] * p->plant.mass[1]);
   f->unseen[ETHD__COUPLING] = !(SIDE * ethd__unknown_from(ETHD__COUPLING, errors[last]) <= most);
-  if (!f->unseen[ETHD__COUPLING] && fabs(step[last]) > SURE * errors[last]) {
+  if (!f->unseen[ETHD__COUPLING] && fabs(step[last]) > SIDE * errors[last]) {
     f->sum = ethd__fit_squares(p, LONG, "coupling");
     leave_unseen(p, plant, f, errors);
     return;
@@ -240,7 +239,7 @@ void ethd__fit_run(const ethd__evidence *e, const ethd_plant *plant, double coun
   ethd__chosen_get(&p->chosen, &p->plant, at);
   for (int i = 0; i < p->chosen.count; i++) set_interval(f, p->chosen.at[i], at[i], errors[i]);
   f->freedom = (double)(p->rows - ethd__shooting_states(p)) - p->chosen.count;
-  f->simulated = p->simulated + quick.simulated;
+  f->simulated = ethd__shooting_simulated(p) + ethd__shooting_simulated(&quick);
   f->seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
   ethd__shooting_close(&quick);
 }

@@ -4,7 +4,7 @@
 #define ETHD_APPS_IDENTIFY_PREDICT_H
 
 #include "identify/evidence.h"
-#include "sim/body.h"
+#include "sim/arms.h"
 
 /* A state at the beginning: what the encoders see, rad and rad/s of both joints; where the transmission gives way also
    the links' lead over it. */
@@ -32,7 +32,18 @@ void ethd__predictor_prepare(const ethd__evidence *evidence, const ethd_plant *p
 /* Length of a state. */
 int ethd__predictor_states(const ethd__predictor *predictor);
 
-/* Joint angles at the window's ticks, both of one tick side by side: 2 * window->count numbers. */
+/* Joint angles at the window's ticks, both of one tick side by side: 2 * window->count numbers. A plant that no device
+   can be, which runs away, stands still from there on. */
 void ethd__predict(ethd__predictor *predictor, const ethd__shot *window, const double *state, double *out);
+
+/* One of several predictions of a window that are made side by side. */
+typedef struct ethd__forecast {
+  const ethd__predictor *predictor;
+  const double *state;
+  double *out; /* as ethd__predict fills it */
+} ethd__forecast;
+
+/* Up to ETHD__ARMS predictions at once; their plants differ little, and all or none have a transmission that gives way. */
+void ethd__predict_many(const ethd__forecast *forecasts, int count, const ethd__shot *window);
 
 #endif

@@ -9,6 +9,7 @@
 
 #define SETTLINGS 8 /* of a window's state at most, until the squares fall by less than this share: */
 #define SETTLED 1e-9
+#define MOVED 1e-5      /* a state whose squares fall by a smaller share has hardly moved: its slopes stay */
 #define CHORDS 2        /* corrections of a state with the slopes that are there */
 #define STEP_ANGLE 1e-6 /* rad, */
 #define STEP_SPEED 1e-4 /* rad/s: for slopes by differences */
@@ -86,10 +87,11 @@ static double *basis_of(const ethd__shooting *p, const ethd__fit_window *w) {
   return p->basis + ETHD__STATE_MOST * w->row;
 }
 
-static void residual(ethd__predictor *predictor, const ethd__shot *w, const double *state, double *out) {
-  ethd__predict(predictor, w, state, out);
-  const double *measured = predictor->evidence->q[w->first];
-  for (int i = 0; i < 2 * w->count; i++) out[i] = measured[i] - out[i];
+static void residual(ethd__predictor *predictor, ethd__fit_window *w, const double *state, double *out) {
+  ethd__predict(predictor, &w->window, state, out);
+  const double *measured = predictor->evidence->q[w->window.first];
+  for (int i = 0; i < 2 * w->window.count; i++) out[i] = measured[i] - out[i];
+  w->predicted += w->window.count;
 }
 
 static double dot(const double *a, const double *b, int n) {
@@ -117,17 +119,35 @@ static void correct(const ethd__shooting *p, const ethd__fit_window *w, const do
 
 static double step_of(int i) { return i == 2 || i == 3 || i >= 6 ? STEP_SPEED : STEP_ANGLE; }
 
-/* The basis of what states change (Gram and Schmidt, twice), and which state each vector of it stands for. */
-static void span(ethd__shooting *p, ethd__predictor *predictor, ethd__fit_window *w, const double *left) {
+/* What each state changes, one after another: differences between predictions that take the same steps. */
+static void state_slopes(const ethd__predictor *predictor, ethd__fit_window *w, double *out) {
   int n = 2 * w->window.count, states = ethd__predictor_states(predictor);
-  double changed[2 * ETHD__WINDOW_MOST];
+  double state[ETHD__ARMS][ETHD__STATE_MOST], own[2 * ETHD__WINDOW_MOST];
+  for (int i = 0; i < states; i += ETHD__ARMS - 1) {
+    ethd__forecast f[ETHD__ARMS] = {{predictor, w->state, own}};
+    int count = 1;
+    for (; count < ETHD__ARMS && i + count - 1 < states; count++) {
+      int at = i + count - 1;
+      memcpy(state[count], w->state, sizeof w->state);
+      state[count][at] += step_of(at);
+      f[count] = (ethd__forecast){predictor, state[count], out + at * n};
+    }
+    ethd__predict_many(f, count, &w->window);
+    w->predicted += (count - 1) * w->window.count;
+    for (int c = 1; c < count; c++)
+      for (int k = 0; k < n; k++) f[c].out[k] = (f[c].out[k] - own[k]) / step_of(i + c - 1);
+  }
+}
+
+/* The basis of what states change (Gram and Schmidt, twice), and which state each vector of it stands for. */
+static void span(ethd__shooting *p, const ethd__predictor *predictor, ethd__fit_window *w) {
+  int n = 2 * w->window.count, states = ethd__predictor_states(predictor);
+  double *slopes = basis_of(p, w);
+  state_slopes(predictor, w, slopes);
   w->rank = 0;
   for (int i = 0; i < states; i++) {
-    double state[ETHD__STATE_MOST], turn[ETHD__STATE_MOST] = {0}, *v = basis_of(p, w) + w->rank * n;
-    memcpy(state, w->state, sizeof state);
-    state[i] += step_of(i);
-    residual(predictor, &w->window, state, changed);
-    for (int k = 0; k < n; k++) v[k] = (left[k] - changed[k]) / step_of(i);
+    double turn[ETHD__STATE_MOST] = {0}, *v = slopes + w->rank * n;
+    memmove(v, slopes + i * n, (size_t)n * sizeof *v);
     turn[i] = 1;
     double whole = sqrt(dot(v, v, n));
     for (int twice = 0; twice < 2; twice++)
@@ -156,14 +176,14 @@ typedef struct job {
 
 /* Moves the state by what its basis sees in the residual, by less where the whole doesn't bring it down; the sum of
    squares that is left. */
-static double improve(const ethd__shooting *p, ethd__predictor *predictor, const ethd__fit_window *w, double *state,
+static double improve(const ethd__shooting *p, ethd__predictor *predictor, ethd__fit_window *w, double *state,
                       double *left) {
   int n = 2 * w->window.count;
   double moved[ETHD__STATE_MOST] = {0}, next[ETHD__STATE_MOST], now[2 * ETHD__WINDOW_MOST], sum = dot(left, left, n);
   correct(p, w, left, moved);
   for (double share = 1; share > 0.05; share /= 2) {
     for (int i = 0; i < ETHD__STATE_MOST; i++) next[i] = state[i] + share * moved[i];
-    residual(predictor, &w->window, next, now);
+    residual(predictor, w, next, now);
     double less = dot(now, now, n);
     if (!(less < sum)) continue;
     memcpy(state, next, sizeof next);
@@ -178,12 +198,12 @@ static void settle_one(const job *part, ethd__fit_window *w) {
   ethd__shooting *p = part->problem;
   double left[2 * ETHD__WINDOW_MOST];
   ethd__predictor_prepare(p->evidence, part->plants, p->tolerance, &predictor);
-  residual(&predictor, &w->window, w->state, left);
-  span(p, &predictor, w, left);
+  residual(&predictor, w, w->state, left);
+  span(p, &predictor, w);
   double sum = dot(left, left, 2 * w->window.count);
   for (int i = 0; i < SETTLINGS; i++) {
     double less = improve(p, &predictor, w, w->state, left);
-    if (less < sum) span(p, &predictor, w, left);
+    if (less < sum * (1 - MOVED)) span(p, &predictor, w);
     if (!(less < sum * (1 - SETTLED))) break;
     sum = less;
   }
@@ -195,7 +215,7 @@ static void residual_one(const job *part, ethd__fit_window *w, const ethd_plant 
   double state[ETHD__STATE_MOST];
   ethd__predictor_prepare(p->evidence, plant, p->tolerance, &predictor);
   memcpy(state, w->state, sizeof state);
-  residual(&predictor, &w->window, state, out);
+  residual(&predictor, w, state, out);
   for (int i = 0; i < CHORDS; i++) (void)improve(p, &predictor, w, state, out);
   project(p, w, out);
 }
@@ -208,29 +228,42 @@ static void residual_windows(void *data, size_t begin, size_t end) {
   }
 }
 
-static void slope_windows(void *data, size_t begin, size_t end) {
-  const job *part = data;
+/* What each plant changes: differences between predictions that take the same steps. */
+static void plant_slopes(const job *part, ethd__fit_window *w) {
   ethd__shooting *p = part->problem;
-  double left[2 * ETHD__WINDOW_MOST];
-  for (size_t i = begin; i < end; i++) {
-    ethd__fit_window *w = &p->windows[i];
-    int n = 2 * w->window.count;
-    ethd__predictor predictor;
-    settle_one(part, w);
-    ethd__predictor_prepare(p->evidence, part->plants, p->tolerance, &predictor);
-    residual(&predictor, &w->window, w->state, left);
-    for (int k = 1; k < part->plant_count; k++) {
-      double *out = part->out + (size_t)(k - 1) * p->rows + w->row;
-      ethd__predictor_prepare(p->evidence, &part->plants[k], p->tolerance, &predictor);
-      residual(&predictor, &w->window, w->state, out);
-      for (int r = 0; r < n; r++) out[r] = (out[r] - left[r]) / STEP;
-      project(p, w, out);
+  int n = 2 * w->window.count;
+  double own[2 * ETHD__WINDOW_MOST];
+  ethd__predictor predictors[ETHD__ARMS];
+  ethd__predictor_prepare(p->evidence, part->plants, p->tolerance, predictors);
+  for (int k = 1; k < part->plant_count; k += ETHD__ARMS - 1) {
+    ethd__forecast f[ETHD__ARMS] = {{predictors, w->state, own}};
+    int count = 1;
+    for (; count < ETHD__ARMS && k + count - 1 < part->plant_count; count++) {
+      ethd__predictor_prepare(p->evidence, &part->plants[k + count - 1], p->tolerance, &predictors[count]);
+      f[count] = (ethd__forecast){&predictors[count], w->state,
+                                  part->out + (size_t)(k + count - 2) * p->rows + w->row};
+    }
+    ethd__predict_many(f, count, &w->window);
+    w->predicted += (count - 1) * w->window.count;
+    for (int c = 1; c < count; c++) {
+      for (int r = 0; r < n; r++) f[c].out[r] = (own[r] - f[c].out[r]) / STEP;
+      project(p, w, f[c].out);
     }
   }
 }
 
-static void count_time(ethd__shooting *p, int turns) {
-  p->simulated += turns * (double)p->rows / 2 * p->evidence->period;
+static void slope_windows(void *data, size_t begin, size_t end) {
+  const job *part = data;
+  for (size_t i = begin; i < end; i++) {
+    settle_one(part, &part->problem->windows[i]);
+    plant_slopes(part, &part->problem->windows[i]);
+  }
+}
+
+double ethd__shooting_simulated(const ethd__shooting *p) {
+  double ticks = 0;
+  for (size_t i = 0; i < p->window_count; i++) ticks += (double)p->windows[i].predicted;
+  return ticks * p->evidence->period;
 }
 
 void ethd__shooting_residual(ethd__shooting *p, const double *coordinates, double *out) {
@@ -238,7 +271,6 @@ void ethd__shooting_residual(ethd__shooting *p, const double *coordinates, doubl
   ethd__chosen_set(&p->chosen, coordinates, &plant);
   job whole = {p, &plant, 1, out};
   ethd__share(residual_windows, &whole, p->window_count);
-  count_time(p, 1 + CHORDS);
 }
 
 void ethd__shooting_slopes(ethd__shooting *p, const double *coordinates, double *out) {
@@ -252,8 +284,6 @@ void ethd__shooting_slopes(ethd__shooting *p, const double *coordinates, double 
   }
   job whole = {p, plants, p->chosen.count + 1, out};
   ethd__share(slope_windows, &whole, p->window_count);
-  int states = isfinite(plants[0].stiffness) ? ETHD__STATE_MOST : ETHD__STATE_RIGID;
-  count_time(p, 2 * (1 + states) + 1 + p->chosen.count);
 }
 
 void ethd__shooting_settle(ethd__shooting *p) {

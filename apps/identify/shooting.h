@@ -16,6 +16,7 @@ typedef struct ethd__fit_window {
   double state[ETHD__STATE_MOST];                  /* at its beginning, */
   double turn[ETHD__STATE_MOST][ETHD__STATE_MOST]; /* state = turn of what the basis sees in the residual */
   int rank;
+  int64_t predicted; /* ticks so far */
 } ethd__fit_window;
 
 typedef struct ethd__shooting {
@@ -27,7 +28,6 @@ typedef struct ethd__shooting {
   ethd_plant plant;          /* the unknowns that aren't chosen stand as here */
   ethd__chosen chosen;
   double tolerance; /* m/s, of the simulator */
-  double simulated; /* s so far */
 } ethd__shooting;
 
 /* Cuts the stretches into windows, at most `most`. tolerance: the simulator's. */
@@ -42,6 +42,9 @@ void ethd__shooting_residual(ethd__shooting *shooting, const double *coordinates
 
 /* Settles at these coordinates; their derivatives: rows numbers a column. */
 void ethd__shooting_slopes(ethd__shooting *shooting, const double *coordinates, double *out);
+
+/* Simulated seconds so far, of all predictions. */
+double ethd__shooting_simulated(const ethd__shooting *shooting);
 
 /* Numbers that the states take away, of `rows`. */
 size_t ethd__shooting_states(const ethd__shooting *shooting);
