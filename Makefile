@@ -188,8 +188,8 @@ WHOLE := -Wl,--whole-archive $(B)/libethd.a -Wl,--no-whole-archive -Wl,--export-
 
 # Only the study has a window, and the tests of what is drawn into it.
 $(B)/bin/ethd-study $(B)/tests/test_shapes $(B)/tests/test_pages: LIBS += -lSDL2_ttf -lSDL2
-# Only identification fits.
-$(B)/bin/ethd-identify: LIBS += -lcminpack
+# Only identification, and the benchmark of it, fits.
+$(B)/bin/ethd-identify $(B)/bin/ethd-bench: LIBS += -lcminpack
 $(PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES) $(B)/libethd.a
 	$(call say,LINK,$@)
 	@mkdir -p $(@D)

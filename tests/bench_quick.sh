@@ -7,7 +7,7 @@ trap 'rm -rf "$folder"' EXIT
 bench=$BUILD/bin/ethd-bench
 fail() { echo "$*"; exit 1; }
 
-for what in fits filters velocity kinematics hours sensors; do
+for what in fits filters velocity kinematics hours sensors identify; do
   "$bench" $what --quick --out "$folder" --about "a test" >"$folder/$what.txt" || fail "$what failed"
   head -n 1 "$folder/$what.csv" | grep -q '^# libethd .*compiler' || fail "$what.csv doesn't say what measured it"
   grep -q '^# a test$' "$folder/$what.csv" || fail "$what.csv doesn't hold what --about says"
@@ -21,6 +21,6 @@ for what in fits filters velocity kinematics hours sensors; do
 done
 
 grep -h 'goal:.*\(the bound\|mm \|error of\|ca at least\)' "$folder"/*.txt >"$folder/goals"
-[ "$(wc -l <"$folder/goals")" = 10 ] || { cat "$folder/goals"; fail "ten goals are of errors"; }
+[ "$(wc -l <"$folder/goals")" = 14 ] || { cat "$folder/goals"; fail "fourteen goals are of errors"; }
 if grep -v ', met$' "$folder/goals"; then fail "an error is larger than it may be"; fi
-echo "ten errors within their goals"
+echo "fourteen errors within their goals"

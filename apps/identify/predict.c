@@ -160,7 +160,8 @@ static bool go_on_all(flock *f, const double *whole, const double *at, int k) {
   memcpy(begun, k ? at : whole, sizeof begun);
   for (int steps = 0; steps < STEPS_MOST && !runs_away(f); steps++) {
     bool over = ethd__arms_advance(&f->arms, left, &f->step);
-    if (over) memcpy(f->step.length, whole, sizeof left); /* what is due lies in the last step, whatever rounding does */
+    if (over)
+      memcpy(f->step.length, whole, sizeof left); /* what is due lies in the last step, whatever rounding does */
     read_off(f, begun, k, due);
     if (over) return true;
     for (int i = 0; i < ETHD__ARMS; i++) {

@@ -1,5 +1,5 @@
 /* The arm's motion over a short window, by the simulator of drivers/sim: encoders from commands, without a finger.
-   [any] */
+   ethd-identify and ethd-bench use it. [any] */
 #ifndef ETHD_APPS_IDENTIFY_PREDICT_H
 #define ETHD_APPS_IDENTIFY_PREDICT_H
 

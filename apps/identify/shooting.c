@@ -240,8 +240,7 @@ static void plant_slopes(const job *part, ethd__fit_window *w) {
     int count = 1;
     for (; count < ETHD__ARMS && k + count - 1 < part->plant_count; count++) {
       ethd__predictor_prepare(p->evidence, &part->plants[k + count - 1], p->tolerance, &predictors[count]);
-      f[count] = (ethd__forecast){&predictors[count], w->state,
-                                  part->out + (size_t)(k + count - 2) * p->rows + w->row};
+      f[count] = (ethd__forecast){&predictors[count], w->state, part->out + (size_t)(k + count - 2) * p->rows + w->row};
     }
     ethd__predict_many(f, count, &w->window);
     w->predicted += (count - 1) * w->window.count;

@@ -17,16 +17,16 @@ typedef struct kind {
 typedef struct workings {
   bool turning; /* false: friction is constant */
   ethd__two slip[ETHD__ARMS_TERMS], slip_a[ETHD__ARMS_TERMS], link_a[ETHD__ARMS_TERMS];
-  ethd__two rub[ETHD__ARMS_TERMS], unlike[ETHD__ARMS_TERMS]; /* u = tanh(s w), 1 - u^2 */
+  ethd__two rub[ETHD__ARMS_TERMS], unlike[ETHD__ARMS_TERMS];                          /* u = tanh(s w), 1 - u^2 */
   ethd__two cosine[ETHD__ARMS_TERMS], sine[ETHD__ARMS_TERMS], bend[ETHD__ARMS_TERMS]; /* of th2 - th1, each twice */
   ethd__two square_v[ETHD__ARMS_TERMS];
 } workings;
 
-typedef struct expansion {
+typedef struct troop {
   const ethd__arms *arms;
   ethd__arms_step *out;
   workings of[ETHD__ARMS];
-} expansion;
+} troop;
 
 static const double INVERSE[ETHD__ARMS_TERMS + 1] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,
                                                      1.0 / 6,  1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11,
@@ -98,7 +98,7 @@ static ethd__two couple(const ethd__arms_body *b, const ethd__arms_series *s, wo
 }
 
 /* Speeds' terms k + 1, and the angles', from what is known up to k. */
-ETHD__INLINE void accelerate(expansion *e, int i, kind has, int k) {
+ETHD__INLINE void accelerate(troop *e, int i, kind has, int k) {
   const ethd__arms_body *b = &e->arms->body[i];
   ethd__arms_series *s = &e->out->series[i];
   workings *w = &e->of[i];
@@ -110,14 +110,14 @@ ETHD__INLINE void accelerate(expansion *e, int i, kind has, int k) {
   if (has.compliant) s->motor[k + 1] = s->motor_v[k] * next;
 }
 
-ETHD__INLINE void accelerate_all(expansion *e, kind has, int k) {
+ETHD__INLINE void accelerate_all(troop *e, kind has, int k) {
   for (int i = 0; i < ETHD__ARMS; i++) accelerate(e, i, has, k);
 }
 
 /* ---- how many terms, how far ---- */
 
 /* What term k adds to an arm's speeds in all, m/s, with that power of the step's length; the most of all arms. */
-ETHD__INLINE double speed(const expansion *e, kind has, int k, const double *reach) {
+ETHD__INLINE double speed(const troop *e, kind has, int k, const double *reach) {
   double most = 0;
   for (int i = 0; i < ETHD__ARMS; i++) {
     const ethd__arms_series *s = &e->out->series[i];
@@ -130,7 +130,7 @@ ETHD__INLINE double speed(const expansion *e, kind has, int k, const double *rea
 }
 
 /* Terms up to that which no longer counts. Where the last two of all do, the step is shortened: returns to what share. */
-ETHD__INLINE double expand(expansion *e, kind has, const double *h) {
+ETHD__INLINE double expand(troop *e, kind has, const double *h) {
   double tolerance = e->arms->tolerance, reach[ETHD__ARMS];
   for (int k = 0; k < ETHD__ORDER_MIN; k++) accelerate_all(e, has, k);
   for (int i = 0; i < ETHD__ARMS; i++) reach[i] = h[i] * h[i] * h[i];
@@ -161,7 +161,7 @@ ETHD__INLINE double expand(expansion *e, kind has, const double *h) {
 }
 
 /* The paper's arm, rigid or elastic, has compiled cases of its own, because it runs most. */
-static double expand_kind(expansion *e, const double *h) {
+static double expand_kind(troop *e, const double *h) {
   kind has = {e->arms->serial, e->arms->compliant, e->arms->coupled};
   if (has.serial || has.coupled) return expand(e, has, h);
   if (has.compliant) return expand(e, (kind){.compliant = true}, h);
@@ -210,7 +210,7 @@ static bool move(const ethd__arms *a, ethd__arms_step *s) {
 }
 
 bool ethd__arms_advance(const ethd__arms *a, const double left[ETHD__ARMS], ethd__arms_step *s) {
-  expansion e;
+  troop e;
   e.arms = a;
   e.out = s;
   for (int i = 0; i < ETHD__ARMS; i++) {
