@@ -10,6 +10,7 @@
 #include "ethd/ethd.h"
 #include "report/report.h"
 #include "statistics/coverage.h"
+#include "study/stations.h"
 #include "study/sums.h"
 #include "text/claim.h"
 #include "text/error_text.h"
@@ -42,10 +43,8 @@ static const struct argp_option options[] = {
     {0},
 };
 
-#define STATIONS_MAX 64
-
 static struct {
-  const char *folder[STATIONS_MAX], *out, *beside, *tap;
+  const char *folder[ETHD_STUDY_STATIONS], *out, *beside, *tap;
   size_t folders;
   int64_t coverage;
   int64_t point;
@@ -64,7 +63,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_COVERAGE: arg.coverage = ethd__option_integer("--coverage", text, 1, 1000000); return 0;
   case OPTION_FORCE: arg.force = true; return 0;
   case ARGP_KEY_ARG:
-    if (arg.folders == STATIONS_MAX) argp_error(state, "\"%s\": %d folders are allowed", text, STATIONS_MAX);
+    if (arg.folders == ETHD_STUDY_STATIONS)
+      argp_error(state, "\"%s\": %d folders are allowed", text, ETHD_STUDY_STATIONS);
     arg.folder[arg.folders++] = text;
     return 0;
   case ARGP_KEY_END:
@@ -83,30 +83,19 @@ static void check_job(ethd_status status, const char *message) {
   if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
 }
 
-/* The taps of folders of one study; `out` is the first one's. */
-static void load(const ethd__stations *stations, size_t point, ethd__folder *out, ethd__data *data) {
+/* The tables of folders of one study; `out` is the first one's. */
+static void load(const ethd__stations *stations, size_t point, ethd__folder *out, ethd__sheet table[ETHD_TABLES],
+                 ethd__data *data) {
   char message[ETHD_MESSAGE_MAX];
-  ethd__sheet taps, participants;
-  for (size_t i = 0; i < stations->count; i++) {
-    ethd__folder other;
-    const char *folder = stations->folder[i];
-    check(i ? ethd__folder_read(folder, &other, message) : ethd__folder_open(folder, arg.plugins, out, message),
-          message);
-    char *path = ethd__folder_path(folder, ETHD_STUDY_TAPS);
-    if (access(path, F_OK) != 0)
-      ethd__fail(ETHD_EXIT_INPUT, "%s: No such file; ethd-study --resume %s or --merge %s makes it", path, folder,
-                 folder);
-    free(path);
-    if (i && strcmp(other.hash, out->hash) != 0)
-      ethd__fail(ETHD_EXIT_INPUT, "%s: another study than %s: its study, configuration, walls or plant differ", folder,
-                 stations->folder[0]);
-    if (i) ethd__folder_close(&other);
-  }
-  if (stations->count > 1) check(ethd__gather_check(stations, ETHD_STUDY_TAPS, message), message);
-  check(ethd__gather(stations, ETHD_STUDY_TAPS, &taps, message), message);
-  check(ethd__gather(stations, "participants.csv", &participants, message), message);
-  check(ethd__data_of(&taps, &participants, &out->loaded.plant, point, data, message), message);
-  ethd__sheet_free(&participants);
+  const char *folder = stations->folder[0];
+  check(ethd__folder_open(folder, arg.plugins, out, message), message);
+  check(ethd__gather(stations, table, message), message);
+  if (!table[ETHD_TABLE_TAPS].columns)
+    ethd__fail(ETHD_EXIT_INPUT, "%s/%s: No such file; ethd-study --resume %s or --merge %s makes it", folder,
+               ETHD_STUDY_TAPS, folder, folder);
+  check(
+      ethd__data_of(&table[ETHD_TABLE_TAPS], &table[ETHD_TABLE_PARTICIPANTS], &out->loaded.plant, point, data, message),
+      message);
 }
 
 /* Until all is printed, or Ctrl-C. */
@@ -125,14 +114,16 @@ static void print_coverage(void) {
 /* What was changed is named, and the page goes on: nothing here can tell which of the two is right. */
 static void print_sums(ethd__report *r) {
   char message[ETHD_MESSAGE_MAX];
-  const char *folder = r->folder->path;
-  size_t files, n = strlen(folder);
-  ethd_status status = ethd__sums_check(folder, &files, message);
-  if (status)
+  size_t all = 0, files;
+  for (size_t i = 0; i < r->stations.count; i++, all += files) {
+    const char *folder = r->stations.folder[i];
+    size_t n = strlen(folder);
+    if (!ethd__sums_check(folder, &files, message)) continue;
     ethd__html_print(&r->page, "<p class=\"note\"><b>Check sums:</b> %s.</p>\n",
                      strncmp(message, folder, n) ? message : message + n + strspn(message + n, "/: "));
-  else
-    ethd__html_print(&r->page, "<p class=\"note\">All %zu files are as SHA256SUMS says.</p>\n", files);
+    return;
+  }
+  ethd__html_print(&r->page, "<p class=\"note\">All %zu files are as SHA256SUMS says.</p>\n", all);
 }
 
 static void print_foot(ethd__report *r) {
@@ -205,14 +196,17 @@ int main(int argc, char **argv) {
                           .point = (size_t)arg.point,
                           .seed = arg.seed,
                           .message = message};
-  load(&report.stations, report.point, &folder, &report.data);
+  load(&report.stations, report.point, &folder, report.table, &report.data);
   if (arg.beside) {
     const ethd__stations other = {&arg.beside, 1};
-    load(&other, 0, &beside, &report.beside);
+    ethd__sheet table[ETHD_TABLES];
+    load(&other, 0, &beside, table, &report.beside);
+    ethd__gather_free(table);
     report.beside_name = beside.protocol.name;
   }
   ethd__report_led(&report);
   write_page(&report);
+  ethd__gather_free(report.table);
   ethd__data_free(&report.data);
   ethd__data_free(&report.beside);
   if (arg.beside) ethd__folder_close(&beside);

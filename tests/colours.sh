@@ -28,16 +28,25 @@ def array(script, name):
     return [int(word, 16) for word in re.findall(r"0x[0-9a-f]{6}", text)]
 
 failed = False
-# pieces of a bar that may lie beside each other: any two, since a reason may be missing; dots of participants: the first
-# four, beyond which the lines help
-for script, name, first, least in (("report-reasons.gp", "tints", 8, 14), ("report-boxes.gp", "who", 4, 16), ("report-survey.gp", "tints", 5, 14)):
-    colours = array(script, name)[:first]
-    assert len(colours) == first
+def judge(script, colours, least):
+    global failed
     for who, matrix in SEES.items():
         seen = [lab(np.array(matrix) @ linear(c)) for c in colours]
         distance, a, b = min((np.linalg.norm(x - y), i, k) for (i, x), (k, y) in itertools.combinations(enumerate(seen), 2))
-        print(f"{script}, {who}: nearest {colours[a]:06x} and {colours[b]:06x}, {distance:.0f} apart (at least {least})")
+        print(f"{script}, {who}: nearest of {len(colours)}: {colours[a]:06x} and {colours[b]:06x}, {distance:.0f} apart (at least {least})")
         failed |= distance < least
+
+# pieces of a bar that may lie beside each other: any two, since a reason may be missing; dots of participants: the first
+# four, beyond which the lines help
+for script, name, first, least in (("report-reasons.gp", "tints", 8, 14), ("report-boxes.gp", "who", 4, 16)):
+    colours = array(script, name)[:first]
+    assert len(colours) == first
+    judge(script, colours, least)
+# answers: their numbers stand in the pieces, too
+tints = array("report-survey.gp", "tints")
+assert len(tints) == 9
+for last in range(2, 10):
+    judge("report-survey.gp", [tints[int(1.5 + k * 8 / (last - 1)) - 1] for k in range(last)], 14 if last <= 5 else 7)
 assert np.linalg.norm(lab(np.array(SEES["no M cones"]) @ linear(0xff0000)) - lab(np.array(SEES["no M cones"]) @ linear(0xb5a000))) < \
     np.linalg.norm(lab(linear(0xff0000)) - lab(linear(0xb5a000))) # red and olive come nearer
 sys.exit(bool(failed))

@@ -12,7 +12,7 @@ def advance(letter):
 def words(text):
     for x, y, turn, size, anchor, inside in GROUP.findall(text):
         width, whole = 0.0, ""
-        for attributes, word in SPAN.findall(inside):
+        for attributes, word in SPAN.findall(inside) or [("", inside)]:
             own = re.search(r'font-size="([\d.]+)"', attributes)
             word = html.unescape(word)
             width += sum(map(advance, word)) * float(own.group(1) if own else size)

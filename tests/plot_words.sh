@@ -26,7 +26,7 @@ for name in four nine; do
     draw $name report-boxes "in = 'boxes.csv'; points = 'points.csv'; between = 'lines.csv'; people = '2'; note = '$note'; metrics = '$metrics'"
   done
   draw $name report-reasons "in = 'reasons.csv'; note = 'test taps of this study'"
-  draw $name report-survey "in = 'survey-answers.csv'; note = 'shares of the answers'"
+  draw $name report-survey "in = 'survey-answers.csv'; question = '2'; answers = '5'; scale = '1 wwwwwwwwwwwwwwwwwwwwwwwwwwwwwwww… to 5 moved clearly toward the right…'"
   draw $name report-states "in = 'encounter-smooth.csv encounter-offset.csv'; titles = 'smooth offset'; from = '-60'; note = 'simulated for this picture; dashed: how far the ring is in the wall'"
   for trace in "$folder/$name"/report/trace-*.csv; do draw $name tap "in = '$(basename "$trace")'; title = 'a tap'"; done
 done

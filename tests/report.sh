@@ -94,8 +94,9 @@ grep -q 'under seed 7' "$folder/other/report.html" || fail "the page doesn't sta
 
 # Answers, made up here for the test alone.
 awk -F, -v OFS=, 'NR > 1 { $5 = 3; $6 = 1 + NR % 5; $7 = 2 } 1' "$here/survey.csv" >"$folder/survey.csv" && cp "$folder/survey.csv" "$here/survey.csv"
+rm -f "$here/SHA256SUMS"
 drawn "$here/report" "$here"
-grep -q 'figure 18' "$here/report/report.html" && [ -s "$here/report/survey.png" ] || fail "no survey"
+grep -q 'Figure 18' "$here/report/report.html" && [ -s "$here/report/survey-q3.png" ] || fail "no survey"
 [ "$(cut -d, -f5 "$here/report/survey-answers.csv" | sort -u | tr '\n' ' ')" = '2 n ' ] || fail "not everyone's answers count"
 
 # What the motors were asked for and what they were given are two things, as the recordings have them.
@@ -117,18 +118,48 @@ for row in csv.DictReader(open(study / "report/forces.csv")):
     assert float(row["asked_n_max"]) > 2 * float(row["let_n_max"]) and float(row["let_n_max"]) < 6 # plant n has 5.4 N
 END
 
-# Stations: one study in several folders, with other participants in each; some of whom aren't analysed.
+# Somebody isn't analysed.
 cp -r "$here" "$folder/second"
-rm -rf "$folder/second/report" "$folder/second/SHA256SUMS" "$folder/second/participants.csv"
-sed -i 's/^P0/P1/' "$folder/second/taps.csv" "$folder/second/survey.csv"
-drawn "$folder/both" "$here" "$folder/second" --out "$folder/both"
-grep -q 'at 2 stations of one study' "$folder/both/report.html" || fail "the page doesn't say that there were two stations"
-people_in() { awk -F, '$1 == "v_of" && $3 == "smooth" && $4 == "low" { print $6 }' "$1/summary.csv"; }
-[ "$(people_in "$folder/both")" = 4 ] || fail "not 4 participants at two stations"
-printf 'participant,status,analysed\nP11,excluded,0\nP12,complete,1\n' >"$folder/second/participants.csv"
-drawn "$folder/both" "$folder/second" --out "$folder/both"
-[ "$(people_in "$folder/both")" = 1 ] || fail "the excluded participant's taps are counted"
-grep -q 'who are not analysed' "$folder/both/report.html" || fail "the page doesn't say that somebody is left out"
+rm -rf "$folder/second/report" "$folder/second/SHA256SUMS"
+printf 'participant,status,analysed\nP01,excluded,0\nP02,complete,1\n' >"$folder/second/participants.csv"
+drawn "$folder/one" "$folder/second" --out "$folder/one"
+[ "$(awk -F, '$1 == "v_of" && $3 == "smooth" && $4 == "low" { print $6 }' "$folder/one/summary.csv")" = 1 ] || fail "the excluded participant's taps are counted"
+grep -q 'who are not analysed' "$folder/one/report.html" || fail "the page doesn't say that somebody is left out"
+
+# Stations: their report is the merged folder's, table by table and word by word; what --merge refuses, the report does.
+for k in 1 2; do "$study" --quiet "$folder/small.study" --participant $k --out "$folder/station$k" >"$folder/out" 2>&1 || fail "station $k: $(cat "$folder/out")"; done
+"$study" --resume "$folder/station2" --exclude 2 --reason 'told another task' >"$folder/out" 2>&1 || fail "exclude: $(cat "$folder/out")"
+"$study" --merge "$folder/station1" "$folder/station2" --out "$folder/merged" >"$folder/out" 2>&1 || fail "merge: $(cat "$folder/out")"
+drawn "$folder/both" "$folder/station1" "$folder/station2" --out "$folder/both"
+drawn "$folder/merged/report" "$folder/merged"
+tables=0
+for table in "$folder"/merged/report/*.csv; do cmp "$table" "$folder/both/$(basename "$table")" && tables=$((tables + 1)); done
+[ $tables -ge 12 ] && [ $tables = "$(ls "$folder"/both/*.csv | wc -l)" ] || fail "$tables tables are the merged folder's"
+grep -v SHA256SUMS "$folder/merged/report/report.html" >"$folder/a"
+grep -v SHA256SUMS "$folder/both/report.html" | cmp - "$folder/a" || fail "the stations' page isn't the merged folder's"
+grep -q 'at 2 stations of one study' "$folder/both/report.html" && grep -q 'who are not analysed' "$folder/both/report.html" || fail "the page doesn't name stations and who is left out"
+alike() { # EXIT PATTERN FOLDERS..: one sentence, of both
+  code=$1 pattern=$2
+  shift 2
+  "$study" --merge "$@" --out "$folder/none" >"$folder/out" 2>"$folder/a"
+  [ $? = "$code" ] && grep -q -e "$pattern" "$folder/a" || fail "--merge: $pattern: $(cat "$folder/a")"
+  "$report" "$@" --out "$folder/none" >"$folder/out" 2>"$folder/b"
+  [ $? = "$code" ] && [ "$(sed 's/^ethd-report: //' "$folder/b")" = "$(sed 's/^ethd-study: //' "$folder/a")" ] || fail "two sentences: $(cat "$folder/a" "$folder/b")"
+  [ ! -e "$folder/none" ] || fail "a refusal has written: $pattern"
+}
+alike 2 'P01 has tapped there and in .*; one participant, one station' "$folder/station1" "$folder/merged"
+cp -r "$folder/station2" "$folder/worse"
+printf ' ' >>"$folder/worse/taps.csv"
+alike 2 "taps.csv isn't what it was" "$folder/station1" "$folder/worse"
+rm "$folder/worse/SHA256SUMS"
+alike 2 'SHA256SUMS: No such file' "$folder/station1" "$folder/worse"
+sed -i '4s/./x/' "$folder/worse/journal"
+alike 2 'a damaged line before others' "$folder/worse" "$folder/station1"
+rm "$folder/worse/journal"
+alike 2 'journal: No such file' "$folder/station1" "$folder/worse"
+printf '[study]\nname = small\nparticipants = 2\ntaps = 1\nattempts = 2\n' >"$folder/else.study"
+"$study" --quiet "$folder/else.study" --participant 2 --out "$folder/else" >"$folder/out" 2>&1 || fail "$(cat "$folder/out")"
+alike 2 'its study, configuration, walls or plant are other ones than those of' "$folder/station1" "$folder/else"
 
 # A grid.
 printf '[study]\ntraining = 0\ntaps = 1\nattempts = 6\n[grid]\ncontact.k_e = 1000,2500\ntransition.b_d = 50,100\n' >"$folder/grid.study"
@@ -185,8 +216,7 @@ bad() { # SED PATTERN: a table that was changed
   refuse 2 "$2" "$folder/bad"
 }
 refuse 2 'DIR is needed'
-refuse 2 'participant P01 has tapped in both' "$here" "$here" --out "$folder/both" --force
-refuse 2 'another study than' "$here" "$folder/ticks" --out "$folder/both" --force
+refuse 2 'P01 has tapped there and in' "$here" "$here" --out "$folder/both" --force
 refuse 2 'nowhere/study.ini: No such file' "$folder/nowhere"
 refuse 2 'no test tap at point 9 of 4' "$folder/grid" --point 9
 refuse 1 'no test tap P09-01-001' "$here" --force --tap P09-01-001

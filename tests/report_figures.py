@@ -21,6 +21,7 @@ QUANTITIES = { # key: of a row of taps.csv
 GRAIN = {"delta_s": 1, "delay": 1}
 MARGIN = {"d_max": 0.3, "v_of": 0.02, "v_rmin": 0.02}
 LAWS = ["abrupt", "smooth", "offset"]
+SCALES = {"plain": [5, 5, 5], "ties": [5, 5, 5], "missing": [7, 5, 2, 9, 3, 0]} # answers to each question; 0: in words
 
 # ---- made-up data ----
 
@@ -58,13 +59,13 @@ def make(kind, study):
                 else:
                     row += [commanded * 1.01, -1e-4 if early else 2e-4 + 1e-4 * abs(noise[0]), eps]
                 rows.append(["" if cell is None else cell if isinstance(cell, (str, int)) else repr(float(cell)) for cell in row])
-            three = [int(np.clip(round(3 + 0.7 * offset + rng.normal()), 1, 5)) for _ in range(3)]
-            answers.append([f"P{person + 1:02d}", block + 1, law, speed] + (["", "", ""] if gone else three))
+            given = [int(np.clip(round((1 + n) / 2 + 0.14 * n * (offset + rng.normal())), 1, n)) if n else f"word {person}; {law}" for n in SCALES[kind]]
+            answers.append([f"P{person + 1:02d}", block + 1, law, speed] + ([""] * len(given) if gone else given))
     columns = COLUMNS[:-3] if kind == "ties" else COLUMNS
     with open(f"{study}/taps.csv", "w") as f:
         f.write("\n".join(",".join(map(str, row[:len(columns)])) for row in [columns] + rows) + "\n")
     with open(f"{study}/survey.csv", "w") as f:
-        f.write("\n".join(",".join(map(str, row)) for row in [["participant", "block", "transition", "speed", "q1", "q2", "q3"]] + answers) + "\n")
+        f.write("\n".join(",".join(map(str, row)) for row in [["participant", "block", "transition", "speed"] + [f"q{k + 1}" for k in range(len(SCALES[kind]))]] + answers) + "\n")
 
 # ---- reading ----
 
@@ -238,7 +239,7 @@ def cliff_draw(a, b):
 
 class Study:
     def __init__(self, folder):
-        self.report = folder + "/report/"
+        self.report, self.kind = folder + "/report/", folder.split("/")[-1]
         self.taps = [t for t in table(folder + "/taps.csv") if t["part"] == "test"]
         for t in self.taps:
             for name in COLUMNS[-3:]:
@@ -438,10 +439,16 @@ def check_table1(s):
 def check_survey(s):
     def answers(law, speed, q):
         return {r["participant"]: r[f"q{q}"] for r in s.survey if r["transition"] == law and r["speed"] == speed and not math.isnan(r[f"q{q}"])}
-    for r in table(s.report + "survey-answers.csv"):
+    scales = SCALES[s.kind]
+    rows = table(s.report + "survey-answers.csv")
+    same("survey: rows", len(rows), len(s.cells) * sum(n > 0 for n in scales))
+    for r in rows:
+        n = scales[int(r["question"]) - 1]
+        same("survey: answers", r["answers"], n)
+        same("survey: columns", r.get(f"n{max(scales)}", NAN), NAN if n < max(scales) else r[f"n{n}"])
         x = np.array(list(answers(r["transition"], r["speed"], int(r["question"])).values()))
         what = f"survey Q{r['question']:.0f} {r['transition']} {r['speed']} "
-        for k in range(1, 6):
+        for k in range(1, n + 1):
             same(what + str(k), r[f"n{k}"], np.sum(x == k))
         for key, value in dict(n=len(x), median=np.median(x), q1=np.quantile(x, 0.25), q3=np.quantile(x, 0.75), mean=np.mean(x), sd=np.std(x, ddof=1)).items():
             same(what + key, r[key], value)
@@ -468,6 +475,13 @@ def check_survey(s):
         same(what + "p", r["p"], wilcoxon(x))
     for r, p in zip(rows, holm([r["p"] for r in rows])):
         same("survey: Holm", r["p_holm"], p)
+    speeds, laws = len({c[0] for c in s.cells}), len({c[1] for c in s.cells})
+    same("survey: tests", len(rows), sum(n > 0 for n in scales) * speeds * (laws * (laws - 1) // 2 + (laws > 2)))
+    if 0 in scales:
+        page = open(s.report + "report.html").read()
+        for r in s.survey:
+            if isinstance(r["q6"], str):
+                same("survey: words", page.count(f">{r['participant']}</td><td class=\"t s\">{r['transition']}, {r['speed']}</td><td class=\"t s\">{r['q6']}</td>"), 1)
     return len(rows)
 
 def check_tidy(s, folder):

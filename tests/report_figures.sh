@@ -9,8 +9,13 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 failed=0
 printf '[study]\nparticipants = 1\ntaps = 1\ntraining = 0\nattempts = 1\nrecord = none\nsurvey = on\n[validity]\nband_low = 0.06\nband_high = 0.08\n' >"$folder/made.study"
+{ cat "$folder/made.study"
+  printf '[survey]\nq1 = How natural?\nq1_answers = not at all | hardly | a little | so-so | rather | much | wholly\nq2 = How sure?\nq3 = Again?\n'
+  printf 'q3_answers = no | yes\nq4 = How hard?\nq4_answers = 1|2|3|4|5|6|7|8|9\nq5 = Which way?\nq5_answers = left | none | right\nq6 = Anything else?\nq6_answers = text\n'
+} >"$folder/missing.study"
+cp "$folder/made.study" "$folder/plain.study" && cp "$folder/made.study" "$folder/ties.study"
 for kind in plain ties missing; do
-  "$BUILD/bin/ethd-study" --quiet "$folder/made.study" --out "$folder/$kind" >"$folder/out" 2>&1 || { cat "$folder/out"; exit 1; }
+  "$BUILD/bin/ethd-study" --quiet "$folder/$kind.study" --out "$folder/$kind" >"$folder/out" 2>&1 || { cat "$folder/out"; exit 1; }
   rm -f "$folder/$kind/SHA256SUMS" # the taps are other ones now
   $python tests/report_figures.py make $kind "$folder/$kind" &&
     "$BUILD/bin/ethd-report" "$folder/$kind" >"$folder/out" 2>&1 || { cat "$folder/out"; failed=1; continue; }

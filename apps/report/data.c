@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "report/absent.h"
 #include "study/protocol.h"
 #include "text/error_text.h"
 #include "text/file_name.h"
@@ -152,7 +151,7 @@ static ethd_status take(taking *r, size_t row) {
   bool training = !strcmp(ethd__sheet_cell(sheet, row, r->part), "training");
   r->out->training += training;
   if (training) return ETHD_OK;
-  if (ethd__absent(r->out, ethd__sheet_cell(sheet, row, r->participant))) {
+  if (ethd__is_absent(&r->out->absent, ethd__sheet_cell(sheet, row, r->participant))) {
     r->out->left_out++;
     return ETHD_OK;
   }
@@ -240,7 +239,7 @@ ethd_status ethd__data_of(ethd__sheet *sheet, const ethd__sheet *participants, c
   *sheet = (ethd__sheet){0};
   ethd_status status = find_columns(&r);
   if (!status) status = index_points(&r);
-  if (!status && participants && participants->columns) status = ethd__absent_take(out, participants, message);
+  if (!status && participants && participants->columns) status = ethd__absent_of(participants, &out->absent, message);
   if (status) ethd__data_free(out);
   return status ? status : take_all(&r);
 }
@@ -261,7 +260,6 @@ ethd_status ethd__data_at(const ethd__data *whole, const ethd_plant *plant, size
                       .first = whole->first,
                       .points = whole->points,
                       .absent = whole->absent,
-                      .absent_count = whole->absent_count,
                       .borrowed = true};
   ethd_status status = find_columns(&r);
   return status ? status : take_all(&r);
@@ -278,7 +276,7 @@ void ethd__data_free(ethd__data *data) {
     ethd__sheet_free(&data->sheet);
     free(data->row);
     free(data->first);
-    ethd__absent_free(data);
+    ethd__absent_free(&data->absent);
   }
   data->people = NULL;
   data->row = data->first = NULL;

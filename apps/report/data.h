@@ -2,7 +2,7 @@
 #ifndef ETHD_REPORT_DATA_H
 #define ETHD_REPORT_DATA_H
 
-#include "report/sheet.h"
+#include "report/gather.h"
 #include "statistics/clusters.h"
 #include "tap/people.h"
 
@@ -18,8 +18,7 @@ typedef struct ethd__group {
 typedef struct ethd__data {
   ethd__sheet sheet;
   size_t *row, *first; /* rows of point p: row[first[p]] up to row[first[p + 1]] */
-  char **absent;       /* participants who are left out, by name */
-  size_t absent_count;
+  ethd__absent absent;
   bool borrowed;                        /* sheet, row, first and absent are another's */
   ethd__group group[ETHD_REPORT_CELLS]; /* speeds in order of the table, strategies within */
   size_t group_count;

@@ -15,12 +15,10 @@ static bool on_device(const ethd__report *r) {
 
 /* Where people have led the finger, events have a clock. */
 static bool has_clock(const ethd__report *r) {
-  ethd__sheet events;
-  if (ethd__gather(&r->stations, ETHD_STUDY_EVENTS, &events, r->message)) return false;
-  int utc = ethd__sheet_column(&events, "utc");
+  const ethd__sheet *events = &r->table[ETHD_TABLE_EVENTS];
+  int utc = ethd__sheet_column(events, "utc");
   bool found = false;
-  for (size_t row = 0; row < events.rows; row++) found |= *ethd__sheet_cell(&events, row, utc) != 0;
-  ethd__sheet_free(&events);
+  for (size_t row = 0; row < events->rows; row++) found |= *ethd__sheet_cell(events, row, utc) != 0;
   return found;
 }
 

@@ -82,18 +82,27 @@ static void print_people(ethd__report *r) {
   ethd__html_markup(&r->page, ".</li>\n");
 }
 
+/* Each station that was merged has left an event. */
+static size_t count_stations(const ethd__report *r) {
+  const ethd__sheet *events = &r->table[ETHD_TABLE_EVENTS];
+  int event = ethd__sheet_column(events, "event");
+  size_t n = 0;
+  for (size_t row = 0; row < events->rows; row++) n += !strcmp(ethd__sheet_cell(events, row, event), "merged");
+  return n;
+}
+
 static void print_left_out(ethd__report *r) {
   const ethd__data *d = &r->data;
-  if (d->absent_count)
+  if (d->absent.count)
     ethd__html_print(
         &r->page,
         "<li><b>Left out:</b> %zu test taps of %zu participants who are not analysed; participants.csv says "
         "why.</li>\n",
-        d->left_out, d->absent_count);
-  if (r->stations.count > 1)
+        d->left_out, d->absent.count);
+  if (count_stations(r) > 1)
     ethd__html_print(&r->page,
                      "<li><b>Where:</b> at %zu stations of one study, each with participants of its own.</li>\n",
-                     r->stations.count);
+                     count_stations(r));
 }
 
 static void print_device(ethd__report *r) {

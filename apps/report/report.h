@@ -21,9 +21,10 @@ typedef enum ethd__leader {
 } ethd__leader;
 
 typedef struct ethd__report {
-  ethd__folder *folder;    /* the first station's */
-  ethd__stations stations; /* where the taps stand: one folder or several */
-  const char *out;         /* folder of pictures and CSV files */
+  ethd__folder *folder;           /* the first station's */
+  ethd__stations stations;        /* where the taps stand: one folder or several */
+  ethd__sheet table[ETHD_TABLES]; /* the study's; taps are in `data` */
+  const char *out;                /* folder of pictures and CSV files */
   ethd__data data;
   ethd__data beside; /* taps of another folder, group_count 0: none */
   const char *beside_name;

@@ -8,7 +8,6 @@
 #include "cli/cli.h"
 #include "screen/place.h"
 #include "study/plan.h"
-#include "study/stations.h"
 #include "study/sums.h"
 
 static void check(ethd_status status, const char *message) {
@@ -180,8 +179,9 @@ int ethd__command_merge(const ethd__study_options *o) {
   size_t taps;
   if (!o->out) return merge_shards(o->merge);
   memcpy(folders + 1, o->word, o->word_count * sizeof *folders);
-  ethd_status status = ethd__stations_merge(folders, o->word_count + 1, o->out, &taps, message);
-  if (status) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  ethd_status status = ethd__stations_fit(folders, o->word_count + 1, message);
+  if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  check(ethd__stations_merge(folders, o->word_count + 1, o->out, &taps, message), message);
   printf("%s: %zu taps of %zu stations; ethd-report %s draws them\n", o->out, taps, o->word_count + 1, o->out);
   return ETHD_EXIT_DONE;
 }

@@ -4,8 +4,7 @@
 #define ETHD_SCREEN_COMMANDS_H
 
 #include "study/shard.h"
-
-#define ETHD_STUDY_STATIONS 1000
+#include "study/stations.h"
 
 typedef struct ethd__study_options {
   const char *study, *out, *resume, *finger, *merge, *verify;

@@ -122,7 +122,7 @@ void ethd__table_describe(FILE *file, ethd__study_table table, const ethd__proto
   for (size_t i = 0; i < questions_of(table, p); i++) {
     const ethd__question *q = &p->questionnaire.question[i];
     char words[256];
-    fprintf(file, "| q%zu | | %s", i + 1, q->text);
+    fprintf(file, "| q%zu | | %s%s", i + 1, q->text, ethd__question_is_text(q) ? " In words." : "");
     for (int k = 1; k <= (int)ethd__answer_count(q); k++) {
       ethd__answer_words(q, k, words, sizeof words);
       fprintf(file, "%s %d %s", k > 1 ? ";" : "", k, words);
@@ -165,6 +165,10 @@ static void put_question(FILE *file, size_t number, const ethd__question *q) {
   char words[256];
   fprintf(file, ",\n  \"q%zu\": {\n    \"Description\": ", number);
   put_word(file, q->text);
+  if (ethd__question_is_text(q)) {
+    fputs("\n  }", file);
+    return;
+  }
   fputs(",\n    \"Levels\": {", file);
   for (int k = 1; k <= (int)ethd__answer_count(q); k++) {
     ethd__answer_words(q, k, words, sizeof words);

@@ -155,14 +155,16 @@ static void print_question(const ethd__question *q) {
     ethd__answer_words(q, k, words, sizeof words);
     printf("%s %d %s", k > 1 ? "," : "", k, words);
   }
-  printf("\n");
+  printf(ethd__question_is_text(q) ? " in your own words\n" : "\n");
   fflush(stdout);
 }
 
 static void print_answers(const ethd__asked *asked) {
   printf("the answers:");
   for (size_t i = 0; i < asked->number; i++)
-    if (asked->answer[i] > 0)
+    if (asked->answer[i] > 0 && *asked->said[i])
+      printf(" \"%s\"", asked->said[i]);
+    else if (asked->answer[i] > 0)
       printf(" %d", asked->answer[i]);
     else
       printf(" none");
@@ -175,6 +177,7 @@ static int ask(void *self, const ethd__asked *asked) {
   const ethd__questionnaire *q = &c->protocol->questionnaire;
   char line[ETHD_MESSAGE_MAX];
   bool confirm = asked->number == ethd__question_count(q);
+  bool text = !confirm && ethd__question_is_text(&q->question[asked->number]);
   int most = confirm ? 0 : (int)ethd__answer_count(&q->question[asked->number]);
   if (!c->ask) return ETHD_ANSWER_NOBODY;
   (confirm ? print_answers(asked) : print_question(&q->question[asked->number]));
@@ -182,6 +185,10 @@ static int ask(void *self, const ethd__asked *asked) {
     if (!strcmp(line, "back")) return ETHD_ANSWER_BACK;
     if (!strcmp(line, "stop")) return ETHD_ANSWER_STOP;
     if (confirm ? !strcmp(line, "ok") : !*line) return ETHD_ANSWER_NONE;
+    if (text) {
+      snprintf(asked->words, ETHD_MESSAGE_MAX, "%s", line);
+      return 1;
+    }
     if (line[0] >= '1' && line[0] <= '0' + most && !line[1]) return line[0] - '0';
     if (confirm)
       printf("found \"%.40s\"; ok, back or stop is allowed\n", line);

@@ -28,10 +28,13 @@ typedef struct ethd__asked {
   const char *participant;
   const ethd__turn *turn;
   size_t number;
-  const int16_t *answer; /* to each question so far, ETHD_ANSWER_UNASKED: not yet */
+  const int16_t *answer;                  /* to each question so far, ETHD_ANSWER_UNASKED: not yet */
+  const char *said[ETHD_STUDY_QUESTIONS]; /* the words of those that ask for words, "": none */
+  char *words;                            /* room for ETHD_MESSAGE_MAX bytes of an answer in words */
 } ethd__asked;
 
-/* What `ask` says, beside 1 to 9 and ETHD_ANSWER_NONE; any of these two confirms. */
+/* What `ask` says, beside 1 to 9 (1: `words` holds the answer, where words are asked for) and ETHD_ANSWER_NONE; any of
+   these two confirms. */
 enum { ETHD_ANSWER_BACK = -2, ETHD_ANSWER_STOP = -3, ETHD_ANSWER_NOBODY = -4 };
 
 typedef struct ethd__front {

@@ -68,14 +68,20 @@ static ethd_status part(ethd__journal *journal, size_t length, char *message) {
                    journal->path, journal->count + 1);
 }
 
-ethd_status ethd__journal_read(const char *path, ethd__journal *out, char message[ETHD_MESSAGE_MAX]) {
-  size_t length;
-  *out = (ethd__journal){.fd = -1, .path = strdup(path)};
-  ethd_status status =
-      out->path ? ethd_text_read(path, BYTES_MAX, &out->text, &length, message) : ethd__no_memory(message, NULL);
-  if (!status) status = part(out, length, message);
+ethd_status ethd__journal_parse(char *text, size_t length, const char *name, ethd__journal *out,
+                                char message[ETHD_MESSAGE_MAX]) {
+  *out = (ethd__journal){.fd = -1, .path = strdup(name), .text = text};
+  ethd_status status = out->path ? part(out, length, message) : ethd__no_memory(message, NULL);
   if (status) ethd__journal_close(out);
   return status;
+}
+
+ethd_status ethd__journal_read(const char *path, ethd__journal *out, char message[ETHD_MESSAGE_MAX]) {
+  size_t length;
+  char *text;
+  *out = (ethd__journal){.fd = -1};
+  ethd_status status = ethd_text_read(path, BYTES_MAX, &text, &length, message);
+  return status ? status : ethd__journal_parse(text, length, path, out, message);
 }
 
 /* ---- writing ---- */

@@ -38,6 +38,10 @@ ETHD_MUST_CHECK ethd_status ethd__journal_open(const char *path, ethd__journal *
 /* Opens the journal for reading only: lines that come later are missing, nothing is cut or locked. */
 ETHD_MUST_CHECK ethd_status ethd__journal_read(const char *path, ethd__journal *out, char message[ETHD_MESSAGE_MAX]);
 
+/* The same from text, which becomes the journal's own; `name` stands for the file. */
+ETHD_MUST_CHECK ethd_status ethd__journal_parse(char *text, size_t length, const char *name, ethd__journal *out,
+                                                char message[ETHD_MESSAGE_MAX]);
+
 /* On failure the file is as it was. `text` has no line ends. */
 ETHD_MUST_CHECK ethd_status ethd__journal_append(ethd__journal *journal, const char *kind, const char *text,
                                                  char message[ETHD_MESSAGE_MAX]);

@@ -44,6 +44,12 @@ void ethd__progress_free(ethd__session_progress *progress) {
   for (uint32_t i = 0; progress->person && i < progress->protocol->participants; i++) free(progress->person[i].reason);
   free(progress->person);
   progress->person = NULL;
+  for (ethd__said *said = progress->said, *before; said; said = before) {
+    before = said->before;
+    free(said->words);
+    free(said);
+  }
+  progress->said = NULL;
 }
 
 /* ---- lines ---- */
@@ -83,27 +89,6 @@ static bool take_tap(ethd__session_progress *progress, const char *row) {
   return true;
 }
 
-/* participant,block,question,answer; an empty answer: none was wanted. */
-static bool take_answer(ethd__session_progress *progress, const char *row) {
-  ethd__participant *person = person_of(progress, &row);
-  long number, question, answer = ETHD_ANSWER_NONE;
-  if (!person || !take_number(&row, 1, ETHD_STUDY_BLOCKS, &number) ||
-      !take_number(&row, 1, (long)ethd__question_count(&progress->protocol->questionnaire), &question))
-    return false;
-  const ethd__question *asked = &progress->protocol->questionnaire.question[question - 1];
-  if (*row && !take_number(&row, 1, (long)ethd__answer_count(asked), &answer)) return false;
-  person->at[number - 1].answer[question - 1] = (int16_t)answer;
-  return true;
-}
-
-static bool take_survey(ethd__session_progress *progress, const char *row) {
-  ethd__participant *person = person_of(progress, &row);
-  long number;
-  if (!person || !take_number(&row, 1, ETHD_STUDY_BLOCKS, &number)) return false;
-  person->at[number - 1].surveyed = true;
-  return true;
-}
-
 /* A last cell as it was before it was quoted; NULL: no memory. */
 static char *unquoted(const char *cell) {
   char *text = strdup(*cell == '"' ? cell + 1 : cell), *to = text;
@@ -114,6 +99,47 @@ static char *unquoted(const char *cell) {
   }
   *to = 0;
   return text;
+}
+
+static bool say(ethd__session_progress *progress, const ethd__progress_of *at, size_t question, const char *cell) {
+  ethd__said *said = malloc(sizeof *said);
+  if (!said) return false;
+  *said = (ethd__said){at, question, unquoted(cell), progress->said};
+  progress->said = said;
+  return said->words != NULL;
+}
+
+const char *ethd__progress_words(const ethd__session_progress *progress, const ethd__progress_of *at, size_t question) {
+  for (const ethd__said *said = progress->said; said; said = said->before)
+    if (said->at == at && said->question == question) return said->words;
+  return "";
+}
+
+/* participant,block,question,answer; an empty answer: none was wanted. */
+static bool take_answer(ethd__session_progress *progress, const char *row) {
+  ethd__participant *person = person_of(progress, &row);
+  long number, question, answer = ETHD_ANSWER_NONE;
+  if (!person || !take_number(&row, 1, ETHD_STUDY_BLOCKS, &number) ||
+      !take_number(&row, 1, (long)ethd__question_count(&progress->protocol->questionnaire), &question))
+    return false;
+  const ethd__question *asked = &progress->protocol->questionnaire.question[question - 1];
+  ethd__progress_of *at = &person->at[number - 1];
+  if (ethd__question_is_text(asked)) {
+    answer = *row ? 1 : ETHD_ANSWER_NONE;
+    if (!say(progress, at, (size_t)question - 1, row)) return false;
+  } else if (*row && !take_number(&row, 1, (long)ethd__answer_count(asked), &answer)) {
+    return false;
+  }
+  at->answer[question - 1] = (int16_t)answer;
+  return true;
+}
+
+static bool take_survey(ethd__session_progress *progress, const char *row) {
+  ethd__participant *person = person_of(progress, &row);
+  long number;
+  if (!person || !take_number(&row, 1, ETHD_STUDY_BLOCKS, &number)) return false;
+  person->at[number - 1].surveyed = true;
+  return true;
 }
 
 static bool stand(ethd__participant *person, ethd__standing standing, const char *reason) {

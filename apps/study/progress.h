@@ -8,7 +8,7 @@
 
 #define ETHD_STUDY_SESSION_PEOPLE 10000u
 
-/* Answers to a question of the survey, beside 1 to 9. */
+/* Answers to a question of the survey, beside 1 to 9. An answer in words counts as 1. */
 enum { ETHD_ANSWER_UNASKED = -1, ETHD_ANSWER_NONE = 0 };
 
 /* How far a block has come. */
@@ -40,9 +40,18 @@ typedef struct ethd__participant {
   char first[ETHD_UTC_MAX], last[ETHD_UTC_MAX];
 } ethd__participant;
 
+/* An answer in words. */
+typedef struct ethd__said {
+  const ethd__progress_of *at;
+  size_t question;
+  char *words;
+  struct ethd__said *before; /* what was said before it; NULL: nothing */
+} ethd__said;
+
 typedef struct ethd__session_progress {
   const ethd__protocol *protocol;
   ethd__participant *person;
+  ethd__said *said;             /* the last one */
   bool hand[ETHD_HAND_SOURCES]; /* of the session; of several stations, of each */
 } ethd__session_progress;
 
@@ -53,6 +62,9 @@ void ethd__progress_free(ethd__session_progress *progress);
 
 /* One line of the journal. False: it is no line of this study. */
 bool ethd__progress_take(ethd__session_progress *progress, const char *kind, const char *text);
+
+/* The words that answer this block's question; "": none do. [any] */
+const char *ethd__progress_words(const ethd__session_progress *progress, const ethd__progress_of *at, size_t question);
 
 /* All of a journal, of which `hash` is the study's; refuses another study's, and lines that aren't its own. */
 ETHD_MUST_CHECK ethd_status ethd__progress_read(const ethd__journal *journal, const char *hash,

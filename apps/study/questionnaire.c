@@ -14,8 +14,13 @@ size_t ethd__question_count(const ethd__questionnaire *q) {
   return n;
 }
 
+bool ethd__question_is_text(const ethd__question *question) {
+  return question->answers && !strcmp(question->answers, "text");
+}
+
 size_t ethd__answer_count(const ethd__question *question) {
   size_t n = 1;
+  if (ethd__question_is_text(question)) return 0;
   if (!question->answers) return BARE;
   for (const char *p = question->answers; *p; p++) n += *p == '|';
   return n;
@@ -71,11 +76,11 @@ int ethd__questionnaire_fault(const ethd__questionnaire *q, const char **what) {
   for (int i = 0; i < ETHD_STUDY_QUESTIONS; i++) {
     const ethd__question *question = &q->question[i];
     size_t answers = ethd__answer_count(question);
-    *what = answers < 2                    ? "one answer; \"this | that\", two to nine, are allowed"
+    *what = answers == 1                   ? "one answer; \"this | that\", two to nine, or text are allowed"
             : answers > ETHD_STUDY_ANSWERS ? "over nine answers"
                                            : "stands there without the questions before it";
     bool stray = (size_t)i >= count && (question->text || question->answers);
-    if (answers < 2 || answers > ETHD_STUDY_ANSWERS || stray) return i;
+    if (answers == 1 || answers > ETHD_STUDY_ANSWERS || stray) return i;
   }
   return -1;
 }

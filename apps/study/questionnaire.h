@@ -5,7 +5,7 @@
      q1_answers = natural | neither | unnatural   instruction1 = Tap once on the green wall.
 
    Questions are q1 to q9 without a gap; answers are numbered from 1, two to nine of them, five bare numbers without
-   q1_answers. A page has up to nine paragraphs, consent1 to consent9 and instruction1 to instruction9. */
+   q1_answers. "q1_answers = text" asks for a line in the participant's own words. A page has up to nine paragraphs, consent1 to consent9 and instruction1 to instruction9. */
 #ifndef ETHD_STUDY_QUESTIONNAIRE_H
 #define ETHD_STUDY_QUESTIONNAIRE_H
 
@@ -17,7 +17,7 @@
 #define ETHD_STUDY_PARAGRAPHS 9
 
 typedef struct ethd__question {
-  char *text, *answers; /* answers: "this|that", blanks around the bars; NULL: the numbers 1 to 5 */
+  char *text, *answers; /* answers: "this|that", blanks around the bars; "text"; NULL: the numbers 1 to 5 */
   int line;             /* of the file */
 } ethd__question;
 
@@ -27,9 +27,10 @@ typedef struct ethd__questionnaire {
   bool own; /* questions of the study's own, not the paper's */
 } ethd__questionnaire;
 
-/* How many questions there are, and answers to one of them. [any] */
+/* How many questions there are, and numbered answers to one of them: 0 where words are asked for. [any] */
 size_t ethd__question_count(const ethd__questionnaire *q);
 size_t ethd__answer_count(const ethd__question *question);
+bool ethd__question_is_text(const ethd__question *question);
 
 /* The words of an answer, from 1; its number where it has none. [any] */
 void ethd__answer_words(const ethd__question *question, int answer, char *out, size_t room);

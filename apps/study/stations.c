@@ -63,6 +63,7 @@ static ethd_status take_owners(const station *s, size_t number, const char *cons
 ethd_status ethd__stations_fit(const char *const *folders, size_t count, char message[ETHD_MESSAGE_MAX]) {
   size_t *owner = calloc(ETHD_STUDY_SESSION_PEOPLE, sizeof *owner);
   char hash[ETHD_SHA256_TEXT] = "";
+  size_t files;
   ethd_status status = owner ? ETHD_OK : ethd__no_memory(message, NULL);
   for (size_t i = 0; !status && i < count; i++) {
     station s;
@@ -77,7 +78,8 @@ ethd_status ethd__stations_fit(const char *const *folders, size_t count, char me
     close_station(&s);
   }
   free(owner);
-  return status;
+  for (size_t i = 0; !status && i < count; i++) status = ethd__sums_check(folders[i], &files, message);
+  return status > 0 ? ETHD_E_FILE : status; /* a folder without sums is refused, too */
 }
 
 /* ---- copying ---- */
@@ -140,11 +142,9 @@ static size_t put_station(const station *s, FILE *file, char *message) {
   return taps;
 }
 
-static ethd_status write_journal(const char *const *folders, size_t count, const char *out, size_t *taps,
-                                 char *message) {
-  char *fresh = ethd__folder_path(out, FRESH), *path = ethd__folder_path(out, ETHD_STUDY_JOURNAL);
-  FILE *file = fopen(fresh, "we");
-  ethd_status status = file ? ETHD_OK : ethd__say(message, ETHD_E_FILE, "%s: %s", fresh, strerror(errno));
+/* All stations' lines as the journal of one folder. */
+static ethd_status print_journal(const char *const *folders, size_t count, FILE *file, size_t *taps, char *message) {
+  ethd_status status = ETHD_OK;
   *taps = 0;
   for (size_t i = 0; !status && i < count; i++) {
     station s;
@@ -154,12 +154,45 @@ static ethd_status write_journal(const char *const *folders, size_t count, const
     *taps += put_station(&s, file, message);
     close_station(&s);
   }
+  return status;
+}
+
+static ethd_status write_journal(const char *const *folders, size_t count, const char *out, size_t *taps,
+                                 char *message) {
+  char *fresh = ethd__folder_path(out, FRESH), *path = ethd__folder_path(out, ETHD_STUDY_JOURNAL);
+  FILE *file = fopen(fresh, "we");
+  ethd_status status = file ? print_journal(folders, count, file, taps, message)
+                            : ethd__say(message, ETHD_E_FILE, "%s: %s", fresh, strerror(errno));
   bool failed = file && (fflush(file) || fsync(fileno(file)));
   if (file) failed |= fclose(file) != 0;
   if (!status && (failed || rename(fresh, path)))
     status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
   if (status) unlink(fresh);
   free(fresh);
+  free(path);
+  return status;
+}
+
+ethd_status ethd__stations_tables(const char *const *folders, size_t count, char *out[ETHD_TABLES],
+                                  char message[ETHD_MESSAGE_MAX]) {
+  char *text = NULL, *path = ethd__folder_path(folders[0], ETHD_STUDY_JOURNAL);
+  size_t length, taps;
+  ethd__folder folder;
+  ethd__journal journal = {.fd = -1};
+  FILE *file = open_memstream(&text, &length);
+  if (!file) ethd__fail_memory();
+  ethd_status status = print_journal(folders, count, file, &taps, message);
+  if (fclose(file)) ethd__fail_memory();
+  if (status)
+    free(text);
+  else
+    status = ethd__journal_parse(text, length, path, &journal, message);
+  if (!status) status = ethd__folder_read(folders[0], &folder, message);
+  if (!status) {
+    status = ethd__tables_of(&folder, &journal, out, message);
+    ethd__folder_close(&folder);
+  }
+  ethd__journal_close(&journal);
   free(path);
   return status;
 }
@@ -176,9 +209,7 @@ static ethd_status write_tables(const char *out, char *message) {
 }
 
 static ethd_status merge(const char *const *folders, size_t count, const char *out, size_t *taps, char *message) {
-  size_t files;
   ethd_status status = ETHD_OK;
-  for (size_t i = 0; !status && i < count; i++) status = ethd__sums_check(folders[i], &files, message);
   for (size_t i = 0; !status && i < count; i++) {
     copying c = {folders[i], out, i == 0, message};
     status = ethd__sums_each(folders[i], copy_file, &c, message);
@@ -191,9 +222,8 @@ ethd_status ethd__stations_merge(const char *const *folders, size_t count, const
                                  char message[ETHD_MESSAGE_MAX]) {
   static const char *const any[] = {"*", NULL};
   ethd__claim claim = ETHD_CLAIM_NONE;
-  ethd_status status = ethd__stations_fit(folders, count, message);
+  ethd_status status;
   struct stat what;
-  if (status) return status;
   if (!stat(out, &what)) {
     char unsaid[ETHD_MESSAGE_MAX];
     status = ethd__claim_folder(out, any, false, &claim, unsaid);

@@ -7,14 +7,22 @@
 
 #include <stddef.h>
 
-#include "ethd/config.h"
+#include "study/columns.h"
 
-/* Whether these folders are one study's and no participant tapped in two; refuses with a sentence that names the folder. */
+#define ETHD_STUDY_STATIONS 1000 /* that are merged at most, or reported on together */
+
+/* Whether these folders are one study's, no participant tapped in two, and their files are as SHA256SUMS says; refuses
+   with a sentence that names the folder. */
 ETHD_MUST_CHECK ethd_status ethd__stations_fit(const char *const *folders, size_t count,
                                                char message[ETHD_MESSAGE_MAX]);
 
-/* Makes folder `out`, which must not be there or be empty, of these: inputs, taps, journal, tables, SHA256SUMS. What
-   stands in the folders is checked by their SHA256SUMS first, and read only. *taps: how many. */
+/* The text of the tables that a merged folder would hold, freed by the caller; NULL for those that don't come from
+   journals. The folders fit. */
+ETHD_MUST_CHECK ethd_status ethd__stations_tables(const char *const *folders, size_t count, char *out[ETHD_TABLES],
+                                                  char message[ETHD_MESSAGE_MAX]);
+
+/* Makes folder `out`, which must not be there or be empty, of these: inputs, taps, journal, tables, SHA256SUMS. The
+   folders fit, and are only read. *taps: how many. */
 ETHD_MUST_CHECK ethd_status ethd__stations_merge(const char *const *folders, size_t count, const char *out,
                                                  size_t *taps, char message[ETHD_MESSAGE_MAX]);
 

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/cli.h"
 #include "study/columns.h"
 #include "study/row.h"
 #include "study/session.h"
@@ -17,12 +18,16 @@ typedef struct ledger {
   ethd__session_progress progress;
 } ledger;
 
+static ethd_status read_progress(ledger *l, char *message) {
+  ethd_status status = ethd__progress_begin(&l->folder->protocol, &l->progress, message);
+  return status ? status : ethd__progress_read(&l->journal, l->folder->hash, &l->progress, message);
+}
+
 static ethd_status read_ledger(const ethd__folder *folder, ledger *out, char *message) {
   char *path = ethd__folder_path(folder->path, ETHD_STUDY_JOURNAL);
   *out = (ledger){.folder = folder, .journal = {.fd = -1}};
-  ethd_status status = ethd__progress_begin(&folder->protocol, &out->progress, message);
-  if (!status) status = ethd__journal_read(path, &out->journal, message);
-  if (!status) status = ethd__progress_read(&out->journal, folder->hash, &out->progress, message);
+  ethd_status status = ethd__journal_read(path, &out->journal, message);
+  if (!status) status = read_progress(out, message);
   free(path);
   return status;
 }
@@ -63,25 +68,51 @@ static void put_participants(const ledger *l, FILE *file) {
   }
 }
 
+/* NULL: the table was written as the folder was made. */
+static void (*const put_rows[ETHD_TABLES])(const ledger *l,
+                                           FILE *file) = {[ETHD_TABLE_TAPS] = put_taps,
+                                                          [ETHD_TABLE_SURVEY] = put_survey,
+                                                          [ETHD_TABLE_EVENTS] = put_events,
+                                                          [ETHD_TABLE_PARTICIPANTS] = put_participants};
+
+static void put_table(const ledger *l, ethd__study_table table, FILE *file) {
+  char *header = ethd__table_header(table, &l->folder->protocol);
+  fprintf(file, "%s\n", header);
+  free(header);
+  put_rows[table](l, file);
+}
+
+/* ---- tables in memory ---- */
+
+ethd_status ethd__tables_of(const ethd__folder *folder, const ethd__journal *journal, char *out[ETHD_TABLES],
+                            char message[ETHD_MESSAGE_MAX]) {
+  ledger l = {.folder = folder, .journal = *journal};
+  ethd_status status = read_progress(&l, message);
+  for (int i = 0; i < ETHD_TABLES; i++) {
+    size_t length;
+    out[i] = NULL;
+    if (status || !put_rows[i]) continue;
+    FILE *file = open_memstream(&out[i], &length);
+    if (!file) ethd__fail_memory();
+    put_table(&l, (ethd__study_table)i, file);
+    if (fclose(file)) ethd__fail_memory();
+  }
+  ethd__progress_free(&l.progress);
+  return status;
+}
+
 /* ---- files ---- */
 
 static ethd_status write_table(const ledger *l, ethd__study_table table, char *message) {
-  static void (*const put[ETHD_TABLES])(const ledger *l, FILE *file) = {[ETHD_TABLE_TAPS] = put_taps,
-                                                                        [ETHD_TABLE_SURVEY] = put_survey,
-                                                                        [ETHD_TABLE_EVENTS] = put_events,
-                                                                        [ETHD_TABLE_PARTICIPANTS] = put_participants};
   char name[32];
-  if (!put[table]) return ETHD_OK; /* written as the folder was made */
+  if (!put_rows[table]) return ETHD_OK;
   snprintf(name, sizeof name, "%s.csv", ethd__table_names[table]);
   char *path = ethd__folder_path(l->folder->path, name);
   ethd_replace replace;
   ethd_status status = ethd_replace_begin(path, &replace, message);
   free(path);
   if (status) return status;
-  char *header = ethd__table_header(table, &l->folder->protocol);
-  fprintf(replace.file, "%s\n", header);
-  free(header);
-  put[table](l, replace.file);
+  put_table(l, table, replace.file);
   return ethd_replace_commit(&replace, message);
 }
 
