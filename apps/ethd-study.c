@@ -26,10 +26,14 @@ static const char doc[] =
     "for "
     "a device that has stopped itself; and the survey's answers, which are kept one by one, with back to the one "
     "before.\n\n"
+    "The study file holds questions of your own (\"[survey]\", numbered answers or q1_answers = text), consent and "
+    "instruction (\"[pages]\"), and in your language whatever else the screen says (\"[words]\": --words prints the "
+    "phrases by their names).\n\n"
     "A participant who withdraws or is excluded stays on record with the reason, in participants.csv, and leaves the "
     "analysis, as one who aborted does.\n\n"
     "Examples:\n"
     "  ethd-study --plan my.study    (who gets what when, and how balanced that is)\n"
+    "  ethd-study --words >>my.study    (then translate what is behind each =)\n"
     "  ethd-study --out session\n"
     "  ethd-study my.study --out session --ask\n"
     "  ethd-study --out mine --screen    (tap with the mouse)\n"
@@ -54,6 +58,7 @@ enum {
   OPTION_SCREEN,
   OPTION_VIRTUAL,
   OPTION_PLAN,
+  OPTION_WORDS,
   OPTION_VERIFY,
   OPTION_WITHDRAW,
   OPTION_EXCLUDE,
@@ -72,6 +77,8 @@ static const struct argp_option options[] = {
      "in a window, 1280x720 by default; the mouse is the finger, unless people's are", 0},
     {"virtual", OPTION_VIRTUAL, NULL, 0, "with people: the device in lock-step, as fast as it goes", 0},
     {"plan", OPTION_PLAN, NULL, 0, "print everybody's order and its balance; nothing else is done", 0},
+    {"words", OPTION_WORDS, NULL, 0, "print the screen's words as a section [words], which a study file may replace",
+     0},
     {"verify", OPTION_VERIFY, "DIR", 0, "compare a folder's files with its SHA256SUMS", 0},
     {"quiet", 'q', NULL, 0, "print no line for each tap", 0},
     {"withdraw", OPTION_WITHDRAW, "K", 0, "with --resume: write down that participant K has withdrawn, and end", 1},
@@ -129,8 +136,8 @@ static void check_options(struct argp_state *state) {
   bool stations = arg.merge && arg.out;
   if (!stations && arg.word_count > 1) argp_error(state, "\"%s\": one study file is allowed", arg.word[1]);
   if (!stations && arg.word_count) arg.study = arg.word[0];
-  if (!!arg.out + !!arg.resume + (arg.merge && !stations) + !!arg.verify + arg.plan != 1)
-    argp_error(state, "--out DIR, --resume DIR, --merge DIR, --verify DIR or --plan is needed");
+  if (!!arg.out + !!arg.resume + (arg.merge && !stations) + !!arg.verify + arg.plan + arg.words != 1)
+    argp_error(state, "--out DIR, --resume DIR, --merge DIR, --verify DIR, --plan or --words is needed");
   if (!arg.out && !arg.plan && (arg.study || arg.finger)) argp_error(state, "the study is taken from the folder");
   if ((arg.sharded || arg.shard.record) && !arg.simulate) argp_error(state, "--shard and --ticks need --simulate N");
   if (arg.width && (arg.ask || arg.simulate || arg.finger || arg.merge))
@@ -156,6 +163,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_VIRTUAL: arg.is_virtual = true; return 0;
   case OPTION_MERGE: arg.merge = text; return 0;
   case OPTION_PLAN: arg.plan = true; return 0;
+  case OPTION_WORDS: arg.words = true; return 0;
   case OPTION_VERIFY: arg.verify = text; return 0;
   case OPTION_WITHDRAW: decide("--withdraw", "withdraw", text); return 0;
   case OPTION_EXCLUDE: decide("--exclude", "exclude", text); return 0;
@@ -177,6 +185,7 @@ int main(int argc, char **argv) {
   return ethd__end((arg.merge      ? ethd__command_merge
                     : arg.verify   ? ethd__command_verify
                     : arg.plan     ? ethd__command_plan
+                    : arg.words    ? ethd__command_words
                     : arg.decision ? ethd__command_decide
                     : arg.simulate ? ethd__command_shard
                                    : ethd__command_session)(&arg));

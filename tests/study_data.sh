@@ -148,6 +148,23 @@ rm -rf "$folder/x"
 refuse 2 'SHA256SUMS: No such file' "$study" --merge "$folder/station1" "$folder/station2" --out "$folder/x"
 [ ! -e "$folder/x/journal" ] || fail "a merge that failed has a journal"
 
+# ---- own words: printed as they can be read again; unknown names, places and letters are refused ----
+"$study" --words >"$folder/words.study" && "$study" "$folder/words.study" --plan >"$folder/out" 2>&1 || fail "--words: $(cat "$folder/out")"
+[ "$(wc -l <"$folder/words.study")" = 40 ] && grep -q '^keys_thanks = Space ends$' "$folder/words.study" || fail "--words: $(cat "$folder/words.study")"
+words() { # SECTION LINE PATTERN
+  printf '[study]\nsurvey = on\n[%s]\n%b\n' "$1" "$2" >"$folder/own.study"
+  refuse 2 "own.study:4: $1.$3" "$study" "$folder/own.study" --plan
+}
+words words 'tip = Tippen' 'tip: no key of this section; those that ethd-study --words prints are allowed'
+words words 'count = {1} von {3}' 'count: found "{3}"; places of "({1} of {2})" are allowed'
+words words 'tap = {x}' 'tap: found "{x}"; places of "Tap" are allowed'
+words words 'tap = {1' 'tap: found "{1"'
+words words 'tap = T\0374r' 'tap: a byte 252 that isn.t UTF-8'
+words words 'tap = \0355\0240\0200' 'tap: a byte 237 that isn.t UTF-8'
+words pages 'consent1 = \0327\0251' 'consent1: .* (U+05E9) is written from right to left'
+words survey 'q1_answers = one' 'q1: one answer; "this | that", two to nine, or text are allowed'
+grep -nE '(page_add\(.*|keys = )"[A-Za-z]' apps/screen/*.c && fail "words of the screen that no study file can replace"
+
 # ---- orders: printed, kept, and counted here ----
 printf '[study]\nparticipants = 12\nstrategies = abrupt,smooth,offset\norder = latin\ntraining = 1\n' >"$folder/orders.study"
 "$study" "$folder/orders.study" --plan >"$folder/plan" || fail "--plan"

@@ -93,6 +93,32 @@ for tap in "$folder"/live/taps/*; do
   "$BUILD/bin/ethd-replay" --verify "$tap" >"$folder/verify" 2>&1 || fail "$tap: $(cat "$folder/verify")"
 done
 
+# ---- an answer in words is data, whatever stands in it, and can be changed until all are confirmed ----
+printf '[study]\nparticipants = 1\nstrategies = smooth\nspeeds = 0.2\ntraining = 0\ntaps = 1\nattempts = 1\nsurvey = on\n[device]\nconfig = device.ini\n[hand]\nsource = people\n[survey]\nq1 = Was it soft?\nq1_answers = text\nq2 = How much?\nq2_answers = 1|2|3|4|5|6|7\n' >"$folder/words.study"
+talk '?\|ok keeps\|found' 'P01,9,1,"a
+7
+back
+back
+=1+1, "soft"; ,abort,
+8
+6
+ok' "$study" "$folder/words.study" --out "$folder/words" --virtual --ask || fail "answers in words: $(cat "$folder/out" "$folder/err")"
+grep -q 'Was it soft? in your own words$' "$folder/out" && grep -q '^the answers: "=1+1, "soft"; ,abort," 6; ok keeps them' "$folder/out" || fail "asked for words: $(cat "$folder/out")"
+"${PYTHON:-python3}" - "$folder/words" <<'END' || fail "the answer in words: $(cat "$folder/words/survey.csv")"
+import csv, json, sys
+rows = list(csv.DictReader(open(sys.argv[1] + "/survey.csv", newline="")))
+assert len(rows) == 1 and rows[0]["q1"] == '=1+1, "soft"; ,abort,' and rows[0]["q2"] == "6", rows
+sidecar = json.load(open(sys.argv[1] + "/survey.json"))
+assert "Levels" not in sidecar["q1"] and len(sidecar["q2"]["Levels"]) == 7, sidecar
+people = list(csv.DictReader(open(sys.argv[1] + "/participants.csv")))
+assert [p["status"] for p in people] == ["complete"], people
+END
+cp "$folder/words/survey.csv" "$folder/a"
+"$study" --resume "$folder/words" --virtual --quiet >"$folder/out" 2>&1 && cmp "$folder/a" "$folder/words/survey.csv" || fail "words after a resume: $(cat "$folder/out")"
+if command -v gnuplot >/dev/null; then
+  "$BUILD/bin/ethd-report" "$folder/words" >"$folder/out" 2>&1 && grep -q '=1+1, &quot;soft&quot;; ,abort,' "$folder/words/report/report.html" || fail "words in the report: $(cat "$folder/out")"
+fi
+
 # ---- one is ended by mistake, which is undone when the next one sits; another one doesn't agree; each is begun with its number ----
 printf '[study]\nparticipants = 3\nstrategies = smooth\nspeeds = 0.2\ntraining = 0\ntaps = 1\nattempts = 1\n[device]\nconfig = device.ini\n[hand]\nsource = people\n[pages]\nconsent1 = You may end this.\ninstruction1 = Tap once.\n' >"$folder/undo.study"
 printf 'yes\nabort\nundo\nP2\nP02\nno\nP03\nyes\n' | "$study" "$folder/undo.study" --out "$folder/undo" --virtual --ask >"$folder/out" 2>"$folder/err"

@@ -27,8 +27,9 @@ set label 1 "Q".question.": shares of the answers, ".scale at screen 0.03,1 - 24
 set lmargin at screen 0.16; set rmargin at screen 0.89
 set tmargin at screen 1 - 52.0/high; set bmargin at screen 1 - (52.0 + 34.0*cells)/high
 set xtics ("0 %%" 0, "50 %%" 50, "100 %%" 100)
+# labels have a place even where they are empty: gnuplot 5.4 ends on a list of labels that are all undefined
 plot for [k=1:last] in using (only(asked) ? (below(k) + below(k - 1))/2 : NaN):"cell":(below(k - 1)):(below(k)):(column("cell") - 0.38):(column("cell") + 0.38):ytic(strcol("transition").", ".strcol("speed")) \
     with boxxyerror lc rgb tints[tint(k)] fs solid 1 border lc rgb "#bbbbbb", \
-  for [k=1:last] in using (only(asked) && share(k) >= 6 ? (below(k) + below(k - 1))/2 : NaN):"cell":(sprintf("%d", k)) \
+  for [k=1:last] in using (only(asked) ? (below(k) + below(k - 1))/2 : 0):"cell":(only(asked) && share(k) >= 6 ? sprintf("%d", k) : "") \
     with labels font "Sans,12" textcolor rgb (tint(k) < 3 || tint(k) > 7 ? "#ffffff" : "#333333"), \
-  in using (only(asked) ? 100 : NaN):"cell":(sprintf("  median %g", column("median"))) with labels left font "Sans,12" textcolor rgb "#333333"
+  in using (100):"cell":(only(asked) ? sprintf("  median %g", column("median")) : "") with labels left font "Sans,12" textcolor rgb "#333333"

@@ -194,6 +194,13 @@ int ethd__command_plan(const ethd__study_options *o) {
   return ETHD_EXIT_DONE;
 }
 
+int ethd__command_words(const ethd__study_options *o) {
+  (void)o;
+  puts("[words]");
+  for (int i = 0; i < ETHD_PHRASES; i++) printf("%s = %s\n", ethd__phrases[i].key, ethd__phrases[i].words);
+  return ETHD_EXIT_DONE;
+}
+
 int ethd__command_verify(const ethd__study_options *o) {
   char message[ETHD_MESSAGE_MAX];
   size_t files;

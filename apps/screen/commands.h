@@ -15,7 +15,7 @@ typedef struct ethd__study_options {
   int64_t decided, simulate;
   ethd__shard shard;
   int width, height; /* px of the screen; 0: none */
-  bool ask, quiet, sharded, is_virtual, plan;
+  bool ask, quiet, sharded, is_virtual, plan, words;
 } ethd__study_options;
 
 /* Begins a session in `out` or goes on with the one in `resume`. */
@@ -29,6 +29,9 @@ int ethd__command_merge(const ethd__study_options *o);
 
 /* Writes a decision about a participant down. */
 int ethd__command_decide(const ethd__study_options *o);
+
+/* Prints the screen's words as a section of a study file. */
+int ethd__command_words(const ethd__study_options *o);
 
 /* Prints the orders. */
 int ethd__command_plan(const ethd__study_options *o);

@@ -6,13 +6,31 @@
 
 #include "cli/cli.h"
 #include "screen/draw.h"
+#include "screen/letters.h"
 #include "text/error_text.h"
 
 #define STILL 0.5    /* s at the start line */
 #define SETTLED 0.02 /* m/s */
-#define KEYS "P pause   N note   A end this participant   Esc stop"
 
 static const int goes_on[] = {SDLK_SPACE, SDLK_RETURN, 0};
+
+const char *ethd__screen_words(const ethd__screen *s, ethd__phrase_name name) {
+  return ethd__phrase_of(&s->protocol->questionnaire, name);
+}
+
+#define WORDS(name) ethd__screen_words(s, ETHD_PHRASE_##name)
+
+/* The phrase with these numbers in its places. */
+static void fill(const ethd__screen *s, ethd__phrase_name name, const char *format, const double *numbers, size_t count,
+                 char *out, size_t room) {
+  char text[3][24];
+  const char *values[3];
+  for (size_t i = 0; i < count; i++) {
+    snprintf(text[i], sizeof text[i], format, numbers[i]);
+    values[i] = text[i];
+  }
+  ethd__phrase_fill(out, room, ethd__screen_words(s, name), values, count);
+}
 
 /* ---- frames ---- */
 
@@ -67,16 +85,17 @@ bool ethd__screen_type(ethd__screen *s, const ethd__page *page, char *line, size
 
 static void block(void *self, const char *participant, const ethd__turn *turn, bool rest) {
   ethd__screen *s = self;
-  char speed[96], message[ETHD_MESSAGE_MAX];
+  char part[96], speed[200], message[ETHD_MESSAGE_MAX];
   ethd__taken taken;
   if (!ethd__desk_prepare(s->desk, turn, &taken, message)) s->speed = *taken.speed;
-  snprintf(s->title, sizeof s->title, "%s   part %zu of %zu%s", participant, turn->number, turn->of,
-           turn->block.training ? ", practice" : "");
-  snprintf(speed, sizeof speed, "as fast as the white mark will move: %.2g m/s", s->speed.centre);
+  fill(s, ETHD_PHRASE_PART, "%.0f", (const double[]){(double)turn->number, (double)turn->of}, 2, part, sizeof part);
+  snprintf(s->title, sizeof s->title, "%s   %s%s%s", participant, part, turn->block.training ? ", " : "",
+           turn->block.training ? WORDS(PRACTICE) : "");
+  fill(s, ETHD_PHRASE_SPEED, "%.2g", &s->speed.centre, 1, speed, sizeof speed);
   s->feedback[0] = s->achieved[0] = 0;
-  ethd__page page = {.title = s->title, .keys = "Space goes on   Esc stops"};
-  if (rest) ethd__page_add(&page, ETHD_TEXT_LARGE, "Time for a rest. Go on when you like.", ethd__green);
-  ethd__page_add(&page, ETHD_TEXT_LARGE, "Tap once on the green wall at the left,", ethd__white);
+  ethd__page page = {.title = s->title, .keys = WORDS(KEYS_GO)};
+  if (rest) ethd__page_add(&page, ETHD_TEXT_LARGE, WORDS(REST), ethd__green);
+  ethd__page_add(&page, ETHD_TEXT_LARGE, WORDS(TASK), ethd__white);
   ethd__page_add(&page, ETHD_TEXT_LARGE, speed, ethd__grey);
   (void)ethd__screen_page(s, &page, goes_on);
 }
@@ -84,17 +103,17 @@ static void block(void *self, const char *participant, const ethd__turn *turn, b
 /* ---- before a tap ---- */
 
 static bool write_note(ethd__screen *s, char words[ETHD_MESSAGE_MAX]) {
-  ethd__page page = {.title = s->title, .keys = "Enter keeps it   Esc forgets it"};
+  ethd__page page = {.title = s->title, .keys = WORDS(KEYS_NOTE)};
   char line[200] = "";
-  ethd__page_add(&page, ETHD_TEXT_LARGE, "A note", ethd__grey);
+  ethd__page_add(&page, ETHD_TEXT_LARGE, WORDS(NOTE), ethd__grey);
   if (!ethd__screen_type(s, &page, line, sizeof line)) return false;
   snprintf(words, ETHD_MESSAGE_MAX, "%s", line);
   return *line;
 }
 
 static bool sure(ethd__screen *s) {
-  ethd__page page = {.title = s->title, .keys = "Y yes   N goes back"};
-  ethd__page_add(&page, ETHD_TEXT_LARGE, "End for this participant?", ethd__white);
+  ethd__page page = {.title = s->title, .keys = WORDS(KEYS_SURE)};
+  ethd__page_add(&page, ETHD_TEXT_LARGE, WORDS(END_ONE), ethd__white);
   return ethd__screen_page(s, &page, (const int[]){SDLK_y, SDLK_n, SDLK_SPACE, 0}) == SDLK_y;
 }
 
@@ -117,17 +136,19 @@ static bool at_start(const ethd__screen *s, waiting *wait) {
 }
 
 void ethd__screen_waiting(ethd__screen *s, ethd_vec finger, double seconds) {
-  ethd__page page = {.title = s->title, .keys = s->device ? "Space now   " KEYS : KEYS, .below = ethd__draw_floor(s)};
+  char keys[400];
+  snprintf(keys, sizeof keys, "%s%s%s", s->device ? WORDS(KEYS_NOW) : "", s->device ? "   " : "", WORDS(KEYS_WAIT));
+  ethd__page page = {.title = s->title, .keys = keys, .below = ethd__draw_floor(s)};
   ethd__page_add(&page, ETHD_TEXT_LARGE, s->feedback, s->good ? ethd__green : ethd__red);
   ethd__page_add(&page, ETHD_TEXT_SMALL, s->achieved, s->good ? ethd__green : ethd__red);
-  ethd__page_add(&page, ETHD_TEXT_SMALL, "Bring the circle to the grey line, and wait", ethd__white);
+  ethd__page_add(&page, ETHD_TEXT_SMALL, WORDS(READY), ethd__white);
   ethd__page_draw(&s->window, &page);
   ethd__draw_room(s, finger, seconds);
 }
 
 static ethd__wish pause_page(ethd__screen *s) {
-  ethd__page page = {.title = s->title, .keys = "Space goes on   Esc stops"};
-  ethd__page_add(&page, ETHD_TEXT_LARGE, "Pause", ethd__white);
+  ethd__page page = {.title = s->title, .keys = WORDS(KEYS_GO)};
+  ethd__page_add(&page, ETHD_TEXT_LARGE, WORDS(PAUSE), ethd__white);
   (void)ethd__screen_page(s, &page, goes_on);
   return s->stop ? ETHD_WISH_STOP : ETHD_WISH_PAUSE;
 }
@@ -160,23 +181,23 @@ static void verdict(void *self, const char *participant, const ethd__taken *take
   const ethd__metrics *m = &taken->result.metrics;
   const ethd__speed *speed = taken->speed;
   double v = s->protocol->validity == ETHD_TAP_BY_FINGER ? m->v_hand : m->v_rvo;
-  char count[32] = "";
+  char count[96] = "";
   (void)participant;
   s->good = m->reason == ETHD_TAP_OK;
-  if (wanted) snprintf(count, sizeof count, "   (%u of %u)", valid, wanted);
-  snprintf(s->feedback, sizeof s->feedback, "%s%s", ethd__advice(m->reason), count);
+  if (wanted) fill(s, ETHD_PHRASE_COUNT, "%.0f", (const double[]){valid, wanted}, 2, count, sizeof count);
+  snprintf(s->feedback, sizeof s->feedback, "%s%s%s", ethd__screen_words(s, ethd__advice(m->reason)),
+           *count ? "   " : "", count);
   s->achieved[0] = 0;
-  if (isfinite(v))
-    snprintf(s->achieved, sizeof s->achieved, "%.2f m/s; from %.2f to %.2f m/s count", v, speed->centre - speed->band,
-             speed->centre + speed->band);
+  const double speeds[] = {v, speed->centre - speed->band, speed->centre + speed->band};
+  if (isfinite(v)) fill(s, ETHD_PHRASE_ACHIEVED, "%.2f", speeds, 3, s->achieved, sizeof s->achieved);
 }
 
 /* ---- a device that has stopped itself ---- */
 
 static bool stopped(void *self, const char *why) {
   ethd__screen *s = self;
-  ethd__page page = {.title = s->title, .keys = "Space: I have seen to it   Esc stops"};
-  ethd__page_add(&page, ETHD_TEXT_LARGE, "The device has stopped itself", ethd__red);
+  ethd__page page = {.title = s->title, .keys = WORDS(KEYS_SEEN)};
+  ethd__page_add(&page, ETHD_TEXT_LARGE, WORDS(STOPPED), ethd__red);
   ethd__page_add(&page, ETHD_TEXT_LARGE, why, ethd__grey);
   (void)ethd__screen_page(s, &page, goes_on);
   return !s->stop;
@@ -192,6 +213,11 @@ ethd_status ethd__screen_open(ethd__screen *s, ethd__desk *desk, const ethd__sou
   s->protocol = desk->protocol;
   ethd_status status = ethd__window_open(&s->window, "ethd-study", width, height, message);
   if (status) return status;
+  status = ethd__letters_check(&s->protocol->questionnaire, s->window.font[ETHD_TEXT_LARGE], message);
+  if (status) {
+    ethd__window_close(&s->window);
+    return status;
+  }
   s->window.moved = ethd__screen_moved;
   s->window.mover = s;
   ethd__draw_fit(s);
@@ -223,8 +249,8 @@ ethd__front ethd__screen_front(ethd__screen *s) {
 void ethd__screen_end(ethd__screen *s, bool over) {
   const ethd_histogram *h = &s->window.frames;
   if (over) {
-    ethd__page page = {.title = "", .keys = "Space ends"};
-    ethd__page_add(&page, ETHD_TEXT_LARGE, "That was all. Thank you!", ethd__white);
+    ethd__page page = {.title = "", .keys = WORDS(KEYS_THANKS)};
+    ethd__page_add(&page, ETHD_TEXT_LARGE, WORDS(THANKS), ethd__white);
     s->stop = false;
     (void)ethd__screen_page(s, &page, goes_on);
   }

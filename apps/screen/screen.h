@@ -21,11 +21,11 @@ typedef struct ethd__screen {
   ethd__room frame;
   ethd_vec avatar;   /* as drawn last */
   ethd__speed speed; /* of the present block */
-  char title[96];
-  char feedback[96], achieved[96]; /* of the last tap: how it was, how fast; "": none yet */
-  ethd_vec from;                   /* where the finger was as the tap began */
-  bool left;                       /* it has left the place since */
-  int pending;                     /* a key that ended a tap, and is still to be heard */
+  char title[200];
+  char feedback[200], achieved[200]; /* of the last tap: how it was, how fast; "": none yet */
+  ethd_vec from;                     /* where the finger was as the tap began */
+  bool left;                         /* it has left the place since */
+  int pending;                       /* a key that ended a tap, and is still to be heard */
   bool good, stop;
   uint64_t late; /* ticks */
 } ethd__screen;
@@ -57,6 +57,9 @@ bool ethd__screen_begin(ethd__screen *screen);
    gives SDLK_ESCAPE. */
 int ethd__screen_page(ethd__screen *screen, const ethd__page *page, const int *keys);
 
+/* Words of the screen, in the study's language. */
+const char *ethd__screen_words(const ethd__screen *screen, ethd__phrase_name name);
+
 /* Whether the key is in the list, which 0 ends. */
 bool ethd__key_is_one_of(int key, const int *keys);
 
@@ -75,12 +78,13 @@ int ethd__screen_ask(void *screen, const ethd__asked *asked);
 void ethd__screen_waiting(ethd__screen *screen, ethd_vec finger, double seconds);
 
 /* Their pages; `typed` is what stands on the line so far, `text` room for words. */
-void ethd__page_of_hand_over(const ethd__meeting *meeting, const char *typed, ethd__page *out, char text[256]);
+void ethd__page_of_hand_over(const ethd__questionnaire *q, const ethd__meeting *meeting, const char *typed,
+                             ethd__page *out, char text[256]);
 void ethd__page_of_words(char *const paragraph[ETHD_STUDY_PARAGRAPHS], const char *title, const char *keys,
                          ethd__page *out);
 void ethd__page_of_question(const ethd__question *question, int chosen, ethd__page *out,
                             char text[ETHD_STUDY_ANSWERS][256]);
-void ethd__page_of_answers(const ethd__questionnaire *q, const int16_t *answer, ethd__page *out,
+void ethd__page_of_answers(const ethd__questionnaire *q, const ethd__asked *asked, ethd__page *out,
                            char text[ETHD_STUDY_QUESTIONS][256]);
 
 #endif

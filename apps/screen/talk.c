@@ -8,13 +8,12 @@
 
 /* ---- a participant begins ---- */
 
-void ethd__page_of_hand_over(const ethd__meeting *meeting, const char *typed, ethd__page *out, char text[256]) {
-  snprintf(text, 256, "Experimenter: when %s sits here, type %s and press Enter", meeting->participant,
-           meeting->participant);
+void ethd__page_of_hand_over(const ethd__questionnaire *q, const ethd__meeting *meeting, const char *typed,
+                             ethd__page *out, char text[256]) {
+  ethd__phrase_fill(text, 256, ethd__phrase_of(q, ETHD_PHRASE_HAND_OVER), &meeting->participant, 1);
   *out = (ethd__page){.title = meeting->participant,
-                      .keys = meeting->can_undo ? "Enter begins   F2 undoes the end of the one before   Esc stops"
-                                                : "Enter begins   Esc stops"};
-  ethd__page_add(out, ETHD_TEXT_LARGE, "Thank you. Please call the experimenter.", ethd__white);
+                      .keys = ethd__phrase_of(q, meeting->can_undo ? ETHD_PHRASE_KEYS_UNDO : ETHD_PHRASE_KEYS_BEGIN)};
+  ethd__page_add(out, ETHD_TEXT_LARGE, ethd__phrase_of(q, ETHD_PHRASE_CALL), ethd__white);
   ethd__page_add(out, ETHD_TEXT_SMALL, text, ethd__grey);
   ethd__page_add(out, ETHD_TEXT_LARGE, *typed ? typed : "_", ethd__green);
 }
@@ -24,7 +23,7 @@ static ethd__wish hand_over(ethd__screen *s, const ethd__meeting *meeting) {
   char line[32] = "", text[256];
   ethd__page page;
   do {
-    ethd__page_of_hand_over(meeting, "", &page, text);
+    ethd__page_of_hand_over(&s->protocol->questionnaire, meeting, "", &page, text);
     page.count--; /* what is typed takes the last paragraph's place */
     *line = 0;
     if (!ethd__screen_type(s, &page, line, sizeof line))
@@ -42,7 +41,8 @@ void ethd__page_of_words(char *const paragraph[ETHD_STUDY_PARAGRAPHS], const cha
 
 static ethd__wish consent(ethd__screen *s, const char *participant) {
   ethd__page page;
-  ethd__page_of_words(s->protocol->questionnaire.consent, participant, "Y I agree   N I don't   Esc stops", &page);
+  ethd__page_of_words(s->protocol->questionnaire.consent, participant, ethd__screen_words(s, ETHD_PHRASE_KEYS_CONSENT),
+                      &page);
   switch (ethd__screen_page(s, &page, (const int[]){SDLK_y, SDLK_n, 0})) {
   case SDLK_y: return ETHD_WISH_AGREE;
   case SDLK_n: return ETHD_WISH_ABORT;
@@ -58,7 +58,7 @@ ethd__wish ethd__screen_meet(void *self, const ethd__meeting *meeting) {
   s->feedback[0] = s->achieved[0] = 0;
   if (wish == ETHD_WISH_GO && q->consent[0] && !meeting->consented) wish = consent(s, meeting->participant);
   if ((wish != ETHD_WISH_GO && wish != ETHD_WISH_AGREE) || !q->instruction[0]) return wish;
-  ethd__page_of_words(q->instruction, meeting->participant, "Space goes on   Esc stops", &page);
+  ethd__page_of_words(q->instruction, meeting->participant, ethd__screen_words(s, ETHD_PHRASE_KEYS_GO), &page);
   return ethd__screen_page(s, &page, (const int[]){SDLK_SPACE, SDLK_RETURN, 0}) == SDLK_ESCAPE &&
                  wish != ETHD_WISH_AGREE
              ? ETHD_WISH_STOP
@@ -66,6 +66,16 @@ ethd__wish ethd__screen_meet(void *self, const ethd__meeting *meeting) {
 }
 
 /* ---- the survey ---- */
+
+#define LINE_ROOM 256 /* bytes that an answer in words takes at most */
+
+/* Bytes of whole letters, at most so many. */
+static size_t bytes_within(const char *text, size_t most) {
+  size_t n = strlen(text);
+  if (n <= most) return n;
+  for (n = most; n && (text[n] & 0xc0) == 0x80;) n--;
+  return n;
+}
 
 void ethd__page_of_question(const ethd__question *question, int chosen, ethd__page *out,
                             char text[ETHD_STUDY_ANSWERS][256]) {
@@ -78,27 +88,39 @@ void ethd__page_of_question(const ethd__question *question, int chosen, ethd__pa
   }
 }
 
-void ethd__page_of_answers(const ethd__questionnaire *q, const int16_t *answer, ethd__page *out,
+void ethd__page_of_answers(const ethd__questionnaire *q, const ethd__asked *asked, ethd__page *out,
                            char text[ETHD_STUDY_QUESTIONS][256]) {
   char words[200];
-  ethd__page_add(out, ETHD_TEXT_LARGE, "Are these your answers?", ethd__white);
+  ethd__page_add(out, ETHD_TEXT_LARGE, ethd__phrase_of(q, ETHD_PHRASE_ANSWERS), ethd__white);
   for (size_t i = 0; i < ethd__question_count(q); i++) {
     words[0] = 0;
-    if (answer[i] > 0) ethd__answer_words(&q->question[i], answer[i], words, sizeof words);
-    snprintf(text[i], 256, "%zu   %s", i + 1, *words ? words : "no answer");
+    if (ethd__question_is_text(&q->question[i]))
+      snprintf(words, sizeof words, "%.*s", (int)bytes_within(asked->said[i], sizeof words - 1), asked->said[i]);
+    else if (asked->answer[i] > 0)
+      ethd__answer_words(&q->question[i], asked->answer[i], words, sizeof words);
+    snprintf(text[i], 256, "%zu   %s", i + 1, *words ? words : ethd__phrase_of(q, ETHD_PHRASE_NO_ANSWER));
     ethd__page_add(out, ETHD_TEXT_SMALL, text[i], *words ? ethd__green : ethd__red);
   }
 }
 
 static int confirm(ethd__screen *s, const ethd__asked *asked) {
   char text[ETHD_STUDY_QUESTIONS][256];
-  ethd__page page = {.title = s->title, .keys = "Enter keeps them   Backspace changes them   Esc stops"};
-  ethd__page_of_answers(&s->protocol->questionnaire, asked->answer, &page, text);
+  ethd__page page = {.title = s->title, .keys = ethd__screen_words(s, ETHD_PHRASE_KEYS_ANSWERS)};
+  ethd__page_of_answers(&s->protocol->questionnaire, asked, &page, text);
   switch (ethd__screen_page(s, &page, (const int[]){SDLK_RETURN, SDLK_KP_ENTER, SDLK_BACKSPACE, 0})) {
   case SDLK_BACKSPACE: return ETHD_ANSWER_BACK;
   case SDLK_ESCAPE: return ETHD_ANSWER_STOP;
   default: return ETHD_ANSWER_NONE;
   }
+}
+
+/* A line in the participant's own words, which begins with what was answered before. */
+static int ask_words(ethd__screen *s, const ethd__asked *asked) {
+  ethd__page page = {.title = s->title, .keys = ethd__screen_words(s, ETHD_PHRASE_KEYS_TEXT)};
+  ethd__page_add(&page, ETHD_TEXT_LARGE, s->protocol->questionnaire.question[asked->number].text, ethd__white);
+  snprintf(asked->words, ETHD_MESSAGE_MAX, "%s", asked->said[asked->number]);
+  if (ethd__screen_type(s, &page, asked->words, LINE_ROOM)) return *asked->words ? 1 : ETHD_ANSWER_NONE;
+  return s->window.key == SDLK_F2 && !s->stop ? ETHD_ANSWER_BACK : ETHD_ANSWER_STOP;
 }
 
 /* The digit that was pressed, -1: none. */
@@ -109,15 +131,13 @@ static int digit_of(int key) {
 }
 
 /* A digit chooses and Enter takes: keys that come fast choose again, and answer one question. */
-int ethd__screen_ask(void *self, const ethd__asked *asked) {
-  ethd__screen *s = self;
-  const ethd__questionnaire *q = &s->protocol->questionnaire;
-  if (asked->number == ethd__question_count(q)) return confirm(s, asked);
-  const ethd__question *question = &q->question[asked->number];
+static int ask_number(ethd__screen *s, const ethd__asked *asked) {
+  const ethd__question *question = &s->protocol->questionnaire.question[asked->number];
   int chosen = asked->answer[asked->number];
-  char text[ETHD_STUDY_ANSWERS][256], keys[160];
-  snprintf(keys, sizeof keys, "1 to %zu choose, 0 no answer   Enter goes on   Backspace back   Esc stops",
-           ethd__answer_count(question));
+  char text[ETHD_STUDY_ANSWERS][256], keys[256], most[24], none[256];
+  snprintf(most, sizeof most, "%zu", ethd__answer_count(question));
+  snprintf(none, sizeof none, "> %s <", ethd__screen_words(s, ETHD_PHRASE_NO_ANSWER));
+  ethd__phrase_fill(keys, sizeof keys, ethd__screen_words(s, ETHD_PHRASE_KEYS_QUESTION), (const char *[]){most}, 1);
   while (ethd__screen_begin(s)) {
     int key = s->window.key, digit = digit_of(key);
     if (key == SDLK_BACKSPACE) return ETHD_ANSWER_BACK;
@@ -125,9 +145,16 @@ int ethd__screen_ask(void *self, const ethd__asked *asked) {
     if (digit >= 0 && digit <= (int)ethd__answer_count(question)) chosen = digit;
     ethd__page page = {.title = s->title, .keys = keys};
     ethd__page_of_question(question, chosen, &page, text);
-    if (!chosen) ethd__page_add(&page, ETHD_TEXT_LARGE, "> no answer <", ethd__green);
+    if (!chosen) ethd__page_add(&page, ETHD_TEXT_LARGE, none, ethd__green);
     ethd__page_draw(&s->window, &page);
     ethd__window_end(&s->window);
   }
   return ETHD_ANSWER_STOP;
+}
+
+int ethd__screen_ask(void *self, const ethd__asked *asked) {
+  ethd__screen *s = self;
+  const ethd__questionnaire *q = &s->protocol->questionnaire;
+  if (asked->number == ethd__question_count(q)) return confirm(s, asked);
+  return (ethd__question_is_text(&q->question[asked->number]) ? ask_words : ask_number)(s, asked);
 }

@@ -7,7 +7,7 @@
 
 static void show(ethd__screen *s, double t, ethd_vec finger) {
   ethd__page page = {.title = s->title, .keys = "", .below = ethd__draw_floor(s)};
-  ethd__page_add(&page, ETHD_TEXT_LARGE, "Tap", ethd__green);
+  ethd__page_add(&page, ETHD_TEXT_LARGE, ethd__screen_words(s, ETHD_PHRASE_TAP), ethd__green);
   ethd__page_draw(&s->window, &page);
   ethd__draw_room(s, finger, t);
   ethd__window_end(&s->window);

@@ -19,25 +19,23 @@ static void block(void *self, const char *participant, const ethd__turn *turn, b
          turn->block.training ? "training" : "test");
 }
 
-const char *ethd__advice(ethd__reason reason) {
-  switch (reason) {
-  case ETHD_TAP_OK: return "valid";
-  case ETHD_TAP_FAULT: return "the device stopped itself";
-  case ETHD_TAP_EARLY_CONTACT: return "touched the ring before the wall: keep the finger in the middle";
-  case ETHD_TAP_TOO_SLOW: return "too slow";
-  case ETHD_TAP_TOO_FAST: return "too fast";
-  case ETHD_TAP_NO_CONTACT: return "no contact: go on until the wall is felt";
-  case ETHD_TAP_GRAZING: return "only grazed: press for a moment";
-  case ETHD_TAP_DOUBLE: return "tapped twice: once is enough";
-  default: return "";
-  }
+ethd__phrase_name ethd__advice(ethd__reason reason) {
+  static const ethd__phrase_name advice[ETHD_TAP_REASON_COUNT] = {[ETHD_TAP_OK] = ETHD_PHRASE_VALID,
+                                                                  [ETHD_TAP_FAULT] = ETHD_PHRASE_FAULT,
+                                                                  [ETHD_TAP_EARLY_CONTACT] = ETHD_PHRASE_EARLY_CONTACT,
+                                                                  [ETHD_TAP_TOO_SLOW] = ETHD_PHRASE_TOO_SLOW,
+                                                                  [ETHD_TAP_TOO_FAST] = ETHD_PHRASE_TOO_FAST,
+                                                                  [ETHD_TAP_NO_CONTACT] = ETHD_PHRASE_NO_CONTACT,
+                                                                  [ETHD_TAP_GRAZING] = ETHD_PHRASE_GRAZING,
+                                                                  [ETHD_TAP_DOUBLE] = ETHD_PHRASE_DOUBLE};
+  return advice[reason];
 }
 
 static void verdict(void *self, const char *participant, const ethd__taken *taken, uint32_t valid, uint32_t wanted) {
   const ethd__console *c = self;
   const ethd__metrics *m = &taken->result.metrics;
   if (c->quiet) return;
-  printf("%s tap %2" PRIu32 ": %s", participant, taken->turn.attempt, ethd__advice(m->reason));
+  printf("%s tap %2" PRIu32 ": %s", participant, taken->turn.attempt, ethd__phrases[ethd__advice(m->reason)].words);
   if (m->v_rvo == m->v_rvo)
     printf(" (%.3f m/s; %.3g to %.3g count)", m->v_rvo, taken->speed->centre - taken->speed->band,
            taken->speed->centre + taken->speed->band);

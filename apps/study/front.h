@@ -2,6 +2,7 @@
 #ifndef ETHD_STUDY_FRONT_H
 #define ETHD_STUDY_FRONT_H
 
+#include "study/phrases.h"
 #include "study/source.h"
 
 typedef enum ethd__wish {
@@ -55,8 +56,8 @@ typedef struct ethd__front {
   int (*ask)(void *self, const ethd__asked *asked);
 } ethd__front;
 
-/* Shows the participant what to do. [any] */
-const char *ethd__advice(ethd__reason reason);
+/* What tells the participant how a tap was, and what to do. [any] */
+ethd__phrase_name ethd__advice(ethd__reason reason);
 
 /* Lines on stdout, commands and answers on stdin when `ask`. */
 typedef struct ethd__console {

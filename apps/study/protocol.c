@@ -47,7 +47,8 @@ static ethd_status known_sections(const ethd_ini *ini, const char *name, char *m
     const ethd_ini_section *s = &ini->sections[i];
     if (!ethd__entry_section(s->name))
       return ethd__say(message, ETHD_E_UNKNOWN,
-                       "%s:%d: %s: unknown section; study, device, hand, validity, survey, pages, grid are allowed",
+                       "%s:%d: %s: unknown section; study, device, hand, validity, statistics, survey, pages, words, "
+                       "grid are allowed",
                        name, s->line, ethd__quote(s->name, strlen(s->name), quote));
   }
   return ETHD_OK;

@@ -17,7 +17,7 @@
      [device]                             [grid]                  --simulate: every combination
      config = n.ini                       contact.k_e = 1000,2500
      plant = n
-                                          [survey], [pages]       see questionnaire.h
+                                          [survey], [pages], [words]: see questionnaire.h
 
      [statistics]                         how far two strategies may differ and still be called alike:
      margin_d_max = 0.0003                m: what the paper's sensors resolve

@@ -182,7 +182,9 @@ static const key_row *find_row(const char *section, const char *key) {
   return NULL;
 }
 
-static bool has_own_words(const char *section) { return !strcmp(section, "survey") || !strcmp(section, "pages"); }
+static bool has_own_words(const char *section) {
+  return !strcmp(section, "survey") || !strcmp(section, "pages") || !strcmp(section, "words");
+}
 
 static ethd_status set_axis(const ethd__entry *e) {
   ethd__protocol *p = e->out;
@@ -195,15 +197,43 @@ static ethd_status set_axis(const ethd__entry *e) {
   return set_words(e, NULL, &axis->values);
 }
 
+/* The screen draws letters from left to right: text that isn't UTF-8 has none, and some scripts go the other way. */
+static ethd_status check_words(const ethd__entry *e) {
+  for (const char *at = e->key->value; *at;) {
+    uint32_t letter;
+    size_t n = ethd__letter_of(at, &letter);
+    if (!n) return ethd__entry_refuse(e, ETHD_E_SYNTAX, "a byte %u that isn't UTF-8", (unsigned char)*at);
+    if (ethd__letter_goes_left(letter))
+      return ethd__entry_refuse(e, ETHD_E_RANGE,
+                                "\"%.*s\" (U+%04X) is written from right to left, which no page can be", (int)n, at,
+                                (unsigned)letter);
+    at += n;
+  }
+  return ETHD_OK;
+}
+
+/* What a phrase's places stand for is known for those of its default alone. */
+static ethd_status check_places(const ethd__entry *e, const char *instead_of) {
+  size_t n = 0;
+  const char *place = ethd__phrase_fault(e->key->value, instead_of, &n);
+  char quote[ETHD_QUOTE_MAX];
+  if (!place) return ETHD_OK;
+  return ethd__entry_refuse(e, ETHD_E_RANGE, "found %s; places of \"%s\" are allowed", ethd__quote(place, n, quote),
+                            instead_of);
+}
+
 static ethd_status set_own_words(const ethd__entry *e) {
   char **at = ethd__questionnaire_at(&e->out->questionnaire, e->key->section, e->key->key);
-  bool survey = !strcmp(e->key->section, "survey");
+  bool survey = !strcmp(e->key->section, "survey"), phrase = !strcmp(e->key->section, "words");
   if (!at)
     return ethd__entry_refuse(e, ETHD_E_UNKNOWN, "no key of this section; %s are allowed",
-                              survey ? "q1 to q9, q1_answers to q9_answers"
-                                     : "consent1 to consent9, instruction1 to instruction9");
+                              survey   ? "q1 to q9, q1_answers to q9_answers"
+                              : phrase ? "those that ethd-study --words prints"
+                                       : "consent1 to consent9, instruction1 to instruction9");
+  ethd_status status = check_words(e);
+  if (!status && phrase) status = check_places(e, ethd__phrases[at - e->out->questionnaire.phrase].words);
   if (survey) e->out->questionnaire.question[e->key->key[1] - '1'].line = e->key->line;
-  return set_text(e, NULL, at);
+  return status ? status : set_text(e, NULL, at);
 }
 
 static ethd_status unknown_key(const ethd__entry *e) {

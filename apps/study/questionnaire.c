@@ -40,6 +40,59 @@ void ethd__answer_words(const ethd__question *question, int answer, char *out, s
   if (n) snprintf(out, room, "%.*s", (int)n, from);
 }
 
+/* ---- phrases ---- */
+
+#define ROW(name, key, words) [ETHD_PHRASE_##name] = {key, words},
+const ethd__phrase ethd__phrases[ETHD_PHRASES] = {ETHD_PHRASE_LIST(ROW)};
+#undef ROW
+
+const char *ethd__phrase_of(const ethd__questionnaire *q, ethd__phrase_name name) {
+  return q->phrase[name] ? q->phrase[name] : ethd__phrases[name].words;
+}
+
+void ethd__phrase_fill(char *out, size_t room, const char *phrase, const char *const *values, size_t count) {
+  size_t n = 0;
+  out[0] = 0;
+  for (const char *p = phrase; *p && n + 1 < room;) {
+    bool place = p[0] == '{' && p[1] >= '1' && (size_t)(p[1] - '1') < count && p[2] == '}';
+    n += (size_t)snprintf(out + n, room - n, "%.*s", place ? (int)room : 1, place ? values[p[1] - '1'] : p);
+    p += place ? 3 : 1;
+  }
+}
+
+const char *ethd__phrase_fault(const char *phrase, const char *instead_of, size_t *length) {
+  for (const char *p = phrase; (p = strchr(p, '{')); p++) {
+    char place[4] = {0};
+    *length = strcspn(p, "}") + (p[strcspn(p, "}")] == '}');
+    snprintf(place, sizeof place, "%.3s", p);
+    if (*length != 3 || !strstr(instead_of, place)) return p;
+  }
+  return NULL;
+}
+
+/* ---- letters ---- */
+
+size_t ethd__letter_of(const char *text, uint32_t *out) {
+  static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
+  unsigned char first = (unsigned char)*text;
+  size_t n = first < 0x80 ? 1 : first >> 5 == 6 ? 2 : first >> 4 == 14 ? 3 : first >> 3 == 30 ? 4 : 0;
+  *out = n > 1 ? first & (0x7fu >> n) : first;
+  for (size_t i = 1; i < n; i++) {
+    if (((unsigned char)text[i] & 0xc0) != 0x80) return 0;
+    *out = *out << 6 | ((unsigned char)text[i] & 0x3f);
+  }
+  bool surrogate = *out >= 0xd800 && *out < 0xe000;
+  return n && *out >= least[n] && *out <= 0x10ffff && !surrogate ? n : 0;
+}
+
+bool ethd__letter_goes_left(uint32_t c) {
+  return (c >= 0x590 && c < 0x900) || (c >= 0xfb1d && c < 0xfe00) || (c >= 0xfe70 && c < 0xff00) || c == 0x200f ||
+         (c >= 0x202a && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069) || (c >= 0x10800 && c < 0x11000) ||
+         (c >= 0x1e800 && c < 0x1f000);
+}
+
+/* ---- keys ---- */
+
 /* The number behind the key's name, 1 to 9; 0: another key. */
 static int number_of(const char *key, const char *name, const char *behind) {
   size_t n = strlen(name);
@@ -57,6 +110,8 @@ char **ethd__questionnaire_at(ethd__questionnaire *q, const char *section, const
     if ((k = number_of(key, "consent", ""))) return &q->consent[k - 1];
     if ((k = number_of(key, "instruction", ""))) return &q->instruction[k - 1];
   }
+  for (k = 0; !strcmp(section, "words") && k < ETHD_PHRASES; k++)
+    if (!strcmp(key, ethd__phrases[k].key)) return &q->phrase[k];
   return NULL;
 }
 
@@ -94,5 +149,6 @@ void ethd__questionnaire_free(ethd__questionnaire *q) {
     free(q->consent[i]);
     free(q->instruction[i]);
   }
+  for (int i = 0; i < ETHD_PHRASES; i++) free(q->phrase[i]);
   *q = (ethd__questionnaire){0};
 }

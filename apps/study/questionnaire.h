@@ -1,6 +1,6 @@
 /* What a participant is told and asked, in the study's own words. [main] but where said.
 
-     [survey]                                     [pages]
+     [survey]                                     [pages]                          and [words], see phrases.h
      q1 = How did the touch feel?                 consent1 = The study takes an hour. You may end it at any time.
      q1_answers = natural | neither | unnatural   instruction1 = Tap once on the green wall.
 
@@ -11,6 +11,8 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+
+#include "study/phrases.h"
 
 #define ETHD_STUDY_QUESTIONS 9
 #define ETHD_STUDY_ANSWERS 9
@@ -24,7 +26,8 @@ typedef struct ethd__question {
 typedef struct ethd__questionnaire {
   ethd__question question[ETHD_STUDY_QUESTIONS];
   char *consent[ETHD_STUDY_PARAGRAPHS], *instruction[ETHD_STUDY_PARAGRAPHS];
-  bool own; /* questions of the study's own, not the paper's */
+  char *phrase[ETHD_PHRASES]; /* NULL: the default */
+  bool own;                   /* questions of the study's own, not the paper's */
 } ethd__questionnaire;
 
 /* How many questions there are, and numbered answers to one of them: 0 where words are asked for. [any] */
@@ -35,7 +38,10 @@ bool ethd__question_is_text(const ethd__question *question);
 /* The words of an answer, from 1; its number where it has none. [any] */
 void ethd__answer_words(const ethd__question *question, int answer, char *out, size_t room);
 
-/* The text of a key of [survey] or [pages]; NULL: there is no such key. */
+/* Words of the screen: the study's own or the default. [any] */
+const char *ethd__phrase_of(const ethd__questionnaire *q, ethd__phrase_name name);
+
+/* The text of a key of [survey], [pages] or [words]; NULL: there is no such key. */
 char **ethd__questionnaire_at(ethd__questionnaire *q, const char *section, const char *key);
 
 /* The paper's questions, in our own words, where the study has none. False: no memory. */

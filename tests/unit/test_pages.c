@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "screen/draw.h"
+#include "screen/letters.h"
 #include "study/dictionary.h"
 #include "study/progress.h"
 
@@ -13,6 +14,7 @@ static const int sizes[][2] = {{320, 200}, {640, 400}, {720, 1280}, {1366, 768},
 enum { SIZES = sizeof sizes / sizeof *sizes };
 
 static ethd__screen screen;
+static ethd__protocol protocol;
 static SDL_Surface *pixels;
 
 static void open_at(int width, int height) {
@@ -25,6 +27,7 @@ static void open_at(int width, int height) {
   ethd__window_shrink(w, 1);
   screen.frame = ethd__room_of(0.238, 0.2816, 0.25, 0.0075, width, height);
   screen.speed = (ethd__speed){.centre = 0.4};
+  screen.protocol = &protocol;
   pixels = SDL_CreateRGBSurfaceWithFormat(0, width, height, 32, SDL_PIXELFORMAT_RGB888);
   ck_assert_ptr_nonnull(pixels);
 }
@@ -97,6 +100,7 @@ static void check_questions(void) {
   char text[ETHD_STUDY_ANSWERS][256];
   ethd__questionnaire q = {.own = false};
   const int16_t answer[ETHD_STUDY_QUESTIONS] = {1, 0, 5};
+  const ethd__asked asked = {.answer = answer};
   ck_assert(ethd__questionnaire_fill(&q));
   for (int i = 0; i < 3; i++) {
     ethd__page page = {.title = title,
@@ -105,7 +109,7 @@ static void check_questions(void) {
     draw(i == 0 ? "question1" : i == 1 ? "question2" : "question3", &page, 8);
   }
   ethd__page page = {.title = title, .keys = "Enter keeps them   Backspace changes them   Esc stops"};
-  ethd__page_of_answers(&q, answer, &page, text);
+  ethd__page_of_answers(&q, &asked, &page, text);
   ck_assert_ptr_nonnull(strstr(page.paragraph[2].text, "no answer"));
   draw("answers", &page, 6);
   ethd__questionnaire_free(&q);
@@ -130,7 +134,7 @@ static void check_words(void) {
   draw("consent", &page, 11);
   char text[256];
   const ethd__meeting meeting = {"P12", true, false, true};
-  ethd__page_of_hand_over(&meeting, "P1", &page, text);
+  ethd__page_of_hand_over(&protocol.questionnaire, &meeting, "P1", &page, text);
   draw("hand-over", &page, 5);
 }
 
@@ -142,6 +146,113 @@ START_TEST(test_no_text_lies_on_another) {
     check_words();
     close_it();
   }
+}
+END_TEST
+
+/* ---- a study in German ---- */
+
+static char drawn[1 << 16]; /* every text of the frames since it was emptied, a line each */
+
+static void keep_texts(void) {
+  for (size_t i = 0; i < screen.window.shape_before; i++)
+    if (screen.window.shape[i].text[0])
+      snprintf(drawn + strlen(drawn), sizeof drawn - strlen(drawn), "%s\n", screen.window.shape[i].text);
+}
+
+static void draw_german(const char *name, const ethd__page *page, size_t texts) {
+  draw(name, page, texts);
+  keep_texts();
+}
+
+static void judge_taps(void) {
+  ethd__front front = ethd__screen_front(&screen);
+  const ethd__speed speed = {.centre = 0.4, .band = 0.08};
+  snprintf(screen.title, sizeof screen.title, "P12   Teil 3 von 10, Übung");
+  ethd__taken taken = {.speed = &speed, .result = {.metrics = {.v_rvo = 0.43}}};
+  for (int reason = 0; reason < ETHD_TAP_REASON_COUNT; reason++) {
+    taken.result.metrics.reason = (ethd__reason)reason;
+    front.verdict(front.self, "P12", &taken, 2, 3);
+    ethd__screen_waiting(&screen, (ethd_vec){0.27, 0.25}, 0.05);
+    check_frame(reason ? "german-early" : "german-valid", 5);
+    keep_texts();
+  }
+}
+
+static void ask_in_german(void) {
+  const ethd__questionnaire *q = &protocol.questionnaire;
+  const int16_t answer[ETHD_STUDY_QUESTIONS] = {1, 5, 0, 1};
+  const ethd__asked asked = {.answer = answer, .said = {"", "", "", "Die Wand fühlte sich weich an."}};
+  char text[ETHD_STUDY_ANSWERS][256];
+  for (int i = 0; i < 3; i++) {
+    ethd__page page = {.title = screen.title, .keys = ethd__screen_words(&screen, ETHD_PHRASE_KEYS_TEXT)};
+    ethd__page_of_question(&q->question[i], 2, &page, text);
+    draw_german(i ? "german-question2" : "german-question1", &page, 8);
+  }
+  ethd__page page = {.title = screen.title, .keys = ethd__screen_words(&screen, ETHD_PHRASE_KEYS_ANSWERS)};
+  ethd__page_of_answers(q, &asked, &page, text);
+  ck_assert_str_eq(page.paragraph[4].text, "4   Die Wand fühlte sich weich an.");
+  draw_german("german-answers", &page, 7);
+}
+
+static void meet_in_german(void) {
+  const ethd__questionnaire *q = &protocol.questionnaire;
+  const ethd__meeting meeting = {"P12", true, false, true};
+  ethd__page page;
+  char text[256];
+  ethd__page_of_words(q->consent, screen.title, ethd__screen_words(&screen, ETHD_PHRASE_KEYS_CONSENT), &page);
+  draw_german("german-consent", &page, 4);
+  ethd__page_of_hand_over(q, &meeting, "P1", &page, text);
+  draw_german("german-hand-over", &page, 5);
+}
+
+START_TEST(test_a_study_in_german) {
+  static const char *const said[] = {"gültig   (2 von 3)\n",
+                                     "0.43 m/s, es zählen 0.32 bis 0.48 m/s\n",
+                                     "Den Kreis zur grauen Linie führen und warten\n",
+                                     "> 2   natürlich <\n",
+                                     "4   Die Wand fühlte sich weich an.\n",
+                                     "Versuchsleitung: Wenn P12 hier sitzt, P12 tippen und Eingabe drücken\n"};
+  static const char *const english[] = {"Esc stop", "Space", "Enter",        "valid",
+                                        "too ",     "count", "Experimenter", "no answer"};
+  char message[ETHD_MESSAGE_MAX];
+  ck_assert_msg(!ethd__protocol_load("apps/config/german.study", &protocol, message), "%s", message);
+  for (int i = 0; i < ETHD_PHRASES; i++)
+    ck_assert_msg(protocol.questionnaire.phrase[i] != NULL, "german.study has no %s", ethd__phrases[i].key);
+  for (int i = 0; i < SIZES; i++) {
+    open_at(sizes[i][0], sizes[i][1]);
+    ck_assert_msg(!ethd__letters_check(&protocol.questionnaire, screen.window.font[0], message), "%s", message);
+    drawn[0] = 0;
+    judge_taps();
+    ask_in_german();
+    meet_in_german();
+    for (size_t k = 0; i >= 3 && k < sizeof said / sizeof *said; k++)
+      ck_assert_msg(strstr(drawn, said[k]) != NULL, "not drawn: %s", said[k]);
+    for (size_t k = 0; k < sizeof english / sizeof *english; k++)
+      ck_assert_msg(!strstr(drawn, english[k]), "still English: %s", english[k]);
+    close_it();
+  }
+  ethd__protocol_free(&protocol);
+}
+END_TEST
+
+START_TEST(test_letters_that_the_font_lacks) {
+  static const struct {
+    const char *study, *message;
+  } cases[] = {
+      {"[words]\ntap = \xe6\x95\xb2\n", "[words] tap: the font DejaVu Sans has no letter \"\xe6\x95\xb2\" (U+6572)"},
+      {"[pages]\nconsent2 = a\xf0\x9f\x91\x86\n", "[pages] consent2: the font DejaVu Sans has no letter"},
+      {"[study]\nsurvey = on\n[survey]\nq1 = \xe4\xbd\xa0?\n", "[survey] q1: the font"},
+      {"[study]\nsurvey = on\n[survey]\nq1 = a\nq1_answers = b | \xe4\xbd\xa0\n", "[survey] q1_answers: the font"}};
+  char message[ETHD_MESSAGE_MAX];
+  open_at(640, 400);
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    const char *study = cases[i].study;
+    ck_assert_msg(!ethd__protocol_parse(study, strlen(study), "a.study", ".", &protocol, message), "%s", message);
+    ck_assert_int_lt(ethd__letters_check(&protocol.questionnaire, screen.window.font[0], message), 0);
+    ck_assert_msg(!strncmp(message, cases[i].message, strlen(cases[i].message)), "%s", message);
+    ethd__protocol_free(&protocol);
+  }
+  close_it();
 }
 END_TEST
 
@@ -169,6 +280,8 @@ int main(void) {
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, test_no_text_lies_on_another);
   tcase_add_test(tests, test_letters_shrink_only_where_they_must);
+  tcase_add_test(tests, test_a_study_in_german);
+  tcase_add_test(tests, test_letters_that_the_font_lacks);
   suite_add_tcase(suite, tests);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_NORMAL);

@@ -1,0 +1,13 @@
+/* Whether a font has the letters of a study's own words. All [main]. */
+#ifndef ETHD_SCREEN_LETTERS_H
+#define ETHD_SCREEN_LETTERS_H
+
+#include <SDL2/SDL_ttf.h>
+
+#include "study/protocol.h"
+
+/* Refuses with the first letter that the font lacks, and where it stands. */
+ETHD_MUST_CHECK ethd_status ethd__letters_check(const ethd__questionnaire *q, const TTF_Font *font,
+                                                char message[ETHD_MESSAGE_MAX]);
+
+#endif
