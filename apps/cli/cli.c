@@ -23,7 +23,7 @@ void ethd__flush_denormals(void) { (void)ethd__denormals_flush(); }
 
 void ethd__begin(void) {
   signal(SIGXFSZ, SIG_IGN);
-  ethd__terminals_plain();
+  if (!ethd__terminals_plain()) ethd__fail_memory();
   argp_program_version = "libethd " ETHD_VERSION;
   argp_err_exit_status = ETHD_EXIT_INPUT;
   ethd__flush_denormals();

@@ -1,12 +1,9 @@
 #include "cli/terminal.h"
 
 #include <errno.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-
-#include "cli/cli.h"
 
 /* Replaces control characters but for tabs and line ends, since a terminal obeys sequences that names and words of files
    may hold. In UTF-8 the characters from 0x80 to 0x9f are two bytes long. */
@@ -41,16 +38,17 @@ static ssize_t put_plain(void *cookie, const char *text, size_t length) {
   return (ssize_t)n;
 }
 
-static FILE *plain_stream(terminal *t, FILE *stream, int mode) {
-  if (!isatty(t->fd)) return stream;
+/* Returns false without memory. */
+static bool make_stream_plain(terminal *t, FILE **stream, int mode) {
+  if (!isatty(t->fd)) return true;
   FILE *plain = fopencookie(t, "w", (cookie_io_functions_t){.write = put_plain});
-  if (!plain) ethd__fail_memory();
+  if (!plain) return false;
   setvbuf(plain, NULL, mode, BUFSIZ);
-  return plain;
+  *stream = plain;
+  return true;
 }
 
-void ethd__terminals_plain(void) {
+bool ethd__terminals_plain(void) {
   static terminal out = {.fd = STDOUT_FILENO}, err = {.fd = STDERR_FILENO};
-  stdout = plain_stream(&out, stdout, _IOLBF);
-  stderr = plain_stream(&err, stderr, _IONBF);
+  return make_stream_plain(&out, &stdout, _IOLBF) && make_stream_plain(&err, &stderr, _IONBF);
 }

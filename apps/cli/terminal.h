@@ -3,7 +3,10 @@
 #ifndef ETHD__CLI_TERMINAL_H
 #define ETHD__CLI_TERMINAL_H
 
-/* From here on a terminal at stdout or stderr gets ? for each of them except tabs and line ends. [main] */
-void ethd__terminals_plain(void);
+#include <stdbool.h>
+
+/* From here on a terminal at stdout or stderr gets ? for each of them except tabs and line ends. Returns false without
+   memory. [main] */
+bool ethd__terminals_plain(void);
 
 #endif

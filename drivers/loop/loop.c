@@ -4,15 +4,6 @@
 #include "denormals.h"
 #include "loop/loop.h"
 
-ethd_status ethd__loop_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
-                              double max) {
-  if (!error) return status;
-  *error = (ethd_error){.status = status, .found = found, .min = min, .max = max};
-  size_t n = strnlen(name, sizeof error->name - 1);
-  memcpy(error->name, name, n);
-  return status;
-}
-
 /* ---- the virtual clock ---- */
 
 uint32_t ethd__loop_units(const ethd_loop *l) {

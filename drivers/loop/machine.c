@@ -45,6 +45,15 @@ const char *ethd_shortfall_sentence(int32_t bit) {
 
 const char *ethd_shortfall_mend(int32_t bit) { return place(bit) < 0 ? "" : words[place(bit)].mend; }
 
+ethd_status ethd__loop_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
+                              double max) {
+  if (!error) return status;
+  *error = (ethd_error){.status = status, .found = found, .min = min, .max = max};
+  size_t n = strnlen(name, sizeof error->name - 1);
+  memcpy(error->name, name, n);
+  return status;
+}
+
 /* ---- asking ---- */
 
 static int first_line(const char *path, char *out, int size) {

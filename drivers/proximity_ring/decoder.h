@@ -20,9 +20,10 @@ typedef struct ethd__ring_frame {
 } ethd__ring_frame;
 
 typedef struct ethd__decoder_counters {
-  uint64_t frames;   /* good ones */
-  uint64_t corrupt;  /* pieces between zeros that are no frame, each as soon as it is known; not the first since a reset */
-  uint64_t lost;     /* by sequence; a corrupt frame is lost too */
+  uint64_t frames; /* good ones */
+  uint64_t
+      corrupt;   /* pieces between zeros that are no frame, each as soon as it is known; not the first since a reset */
+  uint64_t lost; /* by sequence; a corrupt frame is lost too */
   uint64_t repeated; /* frames whose sequence is the last one's: handed on all the same */
 } ethd__decoder_counters;
 
