@@ -1,0 +1,209 @@
+/* Every way in which one frame can be damaged by little: each length, each bit, each pair of bits; of the servo's own framing
+   and of the proximity ring's. Nothing damaged is taken for an answer or a frame, and how many cases there were is asserted,
+   so that none is left out unseen. The answers are put together here, with the checksum of the test's own drive. */
+#include <modbus/modbus.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "proximity_ring/decoder.h"
+#include "servo/frame.h"
+#include "servo/mock.h"
+#include "unit/draw.h"
+#include "unit/rig.h"
+
+#define WORDS 4
+
+static ethd__servo_map map;
+static ethd__servo_frame question;
+static uint8_t good[ETHD__SERVO_FRAME_MAX];
+static int good_length;
+static uint16_t words[ETHD__SERVO_FRAME_MAX / 2];
+
+/* ---- the servo's answers ---- */
+
+enum { WAITS = -1, TAKEN = 0 }; /* or the errno of a refusal */
+
+/* What our framing makes of bytes that come one by one, as drivers/servo/ask.c asks it. */
+static int hear(const uint8_t *bytes, int length) {
+  memset(words, 0xA5, sizeof words);
+  for (int got = 1, whole = 0; got <= length; got++) {
+    if (!ethd__servo_frame_begins(&map, &question, bytes, got)) return EMBBADDATA;
+    if (!whole) whole = ethd__servo_frame_whole(&map, &question, bytes, got);
+    if (whole == got) return ethd__servo_frame_take(&map, &question, bytes, got, words);
+  }
+  return WAITS;
+}
+
+static bool untouched(void) {
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+    if (words[i] != 0xA5A5) return false;
+  return true;
+}
+
+static void put(int value) { good[good_length++] = (uint8_t)value; }
+
+/* As the specification has it (V1.1b3, p. 15, 16, 30, 38): station, function, and bytes of data or what was written where. */
+static void answer_to(int function, int count) {
+  const bool is_tcp = map.transport == ETHD__SERVO_TCP;
+  const int data = function == 16 ? 4 : 1 + 2 * count;
+  good_length = 0;
+  if (is_tcp)
+    for (int i = 0; i < 6; i++) put(i < 4 ? question.bytes[i] : i == 5 ? 2 + data : 0);
+  put((int)map.unit);
+  put(function);
+  if (function == 16)
+    for (int i = 0; i < 4; i++) put(question.bytes[good_length]);
+  else
+    put(2 * count);
+  for (int i = 0; function != 16 && i < 2 * count; i++) put(0x11 * (i + 1));
+  uint16_t crc = mock_crc(good, good_length);
+  if (is_tcp) return;
+  put(map.crc == ETHD__SERVO_CRC_HIGH_FIRST ? crc >> 8 : crc & 0xFF);
+  put(map.crc == ETHD__SERVO_CRC_HIGH_FIRST ? crc & 0xFF : crc >> 8);
+}
+
+static void ask(int function, int count) {
+  const uint16_t out[WORDS] = {1, 2, 3, 4};
+  if (function == 3 || function == 4)
+    ethd__servo_frame_read(&map, function == 4 ? ETHD__SERVO_INPUT : ETHD__SERVO_HOLDING, 0x5308, (uint32_t)count,
+                           &question);
+  else if (function == 16)
+    ethd__servo_frame_write(&map, 0x5308, (uint32_t)count, out, &question);
+  else
+    ethd__servo_frame_both(&map, (ethd__servo_span){0x5308, 2}, out, (ethd__servo_span){0x5414, (uint32_t)count},
+                           &question);
+  answer_to(function, count);
+  ck_assert_int_eq(hear(good, good_length), TAKEN);
+  ck_assert_int_eq(untouched(), function == 16);
+}
+
+typedef struct sweep {
+  long lengths, bits, pairs, data; /* data: bits of a tcp answer's words, which nothing protects */
+} sweep;
+
+static void flip(uint8_t *bytes, int bit) { bytes[bit / 8] ^= (uint8_t)(1 << bit % 8); }
+
+static void refused(const uint8_t *bytes, int length) {
+  ck_assert_int_ne(hear(bytes, length), TAKEN);
+  ck_assert(untouched());
+}
+
+static void damage_answer(int function, sweep *s) {
+  const int bits = 8 * good_length;
+  uint8_t bad[ETHD__SERVO_FRAME_MAX];
+  for (int n = 0; n < good_length; n++, s->lengths++) ck_assert_int_eq(hear(good, n), WAITS);
+  for (int a = 0; a < bits; a++) {
+    bool is_word = map.transport == ETHD__SERVO_TCP && function != 16 && a / 8 >= 9;
+    memcpy(bad, good, sizeof bad);
+    flip(bad, a);
+    if (is_word) {
+      s->data++;
+      continue;
+    }
+    refused(bad, good_length);
+    s->bits++;
+    for (int b = 0; map.transport == ETHD__SERVO_RTU && b < a; b++, s->pairs++) {
+      flip(bad, b);
+      refused(bad, good_length);
+      flip(bad, b);
+    }
+  }
+}
+
+START_TEST(test_servo) {
+  static const int functions[] = {3, 4, 16, 23};
+  const struct {
+    int transport, crc;
+  } lines[] = {{ETHD__SERVO_RTU, ETHD__SERVO_CRC_HIGH_FIRST},
+               {ETHD__SERVO_RTU, ETHD__SERVO_CRC_LOW_FIRST},
+               {ETHD__SERVO_TCP, ETHD__SERVO_CRC_LOW_FIRST}};
+  sweep s = {0, 0, 0, 0};
+  for (size_t l = 0; l < sizeof lines / sizeof *lines; l++)
+    for (size_t f = 0; f < sizeof functions / sizeof *functions; f++)
+      for (int count = 1; count <= WORDS; count++) {
+        map = (ethd__servo_map){.transport = lines[l].transport, .crc = lines[l].crc, .unit = 17};
+        ask(functions[f], count);
+        damage_answer(functions[f], &s);
+      }
+  printf("servo: %ld lengths, %ld bits, %ld pairs of bits refused; %ld bits of words are tcp's own to protect\n",
+         s.lengths, s.bits, s.pairs, s.data);
+  /* by hand: an rtu answer has 7, 9, 11, 13 bytes (3, 4 and 23), or 8 (16); a tcp answer 11, 13, 15, 17, or 12 */
+  ck_assert_int_eq(s.lengths, 2 * (3 * 40 + 32) + 3 * 56 + 48);
+  ck_assert_int_eq(s.bits, 8 * (2 * (3 * 40 + 32) + 3 * 4 * 9 + 48));
+  ck_assert_int_eq(s.pairs, 2 * (3 * (56 * 55 + 72 * 71 + 88 * 87 + 104 * 103) + 4 * 64 * 63) / 2);
+  ck_assert_int_eq(s.data, 8 * 3 * (2 + 4 + 6 + 8));
+}
+END_TEST
+
+/* ---- the ring's frames ---- */
+
+static ethd__ring_frame frames[3];
+static uint8_t wire[3][ETHD__FRAME_WIRE];
+
+static bool is_frame_of_ours(const ethd__ring_frame *f) {
+  for (int i = 0; i < 3; i++)
+    if (f->seq == frames[i].seq && f->t_us == frames[i].t_us && f->flags == frames[i].flags &&
+        !memcmp(f->counts, frames[i].counts, sizeof f->counts))
+      return true;
+  return false;
+}
+
+/* A good frame, `middle`, a good frame: how many come out; each must be one that was sent. */
+static int decode(const uint8_t *middle, size_t length) {
+  uint8_t bytes[4 * ETHD__FRAME_WIRE + 1] = {0};
+  ethd__decoder d = {.held = 0};
+  ethd__ring_frame out;
+  size_t n = 1;
+  int count = 0;
+  memcpy(bytes + n, wire[0], ETHD__FRAME_WIRE), n += ETHD__FRAME_WIRE;
+  memcpy(bytes + n, middle, length), n += length;
+  memcpy(bytes + n, wire[2], ETHD__FRAME_WIRE), n += ETHD__FRAME_WIRE;
+  for (const uint8_t *at = bytes; ethd__decoder_next(&d, &at, bytes + n, &out); count++)
+    ck_assert_msg(is_frame_of_ours(&out), "a damaged frame passes");
+  return count;
+}
+
+START_TEST(test_ring) {
+  const int bits = 8 * ETHD__FRAME_WIRE;
+  long lengths = 0, flips = 0, pairs = 0;
+  for (int i = 0; i < 3; i++) {
+    frames[i] = (ethd__ring_frame){.type = ETHD__FRAME_TYPE, .seq = (uint16_t)(300 + i), .t_us = 1000000u + 3333u * (uint32_t)i};
+    for (int k = 0; k < ETHD__FRAME_SENSORS; k++) frames[i].counts[k] = (uint16_t)draw_bits((uint64_t)(16 * i + k));
+    ethd__frame_encode(&frames[i], wire[i]);
+  }
+  ck_assert_int_eq(decode(wire[1], ETHD__FRAME_WIRE), 3);
+  for (size_t n = 0; n < ETHD__FRAME_WIRE; n++, lengths++) ck_assert_int_le(decode(wire[1], n), 2);
+  for (size_t n = 1; n <= ETHD__FRAME_WIRE; n++, lengths++) { /* longer: by bytes before its zero */
+    uint8_t longer[2 * ETHD__FRAME_WIRE];
+    memset(longer, 0x55, sizeof longer);
+    memcpy(longer, wire[1], ETHD__FRAME_WIRE - 1);
+    longer[ETHD__FRAME_WIRE - 1 + n] = 0;
+    ck_assert_int_eq(decode(longer, ETHD__FRAME_WIRE + n), 2);
+  }
+  for (int a = 0; a < bits; a++, flips++) {
+    uint8_t bad[ETHD__FRAME_WIRE];
+    memcpy(bad, wire[1], sizeof bad);
+    flip(bad, a);
+    ck_assert_int_le(decode(bad, sizeof bad), 2);
+    for (int b = 0; b < a; b++, pairs++) {
+      flip(bad, b);
+      ck_assert_int_le(decode(bad, sizeof bad), 2);
+      flip(bad, b);
+    }
+  }
+  printf("ring: %ld lengths, %ld bits, %ld pairs of bits refused\n", lengths, flips, pairs);
+  ck_assert_int_eq(lengths, 44 + 44);
+  ck_assert_int_eq(flips, 352);
+  ck_assert_int_eq(pairs, 352 * 351 / 2);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("bad_frames");
+  TCase *t = tcase_create("bad_frames");
+  tcase_set_timeout(t, 120);
+  tcase_add_test(t, test_servo);
+  tcase_add_test(t, test_ring);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}
