@@ -210,23 +210,12 @@ static ethd_status open_all(const naming *n, const char *ids) {
 
 /* ---- what is to go wrong ---- */
 
-/* Puts the injecting driver around an open device; closes it when that fails. */
-static ethd_status inject(const ethd_device_def *def, const char *file, const ethd_driver **driver, void **device,
-                          char *message) {
-  ethd__script script = {.count = 0};
-  char *path = ethd__path_join(def->folder, file);
+/* The script, before anything is opened. */
+static ethd_status load_script(const naming *n, const char *file, ethd__script *out) {
+  char *path = ethd__path_join(n->def->folder, file);
   ethd_status status =
-      path ? ethd__script_load(path, def->setup->period, &script, message) : ethd__no_memory(message, NULL);
+      path ? ethd__script_load(path, n->def->setup->period, out, n->message) : ethd__no_memory(n->message, NULL);
   free(path);
-  void *inner = *device;
-  *device = NULL;
-  if (status) {
-    (*driver)->close(inner);
-  } else {
-    status = ethd__inject_around(*driver, inner, &script, device);
-    if (status) ethd__say(message, status, "%s", ethd_status_sentence(status));
-  }
-  *driver = status ? NULL : &ethd__driver_inject;
   return status;
 }
 
@@ -235,18 +224,26 @@ typedef struct opened {
   void *device;
 } opened;
 
+/* The drivers, and around them the one that injects, where a script says what. */
 static ethd_status open_stack(const naming *n, const char *ids, opened *out) {
-  ethd__stack *s = n->stack;
+  ethd__script script = {.count = 0};
   *out = (opened){.driver = NULL};
-  if (!s) return ethd__no_memory(n->message, NULL);
-  ethd_status status = open_all(n, ids);
+  if (!n->stack) return ethd__no_memory(n->message, NULL);
+  const ethd_setting *wrong = find_common(n->def, INJECT);
+  ethd_status status = wrong ? load_script(n, wrong->value, &script) : ETHD_OK;
+  if (!status) status = open_all(n, ids);
   if (status) {
-    ethd__driver_stack.close(s);
+    ethd__script_free(&script);
+    ethd__driver_stack.close(n->stack);
     return status;
   }
-  *out = (opened){&ethd__driver_stack, s};
-  const ethd_setting *script = find_common(n->def, INJECT);
-  return script ? inject(n->def, script->value, &out->driver, &out->device, n->message) : ETHD_OK;
+  *out = (opened){&ethd__driver_stack, n->stack};
+  if (!wrong) return ETHD_OK;
+  status = ethd__inject_around(out->driver, n->stack, &script, &out->device);
+  out->driver = &ethd__driver_inject;
+  if (!status) return ETHD_OK;
+  *out = (opened){.driver = NULL};
+  return ethd__say(n->message, status, "%s", ethd_status_sentence(status));
 }
 
 ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from, const ethd_device_def *def,

@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "ethd/driver.h"
+#include "device/settings.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
@@ -11,6 +11,15 @@ static ethd_status refuse(const ethd_device_def *def, const ethd_setting *s, eth
   char quote[ETHD_QUOTE_MAX];
   return ethd__say(message, status, "%s:%d: device.%s: found %s, %s is allowed", def->file ? def->file : "the defaults",
                    s->line, s->key, ethd__quote(s->value, strlen(s->value), quote), allowed);
+}
+
+ethd_status ethd__setting_refuse(const ethd_device_def *def, const char *key, const char *allowed,
+                                 char message[ETHD_MESSAGE_MAX]) {
+  const ethd_setting *s = NULL;
+  for (uint32_t k = 0; k < def->setting_count; k++)
+    if (!strcmp(def->settings[k].key, key)) s = &def->settings[k];
+  if (s) return refuse(def, s, ETHD_E_RANGE, allowed, message);
+  return ethd__say(message, ETHD_E_RANGE, "device.%s: %s is allowed", key, allowed);
 }
 
 static void add_name(char *list, size_t room, const char *name) {

@@ -122,4 +122,5 @@ const ethd_driver ethd_driver_excite = {
     .start = start,
     .read = read_finger,
     .close = free,
-    .limits = limits};
+    .limits = limits,
+    .prepare = open_excite /* it touches nothing */};

@@ -65,11 +65,11 @@ ethd_status ethd__finger_bus_service(ethd__finger_bus *b, int64_t now_ns) {
 
 /* ---- [main] ---- */
 
-static ethd_status listen_first(ethd__finger_bus *b, double seconds, char *message) {
+static ethd_status listen_first(ethd__finger_bus *b, char *message) {
   ethd__decoder d = {0};
   uint8_t bytes[ROOM];
   uint64_t all = 0;
-  int64_t end = ethd__clock_now() + (int64_t)(1e9 * seconds);
+  int64_t end = ethd__clock_now() + (int64_t)(1e9 * b->patience);
   while (d.counters.frames < FRAMES && ethd__clock_now() < end) {
     int64_t got = ethd__ring_port_read(&b->port, WAIT_MS, bytes, sizeof bytes);
     if (got < 0) return ethd__say(message, ETHD_E_DEVICE, "%s: the line is gone", b->port.path);
@@ -81,18 +81,23 @@ static ethd_status listen_first(ethd__finger_bus *b, double seconds, char *messa
   if (d.counters.frames >= FRAMES) return ETHD_OK;
   return ethd__say(message, ETHD_E_DEVICE,
                    "%s: %llu bytes but %llu frames in %g s: is it connected, powered, and %u its baud?", b->port.path,
-                   (unsigned long long)all, (unsigned long long)d.counters.frames, seconds, b->port.baud);
+                   (unsigned long long)all, (unsigned long long)d.counters.frames, b->patience, b->port.baud);
 }
 
-ethd_status ethd__finger_bus_open(ethd__finger_bus *b, const ethd_device_def *def, const char *port, const double *p,
-                                  char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__finger_bus_prepare(ethd__finger_bus *b, const ethd_device_def *def, const char *port, const double *p,
+                                     char message[ETHD_MESSAGE_MAX]) {
   b->is_virtual = def->is_virtual;
   b->clock.delay = p[ETHD__BUS_DELAY];
   b->port =
       (ethd__ring_port){.path = ethd__path_join(def->folder, port), .baud = (uint32_t)p[ETHD__BUS_BAUD], .fd = -1};
-  if (ethd__inbox_open(&b->inbox, ETHD__FRAME_RATE) || !b->port.path) return ethd__no_memory(message, NULL);
+  b->patience = p[ETHD__BUS_PATIENCE];
+  bool is_made = ethd__inbox_open(&b->inbox, ETHD__FRAME_RATE) == ETHD_OK && b->port.path;
+  return is_made ? ETHD_OK : ethd__no_memory(message, NULL);
+}
+
+ethd_status ethd__finger_bus_open(ethd__finger_bus *b, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = ethd__ring_port_open(&b->port, ethd__clock_now(), message);
-  return status ? status : listen_first(b, p[ETHD__BUS_PATIENCE], message);
+  return status ? status : listen_first(b, message);
 }
 
 void ethd__finger_bus_close(ethd__finger_bus *b) {

@@ -21,16 +21,20 @@ typedef struct ethd__finger_bus {
   ethd__bus_means *means;
   const void *sensor;
   bool is_virtual; /* the clock */
+  double patience; /* s, for the first frames */
   ethd__ring_port port;
   ethd__decoder decoder;
   ethd__board_clock clock;
   ethd__inbox inbox;
 } ethd__finger_bus;
 
-/* Opens the port (relative to def->folder) and waits for its first frames. `bus` zeroed, with `means` and `sensor`; it is
+/* Everything but the port, which stands at `port` relative to def->folder. `bus` zeroed, with `means` and `sensor`; it is
    closed also after a failure. p: the driver's settings. [main] */
-ETHD_MUST_CHECK ethd_status ethd__finger_bus_open(ethd__finger_bus *bus, const ethd_device_def *def, const char *port,
-                                                  const double *p, char message[ETHD_MESSAGE_MAX]);
+ETHD_MUST_CHECK ethd_status ethd__finger_bus_prepare(ethd__finger_bus *bus, const ethd_device_def *def,
+                                                     const char *port, const double *p, char message[ETHD_MESSAGE_MAX]);
+
+/* Then opens the port and waits for its first frames. [main] */
+ETHD_MUST_CHECK ethd_status ethd__finger_bus_open(ethd__finger_bus *bus, char message[ETHD_MESSAGE_MAX]);
 void ethd__finger_bus_close(ethd__finger_bus *bus);
 
 /* As a driver's service. */

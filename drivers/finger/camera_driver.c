@@ -36,6 +36,9 @@ static const char *const keys[] = {[LISTEN] = "listen", [FROM] = "from", [KEYS] 
 typedef struct camera {
   int fd;                            /* -1: not open */
   struct sockaddr_storage from, own; /* from: ss_family 0: whoever is on this machine */
+  socklen_t own_length;
+  const char *where; /* `own` as it was given; while it is opened */
+  double patience;   /* s, for the first datagram */
   double rate;
   bool is_virtual; /* the clock */
   ethd__camera_clock clock;
@@ -149,9 +152,9 @@ static ethd_status refuse(const ethd_device_def *def, const ethd_setting *s, con
 }
 
 static ethd_status find_addresses(camera *c, const ethd_device_def *def, const ethd_setting *texts[KEYS],
-                                  socklen_t *length, char *message) {
+                                  char *message) {
   socklen_t other;
-  if (!texts[LISTEN] || !parse_listen(texts[LISTEN]->value, &c->own, length))
+  if (!texts[LISTEN] || !parse_listen(texts[LISTEN]->value, &c->own, &c->own_length))
     return refuse(def, texts[LISTEN], keys[LISTEN], "an address and a port as 127.0.0.1:9871 is allowed", message);
   if (texts[FROM] && !find_address(texts[FROM]->value, NULL, &c->from, &other))
     return refuse(def, texts[FROM], keys[FROM], "the bridge's address as 192.168.1.7 is allowed", message);
@@ -161,20 +164,19 @@ static ethd_status find_addresses(camera *c, const ethd_device_def *def, const e
   return ETHD_OK;
 }
 
-static ethd_status wait_first(camera *c, const char *where, double seconds, char *message) {
+static ethd_status wait_first(camera *c, char *message) {
   struct pollfd wait = {c->fd, POLLIN, 0};
-  int64_t end = ethd__clock_now() + (int64_t)(1e9 * seconds);
+  int64_t end = ethd__clock_now() + (int64_t)(1e9 * c->patience);
   while (c->inbox.newest.readings == 0 && c->clock.started == false && ethd__clock_now() < end)
     if (poll(&wait, 1, WAIT_MS) > 0) (void)receive(c, ethd__clock_now());
   if (c->clock.started) return ETHD_OK;
   return ethd__say(message, ETHD_E_DEVICE, "%s: no exposure came in %g s, %llu other datagrams: does the bridge run?",
-                   where, seconds, (unsigned long long)c->inbox.newest.lost);
+                   c->where, c->patience, (unsigned long long)c->inbox.newest.lost);
 }
 
-static ethd_status camera_open(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
+static ethd_status camera_prepare(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
   const ethd_setting *texts[KEYS] = {NULL};
   double p[PARAMS];
-  socklen_t length = 0;
   *device = NULL;
   ethd_params_default(params, PARAMS, p);
   ethd_status status = ethd_settings_read(&ethd_driver_camera, def, p, texts, message);
@@ -186,12 +188,19 @@ static ethd_status camera_open(const ethd_device_def *def, void **device, char m
   c->is_virtual = def->is_virtual;
   c->clock.delay = (int64_t)(1e9 * p[DELAY]);
   if (ethd__inbox_open(&c->inbox, p[RATE])) return ethd__no_memory(message, NULL);
-  status = find_addresses(c, def, texts, &length, message);
+  c->patience = p[PATIENCE];
+  c->where = texts[LISTEN] ? texts[LISTEN]->value : "";
+  return find_addresses(c, def, texts, message);
+}
+
+static ethd_status camera_open(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = camera_prepare(def, device, message);
   if (status) return status;
+  camera *c = *device;
   c->fd = socket(c->own.ss_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (c->fd < 0 || bind(c->fd, (const struct sockaddr *)&c->own, length))
-    return ethd__say(message, ETHD_E_DEVICE, "%s: %s", texts[LISTEN]->value, strerror(errno));
-  status = wait_first(c, texts[LISTEN]->value, p[PATIENCE], message);
+  if (c->fd < 0 || bind(c->fd, (const struct sockaddr *)&c->own, c->own_length))
+    return ethd__say(message, ETHD_E_DEVICE, "%s: %s", c->where, strerror(errno));
+  status = wait_first(c, message);
   /* the first ones came in their own time; on a virtual clock the count begins with the run */
   c->clock = (ethd__camera_clock){.delay = c->clock.delay};
   c->inbox.newest = (ethd__sighting){0};
@@ -234,4 +243,5 @@ const ethd_driver ethd_driver_camera = {
     .close = camera_close,
     .limits = limits,
     .figures = figures,
+    .prepare = camera_prepare,
 };

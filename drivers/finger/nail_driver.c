@@ -2,6 +2,7 @@
    frame, with that sensor's calibration. */
 #include <stdlib.h>
 
+#include "device/settings.h"
 #include "ethd/maths.h"
 #include "finger/bus.h"
 #include "finger/nail.h"
@@ -55,15 +56,15 @@ static ethd_status load(const ethd_device_def *def, const ethd_setting *file, na
 }
 
 static ethd_status check(const ethd_device_def *def, const ethd_setting *texts[KEYS], const double *p, char *message) {
-  const char *what = !texts[PORT]                       ? "port is missing: the sensor's line, as /dev/ttyUSB0"
-                     : !texts[CALIBRATION]              ? "calibration is missing: what its counts mean"
-                     : p[SENSOR] != (uint32_t)p[SENSOR] ? "sensor: a whole number is allowed"
-                                                        : NULL;
+  const char *what = !texts[PORT]          ? "port is missing: the sensor's line, as /dev/ttyUSB0"
+                     : !texts[CALIBRATION] ? "calibration is missing: what its counts mean"
+                                           : NULL;
+  if (p[SENSOR] != (uint32_t)p[SENSOR]) return ethd__setting_refuse(def, "sensor", "a whole number", message);
   if (!what) return ETHD_OK;
   return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.%s", def->file ? def->file : "the defaults", what);
 }
 
-static ethd_status nail_open(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
+static ethd_status nail_prepare(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
   const ethd_setting *texts[KEYS] = {NULL};
   double p[PARAMS];
   *device = NULL;
@@ -85,7 +86,12 @@ static ethd_status nail_open(const ethd_device_def *def, void **device, char mes
     return status;
   }
   *device = n;
-  return ethd__finger_bus_open(&n->bus, def, texts[PORT]->value, p, message);
+  return ethd__finger_bus_prepare(&n->bus, def, texts[PORT]->value, p, message);
+}
+
+static ethd_status nail_open(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = nail_prepare(def, device, message);
+  return status ? status : ethd__finger_bus_open(&((nail_plate *)*device)->bus, message);
 }
 
 static ethd_status nail_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
@@ -131,4 +137,5 @@ const ethd_driver ethd_driver_nail = {
     .limits = limits,
     .figures = figures,
     .remark = remark,
+    .prepare = nail_prepare,
 };

@@ -2,6 +2,7 @@
    reaches `level`. */
 #include <stdlib.h>
 
+#include "device/settings.h"
 #include "finger/bus.h"
 #include "finger/zones.h"
 #include "text/error_text.h"
@@ -35,17 +36,17 @@ static bool means(const void *sensor, const uint16_t counts[ETHD__FRAME_SENSORS]
   return ethd__zones_centre(&r->zones, lit, &out->centre, &out->noise);
 }
 
-static ethd_status zones_open(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
+static ethd_status zones_prepare(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
   const ethd_setting *port = NULL;
   double p[PARAMS];
   *device = NULL;
   ethd_params_default(params, PARAMS, p);
   ethd_status status = ethd_settings_read(&ethd_driver_zones, def, p, &port, message);
   if (status) return status;
-  if (!port || p[ZONES] != (uint32_t)p[ZONES])
-    return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.%s", def->file ? def->file : "the defaults",
-                     port ? "zones: a whole number is allowed"
-                          : "port is missing: the barriers' line, as /dev/ttyUSB0");
+  if (p[ZONES] != (uint32_t)p[ZONES]) return ethd__setting_refuse(def, "zones", "a whole number", message);
+  if (!port)
+    return ethd__say(message, ETHD_E_ARGUMENT, "%s: device.port is missing: the barriers' line, as /dev/ttyUSB0",
+                     def->file ? def->file : "the defaults");
   zones_ring *r = *device = calloc(1, sizeof *r);
   if (!r) return ETHD_E_MEMORY;
   ethd__zones_prepare((uint32_t)p[ZONES], p[REACH], def->setup->ring_radius, def->setup->finger_radius, p[SWITCHING],
@@ -53,7 +54,12 @@ static ethd_status zones_open(const ethd_device_def *def, void **device, char me
   r->level = p[LEVEL];
   r->bus.means = means;
   r->bus.sensor = r;
-  return ethd__finger_bus_open(&r->bus, def, port->value, p, message);
+  return ethd__finger_bus_prepare(&r->bus, def, port->value, p, message);
+}
+
+static ethd_status zones_open(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
+  ethd_status status = zones_prepare(def, device, message);
+  return status ? status : ethd__finger_bus_open(&((zones_ring *)*device)->bus, message);
 }
 
 static ethd_status zones_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
@@ -93,4 +99,5 @@ const ethd_driver ethd_driver_zones = {
     .close = zones_close,
     .limits = limits,
     .figures = figures,
+    .prepare = zones_prepare,
 };

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "device/settings.h"
 #include "servo/device.h"
 #include "servo/wire.h"
 #include "servo/words.h"
@@ -47,12 +48,9 @@ static ethd_status read_settings(const ethd_device_def *def, settings *out, char
     status =
         ethd__say(message, ETHD_E_ARGUMENT, "%s: device.map is missing: a servo needs its register map", file(def));
   if (!status && !isnan(out->p[ETHD__SERVO_JOINT]) && out->p[ETHD__SERVO_JOINT] != rint(out->p[ETHD__SERVO_JOINT]))
-    status = ethd__say(message, ETHD_E_RANGE, "%s: device.joint: found %g, 1 and 2 are allowed", file(def),
-                       out->p[ETHD__SERVO_JOINT]);
+    status = ethd__setting_refuse(def, "joint", "1 or 2", message);
   for (int i = ETHD__SERVO_HOME_WAY1; i <= ETHD__SERVO_HOME_WAY2 && !status; i++)
-    if (fabs(out->p[i]) != 1)
-      status = ethd__say(message, ETHD_E_RANGE, "%s: device.%s: found %g, 1 and -1 are allowed", file(def),
-                         ethd__servo_params[i].name, out->p[i]);
+    if (fabs(out->p[i]) != 1) status = ethd__setting_refuse(def, ethd__servo_params[i].name, "1 or -1", message);
   return status;
 }
 

@@ -30,6 +30,7 @@ static ethd_status add_driver(ethd__config *c, const ethd__config_key *key, cons
     path = whole_path(c, name + mark, length - mark);
     if (!path) return ethd__no_memory(key->message, key->file);
   }
+  if (!length) return ethd__key_refuse(key, ETHD_E_SYNTAX, "a driver's name is missing before or after a comma");
   int written = path ? snprintf(to + n, room, "%s%s%s", n ? ", " : "", ETHD_DRIVER_FILE, path)
                      : snprintf(to + n, room, "%s%.*s", n ? ", " : "", (int)length, name);
   free(path);

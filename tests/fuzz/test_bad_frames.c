@@ -167,7 +167,8 @@ START_TEST(test_ring) {
   const int bits = 8 * ETHD__FRAME_WIRE;
   long lengths = 0, flips = 0, pairs = 0;
   for (int i = 0; i < 3; i++) {
-    frames[i] = (ethd__ring_frame){.type = ETHD__FRAME_TYPE, .seq = (uint16_t)(300 + i), .t_us = 1000000u + 3333u * (uint32_t)i};
+    frames[i] = (ethd__ring_frame){
+        .type = ETHD__FRAME_TYPE, .seq = (uint16_t)(300 + i), .t_us = 1000000u + 3333u * (uint32_t)i};
     for (int k = 0; k < ETHD__FRAME_SENSORS; k++) frames[i].counts[k] = (uint16_t)draw_bits((uint64_t)(16 * i + k));
     ethd__frame_encode(&frames[i], wire[i]);
   }
