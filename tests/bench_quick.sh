@@ -7,7 +7,7 @@ trap 'rm -rf "$folder"' EXIT
 bench=$BUILD/bin/ethd-bench
 fail() { echo "$*"; exit 1; }
 
-for what in fits filters velocity kinematics hours sensors identify; do
+for what in fits filters velocity kinematics hours sensors identify readers; do
   "$bench" $what --quick --out "$folder" --about "a test" >"$folder/$what.txt" || fail "$what failed"
   head -n 1 "$folder/$what.csv" | grep -q '^# libethd .*compiler' || fail "$what.csv doesn't say what measured it"
   grep -q '^# a test$' "$folder/$what.csv" || fail "$what.csv doesn't hold what --about says"
