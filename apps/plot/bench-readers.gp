@@ -7,6 +7,7 @@ set terminal pngcairo size 1150,700 font "Sans,15" background "#ffffff"
 set output out
 set datafile separator comma
 set datafile columnheaders
+set datafile missing NaN
 
 grey = "#7a7a7a"
 set border 3 lc rgb grey
@@ -25,5 +26,5 @@ set key at screen 0.985,0.84 right top Left reverse samplen 2 spacing 1.3 noenha
 array reader[5] = ["SVG circles", "SVG path", "scene", "motion CSV", "taps of a report"]
 array tint[5] = ["#333333", "#1f5fa8", "#c0392b", "#2e7d4f", "#b07d12"]
 here(i, own) = strcol("reader") eq reader[i] && (strcol("who") eq "libethd") == own ? column("ns_per_byte") : NaN
-plot for [i = 1:5] in using "bytes":(here(i, 1)) smooth unique with linespoints pt 7 ps 1.2 lw 2.5 lc rgb tint[i] title reader[i], \
-     for [i = 1:5] in using "bytes":(here(i, 0)) smooth unique with linespoints pt 6 ps 1 lw 1.2 dt 2 lc rgb tint[i] notitle
+plot for [i = 1:5] in using "bytes":(here(i, 1)) with linespoints pt 7 ps 1.2 lw 2.5 lc rgb tint[i] title reader[i], \
+     for [i = 1:5] in using "bytes":(here(i, 0)) with linespoints pt 6 ps 1 lw 1.2 dt 2 lc rgb tint[i] notitle
