@@ -16,7 +16,7 @@ const ethd__plant_row ethd__plant_rows[] = {
     ROW("device", "force_limit", "N", 0, 1e6, force_limit, "torque limit of each joint / L"),
     ROW("device", "friction", "N", 0, 1e3, friction, "f_c of f_c tanh(v / 3 mm/s) + b_v v"),
     ROW("device", "viscous", "Ns/m", 0, 1e3, viscous, "b_v, likewise"),
-    ROW("device", "delay", "s", 0, 1, delay, "from measurement to torque, at most one period"),
+    ROW("device", "delay", "s", 0, 1, delay, "from measurement to torque, at most eight periods"),
     ROW("device", "count", "rad", 0, 1, count, "one encoder count at the joint; 0: ideal"),
     ROW("device", "count_phase", "zero|drawn", 0, 1, count_phase, "encoder phase, per tap and joint"),
     ROW("transmission", "motor_mass", "kg", 0, 1e3, motor_mass, "part of the mass on the motor's side"),
@@ -138,7 +138,7 @@ ethd_status ethd__sim_check(const ethd_sim_def *def, ethd_error *error) {
   if (!status) status = within(error, "period", def->period, 1e-6, 1);
   if (!status) status = within(error, "step", def->step, 1e-7, 1);
   if (!status) status = within(error, "tolerance", def->tolerance, 1e-14, INFINITY);
-  if (!status) status = within(error, "device.delay", p->delay, 0, def->period);
+  if (!status) status = within(error, "device.delay", p->delay, 0, ETHD_SIM_DELAY_PERIODS * def->period);
   if (!status) status = within(error, "ring.radius", def->ring_radius, p->finger_radius + 2 * p->finger_radius_sd, 10);
   return status;
 }

@@ -16,8 +16,10 @@ struct ethd_sim {
   ethd_path path;
   ethd__piece piece;
   int64_t tick;
-  double t;    /* s, always tick * period between writes */
-  double cell; /* s, of the grid of steps: a whole part of the period */
+  double t;                              /* s, always tick * period between writes */
+  double cell;                           /* s, of the grid of steps: a whole part of the period */
+  int periods;                           /* whole ones of the delay, after which a torque takes effect within one */
+  double way[ETHD_SIM_DELAY_PERIODS][2]; /* Nm: torques of the last ticks that wait for that */
 };
 
 /* ---- create ---- */
@@ -86,6 +88,8 @@ ethd_status ethd_sim_start(ethd_sim *sim, const ethd_sim_tap *tap) {
   sim->path = tap->path;
   sim->tick = 0;
   sim->t = 0;
+  sim->periods = (int)fmax(0, ceil(sim->def.plant.delay / sim->def.period) - 1);
+  memset(sim->way, 0, sizeof sim->way);
   sim->cell = sim->def.period / fmax(1, ceil(sim->def.period / sim->def.step - 1e-9));
   ethd__sim_state state;
   memset(&state, 0, sizeof state);
@@ -166,10 +170,21 @@ static void go_on(ethd_sim *sim, double until, double update) {
   }
 }
 
+/* The torque of the command that is `periods` ticks old. */
+static void pass_on(ethd_sim *sim, const ethd_command *command, double out[2]) {
+  double *waiting = sim->way[sim->periods ? sim->tick % sim->periods : 0], now[2];
+  saturate(sim, command, now);
+  for (int j = 0; j < 2; j++) {
+    out[j] = sim->periods ? waiting[j] : now[j];
+    waiting[j] = now[j];
+  }
+}
+
 void ethd_sim_write(ethd_sim *sim, const ethd_command *command) {
-  double delay = sim->def.plant.delay, update = sim->t + delay, end = tick_time(sim, sim->tick + 1);
+  double delay = sim->def.plant.delay - sim->periods * sim->def.period, update = sim->t + delay,
+         end = tick_time(sim, sim->tick + 1);
   go_on(sim, update, update);
-  saturate(sim, command, sim->body.torque);
+  pass_on(sim, command, sim->body.torque);
   go_on(sim, end, end + delay);
   take_due(sim, end);
   sim->t = end;

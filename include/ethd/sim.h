@@ -24,12 +24,14 @@ enum {
   ETHD_READING_COUNT
 };
 
+#define ETHD_SIM_DELAY_PERIODS 8
+
 typedef struct ethd_plant {
   double mass[2];                             /* kg at the ring, x (joint 1) and y (joint 2): inertia = mass L^2 */
   double coupling;                            /* H, kg m^2: inertia coupling H cos(th2 - th1) */
   double force_limit;                         /* N: torque limit of each joint / L */
   double friction, viscous;                   /* f_c N, b_v Ns/m: torque L (f_c tanh(v / 3 mm/s) + b_v v), v = L dq */
-  double delay;                               /* s, measurement to torque */
+  double delay;                               /* s, measurement to torque, at most ETHD_SIM_DELAY_PERIODS periods */
   double count;                               /* rad per encoder count at the joint; 0: ideal encoders */
   int32_t count_phase;                        /* 1: the encoder's phase is drawn per tap and joint; 0: phase 0 */
   double motor_mass;                          /* kg, part of mass on the motor's side; used when stiffness is finite */

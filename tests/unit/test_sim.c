@@ -52,7 +52,7 @@ END_TEST
 
 /* Without friction th = alpha (t - delay)^2 / 2 from the first tick on; too much torque is cut at F L. */
 START_TEST(test_saturation_and_delay) {
-  static const double delays[] = {0, 71e-6, 273e-6, 0.9e-3, 1e-3};
+  static const double delays[] = {0, 71e-6, 273e-6, 0.9e-3, 1e-3, 1.3e-3, 2e-3, 7.6e-3, 8e-3};
   ethd_sim_def def = sim_def();
   ethd_sim_tap tap = sim_tap();
   def.plant.friction = def.plant.viscous = 0;
@@ -226,7 +226,7 @@ START_TEST(test_refused_definitions) {
       {"device.mass_x", offsetof(ethd_sim_def, plant.mass[0]), 0},
       {"device.mass_y", offsetof(ethd_sim_def, plant.mass[1]), NAN},
       {"device.coupling", offsetof(ethd_sim_def, plant.coupling), 0.02},
-      {"device.delay", offsetof(ethd_sim_def, plant.delay), 1.001e-3},
+      {"device.delay", offsetof(ethd_sim_def, plant.delay), 8.001e-3},
       {"transmission.stiffness", offsetof(ethd_sim_def, plant.stiffness), 0},
       {"transmission.motor_mass", offsetof(ethd_sim_def, plant.stiffness), 1000},
       {"finger.mass", offsetof(ethd_sim_def, plant.finger_mass), -1},
@@ -283,7 +283,7 @@ int main(void) {
   TCase *t = tcase_create("sim");
   tcase_add_test(t, test_start);
   tcase_add_test(t, test_time);
-  tcase_add_loop_test(t, test_saturation_and_delay, 0, 5);
+  tcase_add_loop_test(t, test_saturation_and_delay, 0, 9);
   tcase_add_test(t, test_torque_changes_in_time);
   tcase_add_test(t, test_safe);
   tcase_add_loop_test(t, test_free_finger, 0, 2);

@@ -1,0 +1,170 @@
+#include "explain/search.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/cli.h"
+#include "ethd/ethd.h"
+#include "sim/random.h"
+#include "text/error_text.h"
+#include "text/text.h"
+
+#define BEST 0.15     /* share of the population from which p is taken */
+#define CROSSING 0.85 /* of the numbers that a child takes from its step */
+#define STEP_LEAST 0.3
+#define STEP_MOST 0.9
+
+/* ---- draws ---- */
+
+enum { FACTOR, PARENT_BEST, PARENT_A, PARENT_B, ALWAYS, CROSS, FIRST };
+
+static double draw(const ethd__explain_search *s, uint32_t generation, uint32_t number, uint32_t what, uint32_t which) {
+  const ethd__sim_key key = {s->question->seed, ((uint64_t)generation << 32) + number};
+  return ethd__uniform(key, what, which);
+}
+
+static uint32_t index_of(double share, uint32_t count) { return (uint32_t)(share * count); }
+
+/* Numbers of the population, the best first. */
+static void rank(const ethd__explain_search *s, uint32_t *order) {
+  for (uint32_t i = 0; i < s->population; i++) {
+    uint32_t k = i;
+    for (; k > 0 && s->total[order[k - 1]] > s->total[i]; k--) order[k] = order[k - 1];
+    order[k] = i;
+  }
+}
+
+static ethd__explain_point first(const ethd__explain_search *s, uint32_t number) {
+  ethd__explain_point p;
+  for (uint32_t n = 0; n < ETHD_EXPLAIN_NUMBERS; n++) p.share[n] = draw(s, 0, number, FIRST, n);
+  return p;
+}
+
+/* What leaves the bounds goes half of the way to them. */
+static double within(double share, double from) { return share < 0 ? from / 2 : share > 1 ? (1 + from) / 2 : share; }
+
+static ethd__explain_point child_of(const ethd__explain_search *s, const uint32_t *order, uint32_t generation,
+                                    uint32_t i) {
+  double f = STEP_LEAST + (STEP_MOST - STEP_LEAST) * draw(s, generation, i, FACTOR, 0);
+  uint32_t top = (uint32_t)fmax(2, BEST * s->population);
+  const double *x = s->point[i].share,
+               *p = s->point[order[index_of(draw(s, generation, i, PARENT_BEST, 0), top)]].share;
+  const double *a = s->point[index_of(draw(s, generation, i, PARENT_A, 0), s->population)].share;
+  const double *b = s->point[index_of(draw(s, generation, i, PARENT_B, 0), s->population)].share;
+  uint32_t always = index_of(draw(s, generation, i, ALWAYS, 0), ETHD_EXPLAIN_NUMBERS);
+  ethd__explain_point child = s->point[i];
+  for (uint32_t n = 0; n < ETHD_EXPLAIN_NUMBERS; n++)
+    if (n == always || draw(s, generation, i, CROSS, n) < CROSSING)
+      child.share[n] = within(x[n] + f * (p[n] - x[n]) + f * (a[n] - b[n]), x[n]);
+  return child;
+}
+
+/* ---- the journal: a line of text that says what is searched for, then a total a line, in the order of judging ---- */
+
+typedef struct journal {
+  FILE *file;
+  double *totals;
+  size_t count, next; /* kept by an earlier run; the next of them to be used */
+} journal;
+
+static char *describe(const ethd__explain_search *s) {
+  char *out;
+  const ethd__explain_question *q = s->question;
+  int n = asprintf(&out, "ethd-explain %s seed %llu population %u taps %u compliant %d tick %d asked %d%d%d",
+                   ETHD_VERSION, (unsigned long long)q->seed, s->population, q->taps, q->structure.compliant,
+                   q->structure.tick, q->asked[0], q->asked[1], q->asked[2]);
+  if (n < 0) ethd__fail_memory();
+  return out;
+}
+
+static ethd_status take_totals(const char *path, const char *what, char *text, journal *j, char *message) {
+  char *line = text, *end = strchr(text, '\n');
+  if (!end || (size_t)(end - text) != strlen(what) || strncmp(text, what, strlen(what)) != 0)
+    return ethd__say(message, ETHD_E_DIFFERS, "%s: the journal of another search; another --work is needed", path);
+  for (line = end + 1; (end = strchr(line, '\n')); line = end + 1) {
+    double *totals = realloc(j->totals, (j->count + 1) * sizeof *totals);
+    if (!totals) ethd__fail_memory();
+    j->totals = totals;
+    if (!ethd__number(line, (size_t)(end - line), &j->totals[j->count++]))
+      return ethd__say(message, ETHD_E_SYNTAX, "%s: a line that isn't a number", path);
+  }
+  return ETHD_OK;
+}
+
+/* Only whole lines count; the file is written anew with them. */
+static ethd_status open_journal(const ethd__explain_search *s, journal *j, char *message) {
+  char *text = NULL, *what = describe(s);
+  size_t length = 0;
+  ethd_status status = ETHD_OK;
+  *j = (journal){0};
+  if (s->journal && !access(s->journal, F_OK)) {
+    status = ethd_text_read(s->journal, (size_t)1 << 26, &text, &length, message);
+    if (!status) status = take_totals(s->journal, what, text, j, message);
+  }
+  if (!status && s->journal && !(j->file = fopen(s->journal, "we")))
+    status = ethd__say(message, ETHD_E_FILE, "%s: %s", s->journal, strerror(errno));
+  if (j->file) fprintf(j->file, "%s\n", what);
+  for (size_t i = 0; j->file && i < j->count; i++) fprintf(j->file, "%.17g\n", j->totals[i]);
+  if (j->file) fflush(j->file);
+  free(text);
+  free(what);
+  return status;
+}
+
+static ethd_status judge(const ethd__explain_search *s, journal *j, const ethd__explain_point *point, double enough,
+                         double *total, char *message) {
+  ethd__explain_figures figures;
+  if (j->next < j->count) {
+    *total = j->totals[j->next++];
+    return ETHD_OK;
+  }
+  ethd_status status = ethd__explain_judge(s->question, point, enough, &figures, total, message);
+  if (status || !j->file) return status;
+  fprintf(j->file, "%.17g\n", *total);
+  return fflush(j->file) ? ethd__say(message, ETHD_E_FILE, "%s: %s", s->journal, strerror(errno)) : ETHD_OK;
+}
+
+/* ---- the whole ---- */
+
+uint32_t ethd__explain_best(const ethd__explain_search *s) {
+  uint32_t best = 0;
+  for (uint32_t i = 1; i < s->population; i++)
+    if (s->total[i] < s->total[best]) best = i;
+  return best;
+}
+
+static ethd_status breed(ethd__explain_search *s, journal *j, uint32_t generation, char *message) {
+  uint32_t order[ETHD_EXPLAIN_POPULATION_MAX];
+  rank(s, order);
+  for (uint32_t i = 0; i < s->population && !ethd__stop; i++) {
+    double total;
+    ethd__explain_point child = child_of(s, order, generation, i);
+    ethd_status status = judge(s, j, &child, s->total[i], &total, message);
+    if (status) return status;
+    if (total <= s->total[i]) s->point[i] = child, s->total[i] = total;
+  }
+  return ETHD_OK;
+}
+
+ethd_status ethd__explain_run(ethd__explain_search *s, char message[ETHD_MESSAGE_MAX]) {
+  journal j;
+  ethd_status status = open_journal(s, &j, message);
+  for (uint32_t i = 0; !status && i < s->population; i++) {
+    s->point[i] = first(s, i);
+    s->total[i] = (double)INFINITY;
+    if (!ethd__stop) status = judge(s, &j, &s->point[i], (double)INFINITY, &s->total[i], message);
+  }
+  for (uint32_t g = 1; !status && g <= s->generations && !ethd__stop; g++) {
+    ethd__progress(g - 1, s->generations, "generations");
+    status = breed(s, &j, g, message);
+    s->done = g;
+  }
+  ethd__progress(s->generations, s->generations, "generations");
+  if (j.file) fclose(j.file);
+  free(j.totals);
+  return status;
+}
