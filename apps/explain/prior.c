@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #define EVEN false
 #define LOG true
@@ -15,10 +16,17 @@ const ethd__explain_prior ethd__explain_priors[ETHD_EXPLAIN_NUMBERS] = {
 #define RING_RADIUS 0.012
 #define COUNTS 4000
 
+/* To four digits, so that files say all of a number. */
+static double rounded(double value) {
+  char text[32];
+  snprintf(text, sizeof text, "%.4g", value);
+  return strtod(text, NULL);
+}
+
 double ethd__explain_value(const ethd__explain_point *p, int n) {
   const ethd__explain_prior *prior = &ethd__explain_priors[n];
   double low = prior->low, high = prior->high, share = p->share[n];
-  return prior->logarithmic ? low * pow(high / low, share) : low + (high - low) * share;
+  return rounded(prior->logarithmic ? low * pow(high / low, share) : low + (high - low) * share);
 }
 
 #define VALUE(name) ethd__explain_value(p, ETHD_EXPLAIN_##name)
@@ -27,15 +35,15 @@ static void make_device(const ethd__explain_structure *structure, const ethd__ex
   double mass = VALUE(mass), share = VALUE(motor_share), turn = 2 * M_PI * VALUE(resonance);
   double mu = mass * share * (1 - share);
   out->mass[0] = out->mass[1] = mass;
-  out->force_limit = mass * VALUE(deceleration);
+  out->force_limit = rounded(mass * VALUE(deceleration));
   out->friction = VALUE(friction);
   out->viscous = VALUE(viscous);
   out->delay = VALUE(delay);
-  out->count = 2 * M_PI / (COUNTS * VALUE(ratio));
+  out->count = rounded(2 * M_PI / (COUNTS * VALUE(ratio)));
   out->count_phase = 1;
-  out->motor_mass = structure->compliant ? mass * share : 0;
-  out->stiffness = structure->compliant ? mu * turn * turn : (double)INFINITY;
-  out->damping = structure->compliant ? 2 * VALUE(damping_ratio) * mu * turn : 0;
+  out->motor_mass = rounded(structure->compliant ? mass * share : 0);
+  out->stiffness = rounded(structure->compliant ? mu * turn * turn : (double)INFINITY);
+  out->damping = rounded(structure->compliant ? 2 * VALUE(damping_ratio) * mu * turn : 0);
   out->reference = out->metrics_side = structure->compliant;
 }
 
