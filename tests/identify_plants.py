@@ -55,4 +55,4 @@ def main():
     if asked >= 60 and not 90 <= share <= 99: failed += 1
     return failed > 0
 
-sys.exit(main())
+if __name__ == "__main__": sys.exit(main())

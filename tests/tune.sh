@@ -3,6 +3,7 @@
 # program's bounds, and is the same from one process, two, or one that was killed on the way. Bad input.
 set -u
 bin=$BUILD/bin
+tests=$(cd "$(dirname "$0")" && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 failed=0
@@ -71,6 +72,12 @@ for what in early eps_m d_max_m; do
   echo "$what at high speed: $was -> $is"
   "${PYTHON:-python3}" -c "import sys; sys.exit(not $is <= 1.1 * $was)" || fail "$what got worse: $was -> $is"
 done
+
+# A device that is known from its recordings alone; PLANTS=5 POINTS=64 TAPS=80 tries more, more thoroughly.
+if [ -z "${SAN:-}" ]; then
+  "${PYTHON:-python3}" "$tests/tune_plants.py" "$bin" "$bin/../share/ethd" "${PLANTS:-1}" 5 20 "${POINTS:-16}" "${TAPS:-40}" ||
+    fail "an identified plant"
+fi
 
 refuse() { # CODE TEXT ARGUMENTS...
   code=$1 text=$2
