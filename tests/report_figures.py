@@ -58,10 +58,11 @@ def make(kind, study):
                     row += [None] * 3
                 else:
                     row += [commanded * 1.01, -1e-4 if early else 2e-4 + 1e-4 * abs(noise[0]), eps]
+                    row += [reason, "ok" if abs(row[-3] - (0.4 if high else 0.2)) <= (0.08 if high else 0.06) and not early else "too-slow"]
                 rows.append(["" if cell is None else cell if isinstance(cell, (str, int)) else repr(float(cell)) for cell in row])
             given = [int(np.clip(round((1 + n) / 2 + 0.14 * n * (offset + rng.normal())), 1, n)) if n else f"word {person}; {law}" for n in SCALES[kind]]
             answers.append([f"P{person + 1:02d}", block + 1, law, speed] + ([""] * len(given) if gone else given))
-    columns = COLUMNS[:-3] if kind == "ties" else COLUMNS
+    columns = COLUMNS[:-3] if kind == "ties" else COLUMNS + ["by_ring", "by_finger"]
     with open(f"{study}/taps.csv", "w") as f:
         f.write("\n".join(",".join(map(str, row[:len(columns)])) for row in [columns] + rows) + "\n")
     with open(f"{study}/survey.csv", "w") as f:
@@ -503,12 +504,11 @@ def check_tidy(s, folder):
     same("mixed model: interaction", -fit.params["strategy[T.smooth]:speed[T.low]"], by_hand, 0.03)
 
 def check_validity(s):
-    for r in table(s.report + "validity.csv"):
+    rows = table(s.report + "validity.csv")
+    same("validity: rows", len(rows), 0 if s.kind == "ties" else 3 * len(s.cells)) # ties: a table of an earlier version
+    for r in rows:
         taps = [t for t in s.taps if (t["transition"], t["speed"]) == (r["transition"], r["speed"])]
-        centre, band = (0.4, 0.08) if r["speed"] == "high" else (0.2, 0.06)
-        ring = [t["reason"] == "ok" for t in taps]
-        hand = [abs(t["v_hand_mps"] - centre) <= band and (t["touch_depth_m"] >= 0 or (t["reason"] != "early-contact" and t["t_rvo_s"] <= t["t_of_s"]))
-                for t in taps]
+        ring, hand = ([t[key] == "ok" for t in taps] for key in ("by_ring", "by_finger"))
         counts = ring if r["rule"].startswith("ring") else hand if r["rule"].startswith("hand") else [True] * len(taps)
         same(f"validity {r['rule']}", r["taps"], sum(counts))
         same(f"validity {r['rule']}, both", r["by_both"], sum(a and b for a, b in zip(ring, hand)))

@@ -14,7 +14,7 @@ fail() { echo "FAILED $*"; failed=1; }
 # ---- the paper's study: 3 x 3 x 4 ----
 "$study" --out "$folder/paper" >"$folder/out" 2>&1 || fail "the paper's study: $(tail -n 1 "$folder/out")"
 taps=$folder/paper/taps.csv
-header=participant,block,part,attempt,transition,speed,seed,tap,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m,t_rvo_s,t_of_s,t_seen_s,peak_force_n,finger_radius_m,commanded_mps,v_hand_mps,touch_depth_m,eps_felt_m,hand,movement,utc
+header=participant,block,part,attempt,transition,speed,seed,tap,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m,t_rvo_s,t_of_s,t_seen_s,peak_force_n,finger_radius_m,commanded_mps,v_hand_mps,touch_depth_m,eps_felt_m,hand,movement,utc,by_ring,by_finger
 [ "$(head -n 1 "$taps")" = "$header" ] || fail "the header: $(head -n 1 "$taps")"
 awk -F, 'NR > 1 && $3 == "test" && $9 { n[$1, $5, $6]++ } END { for (k in n) { cells++; bad += n[k] != 3 } exit cells != 12 || bad }' "$taps" ||
   fail "not three valid taps in each of 12 cells"

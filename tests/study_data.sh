@@ -195,24 +195,67 @@ done = {r["block"]: (r["part"], r["transition"], r["speed"]) for r in csv.DictRe
 assert done == {r["block"]: (r["part"], r["transition"], r["speed"]) for r in rows if r["participant"] == "P01"}
 END
 
-# ---- sidecars: every column of every table, with its unit where its name has one ----
-"$python3" - "$folder/whole" <<'END' || fail "the sidecars"
-import csv, json, sys
+# ---- an earlier version's rows, without both verdicts, go on as they are ----
+cp -r "$folder/whole" "$folder/earlier"
+"$python3" - "$folder/earlier/journal" <<'END'
+import hashlib, re, sys
+out = []
+for line in open(sys.argv[1]):
+    body = line.rstrip("\n")[:-10]
+    if body.startswith("tap "): body = re.sub(",[a-z-]+,[a-z-]+$", "", body)
+    out.append(f"{body} #{hashlib.sha256(body.encode()).hexdigest()[:8]}\n")
+open(sys.argv[1], "w").writelines(out)
+END
+"$study" --quiet --resume "$folder/earlier" >"$folder/out" 2>&1 || fail "an earlier version's journal: $(cat "$folder/out")"
+cut -d, -f1-28 "$folder/whole/taps.csv" >"$folder/a"; cut -d, -f1-28 "$folder/earlier/taps.csv" | cmp - "$folder/a" || fail "an earlier version's taps"
+[ "$(tail -n +2 "$folder/earlier/taps.csv" | cut -d, -f29,30 | sort -u)" = , ] || fail "verdicts that nobody made: $(cut -d, -f29,30 "$folder/earlier/taps.csv" | sort -u)"
+
+# ---- both verdicts of a tap are those of the two rules ----
+for by in paper finger; do
+  printf '[study]\nname = sim\ntraining = 0\ntaps = 1\nattempts = 1\nstrategies = smooth,offset,predictive\n[validity]\nby = %s\n[grid]\ncontact.k_e = 1000,2500\ntransition.b_d = 50,100\n' $by >"$folder/$by.study"
+  "$study" "$folder/$by.study" --simulate 8 --out "$folder/$by" >"$folder/out" 2>&1 && "$study" --merge "$folder/$by" >"$folder/out" 2>&1 || fail "a simulation: $(cat "$folder/out")"
+done
+"$python3" - "$folder" <<'END' || fail "the verdicts"
+import csv, sys
+ring, finger = (list(csv.DictReader(open(f"{sys.argv[1]}/{by}/taps.csv"))) for by in ("paper", "finger"))
+assert len(ring) == len(finger) == 8 * 6 * 4
+for a, b in zip(ring, finger):
+    assert [a[k] for k in ("point", "participant", "transition", "speed", "tap")] == [b[k] for k in ("point", "participant", "transition", "speed", "tap")]
+    assert a["reason"] == a["by_ring"] == b["by_ring"] and b["reason"] == b["by_finger"] == a["by_finger"], (a, b)
+assert sum(a["by_ring"] != a["by_finger"] for a in ring) > 10
+END
+
+# ---- sidecars: every column of every table, with its unit where its name has one, and the words that may stand there ----
+"$python3" - "$folder/whole" "$folder/paper" <<'END' || fail "the sidecars"
+import csv, json, pathlib, sys
 units = {"_m": "m", "_mps": "m/s", "_s": "s", "_ms": "ms", "_n": "N"}
-for name in ("taps", "survey", "events", "participants", "orders"):
-    header = next(csv.reader(open(f"{sys.argv[1]}/{name}.csv")))
-    sidecar = json.load(open(f"{sys.argv[1]}/{name}.json"))
-    assert list(sidecar) == header, (name, header)
-    assert all(v["Description"] for v in sidecar.values())
-    for column in header:
-        for end, unit in units.items():
-            if column.endswith(end): assert sidecar[column]["Units"] == unit, column
-taps = json.load(open(sys.argv[1] + "/taps.json"))
-for row in csv.DictReader(open(sys.argv[1] + "/taps.csv")):
-    for column, value in row.items():
-        if "Levels" in taps[column]: assert value in taps[column]["Levels"], (column, value)
-assert json.load(open(sys.argv[1] + "/survey.json"))["q3"]["Levels"]["5"] == "very unnatural"
-assert json.load(open(sys.argv[1] + "/dataset_description.json"))["Name"] == "small"
+words = {"part", "transition", "speed", "valid", "reason", "hand", "by_ring", "by_finger", "event", "status", "analysed"}
+for folder in map(pathlib.Path, sys.argv[1:]):
+    tables = sorted(folder.glob("*.csv"))
+    names = {t.stem for t in tables if not t.stem.startswith("shard")}
+    assert names == ({"taps", "survey", "events", "participants", "orders"} if folder.name == "whole" else {"taps", "orders"}), names
+    for path in tables:
+        rows = csv.DictReader(open(path))
+        name = "taps" if path.stem.startswith("shard") else path.stem
+        sidecar = json.load(open(folder / f"{name}.json"))
+        assert list(sidecar) == rows.fieldnames, (path, rows.fieldnames)
+        assert all(v["Description"] for v in sidecar.values())
+        for column in rows.fieldnames:
+            for end, unit in units.items():
+                if column.endswith(end) and "." not in column: assert sidecar[column]["Units"] == unit, column
+            assert ("Levels" in sidecar[column]) == ((column in words and (name, column) != ("participants", "reason")) or "." in column or column[1:].isdigit()), column
+        for row in rows:
+            for column, value in row.items():
+                if "Levels" in sidecar[column] and value: assert value in sidecar[column]["Levels"], (path, column, value)
+    readme = (folder / "README.md").read_text()
+    for name in names:
+        for column in json.load(open(folder / f"{name}.json")): assert f"| {column} |" in readme, column
+whole, paper = sys.argv[1:]
+taps = json.load(open(paper + "/taps.json"))
+assert list(taps)[:3] == ["study", "point", "participant"] and list(taps)[-2:] == ["contact.k_e", "transition.b_d"]
+assert taps["contact.k_e"]["Units"] == "N/m" and taps["transition.b_d"]["Units"] == "Ns/m" and set(taps["contact.k_e"]["Levels"]) == {"1000", "2500"}
+assert json.load(open(whole + "/survey.json"))["q3"]["Levels"]["5"] == "very unnatural"
+assert json.load(open(whole + "/dataset_description.json"))["Name"] == "small"
 END
 
 # ---- nobody's files are written over: a study.ini of somebody's, or the same one beside other files ----

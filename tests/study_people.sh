@@ -44,7 +44,7 @@ talk() { # PATTERN ANSWERS COMMAND..: a line, empty ones too, whenever the patte
 for k in 1 2; do
   "$study" "$folder/people.study" --out "$folder/s$k" --virtual --quiet >"$folder/out" 2>"$folder/err" || fail "in lock-step: $(cat "$folder/err")"
 done
-for k in 1 2; do sed 's/,[^,]*$//' "$folder/s$k/taps.csv" >"$folder/taps$k"; done # but for the clock
+for k in 1 2; do cut -d, -f1-27,29- "$folder/s$k/taps.csv" >"$folder/taps$k"; done # but for the clock
 cmp "$folder/taps1" "$folder/taps2" && diff -r -x tap.csv "$folder/s1/taps" "$folder/s2/taps" >"$folder/out" || fail "not the same bytes again: $(head -n 3 "$folder/out")"
 [ "$(ls "$folder/s1/taps" | wc -l)" -ge 3 ] || fail "too few taps: $(cat "$folder/s1/taps.csv")"
 for tap in "$folder"/s1/taps/*; do

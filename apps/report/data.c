@@ -43,7 +43,7 @@ typedef struct taking {
   ethd__data *out;
   const ethd_plant *plant;
   size_t point;
-  int word[WORDS], figure[FIGURES], participant, part, at_point;
+  int word[WORDS], figure[FIGURES], participant, part, at_point, by_ring, by_finger;
   void *ids; /* a tree of participants */
   char *message;
 } taking;
@@ -64,6 +64,8 @@ static ethd_status find_columns(taking *r) {
   r->participant = ethd__sheet_column(sheet, "participant");
   r->part = ethd__sheet_column(sheet, "part");
   r->at_point = ethd__sheet_column(sheet, "point");
+  r->by_ring = ethd__sheet_column(sheet, "by_ring");
+  r->by_finger = ethd__sheet_column(sheet, "by_finger");
   if (r->participant < 0) missing = "participant";
   if (!missing) return ETHD_OK;
   return ethd__say(r->message, ETHD_E_UNKNOWN, "%s:1: no column %s; a taps.csv of ethd-study has it", sheet->path,
@@ -84,14 +86,23 @@ static ethd__group *group_of(taking *r, size_t row) {
   return group;
 }
 
+/* An empty cell of a table of an earlier version is no reason: ETHD_TAP_REASON_COUNT. */
+static ethd_status read_reason(const taking *r, size_t row, int column, ethd__reason *out) {
+  const char *reason = ethd__sheet_cell(&r->out->sheet, row, column);
+  int index = 0;
+  while (index < ETHD_TAP_REASON_COUNT && strcmp(reason, ethd__reason_words[index])) index++;
+  *out = (ethd__reason)index;
+  if (index < ETHD_TAP_REASON_COUNT || (!*reason && column != r->word[REASON])) return ETHD_OK;
+  return refuse(r, row, r->out->sheet.cell[column], reason, "ok, early-contact and the like");
+}
+
 static ethd_status read_result(const taking *r, size_t row, ethd__result *out) {
   const ethd__sheet *sheet = &r->out->sheet;
-  const char *reason = ethd__sheet_cell(sheet, row, r->word[REASON]);
-  int index = 0;
   *out = (ethd__result){0};
-  while (index < ETHD_TAP_REASON_COUNT && strcmp(reason, ethd__reason_words[index])) index++;
-  if (index == ETHD_TAP_REASON_COUNT) return refuse(r, row, "reason", reason, "ok, early-contact and the like");
-  out->metrics.reason = (ethd__reason)index;
+  ethd_status status = read_reason(r, row, r->word[REASON], &out->metrics.reason);
+  if (!status) status = read_reason(r, row, r->by_ring, &out->metrics.by_ring);
+  if (!status) status = read_reason(r, row, r->by_finger, &out->metrics.by_finger);
+  if (status) return status;
   for (int i = 0; i < FIGURES; i++)
     if (!ethd__sheet_number(sheet, row, r->figure[i], (double *)((char *)out + figures[i].offset)))
       return refuse(r, row, figures[i].name, ethd__sheet_cell(sheet, row, r->figure[i]), "a number");

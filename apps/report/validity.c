@@ -9,23 +9,21 @@
 static const int shown[] = {ETHD_Q_V_RVO, ETHD_Q_V_HAND, ETHD_Q_V_OF, ETHD_Q_D_MAX, ETHD_Q_V_RMIN};
 enum { SHOWN = sizeof shown / sizeof *shown };
 
-/* Of the study's own bands where it has some. */
-static double band_of(const ethd__report *r, const ethd__speed *speed) {
-  const ethd__protocol *p = &r->folder->protocol;
-  double own = !strcmp(speed->word, "low") ? p->band_low : !strcmp(speed->word, "high") ? p->band_high : NAN;
-  return isnan(own) ? speed->band : own;
+enum { RING, FINGER, ALL, RULES };
+
+static bool counts(const ethd__metrics *m, int rule) {
+  return rule == ALL || (rule == RING ? m->by_ring : m->by_finger) == ETHD_TAP_OK;
 }
 
-/* By the finger, as far as a row tells: the hand's own speed is within the band, the ring was behind the wall or had
-   met it as the finger touched, and nothing else was wrong. */
-static bool by_finger(const ethd__report *r, const ethd__group *group, const ethd__metrics *m) {
-  bool other = m->reason == ETHD_TAP_FAULT || m->reason == ETHD_TAP_GRAZING || m->reason == ETHD_TAP_DOUBLE;
-  bool in_time = m->touch_depth >= 0 || (m->reason != ETHD_TAP_EARLY_CONTACT && m->t_rvo <= m->t_of);
-  return !other && in_time && fabs(m->v_hand - group->speed.centre) <= band_of(r, &group->speed);
+/* Whether every tap was judged by both rules; tables of earlier versions have the study's alone. */
+static bool has_both(const ethd__report *r) {
+  for (size_t g = 0; g < r->data.group_count; g++)
+    for (size_t i = 0; i < r->data.group[g].cell.count; i++) {
+      const ethd__metrics *m = &r->data.group[g].cell.results[i].metrics;
+      if (m->by_ring == ETHD_TAP_REASON_COUNT || m->by_finger == ETHD_TAP_REASON_COUNT) return false;
+    }
+  return true;
 }
-
-/* Whether the table knows how fast hands were at all. */
-static bool has_hands(const ethd__report *r) { return ethd__sheet_column(&r->data.sheet, "v_hand_mps") >= 0; }
 
 typedef struct rule_row {
   const char *word;
@@ -34,17 +32,17 @@ typedef struct rule_row {
 } rule_row;
 
 static rule_row row_of(const ethd__report *r, const ethd__group *group, int rule) {
-  static const char *const words[] = {"ring, the study's rule", "hand and finger", "every tap"};
-  rule_row out = {.word = words[rule]};
+  static const char *const words[2][RULES] = {{"ring, the study's rule", "hand and finger", "every tap"},
+                                              {"ring", "hand and finger, the study's rule", "every tap"}};
+  rule_row out = {.word = words[r->folder->protocol.validity == ETHD_TAP_BY_FINGER][rule]};
   double *values = malloc((group->cell.count + 1) * sizeof *values);
   for (int q = 0; q < SHOWN; q++) {
     size_t n = 0;
     out.valid = out.both = 0;
     for (size_t i = 0; values && i < group->cell.count; i++) {
       const ethd__metrics *m = &group->cell.results[i].metrics;
-      bool ring = m->reason == ETHD_TAP_OK, hand = by_finger(r, group, m);
-      if (rule == 0 ? !ring : rule == 1 ? !hand : 0) continue;
-      out.valid++, out.both += ring && hand;
+      if (!counts(m, rule)) continue;
+      out.valid++, out.both += counts(m, RING) && counts(m, FINGER);
       values[n] = ethd__quantities[shown[q]].of(m);
       n += !isnan(values[n]);
     }
@@ -60,7 +58,7 @@ static void put_row(ethd__report *r, const ethd__group *group, int rule, ethd_cs
   char label[80], valid[24], both[24], median[SHOWN][32];
   const char *cells[SHOWN + 5] = {rule ? "" : ethd__group_label(group, label), row.word, valid, both};
   snprintf(valid, sizeof valid, "%zu", row.valid);
-  snprintf(both, sizeof both, has_hands(r) ? "%zu" : "-", row.both);
+  snprintf(both, sizeof both, "%zu", row.both);
   ethd_csv_word(csv, group->cell.law);
   ethd_csv_word(csv, group->speed.word);
   ethd_csv_text(csv, row.word);
@@ -91,13 +89,21 @@ ethd_status ethd__report_validity(ethd__report *r) {
           : "<p>This study's taps are valid, as the paper's, by the speed at which the <em>ring</em> meets the wall. A "
             "strategy that slows the ring down beforehand changes that speed, and so by which taps it is judged: see "
             "v_rvo of every tap.</p>\n");
-  if (!has_hands(r))
-    ethd__html_markup(&r->page, "<p>These taps have no speed of the hand (v_hand_mps), by which they could be judged "
-                                "whatever the strategy: only the ring's rule is shown.</p>\n");
+  if (!has_both(r)) {
+    ethd__html_markup(&r->page, "<p>These taps come from an earlier version, which didn't judge them by the other "
+                                "rule.</p>\n");
+    return ethd_csv_close(csv, r->message);
+  }
+  ethd__html_print(
+      &r->page,
+      "<p>By the ring, a tap counts when the ring meets the wall at the speed asked for, before the finger "
+      "touches it. By hand and finger, it counts when the hand's own path crosses the wall at that speed "
+      "and the finger doesn't touch before the ring is behind the wall, or within %g mm of it and slower "
+      "than %g m/s. Either way the finger has to press for a while, once.</p>\n",
+      1e3 * ETHD_TAP_NEAR, ETHD_TAP_STILL);
   ethd__html_table(&r->page, "Medians of the taps that each rule lets count", header, 2);
   for (size_t i = 0; i < r->data.group_count; i++)
-    for (int rule = 0; rule < 3; rule++)
-      if (rule != 1 || has_hands(r)) put_row(r, &r->data.group[i], rule, csv);
+    for (int rule = 0; rule < RULES; rule++) put_row(r, &r->data.group[i], rule, csv);
   ethd__html_table_end(&r->page);
   return ethd_csv_close(csv, r->message);
 }

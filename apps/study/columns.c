@@ -20,6 +20,17 @@ const char *const ethd__table_names[ETHD_TABLES] = {"taps", "survey", "events", 
   "device=a person's finger in the device's ring|mouse=a person's pointer, which leads the simulated device's" \
   " hand|simulated=the plant's synthetic hand|recorded=a recorded movement"
 
+/* Of a simulation, before the columns of taps. */
+static const study_column simulation[] = {
+    {"study", "", "the first 12 digits of the study's hash, as versions.txt has it", NULL},
+    {"point", "", "which combination of the grid, from 0; the last gain runs fastest", NULL},
+};
+
+#define REASONS                                                                                                     \
+  "ok=valid|fault=the device stopped itself|early-contact=the finger touched before the ring met the wall; by the " \
+  "finger's validity, before it stood at the wall or behind it|too-slow=below the band|too-fast=above the "         \
+  "band|no-contact=the wall wasn't met or touched|grazing=touched too shortly|double=left the wall and came back"
+
 static const study_column taps[] = {
     PARTICIPANT,
     BLOCK,
@@ -30,12 +41,7 @@ static const study_column taps[] = {
     {"seed", "", "key of the simulated finger's random numbers", NULL},
     {"tap", "", "likewise", NULL},
     {"valid", "", "whether the tap counts", "1=it does|0=it doesn't; reason says why"},
-    {"reason", "", "why a tap doesn't count; ok where it does",
-     "ok=valid|fault=the device stopped itself|early-contact=the finger touched before the ring met the "
-     "wall|too-slow=below "
-     "the band|too-fast=above the band|no-contact=the wall wasn't met or touched|grazing=touched too "
-     "shortly|double=left "
-     "the wall and came back"},
+    {"reason", "", "why a tap doesn't count; ok where it does", REASONS},
     {"v_rvo_mps", "m/s", "the ring's speed along n as it meets the wall (first tick with d_re < 0)", NULL},
     {"v_of_mps", "m/s", "the ring's speed as the finger's pad first touches it after that", NULL},
     {"d_max_m", "m", "first rebound: the ring's first maximum along n minus the minimum after it", NULL},
@@ -57,6 +63,9 @@ static const study_column taps[] = {
     {"hand", "", "who led the hand", HANDS},
     {"movement", "", "the recorded movement, a file in movements/, or movement.csv", NULL},
     {"utc", "", "when a person's tap began, UTC; simulated taps have no clock", NULL},
+    {"by_ring", "", "why the tap doesn't count by the paper's validity, which judges the ring; ok where it does",
+     REASONS},
+    {"by_finger", "", "the same by the finger's validity, which judges hand and finger whatever the strategy", REASONS},
 };
 static const study_column survey[] = {
     PARTICIPANT, BLOCK, {"transition", "", "the strategy", NULL}, {"speed", "", "low, high, or m/s", NULL}};
@@ -99,6 +108,35 @@ static size_t questions_of(ethd__study_table table, const ethd__protocol *p) {
   return table == ETHD_TABLE_SURVEY ? ethd__question_count(&p->questionnaire) : 0;
 }
 
+/* Whether the table is a simulation's, with columns of its own. */
+static bool is_simulated(ethd__study_table table, const ethd__table_scope *scope) {
+  return table == ETHD_TABLE_TAPS && scope->setup;
+}
+
+char *ethd__simulation_header(const ethd__protocol *p) {
+  char *text = NULL, *header = ethd__table_header(ETHD_TABLE_TAPS, p);
+  size_t length;
+  FILE *file = open_memstream(&text, &length);
+  if (!file) ethd__fail_memory();
+  for (size_t i = 0; i < sizeof simulation / sizeof *simulation; i++) fprintf(file, "%s,", simulation[i].name);
+  fputs(header, file);
+  for (size_t i = 0; i < p->axis_count; i++) fprintf(file, ",%s", p->axes[i].key);
+  bool failed = ferror(file);
+  if (fclose(file) || failed) ethd__fail_memory();
+  free(header);
+  return text;
+}
+
+/* A gain's unit and what it is; NULL: the configuration's laws don't have it, so that only another strategy may. */
+static const ethd_param *gain_of(const ethd_setup *setup, const char *name, ethd_setup_key *key) {
+  for (uint32_t i = 0; !ethd_setup_key_at(setup, i, key); i++) {
+    char full[96];
+    snprintf(full, sizeof full, "%s.%s", key->section, key->param.name);
+    if (!strcmp(full, name)) return &key->param;
+  }
+  return NULL;
+}
+
 char *ethd__table_header(ethd__study_table table, const ethd__protocol *protocol) {
   char *text = NULL;
   size_t length;
@@ -113,14 +151,27 @@ char *ethd__table_header(ethd__study_table table, const ethd__protocol *protocol
 
 /* ---- for people ---- */
 
-void ethd__table_describe(FILE *file, ethd__study_table table, const ethd__protocol *p) {
-  fputs("| column | unit | meaning |\n|---|---|---|\n", file);
-  for (size_t i = 0; i < tables[table].count; i++) {
-    const study_column *c = &tables[table].row[i];
-    fprintf(file, "| %s | %s | %s |\n", c->name, c->unit, c->meaning);
+static void describe_gains(FILE *file, const ethd__table_scope *scope) {
+  for (size_t i = 0; i < scope->protocol->axis_count; i++) {
+    ethd_setup_key key;
+    const ethd_param *gain = gain_of(scope->setup, scope->protocol->axes[i].key, &key);
+    fprintf(file, "| %s | %s | this gain at the point%s%s |\n", scope->protocol->axes[i].key, gain ? gain->unit : "",
+            gain ? ": " : "", gain ? gain->brief : "");
   }
-  for (size_t i = 0; i < questions_of(table, p); i++) {
-    const ethd__question *q = &p->questionnaire.question[i];
+}
+
+static void describe(FILE *file, const study_column *columns, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    fprintf(file, "| %s | %s | %s |\n", columns[i].name, columns[i].unit, columns[i].meaning);
+}
+
+void ethd__table_describe(FILE *file, ethd__study_table table, const ethd__table_scope *scope) {
+  fputs("| column | unit | meaning |\n|---|---|---|\n", file);
+  if (is_simulated(table, scope)) describe(file, simulation, sizeof simulation / sizeof *simulation);
+  describe(file, tables[table].row, tables[table].count);
+  if (is_simulated(table, scope)) describe_gains(file, scope);
+  for (size_t i = 0; i < questions_of(table, scope->protocol); i++) {
+    const ethd__question *q = &scope->protocol->questionnaire.question[i];
     char words[256];
     fprintf(file, "| q%zu | | %s%s", i + 1, q->text, ethd__question_is_text(q) ? " In words." : "");
     for (int k = 1; k <= (int)ethd__answer_count(q); k++) {
@@ -178,19 +229,63 @@ static void put_question(FILE *file, size_t number, const ethd__question *q) {
   fputs("\n    }\n  }", file);
 }
 
-void ethd__table_sidecar(FILE *file, ethd__study_table table, const ethd__protocol *p) {
-  putc('{', file);
-  for (size_t i = 0; i < tables[table].count; i++) {
-    const study_column *c = &tables[table].row[i];
-    fprintf(file, "%s\n  \"%s\": {\n    \"Description\": ", i ? "," : "", c->name);
-    put_word(file, c->meaning);
-    if (*c->unit) {
-      fputs(",\n    \"Units\": ", file);
-      put_word(file, c->unit);
-    }
-    if (c->levels) put_levels(file, c->levels);
-    fputs("\n  }", file);
+/* The words that a study file lists for a column, each with what `meaning` says of it. */
+static void put_words(FILE *file, const ethd__word_list *list, void (*meaning)(FILE *file, const char *word)) {
+  fputs(",\n    \"Levels\": {", file);
+  for (size_t i = 0; i < list->count; i++) {
+    fputs(i ? ",\n      " : "\n      ", file);
+    put_word(file, list->word[i]);
+    fputs(": ", file);
+    meaning(file, list->word[i]);
   }
+  fputs("\n    }", file);
+}
+
+static void mean_strategy(FILE *file, const char *word) { fprintf(file, "\"the transition law %s\"", word); }
+static void mean_value(FILE *file, const char *word) { fprintf(file, "\"the value %s\"", word); }
+
+static void mean_speed(FILE *file, const char *word) {
+  bool low = !strcmp(word, "low"), high = !strcmp(word, "high");
+  fprintf(file, low || high ? "\"about %s m/s\"" : "\"%s m/s\"", low ? "0.2" : high ? "0.4" : word);
+}
+
+static void put_column(FILE *file, const study_column *c, const ethd__protocol *p, const char *between) {
+  fprintf(file, "%s\n  \"%s\": {\n    \"Description\": ", between, c->name);
+  put_word(file, c->meaning);
+  if (*c->unit) {
+    fputs(",\n    \"Units\": ", file);
+    put_word(file, c->unit);
+  }
+  if (c->levels) put_levels(file, c->levels);
+  if (!strcmp(c->name, "transition")) put_words(file, &p->strategies, mean_strategy);
+  if (!strcmp(c->name, "speed")) put_words(file, &p->speeds, mean_speed);
+  fputs("\n  }", file);
+}
+
+static void put_gain(FILE *file, const ethd__axis *axis, const ethd_setup *setup) {
+  ethd_setup_key key;
+  const ethd_param *gain = gain_of(setup, axis->key, &key);
+  char meaning[2 * ETHD_BRIEF_MAX];
+  snprintf(meaning, sizeof meaning, "this gain at the point%s%s", gain ? ": " : "", gain ? gain->brief : "");
+  fputs(",\n  ", file);
+  put_word(file, axis->key);
+  fputs(": {\n    \"Description\": ", file);
+  put_word(file, meaning);
+  if (gain) {
+    fputs(",\n    \"Units\": ", file);
+    put_word(file, gain->unit);
+  }
+  put_words(file, &axis->values, mean_value);
+  fputs("\n  }", file);
+}
+
+void ethd__table_sidecar(FILE *file, ethd__study_table table, const ethd__table_scope *scope) {
+  const ethd__protocol *p = scope->protocol;
+  size_t before = is_simulated(table, scope) ? sizeof simulation / sizeof *simulation : 0;
+  putc('{', file);
+  for (size_t i = 0; i < before; i++) put_column(file, &simulation[i], p, i ? "," : "");
+  for (size_t i = 0; i < tables[table].count; i++) put_column(file, &tables[table].row[i], p, before || i ? "," : "");
+  for (size_t i = 0; before && i < p->axis_count; i++) put_gain(file, &p->axes[i], scope->setup);
   for (size_t i = 0; i < questions_of(table, p); i++) put_question(file, i + 1, &p->questionnaire.question[i]);
   fputs("\n}\n", file);
 }

@@ -51,9 +51,7 @@ static const char files[] =
 
 static const char behind[] =
     "n points into the wall; speeds are > 0 toward it. The haptic delay is t_of_s - t_seen_s: > 0, the touch is\n"
-    "felt after it is seen. Rows of a simulation begin with study and point, the first 12 digits of the hash and "
-    "which\n"
-    "combination of the grid it is, and end with the gains of that point.\n\n";
+    "felt after it is seen.\n\n";
 
 static const char ticks[] =
     "## A tap's folder\n\n"
@@ -65,7 +63,7 @@ static const char ticks[] =
     "say how to repeat them: `ethd-replay --verify taps/P01-03-004` compares every field bit for bit. tap.csv is\n"
     "the tap's row of taps.csv.\n";
 
-char *ethd__dictionary(const ethd__protocol *protocol) {
+char *ethd__dictionary(const ethd__table_scope *scope) {
   char *text = NULL;
   size_t length;
   FILE *file = open_memstream(&text, &length);
@@ -73,7 +71,7 @@ char *ethd__dictionary(const ethd__protocol *protocol) {
   fputs(files, file);
   for (int i = 0; i < ETHD_TABLES; i++) {
     fprintf(file, "## %s.csv\n\n", ethd__table_names[i]);
-    ethd__table_describe(file, (ethd__study_table)i, protocol);
+    ethd__table_describe(file, (ethd__study_table)i, scope);
     putc('\n', file);
     if (i == ETHD_TABLE_TAPS) fputs(behind, file);
   }

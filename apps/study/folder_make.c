@@ -84,13 +84,19 @@ static void want_printed(wanted_list *list, const char *name, void (*write)(FILE
   want(list, name, text, length, false);
 }
 
+static ethd__table_scope scope_of(const wanted_list *list) {
+  return (ethd__table_scope){list->parts->protocol,
+                             list->parts->simulated ? &list->parts->loaded->config->setup : NULL};
+}
+
 static void want_sidecars(wanted_list *list) {
+  const ethd__table_scope scope = scope_of(list);
   for (int i = 0; i < ETHD_TABLES; i++) {
     char *text = NULL, name[40];
     size_t length;
     FILE *file = open_memstream(&text, &length);
     if (!file) ethd__fail_memory();
-    ethd__table_sidecar(file, (ethd__study_table)i, list->parts->protocol);
+    ethd__table_sidecar(file, (ethd__study_table)i, &scope);
     if (fclose(file)) ethd__fail_memory();
     snprintf(name, sizeof name, "%s.json", ethd__table_names[i]);
     want(list, name, text, length, false);
@@ -99,6 +105,7 @@ static void want_sidecars(wanted_list *list) {
 }
 
 static ethd_status want_all(wanted_list *list) {
+  const ethd__table_scope scope = scope_of(list);
   const ethd__folder_parts *parts = list->parts;
   const ethd_config *config = parts->loaded->config;
   want_text(list, ETHD_STUDY_FILE, strdup(parts->protocol->text), true);
@@ -107,7 +114,7 @@ static ethd_status want_all(wanted_list *list) {
   ethd_status status = want_copy(list, ETHD_STUDY_PLANT, parts->loaded->plant_path);
   if (!status) status = want_movements(list);
   if (status) return status;
-  want_text(list, "README.md", ethd__dictionary(parts->protocol), false);
+  want_text(list, "README.md", ethd__dictionary(&scope), false);
   if (parts->protocol->participants <= ETHD_STUDY_PLANNED) want_printed(list, "orders.csv", ethd__plan_table);
   want_sidecars(list);
   if (parts->protocol->hands != ETHD_HANDS_PEOPLE) return ETHD_OK;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "study/columns.h"
 #include "study/shard.h"
 #include "text/error_text.h"
 #include "text/text.h"
@@ -81,7 +82,7 @@ static ethd_status open_shard(merge *m, uint32_t shard, const char *header) {
 }
 
 static ethd_status open_shards(merge *m) {
-  char *header = ethd__shard_header(&m->folder->protocol);
+  char *header = ethd__simulation_header(&m->folder->protocol);
   ethd_status status = ETHD_OK;
   for (uint32_t i = 0; !status && i < m->count; i++) status = open_shard(m, i, header);
   fprintf(m->out, "%s\n", header);

@@ -48,7 +48,7 @@ char *ethd__tap_row(const ethd__protocol *protocol, const ethd__taken *taken) {
       fprintf(file, ",%.17g", figures[i]);
   fprintf(file, ",%s,", ethd__hand_words[taken->hand]);
   ethd__csv_put_word(file, taken->movement ? taken->movement : "");
-  fprintf(file, ",%s", taken->utc);
+  fprintf(file, ",%s,%s,%s", taken->utc, ethd__reason_words[m->by_ring], ethd__reason_words[m->by_finger]);
   bool failed = ferror(file);
   if (fclose(file) == 0 && !failed) return text;
   free(text);
@@ -69,17 +69,39 @@ static bool count_of(const char *cell, unsigned long long most, unsigned long lo
   return *cell && !cell[strspn(cell, "0123456789")] && *out >= 1 && *out <= most;
 }
 
-/* Behind the figures, of which none has quotes: hand,movement,utc. False: no such hand. */
+static bool is_reason(const char *cell) {
+  for (int i = 0; i < ETHD_TAP_REASON_COUNT; i++)
+    if (!strcmp(cell, ethd__reason_words[i])) return true;
+  return false;
+}
+
+bool ethd__tap_row_is_short(const char *row) {
+  const char *last = strrchr(row, ',');
+  return !last || !is_reason(last + 1);
+}
+
+/* The cell before `end`, without its comma; NULL: it has no room. */
+static const char *cell_before(const char *row, const char *end, char *out, size_t room) {
+  const char *comma = end;
+  while (comma > row && comma[-1] != ',') comma--;
+  if (comma == row || (size_t)(end - comma) >= room) return NULL;
+  snprintf(out, room, "%.*s", (int)(end - comma), comma);
+  return comma - 1;
+}
+
+/* Behind the figures, of which none has quotes: hand,movement,utc,by_ring,by_finger; the last two not in rows of earlier
+   versions. False: no such hand. */
 static bool read_end(const char *row, ethd__tap_key *out) {
-  const char *utc = strrchr(row, ',');
-  char word[16];
+  char word[24];
   int hand = 0;
   enum { FIGURES = 15 };
   for (int i = 0; i < FIGURES && *row; i++) row += strcspn(row, ",") + (row[strcspn(row, ",")] == ',');
-  if (!ethd__row_cell(&row, word, sizeof word) || !utc || strlen(utc + 1) >= sizeof out->utc) return false;
+  const char *end = row + strlen(row);
+  for (int i = 0; end && i < 2 && !ethd__tap_row_is_short(row); i++) end = cell_before(row, end, word, sizeof word);
+  if (!end || !cell_before(row, end, out->utc, sizeof out->utc)) return false;
+  if (!ethd__row_cell(&row, word, sizeof word)) return false;
   while (hand < ETHD_HAND_SOURCES && strcmp(word, ethd__hand_words[hand])) hand++;
   out->hand = (ethd__hand_source)hand;
-  snprintf(out->utc, sizeof out->utc, "%s", utc + 1);
   return hand < ETHD_HAND_SOURCES;
 }
 

@@ -21,6 +21,9 @@ typedef struct ethd__tap_key {
   char utc[ETHD_UTC_MAX];
 } ethd__tap_key;
 
+/* A row of an earlier version, which lacks the last two cells: by_ring and by_finger. */
+bool ethd__tap_row_is_short(const char *row);
+
 /* False when it is no row of this study. */
 bool ethd__tap_row_key(const char *row, ethd__tap_key *out);
 

@@ -37,20 +37,6 @@ char *ethd__shard_path(const ethd__folder *folder, const ethd__shard *shard, con
   return had(path, length);
 }
 
-char *ethd__shard_header(const ethd__protocol *protocol) {
-  char *header = NULL, *taps = ethd__table_header(ETHD_TABLE_TAPS, protocol);
-  int length = asprintf(&header, "study,point,%s", taps);
-  free(taps);
-  had(header, length);
-  for (size_t i = 0; i < protocol->axis_count; i++) {
-    char *longer = NULL;
-    length = asprintf(&longer, "%s,%s", header, protocol->axes[i].key);
-    free(header);
-    header = had(longer, length);
-  }
-  return header;
-}
-
 char *ethd__unit_prefix(const ethd__folder *folder, uint64_t unit) {
   char id[ETHD_STUDY_ID_MAX], *prefix = NULL;
   uint64_t people = folder->protocol.participants;
@@ -139,7 +125,7 @@ static ethd_status run_unit(shard_work *w, uint64_t unit) {
 
 /* Whole units at the start of the text, but for the last one, which may be torn. */
 static ethd_status units_of(const shard_work *w, const char *text, size_t length, uint64_t *units, size_t *good) {
-  char *header = ethd__shard_header(&w->folder->protocol);
+  char *header = ethd__simulation_header(&w->folder->protocol);
   size_t n = strlen(header);
   bool same = length > n && !memcmp(text, header, n) && text[n] == '\n';
   free(header);
@@ -175,7 +161,7 @@ static ethd_status cut(shard_work *w, uint64_t *units) {
   if (status) return status;
   if (ftruncate(fileno(w->file), (off_t)good) != 0 || fseek(w->file, 0, SEEK_END) != 0) return refuse(w, w->path);
   if (good) return ETHD_OK;
-  header = ethd__shard_header(&w->folder->protocol);
+  header = ethd__simulation_header(&w->folder->protocol);
   fprintf(w->file, "%s\n", header);
   free(header);
   return ETHD_OK;

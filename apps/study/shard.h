@@ -27,9 +27,7 @@ ETHD_MUST_CHECK ethd_status ethd__shards_merge(ethd__folder *folder, uint64_t *t
 /* Names of a shard's files in the folder; exit 1 without memory. */
 char *ethd__shard_path(const ethd__folder *folder, const ethd__shard *shard, const char *suffix);
 
-/* The header of its rows, and what the rows of a unit begin with: "hash,point,P01,". Freed by the caller;
-   exit 1 without memory. */
-char *ethd__shard_header(const ethd__protocol *protocol);
+/* What the rows of a unit begin with: "hash,point,P01,". Freed by the caller; exit 1 without memory. */
 char *ethd__unit_prefix(const ethd__folder *folder, uint64_t unit);
 
 uint64_t ethd__unit_count(const ethd__protocol *protocol);

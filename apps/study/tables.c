@@ -45,7 +45,14 @@ static void put_lines(const ledger *l, const char *kind, FILE *file) {
     if (!strcmp(l->journal.lines[i].kind, kind)) fprintf(file, "%s\n", l->journal.lines[i].text);
 }
 
-static void put_taps(const ledger *l, FILE *file) { put_lines(l, "tap", file); }
+/* Rows of an earlier version get their empty cells. */
+static void put_taps(const ledger *l, FILE *file) {
+  for (size_t i = 0; i < l->journal.count; i++) {
+    const char *row = l->journal.lines[i].text;
+    if (!strcmp(l->journal.lines[i].kind, "tap")) fprintf(file, "%s%s\n", row, ethd__tap_row_is_short(row) ? ",," : "");
+  }
+}
+
 static void put_survey(const ledger *l, FILE *file) { put_lines(l, "survey", file); }
 static void put_events(const ledger *l, FILE *file) { put_lines(l, "event", file); }
 

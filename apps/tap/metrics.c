@@ -136,12 +136,13 @@ static ethd__reason judge_speed(const ethd__rule *rule, double speed) {
   return speed <= rule->speed + rule->band ? ETHD_TAP_OK : ETHD_TAP_TOO_FAST;
 }
 
-static ethd__reason judge_by_paper(const ethd__tap_rows *rows, const ethd__rule *rule, size_t begin, size_t meeting,
-                                   size_t touch, double v_rvo) {
+/* first: the pad's first touch of the tap, before or after the meeting. */
+static ethd__reason judge_by_paper(const ethd__tap_rows *rows, const ethd__rule *rule, size_t first, size_t meeting,
+                                   double v_rvo) {
   if (meeting == rows->count) return ETHD_TAP_NO_CONTACT;
-  if (touch_from(rows, begin) < meeting) return ETHD_TAP_EARLY_CONTACT;
+  if (first < meeting) return ETHD_TAP_EARLY_CONTACT;
   ethd__reason reason = judge_speed(rule, v_rvo);
-  return reason ? reason : judge_touch(rows, rule, touch);
+  return reason ? reason : judge_touch(rows, rule, touch_from(rows, meeting));
 }
 
 static ethd__reason judge_by_finger(const ethd__tap_rows *rows, const ethd__rule *rule, size_t touch,
@@ -187,12 +188,8 @@ void ethd__metrics_of(const ethd__tap_rows *rows, const ethd__rule *rule, ethd__
   measure_meeting(rows, rule, meeting, out);
   measure_touch(rows, rule, touch, out);
   if (sight < rows->count) out->t_seen = rows->truth[sight].t;
-  if (faulted(rows))
-    out->reason = ETHD_TAP_FAULT;
-  else if (rule->never_fast)
-    out->reason = ETHD_TAP_TOO_SLOW;
-  else if (by_finger)
-    out->reason = judge_by_finger(rows, rule, touch, &felt);
-  else
-    out->reason = judge_by_paper(rows, rule, begin, meeting, touch, out->v_rvo);
+  ethd__reason whatever = faulted(rows) ? ETHD_TAP_FAULT : rule->never_fast ? ETHD_TAP_TOO_SLOW : ETHD_TAP_OK;
+  out->by_ring = whatever ? whatever : judge_by_paper(rows, rule, first, meeting, out->v_rvo);
+  out->by_finger = whatever ? whatever : judge_by_finger(rows, rule, first, &felt);
+  out->reason = by_finger ? out->by_finger : out->by_ring;
 }

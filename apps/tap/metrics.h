@@ -80,18 +80,19 @@ extern const char *const ethd__reason_words[ETHD_TAP_REASON_COUNT];
 
 /* NaN where a figure isn't defined. Speeds and depths along n, > 0 into the wall. */
 typedef struct ethd__metrics {
-  ethd__reason reason;
-  double v_rvo, v_of; /* m/s: the ring's as it meets the wall, as the finger touches it */
-  double d_max;       /* m: first rebound; 0 when the ring never turns back */
-  double v_rmin;      /* m/s: smallest after the touch */
-  double delta_s;     /* ms: first braking tick to first vo tick after it */
-  double eps;         /* m: offset at that vo tick */
-  double t_rvo, t_of; /* s of the tap */
-  double t_seen;      /* s of the tap: the finger's avatar reaches the wall that is seen */
-  double v_hand;      /* m/s: these three as in ethd__felt */
-  double touch_depth; /* m */
-  double eps_felt;    /* m */
-  double peak_force;  /* N: largest |F_e| of the tap */
+  ethd__reason reason;             /* by the rule's validity: one of these two */
+  ethd__reason by_ring, by_finger; /* by the paper's, by the finger's */
+  double v_rvo, v_of;              /* m/s: the ring's as it meets the wall, as the finger touches it */
+  double d_max;                    /* m: first rebound; 0 when the ring never turns back */
+  double v_rmin;                   /* m/s: smallest after the touch */
+  double delta_s;                  /* ms: first braking tick to first vo tick after it */
+  double eps;                      /* m: offset at that vo tick */
+  double t_rvo, t_of;              /* s of the tap */
+  double t_seen;                   /* s of the tap: the finger's avatar reaches the wall that is seen */
+  double v_hand;                   /* m/s: these three as in ethd__felt */
+  double touch_depth;              /* m */
+  double eps_felt;                 /* m */
+  double peak_force;               /* N: largest |F_e| of the tap */
 } ethd__metrics;
 
 void ethd__metrics_of(const ethd__tap_rows *rows, const ethd__rule *rule, ethd__metrics *out);

@@ -258,7 +258,10 @@ START_TEST(test_by_finger) {
   rule.speed = 0.4;
   ck_assert_int_eq(by_finger(1000, 0, 0, 0).reason, ETHD_TAP_NO_CONTACT);
   rule.validity = ETHD_TAP_BY_PAPER; /* for the paper, that ring never met the wall */
-  ck_assert_int_eq(by_finger(60, 0.1e-3, 0.3, 0).reason, ETHD_TAP_NO_CONTACT);
+  m = by_finger(60, 0.1e-3, 0.3, 0);
+  ck_assert(m.reason == ETHD_TAP_NO_CONTACT && m.by_ring == ETHD_TAP_NO_CONTACT && m.by_finger == ETHD_TAP_OK);
+  m = by_finger(60, -0.4e-3, 0.01, 0);
+  ck_assert(m.by_ring == ETHD_TAP_NO_CONTACT && m.by_finger == ETHD_TAP_EARLY_CONTACT);
   rule.validity = ETHD_TAP_BY_FINGER, rule.carried = true; /* a device: the finger's own speed before the touch */
   ck_assert_double_eq_tol(by_finger(60, 0, 0, 0).v_hand, 0.4, 1e-9);
 }

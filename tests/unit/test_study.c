@@ -226,6 +226,13 @@ START_TEST(test_row_keys) {
   ck_assert_str_eq(key.utc, "2026-01-02T03:04:05Z");
   ck_assert(ethd__tap_row_key("P02,3,training,17,offset,low,5,9,0,ok,,,,,,,,,,,,,,,,simulated,,", &key));
   ck_assert(!key.valid && key.training && key.hand == ETHD_HAND_SIMULATED && !*key.utc);
+  /* of today: with both verdicts at its end; those above are an earlier version's */
+  const char *row =
+      "P02,3,test,17,offset,low,5,9,0,too-slow,.2,,,,,,,,,,,,,,,mouse,\"a, b\",2026-01-02T03:04:05Z,too-slow,ok";
+  ck_assert(ethd__tap_row_key(row, &key) && key.hand == ETHD_HAND_MOUSE && !ethd__tap_row_is_short(row));
+  ck_assert_str_eq(key.utc, "2026-01-02T03:04:05Z");
+  ck_assert(ethd__tap_row_is_short("P02,3,training,17,offset,low,5,9,0,ok,,,,,,,,,,,,,,,,simulated,,"));
+  ck_assert(ethd__tap_row_key("P02,3,test,17,offset,low,5,9,0,ok,,,,,,,,,,,,,,,,simulated,,,ok,ok", &key) && !*key.utc);
   const char *const bad[] = {"",
                              "P02",
                              "X02,3,test,17,offset,low,5,9,1,",
@@ -234,6 +241,8 @@ START_TEST(test_row_keys) {
                              "P02,3,test,x,offset,low,5,9,1,",
                              "P02,999,test,1,a,b,5,9,1,",
                              "P02,3,test,17,offset,low,5,9,1,ok,.2",
+                             "P02,3,test,17,offset,low,5,9,1,ok,.2,,,,,,,,,,,,,,,ok,ok",
+                             "P02,3,test,17,offset,low,5,9,1,ok",
                              "P02,3,test,17,offset,low,5,9,1,ok,.2,,,,,,,,,,,,,,,paw,,"};
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) ck_assert(!ethd__tap_row_key(bad[i], &key));
 }
