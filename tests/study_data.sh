@@ -243,7 +243,7 @@ for folder in map(pathlib.Path, sys.argv[1:]):
         for column in rows.fieldnames:
             for end, unit in units.items():
                 if column.endswith(end) and "." not in column: assert sidecar[column]["Units"] == unit, column
-            assert ("Levels" in sidecar[column]) == ((column in words and (name, column) != ("participants", "reason")) or "." in column or column[1:].isdigit()), column
+            assert ("Levels" in sidecar[column]) == ((column in words and (name, column) not in {("participants", "reason"), ("participants", "valid")}) or "." in column or column[1:].isdigit()), column
         for row in rows:
             for column, value in row.items():
                 if "Levels" in sidecar[column] and value: assert value in sidecar[column]["Levels"], (path, column, value)

@@ -97,6 +97,52 @@ ethd__equivalence ethd__equivalent(const double *values, size_t n, double low, d
   return e;
 }
 
+/* ---- samples that overlap ---- */
+
+typedef struct sample_moments {
+  size_t n;
+  double mean, square; /* square: sum of squared distances from the mean */
+} sample_moments;
+
+static sample_moments sample_moments_of(const double *values, size_t n) {
+  sample_moments m = {0, 0, 0};
+  for (size_t i = 0; i < n; i++)
+    if (!isnan(values[i])) m.mean += values[i], m.n++;
+  m.mean /= (double)m.n;
+  for (size_t i = 0; i < n; i++)
+    if (!isnan(values[i])) m.square += (values[i] - m.mean) * (values[i] - m.mean);
+  return m;
+}
+
+/* Pearson's correlation of those who are in both; 0 of fewer than three, which tell nothing of it. */
+static double correlation(const double *a, const double *b, size_t n, size_t both) {
+  double mean_a = 0, mean_b = 0, aa = 0, bb = 0, ab = 0;
+  for (size_t i = 0; i < n; i++)
+    if (!isnan(a[i] + b[i])) mean_a += a[i] / (double)both, mean_b += b[i] / (double)both;
+  for (size_t i = 0; i < n; i++) {
+    double x = a[i] - mean_a, y = b[i] - mean_b;
+    if (!isnan(x + y)) aa += x * x, bb += y * y, ab += x * y;
+  }
+  return both > 2 && aa > 0 && bb > 0 ? ab / sqrt(aa * bb) : 0;
+}
+
+ethd__overlap ethd__overlapping(const double *first, const double *second, size_t people) {
+  sample_moments a = sample_moments_of(first, people), b = sample_moments_of(second, people);
+  ethd__overlap out = {a.n, b.n, 0, a.mean - b.mean, NAN, NAN, NAN, NAN};
+  for (size_t i = 0; i < people; i++) out.both += !isnan(first[i] + second[i]);
+  if (a.n < 2 || b.n < 2) return out;
+  double n = (double)a.n, m = (double)b.n, both = (double)out.both;
+  double va = a.square / (n - 1) / n, vb = b.square / (m - 1) / m; /* of the means */
+  double shared = 2 * correlation(first, second, people, out.both) * sqrt(va * vb) * both / sqrt(n * m);
+  double welch = (va + vb) * (va + vb) / (va * va / (n - 1) + vb * vb / (m - 1));
+  out.freedom = (both - 1) + (welch - both + 1) / (n + m) * (n + m - 2 * both);
+  double error = sqrt(va + vb - shared), reach = ethd__student_quantile(0.975, out.freedom) * error;
+  if (!(error > 0)) return out;
+  out.low = out.difference - reach, out.high = out.difference + reach;
+  out.p = 2 * ethd__student_below(-fabs(out.difference) / error, out.freedom);
+  return out;
+}
+
 /* ---- many tests ---- */
 
 void ethd__holm(double *p, size_t n) {

@@ -29,6 +29,16 @@ typedef struct ethd__equivalence {
 } ethd__equivalence;
 ethd__equivalence ethd__equivalent(const double *values, size_t n, double low, double high);
 
+/* Two means of which some people are in both samples and some in one alone (Derrick, Russ, Toher and White 2017, with
+   unequal variances): first[i] and second[i] are a person's, NaN: the person isn't in that sample. Everybody in both makes
+   it the paired t test, nobody in both Welch's. Who is missing must not depend on the values. */
+typedef struct ethd__overlap {
+  size_t first, second, both;   /* people */
+  double difference, low, high; /* mean of the first less mean of the second, with its 95 % interval */
+  double freedom, p;            /* p: two-sided; NaN, as the interval, of fewer than two people in a sample */
+} ethd__overlap;
+ethd__overlap ethd__overlapping(const double *first, const double *second, size_t people);
+
 /* Wilcoxon's signed rank test: zeros take part in the ranking (Pratt 1959), equal sizes share their mean rank. Exact up
    to 200 people, ties or not; normal beyond. */
 typedef struct ethd__signed_rank {

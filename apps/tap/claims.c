@@ -107,8 +107,10 @@ typedef struct sentence {
 
 #define MARGIN(name, scale) 0, 0, offsetof(ethd__margins, name), scale
 #define ABOVE(x) x, INFINITY, 0, 0
+#define BELOW(x) -INFINITY, x, 0, 0
 #define MEDIAN ETHD_PERSON_MEDIAN
 #define MEAN ETHD_PERSON_MEAN
+#define MOST ETHD_PERSON_MOST
 static const sentence sentences[] = {
     {"low speed: smooth and offset are alike in d_max, v_of and v_rmin",
      {{"d_max: offset - smooth", "mm", d_max_mm, MEDIAN, {-1, 1, 0, 0}, MARGIN(d_max, 1e3)},
@@ -128,58 +130,94 @@ static const sentence sentences[] = {
       {"|v_rmin|: (smooth - offset), high - low", "m/s", v_rmin_size, MEDIAN, {-1, 1, 1, -1}, ABOVE(0)}}},
     {"high speed: 20 to 30 % of the taps are valid, as 10 to 15 taps were needed for three",
      {{"valid taps: mean of smooth and offset", "%", is_valid, ETHD_PERSON_ATTEMPTS, {0, 0, 0.5, 0.5}, 20, 30, 0, 0}}},
+    {"the ring is stopped in practice in less than 20 ms",
+     {{"longest Delta_s: offset, low", "ms", delta_s, MOST, {0, 1, 0, 0}, BELOW(20)},
+      {"longest Delta_s: offset, high", "ms", delta_s, MOST, {0, 0, 0, 1}, BELOW(20)}}},
+    {"the offset of the wall remains below 3 mm",
+     {{"largest eps: offset, low", "mm", eps_mm, MOST, {0, 1, 0, 0}, BELOW(3)},
+      {"largest eps: offset, high", "mm", eps_mm, MOST, {0, 0, 0, 1}, BELOW(3)}}},
 };
 enum { SENTENCES = sizeof sentences / sizeof *sentences };
 _Static_assert(SENTENCES + 1 == ETHD_TAP_CLAIMS, "and the one of early touches");
 
-/* Each person's contrast; how many people have it. */
-static size_t contrast_of(const ethd__sample *t, const contrast *c, double *out) {
+/* Each person's contrast, NaN where the person lacks a part of it. Only cells `from` up to `end` count. */
+static void contrast_of(const ethd__sample *t, const contrast *c, int from, int end, double *out) {
   static const char *const laws[CELLS] = {"smooth", "offset", "smooth", "offset"}, *const speeds[CELLS] = {
                                                                                        "low", "low", "high", "high"};
   double *own = numbers(t->people);
   for (size_t p = 0; p < t->people; p++) out[p] = 0;
-  for (int k = 0; k < CELLS; k++) {
+  for (int k = from; k < end; k++) {
     if (c->weight[k] == 0) continue;
     const ethd__cell *cell = ethd__cell_find(t->cells, t->count, laws[k], speeds[k]);
     ethd__people_figure(cell, c->of, c->figure, t->people, own);
     for (size_t p = 0; p < t->people; p++) out[p] += c->weight[k] * own[p];
   }
   free(own);
-  return drop_missing(out, t->people);
 }
 
-static void judge_above(ethd__claim_part *out, double *values, uint64_t seed) {
+static ethd__verdict verdict_beyond(double p, bool right_side) {
+  return !(p < LEVEL) ? ETHD_TAP_OPEN : right_side ? ETHD_TAP_SHOWN : ETHD_TAP_CONTRARY;
+}
+
+/* Above `from` or below `to`. */
+static void judge_beyond(ethd__claim_part *out, double *values, uint64_t seed) {
   ethd__paired shifted;
-  for (size_t i = 0; i < out->people; i++) values[i] -= out->from;
+  bool above = isinf(out->to);
+  for (size_t i = 0; i < out->people; i++) values[i] = above ? values[i] - out->from : out->to - values[i];
   ethd__compare(values, out->people, seed, &shifted);
+  out->test = "sign flip";
   out->p = shifted.p;
-  if (out->from == 0) out->d_z = shifted.d_z;
-  if (!(out->p < LEVEL))
-    out->verdict = ETHD_TAP_OPEN;
-  else
-    out->verdict = out->mean > out->from ? ETHD_TAP_SHOWN : ETHD_TAP_CONTRARY;
+  if (above && out->from == 0) out->d_z = shifted.d_z;
+  out->verdict = verdict_beyond(out->p, shifted.mean > 0);
 }
 
 static void judge_between(ethd__claim_part *out, const double *values) {
   ethd__equivalence e = ethd__equivalent(values, out->people, out->from, out->to);
+  out->test = "TOST";
   out->p = e.p;
   out->verdict = e.p < LEVEL ? ETHD_TAP_SHOWN : e.outside ? ETHD_TAP_CONTRARY : ETHD_TAP_OPEN;
+}
+
+/* A difference of differences that too few people have whole: those who have the strategies' difference at one speed
+   alone count, too. */
+static void judge_overlap(const ethd__sample *t, const contrast *c, ethd__claim_part *out) {
+  double *low = numbers(t->people), *high = numbers(t->people);
+  contrast_of(t, c, SMOOTH_LOW, SMOOTH_HIGH, low);
+  contrast_of(t, c, SMOOTH_HIGH, CELLS, high);
+  for (size_t p = 0; p < t->people; p++) low[p] = -low[p];
+  ethd__overlap o = ethd__overlapping(high, low, t->people);
+  free(low);
+  free(high);
+  if (o.first < ETHD_STATISTICS_PEOPLE || o.second < ETHD_STATISTICS_PEOPLE || isnan(o.p)) return;
+  out->test = "overlap";
+  out->people = o.first + o.second - o.both;
+  out->at[0] = o.second, out->at[1] = o.first;
+  out->mean = o.difference, out->low = o.low, out->high = o.high, out->p = o.p;
+  out->verdict = verdict_beyond(o.p, o.difference > 0);
+}
+
+static bool is_interaction(const contrast *c) {
+  double low = c->weight[SMOOTH_LOW] + c->weight[OFFSET_LOW], high = c->weight[SMOOTH_HIGH] + c->weight[OFFSET_HIGH];
+  return low == 0 && high == 0 && c->weight[SMOOTH_LOW] != 0 && c->weight[SMOOTH_HIGH] != 0 && c->from == 0;
 }
 
 static void test_part(const ethd__sample *t, const contrast *c, ethd__claim_part *out) {
   double margin = c->scale > 0 ? c->scale * *(const double *)((const char *)&t->margins + c->margin) : 0;
   double *values = numbers(t->people);
   ethd__paired plain;
-  *out = (ethd__claim_part){.what = c->what, .unit = c->unit, .from = c->from, .to = c->to, .p = NAN, .d_z = NAN};
+  *out = (ethd__claim_part){
+      .what = c->what, .unit = c->unit, .from = c->from, .to = c->to, .p = NAN, .d_z = NAN, .test = ""};
   if (c->scale > 0) out->from = -margin, out->to = margin;
-  out->people = contrast_of(t, c, values);
+  contrast_of(t, c, 0, CELLS, values);
+  out->people = drop_missing(values, t->people);
   ethd__compare(values, out->people, t->seed, &plain);
   out->mean = plain.mean, out->low = plain.interval.low, out->high = plain.interval.high;
-  if (out->people >= ETHD_STATISTICS_PEOPLE) {
-    if (isinf(out->to))
-      judge_above(out, values, t->seed);
-    else
-      judge_between(out, values);
+  if (out->people < ETHD_STATISTICS_PEOPLE) {
+    if (is_interaction(c)) judge_overlap(t, c, out);
+  } else if (isinf(out->to) || isinf(out->from)) {
+    judge_beyond(out, values, t->seed);
+  } else {
+    judge_between(out, values);
   }
   free(values);
 }
@@ -191,7 +229,8 @@ static void conclude(ethd__tap_claim *c) {
   for (size_t i = 0; i < c->parts; i++) {
     const ethd__claim_part *part = &c->part[i];
     /* a part that points the other way speaks for nothing, however small its p */
-    double p = part->verdict == ETHD_TAP_CONTRARY || (isinf(part->to) && part->mean < part->from) ? 1 : part->p;
+    bool away = (isinf(part->to) && part->mean < part->from) || (isinf(part->from) && part->mean > part->to);
+    double p = part->verdict == ETHD_TAP_CONTRARY || away ? 1 : part->p;
     c->p = isnan(p) || isnan(c->p) ? NAN : fmax(c->p, p);
   }
 }

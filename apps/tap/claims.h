@@ -48,18 +48,23 @@ typedef struct ethd__mean {
 enum { ETHD_TAP_MEANS = 4 };
 void ethd__means(const ethd__sample *sample, ethd__mean out[ETHD_TAP_MEANS]);
 
-/* A contrast of people's figures that must lie above `from`, or, where `to` is finite, between the two. */
+/* A contrast of people's figures that must lie above `from`, below `to`, or between the two where both are finite. */
 typedef struct ethd__claim_part {
   const char *what, *unit; /* "d_max: smooth - 3 offset" */
   double from, to;
   size_t people;
   double mean, low, high; /* 95 % */
-  double p;               /* above: the signs of people's values flipped, two-sided; between: two one-sided t tests */
+  double p;               /* by `test`, two-sided but for "TOST" */
   double d_z;             /* mean/sd of contrasts that are compared with 0, else NaN */
+  const char *test;       /* how p comes about; "": no test was made */
+  size_t at[2];           /* of "overlap": people who have both strategies at low and at high speed, else 0 */
   ethd__verdict verdict;
 } ethd__claim_part;
 
-/* A sentence holds when all its parts do: its p is the largest of theirs. */
+/* The tests: "sign flip" of people's values; "TOST", two one-sided t tests; "overlap", of a difference between speeds where
+   fewer than ETHD_STATISTICS_PEOPLE have all of it, but as many have both strategies at each speed: then these people's
+   differences are compared (ethd__overlapping); "bootstrap", of the threshold of early touches.
+   A sentence holds when all its parts do: its p is the largest of theirs. */
 typedef struct ethd__tap_claim {
   const char *text;
   ethd__claim_part part[ETHD_TAP_PARTS_MAX];
@@ -68,7 +73,7 @@ typedef struct ethd__tap_claim {
   ethd__verdict verdict;
 } ethd__tap_claim;
 
-enum { ETHD_TAP_CLAIMS = 8 };
+enum { ETHD_TAP_CLAIMS = 10 };
 void ethd__claims(const ethd__sample *sample, ethd__tap_claim out[ETHD_TAP_CLAIMS]);
 
 const ethd__cell *ethd__cell_find(const ethd__cell *cells, size_t count, const char *law, const char *speed);

@@ -42,6 +42,7 @@ static void judge(const ethd__clusters *clusters, uint64_t seed, ethd__claim_par
   size_t n = ethd__clusters_draws(clusters, threshold, seed, draws);
   for (size_t i = 0; i < n; i++) below += draws[i]<FROM, above += draws[i]> TO;
   if (!n) return;
+  out->test = "bootstrap";
   out->low = ethd__quantile(draws, n, 0.025), out->high = ethd__quantile(draws, n, 0.975);
   out->p = fmax(below, above) / (double)(n + 1);
   out->verdict = out->p < 0.05 ? ETHD_TAP_SHOWN : out->low > TO || out->high < FROM ? ETHD_TAP_CONTRARY : ETHD_TAP_OPEN;
@@ -55,6 +56,7 @@ void ethd__early_claim(const ethd__sample *t, ethd__tap_claim *out) {
   ethd__claim_part *part = &out->part[0];
   *part = (ethd__claim_part){.what = "commanded speed, threshold", .unit = "m/s", .from = FROM, .to = TO};
   part->low = part->high = part->p = part->d_z = NAN;
+  part->test = "";
   for (size_t c = 0; c < t->count; c++) room += t->cells[c].count;
   ethd__tapped *taps = malloc(room * sizeof *taps);
   if (!taps || !ethd__clusters_make(taps, take(t, taps), t->people, &clusters)) ethd__fail_memory();

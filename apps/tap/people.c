@@ -41,7 +41,9 @@ void ethd__people_figure(const ethd__cell *cell, ethd__tap_value *of, ethd__pers
   for (size_t i = 0, count; i < n; i += count) {
     uint32_t person = taken[i].person;
     for (count = 0; i + count < n && taken[i + count].person == person; count++) own[count] = taken[i + count].value;
-    out[person] = figure == ETHD_PERSON_MEDIAN ? ethd__quantile(own, count, 0.5) : ethd__mean_of(own, count);
+    out[person] = figure == ETHD_PERSON_MEDIAN ? ethd__quantile(own, count, 0.5)
+                  : figure == ETHD_PERSON_MOST ? own[count - 1]
+                                               : ethd__mean_of(own, count);
   }
   free(taken);
   free(own);

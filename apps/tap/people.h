@@ -10,6 +10,7 @@ typedef double ethd__tap_value(const ethd__metrics *metrics);
 typedef enum ethd__person_figure {
   ETHD_PERSON_MEDIAN, /* of the person's valid taps in a cell */
   ETHD_PERSON_MEAN,
+  ETHD_PERSON_MOST,     /* the largest of them */
   ETHD_PERSON_ATTEMPTS, /* the mean over all taps, valid or not */
 } ethd__person_figure;
 

@@ -122,6 +122,8 @@ static void print_part(FILE *file, const ethd__claim_part *part) {
   char bounds[48], n[32], p[32] = "";
   if (isinf(part->to))
     snprintf(bounds, sizeof bounds, "> %g", part->from);
+  else if (isinf(part->from))
+    snprintf(bounds, sizeof bounds, "< %g", part->to);
   else
     snprintf(bounds, sizeof bounds, "in %g to %g", part->from, part->to);
   snprintf(n, sizeof n, "n = %zu", part->people);

@@ -140,6 +140,27 @@ START_TEST(test_holm) {
 }
 END_TEST
 
+/* SciPy: ttest_rel, ttest_ind(equal_var=False), and the formulas of the paper in NumPy for what lies between. */
+START_TEST(test_samples_that_overlap) {
+  const double a[] = {0.31, 0.52, -0.11, 0.44, 0.9, 0.27, 0.61}, b[] = {0.12, 0.2, 0.05, 0.17, 0.33, 0.01, 0.3};
+  double first[14], second[14];
+  ethd__overlap o = ethd__overlapping(a, b, 7);
+  ck_assert(o.both == 7 && fabs(o.p - 0.0221530557558637) < 1e-10);
+  /* 1e-9, 1e-8: SciPy's quantile of t is that far off, by its own distribution function */
+  ck_assert(fabs(o.low - 0.05054119102701485) < 1e-9 && fabs(o.high - 0.45231595183012807) < 1e-9);
+  for (int i = 0; i < 14; i++) first[i] = i < 7 ? a[i] : NAN, second[i] = i < 7 ? NAN : b[i - 7];
+  o = ethd__overlapping(first, second, 14);
+  ck_assert(o.both == 0 && o.first == 7 && o.second == 7 && fabs(o.p - 0.08462477673637601) < 1e-10);
+  const double x[] = {0.31, 0.52, -0.11, 0.44, 0.9, NAN, NAN, 0.27, NAN},
+               y[] = {0.12, 0.2, 0.05, NAN, NAN, 0.33, 0.01, 0.3, -0.2};
+  o = ethd__overlapping(x, y, 9);
+  ck_assert(o.first == 6 && o.second == 7 && o.both == 4);
+  ck_assert(fabs(o.freedom - 4.744652268526766) < 1e-10 && fabs(o.p - 0.0879485727183803) < 1e-10);
+  ck_assert(fabs(o.low + 0.05974726301508637) < 1e-8 && fabs(o.high - 0.6049853582531817) < 1e-8);
+  ck_assert(isnan(ethd__overlapping(x, y, 1).p));
+}
+END_TEST
+
 START_TEST(test_people_are_drawn_whole) {
   ethd__tapped taps[] = {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {3, 4, 0}, {3, 4, 0}, {3, 4, 0}};
   ethd__clusters c;
@@ -230,6 +251,7 @@ int main(void) {
   tcase_add_test(all, test_equivalence);
   tcase_add_test(all, test_ranks);
   tcase_add_test(all, test_holm);
+  tcase_add_test(all, test_samples_that_overlap);
   tcase_add_test(all, test_people_are_drawn_whole);
   tcase_add_test(all, test_cliff);
   tcase_add_test(all, test_dip);
