@@ -1,4 +1,4 @@
-/* Is a configuration valid, how was it understood, and do its gains stay within the stability bounds? */
+/* Says whether a configuration is valid, how it was understood, and whether its gains stay within the stability bounds. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -98,7 +98,7 @@ static void take_over(const checked_device *d, ethd_setup *setup) {
   setup->dynamics = ethd_dynamics_known(&dynamics, &setup->dynamics);
 }
 
-/* The largest of the figures of this name. */
+/* Returns the largest of the figures of this name. */
 static double named(const checked_device *d, const char *name) {
   static ethd_figure all[ETHD_FIGURES_MAX];
   double most = NAN;
@@ -116,7 +116,7 @@ static void from_drivers(const checked_device *d, const ethd_setup *setup, ethd_
   f->latency = named(d, "reading age");
 }
 
-/* The driver has read it already: it can be. */
+/* The driver has read the plant already, so that it can be read. */
 static void from_plant(const ethd_config *config, ethd__figures *f) {
   char message[ETHD_MESSAGE_MAX];
   ethd_plant p;
@@ -134,7 +134,7 @@ static void option(const char *name, const char *text, double max, double *out) 
   if (text) *out = ethd__option_number(name, text, 0, max);
 }
 
-/* asked: Nm, the torque that the configuration allows, without its device. */
+/* `asked` is the torque that the configuration allows, Nm, whatever its device does. */
 static ethd__figures figures(const ethd_config *config, const checked_device *d, double asked) {
   const ethd_setup *setup = &config->setup;
   ethd__figures f = {

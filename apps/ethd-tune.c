@@ -1,4 +1,4 @@
-/* Finds gains: plant and hands in, the user's configuration with better numbers out. */
+/* Finds gains for a plant and its hands, and writes the user's configuration with them. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,14 +30,14 @@ static void open_space(const ethd_config *config, ethd__tune_space *space) {
   check(ethd__space_open(config, law, space, message), message);
 }
 
-/* What the user says of a range has the last word. */
+/* Sets the ranges; what the user says of one has the last word. */
 static void set_ranges(const ethd__tune_rig *rig, ethd__tune_space *space) {
   char message[ETHD_MESSAGE_MAX];
   ethd__score_widen(rig, space);
   for (size_t i = 0; i < arg.range_count; i++) check(ethd__space_range(space, arg.ranges[i], message), message);
 }
 
-/* All that the scores depend on, as text. */
+/* Returns all that the scores depend on as text. */
 static char *describe(const ethd__loaded *loaded, const ethd__tune_space *space) {
   char *out = NULL, *plant = NULL, message[ETHD_MESSAGE_MAX];
   size_t length, plant_length;
@@ -61,7 +61,7 @@ static char *describe(const ethd__loaded *loaded, const ethd__tune_space *space)
 
 /* ---- results ---- */
 
-/* What stands at the top of the tuned configuration. */
+/* Returns what stands at the top of the tuned configuration. */
 static char *head_of(const ethd__tune_search *search, const ethd__tune_entry *choice, const ethd__loaded *loaded,
                      const ethd__tune_worths *worths) {
   const ethd__tune_space *space = search->rig->space;
@@ -133,7 +133,7 @@ static int show(const ethd__tune_search *search, const ethd__loaded *loaded) {
 
 /* ---- the whole ---- */
 
-/* Processes of this machine, a shard each; the first goes on here. */
+/* Starts a process for each shard but the first, which this process does. */
 static void spawn(pid_t *children) {
   arg.shards = (uint32_t)arg.jobs;
   for (uint32_t i = 2; i <= arg.shards; i++) {

@@ -1,4 +1,4 @@
-/* What the drivers of a device say of it, asked or only read about. */
+/* Prints what the drivers of a device say of it, whether they asked the device or only read about it. */
 #include <math.h>
 #include <stdio.h>
 

@@ -6,7 +6,7 @@
 #include "bounds/stability.h"
 #include "check/report.h"
 
-/* Sufficient, not necessary: no bound is exceeded when they fail. */
+/* These conditions are sufficient, not necessary, so no bound is exceeded where they fail. */
 int ethd__report_passivity(const ethd__subject *s) {
   const ethd_setup *setup = &s->config->setup;
   double K = ethd_setup_get(setup, "contact.k_e"), B = ethd_setup_get(setup, "contact.b_e");

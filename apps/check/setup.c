@@ -11,7 +11,7 @@ static void word(const char *key, const char *value, const char *brief) {
   printf("%-13s = %-12s ; %s\n", key, value, brief);
 }
 
-/* As many digits as it takes to read the same number again. */
+/* Writes as many digits as it takes to read the same number again. */
 static void exact(double value, char out[32]) {
   for (int digits = 6; digits <= 17; digits++) {
     snprintf(out, 32, "%.*g", digits, value);
@@ -31,7 +31,7 @@ static void choice(const ethd_param *row, double value) {
   printf("%-13s = %-12.*s ; %s\n", row->name, (int)strcspn(at, "|"), at, row->brief);
 }
 
-/* Several numbers under one key, unless they are all what they are without it. */
+/* Prints several numbers under one key, unless all of them have their default. */
 static void numbers(const ethd_setup *setup, const ethd_setup_key *key) {
   char line[512] = "";
   bool differs = false;
@@ -52,14 +52,14 @@ static void value(const ethd_setup *setup, const ethd_setup_key *key) {
   if (key->count > 1)
     numbers(setup, key);
   else if (isnan(ethd_setup_get(setup, name)))
-    return; /* not known */
+    return; /* an unknown value isn't printed */
   else if (ethd_param_words(&key->param))
     choice(&key->param, ethd_setup_get(setup, name));
   else
     number(key->param.name, ethd_setup_get(setup, name), key->param.unit, key->param.brief);
 }
 
-/* What is chosen, and the numbers; of the limits those that are given. */
+/* Prints what is chosen and the numbers; only the limits that were given. */
 static void section(const ethd_config *c, const char *name) {
   const ethd_setup *s = &c->setup;
   const ethd_setup_part *part = ethd_setup_part_of(name);
@@ -72,7 +72,7 @@ static void section(const ethd_config *c, const char *name) {
   }
 }
 
-/* What a section has besides. */
+/* The rest prints what sections have beside their keys. */
 static void difference(const ethd_config *c) {
   printf("; d_beta = R_r - R_f,max = %.10g m\n", c->setup.ring_radius - c->setup.finger_radius_max);
 }

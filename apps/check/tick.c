@@ -1,4 +1,4 @@
-/* The tick's time, here and now: short, and no bound. */
+/* Times ticks on this machine, now: a short measurement, which is no bound. */
 #include <math.h>
 #include <sched.h>
 #include <stdbool.h>
@@ -12,7 +12,7 @@
 
 #define TICKS 20000
 
-/* All over the joints' range, the finger ahead, with a frame of rays every third tick. */
+/* Sweeps the joints' range with the finger ahead of the ring and a frame of rays at every third tick. */
 static void sense_at(const ethd_setup *setup, int k, ethd_sense *s) {
   double a = 2 * M_PI * k / 4001, b = 2 * M_PI * k / 977;
   ethd_pose pose;

@@ -29,6 +29,36 @@ double ethd__explain_value(const ethd__explain_point *p, int n) {
   return rounded(prior->logarithmic ? low * pow(high / low, share) : low + (high - low) * share);
 }
 
+#define AT(name) [ETHD_EXPLAIN_##name]
+
+/* Plants n and p with their controllers, in the numbers of this search. */
+static const double known[2][ETHD_EXPLAIN_NUMBERS] = {
+    {AT(mass) = 0.1173,       AT(deceleration) = 45.67,  AT(friction) = 0.398,     AT(viscous) = 1.267,
+     AT(delay) = 0.071e-3,    AT(ratio) = 9.8,           AT(finger_mass) = 0.0675, AT(hand_stiffness) = 284.7,
+     AT(hand_damping) = 4.27, AT(pad_stiffness) = 27436, AT(pad_damping) = 1.06,   AT(finger_radius) = 7.32e-3,
+     AT(latency) = 1.93e-3,   AT(start) = 31.6e-3,       AT(overshoot) = 55.5e-3,  AT(overshoot_spread) = 0.35,
+     AT(speed_low) = 0.197,   AT(speed_high) = 0.521,    AT(speed_spread) = 0.19,  AT(band_low) = 0.06,
+     AT(band_high) = 0.08,    AT(cutoff) = 133.4,        AT(acceleration) = 9.07,  AT(d_beta) = 1.454e-3,
+     AT(motor_share) = 0.1,   AT(resonance) = 300,       AT(damping_ratio) = 0.5},
+    {AT(mass) = 0.09475,       AT(deceleration) = 27.77, AT(friction) = 0.18266,    AT(viscous) = 0.03008,
+     AT(delay) = 0.1213e-3,    AT(ratio) = 9.945,        AT(finger_mass) = 0.041,   AT(hand_stiffness) = 82.39,
+     AT(hand_damping) = 2.568, AT(pad_stiffness) = 1e4,  AT(pad_damping) = 0.5,     AT(finger_radius) = 6.224e-3,
+     AT(latency) = 1.001e-3,   AT(start) = 77.51e-3,     AT(overshoot) = 14.89e-3,  AT(overshoot_spread) = 0.5595,
+     AT(speed_low) = 0.205,    AT(speed_high) = 0.4713,  AT(speed_spread) = 0.2726, AT(band_low) = 0.0339,
+     AT(band_high) = 0.0577,   AT(cutoff) = 389.1,       AT(acceleration) = 22.87,  AT(d_beta) = 2.218e-3,
+     AT(motor_share) = 0.1395, AT(resonance) = 88.1,     AT(damping_ratio) = 0.407}};
+
+ethd__explain_point ethd__explain_known(const ethd__explain_structure *structure) {
+  ethd__explain_point p;
+  for (int n = 0; n < ETHD_EXPLAIN_NUMBERS; n++) {
+    const ethd__explain_prior *prior = &ethd__explain_priors[n];
+    double low = prior->low, high = prior->high, value = known[structure->compliant][n];
+    double share = prior->logarithmic ? log(value / low) / log(high / low) : (value - low) / (high - low);
+    p.share[n] = fmin(1, fmax(0, share));
+  }
+  return p;
+}
+
 #define VALUE(name) ethd__explain_value(p, ETHD_EXPLAIN_##name)
 
 static void make_device(const ethd__explain_structure *structure, const ethd__explain_point *p, ethd_plant *out) {

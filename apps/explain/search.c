@@ -39,8 +39,8 @@ static void rank(const ethd__explain_search *s, uint32_t *order) {
 }
 
 static ethd__explain_point first(const ethd__explain_search *s, uint32_t number) {
-  ethd__explain_point p;
-  for (uint32_t n = 0; n < ETHD_EXPLAIN_NUMBERS; n++) p.share[n] = draw(s, 0, number, FIRST, n);
+  ethd__explain_point p = ethd__explain_known(&s->question->structure);
+  for (uint32_t n = 0; number && n < ETHD_EXPLAIN_NUMBERS; n++) p.share[n] = draw(s, 0, number, FIRST, n);
   return p;
 }
 

@@ -4,14 +4,14 @@
 
 #include "tune/score.h"
 
-#define TAPS 3 /* at each speed, of each disturbance */
+#define TAPS 3 /* taps at each speed under each disturbance */
 #define PRESS \
-  300 /* ticks for which the finger goes on pressing after the tap: a bounce dies out, a limit cycle doesn't */
-#define REST 40 /* the last of them, in which the ring is to be at rest */
+  300 /* ticks for which the finger goes on pressing after the tap, so that a bounce dies out and a limit cycle doesn't */
+#define REST 40 /* the last of these ticks, in which the ring must be at rest */
 #define SWING \
-  0.01 /* m/s, rms about a line: a limit cycle between torque limits has more, 5 N on 0.15 kg at 100 Hz 0.038 */
+  0.01 /* m/s, rms about a line; a limit cycle between torque limits is faster: 5 N on 0.15 kg at 100 Hz make 0.038 */
 
-/* Numbers, one at a tick, and their rms about their least-squares line. */
+/* Sums over one number a tick, from which the rms about the least-squares line follows. */
 typedef struct line_fit {
   double n, t, tt, v, tv, vv;
 } line_fit;
@@ -44,7 +44,7 @@ static double swing_of(ethd__stage *stage) {
   return left_over(&line);
 }
 
-/* Of each tap: how restless the ring is long after it. */
+/* How restless the ring is long after each tap. */
 typedef struct unrest {
   double swing[ETHD_TUNE_SPEEDS][TAPS];
 } unrest;
@@ -90,7 +90,7 @@ static bool is_gain(const ethd__tune_key *key) {
          !strncmp(key->name, "transition.", 11);
 }
 
-/* The gains of one section, all `times` as large. */
+/* Returns the point with all gains of one section `times` as large. */
 static ethd__tune_point raised(const ethd__tune_space *space, const ethd__tune_point *point, const char *section,
                                double times) {
   ethd__tune_point p = *point;
@@ -107,10 +107,10 @@ static ethd_plant with_hand(const ethd_plant *plant, double share) {
   return p;
 }
 
-/* What is asked of a point with one hand: a section's gains raised, or torques late. */
+/* One disturbance that a point must stand with every hand: a section's gains are raised, or torques are late. */
 typedef struct unsettling {
   const char *what;
-  const char *section; /* NULL: as they are */
+  const char *section; /* NULL: the gains stay as they are */
   bool late;
 } unsettling;
 

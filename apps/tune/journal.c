@@ -33,7 +33,7 @@ static ethd_status keep(ethd__tune_journal *j, const ethd__tune_row *row, char *
 
 /* ---- reading ---- */
 
-/* A line without its end was being written as its process ended. */
+/* Returns the length of the whole lines: the last line is cut off where its process was ended while writing it. */
 static size_t whole_lines(const char *text, size_t length) {
   while (length && text[length - 1] != '\n') length--;
   return length;
@@ -61,7 +61,7 @@ static ethd_status take_rows(ethd__tune_journal *j, const ethd_csv *csv, const c
   return status;
 }
 
-/* Length of the whole lines, where it is wanted. */
+/* Reads a shard's file. *good, unless it is NULL, becomes the length of its whole lines. */
 static ethd_status read_shard(ethd__tune_journal *j, uint32_t index, size_t *good, char *message) {
   char *path = shard_path(j, index), *text = NULL;
   size_t length = 0;
@@ -121,7 +121,7 @@ static ethd_status open_own(ethd__tune_journal *j, char *message) {
   return status;
 }
 
-/* What is searched for stands in tune.txt, whoever comes first writes it. */
+/* tune.txt says what is searched for; the first shard that comes writes it, the others compare. */
 static ethd_status check_what(const ethd__tune_journal *j, const char *what, char *message) {
   char *path = ethd__path_join(j->folder, "tune.txt"), *there = NULL;
   size_t length = 0;

@@ -1,5 +1,5 @@
-/* What has been scored, in a folder: a search that was ended goes on, and shards in processes or machines of their own
-   share the work. tune.txt says what is searched for; scores-I-of-N.csv is shard I's, a line a point, appended. All
+/* Keeps what has been scored in a folder, so that a search that was ended goes on and shards in several processes or on
+   several machines share the work. tune.txt says what is searched for; scores-I-of-N.csv is shard I's, to which a line is appended for each point. All
    [main]. */
 #ifndef ETHD_TUNE_JOURNAL_H
 #define ETHD_TUNE_JOURNAL_H
@@ -16,7 +16,7 @@ typedef struct ethd__tune_row {
 typedef struct ethd__tune_journal {
   const char *folder; /* NULL: nothing is kept */
   uint32_t index, count;
-  FILE *file; /* this shard's */
+  FILE *file; /* this shard's file */
   ethd__tune_row *rows;
   size_t row_count, room;
 } ethd__tune_journal;
@@ -27,13 +27,13 @@ ETHD_MUST_CHECK ethd_status ethd__tune_journal_open(const char *folder, const ch
                                                     uint32_t count, ethd__tune_journal *out,
                                                     char message[ETHD_MESSAGE_MAX]);
 
-/* Whether the point is this shard's to score. */
+/* Returns whether this shard scores the point. */
 bool ethd__tune_journal_mine(const ethd__tune_journal *journal, uint32_t number);
 
-/* The score of a point of a round; NULL: no shard has it yet. */
+/* Returns the score of a point of a round; NULL: no shard has it yet. */
 const ethd__tune_score *ethd__tune_journal_find(const ethd__tune_journal *journal, uint32_t round, uint32_t number);
 
-/* Keeps a score, on the disk where there is a folder. */
+/* Keeps a score, on disk if there is a folder. */
 ETHD_MUST_CHECK ethd_status ethd__tune_journal_add(ethd__tune_journal *journal, uint32_t round, uint32_t number,
                                                    const ethd__tune_score *score, char message[ETHD_MESSAGE_MAX]);
 

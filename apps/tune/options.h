@@ -13,13 +13,13 @@ typedef struct ethd__tune_options {
   ethd__tune_hands hands;
   ethd__bounds_margin margin;
   bool passive;
-  int prefer; /* a goal; -1: none */
+  int prefer; /* the goal that counts twice; -1: none */
   int64_t points, taps, jobs;
   uint64_t seed;
-  uint32_t shard, shards; /* from 1 */
+  uint32_t shard, shards; /* counted from 1 */
 } ethd__tune_options;
 
-/* Prints --help, or one line and exit 2. */
+/* Reads the command line. Prints --help, or one line and exits 2. */
 void ethd__tune_options_read(int argc, char **argv, ethd__tune_options *out);
 
 #endif

@@ -39,7 +39,8 @@ bool ethd__score_keeps(const ethd__tune_rig *rig, const ethd__tune_point *point)
   return true;
 }
 
-#define LOWERED 0.1 /* times the own: a gain of a loop whose own gains don't keep the margin */
+#define LOWERED \
+  0.1 /* times the configuration's value: how far down a damping is searched that doesn't keep the margin */
 
 void ethd__score_widen(const ethd__tune_rig *rig, ethd__tune_space *space) {
   static const char *const sections[ETHD_LOOP_KINDS] = {"tracking.b", "contact.b", "transition.b"};
@@ -53,7 +54,7 @@ void ethd__score_widen(const ethd__tune_rig *rig, ethd__tune_space *space) {
 
 /* ---- figures of a tap ---- */
 
-/* A mean that is made as its numbers come; NaN isn't counted. */
+/* A running mean, which leaves NaN out. */
 typedef struct mean {
   double sum, n;
 } mean;
@@ -70,7 +71,7 @@ typedef struct tally {
   mean early, lag, eps, delta_s, d_max, v_touch, rough;
 } tally;
 
-/* Over the ticks of the window: squares of what lags and of what the torque changes by. */
+/* Takes the squares of the lag and of the torque's changes over the ticks of the window. */
 static void take_approach(const ethd__tap_rows *rows, double end, tally *t) {
   for (size_t i = 1; i < rows->count; i++) {
     const ethd_truth *truth = &rows->truth[i];
@@ -130,7 +131,7 @@ ethd_status ethd__score_run(const ethd__tune_rig *rig, const ethd__tune_point *p
 
 /* ---- goals ---- */
 
-/* Mean over both speeds; `least` is a difference that nobody feels. */
+/* Returns the mean logarithm over both speeds; `least` is a difference that nobody feels. */
 static double log_ratio(const double *figure, const double *reference, double least) {
   double sum = 0;
   for (int s = 0; s < ETHD_TUNE_SPEEDS; s++) sum += log((figure[s] + least) / (reference[s] + least));

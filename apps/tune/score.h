@@ -23,14 +23,14 @@ typedef struct ethd__tune_score {
 #define ETHD_TUNE_FIGURE(name, unit, brief) double name[ETHD_TUNE_SPEEDS];
   ETHD_TUNE_FIGURES(ETHD_TUNE_FIGURE)
 #undef ETHD_TUNE_FIGURE
-  double taps, touched; /* how many were tapped at each speed, in how many the finger touched, of both speeds */
+  double taps, touched; /* taps at each speed; those of both speeds in which the finger touched */
 } ethd__tune_score;
 
 #define ETHD_TUNE_FIGURE_COUNT (sizeof(ethd__tune_score) / sizeof(double))
 
 extern const char *const ethd__tune_figure_names[ETHD_TUNE_FIGURE_COUNT];
 
-/* What hands lean against the ring: shares of the plant's finger mass, hand stiffness and damping. 0: a free ring. */
+/* The hands that lean against the ring, as shares of the plant's finger mass, hand stiffness and damping. 0: a free ring. */
 typedef struct ethd__tune_hands {
   double shares[8];
   size_t count;
@@ -48,19 +48,19 @@ typedef struct ethd__tune_rig {
    that the search finds some that do. */
 void ethd__score_widen(const ethd__tune_rig *rig, ethd__tune_space *space);
 
-/* Whether every loop, along each axis, keeps the margin, free and with each hand's mass against the ring. False too for a
-   setup that the configuration refuses. */
+/* Whether every loop, along each axis, keeps the margin, free and with each hand's mass against the ring. It is also false for
+   a setup that the configuration refuses. */
 bool ethd__score_keeps(const ethd__tune_rig *rig, const ethd__tune_point *point);
 
-/* Taps 0 to taps - 1 at each speed. */
+/* Runs taps 0 to taps - 1 at each speed. */
 ETHD_MUST_CHECK ethd_status ethd__score_run(const ethd__tune_rig *rig, const ethd__tune_point *point, uint32_t taps,
                                             ethd__tune_score *out, char message[ETHD_MESSAGE_MAX]);
 
-/* What a point's margins came to in time. */
+/* What the trial of a point's margins in time came to. */
 typedef struct ethd__tune_verdict {
   bool settles;
-  const char *what; /* tried last: what was at its margin */
-  double hand;      /* with which hand */
+  const char *what; /* what was at its margin in the last try */
+  double hand;      /* the hand's share in that try */
   double swing;     /* m/s: how restless the ring then was at the end of a tap */
 } ethd__tune_verdict;
 
@@ -81,7 +81,7 @@ typedef enum ethd__tune_goal {
 
 extern const char *const ethd__tune_goal_names[ETHD_TUNE_GOALS];
 
-/* INFINITY where too few fingers touched (a quarter of the reference's) to say anything. */
+/* Fills the goals; INFINITY where too few fingers touched (a quarter of the reference's) to say anything. */
 void ethd__score_goals(const ethd__tune_score *score, const ethd__tune_score *reference, double out[ETHD_TUNE_GOALS]);
 
 #endif

@@ -7,19 +7,19 @@
 #include "cli/cli.h"
 #include "text/error_text.h"
 
-/* Of a round: the part of the last one's taps, how many of the round before go on for a hundred points, points drawn about
-   each of them, and how far away, as a share of the range. */
+/* What each round does: it taps 1/part of the last round's taps, takes over so many per cent of the round before, draws so
+   many children about each of these, and draws them within `spread` of the range. */
 static const struct {
   uint32_t part, percent, children;
   double spread;
 } plan[ETHD_TUNE_ROUNDS] = {{20, 0, 0, 0}, {10, 12, 3, 0.12}, {4, 8, 2, 0.05}, {1, 6, 0, 0}};
 
-#define WORSE 1.1 /* times the own: what is worse than this counts so much more: */
+#define WORSE 1.1 /* times the configuration's figure; what is worse than that counts so many times more: */
 #define DEARER 10.0
 #define TAPS_LEAST 8 /* with fewer hardly a hand meets the wall at the speed asked for */
-#define LEAST 4      /* points that go on, however small the search */
-#define THIN 4       /* a point in so many that doesn't keep the margin is tapped too, to be seen beside the others */
-#define DRAWS_A_POINT 128 /* tries for a point that keeps the margin */
+#define LEAST 4      /* points that go on however small the search is */
+#define THIN 4       /* one point in so many that don't keep the margin is tapped too, to be seen beside the others */
+#define DRAWS_A_POINT 128 /* points that are drawn at most for one that keeps the margin */
 
 /* ---- a round's points ---- */
 
@@ -71,7 +71,7 @@ static int by_total(const void *a, const void *b) {
   return *x < *y ? -1 : 1;
 }
 
-/* The front's points first, each group by its total. */
+/* Orders the points: those of the front come first, and each group is in the order of its totals. */
 static const ethd__tune_entry **ranked(const ethd__tune_round *r, size_t *count) {
   const ethd__tune_entry **order = malloc(r->count * sizeof *order);
   *count = 0;
@@ -81,8 +81,7 @@ static const ethd__tune_entry **ranked(const ethd__tune_round *r, size_t *count)
   return order;
 }
 
-/* Behind the first `count` of the order: whoever is best by one goal, unless it is among them. Returns how many there are
-   then. */
+/* Appends the best point by each goal to the first `count` of the order, unless it is among them. Returns the new count. */
 static size_t add_extremes(const ethd__tune_entry **order, size_t count, size_t all) {
   for (int g = 0; g < ETHD_TUNE_GOALS; g++) {
     size_t best = 0;
@@ -96,7 +95,7 @@ static size_t add_extremes(const ethd__tune_entry **order, size_t count, size_t 
   return count;
 }
 
-/* Keeps of the order, from its beginning, `most` that settle at their margins in time. */
+/* Keeps the first `most` points of the order that settle at their margins in time. */
 static ethd_status confirm(ethd__tune_search *s, const ethd__tune_entry **order, size_t *count, size_t most,
                            char *message) {
   ethd_status status = ETHD_OK;
@@ -166,7 +165,7 @@ static ethd_status score_own(ethd__tune_search *s, uint32_t round, char *message
   return status;
 }
 
-/* The other shards' scores come when they come. */
+/* Reads the other shards' scores until none is missing. */
 static ethd_status wait_for_others(ethd__tune_search *s, uint32_t round, char *message) {
   const struct timespec pause = {0, 200000000};
   size_t missing;

@@ -34,21 +34,21 @@ typedef struct ethd__tune_round {
 
 typedef struct ethd__tune_search {
   const ethd__tune_rig *rig;
-  ethd__tune_journal *journal; /* of what is scored; goes on where an earlier run ended */
-  uint32_t points;             /* of round 1 that keep the margin, the own one apart */
-  uint32_t taps;               /* of the last round at each speed; earlier rounds have at least 8 */
+  ethd__tune_journal *journal; /* keeps what is scored; goes on where an earlier run ended */
+  uint32_t points;             /* how many points of round 1 keep the margin, beside the configuration's own */
+  uint32_t taps;               /* taps of the last round at each speed; earlier rounds have at least 8 */
   double weights[ETHD_TUNE_GOALS];
   ethd__tune_round rounds[ETHD_TUNE_ROUNDS];
-  uint64_t drawn, kept;       /* points of round 1 that were drawn until so many kept the margin */
-  uint32_t asked;             /* points whose margins were tried in time */
-  ethd__tune_verdict verdict; /* on the last of them */
+  uint64_t drawn, kept;       /* how many points of round 1 were drawn until how many kept the margin */
+  uint32_t asked;             /* how many points' margins were tried in time */
+  ethd__tune_verdict verdict; /* the verdict on the last of them */
 } ethd__tune_search;
 
-/* Fills the rounds. ETHD_E_ARGUMENT, with the reason: hardly any point of the box keeps the margin. Ends early, with
+/* Fills the rounds. ETHD_E_RANGE, with the reason: hardly any point of the box keeps the margin. Ends early, with
    ETHD_OK, once ethd__stop is set; *over says whether it came to its end. */
 ETHD_MUST_CHECK ethd_status ethd__search_run(ethd__tune_search *search, bool *over, char message[ETHD_MESSAGE_MAX]);
 
-/* Of the last round's front the entry with the smallest total; NULL: none settled at its margins. */
+/* Returns the entry of the last round's front with the smallest total; NULL: none settled at its margins. */
 const ethd__tune_entry *ethd__search_choice(const ethd__tune_search *search);
 
 void ethd__search_free(ethd__tune_search *search);

@@ -126,7 +126,7 @@ static double within(const ethd__tune_key *key, double share) {
   return rounded(key->low * exp(share * log(key->high / key->low)));
 }
 
-/* The root of x^(d+1) = x + 1 over 1, by its fixed point. */
+/* Finds the root above 1 of x^(d+1) = x + 1 as a fixed point. */
 static double root(size_t d) {
   double x = 1.5;
   for (int i = 0; i < 60; i++) x = pow(1 + x, 1 / (double)(d + 1));

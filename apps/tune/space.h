@@ -31,40 +31,39 @@ typedef struct ethd__tune_space {
   size_t count;
 } ethd__tune_space;
 
-/* A value of every key. */
+/* One value for every key. */
 typedef struct ethd__tune_point {
   double value[ETHD_TUNE_KEYS_MAX];
 } ethd__tune_point;
 
-/* The gains and cut-offs that the setup's laws and estimators have, from a share of the configuration's own value to a
-   multiple. Contact stiffness isn't lowered: a softer wall bounces less and is a worse wall. Refuses a law that isn't
-   there, a setup with nothing to tune. */
+/* Opens the space of the gains and cut-offs that the setup's laws and estimators have. Contact stiffness isn't lowered: a
+   softer wall bounces less and is a worse wall. Refuses an unknown law and a setup with nothing to tune. */
 ETHD_MUST_CHECK ethd_status ethd__space_open(const ethd_config *config, const char *law, ethd__tune_space *out,
                                              char message[ETHD_MESSAGE_MAX]);
 
 /* Gives the keys whose names begin with `prefix` the range from `share` of their own value to that value. */
 void ethd__space_lower(ethd__tune_space *space, const char *prefix, double share);
 
-/* "contact.k_e=500:4000": that range for the key, which becomes one of the space where it wasn't; "contact.k_e=1000": that
-   value and no other. Refuses what the configuration doesn't take. */
+/* Reads "contact.k_e=500:4000", which sets the range of a key, or "contact.k_e=1000", which holds it; a key that the space
+   lacks is added. Refuses what the configuration doesn't take. */
 ETHD_MUST_CHECK ethd_status ethd__space_range(ethd__tune_space *space, const char *text,
                                               char message[ETHD_MESSAGE_MAX]);
 
-/* Where the configuration stands. */
+/* Returns the configuration's own point. */
 ethd__tune_point ethd__space_own(const ethd__tune_space *space);
 
-/* Point i of a sequence that fills the box evenly, in the logarithms of the values (the additive recurrence of
+/* Returns point i of a sequence that fills the box evenly, in the logarithms of the values (the additive recurrence of
    M. Roberts, 2018: multiples of the powers of the root of x^(d+1) = x + 1). */
 ethd__tune_point ethd__space_at(const ethd__tune_space *space, uint64_t i);
 
-/* A point about another: each logarithm moved by at most `spread` of its range. A function of `number`. */
+/* Returns a point near another: each logarithm moved by at most `spread` of its range. A function of `number`. */
 ethd__tune_point ethd__space_near(const ethd__tune_space *space, const ethd__tune_point *point, double spread,
                                   uint64_t number);
 
-/* A value as text: four digits, which is what points have. */
+/* Writes a value as text with four digits, which is what points have. */
 const char *ethd__space_text(double value, char out[ETHD_TUNE_VALUE_MAX]);
 
-/* The setup at the point, on the stage of a study; gains[] refer to the space and to texts. */
+/* A point as the gains of a study; gains[] refer to the space and to text[]. */
 typedef struct ethd__tune_gains {
   char text[ETHD_TUNE_KEYS_MAX][ETHD_TUNE_VALUE_MAX];
   ethd__gain gains[ETHD_TUNE_KEYS_MAX];
@@ -72,7 +71,7 @@ typedef struct ethd__tune_gains {
 
 void ethd__space_gains(const ethd__tune_space *space, const ethd__tune_point *point, ethd__tune_gains *out);
 
-/* The configuration's setup at the point. */
+/* Fills the configuration's setup at the point. */
 ETHD_MUST_CHECK ethd_status ethd__space_setup(const ethd__tune_space *space, const ethd__tune_point *point,
                                               ethd_setup *out, char message[ETHD_MESSAGE_MAX]);
 

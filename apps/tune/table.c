@@ -8,7 +8,7 @@
 #include "text/csv.h"
 #include "text/error_text.h"
 
-#define SHOWN 8 /* points of the front */
+#define SHOWN 8 /* points of the front that are printed */
 
 /* ---- the front ---- */
 

@@ -14,17 +14,17 @@ typedef struct rewriting {
   bool done[ETHD_TUNE_KEYS_MAX];
   bool other_folder;
   char section[ETHD_TUNE_KEY_MAX];
-  size_t blank; /* lines that wait: what a section lacks goes before them */
+  size_t blank; /* blank lines that wait: keys that a section lacks go before them */
   FILE *out;
 } rewriting;
 
-/* The part of a key's name behind its section, NULL: another section. */
+/* Returns the part of a key's name behind its section; NULL: the key belongs to another section. */
 static const char *in_section(const char *name, const char *section) {
   size_t n = strlen(section);
   return !strncmp(name, section, n) && name[n] == '.' ? name + n + 1 : NULL;
 }
 
-/* What the section still lacks. */
+/* Writes the keys that the section still lacks. */
 static void finish_section(rewriting *w) {
   for (size_t k = 0; k < w->space->count; k++) {
     const char *key = in_section(w->space->keys[k].name, w->section);
@@ -39,7 +39,7 @@ static bool is_path(const char *section, const char *key) {
          (!strcmp(section, "device") && strchr("pmc", *key));
 }
 
-/* A file of the folder, as the whole path; else the value as it is. */
+/* Writes the whole path of a file of the folder, and any other value as it is. */
 static void put_path(rewriting *w, const char *value, size_t length) {
   char *name = strndup(value, length), *path = name ? ethd__path_join(w->space->config->folder, name) : NULL;
   char *whole = path && !access(path, F_OK) ? realpath(path, NULL) : NULL;
@@ -49,7 +49,7 @@ static void put_path(rewriting *w, const char *value, size_t length) {
   free(name);
 }
 
-/* One line: KEY = VALUE ; comment. The value alone is changed. */
+/* Writes a line KEY = VALUE ; comment, of which only the value changes. */
 static void put_key(rewriting *w, const char *line, size_t length) {
   const char *equals = memchr(line, '=', length), *end = line + length;
   size_t n = (size_t)(equals - line);

@@ -4,9 +4,9 @@
 
 #include "tune/space.h"
 
-/* `text` with the point's values in place of those that its keys have, new keys at the end of their section, new sections
-   at the end; paths of scenes, plugins and plants that are relative to `folder` become absolute when the file goes to
-   another one. each line of `head` becomes a comment at the top. Freed by the caller; NULL: no memory. */
+/* Returns the configuration's text with the point's values. Keys that it lacks go to the end of their section, sections
+   that it lacks to the end. With `other_folder` relative paths of scenes, plugins and plants become absolute. Each line of
+   `head` becomes a comment at the top. The caller frees it; NULL: no memory. */
 char *ethd__tuned_text(const ethd__tune_space *space, const ethd__tune_point *point, const char *head,
                        bool other_folder);
 

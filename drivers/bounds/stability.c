@@ -15,16 +15,16 @@ enum {
   ESTIMATE = ETHD_MOTION_STATE,
   FILTER,
   LAST,
-  WAY,
-  STATE_MAX = WAY + ETHD_LOOP_DELAY_MAX + 1 + ETHD_VELOCITY_WINDOW_MAX
+  WAITING,
+  STATE_MAX = WAITING + ETHD_LOOP_DELAY_MAX + 1 + ETHD_VELOCITY_WINDOW_MAX
 };
 
 typedef double matrix[STATE_MAX][STATE_MAX];
 
 typedef struct model {
   const ethd__sampled_loop *loop;
-  int ways, past, size;               /* forces that don't act yet; index of x_k-1; length of the state */
-  int samples;                        /* last positions kept */
+  int waiting, past, size;            /* how many forces don't act yet; index of x_k-1; length of the state */
+  int samples;                        /* how many last positions are kept */
   double w[ETHD_VELOCITY_WINDOW_MAX]; /* v^ from x_k, x_k-1, ... */
   double keep;                        /* share of the last estimate (lowpass) */
   double alpha, beta, inertia;        /* kalman at the ring */
@@ -66,10 +66,10 @@ static void prepare(const ethd__sampled_loop *loop, model *m) {
   case ETHD_VELOCITY_KALMAN: use_kalman(m); break;
   default: use_difference(m, 1);
   }
-  m->ways = loop->delay + (loop->late > 0);
+  m->waiting = loop->delay + (loop->late > 0);
   ethd__bounds_motion_over(loop, loop->late, &m->before);
   ethd__bounds_motion_over(loop, loop->period - loop->late, &m->after);
-  m->past = WAY + m->ways;
+  m->past = WAITING + m->waiting;
   m->size = m->past + m->samples;
 }
 
@@ -91,14 +91,14 @@ static void tick(const model *m, const double *s, double *next) {
   double filter = 0;
   double v = estimate(m, s, &filter);
   double f = -l->stiffness * s[X] - l->damping * v;
-  double now = l->delay ? s[WAY + m->ways - l->delay] : f, before = l->late > 0 ? s[WAY] : 0;
+  double now = l->delay ? s[WAITING + m->waiting - l->delay] : f, before = l->late > 0 ? s[WAITING] : 0;
   memcpy(next, s, ESTIMATE * sizeof *next);
   if (l->late > 0) ethd__bounds_motion_apply(&m->before, before, next);
   ethd__bounds_motion_apply(&m->after, now, next);
   next[ESTIMATE] = v;
   next[FILTER] = filter;
   next[LAST] = f;
-  for (int i = 0; i < m->ways; i++) next[WAY + i] = i + 1 < m->ways ? s[WAY + i + 1] : f;
+  for (int i = 0; i < m->waiting; i++) next[WAITING + i] = i + 1 < m->waiting ? s[WAITING + i + 1] : f;
   for (int i = 0; i < m->samples; i++) next[m->past + i] = i ? s[m->past + i - 1] : s[X];
 }
 

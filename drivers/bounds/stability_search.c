@@ -1,4 +1,4 @@
-/* Where a sampled loop's stability ends: one number of it at a time, searched on a grid and bisected. */
+/* Finds where a sampled loop becomes unstable: one of its numbers is searched on a grid and bisected. */
 #include <math.h>
 
 #include "bounds/stability.h"
@@ -19,7 +19,7 @@ static double bisect(ethd__sampled_loop *loop, double *value, double stable, dou
 
 static double grid(int i) { return exp(i * log(10) / STEPS_PER_DECADE); }
 
-/* With a large mass all is slow, and hold and delay take K (T (n + 1/2) + late) off the damping, whatever the
+/* With a large mass everything is slow, and hold and delay take K (T (n + 1/2) + late) off the damping under any
    estimator. */
 double ethd__sampled_damping_needed(const ethd__sampled_loop *l) {
   return l->stiffness * (l->period * (l->delay + 0.5) + l->late);
@@ -36,7 +36,7 @@ double ethd__sampled_mass_min(const ethd__sampled_loop *loop) {
   return 0;
 }
 
-/* From a stable value up to the first that isn't, `most` at the highest. */
+/* Walks from a stable value up to the first unstable one, at most to `most`. */
 static double band_end(ethd__sampled_loop *l, double *gain, double most) {
   const double step = exp(log(10) / (4 * STEPS_PER_DECADE));
   for (double stable = *gain; stable < most; stable *= step) {
@@ -46,8 +46,8 @@ static double band_end(ethd__sampled_loop *l, double *gain, double most) {
   return *gain;
 }
 
-/* Values are in units of what mass and period set. A stable band may be narrower than the grid, so the value that is
-   there is tried too. */
+/* The grid is in units that mass and period set. A stable band may be narrower than the grid, so the loop's own value is
+   tried too. */
 static double gain_max(ethd__sampled_loop *l, double *gain, double unit) {
   double own = ethd__sampled_stable(l) ? *gain : 0;
   if (own > 0 && ethd__sampled_gives_way(l)) return band_end(l, gain, 10 * unit);
@@ -68,8 +68,8 @@ double ethd__sampled_damping_max(const ethd__sampled_loop *loop) {
   return gain_max(&l, &l.damping, l.mass / l.period);
 }
 
-/* The walk from as it is (share 0) to there (share 1), by steps of a band's search; a rigid device's stable gains are one
-   band, so that its end decides. */
+/* Walks from the loop's gains to those asked for, by the steps of a band's search. The stable gains of a rigid device are
+   one band, so that the end of the walk decides. */
 bool ethd__sampled_stable_up_to(const ethd__sampled_loop *loop, double stiffness_times, double damping_times) {
   const double decades = log10(fmax(stiffness_times, damping_times));
   const int steps = ethd__sampled_gives_way(loop) ? (int)ceil(4 * STEPS_PER_DECADE * decades) : 1;
@@ -99,7 +99,8 @@ static bool stable_with(ethd__sampled_loop *l, double delay) {
   return ethd__sampled_stable(l);
 }
 
-/* From a stable delay up by quarters of a tick: the last stable one; *beyond: the first that isn't, or `most`. */
+/* Walks from a stable delay up by quarters of a tick and returns the last stable one; *beyond becomes the first unstable
+   one, or `most`. */
 static double walk_delay(ethd__sampled_loop *l, double from, double most, double *beyond) {
   double low = from;
   for (*beyond = fmin(from + l->period / 4, most); stable_with(l, *beyond);

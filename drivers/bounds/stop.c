@@ -19,7 +19,7 @@ double ethd__stop_speed(const ethd__bounds_stop *s) {
   return g > 0 ? 2 * g / (c + sqrt(c * c + 2 * g / a)) : 0;
 }
 
-/* v > v1 = F_sat/B_d: a; below: tau = m/B_d. */
+/* Above v1 = F_sat/B_d the motors saturate and a is constant; below it the speed decays with tau = m/B_d. */
 double ethd__braking_time(const ethd__bounds_stop *s, const ethd__bounds_braking *b, double speed) {
   double v1 = fmin(speed, s->force / b->damping), tau = s->mass / b->damping;
   double viscous = v1 > b->v_th ? tau * log(v1 / b->v_th) : 0;
