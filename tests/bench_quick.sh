@@ -7,6 +7,13 @@ trap 'rm -rf "$folder"' EXIT
 bench=$BUILD/bin/ethd-bench
 fail() { echo "$*"; exit 1; }
 
+# A table that can't be written whole says so and isn't there.
+mkdir "$folder/full"
+said=$( (ulimit -f 1; "$bench" fits --quick --out "$folder/full" 2>&1 >/dev/null || echo "code $?") | cat)
+[ "$said" = "ethd-bench: $folder/full/fits.csv: File too large
+code 1" ] || fail "a table that is cut off: $said"
+[ -z "$(ls "$folder/full")" ] || fail "it left $(ls "$folder/full")"
+
 for what in fits filters velocity kinematics hours sensors identify readers; do
   "$bench" $what --quick --out "$folder" --about "a test" >"$folder/$what.txt" || fail "$what failed"
   head -n 1 "$folder/$what.csv" | grep -q '^# libethd .*compiler' || fail "$what.csv doesn't say what measured it"

@@ -1,7 +1,6 @@
 #include "bench/bench.h"
 
 #include <dlfcn.h>
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +12,7 @@
 #include "cli/cli.h"
 #include "clock.h"
 #include "ethd/ethd.h"
+#include "text/text.h"
 
 int64_t ethd__bench_now(void) { return ethd__clock_now(); }
 
@@ -129,17 +129,25 @@ static const char *about_all = "";
 
 void ethd__bench_about(const char *text) { about_all = text; }
 
+static ethd_replace table; /* the question that is being answered has one */
+
 FILE *ethd__bench_csv(const char *folder, const char *name, const char *about, const char *header) {
-  char path[4096], cpu[256];
+  char path[4096], cpu[256], message[ETHD_MESSAGE_MAX];
   snprintf(path, sizeof path, "%s/%s.csv", folder, name);
-  FILE *f = fopen(path, "w");
-  if (!f) ethd__fail(ETHD_EXIT_FAILED, "%s: %s", path, strerror(errno));
+  if (ethd_replace_begin(path, &table, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  FILE *f = table.file;
   processor(cpu, sizeof cpu);
   fprintf(f, "# libethd %s; %s, %ld processors; compiler %s\n", ETHD_VERSION, cpu, sysconf(_SC_NPROCESSORS_ONLN),
           __VERSION__);
   if (*about_all) fprintf(f, "# %s\n", about_all);
   fprintf(f, "%s%s\n", about, header);
   return f;
+}
+
+int ethd__bench_close(void) {
+  char message[ETHD_MESSAGE_MAX];
+  if (ethd_replace_commit(&table, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  return ETHD_EXIT_DONE;
 }
 
 const char *ethd__bench_verdict(int met) { return met ? "met" : "MISSED"; }

@@ -68,8 +68,11 @@ void ethd__bench_peers_in(const char *folder);
 /* ---- output ---- */
 
 /* Opens folder/name.csv and writes '#' lines with machine, compiler, flags and version, then those of
-   `about` (each ends in a newline), then `header`; exits if it can't. */
+   `about` (each ends in a newline), then `header`; exits if it can't. One is open at a time. */
 FILE *ethd__bench_csv(const char *folder, const char *name, const char *about, const char *header);
+
+/* Puts the table in its place and returns the exit code for success; exits if any of it couldn't be written. */
+int ethd__bench_close(void);
 
 /* Sets what else the '#' lines say: commit, flags. */
 void ethd__bench_about(const char *text);

@@ -173,7 +173,7 @@ static int run(const char *folder, int quick) {
   int sets = 0;
   for (int l = 0; l < LATENCIES; l++) sets = one_latency(l, quick ? 0.1 : 1, peer);
   if (!sets) printf("SKIP: recorded movements: none in ETHD_MOTION_DIR\n");
-  return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+  return ethd__bench_close();
 }
 
 const ethd__bench ethd__bench_filters = {"filters", "where the finger is now, from late readings", run};

@@ -181,7 +181,7 @@ static int run(const char *folder, int quick) {
     printf("  %6.4f / %6.4f\n", 1e3 * bounds[s][0], 1e3 * bounds[s][1]);
   }
   judge(f, bounds);
-  return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+  return ethd__bench_close();
 }
 
 const ethd__bench ethd__bench_fits = {"fits", "the finger's centre from 16 rays, against the Cramer-Rao bound", run};

@@ -168,7 +168,7 @@ static int run(const char *folder, int quick) {
   ethd_sim_destroy(l.sim);
   l.sim = NULL;
   close_loop(&l);
-  return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+  return ethd__bench_close();
 }
 
 const ethd__bench ethd__bench_hours = {"hours", "simulated hours per CPU hour", run};

@@ -259,7 +259,7 @@ static int run(const char *folder, int quick) {
     printf("  goal: a whole fit of plant %s predicts %.0f s per CPU second: %.0f in %.1f s, %s\n", arms[a].name, GOAL,
            rate, seconds, ethd__bench_verdict(rate >= GOAL));
   }
-  return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+  return ethd__bench_close();
 }
 
 const ethd__bench ethd__bench_identify = {"identify",

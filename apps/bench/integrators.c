@@ -192,7 +192,7 @@ static int run(const char *folder, int quick) {
   }
   free(truth);
   ethd__problem_free(&problem);
-  return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+  return ethd__bench_close();
 }
 
 const ethd__bench ethd__bench_integrators = {"integrators",

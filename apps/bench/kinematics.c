@@ -131,7 +131,7 @@ static int run(const char *folder, int quick) {
     printf("  goal: KDL takes %.0f times as long: %.1f, %s\n", GOAL, times, ethd__bench_verdict(times >= GOAL));
     kdl.peer->destroy(kdl.peer_self);
   }
-  return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+  return ethd__bench_close();
 }
 
 const ethd__bench ethd__bench_kinematics = {"kinematics", "the arm's kinematics, against KDL", run};

@@ -146,7 +146,7 @@ static void open_file(sent_file *f, size_t reader, int rows) {
   int fd = mkstemp(f->path);
   FILE *copy = fd < 0 ? NULL : fdopen(fd, "w");
   if (!copy || fwrite(f->text, 1, f->length, copy) != f->length || fclose(copy))
-    ethd__fail(ETHD_EXIT_FAILED, "%s can't be written", f->path);
+    unlink(f->path), ethd__fail(ETHD_EXIT_FAILED, "%s can't be written", f->path);
 }
 
 static void close_file(sent_file *f) {
@@ -186,7 +186,7 @@ static int run(const char *folder, int quick) {
     printf("  goal: %-18s 64 times as many rows, ns a byte <= %g times: %.2f, %s\n", readers[r].name, GROWTH, growth,
            ethd__bench_verdict(growth <= GROWTH));
   }
-  return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+  return ethd__bench_close();
 }
 
 const ethd__bench ethd__bench_readers = {"readers", "readers of files: is their time linear in the file?", run};

@@ -146,7 +146,7 @@ static int run(const char *folder, int quick) {
       "scene,segments,mode,contender,mean_ns,median_ns,p99_ns,p999_ns,max_ns,cold_mean_ns,cold_median_ns,"
       "cold_p99_ns,cold_p999_ns,cold_max_ns,build_s,memory_bytes,difference_m");
   write_csv(&t, csv);
-  return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+  return ethd__bench_close();
 }
 
 const ethd__bench ethd__bench_scene = {"scene", "nearest surfaces, against Embree, CGAL, GEOS, Chipmunk2D", run};

@@ -193,7 +193,7 @@ static int run(const char *folder, int quick) {
   print_part("early contacts, %", all, 100, early_of);
   print_goal(all);
   ethd_config_free(config);
-  return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+  return ethd__bench_close();
 }
 
 const ethd__bench ethd__bench_sensors = {"sensors", "what the finger's sensor costs: error, lag, early contacts", run};

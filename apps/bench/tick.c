@@ -176,7 +176,7 @@ static int run(const char *folder, int quick) {
        mean_of(&h, OFFSET, ETHD__TAP_RAYS, MANY) / mean_of(&h, OFFSET, ETHD__TAP_RAYS, HUNDRED), 2.2, "");
   for (size_t i = 0; i < h.count; i++) ethd__ticking_destroy(h.entries[i].data);
   free(ns);
-  return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+  return ethd__bench_close();
 }
 
 const ethd__bench ethd__bench_tick = {"tick", "the whole tick: hot, cold, in a 1 kHz loop, by part", run};

@@ -185,7 +185,7 @@ static int run(const char *folder, int quick) {
     f.ns = entries[i].ns;
     put(csv, &all[i], &f);
   }
-  return fclose(csv) == 0 ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
+  return ethd__bench_close();
 }
 
 const ethd__bench ethd__bench_velocity = {"velocity", "joint speed from encoder counts: lag against noise", run};

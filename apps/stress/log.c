@@ -1,4 +1,3 @@
-#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -6,6 +5,7 @@
 
 #include "cli/cli.h"
 #include "stress/stress.h"
+#include "text/text.h"
 
 /* 0 exact, 1 just allowed, over 1 failed; what isn't a number has failed. */
 static double load(const ethd__stress_result *r) {
@@ -99,18 +99,22 @@ void ethd__stress_note(ethd__stress_log *log, const char *text, ...) {
   va_end(args);
 }
 
+static ethd_replace tables[2]; /* that are open */
+
 FILE *ethd__stress_data(const ethd__stress_log *log, const char *name, const char *header) {
-  char path[4096];
+  char path[4096], message[ETHD_MESSAGE_MAX];
   if (!log->folder) return NULL;
+  ethd_replace *table = &tables[tables[0].file != NULL];
   snprintf(path, sizeof path, "%s/%s", log->folder, name);
-  FILE *f = fopen(path, "w");
-  if (!f) ethd__fail(ETHD_EXIT_FAILED, "%s: %s", path, strerror(errno));
-  fprintf(f, "%s\n", header);
-  return f;
+  if (ethd_replace_begin(path, table, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  fprintf(table->file, "%s\n", header);
+  return table->file;
 }
 
 void ethd__stress_close(FILE *data) {
+  char message[ETHD_MESSAGE_MAX];
   if (!data) return;
-  int bad = ferror(data);
-  if (fclose(data) != 0 || bad) ethd__fail(ETHD_EXIT_FAILED, "data: %s", strerror(errno ? errno : EIO));
+  ethd_replace *table = &tables[tables[0].file != data];
+  if (ethd_replace_commit(table, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
+  table->file = NULL;
 }

@@ -54,7 +54,8 @@ void ethd__stress_note(ethd__stress_log *log, const char *text, ...) __attribute
 /* Prints the lines so far. */
 void ethd__stress_flush(ethd__stress_log *log);
 
-/* Opens folder/name for writing and writes the header row; NULL when there is no folder; exits when it can't. */
+/* Opens folder/name for writing and writes the header row; returns NULL if there is no folder, and exits if it can't. At
+   most two are open at a time; a file takes its place when it is closed. */
 FILE *ethd__stress_data(const ethd__stress_log *log, const char *name, const char *header);
 void ethd__stress_close(FILE *data);
 
