@@ -143,11 +143,19 @@ static ethd_status sections(ethd__report *r) {
                                                  ethd__report_traces,      ethd__report_encounter, ethd__report_tidy,
                                                  ethd__report_grid};
   ethd_status status = ETHD_OK;
-  char title[128];
+  char title[128], *text = NULL;
+  size_t length;
+  ethd__html page = r->page; /* its head counts what the sections find: they are written first, and stand below it */
+  r->page.file = open_memstream(&text, &length);
+  if (!r->page.file) ethd__fail_memory();
+  for (size_t i = 0; !status && i < sizeof each / sizeof *each; i++) status = each[i](r);
+  if (fclose(r->page.file)) ethd__fail_memory();
+  r->page = page;
   snprintf(title, sizeof title, "Tapping study: %s", r->folder->protocol.name);
   ethd__html_begin(&r->page, title);
   ethd__report_origin(r);
-  for (size_t i = 0; !status && i < sizeof each / sizeof *each; i++) status = each[i](r);
+  ethd__html_append(&r->page, text, length);
+  free(text);
   if (status) return status;
   ethd__report_methods(r);
   print_foot(r);

@@ -68,7 +68,8 @@ drawn "$here/report" "$here"
 for words in 'Simulated, not measured' 'No significance is claimed' 'smallest two-sided p is 0.5' 'Nobody has answered' 'early-contact' \
   'simulated participants, no person' 'under seed 1: 2000 bootstrap samples' 'sign-flip' 'fitted to the four means' \
   'none of them is evidence about people' 'VO-A: tracking fades' 'medians have no 95 % interval' 'margins of the study file' '&#177;0.5 mm (d_max) and &#177;0.02 and' \
-  'lmer(d_max ~ strategy \* speed' 'second reaches the motors' 'mm into the wall that is asked for: .* the guard lets through at most 5\.[0-9] N'; do
+  '<b>The task:</b> to tap once, at a speed that was asked for (low: 0.2 &#177; 0.06 m/s; high: 0.4 &#177; 0.08 m/s)' \
+  "$(awk -F, 'NR > 1 && $3 == "test" && $9 { if (!n[$1 $5 $6]++) c[$1]++ } END { for (p in c) w += c[p] == 4; print w + 0 }' "$here/taps.csv") of them have a valid tap in every cell" 'lmer(d_max ~ strategy \* speed' 'second reaches the motors' 'mm into the wall that is asked for: .* the guard lets through at most 5\.[0-9] N'; do
   grep -q -e "$words" "$here/report/report.html" || fail "the page doesn't say: $words"
 done
 grep -q 'too few people' "$here/report/report.html" && ! grep -q '<td[^>]*>shown<' "$here/report/report.html" || fail "two people show something"
@@ -125,6 +126,16 @@ printf 'participant,status,analysed\nP01,excluded,0\nP02,complete,1\n' >"$folder
 drawn "$folder/one" "$folder/second" --out "$folder/one"
 [ "$(awk -F, '$1 == "v_of" && $3 == "smooth" && $4 == "low" { print $6 }' "$folder/one/summary.csv")" = 1 ] || fail "the excluded participant's taps are counted"
 grep -q 'who are not analysed' "$folder/one/report.html" || fail "the page doesn't say that somebody is left out"
+
+# Who has it all is said; what came out is counted from the tables.
+drawn "$folder/crowd/report" "$folder/crowd"
+found=$(awk -F, 'NR > 1 { n++; k += $14 < 0.05 && $14 != "" } END { print n, k }' "$folder/crowd/report/pairs.csv")
+grep -q "of ${found% *} <a href=\"#pairs\">differences between strategies</a> ${found#* } are significant" "$folder/crowd/report/report.html" || fail "what came out isn't what pairs.csv says: $found"
+grep -q "of 10 <a href=\"#claims\">sentences of the paper</a> $("${PYTHON:-python3}" -c "
+import csv, sys
+v = {r['claim']: r['verdict'] for r in csv.DictReader(open(sys.argv[1]))}.values()
+v = list(v)
+print(v.count('shown'), 'are shown, of', v.count('the contrary is shown'))" "$folder/crowd/report/claims.csv") the contrary is shown" "$folder/crowd/report/report.html" || fail "what came out isn't what claims.csv says"
 
 # Stations: their report is the merged folder's, table by table and word by word; what --merge refuses, the report does.
 for k in 1 2; do "$study" --quiet "$folder/small.study" --participant $k --out "$folder/station$k" >"$folder/out" 2>&1 || fail "station $k: $(cat "$folder/out")"; done

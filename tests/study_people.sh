@@ -130,6 +130,18 @@ grep -q 'next is P01: the experimenter types P01' "$folder/out" || fail "the und
 [ "$(cut -d, -f1-3 "$folder/undo/participants.csv" | tail -n +2 | tr '\n' ' ')" = 'P01,complete,1 P02,refused,0 P03,complete,1 ' ] || fail "undone: $(cat "$folder/undo/participants.csv")"
 [ "$(cut -d, -f1 "$folder/undo/taps.csv" | tail -n +2 | tr '\n' ' ')" = 'P03 P01 ' ] || fail "taps of the undone: $(cat "$folder/undo/taps.csv")"
 
+# ---- a finger that never leaves the start line makes no tap, and uses up no attempt ----
+device still.ini 'speed = 0.001\nplant = still.plant\n'
+sed 's/^start = .*/start = 0.0316/; s/^start_sd = .*/start_sd = 0/; s/^ramp_up = .*/ramp_up = 5/' apps/config/n.plant >"$folder/still.plant" # under 4 mm in a tap's 6 s
+printf '[study]\nparticipants = 1\nstrategies = smooth\nspeeds = 0.2\ntraining = 0\ntaps = 1\nattempts = 3\n[device]\nconfig = still.ini\n[hand]\nsource = people\n' >"$folder/still.study"
+mkfifo "$folder/quit"
+timeout 60 "$study" "$folder/still.study" --out "$folder/still" --virtual --ask <"$folder/quit" >"$folder/out" 2>"$folder/err" &
+run=$!
+{ sleep 2; echo stop; } >"$folder/quit"
+wait $run
+[ $? = 1 ] && grep -q 'stopped; what was done is kept' "$folder/err" || fail "at the start line: $(cat "$folder/out" "$folder/err")"
+[ "$(wc -l <"$folder/still/taps.csv")" = 1 ] && [ -z "$(ls "$folder/still/taps" 2>/dev/null)" ] || fail "taps that nobody made: $(cat "$folder/still/taps.csv")"
+
 # ---- the drive reports a fault in every tap: nothing goes on by itself, everything once somebody has seen to it ----
 printf '150t fault9 set\n' >"$folder/wrong.inject"
 device faulty.ini 'speed = 0.2\ninject = wrong.inject\n'

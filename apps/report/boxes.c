@@ -7,8 +7,9 @@
 #include "report/report.h"
 #include "text/csv.h"
 
-#define DOTS_MAX 300  /* of a cell: of more taps each k-th is shown */
-#define LINES_MAX 12u /* participants, of whom each has a line between the strategies */
+#define DOTS_MAX 300   /* of a cell: of more taps each k-th is shown */
+#define COLOURS_MAX 8u /* of report-boxes.gp */
+#define LINES_MAX 12u  /* participants, of whom each has a line between the strategies */
 
 typedef struct files {
   ethd_csv_out *boxes, *points, *lines;
@@ -124,7 +125,9 @@ static ethd_status draw(ethd__report *r, const ethd__data *data, const char *pre
   bool measured = ethd__report_measured(r) && !*prefix;
   snprintf(note, sizeof note, "%s Valid taps. Box: median (red), quartiles, extremes. Dots: taps%s",
            measured ? "Measured." : "Simulated, not measured.",
-           data->people_count <= LINES_MAX ? "; colours and dashed lines (medians): participants" : "");
+           data->people_count <= COLOURS_MAX ? "; colours and dashed lines (medians): participants"
+           : data->people_count <= LINES_MAX ? "; dashed lines: participants' medians"
+                                             : "");
   snprintf(name, sizeof name, "%s%s.png", prefix, words[0]);
   snprintf(boxes, sizeof boxes, "%sboxes.csv", prefix);
   snprintf(points, sizeof points, "%spoints.csv", prefix);

@@ -46,11 +46,12 @@ static void print_part(ethd__report *r, const ethd__claim_part *part) {
 
 static void print_claim(ethd__report *r, const ethd__tap_claim *c) {
   char text[320], p[32];
+  bool without_p = isnan(c->holm) || c->verdict == ETHD_TAP_CONTRARY; /* the p is the sentence's, not its contrary's */
   snprintf(text, sizeof text, "%s: %s%s%s", c->text, ethd__verdict_words[c->verdict],
-           isnan(c->holm)   ? ""
+           without_p        ? ""
            : c->holm < 1e-4 ? "; by Holm p "
                             : "; by Holm p = ",
-           isnan(c->holm) ? "" : ethd__p_text(c->holm, p));
+           without_p ? "" : ethd__p_text(c->holm, p));
   ethd__html_span(&r->page, text, 8);
   for (size_t k = 0; k < c->parts; k++) print_part(r, &c->part[k]);
 }
@@ -74,14 +75,15 @@ static void write_part(const ethd__tap_claim *c, int index, size_t k, ethd_csv_o
 
 /* How many claims came out in each way, in words. */
 static void print_outcome(ethd__report *r, const ethd__tap_claim *claims) {
-  size_t count[ETHD_TAP_VERDICTS] = {0};
+  size_t *count = r->counts.verdict;
   const char *between = "";
   for (int i = 0; i < ETHD_TAP_CLAIMS; i++) count[claims[i].verdict]++;
   ethd__html_print(&r->page, "<p>Of %d sentences: ", ETHD_TAP_CLAIMS);
   static const ethd__verdict order[] = {ETHD_TAP_SHOWN, ETHD_TAP_CONTRARY, ETHD_TAP_OPEN, ETHD_TAP_UNKNOWN};
   for (size_t i = 0; i < ETHD_TAP_VERDICTS; i++) {
     if (!count[order[i]]) continue;
-    ethd__html_print(&r->page, "%s%zu %s", between, count[order[i]], ethd__verdict_words[order[i]]);
+    ethd__html_print(&r->page, order[i] == ETHD_TAP_CONTRARY ? "%sof %zu %s" : "%s%zu %s", between, count[order[i]],
+                     ethd__verdict_words[order[i]]);
     between = ", ";
   }
   ethd__html_markup(&r->page, ".</p>\n");

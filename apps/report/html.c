@@ -28,6 +28,8 @@ static const char style[] =
 
 void ethd__html_markup(ethd__html *page, const char *literal) { fputs(literal, page->file); }
 
+void ethd__html_append(ethd__html *page, const char *written, size_t length) { fwrite(written, 1, length, page->file); }
+
 void ethd__html_text(ethd__html *page, const char *text) {
   for (; *text; text++) switch (*text) {
     case '&': fputs("&amp;", page->file); break;

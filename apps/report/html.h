@@ -18,6 +18,9 @@ void ethd__html_end(ethd__html *page);
 /* Markup that stands in our source. */
 void ethd__html_markup(ethd__html *page, const char *literal);
 
+/* What another page of ours holds. */
+void ethd__html_append(ethd__html *page, const char *written, size_t length);
+
 /* printf with %s, %d, %u, %zu, %llu, %g: the format is our markup, each %s is text and escaped. */
 void ethd__html_print(ethd__html *page, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

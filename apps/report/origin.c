@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/cli.h"
 #include "report/report.h"
 #include "statistics/coverage.h"
 
@@ -10,7 +11,7 @@ static void print_numbers(ethd__report *r) {
   size_t valid, taps = ethd__data_taps(d, &valid);
   ethd__html_print(&r->page,
                    "<li><b>What was measured:</b> taps of a finger on a virtual wall, which a ring around the "
-                   "finger renders. %zu test taps, %zu of them valid, in %zu cells (",
+                   "finger renders. %zu test taps, %zu of them valid, in %zu cells, each a strategy at a speed (",
                    taps, valid, d->group_count);
   for (size_t i = 0; i < d->group_count; i++) {
     char label[80];
@@ -69,6 +70,26 @@ static void print_led(ethd__report *r, ethd__leader led) {
   }
 }
 
+static double one(const ethd__metrics *m) {
+  (void)m;
+  return 1;
+}
+
+/* People who have a valid tap in every cell. */
+static size_t count_whole(const ethd__data *d) {
+  double *own = malloc((d->people_count + 1) * sizeof *own), *all = calloc(d->people_count + 1, sizeof *all);
+  size_t whole = 0;
+  if (!own || !all) ethd__fail_memory();
+  for (size_t g = 0; g < d->group_count; g++) {
+    ethd__people_figure(&d->group[g].cell, one, ETHD_PERSON_MEAN, d->people_count, own);
+    for (size_t p = 0; p < d->people_count; p++) all[p] += own[p];
+  }
+  for (size_t p = 0; p < d->people_count; p++) whole += !isnan(all[p]);
+  free(own);
+  free(all);
+  return whole;
+}
+
 static void print_people(ethd__report *r) {
   const char *between = "";
   ethd__html_print(&r->page, "<li><b>On whom:</b> %zu ", r->data.people_count);
@@ -79,7 +100,28 @@ static void print_people(ethd__report *r) {
     print_led(r, (ethd__leader)k);
     between = "; ";
   }
-  ethd__html_markup(&r->page, ".</li>\n");
+  ethd__html_print(&r->page, "; %zu of them have a valid tap in every cell.</li>\n", count_whole(&r->data));
+}
+
+/* What the speeds are, and when a tap is valid. */
+static void print_task(ethd__report *r) {
+  const ethd__protocol *p = &r->folder->protocol;
+  const char *between = "<li><b>The task:</b> to tap once, at a speed that was asked for (";
+  for (size_t g = 0; g < r->data.group_count; g++) {
+    const ethd__speed *speed = &r->data.group[g].speed;
+    if (g && !strcmp(speed->word, r->data.group[g - 1].speed.word)) continue;
+    double band = !strcmp(speed->word, "low") && !isnan(p->band_low)     ? p->band_low
+                  : !strcmp(speed->word, "high") && !isnan(p->band_high) ? p->band_high
+                                                                         : speed->band;
+    ethd__html_markup(&r->page, between);
+    ethd__html_print(&r->page, "%s: %.2g &#177; %.2g m/s", speed->word, speed->centre, band);
+    between = "; ";
+  }
+  ethd__html_markup(&r->page, p->validity == ETHD_TAP_BY_FINGER
+                                  ? "). A tap is valid when the hand comes at that speed, the finger doesn't touch the "
+                                    "ring before it stands at the wall, and presses once.</li>\n"
+                                  : "). A tap is valid when the ring meets the wall at that speed, before the finger "
+                                    "touches it, and the finger presses once.</li>\n");
 }
 
 /* Each station that was merged has left an event. */
@@ -149,6 +191,27 @@ static void print_certainty(ethd__report *r) {
       r->beside_name, r->beside.people_count, taps, valid);
 }
 
+/* Counted by the sections below it, which are written first. */
+static void print_found(ethd__report *r) {
+  const ethd__report_counts *c = &r->counts;
+  size_t sentences = 0;
+  for (int i = 0; i < ETHD_TAP_VERDICTS; i++) sentences += c->verdict[i];
+  if (r->data.people_count < ETHD_STATISTICS_PEOPLE || !(c->differences + sentences)) return;
+  ethd__html_markup(&r->page, "<li><b>What came out:</b> ");
+  if (c->differences)
+    ethd__html_print(&r->page,
+                     "of %zu <a href=\"#pairs\">differences between strategies</a> %zu are significant (p under 0.05 "
+                     "after Holm's correction)",
+                     c->differences, c->significant);
+  if (sentences)
+    ethd__html_print(&r->page,
+                     "%sof %zu <a href=\"#claims\">sentences of the paper</a> %zu are shown, of %zu the contrary is "
+                     "shown, %zu are not shown",
+                     c->differences ? "; " : "", sentences, c->verdict[ETHD_TAP_SHOWN], c->verdict[ETHD_TAP_CONTRARY],
+                     c->verdict[ETHD_TAP_OPEN] + c->verdict[ETHD_TAP_UNKNOWN]);
+  ethd__html_markup(&r->page, ".</li>\n");
+}
+
 void ethd__report_origin(ethd__report *r) {
   static const char *const links[][2] = {{"table1", "Table 1"},          {"claims", "The paper's sentences"},
                                          {"figures", "Figures"},         {"delay", "Delay"},
@@ -159,10 +222,12 @@ void ethd__report_origin(ethd__report *r) {
   ethd__html_markup(&r->page, "<ul class=\"note\">\n");
   print_numbers(r);
   print_strategies(r);
+  print_task(r);
   print_people(r);
   print_left_out(r);
   print_device(r);
   print_certainty(r);
+  print_found(r);
   ethd__html_markup(&r->page, "</ul>\n<nav>");
   for (size_t i = 0; i < sizeof links / sizeof *links; i++)
     ethd__html_print(&r->page, "<a href=\"#%s\">%s</a>", links[i][0], links[i][1]);

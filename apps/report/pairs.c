@@ -153,6 +153,10 @@ static void print_effects(ethd__report *r, const family *f) {
 static ethd_status finish(ethd__report *r, family *f, const char *caption, const char *const *header,
                           ethd_csv_out *csv) {
   correct(f);
+  for (size_t i = 0; i < f->count && !f->test[i].low_a; i++) {
+    r->counts.differences++;
+    r->counts.significant += f->test[i].holm < 0.05;
+  }
   ethd__html_table(&r->page, caption, header, 2);
   for (size_t i = 0; i < f->count; i++) {
     print_row(r, &f->test[i]);

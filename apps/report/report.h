@@ -20,6 +20,12 @@ typedef enum ethd__leader {
   ETHD_LED_KINDS
 } ethd__leader;
 
+/* What came out, counted for the page's head. */
+typedef struct ethd__report_counts {
+  size_t differences, significant;   /* of strategies, p < 0.05 after Holm's correction */
+  size_t verdict[ETHD_TAP_VERDICTS]; /* of the paper's sentences */
+} ethd__report_counts;
+
 typedef struct ethd__report {
   ethd__folder *folder;           /* the first station's */
   ethd__stations stations;        /* where the taps stand: one folder or several */
@@ -32,6 +38,7 @@ typedef struct ethd__report {
   size_t point;
   uint64_t seed;              /* of the bootstrap */
   size_t led[ETHD_LED_KINDS]; /* test taps */
+  ethd__report_counts counts;
   ethd__html page;
   char *message;
 } ethd__report;

@@ -43,9 +43,7 @@ static void print_row(ethd__report *r, const ethd__group *group, const ethd__qua
   ethd__p_text(m->heaps, p);
   snprintf(heaps, sizeof heaps, m->heaps < 0.05 ? "more than one, p %s%s" : "%s%s",
            m->heaps < 0.05 && *p != '<' ? "= " : "", p);
-  const char *cells[] = {quantity->title,
-                         quantity->unit,
-                         ethd__group_label(group, label),
+  const char *cells[] = {ethd__group_label(group, label),
                          taps,
                          ethd__mean_text(&m->s, d, mean),
                          ethd__number_text(m->s.median, d, median),
@@ -54,7 +52,7 @@ static void print_row(ethd__report *r, const ethd__group *group, const ethd__qua
                          ethd__interval_text(m->interval, d, i),
                          heaps,
                          NULL};
-  ethd__html_row(&r->page, cells, 3);
+  ethd__html_row(&r->page, cells, 1);
 }
 
 static void write_row(const ethd__group *group, const ethd__quantity *quantity, const cell_summary *m,
@@ -72,8 +70,8 @@ static void write_row(const ethd__group *group, const ethd__quantity *quantity, 
 }
 
 ethd_status ethd__report_summary(ethd__report *r) {
-  static const char *const header[] = {"figure",    "unit",     "cell",         "n (people)",    "mean (sd)", "median",
-                                       "quartiles", "extremes", "median, 95 %", "heaps (dip p)", NULL};
+  static const char *const header[] = {"cell",     "n (people)",   "mean (sd)",     "median", "quartiles",
+                                       "extremes", "median, 95 %", "heaps (dip p)", NULL};
   char *path = ethd__report_path(r, "summary.csv");
   ethd_csv_out *csv = ethd_csv_create(path,
                                       "metric,unit,transition,speed,n,participants,mean,sd,min,q1,median,q3,max,"
@@ -88,13 +86,19 @@ ethd_status ethd__report_summary(ethd__report *r) {
         "little more than the smallest and largest of them, and hold the truth in about %.0f %%, not 95 %%, "
         "of such studies.</p>\n",
         r->data.people_count, 100 * ethd__coverage_known(r->data.people_count)->median);
-  ethd__html_table(&r->page, "Every figure by cell: valid test taps", header, 3);
-  for (int q = 0; q < ETHD_QUANTITIES; q++)
-    for (size_t i = 0; i < r->data.group_count; i++) {
+  ethd__html_table(&r->page, "Every figure by cell: valid test taps", header, 1);
+  for (int q = 0; q < ETHD_QUANTITIES; q++) {
+    char title[160];
+    snprintf(title, sizeof title, "%s (%s), %s", ethd__quantities[q].title, ethd__quantities[q].key,
+             ethd__quantities[q].unit);
+    for (size_t i = 0, shown = 0; i < r->data.group_count; i++) {
       cell_summary m = sum_up(r, &r->data.group[i], &ethd__quantities[q]);
-      if (m.s.n) print_row(r, &r->data.group[i], &ethd__quantities[q], &m);
-      if (m.s.n) write_row(&r->data.group[i], &ethd__quantities[q], &m, csv);
+      if (!m.s.n) continue;
+      if (!shown++) ethd__html_span(&r->page, title, 8);
+      print_row(r, &r->data.group[i], &ethd__quantities[q], &m);
+      write_row(&r->data.group[i], &ethd__quantities[q], &m, csv);
     }
+  }
   ethd__html_table_end(&r->page);
   return ethd_csv_close(csv, r->message);
 }

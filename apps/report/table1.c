@@ -45,6 +45,11 @@ static const char *percent(double share, char out[32]) {
   return out;
 }
 
+/* Without taps beside the study their two columns go. */
+static void leave_out_beside(const ethd__report *r, const char *cells[12]) {
+  if (!r->beside.group_count) memmove(cells + 4, cells + 6, 6 * sizeof *cells);
+}
+
 static void print_row(ethd__report *r, const table1_line *row, ethd_csv_out *csv) {
   const ethd__mean *m = row->mean;
   char name[64], paper[48], here[48], beside[48], n[24], besides[24], average[120], interval[72], p[32], share[2][32];
@@ -52,25 +57,27 @@ static void print_row(ethd__report *r, const table1_line *row, ethd_csv_out *csv
   summary_of(&r->data, row, &study);
   summary_of(&r->beside, row, &other);
   int d = row->quantity->digits;
-  snprintf(name, sizeof name, "%s %s", m->name, m->unit);
+  snprintf(name, sizeof name, "%s (%s)", m->name, m->unit);
   snprintf(paper, sizeof paper, "%.3f (%.3f)", m->paper, m->paper_sd);
   snprintf(n, sizeof n, "%zu", study.n);
   snprintf(besides, sizeof besides, "%zu", other.n);
   bool known = m->verdict != ETHD_TAP_UNKNOWN;
   ethd__interval_text((ethd__interval){known ? m->low : NAN, m->high, 0, 0}, d, interval);
   snprintf(average, sizeof average, "%.*f (%s)", d, m->average, interval);
+  ethd__mean_text(&other, d, beside);
   const char *cells[] = {name,
                          paper,
                          ethd__mean_text(&study, d, here),
                          n,
-                         r->beside.group_count ? ethd__mean_text(&other, d, beside) : "-",
-                         r->beside.group_count ? besides : "-",
+                         beside,
+                         besides,
                          average,
                          ethd__verdict_words[m->verdict],
                          ethd__p_text(known ? m->p : NAN, p),
                          percent(row->share[0], share[0]),
                          percent(row->share[1], share[1]),
                          NULL};
+  leave_out_beside(r, cells);
   ethd__html_row(&r->page, cells, 1);
   ethd_csv_word(csv, row->quantity->key);
   ethd_csv_word(csv, row->quantity->unit);
@@ -84,7 +91,7 @@ static void print_row(ethd__report *r, const table1_line *row, ethd_csv_out *csv
 }
 
 static ethd_status print_table(ethd__report *r) {
-  static const char *const header[] = {
+  const char *header[] = {
       "offset", "paper, n = 9",    "this study",    "n", "beside", "n", "people's mean, 90 %", "agreement",
       "p",      "mean as far off", "sd as far off", NULL};
   static const int quantity[ETHD_TAP_MEANS] = {ETHD_Q_DELTA_S, ETHD_Q_EPS, ETHD_Q_DELTA_S, ETHD_Q_EPS};
@@ -100,6 +107,7 @@ static ethd_status print_table(ethd__report *r) {
   free(path);
   if (!csv) return ETHD_E_FILE;
   ethd__means(&sample, means);
+  leave_out_beside(r, header);
   ethd__html_table(&r->page,
                    "Table 1: mean (sample standard deviation) of all valid taps, n; then the mean of people's means",
                    header, 1);

@@ -161,7 +161,10 @@ static const char into_the_wall[] =
     "the "
     "drawing: the hand goes on pushing, and the ring holds against it only with what the limits of the device let "
     "through, while the spring of the wall asks for more. d<sub>max</sub> is the first rebound alone, from the ring's "
-    "first peak to the valley after it; v<sub>r min</sub> is its smallest speed in the 0.1 s after the touch.</p>\n";
+    "first peak to the valley after it; v<sub>r min</sub> is its smallest speed in the 0.1 s after the touch.</p>\n"
+    "<p>In the pictures n points into the wall; x<sub>e</sub> is the wall that is asked for, x<sub>&epsilon;</sub> the "
+    "one that is rendered once a strategy has braked behind it. A strategy is transparent while the ring follows the "
+    "finger, brakes, and then renders the virtual wall (vo); &beta; is the share of the following that is left.</p>\n";
 
 ethd_status ethd__report_traces(ethd__report *r) {
   char *names = NULL, *titles = NULL;

@@ -43,7 +43,7 @@ typedef struct ethd__taken {
 typedef struct ethd__source {
   void *self;
   ethd__hand_source hand;
-  /* One tap, whatever it takes. ETHD_EMPTY: it was stopped, or never begun; there was none. */
+  /* One tap, whatever it takes. ETHD_EMPTY: it was stopped, or the finger never left its place; there was none. */
   ethd_status (*tap)(void *self, const ethd__turn *turn, ethd__taken *out, char message[ETHD_MESSAGE_MAX]);
   /* Why the device has stopped itself, a sentence; NULL: it hasn't. acknowledge: it may go on. Both NULL
      where nothing stops. */

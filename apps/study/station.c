@@ -12,6 +12,7 @@
 #define SECONDS 6.0   /* of a tap at most */
 #define BEAT 20000000 /* ns */
 #define LOOK 1000000  /* ns between two looks at a tap */
+#define LEFT 0.004    /* m that the finger goes from its place in a tap, as on the screen */
 #define CLEAN 3.0     /* s in which an acknowledged device must have come to rest */
 
 static void rest(long ns) {
@@ -132,6 +133,20 @@ static bool follow(ethd__station *s) {
   return set_phase(s, ETHD_PHASE_IDLE) == ETHD_PHASE_OVER;
 }
 
+/* A finger that stood at its place until the time was over has made no tap: somebody rested, or went away. A fault counts
+   whatever the finger did. */
+static bool was_tap(const ethd__tap_rows *rows) {
+  const double *from = NULL;
+  for (size_t i = 0; i < rows->count; i++) {
+    const double *at = rows->truth[i].finger;
+    if (rows->trace[i].fault) return true;
+    if (isnan(at[0] + at[1])) continue;
+    if (!from) from = at;
+    if (hypot(at[0] - from[0], at[1] - from[1]) > LEFT) return true;
+  }
+  return false;
+}
+
 static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, char message[ETHD_MESSAGE_MAX]) {
   ethd__station *s = self;
   ethd_status status = ethd__desk_prepare(s->desk, turn, out, message);
@@ -144,6 +159,7 @@ static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, cha
   if (status) return ethd__say(message, status, "enabling the device: %s", ethd_status_sentence(status));
   if (!follow(s)) return ETHD_EMPTY;
   if (s->status) return ethd__say(message, s->status, "the tap's ticks: %s", ethd_status_sentence(s->status));
+  if (!was_tap(&s->stage.rows)) return ETHD_EMPTY;
   out->stage = &s->stage;
   out->seed = out->tap = 0;
   out->hand = ETHD_HAND_DEVICE;
