@@ -5,7 +5,7 @@
      R                          -> 18 words
      F                          -> text: "t ring_x ring_y finger_x finger_y torque1 torque2", SI
 
-   plant_bridge [--plant n] [--speed 0.4] [--period 1.6] [--finger 0] [--lock-step 1]; says "port N" first, and a summary
+   plant_bridge [--plant n] [--speed 0.4] [--period 1.6] [--finger 0] [--lock-step 1] [--watchdog 0.05]; says "port N" first, and a summary
    at the end of stdin. The finger taps along -x, again and again after the first period; time begins when the
    drive is first enabled, and is the system's; in lock-step a millisecond passes with every new word in `counter`, and
    none otherwise. With --finger 0 the ring never feels it. */
@@ -23,7 +23,6 @@
 
 #define STEP 2e-4     /* s of the plant's own clock */
 #define TICK 1e-3     /* s that pass with a set-point, in lock-step */
-#define WATCHDOG 0.05 /* s without a set-point, then zero torque */
 #define SAMPLES 200   /* a second of the finger's path */
 #define SECONDS 3600
 #define NM 1e-4 /* a raw torque at the motor */
@@ -55,8 +54,9 @@ static struct {
   int64_t steps, reading_ns;
   uint64_t trips, sets;
   int lock_step;
-  double clock; /* s, in lock-step */
-} plant = {.begun = -1};
+  double clock;    /* s, in lock-step */
+  double watchdog; /* s without a set-point, then zero torque */
+} plant = {.begun = -1, .watchdog = 0.05};
 
 static double now(void) {
   struct timespec t;
@@ -143,7 +143,7 @@ static void advance(void) {
   double t = now();
   if (plant.begun < 0) return;
   for (; (double)plant.steps * STEP < t - plant.begun - STEP / 2; step()) {
-    if (!(plant.words[STATUS] & 2) || plant.begun + (double)plant.steps * STEP - plant.last_set < WATCHDOG) continue;
+    if (!(plant.words[STATUS] & 2) || plant.begun + (double)plant.steps * STEP - plant.last_set < plant.watchdog) continue;
     plant.words[STATUS] &= (uint16_t)~2;
     plant.trips++;
   }
@@ -209,8 +209,10 @@ int main(int argc, char **argv) {
       finger = atoi(argv[i + 1]);
     else if (!strcmp(argv[i], "--lock-step"))
       plant.lock_step = atoi(argv[i + 1]);
+    else if (!strcmp(argv[i], "--watchdog"))
+      plant.watchdog = atof(argv[i + 1]);
     else
-      fail("--plant, --speed, --period, --finger and --lock-step are known");
+      fail("--plant, --speed, --period, --finger, --lock-step and --watchdog are known");
   }
   make_plant(name, speed, period, finger);
   ethd_sim_read(plant.sim, &plant.sense);

@@ -42,6 +42,27 @@ assert 0 < wall - ring.min() < 0.008 and finger.min() < wall - 0.001
 assert np.all(r["faults"] == 0) and np.abs(r["tau"]).max() > 0.2
 END2
 
+# ---- a drive whose watchdog is as patient as a busy machine needs: it is tried; and where no priority is granted, the
+# shortfall of the device's I/O is printed, or ends the run where that is asked for ----
+plant patient --finger 0 --watchdog 0.5
+peer --tcp 0
+sed 's/^response = .*/response = 2/' apps/config/plant.map >"$folder/plant.map"
+configure patient "127.0.0.1:$at"
+"$BUILD/bin/ethd-servo-probe" --map "$folder/plant.map" --port "127.0.0.1:$at" --duration 0.2 --try-watchdog >"$folder/tried" 2>&1 ||
+  fail "watchdog: exit $?: $(cat "$folder/tried")"
+says "$folder/tried" '^watchdog .*it let go after 1 s of silence: it has one; the map says it has one'
+ordinary="prlimit --rtprio=0"
+[ "$(id -u)" != 0 ] || ordinary="setpriv --bounding-set=-sys_nice $ordinary"
+$ordinary "$run" --config "$folder/patient.ini" --duration 0.3 </dev/null >"$folder/ordinary" 2>&1 8>&- ||
+  fail "without a priority: exit $?: $(cat "$folder/ordinary")"
+says "$folder/ordinary" "^not realtime: no real-time priority for the device's I/O: two busy programs are enough to make its feedback too old" \
+  '^not realtime: no real-time priority: the loop waits'
+$ordinary "$run" --config "$folder/patient.ini" --require-rt --duration 0.3 </dev/null >"$folder/ordinary" 2>&1 8>&-
+[ $? = 1 ] && [ "$(wc -l <"$folder/ordinary")" = 1 ] || fail "--require-rt without a priority: $(cat "$folder/ordinary")"
+says "$folder/ordinary" '--require-rt: .*; mend: '
+kill $peer
+plant_ends
+
 # ---- live ----
 # The other side of the bus would have a machine of its own.
 alone=
@@ -56,9 +77,6 @@ port=$at
 configure live "127.0.0.1:$port"
 $alone "$BUILD/bin/ethd-servo-probe" --map "$folder/plant.map" --port "127.0.0.1:$port" --duration 0.5 >"$folder/probe" 2>&1 ||
   fail "probe: exit $?: $(cat "$folder/probe")"
-"$BUILD/bin/ethd-servo-probe" --map "$folder/plant.map" --port "127.0.0.1:$port" --duration 0.2 --try-watchdog >"$folder/tried" 2>&1 ||
-  fail "watchdog: exit $?: $(cat "$folder/tried")"
-says "$folder/tried" '^watchdog .*it let go after 1 s of silence: it has one; the map says it has one'
 says "$folder/probe" '^round trip p50 .* p99 .* max .* ms' 'this bus can do [1-9][0-9]* Hz' ' position1  *raw' ' bus_voltage  *raw 480 *48 V'
 mkfifo "$folder/commands"
 $alone "$run" --config "$folder/live.ini" --record "$folder/live" <"$folder/commands" >"$folder/live.out" 2>"$folder/live.err" 8>&- &
