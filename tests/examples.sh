@@ -44,6 +44,14 @@ cp apps/config/wall.scene "$work"
 compiled driver ethd-drivers && "$work/driver" >"$work/driver.out" || fail "driver: exit $?: $(cat "$work/driver.out")"
 [ "$(grep -c ' kept ' "$work/driver.out")" = 10 ] || fail "driver: $(cat "$work/driver.out")"
 
+# the same source as a shared object, of which only the table is used: the installed programs drive it
+compiled driver ethd-drivers -shared -fPIC && cp "$work/driver" "$work/driver.so"
+printf '[device]\ndriver = file:driver.so\n' >"$work/driver.ini"
+"$prefix/bin/ethd-conform" --config "$work/driver.ini" --virtual --move >"$work/driver.out" 2>&1 || fail "driver.so: exit $?: $(cat "$work/driver.out")"
+[ "$(grep -c ' kept ' "$work/driver.out")" = 10 ] || fail "driver.so: $(cat "$work/driver.out")"
+"$prefix/bin/ethd-run" --config "$work/driver.ini" --virtual --duration 0.5 </dev/null >"$work/driver.out" 2>&1 || fail "driver.so: exit $?: $(cat "$work/driver.out")"
+grep -q '^faults  *none' "$work/driver.out" && grep -q '^ticks  *[1-9]' "$work/driver.out" || fail "driver.so: $(cat "$work/driver.out")"
+
 # ---- teleop: the line works; then it dies ----
 compiled teleop ethd-drivers || exit 1
 port=$((20000 + $$ % 20000))

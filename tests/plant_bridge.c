@@ -21,9 +21,9 @@
 
 #include "ethd/sim.h"
 
-#define STEP 2e-4     /* s of the plant's own clock */
-#define TICK 1e-3     /* s that pass with a set-point, in lock-step */
-#define SAMPLES 200   /* a second of the finger's path */
+#define STEP 2e-4   /* s of the plant's own clock */
+#define TICK 1e-3   /* s that pass with a set-point, in lock-step */
+#define SAMPLES 200 /* a second of the finger's path */
 #define SECONDS 3600
 #define NM 1e-4 /* a raw torque at the motor */
 #define RATIO 9.80
@@ -143,7 +143,8 @@ static void advance(void) {
   double t = now();
   if (plant.begun < 0) return;
   for (; (double)plant.steps * STEP < t - plant.begun - STEP / 2; step()) {
-    if (!(plant.words[STATUS] & 2) || plant.begun + (double)plant.steps * STEP - plant.last_set < plant.watchdog) continue;
+    if (!(plant.words[STATUS] & 2) || plant.begun + (double)plant.steps * STEP - plant.last_set < plant.watchdog)
+      continue;
     plant.words[STATUS] &= (uint16_t)~2;
     plant.trips++;
   }

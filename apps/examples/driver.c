@@ -1,8 +1,12 @@
 /* A driver of one's own, for amplifiers on a bus that answers slowly: the control thread only ever touches two cells, an
    I/O thread does the exchanges. The amplifiers are a model here (J dw/dt = torque - b w); put yours into `exchange`.
-   The program asks whether the driver keeps its contract, then holds the ring on a finger for a second.
+   As a program it asks whether the driver keeps its contract:
 
-     cc driver.c $(pkg-config --cflags --libs ethd-drivers) -o driver && ./driver */
+     cc driver.c $(pkg-config --cflags --libs ethd-drivers) -o driver && ./driver
+
+   As a shared object it is a driver of every program: [device] driver = file:driver.so
+
+     cc -shared -fPIC driver.c $(pkg-config --cflags ethd-drivers) -o driver.so */
 #include <ethd/cell.h>
 #include <ethd/conform.h>
 #include <ethd/loop.h>
@@ -104,23 +108,24 @@ static void close_bus(void *device) {
   free(b);
 }
 
-static const ethd_driver mine = {.size = sizeof mine,
-                                 .abi = ETHD_DRIVER_ABI,
-                                 .id = "mine",
-                                 .brief = "two amplifiers on a slow bus",
-                                 .open = open_bus,
-                                 .start = start,
-                                 .read = read_joints,
-                                 .write = write_torque,
-                                 .units = units,
-                                 .service = service,
-                                 .safe = safe,
-                                 .close = close_bus,
-                                 .limits = limits};
+/* The one symbol by which a shared object is found. */
+const ethd_driver ethd_driver_plugin = {.size = sizeof(ethd_driver),
+                                        .abi = ETHD_DRIVER_ABI,
+                                        .id = "mine",
+                                        .brief = "two amplifiers on a slow bus",
+                                        .open = open_bus,
+                                        .start = start,
+                                        .read = read_joints,
+                                        .write = write_torque,
+                                        .units = units,
+                                        .service = service,
+                                        .safe = safe,
+                                        .close = close_bus,
+                                        .limits = limits};
 
 int main(void) {
   static const char *const words[] = {"kept", "BROKEN", "at risk", "not asked"};
-  const ethd_driver *const drivers[] = {&mine, NULL};
+  const ethd_driver *const drivers[] = {&ethd_driver_plugin, NULL};
   ethd_setup setup = ethd_setup_default();
   const ethd_device_def device = {.setup = &setup, .folder = ".", .is_virtual = 1};
   const ethd_conform_def questions = {"mine", drivers, &device, 0.1};
