@@ -3,19 +3,10 @@
 # (pymodbus) with the plant behind it, in lock-step; then the servo and the proximity ring in real time, the ring being
 # its real firmware in four simulated boards (simavr). The ring is empty: no finger pushes back.
 set -u
-case ${SAN:-} in *thread*) echo "SKIP: pymodbus and simavr are too slow beside a thread sanitizer" && exit 77 ;; esac
-folder=$(mktemp -d)
-children=
-finish() {
-  for child in $children; do kill "$child" 2>/dev/null; done
-  rm -rf "$folder"
-}
-trap finish EXIT
-conform=$BUILD/bin/ethd-conform
-failed=0
-fail() { echo "FAILED $*"; failed=1; }
-. tests/peers/pymodbus.sh
+. tests/peers/desk.sh
 . tests/peers/plant.sh
+. tests/peers/board.sh
+conform=$BUILD/bin/ethd-conform
 
 cp apps/config/wall.scene "$folder"
 configure() { # NAME MAP [DRIVERS]
@@ -50,29 +41,20 @@ kill $peer
 plant_ends
 
 # ---- in real time ----
-# The other side of the buses would have a machine of its own. Where this one is too busy, feedback is late: that
-# isn't the driver's doing, and shows in `sense` alone.
-alone=
-chrt -r 40 true 2>/dev/null && alone="chrt -r 40"
-absent=
-[ -f "$BUILD/firmware/proximity_ring.elf" ] || absent="avr-gcc, which makes the firmware for simavr"
-[ -x "$BUILD/tests/ring_board" ] || absent="libsimavr, which runs the firmware (simavr)"
+# Where this machine is too busy, feedback is late: that isn't the driver's doing, and shows in `sense` alone.
+first_rank
 plant live --period 3000 --finger 0
 peer --tcp 0
 sed '/^\[register reading_/,/^$/d' apps/config/plant.map >"$folder/live.map"
 if [ -z "$absent" ]; then
-  mkfifo "$folder/board.in"
-  $alone "$BUILD/tests/ring_board" --link "$folder/ring" "$BUILD/firmware/proximity_ring.elf" <"$folder/board.in" >"$folder/board" 2>&1 8>&- &
-  children="$children $!"
-  exec 7>"$folder/board.in"
-  await "$folder/board" '/dev/'
+  board
   configure live live.map 'servo, ring'
   echo 'ring.port = ring' >>"$folder/live.ini"
 else
   configure live live.map
 fi
 for _ in 1 2 3; do
-  $alone "$conform" --config "$folder/live.ini" --move --torque 0.3 >"$folder/live" 2>&1 7>&- 8>&-
+  $alone "$conform" --config "$folder/live.ini" --move --torque 0.3 >"$folder/live" 2>&1 6>&- 8>&-
   others=$(grep -v '^sense' "$folder/live" | grep -c '^[a-z]*  *kept ')
   [ "$others" = 10 ] && grep -q -e '^sense  *kept ' -e '^sense .* it reports: ' "$folder/live" && break
   others=0
@@ -83,9 +65,9 @@ if [ -z "$absent" ] && grep -q '^sense  *kept' "$folder/live"; then
 fi
 # its own watchdog lets go at 50 ms, and the next question finds it well again
 verdict "$folder/live" silence kept
-exec 7>&-
+exec 6>&-
 kill $peer
 plant_ends
 cat "$folder/live"
 [ $failed = 0 ] || exit 1
-[ -z "$absent" ] || { echo "SKIP: $absent, is absent"; exit 77; }
+needs_board

@@ -64,9 +64,7 @@ kill $peer
 plant_ends
 
 # ---- live ----
-# The other side of the bus would have a machine of its own.
-alone=
-chrt -r 40 true 2>/dev/null && alone="chrt -r 40"
+first_rank
 cp apps/config/plant.map "$folder"
 $alone "$python3" tests/peers/late.py >"$folder/late" 2>&1 &
 late=$!

@@ -1,6 +1,7 @@
-# For tests with other people's software at the other end of a line: a folder that goes at the end with all children,
-# fail, says, and pymodbus. Sourced first.
+# For tests with a device on the desk: a folder that goes at the end with all children, what a test says, and python3 with
+# numpy. Sourced first; drive.sh, plant.sh and board.sh put a device there.
 case ${SAN:-} in *thread*) echo "SKIP: a thread sanitizer's threads don't fit into the loop's stack"; exit 77 ;; esac
+python3=$(sh .ci/setup python) || { echo "SKIP: no python3 with numpy, which looks at what the device did"; exit 77; }
 folder=$(mktemp -d)
 children=
 finish() {
@@ -16,5 +17,16 @@ says() { # FILE PATTERN...
   shift
   for pattern; do grep -q -e "$pattern" "$file" || { fail "no $pattern in:"; cat "$file"; }; done
 }
+await() { # FILE PATTERN
+  for _ in $(seq 1200); do
+    grep -q -e "$2" "$1" 2>/dev/null && return
+    sleep 0.05
+  done
+  echo "FAILED no $2 in $1: $(cat "$1")"
+  exit 1
+}
 run=$BUILD/bin/ethd-run
-. tests/peers/pymodbus.sh
+# Before a command: the other side of a line would have a machine of its own, and gets a priority of its own where that is
+# granted. A test that runs in true time calls first_rank, and what it starts from then on has it.
+alone=
+first_rank() { if chrt -r 40 true 2>/dev/null; then alone="chrt -r 40"; fi; }

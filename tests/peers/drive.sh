@@ -1,16 +1,16 @@
-# For tests: a drive of another's making behind a serial line of 500 kBd. Wants pymodbus.sh, $folder, $BUILD, $venv, fail(); appends to
-# $children what must be killed; $alone, where a test sets it, goes before both.
+# For tests: a drive of another's making, by pymodbus, behind a serial line of 500 kBd. Wants desk.sh.
+. tests/peers/pymodbus.sh
 drive() { # KIND ARGUMENTS...: our end of its line in $line; tell speaks to it
   kind=$1
   shift
   rm -f "$folder/wire.in" "$folder/wire.out" "$folder/drive.out"
   mkfifo "$folder/wire.in"
-  ${alone:-} "$BUILD/tests/wire" "${baud:-500000}" <"$folder/wire.in" >"$folder/wire.out" &
+  $alone "$BUILD/tests/wire" "${baud:-500000}" <"$folder/wire.in" >"$folder/wire.out" &
   wire=$!
   exec 7>"$folder/wire.in"
   await "$folder/wire.out" '/dev/'
   read -r line theirs <"$folder/wire.out"
-  ${alone:-} "$venv/bin/python" "tests/peers/${kind}_peer.py" --serial "$theirs" "$@" >"$folder/drive.out" 2>"$folder/drive.err" 7>&- &
+  $alone "$venv/bin/python" "tests/peers/${kind}_peer.py" --serial "$theirs" "$@" >"$folder/drive.out" 2>"$folder/drive.err" 7>&- &
   drive=$!
   children="$children $wire $drive"
   await "$folder/drive.out" '^ready '
