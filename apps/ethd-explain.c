@@ -22,11 +22,12 @@ static const char doc[] =
     "  ethd-explain --generations 200 --work search.journal --out q\n"
     "  ethd-explain --without limits";
 
-enum { COMPLIANT = 256, SAMPLE, WITHOUT, POPULATION, GENERATIONS, TAPS, WORK, PRIORS };
+enum { COMPLIANT = 256, SAMPLE, KNOWN, WITHOUT, POPULATION, GENERATIONS, TAPS, WORK, PRIORS };
 
 static const struct argp_option options[] = {
     {"compliant", COMPLIANT, NULL, 0, "let the transmission give way, with the encoders on the motors' side", 0},
     {"sample", SAMPLE, NULL, 0, "count a reading from where the ring was as it was taken, not from where it is now", 0},
+    {"known", KNOWN, NULL, 0, "don't search: judge plant n, with --compliant plant p, as far as the bounds reach", 0},
     {"without", WITHOUT, "table|claims|limits", 0, "leave these lines out; repeat it", 0},
     {"population", POPULATION, "N", 0, "plants that are held: 48", 0},
     {"generations", GENERATIONS, "N", 0, "100", 0},
@@ -40,7 +41,7 @@ static const struct argp_option options[] = {
 
 static struct {
   ethd__explain_structure structure;
-  bool without[ETHD_EXPLAIN_GROUPS], priors;
+  bool without[ETHD_EXPLAIN_GROUPS], priors, known;
   int64_t population, generations, taps;
   uint64_t seed;
   const char *work, *out;
@@ -59,6 +60,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
   case COMPLIANT: arg.structure.compliant = true; return 0;
   case SAMPLE: arg.structure.tick = false; return 0;
+  case KNOWN: arg.known = true; return 0;
   case WITHOUT: leave_out(text); return 0;
   case POPULATION:
     arg.population = ethd__option_integer("--population", text, 8, ETHD_EXPLAIN_POPULATION_MAX);
@@ -98,7 +100,7 @@ static void print_point(const ethd__explain_point *point) {
 }
 
 /* With fingers that no search has met. */
-static int confirm(ethd__explain_question *q, const ethd__explain_point *best) {
+static void confirm(ethd__explain_question *q, const ethd__explain_point *best) {
   char message[ETHD_MESSAGE_MAX];
   ethd__explain_figures figures;
   double total;
@@ -106,15 +108,31 @@ static int confirm(ethd__explain_question *q, const ethd__explain_point *best) {
   q->taps = 400;
   for (int g = 0; g < ETHD_EXPLAIN_GROUPS; g++) q->asked[g] = true;
   check(ethd__explain_judge(q, best, (double)INFINITY, &figures, &total, message), message);
-  printf("\nthe best plant, with other fingers: 400 taps of each law at low speed, 800 at high speed\n");
+  printf("\n%s, with other fingers: 400 taps of each law at low speed, 800 at high speed\n",
+         arg.known ? arg.structure.compliant ? "plant p" : "plant n" : "the best plant");
   int missed = ethd__explain_print(&figures);
   printf("%d of %d lines are missed\n", missed, ETHD_EXPLAIN_LINE_COUNT);
-  return missed;
+}
+
+static ethd__explain_point search_it(const ethd__explain_question *question) {
+  static ethd__explain_search search;
+  char message[ETHD_MESSAGE_MAX];
+  search = (ethd__explain_search){.question = question,
+                                  .population = (uint32_t)arg.population,
+                                  .generations = (uint32_t)arg.generations,
+                                  .journal = arg.work};
+  ethd__catch_interrupt();
+  check(ethd__explain_run(&search, message), message);
+  const uint32_t best = ethd__explain_best(&search);
+  printf("%u generations of %u plants, %s transmission, readings counted from where the ring %s: least sum of misses "
+         "%.3f\n",
+         search.done, search.population, arg.structure.compliant ? "compliant" : "rigid",
+         arg.structure.tick ? "is" : "was", search.total[best]);
+  return search.point[best];
 }
 
 int main(int argc, char **argv) {
   static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
-  static ethd__explain_search search;
   char message[ETHD_MESSAGE_MAX];
   ethd__loaded loaded;
   ethd__begin();
@@ -130,24 +148,13 @@ int main(int argc, char **argv) {
                                      .seed = arg.seed,
                                      .taps = (uint32_t)arg.taps};
   for (int g = 0; g < ETHD_EXPLAIN_GROUPS; g++) question.asked[g] = !arg.without[g];
-  search = (ethd__explain_search){.question = &question,
-                                  .population = (uint32_t)arg.population,
-                                  .generations = (uint32_t)arg.generations,
-                                  .journal = arg.work};
-  ethd__catch_interrupt();
-  check(ethd__explain_run(&search, message), message);
-  const uint32_t best = ethd__explain_best(&search);
-  const ethd__explain_point *point = &search.point[best];
-  printf("%u generations of %u plants, %s transmission, readings counted from where the ring %s: least sum of misses "
-         "%.3f\n",
-         search.done, search.population, arg.structure.compliant ? "compliant" : "rigid",
-         arg.structure.tick ? "is" : "was", search.total[best]);
-  print_point(point);
-  (void)confirm(&question, point);
+  ethd__explain_point point = arg.known ? ethd__explain_known(&arg.structure) : search_it(&question);
+  print_point(&point);
+  confirm(&question, &point);
   if (arg.out) {
     ethd__explain_twin twin;
-    ethd__explain_make(&loaded.plant, &arg.structure, point, &twin);
-    check(ethd__explain_write(arg.out, point, &twin, message), message);
+    ethd__explain_make(&loaded.plant, &arg.structure, &point, &twin);
+    check(ethd__explain_write(arg.out, &point, &twin, message), message);
   }
   ethd__loaded_free(&loaded);
   return ethd__end(ethd__stop ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE);

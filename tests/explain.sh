@@ -47,6 +47,25 @@ for key, text in [("contact.b_e", "largest stable B_e"), ("transition.b_d", "lar
     assert abs(line(text) - margin) <= 0.01 * margin, (text, line(text), margin)
 END
 
+# Tracking's limits are tried in time. Where a reading counts from where the ring was, they are those of a closed form.
+explain --sample --without table --without claims --generations 8 --out sample >sample.txt 2>err || fail "--sample: $(cat err)"
+"$bin/ethd-check" sample.ini >check.txt 2>err || fail "ethd-check: $(cat err)"
+"${PYTHON:-python3}" - <<'END' || fail "tracking's limits aren't ethd-check's"
+import re
+said, check, compared = open("sample.txt").read(), open("check.txt").read(), 0
+for key, text in [("tracking.k_t", "largest stable K_t, times the paper's"), ("tracking.b_t", "largest stable B_t")]:
+    margin = float(re.search(key.replace(".", r"\.") + r"\s+\S+\s+<= \S+\s+(\S+)", check)[1])
+    found = float(re.search(re.escape(text) + r"\s+(\S+)", said)[1])
+    print(key, "in time", found, "closed form", margin)
+    compared += margin < 8
+    assert abs(found / margin - 1) < 0.03 or margin >= 8 and found >= 8, key
+assert compared
+END
+
+# Plants n and p are judged, too: their own gains are far from unstable on n, and the wall is unstable on p.
+"$bin/ethd-explain" --known --sample >n.txt && grep -q '^plant n, .*400 taps' n.txt || fail "n isn't judged"
+grep -q 'largest stable K_e  *12.4 ' n.txt || fail "another limit of K_e on n than ethd-check's"
+
 refuse() { # TEXT ARGUMENTS...
   text=$1
   shift

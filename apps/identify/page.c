@@ -132,10 +132,9 @@ void ethd__page_print(FILE *out, const ethd__finding *f) {
     if (!is_kept(f, &ethd__plant_rows[i])) print_row(out, f, &ethd__plant_rows[i]);
   print_kept(out, f);
   print_residual(out, f);
-  if (f->plant.delay > e->period)
-    fprintf(out,
-            "The delay is longer than a period: this simulator holds at most one, so the plant can't be run at %g s.\n",
-            e->period);
+  if (f->plant.delay > ETHD_SIM_DELAY_PERIODS * e->period)
+    fprintf(out, "The delay is longer than %d periods of %g s, which is the most that the simulator holds.\n",
+            ETHD_SIM_DELAY_PERIODS, e->period);
 }
 
 /* ---- the file ---- */
