@@ -109,20 +109,27 @@ END_TEST
 
 /* ---- from within the wall ---- */
 
-/* Rows of energy that were told while the ring moves from one depth to another at 20 mm/s. */
-static int told(rig *r, double from, double to) {
-  const double v = from < to ? 0.02 : -0.02;
+/* A tick at this distance, moving away at v, m/s; returns the rows of energy that it told. */
+static int tick_at(rig *r, double d, double v) {
+  motion m = rig_at(d, -v, 0);
+  ethd_sense s = rig_sense(&r->setup.arm, &m);
   int rows = 0;
   ethd_event e;
-  for (double d = from; (to - d) * v > 0; d += v * 1e-3) {
-    motion m = rig_at(d, -v, 0);
-    ethd_sense s = rig_sense(&r->setup.arm, &m);
-    s.time_ns = r->sense.time_ns + 1000000;
-    (void)rig_try(r, &s);
-    while ((e = rig_poll(r)).kind) rows += e.kind == ETHD_EVENT_FAULT && e.code == ETHD_FAULT_ENERGY;
-  }
+  s.time_ns = r->sense.time_ns + 1000000;
+  (void)rig_try(r, &s);
+  while ((e = rig_poll(r)).kind) rows += e.kind == ETHD_EVENT_FAULT && e.code == ETHD_FAULT_ENERGY;
   return rows;
 }
+
+/* Rows of energy that were told while the ring moves from one distance to another at `speed`. */
+static int told_at(rig *r, double from, double to, double speed) {
+  const double v = from < to ? speed : -speed;
+  int rows = 0;
+  for (double d = from; (to - d) * v > 0; d += v * 1e-3) rows += tick_at(r, d, v);
+  return rows;
+}
+
+static int told(rig *r, double from, double to) { return told_at(r, from, to, 0.02); }
 
 /* 4 mm deep, slowly: the paper's wall has stored 20 mJ, ten times the bound. */
 static void go_in(rig *r, double energy) {
@@ -163,6 +170,33 @@ START_TEST(test_acknowledged_within) {
   ck_assert_int_eq(told(&r, -0.004, 0.004), 0);
   ck_assert_int_eq(r.trace.fault, 0);
   rig_close(&r);
+}
+END_TEST
+
+/* A spring that is bounced on, 0.6 mm deep at 0.2 m/s, gives away what the hold adds, at most
+   2 x 2500 N/m x 0.6 mm x 0.2 mm = 0.6 mJ each time. */
+static int told_while_bouncing(int bounces, int pause) {
+  rig r;
+  int rows = 0;
+  rig_open(&r, RIG_WALL);
+  ethd_setup_transition(&r.setup, &ethd_transition_smooth);
+  ethd_setup_contact(&r.setup, &ethd_contact_spring);
+  r.setup.contact_p[0] = 2500;
+  r.setup.limits.energy = BOUND;
+  rig_start(&r);
+  for (int i = 0; i < bounces; i++) {
+    rows += told_at(&r, 0.015, -0.0006, 0.2) + told_at(&r, -0.0006, 0.015, 0.2);
+    for (int k = 0; k < pause; k++) rows += tick_at(&r, 0.015, 0);
+  }
+  rig_close(&r);
+  return rows;
+}
+
+/* One contact goes on with what the last one gave away, unless that is half a second ago. */
+START_TEST(test_bounces_add_up) {
+  ck_assert_int_eq(told_while_bouncing(1, 0), 0);
+  ck_assert_int_gt(told_while_bouncing(12, 10), 0);
+  ck_assert_int_eq(told_while_bouncing(12, 600), 0);
 }
 END_TEST
 
@@ -222,6 +256,7 @@ int main(void) {
   tcase_add_test(t, test_passive);
   tcase_add_loop_test(t, test_watched_from_within, 0, 2);
   tcase_add_test(t, test_acknowledged_within);
+  tcase_add_test(t, test_bounces_add_up);
   tcase_add_test(t, test_surface_retreats);
   tcase_add_test(t, test_wall_that_comes);
   suite_add_tcase(suite, t);

@@ -158,6 +158,11 @@ START_TEST(test_chosen) {
   ck_assert_int_eq(ethd_setup_choose(&s, "wall", "spring", ethd_laws, &error), ETHD_E_UNKNOWN);
   ck_assert_str_eq(error.name, "wall");
   ck_assert(s.contact == &ethd_contact_spring && !ethd_setup_part_of("limits"));
+  const char *const back[] = {"contact",  "spring",  "contact", "kelvin-voigt", "velocity", "lsq",
+                              "velocity", "lowpass", NULL};
+  ethd_setup once = ethd_setup_default(), again = made(back); /* chosen again: the default to the bit */
+  ck_assert_mem_eq(again.contact_p, once.contact_p, sizeof once.contact_p);
+  ck_assert_mem_eq(again.velocity_p, once.velocity_p, sizeof once.velocity_p);
   s.contact = NULL;
   ck_assert_ptr_null(ethd_setup_chosen(&s, contact).id);
 }
