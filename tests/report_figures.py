@@ -134,12 +134,23 @@ def same_p(what, here, x):
         same(what, here, p, 5 * math.sqrt(p * (1 - p) / 20000) + 4e-4)
     return here
 
+def noncentrality(t, df, p):
+    """The one at which t is the quantile p. Far from t SciPy's distribution may be NaN, so the bracket grows."""
+    above = lambda s: stats.nct.cdf(t, df, s) - p
+    low = high = t
+    while above(low) <= 0:
+        low -= 0.5
+    while above(high) >= 0:
+        high += 0.5
+    return optimize.brentq(above, low, high, xtol=1e-13)
+
+
 def d_z_interval(x):
     n = len(x)
     if n < 3 or np.std(x, ddof=1) == 0:
         return math.nan, math.nan
     t = np.mean(x) / np.std(x, ddof=1) * math.sqrt(n)
-    return tuple(optimize.brentq(lambda s: stats.nct.cdf(t, n - 1, s) - p, t - 40, t + 40, xtol=1e-13) / math.sqrt(n) for p in (0.975, 0.025))
+    return tuple(noncentrality(t, n - 1, p) / math.sqrt(n) for p in (0.975, 0.025))
 
 def equivalent(x, low, high):
     return DescrStatsW(x).ttost_mean(low, high)[0] if len(x) >= 6 else math.nan
