@@ -21,7 +21,9 @@ static const char doc[] =
     "together. The simulator's own prediction over short windows is fitted to the encoders, by least squares; whether "
     "the "
     "transmission gives way is decided by an information criterion, and how white the residual is shows whether the "
-    "device does something else as well. What the recordings can't tell keeps its value of --base and is said.\n"
+    "device does something else as well. Touches of a finger show its mass, the hand's spring and damper, and the pad, "
+    "beside the hand's own path, which isn't known; recordings of taps alone keep the arm of --base. What the "
+    "recordings can't tell keeps its value of --base and is said.\n"
     "--judge doesn't fit: it says how well a plant predicts recordings that it wasn't fitted to.\n"
     "--excite makes a recording: it moves the device of a configuration by itself, without a finger, with torques of "
     "many "
@@ -29,6 +31,7 @@ static const char doc[] =
     "Examples:\n"
     "  ethd-identify --excite --config device.ini --record session\n"
     "  ethd-identify session --out mine.plant --plot fit.png\n"
+    "  ethd-identify taps --base mine.plant --out whole.plant\n"
     "  ethd-identify --judge mine.plant taps";
 
 enum { BASE = 256, CSV, PLOT, JUDGE, EXCITE, RECORD, FORCE, SHARE, TORQUE, HALF, AT, VIRTUAL, SECONDS };
@@ -127,8 +130,8 @@ static void load_evidence(ethd__evidence *e) {
   }
 }
 
-/* Each refusal says what is missing and how to record it. */
-static void check_evidence(const ethd__evidence *e, double count) {
+/* Each refusal says what is missing and how to record it. False: only touches can be fitted. */
+static bool check_evidence(const ethd__evidence *e, double count) {
   double way[2] = {0, 0}, least = LEAST_WAY * (count > 0 ? count : 1e-3);
   size_t windows = 0, whole = (size_t)rint(ETHD__WINDOW / e->period);
   for (size_t i = 0; i < e->stretch_count; i++) {
@@ -137,12 +140,13 @@ static void check_evidence(const ethd__evidence *e, double count) {
     for (size_t k = s->first + 1; k < s->first + s->count; k++)
       for (int j = 0; j < 2; j++) way[j] += fabs(e->q[k][j] - e->q[k - 1][j]);
   }
+  if (windows < LEAST_WINDOWS && e->onset_count >= ETHD__TOUCHES_LEAST && !arg.judge) return false;
   if (windows < LEAST_WINDOWS)
     ethd__fail(
         ETHD_EXIT_INPUT,
-        "%s: %zu windows of %g s without a stop, a fault or the finger near, at least %d are needed; record more, "
-        "as ethd-identify --excite does",
-        arg.folders[0], windows, ETHD__WINDOW, LEAST_WINDOWS);
+        "%s: %zu windows of %g s without a stop, a fault or the finger near, at least %d are needed, and %zu touches, "
+        "at least %d are needed; record more, as ethd-identify --excite and ethd-tap do",
+        arg.folders[0], windows, ETHD__WINDOW, LEAST_WINDOWS, e->onset_count, ETHD__TOUCHES_LEAST);
   if (way[0] + way[1] < least)
     ethd__fail(ETHD_EXIT_INPUT,
                "%s: the arm hardly moves, %.3g rad in all: record one that does, as ethd-identify --excite does",
@@ -152,6 +156,7 @@ static void check_evidence(const ethd__evidence *e, double count) {
                "%s: the guard cut the torque in %.0f %% of the ticks, so that it hardly changes: record with gains or "
                "excitation below limits.torque, as ethd-identify --excite --share 0.5 does",
                arg.folders[0], 100 * e->clipped);
+  return true;
 }
 
 /* ---- fitting ---- */
@@ -187,6 +192,26 @@ static void write_files(const ethd__finding *f) {
   free(csv);
 }
 
+static void fit_arm(ethd__finding *f) {
+  ethd__fit_run(f->evidence, &f->plant, f->sensing.count, &f->problem, &f->fit);
+  if (ethd__stop) return;
+  check_finding(f);
+  f->residual = calloc(f->problem.rows, sizeof *f->residual);
+  if (!f->residual) ethd__fail_memory();
+  ethd__whiteness_find(&f->problem, f->sensing.count, f->residual, &f->whiteness);
+}
+
+static void keep_arm(ethd__finding *f) {
+  if (arg.csv || arg.plot)
+    ethd__fail(ETHD_EXIT_INPUT, "%s: a picture needs motion without the finger, as ethd-identify --excite records it",
+               arg.folders[0]);
+  f->fit.plant = f->plant;
+  for (int u = 0; u < ETHD__UNKNOWNS; u++) {
+    f->fit.unseen[u] = true;
+    f->fit.low[u] = f->fit.high[u] = (double)NAN;
+  }
+}
+
 static int identify(const ethd__evidence *e) {
   static ethd__finding f;
   char message[ETHD_MESSAGE_MAX];
@@ -194,14 +219,11 @@ static int identify(const ethd__evidence *e) {
   f.base = arg.base;
   f.evidence = e;
   if (ethd__sensing_find(e, &f.sensing, message)) ethd__fail(ETHD_EXIT_INPUT, "%s", message);
-  check_evidence(e, f.sensing.count);
+  bool arm = check_evidence(e, f.sensing.count);
   if (arg.plot && ethd__picture_ready(message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
-  ethd__fit_run(e, &f.plant, f.sensing.count, &f.problem, &f.fit);
+  (arm ? fit_arm : keep_arm)(&f);
+  ethd__touch_fit_run(e, &f.sensing, &f.fit, &f.touches);
   if (ethd__stop) ethd__fail(ETHD_EXIT_FAILED, "stopped; nothing is written");
-  check_finding(&f);
-  f.residual = calloc(f.problem.rows, sizeof *f.residual);
-  if (!f.residual) ethd__fail_memory();
-  ethd__whiteness_find(&f.problem, f.sensing.count, f.residual, &f.whiteness);
   ethd__finding_plant(&f);
   ethd__page_print(stdout, &f);
   write_files(&f);
@@ -215,7 +237,7 @@ static int judge(const ethd__evidence *e) {
   ethd__sensing sensing;
   ethd_plant plant = load_plant(arg.judge);
   if (ethd__sensing_find(e, &sensing, message)) ethd__fail(ETHD_EXIT_INPUT, "%s", message);
-  check_evidence(e, sensing.count);
+  (void)check_evidence(e, sensing.count);
   ethd__judgement j = ethd__prediction_judge(e, &plant);
   double floor = sensing.count / sqrt(12);
   printf("%zu windows; errors of the prediction, rad rms; a count is %.4g rad, rounding to it leaves %.4g\n", j.windows,

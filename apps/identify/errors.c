@@ -52,7 +52,7 @@ static double gather(const ethd__shooting *p, uint32_t recording, const double *
     if (recording != ALL && w->window.recording != recording) continue;
     count++;
     double pull[N] = {0};
-    for (size_t row = w->row; row < w->row + 2 * (size_t)w->window.count; row++)
+    for (size_t row = w->row; row < w->row + (size_t)w->rows; row++)
       for (int a = 0; a < n; a++) {
         double slope = slopes[(size_t)a * p->rows + row];
         pull[a] += slope * residual[row];

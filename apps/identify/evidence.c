@@ -33,8 +33,9 @@ static unsigned char *armed_ticks(const ethd__record_events *events, const ethd_
   for (size_t i = 0; i < count; i++) {
     for (; next < events->count && events->events[next].row <= i; next++) {
       const ethd__record_event *e = &events->events[next];
-      if (!strcmp(e->kind, "start") || !strcmp(e->kind, "setup")) {
-        wait = soft;
+      bool begins = !strcmp(e->kind, "start"), soft_start = begins && !strcmp(e->detail, "enabled");
+      if (begins || (!strcmp(e->kind, "setup") && !e->row)) {
+        wait = begins && !soft_start ? 0 : soft; /* simulated taps have no loop that starts softly */
         off = false;
       }
       if (!strcmp(e->kind, "set") && !strcmp(e->detail, "limits.speed 0")) off = true;
@@ -146,5 +147,6 @@ void ethd__evidence_free(ethd__evidence *e) {
   free(e->torque);
   free(e->stretches);
   free(e->deliveries);
+  free(e->onsets);
   *e = (ethd__evidence){0};
 }

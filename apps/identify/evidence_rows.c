@@ -19,9 +19,14 @@ static void *longer(void *old, size_t count, size_t size) {
 
 /* ---- the finger ---- */
 
-static bool is_near(const ethd_setup *setup, const ethd_sense *s) {
+bool ethd__evidence_is_near(const ethd_setup *setup, const ethd_trace *row) {
+  const ethd_sense *s = &row->sense;
   double gap = setup->ring_radius - setup->finger_radius;
-  if (s->have & ETHD_HAVE_CENTRE) return !(hypot(s->centre[0], s->centre[1]) < NEAR * gap);
+  if (s->have & ETHD_HAVE_CENTRE) {
+    bool world = s->have & ETHD_HAVE_WORLD;
+    double x = s->centre[0] - (world ? row->x[0] : 0), y = s->centre[1] - (world ? row->x[1] : 0);
+    return !(hypot(x, y) < NEAR * gap);
+  }
   for (int i = 0; i < ETHD_RAYS && s->have & ETHD_HAVE_RAYS; i++)
     if (s->rays[i] < (1 - NEAR) * gap) return true;
   return false;
@@ -32,7 +37,7 @@ static void keep_apart(const ethd_setup *setup, const ethd_trace *rows, size_t c
   int64_t pad = (int64_t)ceil(APART / setup->period);
   for (size_t i = 0; i < count; i++) {
     const ethd_sense *s = &rows[i].sense;
-    if (!is_near(setup, s)) continue;
+    if (!ethd__evidence_is_near(setup, &rows[i])) continue;
     int64_t age = (int64_t)((double)(s->time_ns - s->sample_ns) * 1e-9 / setup->period);
     int64_t at = (int64_t)i - (age > 0 && age < 1000 ? age : 0);
     for (int64_t k = at - pad; k <= at + pad; k++)
@@ -40,15 +45,22 @@ static void keep_apart(const ethd_setup *setup, const ethd_trace *rows, size_t c
   }
 }
 
-static void add_delivery(ethd__evidence *e, const ethd_trace *rows, size_t i) {
+static void add_delivery(ethd__evidence *e, const ethd_setup *setup, const ethd_trace *rows, size_t i) {
   const ethd_sense *s = &rows[i].sense;
   if (!(s->have & (ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS))) return;
   ethd__delivery d = {s->sample_ns,
                       i ? rows[i - 1].sense.time_ns : s->sample_ns,
                       s->time_ns,
                       e->recording_count - 1,
-                      {(double)NAN, (double)NAN}};
-  if (s->have & ETHD_HAVE_CENTRE && s->have & ETHD_HAVE_RING)
+                      {(double)NAN, (double)NAN},
+                      {(double)NAN, (double)NAN},
+                      e->count + i,
+                      1e-9 * (double)(s->time_ns - s->sample_ns),
+                      ethd__evidence_is_near(setup, &rows[i])};
+  bool world = s->have & ETHD_HAVE_WORLD;
+  if (s->have & ETHD_HAVE_CENTRE && world) d.finger = (ethd_vec){s->centre[0], s->centre[1]};
+  if (s->have & ETHD_HAVE_CENTRE && !world) d.centre = (ethd_vec){s->centre[0], s->centre[1]};
+  if (s->have & ETHD_HAVE_CENTRE && !world && s->have & ETHD_HAVE_RING)
     d.finger = (ethd_vec){s->ring[0] + s->centre[0], s->ring[1] + s->centre[1]};
   if (i && s->time_ns <= rows[i - 1].sense.time_ns) return; /* a clock that begins anew */
   if (!(e->delivery_count & (e->delivery_count + 1)))
@@ -58,7 +70,7 @@ static void add_delivery(ethd__evidence *e, const ethd_trace *rows, size_t i) {
 
 /* ---- stretches ---- */
 
-static bool follows(const ethd__evidence *e, const ethd_trace *row) {
+bool ethd__evidence_follows(const ethd__evidence *e, const ethd_trace *row) {
   double apart = 1e-9 * (double)(row[0].sense.time_ns - row[-1].sense.time_ns);
   return fabs(apart - e->period) <= PACE * e->period && !row->sense.missed && row[0].tick == row[-1].tick + 1;
 }
@@ -77,7 +89,7 @@ static void add_stretch(ethd__evidence *e, size_t first, size_t count) {
 static void cut(ethd__evidence *e, const ethd_trace *rows, size_t count, const unsigned char *good, size_t base) {
   size_t begin = 0;
   for (size_t i = 0; i <= count; i++) {
-    if (i < count && good[i] && (i == begin || follows(e, &rows[i]))) continue;
+    if (i < count && good[i] && (i == begin || ethd__evidence_follows(e, &rows[i]))) continue;
     add_stretch(e, base + begin, i - begin);
     begin = i < count && good[i] ? i : i + 1;
   }
@@ -107,8 +119,9 @@ void ethd__evidence_rows(ethd__evidence *e, const ethd_setup *setup, const ethd_
     memcpy(e->torque[base + i], rows[i].tau, sizeof *e->torque);
     if (!is_known(&rows[i])) good[i] = 0;
     e->unarmed += !good[i];
-    add_delivery(e, rows, i);
+    add_delivery(e, setup, rows, i);
   }
+  ethd__evidence_touches(e, setup, rows, count, good, base);
   keep_apart(setup, rows, count, good);
   for (size_t i = 0; i < count; i++) e->touched += armed[i] && is_known(&rows[i]) && !good[i];
   note_clipped(e, rows, count, good);

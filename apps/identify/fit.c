@@ -141,6 +141,17 @@ static size_t reached(const ethd__evidence *e, double limit) {
   return ticks;
 }
 
+/* A transmission's three numbers go together: one of another device beside two of this one would be no transmission. */
+static void leave(ethd__shooting *p, const ethd_plant *plant, ethd__fit *f, ethd__unknown which) {
+  bool together = which >= ETHD__MOTOR_MASS && which <= ETHD__DAMPING;
+  ethd__unknown first = together ? ETHD__MOTOR_MASS : which, last = together ? ETHD__DAMPING : which;
+  for (ethd__unknown u = first; u <= last; u++) {
+    f->unseen[u] = true;
+    ethd__unknown_set(&p->plant, u, kept(f, plant, u));
+    ethd__chosen_drop(&p->chosen, u);
+  }
+}
+
 /* Takes out, the least sure first, what the recordings can't tell, and fits the rest again. */
 static void leave_unseen(ethd__shooting *p, const ethd_plant *plant, ethd__fit *f, double *errors) {
   for (;;) {
@@ -157,9 +168,7 @@ static void leave_unseen(ethd__shooting *p, const ethd_plant *plant, ethd__fit *
       worst = p->chosen.at[i];
     }
     if (worst == ETHD__UNKNOWNS || ethd__stop) return;
-    f->unseen[worst] = true;
-    ethd__unknown_set(&p->plant, worst, kept(f, plant, worst));
-    ethd__chosen_drop(&p->chosen, worst);
+    leave(p, plant, f, worst);
     f->sum = ethd__fit_squares(p, LONG, "what is seen");
   }
 }
@@ -180,9 +189,14 @@ static void look_for_coupling(ethd__shooting *p, const ethd_plant *plant, ethd__
   double most = UNSURE * p->evidence->arm.link1 * p->evidence->arm.link2 * sqrt(p->plant.mass[0] * p->plant.mass[1]);
   f->unseen[ETHD__COUPLING] = !(SIDE * ethd__unknown_from(ETHD__COUPLING, errors[last]) <= most);
   if (!f->unseen[ETHD__COUPLING] && fabs(step[last]) > SIDE * errors[last]) {
+    ethd__fit before = *f;
+    ethd_plant uncoupled = p->plant;
     f->sum = ethd__fit_squares(p, LONG, "coupling");
     leave_unseen(p, plant, f, errors);
-    return;
+    if (!f->unseen[ETHD__MASS_X] && !f->unseen[ETHD__MASS_Y]) return;
+    *f = before; /* it has only taken the place of something else that the arm does */
+    f->unseen[ETHD__COUPLING] = true;
+    p->plant = uncoupled;
   }
   if (!f->unseen[ETHD__COUPLING]) set_interval(f, ETHD__COUPLING, step[last], errors[last]);
   p->chosen = without;

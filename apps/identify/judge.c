@@ -29,8 +29,11 @@ ethd__judgement ethd__prediction_judge(const ethd__evidence *e, const ethd_plant
   ethd__shooting_open(e, MOST, TOLERANCE, &p);
   p.plant = *plant;
   ethd__predictor_prepare(e, plant, TOLERANCE, &predictor);
-  for (size_t i = 0; i < p.window_count; i++)
-    if (p.windows[i].window.count > ahead + 8) p.windows[i].window.count -= ahead;
+  for (size_t i = 0; i < p.window_count; i++) {
+    if (p.windows[i].window.count <= ahead + 8) continue;
+    p.windows[i].window.count -= ahead;
+    p.windows[i].rows = 2 * p.windows[i].window.count;
+  }
   ethd__shooting_settle(&p);
   for (size_t i = 0; i < p.window_count; i++) {
     int seen = p.windows[i].window.count;

@@ -7,11 +7,13 @@
 #include "identify/fit.h"
 #include "identify/residual.h"
 #include "identify/sensing.h"
+#include "identify/touch_fit.h"
 
 typedef struct ethd__finding {
   const ethd__evidence *evidence;
-  ethd__shooting problem;
+  ethd__shooting problem; /* without windows where the arm is kept as in base */
   ethd__fit fit;
+  ethd__touch_fit touches;
   ethd__sensing sensing;
   ethd__whiteness whiteness;
   double *residual; /* problem.rows, rad */

@@ -25,7 +25,7 @@ static double taken(const ethd__shooting *p, const ethd__fit_window *w, int join
   double sum = 0;
   int n = 2 * w->window.count;
   for (int i = 0; i < w->rank; i++)
-    sum += products(p->basis + ETHD__STATE_MOST * w->row + i * n, w->window.count, joint, lag);
+    sum += products(p->basis + ETHD__STATES * w->row + i * n, w->window.count, joint, lag);
   return sum;
 }
 

@@ -143,8 +143,8 @@ static size_t differences(const ethd__evidence *e, double pace, int order, doubl
   double size = 0;
   for (int k = 0; k <= order; k++) size += weights[order - 1][k] * weights[order - 1][k];
   for (size_t i = 0; i < e->delivery_count; i++) {
-    in_row = follows(e, i, pace) ? in_row + 1 : 0;
-    if (in_row < (size_t)order) continue;
+    in_row = follows(e, i, pace) && !e->deliveries[i].near ? in_row + 1 : 0;
+    if (in_row <= (size_t)order) continue;
     double x = 0, y = 0;
     for (int k = 0; k <= order; k++) {
       ethd_vec f = e->deliveries[i - (size_t)(order - k)].finger;
@@ -159,12 +159,12 @@ static size_t differences(const ethd__evidence *e, double pace, int order, doubl
   return n;
 }
 
-/* Medians don't mind the touches, in which the finger turns sharply. */
+/* Touches, in which the finger turns sharply, are left out; medians don't mind what else does. */
 static void find_noise(const ethd__evidence *e, double pace, double *room, ethd__bracket *out) {
   for (int order = 1; order <= ORDERS; order++) {
     size_t n = differences(e, pace, order, room);
     double sd = median(room, n) / 0.674489750196082, error = sd * 1.17 * sqrt(order / fmax((double)n, 1));
-    if (n < 50 || (out->value < sd)) continue;
+    if (n < 50 || out->value < sd + 2 * error) continue; /* clearly less than with a lower order */
     *out = (ethd__bracket){sd, sd - 1.96 * error, sd + 1.96 * error};
   }
 }

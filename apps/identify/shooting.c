@@ -9,64 +9,37 @@
 
 #define SETTLINGS 8 /* of a window's state at most, until the squares fall by less than this share: */
 #define SETTLED 1e-9
-#define MOVED 1e-5      /* a state whose squares fall by a smaller share has hardly moved: its slopes stay */
-#define CHORDS 2        /* corrections of a state with the slopes that are there */
-#define STEP_ANGLE 1e-6 /* rad, */
-#define STEP_SPEED 1e-4 /* rad/s: for slopes by differences */
-#define STEP 3e-4       /* of a coordinate */
-#define DEPENDENT 1e-5  /* a vector of which others explain all but this says nothing */
-
-static void *room(size_t count, size_t size) {
-  void *at = calloc(count ? count : 1, size);
-  if (!at) ethd__fail_memory();
-  return at;
-}
+#define MOVED 1e-5     /* a state whose squares fall by a smaller share has hardly moved: its slopes stay */
+#define CHORDS 2       /* corrections of a state with the slopes that are there */
+#define STEP 3e-4      /* of a coordinate */
+#define DEPENDENT 1e-5 /* a vector of which others explain all but this says nothing */
 
 /* ---- windows ---- */
 
-static void add_window(ethd__shooting *p, const ethd__passage *s, size_t first, size_t count) {
+void ethd__shooting_begin(const ethd__evidence *e, const ethd__fit_subject *subject, double tolerance,
+                          ethd__shooting *p) {
+  *p = (ethd__shooting){.evidence = e, .subject = subject, .tolerance = tolerance};
+}
+
+ethd__fit_window *ethd__shooting_add(ethd__shooting *p, const ethd__shot *window, int rows) {
   if (!(p->window_count & (p->window_count + 1))) {
     p->windows = realloc(p->windows, (2 * p->window_count + 2) * sizeof *p->windows);
     if (!p->windows) ethd__fail_memory();
   }
   ethd__fit_window *w = &p->windows[p->window_count++];
-  *w = (ethd__fit_window){.window = {first, s->first, s->first + s->count, (int)count, s->recording}};
+  *w = (ethd__fit_window){.window = *window, .rows = rows};
+  return w;
 }
 
-static void thin(ethd__shooting *p, size_t most) {
-  size_t kept = 0, count = p->window_count;
-  for (size_t i = 0; i < count; i++)
-    if (kept * count <= i * most && kept < most) p->windows[kept++] = p->windows[i];
-  p->passed_over = count - kept;
-  p->window_count = kept;
-}
-
-/* At first: the angles as measured, the speeds over some ticks. */
-static void guess(const ethd__evidence *e, ethd__fit_window *w) {
-  const int span = 5;
-  size_t i = w->window.first;
-  for (int j = 0; j < 2; j++) {
-    w->state[j] = e->q[i][j];
-    w->state[2 + j] = (e->q[i + span][j] - e->q[i][j]) / (span * e->period);
-  }
-}
-
-void ethd__shooting_open(const ethd__evidence *e, size_t most, double tolerance, ethd__shooting *p) {
-  size_t whole = (size_t)fmin(fmax(rint(ETHD__WINDOW / e->period), 16), ETHD__WINDOW_MOST);
-  size_t least = (size_t)fmax(rint(ETHD__WINDOW_LEAST / e->period), 16);
-  *p = (ethd__shooting){.evidence = e, .tolerance = tolerance};
-  for (size_t i = 0; i < e->stretch_count; i++) {
-    const ethd__passage *s = &e->stretches[i];
-    for (size_t at = ETHD__BACK; at + least <= s->count; at += whole)
-      add_window(p, s, s->first + at, s->count - at < whole ? s->count - at : whole);
-  }
-  if (p->window_count > most) thin(p, most);
+void ethd__shooting_ready(ethd__shooting *p) {
+  p->rows = 0;
   for (size_t i = 0; i < p->window_count; i++) {
     p->windows[i].row = p->rows;
-    p->rows += 2 * (size_t)p->windows[i].window.count;
-    guess(e, &p->windows[i]);
+    p->rows += (size_t)p->windows[i].rows;
   }
-  p->basis = room(ETHD__STATE_MOST * p->rows, sizeof *p->basis);
+  free(p->basis);
+  p->basis = calloc(p->rows ? ETHD__STATES * p->rows : 1, sizeof *p->basis);
+  if (!p->basis) ethd__fail_memory();
 }
 
 void ethd__shooting_close(ethd__shooting *p) {
@@ -81,17 +54,25 @@ size_t ethd__shooting_states(const ethd__shooting *p) {
   return sum;
 }
 
-/* ---- one window ---- */
-
-static double *basis_of(const ethd__shooting *p, const ethd__fit_window *w) {
-  return p->basis + ETHD__STATE_MOST * w->row;
+double ethd__shooting_simulated(const ethd__shooting *p) {
+  double ticks = 0;
+  for (size_t i = 0; i < p->window_count; i++) ticks += (double)p->windows[i].predicted;
+  return ticks * p->evidence->period;
 }
 
-static void residual(ethd__predictor *predictor, ethd__fit_window *w, const double *state, double *out) {
-  ethd__predict(predictor, &w->window, state, out);
-  const double *measured = predictor->evidence->q[w->window.first];
-  for (int i = 0; i < 2 * w->window.count; i++) out[i] = measured[i] - out[i];
-  w->predicted += w->window.count;
+/* ---- one window ---- */
+
+static double *basis_of(const ethd__shooting *p, const ethd__fit_window *w) { return p->basis + ETHD__STATES * w->row; }
+
+/* useful: how many of the trials say something new. */
+static void try_all(const ethd__shooting *p, ethd__fit_window *w, const ethd__trial *trials, int count, int useful) {
+  p->subject->try_all(p, w, trials, count);
+  w->predicted += useful * w->window.count;
+}
+
+static void residual(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant, const double *state,
+                     double *out) {
+  try_all(p, w, &(ethd__trial){plant, state, out}, 1, 1);
 }
 
 static double dot(const double *a, const double *b, int n) {
@@ -106,61 +87,57 @@ static void add(double *a, double factor, const double *b, int n) {
 
 /* Takes out of `out` what the window's states explain. */
 static void project(const ethd__shooting *p, const ethd__fit_window *w, double *out) {
-  int n = 2 * w->window.count;
   const double *basis = basis_of(p, w);
-  for (int i = 0; i < w->rank; i++) add(out, -dot(basis + i * n, out, n), basis + i * n, n);
+  for (int i = 0; i < w->rank; i++) add(out, -dot(basis + i * w->rows, out, w->rows), basis + i * w->rows, w->rows);
 }
 
 /* A state's best correction by a residual. */
 static void correct(const ethd__shooting *p, const ethd__fit_window *w, const double *left, double *state) {
-  int n = 2 * w->window.count;
-  for (int i = 0; i < w->rank; i++) add(state, dot(basis_of(p, w) + i * n, left, n), w->turn[i], ETHD__STATE_MOST);
+  const double *basis = basis_of(p, w);
+  for (int i = 0; i < w->rank; i++) add(state, dot(basis + i * w->rows, left, w->rows), w->turn[i], ETHD__STATES);
 }
 
-static double step_of(int i) { return i == 2 || i == 3 || i >= 6 ? STEP_SPEED : STEP_ANGLE; }
-
 /* What each state changes, one after another: differences between predictions that take the same steps. */
-static void state_slopes(const ethd__predictor *predictor, ethd__fit_window *w, double *out) {
-  int n = 2 * w->window.count, states = ethd__predictor_states(predictor);
-  double state[ETHD__ARMS][ETHD__STATE_MOST], own[2 * ETHD__WINDOW_MOST];
+static void state_slopes(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant, double *out) {
+  int states = p->subject->states(plant);
+  double state[ETHD__ARMS][ETHD__STATES], own[ETHD__RESIDUALS_MOST];
   for (int i = 0; i < states; i += ETHD__ARMS - 1) {
-    ethd__forecast f[ETHD__ARMS] = {{predictor, w->state, own}};
+    ethd__trial t[ETHD__ARMS] = {{plant, w->state, own}};
     int count = 1;
     for (; count < ETHD__ARMS && i + count - 1 < states; count++) {
       int at = i + count - 1;
       memcpy(state[count], w->state, sizeof w->state);
-      state[count][at] += step_of(at);
-      f[count] = (ethd__forecast){predictor, state[count], out + at * n};
+      state[count][at] += p->subject->step(at);
+      t[count] = (ethd__trial){plant, state[count], out + at * w->rows};
     }
-    ethd__predict_many(f, count, &w->window);
-    w->predicted += (count - 1) * w->window.count;
+    try_all(p, w, t, count, count - 1);
     for (int c = 1; c < count; c++)
-      for (int k = 0; k < n; k++) f[c].out[k] = (f[c].out[k] - own[k]) / step_of(i + c - 1);
+      for (int k = 0; k < w->rows; k++) t[c].out[k] = (own[k] - t[c].out[k]) / p->subject->step(i + c - 1);
   }
 }
 
 /* The basis of what states change (Gram and Schmidt, twice), and which state each vector of it stands for. */
-static void span(ethd__shooting *p, const ethd__predictor *predictor, ethd__fit_window *w) {
-  int n = 2 * w->window.count, states = ethd__predictor_states(predictor);
+static void span(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant) {
+  int n = w->rows, states = p->subject->states(plant);
   double *slopes = basis_of(p, w);
-  state_slopes(predictor, w, slopes);
+  state_slopes(p, w, plant, slopes);
   w->rank = 0;
   for (int i = 0; i < states; i++) {
-    double turn[ETHD__STATE_MOST] = {0}, *v = slopes + w->rank * n;
+    double turn[ETHD__STATES] = {0}, *v = slopes + w->rank * n;
     memmove(v, slopes + i * n, (size_t)n * sizeof *v);
     turn[i] = 1;
     double whole = sqrt(dot(v, v, n));
     for (int twice = 0; twice < 2; twice++)
       for (int k = 0; k < w->rank; k++) {
-        const double *other = basis_of(p, w) + k * n;
+        const double *other = slopes + k * n;
         double share = dot(other, v, n);
         add(v, -share, other, n);
-        add(turn, -share, w->turn[k], ETHD__STATE_MOST);
+        add(turn, -share, w->turn[k], ETHD__STATES);
       }
     double rest = sqrt(dot(v, v, n));
     if (!(rest > DEPENDENT * whole)) continue;
     for (int k = 0; k < n; k++) v[k] /= rest;
-    for (int k = 0; k < ETHD__STATE_MOST; k++) w->turn[w->rank][k] = turn[k] / rest;
+    for (int k = 0; k < ETHD__STATES; k++) w->turn[w->rank][k] = turn[k] / rest;
     w->rank++;
   }
 }
@@ -176,77 +153,63 @@ typedef struct job {
 
 /* Moves the state by what its basis sees in the residual, by less where the whole doesn't bring it down; the sum of
    squares that is left. */
-static double improve(const ethd__shooting *p, ethd__predictor *predictor, ethd__fit_window *w, double *state,
+static double improve(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant, double *state,
                       double *left) {
-  int n = 2 * w->window.count;
-  double moved[ETHD__STATE_MOST] = {0}, next[ETHD__STATE_MOST], now[2 * ETHD__WINDOW_MOST], sum = dot(left, left, n);
+  double moved[ETHD__STATES] = {0}, next[ETHD__STATES], now[ETHD__RESIDUALS_MOST], sum = dot(left, left, w->rows);
   correct(p, w, left, moved);
   for (double share = 1; share > 0.05; share /= 2) {
-    for (int i = 0; i < ETHD__STATE_MOST; i++) next[i] = state[i] + share * moved[i];
-    residual(predictor, w, next, now);
-    double less = dot(now, now, n);
+    for (int i = 0; i < ETHD__STATES; i++) next[i] = state[i] + share * moved[i];
+    residual(p, w, plant, next, now);
+    double less = dot(now, now, w->rows);
     if (!(less < sum)) continue;
     memcpy(state, next, sizeof next);
-    memcpy(left, now, (size_t)n * sizeof *now);
+    memcpy(left, now, (size_t)w->rows * sizeof *now);
     return less;
   }
   return sum;
 }
 
 static void settle_one(const job *part, ethd__fit_window *w) {
-  ethd__predictor predictor;
-  ethd__shooting *p = part->problem;
-  double left[2 * ETHD__WINDOW_MOST];
-  ethd__predictor_prepare(p->evidence, part->plants, p->tolerance, &predictor);
-  residual(&predictor, w, w->state, left);
-  span(p, &predictor, w);
-  double sum = dot(left, left, 2 * w->window.count);
+  const ethd__shooting *p = part->problem;
+  double left[ETHD__RESIDUALS_MOST];
+  residual(p, w, part->plants, w->state, left);
+  span(p, w, part->plants);
+  double sum = dot(left, left, w->rows);
   for (int i = 0; i < SETTLINGS; i++) {
-    double less = improve(p, &predictor, w, w->state, left);
-    if (less < sum * (1 - MOVED)) span(p, &predictor, w);
+    double less = improve(p, w, part->plants, w->state, left);
+    if (less < sum * (1 - MOVED)) span(p, w, part->plants);
     if (!(less < sum * (1 - SETTLED))) break;
     sum = less;
   }
 }
 
-static void residual_one(const job *part, ethd__fit_window *w, const ethd_plant *plant, double *out) {
-  ethd__predictor predictor;
-  const ethd__shooting *p = part->problem;
-  double state[ETHD__STATE_MOST];
-  ethd__predictor_prepare(p->evidence, plant, p->tolerance, &predictor);
-  memcpy(state, w->state, sizeof state);
-  residual(&predictor, w, state, out);
-  for (int i = 0; i < CHORDS; i++) (void)improve(p, &predictor, w, state, out);
-  project(p, w, out);
-}
-
 static void residual_windows(void *data, size_t begin, size_t end) {
   const job *part = data;
+  const ethd__shooting *p = part->problem;
   for (size_t i = begin; i < end; i++) {
-    ethd__fit_window *w = &part->problem->windows[i];
-    residual_one(part, w, part->plants, part->out + w->row);
+    ethd__fit_window *w = &p->windows[i];
+    double state[ETHD__STATES], *out = part->out + w->row;
+    memcpy(state, w->state, sizeof state);
+    residual(p, w, part->plants, state, out);
+    for (int chord = 0; chord < CHORDS; chord++) (void)improve(p, w, part->plants, state, out);
+    project(p, w, out);
   }
 }
 
 /* What each plant changes: differences between predictions that take the same steps. */
 static void plant_slopes(const job *part, ethd__fit_window *w) {
-  ethd__shooting *p = part->problem;
-  int n = 2 * w->window.count;
-  double own[2 * ETHD__WINDOW_MOST];
-  ethd__predictor predictors[ETHD__ARMS];
-  ethd__predictor_prepare(p->evidence, part->plants, p->tolerance, predictors);
+  const ethd__shooting *p = part->problem;
+  double own[ETHD__RESIDUALS_MOST];
   for (int k = 1; k < part->plant_count; k += ETHD__ARMS - 1) {
-    ethd__forecast f[ETHD__ARMS] = {{predictors, w->state, own}};
+    ethd__trial t[ETHD__ARMS] = {{part->plants, w->state, own}};
     int count = 1;
-    for (; count < ETHD__ARMS && k + count - 1 < part->plant_count; count++) {
-      ethd__predictor_prepare(p->evidence, &part->plants[k + count - 1], p->tolerance, &predictors[count]);
-      f[count] = (ethd__forecast){&predictors[count], w->state, part->out + (size_t)(k + count - 2) * p->rows + w->row};
-    }
-    ethd__predict_many(f, count, &w->window);
-    w->predicted += (count - 1) * w->window.count;
+    for (; count < ETHD__ARMS && k + count - 1 < part->plant_count; count++)
+      t[count] =
+          (ethd__trial){&part->plants[k + count - 1], w->state, part->out + (size_t)(k + count - 2) * p->rows + w->row};
+    try_all(p, w, t, count, count - 1);
     for (int c = 1; c < count; c++) {
-      for (int r = 0; r < n; r++) f[c].out[r] = (own[r] - f[c].out[r]) / STEP;
-      project(p, w, f[c].out);
+      for (int r = 0; r < w->rows; r++) t[c].out[r] = (t[c].out[r] - own[r]) / STEP;
+      project(p, w, t[c].out);
     }
   }
 }
@@ -257,12 +220,6 @@ static void slope_windows(void *data, size_t begin, size_t end) {
     settle_one(part, &part->problem->windows[i]);
     plant_slopes(part, &part->problem->windows[i]);
   }
-}
-
-double ethd__shooting_simulated(const ethd__shooting *p) {
-  double ticks = 0;
-  for (size_t i = 0; i < p->window_count; i++) ticks += (double)p->windows[i].predicted;
-  return ticks * p->evidence->period;
 }
 
 void ethd__shooting_residual(ethd__shooting *p, const double *coordinates, double *out) {

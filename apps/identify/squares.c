@@ -7,8 +7,7 @@
 #include "cli/cli.h"
 #include "identify/fit.h"
 
-#define STIFF 1e4     /* 1/s: friction that stops a joint faster would take the simulator thousands of steps a tick */
-#define IMPOSSIBLE 10 /* rad: every residual of a plant that can't be */
+#define IMPOSSIBLE 10 /* every residual of a plant that can't be: rad of the arm, standard deviations of touches */
 
 typedef struct descent {
   ethd__shooting *problem;
@@ -16,26 +15,11 @@ typedef struct descent {
   uint64_t calls, most;
 } descent;
 
-/* A transmission that swings faster than half the sampling rate, or not at all, can't be told from a rigid one. */
-static bool is_seen(const ethd__evidence *e, const ethd_plant *x, double least) {
-  double reduced = x->motor_mass * (1 - x->motor_mass / least), w = sqrt(x->stiffness / reduced);
-  return x->stiffness > 1 && w * e->period < M_PI && x->damping > -0.1 && x->damping < 4 * reduced * w;
-}
-
-/* A plant that the simulator can't run, or that isn't a device, ends a step there. */
+/* A plant that can't be ends a step there. */
 static bool is_possible(const ethd__shooting *p, const double *coordinates) {
-  const ethd__evidence *e = p->evidence;
-  ethd_plant x = p->plant;
-  ethd__chosen_set(&p->chosen, coordinates, &x);
-  bool compliant = isfinite(x.stiffness);
-  double least = fmin(x.mass[0], x.mass[1]), own = compliant ? x.motor_mass : 0, l = e->arm.link1 * e->arm.link2;
-  if (!(least > 1e-3 && fmax(x.mass[0], x.mass[1]) < 1e3 && x.force_limit > 1e-6 && x.force_limit < 1e6)) return false;
-  double moved = compliant ? own : least; /* by what rubs */
-  if (!(x.friction > -0.05 * (1 + x.force_limit) && x.friction < STIFF * moved * ETHD__STICK)) return false;
-  if (!(x.viscous > -1 && x.viscous < STIFF * moved)) return false;
-  if (!(x.delay > -e->period && x.delay < (ETHD__BACK - 2) * e->period)) return false;
-  if (!(fabs(x.coupling) < 0.95 * l * sqrt((x.mass[0] - own) * (x.mass[1] - own)))) return false;
-  return !compliant || (own > 0.02 * least && own < 0.98 * least && is_seen(e, &x, least));
+  ethd_plant plant = p->plant;
+  ethd__chosen_set(&p->chosen, coordinates, &plant);
+  return p->subject->is_possible(p, &plant);
 }
 
 static int evaluate(void *search_, int m, int n, const double *x, double *residual, double *slopes, int ld, int flag) {

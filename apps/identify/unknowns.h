@@ -1,4 +1,5 @@
-/* What a fit may change of a plant: the arm's numbers, each with a coordinate in which steps are alike. All [main]. */
+/* What a fit may change of a plant: the numbers of arm and finger, each with a coordinate in which steps are alike.
+   All [main]. */
 #ifndef ETHD_APPS_IDENTIFY_UNKNOWNS_H
 #define ETHD_APPS_IDENTIFY_UNKNOWNS_H
 
@@ -14,9 +15,14 @@ typedef enum ethd__unknown {
   ETHD__FRICTION,
   ETHD__VISCOUS,
   ETHD__DELAY,
-  ETHD__MOTOR_MASS, /* from here on only with a transmission that gives way */
+  ETHD__MOTOR_MASS, /* these three only with a transmission that gives way */
   ETHD__STIFFNESS,
   ETHD__DAMPING,
+  ETHD__FINGER_MASS, /* from here on of the finger: touches show them */
+  ETHD__HAND_STIFFNESS,
+  ETHD__HAND_DAMPING,
+  ETHD__PAD_STIFFNESS,
+  ETHD__PAD_DAMPING,
   ETHD__UNKNOWNS
 } ethd__unknown;
 
