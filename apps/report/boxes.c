@@ -7,15 +7,15 @@
 #include "report/report.h"
 #include "text/csv.h"
 
-#define DOTS_MAX 300   /* of a cell: of more taps each k-th is shown */
-#define COLOURS_MAX 8u /* of report-boxes.gp */
-#define LINES_MAX 12u  /* participants, of whom each has a line between the strategies */
+#define DOTS_MAX 300   /* that are drawn for a cell; of more taps only each k-th is shown */
+#define COLOURS_MAX 8u /* participants at most whom report-boxes.gp gives colours */
+#define LINES_MAX 12u  /* participants at most for whom lines are drawn between the strategies */
 
 typedef struct files {
   ethd_csv_out *boxes, *points, *lines;
 } files;
 
-/* Where the cells that have the figure stand, 0 of those that haven't; speeds stand apart. */
+/* Finds the place of each cell on the axis, with a gap between speeds; 0 for cells without the figure. */
 static void place(const ethd__data *data, const ethd__quantity *quantity, double x[ETHD_REPORT_CELLS]) {
   double at = 0;
   const ethd__group *before = NULL;
@@ -58,7 +58,7 @@ static void write_dots(const files *f, const ethd__group *group, const ethd__qua
   free(taps);
 }
 
-/* From a participant's median under one strategy to that under the next. */
+/* Writes the line from a participant's median under one strategy to the median under the next one. */
 static void write_lines(const files *f, const ethd__data *data, size_t index, const ethd__quantity *quantity,
                         const double *x) {
   const ethd__group *a = &data->group[index], *b = a + 1;

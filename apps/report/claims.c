@@ -46,7 +46,8 @@ static void print_part(ethd__report *r, const ethd__claim_part *part) {
 
 static void print_claim(ethd__report *r, const ethd__tap_claim *c) {
   char text[320], p[32];
-  bool without_p = isnan(c->holm) || c->verdict == ETHD_TAP_CONTRARY; /* the p is the sentence's, not its contrary's */
+  bool without_p =
+      isnan(c->holm) || c->verdict == ETHD_TAP_CONTRARY; /* p belongs to the sentence, not to its contrary */
   snprintf(text, sizeof text, "%s: %s%s%s", c->text, ethd__verdict_words[c->verdict],
            without_p        ? ""
            : c->holm < 1e-4 ? "; by Holm p "
@@ -73,7 +74,7 @@ static void write_part(const ethd__tap_claim *c, int index, size_t k, ethd_csv_o
   ethd_csv_row(csv);
 }
 
-/* How many claims came out in each way, in words. */
+/* Prints how many sentences are shown, contradicted and open. */
 static void print_outcome(ethd__report *r, const ethd__tap_claim *claims) {
   size_t *count = r->counts.verdict;
   const char *between = "";

@@ -12,7 +12,7 @@
 
 /* ---- taking ---- */
 
-/* Columns that are needed, in this order. */
+/* The table must have these columns. */
 enum { TRANSITION, SPEED, VALID, REASON, WORDS };
 static const char *const word_names[WORDS] = {"transition", "speed", "valid", "reason"};
 
@@ -33,7 +33,7 @@ static const struct {
     METRIC("peak_force_n", peak_force),
     {"finger_radius_m", offsetof(ethd__result, finger_radius)},
     {"commanded_mps", offsetof(ethd__result, commanded)},
-    METRIC("v_hand_mps", v_hand), /* from here on: columns that a table may lack */
+    METRIC("v_hand_mps", v_hand), /* a table may lack the columns from here on */
     METRIC("touch_depth_m", touch_depth),
     METRIC("eps_felt_m", eps_felt),
 };
@@ -138,7 +138,7 @@ static bool grow(ethd__group *group) {
   return results && person && row;
 }
 
-/* Words of the table that stand in names of files. */
+/* Checks the words of the table that are used in names of files. */
 static ethd_status check_words(const taking *r, size_t row) {
   static const struct {
     const char *name;
@@ -154,7 +154,6 @@ static ethd_status check_words(const taking *r, size_t row) {
 }
 
 static ethd_status no_memory(const taking *r) { return ethd__no_memory(r->message, r->out->sheet.path); }
-
 static ethd_status take(taking *r, size_t row) {
   const ethd__sheet *sheet = &r->out->sheet;
   ethd_status status = check_words(r, row);
@@ -188,7 +187,7 @@ static ethd_status point_of(const taking *r, size_t row, size_t *out) {
   return ETHD_OK;
 }
 
-/* The rows in the order of their points: each point reads its own alone. */
+/* Sorts the rows by their points, so that each point reads only its own. */
 static ethd_status index_points(const taking *r) {
   ethd__data *data = r->out;
   size_t rows = data->sheet.rows, *point = malloc((rows + 1) * sizeof *point);
@@ -210,7 +209,7 @@ static ethd_status index_points(const taking *r) {
   return status;
 }
 
-/* Low before high, then as found; strategies by name from the one that brakes least. */
+/* Speeds are sorted from low to high; strategies from the one that brakes least, others by name. */
 static int by_speed(const void *a, const void *b) {
   static const char *const order[] = {"abrupt", "smooth", "offset"};
   const ethd__group *p = a, *q = b;

@@ -15,10 +15,10 @@ typedef struct ethd__html {
 void ethd__html_begin(ethd__html *page, const char *title);
 void ethd__html_end(ethd__html *page);
 
-/* Markup that stands in our source. */
+/* Writes markup that stands in our source. */
 void ethd__html_markup(ethd__html *page, const char *literal);
 
-/* What another page of ours holds. */
+/* Appends what was written to another page. */
 void ethd__html_append(ethd__html *page, const char *written, size_t length);
 
 /* printf with %s, %d, %u, %zu, %llu, %g: the format is our markup, each %s is text and escaped. */

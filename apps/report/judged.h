@@ -7,7 +7,7 @@
 
 const ethd__data *ethd__judged_data(const ethd__report *report);
 
-/* cells: where the sample's are put. */
+/* The sample's cells are put into `cells`. */
 ethd__sample ethd__judged_sample(const ethd__report *report, ethd__cell cells[ETHD_REPORT_CELLS]);
 
 /* "this study" or the name of the other one. */

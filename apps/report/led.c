@@ -13,7 +13,7 @@ static bool on_device(const ethd__report *r) {
   return strcmp(r->folder->loaded.config->device, ethd_driver_sim.id) != 0;
 }
 
-/* Where people have led the finger, events have a clock. */
+/* Events have a clock only where people led the finger. */
 static bool has_clock(const ethd__report *r) {
   const ethd__sheet *events = &r->table[ETHD_TABLE_EVENTS];
   int utc = ethd__sheet_column(events, "utc");
@@ -22,7 +22,7 @@ static bool has_clock(const ethd__report *r) {
   return found;
 }
 
-/* Of tables that don't say it tap by tap. */
+/* Used for tables that don't say it for each tap. */
 static ethd__leader asked_for(const ethd__report *r) {
   const ethd__folder *f = r->folder;
   if (f->protocol.hands == ETHD_HANDS_PEOPLE && on_device(r)) return ETHD_LED_DEVICE;

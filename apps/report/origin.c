@@ -27,7 +27,7 @@ static void print_numbers(ethd__report *r) {
       d->training);
 }
 
-/* The strategies that have a name in the paper, or here. */
+/* Explains the strategies that are known by name. */
 static void print_strategies(ethd__report *r) {
   static const char *const known[][2] = {
       {"abrupt", "tracking stops at once where the ring meets the wall"},
@@ -47,7 +47,7 @@ static void print_strategies(ethd__report *r) {
   ethd__html_markup(&r->page, *between == ';' ? ".</li>\n" : "");
 }
 
-/* Who they are that led so. */
+/* Says who led the hand in this way. */
 static void print_led(ethd__report *r, ethd__leader led) {
   const ethd__folder *f = r->folder;
   switch (led) {
@@ -75,7 +75,7 @@ static double one(const ethd__metrics *m) {
   return 1;
 }
 
-/* People who have a valid tap in every cell. */
+/* Counts the people who have a valid tap in every cell. */
 static size_t count_whole(const ethd__data *d) {
   double *own = malloc((d->people_count + 1) * sizeof *own), *all = calloc(d->people_count + 1, sizeof *all);
   size_t whole = 0;
@@ -103,7 +103,7 @@ static void print_people(ethd__report *r) {
   ethd__html_print(&r->page, "; %zu of them have a valid tap in every cell.</li>\n", count_whole(&r->data));
 }
 
-/* What the speeds are, and when a tap is valid. */
+/* Says which speeds were asked for and when a tap is valid. */
 static void print_task(ethd__report *r) {
   const ethd__protocol *p = &r->folder->protocol;
   const char *between = "<li><b>The task:</b> to tap once, at a speed that was asked for (";
@@ -124,7 +124,7 @@ static void print_task(ethd__report *r) {
                                     "touches it, and the finger presses once.</li>\n");
 }
 
-/* Each station that was merged has left an event. */
+/* Counts the stations by the event that each of them has left when it was merged. */
 static size_t count_stations(const ethd__report *r) {
   const ethd__sheet *events = &r->table[ETHD_TABLE_EVENTS];
   int event = ethd__sheet_column(events, "event");
@@ -191,7 +191,7 @@ static void print_certainty(ethd__report *r) {
       r->beside_name, r->beside.people_count, taps, valid);
 }
 
-/* Counted by the sections below it, which are written first. */
+/* The sections below it have counted this, since they are written first. */
 static void print_found(ethd__report *r) {
   const ethd__report_counts *c = &r->counts;
   size_t sentences = 0;

@@ -213,7 +213,7 @@ static const ethd__group *group_at(const ethd__data *data, const char *law, cons
   return NULL;
 }
 
-/* Strategies a and b at each slower speed, beside the same two at this one. */
+/* Compares strategies a and b at this speed with the same two at each lower speed. */
 static void add_interactions(const ethd__report *r, const ethd__group *a, const ethd__group *b, int quantity,
                              family *f) {
   const ethd__data *data = &r->data;

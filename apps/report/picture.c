@@ -42,7 +42,7 @@ static void put_value(FILE *to, const ethd__picture_value *v) {
 
 /* ---- running it ---- */
 
-/* gnuplot's last line on stderr, which says most. */
+/* Keeps gnuplot's last line on stderr, which says most. */
 static void listen(int end, char said[ETHD_MESSAGE_MAX / 2]) {
   FILE *in = fdopen(end, "r");
   char line[256];
@@ -102,7 +102,7 @@ ethd_status ethd__picture_ready(char message[ETHD_MESSAGE_MAX]) {
   return status;
 }
 
-/* The script's own path is whole: the folder changes. */
+/* The script's path is absolute, because gnuplot changes to the folder. */
 static void put_commands(FILE *to, const char *script, const char *folder, const ethd__picture_value *values) {
   if (folder) fputs("cd ", to), put_path(to, folder), putc('\n', to);
   for (; values->name; values++) put_value(to, values);

@@ -16,7 +16,7 @@ typedef struct scan {
   bool more, open_quote; /* more: cells in this row */
 } scan;
 
-/* The next cell; the byte behind it becomes 0. */
+/* Returns the next cell and ends it with a 0 byte. */
 static char *next_cell(scan *s) {
   char *cell = s->at, *to = s->at;
   bool quoted = s->at < s->end && *s->at == '"';

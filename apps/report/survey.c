@@ -41,7 +41,7 @@ static int column_of(const ethd__sheet *sheet, size_t question) {
   return ethd__sheet_column(sheet, name);
 }
 
-/* Whose row it is; NULL: of nobody who is analysed, or of a cell without taps. */
+/* Returns whose row it is; NULL if nobody who is analysed, or a cell without taps. */
 static const survey_person *row_of(const ethd__report *r, size_t row, const survey_person *people, size_t *group) {
   const ethd__sheet *sheet = &r->table[ETHD_TABLE_SURVEY];
   const survey_person wanted = {ethd__sheet_cell(sheet, row, ethd__sheet_column(sheet, "participant")), 0};
@@ -100,7 +100,7 @@ static void release(ethd__answers *a) {
 
 /* ---- counts ---- */
 
-/* The longest scale of the questionnaire: so many columns of counts has the file. */
+/* The file has as many columns of counts as the longest scale has answers. */
 static size_t most_answers(const ethd__questionnaire *asked) {
   size_t most = 0;
   for (size_t q = 0; q < ethd__question_count(asked); q++) {
@@ -198,7 +198,7 @@ static void put_texts(ethd__report *r, const survey_person *people, size_t q, co
 
 /* ---- pictures ---- */
 
-/* Longer words end in an ellipsis, between letters. */
+/* Shortens long words, between letters, and ends them with an ellipsis. */
 static void clip(char words[256]) {
   size_t n = 32;
   if (strlen(words) <= n) return;

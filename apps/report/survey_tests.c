@@ -7,7 +7,7 @@
 #include "statistics/paired.h"
 #include "text/csv.h"
 
-/* A comparison of two strategies (b < 0: of all at that speed) by those who answered under all of them. */
+/* Compares strategies a and b, or with `all` every strategy from a to b, by the people who answered under all of them. */
 typedef struct asked {
   size_t question;
   size_t a, b, n, above, below;
@@ -32,7 +32,7 @@ static asked compare_two(const ethd__report *r, const ethd__answers *answer, siz
   return out;
 }
 
-/* Cells a to b, of one speed. */
+/* Compares the cells from a to b, which are all of one speed. */
 static asked compare_all(const ethd__report *r, const ethd__answers *answer, size_t q, size_t a, size_t b) {
   asked out = {.question = q, .a = a, .b = b, .all = true};
   size_t columns = b - a + 1;
@@ -86,13 +86,13 @@ static void put_test(ethd__report *r, const asked *t, ethd_csv_out *csv) {
   ethd_csv_row(csv);
 }
 
-/* All tests of all questions; how many. NULL: counts them alone. */
+/* Makes all tests of all questions and returns how many there are; with NULL it only counts them. */
 static size_t make_tests(const ethd__report *r, const ethd__answers *answer, asked *out) {
   const ethd__data *data = &r->data;
   size_t n = 0;
   for (size_t q = 0; q < ethd__question_count(answer->asked); q++)
     for (size_t a = 0, end; !ethd__question_is_text(&answer->asked->question[q]) && a < data->group_count; a = end) {
-      /* a to end: one speed */
+      /* cells from a to end have the same speed */
       for (end = a; end < data->group_count && !strcmp(data->group[end].speed.word, data->group[a].speed.word);) end++;
       if (end - a > 2 && out) out[n] = compare_all(r, answer, q, a, end - 1);
       n += end - a > 2;

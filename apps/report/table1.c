@@ -45,7 +45,7 @@ static const char *percent(double share, char out[32]) {
   return out;
 }
 
-/* Without taps beside the study their two columns go. */
+/* Leaves out the two columns of taps beside the study where there are none. */
 static void leave_out_beside(const ethd__report *r, const char *cells[12]) {
   if (!r->beside.group_count) memmove(cells + 4, cells + 6, 6 * sizeof *cells);
 }

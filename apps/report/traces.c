@@ -19,13 +19,13 @@ static ethd_status view_of(const ethd__report *r, const ethd__group *group, cons
   return ETHD_OK;
 }
 
-/* The index of the tap to draw; an index that isn't there means none. */
+/* The tap to draw; an index beyond the last tap means that there is none. */
 typedef struct choice {
   size_t index;
   char name[ETHD_FILE_NAME_MAX], *recording;
 } choice;
 
-/* The typical one of those whose ticks are there. */
+/* Returns the typical tap among those whose ticks were recorded. */
 static size_t typical(const ethd__report *r, const ethd__group *group, const ethd__recordings *recordings) {
   char name[ETHD_FILE_NAME_MAX];
   ethd__cell there = group->cell;
@@ -43,7 +43,7 @@ static size_t typical(const ethd__report *r, const ethd__group *group, const eth
   return index;
 }
 
-/* The one that was asked for, if it is of this group. */
+/* Returns the tap that was asked for, if it belongs to this group. */
 static size_t asked_for(const ethd__report *r, const ethd__group *group) {
   char name[ETHD_FILE_NAME_MAX];
   size_t i = 0;
@@ -54,7 +54,7 @@ static size_t asked_for(const ethd__report *r, const ethd__group *group) {
   return i;
 }
 
-/* False: no ticks to draw. */
+/* False if there are no ticks to draw. */
 static bool choose(const ethd__report *r, const ethd__group *group, const ethd__recordings *recordings, choice *out) {
   out->index = r->tap ? asked_for(r, group) : typical(r, group, recordings);
   if (out->index >= group->cell.count) return false;
@@ -70,7 +70,8 @@ static void trace_name(const ethd__group *group, const char *suffix, char out[ET
 
 #define SHOWN 0.09 /* s after the ring meets the wall: what tap.gp shows */
 
-/* How far ring went into the wall within the picture, and against what, in a sentence; "" where it met none. */
+/* Says in a sentence how far the ring went into the wall within the picture, and against which force; "" if it met no
+   wall. */
 static void say_depth(const ethd__report *r, const ethd__view *view, const ethd__tap_rows *rows, char out[256]) {
   size_t meeting = ethd__metrics_meeting(rows, &view->rule), ticks = (size_t)(SHOWN / view->rule.period);
   double deepest = 0;

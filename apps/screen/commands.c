@@ -16,7 +16,7 @@ static void check(ethd_status status, const char *message) {
 
 /* ---- a new folder ---- */
 
-/* Nothing is written before all of the input is known to be good. */
+/* All input is checked before anything is written. */
 static void check_study(const ethd__study_options *o, const ethd__protocol *p, const ethd__loaded *loaded) {
   char message[ETHD_MESSAGE_MAX];
   ethd__desk desk;
@@ -65,7 +65,7 @@ static void make_folder(const ethd__study_options *o) {
 
 /* ---- a session ---- */
 
-/* The whole command that goes on, so that nobody goes on with another hand. */
+/* Prints the whole command that resumes the session, so that nobody resumes it with another hand. */
 static char *going_on(const ethd__study_options *o, const char *folder) {
   char *text = NULL;
   size_t length;

@@ -21,13 +21,13 @@ typedef struct ethd__study_options {
 /* Begins a session in `out` or goes on with the one in `resume`. */
 int ethd__command_session(const ethd__study_options *o);
 
-/* Works off a shard of a simulation. */
+/* Simulates one shard. */
 int ethd__command_shard(const ethd__study_options *o);
 
-/* Shards of one folder, or the sessions of several into `out`. */
+/* Merges the shards of one folder, or the sessions of several folders into `out`. */
 int ethd__command_merge(const ethd__study_options *o);
 
-/* Writes a decision about a participant down. */
+/* Records a decision about a participant. */
 int ethd__command_decide(const ethd__study_options *o);
 
 /* Prints the screen's words as a section of a study file. */

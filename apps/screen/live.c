@@ -35,7 +35,7 @@ static void lead(ethd__live *l, double t) {
   ethd__hand_lead(&l->hand, t);
 }
 
-/* Late ticks are made up for, because simulated time must keep up with the pointer. */
+/* Late ticks are caught up with, because simulated time must follow the pointer. */
 static void *run(void *live) {
   ethd__live *l = live;
   ethd__tapping tapping;

@@ -20,7 +20,7 @@ const char *const ethd__table_names[ETHD_TABLES] = {"taps", "survey", "events", 
   "device=a person's finger in the device's ring|mouse=a person's pointer, which leads the simulated device's" \
   " hand|simulated=the plant's synthetic hand|recorded=a recorded movement"
 
-/* Of a simulation, before the columns of taps. */
+/* These stand before the columns of taps in a simulation. */
 static const study_column simulation[] = {
     {"study", "", "the first 12 digits of the study's hash, as versions.txt has it", NULL},
     {"point", "", "which combination of the grid, from 0; the last gain runs fastest", NULL},
@@ -108,7 +108,7 @@ static size_t questions_of(ethd__study_table table, const ethd__protocol *p) {
   return table == ETHD_TABLE_SURVEY ? ethd__question_count(&p->questionnaire) : 0;
 }
 
-/* Whether the table is a simulation's, with columns of its own. */
+/* Whether the table belongs to a simulation, which has more columns. */
 static bool is_simulated(ethd__study_table table, const ethd__table_scope *scope) {
   return table == ETHD_TABLE_TAPS && scope->setup;
 }
@@ -127,7 +127,7 @@ char *ethd__simulation_header(const ethd__protocol *p) {
   return text;
 }
 
-/* A gain's unit and what it is; NULL: the configuration's laws don't have it, so that only another strategy may. */
+/* The gain of that name; NULL where the configuration's own laws don't have it, because it belongs to another strategy. */
 static const ethd_param *gain_of(const ethd_setup *setup, const char *name, ethd_setup_key *key) {
   for (uint32_t i = 0; !ethd_setup_key_at(setup, i, key); i++) {
     char full[96];
@@ -229,24 +229,19 @@ static void put_question(FILE *file, size_t number, const ethd__question *q) {
   fputs("\n    }\n  }", file);
 }
 
-/* The words that a study file lists for a column, each with what `meaning` says of it. */
-static void put_words(FILE *file, const ethd__word_list *list, void (*meaning)(FILE *file, const char *word)) {
+/* Prints the words that a study file lists for a column, each with its meaning between `before` and `after`. */
+static void put_words(FILE *file, const ethd__word_list *list, const char *before, const char *after) {
   fputs(",\n    \"Levels\": {", file);
   for (size_t i = 0; i < list->count; i++) {
-    fputs(i ? ",\n      " : "\n      ", file);
-    put_word(file, list->word[i]);
-    fputs(": ", file);
-    meaning(file, list->word[i]);
+    const char *word = list->word[i];
+    bool low = !strcmp(word, "low"), high = !strcmp(word, "high");
+    fprintf(file, "%s\n      \"%s\": \"%s%s%s\"", i ? "," : "", word, before,
+            low    ? "about 0.2"
+            : high ? "about 0.4"
+                   : word,
+            after);
   }
   fputs("\n    }", file);
-}
-
-static void mean_strategy(FILE *file, const char *word) { fprintf(file, "\"the transition law %s\"", word); }
-static void mean_value(FILE *file, const char *word) { fprintf(file, "\"the value %s\"", word); }
-
-static void mean_speed(FILE *file, const char *word) {
-  bool low = !strcmp(word, "low"), high = !strcmp(word, "high");
-  fprintf(file, low || high ? "\"about %s m/s\"" : "\"%s m/s\"", low ? "0.2" : high ? "0.4" : word);
 }
 
 static void put_column(FILE *file, const study_column *c, const ethd__protocol *p, const char *between) {
@@ -257,8 +252,8 @@ static void put_column(FILE *file, const study_column *c, const ethd__protocol *
     put_word(file, c->unit);
   }
   if (c->levels) put_levels(file, c->levels);
-  if (!strcmp(c->name, "transition")) put_words(file, &p->strategies, mean_strategy);
-  if (!strcmp(c->name, "speed")) put_words(file, &p->speeds, mean_speed);
+  if (!strcmp(c->name, "transition")) put_words(file, &p->strategies, "the transition law ", "");
+  if (!strcmp(c->name, "speed")) put_words(file, &p->speeds, "", " m/s");
   fputs("\n  }", file);
 }
 
@@ -275,7 +270,7 @@ static void put_gain(FILE *file, const ethd__axis *axis, const ethd_setup *setup
     fputs(",\n    \"Units\": ", file);
     put_word(file, gain->unit);
   }
-  put_words(file, &axis->values, mean_value);
+  put_words(file, &axis->values, "the value ", "");
   fputs("\n  }", file);
 }
 

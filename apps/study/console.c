@@ -46,7 +46,7 @@ static void verdict(void *self, const char *participant, const ethd__taken *take
 
 /* ---- lines in ---- */
 
-/* Waits for a line only in a pause, or when asked for an answer. */
+/* Reads a line if there is one; waits for it only during a pause or when a question was asked. */
 static bool read_line(ethd__console *c, bool wait, char *out, size_t room) {
   struct pollfd in = {.fd = STDIN_FILENO, .events = POLLIN};
   size_t n = 0;
@@ -108,7 +108,7 @@ static void print_page(char *const paragraph[ETHD_STUDY_PARAGRAPHS]) {
     if (paragraph[i]) puts(paragraph[i]);
 }
 
-/* A line that is one of two words, or stop. The second word may be NULL. */
+/* Asks until a line is one of the two words or "stop". The second word may be NULL. */
 static ethd__wish choose(ethd__console *c, const char *const word[2], const ethd__wish wish[2]) {
   char line[ETHD_MESSAGE_MAX];
   fflush(stdout);
@@ -122,7 +122,7 @@ static ethd__wish choose(ethd__console *c, const char *const word[2], const ethd
   return ETHD_WISH_STOP;
 }
 
-/* Whoever hands over types the next one's number, which nobody does by chance. */
+/* The experimenter types the number of the next participant, which nobody does by accident. */
 static ethd__wish meet(void *self, const ethd__meeting *meeting) {
   ethd__console *c = self;
   const ethd__questionnaire *q = &c->protocol->questionnaire;

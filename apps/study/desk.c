@@ -45,7 +45,7 @@ static void seat(ethd__desk *desk, uint32_t person) {
 
 /* ---- recorded fingers ---- */
 
-/* People share the movements out among themselves; strategies meet the same ones. */
+/* The movements are dealt out among the participants; every strategy meets the same ones. */
 static size_t movement_of(const ethd__desk *desk, const ethd__turn *turn) {
   size_t k = turn->person + (size_t)desk->protocol->participants * (turn->attempt - 1);
   return (k + (turn->block.training ? desk->movement_count / 2 : 0)) % desk->movement_count;
@@ -79,7 +79,7 @@ static ethd_status open_stage(ethd__desk *desk, size_t strategy, char *message) 
   return status;
 }
 
-/* Strategies meet the same fingers, as attempt by attempt goes. */
+/* Attempt k has the same finger under every strategy. */
 static uint64_t tap_of(const ethd__turn *turn) {
   return (uint64_t)turn->block.training << 32 | (uint64_t)turn->block.speed << 24 | (turn->attempt - 1);
 }
@@ -152,7 +152,7 @@ static ethd_status check_strategies(ethd__desk *desk, char *message) {
   return ETHD_OK;
 }
 
-/* One strategy at least has the parameter, and takes the value. */
+/* At least one strategy must have the parameter and accept the value. */
 static ethd_status check_value(const ethd__desk *desk, size_t axis, const char *value, char *message) {
   const ethd__protocol *p = desk->protocol;
   const char *key = p->axes[axis].key;

@@ -29,7 +29,7 @@ static char *existing(const char *folder, const char *name) {
 
 /* ---- what the protocol names ---- */
 
-/* Beside the study file, else among the files that came with the programs. */
+/* A file is looked for beside the study file, then among the files that came with the programs. */
 static char *find(const ethd__protocol *p, const char *name) {
   char *path = ethd__folder_path(p->folder, name);
   if (strchr(name, '/') || access(path, R_OK) == 0) return path;
@@ -57,7 +57,7 @@ static ethd_status add_file(ethd__sha256 *sum, const char *path, char *message) 
   return status;
 }
 
-/* The movement for all hands, or each of a folder of them, by name. */
+/* Adds the movement for all hands, or each file of the folder of movements in the order of their names. */
 static ethd_status add_movements(ethd__sha256 *sum, const char *finger, char *message) {
   char **files;
   size_t count;
@@ -98,7 +98,7 @@ static ethd_status read_device_folder(const char *folder, char **out, char *mess
   return status;
 }
 
-/* How many participants a simulation has; 0 of a session, and where nothing says it. */
+/* Returns how many participants a simulation has; 0 for a session, or where the file doesn't say it. */
 static uint32_t simulated_of(const char *folder) {
   char *path = ethd__folder_path(folder, ETHD_STUDY_VERSIONS), *text, unsaid[ETHD_MESSAGE_MAX];
   size_t length;

@@ -19,7 +19,7 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-/* A file as it is to stand in the folder. */
+/* A file that the folder must hold, with its text. */
 typedef struct wanted_file {
   char *name, *text;
   size_t length;
@@ -134,7 +134,7 @@ static bool exists(const char *folder, const char *name) {
   return there;
 }
 
-/* Whether the folder's file says the same; without such a file it doesn't. */
+/* Whether the folder holds this file with the same text. */
 static bool says(const char *folder, const wanted_file *file) {
   char unsaid[ETHD_MESSAGE_MAX], *path = ethd__folder_path(folder, file->name), *there;
   size_t n;
@@ -150,7 +150,7 @@ static ethd_status refuse(const wanted_list *list, const char *folder, const cha
                    "%s: holds %s, of another study or your own; another folder is needed", folder, name);
 }
 
-/* versions.txt is written last: the folder is whole. */
+/* Since versions.txt is written last, this folder is complete. */
 static ethd_status compare_whole(const wanted_list *list, const char *folder) {
   ethd__folder there;
   uint32_t simulated = list->parts->simulated;
@@ -167,7 +167,7 @@ static ethd_status compare_whole(const wanted_list *list, const char *folder) {
   return status;
 }
 
-/* A folder that is empty, that a killed program began, or that is somebody's own. */
+/* This folder is empty, was begun by a program that was killed, or belongs to somebody else. */
 static ethd_status compare_begun(const wanted_list *list, const char *folder) {
   static const char *const later[] = {ETHD_STUDY_TAPS, ETHD_STUDY_SURVEY, ETHD_STUDY_EVENTS, ETHD_STUDY_PARTICIPANTS,
                                       ETHD_STUDY_SUMS};
@@ -179,7 +179,7 @@ static ethd_status compare_begun(const wanted_list *list, const char *folder) {
   return ETHD_OK;
 }
 
-/* Whether one of the files that the study is made of would be in the folder's way. */
+/* Whether the folder would overwrite one of the files that the study is read from. */
 static bool is_input(const wanted_list *list, const char *folder) {
   const ethd__folder_parts *parts = list->parts;
   const char *const inputs[] = {parts->protocol->path, parts->loaded->path, parts->loaded->plant_path, parts->finger};
@@ -223,7 +223,7 @@ static ethd_status write_versions(const wanted_list *list, const char *folder) {
   return status;
 }
 
-/* All of it reaches the disk before a journal mentions it. */
+/* Everything must reach the disk before a journal mentions it. */
 static ethd_status settle(const char *folder, char *message) {
   int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   bool failed = fd < 0 || syncfs(fd) != 0;

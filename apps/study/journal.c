@@ -28,7 +28,7 @@ static ethd_status refuse(const char *path, char *message) {
 
 /* ---- reading ---- */
 
-/* Parts a line in place: "KIND TEXT #sum". */
+/* Splits a line "KIND TEXT #sum" in place; false if its check sum is wrong. */
 static bool part_line(char *line, size_t length, ethd__journal_line *out) {
   char sum[ETHD_SHA256_TEXT];
   if (length < SUM + 4 || memchr(line, 0, length) || line[length - SUM - 1] != '#' || line[length - SUM - 2] != ' ')
@@ -49,7 +49,7 @@ static size_t count_lines(const char *text, size_t length) {
   return n;
 }
 
-/* Good lines up to the first bad one, which must be the last. */
+/* Takes the good lines up to the first bad one, which must be the last line of the file. */
 static ethd_status part(ethd__journal *journal, size_t length, char *message) {
   char *at = journal->text, *end = at + length;
   journal->lines = calloc(count_lines(at, length), sizeof *journal->lines);
@@ -136,7 +136,7 @@ static bool write_all(int fd, const char *text, size_t length, uint64_t at) {
   return true;
 }
 
-/* A whole line with its end; NULL: no memory. */
+/* Returns the whole line with its check sum and line end; NULL without memory. */
 static char *line_of(const char *kind, const char *text) {
   char *line, sum[ETHD_SHA256_TEXT];
   int length = asprintf(&line, "%s %s #%*s\n", kind, text, SUM, "");

@@ -90,7 +90,7 @@ static ethd_status open_shards(merge *m) {
   return status;
 }
 
-/* What is left of a shard belongs to nobody. */
+/* Rows that are left over in a shard belong to no participant. */
 static ethd_status check_ends(const merge *m) {
   for (uint32_t i = 0; i < m->count; i++)
     if (m->line[i])

@@ -8,7 +8,7 @@
 
 #define FARTHEST 4 /* times the cells, up to which another number of participants is looked for */
 
-/* Of the first so many participants, how often each strategy stood where at a speed. */
+/* How often each strategy came first, last and behind each other one at a speed, among the first participants. */
 typedef struct balance {
   uint32_t first[ETHD_STUDY_WORDS][ETHD_STUDY_WORDS], last[ETHD_STUDY_WORDS][ETHD_STUDY_WORDS]; /* [speed][strategy] */
   uint32_t behind[ETHD_STUDY_WORDS][ETHD_STUDY_WORDS][ETHD_STUDY_WORDS]; /* [speed][before][strategy] */
@@ -61,7 +61,8 @@ bool ethd__plan_balanced(const ethd__protocol *p, uint32_t people) {
   return is_balanced(p, &b);
 }
 
-/* The next number from `people` on, up to some times the cells, at which all is balanced; 0: none. */
+/* Returns the next number of participants from `people` on at which everything is balanced, up to FARTHEST times the
+   cells; 0 if there is none. */
 static uint32_t next_balanced(const ethd__protocol *p, uint32_t people) {
   uint32_t last = people + FARTHEST * (uint32_t)(p->strategies.count * p->speeds.count);
   balance b = {0};

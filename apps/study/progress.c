@@ -54,7 +54,7 @@ void ethd__progress_free(ethd__session_progress *progress) {
 
 /* ---- lines ---- */
 
-/* The participant of a row's first cell, which it goes past; NULL: of no participant of this study. */
+/* Reads the participant from the row's first cell and advances past it; NULL if the study has no such participant. */
 static ethd__participant *person_of(ethd__session_progress *progress, const char **row) {
   char id[ETHD_STUDY_ID_MAX], again[ETHD_STUDY_ID_MAX];
   if (!ethd__row_cell(row, id, sizeof id) || id[0] != 'P') return NULL;
@@ -64,7 +64,7 @@ static ethd__participant *person_of(ethd__session_progress *progress, const char
   return strcmp(id, again) ? NULL : &progress->person[person];
 }
 
-/* A whole number of the next cell, from `low` to `high`. */
+/* Reads a whole number from `low` to `high` from the next cell. */
 static bool take_number(const char **row, long low, long high, long *out) {
   char cell[8], *end;
   if (!ethd__row_cell(row, cell, sizeof cell)) return false;
@@ -89,7 +89,7 @@ static bool take_tap(ethd__session_progress *progress, const char *row) {
   return true;
 }
 
-/* A last cell as it was before it was quoted; NULL: no memory. */
+/* Returns a row's last cell without its quotes; NULL without memory. */
 static char *unquoted(const char *cell) {
   char *text = strdup(*cell == '"' ? cell + 1 : cell), *to = text;
   if (!text || *cell != '"') return text;
@@ -115,7 +115,7 @@ const char *ethd__progress_words(const ethd__session_progress *progress, const e
   return "";
 }
 
-/* participant,block,question,answer; an empty answer: none was wanted. */
+/* The row is participant,block,question,answer; the answer is empty where the participant chose to give none. */
 static bool take_answer(ethd__session_progress *progress, const char *row) {
   ethd__participant *person = person_of(progress, &row);
   long number, question, answer = ETHD_ANSWER_NONE;
@@ -159,7 +159,7 @@ static bool take_event(ethd__session_progress *progress, const char *row) {
                {"exclude", ETHD_STANDING_EXCLUDED}, {"include", ETHD_STANDING_IN}};
   char cell[ETHD_UTC_MAX], kind[24];
   if (!ethd__row_cell(&row, cell, sizeof cell)) return false;
-  if (*row == ',') return true; /* of nobody */
+  if (*row == ',') return true; /* the event belongs to no participant */
   ethd__participant *person = person_of(progress, &row);
   if (!person || !ethd__row_cell(&row, cell, sizeof cell) || !ethd__row_cell(&row, kind, sizeof kind)) return false;
   person->consented |= !strcmp(kind, "consent");

@@ -54,7 +54,7 @@ static ethd_status known_sections(const ethd_ini *ini, const char *name, char *m
   return ETHD_OK;
 }
 
-/* A questionnaire is whole, and asked. */
+/* Checks that a questionnaire is complete and that study.survey has it asked. */
 static ethd_status check_questions(const ethd__entry *last, const ethd__protocol *p) {
   const char *what;
   int fault = ethd__questionnaire_fault(&p->questionnaire, &what);
@@ -64,7 +64,7 @@ static ethd_status check_questions(const ethd__entry *last, const ethd__protocol
                    fault < 0 ? "stands there without study.survey = on" : what);
 }
 
-/* What no key can say alone. */
+/* Checks the relations between keys. */
 static ethd_status check(const ethd_ini *ini, const ethd__entry *last, ethd__protocol *p) {
   const ethd_ini_key *attempts = ethd_ini_find(ini, "study", "attempts"), *taps = ethd_ini_find(ini, "study", "taps");
   const ethd_ini_key *motion = ethd_ini_find(ini, "hand", "motion");

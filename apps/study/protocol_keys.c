@@ -68,7 +68,7 @@ static ethd_status set_seed(const ethd__entry *e, const key_row *row, void *at) 
   return whole(e->key->value, at) ? ETHD_OK : found(e, e->key->value, "a whole number from 0 to 2^64 - 1");
 }
 
-/* Index of `word` in "a|b|c", -1 without it. */
+/* Returns the index of `word` in "a|b|c", -1 if it isn't there. */
 static int choice(const char *words, const char *word) {
   int index = 0;
   size_t length = strlen(word);
@@ -102,7 +102,7 @@ static ethd_status set_text(const ethd__entry *e, const key_row *row, void *at) 
   return *(char **)at ? ETHD_OK : ethd__entry_refuse(e, ETHD_E_MEMORY, "%s", ethd_status_sentence(ETHD_E_MEMORY));
 }
 
-/* It stands in tables and file names. */
+/* The name is used in tables and file names. */
 static ethd_status set_name(const ethd__entry *e, const key_row *row, void *at) {
   if (!ethd__file_word(e->key->value)) return found(e, e->key->value, ETHD_FILE_WORD);
   return set_text(e, row, at);
@@ -197,7 +197,7 @@ static ethd_status set_axis(const ethd__entry *e) {
   return set_words(e, NULL, &axis->values);
 }
 
-/* The screen draws letters from left to right: text that isn't UTF-8 has none, and some scripts go the other way. */
+/* The screen draws UTF-8 text from left to right, so other bytes and scripts that run the other way are refused. */
 static ethd_status check_words(const ethd__entry *e) {
   for (const char *at = e->key->value; *at;) {
     uint32_t letter;
@@ -212,7 +212,7 @@ static ethd_status check_words(const ethd__entry *e) {
   return ETHD_OK;
 }
 
-/* What a phrase's places stand for is known for those of its default alone. */
+/* Only the places of the default phrase have a value to be filled in. */
 static ethd_status check_places(const ethd__entry *e, const char *instead_of) {
   size_t n = 0;
   const char *place = ethd__phrase_fault(e->key->value, instead_of, &n);

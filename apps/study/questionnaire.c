@@ -93,7 +93,7 @@ bool ethd__letter_goes_left(uint32_t c) {
 
 /* ---- keys ---- */
 
-/* The number behind the key's name, 1 to 9; 0: another key. */
+/* Returns the digit 1 to 9 in a key like "q3_answers"; 0 if the key has another form. */
 static int number_of(const char *key, const char *name, const char *behind) {
   size_t n = strlen(name);
   return strncmp(key, name, n) == 0 && key[n] >= '1' && key[n] <= '9' && !strcmp(key + n + 1, behind) ? key[n] - '0'

@@ -80,7 +80,7 @@ bool ethd__tap_row_is_short(const char *row) {
   return !last || !is_reason(last + 1);
 }
 
-/* The cell before `end`, without its comma; NULL: it has no room. */
+/* Copies the cell that ends at `end` and returns the comma before it; NULL if the cell doesn't fit. */
 static const char *cell_before(const char *row, const char *end, char *out, size_t room) {
   const char *comma = end;
   while (comma > row && comma[-1] != ',') comma--;
@@ -89,8 +89,8 @@ static const char *cell_before(const char *row, const char *end, char *out, size
   return comma - 1;
 }
 
-/* Behind the figures, of which none has quotes: hand,movement,utc,by_ring,by_finger; the last two not in rows of earlier
-   versions. False: no such hand. */
+/* Reads hand,movement,utc,by_ring,by_finger, which follow the figures; rows of earlier versions lack the last two. Only
+   the movement can have quotes, so the cells behind it are read from the end. False: there is no such hand. */
 static bool read_end(const char *row, ethd__tap_key *out) {
   char word[24];
   int hand = 0;

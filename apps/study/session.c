@@ -18,7 +18,7 @@ static ethd_status no_memory(char *message) { return ethd__no_memory(message, NU
 
 /* ---- the journal ---- */
 
-/* Simulated hands have no clock: the same study leaves the same bytes. */
+/* No clock is written for simulated hands, so that the same study leaves the same bytes. */
 static void now(const ethd__sitting *s, char out[ETHD_UTC_MAX]) {
   time_t t = time(NULL);
   struct tm utc;
@@ -64,7 +64,7 @@ static ethd_status refuse_hand(const ethd__sitting *s, char *message) {
                    folder, ethd__hand_words[whose], folder, whose == ETHD_HAND_MOUSE ? " --screen" : "");
 }
 
-/* A program that was ended before its first lines has left them out. */
+/* A program that was killed early may have left out the first lines; they are written now. */
 static ethd_status take_journal(ethd__sitting *s, ethd__hand_source hand, char *message) {
   char begun[ETHD_SHA256_TEXT + 8];
   snprintf(begun, sizeof begun, "hash %s", s->folder->hash);
@@ -99,7 +99,7 @@ void ethd__sitting_close(ethd__sitting *s) {
 
 /* ---- a tap ---- */
 
-/* Keeps the tap, unless the folder holds it already. *row: what the journal shall tell. */
+/* Makes the tap and keeps it, unless the folder holds it already. *row is the line for the journal. */
 static ethd_status have_tap(ethd__sitting *s, const char *folder, const char *name, const ethd__turn *turn,
                             ethd__taken *taken, char **row, char *message) {
   const ethd__protocol *p = &s->folder->protocol;
@@ -152,7 +152,7 @@ static ethd_status see_to_device(ethd__sitting *s, const char *id, const ethd__t
 
 /* ---- what people say ---- */
 
-/* Who was ended last taps again, once the others have. */
+/* The participant who was ended last will tap again after the others. */
 static ethd_status undo(ethd__sitting *s, char *message) {
   char id[ETHD_STUDY_ID_MAX];
   if (!s->left) return ETHD_OK;
@@ -178,7 +178,7 @@ static ethd_status hear(ethd__sitting *s, const char *id, const ethd__turn *turn
   return ethd__sitting_event(s, id, turn->number, kinds[wish], words, message);
 }
 
-/* Until the participant begins, doesn't agree to, or somebody stops it. */
+/* Returns once the participant begins, refuses, or somebody stops the session. */
 static ethd_status meet(ethd__sitting *s, const char *id, ethd__participant *who, bool *stop, char *message) {
   ethd_status status = ETHD_OK;
   ethd__wish wish = ETHD_WISH_UNDO;

@@ -123,7 +123,7 @@ static ethd_status run_unit(shard_work *w, uint64_t unit) {
 
 /* ---- going on ---- */
 
-/* Whole units at the start of the text, but for the last one, which may be torn. */
+/* Counts the complete units at the start of the text; the last one doesn't count, because it may be cut off. */
 static ethd_status units_of(const shard_work *w, const char *text, size_t length, uint64_t *units, size_t *good) {
   char *header = ethd__simulation_header(&w->folder->protocol);
   size_t n = strlen(header);

@@ -12,7 +12,7 @@
 #define SECONDS 6.0   /* of a tap at most */
 #define BEAT 20000000 /* ns */
 #define LOOK 1000000  /* ns between two looks at a tap */
-#define LEFT 0.004    /* m that the finger goes from its place in a tap, as on the screen */
+#define LEFT 0.004    /* m that the finger must move in a tap, as on the screen */
 #define CLEAN 3.0     /* s in which an acknowledged device must have come to rest */
 
 static void rest(long ns) {
@@ -91,7 +91,7 @@ static void pass(ethd__station *s) {
 
 /* ---- a tap ---- */
 
-/* The strategy rules once this returns. */
+/* When this returns, the strategy is active. */
 static ethd_status take_strategy(ethd__station *s, const char *law, char *message) {
   ethd__session *session = &s->session;
   ethd_setup setup = session->setup;
@@ -171,7 +171,7 @@ static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, cha
 
 /* ---- a device that has stopped itself ---- */
 
-/* Whoever acknowledges has seen to it; what still goes on stops the device again. */
+/* Somebody has seen to the fault; if it is still there, it stops the device again. */
 static ethd_status acknowledge(void *self, char message[ETHD_MESSAGE_MAX]) {
   ethd__station *s = self;
   double until = ethd__session_time(&s->session) + CLEAN;
@@ -201,7 +201,7 @@ ethd__source ethd__station_source(ethd__station *s) {
 
 /* ---- opening, closing ---- */
 
-/* Whatever [main] waits for, a person or a disk, a signal reaches the device at once. */
+/* This thread stops the device at once on a signal, even while [main] waits for a person or a disk. */
 static void *keep(void *self) {
   ethd__station *s = self;
   while (!atomic_load(&s->end)) {

@@ -45,7 +45,8 @@ static ethd_status open_station(const char *path, station *out, char *message) {
   return status;
 }
 
-/* Who has tapped at `s` has done so nowhere before: owner[person] is the station's number from 1, 0: none. */
+/* Refuses a participant who has tapped at an earlier station. owner[person] is the station's number from 1, 0 if there is
+   none yet. */
 static ethd_status take_owners(const station *s, size_t number, const char *const *folders, size_t *owner,
                                char *message) {
   char id[ETHD_STUDY_ID_MAX];
@@ -121,7 +122,7 @@ static ethd_status copy_file(void *user, const char *path) {
 
 /* ---- the journal ---- */
 
-/* All of a station's lines but the first, and where they come from. */
+/* Prints all lines of a station but the first, and an event that says where they come from. */
 static size_t put_station(const station *s, FILE *file, char *message) {
   char sum[ETHD_SHA256_TEXT], *text = NULL;
   size_t length, taps = 0;
@@ -142,7 +143,7 @@ static size_t put_station(const station *s, FILE *file, char *message) {
   return taps;
 }
 
-/* All stations' lines as the journal of one folder. */
+/* Prints the lines of all stations as the journal of one folder. */
 static ethd_status print_journal(const char *const *folders, size_t count, FILE *file, size_t *taps, char *message) {
   ethd_status status = ETHD_OK;
   *taps = 0;

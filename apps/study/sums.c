@@ -51,7 +51,7 @@ static void free_list(summed_list *list) {
   *list = (summed_list){0};
 }
 
-/* Takes the path, which is the list's from then on. */
+/* Adds the path, which the list owns from then on. */
 static void add(summed_list *list, char *path, const char *sum) {
   size_t n = list->count;
   if (!(n & (n - 1))) list->file = realloc(list->file, (n ? 2 * n : 1) * sizeof *list->file);
@@ -157,7 +157,7 @@ static ethd_status put_list(const char *folder, const char *path, const summed_l
   return status;
 }
 
-/* What was there keeps its line, so that it is missed. */
+/* A file that was listed keeps its line, so that its loss is noticed. */
 static void take_missing(const summed_list *before, summed_list *now) {
   size_t count = now->count;
   for (size_t i = 0; i < before->count; i++) {
@@ -189,7 +189,7 @@ ethd_status ethd__sums_write(const char *folder, char message[ETHD_MESSAGE_MAX])
 
 /* ---- checking ---- */
 
-/* What is wrong with the files, first and how many. */
+/* Says which file is wrong first, and how many are. */
 typedef struct fault {
   const char *path, *what;
   size_t count;

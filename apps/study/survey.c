@@ -40,7 +40,7 @@ static ethd_status put_survey(ethd__sitting *s, const char *id, const ethd__turn
   return status;
 }
 
-/* What was answered, as a line of the journal. */
+/* Writes the answer into the journal. */
 static ethd_status put_answer(ethd__sitting *s, const ethd__asked *asked, int said, char *message) {
   const ethd__question *question = &s->folder->protocol.questionnaire.question[asked->number];
   char *row = NULL;

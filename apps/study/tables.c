@@ -45,7 +45,7 @@ static void put_lines(const ledger *l, const char *kind, FILE *file) {
     if (!strcmp(l->journal.lines[i].kind, kind)) fprintf(file, "%s\n", l->journal.lines[i].text);
 }
 
-/* Rows of an earlier version get their empty cells. */
+/* Rows of an earlier version get empty cells for the columns that they lack. */
 static void put_taps(const ledger *l, FILE *file) {
   for (size_t i = 0; i < l->journal.count; i++) {
     const char *row = l->journal.lines[i].text;
@@ -56,7 +56,7 @@ static void put_taps(const ledger *l, FILE *file) {
 static void put_survey(const ledger *l, FILE *file) { put_lines(l, "survey", file); }
 static void put_events(const ledger *l, FILE *file) { put_lines(l, "event", file); }
 
-/* Of everybody who has tapped, or of whom something was decided. */
+/* Everybody has a row who has tapped or about whom something was decided. */
 static void put_participants(const ledger *l, FILE *file) {
   const ethd__protocol *p = &l->folder->protocol;
   char id[ETHD_STUDY_ID_MAX];
@@ -133,7 +133,7 @@ ethd_status ethd__tables_write(const ethd__folder *folder, char message[ETHD_MES
 
 /* ---- decisions ---- */
 
-/* The hand by which the event has a clock: a person's, if there is one. */
+/* The event gets a clock if one of the hands is a person's. */
 static ethd__hand_source hand_of(const ethd__session_progress *progress) {
   for (int i = 0; i < ETHD_HAND_SOURCES; i++)
     if (progress->hand[i]) return (ethd__hand_source)i;
