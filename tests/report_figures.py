@@ -228,7 +228,8 @@ def spread(x, grain):
 rng = np.random.default_rng(7)
 
 def bootstrap(sides, figure, count=3000):
-    """sides: for each, a person's taps; people are drawn, then each one's taps."""
+    """sides: for each, a person's taps; people are drawn, then each one's taps. figure takes all draws at once: a row
+    each, NaN where a person has fewer taps."""
     people = sorted(set().union(*sides))
     who = rng.integers(len(people), size=(count, len(people)))
     drawn_sides = []
@@ -240,13 +241,19 @@ def bootstrap(sides, figure, count=3000):
         index = np.floor(rng.random((*who.shape, max(taps))) * taps[who][..., None]).astype(int)
         values = np.where(np.arange(max(taps)) < taps[who][..., None], matrix[who[..., None], index], NAN)
         drawn_sides.append(values.reshape(count, -1))
-    out = np.array([figure(*[row[~np.isnan(row)] for row in rows]) if all((~np.isnan(row)).any() for row in rows) else NAN
-                    for rows in zip(*drawn_sides)])
+    whole = np.all([(~np.isnan(side)).any(1) for side in drawn_sides], axis=0)
+    out = figure(*[side[whole] for side in drawn_sides])
     return out[~np.isnan(out)]
 
+def median_draw(a):
+    return np.nanmedian(a, axis=1)
+
 def cliff_draw(a, b):
-    a, b = np.sort(a), b
-    return float(np.mean(np.searchsorted(a, b, "left") + np.searchsorted(a, b, "right")) / len(a) - 1)
+    pairs = (~np.isnan(a)).sum(1) * (~np.isnan(b)).sum(1)
+    return np.array([np.sum(y[:, None] > x) - np.sum(y[:, None] < x) for x, y in zip(a, b)]) / pairs
+
+def threshold_draw(a, b):
+    return np.array([threshold(x[~np.isnan(x)], y[~np.isnan(y)]) for x, y in zip(a, b)])
 
 # ---- the report's tables ----
 
@@ -292,7 +299,7 @@ def check_summary(s):
                                    q1=np.quantile(x, 0.25), median=np.median(x), q3=np.quantile(x, 0.75)).items():
                 same(what + key, r[key], value)
             if q in ("d_max", "delta_s"):
-                drawn(what + "median's interval", r["median_low"], r["median_high"], bootstrap([v], np.median))
+                drawn(what + "median's interval", r["median_low"], r["median_high"], bootstrap([v], median_draw))
             if q in ("v_of", "delta_s") and len(x) <= 32 and dips < 2:
                 x = spread(x, GRAIN[q]) if q in GRAIN else np.sort(x)
                 if len(set(x)) == len(x):
@@ -402,7 +409,7 @@ def threshold(in_time, early):
     if not len(in_time) or not len(early):
         return math.nan
     cuts = (speeds[1:] + speeds[:-1]) / 2
-    mistakes = np.array([np.sum(in_time > c) + np.sum(early < c) for c in cuts])
+    mistakes = len(in_time) - np.searchsorted(np.sort(in_time), cuts, "right") + np.searchsorted(np.sort(early), cuts, "left")
     return cuts[np.argmin(mistakes)] if mistakes.min() < len(in_time) else math.nan
 
 def check_claims(s):
@@ -455,7 +462,7 @@ def check_claims(s):
             sides[t["reason"] == "early-contact"].setdefault(t["participant"], []).append(t["commanded_mps"])
     flat = [np.concatenate(list(side.values())) for side in sides]
     same("claim 10 threshold", r["mean"], threshold(*flat))
-    draws = bootstrap(sides, threshold, 500)
+    draws = bootstrap(sides, threshold_draw, 500)
     p = (max(np.sum(draws < 0.4), np.sum(draws > 0.6)) + 0.5) / len(draws)
     same("claim 10 p", r["p"], p, 4 * math.sqrt(p * (1 - p) / 400) + 4e-3)
     ps.append((r["p"], r["low"] > 0.6 or r["high"] < 0.4, r))
