@@ -28,7 +28,7 @@ static ethd_verdict judge_table(const ethd_driver *d, ethd_conform_answer *a) {
   return ETHD_KEPT;
 }
 
-/* Of several: each. */
+/* Each of several drivers is asked. */
 static ethd_verdict ask_table(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__conform_rig r;
   if (!ethd__conform_rig_open(def, &r)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "open: %.140s", r.message);

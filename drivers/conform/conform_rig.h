@@ -68,8 +68,8 @@ double ethd__conform_rig_least(const ethd__conform_rig *r, double window);
 /* s from one joint sample to the next, on the mean so far. */
 double ethd__conform_rig_spacing(const ethd__conform_rig *r);
 
-/* Mean acceleration of a joint over two windows of s, by the instants of its samples, rad/s^2; write 0: nothing is written
-   meanwhile. */
+/* Mean acceleration of a joint over two windows of s, by the instants of its samples, rad/s^2; write 0: nothing is
+   written meanwhile. */
 double ethd__conform_rig_acceleration(ethd__conform_rig *r, int joint, double torque, int write, double window);
 
 #endif

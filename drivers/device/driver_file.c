@@ -31,7 +31,7 @@ static bool keys_are_words(const char *const *keys) {
   return true;
 }
 
-/* What is wrong with the functions, NULL: nothing. */
+/* Says what is wrong with the functions; NULL when nothing is. */
 static const char *functions_fault(const ethd_driver *d) {
   if (!d->open || !d->close) return d->open ? "has no close" : "has no open";
   if (d->write && !d->safe) return "takes torque and has no safe to let go";
@@ -50,7 +50,7 @@ static ethd_status check_head(const ethd_driver *d, char *what) {
   return ETHD_OK;
 }
 
-/* A whole table. */
+/* Checks a table that is as large as ours. */
 static ethd_status check_rest(const ethd_driver *d, char *what) {
   ethd_error error = {.status = ETHD_OK};
   if (!is_word(d->id)) return ethd__say(what, ETHD_E_ARGUMENT, "its id isn't 1 to 31 of a-z 0-9 - _");

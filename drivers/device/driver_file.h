@@ -4,13 +4,15 @@
 
 #include "ethd/driver.h"
 
-/* The table keeps what driver.h says of it; else one line in `what` and the status. Nothing of it is called. */
+/* Checks that the table keeps what driver.h says of it; otherwise `what` gets one line. Nothing of the table is
+   called. */
 ETHD_MUST_CHECK ethd_status ethd__driver_check(const ethd_driver *driver, char what[ETHD_MESSAGE_MAX]);
 
-/* A checked table, as large as ours: what an older header didn't have is NULL. */
+/* Copies a checked table to one as large as ours; what an older header didn't have is NULL in it. */
 ethd_driver ethd__driver_whole(const ethd_driver *driver);
 
-/* The driver whose open is this one's prepare, and touches nothing; without a prepare it does nothing but say so. */
+/* Makes a driver whose open is this one's prepare and so touches nothing. For a driver without prepare it does
+   nothing but say that. */
 ethd_driver ethd__driver_prepared(const ethd_driver *driver);
 
 /* Loads the shared object, checks its table and copies it; it stays loaded. */

@@ -10,9 +10,9 @@
 #include "text/text.h"
 
 #define BLANKS " \t"
-#define INJECT "inject"       /* the keys that are no driver's: a script of what is to go wrong, */
-#define HANG_TIME "hang_time" /* and for how long code of a driver's file may not return, s */
-#define HANG_TIME_DEFAULT 30  /* s: a fieldbus needs up to some ten to come up */
+#define INJECT "inject"       /* two keys are no driver's own: a script of what is to go wrong, */
+#define HANG_TIME "hang_time" /* and how long code of a driver's file may take to return, s */
+#define HANG_TIME_DEFAULT 30  /* s: a fieldbus needs some ten seconds to come up */
 
 static const char *file_of(const ethd_device_def *def) { return def->file ? def->file : "the defaults"; }
 
@@ -44,7 +44,7 @@ static const ethd_driver *find(const ethd_driver *const *from, const char *name,
   return NULL;
 }
 
-/* "file:mine.so", so many bytes, into row i. */
+/* Loads the driver of "file:mine.so", a name of so many bytes, into row i. */
 static ethd_status load_driver(const naming *n, uint32_t i, const char *name, size_t length) {
   char what[ETHD_MESSAGE_MAX], quote[ETHD_QUOTE_MAX];
   ethd__stack *s = n->stack;
@@ -68,7 +68,7 @@ static ethd_status check_driver(const naming *n, const ethd_driver *driver) {
   return ethd__say(n->message, status, "%s: device.driver: %.*s", file_of(n->def), ETHD_MESSAGE_MAX / 2, what);
 }
 
-/* One name of so many bytes into the stack's next row. */
+/* Puts the driver of a name of so many bytes into the stack's next row. */
 static ethd_status add_driver(const naming *n, const char *name, size_t length) {
   ethd__stack *s = n->stack;
   size_t mark = strlen(ETHD_DRIVER_FILE);
@@ -93,7 +93,7 @@ static ethd_status add_driver(const naming *n, const char *name, size_t length) 
   return status;
 }
 
-/* "servo, ring, file:mine.so" into the stack's rows. */
+/* Puts the drivers of "servo, ring, file:mine.so" into the stack's rows. */
 static ethd_status name_drivers(const naming *n, const char *ids) {
   for (const char *id = ids;; id++) {
     id += strspn(id, BLANKS);
@@ -107,7 +107,7 @@ static ethd_status name_drivers(const naming *n, const char *ids) {
 
 /* ---- settings ---- */
 
-/* The key without its prefix "id."; NULL when the key isn't this driver's. */
+/* Returns the key without its prefix "id."; NULL when the key isn't this driver's. */
 static const char *own_key(const char *key, const char *id) {
   size_t length = strlen(id);
   return strncmp(key, id, length) == 0 && key[length] == '.' ? key + length + 1 : NULL;
@@ -147,7 +147,7 @@ static uint32_t own_settings(const ethd__stack *s, uint32_t i, const ethd_device
 
 /* ---- opening ---- */
 
-/* What an open driver says of itself: what nobody else checks. */
+/* Checks what an open driver says of itself, as nobody else does. */
 static ethd_status check_open(ethd__stack *s, uint32_t i, char *message) {
   const ethd_driver *driver = s->at[i].driver;
   ethd_error error;
@@ -162,7 +162,7 @@ static ethd_status check_open(ethd__stack *s, uint32_t i, char *message) {
                 : ETHD_OK;
 }
 
-/* One line, whatever a file's code left there. */
+/* Makes one printable line of whatever a file's code left there. */
 static void one_line(char message[ETHD_MESSAGE_MAX]) {
   message[ETHD_MESSAGE_MAX - 1] = 0;
   for (char *p = message; *p; p++)
@@ -210,7 +210,7 @@ static ethd_status open_all(const naming *n, const char *ids) {
 
 /* ---- what is to go wrong ---- */
 
-/* The script, before anything is opened. */
+/* Loads the script, which happens before anything is opened. */
 static ethd_status load_script(const naming *n, const char *file, ethd__script *out) {
   char *path = ethd__path_join(n->def->folder, file);
   ethd_status status =
@@ -224,7 +224,7 @@ typedef struct opened {
   void *device;
 } opened;
 
-/* The drivers, and around them the one that injects, where a script says what. */
+/* Opens the drivers, and puts the one that injects around them where there is a script. */
 static ethd_status open_stack(const naming *n, const char *ids, opened *out) {
   ethd__script script = {.count = 0};
   *out = (opened){.driver = NULL};

@@ -1,4 +1,4 @@
-/* A driver as far as it is known before anybody touches its device: its prepare stands in the place of its open. */
+/* Makes a driver that says what is known before anybody touches its device: its prepare takes the place of its open. */
 #include <stddef.h>
 
 #include "device/driver_file.h"

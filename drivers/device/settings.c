@@ -1,4 +1,4 @@
-/* A driver's keys in [device], by its own table. */
+/* Reads a driver's keys in [device] by its own table. */
 #include <stdio.h>
 #include <string.h>
 

@@ -1,10 +1,10 @@
-/* Between drivers that look at their settings further than their tables can say. */
+/* For drivers that check more of their settings than their tables can say. */
 #ifndef ETHD__DEVICE_SETTINGS_H
 #define ETHD__DEVICE_SETTINGS_H
 
 #include "ethd/driver.h"
 
-/* "file:line: device.key: found X, `allowed` is allowed", of a key that the configuration has. [main] */
+/* Refuses a key that the configuration has: "file:line: device.key: found X, `allowed` is allowed". [main] */
 ETHD_MUST_CHECK ethd_status ethd__setting_refuse(const ethd_device_def *def, const char *key, const char *allowed,
                                                  char message[ETHD_MESSAGE_MAX]);
 

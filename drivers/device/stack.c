@@ -81,7 +81,7 @@ static ethd_status stop_one(ethd__stack *s, uint32_t i) {
   return status;
 }
 
-/* Measuring drivers may come after the one that moves; all start, or those that did are stopped. */
+/* Starts all drivers; when one refuses, those that have started are stopped. */
 static ethd_status start(void *stack) {
   ethd__stack *s = stack;
   for (uint32_t i = 0; i < s->count; i++) {
@@ -168,7 +168,7 @@ static const char *why(const void *stack) {
   return says ? says : "";
 }
 
-/* What the first knows stands; the next ones add to it. */
+/* What an earlier driver knows stands, and later ones add to it. */
 static ethd_dynamics dynamics(const void *stack) {
   const ethd__stack *s = stack;
   ethd_dynamics all = ethd_dynamics_unknown();

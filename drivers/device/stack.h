@@ -1,4 +1,4 @@
-/* Drivers in a row as one driver, which has all functions, whatever one or several have. */
+/* Several drivers as one driver, which has every function, whichever of them have it. */
 #ifndef ETHD__DEVICE_STACK_H
 #define ETHD__DEVICE_STACK_H
 
@@ -23,8 +23,8 @@ typedef struct ethd__stack {
   } at[ETHD_DRIVERS_MAX];
 } ethd__stack;
 
-/* Code of driver i's file runs from here on, or no longer (doing NULL): a program that watches over plugins ends when it
-   doesn't return. Nothing for the built-in ones. [main] */
+/* Says that code of driver i's file runs from here on, or no longer (`doing` NULL). A program that watches over
+   plugins ends when that code doesn't return. Does nothing for built-in drivers. [main] */
 void ethd__stack_foreign(ethd__stack *stack, uint32_t i, const char *doing);
 
 #endif

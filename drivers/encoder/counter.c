@@ -55,7 +55,7 @@ static ethd_status counter_service(void *device, uint32_t unit, int64_t now_ns) 
 
 /* ---- [rt] ---- */
 
-/* The row of one joint's sample; q, dq and faults into *out. */
+/* Steps one joint's encoder, and puts q, dq and faults into *out. */
 static void step(counter *c, int j, ethd_sense *out) ETHD_RT {
   const ethd__counter_snapshot *s = &c->taken;
   ethd__count count = {.time_ns = s->time_ns, .edge_ns = s->edge_ns[j], .raw = s->raw[j], .index = s->index[j]};
@@ -140,7 +140,7 @@ static void counter_close(void *device) {
   free(c);
 }
 
-/* A count's ceiling is the kernel's to say; until it is asked, `width` stands. */
+/* The kernel says a count's ceiling; `width` stands in for it until the kernel is asked. */
 static ethd_status counter_prepare(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
   counter *c = *out = calloc(1, sizeof *c);
   if (!c) return ETHD_E_MEMORY;
@@ -203,7 +203,7 @@ static ethd_status counter_start(void *device) {
 /* From now on the present counts mean these angles. */
 static ethd_status counter_home(void *device, const double q[2]) {
   counter *c = device;
-  if (!q) return ETHD_OK; /* by index marks it is start's */
+  if (!q) return ETHD_OK; /* homing by index marks is done by start */
   pthread_mutex_lock(&c->lock);
   for (int j = 0; j < 2; j++) ethd__encoder_place(&c->def[j], &c->encoder[j], q[j]);
   c->lost = 0;
@@ -213,12 +213,12 @@ static ethd_status counter_home(void *device, const double q[2]) {
 
 /* ---- for people ---- */
 
-/* Figures are read while the I/O thread counts. */
+/* The I/O thread goes on counting while these figures are read. */
 static double seen(const uint64_t *count) { return (double)__atomic_load_n(count, __ATOMIC_RELAXED); }
 
 static uint32_t counter_units(const void *device) { return (void)device, 1; }
 
-/* Whoever acknowledges has looked at the coupling. */
+/* An acknowledgement means that somebody has looked at the coupling. */
 static void counter_clear(void *device) { __atomic_store_n(&((counter *)device)->clear, 1, __ATOMIC_RELAXED); }
 
 static const char *counter_why(const void *device) {

@@ -79,7 +79,7 @@ ethd_status ethd__counter_sample(ethd__counter_input *in, int64_t now_ns) {
   int bad = 0;
   in->latest.time_ns = now_ns;
   for (int j = 0; j < 2; j++) {
-    bad |= take_events(in, j); /* may bring the edge that take_count asks for */
+    bad |= take_events(in, j); /* this may bring the edge that take_count asks for */
     bad |= take_count(in, j);
   }
   if (!bad) return ETHD_OK;

@@ -45,7 +45,7 @@ static ethd_status say_errno(const char *path, const char *what, char *message) 
   return ethd__say(message, ETHD_E_DEVICE, "%s: %s: %s", path, what, strerror(reason));
 }
 
-/* Its text without the line's end; -1 and errno. */
+/* Reads an attribute's text without the line's end; -1 with errno. */
 static int get(const ethd__counter_calls *calls, const char *path, char *out, size_t room) {
   int fd = calls->open(path, O_RDONLY);
   if (fd < 0) return -1;

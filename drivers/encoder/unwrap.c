@@ -8,12 +8,12 @@
 #define TURN 6.283185307179586
 #define FRESH_NS 50000000 /* an edge older than this is no measure of speed */
 #define SMOOTHING 0.003   /* s, of the speed that energy is reckoned from */
-#define GAIN_LEAST 0.3    /* of the work against the torque that appears as speed: a reversed joint's is over */
-                          /* a half, a pushed one's under a tenth */
+#define GAIN_LEAST 0.3    /* share of the work against the torque that appears as speed: a reversed joint has over */
+                          /* a half of it, a joint that is pushed under a tenth */
 
 /* ---- counts ---- */
 
-/* a - b the shorter way round, in [-M / 2, M / 2) with M = ceiling + 1. */
+/* a - b taken the shorter way round, so that it is in [-M / 2, M / 2) with M = ceiling + 1. */
 static int64_t shorter(uint64_t a, uint64_t b, uint64_t ceiling) ETHD_RT {
   uint64_t up = a >= b ? a - b : ceiling - (b - a) + 1;
   if (up == 0) return 0;
@@ -32,7 +32,7 @@ static int64_t away(int64_t d) ETHD_RT { return d < 0 ? -d : d; }
 
 /* ---- index marks ---- */
 
-/* By how much the distance of two marks differs from whole turns. */
+/* Returns by how much the distance of two marks differs from whole turns. */
 static int64_t rest(int64_t distance, int64_t turn) ETHD_RT {
   int64_t r = distance % turn;
   if (2 * r >= turn) r -= turn;

@@ -7,8 +7,8 @@
 
 #include "inject/values.h"
 
-#define COMMANDS_MAX 1024 /* that a delay holds back; a power of two */
-#define READINGS_MAX 64   /* likewise */
+#define COMMANDS_MAX 1024 /* commands that a delay may hold back; a power of two */
+#define READINGS_MAX 64   /* readings, likewise */
 
 typedef struct stamped {
   int64_t t;
@@ -166,7 +166,7 @@ static ethd_status inject_read(void *device, int64_t now_ns, ethd_sense *out) ET
 
 /* ---- commands ---- */
 
-/* The newest that is `delay` old. */
+/* Returns the newest command that is `delay` old. */
 static ethd_command delayed(const inject *in, double delay) ETHD_RT {
   int64_t until = in->now - (int64_t)rint(1e9 * delay);
   for (uint64_t back = 0; back < COMMANDS_MAX && back < in->commands; back++) {

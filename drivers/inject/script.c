@@ -80,7 +80,7 @@ static bool is_word(script_word w, const char *name) {
   return strlen(name) == w.length && !memcmp(w.at, name, w.length);
 }
 
-/* The rest of a word after `prefix`; an empty word when it begins differently. */
+/* Returns the rest of a word after `prefix`, or an empty word when it begins differently. */
 static script_word behind(script_word w, const char *prefix) {
   size_t n = strlen(prefix);
   if (w.length <= n || memcmp(w.at, prefix, n) != 0) return (script_word){w.at, 0};

@@ -1,4 +1,4 @@
-/* A loop from its definition to its end. [main] */
+/* Makes a loop from its definition, and destroys it. [main] */
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -50,14 +50,14 @@ static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
 
 static int64_t nanoseconds(double s) { return s < 1e9 ? llrint(1e9 * s) : INT64_MAX; }
 
-/* The narrower of the application's and what any device stands: how far apart a slow device's own samples are says
-   nothing of the loop's lateness. */
+/* How late the loop may be: the smaller of the application's limit and what any device stands. A slow device's
+   samples lie further apart, which says nothing of the loop's own lateness. */
 static double gap_of(const ethd_loop_def *d) {
   bool is_limited = d->driver->limits && d->device && isfinite(d->driver->limits(d->device).gap);
   return is_limited ? fmin(d->gap, ethd_limits_device().gap) : d->gap;
 }
 
-/* s: so far two joint samples may lie apart, by the application and the device. */
+/* How far two joint samples may lie apart by the application and the device, s. */
 static double between_samples(const ethd_loop_def *d) {
   if (!d->driver->limits || !d->device) return d->gap;
   return fmin(d->gap, d->driver->limits(d->device).gap);
@@ -75,8 +75,8 @@ ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_err
   l->period = llrint(1e9 * def->period);
   l->early = llrint(1e9 * def->early_wake);
   l->gap = nanoseconds(gap_of(def));
-  int64_t apart =
-      nanoseconds(fmin(between_samples(def), 1)) + 1; /* a gap that isn't exact in binary counts as what it's meant */
+  int64_t apart = nanoseconds(fmin(between_samples(def), 1)) +
+                  1; /* one more, because a gap in seconds may be rounded down in binary */
   l->hold = (apart < ETHD__HOLD_MAX ? apart : ETHD__HOLD_MAX) / l->period - 1;
   l->heartbeat = nanoseconds(def->heartbeat);
   l->dma_latency = -1;
@@ -94,7 +94,7 @@ void ethd_loop_destroy(ethd_loop *l) {
   if (!l) return;
   ethd_loop_stop(l);
   (void)!ethd_loop_join(l);
-  if (atomic_load_explicit(&l->left, memory_order_relaxed)) return; /* a hung thread may still live in it */
+  if (atomic_load_explicit(&l->left, memory_order_relaxed)) return; /* a thread that hangs may still use it */
   free(l->rows.at);
   free(l);
 }

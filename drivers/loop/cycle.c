@@ -6,7 +6,7 @@
 
 #include "loop/loop.h"
 
-#define REHEARSALS 3 /* after an early wake-up */
+#define REHEARSALS 3 /* steps that are rehearsed after an early wake-up */
 
 /* ---- clock ---- */
 
@@ -17,7 +17,7 @@ int64_t ethd__loop_now(const ethd_loop *l) {
   return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
 }
 
-/* Cobalt's clock isn't Linux's, and runs on in no suspended machine: there nothing is compared. */
+/* Cobalt's clock isn't Linux's and stops while the machine is suspended, so nothing is compared there. */
 int64_t ethd__loop_boot(const ethd_loop *l) {
   if (l->def.clock) return *l->def.clock + (l->def.suspended ? *l->def.suspended : 0);
 #if defined(__COBALT__)
@@ -159,7 +159,7 @@ static void write_device(ethd_loop *l, ethd_command *command) ETHD_RT {
   disarm(l);
 }
 
-/* The watching thread sees since when a step runs. */
+/* Shows the watching thread since when a step runs. */
 static int64_t begin_step(ethd_loop *l) ETHD_RT {
   int64_t now = ethd__loop_now(l);
   atomic_store_explicit(&l->stepping, now, memory_order_relaxed);
@@ -264,7 +264,7 @@ int ethd__loop_turn(ethd_loop *l) {
   return 0;
 }
 
-/* Not while [main] has the device. */
+/* The loop doesn't end while [main] has the device. */
 static bool told_to_stop(ethd_loop *l) ETHD_RT {
   return atomic_load_explicit(&l->stop, memory_order_relaxed) &&
          atomic_load_explicit(&l->mode, memory_order_acquire) == ETHD__LOOP_RUNS;

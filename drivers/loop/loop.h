@@ -17,13 +17,14 @@ enum { ETHD__LOOP_RUNS, ETHD__LOOP_ASKED, ETHD__LOOP_PARKED };
 #define ETHD__LOOP_LEFT (-1)      /* in `stepping`: [main] has given up the thread that steps */
 #define ETHD__LOOP_STEP_MAX 100000000 /* ns: no step may take longer, whatever limits.step_time says */
 
-/* Rows on their way from the loop to one reader. head and tail only grow; a row's slot is its number modulo the size,
-   and head - tail rows wait. The writer fills a slot and then releases head, so a reader that acquires head sees whole
-   rows; the reader copies a row and then releases tail, so the writer that acquires tail overwrites nothing unread. A
-   full ring loses the new row, which the next one counts in `lost`.
+/* A ring of rows on their way from the loop to one reader. The idea: each counter has one writer, and publishing a
+   counter is what hands over a slot. head and tail only grow; a row's slot is its number modulo the size, and head -
+   tail rows wait. The writer fills a slot and then releases head, so a reader that acquires head sees whole rows; the
+   reader copies a row and then releases tail, so the writer that acquires tail overwrites nothing unread. A full ring
+   loses the new row, which the next one counts in `lost`.
 
-   The controller's events come through a ring of its own. The two have no common order: a row's `swaps`, the posts that
-   were taken up to it, says before which row an event "taken" belongs. */
+   The controller's events come through a ring of its own. The two have no common order: a row's `swaps`, the posts
+   that were taken up to it, says before which row an event "taken" belongs. */
 typedef struct ethd__loop_ring {
   _Alignas(64) atomic_uint head; /* next to write, [rt] */
   _Alignas(64) atomic_uint tail; /* next to read */
@@ -102,16 +103,16 @@ int ethd__loop_cycle(ethd_loop *loop) ETHD_RT;
 /* One turn: sleep and tick; 0, or the error with which the sleep failed. [rt] */
 int ethd__loop_turn(ethd_loop *loop) ETHD_RT;
 
-/* A tick was due `ns` ago. [rt] */
+/* Notes that a tick was due `ns` ago. [rt] */
 void ethd__loop_late(ethd_loop *loop, int64_t ns) ETHD_RT;
 
-/* The second clock is ahead of the first by so much. [rt] */
+/* Notes by how much the second clock is ahead of the first. [rt] */
 void ethd__loop_ahead(ethd_loop *loop, int64_t least, int64_t most) ETHD_RT;
 
 /* Adds the rows of the fault table that the loop sees at this tick; once a tick. [rt] */
 void ethd__loop_rows(ethd_loop *loop, ethd_sense *sense) ETHD_RT;
 
-/* Zero torque, as the last thing. [rt] */
+/* Writes zero torque, as the last thing that the loop does. [rt] */
 void ethd__loop_rest(ethd_loop *loop) ETHD_RT;
 
 /* Asks the machine, before any thread runs, to lock memory and to hold the DMA latency, and finds the processor;
@@ -122,12 +123,12 @@ void ethd__loop_release_machine(ethd_loop *loop);
 /* Units of blocking I/O that the device has. [main] */
 uint32_t ethd__loop_units(const ethd_loop *loop);
 
-/* Names a failure. [main] */
+/* Fills `error` with what failed, and returns `status`. [main] */
 ethd_status ethd__loop_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
                               double max);
 
-/* Xenomai's initialisation, where there is one to do; switches to secondary mode since. Refusals are named "xenomai" (the
-   kernel has no Cobalt), "clock" (found: s by which Cobalt's is ahead of Linux's) and "thread". [main] */
+/* Xenomai's initialisation, where there is one to do; switches to secondary mode since. Refusals are named "xenomai"
+   (the kernel has no Cobalt), "clock" (found: s by which Cobalt's is ahead of Linux's) and "thread". [main] */
 ethd_status ethd__xenomai_begin(ethd_error *error);
 void ethd__xenomai_watch(void); /* on the loop's thread, before the first tick */
 uint64_t ethd__xenomai_relaxes(void);

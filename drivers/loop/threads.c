@@ -53,7 +53,7 @@ typedef struct watch {
   int64_t silent;             /* ns, as this thread has seen them pass: a process that was stopped isn't silent */
 } watch;
 
-/* ns until the loop's thread counts as dead: by its silence, where gap is set, or by a step that doesn't end. */
+/* ns until the loop's thread counts as dead: because it is silent, where gap is set, or its step doesn't end. */
 static int64_t left_to_live(const ethd_loop *l, const watch *w) {
   int64_t step = atomic_load_explicit(&l->stepping, memory_order_relaxed);
   int64_t gap = l->gap > 2 * l->period ? l->gap : 2 * l->period; /* a period lies between two turns */
@@ -62,7 +62,7 @@ static int64_t left_to_live(const ethd_loop *l, const watch *w) {
   return by_gap < by_step ? by_gap : by_step;
 }
 
-/* The loop, should it live again at this very moment, is told, and the device is let go from here. */
+/* Lets go of the device from this thread, and tells the loop in case it lives again at this very moment. */
 static void let_go(ethd_loop *l) {
   ethd_loop_raise(l, ETHD_FAULT_LOOP);
   ethd_loop_disarm(l);
@@ -130,7 +130,7 @@ static int start_control(ethd_loop *l, int cpu) {
   return l->def.require_rt ? EPERM : create_control(l, cpu, SCHED_OTHER);
 }
 
-/* Attributes of an ordinary thread; the priority is set afterwards. */
+/* Creates a thread with this policy and priority. */
 static int create(pthread_t *thread, int policy, int priority, void *(*run)(void *), void *of) {
   pthread_attr_t attr;
   struct sched_param param = {.sched_priority = policy == SCHED_FIFO ? priority : 0};
@@ -144,8 +144,8 @@ static int create(pthread_t *thread, int policy, int priority, void *(*run)(void
   return failure;
 }
 
-/* Below the loop in priority, so that no exchange delays a tick, and over everything else, so that nothing delays an
-   exchange. */
+/* An I/O thread's priority is below the loop's, so that no exchange delays a tick, and above everything ordinary, so
+   that nothing else delays an exchange. */
 static int start_unit(ethd_loop *l, ethd__unit *unit) {
   int priority = l->def.priority > ETHD_IO_BELOW ? l->def.priority - ETHD_IO_BELOW : 1;
   int failure = create(&unit->thread, SCHED_FIFO, priority, run_unit, unit);
@@ -164,7 +164,7 @@ static int start_units(ethd_loop *l) {
   return failure;
 }
 
-/* Above the loop in priority, where that is granted. */
+/* The watching thread's priority is above the loop's, where that is granted. */
 static int start_watch(ethd_loop *l) {
   int failure = create(&l->watch, SCHED_FIFO, l->def.priority < 99 ? l->def.priority + 1 : 99, run_watch, l);
   if (failure == EPERM) failure = create(&l->watch, SCHED_OTHER, 0, run_watch, l);
@@ -262,7 +262,7 @@ ethd_status ethd_loop_home(ethd_loop *l, const double *q) {
   return status;
 }
 
-/* Of two, the one that comes first has the device: the thread, as its step ends, or [main]. */
+/* Whoever comes first has the device: the thread as its step ends, or [main]. */
 static ethd_status give_up_thread(ethd_loop *l) {
   int64_t step = atomic_load_explicit(&l->stepping, memory_order_acquire);
   bool taken = step > 0 && atomic_compare_exchange_strong(&l->stepping, &step, ETHD__LOOP_LEFT);

@@ -8,7 +8,7 @@
 #include <signal.h>
 #include <xenomai/init.h>
 
-/* With an argv of our own: Xenomai's options are not the program's. */
+/* Xenomai gets an argv of our own, because its options are not the program's. */
 static void initialise(void) {
   static char name[] = "ethd";
   static char *words[] = {name, NULL};
@@ -26,7 +26,8 @@ static void initialise(void) {
 
 #include "clock.h"
 
-#define APART 10000000 /* ns: two readings with one of the other clock between lie closer, unless the machine stalls */
+#define APART \
+  10000000 /* ns: two readings of one clock around one of the other lie closer than this, unless the machine stalls */
 #define LOOKS 10
 
 static atomic_ulong relaxes;

@@ -38,7 +38,7 @@ static void unpack(const uint8_t raw[ETHD__FRAME_SIZE], ethd__ring_frame *out) E
   for (int k = 0; k < ETHD__FRAME_SENSORS; k++) out->counts[k] = (uint16_t)word(raw + ETHD__FRAME_AT_COUNTS + 2 * k);
 }
 
-/* How many frames the sequence misses; a reset of board 0 restarts the sequence. */
+/* Counts the frames that the sequence misses. A reset of board 0 restarts the sequence. */
 static void follow(ethd__decoder *d, ethd__ring_frame *frame) ETHD_RT {
   uint16_t step = (uint16_t)(frame->seq - d->seq);
   bool fresh = !d->started || (frame->flags & ETHD__FRAME_FIRST);
@@ -72,8 +72,8 @@ static bool finish(ethd__decoder *d, const uint8_t *piece, size_t count, ethd__r
   return false;
 }
 
-/* Keeps a piece's bytes; of one that is too long, only the fact that it is. That is counted at once, because noise may go
-   on for long without a zero. */
+/* Keeps a piece's bytes; of one that is too long, only the fact that it is. That is counted at once, because noise
+   may go on for long without a zero. */
 static void hold(ethd__decoder *d, const uint8_t *bytes, size_t count) ETHD_RT {
   bool fitted = d->held <= CODED;
   size_t room = d->held < ETHD__FRAME_WIRE ? ETHD__FRAME_WIRE - d->held : 0;

@@ -17,7 +17,7 @@
 
 #define WAIT_MS 20                             /* for bytes, in a service */
 #define ROOM 4096                              /* bytes of one read */
-#define GAP_NS (1500000000 / ETHD__FRAME_RATE) /* without a frame: one is lost, at least */
+#define GAP_NS (1500000000 / ETHD__FRAME_RATE) /* without a frame means that at least one is lost */
 
 /* What the I/O thread hands over. */
 typedef struct sample {
@@ -29,7 +29,7 @@ typedef struct sample {
 typedef struct ring {
   ethd__ring_settings settings;
   bool is_virtual;      /* the clock */
-  pthread_mutex_t lock; /* of the I/O thread's part, for figures */
+  pthread_mutex_t lock; /* of the I/O thread's part, which figures read */
   ethd_cell *cell;
 
   /* I/O thread, and open */
@@ -63,7 +63,7 @@ static ethd_status reopen(ring *r, int64_t now_ns) {
   return status;
 }
 
-/* On the virtual clock nothing waits, and what is there has arrived now. */
+/* On the virtual clock nothing waits, and all bytes count as arrived at this instant. */
 static ethd_status service(void *device, uint32_t unit, int64_t now_ns) {
   ring *r = device;
   uint8_t bytes[ROOM];

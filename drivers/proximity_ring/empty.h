@@ -1,4 +1,4 @@
-/* Is the ring empty? And what do its sensors count then: their darks of today. */
+/* Checks that the ring is empty, and takes what its sensors then count for today's darks. */
 #ifndef ETHD_PROXIMITY_RING_EMPTY_H
 #define ETHD_PROXIMITY_RING_EMPTY_H
 

@@ -1,4 +1,4 @@
-/* The ring's serial port and what comes out of it: opened, waited for, read, opened anew after an unplug. */
+/* The ring's serial port: opens it, waits for bytes and reads them, and opens it anew after an unplug. */
 #ifndef ETHD_PROXIMITY_RING_PORT_H
 #define ETHD_PROXIMITY_RING_PORT_H
 
@@ -14,7 +14,7 @@ typedef struct ethd__ring_port {
   uint64_t opened;    /* times */
 } ethd__ring_port;
 
-/* One attempt, now; the next is due after the back-off. [main] or I/O */
+/* Tries once to open it, now; the next attempt is due after the back-off. [main] or I/O */
 ETHD_MUST_CHECK ethd_status ethd__ring_port_open(ethd__ring_port *port, int64_t now_ns, char message[ETHD_MESSAGE_MAX]);
 
 /* Reads what has come, at most `room` bytes, and waits up to wait_ms for the first. -1: the line is gone and has

@@ -43,7 +43,7 @@ typedef struct ethd__receiver {
 bool ethd__receiver_next(ethd__receiver *receiver, const uint8_t **at, const uint8_t *end, int64_t arrival_ns,
                          ethd__ring_reading *out) ETHD_RT;
 
-/* The port was opened anew. */
+/* Begins anew after the port was opened anew. */
 void ethd__receiver_restart(ethd__receiver *receiver) ETHD_RT;
 
 #endif

@@ -1,4 +1,4 @@
-/* Apart from the rest: the kernel's termios and the C library's can't be included together. */
+/* A file of its own, because the kernel's termios and the C library's can't be included together. */
 #include "serial/baud.h"
 
 #include <asm/ioctls.h>

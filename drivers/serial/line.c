@@ -27,14 +27,15 @@ static int set_raw(int fd, ethd__line_format format) {
   return tcsetattr(fd, TCSANOW, &t);
 }
 
-/* The majors of Linux's pseudo-terminals. */
+/* Linux gives these major numbers to pseudo-terminals. */
 static bool is_pseudo(int fd) {
   struct stat s;
   return fstat(fd, &s) == 0 && major(s.st_rdev) >= 136 && major(s.st_rdev) <= 143;
 }
 
-/* The lock keeps out those whom TIOCEXCL doesn't: the administrator's programs, those that came before. A pseudo-terminal
-   has the lock alone, since it would stay exclusive after this program's end, for as long as its other side is open. */
+/* The lock keeps out those whom TIOCEXCL doesn't: the administrator's programs, those that came before. A
+   pseudo-terminal has the lock alone, since it would stay exclusive after this program's end, for as long as its
+   other side is open. */
 static ethd_status hold(int fd, const char *path, char *message) {
   if (!isatty(fd)) return ethd__say(message, ETHD_E_DEVICE, "%s: isn't a serial line", path);
   if (flock(fd, LOCK_EX | LOCK_NB) == 0 && (is_pseudo(fd) || ioctl(fd, TIOCEXCL) == 0)) return ETHD_OK;

@@ -1,4 +1,4 @@
-/* Questions in our own framing, over the bus's line; the deadline is one for the whole answer, as libmodbus's. */
+/* Asks in our own framing over the bus's line. As in libmodbus, one deadline covers the whole answer. */
 #include <errno.h>
 #include <modbus/modbus.h>
 #include <poll.h>
@@ -9,7 +9,7 @@
 #include "clock.h"
 #include "servo/bus_parts.h"
 
-/* Until the line is ready; 0, or an errno. */
+/* Waits until the line is ready; returns 0 or an errno. */
 static int await(int fd, short events, int64_t until) {
   for (;;) {
     int64_t left = until - ethd__clock_now();
@@ -33,7 +33,7 @@ static int send_all(int fd, const uint8_t *bytes, int length, int64_t until) {
   return 0;
 }
 
-/* Bytes from `*got` up to `length`. */
+/* Reads until `*got` bytes have become `length`; returns 0 or an errno. */
 static int receive(int fd, uint8_t *bytes, int *got, int length, int64_t until) {
   while (*got < length) {
     ssize_t n = read(fd, bytes + *got, (size_t)(length - *got));
@@ -45,7 +45,7 @@ static int receive(int fd, uint8_t *bytes, int *got, int length, int64_t until) 
   return 0;
 }
 
-/* On two wires the transmitter is heard: what comes back must be what was sent. */
+/* On two wires the receiver hears the transmitter: what comes back first must be what was sent. */
 static int hear_itself(const ethd__servo_bus *bus, const ethd__servo_frame *f, int64_t until) {
   uint8_t back[ETHD__SERVO_FRAME_MAX];
   int got = 0, failure = receive(bus->fd, back, &got, f->length, until);

@@ -11,16 +11,16 @@
 #include "servo/bus_parts.h"
 #include "text/error_text.h"
 
-#define DRAINS 10 /* times the quiet that is asked for, before giving up for now */
+#define DRAINS 10 /* draining gives up after so many times the quiet that it waits for */
 
 static int64_t nanoseconds(double seconds) { return (int64_t)(1e9 * seconds); }
 
 /* ---- opening ---- */
 
-/* What libmodbus can't frame. */
+/* True for what libmodbus can't frame. */
 static bool is_own(const ethd__servo_map *map) { return map->crc == ETHD__SERVO_CRC_HIGH_FIRST || map->local_echo; }
 
-/* libmodbus frames and checks; lines and connections are ours, so none of its recoveries. */
+/* libmodbus frames and checks. Lines and connections are ours, so its own recoveries are switched off. */
 static modbus_t *context(const ethd__servo_map *map, int fd) {
   modbus_t *m =
       map->transport == ETHD__SERVO_TCP ? modbus_new_tcp("127.0.0.1", 502) : modbus_new_rtu(map->port, 9600, 'N', 8, 1);
@@ -28,7 +28,7 @@ static modbus_t *context(const ethd__servo_map *map, int fd) {
   if (!m) return NULL;
   modbus_set_error_recovery(m, MODBUS_ERROR_RECOVERY_NONE);
   modbus_set_response_timeout(m, response / 1000000, response % 1000000);
-  modbus_set_byte_timeout(m, 0, 0); /* or it would rule over the response's */
+  modbus_set_byte_timeout(m, 0, 0); /* otherwise it would replace the response time-out */
   modbus_set_socket(m, fd);
   if (modbus_set_slave(m, (int)map->unit) == 0) return m;
   modbus_free(m);
@@ -84,7 +84,7 @@ static ethd__servo_outcome outcome(int error) {
   }
 }
 
-/* A frame's end on a serial line is the silence behind it. */
+/* Waits for the silence that ends the frame before on a serial line. */
 static void keep_silence(const ethd__servo_bus *bus) {
   int64_t left = bus->quiet_ns + nanoseconds(bus->map->silence) - ethd__clock_now();
   struct timespec t = {left / 1000000000, left % 1000000000};
@@ -101,7 +101,7 @@ static ethd__servo_outcome end(ethd__servo_bus *bus, int got, uint32_t count) {
   return result;
 }
 
-/* In our framing; as libmodbus has it: how many words, -1 with errno. */
+/* Asks in our framing and returns what libmodbus would: the number of words, or -1 with errno. */
 static int ask(const ethd__servo_bus *bus, const ethd__servo_frame *f, uint32_t count, uint16_t *words) {
   errno = ethd__servo_ask(bus, f, words);
   return errno ? -1 : (int)count;
@@ -175,14 +175,14 @@ ethd__servo_outcome ethd__servo_bus_drain(ethd__servo_bus *bus) {
     ssize_t n = read(bus->fd, rest, sizeof rest);
     if (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR)) break;
     if (n > 0) since = ethd__clock_now();
-    /* a line that hung up is readable for ever, and empty */
+    /* a line that hung up stays readable for ever and gives no bytes */
     else if (wait.revents & (POLLHUP | POLLERR))
       break;
   }
   return gone(bus);
 }
 
-/* libmodbus's numbers mean nothing to strerror. */
+/* strerror doesn't know libmodbus's own error numbers. */
 const char *ethd__servo_bus_error(const ethd__servo_bus *bus) {
   return bus->error >= MODBUS_ENOBASE ? modbus_strerror(bus->error) : strerror(bus->error);
 }

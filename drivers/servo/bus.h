@@ -1,5 +1,5 @@
-/* Questions and answers on a Modbus, one at a time: through libmodbus, or in our own framing what that doesn't speak.
-   All [main] or one I/O thread. */
+/* Questions and answers on a Modbus, one at a time: through libmodbus, or in our own framing where libmodbus can't
+   speak. Called by [main] or by one I/O thread. */
 #ifndef ETHD_SERVO_BUS_H
 #define ETHD_SERVO_BUS_H
 
@@ -8,8 +8,8 @@
 typedef enum ethd__servo_outcome {
   ETHD__SERVO_DONE,
   ETHD__SERVO_MISSING, /* no answer in time */
-  ETHD__SERVO_GARBLED, /* an answer that isn't one: checksum, length, of another question */
-  ETHD__SERVO_BUSY,    /* the drive asks to come again */
+  ETHD__SERVO_GARBLED, /* what came isn't an answer to this question: checksum, length, number */
+  ETHD__SERVO_BUSY,    /* the drive asks for the question again, later */
   ETHD__SERVO_REFUSED, /* the drive knows no such function, address or value: the map is wrong */
   ETHD__SERVO_FAILED,  /* the drive says that it failed */
   ETHD__SERVO_LOST     /* the line or connection is gone */
@@ -17,9 +17,9 @@ typedef enum ethd__servo_outcome {
 
 typedef struct ethd__servo_bus {
   const ethd__servo_map *map;
-  void *modbus;     /* NULL: our own framing */
+  void *modbus;     /* NULL where our own framing is used */
   int fd;           /* -1: closed */
-  bool at_once;     /* the serial line hands bytes over at once; of tcp too */
+  bool at_once;     /* the line hands bytes over at once; true of every tcp connection */
   int error;        /* errno of the last failure, libmodbus's included */
   int64_t quiet_ns; /* CLOCK_MONOTONIC: when the line was left */
 } ethd__servo_bus;
@@ -29,10 +29,10 @@ typedef struct ethd__servo_bus {
 ETHD_MUST_CHECK ethd_status ethd__servo_bus_open(const ethd__servo_map *map, ethd__servo_bus *bus,
                                                  char message[ETHD_MESSAGE_MAX]);
 
-/* Closes; once more does nothing. */
+/* Closes the line; does nothing when it is closed. */
 void ethd__servo_bus_close(ethd__servo_bus *bus);
 
-/* One question each. After any outcome but DONE and BUSY nothing may be sent before a drain. */
+/* Each asks one question. After any outcome but DONE and BUSY the caller drains before it sends again. */
 ethd__servo_outcome ethd__servo_bus_read(ethd__servo_bus *bus, int32_t space, uint32_t address, uint32_t count,
                                          uint16_t *words);
 ethd__servo_outcome ethd__servo_bus_write(ethd__servo_bus *bus, uint32_t address, uint32_t count,
@@ -40,14 +40,14 @@ ethd__servo_outcome ethd__servo_bus_write(ethd__servo_bus *bus, uint32_t address
 ethd__servo_outcome ethd__servo_bus_both(ethd__servo_bus *bus, uint32_t to, uint32_t written, const uint16_t *out,
                                          uint32_t from, uint32_t count, uint16_t *in);
 
-/* Throws away what comes until nothing came for map->drain: a late answer is never taken for the next one.
-   MISSING: it didn't become quiet within ten times that; LOST: it is gone. */
+/* Throws away what comes until nothing has come for map->drain, so that a late answer is never taken for the next one.
+   MISSING when the line isn't quiet within ten times that; LOST when it is gone. */
 ethd__servo_outcome ethd__servo_bus_drain(ethd__servo_bus *bus);
 
-/* The last failure, for people. */
+/* The last failure as a sentence for people. */
 const char *ethd__servo_bus_error(const ethd__servo_bus *bus);
 
-/* The descriptor of map->port, connected and set up; libmodbus would take an unknown baud for 9600. */
+/* Connects map->port, sets it up, and gives its descriptor; libmodbus would take an unknown baud for 9600. */
 ETHD_MUST_CHECK ethd_status ethd__servo_port_open(const ethd__servo_map *map, int *fd, bool *at_once,
                                                   char message[ETHD_MESSAGE_MAX]);
 

@@ -1,4 +1,4 @@
-/* The servo's own memory: what belongs to which thread. */
+/* The servo's own memory, by the thread to which it belongs. */
 #ifndef ETHD_SERVO_DEVICE_H
 #define ETHD_SERVO_DEVICE_H
 
@@ -13,7 +13,7 @@
 #include "servo/guardian.h"
 #include "servo/homing.h"
 
-#define ETHD__SERVO_OLD_MOST 50000000 /* ns: feedback older than this ends the torque however slow the bus is */
+#define ETHD__SERVO_OLD_MOST 50000000 /* ns: older feedback ends the torque, however slow the bus is */
 
 typedef struct ethd__servo_command {
   int64_t stamp_ns;
@@ -48,7 +48,7 @@ typedef struct ethd__servo_device {
   int64_t grace_ns;
   ethd_histogram age;
 
-  /* I/O thread, or [main] in start and stop: who holds the lock */
+  /* belongs to whoever holds the lock: the I/O thread, or [main] in start and stop */
   pthread_mutex_t lock;
   ethd__servo_link link;
   ethd__guardian guardian; /* without a process where the drive has a watchdog */
@@ -56,7 +56,7 @@ typedef struct ethd__servo_device {
   ethd__servo_feedback feedback;
   ethd__servo_command command;
   int64_t due_ns;
-  char why[ETHD_MESSAGE_MAX]; /* the last start failed; empty: it didn't */
+  char why[ETHD_MESSAGE_MAX]; /* why the last start failed; empty when it didn't */
   ethd_histogram trip;
 } ethd__servo_device;
 
@@ -90,20 +90,21 @@ ethd_status ethd__servo_write(void *device, int64_t now_ns, const ethd_command *
 void ethd__servo_safe(void *device) ETHD_RT;
 ethd_status ethd__servo_service(void *device, uint32_t unit, int64_t now_ns);
 
-/* ns: feedback or a command older than this is too old. [any] */
+/* The age in ns at which feedback or a command is too old. [any] */
 int64_t ethd__servo_old(const ethd__servo_device *d) ETHD_RT;
 
-/* Zero, seen by the drive, then [enable]; and [disable], from any state. Why not: the link's message. [main], locked */
+/* Enables: writes zero, sees it back from the drive, and runs [enable]. Disables from any state by [disable]. The
+   link's message says why one of them failed. [main], locked */
 ETHD_MUST_CHECK ethd_status ethd__servo_enable(ethd__servo_device *d);
 ETHD_MUST_CHECK ethd_status ethd__servo_disable(ethd__servo_device *d);
 
-/* The joint, from 1, whose angle isn't known; 0: all are. */
+/* The number, from 1, of a joint whose angle isn't known; 0 when all are known. */
 int32_t ethd__servo_lost(const ethd__servo_device *d);
 
-/* Connects and identifies, at the first time. [main] */
+/* Connects for the first time, and identifies the drive. [main] */
 ETHD_MUST_CHECK ethd_status ethd__servo_meet(ethd__servo_device *d);
 
-/* One turn of the link and what it tells; the device is locked. */
+/* Makes one turn of the link and publishes what it shows; locked. */
 ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double torque[2]);
 
 #endif

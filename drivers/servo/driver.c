@@ -15,10 +15,10 @@ static ethd_limits limits(const void *device) {
   int32_t count = d->map.roles[ETHD__SERVO_READING_COUNT];
   ethd_limits limits = ethd_limits_device();
   limits.speed = d->speed;
-  /* what measures the finger says how often: three readings are missed, nine are */
+  /* the finger's sensor says its rate: three missing readings count as old, nine as lost */
   limits.finger_age = count < 0 ? (double)INFINITY : 3 / d->map.registers[count].rate;
   limits.finger_lost = 3 * limits.finger_age;
-  /* from one sample to the next, and once more where an answer is missing */
+  /* one spacing of samples, and a second one because one answer may be missing */
   limits.gap = 1e-9 * (double)ethd__servo_old(d);
   for (int i = 0; i < 2; i++) {
     int32_t r = d->map.roles[ETHD__SERVO_TORQUE1 + i];
@@ -29,7 +29,7 @@ static ethd_limits limits(const void *device) {
 
 static double at(const ethd_histogram *h, double share) { return 1e-9 * (double)ethd_histogram_at(h, share); }
 
-/* The largest of its joints' angles that one count is; NAN: positions aren't in counts. */
+/* The largest joint angle that one count stands for; NAN when positions aren't in counts. */
 static double count_of(const ethd__servo_map *map) {
   double most = (double)NAN;
   for (int i = 0; i < 2; i++) {
@@ -66,7 +66,8 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
   return n;
 }
 
-/* What an exchange takes, until the drive itself shows it; the registers that nobody confirms, the line's own delay, then what the map leaves open. */
+/* Remarks in this order: how long an exchange takes, until the drive itself shows it; how many registers are
+   unconfirmed; the guardian; the line's own delay; then what the map leaves open. */
 static const char *remark(const void *device, uint32_t i) {
   const ethd__servo_device *d = device;
   const char *own[5];

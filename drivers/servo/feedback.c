@@ -42,12 +42,12 @@ ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo
 
 static bool is_absolute(const ethd__servo_feedback *f, const ethd__servo_axis *a) { return f->absolute[a - f->axes]; }
 
-/* The angle of a counter; the fault rows that it shows are counted. */
+/* Returns the angle of a counter, and counts the fault rows that its sample shows. */
 static double follow(ethd__servo_feedback *f, ethd__servo_axis *a, double raw) {
   int64_t grave = 0;
   const ethd__count count = {.time_ns = f->sample.stamp_ns, .raw = (uint64_t)(int64_t)raw & a->def.ceiling};
   int64_t seen = ethd__encoder_step(&a->def, &a->encoder, &count, f->homing ? (double)NAN : a->torque, &grave);
-  /* twice in a row, however far apart a slow bus's samples are: the counter began anew, or lost its way */
+  /* two jumps in a row, however far apart a slow bus's samples are, mean that the counter began anew or lost counts */
   bool jumps = (seen & ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP)) != 0;
   if (jumps && a->jumped) grave |= ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP);
   if (grave & ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP)) a->referenced = is_absolute(f, a);
@@ -78,14 +78,14 @@ static void take_axis(ethd__servo_feedback *f, const ethd__servo_link *l, int i)
     f->sample.dq[i] = ethd__servo_joint(r, speed);
 }
 
-/* In SI at the joint, as read last; 0 where the map has no such register. */
+/* The value read last, in SI at the joint; 0 where the map has no such register. */
 static double value(const ethd__servo_link *l, int which) {
   double raw;
   const ethd__servo_register *r = role(l, which, &raw);
   return r ? ethd__servo_joint(r, raw) : 0;
 }
 
-#define READING_AGE_MAX 10.0 /* s: more, less than none, or NaN is no age of a reading that was ever of use */
+#define READING_AGE_MAX 10.0 /* s: a reading whose age is greater, negative or NaN is ignored */
 
 static void take_reading(ethd__servo_feedback *f, const ethd__servo_link *l) {
   double count;
@@ -111,7 +111,7 @@ static double scale_at_joint(const ethd__servo_register *r) {
   return fabs((ethd__servo_joint(r, 1) - ethd__servo_joint(r, 0)) / r->scale);
 }
 
-/* An answer may belong to the set-point before, so either one counts as followed. */
+/* The measured torque may still follow the set-point before, so a match with either of the two counts. */
 static bool follows(ethd__servo_axis *a, const ethd__servo_link *l, int i, double torque) {
   double raw, before = a->torque;
   const ethd__servo_register *r = role(l, ETHD__SERVO_MEASURED1 + i, &raw);
@@ -154,11 +154,11 @@ void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *
   f->sample.stamp_ns = stamp_ns;
   f->sample.number++;
   f->sample.has |= ETHD__SERVO_HAS_SPEED;
-  if (other_clock) f->sample.has &= ~ETHD__SERVO_HAS_READING; /* its stamp would lie in another time */
-  /* while the line was away the arm may have gone anywhere; a start may be by another clock than what follows */
+  if (other_clock) f->sample.has &= ~ETHD__SERVO_HAS_READING; /* its stamp belongs to the other clock */
+  /* the arm may have gone anywhere while the line was away, and a start may use another clock than what follows */
   for (int i = 0; i < 2 && unseen; i++) ethd__encoder_pause(&f->axes[i].encoder);
   for (int i = 0; i < 2 && f->connects && f->connects != l->counts.connects; i++)
-    f->axes[i].referenced &= f->absolute[i]; /* the drive may have been without power */
+    f->axes[i].referenced &= f->absolute[i]; /* the drive may have lost its power */
   f->connects = l->counts.connects;
   for (int i = 0; i < 2; i++) take_axis(f, l, i);
   take_reading(f, l);

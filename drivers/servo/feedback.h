@@ -1,4 +1,4 @@
-/* From what a drive answered to joints, and to rows of the fault table. */
+/* Makes joint angles, readings and rows of the fault table of what a drive answered. */
 #ifndef ETHD_SERVO_FEEDBACK_H
 #define ETHD_SERVO_FEEDBACK_H
 
@@ -13,12 +13,12 @@
 
 enum { ETHD__SERVO_HAS_SPEED = 1, ETHD__SERVO_HAS_READING = 2 }; /* of `has` */
 
-/* What crosses to the control thread: whole, newest first. */
+/* What the I/O thread hands to the control thread, always whole; the control thread takes the newest. */
 typedef struct ethd__servo_sample {
   int64_t stamp_ns; /* when the joints were where `q` says */
-  uint64_t number;  /* of good exchanges; the same: nothing newer */
+  uint64_t number;  /* of good exchanges; unchanged when nothing newer has come */
   int32_t has;
-  uint32_t epoch;                   /* start that this belongs to */
+  uint32_t epoch;                   /* the start that this sample belongs to */
   double q[2], dq[2];               /* axes 1 and 2 of the map: rad, rad/s */
   double reading[2];                /* m: finger relative to the ring */
   int64_t reading_ns;               /* when it was taken */
@@ -35,14 +35,14 @@ typedef struct ethd__servo_axis {
   ethd__encoder_def def;
   ethd__encoder encoder;
   double offset;    /* rad, added to the angle */
-  int64_t since_ns; /* the torque isn't followed since; 0: it is */
+  int64_t since_ns; /* since when the torque isn't followed; 0 while it is */
   double torque;    /* asked for by the exchange before, Nm */
 } ethd__servo_axis;
 
 typedef struct ethd__servo_feedback {
   ethd__servo_axis axes[2];
-  bool absolute[2];                /* the position means the same after the drive was without power */
-  bool homing;                     /* the torque isn't what the encoders are watched against */
+  bool absolute[2];                /* the position means the same angle after the drive lost its power */
+  bool homing;                     /* the encoders aren't watched against the torque meanwhile */
   double home[2];                  /* rad: where the joints stand at the first sample; NaN: as the register says */
   double count;                    /* the reading's, last */
   uint32_t rows[ETHD_FAULT_COUNT]; /* of the encoders */
@@ -51,7 +51,8 @@ typedef struct ethd__servo_feedback {
 } ethd__servo_feedback;
 
 /* The counters of the map's positions, watched by default: `torque`, Nm, is the most that the controller may ask of a
-   joint, INFINITY where it has no limit; `period` of an exchange, s. home: as above. The error names the field. [main] */
+   joint, INFINITY where it has no limit; `period` of an exchange, s. home: as above. The error names the field.
+   [main] */
 ETHD_MUST_CHECK ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo_map *map,
                                                       double torque, double period, ethd_error *error);
 

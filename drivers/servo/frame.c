@@ -27,7 +27,7 @@ uint16_t ethd__servo_crc(const uint8_t *bytes, int length) {
   return crc;
 }
 
-/* In the order of the map: high byte first as the SVD48V has it, or low byte first. */
+/* The checksum in the map's order: high byte first as the SVD48V has it, or low byte first. */
 static uint16_t checksum(const ethd__servo_map *map, const uint8_t *bytes, int length) {
   uint16_t crc = ethd__servo_crc(bytes, length);
   return map->crc == ETHD__SERVO_CRC_HIGH_FIRST ? crc : (uint16_t)(crc << 8 | crc >> 8);
@@ -43,7 +43,7 @@ static uint8_t *begin(const ethd__servo_map *map, int function, ethd__servo_fram
   return at + 2;
 }
 
-/* `data`: bytes behind the function, of the question and of a good answer. */
+/* Ends a question of `data` bytes after the function; `answer` is that number of a good answer. */
 static void end(const ethd__servo_map *map, int data, int answer, ethd__servo_frame *out) {
   int n = head(map) + 2 + data;
   if (head(map))
@@ -105,7 +105,7 @@ int ethd__servo_frame_whole(const ethd__servo_map *map, const ethd__servo_frame 
 
 static int refusal(uint8_t code) { return code >= 1 && code <= 11 ? MODBUS_ENOBASE + code : EMBBADEXC; }
 
-/* The answer is to this question: same unit, same function, same number, as many bytes as were asked for. */
+/* True when the answer has the question's unit, function and number, and as many bytes as were asked for. */
 static bool is_to(const ethd__servo_map *map, const ethd__servo_frame *q, const uint8_t *a, int length) {
   int h = head(map), read = q->bytes[h + 1] != WRITE;
   if (h && (memcmp(a, q->bytes, 4) != 0 || (int)get(a + 4) != length - h)) return false;

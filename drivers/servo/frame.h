@@ -29,17 +29,17 @@ typedef struct ethd__servo_span {
 void ethd__servo_frame_both(const ethd__servo_map *map, ethd__servo_span to, const uint16_t *words,
                             ethd__servo_span from, ethd__servo_frame *out);
 
-/* Whether what has come so far can be the begin of an answer: of the station and function that were asked. False: garbage,
-   or somebody else's answer; nothing more is to be waited for. [any] */
+/* True while the bytes so far can be the beginning of an answer: they have the station and the function that were
+   asked. False for noise and for somebody else's answer; waiting longer is then useless. [any] */
 bool ethd__servo_frame_begins(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
                               int length);
 
-/* How many bytes the answer has that begins so; 0: more must come to know it. */
+/* The length of the answer that begins with these bytes; 0 while too few have come to know it. */
 int ethd__servo_frame_whole(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
                             int length);
 
-/* A whole answer's words into `words`, NULL where none are awaited. 0, or an errno as libmodbus has it: EMBBADCRC,
-   EMBBADDATA for an answer to something else, EMBXILADD and its like for what the drive refuses. [any] */
+/* Stores a whole answer's words; `words` is NULL where none are awaited. Returns 0 or an errno as libmodbus has it:
+   EMBBADCRC, EMBBADDATA for an answer to something else, EMBXILADD and its like for what the drive refuses. [any] */
 int ethd__servo_frame_take(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
                            int length, uint16_t *words);
 

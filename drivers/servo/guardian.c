@@ -12,7 +12,8 @@
 #include "servo/words.h"
 
 #define LEAST 20000000 /* ns */
-#define SHARE 0.6      /* of the bound: how long silence may last; the rest is for looking, quiet and the message */
+#define SHARE \
+  0.6 /* of the bound may pass in silence; the rest is for noticing it, for a quiet line, and for the message */
 #define TRIES 5
 
 int64_t ethd__guardian_bound(const ethd__servo_map *map, int64_t exchange_ns) {
@@ -70,8 +71,8 @@ bool ethd__guardian_due(const ethd__guardian *g, int64_t now_ns) {
 
 /* ---- acting ---- */
 
-/* Until nothing came for `drain`, or ten times that. On a serial line an answer may be under way to the one that was
-   silenced; a connection's messages have numbers. */
+/* Waits until nothing has come for `drain`, at most ten times that: on a serial line an answer to the silent program
+   may still be under way. A connection needs no such wait, because its messages have numbers. */
 static void quiet(const ethd__servo_bus *bus) {
   if (bus->map->transport == ETHD__SERVO_RTU) (void)!ethd__servo_bus_drain((ethd__servo_bus *)bus);
 }

@@ -1,14 +1,15 @@
-/* A process of its own that writes zero torque when the loop no longer can: for drives that hold their last torque for
-   ever. It shares the line with the I/O thread, and a page in which that thread says each time that it lives.
+/* A process of its own that writes zero torque when the loop no longer can, for drives that hold their last torque
+   for ever. It shares with the I/O thread the line and a page, in which that thread notes at every turn that it
+   lives.
 
         ethd-run                             guardian
      I/O thread --- beat, armed --->  shared page  ---> looks every millisecond
          |                                                  |  silent for too long, or ethd-run is gone:
          '------ line, passed by a socket -----------------> takes the line, writes zero, then [disable]
 
-   Whatever ends ethd-run ends its side of the socket; what stops it without ending it (a signal, a debugger, a deadlock)
-   ends the beats. Zero torque is at the drive within ethd__guardian_bound of the last beat. It can't help when the whole
-   computer dies, or when all of its processes are killed at once. */
+   Whatever ends ethd-run ends its side of the socket; what stops it without ending it (a signal, a debugger, a
+   deadlock) ends the beats. Zero torque is at the drive within ethd__guardian_bound of the last beat. It can't help
+   when the whole computer dies, or when all of its processes are killed at once. */
 #ifndef ETHD_SERVO_GUARDIAN_H
 #define ETHD_SERVO_GUARDIAN_H
 
@@ -20,7 +21,7 @@
 
 #define ETHD__GUARDIAN_ZEROS 3u
 
-/* Who may write to the line. FREE: the guardian did, and is done; who comes next connects anew. */
+/* Who may write to the line. FREE: the guardian has written and is done; whoever comes next connects anew. */
 enum { ETHD__GUARDIAN_OURS, ETHD__GUARDIAN_ITS, ETHD__GUARDIAN_FREE };
 
 /* The shared page. */
@@ -28,7 +29,7 @@ typedef struct ethd__guardian_page {
   _Atomic int64_t beat_ns; /* CLOCK_MONOTONIC: the I/O thread lived */
   atomic_int armed;        /* 1: the drive may hold a torque */
   atomic_int line;         /* ETHD__GUARDIAN_OURS, ... */
-  atomic_int closing;      /* 1: we end in order, and nothing is to be done */
+  atomic_int closing;      /* 1: the program ends in order, and the guardian has nothing to do */
   atomic_uint acts;        /* how often it wrote zero */
 } ethd__guardian_page;
 
@@ -40,8 +41,8 @@ typedef struct ethd__guardian {
   int line;                  /* descriptor, in its own process; -1: none yet */
   pid_t process;
   int64_t limit_ns;  /* a beat older than this is silence */
-  uint64_t connects; /* of the link, as the line was passed on last */
-  bool passed;       /* it has a line of ours */
+  uint64_t connects; /* the link's count of connections when the line was last passed on */
+  bool passed;       /* the guardian holds a line of ours */
   uint32_t zero_count, disable_count;
   ethd__servo_frame zeros[ETHD__GUARDIAN_ZEROS], disables[ETHD__SERVO_STEPS_MAX];
 } ethd__guardian;
@@ -57,21 +58,21 @@ void ethd__guardian_make(const ethd__servo_map *map, const ethd__servo_plan *pla
 /* Starts the process, and returns when it watches. The map outlives it. [main] */
 ETHD_MUST_CHECK ethd_status ethd__guardian_start(ethd__guardian *guardian, char message[ETHD_MESSAGE_MAX]);
 
-/* Before each turn of the link: may it go ahead? Not when the guardian has taken the line: then the link is lost. fd: the
-   line as it is now, -1: none; connects: how often there was a new one. I/O side. */
+/* Called before each turn of the link. Returns false when the guardian has taken the line; the link is then lost.
+   `fd` is the line as it is now, -1 for none; `connects` counts the lines so far. I/O side. */
 bool ethd__guardian_enter(ethd__guardian *guardian, int64_t now_ns, int fd, uint64_t connects);
 
-/* The drive may hold a torque from now on, or can't any more. I/O side. */
+/* Tells whether the drive may hold a torque from now on. I/O side. */
 void ethd__guardian_arm(ethd__guardian *guardian, bool armed);
 
-/* Who beats has been silent for too long while a torque may act. [any] */
+/* True when the I/O thread has been silent for too long while a torque may act. [any] */
 bool ethd__guardian_due(const ethd__guardian *guardian, int64_t now_ns);
 
-/* Takes the line and brings the drive to rest: zero, then [disable], each until it is answered or tried often enough.
-   Whether the drive has answered to all. In the guardian's process. */
+/* Takes the line and brings the drive to rest: it writes zero and then [disable], each until it is answered or was
+   tried often enough. Returns whether the drive has answered all of it. In the guardian's process. */
 bool ethd__guardian_act(ethd__guardian *guardian);
 
-/* Ends it in order and waits for it. Nothing when there is none. [main] */
+/* Ends the process in order and waits for it; does nothing when there is none. [main] */
 void ethd__guardian_end(ethd__guardian *guardian);
 
 #endif

@@ -1,5 +1,5 @@
-/* The guardian's process: begun by fork, without exec, so that it is there wherever the driver is. It does nothing but
-   sleep, read a page, and at the end ask the drive what stands ready. */
+/* The guardian's process. It is started by fork without exec, so that it needs no program of its own beside the
+   driver. It only sleeps and reads a page, and at the end sends the drive the frames that were prepared. */
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -18,9 +18,9 @@
 #include "text/error_text.h"
 
 #define LOOK 1      /* ms */
-#define PRIORITY 90 /* over the loop's, should that run away; where it is granted */
+#define PRIORITY 90 /* above the loop's, in case the loop runs away; where it is granted */
 #define SOCKET 3
-#define READY 10000 /* ms, within which the process must stand: a busy machine starts one late */
+#define READY 10000 /* ms within which the process must watch; a busy machine starts it late */
 
 /* ---- descriptors over the socket ---- */
 
@@ -46,7 +46,7 @@ static int pass_on(int socket, int fd) {
   return sendmsg(socket, &m, MSG_NOSIGNAL | MSG_DONTWAIT) == 1;
 }
 
-/* 0: the other side is gone. */
+/* Returns 0 when the other side is gone. */
 static int receive(ethd__guardian *g) {
   char byte;
   struct iovec data = {&byte, 1};
@@ -64,7 +64,7 @@ static int receive(ethd__guardian *g) {
 
 /* ---- the process ---- */
 
-/* Nothing of the program's stays: no line, no file, no terminal that would wait for us. */
+/* Closes all that is the program's: lines, files, and the terminal, which would otherwise wait for this process. */
 static void let_go_of_the_rest(ethd__guardian *g) {
   int null = open("/dev/null", O_RDWR);
   for (int i = 0; i < 3; i++) dup2(null, i);
@@ -74,7 +74,7 @@ static void let_go_of_the_rest(ethd__guardian *g) {
   for (int i = SOCKET + 1; i < 4096; i++) close(i); /* a kernel before 5.9 */
 }
 
-/* What ends the program by way of its terminal or its service manager must not end this first. */
+/* A signal by which a terminal or a service manager ends the program must not end this process before it. */
 static void settle(void) {
   const struct sched_param param = {.sched_priority = PRIORITY};
   sigset_t none;
@@ -105,8 +105,8 @@ static ethd_status refuse(char *message) {
   return ethd__say(message, ETHD_E_DEVICE, "the guardian of the drive can't be started: %s", strerror(errno));
 }
 
-/* Until the process says that it watches and holds none of our descriptors any more: until then a port that we close and
-   open again would still be taken. */
+/* Waits until the process says that it watches and holds none of our descriptors any more; before that, a port that
+   we close and open again would still be taken. */
 static bool stands(const ethd__guardian *g) {
   struct pollfd wait = {g->socket, POLLIN, 0};
   char byte;
@@ -147,7 +147,7 @@ ethd_status ethd__guardian_start(ethd__guardian *g, char message[ETHD_MESSAGE_MA
 
 bool ethd__guardian_enter(ethd__guardian *g, int64_t now_ns, int fd, uint64_t connects) {
   if (!g->page) return true;
-  /* a line that is held by two can't be opened anew */
+  /* a line that two processes hold can't be opened anew */
   if (fd < 0 && g->passed && pass_on(g->socket, -1)) g->passed = false;
   if (fd >= 0 && connects != g->connects && pass_on(g->socket, fd)) {
     g->connects = connects;

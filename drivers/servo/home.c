@@ -1,4 +1,4 @@
-/* Where the joints stand: said by whoever stood the arm in its jig, or found by moving it. [main] */
+/* Finds out where the joints stand: somebody stood the arm in its jig and says it, or the joints are moved. [main] */
 #include <math.h>
 #include <time.h>
 
@@ -8,7 +8,7 @@
 #include "text/error_text.h"
 
 #define PAUSE 200000 /* ns */
-#define FAILURES 20  /* bad turns in a row, which end it */
+#define FAILURES 20  /* so many bad turns in a row end the search */
 
 int32_t ethd__servo_lost(const ethd__servo_device *d) {
   for (int i = 0; i < 2; i++)
@@ -16,7 +16,7 @@ int32_t ethd__servo_lost(const ethd__servo_device *d) {
   return 0;
 }
 
-/* ---- one turn, an exchange long; on a virtual clock nothing is waited for ---- */
+/* ---- one turn lasts an exchange; on a virtual clock nothing waits ---- */
 
 static ethd_status turn(ethd__servo_device *d, const double torque[2]) {
   const struct timespec pause = {.tv_nsec = PAUSE};
@@ -26,7 +26,7 @@ static ethd_status turn(ethd__servo_device *d, const double torque[2]) {
   return status;
 }
 
-/* What ends it: the drive, the supply, the line, a motor that doesn't follow. */
+/* True when drive, supply, line, or a motor that doesn't follow ends the search. */
 static bool is_ill(const ethd__servo_device *d) {
   return d->link.state != ETHD__SERVO_ENABLED || d->feedback.sample.levels;
 }
@@ -36,7 +36,7 @@ static double index_of(const ethd__servo_device *d, int axis) {
   return r < 0 ? 0 : d->link.raw[r];
 }
 
-/* rad that the joint has gone since its mark passed. */
+/* How far the joint has gone since its mark passed, rad. */
 static double past_mark(const ethd__servo_device *d, int axis) {
   int32_t at = d->map.roles[ETHD__SERVO_POSITION1 + axis];
   const ethd__servo_register *r = &d->map.registers[at];
@@ -48,7 +48,7 @@ static double past_mark(const ethd__servo_device *d, int axis) {
 
 /* ---- by moving it ---- */
 
-/* The joint is found, or why it isn't. */
+/* Finds one joint, or says why it can't. */
 static ethd_status find(ethd__servo_device *d, int axis) {
   const ethd__homing_def *def = &d->homing[axis];
   ethd__homing homing = {.begun = false};
@@ -65,7 +65,7 @@ static ethd_status find(ethd__servo_device *d, int axis) {
     last = s->stamp_ns;
   }
   if (status < 0) return ethd__say(d->link.message, status, "joint %d: %s", d->joint[axis] + 1, homing.failure);
-  if (status) return ETHD_E_DEVICE; /* the line's own message stands */
+  if (status) return ETHD_E_DEVICE; /* the link has left its own message */
   double past = def->method == ETHD__HOMING_INDEX ? past_mark(d, axis) : 0;
   ethd__servo_feedback_place(&d->feedback, axis, d->home[d->joint[axis]] + past);
   return ETHD_OK;
@@ -76,7 +76,7 @@ static ethd_status find_all(ethd__servo_device *d) {
     return ethd__say(d->link.message, ETHD_E_ARGUMENT,
                      "device.home is jig: stand the arm in it, and say where its joints are");
   ethd_status status = ethd__servo_enable(d);
-  d->feedback.homing = true; /* a joint stands under torque here */
+  d->feedback.homing = true; /* a joint that stands under torque is no fault here */
   for (int i = 0; i < 2 && !status; i++)
     if (d->joint[i] >= 0) status = find(d, i);
   d->feedback.homing = false;

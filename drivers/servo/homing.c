@@ -2,14 +2,14 @@
 
 #include <math.h>
 
-#define SMOOTHING 0.010 /* s, of the speed */
-#define RESET 0.100     /* s, in which the controller's sum takes over */
-#define AWAY 0.050      /* rad */
-#define STANDS 0.1      /* of the speed */
-#define PRESSED 0.9     /* of the torque */
-#define AWAY_FROM 10.0  /* times the speed */
-#define STILL 0.3       /* s */
-#define PATIENCE 60.0   /* s, of the whole */
+#define SMOOTHING 0.010 /* s: time constant of the measured speed */
+#define RESET 0.100     /* s: integration time of the speed's controller */
+#define AWAY 0.050      /* rad that the joint first goes away from its stop */
+#define STANDS 0.1      /* of the homing speed: slower counts as standing */
+#define PRESSED 0.9     /* of the homing torque: more counts as pressing */
+#define AWAY_FROM 10.0  /* times the homing speed: faster counts as running away */
+#define STILL 0.3       /* s that it must stand and press */
+#define PATIENCE 60.0   /* s for the whole search */
 
 static void measure(const ethd__homing_def *def, ethd__homing *h, double q, double dt) {
   if (!h->begun)
@@ -20,7 +20,7 @@ static void measure(const ethd__homing_def *def, ethd__homing *h, double q, doub
   h->travel = fabs(q - h->begin);
 }
 
-/* The torque that brings the joint to a speed, at most def->torque. */
+/* Returns the torque that brings the joint to this speed, at most def->torque. */
 static double torque_towards(const ethd__homing_def *def, ethd__homing *h, double speed, double dt) {
   double gain = def->torque / def->speed, error = speed - h->v;
   h->sum = fmin(fmax(h->sum + gain * error * dt / RESET, -def->torque), def->torque);

@@ -1,5 +1,5 @@
-/* Where a joint stands, found by moving it: slowly, with little torque, until it meets its stop or its encoder's index
-   mark. One joint at a time, one call an exchange; the other joint gets no torque.
+/* Finds where a joint stands by moving it slowly, with little torque, until it meets its stop or its encoder's index
+   mark. One joint moves at a time and the other gets no torque; there is one call for each exchange.
 
      stop    away from it a little (an encoder that doesn't follow is found out here), then towards it until it stands
              under nearly all of the torque for a while: that place is `angle`
@@ -20,7 +20,7 @@ typedef struct ethd__homing_def {
   double torque;              /* Nm, the most that is used; over the joint's friction */
 } ethd__homing_def;
 
-/* Zeroed: ready. */
+/* Ready when zeroed. */
 typedef struct ethd__homing {
   double begin, last, v, sum; /* rad, rad, rad/s filtered, Nm */
   double time, still, travel; /* s, s, rad: since the begin; stood for so long; went so far in this leg */
@@ -28,9 +28,9 @@ typedef struct ethd__homing {
   const char *failure;
 } ethd__homing;
 
-/* A sample of the joint, dt s after the one before; mark: the index mark has passed since. ETHD_BUSY: *torque is what to
-   ask for until the next. ETHD_OK: found, the joint is at the place now (STOP) or was when the mark passed (INDEX).
-   ETHD_E_DEVICE: `failure` says why not. *torque is zero when it isn't BUSY. */
+/* Takes a sample of the joint, dt s after the one before; `mark` says whether the index mark has passed since then.
+   ETHD_BUSY: ask for *torque until the next sample. ETHD_OK: found; the joint is at the place now (STOP) or was when
+   the mark passed (INDEX). ETHD_E_DEVICE: `failure` says why not. *torque is zero unless the result is BUSY. */
 ETHD_MUST_CHECK ethd_status ethd__homing_turn(const ethd__homing_def *def, ethd__homing *homing, double q, double dt,
                                               bool mark, double *torque);
 

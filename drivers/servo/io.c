@@ -1,25 +1,25 @@
-/* The I/O thread's side of the servo: one turn of the link an exchange. */
+/* The I/O thread's side of the servo: it makes one turn of the link for each exchange. */
 #include <time.h>
 
 #include "clock.h"
 #include "servo/device.h"
 
-#define PHASE 0.2 /* of a period: exchanges begin so long after a tick, when its command is there */
-#define BEHIND 3  /* exchanges: nothing is due later */
+#define PHASE 0.2 /* of a period passes between a tick and the exchange, so that the tick's command is there */
+#define BEHIND 3  /* exchanges: what would be due later than this is due now */
 
-/* The newest command, unless it is of an earlier start, or of a loop that is gone: then zero. */
+/* Gives the newest command, or zero when that belongs to an earlier start or to a loop that is gone. */
 static void command(ethd__servo_device *d, int64_t now_ns, double torque[2]) {
   int fresh = ethd_cell_take(d->commands, &d->command) == ETHD_OK;
   const ethd__servo_command *c = &d->command;
   bool good = !atomic_load_explicit(&d->safe, memory_order_relaxed) && now_ns - c->stamp_ns <= ethd__servo_old(d) &&
               c->epoch == atomic_load_explicit(&d->epoch, memory_order_relaxed);
   for (int i = 0; i < 2; i++) torque[i] = good ? c->torque[i] : 0;
-  /* exchanges begin a while after a tick of the loop, whose instants are known from its commands */
+  /* exchanges begin a while after a tick; the stamps of commands say when ticks are */
   int64_t behind = fresh ? (now_ns - c->stamp_ns) % d->period_ns - (int64_t)(PHASE * (double)d->period_ns) : 0;
   d->due_ns = now_ns - behind + d->exchange_ns;
 }
 
-/* One turn of the link and what it tells; the device is locked. */
+/* Makes one turn of the link and publishes what it shows. The caller holds the device's lock. */
 ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double torque[2]) {
   int64_t begin = ethd__clock_now();
   bool may_push = d->link.state == ETHD__SERVO_ENABLED || d->link.sequence == ETHD__SERVO_ENABLE;
@@ -31,7 +31,7 @@ ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double
   if (!status) {
     const double none[2] = {0, 0};
     ethd_histogram_add(&d->trip, took);
-    /* the joints' words come last */
+    /* the joints are read last in an exchange */
     ethd__servo_feedback_take(&d->feedback, &d->link, d->is_virtual ? now_ns : begin + took * 3 / 4,
                               d->link.state == ETHD__SERVO_ENABLED ? torque : none);
   }
@@ -41,7 +41,7 @@ ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double
   return status;
 }
 
-/* Waits until the exchange is due; on a virtual clock nothing waits. */
+/* Waits until the exchange is due. On a virtual clock nothing waits. */
 static ethd_status await(const ethd__servo_device *d, int64_t *now_ns) {
   int64_t left = d->due_ns - *now_ns;
   struct timespec t = {left / 1000000000, left % 1000000000};
@@ -70,8 +70,8 @@ ethd_status ethd__servo_service(void *device, uint32_t unit, int64_t now_ns) {
     ethd__servo_link_begin(&d->link, ETHD__SERVO_CLEAR, now_ns);
   status = ethd__servo_turn(d, now_ns, torque);
   if (d->link.state != ETHD__SERVO_DOWN && status < 0) {
-    status = ETHD_OK;   /* counted there */
-    d->due_ns = now_ns; /* asks again at once, because where exchanges are rare the next one would come too late */
+    status = ETHD_OK;   /* the link has counted it */
+    d->due_ns = now_ns; /* ask again at once: where exchanges are rare, the next one would come too late */
   }
   pthread_mutex_unlock(&d->lock);
   return status;

@@ -6,7 +6,7 @@
 #include "servo/words.h"
 #include "text/error_text.h"
 
-#define BACK_OFF_MOST 32.0 /* times the map's */
+#define BACK_OFF_MOST 32.0 /* times the map's back_off */
 #define SILENT_LEAST 0.2   /* s without a good answer, after which the line is taken for dead */
 #define SILENT_ANSWERS 10.0
 #define BUCKET_ADD 10
@@ -64,7 +64,7 @@ static void count(ethd__servo_link *l, ethd__servo_outcome got) {
   }
 }
 
-/* The line stays open; nothing is sent until it is quiet. */
+/* Counts a bad answer. The line stays open, and nothing is sent until it is quiet. */
 static ethd_status fail(ethd__servo_link *l, ethd__servo_outcome got, int64_t now_ns) {
   double silent = fmax(SILENT_LEAST, SILENT_ANSWERS * (l->map->response + l->map->drain));
   if (got == ETHD__SERVO_LOST) {
@@ -87,7 +87,8 @@ static void set(ethd__servo_link *l, int role, double raw) {
   if (r >= 0) ethd__servo_pack(&l->map->registers[r], raw, ethd__servo_plan_words(&l->plan, l->map, r));
 }
 
-/* From 0 to the register's max: a borrowed register, a speed that isn't used, say, counts only as far as does no harm. */
+/* Counts from 0 to the register's max. A borrowed register, such as a speed that isn't used, has a small max so that
+   its counting does no harm. */
 static uint16_t next_count(const ethd__servo_link *l) {
   int32_t r = l->map->roles[ETHD__SERVO_COUNTER];
   double most = r < 0 ? UINT16_MAX : fmin(l->map->registers[r].max, UINT16_MAX);
@@ -104,7 +105,7 @@ static void fill(ethd__servo_link *l, const double torque[2]) {
   set(l, ETHD__SERVO_COUNTER, l->counter = next_count(l));
 }
 
-/* The drive echoes what was just written; anything else is the answer to another question. */
+/* True when the drive echoes what was just written. Any other echo belongs to another question. */
 static bool echoes(ethd__servo_link *l) {
   for (uint32_t i = 0; i < l->map->count; i++) {
     const ethd__servo_register *r = &l->map->registers[i];

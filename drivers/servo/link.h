@@ -1,12 +1,12 @@
-/* The link to a drive: a state machine over exchanges. Nothing enables by itself.
+/* The link to a drive is a state machine over exchanges. It never enables by itself.
 
           open             quiet            steps of [identify]
      DOWN -----> DRAINING -------> UP ----------------> IDENTIFIED --- enable ---> ENABLED
       ^                                                     ^                        |
       '------ back-off: the line is gone, silent for long   '--- disable, any fault -'
 
-   After any error nothing is sent until the line was quiet; the state stays, and set-points go on from there. A loss
-   of the line ends ENABLED, and the first set-point of every connection is zero torque. */
+   After any error nothing is sent until the line has been quiet; the state stays, and set-points go on after that.
+   The loss of the line ends ENABLED, and the first set-point of every connection is zero torque. */
 #ifndef ETHD_SERVO_LINK_H
 #define ETHD_SERVO_LINK_H
 
@@ -30,10 +30,10 @@ typedef struct ethd__servo_link {
   ethd__servo_bus bus;
   ethd__servo_state state;
   bool draining, echo_failed; /* echo_failed: the last exchange's echo wasn't what was written */
-  bool set_point_stays;       /* a start was refused for it: the drive still shows an old one */
+  bool set_point_stays;       /* a start was refused because the drive still shows an old set-point */
   uint16_t counter;
-  int32_t sequence;                      /* that runs; -1: none */
-  uint32_t step;                         /* of it */
+  int32_t sequence;                      /* the sequence that runs; -1: none */
+  uint32_t step;                         /* the step that it is at */
   int64_t step_ns;                       /* when that began */
   ethd_status result;                    /* of the last sequence */
   int32_t bucket;                        /* leaky: bad answers in a row */
@@ -48,27 +48,27 @@ typedef struct ethd__servo_link {
 
 #define ETHD__SERVO_BUCKET_LIMIT 50
 
-/* DOWN, not yet tried. The map outlives the link. */
+/* Makes a link that is DOWN and hasn't tried yet. The map outlives the link. */
 void ethd__servo_link_make(const ethd__servo_map *map, ethd__servo_link *out);
 
-/* Tries once, now. On failure the next attempt is due after the back-off. [main] or I/O */
+/* Tries once to connect, now. On failure the next attempt is due after the back-off. [main] or I/O */
 ETHD_MUST_CHECK ethd_status ethd__servo_link_connect(ethd__servo_link *link, int64_t now_ns);
 
-/* One turn: connect when that is due, or drain, or an exchange with this torque (Nm at the joints; zero goes out
-   unless ENABLED) and a step of the sequence that runs. ETHD_OK: fresh values in raw; ETHD_STALE: there was nothing
-   to do; ETHD_E_DEVICE: no answer, or a bad one. */
+/* Makes one turn: it connects when that is due, or drains, or makes an exchange with this torque (Nm at the joints;
+   zero goes out unless ENABLED) and a step of the sequence that runs. ETHD_OK: raw has fresh values; ETHD_STALE:
+   there was nothing to do; ETHD_E_DEVICE: no answer came, or a bad one. */
 ETHD_MUST_CHECK ethd_status ethd__servo_link_turn(ethd__servo_link *link, int64_t now_ns, const double torque[2]);
 
-/* Begins [enable] or [disable]; turns do the rest. Enabling ends in ENABLED; disabling leaves it at once. */
+/* Begins a sequence, whose steps the next turns do. [enable] ends in ENABLED; [disable] leaves that state at once. */
 void ethd__servo_link_begin(ethd__servo_link *link, int32_t sequence, int64_t now_ns);
 
-/* The line is gone, by what is said: closed, and opened again after the back-off. */
+/* Closes a line that is gone, for the reason `why`; it is opened again after the back-off. */
 void ethd__servo_link_lose(ethd__servo_link *link, const char *why, int64_t now_ns);
 
 /* Closes the line. */
 void ethd__servo_link_close(ethd__servo_link *link);
 
-/* Does a step of the sequence that runs. Internal to the link. */
+/* Does one step of the sequence that runs. Internal to the link. */
 ethd__servo_outcome ethd__servo_sequence_turn(ethd__servo_link *link, int64_t now_ns);
 
 #endif

@@ -78,7 +78,7 @@ static ethd_status read_registers(const ethd__servo_source *s, ethd__servo_map *
 
 /* ---- sources ---- */
 
-/* The remark behind a line's value says that nobody confirms it. */
+/* True when the remark behind a line's value has the word "unconfirmed". */
 static bool says_unconfirmed(const char *text, size_t length, int line) {
   const char *end = text + length, *next;
   for (; line > 1 && text < end; line--) {

@@ -30,8 +30,9 @@
      guardian = auto             where it doesn't (kind = none), a process of ours does
 
    Names with a meaning: torque1 torque2 (written), position1 position2, speed1 speed2, measured1 measured2
-   (torque or current), bus_voltage, index1 index2 (a position's count at its last index mark), reading_x reading_y reading_count reading_age (a finger's place relative
-   to the ring), counter (a word of ours that the drive keeps). All others are for steps, echoes, or masks. */
+   (torque or current), bus_voltage, index1 index2 (a position's count at its last index mark), reading_x reading_y
+   reading_count reading_age (a finger's place relative to the ring), counter (a word of ours that the drive keeps).
+   All others serve steps, echoes, or masks. */
 #ifndef ETHD_SERVO_MAP_H
 #define ETHD_SERVO_MAP_H
 
@@ -140,7 +141,7 @@ typedef struct ethd__servo_map {
   double watchdog_time; /* s */
   ethd__servo_register registers[ETHD__SERVO_REGISTERS_MAX];
   uint32_t count;
-  int32_t roles[ETHD__SERVO_ROLES]; /* registers, -1: the map hasn't it */
+  int32_t roles[ETHD__SERVO_ROLES]; /* the register of each role; -1 where the map has none */
   ethd__servo_steps sequences[ETHD__SERVO_SEQUENCES];
 } ethd__servo_map;
 

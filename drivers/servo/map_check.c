@@ -1,4 +1,4 @@
-/* What one key alone can't show. */
+/* Checks of a map that need more than one key. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -12,7 +12,7 @@
 #define R ETHD__SERVO_READ
 #define W ETHD__SERVO_WRITE
 
-/* A refusal at a register's key, or at its section when it hasn't that key. */
+/* Refuses at the line of a register's key, or of its section when it doesn't have that key. */
 static ethd_status refuse(const ethd__servo_source *s, const ethd__servo_register *r, const char *name,
                           const char *format, ...) __attribute__((format(printf, 4, 5)));
 static ethd_status refuse(const ethd__servo_source *s, const ethd__servo_register *r, const char *name,
@@ -171,7 +171,7 @@ static bool is_echo(const ethd__servo_map *map, int32_t i) {
   return false;
 }
 
-/* What the loop lives on is read each time. */
+/* The loop needs these values in every exchange. */
 static ethd_status check_every(const ethd__servo_source *s, const ethd__servo_map *map) {
   for (uint32_t i = 0; i < map->count; i++) {
     const ethd__servo_register *r = &map->registers[i];

@@ -12,7 +12,7 @@ typedef enum { NUMBER, WHOLE, CHOICE } key_kind;
 
 typedef struct map_key {
   key_kind kind;
-  ethd_param param; /* def NaN: must be given; a choice's words stand in its unit */
+  ethd_param param; /* def NaN: the key must be given; the unit of a CHOICE holds its words */
   size_t offset;
 } map_key;
 
@@ -173,7 +173,7 @@ static bool is_row(const char *name, const map_key *table, size_t count) {
   return false;
 }
 
-/* `text`: the section's one key whose value is a word of its own. */
+/* `text` names the section's one key whose value is free text. */
 static ethd_status check_known(const ethd__servo_source *s, const char *section, const map_key *table, size_t count,
                                const char *text) {
   for (uint32_t i = 0; i < s->ini->count; i++) {

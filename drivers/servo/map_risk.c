@@ -1,4 +1,4 @@
-/* What a map leaves open, for whoever enables the drive. */
+/* Says what a map leaves open, to whoever enables the drive. */
 #include "servo/map.h"
 #include "servo/words.h"
 
@@ -25,7 +25,8 @@ static bool is_watched(const ethd__servo_map *map, int torque, int measured) {
   return map->roles[measured] >= 0 && map->registers[map->roles[measured]].tolerance > 0;
 }
 
-/* A threshold that the torque can't reach watches nothing. A frozen joint is told by a change of the torque. */
+/* A threshold that the torque can't reach watches nothing. A frozen joint shows by a change of the torque, which may be
+   twice the largest torque. */
 static bool reaches(const ethd__servo_map *map, double (*threshold)(const ethd__servo_register *), double swing) {
   for (int i = 0; i < 2; i++) {
     int32_t position = map->roles[ETHD__SERVO_POSITION1 + i], torque = map->roles[ETHD__SERVO_TORQUE1 + i];

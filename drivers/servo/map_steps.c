@@ -1,4 +1,4 @@
-/* Sequences: step1, step2, ... in a section of their own. */
+/* Reads sequences: the keys step1, step2, ... of a section. */
 #include <string.h>
 
 #include "servo/map_parts.h"
@@ -12,7 +12,7 @@
 typedef struct words {
   const char *at[WORDS_MAX];
   size_t length[WORDS_MAX];
-  uint32_t count; /* WORDS_MAX: that many or more */
+  uint32_t count; /* WORDS_MAX means so many or more */
 } words;
 
 static words split(const char *text) {
@@ -30,7 +30,7 @@ static bool is(const words *w, uint32_t i, const char *text) {
   return w->length[i] == strlen(text) && !memcmp(w->at[i], text, w->length[i]);
 }
 
-/* A number at word i, whole or not. */
+/* Reads the number at word i; `whole` demands a whole one. */
 static bool number(const words *w, uint32_t i, bool whole, double *out) {
   char text[32];
   if (w->length[i] >= sizeof text) return false;
@@ -90,7 +90,7 @@ static ethd_status read_step(const ethd__servo_source *s, const ethd_ini_key *ke
   return is_write ? read_write(s, key, &w, map, out) : read_wait(s, key, &w, map, out);
 }
 
-/* A key "stepN", N from 1 and without leading zeros; 0: another one. */
+/* Returns N of a key "stepN", N from 1 and without leading zeros; 0 for any other key. */
 static uint32_t step_number(const char *key) {
   uint32_t n = 0;
   if (strncmp(key, "step", 4) || key[4] == '0') return 0;

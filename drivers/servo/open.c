@@ -1,4 +1,4 @@
-/* From a configuration to a servo whose drive has answered. [main] */
+/* Opens a servo: from a configuration to a drive that has answered. [main] */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -110,7 +110,7 @@ static ethd_status make_feedback(ethd__servo_device *d, const ethd_device_def *d
   return status;
 }
 
-/* Friction is a tenth of the largest torque or less, and the stop must bear it. */
+/* More than the friction, which is a tenth of the largest torque or less, and no more than a stop can bear. */
 #define HOME_SHARE 0.15
 
 static ethd_status set_homing(ethd__servo_device *d, const ethd_device_def *def, const settings *s, char *message) {
@@ -134,7 +134,8 @@ static ethd_status set_homing(ethd__servo_device *d, const ethd_device_def *def,
   return ETHD_OK;
 }
 
-/* The loop may hold a torque for two exchanges, and no longer than 50 ms; and a wire has its own time. */
+/* The loop may hold a torque for two exchanges, at most 50 ms; and the divisor must leave the wire the time that it
+   takes. */
 static ethd_status check_pace(const ethd__servo_device *d, const settings *s, char *message) {
   int64_t most = ETHD__SERVO_OLD_MOST / 2;
   ethd__servo_wire wire = ethd__servo_wire_of(&d->map, (double)NAN);
@@ -163,7 +164,7 @@ static void set_guard(ethd__servo_device *d) {
            1e-6 * (double)ethd__guardian_bound(&d->map, d->exchange_ns));
 }
 
-/* What an exchange takes, before any drive was asked. */
+/* Says how long an exchange takes, before any drive is asked. */
 static void say_wire(ethd__servo_device *d) {
   ethd__servo_wire w = ethd__servo_wire_of(&d->map, (double)NAN);
   uint32_t least = ethd__servo_divisor_for(w.most, 1e-9 * (double)d->period_ns);
@@ -182,7 +183,7 @@ static void say_wire(ethd__servo_device *d) {
              least);
 }
 
-/* Its first answer, and what it says of itself. */
+/* Waits for the drive's first answer and for what it says of itself. */
 static ethd_status meet(ethd__servo_device *d, char *message) {
   ethd_status status = ethd__servo_meet(d);
   return status ? ethd__say(message, status, "%s: %.*s", d->map_name, ETHD_MESSAGE_MAX / 2, d->link.message) : ETHD_OK;
@@ -216,7 +217,7 @@ ethd_status ethd__servo_prepare(const ethd_device_def *def, void **out, char mes
   return ETHD_OK;
 }
 
-/* The guardian comes before the first connection: no line of the program's is open yet. */
+/* Starts the guardian before the first connection, while the program has no line open yet. */
 ethd_status ethd__servo_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = ethd__servo_prepare(def, out, message);
   ethd__servo_device *d = *out;

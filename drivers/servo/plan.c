@@ -4,7 +4,7 @@
 
 #include "servo/words.h"
 
-/* The cyclic register of this direction and pace that comes next behind (space, address, number); -1: none. */
+/* Finds the next cyclic register of this direction and pace in the order of (space, address, number); -1: none. */
 static int32_t next(const ethd__servo_map *map, int32_t direction, uint32_t every, int64_t after) {
   int32_t best = -1;
   int64_t best_key = INT64_MAX;
@@ -25,7 +25,7 @@ static bool joins(const ethd__servo_map *map, const ethd__servo_block *b, const 
   return r->address <= b->address + b->count + gap && r->address + ethd__servo_words(r) - b->address <= most;
 }
 
-/* Behind the first n of them; how many there are then. */
+/* Appends blocks to the first n of them and returns their new number. */
 static uint32_t arrange(const ethd__servo_map *map, int32_t direction, uint32_t every, uint32_t n,
                         ethd__servo_plan *out) {
   ethd__servo_block *blocks = direction == ETHD__SERVO_READ ? out->reads : out->writes;
@@ -65,7 +65,7 @@ uint16_t *ethd__servo_plan_words(ethd__servo_plan *plan, const ethd__servo_map *
 
 bool ethd__servo_plan_fresh(const ethd__servo_plan *plan, int32_t r) { return plan->reads[plan->block[r]].fresh; }
 
-/* Which are due. */
+/* Marks the reads that are due in this exchange. */
 static void choose(ethd__servo_plan *plan) {
   for (uint32_t i = 0; i < plan->read_count; i++)
     plan->reads[i].fresh = plan->all || plan->turn % plan->reads[i].every == plan->reads[i].phase;

@@ -1,5 +1,5 @@
-/* The questions of one exchange: registers that stand side by side, and are read equally often, go together. Those about
-   slow registers are spread over the exchanges. */
+/* The questions of one exchange. Registers that stand side by side and are read equally often share a question;
+   questions about slow registers are spread over the exchanges. */
 #ifndef ETHD_SERVO_PLAN_H
 #define ETHD_SERVO_PLAN_H
 
@@ -29,13 +29,13 @@ typedef struct ethd__servo_plan {
 /* [main] */
 void ethd__servo_plan_make(const ethd__servo_map *map, ethd__servo_plan *out);
 
-/* The words of a cyclic register. [any] */
+/* Returns where a cyclic register's words stand. [any] */
 uint16_t *ethd__servo_plan_words(ethd__servo_plan *plan, const ethd__servo_map *map, int32_t r);
 
-/* The register was read in the last exchange. [any] */
+/* True when the register was read in the last exchange. [any] */
 bool ethd__servo_plan_fresh(const ethd__servo_plan *plan, int32_t r);
 
-/* Asks them in order, writes first; stops at the first that isn't DONE. */
+/* Asks the questions in order, writes first, and stops at the first that isn't DONE. */
 ethd__servo_outcome ethd__servo_plan_ask(ethd__servo_plan *plan, ethd__servo_bus *bus);
 
 #endif

@@ -1,4 +1,4 @@
-/* Sockets and serial lines, opened by ourselves: libmodbus takes an unknown baud for 9600 without a word. */
+/* Opens sockets and serial lines ourselves, because libmodbus silently takes an unknown baud for 9600. */
 #include <errno.h>
 #include <netdb.h>
 #include <netinet/tcp.h>
@@ -18,7 +18,7 @@ static ethd_status refuse(const ethd__servo_map *map, int error, char *message) 
 
 /* ---- tcp ---- */
 
-/* In time, or -1 with errno. */
+/* Returns a descriptor that is connected in time, or -1 with errno. */
 static int connect_to(const struct addrinfo *to, double seconds) {
   int fd = socket(to->ai_family, to->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, to->ai_protocol);
   int error = 0, one = 1;
@@ -59,7 +59,7 @@ static ethd_status open_tcp(const ethd__servo_map *map, int *fd, char *message) 
 
 /* ---- rtu ---- */
 
-/* The map's formats are the line's. */
+/* The map and the line number their formats alike. */
 static ethd_status open_rtu(const ethd__servo_map *map, int *fd, char *message) {
   ethd_status status = ethd__line_open(map->port, (ethd__line_format)map->format, (uint32_t)map->baud, fd, message);
   if (status || !map->rs485 || ethd__line_rs485(*fd, map->rs485 == 1)) return status;
@@ -69,7 +69,7 @@ static ethd_status open_rtu(const ethd__servo_map *map, int *fd, char *message) 
       strerror(errno));
 }
 
-/* libmodbus waits in select, which can't hold a higher descriptor and ends the process. */
+/* libmodbus waits in select, which ends the process when a descriptor is FD_SETSIZE or higher. */
 static ethd_status check_number(const ethd__servo_map *map, int fd, char *message) {
   if (fd < FD_SETSIZE) return ETHD_OK;
   return ethd__say(message, ETHD_E_DEVICE, "%s: got descriptor %d, under %d is needed: open the bus before other files",

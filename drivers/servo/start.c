@@ -1,4 +1,4 @@
-/* Start and stop: sequences that [main] runs, while the loop keeps its hands off. */
+/* Start and stop: [main] runs these sequences while the loop leaves the device alone. */
 #include <time.h>
 
 #include "clock.h"
@@ -9,7 +9,7 @@
 #define ZEROES 3        /* good exchanges with zero torque before anything is enabled */
 #define PAUSE 200000    /* ns between the turns of a start */
 
-/* A first exchange or more, until the drive has identified itself. */
+/* Makes exchanges until the drive has identified itself. */
 static ethd_status identify(ethd__servo_device *d, double seconds) {
   const double zero[2] = {0, 0};
   const struct timespec pause = {.tv_nsec = PAUSE};
@@ -36,7 +36,7 @@ ethd_status ethd__servo_meet(ethd__servo_device *d) {
   return status ? status : identify(d, steps_time(&d->map, ETHD__SERVO_IDENTIFY));
 }
 
-/* ---- start: zero first, seen by the drive, then the steps ---- */
+/* ---- start: zero first, seen back from the drive, then the steps ---- */
 
 static ethd_status zero_and_verify(ethd__servo_device *d, double seconds) {
   const double zero[2] = {0, 0};
@@ -50,7 +50,7 @@ static ethd_status zero_and_verify(ethd__servo_device *d, double seconds) {
   return ETHD_OK;
 }
 
-/* The steps of a sequence, one a turn, under zero torque. */
+/* Runs the steps of a sequence, one in each turn, under zero torque. */
 static ethd_status run(ethd__servo_device *d, int32_t sequence) {
   const double zero[2] = {0, 0};
   const struct timespec pause = {.tv_nsec = PAUSE};
@@ -67,13 +67,13 @@ static ethd_status run(ethd__servo_device *d, int32_t sequence) {
 
 ethd_status ethd__servo_enable(ethd__servo_device *d) {
   atomic_store(&d->safe, 1);
-  atomic_fetch_add(&d->epoch, 1); /* commands from before count no more */
+  atomic_fetch_add(&d->epoch, 1); /* commands from before no longer count */
   d->link.attempt_ns = 0;
   d->link.set_point_stays = false;
   for (int i = 0; i < 2; i++) d->feedback.axes[i].since_ns = 0;
   ethd_status status = identify(d, START_MOST / 10 + steps_time(&d->map, ETHD__SERVO_IDENTIFY));
   if (status) return status;
-  /* an old set-point must be gone, and be seen to be gone, before the drive moves anything */
+  /* an old set-point must be gone, and must be seen to be gone, before the drive can move anything */
   status = zero_and_verify(d, 0.5);
   d->link.set_point_stays = status && d->link.echo_failed;
   if (d->link.set_point_stays) {
@@ -108,7 +108,7 @@ void ethd__servo_clear(void *device) { atomic_store(&((ethd__servo_device *)devi
 
 const char *ethd__servo_why(const void *device) { return ((const ethd__servo_device *)device)->why; }
 
-/* Zero torque even where the drive doesn't answer to the steps. */
+/* Asks for zero torque even where the drive doesn't answer the steps. */
 ethd_status ethd__servo_disable(ethd__servo_device *d) {
   atomic_store(&d->safe, 1);
   if (d->link.state < ETHD__SERVO_UP) return ETHD_OK;

@@ -1,4 +1,4 @@
-/* The control thread's side of the servo: two cells, no more. */
+/* The control thread's side of the servo. It touches two cells and nothing else. */
 #include <string.h>
 
 #include "servo/device.h"
@@ -43,7 +43,7 @@ static void add_reading(ethd__servo_device *d, ethd_sense *out) ETHD_RT {
   out->centre[1] = s->reading[1];
 }
 
-/* Sparing the first moments after a start, in which the threads come up. */
+/* The fault bit of old feedback; not in the first moments after a start, in which the threads come up. */
 static int64_t is_old(ethd__servo_device *d, int64_t now_ns) ETHD_RT {
   if (d->seen_epoch != d->newest.epoch) {
     d->seen_epoch = d->newest.epoch;
@@ -64,7 +64,7 @@ ethd_status ethd__servo_read(void *device, int64_t now_ns, ethd_sense *out) {
     d->grace_ns = d->grace_ns < now_ns ? d->grace_ns : now_ns;
     ethd_histogram_add(&d->age, now_ns - s->stamp_ns);
   }
-  /* what only counts waits for the next sample; what ends the torque doesn't */
+  /* a row that only counts waits for the next sample; one that ends the torque doesn't */
   if (!fresh && !lasting) return ETHD_STALE;
   add_edges(d, out);
   out->faults |= lasting;

@@ -4,9 +4,9 @@
 
 #include "servo/frame.h"
 
-#define SPARE 1.1 /* of an exchange's time */
+#define SPARE 1.1 /* times the exchange, to leave a tenth to spare */
 
-/* On the wire: start, eight bits, parity and stop. */
+/* A byte on the wire has a start bit, eight bits, a parity bit or none, and a stop bit. */
 static double bits(const ethd__servo_map *map) { return map->format == 0 ? 10 : 11; }
 
 static double time_of(const ethd__servo_map *map, uint32_t bytes, double turnaround) {
@@ -37,7 +37,7 @@ static void add(const ethd__servo_map *map, uint32_t bytes, double turnaround, e
   out->usual += time_of(map, bytes, turnaround);
 }
 
-/* The most that falls into one exchange of all until they come round. */
+/* The longest time that questions about slow registers add to any exchange of a whole round. */
 static double slow(const ethd__servo_map *map, const ethd__servo_plan *plan, double turnaround) {
   double most = 0;
   for (uint32_t turn = 0; turn < ETHD__SERVO_EVERY_MAX; turn++) {

@@ -70,13 +70,13 @@ double ethd__servo_factor(const ethd__servo_register *r) {
   }
 }
 
-/* Torque grows with the ratio, everything else shrinks. */
+/* The factor from the motor to the joint: the ratio multiplies torques and divides everything else. */
 static double at_joint(const ethd__servo_register *r) {
   double ratio = r->unit == NM || r->unit == A ? r->ratio : 1 / r->ratio;
   return r->sign * ratio * ethd__servo_factor(r);
 }
 
-/* Rounding, too, stays within the limits. */
+/* The rounded number stays within the limits, too. */
 double ethd__servo_raw(const ethd__servo_register *r, double joint) {
   double value = joint == joint ? joint / at_joint(r) : 0;
   double low = (r->min - r->offset) / r->scale, high = (r->max - r->offset) / r->scale;

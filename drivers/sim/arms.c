@@ -97,7 +97,7 @@ static ethd__two couple(const ethd__arms_body *b, const ethd__arms_series *s, wo
          (b->inertia * ethd__swapped(b->inertia) - along * along);
 }
 
-/* Speeds' terms k + 1, and the angles', from what is known up to k. */
+/* Computes the speeds' and the angles' terms k + 1 from the terms up to k. */
 ETHD__INLINE void accelerate(troop *e, int i, kind has, int k) {
   const ethd__arms_body *b = &e->arms->body[i];
   ethd__arms_series *s = &e->out->series[i];
@@ -116,7 +116,7 @@ ETHD__INLINE void accelerate_all(troop *e, kind has, int k) {
 
 /* ---- how many terms, how far ---- */
 
-/* What term k adds to an arm's speeds in all, m/s, with that power of the step's length; the most of all arms. */
+/* Returns how much term k changes an arm's speeds over the whole step, m/s; the most of all arms. */
 ETHD__INLINE double speed(const troop *e, kind has, int k, const double *reach) {
   double most = 0;
   for (int i = 0; i < ETHD__ARMS; i++) {
@@ -129,7 +129,8 @@ ETHD__INLINE double speed(const troop *e, kind has, int k, const double *reach) 
   return most;
 }
 
-/* Terms up to that which no longer counts. Where the last two of all do, the step is shortened: returns to what share. */
+/* Computes terms until one no longer counts. Where even the last two of all arms do, the step is shortened; returns its
+   remaining share. */
 ETHD__INLINE double expand(troop *e, kind has, const double *h) {
   double tolerance = e->arms->tolerance, reach[ETHD__ARMS];
   for (int k = 0; k < ETHD__ORDER_MIN; k++) accelerate_all(e, has, k);

@@ -1,7 +1,8 @@
 /* Arms alone, ETHD__ARMS of one kind side by side, without finger and pad: the equations of body.h by the series of
-   series.h, for those who ask what several plants, or states, make of the same commands. The arms share their steps, which
-   are as short as the most demanding of them needs, so that differences between arms that are nearly alike are smooth. And
-   the terms of one arm are worked out beside those of the others: within an arm each waits for the one before it. */
+   series.h, for those who ask what several plants, or states, make of the same commands. The arms share their steps,
+   which are as short as the most demanding of them needs, so that differences between arms that are nearly alike are
+   smooth. And the terms of one arm are worked out beside those of the others: within an arm each waits for the one
+   before it. */
 #ifndef ETHD_SIM_ARMS_H
 #define ETHD_SIM_ARMS_H
 
@@ -46,8 +47,8 @@ void ethd__arms_prepare(const ethd__body bodies[ETHD__ARMS], ethd__arms *out) ET
 
 void ethd__arms_put(ethd__arms_state *out, const ethd__sim_state *state) ETHD_RT;
 
-/* A step from step->to on, each arm's at most `left` s. Returns whether all arms took the whole of it; else each took the
-   same share. */
+/* A step from step->to on, each arm's at most `left` s. Returns whether all arms took the whole of it; else each took
+   the same share. */
 bool ethd__arms_advance(const ethd__arms *arms, const double left[ETHD__ARMS], ethd__arms_step *step) ETHD_RT;
 
 /* The joints' angles of an arm, as ethd__body_joints has them, `at` s after the step's beginning. */

@@ -73,7 +73,7 @@ static ethd_status sim_open(const ethd_device_def *def, void **out, char message
   return create(def, &s, d, message);
 }
 
-/* The tap from its beginning. */
+/* Begins the tap anew. */
 static ethd_status start(void *device_) {
   device *d = device_;
   d->safe = 0;
@@ -102,7 +102,7 @@ static ethd_status sim_read(void *device_, int64_t now_ns, ethd_sense *out) ETHD
   return ETHD_OK;
 }
 
-/* In lock-step: a period passes. */
+/* In lock-step a period passes here. */
 static ethd_status sim_write(void *device_, int64_t now_ns, const ethd_command *command) ETHD_RT {
   device *d = device_;
   d->held = *command;

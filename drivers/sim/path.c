@@ -71,7 +71,7 @@ static ethd_vec tangent(const ethd_path *path, size_t i) {
   return ethd_vec_add(ethd_vec_scale(after / whole, slope(s - 1)), ethd_vec_scale(before / whole, slope(s)));
 }
 
-/* Last sample at or before t. */
+/* Finds the last sample at or before t. */
 static size_t find(const ethd_path *path, double t) {
   size_t low = 0, high = path->sample_count;
   while (high - low > 1) {

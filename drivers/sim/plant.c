@@ -84,7 +84,7 @@ static ethd_status check_row(const ethd__plant_row *row, const ethd_plant *plant
   return ethd__sim_refuse(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, value, p->min, p->max);
 }
 
-/* name's value must lie in [min, max]. */
+/* Refuses a value of `name` outside [min, max]. */
 static ethd_status within(ethd_error *error, const char *name, double found, double min, double max) {
   return found >= min && found <= max ? ETHD_OK : ethd__sim_refuse(error, ETHD_E_RANGE, name, found, min, max);
 }

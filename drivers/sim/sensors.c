@@ -24,7 +24,7 @@ void ethd__sensors_joints(const ethd__sensors *s, const ethd__body *body, const 
 
 static bool is_frame(const ethd__sensors *s) { return s->plant.reading == ETHD_READING_RAYS; }
 
-/* The instant of a part of a frame, as a share of the skew. */
+/* Returns the instant of a part of a frame as a share of the skew. */
 static double place(uint32_t part) {
   if (part == STAMP) return 0.5;
   return (double)(part < STAMP ? part : part - 1) / (ETHD_RAYS - 1);
@@ -103,7 +103,7 @@ static void take_nail(const ethd__sensors *s, ethd_vec relative, ethd__sim_readi
   if (!ethd__nail_centre(&s->nail, distance, &out->centre)) out->have = 0;
 }
 
-/* What is there at one instant. */
+/* What a sensor sees at one instant. */
 static void take_whole(ethd__sensors *s, ethd_vec ring, ethd_vec finger, ethd__sim_reading *out) {
   ethd_vec relative = ethd_vec_sub(finger, ring);
   switch (s->plant.reading) {

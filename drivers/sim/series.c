@@ -1,9 +1,9 @@
-/* The idea: within a step every quantity of the motion is a power series about the step's beginning t0,
-   x(t) = sum x_k (t - t0)^k, and the equations of motion give its terms one after the other. The terms up to k of angles
-   and speeds give term k of each acceleration by the equations of body.c; term k of an acceleration gives term k + 1 of
-   the speed, because y = x' means y_k = (k+1) x_(k+1); and so on to the order that the tolerance asks for. A step is as
-   long as its last terms stay below the tolerance (Jorba and Zou 2005). Products are sums over terms (terms.h), and a
-   function's terms follow from the differential equation that it solves:
+/* The idea: within a step every quantity of the motion is a power series about the step's beginning t0, x(t) = sum
+   x_k (t - t0)^k, and the equations of motion give its terms one after the other. The terms up to k of angles and
+   speeds give term k of each acceleration by the equations of body.c; term k of an acceleration gives term k + 1 of
+   the speed, because y = x' means y_k = (k+1) x_(k+1); and so on to the order that the tolerance asks for. A step is
+   as long as its last terms stay below the tolerance (Jorba and Zou 2005). Products are sums over terms (terms.h),
+   and a function's terms follow from the differential equation that it solves:
 
      u = tanh(s w):         u' = s w' (1 - u^2)
      (C, S) = e^(i th):     C' = -th' S, S' = th' C
@@ -48,7 +48,7 @@ ETHD__INLINE void rotate(expansion *w, int k) {
   w->sine[k] = ethd__product(v, w->cosine, k - 1) * ethd__both(INVERSE[k]);
 }
 
-/* Term k of the vector from ring to finger. */
+/* Computes term k of the vector from ring to finger. */
 ETHD__INLINE void relate(expansion *w, int k) {
   if (k > 0) rotate(w, k);
   if (k > 3) w->out->hand[k] = w->out->hand[k - 2] * ethd__both(w->swing * (INVERSE[k] * INVERSE[k - 1]));
@@ -150,7 +150,7 @@ static ethd__two couple(expansion *w, ethd__two g, int k) {
          ethd__both(inertia[0] * inertia[1] - w->along[0] * w->along[0]);
 }
 
-/* Positions' terms k + 1. */
+/* Computes the positions' terms k + 1. */
 ETHD__INLINE void integrate(expansion *w, physics has, int k) {
   ethd__series *s = w->out;
   s->link[k + 1] = s->link_v[k] * INVERSE[k + 1];
@@ -158,7 +158,7 @@ ETHD__INLINE void integrate(expansion *w, physics has, int k) {
   if (has.compliant) s->motor[k + 1] = s->motor_v[k] * INVERSE[k + 1];
 }
 
-/* Speeds' terms k + 1 from what is known up to k. */
+/* Computes the speeds' terms k + 1 from the terms up to k. */
 ETHD__INLINE void accelerate(expansion *w, physics has, int k) {
   const ethd__body *b = w->body;
   ethd__series *s = w->out;
@@ -186,8 +186,8 @@ ETHD__INLINE double speed(const expansion *w, physics has, int k) {
   return has.compliant ? m + ethd__size(w->length * s->motor_v[k]) : m;
 }
 
-/* Terms up to that which no longer counts, and where the last two of all do, a shorter step. Returns a speed
-   that ring and finger's way beside its path stay under. */
+/* Computes terms until one no longer counts, and shortens the step where even the last two do. Returns a bound on the
+   speeds of the ring and of the finger beside its path. */
 ETHD__INLINE double expand(expansion *w, physics has) {
   ethd__series *s = w->out;
   double tolerance = w->body->tolerance, h = s->step, reach, most, before, term;
@@ -249,7 +249,7 @@ static void watch_touching(expansion *w, ethd__touch touch) {
   for (int k = measured + 1; k <= s->watched; k++) measure(w, k);
 }
 
-/* While pad and ring are known to be apart, their distance is only worked out when they may have come near. */
+/* While pad and ring are known to be apart, their distance is worked out only when they may have come near. */
 static void keep_clear(expansion *w, const ethd__piece *piece, const ethd__sim_motion *hand, double clearance,
                        double most) {
   ethd__series *s = w->out;

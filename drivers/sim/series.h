@@ -1,5 +1,5 @@
-/* The motion as a power series in time; series.c explains the idea. Each term follows from those before it, so a step may
-   have any order. */
+/* The motion as a power series in time; series.c explains the idea. Each term follows from those before it, so a step
+   may have any order. */
 #ifndef ETHD_SIM_SERIES_H
 #define ETHD_SIM_SERIES_H
 
@@ -21,7 +21,7 @@ typedef struct ethd__series {
   ethd__two leaving[ETHD__TERMS]; /* touching: 1 + c p_dot, likewise */
 } ethd__series;
 
-/* The motion from this state on, for `step` or as much of it as the tolerance allows. `hand`: the path's at
+/* Computes the motion from this state on, for `step` or as much of it as the tolerance allows. `hand` is the path at
    that instant. */
 void ethd__series_expand(const ethd__body *body, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
                          const ethd__sim_state *state, ethd__series *out) ETHD_RT;
@@ -37,8 +37,8 @@ typedef struct ethd__leg {
 /* A leg of no length, to start from. */
 void ethd__leg_begin(const ethd__piece *piece, double t, const ethd__sim_state *state, ethd__leg *out) ETHD_RT;
 
-/* The next one, up to `end` at most: up to where touch changes or the tolerance ends. `cell`: the length of
-   all steps that nothing cuts. */
+/* Makes the next leg, which ends at `end`, where touch changes, or where the tolerance is used up. `cell` is the length
+   of every step that nothing cuts short. */
 void ethd__leg_next(const ethd__body *body, const ethd__piece *piece, double end, double cell, ethd__leg *leg) ETHD_RT;
 
 /* Within it: the angles of links and motors among the coordinates; the whole state. */

@@ -24,15 +24,15 @@ static double slope(const ethd__two *term, int order, double h) {
   return y;
 }
 
-/* How far y can go from where it begins within h: every term in full. */
+/* Bounds how far y can go from where it begins within h, by adding up the sizes of all terms. */
 static double reach(const ethd__two *term, int order, double h) {
   double y = fabs(term[order][0]);
   for (int k = order - 1; k > 0; k--) y = y * h + fabs(term[k][0]);
   return y * h;
 }
 
-/* Where f, a value or a slope, times sign passes from below 0 to above, to LOCATED: regula falsi (Illinois).
-   The end where it is above. */
+/* Finds where f, a value or a slope, times sign passes from below 0 to above, to LOCATED, by regula falsi (Illinois).
+   Returns the end at which it is above. */
 static double locate(double f(const ethd__two *, int, double), const ethd__two *term, int order, double sign,
                      double high) {
   double low = 0, below = sign * f(term, order, 0), above = sign * f(term, order, high);
@@ -56,7 +56,7 @@ static double locate(double f(const ethd__two *, int, double), const ethd__two *
   return high;
 }
 
-/* Where sign * y becomes positive first within h, to LOCATED; INFINITY: nowhere. */
+/* Finds where sign * y first becomes positive within h, to LOCATED; INFINITY when it doesn't. */
 static double rises(const ethd__two *term, int order, double sign, double h) {
   if (sign * term[0][0] + reach(term, order, h) < 0) return INFINITY;
   if (!(sign * value(term, order, h) > 0)) {
