@@ -45,6 +45,7 @@ void ethd__tune_print(FILE *out, const ethd__tune_search *s, const ethd__tune_en
       shown++;
     }
   if (choice) print_entry(out, "chosen", space, choice);
+  if (!last->entries[0].keeps) fprintf(out, "own, thin: the configuration's own gains don't keep the margins\n");
 }
 
 /* ---- margins ---- */
