@@ -22,12 +22,12 @@ static const char doc[] =
     "  ethd-explain --generations 200 --work search.journal --out q\n"
     "  ethd-explain --without limits";
 
-enum { COMPLIANT = 256, SAMPLE, KNOWN, WITHOUT, POPULATION, GENERATIONS, TAPS, WORK, PRIORS };
+enum { COMPLIANT = 256, SAMPLE, JUDGE, WITHOUT, POPULATION, GENERATIONS, TAPS, WORK, PRIORS };
 
 static const struct argp_option options[] = {
     {"compliant", COMPLIANT, NULL, 0, "let the transmission give way, with the encoders on the motors' side", 0},
     {"sample", SAMPLE, NULL, 0, "count a reading from where the ring was as it was taken, not from where it is now", 0},
-    {"known", KNOWN, NULL, 0, "don't search: judge plant n, with --compliant plant p, as far as the bounds reach", 0},
+    {"judge", JUDGE, "n|b|p|FILE", 0, "don't search: judge a plant with the configuration beside it", 0},
     {"without", WITHOUT, "table|claims|limits", 0, "leave these lines out; repeat it", 0},
     {"population", POPULATION, "N", 0, "plants that are held: 48", 0},
     {"generations", GENERATIONS, "N", 0, "100", 0},
@@ -41,10 +41,10 @@ static const struct argp_option options[] = {
 
 static struct {
   ethd__explain_structure structure;
-  bool without[ETHD_EXPLAIN_GROUPS], priors, known;
+  bool without[ETHD_EXPLAIN_GROUPS], priors;
   int64_t population, generations, taps;
   uint64_t seed;
-  const char *work, *out;
+  const char *work, *out, *judge;
 } arg = {.structure.tick = true, .population = 48, .generations = 100, .taps = 60, .seed = 1};
 
 static void leave_out(const char *text) {
@@ -60,7 +60,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
   case COMPLIANT: arg.structure.compliant = true; return 0;
   case SAMPLE: arg.structure.tick = false; return 0;
-  case KNOWN: arg.known = true; return 0;
+  case JUDGE: arg.judge = text; return 0;
   case WITHOUT: leave_out(text); return 0;
   case POPULATION:
     arg.population = ethd__option_integer("--population", text, 8, ETHD_EXPLAIN_POPULATION_MAX);
@@ -100,16 +100,15 @@ static void print_point(const ethd__explain_point *point) {
 }
 
 /* With fingers that no search has met. */
-static void confirm(ethd__explain_question *q, const ethd__explain_point *best) {
+static void confirm(ethd__explain_question *q, const ethd__explain_twin *twin, const char *what) {
   char message[ETHD_MESSAGE_MAX];
   ethd__explain_figures figures;
   double total;
   q->seed += UINT64_C(1) << 32;
   q->taps = 400;
   for (int g = 0; g < ETHD_EXPLAIN_GROUPS; g++) q->asked[g] = true;
-  check(ethd__explain_judge(q, best, (double)INFINITY, &figures, &total, message), message);
-  printf("\n%s, with other fingers: 400 taps of each law at low speed, 800 at high speed\n",
-         arg.known ? arg.structure.compliant ? "plant p" : "plant n" : "the best plant");
+  check(ethd__explain_judge(q, twin, (double)INFINITY, &figures, &total, message), message);
+  printf("\n%s: 400 taps of each law at low speed, 800 at high speed\n", what);
   int missed = ethd__explain_print(&figures);
   printf("%d of %d lines are missed\n", missed, ETHD_EXPLAIN_LINE_COUNT);
 }
@@ -131,9 +130,19 @@ static ethd__explain_point search_it(const ethd__explain_question *question) {
   return search.point[best];
 }
 
+/* The search, its best plant, and where that goes. */
+static void find_plant(ethd__explain_question *question) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd__explain_twin twin;
+  const ethd__explain_point point = search_it(question);
+  print_point(&point);
+  ethd__explain_make(&question->base, &arg.structure, &point, &twin);
+  confirm(question, &twin, "the best plant, with fingers that the search didn't meet");
+  if (arg.out) check(ethd__explain_write(arg.out, &point, &twin, message), message);
+}
+
 int main(int argc, char **argv) {
   static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
-  char message[ETHD_MESSAGE_MAX];
   ethd__loaded loaded;
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
@@ -141,21 +150,17 @@ int main(int argc, char **argv) {
     print_priors();
     return ethd__end(ETHD_EXIT_DONE);
   }
-  ethd__load(NULL, "n", true, false, &loaded);
+  ethd__load(NULL, arg.judge ? arg.judge : "n", true, false, &loaded);
   ethd__explain_question question = {.config = loaded.config,
                                      .base = loaded.plant,
                                      .structure = arg.structure,
                                      .seed = arg.seed,
                                      .taps = (uint32_t)arg.taps};
   for (int g = 0; g < ETHD_EXPLAIN_GROUPS; g++) question.asked[g] = !arg.without[g];
-  ethd__explain_point point = arg.known ? ethd__explain_known(&arg.structure) : search_it(&question);
-  print_point(&point);
-  confirm(&question, &point);
-  if (arg.out) {
-    ethd__explain_twin twin;
-    ethd__explain_make(&loaded.plant, &arg.structure, &point, &twin);
-    check(ethd__explain_write(arg.out, &point, &twin, message), message);
-  }
+  if (arg.judge)
+    confirm(&question, &(ethd__explain_twin){.plant = loaded.plant}, loaded.plant_name);
+  else
+    find_plant(&question);
   ethd__loaded_free(&loaded);
   return ethd__end(ethd__stop ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE);
 }

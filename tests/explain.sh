@@ -3,6 +3,7 @@
 # ethd-tap and ethd-check say of the files that it writes. Bad input.
 set -u
 bin=$BUILD/bin
+page=$(cd "$(dirname "$0")/../apps/explain" && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 failed=0
@@ -62,9 +63,35 @@ for key, text in [("tracking.k_t", "largest stable K_t, times the paper's"), ("t
 assert compared
 END
 
-# Plants n and p are judged, too: their own gains are far from unstable on n, and the wall is unstable on p.
-"$bin/ethd-explain" --known --sample >n.txt && grep -q '^plant n, .*400 taps' n.txt || fail "n isn't judged"
+# Any plant can be judged. The file that was written is the plant that was found, to the last digit.
+"$bin/ethd-explain" --judge n >n.txt && grep -q '^n: 400 taps' n.txt || fail "n isn't judged"
+"$bin/ethd-explain" --judge ./one | sed -n '/must be/,$p' >judged.txt
+sed -n '/must be/,$p' one.txt | cmp - judged.txt || fail "the files that are written aren't the plant that was found"
 grep -q 'largest stable K_e  *12.4 ' n.txt || fail "another limit of K_e on n than ethd-check's"
+
+# The page's table is what --judge says.
+"${PYTHON:-python3}" - "$page/README.md" >columns <<'END'
+import sys
+for row in open(sys.argv[1]):
+    cells = [c.strip().strip("*") for c in row.replace("\\|", "").strip().strip("|").split("|")]
+    if row.startswith("| ") and len(cells) == 6: print(*cells[2:])
+END
+column() { awk -v c="$1" 'NR > 1 { print $c }' columns; }
+judge() { # PLANT: values to three digits, then how many lines are missed
+  "$bin/ethd-explain" --judge "$1" >judged.txt || fail "--judge $1"
+  "${PYTHON:-python3}" - <<'END'
+import re
+text = open("judged.txt").read()
+for line in text.splitlines():
+    value = re.match(r"  (?:table|claims|limits) .{47} *(\S+)", line)
+    if value: print("none" if value[1] == "nan" else "%.3g" % float(value[1]))
+print(re.search(r"(\d+) of 24", text)[1])
+END
+}
+for plant in 1:n 2:p 3:"$page/rigid" 4:"$page/compliant"; do
+  judge "${plant#*:}" >is
+  column "${plant%%:*}" | cmp - is || fail "the page has another column for ${plant#*:}"
+done
 
 refuse() { # TEXT ARGUMENTS...
   text=$1

@@ -179,22 +179,20 @@ static ethd_status take_cell(const ethd__study *study, int number, uint32_t taps
   return ETHD_OK;
 }
 
-ethd_status ethd__explain_judge(const ethd__explain_question *q, const ethd__explain_point *point, double enough,
+ethd_status ethd__explain_judge(const ethd__explain_question *q, const ethd__explain_twin *twin, double enough,
                                 ethd__explain_figures *out, double *total, char message[ETHD_MESSAGE_MAX]) {
-  ethd__explain_twin twin;
   ethd__cell cells[4] = {{0}};
   ethd__speed speeds[2];
-  ethd__explain_make(&q->base, &q->structure, point, &twin);
   *out = (ethd__explain_figures){{0}, {false}};
-  if (!ethd__speed_parse("low", &twin.plant, &speeds[0]) || !ethd__speed_parse("high", &twin.plant, &speeds[1]))
+  if (!ethd__speed_parse("low", &twin->plant, &speeds[0]) || !ethd__speed_parse("high", &twin->plant, &speeds[1]))
     return ETHD_E_RANGE;
   ethd__study study = {.config = q->config,
-                       .plant = twin.plant,
+                       .plant = twin->plant,
                        .seed = q->seed,
                        .speeds = speeds,
                        .speed_count = 2,
-                       .gains = twin.gains,
-                       .gain_count = ETHD_EXPLAIN_SETTINGS};
+                       .gains = twin->gains,
+                       .gain_count = twin->gain_count};
   ethd_status status = ethd__study_prepare(&study, message);
   if (!status && q->asked[ETHD_EXPLAIN_LIMITS]) status = ethd__explain_limits(&study, out, message);
   *total = total_of(q, out);

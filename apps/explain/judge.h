@@ -56,7 +56,7 @@ typedef struct ethd__explain_figures {
 
 /* What is asked for. */
 typedef struct ethd__explain_question {
-  const ethd_config *config; /* of plant n, the paper's gains */
+  const ethd_config *config; /* has the paper's gains; that of plant n in a search */
   ethd_plant base;
   ethd__explain_structure structure;
   bool asked[ETHD_EXPLAIN_GROUPS]; /* which groups count */
@@ -75,9 +75,8 @@ static inline void ethd__explain_set(ethd__explain_figures *figures, int line, d
 
 /* Fills the figures of the groups that count, the cheap ones first. *total: the sum of their misses within the inner
    bounds, each line with 4 at most; once it is over `enough` the rest isn't asked for. */
-ETHD_MUST_CHECK ethd_status ethd__explain_judge(const ethd__explain_question *question,
-                                                const ethd__explain_point *point, double enough,
-                                                ethd__explain_figures *out, double *total,
+ETHD_MUST_CHECK ethd_status ethd__explain_judge(const ethd__explain_question *question, const ethd__explain_twin *twin,
+                                                double enough, ethd__explain_figures *out, double *total,
                                                 char message[ETHD_MESSAGE_MAX]);
 
 /* The limits of the gains, in limits.c: largest stable multiples, the others held. */

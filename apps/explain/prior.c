@@ -101,6 +101,7 @@ void ethd__explain_make(const ethd_plant *base, const ethd__explain_structure *s
       "velocity.cutoff", "finger_filter.acceleration", "finger.radius", "finger.radius_max", "finger_filter.reference"};
   const double numbers[] = {VALUE(cutoff), VALUE(acceleration), VALUE(finger_radius), RING_RADIUS - VALUE(d_beta)};
   out->plant = *base;
+  out->gain_count = ETHD_EXPLAIN_SETTINGS;
   make_device(structure, p, &out->plant);
   make_hand(p, &out->plant);
   for (int i = 0; i < ETHD_EXPLAIN_SETTINGS; i++) {

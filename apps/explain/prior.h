@@ -73,9 +73,10 @@ ethd__explain_point ethd__explain_known(const ethd__explain_structure *structure
 
 #define ETHD_EXPLAIN_SETTINGS 5
 
-/* A point as a plant and what the configuration beside it says: `gains` refer to `text`. */
+/* A plant and what differs from the configuration: `gains` refer to `text`. */
 typedef struct ethd__explain_twin {
   ethd_plant plant;
+  size_t gain_count;
   char text[ETHD_EXPLAIN_SETTINGS][32];
   ethd__gain gains[ETHD_EXPLAIN_SETTINGS];
 } ethd__explain_twin;

@@ -122,7 +122,9 @@ static ethd_status judge(const ethd__explain_search *s, journal *j, const ethd__
     *total = j->totals[j->next++];
     return ETHD_OK;
   }
-  ethd_status status = ethd__explain_judge(s->question, point, enough, &figures, total, message);
+  ethd__explain_twin twin;
+  ethd__explain_make(&s->question->base, &s->question->structure, point, &twin);
+  ethd_status status = ethd__explain_judge(s->question, &twin, enough, &figures, total, message);
   if (status || !j->file) return status;
   fprintf(j->file, "%.17g\n", *total);
   return fflush(j->file) ? ethd__say(message, ETHD_E_FILE, "%s: %s", s->journal, strerror(errno)) : ETHD_OK;
