@@ -137,7 +137,7 @@ printf '[study]\nparticipants = 1\nstrategies = smooth\nspeeds = 0.2\ntraining =
 mkfifo "$folder/quit"
 timeout 60 "$study" "$folder/still.study" --out "$folder/still" --virtual --ask <"$folder/quit" >"$folder/out" 2>"$folder/err" &
 run=$!
-{ sleep 2; echo stop; } >"$folder/quit"
+(sleep 2; echo stop) >"$folder/quit" # a shell of its own: nobody reads it any more where attempts were used up
 wait $run
 [ $? = 1 ] && grep -q 'stopped; what was done is kept' "$folder/err" || fail "at the start line: $(cat "$folder/out" "$folder/err")"
 [ "$(wc -l <"$folder/still/taps.csv")" = 1 ] && [ -z "$(ls "$folder/still/taps" 2>/dev/null)" ] || fail "taps that nobody made: $(cat "$folder/still/taps.csv")"
