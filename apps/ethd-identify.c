@@ -170,9 +170,11 @@ static void check_finding(ethd__finding *f) {
                "torques, as ethd-identify --excite does",
                arg.folders[0]);
   if (ethd__fit_stranger(&f->problem, &other, &shift))
-    ethd__fail(ETHD_EXIT_INPUT,
-               "%s: of another device than the rest, its masses are %.0f %% %s: give the recordings of one device",
-               f->evidence->folders[other], 100 * fabs(shift), shift > 0 ? "more" : "less");
+    ethd__fail(
+        ETHD_EXIT_INPUT,
+        "%s: of another device than the rest, by itself its mass is %.0f %% %s: give the recordings of one device, "
+        "or record it again",
+        f->evidence->folders[other], 100 * fabs(shift), shift > 0 ? "more" : "less");
 }
 
 static char *csv_beside(const char *png) {

@@ -47,6 +47,19 @@ within n.plant 'mass 0.0675 0.06' 'hand_stiffness 284.7 0.08' 'hand_damping 4.27
 grep -q '^mass_x .*0.1173 .*not seen, kept as in base.plant$' n.plant || fail "the arm isn't kept: $(grep mass_x n.plant)"
 grep -q '^touches  .*fitted to' said && grep -q 'arm  .*kept as in base.plant' said || fail "what is said: $(cat said)"
 
+# Every fourth reading is lost: the numbers stay.
+"$PYTHON" - <<'END'
+import numpy, shutil
+shutil.copytree("on-n", "lossy")
+rows = numpy.load("on-n/tick.npy")
+came = numpy.flatnonzero(rows["centre"].any(axis=1))
+lost = came[2::4]
+rows["have"][lost] = 0
+numpy.save("lossy/tick.npy", rows)
+END
+"$bin/ethd-identify" lossy --base base.plant --out lossy.plant >said || fail "lost readings: exit $?"
+within lossy.plant 'mass 0.0675 0.08' 'hand_stiffness 284.7 0.1' 'hand_damping 4.27 0.06' 'pad_stiffness 27436 0.08' 'rate 300 0.001'
+
 taps b 20 on-b
 "$bin/ethd-identify" on-b --base b --out b.plant >said || fail "taps on b: exit $?"
 within b.plant 'mass 0.0307 0.06' 'hand_stiffness 121.8 0.08' 'hand_damping 2.70 0.05' 'pad_stiffness 15610 0.06'

@@ -7,10 +7,10 @@
 #include "identify/fit.h"
 
 #define N ETHD__UNKNOWNS
-#define ALL UINT32_MAX /* recordings */
-#define FEW 20         /* windows: a recording with fewer is judged with the rest */
-#define STRANGE 0.05   /* a logarithm of a mass by which a recording of another device differs at least, */
-#define CERTAIN 6      /* and so many standard errors */
+#define FEW 16       /* windows: a recording with fewer isn't weighed by itself */
+#define ALONE 20     /* evaluations of the fit of a recording by itself */
+#define STRANGE 0.05 /* a logarithm of a mass by which a recording of another device differs at least, */
+#define CERTAIN 6    /* and so many standard errors */
 
 typedef double square_matrix[N][N];
 
@@ -41,16 +41,12 @@ static void invert(square_matrix a, square_matrix out, int n) {
   }
 }
 
-/* Each window's pull on the coordinates, and the sum of its slopes' products; of all recordings or of one. Returns how many
-   windows. */
-static double gather(const ethd__shooting *p, uint32_t recording, const double *residual, const double *slopes,
-                     square_matrix curvature, square_matrix pulls, double *whole) {
+/* Each window's pull on the coordinates, and the sum of its slopes' products. */
+static void gather(const ethd__shooting *p, const double *residual, const double *slopes, square_matrix curvature,
+                   square_matrix pulls, double *whole) {
   int n = p->chosen.count;
-  double count = 0;
   for (size_t i = 0; i < p->window_count; i++) {
     const ethd__fit_window *w = &p->windows[i];
-    if (recording != ALL && w->window.recording != recording) continue;
-    count++;
     double pull[N] = {0};
     for (size_t row = w->row; row < w->row + (size_t)w->rows; row++)
       for (int a = 0; a < n; a++) {
@@ -63,7 +59,6 @@ static double gather(const ethd__shooting *p, uint32_t recording, const double *
       for (int b = 0; b < n; b++) pulls[a][b] += pull[a] * pull[b];
     }
   }
-  return count;
 }
 
 static double sandwich(square_matrix bread, square_matrix filling, int n, int i) {
@@ -74,13 +69,13 @@ static double sandwich(square_matrix bread, square_matrix filling, int n, int i)
 }
 
 /* Few windows pull less than their true scatter, because the fit gave way to them: as much as leaving each out in turn would
-   show (MacKinnon and White 1985). Errors and step of Gauss and Newton by the windows of one recording, or of all; how many windows these are. */
-static double judge(const ethd__shooting *p, uint32_t recording, const double *residual, const double *slopes,
-                    double *errors, double *step) {
+   show (MacKinnon and White 1985). Errors, and the step of Gauss and Newton. */
+static void judge(const ethd__shooting *p, const double *residual, const double *slopes, double *errors, double *step) {
   int n = p->chosen.count;
   double scale[N], whole[N] = {0}, sum = 0;
   square_matrix curvature = {{0}}, pulls = {{0}}, inverse;
-  double windows = gather(p, recording, residual, slopes, curvature, pulls, whole);
+  double windows = (double)p->window_count;
+  gather(p, residual, slopes, curvature, pulls, whole);
   for (size_t i = 0; i < p->rows; i++) sum += residual[i] * residual[i];
   double freedom = (double)(p->rows - ethd__shooting_states(p)) - n, few = windows / fmax(windows - n, 1);
   for (int i = 0; i < n; i++) scale[i] = curvature[i][i] > 0 ? sqrt(curvature[i][i]) : 1;
@@ -98,7 +93,6 @@ static double judge(const ethd__shooting *p, uint32_t recording, const double *r
     step[i] = 0;
     for (int b = 0; b < n; b++) step[i] += inverse[i][b] * whole[b] / (scale[b] * scale[i]);
   }
-  return windows;
 }
 
 /* Residuals and slopes at the problem's plant; freed by the caller. */
@@ -113,28 +107,59 @@ static double *measure(ethd__shooting *p, double **slopes) {
 
 void ethd__fit_errors(ethd__shooting *p, double errors[ETHD__UNKNOWNS], double step[ETHD__UNKNOWNS]) {
   double own[N], *slopes, *residual = measure(p, &slopes);
-  (void)judge(p, ALL, residual, slopes, errors, step ? step : own);
+  judge(p, residual, slopes, errors, step ? step : own);
   free(residual);
   free(slopes);
 }
 
-bool ethd__fit_stranger(ethd__shooting *p, uint32_t *recording, double *shift) {
-  double errors[N], step[N], *slopes, *residual, most = STRANGE;
-  bool found = false;
-  if (p->evidence->recording_count < 2) return false;
-  residual = measure(p, &slopes);
-  for (uint32_t r = 0; r < p->evidence->recording_count; r++) {
-    if (judge(p, r, residual, slopes, errors, step) < FEW) continue;
-    for (int i = 0; i < p->chosen.count; i++) {
-      if (p->chosen.at[i] != ETHD__MASS_X && p->chosen.at[i] != ETHD__MASS_Y) continue;
-      if (!(fabs(step[i]) > most && fabs(step[i]) > CERTAIN * errors[i])) continue;
+/* ---- recordings of another device ---- */
+
+/* Logarithms of the masses, and their standard errors, by the windows of one recording alone. False: too few, or they
+   can't be told. */
+static bool weigh(const ethd__shooting *p, uint32_t recording, double mass[2], double error[2]) {
+  double errors[N];
+  ethd__shooting own;
+  ethd__shooting_begin(p->evidence, p->subject, p->tolerance, &own);
+  for (size_t i = 0; i < p->window_count; i++)
+    if (p->windows[i].window.recording == recording)
+      *ethd__shooting_add(&own, &p->windows[i].window, p->windows[i].rows) = p->windows[i];
+  bool enough = own.window_count >= FEW;
+  if (enough) {
+    ethd__shooting_ready(&own);
+    own.plant = p->plant;
+    own.chosen = p->chosen;
+    (void)ethd__fit_squares(&own, ALONE, "each recording");
+    ethd__fit_errors(&own, errors, NULL);
+  }
+  for (int j = 0; j < 2; j++) error[j] = (double)INFINITY;
+  for (int i = 0; i < own.chosen.count && enough; i++) {
+    ethd__unknown u = own.chosen.at[i];
+    if (u != ETHD__MASS_X && u != ETHD__MASS_Y) continue;
+    mass[u - ETHD__MASS_X] = ethd__unknown_to(u, ethd__unknown_value(&own.plant, u));
+    error[u - ETHD__MASS_X] = errors[i];
+  }
+  ethd__shooting_close(&own);
+  return isfinite(error[0] + error[1]);
+}
+
+/* Devices that differ leave a large residual together, which says little of either; each recording by itself does. */
+bool ethd__fit_stranger(const ethd__shooting *p, uint32_t *recording, double *shift) {
+  double mass[2], error[2], first[2], first_error[2], most = STRANGE;
+  bool found = false, begun = false;
+  for (uint32_t r = 0; r < p->evidence->recording_count && p->evidence->recording_count > 1; r++) {
+    if (!weigh(p, r, mass, error)) continue;
+    for (int j = 0; j < 2 && begun; j++) {
+      double apart = mass[j] - first[j];
+      if (!(fabs(apart) > most && fabs(apart) > CERTAIN * hypot(error[j], first_error[j]))) continue;
       found = true;
-      most = fabs(step[i]);
-      *shift = exp(step[i]) - 1;
+      most = fabs(apart);
+      *shift = exp(apart) - 1;
       *recording = r;
     }
+    if (begun) continue;
+    begun = true;
+    memcpy(first, mass, sizeof first);
+    memcpy(first_error, error, sizeof first_error);
   }
-  free(residual);
-  free(slopes);
   return found;
 }

@@ -23,8 +23,8 @@ double ethd__fit_squares(ethd__shooting *shooting, int most, const char *what);
    Newton would go from here; NULL: nobody asks. */
 void ethd__fit_errors(ethd__shooting *shooting, double errors[ETHD__UNKNOWNS], double step[ETHD__UNKNOWNS]);
 
-/* Whether one of several recordings asks for masses of its own: which, and by what share they differ. */
-bool ethd__fit_stranger(ethd__shooting *shooting, uint32_t *recording, double *shift);
+/* Whether one of several recordings asks for other masses than the first: which, and by what share they differ. */
+bool ethd__fit_stranger(const ethd__shooting *shooting, uint32_t *recording, double *shift);
 
 typedef struct ethd__fit {
   ethd_plant plant;
