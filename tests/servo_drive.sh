@@ -28,7 +28,8 @@ says "$folder/probe" '^mend .*crc = low-first is needed, the map says high-first
 drive_ends
 
 # ---- noise in the place of an answer: our framing names it by its first bytes; libmodbus, as the README says, waits for the
-# rest of an answer until `response` is over. The least of several is looked at: a busy machine only adds to it ----
+# rest of an answer until `response`, 0.5 s, is over. A busy machine adds to the first time, and takes from the second one what it
+# took to pass the question on: so the least of several is looked at, and the most ----
 noise() { # ORDER: "least most", s until the next question, in $noticed; $folder/probe
   drive svd48v --crc "$1"
   sed "s/^crc = .*/crc = $1/" "$folder/svd48v.map" >"$folder/noise.map"
@@ -48,7 +49,7 @@ noise high-first
 echo "$noticed" | awk '{ exit !($1 > 0 && $1 < 0.5) }' || fail "our framing waits for an answer that has begun wrong: $noticed"
 says "$folder/probe" '^answers .* [1-9][0-9]* damaged or refused'
 noise low-first
-echo "$noticed" | awk '{ exit !($1 >= 0.5) }' || fail "libmodbus names noise sooner than the README says: $noticed"
+echo "$noticed" | awk '{ exit !($2 >= 0.45) }' || fail "libmodbus names noise sooner than the README says: $noticed"
 says "$folder/probe" '^answers  *[1-9][0-9]* missing'
 
 # ---- homing: refused without, found at its stops, lost with its power ----
