@@ -1,6 +1,7 @@
 /* Recorded input through any law, open loop; or a recording against itself. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/cli.h"
 #include "cli/dropped.h"
@@ -38,7 +39,10 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case 'c': arg.config = text; return 0;
   case 'i': arg.in = text; return 0;
   case 'o': arg.out = text; return 0;
-  case 'v': arg.verify = text; return 0;
+  case 'v':
+    if (!strncmp(text, "--", 2)) argp_error(state, "--verify: found \"%s\", a folder comes first", text);
+    arg.verify = text;
+    return 0;
   case OPTION_PLUGINS: arg.plugins = true; return 0;
   case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
   case ARGP_KEY_END:

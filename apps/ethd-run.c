@@ -30,7 +30,7 @@ static const char doc[] =
     "equal bytes.\n\n"
     "Examples:\n"
     "  ethd-run --config device.ini --record session\n"
-    "  printf 'wait 0.5\\ntransition smooth\\nstatus\\n' | ethd-run --virtual --duration 2";
+    "  echo transition smooth | ethd-run --virtual --duration 2";
 
 enum {
   OPTION_RECORD = 256,

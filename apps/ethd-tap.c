@@ -35,7 +35,8 @@ static const char doc[] =
     "Examples:\n"
     "  ethd-tap\n"
     "  ethd-tap --taps 400 --csv taps.csv --trace traces\n"
-    "  ethd-tap --finger motion/avraham_free_mit/avraham_ND_s02_be38_free.csv --speed high,0.3 --record taps\n"
+    "  ethd-tap --finger motion/avraham_free_mit/avraham_ND_s02_be38_free.csv\n"
+    "  ethd-tap --config mine.ini --transition mine,offset --speed 0.3 --record taps\n"
     "Eight recorded movements come with the programs, in motion: a FILE.csv that isn't there is looked for among them.";
 
 enum {
@@ -51,7 +52,10 @@ enum {
 
 static const struct argp_option options[] = {
     {"config", 'c', "C.ini", 0, "the controller's configuration (default: the plant's own)", 0},
-    {"transition", 't', "LAW[,LAW..]", 0, "transition laws: abrupt,smooth,offset,predictive", 0},
+    {"transition", 't', "LAW[,LAW..]", 0,
+     "transition laws, also of the configuration's plugins (default: abrupt,smooth,offset,predictive and the "
+     "configuration's own)",
+     0},
     {"speed", 's', "low|high|V[,..]", 0, "speeds: low,high; V in m/s, 0.01 to 2", 0},
     {"taps", 'n', "N", 0, "attempts for each law and speed (100; 10 with --finger)", 0},
     {"seed", 'r', "S", 0, "seed of every random number (1)", 0},
@@ -172,9 +176,19 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 static void fill_in(void) {
-  if (!arg.laws.count) set_list(&arg.laws, "--transition", "abrupt,smooth,offset,predictive");
   if (!arg.speeds.count) set_list(&arg.speeds, "--speed", "low,high");
   if (!arg.taps) arg.taps = arg.finger ? TAPS_FINGER : TAPS;
+}
+
+/* All laws of this library and the configuration's own. */
+static void choose_laws(const ethd_config *config) {
+  const char *own = config->setup.transition->law.id;
+  named to = {&arg.laws, "--transition"};
+  if (arg.laws.count) return;
+  set_list(&arg.laws, to.option, "abrupt,smooth,offset,predictive");
+  for (size_t i = 0; i < arg.laws.count; i++)
+    if (!strcmp(arg.laws.words[i], own)) return;
+  add(own, &to);
 }
 
 /* ---- loading ---- */
@@ -253,6 +267,7 @@ int main(int argc, char **argv) {
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   fill_in();
   ethd__load(arg.config, arg.plant, true, true, &loaded);
+  choose_laws(loaded.config);
   study.config = loaded.config;
   study.plant = loaded.plant;
   study.speeds = load_speeds(&study.plant);

@@ -124,6 +124,8 @@ words 'file:hello.so' 'hang_time = 0\n' 'bad.ini:3: device.hang_time: found "0",
 
 # ---- what they offer ----
 "$bin/ethd-laws" --driver "$work/hello.so" >"$work/out" 2>&1 || fail "laws: $(cat "$work/out")"
+laws=$(realpath "$bin/ethd-laws")
+(cd "$work" && "$laws" --driver hello.so) >"$work/out" 2>&1 || fail "laws, beside the file: $(cat "$work/out")"
 grep -qx "device hello: two motors that aren't there, to copy from" "$work/out" || fail "laws: $(cat "$work/out")"
 "$bin/ethd-laws" --driver "$BUILD/tests/plugins/driver_abi.so" >"$work/out" 2>"$work/err"
 [ $? = 2 ] && grep -q 'built for version 77' "$work/err" || fail "laws: $(cat "$work/err")"

@@ -31,12 +31,14 @@ compiled wall ethd && "$work/wall" >"$work/wall.out" || fail "wall: exit $?"
 awk '{ gsub(/[^-+.e0-9 ]/, ""); rows++; least = $1 < least ? $1 : least; most = $3 > most ? $3 : most }
   END { exit !(rows == 80 && least < -0.001) }' "$work/wall.out" || fail "wall: $(tail -n 3 "$work/wall.out")"
 
-# ---- law: swapped in by name, its taps differ from ours ----
+# ---- law: tapped beside ours, since its configuration names it; swapped in by name, its taps differ ----
 compiled law ethd -shared -fPIC && cp "$work/law" "$work/mine.so"
 cp apps/config/wall.scene "$work"
 { sed '/^\[transition\]/,/^$/d' apps/config/n.ini; printf '\n[plugins]\nfile = mine.so\n[transition]\nlaw = mine\n'; } >"$work/mine.ini"
 [ -n "${SAN:-}" ] || "$prefix/bin/ethd-tap" --config "$work/mine.ini" --transition mine,abrupt --taps 4 --speed low --csv "$work/mine.csv" >"$work/out" 2>&1 ||
   fail "the law: $(cat "$work/out")"
+[ -n "${SAN:-}" ] || "$prefix/bin/ethd-tap" --config "$work/mine.ini" --taps 1 --speed low | grep -c '^[a-z]* *low  ' | grep -qx 5 ||
+  fail "the configuration's own law isn't the fifth"
 [ -n "${SAN:-}" ] || awk -F, '$2 == "mine" && $6 == "ok" { v[++n] = $9 } $2 == "abrupt" && $6 == "ok" { m++; d += $9 }
   END { for (i = 1; i <= n; i++) s += v[i]; exit !(n && m && s / n < 0.8 * d / m) }' "$work/mine.csv" || fail "the law's taps: $(cat "$work/mine.csv")"
 

@@ -19,6 +19,8 @@ for program in "$BUILD"/bin/ethd-*; do
   for option in $("$program" --help | grep -oE '(^|[ ,])--[a-z][-a-z]*' | tr -d ' ,' | sort -u); do
     sed 's/‐/-/g; s/−/-/g' "$work/page" | grep -q -e "$option" || fail "$name.1 has no $option"
   done
+  torn=$("$program" --help | awk '/^Example/ { on = 1 } on && (/^--/ || length > 79)')
+  [ -z "$torn" ] || fail "$name --help: an example is too long for a terminal: $torn"
   grep -q "libethd $version" "$work/page" || fail "$name.1 doesn't say its version"
   [ -e "$work/usr/share/bash-completion/completions/$name" ] || fail "no completion of $name"
 done

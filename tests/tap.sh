@@ -145,6 +145,10 @@ refuse 'abrupt' --transition bumpy
 refuse 'paper or finger' --validity hand
 refuse '1000' --learn 1001
 refuse 'section.key=value' --set force
+refuse 'foo.bar: unknown section' --set foo.bar=3
+refuse 'contact.k_ee: not a key of kelvin-voigt' --set contact.k_ee=3
+refuse 'arm.mas_x: unknown key' --set arm.mas_x=0.3
+refuse 'not a key of abrupt' --transition abrupt,smooth --set transition.b_d=50
 refuse 'mass_x' --set arm.mass_x=-1
 refuse 'range' --transition predictive --set transition.range=9
 refuse 'whole number from 0' --seed -1

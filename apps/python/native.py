@@ -23,7 +23,7 @@ def pkg_config(*arguments):
 def in_build(folder):
     """(include folder, archives' folder, what to link besides) of a build folder."""
     if not os.path.exists(os.path.join(folder, "libethd-drivers.a")):
-        raise SystemExit(f"{folder}: there is no libethd-drivers.a; run make, or install libethd and leave ETHD_BUILD out")
+        raise SystemExit(f"{folder}: there is no libethd-drivers.a; run make, or install libethd where pkg-config finds it (PKG_CONFIG_PATH)")
     return os.path.join(TREE, "include"), folder, NEEDED
 
 

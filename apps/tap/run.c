@@ -47,9 +47,21 @@ static ethd_status check_law(const ethd__tap_plan *plan, const char *law, char *
   return status;
 }
 
+/* A key counts for the laws that have it; one that none has is a slip. */
+static ethd_status check_gain(const ethd__tap_plan *plan, const ethd__gain *gain, char *message) {
+  const ethd_config *config = plan->study->config;
+  ethd_setup setup = config->setup;
+  for (size_t law = 0; law < plan->law_count; law++)
+    if (ethd__gain_applies(plan->study, plan->laws[law], gain)) return ETHD_OK;
+  ethd_status status = ethd_config_transition(config, plan->laws[0], &setup, message);
+  return status ? status : ethd_config_set(config, gain->key, gain->value, &setup, message);
+}
+
 ethd_status ethd__plan_check(const ethd__tap_plan *plan, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = ETHD_OK;
   for (size_t law = 0; !status && law < plan->law_count; law++) status = check_law(plan, plan->laws[law], message);
+  for (size_t i = 0; !status && i < plan->study->gain_count; i++)
+    status = check_gain(plan, &plan->study->gains[i], message);
   return status;
 }
 

@@ -38,8 +38,7 @@ static const char doc[] =
               "machine.\n\n"
               "Example:\n"
               "  ethd-tune --plant n --out tuned.ini --plot tuned.png\n"
-              "  ethd-tune --plant mine.plant --config mine.ini --range contact.k_e=1000 --prefer tracking --out "
-              "tuned.ini\n"
+              "  ethd-tune --plant mine.plant --config mine.ini --out best.ini\n"
               "  ethd-tune --plant n --work search --jobs 2 --out tuned.ini";
 
 enum {

@@ -2,10 +2,12 @@
 
 #include <dlfcn.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "settings/config_parts.h"
 #include "text/error_text.h"
+#include "text/text.h"
 
 #define WORD_MAX 31
 #define KEYS_MAX 64
@@ -86,7 +88,9 @@ static void foreign(const char *what) {
 }
 
 static ethd_status load(const char *path, ethd_driver *out, char *what) {
-  void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+  char *own = strchr(path, '/') ? NULL : ethd__path_join(".", path); /* else dlopen looks where libraries are */
+  void *handle = dlopen(own ? own : path, RTLD_NOW | RTLD_LOCAL);
+  free(own);
   if (!handle) return ethd__say(what, ETHD_E_LOAD, "%s", dlerror());
   const ethd_driver *table = dlsym(handle, "ethd_driver_plugin");
   ethd_status status = table ? ethd__driver_check(table, what)

@@ -1,3 +1,4 @@
+#include <dlfcn.h>
 #include <elf.h>
 #include <errno.h>
 #include <link.h>
@@ -135,13 +136,15 @@ static ethd_status open_plugin(ethd_config *config, const char *path, const ethd
   status = ethd_plugin_open(path, &entry, &error);
   foreign(NULL);
   if (!status) return add_laws(config, entry, key);
+  const char *why = status == ETHD_E_LOAD ? dlerror() : NULL;
+  if (why) return ethd__key_refuse(key, status, "%s", why);
   ethd_error_text(NULL, &error, what);
   return ethd__key_refuse(key, status, "%s: %s", key->value, what);
 }
 
 ethd_status ethd__config_plugin(ethd__config *whole, const ethd__config_key *key) {
   if (whole->received)
-    return ethd__key_refuse(key, ETHD_E_LOAD, "%s is a program from somebody else's folder; --plugins lets it run",
+    return ethd__key_refuse(key, ETHD_E_LOAD, "%s is a program from outside of this folder; --plugins lets it run",
                             key->value);
   char *joined = ethd__path_join(whole->config.folder, key->value);
   char *path = joined ? realpath(joined, NULL) : NULL;

@@ -3,8 +3,8 @@
     import ethd
     r = ethd.read("recording")              # a folder that a program recorded
     r.tick["tau"]                           # (n, 2) Nm; r.tick.dtype names every field
-    c = r.controller()
-    for row in r.tick: c.step(row).tau      # equal to the bit, until an event of the recording
+    for row, step in r.replay(): step.tau   # run again, events too: equal to row["tau"], to the bit
+    c = r.controller()                      # one as the recording began; c.step(row) as you like
 
 SI units and radians, frame R_0: x right, y up. Nothing here is realtime.
 """
@@ -16,6 +16,8 @@ _before = _sys.getdlopenflags()
 _sys.setdlopenflags(_before | _os.RTLD_GLOBAL)
 try:
     from ethd import _native
+except ImportError as error:
+    raise ImportError(f"ethd isn't built here ({error}); pip install ./apps/python, and run outside of apps/python") from error
 finally:
     _sys.setdlopenflags(_before)
 
