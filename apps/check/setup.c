@@ -84,6 +84,7 @@ static void other_limits(const ethd_config *c) {
 static void scene(const ethd_config *c) {
   const ethd_ini_key *file = ethd_ini_find(&ethd__config_whole(c)->ini, "scene", "file");
   ethd_scene_info info;
+  if (!file) printf("; none: there is no wall (ethd-tap puts the paper's there)\n");
   if (!file) return;
   ethd_scene_describe(c->scene, &info);
   printf("file          = %s ; %zu objects, %zu materials, %zu out of the arm's reach\n", file->value, info.objects,

@@ -73,6 +73,8 @@ static void print_skipped(FILE *out, const ethd__session *s, const ethd_loop_sta
           "%-10s %" PRIu64 " readings dropped, %" PRIu64 " contacts without room, %" PRIu64
           " ticks without room in the recorder\n",
           "skipped", c.readings_dropped, c.contacts_lost, stats->rows_lost);
+  if (!s->setup.scene) fprintf(out, "%-10s none: there is no wall; [scene] file = ... has one\n", "scene");
+  if (!s->setup.scene) return;
   fprintf(out, "%-10s queried in %" PRIu64 " of %" PRIu64 " ticks", "scene", c.queried, c.ticks);
   ethd__dropped_print(out, s->setup.scene);
   fputc('\n', out);

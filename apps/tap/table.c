@@ -194,17 +194,46 @@ static void print_heading(FILE *file, const ethd__study *study, const ethd__head
   fputs(" Means (standard deviations) over the valid taps.\n\n", file);
 }
 
+static bool has_law(const ethd__cell *cells, size_t count, const char *law) {
+  for (size_t i = 0; i < count; i++)
+    if (!strcmp(cells[i].law, law)) return true;
+  return false;
+}
+
+/* A law that stops the ring before the wall has no taps that the paper's rule finds valid: most are too slow. */
+static void print_other_rule(FILE *file, const ethd__study *study, const ethd__cell *cells, size_t count) {
+  if (study->validity != ETHD_TAP_BY_PAPER) return;
+  for (size_t law = 0; law < count; law += study->speed_count) {
+    size_t taps = 0, valid = 0, slow = 0;
+    for (size_t c = law; c < law + study->speed_count; c++) {
+      taps += cells[c].count;
+      valid += ethd__cell_valid(&cells[c]);
+      for (size_t i = 0; i < cells[c].count; i++) slow += cells[c].results[i].metrics.reason == ETHD_TAP_TOO_SLOW;
+    }
+    if (!valid && 2 * slow > taps)
+      fprintf(
+          file,
+          "%s: the ring stops before it meets the wall, which the paper's rule asks for; --validity finger judges by "
+          "the finger alone\n",
+          cells[law].law);
+  }
+}
+
 void ethd__table_print(FILE *file, const ethd__study *study, const ethd__heading *heading, const ethd__cell *cells,
                        size_t count) {
   print_heading(file, study, heading);
   print_cells(file, cells, count);
   fputc('\n', file);
   print_reasons(file, cells, count);
+  print_other_rule(file, study, cells, count);
   print_queries(file, study->config->scene, cells, count);
   if (heading->movement) return;
   ethd__sample sample = {cells, count, 0, ethd__margins_default, study->seed};
   for (size_t i = 0; i < count; i++) sample.people = cells[i].count > sample.people ? cells[i].count : sample.people;
   print_means(file, heading->plant, &sample);
-  print_claims(file, &sample);
+  if (has_law(cells, count, "smooth") && has_law(cells, count, "offset"))
+    print_claims(file, &sample);
+  else
+    fputs("\nThe paper's claims compare smooth and offset: they are tested where both are tapped.\n", file);
   print_truth(file, study, cells, count);
 }
