@@ -8,7 +8,7 @@ fail() { echo "FAILED $*"; failed=1; }
 
 echo 'halfplane -1 0 -0.238' >"$folder/wall.scene"
 config() { printf '[plugins]\nfile = %s/tests/plugins/%s.so\n[scene]\nfile = wall.scene\n[transition]\nlaw = broken\n' "$BUILD" "$1" >"$folder/$1.ini"; }
-for plugin in hangs hangs_check exits exits_later writes_past rounds brief_escapes; do config $plugin; done
+for plugin in hangs hangs_check exits exits_later writes_past rounds brief_escapes says_nan; do config $plugin; done
 
 # ends PLUGIN SECONDS PATTERN COMMAND...: exit 1 within so many seconds, and one line that says so
 ends() {
@@ -34,6 +34,10 @@ case ${SAN:-} in
     "$BUILD/bin/ethd-replay" --help >/dev/null || fail "--help"
     ;;
 esac
+
+# A law that gives what isn't a number: the taps are faults, and the table says of whom and which.
+"$BUILD/bin/ethd-tap" --config "$folder/says_nan.ini" --taps 2 >"$folder/out" || fail "says_nan: exit $?"
+grep -qx "broken: the first fault: a law's output isn't a finite number in its range" "$folder/out" || fail "says_nan: $(cat "$folder/out")"
 
 # A step that hangs where no thread watches: the program's own alarm ends it.
 hangs="a plugin's law doesn't return"

@@ -118,10 +118,10 @@ static double strongest(const ethd__tap_rows *rows) {
   return force;
 }
 
-static bool faulted(const ethd__tap_rows *rows) {
+static ethd_fault first_fault(const ethd__tap_rows *rows) {
   for (size_t i = 0; i < rows->count; i++)
-    if (rows->trace[i].fault) return true;
-  return false;
+    if (rows->trace[i].fault) return (ethd_fault)rows->trace[i].fault;
+  return ETHD_FAULT_NONE;
 }
 
 /* What a touch must be, once it is known to be in time. */
@@ -184,11 +184,12 @@ void ethd__metrics_of(const ethd__tap_rows *rows, const ethd__rule *rule, ethd__
                          .v_hand = felt.v_hand,
                          .touch_depth = felt.depth,
                          .eps_felt = felt.eps,
-                         .peak_force = strongest(rows)};
+                         .peak_force = strongest(rows),
+                         .fault = first_fault(rows)};
   measure_meeting(rows, rule, meeting, out);
   measure_touch(rows, rule, touch, out);
   if (sight < rows->count) out->t_seen = rows->truth[sight].t;
-  ethd__reason whatever = faulted(rows) ? ETHD_TAP_FAULT : rule->never_fast ? ETHD_TAP_TOO_SLOW : ETHD_TAP_OK;
+  ethd__reason whatever = out->fault ? ETHD_TAP_FAULT : rule->never_fast ? ETHD_TAP_TOO_SLOW : ETHD_TAP_OK;
   out->by_ring = whatever ? whatever : judge_by_paper(rows, rule, first, meeting, out->v_rvo);
   out->by_finger = whatever ? whatever : judge_by_finger(rows, rule, first, &felt);
   out->reason = by_finger ? out->by_finger : out->by_ring;

@@ -93,6 +93,7 @@ typedef struct ethd__metrics {
   double touch_depth;              /* m */
   double eps_felt;                 /* m */
   double peak_force;               /* N: largest |F_e| of the tap */
+  ethd_fault fault;                /* the first of the tap */
 } ethd__metrics;
 
 void ethd__metrics_of(const ethd__tap_rows *rows, const ethd__rule *rule, ethd__metrics *out);

@@ -200,6 +200,16 @@ static bool has_law(const ethd__cell *cells, size_t count, const char *law) {
   return false;
 }
 
+/* The first fault under each law, which a law of one's own may be the cause of. */
+static void print_faults(FILE *file, const ethd__study *study, const ethd__cell *cells, size_t count) {
+  for (size_t law = 0; law < count; law += study->speed_count) {
+    ethd_fault fault = ETHD_FAULT_NONE;
+    for (size_t c = law; c < law + study->speed_count; c++)
+      for (size_t i = 0; i < cells[c].count && !fault; i++) fault = cells[c].results[i].metrics.fault;
+    if (fault) fprintf(file, "%s: the first fault: %s\n", cells[law].law, ethd_fault_sentence(fault));
+  }
+}
+
 /* A law that stops the ring before the wall has no taps that the paper's rule finds valid: most are too slow. */
 static void print_other_rule(FILE *file, const ethd__study *study, const ethd__cell *cells, size_t count) {
   if (study->validity != ETHD_TAP_BY_PAPER) return;
@@ -225,6 +235,7 @@ void ethd__table_print(FILE *file, const ethd__study *study, const ethd__heading
   print_cells(file, cells, count);
   fputc('\n', file);
   print_reasons(file, cells, count);
+  print_faults(file, study, cells, count);
   print_other_rule(file, study, cells, count);
   print_queries(file, study->config->scene, cells, count);
   if (heading->movement) return;
