@@ -104,6 +104,30 @@ START_TEST(test_world) {
 }
 END_TEST
 
+/* A late reading belongs to where the ring was then. The controller remembers 32 ticks of it; what is older is taken for the
+   oldest of them. */
+START_TEST(test_late) {
+  const int ages[] = {0, 5, 31, 32, 40, 90};
+  const double speed = 0.05; /* m/s */
+  const ethd_arm arm = {ETHD_ARM_PARALLEL, 0.25, 0.25};
+  ethd_setup setup = ethd_setup_default();
+  ethd_control *control;
+  ethd_error error;
+  ethd_trace t;
+  ck_assert_int_eq(ethd_setup_set(&setup, "finger_filter.reference", 0, &error), ETHD_OK);
+  ck_assert_int_eq(ethd_control_create(&setup, &control, &error), ETHD_OK);
+  for (int k = 1; k <= 100; k++) {
+    ethd_sense s = sense_at(1000000 * k, k == 100 ? ETHD_HAVE_CENTRE : 0);
+    ck_assert_int_eq(ethd_arm_angles(&arm, (ethd_vec){0.25 + 1e-3 * speed * k, 0.25}, -1, s.q), ETHD_OK);
+    s.sample_ns = s.time_ns - 1000000 * ages[_i];
+    put((ethd_vec){1e-4, 0}, s.centre);
+    t = step(control, &s);
+  }
+  ck_assert_double_eq_tol(t.xf[0], 0.25 + 1e-3 * speed * (100 - fmin(ages[_i], 31)) + 1e-4, 1e-12);
+  ethd_control_destroy(control);
+}
+END_TEST
+
 /* A device's finger can't be outside of its ring: judged where the ring stood, not at the world's origin. */
 START_TEST(test_world_outside) {
   ethd_control *control = control_of(0.01);
@@ -162,6 +186,7 @@ int main(void) {
   tcase_add_test(tc, test_default);
   tcase_add_loop_test(tc, test_no_noise, 0, 4);
   tcase_add_loop_test(tc, test_world, 0, 2);
+  tcase_add_loop_test(tc, test_late, 0, 6);
   tcase_add_test(tc, test_world_outside);
   tcase_add_test(tc, test_rate);
   suite_add_tcase(suite, tc);
