@@ -81,7 +81,7 @@ static void open_trip(const one_arm *a, int windows, trip *t) {
   for (int i = 0; i < windows; i++) {
     t->shots[i] = (ethd__shot){ETHD__BACK + (size_t)i * TICKS, 0, ticks, TICKS, 0};
     for (int s = 0; s < ETHD__STATE_RIGID; s++)
-      t->states[i][s] = s < 2 ? (s ? 0.15 : 1.45) : ethd__bench_draw((uint64_t)(4 * i + s), -0.5, 0.5);
+      t->states[i][s] = s < 2 ? (s ? 0.15 : 1.45) : ethd__bench_draw(4 * (uint64_t)i + (uint64_t)s, -0.5, 0.5);
   }
 }
 

@@ -22,7 +22,11 @@ static const char style[] =
     "tr:hover td{background:#f7f9fb}figure{margin:1.2rem 0}"
     "img{max-width:100%;height:auto;border:1px solid #e4e4e4}figcaption{color:#555;font-size:.92rem}"
     "div.wide{overflow-x:auto}code{background:#f3f3f3;padding:0 .25em}nav a{margin-right:1rem}"
-    "@media print{body{max-width:none}h2{break-after:avoid}figure,table{break-inside:avoid}}";
+    "@media print{@page{size:A4;margin:12mm}"
+    "body{max-width:none}h2{break-after:avoid}figure{break-inside:avoid}"
+    "tr{break-inside:avoid}div.wide{overflow:visible}table{font-size:62%}img{max-height:24cm;width:auto}th,td{padding:"
+    "1px 4px;white-space:normal}"
+    "pre{white-space:pre-wrap}}";
 
 /* ---- text and markup ---- */
 
