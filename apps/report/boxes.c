@@ -106,9 +106,14 @@ static ethd_status write_boxes(const ethd__report *r, const ethd__data *data, co
     return ETHD_E_FILE;
   }
   for (int q = 0; q < ETHD_QUANTITIES; q++) write_quantity(&f, data, &ethd__quantities[q]);
-  ethd_status status[] = {ethd_csv_close(f.boxes, r->message), ethd_csv_close(f.points, r->message),
-                          ethd_csv_close(f.lines, r->message)};
-  return status[0] ? status[0] : status[1] ? status[1] : status[2];
+  ethd_csv_out *const made[] = {f.boxes, f.points, f.lines};
+  ethd_status failure = ETHD_OK;
+  for (size_t i = 0; i < sizeof made / sizeof *made; i++) {
+    char unsaid[ETHD_MESSAGE_MAX];
+    ethd_status status = ethd_csv_close(made[i], failure ? unsaid : r->message);
+    if (!failure) failure = status;
+  }
+  return failure;
 }
 
 static bool braked(const ethd__data *data) {

@@ -39,11 +39,7 @@ static void summary_of(const ethd__data *data, const table1_line *row, ethd__sum
   if (group) ethd__group_summary(group, row->quantity, out);
 }
 
-static const char *percent(double share, char out[32]) {
-  if (isnan(share)) return strcpy(out, "-");
-  snprintf(out, 32, "%.1f %%", 100 * share);
-  return out;
-}
+static void percent(double share, char out[32]) { snprintf(out, 32, isnan(share) ? "-" : "%.1f %%", 100 * share); }
 
 /* Leaves out the two columns of taps beside the study where there are none. */
 static void leave_out_beside(const ethd__report *r, const char *cells[12]) {
@@ -65,6 +61,8 @@ static void print_row(ethd__report *r, const table1_line *row, ethd_csv_out *csv
   ethd__interval_text((ethd__interval){known ? m->low : NAN, m->high, 0, 0}, d, interval);
   snprintf(average, sizeof average, "%.*f (%s)", d, m->average, interval);
   ethd__mean_text(&other, d, beside);
+  percent(row->share[0], share[0]);
+  percent(row->share[1], share[1]);
   const char *cells[] = {name,
                          paper,
                          ethd__mean_text(&study, d, here),
@@ -74,8 +72,8 @@ static void print_row(ethd__report *r, const table1_line *row, ethd_csv_out *csv
                          average,
                          ethd__verdict_words[m->verdict],
                          ethd__p_text(known ? m->p : NAN, p),
-                         percent(row->share[0], share[0]),
-                         percent(row->share[1], share[1]),
+                         share[0],
+                         share[1],
                          NULL};
   leave_out_beside(r, cells);
   ethd__html_row(&r->page, cells, 1);

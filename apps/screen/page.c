@@ -70,10 +70,13 @@ typedef struct page_room {
 static page_room measure(ethd__window *w, const ethd__page *page) {
   const ethd__paragraph title = small(page->title), keys = small(page->keys);
   double margin = MARGIN * w->height;
-  page_room room = {.top = fmax(margin + put(w, &title, 0, false), page->below),
-                    .bottom = w->height - margin - put(w, &keys, 0, false)};
-  for (size_t i = 0; i < page->count; i++)
-    room.height += put(w, &page->paragraph[i], 0, false) + GAP * line_height(w, page->paragraph[i].size);
+  page_room room = {.bottom = w->height - margin};
+  room.top = fmax(margin + put(w, &title, 0, false), page->below);
+  room.bottom -= put(w, &keys, 0, false);
+  for (size_t i = 0; i < page->count; i++) {
+    room.height += put(w, &page->paragraph[i], 0, false);
+    room.height += GAP * line_height(w, page->paragraph[i].size);
+  }
   return room;
 }
 

@@ -185,7 +185,8 @@ static int told_while_bouncing(int bounces, int pause) {
   r.setup.limits.energy = BOUND;
   rig_start(&r);
   for (int i = 0; i < bounces; i++) {
-    rows += told_at(&r, 0.015, -0.0006, 0.2) + told_at(&r, -0.0006, 0.015, 0.2);
+    rows += told_at(&r, 0.015, -0.0006, 0.2);
+    rows += told_at(&r, -0.0006, 0.015, 0.2);
     for (int k = 0; k < pause; k++) rows += tick_at(&r, 0.015, 0);
   }
   rig_close(&r);
