@@ -39,7 +39,12 @@ static void summary_of(const ethd__data *data, const table1_line *row, ethd__sum
   if (group) ethd__group_summary(group, row->quantity, out);
 }
 
-static void percent(double share, char out[32]) { snprintf(out, 32, isnan(share) ? "-" : "%.1f %%", 100 * share); }
+static void percent(double share, char out[32]) {
+  if (isnan(share))
+    strcpy(out, "-");
+  else
+    snprintf(out, 32, "%.1f %%", 100 * share);
+}
 
 /* Leaves out the two columns of taps beside the study where there are none. */
 static void leave_out_beside(const ethd__report *r, const char *cells[12]) {
