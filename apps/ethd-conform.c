@@ -12,7 +12,9 @@ static const char doc[] =
     "Example:\n"
     "  printf '[device]\\ndriver = hello\\n' >hello.ini\n"
     "  ethd-conform --config hello.ini --virtual --move\n"
-    "A driver of your own: call ethd_conform of ethd/conform.h from a program that links it.";
+    "A driver of your own: [device] driver = file:mine.so, or ethd_conform of ethd/conform.h in a program that links "
+    "it. "
+    "Without --config the simulated device is asked: its finger pushes the ring, which isn't zero torque's fault.";
 
 static const struct argp_option options[] = {
     {"config", 'c', "FILE", 0, "the configuration; its [device] is asked", 0},
