@@ -101,12 +101,18 @@ static void print_rules(ethd__report *r) {
       "lies within &#177;%g mm (d_max) and &#177;%g and &#177;%g m/s (v_of, v_rmin): margins of the study file.</p>\n",
       ethd__judged_name(r), data->people_count, 1e3 * p->margin_d_max, p->margin_v_of, p->margin_v_rmin);
   ethd__html_markup(
-      &r->page, "<p>Tests: <em>sign flip</em>, the exact permutation test of people's contrasts; <em>TOST</em>, two "
-                "one-sided t tests; <em>bootstrap</em> of people and their taps, for the threshold; "
-                "<em>overlap</em>, where fewer than six people have a valid tap in all four cells: the strategies' "
-                "differences of all people who have one at high speed are compared with those of all who have one at "
-                "low speed, by a t test that takes into account who is in both (Derrick and others 2017). It assumes "
-                "that who lacks a valid tap doesn't depend on the difference.</p>\n");
+      &r->page,
+      "<p>Tests: <em>sign flip</em>, the exact permutation test of people's contrasts; <em>TOST</em>, two "
+      "one-sided t tests; <em>bootstrap</em> of people and their taps, for the threshold; "
+      "<em>overlap</em>, where fewer than six people have a valid tap in all four cells: the strategies' "
+      "differences of all people who have one at high speed are compared with those of all who have one at "
+      "low speed, by a t test that takes into account who is in both (Derrick and others 2017). It assumes "
+      "that who lacks a valid tap doesn't depend on the difference.</p>\n"
+      "<p>The threshold is the voluntary speed of the hand that parts the taps which touch early from the others "
+      "with the fewest mistakes, under all strategies together; a hand is seldom as fast as it was asked to be. "
+      "Limits of braking time and offset are held against each person's largest valid value, so that a single "
+      "tap may exceed a limit that is shown. The share of valid taps is the mean of the people's shares; the "
+      "table of valid taps pools all taps, so that those who needed many weigh more there.</p>\n");
   ethd__html_print(
       &r->page, "<p class=\"note\">%s</p>\n",
       r->beside.group_count
