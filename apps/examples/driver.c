@@ -1,4 +1,4 @@
-/* A driver of one's own, for amplifiers on a bus that answers slowly: the control thread only ever touches two cells, an
+/* A driver of one's own, for amplifiers on a bus that answers slowly: the control thread only touches two cells, and an
    I/O thread does the exchanges. The amplifiers are a model here (J dw/dt = torque - b w); put yours into `exchange`.
    As a program it asks whether the driver keeps its contract:
 
@@ -15,7 +15,7 @@
 
 #define INERTIA 0.02      /* kg m^2 */
 #define FRICTION 0.05     /* Nms/rad */
-#define WATCHDOG 20000000 /* ns without an exchange: the amplifiers let go */
+#define WATCHDOG 20000000 /* ns: without an exchange for so long the amplifiers let go */
 
 typedef struct order {
   double torque[2]; /* Nm */
@@ -27,10 +27,10 @@ typedef struct answer {
 
 typedef struct bus {
   ethd_cell *orders, *answers;
-  _Atomic int32_t safe; /* any thread's: no torque until the next start */
+  _Atomic int32_t safe; /* set by any thread: no torque until the next start */
   answer seen;          /* the control thread's */
-  order taken;          /* the I/O thread's, and the rest */
-  double q[2], w[2];    /* the model */
+  order taken;          /* the I/O thread's, as all that follows */
+  double q[2], w[2];    /* the model's angles and speeds */
   int64_t now, heard;   /* ns */
 } bus;
 
@@ -56,7 +56,7 @@ static ethd_status open_bus(const ethd_device_def *def, void **device, char mess
   return ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, b->q);
 }
 
-/* At rest where it stands, with no torque from before, and an answer to begin with. */
+/* Begins at rest where the device stands, without a torque from before, and with an answer that `read` can give. */
 static ethd_status start(void *device) {
   bus *b = device;
   b->taken = (order){{0, 0}};

@@ -1,7 +1,7 @@
-/* Teleoperation: far away a robot's gripper follows the operator's ring. What it may touch moves and changes its shape,
-   and stands under the operator's finger as a wall; datagrams about it (doubles, as this machine has them) are late, get
-   lost, overtake one another. The strategy is swapped each second while it runs, the energy that a contact gives away is
-   bounded, and when nothing has come for LINK_DEAD the ring is braked and let go.
+/* Teleoperation: a robot's gripper, far away, follows the operator's ring. What it may touch moves, changes its shape,
+   and the operator's finger feels it as a wall. Datagrams about it (doubles, as this machine has them) are
+   late, get lost and overtake one another. The strategy is swapped each second while it runs, the energy that a contact
+   gives away is bounded, and when nothing has come for LINK_DEAD the ring is braked and let go.
      cc teleop.c $(pkg-config --cflags --libs ethd-drivers) -o teleop
      export ETHD_DATA_DIR=$(pkg-config --variable=datadir ethd-drivers)
      (./teleop ring 4777 6 & ./teleop robot 4777 7 20 10; wait)        PORT SECONDS DELAY_MS LOSS_PERCENT */
@@ -50,10 +50,10 @@ static int robot(int fd, double seconds, double delay, double loss) {
   return printf("robot: %d datagrams, the gripper at %.1f mm\n", sent, 1e3 * gripper[0]), 0;
 }
 
-/* The operator's side: the far one as a driver beside the ring's own. */
-static ethd_cell *newest; /* from the thread that listens to the control thread, which has the rest */
-static word far;          /* what came last */
-static double wall[6];    /* what follows it */
+/* The operator's side, where the robot is a driver beside the ring's own. */
+static ethd_cell *newest; /* from the thread that listens to the control thread, whose the rest is */
+static word far;          /* the last datagram */
+static double wall[6];    /* the wall's pose and speeds, which follow it */
 static int64_t heard, at; /* ns */
 
 static ethd_status open_link(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
@@ -61,9 +61,10 @@ static ethd_status open_link(const ethd_device_def *def, void **out, char messag
 }
 static void close_link(void *device) { (void)device; }
 
-/* A pose that jumps would give energy away: the wall follows what came, and has the speed with which it follows. */
+/* A pose that jumps would give energy away, so the wall follows the datagrams smoothly, and its speed is the one with
+   which it follows. */
 static ethd_status read_link(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
-  double dt = 1e-9 * (double)(now_ns - at), share = fmin(dt / SMOOTHING, 1); /* the first time the whole */
+  double dt = 1e-9 * (double)(now_ns - at), share = fmin(dt / SMOOTHING, 1); /* 1 at the first call */
   if (ethd_cell_take(newest, &far) == ETHD_OK || !at) heard = now_ns;
   for (int i = 0; i < 3; i++) {
     double step = share * (far.body[i] - wall[i]);
@@ -86,7 +87,7 @@ static const ethd_driver link_driver = {.size = sizeof link_driver,
                                         .close = close_link};
 static const ethd_driver *const drivers[] = {&ethd_driver_sim, &link_driver, NULL};
 
-/* Until the time is over or a fault has stopped the ring: it was braked, then let go. */
+/* Leads the robot until the time is over, or until a fault has braked the ring and let it go. */
 static int lead(int fd, ethd_loop *loop, ethd_control *control, ethd_setup *setup, double seconds) {
   int rules = -1, shown = 0, swaps = -1, touching = 0, late = 0;
   ethd_loop_row row = {.armed = 0};
@@ -97,14 +98,14 @@ static int lead(int fd, ethd_loop *loop, ethd_control *control, ethd_setup *setu
     if (ethd_scene_parse(shapes[i], strlen(shapes[i]), &scenes[i], &error)) return fail("shape", shapes[i]);
   for (double begin = now(), t; (t = now() - begin) < seconds && (ethd_loop_armed(loop) || t < 1); usleep(1000)) {
     for (; recv(fd, &w, sizeof w, MSG_DONTWAIT) == sizeof w; late += w.number < last.number)
-      if (w.number > last.number) last = w, ethd_cell_put(newest, &last); /* else it was overtaken */
+      if (w.number > last.number) last = w, ethd_cell_put(newest, &last); /* else a later one came first */
     while (ethd_loop_take(loop, &row) == ETHD_OK) touching += row.trace.state == ETHD_VO;
-    if (send(fd, row.trace.x, sizeof row.trace.x, 0) < 0) continue; /* soon nothing will come either */
+    if (send(fd, row.trace.x, sizeof row.trace.x, 0) < 0) continue; /* then answers stop too, which LINK_DEAD sees */
     int law = (int)t % 2, shape = last.shape > 0;
     ethd_setup_transition(setup, laws[law]);
     setup->bodies[0] = scenes[shape];
     if ((law != rules || shape != shown) && ethd_control_post(control, setup, &error) == ETHD_OK)
-      rules = law, shown = shape, swaps++; /* else the last one waits still: again in a millisecond */
+      rules = law, shown = shape, swaps++; /* else the last post wasn't taken yet: try again in a millisecond */
   }
   ethd_loop_stop(loop);
   if (ethd_loop_join(loop)) return fail("loop", "its clock failed");

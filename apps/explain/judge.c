@@ -9,10 +9,10 @@
 #include "tap/summary.h"
 
 #define FEWEST 6   /* valid taps that make a statistic */
-#define MISSED 4.0 /* the most that a line counts, and what one without a value does */
-#define INNER 0.1  /* of a line's bounds: a search looks so far within them */
+#define MISSED 4.0 /* the largest miss of a line, and that of a line without a value */
+#define INNER 0.1  /* the share of a line's range by which the inner bounds are narrower on either side */
 
-typedef enum line_kind { MEAN, RATIO } line_kind; /* what is outside counts by differences, or by logarithms */
+typedef enum line_kind { MEAN, RATIO } line_kind; /* a miss is a difference, or a difference of logarithms */
 
 static const struct {
   ethd__explain_group group;
@@ -100,7 +100,8 @@ static int by_commanded(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* The commanded speed that mistakes the fewest taps when all above it are called early; NaN unless there are both. */
+/* Returns the commanded speed above which taps are early: the one that misjudges the fewest taps. NaN unless some taps
+   are early and some are not. */
 static double early_from(const ethd__cell *cell) {
   ethd__result *r = malloc(cell->count * sizeof *r);
   size_t early = 0, n = cell->count;
@@ -122,7 +123,7 @@ static double difference(const ethd__cell *offset, const ethd__cell *smooth, siz
   return at_least(offset, at_least(smooth, ethd__cell_median(offset, field) - ethd__cell_median(smooth, field)));
 }
 
-/* Of a cell's valid taps the mean size of a figure. */
+/* Returns the mean size of a figure over the cell's valid taps. */
 static double size_of(const ethd__cell *cell, size_t field) {
   double sum = 0, n = 0;
   for (size_t i = 0; i < cell->count; i++) {
@@ -162,7 +163,7 @@ static void compare_low(const ethd__cell *offset, const ethd__cell *smooth, ethd
 
 /* ---- the whole ---- */
 
-/* The next of four cells, and what it says together with those before it. */
+/* Runs the next of four cells, and fills the figures that it gives together with those before it. */
 static ethd_status take_cell(const ethd__study *study, int number, uint32_t taps, ethd__cell cells[4],
                              ethd__explain_figures *out, char *message) {
   static const char *const laws[4] = {"offset", "offset", "smooth", "smooth"};

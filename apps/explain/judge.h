@@ -1,12 +1,12 @@
-/* How far a plant is from what the paper says: Table 1's eight statistics, its sentences, and gains that are "the highest
-   possible while remaining stable". All [main]. */
+/* How far a plant is from what the paper says: Table 1's eight statistics, the paper's sentences, and gains that are
+   "the highest possible while remaining stable". All [main]. */
 #ifndef ETHD_EXPLAIN_JUDGE_H
 #define ETHD_EXPLAIN_JUDGE_H
 
 #include "explain/prior.h"
 
-/* X(name, group, low, high, kind, unit, what it is). Means lie within 1.5 standard errors of the paper's nine taps,
-   standard deviations within an F test's 5 %, two-sided, with 8 degrees of freedom against many. */
+/* X(name, group, low, high, kind, unit, what it is). The bounds of a mean are 1.5 standard errors of the paper's nine
+   taps to each side, those of a standard deviation an F test's two-sided 5 % with 8 degrees of freedom against many. */
 #define ETHD_EXPLAIN_LINES(X)                                                              \
   X(ds_low, TABLE, 1.709, 4.513, MEAN, "ms", "mean Delta_s, low")                          \
   X(ds_low_sd, TABLE, 1.894, 5.371, RATIO, "ms", "sd of Delta_s, low")                     \
@@ -50,22 +50,22 @@ typedef enum ethd__explain_group {
 extern const char *const ethd__explain_group_names[ETHD_EXPLAIN_GROUPS];
 
 typedef struct ethd__explain_figures {
-  double value[ETHD_EXPLAIN_LINE_COUNT]; /* NaN: too few taps have it */
-  bool known[ETHD_EXPLAIN_LINE_COUNT];   /* false: it wasn't asked for */
+  double value[ETHD_EXPLAIN_LINE_COUNT]; /* NaN: too few taps have this figure */
+  bool known[ETHD_EXPLAIN_LINE_COUNT];   /* false: the figure wasn't asked for */
 } ethd__explain_figures;
 
 /* What is asked for. */
 typedef struct ethd__explain_question {
-  const ethd_config *config; /* has the paper's gains; that of plant n in a search */
+  const ethd_config *config; /* has the paper's gains; in a search it is that of plant n */
   ethd_plant base;
   ethd__explain_structure structure;
   bool asked[ETHD_EXPLAIN_GROUPS]; /* which groups count */
   uint64_t seed;
-  uint32_t taps; /* at low speed of each law; twice as many at high speed */
+  uint32_t taps; /* of each law at low speed; at high speed there are twice as many */
 } ethd__explain_question;
 
-/* How far a line's value is outside of its bounds; 0: it is within, more than 1: it is clearly missed. With `inner` the
-   bounds are a tenth narrower on either side, so that a search doesn't stop at their edge. */
+/* Returns how far a line's value is outside of its bounds: 0 if it is within, more than 1 if it clearly misses them.
+   With `inner` the bounds are a tenth narrower on either side, so that a search doesn't stop at their edge. */
 double ethd__explain_miss(int line, double value, bool inner);
 
 static inline void ethd__explain_set(ethd__explain_figures *figures, int line, double value) {
@@ -73,13 +73,14 @@ static inline void ethd__explain_set(ethd__explain_figures *figures, int line, d
   figures->known[line] = true;
 }
 
-/* Fills the figures of the groups that count, the cheap ones first. *total: the sum of their misses within the inner
-   bounds, each line with 4 at most; once it is over `enough` the rest isn't asked for. */
+/* Fills the figures of the groups that count, the cheap ones first. *total becomes the sum of the lines' misses of
+   their inner bounds, each at most 4; once it is over `enough` the remaining figures aren't asked for. */
 ETHD_MUST_CHECK ethd_status ethd__explain_judge(const ethd__explain_question *question, const ethd__explain_twin *twin,
                                                 double enough, ethd__explain_figures *out, double *total,
                                                 char message[ETHD_MESSAGE_MAX]);
 
-/* The limits of the gains, in limits.c: largest stable multiples, the others held. */
+/* Fills the limits of the gains: the largest stable multiple of each while the others stay as they are. [in
+   limits.c] */
 ETHD_MUST_CHECK ethd_status ethd__explain_limits(const ethd__study *study, ethd__explain_figures *out,
                                                  char message[ETHD_MESSAGE_MAX]);
 

@@ -1,5 +1,6 @@
-/* By how much each of the paper's gains could be larger, the others held. Wall and brake by their closed forms; tracking by
-   the whole controller on the simulated device, since readings of the finger come at another rate than ticks. */
+/* How much larger each of the paper's gains could be while the others stay. Wall and brake are judged by their closed
+   forms, tracking by the whole controller on the simulated device, since readings of the finger come at another rate
+   than ticks. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,13 +9,13 @@
 #include "explain/judge.h"
 
 #define AWAY 0.05     /* m from the wall at which the ring tracks a finger at rest */
-#define STEP 0.2e-3   /* m: the finger moves by so much, */
-#define STEP_END 0.02 /* s: within that time, */
-#define WINDOW 200    /* ticks over each of which the ring's speed is compared: the second and the fourth */
-#define QUIET 1e-12   /* m/s: nothing moves any more */
-#define MOST 8.0      /* times: no gain is looked for further up */
+#define STEP 0.2e-3   /* m by which the finger then moves, */
+#define STEP_END 0.02 /* s in which it does */
+#define WINDOW 200    /* ticks of a window; the ring's speed in the fourth window is compared with that in the second */
+#define QUIET 1e-12   /* m/s: below this nothing moves any more */
+#define MOST 8.0      /* the largest multiple of a gain that is tried */
 
-/* The plant as a linear device: no friction, no counts, no noise, no saturation, no touch. */
+/* Returns the plant as a linear device: without friction, counts, noise, saturation or touch. */
 static ethd_plant linear(const ethd_plant *plant) {
   ethd_plant p = *plant;
   p.friction = p.viscous = p.count = p.noise = 0;
@@ -22,7 +23,8 @@ static ethd_plant linear(const ethd_plant *plant) {
   return p;
 }
 
-/* How much the ring's speed grows between two windows, as a logarithm; a fault is without end. */
+/* Returns the logarithm of the ring's speed in the later window over that in the earlier one; INFINITY after a
+   fault. */
 static double growth_of(ethd__stage *stage) {
   double sum[4] = {0};
   ethd_sense sense;
@@ -41,7 +43,7 @@ static double growth_of(ethd__stage *stage) {
   return log(sum[3] / sum[1]);
 }
 
-/* Whether tracking settles with one of its gains `times` as large. */
+/* Finds whether tracking settles with one of its gains `times` as large. */
 static ethd_status settles(const ethd__study *study, const char *key, double times, bool *out, char *message) {
   ethd__study s = *study;
   ethd__stage stage;
@@ -65,7 +67,7 @@ static ethd_status settles(const ethd__study *study, const char *key, double tim
   return status;
 }
 
-/* Up from the paper's gain to the first unstable one, or down to the first stable one. */
+/* Searches up from the paper's gain for the first unstable one, or down for the first stable one. */
 static ethd_status find_limit(const ethd__study *study, const char *key, double *limit, char *message) {
   bool own, good;
   double step = 1.25, low = 1, high = 1;

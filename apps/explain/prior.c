@@ -16,7 +16,7 @@ const ethd__explain_prior ethd__explain_priors[ETHD_EXPLAIN_NUMBERS] = {
 #define RING_RADIUS 0.012
 #define COUNTS 4000
 
-/* To four digits, so that files say all of a number. */
+/* Rounds to four digits, so that a file can hold the whole number. */
 static double rounded(double value) {
   char text[32];
   snprintf(text, sizeof text, "%.4g", value);
@@ -31,7 +31,7 @@ double ethd__explain_value(const ethd__explain_point *p, int n) {
 
 #define AT(name) [ETHD_EXPLAIN_##name]
 
-/* Plants n and p with their controllers, in the numbers of this search. */
+/* Plants n and p with their controllers, as numbers of this search. */
 static const double known[2][ETHD_EXPLAIN_NUMBERS] = {
     {AT(mass) = 0.1173,       AT(deceleration) = 45.67,  AT(friction) = 0.398,     AT(viscous) = 1.267,
      AT(delay) = 0.071e-3,    AT(ratio) = 9.8,           AT(finger_mass) = 0.0675, AT(hand_stiffness) = 284.7,

@@ -1,4 +1,5 @@
-/* What may be varied of a plant and its controller to explain the paper, within which bounds, and why. All [main]. */
+/* Which numbers of a plant and its controller may be varied to explain the paper, within which bounds, and why. All
+   [main]. */
 #ifndef ETHD_EXPLAIN_PRIOR_H
 #define ETHD_EXPLAIN_PRIOR_H
 
@@ -6,7 +7,7 @@
 
 /* Bounds are stated before the search. "The paper" is its section 4.1: two Maxon RE-35 motors, cable capstans, links of
    0.25 m, encoders of 1000 lines, a ring of 24 mm, sixteen proximity sensors read at 300 Hz over a bus of 400 kbit/s,
-   1 kHz under Xenomai. X(name, low, high, scale, unit, origin); LOG: even in the logarithm. */
+   1 kHz under Xenomai. X(name, low, high, scale, unit, origin); LOG: draws are even in the logarithm. */
 #define ETHD_EXPLAIN_PRIORS(X)                                                                                      \
   X(mass, 0.1, 0.5, LOG, "kg at the ring",                                                                          \
     "two links of 0.25 m, capstans and a ring; rotors of 6.8 g cm^2 times ratio^2")                                 \
@@ -58,7 +59,7 @@ extern const ethd__explain_prior ethd__explain_priors[ETHD_EXPLAIN_NUMBERS];
 /* What the search doesn't vary. */
 typedef struct ethd__explain_structure {
   bool compliant; /* the transmission gives way, and the encoders sit on the motors' side */
-  bool tick;      /* a reading counts from where the ring is now: X_f/r as it is read, with its age inside the loop */
+  bool tick;      /* a reading counts from where the ring is now, as X_f/r is read: its age is inside the loop */
 } ethd__explain_structure;
 
 /* Each number as a share of its bounds, 0 to 1. */
@@ -68,12 +69,13 @@ typedef struct ethd__explain_point {
 
 double ethd__explain_value(const ethd__explain_point *point, int number);
 
-/* Returns plant p, or n where the transmission is rigid, as far as the bounds reach: a search begins with it, too. */
+/* Returns plant p, or n where the transmission is rigid, moved into the bounds; a search has it among its first
+   points. */
 ethd__explain_point ethd__explain_known(const ethd__explain_structure *structure);
 
 #define ETHD_EXPLAIN_SETTINGS 5
 
-/* A plant and what differs from the configuration: `gains` refer to `text`. */
+/* A plant, and the keys in which its controller differs from the configuration; `gains` points into `text`. */
 typedef struct ethd__explain_twin {
   ethd_plant plant;
   size_t gain_count;
@@ -81,7 +83,7 @@ typedef struct ethd__explain_twin {
   ethd__gain gains[ETHD_EXPLAIN_SETTINGS];
 } ethd__explain_twin;
 
-/* `base` has what isn't varied. */
+/* Fills the plant and its keys at a point; `base` has the plant's numbers that aren't varied. */
 void ethd__explain_make(const ethd_plant *base, const ethd__explain_structure *structure,
                         const ethd__explain_point *point, ethd__explain_twin *out);
 

@@ -13,8 +13,8 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-#define BEST 0.15     /* share of the population from which p is taken */
-#define CROSSING 0.85 /* of the numbers that a child takes from its step */
+#define BEST 0.15     /* share of the population, its best, from which p is drawn */
+#define CROSSING 0.85 /* chance of each number that a child takes it from the step instead of its parent */
 #define STEP_LEAST 0.3
 #define STEP_MOST 0.9
 
@@ -29,7 +29,7 @@ static double draw(const ethd__explain_search *s, uint32_t generation, uint32_t 
 
 static uint32_t index_of(double share, uint32_t count) { return (uint32_t)(share * count); }
 
-/* Numbers of the population, the best first. */
+/* Fills the order of the population, the best first. */
 static void rank(const ethd__explain_search *s, uint32_t *order) {
   for (uint32_t i = 0; i < s->population; i++) {
     uint32_t k = i;
@@ -44,7 +44,7 @@ static ethd__explain_point first(const ethd__explain_search *s, uint32_t number)
   return p;
 }
 
-/* What leaves the bounds goes half of the way to them. */
+/* A number that left its bounds is put halfway between its parent and the bound. */
 static double within(double share, double from) { return share < 0 ? from / 2 : share > 1 ? (1 + from) / 2 : share; }
 
 static ethd__explain_point child_of(const ethd__explain_search *s, const uint32_t *order, uint32_t generation,
@@ -63,12 +63,12 @@ static ethd__explain_point child_of(const ethd__explain_search *s, const uint32_
   return child;
 }
 
-/* ---- the journal: a line of text that says what is searched for, then a total a line, in the order of judging ---- */
+/* ---- the journal: a line that says what is searched for, then a line for each total, in the order of judging ---- */
 
 typedef struct journal {
   FILE *file;
   double *totals;
-  size_t count, next; /* kept by an earlier run; the next of them to be used */
+  size_t count, next; /* totals that an earlier run kept; the next of them to be used */
 } journal;
 
 static char *describe(const ethd__explain_search *s) {
@@ -95,7 +95,7 @@ static ethd_status take_totals(const char *path, const char *what, char *text, j
   return ETHD_OK;
 }
 
-/* Only whole lines count; the file is written anew with them. */
+/* Opens the journal. Only whole lines count, and the file is written anew with them. */
 static ethd_status open_journal(const ethd__explain_search *s, journal *j, char *message) {
   char *text = NULL, *what = describe(s);
   size_t length = 0;

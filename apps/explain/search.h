@@ -1,6 +1,6 @@
-/* The search for a plant: differential evolution (Storn and Price 1997) with JADE's step, x + F (p - x) + F (a - b), p one
-   of the best (Zhang and Sanderson 2009). Every draw is a function of seed, generation and number, and a journal keeps what
-   was judged, so that a search that was ended goes on and ends alike. All [main]. */
+/* The search for a plant: differential evolution (Storn and Price 1997) with JADE's step, x + F (p - x) + F (a - b), p
+   one of the best (Zhang and Sanderson 2009). Every draw is a function of seed, generation and number, and a journal
+   keeps what was judged, so that a search that was interrupted goes on and has the same result. All [main]. */
 #ifndef ETHD_EXPLAIN_SEARCH_H
 #define ETHD_EXPLAIN_SEARCH_H
 
@@ -20,7 +20,7 @@ typedef struct ethd__explain_search {
 /* Ends early, with ETHD_OK, once ethd__stop is set. Refuses a journal of another search. */
 ETHD_MUST_CHECK ethd_status ethd__explain_run(ethd__explain_search *search, char message[ETHD_MESSAGE_MAX]);
 
-/* Number of the point with the least total. */
+/* Returns the number of the point with the least total. */
 uint32_t ethd__explain_best(const ethd__explain_search *search);
 
 #endif

@@ -1,4 +1,4 @@
-/* The plant that was found, as files that ethd-tap takes. */
+/* Writes the plant that was found as files that ethd-tap takes. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,11 +1,11 @@
-/* The arm alone as the subject of a fit: windows of its stretches, whose encoders are predicted from the commands. */
+/* The arm alone as the subject of a fit: in windows of its stretches, the encoders are predicted from the commands. */
 #include <math.h>
 #include <string.h>
 
 #include "identify/shooting.h"
 
-#define STEP_ANGLE 1e-6 /* rad, */
-#define STEP_SPEED 1e-4 /* rad/s: for slopes by differences */
+#define STEP_ANGLE 1e-6 /* rad, and */
+#define STEP_SPEED 1e-4 /* rad/s, by which a state is changed to find its slopes by differences */
 #define STIFF 1e4       /* 1/s: friction that stops a joint faster would take the simulator thousands of steps a tick */
 
 static int states(const ethd_plant *plant) { return isfinite(plant->stiffness) ? ETHD__STATE_MOST : ETHD__STATE_RIGID; }
@@ -28,7 +28,8 @@ static void try_all(const ethd__shooting *p, const ethd__fit_window *w, const et
     for (int k = 0; k < w->rows; k++) trials[i].out[k] = measured[k] - trials[i].out[k];
 }
 
-/* A transmission that swings faster than half the sampling rate, or not at all, can't be told from a rigid one. */
+/* Returns whether the transmission can be told from a rigid one: it can't if it swings faster than half the sampling
+   rate, or not at all. */
 static bool is_seen(const ethd__evidence *e, const ethd_plant *x, double least) {
   double reduced = x->motor_mass * (1 - x->motor_mass / least), w = sqrt(x->stiffness / reduced);
   return x->stiffness > 1 && w * e->period < M_PI && x->damping > -0.1 && x->damping < 4 * reduced * w;
@@ -40,7 +41,7 @@ static bool is_possible(const ethd__shooting *p, const ethd_plant *x) {
   double least = fmin(x->mass[0], x->mass[1]), own = compliant ? x->motor_mass : 0, l = e->arm.link1 * e->arm.link2;
   if (!(least > 1e-3 && fmax(x->mass[0], x->mass[1]) < 1e3 && x->force_limit > 1e-6 && x->force_limit < 1e6))
     return false;
-  double moved = compliant ? own : least; /* by what rubs */
+  double moved = compliant ? own : least; /* the mass on which friction acts */
   if (!(x->friction > -0.05 * (1 + x->force_limit) && x->friction < STIFF * moved * ETHD__STICK)) return false;
   if (!(x->viscous > -1 && x->viscous < STIFF * moved)) return false;
   if (!(x->delay > -e->period && x->delay < (ETHD__BACK - 2) * e->period)) return false;
@@ -60,7 +61,7 @@ static void thin(ethd__shooting *p, size_t most) {
   p->window_count = kept;
 }
 
-/* At first: the angles as measured, the speeds over some ticks. */
+/* The first guess at a state: the measured angles, and speeds by differences over some ticks. */
 static void guess(const ethd__evidence *e, ethd__fit_window *w) {
   const int span = 5;
   size_t i = w->window.first;

@@ -7,10 +7,10 @@
 #include "identify/fit.h"
 
 #define N ETHD__UNKNOWNS
-#define FEW 16       /* windows: a recording with fewer isn't weighed by itself */
+#define FEW 16       /* windows: a recording with fewer isn't fitted by itself */
 #define ALONE 20     /* evaluations of the fit of a recording by itself */
-#define STRANGE 0.05 /* a logarithm of a mass by which a recording of another device differs at least, */
-#define CERTAIN 6    /* and so many standard errors */
+#define STRANGE 0.05 /* recordings whose masses differ by more than this in their logarithm, */
+#define CERTAIN 6    /* and by more than so many standard errors, are of different devices */
 
 typedef double square_matrix[N][N];
 
@@ -20,8 +20,8 @@ static double *numbers(size_t count) {
   return at;
 }
 
-/* Gauss and Jordan on a matrix with a unit diagonal; a coordinate that others explain to the last digits has no finite
-   variance. */
+/* Inverts a matrix with a unit diagonal by Gauss and Jordan's method. A coordinate that others explain to the last
+   digits gets an infinite variance. */
 static void invert(square_matrix a, square_matrix out, int n) {
   memset(out, 0, sizeof(square_matrix));
   for (int i = 0; i < n; i++) out[i][i] = 1;
@@ -41,7 +41,8 @@ static void invert(square_matrix a, square_matrix out, int n) {
   }
 }
 
-/* Each window's pull on the coordinates, and the sum of its slopes' products. */
+/* Fills each window's pull on the coordinates (its slopes times its residuals), and the curvature: the sum of the
+   products of slopes. */
 static void gather(const ethd__shooting *p, const double *residual, const double *slopes, square_matrix curvature,
                    square_matrix pulls, double *whole) {
   int n = p->chosen.count;
@@ -55,7 +56,7 @@ static void gather(const ethd__shooting *p, const double *residual, const double
         for (int b = 0; b < n; b++) curvature[a][b] += slope * slopes[(size_t)b * p->rows + row];
       }
     for (int a = 0; a < n; a++) {
-      whole[a] -= pull[a]; /* the residual falls where the prediction rises */
+      whole[a] -= pull[a]; /* minus, because the residual falls where the prediction rises */
       for (int b = 0; b < n; b++) pulls[a][b] += pull[a] * pull[b];
     }
   }
@@ -68,8 +69,9 @@ static double sandwich(square_matrix bread, square_matrix filling, int n, int i)
   return sum;
 }
 
-/* Few windows pull less than their true scatter, because the fit gave way to them: as much as leaving each out in turn would
-   show (MacKinnon and White 1985). Errors, and the step of Gauss and Newton. */
+/* Fills standard errors and the step of Gauss and Newton. With few windows the fit has followed each of them, so that
+   their pulls scatter too little; the correction is that of leaving out one window at a time (MacKinnon and White
+   1985). */
 static void judge(const ethd__shooting *p, const double *residual, const double *slopes, double *errors, double *step) {
   int n = p->chosen.count;
   double scale[N], whole[N] = {0}, sum = 0;
@@ -95,7 +97,7 @@ static void judge(const ethd__shooting *p, const double *residual, const double 
   }
 }
 
-/* Residuals and slopes at the problem's plant; freed by the caller. */
+/* Returns the residuals at the problem's plant, and fills the slopes; the caller frees both. */
 static double *measure(ethd__shooting *p, double **slopes) {
   double x[N], *residual = numbers(p->rows);
   *slopes = numbers(p->rows * (size_t)p->chosen.count);
@@ -114,8 +116,8 @@ void ethd__fit_errors(ethd__shooting *p, double errors[ETHD__UNKNOWNS], double s
 
 /* ---- recordings of another device ---- */
 
-/* Logarithms of the masses, and their standard errors, by the windows of one recording alone. False: too few, or they
-   can't be told. */
+/* Fits the masses to the windows of one recording alone: their logarithms, and standard errors of these. False: there
+   are too few windows, or they can't tell the masses. */
 static bool weigh(const ethd__shooting *p, uint32_t recording, double mass[2], double error[2]) {
   double errors[N];
   ethd__shooting own;
@@ -142,7 +144,8 @@ static bool weigh(const ethd__shooting *p, uint32_t recording, double mass[2], d
   return isfinite(error[0] + error[1]);
 }
 
-/* Devices that differ leave a large residual together, which says little of either; each recording by itself does. */
+/* Recordings of different devices leave a large residual together, which says little about either; so each recording is
+   fitted by itself. */
 bool ethd__fit_stranger(const ethd__shooting *p, uint32_t *recording, double *shift) {
   double mass[2], error[2], first[2], first_error[2], most = STRANGE;
   bool found = false, begun = false;

@@ -1,4 +1,4 @@
-/* Recordings, from their folders. */
+/* Reads recordings from their folders. */
 #include "identify/evidence.h"
 
 #include <dirent.h>
@@ -12,8 +12,8 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-#define DEEP 3    /* folders below the one that is named */
-#define SOFT 0.15 /* s after a start in which the torque may rise softly, which no recording tells */
+#define DEEP 3    /* levels of folders below the one that is named, in which recordings are looked for */
+#define SOFT 0.15 /* s after a start in which the torque may rise softly; no recording says whether it does */
 
 static char *join(const char *folder, const char *name) {
   char *path = ethd__path_join(folder, name);
@@ -23,7 +23,8 @@ static char *join(const char *folder, const char *name) {
 
 /* ---- one recording ---- */
 
-/* Ticks in which the device got the torque that the row says: not after a stop or a fault, not while it rises. */
+/* Marks the ticks in which the device got the torque that the row says: not after a stop or a fault, and not while the
+   torque rises. */
 static unsigned char *armed_ticks(const ethd__record_events *events, const ethd_trace *rows, size_t count,
                                   double period) {
   unsigned char *armed = malloc(count + 1);
@@ -35,7 +36,7 @@ static unsigned char *armed_ticks(const ethd__record_events *events, const ethd_
       const ethd__record_event *e = &events->events[next];
       bool begins = !strcmp(e->kind, "start"), soft_start = begins && !strcmp(e->detail, "enabled");
       if (begins || (!strcmp(e->kind, "setup") && !e->row)) {
-        wait = begins && !soft_start ? 0 : soft; /* simulated taps have no loop that starts softly */
+        wait = begins && !soft_start ? 0 : soft; /* simulated taps have no loop, so they don't start softly */
         off = false;
       }
       if (!strcmp(e->kind, "set") && !strcmp(e->detail, "limits.speed 0")) off = true;
@@ -49,7 +50,7 @@ static unsigned char *armed_ticks(const ethd__record_events *events, const ethd_
 
 static bool differ(double a, double b) { return !(fabs(a - b) <= 1e-9 * fabs(a)); }
 
-/* All recordings are of one arm: what is known of it beforehand must agree. */
+/* Refuses a recording of another arm: what is known about the arm beforehand must agree in all recordings. */
 static ethd_status agree(ethd__evidence *e, const char *folder, const ethd_setup *s, char *message) {
   if (!e->recording_count) {
     e->arm = s->arm;

@@ -1,4 +1,4 @@
-/* A recording's rows, cut into stretches. */
+/* Cuts a recording's rows into stretches. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,9 +6,9 @@
 #include "cli/cli.h"
 #include "identify/evidence.h"
 
-#define NEAR 0.6    /* of the gap between finger and ring: from here on the pad may press before the next reading */
-#define APART 12e-3 /* s before and after such a reading */
-#define PACE 0.25   /* of a period by which two samples may be closer or farther apart */
+#define NEAR 0.6    /* of the gap between finger and ring: a finger farther out may touch before the next reading */
+#define APART 12e-3 /* s before and after a reading that is near which are left out */
+#define PACE 0.25   /* of a period, by which the time between two samples may differ from it */
 #define CLIPS (ETHD_GUARD_TORQUE | ETHD_GUARD_RATE)
 
 static void *longer(void *old, size_t count, size_t size) {
@@ -32,7 +32,7 @@ bool ethd__evidence_is_near(const ethd_setup *setup, const ethd_trace *row) {
   return false;
 }
 
-/* Takes out the ticks about each reading of a finger that is near. */
+/* Leaves out the ticks about each reading of a finger that is near. */
 static void keep_apart(const ethd_setup *setup, const ethd_trace *rows, size_t count, unsigned char *good) {
   int64_t pad = (int64_t)ceil(APART / setup->period);
   for (size_t i = 0; i < count; i++) {
@@ -62,7 +62,7 @@ static void add_delivery(ethd__evidence *e, const ethd_setup *setup, const ethd_
   if (s->have & ETHD_HAVE_CENTRE && !world) d.centre = (ethd_vec){s->centre[0], s->centre[1]};
   if (s->have & ETHD_HAVE_CENTRE && !world && s->have & ETHD_HAVE_RING)
     d.finger = (ethd_vec){s->ring[0] + s->centre[0], s->ring[1] + s->centre[1]};
-  if (i && s->time_ns <= rows[i - 1].sense.time_ns) return; /* a clock that begins anew */
+  if (i && s->time_ns <= rows[i - 1].sense.time_ns) return; /* the clock was set back */
   if (!(e->delivery_count & (e->delivery_count + 1)))
     e->deliveries = longer(e->deliveries, 2 * e->delivery_count + 2, sizeof *e->deliveries);
   e->deliveries[e->delivery_count++] = d;
@@ -95,7 +95,7 @@ static void cut(ethd__evidence *e, const ethd_trace *rows, size_t count, const u
   }
 }
 
-/* Share of the ticks in which the guard cut the torque, over all rows so far. */
+/* Updates the share of ticks in which the guard cut the torque, over all rows so far. */
 static void note_clipped(ethd__evidence *e, const ethd_trace *rows, size_t count, const unsigned char *good) {
   size_t clipped = 0, counted = 0;
   for (size_t i = 0; i < count; i++) {

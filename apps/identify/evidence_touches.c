@@ -1,12 +1,12 @@
-/* Where in a recording a finger that was away touches the ring. */
+/* Finds where in a recording a finger that was away touches the ring. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "cli/cli.h"
 #include "identify/evidence.h"
 
-#define BEFORE ETHD__TOUCH_BEFORE /* s before the first reading that is near: the finger's path shows itself, */
-#define AFTER ETHD__TOUCH_AFTER   /* from it on: it presses, and bounces */
+#define BEFORE ETHD__TOUCH_BEFORE /* s before the first reading that is near, which show the finger's path, */
+#define AFTER ETHD__TOUCH_AFTER   /* and s from it on, in which the finger presses and bounces */
 
 static bool is_whole(const ethd__evidence *e, const ethd_trace *rows, const unsigned char *good, size_t from,
                      size_t to) {

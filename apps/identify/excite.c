@@ -13,19 +13,19 @@
 #include "settings/config_parts.h"
 #include "text/error_text.h"
 
-#define DRY 15.0 /* s of dry run */
-#define TRIES 12 /* with less torque each, until the box is large enough in the dry run, */
+#define DRY 15.0 /* s that a dry run lasts */
+#define TRIES 12 /* dry runs, each with less torque, until the ring stays inside the box, */
 #define LESS 0.75
-#define USED 0.6     /* so that this share of it is used */
+#define USED 0.6     /* of which it may use this share */
 #define SPRING 1.0   /* joint stiffness times box over torque times link */
-#define DAMPING 0.02 /* s: of the spring */
+#define DAMPING 0.02 /* s: the spring's damping over its stiffness */
 
-/* What a session did, as its rows come. */
+/* What a session has done so far. */
 typedef struct seen {
   ethd_vec at;
   double farthest, fastest; /* m, m/s */
   bool stopped;             /* a fault ended the torque */
-  atomic_bool over;         /* the stop that ends the session isn't one of them */
+  atomic_bool over;         /* set before the stop that ends the session, which is no fault */
 } seen;
 
 static void take(void *seen_, const ethd_loop_row *row) {
@@ -46,7 +46,7 @@ static bool stays(const char *section) {
   return true;
 }
 
-/* The device's keys, each with its driver's name. */
+/* Writes the device's keys, each with its driver's name. */
 static void put_device(FILE *out, const ethd_config *c) {
   bool single = !strchr(c->device, ',');
   for (uint32_t i = 0; i < c->setting_count; i++) {
@@ -56,7 +56,8 @@ static void put_device(FILE *out, const ethd_config *c) {
   }
 }
 
-/* The configuration's own numbers, but the laws that excite, and excite behind the device. dry: behind a simulated one. */
+/* Returns the session's configuration: the given one, but with the laws for excitation and the driver `excite` after
+   the device, or after a simulated device for a dry run. */
 static char *compose(const ethd__excitation *x, const ethd_config *c, double torque, bool dry) {
   char *text = NULL;
   size_t length;

@@ -1,4 +1,4 @@
-/* A recording for identification, made by a device that moves by itself. All [main]. */
+/* Makes a recording for identification, in which the device moves by itself. All [main]. */
 #ifndef ETHD_APPS_IDENTIFY_EXCITE_H
 #define ETHD_APPS_IDENTIFY_EXCITE_H
 
@@ -9,12 +9,12 @@
 typedef struct ethd__excitation {
   const char *config, *record; /* config NULL: the simulated device */
   bool replace, is_virtual;
-  double seconds, share, torque; /* of the torque limit; Nm, NaN: the device's or the configuration's */
-  double half;                   /* m */
-  ethd_vec at;                   /* m in R_0 */
+  double seconds, share, torque; /* share is of the torque limit, Nm; NaN: the device's or the configuration's limit */
+  double half;                   /* m, half of the box's side */
+  ethd_vec at;                   /* m in R_0, its middle */
 } ethd__excitation;
 
-/* Dry run, what will be done, and the session. The exit code. */
+/* Makes the dry run, prints what will be done, and runs the session. Returns the program's exit code. */
 int ethd__excite(const ethd__excitation *excitation);
 
 #endif

@@ -7,13 +7,13 @@
 #include "cli/cli.h"
 
 #define QUICK 30    /* windows on which starts compete, */
-#define BRIEF 20    /* in so many evaluations */
-#define LONG 60     /* of the fit */
+#define BRIEF 20    /* with so many evaluations each */
+#define LONG 60     /* evaluations of the fit */
 #define WINDOWS 480 /* windows of the fit: two minutes */
-#define REACHED 30  /* ticks beyond a torque limit from which on it shows */
+#define REACHED 30  /* ticks whose command is beyond a torque limit that show the limit */
 #define ROUGH 1e-6  /* m/s: the simulator's tolerance while starts and models compete, */
-#define FINE 1e-9   /* m/s: and for the numbers that are said */
-#define ENOUGH 1.02 /* times what rounding leaves: a residual as small leaves nothing to explain */
+#define FINE 1e-9   /* and for the numbers that are reported */
+#define ENOUGH 1.02 /* times what rounding leaves: a smaller residual has nothing left to explain */
 #define SIDE 1.96   /* standard errors to each side of an interval of 95 % */
 #define UNSURE 0.5  /* a number whose interval is wider to one side than this share of what it could be isn't seen */
 
@@ -25,7 +25,7 @@ static const ethd__chosen compliant = {{ETHD__MASS_X, ETHD__MASS_Y, ETHD__FORCE_
 
 /* ---- model ---- */
 
-/* How long residuals depend on one another, as a factor on their variance: 1 for white ones. */
+/* Returns the factor by which the residuals' dependence on one another enlarges their variance; 1 for white ones. */
 static double dependence(const ethd__shooting *p, const double *residual) {
   enum { LAGS = 20 };
   double sums[LAGS + 1] = {0}, factor = 1;
@@ -50,7 +50,7 @@ static double dependence_of(ethd__shooting *p) {
   return factor;
 }
 
-/* Bayes' criterion (Schwarz 1978) with the states counted off, of as many residuals as are independent. */
+/* Bayes' criterion (Schwarz 1978), for as many residuals as are independent, less the states. */
 static double criterion(const ethd__shooting *p, double sum, double factor) {
   double freedom = (double)(p->rows - ethd__shooting_states(p)), count = freedom / factor;
   return count * log(fmax(sum / freedom, 1e-30)) + p->chosen.count * log(fmax(count, 2));
@@ -61,9 +61,9 @@ static double criterion(const ethd__shooting *p, double sum, double factor) {
 typedef struct contest {
   ethd__shooting *problem;
   ethd_plant best;
-  double least;  /* criterion */
-  double sum;    /* of its squares */
-  double factor; /* by which its residuals depend on one another; 0: not known yet */
+  double least;  /* its criterion */
+  double sum;    /* its sum of squares */
+  double factor; /* the dependence of its residuals; 0: not known yet */
 } contest;
 
 static void compete(contest *c, const ethd_plant *start, const char *what) {
@@ -77,7 +77,7 @@ static void compete(contest *c, const ethd_plant *start, const char *what) {
   c->best = c->problem->plant;
 }
 
-/* A torque limit that nothing reached has no slope; it isn't among what is fitted. */
+/* Chooses what is fitted. A torque limit that nothing reached has no slope, so it isn't. */
 static void choose(ethd__shooting *p, const ethd__chosen *chosen, const ethd_plant *start, double force) {
   p->chosen = *chosen;
   if (start->force_limit >= force) ethd__chosen_drop(&p->chosen, ETHD__FORCE_LIMIT);
@@ -92,7 +92,7 @@ static void rigid_starts(contest *c, double force) {
   }
 }
 
-/* A transmission's own frequency, Hz, is tried at several. */
+/* Tries starts with several frequencies of the transmission. */
 static void compliant_starts(contest *c, const ethd_plant *stiff, double force) {
   static const double frequencies[] = {25, 80, 200};
   choose(c->problem, &compliant, stiff, force);
@@ -109,13 +109,13 @@ static void compliant_starts(contest *c, const ethd_plant *stiff, double force) 
 
 /* ---- what isn't seen ---- */
 
-/* What stands in place of a number that isn't seen: a torque limit is at least what was commanded. */
+/* Returns the value of a number that isn't seen. A torque limit is at least as large as what was commanded. */
 static double kept(const ethd__fit *f, const ethd_plant *plant, ethd__unknown u) {
   double value = ethd__unknown_value(plant, u);
   return u == ETHD__FORCE_LIMIT ? fmax(value, 1.001 * f->force) : value;
 }
 
-/* What a number could be, so that an interval of a share of it says something. */
+/* Returns the range that a number could have, of which its interval must be a small share to say something. */
 static double extent(const ethd__fit *f, const ethd__evidence *e, ethd__unknown u) {
   switch (u) {
   case ETHD__FRICTION: return fmax(f->plant.friction, 0.1 * f->force);
@@ -131,7 +131,7 @@ static double doubt(const ethd__fit *f, const ethd__evidence *e, ethd__unknown u
   return SIDE * error * (scale > 0 ? scale : 1) / extent(f, e, u);
 }
 
-/* In how many ticks more was commanded than the limit lets through. */
+/* Returns in how many ticks the command was larger than the limit. */
 static size_t reached(const ethd__evidence *e, double limit) {
   size_t ticks = 0;
   double link[2] = {e->arm.link1, e->arm.link2};
@@ -141,7 +141,8 @@ static size_t reached(const ethd__evidence *e, double limit) {
   return ticks;
 }
 
-/* A transmission's three numbers go together: one of another device beside two of this one would be no transmission. */
+/* Leaves a number out of the fit. A transmission's three numbers go together, because one of another device beside two
+   of this one would describe no transmission. */
 static void leave(ethd__shooting *p, const ethd_plant *plant, ethd__fit *f, ethd__unknown which) {
   bool together = which >= ETHD__MOTOR_MASS && which <= ETHD__DAMPING;
   ethd__unknown first = together ? ETHD__MOTOR_MASS : which, last = together ? ETHD__DAMPING : which;
@@ -152,7 +153,7 @@ static void leave(ethd__shooting *p, const ethd_plant *plant, ethd__fit *f, ethd
   }
 }
 
-/* Takes out, the least sure first, what the recordings can't tell, and fits the rest again. */
+/* Leaves out the numbers that the recordings can't tell, the least certain first, and fits the rest again. */
 static void leave_unseen(ethd__shooting *p, const ethd_plant *plant, ethd__fit *f, double *errors) {
   for (;;) {
     ethd__unknown worst = ETHD__UNKNOWNS;
@@ -178,8 +179,8 @@ static void set_interval(ethd__fit *f, ethd__unknown u, double coordinate, doubl
   f->high[u] = ethd__unknown_from(u, coordinate + SIDE * error);
 }
 
-/* Few arms have a coupling, and it makes the simulator slow: it is looked for last, by how far one step of Gauss and
-   Newton would go. It is fitted where 0 lies outside of its interval. */
+/* Few arms have a coupling, and it makes the simulator slow, so it is looked for last, by one step of Gauss and Newton.
+   It is fitted if 0 lies outside of its interval. */
 static void look_for_coupling(ethd__shooting *p, const ethd_plant *plant, ethd__fit *f, double *errors) {
   double step[ETHD__UNKNOWNS];
   int last = p->chosen.count;
@@ -194,7 +195,7 @@ static void look_for_coupling(ethd__shooting *p, const ethd_plant *plant, ethd__
     f->sum = ethd__fit_squares(p, LONG, "coupling");
     leave_unseen(p, plant, f, errors);
     if (!f->unseen[ETHD__MASS_X] && !f->unseen[ETHD__MASS_Y]) return;
-    *f = before; /* it has only taken the place of something else that the arm does */
+    *f = before; /* the coupling only took the place of something else that the arm does */
     f->unseen[ETHD__COUPLING] = true;
     p->plant = uncoupled;
   }
@@ -209,8 +210,8 @@ static double rms_of(const ethd__shooting *p, const contest *c) {
   return c->sum > 0 ? sqrt(c->sum / fmax((double)(p->rows - ethd__shooting_states(p)), 1)) : 0;
 }
 
-/* A rigid arm that leaves no more than rounding does, `floor`, leaves nothing for a transmission. The starts of both models
-   compete on some windows; the better model goes on with all. */
+/* The starts of both models compete on some windows, and the better model goes on with all. A rigid arm that leaves no
+   more than rounding does, `floor`, leaves nothing for a transmission to explain. */
 static void choose_model(ethd__shooting *quick, ethd__shooting *p, const ethd_plant *plant, double floor,
                          ethd__fit *f) {
   contest stiff = {.problem = quick, .best = *plant, .least = (double)INFINITY};

@@ -1,4 +1,4 @@
-/* How well a plant predicts: its state is fitted to half a window, the other half is compared. */
+/* Judges how well a plant predicts: the state is fitted to the first half of a window, the second half is compared. */
 #include <math.h>
 
 #include "identify/page.h"

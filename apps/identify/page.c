@@ -47,7 +47,7 @@ static bool is_count(const ethd__plant_row *row) {
 
 static bool is_of_finger(int u) { return u >= ETHD__FINGER_MASS && u <= ETHD__PAD_DAMPING; }
 
-/* What stands behind a number in the file and on the page. */
+/* Fills the words that follow a number in the file and on the page. */
 static void tell(const ethd__finding *f, const ethd__plant_row *row, char *out, size_t room) {
   int u = unknown_of(row);
   const ethd__bracket *b = bracket_of(f, row);

@@ -1,4 +1,4 @@
-/* What was found: for people, as a plant file, as a picture. All [main]. */
+/* Presents what was found: to people, as a plant file, as a picture. All [main]. */
 #ifndef ETHD_APPS_IDENTIFY_PAGE_H
 #define ETHD_APPS_IDENTIFY_PAGE_H
 
@@ -11,27 +11,27 @@
 
 typedef struct ethd__finding {
   const ethd__evidence *evidence;
-  ethd__shooting problem; /* without windows where the arm is kept as in base */
+  ethd__shooting problem; /* has no windows if the arm is kept as in base */
   ethd__fit fit;
   ethd__touch_fit touches;
   ethd__sensing sensing;
   ethd__whiteness whiteness;
   double *residual; /* problem.rows, rad */
-  ethd_plant plant; /* all of it: fitted, seen, kept */
-  const char *base; /* what the kept numbers come from */
+  ethd_plant plant; /* with all numbers: fitted, read off the sensors, or kept */
+  const char *base; /* where the kept numbers come from */
 } ethd__finding;
 
-/* Puts what was fitted and what the sensors showed into finding->plant, which has the kept numbers; what no plant can
-   be, a friction below 0, becomes its nearest. */
+/* Puts what was fitted and what the sensors showed into finding->plant, which has the kept numbers. A number that no
+   plant can have, such as a friction below 0, becomes the nearest possible one. */
 void ethd__finding_plant(ethd__finding *finding);
 
 void ethd__page_print(FILE *out, const ethd__finding *finding);
 
-/* The plant file: each number with its interval, or that it was kept. */
+/* Writes the plant file: each number with its interval, or with a note that it was kept. */
 ETHD_MUST_CHECK ethd_status ethd__page_write(const ethd__finding *finding, const char *path,
                                              char message[ETHD_MESSAGE_MAX]);
 
-/* A table of a stretch of motion and of the residual's spectrum; its picture. */
+/* Writes a table of a stretch of motion and of the residual's spectrum; draws it. */
 ETHD_MUST_CHECK ethd_status ethd__page_csv(const ethd__finding *finding, const char *path,
                                            char message[ETHD_MESSAGE_MAX]);
 ETHD_MUST_CHECK ethd_status ethd__identify_draw(const ethd__finding *finding, const char *csv, const char *png,
@@ -40,7 +40,7 @@ ETHD_MUST_CHECK ethd_status ethd__identify_draw(const ethd__finding *finding, co
 /* ---- judging a plant that wasn't fitted to these recordings ---- */
 
 typedef struct ethd__judgement {
-  double step[2], ahead[2]; /* rad rms of each joint: a tick and ETHD__AHEAD after the last tick that was seen */
+  double step[2], ahead[2]; /* rad rms of each joint: one tick, and ETHD__AHEAD, after the last tick that was fitted */
   size_t windows;
 } ethd__judgement;
 

@@ -1,4 +1,4 @@
-/* A stretch of motion, measured and predicted, what is left, and its spectrum. */
+/* Draws a stretch of motion, measured and predicted, the residual and its spectrum. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -6,7 +6,7 @@
 #include "report/picture.h"
 #include "text/csv.h"
 
-#define SHOWN 10 /* windows in a row: a second */
+#define SHOWN 10 /* consecutive windows that are drawn */
 
 static double way(const ethd__finding *f, size_t from, int joint) {
   double sum = 0;
@@ -19,7 +19,7 @@ static double way(const ethd__finding *f, size_t from, int joint) {
   return sum;
 }
 
-/* The liveliest stretch and joint. */
+/* Finds the stretch and the joint that move most. */
 static size_t liveliest(const ethd__finding *f, int *joint) {
   size_t best = 0;
   double most = -1;

@@ -6,8 +6,8 @@
 #include "sim/series.h"
 
 #define FAR 1e9        /* m: pad and ring never meet */
-#define FAST 1e4       /* rad/s: */
-#define STEPS_MOST 300 /* of a tick: a trial of the fit that is faster, or needs more of them, isn't followed further */
+#define FAST 1e4       /* rad/s, and */
+#define STEPS_MOST 300 /* steps a tick: a trial of the fit that is faster, or needs more of them, is given up */
 
 void ethd__predictor_prepare(const ethd__evidence *evidence, const ethd_plant *plant, double tolerance,
                              ethd__predictor *out) {
@@ -41,13 +41,13 @@ static void place(const ethd__body *b, const double *x, ethd__sim_state *out) {
   }
 }
 
-/* The torque commanded at a tick, as far as it is known. */
+/* Returns the torque commanded at a tick, or at the nearest tick whose command is known. */
 static const double *commanded(const ethd__predictor *p, const ethd__shot *w, int64_t tick) {
   int64_t begin = (int64_t)w->begin, end = (int64_t)w->end - 1;
   return p->evidence->torque[tick < begin ? begin : tick > end ? end : tick];
 }
 
-/* The motors limit it. */
+/* Applies the torque of a tick, as the motors limit it. */
 static void drive(ethd__predictor *p, const ethd__shot *w, int64_t tick) {
   const double *torque = commanded(p, w, tick);
   for (int j = 0; j < 2; j++) {
@@ -56,7 +56,7 @@ static void drive(ethd__predictor *p, const ethd__shot *w, int64_t tick) {
   }
 }
 
-/* Torques change `late` after a tick, and `ticks` ticks after the one that commanded them. */
+/* Splits the delay: torques change `ticks` ticks after the one that commanded them, and the returned time, s, later. */
 static double lateness(const ethd__predictor *p, int64_t *ticks) {
   double T = p->evidence->period, whole = floor(p->delay / T);
   *ticks = (int64_t)whole;
@@ -65,8 +65,8 @@ static double lateness(const ethd__predictor *p, int64_t *ticks) {
 
 /* ---- one ---- */
 
-/* Steps go from one change of torque to the next; the tick within is read off them. `at`: t of the tick, INFINITY: none.
-   False: no device does this. */
+/* Steps from one change of torque to the next, and reads the tick in between off the steps. `at` is the tick's time;
+   INFINITY: there is none. False: the arm runs away, as no device does. */
 static bool go_on(ethd__predictor *p, const ethd__piece *still, double until, double at, ethd__leg *leg, double *out) {
   double angles[ETHD__DOF_MAX];
   for (int steps = 0; leg->end < until; steps++) {
@@ -109,8 +109,8 @@ void ethd__predict(ethd__predictor *p, const ethd__shot *w, const double *x, dou
 
 /* ---- several ---- */
 
-/* Several arms on their way through a window. Each counts time from its own changes of torque, so that all take steps of
-   like length although their delays differ. */
+/* Several arms on their way through one window. Each counts time from its own changes of torque, so that their steps
+   have similar lengths although their delays differ. */
 typedef struct flock {
   const ethd__forecast *forecasts;
   const ethd__shot *window;
@@ -143,7 +143,7 @@ static bool runs_away(const flock *f) {
   return !(most < FAST);
 }
 
-/* Reads the arms off the step whose tick k lies in it, `begun` after its beginning, and that are still due. */
+/* Reads the arms that are due off the step in which tick k lies, `begun` after the step's beginning. */
 static void read_off(const flock *f, const double *begun, int k, bool due[ETHD__ARMS]) {
   for (int i = 0; i < f->count; i++) {
     if (!due[i] || begun[i] > f->step.length[i]) continue;
@@ -152,7 +152,8 @@ static void read_off(const flock *f, const double *begun, int k, bool due[ETHD__
   }
 }
 
-/* Through `whole` under one torque, with tick k at `at`; k 0: no tick. False: no device does this. */
+/* Steps all arms through the time `whole` under one torque, with tick k at `at`; k 0: no tick. False: an arm runs away,
+   as no device does. */
 static bool go_on_all(flock *f, const double *whole, const double *at, int k) {
   double left[ETHD__ARMS], begun[ETHD__ARMS];
   bool due[ETHD__ARMS] = {k, k, k, k};
@@ -161,7 +162,7 @@ static bool go_on_all(flock *f, const double *whole, const double *at, int k) {
   for (int steps = 0; steps < STEPS_MOST && !runs_away(f); steps++) {
     bool over = ethd__arms_advance(&f->arms, left, &f->step);
     if (over)
-      memcpy(f->step.length, whole, sizeof left); /* what is due lies in the last step, whatever rounding does */
+      memcpy(f->step.length, whole, sizeof left); /* so that a due tick lies in the last step, in spite of rounding */
     read_off(f, begun, k, due);
     if (over) return true;
     for (int i = 0; i < ETHD__ARMS; i++) {

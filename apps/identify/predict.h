@@ -1,4 +1,4 @@
-/* The arm's motion over a short window, by the simulator of drivers/sim: encoders from commands, without a finger.
+/* Predicts the encoders from the commands over a short window, by the simulator of drivers/sim, without a finger.
    ethd-identify and ethd-bench use it. [any] */
 #ifndef ETHD_APPS_IDENTIFY_PREDICT_H
 #define ETHD_APPS_IDENTIFY_PREDICT_H
@@ -6,34 +6,34 @@
 #include "identify/evidence.h"
 #include "sim/arms.h"
 
-/* A state at the beginning: what the encoders see, rad and rad/s of both joints; where the transmission gives way also
-   the links' lead over it. */
+/* The state at a window's beginning: angles and speeds that the encoders see, rad and rad/s of both joints; where the
+   transmission gives way also the links' lead over them. */
 enum { ETHD__STATE_RIGID = 4, ETHD__STATE_MOST = 8 };
 
 #define ETHD__WINDOW_MOST 512 /* ticks */
 
 typedef struct ethd__shot {
-  size_t first, begin, end; /* its first tick; those of its stretch, whose commands may be asked for */
+  size_t first, begin, end; /* its first tick; begin and end of its stretch, whose commands are known */
   int count;                /* ticks, the first included */
   uint32_t recording;
 } ethd__shot;
 
-/* A plant that is asked for many windows. */
+/* A plant that is prepared for the prediction of many windows. */
 typedef struct ethd__predictor {
   const ethd__evidence *evidence;
   ethd__body body;
   double delay; /* s */
 } ethd__predictor;
 
-/* tolerance: m/s, as in ethd_sim_def. */
+/* Prepares a predictor; tolerance, m/s, as in ethd_sim_def. */
 void ethd__predictor_prepare(const ethd__evidence *evidence, const ethd_plant *plant, double tolerance,
                              ethd__predictor *out);
 
-/* Length of a state. */
+/* Returns how many numbers a state has. */
 int ethd__predictor_states(const ethd__predictor *predictor);
 
-/* Joint angles at the window's ticks, both of one tick side by side: 2 * window->count numbers. A plant that no device
-   can be, which runs away, stands still from there on. */
+/* Fills the joint angles at the window's ticks, both of one tick side by side: 2 * window->count numbers. An arm that
+   runs away, as no device does, stands still from there on. */
 void ethd__predict(ethd__predictor *predictor, const ethd__shot *window, const double *state, double *out);
 
 /* One of several predictions of a window that are made side by side. */
@@ -43,7 +43,8 @@ typedef struct ethd__forecast {
   double *out; /* as ethd__predict fills it */
 } ethd__forecast;
 
-/* Up to ETHD__ARMS predictions at once; their plants differ little, and all or none have a transmission that gives way. */
+/* Makes up to ETHD__ARMS predictions at once. Their plants differ little, and either all have a transmission that gives
+   way or none. */
 void ethd__predict_many(const ethd__forecast *forecasts, int count, const ethd__shot *window);
 
 #endif

@@ -3,10 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-#define LOUD 1.25     /* times what rounding leaves */
-#define COLOURED 0.15 /* a correlation beyond the bound by this much is more than slow stretches of rounding make */
+#define LOUD 1.25     /* times what rounding leaves: a larger residual isn't explained */
+#define COLOURED 0.15 /* a correlation so far beyond the bound isn't made by rounding in slow stretches */
 
-/* Rounding is white where the arm passes a count or more in a tick. */
+/* Returns whether the joint passes a count or more in a tick, where rounding is white. */
 static bool is_quick(const ethd__shooting *p, const ethd__fit_window *w, int joint, double count) {
   double way = 0;
   for (size_t k = w->window.first + 1; k < w->window.first + (size_t)w->window.count; k++)
@@ -20,7 +20,7 @@ static double products(const double *a, int count, int joint, int lag) {
   return sum;
 }
 
-/* States that were fitted take something out of a white residual too: that isn't colour. */
+/* Returns what the fitted states take out of a white residual's sum of products at this lag; that isn't colour. */
 static double taken(const ethd__shooting *p, const ethd__fit_window *w, int joint, int lag) {
   double sum = 0;
   int n = 2 * w->window.count;
@@ -55,7 +55,7 @@ static void correlate(const ethd__shooting *p, double count, const double *resid
   out->correlation[0] = 1;
 }
 
-/* Mean of the windows' periodograms (Hann), both joints. */
+/* Fills the density: the mean of the windows' periodograms (Hann) over both joints. */
 static void spread(const ethd__shooting *p, const double *residual, ethd__whiteness *out) {
   int length = 0;
   double windows = 0, T = p->evidence->period;

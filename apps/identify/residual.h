@@ -1,4 +1,4 @@
-/* What a fit leaves: is it as small as the encoders allow, and is it white? All [main]. */
+/* Judges the residual of a fit: is it as small as the encoders allow, and is it white? All [main]. */
 #ifndef ETHD_APPS_IDENTIFY_RESIDUAL_H
 #define ETHD_APPS_IDENTIFY_RESIDUAL_H
 
@@ -7,17 +7,17 @@
 enum { ETHD__LAGS = 20, ETHD__TONES = 257 };
 
 typedef struct ethd__whiteness {
-  double rms, floor;                  /* rad; floor: what rounding to counts leaves, 0 of ideal encoders */
+  double rms, floor;                  /* rad; floor: what rounding to counts leaves, 0 for ideal encoders */
   double correlation[ETHD__LAGS + 1]; /* of residuals so many ticks apart, where the arm moves by a count a tick */
-  double bound;                       /* 95 % of a white residual's lie within +- this */
-  int outside, largest;               /* lags outside; the one with the largest correlation */
-  size_t ticks;                       /* that were looked at */
+  double bound;                       /* 95 % of a white residual's correlations lie within +- this */
+  int outside, largest;               /* how many lags lie outside; the lag with the largest correlation */
+  size_t ticks;                       /* in which the arm moved so fast */
   double density[ETHD__TONES];        /* rad^2/Hz from 0 to half the sampling rate */
   int tones;
   bool explained; /* neither larger nor less white than rounding makes it */
 } ethd__whiteness;
 
-/* Of the windows as they stand settled, at its plant. residual: rows numbers, filled. */
+/* Judges the settled windows at the problem's plant. Fills `residual`, shooting->rows numbers. */
 void ethd__whiteness_find(ethd__shooting *shooting, double count, double *residual, ethd__whiteness *out);
 
 #endif

@@ -6,11 +6,11 @@
 #include "cli/cli.h"
 #include "text/error_text.h"
 
-#define LEAST 1e-9   /* rad: what two angles differ by less is rounding */
-#define LATTICE 0.02 /* counts by which angles may miss it */
-#define ALIKE 1e-3   /* relative: counts of one encoder */
-#define TOGETHER 1.5 /* readings whose distance is under so many medians follow each other */
-#define ORDERS 4     /* of differences: with enough of them a smooth motion is gone and noise is left */
+#define LEAST 1e-9   /* rad: smaller differences of two angles are rounding */
+#define LATTICE 0.02 /* counts by which angles may miss the lattice */
+#define ALIKE 1e-3   /* relative difference that two estimates of one encoder's count may have */
+#define TOGETHER 1.5 /* readings follow each other if they are less than so many median periods apart */
+#define ORDERS 4     /* orders of differences: a high one removes a smooth motion and leaves noise */
 
 /* ---- counts ---- */
 
@@ -28,8 +28,8 @@ static double least_difference(const ethd__evidence *e, uint32_t recording) {
   return least;
 }
 
-/* The slope of differences over whole numbers, from near ones to far ones, as the slope gets better; how far they miss
-   the lattice, counts rms. */
+/* Refines the count: the slope of differences of angles over whole numbers, first small ones, then larger ones as the
+   slope gets better. Returns how far the differences miss the lattice, counts rms. */
 static double refine(const ethd__evidence *e, uint32_t recording, double *count) {
   double missed = 0;
   for (double most = 10; most < 1e7; most *= 10) {
@@ -125,7 +125,7 @@ static void find_rate(const ethd__evidence *e, double pace, ethd__bracket *out) 
   *out = (ethd__bracket){1 / (pace + mean), 1 / (pace + mean + 1.96 * error), 1 / (pace + mean - 1.96 * error)};
 }
 
-/* A reading that came with a tick wasn't there at the tick before. */
+/* Brackets the latency: a reading that came at one tick wasn't there at the tick before. */
 static void find_latency(const ethd__evidence *e, ethd__bracket *out) {
   double low = 0, high = (double)INFINITY;
   for (size_t i = 0; i < e->delivery_count; i++) {
@@ -136,7 +136,7 @@ static void find_latency(const ethd__evidence *e, ethd__bracket *out) {
   if (isfinite(high)) *out = (ethd__bracket){low < high ? (low + high) / 2 : high, fmin(low, high), fmax(low, high)};
 }
 
-/* Differences of this order of the finger's place, as they would be of noise of 1. */
+/* Fills the differences of this order of the finger's position, scaled so that noise of 1 gives 1; returns how many. */
 static size_t differences(const ethd__evidence *e, double pace, int order, double *out) {
   static const double weights[ORDERS][ORDERS + 1] = {{-1, 1}, {1, -2, 1}, {-1, 3, -3, 1}, {1, -4, 6, -4, 1}};
   size_t n = 0, in_row = 0;
@@ -159,12 +159,12 @@ static size_t differences(const ethd__evidence *e, double pace, int order, doubl
   return n;
 }
 
-/* Touches, in which the finger turns sharply, are left out; medians don't mind what else does. */
+/* Touches, in which the finger turns sharply, are left out; medians withstand other sharp turns. */
 static void find_noise(const ethd__evidence *e, double pace, double *room, ethd__bracket *out) {
   for (int order = 1; order <= ORDERS; order++) {
     size_t n = differences(e, pace, order, room);
     double sd = median(room, n) / 0.674489750196082, error = sd * 1.17 * sqrt(order / fmax((double)n, 1));
-    if (n < 50 || out->value < sd + 2 * error) continue; /* clearly less than with a lower order */
+    if (n < 50 || out->value < sd + 2 * error) continue; /* an order counts if it gives clearly less than lower ones */
     *out = (ethd__bracket){sd, sd - 1.96 * error, sd + 1.96 * error};
   }
 }

@@ -1,10 +1,10 @@
-/* What recordings say of the sensors: encoder counts, readings of the ring. All [main]. */
+/* Finds what recordings say about the sensors: encoder counts, and the ring's readings. All [main]. */
 #ifndef ETHD_APPS_IDENTIFY_SENSING_H
 #define ETHD_APPS_IDENTIFY_SENSING_H
 
 #include "identify/evidence.h"
 
-/* A number and between which values it lies; NaN: not seen. */
+/* A number and the two values between which it lies; NaN: not seen. */
 typedef struct ethd__bracket {
   double value, low, high;
 } ethd__bracket;
@@ -12,8 +12,8 @@ typedef struct ethd__bracket {
 typedef struct ethd__sensing {
   double count;                 /* rad; 0: angles lie on no lattice */
   bool count_drawn;             /* the lattice has a phase */
-  ethd__bracket rate;           /* Hz, readings of the finger */
-  ethd__bracket latency, noise; /* s, m; latency's ends hold for certain if it is constant, the noise's by 95 % */
+  ethd__bracket rate;           /* Hz, of the finger's readings */
+  ethd__bracket latency, noise; /* s, m; the latency's ends are certain if it is constant, the noise's hold by 95 % */
 } ethd__sensing;
 
 /* ETHD_E_ARGUMENT: recordings whose encoders count differently are of two devices. */

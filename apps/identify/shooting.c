@@ -7,12 +7,12 @@
 #include "cli/cli.h"
 #include "identify/share.h"
 
-#define SETTLINGS 8 /* of a window's state at most, until the squares fall by less than this share: */
+#define SETTLINGS 8 /* improvements of a window's state at most, until its squares fall by less than this share: */
 #define SETTLED 1e-9
-#define MOVED 1e-5     /* a state whose squares fall by a smaller share has hardly moved: its slopes stay */
-#define CHORDS 2       /* corrections of a state with the slopes that are there */
-#define STEP 3e-4      /* of a coordinate */
-#define DEPENDENT 1e-5 /* a vector of which others explain all but this says nothing */
+#define MOVED 1e-5     /* a state whose squares fall by a smaller share has hardly moved, and its slopes stay */
+#define CHORDS 2       /* corrections of a state with the same slopes */
+#define STEP 3e-4      /* by which a coordinate is changed to find its slope by differences */
+#define DEPENDENT 1e-5 /* a vector of which others explain all but this share says nothing */
 
 /* ---- windows ---- */
 
@@ -64,7 +64,7 @@ double ethd__shooting_simulated(const ethd__shooting *p) {
 
 static double *basis_of(const ethd__shooting *p, const ethd__fit_window *w) { return p->basis + ETHD__STATES * w->row; }
 
-/* useful: how many of the trials say something new. */
+/* Tries all trials on the window. `useful` of them count as simulated time. */
 static void try_all(const ethd__shooting *p, ethd__fit_window *w, const ethd__trial *trials, int count, int useful) {
   p->subject->try_all(p, w, trials, count);
   w->predicted += useful * w->window.count;
@@ -85,19 +85,20 @@ static void add(double *a, double factor, const double *b, int n) {
   for (int i = 0; i < n; i++) a[i] += factor * b[i];
 }
 
-/* Takes out of `out` what the window's states explain. */
+/* Removes from `out` what the window's states explain. */
 static void project(const ethd__shooting *p, const ethd__fit_window *w, double *out) {
   const double *basis = basis_of(p, w);
   for (int i = 0; i < w->rank; i++) add(out, -dot(basis + i * w->rows, out, w->rows), basis + i * w->rows, w->rows);
 }
 
-/* A state's best correction by a residual. */
+/* Adds to a state the correction that a residual asks for. */
 static void correct(const ethd__shooting *p, const ethd__fit_window *w, const double *left, double *state) {
   const double *basis = basis_of(p, w);
   for (int i = 0; i < w->rank; i++) add(state, dot(basis + i * w->rows, left, w->rows), w->turn[i], ETHD__STATES);
 }
 
-/* What each state changes, one after another: differences between predictions that take the same steps. */
+/* Fills the prediction's slopes by each number of the state, one after another: differences between predictions that
+   take the same steps. */
 static void state_slopes(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant, double *out) {
   int states = p->subject->states(plant);
   double state[ETHD__ARMS][ETHD__STATES], own[ETHD__RESIDUALS_MOST];
@@ -116,7 +117,8 @@ static void state_slopes(const ethd__shooting *p, ethd__fit_window *w, const eth
   }
 }
 
-/* The basis of what states change (Gram and Schmidt, twice), and which state each vector of it stands for. */
+/* Fills the basis of the prediction's slopes by the state (Gram and Schmidt, twice), and the matrix that turns
+   coordinates in that basis into a state. */
 static void span(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant) {
   int n = w->rows, states = p->subject->states(plant);
   double *slopes = basis_of(p, w);
@@ -151,8 +153,8 @@ typedef struct job {
   double *out;
 } job;
 
-/* Moves the state by what its basis sees in the residual, by less where the whole doesn't bring it down; the sum of
-   squares that is left. */
+/* Moves the state by what its basis sees in the residual, or by a part of that where the whole doesn't reduce the
+   squares. Returns the sum of squares that is left. */
 static double improve(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant, double *state,
                       double *left) {
   double moved[ETHD__STATES] = {0}, next[ETHD__STATES], now[ETHD__RESIDUALS_MOST], sum = dot(left, left, w->rows);
@@ -196,7 +198,7 @@ static void residual_windows(void *data, size_t begin, size_t end) {
   }
 }
 
-/* What each plant changes: differences between predictions that take the same steps. */
+/* Fills the slopes by the plant's coordinates: differences between predictions that take the same steps. */
 static void plant_slopes(const job *part, ethd__fit_window *w) {
   const ethd__shooting *p = part->problem;
   double own[ETHD__RESIDUALS_MOST];

@@ -1,6 +1,6 @@
-/* The least-squares problem: what is left between measured and predicted encoders over many short windows, each of which
-   begins in a state of its own. The states are fitted within (variable projection), so that only the plant's unknowns
-   are left. All [main]. */
+/* The least-squares problem (multiple shooting): its residuals are measured minus predicted encoders over many short
+   windows, each of which begins in a state of its own. For every plant the states are fitted inside (variable
+   projection), so that only the plant's unknowns are left. All [main]. */
 #ifndef ETHD_APPS_IDENTIFY_SHOOTING_H
 #define ETHD_APPS_IDENTIFY_SHOOTING_H
 
@@ -16,15 +16,15 @@ enum { ETHD__STATES = 18, ETHD__RESIDUALS_MOST = 2 * ETHD__WINDOW_MOST };
 
 typedef struct ethd__fit_window {
   ethd__shot window;
-  size_t row; /* of its first residual */
+  size_t row; /* index of its first residual */
   int rows;
-  double state[ETHD__STATES];              /* at its beginning, */
-  double turn[ETHD__STATES][ETHD__STATES]; /* state = turn of what the basis sees in the residual */
+  double state[ETHD__STATES];              /* at its beginning */
+  double turn[ETHD__STATES][ETHD__STATES]; /* correction of the state = turn * (basis * residual) */
   int rank;
-  int64_t predicted; /* ticks so far */
+  int64_t predicted; /* ticks that were predicted so far */
 } ethd__fit_window;
 
-/* A plant and a state that are tried on a window. out: its residuals, `rows` numbers. */
+/* A plant and a state that are tried on a window; `out` becomes its residuals, `rows` numbers. */
 typedef struct ethd__trial {
   const ethd_plant *plant;
   const double *state;
@@ -33,14 +33,14 @@ typedef struct ethd__trial {
 
 struct ethd__shooting;
 
-/* What is predicted: the arm alone, or the finger that touches it. */
+/* What a fit is about: the arm alone, or the arm with the finger that touches it. */
 typedef struct ethd__fit_subject {
   int (*states)(const ethd_plant *plant);
-  double (*step)(int state); /* for slopes by differences */
-  /* Up to ETHD__ARMS trials of one window; those beside the first differ from it little. */
+  double (*step)(int state); /* by which a number of the state is changed to find its slope by differences */
+  /* Makes up to ETHD__ARMS trials of one window; all differ little from the first. */
   void (*try_all)(const struct ethd__shooting *shooting, const ethd__fit_window *window, const ethd__trial *trials,
                   int count);
-  /* Whether a device can be so, and the simulator run it. */
+  /* Returns whether a device can be like this plant, and whether the simulator can run it. */
   bool (*is_possible)(const struct ethd__shooting *shooting, const ethd_plant *plant);
 } ethd__fit_subject;
 
@@ -48,37 +48,38 @@ typedef struct ethd__shooting {
   const ethd__evidence *evidence;
   const ethd__fit_subject *subject;
   ethd__fit_window *windows;
-  size_t window_count, rows; /* residuals: 2 a tick */
-  size_t passed_over;        /* windows, evenly among those that are kept, when a recording is very long */
-  double *basis;             /* orthonormal: ETHD__STATES * rows, of each window its vectors one after another */
-  ethd_plant plant;          /* the unknowns that aren't chosen stand as here */
+  size_t window_count, rows; /* rows: residuals of all windows */
+  size_t passed_over;        /* windows of a very long recording that aren't used, spread evenly over it */
+  double *basis;             /* ETHD__STATES * rows: each window's orthonormal vectors one after another */
+  ethd_plant plant;          /* has the unknowns that aren't chosen */
   ethd__chosen chosen;
-  double tolerance; /* m/s, of the simulator */
+  double tolerance; /* m/s, the simulator's */
 } ethd__shooting;
 
-/* Cuts the stretches into windows of the arm alone, at most `most`. tolerance: the simulator's. */
+/* Opens a problem of the arm alone: cuts the passages into at most `most` windows. tolerance, m/s: the simulator's. */
 void ethd__shooting_open(const ethd__evidence *evidence, size_t most, double tolerance, ethd__shooting *out);
 
-/* Begins with no windows; adds one of `rows` residuals; and makes ready for what follows when all are there. */
+/* The three steps of opening a problem of any subject: begin without windows; add a window of `rows` residuals; finish
+   when all are added. */
 void ethd__shooting_begin(const ethd__evidence *evidence, const ethd__fit_subject *subject, double tolerance,
                           ethd__shooting *out);
 ethd__fit_window *ethd__shooting_add(ethd__shooting *shooting, const ethd__shot *window, int rows);
 void ethd__shooting_ready(ethd__shooting *shooting);
 void ethd__shooting_close(ethd__shooting *shooting);
 
-/* The states are found anew for this plant, and what they can explain. */
+/* Finds the states, and the basis of what they can explain, anew for shooting->plant. */
 void ethd__shooting_settle(ethd__shooting *shooting);
 
-/* rows residuals, rad, of the coordinates of shooting->chosen, with the best states near the settled ones. */
+/* Fills the residuals, rad, at these coordinates of shooting->chosen, with the best states near the settled ones. */
 void ethd__shooting_residual(ethd__shooting *shooting, const double *coordinates, double *out);
 
-/* Settles at these coordinates; their derivatives: rows numbers a column. */
+/* Settles at these coordinates, and fills the residuals' derivatives by them: a column of `rows` numbers for each. */
 void ethd__shooting_slopes(ethd__shooting *shooting, const double *coordinates, double *out);
 
-/* Simulated seconds so far, of all predictions. */
+/* Returns how many seconds all predictions have simulated so far. */
 double ethd__shooting_simulated(const ethd__shooting *shooting);
 
-/* Numbers that the states take away, of `rows`. */
+/* Returns how many numbers of state all windows have, by which the residuals' degrees of freedom are fewer. */
 size_t ethd__shooting_states(const ethd__shooting *shooting);
 
 #endif

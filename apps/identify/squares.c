@@ -7,7 +7,7 @@
 #include "cli/cli.h"
 #include "identify/fit.h"
 
-#define IMPOSSIBLE 10 /* every residual of a plant that can't be: rad of the arm, standard deviations of touches */
+#define IMPOSSIBLE 10 /* every residual of an impossible plant: rad for the arm, standard deviations for touches */
 
 typedef struct descent {
   ethd__shooting *problem;
@@ -15,7 +15,8 @@ typedef struct descent {
   uint64_t calls, most;
 } descent;
 
-/* A plant that can't be ends a step there. */
+/* Returns whether a plant with these coordinates is possible; if not, the residuals are so large that the method steps
+   back. */
 static bool is_possible(const ethd__shooting *p, const double *coordinates) {
   ethd_plant plant = p->plant;
   ethd__chosen_set(&p->chosen, coordinates, &plant);

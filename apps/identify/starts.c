@@ -1,5 +1,5 @@
-/* Where a fit starts. Over a span s to both sides of a tick the second difference of a joint's angle is the acceleration
-   weighted with a triangle, and so are the torques that made it:
+/* Finds plants from which a fit starts. The second difference of a joint's angle over a span s on both sides of a tick
+   is its acceleration weighted with a triangle, and the torques that made it are weighted alike:
 
      I (q(t+s) - 2 q(t) + q(t-s)) = int (s - |u|) (torque(t+u-delay) - friction - viscous) du
 
@@ -14,16 +14,16 @@
 
 #define SPAN 15 /* ticks */
 #define HOP 5   /* ticks from one equation to the next */
-#define SLOW 2  /* ticks to each side: of a speed */
+#define SLOW 2  /* ticks to each side over which a speed is measured */
 #define LIMITS 7
 #define DELAYS 20
 
 enum { INERTIA_1, INERTIA_2, RUB, DRAG, TERMS };
 
-static const double limits[LIMITS] = {1.001, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2}; /* of the largest force */
+static const double limits[LIMITS] = {1.001, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2}; /* shares of the largest force */
 
 typedef struct equation {
-  size_t tick, begin; /* its stretch begins there */
+  size_t tick, begin; /* the tick in the middle; the first one of its stretch */
   int joint;
   double term[TERMS];
 } equation;
@@ -64,7 +64,7 @@ static void collect(regression *r) {
   }
 }
 
-/* The weighted torque of an equation. */
+/* Returns the weighted torque of an equation. */
 static double driven(const regression *r, const equation *q, double most, double delay) {
   const ethd__evidence *e = r->evidence;
   double T = e->period, sum = 0, limit = most * r->link[q->joint];
@@ -77,7 +77,7 @@ static double driven(const regression *r, const equation *q, double most, double
   return T * T * sum;
 }
 
-/* Solves the symmetric a x = b in place by elimination; a term that nothing shows is 0. */
+/* Solves the symmetric a x = b in place by elimination; a term that no equation shows becomes 0. */
 static void solve(double a[TERMS][TERMS], double b[TERMS]) {
   double scale[TERMS];
   for (int i = 0; i < TERMS; i++) scale[i] = a[i][i];
@@ -99,7 +99,7 @@ static void solve(double a[TERMS][TERMS], double b[TERMS]) {
   }
 }
 
-/* The share of the torque that isn't explained. */
+/* Fills the terms of the regression, and returns the share of the torque that they don't explain. */
 static double regress(const regression *r, double most, double delay, double out[TERMS]) {
   double a[TERMS][TERMS] = {{0}}, b[TERMS] = {0}, squares = 0, explained = 0;
   for (size_t i = 0; i < r->count; i++) {

@@ -6,17 +6,16 @@
 #include "cli/cli.h"
 #include "identify/touching.h"
 
-#define QUICK 10 /* touches on which starts compete, */
-#define BRIEF 12 /* in so many evaluations */
-#define LONG 40  /* of the fit */
-#define MOST 64  /* touches of the fit */
-#define STRANGE \
-  1.5             /* times the median rms: such a touch doesn't follow the model, as a hand that turns about doesn't */
-#define LOUD 1.15 /* standard deviations: a residual above it isn't explained */
-#define HOPEFUL 1.3 /* of a few touches, among which are strange ones: worth a fit of all */
+#define QUICK 10    /* touches on which starts compete, */
+#define BRIEF 12    /* with so many evaluations each */
+#define LONG 40     /* evaluations of the fit */
+#define MOST 64     /* touches of the fit */
+#define STRANGE 1.5 /* times the median rms: a touch with more doesn't follow the model, as when the hand turns back */
+#define LOUD 1.15   /* standard deviations: a residual above it isn't explained */
+#define HOPEFUL 1.3 /* the same for a few touches, strange ones among them: below it all touches are fitted */
 #define SIDE 1.96   /* standard errors to each side of an interval of 95 % */
-#define UNSURE 0.5  /* a number whose interval is wider to one side than this share of what it could be isn't seen; */
-#define HOPELESS 4  /* and beyond this it isn't fitted beside the others either */
+#define UNSURE 0.5  /* a number whose interval is wider to one side than this share of its range isn't seen; */
+#define HOPELESS 4  /* beyond this share it isn't fitted beside the others either */
 #define NOISE 1e-4  /* m: of readings whose noise isn't seen */
 
 static const ethd__chosen finger = {
@@ -35,7 +34,7 @@ static double *numbers(size_t count) {
   return at;
 }
 
-/* Of each touch; returns their median. */
+/* Fills the rms of each touch, and returns their median. */
 static double find_rms(ethd__shooting *p, double *rms) {
   double x[ETHD__UNKNOWNS], *residual = numbers(p->rows), *sorted = numbers(p->window_count), median;
   ethd__chosen_get(&p->chosen, &p->plant, x);
@@ -54,7 +53,7 @@ static double find_rms(ethd__shooting *p, double *rms) {
   return median;
 }
 
-/* Takes out the touches that don't follow the model; whether there were any. */
+/* Drops the touches that don't follow the model; returns whether there were any. */
 static bool drop_strange(ethd__shooting *p) {
   double *rms = numbers(p->window_count), median = find_rms(p, rms);
   size_t kept = 0, count = p->window_count;
@@ -86,7 +85,7 @@ static ethd_plant start_of(const ethd_plant *plant, int i) {
   return out;
 }
 
-/* Which of some starts explains some touches of this length best, and how well. */
+/* Finds which of the starts explains some touches of this length best, and returns how well. */
 static double best_start(const ethd__evidence *e, double after, const ethd_plant *starts, int count, ethd_plant *best,
                          double *simulated) {
   double least = (double)INFINITY;
@@ -110,7 +109,7 @@ static double best_start(const ethd__evidence *e, double after, const ethd_plant
 
 /* ---- how sure ---- */
 
-/* What a number could be, so that an interval of a share of it says something. */
+/* Returns the range that a number could have, of which its interval must be a small share to say something. */
 static double extent(const ethd_plant *plant, ethd__unknown u) {
   switch (u) {
   case ETHD__HAND_DAMPING: return fmax(plant->hand_damping, 1);
@@ -125,8 +124,8 @@ static double doubt(const ethd__shooting *p, int i, double error) {
   return SIDE * error * (scale > 0 ? scale : 1) / extent(&p->plant, u);
 }
 
-/* A number that can't be told at all is kept, and the rest fitted again. One that is only unsure stays among those that are
-   fitted, so that the others' intervals hold what it leaves open. */
+/* Keeps the numbers that the touches can't tell at all, and fits the rest again. A number that is only uncertain is
+   still fitted, so that the others' intervals allow for what it leaves open. */
 static void leave_hopeless(ethd__shooting *p, const ethd_plant *plant, double *errors) {
   for (;;) {
     int worst = -1;
@@ -161,7 +160,7 @@ static void take_over(const ethd__shooting *p, const double *errors, ethd__fit *
 
 /* ---- all of it ---- */
 
-/* With touches of this length, from the best start on. */
+/* Fits touches of this length, from the best start. */
 static void fit_length(const ethd__evidence *e, const ethd_plant *plant, const ethd_plant *start, ethd__fit *f,
                        ethd__touch_fit *out) {
   ethd__shooting p;
@@ -182,8 +181,8 @@ static void fit_length(const ethd__evidence *e, const ethd_plant *plant, const e
   ethd__shooting_close(&p);
 }
 
-/* The longer a touch, the more it shows; but a hand that brakes or turns back within it doesn't move on a cubic. So the
-   longest that is explained counts. */
+/* The longer a touch, the more it shows; but a hand that brakes or turns back during it doesn't move on a cubic. So the
+   longest touches that the model explains count. */
 void ethd__touch_fit_run(const ethd__evidence *e, const ethd__sensing *sensing, ethd__fit *f, ethd__touch_fit *out) {
   static const double lengths[] = {ETHD__TOUCH_AFTER, 0.04, 0.025, 0.015};
   ethd_plant plant = f->plant, best = plant, starts[GUESSES + 1];
@@ -197,6 +196,6 @@ void ethd__touch_fit_run(const ethd__evidence *e, const ethd__sensing *sensing, 
     out->after = lengths[i];
     double rms = best_start(e, out->after, starts, i ? 2 : GUESSES + 1, &best, &out->simulated);
     if (rms <= HOPEFUL) fit_length(e, &plant, &best, f, out);
-    starts[1] = best; /* for shorter ones, beside the first guess */
+    starts[1] = best; /* a start for shorter touches, beside the first guess */
   }
 }

@@ -7,14 +7,14 @@
 
 #define TOLERANCE 1e-8   /* m/s, of the simulator */
 #define FAST 1e4         /* rad/s, and */
-#define STEPS_MOST 400   /* steps of a tick: a trial that is faster, or needs more of them, isn't followed further */
-#define IDEAL 1e-6       /* rad: standard deviation of encoders that round to no counts */
-#define READINGS_MOST 96 /* of a touch */
-#define LEAST 4          /* readings before the touch, for a guess at the path */
+#define STEPS_MOST 400   /* steps a tick: a trial that is faster, or needs more of them, is given up */
+#define IDEAL 1e-6       /* rad: standard deviation of encoders that don't round to counts */
+#define READINGS_MOST 96 /* readings of a touch */
+#define LEAST 4          /* readings before the touch that a guess at the path needs */
 
 /* ---- what is measured ---- */
 
-/* Readings that were taken within the window; t: s from its first tick on. */
+/* A reading that was taken within the window, at t, s after its first tick. */
 typedef struct touch_reading {
   double t;
   ethd_vec centre, finger;
@@ -100,7 +100,8 @@ static ethd_vec centre_at(play *p, double t) {
   return (ethd_vec){s.q[ETHD__FINGER] - ring.x, s.q[ETHD__FINGER + 1] - ring.y};
 }
 
-/* Up to `until` under one torque: tick k and the samples in between are read off. False: no device does this. */
+/* Steps up to `until` under one torque, and reads off tick k and the samples in between. False: the arm runs away, as
+   no device does. */
 static bool go_on(play *p, double until, int k, const touch_reading *samples, int *next, double *out) {
   int n = p->window->window.count, count = (p->window->rows - 2 * n) / 2;
   double tick = k * p->evidence->period, angles[ETHD__DOF_MAX];
@@ -139,7 +140,7 @@ static void try_one(const ethd__shooting *s, const ethd__fit_window *w, const et
   touch_reading samples[READINGS_MOST];
   int n = 2 * w->window.count;
   (void)samples_of(s->evidence, onset_of(s->evidence, w), w->window.count, samples);
-  memset(t->out, 0, (size_t)w->rows * sizeof *t->out); /* a plant that runs away is far from all that is measured */
+  memset(t->out, 0, (size_t)w->rows * sizeof *t->out); /* so that a plant that runs away is far from what is measured */
   begin(&p, t->plant, t->state);
   memcpy(t->out, t->state, 2 * sizeof *t->out);
   (void)predict(&p, t->plant->delay, samples, t->out);
@@ -178,7 +179,7 @@ static const ethd__fit_subject touching = {states, step, try_all, is_possible};
 
 /* ---- first guesses ---- */
 
-/* A line through the finger's places before the touch. False: too few. */
+/* Guesses the path by a line through the finger's positions before the touch. False: there are too few. */
 static bool guess_path(const touch_reading *s, int count, double until, double *path) {
   double n = 0, t = 0, tt = 0, x[2] = {0, 0}, tx[2] = {0, 0};
   for (int i = 0; i < count && s[i].t <= until; i++) {

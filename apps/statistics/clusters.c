@@ -13,7 +13,7 @@ static int by_tap(const void *a, const void *b) {
   return (p->side > q->side) - (p->side < q->side);
 }
 
-/* Numbers those who have taps from 0 on; seen[person] becomes the number. */
+/* Numbers the people who have taps, from 0; seen[person] becomes the number. */
 static size_t number_people(const ethd__tapped *taps, size_t n, size_t people, uint32_t *seen) {
   size_t count = 0;
   memset(seen, 0, people * sizeof *seen);
@@ -36,7 +36,7 @@ bool ethd__clusters_make(ethd__tapped *taps, size_t n, size_t people, ethd__clus
     ethd__clusters_free(out);
     return false;
   }
-  /* here first[j + 1] moves from the beginning of list j to its end */
+  /* first[j + 1] is the beginning of list j now, and moves to its end as the list fills */
   for (size_t i = 0; i < n; i++) out->first[2 * seen[taps[i].person] + taps[i].side + 2]++;
   for (size_t j = 2; j < 2 * out->persons + 3; j++) out->first[j] += out->first[j - 1];
   for (size_t i = 0; i < n; i++) out->of[out->first[2 * seen[taps[i].person] + taps[i].side + 1]++] = i;
@@ -87,7 +87,8 @@ double ethd__clusters_here(const ethd__clusters *c, ethd__clusters_figure *figur
 
 /* ---- drawing ---- */
 
-/* Person by person: each tap that is drawn adds to its weight. */
+/* Draws as many people as there are, then as many taps of each as that person has; each draw adds 1 to the tap's
+   weight. */
 static void draw_once(const ethd__clusters *c, uint64_t seed, uint64_t draw, uint32_t *weight) {
   uint32_t tap = 0;
   memset(weight, 0, c->n * sizeof *weight);

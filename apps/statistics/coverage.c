@@ -8,10 +8,10 @@
 #include "statistics/distribution.h"
 #include "statistics/paired.h"
 
-#define MOVE 1.0   /* by the strategy */
-#define ANSWER 0.5 /* sd between people of how far it moves them */
+#define MOVE 1.0   /* by which the strategy shifts the mean */
+#define ANSWER 0.5 /* standard deviation, between people, of that shift */
 #define TAPS ETHD_COVERAGE_TAPS
-#define WITHOUT_LIMIT 2u /* people: the fewest of whom a bootstrap makes sense at all */
+#define WITHOUT_LIMIT 2u /* people: with fewer a bootstrap makes no sense */
 
 static const ethd__coverage known[] = {
     {3, 0.872, 0.911, 0.951, 0.948},
@@ -28,7 +28,7 @@ const ethd__coverage *ethd__coverage_known(size_t people) {
 
 static double middle_of_three(const double v[TAPS]) { return fmax(fmin(v[0], v[1]), fmin(fmax(v[0], v[1]), v[2])); }
 
-/* One study: its taps of both sides, and each person's difference of medians. */
+/* Simulates one study: fills its taps of both sides, and each person's difference of medians. */
 static void make_study(size_t people, uint64_t seed, uint64_t run, ethd__tapped *taps, double *difference) {
   ethd__sim_key key = {seed, run};
   uint32_t number = 0;
@@ -49,7 +49,7 @@ static void make_study(size_t people, uint64_t seed, uint64_t run, ethd__tapped 
 
 static bool holds(ethd__interval i, double truth) { return i.low <= truth && truth <= i.high; }
 
-/* The median over side 0 alone, whose truth is 0. */
+/* Returns the interval of the median over side 0 alone, whose true value is 0. */
 static ethd__interval of_one_side(const ethd__tapped *taps, size_t n, size_t people, uint64_t seed) {
   ethd__tapped *side = malloc((n + 1) * sizeof *side);
   ethd__interval out = {NAN, NAN, 0, 0};
@@ -66,7 +66,7 @@ static ethd__interval of_one_side(const ethd__tapped *taps, size_t n, size_t peo
 }
 
 ethd__coverage ethd__coverage_of(size_t people, size_t runs, uint64_t seed) {
-  /* variance of the middle of three normal numbers: 1 - sqrt(3)/pi */
+  /* the median of three standard normal numbers has the variance 1 - sqrt(3)/pi */
   const double d_z = MOVE / sqrt(ANSWER * ANSWER + 2 * (1 - sqrt(3) / acos(-1)));
   const double cliff = 2 * ethd__normal_below(MOVE / sqrt(4 + ANSWER * ANSWER)) - 1;
   size_t n = people * 2 * TAPS, hits[4] = {0};

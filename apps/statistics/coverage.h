@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define ETHD_COVERAGE_TAPS 3 /* of a person in a cell, as the paper has them */
+#define ETHD_COVERAGE_TAPS 3 /* taps of each person in each cell, as in the paper */
 
 /* Shares of simulated studies whose 95 % interval holds the truth. */
 typedef struct ethd__coverage {
@@ -14,13 +14,13 @@ typedef struct ethd__coverage {
   double mean, effect;  /* Student's t of people's differences; d_z from the noncentral t */
 } ethd__coverage;
 
-/* Simulates `runs` studies: person, person's answer to the strategy and tap are normal with sd 1, 0.5 and 1, the
-   strategy moves the mean by 1. Two of the intervals do not change when the values are stretched by any increasing
-   function, the other two need differences that are about normal. */
+/* Simulates `runs` studies. People, their responses to the strategy and their taps are normal with standard deviations
+   1, 0.5 and 1; the strategy shifts the mean by 1. The first two intervals stay valid when any increasing function
+   stretches the values; the other two need differences that are about normal. */
 ethd__coverage ethd__coverage_of(size_t people, size_t runs, uint64_t seed);
 
-/* What a long run found (tests/README.md has its command), for as many people or the next fewer; of six people or
-   fewer, that for six or three. */
+/* Returns what a long run found (tests/README.md has its command) for the largest number of people in its table that
+   is at most `people`; for three if there are fewer. */
 const ethd__coverage *ethd__coverage_known(size_t people);
 
 #endif

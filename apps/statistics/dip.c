@@ -9,17 +9,17 @@
 #define LARGEST 200u
 #define DRAWS 1000u
 
-/* The mode lies between two values, which close in on it step by step. Up to them the nearest unimodal function is the
-   greatest convex minorant, beyond them the least concave majorant. Counts of values stand for probabilities: just
-   before value i the sample's function is i, from it on i + 1, in units of 1/n. */
+/* The mode lies between two values, which close in on it step by step. Before them the nearest unimodal function is the
+   greatest convex minorant, behind them the least concave majorant. Counts of values stand for probabilities: in units
+   of 1/n, the sample's distribution function is i just before value i and i + 1 from value i on. */
 typedef struct hulls {
   const double *x;
-  size_t *under, *over; /* values at which the greatest convex minorant and the least concave majorant bend */
+  size_t *under, *over; /* values at which the greatest convex minorant bends, and the least concave majorant */
   size_t unders, overs;
 } hulls;
 
-/* Twice the area that says to which side b lies of the line from a to c; both hulls run through (x[i], i) but for a
-   constant. */
+/* Twice the signed area of the triangle a, b, c, whose sign says on which side of the line from a to c the point b
+   lies. But for a constant, both hulls run through points (x[i], i). */
 static double turn(const double *x, size_t a, size_t b, size_t c) {
   return (x[b] - x[a]) * (double)(c - a) - (x[c] - x[a]) * (double)(b - a);
 }
@@ -33,12 +33,12 @@ static size_t bend(const hulls *h, size_t from, size_t to, double side, size_t *
   return n;
 }
 
-/* Height of the hull's piece from a to b over value i, in counts. */
+/* Height of the hull's piece from a to b at value i, in counts. */
 static double height(const double *x, size_t a, size_t b, size_t i) {
   return x[b] > x[a] ? (double)a + (double)(b - a) * (x[i] - x[a]) / (x[b] - x[a]) : (double)a;
 }
 
-/* The piece of the hull over value i is from hull[k] to hull[k + 1]. */
+/* Finds the k for which the hull's piece at value i goes from hull[k] to hull[k + 1]. */
 static size_t piece(const size_t *hull, size_t count, size_t i, size_t k) {
   while (k + 2 < count && hull[k + 1] <= i) k++;
   return k;
@@ -49,7 +49,7 @@ typedef struct gap {
   size_t low, high; /* the mode lies between these two */
 } gap;
 
-/* Where minorant and majorant are furthest from each other: at a bend of either. */
+/* Finds where minorant and majorant are furthest apart, which is at a bend of one of them. */
 static gap widest(const hulls *h) {
   gap best = {-1, 0, 0};
   size_t o = 0, u = 0;
@@ -68,7 +68,7 @@ static gap widest(const hulls *h) {
   return best;
 }
 
-/* How far the function lies above the minorant, from value `from` to `to`. */
+/* Returns how far the sample's function lies above the minorant at most, from value `from` to value `to`. */
 static double above_minorant(const hulls *h, size_t from, size_t to) {
   double most = 0;
   size_t u = 0;

@@ -28,7 +28,7 @@ static double beta_fraction(double a, double b, double x) {
   return h;
 }
 
-/* Regularised: I_x(a, b), with y = 1 - x given apart, so that neither loses its digits. */
+/* The regularised incomplete beta function I_x(a, b); y = 1 - x is given too, so that neither loses digits. */
 static double beta_share(double a, double b, double x, double y) {
   if (x <= 0 || y <= 0) return x <= 0 ? 0 : 1;
   double front = exp(lgamma(a + b) - lgamma(a) - lgamma(b) + a * log(x) + b * log(y));
@@ -54,7 +54,8 @@ double ethd__student_quantile(double p, double freedom) {
   return (low + high) / 2;
 }
 
-/* The mean of P(Z <= t s - shift) over s = sqrt(chi2/freedom), by Simpson's rule where the density of s is. */
+/* The mean of P(Z <= t s - shift) over s = sqrt(chi2/freedom), by Simpson's rule over the range in which s has
+   density. */
 double ethd__noncentral_below(double t, double freedom, double shift) {
   if (isnan(t) || isnan(shift) || !(freedom >= 1)) return NAN;
   double spread = 1 / sqrt(2 * freedom), from = fmax(0, 1 - 12 * spread), to = 1 + (freedom < 3 ? 16 : 12) * spread;

@@ -1,11 +1,11 @@
-/* Probability distributions. Accurate to about 1e-12, tried against SciPy. All [any]. */
+/* Probability distributions, accurate to about 1e-12 by comparison with SciPy. All [any]. */
 #ifndef ETHD_STATISTICS_DISTRIBUTION_H
 #define ETHD_STATISTICS_DISTRIBUTION_H
 
 /* P(Z <= z) of a standard normal number. */
 double ethd__normal_below(double z);
 
-/* P(T <= t) of Student's t with so many degrees of freedom, and the t for which it is p. */
+/* P(T <= t) of Student's t with `freedom` degrees of freedom, and the t at which it is p. */
 double ethd__student_below(double t, double freedom);
 double ethd__student_quantile(double p, double freedom);
 

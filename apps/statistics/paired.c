@@ -8,14 +8,15 @@
 #include "statistics/distribution.h"
 
 #define EXACT 16u
-#define BITS 53u /* signs that a uniform number holds */
-#define WORK 4e7 /* signs drawn at most: the time stays linear in the people */
+#define BITS 53u /* random signs in one uniform number */
+#define WORK 4e7 /* the most signs that are drawn, so that the time stays linear in the people */
 #define FLIPS_MAX 20000u
 #define FLIPS_MIN 2000u
 
 /* ---- flipped signs ---- */
 
-/* signs: a bit for each of at most 64 differences. */
+/* Returns the size of the differences' sum with some signs flipped: `signs` has a bit for each of at most 64
+   differences. */
 static double flipped(const double *differences, size_t n, uint64_t signs) {
   double sum = 0;
   for (size_t i = 0; i < n; i++) sum += signs >> i & 1 ? -differences[i] : differences[i];
@@ -43,9 +44,9 @@ double ethd__sign_flip(const double *differences, size_t n, uint64_t seed) {
   return n <= EXACT ? (double)as_far / (double)all : (double)(as_far + 1) / (double)(all + 1);
 }
 
-/* ---- the mean, and its size beside the spread ---- */
+/* ---- the mean, and the effect size ---- */
 
-/* The shift of the noncentral t below which a share p of it lies under t; the share falls as the shift grows. */
+/* Finds the shift at which a share p of the noncentral t lies below t; the share falls as the shift grows. */
 static double shift_at(double t, double freedom, double p) {
   double low = t - 10 - fabs(t), high = t + 10 + fabs(t);
   for (int i = 0; i < 100 && high - low > 1e-12 * (1 + fabs(t)); i++) {
@@ -85,7 +86,7 @@ ethd__equivalence ethd__equivalent(const double *values, size_t n, double low, d
   ethd__equivalence e = {NAN, false, NAN, NAN};
   if (n < 2) return e;
   double mean = ethd__mean_of(values, n), error = error_of(values, n), freedom = (double)n - 1;
-  /* values that don't differ at all: 0/0 is as good as beyond the margin */
+  /* differences without spread have no error: the mean is clearly inside the margin or clearly outside */
   double above = error > 0 ? (mean - low) / error : mean > low ? INFINITY : -INFINITY;
   double below = error > 0 ? (high - mean) / error : mean < high ? INFINITY : -INFINITY;
   e.p = 1 - ethd__student_below(fmin(above, below), freedom);
@@ -114,7 +115,7 @@ static sample_moments sample_moments_of(const double *values, size_t n) {
   return m;
 }
 
-/* Pearson's correlation of those who are in both; 0 of fewer than three, which tell nothing of it. */
+/* Pearson's correlation over the people who are in both samples; 0 with fewer than three, who say nothing about it. */
 static double correlation(const double *a, const double *b, size_t n, size_t both) {
   double mean_a = 0, mean_b = 0, aa = 0, bb = 0, ab = 0;
   for (size_t i = 0; i < n; i++)

@@ -34,7 +34,8 @@ void ethd__rank(const double *values, size_t n, double *out) {
 
 /* ---- Wilcoxon ---- */
 
-/* P(sum <= at) and P(sum >= at) where each rank counts or doesn't; twice the ranks are whole numbers. */
+/* The exact two-sided p of a rank sum: each rank is in the sum or not, with equal chances. Twice a rank is a whole
+   number. */
 static double exact_tail(const double *rank, size_t n, double at) {
   size_t most = 0, twice = (size_t)(2 * at + 0.5);
   for (size_t i = 0; i < n; i++) most += (size_t)(2 * rank[i] + 0.5);

@@ -6,7 +6,7 @@
 
 #define TAPS 3 /* taps at each speed under each disturbance */
 #define PRESS \
-  300 /* ticks for which the finger goes on pressing after the tap, so that a bounce dies out and a limit cycle doesn't */
+  300 /* ticks for which the finger goes on pressing after the tap: a bounce dies out in them, a limit cycle doesn't */
 #define REST 40 /* the last of these ticks, in which the ring must be at rest */
 #define SWING \
   0.01 /* m/s, rms about a line; a limit cycle between torque limits is faster: 5 N on 0.15 kg at 100 Hz make 0.038 */
@@ -25,8 +25,8 @@ static double left_over(const line_fit *l) {
   return sqrt(fmax(0, l->vv / l->n - v * v - slope * slope * tt));
 }
 
-/* Goes on with the tap that has just been run. Where the transmission gives way the motor's side swings first, and most.
-   INFINITY: the controller stopped. */
+/* Goes on with the tap that has just been run. Where the transmission gives way the motor's side swings first, and
+   most. INFINITY: the controller stopped. */
 static double swing_of(ethd__stage *stage) {
   line_fit line = {0};
   ethd_sense sense;
@@ -44,7 +44,7 @@ static double swing_of(ethd__stage *stage) {
   return left_over(&line);
 }
 
-/* How restless the ring is long after each tap. */
+/* How much the ring still moves long after each tap. */
 typedef struct unrest {
   double swing[ETHD_TUNE_SPEEDS][TAPS];
 } unrest;

@@ -1,6 +1,6 @@
-/* Keeps what has been scored in a folder, so that a search that was ended goes on and shards in several processes or on
-   several machines share the work. tune.txt says what is searched for; scores-I-of-N.csv is shard I's, to which a line is appended for each point. All
-   [main]. */
+/* Keeps the scores in a folder, so that a search that was interrupted goes on, and shards in several processes or on
+   several machines share the work. tune.txt says what is searched for. scores-I-of-N.csv is the file of shard I, which
+   appends a line for each point. All [main]. */
 #ifndef ETHD_TUNE_JOURNAL_H
 #define ETHD_TUNE_JOURNAL_H
 

@@ -40,7 +40,7 @@ bool ethd__score_keeps(const ethd__tune_rig *rig, const ethd__tune_point *point)
 }
 
 #define LOWERED \
-  0.1 /* times the configuration's value: how far down a damping is searched that doesn't keep the margin */
+  0.1 /* times the configuration's value: the lowest damping that is tried where that value doesn't keep the margin */
 
 void ethd__score_widen(const ethd__tune_rig *rig, ethd__tune_space *space) {
   static const char *const sections[ETHD_LOOP_KINDS] = {"tracking.b", "contact.b", "transition.b"};

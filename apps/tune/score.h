@@ -1,4 +1,4 @@
-/* What a point of the space is worth: its margins, and figures of simulated taps. All [main]. */
+/* Judges a point of the space by its margins and by figures of simulated taps. All [main]. */
 #ifndef ETHD_TUNE_SCORE_H
 #define ETHD_TUNE_SCORE_H
 
@@ -30,7 +30,8 @@ typedef struct ethd__tune_score {
 
 extern const char *const ethd__tune_figure_names[ETHD_TUNE_FIGURE_COUNT];
 
-/* The hands that lean against the ring, as shares of the plant's finger mass, hand stiffness and damping. 0: a free ring. */
+/* The hands that lean against the ring, as shares of the plant's finger mass, hand stiffness and damping. 0: a free
+   ring. */
 typedef struct ethd__tune_hands {
   double shares[8];
   size_t count;
@@ -44,19 +45,19 @@ typedef struct ethd__tune_rig {
   bool passive; /* the wall is to be passive with the device's own viscous friction (Colgate and Schenkel) */
 } ethd__tune_rig;
 
-/* Lowers the range of the damping gain of every loop that doesn't keep the margin under the configuration's own gains, so
-   that the search finds some that do. */
+/* Lowers the range of the damping gain of every loop that doesn't keep the margin under the configuration's own gains,
+   so that the search finds some that do. */
 void ethd__score_widen(const ethd__tune_rig *rig, ethd__tune_space *space);
 
-/* Whether every loop, along each axis, keeps the margin, free and with each hand's mass against the ring. It is also false for
-   a setup that the configuration refuses. */
+/* Returns whether every loop, along each axis, keeps the margin, free and with each hand's mass against the ring. It is
+   false, too, for a setup that the configuration refuses. */
 bool ethd__score_keeps(const ethd__tune_rig *rig, const ethd__tune_point *point);
 
 /* Runs taps 0 to taps - 1 at each speed. */
 ETHD_MUST_CHECK ethd_status ethd__score_run(const ethd__tune_rig *rig, const ethd__tune_point *point, uint32_t taps,
                                             ethd__tune_score *out, char message[ETHD_MESSAGE_MAX]);
 
-/* What the trial of a point's margins in time came to. */
+/* The result of trying a point's margins in time. */
 typedef struct ethd__tune_verdict {
   bool settles;
   const char *what; /* what was at its margin in the last try */
@@ -64,12 +65,12 @@ typedef struct ethd__tune_verdict {
   double swing;     /* m/s: how restless the ring then was at the end of a tap */
 } ethd__tune_verdict;
 
-/* The same margins asked of the whole device in time: taps with gains `margin.gain` times as large, with torques
-   `margin.delay` later, with each hand. It settles where the ring has come to rest in the wall in all of them. */
+/* Tries the same margins on the whole device in time: taps with gains `margin.gain` times as large, with torques
+   `margin.delay` later, with each hand. The point settles if the ring comes to rest in the wall in all of them. */
 ETHD_MUST_CHECK ethd_status ethd__score_confirm(const ethd__tune_rig *rig, const ethd__tune_point *point,
                                                 ethd__tune_verdict *out, char message[ETHD_MESSAGE_MAX]);
 
-/* What a person asks for, each as the mean logarithm of figures over those of a reference: 0 is as good, less is
+/* What a person asks for. Each goal is the mean logarithm of figures over those of a reference: 0 is as good, less is
    better. */
 typedef enum ethd__tune_goal {
   ETHD_TUNE_TRACKING,

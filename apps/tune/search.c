@@ -7,14 +7,14 @@
 #include "cli/cli.h"
 #include "text/error_text.h"
 
-/* What each round does: it taps 1/part of the last round's taps, takes over so many per cent of the round before, draws so
-   many children about each of these, and draws them within `spread` of the range. */
+/* What each round does: it taps 1/part of the last round's taps, takes over so many per cent of the round before, draws
+   so many children about each of these, and draws them within `spread` of the range. */
 static const struct {
   uint32_t part, percent, children;
   double spread;
 } plan[ETHD_TUNE_ROUNDS] = {{20, 0, 0, 0}, {10, 12, 3, 0.12}, {4, 8, 2, 0.05}, {1, 6, 0, 0}};
 
-#define WORSE 1.1 /* times the configuration's figure; what is worse than that counts so many times more: */
+#define WORSE 1.1 /* times the configuration's figure: what is worse than that counts more, by the next factor */
 #define DEARER 10.0
 #define TAPS_LEAST 8 /* with fewer hardly a hand meets the wall at the speed asked for */
 #define LEAST 4      /* points that go on however small the search is */
@@ -32,7 +32,7 @@ static void add(ethd__tune_round *r, const ethd__tune_point *point, bool keeps) 
   r->entries[r->count++] = (ethd__tune_entry){.point = *point, .keeps = keeps};
 }
 
-/* The own point is the reference, whether it keeps the margin or not. */
+/* Adds the configuration's own point, which is the reference, whether it keeps the margin or not. */
 static void add_own(const ethd__tune_search *s, ethd__tune_round *r) {
   ethd__tune_point own = ethd__space_own(s->rig->space);
   add(r, &own, ethd__score_keeps(s->rig, &own));
@@ -71,7 +71,7 @@ static int by_total(const void *a, const void *b) {
   return *x < *y ? -1 : 1;
 }
 
-/* Orders the points: those of the front come first, and each group is in the order of its totals. */
+/* Orders the points by their totals, those of the front before the others. */
 static const ethd__tune_entry **ranked(const ethd__tune_round *r, size_t *count) {
   const ethd__tune_entry **order = malloc(r->count * sizeof *order);
   *count = 0;
@@ -81,7 +81,8 @@ static const ethd__tune_entry **ranked(const ethd__tune_round *r, size_t *count)
   return order;
 }
 
-/* Appends the best point by each goal to the first `count` of the order, unless it is among them. Returns the new count. */
+/* Appends the best point by each goal to the first `count` of the order, unless it is among them. Returns the new
+   count. */
 static size_t add_extremes(const ethd__tune_entry **order, size_t count, size_t all) {
   for (int g = 0; g < ETHD_TUNE_GOALS; g++) {
     size_t best = 0;

@@ -1,4 +1,5 @@
-/* What is tuned: numbers of a configuration, each within a range, and points in the box that they span. All [main]. */
+/* The space that is searched: keys of a configuration, each within a range, and points in the box that they span. All
+   [main]. */
 #ifndef ETHD_TUNE_SPACE_H
 #define ETHD_TUNE_SPACE_H
 
@@ -8,8 +9,8 @@
 #define ETHD_TUNE_KEY_MAX 64
 #define ETHD_TUNE_VALUE_MAX 32
 
-/* What is tuned of a configuration that says nothing else: X(name, least share of its own value, largest multiple, what a
-   larger value buys, and what it costs). */
+/* The keys that are tuned unless --range says otherwise. X(name, the least share of its own value, the largest
+   multiple, what a larger value buys and what it costs). */
 #define ETHD_TUNE_KNOWN(X)                                                                                     \
   X("tracking.k_t", 0.5, 8, "less lag and fewer early contacts; it costs a rougher torque")                    \
   X("tracking.b_t", 0.5, 8, "a ring that swings less about the finger; it costs encoder counts that are felt") \
@@ -31,21 +32,21 @@ typedef struct ethd__tune_space {
   size_t count;
 } ethd__tune_space;
 
-/* One value for every key. */
+/* A value for each key of the space. */
 typedef struct ethd__tune_point {
   double value[ETHD_TUNE_KEYS_MAX];
 } ethd__tune_point;
 
-/* Opens the space of the gains and cut-offs that the setup's laws and estimators have. Contact stiffness isn't lowered: a
-   softer wall bounces less and is a worse wall. Refuses an unknown law and a setup with nothing to tune. */
+/* Opens the space of the gains and cut-offs that the setup's laws and estimators have. Contact stiffness isn't lowered:
+   a softer wall bounces less and is a worse wall. Refuses an unknown law and a setup with nothing to tune. */
 ETHD_MUST_CHECK ethd_status ethd__space_open(const ethd_config *config, const char *law, ethd__tune_space *out,
                                              char message[ETHD_MESSAGE_MAX]);
 
 /* Gives the keys whose names begin with `prefix` the range from `share` of their own value to that value. */
 void ethd__space_lower(ethd__tune_space *space, const char *prefix, double share);
 
-/* Reads "contact.k_e=500:4000", which sets the range of a key, or "contact.k_e=1000", which holds it; a key that the space
-   lacks is added. Refuses what the configuration doesn't take. */
+/* Reads "contact.k_e=500:4000", which sets the range of a key, or "contact.k_e=1000", which holds it; a key that the
+   space lacks is added. Refuses what the configuration doesn't take. */
 ETHD_MUST_CHECK ethd_status ethd__space_range(ethd__tune_space *space, const char *text,
                                               char message[ETHD_MESSAGE_MAX]);
 
@@ -63,7 +64,7 @@ ethd__tune_point ethd__space_near(const ethd__tune_space *space, const ethd__tun
 /* Writes a value as text with four digits, which is what points have. */
 const char *ethd__space_text(double value, char out[ETHD_TUNE_VALUE_MAX]);
 
-/* A point as the gains of a study; gains[] refer to the space and to text[]. */
+/* A point as the gains of a study; gains[] points into the space and into text[]. */
 typedef struct ethd__tune_gains {
   char text[ETHD_TUNE_KEYS_MAX][ETHD_TUNE_VALUE_MAX];
   ethd__gain gains[ETHD_TUNE_KEYS_MAX];

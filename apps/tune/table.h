@@ -1,4 +1,4 @@
-/* What a search found, for people and for pictures. [main] */
+/* Prints what a search found, and writes it as a table for pictures. [main] */
 #ifndef ETHD_TUNE_TABLE_H
 #define ETHD_TUNE_TABLE_H
 
@@ -6,7 +6,7 @@
 
 #include "tune/search.h"
 
-/* The configuration's own point, the front, the choice. */
+/* Prints the configuration's own point, the front and the choice. */
 void ethd__tune_print(FILE *out, const ethd__tune_search *search, const ethd__tune_entry *choice);
 
 /* Prints the point's margins without a hand, as ethd-check prints them; returns how many of its loops are unstable. */
@@ -24,7 +24,7 @@ ETHD_MUST_CHECK ethd_status ethd__tune_weigh(const ethd__tune_search *search, co
 void ethd__tune_print_worths(FILE *out, const ethd__tune_space *space, const ethd__tune_point *choice,
                              const ethd__tune_worths *worths);
 
-/* Every point of every round: its values, figures and goals; keeps, front, chosen as 0 or 1. */
+/* Writes every point of every round: its values, figures and goals; keeps, front and chosen are 0 or 1. */
 ETHD_MUST_CHECK ethd_status ethd__tune_csv(const ethd__tune_search *search, const ethd__tune_entry *choice,
                                            const char *path, char message[ETHD_MESSAGE_MAX]);
 

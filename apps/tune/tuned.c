@@ -14,7 +14,7 @@ typedef struct rewriting {
   bool done[ETHD_TUNE_KEYS_MAX];
   bool other_folder;
   char section[ETHD_TUNE_KEY_MAX];
-  size_t blank; /* blank lines that wait: keys that a section lacks go before them */
+  size_t blank; /* blank lines that aren't written yet, because keys that the section lacks go before them */
   FILE *out;
 } rewriting;
 
