@@ -22,7 +22,7 @@ ethd__bounds_device ethd__bounds_device_of(const ethd_plant *p, double hand) {
 
 static double or_zero(double value) { return isnan(value) ? 0 : value; }
 
-/* J^-T K J^-1 with K = k I. */
+/* Computes J^-T K J^-1 for K = k I. */
 static void at_ring(const double ji[4], double k, double along[2], double *across) {
   along[0] = k * (ji[0] * ji[0] + ji[2] * ji[2]);
   along[1] = k * (ji[1] * ji[1] + ji[3] * ji[3]);
@@ -89,7 +89,7 @@ int ethd__bounds_rows(const ethd__sampled_loop *l, ethd__bounds_row out[ETHD_LOO
   return n;
 }
 
-/* Asks at the margin, which is quicker than to look for the rows' ends. */
+/* Asks for stability at the margin, which is quicker than searching for the ends of the rows. */
 bool ethd__bounds_keeps(const ethd__sampled_loop *l, const ethd__bounds_margin *margin) {
   if (l->stiffness <= 0 && l->damping <= 0) return true;
   return ethd__sampled_stable_up_to(l, margin->gain, margin->gain) && ethd__sampled_stable_up_to(l, margin->gain, 1) &&

@@ -1,5 +1,5 @@
-/* The sampled loops of a setup on a device: tracking, the wall and braking, along x and along y, and how far each of their
-   numbers is from where the loop becomes unstable. Links from libethd-drivers. Pure functions. [any] */
+/* The sampled loops of a setup on a device (tracking, wall and braking, each along x and along y), and how far each of
+   their numbers is from where the loop becomes unstable. Links from libethd-drivers. Pure functions. [any] */
 #ifndef ETHD_BOUNDS_LOOPS_H
 #define ETHD_BOUNDS_LOOPS_H
 
@@ -15,38 +15,39 @@ typedef enum ethd__bounds_kind {
 
 extern const char *const ethd__bounds_names[ETHD_LOOP_KINDS];
 
-/* What moves, what rubs, how late a torque is and how coarse a reading. NaN: unknown. */
+/* The numbers of a device on which stability depends. NaN: unknown. */
 typedef struct ethd__bounds_device {
-  double mass[2];           /* kg at the ring along x and y, what is pressed against it included */
+  double mass[2];           /* kg at the ring along x and y, with what is pressed against it */
   double motor_mass;        /* kg of it on the motor's side of the transmission; 0: the transmission is rigid */
   double spring, damper;    /* N/m, Ns/m of the transmission */
-  double delay;             /* s from measurement to torque; unknown counts as 0 */
+  double delay;             /* s from measurement to torque; an unknown one counts as 0 */
   double friction, viscous; /* N, Ns/m at the ring */
   double count;             /* rad per encoder count at the joint; 0: ideal */
 } ethd__bounds_device;
 
-/* The plant's, with that share of its finger's mass against the ring. */
+/* Returns the numbers of a plant, with the share `hand` of its finger's mass pressed against the ring. */
 ethd__bounds_device ethd__bounds_device_of(const ethd_plant *plant, double hand);
 
-/* Where tracking is felt, m. */
+/* The point at which the feel of tracking is stated, m. */
 #define ETHD_LOOP_FELT_X 0.25
 #define ETHD_LOOP_FELT_Y 0.25
 
-/* Stiffness and damping of tracking as they are felt at the ring there: the matrix J^-T K J^-1, N/m and Ns/m. */
+/* Stiffness and damping of tracking at the ring at that point: the matrix J^-T K J^-1, N/m and Ns/m. */
 typedef struct ethd__bounds_felt {
   double stiffness[2], damping[2];         /* along x and y */
-  double stiffness_across, damping_across; /* of its corners */
+  double stiffness_across, damping_across; /* off the diagonal */
 } ethd__bounds_felt;
 
-/* False: the law has no k_t, or the arm doesn't reach there. A law without b_t has no damping. */
+/* Fills what is felt. False: the law has no k_t, or the arm doesn't reach the point. A law without b_t has no
+   damping. */
 bool ethd__bounds_feel(const ethd_setup *setup, ethd__bounds_felt *out);
 
-/* The loop along an axis (0: x, 1: y). A gain that the law doesn't have is 0, an unknown mass 1 kg. False: the stiffness of
-   tracking isn't known. */
+/* Fills the loop along an axis (0: x, 1: y). A gain that the law doesn't have is 0, and an unknown mass is 1 kg. False:
+   the stiffness of tracking isn't known. */
 bool ethd__bounds_of(const ethd_setup *setup, const ethd__bounds_device *device, ethd__bounds_kind kind, int axis,
                      ethd__sampled_loop *out);
 
-/* The numbers of a loop that have an end: gains, mass and delay, and the estimator's cutoff or window. */
+/* The numbers of a loop that have a bound: gains, mass and delay, and the estimator's cutoff or window. */
 typedef enum ethd__bounds_number {
   ETHD_LOOP_STIFFNESS,
   ETHD_LOOP_DAMPING,
@@ -58,29 +59,29 @@ typedef enum ethd__bounds_number {
 
 typedef struct ethd__bounds_row {
   ethd__bounds_number number;
-  double value, end; /* SI; where the loop becomes unstable, the others held */
-  bool least;        /* the value must stay above its end, not below */
-  double margin;     /* how many times; NaN: of a value that is 0 */
+  double value, end; /* SI; end: where the loop becomes unstable while the other numbers stay */
+  bool least;        /* the value must stay above its end, not below it */
+  double margin;     /* by how many times the value may change; NaN if it is 0 */
 } ethd__bounds_row;
 
 /* Fills the rows of a loop with damping, which ethd-check prints; returns how many there are. */
 int ethd__bounds_rows(const ethd__sampled_loop *loop, ethd__bounds_row out[ETHD_LOOP_NUMBERS]);
 
-/* What is asked of every loop. */
+/* The margin that every loop must have. */
 typedef struct ethd__bounds_margin {
-  double gain;  /* its stiffness, its damping, and both at once may be that many times as large */
-  double delay; /* s: a torque may be that much later */
+  double gain;  /* its stiffness, its damping and both at once may be so many times as large */
+  double delay; /* s by which a torque may be later */
 } ethd__bounds_margin;
 
-/* Whether the loop's rows have these margins, and both gains at once. A loop without gains does. */
+/* Returns whether the loop has the margin. A loop without gains does. */
 bool ethd__bounds_keeps(const ethd__sampled_loop *loop, const ethd__bounds_margin *margin);
 
 /* What friction does for a loop that is unstable without it: it stops swings of the motor's side that are slower than
-   `held`. An encoder count that makes it faster than that sets it swinging for good. */
+   `held`. An encoder count that makes the motor's side faster than that sets it swinging for good. */
 typedef struct ethd__bounds_hold {
   double needed; /* Ns/m that the loop lacks; 0: it is stable */
   double held;   /* m/s; INFINITY: friction stops every swing, NaN: friction isn't known */
-  double kick;   /* m/s of one count; NaN: the count isn't known */
+  double kick;   /* m/s that one count causes; NaN: the count isn't known */
 } ethd__bounds_hold;
 
 ethd__bounds_hold ethd__bounds_holds(const ethd__sampled_loop *loop, const ethd__bounds_device *device);

@@ -16,8 +16,8 @@ static void multiply(square a, square b, square out) {
     }
 }
 
-/* Writes the equations times `span`, with speeds in metres a span and the force in what moves the mass by 1 m, so that the
-   entries have no units. */
+/* Writes the equations times `span`, in units that make the entries pure numbers: speeds in metres per span, forces in
+   multiples of the one that moves the mass by 1 m. */
 static void write_equations(const ethd__sampled_loop *l, double span, square a) {
   bool gives = ethd__sampled_gives_way(l);
   double driven = gives ? l->motor_mass : l->mass, rest = l->mass - l->motor_mass;
@@ -47,7 +47,7 @@ static double norm(square a) {
 
 #define TERMS 16 /* of the exponential's series: the rest is below 1e-18 for a norm of a half */
 
-/* The exponential of a, by the series of a / 2^n, squared n times (Moler and Van Loan 2003, method 3). */
+/* Computes the exponential of a by the series for a / 2^n, squared n times (Moler and Van Loan 2003, method 3). */
 static void exponential(square a, square out) {
   square term, next;
   int halvings = 0;

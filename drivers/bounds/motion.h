@@ -9,18 +9,18 @@
 
 #include "bounds/stability.h"
 
-/* Of the motor's side position and speed, then the lead and its speed. */
+/* The state: position and speed of the motor's side, then the lead and its speed. */
 enum { ETHD_MOTION_X, ETHD_MOTION_V, ETHD_MOTION_LEAD, ETHD_MOTION_LEAD_V, ETHD_MOTION_STATE };
 
-/* Where the state goes within a stretch of time: state' = of_state state + of_force force. */
+/* The change of the state over a stretch of time: state' = of_state state + of_force force. */
 typedef struct ethd__bounds_motion {
   double of_state[ETHD_MOTION_STATE][ETHD_MOTION_STATE], of_force[ETHD_MOTION_STATE];
 } ethd__bounds_motion;
 
-/* The motion over `span` s. */
+/* Fills the motion over `span` s. */
 void ethd__bounds_motion_over(const ethd__sampled_loop *loop, double span, ethd__bounds_motion *out);
 
-/* Moves the state on under a force, N. */
+/* Advances the state under a force, N. */
 void ethd__bounds_motion_apply(const ethd__bounds_motion *motion, double force, double state[ETHD_MOTION_STATE]);
 
 #endif

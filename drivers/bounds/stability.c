@@ -6,8 +6,8 @@
 #include "bounds/motion.h"
 #include "ethd/maths.h"
 
-/* One tick is a linear map of the motion's state, the speed's estimate, the filter's position, the last tick's force, the
-   delayed forces and the last positions. Its matrix is read off by applying it to unit vectors. */
+/* One tick is a linear map of the motion's state, the speed's estimate, the filter's position, the last tick's force,
+   the delayed forces and the last positions. Its matrix is read off by applying it to unit vectors. */
 enum {
   X = ETHD_MOTION_X,
   V = ETHD_MOTION_V,
@@ -23,8 +23,8 @@ typedef double matrix[STATE_MAX][STATE_MAX];
 
 typedef struct model {
   const ethd__sampled_loop *loop;
-  int waiting, past, size;            /* how many forces don't act yet; index of x_k-1; length of the state */
-  int samples;                        /* how many last positions are kept */
+  int waiting, past, size;            /* number of forces that don't act yet; index of x_k-1; length of the state */
+  int samples;                        /* number of past positions that are kept */
   double w[ETHD_VELOCITY_WINDOW_MAX]; /* v^ from x_k, x_k-1, ... */
   double keep;                        /* share of the last estimate (lowpass) */
   double alpha, beta, inertia;        /* kalman at the ring */
@@ -85,7 +85,7 @@ static double estimate(const model *m, const double *s, double *filter) {
 
 /* ---- the tick ---- */
 
-/* For `late` seconds the force of one tick earlier still acts. */
+/* Maps the state over one tick. For its first `late` seconds the force of one tick earlier still acts. */
 static void tick(const model *m, const double *s, double *next) {
   const ethd__sampled_loop *l = m->loop;
   double filter = 0;
@@ -102,7 +102,8 @@ static void tick(const model *m, const double *s, double *next) {
   for (int i = 0; i < m->samples; i++) next[m->past + i] = i ? s[m->past + i - 1] : s[X];
 }
 
-/* Fills the matrix in units that make its entries alike in size: m, T, and the force that moves the mass by 1 m in T. */
+/* Fills the matrix in units that make its entries alike in size: m, T, and the force that moves the mass by 1 m in
+   T. */
 static void fill(const model *m, matrix a) {
   double unit[STATE_MAX], column[STATE_MAX], scale[STATE_MAX];
   double T = m->loop->period, force = m->loop->mass / (T * T);
@@ -163,7 +164,7 @@ double ethd__sampled_kick(const ethd__sampled_loop *loop, double count) {
   return (loop->stiffness + loop->damping * newest) * count * loop->period / moved;
 }
 
-/* A free ring's position is neither stable nor unstable: radius 1. */
+/* A free ring's position is neither stable nor unstable, so its radius is 1, which counts as stable. */
 bool ethd__sampled_stable(const ethd__sampled_loop *loop) { return ethd__sampled_radius(loop) <= 1 + 1e-7; }
 
 /* ---- closed forms ---- */

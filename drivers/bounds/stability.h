@@ -9,8 +9,8 @@
      <---| -(K x + B v^) |<----| estimator|
          '---------------'     '----------'
    Where the transmission gives way, the force acts on the motor's side, which is the one that is measured, and the rest
-   of the mass hangs on it by a spring and a damper: their motion over a tick is exact, too. Coulomb friction is left out:
-   it stops small swings only, ethd__sampled_held says how small. Pure functions. [any] */
+   of the mass hangs on it by a spring and a damper; their motion over a tick is exact, too. Coulomb friction is left
+   out, because it stops small swings only; ethd__sampled_held says how small. Pure functions. [any] */
 #ifndef ETHD_CHECK_STABILITY_H
 #define ETHD_CHECK_STABILITY_H
 
@@ -24,18 +24,18 @@ typedef struct ethd__sampled_loop {
   double mass;               /* m, kg: all of it */
   double motor_mass;         /* kg of it on the motor's side; 0, or not less than mass: the transmission is rigid */
   double spring, damper;     /* N/m, Ns/m of the transmission */
-  double viscous;            /* Ns/m of friction on the motor's side, on all of it where the device is rigid */
+  double viscous;            /* Ns/m of friction on the motor's side, or on the whole mass if the device is rigid */
   double period;             /* T, s */
   double stiffness, damping; /* K N/m, B Ns/m */
   int delay;                 /* n, whole ticks from measurement to force, 0 to ETHD_LOOP_DELAY_MAX */
-  double late;               /* s on top of them, 0 <= late < T */
+  double late;               /* s of delay beyond them, 0 <= late < T */
   /* The estimator with its parameters, as in a setup. foaw is taken with its longest window, its worst. */
   ethd_velocity_method method;
   double p[ETHD_PARAMS_MAX];
   double link; /* m: joint angle to ring position; kalman's noise and inertia are the joint's */
 } ethd__sampled_loop;
 
-/* Whether the transmission is elastic. */
+/* Returns whether the transmission is elastic. */
 static inline bool ethd__sampled_gives_way(const ethd__sampled_loop *loop) {
   return loop->motor_mass > 0 && loop->motor_mass < loop->mass;
 }
@@ -53,32 +53,33 @@ double ethd__sampled_damping_needed(const ethd__sampled_loop *loop);
 /* Returns the smallest mass from which on the gains are stable, INFINITY if they aren't up to 1e4 kg. */
 double ethd__sampled_mass_min(const ethd__sampled_loop *loop);
 
-/* The largest stable value of one gain with the other as it is; 0: none. Where the transmission gives way stable values
-   may come again above unstable ones: it is the end of those that the gain's own value belongs to, if that is stable. */
+/* Return the largest stable value of one gain while the other stays as it is; 0: there is none. Where the transmission
+   gives way there may be several bands of stable values; then it is the end of the band that holds the gain's own
+   value, if that is stable. */
 double ethd__sampled_stiffness_max(const ethd__sampled_loop *loop);
 double ethd__sampled_damping_max(const ethd__sampled_loop *loop);
 
-/* Whether the loop is stable as it is and all the way to so many times its stiffness and its damping. */
+/* Returns whether the loop is stable as it is and on the whole path to so many times its stiffness and its damping. */
 bool ethd__sampled_stable_up_to(const ethd__sampled_loop *loop, double stiffness_times, double damping_times);
 
-/* Whether it is stable as it is and with each delay that is at most `more` s longer. */
+/* Returns whether the loop is stable as it is and with each delay that is at most `more` s longer. */
 bool ethd__sampled_stable_later(const ethd__sampled_loop *loop, double more);
 
-/* Returns the longest stable delay, s, which is below 20 ticks, the end of the stretch that the loop's own delay belongs
-   to if that is stable; < 0: there is none. */
+/* Returns the longest stable delay, s, below 20 ticks: the end of the stretch that holds the loop's own delay, if that
+   is stable; < 0: there is none. */
 double ethd__sampled_delay_max(const ethd__sampled_loop *loop);
 
-/* Returns how far the estimator may go: the lowest stable cutoff of lowpass (1 is the table's end), the longest stable
+/* Returns the estimator's bound: the lowest stable cutoff of lowpass (1 is the table's end), or the longest stable
    window of lsq and foaw; NaN: it has neither, or the loop is unstable as it is. */
 double ethd__sampled_velocity_end(const ethd__sampled_loop *loop);
 
-/* Returns the least viscous friction, Ns/m on the motor's side, with which the loop is stable; INFINITY: none up to what
-   stops the motor's side within a hundredth of a tick. */
+/* Returns the least viscous friction, Ns/m on the motor's side, with which the loop is stable; INFINITY: no friction
+   does, up to the one that stops the motor's side within a hundredth of a tick. */
 double ethd__sampled_viscous_needed(const ethd__sampled_loop *loop);
 
-/* Returns the speed, m/s of the motor's side, up to which Coulomb friction `coulomb` N and the viscous friction together
-   stop a swing of a loop that needs `needed` Ns/m: 4 coulomb / (pi (needed - viscous)), by the describing function of
-   Coulomb friction; INFINITY: every swing. */
+/* Returns the speed, m/s of the motor's side, up to which Coulomb friction `coulomb` N and the viscous friction
+   together stop a swing of a loop that needs `needed` Ns/m: 4 coulomb / (pi (needed - viscous)), by the describing
+   function of Coulomb friction; INFINITY: every swing. */
 double ethd__sampled_held(double needed, double coulomb, double viscous);
 
 /* Returns the speed, m/s, that one step of the encoder, m at the ring, gives the motor's side within a tick. */

@@ -19,8 +19,8 @@ static double bisect(ethd__sampled_loop *loop, double *value, double stable, dou
 
 static double grid(int i) { return exp(i * log(10) / STEPS_PER_DECADE); }
 
-/* With a large mass everything is slow, and hold and delay take K (T (n + 1/2) + late) off the damping under any
-   estimator. */
+/* With a large mass everything is slow, and then hold and delay reduce the damping by K (T (n + 1/2) + late), whatever
+   the estimator is. */
 double ethd__sampled_damping_needed(const ethd__sampled_loop *l) {
   return l->stiffness * (l->period * (l->delay + 0.5) + l->late);
 }
@@ -46,8 +46,8 @@ static double band_end(ethd__sampled_loop *l, double *gain, double most) {
   return *gain;
 }
 
-/* The grid is in units that mass and period set. A stable band may be narrower than the grid, so the loop's own value is
-   tried too. */
+/* The grid is in units that mass and period set. A stable band may be narrower than the grid, so the loop's own value
+   is tried too. */
 static double gain_max(ethd__sampled_loop *l, double *gain, double unit) {
   double own = ethd__sampled_stable(l) ? *gain : 0;
   if (own > 0 && ethd__sampled_gives_way(l)) return band_end(l, gain, 10 * unit);
@@ -68,8 +68,8 @@ double ethd__sampled_damping_max(const ethd__sampled_loop *loop) {
   return gain_max(&l, &l.damping, l.mass / l.period);
 }
 
-/* Walks from the loop's gains to those asked for, by the steps of a band's search. The stable gains of a rigid device are
-   one band, so that the end of the walk decides. */
+/* Walks from the loop's gains to those asked for, by the steps of a band's search. The stable gains of a rigid device
+   are one band, so that the end of the walk decides. */
 bool ethd__sampled_stable_up_to(const ethd__sampled_loop *loop, double stiffness_times, double damping_times) {
   const double decades = log10(fmax(stiffness_times, damping_times));
   const int steps = ethd__sampled_gives_way(loop) ? (int)ceil(4 * STEPS_PER_DECADE * decades) : 1;
@@ -99,8 +99,8 @@ static bool stable_with(ethd__sampled_loop *l, double delay) {
   return ethd__sampled_stable(l);
 }
 
-/* Walks from a stable delay up by quarters of a tick and returns the last stable one; *beyond becomes the first unstable
-   one, or `most`. */
+/* Walks from a stable delay up by quarters of a tick and returns the last stable one; *beyond becomes the first
+   unstable one, or `most`. */
 static double walk_delay(ethd__sampled_loop *l, double from, double most, double *beyond) {
   double low = from;
   for (*beyond = fmin(from + l->period / 4, most); stable_with(l, *beyond);

@@ -28,7 +28,7 @@ double ethd__stop_margin(const ethd__bounds_stop *stop, double speed);
 /* Returns the highest speed with margin >= 0, m/s, 0 if there is none. */
 double ethd__stop_speed(const ethd__bounds_stop *stop);
 
-/* Saturated braking from `speed` down to v_th with B_d, `delay` s late: Delta_s, s, and eps, m. */
+/* Braking from `speed` down to v_th with B_d by motors that saturate, `delay` s late: Delta_s, s, and eps, m. */
 typedef struct ethd__bounds_braking {
   double damping, v_th, period, delay;
 } ethd__bounds_braking;

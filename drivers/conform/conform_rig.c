@@ -10,12 +10,12 @@
 #include "clock.h"
 
 #define CLEARING 0.3 /* s */
-#define PAUSED 0.1   /* s between two samples: nobody asked for one */
+#define PAUSED 0.1   /* s: samples farther apart don't count for the spacing, since nobody asked for one in between */
 #define IDLE 1000000 /* ns that an I/O thread sleeps when it had nothing to do */
-#define STEPS 8      /* steps of the angle below which no acceleration is seen */
-#define LOOK 0.01    /* s: does it move? */
-#define SETTLE 200   /* looks */
-#define STANDS 0.02  /* rad/s */
+#define STEPS 8      /* steps of the angle that an acceleration must cause to be seen */
+#define LOOK 0.01    /* s after which it looks again whether the joints move, */
+#define SETTLE 200   /* so many times at most */
+#define STANDS 0.02  /* rad/s: a slower joint stands */
 
 ethd_verdict ethd__conform_rig_answer(ethd_conform_answer *a, ethd_verdict verdict, const char *format, ...) {
   va_list args;
@@ -201,6 +201,6 @@ double ethd__conform_rig_acceleration(ethd__conform_rig *r, int joint, double to
     q[k] = r->sense.q[joint];
     t[k] = 1e-9 * (double)(r->sense.time_ns - begin);
   }
-  if (!(t[2] > t[1] && t[1] > t[0])) return 0; /* nothing came that could show it */
+  if (!(t[2] > t[1] && t[1] > t[0])) return 0; /* too few samples came to show an acceleration */
   return 2 * ((q[2] - q[1]) / (t[2] - t[1]) - (q[1] - q[0]) / (t[1] - t[0])) / (t[2] - t[0]);
 }

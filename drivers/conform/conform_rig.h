@@ -1,4 +1,4 @@
-/* A device between open and close, run tick by tick without a controller. */
+/* Runs an open device tick by tick, without a controller. */
 #ifndef ETHD__CONFORM_CONFORM_RIG_H
 #define ETHD__CONFORM_CONFORM_RIG_H
 
@@ -38,21 +38,21 @@ struct ethd__conform_rig {
 ethd_verdict ethd__conform_rig_answer(ethd_conform_answer *a, ethd_verdict verdict, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* False: r->message says why. All [main]. */
+/* Opens the device; false: r->message says why not. All [main]. */
 bool ethd__conform_rig_open(const ethd_conform_def *def, ethd__conform_rig *r);
 
-/* Open and started, with its I/O threads unless the clock is virtual; false: the answer says why not. */
+/* Opens and starts the device, with its I/O threads unless the clock is virtual; false: the answer says why not. */
 bool ethd__conform_rig_begin(const ethd_conform_def *def, ethd__conform_rig *r, ethd_conform_answer *a);
 
-/* Stopped; and closed. */
+/* Stops the device; closes it. */
 void ethd__conform_rig_stop(ethd__conform_rig *r);
 void ethd__conform_rig_end(ethd__conform_rig *r);
 
-/* Starts the device, again after a stop; a device that refuses is first asked to leave a fault of its own, its
-   watchdog's from the question before, say. Returns its status. */
+/* Starts the device, for the first time or after a stop, and returns its status. A device that refuses is asked to
+   leave its own fault first, which may be its watchdog's from the question before. */
 ethd_status ethd__conform_rig_start(ethd__conform_rig *r);
 
-/* Nobody speaks to the device for so long, not even its I/O threads; not on a virtual clock. */
+/* Leaves the device without any message for so long, even from its I/O threads; not for a virtual clock. */
 void ethd__conform_rig_hush(ethd__conform_rig *r, double seconds);
 
 /* Runs ticks for `seconds` with `torque`, Nm, on one joint and 0 on the other. */
@@ -62,14 +62,14 @@ void ethd__conform_rig_run(ethd__conform_rig *r, double seconds, int joint, doub
    after 2 s. */
 void ethd__conform_rig_settle(ethd__conform_rig *r);
 
-/* The smallest acceleration that such windows can tell from the steps of the angle, rad/s^2. */
+/* Returns the smallest acceleration, rad/s^2, that two windows of so many s can tell from the steps of the angle. */
 double ethd__conform_rig_least(const ethd__conform_rig *r, double window);
 
-/* s from one joint sample to the next, on the mean so far. */
+/* Returns the mean time from one joint sample to the next so far, s. */
 double ethd__conform_rig_spacing(const ethd__conform_rig *r);
 
-/* Mean acceleration of a joint over two windows of s, by the instants of its samples, rad/s^2; write 0: nothing is
-   written meanwhile. */
+/* Returns the mean acceleration of a joint over two windows of so many s, by the instants of its samples, rad/s^2. With
+   `write` 0 nothing is written meanwhile. */
 double ethd__conform_rig_acceleration(ethd__conform_rig *r, int joint, double torque, int write, double window);
 
 #endif

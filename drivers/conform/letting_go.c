@@ -3,16 +3,16 @@
 
 #include <math.h>
 
-#define LAPSE 0.05  /* s after which no torque may be left, then half of this twice to see it */
-#define SPACINGS 4  /* of joint samples, that such a half has at least: a slow bus needs longer to show it */
-#define NUDGE 0.002 /* s: a torque that a driver may remember, but that moves next to nothing */
-#define LEFT 0.25   /* of an acceleration: so much may be left of it, by friction or a slope */
+#define LAPSE 0.05  /* s after which no torque may be left; two windows of half of this show whether one is */
+#define SPACINGS 4  /* of joint samples that a window has at least, which makes it longer on a slow bus */
+#define NUDGE 0.002 /* s: a torque so short moves next to nothing, but a driver may remember it */
+#define LEFT 0.25   /* share of an acceleration that friction or a slope may leave */
 #define SILENCE 1.0 /* s without any message */
 
-/* s: half of what it takes to see an acceleration. */
+/* Returns the length of a window, s, of which two show an acceleration. */
 static double window(const ethd__conform_rig *r) { return fmax(LAPSE / 2, SPACINGS * ethd__conform_rig_spacing(r)); }
 
-/* False when such a push would be lost in the steps of the angle: its result would answer nothing. */
+/* Returns false when such a push would be lost in the steps of the angle, so that its result would answer nothing. */
 static bool is_pushed(const ethd__conform_rig *r, double acceleration, ethd_conform_answer *a) {
   double least = ethd__conform_rig_least(r, window(r));
   if (acceleration > 0 && acceleration >= least) return true;
@@ -21,8 +21,9 @@ static bool is_pushed(const ethd__conform_rig *r, double acceleration, ethd_conf
          false;
 }
 
-/* First the other way, under a torque that is held: rad/s^2 at the end. A device that gains no more speed then
-   has something in its way, and would look the same without a torque: 0, and the answer says so. */
+/* Pushes in the other direction first, under a torque that is held, and returns the acceleration at the end, rad/s^2. A
+   device that gains no more speed then is blocked, and would look the same without a torque; for it the result is 0,
+   and the answer says so. */
 static double held(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__conform_rig r;
   if (!ethd__conform_rig_begin(def, &r, a)) return 0;

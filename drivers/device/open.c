@@ -1,4 +1,4 @@
-/* From names and settings to an open device. */
+/* Opens a device from the names of its drivers and their settings. */
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +20,7 @@ static bool is_common(const char *key) { return !strcmp(key, INJECT) || !strcmp(
 
 /* ---- names ---- */
 
-/* What is being opened. */
+/* The device that is being opened. */
 typedef struct naming {
   ethd__stack *stack;
   const ethd_driver *const *from;
@@ -44,7 +44,7 @@ static const ethd_driver *find(const ethd_driver *const *from, const char *name,
   return NULL;
 }
 
-/* Loads the driver of "file:mine.so", a name of so many bytes, into row i. */
+/* Loads the driver of a name like "file:mine.so", of `length` bytes, into row i. */
 static ethd_status load_driver(const naming *n, uint32_t i, const char *name, size_t length) {
   char what[ETHD_MESSAGE_MAX], quote[ETHD_QUOTE_MAX];
   ethd__stack *s = n->stack;
@@ -68,7 +68,7 @@ static ethd_status check_driver(const naming *n, const ethd_driver *driver) {
   return ethd__say(n->message, status, "%s: device.driver: %.*s", file_of(n->def), ETHD_MESSAGE_MAX / 2, what);
 }
 
-/* Puts the driver of a name of so many bytes into the stack's next row. */
+/* Puts the driver of a name, of `length` bytes, into the stack's next row. */
 static ethd_status add_driver(const naming *n, const char *name, size_t length) {
   ethd__stack *s = n->stack;
   size_t mark = strlen(ETHD_DRIVER_FILE);
@@ -147,7 +147,7 @@ static uint32_t own_settings(const ethd__stack *s, uint32_t i, const ethd_device
 
 /* ---- opening ---- */
 
-/* Checks what an open driver says of itself, as nobody else does. */
+/* Checks what an open driver says about itself. */
 static ethd_status check_open(ethd__stack *s, uint32_t i, char *message) {
   const ethd_driver *driver = s->at[i].driver;
   ethd_error error;
@@ -208,7 +208,7 @@ static ethd_status open_all(const naming *n, const char *ids) {
   return status;
 }
 
-/* ---- what is to go wrong ---- */
+/* ---- faults to inject ---- */
 
 /* Loads the script, which happens before anything is opened. */
 static ethd_status load_script(const naming *n, const char *file, ethd__script *out) {
@@ -224,7 +224,7 @@ typedef struct opened {
   void *device;
 } opened;
 
-/* Opens the drivers, and puts the one that injects around them where there is a script. */
+/* Opens the drivers, and wraps them in the one that injects faults if there is a script. */
 static ethd_status open_stack(const naming *n, const char *ids, opened *out) {
   ethd__script script = {.count = 0};
   *out = (opened){.driver = NULL};

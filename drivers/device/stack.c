@@ -168,7 +168,7 @@ static const char *why(const void *stack) {
   return says ? says : "";
 }
 
-/* What an earlier driver knows stands, and later ones add to it. */
+/* Later drivers add what earlier ones don't know. */
 static ethd_dynamics dynamics(const void *stack) {
   const ethd__stack *s = stack;
   ethd_dynamics all = ethd_dynamics_unknown();

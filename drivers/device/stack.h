@@ -6,13 +6,13 @@
 
 #include "ethd/driver.h"
 
-/* Its device is an ethd__stack; its open opens no driver: ethd_device_open fills the stack. */
+/* Its device is an ethd__stack. Its open opens no driver, because ethd_device_open fills the stack. */
 extern const ethd_driver ethd__driver_stack;
 
 typedef struct ethd__stack {
   uint32_t count;
   bool only_prepares; /* nothing is touched: each driver's prepare takes the place of its open */
-  unsigned hang_time; /* s in which code of a file must return */
+  unsigned hang_time; /* s within which a file's code must return */
   char doing[96];     /* what a file's code does, for people */
   struct {
     const ethd_driver *driver;

@@ -21,17 +21,17 @@ typedef struct counter {
   /* I/O thread, and start */
   pthread_mutex_t lock;
   ethd__counter_input input;
-  int32_t failed; /* read by [rt] too: the count can't be read */
+  int32_t failed; /* the count can't be read; [rt] reads this too */
 
   /* [rt], and start */
   ethd__counter_snapshot taken;
   ethd__encoder encoder[2];
   double torque[2]; /* of the last command */
   uint64_t marks[2];
-  int32_t lost; /* a jump was grave: the angle isn't known any more */
+  int32_t lost; /* a jump was grave, so the angle is no longer known */
 
   /* any thread */
-  bool clear; /* 1: wrong marks are acknowledged */
+  bool clear; /* wrong marks are acknowledged */
 } counter;
 
 /* ---- I/O ---- */
@@ -66,7 +66,7 @@ static void step(counter *c, int j, ethd_sense *out) ETHD_RT {
   out->dq[j] = c->encoder[j].dq;
 }
 
-/* The next mark is the first again. */
+/* Makes the next mark the first one again. */
 static void forget_marks(counter *c) ETHD_RT {
   for (int j = 0; j < 2; j++) {
     c->encoder[j].misindexed = false;
@@ -200,7 +200,7 @@ static ethd_status counter_start(void *device) {
   return status;
 }
 
-/* From now on the present counts mean these angles. */
+/* Says that the present counts are these angles. */
 static ethd_status counter_home(void *device, const double q[2]) {
   counter *c = device;
   if (!q) return ETHD_OK; /* homing by index marks is done by start */

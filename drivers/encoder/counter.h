@@ -1,6 +1,6 @@
 /* Two encoders behind the kernel's counters (linux/counter.h), one for each joint.
 
-     /sys/bus/counter/devices/counterN/countM/count      the count, read once a service
+     /sys/bus/counter/devices/counterN/countM/count      the count, read in each call of service
                                               /ceiling   where it begins anew
                                               /function  "quadrature x4": set, and read back
      /dev/counterN   events with the kernel's instants: index marks; each edge, where speeds come from those
@@ -35,7 +35,7 @@ typedef struct ethd__counter_calls {
 } ethd__counter_calls;
 
 extern const ethd__counter_calls ethd__counter_kernel;
-extern const ethd__counter_calls *ethd__counter_calls_now; /* a test's own; taken when a device is opened */
+extern const ethd__counter_calls *ethd__counter_calls_now; /* used when a device is opened; tests set their own */
 
 enum {
   ETHD__COUNTER_COUNTS_PER_TURN,
@@ -58,9 +58,9 @@ enum {
 };
 
 extern const ethd_param ethd__counter_params[ETHD__COUNTER_PARAMS];
-extern const char *const ethd__counter_keys[]; /* NULL behind the last */
+extern const char *const ethd__counter_keys[]; /* ends with NULL */
 
-/* What the configuration says. */
+/* The driver's settings. */
 typedef struct ethd__counter_settings {
   double p[ETHD__COUNTER_PARAMS];
   char device[2][ETHD_COUNTER_TEXT_MAX]; /* of joint 1 and 2 */
@@ -71,24 +71,24 @@ typedef struct ethd__counter_settings {
 ETHD_MUST_CHECK ethd_status ethd__counter_settings_read(const ethd_device_def *def, ethd__counter_settings *out,
                                                         char message[ETHD_MESSAGE_MAX]);
 
-/* One count of the kernel's. */
+/* One count of a counter of the kernel. */
 typedef struct ethd__kernel_count {
   int device, count; /* descriptors; the device may be another count's too */
   bool shared;
   uint64_t ceiling;
 } ethd__kernel_count;
 
-/* Opens joint j's count; `other`: the one of the joint before, or NULL. *out is closed on failure. */
+/* Opens joint j's count; `other` is that of the joint before, or NULL. *out is closed on failure. */
 ETHD_MUST_CHECK ethd_status ethd__kernel_count_open(const ethd__counter_calls *calls,
                                                     const ethd__counter_settings *settings, int j,
                                                     const ethd__kernel_count *other, ethd__kernel_count *out,
                                                     char message[ETHD_MESSAGE_MAX]);
 void ethd__kernel_count_close(const ethd__counter_calls *calls, ethd__kernel_count *count);
 
-/* The count now; -1: it can't be read. */
+/* Reads the count; -1: it can't be read. */
 int ethd__kernel_count_read(const ethd__counter_calls *calls, const ethd__kernel_count *count, uint64_t *raw);
 
-/* Asks the device of joint j for its events; those of a shared device come from both at once. */
+/* Asks the device of joint j for its events. A device that both joints share is asked for both at once. */
 ETHD_MUST_CHECK ethd_status ethd__kernel_count_watch(const ethd__counter_calls *calls,
                                                      const ethd__counter_settings *settings, int j,
                                                      const ethd__kernel_count *counts, char message[ETHD_MESSAGE_MAX]);

@@ -3,8 +3,8 @@
 #include <errno.h>
 #include <linux/counter.h>
 
-#define EVENTS 64    /* in one call */
-#define CALLS_MAX 64 /* events in one sample: the rest waits for the next */
+#define EVENTS 64    /* events that one call reads at most */
+#define CALLS_MAX 64 /* calls for one sample at most; further events wait for the next sample */
 
 /* ---- opening ---- */
 
@@ -66,7 +66,8 @@ static int take_events(ethd__counter_input *in, int j) {
 
 /* ---- counts ---- */
 
-/* A count whose edges are known has its value from the last of them: both belong together. */
+/* Takes the count. If its edges are known, its value is that at the last edge, so that instant and value belong
+   together. */
 static int take_count(ethd__counter_input *in, int j) {
   uint64_t raw;
   if (in->settings->p[ETHD__COUNTER_STAMPS] != 0 && in->latest.edge_ns[j]) return 0;

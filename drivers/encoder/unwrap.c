@@ -7,13 +7,13 @@
 #define JUMPS_NS 10000000 /* a second jump within this is grave */
 #define TURN 6.283185307179586
 #define FRESH_NS 50000000 /* an edge older than this is no measure of speed */
-#define SMOOTHING 0.003   /* s, of the speed that energy is reckoned from */
-#define GAIN_LEAST 0.3    /* share of the work against the torque that appears as speed: a reversed joint has over */
-                          /* a half of it, a joint that is pushed under a tenth */
+#define SMOOTHING 0.003   /* s, of the speed from which energy is computed */
+#define GAIN_LEAST 0.3    /* share of the work against the torque that appears as speed: over a half of it in a */
+                          /* reversed joint, under a tenth in a joint that is pushed */
 
 /* ---- counts ---- */
 
-/* a - b taken the shorter way round, so that it is in [-M / 2, M / 2) with M = ceiling + 1. */
+/* Returns a - b modulo M = ceiling + 1, in [-M / 2, M / 2). */
 static int64_t shorter(uint64_t a, uint64_t b, uint64_t ceiling) ETHD_RT {
   uint64_t up = a >= b ? a - b : ceiling - (b - a) + 1;
   if (up == 0) return 0;
@@ -21,7 +21,7 @@ static int64_t shorter(uint64_t a, uint64_t b, uint64_t ceiling) ETHD_RT {
   return up < down ? (int64_t)up : (int64_t)(0 - down);
 }
 
-/* The 64-bit position of a 64-bit counter may come round too. */
+/* Adds modulo 2^64, because the position of a 64-bit counter may wrap round too. */
 static int64_t sum(int64_t a, int64_t b) ETHD_RT { return (int64_t)((uint64_t)a + (uint64_t)b); }
 
 static double angle_per_count(const ethd__encoder_def *def) ETHD_RT {
@@ -59,7 +59,7 @@ static int64_t pass_mark(const ethd__encoder_def *def, ethd__encoder *e, uint64_
 
 /* ---- speed from edges ---- */
 
-/* A count of n was reached by an edge halfway to the count it came from. */
+/* Returns the position of the last edge, which lies halfway between the present count and the one before. */
 static double edge_place(const ethd__encoder *e) ETHD_RT { return (double)e->position - 0.5 * e->direction; }
 
 /* Without a new edge the speed is at most what an edge right now would show. */
@@ -106,8 +106,9 @@ static int64_t check_still(const ethd__encoder_def *def, ethd__encoder *e, doubl
 
 static double energy(const ethd__encoder_def *def, double speed) ETHD_RT { return 0.5 * def->inertia * speed * speed; }
 
-/* A joint that is driven against its motion slows down; the reading of a reversed one gains the speed that the
-   torque gives. A hand that pushes a sound one works against the torque for the most part. */
+/* A joint that is driven against its motion slows down, but a reversed encoder shows one that gains speed from the
+   torque. A hand that pushes a joint with a sound encoder mostly works against the torque, so little of that work
+   becomes speed. */
 static int64_t check_direction(const ethd__encoder_def *def, ethd__encoder *e, double dt, double torque) ETHD_RT {
   double way = angle_per_count(def) * (double)e->step;
   e->speed += (way / dt - e->speed) * (e->moves ? dt / (SMOOTHING + dt) : 1);

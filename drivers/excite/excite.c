@@ -1,9 +1,10 @@
-/* Moves the arm so that its numbers can be told from the motion: torques of many sines, while a soft spring holds the ring
-   about a place. It is a finger that isn't there, whose position and velocity make the tracking law give these torques:
+/* Moves the arm so that its numbers can be identified from the motion: the torques are sums of many sines, while a soft
+   spring holds the ring near a point. The driver does this by reporting a finger that doesn't exist, whose position and
+   velocity make the tracking law give these torques:
 
-     tau = K_t J^-1 (X_f - X_r) + B_t J^-1 (V_f - V_r)    with X_f the place, and V_f = J tau_sines / B_t
+     tau = K_t J^-1 (X_f - X_r) + B_t J^-1 (V_f - V_r)    with X_f the point, and V_f = J tau_sines / B_t
 
-   so that the law, the guard and the recording are those of any session. It stands behind a driver that moves:
+   so that law, guard and recording are those of any session. It follows a driver that moves:
    [device] driver = servo, excite. */
 #include <math.h>
 #include <stdlib.h>
@@ -15,9 +16,9 @@
 #include "text/error_text.h"
 
 #define TAU 6.28318530717958647692
-#define LOOK 20.0 /* s in which their sum's peak is looked for */
+#define LOOK 20.0 /* s over which the peak of the sines' sum is searched */
 #define LINES 20  /* sines of each joint */
-#define PEAK 0.7  /* of the limit: the rest is for the spring */
+#define PEAK 0.7  /* share of the limit that the sines' peak gets; the rest is for the spring */
 
 enum { TORQUE, LOW, HIGH, X, Y, HALF, PARAMS };
 
@@ -35,8 +36,8 @@ typedef struct excite {
   ethd_arm arm;
   double damping;                      /* B_t, Nms/rad */
   double w[2][LINES], phase[2][LINES]; /* rad/s, rad */
-  double size[2];                      /* Nm of each sine */
-  int64_t begin;                       /* ns; INT64_MIN: not yet */
+  double size[2];                      /* Nm, amplitude of each sine of a joint */
+  int64_t begin;                       /* ns; INT64_MIN: it hasn't begun */
 } excite;
 
 /* ---- sines ---- */
@@ -47,8 +48,9 @@ static double sines(const excite *e, int joint, double t) ETHD_RT {
   return sum;
 }
 
-/* A geometric row, in which joint 2 stands between the lines of joint 1: torques that don't come again, so that each
-   minute says something new. Phases by the golden ratio, so that no instant collects them all. */
+/* Chooses the sines. Their frequencies are a geometric series, with those of joint 2 between those of joint 1, so that
+   the torques don't repeat and each minute says something new. Phases go by the golden ratio, so that the sines don't
+   add up at any instant. */
 static void lay(excite *e, int joint) {
   const double golden = 0.61803398874989485;
   double low = ethd_log(e->p[LOW]), high = ethd_log(e->p[HIGH]), peak = 0;
@@ -86,7 +88,7 @@ static ethd_status start(void *device) {
   return ETHD_OK;
 }
 
-/* The joints' angles are those that the driver before it has put there. */
+/* Adds the finger to the sense, in which the driver before has put the joints' angles. */
 static ethd_status read_finger(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
   excite *e = device;
   ethd_pose pose;

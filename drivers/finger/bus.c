@@ -8,9 +8,9 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-#define WAIT_MS 20 /* for bytes, in a service */
+#define WAIT_MS 20 /* for which one call of service waits for bytes */
 #define ROOM 4096  /* bytes of one read */
-#define FRAMES 3   /* that show that the line is right */
+#define FRAMES 3   /* good frames that show that the line is the right one */
 
 /* ---- I/O ---- */
 
@@ -48,7 +48,7 @@ static ethd_status reopen(ethd__finger_bus *b, int64_t now_ns) {
   return ETHD_OK;
 }
 
-/* On the virtual clock nothing waits, and what is there has arrived now. */
+/* On a virtual clock nothing waits, and bytes that are there count as arrived now. */
 ethd_status ethd__finger_bus_service(ethd__finger_bus *b, int64_t now_ns) {
   uint8_t bytes[ROOM];
   if (b->port.fd < 0) {

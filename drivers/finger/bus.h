@@ -1,5 +1,5 @@
-/* Sensors of the finger on the proximity ring's line: the same frames (proximity_ring/frame.h) with the same CRC, sequence and
-   clock, whose 16 counts mean something else. A sensor's driver adds what they mean. */
+/* What the drivers of sensors on the proximity ring's line share. They receive the same frames (proximity_ring/frame.h)
+   with the same CRC, sequence and clock, but the 16 counts have another meaning, which each driver adds. */
 #ifndef ETHD__FINGER_BUS_H
 #define ETHD__FINGER_BUS_H
 
@@ -14,33 +14,33 @@ enum { ETHD__BUS_BAUD, ETHD__BUS_DELAY, ETHD__BUS_PATIENCE, ETHD__BUS_PARAMS };
   [ETHD__BUS_DELAY] = {"delay", "s", 0, 0.1, 0.0012, "from a frame's sample to its last byte's earliest arrival"}, \
   [ETHD__BUS_PATIENCE] = {"patience", "s", 0.05, 60, 2, "for the first frames"}
 
-/* A frame's counts as a reading: centre and noise; false: no finger gives them. [I/O] */
+/* Turns a frame's counts into a reading, which is centre and noise. False: no finger gives such counts. [I/O] */
 typedef bool ethd__bus_means(const void *sensor, const uint16_t counts[ETHD__FRAME_SENSORS], ethd__sighting *out);
 
 typedef struct ethd__finger_bus {
   ethd__bus_means *means;
   const void *sensor;
-  bool is_virtual; /* the clock */
-  double patience; /* s, for the first frames */
+  bool is_virtual; /* whether the clock is virtual */
+  double patience; /* s to wait for the first frames */
   ethd__ring_port port;
   ethd__decoder decoder;
   ethd__board_clock clock;
   ethd__inbox inbox;
 } ethd__finger_bus;
 
-/* Everything but the port, which stands at `port` relative to def->folder. `bus` zeroed, with `means` and `sensor`; it is
-   closed also after a failure. p: the driver's settings. [main] */
+/* Prepares everything but the port, whose path `port` is relative to def->folder. `bus` is zero except for `means` and
+   `sensor`; the caller closes it, also after a failure. p: the driver's settings. [main] */
 ETHD_MUST_CHECK ethd_status ethd__finger_bus_prepare(ethd__finger_bus *bus, const ethd_device_def *def,
                                                      const char *port, const double *p, char message[ETHD_MESSAGE_MAX]);
 
-/* Then opens the port and waits for its first frames. [main] */
+/* Opens the port of a prepared bus and waits for its first frames. [main] */
 ETHD_MUST_CHECK ethd_status ethd__finger_bus_open(ethd__finger_bus *bus, char message[ETHD_MESSAGE_MAX]);
 void ethd__finger_bus_close(ethd__finger_bus *bus);
 
-/* As a driver's service. */
+/* Does a driver's service. */
 ethd_status ethd__finger_bus_service(ethd__finger_bus *bus, int64_t now_ns);
 
-/* What such a driver says of its limits: the joints' samples aren't its own. */
+/* Returns such a driver's limits, which bound the finger's readings only, since it takes no samples of the joints. */
 ethd_limits ethd__finger_bus_limits(const ethd__finger_bus *bus);
 
 #endif

@@ -7,8 +7,8 @@
 
 #define MAGIC "EFC1"
 #define NOISE_MAX 1.0      /* m */
-#define JUMP_NS 1000000000 /* by which no network holds a datagram back: the sender's clock jumped */
-#define ORDER_MAX 1000     /* exposures by which a datagram may be overtaken; more: the sender began anew */
+#define JUMP_NS 1000000000 /* no network holds a datagram back for so long: the sender's clock jumped */
+#define ORDER_MAX 1000     /* exposures by which others may overtake a datagram; if more, the sender began anew */
 
 enum { AT_SEQ = 4, AT_TIME = 8, AT_X = 16, AT_Y = 24, AT_NOISE = 32, AT_FLAGS = 40, AT_CRC = 42 };
 
@@ -37,7 +37,7 @@ static void put_number(uint8_t *at, double number) ETHD_RT {
   put(at, word, 8);
 }
 
-/* NaN fails. */
+/* Returns whether the numbers can be an exposure's; NaN can't. */
 static bool is_possible(const ethd__exposure *e) ETHD_RT {
   return e->finger.x >= -ETHD_SENSE_LENGTH_MAX && e->finger.x <= ETHD_SENSE_LENGTH_MAX &&
          e->finger.y >= -ETHD_SENSE_LENGTH_MAX && e->finger.y <= ETHD_SENSE_LENGTH_MAX && e->noise >= 0 &&
@@ -69,7 +69,7 @@ void ethd__exposure_encode(const ethd__exposure *e, uint8_t out[ETHD__EXPOSURE_S
 
 /* ---- clock ---- */
 
-/* Differences wrap round like the clocks: neither one's zero means anything. */
+/* Differences wrap round as the clocks do, because neither clock's zero means anything. */
 static int64_t minus(int64_t a, int64_t b) ETHD_RT { return (int64_t)((uint64_t)a - (uint64_t)b); }
 static int64_t plus(int64_t a, int64_t b) ETHD_RT { return (int64_t)((uint64_t)a + (uint64_t)b); }
 

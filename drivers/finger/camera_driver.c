@@ -1,7 +1,8 @@
-/* A motion capture beside a driver that moves: the finger's centre in R_0, as datagrams of a bridge (camera.h).
+/* The driver of a motion capture, which stands beside a driver that moves: the finger's centre in R_0 comes as
+   datagrams of a bridge (camera.h).
 
-   It listens where `listen` says and nowhere else. That is this machine alone (127.0.0.1, ::1) unless `from` names the one
-   address whose datagrams count: whoever can send them moves the ring. */
+   It listens where `listen` says and nowhere else. That is this machine alone (127.0.0.1, ::1) unless `from` names the
+   one address whose datagrams count, because whoever can send them moves the ring. */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -19,8 +20,8 @@
 #include "finger/limits.h"
 #include "text/error_text.h"
 
-#define WAIT_MS 20 /* for a datagram, in a service */
-#define AT_ONCE 64 /* datagrams that one service takes */
+#define WAIT_MS 20 /* for which one call of service waits for a datagram */
+#define AT_ONCE 64 /* datagrams that one call of service takes at most */
 
 enum { RATE, DELAY, PATIENCE, PARAMS };
 enum { LISTEN, FROM, KEYS };
@@ -35,12 +36,12 @@ static const char *const keys[] = {[LISTEN] = "listen", [FROM] = "from", [KEYS] 
 
 typedef struct camera {
   int fd;                            /* -1: not open */
-  struct sockaddr_storage from, own; /* from: ss_family 0: whoever is on this machine */
+  struct sockaddr_storage from, own; /* from with ss_family 0: anybody on this machine may send */
   socklen_t own_length;
-  const char *where; /* `own` as it was given; while it is opened */
-  double patience;   /* s, for the first datagram */
+  const char *where; /* the text of `own`, valid while the driver is being opened */
+  double patience;   /* s to wait for the first datagram */
   double rate;
-  bool is_virtual; /* the clock */
+  bool is_virtual; /* whether the clock is virtual */
   ethd__camera_clock clock;
   ethd__inbox inbox;
 } camera;
@@ -57,7 +58,7 @@ static bool find_address(const char *host, const char *port, struct sockaddr_sto
   return true;
 }
 
-/* "127.0.0.1:9871", "[::1]:9871" */
+/* Reads an address and a port, "127.0.0.1:9871" or "[::1]:9871". */
 static bool parse_listen(const char *text, struct sockaddr_storage *out, socklen_t *length) {
   char host[80];
   const char *colon = strrchr(text, ':'), *begin = text, *end = colon;
@@ -76,7 +77,7 @@ static bool is_loopback(const struct sockaddr_storage *a) {
   return IN6_IS_ADDR_LOOPBACK(&((const struct sockaddr_in6 *)(const void *)a)->sin6_addr);
 }
 
-/* The port doesn't count. */
+/* Compares two addresses without their ports. */
 static bool is_host(const struct sockaddr_storage *a, const struct sockaddr_storage *b) {
   const struct sockaddr_in *a4 = (const void *)a, *b4 = (const void *)b;
   const struct sockaddr_in6 *a6 = (const void *)a, *b6 = (const void *)b;
@@ -108,14 +109,14 @@ static void take(camera *c, const uint8_t *bytes, size_t count, int64_t arrival_
   ethd__inbox_judge(&c->inbox, true);
 }
 
-/* One datagram, if there is one; false: there is none. One that is longer than any exposure is cut and then refused. */
+/* Takes one datagram; false: there is none. One that is longer than any exposure is cut and then refused. */
 static bool receive(camera *c, int64_t arrival_ns) {
   uint8_t bytes[ETHD__EXPOSURE_SIZE + 1];
   struct sockaddr_storage from = {.ss_family = 0};
   socklen_t length = sizeof from;
   ssize_t got = recvfrom(c->fd, bytes, sizeof bytes, MSG_DONTWAIT, (struct sockaddr *)&from, &length);
   if (got < 0) return false;
-  if (c->from.ss_family && !is_host(&c->from, &from)) return true; /* nobody's */
+  if (c->from.ss_family && !is_host(&c->from, &from)) return true; /* not from the bridge */
   pthread_mutex_lock(&c->inbox.lock);
   take(c, bytes, (size_t)got, arrival_ns);
   pthread_mutex_unlock(&c->inbox.lock);
@@ -201,7 +202,7 @@ static ethd_status camera_open(const ethd_device_def *def, void **device, char m
   if (c->fd < 0 || bind(c->fd, (const struct sockaddr *)&c->own, c->own_length))
     return ethd__say(message, ETHD_E_DEVICE, "%s: %s", c->where, strerror(errno));
   status = wait_first(c, message);
-  /* the first ones came in their own time; on a virtual clock the count begins with the run */
+  /* the first datagrams came by the real clock; on a virtual one the clock's work begins with the run */
   c->clock = (ethd__camera_clock){.delay = c->clock.delay};
   c->inbox.newest = (ethd__sighting){0};
   return status;
@@ -213,7 +214,7 @@ static ethd_limits limits(const void *device) {
   const camera *c = device;
   ethd_limits limits = ethd_limits_device();
   ethd__finger_limits(c->rate, 1e-9 * (double)c->clock.delay, &limits);
-  limits.gap = (double)INFINITY; /* the joints' samples aren't its own */
+  limits.gap = (double)INFINITY; /* it takes no samples of the joints */
   return limits;
 }
 

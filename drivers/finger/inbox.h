@@ -1,4 +1,4 @@
-/* From a sensor's I/O thread to the control thread: the newest reading, and what went wrong on the way.
+/* Hands a sensor's newest reading from its I/O thread to the control thread, with counts of what went wrong before.
 
      I/O thread   ethd__inbox_put -> cell          [rt]   cell -> ethd__inbox_read -> sense, rows 15, 18, 20      */
 #ifndef ETHD__FINGER_INBOX_H
@@ -10,17 +10,17 @@
 #include "ethd/cell.h"
 #include "ethd/driver.h"
 
-/* A sensor's reading, with what was counted up to it. */
+/* A sensor's reading, with the counts up to it. */
 typedef struct ethd__sighting {
   int64_t sample_ns, arrival_ns; /* CLOCK_MONOTONIC, or the virtual clock's */
   int64_t have;                  /* ETHD_HAVE_* */
   ethd_vec centre;               /* m */
   double noise;                  /* m, sd of each axis */
-  uint64_t readings;             /* good ones */
-  uint64_t lost;                 /* damaged, missing by their sequence, or out of order: row 15 */
-  uint64_t refused;              /* well received, but no finger can give them */
-  uint64_t jumps;                /* of the sender's clock: row 20 */
-  uint32_t refused_in_a_row;     /* ETHD__REFUSED_MAX of them: row 18 */
+  uint64_t readings;             /* good readings */
+  uint64_t lost;                 /* readings damaged, missing in the sequence, or out of order: row 15 */
+  uint64_t refused;              /* readings that arrived whole, but that no finger can give */
+  uint64_t jumps;                /* jumps of the sender's clock: row 20 */
+  uint32_t refused_in_a_row;     /* ETHD__REFUSED_MAX of them are row 18 */
 } ethd__sighting;
 
 #define ETHD__REFUSED_MAX 5
@@ -28,13 +28,13 @@ typedef struct ethd__sighting {
 typedef struct ethd__inbox {
   ethd_cell *cell;
   pthread_mutex_t lock;  /* of `newest`, for figures */
-  int64_t gap_ns;        /* without a reading: one is lost, at least */
+  int64_t gap_ns;        /* if no reading comes for so long, at least one is lost */
   ethd__sighting newest; /* the I/O thread's */
-  ethd__sighting taken;  /* the control thread's, as the next */
+  ethd__sighting taken;  /* the control thread's, as all that follows */
   uint64_t read, lost, jumps;
 } ethd__inbox;
 
-/* Zeroed before. rate: Hz. The inbox is closed also after a failure. [main] */
+/* Opens an inbox, which is zero before; rate: Hz. The caller closes it, also after a failure. [main] */
 ETHD_MUST_CHECK ethd_status ethd__inbox_open(ethd__inbox *inbox, double rate);
 void ethd__inbox_close(ethd__inbox *inbox);
 
@@ -46,7 +46,7 @@ void ethd__inbox_judge(ethd__inbox *inbox, bool is_good);
 
 void ethd__inbox_read(ethd__inbox *inbox, int64_t now_ns, ethd_sense *out) ETHD_RT;
 
-/* As a driver's figures, at most 4. [main] */
+/* Fills a driver's figures, at most 4, and returns how many. [main] */
 uint32_t ethd__inbox_figures(ethd__inbox *inbox, ethd_figure *out, uint32_t max);
 
 #endif

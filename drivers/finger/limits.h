@@ -1,4 +1,4 @@
-/* How old readings of a finger may get: their rate says it, not a number for all sensors. */
+/* How old readings of a finger may get. That depends on their rate, so no single number holds for all sensors. */
 #ifndef ETHD__FINGER_LIMITS_H
 #define ETHD__FINGER_LIMITS_H
 

@@ -1,5 +1,5 @@
-/* A plate on the nail with one optical distance, on the proximity ring's line, beside a driver that moves: one count of a
-   frame, with that sensor's calibration. */
+/* The driver of a plate on the nail with one optical sensor, on the proximity ring's line, beside a driver that moves.
+   It uses one count of a frame, with that sensor's calibration. */
 #include <stdlib.h>
 
 #include "device/settings.h"
@@ -32,7 +32,8 @@ typedef struct nail_plate {
   double noise;
 } nail_plate;
 
-/* The further the plate, the more a count is worth: sd of a step is a twelfth of its square. */
+/* The farther the plate, the more metres a count is. The variance of a rounded value is a twelfth of its step
+   squared. */
 static bool means(const void *sensor, const uint16_t counts[ETHD__FRAME_SENSORS], ethd__sighting *out) {
   const nail_plate *n = sensor;
   uint16_t c = counts[n->index];

@@ -5,7 +5,7 @@
 #include "ethd/maths.h"
 
 #define PI 3.14159265358979323846
-#define GRID 201 /* points across the ring, by which centres are counted */
+#define GRID 201 /* points across the ring, on whose grid centres are counted */
 
 double ethd__zones_distance(const ethd__zones *z, double finger_radius, ethd_vec centre, uint32_t k) {
   double along = ethd_vec_dot(z->ray[k], centre), across = ethd_vec_cross(z->ray[k], centre);
@@ -13,7 +13,7 @@ double ethd__zones_distance(const ethd__zones *z, double finger_radius, ethd_vec
   return z->ring_radius - (along + sqrt((finger_radius - across) * (finger_radius + across)));
 }
 
-/* A row of neighbours, once round. */
+/* A run of neighbouring barriers on the circle. */
 typedef struct arc {
   uint32_t length, first;
 } arc;
@@ -29,7 +29,7 @@ static bool find_arc(uint32_t count, uint32_t lit, arc *out) ETHD_RT {
   return begins <= 1;
 }
 
-/* Toward the middle of the row; none of them or all of them have no middle. */
+/* Returns the direction of the run's middle; no barrier and all barriers have none. */
 static ethd_vec middle(const ethd__zones *z, arc a) ETHD_RT {
   if (a.length == 0 || a.length == z->count) return (ethd_vec){0, 0};
   uint32_t half = a.first + (a.length - 1) / 2;
@@ -50,7 +50,7 @@ bool ethd__zones_centre(const ethd__zones *z, uint32_t lit, ethd_vec *centre, do
 /* ---- the table ---- */
 
 typedef struct zone_sums {
-  double n, along, square; /* square: of the whole offset */
+  double n, along, square; /* number of centres, sum of their offsets toward the middle, sum of squared offsets */
 } zone_sums;
 
 static uint32_t lit_at(const ethd__zones *z, double finger_radius, ethd_vec centre) {
@@ -82,7 +82,7 @@ void ethd__zones_prepare(uint32_t count, double reach, double ring_radius, doubl
     }
   for (uint32_t l = 0; l <= count; l++) {
     const zone_sums *s = &by_length[l];
-    out->offset[l] = s->along / s->n; /* none: NaN */
+    out->offset[l] = s->along / s->n; /* NaN if there are none */
     double variance = (s->square / s->n - out->offset[l] * out->offset[l]) / 2;
     out->noise[l] = sqrt(fmax(variance, 0) + switching * switching);
     if (!(s->n > 0)) out->noise[l] = (double)NAN;

@@ -1,5 +1,5 @@
-/* A ring of on-off light barriers on the proximity ring's line, beside a driver that moves: a barrier is lit where its count
-   reaches `level`. */
+/* The driver of a ring of on-off light barriers on the proximity ring's line, beside a driver that moves. A barrier is
+   lit if its count reaches `level`. */
 #include <stdlib.h>
 
 #include "device/settings.h"
@@ -25,7 +25,7 @@ typedef struct zones_ring {
   double level;
 } zones_ring;
 
-/* A barrier that doesn't answer may be lit or not: then nothing is known. */
+/* Refuses a frame in which a barrier doesn't answer, since that one may be lit or not. */
 static bool means(const void *sensor, const uint16_t counts[ETHD__FRAME_SENSORS], ethd__sighting *out) {
   const zones_ring *r = sensor;
   uint32_t lit = 0;

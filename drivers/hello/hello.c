@@ -1,5 +1,5 @@
-/* A driver to copy: two motors that aren't there, J dw/dt = torque - b w. What a real one puts in place of
-   the model: its encoders in `read`, its amplifier in `write`, its brake or enable line in `start` and `safe`.
+/* A driver to copy, of two modelled motors, J dw/dt = torque - b w. A real driver puts its hardware in place of the
+   model: its encoders in `read`, its amplifier in `write`, its brake or enable line in `start` and `safe`.
 
    Built in, [device] driver = hello; or as a file of its own, driver = file:hello.so:
      cc -shared -fPIC -DHELLO=ethd_driver_plugin hello.c -o hello.so $(pkg-config --cflags ethd-drivers) */
@@ -13,12 +13,12 @@
 #endif
 #define INERTIA 0.02      /* kg m^2 */
 #define FRICTION 0.05     /* Nms/rad */
-#define WATCHDOG 20000000 /* ns without a write: no torque */
+#define WATCHDOG 20000000 /* ns: without a write for so long there is no torque */
 
 typedef struct hello {
   double q[2], w[2], torque[2];
   int64_t now, written; /* ns */
-  _Atomic int32_t safe; /* any thread's */
+  _Atomic int32_t safe; /* set by any thread */
 } hello;
 
 static ethd_status open_hello(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
@@ -27,7 +27,7 @@ static ethd_status open_hello(const ethd_device_def *def, void **device, char me
   return status ? status : ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, h->q);
 }
 
-/* At rest where it stands, and no torque from before. */
+/* Begins at rest where the device stands, without a torque from before. */
 static ethd_status start(void *device) {
   hello *h = device;
   *h = (hello){.q = {h->q[0], h->q[1]}};

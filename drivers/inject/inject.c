@@ -25,9 +25,9 @@ typedef struct inject {
   void *device;
   ethd__script script;
   int64_t start_ns; /* of the first sample */
-  int64_t now;      /* since then */
+  int64_t now;      /* ns since then */
   int32_t started;  /* like start_ns above: written by [rt], read by I/O threads */
-  uint64_t done;    /* things that were done wrong */
+  uint64_t done;    /* how many faults were injected */
   uint64_t commands, readings;
   ethd_sense last; /* reading */
   held_reading held[READINGS_MAX];
@@ -53,7 +53,7 @@ ethd_status ethd__inject_around(const ethd_driver *driver, void *device, ethd__s
 
 static bool is_due(const ethd__injection *i, int64_t t) ETHD_RT { return t >= i->from_ns && t < i->until_ns; }
 
-/* The channel's next due injection from `at` on; NULL when none is left. */
+/* Returns the channel's next due injection from `at` on; NULL when none is left. */
 static ethd__injection *next_due(inject *in, ethd__inject_channel channel, uint32_t *at) ETHD_RT {
   while (*at < in->script.count) {
     ethd__injection *i = &in->script.at[(*at)++];

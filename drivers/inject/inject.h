@@ -1,5 +1,5 @@
-/* A device that does wrong by a script: it stands around any other, between it and the loop, and does to the
-   samples and commands that pass what a broken device would.
+/* Injects faults by a script: this device wraps any other, between that device and the loop, and changes the samples
+   and commands that pass as a broken device would.
 
        [device]
        driver = servo, ring
@@ -13,8 +13,8 @@
 
 extern const ethd_driver ethd__driver_inject;
 
-/* Takes the open `device` of `driver` and the script, also when it fails: closes and frees them then.
-   ETHD_E_MEMORY. [main] */
+/* Takes over the open `device` of `driver` and the script; when it fails, with ETHD_E_MEMORY, it has closed and freed
+   them. [main] */
 ETHD_MUST_CHECK ethd_status ethd__inject_around(const ethd_driver *driver, void *device, ethd__script *script,
                                                 void **out);
 

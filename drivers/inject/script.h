@@ -1,4 +1,4 @@
-/* What a device is to do wrong, and when: one line an injection, # comments.
+/* A script of faults: what a device does wrong, and when. One line for each injection, and # begins a comment.
 
        TIME CHANNEL KIND [by=NUMBER] [for=SECONDS]
 
@@ -40,19 +40,19 @@ typedef enum ethd__inject_channel {
 } ethd__inject_channel;
 
 typedef enum ethd__inject_kind {
-  ETHD__INJECT_FREEZE,  /* stays what it was when this began */
-  ETHD__INJECT_OFFSET,  /* by is added */
-  ETHD__INJECT_REVERSE, /* the angle moves the other way from where it was when the injection began */
-  ETHD__INJECT_SCALE,   /* times by */
-  ETHD__INJECT_NOISE,   /* uniform within by to both sides */
-  ETHD__INJECT_SET_TO,  /* is by */
+  ETHD__INJECT_FREEZE,  /* the number stays what it was when the injection began */
+  ETHD__INJECT_OFFSET,  /* `by` is added */
+  ETHD__INJECT_REVERSE, /* the angle moves backwards from where it was when the injection began */
+  ETHD__INJECT_SCALE,   /* the number is multiplied with `by` */
+  ETHD__INJECT_NOISE,   /* noise is added, uniform in [-by, by) */
+  ETHD__INJECT_SET_TO,  /* the number becomes `by` */
   ETHD__INJECT_NAN,
-  ETHD__INJECT_DROP,  /* never arrives */
-  ETHD__INJECT_DELAY, /* arrives by seconds later */
+  ETHD__INJECT_DROP,  /* it never arrives */
+  ETHD__INJECT_DELAY, /* it arrives `by` seconds later */
   ETHD__INJECT_FAIL,  /* the call says that the device failed */
   ETHD__INJECT_STALE, /* the call says that there is nothing newer */
   ETHD__INJECT_SET,   /* the row is seen */
-  ETHD__INJECT_GRAVE, /* the row is seen at its worst */
+  ETHD__INJECT_GRAVE, /* the row is seen, and is grave */
   ETHD__INJECT_KINDS
 } ethd__inject_kind;
 
@@ -72,7 +72,7 @@ typedef struct ethd__script {
   ethd__injection *at;
 } ethd__script;
 
-/* `name` stands for the file in messages; period, s. text[length] is 0. On failure *out is empty. [main] */
+/* Parses a script, which messages call `name`; period, s. text[length] is 0. On failure *out is empty. [main] */
 ETHD_MUST_CHECK ethd_status ethd__script_parse(const char *text, size_t length, const char *name, double period,
                                                ethd__script *out, char message[ETHD_MESSAGE_MAX]);
 ETHD_MUST_CHECK ethd_status ethd__script_load(const char *path, double period, ethd__script *out,

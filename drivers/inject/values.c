@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-/* Where the sample holds a channel's numbers; NULL when it doesn't hold them. */
+/* Returns where the sample holds a channel's numbers; NULL when it doesn't hold them. */
 static double *numbers(ethd__inject_channel channel, bool joints, ethd_sense *s) ETHD_RT {
   switch (channel) {
   case ETHD__INJECT_Q: return joints ? s->q : NULL;

@@ -50,14 +50,14 @@ static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
 
 static int64_t nanoseconds(double s) { return s < 1e9 ? llrint(1e9 * s) : INT64_MAX; }
 
-/* How late the loop may be: the smaller of the application's limit and what any device stands. A slow device's
-   samples lie further apart, which says nothing of the loop's own lateness. */
+/* Returns how late the loop may be: the smaller of the application's limit and what any device tolerates. A slow
+   device's samples lie farther apart, which says nothing about the loop's own lateness. */
 static double gap_of(const ethd_loop_def *d) {
   bool is_limited = d->driver->limits && d->device && isfinite(d->driver->limits(d->device).gap);
   return is_limited ? fmin(d->gap, ethd_limits_device().gap) : d->gap;
 }
 
-/* How far two joint samples may lie apart by the application and the device, s. */
+/* Returns how far apart two joint samples may be according to application and device, s. */
 static double between_samples(const ethd_loop_def *d) {
   if (!d->driver->limits || !d->device) return d->gap;
   return fmin(d->gap, d->driver->limits(d->device).gap);

@@ -1,4 +1,4 @@
-/* What the control thread does in each tick. Nothing here allocates, locks, or calls the system but to sleep. */
+/* What the control thread does in each tick. Nothing here allocates or locks, and the only system call is to sleep. */
 #include <errno.h>
 #include <math.h>
 #include <stdbool.h>
@@ -70,7 +70,7 @@ static void push(ethd_loop *l) ETHD_RT {
 
 /* ---- one tick ---- */
 
-/* Nothing is known of a device that can't be read, so the controller gets NaN and reports its input fault. */
+/* Nothing is known about a device that can't be read, so the controller gets NaN and reports its input fault. */
 static void blind(ethd_loop *l) ETHD_RT {
   raise(&l->stats.read_failures, 1);
   l->sense.have = 0;
@@ -166,7 +166,7 @@ static int64_t begin_step(ethd_loop *l) ETHD_RT {
   return now;
 }
 
-/* [main] gave this thread up while the step hung: device and all else are no longer its own. */
+/* If [main] gave this thread up while the step hung, the device and all else no longer belong to the thread. */
 static void end_step(ethd_loop *l) ETHD_RT {
   if (atomic_exchange_explicit(&l->stepping, 0, memory_order_acq_rel) != ETHD__LOOP_LEFT) return;
   for (;;) (void)!sleep_until(l, ethd__loop_now(l) + 1000000000);

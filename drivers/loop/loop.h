@@ -1,5 +1,5 @@
-/* The loop's own memory. Fields between two threads are atomic, each with one writer at a time but for
-   flags that anybody may raise. */
+/* The loop's own memory. Fields between two threads are atomic; each has one writer at a time, except flags that any
+   thread may raise. */
 #ifndef ETHD_LOOP_PARTS_H
 #define ETHD_LOOP_PARTS_H
 
@@ -12,7 +12,7 @@
 /* Who may use device and controller: the loop, or [main] while it enables the device. */
 enum { ETHD__LOOP_RUNS, ETHD__LOOP_ASKED, ETHD__LOOP_PARKED };
 
-#define ETHD__HOLD_MAX 60000000   /* ns without a newer joint sample, over a slow bus's 50 ms; more is too old anyway */
+#define ETHD__HOLD_MAX 60000000   /* ns for which a torque may be held without a newer sample; a slow bus takes 50 ms */
 #define ETHD__LOOP_HANG 500000000 /* ns: a thread that hasn't turned for so long, and four periods, hangs */
 #define ETHD__LOOP_LEFT (-1)      /* in `stepping`: [main] has given up the thread that steps */
 #define ETHD__LOOP_STEP_MAX 100000000 /* ns: no step may take longer, whatever limits.step_time says */
@@ -56,16 +56,16 @@ struct ethd_loop {
   int64_t step;   /* ns: duration of the last step */
   int64_t ramp;   /* armed ticks since the start */
   bool dry;       /* 1: the next step is rehearsed first */
-  int32_t held;   /* ticks since the last that stepped */
+  int32_t held;   /* ticks since the last one that stepped */
   int64_t stale;  /* ticks since the last joint sample */
   int64_t hold;   /* ticks for which a torque may be held without one */
   int32_t marks;
   bool was_armed;
   int64_t late;    /* ns: the longest overrun since the last step */
-  int64_t ahead;   /* ns by which CLOCK_BOOTTIME is ahead of the loop's clock, at most */
+  int64_t ahead;   /* ns by which CLOCK_BOOTTIME is ahead of the loop's clock at most */
   int64_t slept;   /* ns for which the machine was suspended since the last step */
-  int64_t bucket;  /* of overruns */
-  int64_t beat_at; /* ns: the tick that saw the last beat of the application, 0: none yet */
+  int64_t bucket;  /* the leaky bucket of overruns */
+  int64_t beat_at; /* ns: the tick that saw the application's last beat; 0: none has */
   unsigned beats_seen;
   uint64_t lost, swaps;
   ethd_sense sense;
@@ -74,7 +74,7 @@ struct ethd_loop {
   ethd_loop_stats stats;
 
   _Alignas(64) atomic_int mode, armed, clear, stop, ended, failed;
-  atomic_uint beats;        /* of the application */
+  atomic_uint beats;        /* the application's */
   _Atomic int64_t turned;   /* ns: the loop's thread was alive then */
   _Atomic int64_t stepping; /* ns: a step runs since then; 0: none does */
   atomic_int hangs;         /* 1: the loop's thread hasn't turned for ETHD__LOOP_HANG */
@@ -93,14 +93,14 @@ struct ethd_loop {
   int dma_latency;
 };
 
-/* The loop's instant now, ns; and on a clock that a suspended machine doesn't stop. [rt] */
+/* Return the loop's instant now, ns, and the same on a clock that goes on while the machine is suspended. [rt] */
 int64_t ethd__loop_now(const ethd_loop *loop) ETHD_RT;
 int64_t ethd__loop_boot(const ethd_loop *loop) ETHD_RT;
 
-/* Sleeps, ticks and counts until it is told to stop; 0, or the error with which the sleep failed. [rt] */
+/* Sleeps, ticks and counts until it is told to stop; returns 0, or the error with which the sleep failed. [rt] */
 int ethd__loop_cycle(ethd_loop *loop) ETHD_RT;
 
-/* One turn: sleep and tick; 0, or the error with which the sleep failed. [rt] */
+/* Makes one turn, which is a sleep and a tick; returns 0, or the error with which the sleep failed. [rt] */
 int ethd__loop_turn(ethd_loop *loop) ETHD_RT;
 
 /* Notes that a tick was due `ns` ago. [rt] */
@@ -120,15 +120,16 @@ void ethd__loop_rest(ethd_loop *loop) ETHD_RT;
 int32_t ethd__loop_ask_machine(ethd_loop *loop, int *cpu);
 void ethd__loop_release_machine(ethd_loop *loop);
 
-/* Units of blocking I/O that the device has. [main] */
+/* Returns how many units of blocking I/O the device has. [main] */
 uint32_t ethd__loop_units(const ethd_loop *loop);
 
 /* Fills `error` with what failed, and returns `status`. [main] */
 ethd_status ethd__loop_refuse(ethd_error *error, ethd_status status, const char *name, double found, double min,
                               double max);
 
-/* Xenomai's initialisation, where there is one to do; switches to secondary mode since. Refusals are named "xenomai"
-   (the kernel has no Cobalt), "clock" (found: s by which Cobalt's is ahead of Linux's) and "thread". [main] */
+/* Initialises Xenomai where that is needed; begins to count switches to secondary mode on a thread; returns how many
+   there were. Refusals are named "xenomai" (the kernel has no Cobalt), "clock" (found: s by which Cobalt's is ahead of
+   Linux's) and "thread". [main] */
 ethd_status ethd__xenomai_begin(ethd_error *error);
 void ethd__xenomai_watch(void); /* on the loop's thread, before the first tick */
 uint64_t ethd__xenomai_relaxes(void);

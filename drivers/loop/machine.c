@@ -74,7 +74,7 @@ static bool kernel_is_realtime(void) {
 #endif
 }
 
-/* The highest isolated processor, 6 of "2-3,6"; -1 without one. */
+/* Returns the highest isolated processor, which is 6 in "2-3,6"; -1: there is none. */
 static int highest_isolated(void) {
   char line[256];
   int highest = ETHD_CPU_NONE, number = 0;

@@ -13,8 +13,8 @@
 #include "loop/loop.h"
 
 #define SERVICE_STACK ((size_t)256 << 10)
-#define PAUSE 1000000     /* ns */
-#define PATIENCE 1000     /* pauses */
+#define PAUSE 1000000     /* ns between two looks at whether the loop has let go, */
+#define PATIENCE 1000     /* of which there are so many at most */
 #define LOOK_MAX 10000000 /* ns between two checks of the loop's thread */
 
 static void pause_a_little(void) {
@@ -50,10 +50,11 @@ static void *run_unit(void *unit_) {
 
 typedef struct watch {
   int64_t now, turned, alive; /* ns */
-  int64_t silent;             /* ns, as this thread has seen them pass: a process that was stopped isn't silent */
+  int64_t silent;             /* ns that this thread saw pass: while the whole process is stopped, it sees none */
 } watch;
 
-/* ns until the loop's thread counts as dead: because it is silent, where gap is set, or its step doesn't end. */
+/* Returns the ns until the loop's thread counts as dead, because it is silent (if a gap is set) or its step doesn't
+   end. */
 static int64_t left_to_live(const ethd_loop *l, const watch *w) {
   int64_t step = atomic_load_explicit(&l->stepping, memory_order_relaxed);
   int64_t gap = l->gap > 2 * l->period ? l->gap : 2 * l->period; /* a period lies between two turns */
@@ -262,7 +263,7 @@ ethd_status ethd_loop_home(ethd_loop *l, const double *q) {
   return status;
 }
 
-/* Whoever comes first has the device: the thread as its step ends, or [main]. */
+/* Gives the thread up, unless its step ends first; whoever comes first, the thread or [main], has the device. */
 static ethd_status give_up_thread(ethd_loop *l) {
   int64_t step = atomic_load_explicit(&l->stepping, memory_order_acquire);
   bool taken = step > 0 && atomic_compare_exchange_strong(&l->stepping, &step, ETHD__LOOP_LEFT);

@@ -4,15 +4,16 @@
 /* A leaky bucket, because frequent short lateness is as bad as one long one. */
 #define POUR 10
 #define FULL 50
-#define BRIM 100 /* no more is remembered */
+#define BRIM 100 /* the bucket holds no more */
 
 void ethd__loop_late(ethd_loop *l, int64_t ns) {
   l->bucket = l->bucket + POUR < BRIM ? l->bucket + POUR : BRIM;
   if (ns > l->late) l->late = ns;
 }
 
-/* By more than before: the machine was suspended, which the loop's clock doesn't show. What lies between the
-   two readings makes the least smaller and the most larger, so that no delay passes for a suspension. */
+/* If the second clock is ahead by more than before, the machine was suspended, which the loop's clock doesn't show.
+   A delay between the two readings makes `least` smaller and `most` larger, so that no delay is taken for a
+   suspension. */
 void ethd__loop_ahead(ethd_loop *l, int64_t least, int64_t most) {
   int64_t slept = least - l->ahead;
   l->ahead = most;

@@ -43,8 +43,8 @@ static int64_t core_now(void) {
   return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
 }
 
-/* Drivers' threads stamp by Linux's clock, the loop ticks by the core's: on Dovetail they are one, on the I-pipe of
-   Xenomai up to 3.1 they aren't. 0: one; else how far the core's is ahead. */
+/* Drivers' threads stamp by Linux's clock, and the loop ticks by the core's. On Dovetail these are one clock, on the
+   I-pipe of Xenomai up to 3.1 they aren't. Returns by how much the core's is ahead, ns; 0: they are one. */
 static int64_t clocks_apart(void) {
   int64_t ahead = 0;
   for (int i = 0; i < LOOKS; i++) {

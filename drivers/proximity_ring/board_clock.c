@@ -1,16 +1,17 @@
 #include "proximity_ring/board_clock.h"
 
-#define DRIFT_MAX 0.05 /* ceramic resonators are good to 0.005, a broken one is still followed */
-#define SPAN_MIN 0.3   /* s of points before their slope is believed */
+#define DRIFT_MAX 0.05 /* ceramic resonators are good to 0.005; a broken one is followed up to here */
+#define SPAN_MIN 0.3   /* s that points must span before their slope is used */
 #define PERIOD_US (1e6 / ETHD__FRAME_RATE)
 #define TOLERANCE_US 100 /* between a frame's time and its sequence, as times are whole us */
 #define LATE_MAX 150     /* periods that board 0 may lose at once */
 #define EARLY_MAX 0.005  /* s below a settled envelope: a frame that comes earlier shows a jump of the clock */
-#define SETTLED 4        /* blocks */
+#define SETTLED 4        /* blocks after which the envelope is settled */
 
 /* ---- does a frame follow another? ---- */
 
-/* While board 0 is late, t_us goes on and seq doesn't; the frame that says so may itself be lost. */
+/* Returns whether the times of two frames fit their sequence. While board 0 is late, t_us goes on and seq doesn't; the
+   frame whose flag says so may itself be lost. */
 static bool follows(uint16_t seq, uint32_t t_us, const ethd__ring_frame *next) ETHD_RT {
   double steps = (uint16_t)(next->seq - seq), passed = (uint32_t)(next->t_us - t_us);
   double extra = passed - steps * PERIOD_US;
@@ -31,7 +32,7 @@ static double above(const ethd__board_clock *c, ethd__clock_point p) ETHD_RT {
   return p.y - (c->offset + c->drift * p.x);
 }
 
-/* Positive when c lies to the left of the line from a to b; b is then a corner of the lower hull. */
+/* Returns a positive number when c lies to the left of the line from a to b; b is then a corner of the lower hull. */
 static double turn(ethd__clock_point a, ethd__clock_point b, ethd__clock_point c) ETHD_RT {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }

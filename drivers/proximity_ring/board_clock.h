@@ -1,4 +1,4 @@
-/* The board's clock in host time, from when its frames arrive.
+/* Finds the board's clock in host time by when its frames arrive.
 
      arrival - board time
        |   o        o                  Every arrival is late by what lies between: at least `delay`, often
@@ -6,13 +6,13 @@
        |  o__________o_________o       envelope of the arrivals, `delay` below it.
        +----------------------------> board time
 
-   The envelope is the line under all points that comes nearest to them together: the edge of their lower
-   hull over their mean. Points are the lowest of each 16 frames, of 128 such blocks (7 s); the line is
-   worked out anew with each block and lowered at once by a point under it. Its slope, the drift, is
-   believed after 0.3 s, and kept over a jump: a rebooted board has its old quartz.
+   The envelope is the line under all points that is nearest to them together: the edge of their lower hull at their
+   mean. A point is the lowest of 16 frames, and the last 128 such blocks (7 s) count. The line is worked out anew with
+   each block, and a point under it lowers it at once. Its slope, the drift, is used after 0.3 s, and kept over a jump,
+   because a rebooted board still has its quartz.
 
-   A frame's time must follow from its sequence. If it doesn't, it is a jump, or a corrupt frame that has
-   passed the CRC: the next frame tells, by following the doubtful one or the one before it. All [rt]. */
+   A frame's time must fit its sequence. If it doesn't, the clock jumped, or the frame is corrupt and has passed the
+   CRC. The next frame decides, since it fits either the doubtful frame or the one before it. All [rt]. */
 #ifndef ETHD_PROXIMITY_RING_BOARD_CLOCK_H
 #define ETHD_PROXIMITY_RING_BOARD_CLOCK_H
 
@@ -23,7 +23,7 @@ enum { ETHD__CLOCK_BLOCK = 16, ETHD__CLOCK_BLOCKS = 128 };
 typedef enum ethd__clock_verdict {
   ETHD__CLOCK_GOOD = 0,
   ETHD__CLOCK_DOUBTFUL, /* the frame's time contradicts its sequence: don't use it */
-  ETHD__CLOCK_JUMPED,   /* aligned anew, from this frame on: the board was reset, or its clock jumped */
+  ETHD__CLOCK_JUMPED,   /* the board was reset, or its clock jumped: aligned anew from this frame on */
   ETHD__CLOCK_RETURNED  /* the doubtful frame before this one was corrupt; this one is good */
 } ethd__clock_verdict;
 
@@ -31,11 +31,11 @@ typedef struct ethd__clock_point {
   double x, y; /* board time; arrival - board time. s, from the base on */
 } ethd__clock_point;
 
-/* Zeroed, with `delay` set: ready. */
+/* A clock that begins is zero except for `delay`. */
 typedef struct ethd__board_clock {
   double delay; /* s, from a frame's t_us to its earliest arrival */
 
-  double drift;     /* host seconds per board second, less 1 */
+  double drift;     /* host seconds per board second, minus 1 */
   double offset;    /* of the envelope at x = 0, s */
   int64_t base_ns;  /* host time at which y is 0 */
   int64_t board_us; /* since the base */
@@ -44,17 +44,17 @@ typedef struct ethd__board_clock {
   bool started, doubtful;
   ethd__ring_frame doubt; /* the frame that didn't follow */
   uint32_t in_block;      /* frames of the block that is being filled */
-  uint32_t blocks;        /* ever, since the base */
+  uint32_t blocks;        /* number of blocks since the base */
   ethd__clock_point block, points[ETHD__CLOCK_BLOCKS];
   uint64_t jumps, doubts; /* counted */
 } ethd__board_clock;
 
-/* A frame that arrived at arrival_ns (CLOCK_MONOTONIC, its last byte). *t_ns: when its t_us was, unless
-   doubtful. */
+/* Takes a frame whose last byte arrived at arrival_ns (CLOCK_MONOTONIC). *t_ns becomes the host's instant of its t_us,
+   unless the frame is doubtful. */
 ethd__clock_verdict ethd__board_clock_step(ethd__board_clock *clock, const ethd__ring_frame *frame, int64_t arrival_ns,
                                            int64_t *t_ns) ETHD_RT;
 
-/* The port was opened anew: begins with the next frame, the drift stays. */
+/* Begins anew with the next frame, because the port was opened anew; the drift stays. */
 void ethd__board_clock_restart(ethd__board_clock *clock) ETHD_RT;
 
 #endif

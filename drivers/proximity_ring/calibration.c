@@ -27,10 +27,10 @@ static double between(double x, double x0, double y0, double x1, double y1) ETHD
   return y0 + (y1 - y0) * ((x - x0) / (x1 - x0));
 }
 
-/* Points are joined by straight lines in this coordinate, in which a law with p = 2 is straight. */
+/* Returns the coordinate in which points are joined by straight lines, because a law with p = 2 is straight in it. */
 static double straight(double above) ETHD_RT { return 1 / sqrt(above); }
 
-/* The first and the last line go on beyond the ends. */
+/* Looks a distance up in the table; beyond its ends the first and the last line go on. */
 static double look_up(const ethd__sensor *s, double above) ETHD_RT {
   uint32_t i = 1;
   while (i + 1 < s->points && s->above[i] > above) i++;

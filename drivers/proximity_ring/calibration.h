@@ -1,4 +1,4 @@
-/* From a sensor's counts to a distance.
+/* Turns a sensor's counts into a distance.
 
      counts                              light that comes back falls with the distance, on a floor that is
        |*                                there without a finger (dark: stray light, the ring itself):
@@ -24,7 +24,7 @@
 
 enum { ETHD__POINTS_MAX = 24, ETHD__SERIAL_MAX = 48 };
 
-#define ETHD__DISTANCE_MAX 0.1 /* m: farther is as good as nothing */
+#define ETHD__DISTANCE_MAX 0.1 /* m: anything farther counts as nothing */
 
 typedef enum ethd__level {
   ETHD__LEVEL_NONE = 0,
@@ -55,14 +55,15 @@ typedef struct ethd__calibration {
   ethd__sensor sensors[ETHD_RAYS];
 } ethd__calibration;
 
-/* Level none: a = 0.5, p = 2, d0 = 2.5 mm, typical figures of the sensor, not measured. [any] */
+/* Returns level none: a = 0.5, p = 2, d0 = 2.5 mm, which are typical of the sensor, not measured. [any] */
 ethd__calibration ethd__calibration_default(void);
 
-/* m. NaN for a missing reading or an unknown dark; ETHD__DISTANCE_MAX at and below dark. A saturated reading is
-   the distance at which it saturates. Own exp and log: the same bits everywhere. [any, rt-safe] */
+/* Returns the distance, m: NaN for a missing reading or an unknown dark, ETHD__DISTANCE_MAX at and below dark. A
+   saturated reading gives the distance at which the sensor saturates. Our own exp and log make the bits equal
+   everywhere. [any, rt-safe] */
 double ethd__sensor_distance(const ethd__sensor *sensor, uint16_t counts) ETHD_RT;
 
-/* The inverse: counts, not rounded, over the ceiling too. [any, rt-safe] */
+/* Returns the counts at a distance, not rounded, and beyond the sensor's ceiling too. [any, rt-safe] */
 double ethd__sensor_counts(const ethd__sensor *sensor, double distance) ETHD_RT;
 
 /* ---- files ---- */

@@ -77,7 +77,7 @@ static void add(normal *to, const ethd__sensor *s, measured_point one) {
   to->cost += e * e;
 }
 
-/* Sums over sensor k's pairs (k = -1: all sensors') under the law of `s`. */
+/* Sums over the pairs of one sensor, or of all (sensor -1), under the law of `s`. */
 static size_t collect(const ethd__calibration *c, ethd__place_readings readings, int sensor, const ethd__sensor *s,
                       normal *out) {
   size_t count = 0;
@@ -92,7 +92,7 @@ static size_t collect(const ethd__calibration *c, ethd__place_readings readings,
   return count;
 }
 
-/* (H + damping diag H) x = g by elimination; H is then positive definite. */
+/* Solves (H + damping diag H) x = g by elimination; the matrix is positive definite. */
 static void solve(normal m, int n, double damping, double x[UNKNOWNS]) {
   for (int i = 0; i < n; i++) m.h[i][i] += damping * m.h[i][i] + 1e-300;
   for (int i = 0; i < n; i++)

@@ -1,7 +1,7 @@
-/* Bytes from the wire to frames: COBS, length, type, CRC, sequence.
+/* Turns bytes from the wire into frames, and checks COBS, length, type, CRC and sequence.
 
-   A frame ends at a zero and holds none, so the decoder is in step again at the next zero, whatever came
-   before: it may start anywhere. Bytes come in pieces of any size; nothing is allocated. All [any, rt-safe]. */
+   A frame ends with a zero and holds none, so the decoder is in step again at the next zero, whatever came before; it
+   may start anywhere. Bytes come in pieces of any size; nothing is allocated. All [any, rt-safe]. */
 #ifndef ETHD_PROXIMITY_RING_DECODER_H
 #define ETHD_PROXIMITY_RING_DECODER_H
 
@@ -23,31 +23,31 @@ typedef struct ethd__decoder_counters {
   uint64_t frames; /* good ones */
   uint64_t
       corrupt;   /* pieces between zeros that are no frame, each as soon as it is known; not the first since a reset */
-  uint64_t lost; /* by sequence; a corrupt frame is lost too */
-  uint64_t repeated; /* frames whose sequence is the last one's: handed on all the same */
+  uint64_t lost; /* frames missing in the sequence; a corrupt one is among them */
+  uint64_t repeated; /* frames with the same sequence as the last one; they are handed on all the same */
 } ethd__decoder_counters;
 
-/* Zeroed: ready. */
+/* A decoder that begins is all zero. */
 typedef struct ethd__decoder {
   ethd__decoder_counters counters;
   uint32_t held; /* bytes of a piece that hasn't ended; over ETHD__FRAME_WIRE: too long for a frame */
   uint16_t seq;  /* of the last frame */
-  bool started;  /* a frame has come: seq counts */
+  bool started;  /* a frame has come, so `seq` is valid */
   bool in_step;  /* a zero has come */
   uint8_t piece[ETHD__FRAME_WIRE];
 } ethd__decoder;
 
-/* The next frame among the bytes from *at to `end`; *at goes behind what was taken. False: no frame, and
+/* Takes the next frame from the bytes from *at to `end`, and moves *at behind it. False: there is no frame, and
    *at == end. */
 bool ethd__decoder_next(ethd__decoder *decoder, const uint8_t **at, const uint8_t *end, ethd__ring_frame *out) ETHD_RT;
 
-/* Forgets a begun piece and the sequence, as after a reopened port; the counters stay. */
+/* Forgets a piece that has begun, and the sequence, because the port was opened anew; the counters stay. */
 void ethd__decoder_restart(ethd__decoder *decoder) ETHD_RT;
 
-/* CRC-16/MCRF4XX of the bytes; of a frame with its CRC behind it: 0. */
+/* Returns CRC-16/MCRF4XX of the bytes; it is 0 for a frame followed by its CRC. */
 uint16_t ethd__frame_crc(const uint8_t *bytes, size_t count) ETHD_RT;
 
-/* A frame as it goes over the wire; lost doesn't count. */
+/* Encodes a frame as it goes over the wire; `lost` isn't part of that. */
 void ethd__frame_encode(const ethd__ring_frame *frame, uint8_t out[ETHD__FRAME_WIRE]) ETHD_RT;
 
 #endif

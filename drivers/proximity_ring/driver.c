@@ -15,7 +15,7 @@
 #include "text/error_text.h"
 #include "text/text.h"
 
-#define WAIT_MS 20                             /* for bytes, in a service */
+#define WAIT_MS 20                             /* for which one call of service waits for bytes */
 #define ROOM 4096                              /* bytes of one read */
 #define GAP_NS (1500000000 / ETHD__FRAME_RATE) /* without a frame means that at least one is lost */
 
@@ -28,7 +28,7 @@ typedef struct sample {
 
 typedef struct ring {
   ethd__ring_settings settings;
-  bool is_virtual;      /* the clock */
+  bool is_virtual;      /* whether the clock is virtual */
   pthread_mutex_t lock; /* of the I/O thread's part, which figures read */
   ethd_cell *cell;
 
@@ -63,7 +63,7 @@ static ethd_status reopen(ring *r, int64_t now_ns) {
   return status;
 }
 
-/* On the virtual clock nothing waits, and all bytes count as arrived at this instant. */
+/* On a virtual clock nothing waits, and all bytes count as arrived at this instant. */
 static ethd_status service(void *device, uint32_t unit, int64_t now_ns) {
   ring *r = device;
   uint8_t bytes[ROOM];
@@ -223,7 +223,7 @@ static uint32_t units(const void *device) {
 static ethd_limits limits(const void *device) {
   (void)device;
   ethd_limits limits = ethd_limits_device();
-  limits.gap = (double)INFINITY; /* the joints' samples aren't its own */
+  limits.gap = (double)INFINITY; /* it takes no samples of the joints */
   return limits;
 }
 

@@ -22,7 +22,7 @@
 
 #include <stdint.h>
 
-#define ETHD__FRAME_RATE 300 /* Hz: after three frames exactly 10 ms have gone */
+#define ETHD__FRAME_RATE 300 /* Hz: three frames take exactly 10 ms */
 #define ETHD__FRAME_BOARDS 4
 #define ETHD__FRAME_LANES 4 /* sensors of one board */
 #define ETHD__FRAME_SENSORS 16
@@ -54,7 +54,7 @@
   0x02u                         /* board 1, 2 or 3 gave no block, a stale one or a broken one: four counts are 0 */
 #define ETHD__FRAME_FIRST 0x04u /* the first frame since board 0's reset: seq and t_us begin anew */
 #define ETHD__FRAME_BOARD_RESET 0x08u /* board 1, 2 or 3 began anew */
-#define ETHD__FRAME_LATE 0x10u /* board 0 lost at least one period before this frame; t_us has counted on, seq hasn't */
+#define ETHD__FRAME_LATE 0x10u        /* board 0 lost at least one period before this frame; t_us went on, seq didn't */
 #define ETHD__FRAME_BUS_RECOVERED 0x20u /* a bus was found held low and clocked free */
 #define ETHD__FRAME_WATCHDOG 0x40u      /* with FIRST: it was the watchdog that reset board 0 */
 

@@ -5,8 +5,8 @@
 
 #define UNUSED_FLAGS 0x80
 #define ALL ((1u << ETHD_RAYS) - 1)
-#define GONE_US 20000 /* after so long nothing is known of where the finger was */
-#define PRESENT 6     /* rays that meet something: a finger, whose shape can be judged */
+#define GONE_US 20000 /* us after which a distance of before says nothing any more */
+#define PRESENT 6     /* rays that must meet something, so that a finger's shape can be judged */
 
 ethd_status ethd__plausible_prepare(double ring_radius, double finger_radius, double gate, double speed, double slack,
                                     ethd__plausible *out, ethd_error *error) {
@@ -50,7 +50,7 @@ static bool flags_agree(const ethd__ring_frame *f, uint32_t mask) ETHD_RT {
 
 /* ---- slew and geometry: bits of suspect rays ---- */
 
-/* Beyond the ring the distance doesn't count, only that nothing is nearer. */
+/* Returns a distance for comparison. Beyond the ring its value doesn't matter, only that nothing is nearer. */
 static double seen(const ethd__plausible *p, double d) ETHD_RT { return fmin(d, 2 * p->fit.ring_radius); }
 
 static uint32_t too_fast(const ethd__plausible *p, const ethd__ring_frame *f, const double d[ETHD_RAYS]) ETHD_RT {
@@ -77,7 +77,7 @@ static uint32_t off_circle(const ethd__plausible *p, const double d[ETHD_RAYS], 
   return met & ~finger.used;
 }
 
-/* Rays that meet something, when enough do for a finger. */
+/* Returns the rays that meet something, if there are enough for a finger; else none. */
 static uint32_t on_finger(const ethd__plausible *p, const double d[ETHD_RAYS]) ETHD_RT {
   uint32_t met = 0;
   for (int k = 0; k < ETHD_RAYS; k++) met |= (uint32_t)(fabs(d[k]) < p->fit.ring_radius) << k;
@@ -86,7 +86,7 @@ static uint32_t on_finger(const ethd__plausible *p, const double d[ETHD_RAYS]) E
 
 /* ---- sensors ---- */
 
-/* met: rays that lie on a finger's circle. */
+/* Returns the sensors that show a symptom of a failure; `met` are the rays that lie on a finger's circle. */
 static uint32_t symptoms(const ethd__plausible *p, const ethd__calibration *c, const ethd__ring_frame *f,
                          uint32_t met) ETHD_RT {
   uint32_t same = 0, bad = 0;
@@ -126,7 +126,7 @@ static void keep(ethd__plausible *p, const ethd__ring_frame *f, const double d[E
   p->suspects += bits(suspects);
 }
 
-/* Suspect rays among the sensors in use. */
+/* Returns the suspect rays among the sensors in use. */
 static uint32_t suspect_rays(const ethd__plausible *p, const ethd__ring_frame *f, const double d[ETHD_RAYS]) ETHD_RT {
   uint32_t fast = too_fast(p, f, d);
   if (p->bad_in_a_row >= ETHD__BAD_IN_A_ROW - 1) return off_circle(p, d, p->out) & ~p->out;

@@ -1,15 +1,15 @@
-/* What a frame says, beyond its CRC: can it be true?
+/* Judges whether a frame with a good CRC can be true, since a CRC of 16 bits lets one of 65 536 damaged frames pass.
 
-   A CRC of 16 bits lets one of 65 536 damaged frames pass. Behind it stand
-     flags     bits that are always 0, and those that the counts confirm
-     slew      a distance changes by `speed` times the time since the last frame and `slack` at most
-     geometry  the rays lie within `gate` round a circle of the finger's radius
-   A few rays that fail are left out; over SUSPECTS_MAX of them make it a bad frame. Three bad frames in a row
-   are believed: something was put into the ring.
+     flags     some bits are always 0, and the counts confirm others
+     slew      a distance changes by at most `slack` plus `speed` times the time since the last frame
+     geometry  the rays lie within `gate` of a circle of the finger's radius
 
-   A sensor that fails in five frames more than it does well is out of use, until it has done well as often:
-   missing, saturated where no finger is, under half its dark, with a suspect ray, or stuck: the same count while
-   half of the others move. All [rt]. */
+   A few rays that fail are left out; if more than SUSPECTS_MAX fail, the frame is bad. After three bad frames in a row
+   the next one is believed, because something was put into the ring.
+
+   A sensor is out of use once it has failed in five frames more than it was good, until it has been good as often. It
+   fails if it is missing, saturated where no finger is, under half its dark, has a suspect ray, or is stuck, with the
+   same count while half of the others change. All [rt]. */
 #ifndef ETHD_PROXIMITY_RING_PLAUSIBLE_H
 #define ETHD_PROXIMITY_RING_PLAUSIBLE_H
 
@@ -18,7 +18,7 @@
 
 enum { ETHD__SUSPECTS_MAX = 3, ETHD__BAD_IN_A_ROW = 3, ETHD__FAILING = 5 };
 
-/* Zeroed but for the first part, which ethd__plausible_prepare makes: ready. */
+/* At first all zero but the first part, which ethd__plausible_prepare makes. */
 typedef struct ethd__plausible {
   ethd_fit fit;        /* robust, with the gate */
   double speed, slack; /* m/s, m */
@@ -33,12 +33,12 @@ typedef struct ethd__plausible {
   uint64_t bad, suspects;     /* frames; rays left out of good ones */
 } ethd__plausible;
 
-/* gate, slack in m, speed in m/s. [main] */
+/* Prepares the first part; gate and slack in m, speed in m/s. [main] */
 ETHD_MUST_CHECK ethd_status ethd__plausible_prepare(double ring_radius, double finger_radius, double gate, double speed,
                                                     double slack, ethd__plausible *out, ethd_error *error);
 
-/* The frame's distances into rays; NaN for those left out and sensors out of use. False: a bad frame, rays are
-   undefined. */
+/* Puts the frame's distances into `rays`, with NaN for rays that are left out and sensors out of use. False: the frame
+   is bad, and `rays` is undefined. */
 bool ethd__plausible_step(ethd__plausible *plausible, const ethd__calibration *calibration,
                           const ethd__ring_frame *frame, double rays[ETHD_RAYS]) ETHD_RT;
 

@@ -28,7 +28,7 @@ int64_t ethd__ring_port_read(ethd__ring_port *p, int wait_ms, uint8_t *out, size
   ssize_t got = ready < 0 ? -1 : read(p->fd, out, room);
   if (got > 0) return got;
   if (got < 0 && (errno == EAGAIN || errno == EINTR)) return 0;
-  ethd__ring_port_close(p); /* a line that is ready and has nothing to read has hung up */
+  ethd__ring_port_close(p); /* a line that is ready but has nothing to read has hung up */
   return -1;
 }
 

@@ -11,7 +11,7 @@ typedef struct ethd__ring_port {
   bool low_latency;   /* the kernel's driver hands bytes over at once */
   int64_t attempt_ns; /* when to open next */
   int64_t back_off;   /* ns, doubled with each attempt up to 1.6 s */
-  uint64_t opened;    /* times */
+  uint64_t opened;    /* how often it was opened */
 } ethd__ring_port;
 
 /* Tries once to open it, now; the next attempt is due after the back-off. [main] or I/O */

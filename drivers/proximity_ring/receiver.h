@@ -1,17 +1,16 @@
-/* From bytes with their arrival to readings with their instant: everything between the port and the sense.
+/* Turns bytes with their arrival into readings with their instant: everything between the port and the sense.
 
      bytes -> decoder -> board clock -> calibration, plausibility -> rays, sample_ns
 
-   What goes wrong is counted per row of the fault table, so that a reader that looks now and then misses
-   none. No OS, no heap. All [rt]. */
+   Faults are counted per row of the fault table, so that a reader that looks now and then misses none. No OS, no heap.
+   All [rt]. */
 #ifndef ETHD_PROXIMITY_RING_RECEIVER_H
 #define ETHD_PROXIMITY_RING_RECEIVER_H
 
 #include "proximity_ring/board_clock.h"
 #include "proximity_ring/plausible.h"
 
-/* sample_ns is the middle of a frame's measurements, so long after its t_us; rays lag by this, in s
-   ([finger_fit] lag). */
+/* Time from a frame's t_us to the middle of its measurements, which is sample_ns. [finger_fit] lag is the same in s. */
 #define ETHD__MIDDLE_US (ETHD__FRAME_START_US + ETHD__FRAME_SLOT_US * (ETHD__FRAME_LANES - 1) / 2 + 85)
 #define ETHD__RAY_LAG(k) (1e-6 * ETHD__FRAME_SLOT_US * ((ETHD__FRAME_LANES - 1) / 2.0 - ETHD__FRAME_SLOT(k)))
 
@@ -28,18 +27,18 @@ typedef struct ethd__receiver_counts {
   uint64_t board_clock; /* jumps and doubts: row 20 */
 } ethd__receiver_counts;
 
-/* Zeroed, with calibration (darks known), clock.delay and plausible prepared: ready. */
+/* At first all zero but calibration, with known darks, clock.delay and the prepared part of plausible. */
 typedef struct ethd__receiver {
   ethd__calibration calibration;
   ethd__decoder decoder;
   ethd__board_clock clock;
   ethd__plausible plausible;
   ethd__receiver_counts counts;
-  uint64_t corrupt; /* of the decoder, as it was */
+  uint64_t corrupt; /* the decoder's count when it was last compared */
 } ethd__receiver;
 
-/* The next reading among the bytes from *at to `end`, of which the last arrived at arrival_ns; *at goes behind
-   what was taken. False: no reading, and *at == end. */
+/* Takes the next reading from the bytes from *at to `end`, of which the last arrived at arrival_ns, and moves *at
+   behind it. False: there is no reading, and *at == end. */
 bool ethd__receiver_next(ethd__receiver *receiver, const uint8_t **at, const uint8_t *end, int64_t arrival_ns,
                          ethd__ring_reading *out) ETHD_RT;
 

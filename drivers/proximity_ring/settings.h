@@ -1,4 +1,4 @@
-/* The ring's keys in [device]. */
+/* Reads the ring's keys of [device]. */
 #ifndef ETHD_PROXIMITY_RING_SETTINGS_H
 #define ETHD_PROXIMITY_RING_SETTINGS_H
 
@@ -16,7 +16,7 @@ enum {
 };
 
 extern const ethd_param ethd__ring_params[ETHD__RING_PARAMS];
-extern const char *const ethd__ring_keys[]; /* NULL behind the last */
+extern const char *const ethd__ring_keys[]; /* ends with NULL */
 
 typedef struct ethd__ring_settings {
   const ethd_setting *port, *calibration; /* calibration NULL: level none */

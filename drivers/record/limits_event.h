@@ -1,14 +1,14 @@
-/* What a recording's configuration doesn't know: the device's limits and dynamics. [main] */
+/* Records what the configuration doesn't know: the device's limits and dynamics. [main] */
 #ifndef ETHD__RECORD_LIMITS_EVENT_H
 #define ETHD__RECORD_LIMITS_EVENT_H
 
 #include "ethd/record.h"
 
-/* Writes an event "set limits.X ..." for every limit in which `is` differs from `was`, because a replay has no device to
-   ask. */
+/* Writes an event "set limits.X ..." for every limit in which `is` differs from `was`, because a replay has no device
+   to ask. */
 ETHD_MUST_CHECK ethd_status ethd__limits_event(ethd_recording *recording, const ethd_setup *was, const ethd_setup *is);
 
-/* The same, "set arm.X ...", for what moves the ring: where a law that looks ahead rules, or may be swapped in. */
+/* Does the same for the dynamics, "set arm.X ...", if a law that looks ahead rules or may be swapped in. */
 ETHD_MUST_CHECK ethd_status ethd__dynamics_event(ethd_recording *recording, const ethd_setup *was,
                                                  const ethd_setup *is);
 

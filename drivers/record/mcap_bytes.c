@@ -34,7 +34,7 @@ void ethd__mcap_string(ethd_mcap *m, ethd__bytes *b, const char *text) {
   ethd__mcap_put(m, b, text, strlen(text));
 }
 
-/* opcode, length, content */
+/* A record is its opcode, the length of its content, and the content. */
 void ethd__mcap_record(ethd_mcap *m, ethd__bytes *to, uint8_t opcode, const ethd__bytes *content) {
   ethd__mcap_number(m, to, opcode, 1);
   ethd__mcap_number(m, to, content->length, 8);

@@ -27,7 +27,7 @@ typedef struct ethd__bytes {
 } ethd__bytes;
 
 typedef struct ethd__chunk {
-  uint64_t first, last, start, length, indexes, bytes; /* instants, place and size in the file */
+  uint64_t first, last, start, length, indexes, bytes; /* first and last instant; where it is in the file, and sizes */
   uint64_t index[ETHD__MCAP_TOPICS];                   /* where each topic's index is, 0: none */
 } ethd__chunk;
 
@@ -43,7 +43,7 @@ struct ethd_mcap {
   uint64_t counts[ETHD__MCAP_TOPICS];
   uint16_t topic_count;
   uint64_t at; /* bytes in the file */
-  int failed;  /* no memory, or a write */
+  int failed;  /* there was no memory, or a write failed */
 };
 
 /* Appends data, little endian; a failure is kept in mcap->failed. [main] */

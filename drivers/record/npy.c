@@ -32,7 +32,7 @@ struct ethd_npy {
 
 /* ---- header ---- */
 
-/* {'descr': [('a', '<f8'), ('b', '<i8', (2,))], 'fortran_order': False, 'shape': ( */
+/* Writes {'descr': [('a', '<f8'), ('b', '<i8', (2,))], 'fortran_order': False, 'shape': ( */
 static size_t write_dict(const ethd_column *columns, char *out, size_t room) {
   FILE *file = fmemopen(out, room, "w");
   if (!file) return 0;

@@ -26,14 +26,14 @@ const ethd_column ethd_trace_columns[] = {ETHD_SENSE_FIELDS(SENSE_COLUMN)
 struct ethd_recording {
   ethd_npy *ticks;
   FILE *events;
-  uint64_t rows; /* that came, in the file or lost */
+  uint64_t rows; /* that came, whether they are in the file or lost */
   ethd__claim claim;
   char *folder, failure[ETHD_MESSAGE_MAX]; /* "": none */
 };
 
 /* ---- config.ini ---- */
 
-/* What the recording's configuration says for `file` on a line of the original, NULL: the same. */
+/* Returns what the recording's configuration says for `file` in place of the original's line; NULL: the same. */
 static const char *own_value(const ethd_config *config, int line) {
   const ethd_ini *ini = &ethd__config_whole(config)->ini;
   uint32_t plugin = 0;
@@ -47,7 +47,7 @@ static const char *own_value(const ethd_config *config, int line) {
   return NULL;
 }
 
-/* The line that names drivers, where some are files; 0: none. */
+/* Returns the line that names drivers if some of them are files; 0: there is none. */
 static int driver_files_line(const ethd_config *config) {
   const ethd_ini_key *key = ethd_ini_find(&ethd__config_whole(config)->ini, "device", "driver");
   return key && strstr(config->device, ETHD_DRIVER_FILE) ? key->line : 0;

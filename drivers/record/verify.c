@@ -22,7 +22,7 @@ typedef struct verification {
   double heat[2];              /* of the motors, by the last event of that kind */
   double learned[ETHD_MEMORY]; /* by the law, likewise */
   ethd_control *control;
-  const ethd__record_event *missing; /* says that ticks aren't there; NULL: all are */
+  const ethd__record_event *missing; /* the event that says that ticks are missing; NULL: none is */
   char *message;
 } verification;
 
@@ -206,7 +206,7 @@ static ethd_status judge_end(const verification *r) {
   return ethd__say(r->message, ETHD_OK, "%s: %zu ticks, equal to the bit", r->folder, r->count);
 }
 
-/* In front of this tick others are missing, with what the controller learned in them. */
+/* Refuses to go on at a tick before which others are missing, with what the controller learned in them. */
 static ethd_status unreplayable(const verification *r, size_t row) {
   return ethd__say(r->message, ETHD_E_UNFINISHED,
                    "%s: %zu of %zu ticks are equal to the bit, the rest can't be replayed: %s (%s:%zu)", r->folder, row,

@@ -1,4 +1,4 @@
-/* The servo's own memory, by the thread to which it belongs. */
+/* The servo's own memory, grouped by the thread to which it belongs. */
 #ifndef ETHD_SERVO_DEVICE_H
 #define ETHD_SERVO_DEVICE_H
 
@@ -22,14 +22,14 @@ typedef struct ethd__servo_command {
 } ethd__servo_command;
 
 typedef struct ethd__servo_device {
-  /* made once */
+  /* doesn't change after opening */
   ethd__servo_map map;
   char map_name[96];     /* as the settings have it */
   char wire[300];        /* the remark about what an exchange takes */
   char unconfirmed[128]; /* the remark about registers that nobody confirms; empty: there are none */
   int64_t period_ns, exchange_ns;
-  double speed;               /* m/s of the ring, at most */
-  bool is_virtual;            /* the clock */
+  double speed;               /* m/s: the most that the ring may have */
+  bool is_virtual;            /* whether the clock is virtual */
   ethd__homing_def homing[2]; /* of the map's axes */
   double home[2];             /* rad: in the jig, at the stop or at the mark; NAN: not given */
   int32_t joint[2];           /* joint, from 0, of the map's axes; -1: none */
@@ -38,7 +38,7 @@ typedef struct ethd__servo_device {
   /* any thread */
   atomic_int safe;   /* 1: zero torque until the next start */
   atomic_int clear;  /* 1: [clear] is to run */
-  atomic_uint epoch; /* starts */
+  atomic_uint epoch; /* number of starts so far */
 
   /* [rt] */
   ethd__servo_sample newest;
@@ -51,7 +51,7 @@ typedef struct ethd__servo_device {
   /* belongs to whoever holds the lock: the I/O thread, or [main] in start and stop */
   pthread_mutex_t lock;
   ethd__servo_link link;
-  ethd__guardian guardian; /* without a process where the drive has a watchdog */
+  ethd__guardian guardian; /* has no process if the drive has a watchdog */
   char guarded[160];       /* the remark about it; empty: there is none */
   ethd__servo_feedback feedback;
   ethd__servo_command command;
@@ -98,7 +98,7 @@ int64_t ethd__servo_old(const ethd__servo_device *d) ETHD_RT;
 ETHD_MUST_CHECK ethd_status ethd__servo_enable(ethd__servo_device *d);
 ETHD_MUST_CHECK ethd_status ethd__servo_disable(ethd__servo_device *d);
 
-/* The number, from 1, of a joint whose angle isn't known; 0 when all are known. */
+/* Returns the number, from 1, of a joint whose angle isn't known; 0 when all are known. */
 int32_t ethd__servo_lost(const ethd__servo_device *d);
 
 /* Connects for the first time, and identifies the drive. [main] */

@@ -1,4 +1,4 @@
-/* The servo as a driver: what it says of itself, and its table. */
+/* The servo as a driver: what it says about itself, and its table. */
 #include <math.h>
 #include <string.h>
 

@@ -171,7 +171,7 @@ void ethd__servo_feedback_place(ethd__servo_feedback *f, int axis, double q) {
   f->sample.q[axis] = q;
 }
 
-/* ---- what lasts ---- */
+/* ---- rows that hold at present ---- */
 
 static bool drive_fault(const ethd__servo_link *l) {
   for (uint32_t i = 0; i < l->map->count; i++) {

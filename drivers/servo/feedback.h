@@ -1,4 +1,4 @@
-/* Makes joint angles, readings and rows of the fault table of what a drive answered. */
+/* Turns a drive's answers into joint angles, readings and rows of the fault table. */
 #ifndef ETHD_SERVO_FEEDBACK_H
 #define ETHD_SERVO_FEEDBACK_H
 
@@ -11,21 +11,21 @@
 #define ETHD__SERVO_REVERSE 0.15
 #define ETHD__SERVO_FOLLOW 0.020 /* s: a drive that doesn't follow its set-point for so long is a fault */
 
-enum { ETHD__SERVO_HAS_SPEED = 1, ETHD__SERVO_HAS_READING = 2 }; /* of `has` */
+enum { ETHD__SERVO_HAS_SPEED = 1, ETHD__SERVO_HAS_READING = 2 }; /* bits of `has` */
 
 /* What the I/O thread hands to the control thread, always whole; the control thread takes the newest. */
 typedef struct ethd__servo_sample {
   int64_t stamp_ns; /* when the joints were where `q` says */
-  uint64_t number;  /* of good exchanges; unchanged when nothing newer has come */
+  uint64_t number;  /* of good exchanges so far; unchanged when nothing newer has come */
   int32_t has;
   uint32_t epoch;                   /* the start that this sample belongs to */
   double q[2], dq[2];               /* axes 1 and 2 of the map: rad, rad/s */
   double reading[2];                /* m: finger relative to the ring */
   int64_t reading_ns;               /* when it was taken */
-  uint64_t readings;                /* how many came */
-  int64_t levels, grave;            /* rows of the fault table that last, as bits */
+  uint64_t readings;                /* how many have come */
+  int64_t levels, grave;            /* rows of the fault table that hold at present, as bits */
   uint32_t rows[ETHD_FAULT_COUNT];  /* how often a row was seen */
-  uint32_t worst[ETHD_FAULT_COUNT]; /* and at its worst */
+  uint32_t worst[ETHD_FAULT_COUNT]; /* how often it was grave */
 } ethd__servo_sample;
 
 typedef struct ethd__servo_axis {
@@ -36,34 +36,34 @@ typedef struct ethd__servo_axis {
   ethd__encoder encoder;
   double offset;    /* rad, added to the angle */
   int64_t since_ns; /* since when the torque isn't followed; 0 while it is */
-  double torque;    /* asked for by the exchange before, Nm */
+  double torque;    /* Nm, which the exchange before asked for */
 } ethd__servo_axis;
 
 typedef struct ethd__servo_feedback {
   ethd__servo_axis axes[2];
   bool absolute[2];                /* the position means the same angle after the drive lost its power */
-  bool homing;                     /* the encoders aren't watched against the torque meanwhile */
+  bool homing;                     /* a search runs, in which the encoders aren't watched against the torque */
   double home[2];                  /* rad: where the joints stand at the first sample; NaN: as the register says */
-  double count;                    /* the reading's, last */
-  uint32_t rows[ETHD_FAULT_COUNT]; /* of the encoders */
-  uint64_t connects;               /* of the link, at the last sample */
+  double count;                    /* the last value of reading_count */
+  uint32_t rows[ETHD_FAULT_COUNT]; /* how often the encoders' rows were seen */
+  uint64_t connects;               /* the link's count of connections at the last sample */
   ethd__servo_sample sample;
 } ethd__servo_feedback;
 
-/* The counters of the map's positions, watched by default: `torque`, Nm, is the most that the controller may ask of a
-   joint, INFINITY where it has no limit; `period` of an exchange, s. home: as above. The error names the field.
-   [main] */
+/* Prepares the counters of the map's positions, with the default watch on them. `torque`, Nm, is the most that the
+   controller may ask of a joint, INFINITY if it has no limit; `period` is an exchange's, s; `home` as above. The error
+   names the field. [main] */
 ETHD_MUST_CHECK ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo_map *map,
                                                       double torque, double period, ethd_error *error);
 
-/* After a turn of the link that went well; torque is what went out (Nm). I/O side. */
+/* Takes the answers of a turn of the link that went well; `torque` is what went out (Nm). I/O side. */
 void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *link, int64_t stamp_ns,
                                const double torque[2]);
 
-/* The axis stands at q now, rad, by its last sample. I/O side. */
+/* Says that the axis was at q, rad, at its last sample. I/O side. */
 void ethd__servo_feedback_place(ethd__servo_feedback *f, int axis, double q);
 
-/* After any turn: what lasts. I/O side. */
+/* Updates the rows that hold at present; called after every turn. I/O side. */
 void ethd__servo_feedback_judge(ethd__servo_feedback *f, const ethd__servo_link *link);
 
 #endif

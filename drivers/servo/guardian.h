@@ -33,12 +33,12 @@ typedef struct ethd__guardian_page {
   atomic_uint acts;        /* how often it wrote zero */
 } ethd__guardian_page;
 
-/* What it knows of the drive, ready to be sent. */
+/* The guardian, with what it must know about the drive, ready to be sent. */
 typedef struct ethd__guardian {
   const ethd__servo_map *map;
   ethd__guardian_page *page; /* NULL: there is none */
   int socket;                /* -1: closed */
-  int line;                  /* descriptor, in its own process; -1: none yet */
+  int line;                  /* descriptor in the guardian's process; -1: none yet */
   pid_t process;
   int64_t limit_ns;  /* a beat older than this is silence */
   uint64_t connects; /* the link's count of connections when the line was last passed on */
@@ -51,7 +51,7 @@ typedef struct ethd__guardian {
    exchange, or the time that one unanswered message may take. [any] */
 int64_t ethd__guardian_bound(const ethd__servo_map *map, int64_t exchange_ns);
 
-/* The frames and the limit; no process yet. `plan` is the map's. [main] */
+/* Prepares the frames and the limit; starts no process. `plan` is the map's. [main] */
 void ethd__guardian_make(const ethd__servo_map *map, const ethd__servo_plan *plan, int64_t exchange_ns,
                          ethd__guardian *out);
 

@@ -1,4 +1,5 @@
-/* Finds out where the joints stand: somebody stood the arm in its jig and says it, or the joints are moved. [main] */
+/* Finds out at which angles the joints are: somebody put the arm into its jig and says so, or the joints are moved.
+   [main] */
 #include <math.h>
 #include <time.h>
 

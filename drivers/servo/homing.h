@@ -20,10 +20,10 @@ typedef struct ethd__homing_def {
   double torque;              /* Nm, the most that is used; over the joint's friction */
 } ethd__homing_def;
 
-/* Ready when zeroed. */
+/* A search that begins must be all zero. */
 typedef struct ethd__homing {
   double begin, last, v, sum; /* rad, rad, rad/s filtered, Nm */
-  double time, still, travel; /* s, s, rad: since the begin; stood for so long; went so far in this leg */
+  double time, still, travel; /* s since the beginning; s for which it has stood; rad moved in this stretch */
   bool begun, towards;
   const char *failure;
 } ethd__homing;

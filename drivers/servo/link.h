@@ -33,15 +33,15 @@ typedef struct ethd__servo_link {
   bool set_point_stays;       /* a start was refused because the drive still shows an old set-point */
   uint16_t counter;
   int32_t sequence;                      /* the sequence that runs; -1: none */
-  uint32_t step;                         /* the step that it is at */
+  uint32_t step;                         /* its present step */
   int64_t step_ns;                       /* when that began */
   ethd_status result;                    /* of the last sequence */
-  int32_t bucket;                        /* leaky: bad answers in a row */
-  int64_t heard_ns;                      /* of the last good exchange, or of connecting */
+  int32_t bucket;                        /* a leaky bucket: rises with bad answers, falls with good ones */
+  int64_t heard_ns;                      /* when the last good exchange was, or the connection */
   int64_t attempt_ns;                    /* when to connect next */
   double back_off;                       /* s */
-  double raw[ETHD__SERVO_REGISTERS_MAX]; /* as read last */
-  uint32_t rows[ETHD_FAULT_COUNT];       /* rows of the fault table, as often as they were seen */
+  double raw[ETHD__SERVO_REGISTERS_MAX]; /* values as they were read last */
+  uint32_t rows[ETHD_FAULT_COUNT];       /* how often each row of the fault table was seen */
   ethd__servo_counts counts;
   char message[ETHD_MESSAGE_MAX]; /* of the last failure */
 } ethd__servo_link;

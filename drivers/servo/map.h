@@ -103,10 +103,10 @@ typedef struct ethd__servo_register {
   double tolerance;               /* of measured torque, in its unit; 0: not watched */
   uint32_t fault_mask, healthy;   /* (raw & fault_mask) != healthy: the drive reports a fault */
   uint32_t enabled_mask, enabled; /* (raw & enabled_mask) == enabled: the drive is enabled */
-  int32_t echo;                   /* register that then holds the same raw; -1 none */
+  int32_t echo;                   /* the register that holds the same raw value after a write; -1: none */
   int32_t absolute;               /* 1: a position that means the same angle after the drive was without power */
   bool cyclic;                    /* part of every exchange */
-  bool unconfirmed;               /* its address's line says so: no document of the maker's has it */
+  bool unconfirmed;               /* its address's line says so: no document of the maker names it */
 } ethd__servo_register;
 
 enum { ETHD__SERVO_STEP_WRITE, ETHD__SERVO_STEP_WAIT, ETHD__SERVO_STEP_PAUSE };
@@ -124,7 +124,7 @@ typedef struct ethd__servo_steps {
 
 enum { ETHD__SERVO_IDENTIFY, ETHD__SERVO_ENABLE, ETHD__SERVO_DISABLE, ETHD__SERVO_CLEAR, ETHD__SERVO_SEQUENCES };
 
-/* Their sections. */
+/* Names of the sequences' sections. */
 extern const char *const ethd__servo_sequences[ETHD__SERVO_SEQUENCES];
 
 typedef struct ethd__servo_map {
@@ -148,16 +148,16 @@ typedef struct ethd__servo_map {
 /* "8N1|8E1|8O1|8N2", in the order of `format`; "1|Nm|A|..." of `unit`. */
 extern const char ethd__servo_formats[], ethd__servo_units[];
 
-/* Every refusal is one line with file:line. [main] */
+/* Reads a map. Every refusal is one line with file:line. [main] */
 ETHD_MUST_CHECK ethd_status ethd__servo_map_parse(const char *text, size_t length, const char *name,
                                                   ethd__servo_map *out, char message[ETHD_MESSAGE_MAX]);
 ETHD_MUST_CHECK ethd_status ethd__servo_map_load(const char *path, const char *name, ethd__servo_map *out,
                                                  char message[ETHD_MESSAGE_MAX]);
 
-/* How many registers' addresses say `; unconfirmed`. [any] */
+/* Returns how many registers' addresses say `; unconfirmed`. [any] */
 uint32_t ethd__servo_unconfirmed(const ethd__servo_map *map);
 
-/* What this map leaves open, one sentence each: no watchdog, no echo, ...; NULL ends. [main] */
+/* Returns sentence i about what this map leaves open: no watchdog, no echo, ...; NULL behind the last. [main] */
 const char *ethd__servo_risk(const ethd__servo_map *map, uint32_t i);
 
 #endif

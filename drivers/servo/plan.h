@@ -26,7 +26,7 @@ typedef struct ethd__servo_plan {
   bool combined;                              /* the first write and the first read are one question */
 } ethd__servo_plan;
 
-/* [main] */
+/* Makes the plan of a map. [main] */
 void ethd__servo_plan_make(const ethd__servo_map *map, ethd__servo_plan *out);
 
 /* Returns where a cyclic register's words stand. [any] */

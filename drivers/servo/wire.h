@@ -1,4 +1,4 @@
-/* How long an exchange takes on its wire, worked out from the map before any drive is asked. */
+/* Works out from the map, before any drive is asked, how long an exchange takes on its wire. */
 #ifndef ETHD_SERVO_WIRE_H
 #define ETHD_SERVO_WIRE_H
 
@@ -6,9 +6,9 @@
 
 typedef struct ethd__servo_wire {
   uint32_t questions; /* in an exchange, without those about slow registers */
-  uint32_t bytes;     /* of those questions and their answers */
-  double usual;       /* s: for those, with turnarounds and silences */
-  double most;        /* s: with every question about slow registers that falls into one exchange */
+  uint32_t bytes;     /* of these questions and their answers */
+  double usual;       /* s that these take, with turnarounds and silences */
+  double most;        /* s, with all questions about slow registers that may fall into one exchange */
 } ethd__servo_wire;
 
 /* Works it out from baud, format, bytes, silences and turnaround; for tcp from the turnarounds alone, as the

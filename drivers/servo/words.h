@@ -4,28 +4,27 @@
 
 #include "servo/map.h"
 
-/* How many words the register has: 1 or 2. [any] */
+/* Returns how many words the register has: 1 or 2. [any] */
 uint32_t ethd__servo_words(const ethd__servo_register *r);
 
-/* The smallest and largest raw number of a type, exact. [any] */
+/* Fills the smallest and largest raw number of a type, exactly. [any] */
 void ethd__servo_range(const ethd__servo_register *r, double *min, double *max);
 
 /* Raw numbers are whole except f32. Packing cuts them at the type's range and stores 0 for NaN. [any] */
 void ethd__servo_pack(const ethd__servo_register *r, double raw, uint16_t *out);
 double ethd__servo_unpack(const ethd__servo_register *r, const uint16_t *words);
 
-/* The words as one unsigned number. [any] */
+/* Returns the words as one unsigned number. [any] */
 uint32_t ethd__servo_bits(const ethd__servo_register *r, const uint16_t *words);
 
-/* Converts a joint's torque to a raw number, cut at the register's limits; and a raw number to SI at the joint. [any]
-   */
+/* Converts a joint's torque to a raw number within the register's limits; a raw number to SI at the joint. [any] */
 double ethd__servo_raw(const ethd__servo_register *r, double joint);
 double ethd__servo_joint(const ethd__servo_register *r, double raw);
 
-/* How much one unit of the register is in SI at the motor. [any] */
+/* Returns how much one unit of the register is in SI at the motor. [any] */
 double ethd__servo_factor(const ethd__servo_register *r);
 
-/* The largest torque at the joint that the register's limits allow in both directions. [any] */
+/* Returns the largest torque at the joint that the register's limits allow in both directions. [any] */
 double ethd__servo_most(const ethd__servo_register *r);
 
 #endif

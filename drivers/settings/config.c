@@ -14,7 +14,7 @@
 
 typedef struct config_reading {
   ethd__config *whole;
-  bool received;    /* from somebody else */
+  bool received;    /* the file comes from somebody else */
   const char *name; /* of the file */
   char *message;
 } config_reading;
@@ -82,7 +82,6 @@ static ethd_status check_setup(const config_reading *r) {
   return ethd__say(r->message, status, "%s, by %s.%s = %s", what, cause->section, cause->key, cause->value);
 }
 
-/* Drops what this arm's ring can never meet. */
 /* Returns the widest range of all transition laws, since any of them may be swapped in. */
 static double widest_range(const ethd_config *c) {
   double range = ethd_setup_range(&c->setup);

@@ -48,7 +48,7 @@ ethd_status ethd__config_preset(ethd__config *config, const ethd__config_key *ke
 
 /* ---- a change of law ---- */
 
-/* Keeps values that were chosen, in the file or since; those that were the old law's defaults become the new law's. */
+/* Keeps values that were chosen, in the file or later; values that were the old law's defaults become the new law's. */
 static void keep_common(const ethd_config *config, const ethd_law *from, const double *old, const ethd_law *to,
                         double *p) {
   const ethd_ini *ini = &ethd__config_whole(config)->ini;

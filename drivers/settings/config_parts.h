@@ -12,7 +12,7 @@ typedef struct ethd__config {
   ethd_config config; /* first: the public part */
   ethd_ini ini;
   char *scene_path;
-  bool received; /* from somebody else: its plugins stay closed */
+  bool received; /* it comes from somebody else, so its plugins stay closed */
 } ethd__config;
 
 static inline const ethd__config *ethd__config_whole(const ethd_config *config) { return (const ethd__config *)config; }
@@ -45,7 +45,8 @@ typedef struct ethd__file_key {
   ethd_status (*read)(ethd__config *config, const ethd__config_key *key);
 } ethd__file_key;
 
-/* A section has these keys, what ethd_setup_part_of(name) chooses, and the numbers that the setup has under its name. */
+/* A section. It has these keys, the key that ethd_setup_part_of(name) chooses, and the numbers that the setup has under
+   its name. */
 typedef struct ethd__section {
   const char *name;
   ethd__file_key keys[2];
@@ -89,12 +90,13 @@ ethd_status ethd__config_preset(ethd__config *config, const ethd__config_key *ke
 
 #define ETHD__PATIENCE 5 /* s: no plugin needs longer to be loaded, and no law to check its parameters */
 
-/* A hook for a program that wants to end a plugin that doesn't return; NULL: there is none. It is called with `what`, the
-   plugin's file or what it does, and for how many seconds that may run, before code of a plugin runs, and with NULL after
-   that. [main] */
+/* A hook for a program that wants to end a plugin that doesn't return; NULL: there is none. It is called with `what`,
+   the plugin's file or what it does, and for how many seconds that may run, before code of a plugin runs, and with NULL
+   after that. [main] */
 extern void (*ethd__foreign_code)(const char *what, unsigned patience);
 
-/* Tells the hook that code of the configuration's plugins runs from here on, or no longer (NULL); nothing without plugins. */
+/* Tells the hook that code of the configuration's plugins runs from here on, or no longer (NULL); nothing without
+   plugins. */
 void ethd__config_foreign(const ethd_config *config, const char *what);
 
 /* Calls ethd_setup_check, in which laws of the configuration's plugins may run. */

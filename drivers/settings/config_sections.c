@@ -10,8 +10,8 @@
 
 /* ---- keys that only files have ---- */
 
-/* The path of a driver's file, whole, so that it means the same in a recording's folder; NULL: no memory. Where no such
-   file is, who opens it says so. */
+/* Returns the whole path of a driver's file, so that it means the same in a recording's folder; NULL: no memory. If
+   there is no such file, opening it says so. */
 static char *whole_path(const ethd__config *c, const char *name, size_t length) {
   char *relative = strndup(name, length), *joined = relative ? ethd__path_join(c->config.folder, relative) : NULL;
   char *path = joined ? realpath(joined, NULL) : NULL;
@@ -21,7 +21,7 @@ static char *whole_path(const ethd__config *c, const char *name, size_t length) 
   return path;
 }
 
-/* Adds the next of the names, so many bytes. */
+/* Adds the next name, of `length` bytes. */
 static ethd_status add_driver(ethd__config *c, const ethd__config_key *key, const char *name, size_t length) {
   const size_t mark = strlen(ETHD_DRIVER_FILE);
   char *to = c->config.device, *path = NULL;

@@ -1,19 +1,19 @@
-/* The series are those of series.c without finger and pad: terms up to k of angles and speeds give term k of each
-   acceleration, and that gives term k + 1 of the speed. */
+/* The series of series.c, without finger and pad: the terms up to k of angles and speeds give term k of each
+   acceleration, which gives term k + 1 of the speed. */
 #include "sim/arms.h"
 
 #include "ethd/maths.h"
 #include "sim/terms.h"
 
 #define RUBBING 10.0   /* tanh is +-1 within 4e-9 beyond it */
-#define TURN 2.0       /* by so much its argument may change in a step that comes nearer to 0 */
-#define SHORTEST 1e-12 /* of what is left: what turns within so little, or isn't a number, isn't followed */
+#define TURN 2.0       /* by which its argument may change in a step that comes nearer to 0 */
+#define SHORTEST 1e-12 /* of the rest of the step: a turn within less, or a NaN, isn't followed */
 
 typedef struct kind {
   bool serial, compliant, coupled;
 } kind;
 
-/* Intermediate terms of an arm; slip is the speed of what rubs. */
+/* Intermediate terms of an arm; slip is the speed at which friction acts. */
 typedef struct workings {
   bool turning; /* false: friction is constant */
   ethd__two slip[ETHD__ARMS_TERMS], slip_a[ETHD__ARMS_TERMS], link_a[ETHD__ARMS_TERMS];
@@ -32,7 +32,7 @@ static const double INVERSE[ETHD__ARMS_TERMS + 1] = {0,        1.0,      1.0 / 2
                                                      1.0 / 6,  1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11,
                                                      1.0 / 12, 1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16};
 
-/* The links' absolute angles, or their derivatives, as the joints'. */
+/* Converts the links' absolute angles, or their derivatives, to the joints'. */
 static inline ethd__two joint(bool serial, ethd__two link) {
   return serial ? (ethd__two){link[0], link[1] - link[0]} : link;
 }
@@ -54,7 +54,7 @@ ETHD__INLINE ethd__two rub(const ethd__arms_body *b, workings *w, int k) {
   return b->friction * w->rub[k] + b->viscous * w->slip[k];
 }
 
-/* Torques on the links; the motors' terms k + 1 where they have their own. */
+/* Computes the torques on the links, and where the motors have coordinates of their own, their terms k + 1. */
 ETHD__INLINE ethd__two drive(const ethd__arms_body *b, ethd__arms_series *s, workings *w, kind has, int k) {
   ethd__two torque = k ? ethd__both(0) : b->torque, d;
   if (has.compliant) {
@@ -70,7 +70,7 @@ ETHD__INLINE ethd__two drive(const ethd__arms_body *b, ethd__arms_series *s, wor
   return has.serial ? (ethd__two){d[0] - d[1], d[1]} : d;
 }
 
-/* Term k of cosine and sine of th2 - th1. */
+/* Computes term k of cosine and sine of th2 - th1. */
 static void turn(const ethd__arms_series *s, workings *w, int k) {
   if (k == 0) {
     double sine, cosine;
@@ -84,7 +84,7 @@ static void turn(const ethd__arms_series *s, workings *w, int k) {
   w->bend[k] = ethd__both(s->link_v[k][1] - s->link_v[k][0]);
 }
 
-/* I1 a1 + H cos a2 = g1 + H sin w2^2, H cos a1 + I2 a2 = g2 - H sin w1^2. */
+/* Solves I1 a1 + H cos a2 = g1 + H sin w2^2, H cos a1 + I2 a2 = g2 - H sin w1^2 for term k of a. */
 static ethd__two couple(const ethd__arms_body *b, const ethd__arms_series *s, workings *w, ethd__two g, int k) {
   ethd__two across = ethd__both(0), other = ethd__both(0);
   turn(s, w, k);
@@ -116,7 +116,7 @@ ETHD__INLINE void accelerate_all(troop *e, kind has, int k) {
 
 /* ---- how many terms, how far ---- */
 
-/* Returns how much term k changes an arm's speeds over the whole step, m/s; the most of all arms. */
+/* Returns how much term k changes the arms' speeds over the whole step, m/s: the largest change of all arms. */
 ETHD__INLINE double speed(const troop *e, kind has, int k, const double *reach) {
   double most = 0;
   for (int i = 0; i < ETHD__ARMS; i++) {
@@ -129,8 +129,8 @@ ETHD__INLINE double speed(const troop *e, kind has, int k, const double *reach) 
   return most;
 }
 
-/* Computes terms until one no longer counts. Where even the last two of all arms do, the step is shortened; returns its
-   remaining share. */
+/* Computes terms until one no longer counts. If even the last two count, the step is shortened. Returns the share of
+   the step that remains. */
 ETHD__INLINE double expand(troop *e, kind has, const double *h) {
   double tolerance = e->arms->tolerance, reach[ETHD__ARMS];
   for (int k = 0; k < ETHD__ORDER_MIN; k++) accelerate_all(e, has, k);
@@ -177,7 +177,7 @@ static ethd__two value(const ethd__two *term, int order, double h) {
   return y;
 }
 
-/* Polynomials of order + 1 and order terms, side by side. */
+/* Evaluates polynomials of order + 1 and of order terms, side by side. */
 static void values(const ethd__two *x, const ethd__two *v, int order, double h, ethd__two *out_x, ethd__two *out_v) {
   ethd__two a = x[order + 1], b = v[order];
   for (int k = order; k > 0; k--) {

@@ -11,7 +11,7 @@
 
 #include "ethd/maths.h"
 
-#define NEAR 0.02 /* rad: so far small_turn holds to the last digit */
+#define NEAR 0.02 /* rad within which small_turn is right to the last digit */
 
 void ethd__body_prepare(const ethd_sim_def *def, double finger_radius, ethd__body *out) {
   const ethd_plant *p = &def->plant;
@@ -157,7 +157,8 @@ ethd__touch ethd__body_touch(const ethd__body *body, const ethd__sim_state *stat
   return damping(body, &d, &l, state->v) > 0 ? ETHD__PRESSING : ETHD__LEAVING;
 }
 
-/* Force on the ring. Smooth across the ends of its branch: touch, not p, chooses the branch. */
+/* Returns the force on the ring. Touch, not p, chooses the branch, so that the force is smooth across the branch's
+   ends. */
 static ethd_vec press(const ethd__body *body, const pose *links, const double *x, const double *v) {
   pad d = pad_of(body, links, x);
   double force = body->pad_stiffness * d.p * damping(body, &d, links, v);

@@ -16,9 +16,9 @@ typedef struct device {
   ethd_sim_def def;
   ethd_sim_tap tap;
   int32_t safe;
-  int32_t reading; /* of the settings: ETHD_READING_*, -1: as the plant says */
+  int32_t reading; /* as the settings say: ETHD_READING_*; -1: as the plant says */
   bool no_finger;
-  bool written;      /* 1: `held` and `due_ns` are known */
+  bool written;      /* `held` and `due_ns` are known */
   int64_t due_ns;    /* the tick at which the next read is expected */
   ethd_command held; /* of the last write */
 } device;
@@ -43,7 +43,7 @@ static ethd_status create(const ethd_device_def *def, const ethd__sim_settings *
     ethd_vec meet = {s->p[ETHD__SIM_MEET_X], s->p[ETHD__SIM_MEET_Y]};
     ethd_sim_draw(&d->def.plant, (uint64_t)s->p[ETHD__SIM_SEED], (uint64_t)s->p[ETHD__SIM_TAP], s->p[ETHD__SIM_SPEED],
                   meet, &d->tap);
-    if (d->no_finger) { /* the ring stands there */
+    if (d->no_finger) { /* then only the ring stands there */
       d->tap.path.from = meet;
       d->tap.path.to_x = meet.x;
     }
@@ -93,7 +93,7 @@ static void catch_up(device *d, int64_t now_ns) ETHD_RT {
 
 static ethd_status sim_read(void *device_, int64_t now_ns, ethd_sense *out) ETHD_RT {
   device *d = device_;
-  int64_t faults = out->faults, grave = out->grave; /* others' */
+  int64_t faults = out->faults, grave = out->grave; /* other drivers' */
   catch_up(d, now_ns);
   ethd_sim_read(d->sim, out);
   if (d->no_finger) out->have = 0;
@@ -102,7 +102,7 @@ static ethd_status sim_read(void *device_, int64_t now_ns, ethd_sense *out) ETHD
   return ETHD_OK;
 }
 
-/* In lock-step a period passes here. */
+/* Writes the command. With a virtual clock a period passes here. */
 static ethd_status sim_write(void *device_, int64_t now_ns, const ethd_command *command) ETHD_RT {
   device *d = device_;
   d->held = *command;
@@ -127,7 +127,7 @@ static ethd_limits limits(const void *device_) {
   const ethd_plant *plant = &d->def.plant;
   ethd_limits limits = ethd_limits_torque(plant->force_limit * fmin(d->def.arm.link1, d->def.arm.link2));
   if (d->reading <= ETHD_READING_RAYS) return limits;
-  ethd__finger_limits(plant->rate, plant->latency, &limits); /* as the driver of the real sensor says */
+  ethd__finger_limits(plant->rate, plant->latency, &limits); /* the same as the real sensor's driver states */
   return limits;
 }
 

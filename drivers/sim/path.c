@@ -12,14 +12,15 @@ static void hold(ethd_vec x, double begin, double end, ethd__piece *out) {
 
 /* ---- synthetic ---- */
 
-/* Ramps cover half of what the constant speed would in their time. The speed is kept on a path that is
-   too short for its ramps: it ends beyond to_x. */
+/* Returns for how long the speed is constant. Ramps cover half of what the constant speed would in their time. A path
+   that is too short for its ramps keeps its speed, and so ends beyond to_x. */
 static double cruise_time(const ethd_path *path) {
   double length = fabs(path->to_x - path->from.x);
   return fmax(0, length / path->speed - (path->ramp_up + path->ramp_down) / 2);
 }
 
-/* Speed V (1 - cos(w s))/2, with w ramp = pi; falling: the mirror image, with s from its end. */
+/* Fills a ramp of the speed, V (1 - cos(w s))/2 with w duration = pi; a falling one is the mirror image, with s from
+   its end. */
 static void ramp(ethd_vec x, double velocity, double duration, double begin, double origin, ethd__piece *out) {
   hold(x, begin, begin + duration, out);
   out->origin = origin;
@@ -62,8 +63,8 @@ static ethd_vec slope(const ethd_path_sample *s) {
   return ethd_vec_scale(1 / (s[1].t - s[0].t), ethd_vec_sub(place(s + 1), place(s)));
 }
 
-/* Slope at sample i of the parabola through it and its neighbours (Catmull-Rom where they are evenly
-   spaced); 0 at both ends, where the path is held. */
+/* Returns the slope at sample i of the parabola through it and its neighbours (Catmull-Rom if they are evenly spaced);
+   0 at both ends, where the path is held. */
 static ethd_vec tangent(const ethd_path *path, size_t i) {
   if (i == 0 || i + 1 == path->sample_count) return ZERO;
   const ethd_path_sample *s = path->samples + i;
@@ -84,7 +85,7 @@ static size_t find(const ethd_path *path, double t) {
   return low;
 }
 
-/* Hermite's cubic: c = (3 m - 2 g0 - g1)/h, d = (g0 + g1 - 2 m)/h^2, of mean slope m, end slopes g. */
+/* Fills Hermite's cubic: c = (3 m - 2 g0 - g1)/h, d = (g0 + g1 - 2 m)/h^2, with mean slope m and end slopes g. */
 static void recorded_piece(const ethd_path *path, double t, ethd__piece *out) {
   const ethd_path_sample *first = path->samples, *last = first + path->sample_count - 1;
   if (t < first->t) {

@@ -12,21 +12,21 @@ typedef struct ethd__piece {
   ethd_vec a, b, c, d, e;
 } ethd__piece;
 
-/* The piece that holds at t and right after it. [any, rt-safe] */
+/* Fills the piece that holds at t and right after it. [any, rt-safe] */
 void ethd__path_piece(const ethd_path *path, double t, ethd__piece *out) ETHD_RT;
 
 typedef struct ethd__sim_motion {
   ethd_vec x, v, a;
 } ethd__sim_motion;
 
-/* Position, velocity and acceleration by that piece, also at its end. [any, rt-safe] */
+/* Returns position, velocity and acceleration on the piece, also at its end. [any, rt-safe] */
 ethd__sim_motion ethd__piece_at(const ethd__piece *piece, double t) ETHD_RT;
 
-/* First terms of the position as a power series about the instant of `at`, which is piece_at's. Each
-   further one is -w^2 / (k (k - 1)) times that two before it. */
+/* Fills the first terms of the position as a power series about the instant of `at`, which comes from
+   ethd__piece_at. Term k beyond these is -w^2 / (k (k - 1)) times term k - 2. */
 void ethd__piece_terms(const ethd__piece *piece, const ethd__sim_motion *at, ethd__two out[4]) ETHD_RT;
 
-/* At least |x| + |y| of how far it goes within h, coming by at velocity v. */
+/* Returns a bound on |x| + |y| of how far the path goes within h when its velocity is v. */
 double ethd__piece_travel(const ethd__piece *piece, ethd__two v, double h) ETHD_RT;
 
 #endif

@@ -122,7 +122,7 @@ ethd_status ethd__plant_check(const ethd_plant *p, ethd_error *error) {
   return within(error, "proximity.latency", p->latency, 0, (ETHD__READINGS_MAX - 2) / p->rate - frame);
 }
 
-/* The coupled inertia must stay positive with what is on the links' side. */
+/* The inertia matrix of the links' side must be positive definite. */
 static ethd_status check_inertia(const ethd_sim_def *def, ethd_error *error) {
   const ethd_plant *p = &def->plant;
   double own = p->stiffness < INFINITY ? p->motor_mass : 0, l = def->arm.link1 * def->arm.link2;
@@ -143,7 +143,7 @@ ethd_status ethd__sim_check(const ethd_sim_def *def, ethd_error *error) {
   return status;
 }
 
-/* Fitted plants have one coupling at most, which an effective mass along a wall's normal leaves out. */
+/* An effective mass along a wall's normal leaves out a coupling, which few fitted plants have. */
 ethd_dynamics ethd_plant_dynamics(const ethd_plant *plant) {
   return (ethd_dynamics){{plant->mass[0], plant->mass[1]}, plant->friction, plant->viscous, plant->delay};
 }

@@ -1,4 +1,4 @@
-/* The plant's numbers as a table: what a plant file may say, and the check of a definition. */
+/* The plant's numbers as a table: the keys of a plant file, and the check of a definition. */
 #ifndef ETHD_SIM_PLANT_H
 #define ETHD_SIM_PLANT_H
 
@@ -6,7 +6,7 @@
 
 #include "ethd/sim.h"
 
-/* `param` as everywhere; a choice ("centre|rays") is an int32_t at `offset`, all else a double. */
+/* One number of the plant. A choice ("centre|rays") is an int32_t at `offset`, any other number a double. */
 typedef struct ethd__plant_row {
   const char *section;
   ethd_param param;
@@ -16,13 +16,13 @@ typedef struct ethd__plant_row {
 extern const ethd__plant_row ethd__plant_rows[];
 extern const size_t ethd__plant_row_count;
 
-/* Rows, and what holds between them: name "section.key" in the error. [main] */
+/* Checks each row, and what must hold between rows; the error's name is "section.key". [main] */
 ethd_status ethd__plant_check(const ethd_plant *plant, ethd_error *error);
 ethd_status ethd__sim_check(const ethd_sim_def *def, ethd_error *error);
 
-/* Where a plant is: a file beside `folder`; "n" is n.plant there, else among the files that came with the
-   programs (ETHD_DATA_DIR, by default ../share/ethd of the program's folder). Freed by the caller; NULL: no
-   memory. [main] */
+/* Returns where a plant is: a file, relative to `folder`; "n" is n.plant there, else among the files that came with the
+   programs (ETHD_DATA_DIR, by default ../share/ethd of the program's folder). The caller frees it; NULL: no memory.
+   [main] */
 char *ethd__plant_path(const char *plant, const char *folder);
 
 /* ethd_plant_load with `name` for the file in messages. [main] */

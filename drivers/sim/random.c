@@ -39,7 +39,7 @@ double ethd__uniform(ethd__sim_key key, uint32_t stream, uint32_t counter) {
   return u[0];
 }
 
-/* Box and Muller, with 1 - u in (0, 1]. */
+/* By Box and Muller, with 1 - u, which lies in (0, 1]. */
 double ethd__normal(ethd__sim_key key, uint32_t stream, uint32_t counter) {
   double u[2];
   pair(key, stream, counter, u);

@@ -32,13 +32,13 @@ enum {
 /* The block cipher itself: counter in, four random words out. */
 void ethd__philox(const uint32_t key[2], uint32_t block[4]) ETHD_RT;
 
-/* In [0, 1), multiples of 2^-53. */
+/* Returns a uniform number in [0, 1), a multiple of 2^-53. */
 double ethd__uniform(ethd__sim_key key, uint32_t stream, uint32_t counter) ETHD_RT;
 
-/* Mean 0, sd 1. */
+/* Returns a normal number with mean 0 and standard deviation 1. */
 double ethd__normal(ethd__sim_key key, uint32_t stream, uint32_t counter) ETHD_RT;
 
-/* The same, drawn anew until it is within +-cut (cut > 0). */
+/* Returns a normal number, drawn anew until it is within +-cut (cut > 0). */
 double ethd__normal_cut(ethd__sim_key key, uint32_t stream, double cut) ETHD_RT;
 
 #endif

@@ -81,7 +81,7 @@ static void take_centre(const ethd__sensors *s, ethd_vec seen, ethd__sim_reading
   out->centre.y = seen.y + noise * ethd__normal(s->key, ETHD__STREAM_CENTRE_Y, s->sample);
 }
 
-/* A barrier that is lit goes dark a little further away. */
+/* Takes the barriers. One that is lit goes dark only a little farther away, by the hysteresis. */
 static void take_zones(ethd__sensors *s, ethd_vec relative, ethd__sim_reading *out) {
   uint32_t lit = 0;
   for (uint32_t k = 0; k < s->zones.count; k++) {
@@ -103,7 +103,7 @@ static void take_nail(const ethd__sensors *s, ethd_vec relative, ethd__sim_readi
   if (!ethd__nail_centre(&s->nail, distance, &out->centre)) out->have = 0;
 }
 
-/* What a sensor sees at one instant. */
+/* Takes the reading of a sensor that sees everything at one instant. */
 static void take_whole(ethd__sensors *s, ethd_vec ring, ethd_vec finger, ethd__sim_reading *out) {
   ethd_vec relative = ethd_vec_sub(finger, ring);
   switch (s->plant.reading) {

@@ -1,5 +1,5 @@
-/* What the device measures: joint angles by counts, the finger by one of the sensors of sim.h. All [any, rt-safe] but
-   ethd__sensors_create. */
+/* What the device measures: joint angles in counts, and the finger by one of the sensors of sim.h. All [any, rt-safe]
+   except ethd__sensors_create. */
 #ifndef ETHD_SIM_SENSORS_H
 #define ETHD_SIM_SENSORS_H
 
@@ -11,40 +11,40 @@
 
 #define ETHD__READINGS_MAX 64
 
-/* A reading on its way. */
+/* A reading that was taken and isn't delivered yet. */
 typedef struct ethd__sim_reading {
-  int64_t sample_ns, due_ns, have; /* have: ETHD_HAVE_*; 0: the sensor saw nothing that it could use */
+  int64_t sample_ns, due_ns, have; /* have: ETHD_HAVE_*; 0: the sensor saw nothing of use */
   ethd_vec centre, ring;
   double noise; /* m: as the sensor says; 0: it doesn't */
   double rays[16];
 } ethd__sim_reading;
 
-/* A reading is made of parts, each at its instant: one for a centre; for a frame its rays in order, and in
-   the middle the instant that stands for the whole. */
+/* A reading is made of parts, each taken at an instant of its own: a centre has one; a frame has its rays in order, and
+   in their middle the instant that stands for the whole. */
 typedef struct ethd__sensors {
   ethd_plant plant;
   double ring_radius, finger_radius, phase;
   ethd__sim_key key;
-  ethd__zones zones; /* of a finger as the plant has it on average */
-  uint32_t lit;      /* barriers */
+  ethd__zones zones; /* for the plant's mean finger radius */
+  uint32_t lit;      /* which barriers are lit */
   ethd__nail nail;
   double count_phase[2]; /* counts */
-  uint32_t sample, part; /* what comes next, */
-  double next;           /* s: and when */
-  uint64_t taken;        /* readings complete */
+  uint32_t sample, part; /* the next part, */
+  double next;           /* s: and when it is taken */
+  uint64_t taken;        /* complete readings */
   ethd__sim_reading readings[ETHD__READINGS_MAX];
 } ethd__sensors;
 
-/* What doesn't change from tap to tap. [main] */
+/* Sets what doesn't change from tap to tap. [main] */
 void ethd__sensors_create(ethd__sensors *sensors, const ethd_sim_def *def);
 
 void ethd__sensors_start(ethd__sensors *sensors, const ethd_sim_def *def, const ethd_sim_tap *tap) ETHD_RT;
 
-/* Takes the next part: the state at its instant. */
+/* Takes the next part from the state at its instant. */
 void ethd__sensors_take(ethd__sensors *sensors, const ethd__body *body, const ethd__sim_state *state) ETHD_RT;
 
-/* Into the sense: joint angles, from the coordinates; the newest reading that is due at its time_ns and
-   wasn't at since_ns. */
+/* Fill the sense: the joint angles, from the coordinates; the newest reading that is due at its time_ns and wasn't due
+   at since_ns. */
 void ethd__sensors_joints(const ethd__sensors *sensors, const ethd__body *body, const double x[ETHD__DOF_MAX],
                           ethd_sense *out) ETHD_RT;
 void ethd__sensors_deliver(const ethd__sensors *sensors, int64_t since_ns, ethd_sense *out) ETHD_RT;

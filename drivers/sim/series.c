@@ -17,18 +17,18 @@
 typedef struct expansion {
   const ethd__body *body;
   ethd__series *out;
-  int related;  /* terms of the geometry that are known */
+  int related;  /* number of the geometry's terms that are known */
   bool turning; /* false: friction is constant */
   ethd__two inverse_inertia, length, friction, viscous, sharpness;
-  ethd__two slip[ETHD__TERMS], slip_a[ETHD__TERMS], link_a[ETHD__TERMS]; /* slip: speed of what rubs */
+  ethd__two slip[ETHD__TERMS], slip_a[ETHD__TERMS], link_a[ETHD__TERMS]; /* slip: speed at which friction acts */
   ethd__two rub[ETHD__TERMS], unlike[ETHD__TERMS];                       /* u, 1 - u^2 */
   ethd__two cosine[ETHD__TERMS], sine[ETHD__TERMS], square_v[ETHD__TERMS];
   double along[ETHD__TERMS], across[ETHD__TERMS];                                /* H cos and H sin of th2 - th1 */
   ethd__two apart[ETHD__TERMS], half_square[ETHD__TERMS], distance[ETHD__TERMS]; /* from ring to finger */
-  ethd__two push[ETHD__TERMS], force_x[ETHD__TERMS], force_y[ETHD__TERMS];       /* on the ring; push: by distance */
-  ethd__two inverse_distance, stiffness; /* of the pad, the latter by distance */
+  ethd__two push[ETHD__TERMS], force_x[ETHD__TERMS], force_y[ETHD__TERMS];       /* on the ring; push: over distance */
+  ethd__two inverse_distance, stiffness; /* the pad's; stiffness over distance */
   double inverse_mass;                   /* of the finger */
-  double swing;                          /* of the hand's terms beyond 3 */
+  double swing;                          /* -w^2 of the hand's path, for its terms beyond 3 */
 } expansion;
 
 static const double INVERSE[ETHD__TERMS + 1] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,
@@ -58,7 +58,7 @@ ETHD__INLINE void relate(expansion *w, int k) {
   w->related = k;
 }
 
-/* Term k > 0 of the distance D, from that of r r / 2, and term k - 1 of 1 + c D'. */
+/* Computes term k > 0 of the distance D from that of r r / 2, and term k - 1 of 1 + c D'. */
 ETHD__INLINE void measure(expansion *w, int k) {
   ethd__two d = (w->half_square[k] - ethd__half_middle(w->distance, k)) * w->inverse_distance;
   ethd__two e = ethd__both(w->body->pad_damping * k) * d;
@@ -79,8 +79,8 @@ static void measuring_begins(expansion *w) {
   w->out->beyond[0] = w->distance[0] - ethd__both(w->body->gap);
 }
 
-/* Torque over length. Force over distance = K p (1 + c p') / D; on the ring along r. Needs the geometry's
-   terms up to k + 1. */
+/* Returns term k of the links' torques over their lengths. The force on the ring is along r; over distance it is
+   K p (1 + c p') / D. Needs the geometry's terms up to k + 1. */
 ETHD__INLINE ethd__two press(expansion *w, int k) {
   ethd__two s = w->stiffness * ethd__product(w->out->leaving, w->out->beyond, k);
   if (k > 0) s -= (ethd__middle(w->distance, w->push, k) + w->distance[k] * w->push[0]) * w->inverse_distance;
@@ -108,13 +108,13 @@ ETHD__INLINE ethd__two rub(expansion *w, int k) {
   return w->friction * w->rub[k] + w->viscous * w->slip[k];
 }
 
-/* The cases in which plants differ, for which the series are compiled apart; touch changes from step to step. */
+/* The cases in which plants differ; the series are compiled for each of them. `touch` changes from step to step. */
 typedef struct physics {
   bool serial, compliant, coupled;
   ethd__touch touch;
 } physics;
 
-/* Torques on the links; the motors' terms k + 1 where they have their own. */
+/* Computes the torques on the links, and where the motors have coordinates of their own, their terms k + 1. */
 ETHD__INLINE ethd__two drive(expansion *w, physics has, int k) {
   const ethd__body *b = w->body;
   ethd__series *s = w->out;
@@ -132,7 +132,7 @@ ETHD__INLINE ethd__two drive(expansion *w, physics has, int k) {
   return has.serial ? (ethd__two){d[0] - d[1], d[1]} : d;
 }
 
-/* I1 a1 + along a2 = g1 + across w2^2, along a1 + I2 a2 = g2 - across w1^2. */
+/* Solves I1 a1 + along a2 = g1 + across w2^2, along a1 + I2 a2 = g2 - across w1^2 for term k of a. */
 static ethd__two couple(expansion *w, ethd__two g, int k) {
   const ethd__two *c = w->cosine, *s = w->sine;
   ethd__two inertia = ethd__pair(w->body->inertia);
@@ -186,8 +186,8 @@ ETHD__INLINE double speed(const expansion *w, physics has, int k) {
   return has.compliant ? m + ethd__size(w->length * s->motor_v[k]) : m;
 }
 
-/* Computes terms until one no longer counts, and shortens the step where even the last two do. Returns a bound on the
-   speeds of the ring and of the finger beside its path. */
+/* Computes terms until one no longer counts, and shortens the step if even the last two count. Returns a bound on the
+   ring's speed plus that of the finger relative to its path. */
 ETHD__INLINE double expand(expansion *w, physics has) {
   ethd__series *s = w->out;
   double tolerance = w->body->tolerance, h = s->step, reach, most, before, term;

@@ -10,7 +10,7 @@ enum { ETHD__TERMS = ETHD__ORDER_MAX + 2 };
 /* Term k belongs to (t' - t)^k. Speeds have terms 0 to order, positions one more. */
 typedef struct ethd__series {
   int order;
-  double step;      /* s: how long it holds to the tolerance */
+  double step;      /* s for which it holds to the tolerance */
   double clearance; /* of the state at its end */
   int watched;      /* order of those below; 0: pad and ring stay apart */
   ethd__two link[ETHD__TERMS], link_v[ETHD__TERMS];
@@ -21,8 +21,8 @@ typedef struct ethd__series {
   ethd__two leaving[ETHD__TERMS]; /* touching: 1 + c p_dot, likewise */
 } ethd__series;
 
-/* Computes the motion from this state on, for `step` or as much of it as the tolerance allows. `hand` is the path at
-   that instant. */
+/* Computes the motion from this state on, for `step` or as much of it as the tolerance allows. `hand` is the path's
+   motion at that instant. */
 void ethd__series_expand(const ethd__body *body, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
                          const ethd__sim_state *state, ethd__series *out) ETHD_RT;
 
@@ -41,7 +41,7 @@ void ethd__leg_begin(const ethd__piece *piece, double t, const ethd__sim_state *
    of every step that nothing cuts short. */
 void ethd__leg_next(const ethd__body *body, const ethd__piece *piece, double end, double cell, ethd__leg *leg) ETHD_RT;
 
-/* Within it: the angles of links and motors among the coordinates; the whole state. */
+/* Fill what holds at an instant within the leg: of the coordinates the angles of links and motors; the whole state. */
 void ethd__leg_angles(const ethd__body *body, const ethd__leg *leg, double t, double out[ETHD__DOF_MAX]) ETHD_RT;
 void ethd__leg_at(const ethd__body *body, const ethd__piece *piece, const ethd__leg *leg, double t,
                   ethd__sim_state *out) ETHD_RT;

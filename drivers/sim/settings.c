@@ -39,7 +39,7 @@ static bool is_whole(int i, double value) {
   return (i != ETHD__SIM_SEED && i != ETHD__SIM_TAP && i != ETHD__SIM_ZONES) || value == rint(value);
 }
 
-/* One of the first `count` of them. */
+/* Reads which of the first `count` sensors is meant. */
 static ethd_status set_reading(const ethd_setting *s, int32_t count, ethd__sim_settings *out, ethd_error *error) {
   out->reading = ethd_param_word(&ethd__sim_params[ETHD__SIM_FINGER], s->value);
   return out->reading >= 0 && out->reading < count ? ETHD_OK : refuse(error, ETHD_E_UNKNOWN, s, NAN, NAN, NAN);

@@ -1,4 +1,4 @@
-/* What the [device] section may say to the simulated device. */
+/* The simulated device's keys of the [device] section. */
 #ifndef ETHD_SIM_SETTINGS_H
 #define ETHD_SIM_SETTINGS_H
 
@@ -26,20 +26,20 @@ enum {
 };
 
 extern const ethd_param ethd__sim_params[ETHD__SIM_PARAMS];
-extern const char *const ethd__sim_keys[]; /* NULL behind the last */
+extern const char *const ethd__sim_keys[]; /* ends with NULL */
 
 typedef struct ethd__sim_settings {
   double p[ETHD__SIM_PARAMS];
-  const ethd_setting *plant; /* NULL: n */
-  uint32_t given;            /* bit i: p[i] */
+  const ethd_setting *plant; /* NULL: plant n */
+  uint32_t given;            /* bit i: p[i] is given */
   int32_t reading;           /* ETHD_READING_*, -1: as the plant says */
-  bool no_finger;            /* nobody's finger is in the ring: nothing presses, nothing is read */
+  bool no_finger;            /* the ring is empty: nothing presses, and no reading comes */
 } ethd__sim_settings;
 
-/* Reads the settings; a refusal's line is the setting's. [main] */
+/* Reads the settings; a refusal names the setting's line. [main] */
 ethd_status ethd__sim_settings_read(const ethd_device_def *def, ethd__sim_settings *out, ethd_error *error);
 
-/* The sensor of the finger that they ask for, into a plant. [any] */
+/* Puts the sensor of the finger for which the settings ask into a plant. [any] */
 void ethd__sim_settings_finger(const ethd__sim_settings *settings, ethd_plant *plant);
 
 #endif

@@ -16,10 +16,10 @@ struct ethd_sim {
   ethd_path path;
   ethd__piece piece;
   int64_t tick;
-  double t;                              /* s, always tick * period between writes */
-  double cell;                           /* s, of the grid of steps: a whole part of the period */
-  int periods;                           /* whole ones of the delay, after which a torque takes effect within one */
-  double way[ETHD_SIM_DELAY_PERIODS][2]; /* Nm: torques of the last ticks that wait for that */
+  double t;                                /* s, always tick * period between writes */
+  double cell;                             /* s, of the grid of steps; the period is a multiple of it */
+  int periods;                             /* whole periods of the delay; its rest ends within the next period */
+  double queue[ETHD_SIM_DELAY_PERIODS][2]; /* Nm: torques of the last ticks that wait for their delay */
 };
 
 /* ---- create ---- */
@@ -89,7 +89,7 @@ ethd_status ethd_sim_start(ethd_sim *sim, const ethd_sim_tap *tap) {
   sim->tick = 0;
   sim->t = 0;
   sim->periods = (int)fmax(0, ceil(sim->def.plant.delay / sim->def.period) - 1);
-  memset(sim->way, 0, sizeof sim->way);
+  memset(sim->queue, 0, sizeof sim->queue);
   sim->cell = sim->def.period / fmax(1, ceil(sim->def.period / sim->def.step - 1e-9));
   ethd__sim_state state;
   memset(&state, 0, sizeof state);
@@ -145,7 +145,7 @@ void ethd_sim_truth(const ethd_sim *sim, ethd_truth *out) {
 
 /* ---- write ---- */
 
-/* The motors' torque: 0 for a safe command or a NaN. */
+/* Fills the motors' torque, which is 0 for a safe command or a NaN. */
 static void saturate(const ethd_sim *sim, const ethd_command *command, double out[2]) {
   for (int j = 0; j < 2; j++) {
     double torque = command->torque[j], most = sim->body.torque_max[j];
@@ -153,8 +153,8 @@ static void saturate(const ethd_sim *sim, const ethd_command *command, double ou
   }
 }
 
-/* Steps go from one change of torque to the next, on a grid so that a finer one cuts each of them alike, and
-   end where the path has a kink, too. Ticks and samples are read off them. */
+/* Steps from one change of torque to the next, and ends a step also where the path has a kink. Steps lie on a grid, so
+   that a finer grid divides each of them evenly. Ticks and samples are read off the steps. */
 static void go_on(ethd_sim *sim, double until, double update) {
   ethd__leg *leg = &sim->leg;
   while (leg->end < until) {
@@ -170,9 +170,9 @@ static void go_on(ethd_sim *sim, double until, double update) {
   }
 }
 
-/* The torque of the command that is `periods` ticks old. */
+/* Passes a command on to the queue, and fills the torque of the one that is `periods` ticks old. */
 static void pass_on(ethd_sim *sim, const ethd_command *command, double out[2]) {
-  double *waiting = sim->way[sim->periods ? sim->tick % sim->periods : 0], now[2];
+  double *waiting = sim->queue[sim->periods ? sim->tick % sim->periods : 0], now[2];
   saturate(sim, command, now);
   for (int j = 0; j < 2; j++) {
     out[j] = sim->periods ? waiting[j] : now[j];

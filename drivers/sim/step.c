@@ -1,14 +1,14 @@
-/* Steps by power series, with changes of touch located. */
+/* Makes steps by power series, and locates changes of touch. */
 #include <stdbool.h>
 #include <string.h>
 
 #include "sim/series.h"
 
-#define LOCATED 1e-12  /* s */
-#define SHORTEST 1e-15 /* s: what turns within so little, or isn't a number, isn't followed */
+#define LOCATED 1e-12  /* s, to which an event is located */
+#define SHORTEST 1e-15 /* s: a turn within less, or a NaN, isn't followed */
 #define RUBBING 10.0   /* tanh is +-1 within 4e-9 beyond it */
-#define TURN 2.0       /* by so much its argument may change in a step that comes nearer to 0, */
-#define PACE 5e3       /* 1/s: and in a short stretch by less, so that halving that halves each step */
+#define TURN 2.0       /* by which its argument may change in a step that comes nearer to 0, */
+#define PACE 5e3       /* 1/s: but by no more than this times the grid's cell, so that half the cell halves each step */
 
 static ethd__two at(const ethd__two *term, int order, double h) {
   ethd__two y = term[order];
@@ -61,7 +61,7 @@ static double rises(const ethd__two *term, int order, double sign, double h) {
   if (sign * term[0][0] + reach(term, order, h) < 0) return INFINITY;
   if (!(sign * value(term, order, h) > 0)) {
     if (!(sign * term[1][0] > 0 && sign * slope(term, order, h) < 0)) return INFINITY;
-    h = locate(slope, term, order, -sign, h); /* a summit within */
+    h = locate(slope, term, order, -sign, h); /* the summit lies in between */
     if (!(sign * value(term, order, h) > 0)) return INFINITY;
   }
   return locate(value, term, order, sign, h);
@@ -88,7 +88,7 @@ static void put(ethd__two x, double *out) {
   out[1] = x[1];
 }
 
-/* Four polynomials of n + 1, n, n + 1, n terms, side by side. */
+/* Evaluates four polynomials of n + 1, n, n + 1 and n terms, side by side. */
 static void evaluate(const ethd__two *x, const ethd__two *v, const ethd__two *y, const ethd__two *w, int n, double h,
                      ethd__two out[4]) {
   ethd__two a = x[n + 1], b = v[n], c = y[n + 1], d = w[n];

@@ -28,7 +28,7 @@ typedef struct drawing {
   ethd__drawing drawing;
   state states[DEPTH];
   int depth;
-  int within; /* depth within an element that is skipped, counting itself; 0: in none */
+  int within; /* how deep it is in an element that is skipped, counting that one; 0: in none */
 } drawing;
 
 static void refuse(drawing *r, const char *what, const char *found) {

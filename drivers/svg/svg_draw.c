@@ -13,7 +13,7 @@ static bool fail(ethd__drawing *d, ethd_status status) {
   return false;
 }
 
-/* Makes room for one more. */
+/* Makes room for one more item. */
 static bool grow(ethd__drawing *d, void *array, size_t count, size_t *room, size_t size) {
   void *old, *more;
   if (d->status) return false;
@@ -88,8 +88,8 @@ static int edges(ethd__drawing *d, double n) {
   return 1;
 }
 
-/* An edge over 1/n of the parameter is at most max|P''| / 8 n^2 away, and |P''| <= degree (degree - 1) times the
-   largest second difference of the points (Wang 1984). */
+/* Returns how many edges a curve needs. An edge over 1/n of the parameter is at most max|P''| / 8 n^2 away, and |P''|
+   is at most degree (degree - 1) times the largest second difference of the points (Wang 1984). */
 static int edges_of_curve(ethd__drawing *d, const ethd_vec *p, int degree) {
   double most = 0;
   for (int i = 0; i + 2 <= degree; i++)
@@ -117,7 +117,7 @@ void ethd__draw_curve(ethd__drawing *d, const ethd_vec *p, int degree) {
   ethd__draw_point(d, p[degree]);
 }
 
-/* |P''| is at most the longer half axis, which is at most the root of u.u + v.v. At least two edges a quarter. */
+/* |P''| is at most the longer half axis, which is at most the root of u.u + v.v. A quarter has at least two edges. */
 void ethd__draw_arc(ethd__drawing *d, ethd_vec centre, ethd_vec u, ethd_vec v, double from, double turn) {
   double axis = sqrt(ethd_vec_dot(u, u) + ethd_vec_dot(v, v)), most = fabs(turn);
   double step = fmin(sqrt(8 * d->tolerance / axis), QUARTER / 2);

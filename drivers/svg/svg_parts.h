@@ -1,4 +1,4 @@
-/* Inside the reader of drawings: text of attributes, and what is drawn. All [main]. */
+/* What the files of the reader of drawings share: the text of attributes, and the drawing. All [main]. */
 #ifndef ETHD__SVG_SVG_PARTS_H
 #define ETHD__SVG_SVG_PARTS_H
 
@@ -10,7 +10,7 @@
 
 /* ---- attributes: svg_values.c ---- */
 
-/* name, value, name, value, ..., NULL */
+/* Names and values by turns, then NULL. */
 typedef const char *const *ethd__attributes;
 
 /* Returns the value of an attribute, NULL if there is none of this name. */
@@ -30,7 +30,7 @@ bool ethd__svg_length(const char *text, bool in_metres, double *out);
 
 #define ETHD_SVG_PX (0.0254 / 96) /* m */
 
-/* x' = m[0] x + m[2] y + m[4], y' = m[1] x + m[3] y + m[5] */
+/* The map x' = m[0] x + m[2] y + m[4], y' = m[1] x + m[3] y + m[5]. */
 typedef struct ethd__matrix {
   double m[6];
 } ethd__matrix;
@@ -77,13 +77,13 @@ void ethd__draw_curve(ethd__drawing *d, const ethd_vec *p, int degree);
 /* Adds the arc centre + u cos a + v sin a, where a runs from `from` to `from` + `turn`; the first point is drawn, the
    last isn't. */
 void ethd__draw_arc(ethd__drawing *d, ethd_vec centre, ethd_vec u, ethd_vec v, double from, double turn);
-/* Makes an object of the chain, if it has a length. */
+/* Makes the chain an object, if it has a length. */
 void ethd__draw_end(ethd__drawing *d, bool closed, bool filled);
 
 /* ---- elements: svg_shapes.c, svg_path.c ---- */
 
 typedef struct ethd__svg_wrong {
-  char what[112];    /* "": nothing is */
+  char what[112];    /* "": nothing is wrong */
   const char *found; /* NULL: nothing to show */
 } ethd__svg_wrong;
 

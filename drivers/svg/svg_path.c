@@ -1,4 +1,4 @@
-/* Path data. Points are in user units until they are drawn. */
+/* Reads path data. Points are in user units until they are drawn. */
 #include <ctype.h>
 #include <math.h>
 #include <search.h>
@@ -10,7 +10,7 @@
 
 #define TURN 6.28318530717958647692
 
-/* The extent of a closed part that is filled. */
+/* The bounding box of a closed part that is filled. */
 typedef struct box {
   double x_min, x_max, y_min, y_max;
 } box;
@@ -121,7 +121,8 @@ static bool arc(path *q, bool relative) {
 
 /* ---- commands ---- */
 
-/* Returns the control point of the last curve turned about its end, or the end if the last command wasn't such a curve. */
+/* Returns the control point of the last curve turned about its end, or the end if the last command wasn't such a
+   curve. */
 static ethd_vec mirrored(const path *q, const char *after) {
   return strchr(after, q->last) ? ethd_vec_sub(ethd_vec_scale(2, q->at), q->control) : q->at;
 }

@@ -1,14 +1,14 @@
 /* A recorded session as a device: read gives the samples as they were, and write compares the commands with those
-   that were recorded. So a session can run again without its hardware, through the same programs.
+   that were recorded. So the same programs can run a session again without its hardware.
 
        [device]
        driver = replay
-       folder = session1          which ethd-run --record has written
+       folder = session1          written by ethd-run --record
 
-   The torque of each tick must be equal to the bit. While a soft start lets a share of it through, both joints must have
-   the same share, and it must rise. Differences are counted and make stop return ETHD_E_DIFFERS. A run in real time that
-   is late anywhere has other periods and so other commands; on the virtual clock every difference is a real one. After
-   the last tick the device can't be read.
+   The torque of each tick must be equal to the bit. While a soft start lets a share of it through, both joints must
+   have the same share, and it must rise. Differences are counted and make stop return ETHD_E_DIFFERS. A run in real
+   time that is late anywhere has other periods and so other commands; on a virtual clock every difference is a real
+   one. After the last tick the device can't be read.
 
    A device gives samples and takes torques, but a program posts the setups. So what was commanded while the session ran
    (transition, set, ack, enable) must be commanded again at the same instants, for instance by the same lines on the
@@ -30,10 +30,10 @@ typedef struct replay {
   size_t next;     /* the row that read gives next */
   size_t answered; /* rows whose command has come; the safe command at the end isn't one of them */
   int64_t waits;   /* periods in which there was no sample */
-  double share;    /* of the last command */
+  double share;    /* of the recorded torque that the last command let through */
   uint64_t compared, different;
   double first; /* the first row that differs, -1: none */
-  bool runs;    /* 1: it plays; a start after a fault doesn't begin again */
+  bool runs;    /* it plays; a start after a fault doesn't begin again */
   char remark[288];
 } replay;
 

@@ -1,4 +1,4 @@
-/* A recording as a device plays it: samples, the torques that answered them, the device's limits. */
+/* A recording as a device plays it: the samples, the torques that answered them, and the device's limits. */
 #ifndef ETHD__TAPE_TAPE_H
 #define ETHD__TAPE_TAPE_H
 
@@ -7,7 +7,7 @@
 typedef struct ethd__tape {
   ethd_trace *rows;
   size_t count;
-  size_t changed;   /* the first row after a command that changed something; count: there was none */
+  size_t changed;   /* the first row after a command that changed something; equal to count: there was none */
   char change[128]; /* that command as in events.csv: "transition smooth" */
   ethd_limits limits;
   ethd_dynamics dynamics;

@@ -1,4 +1,4 @@
-/* Reads and writes whole files of text, and reads numbers in them. All [main] but ethd__number [any]. */
+/* Reads and writes whole files of text, and reads numbers in them. All [main] except ethd__number, which is [any]. */
 #ifndef ETHD__TEXT_TEXT_H
 #define ETHD__TEXT_TEXT_H
 

@@ -5,8 +5,8 @@
 
 #include "board.h"
 
-/* Fast mode asks for SCL low >= 1.3 us and high >= 0.6 us, 21 and 10 cycles; what stands between these waits makes
-   up the rest of a bit's 40 cycles. */
+/* Fast mode asks for SCL low >= 1.3 us and high >= 0.6 us, which are 21 and 10 cycles; the code between these waits
+   takes the rest of a bit's 40 cycles. */
 #define LOW_WAIT __builtin_avr_delay_cycles(15)
 #define HIGH_WAIT __builtin_avr_delay_cycles(7)
 #define HOLD_WAIT __builtin_avr_delay_cycles(10)
@@ -19,7 +19,7 @@ static inline void pull(uint8_t lanes) { LANES_DDR = lanes; }
 
 static inline void scl_low(void) { LANES_SCL_DDR |= LANES_SCL; }
 
-/* A sensor may hold SCL for a moment; whoever holds it for 20 us takes all lanes out. */
+/* A sensor may hold SCL for a moment; if one holds it for 20 us, all lanes drop out. */
 static __attribute__((noinline)) void scl_await(void) {
   for (uint8_t turn = 60; turn; turn--) {
     if (LANES_SCL_PIN & LANES_SCL) return;
@@ -33,7 +33,7 @@ static inline void scl_high(void) {
   if (!(LANES_SCL_PIN & LANES_SCL)) scl_await();
 }
 
-/* One clock with SDA pulled low on `low`; gives the port's pins. */
+/* Makes one clock with SDA pulled low on the lanes `low`, and returns the port's pins. */
 static inline __attribute__((always_inline)) uint8_t bit(uint8_t low) {
   pull(low);
   LOW_WAIT;
@@ -117,7 +117,8 @@ uint8_t lanes_get(uint8_t lanes, uint8_t address, uint8_t reg, uint8_t count, ui
   return alive;
 }
 
-/* Bit after bit, the lowest of what was seen goes to lane 0, the next to lane 1, ... 80 cycles instead of 500 in C. */
+/* For each bit, the lowest pin goes to lane 0, the next to lane 1, and so on. It takes 80 cycles instead of 500 in
+   C. */
 void lanes_split(const uint8_t bits[8], uint8_t out[4]) {
   uint8_t a = 0, b = 0, c = 0, d = 0;
   for (uint8_t n = 8; n; n--) {

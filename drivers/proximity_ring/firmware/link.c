@@ -35,12 +35,12 @@ void link_offer(const link_block *block) {
   bytes[LINK_SIZE - 1] = crc8(bytes);
   fetched = false;
   newest = !newest;
-  if (!(TWCR & (1 << TWEN))) TWCR = LISTEN; /* before the first block there is nobody here */
+  if (!(TWCR & (1 << TWEN))) TWCR = LISTEN; /* before its first block a board doesn't answer */
 }
 
 bool link_fetched(void) { return fetched; }
 
-/* A block is told whole, even if a newer one is offered meanwhile. What is written to us is ignored. */
+/* Sends a whole block, even if a newer one is offered meanwhile. What is written to this board is ignored. */
 ISR(TWI_vect) {
   static const uint8_t *told;
   static uint8_t left;
@@ -80,7 +80,7 @@ static void clock_free(void) {
   TWCR = 1 << TWEN;
 }
 
-/* A byte takes 25 us, the other board's part in it 5; 250 turns take over 100. */
+/* A byte takes 25 us and the other board's part in it 5 us; the 250 turns of this loop take over 100 us. */
 static bool wait(uint8_t mask, uint8_t value) {
   for (uint8_t turn = 250; turn; turn--) {
     if ((TWCR & mask) == value) return true;
@@ -93,7 +93,8 @@ static bool step(uint8_t control) {
   return wait(1 << TWINT, 1 << TWINT);
 }
 
-/* Into bytes; the status of the two-wire interface where it ended, TW_MR_DATA_NACK after the last byte; 0 = held. */
+/* Reads a board's block into `bytes`. Returns the status of the two-wire interface where it ended: TW_MR_DATA_NACK
+   after the last byte; 0: the bus was held. */
 static uint8_t fetch(uint8_t board, uint8_t *bytes) {
   if (!step(1 << TWSTA)) return 0;
   if (TW_STATUS != TW_START) return TW_STATUS;

@@ -24,14 +24,14 @@ typedef enum link_result { LINK_OK, LINK_SILENT, LINK_HELD } link_result;
 
 void link_open(uint8_t board);
 
-/* Boards 1..3: from now on this block is given. */
+/* Boards 1..3: offers this block from now on. */
 void link_offer(const link_block *block);
 
-/* Whether the last one was fetched. */
+/* Returns whether the last block was fetched. */
 bool link_fetched(void);
 
-/* Board 0. SILENT: no answer, or not a whole block. HELD: the bus didn't move for 100 us; it was clocked free as far
-   as that goes, and it isn't worth asking the others in this period. */
+/* Board 0: fetches a block. SILENT: no answer, or not a whole block. HELD: the bus didn't move for 100 us; it was
+   clocked free as far as possible, and asking other boards in this period is useless. */
 link_result link_fetch(uint8_t board, link_block *out);
 
 #endif

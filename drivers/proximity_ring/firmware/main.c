@@ -12,7 +12,7 @@
 
 static uint8_t reset_cause __attribute__((section(".noinit")));
 
-/* Before anything else: after a reset by the watchdog it runs on, at its shortest time. */
+/* Runs before anything else, because after a reset by the watchdog the watchdog goes on, at its shortest time. */
 void catch_reset(void) __attribute__((naked, used, section(".init3")));
 void catch_reset(void) {
   reset_cause = MCUSR;
@@ -41,7 +41,7 @@ static bool sample(uint16_t start, uint16_t counts[LANES]) {
 static void follow(link_block *block) {
   period now;
   if (!period_next(&now)) return;
-  if (link_fetched()) block->status &= LINK_COUNT; /* board 0 knows */
+  if (link_fetched()) block->status &= LINK_COUNT; /* board 0 has seen the flags */
   if (sample(now.start, block->counts)) block->status |= LINK_RECOVERED;
   block->status = (block->status & (uint8_t)~LINK_COUNT) | ((block->status + 1) & LINK_COUNT);
   link_offer(block);
@@ -57,7 +57,7 @@ static void follow_for_ever(void) {
 
 /* ---- board 0 ---- */
 
-/* Takes a block over; its flags. A block that was fetched before is none. */
+/* Takes a block's counts over, and returns its flags. A block that was fetched before doesn't count. */
 static uint8_t merge(uint8_t board, const link_block *block, uint8_t *counts) {
   static uint8_t last[ETHD__FRAME_BOARDS] = {0xFF, 0xFF, 0xFF, 0xFF};
   if (block->status == last[board]) return ETHD__FRAME_BOARD_MISSING;

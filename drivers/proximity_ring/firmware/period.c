@@ -7,7 +7,7 @@
 #include "board.h"
 
 static bool leads;
-static volatile uint8_t begun; /* periods that began since the last was taken */
+static volatile uint8_t begun; /* periods that have begun since the last one was taken */
 static volatile uint8_t rounds;
 static volatile uint16_t start;
 static volatile uint32_t time;
@@ -30,7 +30,7 @@ ISR(INT0_vect) {
 
 ISR(TIMER1_OVF_vect) { rounds++; }
 
-EMPTY_INTERRUPT(TIMER1_COMPB_vect) /* period_wait wakes */
+EMPTY_INTERRUPT(TIMER1_COMPB_vect) /* wakes period_wait */
 
 void period_open(bool leader) {
   leads = leader;
@@ -42,7 +42,7 @@ void period_open(bool leader) {
     TIMSK1 = 1 << OCIE1A;
   } else {
     TIMSK1 = 1 << TOIE1;
-    EIFR = 1 << INTF0; /* a start that was missed is no start */
+    EIFR = 1 << INTF0; /* forget a start that came before */
     EIMSK = 1 << INT0;
   }
   set_sleep_mode(SLEEP_MODE_IDLE);

@@ -15,7 +15,7 @@ void sensors_open(void) {
   sensors_settle();
 }
 
-/* A sensor that lost its supply, and with it its settings, must not pass for one that sees less. */
+/* A sensor that lost its supply, and so its settings, must not be taken for one that sees less. */
 static void check_settings(void) {
   uint8_t bits[VCNL4000_CURRENT - VCNL4000_PRODUCT + 1][8], product[4], current[4];
   settled &= lanes_get(settled, VCNL4000_ADDRESS, VCNL4000_PRODUCT, sizeof bits / 8, bits);
@@ -42,7 +42,7 @@ void sensors_begin(uint8_t lane) {
   begun = (begun & (uint8_t)~mask) | done;
 }
 
-/* A count is never 0: that is how a missing one is told. */
+/* Makes a count, which is never 0, because 0 means that it is missing. */
 static uint16_t count(uint8_t high, uint8_t low) {
   uint16_t value = (uint16_t)(high << 8 | low);
   return value ? value : 1;

@@ -10,7 +10,7 @@
 /* slow: 400 kBd, else 500; both are exact at 16 MHz. */
 void uart_open(bool slow);
 
-/* Codes and sends the frame; it waits for nothing: the frame before has long gone. */
+/* Encodes and sends the frame. It waits for nothing, because the frame before was sent long ago. */
 void uart_send(const uint8_t frame[ETHD__FRAME_SIZE]);
 
 #endif
