@@ -37,7 +37,7 @@ for plant in n p; do
   done
 done
 
-# What is told to the law is off, by a factor; what the device does isn't told.
+# The law is told wrong facts, off by a factor; the device itself is as it was.
 off() { # WHAT VALUE [ARGUMENTS]
   what=$1 value=$2
   shift 2

@@ -12,7 +12,7 @@ mkdir -p "$out/traces"
 cat "$out/table.txt"
 echo
 
-# Of the words that gnuplot gets none is a path: a quote in one would end its string.
+# None of the words that gnuplot gets is a path, because a quote in one would end its string.
 plant=$(basename "$PLANT" .plant | tr -cd '[:alnum:]_.-')
 plot() { (cd "$out" && gnuplot -e "$1" "$here/plot/$2"); }
 for law in abrupt smooth offset; do

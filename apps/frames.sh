@@ -44,8 +44,8 @@ END
 study=$!
 await "$folder/said" "the study doesn't start"
 
-# Its first line says where the start and the wall are. A tap: to the start, about there for a second, to the wall as
-# hands do, and back. Space ends a page, and does nothing elsewhere.
+# Its first line says where the start and the wall are. A tap goes to the start, moves about there for a second, goes to the
+# wall as hands do, and back. Space ends a page, and does nothing elsewhere.
 awk -v taps="$taps" '
   function move(x, y) { printf "mousemove %d %d\nsleep 0.008\n", x0 + scale * x, y0 - scale * y }
   NR == 1 {

@@ -1,6 +1,6 @@
 #!/bin/sh
-# make doc: a page for every public function, no warning; a function without a contract, or whose contract doesn't say which
-# threads may call it, is found.
+# make doc: every public function has a page, and there is no warning. A function without a contract, or whose contract
+# doesn't say which threads may call it, is found.
 set -u
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -1,9 +1,9 @@
 """Devices that are described badly, answer badly, or come from bad files: bad_devices.py BIN MAPS PLUGINS FOLDER
 
-Each case changes one thing about something good. What comes of it must be one line on stderr that names file and line
-where there is one, exit code 2 for bad input and 1 for a device that fails, and no motion: the device's other side, which
-is a plain socket or terminal of this script, hears nothing where the input is bad, and no torque where the device is.
-The cases are counted by kind, and the counts are asserted, so that none is left out unseen.
+Each case changes one thing about something good. The result must be one line on stderr that names file and line where
+there is one, exit code 2 for bad input and 1 for a device that fails, and no motion: the device's other side, a plain
+socket or terminal of this script, hears nothing if the input is bad, and gets no torque if the device is. The cases are
+counted by kind, and the counts are asserted, so that none is left out unseen.
 """
 import collections
 import concurrent.futures
@@ -38,7 +38,7 @@ def fail(*words):
 # ---- the other side ----
 
 class Ear:
-    """A port that hears: nothing may come. A TCP listener, or a terminal."""
+    """A port at which nothing may arrive: a TCP listener, or a terminal."""
 
     def __init__(self):
         self.socket = socket.create_server(("127.0.0.1", 0))
@@ -63,8 +63,8 @@ class Ear:
 
 
 class Drive(threading.Thread):
-    """Modbus/TCP by the specification alone: 18 words as in plant.map, function 3 and 16. What is to become of each
-    answer is a function of its bytes."""
+    """A Modbus/TCP server by the specification alone: 18 words as in plant.map, functions 3 and 16. A function of each
+    answer's bytes says how it is spoilt."""
 
     def __init__(self, spoil=None):
         super().__init__(daemon=True)
@@ -143,8 +143,8 @@ def one_line(what, said, names):
 
 
 def refused(what, ini, names, ear, look=True):
-    """Bad input: ethd-run says so and exits with 2, and nobody heard anything; ethd-check, where it is asked to look, says
-    the same without touching anything. False: that accepts it."""
+    """Bad input: ethd-run says so and exits with 2, and nothing arrived at the port; ethd-check, if it is asked, says the
+    same without touching anything. False: ethd-check accepts it."""
     if look:
         checked, check_said = program("ethd-check", ini)
         if checked == 0:
@@ -186,7 +186,7 @@ def sections_of(lines):
 
 
 def base_map(name):
-    """The shipped map, with numbers where it wants them looked up, and a bus that is quick enough to be accepted."""
+    """The shipped map, with numbers where it says that they must be looked up, and a bus quick enough to be accepted."""
     text = open(f"{MAPS}/{name}").read()
     numbers = iter(range(1000, 3000, 10))
     text = re.sub(r"LOOK_UP", lambda _: str(next(numbers)), text)
@@ -440,7 +440,7 @@ def sweep_objects(ear):
         what = f"object, {kind}, case {i}:"
         code, said = program("ethd-check", f"{own}/c.ini")
         if code == 0 and "bit" in kind:
-            tally(("objects", kind))  # and it loads still: which ones do is the loader's
+            tally(("objects", kind))  # it still loads: the loader decides which do
         else:
             if code not in (1, 2):
                 fail(what, "exit", code, said[:300])

@@ -39,7 +39,7 @@ cp "$BUILD"/share/ethd/b.* "$folder/"
 "$check" "$folder/b.ini" >"$folder/b.out"
 says "$folder/b.out" '0.543 without lag'
 
-# Too much of a gain is named with what to change; after the change nothing is.
+# A gain that is too large is named, with what to change; after that change none is named.
 printf '[transition]\nb_d = 1000\n' >"$folder/bad.ini"
 "$check" "$folder/bad.ini" >"$folder/bad"
 says "$folder/bad" '^2 bounds exceeded'
@@ -60,7 +60,7 @@ sed 's/^plant = p/plant = ideal/' "$folder/p.ini" >"$folder/ideal.ini"
 "$check" "$folder/ideal.ini" >"$folder/ideal.out"
 says "$folder/ideal.out" 'one encoder count makes 0 mm/s: the ring is quiet until it is pushed'
 
-# A spring lives off friction; delay is taken in parts of a tick; options win over the plant.
+# A spring is stable by friction alone; a delay may be a fraction of a tick; options win over the plant.
 printf '[contact]\nlaw = spring\n' >"$folder/spring.ini"
 "$check" --delay 0 "$folder/spring.ini" >"$folder/out"
 says "$folder/out" '1.25 Ns/m'

@@ -1,5 +1,5 @@
 """A motion capture's bridge in ten lines: sends a finger that wanders about (0.25, 0.25) to PORT, 90 times a second for
-SECONDS. What a real one does instead: takes x, y and the instant of the exposure from its maker's SDK."""
+SECONDS. A real one takes x, y and the instant of the exposure from its maker's SDK instead."""
 import math, socket, struct, sys, time
 
 def crc16(data: bytes) -> int:  # MCRF4XX

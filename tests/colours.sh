@@ -1,6 +1,6 @@
 #!/bin/sh
-# Colours that mean something in a report's pictures can be told apart by people who lack a kind of cones: the colours
-# are turned into what these see (Machado, Oliveira and Fernandes 2009, severity 1) and compared in CIE L*a*b*.
+# People who lack one kind of cones can tell the meaningful colours of a report's pictures apart: each colour is turned into
+# what these people see (Machado, Oliveira and Fernandes 2009, severity 1), and compared in CIE L*a*b*.
 exec "${PYTHON:-python3}" - <<'PY'
 import itertools, pathlib, re, sys
 import numpy as np

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Programs share the step: a law that counts is asked once a tick by each of them, and answers as pd does.
+# All programs use the same step: each calls a law that counts its calls once a tick, and the law answers as pd does.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

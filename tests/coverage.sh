@@ -11,7 +11,7 @@ cd "$top" || exit 1
 MAKE=${MAKE:-make} BUILD=${BUILD:-build} CC=${CC:-cc}
 # Functions that are always inlined would be counted once for each caller.
 flags='-O0 -g --coverage -Dalways_inline='
-export CK_TIMEOUT_MULTIPLIER="${CK_TIMEOUT_MULTIPLIER:-10}" TEST_TIMEOUT="${TEST_TIMEOUT:-1200}" # nothing here is about time
+export CK_TIMEOUT_MULTIPLIER="${CK_TIMEOUT_MULTIPLIER:-10}" TEST_TIMEOUT="${TEST_TIMEOUT:-1200}" # times don't matter here
 export CCACHE_DISABLE=1 ETHD_SCENE_QUERIES="${ETHD_SCENE_QUERIES:-2000}"
 failed=0
 
@@ -21,7 +21,7 @@ gcov_of() { # gcc-14 -> gcov-14
   done
 }
 
-# All but those that mostly wait for peers in true time.
+# All tests but those that mostly wait for peers in real time.
 quick() { ls tests/*/test_*.c | sed 's|.*/||; s|[.]c$||' | grep -v -e '^test_injection$' -e '^test_ring_' -e '^test_servo_'; }
 
 # run TREE FLAGS TESTS: what fails under the counters is said and doesn't count against coverage twice

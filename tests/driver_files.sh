@@ -1,6 +1,6 @@
 #!/bin/sh
-# Drivers in files of their own, [device] driver = file:NAME.so: one that is compiled against the installed headers does as
-# the built-in one; several stand behind one device; bad ones get one line and nothing moves; nobody's folder loads one.
+# Drivers in files of their own, [device] driver = file:NAME.so: one that is compiled against the installed headers behaves as
+# the built-in one; several stand behind one device; bad ones get one line and nothing moves; a received folder loads none.
 set -u
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

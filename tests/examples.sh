@@ -1,5 +1,5 @@
 #!/bin/sh
-# apps/examples, compiled against the installed tree and run: a wall, a law in ethd-tap, a driver before its contract, and
+# apps/examples, compiled against the installed tree and run: a wall, a law in ethd-tap, a driver that ethd_conform asks, and
 # teleoperation over a line that delays, loses and reorders, and that dies.
 set -u
 work=$(mktemp -d)

@@ -1,6 +1,6 @@
 #!/bin/sh
-# ethd-explain: the same result from one run and from one that was ended on the way; what it says of its plant is what
-# ethd-tap and ethd-check say of the files that it writes. Bad input.
+# ethd-explain: a run and one that was interrupted have the same result; what it says about its plant is what ethd-tap and
+# ethd-check say about the files that it writes. Bad input.
 set -u
 bin=$BUILD/bin
 page=$(cd "$(dirname "$0")/../apps/explain" && pwd)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Light barriers and the nail's plate speak the proximity ring's frames (drivers/finger/README.md), so its real firmware in
-# four simulated boards (simavr) stands for theirs: each of its sensors' counts is a barrier's, or the plate's. Asserted are
-# the finger's places, worked out here from the counts; when they come is the machine's.
+# four simulated boards (simavr) stands for theirs: each of its sensors' counts is a barrier's, or the plate's. The finger's
+# positions are asserted, worked out here from the counts; their times aren't, since they depend on the machine.
 set -u
 . tests/peers/desk.sh
 . tests/peers/board.sh

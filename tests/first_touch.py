@@ -50,7 +50,7 @@ def pattern(promise):
 
 
 def kept(promise, said):
-    """A promise that begins with "..." may stand anywhere in a line; spaces are free."""
+    """A promise that begins with "..." may be anywhere in a line; any number of spaces is allowed."""
     squeezed = [re.sub(" +", " ", line) for line in said.splitlines()]
     wanted = pattern(re.sub(" +", " ", promise))
     anywhere = promise.startswith("...")
@@ -150,7 +150,7 @@ def take(number, title, commands, promises):
     if number == 7 and "isn't noticed" in said.replace("the drive's faults aren't", "") and re.search("(frozen|stands still|reversed).*isn't noticed", said):
         missing.append("encoders that are watched")
     if number == 8:
-        if "ethd-run: fault: " not in said:  # what a busy machine only counts stops nothing
+        if "ethd-run: fault: " not in said:  # rows that a busy machine only counts stop nothing
             missing = [p for p in missing if p != "faults     none"]
         if "never measured" in said:
             missing.append("a finger that was measured")

@@ -40,8 +40,8 @@ replays() { # FOLDER
   done
 }
 
-# Recordings in the columns that they had before readings carried their noise and laws learnt: the numbers of those who use
-# neither stay.
+# Recordings are compared in the columns that they had before readings carried their noise and before laws learnt: where
+# neither is used, the numbers stay.
 without() { # COLUMN FILE
   "${PYTHON:-python3}" - "$1" "$2" <<'END'
 import ast, sys

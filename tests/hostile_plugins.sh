@@ -35,7 +35,7 @@ case ${SAN:-} in
     ;;
 esac
 
-# A law that gives what isn't a number: the taps are faults, and the table says of whom and which.
+# A law that returns NaN: its taps are faults, and the table names the law and the fault.
 "$BUILD/bin/ethd-tap" --config "$folder/says_nan.ini" --taps 2 >"$folder/out" || fail "says_nan: exit $?"
 grep -qx "broken: the first fault: a law's output isn't a finite number in its range" "$folder/out" || fail "says_nan: $(cat "$folder/out")"
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# ethd-identify: plants are found again from recordings, an arm of numpy's too; what doesn't fit is said; refusals.
+# ethd-identify: it finds plants again from recordings, also an arm that numpy integrates; it says what doesn't fit; refusals.
 # PLANTS=20 SECONDS_EACH=12 tries that many random plants and the intervals' coverage.
 set -u
 bin=$BUILD/bin
@@ -39,7 +39,7 @@ awk '$1 == "mass_x" && ($3 < 0.1138 || $3 > 0.1208) || $1 == "mass_y" && ($3 < 0
   $1 == "stiffness" && $3 != "inf" { print "FAILED n.plant: " $0; bad = 1 } END { exit bad }' n.plant || failed=1
 grep -q '^hand_damping .*not seen, kept as in n$' n.plant || fail "what isn't seen isn't said"
 
-# An elastic arm likewise, whose transmission is told from a rigid one.
+# An elastic arm likewise, whose transmission it tells from a rigid one.
 printf '[device]\nplant = p\n' >p.ini
 "$bin/ethd-identify" --excite --virtual --config p.ini --duration 6.158 --record elastic >/dev/null || fail "excite p: exit $?"
 "$bin/ethd-identify" elastic --out p.plant >said && "$bin/ethd-identify" elastic --out again.plant >/dev/null &&
@@ -53,7 +53,7 @@ judged() { "$bin/ethd-identify" --judge "$1" more | sed -n 's/.*joint 1.*ahead .
 awk -v own="$(judged n.plant)" -v other="$(judged b)" 'BEGIN { exit !(own > 0 && own < 2 && other > 3 * own) }' ||
   fail "judged: $(judged n.plant) and $(judged b) counts after 50 ms"
 
-# An arm that isn't ours, within its intervals; whose motors are weaker than what is asked; and with play.
+# An arm that this simulator didn't make, within its intervals; the same with motors weaker than the commands; with play.
 arm() { "$PYTHON" "$tests/identify_arm.py" "$@"; }
 arm make sines arm && "$bin/ethd-identify" arm --out arm.plant >said && arm check arm.plant || fail "numpy's arm"
 if "$PYTHON" -c 'import scipy.optimize' 2>/dev/null; then

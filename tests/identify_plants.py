@@ -1,6 +1,6 @@
-"""Are random plants found again? identify_plants.py BIN PLANTS COUNT SEED SECONDS: plants within 30 % about n, b and p
-are excited by ethd-identify and identified from what was recorded; their own numbers must lie within the accuracy that
-is promised, and, all together, in 90 to 99 of 100 intervals (asked of 60 or more)."""
+"""Are random plants found again? identify_plants.py BIN PLANTS COUNT SEED SECONDS: ethd-identify excites plants within 30 %
+of n, b and p, and identifies them from the recordings. Their true numbers must lie within the promised accuracy, and 90 to
+99 of 100 intervals must hold them (if there are 60 intervals or more)."""
 import pathlib, random, re, subprocess, sys, tempfile
 
 VARIED = ["mass_x", "mass_y", "friction", "viscous", "delay", "motor_mass", "stiffness", "damping"]

@@ -1,6 +1,6 @@
 #!/bin/sh
-# ethd-identify on taps: finger, hand and pad of two plants are found again, with what only a simulation knows taken away;
-# too few touches are said, and so is what they can't tell.
+# ethd-identify on taps: it finds finger, hand and pad of two plants again, from recordings without what only a simulation
+# knows; it says that touches are too few, and what they can't tell.
 # PLANTS=1 tries the elastic plant too, whose hand brakes soon behind the wall.
 set -u
 bin=$BUILD/bin

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Installed: all is there, readable, found by pkg-config and CMake, moves as a whole, links shared and static; a path with
-# spaces does; uninstalled: nothing is left but what was there.
+# An installed tree is complete and readable, pkg-config and CMake find it, it can be moved, it links shared and static, and
+# its path may have spaces; after uninstalling only what was there before is left.
 set -eu
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -123,7 +123,7 @@ left=$(cd "$root/opt/ethd" && find . | sort | tr '\n' ' ')
 run "$root" /opt/ethd uninstall && fail "uninstalled twice"
 grep -q "nothing of ours is installed in $root/opt/ethd" "$work/log" || fail "twice: $(cat "$work/log")"
 
-# ---- into the system: said what the loader needs; a path with spaces; no rights ----
+# ---- into the system: it says what the loader needs; a path with spaces; no rights ----
 run "" "$work/my tools" install-files || fail "a path with spaces"
 grep -q "the loader doesn't search $work/my tools/lib yet: .* or set LD_LIBRARY_PATH=$work/my tools/lib" "$work/log" || fail "no word on the loader: $(cat "$work/log")"
 eval "$CC $sanitizer '$work/drivers.c' -o '$work/drivers' $(PKG_CONFIG_PATH="$work/my tools/lib/pkgconfig" $PKG_CONFIG --cflags --libs ethd-drivers)"

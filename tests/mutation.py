@@ -29,7 +29,7 @@ SEED = 13
 # ---- the mutants ----
 
 def without_comments(text):
-    """The same lines, blanks for comments."""
+    """Returns the same lines with blanks in place of comments."""
     pattern = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|/\*.*?\*/', re.S)
     blank = lambda m: m[0] if m[0][0] != "/" else re.sub(r"[^\n]", " ", m[0])
     return [re.sub(r"[ \t]+$", "", line) + "\n" for line in pattern.sub(blank, text).split("\n")[:-1]]
@@ -47,7 +47,7 @@ def mutants_of(source):
 
 
 def sample(files):
-    """All mutants in an order of which every prefix has each file's share."""
+    """Returns all mutants in an order in which every prefix has each file's share."""
     order, lines = [], {}
     for name in files:
         mutants, lines[name] = mutants_of(name)

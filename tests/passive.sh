@@ -1,7 +1,7 @@
 #!/bin/sh
-# The passivity observer leaves the built-in laws alone: with a bound on the energy their taps are the same bytes. What
-# the law that looks ahead feeds forward before a touch reaches the finger as the ring's motion alone: a touch whose speed
-# is 0.05 m/s in the root of the mean square, m v^2/2 = 0.15 mJ at 0.12 kg.
+# The passivity observer doesn't change the built-in laws: with a bound on the energy their taps have the same bytes. What
+# the law that looks ahead feeds forward before a touch reaches the finger only through the ring's motion: at the touch its
+# speed is 0.05 m/s rms, which is m v^2/2 = 0.15 mJ at 0.12 kg.
 set -u
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

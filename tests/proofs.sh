@@ -1,6 +1,6 @@
 #!/bin/sh
-# Bounded proofs by CBMC (Debian 13 has it): for every input within the bounds that each of tests/proofs/*.c says. Each
-# proof fails where the code is broken as its seed below breaks it. ETHD_PROOFS=all: the guard too, which takes minutes.
+# Bounded proofs by CBMC (Debian 13 has it), for every input within the bounds that each of tests/proofs/*.c states. Each
+# proof fails once its seed below breaks the code. ETHD_PROOFS=all: the guard too, which takes minutes.
 set -u
 command -v cbmc >/dev/null || { echo 'SKIP: cbmc isn'\''t there (Debian 13 has it)'; exit 77; }
 work=$(mktemp -d) || exit 1

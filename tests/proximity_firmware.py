@@ -48,7 +48,7 @@ class Frame:
 
 
 class Ring:
-    """The simulated ring; time passes in run() alone."""
+    """The simulated ring; its time passes only in run()."""
 
     def __init__(self, *options):
         self.process = subprocess.Popen([sys.argv[1], "--step", *options, sys.argv[2]], text=True, bufsize=1,
@@ -181,7 +181,7 @@ def test_rate(*options, baud, seconds):
 
 
 def test_counts(ring):
-    """Each sensor in its place, to the bit; darkness isn't a missing sensor, the ceiling is told."""
+    """Each sensor's count is in its place, to the bit; a dark sensor isn't a missing one, and a saturated one is told."""
     draw = random.Random(1)
     for _ in range(10):
         counts = [draw.choice([1, 2, 255, 256, 65534, 65535, draw.randrange(1, 65536)]) for _ in range(16)]
@@ -195,7 +195,7 @@ def test_counts(ring):
 
 
 def test_fault(ring, begin, end, counts, flags, back=3):
-    """While it lasts every frame says so; afterwards all is well within `back` frames."""
+    """While the fault lasts, every frame says so; afterwards frames are good again within `back` frames."""
     ring.tell(begin)
     frames, bad = ring.run(0.05)
     assert bad == 0 and len(frames) >= 14, frames
@@ -238,7 +238,7 @@ def test_stuck(ring):
 
 
 def test_link(ring):
-    """A block that was spoilt between the boards is none, and nor are half of its counts."""
+    """A block that was spoilt between the boards isn't used, not even half of its counts."""
     for count in (1, 5, 40):
         ring.tell(f"link-corrupt {count}")
         frames, bad = ring.run(0.03)

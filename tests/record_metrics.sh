@@ -25,7 +25,7 @@ for file in optotrak_tap_mit/tathum_par1_trial035_tap.csv avraham_free_mit/avrah
   "$BUILD/bin/ethd-replay" --verify "$folder/f"
 done
 
-# What was recorded is what is compared: a figure that differs is found.
+# The recorded values are what is compared: a figure that differs is found.
 sed '3s/,ok,0\./,ok,1./' "$folder/n.csv" >"$folder/n/taps.csv"
 cmp -s "$folder/n.csv" "$folder/n/taps.csv" && fail "nothing was changed"
 "$python" tests/record_metrics.py "$folder/n" n >/dev/null 2>&1 && fail "a changed figure wasn't found"

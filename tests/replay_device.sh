@@ -20,13 +20,13 @@ config other 'driver = replay\nfolder = session\n[contact]\nk_e = 1900'
   fail "replaying: $(cat "$work/out")"
 cmp "$work/session/tick.npy" "$work/again/tick.npy" || fail "the replayed session differs from the recorded one"
 
-# another wall gives other torques, and that is said
+# another wall gives other torques, and the program says so
 "$run" --virtual --duration 2 --config "$work/other.ini" </dev/null >"$work/out" 2>&1
 status=$?
 [ $status = 1 ] || fail "other gains: exit $status"
 grep -q 'a replay that differs from its recording' "$work/out" || fail "other gains: $(cat "$work/out")"
 
-# what was commanded while it ran is commanded again: compared to the end, beyond a fault and a new start
+# with the commands of the recorded session given again, all is compared to the end, beyond a fault and a new start
 printf '1.2 fault9 set\n' >"$work/broken.inject"
 config faulty 'driver = sim\nplant = p\ntap = 7\ninject = broken.inject'
 printf '[limits]\nclean_time = 0.1\n' >>"$work/faulty.ini"
@@ -42,7 +42,7 @@ printf "$script" | "$run" --virtual --duration 3 --config "$work/commanded.ini" 
 cmp "$work/faulty/tick.npy" "$work/again/tick.npy" || fail "the session that was commanded again differs"
 [ "$(rows "$work/out" 'compared commands')" = "$(rows "$work/out" 'recorded ticks')" ] || fail "not all is compared: $(cat "$work/out")"
 grep -q '^device: tick 70[0-9] of the recording was commanded: transition smooth; ' "$work/out" || fail "no remark: $(cat "$work/out")"
-# and without: it differs from there on
+# without them it differs from there on
 "$run" --virtual --duration 3 --config "$work/commanded.ini" </dev/null >"$work/out" 2>&1
 status=$?
 [ $status = 1 ] || fail "without its commands: exit $status"

@@ -80,7 +80,7 @@ cp "$here/report/report.html" "$folder/before"
 drawn "$here/report" "$here"
 cmp "$here/report/report.html" "$folder/before" || fail "the same taps make another page"
 
-# What the table says is what the taps say.
+# The table agrees with the taps.
 awk -F, 'NR > 1 && $3 == "test" && $5 == "offset" && $6 == "low" && $9 { s += $11; n++ } END { printf "%d %.12g\n", n, s / n }' "$here/taps.csv" >"$folder/a"
 awk -F, '$1 == "v_rvo" && $3 == "offset" && $4 == "low" { printf "%d %.12g\n", $5, $7 }' "$here/report/summary.csv" >"$folder/b"
 cmp "$folder/a" "$folder/b" || fail "the mean: $(cat "$folder/a" "$folder/b")"
@@ -100,7 +100,7 @@ drawn "$here/report" "$here"
 grep -q 'Figure 18' "$here/report/report.html" && [ -s "$here/report/survey-q3.png" ] || fail "no survey"
 [ "$(cut -d, -f5 "$here/report/survey-answers.csv" | sort -u | tr '\n' ' ')" = '2 n ' ] || fail "not everyone's answers count"
 
-# What the motors were asked for and what they were given are two things, as the recordings have them.
+# What was asked of the motors and what they were given differ, as they do in the recordings.
 "${PYTHON:-python3}" - "$here" <<'END' || fail "the forces aren't those of the recordings"
 import csv, pathlib, sys
 import numpy as np
@@ -127,7 +127,7 @@ drawn "$folder/one" "$folder/second" --out "$folder/one"
 [ "$(awk -F, '$1 == "v_of" && $3 == "smooth" && $4 == "low" { print $6 }' "$folder/one/summary.csv")" = 1 ] || fail "the excluded participant's taps are counted"
 grep -q 'who are not analysed' "$folder/one/report.html" || fail "the page doesn't say that somebody is left out"
 
-# Who has it all is said; what came out is counted from the tables.
+# The report says how many people have all cells, and counts outcomes from the tables.
 drawn "$folder/crowd/report" "$folder/crowd"
 found=$(awk -F, 'NR > 1 { n++; k += $14 < 0.05 && $14 != "" } END { print n, k }' "$folder/crowd/report/pairs.csv")
 grep -q "of ${found% *} <a href=\"#pairs\">differences between strategies</a> ${found#* } are significant" "$folder/crowd/report/report.html" || fail "what came out isn't what pairs.csv says: $found"
@@ -137,7 +137,7 @@ v = {r['claim']: r['verdict'] for r in csv.DictReader(open(sys.argv[1]))}.values
 v = list(v)
 print(v.count('shown'), 'are shown, of', v.count('the contrary is shown'))" "$folder/crowd/report/claims.csv") the contrary is shown" "$folder/crowd/report/report.html" || fail "what came out isn't what claims.csv says"
 
-# Stations: their report is the merged folder's, table by table and word by word; what --merge refuses, the report does.
+# The report of several stations is that of the merged folder, table by table and word by word; it refuses what --merge does.
 for k in 1 2; do "$study" --quiet "$folder/small.study" --participant $k --out "$folder/station$k" >"$folder/out" 2>&1 || fail "station $k: $(cat "$folder/out")"; done
 "$study" --resume "$folder/station2" --exclude 2 --reason 'told another task' >"$folder/out" 2>&1 || fail "exclude: $(cat "$folder/out")"
 "$study" --merge "$folder/station1" "$folder/station2" --out "$folder/merged" >"$folder/out" 2>&1 || fail "merge: $(cat "$folder/out")"

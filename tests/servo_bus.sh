@@ -11,7 +11,7 @@ cp apps/config/wall.scene "$folder"
 configure() { # NAME PORT
   { sed '/^\[device\]/,$d' apps/config/n.ini; printf '[device]\ndriver = servo\nmap = plant.map\nport = %s\n' "$2"; } >"$folder/$1.ini"
 }
-# A machine that is busy answers late: in lock-step that is no fault.
+# A busy machine answers late, which is no fault in lock-step.
 sed -e 's/^response = .*/response = 5/' -e 's/^drain = .*/drain = 0.1/' apps/config/plant.map >"$folder/plant.map"
 
 # ---- lock-step: all three strategies tap through the bus, twice the same ----
@@ -42,8 +42,8 @@ assert 0 < wall - ring.min() < 0.008 and finger.min() < wall - 0.001
 assert np.all(r["faults"] == 0) and np.abs(r["tau"]).max() > 0.2
 END2
 
-# ---- a drive whose watchdog is as patient as a busy machine needs: it is tried; and where no priority is granted, the
-# shortfall of the device's I/O is printed, or ends the run where that is asked for ----
+# ---- a drive whose watchdog is patient enough for a busy machine; if no priority is granted, the shortfall of the device's
+# I/O is printed, or ends the run if that is asked for ----
 plant patient --finger 0 --watchdog 0.5
 peer --tcp 0
 sed 's/^response = .*/response = 2/' apps/config/plant.map >"$folder/plant.map"
@@ -91,8 +91,8 @@ status() { # until it is answered
   done
   fail "no answer to status"
 }
-# A busy machine's late answers disable, as they must: then once more. What comes of that is said once it is known
-# how late the machine was.
+# Late answers on a busy machine disable the drive, as they must; then it is tried once more. The verdict waits until it is
+# known how late the machine was.
 tries=30
 unreached=
 enabled() {

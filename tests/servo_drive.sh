@@ -18,7 +18,7 @@ says "$folder/probe" '^answers .* 0 damaged or refused' '^unconfirmed .*of .* re
 sed 's/^crc = .*/crc = low-first/' "$folder/svd48v.map" >"$folder/other.map"
 "$probe" --map "$folder/other.map" --port "$line" --duration 0.3 >"$folder/probe" 2>&1 || fail "other order: exit $?: $(cat "$folder/probe")"
 says "$folder/probe" '^mend .*crc = high-first is needed, the map says low-first' ' bus_voltage  *raw 480 *48 V'
-# registers that its table hasn't are refused, not guessed: a read over the gap as well
+# registers that its table lacks are refused, not guessed, and so is a read across the gap
 sed -e 's/^gap = .*/gap = 4/' -e '/^every/d' "$folder/svd48v.map" >"$folder/gap.map"
 "$probe" --map "$folder/gap.map" --port "$line" --duration 0.3 >"$folder/probe" 2>&1 && fail "a read over the gap passes"
 drive_ends
@@ -27,9 +27,9 @@ drive svd48v --crc low-first
 says "$folder/probe" '^mend .*crc = low-first is needed, the map says high-first'
 drive_ends
 
-# ---- noise in the place of an answer: our framing names it by its first bytes; libmodbus, as the README says, waits for the
-# rest of an answer until `response`, 0.5 s, is over. A busy machine adds to the first time, and takes from the second one what it
-# took to pass the question on: so the least of several is looked at, and the most ----
+# ---- noise in place of an answer: our framing recognises it by its first bytes; libmodbus, as the README says, waits for
+# the rest of an answer until `response`, 0.5 s, is over. A busy machine makes the first time longer, and the second one
+# shorter by what it took to pass the question on; so the least and the most of several are looked at ----
 noise() { # ORDER: "least most", s until the next question, in $noticed; $folder/probe
   drive svd48v --crc "$1"
   sed "s/^crc = .*/crc = $1/" "$folder/svd48v.map" >"$folder/noise.map"
@@ -83,7 +83,7 @@ broken supply 'volts 70' 0.26 "the drive's supply is out of its range"
 broken dead dead 0.04 "the drive doesn't follow the torque"
 broken garbled 'garble 1' never
 broken stale 'stale 1' never
-# its power goes and comes: the drive has stopped, and where the joints stand nobody knows any more
+# its power goes and comes back: the drive has stopped, and where the joints are is no longer known
 broken cycled cycle 0.02 'the drive reports a fault' 'wait 1\nack\nenable'
 
 [ $failed = 0 ] && echo "probed in both orders, homed at its stops, broken in six ways"

@@ -33,7 +33,7 @@ print(f"row {row}: {ticks} ticks after the last sample, {most} are allowed")
 assert ticks <= most and np.all(r["tau"][at:] == 0)
 END
 }
-lost() { # NAME COMMAND SENTENCE: as broken, with a recording, as the drive can't say any more what it sees
+lost() { # NAME COMMAND SENTENCE: like broken, but with a recording, since the drive can no longer say what it sees
   drive svd48v --lock-step 0.005
   tell hold >/dev/null
   servo_ini "$1" quick.map 'q1 = 1.5747963' 'q2 = 0'

@@ -33,7 +33,7 @@ for tap in P01-02-001 P02-05-004 P03-06-002; do
 done
 grep -rl "$(id -un)\|$(hostname)" "$folder/paper" --include=*.csv --include=*.txt --include=*.md | grep . && [ "$(id -un)" != root ] && fail "not anonymous"
 
-# ---- a small one to kill: the same bytes as if nothing had been ----
+# ---- a small one to kill: the same bytes as without the kills ----
 cat >"$folder/small.study" <<'END'
 [study]
 name = small
@@ -54,7 +54,7 @@ same() { # FOLDER WHAT
   diff -r "$folder/whole/taps" "$1/taps" >"$folder/out" || fail "$2: $(head -n 3 "$folder/out")"
 }
 
-# At random moments; each session that comes to its end is compared, and another one begun.
+# Killed at random moments; each session that ends by itself is compared, and another one is begun.
 at=0 whole=0
 while [ $at -lt "$kills" ]; do
   become "$folder/random" >/dev/null 2>"$folder/err" &
@@ -199,7 +199,7 @@ grep -q 'none.study: No such file' "$folder/err" || fail "no study file: $(cat "
 "$study" --out "$folder/paper" >"$folder/out" 2>"$folder/err" && fail "a session over another"
 grep -q 'holds a session; --resume' "$folder/err" || fail "a session over another: $(cat "$folder/err")"
 
-# another study doesn't take a simulation's place, the same one goes on; and no study is written over what it is made of
+# another study doesn't replace a simulation, the same one goes on; and no study overwrites its own inputs
 printf '[study]\ntaps = 1\nattempts = 3\ntraining = 0\n' >"$folder/one.study"
 printf '[study]\ntaps = 2\nattempts = 3\ntraining = 0\n' >"$folder/other.study"
 "$study" "$folder/one.study" --simulate 1 --out "$folder/sim" >/dev/null || fail "a simulation"

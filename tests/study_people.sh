@@ -119,7 +119,8 @@ if command -v gnuplot >/dev/null; then
   "$BUILD/bin/ethd-report" "$folder/words" >"$folder/out" 2>&1 && grep -q '=1+1, &quot;soft&quot;; ,abort,' "$folder/words/report/report.html" || fail "words in the report: $(cat "$folder/out")"
 fi
 
-# ---- one is ended by mistake, which is undone when the next one sits; another one doesn't agree; each is begun with its number ----
+# ---- one session is ended by mistake, which is undone when the next person sits down; another person doesn't agree; each
+# is begun with its number ----
 printf '[study]\nparticipants = 3\nstrategies = smooth\nspeeds = 0.2\ntraining = 0\ntaps = 1\nattempts = 1\n[device]\nconfig = device.ini\n[hand]\nsource = people\n[pages]\nconsent1 = You may end this.\ninstruction1 = Tap once.\n' >"$folder/undo.study"
 printf 'yes\nabort\nundo\nP2\nP02\nno\nP03\nyes\n' | "$study" "$folder/undo.study" --out "$folder/undo" --virtual --ask >"$folder/out" 2>"$folder/err"
 [ $? = 1 ] && grep -q "stopped; what was done is kept: ethd-study --resume $folder/undo --ask --virtual goes on" "$folder/err" || fail "undo: $(cat "$folder/out" "$folder/err")"
@@ -172,7 +173,7 @@ protocol odd.study odd.ini 1 off
 "$study" "$folder/odd.study" --out "$folder/x" --virtual >"$folder/out" 2>"$folder/err"
 [ $? = 2 ] && grep -q 'driver2' "$folder/err" || fail "a bad device: $(cat "$folder/err")"
 
-# A device that is open is brought to rest whatever fails next.
+# An open device is brought to rest, whatever fails next.
 env -u DISPLAY -u WAYLAND_DISPLAY SDL_VIDEODRIVER=x11 "$study" "$folder/people.study" --out "$folder/dark" --screen >"$folder/out" 2>"$folder/err"
 [ $? = 1 ] && grep -q 'no display' "$folder/err" || fail "no display: $(cat "$folder/err")"
 

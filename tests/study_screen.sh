@@ -1,5 +1,5 @@
 #!/bin/sh
-# ethd-study --screen under Xvfb: a recorded finger moves the mouse, keys do the rest. Nothing asks how well it taps.
+# ethd-study --screen under Xvfb: a recorded finger moves the mouse, and keys do the rest. How well it taps isn't asserted.
 set -u
 [ -z "${SAN:-}" ] || { echo "SKIP: the window's libraries aren't made for sanitizers"; exit 77; }
 folder=$(mktemp -d)
@@ -118,7 +118,7 @@ def surveyed(before):
 # Consent, instruction. No key but its own goes on from the first.
 for name in "space Return y space".split(): key(name)
 
-# A tap that isn't begun is none: a pause at the start line, a stop of the hand that lasts longer than a tap.
+# A tap that doesn't begin doesn't count: a pause at the start line, a stop of the hand that lasts longer than a tap.
 key("space")
 move(start, middle); time.sleep(1.2); key("p"); key("space")
 time.sleep(6.5)

@@ -35,7 +35,7 @@ class Station:
         return timer
 
     def ended(self):
-        """After its end: by a kill or by itself. What was written down stays."""
+        """Called after a session's end, by a kill or by itself: what was written down must still be there."""
         out, err = self.run.communicate()
         now = journal(self.folder)
         assert now[: len(self.kept)] == self.kept, f"{self.name}: lines are lost"
@@ -122,7 +122,7 @@ def answer(hand, station):
 
 
 def cycle(hand, station):
-    """Whatever page is shown, some of these keys are its own and none of them harms: consent, instruction, block, a tap,
+    """Whatever page is shown, it takes some of these keys and the others do no harm: consent, instruction, block, a tap,
     answers, their confirmation, the hand-over, the end."""
     lines = journal(station.folder)
     cells = sum(r["participant"] == "P13" and r["part"] == "test" for r in rows(station.folder + "/orders.csv"))

@@ -55,7 +55,7 @@ grep -q 'not realtime' "$folder/a.txt" || fail "it doesn't say that nothing is r
 grep -q 'not measured' "$folder/a.txt" || fail "it doesn't say that the plant is fitted"
 grep -q '^scene queried [0-9]* of [0-9]* ticks$' "$folder/a.txt" || fail "it doesn't say how often the scene was asked"
 
-# A configuration without a scene has the default wall; what it is given rules.
+# A configuration without a scene has the default wall; a scene that it names takes its place.
 : >"$folder/empty.ini"
 "$tap" --config "$folder/empty.ini" --taps 2 --transition offset --record "$folder/rec" --csv "$folder/e.csv" >/dev/null
 [ "$(cut -d, -f13 "$folder/e.csv" | grep -c .)" = 5 ] || fail "an empty configuration has no wall"
@@ -101,7 +101,7 @@ grep -q ',learned,' "$folder/learnt/events.csv" || fail "what was learnt isn't i
 learnt=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "learnt_2") c = i } NR > 1 { print $c }' "$folder/learnt.csv" | uniq)
 [ "$(echo "$learnt" | wc -l)" -ge 3 ] || fail "no tick shows what the law learns: $learnt"
 
-# A movement: said, never scaled unless asked for.
+# A recorded movement is named, and is never scaled unless that is asked for.
 awk 'BEGIN { print "t_s,x_m,y_m"; for (i = 0; i < 120; i++) { t = i / 200; printf "%.4f,%.6f,0\n", t, 0.05 * cos(5 * t) } }' \
   >"$folder/swing.csv"
 "$tap" --finger "$folder/swing.csv" --speed 0.2 --taps 2 >"$folder/f.txt"

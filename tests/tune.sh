@@ -73,7 +73,7 @@ for what in early eps_m d_max_m; do
   "${PYTHON:-python3}" -c "import sys; sys.exit(not $is <= 1.1 * $was)" || fail "$what got worse: $was -> $is"
 done
 
-# A device that is known from its recordings alone; PLANTS=5 POINTS=64 TAPS=80 tries more, more thoroughly.
+# A device that is known only from its recordings; PLANTS=5 POINTS=64 TAPS=80 tries more plants, more thoroughly.
 if [ -z "${SAN:-}" ]; then
   "${PYTHON:-python3}" "$tests/tune_plants.py" "$bin" "$bin/../share/ethd" "${PLANTS:-1}" 5 20 "${POINTS:-16}" "${TAPS:-40}" ||
     fail "an identified plant"

@@ -1,6 +1,6 @@
-"""unsequenced.py FILE...: where one operand of an expression writes what another reads or writes, in an order that C leaves
-open: f(take(&x), x), take(&x) + x, {take(&x), x}. gcc and clang see only x++ and x = ...; a call that writes through an
-address they don't.
+"""unsequenced.py FILE...: finds where one operand of an expression writes what another reads or writes, in an order that C
+leaves open: f(take(&x), x), take(&x) + x, {take(&x), x}. gcc and clang find only x++ and x = ..., not a call that writes
+through an address.
 
 Clang's dump of its syntax tree is read, one node a line. An object is named by a path: the variable, the members that are
 chosen, and * where a pointer is followed; elements of an array share the array's path. An operand writes what it assigns,

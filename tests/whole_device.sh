@@ -1,7 +1,7 @@
 #!/bin/sh
 # The whole device on one desk: ethd-run, the servo over an independent Modbus server (pymodbus) with the plant behind
-# it, the proximity ring through its real firmware in four simulated boards (simavr) that see the same plant. Taps under
-# all three strategies, swapped on stdin; the recording replays; their figures beside the simulated device's.
+# it, the proximity ring through its real firmware in four simulated boards (simavr) that see the same plant. It taps under
+# all three strategies, swapped on stdin; the recording replays; its figures are printed beside the simulated device's.
 # ETHD_WHOLE_SECONDS: how long each strategy rules, enabled (3 by default). A busy machine trips the device's faults, as
 # it must: they are acknowledged, the device is enabled again, and that is counted; too busy for a tap is a skip.
 set -u

@@ -10,8 +10,8 @@ program=${ETHD_STUDY:-ethd-study}
 
 case $workers in '' | *[!0-9]*) echo "parallel.sh: \"$workers\": a number of workers is needed" >&2; exit 2 ;; esac
 
-# What runs for each number that comes: names stand in the environment, since GNU parallel makes a shell's command of
-# its words, and it as well as xargs replaces {} in them.
+# The command that runs for each number. Names are passed in the environment, because GNU parallel makes a shell command of
+# its words, and both it and xargs replace {} in them.
 export ETHD_PROGRAM="$program" ETHD_FILE="$study" ETHD_PEOPLE="$participants" ETHD_WORKERS="$workers" ETHD_OUT="$out"
 export ETHD_SHARD='exec "$ETHD_PROGRAM" "$ETHD_FILE" --simulate "$ETHD_PEOPLE" --shard "$1/$ETHD_WORKERS" --out "$ETHD_OUT"'
 if parallel --version 2>/dev/null | grep -q GNU; then

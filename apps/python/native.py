@@ -21,7 +21,7 @@ def pkg_config(*arguments):
 
 
 def in_build(folder):
-    """(include folder, archives' folder, what to link besides) of a build folder."""
+    """Returns (include folder, archives' folder, further link flags) of a build folder."""
     if not os.path.exists(os.path.join(folder, "libethd-drivers.a")):
         raise SystemExit(f"{folder}: there is no libethd-drivers.a; run make, or install libethd where pkg-config finds it (PKG_CONFIG_PATH)")
     return os.path.join(TREE, "include"), folder, NEEDED
@@ -52,7 +52,7 @@ def headers(include):
 
 
 def without_bodies(text):
-    """Inline functions as declarations are not there: their definitions are left out."""
+    """Leaves out inline functions, which cffi can't parse."""
     out, at = [], 0
     for match in re.finditer(r"static\s+inline\b", text):
         if match.start() < at:
@@ -69,7 +69,7 @@ def without_bodies(text):
 
 
 def declarations(include):
-    """What our headers declare, preprocessed, without attributes."""
+    """Returns what our headers declare, preprocessed, without attributes."""
     compiler = shlex.split(os.environ.get("CC", "cc"))
     command = [*compiler, "-E", "-std=gnu11", "-I" + include, "-D__attribute__(x)=", "-x", "c", "-"]
     text = subprocess.run(command, input=headers(include), stdout=subprocess.PIPE, text=True, check=True).stdout
@@ -82,7 +82,7 @@ def declarations(include):
             kept.append(line)
     text = without_bodies("\n".join(kept))
     text = re.sub(r"_Static_assert\s*\(.*?\)\s*;", "", text, flags=re.S)
-    # what plugins define, and the library does not
+    # plugins define these, the library doesn't
     return re.sub(r"extern\s+const (ethd_plugin_entry ethd_plugin|ethd_driver ethd_driver_plugin);", "", text)
 
 

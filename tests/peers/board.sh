@@ -1,5 +1,5 @@
-# For tests: the proximity ring's real firmware in four simulated boards (simavr), in true time. Wants desk.sh; $absent says
-# what is missing for it, and board mustn't be called then.
+# For tests: the proximity ring's real firmware in four simulated boards (simavr), in real time. Needs desk.sh. If something
+# is missing for it, $absent says what, and board mustn't be called.
 absent=
 [ -f "$BUILD/firmware/proximity_ring.elf" ] || absent="avr-gcc, which makes the firmware for simavr"
 [ -x "$BUILD/tests/ring_board" ] || absent="libsimavr, which runs the firmware (simavr)"

@@ -1,4 +1,4 @@
-# For tests with a device on the desk: a folder that goes at the end with all children, what a test says, and python3 with
+# For tests with a device on the desk: a folder and children that are removed at the end, a test's messages, and python3 with
 # numpy. Sourced first; drive.sh, plant.sh and board.sh put a device there.
 case ${SAN:-} in *thread*) echo "SKIP: a thread sanitizer's threads don't fit into the loop's stack"; exit 77 ;; esac
 python3=$(sh .ci/setup python) || { echo "SKIP: no python3 with numpy, which looks at what the device did"; exit 77; }

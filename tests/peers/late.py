@@ -1,6 +1,6 @@
-"""How late this machine wakes a program up that asks for a millisecond: until it is terminated, then one line,
-"late N of M, worst W ms", N the wake-ups that came more than 4 ms late. What a test of a device in true time can't reach
-is the machine's doing only where this says so, which knows none of our code.
+"""Measures how late this machine wakes up a program that sleeps for a millisecond. When it is terminated, it prints one line,
+"late N of M, worst W ms", where N wake-ups came more than 4 ms late. A test of a device in real time may blame the machine
+only if this program, which has none of our code, says so.
 """
 import signal
 import sys

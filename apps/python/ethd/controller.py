@@ -34,7 +34,7 @@ SENSE: Any = _row(_SENSE_BYTES)
 
 
 class Step(NamedTuple):
-    """What a tick gave."""
+    """The result of a tick."""
 
     tau: NDArray[np.float64]  #: Nm, joints 1 and 2
     trace: np.void  #: a row as in tick.npy
@@ -70,8 +70,8 @@ class Config:
 class Controller:
     """A controller for a configuration: a file's path, the text itself (of several lines), or None for all defaults.
 
-    Relative paths in a file start at its folder. Nothing of it is realtime. With plugins=False a configuration that names
-    plug-ins is refused: they are programs that a folder of somebody else's brings along.
+    Relative paths in a file start at its folder. None of this is realtime. With plugins=False a configuration that names
+    plug-ins is refused, since in somebody else's folder they are somebody else's programs.
     """
 
     def __init__(self, config: Optional[Path] = None, plugins: bool = True):
@@ -98,13 +98,13 @@ class Controller:
         return Step(tau, trace[()], int(status), bool(self._command.safe))
 
     def post(self, config: Union[None, Path, Mapping[str, Any]]) -> None:
-        """What is to rule from the next step on: another configuration, or changes of the present one by "section.key".
+        """Sets what rules from the next step on: another configuration, or changes of the present one by "section.key".
 
             c.post({"transition.law": "smooth", "contact.k_e": 500})
             c.post({"transition.law": mine})            # made by ethd.transition_law
 
-        The torque takes no step: what was and what is to be fade over `transition.swap_time`. Busy: the last post has not
-        been taken yet. On any error everything stays as it was.
+        The torque doesn't jump: the difference fades over `transition.swap_time`. Busy: the last post has not been taken
+        yet. On any error everything stays as it was.
         """
         setup = ffi.new("ethd_setup *", self._setup[0])
         read = self._config
@@ -162,5 +162,5 @@ class Controller:
         lib.ethd_control_clear(self._control)
 
     def reset(self) -> None:
-        """Forgets all but the setup that rules."""
+        """Forgets everything except the setup that rules."""
         lib.ethd_control_reset(self._control)

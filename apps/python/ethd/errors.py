@@ -5,7 +5,7 @@ from ethd._native import ffi, lib
 
 
 class Error(Exception):
-    """What the library refused. `status` is the library's number; the text says what was found and what is allowed."""
+    """The library refused something. `status` is its number; the text says what was found and what is allowed."""
 
     def __init__(self, status: int, message: str):
         super().__init__(message)

@@ -13,7 +13,7 @@ from ethd.errors import Error, check, text
 
 
 class RecordedEvent(NamedTuple):
-    """A line of events.csv: it comes before that row of tick."""
+    """A line of events.csv; the event comes before row `row` of tick."""
 
     row: int
     kind: str  #: setup, start, transition, set, clear, heat, fault
@@ -21,7 +21,7 @@ class RecordedEvent(NamedTuple):
 
 
 class Recording:
-    """A recording's folder. `tick` is mapped from its file, not copied; what it hasn't got is None."""
+    """A recording's folder. `tick` is mapped from its file, not copied; a file that the folder lacks is None."""
 
     def __init__(self, folder: str, plugins: bool = False):
         self.folder = folder
@@ -63,7 +63,7 @@ class Recording:
         return c
 
     def replay(self) -> Iterator[Tuple[np.void, Step]]:
-        """Each recorded row with what the library gives for it now, the recording's events taken at their rows."""
+        """Yields each recorded row with the library's present result for it; the recording's events act at their rows."""
         c = self._open()
         replay, rows = _Replay(c), self._by_row()
         for i in range(len(self.tick)):
@@ -79,7 +79,7 @@ class Recording:
         return rows
 
     def verify(self) -> str:
-        """Replays the folder within the library; its sentence. Error: the first tick and field that differ."""
+        """Replays the folder within the library and returns its sentence. Error: the first tick and field that differ."""
         message = text()
         check(lib.ethd_recording_verify(os.fsencode(self.folder), self._plugins, message), message)
         return str(ffi.string(message).decode())
