@@ -126,7 +126,10 @@ static void date_it(ethd__calibration *c) {
 static void write_files(const ethd__places *p, ethd__calibration *c) {
   char message[ETHD_MESSAGE_MAX];
   const char *const outputs[][2] = {{"--out", arg.out}, {"--csv", arg.csv}, {"--plot", arg.plot}};
-  for (int i = 0; i < 3; i++) ethd__refuse_input(outputs[i][0], outputs[i][1], "--in", arg.in);
+  for (int i = 0; i < 3; i++) {
+    ethd__refuse_input(outputs[i][0], outputs[i][1], "--in", arg.in);
+    for (int k = 0; k < i; k++) ethd__refuse_same(outputs[i][0], outputs[i][1], outputs[k][0], outputs[k][1]);
+  }
   ethd_status status = ETHD_OK;
   date_it(c);
   if (arg.serial) strcpy(c->serial, arg.serial);

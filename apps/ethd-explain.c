@@ -130,12 +130,28 @@ static ethd__explain_point search_it(const ethd__explain_question *question) {
   return search.point[best];
 }
 
+/* What is read isn't written over. */
+static void refuse_inputs(const ethd__loaded *loaded) {
+  static const char *const suffixes[] = {".plant", ".ini"};
+  for (int i = 0; arg.out && i < 2; i++) {
+    char *name;
+    if (asprintf(&name, "%s%s", arg.out, suffixes[i]) < 0) ethd__fail_memory();
+    ethd__refuse_input("--out", name, "the plant that the search begins from", loaded->plant_path);
+    ethd__refuse_input("--out", name, "the configuration beside that plant", loaded->path);
+    ethd__refuse_same("--work", arg.work, "--out", name);
+    free(name);
+  }
+}
+
 /* The search, its best plant, and where that goes. */
 static void find_plant(ethd__explain_question *question) {
   char message[ETHD_MESSAGE_MAX];
   ethd__explain_twin twin;
   const ethd__explain_point point = search_it(question);
   print_point(&point);
+  if (ethd__stop)
+    ethd__fail(ETHD_EXIT_FAILED, "stopped; nothing is written%s",
+               arg.work ? ", and the same command goes on" : "; with --work the next run would go on");
   ethd__explain_make(&question->base, &arg.structure, &point, &twin);
   confirm(question, &twin, "the best plant, with fingers that the search didn't meet");
   if (arg.out) check(ethd__explain_write(arg.out, &point, &twin, message), message);
@@ -151,6 +167,7 @@ int main(int argc, char **argv) {
     return ethd__end(ETHD_EXIT_DONE);
   }
   ethd__load(NULL, arg.judge ? arg.judge : "n", true, false, &loaded);
+  refuse_inputs(&loaded);
   ethd__explain_question question = {.config = loaded.config,
                                      .base = loaded.plant,
                                      .structure = arg.structure,

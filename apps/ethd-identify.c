@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "identify/excite.h"
 #include "identify/page.h"
+#include "record/recording_parts.h"
 #include "report/picture.h"
 #include "sim/plant.h"
 #include "text/error_text.h"
@@ -159,6 +160,40 @@ static bool check_evidence(const ethd__evidence *e, double count) {
   return true;
 }
 
+/* ---- output ---- */
+
+static char *csv_beside(const char *png) {
+  char *csv = strdup(png);
+  if (!csv) ethd__fail_memory();
+  memcpy(csv + strlen(csv) - 4, ".csv", 4);
+  return csv;
+}
+
+static void refuse_recorded(const char *option, const char *output, const ethd__evidence *e) {
+  for (uint32_t i = 0; output && i < e->recording_count; i++)
+    if (ethd__recording_holds(e->folders[i], output))
+      ethd__fail(ETHD_EXIT_INPUT, "%s: %s belongs to the recording %s, which is only read; another name is needed",
+                 option, output, e->folders[i]);
+}
+
+/* What is read isn't written over, nor is one output by another. Returns the path of the CSV; NULL: none is written. */
+static char *check_outputs(const ethd__evidence *e) {
+  char *csv = arg.csv    ? strdup(arg.csv)
+              : arg.plot ? csv_beside(arg.plot)
+                         : NULL,
+       *base = ethd__plant_path(arg.base, ".");
+  const char *table = arg.csv ? "--csv" : "--plot";
+  if ((arg.csv && !csv) || !base) ethd__fail_memory();
+  const char *const outputs[][2] = {{"--out", arg.out}, {table, csv}, {"--plot", arg.plot}};
+  for (int i = 0; i < 3; i++) {
+    refuse_recorded(outputs[i][0], outputs[i][1], e);
+    ethd__refuse_input(outputs[i][0], outputs[i][1], "--base", base);
+    for (int k = 0; k < i; k++) ethd__refuse_same(outputs[i][0], outputs[i][1], outputs[k][0], outputs[k][1]);
+  }
+  free(base);
+  return csv;
+}
+
 /* ---- fitting ---- */
 
 static void check_finding(ethd__finding *f) {
@@ -177,21 +212,13 @@ static void check_finding(ethd__finding *f) {
         f->evidence->folders[other], 100 * fabs(shift), shift > 0 ? "more" : "less");
 }
 
-static char *csv_beside(const char *png) {
-  char *csv = strdup(png);
-  if (!csv) ethd__fail_memory();
-  memcpy(csv + strlen(csv) - 4, ".csv", 4);
-  return csv;
-}
-
-static void write_files(const ethd__finding *f) {
-  char message[ETHD_MESSAGE_MAX], *csv = arg.csv ? strdup(arg.csv) : arg.plot ? csv_beside(arg.plot) : NULL;
+static void write_files(const ethd__finding *f, const char *csv) {
+  char message[ETHD_MESSAGE_MAX];
   ethd_status status = ETHD_OK;
   if (arg.out) status = ethd__page_write(f, arg.out, message);
   if (!status && csv) status = ethd__page_csv(f, csv, message);
   if (!status && arg.plot) status = ethd__identify_draw(f, csv, arg.plot, message);
   if (status) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
-  free(csv);
 }
 
 static void fit_arm(ethd__finding *f) {
@@ -216,7 +243,7 @@ static void keep_arm(ethd__finding *f) {
 
 static int identify(const ethd__evidence *e) {
   static ethd__finding f;
-  char message[ETHD_MESSAGE_MAX];
+  char message[ETHD_MESSAGE_MAX], *csv = check_outputs(e);
   f.plant = load_plant(arg.base);
   f.base = arg.base;
   f.evidence = e;
@@ -228,7 +255,8 @@ static int identify(const ethd__evidence *e) {
   if (ethd__stop) ethd__fail(ETHD_EXIT_FAILED, "stopped; nothing is written");
   ethd__finding_plant(&f);
   ethd__page_print(stdout, &f);
-  write_files(&f);
+  write_files(&f, csv);
+  free(csv);
   free(f.residual);
   ethd__shooting_close(&f.problem);
   return ETHD_EXIT_DONE;

@@ -186,7 +186,11 @@ int main(int argc, char **argv) {
   for (int i = 0; i < 3; i++) {
     ethd__refuse_input("--out", arg.out, "--config or --plant", inputs[i]);
     ethd__refuse_input("--csv", arg.csv, "--config or --plant", inputs[i]);
+    ethd__refuse_input("--plot", arg.plot, "--config or --plant", inputs[i]);
   }
+  ethd__refuse_same("--csv", arg.csv, "--out", arg.out);
+  ethd__refuse_same("--plot", arg.plot, "--out", arg.out);
+  ethd__refuse_same("--plot", arg.plot, "--csv", arg.csv);
   open_space(loaded.config, &space);
   if (!ethd__speed_parse("low", &loaded.plant, &speeds[0]) || !ethd__speed_parse("high", &loaded.plant, &speeds[1]))
     ethd__fail(ETHD_EXIT_INPUT, "%s: a plant's speeds must be positive", loaded.plant_path);

@@ -41,6 +41,6 @@ one decoder 48 drivers/proximity_ring/decoder.c 's/while (at < CODED)/while (at 
 one param 40 lib/param.c 's/bool inside = v >= row->min \&\& v <= row->max;/bool inside = !(v < row->min) \&\& v <= row->max;/' $memory
 # minutes
 [ "${ETHD_PROOFS:-}" != all ] || one guard 34 lib/guard/guard.c \
-  's/return bits | ETHD_GUARD_RATE | limit(heat.*/return bits | ETHD_GUARD_RATE;/; /^         limit(limits->torque, ETHD_GUARD_TORQUE, torque);/d' \
+  '/if (!clamp(s->last\[i\], rise, torque)) return bits;/,/return bits | ETHD_GUARD_RATE;/{/limits->torque/d}' \
   --no-standard-checks --sat-solver cadical
 exit $failed

@@ -117,6 +117,32 @@ void ethd__refuse_input(const char *option, const char *output, const char *inpu
              input_option);
 }
 
+static bool is_same_folder(const char *a, const char *b) {
+  struct stat info, other;
+  char *folders[] = {ethd__path_folder(a), ethd__path_folder(b)};
+  if (!folders[0] || !folders[1]) ethd__fail_memory();
+  bool same = stat(folders[0], &info) == 0 && stat(folders[1], &other) == 0 && info.st_ino == other.st_ino &&
+              info.st_dev == other.st_dev;
+  free(folders[0]);
+  free(folders[1]);
+  return same;
+}
+
+/* Devices and pipes take what several write. */
+static bool is_same_file(const char *a, const char *b) {
+  struct stat info, other;
+  bool is_there = stat(a, &info) == 0, other_is_there = stat(b, &other) == 0;
+  const char *slash = strrchr(a, '/'), *other_slash = strrchr(b, '/');
+  if (is_there != other_is_there) return false;
+  if (is_there) return S_ISREG(info.st_mode) && info.st_ino == other.st_ino && info.st_dev == other.st_dev;
+  return !strcmp(slash ? slash + 1 : a, other_slash ? other_slash + 1 : b) && is_same_folder(a, b);
+}
+
+void ethd__refuse_same(const char *option, const char *output, const char *other_option, const char *other) {
+  if (output && other && is_same_file(output, other))
+    ethd__fail(ETHD_EXIT_INPUT, "%s: %s is the file of %s, too; another name is needed", option, output, other_option);
+}
+
 void ethd__option_list(const char *option, const char *text, void (*each)(const char *word, void *user), void *user) {
   char *words = strdup(text), *rest = words, *word;
   if (!words) ethd__fail_memory();

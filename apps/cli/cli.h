@@ -48,6 +48,9 @@ const char *ethd__option_picture(const char *option, const char *text);
 /* Exits 2 if the output is the input's file; NULL: there is none. */
 void ethd__refuse_input(const char *option, const char *output, const char *input_option, const char *input);
 
+/* Exits 2 if two outputs would be one file, of which the second would replace the first; NULL: there is none. */
+void ethd__refuse_same(const char *option, const char *output, const char *other_option, const char *other);
+
 /* Calls `each` for every word of a comma-separated list; exit 2 on an empty word. */
 void ethd__option_list(const char *option, const char *text, void (*each)(const char *word, void *user), void *user);
 

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include "cli/cli.h"
@@ -85,32 +86,50 @@ static ethd_status take_totals(const char *path, const char *what, char *text, j
   char *line = text, *end = strchr(text, '\n');
   if (!end || (size_t)(end - text) != strlen(what) || strncmp(text, what, strlen(what)) != 0)
     return ethd__say(message, ETHD_E_DIFFERS, "%s: the journal of another search; another --work is needed", path);
-  for (line = end + 1; (end = strchr(line, '\n')); line = end + 1) {
-    double *totals = realloc(j->totals, (j->count + 1) * sizeof *totals);
-    if (!totals) ethd__fail_memory();
-    j->totals = totals;
-    if (!ethd__number(line, (size_t)(end - line), &j->totals[j->count++]))
-      return ethd__say(message, ETHD_E_SYNTAX, "%s: a line that isn't a number", path);
+  size_t lines = 0;
+  for (line = end + 1; (end = strchr(line, '\n')); line = end + 1) lines++;
+  if (!(j->totals = malloc((lines + 1) * sizeof *j->totals))) ethd__fail_memory();
+  for (line = strchr(text, '\n') + 1; (end = strchr(line, '\n')); line = end + 1) {
+    double *total = &j->totals[j->count++];
+    if (!ethd__number(line, (size_t)(end - line), total) || !(*total >= 0))
+      return ethd__say(message, ETHD_E_SYNTAX, "%s:%zu: no sum of misses", path, j->count + 1);
   }
   return ETHD_OK;
 }
 
-/* Opens the journal. Only whole lines count, and the file is written anew with them. */
-static ethd_status open_journal(const ethd__explain_search *s, journal *j, char *message) {
-  char *text = NULL, *what = describe(s);
+static ethd_status refuse(const char *path, char *message) {
+  return ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno ? errno : EIO));
+}
+
+/* Returns the length of the whole lines. The last line is cut off where a process was ended while it wrote. */
+static size_t whole_lines(const char *text, size_t length) {
+  while (length && text[length - 1] != '\n') length--;
+  return length;
+}
+
+/* Opens the journal. What is there stays there; only a last line that isn't whole is cut off. */
+static ethd_status open_file(const char *path, const char *what, journal *j, char *message) {
+  char *text = NULL;
   size_t length = 0;
-  ethd_status status = ETHD_OK;
-  *j = (journal){0};
-  if (s->journal && !access(s->journal, F_OK)) {
-    status = ethd_text_read(s->journal, (size_t)1 << 26, &text, &length, message);
-    if (!status) status = take_totals(s->journal, what, text, j, message);
-  }
-  if (!status && s->journal && !(j->file = fopen(s->journal, "we")))
-    status = ethd__say(message, ETHD_E_FILE, "%s: %s", s->journal, strerror(errno));
-  if (j->file) fprintf(j->file, "%s\n", what);
-  for (size_t i = 0; j->file && i < j->count; i++) fprintf(j->file, "%.17g\n", j->totals[i]);
-  if (j->file) fflush(j->file);
+  if (!(j->file = fopen(path, "abe"))) return refuse(path, message);
+  if (flock(fileno(j->file), LOCK_EX | LOCK_NB))
+    return ethd__say(message, ETHD_E_FILE, "%s: another process works on this search", path);
+  ethd_status status = ethd_text_read(path, (size_t)1 << 26, &text, &length, message);
+  size_t whole = status ? 0 : whole_lines(text, length);
+  bool is_begun = !status && length == strlen(text) && !strncmp(text, what, length); /* ended within its first line */
+  if (!status && !(is_begun && !whole)) status = take_totals(path, what, text, j, message);
   free(text);
+  if (status) return status;
+  if (ftruncate(fileno(j->file), (off_t)whole)) return refuse(path, message);
+  errno = 0;
+  if (!whole) fprintf(j->file, "%s\n", what);
+  return fflush(j->file) ? refuse(path, message) : ETHD_OK;
+}
+
+static ethd_status open_journal(const ethd__explain_search *s, journal *j, char *message) {
+  char *what = describe(s);
+  *j = (journal){0};
+  ethd_status status = s->journal ? open_file(s->journal, what, j, message) : ETHD_OK;
   free(what);
   return status;
 }
@@ -126,8 +145,11 @@ static ethd_status judge(const ethd__explain_search *s, journal *j, const ethd__
   ethd__explain_make(&s->question->base, &s->question->structure, point, &twin);
   ethd_status status = ethd__explain_judge(s->question, &twin, enough, &figures, total, message);
   if (status || !j->file) return status;
+  errno = 0;
   fprintf(j->file, "%.17g\n", *total);
-  return fflush(j->file) ? ethd__say(message, ETHD_E_FILE, "%s: %s", s->journal, strerror(errno)) : ETHD_OK;
+  if (!fflush(j->file)) return ETHD_OK;
+  (void)!refuse(s->journal, message);
+  return ETHD_E_UNFINISHED;
 }
 
 /* ---- the whole ---- */
@@ -166,7 +188,7 @@ ethd_status ethd__explain_run(ethd__explain_search *s, char message[ETHD_MESSAGE
     s->done = g;
   }
   ethd__progress(s->generations, s->generations, "generations");
-  if (j.file) fclose(j.file);
+  if (j.file && fclose(j.file) && !status) status = refuse(s->journal, message);
   free(j.totals);
   return status;
 }

@@ -6,9 +6,10 @@
 #include "cli/cli.h"
 #include "identify/evidence.h"
 
-#define NEAR 0.6    /* of the gap between finger and ring: a finger farther out may touch before the next reading */
-#define APART 12e-3 /* s before and after a reading that is near which are left out */
-#define PACE 0.25   /* of a period, by which the time between two samples may differ from it */
+#define NEAR 0.6       /* of the gap between finger and ring: a finger farther out may touch before the next reading */
+#define APART 12e-3    /* s before and after a reading that is near which are left out */
+#define PACE 0.25      /* of a period, by which the time between two samples may differ from it */
+#define TORQUE_MAX 1e4 /* Nm: no device was commanded more */
 #define CLIPS (ETHD_GUARD_TORQUE | ETHD_GUARD_RATE)
 
 static void *longer(void *old, size_t count, size_t size) {
@@ -38,7 +39,7 @@ static void keep_apart(const ethd_setup *setup, const ethd_trace *rows, size_t c
   for (size_t i = 0; i < count; i++) {
     const ethd_sense *s = &rows[i].sense;
     if (!ethd__evidence_is_near(setup, &rows[i])) continue;
-    int64_t age = (int64_t)((double)(s->time_ns - s->sample_ns) * 1e-9 / setup->period);
+    int64_t age = (int64_t)(ethd__evidence_apart(s->sample_ns, s->time_ns) / setup->period);
     int64_t at = (int64_t)i - (age > 0 && age < 1000 ? age : 0);
     for (int64_t k = at - pad; k <= at + pad; k++)
       if (k >= 0 && k < (int64_t)count) good[k] = 0;
@@ -55,7 +56,7 @@ static void add_delivery(ethd__evidence *e, const ethd_setup *setup, const ethd_
                       {(double)NAN, (double)NAN},
                       {(double)NAN, (double)NAN},
                       e->count + i,
-                      1e-9 * (double)(s->time_ns - s->sample_ns),
+                      ethd__evidence_apart(s->sample_ns, s->time_ns),
                       ethd__evidence_is_near(setup, &rows[i])};
   bool world = s->have & ETHD_HAVE_WORLD;
   if (s->have & ETHD_HAVE_CENTRE && world) d.finger = (ethd_vec){s->centre[0], s->centre[1]};
@@ -71,13 +72,17 @@ static void add_delivery(ethd__evidence *e, const ethd_setup *setup, const ethd_
 /* ---- stretches ---- */
 
 bool ethd__evidence_follows(const ethd__evidence *e, const ethd_trace *row) {
-  double apart = 1e-9 * (double)(row[0].sense.time_ns - row[-1].sense.time_ns);
-  return fabs(apart - e->period) <= PACE * e->period && !row->sense.missed && row[0].tick == row[-1].tick + 1;
+  double apart = ethd__evidence_apart(row[-1].sense.time_ns, row[0].sense.time_ns);
+  return fabs(apart - e->period) <= PACE * e->period && !row->sense.missed &&
+         (uint64_t)row[0].tick == (uint64_t)row[-1].tick + 1;
 }
+
+/* NaN isn't. */
+static bool is_possible(const double v[2], double most) { return fabs(v[0]) <= most && fabs(v[1]) <= most; }
 
 static bool is_known(const ethd_trace *row) {
   const ethd_sense *s = &row->sense;
-  return !s->faults && isfinite(s->q[0]) && isfinite(s->q[1]) && isfinite(row->tau[0]) && isfinite(row->tau[1]);
+  return !s->faults && is_possible(s->q, ETHD_SENSE_ANGLE_MAX) && is_possible(row->tau, TORQUE_MAX);
 }
 
 static void add_stretch(ethd__evidence *e, size_t first, size_t count) {

@@ -97,7 +97,7 @@ static double median(double *values, size_t count) {
   return values[count / 2];
 }
 
-static double apart(const ethd__delivery *d) { return 1e-9 * (double)(d[0].sample_ns - d[-1].sample_ns); }
+static double apart(const ethd__delivery *d) { return ethd__evidence_apart(d[-1].sample_ns, d[0].sample_ns); }
 
 static bool follows(const ethd__evidence *e, size_t i, double pace) {
   const ethd__delivery *d = &e->deliveries[i];
@@ -130,8 +130,8 @@ static void find_latency(const ethd__evidence *e, ethd__bracket *out) {
   double low = 0, high = (double)INFINITY;
   for (size_t i = 0; i < e->delivery_count; i++) {
     const ethd__delivery *d = &e->deliveries[i];
-    low = fmax(low, 1e-9 * (double)(d->after_ns - d->sample_ns));
-    high = fmin(high, 1e-9 * (double)(d->at_ns - d->sample_ns));
+    low = fmax(low, ethd__evidence_apart(d->sample_ns, d->after_ns));
+    high = fmin(high, ethd__evidence_apart(d->sample_ns, d->at_ns));
   }
   if (isfinite(high)) *out = (ethd__bracket){low < high ? (low + high) / 2 : high, fmin(low, high), fmax(low, high)};
 }

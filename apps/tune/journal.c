@@ -1,6 +1,7 @@
 #include "tune/journal.h"
 
 #include <errno.h>
+#include <search.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
@@ -19,16 +20,19 @@ static char *shard_path(const ethd__tune_journal *j, uint32_t index) {
   return ethd__path_join(j->folder, name);
 }
 
+static int by_number(const void *a, const void *b) {
+  const ethd__tune_row *x = a, *y = b;
+  if (x->round != y->round) return x->round < y->round ? -1 : 1;
+  return (x->number > y->number) - (x->number < y->number);
+}
+
+/* Keeps the row, unless its point has a score already. */
 static ethd_status keep(ethd__tune_journal *j, const ethd__tune_row *row, char *message) {
-  if (j->row_count == j->room) {
-    size_t room = j->room ? 2 * j->room : 256;
-    ethd__tune_row *rows = realloc(j->rows, room * sizeof *rows);
-    if (!rows) return ethd__no_memory(message, j->folder);
-    j->rows = rows;
-    j->room = room;
-  }
-  j->rows[j->row_count++] = *row;
-  return ETHD_OK;
+  ethd__tune_row *own = malloc(sizeof *own);
+  if (own) *own = *row;
+  ethd__tune_row **found = own ? tsearch(own, &j->rows, by_number) : NULL;
+  if (!found || *found != own) free(own);
+  return found ? ETHD_OK : ethd__no_memory(message, j->folder);
 }
 
 /* ---- reading ---- */
@@ -56,7 +60,7 @@ static ethd_status take_rows(ethd__tune_journal *j, const ethd_csv *csv, const c
   for (size_t r = 0; !status && r < csv->rows; r++) {
     ethd__tune_row row;
     if (!row_of(csv, r, &row)) return ethd__say(message, ETHD_E_SYNTAX, "%s:%zu: no score", path, ethd_csv_line(r));
-    if (!ethd__tune_journal_find(j, row.round, row.number)) status = keep(j, &row, message);
+    status = keep(j, &row, message);
   }
   return status;
 }
@@ -89,9 +93,9 @@ ethd_status ethd__tune_journal_read(ethd__tune_journal *j, char message[ETHD_MES
 }
 
 const ethd__tune_score *ethd__tune_journal_find(const ethd__tune_journal *j, uint32_t round, uint32_t number) {
-  for (size_t i = 0; i < j->row_count; i++)
-    if (j->rows[i].round == round && j->rows[i].number == number) return &j->rows[i].score;
-  return NULL;
+  const ethd__tune_row wanted = {.round = round, .number = number};
+  ethd__tune_row *const *found = tfind(&wanted, &j->rows, by_number);
+  return found ? &(*found)->score : NULL;
 }
 
 /* ---- writing ---- */
@@ -160,11 +164,13 @@ ethd_status ethd__tune_journal_add(ethd__tune_journal *j, uint32_t round, uint32
   fprintf(j->file, "%u,%u", round, number);
   for (size_t i = 0; i < ETHD_TUNE_FIGURE_COUNT; i++) fprintf(j->file, ",%.17g", numbers[i]);
   putc('\n', j->file);
-  return fflush(j->file) ? refuse(j->folder, message) : ETHD_OK;
+  if (!fflush(j->file)) return ETHD_OK;
+  (void)!refuse(j->folder, message);
+  return ETHD_E_UNFINISHED;
 }
 
 void ethd__tune_journal_close(ethd__tune_journal *j) {
   if (j->file) fclose(j->file);
-  free(j->rows);
+  tdestroy(j->rows, free);
   *j = (ethd__tune_journal){0};
 }

@@ -17,8 +17,7 @@ typedef struct ethd__tune_journal {
   const char *folder; /* NULL: nothing is kept */
   uint32_t index, count;
   FILE *file; /* this shard's file */
-  ethd__tune_row *rows;
-  size_t row_count, room;
+  void *rows; /* the tree of tsearch: each ethd__tune_row, by round and number */
 } ethd__tune_journal;
 
 /* Makes the folder, or goes on in it. Refuses one in which something else is searched for (`what` differs from its

@@ -87,7 +87,8 @@ static void *run_watch(void *loop) {
   watch w = {.now = ethd__loop_now(l), .alive = ethd__loop_now(l)};
   while (!ethd_loop_ended(l) && !atomic_load_explicit(&l->left, memory_order_relaxed)) {
     int64_t left = left_to_live(l, &w);
-    struct timespec t = {.tv_nsec = left < 1 ? 1 : left < LOOK_MAX ? left : LOOK_MAX};
+    /* nothing is left once the device was let go: the thread waits for the end of the hanging step */
+    struct timespec t = {.tv_nsec = left < 1 ? PAUSE : left < LOOK_MAX ? left : LOOK_MAX};
     nanosleep(&t, NULL);
     look(l, &w);
     if (ethd_loop_armed(l) && left_to_live(l, &w) <= 0) let_go(l);

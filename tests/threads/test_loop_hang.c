@@ -20,6 +20,13 @@ static int64_t now(void) {
   return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
 }
 
+/* Of all threads of this process. */
+static int64_t cpu_time(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
+}
+
 static void pause_for(long ns) { nanosleep(&(struct timespec){.tv_nsec = ns}, NULL); }
 
 static void hang(void) {
@@ -128,6 +135,9 @@ START_TEST(test_hangs) {
   ck_assert_int_eq(ethd_loop_armed(loop), !watched);
   ethd_loop_read(loop, &stats);
   ck_assert_uint_eq(stats.faults[ETHD_FAULT_LOOP], (unsigned)watched);
+  int64_t cpu = cpu_time(), begin_ns = now();
+  pause_for(100000000); /* who watches takes no processor while it waits */
+  ck_assert_int_lt(cpu_time() - cpu, (now() - begin_ns) / 2);
   ethd_loop_stop(loop);
   ethd_status status = ethd_loop_join(loop);
   double took = 1e-9 * (double)(now() - from);
