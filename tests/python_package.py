@@ -56,6 +56,16 @@ r = ethd.read(folder + "/run")
 assert {"transition", "set"} <= {e.kind for e in r.events} and r.taps is None and r.truth is None
 assert all(step.trace.tobytes() == row.tobytes() for row, step in r.replay())
 
+# rows of other columns aren't taken for these, and objects aren't unpickled
+whole, odd = r.tick, folder + "/odd"
+subprocess.run(["cp", "-r", folder + "/run", odd], check=True)
+np.save(odd + "/tick.npy", whole[[name for name in whole.dtype.names if name != "guard"]])
+assert len(ethd.read(odd).tick) == len(whole)
+refuses("other columns than those of this version", lambda: next(ethd.read(odd).replay()), ValueError)
+refuses("other columns than those of this version", lambda: ethd.read(odd).controller(), ValueError)
+np.save(odd + "/tick.npy", np.array([print], object))
+refuses("", lambda: ethd.read(odd), ValueError)
+
 # ---- a configuration, changes while it runs, events ----
 sense = np.zeros((), ethd.controller.SENSE)
 sense["have"], sense["finger"], sense["q"] = 2, (0.26, 0.25), r.tick["q"][0]

@@ -16,8 +16,16 @@ static int ends(const char *path, const char *end) {
   return n >= m && !strcmp(path + n - m, end);
 }
 
+/* Returns whether this call fails; errno says why. */
+static int fails(mock_failure *f, const char *path) {
+  if (!f->path || !ends(path, f->path) || f->after-- > 0) return 0;
+  errno = f->reason;
+  return 1;
+}
+
 static int mock_open(const char *path, int flags) {
   (void)flags;
+  if (fails(&counter_mock.open, path)) return -1;
   if (ends(path, "/ceiling") && !counter_mock.ceiling[0]) return fail(ENOENT);
   if (ends(path, "/enable") || strstr(path, "counter9")) return fail(ENOENT);
   for (int i = 0; i < 16; i++)
@@ -42,6 +50,7 @@ static int mock_ioctl(int fd, unsigned long request, void *argument) {
     if (w->event == counter_mock.refuse_event) return fail(EINVAL);
     counter_mock.watches[counter_mock.watch_count++ % 8] = *w;
   }
+  if (request == COUNTER_ENABLE_EVENTS_IOCTL && counter_mock.ioctl_reason) return fail(counter_mock.ioctl_reason);
   if (request == COUNTER_ENABLE_EVENTS_IOCTL) counter_mock.enabled = 1;
   if (request == COUNTER_DISABLE_EVENTS_IOCTL) counter_mock.enabled = 0;
   return 0;
@@ -62,12 +71,14 @@ static ssize_t mock_read(int fd, void *to, size_t size) {
 static ssize_t mock_read_text(int fd, char *to, size_t size) {
   const char *path = path_of(fd);
   if (counter_mock.gone) return fail(ENODEV);
+  if (fails(&counter_mock.read, path)) return -1;
   if (ends(path, "/function")) return snprintf(to, size, "%s\n", counter_mock.function);
   if (ends(path, "/ceiling")) return snprintf(to, size, "%s\n", counter_mock.ceiling);
   return snprintf(to, size, "%" PRIu64 "\n", counter_mock.count[strstr(path, "count1/") != NULL]);
 }
 
 static ssize_t mock_write_text(int fd, const char *from, size_t size) {
+  if (fails(&counter_mock.write, path_of(fd))) return -1;
   if (ends(path_of(fd), "/function") && !counter_mock.deaf)
     snprintf(counter_mock.function, sizeof counter_mock.function, "%.*s", (int)size, from);
   return (ssize_t)size;

@@ -8,7 +8,15 @@
 
 #define MOCK_EVENTS 1024
 
+/* A call that fails: on paths that end so (NULL: none), after so many that went well, with this errno. */
+typedef struct mock_failure {
+  const char *path;
+  int after, reason;
+} mock_failure;
+
 typedef struct mock_counter {
+  mock_failure open, read, write;
+  int ioctl_reason; /* errno of enabling events; 0: it goes well */
   uint64_t count[2];
   char ceiling[32], function[32]; /* empty: the attribute doesn't exist */
   int deaf;                       /* 1: takes a function, and keeps the old one */

@@ -18,6 +18,7 @@ typedef struct plain {
   int reads, writes, safes, services;
   ethd_command last;
   ethd_status says;
+  bool has_more; /* speeds, a finger and its centre */
 } plain;
 
 static plain p;
@@ -41,6 +42,14 @@ static ethd_status plain_read(void *d, int64_t now, ethd_sense *out) {
     out->sample_ns = now;
     for (int k = 0; k < ETHD_RAYS; k++) out->rays[k] = k + t;
     out->ring[0] = 100 + t;
+  }
+  if (p.has_more) {
+    out->have |= ETHD_HAVE_DQ | ETHD_HAVE_FINGER | ETHD_HAVE_CENTRE | ETHD_HAVE_RING;
+    out->dq[0] = 10 + t, out->dq[1] = 20 + t;
+    out->finger[0] = 30 + t, out->finger[1] = 40 + t;
+    out->centre[0] = 50 + t, out->centre[1] = 60 + t;
+    out->ring[0] = 70 + t, out->ring[1] = 80 + t;
+    out->sample_ns = now;
   }
   out->time_ns = now;
   out->q[0] = t;
@@ -134,6 +143,49 @@ START_TEST(test_values) {
   ethd_figure f[2];
   ck_assert_uint_eq(x.driver->figures(x.device, f, 2), 1);
   ck_assert_double_eq(f[0].value, 3 + 1 + 2 + 1 + 1 + 1 + 1);
+  close_script(&x);
+}
+END_TEST
+
+/* Each channel's own numbers and no others; a channel that the sample hasn't got stays as it is. */
+START_TEST(test_channels) {
+  spoilt x = open_script("0 dq1 offset by=1 for=0.002\n0 finger2 value by=7 for=0.002\n0 centre nan for=0.002\n"
+                         "0 ring1 scale by=2 for=0.002\n0 time freeze for=0.002\n");
+  p.has_more = true;
+  for (int ms = 0; ms < 3; ms++) {
+    const ethd_sense *s = sample(&x);
+    bool bad = ms < 2;
+    ck_assert_double_eq_tol(s->dq[0], 10 + at(ms) + bad, 1e-12);
+    ck_assert_double_eq_tol(s->dq[1], 20 + at(ms), 1e-12);
+    ck_assert_double_eq_tol(s->finger[0], 30 + at(ms), 1e-12);
+    ck_assert_double_eq_tol(s->finger[1], bad ? 7 : 40 + at(ms), 1e-12);
+    ck_assert_int_eq(isnan(s->centre[0]) && isnan(s->centre[1]), bad);
+    ck_assert_double_eq_tol(s->ring[0], (1 + bad) * (70 + at(ms)), 1e-12);
+    ck_assert_int_eq(s->time_ns, (41 + (bad ? 0 : ms)) * (int64_t)MS);
+  }
+  close_script(&x);
+  x = open_script("0 dq offset by=1 for=inf\n0 finger nan for=inf\n0 centre nan for=inf\n");
+  const ethd_sense *s = sample(&x);
+  ck_assert(s->dq[0] == 0 && s->finger[0] == 0 && s->centre[0] == 0);
+  ethd_figure f;
+  ck_assert_uint_eq(x.driver->figures(x.device, &f, 1), 1);
+  ck_assert_double_eq(f.value, 0);
+  close_script(&x);
+}
+END_TEST
+
+/* What isn't spoilt is the device's own: its limits, units, end and remarks, after one that says what this is. */
+START_TEST(test_passes_on) {
+  spoilt x = open_script("1 q1 nan\n");
+  ck_assert_str_eq(x.driver->remark(x.device, 0), "faults are injected: this is no run to trust");
+  ck_assert_ptr_null(x.driver->remark(x.device, 1));
+  ck_assert_uint_eq(x.driver->units(x.device), 1);
+  ck_assert(isinf(x.driver->limits(x.device).torque));
+  ck_assert(isnan(x.driver->dynamics(x.device).mass[0]) || x.driver->dynamics(x.device).mass[0] == 0);
+  ck_assert_str_eq(x.driver->why(x.device), "");
+  x.driver->clear(x.device);
+  ck_assert_int_eq(x.driver->home(x.device, NULL), ETHD_E_ARGUMENT);
+  ck_assert_int_eq(x.driver->stop(x.device), ETHD_OK);
   close_script(&x);
 }
 END_TEST
@@ -318,6 +370,8 @@ int main(void) {
   TCase *t = tcase_create("inject");
   tcase_set_timeout(t, 60);
   tcase_add_test(t, test_values);
+  tcase_add_test(t, test_channels);
+  tcase_add_test(t, test_passes_on);
   tcase_add_test(t, test_noise);
   tcase_add_test(t, test_readings);
   tcase_add_test(t, test_calls);

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ethd._native import ffi, lib
-from ethd.controller import Controller, Step
+from ethd.controller import TRACE, Controller, Step
 from ethd.errors import Error, check, text
 
 
@@ -51,6 +51,8 @@ class Recording:
             return [RecordedEvent(int(e["row"]), e["kind"], e["detail"]) for e in csv.DictReader(file)]
 
     def _open(self) -> Controller:
+        if self.tick.dtype != TRACE:
+            raise ValueError(f"{self.folder}/tick.npy: other columns than those of this version of libethd: it can't be replayed")
         try:
             return Controller(os.path.join(self.folder, "config.ini"), self._plugins)
         except Error as e: # the library names its programs' option

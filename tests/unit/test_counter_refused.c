@@ -1,0 +1,142 @@
+/* Encoders behind the kernel's counters: each call of the kernel that fails and each setting that can't be is one message,
+   which says where and why, and nothing stays open. */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "unit/mock_counter.h"
+#include "unit/rig.h"
+
+#define D ethd_driver_counter
+#define SYS "/sys/bus/counter/devices/counter0/count"
+
+static char message[ETHD_MESSAGE_MAX];
+
+static ethd_status try(const char *key, const char *value, void **device) {
+  static ethd_setup setup;
+  setup = ethd_setup_default();
+  const ethd_setting settings[] = {{"ratio", "12", 1}, {key, value, 2}};
+  const ethd_device_def def = {&setup, settings, key ? 2 : 1, NULL, "c.ini", 1};
+  message[0] = 0;
+  *device = NULL;
+  ethd_status status = D.open(&def, device, message);
+  if (status && *device) D.close(*device), *device = NULL; /* as a caller must */
+  return status;
+}
+
+static void expect(const char *key, const char *value, ethd_status expected, const char *said) {
+  void *device;
+  ethd_status status = try(key, value, &device);
+  ck_assert_msg(status == expected && !strcmp(message, said), "%d, not %d: %s", status, expected, message);
+  ck_assert_int_eq(counter_mock.open_files, 0);
+}
+
+START_TEST(test_calls_that_fail) {
+  static const struct {
+    mock_failure open, read, write;
+    const char *function, *said;
+  } cases[] = {
+      {.open = {"/dev/counter0", 0, EACCES}, .said = "/dev/counter0: can't be opened: Permission denied"},
+      {.open = {"count0/count", 0, EACCES}, .said = SYS "0/count: can't be opened: Permission denied"},
+      {.open = {"count1/count", 0, EMFILE}, .said = SYS "1/count: can't be opened: Too many open files"},
+      {.open = {"count0/function", 0, EACCES}, .said = SYS "0/function: can't be read: Permission denied"},
+      {.read = {"count0/function", 0, EIO}, .said = SYS "0/function: can't be read: Input/output error"},
+      {.open = {"count0/function", 1, EACCES},
+       .function = "pulse",
+       .said = SYS "0/function: quadrature x4: Permission denied"},
+      {.write = {"count0/function", 0, EINVAL},
+       .function = "pulse",
+       .said = SYS "0/function: quadrature x4: Invalid argument"},
+      {.read = {"count0/function", 1, EIO},
+       .function = "pulse",
+       .said = SYS "0/function: can't be read: Input/output error"},
+      {.open = {"count0/enable", 0, EACCES},
+       .function = "pulse",
+       .said = SYS "0/enable: can't be enabled: Permission denied"},
+      {.open = {"count1/ceiling", 0, EACCES}, .said = SYS "1/ceiling: can't be read: Permission denied"},
+      {.read = {"count0/ceiling", 0, EIO}, .said = SYS "0/ceiling: can't be read: Input/output error"},
+      {.read = {"count0/count", 0, EIO}, .said = "/dev/counter0: count 0 can't be read"},
+      {.read = {"count1/count", 0, EIO}, .said = "/dev/counter0: count 1 can't be read"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    mock_counter_install();
+    counter_mock.open = cases[i].open;
+    counter_mock.read = cases[i].read;
+    counter_mock.write = cases[i].write;
+    if (cases[i].function) strcpy(counter_mock.function, cases[i].function);
+    expect(NULL, NULL, ETHD_E_DEVICE, cases[i].said);
+  }
+}
+END_TEST
+
+START_TEST(test_events_that_fail) {
+  mock_counter_install();
+  counter_mock.ioctl_reason = ENODEV;
+  expect("home", "yes", ETHD_E_DEVICE, "/dev/counter0: events: No such device");
+}
+END_TEST
+
+/* A ceiling and a count that are no numbers. */
+START_TEST(test_texts_of_the_kernel) {
+  static const char *const ceilings[] = {"0", "-1", "abc", "12x", "99999999999999999999999"};
+  for (size_t i = 0; i < sizeof ceilings / sizeof *ceilings; i++) {
+    char said[ETHD_MESSAGE_MAX];
+    mock_counter_install();
+    strcpy(counter_mock.ceiling, ceilings[i]);
+    snprintf(said, sizeof said, SYS "0/ceiling: found \"%s\"; a whole number over 0 is expected", ceilings[i]);
+    expect(NULL, NULL, ETHD_E_DEVICE, said);
+  }
+}
+END_TEST
+
+START_TEST(test_settings_that_cannot_be) {
+  static const struct {
+    const char *key, *value, *said;
+    ethd_status status;
+  } cases[] = {
+      {"count1", "one", "c.ini:2: count1: text that cannot be read", ETHD_E_SYNTAX},
+      {"count1", "-1", "c.ini:2: count1: a value is out of its range; found -1, allowed 0 to 255", ETHD_E_RANGE},
+      {"count2", "256", "c.ini:2: count2: a value is out of its range; found 256, allowed 0 to 255", ETHD_E_RANGE},
+      {"channel1", "1.5", "c.ini:2: channel1: a value is out of its range; found 1.5, allowed 0 to 255", ETHD_E_RANGE},
+      {"channel2", "nan", "c.ini:2: channel2: a value is out of its range; allowed 0 to 255", ETHD_E_RANGE},
+      {"device2",
+       "/dev/"
+       "a-name-that-is-longer-than-any-counter-of-the-kernel-has-a-name-that-is-longer-than-any-counter-of-the-kernel-"
+       "has-",
+       "c.ini:2: device2: a value is out of its range; found 119, allowed 1 to 95", ETHD_E_RANGE},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    mock_counter_install();
+    expect(cases[i].key, cases[i].value, cases[i].status, cases[i].said);
+  }
+}
+END_TEST
+
+/* What is switched off is said; an encoder whose marks are right has nothing to say. */
+START_TEST(test_remarks) {
+  void *d;
+  mock_counter_install();
+  ck_assert_int_eq(try(NULL, NULL, &d), ETHD_OK);
+  ck_assert_str_eq(D.why(d), "");
+  ck_assert_str_eq(D.remark(d, 0), "counter.freeze_torque is inf: a frozen encoder isn't noticed");
+  ck_assert_str_eq(D.remark(d, 1), "counter.reverse_torque is inf: a reversed encoder isn't noticed");
+  ck_assert_ptr_null(D.remark(d, 2));
+  D.close(d);
+  ck_assert_int_eq(try("freeze_torque", "0.1", &d), ETHD_OK);
+  ck_assert_str_eq(D.remark(d, 0), "counter.reverse_torque is inf: a reversed encoder isn't noticed");
+  ck_assert_ptr_null(D.remark(d, 1));
+  D.close(d);
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("counter refused");
+  TCase *t = tcase_create("counter refused");
+  tcase_add_test(t, test_calls_that_fail);
+  tcase_add_test(t, test_events_that_fail);
+  tcase_add_test(t, test_texts_of_the_kernel);
+  tcase_add_test(t, test_settings_that_cannot_be);
+  tcase_add_test(t, test_remarks);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}
