@@ -183,6 +183,7 @@ int main(int argc, char **argv) {
   exceeded += ethd__report_threshold(&subject);
   exceeded += ethd__report_tick(&subject);
   printf("\n%d bound%s exceeded\n", exceeded, exceeded == 1 ? "" : "s");
+  ethd__report_unjudged(&config->setup);
   device.driver->close(device.device);
   ethd_config_free(config);
   return ethd__end(ETHD_EXIT_DONE);

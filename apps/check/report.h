@@ -33,6 +33,9 @@ void ethd__report_device(ethd__subject *subject);
    prints its choice by it, too. */
 int ethd__report_stability(const ethd_setup *setup, const ethd__bounds_device *device);
 
+/* Prints a line for each loop whose law's gains aren't known, so that nobody takes its silence for stability. */
+void ethd__report_unjudged(const ethd_setup *setup);
+
 /* Each prints its section and returns how many bounds are exceeded. */
 int ethd__report_passivity(const ethd__subject *subject);
 int ethd__report_stop(const ethd__subject *subject);

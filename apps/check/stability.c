@@ -191,6 +191,16 @@ static int report_walls(const ethd_setup *setup, const ethd__bounds_device *devi
   return exceeded;
 }
 
+void ethd__report_unjudged(const ethd_setup *setup) {
+  for (int kind = 0; kind < ETHD_LOOP_KINDS; kind++) {
+    const ethd_law *law = ethd__bounds_unjudged(setup, (ethd__bounds_kind)kind);
+    if (law)
+      printf(
+          "not judged: %s, because the gains of the law %s can't be told from its parameters; try small ones first\n",
+          ethd__bounds_names[kind], law->id);
+  }
+}
+
 int ethd__report_stability(const ethd_setup *setup, const ethd__bounds_device *device) {
   char velocity[96];
   ethd__velocity_text(setup, velocity, sizeof velocity);

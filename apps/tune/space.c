@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bounds/loops.h"
 #include "sim/random.h"
 #include "text/error_text.h"
 #include "text/text.h"
@@ -32,6 +33,18 @@ static double rounded(double value) {
 
 /* ---- making it ---- */
 
+/* A margin that can't be worked out would be kept by every point. */
+static ethd_status refuse_unjudged(const ethd_setup *setup, char *message) {
+  for (int kind = 0; kind < ETHD_LOOP_KINDS; kind++) {
+    const ethd_law *law = ethd__bounds_unjudged(setup, (ethd__bounds_kind)kind);
+    if (law)
+      return ethd__say(message, ETHD_E_ARGUMENT,
+                       "%s: the gains of the law %s can't be told from its parameters, so no margin of it can be kept",
+                       ethd__bounds_names[kind], law->id);
+  }
+  return ETHD_OK;
+}
+
 static ethd_status base_setup(const ethd__tune_space *s, ethd_setup *out, char *message) {
   *out = s->config->setup;
   return ethd_config_transition(s->config, s->law, out, message);
@@ -42,6 +55,7 @@ ethd_status ethd__space_open(const ethd_config *config, const char *law, ethd__t
   ethd_setup setup;
   *out = (ethd__tune_space){.config = config, .law = law};
   ethd_status status = base_setup(out, &setup, message);
+  if (!status) status = refuse_unjudged(&setup, message);
   if (status) return status;
   for (size_t i = 0; i < KNOWN; i++) {
     double own = ethd_setup_get(&setup, known[i].name);

@@ -40,6 +40,28 @@ bool ethd__bounds_feel(const ethd_setup *setup, ethd__bounds_felt *out) {
   return true;
 }
 
+static bool is_built_in(const ethd_law *law) {
+  for (const ethd_law *const *known = ethd_laws; *known; known++)
+    if (*known == law) return true;
+  return false;
+}
+
+static bool knows(const ethd_law *law, const char *gain) {
+  for (uint32_t i = 0; i < law->param_count; i++)
+    if (!strcmp(law->params[i].name, gain)) return true;
+  return false;
+}
+
+const ethd_law *ethd__bounds_unjudged(const ethd_setup *setup, ethd__bounds_kind kind) {
+  static const char *const gains[ETHD_LOOP_KINDS][2] = {
+      [ETHD_LOOP_TRACKING] = {"k_t", "b_t"}, [ETHD_LOOP_WALL] = {"k_e", "b_e"}, [ETHD_LOOP_BRAKING] = {"b_d", "b_d"}};
+  const ethd_law *const laws[ETHD_LOOP_KINDS] = {[ETHD_LOOP_TRACKING] = &setup->tracking->law,
+                                                 [ETHD_LOOP_WALL] = &setup->contact->law,
+                                                 [ETHD_LOOP_BRAKING] = &setup->transition->law};
+  const ethd_law *law = laws[kind];
+  return is_built_in(law) || knows(law, gains[kind][0]) || knows(law, gains[kind][1]) ? NULL : law;
+}
+
 static bool set_gains(const ethd_setup *setup, ethd__bounds_kind kind, int axis, ethd__sampled_loop *out) {
   ethd__bounds_felt felt;
   switch (kind) {
