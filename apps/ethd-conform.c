@@ -14,7 +14,8 @@ static const char doc[] =
     "  ethd-conform --config hello.ini --virtual --move\n"
     "A driver of your own: [device] driver = file:mine.so, or ethd_conform of ethd/conform.h in a program that links "
     "it. "
-    "Without --config the simulated device is asked: its finger pushes the ring, which isn't zero torque's fault.";
+    "Without --config the simulated device is asked; there the ring moves at zero torque, because its finger pushes "
+    "it.";
 
 static const struct argp_option options[] = {
     {"config", 'c', "FILE", 0, "the configuration; its [device] is asked", 0},

@@ -32,6 +32,7 @@ typedef struct counter {
 
   /* any thread */
   bool clear; /* wrong marks are acknowledged */
+  bool safe;  /* since the last start the device has let go of its torque */
 } counter;
 
 /* ---- I/O ---- */
@@ -61,7 +62,8 @@ static void step(counter *c, int j, ethd_sense *out) ETHD_RT {
   ethd__count count = {.time_ns = s->time_ns, .edge_ns = s->edge_ns[j], .raw = s->raw[j], .index = s->index[j]};
   if (s->marks[j] != c->marks[j]) count.flags = ETHD__COUNT_INDEX;
   c->marks[j] = s->marks[j];
-  out->faults |= ethd__encoder_step(&c->def[j], &c->encoder[j], &count, c->torque[j], &out->grave);
+  double torque = __atomic_load_n(&c->safe, __ATOMIC_RELAXED) ? 0 : c->torque[j];
+  out->faults |= ethd__encoder_step(&c->def[j], &c->encoder[j], &count, torque, &out->grave);
   out->q[j] = c->encoder[j].q;
   out->dq[j] = c->encoder[j].dq;
 }
@@ -97,10 +99,7 @@ static ethd_status counter_write(void *device, int64_t now_ns, const ethd_comman
   return ETHD_OK;
 }
 
-static void counter_safe(void *device) ETHD_RT {
-  counter *c = device;
-  c->torque[0] = c->torque[1] = 0;
-}
+static void counter_safe(void *device) ETHD_RT { __atomic_store_n(&((counter *)device)->safe, true, __ATOMIC_RELAXED); }
 
 /* ---- opening ---- */
 
@@ -195,6 +194,7 @@ static ethd_status counter_start(void *device) {
     c->marks[j] = c->input.latest.marks[j];
   }
   c->lost = 0;
+  __atomic_store_n(&c->safe, false, __ATOMIC_RELAXED);
   if (c->def[0].home && !is_homed(c)) status = home(c);
   pthread_mutex_unlock(&c->lock);
   return status;

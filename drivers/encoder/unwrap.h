@@ -38,13 +38,14 @@ typedef struct ethd__encoder_def {
   double ratio;            /* turns of that shaft in one of the joint, > 0 */
   double offset;           /* rad: the joint's angle at count 0, or at the home mark */
   double speed_max;        /* rad/s of the joint, > 0: what is faster is a jump */
-  double freeze_torque;    /* Nm, > 0: when the torque on a standing joint has changed by more than this, the joint must
-                              move soon; more than twice its friction; INFINITY: it needn't move */
-  double freeze_time;      /* s: how soon, > 0 */
-  double reverse_torque;   /* Nm, more than its friction: only a hand lets a joint gain speed against a larger torque,
-                              and most of the hand's work is then lost; INFINITY: the joint may gain speed */
-  double reverse_time;     /* s for which it may gain speed all the same, > 0 */
-  double inertia;          /* kg m^2 of the joint, right within a half, > 0: turns its speed into energy */
+  double freeze_torque;    /* Nm, > 0: a joint that still stands after its torque has changed by more counts as
+                              frozen. Choose it over twice the joint's friction; INFINITY: no check */
+  double freeze_time;      /* s, > 0: for how long it must stand */
+  double reverse_torque;   /* Nm, > 0: a joint that gains speed against more torque has a reversed encoder, unless a
+                              hand does it, most of whose work the torque then takes. Choose it over the joint's
+                              friction; INFINITY: no check */
+  double reverse_time;     /* s, > 0: for how long it must gain speed */
+  double inertia;          /* kg m^2 of the joint, > 0, right within a half: turns a speed into energy */
   int32_t sign;            /* 1, or -1: counts rise while the angle falls */
   bool home;               /* the first index mark that passes is the home mark; the number of whole turns is the one
                               nearest to what count and offset say */

@@ -1,9 +1,10 @@
 /* The link to a drive is a state machine over exchanges. It never enables by itself.
 
-          open             quiet            steps of [identify]
-     DOWN -----> DRAINING -------> UP ----------------> IDENTIFIED --- enable ---> ENABLED
-      ^                                                     ^                        |
-      '------ back-off: the line is gone, silent for long   '--- disable, any fault -'
+          open, quiet        steps of [identify]
+     DOWN ----------> UP -------------------> IDENTIFIED --- steps of [enable] ---> ENABLED
+      ^                                           ^                                   |
+      '--- the line is lost, or silent for long   '--- steps of [disable]: asked, ----'
+           (then a back-off before it opens)           or the device is made safe
 
    After any error nothing is sent until the line has been quiet; the state stays, and set-points go on after that.
    The loss of the line ends ENABLED, and the first set-point of every connection is zero torque. */

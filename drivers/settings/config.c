@@ -94,6 +94,7 @@ static double widest_range(const ethd_config *c) {
   return range;
 }
 
+/* Drops the parts of the scene that this arm's ring can never meet. */
 static ethd_status drop_unreachable(const config_reading *r) {
   ethd_config *c = &r->whole->config;
   ethd_scene *pruned = NULL;

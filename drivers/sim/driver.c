@@ -15,8 +15,8 @@ typedef struct device {
   ethd_sim *sim;
   ethd_sim_def def;
   ethd_sim_tap tap;
-  int32_t safe;
-  int32_t reading; /* as the settings say: ETHD_READING_*; -1: as the plant says */
+  _Atomic int32_t safe; /* any thread's */
+  int32_t reading;      /* as the settings say: ETHD_READING_*; -1: as the plant says */
   bool no_finger;
   bool written;      /* `held` and `due_ns` are known */
   int64_t due_ns;    /* the tick at which the next read is expected */
@@ -85,6 +85,7 @@ static int64_t period_ns(const device *d) ETHD_RT { return (int64_t)rint(1e9 * d
 
 /* Simulates the periods that the loop missed, under the torque that it left. */
 static void catch_up(device *d, int64_t now_ns) ETHD_RT {
+  if (d->safe) d->held.safe = 1;
   for (int i = 0; d->written && i < CATCH_UP_MAX && now_ns - d->due_ns >= period_ns(d); i++) {
     ethd_sim_write(d->sim, &d->held);
     d->due_ns += period_ns(d);

@@ -11,7 +11,7 @@
    one reaction names it twice. REFUSE rows are met before anything moves; in a sense they are only counted.
 
    Device and loop report a row in the sense: they set bit i of `faults` for row i in every tick in which it lasts, and
-   bit i of `grave` while the second reaction is due, with or without the other bit. The ticks of one occurrence follow
+   bit i of `grave` while the second reaction is due; bit i of `faults` need not be set then. The ticks of one occurrence follow
    each other without a gap; each occurrence is counted and reported by one event. Rows that the controller itself sees
    are treated in the same way.
 

@@ -11,7 +11,7 @@
    A law is stateless code: numbers in, numbers out. It never allocates, never blocks, and keeps nothing of its own.
    Its state is a block of numbers (no pointers) that is zeroed before reset, copied, recorded, hashed.
    Parameters were checked against the table when the setup was posted: step trusts them.
-   A law that has nothing to say returns ETHD_OK too: a contact law that doesn't push sets the force to 0. A negative
+   A law returns ETHD_OK also when there is no force; a contact law that doesn't push then sets *force to 0. A negative
    status, or a number that isn't finite, sends the controller to its safe state. So do two mistakes for which a law
    that isn't built in is watched: writing outside of its state block, which words with a known pattern around it show
    (ETHD_E_FENCE), and changing the processor's rounding mode, flushing of small numbers or traps (ETHD_E_FENV). The
@@ -120,9 +120,11 @@ typedef struct ethd_contact {
 
 typedef struct ethd_contact_law {
   ethd_law law;
-  /* gap: m, to the (offset) wall, < 0 inside; speed: ethd_contact.v, m/s, > 0 entering; entering: the branch of
-     eq. 3, with v_hysteresis applied. force: N along n, to be set by every call: < 0 pushes the ring
-     out, 0 where it doesn't push; the controller cuts an attractive one to 0. [rt] */
+  /* gap: m, to the (offset) wall, < 0 inside; speed: ethd_contact.v, m/s, > 0 entering; entering: 1 on the branch of
+     eq. 3 for a ring that moves in, 0 on the other, with v_hysteresis between them. force: N along n, to be set by every
+     call: < 0 pushes the ring out, 0 where it doesn't push; the controller cuts an attractive one to 0. It is called in
+     every tick in which the contact counts and its transition law's share is over 0, so not while offset brakes; it gets no
+     period, so a law of state counts its calls or does without time. [rt] */
   ethd_status (*step)(const double *p, void *state, double gap, double speed, int entering, double *force) ETHD_RT;
 } ethd_contact_law;
 

@@ -18,7 +18,8 @@
 
    A step that runs for more than 0.1 s is over its budget (row BUDGET), whatever limits.step_time says. A second
    realtime thread watches over the loop's: when a step is over that budget, or the loop is silent for longer than
-   `gap`, it makes the device safe, disarms it and raises row LOOP. A loop that hasn't begun a tick for half a second
+   `gap`, it makes the device safe, disarms it and raises row LOOP. Without a gap (INFINITY) it watches steps alone: a
+   driver whose read or write doesn't return then keeps its torque until its own watchdog takes it. A loop that hasn't begun a tick for half a second
    and for four periods hangs, because code that it called doesn't return: ethd_loop_hangs says so, and in which law. No
    thread can be ended from outside, so ethd_loop_join then gives up and fails; loop, controller, setup and laws stay in
    memory until the process ends.

@@ -6,8 +6,9 @@
         E < 0                   it gave more away than it took; forgotten within a second or so
         E < -energy             damping is added, as much as brings E back within one period's motion, at most
                                 DAMPING_MAX; the wall still never pulls
-        E < -2 energy           if this comes again and again for EXCESS_MAX, damping doesn't help. In between a wall
-                                stores some of what it gives next; after RESPITE without it, damping has helped
+        E < -2 energy           if this comes again and again for EXCESS_MAX, damping doesn't help. A gap shorter than
+                                RESPITE doesn't interrupt the count, because the wall then stores some of what it
+                                gives next; a longer one says that damping has helped
 
    What a law feeds forward counts while it renders a wall. Before that no finger leans on the ring: friction that is
    given back, or a brake ahead of the wall, is the motors' affair, and reaches the finger as what the ring's speed at

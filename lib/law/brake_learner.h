@@ -1,4 +1,4 @@
-/* What a ring's deceleration is of its model's, learnt from how far it goes while it brakes.
+/* Learns k, the ring's real deceleration over its model's, from how far the ring goes while it brakes.
 
    Since braking began a ring has gone y farther than it would have gone at its speed, and by the model x farther; both
    are negative. Its deceleration is k times the model's:
@@ -16,7 +16,7 @@
 
 #include "ethd/attributes.h"
 
-#define ETHD__SETTLED 5e-3 /* s: a stretch has come, and swung out */
+#define ETHD__SETTLED 5e-3 /* s: after it the transmission's stretch is there and no longer swings */
 #define ETHD__UNSURE 0.05  /* what friction, delay and sampling bring into k where the facts are right */
 #define ETHD__PRIOR 9e-8   /* m^2: sum of (x - mean)^2 that stands for the facts */
 

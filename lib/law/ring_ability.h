@@ -27,7 +27,8 @@ static inline bool ethd__ring_is_known(const ethd_facts *f) ETHD_RT {
          f->finger_age >= 0;
 }
 
-/* A ring that decelerates k times as the facts say is so much lighter; without its curve. */
+/* Returns the ability of a ring that decelerates k times as fast as the facts say: its mass is theirs / k. The caller fills
+   the curve. */
 static inline ethd__ring_ability ethd__ring_ability_of(const ethd_facts *f, double k) ETHD_RT {
   return (ethd__ring_ability){
       .mass = f->mass / k, .force = f->force, .friction = ethd__known(f->friction), .viscous = ethd__known(f->viscous)};

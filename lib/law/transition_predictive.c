@@ -39,11 +39,11 @@ static const ethd_param params[COUNT] = {
     {"learn", "1", 0, 1, 0, "weight of a braking in the learnt deceleration; 0: the facts are right"},
 };
 
-#define RIM 0.3e-3     /* m: so near is the finger at the rim: what its estimate is worth */
-#define LEARN_END 5e-4 /* m: a braking is learnt from until the finger is so near */
-#define STRAYED 2e-3   /* m: the ring isn't where it was predicted: another surface, or ticks are missing */
-#define APPROACH 0.035 /* s before the wall at which it begins, within `range` */
-#define SLOW 0.05      /* m/s of the finger over which the approach comes in */
+#define RIM 0.3e-3     /* m: a finger nearer to the rim counts as at the rim; its estimate is off by as much */
+#define LEARN_END 5e-4 /* m: learning from a braking ends when the finger is nearer to the rim than this */
+#define STRAYED 2e-3   /* m: a ring that is farther from its prediction met another surface, or ticks are missing */
+#define APPROACH 0.035 /* s before the wall at which the approach begins, within `range` */
+#define SLOW 0.05      /* m/s: the approach fades in between a finger at rest and one of this speed */
 
 typedef struct predictive_state {
   ethd__offset offset;

@@ -200,6 +200,27 @@ START_TEST(test_reset_counter) {
 }
 END_TEST
 
+/* A joint that stands under a changed torque is frozen, but not once the device has let go of the torque. */
+START_TEST(test_frozen_only_under_torque) {
+  int64_t seen[2] = {0, 0};
+  mock_counter_install();
+  for (int is_safe = 0; is_safe < 2; is_safe++) {
+    void *d = open_with((const char *const[]){"freeze_torque", "0.3", "freeze_time", "0.05", NULL});
+    const ethd_command none = {{0, 0}, 0, 0}, push = {{1, 0}, 0, 0};
+    ck_assert_int_eq(D.start(d), ETHD_OK);
+    for (int i = 0; i < 200; i++) {
+      ck_assert_int_eq(D.write(d, i * (int64_t)MS, i < 100 ? &none : &push), ETHD_OK);
+      if (is_safe && i == 100) D.safe(d);
+      ethd_sense s = sample(d, i + 1, ETHD_OK);
+      seen[is_safe] |= s.faults | s.grave;
+    }
+    D.close(d);
+  }
+  ck_assert_int_eq(seen[0], ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_FROZEN));
+  ck_assert_int_eq(seen[1], 0);
+}
+END_TEST
+
 static const struct {
   const char *key, *value, *says;
 } bad[] = {
@@ -281,6 +302,7 @@ int main(void) {
   TCase *t = tcase_create("counter");
   tcase_add_test(t, test_counts_become_angles);
   tcase_add_test(t, test_two_devices);
+  tcase_add_test(t, test_frozen_only_under_torque);
   tcase_add_test(t, test_ceiling_of_the_kernel);
   tcase_add_test(t, test_homing);
   tcase_add_test(t, test_homing_takes_too_long);

@@ -101,6 +101,25 @@ START_TEST(test_lock_step) {
 }
 END_TEST
 
+/* A loop hangs after it has asked for torque: the time that passes once the device is safe passes without it. */
+START_TEST(test_safe_while_it_catches_up) {
+  double moved[2];
+  for (int is_safe = 0; is_safe < 2; is_safe++) {
+    void *device = open_with(NULL, 0);
+    ethd_sense a = {0}, b = {0};
+    const ethd_command push = {{1, 0}, 0, 0};
+    ck_assert_int_eq(ethd_driver_sim.read(device, 0, &a), ETHD_OK);
+    ck_assert_int_eq(ethd_driver_sim.write(device, 0, &push), ETHD_OK);
+    if (is_safe) ethd_driver_sim.safe(device);
+    ck_assert_int_eq(ethd_driver_sim.read(device, 50000000, &b), ETHD_OK);
+    moved[is_safe] = fabs(b.q[0] - a.q[0]);
+    ethd_driver_sim.close(device);
+  }
+  ck_assert_double_gt(moved[0], 0.05);
+  ck_assert_double_lt(moved[1], 0.05 * moved[0]); /* the first period's torque was under way */
+}
+END_TEST
+
 /* Once safe, nothing drives it until it is started anew. */
 START_TEST(test_safe) {
   void *device = open_with(NULL, 0);
@@ -173,6 +192,7 @@ int main(void) {
   tcase_add_test(t, test_refused);
   tcase_add_test(t, test_lock_step);
   tcase_add_test(t, test_safe);
+  tcase_add_test(t, test_safe_while_it_catches_up);
   tcase_add_test(t, test_limits);
   tcase_add_test(t, test_where_plants_are);
   tcase_add_test(t, test_meet);
