@@ -7,6 +7,7 @@
 
 #include "cli/cli.h"
 #include "tap/summary.h"
+#include "text/csv.h"
 
 #define FEWEST 6   /* valid taps that make a statistic */
 #define MISSED 4.0 /* the largest miss of a line, and that of a line without a value */
@@ -48,6 +49,37 @@ static double total_of(const ethd__explain_question *question, const ethd__expla
   for (int i = 0; i < ETHD_EXPLAIN_LINE_COUNT; i++)
     if (question->asked[lines[i].group] && figures->known[i]) total += ethd__explain_miss(i, figures->value[i], true);
   return total;
+}
+
+double ethd__explain_place(int line, double value) {
+  double low = lines[line].low, high = lines[line].high;
+  if (lines[line].kind == MEAN) return (value - low) / (high - low);
+  if (isfinite(high)) return log(fmax(value, 1e-3) / low) / log(high / low);
+  return value < low ? log(fmax(value, 1e-3) / low) / log(2) : 1 - low / value;
+}
+
+ethd_status ethd__explain_csv(const char *path, const char *const *names, const ethd__explain_figures *figures,
+                              size_t count, char message[ETHD_MESSAGE_MAX]) {
+  ethd_csv_out *csv = ethd_csv_create(path, "plant,line,group,unit,low,high,value,place,met,what", message);
+  if (!csv) return ETHD_E_FILE;
+  for (size_t n = 0; n < count; n++)
+    for (int i = 0; i < ETHD_EXPLAIN_LINE_COUNT; i++) {
+      const double value = figures[n].value[i];
+      char what[80];
+      ethd_csv_text(csv, names[n]);
+      ethd_csv_integer(csv, i + 1);
+      ethd_csv_word(csv, ethd__explain_group_names[lines[i].group]);
+      ethd_csv_word(csv, lines[i].unit);
+      ethd_csv_number(csv, lines[i].low);
+      ethd_csv_number(csv, isfinite(lines[i].high) ? lines[i].high : (double)NAN);
+      ethd_csv_number(csv, value);
+      ethd_csv_number(csv, isnan(value) ? value : ethd__explain_place(i, value));
+      ethd_csv_integer(csv, !(ethd__explain_miss(i, value, false) > 0));
+      snprintf(what, sizeof what, strcmp(lines[i].unit, "1") ? "%s, %s" : "%s", lines[i].brief, lines[i].unit);
+      ethd_csv_text(csv, what);
+      ethd_csv_row(csv);
+    }
+  return ethd_csv_close(csv, message);
 }
 
 int ethd__explain_print(const ethd__explain_figures *figures) {

@@ -3,15 +3,37 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "text/text.h"
 
 #define EVEN false
 #define LOG true
 
-const ethd__explain_prior ethd__explain_priors[ETHD_EXPLAIN_NUMBERS] = {
+ethd__explain_prior ethd__explain_priors[ETHD_EXPLAIN_NUMBERS] = {
 #define ROW(name, low, high, scale, unit, origin) {#name, low, high, scale, unit, origin},
     ETHD_EXPLAIN_PRIORS(ROW)
 #undef ROW
 };
+
+static const char *const own_bounds = "bounds of the command line";
+
+bool ethd__explain_bound(const char *text) {
+  const char *equals = strchr(text, '='), *colon = equals ? strchr(equals, ':') : NULL;
+  double low, high;
+  if (!colon || !ethd__number(equals + 1, (size_t)(colon - equals - 1), &low) ||
+      !ethd__number(colon + 1, strlen(colon + 1), &high) || !(low > 0 && high > low && isfinite(high)))
+    return false;
+  for (int n = 0; n < ETHD_EXPLAIN_NUMBERS; n++) {
+    ethd__explain_prior *p = &ethd__explain_priors[n];
+    if (strlen(p->name) != (size_t)(equals - text) || strncmp(text, p->name, (size_t)(equals - text)) != 0) continue;
+    p->low = low;
+    p->high = high;
+    p->origin = own_bounds;
+    return true;
+  }
+  return false;
+}
 
 #define RING_RADIUS 0.012
 #define COUNTS 4000

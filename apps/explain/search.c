@@ -16,6 +16,7 @@
 
 #define BEST 0.15     /* share of the population, its best, from which p is drawn */
 #define CROSSING 0.85 /* chance of each number that a child takes it from the step instead of its parent */
+#define FALLEN 0.01   /* by less the least total hasn't fallen */
 #define STEP_LEAST 0.3
 #define STEP_MOST 0.9
 
@@ -73,12 +74,17 @@ typedef struct journal {
 } journal;
 
 static char *describe(const ethd__explain_search *s) {
-  char *out;
+  char *out = NULL;
+  size_t length;
   const ethd__explain_question *q = s->question;
-  int n = asprintf(&out, "ethd-explain %s seed %llu population %u taps %u compliant %d tick %d asked %d%d%d",
-                   ETHD_VERSION, (unsigned long long)q->seed, s->population, q->taps, q->structure.compliant,
-                   q->structure.tick, q->asked[0], q->asked[1], q->asked[2]);
-  if (n < 0) ethd__fail_memory();
+  FILE *f = open_memstream(&out, &length);
+  if (!f) ethd__fail_memory();
+  fprintf(f, "ethd-explain %s seed %llu population %u taps %u compliant %d tick %d asked %d%d%d bounds", ETHD_VERSION,
+          (unsigned long long)q->seed, s->population, q->taps, q->structure.compliant, q->structure.tick, q->asked[0],
+          q->asked[1], q->asked[2]);
+  for (int n = 0; n < ETHD_EXPLAIN_NUMBERS; n++)
+    fprintf(f, " %.9g:%.9g", ethd__explain_priors[n].low, ethd__explain_priors[n].high);
+  if (fclose(f)) ethd__fail_memory();
   return out;
 }
 
@@ -134,9 +140,10 @@ static ethd_status open_journal(const ethd__explain_search *s, journal *j, char 
   return status;
 }
 
-static ethd_status judge(const ethd__explain_search *s, journal *j, const ethd__explain_point *point, double enough,
+static ethd_status judge(ethd__explain_search *s, journal *j, const ethd__explain_point *point, double enough,
                          double *total, char *message) {
   ethd__explain_figures figures;
+  s->judged++;
   if (j->next < j->count) {
     *total = j->totals[j->next++];
     return ETHD_OK;
@@ -170,6 +177,7 @@ static ethd_status breed(ethd__explain_search *s, journal *j, uint32_t generatio
     ethd_status status = judge(s, j, &child, s->total[i], &total, message);
     if (status) return status;
     if (total <= s->total[i]) s->point[i] = child, s->total[i] = total;
+    if (total < (1 - FALLEN) * s->mark) s->mark = total, s->lowered = generation;
   }
   return ETHD_OK;
 }
@@ -182,7 +190,8 @@ ethd_status ethd__explain_run(ethd__explain_search *s, char message[ETHD_MESSAGE
     s->total[i] = (double)INFINITY;
     if (!ethd__stop) status = judge(s, &j, &s->point[i], (double)INFINITY, &s->total[i], message);
   }
-  for (uint32_t g = 1; !status && g <= s->generations && !ethd__stop; g++) {
+  s->mark = s->total[ethd__explain_best(s)];
+  for (uint32_t g = 1; !status && g <= s->generations && !ethd__stop && !ethd__explain_at_end(s); g++) {
     ethd__progress(g - 1, s->generations, "generations");
     status = breed(s, &j, g, message);
     s->done = g;

@@ -11,14 +11,24 @@
 typedef struct ethd__explain_search {
   const ethd__explain_question *question;
   uint32_t population, generations;
+  uint32_t
+      still; /* generations: a search is at its end once the least total hasn't fallen by a hundredth for so many */
   const char *journal; /* a file; NULL: nothing is kept */
   ethd__explain_point point[ETHD_EXPLAIN_POPULATION_MAX];
   double total[ETHD_EXPLAIN_POPULATION_MAX];
-  uint32_t done; /* generations */
+  uint32_t done;    /* generations */
+  uint32_t lowered; /* the last of them by which the least total had fallen by a hundredth, */
+  double mark;      /* to this */
+  uint64_t judged;  /* plants, those of an earlier run included */
 } ethd__explain_search;
 
 /* Ends early, with ETHD_OK, once ethd__stop is set. Refuses a journal of another search. */
 ETHD_MUST_CHECK ethd_status ethd__explain_run(ethd__explain_search *search, char message[ETHD_MESSAGE_MAX]);
+
+/* Whether the search came to its end: longer searching with this population has stopped to help. */
+static inline bool ethd__explain_at_end(const ethd__explain_search *search) {
+  return search->done - search->lowered >= search->still;
+}
 
 /* Returns the number of the point with the least total. */
 uint32_t ethd__explain_best(const ethd__explain_search *search);

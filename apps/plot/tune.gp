@@ -37,6 +37,7 @@ on(name) = exp(column("goal_".name))
 last(k) = column("round") == 4 && column(k) == 1
 plot in using (column("keeps") == 0 && column("point") > 0 ? on("tracking") : NaN):(on("brake")) with points pt 2 ps 0.9 lw 1 lc rgb "#b0b0b0" title "thin margins", \
   in using (column("keeps") == 1 ? on("tracking") : NaN):(on("brake")):(on("wall")) with points pt 7 ps 0.6 lc palette title "tapped", \
+  in using (column("settled") == 0 ? on("tracking") : NaN):(on("brake")) with points pt 2 ps 1.2 lw 2 lc rgb "#b8452f" title "restless at its margin", \
   in using (column("round") == 4 && column("point") > 0 ? on("tracking") : NaN):(on("brake")):(on("wall")) with points pt 7 ps 1.3 lc palette title "last round", \
   in using (last("front") ? on("tracking") : NaN):(on("brake")) with points pt 6 ps 1.9 lw 1.4 lc rgb "#333333" title "front", \
   in using (column("round") == 4 && column("point") == 0 ? on("tracking") : NaN):(on("brake")) with points pt 2 ps 2.4 lw 3 lc rgb "#000000" title "own gains", \

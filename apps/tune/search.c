@@ -29,7 +29,7 @@ static ethd_status make_room(ethd__tune_round *r, size_t most, char *message) {
 }
 
 static void add(ethd__tune_round *r, const ethd__tune_point *point, bool keeps) {
-  r->entries[r->count++] = (ethd__tune_entry){.point = *point, .keeps = keeps};
+  r->entries[r->count++] = (ethd__tune_entry){.point = *point, .keeps = keeps, .settled = -1};
 }
 
 /* Adds the configuration's own point, which is the reference, whether it keeps the margin or not. */
@@ -96,15 +96,16 @@ static size_t add_extremes(const ethd__tune_entry **order, size_t count, size_t 
   return count;
 }
 
-/* Keeps the first `most` points of the order that settle at their margins in time. */
-static ethd_status confirm(ethd__tune_search *s, const ethd__tune_entry **order, size_t *count, size_t most,
-                           char *message) {
+/* Keeps the first `most` points of the order that settle at their margins in time, and notes in their round which do. */
+static ethd_status confirm(ethd__tune_search *s, ethd__tune_round *from, const ethd__tune_entry **order, size_t *count,
+                           size_t most, char *message) {
   ethd_status status = ETHD_OK;
   size_t good = 0;
   for (size_t i = 0; !status && i < *count && good < most && !ethd__stop; i++) {
     ethd__progress(good, most, "margins in time");
     status = ethd__score_confirm(s->rig, &order[i]->point, &s->verdict, message);
     s->asked++;
+    if (!status) from->entries[order[i] - from->entries].settled = s->verdict.settles;
     if (!status && s->verdict.settles) order[good++] = order[i];
   }
   ethd__progress(most, most, "margins in time");
@@ -119,13 +120,14 @@ static ethd_status fill_next(ethd__tune_search *s, int round, char *message) {
   if (!order) return ethd__no_memory(message, NULL);
   ethd_status status = ETHD_OK;
   if (round == ETHD_TUNE_ROUNDS - 1)
-    status = confirm(s, order, &parents, survivors(s, round), message);
+    status = confirm(s, r - 1, order, &parents, survivors(s, round), message);
   else if (parents > survivors(s, round))
     parents = add_extremes(order, survivors(s, round), parents);
   if (!status) status = make_room(r, 1 + parents * (1 + plan[round].children), message);
   if (!status) add_own(s, r);
   for (size_t i = 0; !status && i < parents; i++) {
     add(r, &order[i]->point, true);
+    r->entries[r->count - 1].settled = order[i]->settled;
     for (uint32_t c = 0; c < plan[round].children; c++) {
       uint64_t number = ((uint64_t)round << 48) + i * plan[round].children + c;
       ethd__tune_point p = ethd__space_near(s->rig->space, &order[i]->point, plan[round].spread, number);

@@ -23,7 +23,8 @@ typedef struct ethd__tune_entry {
   double goals[ETHD_TUNE_GOALS]; /* relative to the round's entry 0 */
   double total;                  /* the goals' weighted sum; a goal over a tenth worse than entry 0's counts more */
   bool keeps, scored;
-  bool front; /* no other entry of its round is at least as good by every goal and better by one */
+  int settled; /* at its margins in time: 1 yes, 0 no, -1 it wasn't tried */
+  bool front;  /* no other entry of its round is at least as good by every goal and better by one */
 } ethd__tune_entry;
 
 typedef struct ethd__tune_round {

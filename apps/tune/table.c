@@ -102,6 +102,7 @@ static char *header_of(const ethd__tune_space *space) {
   for (size_t k = 0; k < space->count; k++) fprintf(f, ",%s", space->keys[k].name);
   for (size_t i = 0; i < ETHD_TUNE_FIGURE_COUNT; i++) fprintf(f, ",%s", ethd__tune_figure_names[i]);
   for (int g = 0; g < ETHD_TUNE_GOALS; g++) fprintf(f, ",goal_%s", ethd__tune_goal_names[g]);
+  fputs(",settled", f);
   if (fclose(f) == 0) return text;
   free(text);
   return NULL;
@@ -117,6 +118,7 @@ static void put_entry(ethd_csv_out *csv, const ethd__tune_space *space, const et
   for (size_t i = 0; i < ETHD_TUNE_FIGURE_COUNT; i++) ethd_csv_number(csv, e->scored ? numbers[i] : (double)NAN);
   for (int g = 0; g < ETHD_TUNE_GOALS; g++)
     ethd_csv_number(csv, e->scored && isfinite(e->goals[g]) ? e->goals[g] : (double)NAN);
+  ethd_csv_number(csv, e->settled < 0 ? (double)NAN : e->settled);
   ethd_csv_row(csv);
 }
 
