@@ -1,0 +1,265 @@
+/* Values exactly at an edge, states that must be forgotten, and what is shared: found by changing lib at random
+   (tests/mutation.sh), as those of test_details.c. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "control/fence.h"
+#include "ethd/finger_filter.h"
+#include "proximity_ring/decoder.h"
+#include "unit/rig.h"
+
+static ethd_error error;
+
+/* ---- control ---- */
+
+/* Two bodies share a scene; when it is replaced it comes back once, or it would be freed twice. */
+START_TEST(test_shared_scene_comes_back_once) {
+  rig r;
+  rig_open(&r, RIG_WALL);
+  ethd_scene *shared = rig_scene("circle 0 0 0.01\n");
+  r.setup.bodies[0] = r.setup.bodies[1] = shared;
+  rig_start(&r);
+  motion m = rig_at(0.05, 0, 0);
+  rig_step(&r, &m);
+  r.setup.bodies[0] = r.setup.bodies[1] = NULL;
+  rig_post(&r);
+  rig_step(&r, &m);
+  int back = 0;
+  for (ethd_event e; (e = rig_poll(&r)).kind;) back += e.scene == shared;
+  ck_assert_int_eq(back, 1);
+  ethd_scene_destroy(shared);
+  rig_close(&r);
+}
+END_TEST
+
+/* A step of exactly limits.step_time is in time; one of a nanosecond more isn't. */
+START_TEST(test_step_time_to_the_nanosecond) {
+  for (int late = 0; late < 2; late++) {
+    rig r;
+    rig_open(&r, NULL);
+    r.setup.limits.step_time = 1e-9 * 500000;
+    rig_start(&r);
+    motion m = rig_at(0.05, 0, 0);
+    ethd_sense s = rig_sense(&r.setup.arm, &m);
+    s.step_ns = 500000 + late;
+    (void)rig_try(&r, &s);
+    ck_assert_int_eq(r.trace.fault, late ? ETHD_FAULT_BUDGET : ETHD_FAULT_NONE);
+    rig_close(&r);
+  }
+}
+END_TEST
+
+/* Torque that a row takes away is zero in the trace, too: not nearly so. */
+START_TEST(test_raw_torque_is_zero) {
+  rig r;
+  rig_open(&r, RIG_WALL);
+  rig_start(&r);
+  motion m = rig_at(-0.002, 0, 0.001);
+  rig_step(&r, &m);
+  ck_assert(r.trace.tau_raw[0] != 0);
+  ethd_sense s = rig_sense(&r.setup.arm, &m);
+  s.grave = ETHD_FAULT_BIT(ETHD_FAULT_LOOP);
+  (void)rig_try(&r, &s);
+  ck_assert(r.trace.tau_raw[0] == 0 && r.trace.tau_raw[1] == 0);
+  ck_assert(r.command.torque[0] == 0 && r.command.torque[1] == 0);
+  rig_close(&r);
+}
+END_TEST
+
+START_TEST(test_setup_that_nobody_made) {
+  ethd_setup setup;
+  memset(&setup, 0, sizeof setup);
+  ck_assert_int_eq(ethd_setup_set(&setup, "ring.radius", 0.01, &error), ETHD_E_ARGUMENT);
+  ck_assert_msg(strstr(error.name, "ethd_setup_default") != NULL, "%s", error.name);
+}
+END_TEST
+
+/* Built-in laws are called directly, all of them; a copy is foreign. */
+START_TEST(test_whose_law_it_is) {
+  const ethd_contact_law copy = ethd_contact_spring;
+  for (const ethd_law *const *law = ethd_laws; *law; law++) ck_assert(!ethd__law_is_foreign(*law));
+  ck_assert(ethd__law_is_foreign(&copy.law));
+}
+END_TEST
+
+/* Whichever block's law hangs, it is named. */
+START_TEST(test_each_block_says_whose_law_runs) {
+  static ethd__state state;
+  const ethd_law *const law = &ethd_contact_spring.law;
+  ck_assert_ptr_null(ethd__fence_runs(&state));
+  for (int i = -1; i < 2 * ETHD_CONTACTS_MAX; i++) {
+    ethd__slot *slot = &state.slots[(i < 0 ? 0 : i) / 2];
+    ethd__law_block *block = i < 0 ? &state.tracking : i % 2 ? &slot->contact : &slot->transition;
+    block->law = law;
+    block->running = 1;
+    ck_assert_ptr_eq(ethd__fence_runs(&state), law);
+    block->running = 0;
+    ck_assert_ptr_null(ethd__fence_runs(&state));
+  }
+}
+END_TEST
+
+/* ---- laws, limits, estimators ---- */
+
+/* offset takes a wall over when the ring rests there: slower than v_th, or at the wall for 50 ms. */
+START_TEST(test_what_offset_adopts) {
+  static const struct {
+    double v, since;
+    int is_adopted;
+  } cases[] = {{0.5, 0.049, 0}, {0.5, 0.051, 1}, {0.001, 0, 1}};
+  const ethd_transition_law *law = &ethd_transition_offset;
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    double p[ETHD_PARAMS_MAX], state[ETHD_STATE_MAX / sizeof(double)] = {0};
+    ethd_params_default(law->law.params, law->law.param_count, p);
+    const ethd_past past = {
+        .offset = 0.002, .d_re = -0.003, .v = cases[i].v, .since = cases[i].since, .state = ETHD_VO};
+    const ethd_contact c = {.d_re = -0.003, .d_fr = -0.003, .d_beta = 0.004, .v = cases[i].v, .period = 1e-3};
+    ethd_ruling out = {.beta = 1};
+    law->adopt(p, state, &past);
+    ck_assert_int_eq(law->step(p, state, &c, &out), ETHD_OK);
+    ck_assert_msg((out.state == ETHD_VO) == cases[i].is_adopted, "%zu: state %d", i, out.state);
+  }
+}
+END_TEST
+
+/* Of two clean times the longer one is narrower, of two ages the shorter one. */
+START_TEST(test_narrower) {
+  ethd_limits a = ethd_limits_none(), b = ethd_limits_none();
+  a.clean_time = 1, b.clean_time = 2;
+  a.finger_age = 0.01, b.finger_age = 0.02;
+  a.workspace[0] = -1, b.workspace[0] = -2;
+  a.workspace[1] = 1, b.workspace[1] = 2;
+  const ethd_limits c = ethd_limits_narrower(&a, &b);
+  ck_assert(c.clean_time == 2 && c.finger_age == 0.01 && c.workspace[0] == -1 && c.workspace[1] == 1);
+}
+END_TEST
+
+/* A filter that begins anew knows nothing of the acceleration before, along neither axis. */
+START_TEST(test_filter_forgets_acceleration) {
+  ethd_filter filter;
+  ethd_filter_state s;
+  double p[ETHD_PARAMS_MAX];
+  const ethd_method *ca = &ethd_filter_methods[ETHD_FILTER_CA];
+  ethd_params_default(ca->params, ca->param_count, p);
+  memset(&s, 0, sizeof s);
+  ck_assert_int_eq(ethd_filter_prepare(ETHD_FILTER_CA, p, 1e-3, &filter, &error), ETHD_OK);
+  s.a[0] = 3, s.a[1] = 4;
+  ethd_filter_start(&filter, &s, (ethd_vec){0.1, 0.2}, (ethd_vec){0, 0});
+  ck_assert(s.a[0] == 0 && s.a[1] == 0);
+}
+END_TEST
+
+/* ---- scenes ---- */
+
+static ethd_scene *scene(const char *text) {
+  ethd_scene *out;
+  ck_assert_msg(ethd_scene_parse(text, strlen(text), &out, &error) == ETHD_OK, "line %d: %s", error.line, error.name);
+  return out;
+}
+
+static ethd_status parse(const char *text) {
+  ethd_scene *out;
+  ethd_status status = ethd_scene_parse(text, strlen(text), &out, &error);
+  if (!status) ethd_scene_destroy(out);
+  return status;
+}
+
+/* What a message repeats of a file steers no terminal. */
+START_TEST(test_word_in_a_message) {
+  ck_assert_int_eq(parse("cir\033[2Jcle 0 0 1"), ETHD_E_UNKNOWN);
+  ck_assert_str_eq(error.name, "cir?[2Jcle");
+}
+END_TEST
+
+START_TEST(test_names_of_materials) {
+  static const char *const refused[] = {"a+b", "a!b", "a(b", "a,b", "a'b", "a/b", "a:b", "a@b", "a[b", "a`b", "a{b"};
+  char text[64];
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+    strcat(strcat(strcpy(text, "material "), refused[i]), " k_e=1\ncircle 0 0 1\n");
+    ck_assert_msg(parse(text) < 0, "%s is taken", refused[i]);
+  }
+  ck_assert_int_eq(parse("material aZ0_-.9 k_e=1\ncircle 0 0 1\n"), ETHD_OK);
+}
+END_TEST
+
+/* From whichever corner a polygon is told and in either sense, inside is inside; three corners in a line at its left. */
+START_TEST(test_polygon_from_every_corner) {
+  static const double p[][2] = {{0, 0}, {0, -1}, {3, -2}, {2, 0}, {3, 2}, {0, 1}};
+  enum { N = sizeof p / sizeof *p };
+  for (int first = 0; first < N; first++)
+    for (int step = 1; step < N; step += N - 2) {
+      char text[256] = "polygon", number[32];
+      for (int i = 0; i < N; i++) {
+        const double *q = p[(first + i * step) % N];
+        snprintf(number, sizeof number, " %g %g", q[0], q[1]);
+        strcat(text, number);
+      }
+      ethd_scene *s = scene(text);
+      ethd_touch touch;
+      ck_assert_uint_ge(ethd_scene_touches(s, (ethd_vec){1, 0.1}, 5, &touch, 1), 1);
+      ck_assert_msg(touch.distance < 0, "%s: %g", text, touch.distance);
+      ck_assert_uint_ge(ethd_scene_touches(s, (ethd_vec){-1, 0.1}, 5, &touch, 1), 1);
+      ck_assert_msg(fabs(touch.distance - 1) < 1e-12, "%s: %g", text, touch.distance);
+      ethd_scene_destroy(s);
+    }
+}
+END_TEST
+
+/* At the very centre of a circle any way out is as good, but it is one, of length 1. */
+START_TEST(test_centre_of_a_circle) {
+  ethd_scene *s = scene("circle 1 2 3");
+  ethd_touch touch;
+  ck_assert_uint_eq(ethd_scene_touches(s, (ethd_vec){1, 2}, 5, &touch, 1), 1);
+  ck_assert(touch.distance == -3 && ethd_vec_norm(touch.n) == 1);
+  ethd_scene_destroy(s);
+}
+END_TEST
+
+START_TEST(test_material_that_is_missing) {
+  const ethd_material one = {.name = "m"};
+  ethd_object_def circle = {.shape = ETHD_CIRCLE, .material = 1, .numbers = (const double[]){0, 0, 1}, .count = 3};
+  const ethd_scene_def def = {.objects = &circle, .object_count = 1, .materials = &one, .material_count = 1};
+  ethd_scene *out;
+  ck_assert_int_eq(ethd_scene_create(&def, &out, &error), ETHD_E_RANGE);
+  ck_assert(error.found == 1 && error.min == -1 && error.max == 0);
+}
+END_TEST
+
+/* ---- the ring's decoder ---- */
+
+/* Noise without a delimiter, in pieces: no more of it is held than a frame has. */
+START_TEST(test_noise_that_goes_on) {
+  ethd__decoder d = {0};
+  ethd__ring_frame frame;
+  uint8_t noise[ETHD__FRAME_WIRE];
+  memset(noise, 0x55, sizeof noise);
+  for (int i = 0; i < 10; i++) {
+    const uint8_t *at = noise;
+    ck_assert(!ethd__decoder_next(&d, &at, noise + sizeof noise, &frame));
+    ck_assert_uint_le(d.held, ETHD__FRAME_WIRE);
+  }
+}
+END_TEST
+
+int main(void) {
+  Suite *suite = suite_create("edges");
+  TCase *t = tcase_create("edges");
+  tcase_add_test(t, test_shared_scene_comes_back_once);
+  tcase_add_test(t, test_step_time_to_the_nanosecond);
+  tcase_add_test(t, test_raw_torque_is_zero);
+  tcase_add_test(t, test_setup_that_nobody_made);
+  tcase_add_test(t, test_whose_law_it_is);
+  tcase_add_test(t, test_each_block_says_whose_law_runs);
+  tcase_add_test(t, test_what_offset_adopts);
+  tcase_add_test(t, test_narrower);
+  tcase_add_test(t, test_filter_forgets_acceleration);
+  tcase_add_test(t, test_word_in_a_message);
+  tcase_add_test(t, test_names_of_materials);
+  tcase_add_test(t, test_polygon_from_every_corner);
+  tcase_add_test(t, test_centre_of_a_circle);
+  tcase_add_test(t, test_material_that_is_missing);
+  tcase_add_test(t, test_noise_that_goes_on);
+  suite_add_tcase(suite, t);
+  return rig_run(suite);
+}
