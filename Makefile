@@ -55,6 +55,15 @@ B := $(BUILD)$(if $(XENO_CORE),-$(RT))$(if $(SAN),-san-$(subst $(comma),-,$(SAN)
 Q := $(if $(V),,@)
 say = $(if $(V),@:,@printf '  %-6s %s\n' $(1) $(2))
 
+# ---- a tree that somebody else has built ------------------------------------------------------
+
+ifneq ($(wildcard $(B)),)
+FOREIGN := $(shell find '$(B)' -maxdepth 2 ! -type l ! -writable -printf '%p is not yours to write, it belongs to %u' -quit 2>/dev/null)
+ifneq ($(FOREIGN),)
+$(error $(FOREIGN): make as that user, or remove $(B) as that user, or build elsewhere: make BUILD=another)
+endif
+endif
+
 # ---- set-up: before anything compiles, while this file is read ------------------------------
 
 GOALS := $(or $(MAKECMDGOALS),all)

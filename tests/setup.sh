@@ -1,0 +1,54 @@
+#!/bin/sh
+# Set-up on machines that lack something, and a tree that somebody else has built: what is missing, why it can't be had and what
+# to do stand in a few lines. apt-get, sudo and id are stubs here; nothing is installed.
+set -u
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failed=0
+fail() { printf 'FAILED %s\n' "$*"; failed=1; }
+mkdir "$work/bin"
+for place in /usr/bin /bin; do ln -s $place/* "$work/bin" 2>/dev/null; done
+rm -f "$work"/bin/apt* "$work"/bin/dpkg* "$work/bin/sudo" "$work/bin/id"
+stub() { # NAME LINES
+  rm -f "$work/bin/$1"
+  printf '#!/bin/sh\n%s\n' "$2" >"$work/bin/$1"
+  chmod +x "$work/bin/$1"
+}
+uid() { stub id "[ \"\$*\" = -u ] && echo $1 || exit 1"; }
+says() { # WHAT MOST PATTERN...: set-up stops; at most so many lines; one for each pattern
+  what=$1 most=$2
+  shift 2
+  PATH=$work/bin CC=no-such-compiler sh .ci/setup build >"$work/out" 2>"$work/err" && fail "$what: set-up goes on"
+  [ ! -s "$work/out" ] || fail "$what: it says it is ready: $(cat "$work/out")"
+  for pattern; do grep -q -e "$pattern" "$work/err" || fail "$what: no $pattern in: $(cat "$work/err")"; done
+  # the list of what is missing has a line for each thing
+  lines=$(grep -vc '^  .*(Debian: ' "$work/err")
+  [ "$lines" -le "$most" ] || fail "$what: $lines lines: $(cat "$work/err")"
+}
+named='^  the C compiler no-such-compiler (Debian: no-such-compiler)$'
+uid 0
+says 'not a Debian' 1 'setup: this is missing; install it and run make again:' "$named"
+stub apt-get 'for k in 1 2 3 4 5 6 7 8; do echo "E: Failed to fetch http://deb.debian.org/$k  Temporary failure resolving" >&2; done; exit 100'
+says 'no network' 10 "apt-get can't reach the archive: is there a network?" "$named"
+stub apt-get 'echo "E: Unable to locate package no-such-compiler" >&2; exit 100'
+says 'an unknown package' 6 '^E: Unable to locate' 'apt-get failed; as root: apt-get update && apt-get install no-such-compiler' "$named"
+uid 1000
+says 'no sudo' 1 'setup: this is missing; as root: apt-get install no-such-compiler' "$named"
+stub sudo 'echo "sudo: a password is required" >&2; exit 1'
+says 'a sudo that refuses' 6 "sudo doesn't let you install packages; ask for it, as root: apt-get install no-such-compiler" "$named"
+
+# ---- a tree that somebody else has built ----
+mkdir -p "$work/theirs/bin"
+chmod 755 "$work"
+if [ "$(id -u)" = 0 ]; then other='setpriv --reuid 65534 --regid 65534 --clear-groups'; else
+  other=
+  chmod a-w "$work/theirs/bin" "$work/theirs"
+fi
+for goal in all install clean; do
+  $other ${MAKE:-make} --no-print-directory SETUP=no BUILD="$work/theirs" $goal >"$work/out" 2>&1 && fail "$goal in a tree of theirs"
+  [ "$(wc -l <"$work/out")" = 1 ] && grep -q "theirs is not yours to write, it belongs to .*: make as that user, or .* make BUILD=another" "$work/out" ||
+    fail "$goal in a tree of theirs: $(cat "$work/out")"
+done
+chmod u+w "$work/theirs" "$work/theirs/bin"
+[ $failed = 0 ] && echo 'what is missing is said'
+exit $failed
