@@ -1,6 +1,6 @@
 #!/bin/sh
 # make doc: every public function has a page, and there is no warning. A function without a contract, or whose contract
-# doesn't say which threads may call it, is found.
+# doesn't say which threads may call it, which failures it returns or in which unit its numbers are, is found.
 set -u
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -20,7 +20,17 @@ ETHD_API void ethd_nothing_said(int x);
 /* Says what it does. */
 ETHD_API void ethd_no_thread(int x);
 END
+cat >>include/ethd/arm.h <<'END'
+
+/* Says what it does. [any] */
+ETHD_API ethd_status ethd_no_failure(int x);
+
+/* Says what it does. [any] */
+ETHD_API void ethd_no_unit(double x);
+END
 made && fail "functions without a contract pass"
 grep -q 'ethd_nothing_said(int x) (function) .* is not documented' "$work/out" || fail "ethd_nothing_said: $(cat "$work/out")"
 grep -q "vec.h: ethd_no_thread: its contract doesn't say which thread" "$work/out" || fail "ethd_no_thread: $(cat "$work/out")"
+grep -q "arm.h: ethd_no_failure: its contract doesn't say which failures it returns" "$work/out" || fail "ethd_no_failure: $(cat "$work/out")"
+grep -q "arm.h: ethd_no_unit: its contract doesn't say in which unit its numbers are" "$work/out" || fail "ethd_no_unit: $(cat "$work/out")"
 exit $failed

@@ -50,7 +50,7 @@ ETHD_API const char *ethd_arm_name(ethd_mechanism mechanism);
 /* Works out forward kinematics, Jacobian and its (damped) inverse at joint angles q, rad. [any, rt-safe] */
 ETHD_API void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) ETHD_RT;
 
-/* Finds the joint angles, in (-pi, pi], that put the ring's centre at x. With elbow >= 0 link 2 is turned
+/* Finds the joint angles, rad in (-pi, pi], that put the ring's centre at x, m in R_0. With elbow >= 0 link 2 is turned
    counter-clockwise from link 1, with elbow < 0 clockwise. ETHD_E_UNREACHABLE: x lies outside the annulus of
    ethd_arm_reach; q is untouched. [any, rt-safe] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_arm_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) ETHD_RT;

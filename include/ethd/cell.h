@@ -11,7 +11,7 @@ ETHD_BEGIN_DECLS
 
 typedef struct ethd_cell ethd_cell;
 
-/* Creates a cell for values of `size` bytes, 1 to 65536. [main] */
+/* Creates a cell for values of `size` bytes, 1 to 65536: else ETHD_E_RANGE; ETHD_E_MEMORY. *out is NULL then. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_cell_create(size_t size, ethd_cell **out, ethd_error *error);
 
 /* Frees the cell; NULL is allowed. [main] */

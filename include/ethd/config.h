@@ -28,16 +28,19 @@ typedef struct ethd_config {
   uint32_t plugin_count;
 } ethd_config;
 
-/* Reads a configuration; path NULL gives the defaults. On failure *out is NULL and message holds one line. */
+/* Reads a configuration; path NULL gives the defaults. On failure *out is NULL and message holds one line:
+   ETHD_E_FILE, ETHD_E_SYNTAX, ETHD_E_UNKNOWN, ETHD_E_DUPLICATE, ETHD_E_MEMORY, the statuses of ethd_scene_parse and
+   ethd_plugin_open, and those of ethd_setup_check. Its plugins are loaded, and their code runs. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_load(const char *path, ethd_config **out,
                                                       char message[ETHD_MESSAGE_MAX]);
 
 /* Reads a file that somebody else made, in a recording or a study's folder, and runs nothing of theirs: a plugin is
-   refused, with a hint at the programs' option --plugins. */
+   refused (ETHD_E_LOAD), with a hint at the programs' option --plugins. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_load_received(const char *path, ethd_config **out,
                                                                char message[ETHD_MESSAGE_MAX]);
 
-/* Reads a configuration from text. Messages call it `name`; relative paths start at `folder`. */
+/* Reads a configuration from text. Messages call it `name`; relative paths start at `folder`. Fails as
+   ethd_config_load does (ETHD_E_...). */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_parse(const char *text, size_t length, const char *name,
                                                        const char *folder, ethd_config **out,
                                                        char message[ETHD_MESSAGE_MAX]);
@@ -46,12 +49,14 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_parse(const char *text, size_t 
 ETHD_API void ethd_config_free(ethd_config *config);
 
 /* Changes the transition law in `setup`, not in config->setup. Values that were chosen for keys that the new law has
-   too are kept, the rest is dropped; the file's preset still applies. */
+   too are kept, the rest is dropped; the file's preset still applies. ETHD_E_UNKNOWN: no law of that id; else the
+   statuses of ethd_setup_check. A refusal changes nothing. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_transition(const ethd_config *config, const char *id,
                                                             ethd_setup *setup, char message[ETHD_MESSAGE_MAX]);
 
 /* Sets "section.key" in `setup` as the file would ("contact.k_e", "2000"). Keys that name a file, a law, a preset or a
-   device can't be set in this way. */
+   device can't be set in this way (ETHD_E_ARGUMENT). ETHD_E_SYNTAX, ETHD_E_UNKNOWN, ETHD_E_RANGE and the statuses of
+   ethd_setup_check. A refusal changes nothing. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_set(const ethd_config *config, const char *key, const char *value,
                                                      ethd_setup *setup, char message[ETHD_MESSAGE_MAX]);
 

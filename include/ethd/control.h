@@ -112,16 +112,17 @@ typedef struct ethd_setup_key {
    after the last. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_key_at(const ethd_setup *setup, uint32_t index, ethd_setup_key *out);
 
-/* Sets one number by its name in the configuration: "contact.k_e", "ring.radius", "limits.torque"; the third
-   of four is "limits.workspace[2]". A choice of words ("tracking.derivative") takes the word's index.
-   ETHD_E_UNKNOWN: no such key under the chosen laws. ETHD_E_ARGUMENT: a key of several numbers without index, or
-   a setup that ethd_setup_default didn't make. ETHD_E_RANGE, ETHD_E_NOT_FINITE: the value or the index isn't in
-   its range, as `error` says. Relations between numbers are left to ethd_setup_check. A refusal changes nothing.
+/* Sets one number, in its key's unit (ethd_setup_key), by its name in the configuration: "contact.k_e", "ring.radius",
+   "limits.torque"; the third of four is "limits.workspace[2]". A choice of words ("tracking.derivative") takes the
+   word's index. ETHD_E_UNKNOWN: no such key under the chosen laws. ETHD_E_ARGUMENT: a key of several numbers without
+   index, or a setup that ethd_setup_default didn't make. ETHD_E_RANGE, ETHD_E_NOT_FINITE: the value or the index isn't
+   in its range, as `error` says. Relations between numbers are left to ethd_setup_check. A refusal changes nothing.
    [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_set(ethd_setup *setup, const char *name, double value,
                                                     ethd_error *error);
 
-/* Returns the number of that name, NaN where ethd_setup_set would not find it. [main] */
+/* Returns the number of that name in its key's unit (ethd_setup_key), NaN where ethd_setup_set would not find it.
+   [main] */
 ETHD_API double ethd_setup_get(const ethd_setup *setup, const char *name);
 
 /* Returns the distance from the ring's centre, m, beyond which nothing can count while the finger is within the ring:
@@ -129,7 +130,10 @@ ETHD_API double ethd_setup_get(const ethd_setup *setup, const char *name);
 ETHD_API double ethd_setup_range(const ethd_setup *setup);
 
 /* Checks everything that create and post check, also the scenes' materials against the contact law. Names in errors are
-   those of the configuration ("contact.k_e"). [main] */
+   those of the configuration ("contact.k_e"): ETHD_E_RANGE, ETHD_E_NOT_FINITE, ETHD_E_ARGUMENT (a setup that
+   ethd_setup_default didn't make, a law that is missing or of another kind), ETHD_E_UNKNOWN (no such
+   method; a material's key that the law doesn't have), the statuses of ethd_law_check, and what a law's own check
+   returns. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_check(const ethd_setup *setup, ethd_error *error);
 
 /* ---- events ---- */
@@ -160,18 +164,18 @@ typedef struct ethd_counters {
 
 typedef struct ethd_control ethd_control;
 
-/* Checks and copies the setup. [main] */
+/* Checks and copies the setup: the statuses of ethd_setup_check, and ETHD_E_MEMORY. *out is NULL then. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_create(const ethd_setup *setup, ethd_control **out,
                                                          ethd_error *error);
 
 /* Frees the controller; NULL is allowed. The scenes stay the application's. [main] */
 ETHD_API void ethd_control_destroy(ethd_control *control);
 
-/* Checks a whole setup and hands it over; the next step takes it, without a bump: at that tick the torque
-   is what the old setup gives, and the difference to the new one fades linearly to 0 over the new
-   swap_time. ETHD_BUSY: the last one hasn't been taken yet; post again. Any refusal leaves everything as
-   it was. The period can't change (ETHD_E_ARGUMENT). A scene that a post has replaced may be posted again only after an
-   event has handed it back, since that event may come at any moment. Takes nothing from the heap. [main] */
+/* Checks a whole setup and hands it over; the next step takes it, without a bump: at that tick the torque is what the
+   old setup gives, and the difference to the new one fades linearly to 0 over the new swap_time. ETHD_BUSY: the last
+   one hasn't been taken yet; post again. Any refusal, also those of ethd_setup_check, leaves everything as it was. The
+   period can't change (ETHD_E_ARGUMENT). A scene that a post has replaced may be posted again only after an event has
+   handed it back, since that event may come at any moment. Takes nothing from the heap. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_post(ethd_control *control, const ethd_setup *setup,
                                                        ethd_error *error);
 
@@ -190,15 +194,16 @@ ETHD_API void ethd_control_restart(ethd_control *control);
    share of the rise that the nominal torque leads to. Must not be called while step runs. [main] */
 ETHD_API void ethd_control_heat(const ethd_control *control, double out[2]);
 
-/* Sets the motors' heat, for a replay that begins in the middle. Must not be called while step runs. [main] */
+/* Sets the motors' heat, in shares as ethd_control_heat gives it, for a replay that begins in the middle. Must not be
+   called while step runs. [main] */
 ETHD_API void ethd_control_heated(ethd_control *control, const double heat[2]);
 
-/* Gives what the transition law has learnt of the device (ethd_facts.memory); restart keeps it, reset forgets it. Must
-   not be called while step runs. [main] */
+/* Gives what the transition law has learnt of the device (ethd_facts.memory), in the law's own units; restart keeps it,
+   reset forgets it. Must not be called while step runs. [main] */
 ETHD_API void ethd_control_learned(const ethd_control *control, double out[ETHD_MEMORY]);
 
-/* Sets what the transition law has learnt, for a replay that begins in the middle. Must not be called while step runs.
-   [main] */
+/* Sets what the transition law has learnt, in the law's own units, for a replay that begins in the middle. Must not be
+   called while step runs. [main] */
 ETHD_API void ethd_control_taught(ethd_control *control, const double memory[ETHD_MEMORY]);
 
 /* Acknowledges a latched fault. If limits.clean_time is over at the next step, that step clears the fault and lets the
@@ -217,7 +222,7 @@ ETHD_API ethd_status ethd_control_step(ethd_control *control, const ethd_sense *
                                        ethd_trace *trace) ETHD_RT;
 
 /* Runs the same tick on a copy of the state, which changes nothing and makes no event; it warms the caches before
-   arming. [rt] */
+   arming. Returns what ethd_control_step would (ETHD_E_...). [rt] */
 ETHD_API ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense,
                                            ethd_command *command) ETHD_RT;
 

@@ -31,7 +31,7 @@
 
 ETHD_BEGIN_DECLS
 
-#define ETHD_DRIVER_ABI 0u
+#define ETHD_DRIVER_ABI 1u         /* never 0, which is a table whose abi nobody has set */
 #define ETHD_DRIVERS_MAX 4         /* behind one device */
 #define ETHD_DRIVERS_TEXT_MAX 1024 /* bytes of their ids and files in a row, the closing 0 included */
 #define ETHD_DRIVER_FILE "file:"   /* before a path, among drivers' ids */
@@ -139,20 +139,24 @@ extern ETHD_API const ethd_driver ethd_driver_plugin;
    carries its driver's id ("ring.port"); with one it may. *driver and *device then go together, and *driver has all
    functions but open; device is closed by driver->close. Limits are the narrowest of all. Before a driver is opened its
    table is checked: size, ABI, id, brief, settings, and functions that need each other (write and safe, units and
-   service). [main] */
+   service): ETHD_E_ABI, ETHD_E_SIZE, ETHD_E_ARGUMENT, ETHD_E_TABLE. ETHD_E_UNKNOWN, ETHD_E_DUPLICATE: an id;
+   ETHD_E_FILE, ETHD_E_LOAD, ETHD_E_SYMBOL: a file; ETHD_E_FULL: more than ETHD_DRIVERS_MAX, or units; else what the
+   driver's open returns. message holds one line. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from,
                                                       const ethd_device_def *def, const ethd_driver **driver,
                                                       void **device, char message[ETHD_MESSAGE_MAX]);
 
 /* The same by the drivers' `prepare`, which touches nothing. Of a driver without it only the name is checked, and its
-   remark says so. *device may be asked for limits, dynamics, figures and remarks, and closed. [main] */
+   remark says so. *device may be asked for limits, dynamics, figures and remarks, and closed. Fails as
+   ethd_device_open does (ETHD_E_...). [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_prepare(const char *ids, const ethd_device_def *def,
                                                          const ethd_driver **driver, void **device,
                                                          char message[ETHD_MESSAGE_MAX]);
 
 /* Reads a driver's settings, for its open: values[i] of its params and texts[i] of its keys, which stay as they are
    where the configuration says nothing. A key that the table doesn't have, or a value that it doesn't allow, is refused
-   with file and line. values, texts: NULL where the table has none. [main] */
+   with file and line (ETHD_E_UNKNOWN, ETHD_E_RANGE). Values are in the unit of their row. values, texts: NULL where the
+   table has none. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_settings_read(const ethd_driver *driver, const ethd_device_def *def,
                                                         double *values, const ethd_setting **texts,
                                                         char message[ETHD_MESSAGE_MAX]);

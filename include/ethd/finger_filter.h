@@ -58,18 +58,19 @@ typedef struct ethd_filter_state {
 
 #define ETHD_FILTER_GATED_MAX 5
 
-/* Checks p against the method's table, and the period (1e-6 to 1 s); out is untouched on failure. [main] */
+/* Checks p against the method's table, and the period (1e-6 to 1 s): ETHD_E_RANGE, ETHD_E_NOT_FINITE or,
+   for the method, ETHD_E_UNKNOWN, with the name; out is untouched then. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_filter_prepare(ethd_filter_method method, const double *p, double period,
                                                          ethd_filter *out, ethd_error *error);
 
-/* Starts the filter now at x with velocity v and the covariance diag(1e-6 m^2, 1e-4 m^2/s^2, 1 m^2/s^4). Counters
-   stay. [rt] */
+/* Starts the filter now at x, m, with velocity v, m/s, both in R_0, and the covariance diag(1e-6 m^2, 1e-4 m^2/s^2, 1
+   m^2/s^4). Counters stay. [rt] */
 ETHD_API void ethd_filter_start(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, ethd_vec v) ETHD_RT;
 
 /* Lets dt s pass. [rt] */
 ETHD_API void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, double dt) ETHD_RT;
 
-/* Takes a reading of the finger's position in R_0, stamped `age` s ago. A filter that isn't started starts there, at
+/* Takes a reading of the finger's position, m in R_0, stamped `age` s ago. A filter that isn't started starts there, at
    rest, with standard deviations of 1 m/s and 10 m/s^2. ETHD_STALE: the reading is counted but not used, because it is
    not newer than the last used one (late), not finite, or over `gate` standard deviations from where it was expected,
    by the innovation of both axes together against sqrt(P_xx + noise^2) (gated). The ETHD_FILTER_GATED_MAX-th gated
@@ -77,7 +78,7 @@ ETHD_API void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *
 ETHD_API ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x,
                                         double age) ETHD_RT;
 
-/* Gives where the finger is now. [rt] */
+/* Gives where the finger is now, m, and its velocity, m/s, in R_0. [rt] */
 ETHD_API void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x,
                                  ethd_vec *v) ETHD_RT;
 

@@ -44,18 +44,18 @@ typedef struct ethd_finger {
   uint32_t reserved;
 } ethd_finger;
 
-/* Checks p against the method's table, and 1e-4 m <= finger_radius <= ring_radius <= 1 m; out is
-   untouched on failure. [main] */
+/* Checks p against the method's table, and 1e-4 m <= finger_radius <= ring_radius <= 1 m: ETHD_E_RANGE,
+   ETHD_E_NOT_FINITE or, for the method, ETHD_E_UNKNOWN, with the name; out is untouched then. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_prepare(ethd_fit_method method, const double *p, double ring_radius,
                                                       double finger_radius, ethd_fit *out, ethd_error *error);
 
-/* Fits the finger to one frame of rays. ETHD_STALE: the rays that count don't determine a centre within the ring, since
-   there are under 3 (robust: 2) or they lie on one line; out is then untouched. [rt] */
+/* Fits the finger to one frame of rays, m. ETHD_STALE: the rays that count don't determine a centre within the ring,
+   since there are under 3 (robust: 2) or they lie on one line; out is then untouched. [rt] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_step(const ethd_fit *fit, const double r[ETHD_RAYS],
                                                    ethd_finger *out) ETHD_RT;
 
-/* Gives the distances that a finger of this radius and centre would have, the fit's inverse; NaN where a ray
-   meets the ring's centre first, or nothing. [any, rt-safe] */
+/* Gives the distances, m, that a finger of this radius, m, and centre, m from the ring's, would have, the fit's
+   inverse; NaN where a ray meets the ring's centre first, or nothing. [any, rt-safe] */
 ETHD_API void ethd_fit_rays(double ring_radius, double finger_radius, ethd_vec centre, double r[ETHD_RAYS]) ETHD_RT;
 
 ETHD_END_DECLS

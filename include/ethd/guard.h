@@ -49,7 +49,7 @@ typedef struct ethd_limit {
 #define ETHD_LIMITS 15
 ETHD_API extern const ethd_limit ethd_limit_rows[ETHD_LIMITS];
 
-/* Returns where the first of the row's numbers is in these limits. [any, rt-safe] */
+/* Returns where the first of the row's numbers is in these limits, in the row's unit. [any, rt-safe] */
 static inline double *ethd_limit_of(ethd_limits *limits, const ethd_limit *row) ETHD_RT {
   return (double *)(void *)((char *)limits + row->offset);
 }
@@ -101,7 +101,8 @@ typedef struct ethd_guard_state {
    nominal_torque is a limit. [rt] */
 ETHD_API double ethd_guard_heat(const ethd_limits *limits, ethd_guard_state *state, double dt) ETHD_RT;
 
-/* Limits `torque` in place and returns the bits of what it did; pose and v are the ring's. In this order: if the ring
+/* Limits `torque` in place and returns the bits of what it did; torque: Nm, each joint; pose and v,
+   m/s in R_0, are the ring's; dt: s since the last step. In this order: if the ring
    is being stopped (speed, workspace, a fault), damping replaces the torque, else the margin's wall pushes; a torque
    that isn't finite becomes zero; heat and torque bound each joint; unless the ring is being stopped, the rate bounds
    the change, and heat and torque bound the result once more. [rt] */

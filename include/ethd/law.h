@@ -181,7 +181,8 @@ typedef struct ethd_transition_law {
 #define ETHD_LAW_HAS(law_, field) \
   ((law_)->law.size >= offsetof(ethd_transition_law, field) + sizeof((law_)->field) && (law_)->field != NULL)
 
-/* Checks ABI, size, kind, state, id, table and entry points of a law; each has a status of its own. [main] */
+/* Checks ABI, size, kind, state, id, table and entry points of a law; each has a status of its own:
+   ETHD_E_ABI, ETHD_E_SIZE, ETHD_E_STATE, ETHD_E_TABLE, and ETHD_E_ARGUMENT for kind, id, brief and step. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_law_check(const ethd_law *law, ethd_error *error);
 
 /* ---- built in; there is nothing special about them ---- */

@@ -51,8 +51,8 @@ ETHD_API void ethd_histogram_add(ethd_histogram *histogram, int64_t ns) ETHD_RT;
 ETHD_API int64_t ethd_histogram_first(uint32_t bin) ETHD_RT;
 ETHD_API int64_t ethd_histogram_last(uint32_t bin) ETHD_RT;
 
-/* Returns the duration that at least `share` (0 to 1) of all don't exceed, rounded up to the end of its bin but never
-   over max; 0 if there are none. [any, rt-safe] */
+/* Returns the duration, ns, that at least `share` (0 to 1) of all don't exceed, rounded up to the end of its bin but
+   never over max; 0 if there are none. [any, rt-safe] */
 ETHD_API int64_t ethd_histogram_at(const ethd_histogram *histogram, double share) ETHD_RT;
 
 /* ---- what the machine refuses ---- */
@@ -168,12 +168,13 @@ ETHD_API void ethd_loop_raise(ethd_loop *loop, ethd_fault fault);
 ETHD_API void ethd_loop_clear(ethd_loop *loop);
 
 /* Starts the device again, restarts the controller and arms, with a soft start; meanwhile the loop leaves both alone.
-   Must not be called while a posted setup waits. ETHD_BUSY: the loop didn't let go within a second. [main] */
+   Must not be called while a posted setup waits. ETHD_BUSY: the loop didn't let go within a second; else what the
+   device's start returns. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_enable(ethd_loop *loop);
 
-/* Calls the device's home, with the joints' angles or NULL (driver.h), while it is disarmed and the loop leaves it
-   alone. A controller without a fault is then reset, since the pose may jump. ETHD_BUSY: the loop didn't let go, or
-   is armed. [main] */
+/* Calls the device's home, with the joints' angles, rad, or NULL (driver.h), while it is disarmed and the loop leaves
+   it alone. A controller without a fault is then reset, since the pose may jump. ETHD_BUSY: the loop didn't let go, or
+   is armed. ETHD_E_ARGUMENT: the device has no home; else what its home returns. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_home(ethd_loop *loop, const double *q);
 
 /* Asks the threads to end; zero torque is the last thing written. [any] */

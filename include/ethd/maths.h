@@ -22,7 +22,7 @@ ETHD_BEGIN_DECLS
 ETHD_API double ethd_sin(double x) ETHD_RT;
 ETHD_API double ethd_cos(double x) ETHD_RT;
 
-/* Gives both at once, with the same bits as ethd_sin and ethd_cos. [any, rt-safe] */
+/* Gives both of an angle x, rad, at once, with the same bits as ethd_sin and ethd_cos. [any, rt-safe] */
 ETHD_API void ethd_sincos(double x, double *sine, double *cosine) ETHD_RT;
 
 /* Returns the angle of the point (x, y) from the x axis, in [-pi, pi], with the sign of y: error < 0.51 ulp.

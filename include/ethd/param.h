@@ -38,11 +38,12 @@ typedef struct ethd_method {
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_params_check_table(const ethd_param *params, uint32_t count,
                                                              ethd_error *error);
 
-/* Checks every value against its row: ETHD_E_NOT_FINITE or ETHD_E_RANGE with name, found, min, max. [main] */
+/* Checks every value, in the unit of its row, against its row: ETHD_E_NOT_FINITE or ETHD_E_RANGE with name, found, min,
+   max. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_params_check(const ethd_param *params, uint32_t count, const double *values,
                                                        ethd_error *error);
 
-/* Sets values[i] = params[i].def. [any] */
+/* Sets values[i] = params[i].def, in the unit of its row. [any] */
 ETHD_API void ethd_params_default(const ethd_param *params, uint32_t count, double *values);
 
 /* Returns the index of a name, -1 if the table doesn't have it. [any] */

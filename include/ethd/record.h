@@ -26,20 +26,22 @@ ETHD_API extern const ethd_column ethd_trace_columns[];
 
 typedef struct ethd_npy ethd_npy;
 
-/* Creates a .npy file of rows of `columns`; a file that is already at path is replaced. */
+/* Creates a .npy file of rows of `columns`; a file that is already at path is replaced. ETHD_E_FILE,
+   ETHD_E_ARGUMENT (columns that don't fit the row), ETHD_E_MEMORY; message holds one line. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_create(const char *path, const ethd_column *columns, size_t row_bytes,
                                                      ethd_npy **out, char message[ETHD_MESSAGE_MAX]);
 
-/* Appends rows. */
+/* Appends rows. ETHD_E_FILE: they, or earlier ones, couldn't be written. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_append(ethd_npy *npy, const void *rows, size_t count);
 
-/* Writes what was appended to the file, then the header's count. */
+/* Writes what was appended to the file, then the header's count. ETHD_E_FILE. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_flush(ethd_npy *npy);
 
-/* Flushes, closes, frees. */
+/* Flushes, closes, and frees in any case. ETHD_E_FILE. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_close(ethd_npy *npy);
 
-/* Reads a whole file, which must have exactly these columns, into memory; the caller frees *rows. */
+/* Reads a whole file, which must have exactly these columns, into memory; the caller frees *rows.
+   ETHD_E_FILE, ETHD_E_SYNTAX (another file, other columns, cut short), ETHD_E_MEMORY; message holds one line. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_npy_read(const char *path, const ethd_column *columns, size_t row_bytes,
                                                    void **rows, size_t *count, char message[ETHD_MESSAGE_MAX]);
 
@@ -48,7 +50,7 @@ typedef struct ethd_recording ethd_recording;
 /* Makes the folder and the files of a recording. config.ini is the configuration's text, in which the scene's file is
    now scene.scene and plugins have absolute paths. The folder is locked until the recording is closed. A folder that
    holds a recording's files is refused; with `replace` those files are removed first. A folder whose files the
-   configuration was read from is refused too. */
+   configuration was read from is refused too. ETHD_E_ARGUMENT, ETHD_E_FILE, ETHD_E_MEMORY; message holds one line. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, const ethd_config *config, bool replace,
                                                            ethd_recording **out, char message[ETHD_MESSAGE_MAX]);
 
@@ -65,11 +67,11 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, c
      thinned     detail: how. tick.npy holds only some of the ticks, so the recording can't be replayed
      end         the last event: the recording was closed, and its row is the number of its ticks
    A row's events make one setup. If setup or start is among them, a new controller starts with it, else it was posted
-   as a whole to the running one. Before the first row there is always a new controller. */
+   as a whole to the running one. Before the first row there is always a new controller. ETHD_E_FILE. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_event(ethd_recording *recording, const char *kind,
                                                           const char *detail);
 
-/* Adds a row to tick.npy. */
+/* Adds a row to tick.npy. ETHD_E_FILE: it, or an earlier one, couldn't be written. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_tick(ethd_recording *recording, const ethd_trace *trace);
 
 /* Says why a file of the recording couldn't be written, with its path; "" while all could. What comes after the first
@@ -79,14 +81,15 @@ ETHD_API const char *ethd_recording_failure(const ethd_recording *recording);
 /* Returns how many ticks are in the file. */
 ETHD_API uint64_t ethd_recording_kept(const ethd_recording *recording);
 
-/* Writes the rest and the event `end`, and frees the recording. message says what failed, now or before. */
+/* Writes the rest and the event `end`, and frees the recording in any case. ETHD_E_FILE: message says what failed,
+   now or before. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_close(ethd_recording *recording, char message[ETHD_MESSAGE_MAX]);
 
 /* Replays a recording through the library and compares every field bit for bit. ETHD_OK: equal, and
    message says how many ticks. ETHD_E_DIFFERS: message names the first tick and field that differ. ETHD_E_UNFINISHED:
    the ticks that are there are equal, but the recording wasn't closed, so later ones may be lost; or ticks are missing
-   in between, and what follows can't be replayed. Any other negative status: message says why it can't be read. Without `plugins` a recording that needs one is refused, since a plugin is
-   a program that the folder brings along. */
+   in between, and what follows can't be replayed. Any other negative status: message says why it can't be read. Without
+   `plugins` a recording that needs one is refused, since a plugin is a program that the folder brings along. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_verify(const char *folder, bool plugins,
                                                            char message[ETHD_MESSAGE_MAX]);
 

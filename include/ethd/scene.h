@@ -82,13 +82,14 @@ ETHD_API void ethd_scene_destroy(ethd_scene *scene);
 
 /* The nearest object. */
 typedef struct ethd_nearest {
-  double distance; /* signed; thin walls: >= 0 */
-  ethd_vec point, n;
-  int32_t object; /* of several as near the lowest; -1 and distance = inf in an empty scene */
+  double distance;   /* m, signed; thin walls: >= 0 */
+  ethd_vec point, n; /* m; unit vector into the object */
+  int32_t object;    /* of several as near the lowest; -1 and distance = inf in an empty scene */
 } ethd_nearest;
 
-/* Finds the nearest object, exact to 1e-12 times the scene's extent. n is always a unit vector; where the gradient is
-   undefined (on a segment, at a circle's centre) it may be any. [any, rt-safe] */
+/* Finds the nearest object to x, m in the scene's frame (R_0; a body's own), exact to 1e-12 times the scene's extent. n
+   is always a unit vector; where the gradient is undefined (on a segment, at a circle's centre) it may be any. [any,
+   rt-safe] */
 ETHD_API void ethd_scene_query(const ethd_scene *scene, ethd_vec x, ethd_nearest *out) ETHD_RT;
 
 /* Where a query found its answer. It makes the next query near there quicker and never changes its answer. Start with
@@ -98,7 +99,7 @@ typedef struct ethd_scene_hint {
   int32_t step;
 } ethd_scene_hint;
 
-/* Does what ethd_scene_query does, and reads and renews `hint`. [any, rt-safe] */
+/* Does what ethd_scene_query does, at x, m, and reads and renews `hint`. [any, rt-safe] */
 ETHD_API void ethd_scene_query_near(const ethd_scene *scene, ethd_vec x, ethd_scene_hint *hint,
                                     ethd_nearest *out) ETHD_RT;
 
@@ -113,12 +114,13 @@ typedef struct ethd_touch {
   int32_t material;
 } ethd_touch;
 
-/* Finds all local minima with distance <= range, the deepest first (of equal ones the lowest object, then feature).
-   At most `room` are written; the return value counts all. A solid gives one when x is inside. [any, rt-safe] */
+/* Finds all local minima with distance <= range, m, from x, m, the deepest first (of equal ones the lowest object, then
+   feature). At most `room` are written; the return value counts all. A solid gives one when x is inside. [any, rt-safe]
+   */
 ETHD_API size_t ethd_scene_touches(const ethd_scene *scene, ethd_vec x, double range, ethd_touch *out,
                                    size_t room) ETHD_RT;
 
-/* Finds the touch of one object at x that continues an earlier one: the local minimum whose point is nearest
+/* Finds the touch of one object at x, m, that continues an earlier one: the local minimum whose point is nearest
    to `from`, whatever its distance. For contacts that go on beyond the range. [any, rt-safe] */
 ETHD_API void ethd_scene_follow(const ethd_scene *scene, int32_t object, ethd_vec x, ethd_vec from,
                                 ethd_touch *out) ETHD_RT;
@@ -149,12 +151,13 @@ ETHD_API ethd_status ethd_scene_box_at(const ethd_scene *scene, size_t i, ethd_s
    numbers belong to the scene. Returns its number in the file, -1 past the end. [any] */
 ETHD_API int32_t ethd_scene_object(const ethd_scene *scene, size_t i, ethd_object_def *out);
 
-/* Returns how many objects lie wholly farther than `radius` from wherever this arm can hold the ring's centre. [any] */
+/* Returns how many objects lie wholly farther than `radius`, m, from wherever this arm can hold the ring's centre.
+   [any] */
 ETHD_API size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, double radius);
 
-/* Makes a scene without those objects, for one arm; the others keep their numbers and give the same touches to the
-   bit. *out is NULL when no object would go: use the scene itself. A setup whose arm or ring reaches farther refuses
-   a pruned scene, and no body may have one. ETHD_E_MEMORY. [main] */
+/* Makes a scene without those objects (radius: m), for one arm; the others keep their numbers and give the same touches
+   to the bit. *out is NULL when no object would go: use the scene itself. A setup whose arm or ring reaches farther
+   refuses a pruned scene, and no body may have one. ETHD_E_MEMORY. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_prune(const ethd_scene *scene, const ethd_arm *arm, double radius,
                                                       ethd_scene **out, ethd_error *error);
 

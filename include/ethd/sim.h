@@ -59,7 +59,8 @@ typedef struct ethd_plant {
   double nail_step;       /* m: one step of its converter */
 } ethd_plant;
 
-/* Reads a plant file (INI, every key required once, strict). [main] */
+/* Reads a plant file (INI, every key required once, strict): ETHD_E_FILE, ETHD_E_SYNTAX, ETHD_E_UNKNOWN,
+   ETHD_E_DUPLICATE, ETHD_E_RANGE, ETHD_E_NOT_FINITE, ETHD_E_MEMORY; message holds one line. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_plant_load(const char *path, ethd_plant *out, char message[ETHD_MESSAGE_MAX]);
 
 /* Puts another sensor of the finger (ETHD_READING_*) into the plant, with figures of such hardware; the ring's (centre,
@@ -85,7 +86,7 @@ typedef struct ethd_path {
   size_t sample_count;
 } ethd_path;
 
-/* Gives position and velocity of the path at t. [any, rt-safe] */
+/* Gives position, m, and velocity, m/s, of the path at t, s, in R_0. [any, rt-safe] */
 ETHD_API void ethd_path_at(const ethd_path *path, double t, ethd_vec *x, ethd_vec *v) ETHD_RT;
 
 /* Returns when the synthetic path or the recording ends, s. [any] */
@@ -100,8 +101,8 @@ typedef struct ethd_sim_tap {
   ethd_path path;
 } ethd_sim_tap;
 
-/* Draws a synthetic tap at commanded speed `speed` toward the wall that the ring meets with its centre at
-   `meet` (the wall on the left). Normal draws are cut at 2 sd, the speed at 2.5. [any] */
+/* Draws a synthetic tap at commanded speed `speed`, m/s, toward the wall that the ring meets with its centre at
+   `meet`, m in R_0 (the wall on the left). Normal draws are cut at 2 sd, the speed at 2.5. [any] */
 ETHD_API void ethd_sim_draw(const ethd_plant *plant, uint64_t seed, uint64_t tap, double speed, ethd_vec meet,
                             ethd_sim_tap *out);
 

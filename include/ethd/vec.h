@@ -10,6 +10,8 @@ typedef struct ethd_vec {
   double x, y;
 } ethd_vec;
 
+/* None of these changes a unit or a frame: vectors that are added have the same. */
+
 /* Returns two numbers in memory, x first, as a vector. [any, rt-safe] */
 static inline ethd_vec ethd_vec_of(const double v[2]) ETHD_RT {
   ethd_vec r = {v[0], v[1]};

@@ -45,8 +45,8 @@ typedef struct ethd_velocity_state {
   uint32_t count, head;                /* samples held, the newest's index */
 } ethd_velocity_state;
 
-/* Checks p against the method's table, and the period (1e-6 to 1 s), and works out the coefficients; out is
-   untouched on failure. [main] */
+/* Checks p against the method's table, and the period (1e-6 to 1 s), and works out the coefficients: ETHD_E_RANGE,
+   ETHD_E_NOT_FINITE or, for the method, ETHD_E_UNKNOWN, with the name; out is untouched then. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_velocity_prepare(ethd_velocity_method method, const double *p, double period,
                                                            ethd_velocity *out, ethd_error *error);
 
