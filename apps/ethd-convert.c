@@ -260,7 +260,7 @@ int main(int argc, char **argv) {
   ethd_status status = (is_csv ? to_csv : to_mcap)(&r, message);
   ethd__progress(1, 1, arg.out);
   if (status) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
-  printf("%s: %zu ticks, %zu events\n", arg.out, r.count, r.events.count);
+  printf("%s: %zu tick%s, %zu event%s\n", arg.out, r.count, ethd__s(r.count), r.events.count, ethd__s(r.events.count));
   free(r.rows);
   ethd__record_events_free(&r.events);
   return ethd__end(ETHD_EXIT_DONE);

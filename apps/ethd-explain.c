@@ -136,7 +136,7 @@ static ethd__explain_figures confirm(const ethd__explain_question *question, con
   check(ethd__explain_judge(&q, twin, (double)INFINITY, &figures, &total, message), message);
   printf("\n%s: 400 taps of each law at low speed, 800 at high speed\n", what);
   int missed = ethd__explain_print(&figures);
-  printf("%d of %d lines are missed\n", missed, ETHD_EXPLAIN_LINE_COUNT);
+  printf("%d of %d lines %s missed\n", missed, ETHD_EXPLAIN_LINE_COUNT, missed == 1 ? "is" : "are");
   return figures;
 }
 

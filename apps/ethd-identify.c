@@ -11,6 +11,7 @@
 #include "report/picture.h"
 #include "sim/plant.h"
 #include "text/error_text.h"
+#include "text/text.h"
 
 #define LEAST_WINDOWS 20
 #define LEAST_WAY 20 /* counts, or as many thousandths of a rad of ideal encoders */
@@ -35,7 +36,7 @@ static const char doc[] =
     "  ethd-identify taps --base mine.plant --out whole.plant\n"
     "  ethd-identify --judge mine.plant taps";
 
-enum { BASE = 256, CSV, PLOT, JUDGE, EXCITE, RECORD, FORCE, SHARE, TORQUE, HALF, AT, VIRTUAL, SECONDS };
+enum { BASE = 256, CSV, PLOT, JUDGE, EXCITE, RECORD, FORCE, SHARE, TORQUE, HALF, AT, VIRTUAL, SECONDS, PLUGINS };
 
 static const struct argp_option options[] = {
     {"out", 'o', "MINE.plant", 0, "write the plant", 0},
@@ -43,6 +44,7 @@ static const struct argp_option options[] = {
     {"csv", CSV, "OUT.csv", 0, "write a stretch of motion, measured and predicted, and the residual's spectrum", 0},
     {"plot", PLOT, "OUT.png", 0, "draw it (gnuplot); writes OUT.csv beside it unless --csv says where", 0},
     {"judge", JUDGE, "PLANT", 0, "say how well this plant predicts the recordings", 0},
+    {"plugins", PLUGINS, NULL, 0, "run the plugins that the recordings' configurations name", 0},
     {"excite", EXCITE, NULL, 0, "make a recording by moving the device of --config", 1},
     {"config", 'c', "C.ini", 0, "configuration (default: the simulated device)", 1},
     {"record", RECORD, "DIR", 0, "the recording", 1},
@@ -60,7 +62,7 @@ static struct {
   const char *out, *base, *csv, *plot, *judge;
   char **folders;
   int folder_count;
-  bool excite;
+  bool excite, plugins;
   ethd__excitation excitation;
 } arg = {.base = "n", .excitation = {.seconds = 60, .share = 0.5, .torque = NAN, .half = 0.04, .at = {0.25, 0.25}}};
 
@@ -77,6 +79,7 @@ static void parse_at(const char *text) {
 static void check_usage(struct argp_state *state) {
   bool recording = arg.excitation.record || arg.excitation.config;
   if (arg.excite && arg.folder_count) argp_error(state, "--excite makes a recording; a folder to fit isn't needed");
+  if (arg.excite && arg.plugins) argp_error(state, "--plugins belongs to recordings; --excite takes no law");
   if (arg.excite && !arg.excitation.record) argp_error(state, "--excite needs --record DIR");
   if (!arg.excite && recording) argp_error(state, "--config and --record belong to --excite");
   if (!arg.excite && !arg.folder_count) argp_error(state, "a folder with a recording is needed, or --excite");
@@ -92,6 +95,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case CSV: arg.csv = text; return 0;
   case PLOT: arg.plot = ethd__option_picture("--plot", text); return 0;
   case JUDGE: arg.judge = text; return 0;
+  case PLUGINS: arg.plugins = true; return 0;
   case EXCITE: arg.excite = true; return 0;
   case 'c': x->config = text; return 0;
   case RECORD: x->record = text; return 0;
@@ -145,9 +149,10 @@ static bool check_evidence(const ethd__evidence *e, double count) {
   if (windows < LEAST_WINDOWS)
     ethd__fail(
         ETHD_EXIT_INPUT,
-        "%s: %zu windows of %g s without a stop, a fault or the finger near, at least %d are needed, and %zu touches, "
+        "%s: %zu window%s of %g s without a stop, a fault or the finger near, at least %d are needed, and %zu touch%s, "
         "at least %d are needed; record more, as ethd-identify --excite and ethd-tap do",
-        arg.folders[0], windows, ETHD__WINDOW, LEAST_WINDOWS, e->onset_count, ETHD__TOUCHES_LEAST);
+        arg.folders[0], windows, ethd__s(windows), ETHD__WINDOW, LEAST_WINDOWS, e->onset_count,
+        e->onset_count == 1 ? "" : "es", ETHD__TOUCHES_LEAST);
   if (way[0] + way[1] < least)
     ethd__fail(ETHD_EXIT_INPUT,
                "%s: the arm hardly moves, %.3g rad in all: record one that does, as ethd-identify --excite does",
@@ -270,8 +275,8 @@ static int judge(const ethd__evidence *e) {
   (void)check_evidence(e, sensing.count);
   ethd__judgement j = ethd__prediction_judge(e, &plant);
   double floor = sensing.count / sqrt(12);
-  printf("%zu windows; errors of the prediction, rad rms; a count is %.4g rad, rounding to it leaves %.4g\n", j.windows,
-         sensing.count, floor);
+  printf("%zu window%s; errors of the prediction, rad rms; a count is %.4g rad, rounding to it leaves %.4g\n",
+         j.windows, ethd__s(j.windows), sensing.count, floor);
   for (int i = 0; i < 2; i++)
     printf("  joint %d   one tick ahead %.4g (%.2f counts), %.0f ms ahead %.4g (%.2f counts)\n", i + 1, j.step[i],
            j.step[i] / sensing.count, 1e3 * ETHD__AHEAD, j.ahead[i], j.ahead[i] / sensing.count);
@@ -285,6 +290,7 @@ int main(int argc, char **argv) {
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   if (arg.excite) return ethd__end(ethd__excite(&arg.excitation));
   ethd__catch_interrupt();
+  evidence.plugins = arg.plugins;
   load_evidence(&evidence);
   int code = arg.judge ? judge(&evidence) : identify(&evidence);
   ethd__evidence_free(&evidence);

@@ -8,6 +8,7 @@
 #include "run/session.h"
 #include "run/summary.h"
 #include "text/csv.h"
+#include "text/text.h"
 
 #define DURATION 10.0 /* s */
 
@@ -142,8 +143,9 @@ int main(int argc, char **argv) {
   ethd__catch_end();
   measure(&stats, &shortfalls, &period);
   bool peer = !arg.alone && !ethd__stop && run_cyclictest(period, &cyclictest);
-  printf("%-10s %llu of %g s, %llu overruns, %llu periods missed\n", "ticks", (unsigned long long)stats.ticks, period,
-         (unsigned long long)stats.overruns, (unsigned long long)stats.missed);
+  printf("%-10s %llu of %g s, %llu overrun%s, %llu period%s missed\n", "ticks", (unsigned long long)stats.ticks, period,
+         (unsigned long long)stats.overruns, ethd__s(stats.overruns), (unsigned long long)stats.missed,
+         ethd__s(stats.missed));
   ethd__durations_print(stdout, "wake-up", &stats.wake);
   ethd__durations_print(stdout, "tick", &stats.tick);
   if (peer)

@@ -7,6 +7,7 @@
 #include "cli/dropped.h"
 #include "ethd/record.h"
 #include "settings/config_parts.h"
+#include "text/text.h"
 #include "trace_in/trace_in.h"
 
 static const char doc[] =
@@ -31,7 +32,7 @@ static const struct argp_option options[] = {
 
 static struct {
   const char *config, *in, *out, *verify;
-  bool plugins;
+  bool plugins, awaits; /* awaits: the folder of --verify is still to come */
 } arg;
 
 static error_t parse(int key, char *text, struct argp_state *state) {
@@ -40,14 +41,25 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case 'i': arg.in = text; return 0;
   case 'o': arg.out = text; return 0;
   case 'v':
+    arg.awaits = strcmp(text, "--plugins") == 0; /* --verify --plugins DIR: the folder comes behind both */
+    arg.plugins |= arg.awaits;
+    if (arg.awaits) return 0;
     if (!strncmp(text, "--", 2)) argp_error(state, "--verify: found \"%s\", a folder comes first", text);
     arg.verify = text;
     return 0;
   case OPTION_PLUGINS: arg.plugins = true; return 0;
-  case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
+  case ARGP_KEY_ARG:
+    if (arg.awaits && !arg.verify) {
+      arg.verify = text;
+      return 0;
+    }
+    argp_error(state, "\"%s\": no such argument", text);
+    return 0;
   case ARGP_KEY_END:
     if (arg.verify && (arg.in || arg.out || arg.config))
       argp_error(state, "--verify stands alone: a recording brings its own configuration");
+    else if (arg.awaits && !arg.verify)
+      argp_error(state, "--verify: a recording's folder is needed");
     else if (arg.plugins && !arg.verify)
       argp_error(state, "--plugins belongs to --verify; a configuration of yours runs its plugins");
     else if (!arg.verify && (!arg.in || !arg.out))
@@ -130,9 +142,10 @@ static int run(ethd_control *control, const ethd__trace_in *in, ethd_csv_out *ou
 static void say(const ethd_control *control, const ethd_scene *scene, const ethd__trace_in *in) {
   ethd_counters c;
   ethd_control_counters(control, &c);
-  printf("%s: %llu ticks, scene queried in %llu", arg.out, (unsigned long long)c.ticks, (unsigned long long)c.queried);
+  printf("%s: %llu tick%s, scene queried in %llu", arg.out, (unsigned long long)c.ticks, ethd__s(c.ticks),
+         (unsigned long long)c.queried);
   ethd__dropped_print(stdout, scene);
-  if (in->ring) printf(", %llu frames dropped", (unsigned long long)c.readings_dropped);
+  if (in->ring) printf(", %llu frame%s dropped", (unsigned long long)c.readings_dropped, ethd__s(c.readings_dropped));
   printf("\n");
 }
 

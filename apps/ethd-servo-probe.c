@@ -11,6 +11,7 @@
 #include "servo/link.h"
 #include "servo/wire.h"
 #include "servo/words.h"
+#include "text/text.h"
 
 static const char doc[] =
     "Measures the bus to a servo drive by its register map: connects, identifies, writes zero torque and reads, as "
@@ -207,12 +208,13 @@ static void watch_hands(void) {
 static void print_rate(double seconds) {
   const ethd__servo_counts *c = &drive.counts;
   double slow = 1e-9 * (double)ethd_histogram_at(&trip, 0.99);
-  printf("%-10s %s, %u + %u questions an exchange\n", "bus", map.port, drive.plan.write_count,
-         drive.plan.read_count - drive.plan.combined);
-  printf("%-10s p50 %.3f  p99 %.3f  max %.3f ms, %" PRIu64 " exchanges in %.3g s\n", "round trip",
-         1e-6 * (double)ethd_histogram_at(&trip, 0.5), 1e3 * slow, 1e-6 * (double)trip.max, trip.count, seconds);
-  printf("%-10s %" PRIu64 " missing, %" PRIu64 " stale, %" PRIu64 " damaged or refused, %" PRIu64 " links lost\n",
-         "answers", c->missing, c->stale, c->garbled + c->busy + c->refused + c->failed, c->lost);
+  printf("%-10s %s, %u + %u question%s an exchange\n", "bus", map.port, drive.plan.write_count,
+         drive.plan.read_count - drive.plan.combined, ethd__s(drive.plan.read_count - drive.plan.combined));
+  printf("%-10s p50 %.3f  p99 %.3f  max %.3f ms, %" PRIu64 " exchange%s in %.3g s\n", "round trip",
+         1e-6 * (double)ethd_histogram_at(&trip, 0.5), 1e3 * slow, 1e-6 * (double)trip.max, trip.count,
+         ethd__s(trip.count), seconds);
+  printf("%-10s %" PRIu64 " missing, %" PRIu64 " stale, %" PRIu64 " damaged or refused, %" PRIu64 " link%s lost\n",
+         "answers", c->missing, c->stale, c->garbled + c->busy + c->refused + c->failed, c->lost, ethd__s(c->lost));
   if (!trip.count) ethd__fail(ETHD_EXIT_FAILED, "no exchange went well: %s", drive.message);
   printf("%-10s this bus can do %.0f Hz (99 %% of the exchanges; %.0f a second back to back)\n", "rate",
          floor(1 / slow), (double)trip.count / seconds);
@@ -224,8 +226,9 @@ static void print_wire(void) {
   double usual = 1e-9 * (double)ethd_histogram_at(&trip, 0.5);
   if (map.transport != ETHD__SERVO_RTU) return;
   double turnaround = fmax(0, usual - wire.usual) / wire.questions;
-  printf("%-10s %u bytes in %u questions: %.3f ms of wire and silence; turnaround %.3f ms each (the map says %g)\n",
-         "wire", wire.bytes, wire.questions, 1e3 * wire.usual, 1e3 * turnaround, 1e3 * map.turnaround);
+  printf("%-10s %u bytes in %u question%s: %.3f ms of wire and silence; turnaround %.3f ms each (the map says %g)\n",
+         "wire", wire.bytes, wire.questions, ethd__s(wire.questions), 1e3 * wire.usual, 1e3 * turnaround,
+         1e3 * map.turnaround);
 }
 
 /* Whether the map's exchanges end before the next begins. */
@@ -271,7 +274,8 @@ int main(int argc, char **argv) {
   print_values();
   uint32_t unconfirmed = ethd__servo_unconfirmed(&map);
   if (unconfirmed)
-    printf("%-10s %u of %u registers: no document confirms their addresses\n", "unconfirmed", unconfirmed, map.count);
+    printf("%-10s %u of %u register%s: no document confirms %s\n", "unconfirmed", unconfirmed, map.count,
+           ethd__s(map.count), unconfirmed == 1 ? "its address" : "their addresses");
   for (uint32_t i = 0; (risk = ethd__servo_risk(&map, i)); i++) printf("%-10s %s\n", i ? "" : "open risk", risk);
   ethd__servo_link_close(&drive);
   return ethd__end(ETHD_EXIT_DONE);

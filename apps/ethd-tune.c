@@ -105,9 +105,10 @@ static int show(const ethd__tune_search *search, const ethd__loaded *loaded) {
   const ethd__tune_entry *choice = ethd__search_choice(search);
   ethd__tune_worths worths;
   printf("device       plant %s: simulated, plausible, not measured\n", loaded->plant_name);
-  printf("margins      gains %g times, delay %g ms more, with %zu hands: %llu of %llu points keep them\n",
-         arg.margin.gain, 1e3 * arg.margin.delay, arg.hands.count, (unsigned long long)search->kept,
-         (unsigned long long)search->drawn);
+  printf("margins      gains %g times, delay %g ms more, with %zu hand%s: %llu of %llu point%s %s them\n",
+         arg.margin.gain, 1e3 * arg.margin.delay, arg.hands.count, ethd__s(arg.hands.count),
+         (unsigned long long)search->kept, (unsigned long long)search->drawn, ethd__s(search->drawn),
+         search->kept == 1 ? "keeps" : "keep");
   ethd__tune_print(stdout, search, choice);
   if (arg.csv) check(ethd__tune_csv(search, choice, arg.csv, message), message);
   if (arg.plot) draw(search->rig->space, loaded);

@@ -59,7 +59,8 @@ refused() { # NAME EXIT PATTERN
   grep '^table  *BROKEN' "$work/out" >"$work/table" || cp "$work/err" "$work/table" # where the program had to end itself
   says "$1, conform" 1 "$3" "$work/table"
 }
-refused driver_abi 2 'it was built for version 77 of the drivers. interface, this is version 0'
+refused driver_abi 2 'it was built for version 77 of the drivers. interface, this is version 1: build'
+refused driver_no_abi 2 'its table doesn.t say its abi: .abi = ETHD_DRIVER_ABI is needed, which is 1'
 refused driver_short 2 'its table has 16 bytes, [0-9]* to [0-9]* are allowed'
 refused driver_long 2 'its table has [0-9]* bytes, [0-9]* to [0-9]* are allowed'
 refused driver_no_symbol 2 'it is no driver: it has no symbol ethd_driver_plugin'
@@ -70,7 +71,7 @@ refused driver_brief 2 "the brief of broken isn't one line"
 refused driver_no_open 2 'broken has no open'
 refused driver_no_safe 2 'broken takes torque and has no safe to let go'
 refused driver_no_service 2 'broken has units of I/O and no service'
-refused driver_param 2 'broken: params: .*: a bad parameter table'
+refused driver_param 2 'broken: params: row 1, gain: found min 0, max 1, default 7; min <= default'
 refused driver_limits 2 'device broken: limits: speed: '
 refused driver_units 1 'ask for more than 8 I/O threads'
 refused driver_words 1 'AAA?AAA'

@@ -8,6 +8,7 @@
 #include "proximity_ring/empty.h"
 #include "proximity_ring/port.h"
 #include "text/error_text.h"
+#include "text/text.h"
 
 #define WAIT_MS 20
 #define SILENCE 100 /* waits without a frame until the line counts as silent */
@@ -111,7 +112,8 @@ static char ask(const char *what) {
 }
 
 static ethd_status ended(const guided *g) {
-  return ethd__say(g->message, ETHD_E_ARGUMENT, "ended after %zu places; %s", g->places->count,
+  return ethd__say(g->message, ETHD_E_ARGUMENT, "ended after %zu place%s; %s", g->places->count,
+                   ethd__s(g->places->count),
                    g->o->record ? "they are kept: --in goes on with them" : "nothing was kept: --record would have");
 }
 

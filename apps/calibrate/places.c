@@ -7,6 +7,7 @@
 #include "ethd/maths.h"
 #include "text/csv.h"
 #include "text/error_text.h"
+#include "text/text.h"
 
 #define RADIUS_MAX 1.0 /* m */
 
@@ -125,7 +126,8 @@ ethd_status ethd__places_load(const char *path, ethd__places *out, char message[
   status = columns(&csv, names, at, message);
   for (size_t row = 0; row < csv.rows && !status; row++) status = take_row(&csv, row, at, out, message);
   if (!status && csv.rows < 2)
-    status = ethd__say(message, ETHD_E_ARGUMENT, "%s: %zu rows; the empty ring and places are needed", path, csv.rows);
+    status = ethd__say(message, ETHD_E_ARGUMENT, "%s: %zu row%s; the empty ring and places are needed", path, csv.rows,
+                       ethd__s(csv.rows));
   ethd_csv_free(&csv);
   return status;
 }

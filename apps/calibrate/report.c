@@ -7,6 +7,7 @@
 #include "report/picture.h"
 #include "text/csv.h"
 #include "text/error_text.h"
+#include "text/text.h"
 
 static void print_length(double metres) {
   if (isnan(metres))
@@ -30,13 +31,13 @@ static void print_sensor(const ethd__calibration *c, int k) {
   printf("  %-8d", k);
   print_length(s->residual);
   if (s->points)
-    printf("  %8.0f  a table of %u points\n", s->dark, s->points);
+    printf("  %8.0f  a table of %u point%s\n", s->dark, s->points, ethd__s(s->points));
   else
     printf("  %8.0f  %10.5g %8.4f %8.4f\n", s->dark, s->a, s->p, 1e3 * s->d0);
 }
 
 void ethd__calibration_print(const ethd__places *p, const ethd__calibration *chosen) {
-  printf("\n%zu places, a rod of %.3f mm in a ring of %.3f mm (radii)\n\n", p->count, 1e3 * p->rod,
+  printf("\n%zu place%s, a rod of %.3f mm in a ring of %.3f mm (radii)\n\n", p->count, ethd__s(p->count), 1e3 * p->rod,
          1e3 * p->ring_radius);
   printf("  %-8s %10s %10s  mm rms; left out: at places that weren't used in the fit\n", "level", "residual",
          "left out");

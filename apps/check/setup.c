@@ -6,6 +6,7 @@
 
 #include "check/report.h"
 #include "settings/config_parts.h"
+#include "text/text.h"
 
 static void word(const char *key, const char *value, const char *brief) {
   printf("%-13s = %-12s ; %s\n", key, value, brief);
@@ -87,8 +88,9 @@ static void scene(const ethd_config *c) {
   if (!file) printf("; none: there is no wall (ethd-tap puts the paper's there)\n");
   if (!file) return;
   ethd_scene_describe(c->scene, &info);
-  printf("file          = %s ; %zu objects, %zu materials, %zu out of the arm's reach\n", file->value, info.objects,
-         info.materials, ethd_scene_out_of_reach(c->scene, &c->setup.arm, c->setup.ring_radius));
+  printf("file          = %s ; %zu object%s, %zu material%s, %zu out of the arm's reach\n", file->value, info.objects,
+         ethd__s(info.objects), info.materials, ethd__s(info.materials),
+         ethd_scene_out_of_reach(c->scene, &c->setup.arm, c->setup.ring_radius));
 }
 
 static void device(const ethd_config *c) {

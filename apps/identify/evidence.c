@@ -99,7 +99,7 @@ static ethd_status take(ethd__evidence *e, const char *folder, const ethd_config
 static ethd_status add_recording(ethd__evidence *e, const char *folder, char *message) {
   char *path = join(folder, ETHD_RECORDING_CONFIG);
   ethd_config *config = NULL;
-  ethd_status status = ethd_config_load_received(path, &config, message);
+  ethd_status status = (e->plugins ? ethd_config_load : ethd_config_load_received)(path, &config, message);
   free(path);
   if (!status) status = take(e, folder, config, message);
   ethd_config_free(config);

@@ -42,6 +42,7 @@ typedef struct ethd__onset {
 } ethd__onset;
 
 typedef struct ethd__evidence {
+  bool plugins; /* the recordings' configurations may load the plugins that they name */
   ethd_arm arm;
   double period, ring_radius;
   double (*q)[2];      /* rad */

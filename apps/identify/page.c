@@ -195,10 +195,10 @@ ethd_status ethd__page_write(const ethd__finding *f, const char *path, char mess
   ethd_status status = ethd_replace_begin(path, &replace, message);
   if (status) return status;
   fprintf(replace.file,
-          "# Identified by ethd-identify from %u recording%s, %zu windows of %.3g s and %zu touches. What is behind a\n"
+          "# Identified by ethd-identify from %u recording%s, %zu windows of %.3g s and %zu touch%s. What is behind a\n"
           "# number is its unit and between which values it lies; what the recordings can't tell is kept as in %s.\n",
-          f->evidence->recording_count, f->evidence->recording_count > 1 ? "s" : "", f->problem.window_count,
-          ETHD__WINDOW, f->touches.used, f->base);
+          f->evidence->recording_count, ethd__s(f->evidence->recording_count), f->problem.window_count, ETHD__WINDOW,
+          f->touches.used, f->touches.used == 1 ? "" : "es", f->base);
   if (f->problem.window_count)
     fprintf(replace.file, "# Residual %.4g rad rms; %s.\n", f->whiteness.rms,
             f->whiteness.explained ? "the model explains it" : "NOT EXPLAINED by this model");

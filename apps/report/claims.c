@@ -4,6 +4,7 @@
 
 #include "report/judged.h"
 #include "text/csv.h"
+#include "text/text.h"
 
 const ethd__data *ethd__judged_data(const ethd__report *r) { return r->beside.group_count ? &r->beside : &r->data; }
 
@@ -95,11 +96,12 @@ static void print_rules(ethd__report *r) {
   const ethd__protocol *p = &r->folder->protocol;
   ethd__html_print(
       &r->page,
-      "<p>Judged by the taps of %s, %zu participants. A sentence is shown when all its parts are: its p is the "
+      "<p>Judged by the taps of %s, %zu participant%s. A sentence is shown when all its parts are: its p is the "
       "largest of theirs, and is corrected by Holm for all the sentences of this table, the family. "
       "&quot;Not shown&quot; doesn't mean that the contrary holds. Smooth and offset are alike when their difference "
       "lies within &#177;%g mm (d_max) and &#177;%g and &#177;%g m/s (v_of, v_rmin): margins of the study file.</p>\n",
-      ethd__judged_name(r), data->people_count, 1e3 * p->margin_d_max, p->margin_v_of, p->margin_v_rmin);
+      ethd__judged_name(r), data->people_count, ethd__s(data->people_count), 1e3 * p->margin_d_max, p->margin_v_of,
+      p->margin_v_rmin);
   ethd__html_markup(
       &r->page,
       "<p>Tests: <em>sign flip</em>, the exact permutation test of people's contrasts; <em>TOST</em>, two "

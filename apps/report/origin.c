@@ -5,26 +5,27 @@
 #include "cli/cli.h"
 #include "report/report.h"
 #include "statistics/coverage.h"
+#include "text/text.h"
 
 static void print_numbers(ethd__report *r) {
   const ethd__data *d = &r->data;
   size_t valid, taps = ethd__data_taps(d, &valid);
   ethd__html_print(&r->page,
                    "<li><b>What was measured:</b> taps of a finger on a virtual wall, which a ring around the "
-                   "finger renders. %zu test taps, %zu of them valid, in %zu cells, each a strategy at a speed (",
-                   taps, valid, d->group_count);
+                   "finger renders. %zu test tap%s, %zu of them valid, in %zu cell%s, each a strategy at a speed (",
+                   taps, ethd__s(taps), valid, d->group_count, ethd__s(d->group_count));
   for (size_t i = 0; i < d->group_count; i++) {
     char label[80];
     ethd__html_print(&r->page, "%s%s", i ? "; " : "", ethd__group_label(&d->group[i], label));
   }
   ethd__html_print(
       &r->page,
-      "); %zu training taps are left out. Of each tap: the ring's speed as it meets the wall (v_rvo) and as the "
+      "); %zu training tap%s %s left out. Of each tap: the ring's speed as it meets the wall (v_rvo) and as the "
       "finger touches it (v_of), how far it rebounds first (d_max), its smallest speed after the touch (v_rmin); "
       "of strategies that brake how long (Delta_s) and how far (eps) they do. &quot;The paper&quot; is <em>A New "
       "Control "
       "Strategy for the Improvement of Contact Rendering with Encounter-type Haptic Displays</em>.</li>\n",
-      d->training);
+      d->training, ethd__s(d->training), d->training == 1 ? "is" : "are");
 }
 
 /* Explains the strategies that are known by name. */
@@ -96,7 +97,8 @@ static void print_people(ethd__report *r) {
   for (int k = 0; k < ETHD_LED_KINDS; k++) {
     if (!r->led[k]) continue;
     ethd__html_markup(&r->page, between);
-    if (!ethd__report_only(r, (ethd__leader)k)) ethd__html_print(&r->page, "(%zu taps) ", r->led[k]);
+    if (!ethd__report_only(r, (ethd__leader)k))
+      ethd__html_print(&r->page, "(%zu tap%s) ", r->led[k], ethd__s(r->led[k]));
     print_led(r, (ethd__leader)k);
     between = "; ";
   }
@@ -138,9 +140,10 @@ static void print_left_out(ethd__report *r) {
   if (d->absent.count)
     ethd__html_print(
         &r->page,
-        "<li><b>Left out:</b> %zu test taps of %zu participants who are not analysed; participants.csv says "
+        "<li><b>Left out:</b> %zu test tap%s of %zu participant%s who %s not analysed; participants.csv says "
         "why.</li>\n",
-        d->left_out, d->absent.count);
+        d->left_out, ethd__s(d->left_out), d->absent.count, ethd__s(d->absent.count),
+        d->absent.count == 1 ? "is" : "are");
   if (count_stations(r) > 1)
     ethd__html_print(&r->page,
                      "<li><b>Where:</b> at %zu stations of one study, each with participants of its own.</li>\n",
@@ -168,7 +171,8 @@ static void print_device(ethd__report *r) {
 
 static void print_certainty(ethd__report *r) {
   size_t n = r->data.people_count;
-  ethd__html_print(&r->page, "<li><b>How sure it is:</b> the sample is %zu participants, not the taps. ", n);
+  ethd__html_print(&r->page, "<li><b>How sure it is:</b> the sample is %zu participant%s, not the taps. ", n,
+                   ethd__s(n));
   if (n < ETHD_STATISTICS_PEOPLE)
     ethd__html_print(
         &r->page,
@@ -186,9 +190,9 @@ static void print_certainty(ethd__report *r) {
   size_t valid, taps = ethd__data_taps(&r->beside, &valid);
   ethd__html_print(
       &r->page,
-      "<li><b>Beside it:</b> <code>%s</code>, %zu participants with %zu taps (%zu valid). The paper's table "
+      "<li><b>Beside it:</b> <code>%s</code>, %zu participant%s with %zu tap%s (%zu valid). The paper's table "
       "and sentences are judged by it, since it is larger.</li>\n",
-      r->beside_name, r->beside.people_count, taps, valid);
+      r->beside_name, r->beside.people_count, ethd__s(r->beside.people_count), taps, ethd__s(taps), valid);
 }
 
 /* The sections below it have counted this, since they are written first. */

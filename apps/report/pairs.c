@@ -6,6 +6,7 @@
 #include "report/report.h"
 #include "statistics/paired.h"
 #include "text/csv.h"
+#include "text/text.h"
 
 /* Two strategies at one speed, or their difference at one speed less that at another. */
 typedef struct within {
@@ -171,9 +172,9 @@ static ethd_status finish(ethd__report *r, family *f, const char *caption, const
 static void print_count(ethd__report *r) {
   ethd__html_print(&r->page, "<p class=\"note\">%s", ethd__report_caveat(r));
   if (r->data.people_count < ETHD_STATISTICS_PEOPLE)
-    ethd__html_print(&r->page,
-                     " <b>No significance is claimed:</b> with %zu participants the smallest two-sided p is %.3g.",
-                     r->data.people_count, fmin(1, 2 / exp2((double)r->data.people_count)));
+    ethd__html_print(
+        &r->page, " <b>No significance is claimed:</b> with %zu participant%s the smallest two-sided p is %.3g.",
+        r->data.people_count, ethd__s(r->data.people_count), fmin(1, 2 / exp2((double)r->data.people_count)));
   ethd__html_markup(&r->page, "</p>\n");
 }
 

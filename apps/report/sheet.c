@@ -61,8 +61,8 @@ static ethd_status part(ethd__sheet *sheet, size_t length, char *message) {
       return ethd__say(message, ETHD_E_SYNTAX, "%s:%zu: a quote that isn't closed", sheet->path, s.line);
     if (!sheet->columns) sheet->columns = total;
     if (total - before != sheet->columns)
-      return ethd__say(message, ETHD_E_SYNTAX, "%s:%zu: %zu cells, the header has %zu", sheet->path, s.line,
-                       total - before, sheet->columns);
+      return ethd__say(message, ETHD_E_SYNTAX, "%s:%zu: %zu cell%s, the header has %zu", sheet->path, s.line,
+                       total - before, ethd__s(total - before), sheet->columns);
   }
   sheet->rows = total / sheet->columns - 1;
   return ETHD_OK;

@@ -7,6 +7,7 @@
 #include "statistics/coverage.h"
 #include "statistics/dip.h"
 #include "text/csv.h"
+#include "text/text.h"
 
 typedef struct cell_summary {
   ethd__summary5 s;
@@ -82,10 +83,10 @@ ethd_status ethd__report_summary(ethd__report *r) {
   if (r->data.people_count < ETHD_STATISTICS_PEOPLE)
     ethd__html_print(
         &r->page,
-        "<p class=\"note\">The medians have no 95 %% interval: a bootstrap of %zu participants would give "
+        "<p class=\"note\">The medians have no 95 %% interval: a bootstrap of %zu participant%s would give "
         "little more than the smallest and largest of them, and hold the truth in about %.0f %%, not 95 %%, "
         "of such studies.</p>\n",
-        r->data.people_count, 100 * ethd__coverage_known(r->data.people_count)->median);
+        r->data.people_count, ethd__s(r->data.people_count), 100 * ethd__coverage_known(r->data.people_count)->median);
   ethd__html_table(&r->page, "Every figure by cell: valid test taps", header, 1);
   for (int q = 0; q < ETHD_QUANTITIES; q++) {
     char title[160];

@@ -8,6 +8,7 @@
 
 #include "cli/cli.h"
 #include "run/telemetry.h"
+#include "text/text.h"
 
 #define STACK ((size_t)512 << 10)
 #define PAUSE 2000000 /* ns */
@@ -36,7 +37,7 @@ static void tell_lost(ethd__recorder *r, uint64_t lost) {
   char text[80];
   if (!lost) return;
   r->lost += lost;
-  snprintf(text, sizeof text, "%" PRIu64 " ticks before this one found no room", lost);
+  snprintf(text, sizeof text, "%" PRIu64 " tick%s before this one found no room", lost, ethd__s(lost));
   event(r, "lost", text);
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/dropped.h"
+#include "text/text.h"
 
 void ethd__durations_print(FILE *out, const char *name, const ethd_histogram *h) {
   fprintf(out, "%-10s p50 %9.3f  p99 %9.3f  p99.9 %9.3f  max %9.3f us\n", name,
@@ -70,21 +71,25 @@ static void print_skipped(FILE *out, const ethd__session *s, const ethd_loop_sta
   ethd_counters c;
   ethd_control_counters(s->control, &c);
   fprintf(out,
-          "%-10s %" PRIu64 " readings dropped, %" PRIu64 " contacts without room, %" PRIu64
-          " ticks without room in the recorder\n",
-          "skipped", c.readings_dropped, c.contacts_lost, stats->rows_lost);
+          "%-10s %" PRIu64 " reading%s dropped, %" PRIu64 " contact%s without room, %" PRIu64
+          " tick%s without room in the recorder\n",
+          "skipped", c.readings_dropped, ethd__s(c.readings_dropped), c.contacts_lost, ethd__s(c.contacts_lost),
+          stats->rows_lost, ethd__s(stats->rows_lost));
   if (!s->setup.scene) fprintf(out, "%-10s none: there is no wall; [scene] file = ... has one\n", "scene");
   if (!s->setup.scene) return;
-  fprintf(out, "%-10s queried in %" PRIu64 " of %" PRIu64 " ticks", "scene", c.queried, c.ticks);
+  fprintf(out, "%-10s queried in %" PRIu64 " of %" PRIu64 " tick%s", "scene", c.queried, c.ticks, ethd__s(c.ticks));
   ethd__dropped_print(out, s->setup.scene);
   fputc('\n', out);
 }
 
 static void print_device(FILE *out, const ethd_loop_stats *stats) {
   if (stats->read_failures || stats->write_failures || stats->service_failures)
-    fprintf(out, "%-10s failed %" PRIu64 " reads, %" PRIu64 " writes, %" PRIu64 " of its own\n", "device",
-            stats->read_failures, stats->write_failures, stats->service_failures);
-  if (stats->relaxes) fprintf(out, "%-10s %" PRIu64 " switches to secondary mode\n", "relaxes", stats->relaxes);
+    fprintf(out, "%-10s failed %" PRIu64 " read%s, %" PRIu64 " write%s, %" PRIu64 " of its own\n", "device",
+            stats->read_failures, ethd__s(stats->read_failures), stats->write_failures, ethd__s(stats->write_failures),
+            stats->service_failures);
+  if (stats->relaxes)
+    fprintf(out, "%-10s %" PRIu64 " switch%s to secondary mode\n", "relaxes", stats->relaxes,
+            stats->relaxes == 1 ? "" : "es");
 }
 
 /* Prints the device's own figures, durations in ms. */
@@ -102,8 +107,8 @@ static void print_figures(FILE *out, const ethd__session *s) {
 static void print_snapshot(FILE *out, const ethd__snapshot *s) {
   if (s->message[0]) fprintf(out, "%-10s not written: %s\n", "snapshot", s->message);
   if (s->written)
-    fprintf(out, "%-10s %s: %zu ticks around the first fault, %s\n", "snapshot", s->path, s->written,
-            ethd_fault_sentence(s->fault));
+    fprintf(out, "%-10s %s: %zu tick%s around the first fault, %s\n", "snapshot", s->path, s->written,
+            ethd__s(s->written), ethd_fault_sentence(s->fault));
 }
 
 /* ---- the manual's page ---- */
@@ -129,17 +134,18 @@ void ethd__faults_print(FILE *out) {
 
 static void print_recorded(FILE *out, const char *record, const ethd__recorder *r) {
   if (r->kept == r->written)
-    fprintf(out, "%-10s %s: %" PRIu64 " ticks\n", "recorded", record, r->written);
+    fprintf(out, "%-10s %s: %" PRIu64 " tick%s\n", "recorded", record, r->written, ethd__s(r->written));
   else
-    fprintf(out, "%-10s %s: %" PRIu64 " of %" PRIu64 " ticks, %" PRIu64 " are lost\n", "recorded", record, r->kept,
-            r->written, r->written - r->kept);
+    fprintf(out, "%-10s %s: %" PRIu64 " of %" PRIu64 " tick%s, %" PRIu64 " %s lost\n", "recorded", record, r->kept,
+            r->written, ethd__s(r->written), r->written - r->kept, r->written - r->kept == 1 ? "is" : "are");
 }
 
 void ethd__summary_print(FILE *out, const ethd__session *s, const char *record) {
   static ethd_loop_stats stats;
   ethd_loop_read(s->loop, &stats);
   fprintf(out, "%-10s %" PRIu64 " of %g s\n", "ticks", stats.ticks, s->setup.period);
-  fprintf(out, "%-10s %" PRIu64 ", %" PRIu64 " periods missed\n", "overruns", stats.overruns, stats.missed);
+  fprintf(out, "%-10s %" PRIu64 ", %" PRIu64 " period%s missed\n", "overruns", stats.overruns, stats.missed,
+          ethd__s(stats.missed));
   if (s->is_virtual) {
     fprintf(out, "%-10s virtual: nothing ran in real time\n", "clock");
   } else {

@@ -23,7 +23,8 @@ static void say_page(const ethd__scene_args *arg, const ethd_svg_notes *n) {
   if (isfinite(n->width) && isfinite(n->height)) printf(", its size %.9g x %.9g m", n->width, n->height);
   printf("; curves within %.3g m\n", arg->svg.tolerance);
   if (n->skipped)
-    printf("  skipped: %zu elements (hidden, title, desc, metadata, defs, other namespaces)\n", n->skipped);
+    printf("  skipped: %zu element%s (hidden, title, desc, metadata, defs, other namespaces)\n", n->skipped,
+           ethd__s(n->skipped));
   if (n->blank) printf("  left out: %zu without length\n", n->blank);
 }
 
@@ -62,7 +63,8 @@ int ethd__scene_convert(const ethd__scene_args *arg) {
   ethd__refuse_input("--out", arg->out, "--in", arg->in);
   write_scene(scene, arg->out);
   ethd_scene_describe(scene, &info);
-  printf("%s: %zu objects, %zu segments, of %s\n", arg->out, info.objects, info.segments, arg->in);
+  printf("%s: %zu object%s, %zu segment%s, of %s\n", arg->out, info.objects, ethd__s(info.objects), info.segments,
+         ethd__s(info.segments), arg->in);
   if (drawing) say_page(arg, &notes);
   ethd_scene_destroy(scene);
   return ETHD_EXIT_DONE;

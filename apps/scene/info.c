@@ -3,6 +3,7 @@
 
 #include "cli/cli.h"
 #include "scene/scene.h"
+#include "text/text.h"
 
 static ethd_setup setup_of(const char *path) {
   char message[ETHD_MESSAGE_MAX];
@@ -17,7 +18,7 @@ static ethd_setup setup_of(const char *path) {
 }
 
 static void say_counts(const char *name, const ethd_scene_info *info) {
-  printf("%s: %zu objects\n", name, info->objects);
+  printf("%s: %zu object%s\n", name, info->objects, ethd__s(info->objects));
   for (int shape = 0; shape < ETHD_SHAPE_COUNT; shape++)
     if (info->by_shape[shape]) printf("  %-10s %zu\n", ethd_shape_name((ethd_shape)shape), info->by_shape[shape]);
   printf("segments:     %zu (edges of polygons, polylines and segments)\n", info->segments);
@@ -38,8 +39,8 @@ int ethd__scene_info(const ethd__scene_args *arg) {
   say_counts(arg->scene, &info);
   printf("build time:   %.3g ms (read and built)\n", 1e3 * seconds);
   printf("memory:       %zu bytes\n", info.bytes);
-  printf("out of reach: %zu of %zu objects, which a controller drops (%s arm %g + %g m, ring %g m)\n",
-         ethd_scene_out_of_reach(scene, &setup.arm, ethd_setup_range(&setup)), info.objects,
+  printf("out of reach: %zu of %zu object%s, which a controller drops (%s arm %g + %g m, ring %g m)\n",
+         ethd_scene_out_of_reach(scene, &setup.arm, ethd_setup_range(&setup)), info.objects, ethd__s(info.objects),
          ethd_arm_name(setup.arm.mechanism), setup.arm.link1, setup.arm.link2, setup.ring_radius);
   int code = arg->plot ? ethd__scene_plot(arg, scene, &setup) : ETHD_EXIT_DONE;
   ethd_scene_destroy(scene);

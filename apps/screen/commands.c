@@ -9,6 +9,8 @@
 #include "screen/place.h"
 #include "study/plan.h"
 #include "study/sums.h"
+#include "text/ini.h"
+#include "text/text.h"
 
 static void check(ethd_status status, const char *message) {
   if (status) ethd__fail(status == ETHD_E_FILE ? ETHD_EXIT_FAILED : ethd__exit_code(status), "%s", message);
@@ -65,13 +67,15 @@ static void make_folder(const ethd__study_options *o) {
 
 /* ---- a session ---- */
 
+#define UNQUOTED " \t'\"\\$`;&|<>()*?" /* characters of a path that a shell reads as its own */
+
 /* Prints the whole command that resumes the session, so that nobody resumes it with another hand. */
 static char *going_on(const ethd__study_options *o, const char *folder) {
   char *text = NULL;
   size_t length;
   FILE *file = open_memstream(&text, &length);
   if (!file) ethd__fail_memory();
-  fprintf(file, strpbrk(folder, " \t'\"\\$`;&|<>()*?") ? "ethd-study --resume '%s'" : "ethd-study --resume %s", folder);
+  fprintf(file, strpbrk(folder, UNQUOTED) ? "ethd-study --resume '%s'" : "ethd-study --resume %s", folder);
   if (o->first) fprintf(file, " --participant %lld", (long long)o->first);
   if (o->last > o->first) fprintf(file, "-%lld", (long long)o->last);
   if (o->width)
@@ -83,16 +87,44 @@ static char *going_on(const ethd__study_options *o, const char *folder) {
   return text;
 }
 
+/* Returns true if the folder's configuration names plugins, which ethd-report runs only when it is told to. */
+static bool has_plugins(const char *folder) {
+  char message[ETHD_MESSAGE_MAX], *text = NULL, *path = ethd__folder_path(folder, "config.ini");
+  size_t length = 0;
+  ethd_ini ini;
+  bool has = false;
+  if (!ethd_text_read(path, ETHD_INI_BYTES_MAX, &text, &length, message) &&
+      !ethd_ini_parse(text, length, path, "plugins.file", &ini, message)) {
+    has = ethd_ini_find(&ini, "plugins", "file") != NULL;
+    ethd_ini_free(&ini);
+  }
+  free(text);
+  free(path);
+  return has;
+}
+
+/* Says what the folder holds now, and the command that shows it. */
+static void say_taps(const char *folder, uint64_t taps, size_t stations) {
+  const char *quote = strpbrk(folder, UNQUOTED) ? "'" : "";
+  printf("%s: ", folder);
+  if (stations)
+    printf("%llu tap%s of %zu station%s", (unsigned long long)taps, ethd__s(taps), stations, ethd__s(stations));
+  else
+    printf("%llu tap%s%s", (unsigned long long)taps, ethd__s(taps), taps ? "" : " were missing");
+  printf("; ethd-report %s%s%s%s draws %s\n", has_plugins(folder) ? "--plugins " : "", quote, folder, quote,
+         taps == 1 ? "it" : "them");
+}
+
 static int end(const ethd__study_options *o, const ethd__sitting *sitting, ethd_status status, bool over,
                const char *message) {
   const char *folder = o->resume ? o->resume : o->out;
   char *command = going_on(o, folder);
   if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s; what was done is kept: %s goes on", message, command);
   if (over && sitting->unasked)
-    printf("%s: %u questionnaires weren't asked; ethd-study --resume %s with --ask or --screen asks them\n", folder,
-           sitting->unasked, folder);
+    printf("%s: %u questionnaire%s; ethd-study --resume %s with --ask or --screen asks %s\n", folder, sitting->unasked,
+           sitting->unasked == 1 ? " wasn't asked" : "s weren't asked", folder, sitting->unasked == 1 ? "it" : "them");
   if (over)
-    printf("%s: %llu taps; ethd-report %s draws them\n", folder, (unsigned long long)sitting->taps, folder);
+    say_taps(folder, sitting->taps, 0);
   else
     fprintf(stderr, "%s: stopped; what was done is kept: %s goes on\n", program_invocation_short_name, command);
   free(command);
@@ -146,7 +178,8 @@ int ethd__command_shard(const ethd__study_options *o) {
     fprintf(o->sharded ? stdout : stderr, "%s: shard %u/%u was finished before; nothing is added\n", o->out,
             o->shard.index, o->shard.count);
   else if (over)
-    printf("%s: shard %u/%u: %llu taps\n", o->out, o->shard.index, o->shard.count, (unsigned long long)taps);
+    printf("%s: shard %u/%u: %llu tap%s\n", o->out, o->shard.index, o->shard.count, (unsigned long long)taps,
+           ethd__s(taps));
   else
     fprintf(stderr, "%s: stopped; what was done is kept: the same command, --out %s goes on\n",
             program_invocation_short_name, o->out);
@@ -167,8 +200,10 @@ static int merge_shards(const char *path) {
   status = ethd__shards_merge(&folder, &taps, message);
   if (!status) status = ethd__sums_write(path, message);
   if (status < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
-  printf("%s/%s: %llu taps of %u participants at %zu points\n", path, ETHD_STUDY_TAPS, (unsigned long long)taps,
-         folder.protocol.participants, ethd__protocol_points(&folder.protocol));
+  const size_t points = ethd__protocol_points(&folder.protocol);
+  const uint32_t people = folder.protocol.participants;
+  printf("%s/%s: %llu tap%s of %u participant%s at %zu point%s\n", path, ETHD_STUDY_TAPS, (unsigned long long)taps,
+         ethd__s(taps), people, ethd__s(people), points, ethd__s(points));
   ethd__folder_close(&folder);
   return ETHD_EXIT_DONE;
 }
@@ -182,7 +217,7 @@ int ethd__command_merge(const ethd__study_options *o) {
   ethd_status status = ethd__stations_fit(folders, o->word_count + 1, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   check(ethd__stations_merge(folders, o->word_count + 1, o->out, &taps, message), message);
-  printf("%s: %zu taps of %zu stations; ethd-report %s draws them\n", o->out, taps, o->word_count + 1, o->out);
+  say_taps(o->out, taps, o->word_count + 1);
   return ETHD_EXIT_DONE;
 }
 

@@ -112,6 +112,20 @@ static uint32_t simulated_of(const char *folder) {
   return people;
 }
 
+/* Says of a folder without a study what it is, if that can be told, and which program shows it. */
+static ethd_status no_study(const char *folder, ethd_status status, char *message) {
+  char *ticks = existing(folder, ETHD_RECORDING_TICK), *study = existing(folder, ETHD_STUDY_FILE);
+  if (ticks && !study)
+    status =
+        ethd__say(message, ETHD_E_ARGUMENT,
+                  "%s: a recording, not a study's folder: ethd-replay --verify %s checks it, ethd-convert %s NAME.csv "
+                  "or NAME.mcap makes a table of it",
+                  folder, folder, folder);
+  free(ticks);
+  free(study);
+  return status;
+}
+
 ethd_status ethd__folder_read(const char *folder, ethd__folder *out, char message[ETHD_MESSAGE_MAX]) {
   *out = (ethd__folder){.path = ethd__folder_path(folder, "")};
   out->path[strlen(out->path) - 1] = 0;
@@ -119,6 +133,7 @@ ethd_status ethd__folder_read(const char *folder, ethd__folder *out, char messag
   ethd_status status = ethd__protocol_load(study, &out->protocol, message);
   if (!status) status = ethd__folder_hash(folder, out->hash, message);
   free(study);
+  if (status == ETHD_E_FILE) status = no_study(folder, status, message);
   out->simulated = simulated_of(folder);
   if (!status && out->simulated) out->protocol.participants = out->simulated;
   if (status) ethd__folder_close(out);

@@ -160,8 +160,8 @@ static ethd_status compare_whole(const wanted_list *list, const char *folder) {
   if (status) return status;
   if (there.simulated != simulated)
     status = there.simulated ? ethd__say(list->message, ETHD_E_ARGUMENT,
-                                         "%s: holds a simulation of %u participants; another folder is needed for %u",
-                                         folder, there.simulated, simulated)
+                                         "%s: holds a simulation of %u participant%s; another folder is needed for %u",
+                                         folder, there.simulated, ethd__s(there.simulated), simulated)
                              : refuse(list, folder, "a session");
   ethd__folder_close(&there);
   return status;

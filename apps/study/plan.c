@@ -5,6 +5,7 @@
 
 #include "study/columns.h"
 #include "study/row.h"
+#include "text/text.h"
 
 #define FARTHEST 4 /* times the cells, up to which another number of participants is looked for */
 
@@ -144,8 +145,8 @@ static void warn(FILE *file, const ethd__protocol *p) {
   static const char *const words[] = {"paper", "random", "latin"};
   uint32_t next = next_balanced(p, p->participants);
   if (next == p->participants) return;
-  fprintf(file, "\nWARNING: order = %s isn't balanced with %" PRIu32 " participants; ", words[p->order],
-          p->participants);
+  fprintf(file, "\nWARNING: order = %s isn't balanced with %" PRIu32 " participant%s; ", words[p->order],
+          p->participants, ethd__s(p->participants));
   if (next) {
     fprintf(file, "%" PRIu32 " are\n", next);
     return;

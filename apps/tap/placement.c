@@ -5,6 +5,7 @@
 
 #include "text/csv.h"
 #include "text/error_text.h"
+#include "text/text.h"
 
 /* ---- reading ---- */
 
@@ -17,7 +18,9 @@ static ethd_status find(const char *path, const ethd_csv *csv, int column[COLUMN
     if (column[i] < 0)
       return ethd__say(message, ETHD_E_UNKNOWN, "%s:1: no column %s; t_s, x_m and y_m are needed", path, names[i]);
   }
-  if (csv->rows < 3) return ethd__say(message, ETHD_E_RANGE, "%s: %zu samples; at least 3 are needed", path, csv->rows);
+  if (csv->rows < 3)
+    return ethd__say(message, ETHD_E_RANGE, "%s: %zu sample%s; at least 3 are needed", path, csv->rows,
+                     ethd__s(csv->rows));
   return ETHD_OK;
 }
 

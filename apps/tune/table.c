@@ -7,6 +7,7 @@
 #include "check/report.h"
 #include "text/csv.h"
 #include "text/error_text.h"
+#include "text/text.h"
 
 #define SHOWN 8 /* points of the front that are printed */
 
@@ -35,8 +36,8 @@ void ethd__tune_print(FILE *out, const ethd__tune_search *s, const ethd__tune_en
   const ethd__tune_round *last = &s->rounds[ETHD_TUNE_ROUNDS - 1];
   size_t front = 0, shown = 0;
   for (size_t i = 0; i < last->count; i++) front += last->entries[i].front;
-  fprintf(out, "\nfront        %zu of %zu points, %u taps at each speed; figures at high speed\n", front, last->count,
-          last->taps);
+  fprintf(out, "\nfront        %zu of %zu point%s, %u tap%s at each speed; figures at high speed\n", front, last->count,
+          ethd__s(last->count), last->taps, ethd__s(last->taps));
   print_head(out, space);
   print_entry(out, last->entries[0].keeps ? "own" : "own, thin", space, &last->entries[0]);
   for (size_t i = 1; i < last->count && shown < SHOWN; i++)

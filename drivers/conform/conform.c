@@ -6,6 +6,7 @@
 #include "conform/conform_rig.h"
 #include "conform/letting_go.h"
 #include "device/stack.h"
+#include "text/text.h"
 
 #define OPENINGS 20
 #define PUSH 0.1       /* s */
@@ -110,9 +111,11 @@ static ethd_verdict judge_samples(const ethd__conform_rig *r, ethd_conform_answe
     return ethd__conform_rig_answer(
         a, reaction >= ETHD_REACTION_STOP && r->late <= AGE_MAX ? ETHD_BROKEN : ETHD_AT_RISK,
         "it reports: %s; ticks were up to %.3g ms late", ethd_fault_sentence(row), 1e3 * r->late);
-  if (r->readings) snprintf(readings, sizeof readings, "; %d readings of the finger", r->readings);
+  if (r->readings)
+    snprintf(readings, sizeof readings, "; %d reading%s of the finger", r->readings, ethd__s((uint64_t)r->readings));
   return ethd__conform_rig_answer(a, r->age > AGE_MAX ? ETHD_AT_RISK : ETHD_KEPT,
-                                  "%d samples, the oldest used at %.3g ms%s", r->samples, 1e3 * r->age, readings);
+                                  "%d sample%s, the oldest used at %.3g ms%s", r->samples,
+                                  ethd__s((uint64_t)r->samples), 1e3 * r->age, readings);
 }
 
 static ethd_verdict ask_sense(const ethd_conform_def *def, ethd_conform_answer *a) {
@@ -122,10 +125,10 @@ static ethd_verdict ask_sense(const ethd_conform_def *def, ethd_conform_answer *
   if (!r.samples)
     ethd__conform_rig_answer(a, ETHD_BROKEN, "no joint sample in %g s", 5 * PUSH);
   else if (r.failed || !r.finite)
-    ethd__conform_rig_answer(a, ETHD_BROKEN, "%d failed calls%s", r.failed,
+    ethd__conform_rig_answer(a, ETHD_BROKEN, "%d failed call%s%s", r.failed, ethd__s((uint64_t)r.failed),
                              r.finite ? "" : ", angles that aren't finite");
   else if (r.backwards || r.ahead)
-    ethd__conform_rig_answer(a, ETHD_BROKEN, "%d samples go back in time, %d come from the future", r.backwards,
+    ethd__conform_rig_answer(a, ETHD_BROKEN, "samples that go back in time: %d; from the future: %d", r.backwards,
                              r.ahead);
   else
     judge_samples(&r, a);

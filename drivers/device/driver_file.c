@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "settings/config_parts.h"
+#include "settings/plugin_fault.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
@@ -43,9 +44,14 @@ static const char *functions_fault(const ethd_driver *d) {
 
 /* The ABI comes first: when it differs, nothing behind it can be trusted. */
 static ethd_status check_head(const ethd_driver *d, char *what) {
+  if (!d->abi)
+    return ethd__say(what, ETHD_E_ABI, "its table doesn't say its abi: .abi = ETHD_DRIVER_ABI is needed, which is %u",
+                     ETHD_DRIVER_ABI);
   if (d->abi != ETHD_DRIVER_ABI)
-    return ethd__say(what, ETHD_E_ABI, "it was built for version %u of the drivers' interface, this is version %u",
-                     d->abi, ETHD_DRIVER_ABI);
+    return ethd__say(
+        what, ETHD_E_ABI,
+        "it was built for version %u of the drivers' interface, this is version %u: build it with these headers",
+        d->abi, ETHD_DRIVER_ABI);
   if (d->size < ETHD_DRIVER_MIN || d->size > sizeof *d)
     return ethd__say(what, ETHD_E_SIZE, "its table has %u bytes, %zu to %zu are allowed: build it with these headers",
                      d->size, ETHD_DRIVER_MIN, sizeof *d);
@@ -54,13 +60,13 @@ static ethd_status check_head(const ethd_driver *d, char *what) {
 
 /* Checks a table that is as large as ours. */
 static ethd_status check_rest(const ethd_driver *d, char *what) {
-  ethd_error error = {.status = ETHD_OK};
+  char row[ETHD_MESSAGE_MAX];
   if (!is_word(d->id)) return ethd__say(what, ETHD_E_ARGUMENT, "its id isn't 1 to 31 of a-z 0-9 - _");
   if (!is_line(d->brief))
     return ethd__say(what, ETHD_E_ARGUMENT, "the brief of %s isn't one line of 1 to %d printable characters", d->id,
                      ETHD_BRIEF_MAX);
-  ethd_status status = ethd_params_check_table(d->params, d->param_count, &error);
-  if (status) return ethd__say(what, status, "%s: params: %s: %s", d->id, error.name, ethd_status_sentence(status));
+  ethd_status status = ethd__table_fault(d->params, d->param_count, row);
+  if (status) return ethd__say(what, status, "%s: params: %s", d->id, row);
   if (!keys_are_words(d->keys))
     return ethd__say(what, ETHD_E_TABLE, "%s: keys: not words, or no NULL behind them", d->id);
   const char *fault = functions_fault(d);

@@ -6,6 +6,7 @@
 
 #include "ethd/maths.h"
 #include "text/error_text.h"
+#include "text/text.h"
 
 #define CEILING (ETHD__FRAME_SATURATED - 1.0)
 #define P_MIN 0.5
@@ -189,10 +190,11 @@ static size_t tabulate(const ethd__calibration *c, ethd__place_readings readings
 
 static ethd_status need(int sensor, size_t has, size_t needs, char *message) {
   if (has >= needs) return ETHD_OK;
-  if (sensor < 0) return ethd__say(message, ETHD_E_RANGE, "%zu usable readings, at least %zu are needed", has, needs);
+  if (sensor < 0)
+    return ethd__say(message, ETHD_E_RANGE, "%zu usable reading%s, at least %zu are needed", has, ethd__s(has), needs);
   return ethd__say(message, ETHD_E_RANGE,
-                   "sensor %d: %zu usable readings, at least %zu are needed: is it missing, dirty or saturated?",
-                   sensor, has, needs);
+                   "sensor %d: %zu usable reading%s, at least %zu are needed: is it missing, dirty or saturated?",
+                   sensor, has, ethd__s(has), needs);
 }
 
 static ethd_status fit_sensor(ethd__level level, ethd__place_readings readings, int k, ethd__calibration *c,

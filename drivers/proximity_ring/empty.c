@@ -44,8 +44,8 @@ ethd_status ethd__empty_check(const ethd__empty *e, double ring_radius, ethd__ca
   }
   if (good < ETHD__GOOD_LEAST)
     return ethd__say(message, ETHD_E_DEVICE,
-                     "%d sensors answer in an empty ring, at least %d are needed: are all boards connected?", good,
-                     ETHD__GOOD_LEAST);
+                     "%d sensor%s in an empty ring, at least %d are needed: are all boards connected?", good,
+                     good == 1 ? " answers" : "s answer", ETHD__GOOD_LEAST);
   *c = got;
   return ETHD_OK;
 }

@@ -198,12 +198,12 @@ static ethd_status judge_end(const verification *r) {
   const ethd__record_event *last = r->events.count ? &r->events.events[r->events.count - 1] : NULL;
   if (!last || strcmp(last->kind, "end") != 0)
     return ethd__say(r->message, ETHD_E_UNFINISHED,
-                     "%s: %zu ticks, equal to the bit, but the recording was never closed: later ones may be lost",
-                     r->folder, r->count);
+                     "%s: %zu tick%s, equal to the bit, but the recording was never closed: later ones may be lost",
+                     r->folder, r->count, ethd__s(r->count));
   if (last->row != r->count)
-    return ethd__say(r->message, ETHD_E_DIFFERS, "%s:%zu: end: row: found %" PRIu64 ", but there are %zu ticks",
-                     r->events_path, last->line, last->row, r->count);
-  return ethd__say(r->message, ETHD_OK, "%s: %zu ticks, equal to the bit", r->folder, r->count);
+    return ethd__say(r->message, ETHD_E_DIFFERS, "%s:%zu: end: row: found %" PRIu64 ", but there %s %zu tick%s",
+                     r->events_path, last->line, last->row, r->count == 1 ? "is" : "are", r->count, ethd__s(r->count));
+  return ethd__say(r->message, ETHD_OK, "%s: %zu tick%s, equal to the bit", r->folder, r->count, ethd__s(r->count));
 }
 
 /* Refuses to go on at a tick before which others are missing, with what the controller learned in them. */

@@ -98,8 +98,8 @@ static void count_unconfirmed(ethd__servo_device *d) {
   uint32_t n = ethd__servo_unconfirmed(&d->map);
   if (n)
     snprintf(d->unconfirmed, sizeof d->unconfirmed,
-             "%u of %u registers are unconfirmed: check their addresses in the drive's manual (step 2)", n,
-             d->map.count);
+             "%u of %u register%s %s unconfirmed: check %s in the drive's manual (step 2)", n, d->map.count,
+             ethd__s(d->map.count), n == 1 ? "is" : "are", n == 1 ? "its address" : "their addresses");
 }
 
 static ethd_status make_feedback(ethd__servo_device *d, const ethd_device_def *def, const settings *s, char *message) {
@@ -140,12 +140,12 @@ static ethd_status check_pace(const ethd__servo_device *d, const settings *s, ch
   int64_t most = ETHD__SERVO_OLD_MOST / 2;
   ethd__servo_wire wire = ethd__servo_wire_of(&d->map, (double)NAN);
   if (1e9 * wire.usual > (double)d->exchange_ns)
-    return ethd__say(
-        message, ETHD_E_RANGE,
-        "%s: bus.divisor: found %u, an exchange in %g ms; its %u messages take %.3g ms of wire, silence and "
-        "turnaround: choose from %u, a faster line, or fewer registers",
-        s->map->value, d->map.divisor, 1e-6 * (double)d->exchange_ns, wire.questions, 1e3 * wire.usual,
-        ethd__servo_divisor_for(wire.usual, 1e-9 * (double)d->period_ns));
+    return ethd__say(message, ETHD_E_RANGE,
+                     "%s: bus.divisor: found %u, an exchange in %g ms; its %u message%s %.3g ms of wire, silence and "
+                     "turnaround: choose from %u, a faster line, or fewer registers",
+                     s->map->value, d->map.divisor, 1e-6 * (double)d->exchange_ns, wire.questions,
+                     wire.questions == 1 ? " takes" : "s take", 1e3 * wire.usual,
+                     ethd__servo_divisor_for(wire.usual, 1e-9 * (double)d->period_ns));
   if (d->exchange_ns <= most) return ETHD_OK;
   return ethd__say(message, ETHD_E_RANGE,
                    "%s: bus.divisor: found %u, an exchange in %g ms; at most %g ms are allowed: choose up to %lld",
@@ -171,13 +171,13 @@ static void say_wire(ethd__servo_device *d) {
   if (d->map.transport == ETHD__SERVO_TCP)
     snprintf(
         d->wire, sizeof d->wire,
-        "an exchange: %u messages, %u bytes, every %g ms; over tcp only ethd-servo-probe can say how long it takes",
-        w.questions, w.bytes, 1e-6 * (double)d->exchange_ns);
+        "an exchange: %u message%s, %u bytes, every %g ms; over tcp only ethd-servo-probe can say how long it takes",
+        w.questions, ethd__s(w.questions), w.bytes, 1e-6 * (double)d->exchange_ns);
   else
     snprintf(d->wire, sizeof d->wire,
-             "an exchange: %u messages, %u bytes, %.3g ms of wire, silence and turnaround at %g Bd%s, %.3g with slow "
+             "an exchange: %u message%s, %u bytes, %.3g ms of wire, silence and turnaround at %g Bd%s, %.3g with slow "
              "registers; divisor %u gives it %g ms: %s, %u would hold",
-             w.questions, w.bytes, 1e3 * w.usual, d->map.baud,
+             w.questions, ethd__s(w.questions), w.bytes, 1e3 * w.usual, d->map.baud,
              d->map.turnaround > 0 ? "" : " (turnaround: not known, ethd-servo-probe measures it)", 1e3 * w.most,
              d->map.divisor, 1e-6 * (double)d->exchange_ns, d->map.divisor >= least ? "it holds" : "it doesn't hold",
              least);

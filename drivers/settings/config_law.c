@@ -13,12 +13,16 @@ static void list(char out[ETHD_MESSAGE_MAX], const char *id) {
 
 ethd_status ethd__config_choose(const ethd_config *config, const ethd__config_key *key, ethd_setup *setup) {
   const ethd_setup_part *part = ethd_setup_part_of(key->section);
-  char ids[ETHD_MESSAGE_MAX] = "";
+  char ids[ETHD_MESSAGE_MAX] = "", quote[ETHD_QUOTE_MAX];
   if (ethd_setup_choose(setup, key->section, key->value, config->laws, NULL) == ETHD_OK) return ETHD_OK;
   for (uint32_t i = 0; i < part->count; i++) list(ids, part->methods[i].id);
   for (const ethd_law *const *law = config->laws; !part->methods && *law; law++)
     if ((*law)->kind == part->kind) list(ids, (*law)->id);
-  return ethd__key_found(key, ETHD_E_UNKNOWN, ids);
+  if (part->methods || !key->file) return ethd__key_found(key, ETHD_E_UNKNOWN, ids);
+  return ethd__key_refuse(key, ETHD_E_UNKNOWN, "found %s, %s is allowed; %s",
+                          ethd__quote(key->value, strlen(key->value), quote), ids,
+                          config->plugin_count ? "the files of [plugins] have no other law of this kind"
+                                               : "a law of a plugin needs its file too: [plugins] file = NAME.so");
 }
 
 /* ---- preset ---- */

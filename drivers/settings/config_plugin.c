@@ -10,6 +10,7 @@
 
 #include "ethd/plugin.h"
 #include "settings/config_parts.h"
+#include "settings/plugin_fault.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
@@ -133,13 +134,15 @@ static ethd_status open_plugin(ethd_config *config, const char *path, const ethd
   ethd_status status = ethd__plugin_file_check(path, what);
   if (status) return ethd__key_refuse(key, status, "%s", what);
   foreign(path);
-  status = ethd_plugin_open(path, &entry, &error);
+  void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL); /* stays, so that a refused one can be asked what is wrong */
+  const char *why = handle ? NULL : dlerror();
+  status = handle ? ethd_plugin_open(path, &entry, &error)
+                  : ethd__say(what, ETHD_E_LOAD, "%s", why ? why : ethd_status_sentence(ETHD_E_LOAD));
+  if (handle && status) ethd__plugin_fault(handle, &error, what);
+  if (handle) dlclose(handle); /* ethd_plugin_open keeps one that it takes */
   foreign(NULL);
   if (!status) return add_laws(config, entry, key);
-  const char *why = status == ETHD_E_LOAD ? dlerror() : NULL;
-  if (why) return ethd__key_refuse(key, status, "%s", why);
-  ethd_error_text(NULL, &error, what);
-  return ethd__key_refuse(key, status, "%s: %s", key->value, what);
+  return handle ? ethd__key_refuse(key, status, "%s: %s", key->value, what) : ethd__key_refuse(key, status, "%s", what);
 }
 
 ethd_status ethd__config_plugin(ethd__config *whole, const ethd__config_key *key) {

@@ -170,8 +170,8 @@ static ethd_status read_row(table *r, const layout *l, ethd_csv *out) {
     if (status) return status;
   }
   if (i != l->cells)
-    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: %zu cells, the header names %zu columns", r->name, r->line, i,
-                     l->cells);
+    return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: %zu cell%s, the header names %zu column%s", r->name, r->line,
+                     i, ethd__s(i), l->cells, ethd__s(l->cells));
   out->rows++;
   return ETHD_OK;
 }

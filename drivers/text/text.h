@@ -7,6 +7,9 @@
 
 #include "ethd/config.h"
 
+/* Returns what stands behind a noun after its number: "" for 1, else "s". [any] */
+static inline const char *ethd__s(uint64_t count) { return count == 1 ? "" : "s"; }
+
 /* Reads a whole file and puts a 0 after it; the caller frees it. Refuses a file that is missing, a folder, or over
    `most` bytes. The text may have 0 bytes: callers decide. */
 ETHD_MUST_CHECK ethd_status ethd_text_read(const char *path, size_t most, char **text, size_t *length,
