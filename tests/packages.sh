@@ -1,0 +1,45 @@
+#!/bin/sh
+# The Debian packages on paper, before dpkg makes them: every installed file belongs to one package, manual pages, completion,
+# pkg-config and CMake among them; the changelog has this version; who builds them can be their maintainer.
+set -u
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+debian=.packaging/debian version=$(sed -n 's/.*define ETHD_VERSION "\(.*\)".*/\1/p' include/ethd/ethd.h)
+head -n 1 $debian/changelog | grep -qF "($version)" || fail "the changelog begins with $(head -n 1 $debian/changelog), not with $version"
+grep -q '^### '"$version" include/README.md || fail "include/README.md has no changes of $version"
+[ "$(sed -n 's/^Maintainer: //p' $debian/control)" = "$(sed -n 's/^ -- \(.*>\)  .*/\1/p' $debian/changelog | head -n 1)" ] ||
+  fail "control and changelog name two maintainers"
+$MAKE --no-print-directory -s B="$BUILD" DESTDIR="$work/root" PREFIX=/usr LIBDIR=/usr/lib/machine install-files >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+rm "$work/root/usr/share/ethd/installed"
+(cd "$work/root" && find . ! -type d | sed 's|^\./||' | sort) >"$work/files"
+for list in $debian/*.install; do
+  package=${list##*/} package=${package%.install}
+  grep -q "^Package: $package$" $debian/control || fail "$list is of no package"
+  while read -r pattern; do
+    # a folder stands for all that is in it
+    while read -r file; do case $file in $pattern | $pattern/*) echo "$file $package" ;; esac; done <"$work/files"
+  done <"$list"
+done | sort >"$work/owned"
+cut -d' ' -f1 "$work/owned" | comm -23 "$work/files" - >"$work/lost"
+[ ! -s "$work/lost" ] || fail "in no package: $(cat "$work/lost")"
+cut -d' ' -f1 "$work/owned" | uniq -d >"$work/twice"
+[ ! -s "$work/twice" ] || fail "in two packages: $(cat "$work/twice")"
+has() { grep -qx "usr/$1 $2" "$work/owned" || fail "$2 hasn't usr/$1"; }
+has lib/machine/libethd.so.0 libethd0
+has lib/machine/libethd-drivers.so.0 libethd0
+has lib/machine/libethd.so libethd-dev
+has lib/machine/libethd-drivers.a libethd-dev
+has lib/machine/pkgconfig/ethd-drivers.pc libethd-dev
+has lib/machine/cmake/ethd/ethdConfig.cmake libethd-dev
+has include/ethd/ethd.h libethd-dev
+[ -n "${SAN:-}" ] || has share/man/man3/libethd.3 libethd-dev
+for program in "$BUILD"/bin/ethd-*; do
+  has "bin/${program##*/}" ethd-tools
+  [ -n "${SAN:-}" ] || has "share/man/man1/${program##*/}.1" ethd-tools
+  has "share/bash-completion/completions/${program##*/}" ethd-tools
+done
+for pattern in $(cat $debian/libethd-dev.examples); do [ -e "$pattern" ] || fail "no example $pattern"; done
+[ $failed = 0 ] && echo "$(wc -l <"$work/files") files, each in one package"
+exit $failed
