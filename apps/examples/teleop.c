@@ -61,8 +61,7 @@ static ethd_status open_link(const ethd_device_def *def, void **out, char messag
 }
 static void close_link(void *device) { (void)device; }
 
-/* A pose that jumps would give energy away, so the wall follows the datagrams smoothly, and its speed is the one with
-   which it follows. */
+/* A pose that jumps would give energy away, so the wall follows the datagrams smoothly; its speed is that of this. */
 static ethd_status read_link(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
   double dt = 1e-9 * (double)(now_ns - at), share = fmin(dt / SMOOTHING, 1); /* 1 at the first call */
   if (ethd_cell_take(newest, &far) == ETHD_OK || !at) heard = now_ns;
