@@ -201,6 +201,22 @@ START_TEST(test_bounces_add_up) {
 }
 END_TEST
 
+/* What a wall has absorbed is no credit once it doesn't push: a slow way in and a fast one out are told after it, too. */
+START_TEST(test_absorbed_is_no_credit) {
+  for (int is_before = 0; is_before < 2; is_before++) {
+    rig r;
+    rig_open(&r, RIG_WALL);
+    ethd_setup_transition(&r.setup, &ethd_transition_smooth);
+    r.setup.limits.energy = BOUND;
+    rig_start(&r);
+    ck_assert_int_eq(told_at(&r, 0.001, 0.0005, 0.01), 0);
+    if (is_before) ck_assert_int_eq(told_at(&r, 0.0005, -0.004, 0.3) + told_at(&r, -0.004, 0.0005, 0.01), 0);
+    ck_assert_int_gt(told_at(&r, 0.0005, -0.004, 0.005) + told_at(&r, -0.004, 0.001, 0.6), 0);
+    rig_close(&r);
+  }
+}
+END_TEST
+
 /* A body that was pressed and retreats from a ring that stands, with another law since. */
 START_TEST(test_surface_retreats) {
   rig r;
@@ -258,6 +274,7 @@ int main(void) {
   tcase_add_loop_test(t, test_watched_from_within, 0, 2);
   tcase_add_test(t, test_acknowledged_within);
   tcase_add_test(t, test_bounces_add_up);
+  tcase_add_test(t, test_absorbed_is_no_credit);
   tcase_add_test(t, test_surface_retreats);
   tcase_add_test(t, test_wall_that_comes);
   suite_add_tcase(suite, t);
