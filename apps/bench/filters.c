@@ -49,22 +49,29 @@ static void row(const char *set, double latency, const ethd__filter_contender *c
   fprintf(csv, "%s,%.17g,%s,%.17g,%.17g,%s\n", set, 1e3 * latency, c->name, ns, 1e3 * error, tuned);
 }
 
+/* Beside the filters: two readings, and the peer. */
+enum { RUNNERS = ETHD_FILTER_COUNT + 2 };
+
 typedef struct field {
-  ethd__filter_contender list[6];
+  ethd__filter_contender list[RUNNERS];
   size_t count;
   ethd_filter filters[ETHD_FILTER_COUNT];
-  char tuned[6][64];
+  char tuned[RUNNERS][64];
 } field;
 
-static const ethd_filter_method order[ETHD_FILTER_COUNT] = {ETHD_FILTER_HOLD, ETHD_FILTER_ALPHA_BETA, ETHD_FILTER_CV,
-                                                            ETHD_FILTER_CA};
+static const ethd_filter_method order[] = {ETHD_FILTER_HOLD, ETHD_FILTER_ALPHA_BETA, ETHD_FILTER_CV, ETHD_FILTER_CA};
+_Static_assert(sizeof order / sizeof *order == ETHD_FILTER_COUNT, "each filter once");
 
-/* Gathers the contenders: hold, two readings, alpha-beta, cv, ca, the peer. */
+enum { CV = 3, CA = 4, PEER = ETHD_FILTER_COUNT + 1 }; /* in the field */
+
+/* Gathers the contenders: hold, two readings, alpha-beta, cv, ca, the peer, which is tuned as ca is. */
 static void gather(field *f, const ethd__tracks *reaches, const ethd__peer_filter *peer) {
+  ethd__tuning ca = {{NULL, NULL}, {0, 0}};
   f->count = 0;
   for (int i = 0; i < ETHD_FILTER_COUNT; i++) {
     ethd_filter_method m = order[i];
     ethd__tuning t = ethd__tuning_best(m, reaches, 1);
+    if (m == ETHD_FILTER_CA) ca = t;
     f->filters[m] = ethd__tuning_filter(m, &t);
     ethd__tuning_text(&t, f->tuned[f->count]);
     f->list[f->count++] = (ethd__filter_contender){ethd_filter_methods[m].id, ethd__filter_work, &f->filters[m]};
@@ -72,12 +79,11 @@ static void gather(field *f, const ethd__tracks *reaches, const ethd__peer_filte
       f->tuned[f->count][0] = 0;
       f->list[f->count++] = (ethd__filter_contender){"two readings", ethd__two_readings, NULL};
     }
-    if (m == ETHD_FILTER_CA && peer) {
-      strcpy(f->tuned[f->count], f->tuned[f->count - 1]);
-      void *self = peer->create(ETHD__TRACK_PERIOD, t.value[0], t.value[1], ETHD__TRACK_NOISE);
-      f->list[f->count++] = (ethd__filter_contender){peer->name, peer->work, self};
-    }
   }
+  if (!peer) return;
+  strcpy(f->tuned[PEER], f->tuned[CA]);
+  void *self = peer->create(ETHD__TRACK_PERIOD, ca.value[0], ca.value[1], ETHD__TRACK_NOISE);
+  f->list[f->count++] = (ethd__filter_contender){peer->name, peer->work, self};
 }
 
 static int by_error(const void *a, const void *b) {
@@ -87,15 +93,13 @@ static int by_error(const void *a, const void *b) {
 
 /* Prints a ranking such as "ca < cv < hold". */
 static void print_ranking(const field *f, const double *errors, size_t count) {
-  double sorted[6];
+  double sorted[RUNNERS];
   memcpy(sorted, errors, count * sizeof *sorted);
   qsort(sorted, count, sizeof *sorted, by_error);
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < count; k++)
       if (errors[k] == sorted[i]) printf("%s%s", i ? " < " : "", f->list[k].name);
 }
-
-enum { OUR_FILTER = 5, CV = 3, CA = 4 }; /* in the field */
 
 static void print_errors(const char *set, double latency, const double *errors, size_t count) {
   printf("  %-22s %4.0f ms", set, 1e3 * latency);
@@ -129,7 +133,7 @@ static void print_cv_ca(const ethd__tracks *recorded, size_t sets) {
 }
 
 static int one_latency(int l, double seconds, const ethd__peer_filter *peer) {
-  double latency = latencies[l], ns[6], errors[6];
+  double latency = latencies[l], ns[RUNNERS], errors[RUNNERS];
   ethd__tracks reaches = ethd__tracks_reaches(REACHES, latency), recorded[SETS_MAX];
   size_t sets = ethd__tracks_recorded(latency, recorded, SETS_MAX);
   field f;
@@ -150,7 +154,7 @@ static int one_latency(int l, double seconds, const ethd__peer_filter *peer) {
   printf("\n  tuned: alpha-beta %s, cv %s, ca %s\n", f.tuned[2], f.tuned[3], f.tuned[4]);
   if (sets) {
     printf("  ranking on all recorded: ");
-    print_ranking(&f, errors, OUR_FILTER);
+    print_ranking(&f, errors, PEER);
     printf("\n");
     print_cv_ca(&recorded[0], sets);
   }

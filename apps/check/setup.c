@@ -108,8 +108,8 @@ void ethd__report_setup(const ethd_config *config) {
     void (*print)(const ethd_config *config);
   } besides[] = {
       {"finger", difference}, {"limits", other_limits}, {"scene", scene}, {"device", device}, {"plugins", plugins}};
-  for (int i = 0; i < ETHD__SECTIONS; i++) {
-    const char *name = ethd__sections[i].name;
+  for (const ethd__section *s = ethd__sections; s->name; s++) {
+    const char *name = s->name;
     section(config, name);
     for (size_t k = 0; k < sizeof besides / sizeof *besides; k++)
       if (strcmp(besides[k].section, name) == 0) besides[k].print(config);

@@ -69,11 +69,21 @@ static void draw_solid(pen *p, const ethd_scene *scene, double size) {
   }
 }
 
+/* How chains are drawn; a shape without a row is drawn by its distance. */
+static const struct {
+  const char *what;
+  bool is_closed;
+} chains[ETHD_SHAPE_COUNT] = {
+    [ETHD_SEGMENT] = {"wall", false},
+    [ETHD_POLYLINE] = {"wall", false},
+    [ETHD_POLYGON] = {"solid", true},
+};
+
 static void draw_chain(pen *p, const ethd_object_def *o) {
   const double *v = o->numbers;
   p->at = (ethd_vec){v[0], v[1]};
   for (size_t k = 2; k < o->count; k += 2) line_to(p, (ethd_vec){v[k], v[k + 1]});
-  if (o->shape == ETHD_POLYGON) line_to(p, (ethd_vec){v[0], v[1]});
+  if (chains[o->shape].is_closed) line_to(p, (ethd_vec){v[0], v[1]});
 }
 
 /* Draws a wall as long as the picture; a short line marks its solid side. */
@@ -86,25 +96,13 @@ static void draw_halfplane(pen *p, const double *v, double size) {
 }
 
 static void draw_object(pen *p, const ethd_scene *scene, const ethd_object_def *o, double size) {
-  switch (o->shape) {
-  case ETHD_HALFPLANE:
-    p->what = "halfplane";
+  p->what = o->shape == ETHD_HALFPLANE ? "halfplane" : chains[o->shape].what ? chains[o->shape].what : "solid";
+  if (o->shape == ETHD_HALFPLANE)
     draw_halfplane(p, o->numbers, size);
-    break;
-  case ETHD_SEGMENT:
-  case ETHD_POLYLINE:
-    p->what = "wall";
+  else if (chains[o->shape].what)
     draw_chain(p, o);
-    break;
-  case ETHD_POLYGON:
-    p->what = "solid";
-    draw_chain(p, o);
-    break;
-  default:
-    p->what = "solid";
+  else
     draw_solid(p, scene, size);
-    break;
-  }
 }
 
 /* ---- trees ---- */

@@ -59,12 +59,13 @@ static void use_kalman(model *m) {
 
 static void prepare(const ethd__sampled_loop *loop, model *m) {
   *m = (model){.loop = loop};
-  switch (loop->method) {
+  switch (loop->method) { /* without a default, so that the compiler names an estimator that isn't here */
   case ETHD_VELOCITY_LOWPASS: use_difference(m, 1 - ethd_exp(-2 * M_PI * loop->p[0] * loop->period)); break;
   case ETHD_VELOCITY_LSQ:
   case ETHD_VELOCITY_FOAW: use_line(m, (int)loop->p[0]); break;
   case ETHD_VELOCITY_KALMAN: use_kalman(m); break;
-  default: use_difference(m, 1);
+  case ETHD_VELOCITY_DIFFERENCE:
+  case ETHD_VELOCITY_COUNT: use_difference(m, 1); break;
   }
   m->waiting = loop->delay + (loop->late > 0);
   ethd__bounds_motion_over(loop, loop->late, &m->before);

@@ -52,8 +52,7 @@ typedef struct ethd__section {
   ethd__file_key keys[2];
 } ethd__section;
 
-#define ETHD__SECTIONS 14
-extern const ethd__section ethd__sections[ETHD__SECTIONS];
+extern const ethd__section ethd__sections[]; /* a NULL name ends it */
 
 /* Reads the key if it belongs to this pass. */
 ethd_status ethd__config_read(ethd__config *config, const ethd__config_key *key, ethd__pass pass);

@@ -59,7 +59,7 @@ static ethd_status device_setting(ethd__config *c, const ethd__config_key *key) 
   return ETHD_OK;
 }
 
-const ethd__section ethd__sections[ETHD__SECTIONS] = {
+const ethd__section ethd__sections[] = {
     {"arm", {{0}}},
     {"ring", {{0}}},
     {"finger", {{0}}},
@@ -74,10 +74,11 @@ const ethd__section ethd__sections[ETHD__SECTIONS] = {
     {"limits", {{0}}},
     {"device", {{"driver", ETHD__PASS_REST, driver}, {"*", ETHD__PASS_REST, device_setting}}},
     {"plugins", {{"file", ETHD__PASS_PLUGINS, ethd__config_plugin}}},
+    {NULL, {{0}}},
 };
 
 static const ethd__section *find_section(const char *name) {
-  for (const ethd__section *s = ethd__sections; s < ethd__sections + ETHD__SECTIONS; s++)
+  for (const ethd__section *s = ethd__sections; s->name; s++)
     if (strcmp(s->name, name) == 0) return s;
   return NULL;
 }
@@ -122,7 +123,7 @@ static void add(char list[ETHD_MESSAGE_MAX], const char *word) {
 /* "unknown section; arm, ... are allowed" */
 static const char *unknown_section(char out[ETHD_MESSAGE_MAX]) {
   char list[ETHD_MESSAGE_MAX] = "";
-  for (const ethd__section *s = ethd__sections; s < ethd__sections + ETHD__SECTIONS; s++) add(list, s->name);
+  for (const ethd__section *s = ethd__sections; s->name; s++) add(list, s->name);
   snprintf(out, ETHD_MESSAGE_MAX, "unknown section; %.*s are allowed", ETHD_MESSAGE_MAX - 64, list);
   return out;
 }
