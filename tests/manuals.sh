@@ -22,7 +22,8 @@ for program in "$BUILD"/bin/ethd-*; do
   torn=$("$program" --help | awk '/^Example/ { on = 1 } on && (/^--/ || length > 79)')
   [ -z "$torn" ] || fail "$name --help: an example is too long for a terminal: $torn"
   grep -q "libethd $version" "$work/page" || fail "$name.1 doesn't say its version"
-  [ -e "$work/usr/share/bash-completion/completions/$name" ] || fail "no completion of $name"
+  bash -c '. "$1" && complete -p "$2"' - "$work/usr/share/bash-completion/completions/$name" "$name" >"$work/log" 2>&1 ||
+    fail "no completion of $name: $(cat "$work/log")"
 done
 man -l --warnings -Tutf8 "$pages/man3/libethd.3" >"$work/page" 2>"$work/warned"
 [ ! -s "$work/warned" ] || fail "libethd.3: $(head -n 2 "$work/warned")"
@@ -38,8 +39,5 @@ completed() { # WORDS...: what the last one becomes
 [ "$(completed ethd-tap --tr)" = "--trace --transition" ] || fail "ethd-tap --tr: $(completed ethd-tap --tr)"
 case $(completed ethd-tap --transition o) in offset) ;; *) fail "--transition o: $(completed ethd-tap --transition o)" ;; esac
 case $(completed ethd-run --conf) in --config) ;; *) fail "ethd-run --conf: $(completed ethd-run --conf)" ;; esac
-for program in "$BUILD"/bin/ethd-*; do
-  grep -qw "${program##*/}" .packaging/completion || fail "${program##*/} isn't in .packaging/completion"
-done
 echo "$count pages of programs"
 exit $failed

@@ -2,6 +2,7 @@
    seen in time, lead to what the table says, and leave no torque over the limit for one tick. The report is a
    table; times are ticks of 1 ms on the virtual clock, from when the fault begins to show. */
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -149,6 +150,25 @@ static const struct {
     {3, "it needs threads: tests/threads/test_loop_rows.c, in the same words"},
 };
 
+static bool is_tried(int row) {
+  for (size_t i = 0; i < fault_row_count; i++)
+    if (fault_rows[i].row == row) return true;
+  for (size_t i = 0; i < fault_end_count; i++)
+    if (fault_ends[i].row == row) return true;
+  for (size_t i = 0; i < sizeof elsewhere / sizeof *elsewhere; i++)
+    if (elsewhere[i].row == row) return true;
+  return false;
+}
+
+static void find_untried(void) {
+  for (int row = 1; row < ETHD_FAULT_COUNT; row++) {
+    if (is_tried(row)) continue;
+    printf(" %2d  %-62s NOT TRIED: give it a case in tests/behaviour/fault_rows.c\n", row,
+           ethd_fault_sentence((ethd_fault)row));
+    failures++;
+  }
+}
+
 int main(int count, char **words) {
   setvbuf(stdout, NULL, _IOLBF, 0);
   for (size_t i = 0; i < fault_row_count; i++)
@@ -157,6 +177,7 @@ int main(int count, char **words) {
     if (count < 2 || fault_ends[i].row == atoi(words[1])) run_end(&fault_ends[i]);
   for (size_t i = 0; count < 2 && i < sizeof elsewhere / sizeof *elsewhere; i++)
     print(elsewhere[i].row, elsewhere[i].why, NULL, "-", "zero", "elsewhere");
+  find_untried();
   printf("%d bad\n", failures);
   return failures != 0;
 }

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/scene.h"
+#include "scene/shapes.h"
 #include "scene_objects.h"
 
 /* ---- scenes ---- */
@@ -47,10 +47,14 @@ static void any_of(ethd_shape shape) {
   object o = scene_random(shape);
   object_of(shape);
   for (size_t k = 0; k < o.count; k++) {
-    bool angle = (shape == ETHD_BOX && k == 4) || (shape == ETHD_HALFPLANE && k < 2);
+    const ethd__shape *s = &ethd__shapes[shape];
+    bool angle = s->numbers[ethd__number_of(s, k)].kind == ETHD__DIRECTION;
     number(angle ? o.p[k] / draft.size : o.p[k]);
   }
 }
+
+/* Any shape but the half-plane, which is endless. */
+static ethd_shape bounded(void) { return (ethd_shape)(1 + scene_draw() % (ETHD_SHAPE_COUNT - 1)); }
 
 static ethd_scene *finish(void) {
   ethd_scene_def def = {draft.objects, draft.count, NULL, 0};
@@ -76,7 +80,7 @@ static ethd_scene *polylines(double size) { return many(ETHD_POLYLINE, size); }
 
 static ethd_scene *mixed(double size) {
   begin(size);
-  for (int n = 20 + (int)(scene_draw() % 150); n > 0; n--) any_of((ethd_shape)(1 + scene_draw() % 6));
+  for (int n = 20 + (int)(scene_draw() % 150); n > 0; n--) any_of(bounded());
   if (scene_draw() % 2) any_of(ETHD_HALFPLANE);
   any_of(ETHD_CIRCLE);
   return finish();
@@ -103,7 +107,7 @@ static ethd_scene *outline(double size) {
 static ethd_scene *nested(double size) {
   begin(size);
   for (int k = 1; k < 8; k++) star(10 * k, scene_uniform(-0.1, 0.1), 0, 0.09 * k, 0.1);
-  for (int k = 0; k < 30; k++) any_of((ethd_shape)(1 + scene_draw() % 6));
+  for (int k = 0; k < 30; k++) any_of(bounded());
   return finish();
 }
 
@@ -114,7 +118,7 @@ static ethd_scene *room(double size) {
   double s = 0.8, t = 0.85;
   for (int k = 0; k <= 100; k++) point_of(s * cos(0.06 * k), s * sin(0.06 * k));
   for (int k = 100; k >= 0; k--) point_of(t * cos(0.06 * k), t * sin(0.06 * k));
-  for (int k = 0; k < 100; k++) any_of((ethd_shape)(1 + scene_draw() % 6));
+  for (int k = 0; k < 100; k++) any_of(bounded());
   return finish();
 }
 

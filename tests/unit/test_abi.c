@@ -134,14 +134,19 @@ _Static_assert(sizeof(ethd_sense) == 8 * (0 ETHD_SENSE_FIELDS(COUNT)), "sense");
 _Static_assert(sizeof(ethd_trace) == sizeof(ethd_sense) + 8 * (0 ETHD_TRACE_FIELDS(COUNT)), "trace");
 
 START_TEST(test_every_law) {
-  const char *const ids[] = {"pd",     "kelvin-voigt", "spring", "hunt-crossley", "abrupt", "smooth",
-                             "offset", "predictive",   NULL};
+  static const struct {
+    const char *id;
+    int kind;
+  } rows[] = {{"pd", ETHD_TRACKING},           {"kelvin-voigt", ETHD_CONTACT},  {"spring", ETHD_CONTACT},
+              {"hunt-crossley", ETHD_CONTACT}, {"abrupt", ETHD_TRANSITION},     {"smooth", ETHD_TRANSITION},
+              {"offset", ETHD_TRANSITION},     {"predictive", ETHD_TRANSITION}, {NULL, 0}};
   ethd_error error;
-  for (int i = 0; ids[i] || ethd_laws[i]; i++) {
-    ck_assert(ids[i] && ethd_laws[i]);
-    ck_assert_str_eq(ethd_laws[i]->id, ids[i]);
+  for (int i = 0; rows[i].id || ethd_laws[i]; i++) {
+    ck_assert_msg(rows[i].id && ethd_laws[i], "law %d: %s stands on one side only", i,
+                  rows[i].id ? rows[i].id : ethd_laws[i]->id);
+    ck_assert_str_eq(ethd_laws[i]->id, rows[i].id);
     ck_assert_int_eq(ethd_law_check(ethd_laws[i], &error), ETHD_OK);
-    ck_assert_int_eq(ethd_laws[i]->kind, i < 1 ? ETHD_TRACKING : i < 4 ? ETHD_CONTACT : ETHD_TRANSITION);
+    ck_assert_int_eq(ethd_laws[i]->kind, rows[i].kind);
     double p[ETHD_PARAMS_MAX];
     ethd_params_default(ethd_laws[i]->params, ethd_laws[i]->param_count, p);
     ck_assert_int_eq(ethd_params_check(ethd_laws[i]->params, ethd_laws[i]->param_count, p, &error), ETHD_OK);

@@ -143,6 +143,16 @@ END_TEST
 
 /* ---- changes of law, single values ---- */
 
+/* The message that refuses it as a transition law and names those that there are. */
+static const char *refused_law(const char *id) {
+  static char out[ETHD_MESSAGE_MAX];
+  int n = snprintf(out, sizeof out, "transition.law: found \"%s\"", id);
+  for (const ethd_law *const *law = ethd_laws; *law; law++)
+    if ((*law)->kind == ETHD_TRANSITION) n += snprintf(out + n, sizeof out - (size_t)n, ", %s", (*law)->id);
+  snprintf(out + n, sizeof out - (size_t)n, " is allowed");
+  return out;
+}
+
 START_TEST(test_transition) {
   ethd_config *c = parse("[transition]\nbeta_min = 0.3\nb_d = 70\nswap_time = 0.5\nv_hysteresis = 0.01\n");
   ethd_setup s = c->setup;
@@ -162,7 +172,7 @@ START_TEST(test_transition) {
   s = c->setup;
   ethd_setup before = s;
   ck_assert_int_eq(ethd_config_transition(c, "kelvin-voigt", &s, message), ETHD_E_UNKNOWN);
-  ck_assert_str_eq(message, "transition.law: found \"kelvin-voigt\", abrupt, smooth, offset, predictive is allowed");
+  ck_assert_str_eq(message, refused_law("kelvin-voigt"));
   ck_assert(memcmp(&before, &s, sizeof s) == 0);
   ethd_config_free(c);
 }

@@ -95,7 +95,8 @@ START_TEST(test_mixed) {
           second = d;
       }
       ethd_scene_query(scene, x, &q);
-      ck_assert(fabsl(q.distance - least) <= SCENE_TIGHT);
+      ck_assert_msg(fabsl(q.distance - least) <= SCENE_TIGHT, "%s: %Lg at %.17g %.17g", ethd_shape_name(o[which].shape),
+                    fabsl(q.distance - least), x.x, x.y);
       if (second - least > 2 * SCENE_TIGHT)
         ck_assert_int_eq(q.object, which);
       else

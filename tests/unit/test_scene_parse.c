@@ -30,7 +30,7 @@ START_TEST(test_every_shape) {
                         "polyline 0 0 1 1 1 0 0 1#and the last without a line end");
   ethd_scene_info info;
   ethd_scene_describe(s, &info);
-  ck_assert_uint_eq(info.objects, 7);
+  ck_assert_uint_eq(info.objects, ETHD_SHAPE_COUNT);
   for (int i = 0; i < ETHD_SHAPE_COUNT; i++) ck_assert_uint_eq(info.by_shape[i], 1);
   ck_assert_uint_eq(info.segments, 3 + 1 + 3);
   ck_assert_uint_eq(info.materials, 0);

@@ -24,7 +24,7 @@ static int is_reported(const ethd_touch *t, size_t n, ethd_vec p, double near) {
 static int is_minimum(const object *o, const ethd_touch *t, ethd_vec x) {
   const double *p = o->p;
   size_t n = o->count / 2, k = (size_t)t->feature / 2;
-  int closed = o->shape == ETHD_POLYGON, at_vertex = t->feature % 2;
+  int closed = ethd__shapes[o->shape].is_closed, at_vertex = t->feature % 2;
   if (o->shape == ETHD_SEGMENT) /* has no features */
     for (size_t end = 0; end < 2; end++)
       if (t->point.x == p[2 * end] && t->point.y == p[2 * end + 1]) at_vertex = 1, k = end;
@@ -46,7 +46,7 @@ static void check_touches(const object *o, const ethd_scene *scene, ethd_vec x, 
   enum { ROOM = 200, PER_EDGE = 64 };
   static ethd_touch t[ROOM];
   size_t n = o->count / 2;
-  int closed = o->shape == ETHD_POLYGON;
+  int closed = ethd__shapes[o->shape].is_closed;
   size_t found = ethd_scene_touches(scene, x, range, t, ROOM);
   ck_assert_uint_le(found, ROOM);
   for (size_t i = 0; i < found; i++) {
