@@ -146,6 +146,20 @@ START_TEST(test_learning) {
 }
 END_TEST
 
+/* A finger that turns back while the ring still brakes ends the braking; what the ring did until then is learnt. */
+START_TEST(test_learns_though_the_finger_leaves) {
+  p[param("learn")] = 0.3;
+  ride x = ride_at(0.4, 0.12, 5);
+  int braked = 0;
+  for (int i = 0; i < 100 && braked < 10; i++) braked += tick(&x, 0.4, 0.12).state == ETHD_BRAKING;
+  ck_assert_msg(braked == 10 && x.v > 2 * p[param("v_th")] && memory[1] == 0, "%d ticks, %g m/s, %g", braked, x.v,
+                memory[1]);
+  ck_assert_int_ne(tick(&x, -0.1, 0.12).state, ETHD_BRAKING);
+  ck_assert(memory[1] > 0);
+  ck_assert_double_eq_tol(memory[0] / memory[1], 1, 0.05);
+}
+END_TEST
+
 /* A ring that is much heavier or lighter than it was taken for isn't learnt from; nor one whose speed isn't halved. */
 START_TEST(test_learns_nothing_from_strangers) {
   p[param("learn")] = 0.3;
@@ -314,6 +328,7 @@ int main(void) {
   tcase_add_test(all, test_limit_speed);
   tcase_add_test(all, test_hold);
   tcase_add_test(all, test_learning);
+  tcase_add_test(all, test_learns_though_the_finger_leaves);
   tcase_add_loop_test(all, test_is_offset_when_blind, 0, 8);
   tcase_add_test(all, test_unknown_friction);
   tcase_add_loop_test(all, test_any_input, 0, 4);
