@@ -28,6 +28,17 @@ tune --out three.ini --csv three.csv --work three >three.txt 2>err || fail "gone
 for name in ini csv txt; do cmp one.$name three.$name || fail "a search that was ended gives another .$name"; done
 cmp one/scores-1-of-1.csv three/scores-1-of-1.csv || fail "the scores of the search that was ended differ"
 
+# Which points settle at their margins in time stands in the table: all of the last round do, and no other is chosen.
+"${PYTHON:-python3}" - "$(sed -n 's/.*margins (\([0-9]*\) tried).*/\1/p' one.txt)" <<'END' || fail "the table doesn't say what settles"
+import csv, sys
+rows = list(csv.DictReader(open("one.csv")))
+tried = [r for r in rows if r["round"] == "3" and r["settled"]]
+last = [r for r in rows if r["round"] == "4" and r["point"] != "0"]
+assert len(tried) == int(sys.argv[1]) >= len(last) == sum(float(r["settled"]) for r in tried) > 0, (len(tried), len(last))
+assert all(r["settled"] == "1" for r in last) and all(r["settled"] == "1" for r in rows if r["chosen"] == "1")
+assert not any(r["settled"] for r in rows if r["keeps"] == "0")
+END
+
 # Its margins are ethd-check's: no bound exceeded, nothing thin.
 "$bin/ethd-check" one.ini >check.txt 2>err || fail "ethd-check refuses it: $(cat err)"
 sed -n '/^stability/,/^passivity/p' check.txt | grep -E 'EXCEEDED|thin' && fail "thin margins by ethd-check"

@@ -22,7 +22,7 @@ set ytics (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10)
 set cbtics (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5, 10)
 set lmargin at screen 0.1
 set rmargin at screen 0.86
-set tmargin at screen 0.86
+set tmargin at screen 0.84
 set bmargin at screen 0.1
 set label 1 heading at screen 0.1,0.965 font "Sans Bold,18"
 set label 2 "each axis: mean figure over the configuration's own, 1 is as good, less is better; simulated taps" \
@@ -32,7 +32,7 @@ set ylabel "brake: wall's offset and time of braking, times the own" offset 1,0
 set cblabel "wall: rebound and speed at touch, times the own"
 set palette defined (0 "#2f5d8a", 0.5 "#5b9e8f", 0.75 "#d9a441", 1 "#b8452f")
 set logscale cb
-set key at screen 0.86,0.895 right top horizontal maxrows 1 samplen 1.5 font "Sans,11"
+set key at screen 0.86,0.905 right top horizontal maxrows 2 samplen 1 width -3 font "Sans,11"
 on(name) = exp(column("goal_".name))
 last(k) = column("round") == 4 && column(k) == 1
 plot in using (column("keeps") == 0 && column("point") > 0 ? on("tracking") : NaN):(on("brake")) with points pt 2 ps 0.9 lw 1 lc rgb "#b0b0b0" title "thin margins", \
