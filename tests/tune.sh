@@ -106,6 +106,9 @@ refuse 2 'I/N' --plant n --work x --shard 3/2
 refuse 2 'need --work' --plant n --jobs 2
 refuse 2 'needs --csv' --plant n --plot x.png
 refuse 2 'hardly any gains' --plant n --points 8 --gain-margin 50
+refuse 2 'k_e T/2 + b_e under the device.s 1.27 Ns/m' --plant n --points 8 --passive
+tune --passive --points 8 --taps 20 --range contact.k_e=100:1500 --range contact.b_e=0.05:0.5 --out passive.ini >/dev/null 2>err || fail "--passive: $(cat err)"
+awk '$1 == "k_e" { k = $3 } $1 == "b_e" { b = $3 } END { exit !(k > 0 && k * 0.0005 + b <= 1.267) }' passive.ini || fail "the wall isn't passive: $(grep -E '^[kb]_e' passive.ini)"
 refuse 2 'no such file\|No such file' --plant nowhere.plant
 refuse 1 'another --work' --plant n --points 16 --taps 40 --seed 2 --work one
 printf 'round,number\n0,1,2\n' >three/scores-1-of-1.csv

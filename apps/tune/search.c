@@ -38,6 +38,20 @@ static void add_own(const ethd__tune_search *s, ethd__tune_round *r) {
   add(r, &own, ethd__score_keeps(s->rig, &own));
 }
 
+static ethd_status hardly_any(const ethd__tune_search *s, char *message) {
+  const unsigned long long kept = s->kept, drawn = s->drawn;
+  if (!s->rig->passive)
+    return ethd__say(message, ETHD_E_RANGE,
+                     "hardly any gains keep the margin: %llu of %llu; a smaller --gain-margin or --delay-margin, other "
+                     "ranges",
+                     kept, drawn);
+  return ethd__say(
+      message, ETHD_E_RANGE,
+      "hardly any gains keep the margin: %llu of %llu; --passive asks for k_e T/2 + b_e under the device's "
+      "%.3g Ns/m: --range contact.k_e=LOW:HIGH, contact.b_e=LOW:HIGH",
+      kept, drawn, s->rig->study->plant.viscous);
+}
+
 static ethd_status fill_first(ethd__tune_search *s, ethd__tune_round *r, char *message) {
   const size_t thin = s->points / THIN;
   ethd_status status = make_room(r, s->points + thin + 1, message);
@@ -49,12 +63,7 @@ static ethd_status fill_first(ethd__tune_search *s, ethd__tune_round *r, char *m
     s->drawn++;
     s->kept += keeps;
     if (keeps || s->drawn - s->kept <= thin) add(r, &p, keeps);
-    if (i >= (uint64_t)DRAWS_A_POINT * s->points)
-      return ethd__say(
-          message, ETHD_E_RANGE,
-          "hardly any gains keep the margin: %llu of %llu; a smaller --gain-margin or --delay-margin, other "
-          "ranges",
-          (unsigned long long)s->kept, (unsigned long long)s->drawn);
+    if (i >= (uint64_t)DRAWS_A_POINT * s->points) return hardly_any(s, message);
   }
   return ETHD_OK;
 }
