@@ -1,4 +1,5 @@
-/* Says whether a configuration is valid, how it was understood, and whether its gains stay within the stability bounds. */
+/* Says whether a configuration is valid, how it was understood, and whether its gains stay within the stability
+   bounds. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -13,23 +14,18 @@
 #include "sim/plant.h"
 
 static const char doc[] =
-    "Validates a configuration, prints the setup as it was understood, and how "
-    "far it is from its bounds: "
-    "stability, passivity, rest at touch, quantisation, the tick's time; each "
-    "with its formula and with what to "
-    "change.\v"
-    "A device isn't touched: what its drivers know from their settings and files is read (a "
-    "servo's map: the time of an exchange on its wire, the divisor that holds, registers that "
-    "nobody confirms, what stays unwatched). --open asks the device itself; nothing is enabled. "
-    "Figures come from the drivers and from [arm], or from an option, which replaces them. "
-    "Stability includes an elastic transmission but no friction, which stops small swings "
-    "only. Where a loop is unstable without it, a line gives the speed up to which friction "
-    "stops a swing, and the speed that one encoder count gives the motors; if the latter is "
-    "larger, the ring chatters for ever, as the simulated device does. A plugin's law whose gains can't be told "
-    "from its parameters isn't judged, which the last lines say.\n\n"
-    "The exit code is 0 for every valid configuration, whether bounds are "
-    "exceeded or not; 2 with one line for "
-    "one that isn't.\n\n"
+    "Validates a configuration, prints the setup as it was understood, and how far it is from its bounds: stability, "
+    "passivity, rest at touch, quantisation, the tick's time; each with its formula and with what to change.\v"
+    "The device isn't touched: its drivers say what they know from their settings and files (a servo's map gives the "
+    "time of an exchange on its wire, the divisor that holds, registers that nobody confirms, and what isn't watched). "
+    "--open asks the device itself, and enables nothing. Figures come from the drivers and from [arm], or from an "
+    "option, which replaces them. Stability includes an elastic transmission but no friction, which stops small swings "
+    "only. Where a loop is unstable without it, a line gives the speed up to which friction stops a swing, and the "
+    "speed that one encoder count gives the motors; if the latter is larger, the ring chatters for ever, as the "
+    "simulated device does. A plugin's law whose gains can't be told from its parameters isn't judged, which the last "
+    "lines say.\n\n"
+    "The exit code is 0 for a valid configuration, whether bounds are exceeded or not, and 2, with one line, for an "
+    "invalid one.\n\n"
     "Example:\n"
     "  ethd-check device.ini\n"
     "  ethd-check --open device.ini\n"
@@ -37,8 +33,8 @@ static const char doc[] =
 
 static const struct argp_option options[] = {
     {"counts", 'c', "N", 0, "encoder counts per joint turn", 0},
-    {"delay", 'd', "TICKS", 0, "ticks from measurement to torque, 0 to 20; 1.5 is allowed", 0},
-    {"force-limit", 'f', "N", 0, "force at the ring: torque limit of a joint / its link", 0},
+    {"delay", 'd', "TICKS", 0, "ticks from measurement to torque, 0 to 20; fractions are allowed", 0},
+    {"force-limit", 'f', "N", 0, "largest force at the ring: torque limit of a joint / its link", 0},
     {"friction", 'r', "N", 0, "Coulomb friction at the ring", 0},
     {"viscous", 'b', "NSPM", 0, "viscous friction at the ring, Ns/m", 0},
     {"latency", 'l', "S", 0, "age of the finger's readings when they arrive, s", 0},

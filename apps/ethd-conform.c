@@ -18,7 +18,7 @@ static const char doc[] =
     "it.";
 
 static const struct argp_option options[] = {
-    {"config", 'c', "FILE", 0, "the configuration; its [device] is asked", 0},
+    {"config", 'c', "FILE", 0, "configuration whose [device] is asked", 0},
     {"move", 'm', NULL, 0, "the device may move", 0},
     {"torque", 't', "NM", 0, "torque of the push (0.1)", 0},
     {"virtual", 'v', NULL, 0, "count time instead of waiting: for a simulated device", 0},

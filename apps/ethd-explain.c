@@ -15,13 +15,13 @@ static const char doc[] =
     "No plant that meets all of it has been found within these bounds, and n stays the default. On a rigid device "
     "the low row of Table 1 can't be met together with gains at their limit; a transmission that gives way meets the "
     "row, but there the brake's damping is unstable. apps/explain/README.md has the figures.\n\n"
-    "The device's numbers are looked for within bounds that its data sheets allow (ethd-explain --priors). Each line "
-    "of what the paper says has bounds, too: means within 1.5 standard errors of nine taps, standard deviations within "
-    "an F test's 5 %, sentences as they are written, and each gain unstable at 1.2 to 2.5 times its value, the others "
-    "held. The search makes the sum of what is missed small, each line with 4 at most. It is at its end once that sum "
-    "hasn't fallen by a hundredth for as many generations as --still says. The best plant is then judged with other "
-    "fingers, by 400 taps.\n\n"
-    "--without leaves a group of lines out, so that it is seen which can't be met together.\n\n"
+    "The device's numbers are searched within bounds that its data sheets allow (ethd-explain --priors). Each line of "
+    "what the paper says has bounds, too: a mean must lie within 1.5 standard errors of nine taps, a standard "
+    "deviation within an F test's 5 %, a sentence must hold as it is written, and each gain must become unstable at "
+    "1.2 to 2.5 times its value while the others stay. The search makes the sum of the misses small, to which a line "
+    "adds 4 at most. It ends once that sum hasn't fallen by a hundredth for as many generations as --still says. Then "
+    "the best plant is judged with other fingers, by 400 taps.\n\n"
+    "--without leaves a group of lines out, which shows what can't be met together.\n\n"
     "Examples:\n"
     "  ethd-explain --generations 200 --work search.journal --out q\n"
     "  ethd-explain --without limits\n"
@@ -33,17 +33,18 @@ enum { COMPLIANT = 256, SAMPLE, JUDGE, WITHOUT, POPULATION, GENERATIONS, STILL, 
 
 static const struct argp_option options[] = {
     {"compliant", COMPLIANT, NULL, 0, "let the transmission give way, with the encoders on the motors' side", 0},
-    {"sample", SAMPLE, NULL, 0, "count a reading from where the ring was as it was taken, not from where it is now", 0},
-    {"judge", JUDGE, "n|b|p|FILE", 0, "don't search: judge a plant with the configuration beside it; repeat it", 0},
-    {"without", WITHOUT, "table|claims|limits", 0, "leave these lines out; repeat it", 0},
-    {"population", POPULATION, "N", 0, "plants that are held: 48", 0},
-    {"generations", GENERATIONS, "N", 0, "at most so many: 100", 0},
-    {"still", STILL, "N", 0, "generations without a better plant after which a search ends: 40", 0},
-    {"taps", TAPS, "N", 0, "taps of each law at low speed, twice as many at high speed: 60", 0},
-    {"seed", 'r', "S", 0, "of the search and its taps: 1", 0},
-    {"work", WORK, "FILE", 0, "keep what was judged; the same command goes on", 0},
+    {"sample", SAMPLE, NULL, 0, "count a reading from where the ring was when it was taken, not from where it is", 0},
+    {"judge", JUDGE, "n|b|p|FILE", 0,
+     "don't search: judge a plant with the configuration beside it; may be given more than once", 0},
+    {"without", WITHOUT, "table|claims|limits", 0, "leave these lines out; may be given more than once", 0},
+    {"population", POPULATION, "N", 0, "number of plants in each generation (48)", 0},
+    {"generations", GENERATIONS, "N", 0, "number of generations at most (100)", 0},
+    {"still", STILL, "N", 0, "generations without a better plant after which a search ends (40)", 0},
+    {"taps", TAPS, "N", 0, "taps of each law at low speed; at high speed there are twice as many (60)", 0},
+    {"seed", 'r', "S", 0, "seed of the search and its taps (1)", 0},
+    {"work", WORK, "FILE", 0, "keep what was judged, so that the same command goes on after an interruption", 0},
     {"out", 'o', "NAME", 0, "write the best plant: NAME.plant, NAME.ini", 0},
-    {"bound", BOUND, "NAME=LOW:HIGH", 0, "look for a number of --priors within other bounds; repeat it", 0},
+    {"bound", BOUND, "NAME=LOW:HIGH", 0, "search a number of --priors within other bounds; may be given more than once", 0},
     {"csv", CSV, "OUT.csv", 0, "write the lines of each plant that is judged", 0},
     {"plot", PLOT, "OUT.png", 0, "draw them, with --csv (gnuplot)", 0},
     {"priors", PRIORS, NULL, 0, "print the bounds and where they come from", 0},

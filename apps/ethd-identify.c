@@ -18,18 +18,18 @@
 #define CLIPPED 0.9
 
 static const char doc[] =
-    "Identifies a device: from recordings of its commands and encoders to a plant file, whose numbers have intervals.\v"
+    "Identifies a device from recordings of its commands and encoders, and makes a plant file whose numbers have "
+    "intervals.\v"
     "DIR is a recording of ethd-run, ethd-tap or ethd-study, or a folder of them; recordings of one device are fitted "
-    "together. The simulator's own prediction over short windows is fitted to the encoders, by least squares; whether "
-    "the "
-    "transmission gives way is decided by an information criterion, and how white the residual is shows whether the "
-    "device does something else as well. Touches of a finger show its mass, the hand's spring and damper, and the pad, "
-    "beside the hand's own path, which isn't known; recordings of taps alone keep the arm of --base. What the "
-    "recordings can't tell keeps its value of --base and is said.\n"
+    "together. The simulator's prediction over short windows is fitted to the encoders by least squares. An "
+    "information criterion decides whether the transmission gives way, and the whiteness of the residual shows whether "
+    "the device does something else as well. Touches of a finger show its mass, the hand's spring and damper, and the "
+    "pad, although the hand's own path isn't known; recordings of taps alone keep the arm of --base. A number that the "
+    "recordings can't tell keeps its value of --base, and the page says so.\n"
     "--judge doesn't fit: it says how well a plant predicts recordings that it wasn't fitted to.\n"
-    "--excite makes a recording: it moves the device of a configuration by itself, without a finger, with torques of "
-    "many "
-    "sines inside a box, under the guard, after a dry run on the simulated device. Nobody may be near the arm.\n\n"
+    "--excite makes a recording: it moves the device of a configuration by itself, without a finger, with torques that "
+    "are sums of many sines, inside a box and under the guard, after a dry run on the simulated device. Nobody may be "
+    "near the arm.\n\n"
     "Examples:\n"
     "  ethd-identify --excite --config device.ini --record session\n"
     "  ethd-identify session --out mine.plant --plot fit.png\n"
@@ -40,21 +40,21 @@ enum { BASE = 256, CSV, PLOT, JUDGE, EXCITE, RECORD, FORCE, SHARE, TORQUE, HALF,
 
 static const struct argp_option options[] = {
     {"out", 'o', "MINE.plant", 0, "write the plant", 0},
-    {"base", BASE, "PLANT", 0, "what isn't seen is kept as in this plant (n)", 0},
+    {"base", BASE, "PLANT", 0, "plant whose values are kept for numbers that the recordings can't tell (n)", 0},
     {"csv", CSV, "OUT.csv", 0, "write a stretch of motion, measured and predicted, and the residual's spectrum", 0},
-    {"plot", PLOT, "OUT.png", 0, "draw it (gnuplot); writes OUT.csv beside it unless --csv says where", 0},
+    {"plot", PLOT, "OUT.png", 0, "draw that (gnuplot); OUT.csv is written beside it unless --csv says where", 0},
     {"judge", JUDGE, "PLANT", 0, "say how well this plant predicts the recordings", 0},
     {"plugins", PLUGINS, NULL, 0, "run the plugins that the recordings' configurations name", 0},
     {"excite", EXCITE, NULL, 0, "make a recording by moving the device of --config", 1},
     {"config", 'c', "C.ini", 0, "configuration (default: the simulated device)", 1},
-    {"record", RECORD, "DIR", 0, "the recording", 1},
+    {"record", RECORD, "DIR", 0, "folder of the recording", 1},
     {"force", FORCE, NULL, 0, "replace a recording that is there", 1},
-    {"duration", 'd', "S", 0, "so long (60)", 1},
+    {"duration", 'd', "S", 0, "duration of the recording (60)", 1},
     {"share", SHARE, "R", 0, "share of the torque limit that may be used (0.5)", 1},
-    {"torque", TORQUE, "NM", 0, "torque limit where neither device nor configuration has one", 1},
+    {"torque", TORQUE, "NM", 0, "torque limit, if neither device nor configuration has one", 1},
     {"half", HALF, "M", 0, "half the side of the box (0.04)", 1},
     {"at", AT, "X,Y", 0, "the box's middle, m (0.25,0.25)", 1},
-    {"virtual", VIRTUAL, NULL, 0, "on a virtual clock, for a device that is simulated", 1},
+    {"virtual", VIRTUAL, NULL, 0, "count time instead of waiting: for a simulated device", 1},
     {0},
 };
 

@@ -18,11 +18,10 @@
 
 static const char doc[] =
     "Counts and draws the taps of a study: traces of taps, states and beta, box plots, Table 1 beside the paper's, "
-    "delays between sight and touch, reasons, survey, strategies compared within participants.\v"
-    "The folder is one of ethd-study's, a session or a simulation; several are stations of one study, with "
-    "participants "
-    "of their own. The first one's report/ holds report.html, which stands alone, and the pictures and tidy CSV files "
-    "behind it. It needs gnuplot.\n\n"
+    "delays between sight and touch, reasons, the survey, and strategies compared within participants.\v"
+    "DIR is a folder of ethd-study, of a session or a simulation; several are stations of one study, with participants "
+    "of their own. The first one's report/ gets report.html, which needs no other file, and the pictures and tidy CSV "
+    "files behind it. Drawing needs gnuplot.\n\n"
     "Examples:\n"
     "  ethd-report session\n"
     "  ethd-report left-room right-room --out report\n"
@@ -32,7 +31,7 @@ enum { OPTION_BESIDE = 256, OPTION_TAP, OPTION_POINT, OPTION_SEED, OPTION_PLUGIN
 
 static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "where the report goes (default: report, in the study's folder)", 0},
-    {"beside", OPTION_BESIDE, "DIR", 0, "another folder of taps, to stand beside this one's", 0},
+    {"beside", OPTION_BESIDE, "DIR", 0, "show the taps of another folder beside this one's", 0},
     {"tap", OPTION_TAP, "NAME", 0, "draw this tap (P02-06-004), not the typical one of each cell", 0},
     {"point", OPTION_POINT, "K", 0, "point of a grid that is shown in full (0)", 0},
     {"plugins", OPTION_PLUGINS, NULL, 0, "run the plugins that the folder's configuration names", 0},

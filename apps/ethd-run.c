@@ -12,22 +12,21 @@
 #define POLL 20 /* ms between looks at signals and the duration */
 
 static const char doc[] =
-    "Runs a device under the controller, one tick a period, until the duration is over, the command stop, "
-    "Ctrl-C, SIGTERM or SIGHUP: then the ring is damped until it is still, and the device disabled.\v"
-    "Commands on stdin, one a line, each answered by a line that begins with ok or error:\n"
-    "  transition LAW          another transition law, without a bump\n"
-    "  set SECTION.KEY VALUE   as in the configuration\n"
-    "  status                  where ring and controller are\n"
-    "  ack                     acknowledges a fault\n"
-    "  enable                  starts a disabled device anew, torque rising from zero\n"
-    "  home [Q1 Q2]            where the joints stand: in a jig, at these angles; or found by moving, as [device] "
+    "Runs a device under the controller, one tick a period, until the duration is over, or until the command stop, "
+    "Ctrl-C, SIGTERM or SIGHUP. Then it damps the ring until that is still, and disables the device.\v"
+    "Commands come on stdin, one a line. Each is answered by a line that begins with ok or error:\n"
+    "  transition LAW          swap to another transition law, without a bump\n"
+    "  set SECTION.KEY VALUE   set a number, as in the configuration\n"
+    "  status                  say where ring and controller are\n"
+    "  ack                     acknowledge a fault\n"
+    "  enable                  start a disabled device anew; the torque rises from zero\n"
+    "  home [Q1 Q2]            say that the joints are at these angles, in a jig; or find them by moving, as [device] "
     "says\n"
-    "  wait S                  the next command waits for S seconds of the loop\n"
-    "  stop                    ends the run\n"
+    "  wait S                  let the next command wait for S seconds of the loop\n"
+    "  stop                    end the run\n"
     "The end of the input doesn't end the run. With --virtual time is only counted: it passes in wait and, "
     "after the input's end, up to the duration. The device is stepped as fast as the machine can, and equal input "
-    "gives "
-    "equal bytes.\n\n"
+    "gives equal bytes.\n\n"
     "Examples:\n"
     "  ethd-run --config device.ini --record session\n"
     "  echo transition smooth | ethd-run --virtual --duration 2";
@@ -60,18 +59,18 @@ static const struct argp_option options[] = {
      0},
     {"force", OPTION_FORCE, NULL, 0, "replace a recording that is there", 0},
     {"snapshot", OPTION_SNAPSHOT, "FILE.npy", 0,
-     "the ticks around the first fault: 2 s before, 1 s after; snapshot.npy in DIR with --record", 0},
-    {"faults", OPTION_FAULTS, NULL, 0, "print what may go wrong and what is done then, and end", 0},
-    {"telemetry", OPTION_TELEMETRY, "HOST:PORT", 0, "UDP, JSON, 100 Hz: PlotJuggler's UDP server reads it", 0},
+     "write the ticks around the first fault, 2 s before and 1 s after; with --record that is DIR/snapshot.npy", 0},
+    {"faults", OPTION_FAULTS, NULL, 0, "print what may go wrong and what happens then, and end", 0},
+    {"telemetry", OPTION_TELEMETRY, "HOST:PORT", 0, "send JSON by UDP, 100 Hz: PlotJuggler's UDP server reads it", 0},
     {"telemetry-group", OPTION_GROUP, NULL, 0,
      "let --telemetry name a multicast or broadcast address: everybody there sees what the ring does", 0},
-    {"virtual", OPTION_VIRTUAL, NULL, 0, "lock-step on a virtual clock, no threads", 0},
-    {"home", OPTION_HOME, NULL, 0, "first the joints are found, as [device] says: the arm moves, slowly", 0},
-    {"cpu", OPTION_CPU, "N|auto|none", 0, "processor of the loop: none; auto: the highest isolated one", 1},
+    {"virtual", OPTION_VIRTUAL, NULL, 0, "count time instead of waiting, in lock-step and without threads", 0},
+    {"home", OPTION_HOME, NULL, 0, "find the joints first, as [device] says: the arm moves, slowly", 0},
+    {"cpu", OPTION_CPU, "N|auto|none", 0, "processor of the loop; auto: the highest isolated one (none)", 1},
     {"priority", OPTION_PRIORITY, "N", 0, "SCHED_FIFO priority of the loop (80)", 1},
     {"require-rt", OPTION_REQUIRE, NULL, 0, "refuse to run when the machine grants less than realtime", 1},
     {"early-wake", OPTION_EARLY, "US", 0, "wake so much earlier, warm the caches and spin until the tick (0)", 1},
-    {"dma-latency", OPTION_DMA, "US", 0, "hold /dev/cpu_dma_latency at this", 1},
+    {"dma-latency", OPTION_DMA, "US", 0, "hold /dev/cpu_dma_latency at this value", 1},
     {"soft-start", OPTION_SOFT, "S", 0, "time in which the torque rises after enabling (0.1)", 1},
     {0},
 };

@@ -15,8 +15,7 @@
 
 static const char doc[] =
     "Measures the bus to a servo drive by its register map: connects, identifies, writes zero torque and reads, as "
-    "fast as the bus goes, and says which rate it can hold. The drive isn't enabled, nothing moves, but with "
-    "--try-watchdog.\v"
+    "fast as the bus goes, and says which rate it can hold. Only --try-watchdog enables the drive, at zero torque.\v"
     "Examples:\n"
     "  ethd-servo-probe --map svd48v.map --by-hand 20\n"
     "  ethd-servo-probe --map plant.map --port 127.0.0.1:1502 --duration 10";
@@ -30,10 +29,10 @@ static const struct argp_option options[] = {
     {"port", OPTION_PORT, "PORT", 0, "HOST:PORT or a serial device, instead of the map's", 0},
     {"period", 'p', "S", 0, "period of the loop that the bus has to serve (0.001)", 0},
     {"try-watchdog", OPTION_WATCHDOG, NULL, 0,
-     "enables at zero torque, is silent, and says whether the drive let go by itself: keep clear of the arm", 0},
-    {"duration", 'd', "S", 0, "how long it measures (2)", 0},
+     "enable at zero torque, be silent, and say whether the drive let go by itself: keep clear of the arm", 0},
+    {"duration", 'd', "S", 0, "how long to measure (2)", 0},
     {"by-hand", OPTION_BY_HAND, "S", 0,
-     "then waits for so long, while you turn the joints by hand, and says which angle went which way", 0},
+     "then wait for so long, while you turn the joints by hand, and say which angle rose or fell", 0},
     {0},
 };
 

@@ -9,25 +9,23 @@
 
 static const char doc[] =
     "Runs a tapping study: participants tap a virtual wall under each strategy at each speed until enough taps "
-    "are valid; every tap is judged at once, recorded tick by tick, and kept whatever happens. Or simulates "
+    "are valid; every tap is judged at once, recorded tick by tick, and kept whatever happens. Or it simulates "
     "thousands of participants over a grid of gains.\v"
     "STUDY is an INI file; paper.study, which is installed, is the paper's. The folder of --out holds all data and "
     "a README.md that says what each file and column is; ethd-report draws it. A session that was stopped, killed "
     "or ran out of disk goes on with --resume: no tap is lost, repeated or torn. Simulated participants are "
     "plausible, not measured; they answer no survey. With \"[hand] source = people\" the configuration's device is "
     "opened and run as ethd-run does, and a person's finger is in its ring; with \"source = mouse\", or --screen "
-    "alone, "
-    "a pointer leads the simulated device's hand. A session's taps all come from one of these, which stands at each of "
-    "them (device, mouse, simulated, recorded); another one is refused.\n\n"
-    "\"[validity] by = paper\" counts a tap where the ring met the wall at the speed asked for, \"by = finger\" where "
-    "the hand did and the finger didn't come before the ring, for laws that stop the ring before the wall; the columns "
-    "v_hand_mps, touch_depth_m and eps_felt_m say both of any tap.\n\n"
-    "With --ask, lines on stdin: note WORDS, pause, go, abort (this participant), undo (the last abort), stop; ack, "
-    "for "
-    "a device that has stopped itself; and the survey's answers, which are kept one by one, with back to the one "
-    "before.\n\n"
+    "alone, a pointer leads the simulated device's hand. All taps of a session have the same source, which is written "
+    "at each tap (device, mouse, simulated, recorded); another source is refused.\n\n"
+    "With \"[validity] by = paper\" a tap counts if the ring met the wall at the commanded speed. With \"by = finger\" "
+    "it counts if the hand had that speed and the finger didn't come before the ring, which suits laws that stop the "
+    "ring before the wall; the columns v_hand_mps, touch_depth_m and eps_felt_m show both for any tap.\n\n"
+    "With --ask these lines are read on stdin: note WORDS, pause, go, abort (this participant), undo (the last abort), "
+    "stop; ack, for a device that has stopped itself; and the survey's answers, which are kept one by one, and back, "
+    "which returns to the question before.\n\n"
     "The study file holds questions of your own (\"[survey]\", numbered answers or q1_answers = text), consent and "
-    "instruction (\"[pages]\"), and in your language whatever else the screen says (\"[words]\": --words prints the "
+    "instruction (\"[pages]\"), and whatever else the screen says in your language (\"[words]\": --words prints the "
     "phrases by their names).\n\n"
     "A participant who withdraws or is excluded stays on record with the reason, in participants.csv, and leaves the "
     "analysis, as one who aborted does.\n\n"
@@ -70,13 +68,13 @@ static const struct argp_option options[] = {
     {"out", 'o', "DIR", 0, "folder of a new session, or of a simulation", 0},
     {"resume", OPTION_RESUME, "DIR", 0, "go on with the session in DIR", 0},
     {"participant", OPTION_PARTICIPANT, "K[-L]", 0,
-     "only participant K, from 1, or K to L; the others another time, or at another station", 0},
-    {"finger", OPTION_FINGER, "FILE.csv", 0, "every hand's path is this recorded movement", 0},
+     "run only participant K, from 1, or K to L; the others follow later, or at another station", 0},
+    {"finger", OPTION_FINGER, "FILE.csv", 0, "use a recorded movement as every hand's path", 0},
     {"ask", OPTION_ASK, NULL, 0, "take commands on stdin", 0},
     {"screen", OPTION_SCREEN, "WxH", OPTION_ARG_OPTIONAL,
-     "in a window, 1280x720 by default; the mouse is the finger, unless people's are", 0},
-    {"virtual", OPTION_VIRTUAL, NULL, 0, "with people: the device in lock-step, as fast as it goes", 0},
-    {"plan", OPTION_PLAN, NULL, 0, "print everybody's order and its balance; nothing else is done", 0},
+     "open a window, 1280x720 by default; the mouse is the finger, unless people's are", 0},
+    {"virtual", OPTION_VIRTUAL, NULL, 0, "with people: run the device in lock-step, as fast as it goes", 0},
+    {"plan", OPTION_PLAN, NULL, 0, "print everybody's order and its balance, and end", 0},
     {"words", OPTION_WORDS, NULL, 0, "print the screen's words as a section [words], which a study file may replace",
      0},
     {"verify", OPTION_VERIFY, "DIR", 0, "compare a folder's files with its SHA256SUMS", 0},
@@ -84,7 +82,7 @@ static const struct argp_option options[] = {
     {"withdraw", OPTION_WITHDRAW, "K", 0, "with --resume: write down that participant K has withdrawn, and end", 1},
     {"exclude", OPTION_EXCLUDE, "K", 0, "with --resume: take participant K out of the analysis, and end", 1},
     {"include", OPTION_INCLUDE, "K", 0,
-     "with --resume: take participant K back, to the analysis and to the taps that are missing, and end", 1},
+     "with --resume: take participant K back into the analysis, and to the missing taps, and end", 1},
     {"reason", OPTION_REASON, "WORDS", 0, "why a participant is withdrawn, excluded or included", 1},
     {"simulate", OPTION_SIMULATE, "N", 0, "simulate N participants at every point of the study's [grid]", 2},
     {"shard", OPTION_SHARD, "I/N", 0, "simulate only this share (1/1)", 2},

@@ -15,27 +15,18 @@ static const char doc[] =
     "Finds gains for a device that is known from its plant file.\v"
     "Tries gains of tracking, contact and transition and the filters' cut-offs, within ranges about the "
     "configuration's own. What each of them buys:\n\n" ETHD_TUNE_KNOWN(
-        BUYS) "\nWhatever doesn't keep the margins in every loop, along both axes and with every hand, is left out; "
-              "the rest is "
-              "tapped on the simulated device, in four rounds of ever fewer points. Shows the points that nothing else "
-              "beats in "
-              "all of tracking, braking, wall and calm at once, and chooses the one with the least weighted sum of the "
-              "four "
-              "(mean logarithms of their figures over the configuration's own); --prefer doubles one weight. The "
-              "plants are "
-              "simulated: the device itself has the last word.\n\n"
-              "Margins are ethd-check's: a transmission that gives way counts, friction doesn't, for it stops small "
-              "swings only. "
-              "Where the configuration's own gains don't keep them (plant p's wall and brake chatter on the motors' "
-              "side), lower "
-              "dampings are tried, and what that costs is said. The choice is confirmed in time, too, with gains and "
-              "delay at "
-              "their margin.\n\n"
-              "--work DIR keeps what was tapped: the same command goes on where it was ended, and shards in other "
-              "processes "
-              "share "
-              "the work (--shard 1/4, 2/4, ... with one DIR; shard 1 writes the results). --jobs N does that on this "
-              "machine.\n\n"
+        BUYS) "\nPoints that don't keep the margins in every loop, along both axes and with every hand, are left out. "
+              "The others are tapped on the simulated device, in four rounds of ever fewer points. It shows the points "
+              "that no other beats in all of tracking, braking, wall and calm at once, and chooses the one with the "
+              "least weighted sum of the four (mean logarithms of their figures over the configuration's own); "
+              "--prefer doubles one weight. The plants are simulated: the device itself has the last word.\n\n"
+              "Margins are those of ethd-check: they count a transmission that gives way, but not friction, because it "
+              "stops small swings only. Where the configuration's own gains don't keep them (plant p's wall and brake "
+              "chatter on the motors' side), lower dampings are tried, and the table says what that costs. The choice "
+              "is confirmed in time, too, with gains and delay at their margin.\n\n"
+              "--work DIR keeps what was tapped: the same command goes on after an interruption, and shards in other "
+              "processes share the work (--shard 1/4, 2/4, ... with one DIR; shard 1 writes the results). --jobs N "
+              "does that on this machine.\n\n"
               "Example:\n"
               "  ethd-tune --plant n --out tuned.ini --plot tuned.png\n"
               "  ethd-tune --plant mine.plant --config mine.ini --out best.ini\n"
@@ -63,18 +54,19 @@ static const struct argp_option options[] = {
     {"config", 'c', "C.ini", 0, "the configuration to begin from (default: the plant's own)", 0},
     {"transition", 't', "LAW", 0, "the transition law (default: the configuration's)", 0},
     {"out", 'o', "TUNED.ini", 0, "write the configuration with the chosen gains", 0},
-    {"gain-margin", GAIN_MARGIN, "X", 0, "gains may be X times as large before a loop is unstable: 1.5", 0},
-    {"delay-margin", DELAY_MARGIN, "S", 0, "torques may be S seconds later: 0.0004", 0},
-    {"hands", HANDS, "LIST", 0, "hands against the ring, as shares of the plant's: 0,0.5,1,2 (0: none)", 0},
+    {"gain-margin", GAIN_MARGIN, "X", 0, "loops must be stable with gains X times as large (1.5)", 0},
+    {"delay-margin", DELAY_MARGIN, "S", 0, "loops must be stable with torques S seconds later (0.0004)", 0},
+    {"hands", HANDS, "LIST", 0, "hands against the ring, as shares of the plant's; 0: none (0,0.5,1,2)", 0},
     {"passive", PASSIVE, NULL, 0, "the wall must be passive with the device's own friction", 0},
-    {"prefer", PREFER, "tracking|brake|wall|calm", 0, "what counts twice in the choice", 0},
-    {"range", RANGE, "KEY=LOW:HIGH", 0, "look there for a section.key, or KEY=VALUE: hold it; repeat it", 0},
-    {"points", POINTS_OPTION, "N", 0, "points of the first round: 384", 0},
-    {"taps", TAPS_OPTION, "N", 0, "taps of the last round at each speed: 160; earlier rounds have fewer", 0},
-    {"seed", SEED, "S", 0, "of the taps: 1", 0},
-    {"work", WORK, "DIR", 0, "keep what was tapped, to go on and to share", 0},
+    {"prefer", PREFER, "tracking|brake|wall|calm", 0, "goal that counts twice in the choice", 0},
+    {"range", RANGE, "KEY=LOW:HIGH", 0,
+     "range of a section.key; KEY=VALUE holds it at a value; may be given more than once", 0},
+    {"points", POINTS_OPTION, "N", 0, "points of the first round (384)", 0},
+    {"taps", TAPS_OPTION, "N", 0, "taps of the last round at each speed; earlier rounds have fewer (160)", 0},
+    {"seed", SEED, "S", 0, "seed of the taps (1)", 0},
+    {"work", WORK, "DIR", 0, "keep what was tapped, to go on after an interruption and to share the work", 0},
     {"shard", SHARD, "I/N", 0, "do share I of N, with --work", 0},
-    {"jobs", JOBS, "N", 0, "N processes here, with --work", 0},
+    {"jobs", JOBS, "N", 0, "run N processes on this machine, with --work", 0},
     {"csv", CSV, "OUT.csv", 0, "write every point", 0},
     {"plot", PLOT, "OUT.png", 0, "draw the points, with --csv (gnuplot)", 0},
     {0},
