@@ -8,9 +8,9 @@
 
 #define ETHD__LOCKED_ROOM ((size_t)256 << 20) /* bytes: threads' stacks, recordings, scenes of the time to come */
 
-/* Locks all memory of the process, now and in future; munlockall undoes it. Returns false if nothing is locked: it isn't
-   allowed, or the user's limit leaves too little room for what is still to come, so that a later allocation would fail
-   for no reason that anybody could see. */
+/* Locks all memory of the process, now and in future; munlockall undoes it. Returns false if nothing is locked: it
+   isn't allowed, or the user's limit leaves too little room for what is still to come, so that a later allocation would
+   fail for no reason that anybody could see. */
 static inline bool ethd__memory_lock(void) {
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) return false;
   /* This mapping has no pages; it is only counted against the limit. */

@@ -5,10 +5,10 @@
      R                          -> 18 words
      F                          -> text: "t ring_x ring_y finger_x finger_y torque1 torque2", SI
 
-   plant_bridge [--plant n] [--speed 0.4] [--period 1.6] [--finger 0] [--lock-step 1] [--watchdog 0.05]; says "port N" first, and a summary
-   at the end of stdin. The finger taps along -x, again and again after the first period; time begins when the
-   drive is first enabled, and is the system's; in lock-step a millisecond passes with every new word in `counter`, and
-   none otherwise. With --finger 0 the ring never feels it. */
+   plant_bridge [--plant n] [--speed 0.4] [--period 1.6] [--finger 0] [--lock-step 1] [--watchdog 0.05]; says "port N"
+   first, and a summary at the end of stdin. The finger taps along -x, again and again after the first period; time
+   begins when the drive is first enabled, and is the system's; in lock-step a millisecond passes with every new word in
+   `counter`, and none otherwise. With --finger 0 the ring never feels it. */
 #include <arpa/inet.h>
 #include <math.h>
 #include <poll.h>

@@ -1,5 +1,5 @@
-/* The drive of tests/servo/mock.h as a server of its own, on a TCP port or behind a pseudo terminal, that misbehaves now
-   and then:
+/* The drive of tests/servo/mock.h as a server of its own, on a TCP port or behind a pseudo terminal, that misbehaves
+   now and then:
 
      trap_server [tcp|rtu] [KIND EVERY [WAIT_US]]     KIND: drop late half cut garble busy old reset
 

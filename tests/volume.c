@@ -1,6 +1,7 @@
-/* volume READER FIRST COUNT [SECONDS]: gives a reader of the table (unit/readers.c) the inputs FIRST ... FIRST+COUNT-1, which
-   are the same everywhere, for SECONDS at most. Prints where it came to, how many were taken, and seconds. An input that is
-   refused in another way than by one line ends it with exit 1 and stands on stderr. volume: the readers' names. */
+/* volume READER FIRST COUNT [SECONDS]: gives a reader of the table (unit/readers.c) the inputs FIRST ... FIRST+COUNT-1,
+   which are the same everywhere, for SECONDS at most. Prints where it came to, how many were taken, and seconds. An
+   input that is refused in another way than by one line ends it with exit 1 and stands on stderr. volume: the readers'
+   names. */
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>

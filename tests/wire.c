@@ -1,5 +1,5 @@
-/* A serial line of a given speed between two pseudo terminals: what is written to one arrives at the other when its last
-   bit has passed. wire BAUD says "A B", the two names, and ends with its stdin. */
+/* A serial line of a given speed between two pseudo terminals: what is written to one arrives at the other when its
+   last bit has passed. wire BAUD says "A B", the two names, and ends with its stdin. */
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>

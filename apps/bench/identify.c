@@ -1,5 +1,5 @@
-/* What identification asks of the simulator: arms without a finger over short windows, one after another and four side by
-   side, and a whole fit. */
+/* What identification asks of the simulator: arms without a finger over short windows, one after another and four side
+   by side, and a whole fit. */
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>

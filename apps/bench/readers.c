@@ -1,5 +1,6 @@
-/* Readers of files that somebody sent: is their time linear in the file? Texts of 1, 8 and 64 times as many rows; beside the
-   SVG reader expat, which only takes the XML apart, and beside the tables strtod, which only reads their numbers. */
+/* Readers of files that somebody sent: is their time linear in the file? Texts of 1, 8 and 64 times as many rows;
+   beside the SVG reader expat, which only takes the XML apart, and beside the tables strtod, which only reads their
+   numbers. */
 #include <expat.h>
 #include <math.h>
 #include <stdlib.h>

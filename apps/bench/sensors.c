@@ -1,5 +1,5 @@
-/* Sensors of the finger: taps at rising speed, the same hands for all; how far off the finger's estimate is on the way to the
-   wall, how late, and how often the finger meets the ring before the wall does. */
+/* Sensors of the finger: taps at rising speed, the same hands for all; how far off the finger's estimate is on the way
+   to the wall, how late, and how often the finger meets the ring before the wall does. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -29,8 +29,8 @@ void ethd__report_drivers(const ethd_config *config, const ethd_driver *driver, 
 /* Fills `felt`, and prints what is known. */
 void ethd__report_device(ethd__subject *subject);
 
-/* Prints the margins of every loop of a setup on a device, a row a number; returns how many loops are unstable. ethd-tune
-   prints its choice by it, too. */
+/* Prints the margins of every loop of a setup on a device, a row a number; returns how many loops are unstable.
+   ethd-tune prints its choice by it, too. */
 int ethd__report_stability(const ethd_setup *setup, const ethd__bounds_device *device);
 
 /* Prints a line for each loop whose law's gains aren't known, so that nobody takes its silence for stability. */

@@ -18,8 +18,8 @@ enum { ETHD_EXIT_DONE = 0, ETHD_EXIT_FAILED = 1, ETHD_EXIT_INPUT = 2 };
 void ethd__begin(void);
 
 /* Says that code of a plugin runs on this thread from here on (`what` it is, for people), or no longer (NULL). If it
-   doesn't return within `patience` s, the program says so and exits 1. Once it has run, a plugin can call exit at any time; such
-   an exit is reported and becomes exit 1. ethd__begin hooks this into the reading of configurations. */
+   doesn't return within `patience` s, the program says so and exits 1. Once it has run, a plugin can call exit at any
+   time; such an exit is reported and becomes exit 1. ethd__begin hooks this into the reading of configurations. */
 void ethd__foreign(const char *what, unsigned patience);
 
 /* Says that the program itself is about to exit. */

@@ -5,8 +5,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Replaces control characters but for tabs and line ends, since a terminal obeys sequences that names and words of files
-   may hold. In UTF-8 the characters from 0x80 to 0x9f are two bytes long. */
+/* Replaces control characters but for tabs and line ends, since a terminal obeys sequences that names and words of
+   files may hold. In UTF-8 the characters from 0x80 to 0x9f are two bytes long. */
 static void make_plain(char *text, size_t length, char *last) {
   for (size_t i = 0; i < length; i++) {
     unsigned char c = (unsigned char)text[i];

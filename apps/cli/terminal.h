@@ -1,5 +1,5 @@
-/* Keeps control characters from terminals, which obey sequences of them. Names of files, and words of files and plugins,
-   may hold some. */
+/* Keeps control characters from terminals, which obey sequences of them. Names of files, and words of files and
+   plugins, may hold some. */
 #ifndef ETHD__CLI_TERMINAL_H
 #define ETHD__CLI_TERMINAL_H
 

@@ -7,7 +7,8 @@
 #include "statistics/paired.h"
 #include "text/csv.h"
 
-/* Compares strategies a and b, or with `all` every strategy from a to b, by the people who answered under all of them. */
+/* Compares strategies a and b, or with `all` every strategy from a to b, by the people who answered under all of
+   them. */
 typedef struct asked {
   size_t question;
   size_t a, b, n, above, below;

@@ -73,8 +73,8 @@ static void status(ethd__session *s, ethd__commands *c, char *rest) {
 
 static bool faulty(ethd__session *s) { return ethd__recorder_latest(&s->recorder).trace.fault != 0; }
 
-/* The device is asked at once to leave a fault of its own. The controller's fault goes when nothing has gone wrong for long
-   enough; where the device had a fault, that is at the second ack. */
+/* The device is asked at once to leave a fault of its own. The controller's fault goes when nothing has gone wrong for
+   long enough; where the device had a fault, that is at the second ack. */
 static void ack(ethd__session *s, ethd__commands *c, char *rest) {
   (void)c, (void)rest;
   s->driver->clear(s->device);

@@ -1,5 +1,5 @@
-/* Takes the loop's rows into a recording and to telemetry, and keeps the newest for whoever asks. It runs in a thread of
-   its own or, on a virtual clock, after every tick. */
+/* Takes the loop's rows into a recording and to telemetry, and keeps the newest for whoever asks. It runs in a thread
+   of its own or, on a virtual clock, after every tick. */
 #ifndef ETHD_APPS_RUN_RECORDER_H
 #define ETHD_APPS_RUN_RECORDER_H
 
@@ -69,8 +69,8 @@ void ethd__recorder_end(ethd__recorder *recorder);
 /* Says in the recording that only every keeps-th row will be in it. */
 ETHD_MUST_CHECK ethd_status ethd__recorder_thinned(ethd__recorder *recorder);
 
-/* Notes a setup before it is posted; the note is taken back when the post is refused. Returns false if the detail is too
-   long. */
+/* Notes a setup before it is posted; the note is taken back when the post is refused. Returns false if the detail is
+   too long. */
 bool ethd__recorder_expect(ethd__recorder *recorder, const char *kind, const char *detail);
 void ethd__recorder_withdraw(ethd__recorder *recorder);
 

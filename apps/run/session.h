@@ -48,8 +48,8 @@ void ethd__session_halt(ethd__session *s, bool told);
 /* Returns false if the loop's thread has ended or hangs. */
 bool ethd__session_lives(const ethd__session *s);
 
-/* Ends the loop and the device; figures can still be read afterwards. Returns ETHD_E_DEVICE if the clock had failed or the
-   device hangs, ETHD_E_LAW if a law hangs. */
+/* Ends the loop and the device; figures can still be read afterwards. Returns ETHD_E_DEVICE if the clock had failed or
+   the device hangs, ETHD_E_LAW if a law hangs. */
 ETHD_MUST_CHECK ethd_status ethd__session_end(ethd__session *s, char message[ETHD_MESSAGE_MAX]);
 void ethd__session_free(ethd__session *s);
 

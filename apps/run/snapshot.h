@@ -1,4 +1,5 @@
-/* The ticks around the first fault that stopped the ring: 2 s before it and 1 s after it. All calls are one thread's. */
+/* The ticks around the first fault that stopped the ring: 2 s before it and 1 s after it. All calls are one
+   thread's. */
 #ifndef ETHD_APPS_RUN_SNAPSHOT_H
 #define ETHD_APPS_RUN_SNAPSHOT_H
 

@@ -7,8 +7,8 @@
 #include "ethd/config.h"
 #include "ethd/loop.h"
 
-/* Opens a socket, *out, to HOST:PORT, or [HOST]:PORT for addresses with colons. Refuses a multicast or broadcast address
-   unless `group` is set; the refusal names the option --telemetry-group. */
+/* Opens a socket, *out, to HOST:PORT, or [HOST]:PORT for addresses with colons. Refuses a multicast or broadcast
+   address unless `group` is set; the refusal names the option --telemetry-group. */
 ETHD_MUST_CHECK ethd_status ethd__telemetry_open(const char *address, bool group, int *out,
                                                  char message[ETHD_MESSAGE_MAX]);
 

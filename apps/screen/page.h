@@ -1,5 +1,5 @@
-/* A page of words: title above, keys below, and between them paragraphs that never overlap, in any window: where there is
-   too little room for them the letters shrink. All [main]. */
+/* A page of words: title above, keys below, and between them paragraphs that never overlap, in any window: where there
+   is too little room for them the letters shrink. All [main]. */
 #ifndef ETHD_SCREEN_PAGE_H
 #define ETHD_SCREEN_PAGE_H
 

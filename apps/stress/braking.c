@@ -1,7 +1,7 @@
 /* B_max: the largest stable damping of a free ring, B_d of the braking state with each estimator.
 
-   A push makes the ring creep, so that its estimated speed never falls below v_th and it goes on braking. The push begins
-   with the braking, which bears it from the first tick on. */
+   A push makes the ring creep, so that its estimated speed never falls below v_th and it goes on braking. The push
+   begins with the braking, which bears it from the first tick on. */
 #include <math.h>
 
 #include "stress/curve.h"

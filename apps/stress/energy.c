@@ -45,8 +45,8 @@ static void smooth(ethd__stress_log *log, double stiffness, double depth) {
   ethd__stress_rig_close(&rig);
 }
 
-/* After braking the ring keeps at most the energy that it has at the switch, and what the hold adds on the short way that
-   is left. */
+/* After braking the ring keeps at most the energy that it has at the switch, and what the hold adds on the short way
+   that is left. */
 static void offset(ethd__stress_log *log, double speed) {
   ethd__stress_rig rig;
   ethd__stress_rig_open(&rig, MASS, -1e-9);
@@ -73,8 +73,8 @@ static void offset(ethd__stress_log *log, double speed) {
 }
 
 /* predictive brakes before the wall. It is told of friction that isn't there. What it gives back against this friction
-   before it brakes is at most m v^2/2; from then on the ring has less energy at every tick, and it stands before the wall
-   takes over. */
+   before it brakes is at most m v^2/2; from then on the ring has less energy at every tick, and it stands before the
+   wall takes over. */
 static void ahead(ethd__stress_log *log, double speed, double friction) {
   ethd__stress_rig rig;
   ethd__stress_rig_open(&rig, MASS, 0.02);

@@ -1,8 +1,8 @@
 /* The loop with which predictive brakes and holds the ring before the wall. Which rates, memories, delays and errors of
    the told mass are stable is compared with the loop's linear recursion, and how fast it settles with a closed form.
 
-   On the curve's line the law asks for  a = rate (rate d - v) - rate v - w  of what its observer says. With the right mass
-   and no delay the observer's poles (three at b) and the ring's part, and with q = rate T these are the roots of
+   On the curve's line the law asks for  a = rate (rate d - v) - rate v - w  of what its observer says. With the right
+   mass and no delay the observer's poles (three at b) and the ring's part, and with q = rate T these are the roots of
 
      z^2 - (2 - 2q - q^2/2) z + 1 - 2q + q^2/2 = 0     real, and within the unit circle for q < 1; the law keeps q <= 1/2 */
 #include <math.h>

@@ -62,8 +62,8 @@ static stopped sampled(const stop *s, double speed, double late) {
   return (stopped){.time = (n1 + n2) * T, .eps = speed * late + way};
 }
 
-/* In continuous time: half a period until the contact is seen, the delay, and half a period of hold, which makes braking
-   longer but not deeper. */
+/* In continuous time: half a period until the contact is seen, the delay, and half a period of hold, which makes
+   braking longer but not deeper. */
 static stopped smooth(const stop *s, double speed, int delay) {
   double v1 = s->force / s->damping, a = (s->force + s->friction) / s->mass, tau = s->mass / s->damping;
   double seen = s->period / 2 + delay * s->period;

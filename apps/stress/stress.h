@@ -1,7 +1,7 @@
 /* Numerical stress with analytic answers: what its tests share.
 
-   A test measures the library's own code and compares the figure with one that it works out from a formula. Results with
-   the same words make one line on the terminal, the worst of them; the CSV holds them all. */
+   A test measures the library's own code and compares the figure with one that it works out from a formula. Results
+   with the same words make one line on the terminal, the worst of them; the CSV holds them all. */
 #ifndef ETHD__STRESS_STRESS_H
 #define ETHD__STRESS_STRESS_H
 
@@ -54,8 +54,8 @@ void ethd__stress_note(ethd__stress_log *log, const char *text, ...) __attribute
 /* Prints the lines so far. */
 void ethd__stress_flush(ethd__stress_log *log);
 
-/* Opens folder/name for writing and writes the header row; returns NULL if there is no folder, and exits if it can't. At
-   most two are open at a time; a file takes its place when it is closed. */
+/* Opens folder/name for writing and writes the header row; returns NULL if there is no folder, and exits if it can't.
+   At most two are open at a time; a file takes its place when it is closed. */
 FILE *ethd__stress_data(const ethd__stress_log *log, const char *name, const char *header);
 void ethd__stress_close(FILE *data);
 

@@ -127,7 +127,8 @@ char *ethd__simulation_header(const ethd__protocol *p) {
   return text;
 }
 
-/* The gain of that name; NULL where the configuration's own laws don't have it, because it belongs to another strategy. */
+/* The gain of that name; NULL where the configuration's own laws don't have it, because it belongs to another
+   strategy. */
 static const ethd_param *gain_of(const ethd_setup *setup, const char *name, ethd_setup_key *key) {
   for (uint32_t i = 0; !ethd_setup_key_at(setup, i, key); i++) {
     char full[96];

@@ -38,9 +38,9 @@ typedef struct ethd__folder_parts {
   uint32_t simulated; /* participants of a simulation; 0: a session */
 } ethd__folder_parts;
 
-/* Makes the folder, unless it is there, and its files; leaves it as it is when it holds just this study. Nothing that is
-   there is written over: a folder with another study's files or somebody's own is refused, and one that the study itself
-   is read from. */
+/* Makes the folder, unless it is there, and its files; leaves it as it is when it holds just this study. Nothing that
+   is there is written over: a folder with another study's files or somebody's own is refused, and one that the study
+   itself is read from. */
 ETHD_MUST_CHECK ethd_status ethd__folder_make(const char *folder, const ethd__folder_parts *parts,
                                               char message[ETHD_MESSAGE_MAX]);
 

@@ -28,8 +28,9 @@ static void permutation(uint64_t seed, uint32_t draw, size_t count, size_t out[C
 }
 
 /* The square's row: 0, 1, n-1, 2, n-2, .. plus the row; an odd n needs the mirror images too. A number stands for
-   strategy * speeds + speed, so that going down `speeds` rows turns strategies round within each speed: each is first and
-   last at a speed equally often, too. The seed says which strategy and speed a number means, and which row is whose. */
+   strategy * speeds + speed, so that going down `speeds` rows turns strategies round within each speed: each is first
+   and last at a speed equally often, too. The seed says which strategy and speed a number means, and which row is
+   whose. */
 static void latin(const ethd__protocol *p, size_t count, uint32_t participant, size_t cell[CELLS]) {
   size_t strategies = p->strategies.count, speeds = p->speeds.count, rows = count % 2 ? 2 * count : count;
   size_t strategy[CELLS * 2], speed[CELLS * 2], line[CELLS * 2];

@@ -11,8 +11,8 @@
 /* orders.csv. */
 void ethd__plan_table(FILE *file, const ethd__protocol *protocol);
 
-/* For people: each participant's order, the balance at every number of participants, and a warning where the study's own
-   number isn't balanced, with the next one that is. Balanced: at each speed each strategy is as often the first, as
+/* For people: each participant's order, the balance at every number of participants, and a warning where the study's
+   own number isn't balanced, with the next one that is. Balanced: at each speed each strategy is as often the first, as
    often the last, and as often directly behind each other one. */
 void ethd__plan_print(FILE *file, const ethd__protocol *protocol);
 

@@ -9,7 +9,8 @@
 /* P01, P02, .. with as many digits as the number of participants needs, two at least. */
 void ethd__participant_id(const ethd__protocol *protocol, uint32_t person, char out[ETHD_STUDY_ID_MAX]);
 
-/* The row of taps.csv, its cells as ethd__table_header has them, without its line end; freed by the caller, NULL: no memory. */
+/* The row of taps.csv, its cells as ethd__table_header has them, without its line end; freed by the caller, NULL: no
+   memory. */
 char *ethd__tap_row(const ethd__protocol *protocol, const ethd__taken *taken);
 
 /* The cells of a row of taps.csv that a resumed session and the table of participants need. */

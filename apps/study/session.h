@@ -52,8 +52,8 @@ ETHD_MUST_CHECK ethd_status ethd__session_decide(const char *folder, uint32_t pe
 /* taps.csv, survey.csv, events.csv and participants.csv from the folder's journal, and SHA256SUMS of it all. */
 ETHD_MUST_CHECK ethd_status ethd__tables_write(const ethd__folder *folder, char message[ETHD_MESSAGE_MAX]);
 
-/* The text of these tables, freed by the caller; NULL for those that were written as the folder was made. Exit 1 without
-   memory. */
+/* The text of these tables, freed by the caller; NULL for those that were written as the folder was made. Exit 1
+   without memory. */
 ETHD_MUST_CHECK ethd_status ethd__tables_of(const ethd__folder *folder, const ethd__journal *journal,
                                             char *out[ETHD_TABLES], char message[ETHD_MESSAGE_MAX]);
 

@@ -133,8 +133,8 @@ static bool follow(ethd__station *s) {
   return set_phase(s, ETHD_PHASE_IDLE) == ETHD_PHASE_OVER;
 }
 
-/* A finger that stood at its place until the time was over has made no tap: somebody rested, or went away. A fault counts
-   whatever the finger did. */
+/* A finger that stood at its place until the time was over has made no tap: somebody rested, or went away. A fault
+   counts whatever the finger did. */
 static bool was_tap(const ethd__tap_rows *rows) {
   const double *from = NULL;
   for (size_t i = 0; i < rows->count; i++) {

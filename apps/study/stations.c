@@ -45,8 +45,8 @@ static ethd_status open_station(const char *path, station *out, char *message) {
   return status;
 }
 
-/* Refuses a participant who has tapped at an earlier station. owner[person] is the station's number from 1, 0 if there is
-   none yet. */
+/* Refuses a participant who has tapped at an earlier station. owner[person] is the station's number from 1, 0 if there
+   is none yet. */
 static ethd_status take_owners(const station *s, size_t number, const char *const *folders, size_t *owner,
                                char *message) {
   char id[ETHD_STUDY_ID_MAX];

@@ -1,7 +1,7 @@
 /* SHA256SUMS of a study's folder: a line a file, "SUM  PATH", as sha256sum writes and checks it. All [main].
 
-   What is written once, inputs and taps, keeps the sum that it got first, so that nothing which was changed later gets a
-   new one; the journal and the tables that follow from it get theirs anew each time. Left out: hidden files, what is
+   What is written once, inputs and taps, keeps the sum that it got first, so that nothing which was changed later gets
+   a new one; the journal and the tables that follow from it get theirs anew each time. Left out: hidden files, what is
    unfinished (*.new, *.part), and the report. */
 #ifndef ETHD_STUDY_SUMS_H
 #define ETHD_STUDY_SUMS_H

@@ -61,10 +61,10 @@ typedef struct ethd__claim_part {
   ethd__verdict verdict;
 } ethd__claim_part;
 
-/* The tests: "sign flip" of people's values; "TOST", two one-sided t tests; "overlap", of a difference between speeds where
-   fewer than ETHD_STATISTICS_PEOPLE have all of it, but as many have both strategies at each speed: then these people's
-   differences are compared (ethd__overlapping); "bootstrap", of the threshold of early touches.
-   A sentence holds when all its parts do: its p is the largest of theirs. */
+/* The tests: "sign flip" of people's values; "TOST", two one-sided t tests; "overlap", of a difference between speeds
+   where fewer than ETHD_STATISTICS_PEOPLE have all of it, but as many have both strategies at each speed: then these
+   people's differences are compared (ethd__overlapping); "bootstrap", of the threshold of early touches. A sentence
+   holds when all its parts do: its p is the largest of theirs. */
 typedef struct ethd__tap_claim {
   const char *text;
   ethd__claim_part part[ETHD_TAP_PARTS_MAX];

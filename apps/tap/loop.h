@@ -7,9 +7,9 @@
 #define ETHD_TAP_AFTER 0.15 /* s from t_r/vo to the end of a tap */
 #define ETHD_TAP_LOST 0.3   /* s from the end of the path, when the ring hasn't met a wall */
 
-/* Forgets what the controller was doing, but for what its law has `learned` (ETHD_MEMORY numbers), starts `tap` and steps until it is over; rows hold its ticks, the
-   first at time 0. ETHD_E_MEMORY, or what ethd_sim_start says; faults of the controller stand in the rows
-   and end nothing. */
+/* Forgets what the controller was doing, but for what its law has `learned` (ETHD_MEMORY numbers), starts `tap` and
+   steps until it is over; rows hold its ticks, the first at time 0. ETHD_E_MEMORY, or what ethd_sim_start says; faults
+   of the controller stand in the rows and end nothing. */
 ETHD_MUST_CHECK ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
                                           const double *learned, const ethd__rule *rule, ethd__tap_rows *rows);
 

@@ -10,8 +10,8 @@ typedef struct ethd_mcap ethd_mcap;
 /* Creates a file, which takes its path's place when it is closed. */
 ETHD_MUST_CHECK ethd_status ethd_mcap_create(const char *path, ethd_mcap **out, char message[ETHD_MESSAGE_MAX]);
 
-/* Adds a topic ("/tick") whose messages have `schema`, a JSON schema of an object, and returns its number. At most 8, all
-   before the first message. */
+/* Adds a topic ("/tick") whose messages have `schema`, a JSON schema of an object, and returns its number. At most 8,
+   all before the first message. */
 uint16_t ethd_mcap_topic(ethd_mcap *mcap, const char *topic, const char *name, const char *schema);
 
 /* Writes a message, a JSON text. time_ns >= 0, and never less than that of the message before. */

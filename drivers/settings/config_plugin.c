@@ -47,7 +47,8 @@ static const char *segments_fault(FILE *file, const ElfW(Ehdr) * h, uint64_t siz
   return dynamic ? NULL : "isn't a shared object";
 }
 
-/* Returns what is wrong with the file. A linker writes the section headers last, so a file without them was cut short. */
+/* Returns what is wrong with the file. A linker writes the section headers last, so a file without them was cut
+   short. */
 static const char *file_fault(FILE *file, uint64_t size) {
   ElfW(Ehdr) h;
   if (size == 0) return "is empty";

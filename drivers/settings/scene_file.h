@@ -11,7 +11,8 @@
    this name. Failed writes show in `out`. [main] */
 ETHD_MUST_CHECK ethd_status ethd_scene_print(const ethd_scene *scene, FILE *out);
 
-/* Writes one line about what ethd_scene_parse refused in the file, with the words that are allowed in its place. [main] */
+/* Writes one line about what ethd_scene_parse refused in the file, with the words that are allowed in its place.
+   [main] */
 void ethd__scene_refusal(const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]);
 
 #endif

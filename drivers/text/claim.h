@@ -13,9 +13,10 @@ typedef struct ethd__claim {
 
 #define ETHD_CLAIM_NONE ((ethd__claim){.fd = -1})
 
-/* Makes the folder, unless it is there, and locks it until the claim is released or the process ends. `own` are patterns
-   of the files that the caller writes (fnmatch; NULL ends them): a folder that holds one is refused unless `force` is
-   set, and the refusal names the option --force. A folder that another program has claimed is refused too. */
+/* Makes the folder, unless it is there, and locks it until the claim is released or the process ends. `own` are
+   patterns of the files that the caller writes (fnmatch; NULL ends them): a folder that holds one is refused
+   unless `force` is set, and the refusal names the option --force. A folder that another program has claimed is
+   refused too. */
 ETHD_MUST_CHECK ethd_status ethd__claim_folder(const char *folder, const char *const *own, bool force, ethd__claim *out,
                                                char message[ETHD_MESSAGE_MAX]);
 

@@ -1,4 +1,4 @@
-/* Does a driver keep its contract? Questions are asked of a device through its own functions, with one answer each.
+/* Does a driver keep its contract? A device is asked questions through its own functions, and gives one answer to each.
    Links from libethd-drivers and libethd.
 
    The device is opened, started, stopped and closed many times, and with `torque` it moves: keep clear of it, leave its

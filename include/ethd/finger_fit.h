@@ -5,8 +5,8 @@
        (  o   |         r_k is the free distance along it, so the finger's surface lies at
         '-----'         p_k = (R_r - r_k) (cos, sin).
 
-   A ray counts iff |r_k| < R_r. NaN: it is missing. At R_r or more it has met nothing. At 0 or less the finger touches
-   the ring there, within noise; dropping such rays would push the centre away from the ring. */
+   A ray counts if and only if |r_k| < R_r. NaN means that it is missing. At R_r or more it has met nothing. At 0 or
+   less the finger touches the ring there, within noise; dropping such rays would push the centre away from the ring. */
 #ifndef ETHD_FINGER_FIT_H
 #define ETHD_FINGER_FIT_H
 

@@ -80,7 +80,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_scene_parse(const char *text, size_t l
 /* Frees the scene; NULL is allowed. [main] */
 ETHD_API void ethd_scene_destroy(ethd_scene *scene);
 
-/* The nearest object. */
+/* What a query found: the nearest object. */
 typedef struct ethd_nearest {
   double distance;   /* m, signed; thin walls: >= 0 */
   ethd_vec point, n; /* m; unit vector into the object */

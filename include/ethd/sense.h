@@ -31,7 +31,7 @@ enum {
   ETHD_HAVE_RING = 32,  /* ring: where the ring stood at sample_ns, as the device knows it */
   ETHD_HAVE_BODY = 64,  /* ETHD_HAVE_BODY << i: bodies i has a new pose; else the last one holds; i < ETHD_BODIES_MAX */
   ETHD_HAVE_WORLD =
-      1024 /* centre: stands in R_0, as a camera sees it, and not relative to the ring; ring isn't asked */
+      1024 /* centre: a position in R_0, as a camera sees it, not relative to the ring; `ring` isn't used */
 };
 
 /* X(type, name, count, unit, brief); every field is 8 bytes wide. */

@@ -166,7 +166,7 @@ static void sort(ethd__candidates *c) ETHD_RT {
   }
 }
 
-/* What stands still needs no frame: it is R_0's, and nobody asks for it. */
+/* Gives the ring as seen from a place. The scene that stands still needs no frame, since it is in R_0. */
 static void look_from(const ethd__tick *t, int place, view *out) ETHD_RT {
   out->scene = ethd__place_scene(&t->plan->setup, place);
   out->place = place;

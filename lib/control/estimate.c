@@ -52,7 +52,7 @@ static ethd_vec ring_at(const ethd__state *state, int64_t time_ns) ETHD_RT {
 
 /* ---- the finger's readings ---- */
 
-/* What the reading is relative to: where the ring stood when it was taken, as the filter's `reference` says. */
+/* Returns what the reading is relative to: where the ring stood when it was taken, as the filter's `reference` says. */
 static ethd_vec reference(const ethd__tick *t) ETHD_RT {
   if (t->plan->filter.reference == ETHD_REFERENCE_TICK) return t->ring.x;
   if (t->sense->have & ETHD_HAVE_RING) return ethd_vec_of(t->sense->ring);
@@ -79,7 +79,7 @@ static bool is_world(const ethd__tick *t) ETHD_RT {
   return (t->sense->have & (ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD)) == (ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD);
 }
 
-/* The reading of this tick, relative to the ring, or to R_0 where it is the world's; false: it isn't usable. */
+/* Gives this tick's reading, relative to the ring, or in R_0 if it came in R_0; false: it isn't usable. */
 static bool reading(const ethd__tick *t, ethd_vec *out) ETHD_RT {
   if (t->sense->have & ETHD_HAVE_CENTRE) {
     *out = ethd_vec_of(t->sense->centre);
@@ -99,12 +99,12 @@ static bool is_new(const ethd__tick *t) ETHD_RT {
          (t->state->filter.used == 0 || t->sense->sample_ns != t->state->reading_ns);
 }
 
-/* NaN fails. */
+/* Returns whether a reading's noise is a possible number; NaN isn't. */
 static bool noise_is_possible(const ethd__tick *t) ETHD_RT {
   return t->sense->finger_noise >= 0 && t->sense->finger_noise <= ETHD_SENSE_LENGTH_MAX;
 }
 
-/* Whether a reading puts the finger's centre outside the ring. */
+/* Returns whether a reading puts the finger's centre outside the ring. */
 static bool is_outside(const ethd__tick *t, ethd_vec reading) ETHD_RT {
   if (is_world(t)) reading = ethd_vec_sub(reading, ring_at(t->state, t->sense->sample_ns));
   return !(ethd_vec_norm(reading) <= t->plan->setup.ring_radius);
@@ -151,7 +151,7 @@ static void filter(const ethd__tick *t) ETHD_RT {
   if (t->plan->watches_finger) ethd__finger_watch(t);
 }
 
-/* A finger that was never seen is taken to be in the ring's centre and to move with it, so there is nothing to follow. */
+/* A finger that was never seen is taken to be in the ring's centre and to move with it: there is nothing to follow. */
 static void finger(ethd__tick *t) ETHD_RT {
   t->finger = t->ring;
   if (t->sense->have & ETHD_HAVE_FINGER) {

@@ -1,4 +1,4 @@
-/* What the device can do along a contact's normal, from the pose, the links' inertias and the limits.
+/* Works out what the device can do along a contact's normal, from the pose, the links' inertias and the limits.
 
      g = J^T n            torques of a unit force along n      w = J^-1 n     joint speeds of a unit speed along it
      m = 1 / (h^T M^-1 h)      effective mass: h = g in the links' absolute angles, M = diag(m_i L_i^2)
@@ -8,16 +8,16 @@
 
 #include "guard/parts.h"
 
-/* The lesser of two numbers; NaN, which says that something isn't known, stays where it is b. */
+/* Returns the lesser of two numbers; NaN, for something that isn't known, stays if it is b. */
 static double least(double a, double b) ETHD_RT { return a < b ? a : b; }
 
-/* Torques of the joints as they act on the links' absolute angles: a serial arm's second motor sits on link 1. */
+/* Gives the joints' torques as they act on the links' absolute angles: a serial arm's second motor sits on link 1. */
 static void on_links(const ethd__plan *plan, const double tau[2], double out[2]) ETHD_RT {
   out[0] = plan->setup.arm.mechanism == ETHD_ARM_SERIAL ? tau[0] - tau[1] : tau[0];
   out[1] = tau[1];
 }
 
-/* The most torque against g that joint i's limits leave it at this tick, Nm. */
+/* Returns the most torque against g that its limits leave joint i at this tick, Nm. */
 static double room(const ethd__tick *t, int i, double g) ETHD_RT {
   const ethd_limits *limits = &t->plan->setup.limits;
   const ethd_guard_state *guard = &t->state->guard;
@@ -30,8 +30,8 @@ static double room(const ethd__tick *t, int i, double g) ETHD_RT {
   return most;
 }
 
-/* How long ago the finger was where its estimate has it: a filter that doesn't make up for the readings' age shows
-   what they showed. */
+/* Returns how long ago the finger was where its estimate has it: a filter that doesn't compensate the readings' age
+   shows what they showed. */
 static double finger_age(const ethd__tick *t) ETHD_RT {
   const ethd__state *state = t->state;
   if (t->sense->have & ETHD_HAVE_FINGER) return 0;

@@ -134,7 +134,7 @@ void ethd__fence_reset(const ethd_law *law, const double *p, ethd__law_block *b)
   b->failed = leave(&c, ETHD_OK);
 }
 
-/* What it did beside its job fails the step after it, as a reset's does. */
+/* What `adopt` did beside its job fails the step after it, as with a reset. */
 void ethd__fence_adopt(const ethd__plan *plan, ethd__law_block *b, const ethd_past *past) {
   const ethd_transition_law *law = plan->setup.transition;
   if (!(plan->foreign & 1 << ETHD_TRANSITION)) {
@@ -148,7 +148,7 @@ void ethd__fence_adopt(const ethd__plan *plan, ethd__law_block *b, const ethd_pa
   b->failed = found ? found : before;
 }
 
-/* It has no state: only the processor is looked at. Any block can say that it runs. */
+/* `range` has no state, so only the processor is checked. Any block can say that it runs. */
 ethd_status ethd__fence_range(const ethd__plan *plan, ethd__state *s, double speed, double *range) {
   ethd__law_block *b = &s->slots[0].transition;
   if (!(plan->foreign & 1 << ETHD_TRANSITION)) {

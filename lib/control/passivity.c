@@ -14,9 +14,9 @@
    given back, or a brake ahead of the wall, is the motors' affair, and reaches the finger as what the ring's speed at
    the touch is worth, m v^2/2, like the speed that tracking gave it (0.15 mJ at 0.05 m/s and 0.12 kg).
 
-   A contact that begins soon after the last one ended, as in a bounce, goes on with what that one gave away. One that
-   is watched only from within the wall on, after a swap or an acknowledged fault, has stored what nobody saw: its account
-   begins with that. */
+   A contact that begins soon after the last one ended, as in a bounce, goes on with what that one gave away. A contact
+   that is watched only once it is within the wall, after a swap or an acknowledged fault, has already stored energy;
+   its account begins with that. */
 #include "control/passivity.h"
 
 #include "control/rows.h"
@@ -39,8 +39,8 @@ static void observe(ethd__slot *slot, const ethd_contact *c) ETHD_RT {
   slot->depth_was = c->d_re;
 }
 
-/* What a spring that pushes like this wall has stored; one that stiffens has stored less. A wall that came to the ring by
-   itself, in a new scene, has stored nothing. */
+/* What a spring that pushes like this wall has stored; one that stiffens has stored less. A wall that came to the ring
+   by itself, in a new scene, has stored nothing. */
 static double stored(const ethd__tick *t, const ethd__slot *slot, double depth, double wall) ETHD_RT {
   return slot->periods > 0 || t->soft ? fmax(-wall * depth / 2, 0) : 0;
 }

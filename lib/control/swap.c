@@ -9,8 +9,8 @@
 
 /* ---- the fade ---- */
 
-/* What the guard would cut is no part of a fade: it would be over as soon as the rest is at the limit, too early and
-   too steep. */
+/* Returns a torque without what the guard would cut. If that were part of a fade, the fade would be over as soon as the
+   rest is at the limit, too early and too steeply. */
 static double within_limit(const ethd__tick *t, double torque) ETHD_RT {
   double most = t->plan->setup.limits.torque;
   if (torque > most) return most;
@@ -25,7 +25,7 @@ void ethd__fade_start(ethd__tick *t, const double from[2]) {
   t->state->fade.elapsed = 0;
 }
 
-/* What is left of the difference after `t` s. */
+/* Returns the share of the difference that is left after `t` s. */
 static double fade_share(double t, double swap_time) ETHD_RT { return t < swap_time ? 1 - t / swap_time : 0; }
 
 void ethd__fade(ethd__tick *t) {

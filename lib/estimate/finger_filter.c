@@ -5,7 +5,7 @@
 
 #include "estimate/filter_methods.h"
 
-/* How far off a filter's start may be: variances of each axis. Only ca takes its acceleration as uncertain. */
+/* How far off a filter's start may be: the variances of each axis. Only for ca is the acceleration uncertain. */
 typedef struct doubt {
   double x, v, a; /* m^2, m^2/s^2, m^2/s^4 */
 } doubt;

@@ -4,8 +4,8 @@
 
 /* A stop damps the ring until it is slower than STILL. STILL is the paper's v_th (eq. 11), below which a ring counts as
    standing still. STOP_DAMPING is a fifth of the paper's B_d. Any device that renders the paper's wall is stable with
-   it: with a tick of delay a free mass m is stable up to a damping of 0.83 m/T, so at 1 kHz 20 Ns/m suit 24 g and more. A ring of 0.12 kg that
-   moves at 0.2 m/s stands still after 14 ms. */
+   it: with a tick of delay a free mass m is stable up to a damping of 0.83 m/T, so at 1 kHz 20 Ns/m suit 24 g and more.
+   A ring of 0.12 kg that moves at 0.2 m/s stands still after 14 ms. */
 #define STOP_DAMPING 20.0 /* Ns/m */
 #define STILL 0.020       /* m/s */
 

@@ -21,7 +21,7 @@ typedef struct ethd__brake_curve {
   double linear;  /* d_l, m */
 } ethd__brake_curve;
 
-/* A loop of this period can settle at most half of its distance in a tick. */
+/* Returns the curve. A loop of this period can settle at most half of its distance in a tick. */
 static inline ethd__brake_curve ethd__brake_curve_of(double a, double rate, double period) ETHD_RT {
   double r = rate * period > 0.5 ? 0.5 / period : rate;
   return (ethd__brake_curve){a, r, a / (r * r)};
@@ -31,12 +31,12 @@ static inline double ethd__brake_curve_speed(const ethd__brake_curve *c, double 
   return d <= c->linear ? c->rate * d : sqrt(2 * c->a * (d - c->linear / 2));
 }
 
-/* Where it is met at speed v, the other way round: m that a ring of this speed needs. */
+/* Returns the distance at which the curve is met at speed v, m: a ring of this speed needs so much to stop. */
 static inline double ethd__brake_curve_way(const ethd__brake_curve *c, double v) ETHD_RT {
   return v <= c->rate * c->linear ? v / c->rate : v * v / (2 * c->a) + c->linear / 2;
 }
 
-/* m/s^2 of a ring that is on the curve at d with speed v. */
+/* Returns the acceleration, m/s^2, of a ring that is on the curve at d with speed v. */
 static inline double ethd__brake_curve_slope(const ethd__brake_curve *c, double d, double v) ETHD_RT {
   return d > c->linear ? -c->a : -c->rate * v;
 }

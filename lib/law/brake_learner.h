@@ -6,9 +6,9 @@
      x = integral of the model's acceleration, twice     y = d_0 - d - v_0 t     y = s + k x
 
    s is the stretch of an elastic transmission: the encoders sit on its motors' side, which gives way before the ring
-   does (0.5 mm on plant p, where x is 2 mm: y/x would say 1.25). It comes within some ms and stays, so k is the slope of
-   y over x by least squares, from SETTLED on, until the ring stands or the finger comes. Sums over brakings, those
-   before with weight 1 - learn; a prior says 1. A braking that ended deeper than it was planned never raises k. [rt] */
+   does (0.5 mm on plant p, where x is 2 mm: y/x would say 1.25). It comes within some ms and stays, so k is the slope
+   of y over x by least squares, from SETTLED on, until the ring stands or the finger comes. Earlier brakings count with
+   weight 1 - learn, and a prior says 1. A braking that ended deeper than planned never raises k. [rt] */
 #ifndef ETHD__BRAKE_LEARNER_H
 #define ETHD__BRAKE_LEARNER_H
 
@@ -17,8 +17,8 @@
 #include "ethd/attributes.h"
 
 #define ETHD__SETTLED 5e-3 /* s: after it the transmission's stretch is there and no longer swings */
-#define ETHD__UNSURE 0.05  /* what friction, delay and sampling bring into k where the facts are right */
-#define ETHD__PRIOR 9e-8   /* m^2: sum of (x - mean)^2 that stands for the facts */
+#define ETHD__UNSURE 0.05  /* error of k that friction, delay and sampling cause where the facts are right */
+#define ETHD__PRIOR 9e-8   /* m^2: weight of the prior, as a sum of (x - mean)^2 */
 
 /* One braking. */
 typedef struct ethd__brake_learner {
@@ -28,12 +28,12 @@ typedef struct ethd__brake_learner {
   bool done;
 } ethd__brake_learner;
 
-/* k as the sums have it. */
+/* Returns k by the sums. */
 static inline double ethd__brake_slope(const double *memory) ETHD_RT {
   return (memory[0] + ETHD__PRIOR) / (memory[1] + ETHD__PRIOR);
 }
 
-/* k as far as it is sure: within UNSURE the facts are right. */
+/* Returns k as far as it is certain: 1 within UNSURE of 1, since the facts are then taken to be right. */
 static inline double ethd__brake_learnt(const double *memory) ETHD_RT {
   double k = ethd__brake_slope(memory);
   if (k > 1 + ETHD__UNSURE) return k - ETHD__UNSURE;
@@ -44,7 +44,7 @@ static inline void ethd__brake_learner_begin(ethd__brake_learner *l, double d, d
   *l = (ethd__brake_learner){.from = d, .v = v};
 }
 
-/* A tick of T s at whose end the ring is at d; its force came `delay` s late. */
+/* Adds a tick of T s at whose end the ring is at d; its force came `delay` s late. */
 static inline void ethd__brake_learner_add(ethd__brake_learner *l, double model, double d, double T,
                                            double delay) ETHD_RT {
   if (l->done) return;
@@ -60,7 +60,7 @@ static inline void ethd__brake_learner_add(ethd__brake_learner *l, double model,
   l->sxy += x * y;
 }
 
-/* The braking is over, `deeper` m behind its plan; what it says goes into the memory. */
+/* Ends a braking, `deeper` m behind its plan, and puts what it says into the memory. */
 static inline void ethd__brake_learner_end(ethd__brake_learner *l, double deeper, double learn,
                                            double *memory) ETHD_RT {
   if (l->done) return;
@@ -70,7 +70,7 @@ static inline void ethd__brake_learner_end(ethd__brake_learner *l, double deeper
   if (deeper > 0 && xy > xx * ethd__brake_slope(memory)) return;
   const double sums[2] = {(1 - learn) * memory[0] + xy, (1 - learn) * memory[1] + xx};
   double k = ethd__brake_slope(sums);
-  if (!(k > 0.25 && k < 4)) return; /* no braking of this ring */
+  if (!(k > 0.25 && k < 4)) return; /* this ring can't have braked so */
   memory[0] = sums[0];
   memory[1] = sums[1];
 }

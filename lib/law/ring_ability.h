@@ -1,4 +1,4 @@
-/* What a ring can do along a contact's normal, of the facts that a law needs to brake it.
+/* What a ring can do along a contact's normal: of the facts those that a law needs to brake it.
 
    Friction is Coulomb's, which changes its sign over STICTION as a plant's does, and viscous. It helps a ring to brake:
    with the force F that the guard lets through, the ring's deceleration is at most (F + f_c) / m.            [rt] */
@@ -18,23 +18,23 @@ typedef struct ethd__ring_ability {
   ethd__brake_curve curve;               /* on which the law brakes it */
 } ethd__ring_ability;
 
-/* A friction or delay that isn't known is none. */
+/* Returns a friction or delay, 0 if it isn't known. */
 static inline double ethd__known(double x) ETHD_RT { return x >= 0 ? x : 0; }
 
-/* Without these nothing can be planned. */
+/* Returns whether the facts are known without which nothing can be planned. */
 static inline bool ethd__ring_is_known(const ethd_facts *f) ETHD_RT {
   return f && f->mass > 0 && f->mass < (double)INFINITY && f->force > 0 && f->force < (double)INFINITY &&
          f->finger_age >= 0;
 }
 
-/* Returns the ability of a ring that decelerates k times as fast as the facts say: its mass is theirs / k. The caller fills
-   the curve. */
+/* Returns the ability of a ring that decelerates k times as fast as the facts say: its mass is theirs / k. The caller
+   fills the curve. */
 static inline ethd__ring_ability ethd__ring_ability_of(const ethd_facts *f, double k) ETHD_RT {
   return (ethd__ring_ability){
       .mass = f->mass / k, .force = f->force, .friction = ethd__known(f->friction), .viscous = ethd__known(f->viscous)};
 }
 
-/* Against the motion, N. */
+/* Returns the friction against the motion, N. */
 static inline double ethd__ring_friction(const ethd__ring_ability *a, double v) ETHD_RT {
   double share = v * (1 / ETHD__STICTION);
   if (share > 1) share = 1;

@@ -1,9 +1,9 @@
-/* Where a ring is that goes to a surface, how fast, and what its model doesn't say.
+/* Estimates where a ring that approaches a surface is, how fast it is, and which acceleration its model leaves out.
 
    Fading-memory polynomial filter of the second degree (Morrison 1969, Introduction to Sequential Smoothing and
-   Prediction, chapter 13). Of all parabolas through the past distances it takes the one of least squares, where a
-   sample of j ticks ago weighs b^j, and the parabola is what the model's acceleration leaves. It predicts, and corrects
-   by the residual e of the distance that was measured:
+   Prediction, chapter 13). To what the model's acceleration leaves of the past distances it fits the parabola of least
+   squares, in which a sample of j ticks ago has the weight b^j. It predicts, and corrects by the residual e of the
+   measured distance:
 
      d -= v T + (model + w) T^2/2     v += (model + w) T       d < 0: behind the surface, v > 0: towards it
      d += (1 - b^3) e     v -= 3/2 (1 - b^2)(1 - b) e/T     w -= (1 - b)^3 e/T^2
@@ -17,10 +17,10 @@
 
 typedef struct ethd__ring_observer {
   double d, v; /* m to the surface, m/s */
-  double w;    /* m/s^2 that the model doesn't say */
+  double w;    /* m/s^2 that the model leaves out */
 } ethd__ring_observer;
 
-/* Returns e. */
+/* Predicts and corrects; returns e. */
 static inline double ethd__ring_predict(ethd__ring_observer *o, double model, double d, double T) ETHD_RT {
   double a = model + o->w;
   o->d -= o->v * T + a * T * T / 2;

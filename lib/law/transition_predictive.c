@@ -5,7 +5,7 @@
 #include "law/ring_ability.h"
 #include "law/ring_observer.h"
 
-/* Brake before the wall: the ring stands in it, still, when the finger comes.
+/* Brakes before the wall, so that the ring stands still in it when the finger comes.
 
                    v >= f(d)                     stood, and the finger is at the rim
                   (the curve is met)             or turns back; or t_max
@@ -14,17 +14,17 @@
           |   what can't be seen in time, or is met inside:  offset's machine  <-------'  (until d_re > d_beta)
           '----------------------------------------------------------------->
 
-   A law that reacts at the wall needs v^2/(2a) behind it. This one needs as much before it, and that the finger,
-   which is ahead of the ring by `lag`, doesn't get to the rim meanwhile:  lag <= gap - v^2/(2a), gap = R_r - R_f,
-   so up to v* = sqrt(2 a (gap - lag)).
+   A law that reacts at the wall needs v^2/(2a) behind it to stop. This one needs as much before it, in which the
+   finger, which is ahead of the ring by `lag`, mustn't get to the rim:  lag <= gap - v^2/(2a), gap = R_r - R_f. So it
+   works up to the speed v* = sqrt(2 a (gap - lag)).
 
-   What the ring can do:  a = effort (F + f_c) / m, from the facts.
-   Approach: friction is given back and the ring led, by X_f + shift, so far that v* is over the finger's speed.
-   Braking begins on brake_curve.h. Acceleration of the curve, plus rate (f(d) - v), less the disturbance w, friction
-   given back: planned anew at each tick from what is left of the way, on what ring_observer.h says of the ring. The
-   same loop then holds it, so beta is 0.
+   What the ring can do follows from the facts:  a = effort (F + f_c) / m.
+   Approach: friction is made up for, and the ring is led, by X_f + shift, so far that v* is over the finger's speed.
+   Braking begins on brake_curve.h. The ring's acceleration is the curve's, plus rate (f(d) - v), less the disturbance
+   w, with friction made up for. It is planned anew at each tick from the distance that is left and from what
+   ring_observer.h says about the ring. The same loop then holds the ring, so beta is 0.
 
-   Learning: the deceleration is k times the facts', brake_learner.h. */
+   Learning: the deceleration is k times that of the facts (brake_learner.h). */
 
 enum { EFFORT = ETHD__OFFSET_COUNT, RATE, AIM, MARGIN, RANGE, MEMORY, LEARN, COUNT };
 
@@ -49,7 +49,7 @@ typedef struct predictive_state {
   ethd__offset offset;
   ethd__ring_observer ring;
   ethd__brake_learner learner;
-  bool observed, ahead, stood; /* the ring is; it brakes or is held; it has stood since then */
+  bool observed, ahead, stood; /* the ring is observed; it brakes or is held; it has stood since then */
   double time, eps;            /* s since braking began; least depth in which it stood, m */
 } predictive_state;
 
@@ -80,13 +80,13 @@ static void observe(const double *p, predictive_state *s, const ethd_contact *c,
   s->observed = true;
 }
 
-/* Way between finger and rim, now, along n. */
+/* Returns the distance between finger and rim along n now, m. */
 static double clearance(const ethd_contact *c) ETHD_RT {
   double lag = c->d_re - c->d_fr + c->v_f * c->facts->finger_age;
   return c->facts->ring_radius - c->facts->finger_radius - lag;
 }
 
-/* To the place aimed at, when this tick's force begins to act. */
+/* Returns the distance to the depth aimed at when this tick's force begins to act, m. */
 static double distance(const double *p, const predictive_state *s, const ethd_facts *f) ETHD_RT {
   return s->ring.d + p[AIM] - s->ring.v * ethd__known(f->delay);
 }
@@ -99,7 +99,7 @@ static bool meets_curve(const double *p, const predictive_state *s, const ethd_c
   return v > 0 && c->v_f > 0 && v >= ethd__brake_curve_speed(&m->curve, d);
 }
 
-/* The finger's lead over the ring is brought down, by a shift, to what leaves the ring room to stop. */
+/* Reduces the finger's lead over the ring, by a shift, to what leaves the ring room to stop. */
 static void approach(const double *p, const predictive_state *s, const ethd_contact *c, const ethd__ring_ability *m,
                      ethd_ruling *out) ETHD_RT {
   const ethd_facts *f = c->facts;
@@ -129,7 +129,7 @@ static void brake(const double *p, const predictive_state *s, const ethd_contact
   out->feed = within(m->mass * a + ethd__ring_friction(m, v), -m->force, m->force);
 }
 
-/* True: the wall takes over, where the ring has stood. The finger's push doesn't count. */
+/* Returns true when the wall takes over, where the ring has stood. The finger's push doesn't count. */
 static bool is_over(const double *p, predictive_state *s, const ethd_contact *c, const ethd__ring_ability *m) ETHD_RT {
   double left = clearance(c), depth = most(0, -c->d_re), gap = c->facts->ring_radius - c->facts->finger_radius;
   s->time += c->period;
@@ -151,7 +151,7 @@ static bool is_over(const double *p, predictive_state *s, const ethd_contact *c,
 
 /* ---- the law ---- */
 
-/* What can't be seen is left to offset. */
+/* Leaves what can't be seen to offset. */
 static void step_blindly(const double *p, predictive_state *s, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
   if (s->ahead) ethd__offset_enter(&s->offset, c->d_re < 0 ? ETHD_BRAKING : ETHD_TRANSPARENT, 0);
   s->ahead = s->observed = false;

@@ -31,8 +31,8 @@ static double farthest(const ethd_scene *scene, const ethd__object *o) {
   return most;
 }
 
-/* An object is in one piece: if its nearest point lies within the outer circle and its farthest beyond the inner one,
-   then some of it lies between the two. */
+/* An object is in one piece, so if its nearest point lies within the outer circle and its farthest beyond the inner
+   one, some of it lies between the two. */
 bool ethd__object_is_within(const ethd_scene *scene, const ethd__object *o, double inner, double outer) {
   ethd_touch nearest;
   ethd__object_nearest(scene, o, (ethd_vec){0, 0}, &nearest);

@@ -74,8 +74,8 @@ static inline double ethd__within(double v, double most) { return v > most ? mos
 
 #define ETHD__FAR 0x1p50 /* a float too, so that a coordinate there is recognised */
 
-/* Makes the probe of x. Beyond ETHD__FAR the nearest point of that square takes the place of x: no box is farther from it
-   than from x. */
+/* Makes the probe of x. Beyond ETHD__FAR the nearest point of that square takes the place of x: no box is farther from
+   it than from x. */
 static inline ethd__probe ethd__probe_at(const ethd_scene *scene, ethd_vec x) {
   double s = scene->scale, u = s * (x.x - scene->centre.x), v = s * (x.y - scene->centre.y);
   bool near = fabs(u) <= 2 && fabs(v) <= 2;
@@ -165,10 +165,10 @@ typedef struct ethd__eight {
    The caller looks at one leaf itself, which gives a bound. It gets there in one of two ways:
 
      walk_around   The caller knows a leaf, perhaps from the last query. The nodes above it follow from its index, so
-     all
-                   levels can be read at once; on each, the boxes beside the path to the leaf are kept.
+                   all levels can be read at once; on each, the boxes beside the path to the leaf are kept.
      walk_down     The caller knows none. On each level the nearest box is taken, and its node's eight distances are
-     noted. walk_on       When the leaf found there has given a bound, the boxes beside that path are kept.
+                   noted.
+     walk_on       When the leaf found there has given a bound, the boxes beside that path are kept.
 
    After that, walk_next gives one leaf after the other, none twice. */
 typedef struct ethd__walk {

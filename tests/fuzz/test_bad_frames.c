@@ -1,6 +1,7 @@
-/* Every way in which one frame can be damaged by little: each length, each bit, each pair of bits; of the servo's own framing
-   and of the proximity ring's. Nothing damaged is taken for an answer or a frame, and how many cases there were is asserted,
-   so that none is left out unseen. The answers are put together here, with the checksum of the test's own drive. */
+/* Every way in which one frame can be damaged by little: each length, each bit, each pair of bits; of the servo's own
+   framing and of the proximity ring's. Nothing damaged is taken for an answer or a frame, and how many cases there were
+   is asserted, so that none is left out unseen. The answers are put together here, with the checksum of the test's own
+   drive. */
 #include <modbus/modbus.h>
 #include <stdio.h>
 #include <string.h>
@@ -42,7 +43,8 @@ static bool untouched(void) {
 
 static void put(int value) { good[good_length++] = (uint8_t)value; }
 
-/* As the specification has it (V1.1b3, p. 15, 16, 30, 38): station, function, and bytes of data or what was written where. */
+/* As the specification has it (V1.1b3, p. 15, 16, 30, 38): station, function, and bytes of data or what was written
+   where. */
 static void answer_to(int function, int count) {
   const bool is_tcp = map.transport == ETHD__SERVO_TCP;
   const int data = function == 16 ? 4 : 1 + 2 * count;

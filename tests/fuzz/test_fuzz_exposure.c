@@ -1,6 +1,6 @@
-/* The camera's datagrams under mutation: ETHD_FUZZ executions (default 200 000) in one process. What passes must be what its
-   bytes say once more, with numbers that can be; half of the mutants have their checksum mended, so that what comes behind it
-   is tried too. The clock takes them all: an instant is never later than its arrival. */
+/* The camera's datagrams under mutation: ETHD_FUZZ executions (default 200 000) in one process. What passes must be
+   what its bytes say once more, with numbers that can be; half of the mutants have their checksum mended, so that what
+   comes behind it is tried too. The clock takes them all: an instant is never later than its arrival. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* The count in a .npy's header, of any bytes: nothing outside of the text is read, and a count has at most 18 digits. */
+/* The count in a .npy's header, of any bytes: nothing outside of the text is read, and a count has at most 18
+   digits. */
 #include "../../drivers/record/npy.c"
 
 #define BYTES 32

@@ -1,5 +1,6 @@
-/* Of a parameter's row and value, whatever they are: what ethd_params_check takes is a number within the row's range, and
-   whole where the row has words; what it refuses isn't. Of a name of any bytes: is_name reads none behind its end. */
+/* Of a parameter's row and value, whatever they are: what ethd_params_check takes is a number within the row's
+   range, and whole where the row has words; what it refuses isn't. Of a name of any bytes: is_name reads none
+   behind its end. */
 #define __builtin_isfinite(v) __CPROVER_isfinited(v)
 #include "../../lib/param.c"
 #include "../../lib/error.c"

@@ -567,8 +567,8 @@ static double soft_start(void) {
   return whole;
 }
 
-/* However rarely a bus answers, down to 40 ms twice: the loop lives on it, a missing answer is only counted, and a bus that
-   stays silent is row 5 after the larger of 5 ms and two exchanges. */
+/* However rarely a bus answers, down to 40 ms twice: the loop lives on it, a missing answer is only counted, and a bus
+   that stays silent is row 5 after the larger of 5 ms and two exchanges. */
 START_TEST(test_divisors) {
   char line[32];
   int divisor = _i;

@@ -1,4 +1,5 @@
-/* Modbus frames of our own against frames that others published, and against every way in which an answer can be wrong. */
+/* Modbus frames of our own against frames that others published, and against every way in which an answer can be
+   wrong. */
 #include <modbus/modbus.h>
 #include <string.h>
 

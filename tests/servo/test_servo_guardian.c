@@ -1,5 +1,5 @@
-/* Zero torque when the program can't write it any more. The rules on instants that are made up; the process itself against
-   a drive without a watchdog, with the program killed, stopped, and ended in order. Times are asserted where
+/* Zero torque when the program can't write it any more. The rules on instants that are made up; the process itself
+   against a drive without a watchdog, with the program killed, stopped, and ended in order. Times are asserted where
    ETHD_STRESS is set: a busy machine's processes wake when they wake. */
 #include <math.h>
 #include <sched.h>
@@ -267,8 +267,8 @@ START_TEST(test_follows) {
 }
 END_TEST
 
-/* The plant's map without a watchdog. A busy machine's drive answers late, and how late isn't what is tried: only where times
-   are asserted do answers have the map's own time. */
+/* The plant's map without a watchdog. A busy machine's drive answers late, and how late isn't what is tried: only where
+   times are asserted do answers have the map's own time. */
 static int write_map(const char *path) {
   char *text, *all;
   size_t length;

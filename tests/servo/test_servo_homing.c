@@ -1,5 +1,5 @@
-/* Homing on a joint of the paper's size with dry friction and two stops, sampled as a slow bus samples it; and a servo whose
-   joints must be found before it is enabled. */
+/* Homing on a joint of the paper's size with dry friction and two stops, sampled as a slow bus samples it; and a servo
+   whose joints must be found before it is enabled. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -56,7 +56,8 @@ static double home(joint *j, const ethd__homing_def *def, ethd__homing *h, doubl
 
 static const double paces[] = {0.001, 0.004, 0.010};
 
-/* Both ways, from the middle and from either stop, by 1 to 10 ms an exchange: at the stop, at three times the speed at most, with no more torque. */
+/* Both ways, from the middle and from either stop, by 1 to 10 ms an exchange: at the stop, at three times the speed at
+   most, with no more torque. */
 START_TEST(test_stop) {
   for (int way = -1; way <= 1; way += 2)
     for (int from = -1; from <= 1; from++) {
@@ -151,7 +152,8 @@ static void refused_for(int which) {
   ck_assert_int_eq(drive.words[MOCK_CONTROL], control); /* nothing was written for it */
 }
 
-/* In the jig: said when it is opened, or by the command; lost with the connection, and with a counter that begins anew. */
+/* In the jig: said when it is opened, or by the command; lost with the connection, and with a counter that
+   begins anew. */
 START_TEST(test_reference) {
   const double jig[2] = {0.7, -0.3};
   mock_start(&drive, 0);

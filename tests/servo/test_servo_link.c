@@ -193,7 +193,8 @@ static mock_act late_sometimes(void *user, uint64_t n, int function) {
   return (mock_act){MOCK_LATE, 0, n % 41 == 17 ? 3000 : 0};
 }
 
-/* In our own framing, as the standard's order of the checksum isn't this drive's; on two wires what is sent comes back. */
+/* In our own framing, as the standard's order of the checksum isn't this drive's; on two wires what is sent
+   comes back. */
 START_TEST(test_own_framing) {
   const char *given = getenv("ETHD_SERVO_CYCLES");
   const int cycles = given ? atoi(given) : CYCLES;

@@ -115,7 +115,8 @@ END_TEST
 /* Roboteq's rule (GDC3660E Modbus data sheet, 2018, p. 10), which has 0x2106, index 1 -> 0x20C1 as its example. */
 static uint32_t roboteq(uint32_t id, uint32_t index) { return (id << 5 | index) & 0xFFFF; }
 
-/* CANopen ids of Roboteq's object dictionary: user manual V1.8 p. 181 to 184, V2.0 p. 212, 223, CANbus manual V2.0 p. 35. */
+/* CANopen ids of Roboteq's object dictionary: user manual V1.8 p. 181 to 184, V2.0 p. 212, 223, CANbus manual V2.0 p.
+   35. */
 START_TEST(test_roboteq) {
   static const struct {
     const char *name;

@@ -169,8 +169,8 @@ START_TEST(test_every_method) {
 }
 END_TEST
 
-/* A law of an older header is shorter and runs; one that stops short of step is refused, and one of a newer header, which
-   may count on what this library doesn't give. */
+/* A law of an older header is shorter and runs; one that stops short of step is refused, and one of a newer header,
+   which may count on what this library doesn't give. */
 START_TEST(test_sizes_of_laws) {
   ethd_transition_law law = ethd_transition_smooth;
   law.law.size = ETHD_TRANSITION_LAW_MIN;

@@ -13,7 +13,8 @@
 #include "unit/draw.h"
 #include "unit/rig.h"
 
-/* As Python's struct packs them, and a CRC worked out by hand of the polynomial (tests/camera.sh sends them so, too). */
+/* As Python's struct packs them, and a CRC worked out by hand of the polynomial (tests/camera.sh sends them so,
+   too). */
 START_TEST(test_bytes) {
   static const uint8_t wire[ETHD__EXPOSURE_SIZE] = {'E',  'F',  'C',  '1',  0x02, 0x01, 0x00, 0x00, 0x00, 0xca, 0x9a,
                                                     0x3b, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
@@ -30,7 +31,8 @@ START_TEST(test_bytes) {
 }
 END_TEST
 
-/* Datagrams that are late at random, now and then much; the sender's quartz is 50 ppm off: instants are right to 0.3 ms. */
+/* Datagrams that are late at random, now and then much; the sender's quartz is 50 ppm off: instants are right to 0.3
+   ms. */
 START_TEST(test_clock) {
   ethd__camera_clock c = {.delay = 11100000};
   const int64_t zero = INT64_MAX - 500000000; /* the sender's count wraps round on the way */
@@ -49,7 +51,8 @@ START_TEST(test_clock) {
 }
 END_TEST
 
-/* Out of order, twice, missing: counted, and what is older than the last isn't used. A sender that begins anew is followed. */
+/* Out of order, twice, missing: counted, and what is older than the last isn't used. A sender that begins anew is
+   followed. */
 START_TEST(test_order) {
   ethd__camera_clock c = {.delay = 0};
   const uint32_t seq[] = {10, 11, 13, 12, 13, 14};

@@ -1,5 +1,5 @@
-/* What a controller meets rarely: two contacts that become one, more of them than there is room for, laws handed over in
-   a tick that may not push, readings after gaps that no loop has, a stop that turns one joint alone. */
+/* What a controller meets rarely: two contacts that become one, more of them than there is room for, laws handed over
+   in a tick that may not push, readings after gaps that no loop has, a stop that turns one joint alone. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -173,8 +173,8 @@ END_TEST
 
 /* ---- readings ---- */
 
-/* Ticks that say that a million periods were missed, with a reading each: whatever the filter makes of it, ring and finger
-   stay numbers, and the torque is one. */
+/* Ticks that say that a million periods were missed, with a reading each: whatever the filter makes of it, ring and
+   finger stay numbers, and the torque is one. */
 START_TEST(test_gaps_without_end) {
   rig r;
   rig_open(&r, RIG_WALL);

@@ -103,8 +103,8 @@ START_TEST(test_two_rays_with_known_radius) {
 }
 END_TEST
 
-/* Where the first step from the ring's middle goes, by the normal equations of two points: how far from the line between
-   them it ends, times their distance. */
+/* Where the first step from the ring's middle goes, by the normal equations of two points: how far from the line
+   between them it ends, times their distance. */
 static double beside_after_a_step(ethd_vec u, ethd_vec v) {
   double det = ethd_vec_cross(u, v), g = (ethd_vec_dot(u, u) - FINGER * FINGER) / 2,
          h = (ethd_vec_dot(v, v) - FINGER * FINGER) / 2;
@@ -112,8 +112,8 @@ static double beside_after_a_step(ethd_vec u, ethd_vec v) {
   return ethd_vec_cross(ethd_vec_sub(u, s), ethd_vec_sub(v, s));
 }
 
-/* Two points farther apart than a finger is wide, so that the first step ends on the line between them: there nothing holds
-   the centre across it, and there is no answer. */
+/* Two points farther apart than a finger is wide, so that the first step ends on the line between them: there nothing
+   holds the centre across it, and there is no answer. */
 START_TEST(test_two_rays_too_far_apart) {
   ethd_fit fit = prepared(ETHD_FIT_ROBUST);
   double low = 0, high = RING - 5e-3, r[ETHD_RAYS];

@@ -33,8 +33,8 @@ static ethd_trace step(ethd_control *control, const ethd_sense *s) {
   return trace;
 }
 
-/* Two readings, 1 ms apart: their mean, weighted by 1 / variance as every textbook has it. In between the finger, seen once,
-   may have moved at 1 m/s and 10 m/s^2 (sd). */
+/* Two readings, 1 ms apart: their mean, weighted by 1 / variance as every textbook has it. In between the finger, seen
+   once, may have moved at 1 m/s and 10 m/s^2 (sd). */
 START_TEST(test_weights) {
   const double sd[][2] = {{1e-4, 1e-4}, {1e-4, 1e-3}, {2e-3, 1e-4}, {1e-3, 5e-4}};
   ethd_control *control = control_of((double)INFINITY);
@@ -104,8 +104,8 @@ START_TEST(test_world) {
 }
 END_TEST
 
-/* A late reading belongs to where the ring was then. The controller remembers 32 ticks of it; what is older is taken for the
-   oldest of them. */
+/* A late reading belongs to where the ring was then. The controller remembers 32 ticks of it; what is older is taken
+   for the oldest of them. */
 START_TEST(test_late) {
   const int ages[] = {0, 5, 31, 32, 40, 90};
   const double speed = 0.05; /* m/s */

@@ -195,7 +195,8 @@ END_TEST
 
 /* ---- torques ---- */
 
-/* Reported once, when it has lasted for 0.1 s after the fade of the first 20 ticks, which is no clamp; the first tick is one. */
+/* Reported once, when it has lasted for 0.1 s after the fade of the first 20 ticks, which is no clamp; the first tick
+   is one. */
 START_TEST(test_cut) {
   rig r;
   moody_open(&r, 1);

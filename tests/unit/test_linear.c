@@ -1,5 +1,5 @@
-/* The time of every reader is linear in its text: eight times as many rows in eight times as long. Eightfold rows of what is
-   quadratic take 64 times as long; half of that is allowed, for caches and a busy machine. */
+/* The time of every reader is linear in its text: eight times as many rows in eight times as long. Eightfold rows of
+   what is quadratic take 64 times as long; half of that is allowed, for caches and a busy machine. */
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>

@@ -97,8 +97,8 @@ static double time_of(const char *path, size_t points, size_t people) {
   return (double)(clock() - start) / CLOCKS_PER_SEC;
 }
 
-/* 1x and 8x in each direction: a look at all others for every participant, or at all rows for every point, would take 64
-   times as long. */
+/* 1x and 8x in each direction: a look at all others for every participant, or at all rows for every point, would take
+   64 times as long. */
 START_TEST(test_time_is_linear) {
   static const int sizes[][2][2] = {{{1, 6000}, {1, 48000}}, {{500, 4}, {4000, 4}}};
   char path[] = "/tmp/ethd-report-XXXXXX";

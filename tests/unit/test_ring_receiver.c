@@ -75,7 +75,8 @@ START_TEST(test_sensor_faults) {
       if (forgiven > longest) longest = forgiven;
     }
     printf("%s: out of use after %u frames at most, in use again after %u\n", names[kind], worst, longest);
-    /* A stuck sensor differs from its held value first one frame later; saturated and off show where the finger isn't. */
+    /* A stuck sensor differs from its held value first one frame later; saturated and off show where the finger
+       isn't. */
     if (kind != OFF) ck_assert_uint_le(worst, kind == STUCK || kind == SATURATED ? 6 : 5);
     ck_assert_uint_le(longest, 8);
   }

@@ -138,8 +138,8 @@ START_TEST(test_boxes) {
 }
 END_TEST
 
-/* Five chains of different lengths, 10 m apart, and circles between them: each box is that of its own chain, and the level
-   that of its own tree. */
+/* Five chains of different lengths, 10 m apart, and circles between them: each box is that of its own chain, and the
+   level that of its own tree. */
 START_TEST(test_boxes_of_several) {
   enum { CHAINS = 5, MOST = 700 };
   static double p[CHAINS][2 * MOST], disc[CHAINS][3];

@@ -1,5 +1,5 @@
-/* The other sensors of the simulated finger: what a reading holds, how often and how late it comes, and that its error is
-   what it says. */
+/* The other sensors of the simulated finger: what a reading holds, how often and how late it comes, and that its error
+   is what it says. */
 #include <stdlib.h>
 
 #include "ethd/driver.h"

@@ -214,8 +214,8 @@ START_TEST(test_motion_with_friction) {
 }
 END_TEST
 
-/* Two masses without friction: the centre of mass follows the force, the lead swings about where the force holds it, with
-   the reduced mass mu. */
+/* Two masses without friction: the centre of mass follows the force, the lead swings about where the force holds it,
+   with the reduced mass mu. */
 static void check_two_masses(double spring, double damper, double span) {
   ethd__sampled_loop l = {.mass = 0.095, .motor_mass = 0.013, .spring = spring, .damper = damper};
   ethd__bounds_motion motion;

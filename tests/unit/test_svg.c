@@ -444,8 +444,8 @@ static double time_of(int n) {
   return best;
 }
 
-/* Eight times as many points in eight times as long, and half as much again for what grows by a logarithm; looking at the
-   rest of the text for each would take 64 times. */
+/* Eight times as many points in eight times as long, and half as much again for what grows by a logarithm; looking at
+   the rest of the text for each would take 64 times. */
 START_TEST(test_time_is_linear) {
   double one = time_of(8000), eight = time_of(64000);
   ck_assert_msg(eight < 24 * one, "8 times the points took %.3g s, not %.3g s", eight, 8 * one);

@@ -1,5 +1,5 @@
-/* The ring of on-off light barriers: the table against counting by an own geometry, all patterns, what the sensor's decoded
-   centre is worth; the nail's plate. */
+/* The ring of on-off light barriers: the table against counting by an own geometry, all patterns, what the sensor's
+   decoded centre is worth; the nail's plate. */
 #include <stdlib.h>
 
 #include "finger/nail.h"
@@ -82,8 +82,8 @@ START_TEST(test_table) {
 }
 END_TEST
 
-/* Every pattern there is: rows of neighbours that a finger can light give a centre within the ring, toward their middle;
-   all else is refused. */
+/* Every pattern there is: rows of neighbours that a finger can light give a centre within the ring, toward their
+   middle; all else is refused. */
 START_TEST(test_patterns) {
   ethd__zones z;
   ethd__zones_prepare((uint32_t)_i, 3.5e-3, R, F, 1e-4, &z);

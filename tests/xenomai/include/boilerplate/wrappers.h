@@ -1,4 +1,5 @@
-/* Stand-in: two names for a call, the core's and libc's; as in the real one, libc's is a __real_ that not each call has. */
+/* Stand-in: two names for a call, the core's and libc's; as in the real one, libc's is a __real_ that not each call
+   has. */
 #ifndef STANDIN_WRAPPERS_H
 #define STANDIN_WRAPPERS_H
 #ifdef __COBALT__
