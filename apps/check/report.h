@@ -1,4 +1,4 @@
-/* What ethd-check says, section by section. All [main]. */
+/* Prints ethd-check's page, section by section. All [main]. */
 #ifndef ETHD_APPS_CHECK_REPORT_H
 #define ETHD_APPS_CHECK_REPORT_H
 
@@ -7,7 +7,7 @@
 #include "bounds/loops.h"
 #include "ethd/config.h"
 
-/* The setup as it was understood, as a configuration that gives the same setup again. */
+/* Prints the setup as it was understood, as a configuration that gives the same setup again. */
 void ethd__report_setup(const ethd_config *config);
 
 /* What is known of the device; NaN: not known. */
@@ -23,7 +23,8 @@ typedef struct ethd__subject {
   ethd__bounds_felt felt; /* of tracking at the ring; NaN: unknown law or out of reach */
 } ethd__subject;
 
-/* What the device's drivers say: their remarks, and the limits that rule. is_open: the device itself was asked. */
+/* Prints what the device's drivers say: their remarks, and the limits that rule. is_open: the device itself was
+   asked. */
 void ethd__report_drivers(const ethd_config *config, const ethd_driver *driver, void *device, bool is_open);
 
 /* Fills `felt`, and prints what is known. */
@@ -42,7 +43,7 @@ int ethd__report_stop(const ethd__subject *subject);
 int ethd__report_threshold(const ethd__subject *subject);
 int ethd__report_tick(const ethd__subject *subject);
 
-/* "lowpass, cutoff 133.4 Hz" */
+/* Writes the velocity estimator as "lowpass, cutoff 133.4 Hz". */
 void ethd__velocity_text(const ethd_setup *setup, char *out, size_t room);
 
 #endif

@@ -26,19 +26,19 @@ typedef struct ethd__data {
   size_t people_count, points, training, left_out; /* left_out: test taps of participants who aren't analysed */
 } ethd__data;
 
-/* path: a taps.csv of ethd-study; of a grid, only `point` goes into the groups. */
+/* Reads a taps.csv of ethd-study; of a grid, only `point` goes into the groups. */
 ETHD_MUST_CHECK ethd_status ethd__data_read(const char *path, const ethd_plant *plant, size_t point, ethd__data *out,
                                             char message[ETHD_MESSAGE_MAX]);
-/* The same of a sheet, which becomes the data's own. participants: a table whose column `analysed` is 0 for those whose
-   taps are left out; NULL or empty: nobody's are. */
+/* Does the same with a sheet, which becomes the data's own. participants: a table whose column `analysed` is 0 for
+   those whose taps are left out; NULL or empty: no taps are. */
 ETHD_MUST_CHECK ethd_status ethd__data_of(ethd__sheet *sheet, const ethd__sheet *participants, const ethd_plant *plant,
                                           size_t point, ethd__data *out, char message[ETHD_MESSAGE_MAX]);
-/* The same at another point, on the sheet of `whole`, which outlives it. */
+/* Does the same at another point, on the sheet of `whole`, which outlives it. */
 ETHD_MUST_CHECK ethd_status ethd__data_at(const ethd__data *whole, const ethd_plant *plant, size_t point,
                                           ethd__data *out, char message[ETHD_MESSAGE_MAX]);
 void ethd__data_free(ethd__data *data);
 
-/* Copies of the groups' cells; how many. */
+/* Fills copies of the groups' cells, and returns how many there are. */
 size_t ethd__data_cells(const ethd__data *data, ethd__cell out[ETHD_REPORT_CELLS]);
 
 /* A figure of a tap as people read it. */
@@ -65,13 +65,13 @@ enum {
 };
 extern const ethd__quantity ethd__quantities[ETHD_QUANTITIES];
 
-/* Values of the valid taps that have it; out has room for cell.count. */
+/* Fills the values of the valid taps that have the quantity, and returns how many; out has room for cell.count. */
 size_t ethd__group_values(const ethd__group *group, const ethd__quantity *quantity, double *out);
 
-/* Medians of each person's valid taps, by person, NaN without one; freed by the caller. */
+/* Returns the median of each person's valid taps, NaN without any; the caller frees it. */
 double *ethd__group_medians(const ethd__data *data, const ethd__group *group, const ethd__quantity *quantity);
 
-/* The valid taps of one group, or of two as sides 0 and 1; freed by the caller. How many. */
+/* Fills the valid taps of one group, or of two as sides 0 and 1, which the caller frees; returns how many. */
 size_t ethd__group_taps(const ethd__group *a, const ethd__group *b, const ethd__quantity *quantity, ethd__tapped **out);
 
 #endif

@@ -21,21 +21,22 @@ void ethd__html_markup(ethd__html *page, const char *literal);
 /* Appends what was written to another page. */
 void ethd__html_append(ethd__html *page, const char *written, size_t length);
 
-/* printf with %s, %d, %u, %zu, %llu, %g: the format is our markup, each %s is text and escaped. */
+/* Prints like printf with %s, %d, %u, %zu, %llu, %g: the format is our markup, each %s is text and is escaped. */
 void ethd__html_print(ethd__html *page, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Text: &, <, >, quotes as a page needs them, control characters as ?. */
+/* Writes text, with &, <, > and quotes escaped, and control characters as ?. */
 void ethd__html_text(ethd__html *page, const char *text);
 
 void ethd__html_heading(ethd__html *page, const char *id, const char *text);
 
-/* The PNG itself, within the page, with words for those who can't see it. False: it can't be read. */
+/* Puts the PNG itself into the page, with words for those who can't see it. False: it can't be read. */
 bool ethd__html_picture(ethd__html *page, const char *path, const char *caption);
 
-/* Header cells, then rows: each a list that NULL ends. Cells from `numbers` on are set to the right. */
+/* Begins a table with its header cells; rows follow. Each is a list that NULL ends. Cells from `numbers` on are aligned
+   to the right. */
 void ethd__html_table(ethd__html *page, const char *caption, const char *const *header, int numbers);
 void ethd__html_row(ethd__html *page, const char *const *cells, int numbers);
-/* One cell over so many columns: what the rows below it are about. */
+/* Writes one cell over so many columns, which says what the rows below it are about. */
 void ethd__html_span(ethd__html *page, const char *text, int columns);
 void ethd__html_table_end(ethd__html *page);
 

@@ -7,13 +7,13 @@
 
 const ethd__data *ethd__judged_data(const ethd__report *report);
 
-/* The sample's cells are put into `cells`. */
+/* Returns the sample, whose cells are put into `cells`. */
 ethd__sample ethd__judged_sample(const ethd__report *report, ethd__cell cells[ETHD_REPORT_CELLS]);
 
-/* "this study" or the name of the other one. */
+/* Returns "this study", or the name of the other one. */
 const char *ethd__judged_name(const ethd__report *report);
 
-/* Taps beside the study count as simulated. */
+/* Returns whether the sample was measured; taps beside the study count as simulated. */
 bool ethd__judged_measured(const ethd__report *report);
 
 #endif

@@ -11,14 +11,14 @@ typedef struct ethd__recordings {
   size_t count;
 } ethd__recordings;
 
-/* Which such folders there are; none is fine. Exit 1 without memory. */
+/* Finds which such folders there are; there may be none. Exit 1 without memory. */
 void ethd__recordings_find(const ethd__stations *stations, ethd__recordings *out);
 void ethd__recordings_free(ethd__recordings *recordings);
 
-/* Of a row of taps.csv. */
+/* Gives the name that belongs to a row of taps.csv. */
 void ethd__recording_name(const ethd__sheet *sheet, size_t row, char out[ETHD_FILE_NAME_MAX]);
 
-/* The folder of that name, freed by the caller; NULL: there is none. */
+/* Returns the folder of that name, which the caller frees; NULL: there is none. */
 char *ethd__recording_path(const ethd__recordings *recordings, const char *name);
 
 #endif

@@ -20,7 +20,7 @@ typedef enum ethd__leader {
   ETHD_LED_KINDS
 } ethd__leader;
 
-/* What came out, counted for the page's head. */
+/* Results, counted for the page's head. */
 typedef struct ethd__report_counts {
   size_t differences, significant;   /* of strategies, p < 0.05 after Holm's correction */
   size_t verdict[ETHD_TAP_VERDICTS]; /* of the paper's sentences */
@@ -46,16 +46,16 @@ typedef struct ethd__report {
 /* Fills report->led: by the taps' column `hand`, and where the table has none by what the study asked for. */
 void ethd__report_led(ethd__report *report);
 
-/* All of the taps were led so. */
+/* Returns whether the hand was led so in all of the taps. */
 bool ethd__report_only(const ethd__report *report, ethd__leader led);
 
-/* What p values and intervals are about: people, or the assumptions of a simulation. One sentence. */
+/* Returns a sentence that says what p values and intervals are about: people, or the assumptions of a simulation. */
 const char *ethd__report_caveat(const ethd__report *report);
 
-/* People's fingers on a device that isn't the simulated one: its figures were measured, nothing was fitted. */
+/* Returns whether people's fingers tapped on a real device, so that figures were measured and nothing was fitted. */
 bool ethd__report_measured(const ethd__report *report);
 
-/* out/name; exit 1 without memory. */
+/* Returns out/name, which the caller frees; exit 1 without memory. */
 char *ethd__report_path(const ethd__report *report, const char *name);
 
 /* Draws NAME with a script that came with the programs, and puts it on the page. values: the script's but for `out`,
@@ -63,25 +63,26 @@ char *ethd__report_path(const ethd__report *report, const char *name);
 ETHD_MUST_CHECK ethd_status ethd__report_picture(ethd__report *report, const char *script, const char *name,
                                                  const char *caption, const ethd__picture_value *values);
 
-/* "smooth, low" and the like. */
+/* Writes "smooth, low" and the like. */
 const char *ethd__group_label(const ethd__group *group, char out[80]);
 
-/* "12.3 (4.5)", "12.3" of one, "-" of none. */
+/* Writes "12.3 (4.5)"; of one value "12.3", of none "-". */
 const char *ethd__mean_text(const ethd__summary5 *s, int digits, char out[48]);
 const char *ethd__number_text(double value, int digits, char out[32]);
 
-/* Values of a group, summed up. */
+/* Summarises the values of a group. */
 void ethd__group_summary(const ethd__group *group, const ethd__quantity *quantity, ethd__summary5 *out);
 
-/* "1.2 to 3.4", "-" where there is none. */
+/* Writes "1.2 to 3.4", or "-" if there is no interval. */
 const char *ethd__interval_text(ethd__interval interval, int digits, char out[72]);
-/* "0.0312", "< 0.0001", "-" where no test was made. */
+/* Writes "0.0312", "< 0.0001", or "-" if no test was made. */
 const char *ethd__p_text(double p, char out[32]);
 
-/* How far strategies may differ in this quantity, in its unit, and still be called alike; NaN: no margin is set. */
+/* Returns how far strategies may differ in this quantity, in its unit, and still be called alike; NaN: there is no
+   margin. */
 double ethd__report_margin(const ethd__report *report, int quantity);
 
-/* Test taps, and of them the valid ones. */
+/* Returns the number of test taps; *valid becomes that of the valid ones. */
 size_t ethd__data_taps(const ethd__data *data, size_t *valid);
 
 /* Each writes its CSV files and pictures, and its part of the page. */

@@ -12,8 +12,8 @@ typedef struct ethd__answers {
   size_t given;
 } ethd__answers;
 
-/* The table of tests within participants, with its file survey-tests.csv: each question with numbered answers, each two
-   strategies at a speed (Wilcoxon), and all of them where there are more (Friedman). */
+/* Writes the table of tests within participants and its file survey-tests.csv: for each question with numbered answers,
+   each two strategies at a speed (Wilcoxon), and all of them together if there are more (Friedman). */
 ETHD_MUST_CHECK ethd_status ethd__survey_tests(ethd__report *report, const ethd__answers *answers);
 
 #endif

@@ -1,6 +1,5 @@
 #include "run/session.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,16 +7,12 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "record/limits_event.h"
-#include "run/refusal.h"
-#include "run/telemetry.h"
 #include "settings/config_parts.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
-#define HEARTBEAT 0.1 /* s */
-#define PATIENCE 1000 /* waits of 1 ms, or ticks */
-#define FIRST_FINGER 100
+#define PATIENCE 1000    /* waits of 1 ms, or ticks, after which nothing more is expected */
+#define FIRST_FINGER 100 /* such waits for the finger's first reading */
 
 /* ---- time ---- */
 
@@ -50,6 +45,7 @@ void ethd__session_tick(ethd__session *s) {
   ethd__session_poll(s);
 }
 
+/* Lets a millisecond pass, or on a virtual clock a tick. */
 static void pass(ethd__session *s) {
   struct timespec t = {.tv_nsec = 1000000};
   if (s->is_virtual) {
@@ -72,106 +68,9 @@ static bool settle(ethd__session *s) {
   return !s->posted;
 }
 
-static void await_tick(ethd__session *s) {
+void ethd__session_await_tick(ethd__session *s) {
   uint64_t before = ethd_loop_periods(s->loop);
   for (int i = 0; ethd_loop_periods(s->loop) == before && i < PATIENCE && ethd__session_lives(s); i++) pass(s);
-}
-
-/* ---- opening ---- */
-
-static ethd_status open_device(ethd__session *s, const char *folder, char *message) {
-  ethd_error error = {0};
-  const ethd_device_def def = {&s->config->setup,        s->config->settings,
-                               s->config->setting_count, folder ? folder : s->config->folder,
-                               s->config->path,          s->is_virtual};
-  ethd_status status = ethd_device_open(s->config->device, NULL, &def, &s->driver, &s->device, message);
-  if (status) return status;
-  const ethd_limits limits = s->driver->limits(s->device);
-  s->setup = s->config->setup;
-  s->setup.limits = ethd_limits_narrower(&limits, &s->config->setup.limits);
-  const ethd_dynamics dynamics = s->driver->dynamics(s->device);
-  s->setup.dynamics = ethd_dynamics_known(&dynamics, &s->config->setup.dynamics);
-  status = ethd_control_create(&s->setup, &s->control, &error);
-  if (status) ethd_error_text(s->config->path, &error, message);
-  return status;
-}
-
-/* The snapshot goes into the recording's folder unless another path is given. */
-static ethd_status open_snapshot(ethd__session *s, const ethd__session_options *o, char *message) {
-  char *path = o->snapshot ? strdup(o->snapshot) : ethd__path_join(o->record, "snapshot.npy");
-  ethd_status status = path ? ethd__snapshot_open(&s->recorder.snapshot, path, s->setup.period) : ETHD_E_MEMORY;
-  free(path);
-  return status ? ethd__say(message, status, "--snapshot: %s", ethd_status_sentence(status)) : ETHD_OK;
-}
-
-static ethd_status open_recorder(ethd__session *s, const ethd__session_options *o, char *message) {
-  ethd__recorder *r = &s->recorder;
-  ethd_status status = ETHD_OK;
-  r->telemetry = -1;
-  r->keeps = o->keeps;
-  if (o->telemetry) status = ethd__telemetry_open(o->telemetry, o->group, &r->telemetry, message);
-  if (!status && (o->snapshot || o->record)) status = open_snapshot(s, o, message);
-  if (status || !o->record) return status;
-  status = ethd_recording_create(o->record, s->config, o->replace, &r->recording, message);
-  if (status) return status;
-  status = ethd__limits_event(r->recording, &s->config->setup, &s->setup);
-  if (!status) status = ethd__dynamics_event(r->recording, &s->config->setup, &s->setup);
-  if (!status && r->keeps > 1) status = ethd__recorder_thinned(r);
-  return status ? ethd__say(message, status, "%s: %s", o->record, ethd_status_sentence(status)) : ETHD_OK;
-}
-
-static ethd_status refuse_device(const ethd__session *s, ethd_status status, char *message) {
-  const char *why = s->driver->why(s->device);
-  return ethd__say(message, status, "device %s: start: %.*s", s->config->device, ETHD_MESSAGE_MAX / 2,
-                   why[0] ? why : ethd_status_sentence(status));
-}
-
-static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, char *message) {
-  ethd_loop_def def = o->loop;
-  ethd_error error = {0};
-  def.driver = s->driver;
-  def.device = s->device;
-  def.control = s->control;
-  def.period = s->setup.period;
-  def.gap = s->setup.limits.gap;
-  if (def.gap < (double)INFINITY) def.heartbeat = HEARTBEAT;
-  def.clock = o->is_virtual ? &s->clock : NULL;
-  ethd_status status = ethd_loop_create(&def, &s->loop, &error);
-  if (status) {
-    ethd_error_text("the loop", &error, message);
-    return status;
-  }
-  s->recorder.loop = s->loop;
-  ethd__recorder_begin(&s->recorder, def.period);
-  if (o->home) status = s->driver->home(s->device, NULL);
-  if (!status) status = s->driver->start(s->device);
-  if (status) return refuse_device(s, status, message);
-  s->started = true;
-  status = ethd_loop_start(s->loop, &error);
-  if (status) return ethd__start_refused(s->loop, status, &error, message);
-  if (!o->is_virtual) status = ethd__recorder_start(&s->recorder);
-  return status ? ethd__say(message, status, "the recorder: %s", ethd_status_sentence(status)) : ETHD_OK;
-}
-
-ethd_status ethd__session_open(const ethd__session_options *o, ethd__session *s, char message[ETHD_MESSAGE_MAX]) {
-  char left[ETHD_MESSAGE_MAX];
-  memset(s, 0, sizeof *s);
-  s->recorder.telemetry = -1;
-  s->recorder.sink = o->sink;
-  s->is_virtual = o->is_virtual;
-  ethd_status status = o->text ? ethd_config_parse(o->text, strlen(o->text), o->config ? o->config : "the defaults",
-                                                   o->folder, &s->config, message)
-                               : ethd_config_load(o->config, &s->config, message);
-  if (!status) status = open_device(s, o->folder, message);
-  if (!status) status = open_recorder(s, o, message);
-  if (!status) status = open_loop(s, o, message);
-  if (status) {
-    (void)!ethd__session_end(s, left);
-    ethd__session_free(s);
-    return status;
-  }
-  await_tick(s);
-  return ETHD_OK;
 }
 
 bool ethd__session_sees_finger(ethd__session *s) {
@@ -205,10 +104,10 @@ ethd_status ethd__session_enable(ethd__session *s) {
   if (!settle(s)) return ETHD_BUSY;
   if (ethd_loop_armed(s->loop)) {
     ethd_loop_disarm(s->loop);
-    await_tick(s);
+    ethd__session_await_tick(s);
   }
   ethd_status status = ethd_loop_enable(s->loop);
-  if (!status) await_tick(s);
+  if (!status) ethd__session_await_tick(s);
   return status;
 }
 
@@ -219,13 +118,13 @@ void ethd__session_halt(ethd__session *s, bool told) {
   atomic_store(&s->recorder.stopping, 1);
   if (told) {
     ethd_loop_raise(s->loop, ETHD_FAULT_APPLICATION);
-    await_tick(s);
+    ethd__session_await_tick(s);
   }
   setup.limits.speed = 0;
   if (ethd_loop_armed(s->loop) && !ethd__session_post(s, &setup, "set", "limits.speed 0", message))
     for (int i = 0; ethd_loop_armed(s->loop) && i < PATIENCE && ethd__session_lives(s); i++) pass(s);
   ethd_loop_disarm(s->loop);
-  await_tick(s);
+  ethd__session_await_tick(s);
 }
 
 /* ---- ending ---- */

@@ -63,6 +63,9 @@ ETHD_MUST_CHECK ethd_status ethd__session_enable(ethd__session *s);
 /* Takes the controller's events and sends the application's beat; call it more often than every heartbeat. */
 void ethd__session_poll(ethd__session *s);
 
+/* Waits until the loop has made a tick, but no longer than a second. */
+void ethd__session_await_tick(ethd__session *s);
+
 /* Makes one tick of a virtual session. */
 void ethd__session_tick(ethd__session *s);
 

@@ -1,4 +1,4 @@
-/* What all pages of the study's screen show. All [main]. */
+/* Draws what all pages of the study's screen show. All [main]. */
 #ifndef ETHD_SCREEN_DRAW_H
 #define ETHD_SCREEN_DRAW_H
 
@@ -6,14 +6,14 @@
 
 extern const SDL_Color ethd__white, ethd__grey, ethd__green, ethd__red;
 
-/* The walls, the start line, and the finger at x, kept within the free space. seconds < 0: no speed cue; else
-   it runs from the start to the wall as fast as asked for. */
+/* Draws the walls, the start line, and the finger at x, kept within the free space. The speed cue runs from the start
+   to the wall at the commanded speed; seconds < 0: there is none. */
 void ethd__draw_room(ethd__screen *screen, ethd_vec x, double seconds);
 
-/* Where words may begin under the room, px. */
+/* Returns where words may begin under the room, px. */
 double ethd__draw_floor(const ethd__screen *screen);
 
-/* The finger's centre, m: the device's, or the pointer. */
+/* Returns the finger's centre, m: the device's finger, or the pointer. */
 ethd_vec ethd__draw_finger(const ethd__screen *screen);
 
 /* Fits the free space into the window. */

@@ -28,19 +28,19 @@ typedef struct ethd__hand {
   size_t count, written; /* written: from here on all are the last one */
   ethd_vec smooth;
   ethd__hand_event event[ETHD_HAND_EVENTS]; /* a ring */
-  size_t events;                            /* so far */
+  size_t events;                            /* number of events so far */
 } ethd__hand;
 
-/* Stands at x for `seconds` unless it is led. ETHD_E_MEMORY. */
+/* Creates a hand that stays at x for `seconds` unless it is led. ETHD_E_MEMORY. */
 ETHD_MUST_CHECK ethd_status ethd__hand_create(ethd__hand *hand, ethd_vec x, double seconds);
 void ethd__hand_free(ethd__hand *hand);
 
 ethd_path ethd__hand_path(const ethd__hand *hand);
 
-/* The pointer came to x at t, which doesn't fall. */
+/* Says that the pointer came to x at t, which never falls. */
 void ethd__hand_move(ethd__hand *hand, double t, ethd_vec x);
 
-/* Before the step that begins at t, with all events up to t. */
+/* Leads the hand. Called before the step that begins at t, with all events up to t. */
 void ethd__hand_lead(ethd__hand *hand, double t);
 
 #endif

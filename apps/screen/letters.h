@@ -1,4 +1,4 @@
-/* Whether a font has the letters of a study's own words. All [main]. */
+/* Checks whether a font has the letters of a study's own words. All [main]. */
 #ifndef ETHD_SCREEN_LETTERS_H
 #define ETHD_SCREEN_LETTERS_H
 

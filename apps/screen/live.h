@@ -18,7 +18,7 @@ typedef struct ethd__glimpse {
   int32_t reserved;
 } ethd__glimpse;
 
-/* Where the pointer came to, and when. */
+/* Where the pointer came to, and at which instant. */
 typedef struct ethd__led {
   int64_t ns;
   ethd_vec x;
@@ -42,13 +42,13 @@ typedef struct ethd__live {
 ETHD_MUST_CHECK ethd_status ethd__live_start(ethd__live *live, ethd__stage *stage, const ethd__speed *speed,
                                              uint64_t number, ethd_vec x, double seconds);
 
-/* The pointer came to x at that instant of the clock. [main] */
+/* Says that the pointer came to x at that instant of the clock. [main] */
 void ethd__live_lead(ethd__live *live, int64_t ns, ethd_vec x);
 
-/* The newest glimpse; false: the tap is over. [main] */
+/* Gives the newest glimpse; false: the tap is over. [main] */
 bool ethd__live_look(ethd__live *live, ethd__glimpse *out);
 
-/* Ends it, now if need be; then the ticks stand in stage->rows. [main] */
+/* Ends the tap, if it isn't over yet; its ticks are then in stage->rows. [main] */
 ETHD_MUST_CHECK ethd_status ethd__live_join(ethd__live *live);
 
 #endif

@@ -20,7 +20,7 @@ typedef struct ethd__page {
   double below; /* px: paragraphs stand under this line, down at the keys; 0: in the middle of the page */
 } ethd__page;
 
-/* One more paragraph; an empty text, or one too many, is none. */
+/* Adds a paragraph; an empty text, or one more than there is room for, is left out. */
 void ethd__page_add(ethd__page *page, int size, const char *text, SDL_Color colour);
 
 /* Adds its texts to the frame's shapes. */

@@ -2,6 +2,7 @@
 #ifndef ETHD_SCREEN_PLACE_H
 #define ETHD_SCREEN_PLACE_H
 
+#include "screen/console.h"
 #include "screen/screen.h"
 #include "study/session.h"
 #include "study/station.h"
@@ -20,11 +21,11 @@ typedef struct ethd__screen_place {
   ethd__screen screen;
   ethd__console console;
   ethd__sitting sitting;
-  ethd__source device; /* people's; its self is NULL without */
+  ethd__source device; /* the one with people's fingers; without it `self` is NULL */
   bool has_screen;
 } ethd__screen_place;
 
-/* Ends the program on bad input, a device or a window that can't be had: then nothing moves. */
+/* Opens everything. Ends the program, before anything moves, on bad input or when device or window can't be opened. */
 void ethd__place_open(const ethd__place_options *options, ethd__screen_place *out);
 
 /* Runs until all is done or somebody stops it; the device is at rest and closed when this returns. */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "screen/console.h"
 #include "screen/draw.h"
 #include "screen/letters.h"
 #include "text/error_text.h"

@@ -10,12 +10,12 @@
 #include "study/desk.h"
 #include "study/front.h"
 
-#define ETHD_SCREEN_NEAR 0.004 /* m from a place that still count as there */
+#define ETHD_SCREEN_NEAR 0.004 /* m: a finger so near to a place counts as there */
 
 typedef struct ethd__screen {
   ethd__window window;
   ethd__desk *desk;
-  const ethd__source *device; /* has a finger of its own; NULL: the pointer is it, on the simulated device */
+  const ethd__source *device; /* has a finger of its own; NULL: the pointer is the finger, on the simulated device */
   const ethd__protocol *protocol;
   ethd__live *live; /* the tap that the pointer leads now, NULL: none */
   ethd__room frame;
@@ -30,43 +30,43 @@ typedef struct ethd__screen {
   uint64_t late; /* ticks */
 } ethd__screen;
 
-/* device: where the finger and the taps come from; NULL: the mouse. It outlives the screen. */
+/* Opens the screen. device: where the finger and the taps come from; NULL: the mouse. It outlives the screen. */
 ETHD_MUST_CHECK ethd_status ethd__screen_open(ethd__screen *screen, ethd__desk *desk, const ethd__source *device,
                                               int width, int height, char message[ETHD_MESSAGE_MAX]);
 
-/* The window, its display and the scale, in words for the study's record. */
+/* Describes the window, its display and the scale, in words for the study's record. */
 void ethd__screen_describe(const ethd__screen *screen, char out[ETHD_MESSAGE_MAX]);
 
-/* Taps with the mouse. */
+/* Returns the source of taps with the mouse. */
 ethd__source ethd__screen_source(ethd__screen *screen);
 
-/* Shows a device's taps while they are done. */
+/* Returns a watcher that shows a device's taps while they are done. */
 ethd__watcher ethd__screen_watcher(ethd__screen *screen);
 ethd__front ethd__screen_front(ethd__screen *screen);
 
-/* The last page; then how long frames took, as a line on stdout. */
+/* Shows the last page, then prints a line that says how long frames took. */
 void ethd__screen_end(ethd__screen *screen, bool over);
 void ethd__screen_close(ethd__screen *screen);
 
 /* ---- within the screen ---- */
 
-/* A frame begins; false once somebody wants to stop. */
+/* Begins a frame; returns false once somebody wants to stop. */
 bool ethd__screen_begin(ethd__screen *screen);
 
 /* Shows the page frame by frame until one of the keys is pressed (SDLK_.., 0 ends the list) or somebody stops, which
    gives SDLK_ESCAPE. */
 int ethd__screen_page(ethd__screen *screen, const ethd__page *page, const int *keys);
 
-/* Words of the screen, in the study's language. */
+/* Returns words of the screen, in the study's language. */
 const char *ethd__screen_words(const ethd__screen *screen, ethd__phrase_name name);
 
-/* Whether the key is in the list, which 0 ends. */
+/* Returns whether the key is in the list, which 0 ends. */
 bool ethd__key_is_one_of(int key, const int *keys);
 
-/* The pointer has moved; a tap that it leads is told so. */
+/* Tells the tap that the pointer leads, if there is one, that the pointer has moved. */
 void ethd__screen_moved(void *screen, int64_t ns);
 
-/* A line that somebody types under the page's words. True: Enter ended it. False: Escape or F2, which stands in
+/* Lets somebody type a line under the page's words. True: Enter ended it. False: Escape or F2 did, which is in
    window.key, or somebody stopped. */
 bool ethd__screen_type(ethd__screen *screen, const ethd__page *page, char *line, size_t room);
 
@@ -74,7 +74,7 @@ bool ethd__screen_type(ethd__screen *screen, const ethd__page *page, char *line,
 ethd__wish ethd__screen_meet(void *screen, const ethd__meeting *meeting);
 int ethd__screen_ask(void *screen, const ethd__asked *asked);
 
-/* The room between taps: what became of the last one, and what comes next. */
+/* Shows the room between taps: how the last one was, and what comes next. */
 void ethd__screen_waiting(ethd__screen *screen, ethd_vec finger, double seconds);
 
 /* Their pages; `typed` is what stands on the line so far, `text` room for words. */

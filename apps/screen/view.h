@@ -1,4 +1,4 @@
-/* What stands where: metres of R_0 and pixels of the window, the free space and what may not leave it.
+/* Where things are drawn: metres of R_0 and pixels of the window, the free space and what may not leave it.
 
       +=====================+   thick green contour: four walls
       |                     |
@@ -18,14 +18,14 @@ typedef struct ethd__room {
   double finger;                   /* m: radius of the circle */
 } ethd__room;
 
-/* The wall at x = wall on the left, the start at x = start on its right, about y = height. */
+/* Returns a room with the wall at x = wall on the left and the start at x = start on its right, centred on y. */
 ethd__room ethd__room_of(double wall, double start, double y, double finger, int width, int height);
 
-/* Where a point is drawn, px, y down; and back. */
+/* Return where a point is drawn, px, y down; which point a pixel is. */
 ethd_vec ethd__room_pixel(const ethd__room *frame, ethd_vec x);
 ethd_vec ethd__room_point(const ethd__room *frame, double px, double py);
 
-/* The circle's centre for a finger at x: it never leaves the free space, wherever finger and ring go. */
+/* Returns the circle's centre for a finger at x, which never leaves the free space, wherever finger and ring go. */
 ethd_vec ethd__room_avatar(const ethd__room *frame, ethd_vec x);
 
 #endif

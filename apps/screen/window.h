@@ -11,7 +11,7 @@
 #include "ethd/config.h"
 #include "ethd/loop.h"
 
-#define ETHD_SHAPES_MAX 64 /* of a frame; what is more isn't drawn */
+#define ETHD_SHAPES_MAX 64 /* of a frame; further ones aren't drawn */
 
 enum { ETHD_TEXT_SMALL, ETHD_TEXT_LARGE, ETHD_TEXTS };
 
@@ -46,24 +46,25 @@ typedef struct ethd__window {
   size_t changed_count;
 } ethd__window;
 
-/* Without a display, a font: one line that says what is missing. */
+/* Opens a window. Without a display or a font the message says in one line what is missing. */
 ETHD_MUST_CHECK ethd_status ethd__window_open(ethd__window *window, const char *title, int width, int height,
                                               char message[ETHD_MESSAGE_MAX]);
 void ethd__window_close(ethd__window *window);
 
-/* Texts are so much smaller from here on: 1 as the window's height asks for, 0.3 at least. */
+/* Makes texts so much smaller from here on: 1 is the size that the window's height asks for, 0.3 the least. */
 void ethd__window_shrink(ethd__window *window, double factor);
 
 /* Waits until a frame is due, takes what keys and pointer did, and begins with black. */
 void ethd__window_begin(ethd__window *window);
 
-/* Shows it. */
+/* Shows the frame. */
 void ethd__window_end(ethd__window *window);
 
 void ethd__window_box(ethd__window *window, double x, double y, double width, double height, SDL_Color colour);
 void ethd__window_disc(ethd__window *window, double x, double y, double radius, SDL_Color colour);
 
-/* Centred at x, its top at y, broken into lines where the window is too narrow; nothing for an empty text. */
+/* Adds a text, centred at x with its top at y, broken into lines where the window is too narrow; an empty text adds
+   nothing. */
 void ethd__window_text(ethd__window *window, int size, double x, double y, const char *text, SDL_Color colour);
 
 /* Ends the list: draws what changed since the last one, or everything if it was covered, and leaves the boxes of it

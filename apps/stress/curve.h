@@ -19,10 +19,10 @@ typedef struct ethd__curve {
   double value;                /* cutoff, Hz, or window, samples */
 } ethd__curve;
 
-/* K, N/m, and B, Ns/m, on the boundary at 0 < th, rad. */
+/* Gives K, N/m, and B, Ns/m, on the boundary at 0 < th, rad. */
 void ethd__curve_at(const ethd__curve *curve, double th, double *stiffness, double *damping);
 
-/* The curve's end: the smallest th > 0 with K = 0, where a free ring's damping is at its largest. */
+/* Returns the curve's end: the smallest th > 0 with K = 0, where a free ring's damping is at its largest. */
 double ethd__curve_end(const ethd__curve *curve);
 
 #endif

@@ -1,4 +1,5 @@
-/* The library's whole step against an exact mass: no integrator stands between formula and measurement.
+/* Runs the library's whole step against an exactly computed mass, so that no integrator stands between formula and
+   measurement.
 
       push                          arm parallel, links at 90 and 0 degrees: x is driven by joint 1
         |   |//////  wall           alone, with the inertia m L^2
@@ -19,9 +20,9 @@ typedef struct ethd__stress_rig {
   ethd_setup setup; /* changed before start */
   double mass;      /* kg at the ring, both joints alike */
   double gap;       /* m to the wall at the start */
-  double motor_mass, spring,
-      damper;      /* kg of it on the motor's side, N/m, Ns/m of a transmission that gives way; 0: rigid.
-                                        With one the simulator's arm moves, and the push acts on the motor's side, as does */
+  /* A transmission that gives way: kg of the mass on the motor's side, N/m, Ns/m; 0: rigid. With one the simulator's arm
+     moves, and push and friction act on the motor's side. */
+  double motor_mass, spring, damper;
   double friction; /* N at the ring, Coulomb's */
   int delay;       /* ticks from measurement to torque */
   bool measured;   /* 1: joint speeds are measured, 0: the setup estimates them */
@@ -43,7 +44,7 @@ typedef struct ethd__stress_rig {
   ethd_trace trace; /* of the last tick */
 } ethd__stress_rig;
 
-/* The default setup without tracking, without friction, `gap` m from the wall (d_re; < 0: inside). */
+/* Opens a rig with the default setup without tracking and friction, `gap` m from the wall (d_re; < 0: inside). */
 void ethd__stress_rig_open(ethd__stress_rig *rig, double mass, double gap);
 
 /* Sets a number of a setup by its name; exits where that is refused. */
@@ -55,31 +56,31 @@ void ethd__stress_rig_velocity(ethd__stress_rig *rig, ethd_velocity_method metho
 /* Brakes with `damping` Ns/m until the ring is slower than v_th m/s, however long and deep that gets. */
 void ethd__stress_rig_brakes(ethd__stress_rig *rig, double damping, double v_th);
 
-/* Controller and ring at its place, `speed` m/s into the wall. Exits when the setup is refused. */
+/* Creates the controller and starts the ring with `speed` m/s into the wall. Exits when the setup is refused. */
 void ethd__stress_rig_start(ethd__stress_rig *rig, double speed);
 void ethd__stress_rig_close(ethd__stress_rig *rig);
 
-/* From now on this push acts, and the delayed torques already balance it (start does it for rig->push). */
+/* Lets this push act from now on; the delayed torques already balance it (start does so for rig->push). */
 void ethd__stress_rig_push(ethd__stress_rig *rig, ethd_vec push);
 
-/* One tick: step, then the mass moves on for a period. */
+/* Runs one tick: a step, then the mass moves for a period. */
 const ethd_trace *ethd__stress_rig_tick(ethd__stress_rig *rig);
 
-/* The two halves of a tick. A move without a step before it is a lost tick: the torque stays. */
+/* Run the two halves of a tick. A move without a step before it is a lost tick, in which the torque stays. */
 const ethd_trace *ethd__stress_rig_step(ethd__stress_rig *rig);
 void ethd__stress_rig_move(ethd__stress_rig *rig);
 
-/* A tick's sense as the rig stands. */
+/* Returns a tick's sense by the rig's present state. */
 ethd_sense ethd__stress_rig_sense(const ethd__stress_rig *rig);
 
-/* How far and how fast the ring is along n, m and m/s: joint 1's angle times L. */
+/* Return how far and how fast the ring is along n, m and m/s: joint 1's angle times L. */
 double ethd__stress_rig_depth(const ethd__stress_rig *rig);
 double ethd__stress_rig_speed(const ethd__stress_rig *rig);
 
-/* How a swing grows, ln per tick: a pair of modes z, z* of x_k, the `order`-th differences of the
-   motion, has x_k^2 - x_k+1 x_k-1 proportional to |z|^2k exactly, whatever its phase (of one real mode
-   it is 0, and the motion itself is measured). From tick `settle` on over `span` ticks; INFINITY as soon
-   as a difference is over `ceiling` m, the mean so far when they are below `floor` m. */
+/* Measures how a swing grows, ln per tick. For a pair of modes z, z* of x_k, the `order`-th differences of the motion,
+   x_k^2 - x_k+1 x_k-1 is proportional to |z|^2k exactly, whatever the phase is (for one real mode it is 0, and the
+   motion itself is measured). It is measured from tick `settle` on over `span` ticks: INFINITY as soon as a difference
+   is over `ceiling` m, the mean so far once differences are below `floor` m. */
 typedef struct ethd__swing {
   int order, settle, span;
   double floor, ceiling;
@@ -87,7 +88,7 @@ typedef struct ethd__swing {
 
 double ethd__stress_rig_growth(ethd__stress_rig *rig, const ethd__swing *swing);
 
-/* A half-plane scene; exits without memory. */
+/* Returns a scene of one half-plane; exits without memory. */
 ethd_scene *ethd__stress_rig_wall(double c);
 
 #endif

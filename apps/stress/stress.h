@@ -1,4 +1,4 @@
-/* Numerical stress with analytic answers: what its tests share.
+/* What the tests of numerical stress, which have analytic answers, share.
 
    A test measures the library's own code and compares the figure with one that it works out from a formula. Results
    with the same words make one line on the terminal, the worst of them; the CSV holds them all. */
@@ -36,15 +36,15 @@ typedef struct ethd__stress {
   void (*run)(ethd__stress_log *log);
 } ethd__stress;
 
-/* |measured - analytic| <= share |analytic|. Words are printf's. */
+/* Logs a result that must keep |measured - analytic| <= share |analytic|. Words are printf's. */
 void ethd__stress_near(ethd__stress_log *log, const char *unit, double measured, double analytic, double share,
                        const char *what, ...) __attribute__((format(printf, 6, 7)));
 
-/* |measured - analytic| <= distance. */
+/* Logs a result that must keep |measured - analytic| <= distance. */
 void ethd__stress_within(ethd__stress_log *log, const char *unit, double measured, double analytic, double distance,
                          const char *what, ...) __attribute__((format(printf, 6, 7)));
 
-/* measured <= bound. */
+/* Logs a result that must keep measured <= bound. */
 void ethd__stress_bound(ethd__stress_log *log, const char *unit, double measured, double bound, const char *what, ...)
     __attribute__((format(printf, 5, 6)));
 

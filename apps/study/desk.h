@@ -19,13 +19,13 @@ typedef struct ethd__desk {
   bool seated, open;
 } ethd__desk;
 
-/* Checks everything that the first tap would stumble over: strategies, speeds, gains, the wall, the
-   movements. finger: one recorded movement, or NULL for what the protocol says. */
+/* Opens a desk, and checks everything that could make the first tap fail: strategies, speeds, gains, the wall, the
+   movements. finger: one recorded movement; NULL: what the protocol says. */
 ETHD_MUST_CHECK ethd_status ethd__desk_open(const ethd__protocol *protocol, const ethd__loaded *loaded,
                                             const char *finger, ethd__desk *out, char message[ETHD_MESSAGE_MAX]);
 void ethd__desk_close(ethd__desk *desk);
 
-/* From here on with the gains of this point of the grid. */
+/* Uses the gains of this point of the grid from here on. */
 void ethd__desk_point(ethd__desk *desk, size_t point);
 
 /* Prepares everything that a tap needs but the finger: the person's study and the strategy's stage. */

@@ -1,10 +1,10 @@
-/* The README.md that every folder of a study brings along. */
+/* The README.md in every folder of a study. */
 #ifndef ETHD_STUDY_DICTIONARY_H
 #define ETHD_STUDY_DICTIONARY_H
 
 #include "study/columns.h"
 
-/* Freed by the caller; NULL: no memory. [main] */
+/* Returns its text, which the caller frees; NULL: no memory. [main] */
 char *ethd__dictionary(const ethd__table_scope *scope);
 
 /* The survey's questions, our own words for what the paper asks; and the same with their answers as one text. */

@@ -1,4 +1,4 @@
-/* A study's folder: what was asked for, on which device, by which program. All [main].
+/* A study's folder holds what was asked for, on which device, and by which program. All [main].
 
      study.ini      the study file, as it was read
      config.ini     the controller's configuration; scene.scene its walls; device.plant the simulated device
@@ -27,7 +27,7 @@
 #define ETHD_STUDY_DEVICE_FOLDER "device.folder"
 #define ETHD_STUDY_INPUT_MAX ((size_t)1 << 24) /* bytes of an input */
 
-/* The device that the protocol names. Exit 2 on a bad configuration or plant. */
+/* Loads the device that the protocol names. Exit 2 on a bad configuration or plant. */
 void ethd__folder_device(const ethd__protocol *protocol, ethd__loaded *out);
 
 /* What a folder is made of. */
@@ -47,25 +47,26 @@ ETHD_MUST_CHECK ethd_status ethd__folder_make(const char *folder, const ethd__fo
 typedef struct ethd__folder {
   char *path;
   char *finger;       /* the movement for all hands, or the folder of movements; NULL: none */
-  char *device;       /* where relative paths of [device] start, NULL: nothing of the kind is written down */
+  char *device;       /* where relative paths of [device] start; NULL: the folder doesn't say */
   uint32_t simulated; /* participants of a simulation, as the protocol then has them; 0: a session */
   ethd__protocol protocol;
   ethd__loaded loaded;
   char hash[ETHD_SHA256_TEXT];
 } ethd__folder;
 
-/* Back from the folder's own files alone, without the device: `loaded` is empty. */
+/* Reads a folder by its own files alone, without the device: `loaded` is empty. */
 ETHD_MUST_CHECK ethd_status ethd__folder_read(const char *folder, ethd__folder *out, char message[ETHD_MESSAGE_MAX]);
-/* With the device. Exit 2 on a bad configuration or plant, and without `plugins` on a configuration that needs one. */
+/* Reads a folder and loads its device. Exit 2 on a bad configuration or plant, and without `plugins` on a configuration
+   that needs one. */
 ETHD_MUST_CHECK ethd_status ethd__folder_open(const char *folder, bool plugins, ethd__folder *out,
                                               char message[ETHD_MESSAGE_MAX]);
 void ethd__folder_close(ethd__folder *folder);
 
-/* SHA-256 of the folder's inputs, one after another. */
+/* Gives the SHA-256 of the folder's inputs, one after another. */
 ETHD_MUST_CHECK ethd_status ethd__folder_hash(const char *folder, char out[ETHD_SHA256_TEXT],
                                               char message[ETHD_MESSAGE_MAX]);
 
-/* folder/name; exit 1 without memory. */
+/* Returns folder/name, which the caller frees; exit 1 without memory. */
 char *ethd__folder_path(const char *folder, const char *name);
 
 #endif

@@ -1,4 +1,4 @@
-/* What participant and experimenter see and say: the seam for a screen. All [main]. */
+/* What participant and experimenter see and say, whether at a terminal or on a screen. All [main]. */
 #ifndef ETHD_STUDY_FRONT_H
 #define ETHD_STUDY_FRONT_H
 
@@ -6,8 +6,8 @@
 #include "study/source.h"
 
 typedef enum ethd__wish {
-  ETHD_WISH_GO,    /* on with the next tap */
-  ETHD_WISH_AGREE, /* on, with the participant's consent */
+  ETHD_WISH_GO,    /* go on with the next tap */
+  ETHD_WISH_AGREE, /* go on, with the participant's consent */
   ETHD_WISH_NOTE,  /* write the words down, ask again */
   ETHD_WISH_PAUSE, /* write down that a pause begins, ask again; GO ends it */
   ETHD_WISH_ABORT, /* this participant wants no more, or doesn't agree to begin */
@@ -20,7 +20,7 @@ typedef enum ethd__wish {
 typedef struct ethd__meeting {
   const char *participant;
   bool handed_over; /* somebody else tapped before: the experimenter has to be there */
-  bool consented;   /* in a sitting before */
+  bool consented;   /* in an earlier sitting */
   bool can_undo;    /* somebody was ended in this sitting */
 } ethd__meeting;
 
@@ -34,37 +34,26 @@ typedef struct ethd__asked {
   char *words;                            /* room for ETHD_MESSAGE_MAX bytes of an answer in words */
 } ethd__asked;
 
-/* What `ask` says, beside 1 to 9 (1: `words` holds the answer, where words are asked for) and ETHD_ANSWER_NONE; any of
-   these two confirms. */
+/* What `ask` returns besides 1 to 9 (1: `words` holds the answer, if words are asked for) and ETHD_ANSWER_NONE, both of
+   which also confirm. */
 enum { ETHD_ANSWER_BACK = -2, ETHD_ANSWER_STOP = -3, ETHD_ANSWER_NOBODY = -4 };
 
 typedef struct ethd__front {
   void *self;
-  /* Before a participant's first tap in this sitting: AGREE where consent was asked for and given, GO where nothing was
-     asked, ABORT, UNDO, STOP. */
+  /* Called before a participant's first tap in this sitting. Returns AGREE if consent was asked for and given, GO if
+     nothing was asked, ABORT, UNDO or STOP. */
   ethd__wish (*meet)(void *self, const ethd__meeting *meeting);
-  /* rest: it is time for one. */
+  /* Announces a block; `rest` says that it is time for one. */
   void (*block)(void *self, const char *participant, const ethd__turn *turn, bool rest);
-  /* Judged at once: valid of wanted so far; a training tap has no number wanted: 0. */
+  /* Tells how the tap was: `valid` of `wanted` taps are done so far; for training taps `wanted` is 0. */
   void (*verdict)(void *self, const char *participant, const ethd__taken *taken, uint32_t valid, uint32_t wanted);
-  /* Before each tap. words: of a note. */
+  /* Called before each tap. `words` gets the words of a note. */
   ethd__wish (*wish)(void *self, char words[ETHD_MESSAGE_MAX]);
-  /* The device has stopped itself. True: somebody has seen to it, and it may go on. */
+  /* Says that the device has stopped itself. True: somebody has seen to it, and it may go on. */
   bool (*stopped)(void *self, const char *why);
-  /* An answer, ETHD_ANSWER_BACK to the question before, ETHD_ANSWER_STOP, or ETHD_ANSWER_NOBODY: nobody can be asked
-     here. */
+  /* Asks a question. Returns an answer, ETHD_ANSWER_BACK to the question before, ETHD_ANSWER_STOP, or
+     ETHD_ANSWER_NOBODY if nobody can be asked here. */
   int (*ask)(void *self, const ethd__asked *asked);
 } ethd__front;
-
-/* What tells the participant how a tap was, and what to do. [any] */
-ethd__phrase_name ethd__advice(ethd__reason reason);
-
-/* Lines on stdout, commands and answers on stdin when `ask`. */
-typedef struct ethd__console {
-  const ethd__protocol *protocol;
-  bool ask, quiet, ended, paused;
-} ethd__console;
-
-ethd__front ethd__console_front(ethd__console *console);
 
 #endif

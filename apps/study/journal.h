@@ -29,24 +29,24 @@ typedef struct ethd__journal {
   bool cut;        /* a torn line was cut off */
 } ethd__journal;
 
-/* A new file, which must not be there; locked against other programs. */
+/* Creates a new journal, whose file must not exist, and locks it against other programs. */
 ETHD_MUST_CHECK ethd_status ethd__journal_create(const char *path, ethd__journal *out, char message[ETHD_MESSAGE_MAX]);
 
-/* To go on; locked likewise. */
+/* Opens a journal to go on with it, and locks it likewise. */
 ETHD_MUST_CHECK ethd_status ethd__journal_open(const char *path, ethd__journal *out, char message[ETHD_MESSAGE_MAX]);
 
 /* Opens the journal for reading only: lines that come later are missing, nothing is cut or locked. */
 ETHD_MUST_CHECK ethd_status ethd__journal_read(const char *path, ethd__journal *out, char message[ETHD_MESSAGE_MAX]);
 
-/* The same from text, which becomes the journal's own; `name` stands for the file. */
+/* Reads a journal from text, which becomes the journal's own; messages call it `name`. */
 ETHD_MUST_CHECK ethd_status ethd__journal_parse(char *text, size_t length, const char *name, ethd__journal *out,
                                                 char message[ETHD_MESSAGE_MAX]);
 
-/* On failure the file is as it was. `text` has no line ends. */
+/* Appends a line; `text` has no line ends. On failure the file is as it was. */
 ETHD_MUST_CHECK ethd_status ethd__journal_append(ethd__journal *journal, const char *kind, const char *text,
                                                  char message[ETHD_MESSAGE_MAX]);
 
-/* The same line into another file, which is to be a journal. */
+/* Writes such a line into another file, which will be a journal. */
 void ethd__journal_print(FILE *file, const char *kind, const char *text);
 
 void ethd__journal_close(ethd__journal *journal);

@@ -20,7 +20,7 @@ typedef struct ethd__study_block {
   size_t strategy, speed; /* of the protocol */
 } ethd__study_block;
 
-/* How many were written. */
+/* Fills a participant's blocks in order, and returns how many there are. */
 size_t ethd__order_of(const ethd__protocol *protocol, uint32_t participant, ethd__study_block out[ETHD_STUDY_BLOCKS]);
 
 #endif

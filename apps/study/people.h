@@ -9,13 +9,13 @@
 
 #include "ethd/sim.h"
 
-/* Key of all random numbers of this person's taps. */
+/* Returns the key of all random numbers of this person's taps. */
 uint64_t ethd__person_seed(uint64_t seed, uint32_t person);
 
-/* A whole number below `count` for the person's draw number `index`. */
+/* Returns a whole number below `count` for the person's draw number `index`. */
 uint32_t ethd__person_below(uint64_t seed, uint32_t person, uint32_t index, uint32_t count);
 
-/* The plant as it is with this person's finger and hand in it. */
+/* Returns the plant with this person's finger and hand. */
 ethd_plant ethd__person_plant(const ethd_plant *plant, uint64_t seed, uint32_t person, double between,
                               double hand_spread);
 

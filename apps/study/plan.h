@@ -8,7 +8,7 @@
 
 #define ETHD_STUDY_PLANNED 10000u /* participants whose orders are printed at most */
 
-/* orders.csv. */
+/* Writes orders.csv. */
 void ethd__plan_table(FILE *file, const ethd__protocol *protocol);
 
 /* For people: each participant's order, the balance at every number of participants, and a warning where the study's
@@ -16,7 +16,7 @@ void ethd__plan_table(FILE *file, const ethd__protocol *protocol);
    often the last, and as often directly behind each other one. */
 void ethd__plan_print(FILE *file, const ethd__protocol *protocol);
 
-/* Whether the first `people` participants are balanced. */
+/* Returns whether the first `people` participants are balanced. */
 bool ethd__plan_balanced(const ethd__protocol *protocol, uint32_t people);
 
 #endif

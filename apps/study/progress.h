@@ -55,25 +55,25 @@ typedef struct ethd__session_progress {
   bool hand[ETHD_HAND_SOURCES]; /* of the session; of several stations, of each */
 } ethd__session_progress;
 
-/* Nothing is done yet. Refuses more than ETHD_STUDY_SESSION_PEOPLE participants. */
+/* Begins with nothing done. Refuses more than ETHD_STUDY_SESSION_PEOPLE participants. */
 ETHD_MUST_CHECK ethd_status ethd__progress_begin(const ethd__protocol *protocol, ethd__session_progress *out,
                                                  char message[ETHD_MESSAGE_MAX]);
 void ethd__progress_free(ethd__session_progress *progress);
 
-/* One line of the journal. False: it is no line of this study. */
+/* Takes one line of the journal. False: it is no line of this study. */
 bool ethd__progress_take(ethd__session_progress *progress, const char *kind, const char *text);
 
-/* The words that answer this block's question; "": none do. [any] */
+/* Returns the words that answer this block's question; "": there are none. [any] */
 const char *ethd__progress_words(const ethd__session_progress *progress, const ethd__progress_of *at, size_t question);
 
-/* All of a journal, of which `hash` is the study's; refuses another study's, and lines that aren't its own. */
+/* Takes a whole journal; `hash` is the study's. Refuses the journal of another study, and lines that aren't its own. */
 ETHD_MUST_CHECK ethd_status ethd__progress_read(const ethd__journal *journal, const char *hash,
                                                 ethd__session_progress *progress, char message[ETHD_MESSAGE_MAX]);
 
-/* A block that needs no more taps. [any] */
+/* Returns whether a block needs no more taps. [any] */
 bool ethd__block_over(const ethd__protocol *protocol, const ethd__study_block *block, uint32_t taken, uint32_t valid);
 
-/* A participant whose blocks are all over. */
+/* Returns whether all blocks of a participant are over. */
 bool ethd__participant_over(const ethd__session_progress *progress, uint32_t person);
 
 #endif

@@ -80,16 +80,16 @@ typedef struct ethd__protocol {
 
 ETHD_MUST_CHECK ethd_status ethd__protocol_load(const char *path, ethd__protocol *out, char message[ETHD_MESSAGE_MAX]);
 
-/* The same from text; `name` stands for the file. */
+/* Does the same with text, which messages call `name`. */
 ETHD_MUST_CHECK ethd_status ethd__protocol_parse(const char *text, size_t length, const char *name, const char *folder,
                                                  ethd__protocol *out, char message[ETHD_MESSAGE_MAX]);
 
 void ethd__protocol_free(ethd__protocol *protocol);
 
-/* Combinations of the grid, 1 without one. */
+/* Returns the number of combinations of the grid, 1 without one. */
 size_t ethd__protocol_points(const ethd__protocol *protocol);
 
-/* Value of an axis at a combination; the last axis runs fastest. */
+/* Returns the value of an axis at a combination; the last axis varies fastest. */
 const char *ethd__protocol_value(const ethd__protocol *protocol, size_t point, size_t axis);
 
 #endif

@@ -1,4 +1,4 @@
-/* The keys of a study file, one at a time. */
+/* Reads the keys of a study file, one at a time. */
 #ifndef ETHD_STUDY_PROTOCOL_KEYS_H
 #define ETHD_STUDY_PROTOCOL_KEYS_H
 
@@ -13,13 +13,13 @@ typedef struct ethd__entry {
   char *message;
 } ethd__entry;
 
-/* "file:line: section.key: ..."; returns `status`. */
+/* Writes "file:line: section.key: ..." and returns `status`. */
 ethd_status ethd__entry_refuse(const ethd__entry *e, ethd_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 ETHD_MUST_CHECK ethd_status ethd__entry_set(const ethd__entry *e);
 
-/* Whether study files have such a section. */
+/* Returns whether study files have such a section. */
 bool ethd__entry_section(const char *section);
 
 void ethd__word_list_free(ethd__word_list *words);

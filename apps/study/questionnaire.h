@@ -36,19 +36,19 @@ size_t ethd__question_count(const ethd__questionnaire *q);
 size_t ethd__answer_count(const ethd__question *question);
 bool ethd__question_is_text(const ethd__question *question);
 
-/* The words of an answer, from 1; its number where it has none. [any] */
+/* Writes the words of an answer, which counts from 1; its number if it has none. [any] */
 void ethd__answer_words(const ethd__question *question, int answer, char *out, size_t room);
 
-/* Words of the screen: the study's own or the default. [any] */
+/* Returns words of the screen: the study's own or the default. [any] */
 const char *ethd__phrase_of(const ethd__questionnaire *q, ethd__phrase_name name);
 
-/* The text of a key of [survey], [pages] or [words]; NULL: there is no such key. */
+/* Returns where the text of a key of [survey], [pages] or [words] is; NULL: there is no such key. */
 char **ethd__questionnaire_at(ethd__questionnaire *q, const char *section, const char *key);
 
-/* The paper's questions, in our own words, where the study has none. False: no memory. */
+/* Puts in the paper's questions, in our own words, if the study has none. False: no memory. */
 bool ethd__questionnaire_fill(ethd__questionnaire *q);
 
-/* A question that has too few or too many answers, or none before it; -1: all is well. *what says it. */
+/* Returns a question that has too few or too many answers, or none before it, and *what says which; -1: all is well. */
 int ethd__questionnaire_fault(const ethd__questionnaire *q, const char **what);
 
 void ethd__questionnaire_free(ethd__questionnaire *q);

@@ -6,11 +6,11 @@
 
 #define ETHD_STUDY_ID_MAX 16
 
-/* P01, P02, .. with as many digits as the number of participants needs, two at least. */
+/* Writes P01, P02, .. with as many digits as the number of participants needs, two at least. */
 void ethd__participant_id(const ethd__protocol *protocol, uint32_t person, char out[ETHD_STUDY_ID_MAX]);
 
-/* The row of taps.csv, its cells as ethd__table_header has them, without its line end; freed by the caller, NULL: no
-   memory. */
+/* Returns the row of taps.csv, its cells as ethd__table_header has them, without its line end. The caller frees it;
+   NULL: no memory. */
 char *ethd__tap_row(const ethd__protocol *protocol, const ethd__taken *taken);
 
 /* The cells of a row of taps.csv that a resumed session and the table of participants need. */
@@ -22,13 +22,13 @@ typedef struct ethd__tap_key {
   char utc[ETHD_UTC_MAX];
 } ethd__tap_key;
 
-/* A row of an earlier version, which lacks the last two cells: by_ring and by_finger. */
+/* Returns whether this is a row of an earlier version, which lacks the last two cells, by_ring and by_finger. */
 bool ethd__tap_row_is_short(const char *row);
 
-/* False when it is no row of this study. */
+/* Reads them; false: it is no row of this study. */
 bool ethd__tap_row_key(const char *row, ethd__tap_key *out);
 
-/* The next cell of a row whose cells need no quotes; false at the end of the cells. Advances *row past the cell. */
+/* Takes the next cell of a row whose cells need no quotes, and advances *row past it; false at the end of the cells. */
 bool ethd__row_cell(const char **row, char *out, size_t room);
 
 #endif

@@ -4,98 +4,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "cli/cli.h"
 #include "ethd/ethd.h"
 #include "study/keep.h"
 #include "study/row.h"
-#include "text/csv.h"
+#include "study/survey.h"
+#include "study/tables.h"
 #include "text/error_text.h"
-
-static ethd_status no_memory(char *message) { return ethd__no_memory(message, NULL); }
-
-/* ---- the journal ---- */
-
-/* No clock is written for simulated hands, so that the same study leaves the same bytes. */
-static void now(const ethd__sitting *s, char out[ETHD_UTC_MAX]) {
-  time_t t = time(NULL);
-  struct tm utc;
-  *out = 0;
-  if (ethd__hand_is_persons(s->source.hand) && gmtime_r(&t, &utc))
-    strftime(out, ETHD_UTC_MAX, "%Y-%m-%dT%H:%M:%SZ", &utc);
-}
-
-ethd_status ethd__sitting_put(ethd__sitting *s, const char *kind, const char *text, char message[ETHD_MESSAGE_MAX]) {
-  ethd_status status = ethd__journal_append(&s->journal, kind, text, message);
-  if (!status && !ethd__progress_take(&s->progress, kind, text))
-    status = ethd__say(message, ETHD_E_SYNTAX, "%s: not a line of this study: %s %s", s->journal.path, kind, text);
-  return status;
-}
-
-ethd_status ethd__sitting_event(ethd__sitting *s, const char *participant, size_t number, const char *event,
-                                const char *detail, char message[ETHD_MESSAGE_MAX]) {
-  char utc[ETHD_UTC_MAX], block[24] = "", *text = NULL;
-  size_t length;
-  now(s, utc);
-  if (number) snprintf(block, sizeof block, "%zu", number);
-  FILE *file = open_memstream(&text, &length);
-  if (!file) return no_memory(message);
-  fprintf(file, "%s,%s,%s,%s,", utc, participant, block, event);
-  ethd__csv_put_word(file, detail);
-  ethd_status status = fclose(file) ? no_memory(message) : ethd__sitting_put(s, "event", text, message);
-  free(text);
-  return status;
-}
-
-/* ---- opening ---- */
-
-static ethd_status refuse_hand(const ethd__sitting *s, char *message) {
-  const char *folder = s->folder->path;
-  int hands = 0, whose = 0;
-  for (int i = 0; i < ETHD_HAND_SOURCES; i++)
-    if (s->progress.hand[i]) hands++, whose = i;
-  if (hands > 1)
-    return ethd__say(message, ETHD_E_ARGUMENT,
-                     "%s: holds several stations' taps, of different hands; go on in their own folders and merge again",
-                     folder);
-  return ethd__say(message, ETHD_E_ARGUMENT, "%s: its taps are led by a %s hand; ethd-study --resume %s%s goes on",
-                   folder, ethd__hand_words[whose], folder, whose == ETHD_HAND_MOUSE ? " --screen" : "");
-}
-
-/* A program that was killed early may have left out the first lines; they are written now. */
-static ethd_status take_journal(ethd__sitting *s, ethd__hand_source hand, char *message) {
-  char begun[ETHD_SHA256_TEXT + 8];
-  snprintf(begun, sizeof begun, "hash %s", s->folder->hash);
-  ethd_status status = s->journal.count ? ethd__progress_read(&s->journal, s->folder->hash, &s->progress, message)
-                                        : ethd__journal_append(&s->journal, "begin", begun, message);
-  if (!status && s->journal.count < 2) status = ethd__sitting_put(s, "hand", ethd__hand_words[hand], message);
-  if (status) return status;
-  for (int i = 0; i < ETHD_HAND_SOURCES; i++)
-    if (s->progress.hand[i] != (i == (int)hand)) return refuse_hand(s, message);
-  return ETHD_OK;
-}
-
-ethd_status ethd__sitting_open(ethd__folder *folder, ethd__hand_source hand, ethd__sitting *out,
-                               char message[ETHD_MESSAGE_MAX]) {
-  *out = (ethd__sitting){
-      .folder = folder, .journal = {.fd = -1}, .source = {.hand = hand}, .last = folder->protocol.participants};
-  ethd_status status = ethd__progress_begin(&folder->protocol, &out->progress, message);
-  if (status) return status;
-  char *path = ethd__folder_path(folder->path, ETHD_STUDY_JOURNAL);
-  status = access(path, F_OK) == 0 ? ethd__journal_open(path, &out->journal, message)
-                                   : ethd__journal_create(path, &out->journal, message);
-  free(path);
-  if (!status) status = take_journal(out, hand, message);
-  if (status) ethd__sitting_close(out);
-  return status;
-}
-
-void ethd__sitting_close(ethd__sitting *s) {
-  ethd__journal_close(&s->journal);
-  ethd__progress_free(&s->progress);
-}
 
 /* ---- a tap ---- */
 
@@ -106,12 +22,12 @@ static ethd_status have_tap(ethd__sitting *s, const char *folder, const char *na
   char words[128], begun[ETHD_UTC_MAX];
   ethd_status status = p->record ? ethd__tap_kept(folder, name, row, message) : ETHD_OK;
   if (status || *row) return status;
-  now(s, begun);
+  ethd__sitting_now(s, begun);
   status = s->source.tap(s->source.self, turn, taken, message);
   if (status) return status;
   memcpy(taken->utc, begun, sizeof begun);
   *row = ethd__tap_row(p, taken);
-  if (!*row) return no_memory(message);
+  if (!*row) return ethd__no_memory(message, NULL);
   snprintf(words, sizeof words, "%s %s %s", name, p->strategies.word[turn->block.strategy],
            p->speeds.word[turn->block.speed]);
   return p->record ? ethd__tap_keep(folder, name, s->folder->loaded.config, taken, words, *row, message) : ETHD_OK;
@@ -251,4 +167,42 @@ ethd_status ethd__sitting_run(ethd__sitting *s, bool *over, char message[ETHD_ME
   char left[ETHD_MESSAGE_MAX];
   ethd_status written = ethd__tables_write(s->folder, left);
   return status ? status : written ? ethd__say(message, written, "%s", left) : ETHD_OK;
+}
+
+/* ---- decisions ---- */
+
+/* The event gets a clock if one of the hands is a person's. */
+static ethd__hand_source hand_of(const ethd__session_progress *progress) {
+  for (int i = 0; i < ETHD_HAND_SOURCES; i++)
+    if (progress->hand[i]) return (ethd__hand_source)i;
+  return ETHD_HAND_SIMULATED;
+}
+
+static ethd_status decide(ethd__sitting *s, uint32_t person, const char *event, const char *reason, char *message) {
+  char id[ETHD_STUDY_ID_MAX];
+  ethd_status status = ethd__progress_read(&s->journal, s->folder->hash, &s->progress, message);
+  if (status) return status;
+  s->source.hand = hand_of(&s->progress);
+  ethd__participant_id(&s->folder->protocol, person, id);
+  status = ethd__sitting_event(s, id, 0, event, reason, message);
+  return status ? status : ethd__tables_write(s->folder, message);
+}
+
+ethd_status ethd__session_decide(const char *path, uint32_t person, const char *event, const char *reason,
+                                 char message[ETHD_MESSAGE_MAX]) {
+  ethd__folder folder;
+  ethd_status status = ethd__folder_read(path, &folder, message);
+  if (status) return status;
+  ethd__sitting s = {.folder = &folder, .journal = {.fd = -1}};
+  char *journal = ethd__folder_path(path, ETHD_STUDY_JOURNAL);
+  if (person >= folder.protocol.participants)
+    status = ethd__say(message, ETHD_E_RANGE, "participant %u: 1 to %u are allowed", person + 1,
+                       folder.protocol.participants);
+  if (!status) status = ethd__progress_begin(&folder.protocol, &s.progress, message);
+  if (!status) status = ethd__journal_open(journal, &s.journal, message);
+  if (!status) status = decide(&s, person, event, reason, message);
+  ethd__sitting_close(&s);
+  ethd__folder_close(&folder);
+  free(journal);
+  return status;
 }

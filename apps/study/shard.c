@@ -12,8 +12,8 @@
 #include "cli/cli.h"
 #include "study/columns.h"
 #include "study/keep.h"
+#include "study/progress.h"
 #include "study/row.h"
-#include "study/session.h"
 #include "text/error_text.h"
 #include "text/text.h"
 

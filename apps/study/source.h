@@ -1,4 +1,4 @@
-/* Where taps come from: the seam for devices, recorded fingers, screens. All [main]. */
+/* Where taps come from: the interface for devices, recorded fingers and screens. All [main]. */
 #ifndef ETHD_STUDY_SOURCE_H
 #define ETHD_STUDY_SOURCE_H
 
@@ -16,7 +16,8 @@ typedef enum ethd__hand_source {
 
 extern const char *const ethd__hand_words[ETHD_HAND_SOURCES];
 
-/* Nothing is asked of a simulated or recorded hand, and no clock stands in its tables: the same bytes again. [any] */
+/* Returns whether a person leads the hand. Other hands are asked nothing, and their tables have no clock, so that the
+   same study gives the same bytes. [any] */
 static inline bool ethd__hand_is_persons(ethd__hand_source hand) { return hand <= ETHD_HAND_MOUSE; }
 
 /* A tap that is due. */
@@ -43,10 +44,11 @@ typedef struct ethd__taken {
 typedef struct ethd__source {
   void *self;
   ethd__hand_source hand;
-  /* One tap, whatever it takes. ETHD_EMPTY: it was stopped, or the finger never left its place; there was none. */
+  /* Makes one tap, whatever it takes. ETHD_EMPTY: there was none, because it was stopped or the finger never left its
+     place. */
   ethd_status (*tap)(void *self, const ethd__turn *turn, ethd__taken *out, char message[ETHD_MESSAGE_MAX]);
-  /* Why the device has stopped itself, a sentence; NULL: it hasn't. acknowledge: it may go on. Both NULL
-     where nothing stops. */
+  /* Returns a sentence that says why the device has stopped itself; NULL: it runs. acknowledge lets it go on. Both are
+     NULL if nothing can stop. */
   const char *(*stopped)(void *self);
   ethd_status (*acknowledge)(void *self, char message[ETHD_MESSAGE_MAX]);
   /* The finger's centre as the device has it, R_0; NULL: the screen's pointer is the finger. */

@@ -27,7 +27,7 @@ typedef struct ethd__station {
   ethd__phase phase;
   ethd__rule rule;
   ethd__approach approach;
-  size_t last; /* row, as far as is known */
+  size_t last; /* the last row, as far as is known */
   int64_t begin_ns;
   ethd_status status; /* of its rows */
 

@@ -8,9 +8,10 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
+#include "study/progress.h"
 #include "study/row.h"
-#include "study/session.h"
 #include "study/sums.h"
+#include "study/tables.h"
 #include "text/claim.h"
 #include "text/csv.h"
 #include "text/error_text.h"

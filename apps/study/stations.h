@@ -1,7 +1,7 @@
 /* Several stations of one study: sessions in folders of their own, of different participants. All [main].
 
-   What is merged is the journals; a merged folder is a session's folder like any other, and its tables follow from its
-   journal. Stations may differ in whose hand tapped: it stands at each tap and participant. */
+   Journals are merged; a merged folder is a session's folder like any other, and its tables follow from its journal.
+   Stations may differ in whose hand tapped, which is written at each tap and participant. */
 #ifndef ETHD_STUDY_STATIONS_H
 #define ETHD_STUDY_STATIONS_H
 
@@ -11,13 +11,13 @@
 
 #define ETHD_STUDY_STATIONS 1000 /* that are merged at most, or reported on together */
 
-/* Whether these folders are one study's, no participant tapped in two, and their files are as SHA256SUMS says; refuses
-   with a sentence that names the folder. */
+/* Checks that these folders belong to one study, that no participant tapped in two of them, and that their files are as
+   SHA256SUMS says; refuses with a sentence that names the folder. */
 ETHD_MUST_CHECK ethd_status ethd__stations_fit(const char *const *folders, size_t count,
                                                char message[ETHD_MESSAGE_MAX]);
 
-/* The text of the tables that a merged folder would hold, freed by the caller; NULL for those that don't come from
-   journals. The folders fit. */
+/* Gives the text of the tables that a merged folder would hold, which the caller frees; NULL for those that don't come
+   from journals. The folders must fit. */
 ETHD_MUST_CHECK ethd_status ethd__stations_tables(const char *const *folders, size_t count, char *out[ETHD_TABLES],
                                                   char message[ETHD_MESSAGE_MAX]);
 

@@ -14,7 +14,7 @@
 
 #define ETHD_STUDY_SUMS "SHA256SUMS"
 
-/* The sum of a file's bytes. */
+/* Gives the sum of a file's bytes. */
 ETHD_MUST_CHECK ethd_status ethd__sum_of_file(const char *path, char out[ETHD_SHA256_TEXT],
                                               char message[ETHD_MESSAGE_MAX]);
 
@@ -30,7 +30,7 @@ ETHD_MUST_CHECK ethd_status ethd__sums_check(const char *folder, size_t *files, 
 ETHD_MUST_CHECK ethd_status ethd__sums_each(const char *folder, ethd_status (*each)(void *user, const char *path),
                                             void *user, char message[ETHD_MESSAGE_MAX]);
 
-/* What changes as a session goes on: the journal and the tables that follow from it. [any] */
+/* Returns whether a file changes as a session goes on, as the journal and the tables that follow from it do. [any] */
 bool ethd__sums_grows(const char *path);
 
 #endif

@@ -1,9 +1,10 @@
+#include "study/survey.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/cli.h"
-#include "study/session.h"
 #include "text/csv.h"
 
 /* Simulated hands leave it empty; the paper's questions are about touch, which a mouse doesn't give. */

@@ -1,11 +1,12 @@
+#include "study/tables.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/cli.h"
-#include "study/columns.h"
+#include "study/progress.h"
 #include "study/row.h"
-#include "study/session.h"
 #include "study/sums.h"
 #include "text/csv.h"
 #include "text/error_text.h"
@@ -129,42 +130,4 @@ ethd_status ethd__tables_write(const ethd__folder *folder, char message[ETHD_MES
   for (int i = 0; !status && i < ETHD_TABLES; i++) status = write_table(&l, (ethd__study_table)i, message);
   close_ledger(&l);
   return status ? status : ethd__sums_write(folder->path, message);
-}
-
-/* ---- decisions ---- */
-
-/* The event gets a clock if one of the hands is a person's. */
-static ethd__hand_source hand_of(const ethd__session_progress *progress) {
-  for (int i = 0; i < ETHD_HAND_SOURCES; i++)
-    if (progress->hand[i]) return (ethd__hand_source)i;
-  return ETHD_HAND_SIMULATED;
-}
-
-static ethd_status decide(ethd__sitting *s, uint32_t person, const char *event, const char *reason, char *message) {
-  char id[ETHD_STUDY_ID_MAX];
-  ethd_status status = ethd__progress_read(&s->journal, s->folder->hash, &s->progress, message);
-  if (status) return status;
-  s->source.hand = hand_of(&s->progress);
-  ethd__participant_id(&s->folder->protocol, person, id);
-  status = ethd__sitting_event(s, id, 0, event, reason, message);
-  return status ? status : ethd__tables_write(s->folder, message);
-}
-
-ethd_status ethd__session_decide(const char *path, uint32_t person, const char *event, const char *reason,
-                                 char message[ETHD_MESSAGE_MAX]) {
-  ethd__folder folder;
-  ethd_status status = ethd__folder_read(path, &folder, message);
-  if (status) return status;
-  ethd__sitting s = {.folder = &folder, .journal = {.fd = -1}};
-  char *journal = ethd__folder_path(path, ETHD_STUDY_JOURNAL);
-  if (person >= folder.protocol.participants)
-    status = ethd__say(message, ETHD_E_RANGE, "participant %u: 1 to %u are allowed", person + 1,
-                       folder.protocol.participants);
-  if (!status) status = ethd__progress_begin(&folder.protocol, &s.progress, message);
-  if (!status) status = ethd__journal_open(journal, &s.journal, message);
-  if (!status) status = decide(&s, person, event, reason, message);
-  ethd__sitting_close(&s);
-  ethd__folder_close(&folder);
-  free(journal);
-  return status;
 }

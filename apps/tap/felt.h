@@ -1,4 +1,4 @@
-/* What the finger did and felt, whatever the law: no law's own idea of a meeting is used.
+/* What the finger did and felt, found in the same way for every law: no law's own idea of a meeting is used.
 
         hand's path      touch plane                 depth   how far the ring is behind the wall at the touch
           o-----------------|-->  v_hand             early   touched before the ring was behind the wall, or within
@@ -14,13 +14,14 @@
 #define ETHD_TAP_STILL 0.02   /* m/s: the paper's v_th */
 
 typedef struct ethd__felt {
-  double v_hand; /* m/s, as the hand's own path crosses the plane at which a finger touches the wall; NaN: it doesn't */
+  double v_hand; /* m/s of the hand's own path as it crosses the plane at which a finger touches; NaN: it doesn't */
   double depth;  /* m, of the true ring at the touch; NaN: no touch */
   double eps;    /* m: the wall's offset ETHD_TAP_FELT after it; NaN: no wall came */
   bool early;    /* true without a touch */
 } ethd__felt;
 
-/* begin: the tap's first tick; touch: the pad's first from there on, rows->count: none. */
+/* Returns it for a tap. begin: the tap's first tick; touch: the first with the pad touching, rows->count: there is
+   none. */
 ethd__felt ethd__felt_of(const ethd__tap_rows *rows, const ethd__rule *rule, size_t begin, size_t touch);
 
 #endif

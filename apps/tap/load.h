@@ -13,9 +13,9 @@ typedef struct ethd__loaded {
   char *plant_name, *plant_path;
 } ethd__loaded;
 
-/* config: a file, NULL: the plant's own. plant: n, b or p, which came with the programs, or a file, with
-   or without .plant; NULL: the one that the configuration's [device] names, else n. simulated: any other
-   device is refused; without, [device] isn't looked at. Exit 2 on bad input. */
+/* Loads them. config: a file; NULL: the plant's own. plant: n, b or p, which came with the programs, or a file, with or
+   without .plant; NULL: the one that the configuration's [device] names, else n. simulated: any other device is
+   refused; without it [device] is ignored. Exit 2 on bad input. */
 void ethd__load(const char *config, const char *plant, bool simulated, bool plugins, ethd__loaded *out);
 
 void ethd__loaded_free(ethd__loaded *loaded);

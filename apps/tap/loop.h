@@ -1,4 +1,4 @@
-/* One tap, tick by tick. */
+/* Runs a tap, tick by tick. */
 #ifndef ETHD__TAP_LOOP_H
 #define ETHD__TAP_LOOP_H
 
@@ -13,23 +13,23 @@
 ETHD_MUST_CHECK ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
                                           const double *learned, const ethd__rule *rule, ethd__tap_rows *rows);
 
-/* The same tap by tap's tick, for whoever leads the finger meanwhile. Rule and rows outlive it. */
+/* A tap that is run one tick at a time, for a caller who leads the finger meanwhile. Rule and rows outlive it. */
 typedef struct ethd__tapping {
   ethd_sim *sim;
   ethd_control *control;
   const ethd__rule *rule;
   ethd__tap_rows *rows;
   ethd__approach approach;
-  size_t last; /* tick, as far as is known */
+  size_t last; /* the last tick, as far as is known */
 } ethd__tapping;
 
 ETHD_MUST_CHECK ethd_status ethd__tapping_begin(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
                                                 const ethd__rule *rule, ethd__tap_rows *rows, ethd__tapping *out);
 
-/* One tick; ETHD_EMPTY: the tap is over. */
+/* Runs one tick; ETHD_EMPTY: the tap is over. */
 ETHD_MUST_CHECK ethd_status ethd__tapping_step(ethd__tapping *tapping);
 
-/* Room for one row more. ETHD_E_MEMORY. */
+/* Makes room for one more row. ETHD_E_MEMORY. */
 ETHD_MUST_CHECK ethd_status ethd__tap_rows_room(ethd__tap_rows *rows);
 
 void ethd__tap_rows_free(ethd__tap_rows *rows);

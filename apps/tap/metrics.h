@@ -1,4 +1,4 @@
-/* What is measured of a tap, from its ticks alone: the same figures come out of a recording.
+/* What is measured of a tap, from its ticks alone, so that a recording gives the same figures.
 
      ring's front, along n      t_r/vo            d_max = peak - next valley
             ^                     |     peak
@@ -26,13 +26,13 @@ typedef struct ethd__tap_rows {
   size_t count, room;
 } ethd__tap_rows;
 
-/* By what a tap is valid.
+/* What decides whether a tap is valid.
      paper    the ring met the wall before the finger touched it, at the speed asked for
      finger   the hand's own path crosses the wall's touch plane at that speed, and the finger didn't touch before the
               ring was there (felt.h): a law that stops the ring before the wall is judged by the same taps */
 typedef enum ethd__validity { ETHD_TAP_BY_PAPER, ETHD_TAP_BY_FINGER } ethd__validity;
 
-/* What a tap is judged by. */
+/* The rule by which a tap is judged. */
 typedef struct ethd__rule {
   ethd_vec n;         /* of the wall, into it */
   double period;      /* s */
@@ -43,19 +43,19 @@ typedef struct ethd__rule {
   bool never_fast;    /* the recorded movement never was that fast: too slow */
   double seen;        /* m: the finger's centre along n as its pad's front is at the wall */
   ethd__validity validity;
-  bool carried; /* a device's tap: nobody knows the hand's path, the finger's speed before the touch stands for it */
+  bool carried; /* a device's tap: the hand's path isn't known, so the finger's speed before the touch stands for it */
   double graze; /* s: a tap whose pad touches for less in all is grazing; 0: none */
   bool single;  /* a finger that leaves the wall by `lift` after its touch and comes back makes a */
   double lift;  /* m: double tap */
 } ethd__rule;
 
-/* Looks for t_r/vo tick by tick: all zeros, then every tick in turn. */
+/* Looks for t_r/vo tick by tick. It begins all zero and gets every tick in turn. */
 typedef struct ethd__approach {
   size_t count, begin; /* ticks seen; where the tap begins, once it has */
   bool begun, met;
 } ethd__approach;
 
-/* True at t_r/vo, once. */
+/* Returns true at t_r/vo, once. */
 bool ethd__approach_step(ethd__approach *approach, const ethd__rule *rule, const ethd_trace *trace,
                          const ethd_truth *truth);
 
@@ -78,7 +78,7 @@ typedef enum ethd__reason {
 
 extern const char *const ethd__reason_words[ETHD_TAP_REASON_COUNT];
 
-/* NaN where a figure isn't defined. Speeds and depths along n, > 0 into the wall. */
+/* The figures of a tap; NaN where one isn't defined. Speeds and depths are along n, > 0 into the wall. */
 typedef struct ethd__metrics {
   ethd__reason reason;             /* by the rule's validity: one of these two */
   ethd__reason by_ring, by_finger; /* by the paper's, by the finger's */
@@ -98,7 +98,7 @@ typedef struct ethd__metrics {
 
 void ethd__metrics_of(const ethd__tap_rows *rows, const ethd__rule *rule, ethd__metrics *out);
 
-/* The tick t_r/vo, rows->count if there is none. */
+/* Returns the tick t_r/vo, rows->count if there is none. */
 size_t ethd__metrics_meeting(const ethd__tap_rows *rows, const ethd__rule *rule);
 
 #endif

@@ -1,4 +1,4 @@
-/* What ethd-tap leaves in files: the CSV, a recording of every tick, traces of typical taps. */
+/* The files that ethd-tap writes: the CSV, a recording of every tick, traces of typical taps. */
 #ifndef ETHD__TAP_OUTPUT_H
 #define ETHD__TAP_OUTPUT_H
 
@@ -6,7 +6,7 @@
 #include "tap/ticks.h"
 #include "text/csv.h"
 
-/* A row per tap. `speed` as given, `valid` 1 or 0, empty where a figure isn't defined. */
+/* The CSV has a row per tap: `speed` as given, `valid` 1 or 0; a figure that isn't defined is empty. */
 #define ETHD_TAP_HEADER                                                                            \
   "tap,transition,speed,seed,valid,reason,v_rvo_mps,v_of_mps,d_max_m,v_rmin_mps,delta_s_ms,eps_m," \
   "t_rvo_s,t_of_s,peak_force_n,v_hand_mps,touch_depth_m,eps_felt_m"
@@ -17,7 +17,7 @@ typedef struct ethd__output {
   ethd__ticks ticks;
 } ethd__output;
 
-/* Where it goes, NULL: not at all. */
+/* Where the files go; NULL: one isn't written. */
 typedef struct ethd__output_paths {
   const char *csv, *folder;
   bool replace; /* a recording in the folder */
@@ -26,11 +26,11 @@ typedef struct ethd__output_paths {
 ETHD_MUST_CHECK ethd_status ethd__output_open(const ethd__output_paths *paths, const ethd_config *config,
                                               ethd__output *out, char message[ETHD_MESSAGE_MAX]);
 
-/* From here on taps run on this stage. */
+/* Says that taps run on this stage from here on. */
 ETHD_MUST_CHECK ethd_status ethd__output_law(ethd__output *output, const ethd__stage *stage,
                                              char message[ETHD_MESSAGE_MAX]);
 
-/* The tap that stage ran last. */
+/* Writes the tap that the stage ran last. */
 ETHD_MUST_CHECK ethd_status ethd__output_tap(ethd__output *output, const ethd__stage *stage, const char *law,
                                              const ethd__speed *speed, uint64_t tap, const ethd__result *result,
                                              char message[ETHD_MESSAGE_MAX]);

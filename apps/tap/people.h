@@ -1,10 +1,10 @@
-/* One number a person: what tests within people begin with. All [main]. */
+/* Reduces taps to one number for each person, with which tests within people begin. All [main]. */
 #ifndef ETHD_TAP_PEOPLE_H
 #define ETHD_TAP_PEOPLE_H
 
 #include "tap/summary.h"
 
-/* A figure of a tap, NaN where it has none. */
+/* Returns a figure of a tap, NaN if the tap doesn't have it. */
 typedef double ethd__tap_value(const ethd__metrics *metrics);
 
 typedef enum ethd__person_figure {
@@ -14,10 +14,11 @@ typedef enum ethd__person_figure {
   ETHD_PERSON_ATTEMPTS, /* the mean over all taps, valid or not */
 } ethd__person_figure;
 
-/* Whose tap result i is: the cell's person, or of an unnamed cell finger i. */
+/* Returns whose tap result i is: the cell's person; in a cell without persons, finger i. */
 uint32_t ethd__cell_person(const ethd__cell *cell, size_t i);
 
-/* out[p] of person p below `people`: NaN without such a tap. A NULL cell has none. Exit 1 without memory. */
+/* Fills out[p] for every person p below `people`; NaN without such a tap. A NULL cell has none. Exit 1 without
+   memory. */
 void ethd__people_figure(const ethd__cell *cell, ethd__tap_value *of, ethd__person_figure figure, size_t people,
                          double *out);
 

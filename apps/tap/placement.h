@@ -1,4 +1,4 @@
-/* A recorded movement as the hand's voluntary path: moved, never bent.
+/* A recorded movement as the hand's voluntary path: it is shifted, never bent.
 
        y ^    recording, moving to -x
          |        . - ' - .                      shifted in x and y so that at t_touch the finger's
@@ -20,7 +20,7 @@
 #define ETHD_MOVEMENT_WINDOW 5e-3 /* s, either side */
 #define ETHD_MOVEMENT_MOST 120.0  /* s of recording that are accepted */
 
-/* As recorded, but for the time, which starts at 0, and the scale. */
+/* A movement as recorded, except that its time starts at 0 and that it is scaled. */
 typedef struct ethd__movement {
   ethd_path_sample *samples;
   size_t count;
@@ -33,7 +33,7 @@ ETHD_MUST_CHECK ethd_status ethd__movement_load(const char *path, double scale, 
                                                 char message[ETHD_MESSAGE_MAX]);
 void ethd__movement_free(ethd__movement *movement);
 
-/* Toward the wall, m/s, at sample k. */
+/* Returns the speed toward the wall at sample k, m/s. */
 double ethd__movement_speed(const ethd__movement *movement, size_t k);
 
 /* Where the movement touches. */

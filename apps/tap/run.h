@@ -4,7 +4,7 @@
 
 #include "tap/output.h"
 
-/* What to run: every law at each of the study's speeds, `taps` times. */
+/* What is run: every law at each of the study's speeds, `taps` times. */
 typedef struct ethd__tap_plan {
   const ethd__study *study;
   const char *const *laws;
@@ -12,11 +12,11 @@ typedef struct ethd__tap_plan {
   uint64_t taps;
 } ethd__tap_plan;
 
-/* Room for plan->law_count * study->speed_count cells and their results; NULL: no memory. */
+/* Makes room for plan->law_count * study->speed_count cells and their results; NULL: no memory. */
 ethd__cell *ethd__cells_create(const ethd__tap_plan *plan);
 void ethd__cells_free(ethd__cell *cells);
 
-/* Refuses what the first taps would stumble over: unknown laws, setups that don't fit, a touch out of reach. */
+/* Refuses what would make the first taps fail: unknown laws, setups that don't fit, a touch out of reach. */
 ETHD_MUST_CHECK ethd_status ethd__plan_check(const ethd__tap_plan *plan, char message[ETHD_MESSAGE_MAX]);
 
 /* Fills the cells, laws outermost. Ends early, with ETHD_OK, once ethd__stop is set. */

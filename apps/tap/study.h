@@ -1,7 +1,7 @@
 /* The study: every transition law at every speed, with the same fingers for each.
 
-   The finger of tap k is a function of (seed, k) alone: laws meet the same person, and any tap can be
-   had again on its own. */
+   The finger of tap k is a function of (seed, k) alone, so that all laws meet the same person, and any tap can be
+   repeated on its own. */
 #ifndef ETHD__TAP_STUDY_H
 #define ETHD__TAP_STUDY_H
 
@@ -12,14 +12,14 @@
 #define ETHD_TAP_WORD_MAX 32
 
 typedef struct ethd__speed {
-  char word[ETHD_TAP_WORD_MAX]; /* as it was given: low, high or the number */
+  char word[ETHD_TAP_WORD_MAX]; /* the word that was given: low, high or a number */
   double commanded;             /* m/s: of the synthetic hand */
   double centre, band;          /* m/s: valid within centre +- band; a recording touches at centre */
   ethd__touchdown touchdown;    /* of the movement at this speed */
 } ethd__speed;
 
-/* low and high are the plant's; a number V is commanded as it is and valid within 0.04 + 0.1 V, which
-   gives the paper's bands at 0.2 and 0.4. false: neither a word nor a number from 0.01 to 2. */
+/* Reads a speed. low and high are the plant's; a number V is commanded as it is and valid within 0.04 + 0.1 V, which
+   gives the paper's bands at 0.2 and 0.4. False: it is neither a word nor a number from 0.01 to 2. */
 bool ethd__speed_parse(const char *word, const ethd_plant *plant, ethd__speed *out);
 
 /* A change of the configuration's setup: "contact.k_e", "2000". */
@@ -34,7 +34,7 @@ typedef struct ethd__study {
   ethd__movement movement; /* count 0: the plant's synthetic hand */
   ethd__speed *speeds;
   size_t speed_count;
-  const ethd__gain *gains; /* on top of the configuration; a law without such a parameter goes without */
+  const ethd__gain *gains; /* changes of the configuration; a law that lacks such a parameter is run without it */
   size_t gain_count;
   double graze, lift; /* as in ethd__rule */
   ethd__validity validity;
@@ -51,7 +51,7 @@ typedef struct ethd__study {
    touchdowns of a movement. Refuses a scene without one, and a touch out of reach. */
 ETHD_MUST_CHECK ethd_status ethd__study_prepare(ethd__study *study, char message[ETHD_MESSAGE_MAX]);
 
-/* What runs taps under one law. */
+/* What runs taps under one law: controller and simulated device. */
 typedef struct ethd__stage {
   const ethd__study *study;
   const char *law;
@@ -64,23 +64,23 @@ typedef struct ethd__stage {
   ethd_path_sample *samples;
 } ethd__stage;
 
-/* False for a key that the law hasn't. */
+/* Returns false for a key that the law lacks. */
 bool ethd__gain_applies(const ethd__study *study, const char *law, const ethd__gain *gain);
 
-/* The setup is the configuration's with transition `law`, the study's gains, and the narrower of its limits
-   and the device's. `law` outlives the stage. */
+/* Opens a stage. Its setup is the configuration's with transition `law`, the study's gains, and the narrower of its
+   limits and the device's. `law` outlives the stage. */
 ETHD_MUST_CHECK ethd_status ethd__stage_open(const ethd__study *study, const char *law, ethd__stage *out,
                                              char message[ETHD_MESSAGE_MAX]);
 void ethd__stage_close(ethd__stage *stage);
 
-/* A tap's circumstances; its recorded path stands in stage->samples until the next. */
+/* Draws a tap's circumstances; its recorded path is in stage->samples until the next one. */
 ETHD_MUST_CHECK ethd_status ethd__stage_draw(ethd__stage *stage, const ethd__speed *speed, uint64_t tap,
                                              ethd_sim_tap *out);
 
-/* What taps of this finger on this stage at this speed are judged by. */
+/* Returns the rule by which taps of this finger on this stage at this speed are judged. */
 ethd__rule ethd__stage_rule(const ethd__stage *stage, const ethd__speed *speed, double finger_radius);
 
-/* Likewise, for their tables. */
+/* Returns the view that turns their ticks into tables. */
 ethd__view ethd__stage_view(const ethd__stage *stage, const ethd__speed *speed, double finger_radius);
 
 typedef struct ethd__result {
@@ -90,7 +90,7 @@ typedef struct ethd__result {
   uint32_t ticks, queried; /* of which the scene was asked */
 } ethd__result;
 
-/* What the ticks in stage->rows were, of this tap. */
+/* Judges the ticks in stage->rows, which are this tap's. */
 void ethd__stage_judge(const ethd__stage *stage, const ethd__rule *rule, const ethd_sim_tap *tap, ethd__result *out);
 
 ETHD_MUST_CHECK ethd_status ethd__stage_run(ethd__stage *stage, const ethd__speed *speed, uint64_t tap,

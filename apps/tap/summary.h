@@ -21,16 +21,16 @@ typedef struct ethd__figure {
 #define ETHD_TAP_FIELD(name) offsetof(ethd__metrics, name)
 ethd__figure ethd__cell_figure(const ethd__cell *cell, size_t field);
 
-/* Over the same taps; NaN of none. */
+/* Returns the median over the same taps; NaN if there are none. */
 double ethd__cell_median(const ethd__cell *cell, size_t field);
 
 size_t ethd__cell_valid(const ethd__cell *cell);
 
-/* Share of the valid taps that have the figure and a value of it in [from, to); NaN of none. */
+/* Returns the share of the valid taps with this figure in [from, to); NaN if there are no valid taps. */
 double ethd__cell_share(const ethd__cell *cell, size_t field, double from, double to);
 
-/* The valid tap nearest to the cell's means of v_rvo, v_of, d_max and v_rmin, each in its sd; 0 without
-   valid taps. */
+/* Returns the valid tap nearest to the cell's means of v_rvo, v_of, d_max and v_rmin, each measured in its standard
+   deviation; 0 without valid taps. */
 size_t ethd__cell_typical(const ethd__cell *cell);
 
 #endif

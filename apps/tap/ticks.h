@@ -20,18 +20,18 @@ typedef struct ethd__ticks {
 ETHD_MUST_CHECK ethd_status ethd__ticks_open(const char *folder, const ethd_config *config, bool replace,
                                              ethd__ticks *out, char message[ETHD_MESSAGE_MAX]);
 
-/* From here on taps run on this stage, under its law. */
+/* Says that taps run on this stage from here on, under its law. */
 ETHD_MUST_CHECK ethd_status ethd__ticks_stage(ethd__ticks *ticks, const ethd__stage *stage,
                                               char message[ETHD_MESSAGE_MAX]);
 
-/* The stage's last tap, whole; `words` for people. */
+/* Writes the whole of the stage's last tap; `words` are for people. */
 ETHD_MUST_CHECK ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *words, const ethd__stage *stage,
                                             char message[ETHD_MESSAGE_MAX]);
 
-/* NULL recording is fine. */
+/* Closes the files; one without a recording may be closed too. */
 ETHD_MUST_CHECK ethd_status ethd__ticks_close(ethd__ticks *ticks, char message[ETHD_MESSAGE_MAX]);
 
-/* Both files of a folder back into rows, which ethd__tap_rows_free frees. */
+/* Reads both files of a folder into rows, which ethd__tap_rows_free frees. */
 ETHD_MUST_CHECK ethd_status ethd__ticks_read(const char *folder, ethd__tap_rows *out, char message[ETHD_MESSAGE_MAX]);
 
 #endif

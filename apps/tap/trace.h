@@ -11,8 +11,8 @@ typedef struct ethd__view {
   double ring_radius, finger_radius; /* m */
 } ethd__view;
 
-/* Time from t_r/vo; depths are those of the ring's front, the finger's and the hand's along n, from the
-   wall into it. [main] */
+/* Writes the table. Its time counts from t_r/vo; depths are those of the ring's front, the finger and the hand along n,
+   from the wall into it. [main] */
 ETHD_MUST_CHECK ethd_status ethd__trace_write(const char *path, const ethd__view *view, const ethd__tap_rows *rows,
                                               char message[ETHD_MESSAGE_MAX]);
 

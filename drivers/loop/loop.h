@@ -23,8 +23,9 @@ enum { ETHD__LOOP_RUNS, ETHD__LOOP_ASKED, ETHD__LOOP_PARKED };
    reader copies a row and then releases tail, so the writer that acquires tail overwrites nothing unread. A full ring
    loses the new row, which the next one counts in `lost`.
 
-   The controller's events come through a ring of its own. The two have no common order: a row's `swaps`, the posts
-   that were taken up to it, says before which row an event "taken" belongs. */
+   The controller's events come through a ring of its own. That one can't serve for rows, because it is private to
+   libethd, has a fixed size, and mustn't lose an event: a setup is taken only while it has room. The two rings have no
+   common order: a row's `swaps`, the posts that were taken up to it, says before which row an event "taken" belongs. */
 typedef struct ethd__loop_ring {
   _Alignas(64) atomic_uint head; /* next to write, [rt] */
   _Alignas(64) atomic_uint tail; /* next to read */

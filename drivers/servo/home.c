@@ -11,12 +11,6 @@
 #define PAUSE 200000 /* ns */
 #define FAILURES 20  /* so many bad turns in a row end the search */
 
-int32_t ethd__servo_lost(const ethd__servo_device *d) {
-  for (int i = 0; i < 2; i++)
-    if (d->joint[i] >= 0 && !(d->feedback.axes[i].started && d->feedback.axes[i].referenced)) return d->joint[i] + 1;
-  return 0;
-}
-
 /* ---- one turn lasts an exchange; on a virtual clock nothing waits ---- */
 
 static ethd_status turn(ethd__servo_device *d, const double torque[2]) {

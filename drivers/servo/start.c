@@ -83,6 +83,12 @@ ethd_status ethd__servo_enable(ethd__servo_device *d) {
   return status ? status : run(d, ETHD__SERVO_ENABLE);
 }
 
+int32_t ethd__servo_lost(const ethd__servo_device *d) {
+  for (int i = 0; i < 2; i++)
+    if (d->joint[i] >= 0 && !(d->feedback.axes[i].started && d->feedback.axes[i].referenced)) return d->joint[i] + 1;
+  return 0;
+}
+
 static ethd_status start_locked(ethd__servo_device *d) {
   int32_t lost = ethd__servo_lost(d);
   if (lost)

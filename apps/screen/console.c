@@ -1,3 +1,5 @@
+#include "screen/console.h"
+
 #include <inttypes.h>
 #include <poll.h>
 #include <stdio.h>
@@ -5,7 +7,6 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "study/front.h"
 #include "study/progress.h"
 
 /* ---- lines out ---- */

@@ -1,0 +1,108 @@
+/* Opens a session: device, controller, recorder, loop. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "record/limits_event.h"
+#include "run/refusal.h"
+#include "run/session.h"
+#include "run/telemetry.h"
+#include "text/error_text.h"
+#include "text/text.h"
+
+#define HEARTBEAT 0.1 /* s */
+
+static ethd_status open_device(ethd__session *s, const char *folder, char *message) {
+  ethd_error error = {0};
+  const ethd_device_def def = {&s->config->setup,        s->config->settings,
+                               s->config->setting_count, folder ? folder : s->config->folder,
+                               s->config->path,          s->is_virtual};
+  ethd_status status = ethd_device_open(s->config->device, NULL, &def, &s->driver, &s->device, message);
+  if (status) return status;
+  const ethd_limits limits = s->driver->limits(s->device);
+  s->setup = s->config->setup;
+  s->setup.limits = ethd_limits_narrower(&limits, &s->config->setup.limits);
+  const ethd_dynamics dynamics = s->driver->dynamics(s->device);
+  s->setup.dynamics = ethd_dynamics_known(&dynamics, &s->config->setup.dynamics);
+  status = ethd_control_create(&s->setup, &s->control, &error);
+  if (status) ethd_error_text(s->config->path, &error, message);
+  return status;
+}
+
+/* The snapshot goes into the recording's folder unless another path is given. */
+static ethd_status open_snapshot(ethd__session *s, const ethd__session_options *o, char *message) {
+  char *path = o->snapshot ? strdup(o->snapshot) : ethd__path_join(o->record, "snapshot.npy");
+  ethd_status status = path ? ethd__snapshot_open(&s->recorder.snapshot, path, s->setup.period) : ETHD_E_MEMORY;
+  free(path);
+  return status ? ethd__say(message, status, "--snapshot: %s", ethd_status_sentence(status)) : ETHD_OK;
+}
+
+static ethd_status open_recorder(ethd__session *s, const ethd__session_options *o, char *message) {
+  ethd__recorder *r = &s->recorder;
+  ethd_status status = ETHD_OK;
+  r->telemetry = -1;
+  r->keeps = o->keeps;
+  if (o->telemetry) status = ethd__telemetry_open(o->telemetry, o->group, &r->telemetry, message);
+  if (!status && (o->snapshot || o->record)) status = open_snapshot(s, o, message);
+  if (status || !o->record) return status;
+  status = ethd_recording_create(o->record, s->config, o->replace, &r->recording, message);
+  if (status) return status;
+  status = ethd__limits_event(r->recording, &s->config->setup, &s->setup);
+  if (!status) status = ethd__dynamics_event(r->recording, &s->config->setup, &s->setup);
+  if (!status && r->keeps > 1) status = ethd__recorder_thinned(r);
+  return status ? ethd__say(message, status, "%s: %s", o->record, ethd_status_sentence(status)) : ETHD_OK;
+}
+
+static ethd_status refuse_device(const ethd__session *s, ethd_status status, char *message) {
+  const char *why = s->driver->why(s->device);
+  return ethd__say(message, status, "device %s: start: %.*s", s->config->device, ETHD_MESSAGE_MAX / 2,
+                   why[0] ? why : ethd_status_sentence(status));
+}
+
+static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, char *message) {
+  ethd_loop_def def = o->loop;
+  ethd_error error = {0};
+  def.driver = s->driver;
+  def.device = s->device;
+  def.control = s->control;
+  def.period = s->setup.period;
+  def.gap = s->setup.limits.gap;
+  if (def.gap < (double)INFINITY) def.heartbeat = HEARTBEAT;
+  def.clock = o->is_virtual ? &s->clock : NULL;
+  ethd_status status = ethd_loop_create(&def, &s->loop, &error);
+  if (status) {
+    ethd_error_text("the loop", &error, message);
+    return status;
+  }
+  s->recorder.loop = s->loop;
+  ethd__recorder_begin(&s->recorder, def.period);
+  if (o->home) status = s->driver->home(s->device, NULL);
+  if (!status) status = s->driver->start(s->device);
+  if (status) return refuse_device(s, status, message);
+  s->started = true;
+  status = ethd_loop_start(s->loop, &error);
+  if (status) return ethd__start_refused(s->loop, status, &error, message);
+  if (!o->is_virtual) status = ethd__recorder_start(&s->recorder);
+  return status ? ethd__say(message, status, "the recorder: %s", ethd_status_sentence(status)) : ETHD_OK;
+}
+
+ethd_status ethd__session_open(const ethd__session_options *o, ethd__session *s, char message[ETHD_MESSAGE_MAX]) {
+  char left[ETHD_MESSAGE_MAX];
+  memset(s, 0, sizeof *s);
+  s->recorder.telemetry = -1;
+  s->recorder.sink = o->sink;
+  s->is_virtual = o->is_virtual;
+  ethd_status status = o->text ? ethd_config_parse(o->text, strlen(o->text), o->config ? o->config : "the defaults",
+                                                   o->folder, &s->config, message)
+                               : ethd_config_load(o->config, &s->config, message);
+  if (!status) status = open_device(s, o->folder, message);
+  if (!status) status = open_recorder(s, o, message);
+  if (!status) status = open_loop(s, o, message);
+  if (status) {
+    (void)!ethd__session_end(s, left);
+    ethd__session_free(s);
+    return status;
+  }
+  ethd__session_await_tick(s);
+  return ETHD_OK;
+}

@@ -1,0 +1,18 @@
+/* The terminal as a study's front: lines on stdout, commands and answers on stdin. All [main]. */
+#ifndef ETHD_SCREEN_CONSOLE_H
+#define ETHD_SCREEN_CONSOLE_H
+
+#include "study/front.h"
+
+/* Returns the phrase that tells the participant how a tap was, and what to do. [any] */
+ethd__phrase_name ethd__advice(ethd__reason reason);
+
+/* Commands and answers are read when `ask` is set. */
+typedef struct ethd__console {
+  const ethd__protocol *protocol;
+  bool ask, quiet, ended, paused;
+} ethd__console;
+
+ethd__front ethd__console_front(ethd__console *console);
+
+#endif
