@@ -101,4 +101,23 @@ kill -TERM $first
 wait $first
 [ $? = 1 ] && grep -q 'stopped; nothing is written, and the same command goes on' shared.err || fail "a search that was ended: $(cat shared.err)"
 [ ! -e never.plant ] && [ ! -e never.ini ] || fail "a search that was ended wrote its plant"
+
+# ---- a recording on a full disk, whose events end just before a block does: the row about it has its room ----
+if unshare -rm true 2>/dev/null; then
+  mkdir disk
+  cat >"$folder/fill.sh" <<'END'
+mount -t tmpfs -o size=1m tmpfs disk && cd disk || exit 9
+whole=0
+for count in $(seq 128 2 172); do
+  { yes 'set contact.k_e 2000' | head -n "$count"; echo 'wait 9'; } | "$1/ethd-run" --virtual --duration 9 --record r >said 2>err
+  [ "$(grep -c ',fault,the recorder lost rows: No space left on device$' r/events.csv)" = 1 ] && whole=$((whole + 1)) ||
+    { echo "after $count settings, $(wc -c <r/events.csv) bytes:"; tail -n 2 r/events.csv; }
+  rm -r r
+done
+[ $whole = 23 ]
+END
+  unshare -rm sh "$folder/fill.sh" "$bin" >said 2>&1 || fail "a full disk has no room for its event: $(cat said)"
+else
+  echo 'no mounts of its own: a recording on a full disk is left out'
+fi
 exit $failed

@@ -253,6 +253,13 @@ replays "$folder/v1"
 refuse 'cpu: found "x"' --cpu x
 refuse 'early_wake' --early-wake 900 --duration 1
 
+# ---- a device that doesn't start: which device, which step ----
+echo '0 start fail' >"$folder/start.inject"
+printf '[device]\ndriver = sim\ninject = start.inject\n' >"$folder/start.ini"
+"$run" --config "$folder/start.ini" --virtual --duration 1 </dev/null >"$folder/out" 2>"$folder/err"
+[ $? = 1 ] || fail "a device that doesn't start: exit 0"
+says "$folder/err" '^ethd-run: device sim: start: the device refused or failed$'
+
 # ---- what is missing, and which step comes next: a device without a finger doesn't enable in silence ----
 printf '[device]\ndriver = hello\n' >"$folder/blind.ini"
 "$run" --config "$folder/blind.ini" --duration 0.3 </dev/null >"$folder/blind" 2>&1 || fail "hello: $(cat "$folder/blind")"
