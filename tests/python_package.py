@@ -86,6 +86,9 @@ refuses("ethd.read(folder, plugins=True) lets it run", lambda: ethd.read(folder 
 refuses("plug", lambda: ethd.read(folder + "/run").verify())
 refuses("somebodys.so", lambda: ethd.read(folder + "/run", plugins=True).controller())
 refuses("no recording there", lambda: ethd.read(folder), FileNotFoundError)
+os.makedirs(folder + "/study", exist_ok=True)
+open(folder + "/study/study.ini", "w").close()
+refuses("a study's folder, not a recording: each tap is one, in ", lambda: ethd.read(folder + "/study"), FileNotFoundError)
 refuses("at least the", lambda: c.step(np.zeros(3)), ValueError)
 sense["q"] = np.nan
 assert c.step(sense).safe and any(e.kind == "fault" and "possible" in e.text for e in c.events())

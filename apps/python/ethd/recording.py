@@ -131,5 +131,9 @@ def read(folder: Union[str, "os.PathLike[str]"], plugins: bool = False) -> Recor
     """
     path = os.fspath(folder)
     if not os.path.exists(os.path.join(path, "tick.npy")):
+        if os.path.exists(os.path.join(path, "study.ini")):
+            raise FileNotFoundError(
+                f"{path}: a study's folder, not a recording: each tap is one, in {os.path.join(path, 'taps')}; taps.csv has all figures"
+            )
         raise FileNotFoundError(f"{path}: no recording there: it has no tick.npy")
     return Recording(path, plugins)
