@@ -307,6 +307,7 @@ stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/te
 	ETHD_SCENE_QUERIES=1000000 ETHD_SCENE_OBJECTS=10000000 $(B)/tests/test_scene_tree
 	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
 	BUILD='$(abspath $(B))' PYTHON="$$(sh .ci/setup python)" PLANTS=20 sh tests/identify.sh
+	BUILD='$(abspath $(B))' PYTHON="$$(sh .ci/setup python)" PLANTS=12 sh tests/identify_touches.sh
 	for k in 1 2 3 4 5; do ETHD_STRESS=1 $(B)/tests/test_servo_guardian || exit 1; done
 	ETHD_SERVO_CYCLES=50000 $(B)/tests/test_servo_link
 	ETHD_FUZZ_RUNS=10000000 $(B)/tests/test_fuzz_map

@@ -258,6 +258,7 @@ static int identify(const ethd__evidence *e) {
   (arm ? fit_arm : keep_arm)(&f);
   ethd__touch_fit_run(e, &f.sensing, &f.fit, &f.touches);
   if (ethd__stop) ethd__fail(ETHD_EXIT_FAILED, "stopped; nothing is written");
+  if (!isnan(f.touches.noise.value)) f.sensing.noise = f.touches.noise;
   ethd__finding_plant(&f);
   ethd__page_print(stdout, &f);
   write_files(&f, csv);

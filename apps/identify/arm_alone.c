@@ -12,6 +12,11 @@ static int states(const ethd_plant *plant) { return isfinite(plant->stiffness) ?
 
 static double step(int i) { return i == 2 || i == 3 || i >= 6 ? STEP_SPEED : STEP_ANGLE; }
 
+static double extent(int i) {
+  (void)i;
+  return (double)INFINITY;
+}
+
 static void try_all(const ethd__shooting *p, const ethd__fit_window *w, const ethd__trial *trials, int count) {
   ethd__predictor predictors[ETHD__ARMS];
   ethd__forecast f[ETHD__ARMS] = {{0}};
@@ -49,7 +54,7 @@ static bool is_possible(const ethd__shooting *p, const ethd_plant *x) {
   return !compliant || (own > 0.02 * least && own < 0.98 * least && is_seen(e, x, least));
 }
 
-static const ethd__fit_subject arm_alone = {states, step, try_all, is_possible};
+static const ethd__fit_subject arm_alone = {states, step, extent, ETHD__ARMS, try_all, is_possible};
 
 /* ---- windows ---- */
 

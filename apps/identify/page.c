@@ -144,8 +144,9 @@ static void print_touches(FILE *out, const ethd__finding *f) {
     fprintf(out, ", at least %d are needed for the finger's numbers\n", ETHD__TOUCHES_LEAST);
   else if (t->explained)
     fprintf(out,
-            ", fitted to %zu of them until %.0f ms after the finger came near: residual %.3g of what sensors leave\n",
-            t->used, 1e3 * t->after, t->rms);
+            ", fitted to %zu of them until %.0f to %.0f ms after the finger came near: residual %.3g of what sensors "
+            "leave\n",
+            t->used, 1e3 * t->least, 1e3 * t->most, t->rms);
   else
     fprintf(out,
             "; NOT EXPLAINED by a hand that moves evenly and pushes by spring and damper, however short a time after\n"

@@ -7,12 +7,13 @@
 #include "cli/cli.h"
 #include "identify/share.h"
 
-#define SETTLINGS 8 /* improvements of a window's state at most, until its squares fall by less than this share: */
+#define SETTLINGS 40 /* improvements of a window's state at most, until its squares fall by less than this share: */
 #define SETTLED 1e-9
 #define MOVED 1e-5     /* a state whose squares fall by a smaller share has hardly moved, and its slopes stay */
 #define CHORDS 2       /* corrections of a state with the same slopes */
 #define STEP 3e-4      /* by which a coordinate is changed to find its slope by differences */
-#define DEPENDENT 1e-5 /* a vector of which others explain all but this share says nothing */
+#define DEPENDENT 1e-5 /* a vector of which others explain all but this share says nothing; */
+#define SEEN 1e-2      /* standard deviations: a state that changes the residual by less wherever it is isn't seen either */
 
 /* ---- windows ---- */
 
@@ -35,6 +36,7 @@ void ethd__shooting_ready(ethd__shooting *p) {
   p->rows = 0;
   for (size_t i = 0; i < p->window_count; i++) {
     p->windows[i].row = p->rows;
+    p->windows[i].rank = 0;
     p->rows += (size_t)p->windows[i].rows;
   }
   free(p->basis);
@@ -91,21 +93,27 @@ static void project(const ethd__shooting *p, const ethd__fit_window *w, double *
   for (int i = 0; i < w->rank; i++) add(out, -dot(basis + i * w->rows, out, w->rows), basis + i * w->rows, w->rows);
 }
 
-/* Adds to a state the correction that a residual asks for. */
-static void correct(const ethd__shooting *p, const ethd__fit_window *w, const double *left, double *state) {
+/* Adds to a state the correction that a residual asks for; returns the share of it that stays within the extents. */
+static double correct(const ethd__shooting *p, const ethd__fit_window *w, const double *left, double *state) {
   const double *basis = basis_of(p, w);
+  double share = 1;
   for (int i = 0; i < w->rank; i++) add(state, dot(basis + i * w->rows, left, w->rows), w->turn[i], ETHD__STATES);
+  for (int i = 0; i < ETHD__STATES; i++) {
+    double most = p->subject->extent(i);
+    if (share * fabs(state[i]) > most) share = most / fabs(state[i]);
+  }
+  return share;
 }
 
 /* Fills the prediction's slopes by each number of the state, one after another: differences between predictions that
    take the same steps. */
 static void state_slopes(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant, double *out) {
-  int states = p->subject->states(plant);
-  double state[ETHD__ARMS][ETHD__STATES], own[ETHD__RESIDUALS_MOST];
-  for (int i = 0; i < states; i += ETHD__ARMS - 1) {
-    ethd__trial t[ETHD__ARMS] = {{plant, w->state, own}};
+  int states = p->subject->states(plant), together = p->subject->together;
+  double state[ETHD__TOGETHER][ETHD__STATES], own[ETHD__RESIDUALS_MOST];
+  for (int i = 0; i < states; i += together - 1) {
+    ethd__trial t[ETHD__TOGETHER] = {{plant, w->state, own}};
     int count = 1;
-    for (; count < ETHD__ARMS && i + count - 1 < states; count++) {
+    for (; count < together && i + count - 1 < states; count++) {
       int at = i + count - 1;
       memcpy(state[count], w->state, sizeof w->state);
       state[count][at] += p->subject->step(at);
@@ -137,7 +145,7 @@ static void span(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant 
         add(turn, -share, w->turn[k], ETHD__STATES);
       }
     double rest = sqrt(dot(v, v, n));
-    if (!(rest > DEPENDENT * whole)) continue;
+    if (!(rest > DEPENDENT * whole && rest * p->subject->extent(i) > SEEN)) continue;
     for (int k = 0; k < n; k++) v[k] /= rest;
     for (int k = 0; k < ETHD__STATES; k++) w->turn[w->rank][k] = turn[k] / rest;
     w->rank++;
@@ -158,8 +166,8 @@ typedef struct job {
 static double improve(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant, double *state,
                       double *left) {
   double moved[ETHD__STATES] = {0}, next[ETHD__STATES], now[ETHD__RESIDUALS_MOST], sum = dot(left, left, w->rows);
-  correct(p, w, left, moved);
-  for (double share = 1; share > 0.05; share /= 2) {
+  double most = correct(p, w, left, moved);
+  for (double share = most; share > 0.05 * most; share /= 2) {
     for (int i = 0; i < ETHD__STATES; i++) next[i] = state[i] + share * moved[i];
     residual(p, w, plant, next, now);
     double less = dot(now, now, w->rows);
@@ -175,6 +183,7 @@ static void settle_one(const job *part, ethd__fit_window *w) {
   const ethd__shooting *p = part->problem;
   double left[ETHD__RESIDUALS_MOST];
   residual(p, w, part->plants, w->state, left);
+  for (int chord = 0; chord < CHORDS && w->rank; chord++) (void)improve(p, w, part->plants, w->state, left);
   span(p, w, part->plants);
   double sum = dot(left, left, w->rows);
   for (int i = 0; i < SETTLINGS; i++) {
@@ -201,11 +210,12 @@ static void residual_windows(void *data, size_t begin, size_t end) {
 /* Fills the slopes by the plant's coordinates: differences between predictions that take the same steps. */
 static void plant_slopes(const job *part, ethd__fit_window *w) {
   const ethd__shooting *p = part->problem;
+  int together = p->subject->together;
   double own[ETHD__RESIDUALS_MOST];
-  for (int k = 1; k < part->plant_count; k += ETHD__ARMS - 1) {
-    ethd__trial t[ETHD__ARMS] = {{part->plants, w->state, own}};
+  for (int k = 1; k < part->plant_count; k += together - 1) {
+    ethd__trial t[ETHD__TOGETHER] = {{part->plants, w->state, own}};
     int count = 1;
-    for (; count < ETHD__ARMS && k + count - 1 < part->plant_count; count++)
+    for (; count < together && k + count - 1 < part->plant_count; count++)
       t[count] =
           (ethd__trial){&part->plants[k + count - 1], w->state, part->out + (size_t)(k + count - 2) * p->rows + w->row};
     try_all(p, w, t, count, count - 1);

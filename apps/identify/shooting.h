@@ -12,7 +12,7 @@
 #define ETHD__WINDOW 0.25       /* s */
 #define ETHD__WINDOW_LEAST 0.03 /* s: shorter pieces are left out */
 
-enum { ETHD__STATES = 18, ETHD__RESIDUALS_MOST = 2 * ETHD__WINDOW_MOST };
+enum { ETHD__STATES = 18, ETHD__TOGETHER = ETHD__STATES + 1, ETHD__RESIDUALS_MOST = 2 * ETHD__WINDOW_MOST };
 
 typedef struct ethd__fit_window {
   ethd__shot window;
@@ -36,8 +36,10 @@ struct ethd__shooting;
 /* What a fit is about: the arm alone, or the arm with the finger that touches it. */
 typedef struct ethd__fit_subject {
   int (*states)(const ethd_plant *plant);
-  double (*step)(int state); /* by which a number of the state is changed to find its slope by differences */
-  /* Makes up to ETHD__ARMS trials of one window; all differ little from the first. */
+  double (*step)(int state);   /* by which a number of the state is changed to find its slope by differences */
+  double (*extent)(int state); /* the most that a number of the state can be off; INFINITY: it is always seen */
+  int together;                /* the most trials that try_all takes */
+  /* Makes up to so many trials of one window; all differ little from the first. */
   void (*try_all)(const struct ethd__shooting *shooting, const ethd__fit_window *window, const ethd__trial *trials,
                   int count);
   /* Returns whether a device can be like this plant, and whether the simulator can run it. */

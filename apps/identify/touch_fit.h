@@ -11,11 +11,13 @@
 #define ETHD__TOUCHES_LEAST 10
 
 typedef struct ethd__touch_fit {
-  size_t seen, used; /* touches; those of them whose motion the model explains */
-  double after;      /* s of each touch that are fitted, from the first reading that is near */
-  double rms;        /* of the residual, in standard deviations of encoders and readings */
-  bool explained;    /* else none of the finger's numbers is taken */
-  double simulated;  /* s, of the evaluations */
+  size_t seen, used;   /* touches; those of them whose motion the model explains */
+  double least, most;  /* s of a touch that are fitted, from the first reading that is near */
+  double rms;          /* of the residual, in standard deviations of encoders and readings */
+  bool explained;      /* else none of the finger's numbers is taken */
+  ethd__bracket noise; /* m, of the readings; NaN: touches are too few */
+  double simulated;    /* s, of the evaluations, */
+  double seconds;      /* of the processor */
 } ethd__touch_fit;
 
 /* Fits the evidence's touches with the arm of fit->plant, and puts the finger's numbers, their intervals and what isn't

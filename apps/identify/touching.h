@@ -11,7 +11,19 @@ enum { ETHD__TOUCH_PATH = 4, ETHD__TOUCH_GAP = 12, ETHD__TOUCH_LEAD = 13, ETHD__
 
 /* Opens a problem with a window for each of the evidence's touches, at most `most`. A window ends `after` s after the
    first reading that is near, and has a first guess at its state. The residuals are in standard deviations of encoders
-   and readings, which follow from shooting->plant's count and noise. */
-void ethd__touching_open(const ethd__evidence *evidence, double after, size_t most, ethd__shooting *out);
+   and readings, which follow from shooting->plant's count and noise. tolerance: the simulator's, m/s. */
+void ethd__touching_open(const ethd__evidence *evidence, double after, size_t most, double tolerance,
+                         ethd__shooting *out);
+
+/* Lets window i end `after` s after the first reading that is near; call ethd__shooting_ready after it. */
+void ethd__touching_end(ethd__shooting *shooting, size_t i, double after);
+
+/* Finds the states for shooting->plant from the first guesses on: first of short windows, in which the finger hardly
+   presses, then of longer ones. A guess that is far off would press so hard that nothing leads back. In the end all
+   windows end `after` s after the first reading that is near, and are to be settled. */
+void ethd__touching_approach(ethd__shooting *shooting, double after);
+
+/* Returns the noise of the readings, m, by the residuals of settled windows; NaN where they are too few. */
+ethd__bracket ethd__touching_noise(const ethd__shooting *shooting);
 
 #endif

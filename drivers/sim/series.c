@@ -10,6 +10,8 @@
      D = sqrt(r . r):       sum D_i D_(k-i) = (r . r)_k */
 #include "sim/series.h"
 
+#include <limits.h>
+
 #include "ethd/maths.h"
 #include "sim/terms.h"
 
@@ -29,6 +31,9 @@ typedef struct expansion {
   ethd__two inverse_distance, stiffness; /* the pad's; stiffness over distance */
   double inverse_mass;                   /* of the finger */
   double swing;                          /* -w^2 of the hand's path, for its terms beyond 3 */
+  double enough;                         /* m/s: terms that change less end the series, */
+  double tolerance;                      /* m/s: and the step is so short that the last ones change less than this */
+  int order_max;
 } expansion;
 
 static const double INVERSE[ETHD__TERMS + 1] = {0,        1.0,      1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,
@@ -190,7 +195,7 @@ ETHD__INLINE double speed(const expansion *w, physics has, int k) {
    ring's speed plus that of the finger relative to its path. */
 ETHD__INLINE double expand(expansion *w, physics has) {
   ethd__series *s = w->out;
-  double tolerance = w->body->tolerance, h = s->step, reach, most, before, term;
+  double tolerance = w->tolerance, enough = w->enough, h = s->step, reach, most, before, term;
   accelerate(w, has, 0);
   accelerate(w, has, 1);
   accelerate(w, has, 2);
@@ -202,7 +207,7 @@ ETHD__INLINE double expand(expansion *w, physics has) {
   term = reach * speed(w, has, 4);
   most += before + term;
   int k = ETHD__ORDER_MIN;
-  while (k < w->body->order_max && !(before <= tolerance && term <= tolerance)) {
+  while (k < w->order_max && !(before <= enough && term <= enough)) {
     accelerate(w, has, k++);
     before = term;
     reach *= h;
@@ -222,11 +227,12 @@ ETHD__INLINE double expand(expansion *w, physics has) {
   return most;
 }
 
-/* The paper's arm has compiled cases of its own, because it runs most; an elastic one where nothing touches. */
+/* The paper's arm, rigid or elastic, has compiled cases of its own, because it runs most. */
 static double expand_kind(expansion *w, physics has) {
-  if (has.compliant && !has.serial && !has.coupled && has.touch == ETHD__APART)
-    return expand(w, (physics){.compliant = true, .touch = ETHD__APART});
-  if (has.serial || has.compliant || has.coupled) return expand(w, has);
+  if (has.serial || has.coupled) return expand(w, has);
+  if (has.compliant && has.touch == ETHD__PRESSING)
+    return expand(w, (physics){.compliant = true, .touch = ETHD__PRESSING});
+  if (has.compliant) return expand(w, (physics){.compliant = true, .touch = ETHD__APART});
   if (has.touch == ETHD__PRESSING) return expand(w, (physics){.touch = ETHD__PRESSING});
   return expand(w, (physics){.touch = ETHD__APART});
 }
@@ -273,8 +279,11 @@ static void begin(const ethd__sim_motion *hand, const ethd__sim_state *state, et
   s->motor_v[0] = ethd__pair(state->v + ETHD__MOTOR);
 }
 
-void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
-                         const ethd__sim_state *state, ethd__series *out) {
+/* Computes the series to the order that the tolerance asks for (order INT_MAX), or to this order whatever the tolerance
+   is. */
+static void expand_to(const ethd__body *b, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
+                      int order, const ethd__sim_state *state, ethd__series *out) {
+  bool given = order <= ETHD__ORDER_MAX;
   physics has = {b->serial, b->compliant, b->coupling != 0, state->touch};
   expansion w;
   w.body = b;
@@ -282,6 +291,9 @@ void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, const et
   w.related = -1;
   w.swing = -piece->w * piece->w;
   w.inverse_mass = 1 / b->finger_mass;
+  w.enough = given ? -1 : b->tolerance;
+  w.tolerance = given ? INFINITY : b->tolerance;
+  w.order_max = given ? order : b->order_max;
   w.inverse_inertia = 1 / ethd__pair(b->inertia);
   w.length = ethd__pair(b->link);
   w.friction = ethd__pair(b->friction);
@@ -297,4 +309,14 @@ void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, const et
     keep_clear(&w, piece, hand, state->clearance, most);
   else
     watch_touching(&w, has.touch);
+}
+
+void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
+                         const ethd__sim_state *state, ethd__series *out) {
+  expand_to(b, piece, hand, step, INT_MAX, state, out);
+}
+
+void ethd__series_repeat(const ethd__body *b, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
+                         int order, const ethd__sim_state *state, ethd__series *out) {
+  expand_to(b, piece, hand, step, order, state, out);
 }
