@@ -61,6 +61,10 @@ if "$PYTHON" -c 'import scipy.optimize' 2>/dev/null; then
 else
   echo "python3-scipy isn't here: nobody else fits the same windows"
 fi
+arm make sines fresh inf 0 1.7 || fail "numpy's arm, again"
+for plant in arm.plant "$bin/../share/ethd/b.plant"; do
+  "$bin/ethd-identify" --judge "$plant" fresh >said && arm judge fresh "$plant" said || fail "what --judge says of $plant: $(cat said)"
+done
 arm make sines weak 4.5 && "$bin/ethd-identify" weak --out weak.plant >said && arm check weak.plant force_limit=4.5 || fail "weak motors"
 arm make sines loose inf 0.0006 && "$bin/ethd-identify" loose >said || fail "an arm with play"
 grep -q 'NOT EXPLAINED' said || fail "play isn't told: $(cat said)"

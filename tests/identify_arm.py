@@ -1,9 +1,11 @@
 """An arm that this project's simulator has no part in: numpy integrates it, and its encoders go into a recording.
 
-identify_arm.py make TEMPLATE OUT [LIMIT [BACKLASH]]: a recording like TEMPLATE, of an arm of ARM whose motors give at most
-    LIMIT N at the ring (default: all that is asked), with so much play, m at the ring, between motor and link.
+identify_arm.py make TEMPLATE OUT [LIMIT [BACKLASH [PHASE]]]: a recording like TEMPLATE, of an arm of ARM whose motors give at
+    most LIMIT N at the ring (default: all that is asked), with so much play, m at the ring, between motor and link; another
+    phase, rad, of the sines makes another recording.
 identify_arm.py check PLANT WHAT...: the plant file's numbers are ARM's, within 1 % (delay: 0.01 ms) and within their intervals
     widened by half; limit=N: this too.
+identify_arm.py judge RECORDING PLANT SAID: what --judge said of them is what numpy's prediction comes to, within 1 %.
 identify_arm.py scipy RECORDING PLANT: scipy.optimize.least_squares, with numpy's prediction of the same windows, comes to the
     plant's numbers, within a fifth of their intervals' half widths."""
 import math, pathlib, re, shutil, sys
@@ -15,14 +17,14 @@ ARM = {"mass_x": 0.152, "mass_y": 0.203, "friction": 0.31, "viscous": 0.9, "dela
 COUNT = 2 * math.pi / 40000
 STEPS = 8 # of the integration in a period
 
-def torques(n):
+def torques(n, phase):
     """N at the ring, tick by tick: sines that no period repeats."""
     t = np.arange(n) * T
     out = np.zeros((n, 2))
     for j in range(2):
         for k in range(18):
             f = 0.9 * 1.21 ** (k + 0.5 * j)
-            out[:, j] += np.sin(2 * math.pi * f * t + 2.4 * k * k + j) * min(1, 0.25 * f)
+            out[:, j] += np.sin(2 * math.pi * f * t + 2.4 * k * k + j + phase * k) * min(1, 0.25 * f)
     return 1.1 * out
 
 def slope(v, force, m, p):
@@ -71,11 +73,11 @@ def with_play(force, p, play):
         before = force[k]
     return out
 
-def make(template, out, limit=math.inf, play=0.0):
+def make(template, out, limit=math.inf, play=0.0, phase=0.0):
     shutil.rmtree(out, ignore_errors=True)
     shutil.copytree(template, out)
     rows = np.load(out / "tick.npy")
-    force = torques(len(rows))
+    force = torques(len(rows), phase)
     given = np.clip(force, -limit, limit)
     x = with_play(given, ARM, play) if play else rigid(given, ARM)
     rows["q"] = np.rint((np.array([math.pi / 2, 0]) + x * np.array([1, 1]) / L) / COUNT) * COUNT
@@ -107,14 +109,55 @@ def check(path, more):
 
 FIRST, WINDOW = 150 + 8, 250 # ticks: the torque may rise at first; the longest delay
 
-def compare(folder, path):
-    from scipy.optimize import least_squares
-    value, ends = plant(path)
+def windows(folder):
     rows = np.load(folder / "tick.npy")
     stop = int(next(l for l in (folder / "events.csv").read_text().splitlines() if "limits.speed 0" in l).split(",")[0])
     starts = np.arange(FIRST, stop - WINDOW + 1, WINDOW)
     tail = stop - (starts[-1] + WINDOW)
     if tail >= 30: sys.exit(f"{tail} ticks are left over, which are a window of their own")
+    return rows, starts
+
+AHEAD = 50 # ticks
+
+def judge(folder, path, said):
+    """Both axes of all windows at once: place and speed at the beginning are fitted to all but the last AHEAD ticks."""
+    value, _ = plant(path)
+    rows, starts = windows(folder)
+    q, force = rows["q"] * L, np.clip(rows["tau"] / L, -value["force_limit"], value["force_limit"])
+    m, seen = np.array([value["mass_x"], value["mass_y"]]), WINDOW - AHEAD
+
+    def predict(x, v, count):
+        out = [x]
+        for k in range(count - 1):
+            x, v = advance(x, v, force[starts + k - 1], value["delay"], m, value, 3)
+            x, v = advance(x, v, force[starts + k], T - value["delay"], m, value, 6)
+            out.append(x)
+        return np.stack(out)
+
+    measured = np.stack([q[starts + k] for k in range(WINDOW)])
+    x, v = measured[0], (measured[6] - measured[0]) / (6 * T)
+    for _ in range(12):
+        base = predict(x, v, seen)
+        a, b = (predict(x + 1e-7, v, seen) - base) / 1e-7, (predict(x, v + 1e-5, seen) - base) / 1e-5
+        r = measured[:seen] - base
+        aa, ab, bb, ar, br = ((s * t).sum(axis=0) for s, t in ((a, a), (a, b), (b, b), (a, r), (b, r)))
+        x = x + (bb * ar - ab * br) / (aa * bb - ab * ab)
+        v = v + (aa * br - ab * ar) / (aa * bb - ab * ab)
+    off = (measured - predict(x, v, WINDOW)) / L
+    rms = np.sqrt((off ** 2).mean(axis=1))
+    lines = re.findall(r"joint (\d) +one tick ahead (\S+) .*, 50 ms ahead (\S+) \(", pathlib.Path(said).read_text())
+    failed = len(lines) != 2
+    for joint, step, ahead in lines:
+        for name, text, own in (("one tick", step, rms[seen][int(joint) - 1]), ("50 ms", ahead, rms[-1][int(joint) - 1])):
+            good = abs(float(text) - own) <= 0.01 * own
+            failed |= not good
+            print(f"joint {joint}, {name} ahead: {text} rad, numpy {own:.6g}, {own / COUNT:.2f} counts{'' if good else '  FAILED'}")
+    return failed
+
+def compare(folder, path):
+    from scipy.optimize import least_squares
+    value, ends = plant(path)
+    rows, starts = windows(folder)
     q, force = rows["q"] * L, rows["tau"] / L
     names = ["mass_x", "mass_y", "friction", "viscous", "delay"]
     scale = np.array([value[n] if n != "delay" else 1e-3 for n in names])
@@ -165,4 +208,5 @@ if __name__ == "__main__":
     word, rest = sys.argv[1], sys.argv[2:]
     if word == "make":
         sys.exit(make(pathlib.Path(rest[0]), pathlib.Path(rest[1]), *map(float, rest[2:])))
+    if word == "judge": sys.exit(judge(pathlib.Path(rest[0]), *rest[1:]))
     sys.exit(check(rest[0], rest[1:]) if word == "check" else compare(pathlib.Path(rest[0]), rest[1]))

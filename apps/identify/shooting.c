@@ -13,7 +13,7 @@
 #define CHORDS 2       /* corrections of a state with the same slopes */
 #define STEP 3e-4      /* by which a coordinate is changed to find its slope by differences */
 #define DEPENDENT 1e-5 /* a vector of which others explain all but this share says nothing; */
-#define SEEN 1e-2      /* standard deviations: a state that changes the residual by less wherever it is isn't seen either */
+#define SEEN 1e-2 /* standard deviations: a state that changes the residual by less wherever it is isn't seen either */
 
 /* ---- windows ---- */
 

@@ -14,7 +14,7 @@
 #define MOST 64    /* touches of the fit */
 #define ROUGH 1e-6 /* m/s: the simulator's tolerance while starts compete, */
 #define FINE 1e-7  /* m/s: and for the numbers that are said */
-#define STRANGE 4  /* standard deviations of a sum of squares: what leaves more doesn't follow the model, as when a hand brakes */
+#define STRANGE 4  /* standard deviations of a sum of squares: what leaves more doesn't follow the model */
 #define BLATANT 8  /* the same before the numbers are fitted to it */
 #define GUARD 8e-3 /* s: braking begins so softly that it shows so much later */
 #define LOUD 1.15  /* standard deviations: a residual above it isn't explained */

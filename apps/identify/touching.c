@@ -12,8 +12,8 @@
 #define IDEAL 1e-6        /* rad: standard deviation of encoders that don't round to counts */
 #define READINGS_MOST 96  /* readings of a touch */
 #define STRIDES_MOST 4096 /* steps of a trial that others repeat */
-#define CLEAR 1e-4 /* m from pad to ring: beyond it, all trials that differ little are apart alike */
-#define LEAST 4    /* readings before the touch that a guess at the path needs */
+#define CLEAR 1e-4        /* m from pad to ring: beyond it, all trials that differ little are apart alike */
+#define LEAST 4           /* readings before the touch that a guess at the path needs */
 
 /* ---- what is measured ---- */
 

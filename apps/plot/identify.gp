@@ -15,7 +15,7 @@ set tics nomirror textcolor rgb "#333333" scale 0.6
 set grid lc rgb "#e4e4e4" lt 1 lw 1
 set lmargin at screen 0.115
 set rmargin at screen 0.97
-set label 1 "Measured, predicted, and what is left" at screen 0.115,0.97 font "Sans Bold,18"
+set label 1 "Measured and predicted motion, and the residual" at screen 0.115,0.97 font "Sans Bold,18"
 set label 2 about at screen 0.115,0.943 font "Sans,13" textcolor rgb grey
 part(n, y) = int(column(1)) == n ? y : NaN
 
@@ -33,17 +33,17 @@ unset key
 set tmargin at screen 0.62
 set bmargin at screen 0.42
 set format x "%g"
-set xlabel "s"
-set ylabel "left, mrad" offset 0.5,0
+set xlabel "time, s"
+set ylabel "residual, mrad" offset 0.5,0
 plot in using (part(0, $2)):($5 * 1e3) skip 1 with impulses lc rgb blue
 
 set tmargin at screen 0.32
 set bmargin at screen 0.08
 set logscale y
 set format y "10^{%T}"
-set xlabel "Hz"
-set ylabel "spectrum of what is left, rad^2/Hz" offset 0.5,0
+set xlabel "frequency, Hz"
+set ylabel "residual's spectrum, rad^2/Hz" offset 0.5,0
 set key at screen 0.97,0.35 right horizontal samplen 2
-plot in using (part(1, $2)):3 skip 1 with lines lc rgb blue lw 2 title "left", \
+plot in using (part(1, $2)):3 skip 1 with lines lc rgb blue lw 2 title "residual", \
      in using (part(1, $2)):4 skip 1 with lines lc rgb grey dt 2 title "rounding to counts alone"
 unset multiplot
