@@ -48,8 +48,10 @@ static bool find(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
   case ETHD_FIT_VERTEX_MEAN: return ethd__fit_vertex_mean(points, centre);
   case ETHD_FIT_CENTROID: return ethd__fit_centroid(points, centre);
   case ETHD_FIT_ROBUST: return ethd__fit_robust(fit, points, centre);
-  default: return ethd__fit_kasa(points, centre);
+  case ETHD_FIT_KASA:
+  case ETHD_FIT_COUNT: break;
   }
+  return ethd__fit_kasa(points, centre);
 }
 
 static inline ethd_status finish(const ethd_fit *fit, ethd__points *points, ethd_finger *out) {

@@ -30,12 +30,15 @@ static double lowpass(const ethd_velocity *v, const ethd_velocity_state *s) {
 static double next(const ethd_velocity *v, ethd_velocity_state *s, double torque) {
   if (v->method == ETHD_VELOCITY_KALMAN) return ethd__velocity_kalman(v, s, torque);
   if (s->count < 2) return s->speed;
-  switch (v->method) {
+  switch (v->method) { /* without a default, so that the compiler names a method that isn't here */
   case ETHD_VELOCITY_LOWPASS: return lowpass(v, s);
   case ETHD_VELOCITY_LSQ: return ethd__velocity_lsq(v, s);
   case ETHD_VELOCITY_FOAW: return ethd__velocity_foaw(v, s);
-  default: return difference(s);
+  case ETHD_VELOCITY_DIFFERENCE:
+  case ETHD_VELOCITY_KALMAN: /* above */
+  case ETHD_VELOCITY_COUNT: break;
   }
+  return difference(s);
 }
 
 double ethd_velocity_step(const ethd_velocity *velocity, ethd_velocity_state *state, double q, double torque,

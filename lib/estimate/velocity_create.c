@@ -86,6 +86,8 @@ double ethd_velocity_lag(const ethd_velocity *v) {
   case ETHD_VELOCITY_LSQ:
   case ETHD_VELOCITY_FOAW: return (v->window - 1) / 2.0 * v->period;
   case ETHD_VELOCITY_KALMAN: return kalman_lag(v);
-  default: return 0.5 * v->period;
+  case ETHD_VELOCITY_DIFFERENCE:
+  case ETHD_VELOCITY_COUNT: break;
   }
+  return 0.5 * v->period;
 }
