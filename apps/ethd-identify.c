@@ -146,6 +146,17 @@ static bool check_evidence(const ethd__evidence *e, double count) {
       for (int j = 0; j < 2; j++) way[j] += fabs(e->q[k][j] - e->q[k - 1][j]);
   }
   if (windows < LEAST_WINDOWS && e->onset_count >= ETHD__TOUCHES_LEAST && !arg.judge) return false;
+  if (windows < LEAST_WINDOWS && e->not_numbers > e->count / 2)
+    ethd__fail(
+        ETHD_EXIT_INPUT,
+        "%s: angles or torques of %zu of %zu ticks aren't numbers: find out why with ethd-conform, and record again",
+        arg.folders[0], e->not_numbers, e->count);
+  if (windows < LEAST_WINDOWS && e->uneven > e->count / 2)
+    ethd__fail(
+        ETHD_EXIT_INPUT,
+        "%s: %zu of %zu ticks don't come %g s after the one before, which is the period of its configuration: record "
+        "again with a loop that keeps its period, as ethd-latency shows",
+        arg.folders[0], e->uneven, e->count, e->period);
   if (windows < LEAST_WINDOWS)
     ethd__fail(
         ETHD_EXIT_INPUT,

@@ -100,6 +100,12 @@ mkdir still && sed 's/x/x/' sines/config.ini >still/config.ini && cp sines/event
 refuse 2 'hardly moves.*record' still
 "$bin/ethd-run" --virtual --duration 1 --record short >/dev/null </dev/null
 refuse 2 'windows of .*are needed; record more' short
+for what in 'no_numbers:r["q"][:] = n.nan' 'uneven:r["time_ns"] *= 2'; do
+  name=${what%%:*}
+  cp -r sines "$name" && "$PYTHON" -c "import numpy as n; r = n.load('sines/tick.npy'); ${what#*:}; n.save('$name/tick.npy', r)"
+done
+refuse 2 "aren't numbers: .*record" no_numbers
+refuse 2 "don't come 0.001 s after the one before.*record" uneven
 mkdir clipped && cp sines/config.ini sines/events.csv clipped &&
   "$PYTHON" -c 'import numpy as n; r = n.load("sines/tick.npy"); r["guard"][:] = 2; n.save("clipped/tick.npy", r)'
 refuse 2 'the guard cut the torque in 100 %.*record' clipped

@@ -58,6 +58,8 @@ typedef struct ethd__evidence {
   uint32_t recording_count;
   size_t touched, unarmed; /* ticks left out: the finger was near; the torque isn't known */
   double clipped;          /* share of the moving ticks in which the guard cut the torque */
+  size_t not_numbers;      /* ticks whose angles or torques are none */
+  size_t uneven;           /* ticks that don't come a period after the one before */
 } ethd__evidence;
 
 /* Adds the recording in `folder`, or those in folders below it. Refuses a recording whose arm, period or ring differs

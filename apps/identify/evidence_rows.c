@@ -123,6 +123,8 @@ void ethd__evidence_rows(ethd__evidence *e, const ethd_setup *setup, const ethd_
     memcpy(e->q[base + i], rows[i].sense.q, sizeof *e->q);
     memcpy(e->torque[base + i], rows[i].tau, sizeof *e->torque);
     if (!is_known(&rows[i])) good[i] = 0;
+    e->not_numbers += !isfinite(rows[i].sense.q[0] + rows[i].sense.q[1] + rows[i].tau[0] + rows[i].tau[1]);
+    e->uneven += i && !ethd__evidence_follows(e, &rows[i]);
     e->unarmed += !good[i];
     add_delivery(e, setup, rows, i);
   }
