@@ -1,6 +1,5 @@
 /* Memory that runs out at any allocation while the drivers read, write and open things: one message that says so, nothing
    is kept, and no half of a file takes another's place. By standing in the way of the C library. */
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,66 +17,14 @@
 #include "text/ini.h"
 #include "text/text.h"
 #include "unit/rig.h"
+#include "unit/scarce_memory.h"
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || defined(__SANITIZE_UNDEFINED__) || \
-    !defined(__GLIBC__)
-#define SKIPPED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(undefined_behavior_sanitizer)
-#define SKIPPED 1
-#endif
-#endif
-
-#ifdef SKIPPED
+#ifdef SCARCE_MEMORY_SKIPPED
 int main(void) {
   puts("SKIP: a sanitizer's build has an allocator of its own");
   return 77;
 }
 #else
-
-/* ---- in the way ---- */
-
-static volatile long allowed = -1; /* allocations until all fail; < 0: none does */
-static volatile int live;          /* blocks held, counted while `counting` */
-static volatile int counting;
-
-static int refused(void) {
-  if (allowed < 0) return 0;
-  if (allowed > 0) {
-    allowed--;
-    return 0;
-  }
-  errno = ENOMEM;
-  return 1;
-}
-
-void *__libc_malloc(size_t);
-void *__libc_calloc(size_t, size_t);
-void *__libc_realloc(void *, size_t);
-void *__libc_memalign(size_t, size_t);
-void __libc_free(void *);
-
-#define HAND_OUT(call)           \
-  if (refused()) return NULL;    \
-  void *block = (call);          \
-  if (counting && block) live++; \
-  return block
-
-ETHD_API void *malloc(size_t n) { HAND_OUT(__libc_malloc(n)); }
-ETHD_API void *calloc(size_t n, size_t m) { HAND_OUT(__libc_calloc(n, m)); }
-
-ETHD_API void *aligned_alloc(size_t a, size_t n) { HAND_OUT(__libc_memalign(a, n)); }
-
-ETHD_API void *realloc(void *p, size_t n) {
-  if (refused()) return NULL;
-  if (counting && !p) live++;
-  return __libc_realloc(p, n);
-}
-
-ETHD_API void free(void *p) {
-  if (counting && p) live--;
-  __libc_free(p);
-}
 
 /* ---- what is tried ---- */
 

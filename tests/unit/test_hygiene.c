@@ -15,16 +15,11 @@
 #include "ethd/config.h"
 #include "unit/rig.h"
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || defined(__SANITIZE_UNDEFINED__) || \
-    !defined(__GLIBC__)
-#define SKIPPED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(undefined_behavior_sanitizer)
-#define SKIPPED 1
-#endif
-#endif
+__attribute__((unused)) static void forbid(const char *what); /* a sanitizer has no use for it */
+#define SCARCE_MEMORY_SEES(function) forbid(function)
+#include "unit/scarce_memory.h"
 
-#ifdef SKIPPED
+#ifdef SCARCE_MEMORY_SKIPPED
 int main(void) {
   puts("SKIP: a sanitizer's build has an allocator of its own");
   return 77;
@@ -33,57 +28,12 @@ int main(void) {
 
 /* ---- in the way ---- */
 
-static volatile int in_step;       /* a control thread is stepping */
-static volatile long allowed = -1; /* allocations until one fails; < 0: none does */
-static volatile int live;          /* blocks held, counted while `counting` */
-static volatile int counting;
-
+static volatile int in_step; /* a control thread is stepping */
 static void forbid(const char *what) {
   if (!in_step) return;
   in_step = 0;
   (void)!write(2, what, strlen(what));
   abort();
-}
-
-static int refused(void) {
-  if (allowed < 0) return 0;
-  if (allowed > 0) {
-    allowed--;
-    return 0;
-  }
-  errno = ENOMEM;
-  return 1;
-}
-
-void *__libc_malloc(size_t);
-void *__libc_calloc(size_t, size_t);
-void *__libc_realloc(void *, size_t);
-void *__libc_memalign(size_t, size_t);
-void __libc_free(void *);
-
-#define HAND_OUT(call)           \
-  forbid(__func__);              \
-  if (refused()) return NULL;    \
-  void *block = (call);          \
-  if (counting && block) live++; \
-  return block
-
-ETHD_API void *malloc(size_t n) { HAND_OUT(__libc_malloc(n)); }
-ETHD_API void *calloc(size_t n, size_t m) { HAND_OUT(__libc_calloc(n, m)); }
-ETHD_API void *aligned_alloc(size_t a, size_t n) { HAND_OUT(__libc_memalign(a, n)); }
-ETHD_API void *memalign(size_t a, size_t n) { HAND_OUT(__libc_memalign(a, n)); }
-
-ETHD_API void *realloc(void *p, size_t n) {
-  forbid("realloc");
-  if (refused()) return NULL;
-  if (counting && !p) live++;
-  return __libc_realloc(p, n);
-}
-
-ETHD_API void free(void *p) {
-  forbid("free");
-  if (counting && p) live--;
-  __libc_free(p);
 }
 
 ETHD_API int pthread_mutex_lock(pthread_mutex_t *mutex) {

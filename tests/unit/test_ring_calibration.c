@@ -112,7 +112,7 @@ START_TEST(test_too_few) {
     at[i].counts[5] = i == 1 ? 5000 : i % 2 ? 0 : 65535;
   }
   ck_assert_int_lt(ethd__calibration_fit(ETHD__LEVEL_LAW, (ethd__place_readings){at, ROD_PLACES}, &c, message), 0);
-  ck_assert_str_eq(message, "sensor 5: 1 usable readings, at least 4 are needed: is it missing, dirty or saturated?");
+  ck_assert_str_eq(message, "sensor 5: 1 usable reading, at least 4 are needed: is it missing, dirty or saturated?");
   ck_assert_int_lt(ethd__calibration_fit(ETHD__LEVEL_COMMON, (ethd__place_readings){at, 0}, &c, message), 0);
 }
 END_TEST
