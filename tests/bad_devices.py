@@ -479,7 +479,7 @@ answers       9  noise
 answers       1  none, as they should be
 answers      12  refusal
 answers       1  the line is closed
-drivers      18  misbehaves
+drivers      19  misbehaves
 maps         55  address clash
 maps         20  junk
 maps        411  key doubled

@@ -82,7 +82,7 @@ stop" "$study" "$folder/people.study" --out "$folder/live" --ask
 [ "$(grep -c '1 to 5, back, stop, or an empty line' "$folder/out")" = 1 ] || fail "an answer 9: $(cat "$folder/out")"
 grep -q ',2,3,5$' "$folder/live/survey.csv" && [ "$(wc -l <"$folder/live/survey.csv")" = 2 ] || fail "the answers: $(cat "$folder/live/survey.csv")"
 grep -q '^answer P01,3,1,1 ' "$folder/live/journal" || fail "an answer isn't in the journal: $(grep ^answer "$folder/live/journal")"
-"$study" --resume "$folder/live" --virtual --quiet >"$folder/out" 2>"$folder/err" && grep -q '1 questionnaires weren.t asked' "$folder/out" ||
+"$study" --resume "$folder/live" --virtual --quiet >"$folder/out" 2>"$folder/err" && grep -q '1 questionnaire wasn.t asked' "$folder/out" ||
   fail "nobody to ask: $(cat "$folder/out" "$folder/err")"
 talk '?\|ok keeps' "
 5

@@ -305,7 +305,7 @@ START_TEST(test_unconfirmed) {
   ethd_setting settings[] = {{"map", "guess.map", 1}, {"port", drive.port, 2}};
   ck_assert_msg(open_with(settings, 2) == ETHD_OK, "%s", message);
   ck_assert_str_eq(servo->remark(device, 0),
-                   "1 of 17 registers are unconfirmed: check their addresses in the drive's manual (step 2)");
+                   "1 of 17 registers is unconfirmed: check its address in the drive's manual (step 2)");
   close_device();
   free(text);
   free(all);

@@ -82,7 +82,7 @@ static const struct {
     {"a,,b\n", "x.csv:1: a column without a name"},
     {"a,b,\n", "x.csv:1: a column without a name"},
     {"a,b,a\n", "x.csv:1: the column \"a\" occurs twice"},
-    {"a,b\n1,2\n3\n", "x.csv:3: 1 cells, the header names 2 columns"},
+    {"a,b\n1,2\n3\n", "x.csv:3: 1 cell, the header names 2 columns"},
     {"a,b\n1,2,3\n", "x.csv:2: 3 cells, the header names 2 columns"},
     {"a,b\n1,2,\n", "x.csv:2: 3 cells"},
     {"a,b\n1,2\n\n3,4\n", "x.csv:3: a blank line"},

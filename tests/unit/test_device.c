@@ -78,6 +78,7 @@ static uint32_t figures(const void *p, ethd_figure *out, uint32_t max) {
 }
 
 static const ethd_driver a = {.size = sizeof a,
+                              .abi = ETHD_DRIVER_ABI,
                               .id = "a",
                               .brief = "a",
                               .open = open_a,
@@ -92,6 +93,7 @@ static const ethd_driver a = {.size = sizeof a,
                               .limits = limits_a,
                               .figures = figures};
 static const ethd_driver b = {.size = sizeof b,
+                              .abi = ETHD_DRIVER_ABI,
                               .id = "b",
                               .brief = "b",
                               .open = open_b,
@@ -182,7 +184,8 @@ START_TEST(test_bare) {
   ethd_sense s = {0};
   ethd_command c = {0};
   ethd_figure f;
-  bare = (ethd_driver){.size = sizeof bare, .id = "bare", .brief = "bare", .open = open_b, .close = close_part};
+  bare = (ethd_driver){
+      .size = sizeof bare, .abi = ETHD_DRIVER_ABI, .id = "bare", .brief = "bare", .open = open_b, .close = close_part};
   ck_assert_int_eq(open_bare("bare"), ETHD_OK);
   ck_assert_int_eq(driver->start(device), ETHD_OK);
   ck_assert_int_eq(driver->read(device, 5, &s), ETHD_OK);

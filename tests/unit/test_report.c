@@ -42,7 +42,7 @@ END_TEST
 START_TEST(test_refused_sheets) {
   ck_assert_int_eq(parse(""), ETHD_E_SYNTAX);
   ck_assert_int_eq(parse("a,b\n1\n"), ETHD_E_SYNTAX);
-  ck_assert_ptr_nonnull(strstr(message, "x.csv:2: 1 cells, the header has 2"));
+  ck_assert_ptr_nonnull(strstr(message, "x.csv:2: 1 cell, the header has 2"));
   ck_assert_int_eq(parse("a,b\n1,\"2\n"), ETHD_E_SYNTAX);
   ck_assert_ptr_nonnull(strstr(message, "x.csv:2: "));
 }
