@@ -1,7 +1,7 @@
 #!/bin/sh
 # One name, one thing: in include, lib, drivers and apps no struct, union, enum or typedef has two bodies, be it in headers
 # or in sources, and no macro or enumerator of a header has another value elsewhere. (Those that only sources define are
-# constants of one file each.)
+# constants of one file each.) Include guards are named after their files.
 exec "${PYTHON:-python3}" - <<'END'
 import pathlib, re, sys
 
@@ -40,6 +40,16 @@ def definitions(text):
             if not re.fullmatch(rf"(struct|union|enum) \w+ {name}", whole):
                 yield name, whole
 
+def guard(path):
+    """ETHD__ROOM_FILE_H; a program's room has APPS_ before it, because the libraries may have a room of that name."""
+    top, *rest = path.with_suffix("").parts
+    return "ETHD__" + ("APPS_" if top == "apps" else "") + "_".join(rest).upper().replace("-", "_") + "_H"
+
+unguarded = [path.as_posix() for top in ("lib", "drivers", "apps") for path in sorted(pathlib.Path(top).rglob("*.h"))
+             if "firmware" not in path.parts and f"#ifndef {guard(path)}\n#define {guard(path)}\n" not in path.read_text()]
+for path in unguarded:
+    print(f"FAILED: {path}: its include guard isn't {guard(pathlib.Path(path))}")
+
 bodies = {}
 for top in ("include", "lib", "drivers", "apps"):
     for path in sorted(pathlib.Path(top).rglob("*.[ch]")):
@@ -53,5 +63,5 @@ twice = {name: found for name, found in bodies.items() if len(found) > 1 and (" 
 for name in sorted(twice):
     print(f"FAILED: {name} is {len(twice[name])} things:", "; ".join(", ".join(files) for files in twice[name].values()))
 print(f"{len(bodies)} names, each stands for one thing" if not twice else f"{len(twice)} names stand for more than one thing")
-sys.exit(bool(twice))
+sys.exit(bool(twice or unguarded))
 END

@@ -2,8 +2,8 @@
 
    A benchmark answers one question with a table on the terminal and DIR/WHAT.csv; plot/bench-WHAT.gp
    draws it. Times are those of this machine at this moment, so contenders race in turns and only ratios count. */
-#ifndef ETHD__BENCH_BENCH_H
-#define ETHD__BENCH_BENCH_H
+#ifndef ETHD__APPS_BENCH_BENCH_H
+#define ETHD__APPS_BENCH_BENCH_H
 
 #include <stddef.h>
 #include <stdint.h>

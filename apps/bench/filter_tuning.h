@@ -1,6 +1,6 @@
 /* What the finger filters' benchmark compares: contenders on tracks, and their best tuning. */
-#ifndef ETHD__BENCH_FILTER_TUNING_H
-#define ETHD__BENCH_FILTER_TUNING_H
+#ifndef ETHD__APPS_BENCH_FILTER_TUNING_H
+#define ETHD__APPS_BENCH_FILTER_TUNING_H
 
 #include "bench/tracks.h"
 #include "ethd/finger_filter.h"

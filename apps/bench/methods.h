@@ -1,6 +1,6 @@
 /* Methods that move the plant through a stretch, beside the library's own. */
-#ifndef ETHD__BENCH_METHODS_H
-#define ETHD__BENCH_METHODS_H
+#ifndef ETHD__APPS_BENCH_METHODS_H
+#define ETHD__APPS_BENCH_METHODS_H
 
 #include <stdbool.h>
 

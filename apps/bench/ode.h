@@ -1,6 +1,6 @@
 /* What a peer that integrates exports: `peer_ode`, a table that ends with a NULL name (C linkage, const). */
-#ifndef ETHD__BENCH_ODE_H
-#define ETHD__BENCH_ODE_H
+#ifndef ETHD__APPS_BENCH_ODE_H
+#define ETHD__APPS_BENCH_ODE_H
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* What a peer's shared object exports: one table for each question it answers (C linkage, const). */
-#ifndef ETHD__BENCH_PEERS_H
-#define ETHD__BENCH_PEERS_H
+#ifndef ETHD__APPS_BENCH_PEERS_H
+#define ETHD__APPS_BENCH_PEERS_H
 
 #include <math.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* The plant alone: the torques of taps of plant n are recorded in closed loop, and every method then
    applies them to the same plant. */
-#ifndef ETHD__BENCH_PROBLEM_H
-#define ETHD__BENCH_PROBLEM_H
+#ifndef ETHD__APPS_BENCH_PROBLEM_H
+#define ETHD__APPS_BENCH_PROBLEM_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* Asks the scene's contenders and measures them. */
-#ifndef ETHD__BENCH_SCENE_RACE_H
-#define ETHD__BENCH_SCENE_RACE_H
+#ifndef ETHD__APPS_BENCH_SCENE_RACE_H
+#define ETHD__APPS_BENCH_SCENE_RACE_H
 
 #include "bench/bench.h"
 #include "bench/scene_world.h"

@@ -1,6 +1,6 @@
 /* What the scene's contenders are asked: segments of the plane and points. */
-#ifndef ETHD__BENCH_SCENE_WORLD_H
-#define ETHD__BENCH_SCENE_WORLD_H
+#ifndef ETHD__APPS_BENCH_SCENE_WORLD_H
+#define ETHD__APPS_BENCH_SCENE_WORLD_H
 
 #include <stddef.h>
 

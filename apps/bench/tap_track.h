@@ -1,7 +1,7 @@
 /* A tap for the controller: what a device would sense while finger and ring tap a wall at x = 0.238 m
    once every 1.024 s, and scenes to tap on. */
-#ifndef ETHD__BENCH_TAP_TRACK_H
-#define ETHD__BENCH_TAP_TRACK_H
+#ifndef ETHD__APPS_BENCH_TAP_TRACK_H
+#define ETHD__APPS_BENCH_TAP_TRACK_H
 
 #include "ethd/ethd.h"
 

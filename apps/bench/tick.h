@@ -1,6 +1,6 @@
 /* Parts of the tick's benchmark. */
-#ifndef ETHD__BENCH_TICK_H
-#define ETHD__BENCH_TICK_H
+#ifndef ETHD__APPS_BENCH_TICK_H
+#define ETHD__APPS_BENCH_TICK_H
 
 #include "bench/bench.h"
 #include "bench/tap_track.h"

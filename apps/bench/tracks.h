@@ -1,6 +1,6 @@
 /* Fingers for the filters: reaches and recorded movements, read at 300 Hz with noise and latency, in ticks of 1 kHz. */
-#ifndef ETHD__BENCH_TRACKS_H
-#define ETHD__BENCH_TRACKS_H
+#ifndef ETHD__APPS_BENCH_TRACKS_H
+#define ETHD__APPS_BENCH_TRACKS_H
 
 #include <stddef.h>
 

@@ -1,6 +1,6 @@
 /* Measures step by step, guided on the terminal, with a ring on its port. */
-#ifndef ETHD__CALIBRATE_GUIDED_H
-#define ETHD__CALIBRATE_GUIDED_H
+#ifndef ETHD__APPS_CALIBRATE_GUIDED_H
+#define ETHD__APPS_CALIBRATE_GUIDED_H
 
 #include "calibrate/places.h"
 

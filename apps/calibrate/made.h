@@ -1,6 +1,6 @@
 /* A simulated ring, whose true laws are known, so that the result of a calibration can be judged. */
-#ifndef ETHD__CALIBRATE_MADE_H
-#define ETHD__CALIBRATE_MADE_H
+#ifndef ETHD__APPS_CALIBRATE_MADE_H
+#define ETHD__APPS_CALIBRATE_MADE_H
 
 #include "calibrate/places.h"
 

@@ -1,6 +1,6 @@
 /* A calibration's raw data: what the sensors counted in the empty ring and with a rod at known places. */
-#ifndef ETHD__CALIBRATE_PLACES_H
-#define ETHD__CALIBRATE_PLACES_H
+#ifndef ETHD__APPS_CALIBRATE_PLACES_H
+#define ETHD__APPS_CALIBRATE_PLACES_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* How good a calibration is: tables, a CSV file, a picture. */
-#ifndef ETHD__CALIBRATE_REPORT_H
-#define ETHD__CALIBRATE_REPORT_H
+#ifndef ETHD__APPS_CALIBRATE_REPORT_H
+#define ETHD__APPS_CALIBRATE_REPORT_H
 
 #include "calibrate/places.h"
 

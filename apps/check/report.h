@@ -1,6 +1,6 @@
 /* Prints ethd-check's page, section by section. All [main]. */
-#ifndef ETHD_APPS_CHECK_REPORT_H
-#define ETHD_APPS_CHECK_REPORT_H
+#ifndef ETHD__APPS_CHECK_REPORT_H
+#define ETHD__APPS_CHECK_REPORT_H
 
 #include <stdbool.h>
 

@@ -1,8 +1,8 @@
 /* What all programs share: argp's settings, one-line failures, strict option values, progress, Ctrl-C.
 
    Exit codes: 0 done, 1 the job failed, 2 wrong usage or bad input. All [main]. */
-#ifndef ETHD__CLI_CLI_H
-#define ETHD__CLI_CLI_H
+#ifndef ETHD__APPS_CLI_CLI_H
+#define ETHD__APPS_CLI_CLI_H
 
 #include <argp.h>
 #include <signal.h>

@@ -1,6 +1,6 @@
 /* Says what was dropped from a scene. */
-#ifndef ETHD__CLI_DROPPED_H
-#define ETHD__CLI_DROPPED_H
+#ifndef ETHD__APPS_CLI_DROPPED_H
+#define ETHD__APPS_CLI_DROPPED_H
 
 #include <stdio.h>
 

@@ -1,7 +1,7 @@
 /* Keeps control characters from terminals, which obey sequences of them. Names of files, and words of files and
    plugins, may hold some. */
-#ifndef ETHD__CLI_TERMINAL_H
-#define ETHD__CLI_TERMINAL_H
+#ifndef ETHD__APPS_CLI_TERMINAL_H
+#define ETHD__APPS_CLI_TERMINAL_H
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
 /* How far a plant is from what the paper says: Table 1's eight statistics, the paper's sentences, and gains that are
    "the highest possible while remaining stable". All [main]. */
-#ifndef ETHD_EXPLAIN_JUDGE_H
-#define ETHD_EXPLAIN_JUDGE_H
+#ifndef ETHD__APPS_EXPLAIN_JUDGE_H
+#define ETHD__APPS_EXPLAIN_JUDGE_H
 
 #include "explain/prior.h"
 

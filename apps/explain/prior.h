@@ -1,7 +1,7 @@
 /* Which numbers of a plant and its controller may be varied to explain the paper, within which bounds, and why. All
    [main]. */
-#ifndef ETHD_EXPLAIN_PRIOR_H
-#define ETHD_EXPLAIN_PRIOR_H
+#ifndef ETHD__APPS_EXPLAIN_PRIOR_H
+#define ETHD__APPS_EXPLAIN_PRIOR_H
 
 #include "tap/study.h"
 

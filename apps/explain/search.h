@@ -1,8 +1,8 @@
 /* The search for a plant: differential evolution (Storn and Price 1997) with JADE's step, x + F (p - x) + F (a - b), p
    one of the best (Zhang and Sanderson 2009). Every draw is a function of seed, generation and number, and a journal
    keeps what was judged, so that a search that was interrupted goes on and has the same result. All [main]. */
-#ifndef ETHD_EXPLAIN_SEARCH_H
-#define ETHD_EXPLAIN_SEARCH_H
+#ifndef ETHD__APPS_EXPLAIN_SEARCH_H
+#define ETHD__APPS_EXPLAIN_SEARCH_H
 
 #include "explain/judge.h"
 

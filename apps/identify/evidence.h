@@ -1,7 +1,7 @@
 /* What recordings say about an arm in motion: commands and encoders tick by tick, and when readings came. Values that
    only a simulation knows aren't used. All [main]. */
-#ifndef ETHD_APPS_IDENTIFY_EVIDENCE_H
-#define ETHD_APPS_IDENTIFY_EVIDENCE_H
+#ifndef ETHD__APPS_IDENTIFY_EVIDENCE_H
+#define ETHD__APPS_IDENTIFY_EVIDENCE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* Makes a recording for identification, in which the device moves by itself. All [main]. */
-#ifndef ETHD_APPS_IDENTIFY_EXCITE_H
-#define ETHD_APPS_IDENTIFY_EXCITE_H
+#ifndef ETHD__APPS_IDENTIFY_EXCITE_H
+#define ETHD__APPS_IDENTIFY_EXCITE_H
 
 #include <stdbool.h>
 

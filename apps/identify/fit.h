@@ -1,7 +1,7 @@
 /* Fits a plant to evidence: starts by regression, Levenberg and Marquardt's method (cminpack) on the windows, the
    choice of a model by an information criterion, and an interval for each number. All [main]. */
-#ifndef ETHD_APPS_IDENTIFY_FIT_H
-#define ETHD_APPS_IDENTIFY_FIT_H
+#ifndef ETHD__APPS_IDENTIFY_FIT_H
+#define ETHD__APPS_IDENTIFY_FIT_H
 
 #include "identify/shooting.h"
 

@@ -1,6 +1,6 @@
 /* Presents what was found: to people, as a plant file, as a picture. All [main]. */
-#ifndef ETHD_APPS_IDENTIFY_PAGE_H
-#define ETHD_APPS_IDENTIFY_PAGE_H
+#ifndef ETHD__APPS_IDENTIFY_PAGE_H
+#define ETHD__APPS_IDENTIFY_PAGE_H
 
 #include <stdio.h>
 

@@ -1,7 +1,7 @@
 /* Predicts the encoders from the commands over a short window, by the simulator of drivers/sim, without a finger.
    ethd-identify and ethd-bench use it. [any] */
-#ifndef ETHD_APPS_IDENTIFY_PREDICT_H
-#define ETHD_APPS_IDENTIFY_PREDICT_H
+#ifndef ETHD__APPS_IDENTIFY_PREDICT_H
+#define ETHD__APPS_IDENTIFY_PREDICT_H
 
 #include "identify/evidence.h"
 #include "sim/arms.h"

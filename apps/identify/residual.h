@@ -1,6 +1,6 @@
 /* Judges the residual of a fit: is it as small as the encoders allow, and is it white? All [main]. */
-#ifndef ETHD_APPS_IDENTIFY_RESIDUAL_H
-#define ETHD_APPS_IDENTIFY_RESIDUAL_H
+#ifndef ETHD__APPS_IDENTIFY_RESIDUAL_H
+#define ETHD__APPS_IDENTIFY_RESIDUAL_H
 
 #include "identify/shooting.h"
 

@@ -1,6 +1,6 @@
 /* Finds what recordings say about the sensors: encoder counts, and the ring's readings. All [main]. */
-#ifndef ETHD_APPS_IDENTIFY_SENSING_H
-#define ETHD_APPS_IDENTIFY_SENSING_H
+#ifndef ETHD__APPS_IDENTIFY_SENSING_H
+#define ETHD__APPS_IDENTIFY_SENSING_H
 
 #include "identify/evidence.h"
 

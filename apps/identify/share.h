@@ -1,6 +1,6 @@
 /* Spreads work over as many threads as there are processors. All [main]. */
-#ifndef ETHD_APPS_IDENTIFY_SHARE_H
-#define ETHD_APPS_IDENTIFY_SHARE_H
+#ifndef ETHD__APPS_IDENTIFY_SHARE_H
+#define ETHD__APPS_IDENTIFY_SHARE_H
 
 #include <stddef.h>
 

@@ -1,8 +1,8 @@
 /* The least-squares problem (multiple shooting): its residuals are measured minus predicted encoders over many short
    windows, each of which begins in a state of its own. For every plant the states are fitted inside (variable
    projection), so that only the plant's unknowns are left. All [main]. */
-#ifndef ETHD_APPS_IDENTIFY_SHOOTING_H
-#define ETHD_APPS_IDENTIFY_SHOOTING_H
+#ifndef ETHD__APPS_IDENTIFY_SHOOTING_H
+#define ETHD__APPS_IDENTIFY_SHOOTING_H
 
 #include <stdbool.h>
 

@@ -2,8 +2,8 @@
    the arm's state, the hand's voluntary path (a cubic of time in each axis) and the gap of that tap; the simulator
    predicts the encoders and the readings of the finger's centre. The path isn't measured apart from the finger's own
    motion, so it is fitted with the rest, and the intervals allow for what that leaves open. All [main]. */
-#ifndef ETHD_APPS_IDENTIFY_TOUCH_FIT_H
-#define ETHD_APPS_IDENTIFY_TOUCH_FIT_H
+#ifndef ETHD__APPS_IDENTIFY_TOUCH_FIT_H
+#define ETHD__APPS_IDENTIFY_TOUCH_FIT_H
 
 #include "identify/fit.h"
 #include "identify/sensing.h"

@@ -1,6 +1,6 @@
 /* The arm with the finger that touches it, as the subject of a fit. All [main]. */
-#ifndef ETHD_APPS_IDENTIFY_TOUCHING_H
-#define ETHD_APPS_IDENTIFY_TOUCHING_H
+#ifndef ETHD__APPS_IDENTIFY_TOUCHING_H
+#define ETHD__APPS_IDENTIFY_TOUCHING_H
 
 #include "identify/sensing.h"
 #include "identify/shooting.h"

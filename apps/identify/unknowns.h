@@ -1,7 +1,7 @@
 /* The numbers of a plant that a fit may change, those of the arm and of the finger. Each has a coordinate in which
    equal steps matter equally. All [main]. */
-#ifndef ETHD_APPS_IDENTIFY_UNKNOWNS_H
-#define ETHD_APPS_IDENTIFY_UNKNOWNS_H
+#ifndef ETHD__APPS_IDENTIFY_UNKNOWNS_H
+#define ETHD__APPS_IDENTIFY_UNKNOWNS_H
 
 #include <stddef.h>
 

@@ -1,6 +1,6 @@
 /* The taps of a table, by cell. All [main]. */
-#ifndef ETHD_REPORT_DATA_H
-#define ETHD_REPORT_DATA_H
+#ifndef ETHD__APPS_REPORT_DATA_H
+#define ETHD__APPS_REPORT_DATA_H
 
 #include "report/gather.h"
 #include "statistics/clusters.h"

@@ -1,6 +1,6 @@
 /* Largest torques of a tap's ticks, and the forces that they make. [any] */
-#ifndef ETHD_REPORT_FORCES_H
-#define ETHD_REPORT_FORCES_H
+#ifndef ETHD__APPS_REPORT_FORCES_H
+#define ETHD__APPS_REPORT_FORCES_H
 
 #include "ethd/arm.h"
 #include "tap/ticks.h"

@@ -1,7 +1,7 @@
 /* Gathers the tables of a study from its folder or from several stations' folders, and who isn't analysed. All
    [main]. */
-#ifndef ETHD_REPORT_GATHER_H
-#define ETHD_REPORT_GATHER_H
+#ifndef ETHD__APPS_REPORT_GATHER_H
+#define ETHD__APPS_REPORT_GATHER_H
 
 #include "report/sheet.h"
 #include "study/columns.h"

@@ -1,7 +1,7 @@
 /* Pieces of a page that stands alone: no script, no other file. Whatever isn't markup of our own is escaped here, and
    nothing else writes to a page. All [main]. */
-#ifndef ETHD_REPORT_HTML_H
-#define ETHD_REPORT_HTML_H
+#ifndef ETHD__APPS_REPORT_HTML_H
+#define ETHD__APPS_REPORT_HTML_H
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* The sample by which the paper's sentences are judged: the taps beside the study where there are any, which are more,
    else the study's own. All [main]. */
-#ifndef ETHD_REPORT_JUDGED_H
-#define ETHD_REPORT_JUDGED_H
+#ifndef ETHD__APPS_REPORT_JUDGED_H
+#define ETHD__APPS_REPORT_JUDGED_H
 
 #include "report/report.h"
 

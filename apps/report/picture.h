@@ -3,8 +3,8 @@
    gnuplot takes text for commands in many places, so nothing that stands in a file or on our command line reaches it
    but as a string: names and words go through its standard input as quoted assignments, no shell sees them, and the
    scripts read data files only. */
-#ifndef ETHD_REPORT_PICTURE_H
-#define ETHD_REPORT_PICTURE_H
+#ifndef ETHD__APPS_REPORT_PICTURE_H
+#define ETHD__APPS_REPORT_PICTURE_H
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
 /* Where a study's folder keeps the ticks of its taps: a session in taps/P01-03-004, worker i of n of a simulation in
    taps-i-of-n/0-P01-03-004, after the point of the grid. All [main]. */
-#ifndef ETHD_REPORT_RECORDINGS_H
-#define ETHD_REPORT_RECORDINGS_H
+#ifndef ETHD__APPS_REPORT_RECORDINGS_H
+#define ETHD__APPS_REPORT_RECORDINGS_H
 
 #include "report/gather.h"
 #include "text/file_name.h"

@@ -1,6 +1,6 @@
 /* The report of a study: tables, pictures, a page. All [main]. */
-#ifndef ETHD_REPORT_REPORT_H
-#define ETHD_REPORT_REPORT_H
+#ifndef ETHD__APPS_REPORT_REPORT_H
+#define ETHD__APPS_REPORT_REPORT_H
 
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
 /* A CSV file of words: one header row, cells by name. All [main]. */
-#ifndef ETHD_REPORT_SHEET_H
-#define ETHD_REPORT_SHEET_H
+#ifndef ETHD__APPS_REPORT_SHEET_H
+#define ETHD__APPS_REPORT_SHEET_H
 
 #include <stdbool.h>
 #include <stddef.h>

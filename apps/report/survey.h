@@ -1,6 +1,6 @@
 /* The answers of a study's questionnaire. All [main]. */
-#ifndef ETHD_REPORT_SURVEY_H
-#define ETHD_REPORT_SURVEY_H
+#ifndef ETHD__APPS_REPORT_SURVEY_H
+#define ETHD__APPS_REPORT_SURVEY_H
 
 #include "report/report.h"
 

@@ -1,6 +1,6 @@
 /* Commands of ethd-run: each line of input is answered by one line. All [main]. */
-#ifndef ETHD_APPS_RUN_COMMANDS_H
-#define ETHD_APPS_RUN_COMMANDS_H
+#ifndef ETHD__APPS_RUN_COMMANDS_H
+#define ETHD__APPS_RUN_COMMANDS_H
 
 #include "run/session.h"
 

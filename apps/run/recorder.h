@@ -1,7 +1,7 @@
 /* Takes the loop's rows into a recording and to telemetry, and keeps the newest for whoever asks. It runs in a thread
    of its own or, on a virtual clock, after every tick. */
-#ifndef ETHD_APPS_RUN_RECORDER_H
-#define ETHD_APPS_RUN_RECORDER_H
+#ifndef ETHD__APPS_RUN_RECORDER_H
+#define ETHD__APPS_RUN_RECORDER_H
 
 #include <pthread.h>
 #include <stdatomic.h>

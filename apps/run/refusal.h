@@ -1,6 +1,6 @@
 /* Says why a loop didn't start, and what mends it. [main] */
-#ifndef ETHD__RUN_REFUSAL_H
-#define ETHD__RUN_REFUSAL_H
+#ifndef ETHD__APPS_RUN_REFUSAL_H
+#define ETHD__APPS_RUN_REFUSAL_H
 
 #include "ethd/config.h"
 #include "ethd/loop.h"

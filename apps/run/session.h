@@ -1,6 +1,6 @@
 /* A device under a controller: opened, stepped by a loop, stopped in order. All [main]. */
-#ifndef ETHD_APPS_RUN_SESSION_H
-#define ETHD_APPS_RUN_SESSION_H
+#ifndef ETHD__APPS_RUN_SESSION_H
+#define ETHD__APPS_RUN_SESSION_H
 
 #include <stdbool.h>
 

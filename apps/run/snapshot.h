@@ -1,7 +1,7 @@
 /* The ticks around the first fault that stopped the ring: 2 s before it and 1 s after it. All calls are one
    thread's. */
-#ifndef ETHD_APPS_RUN_SNAPSHOT_H
-#define ETHD_APPS_RUN_SNAPSHOT_H
+#ifndef ETHD__APPS_RUN_SNAPSHOT_H
+#define ETHD__APPS_RUN_SNAPSHOT_H
 
 #include "ethd/control.h"
 #include "ethd/record.h"

@@ -1,6 +1,6 @@
 /* What people are told of a run. All [main]. */
-#ifndef ETHD_APPS_RUN_SUMMARY_H
-#define ETHD_APPS_RUN_SUMMARY_H
+#ifndef ETHD__APPS_RUN_SUMMARY_H
+#define ETHD__APPS_RUN_SUMMARY_H
 
 #include <stdio.h>
 

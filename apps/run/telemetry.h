@@ -1,6 +1,6 @@
 /* Telemetry: one JSON object in each datagram, as PlotJuggler's UDP server reads it. All [main]. */
-#ifndef ETHD_APPS_RUN_TELEMETRY_H
-#define ETHD_APPS_RUN_TELEMETRY_H
+#ifndef ETHD__APPS_RUN_TELEMETRY_H
+#define ETHD__APPS_RUN_TELEMETRY_H
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
 /* What ethd-study does with its options: a session, a simulation, a merge, a look. All [main]; each returns the exit
    code, and ends the program on bad input. */
-#ifndef ETHD_SCREEN_COMMANDS_H
-#define ETHD_SCREEN_COMMANDS_H
+#ifndef ETHD__APPS_SCREEN_COMMANDS_H
+#define ETHD__APPS_SCREEN_COMMANDS_H
 
 #include "study/shard.h"
 #include "study/stations.h"

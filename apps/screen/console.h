@@ -1,6 +1,6 @@
 /* The terminal as a study's front: lines on stdout, commands and answers on stdin. All [main]. */
-#ifndef ETHD_SCREEN_CONSOLE_H
-#define ETHD_SCREEN_CONSOLE_H
+#ifndef ETHD__APPS_SCREEN_CONSOLE_H
+#define ETHD__APPS_SCREEN_CONSOLE_H
 
 #include "study/front.h"
 

@@ -1,6 +1,6 @@
 /* Draws what all pages of the study's screen show. All [main]. */
-#ifndef ETHD_SCREEN_DRAW_H
-#define ETHD_SCREEN_DRAW_H
+#ifndef ETHD__APPS_SCREEN_DRAW_H
+#define ETHD__APPS_SCREEN_DRAW_H
 
 #include "screen/screen.h"
 

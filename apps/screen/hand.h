@@ -8,8 +8,8 @@
    Between the pointer and the hand lie ETHD_HAND_LEAD samples and ETHD_HAND_DELAY, 36 ms in all. A pointer that is led
    at a steady speed leads the hand at that speed: within 8 % at any instant where the mouse is heard of 60 times a
    second or more, up to 1 ms late, and a pixel is 0.3 mm or less; within 0.2 % over 0.4 s. */
-#ifndef ETHD_SCREEN_HAND_H
-#define ETHD_SCREEN_HAND_H
+#ifndef ETHD__APPS_SCREEN_HAND_H
+#define ETHD__APPS_SCREEN_HAND_H
 
 #include "ethd/sim.h"
 

@@ -1,6 +1,6 @@
 /* Checks whether a font has the letters of a study's own words. All [main]. */
-#ifndef ETHD_SCREEN_LETTERS_H
-#define ETHD_SCREEN_LETTERS_H
+#ifndef ETHD__APPS_SCREEN_LETTERS_H
+#define ETHD__APPS_SCREEN_LETTERS_H
 
 #include <SDL2/SDL_ttf.h>
 

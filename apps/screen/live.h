@@ -1,7 +1,7 @@
 /* A tap in real time on a thread of its own: controller and simulated device at their period, the hand led by
    the pointer. Screen and thread meet in two cells. */
-#ifndef ETHD_SCREEN_LIVE_H
-#define ETHD_SCREEN_LIVE_H
+#ifndef ETHD__APPS_SCREEN_LIVE_H
+#define ETHD__APPS_SCREEN_LIVE_H
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -1,7 +1,7 @@
 /* A page of words: title above, keys below, and between them paragraphs that never overlap, in any window: where there
    is too little room for them the letters shrink. All [main]. */
-#ifndef ETHD_SCREEN_PAGE_H
-#define ETHD_SCREEN_PAGE_H
+#ifndef ETHD__APPS_SCREEN_PAGE_H
+#define ETHD__APPS_SCREEN_PAGE_H
 
 #include "screen/window.h"
 

@@ -1,6 +1,6 @@
 /* All that a session needs at once: its folder, where people tap, what they see. All [main]. */
-#ifndef ETHD_SCREEN_PLACE_H
-#define ETHD_SCREEN_PLACE_H
+#ifndef ETHD__APPS_SCREEN_PLACE_H
+#define ETHD__APPS_SCREEN_PLACE_H
 
 #include "screen/console.h"
 #include "screen/screen.h"

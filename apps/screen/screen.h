@@ -1,8 +1,8 @@
 /* The study's screen: a black free space with a thick green contour, a white circle for the finger, a start
    line, a speed cue, and what to do. The mouse is the finger, on the simulated device; everything else is
    keys. Participants aren't told which strategy it is. All [main]. */
-#ifndef ETHD_SCREEN_SCREEN_H
-#define ETHD_SCREEN_SCREEN_H
+#ifndef ETHD__APPS_SCREEN_SCREEN_H
+#define ETHD__APPS_SCREEN_SCREEN_H
 
 #include "screen/live.h"
 #include "screen/page.h"

@@ -5,8 +5,8 @@
       |  <--      o    |    |   the finger's circle; the start line
       |                     |
       +=====================+                                           All [any], pure. */
-#ifndef ETHD_SCREEN_VIEW_H
-#define ETHD_SCREEN_VIEW_H
+#ifndef ETHD__APPS_SCREEN_VIEW_H
+#define ETHD__APPS_SCREEN_VIEW_H
 
 #include "ethd/vec.h"
 

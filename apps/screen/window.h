@@ -1,8 +1,8 @@
 /* A window on pixels of SDL2's: shapes, text, keys, the pointer, 60 frames a second. A frame is a list of shapes;
    those that are as in the frame before keep their pixels, so a text is set once and only what differs is drawn and
    sent. All [main]. */
-#ifndef ETHD_SCREEN_WINDOW_H
-#define ETHD_SCREEN_WINDOW_H
+#ifndef ETHD__APPS_SCREEN_WINDOW_H
+#define ETHD__APPS_SCREEN_WINDOW_H
 
 #include <SDL2/SDL.h>
 #include <SDL2/SDL_ttf.h>

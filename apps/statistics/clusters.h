@@ -1,7 +1,7 @@
 /* How sure a figure of people's taps is, by a bootstrap: people are drawn with replacement, then taps of each person,
    since taps of one person are not independent (Davison and Hinkley 1997, 3.8). All [any]. */
-#ifndef ETHD_STATISTICS_CLUSTERS_H
-#define ETHD_STATISTICS_CLUSTERS_H
+#ifndef ETHD__APPS_STATISTICS_CLUSTERS_H
+#define ETHD__APPS_STATISTICS_CLUSTERS_H
 
 #include <stdbool.h>
 

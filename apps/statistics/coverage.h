@@ -1,6 +1,6 @@
 /* How often the intervals of a report hold the truth, found by simulating studies whose truth is known. [any] */
-#ifndef ETHD_STATISTICS_COVERAGE_H
-#define ETHD_STATISTICS_COVERAGE_H
+#ifndef ETHD__APPS_STATISTICS_COVERAGE_H
+#define ETHD__APPS_STATISTICS_COVERAGE_H
 
 #include <stddef.h>
 #include <stdint.h>

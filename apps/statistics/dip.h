@@ -1,6 +1,6 @@
 /* Does a sample have one mode or several? All [any]. */
-#ifndef ETHD_STATISTICS_DIP_H
-#define ETHD_STATISTICS_DIP_H
+#ifndef ETHD__APPS_STATISTICS_DIP_H
+#define ETHD__APPS_STATISTICS_DIP_H
 
 #include "statistics/sample.h"
 

@@ -1,6 +1,6 @@
 /* Probability distributions, accurate to about 1e-12 by comparison with SciPy. All [any]. */
-#ifndef ETHD_STATISTICS_DISTRIBUTION_H
-#define ETHD_STATISTICS_DISTRIBUTION_H
+#ifndef ETHD__APPS_STATISTICS_DISTRIBUTION_H
+#define ETHD__APPS_STATISTICS_DISTRIBUTION_H
 
 /* P(Z <= z) of a standard normal number. */
 double ethd__normal_below(double z);

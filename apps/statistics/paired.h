@@ -1,6 +1,6 @@
 /* Tests of differences within people, one number for each person. All [any]. */
-#ifndef ETHD_STATISTICS_PAIRED_H
-#define ETHD_STATISTICS_PAIRED_H
+#ifndef ETHD__APPS_STATISTICS_PAIRED_H
+#define ETHD__APPS_STATISTICS_PAIRED_H
 
 #include <stdbool.h>
 

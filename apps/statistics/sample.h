@@ -1,7 +1,7 @@
 /* Figures of one sample. Each random method of this room draws from its own stream of the given seed, so that the same
    data give the same figures. A figure that isn't defined is NaN. All [any]. */
-#ifndef ETHD_STATISTICS_SAMPLE_H
-#define ETHD_STATISTICS_SAMPLE_H
+#ifndef ETHD__APPS_STATISTICS_SAMPLE_H
+#define ETHD__APPS_STATISTICS_SAMPLE_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -7,8 +7,8 @@
 
    whose real and imaginary parts give K and B. With H = (1 - 1/z)/T it is the backward difference's
        K T^2/m = 4 tan^2(th/2) cos((n+1) th),  B T/m = 2 tan(th/2) sin((n+1) th) - K T^2/(2m). */
-#ifndef ETHD__STRESS_CURVE_H
-#define ETHD__STRESS_CURVE_H
+#ifndef ETHD__APPS_STRESS_CURVE_H
+#define ETHD__APPS_STRESS_CURVE_H
 
 #include "ethd/velocity.h"
 

@@ -5,8 +5,8 @@
         |   |//////  wall           alone, with the inertia m L^2
         v   |//////
      ( ring )|/////   wall on the left: n = (-1, 0), d_re = gap at the start                           */
-#ifndef ETHD__STRESS_RIG_H
-#define ETHD__STRESS_RIG_H
+#ifndef ETHD__APPS_STRESS_RIG_H
+#define ETHD__APPS_STRESS_RIG_H
 
 #include <stdbool.h>
 

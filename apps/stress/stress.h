@@ -2,8 +2,8 @@
 
    A test measures the library's own code and compares the figure with one that it works out from a formula. Results
    with the same words make one line on the terminal, the worst of them; the CSV holds them all. */
-#ifndef ETHD__STRESS_STRESS_H
-#define ETHD__STRESS_STRESS_H
+#ifndef ETHD__APPS_STRESS_STRESS_H
+#define ETHD__APPS_STRESS_STRESS_H
 
 #include <stdbool.h>
 #include <stdint.h>

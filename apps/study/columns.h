@@ -1,7 +1,7 @@
 /* The study's tables: says once what each column holds, for headers, the folder's README.md and the JSON sidecars.
    All [main]. */
-#ifndef ETHD_STUDY_COLUMNS_H
-#define ETHD_STUDY_COLUMNS_H
+#ifndef ETHD__APPS_STUDY_COLUMNS_H
+#define ETHD__APPS_STUDY_COLUMNS_H
 
 #include <stdio.h>
 

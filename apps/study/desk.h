@@ -1,6 +1,6 @@
 /* The simulated device on a desk, with simulated people or recorded fingers. All [main]. */
-#ifndef ETHD_STUDY_DESK_H
-#define ETHD_STUDY_DESK_H
+#ifndef ETHD__APPS_STUDY_DESK_H
+#define ETHD__APPS_STUDY_DESK_H
 
 #include "study/source.h"
 #include "tap/load.h"

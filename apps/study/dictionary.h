@@ -1,6 +1,6 @@
 /* The README.md in every folder of a study. */
-#ifndef ETHD_STUDY_DICTIONARY_H
-#define ETHD_STUDY_DICTIONARY_H
+#ifndef ETHD__APPS_STUDY_DICTIONARY_H
+#define ETHD__APPS_STUDY_DICTIONARY_H
 
 #include "study/columns.h"
 

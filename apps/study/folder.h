@@ -6,8 +6,8 @@
      device.folder  with people in a device: where relative paths of its settings start
      versions.txt   program, compiler, and the hash: SHA-256 of all of these but device.folder, one after another
      README.md      the data dictionary, with JSON sidecars for programs; orders.csv, what is planned */
-#ifndef ETHD_STUDY_FOLDER_H
-#define ETHD_STUDY_FOLDER_H
+#ifndef ETHD__APPS_STUDY_FOLDER_H
+#define ETHD__APPS_STUDY_FOLDER_H
 
 #include "study/protocol.h"
 #include "tap/load.h"

@@ -1,6 +1,6 @@
 /* What participant and experimenter see and say, whether at a terminal or on a screen. All [main]. */
-#ifndef ETHD_STUDY_FRONT_H
-#define ETHD_STUDY_FRONT_H
+#ifndef ETHD__APPS_STUDY_FRONT_H
+#define ETHD__APPS_STUDY_FRONT_H
 
 #include "study/phrases.h"
 #include "study/source.h"

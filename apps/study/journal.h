@@ -8,8 +8,8 @@
 
    Lines are appended whole and reach the disk before the next step is taken. A line that a crash has torn is
    the last one: it is cut off. A broken line before good ones is damage, and refused. All [main]. */
-#ifndef ETHD_STUDY_JOURNAL_H
-#define ETHD_STUDY_JOURNAL_H
+#ifndef ETHD__APPS_STUDY_JOURNAL_H
+#define ETHD__APPS_STUDY_JOURNAL_H
 
 #include <stdbool.h>
 #include <stdio.h>

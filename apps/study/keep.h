@@ -1,6 +1,6 @@
 /* A tap's own folder, which is made under another name and gets its final one once it is on the disk. All [main]. */
-#ifndef ETHD_STUDY_KEEP_H
-#define ETHD_STUDY_KEEP_H
+#ifndef ETHD__APPS_STUDY_KEEP_H
+#define ETHD__APPS_STUDY_KEEP_H
 
 #include "study/source.h"
 

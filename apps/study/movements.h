@@ -1,6 +1,6 @@
 /* Finds files of recorded movements. [main] */
-#ifndef ETHD_STUDY_MOVEMENTS_H
-#define ETHD_STUDY_MOVEMENTS_H
+#ifndef ETHD__APPS_STUDY_MOVEMENTS_H
+#define ETHD__APPS_STUDY_MOVEMENTS_H
 
 #include "study/protocol.h"
 

@@ -8,8 +8,8 @@
    each place and follows each other one equally often, and each strategy is equally often first and last at each
    speed; the seed shuffles which cell is which and who gets which row. A speed's training comes before its first cell,
    with the strategy that comes last at it. [any] */
-#ifndef ETHD_STUDY_ORDER_H
-#define ETHD_STUDY_ORDER_H
+#ifndef ETHD__APPS_STUDY_ORDER_H
+#define ETHD__APPS_STUDY_ORDER_H
 
 #include "study/protocol.h"
 

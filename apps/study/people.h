@@ -4,8 +4,8 @@
    between people, the rest within them, so that a crowd of people taps as the plant does. A finger's radius
    is a person's: nothing of it changes from tap to tap. The spread of the hand's stiffness and damping is
    invented: nothing of it was fitted. [any] */
-#ifndef ETHD_STUDY_PEOPLE_H
-#define ETHD_STUDY_PEOPLE_H
+#ifndef ETHD__APPS_STUDY_PEOPLE_H
+#define ETHD__APPS_STUDY_PEOPLE_H
 
 #include "ethd/sim.h"
 

@@ -7,8 +7,8 @@
 
    {1}, {2} .. stand for what the default has there; a phrase may repeat them or leave them out. The keys stay what they
    are. A phrase of two words or more keeps the blanks between them. */
-#ifndef ETHD_STUDY_PHRASES_H
-#define ETHD_STUDY_PHRASES_H
+#ifndef ETHD__APPS_STUDY_PHRASES_H
+#define ETHD__APPS_STUDY_PHRASES_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* The orders of a study before it begins: who gets what when, and how well that is balanced. All [main]. */
-#ifndef ETHD_STUDY_PLAN_H
-#define ETHD_STUDY_PLAN_H
+#ifndef ETHD__APPS_STUDY_PLAN_H
+#define ETHD__APPS_STUDY_PLAN_H
 
 #include <stdio.h>
 

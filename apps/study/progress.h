@@ -1,6 +1,6 @@
 /* How far a session has come, by its journal alone. All [main]. */
-#ifndef ETHD_STUDY_PROGRESS_H
-#define ETHD_STUDY_PROGRESS_H
+#ifndef ETHD__APPS_STUDY_PROGRESS_H
+#define ETHD__APPS_STUDY_PROGRESS_H
 
 #include "study/folder.h"
 #include "study/journal.h"

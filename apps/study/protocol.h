@@ -28,8 +28,8 @@
    people, the configuration's [device] is opened as ethd-run does; the plant then only says how fast low and high are.
    All keys have defaults; the figures above are they, but strategies, speeds and order of the paper.
    Files are looked for beside the study file, then among those that came with the programs. */
-#ifndef ETHD_STUDY_PROTOCOL_H
-#define ETHD_STUDY_PROTOCOL_H
+#ifndef ETHD__APPS_STUDY_PROTOCOL_H
+#define ETHD__APPS_STUDY_PROTOCOL_H
 
 #include <stdbool.h>
 

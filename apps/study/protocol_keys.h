@@ -1,6 +1,6 @@
 /* Reads the keys of a study file, one at a time. */
-#ifndef ETHD_STUDY_PROTOCOL_KEYS_H
-#define ETHD_STUDY_PROTOCOL_KEYS_H
+#ifndef ETHD__APPS_STUDY_PROTOCOL_KEYS_H
+#define ETHD__APPS_STUDY_PROTOCOL_KEYS_H
 
 #include "study/protocol.h"
 #include "text/ini.h"

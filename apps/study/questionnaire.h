@@ -7,8 +7,8 @@
    Questions are q1 to q9 without a gap; answers are numbered from 1, two to nine of them, five bare numbers without
    q1_answers. "q1_answers = text" asks for a line in the participant's own words. A page has up to nine paragraphs,
    consent1 to consent9 and instruction1 to instruction9. */
-#ifndef ETHD_STUDY_QUESTIONNAIRE_H
-#define ETHD_STUDY_QUESTIONNAIRE_H
+#ifndef ETHD__APPS_STUDY_QUESTIONNAIRE_H
+#define ETHD__APPS_STUDY_QUESTIONNAIRE_H
 
 #include <stdbool.h>
 #include <stddef.h>

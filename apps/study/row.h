@@ -1,6 +1,6 @@
 /* Rows of a study's tables. All [main]. */
-#ifndef ETHD_STUDY_ROW_H
-#define ETHD_STUDY_ROW_H
+#ifndef ETHD__APPS_STUDY_ROW_H
+#define ETHD__APPS_STUDY_ROW_H
 
 #include "study/source.h"
 

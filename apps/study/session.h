@@ -2,8 +2,8 @@
 
    A tap counts once its folder has its final name; then the journal gets its line. Whatever ends the program
    between two instants, the next one finds either no trace of the tap or the whole of it. */
-#ifndef ETHD_STUDY_SESSION_H
-#define ETHD_STUDY_SESSION_H
+#ifndef ETHD__APPS_STUDY_SESSION_H
+#define ETHD__APPS_STUDY_SESSION_H
 
 #include "study/sitting.h"
 

@@ -3,8 +3,8 @@
    Unit u = point N + person is one participant at one point of the grid; shard i of n does the units with
    u mod n = i - 1. A shard's bytes depend on study, N, i and n alone. While it is at work its rows stand in
    shard-i-of-n.part, from which it goes on when it was ended. All [main]. */
-#ifndef ETHD_STUDY_SHARD_H
-#define ETHD_STUDY_SHARD_H
+#ifndef ETHD__APPS_STUDY_SHARD_H
+#define ETHD__APPS_STUDY_SHARD_H
 
 #include "study/desk.h"
 #include "study/folder.h"

@@ -1,6 +1,6 @@
 /* A sitting: the time in which a session's folder is open. What happens in it goes into the journal. All [main]. */
-#ifndef ETHD_STUDY_SITTING_H
-#define ETHD_STUDY_SITTING_H
+#ifndef ETHD__APPS_STUDY_SITTING_H
+#define ETHD__APPS_STUDY_SITTING_H
 
 #include "study/front.h"
 #include "study/progress.h"

@@ -1,6 +1,6 @@
 /* Where taps come from: the interface for devices, recorded fingers and screens. All [main]. */
-#ifndef ETHD_STUDY_SOURCE_H
-#define ETHD_STUDY_SOURCE_H
+#ifndef ETHD__APPS_STUDY_SOURCE_H
+#define ETHD__APPS_STUDY_SOURCE_H
 
 #include "study/order.h"
 #include "tap/ticks.h"

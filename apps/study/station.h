@@ -5,8 +5,8 @@
      the ring follows the finger from tap to tap
 
    Each tap begins with the device enabled anew: what the recording needs to replay it is in its own rows. */
-#ifndef ETHD_STUDY_STATION_H
-#define ETHD_STUDY_STATION_H
+#ifndef ETHD__APPS_STUDY_STATION_H
+#define ETHD__APPS_STUDY_STATION_H
 
 #include <pthread.h>
 #include <stdatomic.h>

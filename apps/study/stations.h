@@ -2,8 +2,8 @@
 
    Journals are merged; a merged folder is a session's folder like any other, and its tables follow from its journal.
    Stations may differ in whose hand tapped, which is written at each tap and participant. */
-#ifndef ETHD_STUDY_STATIONS_H
-#define ETHD_STUDY_STATIONS_H
+#ifndef ETHD__APPS_STUDY_STATIONS_H
+#define ETHD__APPS_STUDY_STATIONS_H
 
 #include <stddef.h>
 

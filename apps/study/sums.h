@@ -3,8 +3,8 @@
    What is written once, inputs and taps, keeps the sum that it got first, so that nothing which was changed later gets
    a new one; the journal and the tables that follow from it get theirs anew each time. Left out: hidden files, what is
    unfinished (*.new, *.part), and the report. */
-#ifndef ETHD_STUDY_SUMS_H
-#define ETHD_STUDY_SUMS_H
+#ifndef ETHD__APPS_STUDY_SUMS_H
+#define ETHD__APPS_STUDY_SUMS_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* The questions after a block. All [main]. */
-#ifndef ETHD_STUDY_SURVEY_H
-#define ETHD_STUDY_SURVEY_H
+#ifndef ETHD__APPS_STUDY_SURVEY_H
+#define ETHD__APPS_STUDY_SURVEY_H
 
 #include "study/sitting.h"
 

@@ -1,6 +1,6 @@
 /* The tables of a folder, which follow from its journal. All [main]. */
-#ifndef ETHD_STUDY_TABLES_H
-#define ETHD_STUDY_TABLES_H
+#ifndef ETHD__APPS_STUDY_TABLES_H
+#define ETHD__APPS_STUDY_TABLES_H
 
 #include "study/columns.h"
 #include "study/folder.h"

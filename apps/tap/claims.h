@@ -1,7 +1,7 @@
 /* The paper's figures and sentences, tested within people: a person has one number of each kind, and its contrasts
    between strategies and speeds are what is tested, never the pooled taps. */
-#ifndef ETHD__TAP_CLAIMS_H
-#define ETHD__TAP_CLAIMS_H
+#ifndef ETHD__APPS_TAP_CLAIMS_H
+#define ETHD__APPS_TAP_CLAIMS_H
 
 #include "tap/people.h"
 

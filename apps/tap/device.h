@@ -1,6 +1,6 @@
 /* What a configuration's [device] section says of the simulated device. */
-#ifndef ETHD__TAP_DEVICE_H
-#define ETHD__TAP_DEVICE_H
+#ifndef ETHD__APPS_TAP_DEVICE_H
+#define ETHD__APPS_TAP_DEVICE_H
 
 #include "ethd/config.h"
 #include "sim/settings.h"

@@ -1,6 +1,6 @@
 /* Judges from which speed on the finger touches before the ring meets the wall. [main] */
-#ifndef ETHD_TAP_EARLY_H
-#define ETHD_TAP_EARLY_H
+#ifndef ETHD__APPS_TAP_EARLY_H
+#define ETHD__APPS_TAP_EARLY_H
 
 #include "tap/claims.h"
 

@@ -3,8 +3,8 @@
         hand's path      touch plane                 depth   how far the ring is behind the wall at the touch
           o-----------------|-->  v_hand             early   touched before the ring was behind the wall, or within
        ring  ( o  )         |//// wall                       ETHD_TAP_NEAR of it and slower than ETHD_TAP_STILL */
-#ifndef ETHD__TAP_FELT_H
-#define ETHD__TAP_FELT_H
+#ifndef ETHD__APPS_TAP_FELT_H
+#define ETHD__APPS_TAP_FELT_H
 
 #include "tap/metrics.h"
 

@@ -1,6 +1,6 @@
 /* The simulated device that a program's user names: a configuration, a plant. All [main]. */
-#ifndef ETHD__TAP_LOAD_H
-#define ETHD__TAP_LOAD_H
+#ifndef ETHD__APPS_TAP_LOAD_H
+#define ETHD__APPS_TAP_LOAD_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* Runs a tap, tick by tick. */
-#ifndef ETHD__TAP_LOOP_H
-#define ETHD__TAP_LOOP_H
+#ifndef ETHD__APPS_TAP_LOOP_H
+#define ETHD__APPS_TAP_LOOP_H
 
 #include "tap/metrics.h"
 

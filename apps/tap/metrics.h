@@ -9,8 +9,8 @@
    t_r/vo is the first tick with the controller's d_re < 0. A recorded movement may start with the ring in
    the wall: the tap then begins once the ring is clear of it again, and would be if it were centred on the
    hand, both by more than d_beta. */
-#ifndef ETHD__TAP_METRICS_H
-#define ETHD__TAP_METRICS_H
+#ifndef ETHD__APPS_TAP_METRICS_H
+#define ETHD__APPS_TAP_METRICS_H
 
 #include <stdbool.h>
 

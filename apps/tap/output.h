@@ -1,6 +1,6 @@
 /* The files that ethd-tap writes: the CSV, a recording of every tick, traces of typical taps. */
-#ifndef ETHD__TAP_OUTPUT_H
-#define ETHD__TAP_OUTPUT_H
+#ifndef ETHD__APPS_TAP_OUTPUT_H
+#define ETHD__APPS_TAP_OUTPUT_H
 
 #include "tap/summary.h"
 #include "tap/ticks.h"

@@ -1,6 +1,6 @@
 /* Reduces taps to one number for each person, with which tests within people begin. All [main]. */
-#ifndef ETHD_TAP_PEOPLE_H
-#define ETHD_TAP_PEOPLE_H
+#ifndef ETHD__APPS_TAP_PEOPLE_H
+#define ETHD__APPS_TAP_PEOPLE_H
 
 #include "tap/summary.h"
 

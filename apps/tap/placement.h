@@ -10,8 +10,8 @@
    Speed toward the wall at a sample: minus the slope in x of the least-squares line through the samples
    within 5 ms of it, at least one on either side (central differences below 200 Hz); between samples it
    is linear. Nothing filters the path. */
-#ifndef ETHD__TAP_PLACEMENT_H
-#define ETHD__TAP_PLACEMENT_H
+#ifndef ETHD__APPS_TAP_PLACEMENT_H
+#define ETHD__APPS_TAP_PLACEMENT_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* Runs the cells of a study, one after another. */
-#ifndef ETHD__TAP_RUN_H
-#define ETHD__TAP_RUN_H
+#ifndef ETHD__APPS_TAP_RUN_H
+#define ETHD__APPS_TAP_RUN_H
 
 #include "tap/output.h"
 

@@ -1,6 +1,6 @@
 /* A tap on a device whose true state isn't known: what the controller knew stands for it. [any] */
-#ifndef ETHD__TAP_SEEN_H
-#define ETHD__TAP_SEEN_H
+#ifndef ETHD__APPS_TAP_SEEN_H
+#define ETHD__APPS_TAP_SEEN_H
 
 #include "ethd/sim.h"
 

@@ -2,8 +2,8 @@
 
    The finger of tap k is a function of (seed, k) alone, so that all laws meet the same person, and any tap can be
    repeated on its own. */
-#ifndef ETHD__TAP_STUDY_H
-#define ETHD__TAP_STUDY_H
+#ifndef ETHD__APPS_TAP_STUDY_H
+#define ETHD__APPS_TAP_STUDY_H
 
 #include "tap/loop.h"
 #include "tap/placement.h"

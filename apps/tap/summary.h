@@ -1,6 +1,6 @@
 /* Figures of a cell: one law at one speed. */
-#ifndef ETHD__TAP_SUMMARY_H
-#define ETHD__TAP_SUMMARY_H
+#ifndef ETHD__APPS_TAP_SUMMARY_H
+#define ETHD__APPS_TAP_SUMMARY_H
 
 #include "tap/study.h"
 

@@ -1,6 +1,6 @@
 /* What ethd-tap prints. */
-#ifndef ETHD__TAP_TABLE_H
-#define ETHD__TAP_TABLE_H
+#ifndef ETHD__APPS_TAP_TABLE_H
+#define ETHD__APPS_TAP_TABLE_H
 
 #include <stdio.h>
 

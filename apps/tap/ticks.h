@@ -2,8 +2,8 @@
 
    The folder holds, beside a recording's own files, truth.npy: row i belongs to row i of tick.npy.
    events.csv tells where a tap starts. All [main]. */
-#ifndef ETHD__TAP_TICKS_H
-#define ETHD__TAP_TICKS_H
+#ifndef ETHD__APPS_TAP_TICKS_H
+#define ETHD__APPS_TAP_TICKS_H
 
 #include "ethd/record.h"
 #include "tap/study.h"

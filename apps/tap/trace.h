@@ -1,6 +1,6 @@
 /* A tap's ticks as a table for plots: depths behind the wall, speeds along n. */
-#ifndef ETHD__TAP_TRACE_H
-#define ETHD__TAP_TRACE_H
+#ifndef ETHD__APPS_TAP_TRACE_H
+#define ETHD__APPS_TAP_TRACE_H
 
 #include "tap/metrics.h"
 

@@ -1,6 +1,6 @@
 /* The input of a replay: a CSV of joint angles and the finger, or the ring's distances. */
-#ifndef ETHD__TRACE_IN_TRACE_IN_H
-#define ETHD__TRACE_IN_TRACE_IN_H
+#ifndef ETHD__APPS_TRACE_IN_TRACE_IN_H
+#define ETHD__APPS_TRACE_IN_TRACE_IN_H
 
 #include "text/csv.h"
 

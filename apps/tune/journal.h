@@ -1,8 +1,8 @@
 /* Keeps the scores in a folder, so that a search that was interrupted goes on, and shards in several processes or on
    several machines share the work. tune.txt says what is searched for. scores-I-of-N.csv is the file of shard I, which
    appends a line for each point. All [main]. */
-#ifndef ETHD_TUNE_JOURNAL_H
-#define ETHD_TUNE_JOURNAL_H
+#ifndef ETHD__APPS_TUNE_JOURNAL_H
+#define ETHD__APPS_TUNE_JOURNAL_H
 
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
 /* ethd-tune's command line. [main] */
-#ifndef ETHD_TUNE_OPTIONS_H
-#define ETHD_TUNE_OPTIONS_H
+#ifndef ETHD__APPS_TUNE_OPTIONS_H
+#define ETHD__APPS_TUNE_OPTIONS_H
 
 #include "tune/score.h"
 

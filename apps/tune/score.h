@@ -1,6 +1,6 @@
 /* Judges a point of the space by its margins and by figures of simulated taps. All [main]. */
-#ifndef ETHD_TUNE_SCORE_H
-#define ETHD_TUNE_SCORE_H
+#ifndef ETHD__APPS_TUNE_SCORE_H
+#define ETHD__APPS_TUNE_SCORE_H
 
 #include "bounds/loops.h"
 #include "tune/space.h"

@@ -9,8 +9,8 @@
    Every point of a round meets the same fingers, and so does the configuration's own point, which is number 0 of each
    round. A few of round 1's points that don't keep the margin are tapped too, for comparison; they never go on. All
    [main]. */
-#ifndef ETHD_TUNE_SEARCH_H
-#define ETHD_TUNE_SEARCH_H
+#ifndef ETHD__APPS_TUNE_SEARCH_H
+#define ETHD__APPS_TUNE_SEARCH_H
 
 #include "tune/journal.h"
 #include "tune/score.h"

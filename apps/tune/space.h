@@ -1,7 +1,7 @@
 /* The space that is searched: keys of a configuration, each within a range, and points in the box that they span. All
    [main]. */
-#ifndef ETHD_TUNE_SPACE_H
-#define ETHD_TUNE_SPACE_H
+#ifndef ETHD__APPS_TUNE_SPACE_H
+#define ETHD__APPS_TUNE_SPACE_H
 
 #include "tap/study.h"
 

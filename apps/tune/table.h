@@ -1,6 +1,6 @@
 /* Prints what a search found, and writes it as a table for pictures. [main] */
-#ifndef ETHD_TUNE_TABLE_H
-#define ETHD_TUNE_TABLE_H
+#ifndef ETHD__APPS_TUNE_TABLE_H
+#define ETHD__APPS_TUNE_TABLE_H
 
 #include <stdio.h>
 

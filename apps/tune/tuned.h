@@ -1,6 +1,6 @@
 /* The tuned configuration: the user's own file with other numbers in it, comments and all. [main] */
-#ifndef ETHD_TUNE_TUNED_H
-#define ETHD_TUNE_TUNED_H
+#ifndef ETHD__APPS_TUNE_TUNED_H
+#define ETHD__APPS_TUNE_TUNED_H
 
 #include "tune/space.h"
 

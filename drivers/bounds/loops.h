@@ -1,7 +1,7 @@
 /* The sampled loops of a setup on a device (tracking, wall and braking, each along x and along y), and how far each of
    their numbers is from where the loop becomes unstable. Links from libethd-drivers. Pure functions. [any] */
-#ifndef ETHD_BOUNDS_LOOPS_H
-#define ETHD_BOUNDS_LOOPS_H
+#ifndef ETHD__BOUNDS_LOOPS_H
+#define ETHD__BOUNDS_LOOPS_H
 
 #include "bounds/stability.h"
 #include "ethd/sim.h"

@@ -4,8 +4,8 @@
        ------> [ motor_mass ]--/\/\ spring /\/\--[ mass - motor_mass ]     lead: how far the rest is ahead of the
            friction |  x           | damper |                              motor's side; a rigid device has none
    Pure functions. [any] */
-#ifndef ETHD_BOUNDS_MOTION_H
-#define ETHD_BOUNDS_MOTION_H
+#ifndef ETHD__BOUNDS_MOTION_H
+#define ETHD__BOUNDS_MOTION_H
 
 #include "bounds/stability.h"
 

@@ -11,8 +11,8 @@
    Where the transmission gives way, the force acts on the motor's side, which is the one that is measured, and the rest
    of the mass hangs on it by a spring and a damper; their motion over a tick is exact, too. Coulomb friction is left
    out, because it stops small swings only; ethd__sampled_held says how small. Pure functions. [any] */
-#ifndef ETHD_CHECK_STABILITY_H
-#define ETHD_CHECK_STABILITY_H
+#ifndef ETHD__BOUNDS_STABILITY_H
+#define ETHD__BOUNDS_STABILITY_H
 
 #include <stdbool.h>
 

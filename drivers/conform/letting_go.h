@@ -1,6 +1,6 @@
 /* The questions of ethd_conform about the end of a torque. All [main]. */
-#ifndef ETHD_CONFORM_LETTING_GO_H
-#define ETHD_CONFORM_LETTING_GO_H
+#ifndef ETHD__CONFORM_LETTING_GO_H
+#define ETHD__CONFORM_LETTING_GO_H
 
 #include "conform/conform_rig.h"
 

@@ -6,8 +6,8 @@
        inject = broken.inject        ethd_device_open puts this driver around those
 
    Its device is made by ethd__inject_around, not by open. */
-#ifndef ETHD_INJECT_INJECT_H
-#define ETHD_INJECT_INJECT_H
+#ifndef ETHD__INJECT_INJECT_H
+#define ETHD__INJECT_INJECT_H
 
 #include "inject/script.h"
 

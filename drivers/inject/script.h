@@ -11,8 +11,8 @@
 
    TIME counts from the first sample after the device's start. Without a number a channel means all of its
    numbers: q is q1 and q2. What the channels and kinds are stands in script.c, in two tables. */
-#ifndef ETHD_INJECT_SCRIPT_H
-#define ETHD_INJECT_SCRIPT_H
+#ifndef ETHD__INJECT_SCRIPT_H
+#define ETHD__INJECT_SCRIPT_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* Changes the numbers of a sample as a broken sensor would. */
-#ifndef ETHD_INJECT_VALUES_H
-#define ETHD_INJECT_VALUES_H
+#ifndef ETHD__INJECT_VALUES_H
+#define ETHD__INJECT_VALUES_H
 
 #include "inject/script.h"
 

@@ -1,7 +1,7 @@
 /* The loop's own memory. Fields between two threads are atomic; each has one writer at a time, except flags that any
    thread may raise. */
-#ifndef ETHD_LOOP_PARTS_H
-#define ETHD_LOOP_PARTS_H
+#ifndef ETHD__LOOP_LOOP_H
+#define ETHD__LOOP_LOOP_H
 
 #include <stdatomic.h>
 #include <stdbool.h>

@@ -2,8 +2,8 @@
    always libc's: xeno-config's skin "cobalt" wraps no name, and libcobalt has no __real_f of each.
 
    Xenomai's own <boilerplate/wrappers.h> defines __RT on its two cores. */
-#ifndef ETHD_LOOP_RT_H
-#define ETHD_LOOP_RT_H
+#ifndef ETHD__LOOP_RT_H
+#define ETHD__LOOP_RT_H
 
 #include <pthread.h>
 #include <time.h>

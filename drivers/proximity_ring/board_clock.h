@@ -13,8 +13,8 @@
 
    A frame's time must fit its sequence. If it doesn't, the clock jumped, or the frame is corrupt and has passed the
    CRC. The next frame decides, since it fits either the doubtful frame or the one before it. All [rt]. */
-#ifndef ETHD_PROXIMITY_RING_BOARD_CLOCK_H
-#define ETHD_PROXIMITY_RING_BOARD_CLOCK_H
+#ifndef ETHD__PROXIMITY_RING_BOARD_CLOCK_H
+#define ETHD__PROXIMITY_RING_BOARD_CLOCK_H
 
 #include "proximity_ring/decoder.h"
 

@@ -15,8 +15,8 @@
      gain     the common law with a and d0 of each sensor: a gain and an offset
      law      a, d0 and p of each sensor
      table    points of each sensor */
-#ifndef ETHD_PROXIMITY_RING_CALIBRATION_H
-#define ETHD_PROXIMITY_RING_CALIBRATION_H
+#ifndef ETHD__PROXIMITY_RING_CALIBRATION_H
+#define ETHD__PROXIMITY_RING_CALIBRATION_H
 
 #include "ethd/config.h"
 #include "ethd/finger_fit.h"

@@ -1,6 +1,6 @@
 /* Fits a calibration to readings of a rod at known positions in the ring. */
-#ifndef ETHD_PROXIMITY_RING_CALIBRATION_FIT_H
-#define ETHD_PROXIMITY_RING_CALIBRATION_FIT_H
+#ifndef ETHD__PROXIMITY_RING_CALIBRATION_FIT_H
+#define ETHD__PROXIMITY_RING_CALIBRATION_FIT_H
 
 #include "proximity_ring/calibration.h"
 

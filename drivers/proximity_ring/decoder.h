@@ -2,8 +2,8 @@
 
    A frame ends with a zero and holds none, so the decoder is in step again at the next zero, whatever came before; it
    may start anywhere. Bytes come in pieces of any size; nothing is allocated. All [any, rt-safe]. */
-#ifndef ETHD_PROXIMITY_RING_DECODER_H
-#define ETHD_PROXIMITY_RING_DECODER_H
+#ifndef ETHD__PROXIMITY_RING_DECODER_H
+#define ETHD__PROXIMITY_RING_DECODER_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* Checks that the ring is empty, and takes what its sensors then count as today's darks. */
-#ifndef ETHD_PROXIMITY_RING_EMPTY_H
-#define ETHD_PROXIMITY_RING_EMPTY_H
+#ifndef ETHD__PROXIMITY_RING_EMPTY_H
+#define ETHD__PROXIMITY_RING_EMPTY_H
 
 #include "proximity_ring/calibration.h"
 #include "proximity_ring/decoder.h"

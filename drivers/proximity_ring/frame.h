@@ -17,8 +17,8 @@
    measures: across an empty ring that light would be part of the dark, and a finger between them would take it away.
 
    The firmware and the host both include this file: plain C, stdint alone. */
-#ifndef ETHD_PROXIMITY_RING_FRAME_H
-#define ETHD_PROXIMITY_RING_FRAME_H
+#ifndef ETHD__PROXIMITY_RING_FRAME_H
+#define ETHD__PROXIMITY_RING_FRAME_H
 
 #include <stdint.h>
 

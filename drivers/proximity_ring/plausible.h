@@ -10,8 +10,8 @@
    A sensor is out of use once it has failed in five frames more than it was good, until it has been good as often. It
    fails if it is missing, saturated where no finger is, under half its dark, has a suspect ray, or is stuck, with the
    same count while half of the others change. All [rt]. */
-#ifndef ETHD_PROXIMITY_RING_PLAUSIBLE_H
-#define ETHD_PROXIMITY_RING_PLAUSIBLE_H
+#ifndef ETHD__PROXIMITY_RING_PLAUSIBLE_H
+#define ETHD__PROXIMITY_RING_PLAUSIBLE_H
 
 #include "proximity_ring/calibration.h"
 #include "proximity_ring/decoder.h"

@@ -1,6 +1,6 @@
 /* The ring's serial port: opens it, waits for bytes and reads them, and opens it anew after an unplug. */
-#ifndef ETHD_PROXIMITY_RING_PORT_H
-#define ETHD_PROXIMITY_RING_PORT_H
+#ifndef ETHD__PROXIMITY_RING_PORT_H
+#define ETHD__PROXIMITY_RING_PORT_H
 
 #include "proximity_ring/receiver.h"
 

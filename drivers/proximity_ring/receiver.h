@@ -4,8 +4,8 @@
 
    Faults are counted per row of the fault table, so that a reader that looks now and then misses none. No OS, no heap.
    All [rt]. */
-#ifndef ETHD_PROXIMITY_RING_RECEIVER_H
-#define ETHD_PROXIMITY_RING_RECEIVER_H
+#ifndef ETHD__PROXIMITY_RING_RECEIVER_H
+#define ETHD__PROXIMITY_RING_RECEIVER_H
 
 #include "proximity_ring/board_clock.h"
 #include "proximity_ring/plausible.h"

@@ -1,6 +1,6 @@
 /* Reads the ring's keys of [device]. */
-#ifndef ETHD_PROXIMITY_RING_SETTINGS_H
-#define ETHD_PROXIMITY_RING_SETTINGS_H
+#ifndef ETHD__PROXIMITY_RING_SETTINGS_H
+#define ETHD__PROXIMITY_RING_SETTINGS_H
 
 #include "ethd/driver.h"
 

@@ -1,7 +1,7 @@
 /* Questions and answers on a Modbus, one at a time: through libmodbus, or in our own framing where libmodbus can't
    speak. Called by [main] or by one I/O thread. */
-#ifndef ETHD_SERVO_BUS_H
-#define ETHD_SERVO_BUS_H
+#ifndef ETHD__SERVO_BUS_H
+#define ETHD__SERVO_BUS_H
 
 #include "servo/map.h"
 

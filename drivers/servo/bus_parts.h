@@ -1,6 +1,6 @@
 /* What the files that ask on a bus share. */
-#ifndef ETHD_SERVO_BUS_PARTS_H
-#define ETHD_SERVO_BUS_PARTS_H
+#ifndef ETHD__SERVO_BUS_PARTS_H
+#define ETHD__SERVO_BUS_PARTS_H
 
 #include "servo/bus.h"
 #include "servo/frame.h"

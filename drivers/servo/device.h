@@ -1,6 +1,6 @@
 /* The servo's own memory, grouped by the thread to which it belongs. */
-#ifndef ETHD_SERVO_DEVICE_H
-#define ETHD_SERVO_DEVICE_H
+#ifndef ETHD__SERVO_DEVICE_H
+#define ETHD__SERVO_DEVICE_H
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -1,6 +1,6 @@
 /* Turns a drive's answers into joint angles, readings and rows of the fault table. */
-#ifndef ETHD_SERVO_FEEDBACK_H
-#define ETHD_SERVO_FEEDBACK_H
+#ifndef ETHD__SERVO_FEEDBACK_H
+#define ETHD__SERVO_FEEDBACK_H
 
 #include "encoder/unwrap.h"
 #include "servo/link.h"

@@ -3,8 +3,8 @@
 
      rtu   unit | function, data | checksum              checksum low byte first by the standard
      tcp   number, 0, length | unit | function, data */
-#ifndef ETHD_SERVO_FRAME_H
-#define ETHD_SERVO_FRAME_H
+#ifndef ETHD__SERVO_FRAME_H
+#define ETHD__SERVO_FRAME_H
 
 #include "servo/map.h"
 

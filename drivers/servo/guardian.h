@@ -10,8 +10,8 @@
    Whatever ends ethd-run ends its side of the socket; what stops it without ending it (a signal, a debugger, a
    deadlock) ends the beats. Zero torque is at the drive within ethd__guardian_bound of the last beat. It can't help
    when the whole computer dies, or when all of its processes are killed at once. */
-#ifndef ETHD_SERVO_GUARDIAN_H
-#define ETHD_SERVO_GUARDIAN_H
+#ifndef ETHD__SERVO_GUARDIAN_H
+#define ETHD__SERVO_GUARDIAN_H
 
 #include <stdatomic.h>
 #include <sys/types.h>

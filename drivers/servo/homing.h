@@ -4,8 +4,8 @@
      stop    away from it a little (an encoder that doesn't follow is found out here), then towards it until it stands
              under nearly all of the torque for a while: that place is `angle`
      index   towards the mark until it has passed: that count is `angle` */
-#ifndef ETHD_SERVO_HOMING_H
-#define ETHD_SERVO_HOMING_H
+#ifndef ETHD__SERVO_HOMING_H
+#define ETHD__SERVO_HOMING_H
 
 #include <stdbool.h>
 

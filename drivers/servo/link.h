@@ -8,8 +8,8 @@
 
    After any error nothing is sent until the line has been quiet; the state stays, and set-points go on after that.
    The loss of the line ends ENABLED, and the first set-point of every connection is zero torque. */
-#ifndef ETHD_SERVO_LINK_H
-#define ETHD_SERVO_LINK_H
+#ifndef ETHD__SERVO_LINK_H
+#define ETHD__SERVO_LINK_H
 
 #include "ethd/fault.h"
 #include "servo/plan.h"

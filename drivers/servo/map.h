@@ -33,8 +33,8 @@
    (torque or current), bus_voltage, index1 index2 (a position's count at its last index mark), reading_x reading_y
    reading_count reading_age (a finger's place relative to the ring), counter (a word of ours that the drive keeps).
    All others serve steps, echoes, or masks. */
-#ifndef ETHD_SERVO_MAP_H
-#define ETHD_SERVO_MAP_H
+#ifndef ETHD__SERVO_MAP_H
+#define ETHD__SERVO_MAP_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* What the files that read a map share. All [main]. */
-#ifndef ETHD_SERVO_MAP_PARTS_H
-#define ETHD_SERVO_MAP_PARTS_H
+#ifndef ETHD__SERVO_MAP_PARTS_H
+#define ETHD__SERVO_MAP_PARTS_H
 
 #include "servo/map.h"
 #include "text/ini.h"

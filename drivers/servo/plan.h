@@ -1,7 +1,7 @@
 /* The questions of one exchange. Registers that stand side by side and are read equally often share a question;
    questions about slow registers are spread over the exchanges. */
-#ifndef ETHD_SERVO_PLAN_H
-#define ETHD_SERVO_PLAN_H
+#ifndef ETHD__SERVO_PLAN_H
+#define ETHD__SERVO_PLAN_H
 
 #include "servo/bus.h"
 

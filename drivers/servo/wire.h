@@ -1,6 +1,6 @@
 /* Works out from the map, before any drive is asked, how long an exchange takes on its wire. */
-#ifndef ETHD_SERVO_WIRE_H
-#define ETHD_SERVO_WIRE_H
+#ifndef ETHD__SERVO_WIRE_H
+#define ETHD__SERVO_WIRE_H
 
 #include "servo/plan.h"
 

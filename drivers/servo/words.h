@@ -1,6 +1,6 @@
 /* Converts words to numbers and back. libmodbus's own float helpers aren't each other's inverse in every build. */
-#ifndef ETHD_SERVO_WORDS_H
-#define ETHD_SERVO_WORDS_H
+#ifndef ETHD__SERVO_WORDS_H
+#define ETHD__SERVO_WORDS_H
 
 #include "servo/map.h"
 

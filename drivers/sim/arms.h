@@ -3,8 +3,8 @@
    are as short as the most demanding arm needs, so that differences between nearly equal arms are smooth. Working
    several arms out together is also quick: within one arm each term waits for the one before it, and the processor has
    the other arms' terms to work on meanwhile. */
-#ifndef ETHD_SIM_ARMS_H
-#define ETHD_SIM_ARMS_H
+#ifndef ETHD__SIM_ARMS_H
+#define ETHD__SIM_ARMS_H
 
 #include "sim/body.h"
 

@@ -1,6 +1,6 @@
 /* The plant in motion (arm, motors, finger): its equations and one integration step. */
-#ifndef ETHD_SIM_BODY_H
-#define ETHD_SIM_BODY_H
+#ifndef ETHD__SIM_BODY_H
+#define ETHD__SIM_BODY_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* Pieces of the hand's path, within which it is smooth: an integration step never spans two. */
-#ifndef ETHD_SIM_PATH_H
-#define ETHD_SIM_PATH_H
+#ifndef ETHD__SIM_PATH_H
+#define ETHD__SIM_PATH_H
 
 #include "ethd/sim.h"
 #include "sim/two.h"

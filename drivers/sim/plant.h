@@ -1,6 +1,6 @@
 /* The plant's numbers as a table: the keys of a plant file, and the check of a definition. */
-#ifndef ETHD_SIM_PLANT_H
-#define ETHD_SIM_PLANT_H
+#ifndef ETHD__SIM_PLANT_H
+#define ETHD__SIM_PLANT_H
 
 #include <stddef.h>
 

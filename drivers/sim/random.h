@@ -2,8 +2,8 @@
 
    Philox 4x32-10 (Salmon et al., SC 2011) over the counter (tap, stream, counter) under the key `seed`.
    Bits are equal on every machine. [any, rt-safe] */
-#ifndef ETHD_SIM_RANDOM_H
-#define ETHD_SIM_RANDOM_H
+#ifndef ETHD__SIM_RANDOM_H
+#define ETHD__SIM_RANDOM_H
 
 #include <stdint.h>
 

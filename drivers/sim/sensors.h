@@ -1,7 +1,7 @@
 /* What the device measures: joint angles in counts, and the finger by one of the sensors of sim.h. All [any, rt-safe]
    except ethd__sensors_create. */
-#ifndef ETHD_SIM_SENSORS_H
-#define ETHD_SIM_SENSORS_H
+#ifndef ETHD__SIM_SENSORS_H
+#define ETHD__SIM_SENSORS_H
 
 #include "ethd/sim.h"
 #include "finger/nail.h"

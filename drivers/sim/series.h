@@ -1,7 +1,7 @@
 /* The motion as a power series in time; series.c explains the idea. Each term follows from those before it, so a step
    may have any order. */
-#ifndef ETHD_SIM_SERIES_H
-#define ETHD_SIM_SERIES_H
+#ifndef ETHD__SIM_SERIES_H
+#define ETHD__SIM_SERIES_H
 
 #include "sim/body.h"
 

@@ -1,6 +1,6 @@
 /* The simulated device's keys of the [device] section. */
-#ifndef ETHD_SIM_SETTINGS_H
-#define ETHD_SIM_SETTINGS_H
+#ifndef ETHD__SIM_SETTINGS_H
+#define ETHD__SIM_SETTINGS_H
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 /* Terms of products of power series: term k of x y is sum x_i y_(k-i). */
-#ifndef ETHD_SIM_TERMS_H
-#define ETHD_SIM_TERMS_H
+#ifndef ETHD__SIM_TERMS_H
+#define ETHD__SIM_TERMS_H
 
 #include "sim/two.h"
 

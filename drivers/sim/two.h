@@ -1,6 +1,6 @@
 /* Two doubles side by side: x and y, or joint 1 and joint 2. */
-#ifndef ETHD_SIM_TWO_H
-#define ETHD_SIM_TWO_H
+#ifndef ETHD__SIM_TWO_H
+#define ETHD__SIM_TWO_H
 
 #include <math.h>
 

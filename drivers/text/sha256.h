@@ -1,6 +1,6 @@
 /* SHA-256 (FIPS 180-4), so that anyone can check a sum with sha256sum. [any] */
-#ifndef ETHD_FILE_SHA256_H
-#define ETHD_FILE_SHA256_H
+#ifndef ETHD__TEXT_SHA256_H
+#define ETHD__TEXT_SHA256_H
 
 #include <stddef.h>
 #include <stdint.h>

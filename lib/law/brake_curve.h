@@ -9,8 +9,8 @@
 
    Along it the acceleration is -f f': -a on the root, -rate v on the line. A ring on the curve stands after
    v^2/(2a) + d_l/2 from there on.                                                                      [rt] */
-#ifndef ETHD__BRAKE_CURVE_H
-#define ETHD__BRAKE_CURVE_H
+#ifndef ETHD__LAW_BRAKE_CURVE_H
+#define ETHD__LAW_BRAKE_CURVE_H
 
 #include <math.h>
 

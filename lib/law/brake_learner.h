@@ -9,8 +9,8 @@
    does (0.5 mm on plant p, where x is 2 mm: y/x would say 1.25). It comes within some ms and stays, so k is the slope
    of y over x by least squares, from SETTLED on, until the ring stands or the finger comes. Earlier brakings count with
    weight 1 - learn, and a prior says 1. A braking that ended deeper than planned never raises k. [rt] */
-#ifndef ETHD__BRAKE_LEARNER_H
-#define ETHD__BRAKE_LEARNER_H
+#ifndef ETHD__LAW_BRAKE_LEARNER_H
+#define ETHD__LAW_BRAKE_LEARNER_H
 
 #include <stdbool.h>
 

@@ -2,8 +2,8 @@
 
    Friction is Coulomb's, which changes its sign over STICTION as a plant's does, and viscous. It helps a ring to brake:
    with the force F that the guard lets through, the ring's deceleration is at most (F + f_c) / m.            [rt] */
-#ifndef ETHD__RING_ABILITY_H
-#define ETHD__RING_ABILITY_H
+#ifndef ETHD__LAW_RING_ABILITY_H
+#define ETHD__LAW_RING_ABILITY_H
 
 #include <math.h>
 #include <stdbool.h>

@@ -10,8 +10,8 @@
 
    All three poles are at b. A constant w leaves no error, so the speed isn't late when a ring brakes. Noise of the
    distances reaches the speed as  (1 - b)^3 (13 + 50 b + 49 b^2) / (2 (1 + b)^5) / T^2  times its variance. [rt] */
-#ifndef ETHD__RING_OBSERVER_H
-#define ETHD__RING_OBSERVER_H
+#ifndef ETHD__LAW_RING_OBSERVER_H
+#define ETHD__LAW_RING_OBSERVER_H
 
 #include "ethd/attributes.h"
 
