@@ -71,6 +71,13 @@ says "$folder/out" '2.5 Ns/m.*2.4: EXCEEDED'
 says "$folder/out" 'force 50 N'
 silent "$folder/out" 'compensation = stamp'
 
+# A plugin's law has gains that nobody knows: then the last word isn't "0 bounds exceeded".
+silent "$folder/a" 'not judged'
+printf '[plugins]\nfile = %s\n[transition]\nlaw = brake-ahead\n' "$BUILD/tests/plugins/mylaw.so" >"$folder/foreign.ini"
+"$check" "$folder/foreign.ini" >"$folder/out"
+says "$folder/out" '^not judged: braking, because the gains of the law brake-ahead '
+tail -n 1 "$folder/out" | grep -q '^not judged' || fail "it isn't the last word"
+
 # A torque limit of the configuration narrows the device's.
 printf '[limits]\ntorque = 0.5\n' >"$folder/narrow.ini"
 "$check" "$folder/narrow.ini" >"$folder/out"

@@ -113,6 +113,8 @@ refuse 2 'no such file\|No such file' --plant nowhere.plant
 refuse 1 'another --work' --plant n --points 16 --taps 40 --seed 2 --work one
 printf 'round,number\n0,1,2\n' >three/scores-1-of-1.csv
 refuse 2 'scores-1-of-1.csv' --plant n --points 16 --taps 40 --work three
+printf '[plugins]\nfile = %s\n[transition]\nlaw = brake-ahead\n' "$BUILD/tests/plugins/mylaw.so" >foreign.ini
+refuse 2 "gains of the law brake-ahead can't be told" --plant n --config foreign.ini
 cp one.ini own.ini
 refuse 2 'only read' --config own.ini --out own.ini
 exit $failed
