@@ -27,7 +27,7 @@ enum {
   ETHD_HAVE_FINGER = 2, /* finger, finger_v: used as they are at this tick, without fit or filter */
   ETHD_HAVE_START = 4,  /* finger: starts the filter there, at rest */
   ETHD_HAVE_CENTRE = 8, /* centre: a reading relative to the ring has arrived, taken at sample_ns */
-  ETHD_HAVE_RAYS = 16,  /* rays: a frame of distances has arrived, taken at sample_ns */
+  ETHD_HAVE_RAYS = 16,  /* rays: a frame of distances has arrived, taken at sample_ns; a centre counts instead of it */
   ETHD_HAVE_RING = 32,  /* ring: where the ring stood at sample_ns, as the device knows it */
   ETHD_HAVE_BODY = 64,  /* ETHD_HAVE_BODY << i: bodies i has a new pose; else the last one holds; i < ETHD_BODIES_MAX */
   ETHD_HAVE_WORLD =
