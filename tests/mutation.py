@@ -180,9 +180,13 @@ def equivalents():
     return found
 
 
-def report(drawn, lines):
+def knows_equivalents(lines):
     known = equivalents()
-    is_known = lambda m: (m["file"], lines[m["file"]][m["line"] - 1].strip(), m["to"].strip()) in known
+    return lambda m: (m["file"], lines[m["file"]][m["line"] - 1].strip(), m["to"].strip()) in known
+
+
+def report(drawn, lines):
+    is_known = knows_equivalents(lines)
     valid = [m for m in drawn if m["verdict"] in ("killed", "survived")]
     equal = [m for m in valid if m["verdict"] == "survived" and is_known(m)]
     killed = sum(m["verdict"] == "killed" for m in valid)
@@ -221,12 +225,13 @@ def main():
     done = read_results(path)
     plan.found.update(old["by"] for old in done.values() if old.get("by"))
     drawn, valid, told = [], 0, time.monotonic()
+    is_known = knows_equivalents(lines)
     with path.open("a") as out:
         for m in order:
             if valid >= a.count:
                 break
             old = done.get(key_of(m))
-            if old is None or (a.again and old["verdict"] == "survived"):
+            if old is None or (a.again and old["verdict"] == "survived" and not is_known(m)):
                 if time.monotonic() > end:
                     if a.again and old:
                         drawn.append(dict(m, verdict=old["verdict"]))

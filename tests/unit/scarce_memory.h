@@ -5,6 +5,7 @@
 #define ETHD_TESTS_SCARCE_MEMORY_H
 
 #include <errno.h>
+#include <malloc.h>
 #include <stdlib.h>
 
 #include "ethd/attributes.h"

@@ -2,7 +2,6 @@
    nothing. Both by standing in the way of the C library. */
 #include <dlfcn.h>
 #include <errno.h>
-#include <malloc.h>
 #include <math.h>
 #include <pthread.h>
 #include <signal.h>
