@@ -31,12 +31,20 @@ typedef struct drawing {
   int within; /* how deep it is in an element that is skipped, counting that one; 0: in none */
 } drawing;
 
+/* Returns the line that is read. Expat 2.9 gives its number 64 bits, by another name. */
+static unsigned long line_of(XML_Parser xml) {
+#if XML_MAJOR_VERSION > 2 || (XML_MAJOR_VERSION == 2 && XML_MINOR_VERSION >= 9)
+  return (unsigned long)XML_GetCurrentLineNumber64(xml);
+#else
+  return (unsigned long)XML_GetCurrentLineNumber(xml);
+#endif
+}
+
 static void refuse(drawing *r, const char *what, const char *found) {
   char quote[ETHD_QUOTE_MAX];
   if (r->status) return;
-  r->status =
-      ethd__say(r->message, ETHD_E_SYNTAX, "%s:%lu: %s%s%s", r->name, (unsigned long)XML_GetCurrentLineNumber(r->xml),
-                what, found ? ": found " : "", found ? ethd__quote(found, strlen(found), quote) : "");
+  r->status = ethd__say(r->message, ETHD_E_SYNTAX, "%s:%lu: %s%s%s", r->name, line_of(r->xml), what,
+                        found ? ": found " : "", found ? ethd__quote(found, strlen(found), quote) : "");
   XML_StopParser(r->xml, XML_FALSE);
 }
 
@@ -116,7 +124,7 @@ static void take(drawing *r, const char *name, ethd__attributes a) {
   } else {
     inherit(r, a, &s);
     r->states[r->depth++] = s;
-    r->drawing.line = (int)XML_GetCurrentLineNumber(r->xml);
+    r->drawing.line = (int)line_of(r->xml);
     if (!r->status) ethd__svg_draw(which, &r->drawing, a, &s.m, s.filled, &wrong);
     if (wrong.what[0]) refuse(r, wrong.what, wrong.found);
     if (r->drawing.status == ETHD_E_FULL) refuse(r, "over 20 million points; a larger tolerance makes fewer", NULL);
@@ -173,7 +181,7 @@ static ethd_status read_all(drawing *r, const char *text, size_t length) {
   if (r->status) return r->status;
   if (r->drawing.status || XML_GetErrorCode(r->xml) == XML_ERROR_NO_MEMORY) return ethd__no_memory(r->message, r->name);
   if (good) return ETHD_OK;
-  unsigned long line = XML_GetCurrentLineNumber(r->xml);
+  unsigned long line = line_of(r->xml);
   return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%lu: no XML: %s", r->name, line,
                    XML_ErrorString(XML_GetErrorCode(r->xml)));
 }
