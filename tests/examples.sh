@@ -70,17 +70,14 @@ teleop() { # NAME RING_SECONDS ROBOT_SECONDS: 20 ms on the way, every tenth data
   echo $? >"$work/$1.code"
 }
 [ -z "${SAN:-}" ] || { echo "SKIP: a sanitizer is too slow for a loop in true time"; exit $((failed ? 1 : 77)); }
-"${PYTHON:-python3}" tests/peers/late.py >"$work/late" 2>&1 &
-late=$!
-children="$children $late"
-teleop works 4 5
-teleop dies 6 2
-kill $late
-wait $late 2>/dev/null
-cat "$work"/works.* "$work"/dies.*
 # "N ms in contact, N swaps, N datagrams overtaken, at X mm with T Nm: sentence"
 figures() { sed -n 's/^ring: \([0-9]*\) ms in contact, \([0-9]*\) swaps, \([0-9]*\) datagrams overtaken, at \([-0-9.]*\) mm with \([-0-9.e]*\) Nm: .*/\1 \2 \3 \4 \5/p' "$1"; }
-busy() { awk '$1 == "late" && $2 >= 30 { busy = 1 } END { exit !busy }' "$work/late"; }
+both() {
+  teleop works 4 5
+  teleop dies 6 2
+  cat "$work"/works.* "$work"/dies.*
+  wrong=$(judge)
+}
 judge() {
   [ "$(cat "$work/works.code")" = 0 ] && grep -q ': no fault$' "$work/works.ring" || echo "with a line that works: $(cat "$work/works.ring")"
   figures "$work/works.ring" | awk '!($1 > 1500 && $2 >= 3 && $3 > 10 && $4 > 240 && $4 < 252 && $5 < -0.1) { print "no contact, no swaps, or no line that overtakes" }'
@@ -88,7 +85,18 @@ judge() {
   figures "$work/dies.ring" | awk '!($1 > 300 && $5 == 0) { print "it died before a contact, or torque is left" }'
   grep -q '^robot: .* gripper at 24' "$work/works.robot" || grep -q 'no orders' "$work/works.robot" || echo "the robot: $(cat "$work/works.robot")"
 }
-wrong=$(judge)
+both
+# Once more, beside a program that measures how late this machine is.
+if [ -n "$wrong" ]; then
+  $alone "${PYTHON:-python3}" tests/peers/late.py >"$work/late" 2>&1 &
+  late=$!
+  children="$children $late"
+  both
+  kill $late
+  wait $late 2>/dev/null
+fi
+# Ten late answers in seventeen seconds are enough for a fault.
+busy() { awk '$1 == "late" && $2 >= 10 { busy = 1 } END { exit !busy }' "$work/late"; }
 if [ -n "$wrong" ] && ! busy; then fail "$wrong ($(cat "$work/late"))"; fi
 [ $failed = 0 ] || exit 1
 [ -z "$wrong" ] || { echo "SKIP: this machine is too busy for a loop in true time ($(cat "$work/late")): $wrong" | tr '\n' ' '; exit 77; }
