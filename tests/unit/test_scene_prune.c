@@ -151,6 +151,31 @@ START_TEST(test_same_tap) {
 }
 END_TEST
 
+static ethd_status check_links(const ethd_setup *base, ethd_scene *scene, double link1, double link2) {
+  ethd_setup setup = *base;
+  ethd_error error;
+  setup.scene = scene;
+  setup.arm.link1 = link1;
+  setup.arm.link2 = link2;
+  return ethd_setup_check(&setup, &error);
+}
+
+/* An arm reaches from |l1 - l2| to l1 + l2: each end of it is held alone. */
+START_TEST(test_both_ends) {
+  rig r;
+  rig_open(&r, "circle 0 0 0.001\n" FAR_AWAY NEAR_BY);
+  r.setup.arm.link1 = 0.3;
+  r.setup.arm.link2 = 0.2;
+  ethd_scene *pruned = prune_for(&r.setup);
+  ck_assert_int_eq(check_links(&r.setup, pruned, 0.3, 0.2), ETHD_OK);
+  ck_assert_int_eq(check_links(&r.setup, pruned, 0.31, 0.19), ETHD_OK);
+  ck_assert_int_eq(check_links(&r.setup, pruned, 0.29, 0.21), ETHD_E_RANGE);
+  ck_assert_int_eq(check_links(&r.setup, pruned, 0.31, 0.21), ETHD_E_RANGE);
+  ethd_scene_destroy(pruned);
+  rig_close(&r);
+}
+END_TEST
+
 /* A larger ring or arm would miss what was dropped for the smaller one; a body may come from anywhere. */
 START_TEST(test_refused_elsewhere) {
   rig r;
@@ -185,6 +210,7 @@ int main(void) {
   tcase_add_test(all, test_objects_come_back);
   tcase_add_test(all, test_same_tap);
   tcase_add_test(all, test_refused_elsewhere);
+  tcase_add_test(all, test_both_ends);
   suite_add_tcase(suite, all);
   return rig_run(suite);
 }

@@ -155,6 +155,8 @@ START_TEST(test_chosen) {
   ck_assert(isnan(ethd_setup_get(&s, "contact.b_e")));
   ck_assert_int_eq(ethd_setup_choose(&s, "contact", "offset", ethd_laws, &error), ETHD_E_UNKNOWN);
   ck_assert_str_eq(error.name, "offset");
+  ck_assert_int_eq(ethd_setup_choose(&s, "velocity", "spring", ethd_laws, &error), ETHD_E_UNKNOWN);
+  ck_assert_str_eq(error.name, "spring");
   ck_assert_int_eq(ethd_setup_choose(&s, "wall", "spring", ethd_laws, &error), ETHD_E_UNKNOWN);
   ck_assert_str_eq(error.name, "wall");
   ck_assert(s.contact == &ethd_contact_spring && !ethd_setup_part_of("limits"));
