@@ -95,16 +95,16 @@ class Plan:
 
     def of(self, m):
         usable = {t: s for t, s in self.times.items() if s and t in self.tests}
-        own = lambda t: bool(words(m["file"]) & words(t))
+        own = lambda t: len(words(m["file"]) & words(t))
         chosen, spent = [], 0.0
-        for t in sorted(usable, key=lambda t: (not own(t), usable[t][0])):
+        for t in sorted(usable, key=lambda t: (-own(t), usable[t][0])):
             if usable[t][0] > SLOWEST and not own(t):
                 continue
             if chosen and spent + usable[t][0] > BUDGET:
                 continue
             spent += usable[t][0]
             chosen.append(t)
-        return sorted(chosen, key=lambda t: (not own(t), -self.found[t] / (usable[t][0] + 0.05)))
+        return sorted(chosen, key=lambda t: (-own(t), -self.found[t] / (usable[t][0] + 0.05)))
 
 
 # ---- one mutant ----

@@ -50,7 +50,7 @@ START_TEST(test_sizes) {
   ethd_error error;
   ck_assert_int_eq(ethd_cell_create(0, &cell, &error), ETHD_E_RANGE);
   ck_assert_int_eq(ethd_cell_create(65537, &cell, &error), ETHD_E_RANGE);
-  ck_assert(cell == NULL && error.found == 65537 && error.max == 65536);
+  ck_assert(cell == NULL && error.found == 65537 && error.min == 1 && error.max == 65536);
   for (size_t size = 1; size <= 65536; size *= 2) {
     unsigned char *in = malloc(size), *out = malloc(size);
     for (size_t i = 0; i < size; i++) in[i] = (unsigned char)(i * 31);

@@ -178,6 +178,31 @@ START_TEST(test_newcomer_that_is_deeper) {
 }
 END_TEST
 
+static double youngest;
+
+static ethd_status aging_step(const double *p, void *state, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
+  if (c->object != 8 && c->age < youngest) youngest = c->age;
+  return ethd_transition_smooth.step(p, state, c, out);
+}
+
+/* The newcomer ends the shallowest contact, and no other begins anew for it. */
+START_TEST(test_newcomer_leaves_the_others) {
+  ethd_transition_law aging = ethd_transition_smooth;
+  aging.step = aging_step;
+  rig r;
+  open_with(&r, stack_of(8, "halfplane 0 -1 -0.238\n"), &aging);
+  motion m = at(0.249, 0.256, 0, 0);
+  for (int tick = 0; tick < 5; tick++) rig_step(&r, &m);
+  m = at(0.249, 0.246, 0, 0);
+  for (int tick = 0; tick < 3; tick++) {
+    youngest = INFINITY;
+    ck_assert_int_eq(rig_step(&r, &m)->object, 8);
+    close_to(youngest, 1e-3 * (5 + tick));
+  }
+  rig_close(&r);
+}
+END_TEST
+
 /* ---- what counts ---- */
 
 /* Not before d_re < d_beta (2.5 mm), or d_fe <= d_beta however far the finger is ahead. */
@@ -410,6 +435,7 @@ int main(void) {
   tcase_add_test(t, test_order_of_equals);
   tcase_add_loop_test(t, test_overflow_keeps_the_deepest, 0, 6);
   tcase_add_test(t, test_newcomer_that_is_deeper);
+  tcase_add_test(t, test_newcomer_leaves_the_others);
   tcase_add_test(t, test_within_reach);
   tcase_add_test(t, test_circle);
   tcase_add_test(t, test_no_scene_and_empty_scene);

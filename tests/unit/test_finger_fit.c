@@ -178,12 +178,14 @@ START_TEST(test_least_squares) {
     noisy(r, i, 0.3e-3);
     if (i % 2) r[i % 16] = r[(i + 3) % 16] = r[(i + 4) % 16] = NAN;
     if (robust && i % 4 > 1) r[5] += 3e-3;
+    if (robust && i % 4 == 3) r[11] -= 3e-3;
     ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
     long double v[3] = {0, 0, FINGER};
     search(&(problem){r, finger.used, robust ? FINGER : 0}, v);
     ck_assert_double_le(distance(finger.centre, (ethd_vec){(double)v[0], (double)v[1]}), robust ? 1e-6 : 2e-8);
     if (!robust) ck_assert_double_eq_tol(finger.radius, (double)v[2], 2e-8);
     if (robust && i % 4 > 1) ck_assert_uint_eq(finger.used >> 5 & 1, 0);
+    if (robust && i % 4 == 3) ck_assert_uint_eq(finger.used >> 11 & 1, 0);
   }
 }
 END_TEST

@@ -85,6 +85,11 @@ static ethd_status fills_far(const double *p, void *state, const ethd_tracking_i
   return fills(p, state, in, tau);
 }
 
+static ethd_status fills_far_with_more(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) {
+  ((char *)state)[sizeof(ethd__law_block) - offsetof(ethd__law_block, at) - 1] = (char)0xff;
+  return fills(p, state, in, tau);
+}
+
 /* Whose block it is, before it. */
 static ethd_status forgets(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) {
   memset((char *)state - offsetof(ethd__law_block, at), 0, sizeof(ethd_law *));
@@ -112,6 +117,7 @@ START_TEST(test_to_the_byte) {
   } cases[] = {{fills, NULL, ETHD_OK},
                {fills_more, NULL, ETHD_E_FENCE},
                {fills_far, NULL, ETHD_E_FENCE},
+               {fills_far_with_more, NULL, ETHD_E_FENCE},
                {forgets, NULL, ETHD_E_FENCE},
                {cuts, NULL, cuts == fills_more ? ETHD_E_FENCE : ETHD_E_FENV},
                {fills, reset_more, ETHD_E_FENCE},

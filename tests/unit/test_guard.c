@@ -216,6 +216,18 @@ START_TEST(test_without_latch) {
 }
 END_TEST
 
+/* Programs print them: each has a name, a unit and a line that says what it is. */
+START_TEST(test_rows_say_what_they_are) {
+  const char *const units[] = {"Nm", "Nm/s", "m/s", "m", "s", "rad", "J", NULL};
+  for (int i = 0; i < ETHD_LIMITS; i++) {
+    const ethd_limit *row = &ethd_limit_rows[i];
+    const char *const *unit = units;
+    while (*unit && strcmp(*unit, row->unit) != 0) unit++;
+    ck_assert(row->name[0] && row->brief[0] && *unit);
+  }
+}
+END_TEST
+
 START_TEST(test_narrower) {
   ethd_limits a = ethd_limits_none(), b = ethd_limits_none();
   a.torque = 1, b.torque = 2;
@@ -254,6 +266,7 @@ int main(void) {
   tcase_add_test(t, test_workspace);
   tcase_add_test(t, test_stop_and_the_other_limits);
   tcase_add_test(t, test_without_latch);
+  tcase_add_test(t, test_rows_say_what_they_are);
   tcase_add_test(t, test_narrower);
   suite_add_tcase(suite, t);
   return rig_run(suite);

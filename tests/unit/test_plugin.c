@@ -83,8 +83,12 @@ END_TEST
 START_TEST(test_several_laws) {
   const ethd_plugin_entry *entry;
   ck_assert_int_eq(ethd_plugin_open(path_of("pair"), &entry, NULL), ETHD_OK);
-  ck_assert_uint_eq(entry->law_count, 3);
-  ck_assert_str_eq(entry->laws[0]->id, entry->laws[2]->id);
+  ck_assert_uint_eq(entry->law_count, 4);
+  ck_assert_str_eq(entry->laws[0]->id, "one");
+  ck_assert_str_eq(entry->laws[1]->id, "one");
+  ck_assert_str_eq(entry->laws[3]->id, "one");
+  ck_assert(entry->laws[0]->kind == ETHD_CONTACT && entry->laws[1]->kind == ETHD_TRANSITION &&
+            entry->laws[3]->kind == ETHD_TRACKING);
 }
 END_TEST
 
