@@ -178,10 +178,11 @@ START_TEST(test_newcomer_that_is_deeper) {
 }
 END_TEST
 
-static double youngest;
+static double youngest, oldest;
 
 static ethd_status aging_step(const double *p, void *state, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
   if (c->object != 8 && c->age < youngest) youngest = c->age;
+  if (c->age > oldest) oldest = c->age;
   return ethd_transition_smooth.step(p, state, c, out);
 }
 
@@ -200,6 +201,33 @@ START_TEST(test_newcomer_leaves_the_others) {
     close_to(youngest, 1e-3 * (5 + tick));
   }
   rig_close(&r);
+}
+END_TEST
+
+/* In a new scene that has the same walls each contact goes on, the second one as well, and so it does when the first one's
+   wall is gone. */
+START_TEST(test_new_scene_continues_each) {
+  const char *const scenes[] = {"halfplane -1 0 -0.238\nhalfplane 0 -1 -0.238\n", "halfplane 0 -1 -0.238\n"};
+  for (int k = 0; k < 2; k++) {
+    ethd_transition_law aging = ethd_transition_smooth;
+    aging.step = aging_step;
+    rig r;
+    open_with(&r, scenes[0], &aging);
+    motion m = at(0.248, 0.249, 0, 0);
+    for (int tick = 0; tick < 5; tick++) ck_assert_int_eq(rig_step(&r, &m)->contacts, 2);
+    ethd_scene *other = rig_scene(scenes[k]);
+    r.setup.scene = other;
+    r.setup.swap_time = 0;
+    rig_post(&r);
+    for (int tick = 0; tick < 3; tick++) {
+      youngest = INFINITY, oldest = -INFINITY;
+      ck_assert_int_eq(rig_step(&r, &m)->contacts, 2 - k);
+      close_to(youngest, 1e-3 * (5 + tick));
+      close_to(oldest, 1e-3 * (5 + tick));
+    }
+    rig_close(&r);
+    ethd_scene_destroy(other);
+  }
 }
 END_TEST
 
@@ -436,6 +464,7 @@ int main(void) {
   tcase_add_loop_test(t, test_overflow_keeps_the_deepest, 0, 6);
   tcase_add_test(t, test_newcomer_that_is_deeper);
   tcase_add_test(t, test_newcomer_leaves_the_others);
+  tcase_add_test(t, test_new_scene_continues_each);
   tcase_add_test(t, test_within_reach);
   tcase_add_test(t, test_circle);
   tcase_add_test(t, test_no_scene_and_empty_scene);

@@ -217,6 +217,24 @@ START_TEST(test_absorbed_is_no_credit) {
 }
 END_TEST
 
+/* A brake takes energy away: it is never told, and no wall is added to it. */
+START_TEST(test_brake_takes) {
+  rig r;
+  rig_open(&r, RIG_WALL);
+  ethd_setup_transition(&r.setup, &ethd_transition_offset);
+  r.setup.limits.energy = 1e-6;
+  rig_start(&r);
+  for (int i = 0; i < 8; i++) {
+    motion m = rig_at(0.0005 - 0.0003 * i, 0.3, 0);
+    const ethd_trace *t = rig_step(&r, &m);
+    ck_assert_double_eq(t->fe[0], 0);
+    for (ethd_event e; (e = rig_poll(&r)).kind;) ck_assert_msg(e.kind != ETHD_EVENT_FAULT, "%d at %d", e.code, i);
+  }
+  ck_assert_int_eq(r.trace.state, ETHD_BRAKING);
+  rig_close(&r);
+}
+END_TEST
+
 /* A body that was pressed and retreats from a ring that stands, with another law since. */
 START_TEST(test_surface_retreats) {
   rig r;
@@ -275,6 +293,7 @@ int main(void) {
   tcase_add_test(t, test_acknowledged_within);
   tcase_add_test(t, test_bounces_add_up);
   tcase_add_test(t, test_absorbed_is_no_credit);
+  tcase_add_test(t, test_brake_takes);
   tcase_add_test(t, test_surface_retreats);
   tcase_add_test(t, test_wall_that_comes);
   suite_add_tcase(suite, t);

@@ -169,6 +169,31 @@ START_TEST(test_corners_of_an_l) {
 }
 END_TEST
 
+/* Which side is inside doesn't depend on which point comes first. From the leftmost one the other neighbour's neighbour
+   lies on the wrong side. */
+START_TEST(test_winding) {
+  enum { POINTS = 40 };
+  double points[POINTS][2] = {{0, 0}, {1, -1}};
+  for (int k = 2; k < POINTS; k++) {
+    double t = (k - 2) / (POINTS - 3.0), bulge = -0.05 * sin(3.14159 * t);
+    points[k][0] = 2 - t + 3 * bulge, points[k][1] = 4 - 3 * t - bulge;
+  }
+  for (int first = 0; first < POINTS; first++)
+    for (int back = 0; back < 2; back++) {
+      double p[2 * POINTS];
+      for (int k = 0; k < POINTS; k++)
+        memcpy(p + 2 * k, points[(first + (back ? POINTS - k : k)) % POINTS], sizeof points[0]);
+      ethd_object_def o = {ETHD_POLYGON, -1, p, 2 * POINTS, 0};
+      ethd_scene_def def = {&o, 1, NULL, 0};
+      ethd_scene *s;
+      ck_assert_int_eq(ethd_scene_create(&def, &s, NULL), ETHD_OK);
+      ck_assert_double_eq_tol(at(s, 0.5, 0).distance, -0.5 * sqrt(0.5), 1e-15);
+      ck_assert_double_eq_tol(at(s, -0.5, 0).distance, 0.5, 1e-15);
+      ethd_scene_destroy(s);
+    }
+}
+END_TEST
+
 START_TEST(test_undefined_gradients) {
   ethd_scene *s = SCENE_ONE(ETHD_CIRCLE, 0.25, 0.5, 0.125);
   ethd_nearest q = at(s, 0.25, 0.5);
@@ -272,6 +297,7 @@ int main(void) {
   tcase_add_test(all, test_paper_wall);
   tcase_add_test(all, test_halfplane_is_normalised);
   tcase_add_test(all, test_corners_of_an_l);
+  tcase_add_test(all, test_winding);
   tcase_add_test(all, test_undefined_gradients);
   tcase_add_test(all, test_empty_and_ties);
   tcase_add_test(all, test_nearly_straight_vertices);

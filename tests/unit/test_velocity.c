@@ -327,6 +327,7 @@ START_TEST(test_refusals) {
     ck_assert_int_eq(status, bad[i].status);
     ck_assert_int_eq(error.status, bad[i].status);
     ck_assert_str_eq(error.name, bad[i].name);
+    if (strcmp(error.name, "window") == 0) ck_assert(error.found == bad[i].p0 && error.min == 2 && error.max == 32);
     ck_assert(v.period == 42);
     ck_assert_int_eq(ethd_velocity_prepare((ethd_velocity_method)bad[i].method, p, bad[i].period, &v, NULL), status);
   }
