@@ -16,6 +16,7 @@ START_TEST(test_curve) {
   const ethd__brake_curve c = ethd__brake_curve_of(40, 400, T);
   const double at = 40.0 / (400 * 400), h = 1e-7 * at;
   ck_assert_double_eq_tol(c.linear, at, 1e-15);
+  ck_assert(c.rate == 400 && ethd__brake_curve_of(40, 400, 2e-3).rate == 250); /* half of the distance in a tick */
   double below = ethd__brake_curve_speed(&c, at - h), on = ethd__brake_curve_speed(&c, at),
          above = ethd__brake_curve_speed(&c, at + h);
   ck_assert_double_eq_tol((on - below) / h, 400, 0.01);

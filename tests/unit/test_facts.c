@@ -50,7 +50,10 @@ START_TEST(test_rate) {
     rig_step(&r, &m);
     ck_assert_double_eq_tol(seen.force, (0.1 + (side ? stands : -stands)) / LEVER, 1e-9);
     m = finger_at(side ? 0.26 : 0.24);
-    for (int i = 0; i < 40; i++) rig_step(&r, &m); /* as far as the rate and the limit let it */
+    for (int i = 0; i < 40; i++) { /* as far as the rate and the limit let it */
+      rig_step(&r, &m);
+      ck_assert_double_ge(seen.force, 0);
+    }
     ck_assert_double_eq_tol(seen.force, (side ? 1.25 : 0) / LEVER, 1e-9);
     rig_close(&r);
   }

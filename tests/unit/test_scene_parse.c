@@ -75,6 +75,16 @@ START_TEST(test_length_counts) {
 }
 END_TEST
 
+START_TEST(test_nul_byte) {
+  const char text[] = "circle 0 0 1\n# \0\n";
+  ethd_scene *s;
+  ethd_error error;
+  ck_assert_int_eq(ethd_scene_parse(text, sizeof text - 1, &s, &error), ETHD_E_SYNTAX);
+  ck_assert(s == NULL && error.line == 2);
+  ck_assert_str_eq(error.name, "a NUL byte");
+}
+END_TEST
+
 /* c of a half-plane {x > c} is its distance from the base. */
 static void check_number(const char *word) {
   char text[400];
@@ -141,9 +151,9 @@ START_TEST(test_comma_locale) {
 END_TEST
 
 START_TEST(test_materials) {
-  ethd_scene *s = parse("circle 9 0 1 material=hard\n" /* defined below */
+  ethd_scene *s = parse("circle 9 0 1 material=Hard_2.A-z\n" /* defined below */
                         "material soft k_e=100 b_e=1.5\n"
-                        "material hard k_e=1e5\n"
+                        "material Hard_2.A-z k_e=1e5\n"
                         "circle 0 0 1 material=soft # and a comment\n"
                         "circle -9 0 1\n");
   static const int expected[] = {1, 0, -1};
@@ -413,6 +423,7 @@ int main(void) {
   tcase_add_test(all, test_every_shape);
   tcase_add_test(all, test_empty_texts);
   tcase_add_test(all, test_length_counts);
+  tcase_add_test(all, test_nul_byte);
   tcase_add_test(all, test_numbers);
   tcase_add_test(all, test_comma_locale);
   tcase_add_test(all, test_materials);

@@ -94,6 +94,19 @@ START_TEST(test_edges_on_one_line) {
 }
 END_TEST
 
+/* Two points of a round that have changed places. */
+START_TEST(test_edges_by_number) {
+  enum { POINTS = 240 };
+  double p[2 * POINTS];
+  for (int k = 0; k < POINTS; k++) {
+    int at = k == 120 ? 121 : k == 121 ? 120 : k;
+    p[2 * k] = cos(at * 0.026), p[2 * k + 1] = sin(at * 0.026);
+  }
+  ck_assert_int_eq(one(ETHD_POLYGON, -1, p, 2 * POINTS), ETHD_E_GEOMETRY);
+  ck_assert_str_eq(error.name, "polygon: edges 119 and 121 meet");
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("scene refused");
   TCase *t = tcase_create("scene refused");
@@ -102,6 +115,7 @@ int main(void) {
   tcase_add_test(t, test_count_that_cannot_be);
   tcase_add_test(t, test_names_without_an_end);
   tcase_add_test(t, test_edges_on_one_line);
+  tcase_add_test(t, test_edges_by_number);
   suite_add_tcase(suite, t);
   return rig_run(suite);
 }

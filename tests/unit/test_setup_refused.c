@@ -35,6 +35,34 @@ START_TEST(test_no_law) {
 }
 END_TEST
 
+static ethd_error refused(const ethd_law *law) {
+  ethd_error error = {0};
+  ck_assert_int_lt(ethd_law_check(law, &error), 0);
+  return error;
+}
+
+/* What was found and what is allowed are told. */
+START_TEST(test_law_in_numbers) {
+  ethd_transition_law law = ethd_transition_smooth;
+  law.law.kind = (ethd_kind)3;
+  ethd_error e = refused(&law.law);
+  ck_assert(!strcmp(e.name, "kind") && e.found == 3 && e.min == 0 && e.max == 2);
+  law.law.kind = ETHD_TRANSITION;
+  law.law.size = ETHD_TRANSITION_LAW_MIN - 1;
+  e = refused(&law.law);
+  ck_assert(!strcmp(e.name, "size") && e.found == ETHD_TRANSITION_LAW_MIN - 1 && e.min == ETHD_TRANSITION_LAW_MIN &&
+            e.max == sizeof law);
+  law.law.size = sizeof law;
+  law.law.abi = ETHD_ABI + 5;
+  e = refused(&law.law);
+  ck_assert(!strcmp(e.name, "abi") && e.found == ETHD_ABI + 5 && e.min == ETHD_ABI && e.max == ETHD_ABI);
+  law.law.abi = ETHD_ABI;
+  law.law.state_size = ETHD_STATE_MAX + 1;
+  e = refused(&law.law);
+  ck_assert(!strcmp(e.name, "smooth") && e.found == ETHD_STATE_MAX + 1 && e.min == 0 && e.max == ETHD_STATE_MAX);
+}
+END_TEST
+
 /* A law of another kind, larger and smaller: neither is taken for what the setup calls it. */
 START_TEST(test_law_of_another_kind) {
   ethd_setup s = ethd_setup_default();
@@ -200,6 +228,7 @@ int main(void) {
   Suite *suite = suite_create("setup refused");
   TCase *t = tcase_create("setup refused");
   tcase_add_test(t, test_no_law);
+  tcase_add_test(t, test_law_in_numbers);
   tcase_add_test(t, test_law_of_another_kind);
   tcase_add_test(t, test_foreign_law);
   tcase_add_test(t, test_range);

@@ -42,6 +42,40 @@ START_TEST(test_into_offset_and_out) {
 }
 END_TEST
 
+static ethd_past past;
+
+static void look_back(const double *p, void *state, const ethd_past *was) ETHD_RT {
+  (void)p, (void)state;
+  past = *was;
+}
+
+/* What a law is told of the contact that it takes over. */
+START_TEST(test_past) {
+  static ethd_transition_law looking;
+  looking = ethd_transition_smooth;
+  looking.law.id = "looking";
+  looking.adopt = look_back;
+  rig r;
+  rig_open(&r, RIG_WALL);
+  ethd_setup_transition(&r.setup, &ethd_transition_abrupt);
+  rig_start(&r);
+  motion m = rig_at(0.001, 0.2, 0);
+  for (int i = 0; i < 4; i++) rig_step(&r, &m);
+  ck_assert_int_eq(r.trace.state, ETHD_TRANSPARENT);
+  m = rig_at(-0.002, 0.1, 0);
+  for (int i = 0; i < 3; i++) rig_step(&r, &m);
+  ck_assert_int_eq(r.trace.state, ETHD_VO);
+  swap_to(&r, &looking, &m);
+  ck_assert_int_eq(past.state, ETHD_VO);
+  ck_assert_double_eq_tol(past.age, 0.008, 1e-12);
+  ck_assert_double_eq_tol(past.since, 0.004, 1e-12);
+  ck_assert_double_eq_tol(past.d_re, -0.002, 1e-12);
+  ck_assert_double_eq_tol(past.v, 0.1, 1e-12);
+  ck_assert(past.offset == 0);
+  rig_close(&r);
+}
+END_TEST
+
 /* Other gains for the same law: its state stays. */
 START_TEST(test_same_law_keeps_its_state) {
   rig r;
@@ -176,6 +210,7 @@ int main(void) {
   Suite *suite = suite_create("swap_laws");
   TCase *t = tcase_create("swap_laws");
   tcase_add_test(t, test_into_offset_and_out);
+  tcase_add_test(t, test_past);
   tcase_add_test(t, test_same_law_keeps_its_state);
   tcase_add_test(t, test_state_of_other_laws);
   tcase_add_test(t, test_estimators_go_on);
