@@ -36,7 +36,7 @@ START_TEST(test_no_law) {
 END_TEST
 
 static ethd_error refused(const ethd_law *law) {
-  ethd_error error = {0};
+  memset(&error, 0, sizeof error);
   ck_assert_int_lt(ethd_law_check(law, &error), 0);
   return error;
 }
