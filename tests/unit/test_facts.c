@@ -76,7 +76,7 @@ START_TEST(test_heat) {
 }
 END_TEST
 
-/* Unequal links and joints: mass along n is that of the link that moves, for both directions. */
+/* Unequal joints: mass along n is that of the link that moves, for both directions. */
 START_TEST(test_mass_of_each_link) {
   const char *const walls[] = {RIG_WALL, "halfplane 0 -1 -0.238\n"};
   const double mass[] = {0.2, 0.7};
@@ -90,6 +90,24 @@ START_TEST(test_mass_of_each_link) {
     motion m = finger_at(0.25);
     rig_step(&r, &m);
     ck_assert_double_eq_tol(seen.mass, mass[i], 1e-9);
+    rig_close(&r);
+  }
+}
+END_TEST
+
+/* Links of other lengths: a mass at the end of each adds 1/m of its share of the way, sin^2 q along x. */
+START_TEST(test_mass_of_unequal_links) {
+  const ethd_arm arms[] = {{ETHD_ARM_PARALLEL, 0.3, 0.2}, {ETHD_ARM_PARALLEL, 0.21, 0.34}};
+  for (int i = 0; i < 2; i++) {
+    rig r;
+    open_spied(&r);
+    r.setup.arm = arms[i];
+    r.setup.dynamics = (ethd_dynamics){{0.2, 0.7}, 0, 0, 0};
+    rig_start(&r);
+    motion m = finger_at(0.25);
+    rig_step(&r, &m);
+    double s1 = sin(r.trace.sense.q[0]), s2 = sin(r.trace.sense.q[1]);
+    ck_assert_double_eq_tol(1 / seen.mass, s1 * s1 / 0.2 + s2 * s2 / 0.7, 1e-9);
     rig_close(&r);
   }
 }
@@ -129,6 +147,7 @@ int main(void) {
   tcase_add_test(t, test_rate);
   tcase_add_test(t, test_heat);
   tcase_add_test(t, test_mass_of_each_link);
+  tcase_add_test(t, test_mass_of_unequal_links);
   tcase_add_test(t, test_acceleration);
   suite_add_tcase(suite, t);
   return rig_run(suite);

@@ -72,6 +72,20 @@ START_TEST(test_rate_over_missed_ticks) {
 END_TEST
 
 /* Torque before rate: both bits when both had to act; the rate's result stays within the torque limit. */
+/* Nearly as steep as the rate allows, for longer than anything steeper may last: nothing is cut, nothing stops. */
+START_TEST(test_slope_of_the_rate) {
+  ethd_limits l = ethd_limits_none();
+  ethd_guard_state s = {0};
+  double tau[2];
+  l.torque_rate = 100;
+  for (int i = 1; i <= 3 * ETHD_STEEP_MAX; i++) {
+    ck_assert_int_eq(step(&l, &s, still, 0.099 * i, -0.09 * i, tau), 0);
+    is(tau, 0.099 * i, -0.09 * i);
+  }
+  ck_assert_int_eq(s.stopping, 0);
+}
+END_TEST
+
 START_TEST(test_torque_then_rate) {
   ethd_limits l = ethd_limits_none();
   ethd_guard_state s = {0};
@@ -257,6 +271,7 @@ int main(void) {
   tcase_add_test(t, test_torque);
   tcase_add_test(t, test_rate);
   tcase_add_test(t, test_rate_over_missed_ticks);
+  tcase_add_test(t, test_slope_of_the_rate);
   tcase_add_test(t, test_torque_then_rate);
   tcase_add_test(t, test_narrower_torque_at_once);
   tcase_add_test(t, test_finite);

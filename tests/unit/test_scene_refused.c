@@ -104,6 +104,13 @@ START_TEST(test_edges_by_number) {
   }
   ck_assert_int_eq(one(ETHD_POLYGON, -1, p, 2 * POINTS), ETHD_E_GEOMETRY);
   ck_assert_str_eq(error.name, "polygon: edges 119 and 121 meet");
+  for (int k = 0; k < POINTS / 2; k++)
+    for (int i = 0; i < 2; i++) {
+      double *a = &p[2 * k + i], *b = &p[2 * (POINTS - 1 - k) + i], t = *a;
+      *a = *b, *b = t;
+    }
+  ck_assert_int_eq(one(ETHD_POLYGON, -1, p, 2 * POINTS), ETHD_E_GEOMETRY);
+  ck_assert_str_eq(error.name, "polygon: edges 117 and 119 meet");
 }
 END_TEST
 
