@@ -36,13 +36,13 @@ void ethd__inbox_read(ethd__inbox *in, int64_t now_ns, ethd_sense *out) {
   const ethd__sighting *s = &in->taken;
   (void)!ethd_cell_take(in->cell, &in->taken);
   out->faults |= rows_of(in, now_ns);
-  if (s->readings != in->read) {
+  if (s->readings != in->read && s->sample_ns <= now_ns) {
     out->have |= s->have;
     out->sample_ns = s->sample_ns;
     ethd_vec_put(s->centre, out->centre);
     out->finger_noise = s->noise;
+    in->read = s->readings;
   }
-  in->read = s->readings;
   in->lost = s->lost;
   in->jumps = s->jumps;
 }

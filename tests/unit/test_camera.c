@@ -10,6 +10,7 @@
 
 #include "ethd/driver.h"
 #include "finger/camera.h"
+#include "finger/inbox.h"
 #include "unit/draw.h"
 #include "unit/rig.h"
 
@@ -143,6 +144,28 @@ START_TEST(test_driver) {
 }
 END_TEST
 
+/* A reading that is younger than the tick is given at the next one, once. */
+START_TEST(test_younger_than_the_tick) {
+  ethd__inbox inbox;
+  memset(&inbox, 0, sizeof inbox);
+  ck_assert_int_eq(ethd__inbox_open(&inbox, 90), ETHD_OK);
+  inbox.newest =
+      (ethd__sighting){.sample_ns = 1000500, .arrival_ns = 1000700, .have = ETHD_HAVE_CENTRE, .centre = {0.2, 0.1}};
+  ethd__inbox_judge(&inbox, true);
+  ethd__inbox_put(&inbox);
+  const int64_t now[] = {1000000, 1000499, 1000500, 2000000}, have[] = {0, 0, ETHD_HAVE_CENTRE, 0};
+  for (int i = 0; i < 4; i++) {
+    ethd_sense s;
+    memset(&s, 0, sizeof s);
+    ethd__inbox_read(&inbox, now[i], &s);
+    ck_assert_int_eq(s.have, have[i]);
+    ck_assert_int_eq(s.faults, 0);
+    ck_assert(s.sample_ns == (have[i] ? 1000500 : 0) && s.centre[0] == (have[i] ? 0.2 : 0));
+  }
+  ethd__inbox_close(&inbox);
+}
+END_TEST
+
 START_TEST(test_refused) {
   static const struct {
     const char *listen, *from, *says;
@@ -175,6 +198,7 @@ int main(void) {
   tcase_add_test(tc, test_clock);
   tcase_add_test(tc, test_order);
   tcase_add_test(tc, test_driver);
+  tcase_add_test(tc, test_younger_than_the_tick);
   tcase_add_test(tc, test_refused);
   suite_add_tcase(suite, tc);
   return rig_run(suite);
