@@ -217,6 +217,8 @@ static const refusal refusals[] = {
     {"circle 0 1e5.0 1", ETHD_E_SYNTAX, 1, "1e5.0"},
     {"circle 0 \"1\" 1", ETHD_E_SYNTAX, 1, "\"1\""},
     {"circle 0 0 1 material", ETHD_E_SYNTAX, 1, "material"},
+    {"circle 0 x 1\ncircle 0 0 1", ETHD_E_SYNTAX, 1, "x"},
+    {"circle 0 0 1\ncircle 0 y 1\ncircle 0 z 1\n", ETHD_E_SYNTAX, 2, "y"},
     {"circle 0 \x1b[2J 1", ETHD_E_SYNTAX, 1, "?[2J"},
     {"circle 0 1\x7f\xff 1", ETHD_E_SYNTAX, 1, "1??"},
     {"circle 0 0 1 material=", ETHD_E_SYNTAX, 1, "material="},
