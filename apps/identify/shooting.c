@@ -10,7 +10,6 @@
 #define SETTLINGS 40 /* improvements of a window's state at most, until its squares fall by less than this share: */
 #define SETTLED 1e-9
 #define MOVED 1e-5     /* a state whose squares fall by a smaller share has hardly moved, and its slopes stay */
-#define CHORDS 2       /* corrections of a state with the same slopes */
 #define STEP 3e-4      /* by which a coordinate is changed to find its slope by differences */
 #define DEPENDENT 1e-5 /* a vector of which others explain all but this share says nothing; */
 #define SEEN 1e-2 /* standard deviations: a state that changes the residual by less wherever it is isn't seen either */
@@ -93,11 +92,18 @@ static void project(const ethd__shooting *p, const ethd__fit_window *w, double *
   for (int i = 0; i < w->rank; i++) add(out, -dot(basis + i * w->rows, out, w->rows), basis + i * w->rows, w->rows);
 }
 
-/* Adds to a state the correction that a residual asks for; returns the share of it that stays within the extents. */
-static double correct(const ethd__shooting *p, const ethd__fit_window *w, const double *left, double *state) {
+/* Adds to a state the correction that a residual asks for; returns the share of it that stays within the extents.
+   promised: by how much it reduces the squares if the slopes hold. */
+static double correct(const ethd__shooting *p, const ethd__fit_window *w, const double *left, double *state,
+                      double *promised) {
   const double *basis = basis_of(p, w);
   double share = 1;
-  for (int i = 0; i < w->rank; i++) add(state, dot(basis + i * w->rows, left, w->rows), w->turn[i], ETHD__STATES);
+  *promised = 0;
+  for (int i = 0; i < w->rank; i++) {
+    double along = dot(basis + i * w->rows, left, w->rows);
+    add(state, along, w->turn[i], ETHD__STATES);
+    *promised += along * along;
+  }
   for (int i = 0; i < ETHD__STATES; i++) {
     double most = p->subject->extent(i);
     if (share * fabs(state[i]) > most) share = most / fabs(state[i]);
@@ -166,7 +172,8 @@ typedef struct job {
 static double improve(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant, double *state,
                       double *left) {
   double moved[ETHD__STATES] = {0}, next[ETHD__STATES], now[ETHD__RESIDUALS_MOST], sum = dot(left, left, w->rows);
-  double most = correct(p, w, left, moved);
+  double promised, most = correct(p, w, left, moved, &promised);
+  if (promised < SETTLED * sum) return sum;
   for (double share = most; share > 0.05 * most; share /= 2) {
     for (int i = 0; i < ETHD__STATES; i++) next[i] = state[i] + share * moved[i];
     residual(p, w, plant, next, now);
@@ -183,7 +190,7 @@ static void settle_one(const job *part, ethd__fit_window *w) {
   const ethd__shooting *p = part->problem;
   double left[ETHD__RESIDUALS_MOST];
   residual(p, w, part->plants, w->state, left);
-  for (int chord = 0; chord < CHORDS && w->rank; chord++) (void)improve(p, w, part->plants, w->state, left);
+  if (w->rank) (void)improve(p, w, part->plants, w->state, left); /* with the slopes from before */
   span(p, w, part->plants);
   double sum = dot(left, left, w->rows);
   for (int i = 0; i < SETTLINGS; i++) {
@@ -202,7 +209,7 @@ static void residual_windows(void *data, size_t begin, size_t end) {
     double state[ETHD__STATES], *out = part->out + w->row;
     memcpy(state, w->state, sizeof state);
     residual(p, w, part->plants, state, out);
-    for (int chord = 0; chord < CHORDS; chord++) (void)improve(p, w, part->plants, state, out);
+    (void)improve(p, w, part->plants, state, out);
     project(p, w, out);
   }
 }

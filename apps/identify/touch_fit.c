@@ -12,8 +12,8 @@
 #define BRIEF 12   /* evaluations of each start */
 #define LONG 40    /* evaluations of the fit */
 #define MOST 64    /* touches of the fit */
-#define ROUGH 1e-6 /* m/s: the simulator's tolerance while starts compete, */
-#define FINE 1e-7  /* m/s: and for the numbers that are said */
+#define ROUGH 1e-5 /* m/s: the simulator's tolerance while starts compete, */
+#define FINE 1e-6  /* m/s: and for the numbers that are said */
 #define STRANGE 4  /* standard deviations of a sum of squares: what leaves more doesn't follow the model */
 #define BLATANT 8  /* the same before the numbers are fitted to it */
 #define GUARD 8e-3 /* s: braking begins so softly that it shows so much later */
