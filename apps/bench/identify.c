@@ -1,10 +1,11 @@
 /* What identification asks of the simulator: arms without a finger over short windows, one after another and four side
-   by side, and a whole fit. */
+   by side; whole fits of arms, and of touches. */
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
 #include "bench/bench.h"
+#include "bench/identify_touches.h"
 #include "bench/methods.h"
 #include "cli/cli.h"
 #include "identify/fit.h"
@@ -258,6 +259,14 @@ static int run(const char *folder, int quick) {
     double seconds, rate = fit_rate(&arms[a], quick ? 20 : FIT_WINDOWS, &seconds);
     printf("  goal: a whole fit of plant %s predicts %.0f s per CPU second: %.0f in %.1f s, %s\n", arms[a].name, GOAL,
            rate, seconds, ethd__bench_verdict(rate >= GOAL));
+  }
+  static const char *const tapped[] = {"n", "b", "p"};
+  for (int i = 0; i < (quick ? 1 : 3); i++) {
+    double seconds;
+    size_t touches;
+    double rate = ethd__bench_touches(tapped[i], quick ? 12 : 20, folder, &seconds, &touches);
+    printf("  goal: a whole fit of %zu touches on plant %s predicts %.0f s per CPU second: %.0f in %.1f s, %s\n",
+           touches, tapped[i], GOAL, rate, seconds, ethd__bench_verdict(rate >= GOAL));
   }
   return ethd__bench_close();
 }
