@@ -5,27 +5,19 @@
 #include <time.h>
 
 #include "cli/cli.h"
+#include "identify/touch_follow.h"
 #include "identify/touching.h"
 
 #define QUICK 10   /* touches on which starts compete, */
 #define SOON 0.025 /* s after the first reading that is near: so long are these touches; */
 #define BRIEF 12   /* evaluations of each start */
-#define LONG 40    /* evaluations of the fit */
-#define MOST 64    /* touches of the fit */
 #define ROUGH 1e-5 /* m/s: the simulator's tolerance while starts compete, */
 #define FINE 1e-6  /* m/s: and for the numbers that are said */
-#define STRANGE 4  /* standard deviations of a sum of squares: what leaves more doesn't follow the model */
-#define BLATANT 8  /* the same before the numbers are fitted to it */
-#define GUARD 8e-3 /* s: braking begins so softly that it shows so much later */
 #define LOUD 1.15  /* standard deviations: a residual above it isn't explained */
 #define SIDE 1.96  /* standard errors to each side of an interval of 95 % */
 #define UNSURE 0.5 /* a number whose interval is wider to one side than this share of its range isn't seen; */
 #define HOPELESS 4 /* beyond this share it isn't fitted beside the others either */
 #define NOISE 1e-4 /* m: of readings whose noise isn't seen */
-
-/* s after the first reading that is near: touches are followed so far, farther from one fit to the next. */
-static const double ends[] = {0.015, 0.025, 0.04, 0.055, ETHD__TOUCH_AFTER};
-enum { ENDS = sizeof ends / sizeof *ends };
 
 static const ethd__chosen finger = {
     {ETHD__FINGER_MASS, ETHD__HAND_STIFFNESS, ETHD__HAND_DAMPING, ETHD__PAD_STIFFNESS, ETHD__PAD_DAMPING}, 5};
@@ -43,22 +35,9 @@ static double *numbers(size_t count) {
   return at;
 }
 
-/* Fills the sum of squares that is left of each touch. */
-static void find_squares(ethd__shooting *p, double *squares) {
-  double x[ETHD__UNKNOWNS], *residual = numbers(p->rows);
-  ethd__chosen_get(&p->chosen, &p->plant, x);
-  ethd__shooting_residual(p, x, residual);
-  for (size_t i = 0; i < p->window_count; i++) {
-    const ethd__fit_window *w = &p->windows[i];
-    squares[i] = 0;
-    for (int k = 0; k < w->rows; k++) squares[i] += residual[w->row + (size_t)k] * residual[w->row + (size_t)k];
-  }
-  free(residual);
-}
-
 static double median_rms(ethd__shooting *p) {
   double *rms = numbers(p->window_count), median;
-  find_squares(p, rms);
+  ethd__touch_squares(p, rms);
   for (size_t i = 0; i < p->window_count; i++) rms[i] = sqrt(rms[i] / fmax(p->windows[i].rows - p->windows[i].rank, 1));
   qsort(rms, p->window_count, sizeof *rms, by_size);
   median = p->window_count ? rms[p->window_count / 2] : 0;
@@ -112,105 +91,13 @@ static void best_start(const ethd__evidence *e, const ethd_plant *starts, int co
    hardly moves, whose rounding isn't noise, draw the finger's path away from the readings. */
 static ethd__bracket find_noise(const ethd__evidence *e, const ethd_plant *plant, double *simulated) {
   ethd__shooting p;
-  ethd__touching_open(e, 0, MOST, FINE, &p);
+  ethd__touching_open(e, 0, ETHD__TOUCHES_MOST, FINE, &p);
   p.plant = *plant;
   ethd__shooting_settle(&p);
   ethd__bracket noise = ethd__touching_noise(&p);
   *simulated += ethd__shooting_simulated(&p);
   ethd__shooting_close(&p);
   return noise;
-}
-
-/* ---- how far touches follow the model ---- */
-
-typedef struct growth {
-  ethd__shooting *problem;
-  bool grows[MOST];                   /* it is followed further */
-  double squares[MOST], before[MOST]; /* left now, and at the end before */
-  int freedom[MOST];                  /* of the latter */
-} growth;
-
-static int freedom_of(const ethd__fit_window *w) { return w->rows - w->rank; }
-
-static void note(growth *g) {
-  const ethd__shooting *p = g->problem;
-  for (size_t i = 0; i < p->window_count; i++) {
-    g->before[i] = g->squares[i];
-    g->freedom[i] = freedom_of(&p->windows[i]);
-  }
-}
-
-/* Whether what was added to touch i, or its beginning, leaves more than so many standard deviations too much. */
-static bool is_strange(const growth *g, size_t i, double most) {
-  double added = freedom_of(&g->problem->windows[i]) - g->freedom[i];
-  return !(g->squares[i] - g->before[i] <= added + most * sqrt(2 * fmax(added, 1)));
-}
-
-/* Ends the touches that stopped to follow the model short of where they did; whether there were any. */
-static bool end_strange(growth *g, int stage, double most) {
-  ethd__shooting *p = g->problem;
-  bool found = false;
-  find_squares(p, g->squares);
-  for (size_t i = 0; i < p->window_count; i++) {
-    if (!g->grows[i] || !is_strange(g, i, most)) continue;
-    found = true;
-    g->grows[i] = false;
-    ethd__touching_end(p, i, fmax(ends[stage - 1] - GUARD, ends[0] - GUARD / 2));
-  }
-  if (!found) return false;
-  ethd__shooting_ready(p);
-  ethd__shooting_settle(p);
-  return true;
-}
-
-static bool is_growing(const growth *g) {
-  for (size_t i = 0; i < g->problem->window_count; i++)
-    if (g->grows[i]) return true;
-  return false;
-}
-
-/* Takes out the touches that are strange from their beginning on. */
-static void leave_out(growth *g) {
-  ethd__shooting *p = g->problem;
-  size_t kept = 0, count = p->window_count;
-  find_squares(p, g->squares);
-  for (size_t i = 0; i < count; i++) {
-    if (is_strange(g, i, STRANGE)) continue;
-    g->squares[kept] = g->squares[i];
-    p->windows[kept++] = p->windows[i];
-  }
-  p->window_count = kept;
-  if (kept == count) return;
-  ethd__shooting_ready(p);
-  (void)ethd__fit_squares(p, LONG, "touches that are alike");
-  ethd__shooting_settle(p);
-  find_squares(p, g->squares);
-}
-
-/* The longer a touch, the more it shows; but a hand that brakes or turns back doesn't move on a cubic. So each touch is
-   followed as far as what is added to it is explained, less a while in which braking that began wouldn't show yet. */
-static double follow(ethd__shooting *p) {
-  growth g = {.problem = p};
-  double sum = ethd__fit_squares(p, LONG, "touches begin");
-  ethd__shooting_settle(p);
-  leave_out(&g);
-  for (size_t i = 0; i < p->window_count; i++) g.grows[i] = true;
-  for (int stage = 1; stage < ENDS && is_growing(&g) && !ethd__stop; stage++) {
-    note(&g);
-    for (size_t i = 0; i < p->window_count; i++)
-      if (g.grows[i]) ethd__touching_end(p, i, ends[stage]);
-    ethd__shooting_ready(p);
-    ethd__shooting_settle(p);
-    (void)end_strange(&g, stage, BLATANT);
-    sum = ethd__fit_squares(p, LONG, "touches go on");
-    ethd__shooting_settle(p);
-    if (end_strange(&g, stage, STRANGE)) {
-      sum = ethd__fit_squares(p, LONG, "touches go on");
-      ethd__shooting_settle(p);
-    }
-    find_squares(p, g.squares);
-  }
-  return sum;
 }
 
 /* ---- how sure ---- */
@@ -247,7 +134,7 @@ static void leave_hopeless(ethd__shooting *p, const ethd_plant *plant, double *e
     ethd__unknown u = p->chosen.at[worst];
     ethd__unknown_set(&p->plant, u, ethd__unknown_value(plant, u));
     ethd__chosen_drop(&p->chosen, u);
-    (void)ethd__fit_squares(p, LONG, "what touches show");
+    (void)ethd__fit_squares(p, ETHD__TOUCH_EVALUATIONS, "what touches show");
   }
 }
 
@@ -280,11 +167,11 @@ static void fit_all(const ethd__evidence *e, const ethd_plant *plant, const ethd
                     ethd__touch_fit *out) {
   ethd__shooting p;
   double errors[ETHD__UNKNOWNS];
-  ethd__touching_open(e, ends[0], MOST, FINE, &p);
+  ethd__touching_open(e, ETHD__TOUCH_SHORTEST, ETHD__TOUCHES_MOST, FINE, &p);
   p.plant = *start;
   p.chosen = finger;
-  ethd__touching_approach(&p, ends[0]);
-  double sum = follow(&p);
+  ethd__touching_approach(&p, ETHD__TOUCH_SHORTEST);
+  double sum = ethd__touch_follow(&p);
   out->used = p.window_count;
   out->rms = sqrt(sum / fmax((double)(p.rows - ethd__shooting_states(&p)), 1));
   out->explained = out->rms <= LOUD && out->used >= ETHD__TOUCHES_LEAST;
