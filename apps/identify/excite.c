@@ -24,7 +24,7 @@
 typedef struct seen {
   ethd_vec at;
   double farthest, fastest; /* m, m/s */
-  bool stopped;             /* a fault ended the torque */
+  atomic_int fault;         /* latched, after which there is nothing to record; 0: none */
   atomic_bool over;         /* set before the stop that ends the session, which is no fault */
 } seen;
 
@@ -34,8 +34,11 @@ static void take(void *seen_, const ethd_loop_row *row) {
   if (atomic_load(&s->over)) return;
   s->farthest = fmax(s->farthest, fmax(fabs(t->x[0] - s->at.x), fabs(t->x[1] - s->at.y)));
   s->fastest = fmax(s->fastest, hypot(t->v[0], t->v[1]));
-  s->stopped |= t->fault && ethd_fault_reaction((ethd_fault)t->fault, 0) >= ETHD_REACTION_STOP;
+  if (!s->fault) atomic_store(&s->fault, (int)t->fault);
 }
+
+/* Returns whether the guard stopped a ring that left its box, rather than a fault of the device. */
+static bool left_box(const seen *s) { return s->fault == ETHD_FAULT_WORKSPACE || s->fault == ETHD_FAULT_SPEED; }
 
 /* ---- the session's configuration ---- */
 
@@ -46,11 +49,12 @@ static bool stays(const char *section) {
   return true;
 }
 
-/* Writes the device's keys, each with its driver's name. */
-static void put_device(FILE *out, const ethd_config *c) {
+/* Writes the device's keys, each with its driver's name. A dry run has no faults by a script. */
+static void put_device(FILE *out, const ethd_config *c, bool dry) {
   bool single = !strchr(c->device, ',');
   for (uint32_t i = 0; i < c->setting_count; i++) {
     const ethd_setting *s = &c->settings[i];
+    if (dry && !strcmp(s->key, "inject")) continue;
     bool named = !single || !strncmp(s->key, c->device, strlen(c->device)) || !strcmp(s->key, "inject");
     fprintf(out, named ? "%.0s%s = %s\n" : "%s.%s = %s\n", c->device, s->key, s->value);
   }
@@ -71,7 +75,7 @@ static char *compose(const ethd__excitation *x, const ethd_config *c, double tor
       fprintf(out, "[%s]\n%s = %s\n", ini->keys[i].section, ini->keys[i].key, ini->keys[i].value);
   fprintf(out, "[tracking]\nlaw = pd\nk_t = %.6g\nb_t = %.6g\n", stiffness, DAMPING * stiffness);
   fprintf(out, "[device]\ndriver = %s, excite\n", dry ? "sim" : c->device);
-  if (sim || !dry) put_device(out, c);
+  if (sim || !dry) put_device(out, c, dry);
   if (simulated) fprintf(out, "sim.empty = yes\nsim.meet_x = %.10g\nsim.meet_y = %.10g\n", x->at.x, x->at.y);
   fprintf(out, "excite.torque = %.6g\nexcite.x = %.10g\nexcite.y = %.10g\nexcite.half = %.6g\n", x->share * torque,
           x->at.x, x->at.y, x->half);
@@ -81,12 +85,12 @@ static char *compose(const ethd__excitation *x, const ethd_config *c, double tor
 
 /* ---- a session ---- */
 
-static bool goes_on(const ethd__session *s, double seconds) {
-  return !ethd__stop && ethd__session_lives(s) && ethd__session_time(s) < seconds * (1 - 1e-12);
+static bool goes_on(const ethd__session *s, const seen *found, double seconds) {
+  return !ethd__stop && !found->fault && ethd__session_lives(s) && ethd__session_time(s) < seconds * (1 - 1e-12);
 }
 
-static void run(ethd__session *s, double seconds) {
-  while (goes_on(s, seconds)) {
+static void run(ethd__session *s, const seen *found, double seconds) {
+  while (goes_on(s, found, seconds)) {
     ethd__progress((uint64_t)(1e3 * ethd__session_time(s)), (uint64_t)(1e3 * seconds), "exciting");
     if (s->is_virtual) {
       ethd__session_tick(s);
@@ -110,7 +114,7 @@ static void dry_run(const ethd__excitation *x, const ethd_config *c, double torq
                              .loop = ethd_loop_default()};
   ethd_status status = ethd__session_open(&o, &session, message);
   if (status) ethd__fail(ethd__exit_code(status), "the dry run: %s", message);
-  run(&session, fmin(DRY, x->seconds));
+  run(&session, out, fmin(DRY, x->seconds));
   atomic_store(&out->over, true);
   ethd__session_halt(&session, false);
   if (ethd__session_end(&session, message)) ethd__fail(ETHD_EXIT_FAILED, "the dry run: %s", message);
@@ -134,7 +138,7 @@ static int record(const ethd__excitation *x, const ethd_config *c, double torque
   ethd_status status = ethd__session_open(&o, &session, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   ethd__remarks_print(stderr, &session);
-  run(&session, x->seconds);
+  run(&session, &out, x->seconds);
   atomic_store(&out.over, true);
   ethd__session_halt(&session, ethd__stop);
   status = ethd__session_end(&session, message);
@@ -142,12 +146,15 @@ static int record(const ethd__excitation *x, const ethd_config *c, double torque
   if (status) fprintf(stderr, "%s: %s\n", program_invocation_short_name, message);
   ethd__session_free(&session);
   free(text);
-  if (!status && out.stopped)
+  if (!status && left_box(&out))
     fprintf(stderr,
             "%s: the guard stopped the ring %.3g m from the middle of the box: put it there before the start, or "
             "use less --share or more --half\n",
             program_invocation_short_name, out.farthest);
-  return status || out.stopped ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE;
+  else if (!status && out.fault)
+    fprintf(stderr, "%s: %s: mend it and record again\n", program_invocation_short_name,
+            ethd_fault_sentence((ethd_fault)out.fault));
+  return status || out.fault ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE;
 }
 
 /* ---- how much torque ---- */
@@ -179,13 +186,13 @@ int ethd__excite(const ethd__excitation *given) {
   double torque = torque_limit(&x, config);
   seen dry;
   dry_run(&x, config, torque, &dry);
-  for (int i = 0; i < TRIES && (dry.stopped || dry.farthest > USED * x.half); i++) {
+  for (int i = 0; i < TRIES && (dry.fault || dry.farthest > USED * x.half); i++) {
     x.share *= LESS;
     dry_run(&x, config, torque, &dry);
   }
-  if (dry.stopped)
-    ethd__fail(ETHD_EXIT_FAILED, "in the dry run the ring leaves the box with %.3g Nm: give a larger --half",
-               x.share * torque);
+  if (dry.fault)
+    ethd__fail(ETHD_EXIT_FAILED, "in the dry run with %.3g Nm: %s: give a larger --half", x.share * torque,
+               ethd_fault_sentence((ethd_fault)dry.fault));
   printf("torques up to %.3g Nm (%.0f %% of the limit), sines from 0.5 to 40 Hz, for %g s\n", x.share * torque,
          100 * x.share, x.seconds);
   printf("inside a box of %.3g x %.3g m about (%.3g, %.3g), which the guard holds\n", 2 * x.half, 2 * x.half, x.at.x,

@@ -1,0 +1,78 @@
+#!/bin/sh
+# What ends an excitation in true time: a signal, a fault, the guard, its duration, with the simulated device and with a driver
+# in a file of its own. Each leaves a closed recording that repeats to the bit and ends without a torque.
+set -u
+[ -z "${SAN:-}" ] || { echo "SKIP: a sanitizer is too slow for a loop in true time"; exit 77; }
+top=$(cd "$(dirname "$0")/.." && pwd)
+bin=$BUILD/bin
+case $bin in /*) ;; *) bin=$top/$bin ;; esac
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+
+$CC -shared -fPIC -DHELLO=ethd_driver_plugin -I"$top/include" "$top/drivers/hello/hello.c" -o hello.so || fail "hello.so"
+printf '[device]\ndriver = file:hello.so\n' >hello.ini
+printf '1 fault9 set\n' >broken.inject
+printf '[device]\ndriver = sim\ninject = broken.inject\n' >broken.ini
+printf '[device]\ndriver = sim\n' >sim.ini
+
+# excite NAME CODE ARGUMENTS...: the exit code, and a recording as it should be. A tick that is 5 ms late ends a session, too.
+late=
+excite() {
+  name=$1 expected=$2
+  shift 2
+  "$bin/ethd-identify" --excite --record "$name" "$@" >"$name.out" 2>"$name.err" &
+  session=$!
+  if [ "$name" = told ]; then
+    for _ in $(seq 100); do [ -s told/tick.npy ] && break; sleep 0.1; done
+    sleep 1
+    kill -TERM $session
+  fi
+  wait $session
+  code=$?
+  if grep -q 'ticks are late' "$name.err"; then late="$name: $(tail -n 1 "$name.err")"; return; fi
+  [ $code = "$expected" ] || fail "$name: exit $code: $(cat "$name.err")"
+  sed -n 3p "$name.out" | grep -q '^dry run  *on the simulated device: up to' || fail "$name: what will be done comes first: $(cat "$name.out")"
+  grep -q ',end,closed$' "$name/events.csv" || fail "$name: not closed: $(tail -n 1 "$name/events.csv")"
+  "$bin/ethd-replay" --verify --plugins "$name" 2>&1 | grep -q 'equal to the bit' || fail "$name: isn't repeated"
+  "$PYTHON" - "$name" <<'END' || fail "$name: not without torque at the end"
+import sys
+import numpy as np
+r = np.load(sys.argv[1] + "/tick.npy")
+moved = np.abs(r["tau"]).max(axis=1) > 0
+assert (moved.sum() > 200) == (sys.argv[1] != "outside"), moved.sum()
+assert not r["tau"][-1].any(), r["tau"][-3:]
+if sys.argv[1] == "broken":  # row 9: at the same tick, and for good; nothing is recorded for long after it
+    first = int(np.flatnonzero(r["faults"] & (1 << 9))[0])
+    assert not r["tau"][first:].any() and np.abs(r["tau"][first - 1]).max() > 0
+    assert len(r) - first < 500, (len(r), first)
+END
+}
+
+excite told 0 --config hello.ini --duration 60
+excite done 0 --config sim.ini --duration 1.5
+excite broken 1 --config broken.ini --duration 60
+tail -n 1 broken.err | grep -q ': the drive reports a fault: mend it and record again$' || fail "broken: $(cat broken.err)"
+excite outside 1 --config hello.ini --duration 60 --at 0.28,0.25 --half 0.02
+[ -n "$late" ] || tail -n 1 outside.err | grep -q ': the guard stopped the ring 0.03 m from the middle of the box: put it there' || fail "outside: $(cat outside.err)"
+
+# A recording that is there stays as it is.
+sums() { cksum done/*; }
+before=$(sums)
+"$bin/ethd-identify" --excite --record done --config sim.ini --duration 1 >out 2>err
+code=$?
+[ $code != 0 ] && grep -q -e '--force' err && [ "$before" = "$(sums)" ] || fail "over a recording: exit $code: $(cat err)"
+
+[ $failed = 0 ] || exit 1
+if [ -n "$late" ]; then
+  "$PYTHON" "$top/tests/peers/late.py" >late &
+  witness=$!
+  sleep 5
+  kill $witness
+  wait $witness
+  awk '$2 >= 3 { busy = 1 } END { exit !busy }' late || { echo "FAILED $late; $(cat late)"; exit 1; }
+  echo "SKIP: this machine is too busy for a loop in true time ($(cat late)): $late"
+  exit 77
+fi
