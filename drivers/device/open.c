@@ -85,8 +85,8 @@ static ethd_status add_driver(const naming *n, const char *name, size_t length) 
     if (!strcmp(s->at[k].driver->id, s->at[i].driver->id))
       status = ethd__say(n->message, ETHD_E_DUPLICATE, "%s: device.driver: %s occurs twice", file_of(n->def),
                          s->at[i].driver->id);
-  if (!status && s->only_prepares) {
-    s->at[i].own = ethd__driver_prepared(s->at[i].driver);
+  if (!status) { /* a table may be shorter than ours */
+    s->at[i].own = s->only_prepares ? ethd__driver_prepared(s->at[i].driver) : ethd__driver_whole(s->at[i].driver);
     s->at[i].driver = &s->at[i].own;
   }
   s->count += !status;

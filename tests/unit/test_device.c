@@ -2,6 +2,8 @@
 #include <check.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include "ethd/control.h"
 #include "ethd/driver.h"
@@ -235,6 +237,32 @@ static const struct {
                 {&settled, "colour", "red", "c.ini:7: device.colour: settled knows map, port, speed, mood"},
                 {&bare, "colour", "red", "c.ini:7: device.colour: bare has no settings"}};
 
+/* A table of the first header of this ABI, at the end of a page before one that can't be read: nothing behind its last
+   field is looked at. */
+START_TEST(test_short_table) {
+  const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+  char *at = mmap(NULL, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  ck_assert(at != MAP_FAILED);
+  void *table = at + page - ETHD_DRIVER_MIN / 8 * 8;
+  memcpy(table, &a, ETHD_DRIVER_MIN);
+  ((ethd_driver *)table)->size = ETHD_DRIVER_MIN;
+  ck_assert_int_eq(mprotect(at + page, page, PROT_NONE), 0);
+  const ethd_driver *const from[] = {table, &b, NULL};
+  const ethd_setup setup = ethd_setup_default();
+  const ethd_device_def def = {&setup, NULL, 0, ".", "c.ini", 1};
+  for (int k = 0; k < 2; k++) {
+    ethd_figure f[4];
+    ck_assert_int_eq(ethd_device_open(k ? "a, b" : "a", from, &def, &driver, &device, message), ETHD_OK);
+    ck_assert_int_eq(driver->start(device), ETHD_OK);
+    ck_assert_uint_eq(driver->figures(device, f, 4), (unsigned)k); /* b's alone */
+    ck_assert(driver->remark(device, 0) == NULL);
+    ck_assert_int_eq(driver->stop(device), ETHD_OK);
+    driver->close(device);
+  }
+  munmap(at, 2 * page);
+}
+END_TEST
+
 START_TEST(test_settings) {
   const ethd_setting one = {settings[_i].key, settings[_i].value, 7}, *text[2] = {NULL, NULL};
   const ethd_setup setup = ethd_setup_default();
@@ -274,6 +302,7 @@ int main(void) {
   Suite *suite = suite_create("device");
   TCase *tests = tcase_create("device");
   tcase_add_test(tests, test_alone);
+  tcase_add_test(tests, test_short_table);
   tcase_add_test(tests, test_two);
   tcase_add_test(tests, test_undone);
   tcase_add_test(tests, test_bare);
