@@ -62,10 +62,11 @@ set ylabel "position along n, mm" offset 1.2
 set yrange [bottom:top]
 set object 1 rectangle from graph 0, first 0 to graph 1, graph 1 fc rgb "#f3f1ec" fs solid noborder behind
 set label 3 "virtual wall" at graph 0.012, first (top - 0.07*(top - bottom)) textcolor rgb grey font "Sans Italic,13"
+under = valley > 0 && valley < 0.2*(top - bottom) ? 0 : valley # where neither ring nor wall cross the words
 if (turned > 0) {
   set arrow 3 from t_valley,peak to t_valley,valley heads size 2,90 front lc rgb ring lw 1.6
   set arrow 4 from t_peak,peak to t_valley,peak nohead front lc rgb ring lw 1.2 dt (2,3)
-  set label 6 sprintf("d_{max} %.2f mm", peak - valley) at t_valley,peak offset 0.6,1.1 textcolor rgb ring font "Sans,13" front
+  set label 6 sprintf("d_{max} %.2f mm", peak - valley) at t_valley,under offset 0.6,-1.1 textcolor rgb ring font "Sans,13" front
 }
 offset_style = moved_any ? 5 : 4 # where the wall didn't move, its line once more: a curve without a point is warned of
 plot in using (t(0)):(1e3*column("hand_m")) with lines ls 3 title "hand's path", \
