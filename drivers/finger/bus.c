@@ -25,8 +25,7 @@ static void receive(ethd__finger_bus *b, const ethd__ring_frame *frame, int64_t 
   ethd__inbox_judge(&b->inbox, good);
   if (!good) return;
   s->have = ETHD_HAVE_CENTRE;
-  s->sample_ns = t_ns;
-  s->arrival_ns = arrival_ns;
+  ethd__inbox_stamp(&b->inbox, t_ns, arrival_ns);
 }
 
 static void take(ethd__finger_bus *b, const uint8_t *bytes, size_t count, int64_t arrival_ns) {

@@ -102,8 +102,7 @@ static void take(camera *c, const uint8_t *bytes, size_t count, int64_t arrival_
   s->jumps = c->clock.jumps;
   if (!newer || !(e.flags & ETHD__EXPOSURE_SEEN)) return;
   s->have = ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD;
-  s->sample_ns = sample_ns;
-  s->arrival_ns = arrival_ns;
+  ethd__inbox_stamp(&c->inbox, sample_ns, arrival_ns);
   s->centre = e.finger;
   s->noise = e.noise;
   ethd__inbox_judge(&c->inbox, true);

@@ -15,6 +15,12 @@ void ethd__inbox_close(ethd__inbox *in) {
 
 void ethd__inbox_put(ethd__inbox *in) { ethd_cell_put(in->cell, &in->newest); }
 
+void ethd__inbox_stamp(ethd__inbox *in, int64_t sample_ns, int64_t arrival_ns) {
+  ethd__sighting *s = &in->newest;
+  s->sample_ns = s->arrival_ns && sample_ns <= s->sample_ns ? s->sample_ns + 1 : sample_ns;
+  s->arrival_ns = arrival_ns;
+}
+
 void ethd__inbox_judge(ethd__inbox *in, bool is_good) {
   ethd__sighting *s = &in->newest;
   s->readings += is_good;

@@ -144,6 +144,21 @@ START_TEST(test_driver) {
 }
 END_TEST
 
+/* The first datagrams came late: the clock is placed 6 ms earlier by the third. Instants don't go back. */
+START_TEST(test_instants_keep_their_order) {
+  ethd__inbox inbox;
+  memset(&inbox, 0, sizeof inbox);
+  ck_assert_int_eq(ethd__inbox_open(&inbox, 300), ETHD_OK);
+  const int64_t told[] = {-500, 10000, 13300, 10600, 13900}, kept[] = {-500, 10000, 13300, 13301, 13900};
+  for (int i = 0; i < 5; i++) {
+    ethd__inbox_stamp(&inbox, told[i], 20000 + i);
+    ck_assert_int_eq(inbox.newest.sample_ns, kept[i]);
+    ck_assert_int_eq(inbox.newest.arrival_ns, 20000 + i);
+  }
+  ethd__inbox_close(&inbox);
+}
+END_TEST
+
 /* A reading that is younger than the tick is given at the next one, once. */
 START_TEST(test_younger_than_the_tick) {
   ethd__inbox inbox;
@@ -198,6 +213,7 @@ int main(void) {
   tcase_add_test(tc, test_clock);
   tcase_add_test(tc, test_order);
   tcase_add_test(tc, test_driver);
+  tcase_add_test(tc, test_instants_keep_their_order);
   tcase_add_test(tc, test_younger_than_the_tick);
   tcase_add_test(tc, test_refused);
   suite_add_tcase(suite, tc);
