@@ -18,7 +18,7 @@ RT ?= posix
 # Sources of libethd that work on [main] only; every other one must suit the control thread.
 MAIN_SIDE := $(wildcard lib/error.c lib/param.c lib/law/plugin.c lib/scene/parse.c lib/control/setup_set.c $(addprefix lib/,*_create.c */*check.c */*create.c */*build.c))
 # Sources of the loop that its thread runs: they may sleep and read the clock, no more.
-LOOP_SIDE := drivers/loop/cycle.c drivers/loop/histogram.c drivers/loop/watch.c drivers/servo/tick.c
+LOOP_SIDE := drivers/loop/cycle.c drivers/loop/histogram.c drivers/loop/rows.c drivers/servo/tick.c
 
 SHELL := /bin/sh
 .SUFFIXES:

@@ -13,9 +13,8 @@
 #include "loop/loop.h"
 
 #define SERVICE_STACK ((size_t)256 << 10)
-#define PAUSE 1000000     /* ns between two looks at whether the loop has let go, */
-#define PATIENCE 1000     /* of which there are so many at most */
-#define LOOK_MAX 10000000 /* ns between two checks of the loop's thread */
+#define PAUSE 1000000 /* ns between two looks at whether the loop has let go, */
+#define PATIENCE 1000 /* of which there are so many at most */
 
 static void pause_a_little(void) {
   struct timespec t = {.tv_nsec = PAUSE};
@@ -42,56 +41,6 @@ static void *run_unit(void *unit_) {
     ethd_status status = l->def.driver->service(l->def.device, unit->number, ethd__clock_now());
     if (status < 0) __atomic_fetch_add(&l->stats.service_failures, 1, __ATOMIC_RELAXED);
     if (status) pause_a_little();
-  }
-  return NULL;
-}
-
-/* ---- the thread that watches ---- */
-
-typedef struct watch {
-  int64_t now, turned, alive; /* ns */
-  int64_t silent;             /* ns that this thread saw pass: while the whole process is stopped, it sees none */
-} watch;
-
-/* Returns ns until the loop's thread counts as dead: the sooner of silence for `gap`, where that is set, and of a step that
-   takes longer than ETHD__LOOP_STEP_MAX. */
-static int64_t left_to_live(const ethd_loop *l, const watch *w) {
-  int64_t step = atomic_load_explicit(&l->stepping, memory_order_relaxed);
-  int64_t gap = l->gap > 2 * l->period ? l->gap : 2 * l->period; /* a period lies between two turns */
-  int64_t by_gap = l->gap < INT64_MAX ? w->alive + gap - w->now : INT64_MAX;
-  int64_t by_step = step ? step + ETHD__LOOP_STEP_MAX - w->now : INT64_MAX;
-  return by_gap < by_step ? by_gap : by_step;
-}
-
-/* Lets go of the device from this thread, and tells the loop in case it lives again at this very moment. */
-static void let_go(ethd_loop *l) {
-  ethd_loop_raise(l, ETHD_FAULT_LOOP);
-  ethd_loop_disarm(l);
-  l->def.driver->safe(l->def.device);
-}
-
-static void look(ethd_loop *l, watch *w) {
-  int64_t turned = atomic_load_explicit(&l->turned, memory_order_relaxed), now = ethd__loop_now(l);
-  int64_t hang = ETHD__LOOP_HANG > 4 * l->period ? ETHD__LOOP_HANG : 4 * l->period;
-  w->silent = turned == w->turned ? w->silent + (now - w->now < 2 * LOOK_MAX ? now - w->now : 2 * LOOK_MAX) : 0;
-  w->turned = turned;
-  w->now = now;
-  if (turned > w->alive) w->alive = turned;
-  if (!ethd_loop_armed(l)) w->alive = now;
-  atomic_store_explicit(&l->hangs, w->silent >= hang, memory_order_release);
-}
-
-/* The loop's thread is dead when it hasn't turned for `gap` while the device gets torques. */
-static void *run_watch(void *loop) {
-  ethd_loop *l = loop;
-  watch w = {.now = ethd__loop_now(l), .alive = ethd__loop_now(l)};
-  while (!ethd_loop_ended(l) && !atomic_load_explicit(&l->left, memory_order_relaxed)) {
-    int64_t left = left_to_live(l, &w);
-    /* nothing is left once the device was let go: the thread waits for the end of the hanging step */
-    struct timespec t = {.tv_nsec = left < 1 ? PAUSE : left < LOOK_MAX ? left : LOOK_MAX};
-    nanosleep(&t, NULL);
-    look(l, &w);
-    if (ethd_loop_armed(l) && left_to_live(l, &w) <= 0) let_go(l);
   }
   return NULL;
 }
@@ -168,8 +117,8 @@ static int start_units(ethd_loop *l) {
 
 /* The watching thread's priority is above the loop's, where that is granted. */
 static int start_watch(ethd_loop *l) {
-  int failure = create(&l->watch, SCHED_FIFO, l->def.priority < 99 ? l->def.priority + 1 : 99, run_watch, l);
-  if (failure == EPERM) failure = create(&l->watch, SCHED_OTHER, 0, run_watch, l);
+  int failure = create(&l->watch, SCHED_FIFO, l->def.priority < 99 ? l->def.priority + 1 : 99, ethd__loop_watch, l);
+  if (failure == EPERM) failure = create(&l->watch, SCHED_OTHER, 0, ethd__loop_watch, l);
   l->has_watch = !failure;
   return failure;
 }

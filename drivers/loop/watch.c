@@ -1,55 +1,55 @@
-/* Rows of the fault table that the loop itself sees. The thread that watches the loop is in threads.c. */
+/* The thread that watches the loop's: it lets go of the device when that one is dead. */
+#include <stdbool.h>
+#include <time.h>
+
 #include "loop/loop.h"
 
-/* A leaky bucket, because frequent short lateness is as bad as one long one. */
-#define POUR 10
-#define FULL 50
-#define BRIM 100 /* the bucket holds no more */
+#define SOON 1000000      /* ns until it looks again while a step hangs */
+#define LOOK_MAX 10000000 /* ns between two looks at most */
 
-void ethd__loop_late(ethd_loop *l, int64_t ns) {
-  l->bucket = l->bucket + POUR < BRIM ? l->bucket + POUR : BRIM;
-  if (ns > l->late) l->late = ns;
+typedef struct watch {
+  int64_t now, turned, alive; /* ns */
+  int64_t silent;             /* ns that this thread saw pass: while the whole process is stopped, it sees none */
+} watch;
+
+/* Returns ns until the loop's thread counts as dead: the sooner of silence for `gap`, where that is set, and of a step that
+   takes longer than ETHD__LOOP_STEP_MAX. */
+static int64_t left_to_live(const ethd_loop *l, const watch *w) {
+  int64_t step = atomic_load_explicit(&l->stepping, memory_order_relaxed);
+  int64_t gap = l->gap > 2 * l->period ? l->gap : 2 * l->period; /* a period lies between two turns */
+  int64_t by_gap = l->gap < INT64_MAX ? w->alive + gap - w->now : INT64_MAX;
+  int64_t by_step = step ? step + ETHD__LOOP_STEP_MAX - w->now : INT64_MAX;
+  return by_gap < by_step ? by_gap : by_step;
 }
 
-/* If the second clock is ahead by more than before, the machine was suspended, which the loop's clock doesn't show.
-   A delay between the two readings makes `least` smaller and `most` larger, so that no delay is taken for a
-   suspension. */
-void ethd__loop_ahead(ethd_loop *l, int64_t least, int64_t most) {
-  int64_t slept = least - l->ahead;
-  l->ahead = most;
-  if (slept < l->period) return;
-  l->slept += slept;
-  l->missed += slept / l->period;
+/* Lets go of the device from this thread, and tells the loop in case it lives again at this very moment. */
+static void let_go(ethd_loop *l) {
+  ethd_loop_raise(l, ETHD_FAULT_LOOP);
+  ethd_loop_disarm(l);
+  l->def.driver->safe(l->def.device);
 }
 
-static void suspended(ethd_loop *l, ethd_sense *sense) ETHD_RT {
-  int64_t *rows = l->slept > l->gap ? &sense->grave : &sense->faults;
-  *rows |= ETHD_FAULT_BIT(ETHD_FAULT_CLOCK);
-  l->slept = 0;
+static void look(ethd_loop *l, watch *w) {
+  int64_t turned = atomic_load_explicit(&l->turned, memory_order_relaxed), now = ethd__loop_now(l);
+  int64_t hang = ETHD__LOOP_HANG > 4 * l->period ? ETHD__LOOP_HANG : 4 * l->period;
+  w->silent = turned == w->turned ? w->silent + (now - w->now < 2 * LOOK_MAX ? now - w->now : 2 * LOOK_MAX) : 0;
+  w->turned = turned;
+  w->now = now;
+  if (turned > w->alive) w->alive = turned;
+  if (!ethd_loop_armed(l)) w->alive = now;
+  atomic_store_explicit(&l->hangs, w->silent >= hang, memory_order_release);
 }
 
-static int64_t overruns(ethd_loop *l) ETHD_RT {
-  int64_t rows = l->late ? ETHD_FAULT_BIT(ETHD_FAULT_OVERRUN) : 0;
-  if (l->gap < INT64_MAX && (l->bucket >= FULL || l->late > l->gap)) rows |= ETHD_FAULT_BIT(ETHD_FAULT_OVERRUNS);
-  if (!l->late && l->bucket) l->bucket--;
-  l->late = 0;
-  return rows;
-}
-
-/* The application counts its beats; the loop notes the tick at which it saw a new one. */
-static int64_t heartbeat(ethd_loop *l) ETHD_RT {
-  unsigned beats = atomic_load_explicit(&l->beats, memory_order_relaxed);
-  int armed = atomic_load_explicit(&l->armed, memory_order_relaxed);
-  if (beats != l->beats_seen || !armed || !l->beat_at) l->beat_at = l->due;
-  l->beats_seen = beats;
-  return l->due - l->beat_at > l->heartbeat ? ETHD_FAULT_BIT(ETHD_FAULT_APPLICATION) : 0;
-}
-
-void ethd__loop_rows(ethd_loop *l, ethd_sense *sense) {
-  if (l->step > ETHD__LOOP_STEP_MAX) sense->faults |= ETHD_FAULT_BIT(ETHD_FAULT_BUDGET);
-  if (atomic_load_explicit(&l->raised, memory_order_relaxed))
-    sense->faults |= atomic_exchange_explicit(&l->raised, 0, memory_order_relaxed);
-  if (l->late || l->bucket) sense->faults |= overruns(l);
-  if (l->slept) suspended(l, sense);
-  if (l->heartbeat < INT64_MAX) sense->faults |= heartbeat(l);
+void *ethd__loop_watch(void *loop) {
+  ethd_loop *l = loop;
+  watch w = {.now = ethd__loop_now(l), .alive = ethd__loop_now(l)};
+  while (!ethd_loop_ended(l) && !atomic_load_explicit(&l->left, memory_order_relaxed)) {
+    int64_t left = left_to_live(l, &w);
+    /* nothing is left once the device was let go: the thread waits for the end of the hanging step */
+    struct timespec t = {.tv_nsec = left < 1 ? SOON : left < LOOK_MAX ? left : LOOK_MAX};
+    nanosleep(&t, NULL);
+    look(l, &w);
+    if (ethd_loop_armed(l) && left_to_live(l, &w) <= 0) let_go(l);
+  }
+  return NULL;
 }

@@ -4,7 +4,7 @@
    = drivers/loop/cycle.c: if (atomic_exchange_explicit(&l->stepping, 0, memory_order_acq_rel) != ETHD__LOOP_LEFT) return;
    = drivers/loop/threads.c: bool taken = step > 0 && atomic_compare_exchange_strong(&l->stepping, &step, ETHD__LOOP_LEFT);
    = drivers/loop/threads.c: while (l->has_watch && !ethd_loop_ended(l) && !ethd_loop_hangs(l, NULL)) pause_a_little();
-   = drivers/loop/threads.c: atomic_store_explicit(&l->hangs, w->silent >= hang, memory_order_release);
+   = drivers/loop/watch.c: atomic_store_explicit(&l->hangs, w->silent >= hang, memory_order_release);
 
    Kept: once [main] has taken the device, the thread never touches it; a device in whose code the thread hangs isn't
    touched by [main]; join always returns. */
