@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "identify/enough.h"
 #include "identify/excite.h"
 #include "identify/page.h"
 #include "record/recording_parts.h"
@@ -12,10 +13,6 @@
 #include "sim/plant.h"
 #include "text/error_text.h"
 #include "text/text.h"
-
-#define LEAST_WINDOWS 20
-#define LEAST_WAY 20 /* counts, or as many thousandths of a rad of ideal encoders */
-#define CLIPPED 0.9
 
 static const char doc[] =
     "Identifies a device from recordings of its commands and encoders, and makes a plant file whose numbers have "
@@ -135,47 +132,6 @@ static void load_evidence(ethd__evidence *e) {
   }
 }
 
-/* Each refusal says what is missing and how to record it. False: only touches can be fitted. */
-static bool check_evidence(const ethd__evidence *e, double count) {
-  double way[2] = {0, 0}, least = LEAST_WAY * (count > 0 ? count : 1e-3);
-  size_t windows = 0, whole = (size_t)rint(ETHD__WINDOW / e->period);
-  for (size_t i = 0; i < e->stretch_count; i++) {
-    const ethd__passage *s = &e->stretches[i];
-    windows += s->count / whole;
-    for (size_t k = s->first + 1; k < s->first + s->count; k++)
-      for (int j = 0; j < 2; j++) way[j] += fabs(e->q[k][j] - e->q[k - 1][j]);
-  }
-  if (windows < LEAST_WINDOWS && e->onset_count >= ETHD__TOUCHES_LEAST && !arg.judge) return false;
-  if (windows < LEAST_WINDOWS && e->not_numbers > e->count / 2)
-    ethd__fail(
-        ETHD_EXIT_INPUT,
-        "%s: angles or torques of %zu of %zu ticks aren't numbers: find out why with ethd-conform, and record again",
-        arg.folders[0], e->not_numbers, e->count);
-  if (windows < LEAST_WINDOWS && e->uneven > e->count / 2)
-    ethd__fail(
-        ETHD_EXIT_INPUT,
-        "%s: %zu of %zu ticks don't come %g s after the one before, which is the period of its configuration: record "
-        "again with a loop that keeps its period, as ethd-latency shows",
-        arg.folders[0], e->uneven, e->count, e->period);
-  if (windows < LEAST_WINDOWS)
-    ethd__fail(
-        ETHD_EXIT_INPUT,
-        "%s: %zu window%s of %g s without a stop, a fault or the finger near, at least %d are needed, and %zu touch%s, "
-        "at least %d are needed; record more, as ethd-identify --excite and ethd-tap do",
-        arg.folders[0], windows, ethd__s(windows), ETHD__WINDOW, LEAST_WINDOWS, e->onset_count,
-        e->onset_count == 1 ? "" : "es", ETHD__TOUCHES_LEAST);
-  if (way[0] + way[1] < least)
-    ethd__fail(ETHD_EXIT_INPUT,
-               "%s: the arm hardly moves, %.3g rad in all: record one that does, as ethd-identify --excite does",
-               arg.folders[0], way[0] + way[1]);
-  if (e->clipped > CLIPPED)
-    ethd__fail(ETHD_EXIT_INPUT,
-               "%s: the guard cut the torque in %.0f %% of the ticks, so that it hardly changes: record with gains or "
-               "excitation below limits.torque, as ethd-identify --excite --share 0.5 does",
-               arg.folders[0], 100 * e->clipped);
-  return true;
-}
-
 /* ---- output ---- */
 
 static char *csv_beside(const char *png) {
@@ -264,7 +220,7 @@ static int identify(const ethd__evidence *e) {
   f.base = arg.base;
   f.evidence = e;
   if (ethd__sensing_find(e, &f.sensing, message)) ethd__fail(ETHD_EXIT_INPUT, "%s", message);
-  bool arm = check_evidence(e, f.sensing.count);
+  bool arm = ethd__evidence_enough(e, f.sensing.count, false);
   if (arg.plot && ethd__picture_ready(message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   (arm ? fit_arm : keep_arm)(&f);
   ethd__touch_fit_run(e, &f.sensing, &f.fit, &f.touches);
@@ -284,7 +240,7 @@ static int judge(const ethd__evidence *e) {
   ethd__sensing sensing;
   ethd_plant plant = load_plant(arg.judge);
   if (ethd__sensing_find(e, &sensing, message)) ethd__fail(ETHD_EXIT_INPUT, "%s", message);
-  (void)check_evidence(e, sensing.count);
+  (void)ethd__evidence_enough(e, sensing.count, true);
   ethd__judgement j = ethd__prediction_judge(e, &plant);
   double floor = sensing.count / sqrt(12);
   printf("%zu window%s; errors of the prediction, rad rms; a count is %.4g rad, rounding to it leaves %.4g\n",
