@@ -79,8 +79,8 @@ static void begin(play *p, const ethd_plant *plant, const double *x, double tole
   ethd__sim_state s;
   memset(&s, 0, sizeof s);
   ethd__body_prepare(&def, 1 - x[ETHD__TOUCH_GAP], &p->body);
-  /* The path ends, because the simulator asks how far it can bend until then to know that pad and ring stay apart. */
-  p->hand = (ethd__piece){.end = p->window->window.count * p->evidence->period,
+  p->hand = (ethd__piece){.begin = -(double)INFINITY,
+                          .end = (double)INFINITY,
                           .a = {path[0], path[1]},
                           .b = {path[2], path[3]},
                           .c = {path[4] / 2, path[5] / 2},

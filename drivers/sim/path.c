@@ -142,11 +142,10 @@ void ethd__piece_terms(const ethd__piece *p, const ethd__sim_motion *at, ethd__t
   out[3] = (ethd__two){p->d.x, p->d.y} - w2 / 6 * (out[1] - (ethd__two){p->b.x, p->b.y});
 }
 
-double ethd__piece_travel(const ethd__piece *p, ethd__two v, double h) {
-  double e = fabs(p->e.x) + fabs(p->e.y), c = fabs(p->c.x) + fabs(p->c.y), d = fabs(p->d.x) + fabs(p->d.y);
-  double bend = e * p->w * p->w;
-  if (c + d > 0) bend = 2 * c + 6 * d * (p->end - p->begin);
-  return h * (fabs(v[0]) + fabs(v[1]) + h / 2 * bend);
+double ethd__piece_travel(const ethd__piece *p, const ethd__sim_motion *at, double h) {
+  double v = fabs(at->v.x) + fabs(at->v.y), a = fabs(at->a.x) + fabs(at->a.y), d = fabs(p->d.x) + fabs(p->d.y);
+  if (p->w != 0) a = (fabs(p->e.x) + fabs(p->e.y)) * p->w * p->w;
+  return h * (v + h * (a / 2 + h * d));
 }
 
 void ethd_path_at(const ethd_path *path, double t, ethd_vec *x, ethd_vec *v) {

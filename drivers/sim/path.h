@@ -26,7 +26,7 @@ ethd__sim_motion ethd__piece_at(const ethd__piece *piece, double t) ETHD_RT;
    ethd__piece_at. Term k beyond these is -w^2 / (k (k - 1)) times term k - 2. */
 void ethd__piece_terms(const ethd__piece *piece, const ethd__sim_motion *at, ethd__two out[4]) ETHD_RT;
 
-/* Returns a bound on |x| + |y| of how far the path goes within h when its velocity is v. */
-double ethd__piece_travel(const ethd__piece *piece, ethd__two v, double h) ETHD_RT;
+/* Returns a bound on |x| + |y| of how far the path goes within h of the instant of `at`, if the piece lasts so long. */
+double ethd__piece_travel(const ethd__piece *piece, const ethd__sim_motion *at, double h) ETHD_RT;
 
 #endif

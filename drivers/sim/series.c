@@ -259,7 +259,7 @@ static void watch_touching(expansion *w, ethd__touch touch) {
 static void keep_clear(expansion *w, const ethd__piece *piece, const ethd__sim_motion *hand, double clearance,
                        double most) {
   ethd__series *s = w->out;
-  double travel = s->step * most + ethd__piece_travel(piece, (ethd__two){hand->v.x, hand->v.y}, s->step);
+  double travel = s->step * most + ethd__piece_travel(piece, hand, s->step);
   s->watched = 0;
   s->clearance = clearance - travel;
   if (s->clearance > 0) return;

@@ -169,6 +169,32 @@ START_TEST(test_derivatives) {
 }
 END_TEST
 
+/* A bound, also on a piece without an end, and mostly less than twice what it bounds. */
+START_TEST(test_travel) {
+  int close = 0;
+  for (uint64_t i = 0; i < 2000; i++) {
+    ethd__piece piece = {.begin = -INFINITY, .end = INFINITY, .b = {draw(9 * i, -1, 1), draw(9 * i + 1, -1, 1)}};
+    if (i % 2) {
+      piece.c = (ethd_vec){draw(9 * i + 2, -20, 20), draw(9 * i + 3, -20, 20)};
+      piece.d = (ethd_vec){draw(9 * i + 4, -500, 500), draw(9 * i + 5, -500, 500)};
+    } else {
+      piece.e = (ethd_vec){draw(9 * i + 4, -0.01, 0.01), draw(9 * i + 5, -0.01, 0.01)};
+      piece.w = 100;
+    }
+    double t = draw(9 * i + 6, -0.05, 0.05), h = draw(9 * i + 7, 0, 0.01), most = 0;
+    ethd__sim_motion at = ethd__piece_at(&piece, t);
+    for (int k = 0; k <= 100; k++) {
+      ethd__sim_motion then = ethd__piece_at(&piece, t + h * k / 100);
+      most = fmax(most, fabs(then.x.x - at.x.x) + fabs(then.x.y - at.x.y));
+    }
+    double bound = ethd__piece_travel(&piece, &at, h);
+    ck_assert(most <= bound * (1 + 1e-12) + 1e-15);
+    close += bound < 2 * most;
+  }
+  ck_assert_int_gt(close, 1000);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("path");
   TCase *t = tcase_create("path");
@@ -179,6 +205,7 @@ int main(void) {
   tcase_add_test(t, test_through_samples);
   tcase_add_test(t, test_single_sample);
   tcase_add_test(t, test_derivatives);
+  tcase_add_test(t, test_travel);
   suite_add_tcase(suite, t);
   return rig_run(suite);
 }
