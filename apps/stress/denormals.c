@@ -33,7 +33,7 @@ static void turn(standing *o) {
 /* The ring stands still for `still` ticks after a turn. */
 static void rest(standing *o, int64_t still) {
   ethd_setup setup = ethd_setup_default();
-  ethd_error error;
+  ethd_error error = {0};
   *o = (standing){.scene = ethd__stress_rig_wall(-0.238), .tick = INFINITY};
   setup.scene = o->scene;
   ethd__stress_set(&setup, "velocity.cutoff", CUTOFF);
