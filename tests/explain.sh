@@ -89,7 +89,8 @@ grep -q '^n: 400 taps' judged.txt || fail "n isn't judged"
 "${PYTHON:-python3}" - "$page/README.md" <<'END' || fail "the page has other columns than --judge"
 import csv, math, sys
 page = [[c.strip() for c in row.replace("\\|", "").strip().strip("|").split("|")] for row in open(sys.argv[1]) if row.startswith("| ")]
-page = [row[2:] for row in page if len(row) == 6][1:]
+start = next(i for i, row in enumerate(page) if "must be" in row)
+page = [row[2:] for row in page[start + 1:start + 26]]
 rows = list(csv.DictReader(open("lines.csv")))
 plants = list(dict.fromkeys(r["plant"] for r in rows))
 assert plants == ["n", "p", "rigid", "compliant"] and len(page) == 25 and len(rows) == 96, (plants, len(page))
