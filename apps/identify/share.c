@@ -1,40 +1,37 @@
 #include "identify/share.h"
 
 #include <pthread.h>
-#include <stdbool.h>
+#include <stdatomic.h>
 #include <unistd.h>
 
 #include "cli/cli.h"
 
 #define MOST 16
 
-typedef struct portion {
-  void (*work)(void *, size_t, size_t);
+typedef struct pile {
+  void (*work)(void *, size_t);
   void *data;
-  size_t begin, end;
-} portion;
+  size_t count;
+  atomic_size_t next; /* that nobody has taken yet */
+} pile;
 
-static void *run(void *part_) {
-  const portion *p = part_;
+static void work_off(pile *p) {
+  for (size_t i; (i = atomic_fetch_add(&p->next, 1)) < p->count;) p->work(p->data, i);
+}
+
+static void *run(void *pile_) {
   ethd__flush_denormals();
-  p->work(p->data, p->begin, p->end);
+  work_off(pile_);
   return NULL;
 }
 
-void ethd__share(void (*work)(void *, size_t, size_t), void *data, size_t count) {
+void ethd__share(void (*work)(void *, size_t), void *data, size_t count) {
+  pile all = {work, data, count, 0};
   pthread_t threads[MOST];
-  portion parts[MOST];
-  bool started[MOST] = {false};
+  size_t started = 0;
   long processors = sysconf(_SC_NPROCESSORS_ONLN);
-  size_t n = processors < 1 ? 1 : processors > MOST ? MOST : (size_t)processors;
-  for (size_t i = 0; i < n; i++) {
-    parts[i] = (portion){work, data, i * count / n, (i + 1) * count / n};
-    started[i] = i > 0 && !pthread_create(&threads[i], NULL, run, &parts[i]);
-  }
-  for (size_t i = 0; i < n; i++) {
-    if (started[i])
-      pthread_join(threads[i], NULL);
-    else
-      work(data, parts[i].begin, parts[i].end);
-  }
+  size_t most = processors < 1 ? 1 : processors > MOST ? MOST : (size_t)processors;
+  while (started + 1 < most && !pthread_create(&threads[started], NULL, run, &all)) started++;
+  work_off(&all);
+  while (started) pthread_join(threads[--started], NULL);
 }

@@ -4,8 +4,8 @@
 
 #include <stddef.h>
 
-/* Calls work(data, begin, end) in parallel for parts that make up 0 to count, and returns when all are done. No part
-   may read what another one writes, so that the result doesn't depend on how many there are. */
-void ethd__share(void (*work)(void *data, size_t begin, size_t end), void *data, size_t count);
+/* Calls work(data, i) for each i from 0 to count - 1, in parallel and in any order, and returns when all are done. No
+   call may read what another one writes, so that the result doesn't depend on how many there are. */
+void ethd__share(void (*work)(void *data, size_t i), void *data, size_t count);
 
 #endif

@@ -186,45 +186,43 @@ static double improve(const ethd__shooting *p, ethd__fit_window *w, const ethd_p
   return sum;
 }
 
-static void settle_one(const job *part, ethd__fit_window *w) {
-  const ethd__shooting *p = part->problem;
+static void settle_one(const job *whole, ethd__fit_window *w) {
+  const ethd__shooting *p = whole->problem;
   double left[ETHD__RESIDUALS_MOST];
-  residual(p, w, part->plants, w->state, left);
-  if (w->rank) (void)improve(p, w, part->plants, w->state, left); /* with the slopes from before */
-  span(p, w, part->plants);
+  residual(p, w, whole->plants, w->state, left);
+  if (w->rank) (void)improve(p, w, whole->plants, w->state, left); /* with the slopes from before */
+  span(p, w, whole->plants);
   double sum = dot(left, left, w->rows);
   for (int i = 0; i < SETTLINGS; i++) {
-    double less = improve(p, w, part->plants, w->state, left);
-    if (less < sum * (1 - MOVED)) span(p, w, part->plants);
+    double less = improve(p, w, whole->plants, w->state, left);
+    if (less < sum * (1 - MOVED)) span(p, w, whole->plants);
     if (!(less < sum * (1 - SETTLED))) break;
     sum = less;
   }
 }
 
-static void residual_windows(void *data, size_t begin, size_t end) {
-  const job *part = data;
-  const ethd__shooting *p = part->problem;
-  for (size_t i = begin; i < end; i++) {
-    ethd__fit_window *w = &p->windows[i];
-    double state[ETHD__STATES], *out = part->out + w->row;
-    memcpy(state, w->state, sizeof state);
-    residual(p, w, part->plants, state, out);
-    (void)improve(p, w, part->plants, state, out);
-    project(p, w, out);
-  }
+static void residual_window(void *data, size_t i) {
+  const job *whole = data;
+  const ethd__shooting *p = whole->problem;
+  ethd__fit_window *w = &p->windows[i];
+  double state[ETHD__STATES], *out = whole->out + w->row;
+  memcpy(state, w->state, sizeof state);
+  residual(p, w, whole->plants, state, out);
+  (void)improve(p, w, whole->plants, state, out);
+  project(p, w, out);
 }
 
 /* Fills the slopes by the plant's coordinates: differences between predictions that take the same steps. */
-static void plant_slopes(const job *part, ethd__fit_window *w) {
-  const ethd__shooting *p = part->problem;
+static void plant_slopes(const job *whole, ethd__fit_window *w) {
+  const ethd__shooting *p = whole->problem;
   int together = p->subject->together;
   double own[ETHD__RESIDUALS_MOST];
-  for (int k = 1; k < part->plant_count; k += together - 1) {
-    ethd__trial t[ETHD__TOGETHER] = {{part->plants, w->state, own}};
+  for (int k = 1; k < whole->plant_count; k += together - 1) {
+    ethd__trial t[ETHD__TOGETHER] = {{whole->plants, w->state, own}};
     int count = 1;
-    for (; count < together && k + count - 1 < part->plant_count; count++)
-      t[count] =
-          (ethd__trial){&part->plants[k + count - 1], w->state, part->out + (size_t)(k + count - 2) * p->rows + w->row};
+    for (; count < together && k + count - 1 < whole->plant_count; count++)
+      t[count] = (ethd__trial){&whole->plants[k + count - 1], w->state,
+                               whole->out + (size_t)(k + count - 2) * p->rows + w->row};
     try_all(p, w, t, count, count - 1);
     for (int c = 1; c < count; c++) {
       for (int r = 0; r < w->rows; r++) t[c].out[r] = (t[c].out[r] - own[r]) / STEP;
@@ -233,19 +231,17 @@ static void plant_slopes(const job *part, ethd__fit_window *w) {
   }
 }
 
-static void slope_windows(void *data, size_t begin, size_t end) {
-  const job *part = data;
-  for (size_t i = begin; i < end; i++) {
-    settle_one(part, &part->problem->windows[i]);
-    plant_slopes(part, &part->problem->windows[i]);
-  }
+static void slope_window(void *data, size_t i) {
+  const job *whole = data;
+  settle_one(whole, &whole->problem->windows[i]);
+  plant_slopes(whole, &whole->problem->windows[i]);
 }
 
 void ethd__shooting_residual(ethd__shooting *p, const double *coordinates, double *out) {
   ethd_plant plant = p->plant;
   ethd__chosen_set(&p->chosen, coordinates, &plant);
   job whole = {p, &plant, 1, out};
-  ethd__share(residual_windows, &whole, p->window_count);
+  ethd__share(residual_window, &whole, p->window_count);
 }
 
 void ethd__shooting_slopes(ethd__shooting *p, const double *coordinates, double *out) {
@@ -258,10 +254,10 @@ void ethd__shooting_slopes(ethd__shooting *p, const double *coordinates, double 
     ethd__chosen_set(&p->chosen, moved, &plants[k]);
   }
   job whole = {p, plants, p->chosen.count + 1, out};
-  ethd__share(slope_windows, &whole, p->window_count);
+  ethd__share(slope_window, &whole, p->window_count);
 }
 
 void ethd__shooting_settle(ethd__shooting *p) {
   job whole = {p, &p->plant, 1, NULL};
-  ethd__share(slope_windows, &whole, p->window_count);
+  ethd__share(slope_window, &whole, p->window_count);
 }
