@@ -7,9 +7,9 @@
 #include "identify/fit.h"
 #include "identify/touching.h"
 
-#define STRANGE 4  /* standard deviations of a sum of squares: what leaves more doesn't follow the model */
-#define BLATANT 8  /* the same before the numbers are fitted to it */
-#define GUARD 8e-3 /* s: braking begins so softly that it shows so much later */
+#define STRANGE 4   /* standard deviations of a sum of squares: what leaves more doesn't follow the model */
+#define BLATANT 8   /* the same before the numbers are fitted to it */
+#define GUARD 0.012 /* s: braking begins so softly that it shows so much later */
 
 /* s after the first reading that is near: touches are followed so far, farther from one fit to the next. */
 static const double ends[] = {ETHD__TOUCH_SHORTEST, 0.025, 0.04, 0.055, ETHD__TOUCH_AFTER};
@@ -26,6 +26,12 @@ void ethd__touch_squares(ethd__shooting *p, double *squares) {
     for (int k = 0; k < w->rows; k++) squares[i] += residual[w->row + (size_t)k] * residual[w->row + (size_t)k];
   }
   free(residual);
+}
+
+static double fit(ethd__shooting *p, const char *what) {
+  double sum = ethd__fit_squares(p, ETHD__TOUCH_EVALUATIONS, what);
+  ethd__shooting_settle(p);
+  return sum;
 }
 
 typedef struct growth {
@@ -74,6 +80,15 @@ static bool is_growing(const growth *g) {
   return false;
 }
 
+/* Ends the touches that follow the model to the last: behind it nobody saw whether braking had begun. */
+static void end_unseen(growth *g) {
+  ethd__shooting *p = g->problem;
+  for (size_t i = 0; i < p->window_count; i++)
+    if (g->grows[i]) ethd__touching_end(p, i, ends[ENDS - 1] - GUARD);
+  ethd__shooting_ready(p);
+  ethd__shooting_settle(p);
+}
+
 /* Takes out the touches that are strange from their beginning on. */
 static void leave_out(growth *g) {
   ethd__shooting *p = g->problem;
@@ -87,15 +102,13 @@ static void leave_out(growth *g) {
   p->window_count = kept;
   if (kept == count) return;
   ethd__shooting_ready(p);
-  (void)ethd__fit_squares(p, ETHD__TOUCH_EVALUATIONS, "touches that are alike");
-  ethd__shooting_settle(p);
+  (void)fit(p, "touches that are alike");
   ethd__touch_squares(p, g->squares);
 }
 
 double ethd__touch_follow(ethd__shooting *p) {
   growth g = {.problem = p};
-  double sum = ethd__fit_squares(p, ETHD__TOUCH_EVALUATIONS, "touches begin");
-  ethd__shooting_settle(p);
+  double sum = fit(p, "touches begin");
   leave_out(&g);
   for (size_t i = 0; i < p->window_count; i++) g.grows[i] = true;
   for (int stage = 1; stage < ENDS && is_growing(&g) && !ethd__stop; stage++) {
@@ -105,13 +118,11 @@ double ethd__touch_follow(ethd__shooting *p) {
     ethd__shooting_ready(p);
     ethd__shooting_settle(p);
     (void)end_strange(&g, stage, BLATANT);
-    sum = ethd__fit_squares(p, ETHD__TOUCH_EVALUATIONS, "touches go on");
-    ethd__shooting_settle(p);
-    if (end_strange(&g, stage, STRANGE)) {
-      sum = ethd__fit_squares(p, ETHD__TOUCH_EVALUATIONS, "touches go on");
-      ethd__shooting_settle(p);
-    }
+    sum = fit(p, "touches go on");
+    if (end_strange(&g, stage, STRANGE)) sum = fit(p, "touches go on");
     ethd__touch_squares(p, g.squares);
   }
-  return sum;
+  if (!is_growing(&g) || ethd__stop) return sum;
+  end_unseen(&g);
+  return fit(p, "touches end");
 }
