@@ -1,5 +1,5 @@
 #!/bin/sh
-# What ends an excitation in true time: a signal, a fault, the guard, its duration, with the simulated device and with a driver
+# What ends an excitation in true time: a signal, a fault, a device that is lost, the guard, its duration, with the simulated device and with a driver
 # in a file of its own. Each leaves a closed recording that repeats to the bit and ends without a torque.
 set -u
 [ -z "${SAN:-}" ] || { echo "SKIP: a sanitizer is too slow for a loop in true time"; exit 77; }
@@ -16,6 +16,8 @@ $CC -shared -fPIC -DHELLO=ethd_driver_plugin -I"$top/include" "$top/drivers/hell
 printf '[device]\ndriver = file:hello.so\n' >hello.ini
 printf '1 fault9 set\n' >broken.inject
 printf '[device]\ndriver = sim\ninject = broken.inject\n' >broken.ini
+printf '1 read fail\n' >lost.inject
+printf '[device]\ndriver = sim\ninject = lost.inject\n' >lost.ini
 printf '[device]\ndriver = sim\n' >sim.ini
 
 # excite NAME CODE ARGUMENTS...: the exit code, and a recording as it should be. A tick that is 5 ms late ends a session, too.
@@ -25,10 +27,10 @@ excite() {
   shift 2
   "$bin/ethd-identify" --excite --record "$name" "$@" >"$name.out" 2>"$name.err" &
   session=$!
-  if [ "$name" = told ]; then
-    for _ in $(seq 100); do [ -s told/tick.npy ] && break; sleep 0.1; done
+  if [ "${name%-*}" = told ]; then # told-SIGNAL
+    for _ in $(seq 100); do [ -s "$name/tick.npy" ] && break; sleep 0.1; done
     sleep 1
-    kill -TERM $session
+    kill -s "${name#*-}" $session
   fi
   wait $session
   code=$?
@@ -44,17 +46,19 @@ r = np.load(sys.argv[1] + "/tick.npy")
 moved = np.abs(r["tau"]).max(axis=1) > 0
 assert (moved.sum() > 200) == (sys.argv[1] != "outside"), moved.sum()
 assert not r["tau"][-1].any(), r["tau"][-3:]
-if sys.argv[1] == "broken":  # row 9: at the same tick, and for good; nothing is recorded for long after it
-    first = int(np.flatnonzero(r["faults"] & (1 << 9))[0])
+here = {"broken": r["faults"] & (1 << 9), "lost": r["fault"] == 37}.get(sys.argv[1])
+if here is not None:  # from the same tick on, and for good; nothing is recorded for long after it
+    first = int(np.flatnonzero(here)[0])
     assert not r["tau"][first:].any() and np.abs(r["tau"][first - 1]).max() > 0
     assert len(r) - first < 500, (len(r), first)
 END
 }
 
-excite told 0 --config hello.ini --duration 60
+for signal in TERM INT HUP; do excite told-$signal 0 --config hello.ini --duration 60; done
 excite done 0 --config sim.ini --duration 1.5
 excite broken 1 --config broken.ini --duration 60
 tail -n 1 broken.err | grep -q ': the drive reports a fault: mend it and record again$' || fail "broken: $(cat broken.err)"
+excite lost 1 --config lost.ini --duration 60
 excite outside 1 --config hello.ini --duration 60 --at 0.28,0.25 --half 0.02
 [ -n "$late" ] || tail -n 1 outside.err | grep -q ': the guard stopped the ring 0.03 m from the middle of the box: put it there' || fail "outside: $(cat outside.err)"
 
