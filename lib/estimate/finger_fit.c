@@ -44,7 +44,7 @@ static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec c
 }
 
 static bool find(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
-  switch (fit->method) {
+  switch (fit->method) { /* unreachable: another method than these */
   case ETHD_FIT_VERTEX_MEAN: return ethd__fit_vertex_mean(points, centre);
   case ETHD_FIT_CENTROID: return ethd__fit_centroid(points, centre);
   case ETHD_FIT_ROBUST: return ethd__fit_robust(fit, points, centre);
