@@ -16,27 +16,13 @@
 
 /* ---- questions ---- */
 
-/* What a driver's table says, before any of its functions is called. */
-static ethd_verdict judge_table(const ethd_driver *d, ethd_conform_answer *a) {
-  ethd_error error;
-  if (d->size < sizeof *d || d->abi != ETHD_DRIVER_ABI)
-    return ethd__conform_rig_answer(a, ETHD_BROKEN, "%s: another ABI: %u bytes, version %u", d->id, d->size, d->abi);
-  if (!d->brief || !d->brief[0]) return ethd__conform_rig_answer(a, ETHD_BROKEN, "%s has no brief", d->id);
-  if (d->units && !d->service)
-    return ethd__conform_rig_answer(a, ETHD_BROKEN, "%s has units of I/O and no service", d->id);
-  if (d->param_count && ethd_params_check_table(d->params, d->param_count, &error))
-    return ethd__conform_rig_answer(a, ETHD_BROKEN, "%s: its table of settings: %s", d->id, error.name);
-  return ETHD_KEPT;
-}
-
-/* Each of several drivers is asked. */
+/* What a driver's table says is judged where it is opened. */
 static ethd_verdict ask_table(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__conform_rig r;
   if (!ethd__conform_rig_open(def, &r)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "open: %.140s", r.message);
   const ethd__stack *s = r.driver == &ethd__driver_stack ? r.device : NULL;
   ethd__conform_rig_answer(a, ETHD_KEPT, "%s: %s", def->ids,
                            s && s->count == 1 ? s->at[0].driver->brief : r.driver->brief);
-  for (uint32_t i = 0; s && i < s->count && a->verdict == ETHD_KEPT; i++) judge_table(s->at[i].driver, a);
   r.driver->close(r.device);
   return a->verdict;
 }
