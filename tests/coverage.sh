@@ -45,9 +45,9 @@ for what in "${@:-lib}"; do
       python3 tests/coverage.py --gcov "$(gcov_of)" "$tree" lib || failed=1
       ;;
     drivers)
-      run "$tree" "$flags" 'test_% run study replay scene calibrate conform conform_bus convert bad_input servo_drive servo_bus
-        strangers passive replay_device tap hostile_plugins bounds whole_device npy record_metrics outputs driver_files
-        check_device camera'
+      run "$tree" "$flags" 'test_% driver_files bad_devices check_device conform conform_bus bounds run replay npy outputs
+        strangers record_metrics excite servo_rows hints scene calibrate convert bad_input passive replay_device tap study
+        camera hostile_plugins servo_drive examples servo_bus whole_device first_touch'
       python3 tests/coverage.py --gcov "$(gcov_of)" --least 0.9 "$tree" drivers || failed=1
       ;;
     mcdc)

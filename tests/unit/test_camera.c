@@ -11,6 +11,7 @@
 #include "ethd/driver.h"
 #include "finger/camera.h"
 #include "finger/inbox.h"
+#include "unit/camera_rig.h"
 #include "unit/draw.h"
 #include "unit/rig.h"
 
@@ -72,32 +73,11 @@ END_TEST
 
 /* ---- the driver ---- */
 
-static struct sockaddr_in address;
-
-static int sender(void) {
-  socklen_t length = sizeof address;
-  int fd = socket(AF_INET, SOCK_DGRAM, 0), probe = socket(AF_INET, SOCK_DGRAM, 0);
-  address = (struct sockaddr_in){.sin_family = AF_INET, .sin_addr = {htonl(INADDR_LOOPBACK)}};
-  ck_assert_int_eq(bind(probe, (struct sockaddr *)&address, sizeof address), 0); /* a port that is free */
-  ck_assert_int_eq(getsockname(probe, (struct sockaddr *)&address, &length), 0);
-  close(probe);
-  return fd;
-}
-
 static void send_exposure(int fd, uint32_t seq, ethd_vec finger, uint16_t flags) {
   ethd__exposure e = {.seq = seq, .t_ns = seq * INT64_C(11000000), .finger = finger, .noise = 2e-4, .flags = flags};
   uint8_t wire[ETHD__EXPOSURE_SIZE];
   ethd__exposure_encode(&e, wire);
   ck_assert_int_eq(sendto(fd, wire, sizeof wire, 0, (struct sockaddr *)&address, sizeof address), sizeof wire);
-}
-
-static ethd_status open_camera(const ethd_setting *settings, uint32_t count, void **device, char *message) {
-  static ethd_setup setup;
-  setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, count, ".", "x.ini", 1};
-  ethd_status status = ethd_driver_camera.open(&def, device, message);
-  if (status && *device) ethd_driver_camera.close(*device), *device = NULL;
-  return status;
 }
 
 START_TEST(test_driver) {
@@ -181,30 +161,6 @@ START_TEST(test_younger_than_the_tick) {
 }
 END_TEST
 
-START_TEST(test_refused) {
-  static const struct {
-    const char *listen, *from, *says;
-  } rows[] = {
-      {NULL, NULL, "x.ini: device.listen is missing: an address and a port as 127.0.0.1:9871 is allowed"},
-      {"localhost:9871", NULL, "x.ini:2: device.listen: found \"localhost:9871\", an address and a port"},
-      {"127.0.0.1", NULL, "x.ini:2: device.listen: found \"127.0.0.1\", an address and a port"},
-      {"127.0.0.1:99999", NULL, "x.ini:2: device.listen: "},
-      {"0.0.0.0:9871", NULL, "127.0.0.1 is allowed, and others with `from`: whoever can send there moves the ring"},
-      {"[::]:9871", NULL, "127.0.0.1 is allowed, and others with `from`"},
-      {"127.0.0.1:9871", "bridge", "x.ini:3: device.from: found \"bridge\", the bridge's address"},
-  };
-  char message[ETHD_MESSAGE_MAX];
-  void *device;
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    const ethd_setting settings[] = {{"listen", rows[i].listen, 2}, {"from", rows[i].from, 3}};
-    uint32_t count = !rows[i].listen ? 0 : rows[i].from ? 2 : 1;
-    message[0] = 0;
-    ck_assert_int_lt(open_camera(settings, count, &device, message), 0);
-    ck_assert_msg(strstr(message, rows[i].says) != NULL, "%s", message);
-  }
-}
-END_TEST
-
 int main(void) {
   Suite *suite = suite_create("camera");
   TCase *tc = tcase_create("camera");
@@ -215,7 +171,6 @@ int main(void) {
   tcase_add_test(tc, test_driver);
   tcase_add_test(tc, test_instants_keep_their_order);
   tcase_add_test(tc, test_younger_than_the_tick);
-  tcase_add_test(tc, test_refused);
   suite_add_tcase(suite, tc);
   return rig_run(suite);
 }
