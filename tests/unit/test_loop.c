@@ -235,6 +235,12 @@ START_TEST(test_refused_defs) {
     if (i == 3) gap.safe = NULL;
     REFUSED(driver, &gap, ETHD_E_ARGUMENT);
   }
+  ethd_driver older = *b.def.driver;
+  older.size--;
+  REFUSED(driver, &older, ETHD_E_ABI);
+  older = *b.def.driver;
+  older.abi++;
+  REFUSED(driver, &older, ETHD_E_ABI);
   REFUSED(control, NULL, ETHD_E_ARGUMENT);
   REFUSED(period, 0, ETHD_E_RANGE);
   REFUSED(period, (double)NAN, ETHD_E_RANGE);
