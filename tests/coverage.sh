@@ -9,11 +9,8 @@ set -u
 top=$(cd "$(dirname "$0")/.." && pwd)
 cd "$top" || exit 1
 MAKE=${MAKE:-make} BUILD=${BUILD:-build} CC=${CC:-cc}
-# Functions that are always inlined would be counted once for each caller. A process that ends by _exit leaves its counts, too.
-mkdir -p "$BUILD"
-leave=$(cd "$BUILD" && pwd)/coverage-exit.h
-printf '#include <unistd.h>\nvoid __gcov_dump(void);\n#define _exit(code) (__gcov_dump(), _exit(code))\n' >"$leave"
-flags="-O0 -g --coverage -Dalways_inline= -include $leave"
+# Functions that are always inlined would be counted once for each caller.
+flags='-O0 -g --coverage -Dalways_inline='
 export CK_TIMEOUT_MULTIPLIER="${CK_TIMEOUT_MULTIPLIER:-60}" TEST_TIMEOUT="${TEST_TIMEOUT:-3600}" # times don't matter here
 export CCACHE_DISABLE=1 ETHD_SCENE_QUERIES="${ETHD_SCENE_QUERIES:-2000}"
 failed=0
@@ -27,9 +24,17 @@ gcov_of() { # gcc-14 -> gcov-14
 # All tests but those that mostly wait for peers in real time.
 quick() { ls tests/*/test_*.c | sed 's|.*/||; s|[.]c$||' | grep -v -e '^test_injection$' -e '^test_ring_' -e '^test_servo_'; }
 
+# A process that ends by _exit leaves its counts, too.
+leave() {
+  mkdir -p "$BUILD"
+  leave=$(cd "$BUILD" && pwd)/coverage-exit.o
+  printf 'void __gcov_dump(void); void __real__exit(int);\nvoid __wrap__exit(int code) { __gcov_dump(); __real__exit(code); }\n' |
+    $CC -fPIC -x c -c -o "$leave" -
+}
+
 # run TREE FLAGS TESTS: what fails under the counters is said and doesn't count against coverage twice
 run() {
-  $MAKE --no-print-directory SETUP=no BUILD="$1" CC="$CC" CFLAGS="$2" SAN= TESTS="$3" check >"$1.log" 2>&1 ||
+  $MAKE --no-print-directory SETUP=no BUILD="$1" CC="$CC" CFLAGS="$2" LDFLAGS="-Wl,--wrap=_exit $leave" SAN= TESTS="$3" check >"$1.log" 2>&1 ||
     { grep -E '^  FAIL|rror' "$1.log" | head -n 20; failed=1; }
   grep -E '^[0-9]+ passed' "$1.log"
 }
@@ -38,8 +43,9 @@ branches() { # the compiler must be gcc: it counts as gcov reads
   $CC --version | grep -qi 'gcc\|free software' || { echo 'SKIP: coverage needs gcc'; exit 77; }
 }
 
+branches
+leave
 for what in "${@:-lib}"; do
-  branches
   tree=$BUILD/coverage
   case $what in
     lib)
