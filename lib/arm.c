@@ -44,7 +44,7 @@ static void invert(const double j[4], double w0, double out[4]) {
 
 /* ---- two links ---- */
 
-/* a and b are the links as vectors, at their angles from the x axis. Where q2 is relative, link 2 turns with joint 1. */
+/* a and b are the links as vectors, at their angles from the x axis. With a relative q2 link 2 turns with joint 1. */
 static inline void pose_of_links(const ethd_arm *arm, two angles, bool relative, ethd_pose *out) {
   two_waves w = two_sincos(angles);
   ethd_vec a = {arm->link1 * w.cosine[0], arm->link1 * w.sine[0]};

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Returns true for 1 to `most` printable ASCII characters: no control characters, which terminals obey, and one line. */
+/* Returns true for 1 to `most` printable ASCII characters: one line without what terminals obey. */
 static inline bool ethd__is_line(const char *text, size_t most) {
   size_t n = 0;
   if (!text) return false;

@@ -84,8 +84,8 @@ ETHD_MUST_CHECK ethd_status ethd__explain_judge(const ethd__explain_question *qu
 ETHD_MUST_CHECK ethd_status ethd__explain_limits(const ethd__study *study, ethd__explain_figures *out,
                                                  char message[ETHD_MESSAGE_MAX]);
 
-/* Where a value lies in its line's bounds: 0 at the lower one, 1 at the upper one, evenly as its misses count. Without an
-   upper bound what is met lies between 0 and 1, too. */
+/* Where a value lies in its line's bounds: 0 at the lower one, 1 at the upper one, evenly as its misses count. Without
+   an upper bound what is met lies between 0 and 1, too. */
 double ethd__explain_place(int line, double value);
 
 /* Writes each line of each plant as a row: its bounds, the value, its place in the bounds, whether it is met. */

@@ -25,8 +25,8 @@ typedef struct ethd__explain_search {
 /* Ends early, with ETHD_OK, once ethd__stop is set. Refuses a journal of another search. */
 ETHD_MUST_CHECK ethd_status ethd__explain_run(ethd__explain_search *search, char message[ETHD_MESSAGE_MAX]);
 
-/* Whether the search came to its end: nothing is missed any more, or longer searching with this population has stopped to
-   help. */
+/* Whether the search came to its end: nothing is missed any more, or longer searching with this population has stopped
+   to help. */
 static inline bool ethd__explain_at_end(const ethd__explain_search *search) {
   return search->mark <= 0 || search->done - search->lowered >= search->still;
 }

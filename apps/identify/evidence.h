@@ -75,7 +75,8 @@ void ethd__evidence_free(ethd__evidence *evidence);
 void ethd__evidence_touches(ethd__evidence *evidence, const ethd_setup *setup, const ethd_trace *rows, size_t count,
                             const unsigned char *good, size_t base);
 
-/* Returns to - from in s, whatever the stamps are that somebody's recording has: a difference wraps round like a clock. */
+/* Returns to - from in s, whatever the stamps are that somebody's recording has: a difference wraps round like a
+   clock. */
 static inline double ethd__evidence_apart(int64_t from_ns, int64_t to_ns) {
   return 1e-9 * (double)(int64_t)((uint64_t)to_ns - (uint64_t)from_ns);
 }

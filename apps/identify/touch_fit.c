@@ -87,8 +87,8 @@ static void best_start(const ethd__evidence *e, const ethd_plant *starts, int co
   }
 }
 
-/* The noise of readings before the finger touches: of its path and the arm's motion alone. Later the encoders of a ring that
-   hardly moves, whose rounding isn't noise, draw the finger's path away from the readings. */
+/* The noise of readings before the finger touches: of its path and the arm's motion alone. Later the encoders of a ring
+   that hardly moves, whose rounding isn't noise, draw the finger's path away from the readings. */
 static ethd__bracket find_noise(const ethd__evidence *e, const ethd_plant *plant, double *simulated) {
   ethd__shooting p;
   ethd__touching_open(e, 0, ETHD__TOUCHES_MOST, FINE, &p);

@@ -59,8 +59,8 @@ typedef struct play {
   int at;             /* the next of these */
 } play;
 
-/* How far a trial goes before the finger comes near the ring. So far the arm knows nothing of the finger, which is on its
-   path: others whose arm is the same begin here. */
+/* How far a trial goes before the finger comes near the ring. So far the arm knows nothing of the finger, which is on
+   its path: others whose arm is the same begin here. */
 typedef struct approach {
   int tick, next, stride; /* the first tick, sample and step that are still to come; tick 0: nothing is shared */
   ethd__sim_state state;
@@ -162,7 +162,8 @@ static void remember(const play *p, int k, approach *out) {
   out->body = p->body;
 }
 
-/* Returns when the torque of the tick before `tick` ends; first: the tick whose torque acts at the window's beginning. */
+/* Returns when the torque of the tick before `tick` ends; first: the tick whose torque acts at the window's
+   beginning. */
 static double change_after(const play *p, const ethd__trial *t, int tick, int64_t *first) {
   double T = p->evidence->period, whole = floor(t->plant->delay / T);
   *first = (int64_t)p->window->window.first - (int64_t)whole;

@@ -1,5 +1,5 @@
-/* Plays touches by the simulator: an arm and a finger from a window's state on, beside what encoders and readings showed.
-   All [main]. */
+/* Plays touches by the simulator: an arm and a finger from a window's state on, beside what encoders and readings
+   showed. All [main]. */
 #ifndef ETHD__APPS_IDENTIFY_TOUCH_PLAY_H
 #define ETHD__APPS_IDENTIFY_TOUCH_PLAY_H
 

@@ -4,7 +4,8 @@
    On the curve's line the law asks for  a = rate (rate d - v) - rate v - w  of what its observer says. With the right
    mass and no delay the observer's poles (three at b) and the ring's part, and with q = rate T these are the roots of
 
-     z^2 - (2 - 2q - q^2/2) z + 1 - 2q + q^2/2 = 0     real, and within the unit circle for q < 1; the law keeps q <= 1/2 */
+     z^2 - (2 - 2q - q^2/2) z + 1 - 2q + q^2/2 = 0     real, and within the unit circle for q < 1;
+     the law keeps q <= 1/2 */
 #include <math.h>
 
 #include "stress/rig.h"

@@ -20,8 +20,8 @@ typedef struct ethd__stress_rig {
   ethd_setup setup; /* changed before start */
   double mass;      /* kg at the ring, both joints alike */
   double gap;       /* m to the wall at the start */
-  /* A transmission that gives way: kg of the mass on the motor's side, N/m, Ns/m; 0: rigid. With one the simulator's arm
-     moves, and push and friction act on the motor's side. */
+  /* A transmission that gives way: kg of the mass on the motor's side, N/m, Ns/m; 0: rigid. With one the simulator's
+     arm moves, and push and friction act on the motor's side. */
   double motor_mass, spring, damper;
   double friction; /* N at the ring, Coulomb's */
   int delay;       /* ticks from measurement to torque */

@@ -105,7 +105,8 @@ static size_t add_extremes(const ethd__tune_entry **order, size_t count, size_t 
   return count;
 }
 
-/* Keeps the first `most` points of the order that settle at their margins in time, and notes in their round which do. */
+/* Keeps the first `most` points of the order that settle at their margins in time, and notes in their round which
+   do. */
 static ethd_status confirm(ethd__tune_search *s, ethd__tune_round *from, const ethd__tune_entry **order, size_t *count,
                            size_t most, char *message) {
   ethd_status status = ETHD_OK;

@@ -42,8 +42,9 @@ typedef struct ethd__bounds_felt {
    damping. */
 bool ethd__bounds_feel(const ethd_setup *setup, ethd__bounds_felt *out);
 
-/* Returns the law of a loop whose gains can't be known: it isn't built in, and none of its parameters has the name of one of
-   the loop's gains (k_t and b_t, k_e and b_e, b_d). Nothing is known of such a loop's stability. NULL: they are known. */
+/* Returns the law of a loop whose gains can't be known: it isn't built in, and none of its parameters has the name of
+   one of the loop's gains (k_t and b_t, k_e and b_e, b_d). Nothing is known of such a loop's stability. NULL: they are
+   known. */
 const ethd_law *ethd__bounds_unjudged(const ethd_setup *setup, ethd__bounds_kind kind);
 
 /* Fills the loop along an axis (0: x, 1: y). A gain that the law doesn't have is 0, and an unknown mass is 1 kg. False:

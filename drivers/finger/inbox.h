@@ -41,15 +41,15 @@ void ethd__inbox_close(ethd__inbox *inbox);
 /* Hands `newest` over. [I/O] */
 void ethd__inbox_put(ethd__inbox *inbox);
 
-/* Sets `newest`'s instants. A sender's clock is placed better with each quick arrival, which may move a reading before the
-   last one; it then counts as taken just after it, since readings come in their order. [I/O] */
+/* Sets `newest`'s instants. A sender's clock is placed better with each quick arrival, which may move a reading before
+   the last one; it then counts as taken just after it, since readings come in their order. [I/O] */
 void ethd__inbox_stamp(ethd__inbox *inbox, int64_t sample_ns, int64_t arrival_ns);
 
 /* Counts a reading that no finger can give, or a good one. [I/O] */
 void ethd__inbox_judge(ethd__inbox *inbox, bool is_good);
 
-/* Gives a reading that is new at the tick's instant. One that was taken after it, while a late tick was on its way, waits for
-   the next tick: a controller drops readings of the future. */
+/* Gives a reading that is new at the tick's instant. One that was taken after it, while a late tick was on its way,
+   waits for the next tick: a controller drops readings of the future. */
 void ethd__inbox_read(ethd__inbox *inbox, int64_t now_ns, ethd_sense *out) ETHD_RT;
 
 /* Fills a driver's figures, at most 4, and returns how many. [main] */

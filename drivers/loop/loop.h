@@ -116,8 +116,8 @@ void ethd__loop_rows(ethd_loop *loop, ethd_sense *sense) ETHD_RT;
 /* Writes zero torque, as the last thing that the loop does. [rt] */
 void ethd__loop_rest(ethd_loop *loop) ETHD_RT;
 
-/* Watches the loop's thread, which is dead when it hasn't turned for `gap` while the device gets torques: the body of a thread
-   of its own. */
+/* Watches the loop's thread, which is dead when it hasn't turned for `gap` while the device gets torques: the body of a
+   thread of its own. */
 void *ethd__loop_watch(void *loop);
 
 /* Asks the machine, before any thread runs, to lock memory and to hold the DMA latency, and finds the processor;

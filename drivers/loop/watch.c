@@ -12,8 +12,8 @@ typedef struct watch {
   int64_t silent;             /* ns that this thread saw pass: while the whole process is stopped, it sees none */
 } watch;
 
-/* Returns ns until the loop's thread counts as dead: the sooner of silence for `gap`, where that is set, and of a step that
-   takes longer than ETHD__LOOP_STEP_MAX. */
+/* Returns ns until the loop's thread counts as dead: the sooner of silence for `gap`, where that is set, and of a step
+   that takes longer than ETHD__LOOP_STEP_MAX. */
 static int64_t left_to_live(const ethd_loop *l, const watch *w) {
   int64_t step = atomic_load_explicit(&l->stepping, memory_order_relaxed);
   int64_t gap = l->gap > 2 * l->period ? l->gap : 2 * l->period; /* a period lies between two turns */

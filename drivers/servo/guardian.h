@@ -1,6 +1,6 @@
 /* A process of its own that writes zero torque when the program is gone or its I/O thread is silent, for drives that
-   hold their last torque for ever. It shares with the I/O thread the line and a page, in which that thread notes at every
-   turn that it lives. A loop that hangs is not its affair: then the I/O thread itself sends zero (servo/io.c).
+   hold their last torque for ever. It shares with the I/O thread the line and a page, in which that thread notes at
+   every turn that it lives. A loop that hangs is not its affair: then the I/O thread itself sends zero (servo/io.c).
 
         ethd-run                             guardian
      I/O thread --- beat, armed --->  shared page  ---> looks every millisecond
@@ -47,8 +47,8 @@ typedef struct ethd__guardian {
   ethd__servo_frame zeros[ETHD__GUARDIAN_ZEROS], disables[ETHD__SERVO_STEPS_MAX];
 } ethd__guardian;
 
-/* ns from the I/O thread's last beat to zero torque at the drive: the larger of 20 ms and two message spacings. A spacing is an
-   exchange, or the time that one unanswered message may take. [any] */
+/* ns from the I/O thread's last beat to zero torque at the drive: the larger of 20 ms and two message spacings. A
+   spacing is an exchange, or the time that one unanswered message may take. [any] */
 int64_t ethd__guardian_bound(const ethd__servo_map *map, int64_t exchange_ns);
 
 /* Prepares the frames and the limit; starts no process. `plan` is the map's. [main] */

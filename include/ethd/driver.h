@@ -9,8 +9,8 @@
    driver that has write must have safe too, because what takes a torque must be able to let go of it.
 
    One device may consist of several drivers (a servo, its encoders, a proximity ring): each adds what it
-   knows to the sense, and takes from the command what is its own. They are read and written in the order of their names:
-   where two give the same number, the later one's counts (servo, counter: the counter's angles).
+   knows to the sense, and takes from the command what is its own. They are read and written in the order of their
+   names: where two give the same number, the later one's counts (servo, counter: the counter's angles).
 
         [device]                                  ethd_device_open
         driver = servo, ring                        servo  --.

@@ -11,9 +11,9 @@
    one reaction names it twice. REFUSE rows are met before anything moves; in a sense they are only counted.
 
    Device and loop report a row in the sense: they set bit i of `faults` for row i in every tick in which it lasts, and
-   bit i of `grave` while the second reaction is due; bit i of `faults` need not be set then. The ticks of one occurrence follow
-   each other without a gap; each occurrence is counted and reported by one event. Rows that the controller itself sees
-   are treated in the same way.
+   bit i of `grave` while the second reaction is due; bit i of `faults` need not be set then. The ticks of one
+   occurrence follow each other without a gap; each occurrence is counted and reported by one event. Rows that the
+   controller itself sees are treated in the same way.
 
         faults  _____######______##____    two occurrences, two events
         grave   ________###___________     the second reaction is due: one more event

@@ -121,10 +121,10 @@ typedef struct ethd_contact {
 typedef struct ethd_contact_law {
   ethd_law law;
   /* gap: m, to the (offset) wall, < 0 inside; speed: ethd_contact.v, m/s, > 0 entering; entering: 1 on the branch of
-     eq. 3 for a ring that moves in, 0 on the other, with v_hysteresis between them. force: N along n, to be set by every
-     call: < 0 pushes the ring out, 0 where it doesn't push; the controller cuts an attractive one to 0. It is called in
-     every tick in which the contact counts and its transition law's share is over 0, so not while offset brakes; it gets no
-     period, so a law of state counts its calls or does without time. [rt] */
+     eq. 3 for a ring that moves in, 0 on the other, with v_hysteresis between them. force: N along n, to be set by
+     every call: < 0 pushes the ring out, 0 where it doesn't push; the controller cuts an attractive one to 0. It is
+     called in every tick in which the contact counts and its transition law's share is over 0, so not while offset
+     brakes; it gets no period, so a law of state counts its calls or does without time. [rt] */
   ethd_status (*step)(const double *p, void *state, double gap, double speed, int entering, double *force) ETHD_RT;
 } ethd_contact_law;
 

@@ -19,10 +19,10 @@
    A step that runs for more than 0.1 s is over its budget (row BUDGET), whatever limits.step_time says. A second
    realtime thread watches over the loop's: when a step is over that budget, or the loop is silent for longer than
    `gap`, it makes the device safe, disarms it and raises row LOOP. Without a gap (INFINITY) it watches steps alone: a
-   driver whose read or write doesn't return then keeps its torque until its own watchdog takes it. A loop that hasn't begun a tick for half a second
-   and for four periods hangs, because code that it called doesn't return: ethd_loop_hangs says so, and in which law. No
-   thread can be ended from outside, so ethd_loop_join then gives up and fails; loop, controller, setup and laws stay in
-   memory until the process ends.
+   driver whose read or write doesn't return then keeps its torque until its own watchdog takes it. A loop that hasn't
+   begun a tick for half a second and for four periods hangs, because code that it called doesn't return:
+   ethd_loop_hangs says so, and in which law. No thread can be ended from outside, so ethd_loop_join then gives up and
+   fails; loop, controller, setup and laws stay in memory until the process ends.
 
    Destroy the loop before its device and its controller. */
 #ifndef ETHD_LOOP_H
@@ -152,8 +152,8 @@ ETHD_API void ethd_loop_tick(ethd_loop *loop);
 /* Disarms: from the next tick on the device gets zero torque; the loop goes on reading. [any] */
 ETHD_API void ethd_loop_disarm(ethd_loop *loop);
 
-/* Returns 1 while the device gets torques. A safe command of the controller or a failure of the device disarms. [any]
-   */
+/* Returns 1 while the device gets torques. A safe command of the controller or a failure of the device disarms.
+   [any] */
 ETHD_API int32_t ethd_loop_armed(const ethd_loop *loop);
 
 /* Says that the application is alive. While the device is armed it is stopped if no beat comes within `heartbeat`.

@@ -141,8 +141,8 @@ static void tell(ethd__slot *slot, const ethd_contact *c, const ethd_ruling *r) 
   slot->past.v = c->v;
 }
 
-/* What acts beside the wall and can reach a finger, N along n. Before a wall is rendered no finger leans on the ring, so
-   the feed doesn't count as energy given: like tracking's torque it becomes the ring's motion and friction's heat. */
+/* What acts beside the wall and can reach a finger, N along n. Before a wall is rendered no finger leans on the ring,
+   so the feed doesn't count as energy given: like tracking's torque it becomes the ring's motion and heat. */
 static double bare_force(const ethd_ruling *r, double v) ETHD_RT {
   double braking = -r->damping * v;
   return r->share > 0 ? r->feed + braking : braking;

@@ -4,8 +4,8 @@
    that plan and clears it only when it needs neither the old plan nor the old scenes any more. `clear`: [any] sets it,
    [rt] clears it. The event ring: `head` and `tail` count events that were ever pushed and taken, so their difference
    is the fill and 64, a power of two, makes them wrap round without harm. [rt] writes an event and then `head`, with
-   release; [main] reads `head` with acquire, so it sees the whole event, copies it and then writes `tail`, with release;
-   [rt] reads `tail` with acquire before it uses that entry again. Each end has one writer, and neither side waits. */
+   release; [main] reads `head` with acquire, so it sees the whole event, copies it and then writes `tail`, with
+   release; [rt] reads `tail` with acquire before it uses that entry again. Each end has one writer; neither waits. */
 #ifndef ETHD__CONTROL_CONTROLLER_H
 #define ETHD__CONTROL_CONTROLLER_H
 

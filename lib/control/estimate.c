@@ -9,8 +9,8 @@ static bool is_finite(double v) ETHD_RT { return v - v == 0; }
 
 /* ---- ring ---- */
 
-/* An enormous torque, which an estimator may take as its input, must not spoil its state for good: a speed that no joint
-   can have, or NaN, begins it anew. */
+/* An enormous torque, which an estimator may take as its input, must not spoil its state for good: a speed that no
+   joint can have, or NaN, begins it anew. */
 static double joint_speed(const ethd__tick *t, int i) ETHD_RT {
   ethd_velocity_state *s = &t->state->velocity[i];
   double speed = ethd_velocity_step(&t->plan->velocity, s, t->sense->q[i], t->state->guard.last[i], t->dt);

@@ -126,8 +126,8 @@ static bool is_common(const ethd_limit *row) {
   return false;
 }
 
-/* Returns true if any other limit is set. The tick then looks at what note_rare_limits and its reach check enforce. A new
-   limit counts as rare, so that it can't be forgotten here. */
+/* Returns true if any other limit is set. The tick then looks at what note_rare_limits and its reach check enforce. A
+   new limit counts as rare, so that it can't be forgotten here. */
 static bool has_rare_limits(const ethd_limits *limits) {
   ethd_limits own = *limits, none = ethd_limits_none();
   for (const ethd_limit *row = ethd_limit_rows; row < ethd_limit_rows + ETHD_LIMITS; row++)

@@ -30,7 +30,7 @@ static inline ethd__filter_motion ethd__filter_motion_over(const ethd_filter *f,
 /* Carries the covariance over t s and adds the process noise. [rt] */
 void ethd__filter_spread(const ethd_filter *f, ethd_filter_state *s, ethd__filter_motion w) ETHD_RT;
 
-/* Corrects with the innovation r of a reading whose noise is known, m; false: it was gated, and nothing is done. [rt] */
+/* Corrects with the innovation r of a reading whose noise is known, m; false: it was gated, nothing is done. [rt] */
 bool ethd__filter_correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec r, double noise) ETHD_RT;
 
 /* ethd_filter_update for readings whose noise differs from one to the next: sd of each axis, m; 0: as the filter's

@@ -14,7 +14,7 @@ bool ethd__fit_vertex_mean(const ethd__points *points, ethd_vec *centre) {
   return true;
 }
 
-/* The polygon is a fan of triangles (0, u, w) from its first vertex, each with centroid (u + w) / 3 and area u x w / 2. */
+/* The polygon is a fan of triangles (0, u, w) from its first vertex, with centroid (u + w) / 3 and area u x w / 2. */
 bool ethd__fit_centroid(const ethd__points *points, ethd_vec *centre) {
   double area = 0, size = 0;
   ethd_vec sum = {0, 0}, u = {0, 0};

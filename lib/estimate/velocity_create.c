@@ -72,7 +72,7 @@ ethd_status ethd_velocity_prepare(ethd_velocity_method method, const double *p, 
 }
 
 /* The filter's gains settle at alpha and beta, which its tracking index m determines (Kalata 1984). While the joint
-   accelerates at a constant a, the innovation r is constant too: beta r = a T^2 and (v - v_hat) T = alpha r - a T^2 / 2. */
+   accelerates at a constant a, the innovation r is constant: beta r = a T^2 and (v - v_hat) T = alpha r - a T^2 / 2. */
 static double kalman_lag(const ethd_velocity *v) {
   double m = v->p[VELOCITY_ACCELERATION] * v->period * v->period / v->p[VELOCITY_NOISE];
   double root = (4 + m - sqrt(m * (8 + m))) / 4;

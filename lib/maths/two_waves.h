@@ -43,7 +43,7 @@ static inline two two_cosine(two x, two rest) {
   return a + ((m - (a - 1)) + (w * p - x * rest));
 }
 
-/* Returns false, which is rare, for angles that are huge, tiny, next to a multiple of pi/2, or NaN: trig.c does those. */
+/* Returns false, which is rare, for angles that are huge, tiny, near a multiple of pi/2, or NaN: trig.c does those. */
 static inline bool two_is_plain(double x, double r) { return fabs(x) < 0x1p20 && fabs(r) >= 0x1p-36; }
 
 /* The quadrant n exchanges sine and cosine and turns signs. Masks do so, since branches on n would be mispredicted. */

@@ -109,7 +109,7 @@ static inline void ethd__label(const ethd__object *o, ethd_touch *out) {
    side. */
 void ethd__object_nearest(const ethd_scene *scene, const ethd__object *o, ethd_vec x, ethd_touch *out) ETHD_RT;
 
-/* Builds a scene from a definition that has been checked. `ids`: the objects' numbers, rising; NULL: 0, 1, ... [main] */
+/* Builds a scene from a checked definition. `ids`: the objects' numbers, rising; NULL: 0, 1, ... [main] */
 ethd_status ethd__scene_make(const ethd_scene_def *def, const int32_t *ids, ethd_scene **out, ethd_error *error);
 
 /* Gives the distances from the base between which objects count for this arm, m. */

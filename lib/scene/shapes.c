@@ -83,7 +83,7 @@ static ethd__disc box_disc(const double *p, size_t k) {
   return (ethd__disc){vec(p[0] + (p[5] * u - p[6] * v), p[1] + (p[6] * u + p[5] * v)), 0};
 }
 
-/* Works in the box's frame, folded into its first quadrant: x is (u, v) from the centre and (du, dv) beyond the faces. */
+/* Works in the box's frame, folded into its first quadrant: x is (u, v) from the centre, (du, dv) beyond the faces. */
 static void box(const double *p, ethd_vec x, ethd_touch *out) {
   double c = p[5], s = p[6];
   ethd_vec r = ethd_vec_sub(x, vec(p[0], p[1]));

@@ -47,7 +47,7 @@ static bool contains(const ethd__strip *s, const ethd__chain *c) {
   return inside;
 }
 
-/* Squared distances of the nearest edge that may show x its outer face, and of the nearest that may show its inner one. */
+/* Squared distances of the nearest edge that may show x its outer face, and of the one that may show its inner one. */
 typedef struct faces {
   double outer, inner;
 } faces;

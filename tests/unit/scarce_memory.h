@@ -1,6 +1,6 @@
-/* Memory that runs out, and blocks that are counted, by standing in the way of the C library: included by the one source of
-   a program that wants it. A program may define SCARCE_MEMORY_SEES(function), which comes first in each of them. Where
-   SCARCE_MEMORY_SKIPPED is defined, a sanitizer has an allocator of its own. */
+/* Memory that runs out, and blocks that are counted, by standing in the way of the C library: included by the one
+   source of a program that wants it. A program may define SCARCE_MEMORY_SEES(function), which comes first in each of
+   them. Where SCARCE_MEMORY_SKIPPED is defined, a sanitizer has an allocator of its own. */
 #ifndef ETHD_TESTS_SCARCE_MEMORY_H
 #define ETHD_TESTS_SCARCE_MEMORY_H
 

@@ -21,8 +21,8 @@ static ethd_status tick(rig *r, double q) {
   return rig_try(r, &s);
 }
 
-/* A torque that was taken away at once rises from zero at the rate's pace, also where nothing latches: 100 Nm/s over the
-   two periods since the last torque. */
+/* A torque that was taken away at once rises from zero at the rate's pace, also where nothing latches: 100 Nm/s over
+   the two periods since the last torque. */
 START_TEST(test_rises_from_zero) {
   rig r;
   begin(&r, ETHD_VELOCITY_DIFFERENCE, 100);

@@ -46,7 +46,8 @@ START_TEST(test_refused) {
 }
 END_TEST
 
-/* Opens the camera on `host` while a child sends exposures there from the address `own`; the driver listens to `from`. */
+/* Opens the camera on `host` while a child sends exposures there from the address `own`; the driver listens to
+   `from`. */
 static ethd_status open_beside(const char *host, const char *from, const char *own, char *message) {
   const struct addrinfo hints = {.ai_flags = AI_NUMERICHOST, .ai_socktype = SOCK_DGRAM};
   struct addrinfo *at, *mine;
@@ -79,8 +80,8 @@ static ethd_status open_beside(const char *host, const char *from, const char *o
   return status;
 }
 
-/* Whoever can send to the camera's port moves the ring, so with `from` all others' datagrams pass unseen. A message that
-   isn't empty asks for little patience. */
+/* Whoever can send to the camera's port moves the ring, so with `from` all others' datagrams pass unseen. A message
+   that isn't empty asks for little patience. */
 START_TEST(test_only_the_bridge) {
   char message[ETHD_MESSAGE_MAX] = "";
   ck_assert_msg(open_beside("127.0.0.1", "127.0.0.2", "127.0.0.2", message) == ETHD_OK, "%s", message);

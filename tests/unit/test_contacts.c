@@ -204,8 +204,8 @@ START_TEST(test_newcomer_leaves_the_others) {
 }
 END_TEST
 
-/* In a new scene that has the same walls each contact goes on, the second one as well, and so it does when the first one's
-   wall is gone. */
+/* In a new scene that has the same walls each contact goes on, the second one as well, and so it does when the first
+   one's wall is gone. */
 START_TEST(test_new_scene_continues_each) {
   const char *const scenes[] = {"halfplane -1 0 -0.238\nhalfplane 0 -1 -0.238\n", "halfplane 0 -1 -0.238\n"};
   for (int k = 0; k < 2; k++) {

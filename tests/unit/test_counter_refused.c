@@ -1,5 +1,5 @@
-/* Encoders behind the kernel's counters: each call of the kernel that fails and each setting that can't be is one message,
-   which says where and why, and nothing stays open. */
+/* Encoders behind the kernel's counters: each call of the kernel that fails and each setting that can't be is one
+   message, which says where and why, and nothing stays open. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>

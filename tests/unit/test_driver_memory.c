@@ -1,5 +1,5 @@
-/* Memory that runs out at any allocation while the drivers read, write and open things: one message that says so, nothing
-   is kept, and no half of a file takes another's place. By standing in the way of the C library. */
+/* Memory that runs out at any allocation while the drivers read, write and open things: one message that says so,
+   nothing is kept, and no half of a file takes another's place. By standing in the way of the C library. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

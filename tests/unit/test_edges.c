@@ -13,7 +13,8 @@ static ethd_error error;
 
 /* ---- control ---- */
 
-/* Two bodies share a scene; when it is replaced it comes back once, for the first of them, or it would be freed twice. */
+/* Two bodies share a scene; when it is replaced it comes back once, for the first of them, or it would be freed
+   twice. */
 START_TEST(test_shared_scene_comes_back_once) {
   rig r;
   rig_open(&r, RIG_WALL);
@@ -186,7 +187,8 @@ START_TEST(test_names_of_materials) {
 }
 END_TEST
 
-/* From whichever corner a polygon is told and in either sense, inside is inside; three corners in a line at its left. */
+/* From whichever corner a polygon is told and in either sense, inside is inside; three corners in a line at its
+   left. */
 START_TEST(test_polygon_from_every_corner) {
   static const double p[][2] = {{0, 0}, {0, -1}, {3, -2}, {2, 0}, {3, 2}, {0, 1}};
   enum { N = sizeof p / sizeof *p };

@@ -201,7 +201,8 @@ START_TEST(test_bounces_add_up) {
 }
 END_TEST
 
-/* What a wall has absorbed is no credit once it doesn't push: a slow way in and a fast one out are told after it, too. */
+/* What a wall has absorbed is no credit once it doesn't push: a slow way in and a fast one out are told after it,
+   too. */
 START_TEST(test_absorbed_is_no_credit) {
   for (int is_before = 0; is_before < 2; is_before++) {
     rig r;

@@ -1,5 +1,5 @@
-/* What every number may be, and is by default: configurations, materials and plugins rely on it, so a change is a change of
-   the interface. The rows are written down from the tables; the ranges' reasons stand beside those. */
+/* What every number may be, and is by default: configurations, materials and plugins rely on it, so a change is a
+   change of the interface. The rows are written down from the tables; the ranges' reasons stand beside those. */
 #include <math.h>
 #include <string.h>
 
