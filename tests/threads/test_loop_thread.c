@@ -239,7 +239,10 @@ static int run_with_little_memory(void) {
   if (!file || fscanf(file, "%ld", &pages) != 1) return 1;
   fclose(file);
   rlim_t most = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + ((rlim_t)4 << 20);
-  struct rlimit limit = {most, most};
+  struct rlimit limit;
+  if (getrlimit(RLIMIT_MEMLOCK, &limit)) return 2;
+  if (limit.rlim_max > most) limit.rlim_max = most; /* it may be less, and then not everybody may raise it */
+  limit.rlim_cur = limit.rlim_max;
   if (setrlimit(RLIMIT_MEMLOCK, &limit) || (getuid() == 0 && setuid(65534))) return 2;
   open_loop(0);
   if (ethd_loop_start(loop, NULL) != ETHD_OK) return 3;
