@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "clock.h"
+
 ethd_status ethd__inbox_open(ethd__inbox *in, double rate) {
   pthread_mutex_init(&in->lock, NULL);
   in->gap_ns = (int64_t)(1.5e9 / rate);
@@ -17,7 +19,7 @@ void ethd__inbox_put(ethd__inbox *in) { ethd_cell_put(in->cell, &in->newest); }
 
 void ethd__inbox_stamp(ethd__inbox *in, int64_t sample_ns, int64_t arrival_ns) {
   ethd__sighting *s = &in->newest;
-  s->sample_ns = s->arrival_ns && sample_ns <= s->sample_ns ? s->sample_ns + 1 : sample_ns;
+  s->sample_ns = ethd__clock_after(s->sample_ns, sample_ns);
   s->arrival_ns = arrival_ns;
 }
 

@@ -103,12 +103,15 @@ static ethd_status ring_read(void *device, int64_t now_ns, ethd_sense *out) ETHD
   if (s->counts.frame_lost != r->seen.frame_lost) out->faults |= ETHD_FAULT_BIT(ETHD_FAULT_FRAME_LOST);
   if (s->counts.board_clock != r->seen.board_clock) out->faults |= ETHD_FAULT_BIT(ETHD_FAULT_BOARD_CLOCK);
   out->faults |= lasting(s, now_ns, &out->grave);
-  if (s->counts.readings != r->seen.readings) {
+  uint64_t read = r->seen.readings;
+  if (s->counts.readings != read && s->reading.sample_ns <= now_ns) { /* else it waits: late ticks meet younger ones */
     out->have |= ETHD_HAVE_RAYS;
     out->sample_ns = s->reading.sample_ns;
     memcpy(out->rays, s->reading.rays, sizeof out->rays);
+    read = s->counts.readings;
   }
   r->seen = s->counts;
+  r->seen.readings = read;
   return ETHD_OK;
 }
 

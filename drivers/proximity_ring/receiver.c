@@ -1,5 +1,7 @@
 #include "proximity_ring/receiver.h"
 
+#include "clock.h"
+
 static bool receive(ethd__receiver *r, const ethd__ring_frame *frame, int64_t arrival_ns,
                     ethd__ring_reading *out) ETHD_RT {
   int64_t t_ns;
@@ -9,7 +11,7 @@ static bool receive(ethd__receiver *r, const ethd__ring_frame *frame, int64_t ar
   bool good = ethd__plausible_step(&r->plausible, &r->calibration, frame, out->rays);
   r->counts.frame_lost += !good || frame->lost;
   if (!good) return false;
-  out->sample_ns = t_ns + 1000 * ETHD__MIDDLE_US;
+  out->sample_ns = r->last_ns = ethd__clock_after(r->last_ns, t_ns + 1000 * ETHD__MIDDLE_US);
   out->out = r->plausible.out;
   r->counts.sensor += out->out != 0;
   r->counts.readings++;
@@ -37,4 +39,5 @@ void ethd__receiver_restart(ethd__receiver *r) {
   ethd__decoder_restart(&r->decoder);
   ethd__board_clock_restart(&r->clock);
   r->plausible.started = false;
+  r->last_ns = 0;
 }

@@ -35,6 +35,7 @@ typedef struct ethd__receiver {
   ethd__plausible plausible;
   ethd__receiver_counts counts;
   uint64_t corrupt; /* the decoder's count when it was last compared */
+  int64_t last_ns;  /* sample_ns of the last reading; 0: there was none */
 } ethd__receiver;
 
 /* Takes the next reading from the bytes from *at to `end`, of which the last arrived at arrival_ns, and moves *at

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "clock.h"
 #include "servo/words.h"
 
 static const ethd__servo_register *role(const ethd__servo_link *l, int which, double *raw) {
@@ -96,7 +97,8 @@ static void take_reading(ethd__servo_feedback *f, const ethd__servo_link *l) {
   if (!(age >= 0 && age <= READING_AGE_MAX)) return;
   f->sample.reading[0] = value(l, ETHD__SERVO_READING_X);
   f->sample.reading[1] = value(l, ETHD__SERVO_READING_Y);
-  f->sample.reading_ns = f->sample.stamp_ns - (int64_t)(1e9 * age);
+  int64_t last_ns = f->sample.has & ETHD__SERVO_HAS_READING ? f->sample.reading_ns : 0;
+  f->sample.reading_ns = ethd__clock_after(last_ns, f->sample.stamp_ns - (int64_t)(1e9 * age));
   f->sample.readings++;
   f->sample.has |= ETHD__SERVO_HAS_READING;
 }

@@ -33,9 +33,10 @@ static void add_joints(const ethd__servo_device *d, ethd_sense *out) ETHD_RT {
   if (s->has & ETHD__SERVO_HAS_SPEED) out->have |= ETHD_HAVE_DQ;
 }
 
-static void add_reading(ethd__servo_device *d, ethd_sense *out) ETHD_RT {
+/* A reading that is younger than a late tick waits for the next one. */
+static void add_reading(ethd__servo_device *d, int64_t now_ns, ethd_sense *out) ETHD_RT {
   const ethd__servo_sample *s = &d->newest;
-  if (!(s->has & ETHD__SERVO_HAS_READING) || s->readings == d->seen_readings) return;
+  if (!(s->has & ETHD__SERVO_HAS_READING) || s->readings == d->seen_readings || s->reading_ns > now_ns) return;
   d->seen_readings = s->readings;
   out->have |= ETHD_HAVE_CENTRE;
   out->sample_ns = s->reading_ns;
@@ -70,7 +71,7 @@ ethd_status ethd__servo_read(void *device, int64_t now_ns, ethd_sense *out) {
   out->faults |= lasting;
   out->grave |= s->grave;
   add_joints(d, out);
-  if (fresh) add_reading(d, out);
+  if (fresh) add_reading(d, now_ns, out);
   return fresh ? ETHD_OK : ETHD_STALE;
 }
 

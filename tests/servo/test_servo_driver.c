@@ -163,6 +163,13 @@ START_TEST(test_reading) {
   ck_assert_int_eq(sense.sample_ns, now - 2500000);
   ck_assert_int_eq(tick(0, 0), ETHD_OK);
   ck_assert(!(sense.have & ETHD_HAVE_CENTRE));
+  /* the next one's age says that it is older: readings come in their order all the same */
+  int64_t before = now - TICK - 2500000;
+  drive.words[MOCK_READING_AGE] = 5000;
+  drive.words[MOCK_READING_COUNT] = 2;
+  ck_assert_int_eq(tick(0, 0), ETHD_OK);
+  ck_assert(sense.have & ETHD_HAVE_CENTRE);
+  ck_assert_int_eq(sense.sample_ns, before + 1);
   close_device();
 }
 END_TEST

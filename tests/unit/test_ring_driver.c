@@ -267,6 +267,27 @@ START_TEST(test_readings) {
 }
 END_TEST
 
+/* A tick that is late may meet a reading that was taken after its own instant; the reading waits for the next one. */
+START_TEST(test_younger_than_the_tick) {
+  run r;
+  begin(&r);
+  while (r.rays < 20) tick(&r, NULL);
+  int64_t stamp = r.sense.sample_ns;
+  ethd__ring_frame f = scene_frame(&r.board.scene, r.next);
+  send_frame(&r.board, &f);
+  r.now_ns += 5 * TICK;
+  ck_assert_int_eq(driver->service(r.device, 0, r.now_ns), ETHD_OK);
+  const int64_t now[] = {stamp, stamp + 1000, r.now_ns, r.now_ns + TICK}, have[] = {0, 0, ETHD_HAVE_RAYS, 0};
+  for (int i = 0; i < 4; i++) {
+    ethd_sense s = {.time_ns = now[i]};
+    ck_assert_int_eq(driver->read(r.device, now[i], &s), ETHD_OK);
+    ck_assert_int_eq(s.have, have[i]);
+    if (have[i]) ck_assert(s.sample_ns > stamp + 1000 && s.sample_ns <= now[i]);
+  }
+  end(&r);
+}
+END_TEST
+
 /* ---- rows of the fault table: bound, in ticks, at 20 phases ---- */
 
 static uint32_t onset;
@@ -405,6 +426,7 @@ int main(void) {
   tcase_add_test(tc, test_refused);
   tcase_add_test(tc, test_refused_by_what_comes);
   tcase_add_test(tc, test_readings);
+  tcase_add_test(tc, test_younger_than_the_tick);
   tcase_add_loop_test(tc, test_rows, 0, (int)(sizeof rows / sizeof *rows));
   tcase_add_test(tc, test_replug);
   suite_add_tcase(suite, tc);

@@ -34,6 +34,26 @@ START_TEST(test_clean) {
 }
 END_TEST
 
+/* The first frames came 8 ms late: the clock is placed that much earlier by the fourth, more than two frames before the
+   third. Instants don't go back, and are the true ones as soon as those have caught up. */
+START_TEST(test_instants_keep_their_order) {
+  ring_scene s = scene_open(1, &r);
+  int64_t last = 0;
+  for (uint32_t i = 0; i < 12; i++) {
+    ethd__ring_frame f = scene_frame(&s, i);
+    ethd__ring_reading reading;
+    ck_assert(scene_feed(&r, &f, scene_arrival(&s, i) + (i < 3 ? 8000000 : 0), &reading));
+    int64_t off = reading.sample_ns - s.start_ns - (int64_t)(1e9 * scene_time(i)) - 1000 * (int64_t)ETHD__MIDDLE_US;
+    ck_assert_int_gt(reading.sample_ns, last);
+    if (i < 3) ck_assert_int_le(llabs(off - 8000000), 2000);
+    if (i == 3 || i == 4) ck_assert_int_eq(reading.sample_ns, last + 1);
+    if (i > 4) ck_assert_int_le(llabs(off), 2000);
+    last = reading.sample_ns;
+  }
+  ck_assert(r.counts.readings == 12 && !r.counts.board_clock);
+}
+END_TEST
+
 /* ---- row 18: sensors ---- */
 
 typedef enum symptom { STUCK, SATURATED, MISSING, UNDER_DARK, OFF, SYMPTOMS } symptom;
@@ -205,6 +225,7 @@ int main(void) {
   TCase *tc = tcase_create("receiver");
   tcase_set_timeout(tc, 60);
   tcase_add_test(tc, test_clean);
+  tcase_add_test(tc, test_instants_keep_their_order);
   tcase_add_test(tc, test_sensor_faults);
   tcase_add_test(tc, test_board_missing);
   tcase_add_test(tc, test_still);
