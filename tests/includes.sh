@@ -1,6 +1,12 @@
 #!/bin/sh
 # Every include points to its own floor or to a lower one. From the ground up: lib's maths and its root; guard, scene,
-# estimate and law; control; drivers; apps. A public header stands on the floor of the library that it links from.
+# estimate and law; control; drivers; apps. A public header stands on the floor of the library that it links from. Nothing but
+# these rooms is kept at the top.
+top=$(git ls-files 2>/dev/null | cut -d/ -f1 | grep -v '^[.]' | LC_ALL=C sort -u | tr '\n' ' ')
+case $top in
+  '' | 'LICENSE Makefile README.md apps drivers include lib tests ') ;;
+  *) echo "at the top stand: $top"; exit 1 ;;
+esac
 exec "${PYTHON:-python3}" - <<'END'
 import pathlib, re, sys
 
