@@ -16,16 +16,7 @@
 /* ---- tables ---- */
 
 static bool is_word(const char *text) {
-  size_t n = text ? strnlen(text, WORD_MAX + 1) : 0;
-  return n >= 1 && n <= WORD_MAX && strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789_-") == n;
-}
-
-/* One line of printable ASCII: nothing of it steers a terminal. */
-static bool is_line(const char *text) {
-  size_t n = text ? strnlen(text, ETHD_BRIEF_MAX + 1) : 0;
-  for (size_t i = 0; i < n; i++)
-    if (text[i] < ' ' || text[i] > '~') return false;
-  return n >= 1 && n <= ETHD_BRIEF_MAX;
+  return ethd__text_is_word(text, WORD_MAX, "abcdefghijklmnopqrstuvwxyz0123456789_-");
 }
 
 static bool keys_are_words(const char *const *keys) {
@@ -62,7 +53,7 @@ static ethd_status check_head(const ethd_driver *d, char *what) {
 static ethd_status check_rest(const ethd_driver *d, char *what) {
   char row[ETHD_MESSAGE_MAX];
   if (!is_word(d->id)) return ethd__say(what, ETHD_E_ARGUMENT, "its id isn't 1 to 31 of a-z 0-9 - _");
-  if (!is_line(d->brief))
+  if (!ethd__text_is_line(d->brief, ETHD_BRIEF_MAX))
     return ethd__say(what, ETHD_E_ARGUMENT, "the brief of %s isn't one line of 1 to %d printable characters", d->id,
                      ETHD_BRIEF_MAX);
   ethd_status status = ethd__table_fault(d->params, d->param_count, row);

@@ -7,24 +7,13 @@
 #include <string.h>
 
 #include "text/error_text.h"
+#include "text/text.h"
 
 #define WORD_MAX 31
 
 /* Quotes what a plugin says, which may be NULL or never end. */
 static const char *quoted(const char *text, char out[ETHD_QUOTE_MAX]) {
   return text ? ethd__quote(text, strnlen(text, ETHD_QUOTE_MAX), out) : "NULL";
-}
-
-static bool is_line(const char *text, size_t most) {
-  size_t n = text ? strnlen(text, most + 1) : 0;
-  for (size_t i = 0; i < n; i++)
-    if (text[i] < ' ' || text[i] > '~') return false;
-  return n >= 1 && n <= most;
-}
-
-static bool is_word(const char *text, const char *letters) {
-  size_t n = text ? strnlen(text, WORD_MAX + 1) : 0;
-  return n >= 1 && n <= WORD_MAX && strspn(text, letters) == n;
 }
 
 /* ---- a row of a table ---- */
@@ -34,17 +23,18 @@ static bool is_word(const char *text, const char *letters) {
 static void row_fault(const ethd_param *params, uint32_t i, char *what) {
   const ethd_param *row = &params[i];
   char quote[ETHD_QUOTE_MAX], place[64];
-  snprintf(place, sizeof place, "row %u, %s", i + 1, is_word(row->name, NAMES) ? row->name : "whose name is wrong");
-  if (!is_word(row->name, NAMES))
+  snprintf(place, sizeof place, "row %u, %s", i + 1,
+           ethd__text_is_word(row->name, WORD_MAX, NAMES) ? row->name : "whose name is wrong");
+  if (!ethd__text_is_word(row->name, WORD_MAX, NAMES))
     ethd__say(what, ETHD_E_TABLE, "row %u: its name is %s, 1 to %d of a-z 0-9 _ are allowed", i + 1,
               quoted(row->name, quote), WORD_MAX);
   else if (ethd_params_find(params, i, row->name) >= 0)
     ethd__say(what, ETHD_E_TABLE, "%s: an earlier row has that name", place);
-  else if (!is_line(row->unit, ETHD_BRIEF_MAX))
+  else if (!ethd__text_is_line(row->unit, ETHD_BRIEF_MAX))
     ethd__say(what, ETHD_E_TABLE,
               "%s: its unit is %s, one line of 1 to %d printable characters is allowed (\"1\": none)", place,
               quoted(row->unit, quote), ETHD_BRIEF_MAX);
-  else if (!is_line(row->brief, ETHD_BRIEF_MAX))
+  else if (!ethd__text_is_line(row->brief, ETHD_BRIEF_MAX))
     ethd__say(what, ETHD_E_TABLE, "%s: its brief is %s, one line of 1 to %d printable characters is allowed", place,
               quoted(row->brief, quote), ETHD_BRIEF_MAX);
   else if (!(isfinite(row->min) && row->min <= row->def && row->def <= row->max))
@@ -98,7 +88,7 @@ static void law_fault(const ethd_law *law, const ethd_error *error, char *what) 
               ETHD_STATE_MAX);
   else if (error->status == ETHD_E_TABLE && ethd__table_fault(law->params, law->param_count, row))
     ethd__say(what, error->status, "law %s: params: %s", law->id, row);
-  else if (!is_line(law->brief, ETHD_BRIEF_MAX))
+  else if (!ethd__text_is_line(law->brief, ETHD_BRIEF_MAX))
     ethd__say(what, error->status, "law %s: its brief is %s, one line of 1 to %d printable characters is allowed",
               law->id, quoted(law->brief, quote), ETHD_BRIEF_MAX);
   else
@@ -107,7 +97,7 @@ static void law_fault(const ethd_law *law, const ethd_error *error, char *what) 
 
 static bool is_heads(const ethd_law *law, ethd_status status) {
   return status == ETHD_E_ABI || status == ETHD_E_SIZE || law->kind > ETHD_TRANSITION ||
-         !is_word(law->id, "abcdefghijklmnopqrstuvwxyz0123456789-");
+         !ethd__text_is_word(law->id, WORD_MAX, "abcdefghijklmnopqrstuvwxyz0123456789-");
 }
 
 /* ---- the file ---- */
@@ -115,8 +105,8 @@ static bool is_heads(const ethd_law *law, ethd_status status) {
 static void entry_fault(const ethd_plugin_entry *entry, const ethd_error *error, char *what) {
   char quote[ETHD_QUOTE_MAX], place[48];
   ethd_error wrong;
-  if (!is_line(entry->id, WORD_MAX) || !is_line(entry->version, WORD_MAX)) {
-    const bool id = !is_line(entry->id, WORD_MAX);
+  if (!ethd__text_is_line(entry->id, WORD_MAX) || !ethd__text_is_line(entry->version, WORD_MAX)) {
+    const bool id = !ethd__text_is_line(entry->id, WORD_MAX);
     ethd__say(what, error->status, "ethd_plugin: its %s is %s, 1 to %d printable characters are allowed",
               id ? "id" : "version", quoted(id ? entry->id : entry->version, quote), WORD_MAX);
     return;

@@ -245,6 +245,18 @@ bool ethd__number(const char *text, size_t length, double *out) {
   return isfinite(*out);
 }
 
+bool ethd__text_is_word(const char *text, size_t most, const char *letters) {
+  size_t n = text ? strnlen(text, most + 1) : 0;
+  return n >= 1 && n <= most && strspn(text, letters) == n;
+}
+
+bool ethd__text_is_line(const char *text, size_t most) {
+  size_t n = text ? strnlen(text, most + 1) : 0;
+  for (size_t i = 0; i < n; i++)
+    if (text[i] < ' ' || text[i] > '~') return false;
+  return n >= 1 && n <= most;
+}
+
 char *ethd__path_join(const char *folder, const char *path) {
   char *joined;
   if (path[0] == '/' || !folder || !folder[0]) return strdup(path);

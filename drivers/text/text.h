@@ -35,6 +35,11 @@ void ethd_replace_abandon(ethd_replace *replace);
    large for a double is refused. text[length] must be readable and not part of a number. */
 bool ethd__number(const char *text, size_t length, double *out);
 
+/* Whether a plugin's text, which may be NULL or never end, has 1 to `most` characters: of these letters alone; printable
+   ASCII, one line without what terminals obey. */
+bool ethd__text_is_word(const char *text, size_t most, const char *letters);
+bool ethd__text_is_line(const char *text, size_t most);
+
 /* Returns the end of the decimal number without a sign at p, NULL if there is none. */
 const char *ethd__decimal(const char *p, const char *end);
 
