@@ -15,7 +15,8 @@ from calibrate_guided import counts_at
 
 FOLDER, DRIVE, CONTROL, RING = sys.argv[1], sys.argv[2], int(sys.argv[3]), int(sys.argv[4])
 EMPTY = [2000] * 16
-TRIES = 12  # a try of step 8 takes 3 s; peers/late.py blames no machine that is late once in 3 s, and with 4 one in six fails
+TRIES = 4
+SESSIONS = 12  # tries of step 8: a machine that is late once in its 3 s isn't too busy, and ends four in a row one time in six
 DIVISOR_MOST = 14
 
 
@@ -163,7 +164,7 @@ def main():
     ring(EMPTY)
     for number, (title, commands, promises) in enumerate(all_steps, 1):
         assert title.startswith(f"{number}. ") and commands and promises, title
-        for _ in range(TRIES):
+        for _ in range(SESSIONS if number == 8 else TRIES):
             began = time.monotonic()
             code, said, missing = take(number, title, commands, promises)
             if not code and not missing:
