@@ -73,6 +73,10 @@ static void status(ethd__session *s, ethd__commands *c, char *rest) {
 
 static bool faulty(ethd__session *s) { return ethd__recorder_latest(&s->recorder).trace.fault != 0; }
 
+static const char *latched(ethd__session *s) {
+  return ethd_fault_sentence((ethd_fault)ethd__recorder_latest(&s->recorder).trace.fault);
+}
+
 /* The device is asked at once to leave a fault of its own. The controller's fault goes when nothing has gone wrong for
    long enough; where the device had a fault, that is at the second ack. */
 static void ack(ethd__session *s, ethd__commands *c, char *rest) {
@@ -87,8 +91,10 @@ static void ack(ethd__session *s, ethd__commands *c, char *rest) {
     answer("error: nothing has gone wrong for %.3f s, %g s are required", clean, needed);
     return;
   }
-  ethd_loop_clear(s->loop);
-  answer(ethd_loop_armed(s->loop) ? "ok: acknowledged" : "ok: acknowledged; the device is disabled, enable starts it");
+  if (!ethd__session_acknowledge(s))
+    answer("error: the fault isn't over: %s", latched(s));
+  else
+    answer(ethd_loop_armed(s->loop) ? "ok: acknowledged" : "ok: acknowledged; the device is disabled, enable starts it");
 }
 
 static void enable(ethd__session *s, ethd__commands *c, char *rest) {
@@ -96,8 +102,7 @@ static void enable(ethd__session *s, ethd__commands *c, char *rest) {
   if (ethd_loop_armed(s->loop)) {
     answer("error: the device is enabled");
   } else if (faulty(s)) {
-    answer("error: a fault is latched: %s; ack comes first",
-           ethd_fault_sentence((ethd_fault)ethd__recorder_latest(&s->recorder).trace.fault));
+    answer("error: a fault is latched: %s; ack comes first", latched(s));
   } else {
     ethd_status failure = ethd__session_enable(s);
     const char *why = s->driver->why(s->device);

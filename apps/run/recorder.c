@@ -72,6 +72,7 @@ static int share(ethd__recorder *r, const ethd_loop_row *row, ethd__post taken[E
   r->waiting -= count;
   memmove(r->posts, r->posts + count, (size_t)r->waiting * sizeof *taken);
   r->latest = *row;
+  r->clearings += (row->marks & ETHD_ROW_CLEARED) != 0;
   pthread_mutex_unlock(&r->lock);
   return count;
 }
@@ -171,4 +172,11 @@ ethd_loop_row ethd__recorder_latest(ethd__recorder *r) {
   ethd_loop_row row = r->latest;
   pthread_mutex_unlock(&r->lock);
   return row;
+}
+
+uint64_t ethd__recorder_clearings(ethd__recorder *r) {
+  pthread_mutex_lock(&r->lock);
+  uint64_t clearings = r->clearings;
+  pthread_mutex_unlock(&r->lock);
+  return clearings;
 }

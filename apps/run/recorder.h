@@ -44,7 +44,7 @@ typedef struct ethd__recorder {
   pthread_mutex_t lock; /* for what the main thread shares with the recorder's; no file is written under it */
   ethd__post posts[ETHD__POSTS_MAX];
   int waiting; /* posts */
-  uint64_t swaps;
+  uint64_t swaps, clearings; /* clearings: rows so far whose step was told to clear faults */
   ethd_loop_row latest;
 
   /* of the recorder's thread, until it has ended */
@@ -75,5 +75,6 @@ bool ethd__recorder_expect(ethd__recorder *recorder, const char *kind, const cha
 void ethd__recorder_withdraw(ethd__recorder *recorder);
 
 ethd_loop_row ethd__recorder_latest(ethd__recorder *recorder);
+uint64_t ethd__recorder_clearings(ethd__recorder *recorder);
 
 #endif

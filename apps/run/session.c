@@ -111,6 +111,14 @@ ethd_status ethd__session_enable(ethd__session *s) {
   return status;
 }
 
+bool ethd__session_acknowledge(ethd__session *s) {
+  uint64_t before = ethd__recorder_clearings(&s->recorder);
+  ethd_loop_clear(s->loop);
+  for (int i = 0; ethd__recorder_clearings(&s->recorder) == before && i < PATIENCE && ethd__session_lives(s); i++)
+    pass(s);
+  return !ethd__recorder_latest(&s->recorder).trace.fault;
+}
+
 /* Stops by a speed limit of 0: the guard damps the ring and lets go when it stands. */
 void ethd__session_halt(ethd__session *s, bool told) {
   char message[ETHD_MESSAGE_MAX];

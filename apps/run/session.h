@@ -57,6 +57,10 @@ void ethd__session_free(ethd__session *s);
 ETHD_MUST_CHECK ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const char *kind,
                                                const char *detail, char message[ETHD_MESSAGE_MAX]);
 
+/* Acknowledges a latched fault and waits for the step that clears it, so that whoever asks next sees what came of it.
+   Returns false if a fault is latched after that step: it was not over, or another has come. */
+bool ethd__session_acknowledge(ethd__session *s);
+
 /* Starts the device again and resets the controller; the torque rises from zero. */
 ETHD_MUST_CHECK ethd_status ethd__session_enable(ethd__session *s);
 

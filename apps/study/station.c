@@ -178,9 +178,7 @@ static ethd_status acknowledge(void *self, char message[ETHD_MESSAGE_MAX]) {
   while (ethd_control_clean(s->session.control) < s->session.setup.limits.clean_time &&
          ethd__session_time(&s->session) < until && !ethd__stop)
     pass(s);
-  ethd_loop_clear(s->session.loop);
-  while (stopped(s) && ethd__session_time(&s->session) < until && !ethd__stop) pass(s);
-  if (stopped(s)) return ETHD_OK;
+  if (!ethd__session_acknowledge(&s->session)) return ETHD_OK;
   ethd_status status = ethd__session_enable(&s->session);
   return status ? ethd__say(message, status, "enabling the device: %s", ethd_status_sentence(status)) : ETHD_OK;
 }
