@@ -57,7 +57,7 @@ static inline void pose_of_links(const ethd_arm *arm, two angles, bool relative,
   invert(out->j, ETHD_ARM_SINGULAR * arm->link1 * arm->link2, out->j_inv);
 }
 
-static void links_reach(const ethd_arm *arm, double *inner, double *outer) {
+static void links_reach(const ethd_arm *arm, double *inner, double *outer) ETHD_RT {
   *inner = fabs(arm->link1 - arm->link2);
   *outer = arm->link1 + arm->link2;
 }
@@ -87,11 +87,11 @@ static ethd_status links_angles(const ethd_arm *arm, ethd_vec x, int elbow, doub
 
 /* ---- parallel: both angles are absolute ---- */
 
-static void parallel_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) {
+static void parallel_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) ETHD_RT {
   pose_of_links(arm, (two){q[0], q[1]}, false, out);
 }
 
-static ethd_status parallel_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) {
+static ethd_status parallel_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) ETHD_RT {
   double q1, th;
   ethd_status status = links_angles(arm, x, elbow, &q1, &th);
   if (status < 0) return status;
@@ -102,11 +102,11 @@ static ethd_status parallel_angles(const ethd_arm *arm, ethd_vec x, int elbow, d
 
 /* ---- serial: q2 is relative to link 1 ---- */
 
-static void serial_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) {
+static void serial_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) ETHD_RT {
   pose_of_links(arm, (two){q[0], q[0] + q[1]}, true, out);
 }
 
-static ethd_status serial_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) {
+static ethd_status serial_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) ETHD_RT {
   double q1, th;
   ethd_status status = links_angles(arm, x, elbow, &q1, &th);
   if (status < 0) return status;

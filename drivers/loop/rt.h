@@ -8,11 +8,17 @@
 #include <pthread.h>
 #include <time.h>
 
+#include "ethd/attributes.h"
+
 #if defined(__COBALT__) || defined(__MERCURY__)
 #include <boilerplate/wrappers.h>
 #endif
 #ifndef __RT
 #define __RT(f) f
 #endif
+
+/* The two calls by which the loop sleeps and reads the clock are its own to make. */
+int clock_gettime(clockid_t clock, struct timespec *out) ETHD_RT;
+int clock_nanosleep(clockid_t clock, int flags, const struct timespec *until, struct timespec *left) ETHD_RT;
 
 #endif

@@ -17,9 +17,9 @@ static ethd__two at(const ethd__two *term, int order, double h) {
   return y;
 }
 
-static double value(const ethd__two *term, int order, double h) { return at(term, order, h)[0]; }
+static double value(const ethd__two *term, int order, double h) ETHD_RT { return at(term, order, h)[0]; }
 
-static double slope(const ethd__two *term, int order, double h) {
+static double slope(const ethd__two *term, int order, double h) ETHD_RT {
   double y = order * term[order][0];
   for (int k = order - 1; k > 0; k--) y = y * h + k * term[k][0];
   return y;
@@ -34,8 +34,8 @@ static double reach(const ethd__two *term, int order, double h) {
 
 /* Finds where f, a value or a slope, times sign passes from below 0 to above, to LOCATED, by regula falsi (Illinois).
    Returns the end at which it is above. */
-static double locate(double f(const ethd__two *, int, double), const ethd__two *term, int order, double sign,
-                     double high) {
+static double locate(double (*f)(const ethd__two *, int, double) ETHD_RT, const ethd__two *term, int order,
+                     double sign, double high) ETHD_RT {
   double low = 0, below = sign * f(term, order, 0), above = sign * f(term, order, high);
   int side = 0;
   while (high - low > LOCATED) {
@@ -73,7 +73,7 @@ typedef struct change {
   ethd__touch touch;
 } change;
 
-static change next_change(const ethd__series *s, ethd__touch touch) {
+static change next_change(const ethd__series *s, ethd__touch touch) ETHD_RT {
   change none = {INFINITY, touch};
   int n = s->watched;
   if (!n) return none;

@@ -207,8 +207,8 @@ ETHD_API void ethd_control_learned(const ethd_control *control, double out[ETHD_
 ETHD_API void ethd_control_taught(ethd_control *control, const double memory[ETHD_MEMORY]);
 
 /* Acknowledges a latched fault. If limits.clean_time is over at the next step, that step clears the fault and lets the
-   torque rise from zero over swap_time; if not, the acknowledgement is dropped. [any] */
-ETHD_API void ethd_control_clear(ethd_control *control);
+   torque rise from zero over swap_time; if not, the acknowledgement is dropped. [any, rt-safe] */
+ETHD_API void ethd_control_clear(ethd_control *control) ETHD_RT;
 
 /* Returns for how long, s, nothing has called for a stop since a fault was latched; INFINITY: none is latched.
    [any, rt-safe] */

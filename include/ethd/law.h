@@ -179,7 +179,7 @@ typedef struct ethd_transition_law {
 
 /* True if a transition law, of whatever size, has this optional function. [any, rt-safe] */
 #define ETHD_LAW_HAS(law_, field) \
-  ((law_)->law.size >= offsetof(ethd_transition_law, field) + sizeof((law_)->field) && (law_)->field != NULL)
+  ((law_)->law.size >= offsetof(ethd_transition_law, field) + sizeof((law_)->field) && (law_)->field)
 
 /* Checks ABI, size, kind, state, id, table and entry points of a law; each has a status of its own:
    ETHD_E_ABI, ETHD_E_SIZE, ETHD_E_STATE, ETHD_E_TABLE, and ETHD_E_ARGUMENT for kind, id, brief and step. [main] */

@@ -109,7 +109,8 @@ static ethd_status check_scene(const ethd_setup *s, int place, ethd_error *error
 
 static void prepare_ahead(const ethd_setup *s, ethd__plan *out) {
   const double links[2] = {s->arm.link1, s->arm.link2};
-  out->range = ETHD_LAW_HAS(s->transition, range) ? s->transition->range : NULL;
+  out->range = 0;
+  if (ETHD_LAW_HAS(s->transition, range)) out->range = s->transition->range;
   out->lag = ethd_velocity_lag(&out->velocity);
   for (int i = 0; i < 2; i++) out->mobility[i] = 1 / (s->dynamics.mass[i] * links[i] * links[i]);
 }

@@ -16,9 +16,9 @@ static bool id_is_good(const char *id) {
 }
 
 static bool has_step(const ethd_law *law) {
-  if (law->kind == ETHD_TRACKING) return ((const ethd_tracking_law *)(const void *)law)->step != NULL;
-  if (law->kind == ETHD_CONTACT) return ((const ethd_contact_law *)(const void *)law)->step != NULL;
-  return ((const ethd_transition_law *)(const void *)law)->step != NULL;
+  if (law->kind == ETHD_TRACKING) return ((const ethd_tracking_law *)(const void *)law)->step;
+  if (law->kind == ETHD_CONTACT) return ((const ethd_contact_law *)(const void *)law)->step;
+  return ((const ethd_transition_law *)(const void *)law)->step;
 }
 
 /* The ABI is checked first, since nothing after it can be trusted when it differs. */

@@ -33,7 +33,7 @@ static void keep_unit(double *p) {
   for (int i = 0; i < 3; i++) p[i] /= length;
 }
 
-static void halfplane(const double *p, ethd_vec x, ethd_touch *out) {
+static void halfplane(const double *p, ethd_vec x, ethd_touch *out) ETHD_RT {
   ethd_vec n = vec(p[0], p[1]);
   double d = p[2] - ethd_vec_dot(n, x);
   set(out, d, ethd_vec_add(x, ethd_vec_scale(d, n)), n);
@@ -49,9 +49,9 @@ static void disc(ethd_vec c, double r, ethd_vec any, ethd_vec x, ethd_touch *out
   set(out, distance - r, ethd_vec_sub(c, ethd_vec_scale(r, n)), n);
 }
 
-static void circle(const double *p, ethd_vec x, ethd_touch *out) { disc(vec(p[0], p[1]), p[2], vec(1, 0), x, out); }
+static void circle(const double *p, ethd_vec x, ethd_touch *out) ETHD_RT { disc(vec(p[0], p[1]), p[2], vec(1, 0), x, out); }
 
-static void capsule(const double *p, ethd_vec x, ethd_touch *out) {
+static void capsule(const double *p, ethd_vec x, ethd_touch *out) ETHD_RT {
   ethd_vec a = vec(p[0], p[1]), b = vec(p[2], p[3]), e = ethd_vec_sub(b, a), u = ethd_vec_sub(x, a);
   double ee = ethd_vec_dot(e, e), along = ethd_vec_dot(e, u), length = sqrt(ee);
   bool round = !(length > ETHD__TINY);
@@ -84,7 +84,7 @@ static ethd__disc box_disc(const double *p, size_t k) {
 }
 
 /* Works in the box's frame, folded into its first quadrant: x is (u, v) from the centre, (du, dv) beyond the faces. */
-static void box(const double *p, ethd_vec x, ethd_touch *out) {
+static void box(const double *p, ethd_vec x, ethd_touch *out) ETHD_RT {
   double c = p[5], s = p[6];
   ethd_vec r = ethd_vec_sub(x, vec(p[0], p[1]));
   double u = c * r.x + s * r.y, v = c * r.y - s * r.x;
