@@ -94,7 +94,8 @@ static void ack(ethd__session *s, ethd__commands *c, char *rest) {
   if (!ethd__session_acknowledge(s))
     answer("error: the fault isn't over: %s", latched(s));
   else
-    answer(ethd_loop_armed(s->loop) ? "ok: acknowledged" : "ok: acknowledged; the device is disabled, enable starts it");
+    answer(ethd_loop_armed(s->loop) ? "ok: acknowledged"
+                                    : "ok: acknowledged; the device is disabled, enable starts it");
 }
 
 static void enable(ethd__session *s, ethd__commands *c, char *rest) {

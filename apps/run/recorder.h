@@ -43,7 +43,7 @@ typedef struct ethd__recorder {
 
   pthread_mutex_t lock; /* for what the main thread shares with the recorder's; no file is written under it */
   ethd__post posts[ETHD__POSTS_MAX];
-  int waiting; /* posts */
+  int waiting;               /* posts */
   uint64_t swaps, clearings; /* clearings: rows so far whose step was told to clear faults */
   ethd_loop_row latest;
 

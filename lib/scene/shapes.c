@@ -49,7 +49,9 @@ static void disc(ethd_vec c, double r, ethd_vec any, ethd_vec x, ethd_touch *out
   set(out, distance - r, ethd_vec_sub(c, ethd_vec_scale(r, n)), n);
 }
 
-static void circle(const double *p, ethd_vec x, ethd_touch *out) ETHD_RT { disc(vec(p[0], p[1]), p[2], vec(1, 0), x, out); }
+static void circle(const double *p, ethd_vec x, ethd_touch *out) ETHD_RT {
+  disc(vec(p[0], p[1]), p[2], vec(1, 0), x, out);
+}
 
 static void capsule(const double *p, ethd_vec x, ethd_touch *out) ETHD_RT {
   ethd_vec a = vec(p[0], p[1]), b = vec(p[2], p[3]), e = ethd_vec_sub(b, a), u = ethd_vec_sub(x, a);
