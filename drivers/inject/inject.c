@@ -139,7 +139,7 @@ static void add(const ethd_sense *s, ethd_status status, ethd_sense *out) ETHD_R
   out->have |= s->have;
   for (int b = 0; b < ETHD_BODIES_MAX; b++)
     if (s->have & ((int64_t)ETHD_HAVE_BODY << b)) memcpy(out->bodies + 6 * b, s->bodies + 6 * b, 6 * sizeof *s->bodies);
-  if (status == ETHD_STALE && !(s->faults | s->grave)) return;
+  if (status && !(s->faults | s->grave)) return; /* not a newer sample */
   out->time_ns = s->time_ns;
   memcpy(out->q, s->q, sizeof out->q);
   memcpy(out->dq, s->dq, sizeof out->dq);
@@ -158,7 +158,7 @@ static ethd_status inject_read(void *device, int64_t now_ns, ethd_sense *out) ET
   ethd_status status = stale ? ETHD_STALE : in->driver->read(in->device, now_ns, &s);
   if (status < 0) return status;
   for (uint32_t i = 0; i < in->script.count; i++)
-    in->done += ethd__inject_values(&in->script.at[i], in->now, status != ETHD_STALE, &s);
+    in->done += ethd__inject_values(&in->script.at[i], in->now, !status, &s);
   spoil_reading(in, &s);
   add(&s, status, out);
   return status;

@@ -103,23 +103,30 @@ static void remember_joints(ethd_loop *l, ethd_status status) ETHD_RT {
 /* A torque isn't held for longer than two steps may be apart. Before the first step after a start none is held, and
    the device may take a little longer. */
 static void watch_age(ethd_loop *l, ethd_status status) ETHD_RT {
-  l->stale = status == ETHD_STALE ? l->stale + 1 : 0;
+  l->stale = status > 0 ? l->stale + 1 : 0;
   if (l->stale > (l->ramp ? l->hold : ETHD__HOLD_MAX / l->period))
     l->sense.faults |= ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD);
 }
 
-/* False when there is no newer sample than at the last step: the torque is then held. */
+static void disarm(ethd_loop *l) ETHD_RT {
+  atomic_store_explicit(&l->armed, 0, memory_order_relaxed);
+  if (l->was_armed) l->def.driver->safe(l->def.device);
+  l->was_armed = 0;
+}
+
+/* False when there is no newer sample than at the last step: the torque is then held, unless somebody disarmed. */
 static bool read_device(ethd_loop *l) ETHD_RT {
   if (!l->held) memset(&l->sense, 0, sizeof l->sense);
   ethd_status status = l->def.driver->read(l->def.device, l->due, &l->sense);
   watch_age(l, status);
   ethd__loop_rows(l, &l->sense);
-  if (status == ETHD_STALE && !is_pressing(&l->sense)) {
+  if (status > 0 && !is_pressing(&l->sense)) {
+    if (!atomic_load_explicit(&l->armed, memory_order_relaxed)) disarm(l);
     l->held++;
     l->missed++;
     return false;
   }
-  if (status < 0 || (status == ETHD_STALE && !l->joints.known))
+  if (status < 0 || (status > 0 && !l->joints.known))
     blind(l);
   else
     remember_joints(l, status);
@@ -127,12 +134,6 @@ static bool read_device(ethd_loop *l) ETHD_RT {
   l->sense.missed = l->missed;
   l->sense.step_ns = l->step;
   return 1;
-}
-
-static void disarm(ethd_loop *l) ETHD_RT {
-  atomic_store_explicit(&l->armed, 0, memory_order_relaxed);
-  if (l->was_armed) l->def.driver->safe(l->def.device);
-  l->was_armed = 0;
 }
 
 /* The share of the torque that the device gets. Periods that a slow bus leaves without a step count as well. */

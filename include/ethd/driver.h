@@ -76,9 +76,10 @@ struct ethd_driver {
      sentence takes its place. What open leaves in *device is closed, also after a failure, unless it is NULL. */
   ethd_status (*open)(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]);
   ethd_status (*start)(void *device);
-  /* Adds what is new to *out, which is zero again after each step. ETHD_STALE: this driver gives the joint samples and
-     has no newer one; the loop then holds the torque and steps when there is one, or at once, with the last sample,
-     if *out reports a fault that ends the torque. Negative: nothing is known of the device any more. */
+  /* Adds what is new to *out, which is zero again after each step. ETHD_STALE, or another positive status: this driver
+     gives the joint samples and has no newer one; the loop then holds the torque and steps when there is one, or at
+     once, with the last sample, if *out reports a fault that ends the torque. Negative: nothing is known of the device
+     any more. */
   ethd_status (*read)(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT;
   /* A command with `safe` set has zero torque. */
   ethd_status (*write)(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT;

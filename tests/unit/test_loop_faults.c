@@ -168,7 +168,11 @@ END_TEST
 static struct {
   int from, until; /* ticks without */
   int64_t faults;
-} gap;
+  ethd_status status; /* that says so */
+} gap = {.status = ETHD_STALE};
+
+static const ethd_status nothing_new[] = {ETHD_STALE, ETHD_BUSY, ETHD_EMPTY};
+#define NOTHING_NEW (int)(sizeof nothing_new / sizeof *nothing_new)
 
 static ethd_status gappy_read(void *device_, int64_t now, ethd_sense *out) {
   device *d = device_;
@@ -181,7 +185,7 @@ static ethd_status gappy_read(void *device_, int64_t now, ethd_sense *out) {
     return ETHD_OK;
   }
   if (tick > gap.from) out->faults |= gap.faults;
-  return ETHD_STALE;
+  return gap.status;
 }
 
 static void open_gap(bench *b, ethd_driver *own, int64_t faults) {
@@ -203,6 +207,7 @@ START_TEST(test_holds_without_a_sample) {
   bench b;
   ethd_driver own;
   ethd_loop_row row;
+  gap.status = nothing_new[_i];
   open_gap(&b, &own, BIT(SENSOR) | BIT(OVERRUN));
   for (int i = 0; i < 4; i++) ck_assert(rows_made(&b, &row));
   for (int i = 4; i < 7; i++) ck_assert(!rows_made(&b, &row));
@@ -210,6 +215,24 @@ START_TEST(test_holds_without_a_sample) {
   ck_assert(row.trace.sense.faults == (BIT(SENSOR) | BIT(OVERRUN)) && row.trace.sense.missed == 3);
   ck_assert(row.trace.sense.have & ETHD_HAVE_RAYS);
   ck_assert(row.trace.sense.q[0] == b.d.sense.q[0] && row.armed && row.trace.fault == 0);
+  bench_close(&b);
+}
+END_TEST
+
+/* Somebody who disarms doesn't wait for a sample. */
+START_TEST(test_disarms_without_a_sample) {
+  bench b;
+  ethd_driver own;
+  ethd_loop_row row;
+  open_gap(&b, &own, 0);
+  for (int i = 0; i < 4; i++) ck_assert(rows_made(&b, &row));
+  ck_assert(!rows_made(&b, &row));
+  ck_assert_int_eq(b.d.safes, 0);
+  ethd_loop_disarm(b.loop);
+  for (int i = 5; i < 7; i++) ck_assert(!rows_made(&b, &row));
+  ck_assert_int_eq(b.d.safes, 1);
+  ck_assert(rows_made(&b, &row) && !row.armed && row.share == 0);
+  ck_assert_int_eq(b.d.safes, 1);
   bench_close(&b);
 }
 END_TEST
@@ -239,6 +262,7 @@ static const struct {
 } olds[] = {{0, 60}, {100, 60}, {20.5, 20}, {5, 5}, {2, 2}, {1, 1}};
 
 START_TEST(test_old_samples) {
+  const int way = _i / NOTHING_NEW;
   bench b;
   ethd_driver own;
   ethd_loop_row row = {.armed = 0}, last;
@@ -246,14 +270,15 @@ START_TEST(test_old_samples) {
   own = *b.def.driver;
   own.read = gappy_read;
   b.def.driver = &own;
-  if (olds[_i].gap > 0) b.def.gap = olds[_i].gap * 1e-9 * PERIOD;
+  if (olds[way].gap > 0) b.def.gap = olds[way].gap * 1e-9 * PERIOD;
+  gap.status = nothing_new[_i % NOTHING_NEW];
   gap.from = 4, gap.until = 90, gap.faults = 0;
   bench_start(&b);
   for (int i = 0; i < 4; i++) ck_assert(rows_made(&b, &last));
   ck_assert(last.armed && last.trace.fault == 0);
-  for (int i = 1; i < olds[_i].ticks; i++) ck_assert(!rows_made(&b, &row));
+  for (int i = 1; i < olds[way].ticks; i++) ck_assert(!rows_made(&b, &row));
   ck_assert_int_eq(b.d.safes, 0);
-  for (int i = olds[_i].ticks; i < olds[_i].ticks + 8; i++) {
+  for (int i = olds[way].ticks; i < olds[way].ticks + 8; i++) {
     ck_assert(rows_made(&b, &row));
     ck_assert_int_eq(row.trace.fault, ETHD_FAULT_FEEDBACK_OLD);
     ck_assert(row.trace.sense.faults == BIT(FEEDBACK_OLD) && !row.armed && row.trace.tau[0] == 0);
@@ -329,9 +354,10 @@ int main(void) {
   tcase_add_test(t, test_silent_application);
   tcase_add_test(t, test_raise);
   tcase_add_test(t, test_counts_over_an_enabling);
-  tcase_add_test(t, test_holds_without_a_sample);
+  tcase_add_loop_test(t, test_holds_without_a_sample, 0, NOTHING_NEW);
+  tcase_add_test(t, test_disarms_without_a_sample);
   tcase_add_test(t, test_ends_without_a_sample);
-  tcase_add_loop_test(t, test_old_samples, 0, sizeof olds / sizeof *olds);
+  tcase_add_loop_test(t, test_old_samples, 0, NOTHING_NEW * sizeof olds / sizeof *olds);
   tcase_add_test(t, test_budget_without_a_limit);
   tcase_add_test(t, test_bad_bounds);
   suite_add_tcase(suite, t);
