@@ -32,7 +32,8 @@ static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
   if (!d->control) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "control", NAN, NAN, NAN);
   if (d->driver->abi != ETHD_DRIVER_ABI || d->driver->size < sizeof *d->driver)
     return ethd__loop_refuse(error, ETHD_E_ABI, "driver", NAN, NAN, NAN);
-  if (!d->driver->start || !d->driver->read || !d->driver->write || !d->driver->safe)
+  bool lacks_service = d->driver->units && !d->driver->service;
+  if (!d->driver->start || !d->driver->read || !d->driver->write || !d->driver->safe || lacks_service)
     return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "driver", NAN, NAN, NAN);
   if (d->rows & (d->rows - 1)) return ethd__loop_refuse(error, ETHD_E_RANGE, "rows", d->rows, 0, 0x1p20);
   ethd_status status = within(error, "period", d->period, 1e-5, 1);
@@ -45,6 +46,7 @@ static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
   if (!status) status = within(error, "heartbeat", d->heartbeat, d->period, (double)INFINITY);
   if (!status) status = within(error, "stack", (double)d->stack, 65536, 0x1p26);
   if (!status) status = within(error, "rows", d->rows, 0, 0x1p20);
+  if (!status && d->driver->units) status = within(error, "units", d->driver->units(d->device), 0, ETHD_UNITS_MAX);
   return status;
 }
 

@@ -85,7 +85,7 @@ struct ethd_loop {
 
   /* [main] */
   int32_t shortfalls;
-  bool locked, has_control, has_watch;
+  bool started, locked, has_control, has_watch;
   uint64_t faults[ETHD_FAULT_COUNT]; /* of controllers that were reset */
   uint32_t units;                    /* of blocking I/O that have a thread */
   ethd__unit unit[ETHD_UNITS_MAX];

@@ -158,16 +158,18 @@ static ethd_status give_up(ethd_loop *l, ethd_error *error, const char *name, do
 
 ethd_status ethd_loop_start(ethd_loop *l, ethd_error *error) {
   int cpu;
+  if (l->started) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "loop", NAN, NAN, NAN);
   if (l->def.clock) {
+    l->started = true;
     l->due = *l->def.clock + l->period;
     arm(l);
     return ETHD_OK;
   }
-  if (l->has_control || l->units) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "loop", NAN, NAN, NAN);
   ethd_status status = ethd__xenomai_begin(error);
   if (status) return status;
   l->stack = make_stack(l->def.stack);
   if (!l->stack) return ethd__loop_refuse(error, ETHD_E_MEMORY, "stack", NAN, NAN, NAN);
+  l->started = true;
   l->shortfalls = ethd__loop_ask_machine(l, &cpu);
   if (l->def.require_rt && l->shortfalls) return give_up(l, error, "require_rt", l->shortfalls);
   arm(l);
@@ -199,6 +201,8 @@ ethd_status ethd_loop_enable(ethd_loop *l) {
     for (int i = 0; i < ETHD_FAULT_COUNT; i++) l->faults[i] += counters.faults[i];
     ethd_control_restart(l->def.control);
     arm(l);
+  } else {
+    ethd_loop_disarm(l); /* nobody knows what state the device is in */
   }
   atomic_store_explicit(&l->mode, ETHD__LOOP_RUNS, memory_order_release);
   return status;

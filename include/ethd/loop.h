@@ -80,7 +80,8 @@ ETHD_API const char *ethd_shortfall_mend(int32_t bit);
 /* Made by ethd_loop_default, then changed field by field. */
 typedef struct ethd_loop_def {
   uint32_t cookie;           /* set by ethd_loop_default */
-  const ethd_driver *driver; /* of ethd_device_open; or one that has start, read, write and safe */
+  const ethd_driver *driver; /* of ethd_device_open; or one that has start, read, write and safe, and service if it
+                                has units */
   void *device;              /* open and started */
   ethd_control *control;     /* which nobody else steps while the loop exists */
   double period;             /* s, the controller's; 1e-5 to 1 */
@@ -134,7 +135,8 @@ typedef struct ethd_loop_stats {
   ethd_histogram tick;               /* read, step, write */
 } ethd_loop_stats;
 
-/* Creates a loop, which doesn't run yet: ETHD_E_ARGUMENT, ETHD_E_RANGE with the field's name, ETHD_E_MEMORY. [main] */
+/* Creates a loop, which doesn't run yet: ETHD_E_ARGUMENT, ETHD_E_ABI (the driver's table), ETHD_E_RANGE with the
+   field's name or "units", of which a device has at most ETHD_UNITS_MAX; ETHD_E_MEMORY. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_error *error);
 
 /* Stops, joins and frees the loop; NULL is allowed. If join failed because a thread hangs, nothing is freed; then don't
@@ -143,13 +145,15 @@ ETHD_API void ethd_loop_destroy(ethd_loop *loop);
 
 /* Starts the loop's thread and one for each unit of the device's blocking I/O (on a virtual clock none), runs one dry
    tick and arms the device. ETHD_E_DEVICE: error->name says what failed: "require_rt", after which nothing runs,
-   "thread", "xenomai" (this kernel has no Cobalt), "clock" (Cobalt's and Linux's differ, by error->found s). [main] */
+   "thread", "xenomai" (this kernel has no Cobalt), "clock" (Cobalt's and Linux's differ, by error->found s).
+   ETHD_E_MEMORY: the stack. ETHD_E_ARGUMENT: it was started before, since a loop starts once. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_start(ethd_loop *loop, ethd_error *error);
 
-/* Runs one tick on the virtual clock. [main] */
+/* Runs one tick on the virtual clock; does nothing without one. [main] */
 ETHD_API void ethd_loop_tick(ethd_loop *loop);
 
-/* Disarms: from the next tick on the device gets zero torque; the loop goes on reading. [any] */
+/* Disarms: from the next tick on the device gets zero torque, also if its samples don't come; the loop goes on reading.
+   [any] */
 ETHD_API void ethd_loop_disarm(ethd_loop *loop);
 
 /* Returns 1 while the device gets torques. A safe command of the controller or a failure of the device disarms.
@@ -169,7 +173,7 @@ ETHD_API void ethd_loop_clear(ethd_loop *loop);
 
 /* Starts the device again, restarts the controller and arms, with a soft start; meanwhile the loop leaves both alone.
    Must not be called while a posted setup waits. ETHD_BUSY: the loop didn't let go within a second; else what the
-   device's start returns. [main] */
+   device's start returns: if that isn't ETHD_OK, the loop is disarmed. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_enable(ethd_loop *loop);
 
 /* Calls the device's home, with the joints' angles, rad, or NULL (driver.h), while it is disarmed and the loop leaves

@@ -13,6 +13,7 @@ typedef struct device {
   int reads, writes, starts, safes, services;
   int64_t stall_read[64], stall_write[64]; /* ns, by tick */
   int fail_read, fail_write;               /* at this tick; -1 never */
+  ethd_status start_gives;
   ethd_command written[64];
   ethd_sense sense;
 } device;

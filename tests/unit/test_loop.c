@@ -132,6 +132,46 @@ START_TEST(test_disarm_and_enable) {
 }
 END_TEST
 
+/* Nobody knows what state a device is in that couldn't be started: it gets no torque, also if it had one before. */
+START_TEST(test_failed_enable_disarms) {
+  static const ethd_status gives[] = {ETHD_E_DEVICE, ETHD_E_FILE, ETHD_BUSY};
+  bench b;
+  bench_open(&b);
+  bench_start(&b);
+  bench_tick(&b);
+  ck_assert_int_eq(ethd_loop_armed(b.loop), 1);
+  b.d.start_gives = gives[_i];
+  ck_assert_int_eq(ethd_loop_enable(b.loop), gives[_i]);
+  ck_assert_int_eq(ethd_loop_armed(b.loop), 0);
+  ethd_loop_row row = bench_tick(&b);
+  ck_assert(row.armed == 0 && row.share == 0 && row.marks == 0);
+  ck_assert(b.d.written[1].safe && b.d.written[1].torque[0] == 0 && b.d.written[1].torque[1] == 0);
+  ck_assert_int_eq(b.d.safes, 1);
+  b.d.start_gives = ETHD_OK;
+  ck_assert_int_eq(ethd_loop_enable(b.loop), ETHD_OK);
+  ck_assert_int_eq(bench_tick(&b).armed, 1);
+  bench_close(&b);
+}
+END_TEST
+
+/* A second start would put the clock's grid and the soft start back under a device that has its torque. */
+START_TEST(test_starts_once) {
+  bench b;
+  ethd_error error;
+  bench_open(&b);
+  bench_start(&b);
+  for (int i = 0; i < 3; i++) bench_tick(&b);
+  ethd_loop_disarm(b.loop);
+  ck_assert_int_eq(ethd_loop_start(b.loop, &error), ETHD_E_ARGUMENT);
+  ck_assert_str_eq(error.name, "loop");
+  ck_assert_int_eq(ethd_loop_armed(b.loop), 0);
+  ck_assert_int_eq(bench_tick(&b).marks, 0);
+  ck_assert_int_eq(ethd_loop_join(b.loop), ETHD_OK);
+  ck_assert_int_eq(ethd_loop_start(b.loop, NULL), ETHD_E_ARGUMENT);
+  bench_close(&b);
+}
+END_TEST
+
 /* A device that can't be read: the same tick gives zero torque, latched, until acknowledged and enabled. */
 START_TEST(test_failed_read_disarms) {
   bench b;
@@ -213,6 +253,8 @@ END_TEST
 
 /* ---- refusals ---- */
 
+static uint32_t too_many(const void *d) { return (void)d, ETHD_UNITS_MAX + 1; }
+
 START_TEST(test_refused_defs) {
   bench b;
   ethd_error error;
@@ -235,6 +277,20 @@ START_TEST(test_refused_defs) {
     if (i == 3) gap.safe = NULL;
     REFUSED(driver, &gap, ETHD_E_ARGUMENT);
   }
+  ethd_driver idle = *b.def.driver;
+  idle.service = NULL;
+  REFUSED(driver, &idle, ETHD_E_ARGUMENT);
+  idle.units = NULL;
+  ethd_loop_def none = b.def;
+  none.driver = &idle;
+  ck_assert_int_eq(ethd_loop_create(&none, &b.loop, NULL), ETHD_OK);
+  ethd_loop_destroy(b.loop);
+  idle = *b.def.driver;
+  idle.units = too_many;
+  none.driver = &idle;
+  ck_assert_int_eq(ethd_loop_create(&none, &b.loop, &error), ETHD_E_RANGE);
+  ck_assert_str_eq(error.name, "units");
+  ck_assert(error.found == ETHD_UNITS_MAX + 1 && error.max == ETHD_UNITS_MAX);
   ethd_driver older = *b.def.driver;
   older.size--;
   REFUSED(driver, &older, ETHD_E_ABI);
@@ -331,6 +387,8 @@ int main(void) {
   tcase_add_test(t, test_two_runs_are_equal);
   tcase_add_test(t, test_soft_start);
   tcase_add_test(t, test_disarm_and_enable);
+  tcase_add_loop_test(t, test_failed_enable_disarms, 0, 3);
+  tcase_add_test(t, test_starts_once);
   tcase_add_test(t, test_failed_read_disarms);
   tcase_add_test(t, test_failed_write_disarms);
   tcase_add_test(t, test_zero_torque_is_the_last_thing);
