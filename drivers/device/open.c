@@ -127,6 +127,13 @@ static ethd_status check_owners(const ethd__stack *s, const ethd_device_def *def
   return ETHD_OK;
 }
 
+/* Returns the key as driver i is given it, NULL if it isn't its own. */
+static const char *given_key(const ethd__stack *s, uint32_t i, const char *key) {
+  const char *own = own_key(key, s->at[i].driver->id);
+  if (own) return own;
+  return s->count > 1 || is_common(key) ? NULL : key;
+}
+
 static const ethd_setting *find_common(const ethd_device_def *def, const char *key) {
   for (uint32_t k = 0; k < def->setting_count; k++)
     if (!strcmp(def->settings[k].key, key)) return &def->settings[k];
@@ -136,13 +143,23 @@ static const ethd_setting *find_common(const ethd_device_def *def, const char *k
 static uint32_t own_settings(const ethd__stack *s, uint32_t i, const ethd_device_def *def, ethd_setting *out) {
   uint32_t n = 0;
   for (uint32_t k = 0; k < def->setting_count; k++) {
-    const char *key = own_key(def->settings[k].key, s->at[i].driver->id);
-    if ((!key && s->count > 1) || is_common(def->settings[k].key)) continue;
+    const char *key = given_key(s, i, def->settings[k].key);
+    if (!key) continue;
     out[n] = def->settings[k];
-    if (key) out[n].key = key;
-    n++;
+    out[n++].key = key;
   }
   return n;
+}
+
+/* Refuses a setting that occurs twice. A file can't have the same key twice, but a lone driver's with and without its
+   id. */
+static ethd_status check_twice(const ethd_device_def *own, char *message) {
+  for (uint32_t k = 0; k < own->setting_count; k++)
+    for (uint32_t first = 0; first < k; first++)
+      if (!strcmp(own->settings[first].key, own->settings[k].key))
+        return ethd__say(message, ETHD_E_DUPLICATE, "%s:%d: device.%s: occurs twice, first on line %d", file_of(own),
+                         own->settings[k].line, own->settings[k].key, own->settings[first].line);
+  return ETHD_OK;
 }
 
 /* ---- opening ---- */
@@ -169,22 +186,29 @@ static void one_line(char message[ETHD_MESSAGE_MAX]) {
     if ((unsigned char)*p < ' ' || *p == 0x7f) *p = '?';
 }
 
-static ethd_status open_one(ethd__stack *s, uint32_t i, const ethd_device_def *def, char *message) {
+/* Opens driver i with its own settings. */
+static ethd_status open_with(ethd__stack *s, uint32_t i, const ethd_device_def *own, char *message) {
   const ethd_driver *driver = s->at[i].driver;
-  ethd_setting *settings = calloc(def->setting_count + 1, sizeof *settings);
-  if (!settings) return ethd__no_memory(message, NULL);
-  ethd_device_def own = *def;
-  own.settings = settings;
-  own.setting_count = own_settings(s, i, def, settings);
   message[0] = 0;
   ethd__stack_foreign(s, i, s->only_prepares ? "prepare" : "open");
-  ethd_status status = driver->open(&own, &s->at[i].device, message);
-  free(settings);
+  ethd_status status = driver->open(own, &s->at[i].device, message);
   one_line(message);
   if (status && !message[0])
     ethd__say(message, status, "device %s: open: %s", driver->id, ethd_status_sentence(status));
   if (!status) status = check_open(s, i, message);
   ethd__stack_foreign(s, i, NULL);
+  return status;
+}
+
+static ethd_status open_one(ethd__stack *s, uint32_t i, const ethd_device_def *def, char *message) {
+  ethd_setting *settings = calloc(def->setting_count + 1, sizeof *settings);
+  if (!settings) return ethd__no_memory(message, NULL);
+  ethd_device_def own = *def;
+  own.settings = settings;
+  own.setting_count = own_settings(s, i, def, settings);
+  ethd_status status = check_twice(&own, message);
+  if (!status) status = open_with(s, i, &own, message);
+  free(settings);
   return status;
 }
 

@@ -290,6 +290,13 @@ START_TEST(test_refused) {
              {"a, a", NULL, ETHD_E_DUPLICATE, "a occurs twice"},
              {"a, b", "port", ETHD_E_UNKNOWN, "c.ini:7: device.port: with several drivers"},
              {"a, b", "c.port", ETHD_E_UNKNOWN, "c.ini:7: device.c.port"}};
+  static const char *const twice[][3] = {
+      {"b", "port", "b.port"}, {"b", "b.port", "port"}, {"a, b", "b.port", "b.port"}};
+  for (size_t i = 0; i < sizeof twice / sizeof *twice; i++) {
+    ck_assert_int_eq(try(twice[i][0], twice[i][1], twice[i][2]), ETHD_E_DUPLICATE);
+    ck_assert_str_eq(message, "c.ini:8: device.port: occurs twice, first on line 7");
+    ck_assert(driver == NULL && device == NULL && !strchr(log_, 'b'));
+  }
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     ck_assert_int_eq(try(bad[i].ids, bad[i].key, NULL), bad[i].status);
     ck_assert_msg(strstr(message, bad[i].says) != NULL, "%s", message);
