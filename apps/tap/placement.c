@@ -45,6 +45,14 @@ static ethd_status check_row(const char *path, const ethd_csv *csv, const int co
   return ETHD_OK;
 }
 
+/* `scale` may be what makes a hand too fast. */
+static ethd_status check_speed(const char *path, const ethd_path_sample *s, size_t line, char *message) {
+  double speed = hypot(s[0].x - s[-1].x, s[0].y - s[-1].y) / (s[0].t - s[-1].t);
+  if (speed <= ETHD_HAND_SPEED_MAX) return ETHD_OK;
+  return ethd__say(message, ETHD_E_RANGE, "%s:%zu: found a hand at %.10g m/s; at most %g are allowed", path, line, speed,
+                   ETHD_HAND_SPEED_MAX);
+}
+
 static ethd_status convert(const char *path, const ethd_csv *csv, double scale, ethd__movement *out, char *message) {
   int column[COLUMNS];
   ethd_status status = find(path, csv, column, message);
@@ -53,12 +61,13 @@ static ethd_status convert(const char *path, const ethd_csv *csv, double scale, 
   out->samples = malloc(csv->rows * sizeof *out->samples);
   if (!out->samples) return ethd__no_memory(message, path);
   out->count = csv->rows;
-  for (size_t row = 0; row < csv->rows; row++) {
+  for (size_t row = 0; !status && row < csv->rows; row++) {
     const double *cell = &csv->values[row * csv->columns];
     out->samples[row] =
         (ethd_path_sample){cell[column[T]] - csv->values[column[T]], scale * cell[column[X]], scale * cell[column[Y]]};
+    if (row) status = check_speed(path, &out->samples[row], ethd_csv_line(row), message);
   }
-  return ETHD_OK;
+  return status;
 }
 
 ethd_status ethd__movement_load(const char *path, double scale, ethd__movement *out, char message[ETHD_MESSAGE_MAX]) {
@@ -67,6 +76,7 @@ ethd_status ethd__movement_load(const char *path, double scale, ethd__movement *
   ethd_status status = ethd_csv_read_columns(path, names, &csv, message);
   if (status) return status;
   status = convert(path, &csv, scale, out, message);
+  if (status) ethd__movement_free(out);
   ethd_csv_free(&csv);
   return status;
 }

@@ -28,7 +28,7 @@ typedef struct ethd__movement {
 
 /* Reads t_s, x_m, y_m of a CSV file and multiplies x and y by `scale`. Refuses, with file:line: a column
    that isn't there, cells empty or not finite, times that don't rise, fewer than 3 samples, more than
-   ETHD_MOVEMENT_MOST, positions beyond 1 km. */
+   ETHD_MOVEMENT_MOST, positions beyond 1 km, a hand faster than ETHD_HAND_SPEED_MAX. */
 ETHD_MUST_CHECK ethd_status ethd__movement_load(const char *path, double scale, ethd__movement *out,
                                                 char message[ETHD_MESSAGE_MAX]);
 void ethd__movement_free(ethd__movement *movement);

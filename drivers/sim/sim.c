@@ -41,6 +41,7 @@ void ethd_sim_destroy(ethd_sim *sim) { free(sim); }
 /* ---- start ---- */
 
 static bool samples_rise(const ethd_path *path) {
+  if (!path->samples) return false;
   for (size_t i = 0; i < path->sample_count; i++) {
     const ethd_path_sample *s = path->samples + i;
     if (!(isfinite(s->t) && isfinite(s->x) && isfinite(s->y))) return false;
@@ -49,15 +50,26 @@ static bool samples_rise(const ethd_path *path) {
   return true;
 }
 
+/* Returns true if no two samples need a hand faster than any. */
+static bool samples_are_slow(const ethd_path *path) {
+  for (size_t i = 1; i < path->sample_count; i++) {
+    const ethd_path_sample *s = path->samples + i;
+    double length = hypot(s[0].x - s[-1].x, s[0].y - s[-1].y);
+    if (!(length <= ETHD_HAND_SPEED_MAX * (s[0].t - s[-1].t))) return false;
+  }
+  return true;
+}
+
 static bool shape_is_good(const ethd_path *p) {
-  return isfinite(p->from.x) && isfinite(p->from.y) && isfinite(p->to_x) && p->speed > 0 && isfinite(p->speed) &&
-         p->ramp_up >= 0 && isfinite(p->ramp_up) && p->ramp_down >= 0 && isfinite(p->ramp_down);
+  return isfinite(p->from.x) && isfinite(p->from.y) && isfinite(p->to_x) && p->speed > 0 &&
+         p->speed <= ETHD_HAND_SPEED_MAX && p->ramp_up >= 0 && isfinite(p->ramp_up) && p->ramp_down >= 0 && isfinite(p->ramp_down);
 }
 
 static ethd_status check_tap(const ethd_sim *sim, const ethd_sim_tap *tap) {
   if (!(tap->finger_radius > 0 && tap->finger_radius < sim->def.ring_radius)) return ETHD_E_RANGE;
   if (!(tap->phase >= 0 && isfinite(tap->phase))) return ETHD_E_RANGE;
-  if (tap->path.sample_count) return samples_rise(&tap->path) ? ETHD_OK : ETHD_E_ARGUMENT;
+  if (tap->path.sample_count && !samples_rise(&tap->path)) return ETHD_E_ARGUMENT;
+  if (tap->path.sample_count) return samples_are_slow(&tap->path) ? ETHD_OK : ETHD_E_RANGE;
   return shape_is_good(&tap->path) ? ETHD_OK : ETHD_E_RANGE;
 }
 

@@ -129,8 +129,13 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_sim_create(const ethd_sim_def *def, et
 /* Frees the device; NULL is allowed. [main] */
 ETHD_API void ethd_sim_destroy(ethd_sim *sim);
 
+/* m/s: no hand is faster, and no plant draws a faster one. Each tick of a faster path would take ever more steps. */
+#define ETHD_HAND_SPEED_MAX 200.0
+
 /* Starts a tap at time 0 with the ring centred on the finger at the start of the path, both at rest.
-   ETHD_E_UNREACHABLE: the path starts out of the arm's reach. [main] */
+   ETHD_E_UNREACHABLE: the path starts out of the arm's reach. ETHD_E_RANGE: the finger doesn't fit into the ring, a
+   number of the tap is negative or not finite, or the hand is faster than ETHD_HAND_SPEED_MAX, from one sample to the
+   next. ETHD_E_ARGUMENT: samples that aren't finite or whose times don't rise. A refusal changes nothing. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_sim_start(ethd_sim *sim, const ethd_sim_tap *tap);
 
 /* Measures at the present tick; the first sense has ETHD_HAVE_START. [rt] */

@@ -172,6 +172,7 @@ START_TEST(test_bad_files) {
       {"t_s,x_m,y_m\n0,0,0\n1,0,0\n1,0,0\n", ":4: t_s: found 1 after 1"},
       {"t_s,x_m,y_m\n0,0,0\n1,0,0\n0.5,0,0\n", ":4: t_s: found 0.5 after 1"},
       {"t_s,x_m,y_m\n0,0,0\n1,1e4,0\n2,0,0\n", ":3: x_m: found 10000"},
+      {"t_s,x_m,y_m\n0,0,0\n1,199,0\n2,-2,0\n", ":4: found a hand at 201 m/s"},
       {"t_s,x_m,y_m\n0,0,0\n1,0,0\n121,0,0\n", ":4: t_s: 121 s after the start"},
       {"t_s,x_m,y_m\n0,0,0\n1,0\n2,0,0\n", ":3"},
       {"", ""},

@@ -266,6 +266,7 @@ START_TEST(test_refused_taps) {
   REFUSED(ETHD_E_RANGE, t.finger_radius = NAN);
   REFUSED(ETHD_E_RANGE, t.phase = -1e-9);
   REFUSED(ETHD_E_RANGE, t.path.speed = 0);
+  REFUSED(ETHD_E_RANGE, t.path.speed = 1.001 * ETHD_HAND_SPEED_MAX);
   REFUSED(ETHD_E_RANGE, t.path.ramp_up = NAN);
   REFUSED(ETHD_E_UNREACHABLE, t.path.from.x = 0.45);
   t.path.samples = good.path.samples = s;
@@ -274,6 +275,9 @@ START_TEST(test_refused_taps) {
   REFUSED(ETHD_E_ARGUMENT, s[1].t = s[0].t);
   REFUSED(ETHD_E_ARGUMENT, s[1].t = 0.3);
   REFUSED(ETHD_E_ARGUMENT, (s[1].t = 0.1, s[2].y = INFINITY));
+  REFUSED(ETHD_E_ARGUMENT, (s[2].y = 0.25, t.path.samples = NULL));
+  REFUSED(ETHD_OK, s[1].x = 0.29 - 0.999 * ETHD_HAND_SPEED_MAX * 0.1);
+  REFUSED(ETHD_E_RANGE, s[2].x = s[1].x + 1.001 * ETHD_HAND_SPEED_MAX * 0.1);
   ethd_sim_destroy(sim);
 }
 END_TEST
