@@ -84,7 +84,8 @@ ETHD_API void ethd_scene_destroy(ethd_scene *scene);
 typedef struct ethd_nearest {
   double distance;   /* m, signed; thin walls: >= 0 */
   ethd_vec point, n; /* m; unit vector into the object */
-  int32_t object;    /* of several as near the lowest; -1 and distance = inf in an empty scene */
+  int32_t object;    /* of several as near the lowest; -1 and distance = inf in an empty scene, and from an x that isn't
+                        finite */
 } ethd_nearest;
 
 /* Finds the nearest object to x, m in the scene's frame (R_0; a body's own), exact to 1e-12 times the scene's extent. n
@@ -115,13 +116,14 @@ typedef struct ethd_touch {
 } ethd_touch;
 
 /* Finds all local minima with distance <= range, m, from x, m, the deepest first (of equal ones the lowest object, then
-   feature). At most `room` are written; the return value counts all. A solid gives one when x is inside. [any, rt-safe]
-   */
+   feature). At most `room` are written; the return value counts all. A solid gives one when x is inside. There is none
+   if x isn't finite or range is NaN. [any, rt-safe] */
 ETHD_API size_t ethd_scene_touches(const ethd_scene *scene, ethd_vec x, double range, ethd_touch *out,
                                    size_t room) ETHD_RT;
 
 /* Finds the touch of one object at x, m, that continues an earlier one: the local minimum whose point is nearest
-   to `from`, whatever its distance. For contacts that go on beyond the range. [any, rt-safe] */
+   to `from`, whatever its distance. For contacts that go on beyond the range. `object`: as a touch of this scene has
+   it; x and from: finite. [any, rt-safe] */
 ETHD_API void ethd_scene_follow(const ethd_scene *scene, int32_t object, ethd_vec x, ethd_vec from,
                                 ethd_touch *out) ETHD_RT;
 
@@ -151,8 +153,8 @@ ETHD_API ethd_status ethd_scene_box_at(const ethd_scene *scene, size_t i, ethd_s
    numbers belong to the scene. Returns its number in the file, -1 past the end. [any] */
 ETHD_API int32_t ethd_scene_object(const ethd_scene *scene, size_t i, ethd_object_def *out);
 
-/* Returns how many objects lie wholly farther than `radius`, m, from wherever this arm can hold the ring's centre.
-   [any] */
+/* Returns how many objects lie wholly farther than `radius`, m, from wherever this arm can hold the ring's centre; none
+   if it is NaN. [any] */
 ETHD_API size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, double radius);
 
 /* Makes a scene without those objects (radius: m), for one arm; the others keep their numbers and give the same touches

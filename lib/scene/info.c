@@ -32,11 +32,11 @@ static double farthest(const ethd_scene *scene, const ethd__object *o) {
 }
 
 /* An object is in one piece, so if its nearest point lies within the outer circle and its farthest beyond the inner
-   one, some of it lies between the two. */
+   one, some of it lies between the two. Where a circle is NaN, nothing lies beyond it. */
 bool ethd__object_is_within(const ethd_scene *scene, const ethd__object *o, double inner, double outer) {
   ethd_touch nearest;
   ethd__object_nearest(scene, o, (ethd_vec){0, 0}, &nearest);
-  return nearest.distance <= outer && farthest(scene, o) >= inner;
+  return !(nearest.distance > outer) && !(farthest(scene, o) < inner);
 }
 
 void ethd__scene_annulus(const ethd_arm *arm, double radius, double *inner, double *outer) {

@@ -82,6 +82,19 @@ START_TEST(test_same_answers) {
 }
 END_TEST
 
+/* A radius that isn't a number leaves nothing out: a scene without its walls would be taken for the whole one. */
+START_TEST(test_radius_that_is_none) {
+  ethd_scene *whole = draw(), *pruned;
+  ethd_error error;
+  ck_assert_uint_eq(ethd_scene_out_of_reach(whole, &arm, NAN), 0);
+  ck_assert_int_eq(ethd_scene_prune(whole, &arm, NAN, &pruned, &error), ETHD_OK);
+  ck_assert_ptr_null(pruned);
+  ck_assert_int_eq(ethd_scene_prune(whole, &arm, INFINITY, &pruned, &error), ETHD_OK);
+  ck_assert_ptr_null(pruned);
+  ethd_scene_destroy(whole);
+}
+END_TEST
+
 /* Objects come back as they were given, and again from what was built of them. */
 START_TEST(test_objects_come_back) {
   scene_seed(960);
@@ -207,6 +220,7 @@ int main(void) {
   TCase *all = tcase_create("all");
   tcase_set_timeout(all, 60);
   tcase_add_test(all, test_same_answers);
+  tcase_add_test(all, test_radius_that_is_none);
   tcase_add_test(all, test_objects_come_back);
   tcase_add_test(all, test_same_tap);
   tcase_add_test(all, test_refused_elsewhere);
