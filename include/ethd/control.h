@@ -67,7 +67,8 @@ typedef struct ethd_setup {
    1 kHz. [any] */
 ETHD_API ethd_setup ethd_setup_default(void);
 
-/* Choose a law and set its parameters to their defaults. [any] */
+/* Choose a law or a method and set its parameters to their defaults. What isn't one (NULL, a number beyond the methods,
+   a law with too many parameters) is left for ethd_setup_check to refuse. [any] */
 ETHD_API void ethd_setup_tracking(ethd_setup *setup, const ethd_tracking_law *law);
 ETHD_API void ethd_setup_contact(ethd_setup *setup, const ethd_contact_law *law);
 ETHD_API void ethd_setup_transition(ethd_setup *setup, const ethd_transition_law *law);
@@ -172,8 +173,9 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_create(const ethd_setup *setup
 ETHD_API void ethd_control_destroy(ethd_control *control);
 
 /* Checks a whole setup and hands it over; the next step takes it, without a bump: at that tick the torque is what the
-   old setup gives, and the difference to the new one fades linearly to 0 over the new swap_time. ETHD_BUSY: the last
-   one hasn't been taken yet; post again. Any refusal, also those of ethd_setup_check, leaves everything as it was. The
+   old setup gives, and the difference to the new one fades linearly to 0 over the new swap_time. While events that
+   nobody polls leave no room for those that hand scenes back, it waits. ETHD_BUSY: the last one hasn't been taken yet;
+   post again. Any refusal, also those of ethd_setup_check, leaves everything as it was. The
    period can't change (ETHD_E_ARGUMENT). A scene that a post has replaced may be posted again only after an event has
    handed it back, since that event may come at any moment. Takes nothing from the heap. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_post(ethd_control *control, const ethd_setup *setup,

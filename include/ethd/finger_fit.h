@@ -50,7 +50,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_prepare(ethd_fit_method method, co
                                                       double finger_radius, ethd_fit *out, ethd_error *error);
 
 /* Fits the finger to one frame of rays, m. ETHD_STALE: the rays that count don't determine a centre within the ring,
-   since there are under 3 (robust: 2) or they lie on one line; out is then untouched. [rt] */
+   since there are under 3 (robust: 2) or, for kasa and centroid, they lie on one line; out is then untouched. [rt] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_fit_step(const ethd_fit *fit, const double r[ETHD_RAYS],
                                                    ethd_finger *out) ETHD_RT;
 

@@ -19,7 +19,7 @@ typedef struct ethd_limits {
   double joints[4];      /* rad: q1_min, q1_max, q2_min, q2_max */
   double margin;         /* m: within this of the bounds of workspace and reach a wall pushes back, >= 0 */
   double energy;         /* J that a contact may give away within half a second before damping is added, > 0 */
-  double nominal_torque; /* Nm: what each motor can give continuously, > 0 */
+  double nominal_torque; /* Nm: what each motor can give continuously, > 0; limits nothing without heat_time */
   double heat_time;      /* s: time constant of a motor's heat, > 0; shorter is stricter */
   double step_time;      /* s: time budget of one step, > 0 */
   double gap;            /* s: longest time between two steps, and the most that a clock may jump, > 0 */
@@ -72,7 +72,7 @@ ETHD_API ethd_limits ethd_limits_narrower(const ethd_limits *a, const ethd_limit
 
 /* What the guard did, as bits; the counters count ticks. */
 enum {
-  ETHD_GUARD_FINITE = 1,     /* torque not finite: zero torque, latched */
+  ETHD_GUARD_FINITE = 1,     /* torque not finite: zero torque in this tick; the controller latches it */
   ETHD_GUARD_TORQUE = 2,     /* clamped */
   ETHD_GUARD_RATE = 4,       /* slope limited */
   ETHD_GUARD_SPEED = 8,      /* ring too fast: damped until it is still, then zero, latched */

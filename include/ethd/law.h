@@ -46,7 +46,8 @@ typedef struct ethd_law {
   const char *brief;   /* one line: 1 to ETHD_BRIEF_MAX printable ASCII characters */
   const ethd_param *params;
   uint32_t param_count;
-  /* Relations between parameters that rows can't say; NULL: none. Negative refuses the post. [main] */
+  /* Relations between parameters that rows can't say; NULL: none. Negative refuses the post. *error, never NULL, comes
+     with the law's id as its name and without numbers. [main] */
   ethd_status (*check)(const double *p, ethd_error *error);
   /* Fills a zeroed state block; NULL: zeros are right. [rt] */
   void (*reset)(const double *p, void *state) ETHD_RT;

@@ -43,9 +43,20 @@ static ethd_status check_fields(const ethd_setup *s, ethd_error *error) {
   return ETHD_OK;
 }
 
+/* Asks the law's own check, which may leave the error alone: then the law's id says what is wrong. */
+static ethd_status ask_law(const ethd_law *law, const double *p, ethd_error *error) {
+  ethd_error own;
+  ethd__error(&own, ETHD_OK, law->id);
+  ethd_status status = law->check ? law->check(p, &own) : ETHD_OK;
+  if (status >= 0) return ETHD_OK;
+  own.status = status;
+  if (error) *error = own;
+  return status;
+}
+
 static ethd_status check_values(const ethd_law *law, const double *p, ethd_error *error) {
   TRY(ethd_params_check(law->params, law->param_count, p, error));
-  return law->check ? law->check(p, error) : ETHD_OK;
+  return ask_law(law, p, error);
 }
 
 static ethd_status check_law(const char *kind, uint32_t kind_number, const ethd_law *law, const double *p,

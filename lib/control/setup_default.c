@@ -15,39 +15,49 @@ double ethd_setup_range(const ethd_setup *s) {
   return far > near ? far : near;
 }
 
+/* Chooses nothing where there is nothing to choose: then ethd_setup_check refuses the setup. */
 static void defaults(const ethd_param *params, uint32_t count, double *p) {
   memset(p, 0, ETHD_PARAMS_MAX * sizeof *p);
-  ethd_params_default(params, count, p);
+  ethd_params_default(params, ethd__setup_room(params, count), p);
+}
+
+static void law_defaults(const ethd_law *law, double *p) {
+  defaults(law ? law->params : NULL, law ? law->param_count : 0, p);
+}
+
+static void method_defaults(const ethd_method *methods, uint32_t count, uint32_t method, double *p) {
+  const ethd_method chosen = method < count ? methods[method] : (ethd_method){0};
+  defaults(chosen.params, chosen.param_count, p);
 }
 
 void ethd_setup_tracking(ethd_setup *setup, const ethd_tracking_law *law) {
   setup->tracking = law;
-  defaults(law->law.params, law->law.param_count, setup->tracking_p);
+  law_defaults(law ? &law->law : NULL, setup->tracking_p);
 }
 
 void ethd_setup_contact(ethd_setup *setup, const ethd_contact_law *law) {
   setup->contact = law;
-  defaults(law->law.params, law->law.param_count, setup->contact_p);
+  law_defaults(law ? &law->law : NULL, setup->contact_p);
 }
 
 void ethd_setup_transition(ethd_setup *setup, const ethd_transition_law *law) {
   setup->transition = law;
-  defaults(law->law.params, law->law.param_count, setup->transition_p);
+  law_defaults(law ? &law->law : NULL, setup->transition_p);
 }
 
 void ethd_setup_velocity(ethd_setup *setup, ethd_velocity_method method) {
   setup->velocity = method;
-  defaults(ethd_velocity_methods[method].params, ethd_velocity_methods[method].param_count, setup->velocity_p);
+  method_defaults(ethd_velocity_methods, ETHD_VELOCITY_COUNT, (uint32_t)method, setup->velocity_p);
 }
 
 void ethd_setup_fit(ethd_setup *setup, ethd_fit_method method) {
   setup->fit = method;
-  defaults(ethd_fit_methods[method].params, ethd_fit_methods[method].param_count, setup->fit_p);
+  method_defaults(ethd_fit_methods, ETHD_FIT_COUNT, (uint32_t)method, setup->fit_p);
 }
 
 void ethd_setup_filter(ethd_setup *setup, ethd_filter_method method) {
   setup->filter = method;
-  defaults(ethd_filter_methods[method].params, ethd_filter_methods[method].param_count, setup->filter_p);
+  method_defaults(ethd_filter_methods, ETHD_FILTER_COUNT, (uint32_t)method, setup->filter_p);
 }
 
 ethd_setup ethd_setup_default(void) {

@@ -31,7 +31,8 @@ const ethd_setup_part *ethd_setup_part_of(const char *section) {
 
 /* Describes a law in the terms of a method. */
 static ethd_method described(const ethd_law *law) {
-  return law ? (ethd_method){law->id, law->brief, law->params, law->param_count} : (ethd_method){0};
+  if (!law) return (ethd_method){0};
+  return (ethd_method){law->id, law->brief, law->params, ethd__setup_room(law->params, law->param_count)};
 }
 
 ethd_method ethd_setup_chosen(const ethd_setup *setup, const ethd_setup_part *part) {

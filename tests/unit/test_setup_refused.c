@@ -93,6 +93,60 @@ START_TEST(test_foreign_law) {
 }
 END_TEST
 
+/* A check that only says no, as it may: it is asked with an error of its own, and its law's id says what is wrong. */
+static ethd_status silent(const double *p, ethd_error *e) {
+  ck_assert_ptr_nonnull(e);
+  return p[0] > 1000 ? ETHD_E_GEOMETRY : ETHD_BUSY;
+}
+
+START_TEST(test_silent_law) {
+  ethd_contact_law law = ethd_contact_kelvin_voigt;
+  ethd_setup s = ethd_setup_default();
+  law.law.check = silent;
+  ethd_setup_contact(&s, &law);
+  s.contact_p[0] = 999;
+  ck_assert_int_eq(checked(&s), ETHD_OK);
+  s.contact_p[0] = 1001;
+  expect(s, ETHD_E_GEOMETRY, "contact.kelvin-voigt");
+  memset(&error, 0x7f, sizeof error); /* as it stands in a caller that never looked at it */
+  ck_assert_int_eq(ethd_setup_check(&s, &error), ETHD_E_GEOMETRY);
+  ck_assert(error.status == ETHD_E_GEOMETRY && error.line == 0 && isnan(error.found) && isnan(error.min));
+  ck_assert_str_eq(error.name, "contact.kelvin-voigt");
+}
+END_TEST
+
+/* Laws that nobody has checked yet are chosen without reading or writing beyond anything, and then refused. */
+START_TEST(test_unchecked_laws) {
+  static ethd_param rows[ETHD_PARAMS_MAX + 1];
+  ethd_contact_law law = ethd_contact_kelvin_voigt;
+  const ethd_law *const laws[] = {&law.law, NULL};
+  ethd_setup s = ethd_setup_default();
+  for (int i = 0; i <= ETHD_PARAMS_MAX; i++) rows[i] = (ethd_param){"p", "1", 0, 9, 7, "a number"};
+  law.law.params = rows;
+  law.law.param_count = ETHD_PARAMS_MAX + 1;
+  for (int way = 0; way < 2; way++) {
+    s = ethd_setup_default();
+    if (way) ck_assert_int_eq(ethd_setup_choose(&s, "contact", law.law.id, laws, NULL), ETHD_OK);
+    if (!way) ethd_setup_contact(&s, &law);
+    ck_assert(s.contact_p[ETHD_PARAMS_MAX - 1] == 7 && s.transition == &ethd_transition_offset);
+    ck_assert_uint_eq(ethd_setup_chosen(&s, ethd_setup_part_of("contact")).param_count, ETHD_PARAMS_MAX);
+    expect(s, ETHD_E_TABLE, "contact.kelvin-voigt.param_count");
+  }
+  law.law.params = NULL;
+  ethd_setup_contact(&s, &law);
+  ck_assert(s.contact_p[0] == 0 && isnan(ethd_setup_get(&s, "contact.p")));
+  expect(s, ETHD_E_TABLE, "contact.kelvin-voigt.param_count");
+  law.law.param_count = 1;
+  expect(s, ETHD_E_TABLE, "contact.kelvin-voigt.params");
+  s = ethd_setup_default();
+  ethd_setup_tracking(&s, NULL);
+  expect(s, ETHD_E_ARGUMENT, "tracking");
+  ethd_setup_contact(&s, NULL);
+  ethd_setup_transition(&s, NULL);
+  ck_assert(!s.tracking && !s.contact && !s.transition && s.tracking_p[0] == 0 && s.transition_p[0] == 0);
+}
+END_TEST
+
 /* ---- how far a law looks ahead ---- */
 
 static double range;
@@ -187,6 +241,14 @@ START_TEST(test_methods_that_are_none) {
   s = ethd_setup_default();
   s.filter = ETHD_FILTER_COUNT;
   expect(s, ETHD_E_UNKNOWN, "finger_filter.method");
+  s = ethd_setup_default();
+  ethd_setup_filter(&s, (ethd_filter_method)-1);
+  expect(s, ETHD_E_UNKNOWN, "finger_filter.method");
+  ethd_setup_fit(&s, ETHD_FIT_COUNT);
+  expect(s, ETHD_E_UNKNOWN, "finger_fit.method");
+  ethd_setup_velocity(&s, (ethd_velocity_method)1000);
+  expect(s, ETHD_E_UNKNOWN, "velocity.method");
+  ck_assert(s.filter_p[3] == 0 && s.fit_p[0] == 0 && s.velocity_p[0] == 0);
 }
 END_TEST
 
@@ -231,6 +293,8 @@ int main(void) {
   tcase_add_test(t, test_law_in_numbers);
   tcase_add_test(t, test_law_of_another_kind);
   tcase_add_test(t, test_foreign_law);
+  tcase_add_test(t, test_silent_law);
+  tcase_add_test(t, test_unchecked_laws);
   tcase_add_test(t, test_range);
   tcase_add_test(t, test_range_of_contacts);
   tcase_add_test(t, test_scene_of_another_reach);
