@@ -23,8 +23,8 @@ typedef struct ethd_limits {
   double heat_time;      /* s: time constant of a motor's heat, > 0; shorter is stricter */
   double step_time;      /* s: time budget of one step, > 0 */
   double gap;            /* s: longest time between two steps, and the most that a clock may jump, > 0 */
-  double finger_age;     /* s: when the finger's reading is older, tracking fades out; INFINITY: age isn't judged */
-  double finger_lost;    /* s: when it is older than this, the ring is stopped */
+  double finger_age;     /* s: when the finger's reading is older, tracking fades out */
+  double finger_lost;    /* s: when it is older than this, the ring is stopped; without either no reading is judged */
   double clean_time;     /* s without a reason to stop before an acknowledgement counts, >= 0, finite;
                           longer is stricter */
   int32_t latch;         /* 1: faults latch until cleared; 0: each tick is judged alone (replay) */

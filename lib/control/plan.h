@@ -18,7 +18,7 @@ typedef struct ethd__plan {
   double d_beta;        /* R_r - R_f,max, m */
   int places;           /* places from here on have no scene */
   bool has_rare_limits; /* a limit is set that most setups don't have: gap, joints, reach, heat */
-  bool watches_finger;  /* limits.finger_age is set */
+  bool watches_finger;  /* limits.finger_age or finger_lost is set */
   bool watches_energy;  /* limits.energy is set */
   int foreign;          /* bits: kinds whose law isn't the library's own */
   /* the laws' steps as a tick calls them, see fence.h */

@@ -157,7 +157,7 @@ ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error 
   out->setup = *s;
   ethd__fence_prepare(out);
   out->has_rare_limits = has_rare_limits(&s->limits);
-  out->watches_finger = s->limits.finger_age < (double)INFINITY;
+  out->watches_finger = fmin(s->limits.finger_age, s->limits.finger_lost) < (double)INFINITY;
   out->watches_energy = s->limits.energy < (double)INFINITY;
   out->d_beta = s->ring_radius - s->finger_radius_max;
   TRY(within("velocity", ethd_velocity_prepare(s->velocity, s->velocity_p, s->period, &out->velocity, error), error));

@@ -77,14 +77,15 @@ START_TEST(test_old) {
 }
 END_TEST
 
-/* Over 30 ms from the sample's instant: a stop, at the first tick. */
+/* Over 30 ms from the sample's instant: a stop, at the first tick, whether or not tracking fades before. */
 START_TEST(test_lost) {
   finger f;
-  open_finger(&f, 0.010, 0.030);
+  open_finger(&f, _i ? INFINITY : 0.010, 0.030);
   for (int i = 0; i < 60; i++) step(&f, 1, 0.01);
   while (age(&f) < 30) {
     step(&f, 0, 0.01);
     ck_assert_int_eq(f.r.status, ETHD_OK);
+    if (_i) ck_assert(f.r.trace.beta == 1 && counted(&f, ETHD_FAULT_FINGER_OLD) == 0);
   }
   step(&f, 0, 0.01);
   moody_expect_safe(&f.r, ETHD_E_DEVICE, ETHD_FAULT_FINGER_LOST); /* at rest: nothing to damp */
@@ -154,7 +155,7 @@ int main(void) {
   Suite *suite = suite_create("fault_finger");
   TCase *t = tcase_create("fault_finger");
   tcase_add_test(t, test_old);
-  tcase_add_test(t, test_lost);
+  tcase_add_loop_test(t, test_lost, 0, 2);
   tcase_add_test(t, test_not_missed);
   tcase_add_test(t, test_outside);
   tcase_add_test(t, test_gated);
