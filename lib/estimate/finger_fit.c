@@ -25,7 +25,7 @@ static void collect(const ethd_fit *fit, const double r[ETHD_RAYS], ethd__points
 }
 
 /* Works out radius and residual from e = |p - c|^2 - R_f^2. It is small when the finger has the given radius, and the
-   variance of small numbers keeps its digits. */
+   variance of small numbers keeps its digits. Of points that are all in the ring's centre rounding leaves no radius. */
 static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec centre, ethd_finger *out) {
   double square = fit->finger_radius * fit->finger_radius, n = ethd__count(points->used);
   two sum = {0, 0}, sum2 = {0, 0};
@@ -35,10 +35,10 @@ static void describe(const ethd_fit *fit, const ethd__points *points, ethd_vec c
     sum += e;
     sum2 += e * e;
   }
-  double mean = two_sum(sum) / n;
+  double mean = two_sum(sum) / n, radius2 = fmax(0, square + mean);
   out->centre = centre;
-  out->radius = sqrt(square + mean);
-  out->residual = sqrt(fmax(0, two_sum(sum2) / n - mean * mean) / (square + mean)) / 2;
+  out->radius = sqrt(radius2);
+  out->residual = radius2 > 0 ? sqrt(fmax(0, two_sum(sum2) / n - mean * mean) / radius2) / 2 : 0;
   out->used = points->used;
   out->reserved = 0;
 }

@@ -315,6 +315,12 @@ START_TEST(test_what_counts) {
   ck_assert_double_lt(r[0], 0);
   ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
   ck_assert_uint_eq(finger.used & 1, 1);
+  for (uint64_t i = 0; i < 1000; i++) { /* rays that end all but in the ring's centre: without size, but numbers */
+    for (uint64_t k = 0; k < ETHD_RAYS; k++)
+      r[k] = draw(k, 0, 1000) < (double)i ? NAN : RING - draw(16 * i + k, 0, 1e-12);
+    if (ethd_fit_step(&fit, r, &finger) != ETHD_OK) continue;
+    ck_assert(finger.radius >= 0 && finger.radius < 1e-9 && finger.residual >= 0 && finger.residual < 1e6);
+  }
 }
 END_TEST
 
