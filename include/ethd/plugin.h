@@ -27,7 +27,7 @@ extern ETHD_API const ethd_plugin_entry ethd_plugin;
 /* Loads a plugin (RTLD_NOW | RTLD_LOCAL) and checks it and every law in it; it stays loaded until the process ends.
    Refusals: ETHD_E_LOAD (not a loadable file), ETHD_E_SYMBOL, ETHD_E_ABI, ETHD_E_SIZE,
    ETHD_E_STATE, ETHD_E_TABLE, ETHD_E_ARGUMENT (a law without step, or with a bad id or brief), ETHD_E_DUPLICATE (an id
-   twice in the file). error->name says which law or parameter. [main] */
+   twice in the file). error->name says which law, parameter or field of a table. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_plugin_open(const char *path, const ethd_plugin_entry **out,
                                                       ethd_error *error);
 
