@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "add_sense.h"
 #include "inject/values.h"
 
 #define COMMANDS_MAX 1024 /* commands that a delay may hold back; a power of two */
@@ -78,18 +79,6 @@ static const ethd__injection *reading_fault(inject *in) ETHD_RT {
   return next_due(in, ETHD__INJECT_READING, &at);
 }
 
-#define READING ((int64_t)(ETHD_HAVE_FINGER | ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS | ETHD_HAVE_RING))
-
-static void copy_reading(const ethd_sense *from, ethd_sense *to) ETHD_RT {
-  to->have = (to->have & ~READING) | (from->have & READING);
-  to->sample_ns = from->sample_ns;
-  memcpy(to->finger, from->finger, sizeof to->finger);
-  memcpy(to->finger_v, from->finger_v, sizeof to->finger_v);
-  memcpy(to->centre, from->centre, sizeof to->centre);
-  memcpy(to->ring, from->ring, sizeof to->ring);
-  memcpy(to->rays, from->rays, sizeof to->rays);
-}
-
 static void hold_reading(inject *in, double delay, const ethd_sense *s) ETHD_RT {
   held_reading *r = &in->held[in->readings++ % READINGS_MAX];
   r->due = in->now + (int64_t)rint(1e9 * delay);
@@ -101,24 +90,24 @@ static void release_readings(inject *in, ethd_sense *s) ETHD_RT {
   for (uint64_t back = 0; back < READINGS_MAX && back < in->readings; back++) {
     held_reading *r = &in->held[(in->readings - 1 - back) % READINGS_MAX];
     if (r->due > in->now) continue;
-    if (!(s->have & READING)) copy_reading(&r->sense, s);
+    if (!(s->have & ETHD__READING)) ethd__sense_put_reading(&r->sense, s);
     for (; back < READINGS_MAX && back < in->readings; back++)
       in->held[(in->readings - 1 - back) % READINGS_MAX].due = INT64_MAX;
   }
 }
 
 static void spoil_reading(inject *in, ethd_sense *s) ETHD_RT {
-  const ethd__injection *i = s->have & READING ? reading_fault(in) : NULL;
+  const ethd__injection *i = s->have & ETHD__READING ? reading_fault(in) : NULL;
   if (i && i->kind == ETHD__INJECT_FREEZE) {
     int64_t stamp = s->sample_ns;
-    if (in->last.have & READING) copy_reading(&in->last, s);
+    if (in->last.have & ETHD__READING) ethd__sense_put_reading(&in->last, s);
     s->sample_ns = stamp;
   } else if (i) {
     if (i->kind == ETHD__INJECT_DELAY) hold_reading(in, i->by, s);
-    s->have &= ~READING;
+    s->have &= ~ETHD__READING;
   }
   release_readings(in, s);
-  if (s->have & READING) in->last = *s;
+  if (s->have & ETHD__READING) in->last = *s;
 }
 
 static void raise_faults(inject *in, ethd_sense *s) ETHD_RT {
@@ -128,21 +117,6 @@ static void raise_faults(inject *in, ethd_sense *s) ETHD_RT {
     s->faults |= bit;
     if (i->kind == ETHD__INJECT_GRAVE) s->grave |= bit;
   }
-}
-
-/* Adds the driver's own part to the sense. */
-static void add(const ethd_sense *s, ethd_status status, ethd_sense *out) ETHD_RT {
-  out->faults |= s->faults;
-  out->grave |= s->grave;
-  if (s->have & READING) copy_reading(s, out);
-  if (s->have & ETHD_HAVE_START) memcpy(out->finger, s->finger, sizeof out->finger);
-  out->have |= s->have;
-  for (int b = 0; b < ETHD_BODIES_MAX; b++)
-    if (s->have & ((int64_t)ETHD_HAVE_BODY << b)) memcpy(out->bodies + 6 * b, s->bodies + 6 * b, 6 * sizeof *s->bodies);
-  if (status && !(s->faults | s->grave)) return; /* not a newer sample */
-  out->time_ns = s->time_ns;
-  memcpy(out->q, s->q, sizeof out->q);
-  memcpy(out->dq, s->dq, sizeof out->dq);
 }
 
 static ethd_status inject_read(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
@@ -160,7 +134,7 @@ static ethd_status inject_read(void *device, int64_t now_ns, ethd_sense *out) ET
   for (uint32_t i = 0; i < in->script.count; i++)
     in->done += ethd__inject_values(&in->script.at[i], in->now, !status, &s);
   spoil_reading(in, &s);
-  add(&s, status, out);
+  ethd__sense_add(&s, !status || s.faults || s.grave, out);
   return status;
 }
 

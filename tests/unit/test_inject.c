@@ -19,6 +19,7 @@ typedef struct plain {
   ethd_command last;
   ethd_status says;
   bool has_more; /* speeds, a finger and its centre */
+  bool is_world; /* the readings are positions in R_0, with their noise */
 } plain;
 
 static plain p;
@@ -50,6 +51,11 @@ static ethd_status plain_read(void *d, int64_t now, ethd_sense *out) {
     out->centre[0] = 50 + t, out->centre[1] = 60 + t;
     out->ring[0] = 70 + t, out->ring[1] = 80 + t;
     out->sample_ns = now;
+  }
+  if (p.is_world && out->have) {
+    out->have = ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD;
+    out->centre[0] = 50 + t;
+    out->finger_noise = 1 + t;
   }
   out->time_ns = now;
   out->q[0] = t;
@@ -227,6 +233,25 @@ START_TEST(test_readings) {
 }
 END_TEST
 
+/* A reading in R_0 stays one, and keeps its noise, whether it passes or comes late. */
+START_TEST(test_world) {
+  spoilt x = open_script("0.003 reading delay by=0.002\n0.006 reading freeze\n");
+  p.is_world = true;
+  for (int ms = 0; ms < 10; ms++) {
+    const ethd_sense *s = sample(&x);
+    if (ms != 5 && (ms % 3 != 0 || ms == 3)) {
+      ck_assert(!(s->have & (ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD)));
+      continue;
+    }
+    ck_assert_int_eq(s->have, ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD);
+    double content = ms == 5 || ms == 6 ? 3 : ms;
+    ck_assert_double_eq_tol(s->centre[0], 50 + at(content), 1e-12);
+    ck_assert_double_eq_tol(s->finger_noise, 1 + at(content), 1e-12);
+  }
+  close_script(&x);
+}
+END_TEST
+
 START_TEST(test_calls) {
   spoilt x = open_script("2t read fail\n4t read stale for=0.002\n"
                          "0.001 write fail\n0.002 write drop\n0.003 write scale by=0.5\n"
@@ -374,6 +399,7 @@ int main(void) {
   tcase_add_test(t, test_passes_on);
   tcase_add_test(t, test_noise);
   tcase_add_test(t, test_readings);
+  tcase_add_test(t, test_world);
   tcase_add_test(t, test_calls);
   tcase_add_test(t, test_rows_and_start);
   tcase_add_test(t, test_adds_once);

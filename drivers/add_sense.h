@@ -1,0 +1,42 @@
+/* Adds what one driver has measured to the sense that other drivers, or earlier ticks without a step, have filled. */
+#ifndef ETHD__ADD_SENSE_H
+#define ETHD__ADD_SENSE_H
+
+#include <stdbool.h>
+#include <string.h>
+
+#include "ethd/sense.h"
+
+/* The bits of a reading of the finger, which belong together. */
+#define ETHD__READING \
+  ((int64_t)(ETHD_HAVE_FINGER | ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS | ETHD_HAVE_RING | ETHD_HAVE_WORLD))
+
+/* Puts a whole reading in the place of the one that is there. [any, rt-safe] */
+static inline void ethd__sense_put_reading(const ethd_sense *from, ethd_sense *to) ETHD_RT {
+  to->have = (to->have & ~ETHD__READING) | (from->have & ETHD__READING);
+  to->sample_ns = from->sample_ns;
+  to->finger_noise = from->finger_noise;
+  memcpy(to->finger, from->finger, sizeof to->finger);
+  memcpy(to->finger_v, from->finger_v, sizeof to->finger_v);
+  memcpy(to->centre, from->centre, sizeof to->centre);
+  memcpy(to->ring, from->ring, sizeof to->ring);
+  memcpy(to->rays, from->rays, sizeof to->rays);
+}
+
+/* Adds what `from` holds; its joint sample only if that is new. [any, rt-safe] */
+static inline void ethd__sense_add(const ethd_sense *from, bool has_joints, ethd_sense *to) ETHD_RT {
+  to->faults |= from->faults;
+  to->grave |= from->grave;
+  if (from->have & ETHD__READING) ethd__sense_put_reading(from, to);
+  if (from->have & ETHD_HAVE_START) memcpy(to->finger, from->finger, sizeof to->finger);
+  to->have |= from->have;
+  for (int b = 0; b < ETHD_BODIES_MAX; b++)
+    if (from->have & ((int64_t)ETHD_HAVE_BODY << b))
+      memcpy(to->bodies + 6 * b, from->bodies + 6 * b, 6 * sizeof *from->bodies);
+  if (!has_joints) return;
+  to->time_ns = from->time_ns;
+  memcpy(to->q, from->q, sizeof to->q);
+  if (from->have & ETHD_HAVE_DQ) memcpy(to->dq, from->dq, sizeof to->dq);
+}
+
+#endif
