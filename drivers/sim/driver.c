@@ -2,6 +2,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "add_sense.h"
 #include "ethd/driver.h"
 #include "ethd/sim.h"
 #include "finger/limits.h"
@@ -94,12 +95,11 @@ static void catch_up(device *d, int64_t now_ns) ETHD_RT {
 
 static ethd_status sim_read(void *device_, int64_t now_ns, ethd_sense *out) ETHD_RT {
   device *d = device_;
-  int64_t faults = out->faults, grave = out->grave; /* other drivers' */
+  ethd_sense own;
   catch_up(d, now_ns);
-  ethd_sim_read(d->sim, out);
-  if (d->no_finger) out->have = 0;
-  out->faults |= faults;
-  out->grave |= grave;
+  ethd_sim_read(d->sim, &own);
+  if (d->no_finger) own.have = 0;
+  ethd__sense_add(&own, true, out);
   return ETHD_OK;
 }
 

@@ -138,6 +138,24 @@ START_TEST(test_safe) {
 }
 END_TEST
 
+/* What another driver, or a tick without a step, has put into the sense stays, but for what the sim gives itself. */
+START_TEST(test_adds) {
+  void *device = open_with(NULL, 0);
+  ethd_sense s = {.have = ETHD_HAVE_DQ | ETHD_HAVE_BODY | ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD,
+                  .faults = 2,
+                  .grave = 4,
+                  .q = {9, 9},
+                  .dq = {3, 4},
+                  .bodies = {5},
+                  .finger_noise = 6};
+  ck_assert_int_eq(ethd_driver_sim.read(device, 0, &s), ETHD_OK);
+  ck_assert(s.have & ETHD_HAVE_START && s.have & ETHD_HAVE_DQ && s.have & ETHD_HAVE_BODY && s.q[0] < 7);
+  ck_assert(s.faults == 2 && s.grave == 4 && s.dq[0] == 3 && s.dq[1] == 4 && s.bodies[0] == 5);
+  ck_assert(s.have & ETHD_HAVE_CENTRE && s.have & ETHD_HAVE_WORLD && s.finger_noise == 6);
+  ethd_driver_sim.close(device);
+}
+END_TEST
+
 /* What the motors give: 5.357 N at the shorter link. */
 START_TEST(test_limits) {
   void *device = open_with(NULL, 0);
@@ -193,6 +211,7 @@ int main(void) {
   tcase_add_test(t, test_lock_step);
   tcase_add_test(t, test_safe);
   tcase_add_test(t, test_safe_while_it_catches_up);
+  tcase_add_test(t, test_adds);
   tcase_add_test(t, test_limits);
   tcase_add_test(t, test_where_plants_are);
   tcase_add_test(t, test_meet);
