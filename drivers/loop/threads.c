@@ -208,8 +208,13 @@ ethd_status ethd_loop_enable(ethd_loop *l) {
   return status;
 }
 
+static bool are_angles(const double q[2]) {
+  return fabs(q[0]) <= ETHD_SENSE_ANGLE_MAX && fabs(q[1]) <= ETHD_SENSE_ANGLE_MAX;
+}
+
 ethd_status ethd_loop_home(ethd_loop *l, const double *q) {
   if (!l->def.driver->home) return ETHD_E_ARGUMENT;
+  if (q && !are_angles(q)) return ETHD_E_RANGE;
   if (ethd_loop_armed(l) || !take_over(l)) return ETHD_BUSY;
   ethd_status status = l->def.driver->home(l->def.device, q);
   if (!status && !l->row.trace.fault) ethd_control_restart(l->def.control);

@@ -177,8 +177,9 @@ ETHD_API void ethd_loop_clear(ethd_loop *loop);
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_enable(ethd_loop *loop);
 
 /* Calls the device's home, with the joints' angles, rad, or NULL (driver.h), while it is disarmed and the loop leaves
-   it alone. A controller without a fault is then reset, since the pose may jump. ETHD_BUSY: the loop didn't let go, or
-   is armed. ETHD_E_ARGUMENT: the device has no home; else what its home returns. [main] */
+   it alone. A controller without a fault is then restarted, since the pose may jump. ETHD_BUSY: the loop didn't let go,
+   or is armed. ETHD_E_ARGUMENT: the device has no home. ETHD_E_RANGE: an angle that isn't finite or is over
+   ETHD_SENSE_ANGLE_MAX; else what its home returns. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_home(ethd_loop *loop, const double *q);
 
 /* Asks the threads to end; zero torque is the last thing written. [any] */

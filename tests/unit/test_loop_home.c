@@ -1,4 +1,5 @@
 /* Homing through the loop: only while it is disarmed, and the controller begins anew where the pose may have jumped. */
+#include <math.h>
 #include <string.h>
 
 #include "unit/bench.h"
@@ -66,6 +67,24 @@ START_TEST(test_pose_jumps) {
 }
 END_TEST
 
+/* No driver is told an angle that no joint can have. */
+START_TEST(test_no_angles) {
+  const double bad[] = {NAN, INFINITY, -INFINITY, -1.001 * ETHD_SENSE_ANGLE_MAX};
+  bench b;
+  open_with_home(&b);
+  ethd_loop_disarm(b.loop);
+  bench_tick(&b);
+  for (int i = 0; i < 8; i++) {
+    double q[2] = {0.3, -0.4};
+    q[i % 2] = bad[i / 2];
+    ck_assert_int_eq(ethd_loop_home(b.loop, q), ETHD_E_RANGE);
+  }
+  ck_assert_int_eq(homings, 0);
+  ck_assert_int_eq(bench_tick(&b).trace.tick, 1);
+  bench_close(&b);
+}
+END_TEST
+
 START_TEST(test_home_fails) {
   bench b;
   open_with_home(&b);
@@ -100,6 +119,7 @@ int main(void) {
   tcase_add_test(t, test_no_home);
   tcase_add_test(t, test_armed);
   tcase_add_test(t, test_pose_jumps);
+  tcase_add_test(t, test_no_angles);
   tcase_add_test(t, test_home_fails);
   tcase_add_test(t, test_fault_stays);
   suite_add_tcase(suite, t);
