@@ -26,6 +26,13 @@ static ethd_status within(ethd_error *error, const char *name, double found, dou
   return ethd__loop_refuse(error, ETHD_E_RANGE, name, found, min, max);
 }
 
+/* The controller takes its speeds from its own period, whatever the clock says: at another one they would be wrong. */
+static ethd_status check_period(const ethd_loop_def *d, ethd_error *error) {
+  double period = ethd_control_period(d->control);
+  if (d->period == period) return ETHD_OK;
+  return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "period", d->period, period, period);
+}
+
 static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
   if (d->cookie != COOKIE) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "ethd_loop_def", NAN, NAN, NAN);
   if (!d->driver) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "driver", NAN, NAN, NAN);
@@ -47,7 +54,7 @@ static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
   if (!status) status = within(error, "stack", (double)d->stack, 65536, 0x1p26);
   if (!status) status = within(error, "rows", d->rows, 0, 0x1p20);
   if (!status && d->driver->units) status = within(error, "units", d->driver->units(d->device), 0, ETHD_UNITS_MAX);
-  return status;
+  return status ? status : check_period(d, error);
 }
 
 static int64_t nanoseconds(double s) { return s < 1e9 ? llrint(1e9 * s) : INT64_MAX; }

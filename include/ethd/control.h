@@ -184,6 +184,9 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_post(ethd_control *control, co
 /* Takes the next event, in order; ETHD_EMPTY when there is none. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_poll(ethd_control *control, ethd_event *out);
 
+/* Returns the period, s, of every setup that this controller has had or can get. [any, rt-safe] */
+ETHD_API double ethd_control_period(const ethd_control *control) ETHD_RT;
+
 /* Resets the state to that after create, under the setup that rules now; a posted one stays posted. Must not be called
    while step runs. [main] */
 ETHD_API void ethd_control_reset(ethd_control *control);

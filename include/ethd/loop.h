@@ -84,7 +84,7 @@ typedef struct ethd_loop_def {
                                 has units */
   void *device;              /* open and started */
   ethd_control *control;     /* which nobody else steps while the loop exists */
-  double period;             /* s, the controller's; 1e-5 to 1 */
+  double period;             /* s, the controller's (ethd_control_period), 1e-5 to 1; another one is refused */
   int32_t cpu;               /* number of a processor, ETHD_CPU_NONE or ETHD_CPU_AUTO */
   int32_t priority;          /* of SCHED_FIFO, 1 to 99; the device's I/O threads come ETHD_IO_BELOW under it */
   int32_t require_rt;        /* 1: start fails at any shortfall */

@@ -118,6 +118,8 @@ ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense
   return finish(t.trace, command);
 }
 
+double ethd_control_period(const ethd_control *control) { return control->period; }
+
 void ethd_control_reset(ethd_control *control) {
   const ethd__plan *plan = &control->plans[control->ruling];
   memset(&control->state, 0, sizeof control->state);

@@ -301,6 +301,8 @@ START_TEST(test_refused_defs) {
   REFUSED(period, 0, ETHD_E_RANGE);
   REFUSED(period, (double)NAN, ETHD_E_RANGE);
   REFUSED(period, 2, ETHD_E_RANGE);
+  REFUSED(period, 0.002, ETHD_E_ARGUMENT);
+  ck_assert(!strcmp(error.name, "period") && error.found == 0.002 && error.min == ethd_control_period(b.def.control));
   REFUSED(cpu, -3, ETHD_E_RANGE);
   REFUSED(cpu, 1024, ETHD_E_RANGE);
   REFUSED(priority, 0, ETHD_E_RANGE);
