@@ -81,7 +81,7 @@ ETHD_API const char *ethd_shortfall_mend(int32_t bit);
 typedef struct ethd_loop_def {
   uint32_t cookie;           /* set by ethd_loop_default */
   const ethd_driver *driver; /* of ethd_device_open; or one that has start, read, write and safe, and service if it
-                                has units */
+                            has units */
   void *device;              /* open and started */
   ethd_control *control;     /* which nobody else steps while the loop exists */
   double period;             /* s, the controller's (ethd_control_period), 1e-5 to 1; another one is refused */
