@@ -116,15 +116,17 @@ RING_PARTS := $(shell echo '\#include <avr/io.h>' | $(or $(AVR_CC),avr-gcc) -mmc
   echo $(B)/firmware/proximity_ring.hex) $(if $(SIMAVR),$(B)/tests/ring_board)
 endif
 
-LIB_C := $(wildcard lib/*.c lib/*/*.c)
-DRIVERS_C := $(wildcard drivers/*.c drivers/*/*.c)
-PROGRAMS_C := $(wildcard apps/ethd-*.c)
-APPS_C := $(filter-out apps/examples/%,$(wildcard apps/*/*.c))
-PLUGINS_C := $(wildcard tests/plugins/*.c)
-TESTS_C := $(filter-out $(PLUGINS_C),$(wildcard tests/*/test_*.c))
-HELPERS_C := $(filter-out $(PLUGINS_C) $(TESTS_C) tests/fuzz/% tests/simavr/% tests/proofs/%,$(wildcard tests/*/*.c))
-TOOLS_C := $(wildcard tests/*.c)
-HEADERS := $(wildcard include/ethd/*.h)
+# In one order whatever the locale, by which wildcard sorts: objects are linked in it, and builds are equal to the byte.
+files = $(foreach pattern,$(1),$(sort $(wildcard $(pattern))))
+LIB_C := $(call files,lib/*.c lib/*/*.c)
+DRIVERS_C := $(call files,drivers/*.c drivers/*/*.c)
+PROGRAMS_C := $(call files,apps/ethd-*.c)
+APPS_C := $(filter-out apps/examples/%,$(call files,apps/*/*.c))
+PLUGINS_C := $(call files,tests/plugins/*.c)
+TESTS_C := $(filter-out $(PLUGINS_C),$(call files,tests/*/test_*.c))
+HELPERS_C := $(filter-out $(PLUGINS_C) $(TESTS_C) tests/fuzz/% tests/simavr/% tests/proofs/%,$(call files,tests/*/*.c))
+TOOLS_C := $(call files,tests/*.c)
+HEADERS := $(call files,include/ethd/*.h)
 SCRIPTS := $(sort $(shell find tests -name '*.sh' -perm -u+x 2>/dev/null))
 
 obj = $(patsubst %.c,$(B)/obj/%.o,$(1))
@@ -237,8 +239,8 @@ AVR_CC ?= avr-gcc
 AVR_OBJCOPY ?= avr-objcopy
 AVR_SIZE ?= avr-size
 AVR_FLAGS := -std=gnu11 -O2 -g -fno-inline-functions-called-once -mmcu=atmega328p $(WARN)
-FIRMWARE_FROM := $(wildcard drivers/proximity_ring/firmware/*.[ch]) drivers/proximity_ring/frame.h
-RING_BOARD_C := $(wildcard tests/simavr/*.c)
+FIRMWARE_FROM := $(call files,drivers/proximity_ring/firmware/*.[ch]) drivers/proximity_ring/frame.h
+RING_BOARD_C := $(call files,tests/simavr/*.c)
 
 firmware: $(B)/firmware/proximity_ring.hex
 	@$(AVR_SIZE) $(B)/firmware/proximity_ring.elf

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Set-up on machines that lack something, and a tree that somebody else has built: what is missing, why it can't be had and what
-# to do stand in a few lines. apt-get, sudo and id are stubs here; nothing is installed.
+# to do stand in a few lines; whatever the locale, objects are linked in one order. apt-get, sudo and id are stubs here; nothing
+# is installed.
 set -u
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -50,5 +51,13 @@ for goal in all install clean; do
     fail "$goal in a tree of theirs: $(cat "$work/out")"
 done
 chmod u+w "$work/theirs" "$work/theirs/bin"
+
+# ---- one order of linking, whatever the locale; where localedef can make one that sorts otherwise than C ----
+order() { LOCPATH=$work LC_ALL=$1 ${MAKE:-make} --no-print-directory SETUP=no -rpn clean | grep -E '^[A-Z]+_(C|O) :='; }
+order C >"$work/order"
+grep -q '^APPS_C := apps/.* apps/' "$work/order" || fail "no sources: $(cat "$work/order")"
+if localedef -c -i en_US -f UTF-8 "$work/en_US.UTF-8" >"$work/out" 2>&1; then
+  order en_US.UTF-8 | cmp -s - "$work/order" || fail 'the order in which objects are linked is the locale'"'"'s'
+fi
 [ $failed = 0 ] && echo 'what is missing is said'
 exit $failed
