@@ -185,10 +185,12 @@ $(B)/libethd.so.0: $(LIB_O) lib/libethd.map $(B)/sources
 	$(call say,LINK,$@)
 	$(Q)$(LINK) -shared -Wl,-soname,libethd.so.0 -Wl,--version-script=lib/libethd.map \
 	  -Wl,-Bsymbolic-functions -Wl,-z,now $(if $(SAN),,-Wl,-z,defs) -o $@ $(LIB_O) -lm -ldl
+# The loader doesn't look for what a library needs where its program was told to look: it finds libethd beside itself.
 $(B)/libethd-drivers.so.0: $(call obj,$(DRIVERS_C)) drivers/libethd-drivers.map $(B)/libethd.so $(B)/sources
 	$(call say,LINK,$@)
 	$(Q)$(LINK) -shared -Wl,-soname,libethd-drivers.so.0 -Wl,--version-script=drivers/libethd-drivers.map \
-	  -Wl,-Bsymbolic-functions -Wl,-z,now $(if $(SAN),,-Wl,-z,defs) -o $@ $(filter %.o,$^) -L$(B) -lethd $(DRIVERS_LIBS) $(LIBS)
+	  -Wl,-Bsymbolic-functions -Wl,-z,now $(if $(SAN),,-Wl,-z,defs) -Wl,--enable-new-dtags,-rpath,'$$ORIGIN' \
+	  -o $@ $(filter %.o,$^) -L$(B) -lethd $(DRIVERS_LIBS) $(LIBS)
 $(B)/%.so: $(B)/%.so.0
 	@ln -sf $(<F) $@
 

@@ -78,6 +78,14 @@ links inline "$($PKG_CONFIG --cflags --libs ethd)"
 links drivers "$($PKG_CONFIG --cflags --libs ethd-drivers)"
 shared=$("$work/drivers") || fail "the drivers' library: $shared"
 readelf -d "$work/drivers" | grep -q 'NEEDED.*libethd-drivers.so.0' || fail "not the shared library"
+# A program that was told where the drivers' library is, and calls nothing of the other: that one stands beside.
+cat >"$work/beside.c" <<'END'
+#include <ethd/loop.h>
+int main(void) { return !(ethd_loop_default().period > 0); }
+END
+links beside "-Wl,--as-needed -Wl,-rpath,'$moved/lib' $($PKG_CONFIG --cflags --libs ethd-drivers)"
+readelf -d "$work/beside" | grep -q 'NEEDED.*libethd.so.0' && fail "beside: it calls libethd itself"
+env -u LD_LIBRARY_PATH "$work/beside" || fail "libethd-drivers doesn't find libethd beside itself"
 if [ -z "$sanitizer" ]; then
   links inline "-static $($PKG_CONFIG --static --cflags --libs ethd)"
   [ "$("$work/inline")" = 5 ] || fail "inline, static"
