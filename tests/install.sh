@@ -1,6 +1,7 @@
 #!/bin/sh
 # An installed tree is complete and readable, pkg-config and CMake find it, it can be moved, it links shared and static, and
-# its path may have spaces; after uninstalling only what was there before is left.
+# its path may have spaces and other names; after uninstalling only what was there before is left, also when installing was
+# stopped on the way.
 set -eu
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -23,6 +24,7 @@ for library in libethd libethd-drivers; do
   [ "$(readlink "$at/lib/$library.so")" = $library.so.0 ] || fail "$library.so isn't a link to $library.so.0"
   readelf -d "$at/lib/$library.so.0" | grep -q "SONAME.*\[$library.so.0\]" || fail "the SONAME isn't $library.so.0"
 done
+cmp LICENSE "$at/share/doc/libethd/LICENSE" || fail "the licence isn't installed"
 [ -z "$(find "$root" -type f ! -perm -444)" ] || fail "installed, but not readable by all"
 diff -r -x installed "$BUILD/share/ethd" "$at/share/ethd" || fail "share/ethd differs"
 if grep -rIlF -e "$PWD" -e "$BUILD" -e "$work" "$at/lib" "$at/include" "$at/share"; then fail "holds a path of the build"; fi
@@ -144,4 +146,67 @@ run "" "$work/file/x" install-files && fail "below a file"
 [ "$(grep -c 'sudo make install' "$work/log")" = 1 ] || fail "no rights: $(cat "$work/log")"
 run "" relative install-files && fail "a relative path"
 grep -q 'relative: PREFIX and LIBDIR begin with /' "$work/log" || fail "a relative path: $(cat "$work/log")"
+
+# ---- stopped on the way, by a failure or killed: uninstalling leaves nothing, also when that is stopped first ----
+mkdir "$work/bin"
+stops() { # COMMAND CALL ACTION: that call of it is its last
+  printf '#!/bin/sh\necho >>"$0.calls"\n[ "$(wc -l <"$0.calls")" -lt %s ] || { %s; }\nexec %s "$@"\n' "$2" "$3" "$(command -v "$1")" >"$work/bin/$1"
+  chmod +x "$work/bin/$1"
+  : >"$work/bin/$1.calls"
+}
+nothing() { # WHAT
+  [ ! -e "$work/on the way" ] || fail "$1 leaves $(find "$work/on the way" | sed -n '1,5p')"
+}
+on_the_way() { run "" "$work/on the way/ethd" "$@"; }
+on_the_way install-files && grep -q "^share/ethd/n.ini$" "$work/on the way/ethd/share/ethd/installed" || fail "on the way: $(cat "$work/log")"
+on_the_way uninstall || fail "uninstalled"
+nothing "uninstalling"
+for how in 'exit 1' 'kill -9 $PPID'; do
+  for call in 2 3 40 150; do
+    stops install $call "$how"
+    PATH=$work/bin:$PATH on_the_way install-files >/dev/null 2>&1 && fail "install goes on after call $call of install: $how"
+    [ $call = 2 ] || { on_the_way uninstall || fail "uninstall after call $call of install: $how"; }
+    if [ "$call $how" = '2 kill -9 $PPID' ]; then find "$work/on the way" -depth -type d -exec rmdir '{}' +; fi # folders alone
+    nothing "call $call of install, $how, then uninstall,"
+  done
+done
+on_the_way install-files || fail "make install"
+stops rm 20 'kill -9 $PPID'
+PATH=$work/bin:$PATH on_the_way uninstall >/dev/null 2>&1 && fail "uninstall goes on after call 20 of rm"
+on_the_way uninstall || fail "uninstall after an uninstall that was stopped"
+nothing "uninstalling twice"
+
+# ---- another name of the same place; a tree that was moved; two at once ----
+mkdir "$work/real" && ln -s real "$work/link"
+run "" "$work/none/..//link/ethd/" LIBDIR="$work/real/./ethd/lib/machine" install-files || fail "another name of a place"
+[ "$(PKG_CONFIG_PATH=$work/link/ethd/lib/machine/pkgconfig $PKG_CONFIG --variable=prefix ethd)" = "$work/link/ethd/lib/machine/pkgconfig/../../.." ] ||
+  fail "its prefix: $(cat "$work/real/ethd/lib/machine/pkgconfig/ethd.pc")"
+mv "$work/real/ethd" "$work/real/moved"
+run "" "$work/real/ethd" install-files || fail "beside a tree that was moved"
+run "" "$work/link/moved" uninstall || fail "uninstall of a tree that was moved"
+[ ! -e "$work/real/moved" ] && [ -x "$work/real/ethd/bin/ethd-tap" ] || fail "a moved tree: $(find "$work/real" | sed -n '1,5p')"
+run "" "$work/real/ethd/" uninstall || fail "uninstall by another name"
+[ "$(find "$work/real")" = "$work/real" ] || fail "by another name: $(find "$work/real")"
+mkdir "$work/at once"
+exec 8<"$work/at once"
+flock 8
+$MAKE --no-print-directory -s B="$BUILD" DESTDIR= PREFIX="$work/at once" install-files >"$work/once" 2>&1 8<&- &
+tries=0
+until grep -q 'waiting for another one' "$work/once"; do
+  tries=$((tries + 1))
+  [ $tries -lt 600 ] && [ ! -e "$work/at once/bin" ] || fail "two at once: $(cat "$work/once")"
+  sleep 0.1
+done
+exec 8<&-
+wait $! || fail "after another one: $(cat "$work/once")"
+run "" "$work/at once" uninstall || fail "after two at once"
+[ "$(find "$work/at once")" = "$work/at once" ] || fail "two at once leave $(find "$work/at once" | sed -n '1,5p')"
+
+# ---- libraries beside the prefix, in a folder with a space and a & in its name ----
+run "" "$work/my tools" LIBDIR="$work/lib & more" install-files || fail "LIBDIR"
+eval "$CC $sanitizer '$work/inline.c' -o '$work/inline' $(PKG_CONFIG_PATH="$work/lib & more/pkgconfig" $PKG_CONFIG --cflags --libs ethd)"
+rm -rf "$work/cmake"
+CFLAGS="$sanitizer" cmake -S "$work" -B "$work/cmake" -DCMAKE_C_COMPILER="${CC%% *}" -Dethd_DIR="$work/lib & more/cmake/ethd" >"$work/log" 2>&1 ||
+  fail "CMake: $(cat "$work/log")"
+run "" "$work/my tools" LIBDIR="$work/lib & more" uninstall && [ ! -e "$work/my tools" ] && [ ! -e "$work/lib & more" ] || fail "LIBDIR, uninstalled"
 echo "$shared"
