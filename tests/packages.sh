@@ -1,6 +1,7 @@
 #!/bin/sh
 # The Debian packages on paper, before dpkg makes them: every installed file belongs to one package, manual pages, completion,
-# pkg-config and CMake among them; the changelog has this version; who builds them can be their maintainer.
+# pkg-config and CMake among them; the changelog has this version; who builds them can be their maintainer; what is built
+# against a library depends on the versions that suit it; debian/copyright knows whose the recorded movements are.
 set -u
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -12,7 +13,7 @@ grep -q '^### '"$version" include/README.md || fail "include/README.md has no ch
 [ "$(sed -n 's/^Maintainer: //p' $debian/control)" = "$(sed -n 's/^ -- \(.*>\)  .*/\1/p' $debian/changelog | head -n 1)" ] ||
   fail "control and changelog name two maintainers"
 $MAKE --no-print-directory -s B="$BUILD" DESTDIR="$work/root" PREFIX=/usr LIBDIR=/usr/lib/machine install-files >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-rm "$work/root/usr/share/ethd/installed"
+rm -r "$work/root/usr/share/ethd/installed" "$work/root/usr/share/doc" # debian/copyright stands for the licence
 (cd "$work/root" && find . ! -type d | sed 's|^\./||' | sort) >"$work/files"
 for list in $debian/*.install; do
   package=${list##*/} package=${package%.install}
@@ -41,5 +42,19 @@ for program in "$BUILD"/bin/ethd-*; do
   has "share/bash-completion/completions/${program##*/}" ethd-tools
 done
 for pattern in $(cat $debian/libethd-dev.examples); do [ -e "$pattern" ] || fail "no example $pattern"; done
+
+# Until 1.0 a minor version may change anything (include/README.md), although the SONAME stays.
+major=${version%%.*} minor=${version#*.} minor=${minor%%.*}
+suits="libethd0 (>= $major.$minor.0), libethd0 (<< $([ "$major" = 0 ] && echo "0.$((minor + 1))~" || echo "$((major + 1))~"))"
+for library in "$BUILD"/lib*.so.?*; do
+  name=${library##*/}
+  grep -qxF "${name%.so.*} ${name##*.so.} $suits" $debian/libethd0.shlibs || fail "libethd0.shlibs doesn't say: ${name%.so.*} ${name##*.so.} $suits"
+done
+sed -n 's/^Files: //p' $debian/copyright | grep -v '^[*]$' >"$work/foreign"
+for movement in tests/motion/*/*; do
+  case $movement in tests/motion/LICENSES/*) continue ;; esac
+  while read -r pattern; do case $movement in $pattern) continue 2 ;; esac; done <"$work/foreign"
+  fail "debian/copyright doesn't say whose $movement is"
+done
 [ $failed = 0 ] && echo "$(wc -l <"$work/files") files, each in one package"
 exit $failed
