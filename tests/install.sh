@@ -109,14 +109,40 @@ endforeach()
 if(NOT EXISTS "${ETHD_DATA_DIR}/n.plant")
   message(FATAL_ERROR "ETHD_DATA_DIR is ${ETHD_DATA_DIR}")
 endif()
-find_package(ethd 0.2 QUIET)
-if(ethd_FOUND)
-  message(FATAL_ERROR "0.2 is found")
+function(asked found) # what find_package gets
+  set(ethd_FOUND)
+  find_package(ethd QUIET ${ARGN})
+  if(NOT found STREQUAL "${ethd_FOUND}")
+    message(FATAL_ERROR "find_package(ethd ${ARGN}): ${ethd_FOUND} ${ethd_NOT_FOUND_MESSAGE}")
+  endif()
+endfunction()
+string(REGEX MATCH "^([0-9]+)[.]([0-9]+)" minor "${ethd_VERSION}")
+math(EXPR next "${CMAKE_MATCH_2} + 1")
+asked(1 ${ethd_VERSION})
+asked(1 ${ethd_VERSION} EXACT)
+asked(1 ${minor})
+asked(1)
+asked(0 ${CMAKE_MATCH_1}.${next})
+asked(0 ${ethd_VERSION}.1 EXACT)
+asked(0 ${ethd_VERSION}.1)
+if(NOT CMAKE_VERSION VERSION_LESS 3.19)
+  asked(1 ${minor}...<${CMAKE_MATCH_1}.${next})
+  asked(1 0.0.1...2)
+  asked(1 0.0.1...${ethd_VERSION})
+  asked(0 0.0.1...<${ethd_VERSION})
+  asked(0 0.0.1...0.0.9)
+  asked(0 ${ethd_VERSION}.1...9)
 endif()
+asked(1 ${minor} COMPONENTS drivers ethd-static)
+asked(1 OPTIONAL_COMPONENTS gpu)
+asked(0 COMPONENTS drivers gpu)
+find_package(ethd COMPONENTS gpu)
 END
 if command -v cmake >/dev/null; then
   env -u LD_LIBRARY_PATH CFLAGS="$sanitizer" cmake -S "$work" -B "$work/cmake" -DCMAKE_C_COMPILER="${CC%% *}" -DCMAKE_PREFIX_PATH="$moved" >"$work/log" 2>&1 &&
     env -u LD_LIBRARY_PATH cmake --build "$work/cmake" >>"$work/log" 2>&1 || { cat "$work/log"; fail "CMake"; }
+  tr '\n' ' ' <"$work/log" | tr -s ' ' | grep -q 'ethd has no component gpu: ethd, drivers, ethd-static and drivers-static are known' ||
+    fail "an unknown component: $(cat "$work/log")"
   for kind in "" -static; do
     [ "$("$work/cmake/inline$kind")" = 5 ] && [ "$("$work/cmake/drivers$kind")" = "$shared" ] || fail "CMake's programs$kind"
   done
@@ -206,7 +232,7 @@ run "" "$work/at once" uninstall || fail "after two at once"
 run "" "$work/my tools" LIBDIR="$work/lib & more" install-files || fail "LIBDIR"
 eval "$CC $sanitizer '$work/inline.c' -o '$work/inline' $(PKG_CONFIG_PATH="$work/lib & more/pkgconfig" $PKG_CONFIG --cflags --libs ethd)"
 rm -rf "$work/cmake"
-CFLAGS="$sanitizer" cmake -S "$work" -B "$work/cmake" -DCMAKE_C_COMPILER="${CC%% *}" -Dethd_DIR="$work/lib & more/cmake/ethd" >"$work/log" 2>&1 ||
+CFLAGS="$sanitizer" cmake -S "$work" -B "$work/cmake" -DCMAKE_C_COMPILER="${CC%% *}" -DCMAKE_PREFIX_PATH="$work/lib & more/cmake" >"$work/log" 2>&1 ||
   fail "CMake: $(cat "$work/log")"
 run "" "$work/my tools" LIBDIR="$work/lib & more" uninstall && [ ! -e "$work/my tools" ] && [ ! -e "$work/lib & more" ] || fail "LIBDIR, uninstalled"
 echo "$shared"
