@@ -1,11 +1,12 @@
-/* What a plugin was compiled against may not move: offsets and sizes of ABI 0 on a 64-bit machine, and
-   the tables of every law that the library brings. */
+/* What a plugin or a driver was compiled against may not move: offsets and sizes of ABI 0, and of the drivers' ABI 1, on
+   a 64-bit machine, and the tables of every law that the library brings. */
 #include <float.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "ethd/control.h"
+#include "ethd/driver.h"
 #include "ethd/ethd.h"
 #include "ethd/plugin.h"
 #include "unit/rig.h"
@@ -117,9 +118,104 @@ AT(ethd_plugin_entry, version, 16, 8);
 AT(ethd_plugin_entry, laws, 24, 8);
 AT(ethd_plugin_entry, law_count, 32, 4);
 _Static_assert(ETHD_PLUGIN_MIN == 36, "least");
+
+/* A driver's table may grow at its end; what it is opened with, too. */
+AT(ethd_driver, size, 0, 4);
+AT(ethd_driver, abi, 4, 4);
+AT(ethd_driver, id, 8, 8);
+AT(ethd_driver, brief, 16, 8);
+AT(ethd_driver, params, 24, 8);
+AT(ethd_driver, param_count, 32, 4);
+AT(ethd_driver, keys, 40, 8);
+AT(ethd_driver, open, 48, 8);
+AT(ethd_driver, start, 56, 8);
+AT(ethd_driver, read, 64, 8);
+AT(ethd_driver, write, 72, 8);
+AT(ethd_driver, units, 80, 8);
+AT(ethd_driver, service, 88, 8);
+AT(ethd_driver, safe, 96, 8);
+AT(ethd_driver, stop, 104, 8);
+AT(ethd_driver, close, 112, 8);
+AT(ethd_driver, limits, 120, 8);
+AT(ethd_driver, figures, 128, 8);
+AT(ethd_driver, remark, 136, 8);
+AT(ethd_driver, clear, 144, 8);
+AT(ethd_driver, home, 152, 8);
+AT(ethd_driver, why, 160, 8);
+AT(ethd_driver, dynamics, 168, 8);
+AT(ethd_driver, prepare, 176, 8);
+_Static_assert(ETHD_DRIVER_MIN == 128, "least");
+
+AT(ethd_device_def, setup, 0, 8);
+AT(ethd_device_def, settings, 8, 8);
+AT(ethd_device_def, setting_count, 16, 4);
+AT(ethd_device_def, folder, 24, 8);
+AT(ethd_device_def, file, 32, 8);
+AT(ethd_device_def, is_virtual, 40, 4);
+
+/* A driver reads arrays of these, writes arrays of those. */
+SIZE(ethd_setting, 24, 8);
+AT(ethd_setting, key, 0, 8);
+AT(ethd_setting, value, 8, 8);
+AT(ethd_setting, line, 16, 4);
+SIZE(ethd_figure, 24, 8);
+AT(ethd_figure, name, 0, 8);
+AT(ethd_figure, unit, 8, 8);
+AT(ethd_figure, value, 16, 8);
+
+/* A driver fills the first three or returns them: longer ones need another ETHD_DRIVER_ABI. */
+SIZE(ethd_sense, 480, 8);
+AT(ethd_sense, time_ns, 0, 8);
+AT(ethd_sense, have, 8, 8);
+AT(ethd_sense, missed, 16, 8);
+AT(ethd_sense, step_ns, 24, 8);
+AT(ethd_sense, faults, 32, 8);
+AT(ethd_sense, grave, 40, 8);
+AT(ethd_sense, q, 48, 16);
+AT(ethd_sense, dq, 64, 16);
+AT(ethd_sense, finger, 80, 16);
+AT(ethd_sense, finger_v, 96, 16);
+AT(ethd_sense, sample_ns, 112, 8);
+AT(ethd_sense, centre, 120, 16);
+AT(ethd_sense, ring, 136, 16);
+AT(ethd_sense, rays, 152, 128);
+AT(ethd_sense, bodies, 280, 192);
+AT(ethd_sense, finger_noise, 472, 8);
+
+SIZE(ethd_limits, 184, 8);
+AT(ethd_limits, torque, 0, 8);
+AT(ethd_limits, torque_rate, 8, 8);
+AT(ethd_limits, speed, 16, 8);
+AT(ethd_limits, workspace, 24, 32);
+AT(ethd_limits, reach, 56, 16);
+AT(ethd_limits, joints, 72, 32);
+AT(ethd_limits, margin, 104, 8);
+AT(ethd_limits, energy, 112, 8);
+AT(ethd_limits, nominal_torque, 120, 8);
+AT(ethd_limits, heat_time, 128, 8);
+AT(ethd_limits, step_time, 136, 8);
+AT(ethd_limits, gap, 144, 8);
+AT(ethd_limits, finger_age, 152, 8);
+AT(ethd_limits, finger_lost, 160, 8);
+AT(ethd_limits, clean_time, 168, 8);
+AT(ethd_limits, latch, 176, 4);
+
+SIZE(ethd_dynamics, 40, 8);
+AT(ethd_dynamics, mass, 0, 16);
+AT(ethd_dynamics, friction, 16, 8);
+AT(ethd_dynamics, viscous, 24, 8);
+AT(ethd_dynamics, delay, 32, 8);
+
+SIZE(ethd_command, 24, 8);
+AT(ethd_command, torque, 0, 16);
+AT(ethd_command, safe, 16, 4);
 #endif
 
 _Static_assert(ETHD_ABI == 0 && ETHD_STATE_MAX == 512 && ETHD_PARAMS_MAX == 16, "ABI 0");
+_Static_assert(ETHD_DRIVER_ABI == 1 && ETHD_MESSAGE_MAX == 512, "the drivers' ABI 1");
+_Static_assert(ETHD_HAVE_DQ == 1 && ETHD_HAVE_FINGER == 2 && ETHD_HAVE_START == 4 && ETHD_HAVE_CENTRE == 8 &&
+                   ETHD_HAVE_RAYS == 16 && ETHD_HAVE_RING == 32 && ETHD_HAVE_BODY == 64 && ETHD_HAVE_WORLD == 1024,
+               "what a sense has");
 _Static_assert(ETHD_TRACKING == 0 && ETHD_CONTACT == 1 && ETHD_TRANSITION == 2, "kinds");
 _Static_assert(ETHD_TRANSPARENT == 0 && ETHD_BRAKING == 1 && ETHD_VO == 2, "states");
 
