@@ -29,12 +29,33 @@ says() { # WHAT MOST PATTERN...: set-up stops; at most so many lines; one for ea
 named='^  the C compiler no-such-compiler (Debian: no-such-compiler)$'
 uid 0
 says 'not a Debian' 1 'setup: this is missing; install it and run make again:' "$named"
-stub apt-get 'for k in 1 2 3 4 5 6 7 8; do echo "E: Failed to fetch http://deb.debian.org/$k  Temporary failure resolving" >&2; done; exit 100'
-says 'no network' 10 "apt-get can't reach the archive: is there a network?" "$named"
+calls() { # NUMBER: apt-get was called so often, and told not to wait long
+  [ "$(wc -l <"$work/calls")" = "$1" ] || fail "apt-get was called otherwise than $1 times: $(cat "$work/calls")"
+  grep -vq 'Acquire::Retries=1 .*http::Timeout=10 .* timeout:3 attempts:1$' "$work/calls" && fail "apt-get may take its time: $(cat "$work/calls")"
+  rm "$work/calls"
+}
+count="echo \"\$* \$RES_OPTIONS\" >>'$work/calls'"
+resolving='for k in 1 2 3 4 5 6 7 8; do echo "E: Failed to fetch http://deb.debian.org/$k  Temporary failure resolving" >&2; done'
+stub apt-get "$count; $resolving; exit 100"
+says 'no network' 3 "apt-get can't reach the archive: is there a network?" "$named"
+calls 1
+stub apt-get "$count; case \$* in *update) $resolving; exit 0 ;; esac; echo 'E: Unable to locate package' >&2; exit 100"
+says 'no network, no lists' 5 "apt-get can't reach the archive: is there a network?" "$named"
+calls 2
+# what may be absent costs no more
+stub apt-get "$count; $resolving; exit 100"
+rm -f "$work/bin/clang-tidy"
+absent() { # PATTERN
+  PATH=$work/bin sh .ci/setup ci >"$work/out" 2>"$work/err" && [ "$(cat "$work/out")" = ready ] || fail "clang-tidy is a must"
+  grep -q "$1" "$work/err" && [ "$(wc -l <"$work/err")" -le 2 ] || fail "without clang-tidy: $(cat "$work/err")"
+}
+absent "^setup: clang-tidy can't be had without a network: those peers will be absent$"
+calls 1
 stub apt-get 'echo "E: Unable to locate package no-such-compiler" >&2; exit 100'
 says 'an unknown package' 6 '^E: Unable to locate' 'apt-get failed; as root: apt-get update && apt-get install no-such-compiler' "$named"
 uid 1000
 says 'no sudo' 1 'setup: this is missing; as root: apt-get install no-such-compiler' "$named"
+absent '^setup: what some tests and tables compare with is missing; as root: apt-get install clang-tidy$'
 stub sudo 'echo "sudo: a password is required" >&2; exit 1'
 says 'a sudo that refuses' 6 "sudo doesn't let you install packages; ask for it, as root: apt-get install no-such-compiler" "$named"
 
