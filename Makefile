@@ -363,12 +363,11 @@ VERSION = $(shell sed -n 's/.*define ETHD_VERSION "\(.*\)".*/\1/p' include/ethd/
 run_install = PREFIX='$(PREFIX)' LIBDIR='$(LIBDIR)' DESTDIR='$(DESTDIR)' B='$(B)' VERSION='$(VERSION)' \
   PROGRAMS='$(notdir $(PROGRAMS))' SHARE='$(SHARE:$(B)/share/ethd/%=%)' sh .packaging/install
 
-# Manual pages; without help2man (Debian: help2man) none are made, and that is said.
+# Manual pages, of what --help says.
 man: $(B)/man/libethd.3
 $(B)/man/libethd.3: $(PROGRAMS) $(wildcard .packaging/*) $(HEADERS)
 	$(call say,MAN,$(@D))
-	@if command -v help2man >/dev/null; then B='$(B)' VERSION='$(VERSION)' PROGRAMS='$(notdir $(PROGRAMS))' sh .packaging/man; \
-	  else echo 'no help2man (Debian: help2man): no manual pages'; fi
+	$(Q)B='$(B)' VERSION='$(VERSION)' PROGRAMS='$(notdir $(PROGRAMS))' sh .packaging/man
 
 # Pages of the public headers, $(B)/doc/html: every public function with its contract, no warning.
 doc:

@@ -20,7 +20,7 @@ static const char doc[] =
     "that each level leaves, and writes the chosen one to --out, for the key calibration of the device's ring.\n"
     "--self-test does the same with a simulated ring whose laws are known, and says how well they are recovered.\n\n"
     "Example:\n"
-    "  ethd-calibrate --port /dev/ttyUSB0 --rod 0.0075 --record counts.csv --out ring.ini --plot ring.png\n"
+    "  ethd-calibrate --port /dev/ttyUSB0 --record counts.csv --out ring.ini\n"
     "  ethd-calibrate --in counts.csv --level gain --out ring.ini\n"
     "  ethd-calibrate --self-test";
 

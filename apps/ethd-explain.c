@@ -25,7 +25,7 @@ static const char doc[] =
     "Examples:\n"
     "  ethd-explain --generations 200 --work search.journal --out q\n"
     "  ethd-explain --without limits\n"
-    "  ethd-explain --judge n --judge p --judge ./q --csv lines.csv --plot lines.png";
+    "  ethd-explain --judge n --judge p --judge ./q --plot lines.png";
 
 #define JUDGED_MAX 8 /* plants in a picture */
 

@@ -35,13 +35,13 @@ static const char doc[] =
     "  ethd-study --out session\n"
     "  ethd-study my.study --out session --ask\n"
     "  ethd-study --out mine --screen    (tap with the mouse)\n"
-    "  ethd-study device.study --out lab --screen    (with a device: source = people)\n"
-    "  ethd-study my.study --out station-a --participant 1-6    (and 7-12 at another station)\n"
+    "  ethd-study device.study --out lab --screen    (source = people)\n"
+    "  ethd-study my.study --out station-a --participant 1-6    (7-12 elsewhere)\n"
     "  ethd-study --merge station-a station-b --out both\n"
     "  ethd-study --resume session\n"
     "  ethd-study --resume session --exclude 2 --reason \"was told another task\"\n"
     "  ethd-study --verify session\n"
-    "  ethd-study grid.study --simulate 1000 --shard 1/4 --out bulk    (and 2/4, 3/4, 4/4, anywhere)\n"
+    "  ethd-study grid.study --simulate 1000 --shard 1/4 --out bulk    (to 4/4)\n"
     "  ethd-study --merge bulk";
 
 enum {

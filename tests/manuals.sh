@@ -1,6 +1,6 @@
 #!/bin/sh
-# Manual pages and completion: one page for each program, with every option that it has, and one for the library; no warning
-# of man; installed and found.
+# Manual pages and completion: one page for each program, with its name, every option that it has, each example on a line of
+# its own, exit status and environment, and one for the library; no warning of man, or of mandoc where it is; installed and found.
 set -u
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -10,6 +10,10 @@ fail() { echo "FAILED $*"; failed=1; }
 $MAKE --no-print-directory -s B="$BUILD" DESTDIR= PREFIX="$work/usr" install-files >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 pages=$work/usr/share/man
 version=$(sed -n 's/.*define ETHD_VERSION "\(.*\)".*/\1/p' include/ethd/ethd.h)
+linted() { # PAGE
+  command -v mandoc >/dev/null || return 0
+  mandoc -Tlint -W warning "$1" >"$work/warned" 2>&1 || fail "$(head -n 2 "$work/warned")"
+}
 count=0
 for program in "$BUILD"/bin/ethd-*; do
   name=${program##*/} count=$((count + 1))
@@ -19,14 +23,30 @@ for program in "$BUILD"/bin/ethd-*; do
   for option in $("$program" --help | grep -oE '(^|[ ,])--[a-z][-a-z]*' | tr -d ' ,' | sort -u); do
     sed 's/‐/-/g; s/−/-/g' "$work/page" | grep -q -e "$option" || fail "$name.1 has no $option"
   done
-  torn=$("$program" --help | awk '/^Example/ { on = 1 } on && (/^--/ || length > 79)')
-  [ -z "$torn" ] || fail "$name --help: an example is too long for a terminal: $torn"
+  # what stands as it is, examples first of all, is neither broken by argp nor run together in the page
+  ARGP_HELP_FMT=rmargin=1000 "$program" --help | awk '/--version  / { on = 1; next } on && /^  / { sub(/^  /, ""); print }' >"$work/lines"
+  torn=$(awk 'length > 76' "$work/lines")
+  [ -z "$torn" ] || fail "$name --help: too long for a terminal: $torn"
+  sed 's/‐/-/g; s/−/-/g; s/^ *//' "$work/page" >"$work/plain"
+  grep "^$name " "$work/lines" >"$work/examples"
+  grep -vxFf "$work/plain" "$work/examples" >"$work/torn" && fail "$name.1 tears an example: $(cat "$work/torn")"
+  [ -s "$work/examples" ] || fail "$name --help has no example"
+  sed -n '/^NAME$/{n;p;}' "$work/plain" | tr -s ' ' | grep -q "^$name - " || fail "$name.1 is called $(sed -n '/^NAME$/{n;p;}' "$work/plain")"
+  for section in SYNOPSIS DESCRIPTION OPTIONS 'EXIT STATUS' EXAMPLES 'SEE ALSO'; do
+    grep -qx "$section" "$work/plain" || fail "$name.1 has no $section"
+  done
+  linted "$pages/man1/$name.1"
   grep -q "libethd $version" "$work/page" || fail "$name.1 doesn't say its version"
   bash -c '. "$1" && complete -p "$2"' - "$work/usr/share/bash-completion/completions/$name" "$name" >"$work/log" 2>&1 ||
     fail "no completion of $name: $(cat "$work/log")"
 done
 man -l --warnings -Tutf8 "$pages/man3/libethd.3" >"$work/page" 2>"$work/warned"
 [ ! -s "$work/warned" ] || fail "libethd.3: $(head -n 2 "$work/warned")"
+linted "$pages/man3/libethd.3"
+# A variable that a program reads is in a page.
+for variable in $(grep -rhoE 'getenv\("ETHD_[A-Z_]*' apps drivers --include='*.c' | sed 's/.*"//' | sort -u); do
+  [ $variable = ETHD_XENOMAI_VERSION_FILE ] || grep -qx '\\fB'$variable'\\fR' "$pages"/man1/*.1 || fail "no page has $variable"
+done
 for header in include/ethd/*.h; do
   grep -A1 -F "ethd/${header##*/}" "$pages/man3/libethd.3" | tail -n 1 | grep -q '^[A-Za-z].......' || fail "libethd.3 says nothing of ${header##*/}"
 done

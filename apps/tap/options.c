@@ -26,7 +26,7 @@ static const char doc[] =
     "bands of its own.\n\n"
     "Figures, along the wall's normal, positive into it:\n"
     "  v_rvo    the ring's speed as it meets the wall\n"
-    "  v_of     the ring's speed as the finger touches it; near 0 is what a wall does\n"
+    "  v_of     the ring's speed as the finger touches it; 0 is a wall's\n"
     "  d_max    the ring's first rebound after the touch\n"
     "  v_rmin   its smallest speed after the touch: how fast it is thrown back\n"
     "  Delta_s  the time of braking\n"
@@ -35,7 +35,7 @@ static const char doc[] =
     "  ethd-tap\n"
     "  ethd-tap --taps 400 --csv taps.csv --trace traces\n"
     "  ethd-tap --finger motion/avraham_free_mit/avraham_ND_s02_be38_free.csv\n"
-    "  ethd-tap --config mine.ini --transition mine,offset --speed 0.3 --record taps\n"
+    "  ethd-tap --config mine.ini --transition mine,offset --record taps\n"
     "Eight recorded movements come with the programs, in motion: a FILE.csv that isn't there is looked for among them.";
 
 enum {
