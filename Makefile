@@ -64,13 +64,25 @@ $(error $(FOREIGN): make as that user, or remove $(B) as that user, or build els
 endif
 endif
 
-# ---- set-up: before anything compiles, while this file is read ------------------------------
+# ---- one make at a time builds in a tree -------------------------------------------------------
 
 GOALS := $(or $(MAKECMDGOALS),all)
+DRY := $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
+# An object that another one is just writing can't be linked. The tree is locked until what is to run has been built, or until
+# this make ends, which tail waits for. What another make has started (MAKELEVEL) builds under that one's lock.
+ifeq ($(MAKELEVEL)$(DRY),0)
+ifneq ($(filter-out deb doc format format-check tidy ci coverage mutation check-xenomai install-files uninstall clean,$(GOALS)),)
+HOLDER := $(shell mkdir -p '$(B)' && exec 9<'$(B)' && { flock -w 1 9 || { echo 'make: waiting for another make in $(B)' >&2; flock 9; }; } && \
+  { tail --pid=$$PPID -s 0.2 -f /dev/null >/dev/null 2>&1 & echo $$!; })
+endif
+endif
+built = $(if $(HOLDER),@kill $(HOLDER) 2>/dev/null || :)
+
+# ---- set-up: before anything compiles, while this file is read ------------------------------
+
 KINDS := $(if $(filter all demo check bench bench-quick stress ci install tests,$(GOALS)),build) \
          $(if $(filter check stress ci tests,$(GOALS)),check) $(if $(filter demo stress,$(GOALS)),demo) \
          $(if $(filter bench bench-quick,$(GOALS)),bench) $(if $(filter deb,$(GOALS)),build deb) $(if $(filter doc,$(GOALS)),doc)
-DRY := $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 ifneq ($(filter-out no,$(or $(SETUP),yes)),)
 ifneq ($(strip $(KINDS)),)
 ifeq ($(DRY),)
@@ -148,6 +160,7 @@ DRIVERS_LIBS := -linih -lmodbus -lz -lexpat
 
 all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
 tests: all $(if $(SAN),,man) $(addprefix $(B)/tests/,$(call wanted,$(notdir $(UNIT)))) $(PLUGINS) $(TOOLS_C:%.c=$(B)/%) $(RING_PARTS)
+	$(built)
 
 # ---- build ----------------------------------------------------------------------------------
 
@@ -287,6 +300,7 @@ check: $(RUNS) $(TREE_RUN)
 	@sh .ci/summary $(RUNS) $(TREE_RUN)
 
 demo: all
+	$(built)
 	@BUILD='$(B)' sh apps/demo.sh
 
 # Other people's libraries that the benchmarks measure beside ours: ethd-bench loads those that are there.
@@ -300,6 +314,7 @@ $(foreach p,$(wildcard apps/bench/peers/*.c apps/bench/peers/*.cc),$(eval $(call
 
 bench-quick: QUICK := 1
 bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
+	$(built)
 	@BUILD='$(B)' QUICK='$(QUICK)' WHAT='$(WHAT)' sh apps/bench.sh \
 	  'commit $(or $(shell git describe --always --dirty 2>/dev/null),unknown); $(CC) $(BASE)'
 
@@ -308,6 +323,7 @@ stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/te
   $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study $(B)/tests/test_servo_driver \
   $(B)/tests/test_fuzz_map $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile \
   $(B)/tests/volume $(B)/tests/day
+	$(built)
 	ETHD_SCENE_QUERIES=1000000 ETHD_SCENE_OBJECTS=10000000 $(B)/tests/test_scene_tree
 	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
 	BUILD='$(abspath $(B))' PYTHON="$$(sh .ci/setup python)" PLANTS=20 sh tests/identify.sh
@@ -338,6 +354,7 @@ mutation:
 	@BUILD='$(BUILD)' MAKE='$(MAKE)' sh tests/mutation.sh $(or $(COUNT),2000)
 # 1e9 inputs over all readers, and a simulated day: hours, again and again until they are through.
 volume-all: $(B)/tests/volume $(B)/tests/day
+	$(built)
 	@BUILD='$(abspath $(B))' sh tests/volume.sh 1e9
 	@$(B)/tests/day $(B)/day 24 2>$(B)/day.err
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Set-up on machines that lack something, and a tree that somebody else has built: what is missing, why it can't be had and what
-# to do stand in a few lines; whatever the locale, objects are linked in one order. apt-get, sudo and id are stubs here; nothing
-# is installed.
+# to do stand in a few lines; one make at a time builds in a tree, and links objects in one order, whatever the locale.
+# apt-get, sudo and id are stubs here; nothing is installed.
 set -u
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -72,6 +72,21 @@ for goal in all install clean; do
     fail "$goal in a tree of theirs: $(cat "$work/out")"
 done
 chmod u+w "$work/theirs" "$work/theirs/bin"
+
+# ---- a tree in which another make is building ----
+mkdir "$work/ours"
+exec 8<"$work/ours"
+flock 8
+env -u MAKELEVEL ${MAKE:-make} --no-print-directory SETUP=no BUILD="$work/ours" "$work/ours/flags" >"$work/out" 2>&1 8<&- &
+tries=0
+until grep -q "^make: waiting for another make in $work/ours$" "$work/out" || [ $tries = 600 ]; do
+  tries=$((tries + 1))
+  sleep 0.1
+done
+[ $tries -lt 600 ] && [ ! -e "$work/ours/flags" ] || fail "two makes at once: $(cat "$work/out")"
+exec 8<&-
+wait $! && [ -s "$work/ours/flags" ] || fail "after another make: $(cat "$work/out")"
+flock "$work/ours" true || fail 'the tree stays locked'
 
 # ---- one order of linking, whatever the locale; where localedef can make one that sorts otherwise than C ----
 order() { LOCPATH=$work LC_ALL=$1 ${MAKE:-make} --no-print-directory SETUP=no -rpn clean | grep -E '^[A-Z]+_(C|O) :='; }
