@@ -170,13 +170,17 @@ run "" "$work/my tools" uninstall || fail "uninstall from a path with spaces"
 : >"$work/file"
 run "" "$work/file/x" install-files && fail "below a file"
 [ "$(grep -c 'sudo make install' "$work/log")" = 1 ] || fail "no rights: $(cat "$work/log")"
+mkdir "$work/bin"
+printf '#!/bin/sh\nexit 1\n' >"$work/bin/realpath" && chmod +x "$work/bin/realpath"
+PATH=$work/bin:$PATH run "" "$work/no place" install-files && fail "without realpath"
+[ "$(grep -c 'no place, says realpath' "$work/log")" = 1 ] && [ ! -e "$work/no place" ] || fail "without realpath: $(cat "$work/log")"
+rm "$work/bin/realpath"
 run "" relative install-files && fail "a relative path"
 grep -q 'relative: PREFIX and LIBDIR begin with /' "$work/log" || fail "a relative path: $(cat "$work/log")"
 
 # ---- stopped on the way, by a failure or killed: uninstalling leaves nothing, also when that is stopped first ----
-mkdir "$work/bin"
 stops() { # COMMAND CALL ACTION: that call of it is its last
-  printf '#!/bin/sh\necho >>"$0.calls"\n[ "$(wc -l <"$0.calls")" -lt %s ] || { %s; }\nexec %s "$@"\n' "$2" "$3" "$(command -v "$1")" >"$work/bin/$1"
+  printf '#!/bin/sh\necho >>"$0.calls"\n[ "$(wc -l <"$0.calls")" -lt %s ] || { %s; exit 1; }\nexec %s "$@"\n' "$2" "$3" "$(command -v "$1")" >"$work/bin/$1"
   chmod +x "$work/bin/$1"
   : >"$work/bin/$1.calls"
 }
