@@ -33,6 +33,8 @@ for name in ethd ethd-drivers; do
   found=$(PKG_CONFIG_PATH=$at/lib/pkgconfig $PKG_CONFIG --modversion $name)
   [ -n "$version" ] && [ "$found" = "$version" ] || fail "$name.pc says version '$found', ethd.h '$version'"
 done
+mkdir "$work/other" && sed 's/^Version: .*/Version: 99.0.0/' "$at/lib/pkgconfig/ethd.pc" >"$work/other/ethd.pc"
+PKG_CONFIG_PATH=$work/other:$at/lib/pkgconfig $PKG_CONFIG --exists ethd-drivers && fail "ethd-drivers takes another version's ethd"
 echo '/opt/ethd/share/ethd/of_an_earlier_version' >>"$at/share/ethd/installed" && : >"$at/share/ethd/of_an_earlier_version"
 run "$root" /opt/ethd install-files || fail "make install, again"
 [ ! -e "$at/share/ethd/of_an_earlier_version" ] || fail "an earlier version's file stays"
