@@ -377,8 +377,9 @@ tidy:
 # ---- install --------------------------------------------------------------------------------
 
 VERSION = $(shell sed -n 's/.*define ETHD_VERSION "\(.*\)".*/\1/p' include/ethd/ethd.h)
-run_install = PREFIX='$(PREFIX)' LIBDIR='$(LIBDIR)' DESTDIR='$(DESTDIR)' B='$(B)' VERSION='$(VERSION)' \
-  PROGRAMS='$(notdir $(PROGRAMS))' SHARE='$(SHARE:$(B)/share/ethd/%=%)' sh .packaging/install
+quoted = '$(subst ','\'',$(1))'
+run_install = PREFIX=$(call quoted,$(PREFIX)) LIBDIR=$(call quoted,$(LIBDIR)) DESTDIR=$(call quoted,$(DESTDIR)) \
+  B='$(B)' VERSION='$(VERSION)' PROGRAMS='$(notdir $(PROGRAMS))' SHARE='$(SHARE:$(B)/share/ethd/%=%)' sh .packaging/install
 
 # Manual pages, of what --help says.
 man: $(B)/man/libethd.3

@@ -169,6 +169,8 @@ eval "$CC $sanitizer '$work/drivers.c' -o '$work/drivers' $(PKG_CONFIG_PATH="$wo
 [ -n "$sanitizer" ] || "$work/my tools/bin/ethd-tap" --taps 1 >/dev/null || fail "ethd-tap from a path with spaces"
 run "" "$work/my tools" uninstall || fail "uninstall from a path with spaces"
 [ ! -e "$work/my tools" ] || fail "left: $(find "$work/my tools")"
+run "" "$work/somebody's" install-files && [ -x "$work/somebody's/bin/ethd-tap" ] || fail "a path with a quote"
+run "" "$work/somebody's" uninstall && [ ! -e "$work/somebody's" ] || fail "uninstall from a path with a quote"
 : >"$work/file"
 run "" "$work/file/x" install-files && fail "below a file"
 [ "$(grep -c 'sudo make install' "$work/log")" = 1 ] || fail "no rights: $(cat "$work/log")"
