@@ -59,6 +59,20 @@ completed() { # WORDS...: what the last one becomes
     COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); _ethd "$1" "${@: -1}" "${@: -2:1}"; echo "${COMPREPLY[@]}"' - "$work" "$@"
 }
 [ "$(completed ethd-tap --tr)" = "--trace --transition" ] || fail "ethd-tap --tr: $(completed ethd-tap --tr)"
+while read -r expected words; do # what an option takes, in its short and long form; - for nothing of ours
+  found=$(completed $words | tr ' ' ,)
+  [ "${found:--}" = "$expected" ] || fail "$words: completed to $found, not to $expected"
+done <<END
+n,b,p ethd-tap --plant =
+n,b,p ethd-tap -p =
+n,b,p ethd-identify --base =
+paper ethd-tap --validity p
+wall ethd-tune --prefer w
+low,high ethd-tap -s low,h
+abrupt,offset ethd-tap -t abrupt,o
+- ethd-scene -t o
+- ethd-tap --csv o
+END
 case $(completed ethd-tap --transition o) in offset) ;; *) fail "--transition o: $(completed ethd-tap --transition o)" ;; esac
 case $(completed ethd-run --conf) in --config) ;; *) fail "ethd-run --conf: $(completed ethd-run --conf)" ;; esac
 echo "$count pages of programs"
