@@ -175,6 +175,12 @@ ethd_status ethd_config_parse(const char *text, size_t length, const char *name,
   return parse(r, text, length, name, folder, out);
 }
 
+ethd_status ethd_config_parse_received(const char *text, size_t length, const char *name, const char *folder,
+                                       ethd_config **out, char message[ETHD_MESSAGE_MAX]) {
+  const config_reading r = {.received = true, .name = name ? name : "configuration", .message = message};
+  return parse(r, text, length, name, folder, out);
+}
+
 static ethd_status load(const char *path, bool received, ethd_config **out, char *message) {
   const config_reading r = {.received = received, .name = path, .message = message};
   char *text;

@@ -45,6 +45,12 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_parse(const char *text, size_t 
                                                        const char *folder, ethd_config **out,
                                                        char message[ETHD_MESSAGE_MAX]);
 
+/* The same for text that somebody else made: a plugin is refused as ethd_config_load_received refuses it (ETHD_E_LOAD), and
+   no code of theirs runs. */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_parse_received(const char *text, size_t length, const char *name,
+                                                                const char *folder, ethd_config **out,
+                                                                char message[ETHD_MESSAGE_MAX]);
+
 /* Frees the configuration with its scene; destroy the controllers made of it first. NULL is allowed. [main] */
 ETHD_API void ethd_config_free(ethd_config *config);
 

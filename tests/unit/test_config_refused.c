@@ -91,6 +91,19 @@ START_TEST(test_bad_texts) {
 }
 END_TEST
 
+/* Text of somebody else: a plugin is refused by its name, before anybody looks for the file. */
+START_TEST(test_received_text) {
+  const char text[] = "[plugins]\nfile = no.so\n";
+  ethd_config *c = (ethd_config *)&c;
+  ck_assert_int_eq(ethd_config_parse_received(text, strlen(text), "x.ini", "/nowhere", &c, message), ETHD_E_LOAD);
+  ck_assert_ptr_null(c);
+  ck_assert_str_eq(message, "x.ini:2: plugins.file: no.so is a program from outside of this folder; --plugins lets it run");
+  ck_assert_int_eq(ethd_config_parse_received("[contact]\nk_e = 7\n", 18, NULL, NULL, &c, message), ETHD_OK);
+  ck_assert_double_eq(ethd_setup_get(&c->setup, "contact.k_e"), 7);
+  ethd_config_free(c);
+}
+END_TEST
+
 START_TEST(test_too_many_keys) {
   static char text[64 * 1024];
   char *p = text + sprintf(text, "[device]\n");
@@ -153,6 +166,7 @@ int main(void) {
   TCase *all = tcase_create("all");
   tcase_set_timeout(all, 60);
   tcase_add_test(all, test_bad_texts);
+  tcase_add_test(all, test_received_text);
   tcase_add_test(all, test_too_many_keys);
   tcase_add_test(all, test_mutations);
   suite_add_tcase(suite, all);
