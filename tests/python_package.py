@@ -56,6 +56,79 @@ r = ethd.read(folder + "/run")
 assert {"transition", "set"} <= {e.kind for e in r.events} and r.taps is None and r.truth is None
 assert all(step.trace.tobytes() == row.tobytes() for row, step in r.replay())
 
+# what was learned in ticks that aren't there nobody knows: such a recording is read, and not replayed from there on
+subprocess.run([build + "/bin/ethd-run", "--virtual", "--duration", "1", "--record-every", "10", "--config", ini, "--record",
+                folder + "/thin"], input="stop\n", text=True, check=True, stdout=subprocess.DEVNULL)
+thin = ethd.read(folder + "/thin")
+assert len(thin.tick) > 2 and "thinned" in {e.kind for e in thin.events}
+refuses("thin: from tick 0 on it can't be replayed: 1 tick of 10 is recorded", thin.controller)
+refuses("thin: from tick 0 on it can't be replayed: 1 tick of 10 is recorded", lambda: next(thin.replay()))
+
+
+def changed(name, old, new, of="run"):
+    """A copy of a recording with some of events.csv replaced."""
+    subprocess.run(["cp", "-r", folder + "/" + of, folder + "/" + name], check=True)
+    with open(folder + "/" + of + "/events.csv") as file:
+        lines = file.read()
+    assert old in lines
+    with open(folder + "/" + name + "/events.csv", "w") as out:
+        out.write(lines.replace(old, new, 1))
+    return ethd.read(folder + "/" + name)
+
+
+swap = next(e.row for e in r.events if e.kind == "transition")
+lost = changed("lost", f"{swap},transition,", f"{swap},lost,3 ticks before this one found no room\n{swap},transition,")
+steps, lost_steps = lost.replay(), []
+refuses(f"lost: from tick {swap} on it can't be replayed: 3 ticks", lambda: lost_steps.extend(iter(lambda: next(steps), None)))
+# what the law has learned before begins with the recording
+subprocess.run([*tap[:-1], folder + "/ahead", "--transition", "predictive"], check=True, stdout=subprocess.DEVNULL)
+taught = changed("taught", "row,kind,detail\n", "row,kind,detail\n0,learned,0.125 0 0.25 0\n", "ahead")
+assert taught.controller().step(taught.tick[0]).trace["learnt"].tolist() == [0.125, 0, 0.25, 0]
+refuses("learnt[0]: recorded 0, replayed 0.125", taught.verify)
+refuses("learned: 2 numbers, 4 are allowed", changed("taught2", "kind,detail\n", "kind,detail\n0,learned,1 2\n").controller, ValueError)
+refuses("found the kind 'jump'", changed("jump", "kind,detail\n", "kind,detail\n0,jump,1\n").controller, ValueError)
+refuses("events.csv:2: row,kind,detail are allowed", lambda: changed("odd_row", "kind,detail\n", "kind,detail\n,set,1\n"), ValueError)
+
+# ---- tables: an empty cell is no number, and none is made up for it; text stays text ----
+whole = ethd.read(taps).taps
+brakes = np.isin(whole["transition"], ["offset", "predictive"])
+assert whole["delta_s_ms"].dtype == np.float64 and np.isnan(whole["delta_s_ms"][~brakes]).all() and (whole["delta_s_ms"][brakes] >= 0).any()
+assert whole["seed"].dtype == np.int64 and whole["valid"].dtype == np.int64 and set(whole["valid"]) <= {0, 1}
+subprocess.run([*tap[:-1], folder + "/abrupt", "--transition", "abrupt"], check=True, stdout=subprocess.DEVNULL)
+assert np.isnan(ethd.read(folder + "/abrupt").taps["delta_s_ms"]).all()
+cells = 'n,few,big,text,eps_m,none_m,none\n1,4,,"a, # ""b""",0,,\n2,,9007199254740993,,1,,\n'
+with open(folder + "/odd_taps.csv", "w") as out:
+    out.write(cells)
+odd_taps = ethd.table.table(folder + "/odd_taps.csv")
+assert odd_taps["n"].tolist() == [1, 2] and odd_taps["n"].dtype == np.int64 and odd_taps["text"].tolist() == ['a, # "b"', ""]
+assert odd_taps["few"][0] == 4 and np.isnan(odd_taps["few"][1]) and odd_taps["eps_m"].dtype == np.float64
+assert odd_taps["big"].tolist() == ["", "9007199254740993"] and np.isnan(odd_taps["none_m"]).all() and odd_taps["none"].tolist() == ["", ""]
+with open(folder + "/odd_taps.csv", "a") as out:
+    out.write("3,4\n")
+refuses("odd_taps.csv:4: found 2 cells, 7 are allowed", lambda: ethd.table.table(folder + "/odd_taps.csv"), ValueError)
+
+# ---- a study: its tables, and each tap's recording, equal to the bit ----
+with open(folder + "/a.study", "w") as out:
+    out.write("[study]\nparticipants = 2\nstrategies = smooth,predictive\nspeeds = low\ntraining = 1\ntaps = 1\nattempts = 3\n")
+subprocess.run([build + "/bin/ethd-study", folder + "/a.study", "--out", folder + "/study", "--quiet"], check=True, stdout=subprocess.DEVNULL)
+study = ethd.read(folder + "/study")
+assert isinstance(study, ethd.Study) and study.config["study"]["participants"] == "2"
+assert study.participants["participant"].tolist() == ["P01", "P02"] and set(study.taps["transition"]) == {"smooth", "predictive"}
+assert study.events["event"].tolist()[0] == "open" and len(study.orders) == 6 and len(study.survey) == 0
+trials = list(study.trials())
+assert len(trials) == len(study.taps) and (study.taps["part"] == "test").sum() == study.participants["taps"].sum()
+for at, trial in trials:
+    assert trial.taps.shape == (1,) and trial.taps["seed"][0] == at["seed"] and trial.taps["tap"][0] == at["tap"]
+    assert all(step.trace.tobytes() == row.tobytes() for row, step in trial.replay())
+assert len(study.trial(study.taps[0]).tick) > 100
+subprocess.run(["rm", "-r", trials[0][1].folder], check=True)
+assert len(list(study.trials())) == len(trials) - 1
+refuses("that tap's ticks aren't there", lambda: study.trial(study.taps[0]), FileNotFoundError)
+os.makedirs(folder + "/begun", exist_ok=True)
+open(folder + "/begun/study.ini", "w").close()
+refuses("no study there that was begun: it has no taps.csv", lambda: ethd.read(folder + "/begun"), FileNotFoundError)
+refuses("no recording there, which has a tick.npy, and no study", lambda: ethd.read(folder), FileNotFoundError)
+
 # rows of other columns aren't taken for these, and objects aren't unpickled
 whole, odd = r.tick, folder + "/odd"
 subprocess.run(["cp", "-r", folder + "/run", odd], check=True)
@@ -67,7 +140,7 @@ np.save(odd + "/tick.npy", np.array([print], object))
 refuses("", lambda: ethd.read(odd), ValueError)
 
 # ---- a configuration, changes while it runs, events ----
-sense = np.zeros((), ethd.controller.SENSE)
+sense = np.zeros((), ethd.SENSE)
 sense["have"], sense["finger"], sense["q"] = 2, (0.26, 0.25), r.tick["q"][0]
 c = ethd.Controller("[contact]\nk_e = 500\n[tracking]\nk_t = 30\n")
 before = c.step(sense).tau
@@ -85,11 +158,31 @@ with open(folder + "/run/config.ini", "a") as file:
 refuses("ethd.read(folder, plugins=True) lets it run", lambda: ethd.read(folder + "/run").controller())
 refuses("plug", lambda: ethd.read(folder + "/run").verify())
 refuses("somebodys.so", lambda: ethd.read(folder + "/run", plugins=True).controller())
-refuses("no recording there", lambda: ethd.read(folder), FileNotFoundError)
-os.makedirs(folder + "/study", exist_ok=True)
-open(folder + "/study/study.ini", "w").close()
-refuses("a study's folder, not a recording: each tap is one, in ", lambda: ethd.read(folder + "/study"), FileNotFoundError)
-refuses("at least the", lambda: c.step(np.zeros(3)), ValueError)
+# whatever names a plugin, nothing is opened for a controller that is told not to: this one isn't even looked for
+theirs = "[plugins]\nfile = somebodys.so\n"
+with open(folder + "/theirs.ini", "w") as file:
+    file.write(theirs)
+calm = ethd.Controller(plugins=False)
+for source in theirs, folder + "/theirs.ini":
+    refuses("somebodys.so is a program from outside of this folder; plugins=True lets it run", lambda: ethd.Controller(source, plugins=False))
+    refuses("somebodys.so is a program from outside of this folder; plugins=True lets it run", lambda: calm.post(source))
+    refuses("No such file", lambda: ethd.Controller(source))
+
+# ---- rows: those of SENSE's fields are taken, whatever else they hold; none is read as something that it isn't ----
+fields = [(name, ethd.SENSE[name]) for name in ethd.SENSE.names]
+packed = np.zeros((), [("mine", "u1"), *fields[::-1]])
+for name in ethd.SENSE.names:
+    packed[name] = r.tick[0][name]
+a, b = ethd.Controller(), ethd.Controller()
+assert a.step(packed).trace.tobytes() == b.step(r.tick[0]).trace.tobytes() == ethd.Controller().step(r.tick[:1][0]).trace.tobytes()
+refuses("rays: missing in the row", lambda: c.step(np.zeros((), [f for f in fields if f[0] != "rays"])), ValueError)
+refuses("time_ns: found >i8, int64 is allowed", lambda: c.step(np.zeros((), ethd.SENSE.newbyteorder(">"))), ValueError)
+refuses("q: found ('<f4', (2,)), ('<f8', (2,)) is allowed",
+        lambda: c.step(np.zeros((), [(n, ("<f4", (2,)) if n == "q" else t) for n, t in fields])), ValueError)
+refuses("the shape (3,); a tick takes one row", lambda: c.step(r.tick[:3]), ValueError)
+refuses("found ndarray; a row of", lambda: c.step(np.zeros(600)), TypeError)
+refuses("found bytes; a row of", lambda: c.step(bytes(1000)), TypeError)
+assert ethd.TRACE == r.tick.dtype and set(ethd.UNITS) == set(ethd.TRACE.names) and ethd.UNITS["dq"] == "rad/s"
 sense["q"] = np.nan
 assert c.step(sense).safe and any(e.kind == "fault" and "possible" in e.text for e in c.events())
 
@@ -118,7 +211,7 @@ def broken(p, state, contact, out):
 
 wall = "[scene]\nfile = wall.scene\n"
 open(folder + "/own.ini", "w").write(wall)
-inside = np.zeros((), ethd.controller.SENSE)
+inside = np.zeros((), ethd.SENSE)
 inside["have"], inside["finger"] = 2, (0.246, 0.25)
 deep = ethd.read(taps).tick
 inside["q"] = deep["q"][np.nanargmin(deep["d_re"])]

@@ -5,6 +5,7 @@
     r.tick["tau"]                           # (n, 2) Nm; r.tick.dtype names every field
     for row, step in r.replay(): step.tau   # run again, events too: equal to row["tau"], to the bit
     c = r.controller()                      # one as the recording began; c.step(row) as you like
+    s = ethd.read("study")                  # a folder of ethd-study: s.taps, s.participants, s.trials()
 
 SI units and radians, frame R_0: x right, y up. Nothing here is realtime.
 """
@@ -21,14 +22,16 @@ except ImportError as error:
 finally:
     _sys.setdlopenflags(_before)
 
-from ethd.controller import Controller, Event, Step
+from ethd.controller import SENSE, TRACE, UNITS, Controller, Event, Step
 from ethd.errors import Busy, Error
 from ethd.law import Law, Param, contact_law, laws, tracking_law, transition_law
-from ethd.recording import Recording, read
+from ethd.reading import read
+from ethd.recording import RecordedEvent, Recording
 from ethd.scene import Nearest, Scene
+from ethd.study import Study
 
 __version__: str = _native.ffi.string(_native.lib.ETHD_VERSION).decode()
 __all__ = [
-    "Busy", "Controller", "Error", "Event", "Law", "Nearest", "Param", "Recording", "Scene", "Step",
-    "contact_law", "laws", "read", "tracking_law", "transition_law",
+    "SENSE", "TRACE", "UNITS", "Busy", "Controller", "Error", "Event", "Law", "Nearest", "Param", "RecordedEvent", "Recording",
+    "Scene", "Step", "Study", "contact_law", "laws", "read", "tracking_law", "transition_law",
 ]

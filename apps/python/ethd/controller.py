@@ -1,13 +1,13 @@
 """A controller: one call a tick, the very code that a device's loop runs."""
 import os
-from typing import Any, List, Mapping, NamedTuple, Optional, Union
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ethd._native import ffi, lib
 from ethd.errors import Error, check, check_error, text
-from ethd.law import Law, laws
+from ethd.law import Law, listed
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -26,11 +26,39 @@ def _row(size: int) -> Any:
     return np.dtype(fields)
 
 
-_SENSE_BYTES: int = ffi.sizeof("ethd_sense")
-#: A row of tick.npy: what was sensed, then what the tick worked out.
-TRACE: Any = _row(ffi.sizeof("ethd_trace"))
+def _units() -> Dict[str, str]:
+    found, i = {}, 0
+    while lib.ethd_trace_columns[i].name != ffi.NULL:
+        c = lib.ethd_trace_columns[i]
+        found[ffi.string(c.name).decode()] = ffi.string(c.unit).decode()
+        i += 1
+    return found
+
+
+#: A row of tick.npy: what was sensed, then what the tick worked out. include/ethd/sense.h says what each field means.
+TRACE: "np.dtype[np.void]" = _row(ffi.sizeof("ethd_trace"))
 #: A row that only says what is sensed.
-SENSE: Any = _row(_SENSE_BYTES)
+SENSE: "np.dtype[np.void]" = _row(ffi.sizeof("ethd_sense"))
+#: The unit of each field of a row ("rad", "m/s", ..), "1" of a number without one.
+UNITS: Dict[str, str] = _units()
+
+
+def _sensed(row: Any) -> bytes:
+    """What `row` senses, as the library's bytes; of other fields than its own a row isn't taken."""
+    if not isinstance(row, (np.void, np.ndarray)) or row.dtype.names is None:
+        raise TypeError(f"found {type(row).__name__}; a row of a recording's tick, or one of ethd.SENSE, is allowed")
+    if row.shape:
+        raise ValueError(f"found an array of the shape {row.shape}; a tick takes one row, as array[0] is one")
+    if row.dtype in (TRACE, SENSE):
+        return row.tobytes()
+    sense = np.zeros((), SENSE)
+    for name in SENSE.names or ():
+        if name not in row.dtype.names:
+            raise ValueError(f"{name}: missing in the row; all fields of ethd.SENSE are needed")
+        if row.dtype[name] != SENSE[name]:
+            raise ValueError(f"{name}: found {row.dtype[name]}, {SENSE[name]} is allowed, as in ethd.SENSE")
+        sense[name] = row[name]
+    return sense.tobytes()
 
 
 class Step(NamedTuple):
@@ -59,9 +87,10 @@ class Config:
         path = os.fspath(source) if source is not None else None
         if path is not None and "\n" in path:
             data = path.encode()
-            status = lib.ethd_config_parse(data, len(data), b"configuration", os.getcwd().encode(), made, message)
+            parse = lib.ethd_config_parse if plugins else lib.ethd_config_parse_received
+            status = parse(data, len(data), b"configuration", os.fsencode(os.getcwd()), made, message)
         else:
-            load = lib.ethd_config_load if plugins else lib.ethd_config_load_received
+            load = lib.ethd_config_load if plugins or path is None else lib.ethd_config_load_received
             status = load(os.fsencode(path) if path is not None else ffi.NULL, made, message)
         check(status, message)
         self.c = ffi.gc(made[0], lib.ethd_config_free)
@@ -70,11 +99,13 @@ class Config:
 class Controller:
     """A controller for a configuration: a file's path, the text itself (of several lines), or None for all defaults.
 
-    Relative paths in a file start at its folder. None of this is realtime. With plugins=False a configuration that names
-    plug-ins is refused, since in somebody else's folder they are somebody else's programs.
+    Relative paths in a file start at its folder, in a text at the working directory. None of this is realtime. With
+    plugins=False a configuration that names plug-ins is refused, now or in post(), and none is opened: in somebody else's
+    folder they are somebody else's programs.
     """
 
     def __init__(self, config: Optional[Path] = None, plugins: bool = True):
+        self._plugins = plugins
         self._config = Config(config, plugins)
         self._setup = ffi.new("ethd_setup *", self._config.c.setup)
         self._command = ffi.new("ethd_command *")
@@ -88,11 +119,10 @@ class Controller:
         self._control = ffi.gc(made[0], lib.ethd_control_destroy)
 
     def step(self, row: Union[np.void, NDArray[Any]]) -> Step:
-        """One tick of what `row` senses: a row of a recording's tick, or one of ethd.controller.SENSE."""
+        """One tick of what `row` senses: a row of a recording's tick, or one of ethd.SENSE, or of any dtype that has SENSE's
+        fields, each of the same type. rad, rad/s, m and m/s in R_0, ns; UNITS has the unit of each."""
+        data = _sensed(row)
         trace: Any = np.zeros((), TRACE)
-        data = row.tobytes() if isinstance(row, (np.void, np.ndarray)) else bytes(row)
-        if len(data) < _SENSE_BYTES:
-            raise ValueError(f"a row has {len(data)} bytes; at least the {_SENSE_BYTES} of ethd.controller.SENSE are needed")
         status = lib.python_step(self._control, data, self._command, ffi.from_buffer("char[]", trace))
         tau = np.array((self._command.torque[0], self._command.torque[1]))
         return Step(tau, trace[()], int(status), bool(self._command.safe))
@@ -112,7 +142,7 @@ class Controller:
             for key, value in config.items():
                 self._change(setup, key, value)
         else:
-            read = Config(config)
+            read = Config(config, self._plugins)
             setup[0] = read.c.setup
         self._post(setup)
         self._config = read
@@ -133,7 +163,7 @@ class Controller:
             self._laws.append(value)
         elif key in ("tracking.law", "contact.law"):
             kind = key.split(".")[0]
-            known = {law.id: law for law in laws() if law.kind == kind}
+            known = {law.id: law for law in self._laws_known() if law.kind == kind}
             if value not in known:
                 raise Error(lib.ETHD_E_UNKNOWN, f"{key}: found {value!r}, {', '.join(known)} are allowed")
             self._change(setup, key, known[value])
@@ -142,6 +172,10 @@ class Controller:
         else:
             words = value if isinstance(value, str) else repr(float(value))
             check(lib.ethd_config_set(self._config.c, key.encode(), words.encode(), setup, message), message)
+
+    def _laws_known(self) -> List[Law]:
+        """The library's laws and those of the configuration's plugins."""
+        return listed(self._config.c.laws)
 
     def events(self) -> List[Event]:
         """What has happened since the last call, in order."""

@@ -21,11 +21,13 @@ def text() -> Any:
     return ffi.new("char[]", 512)
 
 
-def check(status: int, message: Any, what: str = "") -> None:
-    """Raises unless the call whose message this is went well. `what` is for a call without a message."""
+def check(status: int, message: Any, what: str = "", plugins: str = "plugins=True") -> None:
+    """Raises unless the call whose message this is went well. `what` is for a call without a message; `plugins` is what a
+    user writes here in place of --plugins, the option of the library's programs."""
     if status == lib.ETHD_OK:
         return
     said = ffi.string(message).decode(errors="replace") if message is not None else ""
+    said = said.replace("--plugins lets", plugins + " lets")
     sentence = said or (what + ": " if what else "") + ffi.string(lib.ethd_status_sentence(status)).decode()
     raise (Busy if status == lib.ETHD_BUSY else Error)(status, sentence)
 

@@ -44,13 +44,18 @@ def describe(law: Any) -> Law:
     return Law(kind, _word(law.id), _word(law.brief), params, (ffi.cast(f"const ethd_{kind}_law *", law), None))
 
 
-def laws() -> List[Law]:
-    """All laws that are built in, with their parameters."""
+def listed(table: Any) -> List[Law]:
+    """The laws of a table that ends with NULL."""
     found, i = [], 0
-    while lib.ethd_laws[i] != ffi.NULL:
-        found.append(describe(lib.ethd_laws[i]))
+    while table[i] != ffi.NULL:
+        found.append(describe(table[i]))
         i += 1
     return found
+
+
+def laws() -> List[Law]:
+    """All laws that are built in, with their parameters."""
+    return listed(lib.ethd_laws)
 
 
 def _made(kind: str, id: str, step: Callable[..., Any], brief: str, params: Dict[str, Any], numbers: int, alive: List[Any]) -> Law:

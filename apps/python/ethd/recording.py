@@ -2,7 +2,7 @@
 import configparser
 import csv
 import os
-from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple, Union
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,65 +10,101 @@ from numpy.typing import NDArray
 from ethd._native import ffi, lib
 from ethd.controller import TRACE, Controller, Step
 from ethd.errors import Error, check, text
+from ethd.table import table
+
+
+PLUGINS = "ethd.read(folder, plugins=True)"
+#: What an event does to the controller of a replay.
+KINDS = {"setup": "fresh", "transition": "changed", "set": "changed", "clear": "clear", "heat": "hot", "learned": "taught",
+         "thinned": "", "lost": "", "fault": "", "end": ""}
 
 
 class RecordedEvent(NamedTuple):
     """A line of events.csv; the event comes before row `row` of tick."""
 
     row: int
-    kind: str  #: setup, start, transition, set, clear, heat, fault
+    kind: str  #: setup, start, transition, set, clear, heat, learned, fault, lost, thinned, end: include/ethd/record.h
     detail: str
 
 
+def _event(where: str, cells: Dict[str, Any]) -> RecordedEvent:
+    row, kind, detail = cells.get("row"), cells.get("kind"), cells.get("detail")
+    if not (row and row.isdecimal() and kind) or detail is None or len(cells) != 3:
+        raise ValueError(f"{where}: row,kind,detail are allowed, the row a number")
+    return RecordedEvent(int(row), kind, detail)
+
+
+def ini(path: str) -> configparser.ConfigParser:
+    """A file of sections and keys, as it stands: nothing of it is checked, opened or run."""
+    found = configparser.ConfigParser(inline_comment_prefixes=(";",), interpolation=None, strict=False)
+    found.read(path, encoding="utf-8")
+    return found
+
+
 class Recording:
-    """A recording's folder. `tick` is mapped from its file, not copied; a file that the folder lacks is None."""
+    """A recording's folder. `tick` is mapped from its file, not copied; a file that the folder lacks is None. Reading runs
+    nothing that the folder brings along: its plug-ins are opened by controller(), replay() and verify(), and only with
+    plugins=True."""
+
+    tick: NDArray[Any]  #: a row a tick, of the dtype ethd.TRACE; ethd.UNITS has the unit of each field, positions are in R_0
+    truth: Optional[NDArray[Any]]  #: of a simulation, a row a tick: what was true (m, m/s, N; R_0)
+    taps: Optional[NDArray[Any]]  #: a row a tap, NaN where a number isn't defined
+    events: List[RecordedEvent]
+    config: configparser.ConfigParser  #: config.ini
 
     def __init__(self, folder: str, plugins: bool = False):
         self.folder = folder
         self._plugins = plugins
-        self.tick: NDArray[Any] = np.load(os.path.join(folder, "tick.npy"), mmap_mode="r")
-        self.truth: Optional[NDArray[Any]] = self._array("truth.npy")
-        self.taps: Optional[NDArray[Any]] = self._table("taps.csv")
+        self.tick = np.load(os.path.join(folder, "tick.npy"), mmap_mode="r")
+        self.truth = self._array("truth.npy")
+        self.taps = self._table("taps.csv", "tap.csv")
         self.events = self._events()
-        self.config = configparser.ConfigParser(inline_comment_prefixes=(";",), interpolation=None, strict=False)
-        self.config.read(os.path.join(folder, "config.ini"), encoding="utf-8")
+        self.config = ini(os.path.join(folder, "config.ini"))
 
     def _array(self, name: str) -> Optional[NDArray[Any]]:
         path = os.path.join(self.folder, name)
         return np.load(path, mmap_mode="r") if os.path.exists(path) else None
 
-    def _table(self, name: str) -> Optional[NDArray[Any]]:
-        path = os.path.join(self.folder, name)
-        if not os.path.exists(path):
-            return None
-        return np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True, dtype=None, encoding="utf-8"))
+    def _table(self, *names: str) -> Optional[NDArray[Any]]:
+        paths = [os.path.join(self.folder, name) for name in names]
+        return next((table(path) for path in paths if os.path.exists(path)), None)
 
     def _events(self) -> List[RecordedEvent]:
         path = os.path.join(self.folder, "events.csv")
         if not os.path.exists(path):
             return []
         with open(path, encoding="utf-8", newline="") as file:
-            return [RecordedEvent(int(e["row"]), e["kind"], e["detail"]) for e in csv.DictReader(file)]
+            return [_event(f"{path}:{i + 2}", e) for i, e in enumerate(csv.DictReader(file))]
 
     def _open(self) -> Controller:
         if self.tick.dtype != TRACE:
             raise ValueError(f"{self.folder}/tick.npy: other columns than those of this version of libethd: it can't be replayed")
+        self._refuse_missing([e for e in self.events if e.row == 0])
         try:
             return Controller(os.path.join(self.folder, "config.ini"), self._plugins)
-        except Error as e: # the library names its programs' option
-            raise Error(e.status, str(e).replace("--plugins lets it run", "ethd.read(folder, plugins=True) lets it run")) from None
+        except Error as e:
+            raise Error(e.status, str(e).replace("plugins=True lets", PLUGINS + " lets")) from None
+
+    def _refuse_missing(self, events: List[RecordedEvent]) -> None:
+        """What was learned in ticks that aren't there, nobody knows: what comes after them can't be replayed."""
+        for e in events:
+            if e.kind in ("thinned", "lost"):
+                raise Error(lib.ETHD_E_UNFINISHED, f"{self.folder}: from tick {e.row} on it can't be replayed: {e.detail}")
 
     def controller(self) -> Controller:
-        """A controller set up as the recording began: its configuration, then the events before row 0."""
+        """A controller set up as the recording began: its configuration, then the events before row 0. Error: ticks are
+        missing from the beginning, as in a recording of every tenth."""
         c = self._open()
         _Replay(c).before([e for e in self.events if e.row == 0], first=True)
         return c
 
     def replay(self) -> Iterator[Tuple[np.void, Step]]:
-        """Yields each recorded row with the library's present result for it; the recording's events act at their rows."""
+        """Yields each recorded row with the library's present result for it; the recording's events act at their rows.
+        Error: ticks are missing before this row."""
         c = self._open()
         replay, rows = _Replay(c), self._by_row()
         for i in range(len(self.tick)):
+            self._refuse_missing(rows.get(i, []))
             if i == 0 or i in rows:
                 replay.before(rows.get(i, []), first=i == 0)
             yield self.tick[i], c.step(self.tick[i])
@@ -83,7 +119,7 @@ class Recording:
     def verify(self) -> str:
         """Replays the folder within the library and returns its sentence. Error: the first tick and field that differ."""
         message = text()
-        check(lib.ethd_recording_verify(os.fsencode(self.folder), self._plugins, message), message)
+        check(lib.ethd_recording_verify(os.fsencode(self.folder), self._plugins, message), message, plugins=PLUGINS)
         return str(ffi.string(message).decode())
 
 
@@ -93,13 +129,14 @@ class _Replay:
     def __init__(self, controller: Controller):
         self.c = controller
         self.heat = ffi.new("double[2]")
+        self.learned = ffi.new("double[]", TRACE["learnt"].shape[0])
 
     def before(self, events: List[RecordedEvent], first: bool) -> None:
         c, done = self.c, {"fresh"} if first else set()
         setup = ffi.new("ethd_setup *", c._setup[0])
         for e in events:
             done.add(self._take(e, setup))
-        if done & {"fresh", "warm"} and not (done <= {"warm", "hot", ""} and not first):
+        if done & {"fresh", "warm"} and not (done <= {"warm", "hot", "taught", ""} and not first):
             c._setup = setup
             c._create()
         elif "warm" in done:
@@ -110,6 +147,8 @@ class _Replay:
             c.clear()
         if "hot" in done:
             lib.ethd_control_heated(c._control, self.heat)
+        if "taught" in done:
+            lib.ethd_control_taught(c._control, self.learned)
 
     def _take(self, e: RecordedEvent, setup: Any) -> str:
         if e.kind == "setup":
@@ -119,21 +158,18 @@ class _Replay:
         elif e.kind == "set":
             self.c._change(setup, *e.detail.split(" ", 1))
         elif e.kind == "heat":
-            self.heat[0], self.heat[1] = map(float, e.detail.split())
-        kinds = {"setup": "fresh", "transition": "changed", "set": "changed", "clear": "clear", "heat": "hot"}
-        return ("warm" if e.detail == "enabled" else "fresh") if e.kind == "start" else kinds.get(e.kind, "")
+            self._numbers(e, self.heat)
+        elif e.kind == "learned":
+            self._numbers(e, self.learned)
+        elif e.kind == "start":
+            return "warm" if e.detail == "enabled" else "fresh"
+        elif e.kind not in KINDS:
+            raise ValueError(f"events.csv: row {e.row}: found the kind {e.kind!r}; {', '.join(KINDS)}, start are allowed")
+        return KINDS[e.kind]
 
-
-def read(folder: Union[str, "os.PathLike[str]"], plugins: bool = False) -> Recording:
-    """A recording: .tick (structured array), .events, .config, .truth and .taps where there are any.
-
-    With plugins=True the plug-ins that it names are loaded for its controllers: they are programs that run with your rights.
-    """
-    path = os.fspath(folder)
-    if not os.path.exists(os.path.join(path, "tick.npy")):
-        if os.path.exists(os.path.join(path, "study.ini")):
-            raise FileNotFoundError(
-                f"{path}: a study's folder, not a recording: each tap is one, in {os.path.join(path, 'taps')}; taps.csv has all figures"
-            )
-        raise FileNotFoundError(f"{path}: no recording there: it has no tick.npy")
-    return Recording(path, plugins)
+    def _numbers(self, e: RecordedEvent, to: Any) -> None:
+        words = e.detail.split(" ")
+        if len(words) != len(to):
+            raise ValueError(f"events.csv: row {e.row}: {e.kind}: {len(words)} numbers, {len(to)} are allowed")
+        for i, word in enumerate(words):
+            to[i] = float(word)

@@ -1,0 +1,45 @@
+"""Tables: CSV files of the programs as structured arrays. An empty cell is a number that isn't defined, or wasn't asked."""
+import csv
+import re
+from typing import Any, List
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: A unit in a column's name says that it is one of real numbers, even where it has none, or has whole ones by chance.
+_UNITS = re.compile(r".*_(m|mm|s|ms|mps|rad|radps|n|nm|hz)")
+_INTEGER = re.compile(r"-?[0-9]+")
+_NUMBER = re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?|[-+]?(nan|inf)")
+
+
+def _column(name: str, cells: List[str]) -> NDArray[Any]:
+    """int64 if each cell is an integer; float64, NaN where a cell is empty, if they are numbers; else text."""
+    given = [cell for cell in cells if cell]
+    has_unit = _UNITS.fullmatch(name) is not None
+    numbers = all(_NUMBER.fullmatch(cell) for cell in given) and (bool(given) or has_unit)
+    integers = numbers and not has_unit and all(_INTEGER.fullmatch(cell) for cell in given)
+    if integers and len(given) == len(cells) and all(-(2**63) <= int(cell) < 2**63 for cell in cells):
+        return np.array([int(cell) for cell in cells], np.int64)
+    # an integer that a float64 can't hold would become another one
+    if numbers and not (integers and any(int(float(cell)) != int(cell) for cell in given)):
+        return np.array([float(cell) if cell else np.nan for cell in cells], np.float64)
+    return np.array(cells, np.str_) if cells else np.array([], "U1")
+
+
+def table(path: str) -> NDArray[Any]:
+    """A row for each line after the first, which names the columns."""
+    with open(path, encoding="utf-8", newline="") as file:
+        reader = csv.reader(file, strict=True)
+        names = next(reader, [])
+        rows = []
+        for row in reader:
+            if len(row) != len(names):
+                raise ValueError(f"{path}:{reader.line_num}: found {len(row)} cells, {len(names)} are allowed")
+            rows.append(row)
+    if not names or "" in names or len(set(names)) != len(names):
+        raise ValueError(f"{path}:1: a name for each column is needed, and each once")
+    columns = [_column(name, [row[i] for row in rows]) for i, name in enumerate(names)]
+    found: Any = np.empty(len(rows), [(name, column.dtype) for name, column in zip(names, columns)])
+    for name, column in zip(names, columns):
+        found[name] = column
+    return found  # type: ignore[no-any-return]
