@@ -1,13 +1,14 @@
 #!/bin/sh
-# apps/python, installed by pip: with the build and the distribution's numpy, then with an installed tree and PyPI's numpy
-# (skipped where PyPI can't be reached). The source tree stays as it is; types are checked where mypy can be had.
+# apps/python, installed by pip: with the build and the distribution's numpy, then from its sdist, with an installed tree and
+# PyPI's numpy (skipped where PyPI can't be reached). The source tree stays as it is; types are checked, also those that a
+# user sees.
 set -u
 [ -z "${SAN:-}" ] || { echo "SKIP: Python isn't made for sanitizers"; exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 python3=$(sh .ci/setup python) || { echo "FAILED: no python3 with numpy, which .ci/setup check brings"; exit 1; }
 # pip makes its package from a copy; include lies where a tree has it
-mkdir -p "$work/tree/apps" "$work/data" && cp -r apps/python "$work/tree/apps" && cp -r include "$work/tree"
+mkdir -p "$work/tree/apps" "$work/data" && cp -r apps/python "$work/tree/apps" && cp -r include LICENSE "$work/tree"
 installed() { # VENV PACKAGES...
   venv=$1
   shift
@@ -25,20 +26,50 @@ tried "$work/own" own || exit 1
 [ -z "$(cd "$work/tree/apps/python" && find . -name build -o -name '*.egg-info')" ] || { echo "FAILED: pip leaves files in the source tree"; exit 1; }
 
 $MAKE --no-print-directory -s B="$BUILD" DESTDIR= PREFIX="$work/usr" install-files >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-# PyPI's packages are fetched once for a build
-pypi=$BUILD/peers/numpy
-mkdir -p "$BUILD/peers"
-"$pypi/bin/python" -c 'import cffi, mypy, numpy, setuptools, wheel' 2>/dev/null ||
-  { rm -rf "$pypi" && "$python3" -m venv "$pypi" && installed "$pypi" numpy cffi setuptools wheel mypy==1.18.2; } ||
-  { tail -n 1 "$work/pip"; echo "SKIP: PyPI can't be reached for its numpy"; exit 77; }
+pypi=$(sh .ci/venv numpy numpy==2.2.6 cffi==1.17.1 setuptools==80.9.0 wheel==0.45.1 build==1.3.0 mypy==1.18.2) ||
+  { echo "SKIP: PyPI can't be reached for its numpy"; exit 77; }
 mv "$work/tree/include" "$work/tree/not_include"
-PKG_CONFIG_PATH=$work/usr/lib/pkgconfig installed "$pypi" --no-build-isolation --target "$work/site" --no-deps "$work/tree/apps/python" ||
-  { cat "$work/pip"; echo "FAILED: pip install, with an installed libethd"; exit 1; }
+export PKG_CONFIG_PATH="$work/usr/lib/pkgconfig"
+# What is given on holds all that it takes to install it elsewhere, licence included.
+"$pypi/bin/python" -m build --sdist --no-isolation --outdir "$work/dist" "$work/tree/apps/python" >"$work/pip" 2>&1 ||
+  { cat "$work/pip"; echo "FAILED: no sdist"; exit 1; }
+[ -z "$(cd "$work/tree/apps/python" && find . -name build -o -name '*.egg-info')" ] || { echo "FAILED: an sdist leaves files in the source tree"; exit 1; }
+installed "$pypi" --no-build-isolation --target "$work/site" --no-deps "$work"/dist/ethd-*.tar.gz ||
+  { cat "$work/pip"; echo "FAILED: pip install of the sdist, with an installed libethd"; exit 1; }
+cmp LICENSE "$work"/site/ethd-*.dist-info/licenses/LICENSE || { echo "FAILED: the licence isn't installed"; exit 1; }
+unset PKG_CONFIG_PATH
 export PYTHONPATH="$work/site"
 tried "$pypi" pypi || exit 1
-(cd "$work/tree/apps/python" && "$pypi/bin/mypy" --strict --ignore-missing-imports --disable-error-code=type-arg ethd) >"$work/mypy" 2>&1 ||
+(cd "$work/tree/apps/python" && "$pypi/bin/mypy" --strict ethd) >"$work/mypy" 2>&1 ||
   { cut -c1-200 "$work/mypy"; echo "FAILED: types"; exit 1; }
 tail -n 1 "$work/mypy"
+# A user's program: what is right passes, each line that is wrong is seen.
+cat >"$work/user.py" <<'END'
+from typing import Any, Dict
+
+import ethd
+import numpy as np
+
+
+@ethd.transition_law("mine", brake=(60, 0, 1000, "Ns/m"))
+def mine(p: Dict[str, float], state: Any, contact: Any, out: Any) -> None:
+    out.damping = p["brake"]
+
+
+recording = ethd.read("taps")
+taus = [step.tau for row, step in recording.replay()]
+c = recording.controller()
+c.post({"transition.law": mine, "contact.k_e": 500})
+torque: float = float(c.step(np.zeros((), ethd.SENSE)).tau[0])
+study = ethd.Study("study")
+valid = study.taps[study.taps["valid"] == 1]
+ticks = [len(trial.tick) for tap, trial in study.trials()]
+END
+(cd "$work" && MYPYPATH=$work/site "$pypi/bin/mypy" --strict user.py) >"$work/mypy" 2>&1 ||
+  { cut -c1-200 "$work/mypy"; echo "FAILED: types as a user sees them"; exit 1; }
+printf 'recording.tik\nc.step("a row")\nethd.Scene("").nearest([[0, 0]]).norm\nstudy.trial(1)\n' >>"$work/user.py"
+(cd "$work" && MYPYPATH=$work/site "$pypi/bin/mypy" --strict user.py) >"$work/mypy" 2>&1
+[ "$(grep -c '^user.py:.*error' "$work/mypy")" = 4 ] || { cut -c1-200 "$work/mypy"; echo "FAILED: wrong types pass"; exit 1; }
 # Neither a library nor a build: one sentence.
 rm -rf "$work/usr"
 PKG_CONFIG_PATH=$work/usr installed "$pypi" --no-build-isolation --target "$work/none" --no-deps "$work/tree/apps/python" && { echo "FAILED: made of nothing"; exit 1; }

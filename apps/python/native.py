@@ -24,7 +24,12 @@ def in_build(folder):
     """Returns (include folder, archives' folder, further link flags) of a build folder."""
     if not os.path.exists(os.path.join(folder, "libethd-drivers.a")):
         raise SystemExit(f"{folder}: there is no libethd-drivers.a; run make, or install libethd where pkg-config finds it (PKG_CONFIG_PATH)")
-    return os.path.join(TREE, "include"), folder, NEEDED
+    # this file's tree, or the one of the build folder where this file was unpacked elsewhere
+    includes = [os.path.join(tree, "include") for tree in (TREE, os.path.dirname(folder))]
+    for include in includes:
+        if os.path.exists(os.path.join(include, "ethd", "ethd.h")):
+            return include, folder, NEEDED
+    raise SystemExit(f"{folder}: there are no headers in {' or '.join(includes)}; install libethd where pkg-config finds it")
 
 
 def library():
