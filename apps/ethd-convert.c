@@ -16,7 +16,7 @@
 static const char doc[] =
     "Converts a recording to CSV, or to MCAP for PlotJuggler and Foxglove.\v"
     "CSV has a column per number (q_1_rad, q_2_rad, ...) and an empty cell where a number isn't defined. MCAP has the "
-    "topics /tick and /events; where the recording's time starts again, as it does with"
+    "topics /tick and /events, and leaves out such a field; where the recording's time starts again, as it does with"
     " each tap, MCAP's time goes on.\n\n"
     "Example:\n"
     "  ethd-run --duration 10 --record session\n"
@@ -128,26 +128,33 @@ static ethd_status to_csv(const recording *r, char *message) {
 
 /* ---- MCAP ---- */
 
+/* JSON has no word for a number that isn't defined, and null is no number to a schema: such a field is left out. */
+static bool is_defined(const ethd_trace *row, const ethd_column *c) {
+  for (uint32_t i = 0; c->type == 'f' && i < c->count; i++)
+    if (!isfinite(*(const double *)cell(row, c, i))) return false;
+  return true;
+}
+
 static void put_numbers(FILE *out, const ethd_trace *row, const ethd_column *c) {
   for (uint32_t i = 0; i < c->count; i++) {
     if (i) putc(',', out);
-    double value = c->type == 'f' ? *(const double *)cell(row, c, i) : 0;
     if (c->type == 'i')
       fprintf(out, "%" PRId64, *(const int64_t *)cell(row, c, i));
-    else if (isfinite(value))
-      fprintf(out, "%.17g", value);
     else
-      fputs("null", out);
+      fprintf(out, "%.17g", *(const double *)cell(row, c, i));
   }
 }
 
 static void put_tick(FILE *out, const ethd_trace *row) {
+  char before = '{';
   for (const ethd_column *c = ethd_trace_columns; c->name; c++) {
-    fprintf(out, "%c\"%s\":%s", c == ethd_trace_columns ? '{' : ',', c->name, c->count > 1 ? "[" : "");
+    if (!is_defined(row, c)) continue;
+    fprintf(out, "%c\"%s\":%s", before, c->name, c->count > 1 ? "[" : "");
     put_numbers(out, row, c);
     if (c->count > 1) putc(']', out);
+    before = ',';
   }
-  putc('}', out);
+  putc('}', out); /* the first column is an integer, so there is one field at least */
 }
 
 static void put_schema(FILE *out) {

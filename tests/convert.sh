@@ -29,9 +29,10 @@ refuse 'tick.npy' "$folder/cut" "$folder/old.mcap"
 
 # ---- what others read ----
 python3=$(sh .ci/setup python) || { echo "SKIP: no python3 with numpy"; exit 77; }
-venv=$(sh .ci/venv mcap mcap==1.6.0) || { [ $failed = 0 ] || exit 1; echo "SKIP: the Python package mcap can't be had"; exit 77; }
+venv=$(sh .ci/venv mcap mcap==1.6.0 jsonschema==4.23.0) || { [ $failed = 0 ] || exit 1; echo "SKIP: the Python package mcap can't be had"; exit 77; }
 cat >"$folder/read.py" <<'EOF2'
-import csv, json, math, sys
+import csv, json, math, subprocess, sys
+import jsonschema
 import numpy as np
 from mcap.reader import make_reader
 folder = sys.argv[1]
@@ -54,14 +55,40 @@ assert statistics.message_count == len(rows) + len(events) and len(reader.get_su
 ticks = [(m.log_time, json.loads(m.data)) for _, c, m in reader.iter_messages(topics=["/tick"])]
 said = [json.loads(m.data) for _, c, m in reader.iter_messages(topics=["/events"])]
 assert len(ticks) == len(rows)
+left_out = set()
 for row, (now, message) in zip(rows, ticks):
-    assert now == row["time_ns"] and list(message) == list(rows.dtype.names)
-    values = [v for m in message.values() for v in (m if isinstance(m, list) else [m])]
-    assert all((v is None and not math.isfinite(x)) or v == x for v, x in zip(values, flat(row), strict=True))
+    defined = [name for name in rows.dtype.names if np.isfinite(row[name]).all()]
+    assert now == row["time_ns"] and list(message) == defined
+    assert all(message[name] == row[name].tolist() for name in defined)
+    left_out |= set(rows.dtype.names) - set(defined)
+assert "rf" in left_out and "tau" not in left_out, left_out
+
+# each message is JSON, and what its schema says; a schema that lets everything pass says nothing
+def no_constant(word):
+    raise ValueError(word)
+
+kinds = {}
+for schema, _, m in reader.iter_messages():
+    judge = kinds.setdefault(schema.name, jsonschema.Draft7Validator(json.loads(schema.data)))
+    judge.validate(json.loads(m.data, parse_constant=no_constant))
+tick = kinds["ethd.tick"]
+assert set(tick.schema["properties"]) == set(rows.dtype.names) and set(kinds) == {"ethd.tick", "ethd.event"}
+assert not tick.is_valid({"d_re": None}) and not tick.is_valid({"q": [0, None]}) and not tick.is_valid({"beta": "1"})
 assert [(str(e["row"]), e["kind"], e["detail"]) for e in said] == [(e["row"], e["kind"], e["detail"]) for e in events]
 middle = rows["time_ns"][len(rows) // 2]
 assert next(reader.iter_messages(topics=["/tick"], starting_at=int(middle)))[2].log_time == middle
+
+# a sensor that was broken for a tick: what a field of two numbers lacks, no other field does
+broken = np.load(folder + "/broken/tick.npy", mmap_mode="r+")
+broken["q"][3, 1], broken["rays"][3, :2] = np.nan, (np.inf, -np.inf)
+broken.flush()
+subprocess.run([sys.argv[2], folder + "/broken", folder + "/broken.mcap"], check=True, stdout=subprocess.DEVNULL)
+third = [m.data for _, _, m in make_reader(open(folder + "/broken.mcap", "rb")).iter_messages(topics=["/tick"])][3]
+third = json.loads(third, parse_constant=no_constant)
+tick.validate(third)
+assert set(ticks[3][1]) - set(third) == {"q", "rays"} and third["tau"] == rows[3]["tau"].tolist()
 print(f"{len(rows)} ticks and {len(events)} events, as CSV and as MCAP")
 EOF2
-"$venv/bin/python" "$folder/read.py" "$folder" || fail "others read something else"
+cp -r "$folder/rec" "$folder/broken"
+"$venv/bin/python" "$folder/read.py" "$folder" "$convert" || fail "others read something else"
 exit $failed
