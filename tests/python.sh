@@ -16,7 +16,9 @@ installed() { # VENV PACKAGES...
 }
 tried() { # VENV NAME
   mkdir "$work/data/$2"
-  (cd "$work" && "$1/bin/python" "$OLDPWD/tests/python_package.py" "$BUILD" "$work/data/$2") 2>&1
+  for part in package tables; do
+    (cd "$work" && "$1/bin/python" "$OLDPWD/tests/python_$part.py" "$BUILD" "$work/data/$2") 2>&1 || return
+  done
 }
 
 "$python3" -m venv --system-site-packages "$work/own" || exit 1

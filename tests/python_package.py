@@ -1,24 +1,13 @@
 """The Python package against recordings, golden taps and the programs: python_package.py BUILD FOLDER."""
 import os
 import subprocess
-import sys
 
 import numpy as np
+from python_help import build, folder, refuses, tree, write
 
 import ethd
 
-build, folder = sys.argv[1:]
 rng = np.random.default_rng(7)
-
-
-def refuses(text, call, kind=ethd.Error):
-    try:
-        call()
-    except kind as e:
-        assert text in str(e), (text, str(e))
-        return
-    raise AssertionError("not refused: " + text)
-
 
 # ---- recordings: every row of every law, events and faults included, equal to the bit ----
 taps = folder + "/taps"
@@ -71,8 +60,7 @@ def changed(name, old, new, of="run"):
     with open(folder + "/" + of + "/events.csv") as file:
         lines = file.read()
     assert old in lines
-    with open(folder + "/" + name + "/events.csv", "w") as out:
-        out.write(lines.replace(old, new, 1))
+    write(name + "/events.csv", lines.replace(old, new, 1))
     return ethd.read(folder + "/" + name)
 
 
@@ -88,46 +76,6 @@ refuses("learnt[0]: recorded 0, replayed 0.125", taught.verify)
 refuses("learned: 2 numbers, 4 are allowed", changed("taught2", "kind,detail\n", "kind,detail\n0,learned,1 2\n").controller, ValueError)
 refuses("found the kind 'jump'", changed("jump", "kind,detail\n", "kind,detail\n0,jump,1\n").controller, ValueError)
 refuses("events.csv:2: row,kind,detail are allowed", lambda: changed("odd_row", "kind,detail\n", "kind,detail\n,set,1\n"), ValueError)
-
-# ---- tables: an empty cell is no number, and none is made up for it; text stays text ----
-whole = ethd.read(taps).taps
-brakes = np.isin(whole["transition"], ["offset", "predictive"])
-assert whole["delta_s_ms"].dtype == np.float64 and np.isnan(whole["delta_s_ms"][~brakes]).all() and (whole["delta_s_ms"][brakes] >= 0).any()
-assert whole["seed"].dtype == np.int64 and whole["valid"].dtype == np.int64 and set(whole["valid"]) <= {0, 1}
-subprocess.run([*tap[:-1], folder + "/abrupt", "--transition", "abrupt"], check=True, stdout=subprocess.DEVNULL)
-assert np.isnan(ethd.read(folder + "/abrupt").taps["delta_s_ms"]).all()
-cells = 'n,few,big,text,eps_m,none_m,none\n1,4,,"a, # ""b""",0,,\n2,,9007199254740993,,1,,\n'
-with open(folder + "/odd_taps.csv", "w") as out:
-    out.write(cells)
-odd_taps = ethd.table.table(folder + "/odd_taps.csv")
-assert odd_taps["n"].tolist() == [1, 2] and odd_taps["n"].dtype == np.int64 and odd_taps["text"].tolist() == ['a, # "b"', ""]
-assert odd_taps["few"][0] == 4 and np.isnan(odd_taps["few"][1]) and odd_taps["eps_m"].dtype == np.float64
-assert odd_taps["big"].tolist() == ["", "9007199254740993"] and np.isnan(odd_taps["none_m"]).all() and odd_taps["none"].tolist() == ["", ""]
-with open(folder + "/odd_taps.csv", "a") as out:
-    out.write("3,4\n")
-refuses("odd_taps.csv:4: found 2 cells, 7 are allowed", lambda: ethd.table.table(folder + "/odd_taps.csv"), ValueError)
-
-# ---- a study: its tables, and each tap's recording, equal to the bit ----
-with open(folder + "/a.study", "w") as out:
-    out.write("[study]\nparticipants = 2\nstrategies = smooth,predictive\nspeeds = low\ntraining = 1\ntaps = 1\nattempts = 3\n")
-subprocess.run([build + "/bin/ethd-study", folder + "/a.study", "--out", folder + "/study", "--quiet"], check=True, stdout=subprocess.DEVNULL)
-study = ethd.read(folder + "/study")
-assert isinstance(study, ethd.Study) and study.config["study"]["participants"] == "2"
-assert study.participants["participant"].tolist() == ["P01", "P02"] and set(study.taps["transition"]) == {"smooth", "predictive"}
-assert study.events["event"].tolist()[0] == "open" and len(study.orders) == 6 and len(study.survey) == 0
-trials = list(study.trials())
-assert len(trials) == len(study.taps) and (study.taps["part"] == "test").sum() == study.participants["taps"].sum()
-for at, trial in trials:
-    assert trial.taps.shape == (1,) and trial.taps["seed"][0] == at["seed"] and trial.taps["tap"][0] == at["tap"]
-    assert all(step.trace.tobytes() == row.tobytes() for row, step in trial.replay())
-assert len(study.trial(study.taps[0]).tick) > 100
-subprocess.run(["rm", "-r", trials[0][1].folder], check=True)
-assert len(list(study.trials())) == len(trials) - 1
-refuses("that tap's ticks aren't there", lambda: study.trial(study.taps[0]), FileNotFoundError)
-os.makedirs(folder + "/begun", exist_ok=True)
-open(folder + "/begun/study.ini", "w").close()
-refuses("no study there that was begun: it has no taps.csv", lambda: ethd.read(folder + "/begun"), FileNotFoundError)
-refuses("no recording there, which has a tick.npy, and no study", lambda: ethd.read(folder), FileNotFoundError)
 
 # rows of other columns aren't taken for these, and objects aren't unpickled
 whole, odd = r.tick, folder + "/odd"
@@ -160,8 +108,7 @@ refuses("plug", lambda: ethd.read(folder + "/run").verify())
 refuses("somebodys.so", lambda: ethd.read(folder + "/run", plugins=True).controller())
 # whatever names a plugin, nothing is opened for a controller that is told not to: this one isn't even looked for
 theirs = "[plugins]\nfile = somebodys.so\n"
-with open(folder + "/theirs.ini", "w") as file:
-    file.write(theirs)
+write("theirs.ini", theirs)
 calm = ethd.Controller(plugins=False)
 for source in theirs, folder + "/theirs.ini":
     refuses("somebodys.so is a program from outside of this folder; plugins=True lets it run", lambda: ethd.Controller(source, plugins=False))
@@ -210,7 +157,7 @@ def broken(p, state, contact, out):
 
 
 wall = "[scene]\nfile = wall.scene\n"
-open(folder + "/own.ini", "w").write(wall)
+write("own.ini", wall)
 inside = np.zeros((), ethd.SENSE)
 inside["have"], inside["finger"] = 2, (0.246, 0.25)
 deep = ethd.read(taps).tick
@@ -233,6 +180,51 @@ c.post({"transition.law": broken})
 step = c.step(inside)
 assert step.safe and step.status == -16 and np.all(step.tau == 0), step
 
+# the law of README.md and the same one in Python, in the same trial: the recording's value for "brake", not the default
+opened = folder + "/opened"
+source = """#include <stdio.h>
+#include <ethd/plugin.h>
+static __attribute__((constructor)) void opened(void) { fclose(fopen("%s", "w")); }
+static const ethd_param params[] = {{"k_c", "N/m^3", 0, 1e12, 5e7, "force over the cube of the depth"}};
+static ethd_status push(const double *p, void *state, double gap, double speed, int entering, double *force) {
+  (void)state, (void)speed, (void)entering;
+  *force = gap < 0 ? p[0] * gap * gap * gap : 0;
+  return ETHD_OK;
+}
+static const ethd_contact_law cubic = {
+    .law = {sizeof cubic, ETHD_ABI, ETHD_CONTACT, 0, "cubic", "cubic spring", params, 1, NULL, NULL}, .step = push};
+""" % opened
+with open(tree + "/apps/examples/law.c") as file:
+    source += file.read().replace("params", "mine_params").replace("{&mine.law}", "{&mine.law, &cubic.law}").replace("laws, 1}", "laws, 2}")
+write("mine.c", source)
+subprocess.run([os.environ.get("CC", "cc"), "-shared", "-fPIC", "-I" + tree + "/include", folder + "/mine.c", "-o", folder + "/mine.so"], check=True)
+write("mine.ini", "[plugins]\nfile = mine.so\n[transition]\nlaw = mine\nbrake = 80\n")
+
+
+@ethd.transition_law("python-mine", brake=(60, 0, 1000, "Ns/m"))
+def mine(p, state, contact, out):
+    within = contact.d_re < 0
+    out.beta, out.share, out.damping = (0.1, 1, p["brake"]) if within else (1, 1, 0)
+    out.state = ethd.State.VO if within else ethd.State.TRANSPARENT
+
+
+subprocess.run([build + "/bin/ethd-tap", "--config", folder + "/mine.ini", "--transition", "mine", "--taps", "2", "--speed", "low",
+                "--record", folder + "/mine"], check=True, stdout=subprocess.DEVNULL)
+os.remove(opened)
+calm = ethd.read(folder + "/mine")
+refuses("ethd.read(folder, plugins=True) lets it run", lambda: next(calm.replay(mine)))
+refuses("plugins=True lets it run", lambda: ethd.Controller(open(folder + "/mine.ini").read(), plugins=False))
+assert not os.path.exists(opened)  # nothing of its has run
+r = ethd.read(folder + "/mine", plugins=True)
+assert all(step.trace.tobytes() == row.tobytes() for row, step in r.replay()) and os.path.exists(opened)
+assert all(step.trace.tobytes() == row.tobytes() for row, step in r.replay(mine)) and (r.tick["state"] == ethd.State.VO).sum() > 50
+assert not all(step.trace.tobytes() == row.tobytes() for row, step in r.replay(abrupt))
+assert not all(step.trace.tobytes() == row.tobytes() for row, step in r.replay(spring))
+# a plugin's laws are known by name to the controllers of a configuration that names it
+c = ethd.Controller(folder + "/mine.ini")
+c.post({"contact.law": "cubic", "contact.k_c": 4e7})
+refuses("contact.law: found 'mine', kelvin-voigt, ", lambda: c.post({"contact.law": "mine"}))
+
 # ---- scenes: over arrays, as ethd-scene says ----
 text = "circle 0.1 0 0.05\nbox 0.3 0.2 0.05 0.02 0.4\npolygon 0 0.3 0.1 0.3 0.05 0.4\n"
 points = rng.uniform(-0.2, 0.5, (40, 50, 2))
@@ -241,8 +233,7 @@ assert near.distance.shape == near.object.shape == (40, 50) and near.normal.shap
 assert np.allclose(np.linalg.norm(near.normal, axis=-1), 1, atol=1e-12)
 circle = near.object == 0
 assert np.allclose(near.distance[circle], np.hypot(*(points[circle] - (0.1, 0)).T) - 0.05, atol=1e-12) and circle.any()
-with open(folder + "/a.scene", "w") as file:
-    file.write(text)
+write("a.scene", text)
 np.savetxt(folder + "/points.csv", points.reshape(-1, 2), delimiter=",", header="x_m,y_m", comments="", fmt="%.17g")
 subprocess.run([build + "/bin/ethd-scene", "query", "--scene", folder + "/a.scene", "--in", folder + "/points.csv", "--out",
                 folder + "/near.csv"], check=True, stdout=subprocess.DEVNULL)

@@ -24,7 +24,7 @@ finally:
 
 from ethd.controller import SENSE, TRACE, UNITS, Controller, Event, Step
 from ethd.errors import Busy, Error
-from ethd.law import Law, Param, contact_law, laws, tracking_law, transition_law
+from ethd.law import Law, Param, State, contact_law, laws, tracking_law, transition_law
 from ethd.reading import read
 from ethd.recording import RecordedEvent, Recording
 from ethd.scene import Nearest, Scene
@@ -33,5 +33,5 @@ from ethd.study import Study
 __version__: str = _native.ffi.string(_native.lib.ETHD_VERSION).decode()
 __all__ = [
     "SENSE", "TRACE", "UNITS", "Busy", "Controller", "Error", "Event", "Law", "Nearest", "Param", "RecordedEvent", "Recording",
-    "Scene", "Step", "Study", "contact_law", "laws", "read", "tracking_law", "transition_law",
+    "Scene", "State", "Step", "Study", "contact_law", "laws", "read", "tracking_law", "transition_law",
 ]

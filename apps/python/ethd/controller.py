@@ -173,6 +173,16 @@ class Controller:
             words = value if isinstance(value, str) else repr(float(value))
             check(lib.ethd_config_set(self._config.c, key.encode(), words.encode(), setup, message), message)
 
+    def _rule(self, setup: Any, law: Law) -> None:
+        """Puts a law in the place of the one of its kind; numbers that both have keep their values."""
+        keys = [f"{law.kind}.{p.name}".encode() for p in law.params]
+        values = [lib.ethd_setup_get(setup, key) for key in keys]
+        self._change(setup, law.kind + ".law", law)
+        error = ffi.new("ethd_error *")
+        for key, value in zip(keys, values):
+            if value == value:
+                check_error(lib.ethd_setup_set(setup, key, value, error), error)
+
     def _laws_known(self) -> List[Law]:
         """The library's laws and those of the configuration's plugins."""
         return listed(self._config.c.laws)

@@ -1,5 +1,6 @@
 """Laws: what the library offers, and laws written in Python for trials on the desk. Those are not realtime."""
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
@@ -8,6 +9,14 @@ from ethd._native import ffi, lib
 from ethd.errors import check_error
 
 KINDS = ("tracking", "contact", "transition")
+
+
+class State(IntEnum):
+    """The paper's states of a contact, for `out.state` of a transition law. A law may number its own from 3 up."""
+
+    TRANSPARENT = lib.ETHD_TRANSPARENT
+    BRAKING = lib.ETHD_BRAKING
+    VO = lib.ETHD_VO
 
 
 @dataclass(frozen=True)

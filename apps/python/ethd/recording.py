@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ethd._native import ffi, lib
 from ethd.controller import TRACE, Controller, Step
 from ethd.errors import Error, check, text
+from ethd.law import Law
 from ethd.table import table
 
 
@@ -98,11 +99,12 @@ class Recording:
         _Replay(c).before([e for e in self.events if e.row == 0], first=True)
         return c
 
-    def replay(self) -> Iterator[Tuple[np.void, Step]]:
+    def replay(self, law: Optional[Law] = None) -> Iterator[Tuple[np.void, Step]]:
         """Yields each recorded row with the library's present result for it; the recording's events act at their rows.
-        Error: ticks are missing before this row."""
+        With `law` that one rules in the place of whatever law of its kind was recorded, with the recording's values for
+        parameters of the same name. The recorded device doesn't react to it. Error: ticks are missing before this row."""
         c = self._open()
-        replay, rows = _Replay(c), self._by_row()
+        replay, rows = _Replay(c, law), self._by_row()
         for i in range(len(self.tick)):
             self._refuse_missing(rows.get(i, []))
             if i == 0 or i in rows:
@@ -126,8 +128,9 @@ class Recording:
 class _Replay:
     """A row's events make one setup: with setup or start among them a fresh controller begins with it, else it is posted."""
 
-    def __init__(self, controller: Controller):
+    def __init__(self, controller: Controller, law: Optional[Law] = None):
         self.c = controller
+        self.law = law
         self.heat = ffi.new("double[2]")
         self.learned = ffi.new("double[]", TRACE["learnt"].shape[0])
 
@@ -136,6 +139,8 @@ class _Replay:
         setup = ffi.new("ethd_setup *", c._setup[0])
         for e in events:
             done.add(self._take(e, setup))
+        if self.law and (first or done & {"fresh", "changed"}):
+            c._rule(setup, self.law)
         if done & {"fresh", "warm"} and not (done <= {"warm", "hot", "taught", ""} and not first):
             c._setup = setup
             c._create()
