@@ -73,8 +73,13 @@ subprocess.run([*tap[:-1], folder + "/ahead", "--transition", "predictive"], che
 taught = changed("taught", "row,kind,detail\n", "row,kind,detail\n0,learned,0.125 0 0.25 0\n", "ahead")
 assert taught.controller().step(taught.tick[0]).trace["learnt"].tolist() == [0.125, 0, 0.25, 0]
 refuses("learnt[0]: recorded 0, replayed 0.125", taught.verify)
-refuses("learned: 2 numbers, 4 are allowed", changed("taught2", "kind,detail\n", "kind,detail\n0,learned,1 2\n").controller, ValueError)
+refuses("learned: found '1 2', 4 numbers are allowed", changed("taught2", "kind,detail\n", "kind,detail\n0,learned,1 2\n").controller, ValueError)
 refuses("found the kind 'jump'", changed("jump", "kind,detail\n", "kind,detail\n0,jump,1\n").controller, ValueError)
+refuses("heat: found 'a b', 2 numbers", changed("h", "kind,detail\n", "kind,detail\n0,heat,a b\n").controller, ValueError)
+refuses('contact.k_e: found ""', changed("bare", "kind,detail\n", "kind,detail\n0,set,contact.k_e\n").controller)
+refuses("row: found 0, 9 or more", lambda: changed("order", "kind,detail\n", "kind,detail\n9,clear,\n"), ValueError)
+os.remove(changed("silent", "row", "row").folder + "/events.csv")
+refuses("silent/events.csv: No such file, so what happened is unknown", ethd.read(folder + "/silent").controller, FileNotFoundError)
 refuses("events.csv:2: row,kind,detail are allowed", lambda: changed("odd_row", "kind,detail\n", "kind,detail\n,set,1\n"), ValueError)
 
 # rows of other columns aren't taken for these, and objects aren't unpickled
@@ -85,7 +90,18 @@ assert len(ethd.read(odd).tick) == len(whole)
 refuses("other columns than those of this version", lambda: next(ethd.read(odd).replay()), ValueError)
 refuses("other columns than those of this version", lambda: ethd.read(odd).controller(), ValueError)
 np.save(odd + "/tick.npy", np.array([print], object))
-refuses("", lambda: ethd.read(odd), ValueError)
+refuses("odd/tick.npy: no array", lambda: ethd.read(odd), ValueError)
+write("odd/tick.npy", "")
+refuses("odd/tick.npy: no array, or cut short", lambda: ethd.read(odd), ValueError)
+np.save(odd + "/tick.npy", whole)
+os.truncate(odd + "/tick.npy", 5000)
+refuses("odd/tick.npy: no array, or cut short", lambda: ethd.read(odd), ValueError)
+np.save(odd + "/tick.npy", whole)
+with open(odd + "/config.ini", "ab") as file:
+    file.write(b"; \xff\n")
+refuses("config.ini:", lambda: ethd.read(odd), ValueError)
+write("odd/config.ini", "k = 1\n")
+refuses("odd/config.ini: File contains no section headers", lambda: ethd.read(odd), ValueError)
 
 # ---- a configuration, changes while it runs, events ----
 sense = np.zeros((), ethd.SENSE)
@@ -175,6 +191,8 @@ assert not np.array_equal(torque(spring), torque(spring, 1250))
 c = ethd.Controller(folder + "/own.ini")
 c.post({"transition.law": abrupt})
 assert c.step(inside).trace["state"] == 2
+refuses("brake: found (60, 0); a number, or (default, least, most, unit)",
+        lambda: ethd.transition_law("short", brake=(60, 0))(abrupt), ValueError)
 refuses("of transition.law", lambda: c.post({"contact.law": abrupt}))
 c.post({"transition.law": broken})
 step = c.step(inside)
@@ -242,5 +260,9 @@ again = ethd.Scene(folder + "/a.scene").nearest(points.reshape(-1, 2))
 assert np.array_equal(said["distance_m"], again.distance) and np.array_equal(said["nx"], again.normal[:, 0])
 assert np.array_equal(again.distance, near.distance.ravel()) and again.object.max() == 2
 refuses("scene:1: nan", lambda: ethd.Scene("circle 0 0 nan"))
+refuses("nowhere.scene: No such file", lambda: ethd.Scene("nowhere.scene"), FileNotFoundError)
+odd_points = ethd.Scene(text).nearest([[np.nan, 0], [0.1, 0], [0, np.inf]])
+assert np.isnan(odd_points.distance[[0, 2]]).all() and np.isnan(odd_points.normal[[0, 2]]).all()
+assert odd_points.object.tolist() == [-1, 0, -1] and odd_points.distance[1] == -0.05
 refuses("(..., 2) is allowed", lambda: ethd.Scene(text).nearest(np.zeros((3, 3))), ValueError)
 print(f"ethd {ethd.__version__}, numpy {np.__version__}: {rows} rows replayed in Python, equal to the bit")

@@ -69,7 +69,7 @@ def laws() -> List[Law]:
 
 def _made(kind: str, id: str, step: Callable[..., Any], brief: str, params: Dict[str, Any], numbers: int, alive: List[Any]) -> Law:
     """The library's struct for a law whose C entry is `step`."""
-    rows = [Param(name, *_row(value)) for name, value in params.items()]
+    rows = [Param(name, *_row(name, value)) for name, value in params.items()]
 
     def words(text: str) -> Any:
         alive.append(ffi.new("char[]", text.encode()))
@@ -92,11 +92,12 @@ def _made(kind: str, id: str, step: Callable[..., Any], brief: str, params: Dict
     return Law(kind, id, brief, tuple(rows), (struct, alive))
 
 
-def _row(value: Any) -> Tuple[str, float, float, float, str]:
-    if isinstance(value, tuple):
-        default, least, most, unit = value
-        return unit, least, most, default, "of a law in Python"
-    return "1", -1e9, 1e9, float(value), "of a law in Python"
+def _row(name: str, value: Any) -> Tuple[str, float, float, float, str]:
+    try:
+        default, least, most, unit = value if isinstance(value, tuple) else (value, -1e9, 1e9, "1")
+        return str(unit), float(least), float(most), float(default), "of a law in Python"
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: found {value!r}; a number, or (default, least, most, unit), is allowed") from None
 
 
 def _numbers(p: Any, names: List[str]) -> Dict[str, float]:

@@ -12,7 +12,7 @@ def read(folder: Union[str, "os.PathLike[str]"], plugins: bool = False) -> Union
     Reading runs nothing. With plugins=True the plug-ins that a recording names are loaded for its controllers: they are
     programs that run with your rights. To a checker of types the result is a Recording; `ethd.Study(folder)` is typed too.
     """
-    path = os.fspath(folder)
+    path = os.fsdecode(folder)
     if os.path.exists(os.path.join(path, "tick.npy")):
         return Recording(path, plugins)
     if os.path.exists(os.path.join(path, "study.ini")):

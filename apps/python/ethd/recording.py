@@ -1,6 +1,5 @@
 """Recordings: folders that the programs write."""
 import configparser
-import csv
 import os
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
@@ -11,7 +10,7 @@ from ethd._native import ffi, lib
 from ethd.controller import TRACE, Controller, Step
 from ethd.errors import Error, check, text
 from ethd.law import Law
-from ethd.table import table
+from ethd.table import lines, table, words
 
 
 PLUGINS = "ethd.read(folder, plugins=True)"
@@ -28,17 +27,22 @@ class RecordedEvent(NamedTuple):
     detail: str
 
 
-def _event(where: str, cells: Dict[str, Any]) -> RecordedEvent:
-    row, kind, detail = cells.get("row"), cells.get("kind"), cells.get("detail")
-    if not (row and row.isdecimal() and kind) or detail is None or len(cells) != 3:
-        raise ValueError(f"{where}: row,kind,detail are allowed, the row a number")
-    return RecordedEvent(int(row), kind, detail)
-
-
 def ini(path: str) -> configparser.ConfigParser:
     """A file of sections and keys, as it stands: nothing of it is checked, opened or run."""
     found = configparser.ConfigParser(inline_comment_prefixes=(";",), interpolation=None, strict=False)
-    found.read(path, encoding="utf-8")
+    if os.path.exists(path):
+        try:
+            found.read_string(words(path), path)
+        except configparser.Error as e:
+            raise ValueError(f"{path}: {' '.join(str(e).split())}") from None
+    return found
+
+
+def _npy(path: str) -> NDArray[Any]:
+    try:
+        found: NDArray[Any] = np.load(path, mmap_mode="r")
+    except (ValueError, EOFError) as e:
+        raise ValueError(f"{path}: no array, or cut short: {e}") from None
     return found
 
 
@@ -56,7 +60,7 @@ class Recording:
     def __init__(self, folder: str, plugins: bool = False):
         self.folder = folder
         self._plugins = plugins
-        self.tick = np.load(os.path.join(folder, "tick.npy"), mmap_mode="r")
+        self.tick = _npy(os.path.join(folder, "tick.npy"))
         self.truth = self._array("truth.npy")
         self.taps = self._table("taps.csv", "tap.csv")
         self.events = self._events()
@@ -64,7 +68,7 @@ class Recording:
 
     def _array(self, name: str) -> Optional[NDArray[Any]]:
         path = os.path.join(self.folder, name)
-        return np.load(path, mmap_mode="r") if os.path.exists(path) else None
+        return _npy(path) if os.path.exists(path) else None
 
     def _table(self, *names: str) -> Optional[NDArray[Any]]:
         paths = [os.path.join(self.folder, name) for name in names]
@@ -74,12 +78,23 @@ class Recording:
         path = os.path.join(self.folder, "events.csv")
         if not os.path.exists(path):
             return []
-        with open(path, encoding="utf-8", newline="") as file:
-            return [_event(f"{path}:{i + 2}", e) for i, e in enumerate(csv.DictReader(file))]
+        rows = lines(path)
+        if next(rows, (1, []))[1] != list(RecordedEvent._fields):
+            raise ValueError(f"{path}:1: the first line must be row,kind,detail")
+        found: List[RecordedEvent] = []
+        for number, cells in rows:
+            if len(cells) != 3 or not cells[0].isdecimal():
+                raise ValueError(f"{path}:{number}: row,kind,detail are allowed, the row a number")
+            found.append(RecordedEvent(int(cells[0]), cells[1], cells[2]))
+            if len(found) > 1 and found[-1].row < found[-2].row:
+                raise ValueError(f"{path}:{number}: row: found {cells[0]}, {found[-2].row} or more is allowed")
+        return found
 
     def _open(self) -> Controller:
         if self.tick.dtype != TRACE:
             raise ValueError(f"{self.folder}/tick.npy: other columns than those of this version of libethd: it can't be replayed")
+        if not os.path.exists(os.path.join(self.folder, "events.csv")):
+            raise FileNotFoundError(f"{self.folder}/events.csv: No such file, so what happened is unknown: it can't be replayed")
         self._refuse_missing([e for e in self.events if e.row == 0])
         try:
             return Controller(os.path.join(self.folder, "config.ini"), self._plugins)
@@ -161,7 +176,8 @@ class _Replay:
         if e.kind in ("setup", "transition"):
             self.c._change(setup, "transition.law", e.detail)
         elif e.kind == "set":
-            self.c._change(setup, *e.detail.split(" ", 1))
+            key, _, value = e.detail.partition(" ")
+            self.c._change(setup, key, value)
         elif e.kind == "heat":
             self._numbers(e, self.heat)
         elif e.kind == "learned":
@@ -173,8 +189,11 @@ class _Replay:
         return KINDS[e.kind]
 
     def _numbers(self, e: RecordedEvent, to: Any) -> None:
-        words = e.detail.split(" ")
-        if len(words) != len(to):
-            raise ValueError(f"events.csv: row {e.row}: {e.kind}: {len(words)} numbers, {len(to)} are allowed")
-        for i, word in enumerate(words):
-            to[i] = float(word)
+        try:
+            numbers = [float(word) for word in e.detail.split(" ")]
+        except ValueError:
+            numbers = []
+        if len(numbers) != len(to) or not np.isfinite(numbers).all():
+            raise ValueError(f"events.csv: row {e.row}: {e.kind}: found {e.detail!r}, {len(to)} numbers are allowed")
+        for i, number in enumerate(numbers):
+            to[i] = number

@@ -32,13 +32,16 @@ class Scene:
             name = os.fspath(source)
             with open(name, encoding="utf-8") as file:
                 words = file.read()
+        elif len(source.split()) == 1:  # no scene has one word
+            raise FileNotFoundError(f"{source}: No such file")
         data = words.encode() if isinstance(words, str) else bytes(words)
         made, error = ffi.new("ethd_scene **"), ffi.new("ethd_error *")
         check_error(lib.ethd_scene_parse(data, len(data), made, error), error, str(name))
         self._scene = ffi.gc(made[0], lib.ethd_scene_destroy)
 
     def nearest(self, points: ArrayLike) -> Nearest:
-        """Distance, normal and object for points of shape (..., 2) in m; the results have the shape before the 2."""
+        """Distance, normal and object for points of shape (..., 2) in m, R_0; the results have the shape before the 2. A point
+        that isn't finite has neither distance nor normal (NaN), and no object (-1)."""
         at = np.ascontiguousarray(points, dtype=np.float64)
         if not at.ndim or at.shape[-1] != 2:
             raise ValueError(f"points have the shape {at.shape}; (..., 2) is allowed")
@@ -47,4 +50,6 @@ class Scene:
         lib.python_nearest(
             self._scene, distance.size, ffi.from_buffer("double[]", at), ffi.from_buffer("double[]", distance),
             ffi.from_buffer("double[]", normal), ffi.from_buffer("int32_t[]", number))
+        nowhere = ~np.isfinite(at).all(axis=-1)
+        distance[nowhere], normal[nowhere], number[nowhere] = np.nan, np.nan, -1
         return Nearest(distance, normal, number)

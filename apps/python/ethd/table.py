@@ -1,7 +1,8 @@
 """Tables: CSV files of the programs as structured arrays. An empty cell is a number that isn't defined, or wasn't asked."""
 import csv
+import io
 import re
-from typing import Any, List
+from typing import Any, Iterator, List, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,16 +27,36 @@ def _column(name: str, cells: List[str]) -> NDArray[Any]:
     return np.array(cells, np.str_) if cells else np.array([], "U1")
 
 
+def words(path: str) -> str:
+    """A file's text."""
+    with open(path, "rb") as file:
+        data = file.read()
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as e:
+        line = data.count(b"\n", 0, e.start) + 1
+        raise ValueError(f"{path}:{line}: found the byte {data[e.start]:#x}, UTF-8 is allowed") from None
+
+
+def lines(path: str) -> Iterator[Tuple[int, List[str]]]:
+    """The cells of each line of a table, with the line's number in the file."""
+    reader = csv.reader(io.StringIO(words(path), newline=""), strict=True)
+    try:
+        for row in reader:
+            yield reader.line_num, row
+    except csv.Error as e:
+        raise ValueError(f"{path}:{reader.line_num}: {e}") from None
+
+
 def table(path: str) -> NDArray[Any]:
     """A row for each line after the first, which names the columns."""
-    with open(path, encoding="utf-8", newline="") as file:
-        reader = csv.reader(file, strict=True)
-        names = next(reader, [])
-        rows = []
-        for row in reader:
-            if len(row) != len(names):
-                raise ValueError(f"{path}:{reader.line_num}: found {len(row)} cells, {len(names)} are allowed")
-            rows.append(row)
+    found_lines = lines(path)
+    _, names = next(found_lines, (1, []))
+    rows = []
+    for number, row in found_lines:
+        if len(row) != len(names):
+            raise ValueError(f"{path}:{number}: found {len(row)} cells, {len(names)} are allowed")
+        rows.append(row)
     if not names or "" in names or len(set(names)) != len(names):
         raise ValueError(f"{path}:1: a name for each column is needed, and each once")
     columns = [_column(name, [row[i] for row in rows]) for i, name in enumerate(names)]
