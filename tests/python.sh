@@ -28,6 +28,7 @@ tried "$work/own" own || exit 1
 [ -z "$(cd "$work/tree/apps/python" && find . -name build -o -name '*.egg-info')" ] || { echo "FAILED: pip leaves files in the source tree"; exit 1; }
 
 $MAKE --no-print-directory -s B="$BUILD" DESTDIR= PREFIX="$work/usr" install-files >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+sh .ci/venv unpinned numpy 2>/dev/null && { echo "FAILED: a package of PyPI without its version"; exit 1; }
 pypi=$(sh .ci/venv numpy numpy==2.2.6 cffi==1.17.1 setuptools==80.9.0 wheel==0.45.1 build==1.3.0 mypy==1.18.2) ||
   { echo "SKIP: PyPI can't be reached for its numpy"; exit 77; }
 mv "$work/tree/include" "$work/tree/not_include"
