@@ -165,9 +165,20 @@ static void put_schema(FILE *out) {
   fputs("}}", out);
 }
 
+/* JSON is UTF-8: a byte that isn't becomes the character that stands for such ones. */
 static void put_string(FILE *out, const char *text) {
   putc('"', out);
-  for (; *text; text++) fprintf(out, strchr("\"\\", *text) ? "\\%c" : "%c", (unsigned char)*text < ' ' ? ' ' : *text);
+  while (*text) {
+    uint32_t letter;
+    size_t n = ethd__letter_of(text, &letter);
+    if (!n)
+      fputs("\xef\xbf\xbd", out);
+    else if (letter < ' ')
+      putc(' ', out);
+    else
+      fprintf(out, "%s%.*s", strchr("\"\\", *text) ? "\\" : "", (int)n, text);
+    text += n ? n : 1;
+  }
   putc('"', out);
 }
 

@@ -82,7 +82,11 @@ assert next(reader.iter_messages(topics=["/tick"], starting_at=int(middle)))[2].
 broken = np.load(folder + "/broken/tick.npy", mmap_mode="r+")
 broken["q"][3, 1], broken["rays"][3, :2] = np.nan, (np.inf, -np.inf)
 broken.flush()
+with open(folder + "/broken/events.csv", "wb") as file:
+    file.write(b'row,kind,detail\n0,setup,offset\n0,fault,"caf\xc3\xa9 \xff\xe2\x82 ""\x01"" \\"\n')
 subprocess.run([sys.argv[2], folder + "/broken", folder + "/broken.mcap"], check=True, stdout=subprocess.DEVNULL)
+words = [json.loads(m.data)["detail"] for _, _, m in make_reader(open(folder + "/broken.mcap", "rb")).iter_messages(topics=["/events"])]
+assert words == ["offset", 'caf\u00e9 \ufffd\ufffd\ufffd " " \\'], words
 third = [m.data for _, _, m in make_reader(open(folder + "/broken.mcap", "rb")).iter_messages(topics=["/tick"])][3]
 third = json.loads(third, parse_constant=no_constant)
 tick.validate(third)

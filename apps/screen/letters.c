@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "text/error_text.h"
+#include "text/text.h"
 
 static ethd_status check_text(const char *section, const char *key, const char *text, const TTF_Font *font,
                               char *message) {

@@ -75,9 +75,6 @@ void ethd__phrase_fill(char *out, size_t room, const char *phrase, const char *c
 /* A {..} of the phrase that its default lacks, as it stands there; NULL: it has none. *length: its bytes. [any] */
 const char *ethd__phrase_fault(const char *phrase, const char *instead_of, size_t *length);
 
-/* The letter that the text begins with; its bytes, 0: this isn't UTF-8. [any] */
-size_t ethd__letter_of(const char *text, uint32_t *out);
-
 /* Of Hebrew, Arabic and the other scripts that are written from right to left. [any] */
 bool ethd__letter_goes_left(uint32_t letter);
 

@@ -40,6 +40,9 @@ bool ethd__number(const char *text, size_t length, double *out);
 bool ethd__text_is_word(const char *text, size_t most, const char *letters);
 bool ethd__text_is_line(const char *text, size_t most);
 
+/* The letter that the text begins with; its bytes, 0: this isn't UTF-8. [any] */
+size_t ethd__letter_of(const char *text, uint32_t *out);
+
 /* Returns the end of the decimal number without a sign at p, NULL if there is none. */
 const char *ethd__decimal(const char *p, const char *end);
 
