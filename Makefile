@@ -74,7 +74,7 @@ BUILDS := $(filter-out deb doc format format-check tidy ci coverage mutation che
 ifeq ($(MAKELEVEL)$(DRY),0)
 ifneq ($(BUILDS),)
 HOLDER := $(shell mkdir -p '$(B)' && exec 9<'$(B)' && \
-  { flock -w 1 9 || { echo 'make: waiting for another make in $(B)' >&2; flock 9; }; } && \
+  { flock -w 1 9 2>/dev/null || [ $$? != 1 ] || { echo 'make: waiting for another make in $(B)' >&2; flock 9; }; } && \
   { tail --pid=$$PPID -s 0.2 -f /dev/null >/dev/null 2>&1 & echo $$!; })
 endif
 endif
@@ -383,11 +383,12 @@ quoted = '$(subst ','\'',$(1))'
 run_install = PREFIX=$(call quoted,$(PREFIX)) LIBDIR=$(call quoted,$(LIBDIR)) DESTDIR=$(call quoted,$(DESTDIR)) \
   B='$(B)' VERSION='$(VERSION)' PROGRAMS='$(notdir $(PROGRAMS))' SHARE='$(SHARE:$(B)/share/ethd/%=%)' sh .packaging/install
 
-# Manual pages, of what --help says.
+# Manual pages; without help2man (Debian: help2man) none are made, and that is said.
 man: $(B)/man/libethd.3
 $(B)/man/libethd.3: $(PROGRAMS) $(wildcard .packaging/*) $(HEADERS)
 	$(call say,MAN,$(@D))
-	$(Q)B='$(B)' VERSION='$(VERSION)' PROGRAMS='$(notdir $(PROGRAMS))' sh .packaging/man
+	@if command -v help2man >/dev/null; then B='$(B)' VERSION='$(VERSION)' PROGRAMS='$(notdir $(PROGRAMS))' sh .packaging/man; \
+	  else echo 'no help2man (Debian: help2man): no manual pages'; fi
 
 # Pages of the public headers, $(B)/doc/html: every public function with its contract, no warning.
 doc:

@@ -36,7 +36,7 @@ for program in "$BUILD"/bin/ethd-*; do
   for section in SYNOPSIS DESCRIPTION OPTIONS 'EXIT STATUS' EXAMPLES 'SEE ALSO'; do
     grep -qx "$section" "$work/plain" || fail "$name.1 has no $section"
   done
-  grep -q "^.TH .* 1 $day " "$pages/man1/$name.1" || fail "$name.1 isn't of $day: $(head -n 1 "$pages/man1/$name.1")"
+  grep -q "^.TH .* \"1\" $day " "$pages/man1/$name.1" || fail "$name.1 isn't of $day: $(grep "^.TH" "$pages/man1/$name.1")"
   linted "$pages/man1/$name.1"
   grep -q "libethd $version" "$work/page" || fail "$name.1 doesn't say its version"
   bash -c '. "$1" && complete -p "$2"' - "$work/usr/share/bash-completion/completions/$name" "$name" >"$work/log" 2>&1 ||
