@@ -186,7 +186,7 @@ ethd_status ethd_conform(const ethd_conform_def *def, ethd_conform_answer answer
     a->question = questions[i].name;
     if (i && answers[0].verdict == ETHD_BROKEN)
       ethd__conform_rig_answer(a, ETHD_NOT_ASKED, "the device can't be opened, or its table is broken");
-    else if (questions[i].moves && !(def->torque > 0))
+    else if (questions[i].moves && !(def->torque > 0 && isfinite(def->torque)))
       ethd__conform_rig_answer(a, ETHD_NOT_ASKED, "it would move the device");
     else
       broken |= questions[i].ask(def, a) == ETHD_BROKEN;

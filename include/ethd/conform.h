@@ -32,7 +32,7 @@ typedef struct ethd_conform_def {
   const char *ids;                /* as for ethd_device_open */
   const ethd_driver *const *from; /* likewise */
   const ethd_device_def *device;
-  double torque; /* Nm by which each joint is pushed in turn, for 0.15 s at most; 0: nothing may move */
+  double torque; /* Nm by which each joint is pushed in turn, for 0.15 s at most; 0, or not finite: nothing may move */
 } ethd_conform_def;
 
 /* Asks all questions. ETHD_OK: nothing is broken; ETHD_E_DEVICE: something is. */

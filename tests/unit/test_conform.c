@@ -188,7 +188,9 @@ START_TEST(test_sound) {
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) ck_assert_int_eq(ask(all[i], 0.1, &status), ETHD_KEPT);
   ck_assert_int_eq(ask("silence", 0.1, &status), ETHD_NOT_ASKED); /* on a virtual clock */
   ck_assert_int_eq(status, ETHD_OK);
-  ck_assert_int_eq(ask("sign", 0, &status), ETHD_NOT_ASKED);
+  const double none[] = {0, -0.1, NAN, INFINITY};
+  for (size_t i = 0; i < sizeof none / sizeof *none; i++)
+    ck_assert_int_eq(ask("sign", none[i], &status), ETHD_NOT_ASKED);
   ck_assert_int_eq(ask("zero", 0, &status), ETHD_KEPT);
 }
 END_TEST
