@@ -37,6 +37,7 @@ run("ethd-study", folder + "/a.study", "--out", folder + "/study", "--quiet")
 study = ethd.read(folder + "/study")
 assert isinstance(study, ethd.Study) and study.config["study"]["participants"] == "2"
 assert study.participants["participant"].tolist() == ["P01", "P02"] and set(study.taps["transition"]) == {"smooth", "predictive"}
+assert np.isnan(study.events["block"]).all()  # of a session's beginning and end
 assert study.events["event"].tolist()[0] == "open" and len(study.orders) == 6 and len(study.survey) == 0
 trials = list(study.trials())
 assert len(trials) == len(study.taps) and (study.taps["part"] == "test").sum() == study.participants["taps"].sum()
@@ -47,6 +48,17 @@ assert len(study.trial(study.taps[0]).tick) > 100
 subprocess.run(["rm", "-r", trials[0][1].folder], check=True)
 assert len(list(study.trials())) == len(trials) - 1
 refuses("that tap's ticks aren't there", lambda: study.trial(study.taps[0]), FileNotFoundError)
+# a simulation's workers keep their ticks in folders of their own
+sim = folder + "/sim"
+run("ethd-study", folder + "/a.study", "--simulate", "2", "--ticks", "--shard", "1/2", "--out", sim, "--quiet")
+run("ethd-study", folder + "/a.study", "--simulate", "2", "--ticks", "--shard", "2/2", "--out", sim, "--quiet")
+refuses("a simulation in shards: ethd-study --merge ", lambda: ethd.read(sim), FileNotFoundError)
+run("ethd-study", "--merge", sim)
+simulation = ethd.read(sim)
+assert simulation.participants is None and len(list(simulation.trials())) == len(simulation.taps) > 4
+for at, trial in simulation.trials():
+    assert trial.taps["seed"][0] == at["seed"] and trial.taps["tap"][0] == at["tap"]
+    assert all(step.trace.tobytes() == row.tobytes() for row, step in trial.replay())
 os.makedirs(folder + "/begun", exist_ok=True)
 write("begun/study.ini", "")
 refuses("no study there that was begun: it has no taps.csv", lambda: ethd.read(folder + "/begun"), FileNotFoundError)

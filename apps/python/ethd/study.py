@@ -1,5 +1,6 @@
 """Studies: folders that ethd-study writes. The folder's own README.md says what each column of each table means."""
 import configparser
+import glob
 import os
 from typing import Any, Iterator, Optional, Tuple, Union
 
@@ -10,12 +11,16 @@ from ethd.recording import Recording, ini
 from ethd.table import table
 
 
+def _name(tap: np.void) -> str:
+    return f"{tap['participant']}-{int(tap['block']):02d}-{int(tap['attempt']):03d}"
+
+
 class Study:
     """A study's tables as structured arrays, with SI units or the unit in the column's name, NaN where a number isn't
     defined. A table that the folder lacks is None. `plugins` as for ethd.read()."""
 
     taps: NDArray[Any]  #: a row a tap, training too: `valid` and `reason` say whether it counts, `part` whether it is analysed
-    participants: NDArray[Any]  #: a row a participant: `analysed` says whether the taps belong to the analysis
+    participants: Optional[NDArray[Any]]  #: a row a participant: `analysed` says whether the taps belong to the analysis
     events: Optional[NDArray[Any]]  #: begin, consent, pauses, notes, end
     survey: Optional[NDArray[Any]]  #: a row per participant and cell
     orders: Optional[NDArray[Any]]  #: the planned order of each participant
@@ -24,15 +29,20 @@ class Study:
     def __init__(self, folder: Union[str, "os.PathLike[str]"], plugins: bool = False):
         self.folder = os.fspath(folder)
         self._plugins = plugins
-        for name in ("taps.csv", "participants.csv"):
-            if not os.path.exists(self._path(name)):
-                raise FileNotFoundError(f"{self.folder}: no study there that was begun: it has no {name}")
+        if glob.glob(self._pattern("shard-*-of-*.csv")) and not os.path.exists(self._path("taps.csv")):
+            raise FileNotFoundError(f"{self.folder}: a simulation in shards: ethd-study --merge {self.folder} makes taps.csv of them")
+        if not os.path.exists(self._path("taps.csv")):
+            raise FileNotFoundError(f"{self.folder}: no study there that was begun: it has no taps.csv")
         self.taps = table(self._path("taps.csv"))
-        self.participants = table(self._path("participants.csv"))
+        self.participants = self._table("participants.csv")
         self.events = self._table("events.csv")
         self.survey = self._table("survey.csv")
         self.orders = self._table("orders.csv")
         self.config = ini(self._path("study.ini"))
+        self._workers = sorted(os.path.basename(path) for path in glob.glob(self._pattern("taps-*-of-*")))
+
+    def _pattern(self, name: str) -> str:
+        return os.path.join(glob.escape(self.folder), name)
 
     def _path(self, *names: str) -> str:
         return os.path.join(self.folder, *names)
@@ -40,18 +50,23 @@ class Study:
     def _table(self, name: str) -> Optional[NDArray[Any]]:
         return table(self._path(name)) if os.path.exists(self._path(name)) else None
 
-    def _trial_folder(self, tap: np.void) -> str:
-        return self._path("taps", f"{tap['participant']}-{int(tap['block']):02d}-{int(tap['attempt']):03d}")
+    def _trial_folder(self, tap: np.void) -> Optional[str]:
+        name, folders = _name(tap), ["taps"]
+        if "point" in (tap.dtype.names or ()):  # of a simulation, whose workers have a folder each
+            name, folders = f"{int(tap['point'])}-{name}", self._workers
+        paths = [self._path(folder, name) for folder in folders]
+        return next((path for path in paths if os.path.exists(os.path.join(path, "tick.npy"))), None)
 
     def trial(self, tap: np.void) -> Recording:
         """The recording of a row of `taps`: every tick of that tap."""
         folder = self._trial_folder(tap)
-        if not os.path.exists(os.path.join(folder, "tick.npy")):
-            raise FileNotFoundError(f"{folder}: that tap's ticks aren't there")
+        if folder is None:
+            raise FileNotFoundError(f"{self.folder}: {_name(tap)}: that tap's ticks aren't there")
         return Recording(folder, self._plugins)
 
     def trials(self) -> Iterator[Tuple[np.void, Recording]]:
         """Each row of `taps` with its recording, in the table's order; taps whose ticks weren't kept are left out."""
         for tap in self.taps:
-            if os.path.exists(os.path.join(self._trial_folder(tap), "tick.npy")):
-                yield tap, self.trial(tap)
+            folder = self._trial_folder(tap)
+            if folder is not None:
+                yield tap, Recording(folder, self._plugins)

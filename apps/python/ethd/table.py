@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 #: A unit in a column's name says that it is one of real numbers, even where it has none, or has whole ones by chance.
 _UNITS = re.compile(r".*_(m|mm|s|ms|mps|rad|radps|n|nm|hz)")
+#: Columns of whole numbers, which are numbers even where none is given.
+_COUNTS = {"analysed", "attempt", "block", "point", "seed", "tap", "taps", "valid"}
 _INTEGER = re.compile(r"-?[0-9]+")
 _NUMBER = re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?|[-+]?(nan|inf)")
 
@@ -17,8 +19,8 @@ def _column(name: str, cells: List[str]) -> NDArray[Any]:
     """int64 if each cell is an integer; float64, NaN where a cell is empty, if they are numbers; else text."""
     given = [cell for cell in cells if cell]
     has_unit = _UNITS.fullmatch(name) is not None
-    numbers = all(_NUMBER.fullmatch(cell) for cell in given) and (bool(given) or has_unit)
-    integers = numbers and not has_unit and all(_INTEGER.fullmatch(cell) for cell in given)
+    numbers = all(_NUMBER.fullmatch(cell) for cell in given) and (bool(given) or has_unit or name in _COUNTS)
+    integers = numbers and bool(given) and not has_unit and all(_INTEGER.fullmatch(cell) for cell in given)
     if integers and len(given) == len(cells) and all(-(2**63) <= int(cell) < 2**63 for cell in cells):
         return np.array([int(cell) for cell in cells], np.int64)
     # an integer that a float64 can't hold would become another one
