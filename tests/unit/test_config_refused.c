@@ -97,7 +97,8 @@ START_TEST(test_received_text) {
   ethd_config *c = (ethd_config *)&c;
   ck_assert_int_eq(ethd_config_parse_received(text, strlen(text), "x.ini", "/nowhere", &c, message), ETHD_E_LOAD);
   ck_assert_ptr_null(c);
-  ck_assert_str_eq(message, "x.ini:2: plugins.file: no.so is a program from outside of this folder; --plugins lets it run");
+  ck_assert_str_eq(message,
+                   "x.ini:2: plugins.file: no.so is a program from outside of this folder; --plugins lets it run");
   ck_assert_int_eq(ethd_config_parse_received("[contact]\nk_e = 7\n", 18, NULL, NULL, &c, message), ETHD_OK);
   ck_assert_double_eq(ethd_setup_get(&c->setup, "contact.k_e"), 7);
   ethd_config_free(c);
