@@ -215,6 +215,11 @@ mkdir "$work/real" && ln -s real "$work/link"
 run "" "$work/none/..//link/ethd/" LIBDIR="$work/real/./ethd/lib/machine" install-files || fail "another name of a place"
 [ "$(PKG_CONFIG_PATH=$work/link/ethd/lib/machine/pkgconfig $PKG_CONFIG --variable=prefix ethd)" = "$work/link/ethd/lib/machine/pkgconfig/../../.." ] ||
   fail "its prefix: $(cat "$work/real/ethd/lib/machine/pkgconfig/ethd.pc")"
+note=$work/real/ethd/share/ethd/installed
+sed -i "s|^[^/]|$work/link/ethd/&|; s|/[.]/$|/|" "$note" # as an older version has it
+run "" "$work/real/ethd" LIBDIR="$work/real/ethd/lib/machine" install-files || fail "over an older version"
+[ -x "$work/real/ethd/bin/ethd-tap" ] || fail "an older version takes away what the new one brought"
+grep -q '^/.*ethd-' "$note" && fail "an older version's names stay: $(grep '^/' "$note")"
 mv "$work/real/ethd" "$work/real/moved"
 run "" "$work/real/ethd" install-files || fail "beside a tree that was moved"
 run "" "$work/link/moved" uninstall || fail "uninstall of a tree that was moved"
