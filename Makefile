@@ -155,7 +155,7 @@ SHARE := $(patsubst apps/config/%,$(B)/share/ethd/%,$(shell find apps/config -ty
          $(patsubst apps/plot/%,$(B)/share/ethd/plot/%,$(wildcard apps/plot/*.gp)) \
          $(patsubst apps/cluster/%,$(B)/share/ethd/cluster/%,$(wildcard apps/cluster/*.sh)) \
          $(patsubst tests/motion/%,$(B)/share/ethd/motion/%,$(shell find tests/motion -type f 2>/dev/null))
-ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a
+ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a $(B)/libethd.a
 LIBRARIES := $(foreach l,ethd ethd-drivers,$(B)/lib$(l).a $(B)/lib$(l).so.0 $(B)/lib$(l).so)
 # What the drivers' library needs of others.
 DRIVERS_LIBS := -linih -lmodbus -lz -lexpat
@@ -167,7 +167,7 @@ tests: all $(if $(SAN),,man) $(addprefix $(B)/tests/,$(call wanted,$(notdir $(UN
 # ---- build ----------------------------------------------------------------------------------
 
 # Objects of different flags never mix: everything depends on the flags it is built with.
-FLAGS_TEXT = $(LINK) | $(FLAGS_lib) | $(FLAGS_drivers) | $(FLAGS_apps) | $(FLAGS_tests) | $(CPPFLAGS) | $(XENO_CFLAGS) | $(XENO_LDFLAGS)
+FLAGS_TEXT = $(LINK) $(WHOLE) | $(FLAGS_lib) | $(FLAGS_drivers) | $(FLAGS_apps) | $(FLAGS_tests) | $(CPPFLAGS) | $(XENO_CFLAGS) | $(XENO_LDFLAGS)
 SOURCES_TEXT := $(LIB_C) | $(DRIVERS_C) | $(PROGRAMS_C) | $(APPS_C) | $(HELPERS_C)
 keep = mkdir -p $(@D) && cat >$@.new && if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 $(B)/flags: export TEXT = $(FLAGS_TEXT)
@@ -209,34 +209,35 @@ $(B)/libethd-drivers.so.0: $(call obj,$(DRIVERS_C)) drivers/libethd-drivers.map 
 $(B)/%.so: $(B)/%.so.0
 	@ln -sf $(<F) $@
 
-# Programs hold the whole of libethd and show its public names to the plugins they load: a plugin
-# calls the very code that its host runs, calls within the tick stay direct, and programs run from
-# the tree and once installed without a search path.
-WHOLE := -Wl,--whole-archive $(B)/libethd.a -Wl,--no-whole-archive -Wl,--export-dynamic-symbol='ethd_*' -Wl,-z,now
+# Programs hold the whole of both libraries and show their public names to the plugins and the drivers' files they load,
+# also those that the program itself doesn't call: a plugin calls the very code that its host runs, calls within the
+# tick stay direct, and programs run from the tree and once installed without a search path.
+WHOLE := -Wl,--whole-archive $(B)/libethd-drivers.a $(B)/libethd.a -Wl,--no-whole-archive \
+         -Wl,--export-dynamic-symbol='ethd_*' -Wl,-z,now
 
 # Only the study has a window, and the tests of what is drawn into it.
 $(B)/bin/ethd-study $(B)/tests/test_shapes $(B)/tests/test_pages: LIBS += -lSDL2_ttf -lSDL2
 # Only identification, and the benchmark of it, fits.
 $(B)/bin/ethd-identify $(B)/bin/ethd-bench: LIBS += -lcminpack
-$(PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES) $(B)/libethd.a
+$(PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES)
 	$(call say,LINK,$@)
 	@mkdir -p $(@D)
-	$(Q)$(LINK) -o $@ $< $(ARCHIVES) $(WHOLE) $(DRIVERS_LIBS) $(LIBS)
+	$(Q)$(LINK) -o $@ $< $(B)/libethd-apps.a $(WHOLE) $(DRIVERS_LIBS) $(LIBS)
 
 define test_program
-$(B)/tests/$(notdir $(1:.c=)): $(B)/obj/$(1:.c=.o) $(B)/libethd-tests.a $(ARCHIVES) $(B)/libethd.a
+$(B)/tests/$(notdir $(1:.c=)): $(B)/obj/$(1:.c=.o) $(B)/libethd-tests.a $(ARCHIVES)
 	$$(call say,LINK,$$@)
 	@mkdir -p $$(@D)
-	$$(Q)$$(LINK) -o $$@ $$< $(B)/libethd-tests.a $$(ARCHIVES) $$(WHOLE) \
+	$$(Q)$$(LINK) -o $$@ $$< $(B)/libethd-tests.a $(B)/libethd-apps.a $$(WHOLE) \
 	  $$(shell $$(PKG_CONFIG) --libs check) -linih -lmodbus -lz -lexpat $$(LIBS)
 endef
 $(foreach t,$(TESTS_C),$(eval $(call test_program,$(t))))
 
 # What test scripts run beside the programs: a plant for servers, a serial line.
-$(TOOLS_C:%.c=$(B)/%): $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libethd-tests.a $(ARCHIVES) $(B)/libethd.a
+$(TOOLS_C:%.c=$(B)/%): $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libethd-tests.a $(ARCHIVES)
 	$(call say,LINK,$@)
 	@mkdir -p $(@D)
-	$(Q)$(LINK) -o $@ $< $(B)/libethd-tests.a $(ARCHIVES) $(WHOLE) $(DRIVERS_LIBS) $(LIBS)
+	$(Q)$(LINK) -o $@ $< $(B)/libethd-tests.a $(B)/libethd-apps.a $(WHOLE) $(DRIVERS_LIBS) $(LIBS)
 
 $(PLUGINS): $(B)/tests/plugins/%.so: tests/plugins/%.c $(B)/flags
 	$(call say,PLUGIN,$@)

@@ -39,6 +39,32 @@ if [ -z "${SAN:-}" ]; then # its own time
   "$bin/ethd-run" --duration 0.2 --config "$work/file.ini" >"$work/out" 2>&1 </dev/null || fail "in real time: $(cat "$work/out")"
 fi
 
+# ---- a file may use all that both libraries offer, whether or not its program does ----
+cat tests/exported-symbols.txt tests/exported-symbols-drivers.txt | sort >"$work/offered"
+[ "$(wc -l <"$work/offered")" -gt 150 ] || fail "the libraries offer $(wc -l <"$work/offered") symbols"
+{
+  sed 's/.*/extern const char &[];/' "$work/offered" # the loader asks for the names alone
+  echo 'const void *const everything[] = {'
+  sed 's/$/,/' "$work/offered"
+  echo '};'
+} >"$work/everything.c"
+$CC -shared -fPIC -DHELLO=ethd_driver_plugin drivers/hello/hello.c "$work/everything.c" -o "$work/uses_all.so" \
+  $($PKG_CONFIG --cflags ethd-drivers) || fail "uses_all.so"
+$CC -shared -fPIC apps/examples/law.c "$work/everything.c" -o "$work/law_uses_all.so" $($PKG_CONFIG --cflags ethd) ||
+  fail "law_uses_all.so"
+ini all file:uses_all.so
+printf '[plugins]\nfile = law_uses_all.so\n[transition]\nlaw = mine\n' >"$work/law.ini"
+loads() { "$@" >"$work/out" 2>&1 </dev/null || fail "a file that uses everything: $*: $(cat "$work/out")"; }
+loads "$bin/ethd-run" --virtual --duration 0.1 --config "$work/all.ini"
+loads "$bin/ethd-conform" --virtual --config "$work/all.ini"
+loads "$bin/ethd-check" --open "$work/all.ini"
+loads "$bin/ethd-tap" --taps 1 --config "$work/law.ini"
+loads "$bin/ethd-laws" --plugin "$work/law_uses_all.so"
+for program in "$bin"/ethd-*; do
+  nm -D --defined-only "$program" | awk '{ print $3 }' | sort | comm -23 "$work/offered" - >"$work/out"
+  [ ! -s "$work/out" ] || fail "${program##*/} doesn't show: $(tr '\n' ' ' <"$work/out")"
+done
+
 # ---- bad ones: one line, and it ends before anything moves ----
 says() { # NAME EXIT PATTERN FILE: the program's exit, and the one line that says why
   [ $code = "$2" ] || fail "$1: exit $code: $(cat "$work/out" "$work/err")"
