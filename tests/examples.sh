@@ -1,6 +1,6 @@
 #!/bin/sh
 # apps/examples, compiled against the installed tree and run: a wall, a law in ethd-tap, a driver that ethd_conform asks, and
-# teleoperation over a line that delays, loses and reorders, and that dies.
+# teleoperation over a line that delays, loses and reorders, that carries nonsense and surfaces that jump, and that dies.
 set -u
 work=$(mktemp -d)
 children=
@@ -16,7 +16,7 @@ $MAKE --no-print-directory -s B="$BUILD" DESTDIR= PREFIX="$prefix" install-files
 export PKG_CONFIG_PATH="$prefix/lib/pkgconfig" LD_LIBRARY_PATH="$prefix/lib"
 export ETHD_DATA_DIR="$($PKG_CONFIG --variable=datadir ethd-drivers)"
 strict="-std=gnu11 -O2 -Wall -Wextra -Werror ${SAN:+-fsanitize=$SAN}"
-for source in apps/examples/*.c; do
+for source in apps/examples/*.[ch]; do
   [ "$(wc -l <"$source")" -lt 150 ] || fail "$source has $(wc -l <"$source") lines: fewer than 150 are read"
 done
 compiled() { # NAME MODULE FLAGS...: as the first lines of its source say
@@ -54,43 +54,92 @@ printf '[device]\ndriver = file:driver.so\n' >"$work/driver.ini"
 "$prefix/bin/ethd-run" --config "$work/driver.ini" --virtual --duration 0.5 </dev/null >"$work/driver.out" 2>&1 || fail "driver.so: exit $?: $(cat "$work/driver.out")"
 grep -q '^faults  *none' "$work/driver.out" && grep -q '^ticks  *[1-9]' "$work/driver.out" || fail "driver.so: $(cat "$work/driver.out")"
 
-# ---- teleop: the line works; then it dies ----
-compiled teleop ethd-drivers || exit 1
-port=$((20000 + $$ % 20000))
+# ---- teleop: the line works; it dies; it carries nonsense, and a surface that jumps ----
+compiled teleop ethd-drivers && compiled robot ethd || exit 1
+for words in 'teleop' 'teleop 4777' 'teleop 4777 x' 'teleop 70000 1' 'robot 4777 1 20 101' 'robot 4777 1 201 0' 'robot 0 1 20 10'; do
+  "$work/"$words >"$work/out" 2>&1 </dev/null
+  [ $? = 2 ] && grep -q 'PORT SECONDS.* are needed' "$work/out" || fail "$words: $(cat "$work/out")"
+done
+[ -z "${SAN:-}" ] || { echo "SKIP: a sanitizer is too slow for a loop in true time"; exit $((failed ? 1 : 77)); }
+port=$((20000 + $$ % 12000)) # below those that a system hands out
 alone=
 chrt -r 40 true 2>/dev/null && alone="chrt -r 40"
-teleop() { # NAME RING_SECONDS ROBOT_SECONDS: 20 ms on the way, every tenth datagram lost
-  port=$((port + 1))
-  $alone "$work/teleop" ring $port "$2" >"$work/$1.ring" 2>&1 &
-  ring=$!
-  children="$children $ring"
-  sleep 0.5
-  $alone "$work/teleop" robot $port "$3" 20 10 >"$work/$1.robot" 2>&1
-  wait $ring
+python=${PYTHON:-python3}
+in_back() { # NAME COMMAND...
+  out=$work/$1
+  shift
+  $alone "$@" >"$out" 2>&1 &
+  child=$!
+  children="$children $child"
+}
+ended() { # NAME PROCESS: its exit code
+  wait "$2"
   echo $? >"$work/$1.code"
 }
-[ -z "${SAN:-}" ] || { echo "SKIP: a sanitizer is too slow for a loop in true time"; exit $((failed ? 1 : 77)); }
-# "N ms in contact, N swaps, N datagrams overtaken, at X mm with T Nm: sentence"
-figures() { sed -n 's/^ring: \([0-9]*\) ms in contact, \([0-9]*\) swaps, \([0-9]*\) datagrams overtaken, at \([-0-9.]*\) mm with \([-0-9.e]*\) Nm: .*/\1 \2 \3 \4 \5/p' "$1"; }
-both() {
-  teleop works 4 5
-  teleop dies 6 2
-  cat "$work"/works.* "$work"/dies.*
+teleop() { # NAME ORDER RING_SECONDS ROBOT_SECONDS: 20 ms on the way, every tenth datagram lost
+  port=$((port + 1))
+  for side in $2; do
+    case $side in
+      ring) in_back "$1.ring" "$work/teleop" $port "$3"; ring=$child ;;
+      robot) in_back "$1.robot" "$work/robot" $port "$4" 20 10; robot=$child ;;
+    esac
+  done
+  ended "$1.ring" $ring
+  ended "$1.robot" $robot
+}
+beside() { # NAME PROGRAM ARGUMENTS SIDE ARGUMENTS: one of ours and a peer that sends nonsense, too
+  port=$((port + 1))
+  name=$1
+  shift
+  in_back "$name" "$work/$1" $port $2
+  shift 2
+  one=$child
+  in_back "$name.peer" "$python" tests/peers/teleop_peer.py "$1" $port $2
+  ended "$name.peer" $child
+  ended "$name" $one
+}
+# "N ms in contact, N swaps, pushed at V m/s at most; datagrams dropped: N overtaken, N of nonsense; at X mm with T Nm: sentence"
+figures() {
+  sed -n 's/^ring: \([0-9]*\) ms in contact, \([0-9]*\) swaps, pushed at \([0-9.]*\) .* dropped: \([0-9]*\) overtaken, \([0-9]*\) of nonsense; at \([-0-9.]*\) mm with \([-0-9.e]*\) Nm: .*/\1 \2 \3 \4 \5 \6 \7/p' "$work/$1"
+}
+code() { cat "$work/$1.code"; }
+all() {
+  teleop works 'ring robot' 4 5
+  teleop dies 'robot ring' 6 2
+  beside jumps teleop 4 robot '3.5 -0.02'
+  beside robot_alone robot '6 20 10' ring 2
+  for name in works.ring works.robot dies.ring dies.robot jumps jumps.peer robot_alone robot_alone.peer; do
+    echo "$name, exit $(code $name): $(cat "$work/$name")"
+  done
   wrong=$(judge)
 }
 judge() {
-  [ "$(cat "$work/works.code")" = 0 ] && grep -q ': no fault$' "$work/works.ring" || echo "with a line that works: $(cat "$work/works.ring")"
-  figures "$work/works.ring" | awk '!($1 > 1500 && $2 >= 3 && $3 > 10 && $4 > 240 && $4 < 252 && $5 < -0.1) { print "no contact, no swaps, or no line that overtakes" }'
-  [ "$(cat "$work/dies.code")" = 1 ] && grep -q ': the application is gone' "$work/dies.ring" || echo "with a line that dies: $(cat "$work/dies.ring")"
-  figures "$work/dies.ring" | awk '!($1 > 300 && $5 == 0) { print "it died before a contact, or torque is left" }'
-  grep -q '^robot: .* gripper at 24' "$work/works.robot" || grep -q 'no orders' "$work/works.robot" || echo "the robot: $(cat "$work/works.robot")"
+  [ "$(code works.ring)" = 0 ] && grep -q ': no fault$' "$work/works.ring" || echo "with a line that works: $(cat "$work/works.ring")"
+  figures works.ring | awk '!($1 > 1500 && $2 >= 3 && $4 > 10 && $5 == 0 && $6 > 240 && $6 < 252 && $7 < -0.1) { print "no contact, no swaps, or no line that overtakes" }'
+  # the ring went first: the robot's gripper stays where the ring was
+  [ "$(code works.robot)" = 1 ] && grep -q '^robot: the gripper at 24[0-9.]* mm, where it stays: no orders come' "$work/works.robot" || echo "the robot: $(cat "$work/works.robot")"
+  [ "$(code dies.ring)" = 1 ] && grep -q ': the application is gone' "$work/dies.ring" || echo "with a line that dies: $(cat "$work/dies.ring")"
+  figures dies.ring | awk '!($1 > 300 && $7 == 0) { print "it died before a contact, or torque is left" }'
+  [ "$(code dies.robot)" = 0 ] || echo "the robot, that ends first: $(cat "$work/dies.robot")"
+  # 0.46 m/s without a bound on the wall's speed, which is 0.1 m/s
+  [ "$(code jumps)" = 0 ] && grep -q ': no fault$' "$work/jumps" || echo "with a surface that jumps: $(cat "$work/jumps")"
+  figures jumps | awk -v sent="$(cat "$work/jumps.peer")" '!($1 > 1500 && $3 < 0.25 && $4 > 10 && sent > 300 && $5 == sent) { print "the ring is thrown, or nonsense isn\047t counted:", sent, $0 }'
+  [ "$(code robot_alone)" = 0 ] || [ "$(code robot_alone)" = 1 ] || echo "the robot with a peer: $(cat "$work/robot_alone")"
+  grep -q "^robot: the gripper at 240.0 mm.*, $(cat "$work/robot_alone.peer") datagrams of nonsense" "$work/robot_alone" || echo "the robot with a peer: $(cat "$work/robot_alone")"
 }
-both
-[ -z "$wrong" ] || both
+all
+[ -z "$wrong" ] || all
 skip=
 if [ -n "$wrong" ]; then
-  skip=$($alone "${PYTHON:-python3}" tests/peers/late.py 'a loop')
+  skip=$($alone "$python" tests/peers/late.py 'a loop')
   [ $? = 77 ] || fail "$wrong ($skip)"
 fi
+# without the other side, each says so in time and nothing moves
+"$work/robot" $((port + 1)) 1 20 10 >"$work/out" 2>&1 &
+robot=$!
+"$work/teleop" $((port + 2)) 1 >"$work/alone" 2>&1 </dev/null
+[ $? = 1 ] && grep -qx "robot: it doesn't speak: start it with the same port" "$work/alone" || fail "the ring alone: $(cat "$work/alone")"
+wait $robot
+[ $? = 1 ] && grep -q 'no orders came' "$work/out" || fail "the robot alone: $(cat "$work/out")"
 [ $failed = 0 ] || exit 1
 [ -z "$skip" ] || { echo "$skip"; exit 77; }
