@@ -54,6 +54,45 @@ printf '[device]\ndriver = file:driver.so\n' >"$work/driver.ini"
 "$prefix/bin/ethd-run" --config "$work/driver.ini" --virtual --duration 0.5 </dev/null >"$work/driver.out" 2>&1 || fail "driver.so: exit $?: $(cat "$work/driver.out")"
 grep -q '^faults  *none' "$work/driver.out" && grep -q '^ticks  *[1-9]' "$work/driver.out" || fail "driver.so: $(cat "$work/driver.out")"
 
+# a key that it doesn't have is refused; a damaged answer is counted and goes no further; the last word is no torque
+printf 'colour = red\n' >>"$work/driver.ini"
+"$prefix/bin/ethd-run" --config "$work/driver.ini" --virtual --duration 0.1 >"$work/out" 2>&1 </dev/null
+[ $? = 2 ] && grep -q 'driver.ini:3: device.colour: mine has no settings' "$work/out" || fail "driver.so, a key: $(cat "$work/out")"
+cat >"$work/inside.c" <<'END'
+#define main program
+#include "driver.c"
+#undef main
+#define EXPECT(what) if (!(what)) return puts(#what), 1
+int main(void) {
+  const ethd_driver *d = &ethd_driver_plugin;
+  ethd_setup setup = ethd_setup_default();
+  const ethd_device_def def = {.setup = &setup, .folder = ".", .is_virtual = 1};
+  const ethd_command pull = {.torque = {0.5, -0.5}};
+  char message[ETHD_MESSAGE_MAX] = "";
+  ethd_sense s = {0};
+  void *device;
+  if (d->open(&def, &device, message) || d->start(device)) return puts("open, start"), 1;
+  bus *b = device;
+  EXPECT(d->write(b, 1000000, &pull) == ETHD_OK && d->service(b, 0, 1000000) == ETHD_OK && d->read(b, 1000000, &s) == ETHD_OK);
+  EXPECT(b->taken.torque[0] == 0.5 && !s.faults && s.time_ns == 1000000);
+  const double q = s.q[0], bad[] = {NAN, INFINITY, -1e9};
+  for (int i = 0; i < 3; i++) {
+    s = (ethd_sense){0};
+    b->q[0] = bad[i];
+    EXPECT(d->service(b, 0, 2000000) < 0 && d->read(b, 2000000, &s) == ETHD_STALE);
+    EXPECT(s.q[0] == q && s.time_ns == 1000000 && s.faults == ETHD_FAULT_BIT(ETHD_FAULT_REPLY_BAD));
+  }
+  b->q[0] = q;
+  s = (ethd_sense){0};
+  EXPECT(d->service(b, 0, 3000000) == ETHD_OK && d->read(b, 3000000, &s) == ETHD_OK && !s.faults && s.time_ns == 3000000);
+  EXPECT(d->stop && d->stop(b) == ETHD_OK && b->taken.torque[0] == 0 && b->taken.torque[1] == 0);
+  d->close(b);
+  return 0;
+}
+END
+$CC $strict -Iapps/examples "$work/inside.c" -o "$work/inside" $($PKG_CONFIG --cflags --libs ethd-drivers) >"$work/out" 2>&1 &&
+  "$work/inside" >"$work/out" 2>&1 || fail "driver, from inside: $(cat "$work/out")"
+
 # ---- teleop: the line works; it dies; it carries nonsense, and a surface that jumps ----
 compiled teleop ethd-drivers && compiled robot ethd || exit 1
 for words in 'teleop' 'teleop 4777' 'teleop 4777 x' 'teleop 70000 1' 'robot 4777 1 20 101' 'robot 4777 1 201 0' 'robot 0 1 20 10'; do

@@ -10,16 +10,15 @@
 #include <ethd/cell.h>
 #include <ethd/conform.h>
 #include <ethd/loop.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #define INERTIA 0.02      /* kg m^2 */
 #define FRICTION 0.05     /* Nms/rad */
 #define WATCHDOG 20000000 /* ns: without an exchange for so long the amplifiers let go */
+#define FAR 20.0          /* rad: no joint turns that far */
 
-typedef struct order {
-  double torque[2]; /* Nm */
-} order;
 typedef struct answer {
   double q[2]; /* rad */
   int64_t at;  /* ns */
@@ -28,45 +27,58 @@ typedef struct answer {
 typedef struct bus {
   ethd_cell *orders, *answers;
   _Atomic int32_t safe; /* set by any thread: no torque until the next start */
+  _Atomic int32_t bad;  /* an answer was damaged: from the I/O thread to the control thread */
   answer seen;          /* the control thread's */
-  order taken;          /* the I/O thread's, as all that follows */
+  ethd_command taken;   /* the I/O thread's, as all that follows */
   double q[2], w[2];    /* the model's angles and speeds */
   int64_t now, heard;   /* ns */
 } bus;
 
-/* One exchange: torques out, angles back. Here a real driver blocks for as long as its bus takes. */
-static answer exchange(bus *b, const order *o, int64_t now_ns) {
+/* One exchange: torques out, angles back. Here a real driver blocks for as long as its bus takes. What the bus sends is
+   checked before anybody believes it; no comparison holds of NaN. When no good answer comes, the loop lets go. */
+static ethd_status exchange(bus *b, int64_t now_ns) {
   double dt = b->now ? 1e-9 * (double)(now_ns - b->now) : 0;
   int alive = now_ns - b->heard <= WATCHDOG;
   for (int i = 0; i < 2; i++) {
-    b->w[i] += dt / INERTIA * ((alive ? o->torque[i] : 0) - FRICTION * b->w[i]);
+    b->w[i] += dt / INERTIA * ((alive ? b->taken.torque[i] : 0) - FRICTION * b->w[i]);
     b->q[i] += dt * b->w[i];
   }
   b->now = now_ns;
-  return (answer){{b->q[0], b->q[1]}, now_ns};
+  answer a = {{b->q[0], b->q[1]}, now_ns};
+  int good = fabs(a.q[0]) < FAR && fabs(a.q[1]) < FAR;
+  if (good) ethd_cell_put(b->answers, &a);
+  if (!good) b->bad = 1;
+  return good ? ETHD_OK : ETHD_E_DEVICE;
 }
 
 static ethd_status open_bus(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
   bus *b = *device = calloc(1, sizeof *b);
   ethd_error error;
-  (void)message;
-  if (!b || ethd_cell_create(sizeof(order), &b->orders, &error) ||
-      ethd_cell_create(sizeof(answer), &b->answers, &error))
-    return ETHD_E_MEMORY;
-  return ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, b->q);
+  ethd_status status = b ? ethd_settings_read(&ethd_driver_plugin, def, NULL, NULL, message) : ETHD_E_MEMORY;
+  if (!status) status = ethd_cell_create(sizeof(ethd_command), &b->orders, &error);
+  if (!status) status = ethd_cell_create(sizeof(answer), &b->answers, &error);
+  return status ? status : ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, b->q);
 }
 
 /* Begins at rest where the device stands, without a torque from before, and with an answer that `read` can give. */
 static ethd_status start(void *device) {
   bus *b = device;
-  b->taken = (order){{0, 0}};
+  b->taken = (ethd_command){.safe = 1};
   b->w[0] = b->w[1] = 0;
   b->now = b->heard = 0;
   ethd_cell_put(b->orders, &b->taken);
   b->seen = (answer){{b->q[0], b->q[1]}, 0};
   ethd_cell_put(b->answers, &b->seen);
-  b->safe = 0;
+  b->safe = b->bad = 0;
   return ETHD_OK;
+}
+
+/* No thread uses the bus any more: the last word on it is that there is no torque. */
+static ethd_status stop(void *device) {
+  bus *b = device;
+  b->safe = 1;
+  b->taken = (ethd_command){.safe = 1};
+  return exchange(b, b->now);
 }
 
 static uint32_t units(const void *device) { return (void)device, 1; }
@@ -75,10 +87,8 @@ static ethd_status service(void *device, uint32_t unit, int64_t now_ns) {
   bus *b = device;
   (void)unit;
   if (ethd_cell_take(b->orders, &b->taken) == ETHD_OK) b->heard = now_ns;
-  if (b->safe) b->taken = (order){{0, 0}};
-  answer a = exchange(b, &b->taken, now_ns);
-  ethd_cell_put(b->answers, &a);
-  return ETHD_OK;
+  if (b->safe) b->taken = (ethd_command){.safe = 1};
+  return exchange(b, now_ns);
 }
 
 static ethd_status read_joints(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
@@ -87,14 +97,14 @@ static ethd_status read_joints(void *device, int64_t now_ns, ethd_sense *out) ET
   (void)now_ns;
   for (int i = 0; i < 2; i++) out->q[i] = b->seen.q[i];
   out->time_ns = b->seen.at;
+  if (b->bad) out->faults |= ETHD_FAULT_BIT(ETHD_FAULT_REPLY_BAD);
+  b->bad = 0;
   return status; /* ETHD_STALE: the loop waits for the next one */
 }
 
 static ethd_status write_torque(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT {
-  bus *b = device;
-  order o = {{command->torque[0], command->torque[1]}};
   (void)now_ns;
-  ethd_cell_put(b->orders, &o);
+  ethd_cell_put(((bus *)device)->orders, command);
   return ETHD_OK;
 }
 
@@ -120,6 +130,7 @@ const ethd_driver ethd_driver_plugin = {.size = sizeof(ethd_driver),
                                         .units = units,
                                         .service = service,
                                         .safe = safe,
+                                        .stop = stop,
                                         .close = close_bus,
                                         .limits = limits};
 

@@ -96,8 +96,8 @@ static int lead(int fd, ear *e, ethd_loop *loop, ethd_control *control, ethd_set
   ethd_loop_stop(loop);
   if (ethd_loop_join(loop)) return fail("loop", "its clock failed");
   while (ethd_loop_take(loop, &row) == ETHD_OK) continue;
-  printf("ring: %d ms in contact, %d swaps, pushed at %.3f m/s at most; datagrams dropped: %d overtaken, %d of nonsense; "
-         "at %.1f mm with %g Nm: %s\n",
+  printf("ring: %d ms in contact, %d swaps, pushed at %.3f m/s at most; datagrams dropped: %d overtaken, "
+         "%d of nonsense; at %.1f mm with %g Nm: %s\n",
          touching, swaps, pushed, e->late, e->nonsense, 1e3 * row.trace.x[0], row.share * row.trace.tau[0],
          ethd_fault_sentence((ethd_fault)row.trace.fault));
   return row.trace.fault != 0;
