@@ -5,6 +5,7 @@
 
 #include "cli/cli.h"
 #include "cli/dropped.h"
+#include "cli/law_fault.h"
 #include "ethd/record.h"
 #include "settings/config_parts.h"
 #include "text/text.h"
@@ -118,6 +119,7 @@ static bool is_guards(int64_t fault) { return fault == ETHD_FAULT_SPEED || fault
 static int run(ethd_control *control, const ethd__trace_in *in, ethd_csv_out *out, const ethd_config *config) {
   int code = ETHD_EXIT_DONE;
   bool guarded = false;
+  char text[ETHD_MESSAGE_MAX];
   for (size_t row = 0; row < in->csv.rows && !ethd__stop; row++) {
     ethd_sense sense = ethd__trace_in_sense(in, row);
     ethd_command command;
@@ -125,7 +127,8 @@ static int run(ethd_control *control, const ethd__trace_in *in, ethd_csv_out *ou
     ethd__config_foreign(config, "a plugin's law");
     bool failed = ethd_control_step(control, &sense, &command, &trace) < 0;
     ethd__config_foreign(config, NULL);
-    const char *what = ethd_fault_sentence((ethd_fault)trace.fault);
+    const ethd__law_fault by = ethd__law_fault_take(control, &config->setup);
+    const char *what = by.law ? ethd__law_fault_text(&by, text) : ethd_fault_sentence((ethd_fault)trace.fault);
     if (failed && is_guards(trace.fault)) {
       if (!guarded) warn(in, row, what, "the guard brakes");
       guarded = true;

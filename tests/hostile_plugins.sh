@@ -35,9 +35,42 @@ case ${SAN:-} in
     ;;
 esac
 
-# A law that returns NaN: its taps are faults, and the table names the law and the fault.
+# A law that returns NaN, or a failure: its taps are faults, and the table names the law, its kind and the fault.
+finite="a law's output isn't a finite number in its range"
 "$BUILD/bin/ethd-tap" --config "$folder/says_nan.ini" --taps 2 >"$folder/out" || fail "says_nan: exit $?"
-grep -qx "broken: the first fault: a law's output isn't a finite number in its range" "$folder/out" || fail "says_nan: $(cat "$folder/out")"
+grep -qx "broken: the first fault: the transition law broken: $finite" "$folder/out" || fail "says_nan: $(cat "$folder/out")"
+config fails
+"$BUILD/bin/ethd-tap" --config "$folder/fails.ini" --taps 2 >"$folder/out" || fail "fails: exit $?"
+grep -qx "broken: the first fault: the transition law broken: a law reported a failure" "$folder/out" || fail "fails: $(cat "$folder/out")"
+# also where the law is none of those that are compared: each program that steps says it in the same words
+cat >"$folder/contact.c" <<'END'
+#include <ethd/plugin.h>
+static ethd_status step(const double *p, void *state, double gap, double speed, int entering, double *force) {
+  (void)p, (void)state, (void)speed, (void)entering;
+  *force = gap < 0 ? 0.0 / 0.0 : 0;
+  return gap < 0 ? RETURNS : ETHD_OK;
+}
+static const ethd_contact_law law = {.law = {sizeof law, ETHD_ABI, ETHD_CONTACT, 0, "soft", "soft", 0, 0, 0, 0}, .step = step};
+static const ethd_law *const laws[] = {&law.law};
+const ethd_plugin_entry ethd_plugin = {sizeof ethd_plugin, ETHD_ABI, "soft", "1.0", laws, 1};
+END
+printf 't_s,q1_rad,q2_rad,xf_m,yf_m,vxf_mps,vyf_mps\n' >"$folder/into.csv"
+awk 'BEGIN { for (i = 0; i < 6; i++) printf "%.3f,%.3f,0.15,0.27,0.285,-0.2,0\n", i / 1000, 1.45 + 0.002 * i }' >>"$folder/into.csv"
+contact() { # STATUS SENTENCE
+  $CC -shared -fPIC -Iinclude -DRETURNS="$1" "$folder/contact.c" -o "$folder/contact.so" || fail "$1 doesn't compile"
+  printf '[plugins]\nfile = contact.so\n[scene]\nfile = wall.scene\n[contact]\nlaw = soft\n' >"$folder/contact.ini"
+  said="the contact law soft: $2"
+  "$BUILD/bin/ethd-tap" --config "$folder/contact.ini" --transition offset,smooth --taps 1 >"$folder/out" || fail "$1: exit $?"
+  for law in offset smooth; do grep -qx "$law: the first fault: $said" "$folder/out" || fail "$1: $(cat "$folder/out")"; done
+  "$BUILD/bin/ethd-run" --virtual --duration 3 --config "$folder/contact.ini" >"$folder/out" 2>"$folder/err" </dev/null
+  [ "$(grep -cx "ethd-run: $said" "$folder/err")" = 1 ] || fail "$1: ethd-run: $(cat "$folder/err")"
+  sed 's/-0.238/-0.2765/' "$folder/wall.scene" >"$folder/near.scene"
+  sed -i 's/wall.scene/near.scene/' "$folder/contact.ini"
+  "$BUILD/bin/ethd-replay" --config "$folder/contact.ini" --in "$folder/into.csv" --out "$folder/out.csv" >"$folder/out" 2>"$folder/err"
+  [ $? = 1 ] && grep -q "into.csv:[2-5]: $said; the torque is 0 there" "$folder/err" || fail "$1: ethd-replay: $(cat "$folder/err")"
+}
+contact ETHD_OK "$finite"
+contact ETHD_E_UNREACHABLE "out of the arm's reach"
 
 # A step that hangs where no thread watches: the program's own alarm ends it.
 hangs="a plugin's law doesn't return"

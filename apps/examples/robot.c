@@ -9,7 +9,7 @@ static word surface(double t, uint32_t number) { /* t: s */
 
 /* Speaks until it is answered, then for so many seconds; returns whether the link died before. */
 static int follow(int fd, ear *orders, double seconds, double delay, double loss) {
-  double begin = now(), end = begin + PATIENCE, heard = 0, due[LINE];
+  double begin = now(), end = begin + TELEOP_WAIT, heard = 0, due[LINE];
   word line[LINE];
   for (uint32_t sent = 0; now() < end; usleep(5000), sent++) {
     double t = now() - begin;

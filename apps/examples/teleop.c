@@ -61,7 +61,7 @@ static const ethd_driver *const drivers[] = {&ethd_driver_sim, &link_driver, NUL
 /* Waits for the robot's first word, and hears nobody else from then on. */
 static int meet(int fd, ear *e) {
   struct sockaddr_in from;
-  for (double begin = now(); now() - begin < PATIENCE && !over; usleep(1000)) {
+  for (double begin = now(); now() - begin < TELEOP_WAIT && !over; usleep(1000)) {
     socklen_t length = sizeof from;
     ssize_t size = recvfrom(fd, &e->last, sizeof e->last, MSG_DONTWAIT | MSG_TRUNC, (struct sockaddr *)&from, &length);
     if (is_word(&e->last, size)) return connect(fd, (struct sockaddr *)&from, length);

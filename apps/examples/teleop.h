@@ -1,6 +1,6 @@
 /* What both sides of the teleoperation say and how they listen: teleop.c is the ring's side, robot.c the far one. */
-#ifndef TELEOP_H
-#define TELEOP_H
+#ifndef ETHD__APPS_EXAMPLES_TELEOP_H
+#define ETHD__APPS_EXAMPLES_TELEOP_H
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -14,9 +14,9 @@
 
 #define VERSION 0x65746801u /* of what follows, first in each datagram */
 #define LINK_DEAD 0.25      /* s without a word */
-#define PATIENCE 10         /* s that one side waits for the other to be started */
+#define TELEOP_WAIT 10      /* s that one side waits for the other to be started */
 #define LINE 64             /* datagrams under way, or read at a time */
-#define GAP 1000            /* words that can be lost in a row */
+#define TELEOP_GAP 1000     /* words that can be lost in a row */
 
 typedef struct word { /* with numbers as this machine has them */
   uint32_t version, number;
@@ -56,7 +56,7 @@ static inline int hear(int fd, ear *e) {
   int news = 0;
   for (int i = 0; i < LINE && (size = recv(fd, &w, sizeof w, MSG_DONTWAIT | MSG_TRUNC)) >= 0; i++) {
     int32_t ahead = is_word(&w, size) ? (int32_t)(w.number - e->last.number) : INT32_MAX;
-    if (ahead > GAP || ahead < -GAP)
+    if (ahead > TELEOP_GAP || ahead < -TELEOP_GAP)
       e->nonsense++;
     else if (ahead <= 0)
       e->late++;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
+#include "cli/law_fault.h"
 #include "settings/config_parts.h"
 #include "text/error_text.h"
 #include "text/text.h"
@@ -17,14 +18,10 @@
 /* ---- time ---- */
 
 /* Names the law that failed and says what it did. */
-static void tell_law(const ethd__session *s, const ethd_event *e) {
-  const ethd_law *laws[] = {&s->setup.tracking->law, &s->setup.contact->law, &s->setup.transition->law};
-  static const char *const kinds[] = {"tracking", "contact", "transition"};
-  int value = (int)e->value, kind = e->code == ETHD_FAULT_LAW ? value / 100 : value;
-  ethd_status status = e->code == ETHD_FAULT_LAW ? (ethd_status) - (value % 100) : ETHD_E_NOT_FINITE;
-  if ((e->code != ETHD_FAULT_LAW && e->code != ETHD_FAULT_FINITE) || kind < 0 || kind > ETHD_TRANSITION) return;
-  fprintf(stderr, "%s: the %s law %s: %s\n", program_invocation_short_name, kinds[kind], laws[kind]->id,
-          ethd_status_sentence(status));
+static void tell_law(const ethd__session *s, const ethd_event *event) {
+  char text[ETHD_MESSAGE_MAX];
+  const ethd__law_fault fault = ethd__law_fault_of(&s->setup, event);
+  if (fault.law) fprintf(stderr, "%s: %s\n", program_invocation_short_name, ethd__law_fault_text(&fault, text));
 }
 
 void ethd__session_poll(ethd__session *s) {
@@ -32,7 +29,7 @@ void ethd__session_poll(ethd__session *s) {
   while (ethd_control_poll(s->control, &event) == ETHD_OK)
     if (event.kind == ETHD_EVENT_TAKEN)
       s->posted = false;
-    else if (event.kind == ETHD_EVENT_FAULT)
+    else
       tell_law(s, &event);
   if (s->loop) ethd_loop_beat(s->loop);
 }

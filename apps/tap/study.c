@@ -181,6 +181,7 @@ void ethd__stage_judge(const ethd__stage *stage, const ethd__rule *rule, const e
   ethd__metrics_of(&stage->rows, rule, &out->metrics);
   out->commanded = tap->commanded;
   out->finger_radius = tap->finger_radius;
+  out->law_fault = ethd__law_fault_take(stage->control, &stage->setup);
   count_ticks(&stage->rows, out);
 }
 
@@ -189,6 +190,7 @@ void ethd__stage_judge(const ethd__stage *stage, const ethd__rule *rule, const e
 
 static ethd_status run_tap(ethd__stage *stage, const ethd_sim_tap *tap, const ethd__rule *rule) {
   const ethd_config *config = stage->study->config;
+  (void)ethd__law_fault_take(stage->control, &stage->setup); /* of earlier taps */
   ethd__config_foreign(config, "a plugin's law");
   ethd_status status = ethd__tap_run(stage->sim, stage->control, tap, stage->learned, rule, &stage->rows);
   ethd__config_foreign(config, NULL);

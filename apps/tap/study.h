@@ -5,6 +5,7 @@
 #ifndef ETHD__APPS_TAP_STUDY_H
 #define ETHD__APPS_TAP_STUDY_H
 
+#include "cli/law_fault.h"
 #include "tap/loop.h"
 #include "tap/placement.h"
 #include "tap/trace.h"
@@ -88,6 +89,7 @@ typedef struct ethd__result {
   double commanded;        /* m/s: what was drawn for this tap */
   double finger_radius;    /* m: likewise */
   uint32_t ticks, queried; /* of which the scene was asked */
+  ethd__law_fault law_fault; /* the tap's first */
 } ethd__result;
 
 /* Judges the ticks in stage->rows, which are this tap's. */

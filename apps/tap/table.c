@@ -200,13 +200,19 @@ static bool has_law(const ethd__cell *cells, size_t count, const char *law) {
   return false;
 }
 
-/* The first fault under each law, which a law of one's own may be the cause of. */
+/* The first fault under each transition law; which law it came by, where it is a law's. */
 static void print_faults(FILE *file, const ethd__study *study, const ethd__cell *cells, size_t count) {
+  char text[ETHD_MESSAGE_MAX];
   for (size_t law = 0; law < count; law += study->speed_count) {
-    ethd_fault fault = ETHD_FAULT_NONE;
+    const ethd__result *first = NULL;
     for (size_t c = law; c < law + study->speed_count; c++)
-      for (size_t i = 0; i < cells[c].count && !fault; i++) fault = cells[c].results[i].metrics.fault;
-    if (fault) fprintf(file, "%s: the first fault: %s\n", cells[law].law, ethd_fault_sentence(fault));
+      for (size_t i = 0; i < cells[c].count && !first; i++)
+        if (cells[c].results[i].metrics.fault) first = &cells[c].results[i];
+    if (!first) continue;
+    ethd_fault fault = first->metrics.fault;
+    bool is_laws = first->law_fault.law && (fault == ETHD_FAULT_LAW || fault == ETHD_FAULT_FINITE);
+    fprintf(file, "%s: the first fault: %s\n", cells[law].law,
+            is_laws ? ethd__law_fault_text(&first->law_fault, text) : ethd_fault_sentence(fault));
   }
 }
 

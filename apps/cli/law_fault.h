@@ -1,0 +1,21 @@
+/* Which law a fault came by: a controller's faults LAW and FINITE tell it in their event's value. All [main]. */
+#ifndef ETHD__APPS_CLI_LAW_FAULT_H
+#define ETHD__APPS_CLI_LAW_FAULT_H
+
+#include "ethd/control.h"
+
+typedef struct ethd__law_fault {
+  const ethd_law *law; /* NULL: no law's fault */
+  const char *what;    /* a sentence */
+} ethd__law_fault;
+
+/* Returns the law of this setup, which rules, by which the event's fault came. */
+ethd__law_fault ethd__law_fault_of(const ethd_setup *setup, const ethd_event *event);
+
+/* Takes all events that wait and returns the first of a law's faults among them. */
+ethd__law_fault ethd__law_fault_take(ethd_control *control, const ethd_setup *setup);
+
+/* Writes "the contact law cubic: what it did" and returns text. */
+const char *ethd__law_fault_text(const ethd__law_fault *fault, char text[ETHD_MESSAGE_MAX]);
+
+#endif
