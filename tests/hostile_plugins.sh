@@ -65,11 +65,14 @@ contact() { # STATUS SENTENCE
   "$BUILD/bin/ethd-run" --virtual --duration 3 --config "$folder/contact.ini" >"$folder/out" 2>"$folder/err" </dev/null
   [ "$(grep -cx "ethd-run: $said" "$folder/err")" = 1 ] || fail "$1: ethd-run: $(cat "$folder/err")"
   sed 's/-0.238/-0.2765/' "$folder/wall.scene" >"$folder/near.scene"
-  sed -i 's/wall.scene/near.scene/' "$folder/contact.ini"
-  "$BUILD/bin/ethd-replay" --config "$folder/contact.ini" --in "$folder/into.csv" --out "$folder/out.csv" >"$folder/out" 2>"$folder/err"
+  sed 's/wall.scene/near.scene/' "$folder/contact.ini" >"$folder/into.ini"
+  "$BUILD/bin/ethd-replay" --config "$folder/into.ini" --in "$folder/into.csv" --out "$folder/out.csv" >"$folder/out" 2>"$folder/err"
   [ $? = 1 ] && grep -q "into.csv:[2-5]: $said; the torque is 0 there" "$folder/err" || fail "$1: ethd-replay: $(cat "$folder/err")"
 }
 contact ETHD_OK "$finite"
+printf '[study]\nparticipants = 1\nstrategies = smooth,offset\nspeeds = low\ntraining = 1\ntaps = 2\nattempts = 2\nsurvey = off\n[device]\nconfig = contact.ini\n' >"$folder/one.study"
+"$BUILD/bin/ethd-study" "$folder/one.study" --quiet --out "$folder/study" >"$folder/out" 2>"$folder/err" || fail "a study: $(cat "$folder/err")"
+[ "$(grep -cx "ethd-study: the contact law soft: $finite; its taps count as faults" "$folder/err")" = 1 ] || fail "a study: $(cat "$folder/err")"
 contact ETHD_E_UNREACHABLE "out of the arm's reach"
 
 # A step that hangs where no thread watches: the program's own alarm ends it.

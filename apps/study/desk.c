@@ -1,5 +1,6 @@
 #include "study/desk.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -102,10 +103,21 @@ ethd_status ethd__desk_prepare(ethd__desk *desk, const ethd__turn *turn, ethd__t
 
 const char *const ethd__hand_words[ETHD_HAND_SOURCES] = {"device", "mouse", "simulated", "recorded"};
 
+/* Says which law fails, once and not for each tap, all of which are faults. */
+static void tell_law(ethd__desk *desk, const ethd__law_fault *fault) {
+  char text[ETHD_MESSAGE_MAX];
+  if (!fault->law || fault->law == desk->told) return;
+  desk->told = fault->law;
+  fprintf(stderr, "%s: %s; its taps count as faults\n", program_invocation_short_name,
+          ethd__law_fault_text(fault, text));
+}
+
 static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, char message[ETHD_MESSAGE_MAX]) {
   ethd__desk *desk = self;
   ethd_status status = ethd__desk_prepare(desk, turn, out, message);
-  return status ? status : ethd__stage_run(&desk->stage, out->speed, out->tap, &out->result, message);
+  if (!status) status = ethd__stage_run(&desk->stage, out->speed, out->tap, &out->result, message);
+  if (!status) tell_law(desk, &out->result.law_fault);
+  return status;
 }
 
 ethd__source ethd__desk_source(ethd__desk *desk) {

@@ -17,6 +17,7 @@ typedef struct ethd__desk {
   uint32_t person; /* whose study it is */
   size_t strategy, movement;
   bool seated, open;
+  const ethd_law *told; /* the law whose failure was said last */
 } ethd__desk;
 
 /* Opens a desk, and checks everything that could make the first tap fail: strategies, speeds, gains, the wall, the

@@ -181,7 +181,6 @@ void ethd__stage_judge(const ethd__stage *stage, const ethd__rule *rule, const e
   ethd__metrics_of(&stage->rows, rule, &out->metrics);
   out->commanded = tap->commanded;
   out->finger_radius = tap->finger_radius;
-  out->law_fault = ethd__law_fault_take(stage->control, &stage->setup);
   count_ticks(&stage->rows, out);
 }
 
@@ -222,5 +221,6 @@ ethd_status ethd__stage_run(ethd__stage *stage, const ethd__speed *speed, uint64
     return ethd__say(message, status, "tap %llu at %s: %s", (unsigned long long)tap, speed->word,
                      ethd_status_sentence(status));
   ethd__stage_judge(stage, &rule, &circumstances, out);
+  out->law_fault = ethd__law_fault_take(stage->control, &stage->setup);
   return ETHD_OK;
 }

@@ -86,10 +86,10 @@ ethd__view ethd__stage_view(const ethd__stage *stage, const ethd__speed *speed, 
 
 typedef struct ethd__result {
   ethd__metrics metrics;
-  double commanded;        /* m/s: what was drawn for this tap */
-  double finger_radius;    /* m: likewise */
-  uint32_t ticks, queried; /* of which the scene was asked */
-  ethd__law_fault law_fault; /* the tap's first */
+  double commanded;          /* m/s: what was drawn for this tap */
+  double finger_radius;      /* m: likewise */
+  uint32_t ticks, queried;   /* of which the scene was asked */
+  ethd__law_fault law_fault; /* the first of a tap that ethd__stage_run made */
 } ethd__result;
 
 /* Judges the ticks in stage->rows, which are this tap's. */
