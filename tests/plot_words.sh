@@ -1,5 +1,6 @@
 #!/bin/sh
-# No word of a report's pictures lies on another one or is cut off, with nine cells as with four.
+# No word of a report's pictures lies on another one or is cut off, with nine cells as with four; none of a tap's on a curve,
+# under any strategy.
 set -u
 command -v gnuplot >/dev/null || { echo "SKIP: gnuplot (Debian: gnuplot-nox)"; exit 77; }
 folder=$(mktemp -d)
@@ -29,6 +30,11 @@ for name in four nine; do
   draw $name report-survey "in = 'survey-answers.csv'; question = '2'; answers = '5'; scale = '1 wwwwwwwwwwwwwwwwwwwwwwwwwwwwwwww… to 5 moved clearly toward the right…'"
   draw $name report-states "in = 'encounter-smooth.csv encounter-offset.csv'; titles = 'smooth offset'; from = '-60'; note = 'simulated for this picture; dashed: how far the ring is in the wall'"
   for trace in "$folder/$name"/report/trace-*.csv; do draw $name tap "in = '$(basename "$trace")'; title = 'a tap'"; done
+done
+mkdir -p "$folder/taps/report"
+for seed in 1 2; do
+  "$BUILD/bin/ethd-tap" --taps 40 --seed $seed --trace "$folder/taps/report" --force >/dev/null || failed=1
+  for trace in "$folder"/taps/report/*.csv; do draw taps tap "in = '$(basename "$trace")'; title = '$(basename "$trace" .csv), seed $seed'"; done
 done
 "${PYTHON:-python3}" tests/plot_words.py "$folder"/*.svg || failed=1
 exit $failed

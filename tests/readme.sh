@@ -1,6 +1,6 @@
 #!/bin/sh
 # The README's C: the first block is an application, the second a law. Both compile against the installed
-# library through pkg-config; the application runs; the law loads.
+# library through pkg-config; the application runs; the law loads. Its picture is what today's programs draw.
 set -eu
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -46,6 +46,15 @@ grep -q 'ethd-tap --config mine' "$work/mine.sh" || fail "no commands on a confi
 grep -q '^k_e *= 500 ' <<END || fail "k_e isn't set"
 $("$BUILD/bin/ethd-check" "$work/tree/mine/n.ini")
 END
+
+# The picture: of this script and these ticks, which are the same everywhere; its pixels depend on gnuplot and its fonts.
+drawn=4a7cfbdb073e3913f6dcedb602650b6f81baf6adcf1985d10205d0e22be8919a
+"$BUILD/bin/ethd-tap" --taps 400 --transition offset --speed high --trace "$work/traces" >/dev/null
+[ "$(cat apps/plot/tap.gp "$work/traces/offset-high.csv" apps/plot/offset.png | sha256sum)" = "$drawn  -" ] ||
+  fail "the picture isn't what is drawn today. Look at a new one, and give its sum here:
+  build/bin/ethd-tap --taps 400 --transition offset --speed high --trace traces
+  gnuplot -e \"in='traces/offset-high.csv'; out='apps/plot/offset.png'; title='offset, high speed'; scale=0.68\" apps/plot/tap.gp
+  cat apps/plot/tap.gp traces/offset-high.csv apps/plot/offset.png | sha256sum"
 
 for n in 1 2; do echo "block $n: $(wc -l <"$work/$n.c") lines"; done
 cat "$work/app.out" | head -n 5

@@ -66,7 +66,8 @@ under = valley > 0 && valley < 0.2*(top - bottom) ? 0 : valley # where neither r
 if (turned > 0) {
   set arrow 3 from t_valley,peak to t_valley,valley heads size 2,90 front lc rgb ring lw 1.6
   set arrow 4 from t_peak,peak to t_valley,peak nohead front lc rgb ring lw 1.2 dt (2,3)
-  set label 6 sprintf("d_{max} %.2f mm", peak - valley) at t_valley,under offset 0.6,-1.1 textcolor rgb ring font "Sans,13" front
+  beside = touch == touch && touch > t_valley ? touch : t_valley # before its touch the finger comes from below
+  set label 6 sprintf("d_{max} %.2f mm", peak - valley) at beside,under offset 0.6,-1.1 textcolor rgb ring font "Sans,13" front
 }
 offset_style = moved_any ? 5 : 4 # where the wall didn't move, its line once more: a curve without a point is warned of
 plot in using (t(0)):(1e3*column("hand_m")) with lines ls 3 title "hand's path", \
@@ -85,13 +86,14 @@ set ylabel "speed along n, m/s"
 set yrange [*:*]
 if (touch == touch) {set label 4 " finger touches" at touch, graph 0.93 textcolor rgb finger font "Sans,13"}
 set label 5 "ring meets wall " at 0, graph 0.07 right textcolor rgb grey font "Sans,13"
-set label 7 (v_rmin == v_rmin ? sprintf("v_{r min} %.3f m/s", v_rmin) : "") at (v_rmin == v_rmin ? t_rmin : 0),(v_rmin == v_rmin ? v_rmin : 0) offset 1,-0.3 \
-  point pt 6 ps 1.6 lc rgb ring lw 2 textcolor rgb ring font "Sans,13" front
-if (v_rmin != v_rmin) {unset label 7}
+if (v_rmin == v_rmin) { # a ring around the point, its words where the curves have fallen already
+  set label 7 "" at t_rmin,v_rmin point pt 6 ps 1.6 lc rgb ring lw 2 front
+  set label 8 sprintf("v_{r min} %.3f m/s", v_rmin) at touch, graph 0.8 offset 3,0 textcolor rgb ring font "Sans,13" front
+}
 plot 0 with lines lc rgb "#bbbbbb" lw 1 notitle, \
      in using (t(0)):"v_finger_mps" with lines lc rgb finger lw 1.6 title "finger", \
      in using (t(0)):"v_ring_mps" with lines ls 1 title "ring"
-unset label 4; unset label 5; unset label 7
+unset label 4; unset label 5; unset label 7; unset label 8
 
 # ---- state ----
 set tmargin at screen 0.32
