@@ -62,6 +62,7 @@ static recording open_recording(void) {
   char message[ETHD_MESSAGE_MAX];
   recording r = {0};
   void *rows = NULL;
+  ethd__need_recording(arg.folder);
   char *tick = within(ETHD_RECORDING_TICK), *events = within(ETHD_RECORDING_EVENTS);
   ethd_status status = ethd_npy_read(tick, ethd_trace_columns, sizeof *r.rows, &rows, &r.count, message);
   if (!status) status = ethd__record_events_read(events, &r.events, message);

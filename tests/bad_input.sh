@@ -56,6 +56,22 @@ truncate -s 100M "$folder/bad.huge"
 head -c 5000 "$bin/ethd-check" >"$folder/bad.binary"
 : >"$folder/bad.empty"
 
+# ---- names of files: none at all, and a plant without its configuration ----
+for command in 'ethd-tap --config=' 'ethd-run --config=' 'ethd-replay --out=o.csv --in=' 'ethd-tap --finger='; do
+  refuse "$command" '"": a file.s name is needed' "$bin"/$command
+done
+for command in 'ethd-tap --taps 1 --plant' 'ethd-tune --plant' 'ethd-explain --judge'; do
+  refuse "$command" 'nowhere.ini: No such file or directory; it is the configuration of the plant "nowhere": put it there' "$bin"/$command nowhere
+done
+
+mkdir "$folder/bad.dir"
+for recording in "$folder/bad.dir" "$folder/good.csv" nowhere; do
+  for command in 'ethd-replay --verify' 'ethd-convert'; do
+    refuse "$command" 'no recording, whose tick.npy is needed: No.*; ethd-run --record makes one' "$bin"/$command "$recording" \
+      $([ "$command" = ethd-convert ] && echo "$folder/bad.csv")
+  done
+done
+
 # ---- configurations ----
 config() { # WHAT PATTERN TEXT
   printf "$3" >"$folder/bad.ini"

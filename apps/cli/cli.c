@@ -182,10 +182,19 @@ static char *copy_of(const char *text) {
 }
 
 char *ethd__given_or_data(const char *name) {
-  char *path = access(name, R_OK) == 0 ? NULL : in_data_folder(name);
+  char *path = !*name || access(name, R_OK) == 0 ? NULL : in_data_folder(name);
   if (path && access(path, R_OK) == 0) return path;
   free(path);
   return copy_of(name);
+}
+
+void ethd__need_recording(const char *folder) {
+  char *ticks;
+  if (asprintf(&ticks, "%s/tick.npy", folder) < 0) ethd__fail_memory();
+  if (access(ticks, F_OK))
+    ethd__fail(ETHD_EXIT_INPUT, "%s: no recording, whose tick.npy is needed: %s; ethd-run --record makes one", folder,
+               strerror(errno));
+  free(ticks);
 }
 
 char *ethd__motion_folder(void) {

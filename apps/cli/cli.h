@@ -61,6 +61,9 @@ char *ethd__data_path(const char *name);
 /* Returns the file as it is named or, if there is none, the installed one of that name. The caller frees it. */
 char *ethd__given_or_data(const char *name);
 
+/* Exits 2 unless the folder holds a recording. */
+void ethd__need_recording(const char *folder);
+
 /* Returns the folder of recorded movements: $ETHD_MOTION_DIR, ../shared/motion, or the installed one. The caller frees
    it. */
 char *ethd__motion_folder(void);

@@ -1,7 +1,9 @@
 #include "tap/load.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/cli.h"
 #include "sim/plant.h"
@@ -69,6 +71,11 @@ static ethd_config *with_wall(ethd_config *config, const char *path) {
 static void load_config(const char *config, const char *plant, bool plugins, ethd__loaded *out) {
   char message[ETHD_MESSAGE_MAX];
   out->path = config ? had(strdup(config)) : beside_plant(plant ? plant : "n", ".ini");
+  if (!config && access(out->path, F_OK))
+    ethd__fail(ETHD_EXIT_INPUT,
+               "%s: %s; it is the configuration of the plant \"%s\": put it there, or name another one; n, b and p "
+               "came with theirs",
+               out->path, strerror(errno), plant);
   check((plugins ? ethd_config_load : ethd_config_load_received)(out->path, &out->config, message), message);
   if (!out->config->scene) out->config = with_wall(out->config, out->path);
 }

@@ -53,6 +53,7 @@ ethd_status ethd_text_read(const char *path, size_t most, char **text, size_t *l
   struct stat info;
   *text = NULL;
   *length = 0;
+  if (!*path) return ethd__say(message, ETHD_E_FILE, "\"\": a file's name is needed");
   FILE *file = fopen(path, "rbe");
   if (!file) return refuse(path, message);
   ethd_status status;
