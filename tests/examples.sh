@@ -99,6 +99,8 @@ for words in 'teleop' 'teleop 4777' 'teleop 4777 x' 'teleop 70000 1' 'robot 4777
   "$work/"$words >"$work/out" 2>&1 </dev/null
   [ $? = 2 ] && grep -q 'PORT SECONDS.* are needed' "$work/out" || fail "$words: $(cat "$work/out")"
 done
+env -u ETHD_DATA_DIR "$work/teleop" $((20000 + $$ % 12000)) 1 >"$work/out" 2>&1 </dev/null
+[ $? = 1 ] && grep -q 'n.plant: No such file or directory; ETHD_DATA_DIR may name' "$work/out" || fail "no plants: $(cat "$work/out")"
 [ -z "${SAN:-}" ] || { echo "SKIP: a sanitizer is too slow for a loop in true time"; exit $((failed ? 1 : 77)); }
 port=$((20000 + $$ % 12000)) # below those that a system hands out
 alone=

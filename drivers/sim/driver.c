@@ -1,6 +1,9 @@
+#include <errno.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "add_sense.h"
 #include "ethd/driver.h"
@@ -25,8 +28,12 @@ typedef struct device {
 } device;
 
 static ethd_status load_plant(const ethd_device_def *def, const ethd_setting *setting, ethd_plant *out, char *message) {
-  char *path = ethd__plant_path(setting ? setting->value : "n", def->folder);
+  const char *plant = setting ? setting->value : "n";
+  char *path = ethd__plant_path(plant, def->folder);
   ethd_status status = path ? ethd_plant_load(path, out, message) : ethd__no_memory(message, NULL);
+  if (path && status == ETHD_E_FILE && !strpbrk(plant, "/.") && access(path, F_OK))
+    (void)ethd__say(message, status, "%s: %s; ETHD_DATA_DIR may name the folder of the plants that are installed", path,
+                    strerror(errno));
   free(path);
   return status;
 }
