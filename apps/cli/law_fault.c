@@ -8,8 +8,9 @@ ethd__law_fault ethd__law_fault_of(const ethd_setup *setup, const ethd_event *ev
   if (event->kind != ETHD_EVENT_FAULT || (event->code != ETHD_FAULT_LAW && event->code != ETHD_FAULT_FINITE) ||
       kind < 0 || kind > ETHD_TRANSITION)
     return (ethd__law_fault){0};
-  return (ethd__law_fault){laws[kind], event->code == ETHD_FAULT_LAW ? ethd_status_sentence((ethd_status) - (value % 100))
-                                                                     : ethd_fault_sentence(ETHD_FAULT_FINITE)};
+  return (ethd__law_fault){laws[kind], event->code == ETHD_FAULT_LAW
+                                           ? ethd_status_sentence((ethd_status) - (value % 100))
+                                           : ethd_fault_sentence(ETHD_FAULT_FINITE)};
 }
 
 ethd__law_fault ethd__law_fault_take(ethd_control *control, const ethd_setup *setup) {
