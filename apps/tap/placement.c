@@ -49,8 +49,8 @@ static ethd_status check_row(const char *path, const ethd_csv *csv, const int co
 static ethd_status check_speed(const char *path, const ethd_path_sample *s, size_t line, char *message) {
   double speed = hypot(s[0].x - s[-1].x, s[0].y - s[-1].y) / (s[0].t - s[-1].t);
   if (speed <= ETHD_HAND_SPEED_MAX) return ETHD_OK;
-  return ethd__say(message, ETHD_E_RANGE, "%s:%zu: found a hand at %.10g m/s; at most %g are allowed", path, line, speed,
-                   ETHD_HAND_SPEED_MAX);
+  return ethd__say(message, ETHD_E_RANGE, "%s:%zu: found a hand at %.10g m/s; at most %g are allowed", path, line,
+                   speed, ETHD_HAND_SPEED_MAX);
 }
 
 static ethd_status convert(const char *path, const ethd_csv *csv, double scale, ethd__movement *out, char *message) {
