@@ -18,7 +18,9 @@
 #endif
 
 /* The two calls by which the loop sleeps and reads the clock are its own to make. */
+#if defined(__clang__) && __clang_major__ >= 20
 int clock_gettime(clockid_t clock, struct timespec *out) ETHD_RT;
 int clock_nanosleep(clockid_t clock, int flags, const struct timespec *until, struct timespec *left) ETHD_RT;
+#endif
 
 #endif
