@@ -38,12 +38,24 @@ with open(build + "/share/ethd/n.ini") as file, open(ini, "w") as out:
     out.write(file.read())
 with open(build + "/share/ethd/wall.scene") as file, open(folder + "/wall.scene", "w") as out:
     out.write(file.read())
-script = "wait 0.7\ntransition smooth\nwait 0.2\nset contact.k_e 900\nwait 0.3\ntransition abrupt\nwait 0.2\nstop\n"
+script = "wait 0.4\nset transition.b_d 90\nset transition.v_th 0.03\nwait 0.3\ntransition smooth\nwait 0.2\nset contact.k_e 900\nwait 0.3\ntransition abrupt\nwait 0.2\nstop\n"
 subprocess.run([build + "/bin/ethd-run", "--virtual", "--duration", "20", "--config", ini, "--record", folder + "/run"],
                input=script, text=True, check=True, stdout=subprocess.DEVNULL)
 r = ethd.read(folder + "/run")
 assert {"transition", "set"} <= {e.kind for e in r.events} and r.taps is None and r.truth is None
 assert all(step.trace.tobytes() == row.tobytes() for row, step in r.replay())
+
+# what was set of the recorded law is set of the one in its place, if that has a parameter of this name
+values = set()
+
+
+@ethd.transition_law("braked", b_d=(60, 0, 1000, "Ns/m"), other=(1, 0, 2, "1"))
+def braked(p, state, contact, out):
+    values.add((p["b_d"], p["other"]))
+    out.beta = out.share = 1
+
+
+assert len(list(r.replay(braked))) == len(r.tick) and (90, 1) in values and len(values) > 1
 
 # what was learned in ticks that aren't there nobody knows: such a recording is read, and not replayed from there on
 subprocess.run([build + "/bin/ethd-run", "--virtual", "--duration", "1", "--record-every", "10", "--config", ini, "--record",

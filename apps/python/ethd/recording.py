@@ -146,15 +146,16 @@ class _Replay:
     def __init__(self, controller: Controller, law: Optional[Law] = None):
         self.c = controller
         self.law = law
+        self.recorded = ffi.new("ethd_setup *", controller._setup[0])  # which has the recorded law, whatever rules in its place
         self.heat = ffi.new("double[2]")
         self.learned = ffi.new("double[]", TRACE["learnt"].shape[0])
 
     def before(self, events: List[RecordedEvent], first: bool) -> None:
         c, done = self.c, {"fresh"} if first else set()
-        setup = ffi.new("ethd_setup *", c._setup[0])
         for e in events:
-            done.add(self._take(e, setup))
-        if self.law and (first or done & {"fresh", "changed"}):
+            done.add(self._take(e, self.recorded))
+        setup = ffi.new("ethd_setup *", self.recorded[0])
+        if self.law:
             c._rule(setup, self.law)
         if done & {"fresh", "warm"} and not (done <= {"warm", "hot", "taught", ""} and not first):
             c._setup = setup
