@@ -210,7 +210,7 @@ PATH=$work/bin:$PATH on_the_way uninstall >/dev/null 2>&1 && fail "uninstall goe
 on_the_way uninstall || fail "uninstall after an uninstall that was stopped"
 nothing "uninstalling twice"
 
-# ---- another name of the same place; a tree that was moved; two at once ----
+# ---- another name of the same place; a tree that was moved ----
 mkdir "$work/real" && ln -s real "$work/link"
 run "" "$work/none/..//link/ethd/" LIBDIR="$work/real/./ethd/lib/machine" install-files || fail "another name of a place"
 [ "$(PKG_CONFIG_PATH=$work/link/ethd/lib/machine/pkgconfig $PKG_CONFIG --variable=prefix ethd)" = "$work/link/ethd/lib/machine/pkgconfig/../../.." ] ||
@@ -226,6 +226,21 @@ run "" "$work/link/moved" uninstall || fail "uninstall of a tree that was moved"
 [ ! -e "$work/real/moved" ] && [ -x "$work/real/ethd/bin/ethd-tap" ] || fail "a moved tree: $(find "$work/real" | sed -n '1,5p')"
 run "" "$work/real/ethd/" uninstall || fail "uninstall by another name"
 [ "$(find "$work/real")" = "$work/real" ] || fail "by another name: $(find "$work/real")"
+
+# ---- a folder that is a link now: what the older version calls it isn't another file ----
+mkdir -p "$work/linked/programs" && ln -s programs "$work/linked/bin"
+run "" "$work/linked" install-files || fail "into a folder that is a link"
+note=$work/linked/share/ethd/installed
+sed -i "s|^[^/]|$work/linked/&|" "$note" # as an older version has it
+run "" "$work/linked" install-files || fail "over an older version, into a folder that is a link"
+[ -x "$work/linked/programs/ethd-tap" ] || fail "an older version takes away what the new one brought through a link"
+mv "$work/linked/lib" "$work/linked/lib64" && ln -s lib64 "$work/linked/lib"
+run "" "$work/linked" install-files || fail "into a folder that has become a link"
+[ -f "$work/linked/lib64/libethd.a" ] || fail "the new library goes as the old one, through a link"
+run "" "$work/linked" uninstall || fail "uninstall through links"
+[ -z "$(find "$work/linked" -type f)" ] || fail "through links: $(find "$work/linked" -type f | sed -n '1,5p')"
+
+# ---- two at once ----
 mkdir "$work/at once"
 exec 8<"$work/at once"
 flock 8
