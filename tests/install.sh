@@ -171,6 +171,9 @@ run "" "$work/my tools" uninstall || fail "uninstall from a path with spaces"
 [ ! -e "$work/my tools" ] || fail "left: $(find "$work/my tools")"
 run "" "$work/somebody's" install-files && [ -x "$work/somebody's/bin/ethd-tap" ] || fail "a path with a quote"
 run "" "$work/somebody's" uninstall && [ ! -e "$work/somebody's" ] || fail "uninstall from a path with a quote"
+run "" "$work/back\\new" install-files && [ -x "$work/back\\new/bin/ethd-tap" ] || fail "a path with a backslash"
+grep -qF "the loader doesn't search $work/back\\new/lib yet" "$work/log" || fail "a backslash: $(cat "$work/log")"
+run "" "$work/back\\new" uninstall && [ -z "$(find "$work" -name 'back*')" ] || fail "uninstall from a path with a backslash"
 : >"$work/file"
 run "" "$work/file/x" install-files && fail "below a file"
 [ "$(grep -c 'sudo make install' "$work/log")" = 1 ] || fail "no rights: $(cat "$work/log")"
@@ -255,6 +258,13 @@ exec 8<&-
 wait $! || fail "after another one: $(cat "$work/once")"
 run "" "$work/at once" uninstall || fail "after two at once"
 [ "$(find "$work/at once")" = "$work/at once" ] || fail "two at once leave $(find "$work/at once" | sed -n '1,5p')"
+mkdir "$work/unlocked"
+for code in 71 127; do # no locks in this file system; no flock
+  printf '#!/bin/sh\nexit %s\n' $code >"$work/unlocked/flock" && chmod +x "$work/unlocked/flock"
+  PATH=$work/unlocked:$PATH run "" "$work/at once" install-files || fail "flock fails with $code: $(cat "$work/log")"
+  grep -q waiting "$work/log" && fail "waits for nobody: $(cat "$work/log")"
+  PATH=$work/unlocked:$PATH run "" "$work/at once" uninstall || fail "flock fails with $code: $(cat "$work/log")"
+done
 
 # ---- libraries beside the prefix, in a folder with a space and a & in its name ----
 run "" "$work/my tools" LIBDIR="$work/lib & more" install-files || fail "LIBDIR"
