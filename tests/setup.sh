@@ -51,7 +51,28 @@ absent() { # PATTERN
 }
 absent "^setup: clang-tidy can't be had without a network: those peers will be absent$"
 calls 1
-stub apt-get 'echo "E: Unable to locate package no-such-compiler" >&2; exit 100'
+# what only looks like it: sudo's and a service's words, one dead archive of several, and the package that is installed all the same
+provider="echo ':' >'$work/bin/no-such-compiler'; chmod +x '$work/bin/no-such-compiler'"
+words="echo 'sudo: unable to resolve host here: Name or service not known' >&2; echo 'Failed to connect to bus: No such file' >&2"
+dead="echo 'Hit:1 http://deb.debian.org/debian stable InRelease'; echo 'Err:2 http://dead.invalid x InRelease';
+  echo 'W: Failed to fetch http://dead.invalid/x  Could not resolve' >&2"
+goes_on() { # WHAT CALLS: the package comes; what else is missing is another matter
+  PATH=$work/bin CC=no-such-compiler sh .ci/setup build >"$work/out" 2>"$work/err"
+  [ -e "$work/bin/no-such-compiler" ] || fail "$1: set-up stops: $(cat "$work/err")"
+  grep -q 'is there a network' "$work/err" && fail "$1: it is said to be the network: $(cat "$work/err")"
+  [ "$(grep -c '' "$work/calls")" -ge "$2" ] || fail "$1: $(cat "$work/calls")"
+  rm -f "$work/calls" "$work/bin/no-such-compiler"
+}
+stub apt-get "$count; $words; $provider"
+goes_on 'words on the way' 1
+stub apt-get "$count; $words; case \$* in *update) : >'$work/lists' ;; *) [ -e '$work/lists' ] || exit 100; $provider ;; esac"
+goes_on 'no lists, and words on the way' 3
+for code in 0 100; do
+  rm -f "$work/lists"
+  stub apt-get "$count; case \$* in *update) : >'$work/lists'; $dead; exit $code ;; *) [ -e '$work/lists' ] || exit 100; $provider ;; esac"
+  goes_on "one dead archive, $code" 3
+done
+stub apt-get '[ "$LC_ALL" = C ] && echo "E: Unable to locate package no-such-compiler" >&2; exit 100'
 says 'an unknown package' 6 '^E: Unable to locate' 'apt-get failed; as root: apt-get update && apt-get install no-such-compiler' "$named"
 uid 1000
 says 'no sudo' 1 'setup: this is missing; as root: apt-get install no-such-compiler' "$named"
