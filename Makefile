@@ -69,10 +69,12 @@ endif
 GOALS := $(or $(MAKECMDGOALS),all)
 DRY := $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 # An object that another one is just writing can't be linked. The tree is locked until what is to run has been built, or
-# until this make ends, which tail waits for. What another make has started (MAKELEVEL) builds under that one's lock.
+# until this make ends, which tail waits for. What it starts builds in the same tree under its lock, and locks any other tree
+# (make ci, coverage, tests): ETHD_LOCKED names those that this make and the ones above it have locked.
 BUILDS := $(filter-out deb doc format format-check tidy ci coverage mutation check-xenomai install-files uninstall clean,$(GOALS))
-ifeq ($(MAKELEVEL)$(DRY),0)
+ifeq ($(filter $(abspath $(B)),$(ETHD_LOCKED))$(DRY),)
 ifneq ($(BUILDS),)
+export ETHD_LOCKED := $(ETHD_LOCKED) $(abspath $(B))
 HOLDER := $(shell mkdir -p '$(B)' && exec 9<'$(B)' && \
   { flock -w 1 9 2>/dev/null || [ $$? != 1 ] || { echo 'make: waiting for another make in $(B)' >&2; flock 9; }; } && \
   { tail --pid=$$PPID -s 0.2 -f /dev/null >/dev/null 2>&1 & echo $$!; })
