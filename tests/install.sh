@@ -219,7 +219,7 @@ run "" "$work/none/..//link/ethd/" LIBDIR="$work/real/./ethd/lib/machine" instal
 [ "$(PKG_CONFIG_PATH=$work/link/ethd/lib/machine/pkgconfig $PKG_CONFIG --variable=prefix ethd)" = "$work/link/ethd/lib/machine/pkgconfig/../../.." ] ||
   fail "its prefix: $(cat "$work/real/ethd/lib/machine/pkgconfig/ethd.pc")"
 note=$work/real/ethd/share/ethd/installed
-sed -i "s|^[^/]|$work/link/ethd/&|; s|/[.]/$|/|" "$note" # as an older version has it
+sed -i "/^=/d; s|^[^/]|$work/link/ethd/&|; s|/[.]/$|/|" "$note" # as an older version has it
 run "" "$work/real/ethd" LIBDIR="$work/real/ethd/lib/machine" install-files || fail "over an older version"
 [ -x "$work/real/ethd/bin/ethd-tap" ] || fail "an older version takes away what the new one brought"
 grep -q '^/.*ethd-' "$note" && fail "an older version's names stay: $(grep '^/' "$note")"
@@ -234,7 +234,7 @@ run "" "$work/real/ethd/" uninstall || fail "uninstall by another name"
 mkdir -p "$work/linked/programs" && ln -s programs "$work/linked/bin"
 run "" "$work/linked" install-files || fail "into a folder that is a link"
 note=$work/linked/share/ethd/installed
-sed -i "s|^[^/]|$work/linked/&|" "$note" # as an older version has it
+sed -i "/^=/d; s|^[^/]|$work/linked/&|" "$note" # as an older version has it
 run "" "$work/linked" install-files || fail "over an older version, into a folder that is a link"
 [ -x "$work/linked/programs/ethd-tap" ] || fail "an older version takes away what the new one brought through a link"
 mv "$work/linked/lib" "$work/linked/lib64" && ln -s lib64 "$work/linked/lib"
@@ -273,4 +273,13 @@ rm -rf "$work/cmake"
 CFLAGS="$sanitizer" cmake -S "$work" -B "$work/cmake" -DCMAKE_C_COMPILER="${CC%% *}" -DCMAKE_PREFIX_PATH="$work/lib & more/cmake" >"$work/log" 2>&1 ||
   fail "CMake: $(cat "$work/log")"
 run "" "$work/my tools" LIBDIR="$work/lib & more" uninstall && [ ! -e "$work/my tools" ] && [ ! -e "$work/lib & more" ] || fail "LIBDIR, uninstalled"
+# In a copy of a tree they are the original's; when a tree was moved they are its own.
+run "" "$work/original" LIBDIR="$work/lib of the original" install-files && cp -a "$work/original" "$work/copy" || fail "libraries beside the original"
+run "" "$work/copy" install-files && [ -f "$work/copy/lib/libethd.a" ] || fail "into a copy"
+[ -f "$work/lib of the original/libethd.a" ] || fail "installing into a copy takes away the original's libraries"
+rm -r "$work/copy" && cp -a "$work/original" "$work/copy"
+run "" "$work/copy" uninstall && [ ! -e "$work/copy" ] || fail "uninstall of a copy: $(find "$work/copy" | sed -n '1,5p')"
+[ -f "$work/lib of the original/libethd.a" ] || fail "uninstalling a copy takes away the original's libraries"
+mv "$work/original" "$work/another"
+run "" "$work/another" uninstall && [ ! -e "$work/another" ] && [ ! -e "$work/lib of the original" ] || fail "moved, with libraries beside it"
 echo "$shared"
