@@ -59,12 +59,61 @@ printf 'colour = red\n' >>"$work/driver.ini"
 "$prefix/bin/ethd-run" --config "$work/driver.ini" --virtual --duration 0.1 >"$work/out" 2>&1 </dev/null
 [ $? = 2 ] && grep -q 'driver.ini:3: device.colour: mine has no settings' "$work/out" || fail "driver.so, a key: $(cat "$work/out")"
 cat >"$work/inside.c" <<'END'
+#include <ethd/cell.h>
+#include <pthread.h>
+#include <time.h>
+static ethd_cell *one_writer; /* of which every put takes a while, so that a second one meets it */
+static _Atomic int putting, met;
+static void slow_put(ethd_cell *cell, const void *value) {
+  if (cell == one_writer && putting++) met = 1;
+  if (cell == one_writer) nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL);
+  ethd_cell_put(cell, value);
+  if (cell == one_writer) putting--;
+}
+#define ethd_cell_put slow_put
 #define main program
 #include "driver.c"
 #undef main
 #define EXPECT(what) if (!(what)) return puts(#what), 1
+static const ethd_driver *const d = &ethd_driver_plugin;
+static _Atomic int asked, served, end;
+static void *serve(void *device) {
+  for (int64_t now = 1; !end; d->service(device, 0, now++)) continue;
+  return NULL;
+}
+static void *serve_when_asked(void *device) {
+  for (int mine = 0; !end;)
+    if (asked != mine) d->service(device, 0, ++mine), served = mine;
+  return NULL;
+}
+static int restarts(bus *b) { /* an enabling starts the device anew while its I/O goes on */
+  pthread_t io;
+  one_writer = b->answers;
+  if (pthread_create(&io, NULL, serve, b)) return 0;
+  for (int i = 0; i < 300; i++) d->start(b);
+  end = 1;
+  pthread_join(io, NULL);
+  one_writer = NULL, end = 0;
+  return !met;
+}
+static int damages(bus *b) { /* each damaged answer is told of, also if it comes while one reads */
+  pthread_t io;
+  const double q = b->q[0];
+  int told = 1;
+  b->q[0] = NAN;
+  if (pthread_create(&io, NULL, serve_when_asked, b)) return 0;
+  for (clock_t begin = clock(); told && clock() - begin < CLOCKS_PER_SEC;) {
+    ethd_sense s = {0};
+    for (int mine = ++asked; served != mine;) (void)!d->read(b, 0, &s);
+    (void)!d->read(b, 0, &s);
+    told = s.faults != 0;
+  }
+  end = 1;
+  pthread_join(io, NULL);
+  b->q[0] = q;
+  return told;
+}
 int main(void) {
-  const ethd_driver *d = &ethd_driver_plugin;
   ethd_setup setup = ethd_setup_default();
   const ethd_device_def def = {.setup = &setup, .folder = ".", .is_virtual = 1};
   const ethd_command pull = {.torque = {0.5, -0.5}};
@@ -85,6 +134,11 @@ int main(void) {
   b->q[0] = q;
   s = (ethd_sense){0};
   EXPECT(d->service(b, 0, 3000000) == ETHD_OK && d->read(b, 3000000, &s) == ETHD_OK && !s.faults && s.time_ns == 3000000);
+  EXPECT(d->write(b, 4000000, &pull) == ETHD_OK && d->service(b, 0, 4000000) == ETHD_OK && b->taken.torque[0] == 0.5);
+  EXPECT(d->service(b, 0, 5000000) == ETHD_OK && b->w[0] > 0 && d->start(b) == ETHD_OK && d->service(b, 0, 6000000) == ETHD_OK);
+  EXPECT(b->taken.torque[0] == 0 && b->w[0] == 0);
+  EXPECT(restarts(b));
+  EXPECT(damages(b));
   EXPECT(d->stop && d->stop(b) == ETHD_OK && b->taken.torque[0] == 0 && b->taken.torque[1] == 0);
   d->close(b);
   return 0;

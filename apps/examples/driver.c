@@ -11,6 +11,7 @@
 #include <ethd/conform.h>
 #include <ethd/loop.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -27,6 +28,7 @@ typedef struct answer {
 typedef struct bus {
   ethd_cell *orders, *answers;
   _Atomic int32_t safe; /* set by any thread: no torque until the next start */
+  _Atomic int32_t anew; /* it was started: the I/O thread, which goes on meanwhile, begins from rest */
   _Atomic int32_t bad;  /* an answer was damaged: from the I/O thread to the control thread */
   answer seen;          /* the control thread's */
   ethd_command taken;   /* the I/O thread's, as all that follows */
@@ -57,19 +59,19 @@ static ethd_status open_bus(const ethd_device_def *def, void **device, char mess
   ethd_status status = b ? ethd_settings_read(&ethd_driver_plugin, def, NULL, NULL, message) : ETHD_E_MEMORY;
   if (!status) status = ethd_cell_create(sizeof(ethd_command), &b->orders, &error);
   if (!status) status = ethd_cell_create(sizeof(answer), &b->answers, &error);
-  return status ? status : ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, b->q);
+  if (!status) status = ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, b->q);
+  if (!status) b->seen = (answer){{b->q[0], b->q[1]}, 0}; /* for a `read` before any service, which says ETHD_STALE */
+  return status;
 }
 
-/* Begins at rest where the device stands, without a torque from before, and with an answer that `read` can give. */
+/* Begins at rest where the device stands, without a torque from before. An I/O thread may be in `service` now: what is
+   its own, it sets itself. */
 static ethd_status start(void *device) {
   bus *b = device;
-  b->taken = (ethd_command){.safe = 1};
-  b->w[0] = b->w[1] = 0;
-  b->now = b->heard = 0;
-  ethd_cell_put(b->orders, &b->taken);
-  b->seen = (answer){{b->q[0], b->q[1]}, 0};
-  ethd_cell_put(b->answers, &b->seen);
-  b->safe = b->bad = 0;
+  ethd_cell_put(b->orders, &(ethd_command){.safe = 1});
+  b->bad = 0;
+  b->anew = 1;
+  b->safe = 0;
   return ETHD_OK;
 }
 
@@ -85,27 +87,24 @@ static uint32_t units(const void *device) { return (void)device, 1; }
 
 static ethd_status service(void *device, uint32_t unit, int64_t now_ns) {
   bus *b = device;
-  (void)unit;
+  if (atomic_exchange(&b->anew, 0)) b->w[0] = b->w[1] = 0, b->now = b->heard = 0;
   if (ethd_cell_take(b->orders, &b->taken) == ETHD_OK) b->heard = now_ns;
   if (b->safe) b->taken = (ethd_command){.safe = 1};
-  return exchange(b, now_ns);
+  return (void)unit, exchange(b, now_ns);
 }
 
 static ethd_status read_joints(void *device, int64_t now_ns, ethd_sense *out) ETHD_RT {
   bus *b = device;
   ethd_status status = ethd_cell_take(b->answers, &b->seen);
-  (void)now_ns;
   for (int i = 0; i < 2; i++) out->q[i] = b->seen.q[i];
   out->time_ns = b->seen.at;
-  if (b->bad) out->faults |= ETHD_FAULT_BIT(ETHD_FAULT_REPLY_BAD);
-  b->bad = 0;
-  return status; /* ETHD_STALE: the loop waits for the next one */
+  if (atomic_exchange(&b->bad, 0)) out->faults |= ETHD_FAULT_BIT(ETHD_FAULT_REPLY_BAD);
+  return (void)now_ns, status; /* ETHD_STALE: the loop waits for the next one */
 }
 
 static ethd_status write_torque(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT {
-  (void)now_ns;
   ethd_cell_put(((bus *)device)->orders, command);
-  return ETHD_OK;
+  return (void)now_ns, ETHD_OK;
 }
 
 static void safe(void *device) ETHD_RT { ((bus *)device)->safe = 1; }
