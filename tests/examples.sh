@@ -155,6 +155,61 @@ for words in 'teleop' 'teleop 4777' 'teleop 4777 x' 'teleop 70000 1' 'robot 4777
 done
 env -u ETHD_DATA_DIR "$work/teleop" $((20000 + $$ % 12000)) 1 >"$work/out" 2>&1 </dev/null
 [ $? = 1 ] && grep -q 'n.plant: No such file or directory; ETHD_DATA_DIR may name' "$work/out" || fail "no plants: $(cat "$work/out")"
+# swaps far beyond what the controller's queue of events holds, each taken at the worst moment, between poll and post: a scene
+# that it still has is never posted; Ctrl-C while nobody speaks is no failure of the robot
+cat >"$work/swaps.c" <<'END'
+#include <ethd/ethd.h>
+static const ethd_scene *has[3]; /* handed over, and not back yet as far as the program can know */
+static int twice;
+static ethd_status poll(ethd_control *control, ethd_event *event) {
+  ethd_status status = ethd_control_poll(control, event);
+  for (int i = 0; i < 3 && !status && event->scene; i++)
+    if (has[i] == event->scene) has[i] = NULL;
+  return status;
+}
+static void step(ethd_control *control) { /* takes what was posted */
+  const ethd_sense sense = {.have = ETHD_HAVE_DQ, .q = {1.5, 0.1}};
+  ethd_command command;
+  (void)!ethd_control_step(control, &sense, &command, NULL);
+}
+static ethd_status post(ethd_control *control, const ethd_setup *setup, ethd_error *error) {
+  static const ethd_scene *last;
+  step(control);
+  ethd_status status = ethd_control_post(control, setup, error);
+  if (status || setup->bodies[0] == last) return status;
+  last = setup->bodies[0];
+  for (int i = 0; i < 3; i++) twice += has[i] == last;
+  for (int i = 0; i < 3; i++)
+    if (!has[i]) return has[i] = last, status;
+  return twice++, status;
+}
+#define ethd_control_poll poll
+#define ethd_control_post post
+#define main program
+#include "teleop.c"
+#undef main
+int main(void) {
+  ethd_setup setup = ethd_setup_default();
+  ethd_control *control;
+  ethd_error error;
+  strategy s = {.law = -1};
+  ear e = {0};
+  if (ethd_control_create(&setup, &control, &error)) return puts("control"), 1;
+  for (int i = 0; i < 2; i++)
+    if (ethd_scene_parse(shapes[i], strlen(shapes[i]), &s.scenes[i], &error)) return puts("shape"), 1;
+  for (int i = 0; i < 1000; i++) {
+    swap(control, &setup, &s, i / 2 % 2, i % 2);
+    if (i % 5 == 4) step(control);
+  }
+  over = SIGINT;
+  printf("%d swaps, %d of a scene that the controller has; %d\n", s.swaps, twice, meet(-1, &e));
+  ethd_control_destroy(control);
+  for (int i = 0; i < 2; i++) ethd_scene_destroy(s.scenes[i]);
+  return !(s.swaps > 300 && !twice);
+}
+END
+$CC $strict -Iapps/examples "$work/swaps.c" -o "$work/swaps" $($PKG_CONFIG --cflags --libs ethd-drivers) >"$work/out" 2>&1 &&
+  "$work/swaps" >"$work/out" 2>&1 && [ "$(wc -l <"$work/out")" = 1 ] && grep -q '; 1$' "$work/out" || fail "teleop's swaps: $(cat "$work/out")"
 [ -z "${SAN:-}" ] || { echo "SKIP: a sanitizer is too slow for a loop in true time"; exit $((failed ? 1 : 77)); }
 port=$((20000 + $$ % 12000)) # below those that a system hands out
 alone=

@@ -1,8 +1,7 @@
-/* Teleoperation: a robot's gripper, far away (robot.c), follows the operator's ring. What it may touch moves, changes
-   its shape, and the operator's finger feels it as a wall. Datagrams about it are late, get lost and overtake one
-   another; nonsense is dropped, and a surface that jumps comes as a wall that moves slowly. The strategy is swapped
-   each second while it runs, the energy that a contact gives away is bounded, and when nothing has come for LINK_DEAD
-   the ring is braked and let go. Either side may be started first:
+/* Teleoperation: a robot's gripper, far away (robot.c), follows the operator's ring. What it may touch moves and
+   changes its shape; the operator's finger feels it as a wall. Datagrams are late, get lost and overtake one another;
+   nonsense is dropped; a surface that jumps comes as a wall that moves slowly. The strategy is swapped each second, a
+   contact's energy is bounded, and LINK_DEAD without a word brakes the ring and lets it go. Either side may begin:
      cc robot.c -lm -o robot && cc teleop.c $(pkg-config --cflags --libs ethd-drivers) -o teleop
      export ETHD_DATA_DIR=$(pkg-config --variable=datadir ethd-drivers)
      (./teleop 4777 6 & ./robot 4777 7 20 10; wait)        PORT SECONDS, and of the robot DELAY_MS LOSS_PERCENT */
@@ -19,7 +18,6 @@
 static const char *const shapes[] = {"halfplane -1 0 0", "circle -0.05 0 0.05"}; /* each is touched at its origin */
 static const ethd_transition_law *const laws[] = {&ethd_transition_offset, &ethd_transition_smooth};
 static volatile sig_atomic_t over; /* Ctrl-C */
-
 static void end(int signal) { over = signal; }
 
 /* The robot is a driver beside the ring's own. */
@@ -67,38 +65,51 @@ static int meet(int fd, ear *e) {
     if (is_word(&e->last, size)) return connect(fd, (struct sockaddr *)&from, length);
     e->nonsense += size >= 0;
   }
-  return fail("robot", "it doesn't speak: start it with the same port");
+  return over ? 1 : fail("robot", "it doesn't speak: start it with the same port");
+}
+
+typedef struct strategy {
+  ethd_scene *scenes[2];          /* one for each shape */
+  int lent[2], law, shape, swaps; /* lent: the controller may use this scene */
+} strategy;
+
+/* Swaps to a law and a shape. Events are polled all the time, since the controller takes no post when they leave no
+   room, and a scene that was replaced is posted again only after an event has handed it back. */
+static void swap(ethd_control *control, ethd_setup *setup, strategy *s, int law, int shape) {
+  ethd_event event;
+  ethd_error error;
+  while (ethd_control_poll(control, &event) == ETHD_OK)
+    for (int i = 0; i < 2; i++) s->lent[i] &= event.scene != s->scenes[i];
+  if (shape == s->shape ? law == s->law : s->lent[shape]) return;
+  ethd_setup_transition(setup, laws[law]), setup->bodies[0] = s->scenes[shape];
+  if (ethd_control_post(control, setup, &error)) return; /* the last one wasn't taken yet: again in a millisecond */
+  s->law = law, s->shape = shape, s->lent[shape] = 1, s->swaps++;
 }
 
 /* Leads the robot until the time is over, or until a fault has braked the ring and let it go. */
 static int lead(int fd, ear *e, ethd_loop *loop, ethd_control *control, ethd_setup *setup, double seconds) {
-  int rules = -1, shown = 0, swaps = -1, touching = 0;
-  double pushed = 0; /* m/s: the wall is at the left, so a ring that moves right is pushed by it */
+  int touching = 0;
+  double begin = now(), t, pushed = 0; /* m/s: the wall is at the left, so it pushes a ring that moves right */
   ethd_loop_row row = {.armed = 0};
   word order = {.version = VERSION};
-  ethd_scene *scenes[2];
+  strategy s = {.law = -1, .swaps = -1};
   ethd_error error;
   for (int i = 0; i < 2; i++)
-    if (ethd_scene_parse(shapes[i], strlen(shapes[i]), &scenes[i], &error)) return fail("shape", shapes[i]);
-  double begin = now(), t;
+    if (ethd_scene_parse(shapes[i], strlen(shapes[i]), &s.scenes[i], &error)) return fail("shape", shapes[i]);
   for (; (t = now() - begin) < seconds && !over && (ethd_loop_armed(loop) || t < 1); usleep(1000)) {
     if (hear(fd, e)) ethd_cell_put(newest, &e->last);
     for (; ethd_loop_take(loop, &row) == ETHD_OK; pushed = fmax(pushed, row.trace.v[0]), order.number++)
       touching += row.trace.state == ETHD_VO;
     memcpy(order.pose, row.trace.x, sizeof row.trace.x);
     if (order.number && send(fd, &order, sizeof order, 0) < 0) continue; /* answers stop too, which LINK_DEAD sees */
-    int law = (int)t % 2, shape = e->last.shape > 0;
-    ethd_setup_transition(setup, laws[law]);
-    setup->bodies[0] = scenes[shape];
-    if ((law != rules || shape != shown) && ethd_control_post(control, setup, &error) == ETHD_OK)
-      rules = law, shown = shape, swaps++; /* else the last post wasn't taken yet: try again in a millisecond */
+    swap(control, setup, &s, (int)t % 2, e->last.shape > 0);
   }
   ethd_loop_stop(loop);
   if (ethd_loop_join(loop)) return fail("loop", "its clock failed");
   while (ethd_loop_take(loop, &row) == ETHD_OK) continue;
   printf("ring: %d ms in contact, %d swaps, pushed at %.3f m/s at most; datagrams dropped: %d overtaken, "
          "%d of nonsense; at %.1f mm with %g Nm: %s\n",
-         touching, swaps, pushed, e->late, e->nonsense, 1e3 * row.trace.x[0], row.share * row.trace.tau[0],
+         touching, s.swaps, pushed, e->late, e->nonsense, 1e3 * row.trace.x[0], row.share * row.trace.tau[0],
          ethd_fault_sentence((ethd_fault)row.trace.fault));
   return row.trace.fault != 0;
 }
