@@ -161,6 +161,12 @@ left=$(cd "$root/opt/ethd" && find . | sort | tr '\n' ' ')
 run "$root" /opt/ethd uninstall && fail "uninstalled twice"
 grep -q "nothing of ours is installed in $root/opt/ethd" "$work/log" || fail "twice: $(cat "$work/log")"
 
+# ---- where it is built: its own sources would be what an uninstall takes away ----
+mkdir "$work/source" && ln -s "$PWD/include" "$work/source/include"
+run "" "$work/source" install-files && fail "into the source tree"
+grep -q "^install: $work/source is where it is built: choose another place" "$work/log" || fail "into the source tree: $(cat "$work/log")"
+[ "$(ls "$work/source")" = include ] || fail "into the source tree: $(ls "$work/source")"
+
 # ---- into the system: it says what the loader needs; a path with spaces; no rights ----
 run "" "$work/my tools" install-files || fail "a path with spaces"
 grep -q "the loader doesn't search $work/my tools/lib yet: .* or set LD_LIBRARY_PATH=$work/my tools/lib" "$work/log" || fail "no word on the loader: $(cat "$work/log")"
