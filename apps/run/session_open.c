@@ -70,6 +70,7 @@ static ethd_status open_loop(ethd__session *s, const ethd__session_options *o, c
   if (def.gap < (double)INFINITY) def.heartbeat = HEARTBEAT;
   def.clock = o->is_virtual ? &s->clock : NULL;
   ethd_status status = ethd_loop_create(&def, &s->loop, &error);
+  if (status == ETHD_E_DEVICE) return ethd__start_refused(NULL, status, &error, message);
   if (status) {
     ethd_error_text("the loop", &error, message);
     return status;

@@ -81,13 +81,24 @@ static ethd_status stop_one(ethd__stack *s, uint32_t i) {
   return status;
 }
 
+/* Returns which driver is the i-th to start, from 0, and the i-th from the end to stop. Those that take torques start
+   last: a drive that is enabled doesn't wait for another driver, however long that takes. */
+static uint32_t turn(const ethd__stack *s, uint32_t i) {
+  uint32_t order[ETHD_DRIVERS_MAX] = {0}, n = 0;
+  for (uint32_t k = 0; k < s->count; k++)
+    if (!s->at[k].driver->write) order[n++] = k;
+  for (uint32_t k = 0; k < s->count; k++)
+    if (s->at[k].driver->write) order[n++] = k;
+  return order[i];
+}
+
 /* Starts all drivers; when one refuses, those that have started are stopped. */
 static ethd_status start(void *stack) {
   ethd__stack *s = stack;
   for (uint32_t i = 0; i < s->count; i++) {
-    ethd_status status = start_one(s, i);
+    ethd_status status = start_one(s, turn(s, i));
     if (status >= 0) continue;
-    while (i--) (void)!stop_one(s, i);
+    while (i--) (void)!stop_one(s, turn(s, i));
     return status;
   }
   return ETHD_OK;
@@ -96,7 +107,7 @@ static ethd_status start(void *stack) {
 static ethd_status stop(void *stack) {
   ethd__stack *s = stack;
   ethd_status status = ETHD_OK;
-  for (uint32_t i = s->count; i--;) status = worse(status, stop_one(s, i));
+  for (uint32_t i = s->count; i--;) status = worse(status, stop_one(s, turn(s, i)));
   return status;
 }
 

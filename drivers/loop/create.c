@@ -91,9 +91,11 @@ ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_err
   l->dma_latency = -1;
   l->rows.size = def->rows;
   l->rows.at = calloc(def->rows ? def->rows : 1, sizeof *l->rows.at);
-  if (!l->rows.at) {
+  if (!l->rows.at) status = ethd__loop_refuse(error, ETHD_E_MEMORY, "rows", NAN, NAN, NAN);
+  if (!status && !def->clock) status = ethd__loop_ask_machine(l, error);
+  if (status) {
     ethd_loop_destroy(l);
-    return ethd__loop_refuse(error, ETHD_E_MEMORY, "rows", NAN, NAN, NAN);
+    return status;
   }
   *out = l;
   return ETHD_OK;

@@ -92,6 +92,7 @@ struct ethd_loop {
   pthread_t control, watch;
   void *stack;
   int dma_latency;
+  int cpu; /* ETHD_CPU_NONE: any */
 };
 
 /* Return the loop's instant now, ns, and the same on a clock that goes on while the machine is suspended. [rt] */
@@ -120,9 +121,10 @@ void ethd__loop_rest(ethd_loop *loop) ETHD_RT;
    thread of its own. */
 void *ethd__loop_watch(void *loop);
 
-/* Asks the machine, before any thread runs, to lock memory and to hold the DMA latency, and finds the processor;
-   returns the bits of what it refuses. [main] */
-int32_t ethd__loop_ask_machine(ethd_loop *loop, int *cpu);
+/* Does all that may take long, before the device is enabled and any thread runs: initialises Xenomai, locks memory,
+   holds the DMA latency, finds the processor and makes the stack; notes the bits of what the machine refuses. Fails as
+   ethd__xenomai_begin does, or with ETHD_E_MEMORY. [main] */
+ETHD_MUST_CHECK ethd_status ethd__loop_ask_machine(ethd_loop *loop, ethd_error *error);
 void ethd__loop_release_machine(ethd_loop *loop);
 
 /* Returns how many units of blocking I/O the device has. [main] */

@@ -1,5 +1,6 @@
 /* What a realtime thread asks of the machine, and what to say when it isn't granted. */
 #include <fcntl.h>
+#include <math.h>
 #include <sched.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -103,18 +104,34 @@ static bool hold_dma_latency(ethd_loop *l) {
          write(l->dma_latency, &l->def.dma_latency, sizeof l->def.dma_latency) == sizeof l->def.dma_latency;
 }
 
-int32_t ethd__loop_ask_machine(ethd_loop *l, int *cpu) {
+/* Touch the whole stack before the first tick, so that no tick takes a page fault; its lowest page is a guard page. */
+static void *make_stack(size_t size) {
+  void *stack = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK | MAP_POPULATE, -1, 0);
+  if (stack == MAP_FAILED) return NULL;
+  (void)!mprotect(stack, 4096, PROT_NONE);
+  return stack;
+}
+
+static int32_t ask(ethd_loop *l) {
   int32_t bits = 0;
-  *cpu = l->def.cpu == ETHD_CPU_AUTO ? highest_isolated() : l->def.cpu;
-  if (*cpu >= 0 && !may_run_on(*cpu)) {
+  l->cpu = l->def.cpu == ETHD_CPU_AUTO ? highest_isolated() : l->def.cpu;
+  if (l->cpu >= 0 && !may_run_on(l->cpu)) {
     bits |= ETHD_SHORT_AFFINITY;
-    *cpu = ETHD_CPU_NONE;
+    l->cpu = ETHD_CPU_NONE;
   }
   l->locked = ethd__memory_lock();
   if (!l->locked) bits |= ETHD_SHORT_MLOCK;
   if (l->def.dma_latency >= 0 && !hold_dma_latency(l)) bits |= ETHD_SHORT_DMA_LATENCY;
   if (!kernel_is_realtime()) bits |= ETHD_SHORT_PREEMPT;
   return bits;
+}
+
+ethd_status ethd__loop_ask_machine(ethd_loop *l, ethd_error *error) {
+  ethd_status status = ethd__xenomai_begin(error);
+  if (status) return status;
+  l->shortfalls = ask(l);
+  l->stack = make_stack(l->def.stack);
+  return l->stack ? ETHD_OK : ethd__loop_refuse(error, ETHD_E_MEMORY, "stack", NAN, NAN, NAN);
 }
 
 void ethd__loop_release_machine(ethd_loop *l) {

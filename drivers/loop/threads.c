@@ -47,15 +47,7 @@ static void *run_unit(void *unit_) {
 
 /* ---- starting ---- */
 
-/* Touch the whole stack before the first tick, so that no tick takes a page fault; its lowest page is a guard page. */
-static void *make_stack(size_t size) {
-  void *stack = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK | MAP_POPULATE, -1, 0);
-  if (stack == MAP_FAILED) return NULL;
-  (void)!mprotect(stack, 4096, PROT_NONE);
-  return stack;
-}
-
-static int create_control(ethd_loop *l, int cpu, int policy) {
+static int create_control(ethd_loop *l, int policy) {
   pthread_attr_t attr;
   struct sched_param param = {.sched_priority = policy == SCHED_FIFO ? l->def.priority : 0};
   cpu_set_t one;
@@ -65,8 +57,8 @@ static int create_control(ethd_loop *l, int cpu, int policy) {
   pthread_attr_setschedpolicy(&attr, policy);
   pthread_attr_setschedparam(&attr, &param);
   int failure = pthread_attr_setstack(&attr, l->stack, l->def.stack);
-  if (cpu >= 0) {
-    CPU_SET((unsigned)cpu, &one);
+  if (l->cpu >= 0) {
+    CPU_SET((unsigned)l->cpu, &one);
     pthread_attr_setaffinity_np(&attr, sizeof one, &one);
   }
   if (!failure) failure = __RT(pthread_create)(&l->control, &attr, run_control, l);
@@ -74,11 +66,11 @@ static int create_control(ethd_loop *l, int cpu, int policy) {
   return failure;
 }
 
-static int start_control(ethd_loop *l, int cpu) {
-  int failure = create_control(l, cpu, SCHED_FIFO);
+static int start_control(ethd_loop *l) {
+  int failure = create_control(l, SCHED_FIFO);
   if (failure != EPERM) return failure;
   l->shortfalls |= ETHD_SHORT_FIFO;
-  return l->def.require_rt ? EPERM : create_control(l, cpu, SCHED_OTHER);
+  return l->def.require_rt ? EPERM : create_control(l, SCHED_OTHER);
 }
 
 /* Creates a thread with this policy and priority. */
@@ -125,7 +117,7 @@ static int start_watch(ethd_loop *l) {
 
 /* Signals belong to the application, so these threads block all but the one by which Cobalt reports a switch of
    mode. */
-static int start_threads(ethd_loop *l, int cpu) {
+static int start_threads(ethd_loop *l) {
   sigset_t all, before;
   sigfillset(&all);
 #if defined(__COBALT__)
@@ -133,7 +125,7 @@ static int start_threads(ethd_loop *l, int cpu) {
 #endif
   pthread_sigmask(SIG_SETMASK, &all, &before);
   int failure = start_units(l);
-  if (!failure) failure = start_control(l, cpu);
+  if (!failure) failure = start_control(l);
   if (!failure) l->has_control = 1;
   if (!failure) failure = start_watch(l);
   pthread_sigmask(SIG_SETMASK, &before, NULL);
@@ -157,7 +149,6 @@ static ethd_status give_up(ethd_loop *l, ethd_error *error, const char *name, do
 }
 
 ethd_status ethd_loop_start(ethd_loop *l, ethd_error *error) {
-  int cpu;
   if (l->started) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "loop", NAN, NAN, NAN);
   if (l->def.clock) {
     l->started = true;
@@ -165,15 +156,10 @@ ethd_status ethd_loop_start(ethd_loop *l, ethd_error *error) {
     arm(l);
     return ETHD_OK;
   }
-  ethd_status status = ethd__xenomai_begin(error);
-  if (status) return status;
-  l->stack = make_stack(l->def.stack);
-  if (!l->stack) return ethd__loop_refuse(error, ETHD_E_MEMORY, "stack", NAN, NAN, NAN);
   l->started = true;
-  l->shortfalls = ethd__loop_ask_machine(l, &cpu);
   if (l->def.require_rt && l->shortfalls) return give_up(l, error, "require_rt", l->shortfalls);
   arm(l);
-  int failure = start_threads(l, cpu);
+  int failure = start_threads(l);
   if (l->def.require_rt && l->shortfalls) return give_up(l, error, "require_rt", l->shortfalls);
   return failure ? give_up(l, error, "thread", failure) : ETHD_OK;
 }

@@ -10,7 +10,8 @@
 
    One device may consist of several drivers (a servo, its encoders, a proximity ring): each adds what it
    knows to the sense, and takes from the command what is its own. They are read and written in the order of their
-   names: where two give the same number, the later one's counts (servo, counter: the counter's angles).
+   names: where two give the same number, the later one's counts (servo, counter: the counter's angles). Those that have
+   write start last and stop first, since a drive that is enabled mustn't wait for another driver.
 
         [device]                                  ethd_device_open
         driver = servo, ring                        servo  --.

@@ -24,6 +24,13 @@
    ethd_loop_hangs says so, and in which law. No thread can be ended from outside, so ethd_loop_join then gives up and
    fails; loop, controller, setup and laws stay in memory until the process ends.
 
+   Create the loop before the device is started, and start it at once after that:
+
+     ethd_device_open -> ethd_control_create -> ethd_loop_create -> driver start -> ethd_loop_start
+
+   ethd_loop_create does what takes long (in a large program locking the memory takes seconds); a drive that is enabled
+   waits for its first message only some milliseconds until its watchdog, or the servo's guardian, takes the torque away.
+
    Destroy the loop before its device and its controller. */
 #ifndef ETHD_LOOP_H
 #define ETHD_LOOP_H
@@ -82,13 +89,13 @@ typedef struct ethd_loop_def {
   uint32_t cookie;           /* set by ethd_loop_default */
   const ethd_driver *driver; /* of ethd_device_open; or one that has start, read, write and safe, and service if it
                             has units */
-  void *device;              /* open and started */
+  void *device;              /* open; it is started between create and start */
   ethd_control *control;     /* which nobody else steps while the loop exists */
   double period;             /* s, the controller's (ethd_control_period), 1e-5 to 1; another one is refused */
   int32_t cpu;               /* number of a processor, ETHD_CPU_NONE or ETHD_CPU_AUTO */
   int32_t priority;          /* of SCHED_FIFO, 1 to 99; the device's I/O threads come ETHD_IO_BELOW under it */
   int32_t require_rt;        /* 1: start fails at any shortfall */
-  int32_t dma_latency;       /* us, held while the loop runs; -1: not held */
+  int32_t dma_latency;       /* us, held while the loop exists; -1: not held */
   double early_wake;         /* s, 0 to period / 2: the loop wakes this early, warms the caches and spins to the tick */
   double gap;                /* s, at least a period: longer lateness, silence and older joint samples are faults;
                             INFINITY: lateness is only counted. The device's own limit holds too */
@@ -135,8 +142,10 @@ typedef struct ethd_loop_stats {
   ethd_histogram tick;               /* read, step, write */
 } ethd_loop_stats;
 
-/* Creates a loop, which doesn't run yet: ETHD_E_ARGUMENT, ETHD_E_ABI (the driver's table), ETHD_E_RANGE with the
-   field's name or "units", of which a device has at most ETHD_UNITS_MAX; ETHD_E_MEMORY. [main] */
+/* Creates a loop, which doesn't run yet, locks the process's memory and makes the stack of the loop's thread; on a
+   virtual clock neither. ETHD_E_ARGUMENT, ETHD_E_ABI (the driver's table), ETHD_E_RANGE with the field's name or
+   "units", of which a device has at most ETHD_UNITS_MAX; ETHD_E_MEMORY. ETHD_E_DEVICE: "xenomai" (this kernel has no
+   Cobalt), "clock" (Cobalt's and Linux's differ, by error->found s), "thread". [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_error *error);
 
 /* Stops, joins and frees the loop; NULL is allowed. If join failed because a thread hangs, nothing is freed; then don't
@@ -144,9 +153,8 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_create(const ethd_loop_def *def, 
 ETHD_API void ethd_loop_destroy(ethd_loop *loop);
 
 /* Starts the loop's thread and one for each unit of the device's blocking I/O (on a virtual clock none), runs one dry
-   tick and arms the device. ETHD_E_DEVICE: error->name says what failed: "require_rt", after which nothing runs,
-   "thread", "xenomai" (this kernel has no Cobalt), "clock" (Cobalt's and Linux's differ, by error->found s).
-   ETHD_E_MEMORY: the stack. ETHD_E_ARGUMENT: it was started before, since a loop starts once. [main] */
+   tick and arms the device. ETHD_E_DEVICE: error->name says what failed: "require_rt", after which nothing runs, or
+   "thread". ETHD_E_ARGUMENT: it was started before, since a loop starts once. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_start(ethd_loop *loop, ethd_error *error);
 
 /* Runs one tick on the virtual clock; does nothing without one. [main] */

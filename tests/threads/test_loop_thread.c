@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -210,6 +211,23 @@ START_TEST(test_rows_while_running) {
 }
 END_TEST
 
+/* All memory is locked, and so is there, before anybody can enable the device: a large program takes long for it. */
+START_TEST(test_locked_before_the_device_starts) {
+  enum { PAGES = 2048 };
+  static unsigned char there[PAGES];
+  size_t page = (size_t)sysconf(_SC_PAGESIZE), missing = 0;
+  void *room = mmap(NULL, PAGES * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  ck_assert(room != MAP_FAILED);
+  open_loop(0);
+  ck_assert_int_eq(mincore(room, PAGES * page, there), 0);
+  for (int i = 0; i < PAGES; i++) missing += !(there[i] & 1);
+  if (!(ethd_loop_shortfalls(loop) & ETHD_SHORT_MLOCK)) ck_assert_uint_eq(missing, 0);
+  ethd_loop_destroy(loop);
+  rig_close(&r);
+  ck_assert_int_eq(munmap(room, PAGES * page), 0);
+}
+END_TEST
+
 /* I/O runs below the loop and over everything ordinary, or it is said that it doesn't. */
 START_TEST(test_io_priority) {
   open_loop(0);
@@ -299,6 +317,7 @@ int main(void) {
     tcase_add_test_raise_signal(t, test_a_call_is_fatal, 31 /* SIGSYS */);
   tcase_add_test(t, test_enable_between_ticks);
   tcase_add_test(t, test_rows_while_running);
+  if (!SANITIZED) tcase_add_test(t, test_locked_before_the_device_starts);
   tcase_add_test(t, test_io_priority);
   if (!SANITIZED) tcase_add_test(t, test_little_memory_to_lock);
   tcase_add_test(t, test_require_rt);
