@@ -79,7 +79,7 @@ static void take_axis(ethd__servo_feedback *f, const ethd__servo_link *l, int i)
     f->sample.dq[i] = ethd__servo_joint(r, speed);
 }
 
-/* The value read last, in SI at the joint; 0 where the map has no such register. */
+/* The value read or written last, in SI at the joint; 0 where the map has no such register. */
 static double value(const ethd__servo_link *l, int which) {
   double raw;
   const ethd__servo_register *r = role(l, which, &raw);
@@ -129,9 +129,9 @@ static bool is_measured_now(const ethd__servo_link *l, int i) {
 }
 
 /* A slow register keeps its last value between two readings. */
-static void compare(ethd__servo_feedback *f, const ethd__servo_link *l, int i, double torque) {
+static void compare(ethd__servo_feedback *f, const ethd__servo_link *l, int i) {
   ethd__servo_axis *a = &f->axes[i];
-  bool fine = follows(a, l, i, torque) || l->state != ETHD__SERVO_ENABLED;
+  bool fine = follows(a, l, i, value(l, ETHD__SERVO_TORQUE1 + i)) || l->state != ETHD__SERVO_ENABLED;
   if (!is_measured_now(l, i) && !(fine && l->state != ETHD__SERVO_ENABLED)) return;
   if (fine)
     a->since_ns = 0;
@@ -139,18 +139,17 @@ static void compare(ethd__servo_feedback *f, const ethd__servo_link *l, int i, d
     a->since_ns = f->sample.stamp_ns;
 }
 
-static void watch_torque(ethd__servo_feedback *f, const ethd__servo_link *l, const double torque[2]) {
+static void watch_torque(ethd__servo_feedback *f, const ethd__servo_link *l) {
   bool lasts = false;
   for (int i = 0; i < 2; i++) {
-    compare(f, l, i, torque[i]);
+    compare(f, l, i);
     int64_t since = f->axes[i].since_ns;
     lasts |= since && 1e-9 * (double)(f->sample.stamp_ns - since) >= ETHD__SERVO_FOLLOW;
   }
   put(&f->sample.levels, ETHD_FAULT_NOT_FOLLOWED, lasts);
 }
 
-void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *l, int64_t stamp_ns,
-                               const double torque[2]) {
+void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *l, int64_t stamp_ns) {
   bool other_clock = stamp_ns <= f->sample.stamp_ns;
   bool unseen = f->connects != l->counts.connects || other_clock;
   f->sample.stamp_ns = stamp_ns;
@@ -164,7 +163,7 @@ void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *
   f->connects = l->counts.connects;
   for (int i = 0; i < 2; i++) take_axis(f, l, i);
   take_reading(f, l);
-  watch_torque(f, l, torque);
+  watch_torque(f, l);
 }
 
 void ethd__servo_feedback_place(ethd__servo_feedback *f, int axis, double q) {

@@ -56,9 +56,8 @@ typedef struct ethd__servo_feedback {
 ETHD_MUST_CHECK ethd_status ethd__servo_feedback_make(ethd__servo_feedback *f, const ethd__servo_map *map,
                                                       double torque, double period, ethd_error *error);
 
-/* Takes the answers of a turn of the link that went well; `torque` is what went out (Nm). I/O side. */
-void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *link, int64_t stamp_ns,
-                               const double torque[2]);
+/* Takes the answers of a turn of the link that went well. I/O side. */
+void ethd__servo_feedback_take(ethd__servo_feedback *f, const ethd__servo_link *link, int64_t stamp_ns);
 
 /* Says that the axis was at q, rad, at its last sample. I/O side. */
 void ethd__servo_feedback_place(ethd__servo_feedback *f, int axis, double q);

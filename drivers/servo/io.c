@@ -29,11 +29,9 @@ ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double
   ethd_status status = ethd__servo_link_turn(&d->link, now_ns, torque);
   int64_t took = ethd__clock_now() - begin;
   if (!status) {
-    const double none[2] = {0, 0};
     ethd_histogram_add(&d->trip, took);
     /* the joints are read last in an exchange */
-    ethd__servo_feedback_take(&d->feedback, &d->link, d->is_virtual ? now_ns : begin + took * 3 / 4,
-                              d->link.state == ETHD__SERVO_ENABLED ? torque : none);
+    ethd__servo_feedback_take(&d->feedback, &d->link, d->is_virtual ? now_ns : begin + took * 3 / 4);
   }
   ethd__servo_feedback_judge(&d->feedback, &d->link);
   d->feedback.sample.epoch = atomic_load_explicit(&d->epoch, memory_order_relaxed);

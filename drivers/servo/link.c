@@ -100,7 +100,9 @@ static void fill(ethd__servo_link *l, const double torque[2]) {
   for (int i = 0; i < 2; i++) {
     int32_t r = l->map->roles[roles[i]];
     double joint = l->state == ETHD__SERVO_ENABLED ? torque[i] : 0;
-    if (r >= 0) set(l, roles[i], ethd__servo_raw(&l->map->registers[r], joint));
+    if (r < 0) continue;
+    l->raw[r] = ethd__servo_raw(&l->map->registers[r], joint);
+    set(l, roles[i], l->raw[r]);
   }
   set(l, ETHD__SERVO_COUNTER, l->counter = next_count(l));
 }

@@ -41,7 +41,7 @@ typedef struct ethd__servo_link {
   int64_t heard_ns;                      /* when the last good exchange was, or the connection */
   int64_t attempt_ns;                    /* when to connect next */
   double back_off;                       /* s */
-  double raw[ETHD__SERVO_REGISTERS_MAX]; /* values as they were read last */
+  double raw[ETHD__SERVO_REGISTERS_MAX]; /* values as they were read last; of torques, as they were written */
   uint32_t rows[ETHD_FAULT_COUNT];       /* how often each row of the fault table was seen */
   ethd__servo_counts counts;
   char message[ETHD_MESSAGE_MAX]; /* of the last failure */

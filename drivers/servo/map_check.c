@@ -11,6 +11,7 @@
 
 #define R ETHD__SERVO_READ
 #define W ETHD__SERVO_WRITE
+#define ZERO 1e-9 /* of the largest torque: less counts as none */
 
 /* Refuses at the line of a register's key, or of its section when it doesn't have that key. */
 static ethd_status refuse(const ethd__servo_source *s, const ethd__servo_register *r, const char *name,
@@ -88,7 +89,6 @@ static ethd_status check_masks(const ethd__servo_source *s, const ethd__servo_re
 
 static ethd_status check_torque(const ethd__servo_source *s, const ethd__servo_register *r) {
   double least, most, low = (r->min - r->offset) / r->scale, high = (r->max - r->offset) / r->scale;
-  double zero = -r->offset / r->scale;
   if (!has(s, r, "min") || !has(s, r, "max"))
     return refuse(s, r, has(s, r, "min") ? "max" : "min", "is missing: a command needs its limits");
   if (!(r->min < 0 && r->max > 0)) return refuse(s, r, "min", "min < 0 < max is allowed");
@@ -96,8 +96,8 @@ static ethd_status check_torque(const ethd__servo_source *s, const ethd__servo_r
   if (!(fmin(low, high) >= least && fmax(low, high) <= most))
     return refuse(s, r, "max", "the limits are raw %.10g and %.10g, the type holds %.10g to %.10g", low, high, least,
                   most);
-  if (r->type != ETHD__SERVO_F32 && zero != rint(zero))
-    return refuse(s, r, "offset", "no torque is raw %.10g, a whole number is needed", zero);
+  if (fabs(ethd__servo_joint(r, ethd__servo_raw(r, 0))) > ZERO * ethd__servo_most(r))
+    return refuse(s, r, "offset", "no torque is raw %.10g, a number of its type is needed", -r->offset / r->scale);
   return ETHD_OK;
 }
 

@@ -102,6 +102,20 @@ static void count_unconfirmed(ethd__servo_device *d) {
              ethd__s(d->map.count), n == 1 ? "is" : "are", n == 1 ? "its address" : "their addresses");
 }
 
+/* Rounding towards no torque leaves nothing of a torque that is smaller than the first count. */
+static void say_coarse(ethd__servo_device *d, double limit) {
+  for (int i = 0; i < 2; i++) {
+    int32_t r = d->map.roles[ETHD__SERVO_TORQUE1 + i];
+    double count = r < 0 ? 0 : ethd__servo_least(&d->map.registers[r]);
+    double most = r < 0 ? 0 : fmin(limit, ethd__servo_most(&d->map.registers[r]));
+    if (count > most && !d->coarse[0])
+      snprintf(
+          d->coarse, sizeof d->coarse,
+          "one count of torque%d is %.3g Nm at the joint, over the limit of %.3g Nm: the joint never gets a torque",
+          i + 1, count, most);
+  }
+}
+
 static ethd_status make_feedback(ethd__servo_device *d, const ethd_device_def *def, const settings *s, char *message) {
   ethd_error error;
   ethd_status status = ethd__servo_feedback_make(&d->feedback, &d->map, def->setup->limits.torque,
@@ -213,6 +227,7 @@ ethd_status ethd__servo_prepare(const ethd_device_def *def, void **out, char mes
   if (status) return status;
   set_guard(d);
   count_unconfirmed(d);
+  say_coarse(d, def->setup->limits.torque);
   say_wire(d);
   return ETHD_OK;
 }

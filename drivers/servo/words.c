@@ -76,17 +76,31 @@ static double at_joint(const ethd__servo_register *r) {
   return r->sign * ratio * ethd__servo_factor(r);
 }
 
-/* The rounded number stays within the limits, too. */
+static double nearest(const ethd__servo_register *r, double raw) {
+  return r->type == ETHD__SERVO_F32 ? (double)(float)raw : rint(raw);
+}
+
+static double next_towards(const ethd__servo_register *r, double raw, double to) {
+  if (r->type == ETHD__SERVO_F32) return (double)nextafterf((float)raw, (float)to);
+  return raw + (to > raw ? 1 : -1);
+}
+
+/* Rounding to the nearest keeps a torque that the words hold exactly; one that grew by it goes a step towards zero. */
 double ethd__servo_raw(const ethd__servo_register *r, double joint) {
-  double value = joint == joint ? joint / at_joint(r) : 0;
-  double low = (r->min - r->offset) / r->scale, high = (r->max - r->offset) / r->scale;
-  double raw = (value - r->offset) / r->scale, least = fmin(low, high), most = fmax(low, high);
-  if (r->type == ETHD__SERVO_F32) return fmin(fmax(raw, least), most);
-  return fmin(fmax(rint(raw), ceil(least - 1e-9)), floor(most + 1e-9));
+  double asked = joint == joint ? joint / at_joint(r) : 0, zero = nearest(r, -r->offset / r->scale);
+  double value = fmin(fmax(asked, r->min), r->max);
+  double most = value == asked ? fabs(joint) : fabs(at_joint(r) * value);
+  double raw = value == 0 ? zero : nearest(r, (value - r->offset) / r->scale);
+  while (raw != zero && fabs(ethd__servo_joint(r, raw)) > most) raw = next_towards(r, raw, zero);
+  return raw;
 }
 
 double ethd__servo_joint(const ethd__servo_register *r, double raw) {
   return at_joint(r) * (r->scale * raw + r->offset);
+}
+
+double ethd__servo_least(const ethd__servo_register *r) {
+  return r->type == ETHD__SERVO_F32 ? 0 : fabs(at_joint(r) * r->scale);
 }
 
 double ethd__servo_most(const ethd__servo_register *r) { return fabs(at_joint(r)) * fmin(r->max, -r->min); }

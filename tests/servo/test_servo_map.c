@@ -402,11 +402,70 @@ START_TEST(test_limits) {
     double joint = draw(i, -5, 5), raw = ethd__servo_raw(&r, joint), most = 2.5 * 0.0389 * 12;
     ck_assert(fabs(raw) <= 25 && raw == rint(raw));
     double cut = fmin(fmax(joint, -most), most);
-    ck_assert_double_eq_tol(ethd__servo_joint(&r, raw), cut, 0.5 * 0.1 * 0.0389 * 12 + 1e-12);
+    ck_assert_double_eq_tol(ethd__servo_joint(&r, raw), cut, 0.1 * 0.0389 * 12);
   }
   ck_assert_double_eq(ethd__servo_raw(&r, (double)NAN), 0);
   r.max = 0.17; /* rounding doesn't pass a limit either */
   ck_assert_double_eq(ethd__servo_raw(&r, -5), 1);
+}
+END_TEST
+
+/* Less than a count remains: never more than was asked for, in its direction, and a torque of the words stays itself. */
+static void rounds(const ethd__servo_register *r, double joint) {
+  uint16_t words[2];
+  double raw = ethd__servo_raw(r, joint);
+  ethd__servo_pack(r, raw, words);
+  double got = ethd__servo_joint(r, ethd__servo_unpack(r, words)), none = 1e-9 * ethd__servo_most(r);
+  ck_assert_msg(fabs(got) <= fmax(fabs(joint), none), "%.17g Nm became %.17g", joint, got);
+  ck_assert_msg(got * joint >= 0 || fabs(got) <= none, "%.17g Nm became %.17g", joint, got);
+  double limit = fmin(fabs(joint), ethd__servo_most(r)), step = fmax(ethd__servo_least(r), 1e-6 * limit);
+  ck_assert_msg(fabs(got) >= limit - step - none, "%.17g Nm became %.17g", joint, got);
+  ck_assert(ethd__servo_raw(r, got) == raw || fabs(got) <= none);
+}
+
+static void rounds_all(const ethd__servo_register *r, uint64_t stream) {
+  double most = ethd__servo_most(r), count = ethd__servo_least(r);
+  rounds(r, 0);
+  for (uint64_t i = 0; i < 300; i++) {
+    rounds(r, draw(300 * stream + i, -2 * most, 2 * most));
+    rounds(r, draw(300 * stream + i, -3 * count, 3 * count));
+    rounds(r, floor(draw(300 * stream + i, -30, 30)) * count); /* whole counts, or an ulp beside them */
+  }
+}
+
+START_TEST(test_rounds_towards_zero) {
+  static const char *const maps[] = {"apps/config/svd48v.map", "apps/config/roboteq.map", "apps/config/plant.map",
+                                     "apps/config/akd.map"};
+  for (uint64_t k = 0; k < sizeof maps / sizeof *maps; k++) {
+    read_map(maps[k]);
+    for (char *at; (at = strstr(text, "LOOK_UP\n"));) memcpy(at, "1000   ", 7);
+    for (char *at; (at = strstr(text, "LOOK_UP"));) memcpy(at, "1000   ", 7);
+    ck_assert_msg(try(text) == ETHD_OK, "%s", message);
+    for (int i = 0; i < 2; i++)
+      if (map.roles[ETHD__SERVO_TORQUE1 + i] >= 0)
+        rounds_all(&map.registers[map.roles[ETHD__SERVO_TORQUE1 + i]], 2 * k + (uint64_t)i);
+  }
+  for (uint64_t k = 0; k < 2000; k++) {
+    ethd__servo_register r = {.type = k % 3 == 0   ? ETHD__SERVO_I16
+                                      : k % 3 == 1 ? ETHD__SERVO_I32
+                                                   : ETHD__SERVO_F32,
+                              .order = ETHD__SERVO_HIGH_FIRST,
+                              .sign = k & 8 ? 1 : -1,
+                              .ratio = pow(10, draw(k, -2, 3)),
+                              .unit = k & 16 ? 1 : 2,
+                              .torque_constant = pow(10, draw(k + 5000, -3, 1)),
+                              .scale = (k & 32 ? 1 : -1) * pow(10, draw(k + 9000, -4, 0))};
+    r.offset = k & 64 && r.type != ETHD__SERVO_F32 ? -100 * r.scale : 0;
+    r.max = draw(k + 1000, 2, 30000) * fabs(r.scale);
+    r.min = -draw(k + 2000, 2, 30000) * fabs(r.scale);
+    rounds_all(&r, 100 + k);
+  }
+  /* 0.1 A at 0.0389 Nm/A and 12 turns are 0.04668 Nm a count: less than that is nothing, and 0.12 are two */
+  read_map(maps[0]);
+  ck_assert_int_eq(try(text), ETHD_OK);
+  ck_assert_double_eq(ethd__servo_raw(named("torque1"), 0.0466), 0);
+  ck_assert_double_eq(ethd__servo_raw(named("torque1"), -0.12), -2);
+  ck_assert_double_eq(ethd__servo_raw(named("torque1"), 1.5 * 0.04668), 1);
 }
 END_TEST
 
@@ -465,6 +524,7 @@ int main(void) {
   tcase_add_test(t, test_words);
   tcase_add_test(t, test_words_back);
   tcase_add_test(t, test_limits);
+  tcase_add_test(t, test_rounds_towards_zero);
   tcase_add_test(t, test_any_text);
   suite_add_tcase(suite, t);
   return rig_run(suite);

@@ -189,9 +189,9 @@ START_TEST(test_age_of_a_reading) {
       map.registers[k] = (ethd__servo_register){.sign = 1, .ratio = 1, .scale = 1};
     }
     link.map = &map;
-    const double raw[] = {0.001, 0.002, 7, ages[i]}, torque[2] = {0, 0};
+    const double raw[] = {0.001, 0.002, 7, ages[i]};
     memcpy(link.raw, raw, sizeof raw);
-    ethd__servo_feedback_take(&f, &link, 50000000, torque);
+    ethd__servo_feedback_take(&f, &link, 50000000);
     bool is_good = ages[i] >= 0 && ages[i] <= 10;
     ck_assert_int_eq((f.sample.has & ETHD__SERVO_HAS_READING) != 0, is_good);
     if (is_good) ck_assert_int_eq(f.sample.reading_ns, 50000000 - (int64_t)(1e9 * ages[i]));
