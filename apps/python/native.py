@@ -57,19 +57,19 @@ def headers(include):
 
 
 def without_bodies(text):
-    """Leaves out inline functions, which cffi can't parse."""
+    """Declares inline functions as all others, since cffi can't parse them; their bodies stay in the headers."""
     out, at = [], 0
-    for match in re.finditer(r"static\s+inline\b", text):
+    for match in re.finditer(r"static\s+inline\b([^{};]*)([{;])", text):
         if match.start() < at:
             continue
         out.append(text[at:match.start()])
-        depth, i = 0, text.index("{", match.start())
-        while True:
-            depth += {"{": 1, "}": -1}.get(text[i], 0)
-            i += 1
-            if not depth:
-                break
-        at = i
+        at = match.end()
+        depth = 1 if match.group(2) == "{" else 0
+        while depth:
+            depth += {"{": 1, "}": -1}.get(text[at], 0)
+            at += 1
+        if match.group(2) == "{":
+            out.append(match.group(1) + ";")
     return "".join(out) + text[at:]
 
 

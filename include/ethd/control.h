@@ -29,9 +29,20 @@ ETHD_BEGIN_DECLS
 
 /* ---- setup ---- */
 
+/* The structs that application and library write for each other. New ones come last, what holds others first. */
+#define ETHD_SIZED(X) X(sizes) X(setup) X(trace) X(sense) X(command) X(limits) X(event) X(counters)
+
+/* Their sizes, bytes, as a program was compiled; `sizes` is this struct's own. */
+typedef struct ethd_sizes {
+#define ETHD_SIZE(name) uint32_t name;
+  ETHD_SIZED(ETHD_SIZE)
+#undef ETHD_SIZE
+} ethd_sizes;
+
 /* Made by ethd_setup_default, then changed field by field. */
 typedef struct ethd_setup {
   uint32_t cookie; /* set by ethd_setup_default; a setup without it is refused */
+  uint32_t bytes;  /* likewise: the size that isn't this library's; 0: there is none */
   double period;   /* T, s */
   ethd_arm arm;
   double ring_radius;       /* R_r, m: inner radius */
@@ -64,11 +75,19 @@ typedef struct ethd_setup {
 } ethd_setup;
 
 /* Returns a setup with a parallel 0.25 m arm, lowpass, kasa, ca, pd, kelvin-voigt, offset, no scene, no limits, at
-   1 kHz. [any] */
-ETHD_API ethd_setup ethd_setup_default(void);
+   1 kHz. A program that was compiled with headers in which one of ETHD_SIZED has another size than in this library gets
+   a setup that every function refuses (ETHD_E_SIZE, with the struct's name, its bytes there and here); nothing else of
+   its memory is written. Compile it again with this version's headers. [any] */
+static inline ethd_setup ethd_setup_default(void);
+
+/* Fills a setup of sizes->setup bytes, for ethd_setup_default. [any] */
+ETHD_API void ethd_setup_fill(ethd_setup *setup, const ethd_sizes *sizes);
+
+/* Checks a program's sizes against the library's: ETHD_E_SIZE as above. [any] */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_sizes_check(const ethd_sizes *sizes, ethd_error *error);
 
 /* Choose a law or a method and set its parameters to their defaults. What isn't one (NULL, a number beyond the methods,
-   a law with too many parameters) is left for ethd_setup_check to refuse. [any] */
+   a law with too many parameters) is left for ethd_setup_check to refuse; a setup that is refused is left alone. [any] */
 ETHD_API void ethd_setup_tracking(ethd_setup *setup, const ethd_tracking_law *law);
 ETHD_API void ethd_setup_contact(ethd_setup *setup, const ethd_contact_law *law);
 ETHD_API void ethd_setup_transition(ethd_setup *setup, const ethd_transition_law *law);
@@ -127,13 +146,14 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_set(ethd_setup *setup, const cha
 ETHD_API double ethd_setup_get(const ethd_setup *setup, const char *name);
 
 /* Returns the distance from the ring's centre, m, beyond which nothing can count while the finger is within the ring:
-   2 R_r + d_beta, or more for a law that looks ahead. ethd_scene_prune takes it as its radius. [any] */
+   2 R_r + d_beta, or more for a law that looks ahead; NaN for a setup that ethd_setup_default didn't make.
+   ethd_scene_prune takes it as its radius. [any] */
 ETHD_API double ethd_setup_range(const ethd_setup *setup);
 
 /* Checks everything that create and post check, also the scenes' materials against the contact law. Names in errors are
    those of the configuration ("contact.k_e"): ETHD_E_RANGE, ETHD_E_NOT_FINITE, ETHD_E_ARGUMENT (a setup that
-   ethd_setup_default didn't make, a law that is missing or of another kind), ETHD_E_UNKNOWN (no such
-   method; a material's key that the law doesn't have), the statuses of ethd_law_check, and what a law's own check
+   ethd_setup_default didn't make, a law that is missing or of another kind), ETHD_E_SIZE (ethd_setup_default),
+   ETHD_E_UNKNOWN (no such method; a material's key that the law doesn't have), the statuses of ethd_law_check, and what a law's own check
    returns. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_check(const ethd_setup *setup, ethd_error *error);
 
@@ -160,6 +180,21 @@ typedef struct ethd_counters {
   uint64_t faults[ETHD_FAULT_COUNT];
   uint64_t guard[ETHD_GUARD_COUNT];
 } ethd_counters;
+
+/* Returns the sizes that these headers have. [any] */
+static inline ethd_sizes ethd_sizes_here(void) {
+#define ETHD_SIZE(name) (uint32_t)sizeof(ethd_##name),
+  const ethd_sizes sizes = {ETHD_SIZED(ETHD_SIZE)};
+#undef ETHD_SIZE
+  return sizes;
+}
+
+static inline ethd_setup ethd_setup_default(void) {
+  ethd_setup setup;
+  const ethd_sizes sizes = ethd_sizes_here();
+  ethd_setup_fill(&setup, &sizes);
+  return setup;
+}
 
 /* ---- the controller ---- */
 

@@ -11,6 +11,8 @@ ETHD_BEGIN_DECLS
 /* INFINITY, or -INFINITY as a lower bound, means that there is no limit; for margin and clean_time 0 does. Elsewhere 0
    is a limit of 0. A limit that isn't set costs nothing. */
 typedef struct ethd_limits {
+  uint32_t size;         /* sizeof(ethd_limits) as compiled, set by ethd_limits_none */
+  int32_t latch;         /* 1: faults latch until cleared; 0: each tick is judged alone (replay) */
   double torque;         /* Nm, each joint, >= 0 */
   double torque_rate;    /* Nm/s, each joint, >= 0 */
   double speed;          /* m/s of the ring, >= 0 */
@@ -27,8 +29,6 @@ typedef struct ethd_limits {
   double finger_lost;    /* s: when it is older than this, the ring is stopped; without either no reading is judged */
   double clean_time;     /* s without a reason to stop before an acknowledgement counts, >= 0, finite;
                           longer is stricter */
-  int32_t latch;         /* 1: faults latch until cleared; 0: each tick is judged alone (replay) */
-  int32_t reserved;
 } ethd_limits;
 
 /* A row for each limit, by which they are read, written and compared. */
@@ -54,21 +54,46 @@ static inline double *ethd_limit_of(ethd_limits *limits, const ethd_limit *row) 
   return (double *)(void *)((char *)limits + row->offset);
 }
 
+/* Fill `out`, of `size` bytes, with no limits, and make `limits` the stricter of two, for the functions below. What
+   another version's headers have made becomes zero, or keeps the other `size`: ethd_limits_check refuses it. [any] */
+ETHD_API void ethd_limits_fill(ethd_limits *out, uint32_t size);
+ETHD_API void ethd_limits_narrow(ethd_limits *limits, const ethd_limits *other);
+
 /* Returns no limits, but with `latch` set. [any] */
-ETHD_API ethd_limits ethd_limits_none(void);
+static inline ethd_limits ethd_limits_none(void) {
+  ethd_limits limits;
+  ethd_limits_fill(&limits, (uint32_t)sizeof limits);
+  return limits;
+}
 
 /* Returns ethd_limits_none with a limit of the torque, Nm. [any] */
-ETHD_API ethd_limits ethd_limits_torque(double torque);
+static inline ethd_limits ethd_limits_torque(double torque) {
+  ethd_limits limits = ethd_limits_none();
+  limits.torque = torque;
+  return limits;
+}
 
 /* Returns what a driver of a real device begins with: gap 5 ms, clean_time 1 s, finger_age 10 ms, finger_lost 30 ms,
    and no other limit. [any] */
-ETHD_API ethd_limits ethd_limits_device(void);
+static inline ethd_limits ethd_limits_device(void) {
+  ethd_limits limits = ethd_limits_none();
+  limits.gap = 0.005;
+  limits.clean_time = 1;
+  limits.finger_age = 0.010;
+  limits.finger_lost = 0.030;
+  return limits;
+}
 
-/* Checks each number against its row: ETHD_E_RANGE or ETHD_E_NOT_FINITE with the limit's name. [main] */
+/* Checks each number against its row: ETHD_E_RANGE or ETHD_E_NOT_FINITE with the limit's name; ETHD_E_SIZE where
+   ethd_limits_none of these headers didn't make them. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_limits_check(const ethd_limits *limits, ethd_error *error);
 
 /* Returns the stricter of two, limit by limit; it latches if either does. [any] */
-ETHD_API ethd_limits ethd_limits_narrower(const ethd_limits *a, const ethd_limits *b);
+static inline ethd_limits ethd_limits_narrower(const ethd_limits *a, const ethd_limits *b) {
+  ethd_limits limits = *a;
+  ethd_limits_narrow(&limits, b);
+  return limits;
+}
 
 /* What the guard did, as bits; the counters count ticks. */
 enum {

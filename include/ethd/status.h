@@ -7,34 +7,34 @@
 ETHD_BEGIN_DECLS
 
 /* X(name, value, sentence) */
-#define ETHD_STATUSES(X)                                                       \
-  X(OK, 0, "done")                                                             \
-  X(BUSY, 1, "the receiver has not taken the last one yet")                    \
-  X(STALE, 2, "no newer value has come")                                       \
-  X(EMPTY, 3, "nothing is waiting")                                            \
-  X(E_ARGUMENT, -1, "an argument is missing or contradicts another")           \
-  X(E_RANGE, -2, "a value is out of its range")                                \
-  X(E_NOT_FINITE, -3, "a value is not a finite number")                        \
-  X(E_MEMORY, -4, "no memory")                                                 \
-  X(E_UNKNOWN, -5, "an unknown name")                                          \
-  X(E_DUPLICATE, -6, "a name or key occurs twice")                             \
-  X(E_SYNTAX, -7, "text that cannot be read")                                  \
-  X(E_GEOMETRY, -8, "a shape that cannot be: degenerate or self-intersecting") \
-  X(E_UNREACHABLE, -9, "out of the arm's reach")                               \
-  X(E_ABI, -10, "a plugin of another ABI; rebuild it against these headers")   \
-  X(E_SIZE, -11, "a struct that is none of this ABI; rebuild it")              \
-  X(E_STATE, -12, "a law's state is over 512 bytes")                           \
-  X(E_TABLE, -13, "a bad parameter table")                                     \
-  X(E_SYMBOL, -14, "a plugin without the symbol ethd_plugin")                  \
-  X(E_LOAD, -15, "a file that cannot be loaded as a plugin")                   \
-  X(E_LAW, -16, "a law reported a failure")                                    \
-  X(E_BUDGET, -17, "a law ran over its time budget")                           \
-  X(E_FULL, -18, "no room is left")                                            \
-  X(E_FILE, -19, "a file that cannot be read or written")                      \
-  X(E_DEVICE, -20, "the device refused or failed")                             \
-  X(E_DIFFERS, -21, "a replay that differs from its recording")                \
-  X(E_UNFINISHED, -22, "a recording that its program did not close")           \
-  X(E_FENCE, -23, "a law wrote outside of its state block")                    \
+#define ETHD_STATUSES(X)                                                         \
+  X(OK, 0, "done")                                                               \
+  X(BUSY, 1, "the receiver has not taken the last one yet")                      \
+  X(STALE, 2, "no newer value has come")                                         \
+  X(EMPTY, 3, "nothing is waiting")                                              \
+  X(E_ARGUMENT, -1, "an argument is missing or contradicts another")             \
+  X(E_RANGE, -2, "a value is out of its range")                                  \
+  X(E_NOT_FINITE, -3, "a value is not a finite number")                          \
+  X(E_MEMORY, -4, "no memory")                                                   \
+  X(E_UNKNOWN, -5, "an unknown name")                                            \
+  X(E_DUPLICATE, -6, "a name or key occurs twice")                               \
+  X(E_SYNTAX, -7, "text that cannot be read")                                    \
+  X(E_GEOMETRY, -8, "a shape that cannot be: degenerate or self-intersecting")   \
+  X(E_UNREACHABLE, -9, "out of the arm's reach")                                 \
+  X(E_ABI, -10, "a plugin of another ABI; rebuild it against these headers")     \
+  X(E_SIZE, -11, "a struct of other headers; compile again with this version's") \
+  X(E_STATE, -12, "a law's state is over 512 bytes")                             \
+  X(E_TABLE, -13, "a bad parameter table")                                       \
+  X(E_SYMBOL, -14, "a plugin without the symbol ethd_plugin")                    \
+  X(E_LOAD, -15, "a file that cannot be loaded as a plugin")                     \
+  X(E_LAW, -16, "a law reported a failure")                                      \
+  X(E_BUDGET, -17, "a law ran over its time budget")                             \
+  X(E_FULL, -18, "no room is left")                                              \
+  X(E_FILE, -19, "a file that cannot be read or written")                        \
+  X(E_DEVICE, -20, "the device refused or failed")                               \
+  X(E_DIFFERS, -21, "a replay that differs from its recording")                  \
+  X(E_UNFINISHED, -22, "a recording that its program did not close")             \
+  X(E_FENCE, -23, "a law wrote outside of its state block")                      \
   X(E_FENV, -24, "a law changed rounding or flushing of numbers")
 
 typedef enum ethd_status {

@@ -4,8 +4,11 @@
 
 #include "ethd/control.h"
 
-/* Refuses a setup that ethd_setup_default didn't make. */
-#define ETHD__SETUP_COOKIE 0x45544844u
+/* Refuses a setup that ethd_setup_default didn't make (ETHD_E_ARGUMENT), or made for other headers (ETHD_E_SIZE). */
+ethd_status ethd__setup_made(const ethd_setup *setup, ethd_error *error);
+
+/* Gives a setup that is all zero but for its cookie its defaults. */
+void ethd__setup_defaults(ethd_setup *setup);
 
 #define ETHD__D_BETA_MIN 1e-5 /* m: the least R_r - R_f,max */
 

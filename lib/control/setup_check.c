@@ -149,8 +149,7 @@ static bool has_rare_limits(const ethd_limits *limits) {
 }
 
 ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
-  if (!s || s->cookie != ETHD__SETUP_COOKIE)
-    return ethd__error(error, ETHD_E_ARGUMENT, "setup (made by ethd_setup_default?)");
+  TRY(ethd__setup_made(s, error));
   TRY(check_fields(s, error));
   TRY(check_laws(s, error));
   TRY(within("limits", ethd_limits_check(&s->limits, error), error));

@@ -39,6 +39,7 @@ ethd_method ethd_setup_chosen(const ethd_setup *setup, const ethd_setup_part *pa
   const char *chosen = (const char *)setup + part->chosen;
   const ethd_law *law;
   unsigned method;
+  if (ethd__setup_made(setup, NULL) < 0) return (ethd_method){0};
   if (part->methods) {
     memcpy(&method, chosen, sizeof method);
     return method < part->count ? part->methods[method] : (ethd_method){0};
@@ -58,6 +59,8 @@ static void choose(ethd_setup *setup, const ethd_setup_part *part, const void *c
 ethd_status ethd_setup_choose(ethd_setup *setup, const char *section, const char *id, const ethd_law *const *laws,
                               ethd_error *error) {
   const ethd_setup_part *part = ethd_setup_part_of(section);
+  ethd_status status = ethd__setup_made(setup, error);
+  if (status < 0) return status;
   if (!part) return ethd__error(error, ETHD_E_UNKNOWN, section);
   for (unsigned i = 0; i < part->count; i++)
     if (strcmp(part->methods[i].id, id) == 0) return choose(setup, part, &i, sizeof i), ETHD_OK;
@@ -120,8 +123,8 @@ static uint32_t index_of(const char *text) {
 static ethd_status find(const ethd_setup *setup, const char *name, ethd__setup_field *out, uint32_t *index,
                         ethd_error *error) {
   const char *rest = NULL;
-  if (!setup || setup->cookie != ETHD__SETUP_COOKIE)
-    return ethd__error(error, ETHD_E_ARGUMENT, "setup (made by ethd_setup_default?)");
+  ethd_status status = ethd__setup_made(setup, error);
+  if (status < 0) return status;
   for (uint32_t i = 0; !rest && find_at(setup, i, out); i++) rest = after(&out->key, name);
   if (!rest) return ethd__error(error, ETHD_E_UNKNOWN, name);
   if (!*rest && out->key.count > 1)

@@ -1,6 +1,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "error.h"
 #include "ethd/guard.h"
@@ -41,35 +42,24 @@ static double narrower(const ethd_limit *row, uint32_t i, double a, double b) {
   return rises ? fmax(a, b) : fmin(a, b);
 }
 
-ethd_limits ethd_limits_none(void) {
-  ethd_limits limits = {.latch = 1};
+void ethd_limits_fill(ethd_limits *out, uint32_t size) {
+  memset(out, 0, size);
+  out->size = size;
+  if (size != sizeof *out) return;
+  out->latch = 1;
   for (const ethd_limit *row = ethd_limit_rows; row < ethd_limit_rows + ETHD_LIMITS; row++)
-    for (uint32_t i = 0; i < row->count; i++) ethd_limit_of(&limits, row)[i] = none(row, i);
-  return limits;
+    for (uint32_t i = 0; i < row->count; i++) ethd_limit_of(out, row)[i] = none(row, i);
 }
 
-ethd_limits ethd_limits_torque(double torque) {
-  ethd_limits limits = ethd_limits_none();
-  limits.torque = torque;
-  return limits;
-}
-
-ethd_limits ethd_limits_device(void) {
-  ethd_limits limits = ethd_limits_none();
-  limits.gap = 0.005;
-  limits.clean_time = 1;
-  limits.finger_age = 0.010;
-  limits.finger_lost = 0.030;
-  return limits;
-}
-
-ethd_limits ethd_limits_narrower(const ethd_limits *a, const ethd_limits *b) {
-  ethd_limits r = *a, other = *b;
+void ethd_limits_narrow(ethd_limits *limits, const ethd_limits *other) {
+  if (limits->size != sizeof *limits) return;
+  limits->size = other->size;
+  if (other->size != sizeof *other) return;
+  ethd_limits own = *other;
   for (const ethd_limit *row = ethd_limit_rows; row < ethd_limit_rows + ETHD_LIMITS; row++)
     for (uint32_t i = 0; i < row->count; i++)
-      ethd_limit_of(&r, row)[i] = narrower(row, i, ethd_limit_of(&r, row)[i], ethd_limit_of(&other, row)[i]);
-  r.latch = a->latch || b->latch;
-  return r;
+      ethd_limit_of(limits, row)[i] = narrower(row, i, ethd_limit_of(limits, row)[i], ethd_limit_of(&own, row)[i]);
+  limits->latch = limits->latch || other->latch;
 }
 
 static ethd_status check(const ethd_limit *row, const double *values, ethd_error *error) {
@@ -82,6 +72,8 @@ static ethd_status check(const ethd_limit *row, const double *values, ethd_error
 }
 
 ethd_status ethd_limits_check(const ethd_limits *limits, ethd_error *error) {
+  if (limits->size != sizeof *limits)
+    return ethd__refuse(error, ETHD_E_SIZE, "size", (ethd__found){limits->size, sizeof *limits, sizeof *limits});
   ethd_limits own = *limits;
   ethd_status status = ETHD_OK;
   for (const ethd_limit *row = ethd_limit_rows; !status && row < ethd_limit_rows + ETHD_LIMITS; row++)

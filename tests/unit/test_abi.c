@@ -183,22 +183,23 @@ AT(ethd_sense, bodies, 280, 192);
 AT(ethd_sense, finger_noise, 472, 8);
 
 SIZE(ethd_limits, 184, 8);
-AT(ethd_limits, torque, 0, 8);
-AT(ethd_limits, torque_rate, 8, 8);
-AT(ethd_limits, speed, 16, 8);
-AT(ethd_limits, workspace, 24, 32);
-AT(ethd_limits, reach, 56, 16);
-AT(ethd_limits, joints, 72, 32);
-AT(ethd_limits, margin, 104, 8);
-AT(ethd_limits, energy, 112, 8);
-AT(ethd_limits, nominal_torque, 120, 8);
-AT(ethd_limits, heat_time, 128, 8);
-AT(ethd_limits, step_time, 136, 8);
-AT(ethd_limits, gap, 144, 8);
-AT(ethd_limits, finger_age, 152, 8);
-AT(ethd_limits, finger_lost, 160, 8);
-AT(ethd_limits, clean_time, 168, 8);
-AT(ethd_limits, latch, 176, 4);
+AT(ethd_limits, size, 0, 4);
+AT(ethd_limits, latch, 4, 4);
+AT(ethd_limits, torque, 8, 8);
+AT(ethd_limits, torque_rate, 16, 8);
+AT(ethd_limits, speed, 24, 8);
+AT(ethd_limits, workspace, 32, 32);
+AT(ethd_limits, reach, 64, 16);
+AT(ethd_limits, joints, 80, 32);
+AT(ethd_limits, margin, 112, 8);
+AT(ethd_limits, energy, 120, 8);
+AT(ethd_limits, nominal_torque, 128, 8);
+AT(ethd_limits, heat_time, 136, 8);
+AT(ethd_limits, step_time, 144, 8);
+AT(ethd_limits, gap, 152, 8);
+AT(ethd_limits, finger_age, 160, 8);
+AT(ethd_limits, finger_lost, 168, 8);
+AT(ethd_limits, clean_time, 176, 8);
 
 SIZE(ethd_dynamics, 40, 8);
 AT(ethd_dynamics, mass, 0, 16);
@@ -209,6 +210,9 @@ AT(ethd_dynamics, delay, 32, 8);
 SIZE(ethd_command, 24, 8);
 AT(ethd_command, torque, 0, 16);
 AT(ethd_command, safe, 16, 4);
+
+/* Written by the library for the refusal of what else differs, so its size never changes. */
+SIZE(ethd_error, 96, 8);
 #endif
 
 _Static_assert(ETHD_ABI == 0 && ETHD_STATE_MAX == 512 && ETHD_PARAMS_MAX == 16, "ABI 0");

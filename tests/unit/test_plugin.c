@@ -35,8 +35,8 @@ typedef struct refusal {
 
 static const refusal refusals[] = {
     {"wrong_abi", ETHD_E_ABI, "ethd_plugin.abi", "a plugin of another ABI; rebuild it against these headers"},
-    {"short_size", ETHD_E_SIZE, "size", "a struct that is none of this ABI; rebuild it"},
-    {"short_entry", ETHD_E_SIZE, "ethd_plugin.size", "a struct that is none of this ABI; rebuild it"},
+    {"short_size", ETHD_E_SIZE, "size", "a struct of other headers; compile again with this version's"},
+    {"short_entry", ETHD_E_SIZE, "ethd_plugin.size", "a struct of other headers; compile again with this version's"},
     {"big_state", ETHD_E_STATE, "broken", "a law's state is over 512 bytes"},
     {"bad_table", ETHD_E_TABLE, "broken.gain", "a bad parameter table"},
     {"no_symbol", ETHD_E_SYMBOL, "ethd_plugin", "a plugin without the symbol ethd_plugin"},

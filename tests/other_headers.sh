@@ -1,0 +1,122 @@
+#!/bin/sh
+# Programs that were compiled with other headers than this library's: each is refused in one sentence, and nothing of its
+# memory is written but what it gave.
+set -u
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+if [ -n "${SAN:-}" ]; then echo "SKIP: the program here isn't sanitized, the library would be"; exit 77; fi
+
+cat >"$work/app.c" <<'EOF'
+#include <ethd/ethd.h>
+#include <stdio.h>
+#include <string.h>
+
+static struct {
+  unsigned char before[512];
+  ethd_setup setup;
+  unsigned char behind[512];
+} box;
+
+static int changed(const volatile unsigned char *at, int count) {
+  int n = 0;
+  for (int i = 0; i < count; i++) n += at[i] != 7;
+  return n;
+}
+
+/* Everything that writes a setup or limits which the program has made. */
+static int write_all(void) {
+  ethd_error error;
+  memset(&box, 7, sizeof box);
+  box.setup = ethd_setup_default();
+  box.setup.limits = ethd_limits_device();
+  ethd_limits other = ethd_limits_torque(1);
+  box.setup.limits = ethd_limits_narrower(&box.setup.limits, &other);
+  ethd_setup_tracking(&box.setup, &ethd_tracking_pd);
+  ethd_setup_contact(&box.setup, &ethd_contact_spring);
+  ethd_setup_transition(&box.setup, &ethd_transition_predictive);
+  ethd_setup_velocity(&box.setup, ETHD_VELOCITY_LOWPASS);
+  ethd_setup_fit(&box.setup, ETHD_FIT_KASA);
+  ethd_setup_filter(&box.setup, ETHD_FILTER_CA);
+  (void)!ethd_setup_choose(&box.setup, "contact", "spring", ethd_laws, &error);
+  (void)!ethd_setup_set(&box.setup, "arm.delay", 0.001, &error);
+  (void)!ethd_setup_set(&box.setup, "limits.joints[3]", 1, &error);
+  return changed(box.before, sizeof box.before) + changed(box.behind, sizeof box.behind);
+}
+
+/* The same on the stack, where a struct that is too long for its place runs over its neighbours. */
+static int on_the_stack(void) {
+  volatile unsigned char low[256];
+  memset((void *)low, 7, sizeof low);
+  ethd_setup setup = ethd_setup_default();
+  volatile unsigned char middle[256];
+  memset((void *)middle, 7, sizeof middle);
+  ethd_limits limits = ethd_limits_none();
+  volatile unsigned char high[256];
+  memset((void *)high, 7, sizeof high);
+  setup.limits = limits;
+  return changed(low, sizeof low) + changed(middle, sizeof middle) + changed(high, sizeof high);
+}
+
+int main(void) {
+  ethd_control *control;
+  ethd_error error = {ETHD_OK};
+  const int written = write_all() + on_the_stack();
+  ethd_setup setup = ethd_setup_default();
+  const ethd_status status = ethd_control_create(&setup, &control, &error), check = ethd_setup_check(&setup, NULL);
+  printf("%d bytes, %d, %s, found %g of %g\n", written, status == check ? status : 99, status ? error.name : "",
+         status ? error.found : 0, status ? error.max : 0);
+  return 0;
+}
+EOF
+
+# Gives what the program says when it was compiled with the headers in a folder.
+says() { # INCLUDE -> sentence
+  $CC -std=gnu11 -O0 -w -I"$1" "$work/app.c" "$BUILD/libethd.a" -ldl -lm -o "$work/app" && "$work/app"
+}
+sizes=$(printf '#include <ethd/ethd.h>\n#include <stdio.h>\nint main(void) { printf("setup=%%zu sense=%%zu limits=%%zu counters=%%zu",
+  sizeof(ethd_setup), sizeof(ethd_sense), sizeof(ethd_limits), sizeof(ethd_counters)); }' |
+  $CC -Iinclude -x c - -o "$work/sizes" && "$work/sizes")
+eval "$sizes"
+
+is() { # WHAT INCLUDE EXPECTED
+  said=$(says "$2" 2>&1)
+  [ "$said" = "$3" ] || fail "$1: $said, not $3"
+}
+is "these headers" include "0 bytes, 0, , found 0 of 0"
+other() { # WHAT FILE SED EXPECTED: with one struct changed
+  rm -rf "$work/include"
+  cp -r include "$work/include"
+  sed -i "$3" "$work/include/ethd/$2"
+  cmp -s "include/ethd/$2" "$work/include/ethd/$2" && fail "$1: nothing was changed"
+  is "$1" "$work/include" "$4"
+}
+other "a shorter setup" control.h '/^  double v_hysteresis;/d' "0 bytes, -11, ethd_setup, found $((setup - 8)) of $setup"
+other "a much shorter setup" control.h 's/_p\[ETHD_PARAMS_MAX\];/_p[1];/' \
+  "0 bytes, -11, ethd_setup, found $((setup - 6 * 15 * 8)) of $setup"
+other "a longer setup" control.h 's/^  double swap_time;/  double more[9];\n&/' \
+  "0 bytes, -11, ethd_setup, found $((setup + 72)) of $setup"
+other "shorter limits" guard.h '/^  double heat_time;/d' "0 bytes, -11, ethd_limits, found $((limits - 8)) of $limits"
+other "longer limits" guard.h 's/^  double torque;/  double more[30];\n&/' \
+  "0 bytes, -11, ethd_limits, found $((limits + 240)) of $limits"
+other "a longer sense" sense.h 's/^  X(double, q, 2/  X(double, more, 16, "1", "more") \\\n&/' \
+  "0 bytes, -11, ethd_sense, found $((sense + 128)) of $sense"
+other "more counters" control.h 's/^  uint64_t ticks, /&more, /' \
+  "0 bytes, -11, ethd_counters, found $((counters + 8)) of $counters"
+other "a longer list" control.h 's/ X(counters)$/& X(error)/' "0 bytes, -11, ethd_sizes, found 36 of 32"
+other "a shorter list" control.h 's/ X(counters)$//' "0 bytes, -11, ethd_sizes, found 28 of 32"
+
+# A program that was linked before the symbols' version said 0.1 doesn't start.
+echo 'ETHD_0 { global: ethd_*; };' >"$work/old.map"
+echo 'void ethd_setup_default(void) {}' >"$work/old_library.c"
+printf 'void ethd_setup_default(void);\nint main(void) { ethd_setup_default(); }\n' >"$work/old.c"
+$CC -shared -fPIC -Wl,-soname,libethd.so.0 -Wl,--version-script="$work/old.map" "$work/old_library.c" -o "$work/libethd.so.0"
+$CC "$work/old.c" "$work/libethd.so.0" -o "$work/old"
+LD_LIBRARY_PATH=$work "$work/old" || fail "the old program doesn't run with its own library"
+said=$(LD_LIBRARY_PATH=$BUILD "$work/old" 2>&1)
+case $said in
+*"version \`ETHD_0' not found"*) ;;
+*) fail "an old program with this library: $said" ;;
+esac
+exit $failed
