@@ -102,9 +102,28 @@ wait $first
 [ $? = 1 ] && grep -q 'stopped; nothing is written, and the same command goes on' shared.err || fail "a search that was ended: $(cat shared.err)"
 [ ! -e never.plant ] && [ ! -e never.ini ] || fail "a search that was ended wrote its plant"
 
+# ---- mounts of its own: standard output that is closed, and a full disk ----
 # ---- a recording on a full disk, whose events end just before a block does: the row about it has its room ----
 if unshare -rm true 2>/dev/null; then
   mkdir disk
+  # a copy of /dev, so that nothing can replace the system's
+  cat >"$folder/closed.sh" <<'END'
+mount -t tmpfs tmpfs disk && mkdir disk/dev && cd disk || exit 9
+ln -s /proc/self/fd dev/fd && ln -s /proc/self/fd/1 dev/stdout && touch dev/null && mount --bind /dev/null dev/null || exit 9
+mount --rbind dev /dev || exit 9
+tap="$1/ethd-tap --taps 1 --transition offset --speed low"
+for name in stdout fd/1 ../dev/stdout; do
+  $tap --csv /dev/$name >&- 2>err
+  [ $? = 2 ] && [ "$(wc -l <err)" = 1 ] && grep -q "/dev/$name: " err || { echo "$name: $(cat err)"; exit 1; }
+done
+[ -L /dev/stdout ] && [ -z "$(ls /dev | grep new)" ] || { ls -l /dev; exit 1; }
+$tap --csv /dev/stdout >both 2>err && [ "$(grep -c '^0,offset' both)" = 1 ] && grep -q 'm/s' both || { echo "written through: $(cat err both)"; exit 1; }
+# what is printed goes into no file
+$tap --csv taps.csv --record r >&- 2>err
+[ $? = 1 ] && grep -q 'standard output: ' err && [ "$(wc -l <taps.csv)" = 2 ] || { echo "closed: $(cat err taps.csv)"; exit 1; }
+"$1/ethd-replay" --verify r >said || { cat said; exit 1; }
+END
+  unshare -rm sh "$folder/closed.sh" "$bin" >said 2>&1 || fail "standard output is closed: $(cat said)"
   cat >"$folder/fill.sh" <<'END'
 mount -t tmpfs -o size=1m tmpfs disk && cd disk || exit 9
 whole=0

@@ -1,6 +1,7 @@
 #include "cli/cli.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
@@ -21,7 +22,15 @@
 
 void ethd__flush_denormals(void) { (void)ethd__denormals_flush(); }
 
+/* Keeps numbers 0 to 2 from files of ours, into which standard output would go then. What stands there is closed to all
+   reading and writing. */
+static void keep_streams(void) {
+  for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
+    if (fcntl(fd, F_GETFD) < 0) (void)!open("/", O_PATH | O_CLOEXEC);
+}
+
 void ethd__begin(void) {
+  keep_streams();
   signal(SIGXFSZ, SIG_IGN);
   if (!ethd__terminals_plain()) ethd__fail_memory();
   argp_program_version = "libethd " ETHD_VERSION;

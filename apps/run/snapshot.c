@@ -1,6 +1,7 @@
 #include "run/snapshot.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,9 +31,11 @@ ethd_status ethd__snapshot_open(ethd__snapshot *s, const char *path, double peri
 }
 
 /* Writes the rows, the oldest first. */
-static ethd_status write_rows(ethd__snapshot *s, const char *path, size_t n) {
+static ethd_status write_rows(ethd__snapshot *s, FILE *file, size_t n) {
   ethd_npy *npy;
-  ethd_status status = ethd_npy_create(path, ethd_trace_columns, sizeof *s->rows, &npy, s->message);
+  int fd = fcntl(fileno(file), F_DUPFD_CLOEXEC, 3);
+  if (fd < 0) return ethd__say(s->message, ETHD_E_FILE, "%s: %s", s->path, strerror(errno));
+  ethd_status status = ethd__npy_begin(fd, s->path, ethd_trace_columns, sizeof *s->rows, &npy, s->message);
   if (status) return status;
   for (size_t i = s->count - n; !status && i < s->count; i++) status = ethd_npy_append(npy, &s->rows[i % s->room], 1);
   if (!status) status = ethd_npy_flush(npy);
@@ -47,7 +50,7 @@ static ethd_status replace_file(ethd__snapshot *s, size_t n) {
   ethd_replace replace;
   ethd_status status = ethd_replace_begin(s->path, &replace, s->message);
   if (status) return status;
-  status = write_rows(s, replace.temporary ? replace.temporary : s->path, n);
+  status = write_rows(s, replace.file, n);
   if (!status) return ethd_replace_commit(&replace, s->message);
   ethd_replace_abandon(&replace);
   return status;

@@ -1,5 +1,4 @@
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -7,6 +6,7 @@
 #include "ethd/record.h"
 #include "record/npy_parts.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 /* NumPy's format 1.0: "\x93NUMPY" 1 0, u16 length, a Python dict padded with spaces and ended by a
@@ -100,20 +100,19 @@ static void release(ethd_npy *npy) {
   free(npy);
 }
 
-ethd_status ethd_npy_create(const char *path, const ethd_column *columns, size_t row_bytes, ethd_npy **out,
+ethd_status ethd__npy_begin(int fd, const char *path, const ethd_column *columns, size_t row_bytes, ethd_npy **out,
                             char message[ETHD_MESSAGE_MAX]) {
-  *out = NULL;
-  if (!dense(columns, row_bytes)) return ethd__say(message, ETHD_E_ARGUMENT, "%s: columns that don't fill a row", path);
   ethd_npy *npy = calloc(1, sizeof *npy);
-  if (!npy) return ethd__no_memory(message, path);
-  npy->row_bytes = row_bytes;
+  *out = NULL;
+  if (!npy) {
+    close(fd);
+    return ethd__no_memory(message, path);
+  }
+  *npy = (ethd_npy){.fd = fd, .row_bytes = row_bytes};
   npy->header = malloc(HEADER_MAX);
   npy->buffer = malloc(BUFFER_ROWS * row_bytes);
-  npy->fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   ethd_status status = ETHD_OK;
-  if (npy->fd < 0)
-    status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
-  else if (!npy->header || !npy->buffer || !start_header(npy, columns))
+  if (!npy->header || !npy->buffer || !start_header(npy, columns))
     status = ethd__no_memory(message, path);
   else if (!write_header(npy))
     status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
@@ -122,6 +121,14 @@ ethd_status ethd_npy_create(const char *path, const ethd_column *columns, size_t
   else
     *out = npy;
   return status;
+}
+
+ethd_status ethd_npy_create(const char *path, const ethd_column *columns, size_t row_bytes, ethd_npy **out,
+                            char message[ETHD_MESSAGE_MAX]) {
+  *out = NULL;
+  if (!dense(columns, row_bytes)) return ethd__say(message, ETHD_E_ARGUMENT, "%s: columns that don't fill a row", path);
+  int fd = ethd__file_create(path, message);
+  return fd < 0 ? ETHD_E_FILE : ethd__npy_begin(fd, path, columns, row_bytes, out, message);
 }
 
 static ethd_status failed(ethd_npy *npy) {

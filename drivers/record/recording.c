@@ -11,6 +11,7 @@
 #include "settings/config_parts.h"
 #include "text/csv.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 #define ROOM 256 /* bytes kept in events.csv for a row about what can't be written */
@@ -100,16 +101,20 @@ static void keep_room(FILE *events) {
   (void)!fallocate(fileno(events), FALLOC_FL_KEEP_SIZE, end, ROOM);
 }
 
+static ethd_status open_events(const char *path, ethd_recording *recording, char *message) {
+  int fd = ethd__file_create(path, message);
+  if (fd < 0) return ETHD_E_FILE;
+  recording->events = fdopen(fd, "w");
+  if (recording->events) return ETHD_OK;
+  close(fd);
+  return ethd__no_memory(message, path);
+}
+
 static ethd_status open_files(const char *folder, ethd_recording *recording, char *message) {
   char *ticks = ethd__path_join(folder, ETHD_RECORDING_TICK);
   char *events = ethd__path_join(folder, ETHD_RECORDING_EVENTS);
-  ethd_status status = ETHD_OK;
-  if (!ticks || !events)
-    status = ethd__no_memory(message, folder);
-  else if (!(recording->events = fopen(events, "we")))
-    status = ethd__say(message, ETHD_E_FILE, "%s: %s", events, strerror(errno));
-  else
-    status = ethd_npy_create(ticks, ethd_trace_columns, sizeof(ethd_trace), &recording->ticks, message);
+  ethd_status status = ticks && events ? open_events(events, recording, message) : ethd__no_memory(message, folder);
+  if (!status) status = ethd_npy_create(ticks, ethd_trace_columns, sizeof(ethd_trace), &recording->ticks, message);
   free(ticks);
   free(events);
   if (status) return status;

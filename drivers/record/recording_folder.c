@@ -1,9 +1,9 @@
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "record/recording_parts.h"
 #include "settings/config_parts.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 /* The files of a recording and those that programs put beside it. */
@@ -34,7 +34,7 @@ static bool is_input(const char *folder, const ethd_config *config) {
 
 static ethd_status remove_earlier(const char *folder, char *message) {
   char *ticks = ethd__path_join(folder, ETHD_RECORDING_TICK);
-  bool is_recording = ticks && access(ticks, F_OK) == 0;
+  bool is_recording = ticks && ethd__file_taken(ticks);
   free(ticks);
   if (!is_recording)
     return ethd__say(message, ETHD_E_ARGUMENT, "%s: holds files of these names, but no recording; nothing is replaced",

@@ -11,13 +11,14 @@
 #include <unistd.h>
 
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 #define LOCK ".lock"
 #define TRIES 100 /* how often to try again when a lock's owner removes it at the same time */
 
 static ethd_status refuse(const char *path, char *message) {
-  return ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
+  return ethd__say(message, ETHD_E_FILE, "%s: %s", path, ethd__file_why());
 }
 
 static bool matches(const char *const *own, const char *name) {
@@ -29,7 +30,7 @@ static bool matches(const char *const *own, const char *name) {
 /* Calls `each` for the entries that match until it returns true; returns whether it did. */
 static bool any(const char *folder, const char *const *own, bool (*each)(int folder, const char *name, void *user),
                 void *user) {
-  DIR *entries = opendir(folder);
+  DIR *entries = ethd__file_list(folder);
   const struct dirent *entry;
   bool found = false;
   while (entries && !found && (entry = readdir(entries)))
@@ -42,28 +43,25 @@ static bool any(const char *folder, const char *const *own, bool (*each)(int fol
 
 /* ---- the lock ---- */
 
-static ethd_status make_folder(const char *folder, char *message) {
-  struct stat info;
-  if (mkdir(folder, 0777) == 0) return ETHD_OK;
-  if (errno == EEXIST && stat(folder, &info) == 0) {
-    if (S_ISDIR(info.st_mode)) return ETHD_OK;
-    errno = ENOTDIR;
-  }
-  return refuse(folder, message);
-}
-
 /* Returns true if fd is the file that is at this path now. */
 static bool is_at(int fd, const char *path) {
   struct stat own, there;
-  return fstat(fd, &own) == 0 && stat(path, &there) == 0 && own.st_ino == there.st_ino && own.st_dev == there.st_dev;
+  return fstat(fd, &own) == 0 && ethd__file_look_at(path, &there) == 0 && own.st_ino == there.st_ino &&
+         own.st_dev == there.st_dev;
+}
+
+static bool is_regular(int fd) {
+  struct stat info;
+  return fstat(fd, &info) == 0 && S_ISREG(info.st_mode);
 }
 
 static ethd_status lock(const char *folder, int how, ethd__claim *out, char *message) {
   out->path = ethd__path_join(folder, LOCK);
   if (!out->path) return ethd__no_memory(message, folder);
   for (int i = 0; i < TRIES; i++) {
-    out->fd = open(out->path, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+    out->fd = ethd__file_open(out->path, O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK, 0666);
     if (out->fd < 0) return refuse(out->path, message);
+    if (!is_regular(out->fd)) return ethd__say(message, ETHD_E_FILE, "%s: isn't a file; remove it", out->path);
     if (flock(out->fd, how) != 0)
       return errno == EWOULDBLOCK ? ethd__say(message, ETHD_E_ARGUMENT, "%s: another program is writing there", folder)
                                   : refuse(out->path, message);
@@ -82,7 +80,7 @@ static void let_go(ethd__claim *claim) {
 }
 
 void ethd__claim_release(ethd__claim *claim) {
-  if (claim->fd >= 0) unlink(claim->path);
+  if (claim->fd >= 0) ethd__file_remove(claim->path);
   let_go(claim);
 }
 
@@ -96,7 +94,7 @@ static bool keep_name(int folder, const char *name, void *user) {
 
 static ethd_status claim(const char *folder, int how, ethd__claim *out, char *message) {
   *out = ETHD_CLAIM_NONE;
-  ethd_status status = make_folder(folder, message);
+  ethd_status status = ethd__file_make_folder(folder) ? refuse(folder, message) : ETHD_OK;
   if (!status) status = lock(folder, how, out, message);
   if (status) let_go(out);
   return status;

@@ -1,17 +1,16 @@
 #include "text/text.h"
 
 #include <ctype.h>
-#include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "text/error_text.h"
+#include "text/file.h"
 
 static ethd_status refuse(const char *path, char *message) {
   return ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
@@ -19,29 +18,65 @@ static ethd_status refuse(const char *path, char *message) {
 
 /* ---- reading ---- */
 
-static ethd_status read_all(FILE *file, const char *path, size_t most, char **text, size_t *length, char *message) {
-  struct stat info;
-  size_t room = 65536, n = 0, got;
-  if (fstat(fileno(file), &info) == 0 && info.st_size > 0 && (size_t)info.st_size <= most)
-    room = (size_t)info.st_size + 2;
+#define PIPE_MAX ((size_t)1 << 30) /* bytes of what isn't a regular file */
+
+static ethd_status too_long(const char *path, size_t most, char *message) {
+  return ethd__say(message, ETHD_E_FILE, "%s: too long, at most %zu bytes are allowed", path, most);
+}
+
+static bool read_part(int fd, char *to, off_t at, off_t end) {
+  while (at < end) {
+    ssize_t got = pread(fd, to + at, (size_t)(end - at), at);
+    if (got < 0) return false;
+    if (got == 0) break;
+    at += got;
+  }
+  return true;
+}
+
+/* Reads what is on the disk. A file's holes are zeros that take no room there, and none here: the memory of calloc is
+   zero before it is touched. */
+static char *read_regular(int fd, size_t size) {
+  char *text = calloc(size + 1, 1);
+  off_t end = (off_t)size, data = 0, hole;
+  for (off_t at = 0; text && at < end; at = hole) {
+    data = lseek(fd, at, SEEK_DATA);
+    if (data < 0 && errno == ENXIO) break;
+    if (data < 0) data = at; /* the file system doesn't tell */
+    hole = lseek(fd, data, SEEK_HOLE);
+    if (hole < 0 || hole > end) hole = end;
+    if (read_part(fd, text, data, hole)) continue;
+    free(text);
+    return NULL;
+  }
+  return text;
+}
+
+/* Returns bytes that were read, 0 at the end, -1: errno. Waits for a pipe's other end; a signal ends the wait. */
+static ssize_t read_some(int fd, char *to, size_t most) {
+  struct pollfd wait = {.fd = fd, .events = POLLIN};
+  ssize_t got;
+  do {
+    if (poll(&wait, 1, -1) < 0) return -1;
+    got = read(fd, to, most);
+  } while (got < 0 && errno == EAGAIN);
+  return got;
+}
+
+static ethd_status read_stream(int fd, const char *path, size_t most, char **text, size_t *length, char *message) {
+  size_t room = 65536, n = 0;
+  ssize_t got = 0;
   char *buffer = malloc(room);
-  while (buffer && (got = fread(buffer + n, 1, room - 1 - n, file)) > 0) {
-    n += got;
-    if (n > most) {
-      free(buffer);
-      return ethd__say(message, ETHD_E_FILE, "%s: too long, at most %zu bytes are allowed", path, most);
-    }
-    if (n == room - 1) {
-      char *more = realloc(buffer, room * 2);
-      if (!more) free(buffer);
-      buffer = more;
-      room *= 2;
-    }
+  while (buffer && n <= most && (got = read_some(fd, buffer + n, room - 1 - n)) > 0) {
+    n += (size_t)got;
+    char *more = n == room - 1 ? realloc(buffer, room *= 2) : buffer;
+    if (!more) free(buffer);
+    buffer = more;
   }
   if (!buffer) return ethd__no_memory(message, path);
-  if (ferror(file)) {
+  if (got < 0 || n > most) {
     free(buffer);
-    return refuse(path, message);
+    return got < 0 ? refuse(path, message) : too_long(path, most, message);
   }
   buffer[n] = 0;
   *text = buffer;
@@ -49,160 +84,29 @@ static ethd_status read_all(FILE *file, const char *path, size_t most, char **te
   return ETHD_OK;
 }
 
+static ethd_status read_file(int fd, const char *path, size_t size, char **text, size_t *length, char *message) {
+  errno = 0;
+  *text = read_regular(fd, size);
+  if (*text) *length = size;
+  return *text ? ETHD_OK : errno && errno != ENOMEM ? refuse(path, message) : ethd__no_memory(message, path);
+}
+
 ethd_status ethd_text_read(const char *path, size_t most, char **text, size_t *length, char message[ETHD_MESSAGE_MAX]) {
   struct stat info;
+  ethd_status status;
   *text = NULL;
   *length = 0;
-  if (!*path) return ethd__say(message, ETHD_E_FILE, "\"\": a file's name is needed");
-  FILE *file = fopen(path, "rbe");
-  if (!file) return refuse(path, message);
-  ethd_status status;
-  if (fstat(fileno(file), &info) == 0 && S_ISDIR(info.st_mode))
-    status = ethd__say(message, ETHD_E_FILE, "%s: is a folder, a file is needed", path);
-  else if (S_ISREG(info.st_mode) && (uintmax_t)info.st_size > most)
-    status =
-        ethd__say(message, ETHD_E_FILE, "%s: %jd bytes, at most %zu are allowed", path, (intmax_t)info.st_size, most);
+  int fd = ethd__file_read(path, &info, message);
+  if (fd < 0) return ETHD_E_FILE;
+  size_t size = (size_t)info.st_size;
+  if (S_ISREG(info.st_mode) && size > most)
+    status = ethd__say(message, ETHD_E_FILE, "%s: %zu bytes, at most %zu are allowed", path, size, most);
+  else if (S_ISREG(info.st_mode) && size) /* the kernel's own files say 0 */
+    status = read_file(fd, path, size, text, length, message);
   else
-    status = read_all(file, path, most, text, length, message);
-  fclose(file);
-  return status;
-}
-
-/* ---- writing ---- */
-
-static bool same_file(const struct stat *a, const struct stat *b) {
-  return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
-}
-
-/* Returns the stream if the path is our own standard output under a name such as /dev/stdout, which may be a file; else
-   -1. */
-static int own_stream(const struct stat *info) {
-  struct stat stream;
-  for (int fd = STDOUT_FILENO; fd <= STDERR_FILENO; fd++)
-    if (fstat(fd, &stream) == 0 && same_file(&stream, info)) return fd;
-  return -1;
-}
-
-/* Writes directly to a device, a pipe or our own stream. */
-static ethd_status in_place(const char *path, int stream, ethd_replace *out, char *message) {
-  fflush(NULL);
-  int fd = stream >= 0 ? fcntl(stream, F_DUPFD_CLOEXEC, 3) : open(path, O_WRONLY | O_CLOEXEC);
-  out->file = fd >= 0 ? fdopen(fd, "wb") : NULL;
-  if (!out->file) return refuse(path, message);
-  out->path = strdup(path);
-  return ETHD_OK;
-}
-
-/* ---- what a killed program left: PATH.PID-COUNT.new, which is locked while its writer runs ---- */
-
-static bool is_left(const char *name, const char *target) {
-  size_t n = strlen(target), digits;
-  if (strncmp(name, target, n) || name[n] != '.') return false;
-  name += n + 1;
-  digits = strspn(name, "0123456789");
-  if (!digits || name[digits] != '-') return false;
-  name += digits + 1;
-  digits = strspn(name, "0123456789");
-  return digits && !strcmp(name + digits, ".new");
-}
-
-static void remove_left(const char *path) {
-  char *folder = ethd__path_folder(path);
-  const char *slash = strrchr(path, '/'), *target = slash ? slash + 1 : path;
-  DIR *entries = folder ? opendir(folder) : NULL;
-  const struct dirent *entry;
-  while (entries && (entry = readdir(entries))) {
-    int fd = is_left(entry->d_name, target)
-                 ? openat(dirfd(entries), entry->d_name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)
-                 : -1;
-    if (fd < 0) continue;
-    if (flock(fd, LOCK_EX | LOCK_NB) == 0) unlinkat(dirfd(entries), entry->d_name, 0);
-    close(fd);
-  }
-  if (entries) closedir(entries);
-  free(folder);
-}
-
-/* Locks the new file, before another program can take it for one that was left. */
-static FILE *locked(int fd) {
-  struct stat info;
-  if (flock(fd, LOCK_EX | LOCK_NB) == 0 && fstat(fd, &info) == 0 && info.st_nlink > 0) return fdopen(fd, "wb");
+    status = read_stream(fd, path, most < PIPE_MAX ? most : PIPE_MAX, text, length, message);
   close(fd);
-  return NULL;
-}
-
-/* Makes a new file in the target's own folder, so that the rename stays within one file system. */
-static FILE *beside(const char *path, mode_t mode, char **temporary) {
-  static unsigned count;
-  for (int attempt = 0; attempt < 100; attempt++) {
-    if (asprintf(temporary, "%s.%ld-%u.new", path, (long)getpid(), count++) < 0) break;
-    int fd = open(*temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-    FILE *file = fd >= 0 ? locked(fd) : NULL;
-    if (file) return file;
-    free(*temporary);
-    if (fd < 0 && errno != EEXIST) break;
-  }
-  *temporary = NULL;
-  return NULL;
-}
-
-ethd_status ethd_replace_begin(const char *path, ethd_replace *out, char message[ETHD_MESSAGE_MAX]) {
-  struct stat info;
-  *out = (ethd_replace){0};
-  bool exists = stat(path, &info) == 0;
-  int stream = exists ? own_stream(&info) : -1;
-  if (exists && S_ISDIR(info.st_mode))
-    return ethd__say(message, ETHD_E_FILE, "%s: is a folder, a file's name is needed", path);
-  if (exists && (stream >= 0 || !S_ISREG(info.st_mode))) return in_place(path, stream, out, message);
-  if (exists && access(path, W_OK) != 0) return refuse(path, message);
-  out->path = exists ? realpath(path, NULL) : strdup(path);
-  if (!out->path) return refuse(path, message);
-  remove_left(out->path);
-  out->file = beside(out->path, exists ? info.st_mode & 0777 : 0666, &out->temporary);
-  if (out->file) return ETHD_OK;
-  ethd_status status = refuse(path, message);
-  free(out->path);
-  *out = (ethd_replace){0};
   return status;
-}
-
-static void release(ethd_replace *replace) {
-  free(replace->path);
-  free(replace->temporary);
-  *replace = (ethd_replace){0};
-}
-
-/* Keeps the lock until the file is closed, which may fail, and renamed. */
-ethd_status ethd_replace_commit(ethd_replace *replace, char message[ETHD_MESSAGE_MAX]) {
-  ethd_status status = ETHD_OK;
-  const char *path = replace->path ? replace->path : "output";
-  int lock = replace->temporary ? fcntl(fileno(replace->file), F_DUPFD_CLOEXEC, 3) : -1;
-  errno = 0;
-  bool failed = ferror(replace->file) != 0;
-  failed |= fclose(replace->file) != 0;
-  if (!failed && replace->temporary) failed = rename(replace->temporary, replace->path) != 0;
-  if (failed) {
-    status =
-        errno ? refuse(path, message) : ethd__say(message, ETHD_E_FILE, "%s: a write failed; is there room?", path);
-    if (replace->temporary) unlink(replace->temporary);
-  }
-  if (lock >= 0) close(lock);
-  release(replace);
-  return status;
-}
-
-void ethd_replace_abandon(ethd_replace *replace) {
-  if (replace->file) fclose(replace->file);
-  if (replace->temporary) unlink(replace->temporary);
-  release(replace);
-}
-
-ethd_status ethd_text_write(const char *path, const char *text, size_t length, char message[ETHD_MESSAGE_MAX]) {
-  ethd_replace replace;
-  ethd_status status = ethd_replace_begin(path, &replace, message);
-  if (status) return status;
-  fwrite(text, 1, length, replace.file);
-  return ethd_replace_commit(&replace, message);
 }
 
 /* ---- numbers and paths ---- */

@@ -10,8 +10,9 @@
 /* Returns what stands behind a noun after its number: "" for 1, else "s". [any] */
 static inline const char *ethd__s(uint64_t count) { return count == 1 ? "" : "s"; }
 
-/* Reads a whole file and puts a 0 after it; the caller frees it. Refuses a file that is missing, a folder, or over
-   `most` bytes. The text may have 0 bytes: callers decide. */
+/* Reads a whole file and puts a 0 after it; the caller frees it. Refuses a file that is missing, a folder, a device, or
+   over `most` bytes; a pipe may have 1 GiB at most, and a signal ends the wait for it. A file's holes take no memory.
+   The text may have 0 bytes: callers decide. */
 ETHD_MUST_CHECK ethd_status ethd_text_read(const char *path, size_t most, char **text, size_t *length,
                                            char message[ETHD_MESSAGE_MAX]);
 
@@ -19,8 +20,10 @@ ETHD_MUST_CHECK ethd_status ethd_text_read(const char *path, size_t most, char *
 ETHD_MUST_CHECK ethd_status ethd_text_write(const char *path, const char *text, size_t length,
                                             char message[ETHD_MESSAGE_MAX]);
 
-/* A file that is written beside its path and takes the path's place when it is complete. A device or pipe is written
-   directly. */
+/* A file that is written beside its path and takes the path's place when it is complete. Only a regular file, or nothing,
+   is replaced: behind a link to one, the one that it leads to (not below a received folder, see text/file.h). A pipe, a
+   terminal or another character device is written directly, and so is a descriptor that the program was started with,
+   under the names /dev/stdout, /dev/stderr, /dev/fd/N and /proc/self/fd/N. All else is refused. */
 typedef struct ethd_replace {
   FILE *file;
   char *path, *temporary; /* temporary NULL: it is written directly */

@@ -7,7 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -156,6 +158,77 @@ START_TEST(test_own_stdout_is_written_through) {
 }
 END_TEST
 
+static bool refuses(const char *path, const char *says) {
+  message[0] = 0;
+  ethd_status status = ethd_text_write(path, "new", 3, message);
+  return status == ETHD_E_FILE && strstr(message, says) && !strchr(message, '\n');
+}
+
+static bool is_link(const char *name) {
+  struct stat info;
+  return lstat(in(name), &info) == 0 && S_ISLNK(info.st_mode);
+}
+
+/* Only a regular file is replaced, or nothing. */
+START_TEST(test_links_and_devices_stay) {
+  put("b.csv", "old");
+  ck_assert_int_eq(symlink("b.csv", out), 0);
+  ck_assert(!ethd_text_write(out, "new", 3, message));
+  ck_assert(is_link("a.csv") && holds("b.csv", "new"));
+  unlink(in("b.csv"));
+  ck_assert(refuses(out, "a.csv: is a link that leads nowhere; remove it first"));
+  ck_assert(is_link("a.csv") && access(in("b.csv"), F_OK) != 0);
+  unlink(out);
+  ck_assert_int_eq(symlink("/dev/null", out), 0);
+  ck_assert(refuses(out, "a.csv: is a link to something that isn't a file; name that itself"));
+  ck_assert(is_link("a.csv"));
+  unlink(out);
+  int socket_fd = socket(AF_UNIX, SOCK_STREAM, 0);
+  struct sockaddr_un address = {.sun_family = AF_UNIX};
+  strcpy(address.sun_path, out);
+  ck_assert_int_eq(bind(socket_fd, (struct sockaddr *)&address, sizeof address), 0);
+  ck_assert(refuses(out, "a.csv: isn't a file; nothing is replaced"));
+  close(socket_fd);
+}
+END_TEST
+
+/* /dev/stdout and its like name a descriptor that the program was started with, and no file of its own. */
+START_TEST(test_descriptors_by_name) {
+  char name[32];
+  put("a.csv", "old");
+  int file = open(out, O_WRONLY | O_APPEND);
+  snprintf(name, sizeof name, "/dev/fd/%d", file);
+  ck_assert(!ethd_text_write(name, " new", 4, message));
+  ck_assert(holds("a.csv", "old new"));
+  fcntl(file, F_SETFD, FD_CLOEXEC);
+  ck_assert(refuses(name, "that descriptor isn't open for writing"));
+  close(file);
+  ck_assert(refuses(name, "that descriptor isn't open for writing"));
+  file = open(out, O_RDONLY);
+  snprintf(name, sizeof name, "/proc/self/fd/%d", file);
+  ck_assert(refuses(name, "that descriptor isn't open for writing"));
+  close(file);
+  ck_assert(holds("a.csv", "old new"));
+}
+END_TEST
+
+/* A file of ours never becomes standard output. */
+START_TEST(test_streams_keep_their_numbers) {
+  ethd_replace replace;
+  int saved = dup(STDOUT_FILENO);
+  fflush(stdout);
+  close(STDOUT_FILENO);
+  bool refused = refuses("/dev/stdout", "that descriptor isn't open for writing");
+  ethd_status status = ethd_replace_begin(out, &replace, message);
+  int number = status ? -1 : fileno(replace.file);
+  dup2(saved, STDOUT_FILENO);
+  close(saved);
+  ck_assert(refused && !status);
+  ck_assert_int_gt(number, STDERR_FILENO);
+  ethd_replace_abandon(&replace);
+}
+END_TEST
+
 /* ---- words ---- */
 
 START_TEST(test_cells_of_text) {
@@ -236,6 +309,9 @@ int main(void) {
   tcase_add_test(all, test_inputs_are_known);
   tcase_add_test(all, test_left_files_go);
   tcase_add_test(all, test_own_stdout_is_written_through);
+  tcase_add_test(all, test_links_and_devices_stay);
+  tcase_add_test(all, test_descriptors_by_name);
+  tcase_add_test(all, test_streams_keep_their_numbers);
   tcase_add_test(all, test_cells_of_text);
   tcase_add_test(all, test_file_names);
   tcase_add_test(all, test_long_paths_keep_the_reason);
