@@ -116,9 +116,10 @@ BASE := -std=gnu11 $(CFLAGS) $(WARN) $(MATHS) $(SANFLAGS)
 PIC := -fPIC -fvisibility=hidden -fno-semantic-interposition
 
 FLAGS_lib := $(BASE) $(STRINGS) $(PIC) -fno-stack-protector -fno-builtin-bcmp -U_FORTIFY_SOURCE -Iinclude -Ilib
-FLAGS_drivers := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Idrivers
-FLAGS_apps := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Idrivers -Iapps
-FLAGS_tests := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Ilib -Idrivers -Iapps -Itests
+IN_C_LOCALE := -include drivers/text/locale.h
+FLAGS_drivers := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Idrivers $(IN_C_LOCALE)
+FLAGS_apps := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Idrivers -Iapps $(IN_C_LOCALE)
+FLAGS_tests := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Ilib -Idrivers -Iapps -Itests $(IN_C_LOCALE)
 FLAGS_plugin := $(BASE) -fPIC -Iinclude
 LIBS := $(XENO_LDFLAGS) -lm -ldl -lpthread
 LINK = $(CC) $(BASE) $(LDFLAGS)

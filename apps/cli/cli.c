@@ -226,13 +226,13 @@ void ethd__progress(uint64_t done, uint64_t total, const char *what) {
   if (!isatty(STDERR_FILENO)) return;
   double t = 1e-9 * (double)ethd__clock_now();
   if (done >= total) {
-    if (shown > 0) dprintf(STDERR_FILENO, "\r\033[K");
+    if (shown > 0) fputs("\r\033[K", stderr);
     shown = 0;
   } else if (t - shown >= 0.1) {
     double share = (double)done / (double)total;
     int filled = (int)(share * 40);
     fflush(stderr);
-    dprintf(STDERR_FILENO, "\r\033[K");
+    fputs("\r\033[K", stderr);
     fprintf(stderr, "%s [%.*s%*s] %3.0f %%", what, filled, "########################################", 40 - filled, "",
             100 * share);
     shown = t;

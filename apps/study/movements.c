@@ -21,12 +21,9 @@ static int is_csv(const struct dirent *entry) {
   return n > 4 && entry->d_name[0] != '.' && !strcmp(entry->d_name + n - 4, ".csv");
 }
 
-/* Compares bytes, so that the order is the same in every locale. */
-static int by_name(const struct dirent **a, const struct dirent **b) { return strcmp((*a)->d_name, (*b)->d_name); }
-
 static ethd_status list(const char *folder, char ***files, size_t *count, char *message) {
   struct dirent **entries = NULL;
-  int n = scandir(folder, &entries, is_csv, by_name);
+  int n = scandir(folder, &entries, is_csv, alphasort);
   bool failed = n < 0;
   *files = calloc(n > 0 ? (size_t)n : 1, sizeof **files);
   for (int i = 0; i < n; i++) {

@@ -174,7 +174,9 @@ ethd_status ethd_ini_parse(const char *text, size_t length, const char *name, co
   if (length > ETHD_INI_BYTES_MAX)
     REFUSE(&f, ETHD_E_RANGE, "%s: %zu bytes, at most %zu are allowed", name, length, ETHD_INI_BYTES_MAX);
   if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) f.at += 3;
+  locale_t own = uselocale(ethd__c_locale); /* by which inih knows spaces: some have one within a letter of UTF-8 */
   int line = ini_parse_stream(read_line, &f, take_key, &f);
+  uselocale(own);
   if (!f.status && line) REFUSE(&f, ETHD_E_SYNTAX, "%s:%d: a line that cannot be read", name, line);
   if (f.status) ethd_ini_free(out);
   return f.status;
