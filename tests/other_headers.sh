@@ -71,14 +71,49 @@ int main(void) {
 }
 EOF
 
+# The same where the setup comes from a configuration, and of a loop.
+cat >"$work/device.c" <<'EOF'
+#include <ethd/config.h>
+#include <ethd/loop.h>
+#include <stdio.h>
+
+int main(void) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd_config *config;
+  ethd_loop *loop;
+  ethd_error error;
+  const ethd_loop_def def = ethd_loop_default();
+  if (ethd_config_load(NULL, &config, message) == ETHD_OK) puts("configuration read"), ethd_config_free(config);
+  else printf("%s\n", message);
+  if (ethd_loop_create(&def, &loop, &error) == ETHD_E_SIZE) printf("%s, found %g of %g\n", error.name, error.found, error.max);
+  else printf("%s is missing\n", error.name);
+  return 0;
+}
+EOF
+
 # Gives what the program says when it was compiled with the headers in a folder.
 says() { # INCLUDE -> sentence
   $CC -std=gnu11 -O0 -w -I"$1" "$work/app.c" "$BUILD/libethd.a" -ldl -lm -o "$work/app" && "$work/app"
 }
-sizes=$(printf '#include <ethd/ethd.h>\n#include <stdio.h>\nint main(void) { printf("setup=%%zu sense=%%zu limits=%%zu counters=%%zu",
-  sizeof(ethd_setup), sizeof(ethd_sense), sizeof(ethd_limits), sizeof(ethd_counters)); }' |
-  $CC -Iinclude -x c - -o "$work/sizes" && "$work/sizes")
-eval "$sizes"
+device_says() { # INCLUDE -> two sentences
+  $CC -std=gnu11 -O0 -w -I"$1" "$work/device.c" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -lmodbus -lz -lexpat \
+    -ldl -lm -lpthread -o "$work/device" && "$work/device"
+}
+cat >"$work/sizes.c" <<'EOF'
+#include <ethd/config.h>
+#include <ethd/loop.h>
+#include <stdio.h>
+int main(void) {
+  printf("setup=%zu sense=%zu limits=%zu counters=%zu ", sizeof(ethd_setup), sizeof(ethd_sense), sizeof(ethd_limits),
+         sizeof(ethd_counters));
+  printf("config=%zu def=%zu row=%zu abi=%u", sizeof(ethd_config), sizeof(ethd_loop_def), sizeof(ethd_loop_row),
+         ETHD_DRIVER_ABI);
+  return 0;
+}
+EOF
+$CC -std=gnu11 -Iinclude -c "$work/sizes.c" -o "$work/sizes.o" &&
+  $CC "$work/sizes.o" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -lmodbus -lz -lexpat -ldl -lm -lpthread -o "$work/sizes" || fail "no sizes"
+eval "$("$work/sizes")"
 
 is() { # WHAT INCLUDE EXPECTED
   said=$(says "$2" 2>&1)
@@ -106,6 +141,33 @@ other "more counters" control.h 's/^  uint64_t ticks, /&more, /' \
   "0 bytes, -11, ethd_counters, found $((counters + 8)) of $counters"
 other "a longer list" control.h 's/ X(counters)$/& X(error)/' "0 bytes, -11, ethd_sizes, found 36 of 32"
 other "a shorter list" control.h 's/ X(counters)$//' "0 bytes, -11, ethd_sizes, found 28 of 32"
+
+device_is() { # WHAT CONFIGURATION LOOP: with the last headers
+  said=$(device_says "$work/include" 2>&1)
+  [ "$said" = "$2
+$3" ] || fail "$1: $said, not $2 and $3"
+}
+rm -r "$work/include" && cp -r include "$work/include"
+device_is "these headers" "configuration read" "driver is missing"
+other "a longer sense, once more" sense.h 's/^  X(double, q, 2/  X(double, more, 16, "1", "more") \\\n&/' \
+  "0 bytes, -11, ethd_sense, found $((sense + 128)) of $sense"
+device_is "a longer sense" "ethd_sense: a struct of other headers; compile again with this version's; found $((sense + 128)), allowed $sense to $sense" \
+  "ethd_loop_row, found $((row + 128)) of $row"
+other "a longer configuration" config.h 's/^  uint32_t plugin_count;/&\n  char more[64];/' "0 bytes, 0, , found 0 of 0"
+device_is "a longer configuration" "ethd_config: a struct of other headers; compile again with this version's; found $((config + 64)), allowed $config to $config" \
+  "driver is missing"
+other "a longer definition" loop.h 's/^  uint32_t rows; .*/&\n  char more[64];/' "0 bytes, 0, , found 0 of 0"
+device_is "a longer definition" "configuration read" "ethd_loop_def, found $((def + 64)) of $def"
+
+# A driver's file whose limits are longer would run over the library's: its ABI differs.
+other "longer limits, once more" guard.h 's/^  double torque;/  double more[30];\n&/' \
+  "0 bytes, -11, ethd_limits, found $((limits + 240)) of $limits"
+$CC -shared -fPIC -w -I"$work/include" -Itests drivers/hello/hello.c -DHELLO=ethd_driver_plugin -o "$work/hello.so" || fail "hello isn't built"
+said=$("$BUILD/bin/ethd-laws" --driver "$work/hello.so" 2>&1)
+case $said in
+*"it was built for version $((abi + 240)) of the drivers' interface, this is version $abi: build it"*) ;;
+*) fail "a driver with longer limits: $said" ;;
+esac
 
 # A program that was linked before the symbols' version said 0.1 doesn't start.
 echo 'ETHD_0 { global: ethd_*; };' >"$work/old.map"

@@ -7,9 +7,27 @@
 #include "loop/loop.h"
 
 #define COOKIE 0x6c6f6f70u
+#define SKEWED 0x6c6f6f80u /* and up: the definition of a program with another size of one of these */
 
-ethd_loop_def ethd_loop_default(void) {
-  return (ethd_loop_def){.cookie = COOKIE,
+static const struct {
+  const char *name;
+  uint32_t size;
+} sized[] = {{"ethd_loop_def", sizeof(ethd_loop_def)},
+             {"ethd_loop_row", sizeof(ethd_loop_row)},
+             {"ethd_loop_stats", sizeof(ethd_loop_stats)}};
+#define SIZED (sizeof sized / sizeof *sized)
+
+void ethd_loop_fill(ethd_loop_def *def, uint32_t def_size, uint32_t row_size, uint32_t stats_size) {
+  const uint32_t there[SIZED] = {def_size, row_size, stats_size};
+  uint32_t i = 0;
+  while (i < SIZED && there[i] == sized[i].size) i++;
+  memset(def, 0, def_size);
+  if (i < SIZED) {
+    def->cookie = SKEWED + i;
+    def->bytes = there[i];
+    return;
+  }
+  *def = (ethd_loop_def){.cookie = COOKIE,
                          .period = 1e-3,
                          .cpu = ETHD_CPU_NONE,
                          .priority = 80,
@@ -34,6 +52,9 @@ static ethd_status check_period(const ethd_loop_def *d, ethd_error *error) {
 }
 
 static ethd_status check(const ethd_loop_def *d, ethd_error *error) {
+  const uint32_t skewed = d->cookie - SKEWED;
+  if (skewed < SIZED)
+    return ethd__loop_refuse(error, ETHD_E_SIZE, sized[skewed].name, d->bytes, sized[skewed].size, sized[skewed].size);
   if (d->cookie != COOKIE) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "ethd_loop_def", NAN, NAN, NAN);
   if (!d->driver) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "driver", NAN, NAN, NAN);
   if (!d->control) return ethd__loop_refuse(error, ETHD_E_ARGUMENT, "control", NAN, NAN, NAN);

@@ -152,15 +152,12 @@ static bool fill(ethd_config *c, const char *text, size_t length, const char *na
   return (!name || c->path) && c->text && c->folder && c->settings && c->laws;
 }
 
-/* Parses a configuration; `r` holds all else. */
-static ethd_status parse(config_reading r, const char *text, size_t length, const char *name, const char *folder,
-                         ethd_config **out) {
+static ethd_status parse(config_reading r, const ethd_config_source *s, ethd_config **out) {
   r.whole = calloc(1, sizeof *r.whole);
-  *out = NULL;
   if (!r.whole) return no_memory(&r);
   r.whole->received = r.received;
-  ethd_status status = fill(&r.whole->config, text, length, name, folder) ? ETHD_OK : no_memory(&r);
-  if (!status) status = ethd_ini_parse(text, length, r.name, "plugins.file", &r.whole->ini, r.message);
+  ethd_status status = fill(&r.whole->config, s->text, s->length, s->path, s->folder) ? ETHD_OK : no_memory(&r);
+  if (!status) status = ethd_ini_parse(s->text, s->length, r.name, "plugins.file", &r.whole->ini, r.message);
   if (!status) status = read_keys(&r);
   if (status)
     ethd_config_free(&r.whole->config);
@@ -169,41 +166,37 @@ static ethd_status parse(config_reading r, const char *text, size_t length, cons
   return status;
 }
 
-ethd_status ethd_config_parse(const char *text, size_t length, const char *name, const char *folder, ethd_config **out,
-                              char message[ETHD_MESSAGE_MAX]) {
-  const config_reading r = {.name = name ? name : "configuration", .message = message};
-  return parse(r, text, length, name, folder, out);
-}
-
-ethd_status ethd_config_parse_received(const char *text, size_t length, const char *name, const char *folder,
-                                       ethd_config **out, char message[ETHD_MESSAGE_MAX]) {
-  const config_reading r = {.received = true, .name = name ? name : "configuration", .message = message};
-  return parse(r, text, length, name, folder, out);
-}
-
-static ethd_status load(const char *path, bool received, ethd_config **out, char *message) {
-  const config_reading r = {.received = received, .name = path, .message = message};
+static ethd_status load(config_reading r, ethd_config_source s, ethd_config **out) {
   char *text;
-  size_t length;
-  *out = NULL;
-  ethd_status status = ethd_text_read(path, ETHD_INI_BYTES_MAX, &text, &length, message);
+  ethd_status status = ethd_text_read(s.path, ETHD_INI_BYTES_MAX, &text, &s.length, r.message);
   if (status) return status;
-  char *folder = ethd__path_folder(path);
-  if (folder)
-    status = parse(r, text, length, path, folder, out);
-  else
-    status = ethd__no_memory(message, path);
+  char *folder = ethd__path_folder(s.path);
+  s.text = text;
+  s.folder = folder;
+  status = folder ? parse(r, &s, out) : no_memory(&r);
   free(folder);
   free(text);
   return status;
 }
 
-ethd_status ethd_config_load(const char *path, ethd_config **out, char message[ETHD_MESSAGE_MAX]) {
-  return path ? load(path, false, out, message) : ethd_config_parse("", 0, NULL, NULL, out, message);
+static ethd_status check_sizes(const ethd_config_source *source, ethd_error *error) {
+  const double own = sizeof(ethd_config);
+  ethd_status status = ethd_sizes_check(&source->sizes, error);
+  if (status || source->config == sizeof(ethd_config)) return status;
+  *error = (ethd_error){ETHD_E_SIZE, 0, "ethd_config", source->config, own, own};
+  return ETHD_E_SIZE;
 }
 
-ethd_status ethd_config_load_received(const char *path, ethd_config **out, char message[ETHD_MESSAGE_MAX]) {
-  return load(path, true, out, message);
+ethd_status ethd_config_make(const ethd_config_source *source, ethd_config **out, char message[ETHD_MESSAGE_MAX]) {
+  ethd_error error;
+  *out = NULL;
+  ethd_status status = check_sizes(source, &error);
+  if (status) return ethd_error_text(NULL, &error, message), status;
+  ethd_config_source s = *source;
+  const config_reading r = {.received = s.received != 0, .name = s.path ? s.path : "configuration", .message = message};
+  if (s.path && !s.text) return load(r, s, out);
+  if (!s.text) s.text = "";
+  return parse(r, &s, out);
 }
 
 void ethd_config_free(ethd_config *config) {

@@ -28,28 +28,56 @@ typedef struct ethd_config {
   uint32_t plugin_count;
 } ethd_config;
 
-/* Reads a configuration; path NULL gives the defaults. On failure *out is NULL and message holds one line:
-   ETHD_E_FILE, ETHD_E_SYNTAX, ETHD_E_UNKNOWN, ETHD_E_DUPLICATE, ETHD_E_MEMORY, the statuses of ethd_scene_parse and
-   ethd_plugin_open, and those of ethd_setup_check. Its plugins are loaded, and their code runs. */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_load(const char *path, ethd_config **out,
+/* What a configuration is read from, for the functions below. */
+typedef struct ethd_config_source {
+  ethd_sizes sizes; /* which the program was compiled with, and sizeof(ethd_config) */
+  uint32_t config;  /* likewise */
+  int32_t received; /* 1: somebody else made it */
+  const char *path; /* of the file; with `text` a name for messages; NULL: none */
+  const char *text; /* NULL: the file's */
+  size_t length;    /* of text, bytes */
+  const char *folder;
+} ethd_config_source;
+
+/* Reads a configuration for the functions below. ETHD_E_SIZE: the program was compiled with headers in which a struct
+   that both write has another size. */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_make(const ethd_config_source *source, ethd_config **out,
                                                       char message[ETHD_MESSAGE_MAX]);
+
+/* Reads a configuration; path NULL gives the defaults. On failure *out is NULL and message holds one line:
+   ETHD_E_FILE, ETHD_E_SYNTAX, ETHD_E_UNKNOWN, ETHD_E_DUPLICATE, ETHD_E_MEMORY, the statuses of ethd_scene_parse,
+   ethd_plugin_open and ethd_config_make, and those of ethd_setup_check. Its plugins are loaded, and their code runs. */
+static inline ETHD_MUST_CHECK ethd_status ethd_config_load(const char *path, ethd_config **out,
+                                                           char message[ETHD_MESSAGE_MAX]) {
+  const ethd_config_source source = {ethd_sizes_here(), (uint32_t)sizeof(ethd_config), 0, path, NULL, 0, NULL};
+  return ethd_config_make(&source, out, message);
+}
 
 /* Reads a file that somebody else made, in a recording or a study's folder, and runs nothing of theirs: a plugin is
    refused (ETHD_E_LOAD), with a hint at the programs' option --plugins. */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_load_received(const char *path, ethd_config **out,
-                                                               char message[ETHD_MESSAGE_MAX]);
+static inline ETHD_MUST_CHECK ethd_status ethd_config_load_received(const char *path, ethd_config **out,
+                                                                    char message[ETHD_MESSAGE_MAX]) {
+  const ethd_config_source source = {ethd_sizes_here(), (uint32_t)sizeof(ethd_config), 1, path, NULL, 0, NULL};
+  return ethd_config_make(&source, out, message);
+}
 
 /* Reads a configuration from text. Messages call it `name`; relative paths start at `folder`. Fails as
    ethd_config_load does (ETHD_E_...). */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_parse(const char *text, size_t length, const char *name,
-                                                       const char *folder, ethd_config **out,
-                                                       char message[ETHD_MESSAGE_MAX]);
+static inline ETHD_MUST_CHECK ethd_status ethd_config_parse(const char *text, size_t length, const char *name,
+                                                            const char *folder, ethd_config **out,
+                                                            char message[ETHD_MESSAGE_MAX]) {
+  const ethd_config_source source = {ethd_sizes_here(), (uint32_t)sizeof(ethd_config), 0, name, text, length, folder};
+  return ethd_config_make(&source, out, message);
+}
 
 /* The same for text that somebody else made: a plugin is refused as ethd_config_load_received refuses it (ETHD_E_LOAD), and
    no code of theirs runs. */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_parse_received(const char *text, size_t length, const char *name,
-                                                                const char *folder, ethd_config **out,
-                                                                char message[ETHD_MESSAGE_MAX]);
+static inline ETHD_MUST_CHECK ethd_status ethd_config_parse_received(const char *text, size_t length, const char *name,
+                                                                     const char *folder, ethd_config **out,
+                                                                     char message[ETHD_MESSAGE_MAX]) {
+  const ethd_config_source source = {ethd_sizes_here(), (uint32_t)sizeof(ethd_config), 1, name, text, length, folder};
+  return ethd_config_make(&source, out, message);
+}
 
 /* Frees the configuration with its scene; destroy the controllers made of it first. NULL is allowed. [main] */
 ETHD_API void ethd_config_free(ethd_config *config);

@@ -32,7 +32,10 @@
 
 ETHD_BEGIN_DECLS
 
-#define ETHD_DRIVER_ABI 1u         /* never 0, which is a table whose abi nobody has set */
+/* The interface's version, 2, and the bytes of what a driver fills or returns, so that none of these grows unnoticed;
+   never 0, which is a table whose abi nobody has set. */
+#define ETHD_DRIVER_ABI \
+  ((uint32_t)(20000 + sizeof(ethd_sense) + sizeof(ethd_command) + sizeof(ethd_limits) + sizeof(ethd_dynamics)))
 #define ETHD_DRIVERS_MAX 4         /* behind one device */
 #define ETHD_DRIVERS_TEXT_MAX 1024 /* bytes of their ids and files in a row, the closing 0 included */
 #define ETHD_DRIVER_FILE "file:"   /* before a path, among drivers' ids */

@@ -87,6 +87,7 @@ ETHD_API const char *ethd_shortfall_mend(int32_t bit);
 /* Made by ethd_loop_default, then changed field by field. */
 typedef struct ethd_loop_def {
   uint32_t cookie;           /* set by ethd_loop_default */
+  uint32_t bytes;            /* likewise: the size that isn't this library's; 0: there is none */
   const ethd_driver *driver; /* of ethd_device_open; or one that has start, read, write and safe, and service if it
                             has units */
   void *device;              /* open; it is started between create and start */
@@ -107,10 +108,6 @@ typedef struct ethd_loop_def {
                             instant, a driver may move it on */
   const int64_t *suspended;  /* ns for which a virtual clock has stood still so far; NULL: it never stands still */
 } ethd_loop_def;
-
-/* Returns 1 ms, no cpu, priority 80, early_wake 0, dma_latency -1, no gap, no heartbeat, soft_start 0.1 s,
-   256 KiB, 4096 rows. [any] */
-ETHD_API ethd_loop_def ethd_loop_default(void);
 
 typedef struct ethd_loop ethd_loop;
 
@@ -141,6 +138,18 @@ typedef struct ethd_loop_stats {
   ethd_histogram wake;               /* from the instant that was asked for to the first instruction */
   ethd_histogram tick;               /* read, step, write */
 } ethd_loop_stats;
+
+/* Fills a definition for ethd_loop_default, with the sizes, bytes, of ethd_loop_def, _row and _stats there. [any] */
+ETHD_API void ethd_loop_fill(ethd_loop_def *def, uint32_t def_size, uint32_t row_size, uint32_t stats_size);
+
+/* Returns 1 ms, no cpu, priority 80, early_wake 0, dma_latency -1, no gap, no heartbeat, soft_start 0.1 s,
+   256 KiB, 4096 rows. Headers in which one of these structs has another size than in this library get a definition
+   that ethd_loop_create refuses. [any] */
+static inline ethd_loop_def ethd_loop_default(void) {
+  ethd_loop_def def;
+  ethd_loop_fill(&def, (uint32_t)sizeof def, (uint32_t)sizeof(ethd_loop_row), (uint32_t)sizeof(ethd_loop_stats));
+  return def;
+}
 
 /* Creates a loop, which doesn't run yet, locks the process's memory and makes the stack of the loop's thread; on a
    virtual clock neither. ETHD_E_ARGUMENT, ETHD_E_ABI (the driver's table), ETHD_E_RANGE with the field's name or

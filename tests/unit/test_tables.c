@@ -100,10 +100,14 @@ START_TEST(test_drivers) {
   REFUSED(ETHD_OK, "", d.keys = words);
   REFUSED(ETHD_OK, "", d.units = NULL, d.service = NULL);
   REFUSED(ETHD_OK, "", d.write = NULL, d.safe = NULL);
-  REFUSED(ETHD_E_ABI, "its table doesn't say its abi: .abi = ETHD_DRIVER_ABI is needed, which is 1", d.abi = 0);
-  REFUSED(ETHD_E_ABI,
-          "it was built for version 9 of the drivers' interface, this is version 1: build it with these headers",
-          d.abi = 9);
+  char said[ETHD_MESSAGE_MAX];
+  snprintf(said, sizeof said, "its table doesn't say its abi: .abi = ETHD_DRIVER_ABI is needed, which is %u",
+           ETHD_DRIVER_ABI);
+  REFUSED(ETHD_E_ABI, said, d.abi = 0);
+  snprintf(said, sizeof said,
+           "it was built for version 9 of the drivers' interface, this is version %u: build it with these headers",
+           ETHD_DRIVER_ABI);
+  REFUSED(ETHD_E_ABI, said, d.abi = 9);
   REFUSED(ETHD_E_ARGUMENT, "its id isn't 1 to 31 of a-z 0-9 - _", d.id = NULL);
   REFUSED(ETHD_E_ARGUMENT, "its id isn't 1 to 31 of a-z 0-9 - _", d.id = "");
   REFUSED(ETHD_E_ARGUMENT, "its id isn't 1 to 31 of a-z 0-9 - _", d.id = "Sound");
