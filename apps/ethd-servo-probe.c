@@ -8,6 +8,7 @@
 #include "cli/cli.h"
 #include "clock.h"
 #include "ethd/loop.h"
+#include "probe/order.h"
 #include "servo/link.h"
 #include "servo/wire.h"
 #include "servo/words.h"
@@ -116,6 +117,16 @@ static void reach(void) {
   if (drive.state < ETHD__SERVO_IDENTIFIED) ethd__fail(ETHD_EXIT_FAILED, "%s", drive.message);
 }
 
+static ethd__position_seen seen[2];
+
+/* Notes what was just read of the joints. */
+static void see(void) {
+  for (int i = 0; i < 2; i++) {
+    int32_t r = map.roles[ETHD__SERVO_POSITION1 + i];
+    if (r >= 0) ethd__position_see(&map.registers[r], ethd__servo_plan_words(&drive.plan, &map, r), &seen[i]);
+  }
+}
+
 static double measure(void) {
   const double zero[2] = {0, 0};
   int64_t begin = ethd__clock_now(), at = begin, end = begin + (int64_t)(1e9 * arg.duration);
@@ -123,6 +134,7 @@ static double measure(void) {
     ethd_status status = ethd__servo_link_turn(&drive, at, zero);
     int64_t after = ethd__clock_now();
     if (!status) ethd_histogram_add(&trip, after - at);
+    if (!status) see();
     at = after;
   }
   ethd__progress(1, 1, "exchanges");
@@ -171,35 +183,27 @@ static void try_watchdog(void) {
 
 /* ---- signs ---- */
 
-/* rad of the joint since the count `from`, over the counter's end too. */
-static double turned(const ethd__servo_register *r, double from, double to) {
-  double span = ldexp(1, (int)r->bits), counts = to - from;
-  if (r->counts > 0) counts -= span * rint(counts / span);
-  return ethd__servo_joint(r, counts) - ethd__servo_joint(r, 0);
+/* How far the joint has moved, in the order that is plausible. */
+static double moved(int i) {
+  const ethd__servo_register *r = &map.registers[map.roles[ETHD__SERVO_POSITION1 + i]];
+  int32_t order = ethd__position_order(r, &seen[i]);
+  return seen[i].moved[order != ETHD__SERVO_NO_ORDER ? order : r->order == ETHD__SERVO_LOW_FIRST];
 }
 
 static void watch_hands(void) {
   const double zero[2] = {0, 0};
-  double last[2] = {0, 0}, sum[2] = {0, 0};
+  for (int i = 0; i < 2; i++) seen[i].moved[0] = seen[i].moved[1] = 0;
   printf("%-10s turn joint 1, then joint 2, so that their angles rise; %g s\n", "by hand", arg.by_hand);
   fflush(stdout);
   int64_t begin = ethd__clock_now(), end = begin + (int64_t)(1e9 * arg.by_hand), now = begin;
-  for (bool first = true; now < end && !ethd__stop; now = ethd__clock_now()) {
-    if (ethd__servo_link_turn(&drive, now, zero)) continue;
-    for (int i = 0; i < 2; i++) {
-      int32_t r = map.roles[ETHD__SERVO_POSITION1 + i];
-      if (r < 0) continue;
-      if (!first) sum[i] += turned(&map.registers[r], last[i], drive.raw[r]);
-      last[i] = drive.raw[r];
-    }
-    first = false;
-  }
+  for (; now < end && !ethd__stop; now = ethd__clock_now())
+    if (!ethd__servo_link_turn(&drive, now, zero)) see();
   for (int i = 0; i < 2; i++)
     if (map.roles[ETHD__SERVO_POSITION1 + i] >= 0)
-      printf("%-10s position%d went %+.4f rad: its sign is %s\n", "", i + 1, sum[i],
-             sum[i] == 0  ? "not known, it didn't move"
-             : sum[i] > 0 ? "right if its angle rose"
-                          : "to be turned in the map if its angle rose");
+      printf("%-10s position%d went %+.4f rad: its sign is %s\n", "", i + 1, moved(i),
+             moved(i) == 0  ? "not known, it didn't move"
+             : moved(i) > 0 ? "right if its angle rose"
+                            : "to be turned in the map if its angle rose");
 }
 
 /* ---- the report ---- */
@@ -271,6 +275,9 @@ int main(int argc, char **argv) {
   print_wire();
   print_divisor();
   print_values();
+  for (int i = 0; i < 2; i++)
+    if (map.roles[ETHD__SERVO_POSITION1 + i] >= 0)
+      ethd__position_report(&map.registers[map.roles[ETHD__SERVO_POSITION1 + i]], &seen[i]);
   uint32_t unconfirmed = ethd__servo_unconfirmed(&map);
   if (unconfirmed)
     printf("%-10s %u of %u register%s: no document confirms %s\n", "unconfirmed", unconfirmed, map.count,

@@ -24,7 +24,7 @@ wire=$(awk 'BEGIN { bytes = (9 + 4 + 8) + (9 + 2 + 8) + (8 + 5 + 2) + (8 + 5 + 4
   printf "%d bytes, %.3g ms", bytes, 1e3 * (bytes * 10 + 5 * 3.5 * 11) / 500000 }')
 configure 'driver = servo' 'map = svd48v.map' 'port = /nowhere/tty' 'q1 = 0.5' 'q2 = 1'
 says "^drivers  *servo: read, not touched" "an exchange: 5 messages, $wire of wire" 'divisor 5 gives it 5 ms: it holds, 4 would' \
-  '8 of 20 registers are unconfirmed' 'guardian process writes zero torque within 20 ms' 'limits  *torque 1.167 Nm, speed 1.2 m/s' \
+  'guardian process writes zero torque within 20 ms' 'limits  *torque 1.167 Nm, speed 1.2 m/s' \
   'delay 5 ms; encoder count 32.72 um'
 printf '[limits]\ntorque = 0.04\n' >>"$folder/c.ini"
 says 'one count of torque1 is 0.0467 Nm at the joint, over the limit of 0.04 Nm: the joint never gets a torque'

@@ -25,6 +25,28 @@ static bool joins(const ethd__servo_map *map, const ethd__servo_block *b, const 
   return r->address <= b->address + b->count + gap && r->address + ethd__servo_words(r) - b->address <= most;
 }
 
+/* True when exchanges come in which both questions are due. */
+static bool meet(const ethd__servo_block *a, uint32_t every, uint32_t phase) {
+  uint32_t common = every;
+  for (uint32_t rest = a->every; rest;) {
+    uint32_t next_rest = common % rest;
+    common = rest;
+    rest = next_rest;
+  }
+  return a->phase % common == phase % common;
+}
+
+/* The phase in which a slow question meets the fewest of those before it. */
+static uint32_t spread(const ethd__servo_block *blocks, uint32_t n, uint32_t every) {
+  uint32_t best = 0, least = UINT32_MAX;
+  for (uint32_t phase = 0; phase < every; phase++) {
+    uint32_t met = 0;
+    for (uint32_t i = 0; i < n; i++) met += meet(&blocks[i], every, phase);
+    if (met < least) best = phase, least = met;
+  }
+  return best;
+}
+
 /* Appends blocks to the first n of them and returns their new number. */
 static uint32_t arrange(const ethd__servo_map *map, int32_t direction, uint32_t every, uint32_t n,
                         ethd__servo_plan *out) {
@@ -37,7 +59,8 @@ static uint32_t arrange(const ethd__servo_map *map, int32_t direction, uint32_t 
     const ethd__servo_register *r = &map->registers[i];
     after = ((int64_t)r->space << 32 | r->address) << 8 | i;
     if (n == first || !joins(map, &blocks[n - 1], r, gap, most)) {
-      blocks[n] = (ethd__servo_block){.space = r->space, .address = r->address, .every = every, .phase = n % every};
+      blocks[n] = (ethd__servo_block){.space = r->space, .address = r->address, .every = every};
+      blocks[n].phase = spread(blocks, n, every);
       n++;
     }
     ethd__servo_block *b = &blocks[n - 1];

@@ -1,12 +1,13 @@
-"""A UUMotor SVD48V as its manual (V2.0) has it, by pymodbus, independent of ours and of libmodbus: its registers, its
+"""A UUMotor SVD48V as its manual (V2.01) has it, by pymodbus, independent of ours and of libmodbus: its registers, its
 checksum with the high byte first, its refusals, and two joints that its currents move.
 
-svd48v_peer.py (--serial DEVICE | --tcp PORT) [--crc low-first] [--unit N] [--lock-step S]
+svd48v_peer.py (--serial DEVICE | --tcp PORT) [--crc low-first] [--order high-first] [--unit N] [--lock-step S]
 --lock-step: its time goes on by S with each set-point, and stands otherwise.
 Says "ready NAME CONTROL": CONTROL is a UDP port of 127.0.0.1 that takes one command a datagram and answers with one line:
   state          instant, amperes of both motors, running of both, angles of both, instant of the last set-point that
                  wasn't zero, instant since when no torque acts (0: it acts)                          [s, A, -, rad, s]
   alarm          the drive stops with an alarm, until control command 2       volts V      its supply
+  warn N         bit 17 of motor N's error word, though it goes on, until control command 2
   cycle          its power goes and comes back: counters from 0, as delivered  turn Q1 Q2  joints are put there, rad
   frozen N       encoder of joint N stands still                              reversed N  it counts the other way round
   dead           motors don't follow their set-points                         well        all of this ends
@@ -39,10 +40,10 @@ INERTIA, VISCOUS, FRICTION = 0.01, 0.02, 0.05
 STOPS = (-1.0, 1.0)                 # rad, hard
 STEP = 1e-4                         # s
 
-# The tables of the manual, p. 15 and 25; those of the second motor by its pattern.
+# The tables of the manual, p. 15 and 23 to 26.
 WRITABLE = {0x3008, 0x5100, 0x5101, 0x5300, 0x5301, 0x5304, 0x5305, 0x5308, 0x5309}
 READABLE = WRITABLE | {0x3001, 0x5400, 0x5401, 0x5404, 0x5405, 0x5408, 0x540C, 0x540D, 0x5410, 0x5411, 0x5414, 0x5415,
-                       0x5418, 0x5419, 0x541A, 0x541B}
+                       *range(0x5418, 0x541C), *range(0x5420, 0x5424)}
 
 
 def signed(word):
@@ -50,8 +51,9 @@ def signed(word):
 
 
 class Drive(ModbusBaseSlaveContext):
-    def __init__(self, lock_step):
+    def __init__(self, lock_step, low_first):
         self.lock_step, self.stepped = lock_step, 0.0
+        self.low_first, self.errors = low_first, [0, 0]
         self.asked_until = 0.0
         self.when_asked = None
         self.due, self.broken_at, self.held_by_hand, self.line = [], -1.0, False, None
@@ -65,7 +67,7 @@ class Drive(ModbusBaseSlaveContext):
     def power_on(self):
         self.words = dict.fromkeys(WRITABLE, 0)
         self.origin = list(self.q)
-        self.running, self.alarm = [0, 0], False
+        self.running, self.alarm, self.errors = [0, 0], False, [0, 0]
         self.held = [None, None]
 
     def now(self):
@@ -124,6 +126,10 @@ class Drive(ModbusBaseSlaveContext):
         table = READABLE if fc_as_hex == 3 else WRITABLE
         return fc_as_hex in (3, 6, 16) and all(address + k in table for k in range(count))
 
+    def half(self, value, a):
+        """Low order first, p. 11."""
+        return value >> (16 * (a % 2 == self.low_first)) & 0xFFFF
+
     def word(self, a):
         if a in WRITABLE:
             return self.words[a]
@@ -133,8 +139,10 @@ class Drive(ModbusBaseSlaveContext):
             return self.volts
         if a in (0x5414, 0x5415):
             return self.current(a - 0x5414) & 0xFFFF
-        if 0x5418 <= a <= 0x541B:  # low order first, p. 11
-            return self.count((a - 0x5418) // 2) >> (16 * (a % 2)) & 0xFFFF
+        if 0x5418 <= a <= 0x541B:
+            return self.half(self.count((a - 0x5418) // 2), a)
+        if 0x5420 <= a <= 0x5423:
+            return self.half(self.errors[(a - 0x5420) // 2], a)
         return 1 if a == 0x3001 else 250
 
     def getValues(self, fc_as_hex, address, count=1):
@@ -155,7 +163,7 @@ class Drive(ModbusBaseSlaveContext):
                 self.words[a] = value
             if a in (0x5300, 0x5301):
                 if value == 2:
-                    self.alarm = False
+                    self.alarm, self.errors[a - 0x5300] = False, 0
                 self.running[a - 0x5300] = int(value == 1 and not self.alarm)
         self.mark(before)
         if self.when_asked and self.asks():
@@ -190,7 +198,9 @@ class Drive(ModbusBaseSlaveContext):
         elif word == "end":
             os.kill(int(rest[0]), signal.SIGKILL)
         elif word == "alarm":
-            self.alarm, self.running = True, [0, 0]
+            self.alarm, self.running, self.errors = True, [0, 0], [1, 1]
+        elif word == "warn":
+            self.errors[int(rest[0]) - 1] = 1 << 17
         elif word == "volts":
             self.volts = round(10 * float(rest[0]))
         elif word == "cycle":
@@ -278,13 +288,14 @@ async def main():
     parser.add_argument("--serial")
     parser.add_argument("--tcp", type=int)
     parser.add_argument("--crc", default="high-first")
+    parser.add_argument("--order", default="low-first")
     parser.add_argument("--unit", type=int, default=1)
     parser.add_argument("--lock-step", type=float, default=0.0)
     arg = parser.parse_args()
     if arg.crc == "high-first":  # every frame of the manual: EE 03 54 10 00 01 60 83
         standard = FramerRTU.compute_CRC
         FramerRTU.compute_CRC = classmethod(lambda cls, data: (lambda c: c >> 8 | (c & 0xFF) << 8)(standard(data)))
-    drive, line = Drive(arg.lock_step), Line()
+    drive, line = Drive(arg.lock_step, arg.order == "low-first"), Line()
     drive.line = line
     context = ModbusServerContext(slaves={arg.unit: drive}, single=False)
     options = {"ignore_missing_slaves": True, "trace_packet": line.pass_by}

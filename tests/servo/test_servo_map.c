@@ -69,7 +69,8 @@ START_TEST(test_plant) {
 END_TEST
 
 /* The SVD48V at 500 kBd, by hand: a byte has 10 bits, a silence 3.5 bytes of 11. Writing two words is 13 + 8 bytes,
-   reading n of them 8 + 5 + 2 n; currents and running bits come every second time, the voltage every 50th. */
+   reading n of them 8 + 5 + 2 n; currents come every second time, running bits and error words in turn between them, the
+   voltage every 50th. */
 START_TEST(test_wire) {
   const double byte = 10 / 500e3, silence = 3.5 * 11 / 500e3;
   read_map("apps/config/svd48v.map");
@@ -143,23 +144,26 @@ START_TEST(test_roboteq) {
 }
 END_TEST
 
-/* The addresses that the SVD48V's manual (V2.0) has, by its page; the others say that nobody confirms them. */
+/* The SVD48V's addresses as its manual (V2.01) has them, p. 15 and 23 to 26. */
 START_TEST(test_svd48v) {
   static const struct {
     const char *name;
     uint32_t address;
-  } known[] = {{"input", 0x3008},    {"mode1", 0x5100},       {"seen_mode1", 0x5100}, {"control2", 0x5301},
-               {"torque1", 0x5308},  {"torque2", 0x5309},     {"seen1", 0x5308},      {"seen2", 0x5309},
-               {"running1", 0x5400}, {"bus_voltage", 0x5408}, {"measured1", 0x5414},  {"position1", 0x5418}};
-  uint32_t n = sizeof known / sizeof *known;
+  } known[] = {{"input", 0x3008},        {"mode1", 0x5100},     {"seen_mode1", 0x5100}, {"mode2", 0x5101},
+               {"seen_mode2", 0x5101},   {"control1", 0x5300},  {"control2", 0x5301},   {"counter", 0x5304},
+               {"seen_counter", 0x5304}, {"torque1", 0x5308},   {"torque2", 0x5309},    {"seen1", 0x5308},
+               {"seen2", 0x5309},        {"running1", 0x5400},  {"running2", 0x5401},   {"bus_voltage", 0x5408},
+               {"measured1", 0x5414},    {"measured2", 0x5415}, {"position1", 0x5418},  {"position2", 0x541A},
+               {"error1", 0x5420},       {"error2", 0x5422}};
   read_map("apps/config/svd48v.map");
   ck_assert_msg(try(text) == ETHD_OK, "%s", message);
-  for (uint32_t i = 0; i < n; i++) {
-    ck_assert_uint_eq(named(known[i].name)->address, known[i].address);
-    ck_assert_msg(!named(known[i].name)->unconfirmed, "%s", known[i].name);
+  ck_assert_uint_eq(map.count, sizeof known / sizeof *known); /* no register without a source */
+  for (uint32_t i = 0; i < map.count; i++) ck_assert_uint_eq(named(known[i].name)->address, known[i].address);
+  ck_assert_uint_eq(ethd__servo_unconfirmed(&map), 0);
+  for (int i = 1; i <= 2; i++) { /* every bit is an alarm */
+    const ethd__servo_register *error = named(i == 1 ? "error1" : "error2");
+    ck_assert(error->type == ETHD__SERVO_U32 && error->fault_mask == UINT32_MAX && error->healthy == 0);
   }
-  ck_assert_uint_eq(ethd__servo_unconfirmed(&map), map.count - n);
-  ck_assert(named("position2")->unconfirmed);
   ck_assert_uint_eq(map.unit, 1);
   ck_assert_uint_eq(map.gap, 0);
   ck_assert_int_eq(named("position1")->order, ETHD__SERVO_LOW_FIRST);
