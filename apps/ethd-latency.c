@@ -139,7 +139,7 @@ int main(int argc, char **argv) {
   arg.session.loop = ethd_loop_default();
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
-  ethd__catch_end();
+  ethd__hold_device();
   measure(&stats, &shortfalls, &period);
   bool peer = !arg.alone && !ethd__stop && run_cyclictest(period, &cyclictest);
   printf("%-10s %llu of %g s, %llu overrun%s, %llu period%s missed\n", "ticks", (unsigned long long)stats.ticks, period,

@@ -13,7 +13,8 @@
 
 static const char doc[] =
     "Runs a device under the controller, one tick a period, until the duration is over, or until the command stop, "
-    "Ctrl-C, SIGTERM or SIGHUP. Then it damps the ring until that is still, and disables the device.\v"
+    "Ctrl-C, SIGTERM or SIGHUP. Then it damps the ring until that is still, and disables the device. Ctrl-Z doesn't "
+    "stop it, since a stopped program can't control the ring.\v"
     "Commands come on stdin, one a line. Each is answered by a line that begins with ok or error:\n"
     "  transition LAW          swap to another transition law, without a bump\n"
     "  set SECTION.KEY VALUE   set a number, as in the configuration\n"
@@ -23,7 +24,8 @@ static const char doc[] =
     "  home [Q1 Q2]            say where the joints are, or find them by moving\n"
     "  wait S                  let the next command wait for S seconds of the loop\n"
     "  stop                    end the run\n"
-    "The end of the input doesn't end the run. With --virtual time is only counted: it passes in wait and, "
+    "The end of the input doesn't end the run; in the background of a terminal no command is read. With --virtual time "
+    "is only counted: it passes in wait and, "
     "after the input's end, up to the duration. The device is stepped as fast as the machine can, and equal input "
     "gives equal bytes.\n\n"
     "Examples:\n"
@@ -151,7 +153,7 @@ int main(int argc, char **argv) {
   arg.session.loop = ethd_loop_default();
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
-  ethd__catch_end();
+  (arg.session.is_virtual ? ethd__catch_end : ethd__hold_device)();
   ethd_status status = ethd__session_open(&arg.session, &session, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   ethd__remarks_print(stderr, &session);

@@ -83,13 +83,13 @@ awk '$1 == "mass_x" && ($3 < 0.1161 || $3 > 0.1185) || $1 == "mass_y" && ($3 < 0
   $1 == "friction" && ($3 < 0.39 || $3 > 0.406) || $1 == "viscous" && ($3 < 1.2 || $3 > 1.33) ||
   $1 == "delay" && ($3 < 0.051e-3 || $3 > 0.091e-3) { print "FAILED troubled.plant: " $0; bad = 1 } END { exit bad }' troubled.plant || failed=1
 
-# In real time, ended by Ctrl-C: the device is stopped, and what was recorded repeats to the bit; the dry run came first.
+# In real time, ended by a signal: the device is stopped, and what was recorded repeats to the bit; the dry run came first.
 "$bin/ethd-identify" --excite --duration 60 --record live >said 2>err &
 live=$!
 for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do [ -s live/tick.npy ] && break; sleep 0.5; done
 sleep 1
-kill -INT $live
-wait $live || fail "excite until Ctrl-C: exit $?: $(cat err)"
+kill -TERM $live
+wait $live || fail "excite until a signal: exit $?: $(cat err)"
 sed -n 1p said | grep -q '^torques up to' && sed -n 3p said | grep -q '^dry run .*simulated' || fail "what will be done comes first: $(cat said)"
 grep -q ',end,closed' live/events.csv && "$bin/ethd-replay" --verify live >/dev/null || fail "the recording isn't whole"
 

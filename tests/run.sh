@@ -133,6 +133,8 @@ out = p.communicate()[0]
 assert p.returncode == 0 and "1 x the application is gone or told to end" in out, (p.returncode, out)' $signal "$run" --record "$folder/$signal" || fail "SIG$signal"
   replays "$folder/$signal"
 done
+mkdir "$folder/hosts"
+python3 tests/run_hosts.py "$BUILD/bin" "$folder/hosts" || fail "shells, terminals, scripts"
 "$run" --record "$folder/killed" </dev/null >/dev/null 2>&1 &
 killed=$!
 size() { if [ -f "$1" ]; then wc -c <"$1"; else echo 0; fi; }

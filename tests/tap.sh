@@ -169,14 +169,14 @@ refuse 'none.plant: No such file' --config "$folder/far.ini"
 printf '[scene]\nfile = far.scene\n' >"$folder/far.ini"
 refuse 'no wall' --config "$folder/far.ini"
 
-# Ctrl-C: what was done is kept.
+# A signal: what was done is kept.
 "$tap" --taps 100000 --csv "$folder/cut.csv" --record "$folder/cut" >"$folder/out" 2>"$folder/err" &
 pid=$!
 sleep 1
-kill -INT $pid
+kill -TERM $pid
 code=0
 wait $pid || code=$?
-[ $code = 1 ] || fail "after Ctrl-C: exit $code, not 1"
+[ $code = 1 ] || fail "after a signal: exit $code, not 1"
 grep -q 'what was done is kept' "$folder/err" || fail "it doesn't say that it was stopped"
 [ "$(tail -n +2 "$folder/cut.csv" | awk -F, 'NF != 18' | wc -l)" = 0 ] || fail "a cut row"
 [ "$(wc -l <"$folder/cut.csv")" -gt 1 ] || fail "nothing was kept"

@@ -41,9 +41,15 @@ void ethd__begin(void) {
 
 int ethd__end(int code) {
   ethd__leave();
+  uint64_t dropped = 0;
   bool failed = fflush(stdout) != 0 || ferror(stdout);
-  if (!failed) return code;
-  fprintf(stderr, "%s: standard output: %s\n", program_invocation_short_name, strerror(errno ? errno : EIO));
+  int reason = failed ? errno ? errno : EIO : ethd__stdout_end(&dropped);
+  if (!reason && !dropped) return code;
+  if (reason)
+    fprintf(stderr, "%s: standard output: %s\n", program_invocation_short_name, strerror(reason));
+  else
+    fprintf(stderr, "%s: standard output: nobody read it in time, and %" PRIu64 " bytes are lost\n",
+            program_invocation_short_name, dropped);
   return code ? code : ETHD_EXIT_FAILED;
 }
 
@@ -226,47 +232,16 @@ void ethd__progress(uint64_t done, uint64_t total, const char *what) {
   if (!isatty(STDERR_FILENO)) return;
   double t = 1e-9 * (double)ethd__clock_now();
   if (done >= total) {
-    if (shown > 0) fputs("\r\033[K", stderr);
+    if (shown > 0) ethd__terminal_erase_line();
     shown = 0;
   } else if (t - shown >= 0.1) {
     double share = (double)done / (double)total;
     int filled = (int)(share * 40);
     fflush(stderr);
-    fputs("\r\033[K", stderr);
+    ethd__terminal_erase_line();
     fprintf(stderr, "%s [%.*s%*s] %3.0f %%", what, filled, "########################################", 40 - filled, "",
             100 * share);
     shown = t;
   }
   fflush(stderr);
-}
-
-/* ---- Ctrl-C ---- */
-
-volatile sig_atomic_t ethd__stop;
-
-static void stop(int number) {
-  if (ethd__stop) _exit(128 + number);
-  ethd__stop = 1;
-}
-
-static void ask(int number) {
-  (void)number;
-  ethd__stop = 1;
-}
-
-static void catch (void (*handler)(int), int number) {
-  struct sigaction action = {.sa_handler = handler, .sa_flags = SA_RESTART};
-  sigemptyset(&action.sa_mask);
-  sigaction(number, &action, NULL);
-}
-
-void ethd__catch_interrupt(void) {
-  catch (stop, SIGINT);
-  catch (stop, SIGTERM);
-}
-
-void ethd__catch_end(void) {
-  static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2};
-  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) catch (ask, numbers[i]);
-  signal(SIGPIPE, SIG_IGN);
 }

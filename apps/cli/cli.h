@@ -71,12 +71,20 @@ char *ethd__motion_folder(void);
 /* Draws a bar on stderr if that is a terminal, at most ten times a second; done = total removes it. */
 void ethd__progress(uint64_t done, uint64_t total, const char *what);
 
-/* Makes Ctrl-C and SIGTERM set ethd__stop from here on; a second one ends the program at once. */
+/* Makes Ctrl-C and SIGTERM set ethd__stop from here on; a second one ends the program at once. Here and below, a signal
+   that is ignored when the program starts stays ignored. */
 void ethd__catch_interrupt(void);
 
 /* For a program that moves a device: makes these, SIGHUP, SIGQUIT, SIGUSR1 and SIGUSR2 set it, however often they come,
    so that nothing cuts a controlled stop short. A reader of our output that goes away ends nothing. */
 void ethd__catch_end(void);
+
+/* The same for a program that moves a device in real time, which neither a terminal nor a reader of its output may hold
+   up: Ctrl-Z doesn't stop it, nor does the terminal when it runs in the background, and no print waits (terminal.h). */
+void ethd__hold_device(void);
+
+/* Says that Ctrl-Z is ignored, if somebody has pressed it. */
+void ethd__tell_refusal(void);
 extern volatile sig_atomic_t ethd__stop;
 
 /* Makes subnormals count as 0 on this thread; ethd__begin does so for the main thread. */

@@ -2,8 +2,11 @@
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+#include "cli/writer.h"
 
 /* Replaces control characters but for tabs and line ends, since a terminal obeys sequences that names and words of
    files may hold. In UTF-8 the characters from 0x80 to 0x9f are two bytes long. */
@@ -18,37 +21,92 @@ static void make_plain(char *text, size_t length, char *last) {
   }
 }
 
-typedef struct terminal {
+typedef struct stream {
   int fd;
+  bool is_terminal;
   char last;
-} terminal;
+  ethd__writer *writer; /* NULL: the caller writes, and waits */
+} stream;
 
-static ssize_t put_plain(void *cookie, const char *text, size_t length) {
-  terminal *t = cookie;
-  char plain[1024];
-  size_t n = length < sizeof plain ? length : sizeof plain, done = 0;
-  memcpy(plain, text, n);
-  make_plain(plain, n, &t->last);
-  while (done < n) {
-    ssize_t wrote = write(t->fd, plain + done, n - done);
+static stream out = {.fd = STDOUT_FILENO}, err = {.fd = STDERR_FILENO};
+
+static bool put(stream *s, const char *text, size_t length) {
+  if (s->writer) return ethd__writer_put(s->writer, text, length), true;
+  while (length) {
+    ssize_t wrote = write(s->fd, text, length);
     if (wrote < 0 && errno == EINTR) continue;
-    if (wrote < 0) return 0;
-    done += (size_t)wrote;
+    if (wrote < 0) return false;
+    text += wrote;
+    length -= (size_t)wrote;
   }
-  return (ssize_t)n;
+  return true;
 }
 
-/* Returns false without memory. */
-static bool make_stream_plain(terminal *t, FILE **stream, int mode) {
-  if (!isatty(t->fd)) return true;
-  FILE *plain = fopencookie(t, "w", (cookie_io_functions_t){.write = put_plain});
-  if (!plain) return false;
-  setvbuf(plain, NULL, mode, BUFSIZ);
-  *stream = plain;
+static ssize_t put_plain(void *cookie, const char *text, size_t length) {
+  stream *s = cookie;
+  char plain[1024];
+  if (!s->is_terminal) return put(s, text, length) ? (ssize_t)length : 0;
+  size_t n = length < sizeof plain ? length : sizeof plain;
+  memcpy(plain, text, n);
+  make_plain(plain, n, &s->last);
+  return put(s, plain, n) ? (ssize_t)n : 0;
+}
+
+/* Puts a stream of ours in the place of *file. Returns false without memory. */
+static bool replace(stream *s, FILE **file, int mode) {
+  FILE *ours = fopencookie(s, "w", (cookie_io_functions_t){.write = put_plain});
+  if (!ours) return false;
+  setvbuf(ours, NULL, mode, BUFSIZ);
+  *file = ours;
   return true;
 }
 
 bool ethd__terminals_plain(void) {
-  static terminal out = {.fd = STDOUT_FILENO}, err = {.fd = STDERR_FILENO};
-  return make_stream_plain(&out, &stdout, _IOLBF) && make_stream_plain(&err, &stderr, _IONBF);
+  out.is_terminal = isatty(out.fd);
+  err.is_terminal = isatty(err.fd);
+  return (!out.is_terminal || replace(&out, &stdout, _IOLBF)) && (!err.is_terminal || replace(&err, &stderr, _IONBF));
+}
+
+/* ---- by threads ---- */
+
+static void end(stream *s) {
+  if (s->writer) ethd__writer_end(s->writer);
+}
+
+/* However the program ends, what it said is written before. */
+static void at_exit(void) {
+  fflush(stdout);
+  end(&out);
+  end(&err);
+}
+
+bool ethd__streams_detach(void) {
+  static ethd__writer writers[2];
+  fflush(stdout);
+  if (!out.is_terminal && !replace(&out, &stdout, _IOFBF)) return false;
+  if (!err.is_terminal && !replace(&err, &stderr, _IONBF)) return false;
+  if (atexit(at_exit) || !ethd__writer_start(&writers[0], out.fd) || !ethd__writer_start(&writers[1], err.fd))
+    return false;
+  out.writer = &writers[0];
+  err.writer = &writers[1];
+  return true;
+}
+
+int ethd__stdout_end(uint64_t *dropped) {
+  end(&out);
+  *dropped = out.writer ? out.writer->dropped : 0;
+  return out.writer ? out.writer->failure : 0;
+}
+
+/* ---- terminals ---- */
+
+void ethd__terminal_erase_line(void) {
+  flockfile(stderr);
+  (void)!put(&err, "\r\033[K", 4);
+  funlockfile(stderr);
+}
+
+bool ethd__stdin_is_ours(void) {
+  pid_t group = tcgetpgrp(STDIN_FILENO);
+  return group <= 0 || group == getpgrp(); /* 0 or less: nobody's terminal, or none of ours */
 }

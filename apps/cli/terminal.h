@@ -1,12 +1,28 @@
-/* Keeps control characters from terminals, which obey sequences of them. Names of files, and words of files and
-   plugins, may hold some. */
+/* The streams of a program. Control characters are kept from terminals, which obey sequences of them: names of files,
+   and words of files and plugins, may hold some. And nobody who doesn't read holds up a program that moves a device. */
 #ifndef ETHD__APPS_CLI_TERMINAL_H
 #define ETHD__APPS_CLI_TERMINAL_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 /* From here on a terminal at stdout or stderr gets ? for each of them except tabs and line ends. Returns false without
    memory. [main] */
 bool ethd__terminals_plain(void);
+
+/* From here on threads write what goes to stdout and stderr; no print waits any more. Returns false without memory.
+   [main] */
+bool ethd__streams_detach(void);
+
+/* Waits until all of stdout is written, as long as somebody reads. Returns 0, or errno of a write that failed; *dropped:
+   bytes that nobody read in time. Flushes nothing. [main] */
+int ethd__stdout_end(uint64_t *dropped);
+
+/* Takes away the line of stderr's terminal in which the cursor is. [any] */
+void ethd__terminal_erase_line(void);
+
+/* Returns false while the program is in the background of the terminal at stdin, whose lines are then for others.
+   [any] */
+bool ethd__stdin_is_ours(void);
 
 #endif

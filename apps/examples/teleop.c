@@ -128,7 +128,8 @@ int main(int argc, char **argv) {
     return fail("teleop", "PORT SECONDS are needed"), 2;
   int fd = line_open(port, bind);
   if (fd < 0) return fail(argv[1], strerror(errno));
-  signal(SIGINT, end), signal(SIGTERM, end);
+  if (signal(SIGINT, end) == SIG_IGN) signal(SIGINT, SIG_IGN); /* a shell's & has it ignored */
+  signal(SIGTERM, end);
   if (ethd_device_open("sim, link", drivers, &device, &def.driver, &def.device, text)) return fail("device", text);
   setup.limits = def.driver->limits(def.device);
   setup.limits.energy = 0.02; /* J: with the surface's own work */

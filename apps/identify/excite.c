@@ -134,7 +134,7 @@ static int record(const ethd__excitation *x, const ethd_config *c, double torque
                              .is_virtual = x->is_virtual,
                              .sink = {&out, take},
                              .loop = ethd_loop_default()};
-  ethd__catch_end();
+  (x->is_virtual ? ethd__catch_end : ethd__hold_device)();
   ethd_status status = ethd__session_open(&o, &session, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   ethd__remarks_print(stderr, &session);

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cli/terminal.h"
 #include "text/error_text.h"
 #include "text/text.h"
 
@@ -194,9 +195,9 @@ static void end_line(ethd__commands *c, ethd__session *s) {
 void ethd__commands_read(ethd__commands *c, ethd__session *s, int wait_ms) {
   struct pollfd in = {.fd = STDIN_FILENO, .events = POLLIN};
   char byte;
-  while (!c->ended && poll(&in, 1, wait_ms) > 0) {
+  while (!c->ended && poll(&in, ethd__stdin_is_ours(), wait_ms) > 0) {
     ssize_t n = read(STDIN_FILENO, &byte, 1);
-    if (n < 0 && (errno == EINTR || errno == EAGAIN)) return;
+    if (n < 0 && (errno == EINTR || errno == EAGAIN || !ethd__stdin_is_ours())) return;
     c->ended = n <= 0;
     if (n <= 0 && !c->length) return;
     if (n <= 0 || byte == '\n') {

@@ -32,6 +32,7 @@ void ethd__session_poll(ethd__session *s) {
     else
       tell_law(s, &event);
   if (s->loop) ethd_loop_beat(s->loop);
+  ethd__tell_refusal();
 }
 
 void ethd__session_tick(ethd__session *s) {

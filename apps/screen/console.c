@@ -7,7 +7,10 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
+#include "cli/terminal.h"
 #include "study/progress.h"
+
+#define LOOK 100 /* ms between two looks at a terminal in whose background this may be */
 
 /* ---- lines out ---- */
 
@@ -47,11 +50,19 @@ static void verdict(void *self, const char *participant, const ethd__taken *take
 
 /* ---- lines in ---- */
 
+/* Returns whether stdin has something for us; while the program is in the background of its terminal, it hasn't. */
+static bool is_there(bool wait) {
+  struct pollfd in = {.fd = STDIN_FILENO, .events = POLLIN};
+  int ready;
+  do ready = poll(&in, ethd__stdin_is_ours(), wait ? LOOK : 0);
+  while (wait && ready == 0 && !ethd__stop);
+  return ready > 0;
+}
+
 /* Reads a line if there is one; waits for it only during a pause or when a question was asked. */
 static bool read_line(ethd__console *c, bool wait, char *out, size_t room) {
-  struct pollfd in = {.fd = STDIN_FILENO, .events = POLLIN};
   size_t n = 0;
-  if (c->ended || poll(&in, 1, wait ? -1 : 0) <= 0) return false;
+  if (c->ended || !is_there(wait)) return false;
   for (char byte; read(STDIN_FILENO, &byte, 1) == 1;) {
     if (byte == '\n') return out[n] = 0, true;
     if (n + 1 < room) out[n++] = byte;

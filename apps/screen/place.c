@@ -81,7 +81,7 @@ void ethd__place_open(const ethd__place_options *o, ethd__screen_place *out) {
   check(ethd__sitting_open(&out->folder, hand_of(o, &out->folder), &out->sitting, message), message);
   choose(&out->sitting, protocol, o);
   out->sitting.source = ethd__desk_source(&out->desk);
-  (people ? ethd__catch_end : ethd__catch_interrupt)();
+  (people ? ethd__hold_device : ethd__catch_interrupt)();
   if (people) take_device(out, o);
   take_front(out, o);
 }

@@ -1,0 +1,59 @@
+/* What ends a program, and what doesn't. */
+#include <errno.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include "cli/cli.h"
+#include "cli/terminal.h"
+
+volatile sig_atomic_t ethd__stop;
+static volatile sig_atomic_t was_refused;
+
+static void stop(int number) {
+  if (ethd__stop) _exit(128 + number);
+  ethd__stop = 1;
+}
+
+static void ask(int number) {
+  (void)number;
+  ethd__stop = 1;
+}
+
+static void refuse(int number) {
+  (void)number;
+  was_refused = 1;
+}
+
+/* A signal that is ignored when the program starts stays ignored: that is how nohup, and a script's &, ask for it. */
+static void catch (void (*handler)(int), int number) {
+  struct sigaction action = {.sa_handler = handler, .sa_flags = SA_RESTART}, before;
+  sigemptyset(&action.sa_mask);
+  if (sigaction(number, NULL, &before) == 0 && before.sa_handler == SIG_IGN) return;
+  sigaction(number, &action, NULL);
+}
+
+void ethd__catch_interrupt(void) {
+  catch (stop, SIGINT);
+  catch (stop, SIGTERM);
+}
+
+void ethd__catch_end(void) {
+  static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2};
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) catch (ask, numbers[i]);
+  signal(SIGPIPE, SIG_IGN);
+}
+
+void ethd__hold_device(void) {
+  ethd__catch_end();
+  catch (refuse, SIGTSTP);
+  signal(SIGTTIN, SIG_IGN);
+  signal(SIGTTOU, SIG_IGN);
+  if (!ethd__streams_detach()) ethd__fail_memory();
+}
+
+void ethd__tell_refusal(void) {
+  if (!was_refused) return;
+  was_refused = 0;
+  fprintf(stderr, "%s: Ctrl-Z is ignored: a stopped program can't control the device; Ctrl-C ends the run\n",
+          program_invocation_short_name);
+}

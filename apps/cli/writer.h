@@ -1,0 +1,35 @@
+/* A thread that writes what a program says. Whoever reads too slowly, or not at all, then holds up nobody: what finds no
+   room is dropped and counted. */
+#ifndef ETHD__APPS_CLI_WRITER_H
+#define ETHD__APPS_CLI_WRITER_H
+
+#include <pthread.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define ETHD__WRITER_ROOM ((size_t)1 << 18) /* bytes that may wait */
+
+typedef struct ethd__writer {
+  int fd;
+  pthread_t thread;
+  pthread_mutex_t lock;
+  pthread_cond_t filled;
+  size_t begin, length; /* what waits is a ring; only the thread moves begin */
+  int failure;          /* errno of a write that failed, after which nothing is written; 0: none */
+  uint64_t dropped;     /* bytes */
+  bool given_up;        /* the end was waited for in vain */
+  char at[ETHD__WRITER_ROOM];
+} ethd__writer;
+
+/* Starts the thread for a descriptor, whose flags stay as they are. Returns false if there is no thread. [main] */
+bool ethd__writer_start(ethd__writer *writer, int fd);
+
+/* Takes the text, or drops all of it. Never waits for a reader. [any] */
+void ethd__writer_put(ethd__writer *writer, const char *text, size_t length);
+
+/* Waits until all is written, as long as somebody reads; after 0.3 s in which nobody does the rest counts as dropped.
+   The thread goes on until the process ends. [main] */
+void ethd__writer_end(ethd__writer *writer);
+
+#endif
