@@ -164,6 +164,7 @@ int main(int argc, char **argv) {
   ethd_config *config;
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  ethd__container_keeper(); /* what is said of the guardian holds for ethd-run */
   ethd_status status = ethd_config_load(arg.config, &config, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
   checked_device device = reach_device(config);

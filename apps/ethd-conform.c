@@ -50,6 +50,7 @@ int main(int argc, char **argv) {
   ethd_conform_answer answers[ETHD_QUESTIONS];
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  ethd__container_keeper();
   ethd_status status = ethd_config_load(arg.config, &config, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   const ethd_device_def device = {&config->setup, config->settings, config->setting_count,

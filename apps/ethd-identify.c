@@ -256,6 +256,7 @@ int main(int argc, char **argv) {
   static ethd__evidence evidence;
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  if (arg.excite) ethd__container_keeper();
   if (arg.excite) return ethd__end(ethd__excite(&arg.excitation));
   ethd__catch_interrupt();
   evidence.plugins = arg.plugins;

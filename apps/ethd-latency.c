@@ -139,6 +139,7 @@ int main(int argc, char **argv) {
   arg.session.loop = ethd_loop_default();
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  ethd__container_keeper();
   ethd__hold_device();
   measure(&stats, &shortfalls, &period);
   bool peer = !arg.alone && !ethd__stop && run_cyclictest(period, &cyclictest);

@@ -153,6 +153,7 @@ int main(int argc, char **argv) {
   arg.session.loop = ethd_loop_default();
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  ethd__container_keeper();
   (arg.session.is_virtual ? ethd__catch_end : ethd__hold_device)();
   ethd_status status = ethd__session_open(&arg.session, &session, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);

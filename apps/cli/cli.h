@@ -75,6 +75,10 @@ void ethd__progress(uint64_t done, uint64_t total, const char *what);
    that is ignored when the program starts stays ignored. */
 void ethd__catch_interrupt(void);
 
+/* For a program that moves a device, before it opens a file or starts a thread: in a container the program goes on as
+   the child of a process that ends when a drive's guardian has ended, too (cli/keeper.c). Elsewhere nothing happens. */
+void ethd__container_keeper(void);
+
 /* For a program that moves a device: makes these, SIGHUP, SIGQUIT, SIGUSR1 and SIGUSR2 set it, however often they come,
    so that nothing cuts a controlled stop short. A reader of our output that goes away ends nothing. */
 void ethd__catch_end(void);

@@ -143,6 +143,7 @@ int ethd__command_session(const ethd__study_options *o) {
                                       .width = o->width,
                                       .height = o->height};
   bool over = false;
+  ethd__container_keeper();
   if (!o->resume) make_folder(o);
   ethd__place_open(&wanted, &place);
   ethd_status status = ethd__place_run(&place, &over, message);

@@ -52,8 +52,9 @@ typedef struct ethd__servo_device {
   /* belongs to whoever holds the lock: the I/O thread, or [main] in start and stop */
   pthread_mutex_t lock;
   ethd__servo_link link;
-  ethd__guardian guardian; /* has no process if the drive has a watchdog */
-  char guarded[160];       /* the remark about it; empty: there is none */
+  ethd__guardian guardian;        /* has no process if the drive has a watchdog */
+  char guarded[ETHD_MESSAGE_MAX]; /* the remark about it; empty: there is none */
+  const char *unarmed;            /* why the drive isn't enabled here: the guardian would end with us; NULL: it is */
   ethd__servo_feedback feedback;
   ethd__servo_command command;
   int64_t due_ns;
@@ -71,6 +72,7 @@ enum {
   ETHD__SERVO_HOME_TORQUE,
   ETHD__SERVO_HOME_WAY1,
   ETHD__SERVO_HOME_WAY2,
+  ETHD__SERVO_UNGUARDED,
   ETHD__SERVO_PARAMS
 };
 

@@ -8,8 +8,10 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "device/container.h"
 #include "servo/bus_parts.h"
 #include "servo/words.h"
+#include "text/error_text.h"
 
 #define LEAST 20000000 /* ns */
 #define SHARE \
@@ -20,6 +22,30 @@ int64_t ethd__guardian_bound(const ethd__servo_map *map, int64_t exchange_ns) {
   int64_t unanswered = (int64_t)(1e9 * (map->response + map->drain));
   int64_t spacing = exchange_ns > unanswered ? exchange_ns : unanswered;
   return 2 * spacing > LEAST ? 2 * spacing : LEAST;
+}
+
+/* ---- what ends it, too ---- */
+
+const char *ethd__guardian_ends(void) {
+  switch (ethd__container_depth()) {
+  case 0:
+    return "this program is the first process (PID 1) of its container, and the guardian would end with it: docker run "
+           "--init or --pid=host, a drive with a watchdog, or device.unguarded = yes";
+  case 1:
+    return "PID 1 of the container ends with this program, and the guardian with both: start the program by a shell "
+           "that stays (sh -c 'PROGRAM; sleep 1'), docker run --pid=host, a drive with a watchdog, or device.unguarded "
+           "= yes";
+  default: return NULL;
+  }
+}
+
+void ethd__guardian_limits(const char *root, bool spared, char out[ETHD_MESSAGE_MAX]) {
+  const char *container = ethd__in_container() ? "; not when the container is killed (docker kill)" : "";
+  const char *memory = !spared && ethd__group_dies_whole(root)
+                           ? "; not when memory runs out: memory.oom.group is 1, which kills both"
+                           : "";
+  const char *service = ethd__group_is_service(root) ? "; not in a service with KillMode=mixed, which kills both" : "";
+  ethd__say(out, ETHD_OK, "%s%s%s", container, memory, service);
 }
 
 /* ---- frames ---- */

@@ -9,7 +9,7 @@
 
    Whatever ends ethd-run ends its side of the socket; what stops it without ending it (a signal, a debugger, a
    deadlock) ends the beats. Zero torque is at the drive within ethd__guardian_bound of the last beat. It can't help
-   when the whole computer dies, or when all of its processes are killed at once. */
+   when the whole computer dies, or when both are killed at once: ethd__guardian_limits. */
 #ifndef ETHD__SERVO_GUARDIAN_H
 #define ETHD__SERVO_GUARDIAN_H
 
@@ -31,6 +31,7 @@ typedef struct ethd__guardian_page {
   atomic_int line;         /* ETHD__GUARDIAN_OURS, ... */
   atomic_int closing;      /* 1: the program ends in order, and the guardian has nothing to do */
   atomic_uint acts;        /* how often it wrote zero */
+  atomic_int spared;       /* 1: the kernel doesn't kill it when memory runs out */
 } ethd__guardian_page;
 
 /* The guardian, with what it must know about the drive, ready to be sent. */
@@ -50,6 +51,14 @@ typedef struct ethd__guardian {
 /* ns from the I/O thread's last beat to zero torque at the drive: the larger of 20 ms and two message spacings. A
    spacing is an exchange, or the time that one unanswered message may take. [any] */
 int64_t ethd__guardian_bound(const ethd__servo_map *map, int64_t exchange_ns);
+
+/* Returns a sentence with the way out where the guardian ends with this program, whatever ends that; else NULL. [main] */
+const char *ethd__guardian_ends(void);
+
+/* Writes what else may end both at once where this process runs, for people: a container, a control group that is
+   killed as a whole when memory runs out, a service of systemd. "" when nothing is known. `root` is "" or, in tests,
+   the folder in which proc and sys are; `spared`: the guardian's process isn't killed for memory. [main] */
+void ethd__guardian_limits(const char *root, bool spared, char out[ETHD_MESSAGE_MAX]);
 
 /* Prepares the frames and the limit; starts no process. `plan` is the map's. [main] */
 void ethd__guardian_make(const ethd__servo_map *map, const ethd__servo_plan *plan, int64_t exchange_ns,

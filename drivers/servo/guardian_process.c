@@ -74,6 +74,15 @@ static void let_go_of_the_rest(ethd__guardian *g) {
   for (int i = SOCKET + 1; i < 4096; i++) close(i); /* a kernel before 5.9 */
 }
 
+/* A task with -1000 isn't killed for memory, not even with its control group (the kernel's cgroup-v2.rst on
+   memory.oom.group). Only a privileged process may have it. */
+static int spare(void) {
+  int fd = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+  int is = fd >= 0 && write(fd, "-1000", 5) == 5;
+  if (fd >= 0) close(fd);
+  return is;
+}
+
 /* A signal by which a terminal or a service manager ends the program must not end this process before it. */
 static void settle(void) {
   const struct sched_param param = {.sched_priority = PRIORITY};
@@ -133,6 +142,7 @@ ethd_status ethd__guardian_start(ethd__guardian *g, char message[ETHD_MESSAGE_MA
     close(pair[0]);
     g->socket = pair[1];
     settle();
+    atomic_store(&g->page->spared, spare());
     let_go_of_the_rest(g);
     if (send(g->socket, "", 1, MSG_NOSIGNAL) == 1) watch(g);
     _exit(0);

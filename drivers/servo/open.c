@@ -24,6 +24,8 @@ const ethd_param ethd__servo_params[ETHD__SERVO_PARAMS] = {
     [ETHD__SERVO_HOME_WAY1] = {"home_way1", "1", -1, 1, 1,
                                "1 or -1: towards joint 1's stop or mark its angle rises or falls"},
     [ETHD__SERVO_HOME_WAY2] = {"home_way2", "1", -1, 1, 1, "likewise of joint 2"},
+    [ETHD__SERVO_UNGUARDED] = {"unguarded", "no|yes", 0, 1, 0,
+                               "enable also where the guardian would end with this program: its torque then stays"},
 };
 
 const char *const ethd__servo_keys[] = {"map", "port", NULL};
@@ -167,15 +169,34 @@ static ethd_status check_pace(const ethd__servo_device *d, const settings *s, ch
                    (long long)(most / d->period_ns));
 }
 
-static void set_guard(ethd__servo_device *d) {
+/* The remark about the guardian, which promises a time for those ends of the program that it outlives. */
+static void say_guard(ethd__servo_device *d) {
+  char limits[ETHD_MESSAGE_MAX];
+  double bound = 1e-6 * (double)ethd__guardian_bound(&d->map, d->exchange_ns);
+  const char *ends = ethd__guardian_ends();
+  ethd__guardian_limits("", d->guardian.page && atomic_load(&d->guardian.page->spared), limits);
+  if (d->unarmed)
+    ethd__say(d->guarded, ETHD_OK, "the drive isn't enabled here: %s", d->unarmed);
+  else if (ends)
+    ethd__say(
+        d->guarded, ETHD_OK,
+        "device.unguarded is yes, and here the guardian ends with this program: killed, it leaves the torque on for "
+        "ever; when it is only silent, the guardian writes zero within %.3g ms, then disables",
+        bound);
+  else
+    ethd__say(d->guarded, ETHD_OK,
+              "a guardian process writes zero torque within %.3g ms of this program's end or silence, then disables%s",
+              bound, limits);
+}
+
+static void set_guard(ethd__servo_device *d, bool unguarded) {
   bool wanted = d->map.guardian == ETHD__SERVO_GUARD_ALWAYS ||
                 (d->map.guardian == ETHD__SERVO_GUARD_AUTO && d->map.watchdog == ETHD__SERVO_WATCH_NONE);
   ethd__servo_link_make(&d->map, &d->link);
   if (!wanted) return;
   ethd__guardian_make(&d->map, &d->link.plan, d->exchange_ns, &d->guardian);
-  snprintf(d->guarded, sizeof d->guarded,
-           "a guardian process writes zero torque within %.3g ms of this program's end or silence, then disables",
-           1e-6 * (double)ethd__guardian_bound(&d->map, d->exchange_ns));
+  d->unarmed = unguarded ? NULL : ethd__guardian_ends();
+  say_guard(d);
 }
 
 /* Says how long an exchange takes, before any drive is asked. */
@@ -225,7 +246,7 @@ ethd_status ethd__servo_prepare(const ethd_device_def *def, void **out, char mes
   if (!status) status = make_cells(d, message);
   if (!status) status = make_feedback(d, def, &s, message);
   if (status) return status;
-  set_guard(d);
+  set_guard(d, s.p[ETHD__SERVO_UNGUARDED] != 0);
   count_unconfirmed(d);
   say_coarse(d, def->setup->limits.torque);
   say_wire(d);
@@ -236,7 +257,10 @@ ethd_status ethd__servo_prepare(const ethd_device_def *def, void **out, char mes
 ethd_status ethd__servo_open(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = ethd__servo_prepare(def, out, message);
   ethd__servo_device *d = *out;
-  if (!status && d->guarded[0]) status = ethd__guardian_start(&d->guardian, message);
+  if (!status && d->guarded[0]) {
+    status = ethd__guardian_start(&d->guardian, message);
+    say_guard(d);
+  }
   return status ? status : meet(d, message);
 }
 

@@ -66,6 +66,7 @@ static ethd_status run(ethd__servo_device *d, int32_t sequence) {
 }
 
 ethd_status ethd__servo_enable(ethd__servo_device *d) {
+  if (d->unarmed) return ethd__say(d->link.message, ETHD_E_DEVICE, "%s", d->unarmed);
   atomic_store(&d->safe, 1);
   atomic_fetch_add(&d->epoch, 1); /* commands from before no longer count */
   d->link.attempt_ns = 0;
