@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 /* Sets both directions and reads back what the line then has. Returns its output rate, or -1 with errno if it
-   isn't a terminal. The caller refuses a rate that differs from the one it asked for. [main] */
+   isn't a terminal. The caller refuses a rate that is too far from the one it asked for. [main] */
 int64_t ethd__baud_set(int fd, uint32_t baud);
 
 #endif

@@ -44,11 +44,12 @@ static ethd_status hold(int fd, const char *path, char *message) {
 
 static ethd_status set(int fd, const char *path, ethd__line_format format, uint32_t baud, char *message) {
   if (set_raw(fd, format)) return ethd__say(message, ETHD_E_DEVICE, "%s: %s", path, strerror(errno));
-  int64_t has = ethd__baud_set(fd, baud);
+  int64_t has = ethd__baud_set(fd, baud), off = has > baud ? has - baud : baud - has;
   if (has < 0) return ethd__say(message, ETHD_E_DEVICE, "%s: %s", path, strerror(errno));
-  if (has != baud)
-    return ethd__say(message, ETHD_E_DEVICE, "%s: asked for %u baud, the line has %lld; choose a rate that it can",
-                     path, baud, (long long)has);
+  if (off * ETHD__LINE_RATE_SHARE > baud)
+    return ethd__say(message, ETHD_E_DEVICE,
+                     "%s: asked for %u baud, the line has %lld, over 2 %% away; choose a rate that it can", path, baud,
+                     (long long)has);
   tcflush(fd, TCIOFLUSH);
   return ETHD_OK;
 }
