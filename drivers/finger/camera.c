@@ -7,7 +7,8 @@
 
 #define MAGIC "EFC1"
 #define NOISE_MAX 1.0      /* m */
-#define JUMP_NS 1000000000 /* no network holds a datagram back for so long: the sender's clock jumped */
+#define BACK_NS 1000000000 /* no network holds a datagram back for so long: the sender's clock jumped back */
+#define AHEAD_NS 50000000  /* nor is one so much quicker than all before: it jumped ahead */
 #define ORDER_MAX 1000     /* exposures by which others may overtake a datagram; if more, the sender began anew */
 
 enum { AT_SEQ = 4, AT_TIME = 8, AT_X = 16, AT_Y = 24, AT_NOISE = 32, AT_FLAGS = 40, AT_CRC = 42 };
@@ -77,15 +78,19 @@ static int64_t lesser(int64_t a, int64_t b) ETHD_RT { return minus(a, b) < 0 ? a
 
 static void begin(ethd__camera_clock *c, int64_t late) ETHD_RT {
   c->jumps += c->started;
+  c->unsettled = c->started ? ETHD__CAMERA_UNSETTLED : 0;
   c->started = true;
   c->least[0] = c->least[1] = late;
   c->in_block = 0;
 }
 
+/* A datagram that the network held back is older by both its count and its clock. Where only one of them is older, the
+   clock was set back, or the bridge was started again and counts from 0. */
 static bool jumped(const ethd__camera_clock *c, const ethd__exposure *e, int64_t late) ETHD_RT {
   int64_t off = minus(late, lesser(c->least[0], c->least[1]));
   int32_t step = (int32_t)(e->seq - c->seq);
-  return off > JUMP_NS || off < -JUMP_NS || step > ORDER_MAX || step < -ORDER_MAX;
+  bool is_newer = minus(e->t_ns, c->t_ns) > 0;
+  return off > BACK_NS || off < -AHEAD_NS || step > ORDER_MAX || step < -ORDER_MAX || is_newer != (step > 0);
 }
 
 static void settle(ethd__camera_clock *c, int64_t late) ETHD_RT {
@@ -101,17 +106,16 @@ bool ethd__camera_clock_step(ethd__camera_clock *c, const ethd__exposure *e, int
   int64_t late = minus(arrival_ns, e->t_ns);
   if (!c->started || jumped(c, e, late)) {
     begin(c, late);
+  } else if (minus(e->t_ns, c->t_ns) <= 0) {
+    c->lost++;
+    return false;
   } else {
-    int32_t step = (int32_t)(e->seq - c->seq);
-    if (step <= 0 || minus(e->t_ns, c->t_ns) <= 0) {
-      c->lost++;
-      return false;
-    }
-    c->lost += (uint32_t)step - 1;
+    c->lost += e->seq - c->seq - 1;
   }
   settle(c, late);
   c->seq = e->seq;
   c->t_ns = e->t_ns;
+  if (c->unsettled && c->unsettled--) return false;
   *sample_ns = minus(plus(e->t_ns, lesser(c->least[0], c->least[1])), c->delay);
   return true;
 }

@@ -16,7 +16,11 @@
      arrival - t_ns |    o         o         o = a datagram
                     | o     o o o      o o
                     |____o________o________  smallest of the last 128 to 256
-                    +---------------------> t_ns                                                                     */
+                    +---------------------> t_ns
+
+   Where a bridge is started again, or its clock is set, the first four exposures only place the clock: one that the
+   network held back would otherwise make readings that seem younger than they are. A clock that is set back so little
+   that its exposures keep their order isn't noticed; readings then seem that much too old until 256 have come. */
 #ifndef ETHD__FINGER_CAMERA_H
 #define ETHD__FINGER_CAMERA_H
 
@@ -40,21 +44,25 @@ typedef struct ethd__exposure {
 bool ethd__exposure_decode(const uint8_t *bytes, size_t count, ethd__exposure *out) ETHD_RT;
 void ethd__exposure_encode(const ethd__exposure *exposure, uint8_t out[ETHD__EXPOSURE_SIZE]) ETHD_RT;
 
-enum { ETHD__CAMERA_BLOCK = 128 };
+enum {
+  ETHD__CAMERA_BLOCK = 128,
+  ETHD__CAMERA_UNSETTLED = 4 /* exposures by which a clock that jumped is placed, and which make no reading */
+};
 
 /* A clock that begins is zero except for `delay`. */
 typedef struct ethd__camera_clock {
   int64_t delay; /* ns, from an exposure to the earliest arrival of its datagram */
   bool started;
-  uint32_t seq;     /* of the last exposure */
-  int64_t t_ns;     /* likewise */
-  int64_t least[2]; /* ns: the smallest arrival - t_ns of this block, and of the block before */
-  uint32_t in_block;
-  uint64_t lost, jumps; /* exposures missing or out of order; times that the sender or its clock began anew */
+  uint32_t seq;                 /* of the last exposure */
+  int64_t t_ns;                 /* likewise */
+  int64_t least[2];             /* ns: the smallest arrival - t_ns of this block, and of the block before */
+  uint32_t in_block, unsettled; /* unsettled: exposures to come that make no reading */
+  uint64_t lost, jumps;         /* exposures missing or out of order; times that the sender or its clock began anew */
 } ethd__camera_clock;
 
 /* Takes an exposure that arrived at arrival_ns. *sample_ns becomes its instant in host time, which is never later than
-   its arrival. False: it is older than the last one, and of no use. */
+   its arrival. False: it is older than the last one, or places a clock that
+   jumped, and makes no reading. */
 bool ethd__camera_clock_step(ethd__camera_clock *clock, const ethd__exposure *exposure, int64_t arrival_ns,
                              int64_t *sample_ns) ETHD_RT;
 

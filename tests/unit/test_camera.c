@@ -1,5 +1,6 @@
 /* The motion capture: bytes, the sender's clock, and the driver on the loopback. */
 #include <arpa/inet.h>
+#include <inttypes.h>
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -54,7 +55,7 @@ START_TEST(test_clock) {
 END_TEST
 
 /* Out of order, twice, missing: counted, and what is older than the last isn't used. A sender that begins anew is
-   followed. */
+   followed when its clock is placed. */
 START_TEST(test_order) {
   ethd__camera_clock c = {.delay = 0};
   const uint32_t seq[] = {10, 11, 13, 12, 13, 14};
@@ -65,9 +66,46 @@ START_TEST(test_order) {
     ck_assert_int_eq(ethd__camera_clock_step(&c, &e, e.t_ns + 5, &sample), used[i]);
   }
   ck_assert_uint_eq(c.lost, 3);
-  ethd__exposure anew = {.seq = 0, .t_ns = 0};
-  ck_assert(ethd__camera_clock_step(&c, &anew, INT64_C(1000000000000), &sample));
-  ck_assert(sample == INT64_C(1000000000000) && c.jumps == 1);
+  for (int i = 0; i < 6; i++) {
+    ethd__exposure anew = {.seq = (uint32_t)i, .t_ns = i * INT64_C(11111111)};
+    ck_assert_int_eq(ethd__camera_clock_step(&c, &anew, INT64_C(1000000000000) + anew.t_ns, &sample), i >= 4);
+    if (i >= 4) ck_assert(sample == INT64_C(1000000000000) + anew.t_ns);
+  }
+  ck_assert_uint_eq(c.jumps, 1);
+}
+END_TEST
+
+/* A bridge that runs for a while and is started again, or whose clock is set, under a network that holds every 50th
+   datagram back for 30 ms, the first one afterwards too: readings come again by the fifth exposure and are never younger
+   than their data. */
+static void begin_again(int before, bool counts_anew, int64_t set_ns) {
+  ethd__camera_clock c = {.delay = 5000000};
+  int silent = 0;
+  for (int i = 0; i < before + 400; i++) {
+    bool again = i >= before;
+    int64_t true_ns = INT64_C(1000000000000) + i * INT64_C(11111111) + (again && counts_anew ? 1000000000 : 0), sample;
+    int64_t held = (int64_t)(1e6 * draw((uint64_t)i, 0, 1)) + (i % 50 == before % 50 ? 30000000 : 0);
+    ethd__exposure e = {.seq = (uint32_t)(again && counts_anew ? i - before : i),
+                        .t_ns = true_ns + (again ? set_ns : 0)};
+    bool reads = ethd__camera_clock_step(&c, &e, true_ns + c.delay + held, &sample);
+    if (reads && i > 20) ck_assert_int_le(sample, true_ns + 1000000);
+    if (reads && i > 20) ck_assert_int_ge(sample, true_ns - 1000000);
+    silent += again && !reads;
+  }
+  ck_assert_msg(silent == 4 && c.jumps == 1 && c.lost == 0,
+                "%d exposures, the count %s, set by %" PRId64 " ns: %d without a reading, %" PRIu64 " jumps, %" PRIu64
+                " lost",
+                before, counts_anew ? "anew" : "on", set_ns, silent, c.jumps, c.lost);
+}
+
+START_TEST(test_started_again) {
+  static const int before[] = {90, 450, 900, 999, 1001, 5400};
+  static const int64_t set[] = {-100000000, -300000000, -1100000000, -5000000000,
+                                100000000,  300000000,  1100000000,  5000000000};
+  for (size_t i = 0; i < sizeof before / sizeof *before; i++) begin_again(before[i], true, 0);
+  for (size_t i = 0; i < sizeof set / sizeof *set; i++) begin_again(450, false, set[i]);
+  begin_again(5400, true, -INT64_C(60000000000)); /* its clock began with it */
+  begin_again(450, true, -300000000);
 }
 END_TEST
 
@@ -99,7 +137,8 @@ START_TEST(test_driver) {
   ck_assert_msg(status == ETHD_OK, "%s", message);
   ethd_limits limits = ethd_driver_camera.limits(device);
   ck_assert_double_eq_tol(limits.finger_age, 0.01 + 3 / 90.0, 1e-12);
-  for (int i = 0; i < 1000; i++) (void)!ethd_driver_camera.service(device, 0, INT64_C(1000000000)); /* its rest */
+  send_exposure(fd, 0, (ethd_vec){1, 1}, 1); /* an old sender, behind the child's rest */
+  for (int i = 0; i < 1000; i++) (void)!ethd_driver_camera.service(device, 0, INT64_C(1000000000));
   ethd_sense s = {0};
   (void)!ethd_driver_camera.read(device, INT64_C(1000000000), &s);
   for (uint32_t i = 0; i < 20; i++) {
@@ -109,10 +148,10 @@ START_TEST(test_driver) {
     ck_assert_int_eq(ethd_driver_camera.service(device, 0, now), ETHD_OK);
     s = (ethd_sense){0};
     ck_assert_int_eq(ethd_driver_camera.read(device, now, &s), ETHD_OK);
-    ck_assert_int_eq(s.have, i == 5 || i == 9 ? 0 : ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD);
+    ck_assert_int_eq(s.have, i < 4 || i == 5 || i == 9 ? 0 : ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD);
     if (s.have) ck_assert(s.centre[0] == 0.25 + 1e-3 * i && s.centre[1] == 0.2 && s.finger_noise == 2e-4);
     if (s.have) ck_assert_int_eq(s.sample_ns, now - 10000000);
-    if (i > 1) /* the first follow an old sender: a jump */
+    if (i > 4) /* the first four place the new sender's clock */
       ck_assert_int_eq(s.faults, i == 6 || i == 12 ? ETHD_FAULT_BIT(ETHD_FAULT_FRAME_LOST) : 0);
   }
   /* silence is told by the next tick that is due */
@@ -168,6 +207,7 @@ int main(void) {
   tcase_add_test(tc, test_bytes);
   tcase_add_test(tc, test_clock);
   tcase_add_test(tc, test_order);
+  tcase_add_test(tc, test_started_again);
   tcase_add_test(tc, test_driver);
   tcase_add_test(tc, test_instants_keep_their_order);
   tcase_add_test(tc, test_younger_than_the_tick);
