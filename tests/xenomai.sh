@@ -44,7 +44,13 @@ export XENO_STANDIN_CORE=mercury
 loop=$at/build-mercury/obj/drivers/loop
 build RT=mercury XENO_CONFIG="$here/xeno-config" "$loop/cycle.o" "$loop/threads.o" "$loop/xenomai.o" || { cat "$at/log"; fail "RT=mercury"; }
 nm -u "$loop/cycle.o" | grep -q ' clock_nanosleep' || fail "mercury: cycle.o doesn't sleep"
-nm -u "$loop/xenomai.o" | grep -q ' xenomai_init' || fail "mercury: xenomai.o doesn't initialise"
+cat >"$at/init.c" <<'END'
+#include <stddef.h>
+int ethd__xenomai_begin(void *error);
+int main(void) { return ethd__xenomai_begin(NULL) || ethd__xenomai_begin(NULL); }
+END
+$CC "$at/init.c" "$loop/xenomai.o" -L"$at/lib" -lxenomai-standin -Wl,-rpath,"$at/lib" -o "$at/init" || fail "mercury: init.c"
+[ "$(XENO_STANDIN_SAYS=1 "$at/init" 2>&1)" = "stand-in: initialised" ] || fail "mercury: it ends the process, or isn't initialised once"
 
 # Cobalt: built whole, and run.
 export XENO_STANDIN_CORE=cobalt

@@ -8,13 +8,19 @@
 #include <signal.h>
 #include <xenomai/init.h>
 
-/* Xenomai gets an argv of our own, because its options are not the program's. */
+/* Xenomai gets an argv of our own, because its options are not the program's. Mercury would end the process where memory
+   may not be locked; the loop locks it by itself, and says so if it can't. */
 static void initialise(void) {
   static char name[] = "ethd";
+#if defined(__MERCURY__)
+  static char no_mlock[] = "--no-mlock";
+  static char *words[] = {name, no_mlock, NULL};
+#else
   static char *words[] = {name, NULL};
+#endif
   static int done;
   char *const *argv = words;
-  int argc = 1;
+  int argc = sizeof words / sizeof *words - 1;
   if (!done) xenomai_init(&argc, &argv);
   done = 1;
 }

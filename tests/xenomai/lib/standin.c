@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <pthread.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +22,12 @@ int __cobalt_clock_gettime(clockid_t clock, struct timespec *now);
 int __cobalt_clock_nanosleep(clockid_t clock, int flags, const struct timespec *until, struct timespec *left);
 
 void xenomai_init(int *argcp, char *const **argvp) {
-  if (*argcp != 1 || !(*argvp)[0] || (*argvp)[1] || initialised) abort();
+  const char *core = getenv("XENO_STANDIN_CORE");
+  bool is_mercury = core && !strcmp(core, "mercury");
+  if (*argcp < 1 || !(*argvp)[0] || (*argvp)[*argcp] || initialised) abort();
+  /* the one option that Mercury has, without which it locks all memory, or ends the process where it may not */
+  if (is_mercury && *argcp == 1) exit(1);
+  if (*argcp > 1 && (!is_mercury || *argcp > 2 || strcmp((*argvp)[1], "--no-mlock") != 0)) abort();
   initialised = 1;
   if (getenv("XENO_STANDIN_SAYS")) fprintf(stderr, "stand-in: initialised\n");
 }
