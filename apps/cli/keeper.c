@@ -17,10 +17,9 @@
 
 #define LEFT 10 /* s that what the program leaves behind has, at most */
 
-/* All but what a program does to itself, and what stops a job, which stops its keeper, too. */
+/* All but what a program does to itself, and SIGCONT. What stops a job is the program's to obey or not. */
 static sigset_t passed_on(void) {
-  static const int own[] = {SIGSEGV, SIGBUS,  SIGFPE,  SIGILL,  SIGABRT, SIGTRAP,
-                            SIGSYS,  SIGTSTP, SIGTTIN, SIGTTOU, SIGCONT};
+  static const int own[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS, SIGCONT};
   sigset_t set;
   sigfillset(&set);
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) sigdelset(&set, own[i]);
@@ -31,8 +30,12 @@ static sigset_t passed_on(void) {
 static bool reap(pid_t program, bool *ended, int *end) {
   int how;
   pid_t child;
-  while ((child = waitpid(-1, &how, WNOHANG)) > 0) {
+  while ((child = waitpid(-1, &how, WNOHANG | WUNTRACED)) > 0) {
     if (child != program) continue;
+    if (WIFSTOPPED(how)) {
+      if (WSTOPSIG(how) != SIGSTOP) raise(SIGSTOP); /* the shell looks at us; its SIGCONT reaches both */
+      continue;
+    }
     *ended = true;
     *end = WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
   }
