@@ -48,7 +48,7 @@ says '^drivers  *servo, ring: read' 'over tcp only ethd-servo-probe can say' "fi
 configure 'driver = servo, ring' 'servo.map = plant.map' 'ring.port = /nowhere/ring' 'ring.calibration = missing.ini'
 refuses 'missing.ini: No such file'
 configure 'driver = servo, counter' 'servo.map = plant.map' 'counter.counts_per_turn = 4000' 'counter.ratio = 10'
-says "counter.freeze_torque is inf: a frozen encoder isn't noticed" 'encoder count 40.07 um'
+says "counter.reverse_torque is inf: a reversed encoder isn't noticed" 'encoder count 40.07 um'
 configure 'driver = counter' 'counts_per_turn = 0'
 refuses 'c.ini:.*counts_per_turn'
 configure 'driver = hello'

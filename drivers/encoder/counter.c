@@ -139,7 +139,8 @@ static void counter_close(void *device) {
   free(c);
 }
 
-/* The kernel says a count's ceiling; `width` stands in for it until the kernel is asked. */
+#define WIDTH 32 /* bits, until the kernel is asked for a count's ceiling */
+
 static ethd_status counter_prepare(const ethd_device_def *def, void **out, char message[ETHD_MESSAGE_MAX]) {
   counter *c = *out = calloc(1, sizeof *c);
   if (!c) return ETHD_E_MEMORY;
@@ -147,7 +148,8 @@ static ethd_status counter_prepare(const ethd_device_def *def, void **out, char 
   pthread_mutex_init(&c->lock, NULL);
   ethd_status status = ethd_cell_create(sizeof(ethd__counter_snapshot), &c->cell, NULL);
   if (!status) status = ethd__counter_settings_read(def, &c->settings, message);
-  uint64_t ceiling = ethd__count_ceiling((uint32_t)c->settings.p[ETHD__COUNTER_WIDTH]);
+  uint32_t width = (uint32_t)c->settings.p[ETHD__COUNTER_WIDTH];
+  uint64_t ceiling = ethd__count_ceiling(width ? width : WIDTH);
   return status ? status : define_both(c, def, (const uint64_t[2]){ceiling, ceiling}, message);
 }
 

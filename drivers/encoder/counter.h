@@ -1,8 +1,9 @@
 /* Two encoders behind the kernel's counters (linux/counter.h), one for each joint.
 
      /sys/bus/counter/devices/counterN/countM/count      the count, read in each call of service
-                                              /ceiling   where it begins anew
+                                              /ceiling   where it begins anew; set where it is 0
                                               /function  "quadrature x4": set, and read back
+                                              /enable    1: set, and read back
      /dev/counterN   events with the kernel's instants: index marks; each edge, where speeds come from those
 
        [device]

@@ -65,19 +65,33 @@ static int put(const ethd__counter_calls *calls, const char *path, const char *t
   return n < 0 ? -1 : 0;
 }
 
-/* The setting is read back, because a kernel may accept one that it doesn't take. */
+/* The setting is read back, because a kernel may accept one that it doesn't take. stm32-timer-cnt can't say (EINVAL)
+   what it was before the first one. */
 static ethd_status set_function(const ethd__counter_calls *calls, const ethd__counter_settings *s, int j,
                                 char *message) {
   char path[160], now[ETHD_COUNTER_TEXT_MAX];
   name_attribute(s, j, "function", path, sizeof path);
-  if (get(calls, path, now, sizeof now)) return say_errno(path, "can't be read", message);
-  if (!strcmp(now, s->function)) return ETHD_OK;
+  bool known = !get(calls, path, now, sizeof now);
+  if (!known && errno != EINVAL) return say_errno(path, "can't be read", message);
+  if (known && !strcmp(now, s->function)) return ETHD_OK;
   if (put(calls, path, s->function)) return say_errno(path, s->function, message);
   if (get(calls, path, now, sizeof now)) return say_errno(path, "can't be read", message);
   if (strcmp(now, s->function) != 0)
     return ethd__say(message, ETHD_E_DEVICE, "%s: found %s after setting %s", path, now, s->function);
+  return ETHD_OK;
+}
+
+/* Most counters are off until they are enabled, whatever their function; those without the attribute always count. */
+static ethd_status enable(const ethd__counter_calls *calls, const ethd__counter_settings *s, int j, char *message) {
+  char path[160], now[ETHD_COUNTER_TEXT_MAX];
   name_attribute(s, j, "enable", path, sizeof path);
-  return put(calls, path, "1") && errno != ENOENT ? say_errno(path, "can't be enabled", message) : ETHD_OK;
+  int reason = put(calls, path, "1") ? errno : 0;
+  if (reason == ENOENT) return ETHD_OK;
+  bool known = !get(calls, path, now, sizeof now);
+  if (known && !strcmp(now, "1")) return ETHD_OK;
+  if (reason) errno = reason;
+  if (reason || !known) return say_errno(path, reason ? "can't be enabled" : "can't be read", message);
+  return ethd__say(message, ETHD_E_DEVICE, "%s: found %s after writing 1: it doesn't count", path, now);
 }
 
 /* Parses a whole number and nothing else; -1 for any other text. */
@@ -89,15 +103,38 @@ static int to_count(const char *text, uint64_t *out) {
   return *end || errno ? -1 : 0;
 }
 
+/* A ceiling of 0, as ti-eqep has at first, is one that nobody has set yet: such a counter stays at 0. */
+static ethd_status raise_ceiling(const ethd__counter_calls *calls, const char *path, uint64_t *out, char *message) {
+  char text[32];
+  uint64_t wanted = *out;
+  snprintf(text, sizeof text, "%llu", (unsigned long long)wanted);
+  if (put(calls, path, text)) return say_errno(path, "is 0 and can't be set", message);
+  if (get(calls, path, text, sizeof text)) return say_errno(path, "can't be read", message);
+  if (!to_count(text, out) && *out == wanted) return ETHD_OK;
+  return ethd__say(message, ETHD_E_DEVICE, "%s: found %s after setting %llu", path, text, (unsigned long long)wanted);
+}
+
+/* The ceiling that is written must fit the counter; 32 bits do where the kernel has the attribute. */
+#define WIDTH 32
+
 static ethd_status find_ceiling(const ethd__counter_calls *calls, const ethd__counter_settings *s, int j, uint64_t *out,
                                 char *message) {
   char path[160], text[32];
+  uint32_t width = (uint32_t)s->p[ETHD__COUNTER_WIDTH];
   name_attribute(s, j, "ceiling", path, sizeof path);
-  *out = ethd__count_ceiling((uint32_t)s->p[ETHD__COUNTER_WIDTH]);
-  if (get(calls, path, text, sizeof text)) return errno == ENOENT ? ETHD_OK : say_errno(path, "can't be read", message);
-  if (to_count(text, out) || *out == 0)
-    return ethd__say(message, ETHD_E_DEVICE, "%s: found \"%s\"; a whole number over 0 is expected", path, text);
-  return ETHD_OK;
+  if (get(calls, path, text, sizeof text)) {
+    if (errno != ENOENT) return say_errno(path, "can't be read", message);
+    if (!width)
+      return ethd__say(message, ETHD_E_DEVICE,
+                       "%s: this counter has none: counter.width must say its bits (ftm-quaddec: 16)", path);
+    *out = ethd__count_ceiling(width);
+    return ETHD_OK;
+  }
+  if (to_count(text, out))
+    return ethd__say(message, ETHD_E_DEVICE, "%s: found \"%s\"; a whole number is expected", path, text);
+  if (*out) return ETHD_OK;
+  *out = ethd__count_ceiling(width ? width : WIDTH);
+  return raise_ceiling(calls, path, out, message);
 }
 
 /* ---- one count ---- */
@@ -124,6 +161,7 @@ ethd_status ethd__kernel_count_open(const ethd__counter_calls *calls, const ethd
   ethd_status status = open_files(calls, s, j, other, out, message);
   if (!status) status = set_function(calls, s, j, message);
   if (!status) status = find_ceiling(calls, s, j, &out->ceiling, message);
+  if (!status) status = enable(calls, s, j, message); /* some take no ceiling while they count */
   if (!status && ethd__kernel_count_read(calls, out, &raw))
     status = ethd__say(message, ETHD_E_DEVICE, "%s: count %d can't be read", s->device[j], s->count[j]);
   if (status) ethd__kernel_count_close(calls, out);

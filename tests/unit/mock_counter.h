@@ -1,4 +1,6 @@
-/* Two counts of a kernel's counter, without the kernel: stands in for the driver's system calls. */
+/* Two counts of a kernel's counter, without the kernel: stands in for the driver's system calls. Its attributes are
+   those of the kernel's Documentation/ABI/testing/sysfs-bus-counter; which of them a driver has, and what they say when
+   it is loaded, is taken from the sources in drivers/counter. */
 #ifndef ETHD_TESTS_MOCK_COUNTER_H
 #define ETHD_TESTS_MOCK_COUNTER_H
 
@@ -18,11 +20,16 @@ typedef struct mock_counter {
   mock_failure open, read, write;
   int ioctl_reason; /* errno of enabling events; 0: it goes well */
   uint64_t count[2];
-  char ceiling[32], function[32]; /* empty: the attribute doesn't exist */
-  int deaf;                       /* 1: takes a function, and keeps the old one */
-  int gone;                       /* 1: every read fails */
-  int refuse_event;               /* this event can't be watched; -1: all can */
-  void (*on_pause)(int64_t ns);   /* NULL: nothing happens meanwhile */
+  char ceiling[2][32];          /* empty: the attribute doesn't exist; "0": the counter stays at 0 */
+  char function[32];            /* empty: it can't say yet (EINVAL) */
+  int fixed;                    /* 1: the function can only be read */
+  int has_enable, on[2];        /* a counter that is off keeps its count */
+  int stays_off;                /* 1: takes `enable`, and stays off */
+  int ceiling_fixed;            /* 1: takes a ceiling, and keeps the old one */
+  int deaf;                     /* 1: takes a function, and keeps the old one */
+  int gone;                     /* 1: every read fails */
+  int refuse_event;             /* this event can't be watched; -1: all can */
+  void (*on_pause)(int64_t ns); /* NULL: nothing happens meanwhile */
   struct counter_event events[MOCK_EVENTS];
   uint32_t waiting;
   struct counter_watch watches[8];
@@ -33,8 +40,11 @@ typedef struct mock_counter {
 
 extern mock_counter counter_mock;
 
-/* 32 bits, quadrature x4; opening a device anew takes its calls from here. */
+/* As intel-qep: 32 bits, quadrature x4, off; opening a device anew takes its calls from here. */
 void mock_counter_install(void);
+
+/* As the named driver of the kernel leaves a counter when it is loaded. */
+void mock_counter_load(const char *driver);
 
 /* An event as it would come from the kernel. */
 void mock_counter_event(uint8_t kind, int joint, uint64_t value, int64_t time_ns);

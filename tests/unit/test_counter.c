@@ -74,14 +74,14 @@ END_TEST
 /* A count of 10 bits comes round every 1024. */
 START_TEST(test_ceiling_of_the_kernel) {
   mock_counter_install();
-  strcpy(counter_mock.ceiling, "1023");
+  for (int j = 0; j < 2; j++) strcpy(counter_mock.ceiling[j], "1023");
   void *d = open_with((const char *const[]){"speed_max", "20", NULL});
   for (int i = 0; i < 200; i++) {
     counter_mock.count[0] = (uint64_t)(50 * i) % 1024;
     ck_assert_double_eq_tol(sample(d, i + 1, ETHD_OK).q[0], PER_COUNT * 50 * i, 1e-12);
   }
   D.close(d);
-  strcpy(counter_mock.ceiling, "100");
+  for (int j = 0; j < 2; j++) strcpy(counter_mock.ceiling[j], "100");
   char message[ETHD_MESSAGE_MAX];
   const ethd_setting ratio = {"ratio", "12", 1};
   ck_assert_int_eq(try(&ratio, 1, &d, message), ETHD_E_RANGE); /* 30 rad/s are 229 counts in a period */
@@ -270,11 +270,11 @@ START_TEST(test_kernel_disagrees) {
   ck_assert_int_eq(open_plain("ratio", "1", message), ETHD_E_DEVICE);
   ck_assert_msg(strstr(message, "found increase after setting quadrature x4"), "%s", message);
   mock_counter_install();
-  strcpy(counter_mock.ceiling, "many");
+  for (int j = 0; j < 2; j++) strcpy(counter_mock.ceiling[j], "many");
   ck_assert_int_eq(open_plain("ratio", "1", message), ETHD_E_DEVICE);
   ck_assert_msg(strstr(message, "many"), "%s", message);
   mock_counter_install();
-  counter_mock.ceiling[0] = 0; /* the kernel doesn't say: `width` does */
+  counter_mock.ceiling[0][0] = counter_mock.ceiling[1][0] = 0; /* the kernel doesn't say: `width` does */
   ck_assert_int_eq(open_plain("width", "16", message), ETHD_OK);
   mock_counter_install();
   counter_mock.refuse_event = COUNTER_EVENT_INDEX;
@@ -283,6 +283,50 @@ START_TEST(test_kernel_disagrees) {
   ck_assert_msg(strstr(message, "has no index event"), "%s", message);
   counter_mock.refuse_event = COUNTER_EVENT_CHANGE_OF_STATE;
   ck_assert_int_eq(open_plain("stamps", "yes", message), ETHD_E_DEVICE);
+}
+END_TEST
+
+/* Every driver of the kernel that can count an encoder does, whatever it says when it is loaded: a joint turns by half
+   a radian, and back by a quarter below where it began. */
+START_TEST(test_drivers_of_the_kernel) {
+  static const struct {
+    const char *name, *width;
+  } cases[] = {
+      {"intel-qep", NULL}, {"ti-eqep", NULL}, {"stm32-timer-cnt", NULL}, {"104-quad-8", NULL}, {"ftm-quaddec", "16"}};
+  static const uint64_t ceilings[] = {0xFFFFFFFF, 0xFFFFFFFF, 0xFFFF, 0x1FFFFFF, 0xFFFF};
+  mock_counter_load(cases[_i].name);
+  void *d = open_with((const char *const[]){cases[_i].width ? "width" : NULL, cases[_i].width, NULL});
+  ck_assert_int_eq(D.start(d), ETHD_OK);
+  ck_assert_str_eq(counter_mock.function, "quadrature x4");
+  ck_assert(!counter_mock.has_enable || (counter_mock.on[0] && counter_mock.on[1]));
+  int64_t at = 0, faults = 0;
+  for (int i = 1; i <= 500; i++) {
+    at += i <= 200 ? 20 : -20;
+    for (int j = 0; j < 2; j++) counter_mock.count[j] = (uint64_t)at & ceilings[_i];
+    ethd_sense s = sample(d, i, ETHD_OK);
+    faults |= s.faults | s.grave;
+    ck_assert_double_eq_tol(s.q[0], PER_COUNT * (double)at, 1e-12);
+    ck_assert_double_eq_tol(s.q[1], PER_COUNT * (double)at, 1e-12);
+  }
+  ck_assert_int_eq(faults, 0);
+  D.close(d);
+}
+END_TEST
+
+/* Without a setting, too: a joint that stands under torque is a fault. */
+START_TEST(test_frozen_by_default) {
+  int64_t seen = 0;
+  mock_counter_install();
+  void *d = open_with((const char *const[]){NULL});
+  const ethd_command none = {{0, 0}, 0, 0}, push = {{0.5, 0}, 0, 0};
+  ck_assert_int_eq(D.start(d), ETHD_OK);
+  for (int i = 0; i < 200; i++) {
+    ck_assert_int_eq(D.write(d, i * (int64_t)MS, i < 100 ? &none : &push), ETHD_OK);
+    ethd_sense s = sample(d, i + 1, ETHD_OK);
+    seen |= s.faults | s.grave;
+  }
+  ck_assert_int_eq(seen, ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_FROZEN));
+  D.close(d);
 }
 END_TEST
 
@@ -311,6 +355,8 @@ int main(void) {
   tcase_add_test(t, test_reset_counter);
   tcase_add_loop_test(t, test_refused, 0, sizeof bad / sizeof *bad);
   tcase_add_test(t, test_kernel_disagrees);
+  tcase_add_loop_test(t, test_drivers_of_the_kernel, 0, 5);
+  tcase_add_test(t, test_frozen_by_default);
   tcase_add_test(t, test_this_machine);
   suite_add_tcase(suite, t);
   return rig_run(suite);

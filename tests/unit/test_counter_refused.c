@@ -50,9 +50,9 @@ START_TEST(test_calls_that_fail) {
       {.read = {"count0/function", 1, EIO},
        .function = "pulse",
        .said = SYS "0/function: can't be read: Input/output error"},
-      {.open = {"count0/enable", 0, EACCES},
-       .function = "pulse",
-       .said = SYS "0/enable: can't be enabled: Permission denied"},
+      {.open = {"count0/enable", 0, EACCES}, .said = SYS "0/enable: can't be enabled: Permission denied"},
+      {.write = {"count1/enable", 0, EIO}, .said = SYS "1/enable: can't be enabled: Input/output error"},
+      {.read = {"count1/enable", 0, EIO}, .said = SYS "1/enable: can't be read: Input/output error"},
       {.open = {"count1/ceiling", 0, EACCES}, .said = SYS "1/ceiling: can't be read: Permission denied"},
       {.read = {"count0/ceiling", 0, EIO}, .said = SYS "0/ceiling: can't be read: Input/output error"},
       {.read = {"count0/count", 0, EIO}, .said = "/dev/counter0: count 0 can't be read"},
@@ -78,14 +78,39 @@ END_TEST
 
 /* A ceiling and a count that are no numbers. */
 START_TEST(test_texts_of_the_kernel) {
-  static const char *const ceilings[] = {"0", "-1", "abc", "12x", "99999999999999999999999"};
+  static const char *const ceilings[] = {"-1", "abc", "12x", "99999999999999999999999"};
   for (size_t i = 0; i < sizeof ceilings / sizeof *ceilings; i++) {
     char said[ETHD_MESSAGE_MAX];
     mock_counter_install();
-    strcpy(counter_mock.ceiling, ceilings[i]);
-    snprintf(said, sizeof said, SYS "0/ceiling: found \"%s\"; a whole number over 0 is expected", ceilings[i]);
+    for (int j = 0; j < 2; j++) strcpy(counter_mock.ceiling[j], ceilings[i]);
+    snprintf(said, sizeof said, SYS "0/ceiling: found \"%s\"; a whole number is expected", ceilings[i]);
     expect(NULL, NULL, ETHD_E_DEVICE, said);
   }
+}
+END_TEST
+
+/* A counter that can't count an encoder, or that stays off, is told apart from one that stands. */
+START_TEST(test_counters_that_do_not_count) {
+  mock_counter_load("interrupt-cnt");
+  expect(NULL, NULL, ETHD_E_DEVICE, SYS "0/function: quadrature x4: Permission denied");
+  mock_counter_load("ftm-quaddec");
+  expect(NULL, NULL, ETHD_E_DEVICE,
+         SYS "0/ceiling: this counter has none: counter.width must say its bits (ftm-quaddec: 16)");
+  mock_counter_install();
+  counter_mock.stays_off = 1;
+  expect(NULL, NULL, ETHD_E_DEVICE, SYS "0/enable: found 0 after writing 1: it doesn't count");
+  mock_counter_load("ti-eqep");
+  counter_mock.on[0] = 1; /* somebody has enabled it without a ceiling */
+  expect(NULL, NULL, ETHD_E_DEVICE, SYS "0/ceiling: is 0 and can't be set: Device or resource busy");
+  mock_counter_load("ti-eqep");
+  counter_mock.ceiling_fixed = 1;
+  expect("width", "16", ETHD_E_DEVICE, SYS "0/ceiling: found 0 after setting 65535");
+  mock_counter_install();
+  counter_mock.on[1] = 1;
+  counter_mock.write = (mock_failure){"count1/enable", 0, EACCES}; /* it is on, and that is enough */
+  void *d;
+  ck_assert_msg(try(NULL, NULL, &d) == ETHD_OK, "%s", message);
+  D.close(d);
 }
 END_TEST
 
@@ -118,13 +143,13 @@ START_TEST(test_remarks) {
   mock_counter_install();
   ck_assert_int_eq(try(NULL, NULL, &d), ETHD_OK);
   ck_assert_str_eq(D.why(d), "");
+  ck_assert_str_eq(D.remark(d, 0), "counter.reverse_torque is inf: a reversed encoder isn't noticed");
+  ck_assert_ptr_null(D.remark(d, 1));
+  D.close(d);
+  ck_assert_int_eq(try("freeze_torque", "inf", &d), ETHD_OK);
   ck_assert_str_eq(D.remark(d, 0), "counter.freeze_torque is inf: a frozen encoder isn't noticed");
   ck_assert_str_eq(D.remark(d, 1), "counter.reverse_torque is inf: a reversed encoder isn't noticed");
   ck_assert_ptr_null(D.remark(d, 2));
-  D.close(d);
-  ck_assert_int_eq(try("freeze_torque", "0.1", &d), ETHD_OK);
-  ck_assert_str_eq(D.remark(d, 0), "counter.reverse_torque is inf: a reversed encoder isn't noticed");
-  ck_assert_ptr_null(D.remark(d, 1));
   D.close(d);
 }
 END_TEST
@@ -135,6 +160,7 @@ int main(void) {
   tcase_add_test(t, test_calls_that_fail);
   tcase_add_test(t, test_events_that_fail);
   tcase_add_test(t, test_texts_of_the_kernel);
+  tcase_add_test(t, test_counters_that_do_not_count);
   tcase_add_test(t, test_settings_that_cannot_be);
   tcase_add_test(t, test_remarks);
   suite_add_tcase(suite, t);
