@@ -1,5 +1,6 @@
 /* FTZ and DAZ: subnormal numbers count as 0, which keeps every step equally quick. flush sets them for this
-   thread and keep clears them; both return what was set before, for restore. [any] */
+   thread, rounds to nearest and takes no trap, whatever an application has set; keep clears FTZ and DAZ. Both return what
+   was set before, for restore. [any] */
 #ifndef ETHD__DENORMALS_H
 #define ETHD__DENORMALS_H
 
@@ -9,7 +10,7 @@
 #include <xmmintrin.h>
 static inline uint64_t ethd__denormals_flush(void) {
   unsigned before = _mm_getcsr();
-  _mm_setcsr(before | 0x8040u);
+  _mm_setcsr(0x9fc0u);
   return before;
 }
 static inline uint64_t ethd__denormals_keep(void) {
@@ -22,7 +23,7 @@ static inline void ethd__denormals_restore(uint64_t before) { _mm_setcsr((unsign
 static inline uint64_t ethd__denormals_flush(void) {
   uint64_t before;
   __asm__ volatile("mrs %0, fpcr" : "=r"(before));
-  __asm__ volatile("msr fpcr, %0" : : "r"(before | (uint64_t)1 << 24));
+  __asm__ volatile("msr fpcr, %0" : : "r"((uint64_t)1 << 24));
   return before;
 }
 static inline uint64_t ethd__denormals_keep(void) {

@@ -37,6 +37,6 @@ void ethd__error_prefix(ethd_error *error, const char *prefix) {
 }
 
 ethd_status ethd__check_number(ethd_error *error, const char *name, double value, double min, double max) {
-  if (value >= min && value <= max) return ETHD_OK;
+  if (isgreaterequal(value, min) && islessequal(value, max)) return ETHD_OK; /* NaN raises no trap */
   return ethd__refuse(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, (ethd__found){value, min, max});
 }

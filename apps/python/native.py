@@ -91,7 +91,7 @@ def declarations(include):
     return re.sub(r"extern\s+const (ethd_plugin_entry ethd_plugin|ethd_driver ethd_driver_plugin);", "", text)
 
 
-# Laws, steps and queries over arrays. Programs that step set flush-to-zero first; here it holds for the call alone.
+# Steps and queries over arrays. Programs that ask scenes set flush-to-zero first; here it holds for the call alone.
 HELPERS = """
 static uint64_t flush(void) {
 #if defined(__SSE2__)
@@ -118,12 +118,10 @@ static void restore(uint64_t was) {
 static int python_step(ethd_control *control, const char *sense, ethd_command *command, char *trace) {
   ethd_sense in;
   ethd_trace out;
-  uint64_t was = flush();
   memcpy(&in, sense, sizeof in);
   memset(&out, 0, sizeof out);
   int status = ethd_control_step(control, &in, command, &out);
   memcpy(trace, &out, sizeof out);
-  restore(was);
   return status;
 }
 static void python_nearest(const ethd_scene *scene, size_t count, const double *points, double *distance, double *normal,

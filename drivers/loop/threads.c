@@ -37,6 +37,7 @@ static void *run_control(void *loop) {
 static void *run_unit(void *unit_) {
   const ethd__unit *unit = unit_;
   ethd_loop *l = unit->loop;
+  (void)ethd__denormals_flush(); /* not the application's traps, which a thread inherits */
   while (!atomic_load_explicit(&l->stop, memory_order_relaxed)) {
     ethd_status status = l->def.driver->service(l->def.device, unit->number, ethd__clock_now());
     if (status < 0) __atomic_fetch_add(&l->stats.service_failures, 1, __ATOMIC_RELAXED);

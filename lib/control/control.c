@@ -4,6 +4,7 @@
 #include "control/fence.h"
 #include "control/rows.h"
 #include "control/tick.h"
+#include "fp_mode.h"
 
 static void push(ethd_control *control, const ethd_event *event) ETHD_RT {
   if (!ethd__events_push(&control->events, event)) control->state.counters.events_dropped++;
@@ -86,8 +87,8 @@ static ethd_status finish(const ethd_trace *out, ethd_command *command) ETHD_RT 
   return ethd__rows_status((ethd_fault)out->fault);
 }
 
-ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, ethd_command *command,
-                              ethd_trace *trace) {
+ETHD__FP_APART static ethd_status step(ethd_control *control, const ethd_sense *sense, ethd_command *command,
+                                       ethd_trace *trace) ETHD_RT {
   ethd_trace own;
   ethd__tick t;
   t.soft = take_clear(control);
@@ -103,7 +104,21 @@ ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, et
   return finish(t.trace, command);
 }
 
-ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense, ethd_command *command) {
+ETHD__FP_APART static ethd_status step_between_modes(ethd_control *control, const ethd_sense *sense,
+                                                     ethd_command *command, ethd_trace *trace) ETHD_RT {
+  const uint64_t callers = ethd__fp_take();
+  const ethd_status status = step(control, sense, command, trace);
+  ethd__fp_give(callers);
+  return status;
+}
+
+ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, ethd_command *command,
+                              ethd_trace *trace) {
+  return ethd__fp_is_own() ? step(control, sense, command, trace) : step_between_modes(control, sense, command, trace);
+}
+
+ETHD__FP_APART static ethd_status rehearse(ethd_control *control, const ethd_sense *sense,
+                                           ethd_command *command) ETHD_RT {
   ethd_trace own;
   ethd__tick t;
   memcpy(&control->scratch, &control->state, sizeof control->scratch);
@@ -118,14 +133,27 @@ ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense
   return finish(t.trace, command);
 }
 
+ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense, ethd_command *command) {
+  const uint64_t callers = ethd__fp_take();
+  const ethd_status status = rehearse(control, sense, command);
+  ethd__fp_give(callers);
+  return status;
+}
+
 double ethd_control_period(const ethd_control *control) { return control->period; }
 
-void ethd_control_reset(ethd_control *control) {
+ETHD__FP_APART static void reset(ethd_control *control) {
   const ethd__plan *plan = &control->plans[control->ruling];
   memset(&control->state, 0, sizeof control->state);
   control->state.finger_radius = (double)NAN;
   control->state.places[0].there = true;
   ethd__resume(plan, &control->state);
+}
+
+void ethd_control_reset(ethd_control *control) {
+  const uint64_t callers = ethd__fp_take();
+  reset(control);
+  ethd__fp_give(callers);
 }
 
 void ethd_control_restart(ethd_control *control) {

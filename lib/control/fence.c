@@ -2,49 +2,21 @@
 
 #include <stddef.h>
 
-/* ---- the processor's floating-point control: rounding, flushing, traps ---- */
+#include "fp_mode.h"
+
+/* ---- the processor's floating-point mode, which a law must leave as it was ---- */
 
 typedef struct fp_control {
-  uint64_t word; /* MXCSR, FPCR, frm */
+  uint64_t word;
   uint16_t x87;
 } fp_control;
 
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#define CONTROL_BITS 0xffc0u /* of MXCSR; the others are flags that any operation may raise */
-
-static fp_control control_now(void) ETHD_RT {
-  fp_control c = {_mm_getcsr() & CONTROL_BITS, 0};
-  __asm__ volatile("fnstcw %0" : "=m"(c.x87));
-  return c;
-}
+static fp_control control_now(void) ETHD_RT { return (fp_control){ethd__fp_now() & ETHD__FP_BITS, ethd__x87_now()}; }
 
 static void control_set(fp_control c) ETHD_RT {
-  __asm__ volatile("fnclex\n\tfldcw %0" : : "m"(c.x87)); /* a pending trap would be taken at the load */
-  _mm_setcsr((uint32_t)c.word);
+  ethd__x87_set(c.x87);
+  ethd__fp_set(c.word);
 }
-
-#elif defined(__aarch64__)
-static fp_control control_now(void) ETHD_RT {
-  fp_control c = {0, 0};
-  __asm__ volatile("mrs %0, fpcr" : "=r"(c.word));
-  return c;
-}
-
-static void control_set(fp_control c) ETHD_RT { __asm__ volatile("msr fpcr, %0" : : "r"(c.word)); }
-#elif defined(__riscv_flen)
-static fp_control control_now(void) ETHD_RT {
-  fp_control c = {0, 0};
-  __asm__ volatile("csrr %0, frm" : "=r"(c.word));
-  return c;
-}
-
-static void control_set(fp_control c) ETHD_RT { __asm__ volatile("csrw frm, %0" : : "r"(c.word)); }
-#else
-/* This processor's control word isn't known, so it isn't watched. */
-static fp_control control_now(void) ETHD_RT { return (fp_control){0, 0}; }
-static void control_set(fp_control c) ETHD_RT { (void)c; }
-#endif
 
 static bool control_is(fp_control a, fp_control b) ETHD_RT { return a.word == b.word && a.x87 == b.x87; }
 

@@ -5,6 +5,7 @@
 #include "control/fence.h"
 #include "control/setup.h"
 #include "error.h"
+#include "fp_mode.h"
 #include "scene/scene.h"
 
 #define TRY(expression)                 \
@@ -148,7 +149,7 @@ static bool has_rare_limits(const ethd_limits *limits) {
   return false;
 }
 
-ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
+ETHD__FP_APART static ethd_status prepare(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
   TRY(ethd__setup_made(s, error));
   TRY(check_fields(s, error));
   TRY(check_laws(s, error));
@@ -172,6 +173,13 @@ ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error 
     TRY(prepare_materials(s, place, out, error));
   }
   return ETHD_OK;
+}
+
+ethd_status ethd__plan_prepare(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
+  const uint64_t callers = ethd__fp_take();
+  const ethd_status status = prepare(s, out, error);
+  ethd__fp_give(callers);
+  return status;
 }
 
 ethd_status ethd_setup_check(const ethd_setup *setup, ethd_error *error) {

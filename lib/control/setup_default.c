@@ -3,6 +3,7 @@
 
 #include "control/setup.h"
 #include "ethd/control.h"
+#include "fp_mode.h"
 
 /* Returns how far the law looks ahead at most, from the ring's centre, m; 0: it doesn't. */
 static double ahead(const ethd_setup *s) {
@@ -11,10 +12,17 @@ static double ahead(const ethd_setup *s) {
   return range > 0 && range < (double)INFINITY ? s->ring_radius + range : 0;
 }
 
-double ethd_setup_range(const ethd_setup *s) {
+ETHD__FP_APART static double range_of(const ethd_setup *s) {
   if (ethd__setup_made(s, NULL) < 0) return (double)NAN;
   double near = 2 * s->ring_radius + (s->ring_radius - s->finger_radius_max), far = ahead(s);
   return far > near ? far : near;
+}
+
+double ethd_setup_range(const ethd_setup *s) {
+  const uint64_t callers = ethd__fp_take();
+  const double range = range_of(s);
+  ethd__fp_give(callers);
+  return range;
 }
 
 /* Chooses nothing where there is nothing to choose: then ethd_setup_check refuses the setup. */

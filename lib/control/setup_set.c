@@ -5,6 +5,7 @@
 
 #include "control/setup.h"
 #include "error.h"
+#include "fp_mode.h"
 
 #define AT(member) (uint32_t)offsetof(ethd_setup, member)
 
@@ -135,7 +136,7 @@ static ethd_status find(const ethd_setup *setup, const char *name, ethd__setup_f
   return ETHD_OK;
 }
 
-ethd_status ethd_setup_set(ethd_setup *setup, const char *name, double value, ethd_error *error) {
+ETHD__FP_APART static ethd_status set(ethd_setup *setup, const char *name, double value, ethd_error *error) {
   ethd__setup_field field;
   uint32_t index;
   ethd_status status = find(setup, name, &field, &index, error);
@@ -144,6 +145,13 @@ ethd_status ethd_setup_set(ethd_setup *setup, const char *name, double value, et
   if (status < 0) return ethd__error_prefix(error, field.key.section), status;
   ethd__setup_field_set(setup, &field, index, value);
   return ETHD_OK;
+}
+
+ethd_status ethd_setup_set(ethd_setup *setup, const char *name, double value, ethd_error *error) {
+  const uint64_t callers = ethd__fp_take();
+  const ethd_status status = set(setup, name, value, error);
+  ethd__fp_give(callers);
+  return status;
 }
 
 double ethd_setup_get(const ethd_setup *setup, const char *name) {

@@ -1,4 +1,5 @@
 #include "ethd/finger_fit.h"
+#include "fp_mode.h"
 
 #include <math.h>
 
@@ -62,10 +63,17 @@ static inline ethd_status finish(const ethd_fit *fit, ethd__points *points, ethd
   return ETHD_OK;
 }
 
-ethd_status ethd_fit_step(const ethd_fit *fit, const double r[ETHD_RAYS], ethd_finger *out) {
+ETHD__FP_APART static ethd_status fit_step(const ethd_fit *fit, const double r[ETHD_RAYS], ethd_finger *out) {
   ethd__points points;
   collect(fit, r, &points);
   return finish(fit, &points, out);
+}
+
+ethd_status ethd_fit_step(const ethd_fit *fit, const double r[ETHD_RAYS], ethd_finger *out) {
+  const uint64_t callers = ethd__fp_take();
+  const ethd_status status = fit_step(fit, r, out);
+  ethd__fp_give(callers);
+  return status;
 }
 
 ethd_status ethd__fit_moving(const ethd_fit *fit, const double r[ETHD_RAYS], const double lag[ETHD_RAYS], ethd_vec v,

@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "ethd/guard.h"
+#include "fp_mode.h"
 
 #define INF ((double)INFINITY)
 #define AT(field) (uint32_t)offsetof(ethd_limits, field)
@@ -71,12 +72,19 @@ static ethd_status check(const ethd_limit *row, const double *values, ethd_error
   return status;
 }
 
-ethd_status ethd_limits_check(const ethd_limits *limits, ethd_error *error) {
+ETHD__FP_APART static ethd_status check_all(const ethd_limits *limits, ethd_error *error) {
   if (limits->size != sizeof *limits)
     return ethd__refuse(error, ETHD_E_SIZE, "size", (ethd__found){limits->size, sizeof *limits, sizeof *limits});
   ethd_limits own = *limits;
   ethd_status status = ETHD_OK;
   for (const ethd_limit *row = ethd_limit_rows; !status && row < ethd_limit_rows + ETHD_LIMITS; row++)
     status = check(row, ethd_limit_of(&own, row), error);
+  return status;
+}
+
+ethd_status ethd_limits_check(const ethd_limits *limits, ethd_error *error) {
+  const uint64_t callers = ethd__fp_take();
+  const ethd_status status = check_all(limits, error);
+  ethd__fp_give(callers);
   return status;
 }

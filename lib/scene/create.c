@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "fp_mode.h"
 #include "scene/build.h"
 #include "scene/check.h"
 #include "scene/shapes.h"
@@ -231,10 +232,17 @@ ethd_status ethd__scene_make(const ethd_scene_def *def, const int32_t *ids, ethd
   return ETHD_OK;
 }
 
-ethd_status ethd_scene_create(const ethd_scene_def *def, ethd_scene **out, ethd_error *error) {
+ETHD__FP_APART static ethd_status create(const ethd_scene_def *def, ethd_scene **out, ethd_error *error) {
   *out = NULL;
   ethd_status status = check(def, error);
   return status ? status : ethd__scene_make(def, NULL, out, error);
+}
+
+ethd_status ethd_scene_create(const ethd_scene_def *def, ethd_scene **out, ethd_error *error) {
+  const uint64_t callers = ethd__fp_take();
+  const ethd_status status = create(def, out, error);
+  ethd__fp_give(callers);
+  return status;
 }
 
 void ethd_scene_destroy(ethd_scene *scene) { free(scene); }

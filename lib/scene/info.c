@@ -1,3 +1,4 @@
+#include "fp_mode.h"
 #include "scene/shapes.h"
 #include "scene/tree.h"
 
@@ -45,12 +46,19 @@ void ethd__scene_annulus(const ethd_arm *arm, double radius, double *inner, doub
   *outer += radius;
 }
 
-size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, double radius) {
+ETHD__FP_APART static size_t out_of_reach(const ethd_scene *scene, const ethd_arm *arm, double radius) {
   double inner, outer;
   size_t count = 0;
   ethd__scene_annulus(arm, radius, &inner, &outer);
   for (uint32_t i = 0; i < scene->object_count; i++)
     count += !ethd__object_is_within(scene, ethd__object_at(scene, i), inner, outer);
+  return count;
+}
+
+size_t ethd_scene_out_of_reach(const ethd_scene *scene, const ethd_arm *arm, double radius) {
+  const uint64_t callers = ethd__fp_take();
+  const size_t count = out_of_reach(scene, arm, radius);
+  ethd__fp_give(callers);
   return count;
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "error.h"
+#include "fp_mode.h"
 #include "scene/check.h"
 #include "scene/scene.h"
 
@@ -257,7 +258,7 @@ static ethd_status read_all(scene_reader r, draft *d) {
   return read_objects(r, d);
 }
 
-ethd_status ethd_scene_parse(const char *text, size_t length, ethd_scene **out, ethd_error *error) {
+ETHD__FP_APART static ethd_status parse(const char *text, size_t length, ethd_scene **out, ethd_error *error) {
   *out = NULL;
   if (!text && length) return ethd__error(error, ETHD_E_ARGUMENT, "text");
   if (!text) text = "";
@@ -271,5 +272,12 @@ ethd_status ethd_scene_parse(const char *text, size_t length, ethd_scene **out, 
   free(d->objects);
   free(d->numbers);
   free(d);
+  return status;
+}
+
+ethd_status ethd_scene_parse(const char *text, size_t length, ethd_scene **out, ethd_error *error) {
+  const uint64_t callers = ethd__fp_take();
+  const ethd_status status = parse(text, length, out, error);
+  ethd__fp_give(callers);
   return status;
 }

@@ -1,6 +1,7 @@
 #include <stdlib.h>
 
 #include "error.h"
+#include "fp_mode.h"
 #include "scene/scene.h"
 
 /* Collects the objects that stay, in the order of their ids; returns how many they are. */
@@ -24,8 +25,8 @@ static void mark(const ethd_scene *whole, double inner, double outer, ethd_scene
   scene->outer = fmin(outer, whole->outer);
 }
 
-ethd_status ethd_scene_prune(const ethd_scene *scene, const ethd_arm *arm, double radius, ethd_scene **out,
-                             ethd_error *error) {
+ETHD__FP_APART static ethd_status prune(const ethd_scene *scene, const ethd_arm *arm, double radius, ethd_scene **out,
+                                        ethd_error *error) {
   double inner, outer;
   ethd_status status = ETHD_OK;
   *out = NULL;
@@ -42,5 +43,13 @@ ethd_status ethd_scene_prune(const ethd_scene *scene, const ethd_arm *arm, doubl
   }
   free(defs);
   free(ids);
+  return status;
+}
+
+ethd_status ethd_scene_prune(const ethd_scene *scene, const ethd_arm *arm, double radius, ethd_scene **out,
+                             ethd_error *error) {
+  const uint64_t callers = ethd__fp_take();
+  const ethd_status status = prune(scene, arm, radius, out, error);
+  ethd__fp_give(callers);
   return status;
 }
