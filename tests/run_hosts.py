@@ -34,16 +34,16 @@ class Shell:
         os.write(self.fd, text.encode())
 
     def see(self, pattern):
-        """Waits for the pattern in what comes from now on, and returns whether it came."""
+        """Waits for the pattern in what comes from now on, and returns what matched; None: it didn't come."""
         end = time.time() + WAIT
         while time.time() < end:
             found = re.search(pattern, self.said)
             if found:
                 self.said = self.said[found.end():]
-                return True
+                return found.group()
             if select.select([self.fd], [], [], 0.1)[0]:
                 self.said += os.read(self.fd, 65536).decode(errors="replace")
-        return False
+        return None
 
 
 def state(pid):
@@ -56,8 +56,7 @@ sh.see("READY> ")
 sh.type(run + " --duration 600 --record " + folder + "/background &\n")
 check(sh.see(r"\[1\] \d+"), "no job")
 sh.type("echo job $!\n")
-sh.see(r"job \d+")
-job = int(subprocess.run(["ps", "-o", "pid=", "--ppid", str(sh.pid)], capture_output=True, text=True).stdout)
+job = int(sh.see(r"job \d+").split()[1])
 end = time.time() + WAIT
 while ticks("background") < 500 and time.time() < end:
     time.sleep(0.05)

@@ -19,4 +19,22 @@ int ethd__npy_reason(const ethd_npy *npy);
 /* Returns how many rows are in the file. */
 uint64_t ethd__npy_rows(const ethd_npy *npy);
 
+/* Reads rows in their order. Its memory doesn't grow with the file. */
+typedef struct ethd__npy_reader {
+  const char *path; /* the caller's, which outlives it; NULL: it isn't open */
+  int fd;
+  size_t row_bytes, data; /* data: where the first row is */
+  size_t count, next;     /* rows in the file, and how many have been given */
+  char *piece;
+} ethd__npy_reader;
+
+/* Opens a file as ethd_npy_read does; the file must be a regular one. [main] */
+ETHD_MUST_CHECK ethd_status ethd__npy_reader_open(const char *path, const ethd_column *columns, size_t row_bytes,
+                                                  ethd__npy_reader *out, char message[ETHD_MESSAGE_MAX]);
+
+/* Gives the next row, which is valid until the next call; ETHD_EMPTY after the last. [main] */
+ETHD_MUST_CHECK ethd_status ethd__npy_reader_next(ethd__npy_reader *reader, const void **row,
+                                                  char message[ETHD_MESSAGE_MAX]);
+void ethd__npy_reader_close(ethd__npy_reader *reader);
+
 #endif

@@ -5,6 +5,7 @@
 
 #include "denormals.h"
 #include "ethd/record.h"
+#include "record/npy_parts.h"
 #include "record/recording_parts.h"
 #include "settings/config_parts.h"
 #include "text/error_text.h"
@@ -16,8 +17,9 @@ typedef struct verification {
   char *events_path;
   ethd_config *config;
   ethd__record_events events;
-  ethd_trace *rows;
-  size_t count, next; /* rows; next event */
+  char *tick_path;
+  ethd__npy_reader rows;
+  size_t next; /* event */
   ethd_setup setup;
   double heat[2];              /* of the motors, by the last event of that kind */
   double learned[ETHD_MEMORY]; /* by the law, likewise */
@@ -38,13 +40,9 @@ static ethd_status open_config(verification *r) {
 }
 
 static ethd_status open_rows(verification *r) {
-  void *rows = NULL;
-  char *path = ethd__path_join(r->folder, ETHD_RECORDING_TICK);
-  if (!path) return ethd__no_memory(r->message, NULL);
-  ethd_status status = ethd_npy_read(path, ethd_trace_columns, sizeof(ethd_trace), &rows, &r->count, r->message);
-  free(path);
-  r->rows = rows;
-  return status;
+  r->tick_path = ethd__path_join(r->folder, ETHD_RECORDING_TICK);
+  if (!r->tick_path) return ethd__no_memory(r->message, NULL);
+  return ethd__npy_reader_open(r->tick_path, ethd_trace_columns, sizeof(ethd_trace), &r->rows, r->message);
 }
 
 static ethd_status open_events(verification *r) {
@@ -177,8 +175,8 @@ static void say_number(char type, const unsigned char *at, char out[32]) {
     snprintf(out, 32, "%" PRId64, integer);
 }
 
-static ethd_status compare(const verification *r, size_t row, const ethd_trace *replayed) {
-  const unsigned char *a = (const unsigned char *)&r->rows[row], *b = (const unsigned char *)replayed;
+static ethd_status compare(const verification *r, size_t row, const ethd_trace *recorded, const ethd_trace *replayed) {
+  const unsigned char *a = (const unsigned char *)recorded, *b = (const unsigned char *)replayed;
   char was[32], is[32], index[16] = "";
   for (const ethd_column *c = ethd_trace_columns; c->name; c++)
     for (uint32_t i = 0; i < c->count; i++) {
@@ -199,32 +197,36 @@ static ethd_status judge_end(const verification *r) {
   if (!last || strcmp(last->kind, "end") != 0)
     return ethd__say(r->message, ETHD_E_UNFINISHED,
                      "%s: %zu tick%s, equal to the bit, but the recording was never closed: later ones may be lost",
-                     r->folder, r->count, ethd__s(r->count));
-  if (last->row != r->count)
+                     r->folder, r->rows.count, ethd__s(r->rows.count));
+  if (last->row != r->rows.count)
     return ethd__say(r->message, ETHD_E_DIFFERS, "%s:%zu: end: row: found %" PRIu64 ", but there %s %zu tick%s",
-                     r->events_path, last->line, last->row, r->count == 1 ? "is" : "are", r->count, ethd__s(r->count));
-  return ethd__say(r->message, ETHD_OK, "%s: %zu tick%s, equal to the bit", r->folder, r->count, ethd__s(r->count));
+                     r->events_path, last->line, last->row, r->rows.count == 1 ? "is" : "are", r->rows.count,
+                     ethd__s(r->rows.count));
+  return ethd__say(r->message, ETHD_OK, "%s: %zu tick%s, equal to the bit", r->folder, r->rows.count,
+                   ethd__s(r->rows.count));
 }
 
 /* Refuses to go on at a tick before which others are missing, with what the controller learned in them. */
 static ethd_status unreplayable(const verification *r, size_t row) {
   return ethd__say(r->message, ETHD_E_UNFINISHED,
                    "%s: %zu of %zu ticks are equal to the bit, the rest can't be replayed: %s (%s:%zu)", r->folder, row,
-                   r->count, r->missing->detail, ETHD_RECORDING_EVENTS, r->missing->line);
+                   r->rows.count, r->missing->detail, ETHD_RECORDING_EVENTS, r->missing->line);
 }
 
 static ethd_status run(verification *r) {
-  for (size_t row = 0; row < r->count; row++) {
+  for (size_t row = 0; row < r->rows.count; row++) {
     ethd_trace trace;
     ethd_command command;
-    ethd_status status = before_row(r, row);
+    const void *recorded;
+    ethd_status status = ethd__npy_reader_next(&r->rows, &recorded, r->message);
+    if (!status) status = before_row(r, row);
     if (status) return status;
     memset(&trace, 0, sizeof trace);
     ethd__config_foreign(r->config, "a plugin's law");
-    (void)ethd_control_step(r->control, &r->rows[row].sense, &command, &trace);
+    (void)ethd_control_step(r->control, &((const ethd_trace *)recorded)->sense, &command, &trace);
     ethd__config_foreign(r->config, NULL);
     drain(r->control);
-    status = compare(r, row, &trace);
+    status = compare(r, row, recorded, &trace);
     if (status) return r->missing ? unreplayable(r, row) : status;
   }
   return judge_end(r);
@@ -240,7 +242,8 @@ ethd_status ethd_recording_verify(const char *folder, bool plugins, char message
   ethd_control_destroy(r.control);
   ethd_config_free(r.config);
   ethd__record_events_free(&r.events);
-  free(r.rows);
+  ethd__npy_reader_close(&r.rows);
+  free(r.tick_path);
   free(r.events_path);
   ethd__denormals_restore(before);
   return status;
