@@ -84,11 +84,12 @@ static ethd__servo_outcome outcome(int error) {
   }
 }
 
-/* Waits for the silence that ends the frame before on a serial line. */
-static void keep_silence(const ethd__servo_bus *bus) {
+/* Waits for the silence that ends the frame before on a serial line, and notes when the next one may go out. */
+static void keep_silence(ethd__servo_bus *bus) {
   int64_t left = bus->quiet_ns + nanoseconds(bus->map->silence) - ethd__clock_now();
   struct timespec t = {left / 1000000000, left % 1000000000};
   if (left > 0) nanosleep(&t, NULL);
+  bus->asked_ns = ethd__clock_now();
 }
 
 static ethd__servo_outcome end(ethd__servo_bus *bus, int got, uint32_t count) {

@@ -15,7 +15,7 @@ enum { ETHD__SERVO_HAS_SPEED = 1, ETHD__SERVO_HAS_READING = 2 }; /* bits of `has
 
 /* What the I/O thread hands to the control thread, always whole; the control thread takes the newest. */
 typedef struct ethd__servo_sample {
-  int64_t stamp_ns; /* when the joints were where `q` says */
+  int64_t stamp_ns; /* when the joints were asked for: they were where `q` says then, or later */
   uint64_t number;  /* of good exchanges so far; unchanged when nothing newer has come */
   int32_t has;
   uint32_t epoch;                   /* the start that this sample belongs to */

@@ -19,6 +19,18 @@ static void command(ethd__servo_device *d, int64_t now_ns, double torque[2]) {
   d->due_ns = now_ns - behind + d->exchange_ns;
 }
 
+/* When the drive was asked for its joints, for the first of them. It reads them after that, nobody knows when, and a
+   sample may not look younger than it is. */
+static int64_t asked(const ethd__servo_link *l) {
+  int64_t first = INT64_MAX;
+  for (int i = 0; i < 2; i++) {
+    int32_t r = l->map->roles[ETHD__SERVO_POSITION1 + i];
+    int64_t at = r < 0 ? INT64_MAX : ethd__servo_plan_asked(&l->plan, r);
+    if (at < first) first = at;
+  }
+  return first;
+}
+
 /* Makes one turn of the link and publishes what it shows. The caller holds the device's lock. */
 ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double torque[2]) {
   int64_t begin = ethd__clock_now();
@@ -30,8 +42,7 @@ ethd_status ethd__servo_turn(ethd__servo_device *d, int64_t now_ns, const double
   int64_t took = ethd__clock_now() - begin;
   if (!status) {
     ethd_histogram_add(&d->trip, took);
-    /* the joints are read last in an exchange */
-    ethd__servo_feedback_take(&d->feedback, &d->link, d->is_virtual ? now_ns : begin + took * 3 / 4);
+    ethd__servo_feedback_take(&d->feedback, &d->link, d->is_virtual ? now_ns : asked(&d->link));
   }
   ethd__servo_feedback_judge(&d->feedback, &d->link);
   d->feedback.sample.epoch = atomic_load_explicit(&d->epoch, memory_order_relaxed);

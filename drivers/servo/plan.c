@@ -88,6 +88,8 @@ uint16_t *ethd__servo_plan_words(ethd__servo_plan *plan, const ethd__servo_map *
 
 bool ethd__servo_plan_fresh(const ethd__servo_plan *plan, int32_t r) { return plan->reads[plan->block[r]].fresh; }
 
+int64_t ethd__servo_plan_asked(const ethd__servo_plan *plan, int32_t r) { return plan->reads[plan->block[r]].asked_ns; }
+
 /* Marks the reads that are due in this exchange. */
 static void choose(ethd__servo_plan *plan) {
   for (uint32_t i = 0; i < plan->read_count; i++)
@@ -104,10 +106,13 @@ ethd__servo_outcome ethd__servo_plan_ask(ethd__servo_plan *plan, ethd__servo_bus
   if (joined && !done)
     done = ethd__servo_bus_both(bus, plan->writes[0].address, plan->writes[0].count, plan->writes[0].words,
                                 plan->reads[0].address, plan->reads[0].count, plan->reads[0].words);
+  if (joined) plan->reads[0].asked_ns = bus->asked_ns;
   for (uint32_t i = joined; i < plan->read_count && !done; i++)
-    if (plan->reads[i].fresh)
+    if (plan->reads[i].fresh) {
       done = ethd__servo_bus_read(bus, plan->reads[i].space, plan->reads[i].address, plan->reads[i].count,
                                   plan->reads[i].words);
+      plan->reads[i].asked_ns = bus->asked_ns;
+    }
   if (!done) plan->all = false;
   return done;
 }

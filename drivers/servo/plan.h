@@ -13,6 +13,7 @@ typedef struct ethd__servo_block {
   uint32_t address, count;
   uint32_t every, phase; /* asked when the exchange's number modulo every is phase */
   bool fresh;            /* asked in the last exchange */
+  int64_t asked_ns;      /* CLOCK_MONOTONIC: before the question last went out; what it says isn't older */
   uint16_t words[ETHD__SERVO_READ_MAX];
 } ethd__servo_block;
 
@@ -34,6 +35,9 @@ uint16_t *ethd__servo_plan_words(ethd__servo_plan *plan, const ethd__servo_map *
 
 /* True when the register was read in the last exchange. [any] */
 bool ethd__servo_plan_fresh(const ethd__servo_plan *plan, int32_t r);
+
+/* When the register was last asked for: its value is as young as this, or younger. [any] */
+int64_t ethd__servo_plan_asked(const ethd__servo_plan *plan, int32_t r);
 
 /* Asks the questions in order, writes first, and stops at the first that isn't DONE. */
 ethd__servo_outcome ethd__servo_plan_ask(ethd__servo_plan *plan, ethd__servo_bus *bus);

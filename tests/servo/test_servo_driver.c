@@ -26,9 +26,11 @@ static int64_t now;
 static ethd_sense sense;
 static ethd_status last;
 
+static int is_virtual = 1;
+
 static ethd_status open_with(ethd_setting *settings, uint32_t count) {
   setup = ethd_setup_default();
-  const ethd_device_def def = {&setup, settings, count, folder, "d.ini", 1};
+  const ethd_device_def def = {&setup, settings, count, folder, "d.ini", is_virtual};
   ethd_status status = servo->open(&def, &device, message);
   if (status && device) servo->close(device), device = NULL;
   return status;
@@ -524,6 +526,33 @@ START_TEST(test_not_followed) {
 }
 END_TEST
 
+/* A drive that answers late has read its joints when the question came; the sample isn't stamped after that. */
+static _Atomic int64_t latched;
+
+static mock_act answer_late(void *user, uint64_t n, int function) {
+  (void)user, (void)n;
+  if (function == 16) return (mock_act){MOCK_ANSWER, 0, 0};
+  latched = ethd__clock_now();
+  return (mock_act){MOCK_LATE, 0, 20000};
+}
+
+START_TEST(test_no_sample_looks_younger) {
+  is_virtual = 0;
+  ck_assert_msg(open_changed("divisor = 1", _i ? "divisor = 1\nexchange = combined" : "divisor = 1") == ETHD_OK, "%s",
+                message);
+  drive.act = answer_late;
+  for (int i = 0; i < 10; i++) {
+    int64_t before = ethd__clock_now();
+    (void)!servo->service(device, 0, before);
+    memset(&sense, 0, sizeof sense);
+    ck_assert_int_eq(servo->read(device, ethd__clock_now(), &sense), ETHD_OK);
+    ck_assert_int_ge(sense.time_ns, before);
+    ck_assert_int_le(sense.time_ns, latched);
+  }
+  close_device();
+}
+END_TEST
+
 /* ---- slow buses ---- */
 
 static ethd_control *control;
@@ -892,6 +921,7 @@ int main(void) {
   tcase_add_test(t, test_loop_gone);
   tcase_add_test(t, test_never_waits);
   tcase_add_test(t, test_figures);
+  tcase_add_loop_test(t, test_no_sample_looks_younger, 0, 2);
   suite_add_tcase(suite, t);
   int failed = rig_run(suite);
   unlink(path);
