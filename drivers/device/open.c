@@ -2,6 +2,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "device/driver_file.h"
 #include "device/stack.h"
@@ -225,6 +226,7 @@ static ethd_status read_hang_time(ethd__stack *s, const ethd_device_def *def, ch
 
 static ethd_status open_all(const naming *n, const char *ids) {
   ethd__stack *s = n->stack;
+  s->process = getpid();
   ethd_status status = name_drivers(n, ids);
   if (!status) status = check_owners(s, n->def, n->message);
   if (!status) status = read_hang_time(s, n->def, n->message);

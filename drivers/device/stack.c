@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "settings/config_parts.h"
 
@@ -40,6 +41,11 @@ static void safe_all(void *stack) ETHD_RT {
     if (s->at[i].driver->safe) s->at[i].driver->safe(s->at[i].device);
 }
 
+/* ---- a child made by fork ---- */
+
+/* Lines, sockets and the guardian's page are its parent's: whatever a driver did to them here would happen there. */
+static bool is_forked(const ethd__stack *s) { return s->process != getpid(); }
+
 /* ---- I/O ---- */
 
 static uint32_t units(const void *stack) {
@@ -51,6 +57,7 @@ static uint32_t units(const void *stack) {
 
 static ethd_status service(void *stack, uint32_t unit, int64_t now_ns) {
   const ethd__stack *s = stack;
+  if (is_forked(s)) return ETHD_E_DEVICE;
   for (uint32_t i = 0; i < s->count; i++) {
     uint32_t own = s->at[i].units;
     if (unit < own) return s->at[i].driver->service(s->at[i].device, unit, now_ns);
@@ -95,6 +102,7 @@ static uint32_t turn(const ethd__stack *s, uint32_t i) {
 /* Starts all drivers; when one refuses, those that have started are stopped. */
 static ethd_status start(void *stack) {
   ethd__stack *s = stack;
+  if (is_forked(s)) return ETHD_E_DEVICE;
   for (uint32_t i = 0; i < s->count; i++) {
     ethd_status status = start_one(s, turn(s, i));
     if (status >= 0) continue;
@@ -107,6 +115,7 @@ static ethd_status start(void *stack) {
 static ethd_status stop(void *stack) {
   ethd__stack *s = stack;
   ethd_status status = ETHD_OK;
+  if (is_forked(s)) return ETHD_E_DEVICE;
   for (uint32_t i = s->count; i--;) status = worse(status, stop_one(s, turn(s, i)));
   return status;
 }
@@ -114,7 +123,7 @@ static ethd_status stop(void *stack) {
 static void close_all(void *stack) {
   ethd__stack *s = stack;
   if (!s) return;
-  for (uint32_t i = s->count; i--;)
+  for (uint32_t i = is_forked(s) ? 0 : s->count; i--;)
     if (s->at[i].device) s->at[i].driver->close(s->at[i].device);
   free(s);
 }
@@ -156,13 +165,14 @@ static const char *remark(const void *stack, uint32_t i) {
 
 static void clear(void *stack) {
   const ethd__stack *s = stack;
-  for (uint32_t i = 0; i < s->count; i++)
+  for (uint32_t i = 0; i < s->count && !is_forked(s); i++)
     if (s->at[i].driver->clear) s->at[i].driver->clear(s->at[i].device);
 }
 
 static ethd_status home(void *stack, const double q[2]) {
   const ethd__stack *s = stack;
   ethd_status status = ETHD_E_ARGUMENT; /* none of the drivers has anything to find out */
+  if (is_forked(s)) return ETHD_E_DEVICE;
   for (uint32_t i = 0; i < s->count; i++) {
     if (!s->at[i].driver->home) continue;
     status = s->at[i].driver->home(s->at[i].device, q);

@@ -3,6 +3,7 @@
 #define ETHD__DEVICE_STACK_H
 
 #include <stdbool.h>
+#include <sys/types.h>
 
 #include "ethd/driver.h"
 
@@ -11,6 +12,7 @@ extern const ethd_driver ethd__driver_stack;
 
 typedef struct ethd__stack {
   uint32_t count;
+  pid_t process;      /* that opened the drivers */
   bool only_prepares; /* nothing is touched: each driver's prepare takes the place of its open */
   unsigned hang_time; /* s within which a file's code must return */
   char doing[96];     /* what a file's code does, for people */

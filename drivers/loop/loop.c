@@ -1,5 +1,6 @@
 /* What any thread may ask of a loop, and its tick on a virtual clock. */
 #include <string.h>
+#include <unistd.h>
 
 #include "denormals.h"
 #include "loop/loop.h"
@@ -23,11 +24,18 @@ void ethd_loop_tick(ethd_loop *l) {
 
 /* ---- other threads ---- */
 
-int32_t ethd_loop_armed(const ethd_loop *l) { return atomic_load_explicit(&l->armed, memory_order_relaxed); }
-int32_t ethd_loop_ended(const ethd_loop *l) { return atomic_load_explicit(&l->ended, memory_order_acquire); }
+bool ethd__loop_is_forked(const ethd_loop *l) { return l->process && l->process != getpid(); }
+
+int32_t ethd_loop_armed(const ethd_loop *l) {
+  return atomic_load_explicit(&l->armed, memory_order_relaxed) && !ethd__loop_is_forked(l);
+}
+
+int32_t ethd_loop_ended(const ethd_loop *l) {
+  return atomic_load_explicit(&l->ended, memory_order_acquire) || ethd__loop_is_forked(l);
+}
 
 int32_t ethd_loop_hangs(const ethd_loop *l, const ethd_law **law) {
-  int32_t hangs = atomic_load_explicit(&l->hangs, memory_order_acquire);
+  int32_t hangs = atomic_load_explicit(&l->hangs, memory_order_acquire) && !ethd__loop_is_forked(l);
   if (law) *law = hangs ? ethd_control_law(l->def.control) : NULL;
   return hangs;
 }

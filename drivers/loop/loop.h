@@ -5,6 +5,7 @@
 
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <sys/types.h>
 
 #include "ethd/loop.h"
 #include "loop/rt.h"
@@ -84,6 +85,7 @@ struct ethd_loop {
   ethd__loop_ring rows;
 
   /* [main] */
+  pid_t process; /* in which the threads are; 0: there are none */
   int32_t shortfalls;
   bool started, locked, has_control, has_watch;
   uint64_t faults[ETHD_FAULT_COUNT]; /* of controllers that were reset */
@@ -126,6 +128,9 @@ void *ethd__loop_watch(void *loop);
    ethd__xenomai_begin does, or with ETHD_E_MEMORY. [main] */
 ETHD_MUST_CHECK ethd_status ethd__loop_ask_machine(ethd_loop *loop, ethd_error *error);
 void ethd__loop_release_machine(ethd_loop *loop);
+
+/* True in a child made by fork, which has this memory but none of the threads. */
+bool ethd__loop_is_forked(const ethd_loop *loop);
 
 /* Returns how many units of blocking I/O the device has. [main] */
 uint32_t ethd__loop_units(const ethd_loop *loop);

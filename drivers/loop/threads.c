@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <unistd.h>
 
 #include "clock.h"
 #include "denormals.h"
@@ -160,6 +161,7 @@ ethd_status ethd_loop_start(ethd_loop *l, ethd_error *error) {
   l->started = true;
   if (l->def.require_rt && l->shortfalls) return give_up(l, error, "require_rt", l->shortfalls);
   arm(l);
+  l->process = getpid();
   int failure = start_threads(l);
   if (l->def.require_rt && l->shortfalls) return give_up(l, error, "require_rt", l->shortfalls);
   return failure ? give_up(l, error, "thread", failure) : ETHD_OK;
@@ -228,7 +230,17 @@ static void join_control(ethd_loop *l) {
   l->has_control = 0;
 }
 
+/* What a child made by fork has of a loop: memory and descriptors, which go without a word to the device. */
+static void drop(ethd_loop *l) {
+  l->has_control = l->has_watch = l->locked = false;
+  l->units = 0;
+  if (l->stack) munmap(l->stack, l->def.stack);
+  l->stack = NULL;
+  ethd__loop_release_machine(l);
+}
+
 ethd_status ethd_loop_join(ethd_loop *l) {
+  if (ethd__loop_is_forked(l)) return drop(l), ETHD_E_ARGUMENT;
   if (l->def.clock && !ethd_loop_ended(l)) {
     ethd__loop_rest(l);
     atomic_store_explicit(&l->ended, 1, memory_order_release);

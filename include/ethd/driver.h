@@ -146,7 +146,9 @@ extern ETHD_API const ethd_driver ethd_driver_plugin;
    table is checked: size, ABI, id, brief, settings, and functions that need each other (write and safe, units and
    service): ETHD_E_ABI, ETHD_E_SIZE, ETHD_E_ARGUMENT, ETHD_E_TABLE. ETHD_E_UNKNOWN, ETHD_E_DUPLICATE: an id, or a
    driver's key, with and without its id; ETHD_E_FILE, ETHD_E_LOAD, ETHD_E_SYMBOL: a file; ETHD_E_FULL: more than
-   ETHD_DRIVERS_MAX, or units; else what the driver's open returns. message holds one line. [main] */
+   ETHD_DRIVERS_MAX, or units; else what the driver's open returns. message holds one line. In a child that the process
+   makes by fork, *driver's start, stop, home and service refuse (ETHD_E_DEVICE), and close frees without calling the
+   drivers, since the device stays the parent's. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from,
                                                       const ethd_device_def *def, const ethd_driver **driver,
                                                       void **device, char message[ETHD_MESSAGE_MAX]);

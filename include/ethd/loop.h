@@ -31,6 +31,11 @@
    ethd_loop_create does what takes long (in a large program locking the memory takes seconds); a drive that is enabled
    waits for its first message only some milliseconds until its watchdog, or the servo's guardian, takes the torque away.
 
+   A child that the process makes by fork (system and popen exec, daemon and multiprocessing don't) has a copy of the
+   loop and none of its threads, and the device stays the parent's. There the loop has ended and isn't armed, join
+   returns ETHD_E_ARGUMENT, enable and home ETHD_BUSY, and destroy frees the copy; none of them calls the driver. So
+   daemon() comes before ethd_loop_start.
+
    Destroy the loop before its device and its controller. */
 #ifndef ETHD_LOOP_H
 #define ETHD_LOOP_H

@@ -109,7 +109,11 @@ static ethd_status dev_service(void *d, uint32_t unit, int64_t now) {
   return ETHD_OK;
 }
 
-static void dev_safe(void *d) ETHD_RT { (void)d; }
+static pid_t opened_by; /* the process that has the device */
+static void dev_safe(void *d) ETHD_RT {
+  (void)d;
+  if (opened_by && opened_by != getpid()) _exit(9);
+}
 static ethd_status dev_stop(void *d) { return (void)d, ETHD_OK; }
 static void dev_close(void *d) { (void)d; }
 
@@ -306,6 +310,39 @@ START_TEST(test_require_rt) {
 }
 END_TEST
 
+/* Returns 0 if the child's copy of a running loop goes without its threads and without the device. */
+static int in_a_child(void) {
+  ethd_loop_row row;
+  alarm(20);
+  if (ethd_loop_armed(loop) || !ethd_loop_ended(loop) || ethd_loop_hangs(loop, NULL)) return 1;
+  if (ethd_loop_enable(loop) != ETHD_BUSY || ethd_loop_home(loop, NULL) == ETHD_OK) return 2;
+  while (ethd_loop_take(loop, &row) == ETHD_OK) continue;
+  const int starts = atomic_load(&d.starts);
+  ethd_loop_stop(loop);
+  if (ethd_loop_join(loop) != ETHD_E_ARGUMENT || atomic_load(&d.starts) != starts) return 3;
+  ethd_loop_destroy(loop);
+  rig_close(&r);
+  return 0;
+}
+
+START_TEST(test_forked) {
+  int status;
+  opened_by = getpid();
+  open_loop(0);
+  ck_assert_int_eq(ethd_loop_start(loop, NULL), ETHD_OK);
+  await_reads(20);
+  pid_t child = fork();
+  if (child == 0) _exit(in_a_child());
+  ck_assert_int_eq(waitpid(child, &status, 0), child);
+  ck_assert_msg(WIFEXITED(status) && WEXITSTATUS(status) == 0, "the child ends with status %#x", (unsigned)status);
+  ck_assert_int_eq(ethd_loop_armed(loop), 1);
+  const int reads = atomic_load(&d.reads);
+  await_reads(reads + 20);
+  close_loop();
+  opened_by = 0;
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("loop thread");
   TCase *t = tcase_create("loop thread");
@@ -321,6 +358,7 @@ int main(void) {
   tcase_add_test(t, test_io_priority);
   if (!SANITIZED) tcase_add_test(t, test_little_memory_to_lock);
   tcase_add_test(t, test_require_rt);
+  tcase_add_test(t, test_forked);
   tcase_set_timeout(t, 60);
   suite_add_tcase(suite, t);
   return rig_run(suite);

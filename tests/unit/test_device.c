@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "ethd/control.h"
@@ -218,6 +219,29 @@ START_TEST(test_bare) {
 }
 END_TEST
 
+/* A child made by fork closes its copy of a device, and no driver hears of it. */
+START_TEST(test_forked) {
+  int status;
+  bare = (ethd_driver){
+      .size = sizeof bare, .abi = ETHD_DRIVER_ABI, .id = "bare", .brief = "bare", .open = open_b, .close = close_part};
+  ck_assert_int_eq(open_bare("a, bare"), ETHD_OK);
+  ck_assert_int_eq(driver->start(device), ETHD_OK);
+  const pid_t child = fork();
+  if (child == 0) {
+    char before[sizeof log_];
+    memcpy(before, log_, sizeof log_);
+    const int refused = driver->start(device) == ETHD_E_DEVICE && driver->stop(device) == ETHD_E_DEVICE &&
+                        driver->home(device, NULL) == ETHD_E_DEVICE;
+    driver->close(device);
+    _exit(refused && strcmp(before, log_) == 0 ? 0 : 1);
+  }
+  ck_assert_int_eq(waitpid(child, &status, 0), child);
+  ck_assert_int_eq(status, 0);
+  ck_assert_int_eq(driver->stop(device), ETHD_OK);
+  driver->close(device);
+}
+END_TEST
+
 /* ---- settings by a driver's own table ---- */
 
 static const ethd_param params[] = {{"speed", "m/s", 0, 2, 1, "of it"}, {"mood", "good|bad", 0, 1, 0, "of it"}};
@@ -313,6 +337,7 @@ int main(void) {
   tcase_add_test(tests, test_two);
   tcase_add_test(tests, test_undone);
   tcase_add_test(tests, test_bare);
+  tcase_add_test(tests, test_forked);
   tcase_add_loop_test(tests, test_settings, 0, sizeof settings / sizeof *settings);
   tcase_add_test(tests, test_refused);
   suite_add_tcase(suite, tests);
