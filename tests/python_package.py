@@ -1,4 +1,5 @@
 """The Python package against recordings, golden taps and the programs: python_package.py BUILD FOLDER."""
+import gc
 import os
 import subprocess
 
@@ -209,6 +210,46 @@ refuses("of transition.law", lambda: c.post({"contact.law": abrupt}))
 c.post({"transition.law": broken})
 step = c.step(inside)
 assert step.safe and step.status == -16 and np.all(step.tau == 0), step
+
+# What a law keeps is its own: it stays as it was, what is written into it later changes nothing, and it outlives the
+# controller.
+kept, motions = [], []
+
+
+@ethd.transition_law("keeps", state=2)
+def keeps(p, state, contact, out):
+    state[0] += 1
+    out.beta, out.share, out.state = 1, 1, 2
+    kept.append((state, contact, out, (contact.d_re, contact.n.x, contact.object)))
+
+
+@ethd.tracking_law("keeps-motion", state=1)
+def keeps_motion(p, state, motion):
+    state[0] += 1
+    motions.append((state, motion, tuple(motion.eps_q)))
+    return 0.0, 0.0
+
+
+c = ethd.Controller(folder + "/own.ini")
+c.post({"transition.law": keeps, "tracking.law": keeps_motion, "transition.swap_time": 0})
+c.step(inside)
+kept.clear(), motions.clear()
+for i in range(5):
+    inside["finger"] = (0.246 + 1e-4 * i, 0.25)
+    c.step(inside)
+counts = [state[0] for state, *_ in kept]
+assert counts == list(range(int(counts[0]), int(counts[0]) + 5)) and len({state[0] for state, *_ in motions}) == 5, counts
+assert all((contact.d_re, contact.n.x, contact.object) == said and contact.facts is None for _, contact, _, said in kept)
+assert all(tuple(motion.eps_q) == said for _, motion, said in motions) and len({said for *_, said in motions}) == 5
+for state, contact, out, _ in kept:
+    state[:], contact.d_re, out.beta = 1e300, 7, 1e300
+torque_before = c.step(inside).tau
+assert kept[-1][0][0] == counts[-1] + 1 and np.isfinite(torque_before).all()
+del c
+gc.collect()
+for state, *_ in kept + motions:
+    state[:] = 1e300
+inside["finger"] = (0.246, 0.25)
 
 # the law of README.md and the same one in Python, in the same trial: the recording's value for "brake", not the default
 opened = folder + "/opened"

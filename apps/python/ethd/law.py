@@ -1,9 +1,12 @@
 """Laws: what the library offers, and laws written in Python for trials on the desk. Those are not realtime."""
+from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any, Callable, Dict, List, Optional, Tuple
+from types import SimpleNamespace
+from typing import Any, Callable, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ethd._native import ffi, lib
 from ethd.errors import check_error
@@ -104,10 +107,34 @@ def _numbers(p: Any, names: List[str]) -> Dict[str, float]:
     return {name: p[i] for i, name in enumerate(names)}
 
 
-def _state(state: Any, numbers: int) -> Optional[Any]:
-    if not numbers:
+# A law is shown copies, which it may keep: the library's own memory is another contact's after the call, or gone.
+
+
+def _copied(of: Any) -> Any:
+    """A copy: of a struct by its fields' names, of an array as a tuple. A pointer is None: no law in Python looks ahead."""
+    kind = ffi.typeof(of) if isinstance(of, ffi.CData) else None
+    if kind is None:
+        return of
+    if kind.kind == "array":
+        return tuple(of)
+    if kind.kind == "pointer" and (kind.item.kind != "struct" or not of):
         return None
-    return np.frombuffer(ffi.buffer(ffi.cast("double *", state), 8 * numbers), dtype=np.float64)
+    fields = (kind.item if kind.kind == "pointer" else kind).fields
+    return SimpleNamespace(**{name: _copied(getattr(of, name)) for name, _ in fields})
+
+
+@contextmanager
+def _state(block: Any, numbers: int) -> Iterator[Optional[NDArray[np.float64]]]:
+    """The law's state as an array of its own, which goes back into the block when the call ends."""
+    if not numbers:
+        yield None
+        return
+    there = np.frombuffer(ffi.buffer(ffi.cast("double *", block), 8 * numbers), dtype=np.float64)
+    own = there.copy()
+    try:
+        yield own
+    finally:
+        there[:] = own
 
 
 def _entry(signature: str, step: Callable[..., int]) -> Any:
@@ -118,7 +145,8 @@ def _entry(signature: str, step: Callable[..., int]) -> Any:
 def transition_law(id: str, brief: str = "a law in Python", state: int = 0, **params: Any) -> Callable[[Callable[..., None]], Law]:
     """A decorator: who rules at a contact. The function gets (p, state, contact, out): the parameters by name, `state`
     numbers that the controller keeps for each contact (None for 0), an ethd_contact to read and an ethd_ruling to fill
-    (beta, share, offset m, damping Ns/m, state); include/ethd/law.h says what they mean.
+    (beta, share, offset m, damping Ns/m, state); include/ethd/law.h says what they mean. All are the call's own: what a law
+    keeps of them stays as it was, and what it writes into them later changes nothing.
 
         @ethd.transition_law("mine", brake=(60, 0, 1000, "Ns/m"))
         def mine(p, state, contact, out):
@@ -129,7 +157,10 @@ def transition_law(id: str, brief: str = "a law in Python", state: int = 0, **pa
         names = list(params)
 
         def step(p: Any, block: Any, contact: Any, out: Any) -> int:
-            function(_numbers(p, names), _state(block, state), contact, out)
+            ruling = ffi.new("ethd_ruling *", out[0])
+            with _state(block, state) as own:
+                function(_numbers(p, names), own, _copied(contact), ruling)
+            out[0] = ruling[0]
             return 0
 
         return _made("transition", id, _entry("ethd_status(*)(const double *, void *, const ethd_contact *, ethd_ruling *)", step), brief, params, state, [])
@@ -145,7 +176,8 @@ def contact_law(id: str, brief: str = "a law in Python", state: int = 0, **param
         names = list(params)
 
         def step(p: Any, block: Any, gap: float, speed: float, entering: int, force: Any) -> int:
-            force[0] = function(_numbers(p, names), _state(block, state), gap, speed, bool(entering))
+            with _state(block, state) as own:
+                force[0] = function(_numbers(p, names), own, gap, speed, bool(entering))
             return 0
 
         return _made("contact", id, _entry("ethd_status(*)(const double *, void *, double, double, int, double *)", step), brief, params, state, [])
@@ -161,7 +193,8 @@ def tracking_law(id: str, brief: str = "a law in Python", state: int = 0, **para
         names = list(params)
 
         def step(p: Any, block: Any, motion: Any, torque: Any) -> int:
-            torque[0], torque[1] = function(_numbers(p, names), _state(block, state), motion)
+            with _state(block, state) as own:
+                torque[0], torque[1] = function(_numbers(p, names), own, _copied(motion))
             return 0
 
         return _made("tracking", id, _entry("ethd_status(*)(const double *, void *, const ethd_tracking_in *, double *)", step), brief, params, state, [])
