@@ -1,7 +1,6 @@
 /* Scenes from text: what is taken, each refusal with its line and word, and text broken at random. ETHD_FUZZ:
    so many of those. */
 #include <check.h>
-#include <locale.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -135,18 +134,6 @@ START_TEST(test_numbers) {
     snprintf(word, sizeof word, i % 3 ? "%.17g" : i % 2 ? "%.12f" : "%.20e", v);
     check_number(word);
   }
-}
-END_TEST
-
-/* A locale with a decimal comma changes nothing. */
-START_TEST(test_comma_locale) {
-  if (!setlocale(LC_NUMERIC, "de_DE.UTF-8") && !setlocale(LC_NUMERIC, "fr_FR.UTF-8")) return;
-  ethd_scene *s = parse("halfplane 1 0 0.25");
-  ethd_nearest q;
-  ethd_scene_query(s, (ethd_vec){0, 0}, &q);
-  ck_assert(q.distance == 0.25);
-  ethd_scene_destroy(s);
-  setlocale(LC_NUMERIC, "C");
 }
 END_TEST
 
@@ -427,7 +414,6 @@ int main(void) {
   tcase_add_test(all, test_length_counts);
   tcase_add_test(all, test_nul_byte);
   tcase_add_test(all, test_numbers);
-  tcase_add_test(all, test_comma_locale);
   tcase_add_test(all, test_materials);
   tcase_add_test(all, test_refusals);
   tcase_add_test(all, test_numbers_of_refusals);

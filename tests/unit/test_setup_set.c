@@ -104,7 +104,7 @@ static void agrees_with_a_file(const ethd_setup *chosen, const char *choice, con
     snprintf(name, sizeof name, key->count > 1 ? "%s.%s[%u]" : "%s.%s", key->section, key->param.name, i);
     size_t at = n;
     n += (size_t)snprintf(text + n, sizeof text - n, " %.9g", value + i * 1e-3);
-    double own = atof(text + at);
+    double own = strtod(text + at, NULL);
     ck_assert_msg(ethd_setup_set(&s, name, own, &error) == ETHD_OK, "%s", name);
   }
   if (ethd_setup_check(&s, NULL) < 0) return; /* a relation to another number, or the radii's */

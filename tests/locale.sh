@@ -1,0 +1,41 @@
+#!/bin/sh
+# Programs and libraries in a process that has called setlocale, where numbers have a decimal comma: what reads and writes text
+# does as it does without, and golden outputs have their bytes.
+set -u
+[ -z "${SAN:-}" ] || { echo "SKIP: a sanitizer must be loaded first, before the host's setlocale"; exit 77; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failed=0
+fail() { echo "FAILED $*"; failed=1; }
+LOCPATH=$(sh .ci/locales) || exit 1
+export LOCPATH
+
+# The host: programs and unit tests find its locale set. What scripts run beside them isn't ours.
+cat >"$work/host.c" <<'END2'
+#include <errno.h>
+#include <locale.h>
+#include <stdlib.h>
+#include <string.h>
+__attribute__((constructor)) static void host(void) {
+  const char *name = program_invocation_short_name;
+  if (strncmp(name, "ethd-", 5) && strncmp(name, "test_", 5)) return;
+  if (!setlocale(LC_ALL, getenv("HOST_LOCALE"))) abort();
+}
+END2
+printf '#include <stdio.h>\nint main(void) { return printf("%%g", 0.5) < 0; }\n' >"$work/comma.c"
+$CC -D_GNU_SOURCE -shared -fPIC "$work/host.c" -o "$work/host.so" && $CC "$work/comma.c" -o "$work/test_comma" || exit 1
+
+hosted() { LD_PRELOAD=$work/host.so "$@" >"$work/out" 2>&1 </dev/null || { fail "$HOST_LOCALE: $*"; tail -n 5 "$work/out"; }; }
+units='locale config config_refused setup_set plant_file servo_map ring_calibration scene_parse csv recording details study
+  report svg npy tables inject camera tune_journal device'
+for HOST_LOCALE in de_DE.UTF-8 tr_TR.ISO-8859-9; do
+  export HOST_LOCALE
+  hosted "$work/test_comma"
+  [ "$(cat "$work/out")" = 0,5 ] || fail "$HOST_LOCALE: no decimal comma: $(cat "$work/out")"
+  for unit in $units; do hosted "$BUILD/tests/test_$unit"; done
+done
+HOST_LOCALE=de_DE.UTF-8
+hosted sh tests/golden.sh once
+# calibrations, recordings, MCAP, commands and telemetry, a study's files
+for script in calibrate convert run study; do hosted sh "tests/$script.sh"; done
+exit $failed
