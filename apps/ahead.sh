@@ -3,6 +3,7 @@
 # sensors do. Everything is simulated.
 #   apps/ahead.sh [FOLDER [TAPS [SEED]]]      build/ahead, 200 taps a point, seed 20140101
 set -eu
+export LC_ALL=C # awk's numbers have a point
 bin=${BUILD:-build}/bin
 share=$bin/../share/ethd
 folder=${1:-build/ahead} taps=${2:-200} seed=${3:-20140101}

@@ -2,6 +2,7 @@
 # How long the study's screen takes for a frame, with the mouse led through taps: one line. Needs Xvfb and xdotool.
 #   BUILD=build sh apps/frames.sh [1280x720 [TAPS]]
 set -eu
+export LC_ALL=C # awk's numbers have a point
 BUILD=${BUILD:-build} size=${1:-1280x720} taps=${2:-30}
 [ -z "${SAN:-}" ] || { echo "SKIP frames: the window's libraries aren't made for sanitizers"; exit 0; }
 for program in Xvfb xdotool; do command -v $program >/dev/null || { echo "SKIP frames: no $program"; exit 0; }; done

@@ -2,6 +2,7 @@
 import gc
 import os
 import subprocess
+import sys
 
 import numpy as np
 from python_help import build, folder, refuses, tree, write
@@ -318,4 +319,22 @@ odd_points = ethd.Scene(text).nearest([[np.nan, 0], [0.1, 0], [0, np.inf]])
 assert np.isnan(odd_points.distance[[0, 2]]).all() and np.isnan(odd_points.normal[[0, 2]]).all()
 assert odd_points.object.tolist() == [-1, 0, -1] and odd_points.distance[1] == -0.05
 refuses("(..., 2) is allowed", lambda: ethd.Scene(text).nearest(np.zeros((3, 3))), ValueError)
+
+# ---- a host with a decimal comma, as Qt makes one of matplotlib's: the same controller, the same recordings ----
+write("comma.ini", "[tracking]\nk_t = 40.9\nb_t = 1.9\n[contact]\nk_e = 1234.5\n")
+hosted = """
+import locale, sys
+locale.setlocale(locale.LC_ALL, sys.argv[1])
+import ethd
+r, c = ethd.read(sys.argv[2]), ethd.Controller(sys.argv[3])
+c.post({"contact.b_e": 12.25})
+print(locale.localeconv()["decimal_point"], [c.step(row).tau.tobytes() for row in r.tick[:150]][-1].hex())
+print(all(step.trace.tobytes() == row.tobytes() for row, step in r.replay()), r.verify())
+"""
+places = subprocess.run(["sh", tree + "/.ci/locales"], env={**os.environ, "BUILD": build}, check=True,
+                        stdout=subprocess.PIPE, text=True)
+said = [subprocess.run([sys.executable, "-c", hosted, name, taps, folder + "/comma.ini"], check=True, text=True,
+                       env={**os.environ, "LOCPATH": places.stdout.strip()}, stdout=subprocess.PIPE).stdout
+        for name in ("C", "de_DE.UTF-8")]
+assert said[0][0] == "." and said[1][0] == "," and said[0][1:] == said[1][1:] and "\nTrue " in said[0], said
 print(f"ethd {ethd.__version__}, numpy {np.__version__}: {rows} rows replayed in Python, equal to the bit")

@@ -4,6 +4,7 @@
 
 #include <arpa/inet.h>
 #include <errno.h>
+#include <locale.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -39,7 +40,9 @@ static inline int fail(const char *what, const char *why) { return fprintf(stder
 /* Reads an argument from min to max; returns 0 if it is none. */
 static inline int number(const char *text, double min, double max, double *out) {
   char *end;
+  locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0), own = uselocale(c); /* a program's own may have a comma */
   *out = strtod(text, &end);
+  uselocale(own), freelocale(c);
   return end != text && !*end && *out >= min && *out <= max;
 }
 
