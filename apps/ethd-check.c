@@ -19,7 +19,10 @@ static const char doc[] =
     "The device isn't touched: its drivers say what they know from their settings and files (a servo's map gives the "
     "time of an exchange on its wire, the divisor that holds, registers that nobody confirms, and what isn't watched). "
     "--open asks the device itself, and enables nothing. Figures come from the drivers and from [arm], or from an "
-    "option, which replaces them. Stability includes an elastic transmission but no friction, which stops small swings "
+    "option, which replaces them. Of a delay that nobody knows the worst is assumed, and printed: the longest spacing "
+    "of "
+    "samples that the limits allow, or with --open the longest that is measured. Stability includes an elastic "
+    "transmission but no friction, which stops small swings "
     "only. Where a loop is unstable without it, a line gives the speed up to which friction stops a swing, and the "
     "speed that one encoder count gives the motors; if the latter is larger, the ring chatters for ever, as the "
     "simulated device does. A plugin's law whose gains can't be told from its parameters isn't judged, which the last "
@@ -135,8 +138,9 @@ static void option(const char *name, const char *text, double max, double *out) 
 /* `asked` is the torque that the configuration allows, Nm, whatever its device does. */
 static ethd__figures figures(const ethd_config *config, const checked_device *d, double asked) {
   const ethd_setup *setup = &config->setup;
-  ethd__figures f = {
-      .loop = {.mass = {NAN, NAN}, .delay = NAN, .friction = NAN, .viscous = NAN, .count = NAN}, {NAN, NAN}, NAN};
+  ethd__figures f = {.loop = {.mass = {NAN, NAN}, .delay = NAN, .friction = NAN, .viscous = NAN, .count = NAN},
+                     .force = {NAN, NAN},
+                     .latency = NAN};
   double links[2] = {setup->arm.link1, setup->arm.link2}, ticks = NAN;
   from_drivers(d, setup, &f);
   if (strcmp(config->device, ethd_driver_sim.id) == 0) from_plant(config, &f);
@@ -175,6 +179,8 @@ int main(int argc, char **argv) {
   ethd__subject subject = {.config = config, .device = figures(config, &device, asked)};
   printf("\n");
   ethd__report_drivers(config, device.driver, device.device, arg.open);
+  if (isnan(subject.device.loop.delay))
+    ethd__find_delay(&config->setup, device.driver, device.device, arg.open, &subject.device);
   ethd__report_device(&subject);
   int exceeded = ethd__report_stability(&config->setup, &subject.device.loop);
   exceeded += ethd__report_passivity(&subject);

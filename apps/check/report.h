@@ -6,6 +6,7 @@
 
 #include "bounds/loops.h"
 #include "ethd/config.h"
+#include "ethd/driver.h"
 
 /* Prints the setup as it was understood, as a configuration that gives the same setup again. */
 void ethd__report_setup(const ethd_config *config);
@@ -15,6 +16,7 @@ typedef struct ethd__figures {
   ethd__bounds_device loop; /* what its loops feel; only stability counts a transmission that gives way */
   double force[2];          /* N: torque limit / L, along x and y */
   double latency;           /* s, of the readings of the finger */
+  char delay_is[160];       /* how the delay was found where nobody says it; empty: it is said */
 } ethd__figures;
 
 typedef struct ethd__subject {
@@ -26,6 +28,11 @@ typedef struct ethd__subject {
 /* Prints what the device's drivers say: their remarks, and the limits that rule. is_open: the device itself was
    asked. */
 void ethd__report_drivers(const ethd_config *config, const ethd_driver *driver, void *device, bool is_open);
+
+/* Gives a delay that nobody says: the spacing of the samples of a device that is open, else the longest spacing that the
+   setup's limits allow; `figures` tells which. Nothing is enabled. */
+void ethd__find_delay(const ethd_setup *setup, const ethd_driver *driver, void *device, bool is_open,
+                      ethd__figures *figures);
 
 /* Fills `felt`, and prints what is known. */
 void ethd__report_device(ethd__subject *subject);

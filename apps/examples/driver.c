@@ -64,8 +64,7 @@ static ethd_status open_bus(const ethd_device_def *def, void **device, char mess
   return status;
 }
 
-/* Begins at rest where the device stands, without a torque from before. An I/O thread may be in `service` now: what is
-   its own, it sets itself. */
+/* Begins at rest, without a torque from before. An I/O thread may be in `service`: what is its own, it sets itself. */
 static ethd_status start(void *device) {
   bus *b = device;
   ethd_cell_put(b->orders, &(ethd_command){.safe = 1});
@@ -108,7 +107,10 @@ static ethd_status write_torque(void *device, int64_t now_ns, const ethd_command
 }
 
 static void safe(void *device) ETHD_RT { ((bus *)device)->safe = 1; }
-static ethd_limits limits(const void *device) { return (void)device, ethd_limits_torque(1); }
+static ethd_limits limits(const void *device) {
+  ethd_limits limits = ethd_limits_device(); /* its gap, 5 ms, is the spacing of samples; a slower bus says its own */
+  return (void)device, limits.torque = 1, limits;
+}
 
 static void close_bus(void *device) {
   bus *b = device;

@@ -38,3 +38,18 @@ ethd_status ethd__encoder_check(const ethd__encoder_def *d, double period, ethd_
   double most = trunc((double)d->ceiling / 2) / (counts_per_radian(d) * period);
   return d->speed_max <= most ? ETHD_OK : refuse(error, "speed_max", d->speed_max, 1e-3, most);
 }
+
+#define APART 2.0 /* times: row 13 compares energies, whose share it knows no better */
+
+bool ethd__encoder_doubt(const ethd__encoder_def *d, const ethd_setup *setup, int joint, char *sentence, size_t room) {
+  double link = joint ? setup->arm.link2 : setup->arm.link1, mass = setup->dynamics.mass[joint];
+  double known = mass * link * link;
+  if (isinf(d->reverse_torque) || !(d->inertia >= APART * known || d->inertia * APART <= known)) return false;
+  snprintf(
+      sentence, room,
+      "inertia of joint %d is %.3g kg m^2, but arm.mass_%c = %.3g kg on a link of %g m makes %.3g: %s; set inertia",
+      joint + 1, d->inertia, 'x' + joint, mass, link, known,
+      d->inertia < known ? "a reversed encoder isn't noticed"
+                         : "a hand that pushes may be taken for a reversed encoder");
+  return true;
+}

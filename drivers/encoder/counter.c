@@ -15,6 +15,7 @@
 typedef struct counter {
   ethd__counter_settings settings;
   ethd__encoder_def def[2];
+  char inertia[2][192]; /* remarks about it; empty: there is none */
   double period;
   ethd_cell *cell; /* of snapshots */
 
@@ -127,6 +128,7 @@ static ethd_status define_both(counter *c, const ethd_device_def *def, const uin
     c->def[j] = define(&c->settings, j, ceilings[j]);
     status = ethd__encoder_check(&c->def[j], c->period, &error);
     if (status) ethd_error_text(def->file, &error, message);
+    if (!status) (void)!ethd__encoder_doubt(&c->def[j], def->setup, j, c->inertia[j], sizeof c->inertia[j]);
   }
   return status;
 }
@@ -229,11 +231,13 @@ static const char *counter_why(const void *device) {
 
 static const char *counter_remark(const void *device, uint32_t i) {
   const counter *c = device;
-  const char *said[4] = {NULL};
+  const char *said[6] = {NULL};
   uint32_t n = 0;
   if (is_misindexed(c)) said[n++] = "an encoder's index marks had a wrong distance: check its coupling, then ack";
   if (isinf(c->def[0].freeze_torque)) said[n++] = "counter.freeze_torque is inf: a frozen encoder isn't noticed";
   if (isinf(c->def[0].reverse_torque)) said[n++] = "counter.reverse_torque is inf: a reversed encoder isn't noticed";
+  for (int j = 0; j < 2; j++)
+    if (c->inertia[j][0]) said[n++] = c->inertia[j];
   return i < n ? said[i] : NULL;
 }
 

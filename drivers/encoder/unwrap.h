@@ -15,6 +15,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "ethd/control.h"
 #include "ethd/fault.h"
 #include "ethd/status.h"
 
@@ -88,6 +89,10 @@ static inline uint64_t ethd__count_ceiling(uint32_t width) { return UINT64_MAX >
 /* Checks a definition against the period of its samples, s: ETHD_E_RANGE or ETHD_E_NOT_FINITE with the field's name.
    Refuses a ceiling of which a joint at speed_max passes a half or more in one period. [main] */
 ETHD_MUST_CHECK ethd_status ethd__encoder_check(const ethd__encoder_def *def, double period, ethd_error *error);
+
+/* True when `inertia` and the setup's mass at the ring along the joint's axis (0, 1) differ by a factor of two or more;
+   the sentence says what isn't watched for that. False where the mass isn't known. [main] */
+bool ethd__encoder_doubt(const ethd__encoder_def *def, const ethd_setup *setup, int joint, char *sentence, size_t room);
 
 /* Forgets where the encoder was, but not that it was misindexed. */
 void ethd__encoder_restart(ethd__encoder *encoder) ETHD_RT;

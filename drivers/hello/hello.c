@@ -52,7 +52,12 @@ static ethd_status write_torque(void *device, int64_t now_ns, const ethd_command
 }
 
 static void safe(void *device) ETHD_RT { ((hello *)device)->safe = 1; }
-static ethd_limits limits(const void *device) { return (void)device, ethd_limits_torque(1); }
+
+static ethd_limits limits(const void *device) {
+  ethd_limits limits = ethd_limits_device();
+  limits.torque = 1; /* Nm */
+  return (void)device, limits;
+}
 
 const ethd_driver HELLO = {.size = sizeof(ethd_driver),
                            .abi = ETHD_DRIVER_ABI,

@@ -28,6 +28,7 @@ typedef struct ethd__servo_device {
   char wire[300];        /* the remark about what an exchange takes */
   char unconfirmed[128]; /* the remark about registers that nobody confirms; empty: there are none */
   char coarse[160];      /* the remark about a torque whose first count is over the limit; empty: there is none */
+  char inertia[2][192];  /* remarks about the inertia of the map's axes; empty: there is none */
   int64_t period_ns, exchange_ns;
   double speed;               /* m/s: the most that the ring may have */
   bool is_virtual;            /* whether the clock is virtual */

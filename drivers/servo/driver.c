@@ -67,14 +67,16 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
 }
 
 /* Remarks in this order: how long an exchange takes, until the drive itself shows it; how many registers are
-   unconfirmed; a torque that is too coarse; the guardian; the line's own delay; then what the map leaves open. */
+   unconfirmed; a torque that is too coarse; an inertia that is doubtful; the guardian; the line's own delay; then what the map leaves open. */
 static const char *remark(const void *device, uint32_t i) {
   const ethd__servo_device *d = device;
-  const char *own[6];
+  const char *own[8];
   uint32_t n = 0;
   if (!d->link.counts.connects) own[n++] = d->wire;
   if (d->unconfirmed[0]) own[n++] = d->unconfirmed;
   if (d->coarse[0]) own[n++] = d->coarse;
+  for (int axis = 0; axis < 2; axis++)
+    if (d->inertia[axis][0]) own[n++] = d->inertia[axis];
   if (d->guarded[0]) own[n++] = d->guarded;
   if (d->link.bus.fd >= 0 && !d->link.bus.at_once)
     own[n++] = "the serial line's driver doesn't hand bytes over at once: answers may come late (FTDI: 1 into "

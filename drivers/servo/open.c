@@ -123,6 +123,10 @@ static ethd_status make_feedback(ethd__servo_device *d, const ethd_device_def *d
   ethd_status status = ethd__servo_feedback_make(&d->feedback, &d->map, def->setup->limits.torque,
                                                  1e-9 * (double)d->exchange_ns, &error);
   if (status) ethd_error_text(s->map->value, &error, message);
+  for (int i = 0; i < 2 && !status; i++)
+    if (d->joint[i] >= 0 && d->feedback.axes[i].counts)
+      (void)!ethd__encoder_doubt(&d->feedback.axes[i].def, def->setup, d->joint[i], d->inertia[i],
+                                 sizeof d->inertia[i]);
   return status;
 }
 
