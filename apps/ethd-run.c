@@ -17,6 +17,8 @@ static const char doc[] =
     "stop it, since a stopped program can't control the ring.\v"
     "Commands come on stdin, one a line. Each is answered by a line that begins with ok or error:\n"
     "  transition LAW          swap to another transition law, without a bump\n"
+    "  contact LAW             likewise the contact law\n"
+    "  tracking LAW            likewise the tracking law\n"
     "  set SECTION.KEY VALUE   set a number, as in the configuration\n"
     "  status                  say where ring and controller are\n"
     "  ack                     acknowledge a fault\n"

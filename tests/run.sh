@@ -28,6 +28,13 @@ speed = 5
 END2
 echo 'halfplane -1 0 -0.238' >"$folder/wall.scene"
 
+# any law is swapped, and the recording says so
+printf 'wait 0.3\ncontact spring\nwait 0.3\ncontact kelvin-voigt\nset contact.b_e 4\ncontact hunt-crossley\ntracking pd\ncontact\ncontact smooth\nwait 0.3\nstop\n' |
+  "$run" --config "$folder/device.ini" --virtual --duration 2 --record "$folder/laws" >"$folder/laws.out" 2>&1 || fail "laws: exit $?: $(cat "$folder/laws.out")"
+says "$folder/laws.out" '^ok: contact spring$' '^ok: contact hunt-crossley$' '^ok: tracking pd$' '^error: contact LAW$' '^error: .*found "smooth", .*spring.* is allowed'
+"$BUILD/bin/ethd-replay" --verify "$folder/laws" >"$folder/laws.out" 2>&1 || fail "laws don't replay: $(cat "$folder/laws.out")"
+grep -c '^.*,contact,' "$folder/laws/events.csv" | grep -qx 3 || fail "events of laws: $(cat "$folder/laws/events.csv")"
+
 # ---- virtual: every command, equal bytes twice ----
 script='status\nwait 0.3\ntransition smooth\nset contact.k_e 2000\nwait 0.2\ntransition abrupt\nack\nenable\nbogus\nset contact.k_e -1\nset contact.k_e\ntransition nowhere\nset limits.speed 0.001\nwait 0.3\nenable\nstatus\nack\nset limits.speed 5\nwait 0.1\nenable\nwait 0.4\nstatus\nstop\n'
 for k in 1 2; do

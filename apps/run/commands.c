@@ -33,16 +33,18 @@ static void post(ethd__session *s, ethd_status status, const ethd_setup *setup, 
     answer("ok: %s %s", kind, detail);
 }
 
-static void transition(ethd__session *s, ethd__commands *c, char *rest) {
+static void law(ethd__session *s, const char *kind, const char *id) {
   char message[ETHD_MESSAGE_MAX] = "";
   ethd_setup setup = s->setup;
-  (void)c;
-  if (!*rest) {
-    answer("error: transition LAW");
-    return;
-  }
-  post(s, ethd_config_transition(s->config, rest, &setup, message), &setup, "transition", rest, message);
+  if (*id)
+    post(s, ethd_config_law(s->config, kind, id, &setup, message), &setup, kind, id, message);
+  else
+    answer("error: %s LAW", kind);
 }
+
+static void tracking(ethd__session *s, ethd__commands *c, char *rest) { (void)c, law(s, "tracking", rest); }
+static void contact(ethd__session *s, ethd__commands *c, char *rest) { (void)c, law(s, "contact", rest); }
+static void transition(ethd__session *s, ethd__commands *c, char *rest) { (void)c, law(s, "transition", rest); }
 
 static void set(ethd__session *s, ethd__commands *c, char *rest) {
   char message[ETHD_MESSAGE_MAX] = "", detail[ETHD__LINE_MAX];
@@ -158,9 +160,16 @@ static const struct {
   const char *word;
   void (*run)(ethd__session *s, ethd__commands *c, char *rest);
   bool alone;
-} table[] = {
-    {"transition", transition, false}, {"set", set, false},   {"status", status, true}, {"ack", ack, true},
-    {"enable", enable, true},          {"home", home, false}, {"stop", stop, true},     {"wait", wait_for, false}};
+} table[] = {{"transition", transition, false},
+             {"contact", contact, false},
+             {"tracking", tracking, false},
+             {"set", set, false},
+             {"status", status, true},
+             {"ack", ack, true},
+             {"enable", enable, true},
+             {"home", home, false},
+             {"stop", stop, true},
+             {"wait", wait_for, false}};
 
 /* ---- lines ---- */
 
@@ -178,7 +187,7 @@ static void run(ethd__commands *c, ethd__session *s) {
       table[i].run(s, c, rest);
     return;
   }
-  answer("error: found %s; transition, set, status, ack, enable, home, stop, wait are allowed",
+  answer("error: found %s; transition, contact, tracking, set, status, ack, enable, home, stop, wait are allowed",
          ethd__quote(word, length, quote));
 }
 

@@ -93,8 +93,9 @@ static ethd_status apply(verification *r, const ethd__record_event *e, int *done
     r->setup = r->config->setup;
     status = ethd_config_transition(r->config, e->detail, &r->setup, what);
     *done |= FRESH;
-  } else if (strcmp(e->kind, "transition") == 0) {
-    status = ethd_config_transition(r->config, e->detail, &r->setup, what);
+  } else if (strcmp(e->kind, "transition") == 0 || strcmp(e->kind, "contact") == 0 ||
+             strcmp(e->kind, "tracking") == 0) {
+    status = ethd_config_law(r->config, e->kind, e->detail, &r->setup, what);
     *done |= CHANGED;
   } else if (strcmp(e->kind, "set") == 0) {
     status = set(r, e->detail, what);
@@ -112,9 +113,10 @@ static ethd_status apply(verification *r, const ethd__record_event *e, int *done
   } else if (strcmp(e->kind, "thinned") == 0 || strcmp(e->kind, "lost") == 0) {
     r->missing = e;
   } else if (strcmp(e->kind, "fault") != 0 && strcmp(e->kind, "end") != 0) {
-    status = ethd__say(what, ETHD_E_UNKNOWN,
-                       "an unknown kind of event; setup, start, transition, set, clear, thinned, lost, "
-                       "heat, learned, fault, end are allowed");
+    status =
+        ethd__say(what, ETHD_E_UNKNOWN,
+                  "an unknown kind of event; setup, start, transition, contact, tracking, set, clear, thinned, lost, "
+                  "heat, learned, fault, end are allowed");
   }
   if (!status) return ETHD_OK;
   return ethd__say(r->message, status, "%s:%zu: %s: %s", r->events_path, e->line, e->kind, what);

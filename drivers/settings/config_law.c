@@ -52,28 +52,37 @@ ethd_status ethd__config_preset(ethd__config *config, const ethd__config_key *ke
 
 /* ---- a change of law ---- */
 
+static double *values(const ethd_setup *setup, const ethd_setup_part *part) {
+  return (double *)(void *)((char *)setup + part->values);
+}
+
 /* Keeps values that were chosen, in the file or later; values that were the old law's defaults become the new law's. */
-static void keep_common(const ethd_config *config, const ethd_law *from, const double *old, const ethd_law *to,
-                        double *p) {
+static void keep_common(const ethd_config *config, const ethd_setup_part *part, const ethd_setup *from,
+                        ethd_setup *to) {
   const ethd_ini *ini = &ethd__config_whole(config)->ini;
-  for (uint32_t i = 0; i < from->param_count; i++) {
-    const ethd_param *row = &from->params[i];
-    int k = ethd_params_find(to->params, to->param_count, row->name);
-    if (k >= 0 && (old[i] != row->def || ethd_ini_find(ini, "transition", row->name))) p[k] = old[i];
+  const ethd_method had = ethd_setup_chosen(from, part), has = ethd_setup_chosen(to, part);
+  const double *old = values(from, part);
+  double *p = values(to, part);
+  for (uint32_t i = 0; i < had.param_count; i++) {
+    const ethd_param *row = &had.params[i];
+    int k = ethd_params_find(has.params, has.param_count, row->name);
+    if (k >= 0 && (old[i] != row->def || ethd_ini_find(ini, part->section, row->name))) p[k] = old[i];
   }
 }
 
-ethd_status ethd_config_transition(const ethd_config *config, const char *id, ethd_setup *setup,
-                                   char message[ETHD_MESSAGE_MAX]) {
-  ethd__config_key key = {NULL, 0, "transition", "law", id, message};
+ethd_status ethd_config_law(const ethd_config *config, const char *kind, const char *id, ethd_setup *setup,
+                            char message[ETHD_MESSAGE_MAX]) {
+  const ethd_setup_part *part = ethd_setup_part_of(kind);
+  ethd__config_key key = {NULL, 0, kind, "law", id, message};
   ethd_setup changed = *setup;
   ethd_error error;
-  const ethd_law *from = &setup->transition->law;
+  if (!part || part->methods)
+    return ethd__say(message, ETHD_E_ARGUMENT, "found %.40s, a law of tracking, contact or transition is allowed",
+                     kind);
   ethd_status status = ethd__config_choose(config, &key, &changed);
   if (status) return status;
-  const ethd_law *to = &changed.transition->law;
-  if (is_paper(config)) open_caps(to, changed.transition_p);
-  keep_common(config, from, setup->transition_p, to, changed.transition_p);
+  if (part->kind == ETHD_TRANSITION && is_paper(config)) open_caps(&changed.transition->law, changed.transition_p);
+  keep_common(config, part, setup, &changed);
   status = ethd__config_check(config, &changed, &error);
   if (status < 0) {
     ethd_error_text(NULL, &error, message);
@@ -81,4 +90,9 @@ ethd_status ethd_config_transition(const ethd_config *config, const char *id, et
   }
   *setup = changed;
   return ETHD_OK;
+}
+
+ethd_status ethd_config_transition(const ethd_config *config, const char *id, ethd_setup *setup,
+                                   char message[ETHD_MESSAGE_MAX]) {
+  return ethd_config_law(config, "transition", id, setup, message);
 }

@@ -82,9 +82,14 @@ static inline ETHD_MUST_CHECK ethd_status ethd_config_parse_received(const char 
 /* Frees the configuration with its scene; destroy the controllers made of it first. NULL is allowed. [main] */
 ETHD_API void ethd_config_free(ethd_config *config);
 
-/* Changes the transition law in `setup`, not in config->setup. Values that were chosen for keys that the new law has
-   too are kept, the rest is dropped; the file's preset still applies. ETHD_E_UNKNOWN: no law of that id; else the
-   statuses of ethd_setup_check. A refusal changes nothing. */
+/* Changes the law of a kind, "tracking", "contact" or "transition", in `setup`, not in config->setup. Values that were
+   chosen for keys that the new law has too are kept, the rest is dropped; the file's preset still applies.
+   ETHD_E_ARGUMENT: no such kind; ETHD_E_UNKNOWN: no law of that id; else the statuses of ethd_setup_check. A refusal
+   changes nothing. */
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_law(const ethd_config *config, const char *kind, const char *id,
+                                                     ethd_setup *setup, char message[ETHD_MESSAGE_MAX]);
+
+/* As ethd_config_law of "transition": ETHD_E_UNKNOWN and the statuses of ethd_setup_check. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_config_transition(const ethd_config *config, const char *id,
                                                             ethd_setup *setup, char message[ETHD_MESSAGE_MAX]);
 

@@ -174,6 +174,15 @@ START_TEST(test_transition) {
   ck_assert_int_eq(ethd_config_transition(c, "kelvin-voigt", &s, message), ETHD_E_UNKNOWN);
   ck_assert_str_eq(message, refused_law("kelvin-voigt"));
   ck_assert(memcmp(&before, &s, sizeof s) == 0);
+  /* the other kinds likewise */
+  ck_assert_int_eq(ethd_config_law(c, "velocity", "offset", &s, message), ETHD_E_ARGUMENT);
+  ck_assert_int_eq(ethd_config_law(c, "contact", "offset", &s, message), ETHD_E_UNKNOWN);
+  ck_assert(memcmp(&before, &s, sizeof s) == 0);
+  ck_assert_int_eq(ethd_config_set(c, "contact.k_e", "777", &s, message), ETHD_OK);
+  ck_assert_int_eq(ethd_config_law(c, "contact", "spring", &s, message), ETHD_OK);
+  ck_assert(s.contact == &ethd_contact_spring && ethd_setup_get(&s, "contact.k_e") == 777);
+  ck_assert(isnan(ethd_setup_get(&s, "contact.b_e")) && s.transition == before.transition);
+  ck_assert_int_eq(ethd_config_law(c, "tracking", "pd", &s, message), ETHD_OK);
   ethd_config_free(c);
 }
 END_TEST

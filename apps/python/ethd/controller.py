@@ -161,14 +161,12 @@ class Controller:
                 raise Error(lib.ETHD_E_ARGUMENT, f"{key}: {value.id} is a {value.kind} law, of {value.kind}.law")
             getattr(lib, "ethd_setup_" + value.kind)(setup, value._struct[0])
             self._laws.append(value)
-        elif key in ("tracking.law", "contact.law"):
+        elif key in ("tracking.law", "contact.law", "transition.law"):
             kind = key.split(".")[0]
-            known = {law.id: law for law in self._laws_known() if law.kind == kind}
-            if value not in known:
+            known = [law.id for law in self._laws_known() if law.kind == kind]
+            if kind != "transition" and value not in known:
                 raise Error(lib.ETHD_E_UNKNOWN, f"{key}: found {value!r}, {', '.join(known)} are allowed")
-            self._change(setup, key, known[value])
-        elif key == "transition.law":
-            check(lib.ethd_config_transition(self._config.c, str(value).encode(), setup, message), message)
+            check(lib.ethd_config_law(self._config.c, kind.encode(), str(value).encode(), setup, message), message)
         else:
             words = value if isinstance(value, str) else repr(float(value))
             check(lib.ethd_config_set(self._config.c, key.encode(), words.encode(), setup, message), message)

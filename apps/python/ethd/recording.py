@@ -15,7 +15,7 @@ from ethd.table import lines, table, words
 
 PLUGINS = "ethd.read(folder, plugins=True)"
 #: What an event does to the controller of a replay.
-KINDS = {"setup": "fresh", "transition": "changed", "set": "changed", "clear": "clear", "heat": "hot", "learned": "taught",
+KINDS = {"setup": "fresh", "transition": "changed", "contact": "changed", "tracking": "changed", "set": "changed", "clear": "clear", "heat": "hot", "learned": "taught",
          "thinned": "", "lost": "", "fault": "", "end": ""}
 
 
@@ -23,7 +23,7 @@ class RecordedEvent(NamedTuple):
     """A line of events.csv; the event comes before row `row` of tick."""
 
     row: int
-    kind: str  #: setup, start, transition, set, clear, heat, learned, fault, lost, thinned, end: include/ethd/record.h
+    kind: str  #: setup, start, transition, contact, tracking, set, clear, heat, learned, fault, lost, thinned, end: include/ethd/record.h
     detail: str
 
 
@@ -174,8 +174,8 @@ class _Replay:
     def _take(self, e: RecordedEvent, setup: Any) -> str:
         if e.kind == "setup":
             setup[0] = self.c._config.c.setup
-        if e.kind in ("setup", "transition"):
-            self.c._change(setup, "transition.law", e.detail)
+        if e.kind in ("setup", "transition", "contact", "tracking"):
+            self.c._change(setup, ("transition" if e.kind == "setup" else e.kind) + ".law", e.detail)
         elif e.kind == "set":
             key, _, value = e.detail.partition(" ")
             self.c._change(setup, key, value)
