@@ -227,4 +227,16 @@ plugin 'a law of a built-in name' 'the law spring of mine is there already' bad.
 printf '[plugins]\nfile = good.so\nfile = good.so\n' >"$folder/bad.ini"
 refuse 'a plugin twice' 'bad.ini:3: plugins.file: the law own of mine is there already' "$bin/ethd-check" "$folder/bad.ini"
 
+# ---- a stack of 64 kB: it is widened where that is allowed (root), else one line says so ----
+for command in 'ethd-tap --taps 1' 'ethd-run --virtual --duration 0.2' "ethd-check $folder/good.ini" 'ethd-laws'; do
+  for as in "" "setpriv --bounding-set -sys_resource --inh-caps -sys_resource"; do
+    [ -z "$as" ] || $as true 2>/dev/null || continue
+    (ulimit -s 64 && exec $as "$bin"/$command) >"$folder/stdout" 2>"$folder/stderr" </dev/null
+    code=$?
+    [ $code = 0 ] || { [ $code = 1 ] && grep -q ': the stack may have 64 kB, 1024 are needed: ulimit -s 1024$' "$folder/stderr" && [ "$(wc -l <"$folder/stderr")" = 1 ]; } ||
+      fail "a stack of 64 kB: $command: exit $code: $(cat "$folder/stderr")"
+    [ -z "$as" ] || [ $code = 1 ] || fail "a stack of 64 kB, which can't be widened: $command: exit $code"
+  done
+done
+
 [ $failed = 0 ]

@@ -4,10 +4,13 @@
 #include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
+#include <pthread.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -29,8 +32,30 @@ static void keep_streams(void) {
     if (fcntl(fd, F_GETFD) < 0) (void)!open("/", O_PATH | O_CLOEXEC);
 }
 
+#define STACK ((rlim_t)1 << 20) /* bytes that any program or thread of ours may need */
+
+/* Threads get the limit with which the program began. */
+static bool widen_threads(void) {
+  pthread_attr_t attributes;
+  if (pthread_attr_init(&attributes)) return false;
+  bool good = !pthread_attr_setstacksize(&attributes, STACK) && !pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
+  return good;
+}
+
+/* A stack that is too small would end the program somewhere by SIGSEGV. */
+static void need_stack(void) {
+  struct rlimit now, wanted;
+  if (getrlimit(RLIMIT_STACK, &now) || now.rlim_cur >= STACK) return;
+  wanted = (struct rlimit){STACK, now.rlim_max < STACK ? STACK : now.rlim_max};
+  if (!setrlimit(RLIMIT_STACK, &wanted) && widen_threads()) return;
+  ethd__fail(ETHD_EXIT_FAILED, "the stack may have %ju kB, %ju are needed: ulimit -s %ju",
+             (uintmax_t)now.rlim_cur >> 10, (uintmax_t)STACK >> 10, (uintmax_t)STACK >> 10);
+}
+
 void ethd__begin(void) {
   keep_streams();
+  need_stack();
   signal(SIGXFSZ, SIG_IGN);
   if (!ethd__terminals_plain()) ethd__fail_memory();
   argp_program_version = "libethd " ETHD_VERSION;
