@@ -10,6 +10,7 @@
 #include "check/report.h"
 #include "cli/cli.h"
 #include "ethd/sim.h"
+#include "scene/thin.h"
 #include "settings/config_parts.h"
 #include "sim/plant.h"
 
@@ -187,6 +188,7 @@ int main(int argc, char **argv) {
   exceeded += ethd__report_stop(&subject);
   exceeded += ethd__report_threshold(&subject);
   exceeded += ethd__report_tick(&subject);
+  if (config->setup.scene) ethd__scene_say_thin(config->setup.scene, "\nscene        ");
   printf("\n%d bound%s exceeded\n", exceeded, exceeded == 1 ? "" : "s");
   ethd__report_unjudged(&config->setup);
   device.driver->close(device.device);

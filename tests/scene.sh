@@ -185,6 +185,28 @@ q 'twice.csv:1: .*x_m' walls.scene twice.csv
 q 'far.csv:2: y_m: .*2e+10' walls.scene far.csv
 q 'empty.csv2' walls.scene empty.csv2
 q 'nowhere.csv: ' walls.scene nowhere.csv
+# a mark before UTF-8 is none of the text's, whatever the text is; UTF-16 is named; a drawing is told what makes a scene of it
+{ printf '\357\273\277'; cat walls.scene; } >marked.scene
+{ printf '\357\273\277'; cat points.csv; } >marked.csv
+"$program" query --scene marked.scene --in marked.csv --out marked.out >marked.txt 2>&1 && cmp out.csv marked.out || fail "a mark before UTF-8 is taken for text: $(cat marked.txt)"
+for file in n.ini n.plant svd48v.map; do { printf '\357\273\277'; cat "$BUILD/share/ethd/$file"; } >"marked-$file"; done
+cp "$BUILD/share/ethd/wall.scene" "$BUILD/share/ethd/n.plant" .
+"$BUILD/bin/ethd-check" marked-n.ini >marked.txt 2>&1 || fail "a configuration with a mark: $(cat marked.txt)"
+{ sed '/^\[device\]/,$d' marked-n.ini; printf '[device]\ndriver = servo\nmap = marked-svd48v.map\n'; } >servo.ini
+"$BUILD/bin/ethd-check" servo.ini >marked.txt 2>&1 || fail "a map with a mark: $(cat marked.txt)"
+{ sed '/^\[device\]/,$d' marked-n.ini; printf '[device]\nplant = marked-n.plant\n'; } >planted.ini
+"$BUILD/bin/ethd-check" planted.ini >marked.txt 2>&1 || fail "a plant with a mark: $(cat marked.txt)"
+printf '\377\376h\0a\0' >wide.scene
+refuse 'wide.scene: its text is UTF-16: save it as UTF-8' info wide.scene
+printf '<svg xmlns="http://www.w3.org/2000/svg"/>' >room.svg && cp room.svg room.txt && printf '  0\nSECTION\n' >room.dxf
+for drawing in room.svg room.txt; do refuse "$drawing: is a drawing, not a scene: ethd-scene convert --in DRAWING.svg --out NAME.scene" info $drawing; done
+refuse 'room.dxf: is a drawing (save it as SVG), not a scene: ethd-scene convert' info room.dxf
+# a solid with another side near by: 4 mm of a box, 2 mm of a triangle; walls of one side, and thick ones, are none
+printf 'box 0.25 0.25 0.002 0.1 0\npolygon 0 0 1 0 0 0.002\ncapsule 0 0 1 0 0.006\nsegment 0 0 1 1\n' >thin.scene
+"$program" info thin.scene | grep -q '^thin:  *2 solids are thinner than 10 mm, object 1 (polygon) is 2 mm: a ring .* pushed out on the other side; a segment' || fail "thin solids: $("$program" info thin.scene)"
+"$program" info walls.scene | grep -q '^thin' && fail "thick solids are called thin"
+{ sed 's/^file = .*/file = thin.scene/' "$BUILD/share/ethd/n.ini"; } >thin.ini
+"$BUILD/bin/ethd-check" thin.ini | grep -q '^scene  *2 solids are thinner' || fail "ethd-check doesn't name thin solids"
 refuse 'query, info or convert'
 refuse '"draw"' draw
 refuse 'query needs' query --scene walls.scene

@@ -3,6 +3,7 @@
 
 #include "cli/cli.h"
 #include "scene/scene.h"
+#include "scene/thin.h"
 #include "text/text.h"
 
 static ethd_setup setup_of(const char *path) {
@@ -42,6 +43,7 @@ int ethd__scene_info(const ethd__scene_args *arg) {
   printf("out of reach: %zu of %zu object%s, which a controller drops (%s arm %g + %g m, ring %g m)\n",
          ethd_scene_out_of_reach(scene, &setup.arm, ethd_setup_range(&setup)), info.objects, ethd__s(info.objects),
          ethd_arm_name(setup.arm.mechanism), setup.arm.link1, setup.arm.link2, setup.ring_radius);
+  ethd__scene_say_thin(scene, "thin:         ");
   int code = arg->plot ? ethd__scene_plot(arg, scene, &setup) : ETHD_EXIT_DONE;
   ethd_scene_destroy(scene);
   return code;

@@ -24,8 +24,24 @@ static void say_form(const ethd_error *error, const char *plain, char message[ET
   ethd__say(message, error->status, "%s; %s%s%s is allowed", plain, name, *form ? " " : "", form);
 }
 
+static bool is_called(const char *path, const char *end) {
+  size_t n = strlen(path), m = strlen(end);
+  return n > m && !strcasecmp(path + n - m, end);
+}
+
+/* Says what to do with a drawing in the place of a scene; false: it is none. */
+static bool say_drawing(const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]) {
+  bool dxf = is_called(path, ".dxf");
+  if (!dxf && !is_called(path, ".svg") && error->name[0] != '<') return false;
+  ethd__say(message, error->status,
+            "%.200s: is a drawing%s, not a scene: ethd-scene convert --in DRAWING.svg --out NAME.scene makes one of it",
+            path, dxf ? " (save it as SVG)" : "");
+  return true;
+}
+
 void ethd__scene_refusal(const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]) {
   char shapes[160] = "", plain[ETHD_MESSAGE_MAX];
+  if (say_drawing(path, error, message)) return;
   ethd_error_text(path, error, plain);
   for (int i = 0; i < ETHD_SHAPE_COUNT; i++) {
     strcat(shapes, ethd_shape_name((ethd_shape)i));

@@ -91,6 +91,20 @@ static ethd_status read_file(int fd, const char *path, size_t size, char **text,
   return *text ? ETHD_OK : errno && errno != ENOMEM ? refuse(path, message) : ethd__no_memory(message, path);
 }
 
+/* Editors on Windows put a mark before UTF-8, and may write UTF-16. */
+static ethd_status take_mark(const char *path, char **text, size_t *length, char *message) {
+  static const char utf8[] = "\xEF\xBB\xBF";
+  if (*length >= 3 && !memcmp(*text, utf8, 3)) {
+    *length -= 3;
+    memmove(*text, *text + 3, *length + 1);
+  }
+  if (*length < 2 || (memcmp(*text, "\xFF\xFE", 2) && memcmp(*text, "\xFE\xFF", 2))) return ETHD_OK;
+  free(*text);
+  *text = NULL;
+  *length = 0;
+  return ethd__say(message, ETHD_E_FILE, "%s: its text is UTF-16: save it as UTF-8", path);
+}
+
 ethd_status ethd_text_read(const char *path, size_t most, char **text, size_t *length, char message[ETHD_MESSAGE_MAX]) {
   struct stat info;
   ethd_status status;
@@ -106,7 +120,7 @@ ethd_status ethd_text_read(const char *path, size_t most, char **text, size_t *l
   else
     status = read_stream(fd, path, most < PIPE_MAX ? most : PIPE_MAX, text, length, message);
   close(fd);
-  return status;
+  return status ? status : take_mark(path, text, length, message);
 }
 
 /* ---- numbers and paths ---- */

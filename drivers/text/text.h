@@ -10,7 +10,7 @@
 /* Returns what stands behind a noun after its number: "" for 1, else "s". [any] */
 static inline const char *ethd__s(uint64_t count) { return count == 1 ? "" : "s"; }
 
-/* Reads a whole file and puts a 0 after it; the caller frees it. Refuses a file that is missing, a folder, a device, or
+/* Reads a whole file, without a mark of UTF-8 before it, and puts a 0 after it; the caller frees it. Refuses a file that is missing, a folder, a device, or
    over `most` bytes; a pipe may have 1 GiB at most, and a signal ends the wait for it. A file's holes take no memory.
    The text may have 0 bytes: callers decide. */
 ETHD_MUST_CHECK ethd_status ethd_text_read(const char *path, size_t most, char **text, size_t *length,
