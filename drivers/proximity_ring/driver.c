@@ -3,6 +3,7 @@
      I/O thread   port -> receiver -> cell          [rt]   cell -> rays, sample_ns, rows 15, 18, 20      */
 #include <math.h>
 #include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,6 +37,7 @@ typedef struct ring {
   ethd__ring_port port;
   ethd__receiver receiver;
   sample newest;
+  char drifted[224]; /* what remark says of a drift */
 
   /* [rt] */
   sample taken;
@@ -91,7 +93,7 @@ static int64_t lasting(const sample *s, int64_t now_ns, int64_t *grave) ETHD_RT 
   if (s->counts.readings == 0) return 0;
   if (now_ns - s->arrival_ns > GAP_NS) rows |= ETHD_FAULT_BIT(ETHD_FAULT_FRAME_LOST);
   for (uint32_t mask = s->reading.out; mask; mask &= mask - 1) out++;
-  if (out) rows |= ETHD_FAULT_BIT(ETHD_FAULT_SENSOR);
+  if (out || s->reading.has_drift) rows |= ETHD_FAULT_BIT(ETHD_FAULT_SENSOR);
   if (ETHD_RAYS - out < ETHD__GOOD_LEAST) *grave |= ETHD_FAULT_BIT(ETHD_FAULT_SENSOR);
   return rows;
 }
@@ -146,6 +148,8 @@ static ethd_status prepare(const ethd_device_def *def, ring *r, char *message) {
   r->receiver.clock.delay = p[ETHD__RING_DELAY];
   status = ethd__plausible_prepare(def->setup->ring_radius, def->setup->finger_radius, p[ETHD__RING_GATE],
                                    p[ETHD__RING_SPEED], p[ETHD__RING_SLACK], &r->receiver.plausible, &error);
+  if (!status)
+    status = ethd__drift_prepare(def->setup->ring_radius, def->setup->finger_radius, &r->receiver.drift, &error);
   if (status) ethd_error_text(def->file, &error, message);
   r->port = (ethd__ring_port){
       .path = ethd__path_join(def->folder, r->settings.port->value), .baud = (uint32_t)p[ETHD__RING_BAUD], .fd = -1};
@@ -240,6 +244,7 @@ static uint32_t figures(const void *device, ethd_figure *out, uint32_t max) {
       {"ring frames lost", "1", (double)in->decoder.counters.lost},
       {"ring frames implausible", "1", (double)in->plausible.bad},
       {"ring rays left out", "1", (double)in->plausible.suspects},
+      {"ring drift", "m", in->drift.offset},
       {"ring clock jumps", "1", (double)in->clock.jumps},
       {"ring clock drift", "1", in->clock.drift},
       {"ring port opened", "1", (double)r->port.opened},
@@ -256,12 +261,20 @@ static const char *remark(const void *device, uint32_t i) {
   ring *r = (ring *)device;
   pthread_mutex_lock(&r->lock);
   bool at_once = r->port.low_latency || r->port.fd < 0;
+  const ethd__drift drift = r->receiver.drift;
+  if (drift.is_off)
+    snprintf(r->drifted, sizeof r->drifted,
+             "the ring's sensors have drifted together: they show the finger's radius about %.1f mm too %s; open the "
+             "empty ring "
+             "anew, or calibrate it (step 6)",
+             1e3 * fabs(drift.offset), drift.offset > 0 ? "large" : "small");
   pthread_mutex_unlock(&r->lock);
-  const char *said[3] = {NULL};
+  const char *said[4] = {NULL};
   uint32_t n = 0;
   if (!at_once) said[n++] = "the ring's port doesn't know low latency: its bytes may come up to 16 ms late (step 1)";
   if (r->receiver.calibration.level == ETHD__LEVEL_NONE)
     said[n++] = "the ring isn't calibrated: distances are a typical sensor's, half a millimetre off (step 6)";
+  if (drift.is_off) said[n++] = r->drifted;
   return i < n ? said[i] : NULL;
 }
 

@@ -13,6 +13,8 @@ static bool receive(ethd__receiver *r, const ethd__ring_frame *frame, int64_t ar
   if (!good) return false;
   out->sample_ns = r->last_ns = ethd__clock_after(r->last_ns, t_ns + 1000 * ETHD__MIDDLE_US);
   out->out = r->plausible.out;
+  ethd__drift_step(&r->drift, &r->calibration, frame, out->rays);
+  out->has_drift = r->drift.is_off;
   r->counts.sensor += out->out != 0;
   r->counts.readings++;
   return true;

@@ -8,6 +8,7 @@
 #define ETHD__PROXIMITY_RING_RECEIVER_H
 
 #include "proximity_ring/board_clock.h"
+#include "proximity_ring/drift.h"
 #include "proximity_ring/plausible.h"
 
 /* Time from a frame's t_us to the middle of its measurements, which is sample_ns. [finger_fit] lag is the same in s. */
@@ -17,7 +18,8 @@
 typedef struct ethd__ring_reading {
   int64_t sample_ns; /* CLOCK_MONOTONIC */
   double rays[ETHD_RAYS];
-  uint32_t out; /* bits: sensors out of use */
+  uint32_t out;   /* bits: sensors out of use */
+  bool has_drift; /* all sensors together count more or less than they did */
 } ethd__ring_reading;
 
 typedef struct ethd__receiver_counts {
@@ -27,12 +29,13 @@ typedef struct ethd__receiver_counts {
   uint64_t board_clock; /* jumps and doubts: row 20 */
 } ethd__receiver_counts;
 
-/* At first all zero but calibration, with known darks, clock.delay and the prepared part of plausible. */
+/* At first all zero but calibration, with known darks, clock.delay and the prepared parts of plausible and drift. */
 typedef struct ethd__receiver {
   ethd__calibration calibration;
   ethd__decoder decoder;
   ethd__board_clock clock;
   ethd__plausible plausible;
+  ethd__drift drift;
   ethd__receiver_counts counts;
   uint64_t corrupt; /* the decoder's count when it was last compared */
   int64_t last_ns;  /* sample_ns of the last reading; 0: there was none */

@@ -43,6 +43,7 @@ static inline ring_scene scene_open(uint64_t seed, ethd__receiver *r) {
   r->calibration = s.truth;
   r->clock.delay = SCENE_DELAY;
   if (ethd__plausible_prepare(ROD_RING, ROD_RADIUS, 1.5e-3, 1, 0.5e-3, &r->plausible, NULL)) abort();
+  if (ethd__drift_prepare(ROD_RING, ROD_RADIUS, &r->drift, NULL)) abort();
   return s;
 }
 

@@ -386,6 +386,28 @@ START_TEST(test_rows) {
 }
 END_TEST
 
+/* All sensors count 2000 more after a while: a row, and a sentence. */
+static bool all_brighter(ethd__ring_frame *f, uint32_t i) {
+  for (int k = 0; k < ETHD_RAYS && i > onset; k++)
+    f->counts[k] = (uint16_t)fmin(f->counts[k] + fmin(20.0 * (i - onset), 2000), 65000);
+  return true;
+}
+
+START_TEST(test_drift) {
+  run r;
+  const char *said = NULL;
+  onset = 60;
+  begin(&r);
+  for (int n = 0; n < 4000 && !(r.sense.faults & ETHD_FAULT_BIT(ETHD_FAULT_SENSOR)); n++) tick(&r, all_brighter);
+  ck_assert(r.sense.faults & ETHD_FAULT_BIT(ETHD_FAULT_SENSOR));
+  ck_assert(!(r.sense.grave & ETHD_FAULT_BIT(ETHD_FAULT_SENSOR)));
+  for (uint32_t i = 0; (said = ethd_driver_ring.remark(r.device, i)) && !strstr(said, "have drifted together"); i++)
+    continue;
+  ck_assert_msg(said && strstr(said, "mm too large"), "%s", said ? said : "no remark");
+  end(&r);
+}
+END_TEST
+
 /* ---- unplugged ---- */
 
 START_TEST(test_replug) {
@@ -428,6 +450,7 @@ int main(void) {
   tcase_add_test(tc, test_readings);
   tcase_add_test(tc, test_younger_than_the_tick);
   tcase_add_loop_test(tc, test_rows, 0, (int)(sizeof rows / sizeof *rows));
+  tcase_add_test(tc, test_drift);
   tcase_add_test(tc, test_replug);
   suite_add_tcase(suite, tc);
   return rig_run(suite);

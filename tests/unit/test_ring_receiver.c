@@ -104,6 +104,33 @@ START_TEST(test_sensor_faults) {
 END_TEST
 
 /* A whole board is missing: four of 16, and the flag says so. */
+/* All sensors count more, or less, than when they were calibrated: each ray is on the others' circle, whose radius is wrong.
+   A finger of another radius is no drift, nor is a calibration that is a tenth of a millimetre off at each sensor. */
+START_TEST(test_drift) {
+  static const double darks[] = {2000, -1200, 0, 100};
+  for (uint64_t seed = 1; seed <= 5; seed++)
+    for (size_t i = 0; i < sizeof darks / sizeof *darks; i++) {
+      ring_scene s = scene_open(seed, &r);
+      ethd__ring_reading reading = {.out = 0};
+      bool is_drift = fabs(darks[i]) > 1000;
+      for (int k = 0; k < ETHD_RAYS; k++) {
+        s.truth.sensors[k].dark += darks[i];
+        s.truth.sensors[k].d0 += is_drift ? 0 : 1e-4 * draw_normal(seed * 100 + (uint64_t)k);
+      }
+      uint32_t noticed = 0;
+      for (uint32_t n = 0; n < 6 * ETHD__DRIFT_FRAMES; n++) {
+        ethd__ring_frame f = scene_frame(&s, n);
+        if (scene_feed(&r, &f, scene_arrival(&s, n), &reading) && reading.has_drift && !noticed) noticed = n;
+        ck_assert_msg(is_drift || !reading.has_drift, "seed %d, %g: %g m", (int)seed, darks[i], r.drift.offset);
+      }
+      ck_assert_msg(!is_drift || (noticed && noticed <= 2 * ETHD__DRIFT_FRAMES), "seed %d, %g: %g m at %u", (int)seed,
+                    darks[i], r.drift.offset, noticed);
+      ck_assert(!is_drift || (r.drift.offset > 0) == (darks[i] > 0));
+      printf("darks %+g: radius %+.3f mm\n", darks[i], 1e3 * r.drift.offset);
+    }
+}
+END_TEST
+
 START_TEST(test_board_missing) {
   ring_scene s = scene_open(2, &r);
   ethd__ring_reading reading;
@@ -227,6 +254,7 @@ int main(void) {
   tcase_add_test(tc, test_clean);
   tcase_add_test(tc, test_instants_keep_their_order);
   tcase_add_test(tc, test_sensor_faults);
+  tcase_add_test(tc, test_drift);
   tcase_add_test(tc, test_board_missing);
   tcase_add_test(tc, test_still);
   tcase_add_test(tc, test_lost_and_corrupt);

@@ -1,0 +1,36 @@
+/* Sees that the sensors have drifted together: by light, dirt or heat all of them count more or less than they did when they
+   were calibrated. Every distance is then wrong, and no ray is off the others' circle. But an offset of the counts moves
+   the far distances more than the near ones, so the points of a finger beside the ring's middle aren't on a circle any
+   more. Over a window of frames the offset is found that would put them on one again; nothing is asked of the finger
+   but that it is round. */
+#ifndef ETHD__PROXIMITY_RING_DRIFT_H
+#define ETHD__PROXIMITY_RING_DRIFT_H
+
+#include <stdbool.h>
+
+#include "proximity_ring/calibration.h"
+#include "proximity_ring/decoder.h"
+
+enum { ETHD__DRIFT_FRAMES = 150 }; /* half a second */
+
+/* At first all zero but the first part, which ethd__drift_prepare makes; all zero: it watches nothing. */
+typedef struct ethd__drift {
+  ethd_fit fit; /* with a free radius */
+  ethd_vec direction[ETHD_RAYS];
+
+  double across, along, beside; /* of the window so far: sums of e g, g g and e e, see drift.c */
+  double grows;                 /* m a count: sum of what the radius changes by */
+  uint32_t frames;
+  double offset; /* m: by how much the last window's radius was too large; 0: nothing is known */
+  bool is_off;   /* that is a drift */
+} ethd__drift;
+
+/* Prepares the first part; ring_radius and finger_radius in m. [main] */
+ETHD_MUST_CHECK ethd_status ethd__drift_prepare(double ring_radius, double finger_radius, ethd__drift *out,
+                                                ethd_error *error);
+
+/* Takes a good frame with its rays, m, of which those that are NaN don't count. [rt] */
+void ethd__drift_step(ethd__drift *drift, const ethd__calibration *calibration, const ethd__ring_frame *frame,
+                      const double rays[ETHD_RAYS]) ETHD_RT;
+
+#endif
