@@ -274,6 +274,7 @@ int main(int argc, char **argv) {
   if (!is_csv && !ends_in(arg.out, ".mcap"))
     ethd__fail(ETHD_EXIT_INPUT, "%s: a name that ends in .csv or .mcap is allowed", arg.out);
   ethd__catch_interrupt();
+  ethd__receive(arg.folder);
   refuse_inputs();
   recording r = open_recording();
   ethd_status status = (is_csv ? to_csv : to_mcap)(&r, message);

@@ -260,6 +260,7 @@ int main(int argc, char **argv) {
   if (arg.excite) return ethd__end(ethd__excite(&arg.excitation));
   ethd__catch_interrupt();
   evidence.plugins = arg.plugins;
+  for (int i = 0; i < arg.folder_count; i++) ethd__receive(arg.folders[i]);
   load_evidence(&evidence);
   int code = arg.judge ? judge(&evidence) : identify(&evidence);
   ethd__evidence_free(&evidence);

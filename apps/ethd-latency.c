@@ -60,22 +60,24 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 
 /* ---- cyclictest ---- */
 
-/* Its histogram's rows: microseconds and a count. */
+/* Its process, then its histogram's rows: microseconds and a count. */
 static void read_cyclictest(FILE *pipe, ethd_histogram *out) {
   char line[256];
+  int process = fgets(line, sizeof line, pipe) ? atoi(line) : 0;
   while (fgets(line, sizeof line, pipe)) {
     long us, count;
     char after;
     if (sscanf(line, "%ld %ld %c", &us, &count, &after) != 2) continue;
     for (long i = 0; i < count; i++) ethd_histogram_add(out, us * 1000);
   }
+  if (ethd__stop && process > 1) kill(process, SIGTERM); /* it would be waited for */
 }
 
 static bool run_cyclictest(double period, ethd_histogram *out) {
   char command[256];
   const ethd_loop_def *loop = &arg.session.loop;
-  int n = snprintf(command, sizeof command, "exec cyclictest -q -m -t 1 -p %d -i %ld -l %ld -h 20000", loop->priority,
-                   (long)(1e6 * period), (long)(arg.duration / period));
+  int n = snprintf(command, sizeof command, "echo $$; exec cyclictest -q -m -t 1 -p %d -i %ld -l %ld -h 20000",
+                   loop->priority, (long)(1e6 * period), (long)(arg.duration / period));
   /* it would hold the DMA latency at 0 by itself, which keeps processors awake: fair is what the loop has */
   if (loop->dma_latency >= 0)
     n += snprintf(command + n, sizeof command - (size_t)n, " --latency=%d", loop->dma_latency);

@@ -200,5 +200,6 @@ int main(int argc, char **argv) {
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   ethd__catch_interrupt();
+  ethd__receive(arg.verify);
   return ethd__end(arg.verify ? verify() : replay());
 }

@@ -195,6 +195,8 @@ int main(int argc, char **argv) {
     print_coverage();
     return ethd__end(ethd__stop ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE);
   }
+  for (size_t i = 0; i < arg.folders; i++) ethd__receive(arg.folder[i]);
+  ethd__receive(arg.beside);
   char *out = arg.out ? NULL : ethd__folder_path(arg.folder[0], "report");
   report = (ethd__report){.folder = &folder,
                           .stations = {arg.folder, arg.folders},

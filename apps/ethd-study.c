@@ -180,6 +180,9 @@ int main(int argc, char **argv) {
   static const struct argp argp = {options, parse, "[STUDY]", doc, NULL, NULL, NULL};
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  const char *const folders[] = {arg.out, arg.resume, arg.merge, arg.verify};
+  for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) ethd__receive(folders[i]);
+  for (size_t i = 0; arg.merge && i < arg.word_count; i++) ethd__receive(arg.word[i]);
   return ethd__end((arg.merge      ? ethd__command_merge
                     : arg.verify   ? ethd__command_verify
                     : arg.plan     ? ethd__command_plan

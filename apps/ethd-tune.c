@@ -1,4 +1,5 @@
 /* Finds gains for a plant and its hands, and writes the user's configuration with them. */
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -152,7 +153,12 @@ static void spawn(pid_t *children) {
 static int collect(const pid_t *children, int code) {
   for (uint32_t i = 2; i <= arg.shards; i++) {
     int status = 0;
-    if (children[i] && waitpid(children[i], &status, 0) > 0 && status && !code) code = ETHD_EXIT_FAILED;
+    if (!children[i]) continue;
+    bool told = false;
+    do
+      if (ethd__stop && !told) told = kill(children[i], SIGTERM) == 0;
+    while (waitpid(children[i], &status, 0) < 0 && errno == EINTR);
+    if (status && !code) code = ETHD_EXIT_FAILED;
   }
   return code;
 }

@@ -1,6 +1,8 @@
 """The Python package against recordings, golden taps and the programs: python_package.py BUILD FOLDER."""
 import gc
 import os
+import re
+import shutil
 import subprocess
 import sys
 
@@ -8,6 +10,7 @@ import numpy as np
 from python_help import build, folder, refuses, tree, write
 
 import ethd
+from ethd.table import lines
 
 rng = np.random.default_rng(7)
 
@@ -136,6 +139,48 @@ with open(folder + "/run/config.ini", "a") as file:
 refuses("ethd.read(folder, plugins=True) lets it run", lambda: ethd.read(folder + "/run").controller())
 refuses("plug", lambda: ethd.read(folder + "/run").verify())
 refuses("somebodys.so", lambda: ethd.read(folder + "/run", plugins=True).controller())
+
+# ---- links, pipes and holes of somebody else's folder ----
+shutil.copytree(folder + "/run", folder + "/theirs")
+write("secret.ini", "[secret]\n")
+
+
+def instead(name, make, says, read=lambda: ethd.read(folder + "/theirs")):
+    place = os.path.join(folder, "theirs", name)
+    os.rename(place, place + ".kept")
+    make(place)
+    refuses(says, read, ValueError)
+    os.remove(place)
+    os.rename(place + ".kept", place)
+
+
+for name in "tick.npy", "events.csv", "config.ini":
+    instead(name, lambda place: os.symlink("../secret.ini", place), f"theirs/{name}: is a link, which isn't followed")
+    instead(name, os.mkfifo, f"theirs/{name}: isn't a file, which is needed")
+calm_read = lambda: ethd.read(folder + "/theirs").controller()
+with open(folder + "/theirs/config.ini", "w") as file:
+    file.write("[scene]\nfile = ../secret.ini\n")
+refuses("theirs/../secret.ini: leads out of the folder", calm_read)
+with open(folder + "/theirs/config.ini", "w") as file:
+    file.write("[scene]\nfile = /dev/zero\n")
+refuses("/dev/zero leads out of the folder", calm_read)
+os.truncate(folder + "/theirs/tick.npy", 8 << 30)
+assert len(ethd.read(folder + "/theirs").tick) == len(r.tick)
+head = open(folder + "/theirs/tick.npy", "rb").read(8192)
+count = re.search(rb"'shape': \(\d+,\), } *", head)
+with open(folder + "/theirs/tick.npy", "r+b") as file:
+    file.seek(count.start())
+    file.write(b"'shape': (4000000,), }".ljust(len(count.group())))
+refuses("theirs/tick.npy: no array, or cut short: it has a hole", lambda: ethd.read(folder + "/theirs"), ValueError)
+with open(folder + "/theirs/tick.npy", "wb") as file:
+    np.save(file, np.array([{}]), allow_pickle=True)
+refuses("theirs/tick.npy: no array, or cut short: objects aren't numbers", lambda: ethd.read(folder + "/theirs"), ValueError)
+os.truncate(folder + "/theirs/events.csv", 8 << 30)
+refuses("theirs/events.csv: 8589934592 bytes, at most", lambda: next(lines(folder + "/theirs/events.csv")), ValueError)
+os.truncate(folder + "/theirs/events.csv", 1 << 30)
+refuses("theirs/events.csv: has a hole", lambda: next(lines(folder + "/theirs/events.csv")), ValueError)
+shutil.rmtree(folder + "/theirs")
+
 # whatever names a plugin, nothing is opened for a controller that is told not to: this one isn't even looked for
 theirs = "[plugins]\nfile = somebodys.so\n"
 write("theirs.ini", theirs)

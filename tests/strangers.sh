@@ -1,5 +1,5 @@
 #!/bin/sh
-# Folders, drawings and names from a stranger: they are looked at and nothing of theirs runs, nothing is written elsewhere,
+# Folders, drawings and names from a stranger: they are looked at and nothing of theirs runs, nothing is read or written elsewhere,
 # and a terminal obeys none of their words.
 set -u
 folder=$(mktemp -d)
@@ -102,6 +102,150 @@ quiet "looking at a recording"
 "$bin/ethd-replay" --verify "$folder/rec" --plugins >"$folder/said" 2>"$folder/err"
 [ -e "$canary" ] || fail "--plugins doesn't load the plugin: the test sees nothing"
 rm -f "$canary"
+
+# ---- links, pipes, devices and holes that a folder brings along ----
+mkdir "$folder/home" "$folder/other"
+echo 'my thesis' >"$folder/home/thesis"
+mine() { # WHAT: what isn't named stays as it was
+  [ "$(cat "$folder/home/thesis")" = 'my thesis' ] || { fail "$1: a file elsewhere is written over"; echo 'my thesis' >"$folder/home/thesis"; }
+  [ -z "$(ls -A "$folder/other")" ] || { fail "$1: a folder elsewhere is filled"; rm -rf "$folder/other"; mkdir "$folder/other"; }
+  ! grep -q 'my thesis' "$folder/said" "$folder/err" || fail "$1: a file elsewhere is shown"
+}
+# refused WHAT PATTERN COMMAND...: one line, and no wait
+refused() {
+  what=$1 pattern=$2
+  shift 2
+  timeout -s KILL 60 "$@" >"$folder/said" 2>"$folder/err" </dev/null
+  code=$?
+  { [ $code = 2 ] || [ $code = 1 ]; } && [ "$(wc -l <"$folder/err")" = 1 ] && grep -q -e "$pattern" "$folder/err" ||
+    fail "$what: exit $code: $(cat "$folder/err")"
+  mine "$what"
+}
+for i in 1 2; do
+  "$bin/ethd-study" apps/config/crowd.study --simulate 2 --shard $i/2 --out "$folder/crowd" --quiet >"$folder/said" 2>&1 || fail "$(cat "$folder/said")"
+done
+for name in taps.csv SHA256SUMS; do
+  ln -s ../home/thesis "$folder/crowd/$name"
+  refused "--merge over a link $name" "crowd/$name: is a link" "$bin/ethd-study" --merge "$folder/crowd"
+  rm -f "$folder/crowd/$name" "$folder/crowd/taps.csv"
+done
+mv "$folder/crowd/shard-1-of-2.csv" "$folder/shard"
+mkfifo "$folder/crowd/shard-1-of-2.csv"
+refused '--merge of a pipe' 'shard-1-of-2.csv: is a pipe, a file is needed' "$bin/ethd-study" --merge "$folder/crowd"
+rm "$folder/crowd/shard-1-of-2.csv"
+ln -s /dev/zero "$folder/crowd/shard-1-of-2.csv"
+refused '--merge of a device' 'shard-1-of-2.csv: is a link' "$bin/ethd-study" --merge "$folder/crowd"
+rm "$folder/crowd/shard-1-of-2.csv"
+{ head -n 1 "$folder/shard"; } >"$folder/crowd/shard-1-of-2.csv"
+truncate -s 8G "$folder/crowd/shard-1-of-2.csv"
+(ulimit -v 1000000 && refused '--merge of a hole' 'shard-1-of-2.csv: has a hole' "$bin/ethd-study" --merge "$folder/crowd"; exit $failed) || failed=1
+mv "$folder/shard" "$folder/crowd/shard-1-of-2.csv"
+"$bin/ethd-study" --merge "$folder/crowd" >"$folder/said" 2>"$folder/err" || fail "--merge: $(cat "$folder/err")"
+
+# each file that is read: a link, a pipe, a device
+for name in study.ini config.ini scene.scene device.plant taps.csv journal; do
+  for kind in link pipe; do
+    copy
+    rm "$folder/bad/$name"
+    if [ $kind = link ]; then ln -s ../home/thesis "$folder/bad/$name"; else mkfifo "$folder/bad/$name"; fi
+    [ $name = journal ] || refused "ethd-report of a $kind $name" "bad/.*$name: is a $kind" "$bin/ethd-report" "$folder/bad"
+    [ $name = taps.csv ] || refused "--resume of a $kind $name" "bad/.*$name: is a $kind\\|bad/.*$name: isn't a file" "$bin/ethd-study" --resume "$folder/bad" --quiet
+    refused "--verify of a $kind $name" "$name is missing or can't be read" "$bin/ethd-study" --verify "$folder/bad"
+  done
+done
+copy
+ln -s ../../home/thesis "$folder/bad/taps/note"
+refused '--verify of a link that is new' "taps/note isn't listed" "$bin/ethd-study" --verify "$folder/bad"
+copy
+mv "$folder/bad/taps" "$folder/taps"
+ln -s ../taps "$folder/bad/taps"
+refused 'recordings behind a link' "taps/P[^ ]* is missing" "$bin/ethd-study" --verify "$folder/bad"
+rm -rf "$folder/taps"
+
+# what is written: a report that is a link, or holds some
+for target in ../../home/thesis ../../home/nothing /dev/null; do
+  for name in report.html tidy.csv boxes.png .lock; do
+    copy
+    mkdir "$folder/bad/report"
+    ln -s "$target" "$folder/bad/report/$name"
+    refused "a report's $name is a link to $target" "bad/report/$name: is" "$bin/ethd-report" --force "$folder/bad"
+    [ ! -e "$folder/home/nothing" ] || { fail "a report's $name makes a file elsewhere"; rm "$folder/home/nothing"; }
+  done
+done
+copy
+ln -s ../other "$folder/bad/report"
+refused 'a report that is a link' 'bad/report: is a link' "$bin/ethd-report" "$folder/bad"
+refused 'a report that is a link, --force' 'bad/report: is a link' "$bin/ethd-report" --force "$folder/bad"
+
+# recordings
+record() { rm -rf "$folder/rec"; cp -r "$folder/kept" "$folder/rec"; }
+"$bin/ethd-run" --virtual --duration 0.5 --record "$folder/kept" </dev/null >"$folder/said" 2>&1 || fail "$(cat "$folder/said")"
+read_all() { # WHAT PATTERN
+  refused "$1, ethd-replay" "$2" "$bin/ethd-replay" --verify "$folder/rec"
+  refused "$1, ethd-identify" "$2" "$bin/ethd-identify" "$folder/rec"
+}
+for name in tick.npy events.csv config.ini; do
+  record
+  rm "$folder/rec/$name"
+  ln -s "../kept/$name" "$folder/rec/$name"
+  read_all "a link $name" "rec/$name: is a link"
+  rm "$folder/rec/$name"
+  mkfifo "$folder/rec/$name"
+  read_all "a pipe $name" "rec/$name: is a pipe"
+  [ $name = config.ini ] || refused "a pipe $name, ethd-convert" "rec/$name: is a pipe" "$bin/ethd-convert" "$folder/rec" "$folder/rec.csv"
+done
+record
+mkfifo "$folder/pipe"
+for scene in ../pipe /dev/zero "$folder/home/thesis" ../home/thesis; do
+  printf '[scene]\nfile = %s\n' "$scene" >"$folder/rec/config.ini"
+  read_all "the scene $scene" 'config.ini:2: scene.file: .*leads out of the folder'
+done
+# a hole takes no memory; rows that were never written are no rows
+record
+truncate -s 8G "$folder/rec/tick.npy"
+truncate -s 900M "$folder/rec/events.csv"
+(ulimit -v 4000000 && refused 'text with a hole' 'events.csv: a byte 0' "$bin/ethd-replay" --verify "$folder/rec"; exit $failed) || failed=1
+cp "$folder/kept/events.csv" "$folder/rec/events.csv"
+(ulimit -v 1000000 && "$bin/ethd-replay" --verify "$folder/rec") >"$folder/said" 2>&1 || fail "rows before a hole: $(cat "$folder/said")"
+"$python" - "$folder/rec/tick.npy" <<'END'
+import re, sys
+with open(sys.argv[1], "r+b") as file:
+    head = file.read(8192)
+    count = re.search(rb"'shape': \((\d+),\), } *", head)
+    file.seek(count.start())
+    file.write(b"'shape': (4000000,), }".ljust(len(count.group())))
+END
+read_all 'rows in a hole' 'tick.npy: has a hole: some of its 4000000 rows were never written'
+
+# ---- waits end by a signal, for files of one's own too ----
+# ends WHAT SIGNAL COMMAND...: within a few seconds of the signal, by which time it waits
+ends() {
+  what=$1 signal=$2
+  shift 2
+  timeout -s KILL 60 "$python" -c 'import signal, subprocess, sys, time
+signal.signal(signal.SIGINT, signal.SIG_DFL) # a background job has it ignored, and a program leaves it so
+command = subprocess.Popen(sys.argv[2:], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+time.sleep(0.5)
+assert command.poll() is None, "it did not wait"
+command.send_signal(getattr(signal, "SIG" + sys.argv[1]))
+command.wait(10)' "$signal" "$@" 2>"$folder/err" || fail "$what: $(tail -n 1 "$folder/err")"
+}
+for signal in INT TERM; do
+  ends "--in of a pipe, $signal" $signal "$bin/ethd-replay" --in "$folder/pipe" --out "$folder/out.csv"
+  ends "--out to a pipe, $signal" $signal "$bin/ethd-scene" convert --in apps/config/wall.scene --out "$folder/pipe"
+  ends "--config of a pipe, $signal" $signal "$bin/ethd-tap" --config "$folder/pipe"
+done
+mkdir "$folder/bin"
+printf '#!/bin/sh\nexec sleep 30\n' >"$folder/bin/gnuplot"
+chmod +x "$folder/bin/gnuplot"
+ends 'gnuplot' INT env "PATH=$folder/bin:$PATH" "$bin/ethd-scene" info apps/config/wall.scene --plot "$folder/x.png"
+# nobody reads: the pipe is full
+"$python" -c 'for i in range(20000): print(f"{i * 1e-3:.3f},1.57,0,0.25,0.25,0,0")' | sed '1i t_s,q1_rad,q2_rad,xf_m,yf_m,vxf_mps,vyf_mps' >"$folder/long.csv"
+ends 'a full pipe' INT "$bin/ethd-replay" --in "$folder/long.csv" --out /dev/stdout
+# a device gives no end
+refused '/dev/zero' 'zero: is a device, a file is needed' "$bin/ethd-replay" --in /dev/zero --out "$folder/out.csv"
+[ "$("$bin/ethd-scene" info /dev/stdin <apps/config/wall.scene | wc -l)" -gt 1 ] && [ "$(cat apps/config/wall.scene | "$bin/ethd-scene" info /dev/stdin | wc -l)" -gt 1 ] ||
+  fail 'a pipe of one'"'"'s own is not read'
 
 # ---- pictures ----
 echo 'halfplane -1 0 -0.238' >"$folder/wall.scene"

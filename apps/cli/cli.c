@@ -21,6 +21,7 @@
 #include "ethd/ethd.h"
 #include "settings/config_parts.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 void ethd__flush_denormals(void) { (void)ethd__denormals_flush(); }
@@ -221,6 +222,13 @@ static char *copy_of(const char *text) {
   return copy;
 }
 
+void ethd__receive(const char *folder) {
+  if (!folder) return;
+  ethd__received *received = malloc(sizeof *received);
+  if (!received) ethd__fail_memory();
+  ethd__received_enter(received, folder);
+}
+
 char *ethd__given_or_data(const char *name) {
   char *path = !*name || access(name, R_OK) == 0 ? NULL : in_data_folder(name);
   if (path && access(path, R_OK) == 0) return path;
@@ -231,7 +239,7 @@ char *ethd__given_or_data(const char *name) {
 void ethd__need_recording(const char *folder) {
   char *ticks;
   if (asprintf(&ticks, "%s/tick.npy", folder) < 0) ethd__fail_memory();
-  if (access(ticks, F_OK))
+  if (!ethd__file_taken(ticks))
     ethd__fail(ETHD_EXIT_INPUT, "%s: no recording, whose tick.npy is needed: %s; ethd-run --record makes one", folder,
                strerror(errno));
   free(ticks);

@@ -61,6 +61,10 @@ char *ethd__data_path(const char *name);
 /* Returns the file as it is named or, if there is none, the installed one of that name. The caller frees it. */
 char *ethd__given_or_data(const char *name);
 
+/* Says that somebody else may have made the folder: from here on no link below it is followed, and only regular files
+   are read and replaced there (text/file.h). NULL: there is none. */
+void ethd__receive(const char *folder);
+
 /* Exits 2 unless the folder holds a recording. */
 void ethd__need_recording(const char *folder);
 
@@ -71,8 +75,8 @@ char *ethd__motion_folder(void);
 /* Draws a bar on stderr if that is a terminal, at most ten times a second; done = total removes it. */
 void ethd__progress(uint64_t done, uint64_t total, const char *what);
 
-/* Makes Ctrl-C and SIGTERM set ethd__stop from here on; a second one ends the program at once. Here and below, a signal
-   that is ignored when the program starts stays ignored. */
+/* Makes Ctrl-C and SIGTERM set ethd__stop from here on, and end every wait, for a file, a pipe or another program; a
+   second one ends the program at once. Here and below, a signal that is ignored when the program starts stays ignored. */
 void ethd__catch_interrupt(void);
 
 /* For a program that moves a device, before it opens a file or starts a thread: in a container the program goes on as

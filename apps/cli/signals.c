@@ -1,6 +1,7 @@
 /* What ends a program, and what doesn't. */
 #include <errno.h>
 #include <stdio.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "cli/cli.h"
@@ -9,9 +10,16 @@
 volatile sig_atomic_t ethd__stop;
 static volatile sig_atomic_t was_refused;
 
+static timer_t again;
+
+static void wake(int number) { (void)number; }
+
+/* A call that waits is ended by the signal, and one that begins to wait later by the timer's. */
 static void stop(int number) {
+  const struct itimerspec often = {{0, 100000000}, {0, 100000000}};
   if (ethd__stop) _exit(128 + number);
   ethd__stop = 1;
+  timer_settime(again, 0, &often, NULL);
 }
 
 static void ask(int number) {
@@ -24,15 +32,19 @@ static void refuse(int number) {
   was_refused = 1;
 }
 
-/* A signal that is ignored when the program starts stays ignored: that is how nohup, and a script's &, ask for it. */
+/* What a device's stop needs isn't interrupted: there a call goes on after `ask`. A signal that is ignored when the program starts stays ignored: that is how nohup, and a script's &, ask for it. */
 static void catch (void (*handler)(int), int number) {
-  struct sigaction action = {.sa_handler = handler, .sa_flags = SA_RESTART}, before;
+  struct sigaction action = {.sa_handler = handler}, before;
+  if (handler != stop && handler != wake) action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
   if (sigaction(number, NULL, &before) == 0 && before.sa_handler == SIG_IGN) return;
   sigaction(number, &action, NULL);
 }
 
 void ethd__catch_interrupt(void) {
+  struct sigevent event = {.sigev_notify = SIGEV_SIGNAL, .sigev_signo = SIGVTALRM};
+  catch (wake, SIGVTALRM);
+  if (timer_create(CLOCK_MONOTONIC, &event, &again) != 0) ethd__fail_memory();
   catch (stop, SIGINT);
   catch (stop, SIGTERM);
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cli/cli.h"
 #include "cli/writer.h"
 
 /* Replaces control characters but for tabs and line ends, since a terminal obeys sequences that names and words of
@@ -34,7 +35,7 @@ static bool put(stream *s, const char *text, size_t length) {
   if (s->writer) return ethd__writer_put(s->writer, text, length), true;
   while (length) {
     ssize_t wrote = write(s->fd, text, length);
-    if (wrote < 0 && errno == EINTR) continue;
+    if (wrote < 0 && errno == EINTR && !ethd__stop) continue;
     if (wrote < 0) return false;
     text += wrote;
     length -= (size_t)wrote;

@@ -12,6 +12,7 @@
 #include "ethd/ethd.h"
 #include "sim/random.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 #define BEST 0.15     /* share of the population, its best, from which p is drawn */
@@ -117,7 +118,9 @@ static size_t whole_lines(const char *text, size_t length) {
 static ethd_status open_file(const char *path, const char *what, journal *j, char *message) {
   char *text = NULL;
   size_t length = 0;
-  if (!(j->file = fopen(path, "abe"))) return refuse(path, message);
+  int fd = ethd__file_edit(path, true, message);
+  if (fd < 0) return ETHD_E_FILE;
+  if (!(j->file = fdopen(fd, "ab"))) return refuse(path, message);
   if (flock(fileno(j->file), LOCK_EX | LOCK_NB))
     return ethd__say(message, ETHD_E_FILE, "%s: another process works on this search", path);
   ethd_status status = ethd_text_read(path, (size_t)1 << 26, &text, &length, message);

@@ -2,6 +2,7 @@
 #include "identify/evidence.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +11,7 @@
 #include "cli/cli.h"
 #include "record/recording_parts.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 #define DEEP 3    /* levels of folders below the one that is named, in which recordings are looked for */
@@ -110,7 +112,7 @@ static ethd_status add_recording(ethd__evidence *e, const char *folder, char *me
 
 static bool is_recording(const char *folder) {
   char *path = join(folder, ETHD_RECORDING_TICK);
-  bool found = access(path, F_OK) == 0;
+  bool found = ethd__file_taken(path);
   free(path);
   return found;
 }
@@ -121,7 +123,9 @@ static ethd_status add_below(ethd__evidence *e, const char *folder, int deep, ch
   struct dirent **entries;
   ethd_status status = ETHD_OK;
   if (is_recording(folder)) return add_recording(e, folder, message);
-  int n = deep ? scandir(folder, &entries, is_visible, alphasort) : -1;
+  int fd = deep ? ethd__file_open(folder, O_RDONLY | O_DIRECTORY, 0) : -1;
+  int n = fd < 0 ? -1 : scandirat(fd, ".", &entries, is_visible, alphasort);
+  if (fd >= 0) close(fd);
   for (int i = 0; i < n; i++) {
     char *path = join(folder, entries[i]->d_name);
     if (!status && (entries[i]->d_type == DT_DIR || is_recording(path))) status = add_below(e, path, deep - 1, message);

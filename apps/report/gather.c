@@ -7,6 +7,7 @@
 #include "study/folder.h"
 #include "study/stations.h"
 #include "text/error_text.h"
+#include "text/file.h"
 
 /* ---- tables ---- */
 
@@ -20,7 +21,7 @@ static ethd_status read_folder(const char *folder, ethd__sheet *out, char *messa
   ethd_status status = ETHD_OK;
   for (int i = 0; !status && i < ETHD_TABLES; i++) {
     char *path = path_of(folder, i);
-    if (access(path, F_OK) == 0) status = ethd__sheet_read(path, &out[i], message);
+    if (ethd__file_taken(path)) status = ethd__sheet_read(path, &out[i], message);
     free(path);
   }
   return status;

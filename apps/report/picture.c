@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +12,8 @@
 
 #include "cli/cli.h"
 #include "text/error_text.h"
+#include "text/file.h"
+#include "text/text.h"
 
 /* ---- what gnuplot is told ---- */
 
@@ -34,7 +37,14 @@ static void put_path(FILE *to, const char *path) {
   free(plain);
 }
 
+static bool is_out(const ethd__picture_value *v) { return strcmp(v->name, "out") == 0; }
+
+/* The picture itself goes where this program opened its file, which gnuplot would reach through a link. */
 static void put_value(FILE *to, const ethd__picture_value *v) {
+  if (is_out(v)) {
+    fputs("out = '/dev/stdout'\n", to);
+    return;
+  }
   fprintf(to, "%s = ", v->name);
   (v->is_file ? put_path : put_string)(to, v->text);
   putc('\n', to);
@@ -55,8 +65,9 @@ static void listen(int end, char said[ETHD_MESSAGE_MAX / 2]) {
     close(end);
 }
 
-/* -1: it can't be started, errno says why. */
-static int run(FILE *commands, char said[ETHD_MESSAGE_MAX / 2]) {
+/* Its picture goes to `out`. Returns -1 if it can't be started, errno says why. A signal that stops this program stops
+   it. */
+static int run(FILE *commands, int out, char said[ETHD_MESSAGE_MAX / 2]) {
   char *argv[] = {(char *)"gnuplot", (char *)"--default-settings", NULL};
   posix_spawn_file_actions_t actions;
   int ends[2], code = -1;
@@ -66,7 +77,7 @@ static int run(FILE *commands, char said[ETHD_MESSAGE_MAX / 2]) {
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
   posix_spawn_file_actions_adddup2(&actions, fileno(commands), STDIN_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
   int failed = posix_spawnp(&pid, argv[0], &actions, NULL, argv, environ);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
@@ -75,7 +86,10 @@ static int run(FILE *commands, char said[ETHD_MESSAGE_MAX / 2]) {
     errno = failed;
     return -1;
   }
-  while (waitpid(pid, &code, 0) < 0 && errno == EINTR) continue;
+  do
+    if (ethd__stop) kill(pid, SIGTERM);
+  while (waitpid(pid, &code, 0) < 0 && errno == EINTR);
+  if (ethd__stop) strcpy(said, "stopped");
   errno = 0;
   return WIFEXITED(code) ? WEXITSTATUS(code) : 255;
 }
@@ -96,7 +110,8 @@ ethd_status ethd__picture_ready(char message[ETHD_MESSAGE_MAX]) {
   FILE *commands = tmpfile();
   if (!commands) return no_commands(message);
   fputs("set terminal pngcairo\n", commands);
-  int code = run(commands, said);
+  int nowhere = ethd__file_open("/dev/null", O_WRONLY, 0), code = run(commands, nowhere, said);
+  if (nowhere >= 0) close(nowhere);
   ethd_status status = code ? said_no("pngcairo", code, said, message) : ETHD_OK;
   fclose(commands);
   return status;
@@ -111,9 +126,21 @@ static void put_commands(FILE *to, const char *script, const char *folder, const
   putc('\n', to);
 }
 
+static ethd_status draw(FILE *commands, const char *script, const char *path, char *message) {
+  char said[ETHD_MESSAGE_MAX / 2];
+  ethd_replace picture;
+  ethd_status status = ethd_replace_begin(path, &picture, message);
+  if (status) return status;
+  int code = run(commands, fileno(picture.file), said);
+  if (!code) return ethd_replace_commit(&picture, message);
+  status = said_no(script, code, said, message);
+  ethd_replace_abandon(&picture);
+  return status;
+}
+
 ethd_status ethd__picture_draw(const char *script, const char *folder, const ethd__picture_value *values,
                                char message[ETHD_MESSAGE_MAX]) {
-  char said[ETHD_MESSAGE_MAX / 2], name[64];
+  char name[64];
   snprintf(name, sizeof name, "plot/%s", script);
   char *found = ethd__data_path(name), *path = realpath(found, NULL);
   free(found);
@@ -123,9 +150,11 @@ ethd_status ethd__picture_draw(const char *script, const char *folder, const eth
     return no_commands(message);
   }
   put_commands(commands, path, folder, values);
-  int code = run(commands, said);
-  ethd_status status = code ? said_no(script, code, said, message) : ETHD_OK;
+  while (!is_out(values)) values++;
+  char *out = ethd__path_join(folder, values->text);
+  ethd_status status = out ? draw(commands, script, out, message) : ethd__no_memory(message, script);
   fclose(commands);
   free(path);
+  free(out);
   return status;
 }

@@ -8,6 +8,7 @@
 
 #include "cli/cli.h"
 #include "study/folder.h"
+#include "text/file.h"
 
 static bool holds_taps(const char *name) {
   unsigned index, of;
@@ -19,7 +20,7 @@ static bool holds_taps(const char *name) {
 static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
 
 static void find_in(const char *study, ethd__recordings *out) {
-  DIR *folder = opendir(study);
+  DIR *folder = ethd__file_list(study);
   const struct dirent *entry;
   size_t first = out->count;
   while (folder && (entry = readdir(folder))) {
@@ -57,7 +58,7 @@ void ethd__recording_name(const ethd__sheet *sheet, size_t row, char out[ETHD_FI
 char *ethd__recording_path(const ethd__recordings *r, const char *name) {
   for (size_t i = 0; i < r->count; i++) {
     char *path = ethd__folder_path(r->folder[i], name);
-    if (access(path, F_OK) == 0) return path;
+    if (ethd__file_taken(path)) return path;
     free(path);
   }
   return NULL;

@@ -9,6 +9,7 @@
 #include "screen/place.h"
 #include "study/plan.h"
 #include "study/sums.h"
+#include "text/file.h"
 #include "text/ini.h"
 #include "text/text.h"
 
@@ -52,7 +53,7 @@ static void make_folder(const ethd__study_options *o) {
   char message[ETHD_MESSAGE_MAX], *journal = ethd__folder_path(o->out, ETHD_STUDY_JOURNAL);
   ethd__protocol protocol;
   ethd__loaded loaded;
-  if (access(journal, F_OK) == 0)
+  if (ethd__file_taken(journal))
     ethd__fail(ETHD_EXIT_INPUT, "%s: holds a session; --resume %s goes on with it", o->out, o->out);
   free(journal);
   load_study(o, &protocol);

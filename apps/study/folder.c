@@ -9,6 +9,7 @@
 #include "record/recording_parts.h"
 #include "study/movements.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 static const char *const hashed[] = {ETHD_STUDY_FILE, ETHD_RECORDING_CONFIG, ETHD_RECORDING_SCENE, ETHD_STUDY_PLANT};
@@ -22,7 +23,7 @@ char *ethd__folder_path(const char *folder, const char *name) {
 /* folder/name where there is such a file or folder, else NULL. */
 static char *existing(const char *folder, const char *name) {
   char *path = ethd__folder_path(folder, name);
-  if (access(path, F_OK) == 0) return path;
+  if (ethd__file_taken(path)) return path;
   free(path);
   return NULL;
 }

@@ -17,6 +17,7 @@
 #include "study/sums.h"
 #include "text/claim.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 /* A file that the folder must hold, with its text. */
@@ -129,7 +130,7 @@ static ethd_status want_all(wanted_list *list) {
 
 static bool exists(const char *folder, const char *name) {
   char *path = ethd__folder_path(folder, name);
-  bool there = access(path, F_OK) == 0;
+  bool there = ethd__file_taken(path);
   free(path);
   return there;
 }
@@ -225,7 +226,7 @@ static ethd_status write_versions(const wanted_list *list, const char *folder) {
 
 /* Everything must reach the disk before a journal mentions it. */
 static ethd_status settle(const char *folder, char *message) {
-  int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  int fd = ethd__file_open(folder, O_RDONLY | O_DIRECTORY, 0);
   bool failed = fd < 0 || syncfs(fd) != 0;
   int reason = errno;
   if (fd >= 0) close(fd);
@@ -235,7 +236,8 @@ static ethd_status settle(const char *folder, char *message) {
 static ethd_status write_all(const wanted_list *list, const char *folder) {
   ethd_status status = ETHD_OK;
   char *movements = ethd__folder_path(folder, ETHD_STUDY_MOVEMENTS);
-  if (list->parts->protocol->hands == ETHD_HANDS_RECORDED && !list->parts->finger) (void)mkdir(movements, 0777);
+  if (list->parts->protocol->hands == ETHD_HANDS_RECORDED && !list->parts->finger)
+    (void)ethd__file_make_folder(movements);
   free(movements);
   for (size_t i = 0; !status && i < list->count; i++) {
     char *path = ethd__folder_path(folder, list->file[i].name);

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/sha256.h"
 #include "text/text.h"
 
@@ -23,7 +24,7 @@ static void sum_of(const char *text, size_t length, char out[ETHD_SHA256_TEXT]) 
 }
 
 static ethd_status refuse(const char *path, char *message) {
-  return ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
+  return ethd__say(message, ETHD_E_FILE, "%s: %s", path, ethd__file_why());
 }
 
 /* ---- reading ---- */
@@ -92,14 +93,16 @@ static ethd_status lock(ethd__journal *journal, char *message) {
   return ethd__say(message, ETHD_E_FILE, "%s: another program is at work in this folder", journal->path);
 }
 
-static ethd_status open_file(const char *path, int flags, ethd__journal *out, char *message) {
-  *out = (ethd__journal){.fd = open(path, flags, 0666), .path = strdup(path)};
-  if (out->fd < 0 || !out->path) return refuse(path, message);
-  return lock(out, message);
+static ethd_status take_file(const char *path, int fd, ethd__journal *out, char *message) {
+  *out = (ethd__journal){.fd = fd, .path = strdup(path)};
+  return out->path ? lock(out, message) : ethd__no_memory(message, path);
 }
 
 ethd_status ethd__journal_create(const char *path, ethd__journal *out, char message[ETHD_MESSAGE_MAX]) {
-  ethd_status status = open_file(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, out, message);
+  int fd = ethd__file_open(path, O_RDWR | O_CREAT | O_EXCL, 0666);
+  *out = (ethd__journal){.fd = -1};
+  if (fd < 0) return refuse(path, message);
+  ethd_status status = take_file(path, fd, out, message);
   if (status) ethd__journal_close(out);
   return status;
 }
@@ -107,7 +110,10 @@ ethd_status ethd__journal_create(const char *path, ethd__journal *out, char mess
 /* Under the lock: nobody writes between reading and cutting. */
 ethd_status ethd__journal_open(const char *path, ethd__journal *out, char message[ETHD_MESSAGE_MAX]) {
   ethd__journal read = {.fd = -1};
-  ethd_status status = open_file(path, O_RDWR | O_CLOEXEC, out, message);
+  int fd = ethd__file_edit(path, false, message);
+  *out = (ethd__journal){.fd = -1};
+  if (fd < 0) return ETHD_E_FILE;
+  ethd_status status = take_file(path, fd, out, message);
   if (!status) status = ethd__journal_read(path, &read, message);
   if (!status && read.cut && (ftruncate(out->fd, (off_t)read.length) || fsync(out->fd))) {
     status = refuse(path, message);

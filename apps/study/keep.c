@@ -13,6 +13,7 @@
 #include "study/folder.h"
 #include "study/row.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 #define FRESH ".new"
@@ -26,7 +27,7 @@ static ethd_status refuse(const char *path, char *message) {
 
 /* Calls `each` for every file; false when one failed, errno says why. */
 static bool every(const char *path, bool (*each)(int folder, const char *name)) {
-  DIR *open_folder = opendir(path);
+  DIR *open_folder = ethd__file_list(path);
   bool done = open_folder != NULL;
   struct dirent *entry;
   while (done && (entry = readdir(open_folder)))
@@ -40,7 +41,7 @@ static bool every(const char *path, bool (*each)(int folder, const char *name)) 
 static bool remove_file(int folder, const char *name) { return unlinkat(folder, name, 0) == 0; }
 
 static bool sync_file(int folder, const char *name) {
-  int fd = openat(folder, name, O_RDONLY | O_CLOEXEC);
+  int fd = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   bool done = fd >= 0 && fdatasync(fd) == 0;
   int reason = errno;
   if (fd >= 0) close(fd);
@@ -48,10 +49,17 @@ static bool sync_file(int folder, const char *name) {
   return done;
 }
 
-static bool sync_folder(const char *path) { return sync_file(AT_FDCWD, path); }
+static bool sync_folder(const char *path) {
+  int fd = ethd__file_open(path, O_RDONLY | O_DIRECTORY, 0);
+  bool done = fd >= 0 && fdatasync(fd) == 0;
+  int reason = errno;
+  if (fd >= 0) close(fd);
+  errno = reason;
+  return done;
+}
 
 static void discard(const char *path) {
-  if (every(path, remove_file)) (void)rmdir(path);
+  if (every(path, remove_file)) (void)ethd__file_remove_folder(path);
 }
 
 /* ---- keeping ---- */
@@ -81,7 +89,7 @@ static ethd_status write_fresh(const char *fresh, const ethd_config *config, con
 }
 
 static ethd_status put_in_place(const char *folder, const char *fresh, const char *path, char *message) {
-  bool done = every(fresh, sync_file) && sync_folder(fresh) && rename(fresh, path) == 0 && sync_folder(folder);
+  bool done = every(fresh, sync_file) && sync_folder(fresh) && ethd__file_move(fresh, path) == 0 && sync_folder(folder);
   return done ? ETHD_OK : refuse(path, message);
 }
 
@@ -89,7 +97,7 @@ ethd_status ethd__tap_keep(const char *folder, const char *name, const ethd_conf
                            const char *words, const char *row, char message[ETHD_MESSAGE_MAX]) {
   char *fresh = ethd__folder_path(folder, FRESH), *path = ethd__folder_path(folder, name);
   discard(fresh);
-  ethd_status status = mkdir(folder, 0777) != 0 && errno != EEXIST ? refuse(folder, message) : ETHD_OK;
+  ethd_status status = ethd__file_make_folder(folder) ? refuse(folder, message) : ETHD_OK;
   if (!status) status = write_fresh(fresh, config, taken, words, row, message);
   if (!status) status = put_in_place(folder, fresh, path, message);
   if (status) discard(fresh);
@@ -123,7 +131,7 @@ ethd_status ethd__tap_kept(const char *folder, const char *name, char **row, cha
   char *fresh = ethd__folder_path(folder, FRESH), *path = ethd__folder_path(folder, name);
   *row = NULL;
   discard(fresh);
-  ethd_status status = access(path, F_OK) == 0 ? read_row(path, row, message) : ETHD_OK;
+  ethd_status status = ethd__file_taken(path) ? read_row(path, row, message) : ETHD_OK;
   free(fresh);
   free(path);
   return status;

@@ -7,6 +7,7 @@
 #include "study/columns.h"
 #include "study/shard.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 /* The shards of a folder while they are merged. */
@@ -33,7 +34,7 @@ static bool shard_name(const char *name, ethd__shard *out) {
 }
 
 static ethd_status count_shards(merge *m) {
-  DIR *folder = opendir(m->folder->path);
+  DIR *folder = ethd__file_list(m->folder->path);
   const struct dirent *entry;
   ethd__shard shard;
   ethd_status status = ETHD_OK;
@@ -64,12 +65,16 @@ static ethd_status open_shard(merge *m, uint32_t shard, const char *header) {
   const ethd__shard which = {.index = shard + 1, .count = m->count};
   char *path = ethd__shard_path(m->folder, &which, ".csv");
   size_t n = strlen(header);
+  struct stat info;
   ethd_status status = ETHD_OK;
-  m->file[shard] = fopen(path, "re");
-  if (!m->file[shard]) {
+  if (ethd__file_taken(path) && !(m->file[shard] = ethd__file_stream(path, m->message))) {
+    status = ETHD_E_FILE;
+  } else if (!m->file[shard]) {
     status = ethd__say(m->message, ETHD_E_FILE,
                        "%s: missing; ethd-study --simulate N --shard %" PRIu32 "/%" PRIu32 " makes it", path,
                        which.index, which.count);
+  } else if (fstat(fileno(m->file[shard]), &info) != 0 || ethd__file_has_hole(fileno(m->file[shard]), info.st_size)) {
+    status = ethd__say(m->message, ETHD_E_SYNTAX, "%s: has a hole; remove it and have it made again", path);
   } else {
     next(m, shard);
     if (!m->line[shard] || strncmp(m->line[shard], header, n) != 0 || m->line[shard][n] != '\n')

@@ -1,13 +1,16 @@
 #include "study/movements.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "cli/cli.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 static char *folder_of(const ethd__protocol *p) {
@@ -23,8 +26,10 @@ static int is_csv(const struct dirent *entry) {
 
 static ethd_status list(const char *folder, char ***files, size_t *count, char *message) {
   struct dirent **entries = NULL;
-  int n = scandir(folder, &entries, is_csv, alphasort);
+  int fd = ethd__file_open(folder, O_RDONLY | O_DIRECTORY, 0);
+  int n = fd < 0 ? -1 : scandirat(fd, ".", &entries, is_csv, alphasort);
   bool failed = n < 0;
+  if (fd >= 0) close(fd);
   *files = calloc(n > 0 ? (size_t)n : 1, sizeof **files);
   for (int i = 0; i < n; i++) {
     char *path = *files ? ethd__path_join(folder, entries[i]->d_name) : NULL;
@@ -42,7 +47,7 @@ ethd_status ethd__movements_list(const char *path, char ***files, size_t *count,
   struct stat what;
   *count = 0;
   *files = NULL;
-  if (!stat(path, &what) && S_ISDIR(what.st_mode)) return list(path, files, count, message);
+  if (!ethd__file_look(path, &what) && S_ISDIR(what.st_mode)) return list(path, files, count, message);
   *files = calloc(1, sizeof **files);
   char *copy = *files ? strdup(path) : NULL;
   if (copy) (*files)[(*count)++] = copy;

@@ -15,6 +15,7 @@
 #include "study/progress.h"
 #include "study/row.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 /* ---- names ---- */
@@ -75,7 +76,7 @@ static ethd_status keep(shard_work *w, size_t point, const char *id, const ethd_
            p->speeds.word[turn->block.speed]);
   char *folder = ethd__folder_path(w->folder->path, below), *there = ethd__folder_path(folder, name);
   ethd_status status = ETHD_OK;
-  if (access(there, F_OK) != 0)
+  if (!ethd__file_taken(there))
     status = ethd__tap_keep(folder, name, w->folder->loaded.config, taken, words, row, w->message);
   free(there);
   free(folder);
@@ -168,8 +169,9 @@ static ethd_status cut(shard_work *w, uint64_t *units) {
 }
 
 static ethd_status open_part(shard_work *w, uint64_t *units) {
-  int fd = open(w->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  w->file = fd < 0 ? NULL : fdopen(fd, "r+");
+  int fd = ethd__file_edit(w->path, true, w->message);
+  if (fd < 0) return ETHD_E_FILE;
+  w->file = fdopen(fd, "r+");
   if (!w->file) return refuse(w, w->path);
   if (flock(fd, LOCK_EX | LOCK_NB) != 0)
     return ethd__say(w->message, ETHD_E_FILE, "%s: another program is at work on it", w->path);
@@ -194,7 +196,7 @@ static ethd_status run_units(shard_work *w, uint64_t done, bool *over) {
 
 static ethd_status finish(shard_work *w, const char *final, bool over) {
   bool failed = fflush(w->file) != 0 || (over && fsync(fileno(w->file)) != 0);
-  if (!failed && over) failed = rename(w->path, final) != 0;
+  if (!failed && over) failed = ethd__file_move(w->path, final) != 0;
   return failed ? refuse(w, w->path) : ETHD_OK;
 }
 
@@ -206,7 +208,7 @@ ethd_status ethd__shard_run(ethd__folder *folder, ethd__desk *desk, const ethd__
   uint64_t done = 0;
   ethd_status status = ETHD_OK;
   *taps = 0;
-  *over = access(final, F_OK) == 0;
+  *over = ethd__file_taken(final);
   if (!*over) {
     w.path = ethd__shard_path(folder, shard, ".part");
     status = open_part(&w, &done);

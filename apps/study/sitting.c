@@ -8,6 +8,7 @@
 
 #include "text/csv.h"
 #include "text/error_text.h"
+#include "text/file.h"
 
 /* ---- the journal ---- */
 
@@ -76,8 +77,8 @@ ethd_status ethd__sitting_open(ethd__folder *folder, ethd__hand_source hand, eth
   ethd_status status = ethd__progress_begin(&folder->protocol, &out->progress, message);
   if (status) return status;
   char *path = ethd__folder_path(folder->path, ETHD_STUDY_JOURNAL);
-  status = access(path, F_OK) == 0 ? ethd__journal_open(path, &out->journal, message)
-                                   : ethd__journal_create(path, &out->journal, message);
+  status = ethd__file_taken(path) ? ethd__journal_open(path, &out->journal, message)
+                                  : ethd__journal_create(path, &out->journal, message);
   free(path);
   if (!status) status = take_journal(out, hand, message);
   if (status) ethd__sitting_close(out);

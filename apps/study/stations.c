@@ -15,6 +15,7 @@
 #include "text/claim.h"
 #include "text/csv.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 #define FRESH "journal.new"
@@ -97,7 +98,7 @@ static void make_parents(const char *out, const char *path) {
     char *within = strndup(path, (size_t)(slash - path));
     if (!within) ethd__fail_memory();
     char *folder = ethd__folder_path(out, within);
-    (void)mkdir(folder, 0777); /* there already, or the file in it says why not */
+    (void)ethd__file_make_folder(folder); /* there already, or the file in it says why not */
     free(folder);
     free(within);
   }
@@ -162,14 +163,15 @@ static ethd_status print_journal(const char *const *folders, size_t count, FILE 
 static ethd_status write_journal(const char *const *folders, size_t count, const char *out, size_t *taps,
                                  char *message) {
   char *fresh = ethd__folder_path(out, FRESH), *path = ethd__folder_path(out, ETHD_STUDY_JOURNAL);
-  FILE *file = fopen(fresh, "we");
-  ethd_status status = file ? print_journal(folders, count, file, taps, message)
-                            : ethd__say(message, ETHD_E_FILE, "%s: %s", fresh, strerror(errno));
+  int fd = ethd__file_create(fresh, message);
+  FILE *file = fd < 0 ? NULL : fdopen(fd, "w");
+  ethd_status status = fd < 0 ? ETHD_E_FILE : ETHD_OK;
+  if (!status) status = file ? print_journal(folders, count, file, taps, message) : ethd__no_memory(message, fresh);
   bool failed = file && (fflush(file) || fsync(fileno(file)));
   if (file) failed |= fclose(file) != 0;
-  if (!status && (failed || rename(fresh, path)))
+  if (!status && (failed || ethd__file_move(fresh, path)))
     status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
-  if (status) unlink(fresh);
+  if (status) ethd__file_remove(fresh);
   free(fresh);
   free(path);
   return status;

@@ -12,6 +12,7 @@
 #include "cli/cli.h"
 #include "study/folder.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 #define LIST_MAX ((size_t)1 << 30)
@@ -32,8 +33,8 @@ ethd_status ethd__sum_of_file(const char *path, char out[ETHD_SHA256_TEXT], char
   static char bytes[1 << 16];
   ethd__sha256 sum;
   size_t n;
-  FILE *file = fopen(path, "re");
-  if (!file) return ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
+  FILE *file = ethd__file_stream(path, message);
+  if (!file) return ETHD_E_FILE;
   ethd__sha256_begin(&sum);
   while ((n = fread(bytes, 1, sizeof bytes, file))) ethd__sha256_add(&sum, bytes, n);
   bool failed = ferror(file);
@@ -86,17 +87,18 @@ static bool left_out(const char *name, int depth) {
          (!depth && (!strcmp(name, ETHD_STUDY_SUMS) || !strcmp(name, "report")));
 }
 
-/* All files below folder/within. A link is as good as what it leads to, but no folder is entered by one. */
-static void walk(const char *folder, const char *within, int depth, summed_list *out) {
+/* All files below folder/within; with `odd` also links, pipes and the like. */
+static void walk(const char *folder, const char *within, int depth, bool odd, summed_list *out) {
   char *path = ethd__folder_path(folder, within);
-  DIR *open_folder = opendir(path);
+  DIR *open_folder = ethd__file_list(path);
   const struct dirent *entry;
   struct stat what;
   while (open_folder && (entry = readdir(open_folder))) {
     if (left_out(entry->d_name, depth) || strchr(entry->d_name, '\n')) continue;
     char *inner = ethd__folder_path(within, entry->d_name), *whole = ethd__folder_path(folder, inner);
-    if (!lstat(whole, &what) && S_ISDIR(what.st_mode) && depth < DEEPEST) walk(folder, inner, depth + 1, out);
-    if (!stat(whole, &what) && S_ISREG(what.st_mode))
+    bool there = ethd__file_look_at(whole, &what) == 0;
+    if (there && S_ISDIR(what.st_mode) && depth < DEEPEST) walk(folder, inner, depth + 1, odd, out);
+    if (there && (S_ISREG(what.st_mode) || (odd && !S_ISDIR(what.st_mode))))
       add(out, inner, "");
     else
       free(inner);
@@ -170,9 +172,9 @@ static void take_missing(const summed_list *before, summed_list *now) {
 ethd_status ethd__sums_write(const char *folder, char message[ETHD_MESSAGE_MAX]) {
   char *path = ethd__folder_path(folder, ETHD_STUDY_SUMS);
   summed_list before = {0}, now = {0};
-  ethd_status status = access(path, F_OK) == 0 ? read_list(path, &before, message) : ETHD_OK;
+  ethd_status status = ethd__file_taken(path) ? read_list(path, &before, message) : ETHD_OK;
   if (!status) {
-    walk(folder, "", 0, &now);
+    walk(folder, "", 0, false, &now);
     sort(&now);
     take_missing(&before, &now);
     for (size_t i = 0; i < now.count; i++) {
@@ -219,11 +221,11 @@ ethd_status ethd__sums_check(const char *folder, size_t *files, char message[ETH
   fault f = {0};
   *files = 0;
   ethd_status status =
-      access(path, F_OK) == 0
+      ethd__file_taken(path)
           ? read_list(path, &list, message)
           : ethd__say(message, ETHD_EMPTY, "%s: No such file; a session or a merge that ends writes it", path);
   if (!status) {
-    walk(folder, "", 0, &there);
+    walk(folder, "", 0, true, &there);
     compare(folder, &list, &there, &f);
     *files = list.count;
     if (f.count)

@@ -10,6 +10,7 @@
 
 #include "text/csv.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 #define BYTES_MAX ((size_t)1 << 28)
@@ -114,8 +115,9 @@ static ethd_status open_own(ethd__tune_journal *j, char *message) {
   size_t good = 0;
   char *path = shard_path(j, j->index);
   if (!path) return ethd__no_memory(message, j->folder);
-  j->file = fopen(path, "abe");
-  ethd_status status = j->file ? ETHD_OK : refuse(path, message);
+  int fd = ethd__file_edit(path, true, message);
+  j->file = fd < 0 ? NULL : fdopen(fd, "ab");
+  ethd_status status = fd < 0 ? ETHD_E_FILE : j->file ? ETHD_OK : refuse(path, message);
   if (!status && flock(fileno(j->file), LOCK_EX | LOCK_NB))
     status = ethd__say(message, ETHD_E_FILE, "%s: another process works on this shard", path);
   if (!status) status = read_shard(j, j->index, &good, message);

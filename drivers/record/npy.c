@@ -213,22 +213,54 @@ ethd_status ethd__npy_parse(const char *text, size_t length, const char *path, c
                    (length - *data) / row_bytes, *count);
 }
 
+static bool read_at(int fd, char *bytes, size_t length, size_t offset) {
+  while (length) {
+    ssize_t done = pread(fd, bytes, length, (off_t)offset);
+    if (done == 0) errno = EIO; /* it became shorter */
+    if (done <= 0) return false;
+    bytes += done;
+    length -= (size_t)done;
+    offset += (size_t)done;
+  }
+  return true;
+}
+
+/* Takes memory for the rows only after the header, and what is on the disk, have said how many there are. */
+static ethd_status read_rows(int fd, size_t size, const char *path, const ethd_column *columns, size_t row_bytes,
+                             void **rows, size_t *count, char *message) {
+  size_t room = size < PREFIX + HEADER_MAX ? size : PREFIX + HEADER_MAX, data = 0, n = 0;
+  char *header = malloc(room + 1), *bytes = NULL;
+  ethd_status status = header ? ETHD_OK : ethd__no_memory(message, path);
+  if (!status && !read_at(fd, header, room, 0))
+    status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
+  if (!status) status = ethd__npy_parse(header, size, path, columns, row_bytes, &data, &n, message);
+  free(header);
+  if (!status && ethd__file_has_hole(fd, (int64_t)(data + n * row_bytes)))
+    status = ethd__say(message, ETHD_E_SYNTAX, "%s: has a hole: some of its %zu rows were never written", path, n);
+  if (!status && n * row_bytes > BYTES_MAX)
+    status = ethd__say(message, ETHD_E_RANGE, "%s: %zu bytes of rows, at most %zu are allowed", path, n * row_bytes,
+                       BYTES_MAX);
+  if (status) return status;
+  if (!(bytes = malloc(n * row_bytes + 1))) return ethd__no_memory(message, path);
+  if (!read_at(fd, bytes, n * row_bytes, data)) {
+    free(bytes);
+    return ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
+  }
+  *rows = bytes;
+  *count = n;
+  return ETHD_OK;
+}
+
 ethd_status ethd_npy_read(const char *path, const ethd_column *columns, size_t row_bytes, void **rows, size_t *count,
                           char message[ETHD_MESSAGE_MAX]) {
-  char *text;
-  size_t length, data = 0, n = 0;
+  struct stat info;
   *rows = NULL;
   *count = 0;
   if (!dense(columns, row_bytes)) return ethd__say(message, ETHD_E_ARGUMENT, "%s: columns that don't fill a row", path);
-  ethd_status status = ethd_text_read(path, BYTES_MAX, &text, &length, message);
-  if (status) return status;
-  status = ethd__npy_parse(text, length, path, columns, row_bytes, &data, &n, message);
-  if (status) {
-    free(text);
-    return status;
-  }
-  memmove(text, text + data, n * row_bytes);
-  *rows = text;
-  *count = n;
-  return ETHD_OK;
+  int fd = ethd__file_read(path, &info, message);
+  if (fd < 0) return ETHD_E_FILE;
+  ethd_status status = S_ISREG(info.st_mode) ? ETHD_OK : ethd__say(message, ETHD_E_FILE, "%s: isn't a file", path);
+  if (!status) status = read_rows(fd, (size_t)info.st_size, path, columns, row_bytes, rows, count, message);
+  close(fd);
+  return status;
 }

@@ -9,6 +9,7 @@
 #include "record/recording_parts.h"
 #include "settings/config_parts.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 typedef struct verification {
@@ -237,6 +238,8 @@ static ethd_status run(verification *r) {
 ethd_status ethd_recording_verify(const char *folder, bool plugins, char message[ETHD_MESSAGE_MAX]) {
   verification r = {.folder = folder, .plugins = plugins, .message = message};
   uint64_t before = ethd__denormals_flush();
+  ethd__received received;
+  ethd__received_enter(&received, folder);
   ethd_status status = open_config(&r);
   if (!status) status = open_rows(&r);
   if (!status) status = open_events(&r);
@@ -247,6 +250,7 @@ ethd_status ethd_recording_verify(const char *folder, bool plugins, char message
   ethd__npy_reader_close(&r.rows);
   free(r.tick_path);
   free(r.events_path);
+  ethd__received_leave(&received);
   ethd__denormals_restore(before);
   return status;
 }

@@ -8,6 +8,7 @@
 #include "settings/config_parts.h"
 #include "settings/scene_file.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 #define SCENE_BYTES_MAX ((size_t)256 << 20)
@@ -42,6 +43,8 @@ ethd_status ethd__config_scene(ethd__config *whole, const ethd__config_key *key)
   ethd_config *c = &whole->config;
   char what[ETHD_MESSAGE_MAX];
   size_t length;
+  if (whole->received && *key->value == '/')
+    return ethd__key_refuse(key, ETHD_E_FILE, "%s leads out of the folder; a file in it is needed", key->value);
   whole->scene_path = ethd__path_join(c->folder, key->value);
   if (!whole->scene_path) return ethd__no_memory(key->message, key->file);
   ethd_status status = ethd_text_read(whole->scene_path, SCENE_BYTES_MAX, &c->scene_text, &length, what);
@@ -194,9 +197,19 @@ ethd_status ethd_config_make(const ethd_config_source *source, ethd_config **out
   if (status) return ethd_error_text(NULL, &error, message), status;
   ethd_config_source s = *source;
   const config_reading r = {.received = s.received != 0, .name = s.path ? s.path : "configuration", .message = message};
-  if (s.path && !s.text) return load(r, s, out);
-  if (!s.text) s.text = "";
-  return parse(r, &s, out);
+  char *folder = s.path && !s.text ? ethd__path_folder(s.path) : strdup(s.folder && *s.folder ? s.folder : ".");
+  ethd__received received;
+  if (!folder) return no_memory(&r);
+  if (r.received) ethd__received_enter(&received, folder);
+  if (s.path && !s.text) {
+    status = load(r, s, out);
+  } else {
+    if (!s.text) s.text = "";
+    status = parse(r, &s, out);
+  }
+  if (r.received) ethd__received_leave(&received);
+  free(folder);
+  return status;
 }
 
 void ethd_config_free(ethd_config *config) {

@@ -92,6 +92,13 @@ static bool keep_name(int folder, const char *name, void *user) {
   return true;
 }
 
+/* Keeps the name of a link, a folder and the like. */
+static bool keep_odd(int folder, const char *name, void *user) {
+  struct stat info;
+  bool odd = fstatat(folder, name, &info, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISREG(info.st_mode);
+  return odd && keep_name(folder, name, user);
+}
+
 static ethd_status claim(const char *folder, int how, ethd__claim *out, char *message) {
   *out = ETHD_CLAIM_NONE;
   ethd_status status = ethd__file_make_folder(folder) ? refuse(folder, message) : ETHD_OK;
@@ -108,8 +115,10 @@ ethd_status ethd__claim_folder(const char *folder, const char *const *own, bool 
                                char message[ETHD_MESSAGE_MAX]) {
   char name[NAME_MAX + 1];
   ethd_status status = claim(folder, LOCK_EX | LOCK_NB, out, message);
-  if (status || force || !any(folder, own, keep_name, name)) return status;
+  if (status || !any(folder, own, force ? keep_odd : keep_name, name)) return status;
+  if (force && !ethd__file_is_received(out->path)) return ETHD_OK;
   ethd__claim_release(out);
+  if (force) return ethd__say(message, ETHD_E_FILE, "%s/%.80s: isn't a file; remove it first", folder, name);
   return ethd__say(message, ETHD_E_ARGUMENT, "%s: holds %.80s already; --force replaces what is there", folder, name);
 }
 

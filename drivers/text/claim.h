@@ -15,8 +15,8 @@ typedef struct ethd__claim {
 
 /* Makes the folder, unless it is there, and locks it until the claim is released or the process ends. `own` are
    patterns of the files that the caller writes (fnmatch; NULL ends them): a folder that holds one is refused
-   unless `force` is set, and the refusal names the option --force. A folder that another program has claimed is
-   refused too. */
+   unless `force` is set, and the refusal names the option --force; with `force`, a received folder's entry that isn't a
+   regular file is refused. A folder that another program has claimed is refused too. */
 ETHD_MUST_CHECK ethd_status ethd__claim_folder(const char *folder, const char *const *own, bool force, ethd__claim *out,
                                                char message[ETHD_MESSAGE_MAX]);
 

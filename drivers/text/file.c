@@ -143,13 +143,17 @@ int ethd__file_make_folder(const char *folder) {
   return failed;
 }
 
-int ethd__file_remove(const char *path) {
+static int remove_at(const char *path, int flag) {
   place p;
   if (!find(path, &p)) return -1;
-  int failed = unlinkat(p.folder, p.name, 0);
+  int failed = unlinkat(p.folder, p.name, flag);
   leave(&p);
   return failed;
 }
+
+int ethd__file_remove(const char *path) { return remove_at(path, 0); }
+
+int ethd__file_remove_folder(const char *path) { return remove_at(path, AT_REMOVEDIR); }
 
 int ethd__file_move(const char *from, const char *to) {
   place p, q;
@@ -202,4 +206,28 @@ int ethd__file_create(const char *path, char message[ETHD_MESSAGE_MAX]) {
   if (exists && ethd__file_remove(path) != 0) return refuse(-1, path, strerror(errno), message);
   int fd = ethd__file_open(path, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW, 0666);
   return fd < 0 ? refuse(fd, path, ethd__file_why(), message) : fd;
+}
+
+int ethd__file_edit(const char *path, bool create, char message[ETHD_MESSAGE_MAX]) {
+  struct stat info;
+  bool is_link = ethd__file_look_at(path, &info) == 0 && S_ISLNK(info.st_mode);
+  if (is_link && ethd__file_look(path, &info) != 0) return refuse(-1, path, ethd__file_why(), message);
+  int fd = ethd__file_open(path, O_RDWR | O_NONBLOCK | (create ? O_CREAT : 0), 0666);
+  if (fd < 0 || fstat(fd, &info) != 0) return refuse(fd, path, ethd__file_why(), message);
+  return S_ISREG(info.st_mode) ? fd : refuse(fd, path, "isn't a file; another one is needed", message);
+}
+
+FILE *ethd__file_stream(const char *path, char message[ETHD_MESSAGE_MAX]) {
+  struct stat info;
+  int fd = ethd__file_read(path, &info, message);
+  if (fd >= 0 && !S_ISREG(info.st_mode)) fd = refuse(fd, path, "isn't a file; another one is needed", message);
+  FILE *file = fd < 0 ? NULL : fdopen(fd, "r");
+  if (fd >= 0 && !file) refuse(fd, path, strerror(errno), message);
+  return file;
+}
+
+bool ethd__file_has_hole(int fd, int64_t end) {
+  off_t at = lseek(fd, 0, SEEK_CUR), hole = lseek(fd, 0, SEEK_HOLE);
+  lseek(fd, at, SEEK_SET);
+  return hole >= 0 && hole < end;
 }

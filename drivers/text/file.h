@@ -9,6 +9,7 @@
 
 #include <dirent.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <sys/stat.h>
 
 #include "ethd/config.h"
@@ -40,6 +41,7 @@ DIR *ethd__file_list(const char *folder);
 /* As mkdir, but a folder that is there already is fine. */
 int ethd__file_make_folder(const char *folder);
 int ethd__file_remove(const char *path);
+int ethd__file_remove_folder(const char *path);
 int ethd__file_move(const char *from, const char *to);
 
 /* Returns what errno says about a place. */
@@ -51,5 +53,14 @@ int ethd__file_read(const char *path, struct stat *out, char message[ETHD_MESSAG
 
 /* Makes a new file to write at, in the place of a regular one that is there; a character device is opened as it is. */
 int ethd__file_create(const char *path, char message[ETHD_MESSAGE_MAX]);
+
+/* Opens a regular file to read and write it where it is. */
+int ethd__file_edit(const char *path, bool create, char message[ETHD_MESSAGE_MAX]);
+
+/* Opens a regular file to read it in parts; NULL: message. */
+FILE *ethd__file_stream(const char *path, char message[ETHD_MESSAGE_MAX]);
+
+/* Returns true if the file's first `end` bytes have a part that was never written and takes no room on the disk. */
+bool ethd__file_has_hole(int fd, int64_t end);
 
 #endif

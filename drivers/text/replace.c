@@ -5,6 +5,7 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "text/error_text.h"
@@ -141,8 +142,13 @@ static ethd_status follow(const char *path, struct stat *info, char **target, ch
 
 /* A pipe waits for its reader, until a signal comes. */
 static ethd_status directly(const char *path, ethd_replace *out, char *message) {
+  const struct timespec pause = {.tv_nsec = 20000000};
+  int fd;
   fflush(NULL);
-  return take(ethd__file_open(path, O_WRONLY | O_NOFOLLOW, 0), path, out, message);
+  while ((fd = ethd__file_open(path, O_WRONLY | O_NOFOLLOW | O_NONBLOCK, 0)) < 0 && errno == ENXIO)
+    if (nanosleep(&pause, NULL) != 0) break;
+  if (fd >= 0) fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) & ~O_NONBLOCK);
+  return take(fd, path, out, message);
 }
 
 static ethd_status begin_at(const char *path, const struct stat *info, ethd_replace *out, char *message) {

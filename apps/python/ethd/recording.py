@@ -1,5 +1,6 @@
 """Recordings: folders that the programs write."""
 import configparser
+import math
 import os
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from ethd._native import ffi, lib
 from ethd.controller import TRACE, Controller, Step
 from ethd.errors import Error, check, text
+from ethd.files import has_hole, opened, there
 from ethd.law import Law
 from ethd.table import lines, table, words
 
@@ -30,7 +32,7 @@ class RecordedEvent(NamedTuple):
 def ini(path: str) -> configparser.ConfigParser:
     """A file of sections and keys, as it stands: nothing of it is checked, opened or run."""
     found = configparser.ConfigParser(inline_comment_prefixes=(";",), interpolation=None, strict=False)
-    if os.path.exists(path):
+    if there(*os.path.split(path)):
         try:
             found.read_string(words(path), path)
         except configparser.Error as e:
@@ -39,10 +41,21 @@ def ini(path: str) -> configparser.ConfigParser:
 
 
 def _npy(path: str) -> NDArray[Any]:
-    try:
-        found: NDArray[Any] = np.load(path, mmap_mode="r")
-    except (ValueError, EOFError) as e:
-        raise ValueError(f"{path}: no array, or cut short: {e}") from None
+    """An array that is mapped from its file, so that it takes no memory before it is looked at. Objects are refused."""
+    header: Any = np.lib.format
+    with opened(*os.path.split(path)) as file:
+        try:
+            version = header.read_magic(file)
+            if version != (1, 0):
+                raise ValueError(f"found the version {version}, (1, 0) is allowed")
+            shape, fortran, dtype = header.read_array_header_1_0(file)
+            if dtype.hasobject:
+                raise ValueError("objects aren't numbers")
+            if has_hole(file, file.tell() + math.prod(shape) * dtype.itemsize):
+                raise ValueError("it has a hole: some of its rows were never written")
+            found: NDArray[Any] = np.memmap(file, dtype, "r", file.tell(), shape, "F" if fortran else "C")
+        except (ValueError, EOFError, OverflowError) as e:
+            raise ValueError(f"{path}: no array, or cut short: {e}") from None
     return found
 
 
@@ -67,16 +80,14 @@ class Recording:
         self.config = ini(os.path.join(folder, "config.ini"))
 
     def _array(self, name: str) -> Optional[NDArray[Any]]:
-        path = os.path.join(self.folder, name)
-        return _npy(path) if os.path.exists(path) else None
+        return _npy(os.path.join(self.folder, name)) if there(self.folder, name) else None
 
     def _table(self, *names: str) -> Optional[NDArray[Any]]:
-        paths = [os.path.join(self.folder, name) for name in names]
-        return next((table(path) for path in paths if os.path.exists(path)), None)
+        return next((table(os.path.join(self.folder, name)) for name in names if there(self.folder, name)), None)
 
     def _events(self) -> List[RecordedEvent]:
         path = os.path.join(self.folder, "events.csv")
-        if not os.path.exists(path):
+        if not there(self.folder, "events.csv"):
             return []
         rows = lines(path)
         if next(rows, (1, []))[1] != list(RecordedEvent._fields):
@@ -93,7 +104,7 @@ class Recording:
     def _open(self) -> Controller:
         if self.tick.dtype != TRACE:
             raise ValueError(f"{self.folder}/tick.npy: other columns than those of this version of libethd: it can't be replayed")
-        if not os.path.exists(os.path.join(self.folder, "events.csv")):
+        if not there(self.folder, "events.csv"):
             raise FileNotFoundError(f"{self.folder}/events.csv: No such file, so what happened is unknown: it can't be replayed")
         self._refuse_missing([e for e in self.events if e.row == 0])
         try:

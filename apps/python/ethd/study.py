@@ -7,6 +7,7 @@ from typing import Any, Iterator, Optional, Tuple, Union
 import numpy as np
 from numpy.typing import NDArray
 
+from ethd.files import there
 from ethd.recording import Recording, ini
 from ethd.table import table
 
@@ -29,9 +30,9 @@ class Study:
     def __init__(self, folder: Union[str, "os.PathLike[str]"], plugins: bool = False):
         self.folder = os.fspath(folder)
         self._plugins = plugins
-        if glob.glob(self._pattern("shard-*-of-*.csv")) and not os.path.exists(self._path("taps.csv")):
+        if glob.glob(self._pattern("shard-*-of-*.csv")) and not there(self.folder, "taps.csv"):
             raise FileNotFoundError(f"{self.folder}: a simulation in shards: ethd-study --merge {self.folder} makes taps.csv of them")
-        if not os.path.exists(self._path("taps.csv")):
+        if not there(self.folder, "taps.csv"):
             raise FileNotFoundError(f"{self.folder}: no study there that was begun: it has no taps.csv")
         self.taps = table(self._path("taps.csv"))
         self.participants = self._table("participants.csv")
@@ -48,14 +49,13 @@ class Study:
         return os.path.join(self.folder, *names)
 
     def _table(self, name: str) -> Optional[NDArray[Any]]:
-        return table(self._path(name)) if os.path.exists(self._path(name)) else None
+        return table(self._path(name)) if there(self.folder, name) else None
 
     def _trial_folder(self, tap: np.void) -> Optional[str]:
         name, folders = _name(tap), ["taps"]
         if "point" in (tap.dtype.names or ()):  # of a simulation, whose workers have a folder each
             name, folders = f"{int(tap['point'])}-{name}", self._workers
-        paths = [self._path(folder, name) for folder in folders]
-        return next((path for path in paths if os.path.exists(os.path.join(path, "tick.npy"))), None)
+        return next((self._path(folder, name) for folder in folders if there(self.folder, folder, name, "tick.npy")), None)
 
     def trial(self, tap: np.void) -> Recording:
         """The recording of a row of `taps`: every tick of that tap."""

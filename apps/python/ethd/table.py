@@ -1,11 +1,14 @@
 """Tables: CSV files of the programs as structured arrays. An empty cell is a number that isn't defined, or wasn't asked."""
 import csv
 import io
+import os
 import re
 from typing import Any, Iterator, List, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ethd.files import has_hole, opened
 
 #: A unit in a column's name says that it is one of real numbers, even where it has none, or has whole ones by chance.
 _UNITS = re.compile(r".*_(m|mm|s|ms|mps|rad|radps|n|nm|hz)")
@@ -29,9 +32,17 @@ def _column(name: str, cells: List[str]) -> NDArray[Any]:
     return np.array(cells, np.str_) if cells else np.array([], "U1")
 
 
+MOST = 1 << 32  #: bytes of a file of text
+
+
 def words(path: str) -> str:
     """A file's text."""
-    with open(path, "rb") as file:
+    with opened(*os.path.split(path)) as file:
+        size = os.fstat(file.fileno()).st_size
+        if size > MOST:
+            raise ValueError(f"{path}: {size} bytes, at most {MOST} are allowed")
+        if has_hole(file, size):
+            raise ValueError(f"{path}: has a hole, so it isn't text")
         data = file.read()
     try:
         return data.decode("utf-8")
