@@ -157,6 +157,9 @@ copy
 ln -s ../../home/thesis "$folder/bad/taps/note"
 refused '--verify of a link that is new' "taps/note isn't listed" "$bin/ethd-study" --verify "$folder/bad"
 copy
+truncate -s 900G "$folder/bad/README.md"
+refused '--verify of a hole' "README.md is missing or can't be read" "$bin/ethd-study" --verify "$folder/bad"
+copy
 mv "$folder/bad/taps" "$folder/taps"
 ln -s ../taps "$folder/bad/taps"
 refused 'recordings behind a link' "taps/P[^ ]* is missing" "$bin/ethd-study" --verify "$folder/bad"

@@ -33,8 +33,13 @@ ethd_status ethd__sum_of_file(const char *path, char out[ETHD_SHA256_TEXT], char
   static char bytes[1 << 16];
   ethd__sha256 sum;
   size_t n;
+  struct stat info;
   FILE *file = ethd__file_stream(path, message);
   if (!file) return ETHD_E_FILE;
+  if (fstat(fileno(file), &info) != 0 || ethd__file_has_hole(fileno(file), info.st_size)) { /* it may be endless */
+    fclose(file);
+    return ethd__say(message, ETHD_E_FILE, "%s: has a hole; restore the file from a copy", path);
+  }
   ethd__sha256_begin(&sum);
   while ((n = fread(bytes, 1, sizeof bytes, file))) ethd__sha256_add(&sum, bytes, n);
   bool failed = ferror(file);

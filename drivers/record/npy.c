@@ -213,54 +213,37 @@ ethd_status ethd__npy_parse(const char *text, size_t length, const char *path, c
                    (length - *data) / row_bytes, *count);
 }
 
-static bool read_at(int fd, char *bytes, size_t length, size_t offset) {
-  while (length) {
-    ssize_t done = pread(fd, bytes, length, (off_t)offset);
-    if (done == 0) errno = EIO; /* it became shorter */
-    if (done <= 0) return false;
-    bytes += done;
-    length -= (size_t)done;
-    offset += (size_t)done;
-  }
-  return true;
-}
-
-/* Takes memory for the rows only after the header, and what is on the disk, have said how many there are. */
-static ethd_status read_rows(int fd, size_t size, const char *path, const ethd_column *columns, size_t row_bytes,
-                             void **rows, size_t *count, char *message) {
-  size_t room = size < PREFIX + HEADER_MAX ? size : PREFIX + HEADER_MAX, data = 0, n = 0;
-  char *header = malloc(room + 1), *bytes = NULL;
-  ethd_status status = header ? ETHD_OK : ethd__no_memory(message, path);
-  if (!status && !read_at(fd, header, room, 0))
-    status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
-  if (!status) status = ethd__npy_parse(header, size, path, columns, row_bytes, &data, &n, message);
-  free(header);
-  if (!status && ethd__file_has_hole(fd, (int64_t)(data + n * row_bytes)))
-    status = ethd__say(message, ETHD_E_SYNTAX, "%s: has a hole: some of its %zu rows were never written", path, n);
-  if (!status && n * row_bytes > BYTES_MAX)
-    status = ethd__say(message, ETHD_E_RANGE, "%s: %zu bytes of rows, at most %zu are allowed", path, n * row_bytes,
-                       BYTES_MAX);
-  if (status) return status;
-  if (!(bytes = malloc(n * row_bytes + 1))) return ethd__no_memory(message, path);
-  if (!read_at(fd, bytes, n * row_bytes, data)) {
-    free(bytes);
-    return ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
-  }
-  *rows = bytes;
-  *count = n;
-  return ETHD_OK;
+/* Takes memory for the rows after the header, and what is on the disk, have said how many there are. */
+static ethd_status read_rows(ethd__npy_reader *reader, char **out, char *message) {
+  const size_t n = reader->row_bytes, bytes = reader->count * n;
+  const void *row;
+  ethd_status status = ETHD_OK;
+  if (bytes > BYTES_MAX)
+    return ethd__say(message, ETHD_E_RANGE, "%s: %zu bytes of rows, at most %zu are allowed", reader->path, bytes,
+                     BYTES_MAX);
+  char *to = *out = malloc(bytes + 1);
+  if (!to) return ethd__no_memory(message, reader->path);
+  for (; reader->next < reader->count && !(status = ethd__npy_reader_next(reader, &row, message)); to += n)
+    memcpy(to, row, n);
+  return status;
 }
 
 ethd_status ethd_npy_read(const char *path, const ethd_column *columns, size_t row_bytes, void **rows, size_t *count,
                           char message[ETHD_MESSAGE_MAX]) {
-  struct stat info;
+  ethd__npy_reader reader;
+  char *bytes = NULL;
   *rows = NULL;
   *count = 0;
   if (!dense(columns, row_bytes)) return ethd__say(message, ETHD_E_ARGUMENT, "%s: columns that don't fill a row", path);
-  int fd = ethd__file_read(path, &info, message);
-  if (fd < 0) return ETHD_E_FILE;
-  ethd_status status = S_ISREG(info.st_mode) ? ETHD_OK : ethd__say(message, ETHD_E_FILE, "%s: isn't a file", path);
-  if (!status) status = read_rows(fd, (size_t)info.st_size, path, columns, row_bytes, rows, count, message);
-  close(fd);
+  ethd_status status = ethd__npy_reader_open(path, columns, row_bytes, &reader, message);
+  if (status) return status;
+  status = read_rows(&reader, &bytes, message);
+  if (status) {
+    free(bytes);
+  } else {
+    *rows = bytes;
+    *count = reader.count;
+  }
+  ethd__npy_reader_close(&reader);
   return status;
 }

@@ -34,6 +34,9 @@ static ethd_status read_header(ethd__npy_reader *r, const ethd_column *columns, 
                              : ethd__npy_parse(text, n < wanted ? n : size, r->path, columns, r->row_bytes, &r->data,
                                                &r->count, message);
   free(text);
+  if (!status && ethd__file_has_hole(r->fd, (int64_t)(r->data + r->count * r->row_bytes)))
+    status =
+        ethd__say(message, ETHD_E_SYNTAX, "%s: has a hole: some of its %zu rows were never written", r->path, r->count);
   return status;
 }
 

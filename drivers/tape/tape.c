@@ -7,6 +7,7 @@
 
 #include "record/recording_parts.h"
 #include "text/error_text.h"
+#include "text/file.h"
 #include "text/text.h"
 
 static ethd_status no_memory(const char *folder, char *message) { return ethd__no_memory(message, folder); }
@@ -63,8 +64,10 @@ static ethd_status take_events(const char *folder, ethd__tape *tape, char *messa
 }
 
 ethd_status ethd__tape_load(const char *folder, ethd__tape *out, char message[ETHD_MESSAGE_MAX]) {
+  ethd__received received;
   void *rows = NULL;
   *out = (ethd__tape){.count = 0};
+  ethd__received_enter(&received, folder);
   char *path = ethd__path_join(folder, ETHD_RECORDING_TICK);
   ethd_status status = path ? ethd_npy_read(path, ethd_trace_columns, sizeof(ethd_trace), &rows, &out->count, message)
                             : no_memory(folder, message);
@@ -72,6 +75,7 @@ ethd_status ethd__tape_load(const char *folder, ethd__tape *out, char message[ET
   out->rows = rows;
   if (!status && !out->count) status = ethd__say(message, ETHD_E_RANGE, "%s: a recording without a tick", folder);
   if (!status) status = take_events(folder, out, message);
+  ethd__received_leave(&received);
   if (status) ethd__tape_free(out);
   return status;
 }
