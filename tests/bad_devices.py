@@ -461,15 +461,15 @@ def sweep_objects(ear):
 # How many of each there must be. A new key of a map, a new setting or a new driver changes its line: look at what is new.
 EXPECTED = """
 [device]     13  drivers
-[device]     70  key doubled
-[device]     70  key empty
+[device]     71  key doubled
+[device]     71  key empty
 [device]      9  key unknown
 [device]      4  keys without an owner
 [device]     13  lines
-[device]    280  not a number
+[device]    284  not a number
 [device]      7  not whole
 [device]    128  out of range
-[device]    138  overflow
+[device]    140  overflow
 [device]      1  section doubled
 answers       8  another function
 answers      16  another number
