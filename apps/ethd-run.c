@@ -13,7 +13,7 @@
 
 static const char doc[] =
     "Runs a device under the controller, one tick a period, until the duration is over, or until the command stop, "
-    "Ctrl-C, SIGTERM or SIGHUP. Then it damps the ring until that is still, and disables the device. Ctrl-Z doesn't "
+    "Ctrl-C, SIGTERM or SIGHUP. Then it stops the ring, and disables the device. Ctrl-Z doesn't "
     "stop it, since a stopped program can't control the ring.\v"
     "Commands come on stdin, one a line. Each is answered by a line that begins with ok or error:\n"
     "  transition LAW          swap to another transition law, without a bump\n"

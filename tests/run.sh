@@ -25,6 +25,7 @@ file = wall.scene
 law = offset
 [limits]
 speed = 5
+stop_time = 1
 END2
 echo 'halfplane -1 0 -0.238' >"$folder/wall.scene"
 
@@ -55,7 +56,7 @@ says "$folder/v1/events.csv" ',transition,smooth$' ',set,contact.k_e 2000$' ',cl
 { cat "$folder/device.ini"; echo 'clean_time = 0.5'; } >"$folder/clean.ini"
 printf 'wait 0.1\nset limits.speed 0.001\nwait 0.3\nset limits.speed 5\nwait 0.2\nack\nwait 0.4\nack\nenable\nstop\n' |
   "$run" --virtual --duration 9 --config "$folder/clean.ini" --record "$folder/clean" >"$folder/clean.out" 2>&1 || fail "clean time: exit $?"
-says "$folder/clean.out" '^error: nothing has gone wrong for 0.2[0-9]* s, 0.5 s are required$' '^ok: acknowledged; ' '^ok: enabled$'
+says "$folder/clean.out" '^error: nothing has gone wrong for 0.3[0-9]* s, 0.5 s are required$' '^ok: acknowledged; ' '^ok: enabled$'
 replays "$folder/clean"
 
 # an enabling keeps the motors' heat, and replays

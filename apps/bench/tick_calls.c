@@ -36,10 +36,13 @@ static void call_guard(void *data) {
   const calls *c = data;
   ethd_guard_state state;
   double sum = 0;
+  const ethd_guard_device device =
+      ethd_guard_device_of(&c->setup.arm, &c->setup.dynamics, c->setup.limits.gap, 1e-3, 0);
   memset(&state, 0, sizeof state);
   for (int k = 0; k < ETHD__TAP_TICKS; k++) {
     double tau[2] = {c->poses[k].j[0], c->poses[k].j[1]};
-    sum += ethd_guard_step(&c->setup.limits, &state, &c->poses[k], (ethd_vec){0.1, 0.2}, 1e-3, tau);
+    const ethd_guard_motion motion = {.pose = &c->poses[k], .v = {0.1, 0.2}, .dt = 1e-3};
+    sum += ethd_guard_step(&c->setup.limits, &device, &state, &motion, tau);
     sum += tau[0];
   }
   ethd__bench_sink = sum;

@@ -117,7 +117,7 @@ bool ethd__session_acknowledge(ethd__session *s) {
   return !ethd__recorder_latest(&s->recorder).trace.fault;
 }
 
-/* Stops by a speed limit of 0: the guard damps the ring and lets go when it stands. */
+/* Stops by a speed limit of 0: the guard stops the ring and lets go of it. */
 void ethd__session_halt(ethd__session *s, bool told) {
   char message[ETHD_MESSAGE_MAX];
   ethd_setup setup = s->setup;

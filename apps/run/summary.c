@@ -122,7 +122,7 @@ void ethd__faults_print(FILE *out) {
   fprintf(out,
           "What may go wrong, how soon it is noticed, and what is done at first and at the worst.\n"
           "count: the fault is counted, nothing else. degrade: the ring goes on without the part that failed.\n"
-          "stop: the ring is damped until it stands, then as zero. zero: no torque, the device is disabled, and the\n"
+          "stop: the ring is braked until it stands, then as zero. zero: no torque, the device is disabled, and the\n"
           "fault is latched until it is acknowledged. refuse: nothing moves.\n\n"
           "row  %-20s%-9s%-9s%s\n",
           "noticed within", "at first", "at worst", "what");

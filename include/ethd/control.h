@@ -207,8 +207,10 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_create(const ethd_setup *setup
 /* Frees the controller; NULL is allowed. The scenes stay the application's. [main] */
 ETHD_API void ethd_control_destroy(ethd_control *control);
 
-/* Checks a whole setup and hands it over; the next step takes it, without a bump: at that tick the torque is what the
-   old setup gives, and the difference to the new one fades linearly to 0 over the new swap_time. While events that
+/* Checks a whole setup and hands it over; the next step takes it, without a jump: at that tick the torque is what the
+   old setup would have commanded under its own limits, and the difference to the new one fades linearly to 0 over the new
+   swap_time. Until then a torque may be over a limit that became narrower, by the share of the fade that is left; a new
+   torque_rate holds at once. While events that
    nobody polls leave no room for those that hand scenes back, it waits. ETHD_BUSY: the last one hasn't been taken yet;
    post again. Any refusal, also those of ethd_setup_check, leaves everything as it was. The
    period can't change (ETHD_E_ARGUMENT). A scene that a post has replaced may be posted again only after an event has
@@ -234,8 +236,8 @@ ETHD_API void ethd_control_restart(ethd_control *control);
    share of the rise that the nominal torque leads to. Must not be called while step runs. [main] */
 ETHD_API void ethd_control_heat(const ethd_control *control, double out[2]);
 
-/* Sets the motors' heat, in shares as ethd_control_heat gives it, for a replay that begins in the middle. Must not be
-   called while step runs. [main] */
+/* Sets the motors' heat, in shares as ethd_control_heat gives it, for a replay that begins in the middle; a share that
+   isn't a number, or is below 0, counts as 2, too hot. Must not be called while step runs. [main] */
 ETHD_API void ethd_control_heated(ethd_control *control, const double heat[2]);
 
 /* Gives what the transition law has learnt of the device (ethd_facts.memory), in the law's own units; restart keeps it,
@@ -246,8 +248,8 @@ ETHD_API void ethd_control_learned(const ethd_control *control, double out[ETHD_
    called while step runs. [main] */
 ETHD_API void ethd_control_taught(ethd_control *control, const double memory[ETHD_MEMORY]);
 
-/* Acknowledges a latched fault. If limits.clean_time is over at the next step, that step clears the fault and lets the
-   torque rise from zero over swap_time; if not, the acknowledgement is dropped. [any, rt-safe] */
+/* Acknowledges a latched fault. If limits.clean_time is over at the next step, that step clears the fault, and the torque
+   rises from zero: over swap_time what the laws ask for counts by a share that grows from 0 to 1; if not, the acknowledgement is dropped. [any, rt-safe] */
 ETHD_API void ethd_control_clear(ethd_control *control) ETHD_RT;
 
 /* Returns for how long, s, nothing has called for a stop since a fault was latched; INFINITY: none is latched.
@@ -259,8 +261,8 @@ ETHD_API double ethd_control_clean(const ethd_control *control) ETHD_RT;
    depend on it, and the thread has its mode back; flags aren't promised. The same holds for create, post, check, reset,
    restart and rehearse, and for making scenes (scene.h). A negative status says that a fault rules this tick, and
    why: ETHD_E_NOT_FINITE, ETHD_E_LAW, ETHD_E_BUDGET, ETHD_E_RANGE (the guard stops the ring), ETHD_E_DEVICE (any other
-   row of the fault table). The command is then zero torque with `safe` set, or, while a stop still damps the ring, the
-   damping torque without `safe`. [rt] */
+   row of the fault table). The command is then zero torque with `safe` set, or, while a stop still brakes the ring, the
+   stop's torque, which may be zero, without `safe`. [rt] */
 ETHD_API ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, ethd_command *command,
                                        ethd_trace *trace) ETHD_RT;
 

@@ -4,7 +4,7 @@
    Reactions, from mild to hard:
      COUNT    go on; it is counted
      DEGRADE  go on with less: without a sensor, by prediction, with less torque
-     STOP     damp the ring until it stands still, then do as ZERO does
+     STOP     brake the ring until it stands still, or let it go (ethd/guard.h); then do as ZERO does
      ZERO     no torque, the device is disabled; latched until acknowledged
    Zero torque is a safe state because the arm is counterweighted. A row has two reactions. The first is due as soon as
    the row is seen, the second when it has become grave: often, long or twice, as its sentence says. A row that has only

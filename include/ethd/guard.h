@@ -1,7 +1,34 @@
-/* The guard: the last to change a torque before the device gets it. Links from libethd. */
+/* The guard: the last to change a torque before the device gets it. Links from libethd.
+
+   How it stops a ring. With p = M dq the links' momentum and
+
+     reaction = t_d + T + lag     from a joint sample to the end of its torque's hold; t_d: dynamics.delay,
+                                  T: period, lag: of the estimated joint speeds, 0 where they are measured
+
+   the stop commands the torque -p / (e reaction), never more than the torque limits leave. A mass m under the damping
+   b = m / (e reaction) that acts `reaction` late slows down without overshoot: m v'(t) = -b v(t - r) doesn't
+   oscillate up to b r / m = 1/e, and is stable up to pi/2, 4.3 times as much (Hale and Verduyn Lunel, Introduction to
+   Functional Differential Equations, 1993, 5.2). ethd-check gives the margin of the sampled loop.
+
+   Whether the device brakes at all must show. In units of speed, what the stop has commanded may exceed 1.2 times the
+   fall that is seen by a tenth of the speed at its start. So a stop on a device with a reversed encoder, or that is
+   lighter or later than told, makes it faster by a tenth before it ends, and by three tenths if the mass is a third of
+   what was told. Until t_d + lag have passed nothing that the stop commands can show, so the fall is counted from the
+   highest speed until then. A fall by friction counts, too: a reversed encoder, a mass that is told three times too
+   large and a friction that stops the ring by itself can add up to twice the speed at the stop's start.
+
+   A stop ends with zero torque: when the links are slower than 20 mm/s (the paper's v_th, eq. 11), when it may command
+   next to nothing for longer than reaction + T because the speed doesn't fall, and at limits.stop_time. Where the masses aren't
+   known they are assumed as ETHD_MASS_ASSUMED; an unknown delay is assumed as limits.gap, without one as
+   ETHD_DELAY_ASSUMED. A heavier device then isn't braked but let go.
+
+   The wall of limits.margin has the gains with which a mass under a force that is `2 reaction` late comes to rest
+   quickest without overshoot, a triple root of s^2 + (B s + K) e^(-2 r s) = 0:
+   K = 0.0791 m / (2 r)^2, B = 0.461 m / (2 r). */
 #ifndef ETHD_GUARD_H
 #define ETHD_GUARD_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "ethd/arm.h"
@@ -29,6 +56,7 @@ typedef struct ethd_limits {
   double finger_lost;    /* s: when it is older than this, the ring is stopped; without either no reading is judged */
   double clean_time;     /* s without a reason to stop before an acknowledgement counts, >= 0, finite;
                           longer is stricter */
+  double stop_time;      /* s: a stop that lasts longer lets go, > 0; INFINITY: ETHD_STOP_TIME */
 } ethd_limits;
 
 /* A row for each limit, by which they are read, written and compared. */
@@ -46,7 +74,8 @@ typedef struct ethd_limit {
   const char *brief;
 } ethd_limit;
 
-#define ETHD_LIMITS 15
+#define ETHD_LIMITS 16
+#define ETHD_STOP_TIME 0.1 /* s */
 ETHD_API extern const ethd_limit ethd_limit_rows[ETHD_LIMITS];
 
 /* Returns where the first of the row's numbers is in these limits, in the row's unit. [any, rt-safe] */
@@ -100,13 +129,13 @@ enum {
   ETHD_GUARD_FINITE = 1,     /* torque not finite: zero torque in this tick; the controller latches it */
   ETHD_GUARD_TORQUE = 2,     /* clamped */
   ETHD_GUARD_RATE = 4,       /* slope limited */
-  ETHD_GUARD_SPEED = 8,      /* ring too fast: damped until it is still, then zero, latched */
+  ETHD_GUARD_SPEED = 8,      /* ring too fast: stopped as said above, then zero torque, latched */
   ETHD_GUARD_WORKSPACE = 16, /* ring out of its workspace: likewise */
   ETHD_GUARD_FAULT = 32,     /* a row of the fault table stops the ring: likewise */
   ETHD_GUARD_MARGIN = 64,    /* the workspace's wall pushed */
   ETHD_GUARD_HEAT = 128,     /* clamped to what a hot motor may have */
   ETHD_GUARD_STEEP = 256     /* the torque asked for changed faster than the rate for ETHD_STEEP_MAX ticks in a row,
-                                and limits latch: damped as for speed */
+                                and limits latch: stopped as for speed */
 };
 #define ETHD_GUARD_COUNT 9
 #define ETHD_STEEP_MAX 20
@@ -117,22 +146,68 @@ typedef struct ethd_guard_state {
   double heat[2];  /* of each motor; 1 is what its nominal torque leads to */
   double cut;      /* s for which the torque has been clamped without a break */
   int64_t steep;   /* ticks in a row with too steep a torque */
+  struct {
+    int64_t begun;   /* 1: the members below are of a stop that goes on */
+    double start;    /* speed of the links when it began, m/s */
+    double highest;  /* highest speed until its first torque can show, m/s */
+    double given;    /* change of speed that it has commanded so far, m/s */
+    double time;     /* s since it began */
+    double mark;     /* `given` when it last rose by a hundredth of `start`, m/s */
+    double helpless; /* s since then */
+  } stop;
   uint64_t counts[ETHD_GUARD_COUNT];
   int32_t stopping; /* ETHD_GUARD_* bits of what stops the ring, 0: nothing does; callers may set it */
   int32_t stopped;  /* 1: the ring stands still or must be let go, so the torque is zero until this is cleared */
 } ethd_guard_state;
 
+#define ETHD_MASS_ASSUMED 0.06   /* kg: of a device whose mass isn't known */
+#define ETHD_DELAY_ASSUMED 0.020 /* s: of a device whose delay isn't known, without limits.gap */
+
+/* The device as the guard brakes it. */
+typedef struct ethd_guard_device {
+  double link[2];    /* m */
+  double mass;       /* kg: the lighter of the two at the ring */
+  double inertia[2]; /* kg m^2, of the links' absolute angles */
+  double serial;     /* 1: joint 2 is relative to link 1; 0: parallel */
+  double period;     /* T, s */
+  double delay;      /* t_d, s */
+  double lag;        /* s, of joint speeds that are estimated */
+  double stiffness;  /* N/m, of the margin's wall */
+  double damping;    /* Ns/m, of the margin's wall */
+} ethd_guard_device;
+
+/* Returns the device of a setup's numbers; lag: s, see ethd_velocity_lag. What the dynamics don't know is assumed as said
+   above. [any] */
+ETHD_API ethd_guard_device ethd_guard_device_of(const ethd_arm *arm, const ethd_dynamics *dynamics, double gap,
+                                                double period, double lag);
+
+/* Returns the damping with which a stop brakes a mass, m / (e reaction), Ns/m; estimated: joint speeds are estimated.
+   [any, rt-safe] */
+ETHD_API double ethd_guard_damping(const ethd_guard_device *device, double mass, bool estimated) ETHD_RT;
+
+/* Returns the least stop_time, s, with which a stop from limits.speed ends at rest under limits.torque, with a quarter
+   to spare; 0 without a limit of the speed, and where no torque is allowed. [any] */
+ETHD_API double ethd_guard_stop_time(const ethd_guard_device *device, const ethd_limits *limits);
+
+/* How the ring moves at a tick. */
+typedef struct ethd_guard_motion {
+  const ethd_pose *pose;
+  ethd_vec v;     /* m/s, of the ring in R_0 */
+  double qd[2];   /* rad/s */
+  bool estimated; /* qd was estimated, not measured */
+  double dt;      /* s since the last step */
+} ethd_guard_motion;
+
 /* Adds the heat of the last torque, held for dt s, and returns that of the hotter motor. Only to be called where
    nominal_torque is a limit. [rt] */
 ETHD_API double ethd_guard_heat(const ethd_limits *limits, ethd_guard_state *state, double dt) ETHD_RT;
 
-/* Limits `torque` in place and returns the bits of what it did; torque: Nm, each joint; pose and v,
-   m/s in R_0, are the ring's; dt: s since the last step. In this order: if the ring
-   is being stopped (speed, workspace, a fault), damping replaces the torque, else the margin's wall pushes; a torque
-   that isn't finite becomes zero; heat and torque bound each joint; unless the ring is being stopped, the rate bounds
-   the change, and heat and torque bound the result once more. [rt] */
-ETHD_API int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *state, const ethd_pose *pose, ethd_vec v,
-                                 double dt, double torque[2]) ETHD_RT;
+/* Limits `torque`, Nm of each joint, in place and returns the bits of what it did. In this order: if the ring is being
+   stopped (speed, workspace, a fault), the stop's torque replaces it, else the margin's wall pushes; a torque that isn't
+   finite becomes zero; heat and torque bound each joint; unless the ring is being stopped, the rate bounds the change,
+   and heat and torque bound the result once more. [rt] */
+ETHD_API int32_t ethd_guard_step(const ethd_limits *limits, const ethd_guard_device *device, ethd_guard_state *state,
+                                 const ethd_guard_motion *motion, double torque[2]) ETHD_RT;
 
 ETHD_END_DECLS
 

@@ -16,7 +16,8 @@ typedef struct ethd__tick {
   ethd__state *state;
   ethd__state *scratch; /* a copy of the state for the old plan's run; needed where `from` is set */
   const ethd_sense *sense;
-  bool soft; /* a fault was acknowledged: the torque starts from zero */
+  bool soft;         /* a fault was acknowledged: the torque starts from zero */
+  const double *old; /* Nm: at a swap, what the old plan would have commanded; NULL: nothing to fade from */
   /* what it works out */
   int64_t periods; /* since the last tick, missed ones included */
   double dt;       /* s since the last tick that had a measurement */

@@ -78,11 +78,14 @@ static void report(ethd_control *control, int64_t tick) ETHD_RT {
   s->before = *met;
 }
 
-static ethd_status finish(const ethd_trace *out, ethd_command *command) ETHD_RT {
+static ethd_status finish(const ethd__tick *t, ethd_command *command) ETHD_RT {
+  const ethd_trace *out = t->trace;
+  const ethd_guard_state *guard = &t->state->guard;
   command->torque[0] = out->tau[0];
   command->torque[1] = out->tau[1];
-  /* false while the guard still damps the ring, because a device takes `safe` for zero torque */
-  command->safe = out->fault != ETHD_FAULT_NONE && out->tau[0] == 0 && out->tau[1] == 0;
+  /* A stop may still brake, also after ticks of zero torque; a device may disable where `safe` is set. */
+  const bool stops = guard->stopping && !guard->stopped;
+  command->safe = out->fault != ETHD_FAULT_NONE && !stops && out->tau[0] == 0 && out->tau[1] == 0;
   command->reserved = 0;
   return ethd__rows_status((ethd_fault)out->fault);
 }
@@ -101,7 +104,7 @@ ETHD__FP_APART static ethd_status step(ethd_control *control, const ethd_sense *
   ethd__tick_run(&t);
   if (t.from) give_back(control, t.trace->tick, t.from);
   report(control, t.trace->tick);
-  return finish(t.trace, command);
+  return finish(&t, command);
 }
 
 ETHD__FP_APART static ethd_status step_between_modes(ethd_control *control, const ethd_sense *sense,
@@ -130,7 +133,7 @@ ETHD__FP_APART static ethd_status rehearse(ethd_control *control, const ethd_sen
   t.sense = sense;
   t.trace = &own;
   ethd__tick_run(&t);
-  return finish(t.trace, command);
+  return finish(&t, command);
 }
 
 ethd_status ethd_control_rehearse(ethd_control *control, const ethd_sense *sense, ethd_command *command) {
@@ -177,8 +180,11 @@ void ethd_control_heat(const ethd_control *control, double out[2]) {
   memcpy(out, control->state.guard.heat, sizeof control->state.guard.heat);
 }
 
+#define HEAT_UNKNOWN 2.0 /* hot enough for row HEAT */
+
 void ethd_control_heated(ethd_control *control, const double heat[2]) {
-  memcpy(control->state.guard.heat, heat, sizeof control->state.guard.heat);
+  for (int i = 0; i < 2; i++)
+    control->state.guard.heat[i] = heat[i] >= 0 && heat[i] < (double)INFINITY ? heat[i] : HEAT_UNKNOWN;
 }
 
 void ethd_control_clear(ethd_control *control) { atomic_store_explicit(&control->clear, 1, memory_order_relaxed); }

@@ -5,7 +5,7 @@
         E > 0                   the wall has absorbed energy; forgotten while it doesn't push, since nothing is stored
         E < 0                   it gave more away than it took; forgotten within a second or so
         E < -energy             damping is added, as much as brings E back within one period's motion, at most
-                                DAMPING_MAX; the wall still never pulls
+                                plan.damping_max; the wall still never pulls
         E < -2 energy           if this comes again and again for EXCESS_MAX, damping doesn't help. A gap shorter than
                                 RESPITE doesn't interrupt the count, because the wall then stores some of what it
                                 gives next; a longer one says that damping has helped
@@ -22,7 +22,6 @@
 #include "control/rows.h"
 
 #define MEMORY 0.5       /* s */
-#define DAMPING_MAX 20.0 /* Ns/m, as much as the guard's stop */
 #define EXCESS_MAX 0.050 /* s */
 #define RESPITE 0.025    /* s */
 
@@ -56,11 +55,12 @@ static void begin(const ethd__tick *t, ethd__slot *slot, double depth, double wa
 }
 
 /* Returns the damping to add, Ns/m: it begins when more than the bound was given away and ends below half of it. */
-static double damping(ethd__slot *slot, double given, double bound, double v, double period) ETHD_RT {
+static double damping(const ethd__plan *plan, ethd__slot *slot, double given, double v, double period) ETHD_RT {
+  const double bound = plan->setup.limits.energy;
   if (given > bound) slot->giving = true;
   if (given <= bound / 2) slot->giving = false;
   if (!slot->giving || v == 0) return 0;
-  return fmin((given - bound / 2) / (v * v * period), DAMPING_MAX);
+  return fmin((given - bound / 2) / (v * v * period), plan->damping_max);
 }
 
 static bool persists(ethd__state *state, double period) ETHD_RT {
@@ -77,7 +77,7 @@ double ethd__passivity(const ethd__tick *t, ethd__slot *slot, const ethd_contact
   observe(slot, c);
   slot->watched = true;
   double given = -fmin(slot->energy[0], slot->energy[1]);
-  double added = -damping(slot, given, bound, c->v, c->period) * c->v;
+  double added = -damping(t->plan, slot, given, c->v, c->period) * c->v;
   if (wall + added > 0) added = -wall;
   slot->force[1] = slot->force[0];
   slot->force[0] = wall + added + brake;

@@ -123,8 +123,21 @@ static void prepare_ahead(const ethd_setup *s, ethd__plan *out) {
   const double links[2] = {s->arm.link1, s->arm.link2};
   out->range = 0;
   if (ETHD_LAW_HAS(s->transition, range)) out->range = s->transition->range;
-  out->lag = ethd_velocity_lag(&out->velocity);
   for (int i = 0; i < 2; i++) out->mobility[i] = 1 / (s->dynamics.mass[i] * links[i] * links[i]);
+}
+
+#define DAMPING_MAX 20.0 /* Ns/m: half of what the paper's wall has */
+
+/* Works out how the guard brakes the device, and refuses a stop that lets go of it while it still moves. */
+static ethd_status prepare_guard(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
+  out->lag = ethd_velocity_lag(&out->velocity);
+  out->device = ethd_guard_device_of(&s->arm, &s->dynamics, s->limits.gap, s->period, out->lag);
+  out->damping_max = fmin(DAMPING_MAX, ethd_guard_damping(&out->device, out->device.mass, true));
+  if (isnan(s->dynamics.mass[0]) || isnan(s->dynamics.mass[1])) return ETHD_OK;
+  const double least = ethd_guard_stop_time(&out->device, &s->limits);
+  const double most = s->limits.stop_time < (double)INFINITY ? s->limits.stop_time : ETHD_STOP_TIME;
+  if (most >= least) return ETHD_OK;
+  return ethd__refuse(error, ETHD_E_RANGE, "limits.stop_time", (ethd__found){most, least, (double)INFINITY});
 }
 
 /* Returns true for a limit that the guard looks at in every tick, or that has a `watches_` of its own. */
@@ -133,7 +146,7 @@ static bool is_common(const ethd_limit *row) {
       offsetof(ethd_limits, torque),     offsetof(ethd_limits, torque_rate), offsetof(ethd_limits, speed),
       offsetof(ethd_limits, workspace),  offsetof(ethd_limits, margin),      offsetof(ethd_limits, step_time),
       offsetof(ethd_limits, clean_time), offsetof(ethd_limits, heat_time),   offsetof(ethd_limits, energy),
-      offsetof(ethd_limits, finger_age), offsetof(ethd_limits, finger_lost)};
+      offsetof(ethd_limits, finger_age), offsetof(ethd_limits, finger_lost), offsetof(ethd_limits, stop_time)};
   for (size_t i = 0; i < sizeof common / sizeof *common; i++)
     if (common[i] == row->offset) return true;
   return false;
@@ -165,6 +178,7 @@ ETHD__FP_APART static ethd_status prepare(const ethd_setup *s, ethd__plan *out, 
              error));
   TRY(within("finger_filter", ethd_filter_prepare(s->filter, s->filter_p, s->period, &out->filter, error), error));
   prepare_ahead(s, out);
+  TRY(prepare_guard(s, out, error));
   prepare_lags(s, out);
   out->places = 0;
   for (int place = 0; place < ETHD__PLACES; place++) {

@@ -76,6 +76,8 @@ typedef struct ethd__state {
   ethd__met met;           /* at this tick */
   ethd__fault_rows before; /* at the last */
   int64_t time_ns;         /* of the last tick */
+  int64_t clock_ns;        /* of the tick at which the present window of the clock's check began */
+  int64_t clock_periods;   /* since then */
   int64_t blind;           /* periods since the last tick with a possible measurement */
   /* estimates */
   ethd_velocity_state velocity[2];
@@ -102,8 +104,10 @@ typedef struct ethd__state {
   ethd__law_block tracking;
   struct {
     double delta[2]; /* old - new torque at the swap, Nm */
+    double from[2];  /* size of the old one, Nm */
     double elapsed;  /* s since then; INFINITY: no fade */
   } fade;
+  double soft; /* s since a fault was acknowledged; INFINITY: the torque is whole again */
   ethd_guard_state guard;
 } ethd__state;
 

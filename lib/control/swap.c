@@ -1,46 +1,12 @@
-/* A swap without a bump: at its tick the torque is what the old plan gives, and the difference to the new plan's
-   torque fades linearly to 0 over swap_time. */
+/* A swap: the new plan goes on with the state, and the old plan's torque is worked out once more, from which limit.c
+   fades. */
 #include "control/swap.h"
 
 #include "control/estimate.h"
 #include "control/evaluate.h"
 #include "control/fence.h"
+#include "control/limit.h"
 #include "control/places.h"
-
-/* ---- the fade ---- */
-
-/* Returns a torque without what the guard would cut. If that were part of a fade, the fade would be over as soon as the
-   rest is at the limit, too early and too steeply. */
-static double within_limit(const ethd__tick *t, double torque) ETHD_RT {
-  double most = t->plan->setup.limits.torque;
-  if (torque > most) return most;
-  return torque < -most ? -most : torque;
-}
-
-void ethd__fade_start(ethd__tick *t, const double from[2]) {
-  for (int i = 0; i < 2; i++) {
-    t->state->fade.delta[i] = within_limit(t, from[i]) - within_limit(t, t->trace->tau_raw[i]);
-    t->trace->tau_raw[i] = from[i];
-  }
-  t->state->fade.elapsed = 0;
-}
-
-/* Returns the share of the difference that is left after `t` s. */
-static double fade_share(double t, double swap_time) ETHD_RT { return t < swap_time ? 1 - t / swap_time : 0; }
-
-void ethd__fade(ethd__tick *t) {
-  ethd__state *state = t->state;
-  if (isinf(state->fade.elapsed)) return;
-  state->fade.elapsed += t->dt;
-  double share = fade_share(state->fade.elapsed, t->plan->setup.swap_time);
-  if (share < 1e-9) { /* periods add up to swap_time only within rounding */
-    state->fade.elapsed = (double)INFINITY;
-    return;
-  }
-  for (int i = 0; i < 2; i++)
-    t->trace->tau_raw[i] = within_limit(t, t->trace->tau_raw[i]) + share * state->fade.delta[i];
-  state->guard.steep = 0; /* the fade's slope is no law's */
-}
 
 /* ---- the state ---- */
 
@@ -117,26 +83,27 @@ void ethd__swap_state(const ethd__plan *from, const ethd__plan *to, ethd__state 
 
 /* ---- the tick of a swap ---- */
 
-/* Works out the old plan's torque on a copy of the state, so that this run leaves no mark in the state on which the new
-   plan goes on. Returns false if a law failed, which is then noted in the state too. */
+/* Works out what the old plan would command, on a copy of the state, so that this run leaves no mark in the state on
+   which the new plan goes on. Returns false if a law failed, which is then noted in the state too. */
 static bool evaluate_old(ethd__tick *t, double torque[2]) ETHD_RT {
   memcpy(t->scratch, t->state, sizeof *t->scratch);
   ethd__tick old = *t;
   old.plan = t->from;
   old.state = t->scratch;
-  bool held = ethd__evaluate(&old);
-  if (held) ethd__fade(&old);
-  memcpy(torque, t->trace->tau_raw, sizeof t->trace->tau_raw);
-  if (!held) t->state->met = t->scratch->met; /* the row of the law that failed */
-  return held;
+  if (!ethd__evaluate(&old)) {
+    t->state->met = t->scratch->met; /* the row of the law that failed */
+    return false;
+  }
+  ethd__limit(&old);
+  memcpy(torque, t->trace->tau, sizeof t->trace->tau);
+  return true;
 }
 
-void ethd__swap(ethd__tick *t) {
-  double old[2];
+void ethd__swap(ethd__tick *t, double old[2]) {
   bool held = evaluate_old(t, old);
   ethd__swap_state(t->from, t->plan, t->state, held ? t->scratch : NULL);
   if (!held)
     ethd__estimate(t);
   else if (ethd__evaluate(t))
-    ethd__fade_start(t, old);
+    t->old = old;
 }

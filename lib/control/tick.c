@@ -5,9 +5,9 @@
    2. Moving bodies take their new poses.
    3. The laws work out the torque (evaluate.c). If a noted row forbids a torque, or a fault is latched, the tick only
       estimates, so that the trace is right and a later tick can go on from there.
-   4. At a swap the tick's torque is that of the old plan, and its difference to the new plan's fades (swap.c).
-      After an acknowledged fault the torque rises from zero in the same way.
-   5. The guard has the last word: it bounds the torque, damps the ring to a stop, or lets it go.
+   4. At a swap the old plan's torque is worked out, too (swap.c).
+   5. The guard bounds the torque, stops the ring, or lets it go. The torque fades from the old plan's to the new
+      one's, and from zero after an acknowledged fault (limit.c).
    6. The noted rows decide what latches, and the trace shows how the tick ended (rows.c).
 
    When the measurement is impossible there are no steps 2 to 5, and the torque is zero. */
@@ -16,11 +16,13 @@
 #include "control/estimate.h"
 #include "control/evaluate.h"
 #include "control/fence.h"
+#include "control/limit.h"
 #include "control/places.h"
 #include "control/rows.h"
 #include "control/swap.h"
 
-#define GAP_MAX 1000000 /* periods: a longer gap counts as this one, so that sums stay small */
+#define CLOCK_WINDOW 0.2 /* s */
+#define GAP_MAX 1000000  /* periods: a longer gap counts as this one, so that sums stay small */
 
 static int64_t at_most(int64_t periods) ETHD_RT { return periods < GAP_MAX ? periods : GAP_MAX; }
 
@@ -60,14 +62,33 @@ static bool input_is_possible(const ethd_sense *s, double *which) ETHD_RT {
   return !(s->have & ETHD__HAVE_BODIES) || bodies_are_possible(s);
 }
 
+static double since(int64_t now, int64_t then) ETHD_RT {
+  return 1e-9 * (double)(int64_t)((uint64_t)now - (uint64_t)then);
+}
+
+/* Returns true unless the device's clock stands still or has another rate: over a window it may differ from the loop's
+   periods by two gaps, since the age of a sample may change by one. A step that is late begins a new window. */
+static bool clock_runs(const ethd__tick *t, bool in_time) ETHD_RT {
+  ethd__state *state = t->state;
+  const double period = t->plan->setup.period;
+  state->clock_periods += t->periods;
+  double expected = (double)state->clock_periods * period, passed = since(t->sense->time_ns, state->clock_ns);
+  bool good = state->counters.ticks < 2 || fabs(passed - expected) <= 2 * t->plan->setup.limits.gap;
+  if (good && in_time && state->counters.ticks >= 2 && expected < CLOCK_WINDOW) return true;
+  state->clock_ns = t->sense->time_ns;
+  state->clock_periods = 0;
+  return good;
+}
+
 /* Returns true unless this step comes later than limits.gap after the last, by the loop's periods, or the device's
    clock differs from those periods by more. The first two ticks compare no clocks, since a bus's first sample may be
    older than the loop. */
 static bool clock_is_good(const ethd__tick *t) ETHD_RT {
   const double most = t->plan->setup.limits.gap, expected = (double)t->periods * t->plan->setup.period;
   if (isinf(most)) return true;
-  double passed = 1e-9 * (double)(int64_t)((uint64_t)t->sense->time_ns - (uint64_t)t->state->time_ns);
-  return expected <= most && (t->state->counters.ticks < 2 || fabs(passed - expected) <= most);
+  double passed = since(t->sense->time_ns, t->state->time_ns);
+  bool good = expected <= most && (t->state->counters.ticks < 2 || fabs(passed - expected) <= most);
+  return clock_runs(t, expected <= most) && good;
 }
 
 static bool joints_are_good(const double joints[4], const double q[2]) ETHD_RT {
@@ -81,14 +102,20 @@ static bool reach_is_good(const double reach[2], ethd_vec x) ETHD_RT {
 
 #define HOT 1.05 /* times the heat that the nominal torque leads to */
 
-/* Notes the rows of limits that most setups don't have. */
-static void note_rare_limits(ethd__tick *t) ETHD_RT {
-  const ethd_limits *limits = &t->plan->setup.limits;
-  if (!clock_is_good(t)) ethd__note_grave(t->state, ETHD_FAULT_CLOCK);
-  if (!joints_are_good(limits->joints, t->sense->q)) ethd__note_grave(t->state, ETHD_FAULT_WORKSPACE);
-  if (limits->nominal_torque < (double)INFINITY &&
-      !(ethd_guard_heat(limits, &t->state->guard, (double)t->periods * t->plan->setup.period) <= HOT))
+/* Notes a motor that is too hot. The torque since the last tick was held under the limits that ruled then. */
+static void note_heat(ethd__tick *t) ETHD_RT {
+  const ethd_limits *held = t->from ? &t->from->setup.limits : &t->plan->setup.limits;
+  if (held->nominal_torque < (double)INFINITY &&
+      !(ethd_guard_heat(held, &t->state->guard, (double)t->periods * t->plan->setup.period) <= HOT))
     ethd__note_grave(t->state, ETHD_FAULT_HEAT);
+}
+
+/* Notes the rows of limits that most setups don't have. */
+static void note_rare_limits(ethd__tick *t, bool possible) ETHD_RT {
+  if (!clock_is_good(t)) ethd__note_grave(t->state, ETHD_FAULT_CLOCK);
+  if (possible && !joints_are_good(t->plan->setup.limits.joints, t->sense->q))
+    ethd__note_grave(t->state, ETHD_FAULT_WORKSPACE);
+  note_heat(t);
   t->state->time_ns = t->sense->time_ns;
 }
 
@@ -98,7 +125,7 @@ static bool note_what_is_wrong(ethd__tick *t) ETHD_RT {
   ethd__rows_begin(t->state, t->sense);
   bool possible = input_is_possible(t->sense, &which);
   if (!possible) ethd__note_value(t->state, ETHD_FAULT_INPUT, which);
-  if (t->plan->has_rare_limits) note_rare_limits(t);
+  if (t->plan->has_rare_limits || (t->from && t->from->has_rare_limits)) note_rare_limits(t, possible);
   if (possible && !t->state->fault && !(1e-9 * (double)t->sense->step_ns <= t->plan->setup.limits.step_time))
     ethd__note_value(t->state, ETHD_FAULT_BUDGET, (double)t->sense->step_ns);
   return possible;
@@ -107,17 +134,15 @@ static bool note_what_is_wrong(ethd__tick *t) ETHD_RT {
 /* ---- the torque of the laws ---- */
 
 /* Sets trace->tau_raw. If a law fails, tau_raw stays undefined, but a row is noted that forbids a torque. */
-static void work_out_torque(ethd__tick *t) ETHD_RT {
+static void work_out_torque(ethd__tick *t, double old[2]) ETHD_RT {
   if (ethd__rows_forbid(t->state)) {
     if (t->from) ethd__swap_state(t->from, t->plan, t->state, NULL);
     ethd__estimate(t);
   } else if (t->from && !t->soft) {
-    ethd__swap(t);
+    ethd__swap(t, old);
   } else {
     if (t->from) ethd__swap_state(t->from, t->plan, t->state, NULL);
-    if (!ethd__evaluate(t)) return;
-    ethd__fade(t);
-    if (t->soft) ethd__fade_start(t, (const double[2]){0, 0});
+    (void)ethd__evaluate(t);
   }
 }
 
@@ -129,8 +154,7 @@ static void guard(ethd__tick *t) ETHD_RT {
   if (t->plan->has_rare_limits && !reach_is_good(limits->reach, t->pose.x))
     ethd__note_grave(state, ETHD_FAULT_WORKSPACE);
   if (ethd__rows_any(&state->met.rows)) ethd__rows_stop(state);
-  memcpy(t->trace->tau, t->trace->tau_raw, sizeof t->trace->tau);
-  t->trace->guard = ethd_guard_step(limits, &state->guard, &t->pose, t->ring.v, t->dt, t->trace->tau);
+  ethd__limit(t);
   if (t->trace->guard & ETHD_GUARD_SPEED) ethd__note_value(state, ETHD_FAULT_SPEED, ethd_vec_norm(t->ring.v));
 }
 
@@ -145,14 +169,10 @@ static void begin_trace(const ethd_sense *sense, ethd_trace *out) ETHD_RT {
   out->rf = out->d_re = out->d_fe = out->v_n = (double)NAN;
 }
 
-/* Takes the torque away at once: without its last torque the guard has no slope to limit. */
-static void take_torque_away(ethd__tick *t) ETHD_RT {
-  memset(t->trace->tau_raw, 0, sizeof t->trace->tau_raw);
-  memset(t->state->guard.last, 0, sizeof t->state->guard.last);
-}
-
 void ethd__tick_run(ethd__tick *t) {
   ethd__state *state = t->state;
+  double old[2];
+  t->old = NULL;
   t->periods = at_most(t->sense->missed > 0 ? at_most(t->sense->missed) + 1 : 1);
   int64_t gap = at_most(state->blind + t->periods);
   t->dt = (double)gap * t->plan->setup.period;
@@ -162,12 +182,15 @@ void ethd__tick_run(ethd__tick *t) {
   t->trace->swap = t->from != NULL;
   if (measured) {
     ethd__places_take(state, t->sense);
-    work_out_torque(t);
+    work_out_torque(t, old);
   } else if (t->from) {
     ethd__swap_state(t->from, t->plan, state, NULL);
   }
-  if (ethd__rows_forbid(state)) take_torque_away(t);
-  if (measured) guard(t);
+  if (ethd__rows_forbid(state)) memset(t->trace->tau_raw, 0, sizeof t->trace->tau_raw);
+  if (measured)
+    guard(t);
+  else
+    memset(state->guard.last, 0, sizeof state->guard.last); /* that is what was commanded */
   if (t->trace->guard || state->fault || ethd__rows_any(&state->met.rows))
     t->trace->fault = ethd__judge(t->plan, state, t->trace->guard, t->periods);
   if (t->plan->range) memcpy(t->trace->learnt, state->memory, sizeof state->memory);
@@ -178,7 +201,8 @@ void ethd__resume(const ethd__plan *plan, ethd__state *state) {
   __atomic_store_n(&state->fault, ETHD_FAULT_NONE, __ATOMIC_RELAXED);
   state->before = (ethd__fault_rows){0, 0}; /* so a row that lasts counts as a new occurrence */
   state->guard.stopping = state->guard.stopped = 0;
-  state->fade.elapsed = (double)INFINITY;
+  state->guard.steep = 0;
+  state->fade.elapsed = state->soft = (double)INFINITY;
   for (int i = 0; i < ETHD_CONTACTS_MAX; i++) state->slots[i].used = false;
   ethd__block_reset(plan, &plan->setup.tracking->law, plan->setup.tracking_p, &state->tracking);
 }

@@ -2,13 +2,6 @@
 
 #include "guard/parts.h"
 
-/* A stop damps the ring until it is slower than STILL. STILL is the paper's v_th (eq. 11), below which a ring counts as
-   standing still. STOP_DAMPING is a fifth of the paper's B_d. Any device that renders the paper's wall is stable with
-   it: with a tick of delay a free mass m is stable up to a damping of 0.83 m/T, so at 1 kHz 20 Ns/m suit 24 g and more.
-   A ring of 0.12 kg that moves at 0.2 m/s stands still after 14 ms. */
-#define STOP_DAMPING 20.0 /* Ns/m */
-#define STILL 0.020       /* m/s */
-
 static bool is_outside(const double w[4], ethd_vec x) ETHD_RT {
   return !(x.x >= w[0] && x.x <= w[1] && x.y >= w[2] && x.y <= w[3]);
 }
@@ -18,13 +11,6 @@ static int32_t breach(const ethd_limits *limits, ethd_vec x, ethd_vec v) ETHD_RT
   if (!(ethd_vec_norm(v) <= limits->speed)) bits |= ETHD_GUARD_SPEED;
   if (is_outside(limits->workspace, x)) bits |= ETHD_GUARD_WORKSPACE;
   return bits;
-}
-
-/* Replaces the torque by damping while the ring moves and by zero once it stands still: the arm is counterweighted. */
-static void stop(ethd_guard_state *s, const ethd_pose *pose, ethd_vec v, double torque[2]) ETHD_RT {
-  if (s->stopping && ethd_vec_norm(v) < STILL) s->stopped = 1;
-  torque[0] = torque[1] = 0;
-  if (!s->stopped) ethd_pose_torques(pose, ethd_vec_scale(-STOP_DAMPING, v), torque);
 }
 
 /* Brings a value, which isn't NaN, to within `most` of the centre; returns true if it was outside. */
@@ -47,46 +33,69 @@ static int32_t steep(const ethd_limits *limits, ethd_guard_state *s, double dt, 
   s->steep = too_steep ? s->steep + 1 : 0;
   memcpy(s->asked, torque, sizeof s->asked);
   if (s->steep < ETHD_STEEP_MAX || !limits->latch) return 0;
-  s->stopping |= ETHD_GUARD_STEEP; /* the ring is damped from the next tick on */
+  s->stopping |= ETHD_GUARD_STEEP; /* the ring is stopped from the next tick on */
   return ETHD_GUARD_STEEP;
 }
 
-/* Bounds one joint's torque by heat and limit, then by the rate's window around the last torque. That window may lie
-   outside of the limits, when one has just become stricter, so the limits have the last word. */
-static int32_t bound(const ethd_limits *limits, const ethd_guard_state *s, int i, double rise, double *torque) ETHD_RT {
-  const bool may_be_hot = limits->nominal_torque < (double)INFINITY;
-  const double heat = may_be_hot ? ethd__guard_cool(limits, s->heat[i]) : (double)INFINITY;
-  int32_t bits = 0;
-  if (clamp(0, heat, torque)) bits |= ETHD_GUARD_HEAT;
-  if (clamp(0, limits->torque, torque)) bits |= ETHD_GUARD_TORQUE;
-  if (!clamp(s->last[i], rise, torque)) return bits;
-  if (clamp(0, heat, torque)) bits |= ETHD_GUARD_HEAT;
-  if (clamp(0, limits->torque, torque)) bits |= ETHD_GUARD_TORQUE;
-  return bits | ETHD_GUARD_RATE;
+/* Returns the most torque of a joint, Nm, that limit and heat leave; *bit says which of them it is. */
+static double most_of(const ethd_limits *limits, const ethd_guard_state *s, int i, int32_t *bit) ETHD_RT {
+  *bit = ETHD_GUARD_TORQUE;
+  if (!(limits->nominal_torque < (double)INFINITY)) return limits->torque;
+  const double heat = ethd__guard_cool(limits, s->heat[i]);
+  if (heat >= limits->torque) return limits->torque;
+  *bit = ETHD_GUARD_HEAT;
+  return heat;
 }
 
-int32_t ethd_guard_step(const ethd_limits *limits, ethd_guard_state *s, const ethd_pose *pose, ethd_vec v, double dt,
-                        double torque[2]) {
-  int32_t bits = breach(limits, pose->x, v);
+int32_t ethd__guard_limit(const ethd_limits *limits, const ethd_guard_device *device, ethd_guard_state *s,
+                          const ethd_guard_motion *m, double torque[2]) {
+  int32_t bits = breach(limits, m->pose->x, m->v), bit;
   if (limits->latch) s->stopping |= bits;
-  bool stopping = bits || s->stopping, rated = !stopping && limits->torque_rate < (double)INFINITY;
+  const bool stopping = bits || s->stopping;
   if (stopping) {
-    stop(s, pose, v, torque);
+    ethd__guard_stop(limits, device, s, m, torque);
     bits |= s->stopping & ETHD_GUARD_FAULT;
-  } else if (limits->margin > 0 && ethd__guard_wall(limits, pose, v, torque)) {
-    bits |= ETHD_GUARD_MARGIN;
+  } else {
+    s->stop.begun = 0;
+    if (limits->margin > 0 && ethd__guard_wall(limits, device, m, torque)) bits |= ETHD_GUARD_MARGIN;
   }
   if (!((torque[0] - torque[0]) + (torque[1] - torque[1]) == 0)) { /* x - x is NaN for an x that isn't finite */
     bits |= ETHD_GUARD_FINITE;
     torque[0] = torque[1] = 0;
     s->last[0] = s->last[1] = 0; /* zero at this very tick, not at the rate's pace */
   }
-  if (rated) bits |= steep(limits, s, dt, torque);
+  if (!stopping && limits->torque_rate < (double)INFINITY) bits |= steep(limits, s, m->dt, torque);
   for (int i = 0; i < 2; i++) {
-    bits |= bound(limits, s, i, rated ? limits->torque_rate * dt : (double)INFINITY, &torque[i]);
-    s->last[i] = torque[i];
+    const double most = most_of(limits, s, i, &bit);
+    if (clamp(0, most, &torque[i])) bits |= bit;
   }
+  return bits;
+}
+
+/* The rate's window may lie outside of the limits, when one has just become stricter, so the limits have the last word.
+ */
+int32_t ethd__guard_finish(const ethd_limits *limits, ethd_guard_state *s, const ethd__guard_faded *faded, double dt,
+                           int32_t bits, double torque[2]) {
+  const bool rated = limits->torque_rate < (double)INFINITY && !ethd__guard_stops(s, bits);
+  int32_t bit;
+  for (int i = 0; i < 2 && (rated || faded); i++) {
+    double most = most_of(limits, s, i, &bit);
+    if (faded && faded->from[i] > most)
+      most = faded->share < 1 ? most + faded->share * (faded->from[i] - most) : faded->from[i];
+    if (faded && clamp(0, most, &torque[i])) bits |= bit;
+    if (!rated || !clamp(s->last[i], limits->torque_rate * dt, &torque[i])) continue;
+    bits |= ETHD_GUARD_RATE;
+    if (clamp(0, most, &torque[i])) bits |= bit;
+  }
+  s->last[0] = torque[0];
+  s->last[1] = torque[1];
   s->cut = bits & ETHD_GUARD_TORQUE ? s->cut + dt : 0;
   if (bits) count(s, bits);
   return bits;
+}
+
+int32_t ethd_guard_step(const ethd_limits *limits, const ethd_guard_device *device, ethd_guard_state *s,
+                        const ethd_guard_motion *m, double torque[2]) {
+  const int32_t bits = ethd__guard_limit(limits, device, s, m, torque);
+  return ethd__guard_finish(limits, s, NULL, m->dt, bits, torque);
 }

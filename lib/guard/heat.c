@@ -7,12 +7,13 @@
    where h rises no more. */
 #include "guard/parts.h"
 
-#define FOLD 0.9 /* the last tenth of the heat is where the torque folds back */
+#define FOLD 0.9     /* the last tenth of the heat is where the torque folds back */
+#define LOAD_MAX 1e3 /* times the nominal torque: no motor lives through more, and the model's heat stays finite */
 
 double ethd_guard_heat(const ethd_limits *limits, ethd_guard_state *s, double dt) {
   double share = 1 - ethd_exp(-dt / limits->heat_time);
   for (int i = 0; i < 2; i++) {
-    double load = s->last[i] / limits->nominal_torque;
+    double load = fmin(fabs(s->last[i]) / limits->nominal_torque, LOAD_MAX);
     s->heat[i] += share * (load * load - s->heat[i]);
   }
   return fmax(s->heat[0], s->heat[1]);

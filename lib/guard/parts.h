@@ -3,12 +3,39 @@
 #define ETHD__GUARD_PARTS_H
 
 #include <stdbool.h>
+#include <string.h>
 
 #include "ethd/guard.h"
 #include "ethd/maths.h"
 
+/* The guard's first half: stop or margin's wall, finite, heat and torque limits. Returns ETHD_GUARD_* bits. */
+int32_t ethd__guard_limit(const ethd_limits *limits, const ethd_guard_device *device, ethd_guard_state *state,
+                          const ethd_guard_motion *motion, double torque[2]) ETHD_RT;
+
+/* What is left of a swap's fade: while it lasts, a torque may be over its limits by `share` of what the torque at the
+   swap was over them. */
+typedef struct ethd__guard_faded {
+  double share;   /* 0 to 1 */
+  double from[2]; /* Nm, >= 0: size of the torque at the swap */
+} ethd__guard_faded;
+
+/* The guard's second half: the rate, and heat and torque limits once more; remembers the torque. `bits` are the first
+   half's, and those of both are returned. faded: NULL where nothing fades. */
+int32_t ethd__guard_finish(const ethd_limits *limits, ethd_guard_state *state, const ethd__guard_faded *faded,
+                           double dt, int32_t bits, double torque[2]) ETHD_RT;
+
+/* Returns whether the first half's torque is the stop's, or zero because it wasn't finite: nothing may be added. */
+static inline bool ethd__guard_stops(const ethd_guard_state *s, int32_t bits) ETHD_RT {
+  return s->stopping || (bits & (ETHD_GUARD_SPEED | ETHD_GUARD_WORKSPACE | ETHD_GUARD_FAULT));
+}
+
+/* Replaces the torque by the stop's. */
+void ethd__guard_stop(const ethd_limits *limits, const ethd_guard_device *device, ethd_guard_state *state,
+                      const ethd_guard_motion *motion, double torque[2]) ETHD_RT;
+
 /* Adds the push of the workspace's wall to the torque; returns false if the ring doesn't touch it. */
-bool ethd__guard_wall(const ethd_limits *limits, const ethd_pose *pose, ethd_vec v, double torque[2]) ETHD_RT;
+bool ethd__guard_wall(const ethd_limits *limits, const ethd_guard_device *device, const ethd_guard_motion *motion,
+                      double torque[2]) ETHD_RT;
 
 /* Returns the largest torque, Nm, that a motor of this heat may give. */
 double ethd__guard_cool(const ethd_limits *limits, double heat) ETHD_RT;

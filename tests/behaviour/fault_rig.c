@@ -101,7 +101,9 @@ static void setup_of(fault_rig *r, void (*change)(ethd_setup *setup)) {
   r->setup.limits.torque = FAULT_TORQUE;
   r->setup.limits.torque_rate = 2000;
   r->setup.limits.speed = 1.2;
+  r->setup.limits.stop_time = 1;
   r->setup.limits.step_time = 300e-6;
+  r->setup.dynamics = (ethd_dynamics){{0.1173, 0.25}, 0.398, 1.267, 0.071e-3}; /* the plant's */
   const double space[4] = {0.15, 0.42, 0.10, 0.40};
   memcpy(r->setup.limits.workspace, space, sizeof space);
   moody = ethd_tracking_pd;

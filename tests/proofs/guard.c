@@ -17,23 +17,24 @@ static double heat_limit;
 
 #include "guard/parts.h"
 
-bool ethd__guard_wall(const ethd_limits *limits, const ethd_pose *pose, ethd_vec v, double torque[2]) {
-  (void)limits, (void)pose, (void)v;
+bool ethd__guard_wall(const ethd_limits *limits, const ethd_guard_device *device, const ethd_guard_motion *motion,
+                      double torque[2]) {
+  (void)limits, (void)device, (void)motion;
   torque[0] = nondet_double();
   torque[1] = nondet_double();
   return nondet_bool();
 }
 
+void ethd__guard_stop(const ethd_limits *limits, const ethd_guard_device *device, ethd_guard_state *state,
+                      const ethd_guard_motion *motion, double torque[2]) {
+  (void)limits, (void)device, (void)state, (void)motion;
+  torque[0] = nondet_double();
+  torque[1] = nondet_double();
+}
+
 double ethd__guard_cool(const ethd_limits *limits, double heat) {
   (void)limits, (void)heat;
   return heat_limit;
-}
-
-#define ethd_pose_torques any_torques
-static void any_torques(const ethd_pose *pose, ethd_vec force, double torque[2]) {
-  (void)pose, (void)force;
-  torque[0] = nondet_double();
-  torque[1] = nondet_double();
 }
 
 #include "../../lib/guard/guard.c"
@@ -43,15 +44,17 @@ static bool is_finite(double v) { return v - v == 0; }
 int main(void) {
   ethd_limits limits;
   ethd_guard_state state;
+  ethd_guard_device device;
   ethd_pose pose;
-  ethd_vec v;
-  double dt, torque[2];
+  ethd_guard_motion motion;
+  double torque[2];
+  motion.pose = &pose;
   __CPROVER_assume(limits.torque >= 0 && limits.torque_rate >= 0 && limits.speed >= 0);
-  __CPROVER_assume(is_finite(dt) && dt > 0);
+  __CPROVER_assume(is_finite(motion.dt) && motion.dt > 0);
   __CPROVER_assume(is_finite(state.last[0]) && is_finite(state.last[1])); /* kept, as proven below */
   __CPROVER_assume(heat_limit >= 0);
   __CPROVER_assume(state.steep >= 0 && state.steep < INT64_MAX);
-  ethd_guard_step(&limits, &state, &pose, v, dt, torque);
+  ethd_guard_step(&limits, &device, &state, &motion, torque);
   for (int i = 0; i < 2; i++) {
     __CPROVER_assert(is_finite(torque[i]), "the torque is finite");
     __CPROVER_assert(torque[i] >= -limits.torque && torque[i] <= limits.torque, "the torque is within its limit");

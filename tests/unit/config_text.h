@@ -14,7 +14,8 @@ static const char everything[] =
     "[contact]\nlaw = hunt-crossley\nk_e = 2600\n"
     "[transition]\nlaw = offset\nb_d = 110\nv_th = 0.021\nbeta_min = 0.2\neps_max = inf\nt_max = +inf\n"
     "v_hysteresis = 0.001\npreset = product\nswap_time = 0.03\n"
-    "[limits]\ntorque = 1.5\ntorque_rate = inf\nspeed = 2\nworkspace = -0.4 0.4 0.1 inf\nstep_time = 5e-4\n"
+    "[limits]\ntorque = 1.5\ntorque_rate = inf\nspeed = 2\nworkspace = -0.4 0.4 0.1 inf\nstep_time = 5e-4\nstop_time = "
+    "0.75\n"
     "[device]\ndriver = other\nwire = 3 x\n";
 
 #define X50 "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx"

@@ -41,6 +41,7 @@ void moody_open(rig *r, int latch) {
   ethd_setup_tracking(&r->setup, &moody_tracking);
   ethd_setup_contact(&r->setup, &moody_contact);
   ethd_setup_transition(&r->setup, &moody_transition);
+  r->setup.dynamics = (ethd_dynamics){{MOODY_MASS, MOODY_MASS}, NAN, NAN, 0};
   r->setup.limits.latch = latch;
   rig_start(r);
 }

@@ -6,6 +6,12 @@
 
 enum { MOODY_WELL, MOODY_FAIL, MOODY_POSITIVE, MOODY_BAD };
 
+/* The device's dynamics: 0.1 kg, without delay. A stop commands at first a tenth of the momentum within a tick, m / 10 T,
+   and when it sees the ring slow down m / (e T), Ns/m. */
+#define MOODY_MASS 0.1
+#define MOODY_PROBE 10.0
+#define MOODY_DAMPING (MOODY_MASS / (1e-3 * 2.718281828459045))
+
 typedef struct moody {
   int tracking, contact, transition;
   double value; /* of what is bad */

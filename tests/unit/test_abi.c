@@ -182,7 +182,7 @@ AT(ethd_sense, rays, 152, 128);
 AT(ethd_sense, bodies, 280, 192);
 AT(ethd_sense, finger_noise, 472, 8);
 
-SIZE(ethd_limits, 184, 8);
+SIZE(ethd_limits, 192, 8);
 AT(ethd_limits, size, 0, 4);
 AT(ethd_limits, latch, 4, 4);
 AT(ethd_limits, torque, 8, 8);
@@ -200,6 +200,7 @@ AT(ethd_limits, gap, 152, 8);
 AT(ethd_limits, finger_age, 160, 8);
 AT(ethd_limits, finger_lost, 168, 8);
 AT(ethd_limits, clean_time, 176, 8);
+AT(ethd_limits, stop_time, 184, 8);
 
 SIZE(ethd_dynamics, 40, 8);
 AT(ethd_dynamics, mass, 0, 16);

@@ -82,13 +82,14 @@ START_TEST(test_every_key) {
   ck_assert(isinf(transition_value(s, "t_max")) && s->v_hysteresis == 0.001 && s->swap_time == 0.03);
   ck_assert(s->limits.torque == 1.5 && isinf(s->limits.torque_rate) && s->limits.speed == 2);
   ck_assert(s->limits.workspace[0] == -0.4 && s->limits.workspace[1] == 0.4);
-  ck_assert(s->limits.workspace[2] == 0.1 && isinf(s->limits.workspace[3]) && s->limits.step_time == 5e-4);
-  ck_assert_uint_eq(c->limits_given, 31);
+  ck_assert(s->limits.workspace[2] == 0.1 && isinf(s->limits.workspace[3]) && s->limits.step_time == 5e-4 &&
+            s->limits.stop_time == 0.75);
+  ck_assert_uint_eq(c->limits_given, 31 | 1 << 15);
   ck_assert_str_eq(c->device, "other");
   ck_assert_uint_eq(c->setting_count, 1);
   ck_assert_str_eq(c->settings[0].key, "wire");
   ck_assert_str_eq(c->settings[0].value, "3 x");
-  ck_assert_int_eq(c->settings[0].line, 48);
+  ck_assert_int_eq(c->settings[0].line, 49);
   ck_assert_str_eq(c->text, everything);
   ethd_config_free(c);
 }

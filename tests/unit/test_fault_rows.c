@@ -33,16 +33,16 @@ static void expect_goes_on(rig *r, const rig *healthy) {
   ck_assert_mem_eq(r->command.torque, healthy->command.torque, sizeof r->command.torque);
 }
 
-/* dx/dq1 = -0.25 m, and the ring moves to -x: damping turns joint 1 to -. */
-static void expect_damped(const rig *r, int row, double v) {
+/* dx/dq1 = -0.25 m, and the ring moves to -x: damping, Ns/m, turns joint 1 to -. */
+static void expect_damped(const rig *r, int row, double damping, double v) {
   ck_assert(r->status < 0 && r->trace.fault == row && r->command.safe == 0);
-  ck_assert_double_eq_tol(r->command.torque[0], -0.25 * 20 * v, 0.01 * v * 5);
+  ck_assert_double_eq_tol(r->command.torque[0], -0.25 * damping * v, 0.01 * v * damping);
 }
 
 static void expect_stops(rig *r, int row) {
-  expect_damped(r, row, 0.3);
+  expect_damped(r, row, MOODY_PROBE, 0.3);
   with(r, moving(r, 0.2), 0, 0);
-  expect_damped(r, row, 0.2);
+  expect_damped(r, row, MOODY_DAMPING, 0.2);
   with(r, moving(r, 0.019), 0, 0);
   ck_assert(r->command.safe == 1 && r->command.torque[0] == 0 && r->trace.fault == row);
   with(r, moving(r, 0.3), 0, 0); /* moved by hand */
@@ -142,8 +142,8 @@ START_TEST(test_first_stays) {
   ethd_sense bad;
   with(&r, moving(&r, 0.3), ETHD_FAULT_BIT(ETHD_FAULT_APPLICATION), 0);
   ck_assert(r.trace.fault == ETHD_FAULT_APPLICATION && r.command.safe == 0);
-  with(&r, moving(&r, 0.3), ETHD_FAULT_BIT(ETHD_FAULT_OVERRUNS), 0);
-  expect_damped(&r, ETHD_FAULT_APPLICATION, 0.3);
+  with(&r, moving(&r, 0.2), ETHD_FAULT_BIT(ETHD_FAULT_OVERRUNS), 0);
+  expect_damped(&r, ETHD_FAULT_APPLICATION, MOODY_DAMPING, 0.2);
   with(&r, moving(&r, 0.3), ETHD_FAULT_BIT(ETHD_FAULT_EMERGENCY_STOP), 0); /* ends the damping */
   moody_expect_safe(&r, ETHD_E_DEVICE, ETHD_FAULT_APPLICATION);
   with(&r, moving(&r, 0.3), 0, 0);

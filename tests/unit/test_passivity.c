@@ -43,6 +43,7 @@ static run press(double K, double B, int delay, double energy) {
   ring.measured = 1;
   ring.push = (ethd_vec){-4, 0};
   ring.setup.limits.energy = energy;
+  ring.setup.dynamics = (ethd_dynamics){{MASS, MASS}, NAN, NAN, 1e-3 * delay};
   ethd_setup_transition(&ring.setup, &ethd_transition_smooth);
   ethd_setup_contact(&ring.setup, &ethd_contact_kelvin_voigt);
   const ethd_law *law = &ethd_contact_kelvin_voigt.law;

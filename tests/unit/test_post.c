@@ -277,8 +277,7 @@ START_TEST(test_counters) {
   ethd_control_counters(r.control, &c);
   ck_assert(queried > 5 && queried < 10);
   ck_assert(c.ticks == 15 && c.queried == queried && c.swaps == 1 && c.events_dropped == 0);
-  /* while the swap fades, the torque keeps to the limit by itself */
-  ck_assert(c.guard[1] == 11 && c.guard[0] == 0 && c.faults[ETHD_FAULT_INPUT] == 0);
+  ck_assert(c.guard[1] == 15 && c.guard[0] == 0 && c.faults[ETHD_FAULT_INPUT] == 0);
   rig_close(&r);
 }
 END_TEST

@@ -96,6 +96,7 @@ static const row rows[] = {
     {"limits", "finger_age", 0.0001, INFINITY, NAN},
     {"limits", "finger_lost", 0.0001, INFINITY, NAN},
     {"limits", "clean_time", 0, 1000000, NAN},
+    {"limits", "stop_time", 0.001, INFINITY, NAN},
 };
 
 static size_t at;

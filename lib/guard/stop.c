@@ -1,0 +1,111 @@
+/* The stop: its law, bounds and sources stand in ethd/guard.h. */
+#include "guard/parts.h"
+
+#define STILL 0.020  /* m/s */
+#define UNSEEN 0.1   /* of the speed at the start: what may be commanded before any fall is seen */
+#define PER_FALL 1.2 /* what may be commanded for each m/s of fall */
+#define NOTHING 0.01 /* of the speed at the start: less than this within a reaction doesn't brake */
+#define SPARE 1.25   /* of the time that a stop needs */
+#define E 2.718281828459045
+
+/* The triple root's gains, for a mass of 1 kg and a force that is 1 s late: with s = sqrt(2) - 2,
+   K = s^2 (s + 1) e^s and B = -s (s + 2) e^s. */
+#define WALL_STIFFNESS 0.07911
+#define WALL_DAMPING 0.46120
+
+/* ---- the device ---- */
+
+static double known_or(double value, double assumed) { return value >= 0 ? value : assumed; }
+
+ethd_guard_device ethd_guard_device_of(const ethd_arm *arm, const ethd_dynamics *dynamics, double gap, double period,
+                                       double lag) {
+  ethd_guard_device d = {.link = {arm->link1, arm->link2},
+                         .serial = arm->mechanism == ETHD_ARM_SERIAL,
+                         .period = period,
+                         .delay = known_or(dynamics->delay, gap < (double)INFINITY ? gap : ETHD_DELAY_ASSUMED),
+                         .lag = lag};
+  double mass[2];
+  for (int i = 0; i < 2; i++) {
+    mass[i] = known_or(dynamics->mass[i], ETHD_MASS_ASSUMED);
+    d.inertia[i] = mass[i] * d.link[i] * d.link[i];
+  }
+  const double late = 2 * (d.delay + period + lag);
+  d.mass = fmin(mass[0], mass[1]);
+  d.stiffness = WALL_STIFFNESS * d.mass / (late * late);
+  d.damping = WALL_DAMPING * d.mass / late;
+  return d;
+}
+
+static double reaction(const ethd_guard_device *d, bool estimated) ETHD_RT {
+  return d->delay + d->period + (estimated ? d->lag : 0);
+}
+
+double ethd_guard_damping(const ethd_guard_device *d, double mass, bool estimated) {
+  return mass / (E * reaction(d, estimated));
+}
+
+/* Full torque brakes a link down to the speed at which the damping asks for less; from there on the speed decays. */
+double ethd_guard_stop_time(const ethd_guard_device *d, const ethd_limits *limits) {
+  const double late = reaction(d, true), speed = limits->speed;
+  double longest = 0;
+  if (!(speed > STILL && speed < (double)INFINITY) || limits->torque == 0) return 0;
+  for (int i = 0; i < 2; i++) {
+    double deceleration = limits->torque * d->link[i] / d->inertia[i]; /* of the ring */
+    double slow = fmin(speed, deceleration * E * late);
+    double decay = slow > STILL ? E * late * ethd_log(slow / STILL) : 0;
+    longest = fmax(longest, (speed > slow ? (speed - slow) / deceleration : 0) + decay);
+  }
+  return SPARE * (2 * late + longest);
+}
+
+/* ---- a tick of a stop ---- */
+
+/* Returns how fast the torques of the last tick change the links' speeds, m/s^2 at the ring. */
+static double acceleration(const ethd_guard_device *d, const double torque[2]) ETHD_RT {
+  double a = (torque[0] - d->serial * torque[1]) * d->link[0] / d->inertia[0];
+  double b = torque[1] * d->link[1] / d->inertia[1];
+  return sqrt(a * a + b * b);
+}
+
+/* Returns the change of speed, m/s, that the stop may command at this tick. */
+static double allowed(const ethd_guard_device *d, ethd_guard_state *s, const ethd_guard_motion *m,
+                      double speed) ETHD_RT {
+  if (!s->stop.begun) {
+    memset(&s->stop, 0, sizeof s->stop);
+    s->stop.begun = 1;
+    s->stop.start = s->stop.highest = speed;
+  } else {
+    s->stop.time += m->dt;
+    s->stop.given += acceleration(d, s->last) * m->dt;
+  }
+  if (s->stop.time <= reaction(d, m->estimated) - d->period) s->stop.highest = fmax(s->stop.highest, speed);
+  const double left = UNSEEN * s->stop.start + PER_FALL * (s->stop.highest - speed) - s->stop.given;
+  const double nothing = NOTHING * s->stop.start;
+  s->stop.helpless += m->dt;
+  if (left > nothing || s->stop.given > s->stop.mark + nothing) {
+    s->stop.mark = s->stop.given;
+    s->stop.helpless = 0;
+  }
+  return left;
+}
+
+static bool is_over(const ethd_limits *limits, const ethd_guard_device *d, const ethd_guard_state *s,
+                    const ethd_guard_motion *m, double speed) ETHD_RT {
+  double most = limits->stop_time < (double)INFINITY ? limits->stop_time : ETHD_STOP_TIME;
+  return !(speed >= STILL) || s->stop.time + d->period > most * (1 + 1e-9) ||
+         s->stop.helpless > reaction(d, m->estimated) + d->period;
+}
+
+void ethd__guard_stop(const ethd_limits *limits, const ethd_guard_device *d, ethd_guard_state *s,
+                      const ethd_guard_motion *m, double torque[2]) {
+  const double rate[2] = {m->qd[0], m->qd[1] + d->serial * m->qd[0]}; /* of the links' absolute angles */
+  const double a = rate[0] * d->link[0], b = rate[1] * d->link[1], speed = sqrt(a * a + b * b);
+  torque[0] = torque[1] = 0;
+  double left = allowed(d, s, m, speed);
+  if (s->stopping && is_over(limits, d, s, m, speed)) s->stopped = 1;
+  if (s->stopped || !(left > 0)) return;
+  double decay = 1 / (E * reaction(d, m->estimated)); /* 1/s */
+  if (decay * speed * d->period > left) decay = left / (speed * d->period);
+  torque[1] = -decay * d->inertia[1] * rate[1];
+  torque[0] = -decay * d->inertia[0] * rate[0] + d->serial * torque[1];
+}
