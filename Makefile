@@ -327,11 +327,12 @@ bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
 # The long ones: minutes.
 stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_svg $(B)/tests/test_fuzz_decoder \
   $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study $(B)/tests/test_servo_driver \
-  $(B)/tests/test_fuzz_map $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile \
+  $(B)/tests/test_fuzz_map $(B)/tests/test_promises $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile \
   $(B)/tests/volume $(B)/tests/day
 	$(built)
 	ETHD_SCENE_QUERIES=1000000 ETHD_SCENE_OBJECTS=10000000 $(B)/tests/test_scene_tree
 	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
+	ETHD_PROMISES=1e8 $(B)/tests/test_promises
 	BUILD='$(abspath $(B))' PYTHON="$$(sh .ci/setup python)" PLANTS=20 sh tests/identify.sh
 	BUILD='$(abspath $(B))' PYTHON="$$(sh .ci/setup python)" PLANTS=12 sh tests/identify_touches.sh
 	for k in 1 2 3 4 5; do ETHD_STRESS=1 $(B)/tests/test_servo_guardian || exit 1; done
