@@ -41,12 +41,6 @@ static bool is_same_face(const ethd_touch *touches, int i) ETHD_RT {
   return false;
 }
 
-static unsigned slots_in_use(const ethd__state *state) ETHD_RT {
-  unsigned bits = 0;
-  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) bits |= (unsigned)state->slots[i].used << i;
-  return bits;
-}
-
 static bool is_live(const ethd__state *state, unsigned in_use, int place) ETHD_RT {
   for (; in_use; in_use &= in_use - 1)
     if (state->slots[__builtin_ctz(in_use)].place == place) return true;
@@ -129,11 +123,13 @@ static unsigned settle_orphans(ethd__state *state, ethd__candidates *c) ETHD_RT 
   for (unsigned left = state->orphans & c->live; left; left &= left - 1) {
     int i = __builtin_ctz(left), k = 0;
     while (k < c->count && !continues(&state->slots[i], &c->at[k])) k++;
-    state->slots[i].used = k < c->count;
-    if (k < c->count) c->at[k].slot = i;
+    if (k < c->count)
+      c->at[k].slot = i;
+    else
+      ethd__slot_free(state, &state->slots[i]);
   }
   unsigned others = c->live & ~state->orphans;
-  c->live = slots_in_use(state);
+  c->live = state->live;
   state->orphans = 0;
   return others;
 }
@@ -182,7 +178,7 @@ void ethd__candidates_collect(const ethd__tick *t, ethd__candidates *out) {
   double range = range_of(t);
   out->count = out->overflow = 0;
   out->queried = false;
-  out->live = slots_in_use(state);
+  out->live = state->live;
   for (int place = 0; place < t->plan->places; place++) {
     if (!ethd__place_scene(&t->plan->setup, place) || !state->places[place].there) continue;
     look_from(t, place, &views[place]);

@@ -157,8 +157,11 @@ static bool work_out(ethd__tick *t, contact_work *w) ETHD_RT {
   c->age = (double)slot->periods * t->plan->setup.period;
   claim(slot, w->candidate);
   if (!rule(t, w)) return false;
-  slot->used = c->d_re < t->near || r->argument <= c->d_beta || r->state != ETHD_TRANSPARENT;
-  if (!slot->used) return true;
+  if (!(c->d_re < t->near || r->argument <= c->d_beta || r->state != ETHD_TRANSPARENT)) {
+    ethd__slot_free(t->state, slot);
+    return true;
+  }
+  t->state->live |= ethd__slot_bit(t->state, slot);
   if (!wall(t, w, &force)) return false;
   slot->watched &= t->plan->watches_energy;
   if (t->plan->watches_energy) force += ethd__passivity(t, slot, c, force, bare_force(r, c->v));
@@ -175,7 +178,7 @@ static ethd__slot *free_slot(const ethd__tick *t) ETHD_RT {
   const ethd_setup *setup = &t->plan->setup;
   for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
     ethd__slot *slot = &t->state->slots[i];
-    if (slot->used) continue;
+    if (t->state->live & 1u << i) continue;
     memset(slot, 0, sizeof *slot);
     ethd__block_reset(t->plan, &setup->transition->law, setup->transition_p, &slot->transition);
     ethd__block_reset(t->plan, &setup->contact->law, setup->contact_p, &slot->contact);
@@ -191,7 +194,7 @@ static void end_lost(ethd__state *state, const ethd__candidates *c) ETHD_RT {
     if (c->at[k].slot >= 0) lost &= ~(1u << c->at[k].slot);
   for (; lost; lost &= lost - 1) {
     ethd__slot *slot = &state->slots[__builtin_ctz(lost)];
-    slot->used = false;
+    ethd__slot_free(state, slot);
     if (slot->state != ETHD_TRANSPARENT) state->counters.contacts_lost++;
   }
 }
@@ -206,7 +209,7 @@ static void make_room(ethd__state *state, ethd__candidates *c, int k) ETHD_RT {
   /* unreachable: the loop's end, for fewer than all slots belong to candidates up to k */
   for (int i = c->count - 1; i > k; i--) {
     if (c->at[i].slot < 0) continue;
-    state->slots[c->at[i].slot].used = false;
+    ethd__slot_free(state, &state->slots[c->at[i].slot]);
     c->at[i].slot = -1;
     return;
   }
@@ -257,9 +260,9 @@ static bool work_out_all(ethd__tick *t, ethd__candidates *c) ETHD_RT {
     if (counts && taken < ETHD_CONTACTS_MAX) {
       if (!w.slot) w.slot = new_slot(t, c, k);
       if (!work_out(t, &w)) return false;
-      taken += w.slot->used;
+      taken += (t->state->live & ethd__slot_bit(t->state, w.slot)) != 0;
     } else {
-      if (w.slot) w.slot->used = false;
+      if (w.slot) ethd__slot_free(t->state, w.slot);
       if (counts) no_room(t, 1);
     }
   }

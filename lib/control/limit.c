@@ -20,9 +20,10 @@ static double passed(double elapsed, double swap_time) ETHD_RT {
 /* Advances both fades by this tick and returns whether there is one. */
 static bool advance(ethd__tick *t) ETHD_RT {
   ethd__state *state = t->state;
+  if (!state->fades && !t->soft && !t->old) return false;
   if (t->soft) state->soft = -t->dt;
   if (t->old) state->fade.elapsed = -t->dt;
-  if (isinf(state->soft) && isinf(state->fade.elapsed)) return false;
+  state->fades = true;
   state->soft += t->dt;
   state->fade.elapsed += t->dt;
   return true;
@@ -42,6 +43,7 @@ static void fade(ethd__tick *t, double torque[2], ethd__guard_faded *faded) ETHD
   }
   if (soft == 1) state->soft = (double)INFINITY;
   if (faded->share == 0) state->fade.elapsed = (double)INFINITY;
+  state->fades = soft < 1 || faded->share > 0;
 }
 
 void ethd__limit(ethd__tick *t) {
@@ -58,7 +60,7 @@ void ethd__limit(ethd__tick *t) {
   memcpy(torque, t->trace->tau_raw, sizeof t->trace->tau);
   int32_t bits = ethd__guard_limit(&plan->setup.limits, &plan->device, guard, &motion, torque);
   const bool fades = advance(t), stops = ethd__guard_stops(guard, bits) || bits & ETHD_GUARD_FINITE;
-  if (fades && stops) t->state->soft = t->state->fade.elapsed = (double)INFINITY;
+  if (fades && stops) ethd__fade_end(t->state);
   if (fades && !stops) fade(t, torque, &faded);
   t->trace->guard =
       ethd__guard_finish(&plan->setup.limits, guard, fades && !stops ? &faded : NULL, t->dt, bits, torque);

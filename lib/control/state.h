@@ -18,9 +18,8 @@ typedef struct ethd__law_block {
   uint64_t after[ETHD__FENCE];
 } ethd__law_block;
 
-/* A contact that counted at the last tick. */
+/* A contact that counted at the last tick, if its slot is in use (ethd__state.live). */
 typedef struct ethd__slot {
-  bool used;
   bool leaving;                /* the branch of eq. 3, with v_hysteresis */
   int32_t place, object, side; /* of the surface; side of a thin wall on which the contact began, 0: none */
   int32_t state;               /* the transition law's */
@@ -78,6 +77,7 @@ typedef struct ethd__state {
   int64_t time_ns;         /* of the last tick */
   int64_t clock_ns;        /* of the tick at which the present window of the clock's check began */
   int64_t clock_periods;   /* since then */
+  double clock_waits;      /* s for which the same sample has come again */
   int64_t blind;           /* periods since the last tick with a possible measurement */
   /* estimates */
   ethd_velocity_state velocity[2];
@@ -96,7 +96,8 @@ typedef struct ethd__state {
   ethd__slot slots[ETHD_CONTACTS_MAX];
   ethd__place places[ETHD__PLACES];
   double memory[ETHD_MEMORY];      /* of the transition law */
-  unsigned orphans;                /* slots, as bits, whose scene was replaced at this tick */
+  unsigned live;                   /* slots in use, as bits */
+  unsigned orphans;                /* of these, whose scene was replaced at this tick */
   double given;                    /* J that the last contact gave away */
   uint64_t given_at;               /* tick */
   uint64_t excess_from, excess_at; /* first and last step after which it was far too much; 0: never */
@@ -108,7 +109,16 @@ typedef struct ethd__state {
     double elapsed;  /* s since then; INFINITY: no fade */
   } fade;
   double soft; /* s since a fault was acknowledged; INFINITY: the torque is whole again */
+  bool fades;  /* one of the two goes on */
   ethd_guard_state guard;
 } ethd__state;
+
+static inline unsigned ethd__slot_bit(const ethd__state *state, const ethd__slot *slot) ETHD_RT {
+  return 1u << (slot - state->slots);
+}
+
+static inline void ethd__slot_free(ethd__state *state, const ethd__slot *slot) ETHD_RT {
+  state->live &= ~ethd__slot_bit(state, slot);
+}
 
 #endif

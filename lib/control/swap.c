@@ -38,8 +38,10 @@ static bool has_same_scene(const ethd__plan *a, const ethd__plan *b, int place) 
    touch is kept, by which candidates.c finds the same surface there. */
 static void orphan(ethd__state *state, int i, const ethd__state *old) ETHD_RT {
   ethd__slot *slot = &state->slots[i];
-  slot->used = slot->used && old && old->slots[i].used;
-  if (!slot->used) return;
+  if (!(state->live & (old ? old->live : 0) & 1u << i)) {
+    ethd__slot_free(state, slot);
+    return;
+  }
   slot->point = old->slots[i].point;
   slot->past.n = old->slots[i].past.n;
   state->orphans |= 1u << i;
@@ -50,7 +52,7 @@ static void adopt(const ethd__plan *to, const ethd__slot *was, ethd__slot *slot)
   const ethd_transition_law *law = to->setup.transition;
   const double *p = to->setup.transition_p;
   ethd__block_reset(to, &law->law, p, &slot->transition);
-  if (!slot->used || !was || !was->used || !ETHD_LAW_HAS(law, adopt)) return;
+  if (!was || !ETHD_LAW_HAS(law, adopt)) return;
   const double period = to->setup.period;
   const ethd_past past = {.offset = was->past.offset,
                           .d_re = was->past.d_re,
@@ -77,7 +79,7 @@ void ethd__swap_state(const ethd__plan *from, const ethd__plan *to, ethd__state 
   if (from->setup.transition != to->setup.transition) memset(state->memory, 0, sizeof state->memory);
   for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
     if (!has_same_scene(from, to, state->slots[i].place)) orphan(state, i, old);
-    swap_slot(from, to, old ? &old->slots[i] : NULL, &state->slots[i]);
+    swap_slot(from, to, old && state->live & old->live & 1u << i ? &old->slots[i] : NULL, &state->slots[i]);
   }
 }
 

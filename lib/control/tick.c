@@ -67,27 +67,31 @@ static double since(int64_t now, int64_t then) ETHD_RT {
 }
 
 /* Returns true unless the device's clock stands still or has another rate: over a window it may differ from the loop's
-   periods by two gaps, since the age of a sample may change by one. A step that is late begins a new window. */
+   periods by two gaps, since the age of a sample may change by one. A step that is late begins a new window, and so does
+   a device that says itself that its feedback is old. */
 static bool clock_runs(const ethd__tick *t, bool in_time) ETHD_RT {
   ethd__state *state = t->state;
   const double period = t->plan->setup.period;
+  const bool told = t->sense->faults & ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD);
   state->clock_periods += t->periods;
   double expected = (double)state->clock_periods * period, passed = since(t->sense->time_ns, state->clock_ns);
-  bool good = state->counters.ticks < 2 || fabs(passed - expected) <= 2 * t->plan->setup.limits.gap;
-  if (good && in_time && state->counters.ticks >= 2 && expected < CLOCK_WINDOW) return true;
+  bool good = state->counters.ticks < 2 || told || fabs(passed - expected) <= 2 * t->plan->setup.limits.gap;
+  if (good && in_time && !told && state->counters.ticks >= 2 && expected < CLOCK_WINDOW) return true;
   state->clock_ns = t->sense->time_ns;
   state->clock_periods = 0;
   return good;
 }
 
 /* Returns true unless this step comes later than limits.gap after the last, by the loop's periods, or the device's
-   clock differs from those periods by more. The first two ticks compare no clocks, since a bus's first sample may be
-   older than the loop. */
+   clock steps by more than that between two samples beside those periods. A sample that comes again counts with the
+   next new one. The first two ticks compare no clocks, since a bus's first sample may be older than the loop. */
 static bool clock_is_good(const ethd__tick *t) ETHD_RT {
   const double most = t->plan->setup.limits.gap, expected = (double)t->periods * t->plan->setup.period;
   if (isinf(most)) return true;
-  double passed = since(t->sense->time_ns, t->state->time_ns);
-  bool good = expected <= most && (t->state->counters.ticks < 2 || fabs(passed - expected) <= most);
+  ethd__state *state = t->state;
+  const double waited = expected + state->clock_waits, passed = since(t->sense->time_ns, state->time_ns);
+  state->clock_waits = passed == 0 ? waited : 0;
+  bool good = expected <= most && (state->counters.ticks < 2 || passed == 0 || fabs(passed - waited) <= most);
   return clock_runs(t, expected <= most) && good;
 }
 
@@ -202,7 +206,7 @@ void ethd__resume(const ethd__plan *plan, ethd__state *state) {
   state->before = (ethd__fault_rows){0, 0}; /* so a row that lasts counts as a new occurrence */
   state->guard.stopping = state->guard.stopped = 0;
   state->guard.steep = 0;
-  state->fade.elapsed = state->soft = (double)INFINITY;
-  for (int i = 0; i < ETHD_CONTACTS_MAX; i++) state->slots[i].used = false;
+  ethd__fade_end(state);
+  state->live = 0;
   ethd__block_reset(plan, &plan->setup.tracking->law, plan->setup.tracking_p, &state->tracking);
 }

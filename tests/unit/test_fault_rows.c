@@ -234,6 +234,36 @@ START_TEST(test_clock) {
 }
 END_TEST
 
+/* A clock that stands still or runs at another rate shows within two gaps of wrong time. Samples that come again, or
+   that a device says are old, are late and no fault of a clock. */
+static const struct {
+  double rate;     /* of the device's clock */
+  int every;       /* ticks between two new samples */
+  bool told;       /* the device says that its feedback is old */
+  int least, most; /* ticks after which row CLOCK shows; 0: it doesn't */
+} clocks[] = {{1, 1, false, 0, 0},    {0, 1, false, 8, 12}, {4, 1, false, 2, 4},
+              {1.01, 1, false, 0, 0}, {1, 7, false, 0, 0},  {0, 1, true, 0, 0}};
+
+START_TEST(test_clock_rate) {
+  rig r;
+  int seen = 0;
+  moody_open(&r, 1);
+  r.setup.limits.gap = 0.005;
+  rig_post(&r);
+  for (int i = 0; i < 100; i++) with(&r, moving(&r, 0), 0, 0);
+  const int64_t from = r.sense.time_ns;
+  for (int i = 1; i <= 1000 && !seen; i++) {
+    ethd_sense s = moving(&r, 0);
+    int64_t sample = i / clocks[_i].every * clocks[_i].every;
+    s.time_ns = from + llround(clocks[_i].rate * 1e6 * (double)sample);
+    with(&r, s, clocks[_i].told ? ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD) : 0, 0);
+    if (counted(&r, ETHD_FAULT_CLOCK)) seen = i;
+  }
+  ck_assert_msg(seen >= clocks[_i].least && seen <= clocks[_i].most, "row CLOCK after %d ticks", seen);
+  rig_close(&r);
+}
+END_TEST
+
 /* A bus's first sample may be from before the loop ran; the second may not. */
 START_TEST(test_first_sample) {
   rig r;
@@ -301,6 +331,7 @@ int main(void) {
   tcase_add_test(t, test_clean_time);
   tcase_add_loop_test(t, test_first_sample, 0, 2);
   tcase_add_loop_test(t, test_clock, 0, sizeof gaps / sizeof *gaps);
+  tcase_add_loop_test(t, test_clock_rate, 0, sizeof clocks / sizeof *clocks);
   tcase_add_test(t, test_replays);
   suite_add_tcase(suite, t);
   return rig_run(suite);

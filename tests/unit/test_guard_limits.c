@@ -176,6 +176,20 @@ START_TEST(test_too_hot) {
 }
 END_TEST
 
+/* One enormous torque leaves a heat that is a number: the motor stays without torque until it has cooled. */
+START_TEST(test_enormous_torque) {
+  ethd_limits l = ethd_limits_none();
+  ethd_guard_state s = {.last = {1e200, 0}};
+  l.nominal_torque = 0.1;
+  l.heat_time = 3;
+  ck_assert_double_gt(ethd_guard_heat(&l, &s, 0.001), 300);
+  memset(s.last, 0, sizeof s.last);
+  double hotter = 0, t = 0;
+  for (; t < 60 && (hotter = ethd_guard_heat(&l, &s, 0.001)) > 1; t += 0.001) ck_assert(isfinite(hotter));
+  ck_assert_double_eq_tol(t, 3 * log(1e6 * 0.001 / 3), 0.1);
+}
+END_TEST
+
 /* An enabling forgets all but the heat. */
 START_TEST(test_restart) {
   rig r;
@@ -240,6 +254,12 @@ START_TEST(test_steep) {
   ethd_sense s = at(&r, 0.01, 0.1);
   rig_try(&r, &s);
   ck_assert_double_eq_tol(r.command.torque[0], -0.25 * MOODY_PROBE * 0.1, 0.03);
+  mood.tracking = 0; /* the first acknowledgement counts */
+  s = at(&r, 0.01, 0);
+  rig_try(&r, &s);
+  ethd_control_clear(r.control);
+  s = at(&r, 0.01, 0);
+  ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
   rig_close(&r);
 }
 END_TEST
@@ -269,6 +289,7 @@ int main(void) {
   tcase_add_test(t, test_heat);
   tcase_add_test(t, test_fold_back);
   tcase_add_test(t, test_too_hot);
+  tcase_add_test(t, test_enormous_torque);
   tcase_add_test(t, test_restart);
   tcase_add_test(t, test_cut);
   tcase_add_test(t, test_steep);
