@@ -110,11 +110,13 @@ static ethd_status open_events(const char *path, ethd_recording *recording, char
   return ethd__no_memory(message, path);
 }
 
+/* The ticks come first: by them a folder is known as a recording, which may be replaced. */
 static ethd_status open_files(const char *folder, ethd_recording *recording, char *message) {
   char *ticks = ethd__path_join(folder, ETHD_RECORDING_TICK);
   char *events = ethd__path_join(folder, ETHD_RECORDING_EVENTS);
-  ethd_status status = ticks && events ? open_events(events, recording, message) : ethd__no_memory(message, folder);
+  ethd_status status = ticks && events ? ETHD_OK : ethd__no_memory(message, folder);
   if (!status) status = ethd_npy_create(ticks, ethd_trace_columns, sizeof(ethd_trace), &recording->ticks, message);
+  if (!status) status = open_events(events, recording, message);
   free(ticks);
   free(events);
   if (status) return status;
