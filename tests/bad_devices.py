@@ -480,25 +480,25 @@ answers       1  none, as they should be
 answers      12  refusal
 answers       1  the line is closed
 drivers      19  misbehaves
-maps         55  address clash
+maps         57  address clash
 maps         20  junk
-maps        411  key doubled
-maps        411  key empty
-maps        302  key missing
-maps        109  key missing, which is a map still
-maps        411  key unknown
+maps        423  key doubled
+maps        423  key empty
+maps        312  key missing
+maps        111  key missing, which is a map still
+maps        423  key unknown
 maps          9  no such register
-maps       1194  not a number
+maps       1230  not a number
 maps        105  not a number in a step
-maps        796  out of range
+maps        820  out of range
 maps         70  out of range in a step
-maps       1194  overflow
+maps       1230  overflow
 maps        105  overflow in a step
-maps         74  section doubled
+maps         76  section doubled
 maps         50  section missing
-maps         24  section missing, which is a map still
-maps         74  section open
-maps         74  section unknown
+maps         26  section missing, which is a map still
+maps         76  section open
+maps         76  section unknown
 maps          4  text too long
 maps         26  unit of something else
 maps         26  unit unknown

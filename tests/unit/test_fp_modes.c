@@ -94,6 +94,7 @@ static ethd_setup setup_of(const chosen *c, const ethd_scene *scene) {
   s.limits.torque = 1;
   s.limits.torque_rate = 100;
   s.limits.speed = 2;
+  s.limits.stop_time = 1;
   s.limits.energy = 0.01;
   s.limits.nominal_torque = 0.5;
   s.limits.heat_time = 10;
