@@ -55,7 +55,7 @@ static void safe(void *device) ETHD_RT { ((hello *)device)->safe = 1; }
 
 static ethd_limits limits(const void *device) {
   ethd_limits limits = ethd_limits_device();
-  limits.torque = 1; /* Nm */
+  limits.torque = 1;                                         /* Nm */
   limits.finger_age = limits.finger_lost = (double)INFINITY; /* for the finger's sensor to say */
   return (void)device, limits;
 }

@@ -147,6 +147,15 @@ static double way(const device *d) {
   return 1.5 * (v * (1 + M_E) * late + d->mass * v * v * LINK / (2 * d->torque));
 }
 
+/* What a post asks of limits.stop_time for a stop from this speed, s. */
+static double needed(const device *d) {
+  const ethd_arm arm = {ETHD_ARM_PARALLEL, LINK, LINK};
+  const ethd_guard_device g = ethd_guard_device_of(&arm, &d->says, INFINITY, d->period, lag_of(d));
+  ethd_limits limits = ethd_limits_torque(d->torque);
+  limits.speed = length(d->v);
+  return ethd_guard_stop_time(&g, &limits);
+}
+
 static void check(const device *d, const ending *e) {
   ck_assert_msg(e->safe && e->time <= 3, "m %g kg, T %g s, t_d %g s: %g s", d->mass, d->period, d->delay, e->time);
   ck_assert_msg(e->fastest <= 1.4 * e->arrived, "m %g kg, T %g s, t_d %g s, told %d, broken %d: %g times as fast",
@@ -155,6 +164,8 @@ static void check(const device *d, const ending *e) {
   double most = way(d) + 0.02 * (d->delay + 0.01); /* and how far it rolls until the simulation ends */
   ck_assert_msg(e->distance <= most, "m %g kg, T %g s, t_d %g s, %g Nm, %g m/s: %g m instead of %g", d->mass, d->period,
                 d->delay, d->torque, length(d->v), e->distance, most);
+  ck_assert_msg(e->time <= needed(d), "m %g kg, T %g s, t_d %g s, %g m/s: %g s instead of %g", d->mass, d->period,
+                d->delay, length(d->v), e->time, needed(d));
   ck_assert_msg(e->left <= 0.021, "m %g kg, T %g s, t_d %g s, measured %d: let go at %g m/s", d->mass, d->period,
                 d->delay, d->measured, e->left);
 }
