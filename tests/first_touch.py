@@ -23,7 +23,7 @@ DIVISOR_MOST = 14
 def steps():
     """(title, commands, promised lines) of each."""
     page = open("drivers/README.md").read()
-    page = page[page.index("## From the box to the first touch"):page.index("## To add a driver")]
+    page = page.split("\n## From the box to the first touch\n")[1].split("\n## ")[0]
     for part in re.split(r"^### ", page, flags=re.M)[1:]:
         commands = "".join(re.findall(r"^```sh\n(.*?)^```$", part, re.M | re.S))
         promises = "".join(re.findall(r"^```text\n(.*?)^```$", part, re.M | re.S)).splitlines()
