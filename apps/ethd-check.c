@@ -186,6 +186,7 @@ int main(int argc, char **argv) {
   int exceeded = ethd__report_stability(&config->setup, &subject.device.loop);
   exceeded += ethd__report_passivity(&subject);
   exceeded += ethd__report_stop(&subject);
+  exceeded += ethd__report_guard(&config->setup, &subject.device.loop);
   exceeded += ethd__report_threshold(&subject);
   exceeded += ethd__report_tick(&subject);
   if (config->setup.scene) ethd__scene_say_thin(config->setup.scene, "\nscene        ");

@@ -67,7 +67,7 @@ static int write_files(const day *d, double seconds, char config[512]) {
             kinds[draw_bits(7 * d->session + i) % 8]);
   fputs("halfplane -1 0 -0.238\ncircle 0.24 0.3 0.02\npolyline 0.22 0.2 0.24 0.22 0.22 0.24\n", wall);
   fputs("[device]\ndriver = sim\nplant = n\ninject = day.inject\n[scene]\nfile = day.scene\n[limits]\ntorque = 1.25\n"
-        "finger_age = 0.05\nspeed = 5\n",
+        "finger_age = 0.05\nspeed = 5\nstop_time = 1\n",
         ini);
   return fclose(script) | fclose(wall) | fclose(ini);
 }

@@ -26,7 +26,7 @@ sed -e '/^\[register reading_/,/^$/d' apps/config/plant.map >"$folder/plant.map"
 cp apps/config/wall.scene "$folder"
 {
   sed '/^\[device\]/,$d' apps/config/n.ini
-  printf '[device]\ndriver = servo, ring\nservo.map = plant.map\nservo.port = 127.0.0.1:%s\nring.port = ring\n' "$at"
+  printf '[limits]\nstop_time = 0.2\n[device]\ndriver = servo, ring\nservo.map = plant.map\nservo.port = 127.0.0.1:%s\nring.port = ring\n' "$at"
 } >"$folder/device.ini"
 $alone "$python3" tests/whole_device.py run "$BUILD/bin/ethd-run" "$folder" "$seconds" 5>&- 6>&- 8>&- || fail "ethd-run: $(cat "$folder/err")"
 $alone "$python3" tests/whole_device.py study "$BUILD/bin/ethd-study" "$folder" 5>&- 6>&- 8>&-

@@ -41,6 +41,9 @@ void ethd__report_device(ethd__subject *subject);
    ethd-tune prints its choice by it, too. */
 int ethd__report_stability(const ethd_setup *setup, const ethd__bounds_device *device);
 
+/* Prints the margin of the guard's stop, and the time that it takes; returns how many bounds are exceeded. */
+int ethd__report_guard(const ethd_setup *setup, const ethd__bounds_device *device);
+
 /* Prints a line for each loop whose law's gains aren't known, so that nobody takes its silence for stability. */
 void ethd__report_unjudged(const ethd_setup *setup);
 

@@ -164,36 +164,6 @@ static int report_axes(const ethd_setup *setup, const ethd__bounds_device *devic
   return exceeded;
 }
 
-/* The guard's stop is judged like any other damping. It knows the device by the setup's dynamics, which may differ from
-   the figures that the loop is judged by. */
-static int report_guard(const ethd_setup *setup, const ethd__bounds_device *device) {
-  const ethd_limits *limits = &setup->limits;
-  const double most = isfinite(limits->stop_time) ? limits->stop_time : ETHD_STOP_TIME;
-  ethd_velocity velocity;
-  if (ethd_velocity_prepare(setup->velocity, setup->velocity_p, setup->period, &velocity, NULL) < 0) return 0;
-  const ethd_guard_device g =
-      ethd_guard_device_of(&setup->arm, &setup->dynamics, limits->gap, setup->period, ethd_velocity_lag(&velocity));
-  int exceeded = 0;
-  for (int axis = 0; axis < 2; axis++) {
-    looked_at l = {.device = device, .axis = axis, .what = "guard's stop"};
-    if (!ethd__bounds_of(setup, device, ETHD_LOOP_BRAKING, axis, &l.loop)) continue;
-    const double b = ethd_guard_damping(&g, g.inertia[axis] / (g.link[axis] * g.link[axis]), true);
-    const double end = isnan(device->mass[axis]) ? NAN : ethd__sampled_damping_max(&l.loop);
-    const ethd__bounds_row row = {ETHD_LOOP_DAMPING, b, end, false, end / b};
-    if (isnan(end)) continue;
-    print_row(&l, "m/(e reaction)", b, end, "Ns/m", &row);
-    exceeded += row.margin < 1;
-  }
-  if (isnan(setup->dynamics.mass[0]) || isnan(setup->dynamics.mass[1]))
-    printf("  guard's stop         doesn't know arm.mass_x and mass_y: a ring heavier than %.3g kg is let go\n",
-           1.2 * ETHD_MASS_ASSUMED);
-  const double needed = ethd_guard_stop_time(&g, limits);
-  if (needed > 0)
-    printf("  guard's stop         from limits.speed takes %.3g s, limits.stop_time is %.3g s%s\n", needed, most,
-           needed > most ? ": EXCEEDED" : "");
-  return exceeded + (needed > most);
-}
-
 /* The setup, with a material's numbers in the contact law; those that another law knows don't count. */
 static ethd_setup on_material(const ethd_setup *setup, const ethd_material *m) {
   ethd_setup changed = *setup;
@@ -240,6 +210,37 @@ int ethd__report_stability(const ethd_setup *setup, const ethd__bounds_device *d
   printf("  %-20s   %-18s %10s   %-13s %7s\n", "loop", "", "is", "stable", "margin");
   int exceeded = report_axes(setup, device, ETHD_LOOP_TRACKING, ethd__bounds_names[ETHD_LOOP_TRACKING]);
   exceeded += report_walls(setup, device);
-  exceeded += report_axes(setup, device, ETHD_LOOP_BRAKING, ethd__bounds_names[ETHD_LOOP_BRAKING]);
-  return exceeded + report_guard(setup, device);
+  return exceeded + report_axes(setup, device, ETHD_LOOP_BRAKING, ethd__bounds_names[ETHD_LOOP_BRAKING]);
+}
+
+/* The guard's stop is judged like any other damping. It knows the device by the setup's dynamics, which may differ from
+   the figures that the loop is judged by. */
+int ethd__report_guard(const ethd_setup *setup, const ethd__bounds_device *device) {
+  const ethd_limits *limits = &setup->limits;
+  const double most = isfinite(limits->stop_time) ? limits->stop_time : ETHD_STOP_TIME;
+  ethd_velocity velocity;
+  if (ethd_velocity_prepare(setup->velocity, setup->velocity_p, setup->period, &velocity, NULL) < 0) return 0;
+  const ethd_guard_device g =
+      ethd_guard_device_of(&setup->arm, &setup->dynamics, limits->gap, setup->period, ethd_velocity_lag(&velocity));
+  int exceeded = 0;
+  printf("\nguard        stops the ring by a damping of m/(e reaction), reaction = t_d + T + lag, for limits.stop_time "
+         "at most\n");
+  for (int axis = 0; axis < 2; axis++) {
+    looked_at l = {.device = device, .axis = axis, .what = "guard's stop"};
+    if (!ethd__bounds_of(setup, device, ETHD_LOOP_BRAKING, axis, &l.loop)) continue;
+    const double b = ethd_guard_damping(&g, g.inertia[axis] / (g.link[axis] * g.link[axis]), true);
+    const double end = isnan(device->mass[axis]) ? NAN : ethd__sampled_damping_max(&l.loop);
+    const ethd__bounds_row row = {ETHD_LOOP_DAMPING, b, end, false, end / b};
+    if (isnan(end)) continue;
+    print_row(&l, "m/(e reaction)", b, end, "Ns/m", &row);
+    exceeded += row.margin < 1;
+  }
+  if (isnan(setup->dynamics.mass[0]) || isnan(setup->dynamics.mass[1]))
+    printf("  guard's stop           doesn't know arm.mass_x and mass_y: a ring heavier than %.3g kg is let go\n",
+           1.2 * ETHD_MASS_ASSUMED);
+  const double needed = ethd_guard_stop_time(&g, limits);
+  if (needed > 0)
+    printf("  guard's stop         from limits.speed takes %.3g s, limits.stop_time is %.3g s%s\n", needed, most,
+           needed > most ? ": EXCEEDED" : "");
+  return exceeded + (needed > most);
 }
