@@ -63,7 +63,7 @@ configure 'driver = counter' 'counts_per_turn = 0'
 refuses 'c.ini:.*counts_per_turn'
 configure 'driver = hello'
 says '^drivers  *hello: read' 'limits  *torque 1 Nm, speed no limit, gap between samples 5 ms' \
-  'tracking fades after 10 ms, it stops after 30 ms' \
+  'tracking fades after no limit, it stops after no limit' \
   'delay 5 ms;' 'delay: unknown, taken as the longest spacing that limits.gap allows (--open measures it, --delay gives it)'
 # of a delay that nobody knows the worst is taken: the same bounds as with that delay
 sed -n '/^stability/,/^passivity/p' "$folder/out" >"$folder/unknown"

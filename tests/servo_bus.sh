@@ -9,7 +9,7 @@ verify="$BUILD/bin/ethd-replay --verify"
 
 cp apps/config/wall.scene "$folder"
 configure() { # NAME PORT
-  { sed '/^\[device\]/,$d' apps/config/n.ini; printf '[device]\ndriver = servo\nmap = plant.map\nport = %s\n' "$2"; } >"$folder/$1.ini"
+  { sed '/^\[device\]/,$d' apps/config/n.ini; printf '[limits]\nstop_time = 0.4\n[device]\ndriver = servo\nmap = plant.map\nport = %s\n' "$2"; } >"$folder/$1.ini"
 }
 # A busy machine answers late, which is no fault in lock-step.
 sed -e 's/^response = .*/response = 5/' -e 's/^drain = .*/drain = 0.1/' apps/config/plant.map >"$folder/plant.map"

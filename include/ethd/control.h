@@ -150,7 +150,7 @@ ETHD_API double ethd_setup_get(const ethd_setup *setup, const char *name);
    ethd_scene_prune takes it as its radius. [any] */
 ETHD_API double ethd_setup_range(const ethd_setup *setup);
 
-/* Checks everything that create and post check, also the scenes' materials against the contact law. Names in errors are
+/* Checks everything that create and post check but how long a stop takes, also the scenes' materials against the contact law. Names in errors are
    those of the configuration ("contact.k_e"): ETHD_E_RANGE, ETHD_E_NOT_FINITE, ETHD_E_ARGUMENT (a setup that
    ethd_setup_default didn't make, a law that is missing or of another kind), ETHD_E_SIZE (ethd_setup_default),
    ETHD_E_UNKNOWN (no such method; a material's key that the law doesn't have), the statuses of ethd_law_check, and what a law's own check
@@ -200,7 +200,8 @@ static inline ethd_setup ethd_setup_default(void) {
 
 typedef struct ethd_control ethd_control;
 
-/* Checks and copies the setup: the statuses of ethd_setup_check, and ETHD_E_MEMORY. *out is NULL then. [main] */
+/* Checks and copies the setup: the statuses of ethd_setup_check, ETHD_E_MEMORY, and ETHD_E_RANGE if limits.stop_time is
+   shorter than a stop from limits.speed takes (ethd_guard_stop_time). *out is NULL then. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_create(const ethd_setup *setup, ethd_control **out,
                                                          ethd_error *error);
 

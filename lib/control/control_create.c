@@ -1,15 +1,27 @@
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "control/controller.h"
 #include "error.h"
 
+/* Makes a plan that may rule, and refuses a stop that would let go of the device while it still moves. That isn't left
+   to ethd_setup_check, because a device adds its mass and its limits to what a configuration says. */
+static ethd_status prepare(const ethd_setup *setup, ethd__plan *out, ethd_error *error) {
+  ethd_status status = ethd__plan_prepare(setup, out, error);
+  if (status < 0 || isnan(setup->dynamics.mass[0]) || isnan(setup->dynamics.mass[1])) return status;
+  const double least = ethd_guard_stop_time(&out->device, &setup->limits);
+  const double most = setup->limits.stop_time < (double)INFINITY ? setup->limits.stop_time : ETHD_STOP_TIME;
+  if (most >= least) return ETHD_OK;
+  return ethd__refuse(error, ETHD_E_RANGE, "limits.stop_time", (ethd__found){most, least, (double)INFINITY});
+}
+
 ethd_status ethd_control_create(const ethd_setup *setup, ethd_control **out, ethd_error *error) {
   *out = NULL;
   ethd_control *control = aligned_alloc(_Alignof(ethd_control), sizeof *control);
   if (!control) return ethd__error(error, ETHD_E_MEMORY, "controller");
   memset(control, 0, sizeof *control);
-  ethd_status status = ethd__plan_prepare(setup, &control->plans[0], error);
+  ethd_status status = prepare(setup, &control->plans[0], error);
   if (status < 0) {
     free(control);
     return status;
@@ -25,7 +37,7 @@ void ethd_control_destroy(ethd_control *control) { free(control); }
 ethd_status ethd_control_post(ethd_control *control, const ethd_setup *setup, ethd_error *error) {
   if (atomic_load_explicit(&control->posted, memory_order_acquire)) return ETHD_BUSY;
   ethd__plan *spare = &control->plans[1 - control->ruling];
-  ethd_status status = ethd__plan_prepare(setup, spare, error);
+  ethd_status status = prepare(setup, spare, error);
   if (status < 0) return status;
   if (setup->period != control->period)
     return ethd__refuse(error, ETHD_E_ARGUMENT, "loop.period",

@@ -128,16 +128,11 @@ static void prepare_ahead(const ethd_setup *s, ethd__plan *out) {
 
 #define DAMPING_MAX 20.0 /* Ns/m: half of what the paper's wall has */
 
-/* Works out how the guard brakes the device, and refuses a stop that lets go of it while it still moves. */
-static ethd_status prepare_guard(const ethd_setup *s, ethd__plan *out, ethd_error *error) {
+/* Works out how the guard brakes the device. */
+static void prepare_guard(const ethd_setup *s, ethd__plan *out) {
   out->lag = ethd_velocity_lag(&out->velocity);
   out->device = ethd_guard_device_of(&s->arm, &s->dynamics, s->limits.gap, s->period, out->lag);
   out->damping_max = fmin(DAMPING_MAX, ethd_guard_damping(&out->device, out->device.mass, true));
-  if (isnan(s->dynamics.mass[0]) || isnan(s->dynamics.mass[1])) return ETHD_OK;
-  const double least = ethd_guard_stop_time(&out->device, &s->limits);
-  const double most = s->limits.stop_time < (double)INFINITY ? s->limits.stop_time : ETHD_STOP_TIME;
-  if (most >= least) return ETHD_OK;
-  return ethd__refuse(error, ETHD_E_RANGE, "limits.stop_time", (ethd__found){most, least, (double)INFINITY});
 }
 
 /* Returns true for a limit that the guard looks at in every tick, or that has a `watches_` of its own. */
@@ -178,7 +173,7 @@ ETHD__FP_APART static ethd_status prepare(const ethd_setup *s, ethd__plan *out, 
              error));
   TRY(within("finger_filter", ethd_filter_prepare(s->filter, s->filter_p, s->period, &out->filter, error), error));
   prepare_ahead(s, out);
-  TRY(prepare_guard(s, out, error));
+  prepare_guard(s, out);
   prepare_lags(s, out);
   out->places = 0;
   for (int place = 0; place < ETHD__PLACES; place++) {

@@ -37,7 +37,7 @@ slow_map() { # MAP OUT: a machine that is busy answers late; how late isn't what
 servo_ini() { # NAME MAP LINES...: a configuration of the servo alone, behind $line
   name=$1 map_=$2
   shift 2
-  { sed '/^\[device\]/,$d' apps/config/n.ini; printf '[device]\ndriver = servo\nmap = %s\nport = %s\n' "$map_" "$line"; printf '%s\n' "$@"; } >"$folder/$name.ini"
+  { sed '/^\[device\]/,$d' apps/config/n.ini; printf '[limits]\nstop_time = 0.4\n[device]\ndriver = servo\nmap = %s\nport = %s\n' "$map_" "$line"; printf '%s\n' "$@"; } >"$folder/$name.ini"
 }
 # What goes wrong at a drive, in its own time: 5 ms an exchange, in lock-step with a virtual clock. A hand holds the joints, a
 # wall pushes with 0.3 Nm, 0.64 A; asserted are the time until no torque is asked for any more, and what ethd-run says of it.
