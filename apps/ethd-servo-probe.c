@@ -86,8 +86,7 @@ static bool answers(int32_t crc) {
   ethd__servo_outcome got = ETHD__SERVO_MISSING;
   for (int i = 0; i < ASKS && (got == ETHD__SERVO_MISSING || got == ETHD__SERVO_GARBLED); i++) {
     (void)!ethd__servo_bus_drain(&bus);
-    got = ethd__servo_bus_read(&bus, plan.reads[0].space, plan.reads[0].address, plan.reads[0].count,
-                               plan.reads[0].words);
+    got = ethd__servo_bus_read(&bus, plan.reads[0].span, plan.reads[0].words);
   }
   ethd__servo_bus_close(&bus);
   return got != ETHD__SERVO_MISSING && got != ETHD__SERVO_GARBLED && got != ETHD__SERVO_LOST;
@@ -211,8 +210,9 @@ static void watch_hands(void) {
 static void print_rate(double seconds) {
   const ethd__servo_counts *c = &drive.counts;
   double slow = 1e-9 * (double)ethd_histogram_at(&trip, 0.99);
-  printf("%-10s %s, %u + %u question%s an exchange\n", "bus", map.port, drive.plan.write_count,
-         drive.plan.read_count - drive.plan.combined, ethd__s(drive.plan.read_count - drive.plan.combined));
+  uint32_t reads = drive.plan.read_count;
+  for (uint32_t i = 0; i < drive.plan.read_count; i++) reads -= drive.plan.reads[i].with >= 0;
+  printf("%-10s %s, %u + %u question%s an exchange\n", "bus", map.port, drive.plan.write_count, reads, ethd__s(reads));
   printf("%-10s p50 %.3f  p99 %.3f  max %.3f ms, %" PRIu64 " exchange%s in %.3g s\n", "round trip",
          1e-6 * (double)ethd_histogram_at(&trip, 0.5), 1e3 * slow, 1e-6 * (double)trip.max, trip.count,
          ethd__s(trip.count), seconds);

@@ -17,8 +17,10 @@ static int64_t nanoseconds(double seconds) { return (int64_t)(1e9 * seconds); }
 
 /* ---- opening ---- */
 
-/* True for what libmodbus can't frame. */
-static bool is_own(const ethd__servo_map *map) { return map->crc == ETHD__SERVO_CRC_HIGH_FIRST || map->local_echo; }
+/* True for what libmodbus can't frame, and for several units, because it doesn't look at an answer's unit over tcp. */
+static bool is_own(const ethd__servo_map *map) {
+  return map->crc == ETHD__SERVO_CRC_HIGH_FIRST || map->local_echo || ethd__servo_several(map);
+}
 
 /* libmodbus frames and checks. Lines and connections are ours, so its own recoveries are switched off. */
 static modbus_t *context(const ethd__servo_map *map, int fd) {
@@ -103,21 +105,22 @@ static ethd__servo_outcome end(ethd__servo_bus *bus, int got, uint32_t count) {
 }
 
 /* Asks in our framing and returns what libmodbus would: the number of words, or -1 with errno. */
-static int ask(const ethd__servo_bus *bus, const ethd__servo_frame *f, uint32_t count, uint16_t *words) {
+static int ask(ethd__servo_bus *bus, ethd__servo_frame *f, uint32_t count, uint16_t *words) {
+  ethd__servo_frame_number(bus->map, ++bus->number, f);
   errno = ethd__servo_ask(bus, f, words);
   return errno ? -1 : (int)count;
 }
 
-static int own_read(const ethd__servo_bus *bus, int32_t space, uint32_t address, uint32_t count, uint16_t *words) {
+static int own_read(ethd__servo_bus *bus, ethd__servo_span from, uint16_t *words) {
   ethd__servo_frame f;
-  ethd__servo_frame_read(bus->map, space, address, count, &f);
-  return ask(bus, &f, count, words);
+  ethd__servo_frame_read(bus->map, from, &f);
+  return ask(bus, &f, from.count, words);
 }
 
-static int own_write(const ethd__servo_bus *bus, uint32_t address, uint32_t count, const uint16_t *words) {
+static int own_write(ethd__servo_bus *bus, ethd__servo_span to, const uint16_t *words) {
   ethd__servo_frame f;
-  ethd__servo_frame_write(bus->map, address, count, words, &f);
-  return ask(bus, &f, count, NULL);
+  ethd__servo_frame_write(bus->map, to, words, &f);
+  return ask(bus, &f, to.count, NULL);
 }
 
 static ethd__servo_outcome gone(ethd__servo_bus *bus) {
@@ -125,38 +128,38 @@ static ethd__servo_outcome gone(ethd__servo_bus *bus) {
   return ETHD__SERVO_LOST;
 }
 
-ethd__servo_outcome ethd__servo_bus_read(ethd__servo_bus *bus, int32_t space, uint32_t address, uint32_t count,
-                                         uint16_t *words) {
+ethd__servo_outcome ethd__servo_bus_read(ethd__servo_bus *bus, ethd__servo_span from, uint16_t *words) {
   if (bus->fd < 0) return gone(bus);
   keep_silence(bus);
-  int got = !bus->modbus                 ? own_read(bus, space, address, count, words)
-            : space == ETHD__SERVO_INPUT ? modbus_read_input_registers(bus->modbus, (int)address, (int)count, words)
-                                         : modbus_read_registers(bus->modbus, (int)address, (int)count, words);
-  return end(bus, got, count);
+  int at = (int)from.address, count = (int)from.count;
+  int got = !bus->modbus                      ? own_read(bus, from, words)
+            : from.space == ETHD__SERVO_INPUT ? modbus_read_input_registers(bus->modbus, at, count, words)
+                                              : modbus_read_registers(bus->modbus, at, count, words);
+  return end(bus, got, from.count);
 }
 
-ethd__servo_outcome ethd__servo_bus_write(ethd__servo_bus *bus, uint32_t address, uint32_t count,
-                                          const uint16_t *words) {
+ethd__servo_outcome ethd__servo_bus_write(ethd__servo_bus *bus, ethd__servo_span to, const uint16_t *words) {
   if (bus->fd < 0) return gone(bus);
   keep_silence(bus);
-  int got = bus->modbus ? modbus_write_registers(bus->modbus, (int)address, (int)count, words)
-                        : own_write(bus, address, count, words);
-  return end(bus, got, count);
+  int got = bus->modbus ? modbus_write_registers(bus->modbus, (int)to.address, (int)to.count, words)
+                        : own_write(bus, to, words);
+  return end(bus, got, to.count);
 }
 
-ethd__servo_outcome ethd__servo_bus_both(ethd__servo_bus *bus, uint32_t to, uint32_t written, const uint16_t *out,
-                                         uint32_t from, uint32_t count, uint16_t *in) {
+ethd__servo_outcome ethd__servo_bus_both(ethd__servo_bus *bus, ethd__servo_span to, const uint16_t *out,
+                                         ethd__servo_span from, uint16_t *in) {
   if (bus->fd < 0) return gone(bus);
   keep_silence(bus);
   int got;
   if (bus->modbus) {
-    got = modbus_write_and_read_registers(bus->modbus, (int)to, (int)written, out, (int)from, (int)count, in);
+    got = modbus_write_and_read_registers(bus->modbus, (int)to.address, (int)to.count, out, (int)from.address,
+                                          (int)from.count, in);
   } else {
     ethd__servo_frame f;
-    ethd__servo_frame_both(bus->map, (ethd__servo_span){to, written}, out, (ethd__servo_span){from, count}, &f);
-    got = ask(bus, &f, count, in);
+    ethd__servo_frame_both(bus->map, to, out, from, &f);
+    got = ask(bus, &f, from.count, in);
   }
-  return end(bus, got, count);
+  return end(bus, got, from.count);
 }
 
 /* ---- after an error ---- */

@@ -19,6 +19,7 @@ typedef struct ethd__servo_bus {
   const ethd__servo_map *map;
   void *modbus;     /* NULL where our own framing is used */
   int fd;           /* -1: closed */
+  uint16_t number;  /* of the last question in our own framing; tcp has it in the answer */
   bool at_once;     /* the line hands bytes over at once; true of every tcp connection */
   int error;        /* errno of the last failure, libmodbus's included */
   int64_t quiet_ns; /* CLOCK_MONOTONIC: when the line was left */
@@ -34,12 +35,10 @@ ETHD_MUST_CHECK ethd_status ethd__servo_bus_open(const ethd__servo_map *map, eth
 void ethd__servo_bus_close(ethd__servo_bus *bus);
 
 /* Each asks one question. After any outcome but DONE and BUSY the caller drains before it sends again. */
-ethd__servo_outcome ethd__servo_bus_read(ethd__servo_bus *bus, int32_t space, uint32_t address, uint32_t count,
-                                         uint16_t *words);
-ethd__servo_outcome ethd__servo_bus_write(ethd__servo_bus *bus, uint32_t address, uint32_t count,
-                                          const uint16_t *words);
-ethd__servo_outcome ethd__servo_bus_both(ethd__servo_bus *bus, uint32_t to, uint32_t written, const uint16_t *out,
-                                         uint32_t from, uint32_t count, uint16_t *in);
+ethd__servo_outcome ethd__servo_bus_read(ethd__servo_bus *bus, ethd__servo_span from, uint16_t *words);
+ethd__servo_outcome ethd__servo_bus_write(ethd__servo_bus *bus, ethd__servo_span to, const uint16_t *words);
+ethd__servo_outcome ethd__servo_bus_both(ethd__servo_bus *bus, ethd__servo_span to, const uint16_t *out,
+                                         ethd__servo_span from, uint16_t *in);
 
 /* Throws away what comes until nothing has come for map->drain, so that a late answer is never taken for the next one.
    MISSING when the line isn't quiet within ten times that; LOST when it is gone. */

@@ -35,10 +35,10 @@ static uint16_t checksum(const ethd__servo_map *map, const uint8_t *bytes, int l
 
 /* ---- questions ---- */
 
-static uint8_t *begin(const ethd__servo_map *map, int function, ethd__servo_frame *out) {
+static uint8_t *begin(const ethd__servo_map *map, uint32_t unit, int function, ethd__servo_frame *out) {
   memset(out, 0, sizeof *out);
   uint8_t *at = out->bytes + head(map);
-  at[0] = (uint8_t)map->unit;
+  at[0] = (uint8_t)unit;
   at[1] = (uint8_t)function;
   return at + 2;
 }
@@ -54,9 +54,9 @@ static void end(const ethd__servo_map *map, int data, int answer, ethd__servo_fr
   out->answer = head(map) + 2 + answer + tail(map);
 }
 
-static void put_span(uint8_t *at, uint32_t address, uint32_t count) {
-  put(at, address);
-  put(at + 2, count);
+static void put_span(uint8_t *at, ethd__servo_span span) {
+  put(at, span.address);
+  put(at + 2, span.count);
 }
 
 static void put_words(uint8_t *at, uint32_t count, const uint16_t *words) {
@@ -64,27 +64,30 @@ static void put_words(uint8_t *at, uint32_t count, const uint16_t *words) {
   for (uint32_t i = 0; i < count; i++) put(at + 1 + 2 * i, words[i]);
 }
 
-void ethd__servo_frame_read(const ethd__servo_map *map, int32_t space, uint32_t address, uint32_t count,
-                            ethd__servo_frame *out) {
-  put_span(begin(map, space == ETHD__SERVO_INPUT ? READ_INPUT : READ_HOLDING, out), address, count);
-  end(map, 4, 1 + 2 * (int)count, out);
+void ethd__servo_frame_read(const ethd__servo_map *map, ethd__servo_span from, ethd__servo_frame *out) {
+  put_span(begin(map, from.unit, from.space == ETHD__SERVO_INPUT ? READ_INPUT : READ_HOLDING, out), from);
+  end(map, 4, 1 + 2 * (int)from.count, out);
 }
 
-void ethd__servo_frame_write(const ethd__servo_map *map, uint32_t address, uint32_t count, const uint16_t *words,
+void ethd__servo_frame_write(const ethd__servo_map *map, ethd__servo_span to, const uint16_t *words,
                              ethd__servo_frame *out) {
-  uint8_t *at = begin(map, WRITE, out);
-  put_span(at, address, count);
-  put_words(at + 4, count, words);
-  end(map, 5 + 2 * (int)count, 4, out);
+  uint8_t *at = begin(map, to.unit, WRITE, out);
+  put_span(at, to);
+  put_words(at + 4, to.count, words);
+  end(map, 5 + 2 * (int)to.count, 4, out);
 }
 
 void ethd__servo_frame_both(const ethd__servo_map *map, ethd__servo_span to, const uint16_t *words,
                             ethd__servo_span from, ethd__servo_frame *out) {
-  uint8_t *at = begin(map, BOTH, out);
-  put_span(at, from.address, from.count);
-  put_span(at + 4, to.address, to.count);
+  uint8_t *at = begin(map, to.unit, BOTH, out);
+  put_span(at, from);
+  put_span(at + 4, to);
   put_words(at + 8, to.count, words);
   end(map, 9 + 2 * (int)to.count, 1 + 2 * (int)from.count, out);
+}
+
+void ethd__servo_frame_number(const ethd__servo_map *map, uint16_t number, ethd__servo_frame *question) {
+  if (head(map)) put(question->bytes, number);
 }
 
 /* ---- answers ---- */
@@ -92,6 +95,7 @@ void ethd__servo_frame_both(const ethd__servo_map *map, ethd__servo_span to, con
 bool ethd__servo_frame_begins(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
                               int length) {
   int at = head(map);
+  if (at && memcmp(answer, question->bytes, (size_t)(length < 4 ? length : 4)) != 0) return false;
   if (length > at && answer[at] != question->bytes[at]) return false;
   return length <= at + 1 || (answer[at + 1] & ~REFUSED) == question->bytes[at + 1];
 }

@@ -1,5 +1,6 @@
 /* Modbus questions as bytes, for what libmodbus doesn't speak: a serial line whose checksum has its high byte first, or
-   on which one's own bytes come back; and for the guardian, which has no time to ask a library.
+   on which one's own bytes come back; for several units on one bus; and for the guardian, which has no time to ask a
+   library.
 
      rtu   unit | function, data | checksum              checksum low byte first by the standard
      tcp   number, 0, length | unit | function, data */
@@ -16,21 +17,18 @@ typedef struct ethd__servo_frame {
   int answer; /* bytes that a good answer has */
 } ethd__servo_frame;
 
-/* Functions 3 or 4, 16, and 0x17. [any] */
-void ethd__servo_frame_read(const ethd__servo_map *map, int32_t space, uint32_t address, uint32_t count,
-                            ethd__servo_frame *out);
-void ethd__servo_frame_write(const ethd__servo_map *map, uint32_t address, uint32_t count, const uint16_t *words,
+/* Functions 3 or 4, 16, and 0x17, to the span's unit (`both`: that of `to`). Their number on tcp is 0. [any] */
+void ethd__servo_frame_read(const ethd__servo_map *map, ethd__servo_span from, ethd__servo_frame *out);
+void ethd__servo_frame_write(const ethd__servo_map *map, ethd__servo_span to, const uint16_t *words,
                              ethd__servo_frame *out);
-
-typedef struct ethd__servo_span {
-  uint32_t address, count;
-} ethd__servo_span;
-
 void ethd__servo_frame_both(const ethd__servo_map *map, ethd__servo_span to, const uint16_t *words,
                             ethd__servo_span from, ethd__servo_frame *out);
 
-/* True while the bytes so far can be the beginning of an answer: they have the station and the function that were
-   asked. False for noise and for somebody else's answer; waiting longer is then useless. [any] */
+/* Gives a question its number, by which its answer is known; does nothing for rtu, which has none. [any] */
+void ethd__servo_frame_number(const ethd__servo_map *map, uint16_t number, ethd__servo_frame *question);
+
+/* True while the bytes so far can be the beginning of an answer: they have the number, the unit and the function that
+   were asked. False for noise and for somebody else's answer; waiting longer is then useless. [any] */
 bool ethd__servo_frame_begins(const ethd__servo_map *map, const ethd__servo_frame *question, const uint8_t *answer,
                               int length);
 

@@ -59,7 +59,7 @@ static void make_zeros(const ethd__servo_plan *plan, ethd__guardian *g) {
     ethd__servo_pack(torque, ethd__servo_raw(torque, 0), ethd__servo_plan_words(&zero, g->map, r));
   }
   for (uint32_t i = 0; i < zero.write_count; i++)
-    ethd__servo_frame_write(g->map, zero.writes[i].address, zero.writes[i].count, zero.writes[i].words, &g->zeros[i]);
+    ethd__servo_frame_write(g->map, zero.writes[i].span, zero.writes[i].words, &g->zeros[i]);
   g->zero_count = zero.write_count;
 }
 
@@ -71,7 +71,7 @@ static void make_disables(ethd__guardian *g) {
     if (s->kind != ETHD__SERVO_STEP_WRITE) continue;
     const ethd__servo_register *r = &g->map->registers[s->at];
     ethd__servo_pack(r, s->value, words);
-    ethd__servo_frame_write(g->map, r->address, ethd__servo_words(r), words, &g->disables[g->disable_count++]);
+    ethd__servo_frame_write(g->map, ethd__servo_span_of(r), words, &g->disables[g->disable_count++]);
   }
 }
 
@@ -103,17 +103,18 @@ static void quiet(const ethd__servo_bus *bus) {
   if (bus->map->transport == ETHD__SERVO_RTU) (void)!ethd__servo_bus_drain((ethd__servo_bus *)bus);
 }
 
+/* Each frame goes out once before any is tried again: a unit that is gone doesn't keep the others waiting. */
 static bool send(const ethd__servo_bus *bus, const ethd__servo_frame *frames, uint32_t count) {
-  bool good = true;
-  for (uint32_t i = 0; i < count; i++) {
-    int failure = ETIMEDOUT;
-    for (int k = 0; k < TRIES && failure; k++) {
-      failure = ethd__servo_ask(bus, &frames[i], NULL);
-      if (failure) quiet(bus);
+  uint32_t left = (1u << count) - 1; /* a bit a frame */
+  for (int k = 0; k < TRIES && left; k++)
+    for (uint32_t i = 0; i < count; i++) {
+      if (!(left & 1u << i)) continue;
+      if (ethd__servo_ask(bus, &frames[i], NULL))
+        quiet(bus);
+      else
+        left &= ~(1u << i);
     }
-    good &= !failure;
-  }
-  return good;
+  return !left;
 }
 
 bool ethd__guardian_act(ethd__guardian *g) {
@@ -124,7 +125,7 @@ bool ethd__guardian_act(ethd__guardian *g) {
   if (good) {
     quiet(&bus);
     good = send(&bus, g->zeros, g->zero_count);
-    good &= send(&bus, g->disables, g->disable_count);
+    for (uint32_t i = 0; i < g->disable_count; i++) good &= send(&bus, &g->disables[i], 1);
   }
   if (g->line >= 0) close(g->line);
   g->line = -1;

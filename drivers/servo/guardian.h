@@ -19,8 +19,6 @@
 #include "servo/frame.h"
 #include "servo/plan.h"
 
-#define ETHD__GUARDIAN_ZEROS 3u
-
 /* Who may write to the line. FREE: the guardian has written and is done; whoever comes next connects anew. */
 enum { ETHD__GUARDIAN_OURS, ETHD__GUARDIAN_ITS, ETHD__GUARDIAN_FREE };
 
@@ -45,7 +43,7 @@ typedef struct ethd__guardian {
   uint64_t connects; /* the link's count of connections when the line was last passed on */
   bool passed;       /* the guardian holds a line of ours */
   uint32_t zero_count, disable_count;
-  ethd__servo_frame zeros[ETHD__GUARDIAN_ZEROS], disables[ETHD__SERVO_STEPS_MAX];
+  ethd__servo_frame zeros[ETHD__SERVO_WRITES_MAX], disables[ETHD__SERVO_STEPS_MAX];
 } ethd__guardian;
 
 /* ns from the I/O thread's last beat to zero torque at the drive: the larger of 20 ms and two message spacings. A
@@ -78,7 +76,7 @@ void ethd__guardian_arm(ethd__guardian *guardian, bool armed);
 bool ethd__guardian_due(const ethd__guardian *guardian, int64_t now_ns);
 
 /* Takes the line and brings the drive to rest: it writes zero and then [disable], each until it is answered or was
-   tried often enough. Returns whether the drive has answered all of it. In the guardian's process. */
+   tried often enough; zeros go out to all units once before one is tried again. Returns whether the drive has answered all of it. In the guardian's process. */
 bool ethd__guardian_act(ethd__guardian *guardian);
 
 /* Ends the process in order and waits for it; does nothing when there is none. [main] */

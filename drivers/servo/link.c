@@ -87,11 +87,12 @@ static void set(ethd__servo_link *l, int role, double raw) {
   if (r >= 0) ethd__servo_pack(&l->map->registers[r], raw, ethd__servo_plan_words(&l->plan, l->map, r));
 }
 
-/* Counts from 0 to the register's max. A borrowed register, such as a speed that isn't used, has a small max so that
+/* Counts from 0 to the register's max, of two to the lesser one. A borrowed register, such as a speed that isn't used, has a small max so that
    its counting does no harm. */
 static uint16_t next_count(const ethd__servo_link *l) {
-  int32_t r = l->map->roles[ETHD__SERVO_COUNTER];
-  double most = r < 0 ? UINT16_MAX : fmin(l->map->registers[r].max, UINT16_MAX);
+  double most = UINT16_MAX;
+  for (int i = ETHD__SERVO_COUNTER; i <= ETHD__SERVO_COUNTER2; i++)
+    if (l->map->roles[i] >= 0) most = fmin(most, l->map->registers[l->map->roles[i]].max);
   return l->counter >= most ? 0 : (uint16_t)(l->counter + 1);
 }
 
@@ -104,7 +105,8 @@ static void fill(ethd__servo_link *l, const double torque[2]) {
     l->raw[r] = ethd__servo_raw(&l->map->registers[r], joint);
     set(l, roles[i], l->raw[r]);
   }
-  set(l, ETHD__SERVO_COUNTER, l->counter = next_count(l));
+  l->counter = next_count(l);
+  for (int i = ETHD__SERVO_COUNTER; i <= ETHD__SERVO_COUNTER2; i++) set(l, i, l->counter);
 }
 
 /* True when the drive echoes what was just written. Any other echo belongs to another question. */
@@ -148,6 +150,12 @@ static ethd_status exchange(ethd__servo_link *l, int64_t now_ns, const double to
   return ETHD_OK;
 }
 
+/* Where an exchange fails because a unit is gone, the others are disabled all the same, once the line is quiet. */
+static bool disables_the_rest(ethd__servo_link *l) {
+  if (l->sequence != ETHD__SERVO_DISABLE || !ethd__servo_several(l->map)) return false;
+  return !ethd__servo_bus_drain(&l->bus);
+}
+
 ethd_status ethd__servo_link_turn(ethd__servo_link *l, int64_t now_ns, const double torque[2]) {
   if (l->state == ETHD__SERVO_DOWN) {
     if (now_ns < l->attempt_ns) return ETHD_STALE;
@@ -160,7 +168,8 @@ ethd_status ethd__servo_link_turn(ethd__servo_link *l, int64_t now_ns, const dou
     l->draining = false;
   }
   ethd_status status = exchange(l, now_ns, torque);
-  if (status || l->sequence < 0) return status;
+  if (l->sequence < 0 || (status && !disables_the_rest(l))) return status;
+  l->skipped |= status != ETHD_OK;
   ethd__servo_outcome got = ethd__servo_sequence_turn(l, now_ns);
-  return got ? fail(l, got, now_ns) : ETHD_OK;
+  return got ? fail(l, got, now_ns) : status;
 }

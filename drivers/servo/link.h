@@ -35,6 +35,7 @@ typedef struct ethd__servo_link {
   uint16_t counter;
   int32_t sequence;                      /* the sequence that runs; -1: none */
   uint32_t step;                         /* its present step */
+  bool skipped;                          /* [disable] has gone on without a unit that didn't answer */
   int64_t step_ns;                       /* when that began */
   ethd_status result;                    /* of the last sequence */
   int32_t bucket;                        /* a leaky bucket: rises with bad answers, falls with good ones */

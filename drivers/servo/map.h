@@ -6,9 +6,10 @@
      baud = 500000               any
      format = 8N1
      crc = low-first             high-first: against the standard, but some drives have it so
-     unit = 1                    station on the bus
+     unit = 1                    of the registers that don't name another
      [register torque1]          one section a register; address as in the drive's manual (0x or decimal)
      direction = write
+     bus_unit = 1                the unit that has it, where several stand on one bus; without: bus.unit
      address = 0x5308            ; unconfirmed, or the document and page that has it
      type = i16                  32-bit types say their order
      unit = A                    value = scale * raw + offset, in this unit, at the motor
@@ -31,7 +32,8 @@
 
    Names with a meaning: torque1 torque2 (written), position1 position2, speed1 speed2, measured1 measured2
    (torque or current), bus_voltage, index1 index2 (a position's count at its last index mark), reading_x reading_y
-   reading_count reading_age (a finger's place relative to the ring), counter (a word of ours that the drive keeps).
+   reading_count reading_age (a finger's place relative to the ring), counter (a word of ours that the drive keeps),
+   counter2 (the same word in a second unit).
    All others serve steps, echoes, or masks. */
 #ifndef ETHD__SERVO_MAP_H
 #define ETHD__SERVO_MAP_H
@@ -63,6 +65,7 @@ enum {
   ETHD__SERVO_TORQUE1,
   ETHD__SERVO_TORQUE2,
   ETHD__SERVO_COUNTER,
+  ETHD__SERVO_COUNTER2,
   ETHD__SERVO_POSITION1,
   ETHD__SERVO_POSITION2,
   ETHD__SERVO_SPEED1,
@@ -91,7 +94,8 @@ typedef struct ethd__servo_register {
   char name[ETHD__SERVO_NAME_MAX];
   int32_t line, role; /* role -1: none */
   int32_t direction, space, type, order, unit;
-  uint32_t address; /* as on the wire, from 0 */
+  uint32_t bus_unit; /* the unit that has it */
+  uint32_t address;  /* as on the wire, from 0 */
   double scale, offset, min, max, ratio, sign;
   double counts, torque_constant;    /* per motor turn; Nm/A */
   uint32_t bits;                     /* width of a position's counter */
@@ -145,6 +149,13 @@ typedef struct ethd__servo_map {
   ethd__servo_steps sequences[ETHD__SERVO_SEQUENCES];
 } ethd__servo_map;
 
+/* Words that stand side by side in one unit. */
+typedef struct ethd__servo_span {
+  uint32_t unit;
+  int32_t space;
+  uint32_t address, count; /* as on the wire: from 0, words */
+} ethd__servo_span;
+
 /* "8N1|8E1|8O1|8N2", in the order of `format`; "1|Nm|A|..." of `unit`. */
 extern const char ethd__servo_formats[], ethd__servo_units[];
 
@@ -153,6 +164,12 @@ ETHD_MUST_CHECK ethd_status ethd__servo_map_parse(const char *text, size_t lengt
                                                   ethd__servo_map *out, char message[ETHD_MESSAGE_MAX]);
 ETHD_MUST_CHECK ethd_status ethd__servo_map_load(const char *path, const char *name, ethd__servo_map *out,
                                                  char message[ETHD_MESSAGE_MAX]);
+
+/* Returns whether registers of several units are on the bus. [any] */
+bool ethd__servo_several(const ethd__servo_map *map);
+
+/* Returns whether the unit of torque `axis`, 0 or 1, has a register of this kind; true without such a torque. [any] */
+bool ethd__servo_unit_has(const ethd__servo_map *map, int axis, bool (*is)(const ethd__servo_register *));
 
 /* Returns how many registers' addresses say `; unconfirmed`. [any] */
 uint32_t ethd__servo_unconfirmed(const ethd__servo_map *map);

@@ -61,6 +61,10 @@ static ethd_status check_unit(const ethd__servo_source *s, const ethd__servo_reg
   return ETHD_OK;
 }
 
+static bool is_counter(const ethd__servo_register *r) {
+  return r->role == ETHD__SERVO_COUNTER || r->role == ETHD__SERVO_COUNTER2;
+}
+
 static ethd_status check_words(const ethd__servo_source *s, const ethd__servo_register *r) {
   if (r->type >= ETHD__SERVO_U32 && r->order == ETHD__SERVO_NO_ORDER)
     return refuse(s, r, "order", "is missing: high-first or low-first, as two words need it");
@@ -69,7 +73,7 @@ static ethd_status check_words(const ethd__servo_source *s, const ethd__servo_re
   if (r->type != ETHD__SERVO_F32 && r->bits > 16 * ethd__servo_words(r))
     return refuse(s, r, "bits", "found %u, its words have %u", r->bits, 16 * ethd__servo_words(r));
   if (r->type == ETHD__SERVO_F32 && unit_is(r, "count")) return refuse(s, r, "type", "counts are whole numbers");
-  if (r->role == ETHD__SERVO_COUNTER && r->type != ETHD__SERVO_U16) return refuse(s, r, "type", "u16 is allowed");
+  if (is_counter(r) && r->type != ETHD__SERVO_U16) return refuse(s, r, "type", "u16 is allowed");
   if (r->role == ETHD__SERVO_READING_COUNT && r->type == ETHD__SERVO_F32)
     return refuse(s, r, "type", "a type of whole numbers is allowed");
   return ETHD_OK;
@@ -109,7 +113,7 @@ static ethd_status check_register(const ethd__servo_source *s, const ethd__servo
   if (status) return status;
   if (r->role == ETHD__SERVO_BUS_VOLTAGE && !(has(s, r, "min") && has(s, r, "max") && r->min < r->max))
     return refuse(s, r, "min", "min < max are needed: outside of them the supply is a fault");
-  if (r->role == ETHD__SERVO_COUNTER && !(r->max >= 1 && r->max == rint(fmin(r->max, 1e12))))
+  if (is_counter(r) && !(r->max >= 1 && r->max == rint(fmin(r->max, 1e12))))
     return refuse(s, r, "max", "a counter counts to a whole number from 1");
   if (r->absolute && r->role != ETHD__SERVO_POSITION1 && r->role != ETHD__SERVO_POSITION2)
     return refuse(s, r, "absolute", "only position1 and position2 can be");
@@ -127,17 +131,18 @@ static ethd_status link_echo(const ethd__servo_source *s, ethd__servo_map *map, 
   if (!key) return ETHD_OK;
   r->echo = ethd__servo_find(map, key->value, strlen(key->value));
   if (r->echo < 0) return refuse(s, r, "echo", "the map has no [register %.40s]", key->value);
-  if (r->direction != W || r->role < 0) return refuse(s, r, "echo", "only torque1, torque2 and counter have one");
+  if (r->direction != W || r->role < 0) return refuse(s, r, "echo", "only torque1, torque2 and counters have one");
   if (map->registers[r->echo].direction != R) return refuse(s, r, "echo", "%s isn't read", key->value);
   if (map->registers[r->echo].type != r->type) return refuse(s, r, "echo", "%s is of another type", key->value);
+  if (map->registers[r->echo].bus_unit != r->bus_unit) return refuse(s, r, "echo", "%s is of another unit", key->value);
   map->registers[r->echo].cyclic = true;
   return ETHD_OK;
 }
 
 static bool overlap(const ethd__servo_map *map, const ethd__servo_register *a, const ethd__servo_register *b) {
-  if (map->addressing == ETHD__SERVO_BY_VALUE) return a->space == b->space && a->address == b->address;
-  return a->space == b->space && a->address < b->address + ethd__servo_words(b) &&
-         b->address < a->address + ethd__servo_words(a);
+  if (a->bus_unit != b->bus_unit || a->space != b->space) return false;
+  if (map->addressing == ETHD__SERVO_BY_VALUE) return a->address == b->address;
+  return a->address < b->address + ethd__servo_words(b) && b->address < a->address + ethd__servo_words(a);
 }
 
 static bool same_words(const ethd__servo_register *a, const ethd__servo_register *b) {
@@ -203,6 +208,14 @@ static bool both_or_none(const ethd__servo_map *map, int a, int b) {
   return (map->roles[a] < 0) == (map->roles[b] < 0);
 }
 
+static bool same_unit(const ethd__servo_map *map) {
+  return map->registers[map->roles[ETHD__SERVO_COUNTER]].bus_unit ==
+         map->registers[map->roles[ETHD__SERVO_COUNTER2]].bus_unit;
+}
+
+/* Read in every exchange. */
+static bool is_measured(const ethd__servo_register *r) { return r->cyclic && r->direction == R && r->every == 1; }
+
 static ethd_status check_roles(const ethd__servo_source *s, const ethd__servo_map *map) {
   const int32_t *roles = map->roles;
   const char *wrong = NULL;
@@ -218,8 +231,15 @@ static ethd_status check_roles(const ethd__servo_source *s, const ethd__servo_ma
         (roles[ETHD__SERVO_POSITION1 + i] < 0 ||
          map->registers[roles[ETHD__SERVO_INDEX1 + i]].type != map->registers[roles[ETHD__SERVO_POSITION1 + i]].type))
       wrong = "index1 and index2 are counts of position1 and position2, of the same type";
-  if (map->watchdog == ETHD__SERVO_WATCH_COUNTER && roles[ETHD__SERVO_COUNTER] < 0)
-    wrong = "watchdog.kind = counter needs a [register counter]";
+  if (roles[ETHD__SERVO_COUNTER2] >= 0 && (roles[ETHD__SERVO_COUNTER] < 0 || same_unit(map)))
+    wrong = "counter2 is the counter of a second unit, beside counter in the first";
+  for (int axis = 0; axis < 2 && !wrong; axis++) {
+    if (map->watchdog == ETHD__SERVO_WATCH_COUNTER && !ethd__servo_unit_has(map, axis, is_counter))
+      wrong = ethd__servo_several(map) ? "watchdog.kind = counter needs a counter in each unit that has a torque"
+                                       : "watchdog.kind = counter needs a [register counter]";
+    if (!ethd__servo_unit_has(map, axis, is_measured))
+      wrong = "nothing is read in each exchange from a unit that has a torque: it could vanish unseen";
+  }
   return wrong ? ethd__say(s->message, ETHD_E_UNKNOWN, "%s: %s", s->name, wrong) : ETHD_OK;
 }
 

@@ -70,6 +70,7 @@ static const map_key watchdog[] = {
 static const map_key keys[] = {
     {CHOICE, {"direction", "read|write", 0, 1, (double)NAN, "as the loop sees it"}, AT(register, direction)},
     {WHOLE, {"address", "1", 0, 65536, (double)NAN, "as in the manual"}, AT(register, address)},
+    {WHOLE, {"bus_unit", "1", 0, 247, 0, "unit that has it; bus.unit by default"}, AT(register, bus_unit)},
     {CHOICE, {"space", "holding|input", 0, 1, 0, "functions 3 and 16, or 4"}, AT(register, space)},
     {CHOICE, {"type", "u16|i16|u32|i32|f32", 0, 4, (double)NAN, "of the words"}, AT(register, type)},
     {CHOICE, {"order", "high-first|low-first", 0, 1, 2, "of two words"}, AT(register, order)},
@@ -225,6 +226,10 @@ ethd_status ethd__servo_read_register(const ethd__servo_source *s, const ethd_in
   if (out->address < map->base || out->address - map->base + words > 65536)
     return ethd__servo_refuse(s, address, map->base ? "1 to 65536 less the words" : "0 to 65535 less the words");
   out->address -= map->base;
+  const ethd_ini_key *unit = ethd_ini_find(s->ini, section->name, "bus_unit");
+  if (!unit) out->bus_unit = map->unit;
+  if (unit && map->transport == ETHD__SERVO_RTU && !out->bus_unit)
+    return ethd__servo_refuse(s, unit, "1 to 247: on a serial line 0 is for all units, and none answers");
   if (out->sign != 1 && out->sign != -1)
     return ethd__servo_refuse(s, ethd_ini_find(s->ini, section->name, "sign"), "1 or -1");
   if (out->scale == 0) return ethd__servo_refuse(s, ethd_ini_find(s->ini, section->name, "scale"), "a number but 0");

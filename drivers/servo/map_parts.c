@@ -14,6 +14,7 @@ const ethd__servo_role ethd__servo_roles[ETHD__SERVO_ROLES] = {
     [ETHD__SERVO_TORQUE1] = {"torque1", "A|Nm", W},
     [ETHD__SERVO_TORQUE2] = {"torque2", "A|Nm", W},
     [ETHD__SERVO_COUNTER] = {"counter", "1", W},
+    [ETHD__SERVO_COUNTER2] = {"counter2", "1", W},
     [ETHD__SERVO_POSITION1] = {"position1", "count|turn|rad", R},
     [ETHD__SERVO_POSITION2] = {"position2", "count|turn|rad", R},
     [ETHD__SERVO_SPEED1] = {"speed1", "count/s|rpm|rad/s", R},
@@ -33,6 +34,19 @@ int32_t ethd__servo_find(const ethd__servo_map *map, const char *name, size_t le
   for (uint32_t i = 0; i < map->count; i++)
     if (strlen(map->registers[i].name) == length && !memcmp(map->registers[i].name, name, length)) return (int32_t)i;
   return -1;
+}
+
+bool ethd__servo_several(const ethd__servo_map *map) {
+  for (uint32_t i = 0; i < map->count; i++)
+    if (map->registers[i].bus_unit != map->unit) return true;
+  return false;
+}
+
+bool ethd__servo_unit_has(const ethd__servo_map *map, int axis, bool (*is)(const ethd__servo_register *)) {
+  int32_t torque = map->roles[ETHD__SERVO_TORQUE1 + axis];
+  for (uint32_t i = 0; i < map->count && torque >= 0; i++)
+    if (map->registers[i].bus_unit == map->registers[torque].bus_unit && is(&map->registers[i])) return true;
+  return torque < 0;
 }
 
 bool ethd__servo_whole(const char *text, double *out) {

@@ -8,15 +8,17 @@ uint32_t ethd__servo_unconfirmed(const ethd__servo_map *map) {
   return n;
 }
 
-static bool any_echo(const ethd__servo_map *map) {
-  for (uint32_t i = 0; i < map->count; i++)
-    if (map->registers[i].echo >= 0) return true;
-  return false;
+static bool has_echo(const ethd__servo_register *r) { return r->echo >= 0; }
+static bool has_mask(const ethd__servo_register *r) { return r->fault_mask; }
+
+/* Whether each unit that has a torque has such a register, too. */
+static bool each(const ethd__servo_map *map, bool (*is)(const ethd__servo_register *)) {
+  return ethd__servo_unit_has(map, 0, is) && ethd__servo_unit_has(map, 1, is);
 }
 
 static bool any_mask(const ethd__servo_map *map) {
   for (uint32_t i = 0; i < map->count; i++)
-    if (map->registers[i].fault_mask) return true;
+    if (has_mask(&map->registers[i])) return true;
   return false;
 }
 
@@ -53,8 +55,8 @@ const char *ethd__servo_risk(const ethd__servo_map *map, uint32_t i) {
   if (map->watchdog == ETHD__SERVO_WATCH_NONE)
     risks[n++] = "no watchdog: when this computer dies, the drive holds its last torque";
   if (map->resumes) risks[n++] = "the drive goes on by itself when the bus comes back: zero is written first";
-  if (!any_echo(map)) risks[n++] = "no echo: a stale answer or a lost set-point isn't noticed";
-  if (!any_mask(map)) risks[n++] = "no fault mask: the drive's faults aren't noticed";
+  if (!each(map, has_echo)) risks[n++] = "no echo: a stale answer or a lost set-point isn't noticed";
+  if (!each(map, has_mask)) risks[n++] = "no fault mask: the drive's faults aren't noticed";
   if (!is_watched(map, ETHD__SERVO_TORQUE1, ETHD__SERVO_MEASURED1) ||
       !is_watched(map, ETHD__SERVO_TORQUE2, ETHD__SERVO_MEASURED2))
     risks[n++] = "no measured torque with a tolerance: a drive that doesn't follow isn't noticed";

@@ -1,5 +1,5 @@
-/* The questions of one exchange. Registers that stand side by side and are read equally often share a question;
-   questions about slow registers are spread over the exchanges. */
+/* The questions of one exchange. Registers that stand side by side in one unit and are read equally often share a
+   question; questions about slow registers are spread over the exchanges. */
 #ifndef ETHD__SERVO_PLAN_H
 #define ETHD__SERVO_PLAN_H
 
@@ -8,9 +8,11 @@
 #define ETHD__SERVO_READ_MAX 125u /* words of one question */
 #define ETHD__SERVO_WRITE_MAX 121u
 
+#define ETHD__SERVO_WRITES_MAX 4u /* torque1, torque2, counter and counter2, each alone */
+
 typedef struct ethd__servo_block {
-  int32_t space;
-  uint32_t address, count;
+  ethd__servo_span span;
+  int32_t with;          /* the other half of a question that writes and reads; -1: none */
   uint32_t every, phase; /* asked when the exchange's number modulo every is phase */
   bool fresh;            /* asked in the last exchange */
   int64_t asked_ns;      /* CLOCK_MONOTONIC: before the question last went out; what it says isn't older */
@@ -18,13 +20,13 @@ typedef struct ethd__servo_block {
 } ethd__servo_block;
 
 typedef struct ethd__servo_plan {
-  ethd__servo_block writes[3], reads[ETHD__SERVO_REGISTERS_MAX];
+  ethd__servo_block writes[ETHD__SERVO_WRITES_MAX], reads[ETHD__SERVO_REGISTERS_MAX];
   uint32_t write_count, read_count;
+  uint32_t first;                             /* the write that begins the next exchange */
   int32_t block[ETHD__SERVO_REGISTERS_MAX];   /* of a cyclic register; -1: none */
   uint32_t offset[ETHD__SERVO_REGISTERS_MAX]; /* its first word there */
   uint32_t turn;                              /* exchanges so far */
   bool all;                                   /* the next one asks for everything: nothing is known yet */
-  bool combined;                              /* the first write and the first read are one question */
 } ethd__servo_plan;
 
 /* Makes the plan of a map. [main] */
@@ -39,7 +41,8 @@ bool ethd__servo_plan_fresh(const ethd__servo_plan *plan, int32_t r);
 /* When the register was last asked for: its value is as young as this, or younger. [any] */
 int64_t ethd__servo_plan_asked(const ethd__servo_plan *plan, int32_t r);
 
-/* Asks the questions in order, writes first, and stops at the first that isn't DONE. */
+/* Asks the questions in order, writes first, and stops at the first that isn't DONE. After a write that wasn't, the
+   next exchange begins with the unit behind it, so that a unit that is gone never keeps a set-point from the others. */
 ethd__servo_outcome ethd__servo_plan_ask(ethd__servo_plan *plan, ethd__servo_bus *bus);
 
 #endif

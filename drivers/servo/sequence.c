@@ -16,7 +16,7 @@ static ethd__servo_outcome write_step(ethd__servo_link *l, const ethd__servo_ste
   uint16_t words[2];
   const ethd__servo_register *r = &l->map->registers[s->at];
   ethd__servo_pack(r, s->value, words);
-  return ethd__servo_bus_write(&l->bus, r->address, ethd__servo_words(r), words);
+  return ethd__servo_bus_write(&l->bus, ethd__servo_span_of(r), words);
 }
 
 /* Uses the bits that were read within this turn; registers that weren't read in it are asked for. */
@@ -27,7 +27,7 @@ static ethd__servo_outcome read_bits(ethd__servo_link *l, const ethd__servo_step
   if (r->cyclic && ethd__servo_plan_fresh(&l->plan, s->at)) {
     *bits = ethd__servo_bits(r, ethd__servo_plan_words(&l->plan, l->map, s->at));
   } else {
-    got = ethd__servo_bus_read(&l->bus, r->space, r->address, ethd__servo_words(r), words);
+    got = ethd__servo_bus_read(&l->bus, ethd__servo_span_of(r), words);
     if (got) return got;
     *bits = ethd__servo_bits(r, words);
     l->raw[s->at] = ethd__servo_unpack(r, words);
@@ -56,16 +56,20 @@ ethd__servo_outcome ethd__servo_sequence_turn(ethd__servo_link *l, int64_t now_n
     if (s->kind == ETHD__SERVO_STEP_WAIT) got = wait_step(l, s, now_ns, &done);
     if (s->kind == ETHD__SERVO_STEP_PAUSE) done = 1e-9 * (double)(now_ns - l->step_ns) >= s->value;
   }
-  if (got || !done || l->sequence < 0) return got;
+  /* [disable] goes on without a unit that is gone: the others don't wait for it */
+  bool skip = got == ETHD__SERVO_MISSING && l->sequence == ETHD__SERVO_DISABLE && ethd__servo_several(l->map);
+  l->skipped |= skip;
+  if ((!skip && (got || !done)) || l->sequence < 0) return got;
   l->step++;
   l->step_ns = now_ns;
-  if (l->step >= steps->count) finish(l, ETHD_OK);
+  if (l->step >= steps->count) finish(l, l->skipped ? ETHD_E_DEVICE : ETHD_OK);
   return got;
 }
 
 void ethd__servo_link_begin(ethd__servo_link *l, int32_t sequence, int64_t now_ns) {
   l->sequence = sequence;
   l->step = 0;
+  l->skipped = false;
   l->step_ns = now_ns;
   l->result = ETHD_BUSY;
   if (sequence == ETHD__SERVO_DISABLE && l->state == ETHD__SERVO_ENABLED) l->state = ETHD__SERVO_IDENTIFIED;

@@ -17,17 +17,15 @@ static double time_of(const ethd__servo_map *map, uint32_t bytes, double turnaro
 static uint32_t bytes_of(const ethd__servo_map *map, const ethd__servo_block *b, bool is_write) {
   ethd__servo_frame f;
   if (is_write)
-    ethd__servo_frame_write(map, b->address, b->count, b->words, &f);
+    ethd__servo_frame_write(map, b->span, b->words, &f);
   else
-    ethd__servo_frame_read(map, b->space, b->address, b->count, &f);
+    ethd__servo_frame_read(map, b->span, &f);
   return (uint32_t)(f.length + f.answer);
 }
 
-static uint32_t bytes_of_both(const ethd__servo_map *map, const ethd__servo_plan *plan) {
+static uint32_t bytes_of_both(const ethd__servo_map *map, const ethd__servo_block *to, const ethd__servo_block *from) {
   ethd__servo_frame f;
-  const ethd__servo_block *to = &plan->writes[0], *from = &plan->reads[0];
-  ethd__servo_frame_both(map, (ethd__servo_span){to->address, to->count}, to->words,
-                         (ethd__servo_span){from->address, from->count}, &f);
+  ethd__servo_frame_both(map, to->span, to->words, from->span, &f);
   return (uint32_t)(f.length + f.answer);
 }
 
@@ -56,11 +54,12 @@ ethd__servo_wire ethd__servo_wire_of(const ethd__servo_map *map, double turnarou
   ethd__servo_wire wire = {.questions = 0};
   double t = isnan(turnaround) ? map->turnaround : turnaround;
   ethd__servo_plan_make(map, &plan);
-  uint32_t joined = plan.combined;
-  if (joined) add(map, bytes_of_both(map, &plan), t, &wire);
-  for (uint32_t i = joined; i < plan.write_count; i++) add(map, bytes_of(map, &plan.writes[i], true), t, &wire);
-  for (uint32_t i = joined; i < plan.read_count; i++)
-    if (plan.reads[i].every == 1) add(map, bytes_of(map, &plan.reads[i], false), t, &wire);
+  for (uint32_t i = 0; i < plan.write_count; i++) {
+    const ethd__servo_block *w = &plan.writes[i];
+    add(map, w->with < 0 ? bytes_of(map, w, true) : bytes_of_both(map, w, &plan.reads[w->with]), t, &wire);
+  }
+  for (uint32_t i = 0; i < plan.read_count; i++)
+    if (plan.reads[i].every == 1 && plan.reads[i].with < 0) add(map, bytes_of(map, &plan.reads[i], false), t, &wire);
   wire.most = wire.usual + slow(map, &plan, t);
   return wire;
 }

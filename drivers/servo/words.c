@@ -14,6 +14,10 @@ static bool is_wide(const ethd__servo_register *r) { return r->type >= ETHD__SER
 
 uint32_t ethd__servo_words(const ethd__servo_register *r) { return is_wide(r) ? 2 : 1; }
 
+ethd__servo_span ethd__servo_span_of(const ethd__servo_register *r) {
+  return (ethd__servo_span){r->bus_unit, r->space, r->address, ethd__servo_words(r)};
+}
+
 uint32_t ethd__servo_bits(const ethd__servo_register *r, const uint16_t *w) {
   if (!is_wide(r)) return w[0];
   return r->order == ETHD__SERVO_LOW_FIRST ? (uint32_t)w[1] << 16 | w[0] : (uint32_t)w[0] << 16 | w[1];

@@ -7,6 +7,9 @@
 /* Returns how many words the register has: 1 or 2. [any] */
 uint32_t ethd__servo_words(const ethd__servo_register *r);
 
+/* Returns where the register's words are. [any] */
+ethd__servo_span ethd__servo_span_of(const ethd__servo_register *r);
+
 /* Fills the smallest and largest raw number of a type, exactly. [any] */
 void ethd__servo_range(const ethd__servo_register *r, double *min, double *max);
 

@@ -66,14 +66,14 @@ static void answer_to(int function, int count) {
 
 static void ask(int function, int count) {
   const uint16_t out[WORDS] = {1, 2, 3, 4};
+  const int32_t space = function == 4 ? ETHD__SERVO_INPUT : ETHD__SERVO_HOLDING;
+  const ethd__servo_span at = {map.unit, space, 0x5308, (uint32_t)count}, from = {map.unit, 0, 0x5414, (uint32_t)count};
   if (function == 3 || function == 4)
-    ethd__servo_frame_read(&map, function == 4 ? ETHD__SERVO_INPUT : ETHD__SERVO_HOLDING, 0x5308, (uint32_t)count,
-                           &question);
+    ethd__servo_frame_read(&map, at, &question);
   else if (function == 16)
-    ethd__servo_frame_write(&map, 0x5308, (uint32_t)count, out, &question);
+    ethd__servo_frame_write(&map, at, out, &question);
   else
-    ethd__servo_frame_both(&map, (ethd__servo_span){0x5308, 2}, out, (ethd__servo_span){0x5414, (uint32_t)count},
-                           &question);
+    ethd__servo_frame_both(&map, (ethd__servo_span){map.unit, 0, 0x5308, 2}, out, from, &question);
   answer_to(function, count);
   ck_assert_int_eq(hear(good, good_length), TAKEN);
   ck_assert_int_eq(untouched(), function == 16);

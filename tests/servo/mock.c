@@ -31,8 +31,7 @@ static void put(uint8_t *p, uint32_t v) {
 
 /* ---- the drive ---- */
 
-static void heed(mock *m) {
-  _Atomic uint16_t *w = m->words;
+static void heed(const mock *m, _Atomic uint16_t *w) {
   if (m->stuck) w[MOCK_TORQUE1] = (uint16_t)m->stuck;
   if (w[MOCK_CONTROL] == 2) w[MOCK_STATUS] &= (uint16_t)~1;
   if (w[MOCK_CONTROL] == 1 && !(w[MOCK_STATUS] & 1)) w[MOCK_STATUS] |= 2;
@@ -40,28 +39,29 @@ static void heed(mock *m) {
   for (int i = 0; i < 2 && !m->frozen; i++) w[MOCK_MEASURED1 + i] = w[MOCK_STATUS] & 2 ? w[MOCK_TORQUE1 + i] : 0;
 }
 
-static void store(mock *m, const uint8_t *from, uint32_t at, uint32_t count) {
-  for (uint32_t i = 0; i < count; i++) m->words[(at + i) & 0xFFFF] = get(from + 2 * i);
-  heed(m);
+static void store(const mock *m, _Atomic uint16_t *words, const uint8_t *from, uint32_t at, uint32_t count) {
+  for (uint32_t i = 0; i < count; i++) words[(at + i) & 0xFFFF] = get(from + 2 * i);
+  heed(m, words);
 }
 
-static int load(const mock *m, uint8_t *pdu, uint32_t at, uint32_t count) {
+static int load(const _Atomic uint16_t *words, uint8_t *pdu, uint32_t at, uint32_t count) {
   pdu[1] = (uint8_t)(2 * count);
-  for (uint32_t i = 0; i < count; i++) put(pdu + 2 + 2 * i, m->words[(at + i) & 0xFFFF]);
+  for (uint32_t i = 0; i < count; i++) put(pdu + 2 + 2 * i, words[(at + i) & 0xFFFF]);
   return (int)(2 + 2 * count);
 }
 
-/* The answer to a request, from its function on; its length. */
-static int answer(mock *m, const uint8_t *q, uint8_t *a) {
+/* A unit's answer to a request, from its function on; its length. */
+static int answer(mock *m, int unit, const uint8_t *q, uint8_t *a) {
+  _Atomic uint16_t *words = unit == 2 ? m->second : m->words;
   a[0] = q[0];
   switch (q[0]) {
   case 3:
-  case 4: return load(m, a, get(q + 1), get(q + 3));
+  case 4: return load(words, a, get(q + 1), get(q + 3));
   case 16:
-    store(m, q + 6, get(q + 1), get(q + 3));
+    store(m, words, q + 6, get(q + 1), get(q + 3));
     memcpy(a + 1, q + 1, 4);
     return 5;
-  case 23: store(m, q + 10, get(q + 5), get(q + 7)); return load(m, a, get(q + 1), get(q + 3));
+  case 23: store(m, words, q + 10, get(q + 5), get(q + 7)); return load(words, a, get(q + 1), get(q + 3));
   default:
     a[0] |= 0x80;
     a[1] = 1;
@@ -99,7 +99,7 @@ static int read_request(const mock *m, uint8_t *head, uint8_t *q) {
 static int frame(const mock *m, const uint8_t *head, const uint8_t *q, const uint8_t *pdu, int length, uint8_t *out) {
   int at = m->is_rtu ? 1 : HEAD;
   if (!m->is_rtu) memcpy(out, head, 4), put(out + 4, (uint32_t)length + 1);
-  out[at - 1] = q[0];
+  out[at - 1] = (uint8_t)(q[0] + m->astray);
   memcpy(out + at, pdu, (size_t)length);
   if (!m->is_rtu) return at + length;
   uint16_t crc = mock_crc(out, 1 + length);
@@ -132,10 +132,10 @@ static void hold(mock *m) {
 }
 
 static void reply(mock *m, const uint8_t *head, const uint8_t *q, mock_act act) {
-  uint8_t pdu[512], out[600], *last = m->last[q[1] == 16];
-  int *last_length = &m->last_length[q[1] == 16];
-  if (act.kind == MOCK_DROP) return;
-  int length = answer(m, q + 1, pdu);
+  uint8_t pdu[512], out[600], *last = m->last[q[0] == 2][q[1] == 16];
+  int *last_length = &m->last_length[q[0] == 2][q[1] == 16];
+  if (act.kind == MOCK_DROP || q[0] == m->mute) return;
+  int length = answer(m, q[0], q + 1, pdu);
   if (act.kind == MOCK_HOLD) hold(m);
   if (act.kind == MOCK_LATE) usleep((useconds_t)act.wait);
   if (act.kind == MOCK_EXCEPTION) pdu[0] = q[1] | 0x80, pdu[1] = (uint8_t)act.code, length = 2;
@@ -236,7 +236,7 @@ void mock_start(mock *m, int is_rtu) {
   memset(m, 0, sizeof *m);
   m->listener = m->line = m->slave = -1;
   m->is_rtu = is_rtu;
-  m->words[MOCK_VOLTAGE] = 480;
+  m->words[MOCK_VOLTAGE] = m->second[MOCK_VOLTAGE] = 480;
   if (is_rtu)
     open_terminal(m);
   else

@@ -31,7 +31,10 @@ typedef mock_act (*mock_plan)(void *user, uint64_t n, int function);
 
 typedef struct mock {
   _Atomic uint16_t words[65536];
-  _Atomic mock_plan act; /* NULL: answer */
+  _Atomic uint16_t second[65536]; /* words of unit 2, a drive of its own on the same line */
+  atomic_int mute;                /* the unit that is gone: it heeds nothing and doesn't answer; 0: none */
+  atomic_int astray;              /* not 0: added to the unit in its answers */
+  _Atomic mock_plan act;          /* NULL: answer */
   void *_Atomic user;
   atomic_int frozen; /* 1: the motors stay as they were */
   atomic_int stuck;  /* not 0: what torque1 holds whatever is written */
@@ -44,8 +47,8 @@ typedef struct mock {
   int slave;          /* keeps the terminal alive between openings */
   char port[64];      /* as a map says it */
   pthread_t thread;
-  uint8_t last[2][512]; /* answers before: to reads, to writes */
-  int last_length[2];
+  uint8_t last[2][2][512]; /* answers before, of unit 2 or another: to reads, to writes */
+  int last_length[2][2];
 } mock;
 
 /* Registers of apps/config/plant.map. */

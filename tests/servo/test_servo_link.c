@@ -235,7 +235,7 @@ START_TEST(test_other_checksum) {
       map.crc = asked;
       map.response = asked == order ? 1e-6 * RESPONSE : 20e-3;
       ck_assert_int_eq(ethd__servo_bus_open(&map, &bus, message), ETHD_OK);
-      ck_assert_int_eq(ethd__servo_bus_read(&bus, ETHD__SERVO_HOLDING, MOCK_VOLTAGE, 1, &got),
+      ck_assert_int_eq(ethd__servo_bus_read(&bus, (ethd__servo_span){1, ETHD__SERVO_HOLDING, MOCK_VOLTAGE, 1}, &got),
                        asked == order ? ETHD__SERVO_DONE : ETHD__SERVO_MISSING);
       ethd__servo_bus_close(&bus);
       mock_stop(&drive);
@@ -402,7 +402,8 @@ START_TEST(test_byte_timeout) {
   ethd__servo_bus bus;
   ck_assert_int_eq(ethd__servo_bus_open(&map, &bus, message), ETHD_OK);
   drive.act = halves;
-  ck_assert_int_eq(ethd__servo_bus_read(&bus, ETHD__SERVO_HOLDING, MOCK_POSITION1, 1, &got), ETHD__SERVO_MISSING);
+  ck_assert_int_eq(ethd__servo_bus_read(&bus, (ethd__servo_span){1, ETHD__SERVO_HOLDING, MOCK_POSITION1, 1}, &got),
+                   ETHD__SERVO_MISSING);
   ethd__servo_bus_close(&bus);
   mock_stop(&drive);
 }
@@ -476,7 +477,8 @@ START_TEST(test_exceptions) {
     turn_until(ETHD__SERVO_IDENTIFIED);
     drive.act = refuse_reads;
     drive.user = &code;
-    ck_assert_int_eq(ethd__servo_bus_read(&link_.bus, ETHD__SERVO_HOLDING, 5, 1, &got), all[i].outcome);
+    ck_assert_int_eq(ethd__servo_bus_read(&link_.bus, (ethd__servo_span){1, ETHD__SERVO_HOLDING, 5, 1}, &got),
+                     all[i].outcome);
     ck_assert_int_eq(link_.bus.error, MODBUS_ENOBASE + code);
     ck_assert_ptr_null(strstr(ethd__servo_bus_error(&link_.bus), "Unknown error"));
     uint32_t before = link_.rows[all[i].row];

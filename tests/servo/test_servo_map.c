@@ -321,6 +321,67 @@ START_TEST(test_roles_refused) {
 }
 END_TEST
 
+/* Several units on one bus: equal addresses don't overlap, all else is as within one. */
+START_TEST(test_units_refused) {
+  const char *torque2 = "[register torque2]";
+  read_map("tests/servo/two_units.map");
+  ck_assert_msg(try(text) == ETHD_OK, "%s", message);
+  ck_assert_uint_eq(map.registers[map.roles[ETHD__SERVO_TORQUE1]].bus_unit, 1);
+  ck_assert_uint_eq(map.registers[map.roles[ETHD__SERVO_TORQUE2]].bus_unit, 2);
+  ck_assert_ptr_null(strstr(ethd__servo_risk(&map, 0), "echo"));
+  const char *wrong[] = {"248", "-1", "1.5", "x", "0x", "256"};
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    char unit[32], why[96];
+    snprintf(unit, sizeof unit, "bus_unit = %s", wrong[i]);
+    snprintf(why, sizeof why, "register torque2.bus_unit: found \"%s\", a whole number from 0 to 247", wrong[i]);
+    refused_behind(torque2, "bus_unit = 2", unit, why);
+  }
+  refused_behind(torque2, "bus_unit = 2\n", "", "register torque2.echo: seen2 is of another unit");
+  refused_behind(torque2, "bus_unit = 2", "bus_unit = 3", "register torque2.echo: seen2 is of another unit");
+  refused_behind("[register control2]", "bus_unit = 2\n", "",
+                 "register control2.address: [register control] of line 16 writes there too");
+  refused("[register counter]", "[register counter3]", "counter3.echo: only torque1, torque2 and counters");
+}
+END_TEST
+
+/* What the whole map must have in each unit. */
+START_TEST(test_units_roles_refused) {
+  static const char bus[] = "[bus]\ntransport = tcp\nport = a:1\n";
+  static const char torque[] = "[register torque%d]\ndirection = write\naddress = 0\ntype = i16\nunit = Nm\nmin = -1\n"
+                               "max = 1\nbus_unit = %d\n[register position%d]\ndirection = read\naddress = %d\n"
+                               "type = u16\nunit = rad\nbus_unit = %d\n";
+  char first[512], second[512], vain[512];
+  snprintf(first, sizeof first, torque, 1, 1, 1, 1, 1);
+  snprintf(second, sizeof second, torque, 2, 2, 2, 1, 2);
+  snprintf(vain, sizeof vain, torque, 2, 2, 2, 2, 1);
+  snprintf(text, sizeof text, "%s%s%s", bus, first, second);
+  ck_assert_msg(try(text) == ETHD_OK, "%s", message);
+  ck_assert(ethd__servo_several(&map));
+  snprintf(text, sizeof text, "%s%s%s", bus, first, vain);
+  ck_assert_int_lt(try(text), 0);
+  ck_assert_str_eq(message,
+                   "m.map: nothing is read in each exchange from a unit that has a torque: it could vanish unseen");
+  const char *counter = "[register counter%s]\ndirection = write\naddress = 7\ntype = u16\nmax = 9\nbus_unit = %d\n";
+  char own[128], other[128];
+  snprintf(own, sizeof own, counter, "", 1);
+  snprintf(other, sizeof other, counter, "2", 2);
+  snprintf(text, sizeof text, "%s[watchdog]\nkind = counter\ntime = 1\n%s%s%s", bus, first, second, own);
+  ck_assert_int_lt(try(text), 0);
+  ck_assert_str_eq(message, "m.map: watchdog.kind = counter needs a counter in each unit that has a torque");
+  strcat(text, other);
+  ck_assert_msg(try(text) == ETHD_OK, "%s", message);
+  snprintf(text, sizeof text, "%s%s%s%s", bus, first, second, other);
+  ck_assert_int_lt(try(text), 0);
+  ck_assert_str_eq(message, "m.map: counter2 is the counter of a second unit, beside counter in the first");
+  snprintf(text, sizeof text,
+           "[bus]\ntransport = rtu\nbaud = 9600\nport = a\n%s[register c]\ndirection = write\n"
+           "address = 9\ntype = u16\nbus_unit = 0\n[enable]\nstep1 = write c 1\n",
+           first);
+  ck_assert_int_lt(try(text), 0);
+  ck_assert_ptr_nonnull(strstr(message, "register c.bus_unit: found \"0\", 1 to 247: on a serial line 0 is for all"));
+}
+END_TEST
+
 START_TEST(test_steps_refused) {
   read_map("apps/config/plant.map");
   char why[64];
@@ -524,6 +585,8 @@ int main(void) {
   tcase_add_test(t, test_bus_refused);
   tcase_add_test(t, test_register_refused);
   tcase_add_test(t, test_roles_refused);
+  tcase_add_test(t, test_units_refused);
+  tcase_add_test(t, test_units_roles_refused);
   tcase_add_test(t, test_steps_refused);
   tcase_add_test(t, test_words);
   tcase_add_test(t, test_words_back);
