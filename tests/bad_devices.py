@@ -251,13 +251,15 @@ def sweep_maps(ear):
             continue
         lines = base_map(name)
         port = ear.tcp if "transport = tcp" in "\n".join(lines) else ear.serial
+        other = "" if "[register position2]" in "\n".join(lines) else ", counter"  # a map of one axis alone is refused
+        device = f"[device]\ndriver = servo{other}\nservo.map = m.map\nservo.port = {port}\n"
 
         def try_one(job):
             i, (kind, at, changed) = job
             own = f"{FOLDER}/{name}.{i}"
             os.mkdir(own)
             open(f"{own}/m.map", "w").write("\n".join(changed) + "\n")
-            open(f"{own}/c.ini", "w").write(f"[device]\ndriver = servo\nmap = m.map\nport = {port}\n")
+            open(f"{own}/c.ini", "w").write(device)
             where = at if isinstance(at, tuple) else (at,)
             names = r"m\.map:\d*:? " if at is None else r"m\.map:(" + "|".join(map(str, where)) + r"): "
             is_refused = refused(f"{name}, {kind}, case {i}:", f"{own}/c.ini", names, ear,
@@ -270,7 +272,7 @@ def sweep_maps(ear):
         own = f"{FOLDER}/{name}.base"
         os.mkdir(own)
         open(f"{own}/m.map", "w").write("\n".join(lines) + "\n")
-        open(f"{own}/c.ini", "w").write(f"[device]\ndriver = servo\nmap = m.map\nport = {port}\n")
+        open(f"{own}/c.ini", "w").write(device)
         code, said = program("ethd-check", f"{own}/c.ini")
         if code:
             fail(name, "as it is shipped: exit", code, said)

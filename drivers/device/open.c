@@ -224,12 +224,43 @@ static ethd_status read_hang_time(ethd__stack *s, const ethd_device_def *def, ch
   return ETHD_OK;
 }
 
+/* Asks driver i, prepared and not opened, which joints it will measure. */
+static ethd_status add_joints(const naming *n, uint32_t i, uint32_t *measured) {
+  ethd__stack *s = n->stack;
+  const ethd_driver own = s->at[i].own;
+  s->at[i].own = ethd__driver_prepared(&own);
+  ethd_status status = open_one(s, i, n->def, n->message);
+  if (!status) *measured |= own.joints(s->at[i].device);
+  if (s->at[i].device) own.close(s->at[i].device);
+  s->at[i].device = NULL;
+  s->at[i].own = own;
+  return status;
+}
+
+/* A step needs the angles of both joints; what a driver doesn't say may be both. Nothing has been touched yet. */
+static ethd_status check_joints(const naming *n, const char *ids) {
+  char quote[ETHD_QUOTE_MAX];
+  uint32_t measured = 0;
+  for (uint32_t i = 0; i < n->stack->count; i++)
+    if (!n->stack->at[i].own.joints || !n->stack->at[i].own.prepare) return ETHD_OK;
+  for (uint32_t i = 0; i < n->stack->count; i++) {
+    ethd_status status = add_joints(n, i, &measured);
+    if (status) return status;
+  }
+  if (measured != 1 && measured != 2) return ETHD_OK;
+  return ethd__say(n->message, ETHD_E_ARGUMENT,
+                   "%s: device.driver: %s measures joint %u alone: both are needed, of one map, whose registers may be "
+                   "of several units (bus_unit), or of one more driver",
+                   file_of(n->def), ethd__quote(ids, strlen(ids), quote), measured);
+}
+
 static ethd_status open_all(const naming *n, const char *ids) {
   ethd__stack *s = n->stack;
   s->process = getpid();
   ethd_status status = name_drivers(n, ids);
   if (!status) status = check_owners(s, n->def, n->message);
   if (!status) status = read_hang_time(s, n->def, n->message);
+  if (!status) status = check_joints(n, ids);
   for (uint32_t i = 0; !status && i < s->count; i++) status = open_one(s, i, n->def, n->message);
   return status;
 }

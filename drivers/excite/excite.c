@@ -13,6 +13,7 @@
 #include "ethd/control.h"
 #include "ethd/driver.h"
 #include "ethd/maths.h"
+#include "no_joints.h"
 #include "text/error_text.h"
 
 #define TAU 6.28318530717958647692
@@ -125,4 +126,5 @@ const ethd_driver ethd_driver_excite = {
     .read = read_finger,
     .close = free,
     .limits = limits,
+    .joints = ethd__no_joints,
     .prepare = open_excite /* it touches nothing */};

@@ -18,6 +18,7 @@
 #include "finger/camera.h"
 #include "finger/inbox.h"
 #include "finger/limits.h"
+#include "no_joints.h"
 #include "text/error_text.h"
 
 #define WAIT_MS 20 /* for which one call of service waits for a datagram */
@@ -243,5 +244,6 @@ const ethd_driver ethd_driver_camera = {
     .close = camera_close,
     .limits = limits,
     .figures = figures,
+    .joints = ethd__no_joints,
     .prepare = camera_prepare,
 };

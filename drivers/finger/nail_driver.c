@@ -6,6 +6,7 @@
 #include "ethd/maths.h"
 #include "finger/bus.h"
 #include "finger/nail.h"
+#include "no_joints.h"
 #include "proximity_ring/calibration.h"
 #include "text/error_text.h"
 #include "text/text.h"
@@ -138,5 +139,6 @@ const ethd_driver ethd_driver_nail = {
     .limits = limits,
     .figures = figures,
     .remark = remark,
+    .joints = ethd__no_joints,
     .prepare = nail_prepare,
 };

@@ -5,6 +5,7 @@
 #include "device/settings.h"
 #include "finger/bus.h"
 #include "finger/zones.h"
+#include "no_joints.h"
 #include "text/error_text.h"
 
 enum { ZONES = ETHD__BUS_PARAMS, REACH, SWITCHING, LEVEL, PARAMS };
@@ -99,5 +100,6 @@ const ethd_driver ethd_driver_zones = {
     .close = zones_close,
     .limits = limits,
     .figures = figures,
+    .joints = ethd__no_joints,
     .prepare = zones_prepare,
 };

@@ -10,6 +10,7 @@
 #include "clock.h"
 #include "ethd/cell.h"
 #include "ethd/fault.h"
+#include "no_joints.h"
 #include "proximity_ring/empty.h"
 #include "proximity_ring/port.h"
 #include "proximity_ring/settings.h"
@@ -294,5 +295,6 @@ const ethd_driver ethd_driver_ring = {
     .limits = limits,
     .figures = figures,
     .remark = remark,
+    .joints = ethd__no_joints,
     .prepare = ring_prepare,
 };

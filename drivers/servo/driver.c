@@ -27,6 +27,14 @@ static ethd_limits limits(const void *device) {
   return limits;
 }
 
+static uint32_t joints(const void *device) {
+  const ethd__servo_device *d = device;
+  uint32_t bits = 0;
+  for (int i = 0; i < 2; i++)
+    if (d->joint[i] >= 0) bits |= 1u << d->joint[i];
+  return bits;
+}
+
 static double at(const ethd_histogram *h, double share) { return 1e-9 * (double)ethd_histogram_at(h, share); }
 
 /* The largest joint angle that one count stands for; NAN when positions aren't in counts. */
@@ -110,4 +118,5 @@ const ethd_driver ethd_driver_servo = {
     .home = ethd__servo_home,
     .why = ethd__servo_why,
     .prepare = ethd__servo_prepare,
+    .joints = joints,
 };

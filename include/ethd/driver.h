@@ -112,6 +112,9 @@ struct ethd_driver {
      *device is asked for limits, dynamics, figures and remarks, and closed. NULL: all of that is known once it is open.
      [main] */
   ethd_status (*prepare)(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]);
+  /* Returns which joints the device measures: bit 0 joint 1, bit 1 joint 2. It is asked of what `prepare` left, before
+     anything is opened: a device of which one joint alone is measured is refused. NULL: not known, may be both. [main] */
+  uint32_t (*joints)(const void *device);
 };
 
 ETHD_API extern const ethd_driver ethd_driver_sim, ethd_driver_hello;
@@ -146,7 +149,7 @@ extern ETHD_API const ethd_driver ethd_driver_plugin;
    table is checked: size, ABI, id, brief, settings, and functions that need each other (write and safe, units and
    service): ETHD_E_ABI, ETHD_E_SIZE, ETHD_E_ARGUMENT, ETHD_E_TABLE. ETHD_E_UNKNOWN, ETHD_E_DUPLICATE: an id, or a
    driver's key, with and without its id; ETHD_E_FILE, ETHD_E_LOAD, ETHD_E_SYMBOL: a file; ETHD_E_FULL: more than
-   ETHD_DRIVERS_MAX, or units; else what the driver's open returns. message holds one line. In a child that the process
+   ETHD_DRIVERS_MAX, or units; ETHD_E_ARGUMENT: one joint alone is measured; else what the driver's open returns. message holds one line. In a child that the process
    makes by fork, *driver's start, stop, home and service refuse (ETHD_E_DEVICE), and close frees without calling the
    drivers, since the device stays the parent's. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_device_open(const char *ids, const ethd_driver *const *from,

@@ -272,6 +272,42 @@ START_TEST(test_guardian) {
 }
 END_TEST
 
+/* ---- a device whose joint nobody measures ---- */
+
+static int is_prepare;
+
+static ethd_status open_one(const char *ids, const char *path, const ethd_driver **opened) {
+  ethd_setting one[] = {{"servo.map", path, 1}, {"servo.joint", "2", 2}};
+  setup = ethd_setup_default();
+  const ethd_device_def def = {&setup, one, 2, ".", "d.ini", 1};
+  return is_prepare ? ethd_device_prepare(ids, &def, opened, &device, message)
+                    : ethd_device_open(ids, NULL, &def, opened, &device, message);
+}
+
+START_TEST(test_joint_unmeasured) {
+  static const char one[] = "[bus]\ntransport = tcp\nport = 127.0.0.1:1\n"
+                            "[register torque1]\ndirection = write\naddress = 1\ntype = i16\nunit = Nm\nscale = 1e-4\n"
+                            "min = -0.2\nmax = 0.2\n"
+                            "[register position1]\ndirection = read\naddress = 5\ntype = u16\nunit = count\n"
+                            "counts = 4000\nabsolute = yes\n";
+  char path[] = "/tmp/ethd-units-XXXXXX";
+  const ethd_driver *opened;
+  close(mkstemp(path));
+  ck_assert_int_eq(ethd_text_write(path, one, sizeof one - 1, message), ETHD_OK);
+  is_prepare = 0; /* nothing answers at its port, which isn't asked */
+  ck_assert_int_eq(open_one("servo", path, &opened), ETHD_E_ARGUMENT);
+  is_prepare = 1;
+  ck_assert_int_eq(open_one("servo", path, &opened), ETHD_E_ARGUMENT);
+  ck_assert_str_eq(message,
+                   "d.ini: device.driver: \"servo\" measures joint 2 alone: both are needed, of one map, whose "
+                   "registers may be of several units (bus_unit), or of one more driver");
+  ck_assert_int_eq(open_one("servo, nail", path, &opened), ETHD_E_ARGUMENT); /* a finger's sensor is no help */
+  ck_assert_msg(open_one("servo, counter", path, &opened) == ETHD_OK, "%s", message);
+  opened->close(device);
+  remove(path);
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("servo_units");
   TCase *t = tcase_create("servo_units");
@@ -283,6 +319,7 @@ int main(void) {
   tcase_add_loop_test(t, test_one_vanishes, 0, 2);
   tcase_add_test(t, test_one_missing);
   tcase_add_loop_test(t, test_guardian, 0, 2);
+  tcase_add_test(t, test_joint_unmeasured);
   suite_add_tcase(suite, t);
   return rig_run(suite);
 }
