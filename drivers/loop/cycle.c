@@ -78,11 +78,12 @@ static void blind(ethd_loop *l) ETHD_RT {
   l->sense.q[0] = l->sense.q[1] = (double)NAN;
 }
 
-/* A fault row that ends the torque is acted on at once, without waiting for the next sample. */
+/* A row that takes the torque away is acted on at once. A stop waits for the next sample: from an old one the ring's
+   speed would seem to fall. Should none come, row FEEDBACK_OLD ends the torque. */
 static bool is_pressing(const ethd_sense *s) ETHD_RT {
   for (int64_t rows = s->faults | s->grave; rows; rows &= rows - 1) {
     ethd_fault row = (ethd_fault)__builtin_ctzll((uint64_t)rows);
-    if (ethd_fault_reaction(row, s->grave >> row & 1) >= ETHD_REACTION_STOP) return true;
+    if (ethd_fault_reaction(row, s->grave >> row & 1) > ETHD_REACTION_STOP) return true;
   }
   return 0;
 }
