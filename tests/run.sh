@@ -52,6 +52,13 @@ says "$folder/v1.out" '^ok: t 0.001 s, enabled, offset, transparent' '^ok: trans
   '^ok: t .* enabled, abrupt, .* no fault$' '^ok: stopping$' '^faults  *1 x the ring is faster than its limit$' 'virtual'
 says "$folder/v1/events.csv" ',transition,smooth$' ',set,contact.k_e 2000$' ',clear,' ',start,enabled$' ',fault,' ',set,limits.speed 0$'
 
+# periods longer than a torque may be held
+for period in 0.0601 0.5 1; do
+  printf '[loop]\nperiod = %s\n' $period >"$folder/slow.ini"
+  "$run" --virtual --duration 5 --config "$folder/slow.ini" </dev/null >"$folder/slow.out" 2>&1 || fail "period $period: exit $?"
+  ! grep 'too old' "$folder/slow.out" || fail "loop.period = $period"
+done
+
 # an acknowledgement counts after a clean time
 { cat "$folder/device.ini"; echo 'clean_time = 0.5'; } >"$folder/clean.ini"
 printf 'wait 0.1\nset limits.speed 0.001\nwait 0.3\nset limits.speed 5\nwait 0.2\nack\nwait 0.4\nack\nenable\nstop\n' |

@@ -108,6 +108,7 @@ ethd_status ethd_loop_create(const ethd_loop_def *def, ethd_loop **out, ethd_err
   int64_t apart = nanoseconds(fmin(between_samples(def), 1)) +
                   1; /* one more, because a gap in seconds may be rounded down in binary */
   l->hold = (apart < ETHD__HOLD_MAX ? apart : ETHD__HOLD_MAX) / l->period - 1;
+  if (l->hold < 0) l->hold = 0; /* a longer period holds each torque for one period */
   l->heartbeat = nanoseconds(def->heartbeat);
   l->dma_latency = -1;
   l->rows.size = def->rows;

@@ -201,7 +201,7 @@ static inline ethd_setup ethd_setup_default(void) {
 typedef struct ethd_control ethd_control;
 
 /* Checks and copies the setup: the statuses of ethd_setup_check, ETHD_E_MEMORY, and ETHD_E_RANGE if limits.stop_time is
-   shorter than a stop from limits.speed takes (ethd_guard_stop_time). *out is NULL then. [main] */
+   shorter than full torque takes to brake a known mass from limits.speed (ethd_guard_brake_time). *out is NULL then. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_create(const ethd_setup *setup, ethd_control **out,
                                                          ethd_error *error);
 

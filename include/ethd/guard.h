@@ -185,8 +185,12 @@ ETHD_API ethd_guard_device ethd_guard_device_of(const ethd_arm *arm, const ethd_
    [any, rt-safe] */
 ETHD_API double ethd_guard_damping(const ethd_guard_device *device, double mass, bool estimated) ETHD_RT;
 
-/* Returns the least stop_time, s, with which a stop from limits.speed ends at rest under limits.torque, with a quarter
-   to spare; 0 without a limit of the speed, and where no torque is allowed. [any] */
+/* Returns how long, s, limits.torque takes to brake the device from limits.speed, m v / F, which a stop_time can't be
+   shorter than; 0 without a limit of the speed, and where no torque is allowed. [any] */
+ETHD_API double ethd_guard_brake_time(const ethd_guard_device *device, const ethd_limits *limits);
+
+/* Returns the stop_time, s, with which a stop from limits.speed ends at rest, with a quarter to spare: brake time,
+   reaction and decay; 0 as above. [any] */
 ETHD_API double ethd_guard_stop_time(const ethd_guard_device *device, const ethd_limits *limits);
 
 /* How the ring moves at a tick. */

@@ -5,12 +5,12 @@
 #include "control/controller.h"
 #include "error.h"
 
-/* Makes a plan that may rule, and refuses a stop that would let go of the device while it still moves. That isn't left
-   to ethd_setup_check, because a device adds its mass and its limits to what a configuration says. */
+/* Makes a plan that may rule, and refuses a stop that is over before full torque can have braked the device. That isn't
+   left to ethd_setup_check, because a device adds its mass and its limits to what a configuration says. */
 static ethd_status prepare(const ethd_setup *setup, ethd__plan *out, ethd_error *error) {
   ethd_status status = ethd__plan_prepare(setup, out, error);
   if (status < 0 || isnan(setup->dynamics.mass[0]) || isnan(setup->dynamics.mass[1])) return status;
-  const double least = ethd_guard_stop_time(&out->device, &setup->limits);
+  const double least = ethd_guard_brake_time(&out->device, &setup->limits);
   const double most = setup->limits.stop_time < (double)INFINITY ? setup->limits.stop_time : ETHD_STOP_TIME;
   if (most >= least) return ETHD_OK;
   return ethd__refuse(error, ETHD_E_RANGE, "limits.stop_time", (ethd__found){most, least, (double)INFINITY});

@@ -44,16 +44,29 @@ double ethd_guard_damping(const ethd_guard_device *d, double mass, bool estimate
   return mass / (E * reaction(d, estimated));
 }
 
+/* Returns a link's deceleration under full torque, m/s^2 at the ring. */
+static double deceleration(const ethd_guard_device *d, const ethd_limits *limits, int i) {
+  return limits->torque * d->link[i] / d->inertia[i];
+}
+
+static bool is_braked(const ethd_limits *limits) {
+  return limits->speed > STILL && limits->speed < (double)INFINITY && limits->torque > 0;
+}
+
+double ethd_guard_brake_time(const ethd_guard_device *d, const ethd_limits *limits) {
+  if (!is_braked(limits)) return 0;
+  return limits->speed / fmin(deceleration(d, limits, 0), deceleration(d, limits, 1));
+}
+
 /* Full torque brakes a link down to the speed at which the damping asks for less; from there on the speed decays. */
 double ethd_guard_stop_time(const ethd_guard_device *d, const ethd_limits *limits) {
   const double late = reaction(d, true), speed = limits->speed;
   double longest = 0;
-  if (!(speed > STILL && speed < (double)INFINITY) || limits->torque == 0) return 0;
+  if (!is_braked(limits)) return 0;
   for (int i = 0; i < 2; i++) {
-    double deceleration = limits->torque * d->link[i] / d->inertia[i]; /* of the ring */
-    double slow = fmin(speed, deceleration * E * late);
+    double braking = deceleration(d, limits, i), slow = fmin(speed, braking * E * late);
     double decay = slow > STILL ? E * late * ethd_log(slow / STILL) : 0;
-    longest = fmax(longest, (speed > slow ? (speed - slow) / deceleration : 0) + decay);
+    longest = fmax(longest, (speed > slow ? (speed - slow) / braking : 0) + decay);
   }
   return SPARE * (2 * late + longest);
 }
