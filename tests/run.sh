@@ -53,7 +53,7 @@ says "$folder/v1.out" '^ok: t 0.001 s, enabled, offset, transparent' '^ok: trans
 says "$folder/v1/events.csv" ',transition,smooth$' ',set,contact.k_e 2000$' ',clear,' ',start,enabled$' ',fault,' ',set,limits.speed 0$'
 
 # periods longer than a torque may be held
-for period in 0.0601 0.5 1; do
+for period in 0.0601 0.1; do
   printf '[loop]\nperiod = %s\n' $period >"$folder/slow.ini"
   "$run" --virtual --duration 5 --config "$folder/slow.ini" </dev/null >"$folder/slow.out" 2>&1 || fail "period $period: exit $?"
   ! grep 'too old' "$folder/slow.out" || fail "loop.period = $period"

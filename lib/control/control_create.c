@@ -9,11 +9,10 @@
    left to ethd_setup_check, because a device adds its mass and its limits to what a configuration says. */
 static ethd_status prepare(const ethd_setup *setup, ethd__plan *out, ethd_error *error) {
   ethd_status status = ethd__plan_prepare(setup, out, error);
-  if (status < 0 || isnan(setup->dynamics.mass[0]) || isnan(setup->dynamics.mass[1])) return status;
-  const double least = ethd_guard_brake_time(&out->device, &setup->limits);
+  if (status < 0) return status;
   const double most = setup->limits.stop_time < (double)INFINITY ? setup->limits.stop_time : ETHD_STOP_TIME;
-  if (most >= least) return ETHD_OK;
-  return ethd__refuse(error, ETHD_E_RANGE, "limits.stop_time", (ethd__found){most, least, (double)INFINITY});
+  if (most >= out->brake_time) return ETHD_OK;
+  return ethd__refuse(error, ETHD_E_RANGE, "limits.stop_time", (ethd__found){most, out->brake_time, (double)INFINITY});
 }
 
 ethd_status ethd_control_create(const ethd_setup *setup, ethd_control **out, ethd_error *error) {

@@ -31,7 +31,8 @@ typedef struct ethd__plan {
   double (*range)(const double *p, double speed) ETHD_RT; /* of the transition law; NULL: it doesn't look ahead */
   double lag;                                             /* s, of the velocity estimate */
   ethd_guard_device device;                               /* as the guard brakes it */
-  double damping_max;                                     /* Ns/m that the passivity controller may add */
+  double brake_time;          /* s that full torque takes from limits.speed; 0: no limit, or a mass isn't known */
+  double damping_max;         /* Ns/m that the passivity controller may add */
   double mobility[2];         /* 1/(kg m^2): inverse inertia of the links' absolute angles; NaN: not known */
   double lag_least, lag_most; /* least and largest of setup.ray_lag and 0, s; equal: no ray lags */
   /* the contact law's parameters for each material of each place */

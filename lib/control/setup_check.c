@@ -132,6 +132,8 @@ static void prepare_ahead(const ethd_setup *s, ethd__plan *out) {
 static void prepare_guard(const ethd_setup *s, ethd__plan *out) {
   out->lag = ethd_velocity_lag(&out->velocity);
   out->device = ethd_guard_device_of(&s->arm, &s->dynamics, s->limits.gap, s->period, out->lag);
+  const bool known = !isnan(s->dynamics.mass[0]) && !isnan(s->dynamics.mass[1]);
+  out->brake_time = known ? ethd_guard_brake_time(&out->device, &s->limits) : 0;
   out->damping_max = fmin(DAMPING_MAX, ethd_guard_damping(&out->device, out->device.mass, true));
 }
 
