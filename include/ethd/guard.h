@@ -10,7 +10,7 @@
    oscillate up to b r / m = 1/e, and is stable up to pi/2, 4.3 times as much (Hale and Verduyn Lunel, Introduction to
    Functional Differential Equations, 1993, 5.2). ethd-check gives the margin of the sampled loop.
 
-   Whether the device brakes at all must show. In units of speed, what the stop has commanded may exceed 1.2 times the
+   Whether the device brakes at all must show. A torque counts as held for as long as the last one was. In units of speed, what the stop has commanded may exceed 1.2 times the
    fall that is seen by a tenth of the speed at its start. So a stop on a device with a reversed encoder, or that is
    lighter or later than told, makes it faster by a tenth before it ends, and by three tenths if the mass is a third of
    what was told. Until t_d + lag have passed nothing that the stop commands can show, so the fall is counted from the

@@ -118,7 +118,8 @@ void ethd__guard_stop(const ethd_limits *limits, const ethd_guard_device *d, eth
   if (s->stopping && is_over(limits, d, s, m, speed)) s->stopped = 1;
   if (s->stopped || !(left > 0)) return;
   double decay = 1 / (E * reaction(d, m->estimated)); /* 1/s */
-  if (decay * speed * d->period > left) decay = left / (speed * d->period);
+  const double hold = fmax(m->dt, d->period);         /* a bus may hold a torque for several periods */
+  if (decay * speed * hold > left) decay = left / (speed * hold);
   torque[1] = -decay * d->inertia[1] * rate[1];
   torque[0] = -decay * d->inertia[0] * rate[0] + d->serial * torque[1];
 }

@@ -187,6 +187,17 @@ START_TEST(test_stop) {
 }
 END_TEST
 
+/* A torque that is held for several periods, as on a slow bus, is as much the smaller. */
+START_TEST(test_stop_that_is_held) {
+  ethd_limits l = ethd_limits_none();
+  ethd_guard_state s = {0};
+  double tau[2] = {0, 0};
+  l.speed = 0.1;
+  ck_assert_int_eq(at(&pose, &l, &s, (ethd_vec){0.3, 0}, 0.005, tau), ETHD_GUARD_SPEED);
+  is(tau, 0.25 * -2 * 0.3, 0);
+}
+END_TEST
+
 /* Not a number is too fast, which nothing can brake, and out of any workspace that has a bound. */
 START_TEST(test_nan_fails) {
   ethd_limits l = ethd_limits_none();
@@ -294,6 +305,7 @@ int main(void) {
   tcase_add_test(t, test_finite);
   tcase_add_test(t, test_finite_with_a_rate);
   tcase_add_test(t, test_stop);
+  tcase_add_test(t, test_stop_that_is_held);
   tcase_add_test(t, test_nan_fails);
   tcase_add_test(t, test_workspace);
   tcase_add_test(t, test_stop_and_the_other_limits);
