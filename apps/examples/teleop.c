@@ -93,9 +93,8 @@ static int lead(int fd, ear *e, ethd_loop *loop, ethd_control *control, ethd_set
   ethd_loop_row row = {.armed = 0};
   word order = {.version = VERSION};
   strategy s = {.law = -1, .swaps = -1};
-  ethd_error error;
   for (int i = 0; i < 2; i++)
-    if (ethd_scene_parse(shapes[i], strlen(shapes[i]), &s.scenes[i], &error)) return fail("shape", shapes[i]);
+    if (ethd_scene_parse(shapes[i], strlen(shapes[i]), &s.scenes[i], NULL)) return fail("shape", shapes[i]);
   for (; (t = now() - begin) < seconds && !over && (ethd_loop_armed(loop) || t < 1); usleep(1000)) {
     if (hear(fd, e)) ethd_cell_put(newest, &e->last);
     for (; ethd_loop_take(loop, &row) == ETHD_OK; pushed = fmax(pushed, row.trace.v[0]), order.number++)
