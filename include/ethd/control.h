@@ -87,7 +87,8 @@ ETHD_API void ethd_setup_fill(ethd_setup *setup, const ethd_sizes *sizes);
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_sizes_check(const ethd_sizes *sizes, ethd_error *error);
 
 /* Choose a law or a method and set its parameters to their defaults. What isn't one (NULL, a number beyond the methods,
-   a law with too many parameters) is left for ethd_setup_check to refuse; a setup that is refused is left alone. [any] */
+   a law with too many parameters) is left for ethd_setup_check to refuse; a setup that is refused is left alone. [any]
+   */
 ETHD_API void ethd_setup_tracking(ethd_setup *setup, const ethd_tracking_law *law);
 ETHD_API void ethd_setup_contact(ethd_setup *setup, const ethd_contact_law *law);
 ETHD_API void ethd_setup_transition(ethd_setup *setup, const ethd_transition_law *law);
@@ -150,11 +151,11 @@ ETHD_API double ethd_setup_get(const ethd_setup *setup, const char *name);
    ethd_scene_prune takes it as its radius. [any] */
 ETHD_API double ethd_setup_range(const ethd_setup *setup);
 
-/* Checks everything that create and post check but how long a stop takes, also the scenes' materials against the contact law. Names in errors are
-   those of the configuration ("contact.k_e"): ETHD_E_RANGE, ETHD_E_NOT_FINITE, ETHD_E_ARGUMENT (a setup that
-   ethd_setup_default didn't make, a law that is missing or of another kind), ETHD_E_SIZE (ethd_setup_default),
-   ETHD_E_UNKNOWN (no such method; a material's key that the law doesn't have), the statuses of ethd_law_check, and what a law's own check
-   returns. [main] */
+/* Checks everything that create and post check but how long a stop takes, also the scenes' materials against the
+   contact law. Names in errors are those of the configuration ("contact.k_e"): ETHD_E_RANGE, ETHD_E_NOT_FINITE,
+   ETHD_E_ARGUMENT (a setup that ethd_setup_default didn't make, a law that is missing or of another kind), ETHD_E_SIZE
+   (ethd_setup_default), ETHD_E_UNKNOWN (no such method; a material's key that the law doesn't have), the statuses of
+   ethd_law_check, and what a law's own check returns. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_check(const ethd_setup *setup, ethd_error *error);
 
 /* ---- events ---- */
@@ -201,7 +202,8 @@ static inline ethd_setup ethd_setup_default(void) {
 typedef struct ethd_control ethd_control;
 
 /* Checks and copies the setup: the statuses of ethd_setup_check, ETHD_E_MEMORY, and ETHD_E_RANGE if limits.stop_time is
-   shorter than full torque takes to brake a known mass from limits.speed (ethd_guard_brake_time). *out is NULL then. [main] */
+   shorter than full torque takes to brake a known mass from limits.speed (ethd_guard_brake_time). *out is NULL then.
+   [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_create(const ethd_setup *setup, ethd_control **out,
                                                          ethd_error *error);
 
@@ -209,13 +211,13 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_create(const ethd_setup *setup
 ETHD_API void ethd_control_destroy(ethd_control *control);
 
 /* Checks a whole setup and hands it over; the next step takes it, without a jump: at that tick the torque is what the
-   old setup would have commanded under its own limits, and the difference to the new one fades linearly to 0 over the new
-   swap_time. Until then a torque may be over a limit that became narrower, by the share of the fade that is left; a new
-   torque_rate holds at once. While events that
-   nobody polls leave no room for those that hand scenes back, it waits. ETHD_BUSY: the last one hasn't been taken yet;
-   post again. Any refusal, also those of ethd_setup_check, leaves everything as it was. The
-   period can't change (ETHD_E_ARGUMENT). A scene that a post has replaced may be posted again only after an event has
-   handed it back, since that event may come at any moment. Takes nothing from the heap. [main] */
+   old setup would have commanded under its own limits, and the difference to the new one fades linearly to 0 over the
+   new swap_time. Until then a torque may be over a limit that became narrower, by the share of the fade that is left; a
+   new torque_rate holds at once. While events that nobody polls leave no room for those that hand scenes back, it
+   waits. ETHD_BUSY: the last one hasn't been taken yet; post again. Any refusal, also those of ethd_setup_check, leaves
+   everything as it was. The period can't change (ETHD_E_ARGUMENT). A scene that a post has replaced may be posted again
+   only after an event has handed it back, since that event may come at any moment. Takes nothing from the heap. [main]
+   */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_post(ethd_control *control, const ethd_setup *setup,
                                                        ethd_error *error);
 
@@ -249,8 +251,9 @@ ETHD_API void ethd_control_learned(const ethd_control *control, double out[ETHD_
    called while step runs. [main] */
 ETHD_API void ethd_control_taught(ethd_control *control, const double memory[ETHD_MEMORY]);
 
-/* Acknowledges a latched fault. If limits.clean_time is over at the next step, that step clears the fault, and the torque
-   rises from zero: over swap_time what the laws ask for counts by a share that grows from 0 to 1; if not, the acknowledgement is dropped. [any, rt-safe] */
+/* Acknowledges a latched fault. If limits.clean_time is over at the next step, that step clears the fault, and the
+   torque rises from zero: over swap_time what the laws ask for counts by a share that grows from 0 to 1; if not, the
+   acknowledgement is dropped. [any, rt-safe] */
 ETHD_API void ethd_control_clear(ethd_control *control) ETHD_RT;
 
 /* Returns for how long, s, nothing has called for a stop since a fault was latched; INFINITY: none is latched.
@@ -258,12 +261,12 @@ ETHD_API void ethd_control_clear(ethd_control *control) ETHD_RT;
 ETHD_API double ethd_control_clean(const ethd_control *control) ETHD_RT;
 
 /* Runs one tick and always fills command; trace may be NULL. Whatever the thread's floating-point mode is (rounding,
-   traps, FTZ and DAZ), a tick computes to nearest, with subnormal numbers as 0 and without traps, so that its bytes don't
-   depend on it, and the thread has its mode back; flags aren't promised. The same holds for create, post, check, reset,
-   restart and rehearse, and for making scenes (scene.h). A negative status says that a fault rules this tick, and
-   why: ETHD_E_NOT_FINITE, ETHD_E_LAW, ETHD_E_BUDGET, ETHD_E_RANGE (the guard stops the ring), ETHD_E_DEVICE (any other
-   row of the fault table). The command is then zero torque with `safe` set, or, while a stop still brakes the ring, the
-   stop's torque, which may be zero, without `safe`. [rt] */
+   traps, FTZ and DAZ), a tick computes to nearest, with subnormal numbers as 0 and without traps, so that its bytes
+   don't depend on it, and the thread has its mode back; flags aren't promised. The same holds for create, post, check,
+   reset, restart and rehearse, and for making scenes (scene.h). A negative status says that a fault rules this tick,
+   and why: ETHD_E_NOT_FINITE, ETHD_E_LAW, ETHD_E_BUDGET, ETHD_E_RANGE (the guard stops the ring), ETHD_E_DEVICE (any
+   other row of the fault table). The command is then zero torque with `safe` set, or, while a stop still brakes the
+   ring, the stop's torque, which may be zero, without `safe`. [rt] */
 ETHD_API ethd_status ethd_control_step(ethd_control *control, const ethd_sense *sense, ethd_command *command,
                                        ethd_trace *trace) ETHD_RT;
 

@@ -10,17 +10,17 @@
    oscillate up to b r / m = 1/e, and is stable up to pi/2, 4.3 times as much (Hale and Verduyn Lunel, Introduction to
    Functional Differential Equations, 1993, 5.2). ethd-check gives the margin of the sampled loop.
 
-   Whether the device brakes at all must show. A torque counts as held for as long as the last one was. In units of speed, what the stop has commanded may exceed 1.2 times the
-   fall that is seen by a tenth of the speed at its start. So a stop on a device with a reversed encoder, or that is
-   lighter or later than told, makes it faster by a tenth before it ends, and by three tenths if the mass is a third of
-   what was told. Until t_d + lag have passed nothing that the stop commands can show, so the fall is counted from the
-   highest speed until then. A fall by friction counts, too: a reversed encoder, a mass that is told three times too
-   large and a friction that stops the ring by itself can add up to twice the speed at the stop's start.
+   The stop first sees whether the device brakes. In units of speed, what it has commanded may exceed 1.2 times the fall
+   that it sees by a tenth of the speed at its start. So a device with a reversed encoder, or one that is later than
+   told, becomes faster by a tenth at most, and by three tenths if its mass is a third of what was told. Until t_d + lag
+   have passed nothing that the stop commands can show, so the fall counts from the highest speed until then. A torque
+   counts as held for as long as the last one was. A fall by friction counts, too: with a reversed encoder, a mass told
+   three times too large and a friction that stops the ring by itself, the ring can reach twice the speed at the start.
 
    A stop ends with zero torque: when the links are slower than 20 mm/s (the paper's v_th, eq. 11), when it may command
-   next to nothing for longer than reaction + T because the speed doesn't fall, and at limits.stop_time. Where the masses aren't
-   known they are assumed as ETHD_MASS_ASSUMED; an unknown delay is assumed as limits.gap, without one as
-   ETHD_DELAY_ASSUMED. A heavier device then isn't braked but let go.
+   next to nothing for longer than reaction + T because the speed doesn't fall, and at limits.stop_time. An unknown mass
+   is assumed as ETHD_MASS_ASSUMED; a heavier device isn't braked but let go. An unknown delay is assumed as limits.gap,
+   without one as ETHD_DELAY_ASSUMED.
 
    The wall of limits.margin has the gains with which a mass under a force that is `2 reaction` late comes to rest
    quickest without overshoot, a triple root of s^2 + (B s + K) e^(-2 r s) = 0:

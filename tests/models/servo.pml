@@ -6,7 +6,7 @@
    = drivers/servo/link.c: ethd__servo_outcome got = ethd__servo_bus_drain(&l->bus);
    = drivers/servo/link.c: l->echo_failed = !echoes(l);
    = drivers/servo/link.c: if (l->echo_failed) return stale(l);
-   = drivers/servo/link.c: set(l, ETHD__SERVO_COUNTER, l->counter = next_count(l));
+   = drivers/servo/link.c: l->counter = next_count(l);
    = drivers/servo/bus.c: if (n > 0) since = ethd__clock_now();
 
    Kept: an answer that is used belongs to the question that was asked last. With -DQUIET every answer comes while the
