@@ -24,7 +24,8 @@
 
    The wall of limits.margin has the gains with which a mass under a force that is `2 reaction` late comes to rest
    quickest without overshoot, a triple root of s^2 + (B s + K) e^(-2 r s) = 0:
-   K = 0.0791 m / (2 r)^2, B = 0.461 m / (2 r). */
+   K = 0.0791 m / (2 r)^2, B = 0.461 m / (2 r). A ring that meets it at v goes at most 3.5 v r deep, and comes out again
+   at 0.55 v at most, since the wall never pulls. */
 #ifndef ETHD_GUARD_H
 #define ETHD_GUARD_H
 

@@ -10,6 +10,7 @@
 #define LINK 0.25 /* m */
 #define STEPS 20
 #define TICKS_MAX 20000
+#define LONGEST 3 /* s: enough for the slowest */
 
 static uint64_t seed;
 
@@ -91,26 +92,26 @@ static void look(const device *d, const double q[2], const double v[2], const do
   s->have = d->measured ? ETHD_HAVE_DQ : 0;
 }
 
-static ethd_control *control_of(const device *d) {
+static ethd_control *control_of(const device *d, double stop_time) {
   ethd_setup setup = ethd_setup_default();
   ethd_error error;
   ethd_control *control;
   setup.period = d->period;
   setup.dynamics = d->says;
   setup.limits.torque = d->torque;
-  setup.limits.stop_time = 3; /* enough for the slowest; the deadline has a test of its own */
+  setup.limits.stop_time = stop_time;
   ck_assert_int_eq(ethd_control_create(&setup, &control, &error), ETHD_OK);
   return control;
 }
 
 /* There is no finger, so that the laws' torque is 0. */
-static ending stop(const device *d) {
+static ending stop(const device *d, double stop_time) {
   const long fault = fault_tick(d);
   static double torque[TICKS_MAX][2];
   const double start[2] = {M_PI / 2, 0};
   double q[2] = {start[0], start[1]}, v[2] = {d->v[0], d->v[1]};
   ending e = {.arrived = -1};
-  ethd_control *control = control_of(d);
+  ethd_control *control = control_of(d, stop_time);
   long end = TICKS_MAX;
   for (long tick = 0; tick < end; tick++) {
     ethd_sense s = {.time_ns = (int64_t)llround((double)tick * d->period * 1e9)};
@@ -134,12 +135,14 @@ static ending stop(const device *d) {
 }
 
 /* lag of the default estimator, a low-pass */
-static double lag_of(const device *d) {
+static double lag_at(double period) {
   ethd_setup setup = ethd_setup_default();
   ethd_velocity velocity;
-  ck_assert_int_eq(ethd_velocity_prepare(setup.velocity, setup.velocity_p, d->period, &velocity, NULL), ETHD_OK);
-  return d->measured ? 0 : ethd_velocity_lag(&velocity);
+  ck_assert_int_eq(ethd_velocity_prepare(setup.velocity, setup.velocity_p, period, &velocity, NULL), ETHD_OK);
+  return ethd_velocity_lag(&velocity);
 }
+
+static double lag_of(const device *d) { return d->measured ? 0 : lag_at(d->period); }
 
 /* What a stop without overshoot and the torque limit need, and half as much again. */
 static double way(const device *d) {
@@ -157,7 +160,8 @@ static double needed(const device *d) {
 }
 
 static void check(const device *d, const ending *e) {
-  ck_assert_msg(e->safe && e->time <= 3, "m %g kg, T %g s, t_d %g s: %g s", d->mass, d->period, d->delay, e->time);
+  ck_assert_msg(e->safe && e->time <= LONGEST, "m %g kg, T %g s, t_d %g s: %g s", d->mass, d->period, d->delay,
+                e->time);
   ck_assert_msg(e->fastest <= 1.4 * e->arrived, "m %g kg, T %g s, t_d %g s, told %d, broken %d: %g times as fast",
                 d->mass, d->period, d->delay, d->told, d->broken, e->fastest / e->arrived);
   if (d->broken != HEALTHY || d->told != KNOWN) return;
@@ -174,8 +178,99 @@ START_TEST(test_random_devices) {
   seed = 1;
   for (int i = 0; i < DEVICES; i++) {
     device d = random_device();
-    ending e = stop(&d);
+    ending e = stop(&d, LONGEST);
     check(&d, &e);
+  }
+}
+END_TEST
+
+/* ---- the deadline ---- */
+
+/* A healthy device whose full torque brakes it for far longer than 0.1 to 0.5 s: its last torque ends at the deadline. */
+START_TEST(test_deadline) {
+  seed = 2;
+  for (int i = 0; i < 200; i++) {
+    device d = random_device();
+    const double deadline = between(0.1, 0.5);
+    d.broken = HEALTHY, d.told = KNOWN;
+    d.says.mass[0] = d.says.mass[1] = d.mass;
+    d.says.delay = d.delay;
+    d.torque = d.mass * LINK * length(d.v) / (4 * deadline);
+    ending e = stop(&d, deadline);
+    ck_assert_msg(e.safe && e.time <= deadline && e.time > deadline - d.period * (1 + 1e-6),
+                  "m %g kg, T %g s, t_d %g s: %g s instead of %g", d.mass, d.period, d.delay, e.time, deadline);
+  }
+}
+END_TEST
+
+/* The least stop_time that is accepted is m v / F of a known mass, at create and post. */
+START_TEST(test_least_stop_time) {
+  seed = 3;
+  for (int i = 0; i < 200; i++) {
+    ethd_setup setup = ethd_setup_default();
+    ethd_control *control;
+    ethd_error error;
+    const double mass = between(0.5, 10), speed = between(0.1, 1), torque = between(0.5, 5);
+    const double least = mass * speed * setup.arm.link1 / torque;
+    setup.dynamics.mass[0] = mass, setup.dynamics.mass[1] = mass * between(0.5, 0.99);
+    setup.limits.speed = speed;
+    setup.limits.torque = torque;
+    for (int unknown = 0; unknown < 2; unknown++) {
+      setup.limits.stop_time = least * 1.0001;
+      ck_assert_int_eq(ethd_control_create(&setup, &control, &error), ETHD_OK);
+      setup.limits.stop_time = least * 0.99;
+      ck_assert_int_eq(ethd_control_post(control, &setup, &error), unknown ? ETHD_OK : ETHD_E_RANGE);
+      ethd_control_destroy(control);
+      if (!unknown) ck_assert_str_eq(error.name, "limits.stop_time");
+      setup.dynamics.mass[1] = ethd_dynamics_unknown().mass[1];
+    }
+  }
+}
+END_TEST
+
+/* ---- the wall of the margin ---- */
+
+/* Link 1 carries the ring along -x into the wall and back out of it. */
+static void bounce(const device *d, double v, double margin, double *deepest, double *rebound) {
+  static double torque[TICKS_MAX][2];
+  const double start[2] = {M_PI / 2, 0}, run_up = 0.02 * v;
+  double q[2] = {start[0], start[1]}, speed[2] = {v, 0}, depth = 0;
+  ethd_setup setup = ethd_setup_default();
+  ethd_control *control;
+  ending unused = {0};
+  setup.period = d->period;
+  setup.dynamics = d->says;
+  setup.limits.margin = margin;
+  setup.limits.workspace[0] = LINK - run_up - margin;
+  ck_assert_int_eq(ethd_control_create(&setup, &control, NULL), ETHD_OK);
+  *deepest = *rebound = 0;
+  for (long tick = 0; tick < TICKS_MAX && (depth >= 0 || speed[0] > 0); tick++) {
+    ethd_sense s = {.time_ns = (int64_t)llround((double)tick * d->period * 1e9)};
+    ethd_command command;
+    look(d, q, speed, start, &s);
+    ck_assert_int_eq(ethd_control_step(control, &s, &command, NULL), ETHD_OK);
+    memcpy(torque[tick], command.torque, sizeof torque[tick]);
+    move(d, torque, tick, q, speed, &unused);
+    depth = -LINK * cos(q[0]) - run_up;
+    *deepest = fmax(*deepest, depth);
+    *rebound = fmax(*rebound, -speed[0]);
+  }
+  ethd_control_destroy(control);
+}
+
+START_TEST(test_margin) {
+  seed = 4;
+  for (int i = 0; i < 1000; i++) {
+    device d = random_device();
+    double deepest, rebound;
+    const double v = between(0.02, 0.3);
+    d.broken = HEALTHY, d.told = KNOWN, d.torque = INFINITY;
+    d.says.mass[0] = d.says.mass[1] = d.mass;
+    d.says.delay = d.delay;
+    bounce(&d, v, 0.15, &deepest, &rebound);
+    const double most = 3.5 * v * (d.delay + d.period + lag_at(d.period));
+    ck_assert_msg(deepest <= most && rebound <= 0.55 * v, "m %g kg, T %g s, t_d %g s, %g m/s: %g m deep, out at %g m/s",
+                  d.mass, d.period, d.delay, v, deepest, rebound);
   }
 }
 END_TEST
@@ -185,6 +280,9 @@ int main(void) {
   TCase *t = tcase_create("stop");
   tcase_set_timeout(t, 120);
   tcase_add_test(t, test_random_devices);
+  tcase_add_test(t, test_deadline);
+  tcase_add_test(t, test_least_stop_time);
+  tcase_add_test(t, test_margin);
   suite_add_tcase(suite, t);
   return rig_run(suite);
 }
