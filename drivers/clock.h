@@ -2,6 +2,7 @@
 #ifndef ETHD__CLOCK_H
 #define ETHD__CLOCK_H
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <time.h>
 
@@ -17,6 +18,14 @@ static inline int64_t ethd__clock_now(void) {
    [any, rt-safe] */
 static inline int64_t ethd__clock_after(int64_t last_ns, int64_t t_ns) {
   return last_ns && t_ns <= last_ns ? last_ns + 1 : t_ns;
+}
+
+/* Returns true at the first call, and after 0.1 s without one; *heard_ns is 0 at first. Who listens to a sensor asks it
+   before each look. Nobody knows when that came which has waited for so long, so it must not count as arrived now. */
+static inline bool ethd__clock_was_deaf(int64_t *heard_ns, int64_t now_ns) {
+  const int64_t before = *heard_ns;
+  *heard_ns = now_ns;
+  return !before || now_ns - before > 100000000;
 }
 
 #endif

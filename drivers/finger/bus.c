@@ -37,14 +37,18 @@ static void take(ethd__finger_bus *b, const uint8_t *bytes, size_t count, int64_
   ethd__inbox_put(&b->inbox);
 }
 
+/* Begins anew with the next frame, because bytes before it are gone. */
+static void restart(ethd__finger_bus *b) {
+  ethd__decoder_restart(&b->decoder);
+  ethd__board_clock_restart(&b->clock);
+}
+
 static ethd_status reopen(ethd__finger_bus *b, int64_t now_ns) {
   char message[ETHD_MESSAGE_MAX];
   if (now_ns < b->port.attempt_ns) return ETHD_STALE;
   ethd_status status = ethd__ring_port_open(&b->port, now_ns, message);
-  if (status) return status;
-  ethd__decoder_restart(&b->decoder);
-  ethd__board_clock_restart(&b->clock);
-  return ETHD_OK;
+  if (!status) restart(b);
+  return status;
 }
 
 /* On a virtual clock nothing waits, and bytes that are there count as arrived now. */
@@ -54,6 +58,7 @@ ethd_status ethd__finger_bus_service(ethd__finger_bus *b, int64_t now_ns) {
     ethd_status status = reopen(b, now_ns);
     if (status) return status;
   }
+  if (ethd__ring_port_was_deaf(&b->port, now_ns)) restart(b);
   int64_t got = ethd__ring_port_read(&b->port, b->is_virtual ? 0 : WAIT_MS, bytes, sizeof bytes);
   if (got <= 0) return got < 0 ? ETHD_E_DEVICE : ETHD_OK;
   pthread_mutex_lock(&b->inbox.lock);

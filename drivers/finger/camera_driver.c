@@ -21,8 +21,9 @@
 #include "no_joints.h"
 #include "text/error_text.h"
 
-#define WAIT_MS 20 /* for which one call of service waits for a datagram */
-#define AT_ONCE 64 /* datagrams that one call of service takes at most */
+#define WAIT_MS 20    /* for which one call of service waits for a datagram */
+#define AT_ONCE 64    /* datagrams that one call of service takes at most */
+#define WAITING 65536 /* datagrams that a socket holds at most */
 
 enum { RATE, DELAY, PATIENCE, PARAMS };
 enum { LISTEN, FROM, KEYS };
@@ -42,7 +43,8 @@ typedef struct camera {
   const char *where; /* the text of `own`, valid while the driver is being opened */
   double patience;   /* s to wait for the first datagram */
   double rate;
-  bool is_virtual; /* whether the clock is virtual */
+  bool is_virtual;  /* whether the clock is virtual */
+  int64_t heard_ns; /* when it was last listened to */
   ethd__camera_clock clock;
   ethd__inbox inbox;
 } camera;
@@ -123,10 +125,17 @@ static bool receive(camera *c, int64_t arrival_ns) {
   return true;
 }
 
+/* Drops what waits. */
+static void drain(const camera *c) {
+  char byte;
+  for (int i = 0; i < WAITING && recv(c->fd, &byte, 1, MSG_DONTWAIT) >= 0; i++) continue;
+}
+
 static ethd_status service(void *device, uint32_t unit, int64_t now_ns) {
   camera *c = device;
   struct pollfd wait = {c->fd, POLLIN, 0};
   (void)unit;
+  if (ethd__clock_was_deaf(&c->heard_ns, now_ns)) drain(c);
   if (poll(&wait, 1, c->is_virtual ? 0 : WAIT_MS) <= 0) return ETHD_OK;
   int64_t arrival_ns = c->is_virtual ? now_ns : ethd__clock_now();
   for (int i = 0; i < AT_ONCE && receive(c, arrival_ns); i++) continue;

@@ -77,6 +77,11 @@ static ethd_status service(void *device, uint32_t unit, int64_t now_ns) {
     pthread_mutex_unlock(&r->lock);
     if (status) return status;
   }
+  if (ethd__ring_port_was_deaf(&r->port, now_ns)) {
+    pthread_mutex_lock(&r->lock);
+    ethd__receiver_restart(&r->receiver);
+    pthread_mutex_unlock(&r->lock);
+  }
   int64_t got = ethd__ring_port_read(&r->port, r->is_virtual ? 0 : WAIT_MS, bytes, sizeof bytes);
   int64_t arrival_ns = r->is_virtual ? now_ns : ethd__clock_now();
   if (got <= 0) return got < 0 ? ETHD_E_DEVICE : ETHD_OK;

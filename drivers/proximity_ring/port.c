@@ -2,8 +2,10 @@
 
 #include <errno.h>
 #include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
+#include "clock.h"
 #include "serial/line.h"
 
 #define BACK_OFF_LEAST 50000000 /* ns */
@@ -19,6 +21,12 @@ ethd_status ethd__ring_port_open(ethd__ring_port *p, int64_t now_ns, char messag
   p->back_off = 0;
   p->opened++;
   return ETHD_OK;
+}
+
+bool ethd__ring_port_was_deaf(ethd__ring_port *p, int64_t now_ns) {
+  if (!ethd__clock_was_deaf(&p->heard_ns, now_ns)) return false;
+  tcflush(p->fd, TCIFLUSH);
+  return true;
 }
 
 int64_t ethd__ring_port_read(ethd__ring_port *p, int wait_ms, uint8_t *out, size_t room) {

@@ -12,10 +12,15 @@ typedef struct ethd__ring_port {
   int64_t attempt_ns; /* when to open next */
   int64_t back_off;   /* ns, doubled with each attempt up to 1.6 s */
   uint64_t opened;    /* how often it was opened */
+  int64_t heard_ns;   /* when it was last listened to */
 } ethd__ring_port;
 
 /* Tries once to open it, now; the next attempt is due after the back-off. [main] or I/O */
 ETHD_MUST_CHECK ethd_status ethd__ring_port_open(ethd__ring_port *port, int64_t now_ns, char message[ETHD_MESSAGE_MAX]);
+
+/* To be asked before each read: has nobody read for long (ethd__clock_was_deaf), as between a device's open and its
+   start? What waited is then dropped, and the caller begins anew. I/O */
+bool ethd__ring_port_was_deaf(ethd__ring_port *port, int64_t now_ns);
 
 /* Reads what has come, at most `room` bytes, and waits up to wait_ms for the first. -1: the line is gone and has
    been closed. */

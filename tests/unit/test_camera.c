@@ -137,10 +137,17 @@ START_TEST(test_driver) {
   ck_assert_msg(status == ETHD_OK, "%s", message);
   ethd_limits limits = ethd_driver_camera.limits(device);
   ck_assert_double_eq_tol(limits.finger_age, 0.01 + 3 / 90.0, 1e-12);
-  send_exposure(fd, 0, (ethd_vec){1, 1}, 1); /* an old sender, behind the child's rest */
-  for (int i = 0; i < 1000; i++) (void)!ethd_driver_camera.service(device, 0, INT64_C(1000000000));
+  /* what waits when it starts came nobody knows when: none of it is a reading */
   ethd_sense s = {0};
+  for (uint32_t i = 0; i < 100; i++) send_exposure(fd, i, (ethd_vec){1, 1}, 1);
+  for (int i = 0; i < 1000; i++) (void)!ethd_driver_camera.service(device, 0, INT64_C(900000000));
+  (void)!ethd_driver_camera.read(device, INT64_C(900000000), &s);
+  ck_assert_int_eq(s.have | s.faults, 0);
+  send_exposure(fd, 0, (ethd_vec){1, 1}, 1); /* an old sender */
+  for (int i = 0; i < 1000; i++) (void)!ethd_driver_camera.service(device, 0, INT64_C(1000000000));
   (void)!ethd_driver_camera.read(device, INT64_C(1000000000), &s);
+  ck_assert_int_eq(s.have, ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD);
+  ck_assert_int_eq(ethd_driver_camera.service(device, 0, INT64_C(4989000000)), ETHD_OK);
   for (uint32_t i = 0; i < 20; i++) {
     int64_t now = INT64_C(5000000000) + i * INT64_C(11000000);
     if (i != 5) send_exposure(fd, 1000000 + i, (ethd_vec){0.25 + 1e-3 * i, 0.2}, i != 9);

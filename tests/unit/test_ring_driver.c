@@ -408,6 +408,34 @@ START_TEST(test_drift) {
 }
 END_TEST
 
+/* ---- a line to which nobody listened ---- */
+
+/* Frames wait while the device is open and not started, and while a program is halted. None of them is a reading, since
+   nobody knows when it came. The first one that comes afterwards is one, with its instant. */
+START_TEST(test_waiting_frames) {
+  run r;
+  begin(&r);
+  for (int pause = 0; pause < 2; pause++) {
+    for (int k = 0; k < 60; k++, r.next++) {
+      ethd__ring_frame f = scene_frame(&r.board.scene, r.next);
+      send_frame(&r.board, &f);
+    }
+    r.now_ns = VIRTUAL + (2 + 5 * pause) * INT64_C(1000000000);
+    ck_assert_int_eq(driver->service(r.device, 0, r.now_ns), ETHD_OK);
+    r.sense = (ethd_sense){.time_ns = r.now_ns};
+    ck_assert_int_eq(driver->read(r.device, r.now_ns, &r.sense), ETHD_OK);
+    ck_assert_int_eq(r.sense.have, 0);
+    while (scene_arrival(&r.board.scene, r.next) <= r.now_ns) r.next++;
+    const uint64_t before = r.rays;
+    const int64_t from = r.now_ns;
+    while (r.rays == before) ck_assert_int_lt((tick(&r, NULL), r.now_ns), from + 20 * TICK);
+    ck_assert_int_le(llabs(r.sense.sample_ns - VIRTUAL - (int64_t)(1e9 * scene_time(r.next - 1))), 6 * TICK);
+    ck_assert_int_eq((r.sense.faults | r.sense.grave) & ~(pause ? ETHD_FAULT_BIT(ETHD_FAULT_FRAME_LOST) : 0), 0);
+  }
+  end(&r);
+}
+END_TEST
+
 /* ---- unplugged ---- */
 
 START_TEST(test_replug) {
@@ -451,6 +479,7 @@ int main(void) {
   tcase_add_test(tc, test_younger_than_the_tick);
   tcase_add_loop_test(tc, test_rows, 0, (int)(sizeof rows / sizeof *rows));
   tcase_add_test(tc, test_drift);
+  tcase_add_test(tc, test_waiting_frames);
   tcase_add_test(tc, test_replug);
   suite_add_tcase(suite, tc);
   return rig_run(suite);
