@@ -17,5 +17,5 @@ ethd_status ethd_cell_take(ethd_cell *cell, void *value) {
     cell->taken = true;
   }
   if (cell->taken) memcpy(value, slot(cell, cell->front), cell->size);
-  return fresh ? ETHD_OK : ETHD_STALE;
+  return fresh ? ETHD_OK : ETHD_STATUS_STALE;
 }

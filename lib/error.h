@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "ethd/status.h"
+#include "ethd/base.h"
 
 /* A number that was found and the range that is allowed; NaN where there is nothing to say. */
 typedef struct ethd__found {

@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "ethd/attributes.h"
+#include "ethd/base.h"
 
 #if defined(__SSE__)
 #include <xmmintrin.h>

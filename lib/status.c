@@ -1,4 +1,4 @@
-#include "ethd/status.h"
+#include "ethd/base.h"
 
 const char *ethd_status_sentence(ethd_status status) {
   switch (status) {

@@ -13,7 +13,7 @@ for name in $(cat tests/exported-symbols*.txt | grep '^ethd_[a-z]'); do
   grep -rqw "$name" "$work"/build/doc/html/*_8h.html || fail "no page has $name"
 done
 mkdir -p "$work/tree" && cp -r include .packaging "$work/tree" && cd "$work/tree" || exit 1
-cat >>include/ethd/vec.h <<'END'
+cat >>include/ethd/maths.h <<'END'
 
 ETHD_API void ethd_nothing_said(int x);
 
@@ -30,7 +30,7 @@ ETHD_API void ethd_no_unit(double x);
 END
 made && fail "functions without a contract pass"
 grep -q 'ethd_nothing_said(int x) (function) .* is not documented' "$work/out" || fail "ethd_nothing_said: $(cat "$work/out")"
-grep -q "vec.h: ethd_no_thread: its contract doesn't say which thread" "$work/out" || fail "ethd_no_thread: $(cat "$work/out")"
+grep -q "maths.h: ethd_no_thread: its contract doesn't say which thread" "$work/out" || fail "ethd_no_thread: $(cat "$work/out")"
 grep -q "arm.h: ethd_no_failure: its contract doesn't say which failures it returns" "$work/out" || fail "ethd_no_failure: $(cat "$work/out")"
 grep -q "arm.h: ethd_no_unit: its contract doesn't say in which unit its numbers are" "$work/out" || fail "ethd_no_unit: $(cat "$work/out")"
 exit $failed

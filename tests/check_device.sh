@@ -82,7 +82,7 @@ static ethd_status open_it(const ethd_device_def *def, void **device, char messa
 }
 static ethd_status start(void *device) { return (void)device, ETHD_OK; }
 static ethd_status read_it(void *device, int64_t now_ns, ethd_sense *out) {
-  if (now_ns - last < 8000000) return ETHD_STALE;
+  if (now_ns - last < 8000000) return ETHD_STATUS_STALE;
   out->q[0] = 1.57;
   out->time_ns = last = last && now_ns - last < 16000000 ? last + 8000000 : now_ns;
   return (void)device, ETHD_OK;

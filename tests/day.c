@@ -92,7 +92,7 @@ static int swap(day *d, ethd__session *s, uint64_t i) {
 }
 
 static void recover(ethd__session *s) {
-  if (ethd__recorder_latest(&s->recorder).trace.fault) ethd_loop_clear(s->loop);
+  if (ethd__recorder_latest(&s->recorder).trace.fault) ethd_loop_acknowledge(s->loop);
   ethd__session_tick(s);
   ethd__session_tick(s);
   if (!ethd_loop_armed(s->loop)) (void)!ethd__session_enable(s);

@@ -128,7 +128,7 @@ int main(void) {
   for (int i = 0; i < 3; i++) {
     s = (ethd_sense){0};
     b->q[0] = bad[i];
-    EXPECT(d->service(b, 0, 2000000) < 0 && d->read(b, 2000000, &s) == ETHD_STALE);
+    EXPECT(d->service(b, 0, 2000000) < 0 && d->read(b, 2000000, &s) == ETHD_STATUS_STALE);
     EXPECT(s.q[0] == q && s.time_ns == 1000000 && s.faults == ETHD_FAULT_BIT(ETHD_FAULT_REPLY_BAD));
   }
   b->q[0] = q;

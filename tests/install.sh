@@ -44,7 +44,7 @@ moved="$work/a tree"
 mv "$at" "$moved"
 export PKG_CONFIG_PATH="$moved/lib/pkgconfig" LD_LIBRARY_PATH="$moved/lib"
 cat >"$work/inline.c" <<'END'
-#include <ethd/vec.h>
+#include <ethd/maths.h>
 #include <stdio.h>
 int main(int argc, char **argv) {
   ethd_vec v = {3.0 * argc, 4.0 * argc};

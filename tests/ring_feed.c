@@ -12,7 +12,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "ethd/finger_fit.h"
+#include "ethd/estimate.h"
 #include "proximity_ring/calibration.h"
 
 #define RING_RADIUS 0.012

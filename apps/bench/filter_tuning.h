@@ -3,7 +3,7 @@
 #define ETHD__APPS_BENCH_FILTER_TUNING_H
 
 #include "bench/tracks.h"
-#include "ethd/finger_filter.h"
+#include "ethd/estimate.h"
 
 /* One method of finding where the finger is; it starts anew with every call. */
 typedef struct ethd__filter_contender {

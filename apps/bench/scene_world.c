@@ -80,14 +80,14 @@ static double create_ours(ethd__scene_contender *c, const ethd__world *w) {
   ethd_object_def *defs = malloc(objects * sizeof *defs);
   double *points = malloc(2 * (w->count + 1) * sizeof *points);
   if (!defs || !points) ethd__fail(ETHD_EXIT_FAILED, "no memory for %zu segments", w->count);
-  for (size_t i = 0; i < objects; i++) defs[i] = (ethd_object_def){ETHD_SEGMENT, -1, w->segments[i], 4, 0};
+  for (size_t i = 0; i < objects; i++) defs[i] = (ethd_object_def){ETHD_SHAPE_SEGMENT, -1, w->segments[i], 4, 0};
   if (c->chain) {
     for (size_t i = 0; i <= w->count; i++) {
       const double *p = i < w->count ? w->segments[i] : w->segments[w->count - 1] + 2;
       points[2 * i] = p[0];
       points[2 * i + 1] = p[1];
     }
-    defs[0] = (ethd_object_def){ETHD_POLYLINE, -1, points, 2 * (w->count + 1), 0};
+    defs[0] = (ethd_object_def){ETHD_SHAPE_POLYLINE, -1, points, 2 * (w->count + 1), 0};
   }
   double start = cpu_time();
   c->self = our_scene(w, defs, objects);

@@ -86,7 +86,8 @@ ethd_scene *ethd__tap_scene(ethd__tap_wall wall, size_t segments) {
   double *points = malloc((2 * segments + 1) * sizeof *points);
   if (!points) ethd__fail(ETHD_EXIT_FAILED, "no memory");
   outline(wall, segments, points);
-  const ethd_object_def objects[] = {{ETHD_HALFPLANE, -1, plane, 3, 0}, {ETHD_POLYLINE, -1, points, 2 * segments, 0}};
+  const ethd_object_def objects[] = {{ETHD_SHAPE_HALFPLANE, -1, plane, 3, 0},
+                                     {ETHD_SHAPE_POLYLINE, -1, points, 2 * segments, 0}};
   const size_t first = wall == ETHD__TAP_OUTLINE, last = wall == ETHD__TAP_PLANE ? 1 : 2;
   ethd_scene_def def = {objects + first, last - first, NULL, 0};
   ethd_error error;

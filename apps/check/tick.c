@@ -8,7 +8,7 @@
 
 #include "check/report.h"
 #include "clock.h"
-#include "ethd/finger_fit.h"
+#include "ethd/estimate.h"
 
 #define TICKS 20000
 

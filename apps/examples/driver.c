@@ -60,7 +60,8 @@ static ethd_status open_bus(const ethd_device_def *def, void **device, char mess
   if (!status) status = ethd_cell_create(sizeof(ethd_command), &b->orders, &error);
   if (!status) status = ethd_cell_create(sizeof(answer), &b->answers, &error);
   if (!status) status = ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, b->q);
-  if (!status) b->seen = (answer){{b->q[0], b->q[1]}, 0}; /* for a `read` before any service, which says ETHD_STALE */
+  if (!status)
+    b->seen = (answer){{b->q[0], b->q[1]}, 0}; /* for a `read` before any service, which says ETHD_STATUS_STALE */
   return status;
 }
 
@@ -98,7 +99,7 @@ static ethd_status read_joints(void *device, int64_t now_ns, ethd_sense *out) ET
   for (int i = 0; i < 2; i++) out->q[i] = b->seen.q[i];
   out->time_ns = b->seen.at;
   if (atomic_exchange(&b->bad, 0)) out->faults |= ETHD_FAULT_BIT(ETHD_FAULT_REPLY_BAD);
-  return (void)now_ns, status; /* ETHD_STALE: the loop waits for the next one */
+  return (void)now_ns, status; /* ETHD_STATUS_STALE: the loop waits for the next one */
 }
 
 static ethd_status write_torque(void *device, int64_t now_ns, const ethd_command *command) ETHD_RT {

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "ethd/vec.h"
+#include "ethd/maths.h"
 
 typedef struct ethd__excitation {
   const char *config, *record; /* config NULL: the simulated device */

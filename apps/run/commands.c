@@ -89,7 +89,7 @@ static void ack(ethd__session *s, ethd__commands *c, char *rest) {
     answer("error: there is no fault to acknowledge");
     return;
   }
-  double clean = ethd_control_clean(s->control), needed = s->setup.limits.clean_time;
+  double clean = ethd_control_clean_time(s->control), needed = s->setup.limits.clean_time;
   if (clean < needed * (1 - 1e-9)) {
     answer("error: nothing has gone wrong for %.3f s, %g s are required", clean, needed);
     return;

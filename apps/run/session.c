@@ -81,7 +81,7 @@ bool ethd__session_sees_finger(ethd__session *s) {
 ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const char *kind, const char *detail,
                                char message[ETHD_MESSAGE_MAX]) {
   ethd_error error = {0};
-  if (!settle(s)) return ethd__say(message, ETHD_BUSY, "%s", ethd_status_sentence(ETHD_BUSY));
+  if (!settle(s)) return ethd__say(message, ETHD_STATUS_BUSY, "%s", ethd_status_sentence(ETHD_STATUS_BUSY));
   if (!ethd__recorder_expect(&s->recorder, kind, detail))
     return ethd__say(message, ETHD_E_FULL, "%s", ethd_status_sentence(ETHD_E_FULL));
   ethd__config_foreign(s->config, "the check of a plugin's law");
@@ -95,11 +95,11 @@ ethd_status ethd__session_post(ethd__session *s, const ethd_setup *setup, const 
   s->setup = *setup;
   s->posted = true;
   if (s->is_virtual || settle(s)) return ETHD_OK;
-  return ethd__say(message, ETHD_BUSY, "%s", ethd_status_sentence(ETHD_BUSY));
+  return ethd__say(message, ETHD_STATUS_BUSY, "%s", ethd_status_sentence(ETHD_STATUS_BUSY));
 }
 
 ethd_status ethd__session_enable(ethd__session *s) {
-  if (!settle(s)) return ETHD_BUSY;
+  if (!settle(s)) return ETHD_STATUS_BUSY;
   if (ethd_loop_armed(s->loop)) {
     ethd_loop_disarm(s->loop);
     ethd__session_await_tick(s);
@@ -111,7 +111,7 @@ ethd_status ethd__session_enable(ethd__session *s) {
 
 bool ethd__session_acknowledge(ethd__session *s) {
   uint64_t before = ethd__recorder_clearings(&s->recorder);
-  ethd_loop_clear(s->loop);
+  ethd_loop_acknowledge(s->loop);
   for (int i = 0; ethd__recorder_clearings(&s->recorder) == before && i < PATIENCE && ethd__session_lives(s); i++)
     pass(s);
   return !ethd__recorder_latest(&s->recorder).trace.fault;

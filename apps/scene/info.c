@@ -26,9 +26,9 @@ static void say_counts(const char *name, const ethd_scene_info *info) {
   printf("materials:    %zu\n", info->materials);
   if (info->x_min <= info->x_max)
     printf("extent:       x %.9g to %.9g m, y %.9g to %.9g m%s\n", info->x_min, info->x_max, info->y_min, info->y_max,
-           info->by_shape[ETHD_HALFPLANE] ? ", and half-planes" : "");
+           info->by_shape[ETHD_SHAPE_HALFPLANE] ? ", and half-planes" : "");
   else
-    printf("extent:       %s\n", info->by_shape[ETHD_HALFPLANE] ? "half-planes only" : "none");
+    printf("extent:       %s\n", info->by_shape[ETHD_SHAPE_HALFPLANE] ? "half-planes only" : "none");
 }
 
 int ethd__scene_info(const ethd__scene_args *arg) {

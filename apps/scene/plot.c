@@ -74,9 +74,9 @@ static const struct {
   const char *what;
   bool is_closed;
 } chains[ETHD_SHAPE_COUNT] = {
-    [ETHD_SEGMENT] = {"wall", false},
-    [ETHD_POLYLINE] = {"wall", false},
-    [ETHD_POLYGON] = {"solid", true},
+    [ETHD_SHAPE_SEGMENT] = {"wall", false},
+    [ETHD_SHAPE_POLYLINE] = {"wall", false},
+    [ETHD_SHAPE_POLYGON] = {"solid", true},
 };
 
 static void draw_chain(pen *p, const ethd_object_def *o) {
@@ -96,8 +96,8 @@ static void draw_halfplane(pen *p, const double *v, double size) {
 }
 
 static void draw_object(pen *p, const ethd_scene *scene, const ethd_object_def *o, double size) {
-  p->what = o->shape == ETHD_HALFPLANE ? "halfplane" : chains[o->shape].what ? chains[o->shape].what : "solid";
-  if (o->shape == ETHD_HALFPLANE)
+  p->what = o->shape == ETHD_SHAPE_HALFPLANE ? "halfplane" : chains[o->shape].what ? chains[o->shape].what : "solid";
+  if (o->shape == ETHD_SHAPE_HALFPLANE)
     draw_halfplane(p, o->numbers, size);
   else if (chains[o->shape].what)
     draw_chain(p, o);

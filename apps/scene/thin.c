@@ -27,10 +27,10 @@ static double width(const double *p, size_t count) {
 /* INFINITY: it has no other side. */
 static double thickness(const ethd_object_def *o) {
   switch (o->shape) {
-  case ETHD_CIRCLE: return 2 * o->numbers[2];
-  case ETHD_CAPSULE: return 2 * o->numbers[4];
-  case ETHD_BOX: return 2 * fmin(o->numbers[2], o->numbers[3]);
-  case ETHD_POLYGON: return o->count <= 128 ? width(o->numbers, o->count) : (double)INFINITY;
+  case ETHD_SHAPE_CIRCLE: return 2 * o->numbers[2];
+  case ETHD_SHAPE_CAPSULE: return 2 * o->numbers[4];
+  case ETHD_SHAPE_BOX: return 2 * fmin(o->numbers[2], o->numbers[3]);
+  case ETHD_SHAPE_POLYGON: return o->count <= 128 ? width(o->numbers, o->count) : (double)INFINITY;
   default: return (double)INFINITY;
   }
 }

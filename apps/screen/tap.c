@@ -72,7 +72,7 @@ static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, cha
     status = ethd__live_join(&live);
   }
   if (status) return ethd__say(message, status, "the tap: %s", ethd_status_sentence(status));
-  if (!done) return ETHD_EMPTY;
+  if (!done) return ETHD_STATUS_EMPTY;
   s->late += live.late;
   out->hand = ETHD_HAND_MOUSE;
   ethd__stage_judge(&s->desk->stage, &live.rule, &live.tap, &out->result);

@@ -8,7 +8,7 @@
 #ifndef ETHD__APPS_SCREEN_VIEW_H
 #define ETHD__APPS_SCREEN_VIEW_H
 
-#include "ethd/vec.h"
+#include "ethd/maths.h"
 
 typedef struct ethd__room {
   int width, height;               /* px of the window */

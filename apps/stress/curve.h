@@ -10,7 +10,7 @@
 #ifndef ETHD__APPS_STRESS_CURVE_H
 #define ETHD__APPS_STRESS_CURVE_H
 
-#include "ethd/velocity.h"
+#include "ethd/estimate.h"
 
 typedef struct ethd__curve {
   double mass, period;         /* kg, s */

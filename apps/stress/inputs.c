@@ -9,7 +9,7 @@
 
 #include "cli/cli.h"
 #include "ethd/control.h"
-#include "ethd/finger_fit.h"
+#include "ethd/estimate.h"
 #include "stress/rig.h"
 #include "stress/stress.h"
 
@@ -143,7 +143,7 @@ static void disturb(const ethd_arm *arm, const ethd_scene *scene, const disturba
     ethd_status status = ethd_control_step(control, &s, &c, &t);
     if (now) judge(&s, status, &c, &t, sum);
     /* a huge number causes faults until it has left the filters */
-    if (t.fault && k >= BEFORE + d->ticks && k < BEFORE + d->ticks + 1000) ethd_control_clear(control);
+    if (t.fault && k >= BEFORE + d->ticks && k < BEFORE + d->ticks + 1000) ethd_control_acknowledge(control);
   }
   double off = hypot(c.torque[0] - undisturbed[0], c.torque[1] - undisturbed[1]);
   if (!(off <= sum->off)) sum->off = off;

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "ethd/finger_fit.h"
+#include "ethd/estimate.h"
 #include "stress/rig.h"
 #include "stress/stress.h"
 

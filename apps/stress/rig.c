@@ -10,7 +10,7 @@
 
 ethd_scene *ethd__stress_rig_wall(double c) {
   double numbers[3] = {-1, 0, c};
-  ethd_object_def wall = {ETHD_HALFPLANE, -1, numbers, 3, 0};
+  ethd_object_def wall = {ETHD_SHAPE_HALFPLANE, -1, numbers, 3, 0};
   ethd_scene_def def = {&wall, 1, NULL, 0};
   ethd_scene *scene;
   ethd_error error;

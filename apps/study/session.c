@@ -39,7 +39,7 @@ static ethd_status run_tap(ethd__sitting *s, const char *id, const ethd__turn *t
   ethd__taken taken = {.speed = NULL};
   snprintf(name, sizeof name, "%s-%02zu-%03" PRIu32, id, turn->number, turn->attempt);
   ethd_status status = have_tap(s, folder, name, turn, &taken, &row, message);
-  bool none = status == ETHD_EMPTY;
+  bool none = status == ETHD_STATUS_EMPTY;
   if (!status) status = ethd__sitting_put(s, "tap", row, message);
   if (!status && taken.speed)
     s->front.verdict(s->front.self, id, &taken, s->progress.person[turn->person].at[turn->number - 1].valid,

@@ -44,7 +44,7 @@ typedef struct ethd__taken {
 typedef struct ethd__source {
   void *self;
   ethd__hand_source hand;
-  /* Makes one tap, whatever it takes. ETHD_EMPTY: there was none, because it was stopped or the finger never left its
+  /* Makes one tap, whatever it takes. ETHD_STATUS_EMPTY: there was none, because it was stopped or the finger never left its
      place. */
   ethd_status (*tap)(void *self, const ethd__turn *turn, ethd__taken *out, char message[ETHD_MESSAGE_MAX]);
   /* Returns a sentence that says why the device has stopped itself; NULL: it runs. acknowledge lets it go on. Both are

@@ -152,14 +152,14 @@ static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, cha
   ethd_status status = ethd__desk_prepare(s->desk, turn, out, message);
   if (!status) status = take_strategy(s, out->stage->law, message);
   if (status) return status;
-  if (stopped(s)) return ETHD_EMPTY; /* enabling would clear a fault that nobody has acknowledged */
+  if (stopped(s)) return ETHD_STATUS_EMPTY; /* enabling would clear a fault that nobody has acknowledged */
   make_ready(s, out);
   set_phase(s, ETHD_PHASE_DUE);
   status = ethd__session_enable(&s->session);
   if (status) return ethd__say(message, status, "enabling the device: %s", ethd_status_sentence(status));
-  if (!follow(s)) return ETHD_EMPTY;
+  if (!follow(s)) return ETHD_STATUS_EMPTY;
   if (s->status) return ethd__say(message, s->status, "the tap's ticks: %s", ethd_status_sentence(s->status));
-  if (!was_tap(&s->stage.rows)) return ETHD_EMPTY;
+  if (!was_tap(&s->stage.rows)) return ETHD_STATUS_EMPTY;
   out->stage = &s->stage;
   out->seed = out->tap = 0;
   out->hand = ETHD_HAND_DEVICE;
@@ -175,7 +175,7 @@ static ethd_status tap(void *self, const ethd__turn *turn, ethd__taken *out, cha
 static ethd_status acknowledge(void *self, char message[ETHD_MESSAGE_MAX]) {
   ethd__station *s = self;
   double until = ethd__session_time(&s->session) + CLEAN;
-  while (ethd_control_clean(s->session.control) < s->session.setup.limits.clean_time &&
+  while (ethd_control_clean_time(s->session.control) < s->session.setup.limits.clean_time &&
          ethd__session_time(&s->session) < until && !ethd__stop)
     pass(s);
   if (!ethd__session_acknowledge(&s->session)) return ETHD_OK;

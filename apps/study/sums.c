@@ -228,7 +228,7 @@ ethd_status ethd__sums_check(const char *folder, size_t *files, char message[ETH
   ethd_status status =
       ethd__file_taken(path)
           ? read_list(path, &list, message)
-          : ethd__say(message, ETHD_EMPTY, "%s: No such file; a session or a merge that ends writes it", path);
+          : ethd__say(message, ETHD_STATUS_EMPTY, "%s: No such file; a session or a merge that ends writes it", path);
   if (!status) {
     walk(folder, "", 0, true, &there);
     compare(folder, &list, &there, &f);

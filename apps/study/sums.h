@@ -22,7 +22,7 @@ ETHD_MUST_CHECK ethd_status ethd__sum_of_file(const char *path, char out[ETHD_SH
 ETHD_MUST_CHECK ethd_status ethd__sums_write(const char *folder, char message[ETHD_MESSAGE_MAX]);
 
 /* Compares every file with it; *files: how many. Refuses, in one sentence that names the first and says how many there
-   are: files that differ, are missing, or aren't in it; and ETHD_EMPTY, with a sentence, where the folder has no
+   are: files that differ, are missing, or aren't in it; and ETHD_STATUS_EMPTY, with a sentence, where the folder has no
    SHA256SUMS: its session never came to an end. */
 ETHD_MUST_CHECK ethd_status ethd__sums_check(const char *folder, size_t *files, char message[ETHD_MESSAGE_MAX]);
 

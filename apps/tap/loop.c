@@ -43,7 +43,7 @@ ethd_status ethd__tapping_begin(ethd_sim *sim, ethd_control *control, const ethd
 }
 
 ethd_status ethd__tapping_step(ethd__tapping *t) {
-  if (t->rows->count > t->last) return ETHD_EMPTY;
+  if (t->rows->count > t->last) return ETHD_STATUS_EMPTY;
   ethd_status status = ethd__tap_rows_room(t->rows);
   if (status) return status;
   ethd_trace *trace = &t->rows->trace[t->rows->count];
@@ -59,7 +59,7 @@ ethd_status ethd__tap_run(ethd_sim *sim, ethd_control *control, const ethd_sim_t
                           const ethd__rule *rule, ethd__tap_rows *rows) {
   ethd__tapping tapping;
   ethd_status status = ethd__tapping_begin(sim, control, tap, rule, rows, &tapping);
-  ethd_control_taught(control, learned);
+  ethd_control_set_memory(control, learned);
   while (!status) status = ethd__tapping_step(&tapping);
   return status < 0 ? status : ETHD_OK;
 }

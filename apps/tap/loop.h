@@ -26,7 +26,7 @@ typedef struct ethd__tapping {
 ETHD_MUST_CHECK ethd_status ethd__tapping_begin(ethd_sim *sim, ethd_control *control, const ethd_sim_tap *tap,
                                                 const ethd__rule *rule, ethd__tap_rows *rows, ethd__tapping *out);
 
-/* Runs one tick; ETHD_EMPTY: the tap is over. */
+/* Runs one tick; ETHD_STATUS_EMPTY: the tap is over. */
 ETHD_MUST_CHECK ethd_status ethd__tapping_step(ethd__tapping *tapping);
 
 /* Makes room for one more row. ETHD_E_MEMORY. */

@@ -205,7 +205,7 @@ static ethd_status learn(ethd__stage *stage, const ethd__speed *speed, uint64_t 
     status = ethd__stage_draw(stage, speed, LEARNING + tap * stage->study->learn + k, &circumstances);
     const ethd__rule rule = ethd__stage_rule(stage, speed, circumstances.finger_radius);
     if (!status) status = run_tap(stage, &circumstances, &rule);
-    ethd_control_learned(stage->control, stage->learned);
+    ethd_control_memory(stage->control, stage->learned);
   }
   return status;
 }

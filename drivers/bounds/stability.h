@@ -16,7 +16,7 @@
 
 #include <stdbool.h>
 
-#include "ethd/velocity.h"
+#include "ethd/estimate.h"
 
 #define ETHD_LOOP_DELAY_MAX 20
 

@@ -19,9 +19,10 @@
 /* What a driver's table says is judged where it is opened. */
 static ethd_verdict ask_table(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__conform_rig r;
-  if (!ethd__conform_rig_open(def, &r)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "open: %.140s", r.message);
+  if (!ethd__conform_rig_open(def, &r))
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "open: %.140s", r.message);
   const ethd__stack *s = r.driver == &ethd__driver_stack ? r.device : NULL;
-  ethd__conform_rig_answer(a, ETHD_KEPT, "%s: %s", def->ids,
+  ethd__conform_rig_answer(a, ETHD_VERDICT_KEPT, "%s: %s", def->ids,
                            s && s->count == 1 ? s->at[0].driver->brief : r.driver->brief);
   r.driver->close(r.device);
   return a->verdict;
@@ -47,8 +48,9 @@ static ethd_verdict ask_open(const ethd_conform_def *def, ethd_conform_answer *a
   }
   int left = descriptors() - before;
   if (left)
-    return ethd__conform_rig_answer(a, ETHD_BROKEN, "%d descriptors are left open after %d times", left, OPENINGS - 1);
-  return ethd__conform_rig_answer(a, ETHD_KEPT, "%d times open, start, stop, close", OPENINGS);
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "%d descriptors are left open after %d times", left,
+                                    OPENINGS - 1);
+  return ethd__conform_rig_answer(a, ETHD_VERDICT_KEPT, "%d times open, start, stop, close", OPENINGS);
 }
 
 static ethd_verdict ask_limits(const ethd_conform_def *def, ethd_conform_answer *a) {
@@ -61,14 +63,15 @@ static ethd_verdict ask_limits(const ethd_conform_def *def, ethd_conform_answer 
   ethd_arm_pose(&def->device->setup->arm, r.sense.q, &pose);
   const double *w = l.workspace;
   if (ethd_limits_check(&l, &error))
-    ethd__conform_rig_answer(a, ETHD_BROKEN, "%s: %s", error.name, ethd_status_sentence(error.status));
+    ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "%s: %s", error.name, ethd_status_sentence(error.status));
   else if (!(pose.x.x >= w[0] && pose.x.x <= w[1] && pose.x.y >= w[2] && pose.x.y <= w[3]))
-    ethd__conform_rig_answer(a, ETHD_BROKEN, "the ring stands at %.3f %.3f m, outside of its workspace", pose.x.x,
-                             pose.x.y);
+    ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "the ring stands at %.3f %.3f m, outside of its workspace",
+                             pose.x.x, pose.x.y);
   else if (!isfinite(l.torque))
-    ethd__conform_rig_answer(a, ETHD_AT_RISK, "the device names no torque limit: only the configuration's holds");
+    ethd__conform_rig_answer(a, ETHD_VERDICT_AT_RISK,
+                             "the device names no torque limit: only the configuration's holds");
   else
-    ethd__conform_rig_answer(a, ETHD_KEPT, "torque %.4g Nm, speed %.4g m/s", l.torque, l.speed);
+    ethd__conform_rig_answer(a, ETHD_VERDICT_KEPT, "torque %.4g Nm, speed %.4g m/s", l.torque, l.speed);
   ethd__conform_rig_end(&r);
   return a->verdict;
 }
@@ -95,11 +98,11 @@ static ethd_verdict judge_samples(const ethd__conform_rig *r, ethd_conform_answe
   ethd_fault row = worst_row(r, &reaction);
   if (row)
     return ethd__conform_rig_answer(
-        a, reaction >= ETHD_REACTION_STOP && r->late <= AGE_MAX ? ETHD_BROKEN : ETHD_AT_RISK,
+        a, reaction >= ETHD_REACTION_STOP && r->late <= AGE_MAX ? ETHD_VERDICT_BROKEN : ETHD_VERDICT_AT_RISK,
         "it reports: %s; ticks were up to %.3g ms late", ethd_fault_sentence(row), 1e3 * r->late);
   if (r->readings)
     snprintf(readings, sizeof readings, "; %d reading%s of the finger", r->readings, ethd__s((uint64_t)r->readings));
-  return ethd__conform_rig_answer(a, r->age > AGE_MAX ? ETHD_AT_RISK : ETHD_KEPT,
+  return ethd__conform_rig_answer(a, r->age > AGE_MAX ? ETHD_VERDICT_AT_RISK : ETHD_VERDICT_KEPT,
                                   "%d sample%s, the oldest used at %.3g ms%s", r->samples,
                                   ethd__s((uint64_t)r->samples), 1e3 * r->age, readings);
 }
@@ -109,13 +112,13 @@ static ethd_verdict ask_sense(const ethd_conform_def *def, ethd_conform_answer *
   if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
   ethd__conform_rig_run(&r, 5 * PUSH, 0, 0);
   if (!r.samples)
-    ethd__conform_rig_answer(a, ETHD_BROKEN, "no joint sample in %g s", 5 * PUSH);
+    ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "no joint sample in %g s", 5 * PUSH);
   else if (r.failed || !r.finite)
-    ethd__conform_rig_answer(a, ETHD_BROKEN, "%d failed call%s%s", r.failed, ethd__s((uint64_t)r.failed),
+    ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "%d failed call%s%s", r.failed, ethd__s((uint64_t)r.failed),
                              r.finite ? "" : ", angles that aren't finite");
   else if (r.backwards || r.ahead)
-    ethd__conform_rig_answer(a, ETHD_BROKEN, "samples that go back in time: %d; from the future: %d", r.backwards,
-                             r.ahead);
+    ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "samples that go back in time: %d; from the future: %d",
+                             r.backwards, r.ahead);
   else
     judge_samples(&r, a);
   ethd__conform_rig_end(&r);
@@ -130,7 +133,7 @@ static ethd_verdict ask_zero(const ethd_conform_def *def, ethd_conform_answer *a
   ethd__conform_rig_run(&r, PUSH, 0, 0);
   double moved = fmax(fabs(r.sense.q[0] - q[0]), fabs(r.sense.q[1] - q[1]));
   ethd__conform_rig_end(&r);
-  return ethd__conform_rig_answer(a, moved <= STILL ? ETHD_KEPT : ETHD_BROKEN,
+  return ethd__conform_rig_answer(a, moved <= STILL ? ETHD_VERDICT_KEPT : ETHD_VERDICT_BROKEN,
                                   "%.3g rad in %g s without torque, %g is allowed", moved, PUSH, STILL);
 }
 
@@ -147,7 +150,7 @@ static ethd_verdict ask_sign(const ethd_conform_def *def, ethd_conform_answer *a
       ethd__conform_rig_end(&r);
     }
   int right = moved[0][0] > 0 && moved[0][1] < 0 && moved[1][0] > 0 && moved[1][1] < 0;
-  return ethd__conform_rig_answer(a, right ? ETHD_KEPT : ETHD_BROKEN,
+  return ethd__conform_rig_answer(a, right ? ETHD_VERDICT_KEPT : ETHD_VERDICT_BROKEN,
                                   "+-%g Nm moved joint 1 by %+.3g %+.3g, joint 2 by %+.3g %+.3g rad", def->torque,
                                   moved[0][0], moved[0][1], moved[1][0], moved[1][1]);
 }
@@ -158,9 +161,12 @@ static ethd_verdict ask_counts(const ethd_conform_def *def, ethd_conform_answer 
   ethd__conform_rig_settle(&r);
   ethd__conform_rig_run(&r, PUSH, 0, def->torque);
   ethd__conform_rig_end(&r);
-  if (!(r.speed <= SPEED_MAX)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "the angles jump: %.3g rad/s", r.speed);
-  if (isinf(r.resolution)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "the angles didn't change under torque");
-  return ethd__conform_rig_answer(a, ETHD_KEPT, "smallest step %.3g rad, fastest %.3g rad/s", r.resolution, r.speed);
+  if (!(r.speed <= SPEED_MAX))
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "the angles jump: %.3g rad/s", r.speed);
+  if (isinf(r.resolution))
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "the angles didn't change under torque");
+  return ethd__conform_rig_answer(a, ETHD_VERDICT_KEPT, "smallest step %.3g rad, fastest %.3g rad/s", r.resolution,
+                                  r.speed);
 }
 
 static const struct {
@@ -184,12 +190,12 @@ ethd_status ethd_conform(const ethd_conform_def *def, ethd_conform_answer answer
   for (int i = 0; i < ETHD_QUESTIONS; i++) {
     ethd_conform_answer *a = &answers[i];
     a->question = questions[i].name;
-    if (i && answers[0].verdict == ETHD_BROKEN)
-      ethd__conform_rig_answer(a, ETHD_NOT_ASKED, "the device can't be opened, or its table is broken");
+    if (i && answers[0].verdict == ETHD_VERDICT_BROKEN)
+      ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "the device can't be opened, or its table is broken");
     else if (questions[i].moves && !(def->torque > 0 && isfinite(def->torque)))
-      ethd__conform_rig_answer(a, ETHD_NOT_ASKED, "it would move the device");
+      ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "it would move the device");
     else
-      broken |= questions[i].ask(def, a) == ETHD_BROKEN;
+      broken |= questions[i].ask(def, a) == ETHD_VERDICT_BROKEN;
   }
   return broken ? ETHD_E_DEVICE : ETHD_OK;
 }

@@ -74,11 +74,12 @@ bool ethd__conform_rig_open(const ethd_conform_def *def, ethd__conform_rig *r) {
 }
 
 bool ethd__conform_rig_begin(const ethd_conform_def *def, ethd__conform_rig *r, ethd_conform_answer *a) {
-  if (!ethd__conform_rig_open(def, r)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "open: %.140s", r->message), 0;
+  if (!ethd__conform_rig_open(def, r))
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "open: %.140s", r->message), 0;
   ethd_status status = ethd__conform_rig_start(r);
   if (status >= 0) return 1;
   r->driver->close(r->device);
-  return ethd__conform_rig_answer(a, ETHD_BROKEN, "start: %s", ethd_status_sentence(status)), 0;
+  return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "start: %s", ethd_status_sentence(status)), 0;
 }
 
 /* Lets the device do its I/O for a while, without a loop. */

@@ -16,8 +16,9 @@ static double window(const ethd__conform_rig *r) { return fmax(LAPSE / 2, SPACIN
 static bool is_pushed(const ethd__conform_rig *r, double acceleration, ethd_conform_answer *a) {
   double least = ethd__conform_rig_least(r, window(r));
   if (acceleration > 0 && acceleration >= least) return true;
-  return ethd__conform_rig_answer(a, ETHD_NOT_ASKED, "%+.3g rad/s^2 under %g Nm, %.3g would show: it needs more torque",
-                                  acceleration, r->def->torque, least),
+  return ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED,
+                                  "%+.3g rad/s^2 under %g Nm, %.3g would show: it needs more torque", acceleration,
+                                  r->def->torque, least),
          false;
 }
 
@@ -34,7 +35,7 @@ static double held(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__conform_rig_end(&r);
   if (!is_pushed(&r, pushed, a)) return 0;
   if (end >= 0.1 * pushed && end >= ethd__conform_rig_least(&r, window(&r))) return end;
-  return ethd__conform_rig_answer(a, ETHD_NOT_ASKED,
+  return ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED,
                                   "%.3g rad/s^2, but %.3g once the torque was held for %g s: something is in its way",
                                   pushed, end, 4 * window(&r)),
          0;
@@ -52,21 +53,23 @@ ethd_verdict ethd__conform_watchdog(const ethd_conform_def *def, ethd_conform_an
   ethd__conform_rig_end(&r);
   if (!is_pushed(&r, pushed, a)) return a->verdict;
   if (left <= most)
-    return ethd__conform_rig_answer(a, ETHD_KEPT, "%.3g rad/s^2 under torque, %.3g once nobody had written for %g s",
-                                    pushed, left, 2 * window(&r));
-  return ethd__conform_rig_answer(a, ETHD_AT_RISK, "none: still %.3g of %.3g rad/s^2, %g s after the last write", left,
-                                  pushed, 2 * window(&r));
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_KEPT,
+                                    "%.3g rad/s^2 under torque, %.3g once nobody had written for %g s", pushed, left,
+                                    2 * window(&r));
+  return ethd__conform_rig_answer(a, ETHD_VERDICT_AT_RISK,
+                                  "none: still %.3g of %.3g rad/s^2, %g s after the last write", left, pushed,
+                                  2 * window(&r));
 }
 
 /* Enabled and without a word from this computer, not even from the I/O threads, a device should let go by itself. */
 ethd_verdict ethd__conform_silence(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__conform_rig r;
   if (def->device->is_virtual)
-    return ethd__conform_rig_answer(a, ETHD_NOT_ASKED, "on a virtual clock nothing is silent");
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "on a virtual clock nothing is silent");
   if (!ethd__conform_rig_begin(def, &r, a)) return a->verdict;
   if (!r.units) {
     ethd__conform_rig_end(&r);
-    return ethd__conform_rig_answer(a, ETHD_NOT_ASKED, "it isn't spoken to: no driver of it has I/O");
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "it isn't spoken to: no driver of it has I/O");
   }
   ethd__conform_rig_settle(&r);
   double pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, window(&r));
@@ -78,16 +81,17 @@ ethd_verdict ethd__conform_silence(const ethd_conform_def *def, ethd_conform_ans
   if (!is_pushed(&r, pushed, a)) return a->verdict;
   if (left <= LEFT * pushed)
     return ethd__conform_rig_answer(
-        a, ETHD_KEPT, "it lets go by itself: %.3g rad/s^2 under torque, %.3g after %g s without a message", pushed,
-        left, SILENCE);
-  return ethd__conform_rig_answer(a, ETHD_AT_RISK,
+        a, ETHD_VERDICT_KEPT, "it lets go by itself: %.3g rad/s^2 under torque, %.3g after %g s without a message",
+        pushed, left, SILENCE);
+  return ethd__conform_rig_answer(a, ETHD_VERDICT_AT_RISK,
                                   "no watchdog of its own: after %g s without a message %.3g of %.3g rad/s^2", SILENCE,
                                   left, pushed);
 }
 
 ethd_verdict ethd__conform_safe(const ethd_conform_def *def, ethd_conform_answer *a) {
   ethd__conform_rig r;
-  if (!ethd__conform_rig_open(def, &r)) return ethd__conform_rig_answer(a, ETHD_BROKEN, "open: %.140s", r.message);
+  if (!ethd__conform_rig_open(def, &r))
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "open: %.140s", r.message);
   r.driver->safe(r.device); /* before it was started */
   r.driver->close(r.device);
   double most = LEFT * held(def, a);
@@ -102,7 +106,7 @@ ethd_verdict ethd__conform_safe(const ethd_conform_def *def, ethd_conform_answer
   r.driver->safe(r.device); /* and once stopped */
   r.driver->close(r.device);
   if (!is_pushed(&r, pushed, a)) return a->verdict;
-  return ethd__conform_rig_answer(a, left <= most ? ETHD_KEPT : ETHD_BROKEN,
+  return ethd__conform_rig_answer(a, left <= most ? ETHD_VERDICT_KEPT : ETHD_VERDICT_BROKEN,
                                   "%.3g rad/s^2 under torque, %.3g with the same torque once safe", pushed, left);
 }
 
@@ -115,14 +119,14 @@ ethd_verdict ethd__conform_restart(const ethd_conform_def *def, ethd_conform_ans
   ethd_status status = ethd__conform_rig_start(&r);
   if (status < 0) {
     ethd__conform_rig_end(&r);
-    return ethd__conform_rig_answer(a, ETHD_BROKEN, "started anew: %s", ethd_status_sentence(status));
+    return ethd__conform_rig_answer(a, ETHD_VERDICT_BROKEN, "started anew: %s", ethd_status_sentence(status));
   }
   /* a sound arm may still roll from the push: what is left of a torque shows in speed that is gained */
   double left = ethd__conform_rig_acceleration(&r, 0, 0, 0, window(&r));
   double pushed = ethd__conform_rig_acceleration(&r, 0, def->torque, 1, window(&r));
   ethd__conform_rig_end(&r);
   if (!is_pushed(&r, pushed, a)) return a->verdict;
-  return ethd__conform_rig_answer(a, left <= LEFT * pushed ? ETHD_KEPT : ETHD_BROKEN,
+  return ethd__conform_rig_answer(a, left <= LEFT * pushed ? ETHD_VERDICT_KEPT : ETHD_VERDICT_BROKEN,
                                   "started anew: %.3g rad/s^2 before it is written to, %.3g under torque", left,
                                   pushed);
 }

@@ -85,7 +85,7 @@ static ethd_status counter_read(void *device, int64_t now_ns, ethd_sense *out) E
     forget_marks(c);
   }
   if (__atomic_load_n(&c->failed, __ATOMIC_RELAXED)) return ETHD_E_DEVICE;
-  if (ethd_cell_take(c->cell, &c->taken) != ETHD_OK) return ETHD_STALE;
+  if (ethd_cell_take(c->cell, &c->taken) != ETHD_OK) return ETHD_STATUS_STALE;
   for (int j = 0; j < 2; j++) step(c, j, out);
   out->time_ns = c->taken.time_ns;
   if (c->encoder[0].has_dq && c->encoder[1].has_dq) out->have |= ETHD_HAVE_DQ;

@@ -15,9 +15,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "ethd/base.h"
 #include "ethd/control.h"
 #include "ethd/fault.h"
-#include "ethd/status.h"
 
 /* What a sample holds, as bits of `flags`. */
 enum {

@@ -45,7 +45,7 @@ static void restart(ethd__finger_bus *b) {
 
 static ethd_status reopen(ethd__finger_bus *b, int64_t now_ns) {
   char message[ETHD_MESSAGE_MAX];
-  if (now_ns < b->port.attempt_ns) return ETHD_STALE;
+  if (now_ns < b->port.attempt_ns) return ETHD_STATUS_STALE;
   ethd_status status = ethd__ring_port_open(&b->port, now_ns, message);
   if (!status) restart(b);
   return status;

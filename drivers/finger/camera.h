@@ -28,7 +28,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "ethd/vec.h"
+#include "ethd/maths.h"
 
 enum { ETHD__EXPOSURE_SIZE = 44, ETHD__EXPOSURE_SEEN = 1 };
 

@@ -12,7 +12,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "ethd/vec.h"
+#include "ethd/maths.h"
 
 typedef struct ethd__nail {
   ethd_vec u;

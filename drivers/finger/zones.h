@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "ethd/vec.h"
+#include "ethd/maths.h"
 
 enum { ETHD__ZONES_MIN = 8, ETHD__ZONES_MAX = 16 };
 

@@ -129,7 +129,7 @@ static ethd_status inject_read(void *device, int64_t now_ns, ethd_sense *out) ET
   memset(&s, 0, sizeof s);
   raise_faults(in, &s);
   int stale = is_told(in, ETHD__INJECT_READ, ETHD__INJECT_STALE);
-  ethd_status status = stale ? ETHD_STALE : in->driver->read(in->device, now_ns, &s);
+  ethd_status status = stale ? ETHD_STATUS_STALE : in->driver->read(in->device, now_ns, &s);
   if (status < 0) return status;
   for (uint32_t i = 0; i < in->script.count; i++)
     in->done += ethd__inject_values(&in->script.at[i], in->now, !status, &s);
@@ -188,7 +188,7 @@ static ethd_status inject_service(void *device, uint32_t unit, int64_t now_ns) {
   int64_t t = __atomic_load_n(&in->started, __ATOMIC_ACQUIRE) ? now_ns - in->start_ns : 0;
   for (uint32_t i = 0; i < in->script.count; i++)
     if (in->script.at[i].channel == ETHD__INJECT_SERVICE && is_due(&in->script.at[i], t))
-      return in->script.at[i].kind == ETHD__INJECT_FAIL ? ETHD_E_DEVICE : ETHD_EMPTY;
+      return in->script.at[i].kind == ETHD__INJECT_FAIL ? ETHD_E_DEVICE : ETHD_STATUS_EMPTY;
   return in->driver->service(in->device, unit, now_ns);
 }
 

@@ -17,7 +17,7 @@
 #include <stdbool.h>
 
 #include "ethd/driver.h"
-#include "ethd/finger_fit.h"
+#include "ethd/estimate.h"
 
 #define ETHD_INJECT_LINES_MAX 1024
 #define ETHD_INJECT_BYTES_MAX ((size_t)1 << 20)

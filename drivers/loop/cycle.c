@@ -177,7 +177,7 @@ static void end_step(ethd_loop *l) ETHD_RT {
 static void step(ethd_loop *l, ethd_command *command) ETHD_RT {
   if (atomic_load_explicit(&l->clear, memory_order_relaxed)) {
     atomic_store_explicit(&l->clear, 0, memory_order_relaxed);
-    ethd_control_clear(l->def.control);
+    ethd_control_acknowledge(l->def.control);
     l->marks |= ETHD_ROW_CLEARED;
   }
   int64_t begin = begin_step(l);

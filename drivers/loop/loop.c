@@ -42,7 +42,7 @@ int32_t ethd_loop_hangs(const ethd_loop *l, const ethd_law **law) {
 
 int32_t ethd_loop_shortfalls(const ethd_loop *l) { return l->shortfalls; }
 void ethd_loop_disarm(ethd_loop *l) { atomic_store_explicit(&l->armed, 0, memory_order_relaxed); }
-void ethd_loop_clear(ethd_loop *l) { atomic_store_explicit(&l->clear, 1, memory_order_relaxed); }
+void ethd_loop_acknowledge(ethd_loop *l) { atomic_store_explicit(&l->clear, 1, memory_order_relaxed); }
 void ethd_loop_beat(ethd_loop *l) { atomic_fetch_add_explicit(&l->beats, 1, memory_order_relaxed); }
 
 void ethd_loop_raise(ethd_loop *l, ethd_fault fault) {
@@ -55,7 +55,7 @@ void ethd_loop_stop(ethd_loop *l) { atomic_store_explicit(&l->stop, 1, memory_or
 ethd_status ethd_loop_take(ethd_loop *l, ethd_loop_row *out) {
   ethd__loop_ring *r = &l->rows;
   unsigned tail = atomic_load_explicit(&r->tail, memory_order_relaxed);
-  if (tail == atomic_load_explicit(&r->head, memory_order_acquire)) return ETHD_EMPTY;
+  if (tail == atomic_load_explicit(&r->head, memory_order_acquire)) return ETHD_STATUS_EMPTY;
   *out = r->at[tail % r->size];
   atomic_store_explicit(&r->tail, tail + 1, memory_order_release);
   return ETHD_OK;

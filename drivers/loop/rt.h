@@ -8,7 +8,7 @@
 #include <pthread.h>
 #include <time.h>
 
-#include "ethd/attributes.h"
+#include "ethd/base.h"
 
 #if defined(__COBALT__) || defined(__MERCURY__)
 #include <boilerplate/wrappers.h>

@@ -182,7 +182,7 @@ static bool take_over(ethd_loop *l) {
 }
 
 ethd_status ethd_loop_enable(ethd_loop *l) {
-  if (!take_over(l)) return ETHD_BUSY;
+  if (!take_over(l)) return ETHD_STATUS_BUSY;
   ethd_status status = l->def.driver->start(l->def.device);
   if (!status) {
     ethd_counters counters;
@@ -204,7 +204,7 @@ static bool are_angles(const double q[2]) {
 ethd_status ethd_loop_home(ethd_loop *l, const double *q) {
   if (!l->def.driver->home) return ETHD_E_ARGUMENT;
   if (q && !are_angles(q)) return ETHD_E_RANGE;
-  if (ethd_loop_armed(l) || !take_over(l)) return ETHD_BUSY;
+  if (ethd_loop_armed(l) || !take_over(l)) return ETHD_STATUS_BUSY;
   ethd_status status = l->def.driver->home(l->def.device, q);
   if (!status && !l->row.trace.fault) ethd_control_restart(l->def.control);
   atomic_store_explicit(&l->mode, ETHD__LOOP_RUNS, memory_order_release);

@@ -19,7 +19,7 @@
 #define ETHD__PROXIMITY_RING_CALIBRATION_H
 
 #include "ethd/config.h"
-#include "ethd/finger_fit.h"
+#include "ethd/estimate.h"
 #include "proximity_ring/frame.h"
 
 enum { ETHD__POINTS_MAX = 24, ETHD__SERIAL_MAX = 48 };

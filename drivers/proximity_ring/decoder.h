@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "ethd/attributes.h"
+#include "ethd/base.h"
 #include "proximity_ring/frame.h"
 
 typedef struct ethd__ring_frame {

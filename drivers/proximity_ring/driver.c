@@ -60,7 +60,7 @@ static void take(ring *r, const uint8_t *bytes, size_t count, int64_t arrival_ns
 
 static ethd_status reopen(ring *r, int64_t now_ns) {
   char message[ETHD_MESSAGE_MAX];
-  if (now_ns < r->port.attempt_ns) return ETHD_STALE;
+  if (now_ns < r->port.attempt_ns) return ETHD_STATUS_STALE;
   ethd_status status = ethd__ring_port_open(&r->port, now_ns, message);
   if (!status) ethd__receiver_restart(&r->receiver);
   return status;

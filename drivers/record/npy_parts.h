@@ -32,7 +32,7 @@ typedef struct ethd__npy_reader {
 ETHD_MUST_CHECK ethd_status ethd__npy_reader_open(const char *path, const ethd_column *columns, size_t row_bytes,
                                                   ethd__npy_reader *out, char message[ETHD_MESSAGE_MAX]);
 
-/* Gives the next row, which is valid until the next call; ETHD_EMPTY after the last. [main] */
+/* Gives the next row, which is valid until the next call; ETHD_STATUS_EMPTY after the last. [main] */
 ETHD_MUST_CHECK ethd_status ethd__npy_reader_next(ethd__npy_reader *reader, const void **row,
                                                   char message[ETHD_MESSAGE_MAX]);
 void ethd__npy_reader_close(ethd__npy_reader *reader);

@@ -53,7 +53,7 @@ ethd_status ethd__npy_reader_open(const char *path, const ethd_column *columns, 
 
 ethd_status ethd__npy_reader_next(ethd__npy_reader *r, const void **row, char message[ETHD_MESSAGE_MAX]) {
   size_t left = r->count - r->next, within = r->next % PIECE;
-  if (!left) return ETHD_EMPTY;
+  if (!left) return ETHD_STATUS_EMPTY;
   size_t wanted = (left < PIECE ? left : PIECE) * r->row_bytes;
   if (!within && read_at(r->fd, r->piece, wanted, r->data + r->next * r->row_bytes) < wanted)
     return ethd__say(message, ETHD_E_FILE, "%s: row %zu of %zu: %s", r->path, r->next, r->count,

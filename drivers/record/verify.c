@@ -134,9 +134,9 @@ static ethd_status renew(verification *r, int done) {
   } else if (done & CHANGED) {
     status = ethd_control_post(r->control, &r->setup, &error);
   }
-  if (done & CLEAR && r->control) ethd_control_clear(r->control);
-  if (done & HOT && !status) ethd_control_heated(r->control, r->heat);
-  if (done & TAUGHT && !status) ethd_control_taught(r->control, r->learned);
+  if (done & CLEAR && r->control) ethd_control_acknowledge(r->control);
+  if (done & HOT && !status) ethd_control_set_heat(r->control, r->heat);
+  if (done & TAUGHT && !status) ethd_control_set_memory(r->control, r->learned);
   if (status) ethd_error_text(r->events_path, &error, r->message);
   return status;
 }

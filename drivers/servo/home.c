@@ -50,8 +50,8 @@ static ethd_status find(ethd__servo_device *d, int axis) {
   ethd__servo_sample *s = &d->feedback.sample;
   double torque[2] = {0, 0}, mark = index_of(d, axis);
   int64_t last = s->stamp_ns;
-  ethd_status status = ETHD_BUSY;
-  for (int bad = 0; status == ETHD_BUSY && bad < FAILURES;) {
+  ethd_status status = ETHD_STATUS_BUSY;
+  for (int bad = 0; status == ETHD_STATUS_BUSY && bad < FAILURES;) {
     bad = turn(d, torque) ? bad + 1 : 0;
     if (bad) continue;
     if (is_ill(d)) return ethd__say(d->link.message, ETHD_E_DEVICE, "joint %d: the drive lets go", d->joint[axis] + 1);

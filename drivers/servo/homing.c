@@ -61,5 +61,5 @@ ethd_status ethd__homing_turn(const ethd__homing_def *def, ethd__homing *h, doub
   else if (stood)
     return h->travel >= AWAY / 2 ? ETHD_OK : fail(h, "it doesn't move: encoder, motor, or torque under its friction");
   *torque = asked;
-  return ETHD_BUSY;
+  return ETHD_STATUS_BUSY;
 }

@@ -56,7 +56,7 @@ static ethd_status await(const ethd__servo_device *d, int64_t *now_ns) {
   struct timespec t = {left / 1000000000, left % 1000000000};
   if (left <= 0) return ETHD_OK;
   if (d->is_virtual) {
-    if (left >= d->period_ns) return ETHD_STALE;
+    if (left >= d->period_ns) return ETHD_STATUS_STALE;
     return ETHD_OK;
   }
   if (left > BEHIND * d->exchange_ns) return ETHD_OK;

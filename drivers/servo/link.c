@@ -158,7 +158,7 @@ static bool disables_the_rest(ethd__servo_link *l) {
 
 ethd_status ethd__servo_link_turn(ethd__servo_link *l, int64_t now_ns, const double torque[2]) {
   if (l->state == ETHD__SERVO_DOWN) {
-    if (now_ns < l->attempt_ns) return ETHD_STALE;
+    if (now_ns < l->attempt_ns) return ETHD_STATUS_STALE;
     ethd_status status = ethd__servo_link_connect(l, now_ns);
     if (status) return status;
   }

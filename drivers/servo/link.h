@@ -57,7 +57,7 @@ void ethd__servo_link_make(const ethd__servo_map *map, ethd__servo_link *out);
 ETHD_MUST_CHECK ethd_status ethd__servo_link_connect(ethd__servo_link *link, int64_t now_ns);
 
 /* Makes one turn: it connects when that is due, or drains, or makes an exchange with this torque (Nm at the joints;
-   zero goes out unless ENABLED) and a step of the sequence that runs. ETHD_OK: raw has fresh values; ETHD_STALE:
+   zero goes out unless ENABLED) and a step of the sequence that runs. ETHD_OK: raw has fresh values; ETHD_STATUS_STALE:
    there was nothing to do; ETHD_E_DEVICE: no answer came, or a bad one. */
 ETHD_MUST_CHECK ethd_status ethd__servo_link_turn(ethd__servo_link *link, int64_t now_ns, const double torque[2]);
 

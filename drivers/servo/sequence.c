@@ -71,6 +71,6 @@ void ethd__servo_link_begin(ethd__servo_link *l, int32_t sequence, int64_t now_n
   l->step = 0;
   l->skipped = false;
   l->step_ns = now_ns;
-  l->result = ETHD_BUSY;
+  l->result = ETHD_STATUS_BUSY;
   if (sequence == ETHD__SERVO_DISABLE && l->state == ETHD__SERVO_ENABLED) l->state = ETHD__SERVO_IDENTIFIED;
 }

@@ -66,13 +66,13 @@ ethd_status ethd__servo_read(void *device, int64_t now_ns, ethd_sense *out) {
     ethd_histogram_add(&d->age, now_ns - s->stamp_ns);
   }
   /* a row that only counts waits for the next sample; one that ends the torque doesn't */
-  if (!fresh && !lasting) return ETHD_STALE;
+  if (!fresh && !lasting) return ETHD_STATUS_STALE;
   add_edges(d, out);
   out->faults |= lasting;
   out->grave |= s->grave;
   add_joints(d, out);
   if (fresh) add_reading(d, now_ns, out);
-  return fresh ? ETHD_OK : ETHD_STALE;
+  return fresh ? ETHD_OK : ETHD_STATUS_STALE;
 }
 
 ethd_status ethd__servo_write(void *device, int64_t now_ns, const ethd_command *command) {

@@ -7,7 +7,7 @@
 
 #include <stdint.h>
 
-#include "ethd/attributes.h"
+#include "ethd/base.h"
 
 typedef struct ethd__sim_key {
   uint64_t seed, tap;

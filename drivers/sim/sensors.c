@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "ethd/finger_fit.h"
+#include "ethd/estimate.h"
 #include "ethd/maths.h"
 
 enum { STAMP = ETHD_RAYS / 2, PARTS = ETHD_RAYS + 1 };

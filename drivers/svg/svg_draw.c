@@ -69,13 +69,13 @@ void ethd__draw_end(ethd__drawing *d, bool closed, bool filled) {
     d->number_count = d->chain;
     d->blank++;
   } else if (points == 2) {
-    finish(d, ETHD_SEGMENT);
+    finish(d, ETHD_SHAPE_SEGMENT);
   } else if (closed && filled) {
-    finish(d, ETHD_POLYGON);
+    finish(d, ETHD_SHAPE_POLYGON);
   } else {
     double x = first[0], y = first[1];
     if (closed) put(d, x), put(d, y);
-    finish(d, ETHD_POLYLINE);
+    finish(d, ETHD_SHAPE_POLYLINE);
   }
 }
 

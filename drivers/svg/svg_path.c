@@ -249,7 +249,7 @@ static bool may_have_holes(const path *q) {
   box_edge *edges = malloc(2 * count * sizeof *edges);
   for (size_t i = 0; boxes && edges && i < count; i++) {
     const ethd__drawn *o = &d->objects[q->objects + i];
-    if (o->shape != ETHD_POLYGON) continue;
+    if (o->shape != ETHD_SHAPE_POLYGON) continue;
     boxes[n] = box_of(d, o);
     edges[2 * n] = (box_edge){boxes[n].x_min, &boxes[n], false};
     edges[2 * n + 1] = (box_edge){boxes[n].x_max, &boxes[n], true};

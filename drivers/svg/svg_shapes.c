@@ -63,7 +63,7 @@ static void draw_ellipse(const shape *s, double x, double y, double rx, double r
   ethd_vec c = ethd__matrix_put(s->m, x, y);
   if (s->filled && a.alike && rx == ry) {
     double circle[] = {c.x, c.y, rx * ethd_vec_norm(a.u)};
-    ethd__draw_object(s->d, ETHD_CIRCLE, circle, 3);
+    ethd__draw_object(s->d, ETHD_SHAPE_CIRCLE, circle, 3);
     return;
   }
   ethd__draw_arc(s->d, c, ethd_vec_scale(rx, a.u), ethd_vec_scale(ry, a.v), 0, 4 * QUARTER);
@@ -106,7 +106,7 @@ static void rect(const shape *s) {
   if (s->filled && b.square && !(rx > 0 && ry > 0)) {
     ethd_vec c = ethd__matrix_put(s->m, x + w / 2, y + h / 2);
     double box[] = {c.x, c.y, w / 2 * ethd_vec_norm(b.u), h / 2 * ethd_vec_norm(b.v), ethd_atan2(b.u.y, b.u.x)};
-    ethd__draw_object(s->d, ETHD_BOX, box, 5);
+    ethd__draw_object(s->d, ETHD_SHAPE_BOX, box, 5);
     return;
   }
   corner(s, x + rx, y + ry, rx, ry, 0);

@@ -93,7 +93,7 @@ static ethd_status replay_read(void *device, int64_t now_ns, ethd_sense *out) ET
   const ethd_sense *s = &r->tape.rows[r->next].sense;
   if (r->waits < s->missed) {
     r->waits++;
-    return ETHD_STALE;
+    return ETHD_STATUS_STALE;
   }
   r->waits = 0;
   r->next++;

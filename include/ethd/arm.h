@@ -11,8 +11,8 @@
 #ifndef ETHD_ARM_H
 #define ETHD_ARM_H
 
-#include "ethd/status.h"
-#include "ethd/vec.h"
+#include "ethd/base.h"
+#include "ethd/maths.h"
 
 ETHD_BEGIN_DECLS
 

@@ -14,10 +14,10 @@
 ETHD_BEGIN_DECLS
 
 typedef enum ethd_verdict {
-  ETHD_KEPT = 0,
-  ETHD_BROKEN = 1,
-  ETHD_AT_RISK = 2,  /* allowed, but people should know */
-  ETHD_NOT_ASKED = 3 /* `found` says why */
+  ETHD_VERDICT_KEPT = 0,
+  ETHD_VERDICT_BROKEN = 1,
+  ETHD_VERDICT_AT_RISK = 2,  /* allowed, but people should know */
+  ETHD_VERDICT_NOT_ASKED = 3 /* `found` says why */
 } ethd_verdict;
 
 typedef struct ethd_conform_answer {

@@ -14,14 +14,12 @@
 #include <stdint.h>
 
 #include "ethd/arm.h"
+#include "ethd/estimate.h"
 #include "ethd/fault.h"
-#include "ethd/finger_filter.h"
-#include "ethd/finger_fit.h"
 #include "ethd/guard.h"
 #include "ethd/law.h"
 #include "ethd/scene.h"
 #include "ethd/sense.h"
-#include "ethd/velocity.h"
 
 ETHD_BEGIN_DECLS
 
@@ -129,7 +127,7 @@ typedef struct ethd_setup_key {
   uint32_t count;      /* 1, or how many numbers the key holds: workspace 4, reach 2, joints 4, lag 16 */
 } ethd_setup_key;
 
-/* Gives the keys that hold numbers under the chosen laws and methods one by one, with `index` from 0 on; ETHD_EMPTY
+/* Gives the keys that hold numbers under the chosen laws and methods one by one, with `index` from 0 on; ETHD_STATUS_EMPTY
    after the last. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_setup_key_at(const ethd_setup *setup, uint32_t index, ethd_setup_key *out);
 
@@ -214,14 +212,14 @@ ETHD_API void ethd_control_destroy(ethd_control *control);
    old setup would have commanded under its own limits, and the difference to the new one fades linearly to 0 over the
    new swap_time. Until then a torque may be over a limit that became narrower, by the share of the fade that is left; a
    new torque_rate holds at once. While events that nobody polls leave no room for those that hand scenes back, it
-   waits. ETHD_BUSY: the last one hasn't been taken yet; post again. Any refusal, also those of ethd_setup_check, leaves
+   waits. ETHD_STATUS_BUSY: the last one hasn't been taken yet; post again. Any refusal, also those of ethd_setup_check, leaves
    everything as it was. The period can't change (ETHD_E_ARGUMENT). A scene that a post has replaced may be posted again
    only after an event has handed it back, since that event may come at any moment. Takes nothing from the heap. [main]
    */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_post(ethd_control *control, const ethd_setup *setup,
                                                        ethd_error *error);
 
-/* Takes the next event, in order; ETHD_EMPTY when there is none. [main] */
+/* Takes the next event, in order; ETHD_STATUS_EMPTY when there is none. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_control_poll(ethd_control *control, ethd_event *out);
 
 /* Returns the period, s, of every setup that this controller has had or can get. [any, rt-safe] */
@@ -241,24 +239,24 @@ ETHD_API void ethd_control_heat(const ethd_control *control, double out[2]);
 
 /* Sets the motors' heat, in shares as ethd_control_heat gives it, for a replay that begins in the middle; a share that
    isn't a number, or is below 0, counts as 2, too hot. Must not be called while step runs. [main] */
-ETHD_API void ethd_control_heated(ethd_control *control, const double heat[2]);
+ETHD_API void ethd_control_set_heat(ethd_control *control, const double heat[2]);
 
 /* Gives what the transition law has learnt of the device (ethd_facts.memory), in the law's own units; restart keeps it,
    reset forgets it. Must not be called while step runs. [main] */
-ETHD_API void ethd_control_learned(const ethd_control *control, double out[ETHD_MEMORY]);
+ETHD_API void ethd_control_memory(const ethd_control *control, double out[ETHD_MEMORY]);
 
 /* Sets what the transition law has learnt, in the law's own units, for a replay that begins in the middle. Must not be
    called while step runs. [main] */
-ETHD_API void ethd_control_taught(ethd_control *control, const double memory[ETHD_MEMORY]);
+ETHD_API void ethd_control_set_memory(ethd_control *control, const double memory[ETHD_MEMORY]);
 
 /* Acknowledges a latched fault. If limits.clean_time is over at the next step, that step clears the fault, and the
    torque rises from zero: over swap_time what the laws ask for counts by a share that grows from 0 to 1; if not, the
    acknowledgement is dropped. [any, rt-safe] */
-ETHD_API void ethd_control_clear(ethd_control *control) ETHD_RT;
+ETHD_API void ethd_control_acknowledge(ethd_control *control) ETHD_RT;
 
 /* Returns for how long, s, nothing has called for a stop since a fault was latched; INFINITY: none is latched.
    [any, rt-safe] */
-ETHD_API double ethd_control_clean(const ethd_control *control) ETHD_RT;
+ETHD_API double ethd_control_clean_time(const ethd_control *control) ETHD_RT;
 
 /* Runs one tick and always fills command; trace may be NULL. Whatever the thread's floating-point mode is (rounding,
    traps, FTZ and DAZ), a tick computes to nearest, with subnormal numbers as 0 and without traps, so that its bytes

@@ -80,7 +80,7 @@ struct ethd_driver {
      sentence takes its place. What open leaves in *device is closed, also after a failure, unless it is NULL. */
   ethd_status (*open)(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]);
   ethd_status (*start)(void *device);
-  /* Adds what is new to *out, which is zero again after each step. ETHD_STALE, or another positive status: this driver
+  /* Adds what is new to *out, which is zero again after each step. ETHD_STATUS_STALE, or another positive status: this driver
      gives the joint samples and has no newer one; the loop then holds the torque and steps when there is one, or at
      once, with the last sample, if *out reports a fault that ends the torque. Negative: nothing is known of the device
      any more. */

@@ -11,11 +11,10 @@
 #define ETHD_VERSION_NUMBER (10000 * ETHD_VERSION_MAJOR + 100 * ETHD_VERSION_MINOR + ETHD_VERSION_PATCH)
 
 #include "ethd/arm.h"
-#include "ethd/attributes.h"
+#include "ethd/base.h"
 #include "ethd/cell.h"
 #include "ethd/control.h"
-#include "ethd/finger_filter.h"
-#include "ethd/finger_fit.h"
+#include "ethd/estimate.h"
 #include "ethd/guard.h"
 #include "ethd/law.h"
 #include "ethd/maths.h"
@@ -23,8 +22,5 @@
 #include "ethd/plugin.h"
 #include "ethd/scene.h"
 #include "ethd/sense.h"
-#include "ethd/status.h"
-#include "ethd/vec.h"
-#include "ethd/velocity.h"
 
 #endif

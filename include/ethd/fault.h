@@ -2,7 +2,7 @@
    the summary of a run and the manual's page come from these rows. Links from libethd.
 
    Reactions, from mild to hard:
-     COUNT    go on; it is counted
+     COUNTED  go on; it is counted
      DEGRADE  go on with less: without a sensor, by prediction, with less torque
      STOP     brake the ring until it stands still, or let it go (ethd/guard.h); then do as ZERO does
      ZERO     no torque, the device is disabled; latched until acknowledged
@@ -27,13 +27,13 @@
 
 #include <stdint.h>
 
-#include "ethd/attributes.h"
+#include "ethd/base.h"
 
 ETHD_BEGIN_DECLS
 
 typedef enum ethd_reaction {
   ETHD_REACTION_NONE = 0,
-  ETHD_REACTION_COUNT = 1,
+  ETHD_REACTION_COUNTED = 1,
   ETHD_REACTION_DEGRADE = 2,
   ETHD_REACTION_STOP = 3,
   ETHD_REACTION_ZERO = 4,
@@ -48,29 +48,29 @@ typedef enum ethd_reaction {
    100 kind - status; BUDGET ns; SPEED m/s; INPUT which, ETHD_HAVE_* or 0 for q; else 1 where the second reaction is
    due, 0 where not. TORQUE and TORQUE_RATE are told only when they last: over 0.1 s, over 20 ticks. */
 #define ETHD_FAULTS(X)                                                                                    \
-  X(1, OVERRUN, COUNT, COUNT, "1 tick", "a tick was late")                                                \
+  X(1, OVERRUN, COUNTED, COUNTED, "1 tick", "a tick was late")                                            \
   X(2, OVERRUNS, STOP, STOP, "5 ms", "ticks are late too often, or one by more than 5 ms")                \
   X(3, LOOP, ZERO, ZERO, "5 ms", "the loop's thread doesn't run")                                         \
-  X(4, REPLY_MISSING, COUNT, COUNT, "1 tick", "the servo didn't answer once")                             \
+  X(4, REPLY_MISSING, COUNTED, COUNTED, "1 tick", "the servo didn't answer once")                         \
   X(5, FEEDBACK_OLD, ZERO, ZERO, "5 ms or 2 exchanges", "the servo's feedback is too old")                \
-  X(6, REPLY_STALE, COUNT, COUNT, "1 exchange", "the servo's answer belonged to another question")        \
-  X(7, REPLY_BAD, COUNT, ZERO, "2 exchanges", "the servo's answers are damaged or refusals, too often")   \
+  X(6, REPLY_STALE, COUNTED, COUNTED, "1 exchange", "the servo's answer belonged to another question")    \
+  X(7, REPLY_BAD, COUNTED, ZERO, "2 exchanges", "the servo's answers are damaged or refusals, too often") \
   X(8, LINK_LOST, ZERO, ZERO, "1 exchange", "the link to the servo is lost")                              \
   X(9, DRIVE, ZERO, ZERO, "1 exchange x every", "the drive reports a fault")                              \
   X(10, NOT_FOLLOWED, ZERO, ZERO, "20 ms", "the drive doesn't follow the torque")                         \
-  X(11, ENCODER_JUMP, COUNT, ZERO, "1 tick", "an encoder jumped, twice in 10 ms")                         \
+  X(11, ENCODER_JUMP, COUNTED, ZERO, "1 tick", "an encoder jumped, twice in 10 ms")                       \
   X(12, ENCODER_FROZEN, ZERO, ZERO, "50 ms", "an encoder stands still under torque")                      \
   X(13, ENCODER_REVERSED, ZERO, ZERO, "20 ms", "the arm runs away: an encoder or a motor is reversed")    \
-  X(14, INDEX, COUNT, REFUSE, "1 turn", "an encoder's index marks have the wrong distance")               \
+  X(14, INDEX, COUNTED, REFUSE, "1 turn", "an encoder's index marks have the wrong distance")             \
   X(15, FRAME_LOST, DEGRADE, DEGRADE, "6.7 ms", "a frame of the proximity ring is lost or damaged")       \
   X(16, FINGER_OLD, DEGRADE, DEGRADE, "10 ms", "the finger wasn't seen for 10 ms: tracking fades")        \
   X(17, FINGER_LOST, STOP, STOP, "30 ms", "the finger wasn't seen for 30 ms")                             \
   X(18, SENSOR, DEGRADE, STOP, "5 frames", "a proximity sensor fails, or leaves fewer than 12 good ones") \
-  X(19, ESTIMATE, COUNT, STOP, "1 frame", "the finger's readings are implausible, five in a row")         \
+  X(19, ESTIMATE, COUNTED, STOP, "1 frame", "the finger's readings are implausible, five in a row")       \
   X(20, BOARD_CLOCK, DEGRADE, DEGRADE, "1 frame", "the proximity ring's clock jumped or started anew")    \
   X(21, FINITE, ZERO, ZERO, "same tick", "a law's output isn't a finite number in its range")             \
-  X(22, TORQUE, COUNT, COUNT, "same tick", "a torque over its limit was cut")                             \
-  X(23, TORQUE_RATE, COUNT, STOP, "same tick", "a law's torque rises over its limit, 20 ticks long")      \
+  X(22, TORQUE, COUNTED, COUNTED, "same tick", "a torque over its limit was cut")                         \
+  X(23, TORQUE_RATE, COUNTED, STOP, "same tick", "a law's torque rises over its limit, 20 ticks long")    \
   X(24, SPEED, STOP, STOP, "1 tick + speed lag", "the ring is faster than its limit")                     \
   X(25, WORKSPACE, DEGRADE, STOP, "1 tick", "the ring is out of its workspace")                           \
   X(26, HEAT, DEGRADE, ZERO, "model", "a motor is too hot")                                               \
@@ -79,10 +79,10 @@ typedef enum ethd_reaction {
   X(29, BUDGET, ZERO, ZERO, "1 tick", "a step ran over its time budget")                                  \
   X(30, PLUGIN, REFUSE, REFUSE, "load", "a plugin of another ABI, or with a bad table")                   \
   X(31, CONFIGURATION, REFUSE, REFUSE, "start", "an error in the configuration")                          \
-  X(32, RECORDER, COUNT, COUNT, "1 tick", "the recorder lost rows")                                       \
+  X(32, RECORDER, COUNTED, COUNTED, "1 tick", "the recorder lost rows")                                   \
   X(33, EMERGENCY_STOP, ZERO, ZERO, "1 tick", "the emergency stop was pressed")                           \
   X(34, APPLICATION, STOP, STOP, "100 ms", "the application is gone or told to end")                      \
-  X(35, CLOCK, COUNT, STOP, "1 tick", "the clock jumped by more than 5 ms")                               \
+  X(35, CLOCK, COUNTED, STOP, "1 tick", "the clock jumped by more than 5 ms")                             \
   X(36, SET_POINT, ZERO, ZERO, "the sequence", "the drive still holds an old set-point")                  \
   X(37, INPUT, ZERO, ZERO, "same tick", "a measurement isn't a possible number")                          \
   X(38, LAW, ZERO, ZERO, "same tick", "a law reported a failure")

@@ -26,8 +26,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "ethd/maths.h"
 #include "ethd/param.h"
-#include "ethd/vec.h"
 
 ETHD_BEGIN_DECLS
 

@@ -33,7 +33,7 @@
 
    A child that the process makes by fork (system and popen exec, daemon and multiprocessing don't) has a copy of the
    loop and none of its threads, and the device stays the parent's. There the loop has ended and isn't armed, join
-   returns ETHD_E_ARGUMENT, enable and home ETHD_BUSY, and destroy frees the copy; none of them calls the driver. So
+   returns ETHD_E_ARGUMENT, enable and home ETHD_STATUS_BUSY, and destroy frees the copy; none of them calls the driver. So
    daemon() comes before ethd_loop_start.
 
    Destroy the loop before its device and its controller. */
@@ -119,7 +119,7 @@ typedef struct ethd_loop ethd_loop;
 /* Marks of a row: what was done before its step. */
 enum {
   ETHD_ROW_STARTED = 1, /* the device was started and the controller reset */
-  ETHD_ROW_CLEARED = 2  /* ethd_control_clear was called */
+  ETHD_ROW_CLEARED = 2  /* ethd_control_acknowledge was called */
 };
 
 /* One tick. The device got `share` of the trace's torque. */
@@ -191,15 +191,15 @@ ETHD_API void ethd_loop_beat(ethd_loop *loop);
 ETHD_API void ethd_loop_raise(ethd_loop *loop, ethd_fault fault);
 
 /* Acknowledges the controller's fault before the next step. [any] */
-ETHD_API void ethd_loop_clear(ethd_loop *loop);
+ETHD_API void ethd_loop_acknowledge(ethd_loop *loop);
 
 /* Starts the device again, restarts the controller and arms, with a soft start; meanwhile the loop leaves both alone.
-   Must not be called while a posted setup waits. ETHD_BUSY: the loop didn't let go within a second; else what the
+   Must not be called while a posted setup waits. ETHD_STATUS_BUSY: the loop didn't let go within a second; else what the
    device's start returns: if that isn't ETHD_OK, the loop is disarmed. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_enable(ethd_loop *loop);
 
 /* Calls the device's home, with the joints' angles, rad, or NULL (driver.h), while it is disarmed and the loop leaves
-   it alone. A controller without a fault is then restarted, since the pose may jump. ETHD_BUSY: the loop didn't let go,
+   it alone. A controller without a fault is then restarted, since the pose may jump. ETHD_STATUS_BUSY: the loop didn't let go,
    or is armed. ETHD_E_ARGUMENT: the device has no home. ETHD_E_RANGE: an angle that isn't finite or is over
    ETHD_SENSE_ANGLE_MAX; else what its home returns. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_home(ethd_loop *loop, const double *q);
@@ -212,7 +212,7 @@ ETHD_API void ethd_loop_stop(ethd_loop *loop);
    ethd_loop_ended is 0, the thread hangs in the device. [main] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_join(ethd_loop *loop);
 
-/* Takes the next row, in order; ETHD_EMPTY when there is none. One reader at a time. [any] */
+/* Takes the next row, in order; ETHD_STATUS_EMPTY when there is none. One reader at a time. [any] */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_loop_take(ethd_loop *loop, ethd_loop_row *out);
 
 /* Returns ETHD_SHORT_* bits, known once it has started; 0 on a virtual clock. [main] */

@@ -1,4 +1,61 @@
-/* Elementary functions that give the same bits everywhere. Links from libethd.
+/* Vectors of the plane, and elementary functions that give the same bits everywhere. Links from libethd. */
+#ifndef ETHD_MATHS_H
+#define ETHD_MATHS_H
+
+#include "ethd/base.h"
+#include <math.h>
+
+/* ---- vectors ---- */
+
+/* Vectors of the plane. Frame R_0: x right, y up, origin at the base joint; m, rad, s, N, Nm. */
+typedef struct ethd_vec {
+  double x, y;
+} ethd_vec;
+
+/* None of these changes a unit or a frame: vectors that are added have the same. */
+
+/* Returns two numbers in memory, x first, as a vector. [any, rt-safe] */
+static inline ethd_vec ethd_vec_of(const double v[2]) ETHD_RT {
+  ethd_vec r = {v[0], v[1]};
+  return r;
+}
+
+/* Writes the vector as two numbers, x first. [any, rt-safe] */
+static inline void ethd_vec_put(ethd_vec a, double out[2]) ETHD_RT {
+  out[0] = a.x;
+  out[1] = a.y;
+}
+
+/* Returns a + b. [any, rt-safe] */
+static inline ethd_vec ethd_vec_add(ethd_vec a, ethd_vec b) ETHD_RT {
+  ethd_vec r = {a.x + b.x, a.y + b.y};
+  return r;
+}
+
+/* Returns a - b. [any, rt-safe] */
+static inline ethd_vec ethd_vec_sub(ethd_vec a, ethd_vec b) ETHD_RT {
+  ethd_vec r = {a.x - b.x, a.y - b.y};
+  return r;
+}
+
+/* Returns s times a. [any, rt-safe] */
+static inline ethd_vec ethd_vec_scale(double s, ethd_vec a) ETHD_RT {
+  ethd_vec r = {s * a.x, s * a.y};
+  return r;
+}
+
+/* Returns the scalar product. [any, rt-safe] */
+static inline double ethd_vec_dot(ethd_vec a, ethd_vec b) ETHD_RT { return a.x * b.x + a.y * b.y; }
+
+/* Returns the z component of a x b, > 0 where b lies counter-clockwise of a. [any, rt-safe] */
+static inline double ethd_vec_cross(ethd_vec a, ethd_vec b) ETHD_RT { return a.x * b.y - a.y * b.x; }
+
+/* Returns the length, >= 0. [any, rt-safe] */
+static inline double ethd_vec_norm(ethd_vec a) ETHD_RT { return sqrt(a.x * a.x + a.y * a.y); }
+
+/* ---- functions ---- */
+
+/* Elementary functions that give the same bits everywhere.
 
    A C library picks its variant of sin or exp by the CPU it finds (with or without FMA), so the same
    seed would give other bits on another machine. These functions use only + - * / and integers in a fixed order,
@@ -10,10 +67,6 @@
    subnormal arguments count as zeros and subnormal results may be zeros; all other results stay the same.
    ulp: a unit in the last place of the exact result. The bounds are those of 6e8 points measured against
    80-bit long double. */
-#ifndef ETHD_MATHS_H
-#define ETHD_MATHS_H
-
-#include "ethd/attributes.h"
 
 ETHD_BEGIN_DECLS
 

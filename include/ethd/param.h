@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "ethd/status.h"
+#include "ethd/base.h"
 
 ETHD_BEGIN_DECLS
 

@@ -64,7 +64,7 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_create(const char *folder, c
      set         detail: section.key value. Changes the present setup
      clear       faults were acknowledged
      heat        detail: h1 h2. The motors' heat, see ethd_control_heat
-     learned     detail: m1 m2 m3 m4. What the transition law has learnt, see ethd_control_learned
+     learned     detail: m1 m2 m3 m4. What the transition law has learnt, see ethd_control_memory
      fault       detail: a sentence for people
      lost        detail: how many ticks are missing before this row, which therefore can't be replayed
      thinned     detail: how. tick.npy holds only some of the ticks, so the recording can't be replayed

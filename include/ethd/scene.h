@@ -12,8 +12,8 @@
 #include <stdint.h>
 
 #include "ethd/arm.h"
+#include "ethd/maths.h"
 #include "ethd/param.h"
-#include "ethd/vec.h"
 
 ETHD_BEGIN_DECLS
 
@@ -21,13 +21,13 @@ ETHD_BEGIN_DECLS
    box {x, y, half_w, half_h, angle}; segment {x1, y1, x2, y2}; polygon and polyline {x1, y1, x2, y2, ...}.
    Segments and polylines are thin walls without an inside. Polygons are simple, of either winding. */
 typedef enum ethd_shape {
-  ETHD_HALFPLANE = 0,
-  ETHD_CIRCLE,
-  ETHD_CAPSULE,
-  ETHD_BOX,
-  ETHD_POLYGON,
-  ETHD_SEGMENT,
-  ETHD_POLYLINE,
+  ETHD_SHAPE_HALFPLANE = 0,
+  ETHD_SHAPE_CIRCLE,
+  ETHD_SHAPE_CAPSULE,
+  ETHD_SHAPE_BOX,
+  ETHD_SHAPE_POLYGON,
+  ETHD_SHAPE_SEGMENT,
+  ETHD_SHAPE_POLYLINE,
   ETHD_SHAPE_COUNT
 } ethd_shape;
 
@@ -146,7 +146,7 @@ typedef struct ethd_scene_box {
   int32_t of_chain; /* 1: the things are edges of a chain, 0: objects */
 } ethd_scene_box;
 
-/* Gives box i, from 0 up to ethd_scene_info.boxes, for pictures; ETHD_EMPTY: there is none. [any] */
+/* Gives box i, from 0 up to ethd_scene_info.boxes, for pictures; ETHD_STATUS_EMPTY: there is none. [any] */
 ETHD_API ethd_status ethd_scene_box_at(const ethd_scene *scene, size_t i, ethd_scene_box *out);
 
 /* Gives object i in the order of their numbers, as it was given (a half-plane's divided by |n|), with `line` 0; the

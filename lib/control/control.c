@@ -44,7 +44,7 @@ static void give_back(ethd_control *control, int64_t tick, const ethd__plan *fro
 /* The tolerance is for the rounding of a sum of periods. */
 static bool clean_enough(const ethd_control *control) ETHD_RT {
   double clean_time = control->plans[control->ruling].setup.limits.clean_time;
-  return ethd_control_clean(control) >= clean_time * (1 - 1e-9);
+  return ethd_control_clean_time(control) >= clean_time * (1 - 1e-9);
 }
 
 static bool take_clear(ethd_control *control) ETHD_RT {
@@ -162,17 +162,17 @@ void ethd_control_reset(ethd_control *control) {
 void ethd_control_restart(ethd_control *control) {
   double heat[2], memory[ETHD_MEMORY];
   ethd_control_heat(control, heat);
-  ethd_control_learned(control, memory);
+  ethd_control_memory(control, memory);
   ethd_control_reset(control);
-  ethd_control_heated(control, heat);
-  ethd_control_taught(control, memory);
+  ethd_control_set_heat(control, heat);
+  ethd_control_set_memory(control, memory);
 }
 
-void ethd_control_learned(const ethd_control *control, double out[ETHD_MEMORY]) {
+void ethd_control_memory(const ethd_control *control, double out[ETHD_MEMORY]) {
   memcpy(out, control->state.memory, sizeof control->state.memory);
 }
 
-void ethd_control_taught(ethd_control *control, const double memory[ETHD_MEMORY]) {
+void ethd_control_set_memory(ethd_control *control, const double memory[ETHD_MEMORY]) {
   memcpy(control->state.memory, memory, sizeof control->state.memory);
 }
 
@@ -182,14 +182,16 @@ void ethd_control_heat(const ethd_control *control, double out[2]) {
 
 #define HEAT_UNKNOWN 2.0 /* hot enough for row HEAT */
 
-void ethd_control_heated(ethd_control *control, const double heat[2]) {
+void ethd_control_set_heat(ethd_control *control, const double heat[2]) {
   for (int i = 0; i < 2; i++)
     control->state.guard.heat[i] = heat[i] >= 0 && heat[i] < (double)INFINITY ? heat[i] : HEAT_UNKNOWN;
 }
 
-void ethd_control_clear(ethd_control *control) { atomic_store_explicit(&control->clear, 1, memory_order_relaxed); }
+void ethd_control_acknowledge(ethd_control *control) {
+  atomic_store_explicit(&control->clear, 1, memory_order_relaxed);
+}
 
-double ethd_control_clean(const ethd_control *control) {
+double ethd_control_clean_time(const ethd_control *control) {
   if (!__atomic_load_n(&control->state.fault, __ATOMIC_RELAXED)) return (double)INFINITY;
   return (double)__atomic_load_n(&control->state.clean, __ATOMIC_RELAXED) * control->period;
 }

@@ -34,7 +34,7 @@ ethd_status ethd_control_create(const ethd_setup *setup, ethd_control **out, eth
 void ethd_control_destroy(ethd_control *control) { free(control); }
 
 ethd_status ethd_control_post(ethd_control *control, const ethd_setup *setup, ethd_error *error) {
-  if (atomic_load_explicit(&control->posted, memory_order_acquire)) return ETHD_BUSY;
+  if (atomic_load_explicit(&control->posted, memory_order_acquire)) return ETHD_STATUS_BUSY;
   ethd__plan *spare = &control->plans[1 - control->ruling];
   ethd_status status = prepare(setup, spare, error);
   if (status < 0) return status;

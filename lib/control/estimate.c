@@ -121,7 +121,7 @@ static bool use(const ethd__tick *t, ethd_vec reading) ETHD_RT {
   ethd_vec x = is_world(t) ? reading : ethd_vec_add(reading, reference(t));
   double age = seconds(t->sense->sample_ns, t->sense->time_ns);
   ethd_status status =
-      outside ? ETHD_STALE : ethd__filter_update(&plan->filter, filter, x, age, t->sense->finger_noise);
+      outside ? ETHD_STATUS_STALE : ethd__filter_update(&plan->filter, filter, x, age, t->sense->finger_noise);
   /* unreachable: readings, ages and noises are bounded, so that the filter's numbers stay finite */
   if (!is_finite(filter->x[0] + filter->x[1]) || !is_finite(filter->v[0] + filter->v[1]))
     memset(filter, 0, sizeof *filter); /* unreachable: likewise; it would start anew with the next reading */

@@ -16,7 +16,7 @@ bool ethd__events_push(ethd__events *e, const ethd_event *event) {
 ethd_status ethd_control_poll(ethd_control *control, ethd_event *out) {
   ethd__events *e = &control->events;
   unsigned tail = atomic_load_explicit(&e->tail, memory_order_relaxed);
-  if (tail == atomic_load_explicit(&e->head, memory_order_acquire)) return ETHD_EMPTY;
+  if (tail == atomic_load_explicit(&e->head, memory_order_acquire)) return ETHD_STATUS_EMPTY;
   *out = e->at[tail % ETHD__EVENTS];
   atomic_store_explicit(&e->tail, tail + 1, memory_order_release);
   return ETHD_OK;

@@ -99,7 +99,7 @@ static bool find_at(const ethd_setup *setup, uint32_t index, ethd__setup_field *
 
 ethd_status ethd_setup_key_at(const ethd_setup *setup, uint32_t index, ethd_setup_key *out) {
   ethd__setup_field field;
-  if (!find_at(setup, index, &field)) return ETHD_EMPTY;
+  if (!find_at(setup, index, &field)) return ETHD_STATUS_EMPTY;
   *out = field.key;
   return ETHD_OK;
 }

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "ethd/finger_filter.h"
+#include "ethd/estimate.h"
 
 /* Rows of the filters' tables; those that several filters share come first. */
 enum { FILTER_REFERENCE, FILTER_COMPENSATION, FILTER_LATENCY, FILTER_COMMON };

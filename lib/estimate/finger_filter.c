@@ -1,4 +1,4 @@
-#include "ethd/finger_filter.h"
+#include "ethd/estimate.h"
 
 #include <math.h>
 #include <string.h>
@@ -67,7 +67,7 @@ static bool correct(const ethd_filter *f, ethd_filter_state *s, const sighting *
 
 static ethd_status gated(const ethd_filter *f, ethd_filter_state *s, const sighting *seen) {
   s->gated++;
-  if (++s->gated_in_a_row < ETHD_FILTER_GATED_MAX) return ETHD_STALE;
+  if (++s->gated_in_a_row < ETHD_FILTER_GATED_MAX) return ETHD_STATUS_STALE;
   start_from(f, s, seen);
   s->restarts++;
   return ETHD_OK;
@@ -79,7 +79,7 @@ ethd_status ethd__filter_update(const ethd_filter *filter, ethd_filter_state *st
   const sighting seen = {x, age, noise};
   if (!isfinite(x.x) || !isfinite(x.y) || !isfinite(age)) {
     state->gated++;
-    return ETHD_STALE;
+    return ETHD_STATUS_STALE;
   }
   if (!state->started) {
     start_from(filter, state, &seen);
@@ -88,7 +88,7 @@ ethd_status ethd__filter_update(const ethd_filter *filter, ethd_filter_state *st
   double elapsed = state->age - age;
   if (!(elapsed > 0)) {
     state->late++;
-    return ETHD_STALE;
+    return ETHD_STATUS_STALE;
   }
   ethd_filter_state next = *state;
   if (filter->compensation == ETHD_COMPENSATION_STAMP) advance(filter, &next, elapsed);

@@ -1,4 +1,4 @@
-#include "ethd/finger_fit.h"
+#include "ethd/estimate.h"
 #include "fp_mode.h"
 
 #include <math.h>
@@ -57,8 +57,8 @@ static bool find(const ethd_fit *fit, ethd__points *points, ethd_vec *centre) {
 
 static inline ethd_status finish(const ethd_fit *fit, ethd__points *points, ethd_finger *out) {
   ethd_vec centre;
-  if (!find(fit, points, &centre)) return ETHD_STALE;
-  if (!(ethd_vec_dot(centre, centre) < fit->ring_radius * fit->ring_radius)) return ETHD_STALE;
+  if (!find(fit, points, &centre)) return ETHD_STATUS_STALE;
+  if (!(ethd_vec_dot(centre, centre) < fit->ring_radius * fit->ring_radius)) return ETHD_STATUS_STALE;
   describe(fit, points, centre, out);
   return ETHD_OK;
 }

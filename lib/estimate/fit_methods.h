@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "ethd/finger_fit.h"
+#include "ethd/estimate.h"
 #include "maths/two.h"
 
 /* Rows of the table of the robust fit. */

@@ -1,4 +1,4 @@
-#include "ethd/velocity.h"
+#include "ethd/estimate.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 #ifndef ETHD__ESTIMATE_VELOCITY_METHODS_H
 #define ETHD__ESTIMATE_VELOCITY_METHODS_H
 
-#include "ethd/velocity.h"
+#include "ethd/estimate.h"
 
 /* Rows of the methods' tables; the last are kalman's. */
 enum { LOWPASS_CUTOFF };

@@ -14,7 +14,7 @@
 
 #include <math.h>
 
-#include "ethd/attributes.h"
+#include "ethd/base.h"
 
 typedef struct ethd__brake_curve {
   double a, rate; /* m/s^2, 1/s */

@@ -14,7 +14,7 @@
 
 #include <stdbool.h>
 
-#include "ethd/attributes.h"
+#include "ethd/base.h"
 
 #define ETHD__SETTLED 5e-3 /* s: after it the transmission's stretch is there and no longer swings */
 #define ETHD__UNSURE 0.05  /* error of k that friction, delay and sampling cause where the facts are right */

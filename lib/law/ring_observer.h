@@ -13,7 +13,7 @@
 #ifndef ETHD__LAW_RING_OBSERVER_H
 #define ETHD__LAW_RING_OBSERVER_H
 
-#include "ethd/attributes.h"
+#include "ethd/base.h"
 
 typedef struct ethd__ring_observer {
   double d, v; /* m to the surface, m/s */

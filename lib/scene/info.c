@@ -92,12 +92,12 @@ static const ethd__tree *tree_of(const ethd_scene *scene, uint32_t node) {
 
 ethd_status ethd_scene_box_at(const ethd_scene *scene, size_t i, ethd_scene_box *out) {
   uint32_t node = (uint32_t)(i / ETHD__WIDE), lane = (uint32_t)(i % ETHD__WIDE), level = 1;
-  if (i / ETHD__WIDE >= scene->node_count) return ETHD_EMPTY;
+  if (i / ETHD__WIDE >= scene->node_count) return ETHD_STATUS_EMPTY;
   const ethd__node *n = ETHD__ARRAY(scene, ethd__node, nodes_at) + node;
   const ethd__tree *tree = tree_of(scene, node);
   double c = (double)n->c[lane], s = (double)n->s[lane], u = (double)n->u[lane], v = (double)n->v[lane],
          k = 1 / scene->scale;
-  if (!isfinite(u)) return ETHD_EMPTY;
+  if (!isfinite(u)) return ETHD_STATUS_EMPTY;
   while (level < tree->levels && node >= tree->first[level + 1]) level++;
   *out = (ethd_scene_box){{scene->centre.x + k * (c * u - s * v), scene->centre.y + k * (s * u + c * v)},
                           c,

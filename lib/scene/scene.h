@@ -101,7 +101,7 @@ bool ethd__edge_crossed(ethd_vec a, ethd_vec b, ethd_vec x) ETHD_RT;
 static inline void ethd__label(const ethd__object *o, ethd_touch *out) {
   out->object = o->id;
   out->material = o->material;
-  if (o->shape == ETHD_SEGMENT) out->feature = 0;
+  if (o->shape == ETHD_SHAPE_SEGMENT) out->feature = 0;
   if (o->turn) out->side = 0;
 }
 

@@ -116,32 +116,32 @@ static void box(const double *p, ethd_vec x, ethd_touch *out) ETHD_RT {
 
 /* clang-format off */
 const ethd__shape ethd__shapes[ETHD_SHAPE_COUNT] = {
-    [ETHD_HALFPLANE] = {
+    [ETHD_SHAPE_HALFPLANE] = {
         .name = "halfplane", .form = "NX NY C", .count = 3,
         .numbers = {{"nx", ETHD__DIRECTION}, {"ny", ETHD__DIRECTION}, {"c", ETHD__COORDINATE}},
         .check = check_normal, .keep = keep_unit, .nearest = halfplane},
-    [ETHD_CIRCLE] = {
+    [ETHD_SHAPE_CIRCLE] = {
         .name = "circle", .form = "X Y R", .count = 3,
         .numbers = {{"x", ETHD__COORDINATE}, {"y", ETHD__COORDINATE}, {"r", ETHD__LENGTH}},
         .discs = 1, .disc = circle_disc, .nearest = circle},
-    [ETHD_CAPSULE] = {
+    [ETHD_SHAPE_CAPSULE] = {
         .name = "capsule", .form = "X1 Y1 X2 Y2 R", .count = 5,
         .numbers = {{"x1", ETHD__COORDINATE}, {"y1", ETHD__COORDINATE}, {"x2", ETHD__COORDINATE},
                     {"y2", ETHD__COORDINATE}, {"r", ETHD__LENGTH}},
         .discs = 2, .disc = capsule_disc, .nearest = capsule},
-    [ETHD_BOX] = {
+    [ETHD_SHAPE_BOX] = {
         .name = "box", .form = "X Y HALF_W HALF_H ANGLE", .count = 5,
         .numbers = {{"x", ETHD__COORDINATE}, {"y", ETHD__COORDINATE}, {"half_w", ETHD__LENGTH},
                     {"half_h", ETHD__LENGTH}, {"angle", ETHD__DIRECTION}},
         .keep = keep_turn, .added = 2, .discs = 4, .disc = box_disc, .nearest = box},
-    [ETHD_POLYGON] = {
+    [ETHD_SHAPE_POLYGON] = {
         .name = "polygon", .form = "X1 Y1 X2 Y2 X3 Y3 ...", .count = 6,
         .numbers = {{"x", ETHD__COORDINATE}, {"y", ETHD__COORDINATE}}, .is_chain = true, .is_list = true,
         .is_closed = true},
-    [ETHD_SEGMENT] = {
+    [ETHD_SHAPE_SEGMENT] = {
         .name = "segment", .form = "X1 Y1 X2 Y2", .count = 4,
         .numbers = {{"x", ETHD__COORDINATE}, {"y", ETHD__COORDINATE}}, .is_chain = true},
-    [ETHD_POLYLINE] = {
+    [ETHD_SHAPE_POLYLINE] = {
         .name = "polyline", .form = "X1 Y1 X2 Y2 ...", .count = 4,
         .numbers = {{"x", ETHD__COORDINATE}, {"y", ETHD__COORDINATE}}, .is_chain = true, .is_list = true},
 };

@@ -84,7 +84,7 @@ static void old_point(int i, char *says, size_t room) {
 const fault_end fault_ends[] = {
     {30, ETHD_REACTION_REFUSE, bad_plugin, "seven plugins that are none"},
     {31, ETHD_REACTION_REFUSE, bad_configuration, "nine wrong lines, each told with its number"},
-    {32, ETHD_REACTION_COUNT, full_recorder, "nobody takes the loop's rows; lost ones are told behind"},
+    {32, ETHD_REACTION_COUNTED, full_recorder, "nobody takes the loop's rows; lost ones are told behind"},
     {36, ETHD_REACTION_REFUSE, old_point, "the drive keeps a set-point while it is enabled anew"},
 };
 const size_t fault_end_count = sizeof fault_ends / sizeof *fault_ends;

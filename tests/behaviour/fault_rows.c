@@ -233,7 +233,7 @@ static void guarded_walls(ethd_setup *s) {
 }
 
 #define DEGRADE ETHD_REACTION_DEGRADE
-#define COUNT ETHD_REACTION_COUNT
+#define COUNT ETHD_REACTION_COUNTED
 #define STOP ETHD_REACTION_STOP
 #define ZERO ETHD_REACTION_ZERO
 

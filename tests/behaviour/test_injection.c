@@ -33,7 +33,7 @@ static int is_still(const fault_rig *r) { return r->torque[0] == 0 && r->torque[
 static const char *follow(fault_rig *r, const fault_row *t, int64_t begin) {
   int64_t seen = r->tick, let_go = seen + (t->device == FAULT_BUS ? 60 : 1), stood = -1;
   int ends = t->reaction == ETHD_REACTION_STOP ? PATIENCE : AFTER,
-      goes_on = t->reaction == ETHD_REACTION_COUNT || t->reaction == ETHD_REACTION_DEGRADE;
+      goes_on = t->reaction == ETHD_REACTION_COUNTED || t->reaction == ETHD_REACTION_DEGRADE;
   for (int i = 0; i < ends; i++) {
     const ethd_trace *trace = &r->row.trace;
     if (goes_on && r->stepped && trace->fault) return "a row that only counts has stopped it: row";

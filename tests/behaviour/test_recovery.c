@@ -52,7 +52,7 @@ static int recover(fault_rig *r, const double home[2]) {
     if (r->row.trace.fault == ETHD_FAULT_ENCODER_JUMP && i == 2000 && r->driver->home(r->device, r->now.q)) return -1;
     if (r->row.trace.fault || r->row.trace.guard) {
       r->driver->clear(r->device);
-      if (ethd_control_clean(r->control) >= r->setup.limits.clean_time) ethd_loop_clear(r->loop);
+      if (ethd_control_clean_time(r->control) >= r->setup.limits.clean_time) ethd_loop_acknowledge(r->loop);
     } else if (!ethd_loop_armed(r->loop)) {
       r->driver->clear(r->device);
       for (int k = 0; k < 5; k++) fault_rig_tick(r);

@@ -1,7 +1,7 @@
 /* Posting and taking of setups: [main] prepares the spare plan and says so, the tick takes it, uses both plans, hands
    the replaced scene back by an event, and only then lets [main] have the spare one again.
 
-   = lib/control/control_create.c: if (atomic_load_explicit(&control->posted, memory_order_acquire)) return ETHD_BUSY;
+   = lib/control/control_create.c: if (atomic_load_explicit(&control->posted, memory_order_acquire)) return ETHD_STATUS_BUSY;
    = lib/control/control_create.c: ethd__plan *spare = &control->plans[1 - control->ruling];
    = lib/control/control_create.c: atomic_store_explicit(&control->posted, 1, memory_order_release);
    = lib/control/control.c: if (!atomic_load_explicit(&control->posted, memory_order_acquire)) return NULL;

@@ -3,7 +3,7 @@
    = lib/control/events.c: (atomic_load_explicit(&e->head, memory_order_relaxed) - atomic_load_explicit(&e->tail, memory_order_acquire));
    = lib/control/events.c: e->at[head % ETHD__EVENTS] = *event;
    = lib/control/events.c: atomic_store_explicit(&e->head, head + 1, memory_order_release);
-   = lib/control/events.c: if (tail == atomic_load_explicit(&e->head, memory_order_acquire)) return ETHD_EMPTY;
+   = lib/control/events.c: if (tail == atomic_load_explicit(&e->head, memory_order_acquire)) return ETHD_STATUS_EMPTY;
    = lib/control/events.c: *out = e->at[tail % ETHD__EVENTS];
    = lib/control/events.c: atomic_store_explicit(&e->tail, tail + 1, memory_order_release);
    = drivers/loop/cycle.c: r->at[head % r->size] = l->row;

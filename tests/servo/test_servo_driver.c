@@ -367,7 +367,7 @@ START_TEST(test_missing_once) {
   start_device();
   for (int i = 0; i < 20; i++) ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
   spoil(1, MOCK_DROP, 0);
-  ck_assert_int_eq(tick(0.1, 0), ETHD_STALE); /* the loop holds its torque, and knows no new fault */
+  ck_assert_int_eq(tick(0.1, 0), ETHD_STATUS_STALE); /* the loop holds its torque, and knows no new fault */
   ck_assert_int_eq(sense.faults | sense.grave, 0);
   ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
   ck_assert_int_eq(sense.faults, ETHD_FAULT_BIT(ETHD_FAULT_REPLY_MISSING));
@@ -384,7 +384,7 @@ START_TEST(test_feedback_old) {
   double q = sense.q[0];
   spoil(1000, MOCK_DROP, 0);
   ck_assert_int_eq(ticks_until(ETHD_FAULT_FEEDBACK_OLD, 20), 6); /* the first tick over 5 ms */
-  ck_assert_int_eq(last, ETHD_STALE);
+  ck_assert_int_eq(last, ETHD_STATUS_STALE);
   ck_assert_double_eq(sense.q[0], q);
   close_device();
 }
@@ -394,7 +394,7 @@ START_TEST(test_stale_answer) {
   start_device();
   for (int i = 0; i < 20; i++) tick(0.1, 0);
   spoil(2, MOCK_OLD, 0);
-  ck_assert_int_eq(tick(0.1, 0), ETHD_STALE);
+  ck_assert_int_eq(tick(0.1, 0), ETHD_STATUS_STALE);
   ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
   ck_assert_int_eq(sense.faults, ETHD_FAULT_BIT(ETHD_FAULT_REPLY_STALE));
   close_device();
@@ -668,7 +668,7 @@ START_TEST(test_small_counter) {
   }
   ck_assert_int_eq(seen, 15);
   spoil(2, MOCK_OLD, 0); /* under the same torque as before */
-  ck_assert_int_eq(tick(0.1, 0), ETHD_STALE);
+  ck_assert_int_eq(tick(0.1, 0), ETHD_STATUS_STALE);
   ck_assert_int_eq(tick(0.1, 0), ETHD_OK);
   ck_assert_int_eq(sense.faults, ETHD_FAULT_BIT(ETHD_FAULT_REPLY_STALE));
   close_device();
@@ -744,7 +744,7 @@ START_TEST(test_unplugged) {
     ck_assert_int_eq(raw(MOCK_TORQUE1), (int)lrint(0.5 * NM));
     mock_unplug(&drive);
     ck_assert_int_le(ticks_until(ETHD_FAULT_LINK_LOST, 4), 2);
-    ck_assert_int_eq(last, ETHD_STALE);
+    ck_assert_int_eq(last, ETHD_STATUS_STALE);
     mock_plug(&drive);
     connect_again();
     /* back, seeing, and never enabled by itself: zero torque whatever the loop writes */
@@ -842,7 +842,7 @@ START_TEST(test_never_waits) {
   while (!atomic_load(&drive.holding)) usleep(100);
   for (int i = 0; i < 10000; i++) {
     const ethd_command command = {{0.1, 0}, 0, 0};
-    ck_assert_int_eq(servo->read(device, now, &sense), ETHD_STALE);
+    ck_assert_int_eq(servo->read(device, now, &sense), ETHD_STATUS_STALE);
     ck_assert_int_eq(servo->write(device, now, &command), ETHD_OK);
     servo->safe(device);
   }

@@ -48,7 +48,7 @@ static double home(joint *j, const ethd__homing_def *def, ethd__homing *h, doubl
     bool passed = (before - mark) * (j->q - mark) < 0;
     before = j->q;
     *status = ethd__homing_turn(def, h, encoder(j), dt, passed, &torque);
-    if (*status != ETHD_BUSY) return t;
+    if (*status != ETHD_STATUS_BUSY) return t;
     move(j, torque, dt);
   }
   return t;

@@ -315,7 +315,7 @@ static int in_a_child(void) {
   ethd_loop_row row;
   alarm(20);
   if (ethd_loop_armed(loop) || !ethd_loop_ended(loop) || ethd_loop_hangs(loop, NULL)) return 1;
-  if (ethd_loop_enable(loop) != ETHD_BUSY || ethd_loop_home(loop, NULL) == ETHD_OK) return 2;
+  if (ethd_loop_enable(loop) != ETHD_STATUS_BUSY || ethd_loop_home(loop, NULL) == ETHD_OK) return 2;
   while (ethd_loop_take(loop, &row) == ETHD_OK) continue;
   const int starts = atomic_load(&d.starts);
   ethd_loop_stop(loop);

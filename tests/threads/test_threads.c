@@ -122,14 +122,14 @@ START_TEST(test_post_poll_clear_while_stepping) {
     setup.scene = scene_of(l.given + 1);
     set_number(&setup, l.given + 1);
     ethd_status status;
-    while ((status = ethd_control_post(r.control, &setup, NULL)) == ETHD_BUSY) {
+    while ((status = ethd_control_post(r.control, &setup, NULL)) == ETHD_STATUS_BUSY) {
       drain(&r, &l);
       sched_yield();
     }
     ck_assert_int_eq(status, ETHD_OK);
     l.scenes[++l.given] = (ethd_scene *)setup.scene;
     if (l.given % 3 == 0) drain(&r, &l);
-    if (l.given % 7 == 0) ethd_control_clear(r.control);
+    if (l.given % 7 == 0) ethd_control_acknowledge(r.control);
   }
   while (l.taken < POSTS) {
     drain(&r, &l);
@@ -137,7 +137,7 @@ START_TEST(test_post_poll_clear_while_stepping) {
   }
   /* the event ring alone, some times round */
   for (int more = l.faults + 300; l.faults < more;) {
-    ethd_control_clear(r.control);
+    ethd_control_acknowledge(r.control);
     drain(&r, &l);
     sched_yield();
   }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "draw.h"
-#include "ethd/finger_filter.h"
+#include "ethd/estimate.h"
 
 #define RUN_T 1e-3
 #define RUN_NOISE 0.1e-3

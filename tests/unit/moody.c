@@ -6,7 +6,7 @@
 moody mood;
 
 static ethd_status status_of(int m) {
-  return m == MOODY_FAIL ? ETHD_E_LAW : m == MOODY_POSITIVE ? ETHD_STALE : ETHD_OK;
+  return m == MOODY_FAIL ? ETHD_E_LAW : m == MOODY_POSITIVE ? ETHD_STATUS_STALE : ETHD_OK;
 }
 
 static ethd_status track(const double *p, void *state, const ethd_tracking_in *in, double tau[2]) ETHD_RT {

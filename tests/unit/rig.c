@@ -81,7 +81,7 @@ void rig_post(rig *r) {
 ethd_event rig_poll(rig *r) {
   ethd_event event;
   memset(&event, 0, sizeof event);
-  if (ethd_control_poll(r->control, &event) == ETHD_EMPTY) event.kind = (ethd_event_kind)0;
+  if (ethd_control_poll(r->control, &event) == ETHD_STATUS_EMPTY) event.kind = (ethd_event_kind)0;
   return event;
 }
 

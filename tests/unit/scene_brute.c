@@ -38,7 +38,7 @@ static void object_of(ethd_shape shape) {
 static void point_of(double x, double y) { number(x), number(y); }
 
 static void segment_of(double x1, double y1, double x2, double y2) {
-  object_of(ETHD_SEGMENT);
+  object_of(ETHD_SHAPE_SEGMENT);
   point_of(x1, y1), point_of(x2, y2);
 }
 
@@ -71,24 +71,24 @@ static ethd_scene *many(ethd_shape shape, double size) {
   return finish();
 }
 
-static ethd_scene *circles(double size) { return many(ETHD_CIRCLE, size); }
-static ethd_scene *capsules(double size) { return many(ETHD_CAPSULE, size); }
-static ethd_scene *boxes(double size) { return many(ETHD_BOX, size); }
-static ethd_scene *segments(double size) { return many(ETHD_SEGMENT, size); }
-static ethd_scene *polygons(double size) { return many(ETHD_POLYGON, size); }
-static ethd_scene *polylines(double size) { return many(ETHD_POLYLINE, size); }
+static ethd_scene *circles(double size) { return many(ETHD_SHAPE_CIRCLE, size); }
+static ethd_scene *capsules(double size) { return many(ETHD_SHAPE_CAPSULE, size); }
+static ethd_scene *boxes(double size) { return many(ETHD_SHAPE_BOX, size); }
+static ethd_scene *segments(double size) { return many(ETHD_SHAPE_SEGMENT, size); }
+static ethd_scene *polygons(double size) { return many(ETHD_SHAPE_POLYGON, size); }
+static ethd_scene *polylines(double size) { return many(ETHD_SHAPE_POLYLINE, size); }
 
 static ethd_scene *mixed(double size) {
   begin(size);
   for (int n = 20 + (int)(scene_draw() % 150); n > 0; n--) any_of(bounded());
-  if (scene_draw() % 2) any_of(ETHD_HALFPLANE);
-  any_of(ETHD_CIRCLE);
+  if (scene_draw() % 2) any_of(ETHD_SHAPE_HALFPLANE);
+  any_of(ETHD_SHAPE_CIRCLE);
   return finish();
 }
 
 static void star(int n, double x, double y, double r, double spikes) {
   int way = scene_draw() % 2 ? 1 : -1;
-  object_of(ETHD_POLYGON);
+  object_of(ETHD_SHAPE_POLYGON);
   for (int k = 0; k < n; k++) {
     double a = way * 2 * M_PI * k / n, d = r * (1 + spikes * scene_uniform(-1, 1));
     point_of(x + d * cos(a), y + d * sin(a));
@@ -114,7 +114,7 @@ static ethd_scene *nested(double size) {
 /* A room: one polygon with a notch that holds everything else. */
 static ethd_scene *room(double size) {
   begin(size);
-  object_of(ETHD_POLYGON);
+  object_of(ETHD_SHAPE_POLYGON);
   double s = 0.8, t = 0.85;
   for (int k = 0; k <= 100; k++) point_of(s * cos(0.06 * k), s * sin(0.06 * k));
   for (int k = 100; k >= 0; k--) point_of(t * cos(0.06 * k), t * sin(0.06 * k));
@@ -125,7 +125,7 @@ static ethd_scene *room(double size) {
 /* Teeth so thin that rounding can't tell their faces apart. */
 static ethd_scene *needles(double size) {
   begin(size);
-  object_of(ETHD_POLYGON);
+  object_of(ETHD_SHAPE_POLYGON);
   point_of(-0.6, -0.3), point_of(0.6, -0.3);
   for (int k = 10; k >= -10; k--) {
     double w = pow(10, scene_uniform(-15, -2)), x = 0.05 * k, h = scene_uniform(0, 0.5);
@@ -137,7 +137,7 @@ static ethd_scene *needles(double size) {
 static ethd_scene *scribble(double size) {
   double x = 0, y = 0;
   begin(size);
-  object_of(ETHD_POLYLINE);
+  object_of(ETHD_SHAPE_POLYLINE);
   for (int n = 2 + (int)(scene_draw() % 700); n > 0; n--)
     point_of(x, y), x = scene_uniform(-0.9, 0.9), y = scene_uniform(-0.9, 0.9);
   point_of(x, y);
@@ -147,7 +147,7 @@ static ethd_scene *scribble(double size) {
 
 static ethd_scene *spiral(double size) {
   begin(size);
-  object_of(ETHD_POLYLINE);
+  object_of(ETHD_SHAPE_POLYLINE);
   int n = 10 + (int)(scene_draw() % 3000);
   for (int k = 0; k < n; k++) point_of(0.9 * k / n * cos(40.0 * k / n), 0.9 * k / n * sin(40.0 * k / n));
   return finish();
@@ -162,11 +162,11 @@ static ethd_scene *lattice(double size) {
       if ((i + j) % 3 == 0) {
         segment_of(x, y, x + 2 * h, y), segment_of(x, y, x, y + 2 * h);
       } else if ((i + j) % 3 == 1) {
-        object_of(ETHD_POLYGON);
+        object_of(ETHD_SHAPE_POLYGON);
         point_of(x, y), point_of(x + h, y), point_of(x + 2 * h, y), point_of(x + 2 * h, y + h);
         point_of(x + 2 * h, y + 2 * h), point_of(x, y + 2 * h);
       } else {
-        object_of(ETHD_CIRCLE);
+        object_of(ETHD_SHAPE_CIRCLE);
         point_of(x + h, y + h), number(h);
       }
     }
@@ -178,7 +178,7 @@ static ethd_scene *heap(double size) {
   begin(size);
   for (int k = 0; k < 100; k++) {
     segment_of(0.25, 0.5, 0.5, 0.25);
-    object_of(ETHD_CAPSULE);
+    object_of(ETHD_SHAPE_CAPSULE);
     point_of(0.25, 0.5), point_of(0.25, 0.5), number(0.125);
   }
   return finish();
@@ -190,9 +190,9 @@ static ethd_scene *dust(double size) {
   for (int k = 0; k < 150; k++) {
     double x = scene_uniform(-0.9, 0.9), y = scene_uniform(-0.9, 0.9), e = pow(10, scene_uniform(-12, -2));
     if (k % 3 == 0) segment_of(x, y, x + e, y + e);
-    if (k % 3 == 1) object_of(ETHD_CIRCLE), point_of(x, y), number(e);
+    if (k % 3 == 1) object_of(ETHD_SHAPE_CIRCLE), point_of(x, y), number(e);
     if (k % 3 == 2) {
-      object_of(ETHD_POLYLINE);
+      object_of(ETHD_SHAPE_POLYLINE);
       for (int i = 0; i < 9; i++) point_of(x + e * i, y + e * (i % 2));
     }
   }

@@ -37,19 +37,19 @@ object scene_random(ethd_shape shape) {
   object o = {shape, 0, {0}};
   double a = scene_uniform(-4, 4), x = scene_uniform(-0.7, 0.7), y = scene_uniform(-0.7, 0.7);
   switch (shape) {
-  case ETHD_HALFPLANE: scene_add(&o, cos(a)), scene_add(&o, sin(a)), scene_add(&o, x); break;
-  case ETHD_CIRCLE: scene_add(&o, x), scene_add(&o, y), scene_add(&o, scene_uniform(0.001, 0.3)); break;
-  case ETHD_CAPSULE:
+  case ETHD_SHAPE_HALFPLANE: scene_add(&o, cos(a)), scene_add(&o, sin(a)), scene_add(&o, x); break;
+  case ETHD_SHAPE_CIRCLE: scene_add(&o, x), scene_add(&o, y), scene_add(&o, scene_uniform(0.001, 0.3)); break;
+  case ETHD_SHAPE_CAPSULE:
     scene_add(&o, x), scene_add(&o, y);
     scene_add(&o, x + scene_uniform(-0.3, 0.3)), scene_add(&o, y + scene_uniform(-0.3, 0.3));
     scene_add(&o, scene_uniform(0.001, 0.1));
     break;
-  case ETHD_BOX:
+  case ETHD_SHAPE_BOX:
     scene_add(&o, x), scene_add(&o, y);
     scene_add(&o, scene_uniform(0.001, 0.2)), scene_add(&o, scene_uniform(0.001, 0.2)), scene_add(&o, a);
     break;
-  case ETHD_POLYGON: star(&o, 3 + scene_draw() % 20, x, y, 0.03, 0.29); break;
-  case ETHD_SEGMENT:
+  case ETHD_SHAPE_POLYGON: star(&o, 3 + scene_draw() % 20, x, y, 0.03, 0.29); break;
+  case ETHD_SHAPE_SEGMENT:
     for (int i = 0; i < 4; i++) scene_add(&o, scene_uniform(-0.7, 0.7));
     break;
   default:
@@ -113,13 +113,13 @@ real scene_expected(const object *o, real x, real y) {
   const double *p = o->p;
   real d;
   switch (o->shape) {
-  case ETHD_HALFPLANE: {
+  case ETHD_SHAPE_HALFPLANE: {
     real nx = p[0], ny = p[1], l = hypotl(nx, ny);
     return (p[2] - nx * x - ny * y) / l;
   }
-  case ETHD_CIRCLE: return hypotl(x - p[0], y - p[1]) - p[2];
-  case ETHD_CAPSULE: return scene_to_edge(p[0], p[1], p[2], p[3], x, y) - p[4];
-  case ETHD_BOX: {
+  case ETHD_SHAPE_CIRCLE: return hypotl(x - p[0], y - p[1]) - p[2];
+  case ETHD_SHAPE_CAPSULE: return scene_to_edge(p[0], p[1], p[2], p[3], x, y) - p[4];
+  case ETHD_SHAPE_BOX: {
     real c = cosl(p[4]), s = sinl(p[4]), w = p[2], h = p[3];
     real d4 = INFINITY, sx[4] = {-1, 1, 1, -1}, sy[4] = {-1, -1, 1, 1}, qx[4], qy[4];
     int outside = 0;
@@ -134,7 +134,9 @@ real scene_expected(const object *o, real x, real y) {
     }
     return outside ? d4 : -d4;
   }
-  case ETHD_POLYGON: d = scene_to_chain(p, o->count / 2, 1, x, y); return scene_winding(p, o->count / 2, x, y) ? -d : d;
+  case ETHD_SHAPE_POLYGON:
+    d = scene_to_chain(p, o->count / 2, 1, x, y);
+    return scene_winding(p, o->count / 2, x, y) ? -d : d;
   default: return scene_to_chain(p, o->count / 2, 0, x, y);
   }
 }

@@ -25,7 +25,7 @@ START_TEST(test_latest) {
   ethd_cell *cell;
   value v = make(7);
   ck_assert_int_eq(ethd_cell_create(sizeof v, &cell, NULL), ETHD_OK);
-  ck_assert_int_eq(ethd_cell_take(cell, &v), ETHD_STALE);
+  ck_assert_int_eq(ethd_cell_take(cell, &v), ETHD_STATUS_STALE);
   ck_assert_uint_eq(v.number, 7); /* untouched */
   for (uint64_t i = 1; i <= 5; i++) {
     value w = make(i);
@@ -34,7 +34,7 @@ START_TEST(test_latest) {
   ck_assert_int_eq(ethd_cell_take(cell, &v), ETHD_OK);
   ck_assert(v.number == 5 && whole(&v));
   v = make(0);
-  ck_assert_int_eq(ethd_cell_take(cell, &v), ETHD_STALE);
+  ck_assert_int_eq(ethd_cell_take(cell, &v), ETHD_STATUS_STALE);
   ck_assert(v.number == 5 && whole(&v)); /* held */
   value w = make(6);
   ethd_cell_put(cell, &w);

@@ -154,29 +154,29 @@ static ethd_verdict ask(const char *question, double torque, ethd_status *status
     if (!strcmp(answers[i].question, question)) return answers[i].verdict;
   }
   ck_abort_msg("%s isn't asked", question);
-  return ETHD_BROKEN;
+  return ETHD_VERDICT_BROKEN;
 }
 
 static const struct {
   const char *question;
   ethd_verdict verdict;
-} expected[WAYS] = {[NO_SAFE] = {"table", ETHD_BROKEN},   [NO_SERVICE] = {"table", ETHD_BROKEN},
-                    [NO_BRIEF] = {"table", ETHD_BROKEN},  [BAD_TABLE] = {"table", ETHD_BROKEN},
-                    [LEAKS] = {"open", ETHD_BROKEN},      [NO_LIMIT] = {"limits", ETHD_AT_RISK},
-                    [OUTSIDE] = {"limits", ETHD_BROKEN},  [NAN_ANGLE] = {"sense", ETHD_BROKEN},
-                    [BACKWARDS] = {"sense", ETHD_BROKEN}, [FAULTY] = {"sense", ETHD_BROKEN},
-                    [DRIFTS] = {"zero", ETHD_BROKEN},     [REVERSED] = {"sign", ETHD_BROKEN},
-                    [JUMPS] = {"counts", ETHD_BROKEN},    [NO_WATCHDOG] = {"watchdog", ETHD_AT_RISK},
-                    [UNSAFE] = {"safe", ETHD_BROKEN},     [OLD_TORQUE] = {"restart", ETHD_BROKEN},
-                    [COUNTED] = {"sense", ETHD_AT_RISK},  [COARSE] = {"watchdog", ETHD_NOT_ASKED},
-                    [COASTS] = {"restart", ETHD_KEPT},    [BLOCKED] = {"watchdog", ETHD_NOT_ASKED},
-                    [ROLLS] = {"restart", ETHD_KEPT},     [LATCHES] = {"restart", ETHD_KEPT}};
+} expected[WAYS] = {[NO_SAFE] = {"table", ETHD_VERDICT_BROKEN},   [NO_SERVICE] = {"table", ETHD_VERDICT_BROKEN},
+                    [NO_BRIEF] = {"table", ETHD_VERDICT_BROKEN},  [BAD_TABLE] = {"table", ETHD_VERDICT_BROKEN},
+                    [LEAKS] = {"open", ETHD_VERDICT_BROKEN},      [NO_LIMIT] = {"limits", ETHD_VERDICT_AT_RISK},
+                    [OUTSIDE] = {"limits", ETHD_VERDICT_BROKEN},  [NAN_ANGLE] = {"sense", ETHD_VERDICT_BROKEN},
+                    [BACKWARDS] = {"sense", ETHD_VERDICT_BROKEN}, [FAULTY] = {"sense", ETHD_VERDICT_BROKEN},
+                    [DRIFTS] = {"zero", ETHD_VERDICT_BROKEN},     [REVERSED] = {"sign", ETHD_VERDICT_BROKEN},
+                    [JUMPS] = {"counts", ETHD_VERDICT_BROKEN},    [NO_WATCHDOG] = {"watchdog", ETHD_VERDICT_AT_RISK},
+                    [UNSAFE] = {"safe", ETHD_VERDICT_BROKEN},     [OLD_TORQUE] = {"restart", ETHD_VERDICT_BROKEN},
+                    [COUNTED] = {"sense", ETHD_VERDICT_AT_RISK},  [COARSE] = {"watchdog", ETHD_VERDICT_NOT_ASKED},
+                    [COASTS] = {"restart", ETHD_VERDICT_KEPT},    [BLOCKED] = {"watchdog", ETHD_VERDICT_NOT_ASKED},
+                    [ROLLS] = {"restart", ETHD_VERDICT_KEPT},     [LATCHES] = {"restart", ETHD_VERDICT_KEPT}};
 
 START_TEST(test_way) {
   ethd_status status;
   way = _i;
   ck_assert_int_eq(ask(expected[_i].question, 0.1, &status), expected[_i].verdict);
-  ck_assert_int_eq(status, expected[_i].verdict == ETHD_BROKEN ? ETHD_E_DEVICE : ETHD_OK);
+  ck_assert_int_eq(status, expected[_i].verdict == ETHD_VERDICT_BROKEN ? ETHD_E_DEVICE : ETHD_OK);
 }
 END_TEST
 
@@ -185,13 +185,13 @@ START_TEST(test_sound) {
                                     "sign",  "counts", "watchdog", "safe",  "restart"};
   ethd_status status;
   way = SOUND;
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++) ck_assert_int_eq(ask(all[i], 0.1, &status), ETHD_KEPT);
-  ck_assert_int_eq(ask("silence", 0.1, &status), ETHD_NOT_ASKED); /* on a virtual clock */
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) ck_assert_int_eq(ask(all[i], 0.1, &status), ETHD_VERDICT_KEPT);
+  ck_assert_int_eq(ask("silence", 0.1, &status), ETHD_VERDICT_NOT_ASKED); /* on a virtual clock */
   ck_assert_int_eq(status, ETHD_OK);
   const double none[] = {0, -0.1, NAN, INFINITY};
   for (size_t i = 0; i < sizeof none / sizeof *none; i++)
-    ck_assert_int_eq(ask("sign", none[i], &status), ETHD_NOT_ASKED);
-  ck_assert_int_eq(ask("zero", 0, &status), ETHD_KEPT);
+    ck_assert_int_eq(ask("sign", none[i], &status), ETHD_VERDICT_NOT_ASKED);
+  ck_assert_int_eq(ask("zero", 0, &status), ETHD_VERDICT_KEPT);
 }
 END_TEST
 

@@ -54,8 +54,8 @@ START_TEST(test_counts_become_angles) {
     ck_assert_int_eq(s.faults | s.have, 0);
   }
   ethd_sense s = {0};
-  ck_assert_int_eq(D.read(d, 0, &s), ETHD_STALE); /* nothing newer */
-  ck_assert_int_eq(counter_mock.open_files, 3);   /* the device once, two counts */
+  ck_assert_int_eq(D.read(d, 0, &s), ETHD_STATUS_STALE); /* nothing newer */
+  ck_assert_int_eq(counter_mock.open_files, 3);          /* the device once, two counts */
   ck_assert_int_eq(counter_mock.pauses, 100);
   D.close(d);
   ck_assert_int_eq(counter_mock.open_files, 0);

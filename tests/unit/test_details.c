@@ -189,9 +189,9 @@ START_TEST(test_slivers) {
   ethd_finger finger;
   double r[ETHD_RAYS];
   for (int k = 0; k < ETHD_RAYS; k++) r[k] = k % 8 ? (double)NAN : 0.0045; /* two, opposite */
-  ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STALE);
+  ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STATUS_STALE);
   r[4] = 0.012 - 1e-14; /* a third one on the line between them, up to rounding */
-  ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STALE);
+  ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STATUS_STALE);
   r[4] = 0.0045;
   ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_OK);
 }

@@ -53,7 +53,7 @@ static void close_part(void *p) {
 }
 static ethd_status read_a(void *p, int64_t now, ethd_sense *out) {
   (void)p, out->q[0] = 1, out->time_ns = now;
-  return ETHD_STALE;
+  return ETHD_STATUS_STALE;
 }
 static ethd_status read_b(void *p, int64_t now, ethd_sense *out) {
   (void)p, (void)now, out->have |= ETHD_HAVE_RAYS, out->faults |= ETHD_FAULT_BIT(ETHD_FAULT_SENSOR);
@@ -137,7 +137,7 @@ START_TEST(test_two) {
   ethd_figure f[3];
   ck_assert_int_eq(try("a ,b", "b.port", "a.map"), ETHD_OK);
   ck_assert_int_eq(driver->start(device), ETHD_OK);
-  ck_assert_int_eq(driver->read(device, 5, &s), ETHD_STALE);
+  ck_assert_int_eq(driver->read(device, 5, &s), ETHD_STATUS_STALE);
   ck_assert(s.q[0] == 1 && s.time_ns == 5 && s.have == ETHD_HAVE_RAYS && s.faults == ETHD_FAULT_BIT(18));
   ck_assert_int_eq(driver->write(device, 5, &c), ETHD_OK);
   ck_assert_uint_eq(driver->units(device), 3);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "control/fence.h"
-#include "ethd/finger_filter.h"
+#include "ethd/estimate.h"
 #include "proximity_ring/decoder.h"
 #include "unit/rig.h"
 
@@ -223,7 +223,8 @@ END_TEST
 
 START_TEST(test_material_that_is_missing) {
   const ethd_material one = {.name = "m"};
-  ethd_object_def circle = {.shape = ETHD_CIRCLE, .material = 1, .numbers = (const double[]){0, 0, 1}, .count = 3};
+  ethd_object_def circle = {
+      .shape = ETHD_SHAPE_CIRCLE, .material = 1, .numbers = (const double[]){0, 0, 1}, .count = 3};
   const ethd_scene_def def = {.objects = &circle, .object_count = 1, .materials = &one, .material_count = 1};
   ethd_scene *out;
   ck_assert_int_eq(ethd_scene_create(&def, &out, &error), ETHD_E_RANGE);

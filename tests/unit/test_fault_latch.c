@@ -11,7 +11,7 @@ START_TEST(test_latched_until_cleared) {
   ethd_sense s = moody_sense(&r);
   rig_try(&r, &s);
   double before[2] = {r.command.torque[0], r.command.torque[1]};
-  ethd_control_clear(r.control); /* nothing to acknowledge: means nothing */
+  ethd_control_acknowledge(r.control); /* nothing to acknowledge: means nothing */
   rig_try(&r, &s);
   ck_assert_mem_eq(r.command.torque, before, sizeof before);
   mood.tracking = MOODY_FAIL;
@@ -27,7 +27,7 @@ START_TEST(test_latched_until_cleared) {
   ethd_control_counters(r.control, &c);
   ck_assert_uint_eq(c.faults[ETHD_FAULT_LAW], 1);
   /* softly from zero, in swap_time */
-  ethd_control_clear(r.control);
+  ethd_control_acknowledge(r.control);
   for (int tick = 0; tick <= 22; tick++) {
     ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
     double share = tick < 20 ? tick / 20.0 : 1;
@@ -51,12 +51,12 @@ START_TEST(test_cleared_too_early) {
     rig_try(&r, &s);
     moody_expect_safe(&r, ETHD_E_LAW, ETHD_FAULT_LAW);
     moody_expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_LAW, 116);
-    ethd_control_clear(r.control);
+    ethd_control_acknowledge(r.control);
     rig_try(&r, &s);
     moody_expect_safe(&r, ETHD_E_LAW, ETHD_FAULT_LAW);
     moody_expect_event(&r, ETHD_EVENT_CLEARED, 0, 0);
     moody_expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_LAW, 116);
-    ethd_control_clear(r.control);
+    ethd_control_acknowledge(r.control);
     mood.contact = MOODY_WELL;
     ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
     moody_expect_event(&r, ETHD_EVENT_CLEARED, 0, 0);
@@ -82,7 +82,7 @@ START_TEST(test_post_during_a_fault) {
   moody_expect_event(&r, ETHD_EVENT_TAKEN, 0, 0);
   ethd_setup_tracking(&r.setup, &ethd_tracking_pd);
   rig_post(&r);
-  ethd_control_clear(r.control); /* both at one tick: softly into the new one */
+  ethd_control_acknowledge(r.control); /* both at one tick: softly into the new one */
   ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
   ck_assert(r.trace.swap == 1 && r.command.torque[0] == 0);
   moody_expect_event(&r, ETHD_EVENT_CLEARED, 0, 0);
@@ -111,7 +111,7 @@ START_TEST(test_contacts_begin_anew) {
   mood.contact = MOODY_FAIL;
   rig_try(&r, &s);
   mood.contact = MOODY_WELL;
-  ethd_control_clear(r.control);
+  ethd_control_acknowledge(r.control);
   rig_try(&r, &s);
   ck_assert_int_eq(r.trace.state, ETHD_BRAKING);
   rig_close(&r);
@@ -128,7 +128,7 @@ START_TEST(test_estimators_go_on) {
     ethd_sense s = rig_sense(&r.setup.arm, &m);
     s.have = ETHD_HAVE_FINGER;
     mood.tracking = tick == 20 ? MOODY_FAIL : MOODY_WELL;
-    if (tick == 50) ethd_control_clear(r.control);
+    if (tick == 50) ethd_control_acknowledge(r.control);
     rig_try(&r, &s);
     mood.tracking = MOODY_WELL;
     rig_try(&healthy, &s);
@@ -229,7 +229,7 @@ START_TEST(test_absurd_numbers) {
     moody_expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_INPUT, cases[i].value);
     rig_try(&r, &s);
     ck_assert_double_eq(r.trace.qd[0], 0);
-    ethd_control_clear(r.control);
+    ethd_control_acknowledge(r.control);
     ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
     *(double *)(void *)((char *)&absurd + cases[i].offset) = copysign(cases[i].most, cases[i].refused);
     rig_try(&r, &absurd);

@@ -183,24 +183,24 @@ START_TEST(test_clean_time) {
   rig_post(&r);
   with(&r, moody_sense(&r), 0, 0);
   moody_expect_event(&r, ETHD_EVENT_TAKEN, 0, 0);
-  ck_assert(isinf(ethd_control_clean(r.control)));
+  ck_assert(isinf(ethd_control_clean_time(r.control)));
   for (int i = 0; i < 3; i++) with(&r, moody_sense(&r), ETHD_FAULT_BIT(ETHD_FAULT_DRIVE), 0);
-  ck_assert_double_eq(ethd_control_clean(r.control), 0);
+  ck_assert_double_eq(ethd_control_clean_time(r.control), 0);
   moody_expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_DRIVE, 0);
   for (int i = 1; i <= 30; i++) {
-    ethd_control_clear(r.control); /* too early: means nothing, now and later */
+    ethd_control_acknowledge(r.control); /* too early: means nothing, now and later */
     with(&r, moody_sense(&r), 0, 0);
     moody_expect_safe(&r, ETHD_E_DEVICE, ETHD_FAULT_DRIVE);
-    ck_assert_double_eq_tol(ethd_control_clean(r.control), 0.001 * i, 1e-12);
+    ck_assert_double_eq_tol(ethd_control_clean_time(r.control), 0.001 * i, 1e-12);
   }
   with(&r, moody_sense(&r), ETHD_FAULT_BIT(ETHD_FAULT_OVERRUN), 0); /* nothing that stops */
   with(&r, moody_sense(&r), ETHD_FAULT_BIT(ETHD_FAULT_LINK_LOST), 0);
-  ck_assert_double_eq(ethd_control_clean(r.control), 0);
+  ck_assert_double_eq(ethd_control_clean_time(r.control), 0);
   for (int i = 1; i <= 50; i++) with(&r, moody_sense(&r), 0, 0);
   moody_expect_safe(&r, ETHD_E_DEVICE, ETHD_FAULT_DRIVE);
-  ethd_control_clear(r.control);
+  ethd_control_acknowledge(r.control);
   ck_assert_int_eq(with(&r, moody_sense(&r), 0, 0), ETHD_OK);
-  ck_assert(isinf(ethd_control_clean(r.control)));
+  ck_assert(isinf(ethd_control_clean_time(r.control)));
   rig_close(&r);
 }
 END_TEST
@@ -306,7 +306,7 @@ START_TEST(test_replays) {
       ethd_sense s;
       random_sense(&r, tick, &s);
       if (pass) s = first[tick].sense;
-      if (tick % 7 == 0) ethd_control_clear(r.control);
+      if (tick % 7 == 0) ethd_control_acknowledge(r.control);
       int64_t was = r.trace.fault;
       rig_try(&r, &s);
       cleared += was && !r.trace.fault;

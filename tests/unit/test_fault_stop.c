@@ -33,7 +33,7 @@ START_TEST(test_speed) {
   moody_expect_safe(&r, ETHD_E_RANGE, ETHD_FAULT_SPEED);
   moody_expect_event(&r, ETHD_EVENT_TAKEN, 0, 0);
   moody_expect_event(&r, ETHD_EVENT_FAULT, ETHD_FAULT_SPEED, NAN);
-  ethd_control_clear(r.control);
+  ethd_control_acknowledge(r.control);
   m = rig_at(0.020, 0.3, 0.001);
   s = rig_sense(&r.setup.arm, &m);
   for (int i = 0; i < 300; i++) ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);

@@ -64,8 +64,8 @@ START_TEST(test_late) {
     ck_assert_int_eq(feed(&f, &s, 0.11, 2e-3), ETHD_OK);
     ethd_filter_predict(&f, &s, T);
     before = s;
-    ck_assert_int_eq(feed(&f, &s, 5, 3.5e-3), ETHD_STALE);
-    ck_assert_int_eq(feed(&f, &s, 5, s.age), ETHD_STALE);
+    ck_assert_int_eq(feed(&f, &s, 5, 3.5e-3), ETHD_STATUS_STALE);
+    ck_assert_int_eq(feed(&f, &s, 5, s.age), ETHD_STATUS_STALE);
     before.late = 2;
     ck_assert_mem_eq(&s, &before, sizeof s);
     ck_assert_uint_eq(s.used, 2);
@@ -86,7 +86,7 @@ START_TEST(test_start) {
     ethd_filter_start(&f, &s, (ethd_vec){0.5, -0.5}, (ethd_vec){0.25, 0});
     ck_assert(out_x(&f, &s) == 0.5 && out_v(&f, &s) == 0.25);
     ethd_filter_predict(&f, &s, T);
-    ck_assert_int_eq(feed(&f, &s, 0.5, 1.5e-3), ordered ? ETHD_STALE : ETHD_OK);
+    ck_assert_int_eq(feed(&f, &s, 0.5, 1.5e-3), ordered ? ETHD_STATUS_STALE : ETHD_OK);
     ck_assert_uint_eq(s.used, ordered ? 3 : 4);
   }
 }
@@ -112,15 +112,15 @@ START_TEST(test_not_finite_is_not_used) {
   ethd_filter f = with((ethd_filter_method)_i, compensation, stamp);
   ethd_filter_state s, before;
   memset(&s, 0, sizeof s);
-  for (int i = 0; i < 3; i++) ck_assert_int_eq(feed(&f, &s, bad[i], 0), ETHD_STALE);
+  for (int i = 0; i < 3; i++) ck_assert_int_eq(feed(&f, &s, bad[i], 0), ETHD_STATUS_STALE);
   ck_assert_uint_eq(s.started, 0);
   ck_assert_int_eq(feed(&f, &s, 0.1, 0), ETHD_OK);
   ethd_filter_predict(&f, &s, 4 * T);
   before = s;
   for (int i = 0; i < 12; i++) {
-    ck_assert_int_eq(feed(&f, &s, bad[i % 3], 0), ETHD_STALE);
-    ck_assert_int_eq(ethd_filter_update(&f, &s, (ethd_vec){0.1, bad[i % 3]}, 0), ETHD_STALE);
-    ck_assert_int_eq(ethd_filter_update(&f, &s, (ethd_vec){0.1, -0.1}, bad[i % 3]), ETHD_STALE);
+    ck_assert_int_eq(feed(&f, &s, bad[i % 3], 0), ETHD_STATUS_STALE);
+    ck_assert_int_eq(ethd_filter_update(&f, &s, (ethd_vec){0.1, bad[i % 3]}, 0), ETHD_STATUS_STALE);
+    ck_assert_int_eq(ethd_filter_update(&f, &s, (ethd_vec){0.1, -0.1}, bad[i % 3]), ETHD_STATUS_STALE);
   }
   before.gated = 3 + 36;
   ck_assert_mem_eq(&s, &before, sizeof s);

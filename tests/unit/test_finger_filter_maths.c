@@ -122,7 +122,7 @@ START_TEST(test_gate) {
     double along = k % 2 ? 4.001 * sd : 3.999 * sd, a = k < 2 ? 0 : 0.8;
     t = s;
     ethd_status status = ethd_filter_update(&f, &t, (ethd_vec){x + along * cos(a), -x + along * sin(a)}, 2e-3);
-    ck_assert_int_eq(status, k % 2 ? ETHD_STALE : ETHD_OK);
+    ck_assert_int_eq(status, k % 2 ? ETHD_STATUS_STALE : ETHD_OK);
     ck_assert_uint_eq(t.gated, (uint32_t)(k % 2));
     if (k % 2) ck_assert_mem_eq(t.x, s.x, sizeof s.x + sizeof s.v + sizeof s.a + sizeof s.cov + sizeof s.age);
   }
@@ -138,7 +138,7 @@ START_TEST(test_gated_in_a_row) {
   double here = out_x(&f, &s);
   for (int k = 1; k <= 4; k++) {
     ethd_filter_predict(&f, &s, 3e-3);
-    ck_assert_int_eq(feed(&f, &s, here + 0.1, 2e-3), ETHD_STALE);
+    ck_assert_int_eq(feed(&f, &s, here + 0.1, 2e-3), ETHD_STATUS_STALE);
   }
   ck_assert_double_eq_tol(out_x(&f, &s), here + 0.1 * 12e-3, 1e-6);
   ethd_filter_predict(&f, &s, 3e-3);
@@ -146,7 +146,7 @@ START_TEST(test_gated_in_a_row) {
   ck_assert_uint_eq(s.gated_in_a_row, 0);
   for (int k = 1; k <= 5; k++) {
     ethd_filter_predict(&f, &s, 3e-3);
-    ck_assert_int_eq(feed(&f, &s, here + 0.1, 2e-3), k < 5 ? ETHD_STALE : ETHD_OK);
+    ck_assert_int_eq(feed(&f, &s, here + 0.1, 2e-3), k < 5 ? ETHD_STATUS_STALE : ETHD_OK);
   }
   ck_assert(s.restarts == 1 && s.gated == 9 && s.started == 1 && s.x[0] == here + 0.1);
 }

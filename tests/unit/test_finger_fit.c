@@ -1,5 +1,5 @@
 /* Ring fits against brute force, hand-made polygons and the Cramer-Rao bound. */
-#include "ethd/finger_fit.h"
+#include "ethd/estimate.h"
 
 #include <check.h>
 #include <stdio.h>
@@ -94,7 +94,7 @@ START_TEST(test_two_rays_with_known_radius) {
     ethd_finger finger = {.radius = 42};
     ethd_fit_rays(RING, FINGER, c, all);
     for (int i = 0; i < ETHD_RAYS; i++) r[i] = i == 0 || i == k ? all[i] : NAN;
-    ck_assert_int_eq(ethd_fit_step(&kasa, r, &finger), ETHD_STALE);
+    ck_assert_int_eq(ethd_fit_step(&kasa, r, &finger), ETHD_STATUS_STALE);
     ck_assert(finger.radius == 42);
     if (k == 8) continue; /* opposite: the centre may move across them */
     ck_assert_int_eq(ethd_fit_step(&robust, r, &finger), ETHD_OK);
@@ -128,7 +128,7 @@ START_TEST(test_two_rays_too_far_apart) {
   for (int k = 0; k < ETHD_RAYS; k++) r[k] = NAN;
   r[0] = 0;
   r[6] = low;
-  ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STALE);
+  ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STATUS_STALE);
   ck_assert(finger.radius == 42);
 }
 END_TEST
@@ -330,7 +330,7 @@ START_TEST(test_too_little) {
   ethd_finger finger = {.radius = 42};
   for (int k = 0; k < ETHD_RAYS; k++) r[k] = NAN;
   for (int k = 0; k < 2; k++) { /* none, then one */
-    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STALE);
+    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STATUS_STALE);
     r[6] = 4e-3;
   }
   const int lines_tell = _i == ETHD_FIT_ROBUST || _i == ETHD_FIT_VERTEX_MEAN;
@@ -338,12 +338,12 @@ START_TEST(test_too_little) {
     for (int i = 0; i < ETHD_RAYS; i++) r[i] = NAN;
     r[k] = RING - 5e-3;
     r[k - 1] = r[(k + 1) % 16] = RING - 5e-3 / cos(PI / 8);
-    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), lines_tell ? ETHD_OK : ETHD_STALE);
+    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), lines_tell ? ETHD_OK : ETHD_STATUS_STALE);
     if (lines_tell) finger.radius = 42;
   }
   if (_i == ETHD_FIT_KASA) {
     r[15] -= 0.05e-3; /* nearly: the circle's centre lies far outside */
-    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STALE);
+    ck_assert_int_eq(ethd_fit_step(&fit, r, &finger), ETHD_STATUS_STALE);
   }
   ck_assert(finger.radius == 42);
 }

@@ -6,7 +6,7 @@
 
 #include "denormals.h"
 #include "ethd/config.h"
-#include "ethd/finger_fit.h"
+#include "ethd/estimate.h"
 #include "unit/rig.h"
 
 #define TICKS 250
@@ -291,7 +291,7 @@ START_TEST(test_estimators_alone) {
     ck_assert_int_eq(status, ETHD_OK);
     for (int k = 0; k < ETHD_RAYS; k++) rays[k] = NAN;
     IN(&traps, status = ethd_fit_step(&fit, rays, &finger));
-    ck_assert_int_eq(status, ETHD_STALE);
+    ck_assert_int_eq(status, ETHD_STATUS_STALE);
   }
   for (int f = 0; f < ETHD_FILTER_COUNT; f++) {
     ethd_filter filter;

@@ -165,12 +165,12 @@ START_TEST(test_too_hot) {
   s.missed = 800;
   rig_try(&r, &s);
   moody_expect_safe(&r, ETHD_E_DEVICE, ETHD_FAULT_HEAT);
-  ck_assert_double_eq(ethd_control_clean(r.control), 0);
+  ck_assert_double_eq(ethd_control_clean_time(r.control), 0);
   s.missed = 0;
   int cooling = 0;
-  for (; ethd_control_clean(r.control) < 0.01 && cooling < 5000; cooling++) rig_try(&r, &s);
+  for (; ethd_control_clean_time(r.control) < 0.01 && cooling < 5000; cooling++) rig_try(&r, &s);
   ck_assert(cooling > 100 && cooling < 5000);
-  ethd_control_clear(r.control);
+  ethd_control_acknowledge(r.control);
   ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
   rig_close(&r);
 }
@@ -257,7 +257,7 @@ START_TEST(test_steep) {
   mood.tracking = 0; /* the first acknowledgement counts */
   s = at(&r, 0.01, 0);
   rig_try(&r, &s);
-  ethd_control_clear(r.control);
+  ethd_control_acknowledge(r.control);
   s = at(&r, 0.01, 0);
   ck_assert_int_eq(rig_try(&r, &s), ETHD_OK);
   rig_close(&r);

@@ -134,7 +134,7 @@ static void run(int number) {
       ruling = r.setup.limits;
       ruling.torque = fmax(ruling.torque, before);
     }
-    if (!any(6)) ethd_control_clear(r.control);
+    if (!any(6)) ethd_control_acknowledge(r.control);
     if (!any(30)) ethd_control_reset(r.control);
     rig_try(&r, &s);
     expect_kept(&r, &ruling);

@@ -93,7 +93,7 @@ static ethd_status parse_scene(void) {
 
 static ethd_status make_scene(void) {
   const double wall[] = {-1, 0, -0.238}, shape[] = {0, 0, 1, 0, 1, 1};
-  const ethd_object_def objects[] = {{ETHD_HALFPLANE, -1, wall, 3, 0}, {ETHD_POLYGON, -1, shape, 6, 0}};
+  const ethd_object_def objects[] = {{ETHD_SHAPE_HALFPLANE, -1, wall, 3, 0}, {ETHD_SHAPE_POLYGON, -1, shape, 6, 0}};
   const ethd_scene_def def = {objects, 2, NULL, 0};
   ethd_scene *scene;
   ethd_error error;
@@ -184,7 +184,7 @@ static void step_guarded(rig *r, const ethd_sense *sense, int tick) {
   in_step = 1;
   (void)!ethd_control_step(r->control, sense, &command, tick % 2 ? &r->trace : NULL);
   if (tick % 5 == 0) (void)!ethd_control_rehearse(r->control, sense, &command);
-  if (tick % 7 == 0) ethd_control_clear(r->control);
+  if (tick % 7 == 0) ethd_control_acknowledge(r->control);
   if (tick % 11 == 0) ethd_control_counters(r->control, &counters);
   in_step = 0;
 }
@@ -193,7 +193,7 @@ static void step_guarded(rig *r, const ethd_sense *sense, int tick) {
 static ethd_scene *large_scene(void) {
   enum { EDGES = 100000 };
   double *p = malloc(2 * EDGES * sizeof *p);
-  ethd_object_def o = {ETHD_POLYLINE, -1, p, 2 * EDGES, 0};
+  ethd_object_def o = {ETHD_SHAPE_POLYLINE, -1, p, 2 * EDGES, 0};
   ethd_scene_def def = {&o, 1, NULL, 0};
   ethd_scene *scene;
   for (int i = 0; i < EDGES; i++) {

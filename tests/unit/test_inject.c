@@ -259,9 +259,11 @@ START_TEST(test_calls) {
                          "0.002 service fail\n0.003 service drop\n");
   for (int ms = 0; ms < 8; ms++) {
     int64_t now = x.now;
-    ck_assert_int_eq(x.driver->service(x.device, 0, now), ms == 2 ? ETHD_E_DEVICE : ms == 3 ? ETHD_EMPTY : ETHD_OK);
+    ck_assert_int_eq(x.driver->service(x.device, 0, now), ms == 2   ? ETHD_E_DEVICE
+                                                          : ms == 3 ? ETHD_STATUS_EMPTY
+                                                                    : ETHD_OK);
     sample(&x);
-    ck_assert_int_eq(x.status, ms == 2 ? ETHD_E_DEVICE : ms == 4 || ms == 5 ? ETHD_STALE : ETHD_OK);
+    ck_assert_int_eq(x.status, ms == 2 ? ETHD_E_DEVICE : ms == 4 || ms == 5 ? ETHD_STATUS_STALE : ETHD_OK);
     if (x.status) ck_assert_double_eq(x.s.q[0], 0);
     ethd_command c = {{ms, -ms}, 0, 0};
     ethd_status status = x.driver->write(x.device, now, &c);
@@ -301,9 +303,9 @@ END_TEST
 /* What has come into the sense before, by a sample that was held, isn't spoilt twice. */
 START_TEST(test_adds_once) {
   spoilt x = open_script("0 rays offset by=1 for=inf\n0 q offset by=1 for=inf\n");
-  p.says = ETHD_STALE;
+  p.says = ETHD_STATUS_STALE;
   sample(&x);
-  ck_assert(x.status == ETHD_STALE && x.s.q[0] == 0);
+  ck_assert(x.status == ETHD_STATUS_STALE && x.s.q[0] == 0);
   double ray = x.s.rays[2];
   ck_assert_double_eq_tol(ray, 3 + at(0), 1e-12);
   p.says = ETHD_OK;

@@ -134,7 +134,7 @@ END_TEST
 
 /* Nobody knows what state a device is in that couldn't be started: it gets no torque, also if it had one before. */
 START_TEST(test_failed_enable_disarms) {
-  static const ethd_status gives[] = {ETHD_E_DEVICE, ETHD_E_FILE, ETHD_BUSY};
+  static const ethd_status gives[] = {ETHD_E_DEVICE, ETHD_E_FILE, ETHD_STATUS_BUSY};
   bench b;
   bench_open(&b);
   bench_start(&b);
@@ -186,7 +186,7 @@ START_TEST(test_failed_read_disarms) {
   }
   ck_assert_int_eq(ethd_loop_armed(b.loop), 0);
   ck_assert_int_eq(b.d.safes, 1);
-  ethd_loop_clear(b.loop);
+  ethd_loop_acknowledge(b.loop);
   ethd_loop_row row = bench_tick(&b);
   ck_assert_int_eq(row.marks, ETHD_ROW_CLEARED);
   ck_assert_int_eq(row.trace.fault, ETHD_FAULT_NONE);
@@ -240,7 +240,7 @@ START_TEST(test_lost_rows) {
     ck_assert_int_eq(row.trace.tick, i);
     ck_assert_uint_eq(row.lost, 0);
   }
-  ck_assert_int_eq(ethd_loop_take(b.loop, &row), ETHD_EMPTY);
+  ck_assert_int_eq(ethd_loop_take(b.loop, &row), ETHD_STATUS_EMPTY);
   row = bench_tick(&b);
   ck_assert_int_eq(row.trace.tick, 7);
   ck_assert_uint_eq(row.lost, 3);

@@ -169,9 +169,9 @@ static struct {
   int from, until; /* ticks without */
   int64_t faults;
   ethd_status status; /* that says so */
-} gap = {.status = ETHD_STALE};
+} gap = {.status = ETHD_STATUS_STALE};
 
-static const ethd_status nothing_new[] = {ETHD_STALE, ETHD_BUSY, ETHD_EMPTY};
+static const ethd_status nothing_new[] = {ETHD_STATUS_STALE, ETHD_STATUS_BUSY, ETHD_STATUS_EMPTY};
 #define NOTHING_NEW (int)(sizeof nothing_new / sizeof *nothing_new)
 
 static ethd_status gappy_read(void *device_, int64_t now, ethd_sense *out) {
@@ -288,7 +288,7 @@ START_TEST(test_old_samples) {
   ethd_event e;
   ck_assert_int_eq(ethd_control_poll(b.r.control, &e), ETHD_OK);
   ck_assert(e.kind == ETHD_EVENT_FAULT && e.code == ETHD_FAULT_FEEDBACK_OLD);
-  ck_assert_int_eq(ethd_control_poll(b.r.control, &e), ETHD_EMPTY);
+  ck_assert_int_eq(ethd_control_poll(b.r.control, &e), ETHD_STATUS_EMPTY);
   bench_close(&b);
 }
 END_TEST

@@ -43,7 +43,7 @@ START_TEST(test_armed) {
   bench b;
   open_with_home(&b);
   bench_tick(&b);
-  ck_assert_int_eq(ethd_loop_home(b.loop, NULL), ETHD_BUSY);
+  ck_assert_int_eq(ethd_loop_home(b.loop, NULL), ETHD_STATUS_BUSY);
   ck_assert_int_eq(homings, 0);
   ethd_loop_row row = bench_tick(&b);
   ck_assert(row.trace.tick == 1 && row.armed == 1);

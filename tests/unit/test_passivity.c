@@ -166,7 +166,7 @@ START_TEST(test_acknowledged_within) {
   ck_assert_int_lt(rig_try(&r, &s), 0);
   s.faults = s.grave = 0;
   for (int i = 0; i < 300; i++) (void)rig_try(&r, &s);
-  ethd_control_clear(r.control);
+  ethd_control_acknowledge(r.control);
   while (rig_poll(&r).kind) continue;
   ck_assert_int_eq(told(&r, -0.004, 0.004), 0);
   ck_assert_int_eq(r.trace.fault, 0);

@@ -132,7 +132,7 @@ START_TEST(test_stopped) {
   rig_try(&r, &in);
   expect_stopped(&r, cases[_i].status, cases[_i].fault, cases[_i].sentence);
   ck_assert_int_lt(rig_try(&r, &out), 0);
-  ethd_control_clear(r.control);
+  ethd_control_acknowledge(r.control);
   ck_assert_int_eq(rig_try(&r, &out), ETHD_OK);
   rig_close(&r);
 }

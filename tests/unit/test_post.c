@@ -28,7 +28,7 @@ START_TEST(test_taken_at_the_next_step) {
   ethd_setup_transition(&r.setup, &ethd_transition_smooth);
   rig_post(&r);
   ck_assert_int_eq(rig_poll(&r).kind, 0);
-  ck_assert_int_eq(ethd_control_post(r.control, &r.setup, NULL), ETHD_BUSY);
+  ck_assert_int_eq(ethd_control_post(r.control, &r.setup, NULL), ETHD_STATUS_BUSY);
   run(&r, 3, 4);
   ck_assert_int_eq(r.trace.swap, 1);
   ethd_event e = rig_poll(&r);
@@ -61,7 +61,7 @@ START_TEST(test_refusal_changes_nothing) {
   }
   ck_assert_int_eq(rig_poll(&r).kind, 0);
   rig_post(&r);
-  ck_assert_int_eq(ethd_control_post(r.control, NULL, NULL), ETHD_BUSY);
+  ck_assert_int_eq(ethd_control_post(r.control, NULL, NULL), ETHD_STATUS_BUSY);
   run(&r, 0, 1);
   ck_assert_int_eq(ethd_control_post(r.control, NULL, NULL), ETHD_E_ARGUMENT);
   rig_close(&r);
@@ -156,7 +156,7 @@ START_TEST(test_full_ring) {
   rig_post(&r);
   run(&r, 0, 3);
   ck_assert_int_eq(r.trace.swap, 0);
-  ck_assert_int_eq(ethd_control_post(r.control, &r.setup, NULL), ETHD_BUSY);
+  ck_assert_int_eq(ethd_control_post(r.control, &r.setup, NULL), ETHD_STATUS_BUSY);
   for (int i = 0; i < 1 + ETHD_BODIES_MAX; i++) {
     ethd_event e = rig_poll(&r);
     ck_assert(e.kind == ETHD_EVENT_FAULT && e.code == ETHD_FAULT_INPUT && e.tick == i);

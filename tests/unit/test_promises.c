@@ -249,7 +249,7 @@ static void run(uint64_t number, int ticks, judge *sum) {
     const ethd_sense s = random_sense(&w, &j.rules.arm);
     const bool held = ethd_control_rehearse(control, &s, &would) == ETHD_OK;
     if (posts) ck_assert_int_eq(ethd_control_post(control, &posted, NULL), ETHD_OK);
-    if (chance(j.faulty ? 0.05 : 0.001)) ethd_control_clear(control);
+    if (chance(j.faulty ? 0.05 : 0.001)) ethd_control_acknowledge(control);
     const ethd_status status = ethd_control_step(control, &s, &command, &trace);
     const bool cleared = events_of(control, ETHD_EVENT_CLEARED) > 0;
     judge_tick(&j, &s, status, &command, &trace, held ? &would : NULL, &posted, cleared);

@@ -130,7 +130,7 @@ static void record(void) {
   event(&p, "clear", "");
   ck_assert_int_eq(ethd_config_set(config, "limits.speed", "5", &p.setup, message), ETHD_OK);
   post(&p);
-  ethd_control_clear(p.control);
+  ethd_control_acknowledge(p.control);
   run(&p, 60);
   ck_assert_int_eq(ethd_recording_close(p.recording, message), ETHD_OK);
   ethd_control_destroy(p.control);
@@ -266,7 +266,7 @@ START_TEST(test_heat) {
     if (told) event(&p, "heat", "0.93000000000000005 1.01");
     event(&p, "start", "in the middle");
     create(&p);
-    ethd_control_heated(p.control, heat);
+    ethd_control_set_heat(p.control, heat);
     run(&p, 100);
     ck_assert_int_eq(ethd_recording_close(p.recording, message), ETHD_OK);
     ck_assert_int_eq(ethd_recording_verify(recording_folder, true, message), told ? ETHD_OK : ETHD_E_DIFFERS);

@@ -80,7 +80,7 @@ START_TEST(test_mixed) {
   for (int s = 0; s < SCENES; s++) {
     object o[OBJECTS];
     for (int i = 0; i < OBJECTS; i++) o[i] = scene_random((ethd_shape)(1 + scene_draw() % (ETHD_SHAPE_COUNT - 1)));
-    if (s % 2) o[7] = scene_random(ETHD_HALFPLANE), o[7].p[2] = 0.8;
+    if (s % 2) o[7] = scene_random(ETHD_SHAPE_HALFPLANE), o[7].p[2] = 0.8;
     ethd_scene *scene = scene_build(o, OBJECTS);
     for (int i = 0; i < QUERIES / SCENES / 4; i++) {
       ethd_vec x = {scene_uniform(-1, 1), scene_uniform(-1, 1)};
@@ -124,7 +124,7 @@ static void check_at(int line, const ethd_scene *scene, double x, double y, doub
 #define CHECK_AT(...) check_at(__LINE__, __VA_ARGS__)
 
 START_TEST(test_paper_wall) {
-  ethd_scene *s = SCENE_ONE(ETHD_HALFPLANE, -1, 0, -0.238);
+  ethd_scene *s = SCENE_ONE(ETHD_SHAPE_HALFPLANE, -1, 0, -0.238);
   CHECK_AT(s, 0.25, 0.25, 0.012, -1, 0);
   CHECK_AT(s, 0.2, -3, -0.038, -1, 0);
   ethd_nearest q = at(s, 0.25, 0.25);
@@ -136,7 +136,7 @@ END_TEST
 /* n = (3, 4) (1 + 5e-7) / 5, c likewise: the plane 3 x + 4 y = 5 * 0.2. */
 START_TEST(test_halfplane_is_normalised) {
   double f = 1 + 5e-7;
-  ethd_scene *s = SCENE_ONE(ETHD_HALFPLANE, 0.6 * f, 0.8 * f, 0.2 * f);
+  ethd_scene *s = SCENE_ONE(ETHD_SHAPE_HALFPLANE, 0.6 * f, 0.8 * f, 0.2 * f);
   CHECK_AT(s, 0, 0, 0.2, 0.6, 0.8);
   CHECK_AT(s, 1, 1, -1.2, 0.6, 0.8);
   ethd_scene_destroy(s);
@@ -154,7 +154,7 @@ START_TEST(test_corners_of_an_l) {
   for (int k = 0; k < 6; k++) cw[2 * k] = ccw[10 - 2 * k], cw[2 * k + 1] = ccw[11 - 2 * k];
   double r = sqrt(0.5);
   for (int i = 0; i < 2; i++) {
-    ethd_scene *s = scene_one(ETHD_POLYGON, 12, i ? cw : ccw);
+    ethd_scene *s = scene_one(ETHD_SHAPE_POLYGON, 12, i ? cw : ccw);
     CHECK_AT(s, 0.75, 0.75, -sqrt(0.125), -r, -r); /* inside, nearest to the reflex corner */
     CHECK_AT(s, 1.25, 1.125, 0.125, 0, -1);        /* outside, in its notch */
     CHECK_AT(s, 2.5, 1.5, sqrt(0.5), -r, -r);      /* off a convex corner */
@@ -183,7 +183,7 @@ START_TEST(test_winding) {
       double p[2 * POINTS];
       for (int k = 0; k < POINTS; k++)
         memcpy(p + 2 * k, points[(first + (back ? POINTS - k : k)) % POINTS], sizeof points[0]);
-      ethd_object_def o = {ETHD_POLYGON, -1, p, 2 * POINTS, 0};
+      ethd_object_def o = {ETHD_SHAPE_POLYGON, -1, p, 2 * POINTS, 0};
       ethd_scene_def def = {&o, 1, NULL, 0};
       ethd_scene *s;
       ck_assert_int_eq(ethd_scene_create(&def, &s, NULL), ETHD_OK);
@@ -195,22 +195,22 @@ START_TEST(test_winding) {
 END_TEST
 
 START_TEST(test_undefined_gradients) {
-  ethd_scene *s = SCENE_ONE(ETHD_CIRCLE, 0.25, 0.5, 0.125);
+  ethd_scene *s = SCENE_ONE(ETHD_SHAPE_CIRCLE, 0.25, 0.5, 0.125);
   ethd_nearest q = at(s, 0.25, 0.5);
   ck_assert(q.distance == -0.125 && fabs(ethd_vec_norm(q.n) - 1) <= DBL_EPSILON);
   q = at(s, 0.25 + 1e-170, 0.5);
   ck_assert(fabs(ethd_vec_norm(q.n) - 1) <= DBL_EPSILON);
   ethd_scene_destroy(s);
-  s = SCENE_ONE(ETHD_CAPSULE, 0, 0, 3, 4, 0.5); /* on its axis n is across */
+  s = SCENE_ONE(ETHD_SHAPE_CAPSULE, 0, 0, 3, 4, 0.5); /* on its axis n is across */
   q = at(s, 1.5, 2);
   ck_assert(q.distance == -0.5 && fabs(fabs(q.n.x * 4 - q.n.y * 3) - 5) <= 4 * DBL_EPSILON);
   q = at(s, 3, 4);
   ck_assert(q.distance == -0.5 && fabs(ethd_vec_norm(q.n) - 1) <= DBL_EPSILON);
   ethd_scene_destroy(s);
-  s = SCENE_ONE(ETHD_CAPSULE, 0.1, 0.2, 0.1, 0.2, 0.5); /* a circle */
+  s = SCENE_ONE(ETHD_SHAPE_CAPSULE, 0.1, 0.2, 0.1, 0.2, 0.5); /* a circle */
   CHECK_AT(s, 1.1, 0.2, 0.5, -1, 0);
   ethd_scene_destroy(s);
-  s = SCENE_ONE(ETHD_SEGMENT, 0, 0, 1, 0);
+  s = SCENE_ONE(ETHD_SHAPE_SEGMENT, 0, 0, 1, 0);
   q = at(s, 0.5, 0);
   ck_assert(q.distance == 0 && q.n.x == 0 && fabs(q.n.y) == 1);
   q = at(s, 1, 0);
@@ -218,7 +218,7 @@ START_TEST(test_undefined_gradients) {
   CHECK_AT(s, 2, 0, 1, -1, 0);
   CHECK_AT(s, 0.5, -0.25, 0.25, 0, 1);
   ethd_scene_destroy(s);
-  s = SCENE_ONE(ETHD_BOX, 0, 0, 1, 2, 0);
+  s = SCENE_ONE(ETHD_SHAPE_BOX, 0, 0, 1, 2, 0);
   CHECK_AT(s, 1, 2, 0, 0, -1); /* a corner: a face's normal */
   CHECK_AT(s, 4, 6, 5, -0.6, -0.8);
   CHECK_AT(s, 0, 1.75, -0.25, 0, -1);
@@ -232,7 +232,8 @@ START_TEST(test_empty_and_ties) {
   ck_assert(q.object == -1 && isinf(q.distance) && q.distance > 0);
   ck_assert_uint_eq(ethd_scene_touches(s, (ethd_vec){0, 0}, 1e9, NULL, 0), 0);
   ethd_scene_destroy(s);
-  object o[3] = {{ETHD_CIRCLE, 3, {9, 9, 1}}, {ETHD_CIRCLE, 3, {1, 0, 0.5}}, {ETHD_CIRCLE, 3, {-1, 0, 0.5}}};
+  object o[3] = {
+      {ETHD_SHAPE_CIRCLE, 3, {9, 9, 1}}, {ETHD_SHAPE_CIRCLE, 3, {1, 0, 0.5}}, {ETHD_SHAPE_CIRCLE, 3, {-1, 0, 0.5}}};
   s = scene_build(o, 3);
   q = at(s, 0, 0);
   ck_assert(q.object == 1 && q.distance == 0.5);
@@ -245,7 +246,7 @@ END_TEST
 START_TEST(test_nearly_straight_vertices) {
   scene_seed(300);
   for (int c = 0; c < 2000; c++) {
-    object o = {ETHD_POLYGON, 0, {0}};
+    object o = {ETHD_SHAPE_POLYGON, 0, {0}};
     double ux = scene_uniform(-0.5, 0.5), uy = scene_uniform(0.1, 0.5);
     for (int k = 0; k <= 10; k++) scene_add(&o, 0.1 * k * ux), scene_add(&o, 0.1 * k * uy); /* a line, up to rounding */
     scene_add(&o, -0.5), scene_add(&o, 0.25);
@@ -274,7 +275,7 @@ START_TEST(test_needles) {
   static const double widths[] = {1e-3, 1e-6, 1e-9, 1e-12, 1e-14};
   scene_seed(400);
   for (int w = 0; w < 5; w++) {
-    object o = {ETHD_POLYGON, 6, {0, 0, 1, 0, 0, widths[w]}};
+    object o = {ETHD_SHAPE_POLYGON, 6, {0, 0, 1, 0, 0, widths[w]}};
     ethd_scene *s = scene_build(&o, 1);
     for (int i = 0; i < 20000; i++) {
       double x = i % 2 ? 1 + scene_uniform(-2, 2) * widths[w] : scene_uniform(-1, 2), y = scene_uniform(-1, 1);

@@ -26,40 +26,40 @@ typedef struct refusal {
 } refusal;
 
 static const refusal refusals[] = {
-    {ETHD_E_NOT_FINITE, ETHD_CIRCLE, 3, {NAN, 0, 1}},
-    {ETHD_E_NOT_FINITE, ETHD_CIRCLE, 3, {0, 0, INFINITY}},
-    {ETHD_E_RANGE, ETHD_CIRCLE, 3, {1.0001e6, 0, 1}},
-    {ETHD_E_RANGE, ETHD_CIRCLE, 3, {0, 0, 0}},
-    {ETHD_E_RANGE, ETHD_CIRCLE, 3, {0, 0, -1}},
-    {ETHD_E_RANGE, ETHD_CIRCLE, 3, {0, 0, 1e9}},
-    {ETHD_E_RANGE, ETHD_BOX, 5, {0, 0, 0, 1, 0}},
-    {ETHD_E_RANGE, ETHD_BOX, 5, {0, 0, 1, -1, 0}},
-    {ETHD_E_NOT_FINITE, ETHD_BOX, 5, {0, 0, 1, 1, NAN}},
-    {ETHD_E_RANGE, ETHD_CAPSULE, 5, {0, 0, 1, 1, 0}},
-    {ETHD_E_RANGE, ETHD_HALFPLANE, 3, {0, 0, 1}},
-    {ETHD_E_RANGE, ETHD_HALFPLANE, 3, {1.000002, 0, 1}},
-    {ETHD_E_RANGE, ETHD_HALFPLANE, 3, {0.6, 0.7, 1}},
-    {ETHD_E_RANGE, ETHD_HALFPLANE, 3, {1, 0, 2e6}},
-    {ETHD_E_ARGUMENT, ETHD_CIRCLE, 2, {0, 0}},
-    {ETHD_E_ARGUMENT, ETHD_CIRCLE, 4, {0, 0, 1, 1}},
-    {ETHD_E_ARGUMENT, ETHD_POLYGON, 4, {0, 0, 1, 1}},
-    {ETHD_E_ARGUMENT, ETHD_POLYGON, 7, {0, 0, 1, 0, 1, 1, 0}},
-    {ETHD_E_ARGUMENT, ETHD_POLYLINE, 2, {0, 0}},
-    {ETHD_E_ARGUMENT, ETHD_SEGMENT, 6, {0, 0, 1, 1, 2, 2}},
-    {ETHD_E_GEOMETRY, ETHD_SEGMENT, 4, {0.5, 1, 0.5, 1}},
-    {ETHD_E_GEOMETRY, ETHD_SEGMENT, 4, {1, 1, 1, 1.0000000000000002}},
-    {ETHD_E_GEOMETRY, ETHD_POLYLINE, 6, {0, 0, 1, 1, 1, 1}},
-    {ETHD_E_GEOMETRY, ETHD_POLYGON, 8, {0, 0, 1, 0, 1, 1, 0, 0}},
-    {ETHD_E_GEOMETRY, ETHD_POLYGON, 8, {0, 0, 1, 0, 1, 0, 0, 1}},
-    {ETHD_E_GEOMETRY, ETHD_POLYGON, 6, {0, 0, 1, 1, 2, 2}},
-    {ETHD_E_GEOMETRY, ETHD_POLYGON, 8, {0, 0, 1, 1, 1, 0, 0, 1}},
-    {ETHD_E_GEOMETRY, ETHD_POLYGON, 10, {0, 0, 2, 0, 2, 2, 1, 0, 0, 2}},       /* a vertex on an edge */
-    {ETHD_E_GEOMETRY, ETHD_POLYGON, 12, {0, 0, 1, 1, 2, 0, 2, 2, 1, 1, 0, 2}}, /* a vertex twice */
-    {ETHD_E_GEOMETRY, ETHD_POLYGON, 8, {0, 0, 2, 0, 1, 0, 1, 1}},              /* back over itself */
-    {ETHD_OK, ETHD_POLYLINE, 8, {0, 0, 1, 1, 1, 0, 0, 1}},
-    {ETHD_OK, ETHD_POLYGON, 8, {0, 0, 1, 0, 2, 0, 1, 1}}, /* a straight vertex */
-    {ETHD_OK, ETHD_CAPSULE, 5, {1, 1, 1, 1, 0.1}},
-    {ETHD_OK, ETHD_CIRCLE, 3, {1e6, -1e6, 1e6}},
+    {ETHD_E_NOT_FINITE, ETHD_SHAPE_CIRCLE, 3, {NAN, 0, 1}},
+    {ETHD_E_NOT_FINITE, ETHD_SHAPE_CIRCLE, 3, {0, 0, INFINITY}},
+    {ETHD_E_RANGE, ETHD_SHAPE_CIRCLE, 3, {1.0001e6, 0, 1}},
+    {ETHD_E_RANGE, ETHD_SHAPE_CIRCLE, 3, {0, 0, 0}},
+    {ETHD_E_RANGE, ETHD_SHAPE_CIRCLE, 3, {0, 0, -1}},
+    {ETHD_E_RANGE, ETHD_SHAPE_CIRCLE, 3, {0, 0, 1e9}},
+    {ETHD_E_RANGE, ETHD_SHAPE_BOX, 5, {0, 0, 0, 1, 0}},
+    {ETHD_E_RANGE, ETHD_SHAPE_BOX, 5, {0, 0, 1, -1, 0}},
+    {ETHD_E_NOT_FINITE, ETHD_SHAPE_BOX, 5, {0, 0, 1, 1, NAN}},
+    {ETHD_E_RANGE, ETHD_SHAPE_CAPSULE, 5, {0, 0, 1, 1, 0}},
+    {ETHD_E_RANGE, ETHD_SHAPE_HALFPLANE, 3, {0, 0, 1}},
+    {ETHD_E_RANGE, ETHD_SHAPE_HALFPLANE, 3, {1.000002, 0, 1}},
+    {ETHD_E_RANGE, ETHD_SHAPE_HALFPLANE, 3, {0.6, 0.7, 1}},
+    {ETHD_E_RANGE, ETHD_SHAPE_HALFPLANE, 3, {1, 0, 2e6}},
+    {ETHD_E_ARGUMENT, ETHD_SHAPE_CIRCLE, 2, {0, 0}},
+    {ETHD_E_ARGUMENT, ETHD_SHAPE_CIRCLE, 4, {0, 0, 1, 1}},
+    {ETHD_E_ARGUMENT, ETHD_SHAPE_POLYGON, 4, {0, 0, 1, 1}},
+    {ETHD_E_ARGUMENT, ETHD_SHAPE_POLYGON, 7, {0, 0, 1, 0, 1, 1, 0}},
+    {ETHD_E_ARGUMENT, ETHD_SHAPE_POLYLINE, 2, {0, 0}},
+    {ETHD_E_ARGUMENT, ETHD_SHAPE_SEGMENT, 6, {0, 0, 1, 1, 2, 2}},
+    {ETHD_E_GEOMETRY, ETHD_SHAPE_SEGMENT, 4, {0.5, 1, 0.5, 1}},
+    {ETHD_E_GEOMETRY, ETHD_SHAPE_SEGMENT, 4, {1, 1, 1, 1.0000000000000002}},
+    {ETHD_E_GEOMETRY, ETHD_SHAPE_POLYLINE, 6, {0, 0, 1, 1, 1, 1}},
+    {ETHD_E_GEOMETRY, ETHD_SHAPE_POLYGON, 8, {0, 0, 1, 0, 1, 1, 0, 0}},
+    {ETHD_E_GEOMETRY, ETHD_SHAPE_POLYGON, 8, {0, 0, 1, 0, 1, 0, 0, 1}},
+    {ETHD_E_GEOMETRY, ETHD_SHAPE_POLYGON, 6, {0, 0, 1, 1, 2, 2}},
+    {ETHD_E_GEOMETRY, ETHD_SHAPE_POLYGON, 8, {0, 0, 1, 1, 1, 0, 0, 1}},
+    {ETHD_E_GEOMETRY, ETHD_SHAPE_POLYGON, 10, {0, 0, 2, 0, 2, 2, 1, 0, 0, 2}},       /* a vertex on an edge */
+    {ETHD_E_GEOMETRY, ETHD_SHAPE_POLYGON, 12, {0, 0, 1, 1, 2, 0, 2, 2, 1, 1, 0, 2}}, /* a vertex twice */
+    {ETHD_E_GEOMETRY, ETHD_SHAPE_POLYGON, 8, {0, 0, 2, 0, 1, 0, 1, 1}},              /* back over itself */
+    {ETHD_OK, ETHD_SHAPE_POLYLINE, 8, {0, 0, 1, 1, 1, 0, 0, 1}},
+    {ETHD_OK, ETHD_SHAPE_POLYGON, 8, {0, 0, 1, 0, 2, 0, 1, 1}}, /* a straight vertex */
+    {ETHD_OK, ETHD_SHAPE_CAPSULE, 5, {1, 1, 1, 1, 0.1}},
+    {ETHD_OK, ETHD_SHAPE_CIRCLE, 3, {1e6, -1e6, 1e6}},
 };
 
 START_TEST(test_refusals) {
@@ -76,16 +76,16 @@ START_TEST(test_refusals) {
   ethd_error error;
   ck_assert_int_eq(create(ETHD_SHAPE_COUNT, 3, circle, -1, &error), ETHD_E_UNKNOWN);
   ck_assert_int_eq(create((ethd_shape)99, 3, circle, -1, &error), ETHD_E_UNKNOWN);
-  ck_assert_int_eq(create(ETHD_CIRCLE, 3, NULL, -1, &error), ETHD_E_ARGUMENT);
-  ck_assert_int_eq(create(ETHD_CIRCLE, 3, circle, 0, &error), ETHD_E_RANGE);
-  ck_assert_int_eq(create(ETHD_CIRCLE, 3, circle, -2, &error), ETHD_E_RANGE);
+  ck_assert_int_eq(create(ETHD_SHAPE_CIRCLE, 3, NULL, -1, &error), ETHD_E_ARGUMENT);
+  ck_assert_int_eq(create(ETHD_SHAPE_CIRCLE, 3, circle, 0, &error), ETHD_E_RANGE);
+  ck_assert_int_eq(create(ETHD_SHAPE_CIRCLE, 3, circle, -2, &error), ETHD_E_RANGE);
 }
 END_TEST
 
 START_TEST(test_materials_of_structs) {
   static ethd_material m[ETHD_MATERIALS_MAX + 1];
   double circle[3] = {0, 0, 1};
-  ethd_object_def o = {ETHD_CIRCLE, 1, circle, 3, 0};
+  ethd_object_def o = {ETHD_SHAPE_CIRCLE, 1, circle, 3, 0};
   ethd_scene *scene;
   ethd_error error;
   for (int i = 0; i <= ETHD_MATERIALS_MAX; i++)
@@ -129,13 +129,13 @@ START_TEST(test_large) {
   scene_seed(1000);
   for (size_t i = 0; i < OBJECTS; i++) {
     for (int k = 0; k < 4; k++) p[4 * i + (size_t)k] = scene_uniform(-1, 1);
-    o[i] = (ethd_object_def){ETHD_SEGMENT, -1, p + 4 * i, 4, 0};
+    o[i] = (ethd_object_def){ETHD_SHAPE_SEGMENT, -1, p + 4 * i, 4, 0};
   }
   for (size_t k = 0; k < N; k++) {
     double a = 2 * M_PI * (double)k / N;
     q[2 * k] = 5 + cos(a), q[2 * k + 1] = sin(a);
   }
-  o[OBJECTS - 1] = (ethd_object_def){ETHD_POLYGON, -1, q, 2 * N, 0};
+  o[OBJECTS - 1] = (ethd_object_def){ETHD_SHAPE_POLYGON, -1, q, 2 * N, 0};
   ethd_scene_def def = {o, OBJECTS, NULL, 0};
   ethd_scene *s;
   ck_assert_int_eq(ethd_scene_create(&def, &s, NULL), ETHD_OK);

@@ -49,8 +49,8 @@ START_TEST(test_far_away) {
     square[2 * k] = side == 0 ? t : side == 1 ? 10 : side == 2 ? 10 - t : 0;
     square[2 * k + 1] = (side == 0 ? 0 : side == 1 ? t : side == 2 ? 10 : 10 - t) + 100;
   }
-  const ethd_object_def objects[] = {{ETHD_POLYLINE, -1, p, 2 * (EDGES + 1), 0},
-                                     {ETHD_POLYGON, -1, square, 8 * EDGES, 0}};
+  const ethd_object_def objects[] = {{ETHD_SHAPE_POLYLINE, -1, p, 2 * (EDGES + 1), 0},
+                                     {ETHD_SHAPE_POLYGON, -1, square, 8 * EDGES, 0}};
   for (int which = 0; which < 3; which++) {
     ethd_scene *scene = which < 2 ? build(objects + which, 1) : build(objects, 2);
     for (double far = 1e12; far < 1e150; far *= 1e6)
@@ -77,9 +77,9 @@ END_TEST
 START_TEST(test_squares_that_overflow) {
   double p[2 * (EDGES + 1)];
   chain(p);
-  const ethd_object_def line = {ETHD_POLYLINE, -1, p, 2 * (EDGES + 1), 0};
+  const ethd_object_def line = {ETHD_SHAPE_POLYLINE, -1, p, 2 * (EDGES + 1), 0};
   const double segment[] = {0, 0, 1, 0};
-  const ethd_object_def thin = {ETHD_SEGMENT, -1, segment, 4, 0};
+  const ethd_object_def thin = {ETHD_SHAPE_SEGMENT, -1, segment, 4, 0};
   ethd_scene *scenes[] = {build(&line, 1), build(&thin, 1)};
   for (int i = 0; i < 2; i++) {
     ethd_nearest n;

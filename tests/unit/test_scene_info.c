@@ -8,19 +8,19 @@
 #include "scene_objects.h"
 
 START_TEST(test_describe) {
-  object o[] = {{ETHD_HALFPLANE, 3, {0, 1, 5}},
-                {ETHD_CIRCLE, 3, {1, 2, 0.5}},
-                {ETHD_POLYGON, 8, {0, 0, 3, 0, 3, 1, 0, 1}},
-                {ETHD_POLYLINE, 6, {-2, 0, -1, 0, -1, -4}},
-                {ETHD_SEGMENT, 4, {0, 0, 1, 1}},
-                {ETHD_CIRCLE, 3, {0, 0, 0.1}}};
+  object o[] = {{ETHD_SHAPE_HALFPLANE, 3, {0, 1, 5}},
+                {ETHD_SHAPE_CIRCLE, 3, {1, 2, 0.5}},
+                {ETHD_SHAPE_POLYGON, 8, {0, 0, 3, 0, 3, 1, 0, 1}},
+                {ETHD_SHAPE_POLYLINE, 6, {-2, 0, -1, 0, -1, -4}},
+                {ETHD_SHAPE_SEGMENT, 4, {0, 0, 1, 1}},
+                {ETHD_SHAPE_CIRCLE, 3, {0, 0, 0.1}}};
   ethd_scene *s = scene_build(o, 6);
   ethd_scene_info info;
   ethd_scene_describe(s, &info);
   ck_assert_uint_eq(info.objects, 6);
-  ck_assert_uint_eq(info.by_shape[ETHD_CIRCLE], 2);
-  ck_assert_uint_eq(info.by_shape[ETHD_HALFPLANE], 1);
-  ck_assert_uint_eq(info.by_shape[ETHD_BOX], 0);
+  ck_assert_uint_eq(info.by_shape[ETHD_SHAPE_CIRCLE], 2);
+  ck_assert_uint_eq(info.by_shape[ETHD_SHAPE_HALFPLANE], 1);
+  ck_assert_uint_eq(info.by_shape[ETHD_SHAPE_BOX], 0);
   ck_assert_uint_eq(info.segments, 4 + 2 + 1);
   ck_assert(info.x_min == -2 && info.x_max == 3 && info.y_min == -4 && info.y_max == 2.5);
   ck_assert(info.bytes > 6 * 32 && info.bytes < 6 * 32 + 2000);
@@ -29,14 +29,14 @@ START_TEST(test_describe) {
   ethd_scene_describe(s, &info);
   ck_assert(info.x_min > info.x_max && info.y_min > info.y_max);
   ethd_scene_destroy(s);
-  s = SCENE_ONE(ETHD_BOX, 1, 1, 2, 1, M_PI / 2);
+  s = SCENE_ONE(ETHD_SHAPE_BOX, 1, 1, 2, 1, M_PI / 2);
   ethd_scene_describe(s, &info);
   ck_assert(fabs(info.x_min) <= SCENE_TIGHT && fabs(info.x_max - 2) <= SCENE_TIGHT);
   ck_assert(fabs(info.y_max - 3) <= SCENE_TIGHT);
   ethd_scene_destroy(s);
   for (int i = 0; i < ETHD_SHAPE_COUNT; i++)
     for (int k = 0; k < i; k++) ck_assert_str_ne(ethd_shape_name((ethd_shape)i), ethd_shape_name((ethd_shape)k));
-  ck_assert_str_eq(ethd_shape_name(ETHD_HALFPLANE), "halfplane");
+  ck_assert_str_eq(ethd_shape_name(ETHD_SHAPE_HALFPLANE), "halfplane");
 }
 END_TEST
 
@@ -57,7 +57,7 @@ START_TEST(test_forms) {
     ck_assert_int_eq(strstr(row->form, "...") != NULL, row->is_list);
     ck_assert_int_eq(row->nearest != NULL, !row->is_chain);
   }
-  ck_assert_str_eq(ethd_shape_form(ETHD_BOX), "X Y HALF_W HALF_H ANGLE");
+  ck_assert_str_eq(ethd_shape_form(ETHD_SHAPE_BOX), "X Y HALF_W HALF_H ANGLE");
   ck_assert_str_eq(ethd_shape_form(ETHD_SHAPE_COUNT), "");
 }
 END_TEST
@@ -71,7 +71,8 @@ START_TEST(test_out_of_reach) {
   for (int s = 0; s < 2000; s++) {
     object o = scene_random((ethd_shape)(scene_draw() % ETHD_SHAPE_COUNT));
     if (s % 2)
-      for (size_t k = 0; k < o.count && o.shape != ETHD_HALFPLANE; k++) o.p[k] *= o.shape == ETHD_BOX ? 0.2 : 0.05;
+      for (size_t k = 0; k < o.count && o.shape != ETHD_SHAPE_HALFPLANE; k++)
+        o.p[k] *= o.shape == ETHD_SHAPE_BOX ? 0.2 : 0.05;
     ethd_scene *scene = scene_build(&o, 1);
     size_t dropped = ethd_scene_out_of_reach(scene, &arm, 0.05);
     int reached = 0;
@@ -86,19 +87,19 @@ START_TEST(test_out_of_reach) {
     ethd_scene_destroy(scene);
   }
   ck_assert_int_gt(out, 100);
-  ethd_scene *s = SCENE_ONE(ETHD_CIRCLE, 0.02, 0, 0.0299); /* in the hole */
+  ethd_scene *s = SCENE_ONE(ETHD_SHAPE_CIRCLE, 0.02, 0, 0.0299); /* in the hole */
   ck_assert_uint_eq(ethd_scene_out_of_reach(s, &arm, 0.05), 1);
   ethd_scene_destroy(s);
-  s = SCENE_ONE(ETHD_CIRCLE, 0.02, 0, 0.0301);
+  s = SCENE_ONE(ETHD_SHAPE_CIRCLE, 0.02, 0, 0.0301);
   ck_assert_uint_eq(ethd_scene_out_of_reach(s, &arm, 0.05), 0);
   ethd_scene_destroy(s);
-  s = SCENE_ONE(ETHD_BOX, 0.9, 0, 0.3501, 0.1, 0);
+  s = SCENE_ONE(ETHD_SHAPE_BOX, 0.9, 0, 0.3501, 0.1, 0);
   ck_assert_uint_eq(ethd_scene_out_of_reach(s, &arm, 0.05), 0);
   ethd_scene_destroy(s);
-  s = SCENE_ONE(ETHD_BOX, 0.9, 0, 0.3499, 0.1, 0);
+  s = SCENE_ONE(ETHD_SHAPE_BOX, 0.9, 0, 0.3499, 0.1, 0);
   ck_assert_uint_eq(ethd_scene_out_of_reach(s, &arm, 0.05), 1);
   ethd_scene_destroy(s);
-  s = SCENE_ONE(ETHD_POLYGON, -9, -9, 9, -9, 9, 9, -9, 9); /* everything lies in it */
+  s = SCENE_ONE(ETHD_SHAPE_POLYGON, -9, -9, 9, -9, 9, 9, -9, 9); /* everything lies in it */
   ck_assert_uint_eq(ethd_scene_out_of_reach(s, &arm, 0.05), 0);
   ethd_scene_destroy(s);
 }
@@ -115,7 +116,7 @@ START_TEST(test_boxes) {
   enum { EDGES = 1000 };
   static double p[2 * EDGES];
   for (int k = 0; k < EDGES; k++) p[2 * k] = 3 + cos(k * 2 * M_PI / EDGES), p[2 * k + 1] = sin(k * 2 * M_PI / EDGES);
-  ethd_object_def o = {ETHD_POLYGON, -1, p, 2 * EDGES, 0};
+  ethd_object_def o = {ETHD_SHAPE_POLYGON, -1, p, 2 * EDGES, 0};
   ethd_scene_def def = {&o, 1, NULL, 0};
   ethd_scene *s;
   ck_assert_int_eq(ethd_scene_create(&def, &s, NULL), ETHD_OK);
@@ -133,7 +134,7 @@ START_TEST(test_boxes) {
   }
   ck_assert(found[1] == 1000 && found[2] == 125 && found[3] == 16 && found[4] == 2);
   ethd_scene_box b;
-  ck_assert_int_eq(ethd_scene_box_at(s, info.boxes, &b), ETHD_EMPTY);
+  ck_assert_int_eq(ethd_scene_box_at(s, info.boxes, &b), ETHD_STATUS_EMPTY);
   ethd_scene_destroy(s);
 }
 END_TEST
@@ -148,8 +149,8 @@ START_TEST(test_boxes_of_several) {
   for (int c = 0; c < CHAINS; c++) {
     for (size_t k = 0; k < points[c]; k++) p[c][2 * k] = 10 * c + 0.001 * (double)k, p[c][2 * k + 1] = k % 2 * 0.01;
     disc[c][0] = 10 * c + 5, disc[c][1] = 0, disc[c][2] = 1;
-    o[2 * c] = (ethd_object_def){ETHD_POLYLINE, -1, p[c], 2 * points[c], 0};
-    o[2 * c + 1] = (ethd_object_def){ETHD_CIRCLE, -1, disc[c], 3, 0};
+    o[2 * c] = (ethd_object_def){ETHD_SHAPE_POLYLINE, -1, p[c], 2 * points[c], 0};
+    o[2 * c + 1] = (ethd_object_def){ETHD_SHAPE_CIRCLE, -1, disc[c], 3, 0};
   }
   ethd_scene_def def = {o, 2 * CHAINS, NULL, 0};
   ethd_scene *s;

@@ -17,7 +17,7 @@ static ethd_scene *draw(void) {
   object o[OBJECTS];
   for (int i = 0; i < OBJECTS; i++) {
     o[i] = scene_random((ethd_shape)(scene_draw() % ETHD_SHAPE_COUNT));
-    for (size_t k = 0; k < o[i].count && i % 3; k++) o[i].p[k] *= o[i].shape == ETHD_HALFPLANE ? 1 : 0.5;
+    for (size_t k = 0; k < o[i].count && i % 3; k++) o[i].p[k] *= o[i].shape == ETHD_SHAPE_HALFPLANE ? 1 : 0.5;
   }
   return scene_build(o, OBJECTS);
 }
@@ -106,7 +106,8 @@ START_TEST(test_objects_come_back) {
     for (int i = 0; i < 8; i++) {
       ck_assert_int_eq(ethd_scene_object(scene, (size_t)i, &defs[i]), i);
       ck_assert(defs[i].shape == o[i].shape && defs[i].count == o[i].count && defs[i].material == -1);
-      if (o[i].shape != ETHD_HALFPLANE) ck_assert(memcmp(defs[i].numbers, o[i].p, o[i].count * sizeof(double)) == 0);
+      if (o[i].shape != ETHD_SHAPE_HALFPLANE)
+        ck_assert(memcmp(defs[i].numbers, o[i].p, o[i].count * sizeof(double)) == 0);
     }
     ck_assert_int_eq(ethd_scene_object(scene, 8, &defs[8]), -1);
     ethd_scene_def def = {defs, 8, NULL, 0};

@@ -28,7 +28,7 @@ START_TEST(test_arrays_that_are_missing) {
   ck_assert_str_eq(error.name, "scene");
   ck_assert_int_eq(create(&(ethd_scene_def){NULL, 0, NULL, 1}), ETHD_E_ARGUMENT);
   ck_assert_int_eq(create(&(ethd_scene_def){NULL, 0, NULL, 0}), ETHD_OK);
-  ck_assert_int_eq(one(ETHD_CIRCLE, -1, NULL, 3), ETHD_E_ARGUMENT);
+  ck_assert_int_eq(one(ETHD_SHAPE_CIRCLE, -1, NULL, 3), ETHD_E_ARGUMENT);
   ck_assert(strcmp(error.name, "numbers") == 0 && error.line == 7);
 }
 END_TEST
@@ -48,7 +48,7 @@ END_TEST
 /* No room is asked for points that can't be: the count is far over what a number may have. */
 START_TEST(test_count_that_cannot_be) {
   const double p[] = {0, 0, 1};
-  ck_assert_int_eq(one(ETHD_POLYGON, 5, p, (size_t)1 << 33), ETHD_E_RANGE);
+  ck_assert_int_eq(one(ETHD_SHAPE_POLYGON, 5, p, (size_t)1 << 33), ETHD_E_RANGE);
   ck_assert_str_eq(error.name, "material");
 }
 END_TEST
@@ -84,12 +84,12 @@ START_TEST(test_edges_on_one_line) {
       {{0, 0, 2, 2, 1, 3, 1, 1, 3, 3, 0, 5, -1, 5, -1, 0}, 8, 1}, /* on a diagonal, overlapping */
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    ck_assert_msg(one(ETHD_POLYGON, -1, cases[i].p, 2 * (size_t)cases[i].count) ==
+    ck_assert_msg(one(ETHD_SHAPE_POLYGON, -1, cases[i].p, 2 * (size_t)cases[i].count) ==
                       (cases[i].meet ? ETHD_E_GEOMETRY : ETHD_OK),
                   "case %zu: %s", i, error.name);
     double back[16];
     for (int k = 0; k < 8; k++) back[2 * k] = cases[i].p[14 - 2 * k], back[2 * k + 1] = cases[i].p[15 - 2 * k];
-    ck_assert_int_eq(one(ETHD_POLYGON, -1, back, 16), cases[i].meet ? ETHD_E_GEOMETRY : ETHD_OK);
+    ck_assert_int_eq(one(ETHD_SHAPE_POLYGON, -1, back, 16), cases[i].meet ? ETHD_E_GEOMETRY : ETHD_OK);
   }
 }
 END_TEST
@@ -102,14 +102,14 @@ START_TEST(test_edges_by_number) {
     int at = k == 120 ? 121 : k == 121 ? 120 : k;
     p[2 * k] = cos(at * 0.026), p[2 * k + 1] = sin(at * 0.026);
   }
-  ck_assert_int_eq(one(ETHD_POLYGON, -1, p, 2 * POINTS), ETHD_E_GEOMETRY);
+  ck_assert_int_eq(one(ETHD_SHAPE_POLYGON, -1, p, 2 * POINTS), ETHD_E_GEOMETRY);
   ck_assert_str_eq(error.name, "polygon: edges 119 and 121 meet");
   for (int k = 0; k < POINTS / 2; k++)
     for (int i = 0; i < 2; i++) {
       double *a = &p[2 * k + i], *b = &p[2 * (POINTS - 1 - k) + i], t = *a;
       *a = *b, *b = t;
     }
-  ck_assert_int_eq(one(ETHD_POLYGON, -1, p, 2 * POINTS), ETHD_E_GEOMETRY);
+  ck_assert_int_eq(one(ETHD_SHAPE_POLYGON, -1, p, 2 * POINTS), ETHD_E_GEOMETRY);
   ck_assert_str_eq(error.name, "polygon: edges 117 and 119 meet");
 }
 END_TEST

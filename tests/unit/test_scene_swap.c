@@ -61,9 +61,9 @@ static ethd_scene *large(int loose) {
   for (int i = 0; i < SEGMENTS && loose; i++) {
     q[i][0] = 0.02 * (i % 316) - 3, q[i][1] = 0.02 * (i / 316) - 3;
     q[i][2] = q[i][0] + 0.01 * cos(i), q[i][3] = q[i][1] + 0.01 * sin(i);
-    o[i] = (ethd_object_def){ETHD_SEGMENT, -1, q[i], 4, 0};
+    o[i] = (ethd_object_def){ETHD_SHAPE_SEGMENT, -1, q[i], 4, 0};
   }
-  if (!loose) o[0] = (ethd_object_def){ETHD_POLYLINE, -1, p, 2 * SEGMENTS + 2, 0};
+  if (!loose) o[0] = (ethd_object_def){ETHD_SHAPE_POLYLINE, -1, p, 2 * SEGMENTS + 2, 0};
   ethd_scene_def def = {o, loose ? SEGMENTS : 1, NULL, 0};
   ck_assert_int_eq(ethd_scene_create(&def, &scene, NULL), ETHD_OK);
   return scene;

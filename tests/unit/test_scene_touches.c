@@ -25,7 +25,7 @@ static int is_minimum(const object *o, const ethd_touch *t, ethd_vec x) {
   const double *p = o->p;
   size_t n = o->count / 2, k = (size_t)t->feature / 2;
   int closed = ethd__shapes[o->shape].is_closed, at_vertex = t->feature % 2;
-  if (o->shape == ETHD_SEGMENT) /* has no features */
+  if (o->shape == ETHD_SHAPE_SEGMENT) /* has no features */
     for (size_t end = 0; end < 2; end++)
       if (t->point.x == p[2 * end] && t->point.y == p[2 * end + 1]) at_vertex = 1, k = end;
   double d = apart(t->point, x), step = 1e-7;
@@ -123,7 +123,7 @@ END_TEST
 
 START_TEST(test_channel_and_corner) {
   /* A notch of width 0.2 in a block, open above. */
-  ethd_scene *s = SCENE_ONE(ETHD_POLYGON, 0, 0, 1, 0, 1, 1, 0.6, 1, 0.6, 0.3, 0.4, 0.3, 0.4, 1, 0, 1);
+  ethd_scene *s = SCENE_ONE(ETHD_SHAPE_POLYGON, 0, 0, 1, 0, 1, 1, 0.6, 1, 0.6, 0.3, 0.4, 0.3, 0.4, 1, 0, 1);
   ethd_touch t[8];
   ck_assert_uint_eq(ethd_scene_touches(s, (ethd_vec){0.5, 0.5}, 0.3, t, 8), 3);
   ck_assert(fabs(t[0].distance - 0.1) <= SCENE_TIGHT && fabs(t[1].distance - 0.1) <= SCENE_TIGHT);
@@ -141,7 +141,7 @@ END_TEST
 START_TEST(test_foot_beside_a_vertex) {
   static const double there[] = {0, 0, 1, 0, 2, -1}, back[] = {2, -1, 1, 0, 0, 0};
   for (int i = 0; i < 2; i++) {
-    ethd_scene *s = scene_one(ETHD_POLYLINE, 6, i ? back : there);
+    ethd_scene *s = scene_one(ETHD_SHAPE_POLYLINE, 6, i ? back : there);
     ethd_vec x = {1 - 1e-9, 0.5};
     ethd_nearest q;
     ethd_touch t[2];
@@ -156,7 +156,7 @@ END_TEST
 
 START_TEST(test_shared_vertices_count_once) {
   /* A straight line of four edges, seen from over its inner points, as wall and as polygon. */
-  ethd_scene *s = SCENE_ONE(ETHD_POLYLINE, 0, 0, 0.1, 0, 0.2, 0, 0.30000000000000004, 0, 1, 0);
+  ethd_scene *s = SCENE_ONE(ETHD_SHAPE_POLYLINE, 0, 0, 0.1, 0, 0.2, 0, 0.30000000000000004, 0, 1, 0);
   ethd_touch t[8];
   for (int k = 1; k <= 3; k++) {
     ck_assert_uint_eq(ethd_scene_touches(s, (ethd_vec){k * 0.1, 0.05}, 1, t, 8), 1);
@@ -166,7 +166,7 @@ START_TEST(test_shared_vertices_count_once) {
   }
   ethd_scene_destroy(s);
   /* A corner, from outside (its vertex) and from inside (both edges). */
-  s = SCENE_ONE(ETHD_POLYLINE, 0, 1, 0, 0, 1, 0);
+  s = SCENE_ONE(ETHD_SHAPE_POLYLINE, 0, 1, 0, 0, 1, 0);
   ck_assert_uint_eq(ethd_scene_touches(s, (ethd_vec){-0.3, -0.4}, 1, t, 8), 1);
   ck_assert(t[0].feature == 3 && fabs(t[0].distance - 0.5) <= SCENE_TIGHT && t[0].side == -1);
   ck_assert_uint_eq(ethd_scene_touches(s, (ethd_vec){0.2, 0.1}, 1, t, 8), 2);
@@ -178,12 +178,12 @@ START_TEST(test_shared_vertices_count_once) {
   ck_assert(t[0].feature == 5 && t[0].side == 0 && t[0].n.x == -1);
   ethd_scene_destroy(s);
   /* A ring of thin walls has no ends: beyond its first point stands a corner like the others. */
-  s = SCENE_ONE(ETHD_POLYLINE, 0, 0, 1, 0, 1, 1, 0, 1, 0, 0);
+  s = SCENE_ONE(ETHD_SHAPE_POLYLINE, 0, 0, 1, 0, 1, 1, 0, 1, 0, 0);
   ck_assert_uint_eq(ethd_scene_touches(s, (ethd_vec){-0.3, -0.4}, 0.6, t, 8), 1);
   ck_assert(t[0].feature == 1 && t[0].side == -1);
   ck_assert_uint_eq(ethd_scene_touches(s, (ethd_vec){0.5, 0.25}, 4, t, 8), 4);
   ethd_scene_destroy(s);
-  s = SCENE_ONE(ETHD_SEGMENT, 0, 0, 1, 0);
+  s = SCENE_ONE(ETHD_SHAPE_SEGMENT, 0, 0, 1, 0);
   ck_assert_uint_eq(ethd_scene_touches(s, (ethd_vec){1.5, 0}, 1, t, 8), 1);
   ck_assert(t[0].feature == 0 && t[0].side == 0);
   ethd_scene_destroy(s);
@@ -229,7 +229,7 @@ START_TEST(test_follow) {
   enum { ROOM = 100 };
   scene_seed(800);
   for (int s = 0; s < 3000; s++) {
-    object o[2] = {scene_random(ETHD_CIRCLE), scene_random((ethd_shape)(scene_draw() % ETHD_SHAPE_COUNT))};
+    object o[2] = {scene_random(ETHD_SHAPE_CIRCLE), scene_random((ethd_shape)(scene_draw() % ETHD_SHAPE_COUNT))};
     ethd_scene *scene = scene_build(o, 2), *alone = scene_build(&o[1], 1);
     ethd_vec x = {scene_uniform(-1, 1), scene_uniform(-1, 1)}, from = {scene_uniform(-1, 1), scene_uniform(-1, 1)};
     ethd_touch all[ROOM], one_of;

@@ -62,7 +62,7 @@ START_TEST(test_many) {
   for (int i = 0; i < many; i++) {
     p[i][0] = scene_uniform(-1, 1), p[i][1] = scene_uniform(-1, 1);
     p[i][2] = p[i][0] + scene_uniform(-1e-3, 1e-3), p[i][3] = p[i][1] + scene_uniform(-1e-3, 1e-3);
-    o[i] = (ethd_object_def){i % 3 ? ETHD_SEGMENT : ETHD_CIRCLE, -1, p[i], i % 3 ? 4 : 3, 0};
+    o[i] = (ethd_object_def){i % 3 ? ETHD_SHAPE_SEGMENT : ETHD_SHAPE_CIRCLE, -1, p[i], i % 3 ? 4 : 3, 0};
     if (i % 3 == 0) p[i][2] = 1e-3;
   }
   ethd_scene_def def = {o, (size_t)many, NULL, 0};

@@ -96,7 +96,7 @@ END_TEST
 /* A check that only says no, as it may: it is asked with an error of its own, and its law's id says what is wrong. */
 static ethd_status silent(const double *p, ethd_error *e) {
   ck_assert_ptr_nonnull(e);
-  return p[0] > 1000 ? ETHD_E_GEOMETRY : ETHD_BUSY;
+  return p[0] > 1000 ? ETHD_E_GEOMETRY : ETHD_STATUS_BUSY;
 }
 
 START_TEST(test_silent_law) {

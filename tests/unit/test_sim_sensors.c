@@ -1,7 +1,7 @@
 /* Encoders and the proximity ring: counts, instants, delivery, what a reading holds. */
 #include <stdlib.h>
 
-#include "ethd/finger_fit.h"
+#include "ethd/estimate.h"
 #include "unit/sim_rig.h"
 
 /* ---- encoders ---- */

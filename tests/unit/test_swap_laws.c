@@ -194,7 +194,7 @@ START_TEST(test_swap_in_a_soft_start) {
   bad.q[0] = NAN;
   rig_step(&r, &m);
   rig_try(&r, &bad);
-  ethd_control_clear(r.control);
+  ethd_control_acknowledge(r.control);
   for (int i = 0; i < 5; i++) rig_step(&r, &m);
   ethd_setup_transition(&r.setup, &ethd_transition_abrupt);
   rig_post(&r);

@@ -1,5 +1,5 @@
 /* Each estimator against a second derivation in long double, and all of them side by side. */
-#include "ethd/velocity.h"
+#include "ethd/estimate.h"
 
 #include <check.h>
 #include <math.h>

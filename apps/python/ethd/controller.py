@@ -201,7 +201,7 @@ class Controller:
 
     def clear(self) -> None:
         """Acknowledges a latched fault: the next step begins softly, once limits.clean_time is over."""
-        lib.ethd_control_clear(self._control)
+        lib.ethd_control_acknowledge(self._control)
 
     def reset(self) -> None:
         """Forgets everything except the setup that rules."""

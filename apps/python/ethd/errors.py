@@ -29,7 +29,7 @@ def check(status: int, message: Any, what: str = "", plugins: str = "plugins=Tru
     said = ffi.string(message).decode(errors="replace") if message is not None else ""
     said = said.replace("--plugins lets", plugins + " lets")
     sentence = said or (what + ": " if what else "") + ffi.string(lib.ethd_status_sentence(status)).decode()
-    raise (Busy if status == lib.ETHD_BUSY else Error)(status, sentence)
+    raise (Busy if status == lib.ETHD_STATUS_BUSY else Error)(status, sentence)
 
 
 def check_error(status: int, error: Any, file: str = "") -> None:

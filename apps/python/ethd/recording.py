@@ -178,9 +178,9 @@ class _Replay:
         if "clear" in done:
             c.clear()
         if "hot" in done:
-            lib.ethd_control_heated(c._control, self.heat)
+            lib.ethd_control_set_heat(c._control, self.heat)
         if "taught" in done:
-            lib.ethd_control_taught(c._control, self.learned)
+            lib.ethd_control_set_memory(c._control, self.learned)
 
     def _take(self, e: RecordedEvent, setup: Any) -> str:
         if e.kind == "setup":

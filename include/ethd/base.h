@@ -1,17 +1,41 @@
-/* One enum for every function that can fail: 0 ok, negative failure, positive condition. Links from libethd. */
-#ifndef ETHD_STATUS_H
-#define ETHD_STATUS_H
+/* What every header needs: attributes of functions, and the status that a function returns. Links from libethd.
 
-#include "ethd/attributes.h"
+   Thread tags close every contract in these headers:
+     [main]  the thread that created the object; may allocate and block
+     [rt]    the control thread: bounded work, no heap, lock, system call, errno or stdio
+     [any]   any thread, as said there
+   ETHD_RT marks prototypes and function-pointer types of the [rt] side; clang 20 and later
+   checks it with -Wfunction-effects. */
+#ifndef ETHD_BASE_H
+#define ETHD_BASE_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+#define ETHD_BEGIN_DECLS extern "C" {
+#define ETHD_END_DECLS }
+#else
+#define ETHD_BEGIN_DECLS
+#define ETHD_END_DECLS
+#endif
+
+#define ETHD_API __attribute__((visibility("default")))
+#define ETHD_MUST_CHECK __attribute__((warn_unused_result))
+
+#if defined(__clang__) && __clang_major__ >= 20
+#define ETHD_RT __attribute__((nonblocking))
+#else
+#define ETHD_RT
+#endif
 
 ETHD_BEGIN_DECLS
 
-/* X(name, value, sentence) */
+/* One enum for every function that can fail: 0 ok, negative failure, positive condition. X(name, value, sentence) */
 #define ETHD_STATUSES(X)                                                         \
   X(OK, 0, "done")                                                               \
-  X(BUSY, 1, "the receiver has not taken the last one yet")                      \
-  X(STALE, 2, "no newer value has come")                                         \
-  X(EMPTY, 3, "nothing is waiting")                                              \
+  X(STATUS_BUSY, 1, "the receiver has not taken the last one yet")               \
+  X(STATUS_STALE, 2, "no newer value has come")                                  \
+  X(STATUS_EMPTY, 3, "nothing is waiting")                                       \
   X(E_ARGUMENT, -1, "an argument is missing or contradicts another")             \
   X(E_RANGE, -2, "a value is out of its range")                                  \
   X(E_NOT_FINITE, -3, "a value is not a finite number")                          \
