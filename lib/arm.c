@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "ethd/maths.h"
+#include "fp_mode.h"
 #include "maths/two_waves.h"
 
 /* What differs from arm to arm. A new one gets a row here and a name in ethd_mechanism. */
@@ -133,10 +134,17 @@ ethd_status ethd_arm_check(const ethd_arm *arm, ethd_error *error) {
 
 const char *ethd_arm_name(ethd_mechanism mechanism) { return (unsigned)mechanism < ROWS ? rows[mechanism].name : ""; }
 
-void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) { rows[arm->mechanism].pose(arm, q, out); }
+void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) {
+  const uint64_t callers = ethd__fp_take();
+  rows[arm->mechanism].pose(arm, q, out);
+  ethd__fp_give(callers);
+}
 
 ethd_status ethd_arm_angles(const ethd_arm *arm, ethd_vec x, int elbow, double q[2]) {
-  return rows[arm->mechanism].angles(arm, x, elbow, q);
+  const uint64_t callers = ethd__fp_take();
+  const ethd_status status = rows[arm->mechanism].angles(arm, x, elbow, q);
+  ethd__fp_give(callers);
+  return status;
 }
 
 void ethd_arm_reach(const ethd_arm *arm, double *inner, double *outer) {

@@ -217,7 +217,7 @@ static ethd_status read_hang_time(ethd__stack *s, const ethd_device_def *def, ch
   char quote[ETHD_QUOTE_MAX];
   double value = HANG_TIME_DEFAULT;
   const ethd_setting *own = find_common(def, HANG_TIME);
-  if (own && (!ethd__number(own->value, strlen(own->value), &value) || !(value >= 1 && value <= 3600)))
+  if (own && (!ethd__number(own->value, strlen(own->value), &value) || !ethd__is_within(value, 1, 3600)))
     return ethd__say(message, ETHD_E_RANGE, "%s:%d: device.%s: found %s, 1 to 3600 s is allowed", file_of(def),
                      own->line, own->key, ethd__quote(own->value, strlen(own->value), quote));
   s->hang_time = (unsigned)value;

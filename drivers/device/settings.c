@@ -47,7 +47,7 @@ static ethd_status set_value(const ethd_device_def *def, const ethd_setting *s, 
   }
   snprintf(allowed, sizeof allowed, "%.10g to %.10g%s%s", row->min, row->max, strcmp(row->unit, "1") ? " " : "",
            strcmp(row->unit, "1") ? row->unit : "");
-  if (!ethd__number(s->value, strlen(s->value), &value) || !(value >= row->min && value <= row->max))
+  if (!ethd__number(s->value, strlen(s->value), &value) || !ethd__is_within(value, row->min, row->max))
     return refuse(def, s, ETHD_E_RANGE, allowed, message);
   *out = value;
   return ETHD_OK;

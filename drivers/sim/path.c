@@ -1,5 +1,6 @@
 #include "sim/path.h"
 
+#include "denormals.h"
 #include "ethd/maths.h"
 
 #define PI 3.14159265358979323846
@@ -148,7 +149,7 @@ double ethd__piece_travel(const ethd__piece *p, const ethd__sim_motion *at, doub
   return h * (v + h * (a / 2 + h * d));
 }
 
-void ethd_path_at(const ethd_path *path, double t, ethd_vec *x, ethd_vec *v) {
+__attribute__((noinline)) static void path_at(const ethd_path *path, double t, ethd_vec *x, ethd_vec *v) {
   ethd__piece piece;
   ethd__path_piece(path, t, &piece);
   ethd__sim_motion m = ethd__piece_at(&piece, t);
@@ -156,7 +157,20 @@ void ethd_path_at(const ethd_path *path, double t, ethd_vec *x, ethd_vec *v) {
   *v = m.v;
 }
 
-double ethd_path_end(const ethd_path *path) {
+void ethd_path_at(const ethd_path *path, double t, ethd_vec *x, ethd_vec *v) {
+  uint64_t before = ethd__traps_hold();
+  path_at(path, t, x, v);
+  ethd__denormals_restore(before);
+}
+
+__attribute__((noinline)) static double path_end(const ethd_path *path) {
   if (path->sample_count) return path->samples[path->sample_count - 1].t;
   return path->ramp_up + cruise_time(path) + path->ramp_down;
+}
+
+double ethd_path_end(const ethd_path *path) {
+  uint64_t before = ethd__traps_hold();
+  double end = path_end(path);
+  ethd__denormals_restore(before);
+  return end;
 }

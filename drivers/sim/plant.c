@@ -5,6 +5,7 @@
 
 #include "finger/zones.h"
 #include "sim/sensors.h"
+#include "text/text.h"
 
 #define AT(member) offsetof(ethd_plant, member)
 #define ROW(section, key, unit, min, max, member, brief) {section, {key, unit, min, max, min, brief}, AT(member)}
@@ -79,14 +80,14 @@ static ethd_status check_row(const ethd__plant_row *row, const ethd_plant *plant
   const ethd_param *p = &row->param;
   double value = value_of(row, plant);
   char name[sizeof error->name];
-  if (value >= p->min && value <= p->max) return ETHD_OK;
+  if (ethd__is_within(value, p->min, p->max)) return ETHD_OK;
   snprintf(name, sizeof name, "%s.%s", row->section, p->name);
   return ethd__sim_refuse(error, isnan(value) ? ETHD_E_NOT_FINITE : ETHD_E_RANGE, name, value, p->min, p->max);
 }
 
 /* Refuses a value of `name` outside [min, max]. */
 static ethd_status within(ethd_error *error, const char *name, double found, double min, double max) {
-  return found >= min && found <= max ? ETHD_OK : ethd__sim_refuse(error, ETHD_E_RANGE, name, found, min, max);
+  return ethd__is_within(found, min, max) ? ETHD_OK : ethd__sim_refuse(error, ETHD_E_RANGE, name, found, min, max);
 }
 
 static ethd_status check_finger(const ethd_plant *p, ethd_error *error) {

@@ -32,7 +32,7 @@ static ethd_status set_number(const char *path, const ethd__plant_row *row, cons
   double value;
   char allowed[ETHD_MESSAGE_MAX];
   ethd__say(allowed, ETHD_OK, "%.10g to %.10g %s", p->min, p->max, p->unit);
-  if (!ethd__number(key->value, strlen(key->value), &value) || !(value >= p->min && value <= p->max))
+  if (!ethd__number(key->value, strlen(key->value), &value) || !ethd__is_within(value, p->min, p->max))
     return refuse(path, key, allowed, message);
   memcpy(out, &value, sizeof value);
   return ETHD_OK;

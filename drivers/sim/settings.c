@@ -51,7 +51,7 @@ static ethd_status set_number(const ethd_setting *s, ethd__sim_settings *out, et
   if (i < 0) return refuse(error, ETHD_E_UNKNOWN, s, NAN, NAN, NAN);
   if (i == ETHD__SIM_FINGER) return set_reading(s, ETHD_READING_COUNT, out, error);
   if (!ethd__number(s->value, strlen(s->value), &value)) return refuse(error, ETHD_E_SYNTAX, s, NAN, NAN, NAN);
-  if (!(value >= ethd__sim_params[i].min && value <= ethd__sim_params[i].max) || !is_whole(i, value))
+  if (!ethd__is_within(value, ethd__sim_params[i].min, ethd__sim_params[i].max) || !is_whole(i, value))
     return refuse(error, ETHD_E_RANGE, s, value, ethd__sim_params[i].min, ethd__sim_params[i].max);
   out->p[i] = value;
   out->given |= UINT32_C(1) << i;

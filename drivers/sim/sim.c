@@ -2,11 +2,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "denormals.h"
 #include "ethd/sim.h"
 #include "sim/body.h"
 #include "sim/plant.h"
 #include "sim/sensors.h"
 #include "sim/series.h"
+
+/* NaN, infinities and quotients by 0 belong to the model, as what a sensor says that sees nothing. Each public function that
+   may meet them takes no trap that an application has set. */
+#define APART __attribute__((noinline)) static
 
 struct ethd_sim {
   ethd_sim_def def;
@@ -24,7 +29,7 @@ struct ethd_sim {
 
 /* ---- create ---- */
 
-ethd_status ethd_sim_create(const ethd_sim_def *def, ethd_sim **out, ethd_error *error) {
+APART ethd_status create(const ethd_sim_def *def, ethd_sim **out, ethd_error *error) {
   *out = NULL;
   ethd_status status = ethd__sim_check(def, error);
   if (status) return status;
@@ -34,6 +39,13 @@ ethd_status ethd_sim_create(const ethd_sim_def *def, ethd_sim **out, ethd_error 
   ethd__sensors_create(&sim->sensors, def);
   *out = sim;
   return ETHD_OK;
+}
+
+ethd_status ethd_sim_create(const ethd_sim_def *def, ethd_sim **out, ethd_error *error) {
+  uint64_t before = ethd__traps_hold();
+  ethd_status status = create(def, out, error);
+  ethd__denormals_restore(before);
+  return status;
 }
 
 void ethd_sim_destroy(ethd_sim *sim) { free(sim); }
@@ -90,7 +102,7 @@ static void take_due(ethd_sim *sim, double t) {
   }
 }
 
-ethd_status ethd_sim_start(ethd_sim *sim, const ethd_sim_tap *tap) {
+APART ethd_status start(ethd_sim *sim, const ethd_sim_tap *tap) {
   ethd_status status = check_tap(sim, tap);
   if (status) return status;
   ethd_vec x, v;
@@ -119,13 +131,20 @@ ethd_status ethd_sim_start(ethd_sim *sim, const ethd_sim_tap *tap) {
   return ETHD_OK;
 }
 
+ethd_status ethd_sim_start(ethd_sim *sim, const ethd_sim_tap *tap) {
+  uint64_t before = ethd__traps_hold();
+  ethd_status status = start(sim, tap);
+  ethd__denormals_restore(before);
+  return status;
+}
+
 /* ---- read ---- */
 
 static int64_t tick_ns(const ethd_sim *sim, int64_t tick) {
   return (int64_t)rint((double)tick * (1e9 * sim->def.period));
 }
 
-void ethd_sim_read(ethd_sim *sim, ethd_sense *out) {
+APART void measure(ethd_sim *sim, ethd_sense *out) {
   double x[ETHD__DOF_MAX];
   memset(out, 0, sizeof *out);
   out->time_ns = tick_ns(sim, sim->tick);
@@ -137,6 +156,12 @@ void ethd_sim_read(ethd_sim *sim, ethd_sense *out) {
     out->finger[1] = x[ETHD__FINGER + 1];
   }
   ethd__sensors_deliver(&sim->sensors, sim->tick ? tick_ns(sim, sim->tick - 1) : -1, out);
+}
+
+void ethd_sim_read(ethd_sim *sim, ethd_sense *out) {
+  uint64_t before = ethd__traps_hold();
+  measure(sim, out);
+  ethd__denormals_restore(before);
 }
 
 void ethd_sim_truth(const ethd_sim *sim, ethd_truth *out) {
@@ -193,7 +218,7 @@ static void pass_on(ethd_sim *sim, const ethd_command *command, double out[2]) {
   }
 }
 
-void ethd_sim_write(ethd_sim *sim, const ethd_command *command) {
+APART void advance(ethd_sim *sim, const ethd_command *command) {
   double delay = sim->def.plant.delay - sim->periods * sim->def.period, update = sim->t + delay,
          end = tick_time(sim, sim->tick + 1);
   go_on(sim, update, update);
@@ -202,4 +227,10 @@ void ethd_sim_write(ethd_sim *sim, const ethd_command *command) {
   take_due(sim, end);
   sim->t = end;
   sim->tick++;
+}
+
+void ethd_sim_write(ethd_sim *sim, const ethd_command *command) {
+  uint64_t before = ethd__traps_hold();
+  advance(sim, command);
+  ethd__denormals_restore(before);
 }

@@ -2,6 +2,7 @@
 #ifndef ETHD__TEXT_TEXT_H
 #define ETHD__TEXT_TEXT_H
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 
@@ -37,6 +38,12 @@ void ethd_replace_abandon(ethd_replace *replace);
 /* Reads [+-] digits [. digits] [e [+-] digits], "inf", "+inf", "-inf" or "nan", and nothing else; a number too
    large for a double is refused. text[length] must be readable and not part of a number. */
 bool ethd__number(const char *text, size_t length, double *out);
+
+/* Returns whether min <= value <= max. A NaN isn't, and takes none of an application's floating-point traps, as it would in
+   a plain comparison. [any] */
+static inline bool ethd__is_within(double value, double min, double max) {
+  return isgreaterequal(value, min) && islessequal(value, max);
+}
 
 /* Whether a plugin's text, which may be NULL or never end, has 1 to `most` characters: of these letters alone; printable
    ASCII, one line without what terminals obey. */

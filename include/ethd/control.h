@@ -261,7 +261,8 @@ ETHD_API double ethd_control_clean_time(const ethd_control *control) ETHD_RT;
 /* Runs one tick and always fills command; trace may be NULL. Whatever the thread's floating-point mode is (rounding,
    traps, FTZ and DAZ), a tick computes to nearest, with subnormal numbers as 0 and without traps, so that its bytes
    don't depend on it, and the thread has its mode back; flags aren't promised. The same holds for create, post, check,
-   reset, restart and rehearse, and for making scenes (scene.h). A negative status says that a fault rules this tick,
+   reset, restart and rehearse, for making scenes (scene.h), and for the functions of guard.h, arm.h and the estimators,
+   whose arguments may be NaN or infinite. A negative status says that a fault rules this tick,
    and why: ETHD_E_NOT_FINITE, ETHD_E_LAW, ETHD_E_BUDGET, ETHD_E_RANGE (the guard stops the ring), ETHD_E_DEVICE (any
    other row of the fault table). The command is then zero torque with `safe` set, or, while a stop still brakes the
    ring, the stop's torque, which may be zero, without `safe`. [rt] */

@@ -63,7 +63,8 @@ static inline double ethd_vec_norm(ethd_vec a) ETHD_RT { return sqrt(a.x * a.x +
    without contraction or value-changing optimisation (-ffp-contract=off, never -ffast-math).
 
    Common to all: angles in rad; NaN in, NaN out, always the same NaN; round to nearest is assumed; errno
-   is never set and no floating-point flag is promised. With FTZ and DAZ set, as on the control thread,
+   is never set and no floating-point flag is promised, but no argument leads to an invalid operation, a division by zero or
+   an overflow, which an application may have made traps (feenableexcept). With FTZ and DAZ set, as on the control thread,
    subnormal arguments count as zeros and subnormal results may be zeros; all other results stay the same.
    ulp: a unit in the last place of the exact result. The bounds are those of 6e8 points measured against
    80-bit long double. */

@@ -6,7 +6,7 @@
    spring and damper about that path push back. Where pad and ring meet, the force is Hunt and Crossley's. The motion is
    worked out in steps of power series that reach from one torque update to the next and end where a contact changes;
    ticks and samples are read from them. Everything is deterministic to the bit: every random number is a function of
-   (seed, tap, stream, counter). */
+   (seed, tap, stream, counter). No floating-point trap that an application has set is taken. */
 #ifndef ETHD_SIM_H
 #define ETHD_SIM_H
 

@@ -183,8 +183,7 @@ void ethd_control_heat(const ethd_control *control, double out[2]) {
 #define HEAT_UNKNOWN 2.0 /* hot enough for row HEAT */
 
 void ethd_control_set_heat(ethd_control *control, const double heat[2]) {
-  for (int i = 0; i < 2; i++)
-    control->state.guard.heat[i] = heat[i] >= 0 && heat[i] < (double)INFINITY ? heat[i] : HEAT_UNKNOWN;
+  for (int i = 0; i < 2; i++) control->state.guard.heat[i] = isfinite(heat[i]) && heat[i] >= 0 ? heat[i] : HEAT_UNKNOWN;
 }
 
 void ethd_control_acknowledge(ethd_control *control) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "estimate/filter_methods.h"
+#include "fp_mode.h"
 
 /* How far off a filter's start may be: the variances of each axis. Only for ca is the acceleration uncertain. */
 typedef struct doubt {
@@ -48,9 +49,15 @@ static void advance(const ethd_filter *f, ethd_filter_state *s, double t) {
   if (ethd__filter_is_kalman(f)) ethd__filter_spread(f, s, w);
 }
 
+ETHD__FP_APART static void predict(const ethd_filter *f, ethd_filter_state *s, double dt) ETHD_RT {
+  s->age += dt;
+  if (f->compensation == ETHD_COMPENSATION_NONE) advance(f, s, dt);
+}
+
 void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, double dt) {
-  state->age += dt;
-  if (filter->compensation == ETHD_COMPENSATION_NONE) advance(filter, state, dt);
+  const uint64_t callers = ethd__fp_take();
+  predict(filter, state, dt);
+  ethd__fp_give(callers);
 }
 
 static bool correct(const ethd_filter *f, ethd_filter_state *s, const sighting *seen, double elapsed) {
@@ -73,8 +80,8 @@ static ethd_status gated(const ethd_filter *f, ethd_filter_state *s, const sight
   return ETHD_OK;
 }
 
-ethd_status ethd__filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, double age,
-                                double noise) {
+ETHD__FP_APART ethd_status ethd__filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x,
+                                               double age, double noise) {
   if (!(noise > 0)) noise = ethd__filter_is_kalman(filter) ? filter->p[FILTER_NOISE] : 0;
   const sighting seen = {x, age, noise};
   if (!isfinite(x.x) || !isfinite(x.y) || !isfinite(age)) {
@@ -101,14 +108,24 @@ ethd_status ethd__filter_update(const ethd_filter *filter, ethd_filter_state *st
 }
 
 ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, double age) {
-  return ethd__filter_update(filter, state, x, age, 0);
+  const uint64_t callers = ethd__fp_take();
+  const ethd_status status = ethd__filter_update(filter, state, x, age, 0);
+  ethd__fp_give(callers);
+  return status;
 }
 
-void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x, ethd_vec *v) {
+ETHD__FP_APART static void output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x,
+                                  ethd_vec *v) ETHD_RT {
   bool stamp = filter->compensation == ETHD_COMPENSATION_STAMP;
   double t = stamp ? state->age + filter->p[FILTER_LATENCY] : 0;
   ethd__filter_motion w = ethd__filter_motion_over(filter, t);
   const double *p = state->x, *q = state->v, *a = state->a;
   *x = (ethd_vec){p[0] + (q[0] * t + a[0] * w.ax), p[1] + (q[1] * t + a[1] * w.ax)};
   *v = (ethd_vec){q[0] + a[0] * w.av, q[1] + a[1] * w.av};
+}
+
+void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x, ethd_vec *v) {
+  const uint64_t callers = ethd__fp_take();
+  output(filter, state, x, v);
+  ethd__fp_give(callers);
 }

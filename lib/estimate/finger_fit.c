@@ -88,11 +88,18 @@ ethd_status ethd__fit_moving(const ethd_fit *fit, const double r[ETHD_RAYS], con
   return finish(fit, &points, out);
 }
 
-void ethd_fit_rays(double ring_radius, double finger_radius, ethd_vec centre, double r[ETHD_RAYS]) {
+ETHD__FP_APART static void fit_rays(double ring_radius, double finger_radius, ethd_vec centre,
+                                    double r[ETHD_RAYS]) ETHD_RT {
   for (int k = 0; k < ETHD_RAYS; k++) {
     ethd_vec u = {cosines[k / 2][k % 2], sines[k / 2][k % 2]};
     double along = ethd_vec_dot(u, centre), across = ethd_vec_cross(u, centre);
     double reach = along + sqrt(fmax(0, (finger_radius - across) * (finger_radius + across)));
     r[k] = fabs(across) <= finger_radius && reach > 0 ? ring_radius - reach : (double)NAN;
   }
+}
+
+void ethd_fit_rays(double ring_radius, double finger_radius, ethd_vec centre, double r[ETHD_RAYS]) {
+  const uint64_t callers = ethd__fp_take();
+  fit_rays(ring_radius, finger_radius, centre, r);
+  ethd__fp_give(callers);
 }

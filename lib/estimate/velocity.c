@@ -4,6 +4,7 @@
 
 #include "estimate/velocity_methods.h"
 #include "ethd/maths.h"
+#include "fp_mode.h"
 
 _Static_assert((ETHD_VELOCITY_WINDOW_MAX & (ETHD_VELOCITY_WINDOW_MAX - 1)) == 0, "the ring's index is masked");
 
@@ -41,9 +42,16 @@ static double next(const ethd_velocity *v, ethd_velocity_state *s, double torque
   return difference(s);
 }
 
+ETHD__FP_APART static double step(const ethd_velocity *v, ethd_velocity_state *s, double q, double torque,
+                                  double dt) ETHD_RT {
+  push(s, q, dt);
+  return s->speed = next(v, s, torque);
+}
+
 double ethd_velocity_step(const ethd_velocity *velocity, ethd_velocity_state *state, double q, double torque,
                           double dt) {
-  push(state, q, dt);
-  state->speed = next(velocity, state, torque);
-  return state->speed;
+  const uint64_t callers = ethd__fp_take();
+  const double speed = step(velocity, state, q, torque, dt);
+  ethd__fp_give(callers);
+  return speed;
 }

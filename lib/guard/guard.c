@@ -1,5 +1,6 @@
 #include <string.h>
 
+#include "fp_mode.h"
 #include "guard/parts.h"
 
 static bool is_outside(const double w[4], ethd_vec x) ETHD_RT {
@@ -94,8 +95,16 @@ int32_t ethd__guard_finish(const ethd_limits *limits, ethd_guard_state *s, const
   return bits;
 }
 
-int32_t ethd_guard_step(const ethd_limits *limits, const ethd_guard_device *device, ethd_guard_state *s,
-                        const ethd_guard_motion *m, double torque[2]) {
+ETHD__FP_APART static int32_t both_halves(const ethd_limits *limits, const ethd_guard_device *device,
+                                          ethd_guard_state *s, const ethd_guard_motion *m, double torque[2]) ETHD_RT {
   const int32_t bits = ethd__guard_limit(limits, device, s, m, torque);
   return ethd__guard_finish(limits, s, NULL, m->dt, bits, torque);
+}
+
+int32_t ethd_guard_step(const ethd_limits *limits, const ethd_guard_device *device, ethd_guard_state *s,
+                        const ethd_guard_motion *m, double torque[2]) {
+  const uint64_t callers = ethd__fp_take();
+  const int32_t bits = both_halves(limits, device, s, m, torque);
+  ethd__fp_give(callers);
+  return bits;
 }

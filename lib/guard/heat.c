@@ -5,18 +5,26 @@
 
    The motor's torque is unbounded up to h = FOLD. Above it the bound falls and reaches the nominal torque at h = 1,
    where h rises no more. */
+#include "fp_mode.h"
 #include "guard/parts.h"
 
 #define FOLD 0.9     /* the last tenth of the heat is where the torque folds back */
 #define LOAD_MAX 1e3 /* times the nominal torque: no motor lives through more, and the model's heat stays finite */
 
-double ethd_guard_heat(const ethd_limits *limits, ethd_guard_state *s, double dt) {
+ETHD__FP_APART static double heat(const ethd_limits *limits, ethd_guard_state *s, double dt) ETHD_RT {
   double share = 1 - ethd_exp(-dt / limits->heat_time);
   for (int i = 0; i < 2; i++) {
     double load = fmin(fabs(s->last[i]) / limits->nominal_torque, LOAD_MAX);
     s->heat[i] += share * (load * load - s->heat[i]);
   }
   return fmax(s->heat[0], s->heat[1]);
+}
+
+double ethd_guard_heat(const ethd_limits *limits, ethd_guard_state *s, double dt) {
+  const uint64_t callers = ethd__fp_take();
+  const double most = heat(limits, s, dt);
+  ethd__fp_give(callers);
+  return most;
 }
 
 double ethd__guard_cool(const ethd_limits *limits, double heat) {

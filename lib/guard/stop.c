@@ -1,4 +1,5 @@
 /* The stop: its law, bounds and sources stand in ethd/guard.h. */
+#include "fp_mode.h"
 #include "guard/parts.h"
 
 #define STILL 0.020  /* m/s */
@@ -17,8 +18,8 @@
 
 static double known_or(double value, double assumed) { return value >= 0 ? value : assumed; }
 
-ethd_guard_device ethd_guard_device_of(const ethd_arm *arm, const ethd_dynamics *dynamics, double gap, double period,
-                                       double lag) {
+ETHD__FP_APART static ethd_guard_device device_of(const ethd_arm *arm, const ethd_dynamics *dynamics, double gap,
+                                                  double period, double lag) {
   ethd_guard_device d = {.link = {arm->link1, arm->link2},
                          .serial = arm->mechanism == ETHD_ARM_SERIAL,
                          .period = period,
@@ -36,12 +37,27 @@ ethd_guard_device ethd_guard_device_of(const ethd_arm *arm, const ethd_dynamics 
   return d;
 }
 
+ethd_guard_device ethd_guard_device_of(const ethd_arm *arm, const ethd_dynamics *dynamics, double gap, double period,
+                                       double lag) {
+  const uint64_t callers = ethd__fp_take();
+  const ethd_guard_device device = device_of(arm, dynamics, gap, period, lag);
+  ethd__fp_give(callers);
+  return device;
+}
+
 static double reaction(const ethd_guard_device *d, bool estimated) ETHD_RT {
   return d->delay + d->period + (estimated ? d->lag : 0);
 }
 
-double ethd_guard_damping(const ethd_guard_device *d, double mass, bool estimated) {
+ETHD__FP_APART static double damping(const ethd_guard_device *d, double mass, bool estimated) ETHD_RT {
   return mass / (E * reaction(d, estimated));
+}
+
+double ethd_guard_damping(const ethd_guard_device *d, double mass, bool estimated) {
+  const uint64_t callers = ethd__fp_take();
+  const double b = damping(d, mass, estimated);
+  ethd__fp_give(callers);
+  return b;
 }
 
 /* Returns a link's deceleration under full torque, m/s^2 at the ring. */
@@ -53,13 +69,20 @@ static bool is_braked(const ethd_limits *limits) {
   return limits->speed > STILL && limits->speed < (double)INFINITY && limits->torque > 0;
 }
 
-double ethd_guard_brake_time(const ethd_guard_device *d, const ethd_limits *limits) {
+ETHD__FP_APART static double brake_time(const ethd_guard_device *d, const ethd_limits *limits) {
   if (!is_braked(limits)) return 0;
   return limits->speed / fmin(deceleration(d, limits, 0), deceleration(d, limits, 1));
 }
 
+double ethd_guard_brake_time(const ethd_guard_device *d, const ethd_limits *limits) {
+  const uint64_t callers = ethd__fp_take();
+  const double t = brake_time(d, limits);
+  ethd__fp_give(callers);
+  return t;
+}
+
 /* Full torque brakes a link down to the speed at which the damping asks for less; from there on the speed decays. */
-double ethd_guard_stop_time(const ethd_guard_device *d, const ethd_limits *limits) {
+ETHD__FP_APART static double stop_time(const ethd_guard_device *d, const ethd_limits *limits) {
   const double late = reaction(d, true), speed = limits->speed;
   double longest = 0;
   if (!is_braked(limits)) return 0;
@@ -69,6 +92,13 @@ double ethd_guard_stop_time(const ethd_guard_device *d, const ethd_limits *limit
     longest = fmax(longest, (speed > slow ? (speed - slow) / braking : 0) + decay);
   }
   return SPARE * (2 * late + longest);
+}
+
+double ethd_guard_stop_time(const ethd_guard_device *d, const ethd_limits *limits) {
+  const uint64_t callers = ethd__fp_take();
+  const double t = stop_time(d, limits);
+  ethd__fp_give(callers);
+  return t;
 }
 
 /* ---- a tick of a stop ---- */

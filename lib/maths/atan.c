@@ -70,11 +70,11 @@ static double upper_half(double low, double high, bool steep, bool left) {
 }
 
 double ethd_atan2(double y, double x) {
+  if (isnan(x) || isnan(y)) return NAN;
   double ax = fabs(x), ay = fabs(y);
   bool steep = ay > ax;
   double low = steep ? ax : ay, high = steep ? ay : ax;
 
-  if (isnan(x) || isnan(y)) return NAN;
   if (isinf(high)) {
     low = isinf(low) ? 1 : 0;
     high = 1;

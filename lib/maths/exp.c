@@ -59,8 +59,12 @@ static power raise(double x) {
   return (power){{t.hi, t.lo + t.hi * (r + z * p)}, floor_16(i)};
 }
 
+#define OVERFLOWS 0x1.62e42fefa39efp+9 /* ln of the largest double; the next x gives 512 ulp more than that */
+
 double ethd_exp(double x) {
-  if (!(fabs(x) < 746)) return x < 0 ? 0 : x > 0 ? HUGE_VAL : NAN;
+  if (isnan(x)) return NAN;
+  if (x > OVERFLOWS) return HUGE_VAL;
+  if (x < -746) return 0;
   power e = raise(x);
   double y = e.m.hi + e.m.lo;
   if (e.k > 1000) return y * power_of_two(e.k - 100) * 0x1p100;
@@ -93,7 +97,8 @@ static double log_scaled(double x, int64_t k) {
 
 double ethd_log(double x) {
   if (x == 0) return -HUGE_VAL;
-  if (!(x > 0 && x <= DBL_MAX)) return x > 0 ? x : NAN;
+  if (isnan(x) || x < 0) return NAN;
+  if (x > DBL_MAX) return x;
   return x < DBL_MIN ? log_scaled(x * 0x1p54, -54) : log_scaled(x, 0);
 }
 
@@ -120,7 +125,8 @@ static double tanh_large(double x) {
 
 double ethd_tanh(double x) {
   double a = fabs(x);
+  if (isnan(x)) return NAN;
   if (a < 0.25) return copysign(tanh_small(a), x);
   if (a < 20) return copysign(tanh_large(a), x);
-  return isnan(x) ? NAN : copysign(1, x);
+  return copysign(1, x);
 }

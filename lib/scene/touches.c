@@ -1,3 +1,4 @@
+#include "fp_mode.h"
 #include "scene/strip.h"
 
 /* ---- all touches ---- */
@@ -152,11 +153,18 @@ static const ethd__object *object_of(const ethd_scene *scene, int32_t id) {
   return ethd__object_at(scene, places[low]);
 }
 
-void ethd_scene_follow(const ethd_scene *scene, int32_t object, ethd_vec x, ethd_vec from, ethd_touch *out) {
+ETHD__FP_APART static void follow(const ethd_scene *scene, int32_t object, ethd_vec x, ethd_vec from,
+                                  ethd_touch *out) ETHD_RT {
   const ethd__object *o = object_of(scene, object);
   if (ethd__has_tree(o))
     follow_strip(scene, o, x, from, out);
   else
     follow_object(scene, o, x, from, out);
   ethd__label(o, out);
+}
+
+void ethd_scene_follow(const ethd_scene *scene, int32_t object, ethd_vec x, ethd_vec from, ethd_touch *out) {
+  const uint64_t callers = ethd__fp_take();
+  follow(scene, object, x, from, out);
+  ethd__fp_give(callers);
 }
