@@ -5,7 +5,8 @@
 #   SETUP=no   builds with what there is: looks for no package, installs none
 #   WERROR=1   warnings are errors        V=1   whole command lines
 #   WHAT=...   make bench: only this question
-#   TESTS=...  only these tests, by name; % matches anything: TESTS='test_% golden'
+#   TESTS=...  only these tests, by name; % matches anything: TESTS='test_% golden'. Only what they need is built
+#   CHANGED=1  make check: only the tests of what differs from HEAD, which are named first
 
 PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
@@ -87,10 +88,13 @@ built = $(if $(HOLDER),@kill $(HOLDER) 2>/dev/null || :)
 KINDS := $(if $(filter all demo check bench bench-quick stress ci install tests,$(GOALS)),build) \
          $(if $(filter check stress ci tests,$(GOALS)),check) $(if $(filter demo stress,$(GOALS)),demo) \
          $(if $(filter bench bench-quick,$(GOALS)),bench) $(if $(filter deb,$(GOALS)),build deb) $(if $(filter doc,$(GOALS)),doc)
+# What only builds installs no package.
+LOOK := $(if $(filter-out all install tests,$(GOALS)),,look)
+READY := $(if $(wildcard $(B)),$(B)/setup)
 ifneq ($(filter-out no,$(or $(SETUP),yes)),)
 ifneq ($(strip $(KINDS)),)
 ifeq ($(DRY),)
-ifneq ($(shell CC='$(CC)' CXX='$(CXX)' PKG_CONFIG='$(PKG_CONFIG)' SAN='$(SAN)' sh .ci/setup $(KINDS)),ready)
+ifneq ($(shell CC='$(CC)' CXX='$(CXX)' PKG_CONFIG='$(PKG_CONFIG)' SAN='$(SAN)' READY='$(READY)' sh .ci/setup $(LOOK) $(KINDS)),ready)
 $(error the set-up stopped, as said above)
 endif
 endif
@@ -151,6 +155,11 @@ LIB_O := $(call obj,$(LIB_C))
 RT_O := $(call obj,$(filter-out $(MAIN_SIDE),$(LIB_C)))
 LOOP_O := $(call obj,$(LOOP_SIDE))
 PROGRAMS := $(patsubst apps/%.c,$(B)/bin/%,$(PROGRAMS_C))
+ifneq ($(CHANGED),)
+TESTS := $(shell BUILD='$(B)' sh .ci/changed)
+$(info tests of what differs from HEAD: $(or $(TESTS),none))
+TESTS += tree_clean
+endif
 wanted = $(if $(TESTS),$(filter $(TESTS),$(1)),$(1))
 UNIT := $(addprefix $(B)/tests/,$(notdir $(TESTS_C:.c=)))
 PLUGINS := $(patsubst tests/plugins/%.c,$(B)/tests/plugins/%.so,$(PLUGINS_C))
@@ -164,8 +173,11 @@ LIBRARIES := $(foreach l,ethd ethd-drivers,$(B)/lib$(l).a $(B)/lib$(l).so.0 $(B)
 DRIVERS_LIBS := -linih -lmodbus -lz -lexpat
 
 all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
-tests: all $(if $(SAN),,man) $(addprefix $(B)/tests/,$(call wanted,$(notdir $(UNIT)))) $(PLUGINS) $(TOOLS_C:%.c=$(B)/%) $(RING_PARTS)
+# A script may run any program.
+tests: $(addprefix $(B)/tests/,$(call wanted,$(notdir $(UNIT)))) $(PLUGINS) \
+  $(if $(call wanted,$(basename $(notdir $(SCRIPTS)))),all $(if $(SAN),,man) $(TOOLS_C:%.c=$(B)/%) $(RING_PARTS))
 	$(built)
+$(B)/tests/test_servo_container: $(B)/bin/ethd-run
 
 # ---- build ----------------------------------------------------------------------------------
 

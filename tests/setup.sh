@@ -77,6 +77,14 @@ says 'an unknown package' 6 '^E: Unable to locate' 'apt-get failed; as root: apt
 uid 1000
 says 'no sudo' 1 'setup: this is missing; as root: apt-get install no-such-compiler' "$named"
 absent '^setup: what some tests and tables compare with is missing; as root: apt-get install clang-tidy$'
+# what only builds installs nothing
+rm -f "$work/calls"
+uid 0
+stub apt-get "$count"
+PATH=$work/bin CC=no-such-compiler sh .ci/setup look build >"$work/out" 2>"$work/err" && fail 'look: set-up goes on'
+grep -q '^setup: this is missing; make demo installs it, or as root: apt-get install no-such-compiler' "$work/err" || fail "look: $(cat "$work/err")"
+[ ! -e "$work/calls" ] || fail 'look: apt-get was called'
+uid 1000
 stub sudo 'echo "sudo: a password is required" >&2; exit 1'
 says 'a sudo that refuses' 6 "sudo doesn't let you install packages; ask for it, as root: apt-get install no-such-compiler" "$named"
 
