@@ -8,7 +8,7 @@ static const char doc[] =
     "Puts the driver of a configuration's device to the test at its own boundary: opening and closing, zero torque, "
     "signs, counts, limits, the watchdog, the safe state.\v"
     "Only with --move does the device move: each joint is pushed, for 0.15 s at most. Keep clear of it, with the "
-    "emergency stop at hand.\n\n"
+    "emergency stop at hand. Ctrl-C, SIGTERM or SIGHUP makes the device safe and ends the questions.\n\n"
     "Example:\n"
     "  printf '[device]\\ndriver = hello\\n' >hello.ini\n"
     "  ethd-conform --config hello.ini --virtual --move\n"
@@ -55,11 +55,17 @@ int main(int argc, char **argv) {
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   const ethd_device_def device = {&config->setup, config->settings, config->setting_count,
                                   config->folder, config->path,     arg.is_virtual};
-  const ethd_conform_def def = {config->device, NULL, &device, arg.move ? arg.torque : 0};
+  (arg.is_virtual ? ethd__catch_end : ethd__hold_device)();
+  const ethd_conform_def def = {config->device, NULL, &device, arg.move ? arg.torque : 0, &ethd__stop};
   status = ethd_conform(&def, answers);
   for (int i = 0; i < ETHD_QUESTIONS; i++)
     printf("%-9s %-10s %s\n", answers[i].question, words[answers[i].verdict], answers[i].found);
-  if (!arg.move) printf("with --move the device is pushed, and all is asked\n");
+  ethd__tell_refusal();
+  if (status == ETHD_E_UNFINISHED)
+    fprintf(stderr, "%s: stopped by a signal: the device is safe and closed, the rest isn't asked\n",
+            program_invocation_short_name);
+  else if (!arg.move)
+    printf("with --move the device is pushed, and all is asked\n");
   ethd_config_free(config);
   return ethd__end(status ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE);
 }

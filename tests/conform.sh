@@ -24,5 +24,21 @@ grep -q '^watchdog  not asked .*in its way' "$folder/held" || fail "held: $(cat 
 printf '[device]\ndriver = hello\ncolour = red\n' >"$folder/bad.ini"
 "$conform" --config "$folder/bad.ini" >"$folder/bad" 2>&1 && fail "a setting that hello hasn't passes"
 grep -q 'bad.ini:3: device.colour: hello has no settings' "$folder/bad" || fail "$(cat "$folder/bad")"
+
+# A signal while the device moves: it is made safe, and one line says so. A shell's background jobs ignore SIGINT.
+$CC -shared -fPIC -DHELLO=ethd_driver_plugin -Iinclude drivers/hello/hello.c -o "$folder/hello.so" || fail "hello.so"
+printf '[device]\ndriver = file:hello.so\n' >"$folder/file.ini"
+for signal in INT TERM HUP; do
+  env --default-signal=INT "$conform" --config "$folder/file.ini" --move >"$folder/out" 2>"$folder/err" &
+  conforming=$!
+  sleep 1
+  kill -s $signal $conforming
+  wait $conforming
+  code=$?
+  [ $code = 1 ] || fail "SIG$signal: exit $code: $(cat "$folder/err")"
+  grep -q '^restart   not asked  stopped$' "$folder/out" || fail "SIG$signal: $(cat "$folder/out")"
+  [ "$(cat "$folder/err")" = "ethd-conform: stopped by a signal: the device is safe and closed, the rest isn't asked" ] ||
+    fail "SIG$signal: $(cat "$folder/err")"
+done
 cat "$folder/hello"
 exit $failed

@@ -60,8 +60,7 @@ static ethd_status open_bus(const ethd_device_def *def, void **device, char mess
   if (!status) status = ethd_cell_create(sizeof(ethd_command), &b->orders, &error);
   if (!status) status = ethd_cell_create(sizeof(answer), &b->answers, &error);
   if (!status) status = ethd_arm_angles(&def->setup->arm, (ethd_vec){0.25, 0.25}, -1, b->q);
-  if (!status)
-    b->seen = (answer){{b->q[0], b->q[1]}, 0}; /* for a `read` before any service, which says ETHD_STATUS_STALE */
+  if (!status) b->seen = (answer){{b->q[0], b->q[1]}, 0}; /* for a `read` before any service, which is STALE */
   return status;
 }
 
@@ -141,7 +140,7 @@ int main(void) {
   const ethd_driver *const drivers[] = {&ethd_driver_plugin, NULL};
   ethd_setup setup = ethd_setup_default();
   const ethd_device_def device = {.setup = &setup, .folder = ".", .is_virtual = 1};
-  const ethd_conform_def questions = {"mine", drivers, &device, 0.1};
+  const ethd_conform_def questions = {"mine", drivers, &device, 0.1, NULL};
   ethd_conform_answer answers[ETHD_QUESTIONS];
   ethd_status status = ethd_conform(&questions, answers);
   for (int i = 0; i < ETHD_QUESTIONS; i++)

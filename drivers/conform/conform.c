@@ -194,8 +194,11 @@ ethd_status ethd_conform(const ethd_conform_def *def, ethd_conform_answer answer
       ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "the device can't be opened, or its table is broken");
     else if (questions[i].moves && !(def->torque > 0 && isfinite(def->torque)))
       ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "it would move the device");
-    else
-      broken |= questions[i].ask(def, a) == ETHD_VERDICT_BROKEN;
+    else if (!ethd__conform_stopped(def))
+      (void)questions[i].ask(def, a);
+    if (ethd__conform_stopped(def)) ethd__conform_rig_answer(a, ETHD_VERDICT_NOT_ASKED, "stopped");
+    broken |= a->verdict == ETHD_VERDICT_BROKEN;
   }
+  if (ethd__conform_stopped(def)) return ETHD_E_UNFINISHED;
   return broken ? ETHD_E_DEVICE : ETHD_OK;
 }

@@ -25,6 +25,8 @@ ethd_verdict ethd__conform_rig_answer(ethd_conform_answer *a, ethd_verdict verdi
   return a->verdict = verdict;
 }
 
+bool ethd__conform_stopped(const ethd_conform_def *def) { return def->stop && *def->stop; }
+
 /* ---- time ---- */
 
 static void await_tick(ethd__conform_rig *r) {
@@ -93,6 +95,7 @@ static void serve(ethd__conform_rig *r, double seconds) {
 }
 
 ethd_status ethd__conform_rig_start(ethd__conform_rig *r) {
+  if (ethd__conform_stopped(r->def)) return ETHD_E_UNFINISHED; /* nothing is enabled any more */
   ethd_status status = r->driver->start(r->device);
   if (status < 0) {
     r->driver->clear(r->device);
@@ -116,9 +119,10 @@ void ethd__conform_rig_end(ethd__conform_rig *r) {
 }
 
 void ethd__conform_rig_hush(ethd__conform_rig *r, double seconds) {
-  const struct timespec t = {(time_t)seconds, (long)(1e9 * (seconds - floor(seconds)))};
+  const struct timespec pause = {.tv_nsec = IDLE};
+  const int64_t end = ethd__clock_now() + (int64_t)(1e9 * seconds);
   stop_units(r);
-  nanosleep(&t, NULL);
+  while (ethd__clock_now() < end && !ethd__conform_stopped(r->def)) nanosleep(&pause, NULL);
   start_units(r);
   r->now = ethd__clock_now();
 }
@@ -155,6 +159,10 @@ static void note_reading(ethd__conform_rig *r, const ethd_sense *s) {
 static void tick(ethd__conform_rig *r, const double *torque) {
   ethd_sense s = {0};
   ethd_command command = {.safe = torque == NULL};
+  if (ethd__conform_stopped(r->def)) {
+    r->driver->safe(r->device);
+    return;
+  }
   if (torque) memcpy(command.torque, torque, sizeof command.torque);
   await_tick(r);
   for (uint32_t u = 0, n = r->driver->units(r->device); u < n && r->def->device->is_virtual; u++)

@@ -38,6 +38,9 @@ struct ethd__conform_rig {
 ethd_verdict ethd__conform_rig_answer(ethd_conform_answer *a, ethd_verdict verdict, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Returns whether def->stop ends the questions. From then on ticks take no time, and the device has been made safe. */
+bool ethd__conform_stopped(const ethd_conform_def *def);
+
 /* Opens the device; false: r->message says why not. All [main]. */
 bool ethd__conform_rig_open(const ethd_conform_def *def, ethd__conform_rig *r);
 

@@ -33,9 +33,11 @@ typedef struct ethd_conform_def {
   const ethd_driver *const *from; /* likewise */
   const ethd_device_def *device;
   double torque; /* Nm by which each joint is pushed in turn, for 0.15 s at most; 0, or not finite: nothing may move */
+  const volatile int *stop; /* once it isn't 0, as a handler of signals makes it, the device is made safe and closed,
+                                     and what is left isn't asked; NULL: all is asked */
 } ethd_conform_def;
 
-/* Asks all questions. ETHD_OK: nothing is broken; ETHD_E_DEVICE: something is. */
+/* Asks all questions. ETHD_OK: nothing is broken; ETHD_E_DEVICE: something is; ETHD_E_UNFINISHED: it was stopped. */
 ETHD_API ETHD_MUST_CHECK ethd_status ethd_conform(const ethd_conform_def *def,
                                                   ethd_conform_answer answers[ETHD_QUESTIONS]);
 

@@ -1,6 +1,7 @@
 /* A driver that keeps its contract, and one that breaks it in each way that is asked for. */
 #include <check.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -36,6 +37,9 @@ enum {
 
 static int way;
 static int latched, clearing;
+static int halts, opened, starts_after, pushes_after,
+    safe_after; /* a signal comes while a joint is pushed: what follows it */
+static volatile int halted;
 static double coasting[2]; /* rad/s, that a closed device keeps */
 
 typedef struct fake {
@@ -47,6 +51,7 @@ typedef struct fake {
 static ethd_status open_fake(const ethd_device_def *def, void **device, char message[ETHD_MESSAGE_MAX]) {
   fake *f = calloc(1, sizeof *f);
   (void)message;
+  opened++;
   *device = f;
   if (way == LEAKS) (void)!dup(0);
   if (way == COASTS) memcpy(f->w, coasting, sizeof f->w);
@@ -57,6 +62,7 @@ static ethd_status open_fake(const ethd_device_def *def, void **device, char mes
 
 static ethd_status start(void *device) {
   fake *f = device;
+  starts_after += halted;
   if (latched) return ETHD_E_DEVICE;
   f->safe = 0;
   f->now = 0;
@@ -94,10 +100,21 @@ static ethd_status write_fake(void *device, int64_t now, const ethd_command *com
   fake *f = device;
   memcpy(f->torque, command->torque, sizeof f->torque);
   f->written = now;
+  const bool pushes = command->torque[0] != 0 || command->torque[1] != 0;
+  pushes_after += halted && pushes;
+  if (halts && pushes && !--halts) halted = 1;
   return ETHD_OK;
 }
 
-static void safe(void *device) { ((fake *)device)->safe = 1; }
+static void safe(void *device) {
+  ((fake *)device)->safe = 1;
+  safe_after += halted;
+}
+
+static void close_fake(void *device) {
+  opened--;
+  free(device);
+}
 static ethd_status stop(void *device) {
   fake *f = device;
   for (int i = 0; i < 2 && way == ROLLS; i++) f->w[i] += 0.01 / 0.02 * f->torque[i];
@@ -135,7 +152,7 @@ static ethd_verdict ask(const char *question, double torque, ethd_status *status
                          .write = write_fake,
                          .safe = way == NO_SAFE ? NULL : safe,
                          .stop = stop,
-                         .close = free,
+                         .close = close_fake,
                          .units = way == NO_SERVICE ? none
                                   : way == LATCHES  ? one
                                                     : NULL,
@@ -147,7 +164,7 @@ static ethd_verdict ask(const char *question, double torque, ethd_status *status
   const ethd_driver *const from[] = {&driver, NULL};
   const ethd_setup setup = ethd_setup_default();
   const ethd_device_def device = {&setup, NULL, 0, ".", NULL, 1};
-  const ethd_conform_def def = {"fake", from, &device, torque};
+  const ethd_conform_def def = {"fake", from, &device, torque, &halted};
   *status = ethd_conform(&def, answers);
   for (int i = 0; i < ETHD_QUESTIONS; i++) {
     ck_assert_msg(answers[i].found[0], "%s says nothing", answers[i].question);
@@ -195,11 +212,28 @@ START_TEST(test_sound) {
 }
 END_TEST
 
+/* Stopped at any push: no torque and no start follow, the device is made safe and closed, and the rest isn't asked. */
+START_TEST(test_stopped) {
+  static const int at[] = {1, 2, 100, 101, 350, 500, 700, 900};
+  for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+    ethd_status status;
+    way = SOUND;
+    halts = at[i];
+    halted = opened = starts_after = pushes_after = safe_after = 0;
+    ck_assert_int_eq(ask("restart", 0.1, &status), ETHD_VERDICT_NOT_ASKED);
+    ck_assert_int_eq(status, ETHD_E_UNFINISHED);
+    ck_assert(halted && !starts_after && !pushes_after && safe_after > 0);
+    ck_assert_int_eq(opened, 0);
+  }
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("conform");
   TCase *tests = tcase_create("conform");
   tcase_add_test(tests, test_sound);
   tcase_add_loop_test(tests, test_way, SOUND + 1, WAYS);
+  tcase_add_test(tests, test_stopped);
   suite_add_tcase(suite, tests);
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_NORMAL);
