@@ -17,7 +17,7 @@ typedef struct ethd_config {
   ethd_scene *scene;                  /* owned, without what the arm can't reach; NULL if none is configured */
   char *path;                         /* of the file, NULL for defaults */
   char *text;                         /* as it was read, for recordings */
-  char *scene_text;                   /* likewise; NULL if there is no scene */
+  char *scene_text;                   /* as it was read; NULL if there is no scene */
   char *folder;                       /* relative paths start here */
   uint32_t limits_given;              /* bit i: of ethd_limit_rows[i] */
   char device[ETHD_DRIVERS_TEXT_MAX]; /* the drivers' ids as written, "sim" by default */
@@ -30,8 +30,8 @@ typedef struct ethd_config {
 
 /* What a configuration is read from, for the functions below. */
 typedef struct ethd_config_source {
-  ethd_sizes sizes; /* which the program was compiled with, and sizeof(ethd_config) */
-  uint32_t config;  /* likewise */
+  ethd_sizes sizes; /* with which the program was compiled */
+  uint32_t config;  /* sizeof(ethd_config) with which it was compiled */
   int32_t received; /* 1: somebody else made it */
   const char *path; /* of the file; with `text` a name for messages; NULL: none */
   const char *text; /* NULL: the file's */

@@ -30,7 +30,7 @@ typedef struct ethd_conform_answer {
 
 typedef struct ethd_conform_def {
   const char *ids;                /* as for ethd_device_open */
-  const ethd_driver *const *from; /* likewise */
+  const ethd_driver *const *from; /* as for ethd_device_open */
   const ethd_device_def *device;
   double torque; /* Nm by which each joint is pushed in turn, for 0.15 s at most; 0, or not finite: nothing may move */
   const volatile int *stop; /* once it isn't 0, as a handler of signals makes it, the device is made safe and closed,

@@ -40,7 +40,7 @@ typedef struct ethd_sizes {
 /* Made by ethd_setup_default, then changed field by field. */
 typedef struct ethd_setup {
   uint32_t cookie; /* set by ethd_setup_default; a setup without it is refused */
-  uint32_t bytes;  /* likewise: the size that isn't this library's; 0: there is none */
+  uint32_t bytes;  /* set by ethd_setup_default: the first size that isn't this library's, 0: none */
   double period;   /* T, s */
   ethd_arm arm;
   double ring_radius;       /* R_r, m: inner radius */

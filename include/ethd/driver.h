@@ -40,7 +40,7 @@ ETHD_BEGIN_DECLS
 #define ETHD_DRIVERS_TEXT_MAX 1024 /* bytes of their ids and files in a row, the closing 0 included */
 #define ETHD_DRIVER_FILE "file:"   /* before a path, among drivers' ids */
 #define ETHD_UNITS_MAX 8           /* of blocking I/O, of all drivers together */
-#define ETHD_FIGURES_MAX 64        /* likewise */
+#define ETHD_FIGURES_MAX 64        /* of all drivers together */
 #define ETHD_REMARKS_MAX 64        /* of one driver */
 
 typedef struct ethd_driver ethd_driver;
@@ -120,9 +120,9 @@ struct ethd_driver {
 ETHD_API extern const ethd_driver ethd_driver_sim, ethd_driver_hello;
 ETHD_API extern const ethd_driver ethd_driver_servo;
 ETHD_API extern const ethd_driver ethd_driver_ring;    /* a proximity ring, beside a driver that moves */
-ETHD_API extern const ethd_driver ethd_driver_zones;   /* likewise: on-off light barriers */
-ETHD_API extern const ethd_driver ethd_driver_nail;    /* likewise: a plate on the nail */
-ETHD_API extern const ethd_driver ethd_driver_camera;  /* likewise: a motion capture */
+ETHD_API extern const ethd_driver ethd_driver_zones;   /* on-off light barriers, beside a driver that moves */
+ETHD_API extern const ethd_driver ethd_driver_nail;    /* a plate on the nail, beside a driver that moves */
+ETHD_API extern const ethd_driver ethd_driver_camera;  /* a motion capture, beside a driver that moves */
 ETHD_API extern const ethd_driver ethd_driver_replay;  /* a recorded session, fed and compared */
 ETHD_API extern const ethd_driver ethd_driver_counter; /* encoders, beside a driver that moves */
 ETHD_API extern const ethd_driver ethd_driver_excite;  /* sines that show what an arm is, beside a driver that moves */

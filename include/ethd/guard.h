@@ -131,8 +131,8 @@ enum {
   ETHD_GUARD_TORQUE = 2,     /* clamped */
   ETHD_GUARD_RATE = 4,       /* slope limited */
   ETHD_GUARD_SPEED = 8,      /* ring too fast: stopped as said above, then zero torque, latched */
-  ETHD_GUARD_WORKSPACE = 16, /* ring out of its workspace: likewise */
-  ETHD_GUARD_FAULT = 32,     /* a row of the fault table stops the ring: likewise */
+  ETHD_GUARD_WORKSPACE = 16, /* ring out of its workspace: stopped as for speed */
+  ETHD_GUARD_FAULT = 32,     /* a row of the fault table stops the ring, as for speed */
   ETHD_GUARD_MARGIN = 64,    /* the workspace's wall pushed */
   ETHD_GUARD_HEAT = 128,     /* clamped to what a hot motor may have */
   ETHD_GUARD_STEEP = 256     /* the torque asked for changed faster than the rate for ETHD_STEEP_MAX ticks in a row,

@@ -108,7 +108,7 @@ typedef struct ethd_contact {
   ethd_vec point, n;
   double d_re, d_fe, d_fr;
   double v;                /* of the ring along n, relative to the surface */
-  double v_f;              /* of the finger, likewise */
+  double v_f;              /* of the finger along n, relative to the surface */
   double d_beta;           /* R_r - R_f,max, m */
   double period;           /* s since the last step */
   double age;              /* s since this contact began to count */

@@ -86,13 +86,13 @@ ETHD_API const char *ethd_shortfall_mend(int32_t bit);
 /* ---- the loop ---- */
 
 #define ETHD_IO_BELOW 5    /* by how much the I/O threads' priority is lower; it stays at least 1 */
-#define ETHD_CPU_NONE (-1) /* wherever the kernel puts it */
+#define ETHD_CPU_NONE (-1) /* any processor, as the kernel chooses */
 #define ETHD_CPU_AUTO (-2) /* the isolated processor with the highest number, if there is one */
 
 /* Made by ethd_loop_default, then changed field by field. */
 typedef struct ethd_loop_def {
   uint32_t cookie;           /* set by ethd_loop_default */
-  uint32_t bytes;            /* likewise: the size that isn't this library's; 0: there is none */
+  uint32_t bytes;            /* set by ethd_loop_default: the first size that isn't this library's, 0: none */
   const ethd_driver *driver; /* of ethd_device_open; or one that has start, read, write and safe, and service if it
                             has units */
   void *device;              /* open; it is started between create and start */

@@ -149,8 +149,8 @@ ETHD_API void ethd_sim_write(ethd_sim *sim, const ethd_command *command) ETHD_RT
   X(double, t, 1, "s", "time of the tap")                                           \
   X(double, ring, 2, "m", "ring centre")                                            \
   X(double, ring_v, 2, "m/s", "ring velocity")                                      \
-  X(double, motor, 2, "m", "ring centre as the motor side has it")                  \
-  X(double, motor_v, 2, "m/s", "likewise")                                          \
+  X(double, motor, 2, "m", "ring centre by the motor side's angles")                \
+  X(double, motor_v, 2, "m/s", "its velocity")                                      \
   X(double, finger, 2, "m", "finger centre")                                        \
   X(double, finger_v, 2, "m/s", "finger velocity")                                  \
   X(double, hand, 2, "m", "voluntary path")                                         \

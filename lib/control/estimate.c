@@ -124,7 +124,7 @@ static bool use(const ethd__tick *t, ethd_vec reading) ETHD_RT {
       outside ? ETHD_STATUS_STALE : ethd__filter_update(&plan->filter, filter, x, age, t->sense->finger_noise);
   /* unreachable: readings, ages and noises are bounded, so that the filter's numbers stay finite */
   if (!is_finite(filter->x[0] + filter->x[1]) || !is_finite(filter->v[0] + filter->v[1]))
-    memset(filter, 0, sizeof *filter); /* unreachable: likewise; it would start anew with the next reading */
+    memset(filter, 0, sizeof *filter); /* unreachable, as above; the filter would start anew with the next reading */
   if (plan->watches_finger) ethd__finger_doubt(t->state, outside || filter->gated != gated);
   return status == ETHD_OK;
 }

@@ -22,7 +22,7 @@ static bool control_is(fp_control a, fp_control b) ETHD_RT { return a.word == b.
 
 /* ---- fences: a pattern before the law's state and from its end on ---- */
 
-#define PATTERN 0xfe9ce5fe9ce5fe9cu /* no number that a law writes by accident: a NaN, not the default one */
+#define PATTERN 0xfe9ce5fe9ce5fe9cu /* a NaN, but not the default one: no law writes it by accident */
 
 static void put_words(void *to, size_t bytes) ETHD_RT {
   const uint64_t word = PATTERN;

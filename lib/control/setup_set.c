@@ -19,8 +19,8 @@ const ethd_setup_part ethd_setup_parts[ETHD_SETUP_PARTS] = {
 };
 
 _Static_assert(sizeof(ethd_velocity_method) == sizeof(unsigned), "a method is copied as a number");
-_Static_assert(sizeof(ethd_fit_method) == sizeof(unsigned), "likewise");
-_Static_assert(sizeof(ethd_filter_method) == sizeof(unsigned), "likewise");
+_Static_assert(sizeof(ethd_fit_method) == sizeof(unsigned), "a method is copied as a number");
+_Static_assert(sizeof(ethd_filter_method) == sizeof(unsigned), "a method is copied as a number");
 
 /* ---- what is chosen ---- */
 

@@ -23,7 +23,7 @@ typedef struct ethd__slot {
   bool leaving;                /* the branch of eq. 3, with v_hysteresis */
   int32_t place, object, side; /* of the surface; side of a thin wall on which the contact began, 0: none */
   int32_t state;               /* the transition law's */
-  int64_t periods, changed;    /* since it began to count; of these, before its state became what it is */
+  int64_t periods, changed;    /* age in periods; age at the last change of state */
   ethd_vec point;              /* touched, in the place's frame */
   struct {
     ethd_vec n;             /* in R_0 */

@@ -33,13 +33,13 @@ static const ethd_param params[COUNT] = {
     {"effort", "1", 0.1, 1, 0.86, "share of the deceleration that a plan uses; the rest corrects it"},
     {"rate", "1/s", 10, 2000, 500, "rate at which the ring settles at the end, at most half a period's inverse"},
     {"aim", "m", 0, 0.005, 0.00008, "depth in the wall at which the ring is to stand"},
-    {"margin", "m", 0, 0.1, 0.003, "way that is kept between finger and rim at the stop, by leading"},
+    {"margin", "m", 0, 0.1, 0.003, "clearance kept between finger and ring at the stop"},
     {"range", "m", 0, 0.5, 0.015, "how far before the wall the approach begins"},
     {"memory", "1", 0, 0.99, 0.9, "of the observer: share of a residual that stays from tick to tick (b)"},
     {"learn", "1", 0, 1, 0, "weight of a braking in the learnt deceleration; 0: the facts are right"},
 };
 
-#define RIM 0.3e-3     /* m: a finger nearer to the rim counts as at the rim; its estimate is off by as much */
+#define RIM 0.3e-3     /* m: a finger nearer than this counts as at the rim; its estimate has this error */
 #define LEARN_END 5e-4 /* m: learning from a braking ends when the finger is nearer to the rim than this */
 #define STRAYED 2e-3   /* m: a ring that is farther from its prediction met another surface, or ticks are missing */
 #define APPROACH 0.035 /* s before the wall at which the approach begins, within `range` */

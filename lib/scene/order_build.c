@@ -69,7 +69,7 @@ static int wider_side(const ethd__item *p, size_t n) {
   return high[1] - low[1] > high[0] - low[0];
 }
 
-/* Returns how many items one node of this level, or one box of it, holds. */
+/* Items that are still to be split, and the level of the tree that they form. */
 typedef struct range {
   ethd__item *items;
   size_t count;

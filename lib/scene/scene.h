@@ -39,7 +39,7 @@ typedef struct ethd__tree {
 struct ethd_scene {
   ethd_vec centre; /* the trees' frame: X = scale (x - centre), scale a power of two */
   double scale;
-  double slack; /* m: more than rounding can change a distance by */
+  double slack; /* bound on the rounding error of a distance, m */
   size_t nodes_at, objects_at, numbers_at, trees_at, places_at, slopes_at, materials_at;
   ethd__tree tree;
   uint32_t object_count, number_count, tree_count, node_count, material_count;
