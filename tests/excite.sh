@@ -20,7 +20,8 @@ printf '1 read fail\n' >lost.inject
 printf '[device]\ndriver = sim\ninject = lost.inject\n' >lost.ini
 printf '[device]\ndriver = sim\n' >sim.ini
 
-# excite NAME CODE ARGUMENTS...: the exit code, and a recording as it should be. A tick that is 5 ms late ends a session, too: such a
+# excite NAME CODE ARGUMENTS...: the exit code, and a recording as it should be. A tick that is 5 ms late ends a session, too,
+# and so does a program that doesn't run for 0.1 s: such a
 # session is tried again, three times in all.
 late=
 excite() {
@@ -45,7 +46,7 @@ session() {
   fi
   wait $session
   code=$?
-  if grep -q -e 'ticks are late' -e "the loop's thread doesn't run" "$name.err"; then tried="$name: $(tail -n 1 "$name.err")"; return; fi
+  if grep -q -e 'ticks are late' -e "the loop's thread doesn't run" -e 'the application is gone' "$name.err"; then tried="$name: $(tail -n 1 "$name.err")"; return; fi
   [ $code = "$expected" ] || fail "$name: exit $code: $(cat "$name.err")"
   sed -n 3p "$name.out" | grep -q '^dry run  *on the simulated device: up to' || fail "$name: what will be done comes first: $(cat "$name.out")"
   grep -q ',end,closed$' "$name/events.csv" || fail "$name: not closed: $(tail -n 1 "$name/events.csv")"
@@ -72,6 +73,22 @@ tail -n 1 broken.err | grep -q ': the drive reports a fault: mend it and record 
 excite lost 1 --config lost.ini --duration 60
 excite outside 1 --config hello.ini --duration 60 --at 0.28,0.25 --half 0.02
 [ -n "$late" ] || tail -n 1 outside.err | grep -q ': the guard stopped the ring 0.03 m from the middle of the box: put it there' || fail "outside: $(cat outside.err)"
+
+# A full pipe that nobody reads holds nothing up: neither what is said before the device is enabled nor the summary.
+"$PYTHON" - "$bin/ethd-identify" <<'END' || fail "an output that nobody reads"
+import os, subprocess, sys
+read, write = os.pipe()
+os.set_blocking(write, False)
+try:
+    while os.write(write, b"x" * 4096): pass
+except BlockingIOError:
+    pass
+os.set_blocking(write, True)
+p = subprocess.run([sys.argv[1], "--excite", "--record", "unread", "--config", "hello.ini", "--duration", "1"], stdout=write,
+                   stderr=subprocess.PIPE, text=True, timeout=100)
+assert p.returncode == 1 and "standard output: nobody read it in time" in p.stderr, (p.returncode, p.stderr)
+assert open("unread/events.csv").read().endswith(",end,closed\n")
+END
 
 # A recording that is there stays as it is.
 sums() { cksum done/*; }

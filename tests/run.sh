@@ -263,6 +263,10 @@ says "$folder/err" 'the snapshot: .*earlier.npy: File too large'
 [ "$(cat "$folder/earlier.npy")" = earlier ] || fail "half a snapshot in an earlier one's place"
 [ "$(ls "$folder" | grep -c 'npy.*new$')" = 0 ] || fail "left behind: $(ls "$folder")"
 
+# one that only a pipe's reader would let through isn't begun
+mkfifo "$folder/pipe"
+refuse 'snapshot: .*pipe: isn.t a file' --virtual --duration 1 --snapshot "$folder/pipe"
+
 # ---- a disk that is full: said at once, counted, marked, exit 1 ----
 for limit in 1000 1; do
   (ulimit -f $limit; exec "$run" --virtual --duration 5 --record "$folder/full$limit" </dev/null) >"$folder/out" 2>"$folder/err"

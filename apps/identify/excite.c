@@ -134,7 +134,6 @@ static int record(const ethd__excitation *x, const ethd_config *c, double torque
                              .is_virtual = x->is_virtual,
                              .sink = {&out, take},
                              .loop = ethd_loop_default()};
-  (x->is_virtual ? ethd__catch_end : ethd__hold_device)();
   ethd_status status = ethd__session_open(&o, &session, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   ethd__remarks_print(stderr, &session);
@@ -177,19 +176,25 @@ static double torque_limit(const ethd__excitation *x, const ethd_config *c) {
   return most;
 }
 
+static void leave_if_stopped(void) {
+  if (ethd__stop) ethd__fail(ETHD_EXIT_FAILED, "stopped before the device was enabled; nothing is recorded");
+}
+
 int ethd__excite(const ethd__excitation *given) {
   char message[ETHD_MESSAGE_MAX];
   ethd__excitation x = *given;
   ethd_config *config;
   ethd_status status = ethd_config_load(x.config, &config, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
+  (x.is_virtual ? ethd__catch_end : ethd__hold_device)(); /* from here on no print waits */
   double torque = torque_limit(&x, config);
   seen dry;
   dry_run(&x, config, torque, &dry);
-  for (int i = 0; i < TRIES && (dry.fault || dry.farthest > USED * x.half); i++) {
+  for (int i = 0; i < TRIES && !ethd__stop && (dry.fault || dry.farthest > USED * x.half); i++) {
     x.share *= LESS;
     dry_run(&x, config, torque, &dry);
   }
+  leave_if_stopped();
   if (dry.fault)
     ethd__fail(ETHD_EXIT_FAILED, "in the dry run with %.3g Nm: %s: give a larger --half", x.share * torque,
                ethd_fault_sentence((ethd_fault)dry.fault));

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "record/limits_event.h"
 #include "run/refusal.h"
@@ -29,9 +30,20 @@ static ethd_status open_device(ethd__session *s, const char *folder, char *messa
   return status;
 }
 
+/* Nothing may hold up the thread that writes the snapshot, as a pipe's reader could. */
+static bool is_other_than_file(const char *path) {
+  struct stat info;
+  return stat(path, &info) == 0 && !S_ISREG(info.st_mode);
+}
+
 /* The snapshot goes into the recording's folder unless another path is given. */
 static ethd_status open_snapshot(ethd__session *s, const ethd__session_options *o, char *message) {
   char *path = o->snapshot ? strdup(o->snapshot) : ethd__path_join(o->record, "snapshot.npy");
+  if (path && is_other_than_file(path)) {
+    ethd_status status = ethd__say(message, ETHD_E_FILE, "--snapshot: %s: isn't a file, which it must be", path);
+    free(path);
+    return status;
+  }
   ethd_status status = path ? ethd__snapshot_open(&s->recorder.snapshot, path, s->setup.period) : ETHD_E_MEMORY;
   free(path);
   return status ? ethd__say(message, status, "--snapshot: %s", ethd_status_sentence(status)) : ETHD_OK;
