@@ -146,15 +146,9 @@ def wilson(killed, all_, z=1.6449):
     return (p + z * z / (2 * all_) - z * math.sqrt(p * (1 - p) / all_ + z * z / (4 * all_ * all_))) / (1 + z * z / all_)
 
 
-KEPT = Path("tests/mutation.results")
-
-
 def read_results(path):
-    """The verdicts of earlier runs, those of KEPT first: a row is FILE, its digest, LINE, the mutant's digest, VERDICT."""
+    """Returns the verdicts of earlier runs by the mutant's key."""
     results = {}
-    for line in KEPT.read_text().splitlines() if KEPT.exists() else []:
-        file, source, number, digest, verdict = line.split("\t")
-        results[(file, source, int(number), digest)] = {"verdict": verdict}
     if path.exists():
         for line in path.read_text().splitlines():
             try:
@@ -163,12 +157,6 @@ def read_results(path):
                 continue  # the last line of a run that was killed
             results[key_of(m)] = m
     return results
-
-
-def keep(drawn):
-    """Writes the verdicts of this tree's sample, so that others needn't find them again."""
-    rows = ["\t".join([*(str(part) for part in key_of(m)), m["verdict"]]) + "\n" for m in drawn]
-    KEPT.write_text("".join(sorted(rows)))
 
 
 def equivalents():
@@ -208,7 +196,6 @@ def main():
     p.add_argument("--count", type=int, default=2000, help="mutants that compile and differ")
     p.add_argument("--minutes", type=float, default=math.inf)
     p.add_argument("--again", action="store_true", help="the survivors once more, after tests were added")
-    p.add_argument("--keep", action="store_true", help="write the verdicts to tests/mutation.results")
     p.add_argument("--files", help="only files whose path has this")
     a = p.parse_args()
     end = time.monotonic() + 60 * a.minutes
@@ -247,8 +234,6 @@ def main():
                 told = time.monotonic()
                 print(f"  {valid} of {a.count}, {sum(d['verdict'] == 'survived' for d in drawn)} survive", flush=True)
     report(drawn, lines)
-    if a.keep:
-        keep(drawn)
     return 0
 
 
