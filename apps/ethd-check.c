@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "bounds/stability.h"
+#include "check/laws.h"
 #include "check/report.h"
 #include "cli/cli.h"
 #include "ethd/sim.h"
@@ -28,12 +29,18 @@ static const char doc[] =
     "speed that one encoder count gives the motors; if the latter is larger, the ring chatters for ever, as the "
     "simulated device does. A plugin's law whose gains can't be told from its parameters isn't judged, which the last "
     "lines say.\n\n"
+    "--laws and --drivers list what a configuration can name instead, with each parameter's unit, range and default. "
+    "The first law or method of each kind is the default, except that the default transition is offset.\n\n"
     "The exit code is 0 for a valid configuration, whether bounds are exceeded or not, and 2, with one line, for an "
     "invalid one.\n\n"
     "Example:\n"
     "  ethd-check device.ini\n"
     "  ethd-check --open device.ini\n"
-    "  ethd-check --counts 39200 --delay 1 --force-limit 5.4 device.ini";
+    "  ethd-check --counts 39200 --delay 1 --force-limit 5.4 device.ini\n"
+    "  ethd-check --laws --plugin mylaw.so --csv laws.csv\n"
+    "  ethd-check --driver mydriver.so";
+
+enum { OPTION_LAWS = 256, OPTION_PLUGIN, OPTION_DRIVERS, OPTION_DRIVER, OPTION_CSV };
 
 static const struct argp_option options[] = {
     {"counts", 'c', "N", 0, "encoder counts per joint turn", 0},
@@ -43,6 +50,12 @@ static const struct argp_option options[] = {
     {"viscous", 'b', "NSPM", 0, "viscous friction at the ring, Ns/m", 0},
     {"latency", 'l', "S", 0, "age of the finger's readings when they arrive, s", 0},
     {"open", 'o', NULL, 0, "open the device too: ports, the drive's identity, the empty ring; nothing is enabled", 0},
+    {"laws", OPTION_LAWS, NULL, 0, "list the laws and methods that are built in", 1},
+    {"plugin", OPTION_PLUGIN, "FILE", 0, "with --laws: list this plugin's laws too; may be given more than once", 1},
+    {"drivers", OPTION_DRIVERS, NULL, 0, "list the drivers that are built in", 1},
+    {"driver", OPTION_DRIVER, "FILE", 0, "list this file's driver, checked as [device] driver = file:FILE checks it",
+     1},
+    {"csv", OPTION_CSV, "FILE", 0, "write a row for each parameter that is listed", 1},
     {0},
 };
 
@@ -50,6 +63,21 @@ static struct {
   const char *config, *counts, *delay, *force, *friction, *viscous, *latency;
   bool open;
 } arg;
+static ethd__listing list;
+
+static void add_plugin(const char *file, struct argp_state *state) {
+  if (list.plugin_count == PLUGINS_MAX) argp_error(state, "over %d plugins", PLUGINS_MAX);
+  list.plugins[list.plugin_count++] = file;
+}
+
+static bool lists(void) { return list.laws || list.drivers || list.driver; }
+
+static void end(struct argp_state *state) {
+  if (list.plugin_count && !list.laws) argp_error(state, "--plugin goes with --laws");
+  if (list.csv && !lists()) argp_error(state, "--csv goes with --laws, --drivers and --driver");
+  if (!arg.config && !lists()) argp_error(state, "which configuration?");
+  if (arg.config && lists()) argp_error(state, "\"%s\": a list needs no configuration", arg.config);
+}
 
 static error_t parse(int key, char *text, struct argp_state *state) {
   switch (key) {
@@ -60,11 +88,16 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case 'b': arg.viscous = text; return 0;
   case 'l': arg.latency = text; return 0;
   case 'o': arg.open = true; return 0;
+  case OPTION_LAWS: list.laws = true; return 0;
+  case OPTION_PLUGIN: add_plugin(text, state); return 0;
+  case OPTION_DRIVERS: list.drivers = true; return 0;
+  case OPTION_DRIVER: list.driver = text; return 0;
+  case OPTION_CSV: list.csv = text; return 0;
   case ARGP_KEY_ARG:
     if (arg.config) argp_error(state, "\"%s\": one configuration is checked", text);
     arg.config = text;
     return 0;
-  case ARGP_KEY_NO_ARGS: argp_error(state, "which configuration?"); return 0;
+  case ARGP_KEY_END: end(state); return 0;
   default: return ARGP_ERR_UNKNOWN;
   }
 }
@@ -163,12 +196,9 @@ static ethd__figures figures(const ethd_config *config, const checked_device *d,
 
 /* ---- all of it ---- */
 
-int main(int argc, char **argv) {
-  static const struct argp argp = {options, parse, "C.ini", doc, NULL, NULL, NULL};
+static void check(void) {
   char message[ETHD_MESSAGE_MAX];
   ethd_config *config;
-  ethd__begin();
-  argp_parse(&argp, argc, argv, 0, NULL, NULL);
   ethd__container_keeper(); /* what is said of the guardian holds for ethd-run */
   ethd_status status = ethd_config_load(arg.config, &config, message);
   if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
@@ -194,5 +224,15 @@ int main(int argc, char **argv) {
   ethd__report_unjudged(&config->setup);
   device.driver->close(device.device);
   ethd_config_free(config);
+}
+
+int main(int argc, char **argv) {
+  static const struct argp argp = {options, parse, "C.ini", doc, NULL, NULL, NULL};
+  ethd__begin();
+  argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  if (lists())
+    ethd__list(&list);
+  else
+    check();
   return ethd__end(ETHD_EXIT_DONE);
 }

@@ -1,7 +1,8 @@
-/* Does the driver of a device keep its contract? */
+/* Does the driver of a device keep its contract, and what can a drive's bus do? */
 #include <stdio.h>
 
 #include "cli/cli.h"
+#include "conform/probe.h"
 #include "ethd/conform.h"
 
 static const char doc[] =
@@ -9,19 +10,34 @@ static const char doc[] =
     "signs, counts, limits, the watchdog, the safe state.\v"
     "Only with --move does the device move: each joint is pushed, for 0.15 s at most. Keep clear of it, with the "
     "emergency stop at hand. Ctrl-C, SIGTERM or SIGHUP makes the device safe and ends the questions.\n\n"
-    "Example:\n"
+    "--probe measures the bus to a servo drive by its register map instead: it connects, identifies, writes zero "
+    "torque and reads, as fast as the bus goes, and says which rate it can hold. Only --try-watchdog enables the "
+    "drive, at zero torque.\n\n"
+    "Examples:\n"
     "  printf '[device]\\ndriver = hello\\n' >hello.ini\n"
     "  ethd-conform --config hello.ini --virtual --move\n"
+    "  ethd-conform --probe svd48v.map --by-hand 20\n"
+    "  ethd-conform --probe plant.map --port 127.0.0.1:1502 --duration 10\n"
     "A driver of your own: [device] driver = file:mine.so, or ethd_conform of ethd/conform.h in a program that links "
     "it. "
     "Without --config the simulated device is asked; there the ring moves at zero torque, because its finger pushes "
     "it.";
+
+enum { OPTION_PROBE = 256, OPTION_PORT, OPTION_PERIOD, OPTION_DURATION, OPTION_WATCHDOG, OPTION_BY_HAND };
 
 static const struct argp_option options[] = {
     {"config", 'c', "FILE", 0, "configuration whose [device] is asked", 0},
     {"move", 'm', NULL, 0, "the device may move", 0},
     {"torque", 't', "NM", 0, "torque of the push (0.1)", 0},
     {"virtual", 'v', NULL, 0, "count time instead of waiting: for a simulated device", 0},
+    {"probe", OPTION_PROBE, "F.map", 0, "measure the bus to the drive of this register map", 1},
+    {"port", OPTION_PORT, "PORT", 0, "HOST:PORT or a serial device, instead of the map's", 1},
+    {"period", OPTION_PERIOD, "S", 0, "period of the loop that the bus has to serve (0.001)", 1},
+    {"duration", OPTION_DURATION, "S", 0, "how long to measure (2)", 1},
+    {"try-watchdog", OPTION_WATCHDOG, NULL, 0,
+     "enable at zero torque, be silent, and say whether the drive let go by itself: keep clear of the arm", 1},
+    {"by-hand", OPTION_BY_HAND, "S", 0,
+     "after that, wait for so long while you turn the joints by hand, and say which angle rose or fell", 1},
     {0},
 };
 
@@ -30,26 +46,39 @@ static struct {
   bool move, is_virtual;
   double torque;
 } arg = {.torque = 0.1};
+static ethd__probe_def probe = {.duration = 2, .period = 1e-3};
+static bool of_driver, of_bus; /* an option of the one or of the other was given */
 
 static error_t parse(int key, char *text, struct argp_state *state) {
+  of_driver |= key == 'c' || key == 'm' || key == 't' || key == 'v';
+  of_bus |= key >= OPTION_PORT && key <= OPTION_BY_HAND;
   switch (key) {
   case 'c': arg.config = text; return 0;
   case 'm': arg.move = true; return 0;
   case 't': arg.torque = ethd__option_number("--torque", text, 1e-6, 1e3); return 0;
   case 'v': arg.is_virtual = true; return 0;
+  case OPTION_PROBE: probe.map = text; return 0;
+  case OPTION_PORT: probe.port = text; return 0;
+  case OPTION_PERIOD: probe.period = ethd__option_number("--period", text, 1e-5, 1); return 0;
+  case OPTION_DURATION: probe.duration = ethd__option_number("--duration", text, 0.01, 86400); return 0;
+  case OPTION_WATCHDOG: probe.watchdog = true; return 0;
+  case OPTION_BY_HAND: probe.by_hand = ethd__option_number("--by-hand", text, 0.1, 3600); return 0;
+  case ARGP_KEY_END:
+    if (of_bus && !probe.map)
+      argp_error(state, "--port, --period, --duration, --try-watchdog and --by-hand go with --probe");
+    if (of_driver && probe.map) argp_error(state, "--config, --move, --torque and --virtual don't go with --probe");
+    return 0;
   case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
   default: return ARGP_ERR_UNKNOWN;
   }
 }
 
-int main(int argc, char **argv) {
+/* Returns the program's exit code. */
+static int ask_driver(void) {
   static const char *const words[] = {"kept", "BROKEN", "at risk", "not asked"};
-  static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
   char message[ETHD_MESSAGE_MAX];
   ethd_config *config;
   ethd_conform_answer answers[ETHD_QUESTIONS];
-  ethd__begin();
-  argp_parse(&argp, argc, argv, 0, NULL, NULL);
   ethd__container_keeper();
   ethd_status status = ethd_config_load(arg.config, &config, message);
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
@@ -67,5 +96,14 @@ int main(int argc, char **argv) {
   else if (!arg.move)
     printf("with --move the device is pushed, and all is asked\n");
   ethd_config_free(config);
-  return ethd__end(status ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE);
+  return status ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE;
+}
+
+int main(int argc, char **argv) {
+  static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
+  ethd__begin();
+  argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  if (!probe.map) return ethd__end(ask_driver());
+  ethd__probe(&probe);
+  return ethd__end(ETHD_EXIT_DONE);
 }

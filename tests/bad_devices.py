@@ -286,7 +286,7 @@ def device_cases(ear):
     """(kind, line or None, text of the configuration)"""
     good = {"servo": f"map = plant.map\nport = {ear.tcp}", "ring": "port = /nowhere/ring", "zones": "port = /nowhere/zones",
             "nail": "port = /nowhere/nail", "camera": "listen = 127.0.0.1:9871", "sim": "", "counter": "", "hello": "", "excite": ""}
-    program("ethd-laws", "--drivers", "--csv", f"{FOLDER}/drivers.csv")
+    program("ethd-check", "--drivers", "--csv", f"{FOLDER}/drivers.csv")
     rows = [r for r in csv.DictReader(open(f"{FOLDER}/drivers.csv")) if r["id"] in good]
     for row in rows:
         base = "[device]\ndriver = " + row["id"] + "\n" + (good[row["id"]] + "\n" if good[row["id"]] else "")

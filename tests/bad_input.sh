@@ -206,12 +206,12 @@ compile() { ${CC:-cc} -Iinclude -fPIC -shared "-DID=\"$1\"" -o "$folder/$2" "$fo
 plugin() { # WHAT PATTERN FILE
   printf '[plugins]\nfile = %s\n' "$3" >"$folder/bad.ini"
   refuse "check, $1" "bad.ini:2: plugins.file: $2" "$bin/ethd-check" "$folder/bad.ini"
-  refuse "laws, $1" "plugins.file: $2" "$bin/ethd-laws" --plugin "$folder/$3" --csv "$folder/out.csv"
+  refuse "laws, $1" "plugins.file: $2" "$bin/ethd-check" --laws --plugin "$folder/$3" --csv "$folder/out.csv"
 }
 compile own good.so || fail 'the example plugin does not compile'
 printf '[plugins]\nfile = good.so\n[contact]\nlaw = own\n' >"$folder/bad.ini"
 good "$bin/ethd-check" "$folder/bad.ini"
-good "$bin/ethd-laws" --plugin "$folder/good.so"
+good "$bin/ethd-check" --laws --plugin "$folder/good.so"
 plugin 'missing plugin' '.*No such file' no.so
 plugin 'empty plugin' '.*is empty' bad.empty
 plugin 'huge plugin' '.*isn.t a shared object' bad.huge
@@ -228,7 +228,7 @@ printf '[plugins]\nfile = good.so\nfile = good.so\n' >"$folder/bad.ini"
 refuse 'a plugin twice' 'bad.ini:3: plugins.file: the law own of mine is there already' "$bin/ethd-check" "$folder/bad.ini"
 
 # ---- a stack of 64 kB: it is widened where that is allowed (root), else one line says so ----
-for command in 'ethd-tap --taps 1' 'ethd-run --virtual --duration 0.2' "ethd-check $folder/good.ini" 'ethd-laws'; do
+for command in 'ethd-tap --taps 1' 'ethd-run --virtual --duration 0.2' "ethd-check $folder/good.ini" 'ethd-check --laws'; do
   for as in "" "setpriv --bounding-set -sys_resource --inh-caps -sys_resource"; do
     [ -z "$as" ] || $as true 2>/dev/null || continue
     (ulimit -s 64 && exec $as "$bin"/$command) >"$folder/stdout" 2>"$folder/stderr" </dev/null

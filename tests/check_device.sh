@@ -54,7 +54,7 @@ done
 
 # ---- ring, encoders, several, replay, hello ----
 configure 'driver = servo, ring' 'servo.map = plant.map' 'ring.port = /nowhere/ring'
-says '^drivers  *servo, ring: read' 'over tcp only ethd-servo-probe can say' "finger's readings 4.1 ms old" 'fades after 10 ms, it stops after 30 ms'
+says '^drivers  *servo, ring: read' 'over tcp only ethd-conform --probe can say' "finger's readings 4.1 ms old" 'fades after 10 ms, it stops after 30 ms'
 configure 'driver = servo, ring' 'servo.map = plant.map' 'ring.port = /nowhere/ring' 'ring.calibration = missing.ini'
 refuses 'missing.ini: No such file'
 configure 'driver = servo, counter' 'servo.map = plant.map' 'counter.counts_per_turn = 4000' 'counter.ratio = 10'

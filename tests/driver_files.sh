@@ -59,7 +59,7 @@ loads "$bin/ethd-run" --virtual --duration 0.1 --config "$work/all.ini"
 loads "$bin/ethd-conform" --virtual --config "$work/all.ini"
 loads "$bin/ethd-check" --open "$work/all.ini"
 loads "$bin/ethd-tap" --taps 1 --config "$work/law.ini"
-loads "$bin/ethd-laws" --plugin "$work/law_uses_all.so"
+loads "$bin/ethd-check" --laws --plugin "$work/law_uses_all.so"
 for program in "$bin"/ethd-*; do
   nm -D --defined-only "$program" | awk '{ print $3 }' | sort | comm -23 "$work/offered" - >"$work/out"
   [ ! -s "$work/out" ] || fail "${program##*/} doesn't show: $(tr '\n' ' ' <"$work/out")"
@@ -150,13 +150,13 @@ words 'sim, file:hello.so' 'hello.colour = red\n' 'bad.ini:3: device.colour: hel
 words 'file:hello.so' 'hang_time = 0\n' 'bad.ini:3: device.hang_time: found "0", 1 to 3600 s is allowed'
 
 # ---- what they offer ----
-"$bin/ethd-laws" --driver "$work/hello.so" >"$work/out" 2>&1 || fail "laws: $(cat "$work/out")"
-laws=$(realpath "$bin/ethd-laws")
+"$bin/ethd-check" --driver "$work/hello.so" >"$work/out" 2>&1 || fail "laws: $(cat "$work/out")"
+laws=$(realpath "$bin/ethd-check")
 (cd "$work" && "$laws" --driver hello.so) >"$work/out" 2>&1 || fail "laws, beside the file: $(cat "$work/out")"
 grep -qx "device hello: two motors that aren't there, to copy from" "$work/out" || fail "laws: $(cat "$work/out")"
-"$bin/ethd-laws" --driver "$BUILD/tests/plugins/driver_abi.so" >"$work/out" 2>"$work/err"
+"$bin/ethd-check" --driver "$BUILD/tests/plugins/driver_abi.so" >"$work/out" 2>"$work/err"
 [ $? = 2 ] && grep -q 'built for version 77' "$work/err" || fail "laws: $(cat "$work/err")"
-"$bin/ethd-laws" --drivers --csv "$work/drivers.csv" >"$work/out" 2>&1 || fail "laws: $(cat "$work/out")"
+"$bin/ethd-check" --drivers --csv "$work/drivers.csv" >"$work/out" 2>&1 || fail "laws: $(cat "$work/out")"
 for driver in sim counter servo ring zones nail camera hello; do
   grep -q "^device $driver: " "$work/out" || fail "laws: no $driver in: $(cat "$work/out")"
 done

@@ -45,7 +45,7 @@ C
 refused() { # NAME ID PARAMS COUNT PATTERN
   plugin "$1" "$2" "$3" "$4"
   says 2 "$1.ini:2: plugins.file: $1.so: $5" ethd-check "$1.ini"
-  says 2 "plugins.file: $1.so: $5" ethd-laws --plugin "$1.so"
+  says 2 "plugins.file: $1.so: $5" ethd-check --laws --plugin "$1.so"
 }
 row='{"b", "Ns/m", 0, 10, 5, "damping"}'
 refused id '"My Law"' "$row" 2 'law 1 of 1: its id is "My Law", 1 to 31 of a-z 0-9 - are allowed'
@@ -63,7 +63,7 @@ for pair in "wrong_abi:it was built for version 1 of the laws' interface, this i
   'driver_canary:a driver, not a plugin with laws: \[device\] driver = file:NAME.so names it' \
   'no_symbol:no plugin: it has no symbol ethd_plugin'; do
   cp "$BUILD/tests/plugins/${pair%%:*}.so" .
-  says 2 "plugins.file: ${pair%%:*}.so: ${pair#*:}" ethd-laws --plugin "${pair%%:*}.so"
+  says 2 "plugins.file: ${pair%%:*}.so: ${pair#*:}" ethd-check --laws --plugin "${pair%%:*}.so"
 done
 
 # ---- a law that is named, and its file forgotten ----

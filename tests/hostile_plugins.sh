@@ -90,7 +90,7 @@ ends hangs_check 15 "ethd-check: the check of a plugin's law doesn't return" "$B
 
 # exit(0) in a constructor and in a step.
 ends exits 5 "exits.so ended the program" "$BUILD/bin/ethd-check" "$folder/exits.ini"
-ends exits 5 "exits.so ended the program" "$BUILD/bin/ethd-laws" --plugin "$BUILD/tests/plugins/exits.so"
+ends exits 5 "exits.so ended the program" "$BUILD/bin/ethd-check" --laws --plugin "$BUILD/tests/plugins/exits.so"
 ends exits_later 10 "a plugin's law ended the program" "$BUILD/bin/ethd-run" --virtual --duration 30 --config "$folder/exits_later.ini"
 ends exits_later 10 "a plugin's law ended the program" "$BUILD/bin/ethd-tap" --config "$folder/exits_later.ini" --taps 1 --transition broken
 
@@ -103,7 +103,7 @@ for plugin in writes_past rounds; do
 done
 
 # No text of a plugin steers the terminal.
-"$BUILD/bin/ethd-laws" --plugin "$BUILD/tests/plugins/brief_escapes.so" >"$folder/out" 2>&1
+"$BUILD/bin/ethd-check" --laws --plugin "$BUILD/tests/plugins/brief_escapes.so" >"$folder/out" 2>&1
 [ $? = 2 ] || fail "brief_escapes: $(cat "$folder/out")"
 if LC_ALL=C grep -q '[[:cntrl:]]' "$folder/out"; then fail "brief_escapes: a control character"; fi
 [ $failed = 0 ] && echo 'every one of them is named'

@@ -163,7 +163,7 @@ device_is "a longer definition" "configuration read" "ethd_loop_def, found $((de
 other "longer limits, once more" guard.h 's/^  double torque;/  double more[30];\n&/' \
   "0 bytes, -11, ethd_limits, found $((limits + 240)) of $limits"
 $CC -shared -fPIC -w -I"$work/include" -Itests drivers/hello/hello.c -DHELLO=ethd_driver_plugin -o "$work/hello.so" || fail "hello isn't built"
-said=$("$BUILD/bin/ethd-laws" --driver "$work/hello.so" 2>&1)
+said=$("$BUILD/bin/ethd-check" --driver "$work/hello.so" 2>&1)
 case $said in
 *"it was built for version $((abi + 240)) of the drivers' interface, this is version $abi: build it"*) ;;
 *) fail "a driver with longer limits: $said" ;;

@@ -48,7 +48,7 @@ plant patient --finger 0 --watchdog 0.5
 peer --tcp 0
 sed 's/^response = .*/response = 2/' apps/config/plant.map >"$folder/plant.map"
 configure patient "127.0.0.1:$at"
-"$BUILD/bin/ethd-servo-probe" --map "$folder/plant.map" --port "127.0.0.1:$at" --duration 0.2 --try-watchdog >"$folder/tried" 2>&1 ||
+"$BUILD/bin/ethd-conform" --probe "$folder/plant.map" --port "127.0.0.1:$at" --duration 0.2 --try-watchdog >"$folder/tried" 2>&1 ||
   fail "watchdog: exit $?: $(cat "$folder/tried")"
 says "$folder/tried" '^watchdog .*it let go after 1 s of silence: it has one; the map says it has one'
 ordinary="prlimit --rtprio=0"
@@ -70,7 +70,7 @@ plant live
 peer --tcp 0
 port=$at
 configure live "127.0.0.1:$port"
-$alone "$BUILD/bin/ethd-servo-probe" --map "$folder/plant.map" --port "127.0.0.1:$port" --duration 0.5 >"$folder/probe" 2>&1 ||
+$alone "$BUILD/bin/ethd-conform" --probe "$folder/plant.map" --port "127.0.0.1:$port" --duration 0.5 >"$folder/probe" 2>&1 ||
   fail "probe: exit $?: $(cat "$folder/probe")"
 says "$folder/probe" '^round trip p50 .* p99 .* max .* ms' 'this bus can do [1-9][0-9]* Hz' ' position1  *raw' ' bus_voltage  *raw 480 *48 V'
 mkfifo "$folder/commands"
@@ -158,7 +158,7 @@ await "$folder/wire.out" '/dev/'
 read -r ours theirs <"$folder/wire.out"
 peer --serial "$theirs"
 sed -e 's/^transport = tcp/transport = rtu\nbaud = 500000\nexchange = combined/' -e 's/^response = .*/response = 2/' apps/config/plant.map >"$folder/rtu.map"
-"$BUILD/bin/ethd-servo-probe" --map "$folder/rtu.map" --port "$ours" --duration 1 >"$folder/rtu" 2>&1 || fail "serial: exit $?: $(cat "$folder/rtu")"
+"$BUILD/bin/ethd-conform" --probe "$folder/rtu.map" --port "$ours" --duration 1 >"$folder/rtu" 2>&1 || fail "serial: exit $?: $(cat "$folder/rtu")"
 says "$folder/rtu" 'this bus can do [1-9][0-9]* Hz' ' bus_voltage  *raw 480 *48 V'
 kill $peer
 exec 7>&-

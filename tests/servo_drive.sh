@@ -8,37 +8,37 @@ set -u
 # ---- the probe: which checksum answers, what is read ----
 drive svd48v
 slow_map apps/config/svd48v.map "$folder/svd48v.map"
-probe=$BUILD/bin/ethd-servo-probe
-"$probe" --map "$folder/svd48v.map" --port "$line" --duration 0.5 >"$folder/probe" 2>&1 || fail "probe: exit $?: $(cat "$folder/probe")"
+conform=$BUILD/bin/ethd-conform
+"$conform" --probe "$folder/svd48v.map" --port "$line" --duration 0.5 >"$folder/probe" 2>&1 || fail "probe: exit $?: $(cat "$folder/probe")"
 says "$folder/probe" '^checksum .*low-first: no answer, high-first: it answers' ' bus_voltage  *raw 480 *48 V'
 says "$folder/probe" '^divisor .* at 1 ms ticks: ' '^wire .* 93 bytes in 5 questions: 2.245 ms of wire and silence'
-"$probe" --map "$folder/svd48v.map" --port "$line" --duration 0.2 --try-watchdog >"$folder/tried" 2>&1 || fail "watchdog: exit $?: $(cat "$folder/tried")"
+"$conform" --probe "$folder/svd48v.map" --port "$line" --duration 0.2 --try-watchdog >"$folder/tried" 2>&1 || fail "watchdog: exit $?: $(cat "$folder/tried")"
 says "$folder/tried" '^watchdog .*it is enabled still after 1 s of silence: it has none; the map says none'
 says "$folder/probe" '^answers .* 0 damaged or refused'
 # the joints at 0.2 and -0.4 rad are 1528 and -3056 counts of 48000 a turn; read the other way round, far more than a turn
 says "$folder/tried" '^order .*position1 high-first: 0 rad, low-first: 0 rad: both are possible: turn the joint'
 tell turn 0.2 -0.4 >/dev/null
-"$probe" --map "$folder/svd48v.map" --port "$line" --duration 0.3 >"$folder/probe" 2>&1 || fail "words: exit $?: $(cat "$folder/probe")"
+"$conform" --probe "$folder/svd48v.map" --port "$line" --duration 0.3 >"$folder/probe" 2>&1 || fail "words: exit $?: $(cat "$folder/probe")"
 says "$folder/probe" '^order .*position1 high-first: 131.* rad, low-first: 0.200.* rad: low-first is plausible; the map says low-first'
 says "$folder/probe" '^order .*position2 high-first: .* rad, low-first: -0.400.* rad: low-first is plausible; the map says low-first'
 grep -q '^mend' "$folder/probe" && fail "an order that is right is mended"
 sed 's/^counts = 4000/counts = 40/' "$folder/svd48v.map" >"$folder/other.map"
-"$probe" --map "$folder/other.map" --port "$line" --duration 0.3 >"$folder/probe" 2>&1 || fail "absurd: exit $?: $(cat "$folder/probe")"
+"$conform" --probe "$folder/other.map" --port "$line" --duration 0.3 >"$folder/probe" 2>&1 || fail "absurd: exit $?: $(cat "$folder/probe")"
 says "$folder/probe" '^order .*position1 .*low-first: 20.0.* rad: both are absurd: check address, type, counts and ratio'
 sed 's/^crc = .*/crc = low-first/' "$folder/svd48v.map" >"$folder/other.map"
-"$probe" --map "$folder/other.map" --port "$line" --duration 0.3 >"$folder/probe" 2>&1 || fail "other order: exit $?: $(cat "$folder/probe")"
+"$conform" --probe "$folder/other.map" --port "$line" --duration 0.3 >"$folder/probe" 2>&1 || fail "other order: exit $?: $(cat "$folder/probe")"
 says "$folder/probe" '^mend .*crc = high-first is needed, the map says low-first' ' bus_voltage  *raw 480 *48 V'
 # registers that its table lacks are refused, not guessed, and so is a read across the gap
 sed -e 's/^gap = .*/gap = 4/' -e '/^every/d' "$folder/svd48v.map" >"$folder/gap.map"
-"$probe" --map "$folder/gap.map" --port "$line" --duration 0.3 >"$folder/probe" 2>&1 && fail "a read over the gap passes"
+"$conform" --probe "$folder/gap.map" --port "$line" --duration 0.3 >"$folder/probe" 2>&1 && fail "a read over the gap passes"
 drive_ends
 drive svd48v --crc low-first
-"$probe" --map "$folder/svd48v.map" --port "$line" --duration 0.3 >"$folder/probe" 2>&1 || fail "standard order: exit $?: $(cat "$folder/probe")"
+"$conform" --probe "$folder/svd48v.map" --port "$line" --duration 0.3 >"$folder/probe" 2>&1 || fail "standard order: exit $?: $(cat "$folder/probe")"
 says "$folder/probe" '^mend .*crc = low-first is needed, the map says high-first'
 drive_ends
 # a drive that has the high word first, as a public firmware reads it: what the hand does is told in the right order
 drive svd48v --order high-first
-"$probe" --map "$folder/svd48v.map" --port "$line" --duration 0.3 --by-hand 3 >"$folder/probe" 2>&1 &
+"$conform" --probe "$folder/svd48v.map" --port "$line" --duration 0.3 --by-hand 3 >"$folder/probe" 2>&1 &
 probing=$!
 await "$folder/probe" '^by hand'
 for angle in 0.1 0.2 0.3; do tell turn $angle -0.1 >/dev/null; done
@@ -54,7 +54,7 @@ noise() { # ORDER: "least most", s until the next question, in $noticed; $folder
   sed "s/^crc = .*/crc = $1/" "$folder/svd48v.map" >"$folder/noise.map"
   for seconds in 3 15 60; do # a machine that is busy has few exchanges a second
     drive svd48v --crc "$1"
-    "$probe" --map "$folder/noise.map" --port "$line" --duration $seconds >"$folder/probe" 2>&1 &
+    "$conform" --probe "$folder/noise.map" --port "$line" --duration $seconds >"$folder/probe" 2>&1 &
     probing=$!
     for _ in $(seq 200); do
       [ "$(tell requests)" -gt 100 ] && break

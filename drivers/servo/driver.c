@@ -90,7 +90,7 @@ static const char *remark(const void *device, uint32_t i) {
     own[n++] = "the serial line's driver doesn't hand bytes over at once: answers may come late (FTDI: 1 into "
                "/sys/bus/usb-serial/devices/ttyUSB0/latency_timer; step 1)";
   if (d->map.transport == ETHD__SERVO_RTU && !(d->map.turnaround > 0))
-    own[n++] = "bus.turnaround is 0: ethd-servo-probe measures how long the drive takes to answer (step 3)";
+    own[n++] = "bus.turnaround is 0: ethd-conform --probe measures how long the drive takes to answer (step 3)";
   return i < n ? own[i] : ethd__servo_risk(&d->map, i - n);
 }
 

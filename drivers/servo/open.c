@@ -208,16 +208,16 @@ static void say_wire(ethd__servo_device *d) {
   ethd__servo_wire w = ethd__servo_wire_of(&d->map, (double)NAN);
   uint32_t least = ethd__servo_divisor_for(w.most, 1e-9 * (double)d->period_ns);
   if (d->map.transport == ETHD__SERVO_TCP)
-    snprintf(
-        d->wire, sizeof d->wire,
-        "an exchange: %u message%s, %u bytes, every %g ms; over tcp only ethd-servo-probe can say how long it takes",
-        w.questions, ethd__s(w.questions), w.bytes, 1e-6 * (double)d->exchange_ns);
+    snprintf(d->wire, sizeof d->wire,
+             "an exchange: %u message%s, %u bytes, every %g ms; over tcp only ethd-conform --probe can say how long it "
+             "takes",
+             w.questions, ethd__s(w.questions), w.bytes, 1e-6 * (double)d->exchange_ns);
   else
     snprintf(d->wire, sizeof d->wire,
              "an exchange: %u message%s, %u bytes, %.3g ms of wire, silence and turnaround at %g Bd%s, %.3g with slow "
              "registers; divisor %u gives it %g ms: %s, %u would hold",
              w.questions, ethd__s(w.questions), w.bytes, 1e3 * w.usual, d->map.baud,
-             d->map.turnaround > 0 ? "" : " (turnaround: not known, ethd-servo-probe measures it)", 1e3 * w.most,
+             d->map.turnaround > 0 ? "" : " (turnaround: not known, ethd-conform --probe measures it)", 1e3 * w.most,
              d->map.divisor, 1e-6 * (double)d->exchange_ns, d->map.divisor >= least ? "it holds" : "it doesn't hold",
              least);
 }

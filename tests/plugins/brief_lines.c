@@ -1,3 +1,3 @@
 /* Its brief has a second line. */
-#define BRIEF "one\nethd-laws: all is well"
+#define BRIEF "one\nethd-check: all is well"
 #include "broken.h"

@@ -84,7 +84,7 @@ START_TEST(test_mechanism) {
 }
 END_TEST
 
-/* ---- each key that there is, under each law and method, as ethd-laws lists them ---- */
+/* ---- each key that there is, under each law and method, as ethd-check --laws lists them ---- */
 
 static double inside(const ethd_param *p) {
   double high = isfinite(p->max) ? p->max : fmax(p->min, 0) + 3;

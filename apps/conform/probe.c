@@ -1,4 +1,5 @@
-/* What a bus with a drive on it can do: how many exchanges a second, how long each takes, what is read. */
+#include "conform/probe.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -7,58 +8,16 @@
 
 #include "cli/cli.h"
 #include "clock.h"
+#include "conform/order.h"
 #include "ethd/loop.h"
-#include "probe/order.h"
 #include "servo/link.h"
 #include "servo/wire.h"
 #include "servo/words.h"
 #include "text/text.h"
 
-static const char doc[] =
-    "Measures the bus to a servo drive by its register map: connects, identifies, writes zero torque and reads, as "
-    "fast as the bus goes, and says which rate it can hold. Only --try-watchdog enables the drive, at zero torque.\v"
-    "Examples:\n"
-    "  ethd-servo-probe --map svd48v.map --by-hand 20\n"
-    "  ethd-servo-probe --map plant.map --port 127.0.0.1:1502 --duration 10";
-
 #define ASKS 3 /* questions, before a drive is said not to answer */
 
-enum { OPTION_PORT = 256, OPTION_WATCHDOG, OPTION_BY_HAND };
-
-static const struct argp_option options[] = {
-    {"map", 'm', "F.map", 0, "register map of the drive", 0},
-    {"port", OPTION_PORT, "PORT", 0, "HOST:PORT or a serial device, instead of the map's", 0},
-    {"period", 'p', "S", 0, "period of the loop that the bus has to serve (0.001)", 0},
-    {"try-watchdog", OPTION_WATCHDOG, NULL, 0,
-     "enable at zero torque, be silent, and say whether the drive let go by itself: keep clear of the arm", 0},
-    {"duration", 'd', "S", 0, "how long to measure (2)", 0},
-    {"by-hand", OPTION_BY_HAND, "S", 0,
-     "then wait for so long, while you turn the joints by hand, and say which angle rose or fell", 0},
-    {0},
-};
-
-static struct {
-  const char *map, *port;
-  double duration, period, by_hand; /* s */
-  bool watchdog;
-} arg = {.duration = 2, .period = 1e-3};
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  switch (key) {
-  case 'm': arg.map = text; return 0;
-  case OPTION_WATCHDOG: arg.watchdog = true; return 0;
-  case OPTION_PORT: arg.port = text; return 0;
-  case OPTION_BY_HAND: arg.by_hand = ethd__option_number("--by-hand", text, 0.1, 3600); return 0;
-  case 'p': arg.period = ethd__option_number("--period", text, 1e-5, 1); return 0;
-  case 'd': arg.duration = ethd__option_number("--duration", text, 0.01, 86400); return 0;
-  case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
-  case ARGP_KEY_END:
-    if (!arg.map) argp_error(state, "--map is needed");
-    return 0;
-  default: return ARGP_ERR_UNKNOWN;
-  }
-}
-
+static ethd__probe_def arg;
 static ethd__servo_map map;
 static ethd__servo_link drive;
 static ethd_histogram trip;
@@ -259,11 +218,9 @@ static void print_values(void) {
   }
 }
 
-int main(int argc, char **argv) {
-  static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
+void ethd__probe(const ethd__probe_def *def) {
   const char *risk;
-  ethd__begin();
-  argp_parse(&argp, argc, argv, 0, NULL, NULL);
+  arg = *def;
   ethd__catch_interrupt();
   load();
   find_order();
@@ -284,5 +241,4 @@ int main(int argc, char **argv) {
            ethd__s(map.count), unconfirmed == 1 ? "its address" : "their addresses");
   for (uint32_t i = 0; (risk = ethd__servo_risk(&map, i)); i++) printf("%-10s %s\n", i ? "" : "open risk", risk);
   ethd__servo_link_close(&drive);
-  return ethd__end(ETHD_EXIT_DONE);
 }

@@ -1,6 +1,6 @@
-/* Every law, method and driver that a configuration can name, with its parameters. */
+#include "check/laws.h"
+
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,46 +11,6 @@
 #include "ethd/plugin.h"
 #include "settings/config_parts.h"
 #include "text/csv.h"
-
-static const char doc[] =
-    "Lists the laws and methods that a configuration can name, with each parameter's unit, range and "
-    "default: the built-in ones and those of plugins.\v"
-    "The first of each kind is the default, except that the default transition is offset.\n\n"
-    "Example:\n"
-    "  ethd-laws\n"
-    "  ethd-laws --plugin mylaw.so --csv laws.csv\n"
-    "  ethd-laws --drivers\n"
-    "  ethd-laws --driver mydriver.so";
-
-static const struct argp_option options[] = {
-    {"plugin", 'p', "FILE", 0, "list this plugin's laws too; may be given more than once", 0},
-    {"drivers", 'd', NULL, 0, "list the drivers that are built in", 0},
-    {"driver", 'D', "FILE", 0, "list this file's driver instead, checked as [device] driver = file:FILE checks it", 0},
-    {"csv", 'c', "FILE", 0, "write a row for each parameter", 0},
-    {0},
-};
-
-#define PLUGINS_MAX 64
-
-static struct {
-  const char *plugins[PLUGINS_MAX], *csv, *driver;
-  int plugin_count;
-  bool drivers;
-} arg;
-
-static error_t parse(int key, char *text, struct argp_state *state) {
-  switch (key) {
-  case 'p':
-    if (arg.plugin_count == PLUGINS_MAX) argp_error(state, "over %d plugins", PLUGINS_MAX);
-    arg.plugins[arg.plugin_count++] = text;
-    return 0;
-  case 'c': arg.csv = text; return 0;
-  case 'd': arg.drivers = true; return 0;
-  case 'D': arg.driver = text; return 0;
-  case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
-  default: return ARGP_ERR_UNKNOWN;
-  }
-}
 
 /* ---- one table ---- */
 
@@ -128,39 +88,33 @@ static void show_file(const char *path, ethd_csv_out *csv) {
 }
 
 static void show_drivers(ethd_csv_out *csv) {
-  for (const ethd_driver *const *d = ethd_drivers; arg.drivers && *d; d++) show_driver(*d, csv);
-  if (arg.driver) show_file(arg.driver, csv);
+  for (const ethd_driver *const *d = ethd_drivers; *d; d++) show_driver(*d, csv);
 }
 
 /* ---- laws ---- */
 
 /* Plugins are loaded as a configuration loads them. */
-static ethd_config *load(void) {
+static ethd_config *load(const ethd__listing *what) {
   char message[ETHD_MESSAGE_MAX];
   ethd_config *config;
   if (ethd_config_load(NULL, &config, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
-  for (int i = 0; i < arg.plugin_count; i++) {
-    ethd__config_key key = {NULL, 0, "plugins", "file", arg.plugins[i], message};
+  for (int i = 0; i < what->plugin_count; i++) {
+    ethd__config_key key = {NULL, 0, "plugins", "file", what->plugins[i], message};
     ethd_status status = ethd__config_plugin((ethd__config *)config, &key);
     if (status < 0) ethd__fail(ethd__exit_code(status), "%s", message);
   }
   return config;
 }
 
-int main(int argc, char **argv) {
-  static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
+void ethd__list(const ethd__listing *what) {
   char message[ETHD_MESSAGE_MAX];
-  ethd__begin();
-  argp_parse(&argp, argc, argv, 0, NULL, NULL);
-  ethd_config *config = load();
   ethd_csv_out *csv = NULL;
-  if (arg.csv && !(csv = ethd_csv_create(arg.csv, "section,id,param,unit,min,max,default,brief", message)))
+  ethd_config *config = load(what);
+  if (what->csv && !(csv = ethd_csv_create(what->csv, "section,id,param,unit,min,max,default,brief", message)))
     ethd__fail(ETHD_EXIT_FAILED, "%s", message);
-  if (arg.drivers || arg.driver)
-    show_drivers(csv);
-  else
-    show_all(config->laws, csv);
+  if (what->laws) show_all(config->laws, csv);
+  if (what->drivers) show_drivers(csv);
+  if (what->driver) show_file(what->driver, csv);
   if (csv && ethd_csv_close(csv, message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
   ethd_config_free(config);
-  return ethd__end(ETHD_EXIT_DONE);
 }

@@ -1,4 +1,4 @@
-#include "probe/order.h"
+#include "conform/order.h"
 
 #include <math.h>
 #include <stdio.h>
