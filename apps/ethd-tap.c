@@ -7,6 +7,7 @@
 #include "record/recording_parts.h"
 #include "tap/load.h"
 #include "tap/options.h"
+#include "tap/paper.h"
 #include "tap/run.h"
 #include "tap/table.h"
 #include "text/claim.h"
@@ -81,6 +82,22 @@ static int run(const ethd__tap_plan *plan, const ethd__heading *heading) {
   return ethd__stop ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE;
 }
 
+static int run_table(const ethd__study *study, const ethd__loaded *loaded) {
+  char message[ETHD_MESSAGE_MAX];
+  const ethd__tap_plan plan = {study, arg.laws.words, arg.laws.count, (uint64_t)arg.taps};
+  check(ethd__plan_check(&plan, message), message);
+  const ethd__heading heading = {loaded->plant_name, arg.config ? arg.config : base_name(loaded->path), arg.finger,
+                                 arg.scale, arg.scaled};
+  return run(&plan, &heading);
+}
+
+static int run_paper(const ethd__study *study) {
+  char message[ETHD_MESSAGE_MAX];
+  check(ethd__paper_print(study, (uint64_t)arg.taps, message), message);
+  if (ethd__stop) fprintf(stderr, "%s: stopped; nothing is printed\n", program_invocation_short_name);
+  return ethd__stop ? ETHD_EXIT_FAILED : ETHD_EXIT_DONE;
+}
+
 int main(int argc, char **argv) {
   char message[ETHD_MESSAGE_MAX];
   ethd__loaded loaded;
@@ -104,12 +121,8 @@ int main(int argc, char **argv) {
     free(finger);
   }
   check(ethd__study_prepare(&study, message), message);
-  const ethd__tap_plan plan = {&study, arg.laws.words, arg.laws.count, (uint64_t)arg.taps};
-  check(ethd__plan_check(&plan, message), message);
-  const ethd__heading heading = {loaded.plant_name, arg.config ? arg.config : base_name(loaded.path), arg.finger,
-                                 arg.scale, arg.scaled};
   ethd__catch_interrupt();
-  int code = run(&plan, &heading);
+  int code = arg.paper ? run_paper(&study) : run_table(&study, &loaded);
   ethd__movement_free(&study.movement);
   ethd__loaded_free(&loaded);
   ethd__tap_options_free(&arg);

@@ -60,7 +60,7 @@ head -c 5000 "$bin/ethd-check" >"$folder/bad.binary"
 for command in 'ethd-tap --config=' 'ethd-run --config=' 'ethd-replay --out=o.csv --in=' 'ethd-tap --finger='; do
   refuse "$command" '"": a file.s name is needed' "$bin"/$command
 done
-for command in 'ethd-tap --taps 1 --plant' 'ethd-tune --plant' 'ethd-explain --judge'; do
+for command in 'ethd-tap --taps 1 --plant' 'ethd-tune --plant'; do
   refuse "$command" 'nowhere.ini: No such file or directory; it is the configuration of the plant "nowhere": put it there' "$bin"/$command nowhere
 done
 

@@ -7,6 +7,7 @@
 #include "text/error_text.h"
 
 #define TAPS 100u       /* per cell */
+#define TAPS_PAPER 400u /* with --paper */
 #define TAPS_FINGER 10u /* with a recorded movement */
 #define TAPS_MAX 1000000
 #define LEARN_MAX 1000
@@ -36,6 +37,7 @@ static const char doc[] =
     "  ethd-tap --taps 400 --csv taps.csv --trace traces\n"
     "  ethd-tap --finger motion/avraham_free_mit/avraham_ND_s02_be38_free.csv\n"
     "  ethd-tap --config mine.ini --transition mine,offset --record taps\n"
+    "  ethd-tap --paper --plant p\n"
     "Eight recorded movements come with the programs, in motion: a FILE.csv that isn't there is looked for among them.";
 
 enum {
@@ -46,7 +48,8 @@ enum {
   OPTION_FORCE,
   OPTION_VALIDITY,
   OPTION_LEARN,
-  OPTION_SET
+  OPTION_SET,
+  OPTION_PAPER
 };
 
 static const struct argp_option options[] = {
@@ -56,7 +59,8 @@ static const struct argp_option options[] = {
      "configuration's own)",
      0},
     {"speed", 's', "low|high|V[,..]", 0, "speeds: low,high; V in m/s, 0.01 to 2", 0},
-    {"taps", 'n', "N", 0, "attempts for each law and speed (100; 10 with --finger)", 0},
+    {"taps", 'n', "N", 0,
+     "attempts for each law and speed (100; 10 with --finger; with --paper 400, twice as many at high speed)", 0},
     {"seed", 'r', "S", 0, "seed of every random number (1)", 0},
     {"plant", 'p', "n|b|p|FILE", 0,
      "the simulated device and finger (default: that of --config, else n); a FILE.plant has FILE.ini beside it", 0},
@@ -75,6 +79,8 @@ static const struct argp_option options[] = {
     {"force", OPTION_FORCE, NULL, 0, "replace a recording or traces that are there", 0},
     {"trace", OPTION_TRACE, "DIR", 0,
      "write DIR/LAW-SPEED.csv, the typical tap of each cell with a row per tick, for plots", 0},
+    {"paper", OPTION_PAPER, NULL, 0,
+     "print what the paper says of its device as lines with bounds, and which of them this plant misses (400 taps)", 0},
     {0},
 };
 
@@ -148,9 +154,13 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_SET: add_gain(text); return 0;
   case OPTION_TRACE: arg.trace = text; return 0;
   case OPTION_FORCE: arg.force = true; return 0;
+  case OPTION_PAPER: arg.paper = true; return 0;
   case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
   case ARGP_KEY_END:
     if (arg.scaled && !arg.finger) argp_error(state, "--scale needs --finger");
+    if (arg.paper && (arg.finger || arg.csv || arg.record || arg.trace || arg.laws.count || arg.speeds.count))
+      argp_error(state, "--paper has its own laws and speeds, a synthetic hand and no files; --config, --plant, --set, "
+                        "--taps and --seed go with it");
     return 0;
   default: return ARGP_ERR_UNKNOWN;
   }
@@ -160,7 +170,7 @@ void ethd__tap_options_read(int argc, char **argv, ethd__tap_options *out) {
   static const struct argp argp = {options, parse, NULL, doc, NULL, NULL, NULL};
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
   if (!arg.speeds.count) set_list(&arg.speeds, "--speed", "low,high");
-  if (!arg.taps) arg.taps = arg.finger ? TAPS_FINGER : TAPS;
+  if (!arg.taps) arg.taps = arg.paper ? TAPS_PAPER : arg.finger ? TAPS_FINGER : TAPS;
   *out = arg;
 }
 

@@ -18,6 +18,7 @@ typedef struct ethd__tap_options {
   const char *config, *plant, *finger, *csv, *record, *trace; /* NULL: not given */
   double scale;                                               /* of the recorded movement */
   bool scaled, force;
+  bool paper;   /* ethd__paper_print instead of a table */
   int64_t taps; /* for each law and speed */
   uint64_t seed;
   ethd__tap_words laws, speeds; /* no law: ethd__tap_laws_choose */
