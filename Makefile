@@ -154,23 +154,29 @@ obj = $(patsubst %.c,$(B)/obj/%.o,$(1))
 LIB_O := $(call obj,$(LIB_C))
 RT_O := $(call obj,$(filter-out $(MAIN_SIDE),$(LIB_C)))
 LOOP_O := $(call obj,$(LOOP_SIDE))
-PROGRAMS := $(patsubst apps/%.c,$(B)/bin/%,$(PROGRAMS_C))
 ifneq ($(CHANGED),)
 TESTS := $(shell BUILD='$(B)' sh .ci/changed)
 $(info tests of what differs from HEAD: $(or $(TESTS),none))
 TESTS += tree_clean
 endif
+C_PROGRAMS := $(patsubst apps/%.c,$(B)/bin/%,$(PROGRAMS_C))
+# Programs in Python: bin/ethd-NAME runs ethd_programs.NAME.
+PYTHON_PROGRAMS := $(addprefix $(B)/bin/ethd-,convert)
+PROGRAMS := $(sort $(C_PROGRAMS) $(PYTHON_PROGRAMS))
+PYTHON_FILES := $(patsubst apps/python/%,$(B)/share/ethd/python/%,$(shell find apps/python/ethd_programs -name '*.py')) \
+                $(B)/share/ethd/python/ethd_programs/VERSION
 wanted = $(if $(TESTS),$(filter $(TESTS),$(1)),$(1))
 UNIT := $(addprefix $(B)/tests/,$(notdir $(TESTS_C:.c=)))
 PLUGINS := $(patsubst tests/plugins/%.c,$(B)/tests/plugins/%.so,$(PLUGINS_C))
 SHARE := $(patsubst apps/config/%,$(B)/share/ethd/%,$(shell find apps/config -type f 2>/dev/null)) \
          $(patsubst apps/plot/%,$(B)/share/ethd/plot/%,$(wildcard apps/plot/*.gp)) \
          $(patsubst apps/cluster/%,$(B)/share/ethd/cluster/%,$(wildcard apps/cluster/*.sh)) \
-         $(patsubst tests/motion/%,$(B)/share/ethd/motion/%,$(shell find tests/motion -type f 2>/dev/null))
+         $(patsubst tests/motion/%,$(B)/share/ethd/motion/%,$(shell find tests/motion -type f 2>/dev/null)) \
+         $(PYTHON_FILES)
 ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a $(B)/libethd.a
 LIBRARIES := $(foreach l,ethd ethd-drivers,$(B)/lib$(l).a $(B)/lib$(l).so.0 $(B)/lib$(l).so)
 # What the drivers' library needs of others.
-DRIVERS_LIBS := -linih -lmodbus -lz -lexpat
+DRIVERS_LIBS := -linih -lmodbus -lexpat
 
 all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
 # A script may run any program.
@@ -234,7 +240,7 @@ WHOLE := -Wl,--whole-archive $(B)/libethd-drivers.a $(B)/libethd.a -Wl,--no-whol
 $(B)/bin/ethd-study $(B)/tests/test_shapes $(B)/tests/test_pages: LIBS += -lSDL2_ttf -lSDL2
 # Only identification, and the benchmark of it, fits.
 $(B)/bin/ethd-identify $(B)/bin/ethd-bench: LIBS += -lcminpack
-$(PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES)
+$(C_PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES)
 	$(call say,LINK,$@)
 	@mkdir -p $(@D)
 	$(Q)$(LINK) -o $@ $< $(B)/libethd-apps.a $(WHOLE) $(DRIVERS_LIBS) $(LIBS)
@@ -244,7 +250,7 @@ $(B)/tests/$(notdir $(1:.c=)): $(B)/obj/$(1:.c=.o) $(B)/libethd-tests.a $(ARCHIV
 	$$(call say,LINK,$$@)
 	@mkdir -p $$(@D)
 	$$(Q)$$(LINK) -o $$@ $$< $(B)/libethd-tests.a $(B)/libethd-apps.a $$(WHOLE) \
-	  $$(shell $$(PKG_CONFIG) --libs check) -linih -lmodbus -lz -lexpat $$(LIBS)
+	  $$(shell $$(PKG_CONFIG) --libs check) -linih -lmodbus -lexpat $$(LIBS)
 endef
 $(foreach t,$(TESTS_C),$(eval $(call test_program,$(t))))
 
@@ -259,7 +265,16 @@ $(PLUGINS): $(B)/tests/plugins/%.so: tests/plugins/%.c $(B)/flags
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CPPFLAGS) $(FLAGS_plugin) $(LDFLAGS) -MMD -MP -MF $(@:.so=.d) -shared -o $@ $<
 
-$(filter-out $(addprefix $(B)/share/ethd/,plot/% cluster/% motion/%),$(SHARE)): $(B)/share/ethd/%: apps/config/%
+# Another python3 that lacks packages may stand first on the PATH.
+RUNS_PYTHON = $(shell sh .ci/setup programs)
+$(PYTHON_PROGRAMS): $(B)/bin/ethd-%: apps/python/launcher.in $(PYTHON_FILES)
+	@mkdir -p $(@D) && sed -e 's|@PYTHON@|$(RUNS_PYTHON)|' -e 's|@NAME@|$*|' $< >$@ && chmod +x $@
+$(B)/share/ethd/python/ethd_programs/VERSION: include/ethd/ethd.h
+	@mkdir -p $(@D) && echo '$(VERSION)' >$@
+$(filter %.py,$(PYTHON_FILES)): $(B)/share/ethd/python/%: apps/python/%
+	@mkdir -p $(@D) && cp $< $@
+
+$(filter-out $(addprefix $(B)/share/ethd/,plot/% cluster/% motion/% python/%),$(SHARE)): $(B)/share/ethd/%: apps/config/%
 	@mkdir -p $(@D) && cp $< $@
 $(filter $(B)/share/ethd/plot/% $(B)/share/ethd/cluster/%,$(SHARE)): $(B)/share/ethd/%: apps/%
 	@mkdir -p $(@D) && cp $< $@

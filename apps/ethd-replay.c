@@ -15,7 +15,9 @@ static const char doc[] =
     "Runs recorded joint angles and finger movements through a control law, tick by tick, and writes what "
     "the law answers.\v"
     "IN needs the columns t_s,q1_rad,q2_rad and either xf_m,yf_m,vxf_mps,vyf_mps or t_ring_s,r0_m..r15_m; "
-    "dq1_radps,dq2_radps are used when present. Nothing is limited unless the configuration has [limits].\n\n"
+    "dq1_radps,dq2_radps are used when present, and an empty cell of these or of the "
+    "distances is missing. ethd-convert writes such a file. Nothing is limited unless the configuration has "
+    "[limits].\n\n"
     "Example:\n"
     "  ethd-replay --config smooth.ini --in finger.csv --out torque.csv\n"
     "  ethd-replay --verify recording/";
@@ -71,7 +73,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
 }
 
 static const char header[] =
-    "t_s,tau1_nm,tau2_nm,tau1_raw_nm,tau2_raw_nm,beta,state,fex_n,fey_n,fdx_n,fdy_n,eps_m,d_re_m,d_fe_m,"
+    "t_s,tau1_Nm,tau2_Nm,tau1_raw_Nm,tau2_raw_Nm,beta,state,fex_N,fey_N,fdx_N,fdy_N,eps_m,d_re_m,d_fe_m,"
     "v_n_mps,x_m,y_m,vx_mps,vy_mps,epsq1_rad,epsq2_rad";
 
 static void put2(ethd_csv_out *out, const double v[2]) {

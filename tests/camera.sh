@@ -25,22 +25,22 @@ bridge=
 import csv, math, sys
 rows = list(csv.DictReader(open(sys.argv[1])))
 seen = [r for r in rows if int(r["have"]) & 8]
-gaps = [int(b["sample_ns"]) - int(a["sample_ns"]) for a, b in zip(seen, seen[1:])]
-late = max(int(r["time_ns"]) - int(r["sample_ns"]) for r in seen)
+gaps = [1e9 * (float(b["t_ring_s"]) - float(a["t_ring_s"])) for a, b in zip(seen, seen[1:])]
+late = max(1e9 * (float(r["t_s"]) - float(r["t_ring_s"])) for r in seen)
 print(f"{len(seen)} readings in {len(rows)} ticks, mean spacing {sum(gaps) / len(gaps) / 1e6:.2f} ms, at most {late / 1e6:.2f} ms late")
 assert len(seen) > 60, "hardly any"
 assert all(int(r["have"]) & 1024 for r in seen), "not the world's"
 assert all(abs(float(r["finger_noise_m"]) - 2e-4) < 1e-18 for r in seen), "another noise"
 assert abs(sum(gaps) / len(gaps) / 1e6 - 1000 / 90) < 2, "another rate"
 for r in seen:
-    x, y = float(r["centre_1_m"]), float(r["centre_2_m"])
+    x, y = float(r["centre_x_m"]), float(r["centre_y_m"])
     assert abs(math.hypot(x - 0.25, y - 0.25) - 1e-3) < 1e-12, (x, y)
 END
 # row 16 is the controller's own, by its counter; readings that the machine held back for 30 ms are its business
 if grep -q "the finger wasn't seen" "$work/out"; then
   "$python" - "$work/ticks.csv" <<'END' && fail "row 16 at 90 Hz: $(cat "$work/out")"
 import csv, sys
-times = [int(r["time_ns"]) for r in csv.DictReader(open(sys.argv[1])) if int(r["have"]) & 8]
+times = [1e9 * float(r["t_s"]) for r in csv.DictReader(open(sys.argv[1])) if int(r["have"]) & 8]
 sys.exit(max(b - a for a, b in zip(times, times[1:])) > 30_000_000)
 END
 fi

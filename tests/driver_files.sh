@@ -61,6 +61,7 @@ loads "$bin/ethd-check" --open "$work/all.ini"
 loads "$bin/ethd-tap" --taps 1 --config "$work/law.ini"
 loads "$bin/ethd-check" --laws --plugin "$work/law_uses_all.so"
 for program in "$bin"/ethd-*; do
+  if head -c 2 "$program" | grep -q '#!'; then continue; fi # in Python
   nm -D --defined-only "$program" | awk '{ print $3 }' | sort | comm -23 "$work/offered" - >"$work/out"
   [ ! -s "$work/out" ] || fail "${program##*/} doesn't show: $(tr '\n' ' ' <"$work/out")"
 done

@@ -40,7 +40,7 @@ hosted sh tests/golden.sh once
 for script in calibrate convert run study; do hosted sh "tests/$script.sh"; done
 
 # The examples' own reader: 0.5 is a number, and only what comes after it, the plants, is missing.
-$CC -Iinclude apps/examples/teleop.c -o "$work/test_teleop" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -lmodbus -lz \
+$CC -Iinclude apps/examples/teleop.c -o "$work/test_teleop" "$BUILD/libethd-drivers.a" "$BUILD/libethd.a" -linih -lmodbus \
   -lexpat -lm -ldl -lpthread || fail "teleop: it isn't compiled"
 env -u ETHD_DATA_DIR LD_PRELOAD="$work/host.so" "$work/test_teleop" $((20000 + $$ % 12000)) 0.5 >"$work/out" 2>&1 </dev/null
 [ $? = 1 ] && grep -q 'n.plant: No such file' "$work/out" || fail "teleop: $(cat "$work/out")"

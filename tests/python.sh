@@ -43,7 +43,7 @@ cmp LICENSE "$work"/site/ethd-*.dist-info/licenses/LICENSE || { echo "FAILED: th
 unset PKG_CONFIG_PATH
 export PYTHONPATH="$work/site"
 tried "$pypi" pypi || exit 1
-(cd "$work/tree/apps/python" && "$pypi/bin/mypy" --strict ethd) >"$work/mypy" 2>&1 ||
+(cd "$work/tree/apps/python" && "$pypi/bin/mypy" --strict ethd ethd_programs) >"$work/mypy" 2>&1 ||
   { cut -c1-200 "$work/mypy"; echo "FAILED: types"; exit 1; }
 tail -n 1 "$work/mypy"
 # A user's program: what is right passes, each line that is wrong is seen.

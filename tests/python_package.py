@@ -10,7 +10,7 @@ import numpy as np
 from python_help import build, folder, refuses, tree, write
 
 import ethd
-from ethd.table import lines
+from ethd_programs.table import lines
 
 rng = np.random.default_rng(7)
 
@@ -156,7 +156,7 @@ def instead(name, make, says, read=lambda: ethd.read(folder + "/theirs")):
 
 for name in "tick.npy", "events.csv", "config.ini":
     instead(name, lambda place: os.symlink("../secret.ini", place), f"theirs/{name}: is a link, which isn't followed")
-    instead(name, os.mkfifo, f"theirs/{name}: isn't a file, which is needed")
+    instead(name, os.mkfifo, f"theirs/{name}: is a pipe, a file is needed")
 calm_read = lambda: ethd.read(folder + "/theirs").controller()
 with open(folder + "/theirs/config.ini", "w") as file:
     file.write("[scene]\nfile = ../secret.ini\n")

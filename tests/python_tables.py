@@ -6,6 +6,7 @@ import numpy as np
 from python_help import build, folder, refuses, write
 
 import ethd
+import ethd_programs.table
 
 
 def run(program, *arguments):
@@ -22,14 +23,14 @@ run("ethd-tap", "--taps", "2", "--seed", "5", "--transition", "abrupt", "--recor
 assert np.isnan(ethd.read(folder + "/abrupt").taps["delta_s_ms"]).all()
 cells = 'n,few,big,text,eps_m,none_m,none\n1,4,,"a, # ""b""",0,,\n2,,9007199254740993,,1,,\n'
 write("odd_taps.csv", cells)
-odd_taps = ethd.table.table(folder + "/odd_taps.csv")
+odd_taps = ethd_programs.table.table(folder + "/odd_taps.csv")
 assert odd_taps["n"].tolist() == [1, 2] and odd_taps["n"].dtype == np.int64 and odd_taps["text"].tolist() == ['a, # "b"', ""]
 assert odd_taps["few"][0] == 4 and np.isnan(odd_taps["few"][1]) and odd_taps["eps_m"].dtype == np.float64
 assert odd_taps["big"].tolist() == ["", "9007199254740993"]  # no float64 is that number
 assert np.isnan(odd_taps["none_m"]).all() and odd_taps["none"].tolist() == ["", ""]
 with open(folder + "/odd_taps.csv", "a") as out:
     out.write("3,4\n")
-refuses("odd_taps.csv:4: found 2 cells, 7 are allowed", lambda: ethd.table.table(folder + "/odd_taps.csv"), ValueError)
+refuses("odd_taps.csv:4: found 2 cells, 7 are allowed", lambda: ethd_programs.table.table(folder + "/odd_taps.csv"), ValueError)
 
 # ---- a study: its tables, and each tap's recording, equal to the bit ----
 write("a.study", "[study]\nparticipants = 2\nstrategies = smooth,predictive\nspeeds = low\ntraining = 1\ntaps = 1\nattempts = 3\n")

@@ -287,11 +287,11 @@ def worst_difference(c, expected, path):
     with open(path) as f:
         for (tau, beta, force, brake, deepest, x, vr, e), row in zip(expected, csv.DictReader(f), strict=True):
             for i in (0, 1):
-                note("tau", tau[i], float(row[f"tau{i + 1}_nm"]))
-                note("tau", tau[i], float(row[f"tau{i + 1}_raw_nm"]))
+                note("tau", tau[i], float(row[f"tau{i + 1}_Nm"]))
+                note("tau", tau[i], float(row[f"tau{i + 1}_raw_Nm"]))
                 note("eps_q", e[i], float(row[f"epsq{i + 1}_rad"]))
-                note("force", force[i], float(row["fex_n" if i == 0 else "fey_n"]))
-                note("force", brake[i], float(row["fdx_n" if i == 0 else "fdy_n"]))
+                note("force", force[i], float(row["fex_N" if i == 0 else "fey_N"]))
+                note("force", brake[i], float(row["fdx_N" if i == 0 else "fdy_N"]))
                 note("ring", x[i], float(row["x_m" if i == 0 else "y_m"]))
                 note("ring", vr[i], float(row["vx_mps" if i == 0 else "vy_mps"]))
             note("beta", beta, float(row["beta"]))
@@ -323,7 +323,7 @@ def check_guard(program, folder):
         outside = held["x_m"] < 0.26
         left += outside
         returned += left > 0 and not outside
-        for tau, raw in (("tau1_nm", "tau1_raw_nm"), ("tau2_nm", "tau2_raw_nm")):
+        for tau, raw in (("tau1_Nm", "tau1_raw_Nm"), ("tau2_Nm", "tau2_raw_Nm")):
             assert free[tau] == free[raw] == held[raw], (free, held)
             assert abs(held[tau]) <= 1.5, held
             assert outside or held[tau] == max(-1.5, min(1.5, held[raw])), held

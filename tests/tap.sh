@@ -98,7 +98,7 @@ awk -F, 'NR > 1 { n[$2] += $5; if ($5 && $18 != "") { s[$2] += $18; m[$2]++ } ha
 grep -q ',learned,' "$folder/learnt/events.csv" || fail "what was learnt isn't in the recording"
 "$BUILD/bin/ethd-replay" --verify "$folder/learnt" >/dev/null
 "$BUILD/bin/ethd-convert" "$folder/learnt" "$folder/learnt.csv" >/dev/null
-learnt=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "learnt_2") c = i } NR > 1 { print $c }' "$folder/learnt.csv" | uniq)
+learnt=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "learnt2") c = i } NR > 1 { print $c }' "$folder/learnt.csv" | uniq)
 [ "$(echo "$learnt" | wc -l)" -ge 3 ] || fail "no tick shows what the law learns: $learnt"
 
 # A recorded movement is named, and is never scaled unless that is asked for.

@@ -59,7 +59,7 @@ unrest() { # CONFIG: rms change of the torque from tick to tick, at the end of a
   "$bin/ethd-tap" --config "$1" --plant p --transition offset --speed high --taps 12 --seed 7 --force --trace rest >/dev/null
   "${PYTHON:-python3}" -c '
 import csv
-t = [float(r["tau1_nm"]) for r in csv.DictReader(open("rest/offset-high.csv"))][-50:]
+t = [float(r["tau1_Nm"]) for r in csv.DictReader(open("rest/offset-high.csv"))][-50:]
 print((sum((a - b) ** 2 for a, b in zip(t, t[1:])) / 49) ** 0.5)'
 }
 was=$(unrest "$bin/../share/ethd/p.ini") is=$(unrest p.ini)

@@ -21,7 +21,7 @@ set xrange [-40:90]
 set multiplot title "A typical tap at ".speed." speed (simulated; plant ".plant." is fitted to Table 1, not measured)" font "Sans Bold,17"
 do for [i=1:3] {
   touch = NaN
-  stats file(i) using (column("since_wall_s") >= -0.02 && column("pad_force_n") > 0 && touch != touch ? (touch = t(0)) : 0) nooutput
+  stats file(i) using (column("since_wall_s") >= -0.02 && column("pad_force_N") > 0 && touch != touch ? (touch = t(0)) : 0) nooutput
   moved = 0
   stats file(i) using (moved = moved + (strlen(strcol("offset_wall_m")) > 0), 0) nooutput
   set lmargin at screen left(i)

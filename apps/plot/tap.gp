@@ -31,7 +31,7 @@ t(x) = 1e3*column("since_wall_s")
 
 # t_of/r: the first tick at or after t_r/vo with the pad pressing
 touch = NaN
-stats in using (column("since_wall_s") >= -1e-9 && column("pad_force_n") > 0 && touch != touch ? (touch = 1e3*column("since_wall_s")) : 0) nooutput
+stats in using (column("since_wall_s") >= -1e-9 && column("pad_force_N") > 0 && touch != touch ? (touch = 1e3*column("since_wall_s")) : 0) nooutput
 # d_max: from the ring's first peak in the wall to the valley after it, each once the ring has turned by 0.02 mm;
 # v_rmin: the ring's smallest speed in the 0.1 s after the touch. As apps/tap/metrics.c has them.
 peak = NaN; valley = NaN; t_peak = NaN; t_valley = NaN; turned = 0; v_rmin = NaN; t_rmin = NaN

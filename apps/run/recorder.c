@@ -7,6 +7,7 @@
 #include <time.h>
 
 #include "cli/cli.h"
+#include "record/limits_event.h"
 #include "run/telemetry.h"
 #include "text/text.h"
 
@@ -77,10 +78,16 @@ static int share(ethd__recorder *r, const ethd_loop_row *row, ethd__post taken[E
   return count;
 }
 
+/* On a virtual clock a recording is the same on every day. */
+static void tell_date(ethd__recorder *r, const ethd_loop_row *row) {
+  if (r->recording && ethd__clock_event(r->recording, row->trace.sense.time_ns)) r->failed = true;
+}
+
 /* Writes a row and what happened before it, in the order of a recording. Returns true if a fault that stops the ring
    begins. */
 static bool record(ethd__recorder *r, const ethd_loop_row *row, const ethd__post *posts, int count) {
   tell_lost(r, row->lost);
+  if (!r->rows && r->dated) tell_date(r, row);
   if (row->marks & ETHD_ROW_STARTED && r->rows) event(r, "start", "enabled");
   tell_posts(r, posts, count);
   if (row->marks & ETHD_ROW_CLEARED) event(r, "clear", "");
@@ -131,6 +138,7 @@ ethd_status ethd__recorder_start(ethd__recorder *r) {
   pthread_attr_init(&attr);
   pthread_attr_setstacksize(&attr, STACK);
   pthread_sigmask(SIG_SETMASK, &all, &before);
+  r->dated = true;
   r->threaded = pthread_create(&r->thread, &attr, run, r) == 0;
   pthread_sigmask(SIG_SETMASK, &before, NULL);
   pthread_attr_destroy(&attr);

@@ -37,6 +37,7 @@ typedef struct ethd__recorder {
   atomic_int stop,
       stopping; /* stopping: a controlled stop has begun, and the fault by which it works is not reported */
   bool threaded;
+  bool dated;             /* the first row's date is recorded */
   atomic_int sees_finger; /* 1: a reading of the finger has come */
 
   ethd__snapshot snapshot;

@@ -5,8 +5,8 @@
 #include "text/csv.h"
 
 #define HEADER                                                                                          \
-  "t_s,since_wall_s,ring_m,finger_m,hand_m,offset_wall_m,v_ring_mps,v_finger_mps,state,beta,fe_n,fd_n," \
-  "pad_force_n,tau1_nm,tau2_nm"
+  "t_s,since_wall_s,ring_m,finger_m,hand_m,offset_wall_m,v_ring_mps,v_finger_mps,state,beta,fe_N,fd_N," \
+  "pad_force_N,tau1_Nm,tau2_Nm"
 
 static double along(ethd_vec n, const double v[2]) { return n.x * v[0] + n.y * v[1]; }
 

@@ -71,22 +71,26 @@ static ethd_status check_finite(const ethd__trace_in *in, size_t row, const int 
   return ETHD_OK;
 }
 
-/* Checks that a row has a whole frame or none; single rays may be NaN. */
+/* Checks that a row has a frame or none; single rays may be missing. */
 static ethd_status check_frame(const ethd__trace_in *in, size_t row, char message[ETHD_MESSAGE_MAX]) {
   bool none = ethd_csv_empty(&in->csv, row, in->t_ring);
   if (!none && !(fabs(cell(in, row, in->t_ring)) <= SECONDS_MAX))
     return refuse(in, row, in->t_ring, "not a time within 9e9 s", message);
   for (int i = 0; i < ETHD_RAYS; i++)
-    if (ethd_csv_empty(&in->csv, row, in->rays[i]) != none)
-      return refuse(in, row, in->rays[i], none ? "a distance without t_ring_s" : "empty; NaN marks a missing ray",
-                    message);
+    if (none && !ethd_csv_empty(&in->csv, row, in->rays[i]))
+      return refuse(in, row, in->rays[i], "a distance without t_ring_s", message);
   return ETHD_OK;
+}
+
+/* Returns true if the device measured joint speeds in this row: both, or one of them and the other is missing. */
+static bool has_speeds(const ethd__trace_in *in, size_t row) {
+  return in->dq[0] >= 0 && !(ethd_csv_empty(&in->csv, row, in->dq[0]) && ethd_csv_empty(&in->csv, row, in->dq[1]));
 }
 
 static ethd_status check_row(const ethd__trace_in *in, size_t row, char message[ETHD_MESSAGE_MAX]) {
   ethd_status status = check_finite(in, row, &in->t, 1, message);
   if (status == ETHD_OK) status = check_finite(in, row, in->q, 2, message);
-  if (status == ETHD_OK && in->dq[0] >= 0) status = check_finite(in, row, in->dq, 2, message);
+  if (status == ETHD_OK && has_speeds(in, row)) status = check_finite(in, row, in->dq, 2, message);
   if (status == ETHD_OK)
     status = in->ring ? check_frame(in, row, message) : check_finite(in, row, in->finger, 4, message);
   if (status != ETHD_OK) return status;
@@ -132,7 +136,7 @@ ethd_sense ethd__trace_in_sense(const ethd__trace_in *in, size_t row) {
   memset(&s, 0, sizeof s);
   s.time_ns = to_ns(cell(in, row, in->t));
   for (int i = 0; i < 2; i++) s.q[i] = cell(in, row, in->q[i]);
-  if (in->dq[0] >= 0) {
+  if (has_speeds(in, row)) {
     s.have |= ETHD_HAVE_DQ;
     for (int i = 0; i < 2; i++) s.dq[i] = cell(in, row, in->dq[i]);
   }

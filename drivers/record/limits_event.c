@@ -1,10 +1,15 @@
 #include "record/limits_event.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
+
+#include "clock.h"
 
 #define TEXT_MAX 256
+#define SECOND ((int64_t)1000000000) /* ns */
 
 static ethd_status tell(ethd_recording *recording, const ethd_limit *row, const double *values) {
   char text[TEXT_MAX];
@@ -35,4 +40,17 @@ ethd_status ethd__dynamics_event(ethd_recording *recording, const ethd_setup *wa
     status = ethd_recording_event(recording, "set", text);
   }
   return status;
+}
+
+ethd_status ethd__clock_event(ethd_recording *recording, int64_t instant) {
+  char text[TEXT_MAX], date[32];
+  struct timespec now;
+  struct tm parts;
+  clock_gettime(CLOCK_REALTIME, &now);
+  int64_t age = ethd__clock_now() - instant, date_ns = now.tv_sec * SECOND + now.tv_nsec;
+  if (age > 0 && age < SECOND) date_ns -= age; /* else the device has a clock of its own */
+  const time_t seconds = (time_t)(date_ns / SECOND);
+  if (!gmtime_r(&seconds, &parts) || !strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%S", &parts)) return ETHD_OK;
+  snprintf(text, sizeof text, "%" PRId64 " %s.%09" PRId64 "Z", instant, date, date_ns % SECOND);
+  return ethd_recording_event(recording, "clock", text);
 }

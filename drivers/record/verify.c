@@ -113,11 +113,11 @@ static ethd_status apply(verification *r, const ethd__record_event *e, int *done
     *done |= TAUGHT;
   } else if (strcmp(e->kind, "thinned") == 0 || strcmp(e->kind, "lost") == 0) {
     r->missing = e;
-  } else if (strcmp(e->kind, "fault") != 0 && strcmp(e->kind, "end") != 0) {
+  } else if (strcmp(e->kind, "fault") != 0 && strcmp(e->kind, "clock") != 0 && strcmp(e->kind, "end") != 0) {
     status =
         ethd__say(what, ETHD_E_UNKNOWN,
                   "an unknown kind of event; setup, start, transition, contact, tracking, set, clear, thinned, lost, "
-                  "heat, learned, fault, end are allowed");
+                  "heat, learned, fault, clock, end are allowed");
   }
   if (!status) return ETHD_OK;
   return ethd__say(r->message, status, "%s:%zu: %s: %s", r->events_path, e->line, e->kind, what);

@@ -9,7 +9,6 @@
 #include "ethd/record.h"
 #include "ethd/sim.h"
 #include "inject/script.h"
-#include "record/mcap.h"
 #include "servo/map.h"
 #include "svg/svg.h"
 #include "tape/tape.h"
@@ -124,14 +123,6 @@ static ethd_status load_tape(void) {
   return status;
 }
 
-static ethd_status write_log(void) {
-  ethd_mcap *mcap;
-  ethd_status status = ethd_mcap_create(in_folder("x.mcap"), &mcap, message);
-  if (status) return status;
-  ethd_mcap_message(mcap, 0, 1, "{}", 2);
-  return ethd_mcap_close(mcap, message);
-}
-
 /* Several drivers as one device, with faults by a script. */
 static ethd_status open_device(void) {
   const ethd_setup setup = ethd_setup_default();
@@ -150,7 +141,7 @@ static const struct {
 } jobs[] = {
     {"configuration", load_config}, {"table", read_table}, {"table out", write_table}, {"drawing", read_drawing},
     {"script", read_script},        {"map", read_map},     {"plant", read_plant},      {"recording", record},
-    {"verification", verify},       {"tape", load_tape},   {"log", write_log},         {"device", open_device}};
+    {"verification", verify},       {"tape", load_tape},   {"device", open_device}};
 
 static void begin(void) {
   strcpy(folder, "/tmp/ethd-memory-XXXXXX");

@@ -26,9 +26,10 @@ from ethd.controller import SENSE, TRACE, UNITS, Controller, Event, Step
 from ethd.errors import Busy, Error
 from ethd.law import Law, Param, State, contact_law, laws, tracking_law, transition_law
 from ethd.reading import read
-from ethd.recording import RecordedEvent, Recording
+from ethd.recording import Recording
 from ethd.scene import Nearest, Scene
 from ethd.study import Study
+from ethd_programs.recording import RecordedEvent
 
 __version__: str = _native.ffi.string(_native.lib.ETHD_VERSION).decode()
 __all__ = [

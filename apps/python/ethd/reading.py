@@ -2,7 +2,7 @@
 import os
 from typing import Any, Union
 
-from ethd.files import there
+from ethd_programs.files import there
 from ethd.recording import Recording
 from ethd.study import Study
 

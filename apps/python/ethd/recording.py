@@ -1,8 +1,7 @@
 """Recordings: folders that the programs write."""
 import configparser
-import math
 import os
-from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,23 +9,17 @@ from numpy.typing import NDArray
 from ethd._native import ffi, lib
 from ethd.controller import TRACE, Controller, Step
 from ethd.errors import Error, check, text
-from ethd.files import has_hole, opened, there
 from ethd.law import Law
-from ethd.table import lines, table, words
+from ethd_programs.files import there
+from ethd_programs.npy import mapped
+from ethd_programs.recording import RecordedEvent, events
+from ethd_programs.table import table, words
 
 
 PLUGINS = "ethd.read(folder, plugins=True)"
 #: What an event does to the controller of a replay.
 KINDS = {"setup": "fresh", "transition": "changed", "contact": "changed", "tracking": "changed", "set": "changed", "clear": "clear", "heat": "hot", "learned": "taught",
-         "thinned": "", "lost": "", "fault": "", "end": ""}
-
-
-class RecordedEvent(NamedTuple):
-    """A line of events.csv; the event comes before row `row` of tick."""
-
-    row: int
-    kind: str  #: setup, start, transition, contact, tracking, set, clear, heat, learned, fault, lost, thinned, end: include/ethd/record.h
-    detail: str
+         "thinned": "", "lost": "", "fault": "", "clock": "", "end": ""}
 
 
 def ini(path: str) -> configparser.ConfigParser:
@@ -37,25 +30,6 @@ def ini(path: str) -> configparser.ConfigParser:
             found.read_string(words(path), path)
         except configparser.Error as e:
             raise ValueError(f"{path}: {' '.join(str(e).split())}") from None
-    return found
-
-
-def _npy(path: str) -> NDArray[Any]:
-    """An array that is mapped from its file, so that it takes no memory before it is looked at. Objects are refused."""
-    header: Any = np.lib.format
-    with opened(*os.path.split(path)) as file:
-        try:
-            version = header.read_magic(file)
-            if version != (1, 0):
-                raise ValueError(f"found the version {version}, (1, 0) is allowed")
-            shape, fortran, dtype = header.read_array_header_1_0(file)
-            if dtype.hasobject:
-                raise ValueError("objects aren't numbers")
-            if has_hole(file, file.tell() + math.prod(shape) * dtype.itemsize):
-                raise ValueError("it has a hole: some of its rows were never written")
-            found: NDArray[Any] = np.memmap(file, dtype, "r", file.tell(), shape, "F" if fortran else "C")
-        except (ValueError, EOFError, OverflowError) as e:
-            raise ValueError(f"{path}: no array, or cut short: {e}") from None
     return found
 
 
@@ -73,33 +47,17 @@ class Recording:
     def __init__(self, folder: str, plugins: bool = False):
         self.folder = folder
         self._plugins = plugins
-        self.tick = _npy(os.path.join(folder, "tick.npy"))
+        self.tick = mapped(os.path.join(folder, "tick.npy"))
         self.truth = self._array("truth.npy")
         self.taps = self._table("taps.csv", "tap.csv")
-        self.events = self._events()
+        self.events = events(folder)
         self.config = ini(os.path.join(folder, "config.ini"))
 
     def _array(self, name: str) -> Optional[NDArray[Any]]:
-        return _npy(os.path.join(self.folder, name)) if there(self.folder, name) else None
+        return mapped(os.path.join(self.folder, name)) if there(self.folder, name) else None
 
     def _table(self, *names: str) -> Optional[NDArray[Any]]:
         return next((table(os.path.join(self.folder, name)) for name in names if there(self.folder, name)), None)
-
-    def _events(self) -> List[RecordedEvent]:
-        path = os.path.join(self.folder, "events.csv")
-        if not there(self.folder, "events.csv"):
-            return []
-        rows = lines(path)
-        if next(rows, (1, []))[1] != list(RecordedEvent._fields):
-            raise ValueError(f"{path}:1: the first line must be row,kind,detail")
-        found: List[RecordedEvent] = []
-        for number, cells in rows:
-            if len(cells) != 3 or not cells[0].isdecimal():
-                raise ValueError(f"{path}:{number}: row,kind,detail are allowed, the row a number")
-            found.append(RecordedEvent(int(cells[0]), cells[1], cells[2]))
-            if len(found) > 1 and found[-1].row < found[-2].row:
-                raise ValueError(f"{path}:{number}: row: found {cells[0]}, {found[-2].row} or more is allowed")
-        return found
 
     def _open(self) -> Controller:
         if self.tick.dtype != TRACE:

@@ -7,9 +7,9 @@ from typing import Any, Iterator, Optional, Tuple, Union
 import numpy as np
 from numpy.typing import NDArray
 
-from ethd.files import there
 from ethd.recording import Recording, ini
-from ethd.table import table
+from ethd_programs.files import there
+from ethd_programs.table import table
 
 
 def _name(tap: np.void) -> str:

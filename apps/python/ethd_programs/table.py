@@ -8,10 +8,10 @@ from typing import Any, Iterator, List, Tuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ethd.files import has_hole, opened
+from ethd_programs.files import has_hole, opened
 
 #: A unit in a column's name says that it is one of real numbers, even where it has none, or has whole ones by chance.
-_UNITS = re.compile(r".*_(m|mm|s|ms|mps|rad|radps|n|nm|hz)")
+_UNITS = re.compile(r".*_(m|mm|s|ms|mps|rad|radps|n|N|nm|Nm|hz)")
 #: Columns of whole numbers, which are numbers even where none is given.
 _COUNTS = {"analysed", "attempt", "block", "point", "seed", "tap", "taps", "valid"}
 _INTEGER = re.compile(r"-?[0-9]+")
@@ -35,8 +35,8 @@ def _column(name: str, cells: List[str]) -> NDArray[Any]:
 MOST = 1 << 32  #: bytes of a file of text
 
 
-def words(path: str) -> str:
-    """A file's text."""
+def words(path: str, errors: str = "strict") -> str:
+    """A file's text; `errors` as in bytes.decode."""
     with opened(*os.path.split(path)) as file:
         size = os.fstat(file.fileno()).st_size
         if size > MOST:
@@ -45,15 +45,15 @@ def words(path: str) -> str:
             raise ValueError(f"{path}: has a hole, so it isn't text")
         data = file.read()
     try:
-        return data.decode("utf-8")
+        return data.decode("utf-8", errors)
     except UnicodeDecodeError as e:
         line = data.count(b"\n", 0, e.start) + 1
         raise ValueError(f"{path}:{line}: found the byte {data[e.start]:#x}, UTF-8 is allowed") from None
 
 
-def lines(path: str) -> Iterator[Tuple[int, List[str]]]:
+def lines(path: str, errors: str = "strict") -> Iterator[Tuple[int, List[str]]]:
     """The cells of each line of a table, with the line's number in the file."""
-    reader = csv.reader(io.StringIO(words(path), newline=""), strict=True)
+    reader = csv.reader(io.StringIO(words(path, errors), newline=""), strict=True)
     try:
         for row in reader:
             yield reader.line_num, row

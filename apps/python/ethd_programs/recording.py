@@ -1,0 +1,178 @@
+"""Recordings, the folders that the programs write (include/ethd/record.h), read in pieces."""
+import datetime
+import os
+from types import TracebackType
+from typing import Any, Iterator, List, NamedTuple, Optional, Tuple, Type
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ethd_programs.cli import Refusal
+from ethd_programs.files import opened, reason, there
+from ethd_programs.npy import header
+from ethd_programs.table import lines
+
+FILES = ("tick.npy", "config.ini", "scene.scene", "events.csv", "truth.npy", "snapshot.npy", "taps.csv", "tap.csv")
+PIECE = 4096  #: rows that are read at once
+
+
+class Field(NamedTuple):
+    """A field of a tick (include/ethd/sense.h)."""
+
+    name: str
+    unit: str
+    columns: Tuple[str, ...]  #: what a table calls its numbers
+    given_by: Tuple[int, ...] = (0,)  #: for each column, or for all: bits of `have`, any of which says that the device gave it; 0: it is always there
+
+
+def _pair(name: str, unit: str) -> Tuple[str, ...]:
+    return tuple(name.format(axis) + unit for axis in "xy")
+
+
+_BODY = ("x_m", "y_m", "angle_rad", "vx_mps", "vy_mps", "spin_radps")
+
+#: What ethd-replay reads and writes has the same names.
+FIELDS = (
+    Field("time_ns", "ns", ("t_s",)),
+    Field("have", "1", ("have",)),
+    Field("missed", "1", ("missed",)),
+    Field("step_ns", "ns", ("step_ns",)),
+    Field("faults", "1", ("faults",)),
+    Field("grave", "1", ("grave",)),
+    Field("q", "rad", ("q1_rad", "q2_rad")),
+    Field("dq", "rad/s", ("dq1_radps", "dq2_radps"), (1,)),
+    Field("finger", "m", _pair("finger_{}", "_m"), (2 | 4,)),
+    Field("finger_v", "m/s", _pair("finger_v{}", "_mps"), (2,)),
+    Field("sample_ns", "ns", ("t_ring_s",), (8 | 16,)),
+    Field("centre", "m", _pair("centre_{}", "_m"), (8,)),
+    Field("ring", "m", _pair("ring_{}", "_m"), (32,)),
+    Field("rays", "m", tuple(f"r{i}_m" for i in range(16)), (16,)),
+    Field("bodies", "m, rad, s", tuple(f"body{i + 1}_{part}" for i in range(4) for part in _BODY), tuple(64 << i for i in range(4) for _ in _BODY)),
+    Field("finger_noise", "m", ("finger_noise_m",)),
+    Field("tick", "1", ("tick",)),
+    Field("fault", "1", ("fault",)),
+    Field("guard", "1", ("guard",)),
+    Field("swap", "1", ("swap",)),
+    Field("queried", "1", ("queried",)),
+    Field("contacts", "1", ("contacts",)),
+    Field("overflow", "1", ("overflow",)),
+    Field("object", "1", ("object",)),
+    Field("body", "1", ("body",)),
+    Field("state", "1", ("state",)),
+    Field("x", "m", ("x_m", "y_m")),
+    Field("v", "m/s", ("vx_mps", "vy_mps")),
+    Field("xf", "m", ("xf_m", "yf_m")),
+    Field("vf", "m/s", ("vxf_mps", "vyf_mps")),
+    Field("rf", "m", ("rf_m",)),
+    Field("qd", "rad/s", ("qd1_radps", "qd2_radps")),
+    Field("eps_q", "rad", ("epsq1_rad", "epsq2_rad")),
+    Field("eps_q_dot", "rad/s", ("depsq1_radps", "depsq2_radps")),
+    Field("beta", "1", ("beta",)),
+    Field("fe", "N", ("fex_N", "fey_N")),
+    Field("fd", "N", ("fdx_N", "fdy_N")),
+    Field("eps", "m", ("eps_m",)),
+    Field("d_re", "m", ("d_re_m",)),
+    Field("d_fe", "m", ("d_fe_m",)),
+    Field("v_n", "m/s", ("v_n_mps",)),
+    Field("tau_raw", "Nm", ("tau1_raw_Nm", "tau2_raw_Nm")),
+    Field("tau", "Nm", ("tau1_Nm", "tau2_Nm")),
+    Field("learnt", "1", tuple(f"learnt{i}" for i in range(1, 5))),
+)
+INTEGERS = {"time_ns", "have", "missed", "step_ns", "faults", "grave", "sample_ns", "tick", "fault", "guard", "swap", "queried",
+            "contacts", "overflow", "object", "body", "state"}  # fmt: skip
+
+
+def _dtype() -> "np.dtype[Any]":
+    def entry(f: Field) -> Tuple[Any, ...]:
+        kind = "=i8" if f.name in INTEGERS else "=f8"
+        return (f.name, kind, (len(f.columns),)) if len(f.columns) > 1 else (f.name, kind)
+
+    return np.dtype([entry(f) for f in FIELDS])
+
+
+TICK = _dtype()
+
+
+class RecordedEvent(NamedTuple):
+    """A line of events.csv; the event comes before row `row` of tick."""
+
+    row: int
+    kind: str  #: setup, start, transition, contact, tracking, set, clear, heat, learned, fault, lost, thinned, clock, end: include/ethd/record.h
+    detail: str
+
+
+def events(folder: str) -> List[RecordedEvent]:
+    """The events of a recording; none if it has no such file."""
+    path = os.path.join(folder, "events.csv")
+    if not there(folder, "events.csv"):
+        return []
+    rows = lines(path, "replace")
+    if next(rows, (1, []))[1] != list(RecordedEvent._fields):
+        raise ValueError(f"{path}:1: the first line must be row,kind,detail")
+    found: List[RecordedEvent] = []
+    for number, cells in rows:
+        if len(cells) != 3 or not cells[0].isdecimal():
+            raise ValueError(f"{path}:{number}: row,kind,detail are allowed, the row a number")
+        found.append(RecordedEvent(int(cells[0]), cells[1], cells[2]))
+        if len(found) > 1 and found[-1].row < found[-2].row:
+            raise ValueError(f"{path}:{number}: row: found {cells[0]}, {found[-2].row} or more is allowed")
+    return found
+
+
+class Ticks:
+    """The ticks of a recording, read in pieces, so that the longest one takes little memory.
+
+        with Ticks("recording") as ticks: for piece in ticks.pieces(): ..."""
+
+    def __init__(self, folder: str):
+        self.path = os.path.join(folder, "tick.npy")
+        try:
+            self._file = opened(folder, "tick.npy")
+        except (FileNotFoundError, NotADirectoryError) as e:
+            raise Refusal(f"{folder}: no recording, whose tick.npy is needed: {reason(e)}; ethd-run --record makes one") from None
+        try:
+            found = header(self._file)
+        except (ValueError, EOFError, OverflowError) as e:
+            raise Refusal(f"{self.path}: no array, or cut short: {e}") from None
+        if found.dtype != TICK or len(found.shape) != 1:
+            raise Refusal(f"{self.path}: other columns than those of this version of libethd")
+        there_are = (os.fstat(self._file.fileno()).st_size - found.data) // TICK.itemsize
+        self.count = found.shape[0]
+        if there_are < self.count:
+            raise Refusal(f"{self.path}: cut short: {there_are} rows of {self.count} are there")
+
+    def pieces(self) -> Iterator[NDArray[Any]]:
+        left = self.count
+        while left:
+            piece = np.fromfile(self._file, TICK, min(left, PIECE))
+            if not len(piece):
+                raise Refusal(f"{self.path}: cut short while it was read")
+            left -= len(piece)
+            yield piece
+
+    def __enter__(self) -> "Ticks":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._file.close()
+
+
+def ahead(piece: NDArray[Any], last: Optional[int], shift: int) -> Tuple[NDArray[Any], int]:
+    """What to add to a piece's instants, ns, and to the next ones, so that they never go back: where the recording's time
+    starts again, as it does with each tap, it goes on a millisecond later. `last` is the instant before the piece as
+    recorded, None at the beginning, and `shift` what was added to it."""
+    time = piece["time_ns"]
+    steps = np.diff(time, prepend=time[0] if last is None else last)
+    shifts = shift + np.cumsum(np.where(steps < 0, 1_000_000 - steps, 0))
+    return shifts, int(shifts[-1])
+
+
+def utc_offset(found: List[RecordedEvent]) -> Optional[int]:
+    """What added to the recording's instants gives UTC, ns since 1970, by the event `clock`; None: nobody knows."""
+    for e in found:
+        instant, _, date = e.detail.partition(" ")
+        whole, _, fraction = date.rstrip("Z").partition(".")
+        if e.kind == "clock" and instant.isdecimal() and fraction.isdecimal():
+            seconds = datetime.datetime.strptime(whole + "+0000", "%Y-%m-%dT%H:%M:%S%z").timestamp()
+            return int(seconds) * 1_000_000_000 + int(fraction.ljust(9, "0")[:9]) - int(instant)
+    return None
