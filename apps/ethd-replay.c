@@ -189,7 +189,7 @@ static int replay(void) {
 static int verify(void) {
   char message[ETHD_MESSAGE_MAX];
   ethd__need_recording(arg.verify);
-  ethd_status status = ethd_recording_verify(arg.verify, arg.plugins, message);
+  ethd_status status = ethd_recording_verify(arg.verify, arg.plugins, &ethd__stop, message);
   if (status >= 0) {
     printf("%s\n", message);
     return ETHD_EXIT_DONE;

@@ -136,7 +136,7 @@ static int session(day *d, double seconds) {
   snprintf(path, sizeof path, "%s/%" PRIu64, d->folder, d->session);
   snprintf(old, sizeof old, "%s/%" PRIu64, d->folder, d->session - 2);
   if (run(d, seconds, path)) return 1;
-  if (d->session % VERIFIED == 0 && ethd_recording_verify(path, false, message)) return fail(d, "not equal:");
+  if (d->session % VERIFIED == 0 && ethd_recording_verify(path, false, NULL, message)) return fail(d, "not equal:");
   if (d->session > 1) forget(old);
   return 0;
 }

@@ -365,6 +365,29 @@ assert np.isnan(odd_points.distance[[0, 2]]).all() and np.isnan(odd_points.norma
 assert odd_points.object.tolist() == [-1, 0, -1] and odd_points.distance[1] == -0.05
 refuses("(..., 2) is allowed", lambda: ethd.Scene(text).nearest(np.zeros((3, 3))), ValueError)
 
+# ---- Ctrl-C ends a verification, which would take a minute and more by a law that is slow only now ----
+with open(tree + "/apps/examples/law.c") as file:
+    law = "#include <stdlib.h>\n#include <unistd.h>\n" + file.read().replace("(void)state;", '(void)state; if (getenv("SLOW")) usleep(500000);')
+write("slow.c", law)
+subprocess.run([os.environ.get("CC", "cc"), "-shared", "-fPIC", "-I" + tree + "/include", folder + "/slow.c", "-o", folder + "/slow.so"], check=True)
+write("wall.scene", "halfplane -1 0 -0.238\n")
+write("slow.ini", "[scene]\nfile = wall.scene\n[plugins]\nfile = slow.so\n[transition]\nlaw = mine\n")
+subprocess.run([build + "/bin/ethd-run", "--virtual", "--duration", "3", "--config", folder + "/slow.ini", "--record", folder + "/slow"],
+               check=True, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+assert (ethd.read(folder + "/slow").tick["object"] >= 0).sum() > 150
+interrupted = """
+import os, signal, sys, threading
+import ethd
+threading.Timer(2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+try:
+    print("not stopped:", ethd.read(sys.argv[1], plugins=True).verify())
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+stopped = subprocess.run([sys.executable, "-c", interrupted, folder + "/slow"], env={**os.environ, "SLOW": "1"}, check=True,
+                         stdout=subprocess.PIPE, text=True, timeout=60)
+assert stopped.stdout == "interrupted\n", stopped.stdout
+
 # ---- a host with a decimal comma, as Qt makes one of matplotlib's: the same controller, the same recordings ----
 write("comma.ini", "[tracking]\nk_t = 40.9\nb_t = 1.9\n[contact]\nk_e = 1234.5\n")
 hosted = """

@@ -216,8 +216,14 @@ static ethd_status unreplayable(const verification *r, size_t row) {
                    r->rows.count, r->missing->detail, ETHD_RECORDING_EVENTS, r->missing->line);
 }
 
-static ethd_status run(verification *r) {
+static ethd_status stopped(const verification *r, size_t row) {
+  return ethd__say(r->message, ETHD_E_UNFINISHED, "%s: stopped: %zu of %zu ticks are equal to the bit", r->folder, row,
+                   r->rows.count);
+}
+
+static ethd_status run(verification *r, const volatile int *stop) {
   for (size_t row = 0; row < r->rows.count; row++) {
+    if (stop && *stop) return stopped(r, row);
     ethd_trace trace;
     ethd_command command;
     const void *recorded;
@@ -235,7 +241,8 @@ static ethd_status run(verification *r) {
   return judge_end(r);
 }
 
-ethd_status ethd_recording_verify(const char *folder, bool plugins, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd_recording_verify(const char *folder, bool plugins, const volatile int *stop,
+                                  char message[ETHD_MESSAGE_MAX]) {
   verification r = {.folder = folder, .plugins = plugins, .message = message};
   uint64_t before = ethd__denormals_flush();
   ethd__received received;
@@ -243,7 +250,7 @@ ethd_status ethd_recording_verify(const char *folder, bool plugins, char message
   ethd_status status = open_config(&r);
   if (!status) status = open_rows(&r);
   if (!status) status = open_events(&r);
-  if (!status) status = run(&r);
+  if (!status) status = run(&r, stop);
   ethd_control_destroy(r.control);
   ethd_config_free(r.config);
   ethd__record_events_free(&r.events);

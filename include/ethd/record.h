@@ -93,9 +93,10 @@ ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_close(ethd_recording *record
 /* Replays a recording through the library and compares every field bit for bit. ETHD_OK: equal, and
    message says how many ticks. ETHD_E_DIFFERS: message names the first tick and field that differ. ETHD_E_UNFINISHED:
    the ticks that are there are equal, but the recording wasn't closed, so later ones may be lost; or ticks are missing
-   in between, and what follows can't be replayed. Any other negative status: message says why it can't be read. Without
+   in between, and what follows can't be replayed; or *stop isn't 0 any more, as another thread or a handler of signals has
+   made it (NULL: nobody does). Any other negative status: message says why it can't be read. Without
    `plugins` a recording that needs one is refused, since a plugin is a program that the folder brings along. */
-ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_verify(const char *folder, bool plugins,
+ETHD_API ETHD_MUST_CHECK ethd_status ethd_recording_verify(const char *folder, bool plugins, const volatile int *stop,
                                                            char message[ETHD_MESSAGE_MAX]);
 
 ETHD_END_DECLS

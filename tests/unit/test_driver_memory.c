@@ -114,7 +114,7 @@ static ethd_status record(void) {
   return status;
 }
 
-static ethd_status verify(void) { return ethd_recording_verify(in_folder("made"), false, message); }
+static ethd_status verify(void) { return ethd_recording_verify(in_folder("made"), false, NULL, message); }
 
 static ethd_status load_tape(void) {
   ethd__tape tape;

@@ -141,9 +141,11 @@ static void record(void) {
 START_TEST(test_replays_to_the_bit) {
   char says[256];
   record();
-  ck_assert_msg(ethd_recording_verify(recording_folder, true, message) == ETHD_OK, "%s", message);
+  ck_assert_msg(ethd_recording_verify(recording_folder, true, NULL, message) == ETHD_OK, "%s", message);
   snprintf(says, sizeof says, "%s: 700 ticks, equal to the bit", recording_folder);
   ck_assert_str_eq(message, says);
+  ck_assert_int_eq(ethd_recording_verify(recording_folder, true, &(int){1}, message), ETHD_E_UNFINISHED);
+  ck_assert_msg(strstr(message, "rec: stopped: 0 of 700 ticks are equal to the bit") != NULL, "%s", message);
 }
 END_TEST
 
@@ -199,12 +201,12 @@ START_TEST(test_says_what_differs) {
   record();
   for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
     flip(changes[i].row, changes[i].offset, 1);
-    ck_assert_int_eq(ethd_recording_verify(recording_folder, true, message), ETHD_E_DIFFERS);
+    ck_assert_int_eq(ethd_recording_verify(recording_folder, true, NULL, message), ETHD_E_DIFFERS);
     snprintf(says, sizeof says, "%s: %s", recording_folder, changes[i].says);
     ck_assert_msg(strncmp(message, says, strlen(says)) == 0, "%s", message);
     flip(changes[i].row, changes[i].offset, 1);
   }
-  ck_assert_int_eq(ethd_recording_verify(recording_folder, true, message), ETHD_OK);
+  ck_assert_int_eq(ethd_recording_verify(recording_folder, true, NULL, message), ETHD_OK);
 }
 END_TEST
 
@@ -225,7 +227,7 @@ START_TEST(test_events_matter) {
     ck_assert_ptr_nonnull(at);
     snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, changes[i][1], at + strlen(changes[i][0]));
     write_text(recording_folder, "events.csv", changed);
-    ck_assert_msg(ethd_recording_verify(recording_folder, true, message) < 0, "%s passed", changes[i][1]);
+    ck_assert_msg(ethd_recording_verify(recording_folder, true, NULL, message) < 0, "%s passed", changes[i][1]);
   }
   free(text);
 }
@@ -248,7 +250,7 @@ START_TEST(test_the_end_counts) {
   for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
     snprintf(changed, sizeof changed, "%.*s%s", (int)(end - text), text, ends[i].end);
     write_text(recording_folder, "events.csv", changed);
-    ck_assert_int_eq(ethd_recording_verify(recording_folder, true, message), ends[i].status);
+    ck_assert_int_eq(ethd_recording_verify(recording_folder, true, NULL, message), ends[i].status);
     ck_assert_msg(strstr(message, ends[i].says) != NULL, "%s", message);
   }
   free(text);
@@ -269,7 +271,7 @@ START_TEST(test_heat) {
     ethd_control_set_heat(p.control, heat);
     run(&p, 100);
     ck_assert_int_eq(ethd_recording_close(p.recording, message), ETHD_OK);
-    ck_assert_int_eq(ethd_recording_verify(recording_folder, true, message), told ? ETHD_OK : ETHD_E_DIFFERS);
+    ck_assert_int_eq(ethd_recording_verify(recording_folder, true, NULL, message), told ? ETHD_OK : ETHD_E_DIFFERS);
   }
   ethd_control_destroy(p.control);
 }
@@ -293,7 +295,7 @@ START_TEST(test_bad_events) {
   record();
   for (size_t i = 0; i < sizeof bads / sizeof *bads; i++) {
     write_text(recording_folder, "events.csv", bads[i][0]);
-    ck_assert_int_lt(ethd_recording_verify(recording_folder, true, message), 0);
+    ck_assert_int_lt(ethd_recording_verify(recording_folder, true, NULL, message), 0);
     snprintf(says, sizeof says, "%s/%s", recording_folder, bads[i][1]);
     ck_assert_msg(strncmp(message, says, strlen(says)) == 0, "%s\nsays %s", bads[i][0], message);
   }
@@ -303,13 +305,13 @@ END_TEST
 START_TEST(test_missing_files) {
   static const char *const names[] = {"config.ini", "tick.npy", "events.csv", "scene.scene"};
   char from[128], to[128];
-  ck_assert_int_lt(ethd_recording_verify(recording_folder, true, message), 0);
+  ck_assert_int_lt(ethd_recording_verify(recording_folder, true, NULL, message), 0);
   record();
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
     snprintf(from, sizeof from, "%s/%s", recording_folder, names[i]);
     snprintf(to, sizeof to, "%s/hidden", folder);
     ck_assert_int_eq(rename(from, to), 0);
-    ck_assert_int_lt(ethd_recording_verify(recording_folder, true, message), 0);
+    ck_assert_int_lt(ethd_recording_verify(recording_folder, true, NULL, message), 0);
     ck_assert_msg(strstr(message, names[i]) && strstr(message, "No such file"), "%s", message);
     ck_assert_int_eq(rename(to, from), 0);
   }

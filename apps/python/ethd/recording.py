@@ -1,6 +1,7 @@
 """Recordings: folders that the programs write."""
 import configparser
 import os
+import threading
 from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
@@ -103,9 +104,22 @@ class Recording:
         return rows
 
     def verify(self) -> str:
-        """Replays the folder within the library and returns its sentence. Error: the first tick and field that differ."""
-        message = text()
-        check(lib.ethd_recording_verify(os.fsencode(self.folder), self._plugins, message), message, plugins=PLUGINS)
+        """Replays the folder within the library and returns its sentence. Error: the first tick and field that differ. Ctrl-C
+        ends it."""
+        message, stop, found = text(), ffi.new("int *"), []
+
+        def run() -> None:
+            found.append(lib.ethd_recording_verify(os.fsencode(self.folder), self._plugins, stop, message))
+
+        work = threading.Thread(target=run)  # this one waits, and takes signals meanwhile
+        work.start()
+        try:
+            while work.is_alive():
+                work.join(0.1)
+        finally:
+            stop[0] = 1
+            work.join()
+        check(found[0], message, plugins=PLUGINS)
         return str(ffi.string(message).decode())
 
 
