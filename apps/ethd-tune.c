@@ -1,11 +1,8 @@
 /* Finds gains for a plant and its hands, and writes the user's configuration with them. */
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "cli/cli.h"
 #include "ethd/ethd.h"
@@ -36,28 +33,6 @@ static void set_ranges(const ethd__tune_rig *rig, ethd__tune_space *space) {
   char message[ETHD_MESSAGE_MAX];
   ethd__score_widen(rig, space);
   for (size_t i = 0; i < arg.range_count; i++) check(ethd__space_range(space, arg.ranges[i], message), message);
-}
-
-/* Returns all that the scores depend on as text. */
-static char *describe(const ethd__loaded *loaded, const ethd__tune_space *space) {
-  char *out = NULL, *plant = NULL, message[ETHD_MESSAGE_MAX];
-  size_t length, plant_length;
-  FILE *f = open_memstream(&out, &length);
-  if (!f) ethd__fail_memory();
-  check(ethd_text_read(loaded->plant_path, (size_t)1 << 20, &plant, &plant_length, message), message);
-  fprintf(f, "ethd-tune %s\nlaw %s\nseed %llu\npoints %lld\ntaps %lld\nshards %u\nmargin %.17g %.17g%s\nhands",
-          ETHD_VERSION, space->law, (unsigned long long)arg.seed, (long long)arg.points, (long long)arg.taps,
-          arg.shards, arg.margin.gain, arg.margin.delay, arg.passive ? " passive" : "");
-  for (size_t i = 0; i < arg.hands.count; i++) fprintf(f, " %.17g", arg.hands.shares[i]);
-  fprintf(f, "\nprefer %d\n", arg.prefer);
-  for (size_t k = 0; k < space->count; k++)
-    fprintf(f, "%s %.17g %.17g %.17g\n", space->keys[k].name, space->keys[k].own, space->keys[k].low,
-            space->keys[k].high);
-  fprintf(f, "---- plant\n%s---- configuration\n%s---- scene\n%s", plant,
-          space->config->text ? space->config->text : "", space->config->scene_text ? space->config->scene_text : "");
-  free(plant);
-  if (fclose(f)) ethd__fail_memory();
-  return out;
 }
 
 /* ---- results ---- */
@@ -135,54 +110,18 @@ static int show(const ethd__tune_search *search, const ethd__loaded *loaded) {
 
 /* ---- the whole ---- */
 
-/* Starts a process for each shard but the first, which this process does. */
-static void spawn(pid_t *children) {
-  arg.shards = (uint32_t)arg.jobs;
-  for (uint32_t i = 2; i <= arg.shards; i++) {
-    pid_t child = fork();
-    if (child < 0) ethd__fail(ETHD_EXIT_FAILED, "--jobs: no more processes can be had");
-    if (child > 0) {
-      children[i] = child;
-      continue;
-    }
-    arg.shard = i;
-    return;
-  }
-}
-
-static int collect(const pid_t *children, int code) {
-  for (uint32_t i = 2; i <= arg.shards; i++) {
-    int status = 0;
-    if (!children[i]) continue;
-    bool told = false;
-    do
-      if (ethd__stop && !told) told = kill(children[i], SIGTERM) == 0;
-    while (waitpid(children[i], &status, 0) < 0 && errno == EINTR);
-    if (status && !code) code = ETHD_EXIT_FAILED;
-  }
-  return code;
-}
-
-static int search_it(ethd__tune_search *search, const char *what, const ethd__loaded *loaded) {
+static int search_it(ethd__tune_search *search, const ethd__loaded *loaded) {
   char message[ETHD_MESSAGE_MAX];
-  ethd__tune_journal journal;
   bool over;
-  check(ethd__tune_journal_open(arg.work, what, arg.shard, arg.shards, &journal, message), message);
-  search->journal = &journal;
   check(ethd__search_run(search, &over, message), message);
-  int code = over ? ETHD_EXIT_DONE : ETHD_EXIT_FAILED;
-  if (over && arg.shard == 1) code = show(search, loaded);
-  if (!over)
-    fprintf(stderr, "%s: stopped%s\n", program_invocation_short_name,
-            arg.work ? "; the same command goes on" : "; with --work the next run would go on");
+  if (!over) fprintf(stderr, "%s: stopped; nothing is written\n", program_invocation_short_name);
+  int code = over ? show(search, loaded) : ETHD_EXIT_FAILED;
   ethd__search_free(search);
-  ethd__tune_journal_close(&journal);
   return code;
 }
 
 int main(int argc, char **argv) {
   char message[ETHD_MESSAGE_MAX];
-  pid_t children[ETHD_TUNE_JOBS_MAX + 1] = {0};
   ethd__loaded loaded;
   ethd__tune_space space;
   ethd__speed speeds[ETHD_TUNE_SPEEDS];
@@ -212,11 +151,8 @@ int main(int argc, char **argv) {
   if (arg.plot) check(ethd__picture_ready(message), message);
   ethd__tune_search search = {.rig = &rig, .points = (uint32_t)arg.points, .taps = (uint32_t)arg.taps};
   for (int g = 0; g < ETHD_TUNE_GOALS; g++) search.weights[g] = g == arg.prefer ? 2 : 1;
-  if (arg.jobs > 1) spawn(children);
-  char *what = describe(&loaded, &space);
   ethd__catch_interrupt();
-  int code = collect(children, search_it(&search, what, &loaded));
-  free(what);
+  int code = search_it(&search, &loaded);
   ethd__loaded_free(&loaded);
   return ethd__end(code);
 }

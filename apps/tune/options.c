@@ -1,6 +1,5 @@
 #include "tune/options.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "cli/cli.h"
@@ -24,30 +23,11 @@ static const char doc[] =
               "stops small swings only. Where the configuration's own gains don't keep them (plant p's wall and brake "
               "chatter on the motors' side), lower dampings are tried, and the table says what that costs. The choice "
               "is confirmed in time, too, with gains and delay at their margin.\n\n"
-              "--work DIR keeps what was tapped: the same command goes on after an interruption, and shards in other "
-              "processes share the work (--shard 1/4, 2/4, ... with one DIR; shard 1 writes the results). --jobs N "
-              "does that on this machine.\n\n"
               "Example:\n"
               "  ethd-tune --plant n --out tuned.ini --plot tuned.png\n"
-              "  ethd-tune --plant mine.plant --config mine.ini --out best.ini\n"
-              "  ethd-tune --plant n --work search --jobs 2 --out tuned.ini";
+              "  ethd-tune --plant mine.plant --config mine.ini --out best.ini";
 
-enum {
-  GAIN_MARGIN = 256,
-  DELAY_MARGIN,
-  HANDS,
-  PASSIVE,
-  PREFER,
-  RANGE,
-  POINTS_OPTION,
-  TAPS_OPTION,
-  WORK,
-  SHARD,
-  JOBS,
-  CSV,
-  PLOT,
-  SEED
-};
+enum { GAIN_MARGIN = 256, DELAY_MARGIN, HANDS, PASSIVE, PREFER, RANGE, POINTS_OPTION, TAPS_OPTION, CSV, PLOT, SEED };
 
 static const struct argp_option options[] = {
     {"plant", 'p', "n|b|p|FILE", 0, "the device and its hand: n, b, p or a plant file", 0},
@@ -64,23 +44,13 @@ static const struct argp_option options[] = {
     {"points", POINTS_OPTION, "N", 0, "points of the first round (384)", 0},
     {"taps", TAPS_OPTION, "N", 0, "taps of the last round at each speed; earlier rounds have fewer (160)", 0},
     {"seed", SEED, "S", 0, "seed of the taps (1)", 0},
-    {"work", WORK, "DIR", 0, "keep what was tapped, to go on after an interruption and to share the work", 0},
-    {"shard", SHARD, "I/N", 0, "do share I of N, with --work", 0},
-    {"jobs", JOBS, "N", 0, "run N processes on this machine, with --work", 0},
     {"csv", CSV, "OUT.csv", 0, "write every point", 0},
     {"plot", PLOT, "OUT.png", 0, "draw the points, with --csv (gnuplot)", 0},
     {0},
 };
 
-static ethd__tune_options arg = {.hands = {{0, 0.5, 1, 2}, 4},
-                                 .margin = {1.5, 0.4e-3},
-                                 .prefer = -1,
-                                 .points = POINTS,
-                                 .taps = TAPS,
-                                 .jobs = 1,
-                                 .seed = 1,
-                                 .shard = 1,
-                                 .shards = 1};
+static ethd__tune_options arg = {
+    .hands = {{0, 0.5, 1, 2}, 4}, .margin = {1.5, 0.4e-3}, .prefer = -1, .points = POINTS, .taps = TAPS, .seed = 1};
 
 static void add_hand(const char *word, void *user) {
   ethd__tune_hands *hands = user;
@@ -97,19 +67,8 @@ static int goal_of(const char *text) {
              ethd__quote(text, strlen(text), quote));
 }
 
-static void set_shard(const char *text) {
-  char quote[ETHD_QUOTE_MAX];
-  int end = 0;
-  if (sscanf(text, "%3u/%3u%n", &arg.shard, &arg.shards, &end) != 2 || text[end] || arg.shard < 1 ||
-      arg.shard > arg.shards || arg.shards > ETHD_TUNE_JOBS_MAX)
-    ethd__fail(ETHD_EXIT_INPUT, "--shard: found %s, I/N with 1 <= I <= N <= %d is allowed",
-               ethd__quote(text, strlen(text), quote), ETHD_TUNE_JOBS_MAX);
-}
-
 static void check_usage(struct argp_state *state) {
   if (!arg.plant && !arg.config) argp_error(state, "--plant is needed: a device's plant file, or n, b, p");
-  if ((arg.shards > 1 || arg.jobs > 1) && !arg.work) argp_error(state, "--shard and --jobs need --work");
-  if (arg.shards > 1 && arg.jobs > 1) argp_error(state, "--shard and --jobs exclude each other");
   if (arg.plot && !arg.csv) argp_error(state, "--plot needs --csv: it draws that file");
 }
 
@@ -135,9 +94,6 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case POINTS_OPTION: arg.points = ethd__option_integer("--points", text, 8, 100000); return 0;
   case TAPS_OPTION: arg.taps = ethd__option_integer("--taps", text, 20, 10000); return 0;
   case SEED: arg.seed = ethd__option_seed("--seed", text); return 0;
-  case WORK: arg.work = text; return 0;
-  case SHARD: set_shard(text); return 0;
-  case JOBS: arg.jobs = ethd__option_integer("--jobs", text, 1, ETHD_TUNE_JOBS_MAX); return 0;
   case CSV: arg.csv = text; return 0;
   case PLOT: arg.plot = ethd__option_picture("--plot", text); return 0;
   case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;

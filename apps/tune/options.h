@@ -4,19 +4,16 @@
 
 #include "tune/score.h"
 
-#define ETHD_TUNE_JOBS_MAX 64
-
 typedef struct ethd__tune_options {
-  const char *plant, *config, *law, *out, *work, *csv, *plot;
+  const char *plant, *config, *law, *out, *csv, *plot;
   const char *ranges[ETHD_TUNE_KEYS_MAX];
   size_t range_count;
   ethd__tune_hands hands;
   ethd__bounds_margin margin;
   bool passive;
   int prefer; /* the goal that counts twice; -1: none */
-  int64_t points, taps, jobs;
+  int64_t points, taps;
   uint64_t seed;
-  uint32_t shard, shards; /* counted from 1 */
 } ethd__tune_options;
 
 /* Reads the command line. Prints --help, or one line and exits 2. */

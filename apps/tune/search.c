@@ -1,8 +1,8 @@
 #include "tune/search.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "cli/cli.h"
 #include "text/error_text.h"
@@ -150,44 +150,16 @@ static ethd_status fill_next(ethd__tune_search *s, int round, char *message) {
 
 /* ---- scores ---- */
 
-static size_t collect(ethd__tune_search *s, uint32_t round) {
-  ethd__tune_round *r = &s->rounds[round];
-  size_t missing = 0;
-  for (uint32_t i = 0; i < r->count; i++) {
-    const ethd__tune_score *score = ethd__tune_journal_find(s->journal, round, i);
-    r->entries[i].scored = score != NULL;
-    if (score) r->entries[i].score = *score;
-    missing += !score;
-  }
-  return missing;
-}
-
-static ethd_status score_own(ethd__tune_search *s, uint32_t round, char *message) {
+static ethd_status score_all(ethd__tune_search *s, int round, char *message) {
   ethd__tune_round *r = &s->rounds[round];
   char what[48];
-  snprintf(what, sizeof what, "round %u of %d", round + 1, ETHD_TUNE_ROUNDS);
+  snprintf(what, sizeof what, "round %d of %d", round + 1, ETHD_TUNE_ROUNDS);
   ethd_status status = ETHD_OK;
-  for (uint32_t i = 0; !status && i < r->count && !ethd__stop; i++) {
+  for (size_t i = 0; !status && i < r->count && !ethd__stop; i++) {
     ethd__progress(i, r->count, what);
-    ethd__tune_score score;
-    if (!ethd__tune_journal_mine(s->journal, i) || ethd__tune_journal_find(s->journal, round, i)) continue;
-    status = ethd__score_run(s->rig, &r->entries[i].point, r->taps, &score, message);
-    if (!status) status = ethd__tune_journal_add(s->journal, round, i, &score, message);
+    status = ethd__score_run(s->rig, &r->entries[i].point, r->taps, &r->entries[i].score, message);
   }
   ethd__progress(r->count, r->count, what);
-  return status;
-}
-
-/* Reads the other shards' scores until none is missing. */
-static ethd_status wait_for_others(ethd__tune_search *s, uint32_t round, char *message) {
-  const struct timespec pause = {0, 200000000};
-  size_t missing;
-  ethd_status status = ETHD_OK;
-  while (!status && (missing = collect(s, round)) && !ethd__stop) {
-    ethd__progress(s->rounds[round].count - missing, s->rounds[round].count, "waiting for the other shards");
-    nanosleep(&pause, NULL);
-    status = ethd__tune_journal_read(s->journal, message);
-  }
   return status;
 }
 
@@ -205,17 +177,16 @@ static bool dominates(const ethd__tune_entry *a, const ethd__tune_entry *b) {
 static void rank(const ethd__tune_search *s, ethd__tune_round *r) {
   for (size_t i = 0; i < r->count; i++) {
     ethd__tune_entry *e = &r->entries[i];
-    e->total = e->scored ? 0 : (double)INFINITY;
-    if (!e->scored) continue;
+    e->total = 0;
     ethd__score_goals(&e->score, &r->entries[0].score, e->goals);
     for (int g = 0; g < ETHD_TUNE_GOALS; g++)
       e->total += s->weights[g] * e->goals[g] + DEARER * fmax(0, e->goals[g] - log(WORSE));
   }
   for (size_t i = 0; i < r->count; i++) {
     ethd__tune_entry *e = &r->entries[i];
-    e->front = e->scored && e->keeps && isfinite(e->total);
+    e->front = e->keeps && isfinite(e->total);
     for (size_t k = 0; k < r->count && e->front; k++)
-      if (r->entries[k].scored && r->entries[k].keeps && dominates(&r->entries[k], e)) e->front = false;
+      if (r->entries[k].keeps && dominates(&r->entries[k], e)) e->front = false;
   }
 }
 
@@ -227,8 +198,7 @@ ethd_status ethd__search_run(ethd__tune_search *s, bool *over, char message[ETHD
   for (int round = 0; !status && round < ETHD_TUNE_ROUNDS; round++) {
     s->rounds[round].taps = s->taps / plan[round].part > TAPS_LEAST ? s->taps / plan[round].part : TAPS_LEAST;
     status = round ? fill_next(s, round, message) : fill_first(s, &s->rounds[0], message);
-    if (!status) status = score_own(s, (uint32_t)round, message);
-    if (!status) status = wait_for_others(s, (uint32_t)round, message);
+    if (!status) status = score_all(s, round, message);
     if (status || ethd__stop) return status;
     rank(s, &s->rounds[round]);
     if (!isfinite(s->rounds[round].entries[0].total))

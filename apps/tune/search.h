@@ -12,7 +12,6 @@
 #ifndef ETHD__APPS_TUNE_SEARCH_H
 #define ETHD__APPS_TUNE_SEARCH_H
 
-#include "tune/journal.h"
 #include "tune/score.h"
 
 #define ETHD_TUNE_ROUNDS 4
@@ -22,7 +21,7 @@ typedef struct ethd__tune_entry {
   ethd__tune_score score;
   double goals[ETHD_TUNE_GOALS]; /* relative to the round's entry 0 */
   double total;                  /* the goals' weighted sum; a goal over a tenth worse than entry 0's counts more */
-  bool keeps, scored;
+  bool keeps;
   int settled; /* at its margins in time: 1 yes, 0 no, -1 it wasn't tried */
   bool front;  /* no other entry of its round is at least as good by every goal and better by one */
 } ethd__tune_entry;
@@ -35,9 +34,8 @@ typedef struct ethd__tune_round {
 
 typedef struct ethd__tune_search {
   const ethd__tune_rig *rig;
-  ethd__tune_journal *journal; /* keeps the scores, also those of earlier runs */
-  uint32_t points;             /* how many points of round 1 keep the margin, beside the configuration's own */
-  uint32_t taps;               /* taps of the last round at each speed; earlier rounds have at least 8 */
+  uint32_t points; /* how many points of round 1 keep the margin, beside the configuration's own */
+  uint32_t taps;   /* taps of the last round at each speed; earlier rounds have at least 8 */
   double weights[ETHD_TUNE_GOALS];
   ethd__tune_round rounds[ETHD_TUNE_ROUNDS];
   uint64_t drawn, kept;       /* points that were drawn for round 1, and those of them that kept the margin */

@@ -116,9 +116,8 @@ static void put_entry(ethd_csv_out *csv, const ethd__tune_space *space, const et
   ethd_csv_integer(csv, e->front);
   ethd_csv_integer(csv, chosen);
   for (size_t k = 0; k < space->count; k++) ethd_csv_number(csv, e->point.value[k]);
-  for (size_t i = 0; i < ETHD_TUNE_FIGURE_COUNT; i++) ethd_csv_number(csv, e->scored ? numbers[i] : (double)NAN);
-  for (int g = 0; g < ETHD_TUNE_GOALS; g++)
-    ethd_csv_number(csv, e->scored && isfinite(e->goals[g]) ? e->goals[g] : (double)NAN);
+  for (size_t i = 0; i < ETHD_TUNE_FIGURE_COUNT; i++) ethd_csv_number(csv, numbers[i]);
+  for (int g = 0; g < ETHD_TUNE_GOALS; g++) ethd_csv_number(csv, isfinite(e->goals[g]) ? e->goals[g] : (double)NAN);
   ethd_csv_number(csv, e->settled < 0 ? (double)NAN : e->settled);
   ethd_csv_row(csv);
 }
