@@ -238,8 +238,8 @@ WHOLE := -Wl,--whole-archive $(B)/libethd-drivers.a $(B)/libethd.a -Wl,--no-whol
 
 # Only the study has a window, and the tests of what is drawn into it.
 $(B)/bin/ethd-study $(B)/tests/test_shapes $(B)/tests/test_pages: LIBS += -lSDL2_ttf -lSDL2
-# Only identification, and the benchmark of it, fits.
-$(B)/bin/ethd-identify $(B)/bin/ethd-bench: LIBS += -lcminpack
+# Only identification fits.
+$(B)/bin/ethd-identify: LIBS += -lcminpack
 $(C_PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES)
 	$(call say,LINK,$@)
 	@mkdir -p $(@D)
@@ -361,7 +361,6 @@ stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/te
 	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
 	ETHD_PROMISES=1e8 $(B)/tests/test_promises
 	BUILD='$(abspath $(B))' PYTHON="$$(sh .ci/setup python)" PLANTS=20 sh tests/identify.sh
-	BUILD='$(abspath $(B))' PYTHON="$$(sh .ci/setup python)" PLANTS=12 sh tests/identify_touches.sh
 	for k in 1 2 3 4 5; do ETHD_STRESS=1 $(B)/tests/test_servo_guardian || exit 1; done
 	ETHD_SERVO_CYCLES=50000 $(B)/tests/test_servo_link
 	ETHD_FUZZ_RUNS=10000000 $(B)/tests/test_fuzz_map

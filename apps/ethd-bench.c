@@ -9,9 +9,8 @@
 #include "text/text.h"
 
 static const ethd__bench *const benches[] = {
-    &ethd__bench_integrators, &ethd__bench_hours,      &ethd__bench_fits,    &ethd__bench_filters,
-    &ethd__bench_velocity,    &ethd__bench_kinematics, &ethd__bench_scene,   &ethd__bench_tick,
-    &ethd__bench_sensors,     &ethd__bench_identify,   &ethd__bench_readers,
+    &ethd__bench_integrators, &ethd__bench_hours, &ethd__bench_fits, &ethd__bench_filters, &ethd__bench_velocity,
+    &ethd__bench_kinematics,  &ethd__bench_scene, &ethd__bench_tick, &ethd__bench_sensors, &ethd__bench_readers,
 };
 #define BENCH_COUNT (sizeof benches / sizeof *benches)
 

@@ -20,8 +20,7 @@ static const char doc[] =
     "DIR is a recording of ethd-run, ethd-tap or ethd-study, or a folder of them; recordings of one device are fitted "
     "together. The simulator's prediction over short windows is fitted to the encoders by least squares. An "
     "information criterion decides whether the transmission gives way, and the whiteness of the residual shows whether "
-    "the device does something else as well. Touches of a finger show its mass, the hand's spring and damper, and the "
-    "pad, although the hand's own path isn't known; recordings of taps alone keep the arm of --base. A number that the "
+    "the device does something else as well. Ticks with a finger near are left out. A number that the "
     "recordings can't tell keeps its value of --base, and the page says so.\n"
     "--judge doesn't fit: it says how well a plant predicts recordings that it wasn't fitted to.\n"
     "--excite makes a recording: it moves the device of a configuration by itself, without a finger, with torques that "
@@ -30,8 +29,7 @@ static const char doc[] =
     "Examples:\n"
     "  ethd-identify --excite --config device.ini --record session\n"
     "  ethd-identify session --out mine.plant --plot fit.png\n"
-    "  ethd-identify taps --base mine.plant --out whole.plant\n"
-    "  ethd-identify --judge mine.plant taps";
+    "  ethd-identify --judge mine.plant another";
 
 enum { BASE = 256, CSV, PLOT, JUDGE, EXCITE, RECORD, FORCE, SHARE, TORQUE, HALF, AT, VIRTUAL, SECONDS, PLUGINS };
 
@@ -202,17 +200,6 @@ static void fit_arm(ethd__finding *f) {
   ethd__whiteness_find(&f->problem, f->sensing.count, f->residual, &f->whiteness);
 }
 
-static void keep_arm(ethd__finding *f) {
-  if (arg.csv || arg.plot)
-    ethd__fail(ETHD_EXIT_INPUT, "%s: a picture needs motion without the finger, as ethd-identify --excite records it",
-               arg.folders[0]);
-  f->fit.plant = f->plant;
-  for (int u = 0; u < ETHD__UNKNOWNS; u++) {
-    f->fit.unseen[u] = true;
-    f->fit.low[u] = f->fit.high[u] = (double)NAN;
-  }
-}
-
 static int identify(const ethd__evidence *e) {
   static ethd__finding f;
   char message[ETHD_MESSAGE_MAX], *csv = check_outputs(e);
@@ -220,12 +207,10 @@ static int identify(const ethd__evidence *e) {
   f.base = arg.base;
   f.evidence = e;
   if (ethd__sensing_find(e, &f.sensing, message)) ethd__fail(ETHD_EXIT_INPUT, "%s", message);
-  bool arm = ethd__evidence_enough(e, f.sensing.count, false);
+  ethd__evidence_enough(e, f.sensing.count);
   if (arg.plot && ethd__picture_ready(message) < 0) ethd__fail(ETHD_EXIT_FAILED, "%s", message);
-  (arm ? fit_arm : keep_arm)(&f);
-  ethd__touch_fit_run(e, &f.sensing, &f.fit, &f.touches);
+  fit_arm(&f);
   if (ethd__stop) ethd__fail(ETHD_EXIT_FAILED, "stopped; nothing is written");
-  if (!isnan(f.touches.noise.value)) f.sensing.noise = f.touches.noise;
   ethd__finding_plant(&f);
   ethd__page_print(stdout, &f);
   write_files(&f, csv);
@@ -240,7 +225,7 @@ static int judge(const ethd__evidence *e) {
   ethd__sensing sensing;
   ethd_plant plant = load_plant(arg.judge);
   if (ethd__sensing_find(e, &sensing, message)) ethd__fail(ETHD_EXIT_INPUT, "%s", message);
-  (void)ethd__evidence_enough(e, sensing.count, true);
+  ethd__evidence_enough(e, sensing.count);
   ethd__judgement j = ethd__prediction_judge(e, &plant);
   double floor = sensing.count / sqrt(12);
   printf("%zu window%s; errors of the prediction, rad rms; a count is %.4g rad, rounding to it leaves %.4g\n",

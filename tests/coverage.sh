@@ -55,7 +55,7 @@ for what in "${@:-lib}"; do
     drivers)
       run "$tree" "$flags" 'test_% driver_files bad_devices check_device conform conform_bus bounds run replay npy outputs
         strangers record_metrics excite servo_rows hints scene calibrate convert bad_input passive replay_device tap study
-        camera hostile_plugins servo_drive examples servo_bus whole_device first_touch identify_touches'
+        camera hostile_plugins servo_drive examples servo_bus whole_device first_touch'
       python3 tests/coverage.py --gcov "$(gcov_of)" --least 0.9 "$tree" drivers || failed=1
       ;;
     mcdc)

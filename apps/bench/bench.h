@@ -18,8 +18,7 @@ typedef struct ethd__bench {
 extern const ethd__bench ethd__bench_fits, ethd__bench_filters, ethd__bench_velocity, ethd__bench_kinematics,
     ethd__bench_scene, ethd__bench_tick;
 
-extern const ethd__bench ethd__bench_integrators, ethd__bench_hours, ethd__bench_sensors, ethd__bench_identify,
-    ethd__bench_readers;
+extern const ethd__bench ethd__bench_integrators, ethd__bench_hours, ethd__bench_sensors, ethd__bench_readers;
 
 /* Returns CLOCK_MONOTONIC's time, ns. */
 int64_t ethd__bench_now(void);

@@ -1,23 +1,21 @@
-/* The arm alone as the subject of a fit: in windows of its stretches, the encoders are predicted from the commands. */
+/* The arm in a window: its encoders are predicted from the commands. And how recordings are cut into windows. */
 #include <math.h>
-#include <string.h>
+#include <stdlib.h>
 
+#include "cli/cli.h"
 #include "identify/shooting.h"
 
 #define STEP_ANGLE 1e-6 /* rad, and */
 #define STEP_SPEED 1e-4 /* rad/s, by which a state is changed to find its slopes by differences */
 #define STIFF 1e4       /* 1/s: friction that stops a joint faster would take the simulator thousands of steps a tick */
 
-static int states(const ethd_plant *plant) { return isfinite(plant->stiffness) ? ETHD__STATE_MOST : ETHD__STATE_RIGID; }
-
-static double step(int i) { return i == 2 || i == 3 || i >= 6 ? STEP_SPEED : STEP_ANGLE; }
-
-static double extent(int i) {
-  (void)i;
-  return (double)INFINITY;
+int ethd__arm_states(const ethd_plant *plant) {
+  return isfinite(plant->stiffness) ? ETHD__STATE_MOST : ETHD__STATE_RIGID;
 }
 
-static void try_all(const ethd__shooting *p, const ethd__fit_window *w, const ethd__trial *trials, int count) {
+double ethd__arm_step(int i) { return i == 2 || i == 3 || i >= 6 ? STEP_SPEED : STEP_ANGLE; }
+
+void ethd__arm_try_all(const ethd__shooting *p, const ethd__fit_window *w, const ethd__trial *trials, int count) {
   ethd__predictor predictors[ETHD__ARMS];
   ethd__forecast f[ETHD__ARMS] = {{0}};
   for (int i = 0; i < count; i++) {
@@ -40,7 +38,7 @@ static bool is_seen(const ethd__evidence *e, const ethd_plant *x, double least) 
   return x->stiffness > 1 && w * e->period < M_PI && x->damping > -0.1 && x->damping < 4 * reduced * w;
 }
 
-static bool is_possible(const ethd__shooting *p, const ethd_plant *x) {
+bool ethd__arm_is_possible(const ethd__shooting *p, const ethd_plant *x) {
   const ethd__evidence *e = p->evidence;
   bool compliant = isfinite(x->stiffness);
   double least = fmin(x->mass[0], x->mass[1]), own = compliant ? x->motor_mass : 0, l = e->arm.link1 * e->arm.link2;
@@ -53,8 +51,6 @@ static bool is_possible(const ethd__shooting *p, const ethd_plant *x) {
   if (!(fabs(x->coupling) < 0.95 * l * sqrt((x->mass[0] - own) * (x->mass[1] - own)))) return false;
   return !compliant || (own > 0.02 * least && own < 0.98 * least && is_seen(e, x, least));
 }
-
-static const ethd__fit_subject arm_alone = {states, step, extent, ETHD__ARMS, try_all, is_possible};
 
 /* ---- windows ---- */
 
@@ -76,19 +72,48 @@ static void guess(const ethd__evidence *e, ethd__fit_window *w) {
   }
 }
 
+static ethd__fit_window *add(ethd__shooting *p) {
+  if (!(p->window_count & (p->window_count + 1))) {
+    p->windows = realloc(p->windows, (2 * p->window_count + 2) * sizeof *p->windows);
+    if (!p->windows) ethd__fail_memory();
+  }
+  return &p->windows[p->window_count++];
+}
+
+static void cut(ethd__shooting *p, const ethd__passage *s, size_t first, size_t count) {
+  ethd__fit_window *w = add(p);
+  *w = (ethd__fit_window){.window = {first, s->first, s->first + s->count, (int)count, s->recording},
+                          .rows = 2 * (int)count};
+  guess(p->evidence, w);
+}
+
+static void make_basis(ethd__shooting *p) {
+  for (size_t i = 0; i < p->window_count; i++) {
+    p->windows[i].row = p->rows;
+    p->windows[i].rank = 0;
+    p->rows += (size_t)p->windows[i].rows;
+  }
+  p->basis = calloc(p->rows ? ETHD__STATES * p->rows : 1, sizeof *p->basis);
+  if (!p->basis) ethd__fail_memory();
+}
+
 void ethd__shooting_open(const ethd__evidence *e, size_t most, double tolerance, ethd__shooting *p) {
   size_t whole = (size_t)fmin(fmax(rint(ETHD__WINDOW / e->period), 16), ETHD__WINDOW_MOST);
   size_t least = (size_t)fmax(rint(ETHD__WINDOW_LEAST / e->period), 16);
-  ethd__shooting_begin(e, &arm_alone, tolerance, p);
+  *p = (ethd__shooting){.evidence = e, .tolerance = tolerance};
   for (size_t i = 0; i < e->stretch_count; i++) {
     const ethd__passage *s = &e->stretches[i];
-    for (size_t at = ETHD__BACK; at + least <= s->count; at += whole) {
-      size_t count = s->count - at < whole ? s->count - at : whole;
-      guess(e,
-            ethd__shooting_add(p, &(ethd__shot){s->first + at, s->first, s->first + s->count, (int)count, s->recording},
-                               2 * (int)count));
-    }
+    for (size_t at = ETHD__BACK; at + least <= s->count; at += whole)
+      cut(p, s, s->first + at, s->count - at < whole ? s->count - at : whole);
   }
   if (p->window_count > most) thin(p, most);
-  ethd__shooting_ready(p);
+  make_basis(p);
+}
+
+void ethd__shooting_part(const ethd__shooting *whole, uint32_t recording, ethd__shooting *p) {
+  *p = (ethd__shooting){
+      .evidence = whole->evidence, .plant = whole->plant, .chosen = whole->chosen, .tolerance = whole->tolerance};
+  for (size_t i = 0; i < whole->window_count; i++)
+    if (whole->windows[i].window.recording == recording) *add(p) = whole->windows[i];
+  make_basis(p);
 }

@@ -4,7 +4,6 @@
 
 #include "cli/cli.h"
 #include "identify/shooting.h"
-#include "identify/touch_fit.h"
 #include "text/text.h"
 
 #define LEAST_WINDOWS 20
@@ -40,17 +39,15 @@ static _Noreturn void refuse_few(const ethd__evidence *e, size_t windows) {
         name, e->uneven, e->count, e->period);
   ethd__fail(
       ETHD_EXIT_INPUT,
-      "%s: %zu window%s of %g s without a stop, a fault or the finger near, at least %d are needed, and %zu touch%s, "
-      "at least %d are needed; record more, as ethd-identify --excite and ethd-tap do",
-      name, windows, ethd__s(windows), ETHD__WINDOW, LEAST_WINDOWS, e->onset_count, e->onset_count == 1 ? "" : "es",
-      ETHD__TOUCHES_LEAST);
+      "%s: %zu window%s of %g s without a stop, a fault or the finger near, at least %d are needed; record more, as "
+      "ethd-identify --excite does",
+      name, windows, ethd__s(windows), ETHD__WINDOW, LEAST_WINDOWS);
 }
 
-bool ethd__evidence_enough(const ethd__evidence *e, double count, bool needs_motion) {
+void ethd__evidence_enough(const ethd__evidence *e, double count) {
   const char *name = e->folders[0];
   double way;
   size_t windows = windows_of(e, &way);
-  if (windows < LEAST_WINDOWS && e->onset_count >= ETHD__TOUCHES_LEAST && !needs_motion) return false;
   if (windows < LEAST_WINDOWS) refuse_few(e, windows);
   if (way < LEAST_WAY * (count > 0 ? count : 1e-3))
     ethd__fail(ETHD_EXIT_INPUT,
@@ -61,5 +58,4 @@ bool ethd__evidence_enough(const ethd__evidence *e, double count, bool needs_mot
                "%s: the guard cut the torque in %.0f %% of the ticks, so that it hardly changes: record with gains or "
                "excitation below limits.torque, as ethd-identify --excite --share 0.5 does",
                name, 100 * e->clipped);
-  return true;
 }

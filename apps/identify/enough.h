@@ -5,8 +5,7 @@
 #include "identify/evidence.h"
 
 /* Ends the program where they don't, with a line that says what is missing and how to record it. count: rad of an
-   encoder's count, 0 if it is ideal. Returns false if there is too little motion, but touches enough to fit those
-   alone, which doesn't do where motion is needed. */
-bool ethd__evidence_enough(const ethd__evidence *evidence, double count, bool needs_motion);
+   encoder's count, 0 if it is ideal. */
+void ethd__evidence_enough(const ethd__evidence *evidence, double count);
 
 #endif

@@ -121,15 +121,9 @@ void ethd__fit_errors(ethd__shooting *p, double errors[ETHD__UNKNOWNS], double s
 static bool weigh(const ethd__shooting *p, uint32_t recording, double mass[2], double error[2]) {
   double errors[N];
   ethd__shooting own;
-  ethd__shooting_begin(p->evidence, p->subject, p->tolerance, &own);
-  for (size_t i = 0; i < p->window_count; i++)
-    if (p->windows[i].window.recording == recording)
-      *ethd__shooting_add(&own, &p->windows[i].window, p->windows[i].rows) = p->windows[i];
+  ethd__shooting_part(p, recording, &own);
   bool enough = own.window_count >= FEW;
   if (enough) {
-    ethd__shooting_ready(&own);
-    own.plant = p->plant;
-    own.chosen = p->chosen;
     (void)ethd__fit_squares(&own, ALONE, "each recording");
     ethd__fit_errors(&own, errors, NULL);
   }

@@ -152,6 +152,5 @@ void ethd__evidence_free(ethd__evidence *e) {
   free(e->torque);
   free(e->stretches);
   free(e->deliveries);
-  free(e->onsets);
   *e = (ethd__evidence){0};
 }

@@ -23,23 +23,8 @@ typedef struct ethd__delivery {
   int64_t sample_ns, after_ns, at_ns;
   uint32_t recording;
   ethd_vec finger; /* m in R_0; NaN if the reading has rays instead */
-  ethd_vec centre; /* m, finger's centre minus ring's; NaN if the reading has something else */
-  size_t tick;     /* at which it was delivered */
-  double age;      /* s, of the reading at that tick */
   bool near;       /* the finger is near the ring */
 } ethd__delivery;
-
-#define ETHD__TOUCH_BEFORE 0.045 /* s that a touch lasts before its first reading that is near, */
-#define ETHD__TOUCH_AFTER 0.075  /* and s from that reading on */
-
-/* The ticks of a touch that nothing interrupts: the finger comes from afar, and stays at the ring for a while. */
-typedef struct ethd__onset {
-  size_t first, begin; /* its first tick; commands are known from `begin` on */
-  int count;
-  uint32_t recording;
-  size_t delivery; /* the first reading that was delivered in it or later */
-  double gap;      /* m: ring radius minus finger radius, as configured */
-} ethd__onset;
 
 typedef struct ethd__evidence {
   bool plugins; /* the recordings' configurations may load the plugins that they name */
@@ -52,8 +37,6 @@ typedef struct ethd__evidence {
   size_t stretch_count;
   ethd__delivery *deliveries;
   size_t delivery_count;
-  ethd__onset *onsets;
-  size_t onset_count;
   char **folders; /* one for each recording */
   uint32_t recording_count;
   size_t touched, unarmed; /* ticks left out: the finger was near; the torque isn't known */
@@ -70,21 +53,11 @@ ETHD_MUST_CHECK ethd_status ethd__evidence_add(ethd__evidence *evidence, const c
 /* An evidence that is all zero may be freed too. */
 void ethd__evidence_free(ethd__evidence *evidence);
 
-/* Finds the touches among a recording's rows, which begin at tick `base`. good[i] says that torque and encoders of row
-   i are known. [in evidence_touches.c] */
-void ethd__evidence_touches(ethd__evidence *evidence, const ethd_setup *setup, const ethd_trace *rows, size_t count,
-                            const unsigned char *good, size_t base);
-
 /* Returns to - from in s, whatever the stamps are that somebody's recording has: a difference wraps round like a
    clock. */
 static inline double ethd__evidence_apart(int64_t from_ns, int64_t to_ns) {
   return 1e-9 * (double)(int64_t)((uint64_t)to_ns - (uint64_t)from_ns);
 }
-
-/* Whether the row's reading has the finger near the ring; whether row[0] comes one period after row[-1].
-   [in evidence_rows.c] */
-bool ethd__evidence_is_near(const ethd_setup *setup, const ethd_trace *row);
-bool ethd__evidence_follows(const ethd__evidence *evidence, const ethd_trace *row);
 
 /* Cuts a recording's rows into passages. [in evidence_rows.c] */
 void ethd__evidence_rows(ethd__evidence *evidence, const ethd_setup *setup, const ethd_trace *rows, size_t count,

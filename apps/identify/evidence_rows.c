@@ -20,7 +20,7 @@ static void *longer(void *old, size_t count, size_t size) {
 
 /* ---- the finger ---- */
 
-bool ethd__evidence_is_near(const ethd_setup *setup, const ethd_trace *row) {
+static bool is_near(const ethd_setup *setup, const ethd_trace *row) {
   const ethd_sense *s = &row->sense;
   double gap = setup->ring_radius - setup->finger_radius;
   if (s->have & ETHD_HAVE_CENTRE) {
@@ -38,7 +38,7 @@ static void keep_apart(const ethd_setup *setup, const ethd_trace *rows, size_t c
   int64_t pad = (int64_t)ceil(APART / setup->period);
   for (size_t i = 0; i < count; i++) {
     const ethd_sense *s = &rows[i].sense;
-    if (!ethd__evidence_is_near(setup, &rows[i])) continue;
+    if (!is_near(setup, &rows[i])) continue;
     int64_t age = (int64_t)(ethd__evidence_apart(s->sample_ns, s->time_ns) / setup->period);
     int64_t at = (int64_t)i - (age > 0 && age < 1000 ? age : 0);
     for (int64_t k = at - pad; k <= at + pad; k++)
@@ -54,13 +54,9 @@ static void add_delivery(ethd__evidence *e, const ethd_setup *setup, const ethd_
                       s->time_ns,
                       e->recording_count - 1,
                       {(double)NAN, (double)NAN},
-                      {(double)NAN, (double)NAN},
-                      e->count + i,
-                      ethd__evidence_apart(s->sample_ns, s->time_ns),
-                      ethd__evidence_is_near(setup, &rows[i])};
+                      is_near(setup, &rows[i])};
   bool world = s->have & ETHD_HAVE_WORLD;
   if (s->have & ETHD_HAVE_CENTRE && world) d.finger = (ethd_vec){s->centre[0], s->centre[1]};
-  if (s->have & ETHD_HAVE_CENTRE && !world) d.centre = (ethd_vec){s->centre[0], s->centre[1]};
   if (s->have & ETHD_HAVE_CENTRE && !world && s->have & ETHD_HAVE_RING)
     d.finger = (ethd_vec){s->ring[0] + s->centre[0], s->ring[1] + s->centre[1]};
   if (i && s->time_ns <= rows[i - 1].sense.time_ns) return; /* the clock was set back */
@@ -71,7 +67,7 @@ static void add_delivery(ethd__evidence *e, const ethd_setup *setup, const ethd_
 
 /* ---- stretches ---- */
 
-bool ethd__evidence_follows(const ethd__evidence *e, const ethd_trace *row) {
+static bool follows(const ethd__evidence *e, const ethd_trace *row) {
   double apart = ethd__evidence_apart(row[-1].sense.time_ns, row[0].sense.time_ns);
   return fabs(apart - e->period) <= PACE * e->period && !row->sense.missed &&
          (uint64_t)row[0].tick == (uint64_t)row[-1].tick + 1;
@@ -94,7 +90,7 @@ static void add_stretch(ethd__evidence *e, size_t first, size_t count) {
 static void cut(ethd__evidence *e, const ethd_trace *rows, size_t count, const unsigned char *good, size_t base) {
   size_t begin = 0;
   for (size_t i = 0; i <= count; i++) {
-    if (i < count && good[i] && (i == begin || ethd__evidence_follows(e, &rows[i]))) continue;
+    if (i < count && good[i] && (i == begin || follows(e, &rows[i]))) continue;
     add_stretch(e, base + begin, i - begin);
     begin = i < count && good[i] ? i : i + 1;
   }
@@ -124,11 +120,10 @@ void ethd__evidence_rows(ethd__evidence *e, const ethd_setup *setup, const ethd_
     memcpy(e->torque[base + i], rows[i].tau, sizeof *e->torque);
     if (!is_known(&rows[i])) good[i] = 0;
     e->not_numbers += !isfinite(rows[i].sense.q[0] + rows[i].sense.q[1] + rows[i].tau[0] + rows[i].tau[1]);
-    e->uneven += i && !ethd__evidence_follows(e, &rows[i]);
+    e->uneven += i && !follows(e, &rows[i]);
     e->unarmed += !good[i];
     add_delivery(e, setup, rows, i);
   }
-  ethd__evidence_touches(e, setup, rows, count, good, base);
   keep_apart(setup, rows, count, good);
   for (size_t i = 0; i < count; i++) e->touched += armed[i] && is_known(&rows[i]) && !good[i];
   note_clipped(e, rows, count, good);

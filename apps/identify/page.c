@@ -45,15 +45,13 @@ static bool is_count(const ethd__plant_row *row) {
   return !strcmp(row->param.name, "count") || !strcmp(row->param.name, "count_phase");
 }
 
-static bool is_of_finger(int u) { return u >= ETHD__FINGER_MASS && u <= ETHD__PAD_DAMPING; }
-
 /* Fills the words that follow a number in the file and on the page. */
 static void tell(const ethd__finding *f, const ethd__plant_row *row, char *out, size_t room) {
   int u = unknown_of(row);
   const ethd__bracket *b = bracket_of(f, row);
   const char *unit = row->param.unit;
-  bool arm = f->problem.window_count > 0, rigid = arm && !isfinite(f->plant.stiffness);
-  if (u == ETHD__FORCE_LIMIT && arm && f->fit.unseen[u])
+  bool rigid = !isfinite(f->plant.stiffness);
+  if (u == ETHD__FORCE_LIMIT && f->fit.unseen[u])
     snprintf(out, room, "%s, not reached: %.5g N were commanded; kept as in %s, or more", unit, f->fit.force, f->base);
   else if (u >= ETHD__MOTOR_MASS && u <= ETHD__DAMPING && rigid && !f->fit.unseen[u])
     snprintf(out, room, "%s, rigid by the information criterion", unit);
@@ -85,7 +83,6 @@ static void print_row(FILE *out, const ethd__finding *f, const ethd__plant_row *
 static bool is_kept(const ethd__finding *f, const ethd__plant_row *row) {
   int u = unknown_of(row);
   const ethd__bracket *b = bracket_of(f, row);
-  if (is_of_finger(u)) return !is_fitted(&f->fit, (ethd__unknown)u);
   return u < 0 && !is_count(row) && !(b && !isnan(b->value));
 }
 
@@ -104,7 +101,6 @@ static void print_kept(FILE *out, const ethd__finding *f) {
 static void print_residual(FILE *out, const ethd__finding *f) {
   const ethd__whiteness *w = &f->whiteness;
   double l = f->evidence->arm.link1;
-  if (!f->problem.window_count) return;
   fprintf(out, "\nresidual      %.4g rad rms (%.3g um at the ring)", w->rms, 1e6 * l * w->rms);
   if (w->floor > 0) fprintf(out, ", %.3f times what rounding to counts leaves", w->rms / w->floor);
   fprintf(out,
@@ -120,10 +116,6 @@ static void print_residual(FILE *out, const ethd__finding *f) {
 
 static void print_arm(FILE *out, const ethd__finding *f) {
   const ethd__fit *fit = &f->fit;
-  if (!f->problem.window_count) {
-    fprintf(out, "arm           kept as in %s: the recordings have too few windows without the finger\n", f->base);
-    return;
-  }
   fprintf(out, "fitted to     %zu windows of %.3g s", f->problem.window_count, ETHD__WINDOW);
   if (f->problem.passed_over) fprintf(out, ", %zu of a long recording were passed over", f->problem.passed_over);
   fprintf(out, "\nmodel         %s: ", isfinite(f->plant.stiffness) ? "the transmission gives way" : "rigid");
@@ -136,30 +128,12 @@ static void print_arm(FILE *out, const ethd__finding *f) {
     fprintf(out, "              something gives way, but not as a transmission whose numbers could be told\n");
 }
 
-static void print_touches(FILE *out, const ethd__finding *f) {
-  const ethd__touch_fit *t = &f->touches;
-  if (!t->seen) return;
-  fprintf(out, "touches       %zu", t->seen);
-  if (t->seen < ETHD__TOUCHES_LEAST)
-    fprintf(out, ", at least %d are needed for the finger's numbers\n", ETHD__TOUCHES_LEAST);
-  else if (t->explained)
-    fprintf(out,
-            ", fitted to %zu of them until %.0f to %.0f ms after the finger came near: residual %.3g of what sensors "
-            "leave\n",
-            t->used, 1e3 * t->least, 1e3 * t->most, t->rms);
-  else
-    fprintf(out,
-            "; NOT EXPLAINED by a hand that moves evenly and pushes by spring and damper, however short a time after\n"
-            "              the touch: nothing of the finger is taken from them\n");
-}
-
 void ethd__page_print(FILE *out, const ethd__finding *f) {
   const ethd__evidence *e = f->evidence;
   fprintf(out, "recordings    %u, %zu ticks; left out: %zu without the commanded torque, %zu with the finger near\n",
           e->recording_count, e->count, e->unarmed, e->touched);
   print_arm(out, f);
-  print_touches(out, f);
-  fprintf(out, "evaluations   %.0f simulated seconds\n\n", f->fit.simulated + f->touches.simulated);
+  fprintf(out, "evaluations   %.0f simulated seconds\n\n", f->fit.simulated);
   for (size_t i = 0; i < ethd__plant_row_count; i++)
     if (!is_kept(f, &ethd__plant_rows[i])) print_row(out, f, &ethd__plant_rows[i]);
   print_kept(out, f);
@@ -196,13 +170,12 @@ ethd_status ethd__page_write(const ethd__finding *f, const char *path, char mess
   ethd_status status = ethd_replace_begin(path, &replace, message);
   if (status) return status;
   fprintf(replace.file,
-          "# Identified by ethd-identify from %u recording%s, %zu windows of %.3g s and %zu touch%s. What is behind a\n"
+          "# Identified by ethd-identify from %u recording%s, %zu windows of %.3g s. What is behind a\n"
           "# number is its unit and between which values it lies; what the recordings can't tell is kept as in %s.\n",
           f->evidence->recording_count, ethd__s(f->evidence->recording_count), f->problem.window_count, ETHD__WINDOW,
-          f->touches.used, f->touches.used == 1 ? "" : "es", f->base);
-  if (f->problem.window_count)
-    fprintf(replace.file, "# Residual %.4g rad rms; %s.\n", f->whiteness.rms,
-            f->whiteness.explained ? "the model explains it" : "NOT EXPLAINED by this model");
+          f->base);
+  fprintf(replace.file, "# Residual %.4g rad rms; %s.\n", f->whiteness.rms,
+          f->whiteness.explained ? "the model explains it" : "NOT EXPLAINED by this model");
   for (size_t i = 0; i < ethd__plant_row_count; i++) {
     const ethd__plant_row *row = &ethd__plant_rows[i];
     if (strcmp(section, row->section)) fprintf(replace.file, "%s[%s]\n", i ? "\n" : "", row->section);

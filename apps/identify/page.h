@@ -7,13 +7,11 @@
 #include "identify/fit.h"
 #include "identify/residual.h"
 #include "identify/sensing.h"
-#include "identify/touch_fit.h"
 
 typedef struct ethd__finding {
   const ethd__evidence *evidence;
-  ethd__shooting problem; /* has no windows if the arm is kept as in base */
+  ethd__shooting problem;
   ethd__fit fit;
-  ethd__touch_fit touches;
   ethd__sensing sensing;
   ethd__whiteness whiteness;
   double *residual; /* problem.rows, rad */

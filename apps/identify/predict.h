@@ -1,5 +1,5 @@
 /* Predicts the encoders from the commands over a short window, by the simulator of drivers/sim, without a finger.
-   ethd-identify and ethd-bench use it. [any] */
+   [any] */
 #ifndef ETHD__APPS_IDENTIFY_PREDICT_H
 #define ETHD__APPS_IDENTIFY_PREDICT_H
 

@@ -11,37 +11,9 @@
 #define SETTLED 1e-9
 #define MOVED 1e-5     /* a state whose squares fall by a smaller share has hardly moved, and its slopes stay */
 #define STEP 3e-4      /* by which a coordinate is changed to find its slope by differences */
-#define DEPENDENT 1e-5 /* a vector of which others explain all but this share says nothing; */
-#define SEEN 1e-2 /* standard deviations: a state that changes the residual by less wherever it is isn't seen either */
+#define DEPENDENT 1e-5 /* slope vectors whose independent part is below this share are dropped as dependent */
 
 /* ---- windows ---- */
-
-void ethd__shooting_begin(const ethd__evidence *e, const ethd__fit_subject *subject, double tolerance,
-                          ethd__shooting *p) {
-  *p = (ethd__shooting){.evidence = e, .subject = subject, .tolerance = tolerance};
-}
-
-ethd__fit_window *ethd__shooting_add(ethd__shooting *p, const ethd__shot *window, int rows) {
-  if (!(p->window_count & (p->window_count + 1))) {
-    p->windows = realloc(p->windows, (2 * p->window_count + 2) * sizeof *p->windows);
-    if (!p->windows) ethd__fail_memory();
-  }
-  ethd__fit_window *w = &p->windows[p->window_count++];
-  *w = (ethd__fit_window){.window = *window, .rows = rows};
-  return w;
-}
-
-void ethd__shooting_ready(ethd__shooting *p) {
-  p->rows = 0;
-  for (size_t i = 0; i < p->window_count; i++) {
-    p->windows[i].row = p->rows;
-    p->windows[i].rank = 0;
-    p->rows += (size_t)p->windows[i].rows;
-  }
-  free(p->basis);
-  p->basis = calloc(p->rows ? ETHD__STATES * p->rows : 1, sizeof *p->basis);
-  if (!p->basis) ethd__fail_memory();
-}
 
 void ethd__shooting_close(ethd__shooting *p) {
   free(p->windows);
@@ -67,7 +39,7 @@ static double *basis_of(const ethd__shooting *p, const ethd__fit_window *w) { re
 
 /* Tries all trials on the window. `useful` of them count as simulated time. */
 static void try_all(const ethd__shooting *p, ethd__fit_window *w, const ethd__trial *trials, int count, int useful) {
-  p->subject->try_all(p, w, trials, count);
+  ethd__arm_try_all(p, w, trials, count);
   w->predicted += useful * w->window.count;
 }
 
@@ -92,49 +64,43 @@ static void project(const ethd__shooting *p, const ethd__fit_window *w, double *
   for (int i = 0; i < w->rank; i++) add(out, -dot(basis + i * w->rows, out, w->rows), basis + i * w->rows, w->rows);
 }
 
-/* Adds to a state the correction that a residual asks for; returns the share of it that stays within the extents.
-   promised: by how much it reduces the squares if the slopes hold. */
-static double correct(const ethd__shooting *p, const ethd__fit_window *w, const double *left, double *state,
-                      double *promised) {
+/* Adds to a state the correction that a residual asks for; returns by how much it reduces the squares if the slopes
+   hold. */
+static double correct(const ethd__shooting *p, const ethd__fit_window *w, const double *left, double *state) {
   const double *basis = basis_of(p, w);
-  double share = 1;
-  *promised = 0;
+  double promised = 0;
   for (int i = 0; i < w->rank; i++) {
     double along = dot(basis + i * w->rows, left, w->rows);
     add(state, along, w->turn[i], ETHD__STATES);
-    *promised += along * along;
+    promised += along * along;
   }
-  for (int i = 0; i < ETHD__STATES; i++) {
-    double most = p->subject->extent(i);
-    if (share * fabs(state[i]) > most) share = most / fabs(state[i]);
-  }
-  return share;
+  return promised;
 }
 
 /* Fills the prediction's slopes by each number of the state, one after another: differences between predictions that
    take the same steps. */
 static void state_slopes(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant, double *out) {
-  int states = p->subject->states(plant), together = p->subject->together;
-  double state[ETHD__TOGETHER][ETHD__STATES], own[ETHD__RESIDUALS_MOST];
-  for (int i = 0; i < states; i += together - 1) {
-    ethd__trial t[ETHD__TOGETHER] = {{plant, w->state, own}};
+  int states = ethd__arm_states(plant);
+  double state[ETHD__ARMS][ETHD__STATES], own[ETHD__RESIDUALS_MOST];
+  for (int i = 0; i < states; i += ETHD__ARMS - 1) {
+    ethd__trial t[ETHD__ARMS] = {{plant, w->state, own}};
     int count = 1;
-    for (; count < together && i + count - 1 < states; count++) {
+    for (; count < ETHD__ARMS && i + count - 1 < states; count++) {
       int at = i + count - 1;
       memcpy(state[count], w->state, sizeof w->state);
-      state[count][at] += p->subject->step(at);
+      state[count][at] += ethd__arm_step(at);
       t[count] = (ethd__trial){plant, state[count], out + at * w->rows};
     }
     try_all(p, w, t, count, count - 1);
     for (int c = 1; c < count; c++)
-      for (int k = 0; k < w->rows; k++) t[c].out[k] = (own[k] - t[c].out[k]) / p->subject->step(i + c - 1);
+      for (int k = 0; k < w->rows; k++) t[c].out[k] = (own[k] - t[c].out[k]) / ethd__arm_step(i + c - 1);
   }
 }
 
 /* Fills the basis of the prediction's slopes by the state (Gram and Schmidt, twice), and the matrix that turns
    coordinates in that basis into a state. */
 static void span(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant) {
-  int n = w->rows, states = p->subject->states(plant);
+  int n = w->rows, states = ethd__arm_states(plant);
   double *slopes = basis_of(p, w);
   state_slopes(p, w, plant, slopes);
   w->rank = 0;
@@ -151,7 +117,7 @@ static void span(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant 
         add(turn, -share, w->turn[k], ETHD__STATES);
       }
     double rest = sqrt(dot(v, v, n));
-    if (!(rest > DEPENDENT * whole && rest * p->subject->extent(i) > SEEN)) continue;
+    if (!(rest > DEPENDENT * whole)) continue;
     for (int k = 0; k < n; k++) v[k] /= rest;
     for (int k = 0; k < ETHD__STATES; k++) w->turn[w->rank][k] = turn[k] / rest;
     w->rank++;
@@ -172,9 +138,8 @@ typedef struct job {
 static double improve(const ethd__shooting *p, ethd__fit_window *w, const ethd_plant *plant, double *state,
                       double *left) {
   double moved[ETHD__STATES] = {0}, next[ETHD__STATES], now[ETHD__RESIDUALS_MOST], sum = dot(left, left, w->rows);
-  double promised, most = correct(p, w, left, moved, &promised);
-  if (promised < SETTLED * sum) return sum;
-  for (double share = most; share > 0.05 * most; share /= 2) {
+  if (correct(p, w, left, moved) < SETTLED * sum) return sum;
+  for (double share = 1; share > 0.05; share /= 2) {
     for (int i = 0; i < ETHD__STATES; i++) next[i] = state[i] + share * moved[i];
     residual(p, w, plant, next, now);
     double less = dot(now, now, w->rows);
@@ -215,12 +180,11 @@ static void residual_window(void *data, size_t i) {
 /* Fills the slopes by the plant's coordinates: differences between predictions that take the same steps. */
 static void plant_slopes(const job *whole, ethd__fit_window *w) {
   const ethd__shooting *p = whole->problem;
-  int together = p->subject->together;
   double own[ETHD__RESIDUALS_MOST];
-  for (int k = 1; k < whole->plant_count; k += together - 1) {
-    ethd__trial t[ETHD__TOGETHER] = {{whole->plants, w->state, own}};
+  for (int k = 1; k < whole->plant_count; k += ETHD__ARMS - 1) {
+    ethd__trial t[ETHD__ARMS] = {{whole->plants, w->state, own}};
     int count = 1;
-    for (; count < together && k + count - 1 < whole->plant_count; count++)
+    for (; count < ETHD__ARMS && k + count - 1 < whole->plant_count; count++)
       t[count] = (ethd__trial){&whole->plants[k + count - 1], w->state,
                                whole->out + (size_t)(k + count - 2) * p->rows + w->row};
     try_all(p, w, t, count, count - 1);

@@ -12,7 +12,7 @@
 #define ETHD__WINDOW 0.25       /* s */
 #define ETHD__WINDOW_LEAST 0.03 /* s: shorter pieces are left out */
 
-enum { ETHD__STATES = 18, ETHD__TOGETHER = ETHD__STATES + 1, ETHD__RESIDUALS_MOST = 2 * ETHD__WINDOW_MOST };
+enum { ETHD__STATES = ETHD__STATE_MOST, ETHD__RESIDUALS_MOST = 2 * ETHD__WINDOW_MOST };
 
 typedef struct ethd__fit_window {
   ethd__shot window;
@@ -31,24 +31,8 @@ typedef struct ethd__trial {
   double *out;
 } ethd__trial;
 
-struct ethd__shooting;
-
-/* What a fit is about: the arm alone, or the arm with the finger that touches it. */
-typedef struct ethd__fit_subject {
-  int (*states)(const ethd_plant *plant);
-  double (*step)(int state);   /* by which a number of the state is changed to find its slope by differences */
-  double (*extent)(int state); /* the most that a number of the state can be off; INFINITY: it is always seen */
-  int together;                /* the most trials that try_all takes */
-  /* Makes up to so many trials of one window; all differ little from the first. */
-  void (*try_all)(const struct ethd__shooting *shooting, const ethd__fit_window *window, const ethd__trial *trials,
-                  int count);
-  /* Returns whether a device can be like this plant, and whether the simulator can run it. */
-  bool (*is_possible)(const struct ethd__shooting *shooting, const ethd_plant *plant);
-} ethd__fit_subject;
-
 typedef struct ethd__shooting {
   const ethd__evidence *evidence;
-  const ethd__fit_subject *subject;
   ethd__fit_window *windows;
   size_t window_count, rows; /* rows: residuals of all windows */
   size_t passed_over;        /* windows of a very long recording that aren't used, spread evenly over it */
@@ -58,15 +42,12 @@ typedef struct ethd__shooting {
   double tolerance; /* m/s, the simulator's */
 } ethd__shooting;
 
-/* Opens a problem of the arm alone: cuts the passages into at most `most` windows. tolerance, m/s: the simulator's. */
+/* Cuts the passages into at most `most` windows. tolerance, m/s: the simulator's. */
 void ethd__shooting_open(const ethd__evidence *evidence, size_t most, double tolerance, ethd__shooting *out);
 
-/* The three steps of opening a problem of any subject: begin without windows; add a window of `rows` residuals; finish
-   when all are added. */
-void ethd__shooting_begin(const ethd__evidence *evidence, const ethd__fit_subject *subject, double tolerance,
-                          ethd__shooting *out);
-ethd__fit_window *ethd__shooting_add(ethd__shooting *shooting, const ethd__shot *window, int rows);
-void ethd__shooting_ready(ethd__shooting *shooting);
+/* Opens a problem of the windows of one recording alone, whose states stand where those of `shooting` do. */
+void ethd__shooting_part(const ethd__shooting *shooting, uint32_t recording, ethd__shooting *out);
+
 void ethd__shooting_close(ethd__shooting *shooting);
 
 /* Finds the states, and the basis of what they can explain, anew for shooting->plant. */
@@ -83,5 +64,18 @@ double ethd__shooting_simulated(const ethd__shooting *shooting);
 
 /* Returns how many numbers of state all windows have, by which the residuals' degrees of freedom are fewer. */
 size_t ethd__shooting_states(const ethd__shooting *shooting);
+
+/* ---- the arm's predictions in a window [in arm_alone.c] ---- */
+
+/* Returns how many numbers a state of this plant has, and by how much one is changed to find its slope by differences. */
+int ethd__arm_states(const ethd_plant *plant);
+double ethd__arm_step(int state);
+
+/* Makes up to ETHD__ARMS trials of one window; all differ little from the first. */
+void ethd__arm_try_all(const ethd__shooting *shooting, const ethd__fit_window *window, const ethd__trial *trials,
+                       int count);
+
+/* Returns whether a device can be like this plant, and whether the simulator can run it. */
+bool ethd__arm_is_possible(const ethd__shooting *shooting, const ethd_plant *plant);
 
 #endif

@@ -7,7 +7,7 @@
 #include "cli/cli.h"
 #include "identify/fit.h"
 
-#define IMPOSSIBLE 10 /* every residual of an impossible plant: rad for the arm, standard deviations for touches */
+#define IMPOSSIBLE 10 /* rad: every residual of an impossible plant */
 
 typedef struct descent {
   ethd__shooting *problem;
@@ -20,7 +20,7 @@ typedef struct descent {
 static bool is_possible(const ethd__shooting *p, const double *coordinates) {
   ethd_plant plant = p->plant;
   ethd__chosen_set(&p->chosen, coordinates, &plant);
-  return p->subject->is_possible(p, &plant);
+  return ethd__arm_is_possible(p, &plant);
 }
 
 static int evaluate(void *search_, int m, int n, const double *x, double *residual, double *slopes, int ld, int flag) {

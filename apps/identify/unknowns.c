@@ -16,11 +16,6 @@ const ethd__unknown_row ethd__unknown_rows[ETHD__UNKNOWNS] = {
     [ETHD__MOTOR_MASS] = ROW("transmission", "motor_mass", "kg", motor_mass, 0),
     [ETHD__STIFFNESS] = ROW("transmission", "stiffness", "N/m", stiffness, 0),
     [ETHD__DAMPING] = ROW("transmission", "damping", "Ns/m", damping, 1),
-    [ETHD__FINGER_MASS] = ROW("finger", "mass", "kg", finger_mass, 0),
-    [ETHD__HAND_STIFFNESS] = ROW("finger", "hand_stiffness", "N/m", hand_stiffness, 0),
-    [ETHD__HAND_DAMPING] = ROW("finger", "hand_damping", "Ns/m", hand_damping, 1),
-    [ETHD__PAD_STIFFNESS] = ROW("finger", "pad_stiffness", "N/m", pad_stiffness, 0),
-    [ETHD__PAD_DAMPING] = ROW("finger", "pad_damping", "s/m", pad_damping, 1),
 };
 
 double ethd__unknown_value(const ethd_plant *plant, ethd__unknown which) {

@@ -1,4 +1,4 @@
-/* The numbers of a plant that a fit may change, those of the arm and of the finger. Each has a coordinate in which
+/* The numbers of a plant that a fit may change, those of the arm. Each has a coordinate in which
    equal steps matter equally. All [main]. */
 #ifndef ETHD__APPS_IDENTIFY_UNKNOWNS_H
 #define ETHD__APPS_IDENTIFY_UNKNOWNS_H
@@ -18,11 +18,6 @@ typedef enum ethd__unknown {
   ETHD__MOTOR_MASS, /* these three only with a transmission that gives way */
   ETHD__STIFFNESS,
   ETHD__DAMPING,
-  ETHD__FINGER_MASS, /* the finger's begin here; touches show them */
-  ETHD__HAND_STIFFNESS,
-  ETHD__HAND_DAMPING,
-  ETHD__PAD_STIFFNESS,
-  ETHD__PAD_DAMPING,
   ETHD__UNKNOWNS
 } ethd__unknown;
 
