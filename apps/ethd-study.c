@@ -13,7 +13,11 @@ static const char doc[] =
     "thousands of participants over a grid of gains.\v"
     "STUDY is an INI file; paper.study, which is installed, is the paper's. The folder of --out holds all data and "
     "a README.md that says what each file and column is; ethd-report draws it. A session that was stopped, killed "
-    "or ran out of disk goes on with --resume: no tap is lost, repeated or torn. Simulated participants are "
+    "or ran out of disk goes on with --resume: no tap is lost, repeated or torn. All that happens is put into the "
+    "folder's "
+    "study.sqlite (SQLite; keep it on a local disk, since network file systems don't lock it reliably), of which the "
+    "tables are "
+    "written at the end of each sitting and by --export. Simulated participants are "
     "plausible, not measured; they answer no survey. With \"[hand] source = people\" the configuration's device is "
     "opened and run as ethd-run does, and a person's finger is in its ring; with \"source = mouse\", or --screen "
     "alone, a pointer leads the simulated device's hand. All taps of a session have the same source, which is written "
@@ -40,6 +44,7 @@ static const char doc[] =
     "  ethd-study --merge station-a station-b --out both\n"
     "  ethd-study --resume session\n"
     "  ethd-study --resume session --exclude 2 --reason \"was told another task\"\n"
+    "  ethd-study --export session\n"
     "  ethd-study --verify session\n"
     "  ethd-study grid.study --simulate 1000 --shard 1/4 --out bulk    (to 4/4)\n"
     "  ethd-study --merge bulk";
@@ -57,6 +62,7 @@ enum {
   OPTION_VIRTUAL,
   OPTION_PLAN,
   OPTION_WORDS,
+  OPTION_EXPORT,
   OPTION_VERIFY,
   OPTION_WITHDRAW,
   OPTION_EXCLUDE,
@@ -77,6 +83,7 @@ static const struct argp_option options[] = {
     {"plan", OPTION_PLAN, NULL, 0, "print everybody's order and its balance, and end", 0},
     {"words", OPTION_WORDS, NULL, 0, "print the screen's words as a section [words], which a study file may replace",
      0},
+    {"export", OPTION_EXPORT, "DIR", 0, "write a folder's tables (taps.csv and so on) anew from its study.sqlite", 0},
     {"verify", OPTION_VERIFY, "DIR", 0, "compare a folder's files with its SHA256SUMS", 0},
     {"quiet", 'q', NULL, 0, "print no line for each tap", 0},
     {"withdraw", OPTION_WITHDRAW, "K", 0, "with --resume: write down that participant K has withdrawn, and end", 1},
@@ -134,8 +141,8 @@ static void check_options(struct argp_state *state) {
   bool stations = arg.merge && arg.out;
   if (!stations && arg.word_count > 1) argp_error(state, "\"%s\": one study file is allowed", arg.word[1]);
   if (!stations && arg.word_count) arg.study = arg.word[0];
-  if (!!arg.out + !!arg.resume + (arg.merge && !stations) + !!arg.verify + arg.plan + arg.words != 1)
-    argp_error(state, "--out DIR, --resume DIR, --merge DIR, --verify DIR, --plan or --words is needed");
+  if (!!arg.out + !!arg.resume + (arg.merge && !stations) + !!arg.export + !!arg.verify + arg.plan + arg.words != 1)
+    argp_error(state, "--out DIR, --resume DIR, --merge DIR, --export DIR, --verify DIR, --plan or --words is needed");
   if (!arg.out && !arg.plan && (arg.study || arg.finger)) argp_error(state, "the study is taken from the folder");
   if ((arg.sharded || arg.shard.record) && !arg.simulate) argp_error(state, "--shard and --ticks need --simulate N");
   if (arg.width && (arg.ask || arg.simulate || arg.finger || arg.merge))
@@ -162,6 +169,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_MERGE: arg.merge = text; return 0;
   case OPTION_PLAN: arg.plan = true; return 0;
   case OPTION_WORDS: arg.words = true; return 0;
+  case OPTION_EXPORT: arg.export = text; return 0;
   case OPTION_VERIFY: arg.verify = text; return 0;
   case OPTION_WITHDRAW: decide("--withdraw", "withdraw", text); return 0;
   case OPTION_EXCLUDE: decide("--exclude", "exclude", text); return 0;
@@ -180,10 +188,11 @@ int main(int argc, char **argv) {
   static const struct argp argp = {options, parse, "[STUDY]", doc, NULL, NULL, NULL};
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
-  const char *const folders[] = {arg.out, arg.resume, arg.merge, arg.verify};
+  const char *const folders[] = {arg.out, arg.resume, arg.merge, arg.export, arg.verify};
   for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) ethd__receive(folders[i]);
   for (size_t i = 0; arg.merge && i < arg.word_count; i++) ethd__receive(arg.word[i]);
   return ethd__end((arg.merge      ? ethd__command_merge
+                    : arg.export   ? ethd__command_export
                     : arg.verify   ? ethd__command_verify
                     : arg.plan     ? ethd__command_plan
                     : arg.words    ? ethd__command_words

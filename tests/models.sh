@@ -47,7 +47,7 @@ breaks() {
   case ${found% *} in 0 | none | incomplete) fail "$*: not found" ;; *) echo "$*: found" ;; esac
 }
 
-for model in post ring cell loop hang servo journal; do
+for model in post ring cell loop hang servo; do
   names $model
   holds $model
   breaks $model -DBUG
@@ -63,6 +63,5 @@ if [ "${ETHD_MODELS:-}" = large ]; then
   holds hang -DTURNS=60
   holds servo -DQUESTIONS=30
   holds servo -DQUIET -DQUESTIONS=30
-  holds journal -DSTARTS=20 -DLINES=20
 fi
 exit $failed

@@ -1,5 +1,5 @@
 #!/bin/sh
-# ethd-study --simulate: 1, 2 and 4 workers, GNU parallel, mpirun and a worker that was killed: equal bytes.
+# ethd-study --simulate: 1, 2, 3, 4 and 7 workers, GNU parallel, mpirun and a worker that was killed: equal bytes.
 set -u
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -42,8 +42,20 @@ done
 "$study" --merge "$folder/slurm" >/dev/null || fail "merging an array's shards"
 same slurm
 
-# Killed, cut in a line, gone on.
-for i in 1 2 3 4 5; do
+for workers in 3 7; do
+  for i in $(seq $workers); do simulate --shard $i/$workers --out "$folder/s$workers" >"$folder/out" 2>&1 || fail "shard $i/$workers: $(cat "$folder/out")"; done
+  "$study" --merge "$folder/s$workers" >/dev/null || fail "merging $workers shards"
+  same s$workers
+done
+# A merged folder is a study: its tables come from its store, and again where they are lost.
+rm "$folder/s7/taps.csv"
+"$study" --export "$folder/s7" >"$folder/out" 2>&1 || fail "--export: $(cat "$folder/out")"
+same s7
+"$study" --verify "$folder/s7" >"$folder/out" 2>&1 || fail "sums: $(cat "$folder/out")"
+
+# Killed and gone on: a unit's taps are there, all or none.
+python3=${PYTHON:-python3}
+for i in 1 2 3 4 5 6 7 8; do
   "$study" "$folder/grid.study" --simulate $people --shard 1/2 --out "$folder/killed" >/dev/null 2>&1 &
   pid=$!
   sleep 0.0$i
@@ -54,15 +66,6 @@ simulate --shard 1/2 --out "$folder/killed" >/dev/null || fail "a killed shard"
 simulate --shard 2/2 --out "$folder/killed" >/dev/null || fail "the other shard"
 "$study" --merge "$folder/killed" >/dev/null || fail "merging a killed shard"
 same killed
-for bytes in 3 250 1000 5000 9999 20000; do
-  rm -f "$folder/killed/shard-1-of-2.csv"
-  head -c $bytes "$folder/one/shard-1-of-1.csv" >"$folder/cut"
-  mkdir -p "$folder/torn"
-  cp "$folder/cut" "$folder/torn/shard-1-of-1.part"
-  simulate --out "$folder/torn" >"$folder/out" 2>&1 && "$study" --merge "$folder/torn" >/dev/null || fail "torn at $bytes: $(cat "$folder/out")"
-  same torn
-  rm -r "$folder/torn"
-done
 
 # Every tick, if asked.
 simulate --ticks --shard 7/7 --out "$folder/ticks" >/dev/null || fail "--ticks"
@@ -76,15 +79,24 @@ refuse() { # PATTERN COMMAND...
   code=$?
   [ $code != 0 ] && [ "$(wc -l <"$folder/err")" -le 2 ] && grep -q -e "$pattern" "$folder/err" || fail "$pattern: exit $code: $(cat "$folder/err")"
 }
-refuse 'killed/shard-1-of-2.csv: missing' "$study" --merge "$folder/killed"
-refuse 'shards of ' sh -c "cp '$folder/one/shard-1-of-1.csv' '$folder/killed' && '$study' --merge '$folder/killed'"
-rm "$folder/ticks/shard-7-of-7.csv"
-refuse 'no shard-i-of-n.csv' "$study" --merge "$folder/ticks"
-rm "$folder"/slurm/shard-2-of-3.csv && cp "$folder"/slurm/shard-1-of-3.csv "$folder"/slurm/shard-2-of-3.csv
-refuse "don't fit together\|no rows that begin with" "$study" --merge "$folder/slurm"
+rm "$folder/killed/shard-1-of-2.sqlite"
+refuse 'killed/shard-1-of-2.sqlite: missing' "$study" --merge "$folder/killed"
+refuse 'shards of ' sh -c "cp '$folder/one/shard-1-of-1.sqlite' '$folder/killed' && '$study' --merge '$folder/killed'"
+rm "$folder/ticks/shard-7-of-7.sqlite"
+refuse 'no shard-i-of-n.sqlite' "$study" --merge "$folder/ticks"
+cp "$folder/slurm/shard-1-of-3.sqlite" "$folder/first"
+cp "$folder/first" "$folder/slurm/shard-2-of-3.sqlite"
+refuse 'shard-2-of-3.sqlite: has rows of another shard' "$study" --merge "$folder/slurm"
+cp "$folder/first" "$folder/slurm/shard-1-of-3.sqlite"
+"$python3" -c 'import sqlite3, sys; db = sqlite3.connect(sys.argv[1]); db.execute("DELETE FROM tap WHERE point = 3 AND participant > 4"); db.commit()' "$folder/slurm/shard-1-of-3.sqlite"
+refuse 'shard-1-of-3.sqlite: has [0-9]* of its 10 participants' "$study" --merge "$folder/slurm"
 printf '[study]\nseed = 2\n' >"$folder/other.study"
-head -c 5000 "$folder/one/shard-1-of-1.csv" >"$folder/one/shard-1-of-3.part"
-refuse 'of another study' "$study" "$folder/other.study" --simulate 3 --shard 1/3 --out "$folder/one"
+"$study" "$folder/other.study" --simulate 3 --out "$folder/other" >"$folder/out" 2>&1 || fail "another study: $(cat "$folder/out")"
+cp "$folder/other/shard-1-of-1.sqlite" "$folder/one/shard-1-of-3.sqlite"
+refuse 'begun with other files' simulate --shard 1/3 --out "$folder/one"
+refuse 'holds study.ini, of another study' "$study" "$folder/other.study" --simulate 3 --out "$folder/one"
+refuse 'holds a simulation' "$study" --resume "$folder/one"
+refuse 'holds a simulation' "$study" --resume "$folder/one" --exclude 1 --reason x
 refuse 'shard: found "3"' simulate --shard 3/2 --out "$folder/x"
 refuse 'shard: found "2"' simulate --shard 2 --out "$folder/x"
 refuse 'need --simulate' "$study" --shard 1/2 --out "$folder/x"
@@ -97,4 +109,4 @@ fi
 [ $failed = 0 ] || exit 1
 command -v mpirun >/dev/null || { echo "SKIP: mpirun (Debian: openmpi-bin); all else passed"; exit 77; }
 command -v parallel >/dev/null || { echo "SKIP: GNU parallel; xargs and all else passed"; exit 77; }
-echo "$(($(wc -l <"$folder/one/taps.csv") - 1)) taps, equal bytes from 1, 2, 3, 4 workers, mpirun and a killed one"
+echo "$(($(wc -l <"$folder/one/taps.csv") - 1)) taps, equal bytes from 1, 2, 3, 4, 7 workers, mpirun and a killed one"

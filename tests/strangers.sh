@@ -129,30 +129,42 @@ for name in taps.csv SHA256SUMS; do
   refused "--merge over a link $name" "crowd/$name: is a link" "$bin/ethd-study" --merge "$folder/crowd"
   rm -f "$folder/crowd/$name" "$folder/crowd/taps.csv"
 done
-mv "$folder/crowd/shard-1-of-2.csv" "$folder/shard"
-mkfifo "$folder/crowd/shard-1-of-2.csv"
-refused '--merge of a pipe' 'shard-1-of-2.csv: is a pipe, a file is needed' "$bin/ethd-study" --merge "$folder/crowd"
-rm "$folder/crowd/shard-1-of-2.csv"
-ln -s /dev/zero "$folder/crowd/shard-1-of-2.csv"
-refused '--merge of a device' 'shard-1-of-2.csv: is a link' "$bin/ethd-study" --merge "$folder/crowd"
-rm "$folder/crowd/shard-1-of-2.csv"
-{ head -n 1 "$folder/shard"; } >"$folder/crowd/shard-1-of-2.csv"
-truncate -s 8G "$folder/crowd/shard-1-of-2.csv"
-(ulimit -v 1000000 && refused '--merge of a hole' 'shard-1-of-2.csv: has a hole' "$bin/ethd-study" --merge "$folder/crowd"; exit $failed) || failed=1
-mv "$folder/shard" "$folder/crowd/shard-1-of-2.csv"
+part=$folder/crowd/shard-1-of-2.sqlite
+mv "$part" "$folder/shard"
+mkfifo "$part"
+refused '--merge of a pipe' 'shard-1-of-2.sqlite: is a pipe, a file is needed' "$bin/ethd-study" --merge "$folder/crowd"
+rm "$part"
+for target in /dev/zero "$folder/shard" ../home/thesis; do
+  ln -s "$target" "$part"
+  refused "--merge of a link to $target" 'shard-1-of-2.sqlite: is a link' "$bin/ethd-study" --merge "$folder/crowd"
+  rm "$part"
+done
+cp "$folder/shard" "$part"
+truncate -s 8G "$part"
+(ulimit -v 1000000 && refused '--merge of a hole' 'shard-1-of-2.sqlite: has a hole' "$bin/ethd-study" --merge "$folder/crowd"; exit $failed) || failed=1
+mv "$folder/shard" "$part"
 "$bin/ethd-study" --merge "$folder/crowd" >"$folder/said" 2>"$folder/err" || fail "--merge: $(cat "$folder/err")"
 
 # each file that is read: a link, a pipe, a device
-for name in study.ini config.ini scene.scene device.plant taps.csv journal; do
+for name in study.ini config.ini scene.scene device.plant taps.csv study.sqlite; do
   for kind in link pipe; do
     copy
     rm "$folder/bad/$name"
     if [ $kind = link ]; then ln -s ../home/thesis "$folder/bad/$name"; else mkfifo "$folder/bad/$name"; fi
-    [ $name = journal ] || refused "ethd-report of a $kind $name" "bad/.*$name: is a $kind" "$bin/ethd-report" "$folder/bad"
+    [ $name = study.sqlite ] || refused "ethd-report of a $kind $name" "bad/.*$name: is a $kind" "$bin/ethd-report" "$folder/bad"
     [ $name = taps.csv ] || refused "--resume of a $kind $name" "bad/.*$name: is a $kind\\|bad/.*$name: isn't a file" "$bin/ethd-study" --resume "$folder/bad" --quiet
     refused "--verify of a $kind $name" "$name is missing or can't be read" "$bin/ethd-study" --verify "$folder/bad"
   done
 done
+# SQLite's own journal beside the store, which it would read, follow and remove
+for kind in link pipe; do
+  copy
+  if [ $kind = link ]; then ln -s ../home/thesis "$folder/bad/study.sqlite-journal"; else mkfifo "$folder/bad/study.sqlite-journal"; fi
+  for way in --resume --export; do refused "$way beside a $kind" "study.sqlite-journal: is a $kind" "$bin/ethd-study" $way "$folder/bad"; done
+done
+copy
+echo junk >"$folder/bad/study.sqlite-journal"
+refused '--export beside a journal' 'its last change was cut short' "$bin/ethd-study" --export "$folder/bad"
 copy
 ln -s ../../home/thesis "$folder/bad/taps/note"
 refused '--verify of a link that is new' "taps/note isn't listed" "$bin/ethd-study" --verify "$folder/bad"

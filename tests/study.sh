@@ -6,6 +6,7 @@ folder=$(mktemp -d)
 mounted=
 trap '[ -z "$mounted" ] || umount "$folder/small"; rm -rf "$folder"' EXIT
 study=$BUILD/bin/ethd-study
+python3=${PYTHON:-python3}
 replay="$BUILD/bin/ethd-replay --verify"
 kills=${ETHD_STUDY_KILLS:-6}
 failed=0
@@ -46,7 +47,7 @@ END
 "$study" "$folder/small.study" --quiet --out "$folder/whole" >"$folder/out" 2>&1 || fail "the small study: $(cat "$folder/out")"
 on() { (become "$@"); }
 become() { # FOLDER: begins it or goes on
-  if [ -f "$1/journal" ]; then set -- --resume "$1"; else set -- "$folder/small.study" --out "$1"; fi
+  if [ -f "$1/study.sqlite" ]; then set -- --resume "$1"; else set -- "$folder/small.study" --out "$1"; fi
   exec "$study" --quiet "$@"
 }
 same() { # FOLDER WHAT
@@ -87,16 +88,24 @@ static int due(void) {
   return at && ++n == at;
 }
 #define NEXT(name) __typeof__(&name) next = (__typeof__(&name))dlsym(RTLD_NEXT, #name); if (due())
-ssize_t pwrite(int fd, const void *b, size_t n, off_t o) {
-  NEXT(pwrite) { next(fd, b, n / 2, o); raise(SIGKILL); }
-  return next(fd, b, n, o);
+#define TORN(name) ssize_t name(int fd, const void *b, size_t n, off_t o) { \
+  NEXT(name) { (void)!next(fd, b, n / 2, o); raise(SIGKILL); } return next(fd, b, n, o); }
+TORN(pwrite)
+TORN(pwrite64)
+ssize_t write(int fd, const void *b, size_t n) {
+  NEXT(write) { (void)!next(fd, b, n / 2); raise(SIGKILL); }
+  return next(fd, b, n);
 }
 int rename(const char *a, const char *b) { NEXT(rename) raise(SIGKILL); return next(a, b); }
 int mkdir(const char *a, mode_t m);
 int mkdir(const char *a, mode_t m) { NEXT(mkdir) raise(SIGKILL); return next(a, m); }
+int renameat(int f, const char *a, int g, const char *b) { NEXT(renameat) raise(SIGKILL); return next(f, a, g, b); }
 int fdatasync(int fd) { NEXT(fdatasync) raise(SIGKILL); return next(fd); }
+int fsync(int fd) { NEXT(fsync) raise(SIGKILL); return next(fd); }
+int unlink(const char *a) { NEXT(unlink) raise(SIGKILL); return next(a); }
 int unlinkat(int fd, const char *a, int f) { NEXT(unlinkat) raise(SIGKILL); return next(fd, a, f); }
 int ftruncate(int fd, off_t o) { NEXT(ftruncate) raise(SIGKILL); return next(fd, o); }
+int ftruncate64(int fd, off_t o) { NEXT(ftruncate64) raise(SIGKILL); return next(fd, o); }
 END
 if [ -z "${SAN:-}" ] && ${CC:-cc} -shared -fPIC -o "$folder/killer.so" "$folder/killer.c" -ldl 2>"$folder/err"; then
   # each run dies at its k-th call: every call dies once, those of going on too
@@ -115,12 +124,13 @@ full() { # WHAT: refused in one line, nothing torn; then there is room again
   [ $code = 1 ] && [ "$(grep -c . "$folder/err")" = 1 ] && grep -q 'No space left\|File too large' "$folder/err" ||
     fail "$1: exit $code: $(cat "$folder/err")"
 }
-sed 's/^record = all/record = none/' "$BUILD/share/ethd/paper.study" >"$folder/short.study"
-(ulimit -f 20; "$study" "$folder/short.study" --quiet --out "$folder/quota" >/dev/null 2>"$folder/err"; exit $?)
+sed 's/^record = all/record = none/; s/^participants = .*/participants = 12/' "$BUILD/share/ethd/paper.study" >"$folder/short.study"
+"$study" "$folder/short.study" --quiet --out "$folder/long" >"$folder/out" 2>&1 || fail "a long study: $(cat "$folder/out")"
+(ulimit -f 120; "$study" "$folder/short.study" --quiet --out "$folder/quota" >/dev/null 2>"$folder/err"; exit $?)
 code=$?
 full "a quota"
 "$study" --quiet --resume "$folder/quota" >"$folder/out" 2>&1 || fail "after a quota: $(cat "$folder/out")"
-cmp "$folder/paper/taps.csv" "$folder/quota/taps.csv" || fail "a quota has changed the taps"
+[ "$(wc -c <"$folder/long/study.sqlite")" -gt 130000 ] && cmp "$folder/long/taps.csv" "$folder/quota/taps.csv" || fail "a quota has changed the taps"
 mkdir "$folder/small"
 if mount -t tmpfs -o size=2m tmpfs "$folder/small" 2>"$folder/err"; then
   mounted=1
@@ -134,13 +144,37 @@ else
 fi
 
 # ---- two at once; damage; commands ----
-flock "$folder/whole/journal" "$study" --resume "$folder/whole" >"$folder/out" 2>"$folder/err"
-code=$?
-[ $code != 0 ] && grep -q 'another program is at work' "$folder/err" || fail "two at once: exit $code: $(cat "$folder/err")"
+mkfifo "$folder/in"
+"$study" "$folder/small.study" --ask --out "$folder/at-work" <"$folder/in" >"$folder/out" 2>&1 &
+pid=$!
+exec 9>"$folder/in"
+echo pause >&9
+for _ in $(seq 200); do
+  "$python3" -c 'import sqlite3, sys; sys.exit(not sqlite3.connect(f"file:{sys.argv[1]}?immutable=1", uri=True).execute("select 1 from event where event = \"pause\"").fetchone())' "$folder/at-work/study.sqlite" 2>/dev/null && break
+  sleep 0.05
+done
+for way in --resume --export; do
+  "$study" $way "$folder/at-work" >"$folder/second" 2>"$folder/err"
+  code=$?
+  [ $code = 2 ] && [ "$(grep -c . "$folder/err")" = 1 ] && grep -q "at-work/study.sqlite: ethd-study, process $pid, is at work in it" "$folder/err" ||
+    fail "two at once, $way: exit $code: $(cat "$folder/err")"
+done
+echo stop >&9
+exec 9>&-
+wait $pid
+"$study" --quiet --resume "$folder/at-work" >"$folder/out" 2>&1 || fail "after two at once: $(cat "$folder/out")"
+same "$folder/at-work" "two at once"
 cp -r "$folder/whole" "$folder/damaged"
-sed -i '5s/,/;/' "$folder/damaged/journal"
-"$study" --resume "$folder/damaged" >"$folder/out" 2>"$folder/err" && fail "a damaged journal"
-grep -q 'journal:5: a damaged line' "$folder/err" || fail "a damaged journal: $(cat "$folder/err")"
+"$python3" - "$folder/damaged/study.sqlite" <<'END'
+import sys
+b = bytearray(open(sys.argv[1], "rb").read())
+for page in range(4096, len(b), 4096): b[page] ^= 7 # of another kind
+open(sys.argv[1], "wb").write(b)
+END
+cp "$folder/damaged/study.sqlite" "$folder/before"
+"$study" --resume "$folder/damaged" >"$folder/out" 2>"$folder/err" && fail "a damaged study"
+[ "$(grep -c . "$folder/err")" = 1 ] && grep -q 'study.sqlite: .*damaged\|malformed' "$folder/err" || fail "a damaged study: $(cat "$folder/err")"
+cmp "$folder/before" "$folder/damaged/study.sqlite" || fail "a damaged study was written"
 printf 'taps = 2\n' >>"$folder/whole/study.ini"
 "$study" --resume "$folder/whole" >"$folder/out" 2>"$folder/err" && fail "another study file"
 [ "$(grep -c . "$folder/err")" = 1 ] || fail "another study file: $(cat "$folder/err")"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# A study's data: whose hand, free text, cut journals, sums, participants who leave, stations, orders, sidecars, refusals.
+# A study's data: whose hand, free text, damaged stores, sums, participants who leave, stations, orders, sidecars, refusals.
 set -u
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -53,39 +53,67 @@ people = {r["participant"]: r["status"] for r in csv.DictReader(open(sys.argv[1]
 assert people == {"P01": "complete", "P02": "complete"}, people
 END
 
-# ---- a journal cut at any byte: gone on with, and the same taps; another damage: refused, nothing written ----
-size=$(wc -c <"$folder/whole/journal") cuts=0
-for at in $("$python3" -c "print(*sorted({0, 1, 5, 70, 90, 100, $size - 1} | set(range(37, $size, 449))))"); do
-  rm -rf "$folder/cut"
-  cp -r "$folder/whole" "$folder/cut"
-  head -c "$at" "$folder/whole/journal" >"$folder/cut/journal"
-  "$study" --quiet --resume "$folder/cut" >"$folder/out" 2>&1 && cmp "$folder/whole/taps.csv" "$folder/cut/taps.csv" && cmp "$folder/whole/survey.csv" "$folder/cut/survey.csv" ||
-    fail "cut at byte $at: $(cat "$folder/out")"
-  "$study" --verify "$folder/cut" >"$folder/out" 2>&1 || fail "sums, cut at byte $at: $(cat "$folder/out")"
-  cuts=$((cuts + 1))
+# ---- what a stranger, a disk or an old copy may put in study.sqlite's place: refused in one line, and nothing written ----
+sql() { # FILE STATEMENTS
+  "$python3" -c 'import sqlite3, sys; db = sqlite3.connect(sys.argv[1]); db.executescript(sys.argv[2]); db.commit()' "$1" "$2" || fail "$2"
+}
+copy() { rm -rf "$folder/bad" "$folder/before"; cp -r "$folder/whole" "$folder/bad"; }
+stays() { # PATTERN: whatever is done with the folder
+  rm -rf "$folder/before"
+  cp -r "$folder/bad" "$folder/before"
+  refuse 2 "$1" "$study" --resume "$folder/bad"
+  refuse 2 "$1" "$study" --resume "$folder/bad" --exclude 1 --reason x
+  "$study" --export "$folder/bad" >"$folder/out" 2>"$folder/err"
+  [ $? != 0 ] && [ "$(grep -c . "$folder/err")" = 1 ] && grep -q -e "$1" "$folder/err" || fail "--export, $1: $(cat "$folder/err")"
+  unchanged "$folder/bad" "$folder/before" "$1"
+}
+# rows of nobody, of nothing, out of order, in tables that are ours
+for rows in "UPDATE tap SET participant = 9 WHERE id = 1" "UPDATE tap SET attempt = 5 WHERE id = 1" "UPDATE tap SET block = 99 WHERE id = 2" \
+  "UPDATE tap SET block = 'x' WHERE id = 2" "UPDATE tap SET point = 1 WHERE id = 1" "INSERT INTO answer VALUES (1, 2, 9, 1, NULL)" \
+  "INSERT INTO answer VALUES (1, 2, 1, 6, NULL)" "INSERT INTO answer VALUES (9, 2, 1, 1, NULL)" "INSERT INTO survey (participant, block) VALUES (1, 99)" \
+  "INSERT INTO event (utc, participant, event, detail) VALUES ('', 77, 'abort', '')" \
+  "INSERT INTO hand VALUES ('mouse'); UPDATE tap SET hand = 'mouse' WHERE id = 1"; do
+  copy
+  sql "$folder/bad/study.sqlite" "$rows"
+  stays "bad/study.sqlite: has rows that aren't of this study"
 done
-cp -r "$folder/whole" "$folder/bad"
-"$python3" - "$folder/bad/journal" <<'END'
-import sys
-b = bytearray(open(sys.argv[1], "rb").read()); b[len(b) // 2] ^= 1; open(sys.argv[1], "wb").write(b)
-END
+copy
+sql "$folder/bad/study.sqlite" "PRAGMA ignore_check_constraints = 1; UPDATE tap SET reason = '=1+1'"
+stays "bad/study.sqlite: is damaged: "
+copy
+sql "$folder/bad/study.sqlite" "CREATE TRIGGER x AFTER INSERT ON event BEGIN DELETE FROM tap; END"
+stays "bad/study.sqlite: its tables aren't those of a study"
+copy
+sql "$folder/bad/study.sqlite" "UPDATE study SET hash = 'x'"
+stays 'begun with other files'
+# a store of before the last taps: their folders say so, and stay
+copy
+sql "$folder/bad/study.sqlite" "DELETE FROM survey; DELETE FROM tap WHERE participant = 2"
+rm -rf "$folder/before"
 cp -r "$folder/bad" "$folder/before"
-refuse 2 'journal:[0-9]*: a damaged line before others' "$study" --resume "$folder/bad"
-unchanged "$folder/bad" "$folder/before" "a damaged journal"
-refuse 2 'a damaged line' "$study" --resume "$folder/bad" --exclude 1 --reason x
-unchanged "$folder/bad" "$folder/before" "a damaged journal"
-# of an earlier version, which has no line for the hand
-cp "$folder/whole/journal" "$folder/bad/journal"
-sed -i 2d "$folder/bad/journal" && cp "$folder/bad/journal" "$folder/before/journal"
-refuse 2 "of an earlier version, which didn't keep whose hand tapped" "$study" --resume "$folder/bad"
-unchanged "$folder/bad" "$folder/before" "an earlier version's folder"
-# lines of nobody, of nothing, out of order, though their sums are right
-for line in 'tap P01,1,training,9,smooth,low,1,1,1,ok,,,,,,,,,,,,,,,,simulated,,' 'answer P01,2,9,1' 'answer P01,2,1,6' 'answer P09,2,1,1' \
-  'hand paw' 'survey P01,99,smooth,low,,,' 'event ,P77,1,abort,' 'wish x'; do
-  cp "$folder/whole/journal" "$folder/bad/journal"
-  printf '%s #%.8s\n' "$line" "$(printf %s "$line" | sha256sum)" >>"$folder/bad/journal"
-  refuse 2 'journal:[0-9]*: not a line of this study' "$study" --resume "$folder/bad"
-done
+refuse 2 "bad/taps/P02-0.-00.: not in study.sqlite, nor are [0-9]* other taps. folders" "$study" --resume "$folder/bad"
+unchanged "$folder/bad/taps" "$folder/before/taps" "an old store"
+# one folder without its tap, and one half made, are what a kill leaves: the tap is taken again
+copy
+last=$(ls "$folder/bad/taps" | tail -n 1)
+sql "$folder/bad/study.sqlite" "DELETE FROM survey WHERE participant = 2; DELETE FROM tap WHERE id = (SELECT max(id) FROM tap); DELETE FROM event WHERE event = 'over'"
+mkdir "$folder/bad/taps/.new"
+echo torn >"$folder/bad/taps/$last/tick.npy"
+echo torn >"$folder/bad/taps/.new/tick.npy"
+"$study" --quiet --resume "$folder/bad" >"$folder/out" 2>&1 || fail "a torn tap: $(cat "$folder/out")"
+unchanged "$folder/bad/taps" "$folder/whole/taps" "a torn tap"
+cmp "$folder/bad/taps.csv" "$folder/whole/taps.csv" || fail "a torn tap's row"
+# of an earlier version
+copy
+mv "$folder/bad/study.sqlite" "$folder/bad/journal"
+stays 'study.sqlite: isn.t there, but a journal of an earlier version is'
+
+# ---- the tables are an export: made again, the same bytes ----
+copy
+for table in taps survey events participants; do echo lost >"$folder/bad/$table.csv"; done
+rm "$folder/bad/survey.csv"
+"$study" --export "$folder/bad" >"$folder/out" 2>&1 || fail "--export: $(cat "$folder/out")"
+unchanged "$folder/bad" "$folder/whole" "--export"
 
 # ---- sums: of every file, as sha256sum has them; what was changed later doesn't get a new one ----
 "$study" --verify "$folder/whole" >"$folder/out" 2>&1 || fail "sums: $(cat "$folder/out")"
@@ -100,14 +128,14 @@ for file in "taps/$tap/truth.npy" taps.csv config.ini "taps/$tap/tick.npy"; do
 done
 "$study" --quiet --resume "$folder/bad" >"$folder/out" 2>&1
 refuse 1 "tick.npy isn't what it was" "$study" --verify "$folder/bad"
-rm "$folder/bad/taps/$tap/tap.csv"
+rm "$folder/bad/taps/$tap/truth.npy"
 "$study" --quiet --resume "$folder/bad" >"$folder/out" 2>&1
-refuse 1 "tap.csv is missing .*, and so 2 of" "$study" --verify "$folder/bad"
+refuse 1 "tick.npy isn't what it was, and so 2 of" "$study" --verify "$folder/bad"
 echo mine >"$folder/bad/more.txt"
 refuse 1 "so 3 of" "$study" --verify "$folder/bad"
 rm "$folder/bad/SHA256SUMS"
 refuse 1 'SHA256SUMS: No such file' "$study" --verify "$folder/bad"
-printf '%064d  ../kept/journal\n' 0 >"$folder/bad/SHA256SUMS"
+printf '%064d  ../kept/study.sqlite\n' 0 >"$folder/bad/SHA256SUMS"
 refuse 1 'SHA256SUMS:1: not a line of sha256sum about a file in this folder' "$study" --verify "$folder/bad"
 
 # ---- who leaves stays on record, and may come back ----
@@ -146,7 +174,7 @@ refuse 2 "truth.npy isn't what it was" "$study" --merge "$folder/station1" "$fol
 rm "$folder/station2/SHA256SUMS"
 rm -rf "$folder/x"
 refuse 2 'SHA256SUMS: No such file' "$study" --merge "$folder/station1" "$folder/station2" --out "$folder/x"
-[ ! -e "$folder/x/journal" ] || fail "a merge that failed has a journal"
+[ ! -e "$folder/x/study.sqlite" ] || fail "a merge that failed has a store"
 
 # ---- own words: printed as they can be read again; unknown names, places and letters are refused ----
 "$study" --words >"$folder/words.study" && "$study" "$folder/words.study" --plan >"$folder/out" 2>&1 || fail "--words: $(cat "$folder/out")"
@@ -194,21 +222,6 @@ for speed in ("low", "high"):
 done = {r["block"]: (r["part"], r["transition"], r["speed"]) for r in csv.DictReader(open(sys.argv[1] + "/orders/taps.csv"))}
 assert done == {r["block"]: (r["part"], r["transition"], r["speed"]) for r in rows if r["participant"] == "P01"}
 END
-
-# ---- an earlier version's rows, without both verdicts, go on as they are ----
-cp -r "$folder/whole" "$folder/earlier"
-"$python3" - "$folder/earlier/journal" <<'END'
-import hashlib, re, sys
-out = []
-for line in open(sys.argv[1]):
-    body = line.rstrip("\n")[:-10]
-    if body.startswith("tap "): body = re.sub(",[a-z-]+,[a-z-]+$", "", body)
-    out.append(f"{body} #{hashlib.sha256(body.encode()).hexdigest()[:8]}\n")
-open(sys.argv[1], "w").writelines(out)
-END
-"$study" --quiet --resume "$folder/earlier" >"$folder/out" 2>&1 || fail "an earlier version's journal: $(cat "$folder/out")"
-cut -d, -f1-28 "$folder/whole/taps.csv" >"$folder/a"; cut -d, -f1-28 "$folder/earlier/taps.csv" | cmp - "$folder/a" || fail "an earlier version's taps"
-[ "$(tail -n +2 "$folder/earlier/taps.csv" | cut -d, -f29,30 | sort -u)" = , ] || fail "verdicts that nobody made: $(cut -d, -f29,30 "$folder/earlier/taps.csv" | sort -u)"
 
 # ---- both verdicts of a tap are those of the two rules ----
 for by in paper finger; do
@@ -285,5 +298,4 @@ bad 'bad.study:2: pages.welcome: no key of this section; consent1 to' '[pages]\n
 bad 'bad.study:2: study.rest: found "-1"' '[study]\nrest = -1\n'
 bad 'bad.study:2: hand.source: found "paw", simulated|recorded|people|mouse' '[hand]\nsource = paw\n'
 unchanged "$folder/whole" "$folder/kept" "the session that all of this began with"
-[ $failed = 0 ] && echo "journals cut at $cuts bytes"
 exit $failed

@@ -9,6 +9,7 @@
 #include "screen/place.h"
 #include "study/plan.h"
 #include "study/sums.h"
+#include "study/tables.h"
 #include "text/file.h"
 #include "text/ini.h"
 #include "text/text.h"
@@ -50,12 +51,12 @@ static void load_study(const ethd__study_options *o, ethd__protocol *out) {
 }
 
 static void make_folder(const ethd__study_options *o) {
-  char message[ETHD_MESSAGE_MAX], *journal = ethd__folder_path(o->out, ETHD_STUDY_JOURNAL);
+  char message[ETHD_MESSAGE_MAX], *store = ethd__folder_path(o->out, ETHD_STUDY_STORE);
   ethd__protocol protocol;
   ethd__loaded loaded;
-  if (ethd__file_taken(journal))
+  if (!o->simulate && ethd__file_taken(store) && !ethd__folder_simulated(o->out))
     ethd__fail(ETHD_EXIT_INPUT, "%s: holds a session; --resume %s goes on with it", o->out, o->out);
-  free(journal);
+  free(store);
   load_study(o, &protocol);
   ethd__folder_device(&protocol, &loaded);
   check_study(o, &protocol, &loaded);
@@ -213,7 +214,7 @@ static int merge_shards(const char *path) {
 int ethd__command_merge(const ethd__study_options *o) {
   char message[ETHD_MESSAGE_MAX] = "";
   const char *folders[ETHD_STUDY_STATIONS + 2] = {o->merge};
-  size_t taps;
+  uint64_t taps;
   if (!o->out) return merge_shards(o->merge);
   memcpy(folders + 1, o->word, o->word_count * sizeof *folders);
   ethd_status status = ethd__stations_fit(folders, o->word_count + 1, message);
@@ -235,6 +236,20 @@ int ethd__command_words(const ethd__study_options *o) {
   (void)o;
   puts("[words]");
   for (int i = 0; i < ETHD_PHRASES; i++) printf("%s = %s\n", ethd__phrases[i].key, ethd__phrases[i].words);
+  return ETHD_EXIT_DONE;
+}
+
+int ethd__command_export(const ethd__study_options *o) {
+  char message[ETHD_MESSAGE_MAX];
+  ethd__folder folder;
+  ethd__study_store store;
+  check(ethd__folder_read(o->export, &folder, message), message);
+  check(ethd__progress_open(&folder, ETHD_STUDY_STORE, false, &store, message), message);
+  check(ethd__tables_write(&folder, &store, message), message);
+  check(ethd__sums_write(o->export, message), message);
+  printf("%s: taps.csv and the other tables are as %s says\n", o->export, ETHD_STUDY_STORE);
+  ethd__store_close(&store);
+  ethd__folder_close(&folder);
   return ETHD_EXIT_DONE;
 }
 

@@ -7,7 +7,7 @@
 #include "study/stations.h"
 
 typedef struct ethd__study_options {
-  const char *study, *out, *resume, *finger, *merge, *verify;
+  const char *study, *out, *resume, *finger, *merge, *export, *verify;
   const char *decision, *reason;             /* withdraw, exclude, include */
   const char *word[ETHD_STUDY_STATIONS + 1]; /* that are no options: the study, or further stations */
   size_t word_count;
@@ -26,6 +26,9 @@ int ethd__command_shard(const ethd__study_options *o);
 
 /* Merges the shards of one folder, or the sessions of several folders into `out`. */
 int ethd__command_merge(const ethd__study_options *o);
+
+/* Writes a folder's tables anew from its store. */
+int ethd__command_export(const ethd__study_options *o);
 
 /* Records a decision about a participant. */
 int ethd__command_decide(const ethd__study_options *o);

@@ -78,7 +78,7 @@ static const study_column events[] = {
      "didn't agree|pause=a pause began|note=somebody's words|abort=the participant wanted no more|undo=the abort was a "
      "mistake|withdraw=the participant withdrew|exclude=the experimenter took the participant out of the analysis|"
      "include=the experimenter put the participant back|fault=the device stopped itself|acknowledged=somebody has seen "
-     "to it|cut=a line that a crash had torn was cut off|merged=from here on another station's|wish to stop=somebody "
+     "to it|merged=from here on another station's|wish to stop=somebody "
      "ended the program|stop=the program ended|over=everything was done"},
     {"detail", "", "words for people, never read back but as a reason", NULL},
 };

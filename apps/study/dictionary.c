@@ -43,9 +43,11 @@ static const char files[] =
     "| orders.csv | the order that was planned for each participant, as ethd-study --plan prints it |\n"
     "| taps.json and so on | what each column of a table is, with units and levels, for programs |\n"
     "| dataset_description.json | what this is and what made it |\n"
-    "| journal | of a session: what happened, in order, each line with its check sum; the tables follow from it |\n"
+    "| study.sqlite | what happened, in order, a transaction each; the tables above are written from it, at the end of "
+    "each "
+    "sitting and by ethd-study --export; it needs a local disk |\n"
     "| taps/P01-03-004 | participant, block, attempt: every tick of that tap |\n"
-    "| shard-i-of-n.csv | of a simulation: the rows of one worker; taps.csv is all of them, merged |\n"
+    "| shard-i-of-n.sqlite | of a simulation: the rows of one worker; study.sqlite is all of them, merged |\n"
     "| SHA256SUMS | sums of all files, for ethd-study --verify or sha256sum -c |\n\n"
     "`ethd-report .` draws and counts; `ethd-study --resume .` goes on with a session.\n\n";
 
@@ -60,8 +62,7 @@ static const char ticks[] =
     "the controller saw: the ring by its encoders, finger and hand by the finger's filter, the pad touching from\n"
     "validity.slack before the ring on, its force never (NaN). Both are NumPy structured arrays. config.ini, "
     "scene.scene and events.csv\n"
-    "say how to repeat them: `ethd-replay --verify taps/P01-03-004` compares every field bit for bit. tap.csv is\n"
-    "the tap's row of taps.csv.\n";
+    "say how to repeat them: `ethd-replay --verify taps/P01-03-004` compares every field bit for bit.\n";
 
 char *ethd__dictionary(const ethd__table_scope *scope) {
   char *text = NULL;

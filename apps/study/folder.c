@@ -99,8 +99,7 @@ static ethd_status read_device_folder(const char *folder, char **out, char *mess
   return status;
 }
 
-/* Returns how many participants a simulation has; 0 for a session, or where the file doesn't say it. */
-static uint32_t simulated_of(const char *folder) {
+uint32_t ethd__folder_simulated(const char *folder) {
   char *path = ethd__folder_path(folder, ETHD_STUDY_VERSIONS), *text, unsaid[ETHD_MESSAGE_MAX];
   size_t length;
   unsigned people = 0;
@@ -135,7 +134,7 @@ ethd_status ethd__folder_read(const char *folder, ethd__folder *out, char messag
   if (!status) status = ethd__folder_hash(folder, out->hash, message);
   free(study);
   if (status == ETHD_E_FILE) status = no_study(folder, status, message);
-  out->simulated = simulated_of(folder);
+  out->simulated = ethd__folder_simulated(folder);
   if (!status && out->simulated) out->protocol.participants = out->simulated;
   if (status) ethd__folder_close(out);
   return status;

@@ -14,7 +14,6 @@
 #include "text/sha256.h"
 
 #define ETHD_STUDY_FILE "study.ini"
-#define ETHD_STUDY_JOURNAL "journal"
 #define ETHD_STUDY_TAPS "taps.csv"
 #define ETHD_STUDY_SURVEY "survey.csv"
 #define ETHD_STUDY_EVENTS "events.csv"
@@ -61,6 +60,10 @@ ETHD_MUST_CHECK ethd_status ethd__folder_read(const char *folder, ethd__folder *
 ETHD_MUST_CHECK ethd_status ethd__folder_open(const char *folder, bool plugins, ethd__folder *out,
                                               char message[ETHD_MESSAGE_MAX]);
 void ethd__folder_close(ethd__folder *folder);
+
+/* Returns how many participants the folder's simulation has; 0 for a session, or where its versions.txt doesn't say it.
+ */
+uint32_t ethd__folder_simulated(const char *folder);
 
 /* Gives the SHA-256 of the folder's inputs, one after another. */
 ETHD_MUST_CHECK ethd_status ethd__folder_hash(const char *folder, char out[ETHD_SHA256_TEXT],

@@ -224,7 +224,7 @@ static ethd_status write_versions(const wanted_list *list, const char *folder) {
   return status;
 }
 
-/* Everything must reach the disk before a journal mentions it. */
+/* Everything must reach the disk before the store mentions it. */
 static ethd_status settle(const char *folder, char *message) {
   int fd = ethd__file_open(folder, O_RDONLY | O_DIRECTORY, 0);
   bool failed = fd < 0 || syncfs(fd) != 0;

@@ -9,15 +9,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "study/columns.h"
-#include "study/folder.h"
 #include "study/row.h"
 #include "text/error_text.h"
 #include "text/file.h"
-#include "text/text.h"
 
 #define FRESH ".new"
-#define ROW "tap.csv"
 
 static ethd_status refuse(const char *path, char *message) {
   return ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
@@ -64,19 +60,8 @@ static void discard(const char *path) {
 
 /* ---- keeping ---- */
 
-static ethd_status write_row(const char *fresh, const char *row, char *message) {
-  char *path = ethd__folder_path(fresh, ROW), *text, *header = ethd__table_header(ETHD_TABLE_TAPS, NULL);
-  int length = asprintf(&text, "%s\n%s\n", header, row);
-  ethd_status status =
-      length < 0 ? ethd__no_memory(message, NULL) : ethd_text_write(path, text, (size_t)length, message);
-  if (length >= 0) free(text);
-  free(header);
-  free(path);
-  return status;
-}
-
 static ethd_status write_fresh(const char *fresh, const ethd_config *config, const ethd__taken *taken,
-                               const char *words, const char *row, char *message) {
+                               const char *words, char *message) {
   ethd__ticks ticks;
   char left[ETHD_MESSAGE_MAX];
   ethd_status status = ethd__ticks_open(fresh, config, false, &ticks, message);
@@ -85,7 +70,7 @@ static ethd_status write_fresh(const char *fresh, const ethd_config *config, con
   if (!status) status = ethd__ticks_tap(&ticks, words, taken->stage, message);
   ethd_status closed = ethd__ticks_close(&ticks, left);
   if (!status && closed) status = ethd__say(message, closed, "%s", left);
-  return status ? status : write_row(fresh, row, message);
+  return status;
 }
 
 static ethd_status put_in_place(const char *folder, const char *fresh, const char *path, char *message) {
@@ -94,11 +79,11 @@ static ethd_status put_in_place(const char *folder, const char *fresh, const cha
 }
 
 ethd_status ethd__tap_keep(const char *folder, const char *name, const ethd_config *config, const ethd__taken *taken,
-                           const char *words, const char *row, char message[ETHD_MESSAGE_MAX]) {
+                           const char *words, char message[ETHD_MESSAGE_MAX]) {
   char *fresh = ethd__folder_path(folder, FRESH), *path = ethd__folder_path(folder, name);
   discard(fresh);
   ethd_status status = ethd__file_make_folder(folder) ? refuse(folder, message) : ETHD_OK;
-  if (!status) status = write_fresh(fresh, config, taken, words, row, message);
+  if (!status) status = write_fresh(fresh, config, taken, words, message);
   if (!status) status = put_in_place(folder, fresh, path, message);
   if (status) discard(fresh);
   free(fresh);
@@ -106,33 +91,50 @@ ethd_status ethd__tap_keep(const char *folder, const char *name, const ethd_conf
   return status;
 }
 
-/* ---- what is there ---- */
+/* ---- what a kill has left ---- */
 
-static ethd_status read_row(const char *path, char **row, char *message) {
-  char *text, *file = ethd__folder_path(path, ROW), *columns = ethd__table_header(ETHD_TABLE_TAPS, NULL);
-  size_t length, header = strlen(columns);
-  ethd_status status = ethd_text_read(file, 1 << 16, &text, &length, message);
-  if (!status && (length < header + 3 || memcmp(text, columns, header) != 0 || text[header] != '\n' ||
-                  strcspn(text + header + 1, "\n") != length - header - 2))
-    status = ethd__say(message, ETHD_E_SYNTAX, "%s: not a tap's row; move the folder away to have the tap again", file);
-  if (!status) {
-    text[length - 1] = 0;
-    memmove(text, text + header + 1, length - header - 1);
-    *row = text;
-  } else {
-    free(text);
-  }
-  free(columns);
-  free(file);
-  return status;
+/* Whether this is the name of a tap's folder, and its tap isn't in the store. */
+static ethd_status is_torn(const ethd__protocol *p, ethd__study_store *store, const char *name, bool *torn,
+                           char *message) {
+  char again[64], id[ETHD_STUDY_ID_MAX];
+  unsigned person, block, attempt;
+  *torn = false;
+  if (sscanf(name, "P%u-%u-%u", &person, &block, &attempt) != 3) return ETHD_OK;
+  ethd__participant_id(p, person - 1, id);
+  snprintf(again, sizeof again, "%s-%02u-%03u", id, block, attempt);
+  if (strcmp(name, again) != 0) return ETHD_OK;
+  sqlite3_stmt *row =
+      ethd__store_query(store, "SELECT 1 FROM tap WHERE point = 0 AND participant = ? AND block = ? AND attempt = ?");
+  sqlite3_bind_int64(row, 1, person);
+  sqlite3_bind_int64(row, 2, block);
+  sqlite3_bind_int64(row, 3, attempt);
+  *torn = !ethd__store_next(row);
+  return ethd__store_end(store, row, message);
 }
 
-ethd_status ethd__tap_kept(const char *folder, const char *name, char **row, char message[ETHD_MESSAGE_MAX]) {
-  char *fresh = ethd__folder_path(folder, FRESH), *path = ethd__folder_path(folder, name);
-  *row = NULL;
-  discard(fresh);
-  ethd_status status = ethd__file_taken(path) ? read_row(path, row, message) : ETHD_OK;
+ethd_status ethd__tap_remove_torn(const ethd__folder *folder, ethd__study_store *store,
+                                  char message[ETHD_MESSAGE_MAX]) {
+  char *taps = ethd__folder_path(folder->path, ETHD_STUDY_RECORDINGS), *fresh = ethd__folder_path(taps, FRESH),
+       *torn = NULL;
+  DIR *open_folder = ethd__file_list(taps);
+  const struct dirent *entry;
+  size_t count = 0;
+  ethd_status status = ETHD_OK;
+  while (!status && open_folder && (entry = readdir(open_folder))) {
+    bool is = false;
+    status = is_torn(&folder->protocol, store, entry->d_name, &is, message);
+    if (is && !count++) torn = ethd__folder_path(taps, entry->d_name);
+  }
+  if (open_folder) closedir(open_folder);
+  if (!status && count > 1)
+    status = ethd__say(message, ETHD_E_SYNTAX,
+                       "%s: not in " ETHD_STUDY_STORE ", nor are %zu other taps' folders: put its latest copy back, or "
+                       "move these folders away",
+                       torn, count - 1);
+  if (!status) discard(fresh);
+  if (!status && torn) discard(torn);
+  free(taps);
   free(fresh);
-  free(path);
+  free(torn);
   return status;
 }

@@ -2,15 +2,17 @@
 #ifndef ETHD__APPS_STUDY_KEEP_H
 #define ETHD__APPS_STUDY_KEEP_H
 
+#include "store/store.h"
+#include "study/folder.h"
 #include "study/source.h"
 
-/* Makes folder/name, with the ticks and tap.csv with `row`. On failure nothing is left of it. */
+/* Makes folder/name, with the ticks. On failure nothing is left of it. */
 ETHD_MUST_CHECK ethd_status ethd__tap_keep(const char *folder, const char *name, const ethd_config *config,
-                                           const ethd__taken *taken, const char *words, const char *row,
-                                           char message[ETHD_MESSAGE_MAX]);
+                                           const ethd__taken *taken, const char *words, char message[ETHD_MESSAGE_MAX]);
 
-/* Gives the row of a tap that is there already, which the caller frees; NULL: it isn't. A half-made tap is removed. */
-ETHD_MUST_CHECK ethd_status ethd__tap_kept(const char *folder, const char *name, char **row,
-                                           char message[ETHD_MESSAGE_MAX]);
+/* Removes what a kill can leave below taps/: a half-made folder, and the folder of a tap that isn't in the store.
+   Refuses a folder with more of these, because then the store is an old one. */
+ETHD_MUST_CHECK ethd_status ethd__tap_remove_torn(const ethd__folder *folder, ethd__study_store *store,
+                                                  char message[ETHD_MESSAGE_MAX]);
 
 #endif

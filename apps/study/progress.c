@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "study/row.h"
 #include "text/error_text.h"
 
 const char *const ethd__standing_words[ETHD_STANDINGS] = {"", "aborted", "refused", "withdrawn", "excluded"};
@@ -15,192 +14,137 @@ bool ethd__block_over(const ethd__protocol *protocol, const ethd__study_block *b
   return valid >= protocol->taps || taken >= protocol->attempts;
 }
 
-bool ethd__participant_over(const ethd__session_progress *progress, uint32_t person) {
+bool ethd__participant_over(const ethd__protocol *protocol, const ethd__participant *who) {
   ethd__study_block blocks[ETHD_STUDY_BLOCKS];
-  size_t count = ethd__order_of(progress->protocol, person, blocks);
-  for (size_t i = 0; i < count; i++) {
-    const ethd__progress_of *at = &progress->person[person].at[i];
-    if (!ethd__block_over(progress->protocol, &blocks[i], at->taken, at->valid)) return false;
-  }
+  size_t count = ethd__order_of(protocol, who->person, blocks);
+  for (size_t i = 0; i < count; i++)
+    if (!ethd__block_over(protocol, &blocks[i], who->at[i].taken, who->at[i].valid)) return false;
   return true;
 }
 
-ethd_status ethd__progress_begin(const ethd__protocol *p, ethd__session_progress *out, char message[ETHD_MESSAGE_MAX]) {
-  *out = (ethd__session_progress){.protocol = p};
-  if (p->participants > ETHD_STUDY_SESSION_PEOPLE)
-    return ethd__say(message, ETHD_E_RANGE,
-                     "%s: study.participants: found %" PRIu32
-                     "; at most %u are allowed in a session, more with --simulate",
-                     p->path, p->participants, ETHD_STUDY_SESSION_PEOPLE);
-  out->person = calloc(p->participants, sizeof *out->person);
-  if (!out->person) return ethd__no_memory(message, NULL);
-  for (uint32_t i = 0; i < p->participants; i++)
-    for (size_t b = 0; b < ETHD_STUDY_BLOCKS; b++)
-      memset(out->person[i].at[b].answer, ETHD_ANSWER_UNASKED, sizeof out->person[i].at[b].answer);
-  return ETHD_OK;
-}
+/* ---- a participant ---- */
 
-void ethd__progress_free(ethd__session_progress *progress) {
-  for (uint32_t i = 0; progress->person && i < progress->protocol->participants; i++) free(progress->person[i].reason);
-  free(progress->person);
-  progress->person = NULL;
-  for (ethd__said *said = progress->said, *before; said; said = before) {
-    before = said->before;
-    free(said->words);
-    free(said);
+static ethd_status read_blocks(ethd__study_store *store, ethd__participant *who, char *message) {
+  sqlite3_stmt *row = ethd__store_query(store, "SELECT block, count(*), sum(valid), 0 FROM tap WHERE point = 0 AND "
+                                               "participant = ?1 GROUP BY block UNION ALL "
+                                               "SELECT block, 0, 0, 1 FROM survey WHERE participant = ?1");
+  sqlite3_bind_int64(row, 1, who->person + 1);
+  while (ethd__store_next(row)) {
+    int number = sqlite3_column_int(row, 0);
+    if (number < 1 || number > ETHD_STUDY_BLOCKS) continue;
+    ethd__progress_of *at = &who->at[number - 1];
+    at->taken += (uint32_t)sqlite3_column_int64(row, 1);
+    at->valid += (uint32_t)sqlite3_column_int64(row, 2);
+    at->surveyed |= sqlite3_column_int(row, 3);
   }
-  progress->said = NULL;
+  return ethd__store_end(store, row, message);
 }
 
-/* ---- lines ---- */
-
-/* Reads the participant from the row's first cell and advances past it; NULL if the study has no such participant. */
-static ethd__participant *person_of(ethd__session_progress *progress, const char **row) {
-  char id[ETHD_STUDY_ID_MAX], again[ETHD_STUDY_ID_MAX];
-  if (!ethd__row_cell(row, id, sizeof id) || id[0] != 'P') return NULL;
-  unsigned long person = strtoul(id + 1, NULL, 10) - 1;
-  if (person >= progress->protocol->participants) return NULL;
-  ethd__participant_id(progress->protocol, (uint32_t)person, again);
-  return strcmp(id, again) ? NULL : &progress->person[person];
-}
-
-/* Reads a whole number from `low` to `high` from the next cell. */
-static bool take_number(const char **row, long low, long high, long *out) {
-  char cell[8], *end;
-  if (!ethd__row_cell(row, cell, sizeof cell)) return false;
-  *out = strtol(cell, &end, 10);
-  return *cell && !*end && *out >= low && *out <= high;
-}
-
-static bool take_tap(ethd__session_progress *progress, const char *row) {
-  ethd__tap_key key;
-  if (!ethd__tap_row_key(row, &key) || key.person >= progress->protocol->participants) return false;
-  ethd__participant *person = &progress->person[key.person];
-  ethd__progress_of *at = &person->at[key.number - 1];
-  if (key.attempt != at->taken + 1 || (person->tapped && person->hand != key.hand)) return false;
-  at->taken++;
-  at->valid += key.valid;
-  if (!person->tapped) memcpy(person->first, key.utc, sizeof person->first);
-  memcpy(person->last, key.utc, sizeof person->last);
-  person->tapped = true;
-  person->hand = key.hand;
-  person->taps += !key.training;
-  person->valid += !key.training && key.valid;
-  return true;
-}
-
-/* Returns a row's last cell without its quotes; NULL without memory. */
-static char *unquoted(const char *cell) {
-  char *text = strdup(*cell == '"' ? cell + 1 : cell), *to = text;
-  if (!text || *cell != '"') return text;
-  for (const char *from = text; *from && !(*from == '"' && from[1] != '"'); from++) {
-    from += *from == '"';
-    *to++ = *from;
-  }
-  *to = 0;
-  return text;
-}
-
-static bool say(ethd__session_progress *progress, const ethd__progress_of *at, size_t question, const char *cell) {
-  ethd__said *said = malloc(sizeof *said);
-  if (!said) return false;
-  *said = (ethd__said){at, question, unquoted(cell), progress->said};
-  progress->said = said;
-  return said->words != NULL;
-}
-
-const char *ethd__progress_words(const ethd__session_progress *progress, const ethd__progress_of *at, size_t question) {
-  for (const ethd__said *said = progress->said; said; said = said->before)
-    if (said->at == at && said->question == question) return said->words;
-  return "";
-}
-
-/* The row is participant,block,question,answer; the answer is empty where the participant chose to give none. */
-static bool take_answer(ethd__session_progress *progress, const char *row) {
-  ethd__participant *person = person_of(progress, &row);
-  long number, question, answer = ETHD_ANSWER_NONE;
-  if (!person || !take_number(&row, 1, ETHD_STUDY_BLOCKS, &number) ||
-      !take_number(&row, 1, (long)ethd__question_count(&progress->protocol->questionnaire), &question))
-    return false;
-  const ethd__question *asked = &progress->protocol->questionnaire.question[question - 1];
-  ethd__progress_of *at = &person->at[number - 1];
-  if (ethd__question_is_text(asked)) {
-    answer = *row ? 1 : ETHD_ANSWER_NONE;
-    if (!say(progress, at, (size_t)question - 1, row)) return false;
-  } else if (*row && !take_number(&row, 1, (long)ethd__answer_count(asked), &answer)) {
-    return false;
-  }
-  at->answer[question - 1] = (int16_t)answer;
-  return true;
-}
-
-static bool take_survey(ethd__session_progress *progress, const char *row) {
-  ethd__participant *person = person_of(progress, &row);
-  long number;
-  if (!person || !take_number(&row, 1, ETHD_STUDY_BLOCKS, &number)) return false;
-  person->at[number - 1].surveyed = true;
-  return true;
-}
-
-static bool stand(ethd__participant *person, ethd__standing standing, const char *reason) {
-  free(person->reason);
-  person->standing = standing;
-  person->reason = unquoted(reason);
-  return person->reason != NULL;
-}
-
-/* utc,participant,block,event,detail: only the fourth cell says what happened, whatever stands in the fifth. */
-static bool take_event(ethd__session_progress *progress, const char *row) {
+/* The last event about it says how a participant stands. */
+static ethd_status read_standing(ethd__study_store *store, ethd__participant *who, char *message) {
   static const struct {
     const char *event;
     ethd__standing standing;
   } kinds[] = {{"abort", ETHD_STANDING_ABORTED},    {"undo", ETHD_STANDING_IN},
                {"refuse", ETHD_STANDING_REFUSED},   {"withdraw", ETHD_STANDING_WITHDRAWN},
                {"exclude", ETHD_STANDING_EXCLUDED}, {"include", ETHD_STANDING_IN}};
-  char cell[ETHD_UTC_MAX], kind[24];
-  if (!ethd__row_cell(&row, cell, sizeof cell)) return false;
-  if (*row == ',') return true; /* the event belongs to no participant */
-  ethd__participant *person = person_of(progress, &row);
-  if (!person || !ethd__row_cell(&row, cell, sizeof cell) || !ethd__row_cell(&row, kind, sizeof kind)) return false;
-  person->consented |= !strcmp(kind, "consent");
-  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-    if (!strcmp(kind, kinds[i].event)) return stand(person, kinds[i].standing, row);
-  return true;
+  sqlite3_stmt *row = ethd__store_query(store, "SELECT event FROM event WHERE participant = ? ORDER BY id");
+  sqlite3_bind_int64(row, 1, who->person + 1);
+  while (ethd__store_next(row)) {
+    const char *event = ethd__store_text(row, 0);
+    who->consented |= !strcmp(event, "consent");
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+      if (!strcmp(event, kinds[i].event)) who->standing = kinds[i].standing;
+  }
+  return ethd__store_end(store, row, message);
 }
 
-static bool take_hand(ethd__session_progress *progress, const char *word) {
-  for (int i = 0; i < ETHD_HAND_SOURCES; i++)
-    if (!strcmp(word, ethd__hand_words[i])) return progress->hand[i] = true;
-  return false;
+ethd_status ethd__participant_of(ethd__study_store *store, uint32_t person, ethd__participant *out,
+                                 char message[ETHD_MESSAGE_MAX]) {
+  *out = (ethd__participant){.person = person};
+  ethd_status status = read_blocks(store, out, message);
+  return status ? status : read_standing(store, out, message);
 }
 
-bool ethd__progress_take(ethd__session_progress *progress, const char *kind, const char *text) {
-  static const struct {
-    const char *kind;
-    bool (*take)(ethd__session_progress *progress, const char *text);
-  } kinds[] = {
-      {"tap", take_tap}, {"answer", take_answer}, {"survey", take_survey}, {"event", take_event}, {"hand", take_hand}};
-  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-    if (!strcmp(kind, kinds[i].kind)) return kinds[i].take(progress, text);
-  return false;
+ethd_status ethd__said_of(ethd__study_store *store, uint32_t person, size_t block, ethd__said *out,
+                          char message[ETHD_MESSAGE_MAX]) {
+  sqlite3_stmt *row =
+      ethd__store_query(store, "SELECT question, number, words FROM answer WHERE participant = ? AND block = ?");
+  memset(out, 0, sizeof *out);
+  for (size_t i = 0; i < ETHD_STUDY_QUESTIONS; i++) out->number[i] = ETHD_ANSWER_UNASKED;
+  sqlite3_bind_int64(row, 1, person + 1);
+  sqlite3_bind_int64(row, 2, (int64_t)block);
+  while (ethd__store_next(row)) {
+    int question = sqlite3_column_int(row, 0);
+    if (question < 1 || question > ETHD_STUDY_QUESTIONS) continue;
+    out->number[question - 1] = (int16_t)sqlite3_column_int(row, 1);
+    snprintf(out->words[question - 1], ETHD_MESSAGE_MAX, "%s", ethd__store_text(row, 2));
+  }
+  return ethd__store_end(store, row, message);
 }
 
-ethd_status ethd__progress_read(const ethd__journal *journal, const char *hash, ethd__session_progress *progress,
+/* ---- all of it ---- */
+
+ethd_status ethd__hands_of(ethd__study_store *store, bool out[ETHD_HAND_SOURCES], char message[ETHD_MESSAGE_MAX]) {
+  sqlite3_stmt *row = ethd__store_query(store, "SELECT word FROM hand");
+  memset(out, 0, ETHD_HAND_SOURCES * sizeof *out);
+  while (ethd__store_next(row))
+    for (int i = 0; i < ETHD_HAND_SOURCES; i++) out[i] |= !strcmp(ethd__store_text(row, 0), ethd__hand_words[i]);
+  return ethd__store_end(store, row, message);
+}
+
+/* SQL that finds rows of a participant, a block or a point that the study lacks; a cell that is no integer is beyond. */
+#define BEYOND(table) \
+  "EXISTS (SELECT 1 FROM " table " WHERE participant NOT BETWEEN 1 AND ?1 OR block NOT BETWEEN 1 AND ?2)"
+
+static const char odd_rows[] = "SELECT " BEYOND("tap") " OR " BEYOND("answer") " OR " BEYOND("survey") " OR " BEYOND(
+    "event") " OR EXISTS (SELECT 1 FROM tap WHERE point NOT BETWEEN 0 AND ?3)"
+             " OR EXISTS (SELECT 1 FROM tap GROUP BY point, participant, block HAVING max(attempt) <> count(*) OR "
+             "min(attempt) <> 1)"
+             " OR EXISTS (SELECT 1 FROM tap GROUP BY participant HAVING min(hand) <> max(hand))"
+             " OR EXISTS (SELECT 1 FROM answer WHERE question NOT BETWEEN 1 AND ?4 OR number NOT BETWEEN 0 AND 9)";
+
+/* A question's answers are numbered up to its own last one. */
+static ethd_status check_answers(ethd__study_store *store, const ethd__protocol *p, bool *odd, char *message) {
+  ethd_status status = ETHD_OK;
+  for (size_t i = 0; !status && !*odd && i < ethd__question_count(&p->questionnaire); i++) {
+    const ethd__question *asked = &p->questionnaire.question[i];
+    sqlite3_stmt *row = ethd__store_query(store, "SELECT 1 FROM answer WHERE question = ? AND number > ?");
+    sqlite3_bind_int64(row, 1, (int64_t)i + 1);
+    sqlite3_bind_int64(row, 2, ethd__question_is_text(asked) ? 1 : (int64_t)ethd__answer_count(asked));
+    *odd = ethd__store_next(row);
+    status = ethd__store_end(store, row, message);
+  }
+  return status;
+}
+
+static ethd_status check(ethd__study_store *store, const ethd__protocol *p, char *message) {
+  ethd__study_block blocks[ETHD_STUDY_BLOCKS];
+  sqlite3_stmt *row = ethd__store_query(store, odd_rows);
+  sqlite3_bind_int64(row, 1, p->participants);
+  sqlite3_bind_int64(row, 2, (int64_t)ethd__order_of(p, 0, blocks));
+  sqlite3_bind_int64(row, 3, (int64_t)ethd__protocol_points(p) - 1);
+  sqlite3_bind_int64(row, 4, (int64_t)ethd__question_count(&p->questionnaire));
+  bool odd = ethd__store_next(row) && sqlite3_column_int(row, 0);
+  ethd_status status = ethd__store_end(store, row, message);
+  if (!status) status = check_answers(store, p, &odd, message);
+  return !status && odd ? ethd__say(message, ETHD_E_SYNTAX, "%s: has rows that aren't of this study", store->path)
+                        : status;
+}
+
+ethd_status ethd__progress_open(const ethd__folder *folder, const char *name, bool write, ethd__study_store *out,
                                 char message[ETHD_MESSAGE_MAX]) {
-  char begun[ETHD_SHA256_TEXT + 8];
-  snprintf(begun, sizeof begun, "hash %s", hash);
-  if (!journal->count || strcmp(journal->lines[0].kind, "begin") || strcmp(journal->lines[0].text, begun))
-    return ethd__say(message, ETHD_E_SYNTAX,
-                     "%s: begun with other files than %s, config.ini, scene.scene, device.plant and movements of now; "
-                     "put them back",
-                     journal->path, ETHD_STUDY_FILE);
-  if (journal->count > 1 && strcmp(journal->lines[1].kind, "hand"))
-    return ethd__say(message, ETHD_E_SYNTAX,
-                     "%s: of an earlier version, which didn't keep whose hand tapped; ethd-report still draws it, but "
-                     "a new session is needed to go on",
-                     journal->path);
-  for (size_t i = 1; i < journal->count; i++)
-    if (!ethd__progress_take(progress, journal->lines[i].kind, journal->lines[i].text))
-      return ethd__say(message, ETHD_E_SYNTAX, "%s:%zu: not a line of this study", journal->path, i + 1);
-  return ETHD_OK;
+  const ethd__protocol *p = &folder->protocol;
+  *out = ETHD_STORE_NONE;
+  if (!folder->simulated && p->participants > ETHD_STUDY_SESSION_PEOPLE)
+    return ethd__say(message, ETHD_E_RANGE,
+                     "%s: study.participants: found %" PRIu32
+                     "; at most %u are allowed in a session, more with --simulate",
+                     p->path, p->participants, ETHD_STUDY_SESSION_PEOPLE);
+  char *path = ethd__folder_path(folder->path, name);
+  ethd_status status = (write ? ethd__store_open : ethd__store_read)(path, folder->hash, out, message);
+  if (!status) status = check(out, p, message);
+  if (status) ethd__store_close(out);
+  free(path);
+  return status;
 }

@@ -1,12 +1,12 @@
 #include "study/row.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
+#include "store/schema.h"
 #include "text/csv.h"
+
+#define HASH_DIGITS 12 /* that tell a simulation's study */
 
 void ethd__participant_id(const ethd__protocol *protocol, uint32_t person, char out[ETHD_STUDY_ID_MAX]) {
   int digits = 2;
@@ -14,110 +14,116 @@ void ethd__participant_id(const ethd__protocol *protocol, uint32_t person, char 
   snprintf(out, ETHD_STUDY_ID_MAX, "P%0*" PRIu32, digits, person + 1);
 }
 
-char *ethd__tap_row(const ethd__protocol *protocol, const ethd__taken *taken) {
-  const ethd__turn *turn = &taken->turn;
+/* ---- into the store ---- */
+
+static void bind_figures(sqlite3_stmt *query, int first, const ethd__result *result) {
+  const ethd__metrics *m = &result->metrics;
+  const double figures[ETHD_STORE_FIGURE_COUNT] = {m->v_rvo,
+                                                   m->v_of,
+                                                   m->d_max,
+                                                   m->v_rmin,
+                                                   m->delta_s,
+                                                   m->eps,
+                                                   m->t_rvo,
+                                                   m->t_of,
+                                                   m->t_seen,
+                                                   m->peak_force,
+                                                   result->finger_radius,
+                                                   result->commanded,
+                                                   m->v_hand,
+                                                   m->touch_depth,
+                                                   m->eps_felt};
+  for (int i = 0; i < ETHD_STORE_FIGURE_COUNT; i++) sqlite3_bind_double(query, first + i, figures[i]); /* NaN: NULL */
+}
+
+static void bind_word(sqlite3_stmt *query, int column, const char *word) {
+  sqlite3_bind_text(query, column, word, -1, SQLITE_TRANSIENT);
+}
+
+ethd_status ethd__tap_put(ethd__study_store *store, size_t point, const ethd__taken *taken,
+                          char message[ETHD_MESSAGE_MAX]) {
+  static const char insert[] =
+      "INSERT INTO tap (" ETHD_STORE_TAP ") VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, "
+      "?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23, ?24, ?25, ?26, ?27, ?28)";
   const ethd__metrics *m = &taken->result.metrics;
-  const double figures[] = {m->v_rvo,
-                            m->v_of,
-                            m->d_max,
-                            m->v_rmin,
-                            m->delta_s,
-                            m->eps,
-                            m->t_rvo,
-                            m->t_of,
-                            m->t_seen,
-                            m->peak_force,
-                            taken->result.finger_radius,
-                            taken->result.commanded,
-                            m->v_hand,
-                            m->touch_depth,
-                            m->eps_felt};
-  char id[ETHD_STUDY_ID_MAX], *text = NULL;
-  size_t length;
-  FILE *file = open_memstream(&text, &length);
-  if (!file) return NULL;
-  ethd__participant_id(protocol, turn->person, id);
-  fprintf(file, "%s,%zu,%s,%" PRIu32 ",%s,%s,%" PRIu64 ",%" PRIu64 ",%d,%s", id, turn->number,
-          turn->block.training ? "training" : "test", turn->attempt, protocol->strategies.word[turn->block.strategy],
-          protocol->speeds.word[turn->block.speed], taken->seed, taken->tap, m->reason == ETHD_TAP_OK,
-          ethd__reason_words[m->reason]);
-  for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
-    if (isnan(figures[i]))
-      fputc(',', file);
-    else
-      fprintf(file, ",%.17g", figures[i]);
-  fprintf(file, ",%s,", ethd__hand_words[taken->hand]);
-  ethd__csv_put_word(file, taken->movement ? taken->movement : "");
-  fprintf(file, ",%s,%s,%s", taken->utc, ethd__reason_words[m->by_ring], ethd__reason_words[m->by_finger]);
-  bool failed = ferror(file);
-  if (fclose(file) == 0 && !failed) return text;
-  free(text);
-  return NULL;
+  const ethd__turn *turn = &taken->turn;
+  char seed[24], tap[24];
+  sqlite3_stmt *query = ethd__store_query(store, insert);
+  snprintf(seed, sizeof seed, "%" PRIu64, taken->seed);
+  snprintf(tap, sizeof tap, "%" PRIu64, taken->tap);
+  sqlite3_bind_int64(query, 1, (int64_t)point);
+  sqlite3_bind_int64(query, 2, turn->person + 1);
+  sqlite3_bind_int64(query, 3, (int64_t)turn->number);
+  sqlite3_bind_int64(query, 4, turn->attempt);
+  bind_word(query, 5, seed);
+  bind_word(query, 6, tap);
+  sqlite3_bind_int(query, 7, m->reason == ETHD_TAP_OK);
+  bind_word(query, 8, ethd__reason_words[m->reason]);
+  bind_figures(query, 9, &taken->result);
+  bind_word(query, 24, ethd__hand_words[taken->hand]);
+  bind_word(query, 25, taken->movement);
+  bind_word(query, 26, taken->utc);
+  bind_word(query, 27, ethd__reason_words[m->by_ring]);
+  bind_word(query, 28, ethd__reason_words[m->by_finger]);
+  return ethd__store_run(store, query, message);
 }
 
-bool ethd__row_cell(const char **row, char *out, size_t room) {
-  size_t n = strcspn(*row, ",");
-  if (!**row || n >= room) return false;
-  memcpy(out, *row, n);
-  out[n] = 0;
-  *row += n + ((*row)[n] == ',');
-  return true;
+/* ---- out of it ---- */
+
+enum {
+  POINT,
+  PERSON,
+  BLOCK,
+  ATTEMPT,
+  SEED,
+  TAP,
+  VALID,
+  REASON,
+  FIGURES,
+  HAND = FIGURES + ETHD_STORE_FIGURE_COUNT,
+  COLUMNS = HAND + 5
+};
+
+static void print_cells(FILE *file, const char *before, sqlite3_stmt *tap, int first, int end) {
+  for (int i = first; i < end; i++) {
+    fputs(before, file);
+    if (i < FIGURES || i >= HAND)
+      ethd__csv_put_word(file, ethd__store_text(tap, i));
+    else if (sqlite3_column_type(tap, i) != SQLITE_NULL)
+      fprintf(file, "%.17g", sqlite3_column_double(tap, i));
+    before = ",";
+  }
 }
 
-static bool count_of(const char *cell, unsigned long long most, unsigned long long *out) {
-  *out = strtoull(cell, NULL, 10);
-  return *cell && !cell[strspn(cell, "0123456789")] && *out >= 1 && *out <= most;
+/* Prints a tap. `blocks` are its participant's. */
+static void print_tap(FILE *file, const ethd__protocol *p, const ethd__study_block *blocks, sqlite3_stmt *tap) {
+  char id[ETHD_STUDY_ID_MAX];
+  int number = sqlite3_column_int(tap, BLOCK);
+  const ethd__study_block *block = &blocks[number - 1];
+  ethd__participant_id(p, (uint32_t)sqlite3_column_int64(tap, PERSON) - 1, id);
+  fprintf(file, "%s,%d,%s,%" PRId64 ",%s,%s", id, number, block->training ? "training" : "test",
+          (int64_t)sqlite3_column_int64(tap, ATTEMPT), p->strategies.word[block->strategy],
+          p->speeds.word[block->speed]);
+  print_cells(file, ",", tap, SEED, COLUMNS);
 }
 
-static bool is_reason(const char *cell) {
-  for (int i = 0; i < ETHD_TAP_REASON_COUNT; i++)
-    if (!strcmp(cell, ethd__reason_words[i])) return true;
-  return false;
-}
-
-bool ethd__tap_row_is_short(const char *row) {
-  const char *last = strrchr(row, ',');
-  return !last || !is_reason(last + 1);
-}
-
-/* Copies the cell that ends at `end` and returns the comma before it; NULL if the cell doesn't fit. */
-static const char *cell_before(const char *row, const char *end, char *out, size_t room) {
-  const char *comma = end;
-  while (comma > row && comma[-1] != ',') comma--;
-  if (comma == row || (size_t)(end - comma) >= room) return NULL;
-  snprintf(out, room, "%.*s", (int)(end - comma), comma);
-  return comma - 1;
-}
-
-/* Reads hand,movement,utc,by_ring,by_finger, which follow the figures; rows of earlier versions lack the last two. Only
-   the movement can have quotes, so the cells behind it are read from the end. False: there is no such hand. */
-static bool read_end(const char *row, ethd__tap_key *out) {
-  char word[24];
-  int hand = 0;
-  enum { FIGURES = 15 };
-  for (int i = 0; i < FIGURES && *row; i++) row += strcspn(row, ",") + (row[strcspn(row, ",")] == ',');
-  const char *end = row + strlen(row);
-  for (int i = 0; end && i < 2 && !ethd__tap_row_is_short(row); i++) end = cell_before(row, end, word, sizeof word);
-  if (!end || !cell_before(row, end, out->utc, sizeof out->utc)) return false;
-  if (!ethd__row_cell(&row, word, sizeof word)) return false;
-  while (hand < ETHD_HAND_SOURCES && strcmp(word, ethd__hand_words[hand])) hand++;
-  out->hand = (ethd__hand_source)hand;
-  return hand < ETHD_HAND_SOURCES;
-}
-
-bool ethd__tap_row_key(const char *row, ethd__tap_key *out) {
-  enum { PARTICIPANT, BLOCK, PART, ATTEMPT, TRANSITION, SPEED, SEED, TAP, VALID, REASON, CELLS };
-  char cell[CELLS][40];
-  unsigned long long person, number, attempt;
-  for (int i = 0; i < CELLS; i++)
-    if (!ethd__row_cell(&row, cell[i], sizeof cell[i])) return false;
-  if (cell[PARTICIPANT][0] != 'P' || !count_of(cell[PARTICIPANT] + 1, ETHD_STUDY_PEOPLE, &person) ||
-      !count_of(cell[BLOCK], ETHD_STUDY_BLOCKS, &number) || !count_of(cell[ATTEMPT], UINT32_MAX, &attempt))
-    return false;
-  *out = (ethd__tap_key){.person = (uint32_t)person - 1,
-                         .attempt = (uint32_t)attempt,
-                         .number = (size_t)number,
-                         .training = !strcmp(cell[PART], "training"),
-                         .valid = cell[VALID][0] == '1'};
-  return read_end(row, out);
+ethd_status ethd__taps_print(FILE *file, ethd__study_store *store, const ethd__folder *folder,
+                             char message[ETHD_MESSAGE_MAX]) {
+  const ethd__protocol *p = &folder->protocol;
+  ethd__study_block blocks[ETHD_STUDY_BLOCKS];
+  int64_t person = -1;
+  sqlite3_stmt *tap = ethd__store_query(
+      store, folder->simulated ? "SELECT " ETHD_STORE_TAP " FROM tap ORDER BY point, participant, block, attempt"
+                               : "SELECT " ETHD_STORE_TAP " FROM tap ORDER BY id");
+  while (ethd__store_next(tap)) {
+    size_t point = (size_t)sqlite3_column_int64(tap, POINT);
+    int64_t now = sqlite3_column_int64(tap, PERSON) - 1;
+    if (now != person) (void)ethd__order_of(p, (uint32_t)(person = now), blocks);
+    if (folder->simulated) fprintf(file, "%.*s,%zu,", HASH_DIGITS, folder->hash, point);
+    print_tap(file, p, blocks, tap);
+    for (size_t i = 0; folder->simulated && i < p->axis_count; i++)
+      fprintf(file, ",%s", ethd__protocol_value(p, point, i));
+    putc('\n', file);
+  }
+  return ethd__store_end(store, tap, message);
 }

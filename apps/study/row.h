@@ -1,7 +1,9 @@
-/* Rows of a study's tables. All [main]. */
+/* Rows of study.sqlite that are put, and those of the tables for people. All [main]. */
 #ifndef ETHD__APPS_STUDY_ROW_H
 #define ETHD__APPS_STUDY_ROW_H
 
+#include "store/store.h"
+#include "study/folder.h"
 #include "study/source.h"
 
 #define ETHD_STUDY_ID_MAX 16
@@ -9,26 +11,13 @@
 /* Writes P01, P02, .. with as many digits as the number of participants needs, two at least. */
 void ethd__participant_id(const ethd__protocol *protocol, uint32_t person, char out[ETHD_STUDY_ID_MAX]);
 
-/* Returns the row of taps.csv, its cells as ethd__table_header has them, without its line end. The caller frees it;
-   NULL: no memory. */
-char *ethd__tap_row(const ethd__protocol *protocol, const ethd__taken *taken);
+/* Puts a tap; `point` of the grid, 0 without one. */
+ETHD_MUST_CHECK ethd_status ethd__tap_put(ethd__study_store *store, size_t point, const ethd__taken *taken,
+                                          char message[ETHD_MESSAGE_MAX]);
 
-/* The cells of a row of taps.csv that a resumed session and the table of participants need. */
-typedef struct ethd__tap_key {
-  uint32_t person, attempt;
-  size_t number;
-  bool training, valid;
-  ethd__hand_source hand;
-  char utc[ETHD_UTC_MAX];
-} ethd__tap_key;
-
-/* Returns whether this is a row of an earlier version, which lacks the last two cells, by_ring and by_finger. */
-bool ethd__tap_row_is_short(const char *row);
-
-/* Reads them; false: it is no row of this study. */
-bool ethd__tap_row_key(const char *row, ethd__tap_key *out);
-
-/* Takes the next cell of a row whose cells need no quotes, and advances *row past it; false at the end of the cells. */
-bool ethd__row_cell(const char **row, char *out, size_t room);
+/* Prints all taps as rows of taps.csv. In a simulation those of a point stand together, and the study and the point
+   before each row, its gains behind; in a session they come as they were done. */
+ETHD_MUST_CHECK ethd_status ethd__taps_print(FILE *file, ethd__study_store *store, const ethd__folder *folder,
+                                             char message[ETHD_MESSAGE_MAX]);
 
 #endif

@@ -1,7 +1,7 @@
 /* A session: people tap, block by block, and nothing of it is lost. All [main].
 
-   A tap counts once its folder has its final name; then the journal gets its line. Whatever ends the program
-   between two instants, the next one finds either no trace of the tap or the whole of it. */
+   A tap's ticks are on the disk in a folder of its own before its figures are put into the store, with which it counts.
+   Whatever ends the program between two instants, the next one finds the whole tap or removes what is there of it. */
 #ifndef ETHD__APPS_STUDY_SESSION_H
 #define ETHD__APPS_STUDY_SESSION_H
 

@@ -1,4 +1,4 @@
-/* A sitting: the time in which a session's folder is open. What happens in it goes into the journal. All [main]. */
+/* A sitting: the time in which a session's folder is open. What happens in it goes into the store. All [main]. */
 #ifndef ETHD__APPS_STUDY_SITTING_H
 #define ETHD__APPS_STUDY_SITTING_H
 
@@ -7,30 +7,39 @@
 
 typedef struct ethd__sitting {
   ethd__folder *folder;
-  ethd__journal journal;
-  ethd__session_progress progress;
+  ethd__study_store store;
+  ethd__participant who; /* whose turn it is */
   ethd__source source;
   ethd__front front;
-  uint32_t first, last;    /* participants who are asked for */
-  uint64_t taps;           /* done in this sitting */
-  uint32_t unasked;        /* blocks after which nobody could be asked */
-  ethd__participant *left; /* who was ended last in this sitting, NULL: nobody */
+  uint32_t first, last; /* participants who are asked for */
+  uint64_t taps;        /* done in this sitting */
+  uint32_t unasked;     /* blocks after which nobody could be asked */
+  uint32_t left;        /* who was ended last in this sitting, from 1; 0: nobody */
   bool handed_over, undone;
 } ethd__sitting;
 
-/* Opens a folder. Without a journal a new session begins; with one it goes on, if its taps are this hand's. */
+/* Opens a folder. Where nothing has happened yet a new session begins; else it goes on, if its taps are this hand's. A
+   tap's folder whose tap isn't in the store, which a kill leaves behind, is removed. */
 ETHD_MUST_CHECK ethd_status ethd__sitting_open(ethd__folder *folder, ethd__hand_source hand, ethd__sitting *out,
                                                char message[ETHD_MESSAGE_MAX]);
 
-/* Puts a line into the journal, and so into what is known of the session. */
-ETHD_MUST_CHECK ethd_status ethd__sitting_put(ethd__sitting *s, const char *kind, const char *text,
-                                              char message[ETHD_MESSAGE_MAX]);
+/* Makes it this participant's turn. */
+ETHD_MUST_CHECK ethd_status ethd__sitting_turn(ethd__sitting *s, uint32_t person, char message[ETHD_MESSAGE_MAX]);
 
-/* Writes down something that isn't a tap. number: of the block, 0: none. participant "": nobody's. */
-ETHD_MUST_CHECK ethd_status ethd__sitting_event(ethd__sitting *s, const char *participant, size_t number,
-                                                const char *event, const char *detail, char message[ETHD_MESSAGE_MAX]);
+/* Runs a statement that puts something into the store, and so into what is known of the participant. */
+ETHD_MUST_CHECK ethd_status ethd__sitting_put(ethd__sitting *s, sqlite3_stmt *insert, char message[ETHD_MESSAGE_MAX]);
 
-/* Gives the time of day; "" for simulated hands, so that the same study leaves the same bytes. */
+/* What an event is about. */
+typedef struct ethd__about {
+  uint32_t participant; /* from 1, 0: nobody */
+  size_t block;         /* from 1, 0: none */
+} ethd__about;
+
+/* Writes down something that isn't a tap. */
+ETHD_MUST_CHECK ethd_status ethd__sitting_event(ethd__sitting *s, ethd__about about, const char *event,
+                                                const char *detail, char message[ETHD_MESSAGE_MAX]);
+
+/* Gives the time of day; "" for simulated hands, so that the same study leaves the same tables. */
 void ethd__sitting_now(const ethd__sitting *s, char out[ETHD_UTC_MAX]);
 
 void ethd__sitting_close(ethd__sitting *s);

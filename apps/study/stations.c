@@ -1,6 +1,5 @@
 #include "study/stations.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,59 +7,51 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "study/progress.h"
-#include "study/row.h"
+#include "study/merge.h"
 #include "study/sums.h"
-#include "study/tables.h"
 #include "text/claim.h"
-#include "text/csv.h"
 #include "text/error_text.h"
 #include "text/file.h"
 #include "text/text.h"
 
-#define FRESH "journal.new"
 #define FILE_MAX ((size_t)1 << 30) /* bytes */
 
 typedef struct station {
   ethd__folder folder;
-  ethd__journal journal;
-  ethd__session_progress progress;
+  ethd__study_store store;
 } station;
 
 /* ---- reading ---- */
 
 static void close_station(station *s) {
-  ethd__journal_close(&s->journal);
-  ethd__progress_free(&s->progress);
+  ethd__store_close(&s->store);
   ethd__folder_close(&s->folder);
 }
 
 static ethd_status open_station(const char *path, station *out, char *message) {
-  *out = (station){.journal = {.fd = -1}};
-  char *journal = ethd__folder_path(path, ETHD_STUDY_JOURNAL);
   ethd_status status = ethd__folder_read(path, &out->folder, message);
-  if (!status) status = ethd__progress_begin(&out->folder.protocol, &out->progress, message);
-  if (!status) status = ethd__journal_read(journal, &out->journal, message);
-  if (!status) status = ethd__progress_read(&out->journal, out->folder.hash, &out->progress, message);
-  free(journal);
-  if (status) close_station(out);
+  if (status) return status;
+  status = ethd__progress_open(&out->folder, ETHD_STUDY_STORE, false, &out->store, message);
+  if (status) ethd__folder_close(&out->folder);
   return status;
 }
 
 /* Refuses a participant who has tapped at an earlier station. owner[person] is the station's number from 1, 0 if there
    is none yet. */
-static ethd_status take_owners(const station *s, size_t number, const char *const *folders, size_t *owner,
-                               char *message) {
+static ethd_status take_owners(station *s, size_t number, const char *const *folders, size_t *owner, char *message) {
   char id[ETHD_STUDY_ID_MAX];
-  for (uint32_t i = 0; i < s->folder.protocol.participants; i++) {
-    if (!s->progress.person[i].tapped) continue;
-    ethd__participant_id(&s->folder.protocol, i, id);
-    if (owner[i])
-      return ethd__say(message, ETHD_E_DUPLICATE, "%s: %s has tapped there and in %s; one participant, one station",
-                       folders[number], id, folders[owner[i] - 1]);
-    owner[i] = number + 1;
+  ethd_status status = ETHD_OK;
+  sqlite3_stmt *row = ethd__store_query(&s->store, "SELECT DISTINCT participant FROM tap");
+  while (!status && ethd__store_next(row)) {
+    uint32_t person = (uint32_t)sqlite3_column_int64(row, 0) - 1;
+    ethd__participant_id(&s->folder.protocol, person, id);
+    if (owner[person])
+      status = ethd__say(message, ETHD_E_DUPLICATE, "%s: %s has tapped there and in %s; one participant, one station",
+                         folders[number], id, folders[owner[person] - 1]);
+    owner[person] = number + 1;
   }
-  return ETHD_OK;
+  ethd_status ended = ethd__store_end(&s->store, row, message);
+  return status ? status : ended;
 }
 
 ethd_status ethd__stations_fit(const char *const *folders, size_t count, char message[ETHD_MESSAGE_MAX]) {
@@ -73,11 +64,14 @@ ethd_status ethd__stations_fit(const char *const *folders, size_t count, char me
     status = open_station(folders[i], &s, message);
     if (status) break;
     if (!i) memcpy(hash, s.folder.hash, sizeof hash);
-    status = strcmp(hash, s.folder.hash)
-                 ? ethd__say(message, ETHD_E_ARGUMENT,
-                             "%s: its study, configuration, walls or plant are other ones than those of %s", folders[i],
-                             folders[0])
-                 : take_owners(&s, i, folders, owner, message);
+    if (s.folder.simulated)
+      status = ethd__say(message, ETHD_E_ARGUMENT, "%s: holds a simulation; sessions are merged here", folders[i]);
+    else if (strcmp(hash, s.folder.hash))
+      status = ethd__say(message, ETHD_E_ARGUMENT,
+                         "%s: its study, configuration, walls or plant are other ones than those of %s", folders[i],
+                         folders[0]);
+    else
+      status = take_owners(&s, i, folders, owner, message);
     close_station(&s);
   }
   free(owner);
@@ -122,107 +116,68 @@ static ethd_status copy_file(void *user, const char *path) {
   return status;
 }
 
-/* ---- the journal ---- */
+/* ---- the stores ---- */
 
-/* Prints all lines of a station but the first, and an event that says where they come from. */
-static size_t put_station(const station *s, FILE *file, char *message) {
-  char sum[ETHD_SHA256_TEXT], *text = NULL;
-  size_t length, taps = 0;
-  if (ethd__sum_of_file(s->journal.path, sum, message)) return 0;
-  for (size_t i = 1; i < s->journal.count; i++) {
-    ethd__journal_print(file, s->journal.lines[i].kind, s->journal.lines[i].text);
-    taps += !strcmp(s->journal.lines[i].kind, "tap");
-    if (i > 1) continue;
-    FILE *row = open_memstream(&text, &length);
-    if (!row) ethd__fail_memory();
-    fputs(",,,merged,", row);
-    ethd__csv_put_word(row, s->folder.path);
-    fprintf(row, " %s", sum);
-    if (fclose(row)) ethd__fail_memory();
-    ethd__journal_print(file, "event", text);
-    free(text);
-  }
-  return taps;
+/* Says in the store that what follows comes from this folder's. */
+static ethd_status put_origin(ethd__study_store *out, const char *folder, const char *path, char *message) {
+  char sum[ETHD_SHA256_TEXT], *detail;
+  ethd_status status = ethd__sum_of_file(path, sum, message);
+  if (status) return status;
+  if (asprintf(&detail, "%s %s", folder, sum) < 0) return ethd__no_memory(message, NULL);
+  sqlite3_stmt *insert = ethd__store_query(out, "INSERT INTO event (utc, event, detail) VALUES ('', 'merged', ?)");
+  sqlite3_bind_text(insert, 1, detail, -1, SQLITE_TRANSIENT);
+  free(detail);
+  return ethd__store_run(out, insert, message);
 }
 
-/* Prints the lines of all stations as the journal of one folder. */
-static ethd_status print_journal(const char *const *folders, size_t count, FILE *file, size_t *taps, char *message) {
+typedef struct origins {
+  const char *const *folder;
+  size_t count;
+} origins;
+
+static ethd_status add(const void *self, ethd__study_store *out, char message[ETHD_MESSAGE_MAX]) {
+  const origins *all = self;
   ethd_status status = ETHD_OK;
-  *taps = 0;
-  for (size_t i = 0; !status && i < count; i++) {
-    station s;
-    status = open_station(folders[i], &s, message);
-    if (status) break;
-    if (!i) ethd__journal_print(file, s.journal.lines[0].kind, s.journal.lines[0].text);
-    *taps += put_station(&s, file, message);
-    close_station(&s);
+  for (size_t i = 0; !status && i < all->count; i++) {
+    char *path = ethd__folder_path(all->folder[i], ETHD_STUDY_STORE);
+    status = put_origin(out, all->folder[i], path, message);
+    if (!status) status = ethd__store_add(out, path, message);
+    free(path);
   }
-  return status;
-}
-
-static ethd_status write_journal(const char *const *folders, size_t count, const char *out, size_t *taps,
-                                 char *message) {
-  char *fresh = ethd__folder_path(out, FRESH), *path = ethd__folder_path(out, ETHD_STUDY_JOURNAL);
-  int fd = ethd__file_create(fresh, message);
-  FILE *file = fd < 0 ? NULL : fdopen(fd, "w");
-  ethd_status status = fd < 0 ? ETHD_E_FILE : ETHD_OK;
-  if (!status) status = file ? print_journal(folders, count, file, taps, message) : ethd__no_memory(message, fresh);
-  bool failed = file && (fflush(file) || fsync(fileno(file)));
-  if (file) failed |= fclose(file) != 0;
-  if (!status && (failed || ethd__file_move(fresh, path)))
-    status = ethd__say(message, ETHD_E_FILE, "%s: %s", path, strerror(errno));
-  if (status) ethd__file_remove(fresh);
-  free(fresh);
-  free(path);
   return status;
 }
 
 ethd_status ethd__stations_tables(const char *const *folders, size_t count, char *out[ETHD_TABLES],
                                   char message[ETHD_MESSAGE_MAX]) {
-  char *text = NULL, *path = ethd__folder_path(folders[0], ETHD_STUDY_JOURNAL);
-  size_t length, taps;
   ethd__folder folder;
-  ethd__journal journal = {.fd = -1};
-  FILE *file = open_memstream(&text, &length);
-  if (!file) ethd__fail_memory();
-  ethd_status status = print_journal(folders, count, file, &taps, message);
-  if (fclose(file)) ethd__fail_memory();
-  if (status)
-    free(text);
-  else
-    status = ethd__journal_parse(text, length, path, &journal, message);
-  if (!status) status = ethd__folder_read(folders[0], &folder, message);
-  if (!status) {
-    status = ethd__tables_of(&folder, &journal, out, message);
-    ethd__folder_close(&folder);
-  }
-  ethd__journal_close(&journal);
-  free(path);
+  ethd__study_store store;
+  ethd_status status = ethd__folder_read(folders[0], &folder, message);
+  if (status) return status;
+  status = ethd__store_open(ETHD_STORE_MEMORY, folder.hash, &store, message);
+  if (!status) status = add(&(origins){folders, count}, &store, message);
+  if (!status) status = ethd__tables_of(&folder, &store, out, message);
+  ethd__store_close(&store);
+  ethd__folder_close(&folder);
   return status;
 }
 
 /* ---- merging ---- */
 
-static ethd_status write_tables(const char *out, char *message) {
+static ethd_status merge(const char *const *folders, size_t count, const char *out, uint64_t *taps, char *message) {
   ethd__folder folder;
-  ethd_status status = ethd__folder_read(out, &folder, message);
-  if (status) return status;
-  status = ethd__tables_write(&folder, message);
-  ethd__folder_close(&folder);
-  return status;
-}
-
-static ethd_status merge(const char *const *folders, size_t count, const char *out, size_t *taps, char *message) {
   ethd_status status = ETHD_OK;
   for (size_t i = 0; !status && i < count; i++) {
     copying c = {folders[i], out, i == 0, message};
     status = ethd__sums_each(folders[i], copy_file, &c, message);
   }
-  if (!status) status = write_journal(folders, count, out, taps, message);
-  return status ? status : write_tables(out, message);
+  if (!status) status = ethd__folder_read(out, &folder, message);
+  if (status) return status;
+  status = ethd__merge_write(&folder, &(ethd__merge){&(origins){folders, count}, add}, taps, message);
+  ethd__folder_close(&folder);
+  return status ? status : ethd__sums_write(out, message);
 }
 
-ethd_status ethd__stations_merge(const char *const *folders, size_t count, const char *out, size_t *taps,
+ethd_status ethd__stations_merge(const char *const *folders, size_t count, const char *out, uint64_t *taps,
                                  char message[ETHD_MESSAGE_MAX]) {
   static const char *const any[] = {"*", NULL};
   ethd__claim claim = ETHD_CLAIM_NONE;

@@ -1,6 +1,6 @@
 /* Several stations of one study: sessions in folders of their own, of different participants. All [main].
 
-   Journals are merged; a merged folder is a session's folder like any other, and its tables follow from its journal.
+   Stores are merged; a merged folder is a session's folder like any other, and its tables follow from its store.
    Stations may differ in whose hand tapped, which is written at each tap and participant. */
 #ifndef ETHD__APPS_STUDY_STATIONS_H
 #define ETHD__APPS_STUDY_STATIONS_H
@@ -17,13 +17,13 @@ ETHD_MUST_CHECK ethd_status ethd__stations_fit(const char *const *folders, size_
                                                char message[ETHD_MESSAGE_MAX]);
 
 /* Gives the text of the tables that a merged folder would hold, which the caller frees; NULL for those that don't come
-   from journals. The folders must fit. */
+   from stores. The folders must fit. */
 ETHD_MUST_CHECK ethd_status ethd__stations_tables(const char *const *folders, size_t count, char *out[ETHD_TABLES],
                                                   char message[ETHD_MESSAGE_MAX]);
 
-/* Makes folder `out`, which must not be there or be empty, of these: inputs, taps, journal, tables, SHA256SUMS. The
+/* Makes folder `out`, which must not be there or be empty, of these: inputs, taps, store, tables, SHA256SUMS. The
    folders fit, and are only read. *taps: how many. */
 ETHD_MUST_CHECK ethd_status ethd__stations_merge(const char *const *folders, size_t count, const char *out,
-                                                 size_t *taps, char message[ETHD_MESSAGE_MAX]);
+                                                 uint64_t *taps, char message[ETHD_MESSAGE_MAX]);
 
 #endif

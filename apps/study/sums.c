@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fnmatch.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -88,7 +89,7 @@ static bool ends(const char *name, const char *end) {
 }
 
 static bool left_out(const char *name, int depth) {
-  return name[0] == '.' || ends(name, ".new") || ends(name, ".part") ||
+  return name[0] == '.' || ends(name, ".new") || ends(name, ".sqlite-journal") ||
          (!depth && (!strcmp(name, ETHD_STUDY_SUMS) || !strcmp(name, "report")));
 }
 
@@ -142,9 +143,9 @@ static ethd_status read_list(const char *path, summed_list *out, char *message) 
 }
 
 bool ethd__sums_grows(const char *path) {
-  static const char *const names[] = {"journal", "taps.csv", "survey.csv", "events.csv", "participants.csv"};
+  static const char *const names[] = {"*.sqlite", "taps.csv", "survey.csv", "events.csv", "participants.csv"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-    if (!strcmp(path, names[i])) return true;
+    if (!fnmatch(names[i], path, FNM_PATHNAME)) return true;
   return false;
 }
 

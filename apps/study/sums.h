@@ -1,8 +1,8 @@
 /* SHA256SUMS of a study's folder: a line a file, "SUM  PATH", as sha256sum writes and checks it. All [main].
 
    What is written once, inputs and taps, keeps the sum that it got first, so that nothing which was changed later gets
-   a new one; the journal and the tables that follow from it get theirs anew each time. Left out: hidden files, what is
-   unfinished (*.new, *.part), and the report. */
+   a new one; the store and the tables that follow from it get theirs anew each time. Left out: hidden files, what is
+   unfinished (*.new, *.sqlite-journal), and the report. */
 #ifndef ETHD__APPS_STUDY_SUMS_H
 #define ETHD__APPS_STUDY_SUMS_H
 
@@ -30,7 +30,7 @@ ETHD_MUST_CHECK ethd_status ethd__sums_check(const char *folder, size_t *files, 
 ETHD_MUST_CHECK ethd_status ethd__sums_each(const char *folder, ethd_status (*each)(void *user, const char *path),
                                             void *user, char message[ETHD_MESSAGE_MAX]);
 
-/* Returns whether a file changes as a session goes on, as the journal and the tables that follow from it do. [any] */
+/* Returns whether a file changes as a session goes on, as the store and the tables that follow from it do. [any] */
 bool ethd__sums_grows(const char *path);
 
 #endif

@@ -7,7 +7,7 @@
 /* Returns whether questions are to be asked after this block. */
 bool ethd__survey_due(const ethd__sitting *s, const ethd__turn *turn);
 
-/* Asks them. Each answer reaches the journal before the next question. *stop: somebody ended it meanwhile. */
+/* Asks them. Each answer is on the disk before the next question. *stop: somebody ended it meanwhile. */
 ETHD_MUST_CHECK ethd_status ethd__survey_run(ethd__sitting *s, const char *id, const ethd__turn *turn, bool *stop,
                                              char message[ETHD_MESSAGE_MAX]);
 

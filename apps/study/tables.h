@@ -1,17 +1,17 @@
-/* The tables of a folder, which follow from its journal. All [main]. */
+/* The tables for people, which follow from a folder's store. All [main]. */
 #ifndef ETHD__APPS_STUDY_TABLES_H
 #define ETHD__APPS_STUDY_TABLES_H
 
 #include "study/columns.h"
-#include "study/folder.h"
-#include "study/journal.h"
+#include "study/progress.h"
 
-/* Writes taps.csv, survey.csv, events.csv and participants.csv from the folder's journal, and SHA256SUMS of it all. */
-ETHD_MUST_CHECK ethd_status ethd__tables_write(const ethd__folder *folder, char message[ETHD_MESSAGE_MAX]);
+/* Writes taps.csv and, of a session, survey.csv, events.csv and participants.csv, each whole. */
+ETHD_MUST_CHECK ethd_status ethd__tables_write(const ethd__folder *folder, ethd__study_store *store,
+                                               char message[ETHD_MESSAGE_MAX]);
 
 /* Gives the text of these tables, freed by the caller; NULL for those that were written as the folder was made. Exit 1
    without memory. */
-ETHD_MUST_CHECK ethd_status ethd__tables_of(const ethd__folder *folder, const ethd__journal *journal,
+ETHD_MUST_CHECK ethd_status ethd__tables_of(const ethd__folder *folder, ethd__study_store *store,
                                             char *out[ETHD_TABLES], char message[ETHD_MESSAGE_MAX]);
 
 #endif

@@ -35,7 +35,7 @@ static double reach(const ethd__two *term, int order, double h) {
 /* Finds where f, a value or a slope, times sign passes from below 0 to above, to LOCATED, by regula falsi (Illinois).
    Returns the end at which it is above. */
 static double locate(double (*f)(const ethd__two *, int, double) ETHD_RT, const ethd__two *term, int order, double sign,
-                     double high) {
+                     double high) ETHD_RT {
   double low = 0, below = sign * f(term, order, 0), above = sign * f(term, order, high);
   int side = 0;
   while (high - low > LOCATED) {
@@ -73,7 +73,7 @@ typedef struct change {
   ethd__touch touch;
 } change;
 
-static change next_change(const ethd__series *s, ethd__touch touch) {
+static change next_change(const ethd__series *s, ethd__touch touch) ETHD_RT {
   change none = {INFINITY, touch};
   int n = s->watched;
   if (!n) return none;

@@ -217,37 +217,6 @@ START_TEST(test_ids) {
 }
 END_TEST
 
-START_TEST(test_row_keys) {
-  ethd__tap_key key;
-  ck_assert(ethd__tap_row_key("P02,3,test,17,offset,low,5,9,1,ok,.2,,,,,,,,,,,,,,,mouse,\"a, b\",2026-01-02T03:04:05Z",
-                              &key));
-  ck_assert(key.person == 1 && key.number == 3 && key.attempt == 17 && key.valid && !key.training);
-  ck_assert(key.hand == ETHD_HAND_MOUSE);
-  ck_assert_str_eq(key.utc, "2026-01-02T03:04:05Z");
-  ck_assert(ethd__tap_row_key("P02,3,training,17,offset,low,5,9,0,ok,,,,,,,,,,,,,,,,simulated,,", &key));
-  ck_assert(!key.valid && key.training && key.hand == ETHD_HAND_SIMULATED && !*key.utc);
-  /* of today: with both verdicts at its end; those above are an earlier version's */
-  const char *row =
-      "P02,3,test,17,offset,low,5,9,0,too-slow,.2,,,,,,,,,,,,,,,mouse,\"a, b\",2026-01-02T03:04:05Z,too-slow,ok";
-  ck_assert(ethd__tap_row_key(row, &key) && key.hand == ETHD_HAND_MOUSE && !ethd__tap_row_is_short(row));
-  ck_assert_str_eq(key.utc, "2026-01-02T03:04:05Z");
-  ck_assert(ethd__tap_row_is_short("P02,3,training,17,offset,low,5,9,0,ok,,,,,,,,,,,,,,,,simulated,,"));
-  ck_assert(ethd__tap_row_key("P02,3,test,17,offset,low,5,9,0,ok,,,,,,,,,,,,,,,,simulated,,,ok,ok", &key) && !*key.utc);
-  const char *const bad[] = {"",
-                             "P02",
-                             "X02,3,test,17,offset,low,5,9,1,",
-                             "P0,3,test,17,offset,low,5,9,1,",
-                             "P02,0,test,17,offset,low,5,9,1,",
-                             "P02,3,test,x,offset,low,5,9,1,",
-                             "P02,999,test,1,a,b,5,9,1,",
-                             "P02,3,test,17,offset,low,5,9,1,ok,.2",
-                             "P02,3,test,17,offset,low,5,9,1,ok,.2,,,,,,,,,,,,,,,ok,ok",
-                             "P02,3,test,17,offset,low,5,9,1,ok",
-                             "P02,3,test,17,offset,low,5,9,1,ok,.2,,,,,,,,,,,,,,,paw,,"};
-  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) ck_assert(!ethd__tap_row_key(bad[i], &key));
-}
-END_TEST
-
 /* ---- sums: FIPS 180-4's examples ---- */
 
 static void sum_is(const char *text, size_t times, const char *expected) {
@@ -282,7 +251,6 @@ int main(void) {
   tcase_add_test(all, test_random_order);
   tcase_add_test(all, test_people);
   tcase_add_test(all, test_ids);
-  tcase_add_test(all, test_row_keys);
   tcase_add_test(all, test_sha256);
   suite_add_tcase(suite, all);
   return rig_run(suite);

@@ -41,7 +41,7 @@ class Recording:
 
     tick: NDArray[Any]  #: a row a tick, of the dtype ethd.TRACE; ethd.UNITS has the unit of each field, positions are in R_0
     truth: Optional[NDArray[Any]]  #: of a simulation, a row a tick: what was true (m, m/s, N; R_0)
-    taps: Optional[NDArray[Any]]  #: a row a tap, NaN where a number isn't defined
+    taps: Optional[NDArray[Any]]  #: a row a tap, NaN where a number isn't defined; of a study's tap its own
     events: List[RecordedEvent]
     config: configparser.ConfigParser  #: config.ini
 
@@ -50,15 +50,12 @@ class Recording:
         self._plugins = plugins
         self.tick = mapped(os.path.join(folder, "tick.npy"))
         self.truth = self._array("truth.npy")
-        self.taps = self._table("taps.csv", "tap.csv")
+        self.taps = table(os.path.join(folder, "taps.csv")) if there(folder, "taps.csv") else None
         self.events = events(folder)
         self.config = ini(os.path.join(folder, "config.ini"))
 
     def _array(self, name: str) -> Optional[NDArray[Any]]:
         return mapped(os.path.join(self.folder, name)) if there(self.folder, name) else None
-
-    def _table(self, *names: str) -> Optional[NDArray[Any]]:
-        return next((table(os.path.join(self.folder, name)) for name in names if there(self.folder, name)), None)
 
     def _open(self) -> Controller:
         if self.tick.dtype != TRACE:

@@ -30,7 +30,7 @@ class Study:
     def __init__(self, folder: Union[str, "os.PathLike[str]"], plugins: bool = False):
         self.folder = os.fspath(folder)
         self._plugins = plugins
-        if glob.glob(self._pattern("shard-*-of-*.csv")) and not there(self.folder, "taps.csv"):
+        if glob.glob(self._pattern("shard-*-of-*.sqlite")) and not there(self.folder, "taps.csv"):
             raise FileNotFoundError(f"{self.folder}: a simulation in shards: ethd-study --merge {self.folder} makes taps.csv of them")
         if not there(self.folder, "taps.csv"):
             raise FileNotFoundError(f"{self.folder}: no study there that was begun: it has no taps.csv")
@@ -57,16 +57,21 @@ class Study:
             name, folders = f"{int(tap['point'])}-{name}", self._workers
         return next((self._path(folder, name) for folder in folders if there(self.folder, folder, name, "tick.npy")), None)
 
+    def _recording(self, folder: str, tap: np.void) -> Recording:
+        recording = Recording(folder, self._plugins)
+        recording.taps = np.array([tap], tap.dtype)
+        return recording
+
     def trial(self, tap: np.void) -> Recording:
         """The recording of a row of `taps`: every tick of that tap."""
         folder = self._trial_folder(tap)
         if folder is None:
             raise FileNotFoundError(f"{self.folder}: {_name(tap)}: that tap's ticks aren't there")
-        return Recording(folder, self._plugins)
+        return self._recording(folder, tap)
 
     def trials(self) -> Iterator[Tuple[np.void, Recording]]:
         """Each row of `taps` with its recording, in the table's order; taps whose ticks weren't kept are left out."""
         for tap in self.taps:
             folder = self._trial_folder(tap)
             if folder is not None:
-                yield tap, Recording(folder, self._plugins)
+                yield tap, self._recording(folder, tap)

@@ -1,0 +1,26 @@
+/* What a store must be, since somebody else may have made it: looked at as a file before SQLite opens it, and as tables
+   before anything in them is believed. All [main]. */
+#ifndef ETHD__APPS_STORE_CHECK_H
+#define ETHD__APPS_STORE_CHECK_H
+
+#include "store/store.h"
+
+typedef struct ethd__store_file {
+  bool there;
+  int64_t size; /* bytes */
+  bool cut;     /* its last transaction was cut short, and is rolled back when the store is opened to write */
+} ethd__store_file;
+
+/* Looks at a file. Refuses a link, a pipe and the like, a file with a hole, one of which SQLite would follow a log or
+   another journal, one in which a program is at work; and none, where a journal of an earlier version is. */
+ETHD_MUST_CHECK ethd_status ethd__store_look(const char *path, ethd__store_file *out, char message[ETHD_MESSAGE_MAX]);
+
+/* Refuses an open store whose mark, tables, rows or hash aren't those of this study. */
+ETHD_MUST_CHECK ethd_status ethd__store_check(ethd__study_store *store, const char *hash,
+                                              char message[ETHD_MESSAGE_MAX]);
+
+/* Gives the first column of the first row as text, freed by the caller; NULL: there is none, or no memory. */
+ETHD_MUST_CHECK ethd_status ethd__store_first(ethd__study_store *store, const char *sql, char **out,
+                                              char message[ETHD_MESSAGE_MAX]);
+
+#endif
