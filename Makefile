@@ -338,26 +338,26 @@ demo: all
 	$(built)
 	@BUILD='$(B)' sh apps/demo.sh
 
-# Other people's libraries that the benchmarks measure beside ours: ethd-bench loads those that are there.
-PEERS := $(patsubst apps/bench/peers/%,$(B)/peers/%.so,$(basename $(wildcard apps/bench/peers/*.c apps/bench/peers/*.cc)))
+# Other people's libraries that the benchmarks measure beside ours: the benchmark loads those that are there.
+PEERS := $(patsubst tests/bench/peers/%,$(B)/peers/%.so,$(basename $(wildcard tests/bench/peers/*.c tests/bench/peers/*.cc)))
 define peer
-$(B)/peers/$(basename $(notdir $(1))).so: $(1) $(wildcard apps/bench/*.h) $(HEADERS) $(B)/flags
+$(B)/peers/$(basename $(notdir $(1))).so: $(1) $(wildcard tests/bench/*.h) $(HEADERS) $(B)/flags
 	$$(call say,PEER,$$@)
 	@BUILD='$(B)' CC='$$(CC)' CXX='$$(CXX)' CFLAGS='$$(CFLAGS)' sh .ci/peer $$< $$@
 endef
-$(foreach p,$(wildcard apps/bench/peers/*.c apps/bench/peers/*.cc),$(eval $(call peer,$(p))))
+$(foreach p,$(wildcard tests/bench/peers/*.c tests/bench/peers/*.cc),$(eval $(call peer,$(p))))
 
 bench-quick: QUICK := 1
-bench bench-quick: $(B)/bin/ethd-bench $(PEERS) $(SHARE)
+bench bench-quick: $(B)/tests/bench $(PEERS) $(SHARE)
 	$(built)
-	@BUILD='$(B)' QUICK='$(QUICK)' WHAT='$(WHAT)' sh apps/bench.sh \
+	@BUILD='$(B)' QUICK='$(QUICK)' WHAT='$(WHAT)' sh tests/bench/bench.sh \
 	  'commit $(or $(shell git describe --always --dirty 2>/dev/null),unknown); $(CC) $(BASE)'
 
 # The long ones: minutes.
 stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_svg $(B)/tests/test_fuzz_decoder \
   $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study $(B)/tests/test_servo_driver \
   $(B)/tests/test_fuzz_map $(B)/tests/test_promises $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile \
-  $(B)/tests/volume $(B)/tests/day
+  $(B)/tests/volume $(B)/tests/day $(B)/tests/stress
 	$(built)
 	ETHD_SCENE_QUERIES=1000000 ETHD_SCENE_OBJECTS=10000000 $(B)/tests/test_scene_tree
 	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
@@ -380,7 +380,7 @@ stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/te
 # These go on where they were, and say what is left: a release runs them to the end, volume-all.
 	@BUILD='$(abspath $(B))' sh tests/volume.sh 1e9 15
 	@$(B)/tests/day $(B)/day 24 10 2>$(B)/day.err
-	@BUILD='$(B)' SAN='$(SAN)' sh apps/stress.sh
+	@BUILD='$(B)' SAN='$(SAN)' sh tests/stress/stress.sh
 
 # What the tests reach: every branch of lib, 90 % of drivers, the conditions that decide; then how many small bugs they see.
 coverage:

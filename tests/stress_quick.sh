@@ -1,9 +1,10 @@
 #!/bin/sh
-# Every stress test with fewer points, and what the program promises its users.
+# Every stress test with fewer points.
 set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-stress=$BUILD/bin/ethd-stress
+stress=$BUILD/tests/stress
+mkdir "$folder/data"
 fail() { echo "$*"; exit 1; }
 
 "$stress" all --quick --csv "$folder/results.csv" --out "$folder/data" >"$folder/out" || {

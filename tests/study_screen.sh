@@ -169,7 +169,7 @@ for tap in "$folder"/session/taps/*/; do
 done
 
 # How long frames take is said for any size; it is judged by nobody here.
-sh apps/frames.sh 640x400 1 >"$folder/out" 2>&1
+sh tests/stress/frames.sh 640x400 1 >"$folder/out" 2>&1
 grep -Eq '^frames 640x400 p50 +[0-9.]+ +p99 +[0-9.]+ +max +[0-9.]+ ms, [0-9]+ shown, [0-9]+ late ticks$' "$folder/out" ||
-  fail "apps/frames.sh: $(cat "$folder/out")"
+  fail "tests/stress/frames.sh: $(cat "$folder/out")"
 exit $failed

@@ -1,0 +1,64 @@
+/* What a peer's shared object exports: one table for each question it answers (C linkage, const). */
+#ifndef ETHD_TESTS_BENCH_PEERS_H
+#define ETHD_TESTS_BENCH_PEERS_H
+
+#include <math.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* `peer_kinematics`: a planar serial arm. Each item of `in` is q1 q2 fx fy ex ey, of `out` x y (forward
+   kinematics), J^T f, J^-1 e. */
+typedef struct ethd__peer_kinematics {
+  const char *name;
+  void *(*create)(double link1, double link2);
+  void (*work)(void *self, const double (*in)[6], double (*out)[6], size_t count);
+  void (*destroy)(void *self);
+} ethd__peer_kinematics;
+
+/* `peer_filter`: a Kalman filter of constant acceleration with 3x3 matrices, alike for both axes, which does what the
+   finger filter's `ca` does: it has the same start, fades likewise, and moves from sample to sample. An item of `in` is
+   a tick's reading x y and its age in s, NaN without one; an item of `out` is x y now. A tick takes `period`. */
+typedef struct ethd__peer_filter {
+  const char *name;
+  void *(*create)(double period, double jerk, double memory, double noise);
+  void (*work)(void *self, const double (*in)[3], double (*out)[2], size_t count); /* starts anew */
+  void (*destroy)(void *self);
+} ethd__peer_filter;
+
+/* `peer_scene`: segments {x1, y1, x2, y2} of the plane; the array stays where it is. */
+typedef struct ethd__peer_scene {
+  const char *name;
+  void *(*create)(const double (*segments)[4], size_t count);
+  /* out: distance of the nearest segment, INFINITY if that is beyond `limit`, and the point there. `warm`: it may
+     start from its last answer. */
+  void (*nearest)(void *self, const double x[2], double limit, int warm, double out[3]);
+  size_t (*bytes)(void *self); /* NULL: unknown */
+  void (*destroy)(void *self);
+} ethd__peer_scene;
+
+/* Returns the squared distance from x to a segment. */
+static inline double ethd__peer_squared(const double s[4], const double x[2]) {
+  double ex = s[2] - s[0], ey = s[3] - s[1], ux = x[0] - s[0], uy = x[1] - s[1];
+  double along = ex * ux + ey * uy, ee = ex * ex + ey * ey;
+  double across = ex * uy - ey * ux, wx = x[0] - s[2], wy = x[1] - s[3];
+  return along <= 0 ? ux * ux + uy * uy : along >= ee ? wx * wx + wy * wy : across * across / ee;
+}
+
+/* Gives the distance from x to a segment, and the point there. */
+static inline void ethd__peer_point(const double s[4], const double x[2], double out[3]) {
+  double ex = s[2] - s[0], ey = s[3] - s[1], ux = x[0] - s[0], uy = x[1] - s[1];
+  double along = ex * ux + ey * uy, ee = ex * ex + ey * ey;
+  double t = along <= 0 ? 0 : along >= ee ? 1 : along / ee;
+  out[0] = sqrt(ethd__peer_squared(s, x));
+  out[1] = t == 1 ? s[2] : s[0] + t * ex;
+  out[2] = t == 1 ? s[3] : s[1] + t * ey;
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

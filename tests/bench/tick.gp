@@ -1,0 +1,67 @@
+# The whole tick: how many take longer than a time, and where the time goes.
+#   gnuplot -e "in='tick.csv'; out='tick.png'" tick.gp
+# in: the file of make bench.
+if (!exists("in") || !exists("out")) { print "tick.gp: set in and out: gnuplot -e \"in='tick.csv'; out='tick.png'\" tick.gp"; exit status 2 }
+
+set terminal pngcairo size 1350,760 font "Sans,15" background "#ffffff"
+set output out
+set datafile separator comma
+set datafile columnheaders
+
+grey = "#7a7a7a"
+set border 3 lc rgb grey
+set tics nomirror textcolor rgb "#333333" scale 0.6
+set grid lc rgb "#e4e4e4" lt 1 lw 1
+unset key
+
+here(what, scene, finger) = strcol("what") eq what && strcol("law") eq "offset" && strcol("scene") eq scene && strcol("finger") eq finger
+tail(what, scene, finger) = here(what, scene, finger) && strcol("name") eq "tail" ? column("time_ns") : NaN
+
+set multiplot
+set tmargin at screen 0.79
+set bmargin at screen 0.12
+set label 1 "The whole tick of the controller, recording included" at screen 0.07,0.957 font "Sans Bold,18"
+set label 2 "simulated taps on an outline of 1000 segments, law offset, finger from 16 rays. Cold: 32 MB written before. Live: a loop at 1 kHz" \
+  at screen 0.07,0.915 font "Sans,13" textcolor rgb grey
+
+set lmargin at screen 0.07
+set rmargin at screen 0.51
+set title "share of ticks that take longer" font "Sans,15" offset 0,-0.5
+set logscale xy
+set xrange [40:100000]
+set yrange [1e-4:1]
+set format y "10^{%L}"
+set xlabel "run time of a tick, ns" offset 0,0.3
+do for [k = 1:5] {
+  set label 10 + k word("'hot, known finger' hot cold live 'live, early'", k) at graph 0.75,graph 0.99 - 0.055*k font "Sans,14" \
+    textcolor rgb word("#9a9a9a #c0392b #1f5fa8 #d98a00 #2e7d4f", k)
+}
+plot in using (tail("hot", "1000", "known")):"share_longer" with lines lw 2.4 lc rgb "#9a9a9a", \
+     in using (tail("hot", "1000", "rays")):"share_longer" with lines lw 2.4 lc rgb "#c0392b", \
+     in using (tail("cold", "1000", "rays")):"share_longer" with lines lw 2.4 lc rgb "#1f5fa8", \
+     in using (tail("live", "1000", "rays")):"share_longer" with lines lw 2.4 lc rgb "#d98a00", \
+     in using (tail("live early", "1000", "rays")):"share_longer" with lines lw 2.4 lc rgb "#2e7d4f"
+unset label
+
+# the parts that differences between set-ups show
+set lmargin at screen 0.80
+set rmargin at screen 0.975
+set title "by part, hot, mean"
+unset logscale
+unset format
+parts = "'1000 segments instead of the wall' 'transition, contact at a wall' 'ring fit (300 Hz)' 'finger filter' 'joint speeds' 'kinematics, tracking, guard, frame' 'record'"
+part(i) = strcol("what") ne "part" || strcol("law") ne "offset" ? -1 : \
+  strstrt(strcol("name"), "scene") ? 0 : strstrt(strcol("name"), "transition and contact at") ? 1 : strstrt(strcol("name"), "ring fit") ? 2 : \
+  strstrt(strcol("name"), "finger filter") ? 3 : strstrt(strcol("name"), "joint speeds") ? 4 : strstrt(strcol("name"), "the frame") ? 5 : strstrt(strcol("name"), "record") == 1 ? 6 : -1
+set xrange [0:90]
+set xtics 20
+set yrange [6.6:-0.6]
+set ytics ()
+do for [k = 1:words(parts)] {set ytics add (word(parts, k) k - 1)}
+set grid noytics
+set xlabel "ns a tick"
+set style fill solid 0.8 noborder
+width(i) = part(0) >= 0 ? column("time_ns") : NaN
+plot in using (width(0)):(part(0)):(0):(width(0)):(part(0) - 0.3):(part(0) + 0.3) with boxxyerror lc rgb "#c0392b", \
+     in using (width(0)):(part(0)):(sprintf("%.0f", column("time_ns"))) with labels left offset 0.5,0 font "Sans,13" textcolor rgb "#333333"
+unset multiplot
