@@ -24,10 +24,6 @@ void ethd__predictor_prepare(const ethd__evidence *evidence, const ethd_plant *p
   ethd__body_prepare(&def, 0, &out->body);
 }
 
-int ethd__predictor_states(const ethd__predictor *p) {
-  return p->body.compliant ? ETHD__STATE_MOST : ETHD__STATE_RIGID;
-}
-
 static void place(const ethd__body *b, const double *x, ethd__sim_state *out) {
   memset(out, 0, sizeof *out);
   out->clearance = FAR;

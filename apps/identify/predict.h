@@ -29,9 +29,6 @@ typedef struct ethd__predictor {
 void ethd__predictor_prepare(const ethd__evidence *evidence, const ethd_plant *plant, double tolerance,
                              ethd__predictor *out);
 
-/* Returns how many numbers a state has. */
-int ethd__predictor_states(const ethd__predictor *predictor);
-
 /* Fills the joint angles at the window's ticks, both of one tick side by side: 2 * window->count numbers. An arm that
    runs away, as no device does, stands still from there on. */
 void ethd__predict(ethd__predictor *predictor, const ethd__shot *window, const double *state, double *out);

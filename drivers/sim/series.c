@@ -10,8 +10,6 @@
      D = sqrt(r . r):       sum D_i D_(k-i) = (r . r)_k */
 #include "sim/series.h"
 
-#include <limits.h>
-
 #include "ethd/maths.h"
 #include "sim/terms.h"
 
@@ -31,8 +29,7 @@ typedef struct expansion {
   ethd__two inverse_distance, stiffness; /* the pad's; stiffness over distance */
   double inverse_mass;                   /* of the finger */
   double swing;                          /* -w^2 of the hand's path, for its terms beyond 3 */
-  double enough;                         /* m/s: terms that change less end the series, */
-  double tolerance;                      /* m/s: and the step is so short that the last ones change less than this */
+  double tolerance; /* m/s: terms that change less end the series, and the step is so short that the last ones do */
   int order_max;
 } expansion;
 
@@ -195,7 +192,7 @@ ETHD__INLINE double speed(const expansion *w, physics has, int k) {
    ring's speed plus that of the finger relative to its path. */
 ETHD__INLINE double expand(expansion *w, physics has) {
   ethd__series *s = w->out;
-  double tolerance = w->tolerance, enough = w->enough, h = s->step, reach, most, before, term;
+  double tolerance = w->tolerance, h = s->step, reach, most, before, term;
   accelerate(w, has, 0);
   accelerate(w, has, 1);
   accelerate(w, has, 2);
@@ -207,7 +204,7 @@ ETHD__INLINE double expand(expansion *w, physics has) {
   term = reach * speed(w, has, 4);
   most += before + term;
   int k = ETHD__ORDER_MIN;
-  while (k < w->order_max && !(before <= enough && term <= enough)) {
+  while (k < w->order_max && !(before <= tolerance && term <= tolerance)) {
     accelerate(w, has, k++);
     before = term;
     reach *= h;
@@ -279,11 +276,8 @@ static void begin(const ethd__sim_motion *hand, const ethd__sim_state *state, et
   s->motor_v[0] = ethd__pair(state->v + ETHD__MOTOR);
 }
 
-/* Computes the series to the order that the tolerance asks for (order INT_MAX), or to this order whatever the tolerance
-   is. */
-static void expand_to(const ethd__body *b, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
-                      int order, const ethd__sim_state *state, ethd__series *out) {
-  bool given = order <= ETHD__ORDER_MAX;
+void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
+                         const ethd__sim_state *state, ethd__series *out) {
   physics has = {b->serial, b->compliant, b->coupling != 0, state->touch};
   expansion w;
   w.body = b;
@@ -291,9 +285,8 @@ static void expand_to(const ethd__body *b, const ethd__piece *piece, const ethd_
   w.related = -1;
   w.swing = -piece->w * piece->w;
   w.inverse_mass = 1 / b->finger_mass;
-  w.enough = given ? -1 : b->tolerance;
-  w.tolerance = given ? INFINITY : b->tolerance;
-  w.order_max = given ? order : b->order_max;
+  w.tolerance = b->tolerance;
+  w.order_max = b->order_max;
   w.inverse_inertia = 1 / ethd__pair(b->inertia);
   w.length = ethd__pair(b->link);
   w.friction = ethd__pair(b->friction);
@@ -309,14 +302,4 @@ static void expand_to(const ethd__body *b, const ethd__piece *piece, const ethd_
     keep_clear(&w, piece, hand, state->clearance, most);
   else
     watch_touching(&w, has.touch);
-}
-
-void ethd__series_expand(const ethd__body *b, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
-                         const ethd__sim_state *state, ethd__series *out) {
-  expand_to(b, piece, hand, step, INT_MAX, state, out);
-}
-
-void ethd__series_repeat(const ethd__body *b, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
-                         int order, const ethd__sim_state *state, ethd__series *out) {
-  expand_to(b, piece, hand, step, order, state, out);
 }

@@ -26,10 +26,6 @@ typedef struct ethd__series {
 void ethd__series_expand(const ethd__body *body, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
                          const ethd__sim_state *state, ethd__series *out) ETHD_RT;
 
-/* The same with this order over the whole of `step`, whatever the tolerance is. */
-void ethd__series_repeat(const ethd__body *body, const ethd__piece *piece, const ethd__sim_motion *hand, double step,
-                         int order, const ethd__sim_state *state, ethd__series *out) ETHD_RT;
-
 /* One step: the motion from `begin` to `end` and what it leads to. */
 typedef struct ethd__leg {
   double begin, end;
@@ -44,20 +40,6 @@ void ethd__leg_begin(const ethd__piece *piece, double t, const ethd__sim_state *
 /* Makes the next leg, which ends at `end`, where touch changes, or where the tolerance is used up. `cell` is the length
    of every step that nothing cuts short. */
 void ethd__leg_next(const ethd__body *body, const ethd__piece *piece, double end, double cell, ethd__leg *leg) ETHD_RT;
-
-/* What another motion may repeat of a leg, so that both take the same steps and their difference is smooth. */
-typedef struct ethd__stride {
-  double end;
-  int order;
-  ethd__touch to;
-} ethd__stride;
-
-ethd__stride ethd__leg_stride(const ethd__leg *leg) ETHD_RT;
-
-/* Makes the next leg as the other motion made its own, at most to `end`; where touch changes in both, each at its own
-   instant. False, with nothing done: touch changes in only one of them. */
-bool ethd__leg_repeat(const ethd__body *body, const ethd__piece *piece, const ethd__stride *like, double end,
-                      ethd__leg *leg) ETHD_RT;
 
 /* Fill what holds at an instant within the leg: of the coordinates the angles of links and motors; the whole state. */
 void ethd__leg_angles(const ethd__body *body, const ethd__leg *leg, double t, double out[ETHD__DOF_MAX]) ETHD_RT;

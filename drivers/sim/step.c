@@ -7,7 +7,6 @@
 #define LOCATED 1e-12  /* s, to which an event is located */
 #define SHORTEST 1e-15 /* s: a turn within less, or a NaN, isn't followed */
 #define RUBBING 10.0   /* tanh is +-1 within 4e-9 beyond it */
-#define ASIDE 1e-5     /* s by which the same change of touch may come later in another motion */
 #define TURN 2.0       /* by which its argument may change in a step that comes nearer to 0, */
 #define PACE 5e3       /* 1/s: but by no more than this times the grid's cell, so that half the cell halves each step */
 
@@ -152,30 +151,6 @@ void ethd__leg_next(const ethd__body *b, const ethd__piece *piece, double end, d
   }
   leg->to.clearance = s->clearance;
   if (step == c.after) leg->to.touch = c.touch;
-}
-
-ethd__stride ethd__leg_stride(const ethd__leg *leg) {
-  return (ethd__stride){leg->end, leg->series.order, leg->to.touch};
-}
-
-bool ethd__leg_repeat(const ethd__body *b, const ethd__piece *piece, const ethd__stride *like, double end,
-                      ethd__leg *leg) {
-  ethd__series *s = &leg->series;
-  ethd__touch touch = leg->to.touch;
-  bool changes = like->to != touch;
-  double until = changes ? fmin(like->end + ASIDE, end) : like->end, whole = until - leg->end;
-  if (!(whole > 0)) return false;
-  ethd__series_repeat(b, piece, &leg->hand, whole, like->order, &leg->to, s);
-  change c = next_change(s, touch);
-  if (changes ? !(c.after <= whole) || c.touch != like->to : c.after < whole) return false;
-  leg->begin = leg->end;
-  leg->from = leg->to;
-  leg->end = changes ? fmin(leg->begin + c.after, until) : until;
-  leg->hand = ethd__piece_at(piece, leg->end);
-  move(b, s, &leg->hand, changes ? c.after : whole, &leg->to);
-  leg->to.clearance = s->clearance;
-  leg->to.touch = like->to;
-  return true;
 }
 
 void ethd__leg_angles(const ethd__body *b, const ethd__leg *leg, double t, double out[ETHD__DOF_MAX]) {

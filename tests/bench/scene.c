@@ -119,7 +119,7 @@ static void run(const char *folder, int quick) {
   static const struct {
     int i;
     const char *file;
-  } peers[] = {{EMBREE, "embree"}, {CGAL, "cgal"}, {GEOS, "geos"}, {CHIPMUNK, "chipmunk"}};
+  } peers[] = {{EMBREE, "embree"}, {CGAL, "cgal"}};
   printf("scene: the nearest of n segments, its distance, point and normal; ns\n"
          "  a path at 1 kHz, up to 1 m/s: warm knows its last answer, horizon wants only what is within %g mm;\n"
          "  incoherent: anywhere, nothing known. Best of rounds; p99 to max and cold (caches used by others): of %zu\n",
@@ -139,7 +139,7 @@ static void run(const char *folder, int quick) {
   print_goals(&t);
   FILE *csv = ethd__bench_csv(
       folder, "scene",
-      "# nearest of n segments: distance, point, normal (GEOS: distance); contour: libethd has one polyline, libethd "
+      "# nearest of n segments: distance, point, normal; contour: libethd has one polyline, libethd "
       "loose and the others n segments\n"
       "# mean: blocks of 100 queries, each at its best of the rounds; median to max: query by query, likewise\n"
       "# cold: 8 MB of something else used between two queries. difference: largest, from libethd's distance\n",

@@ -19,19 +19,19 @@ set xrange [0.8:150000]
 set yrange [8:2e6]
 set format x "10^{%L}"
 
-array names[6] = ["libethd", "libethd loose", "Embree", "CGAL", "GEOS", "Chipmunk2D"]
-array tints[6] = ["#c0392b", "#e59866", "#1f5fa8", "#1e8449", "#7d3c98", "#7a7a7a"]
+array names[4] = ["libethd", "libethd loose", "Embree", "CGAL"]
+array tints[4] = ["#c0392b", "#e59866", "#1f5fa8", "#1e8449"]
 # the libraries' versions follow their names
 is(i) = strcol("contender") eq names[i] || (i > 2 && strstrt(strcol("contender"), names[i]) == 1)
 here(i) = strcol("scene") eq scene && strcol("mode") eq mode && is(i)
 
 left(c) = 0.075 + 0.31*c
 place = 'set lmargin at screen left(col); set rmargin at screen left(col) + 0.28; set tmargin at screen row ? 0.46 : 0.845; set bmargin at screen row ? 0.085 : 0.505'
-panel = 'plot for [k in scene eq "contour" ? "6 5 4 3 2 1" : "6 5 4 3 1"] in using (here(int(k)) ? column("segments") : NaN):(here(int(k)) ? column("mean_ns") : NaN) with linespoints lc rgb tints[int(k)] lw (k eq "1" ? 3 : 1.8) pt 7 ps (k eq "1" ? 1.3 : 0.9)'
+panel = 'plot for [k in scene eq "contour" ? "4 3 2 1" : "4 3 1"] in using (here(int(k)) ? column("segments") : NaN):(here(int(k)) ? column("mean_ns") : NaN) with linespoints lc rgb tints[int(k)] lw (k eq "1" ? 3 : 1.8) pt 7 ps (k eq "1" ? 1.3 : 0.9)'
 
 set multiplot
 set label 1 "The nearest of n segments: mean time of a query, caches hot" at screen 0.075,0.965 font "Sans Bold,18"
-do for [i=1:6] {
+do for [i=1:4] {
   set arrow 10 + i from screen 0.075 + 0.13*(i-1),0.925 to screen 0.095 + 0.13*(i-1),0.925 nohead lc rgb tints[i] lw (i == 1 ? 3 : 2)
   set label 10 + i names[i] at screen 0.101 + 0.13*(i-1),0.925 font "Sans,14"
 }

@@ -5,7 +5,7 @@
 #include "bench/bench.h"
 #include "bench/scene_world.h"
 
-enum { OURS, LOOSE, EMBREE, CGAL, GEOS, CHIPMUNK, CONTENDERS };
+enum { OURS, LOOSE, EMBREE, CGAL, CONTENDERS };
 enum { SIZES = 6, CALM_FROM = 3 }; /* from this size on the caches matter */
 extern const size_t ethd__contest_sizes[SIZES];
 

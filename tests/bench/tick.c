@@ -78,6 +78,11 @@ static double mean_of(const hot *h, int l, int f, int s) { return h->entries[h->
 
 /* ---- by part ---- */
 
+static void put_part(FILE *csv, const char *law, const char *name, double ns) {
+  ethd__tick_put(csv, (ethd__tick_row){"part", law, "1000", "rays"}, name, NAN, ns);
+  printf("    %-52s %6.1f\n", name, ns);
+}
+
 /* Reports differences between set-ups each of which has one thing more, and what recording costs. */
 static void report_parts(FILE *csv, const hot *h) {
   const int f = ETHD__TAP_RAYS;
@@ -89,22 +94,21 @@ static void report_parts(FILE *csv, const hot *h) {
   ethd__bench_race(both, 2, 0.1);
   double record = both[0].ns - both[1].ns;
   printf("  by part, ns a tick, as differences (offset, rays, 1000 segments):\n");
-  ethd__tick_part(csv, "offset", "record: into a ring instead of the stack", record);
-  ethd__tick_part(csv, "offset", "kinematics; tracking; guard; the frame",
-                  mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE) - record);
-  ethd__tick_part(csv, "offset", "estimator: joint speeds",
-                  mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE) - mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE));
-  ethd__tick_part(csv, "offset", "estimator: finger filter",
-                  mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE) - mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE));
-  ethd__tick_part(csv, "offset", "estimator: ring fit (300 Hz)",
-                  mean_of(h, OFFSET, f, NONE) - mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE));
+  put_part(csv, "offset", "record: into a ring instead of the stack", record);
+  put_part(csv, "offset", "kinematics; tracking; guard; the frame", mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE) - record);
+  put_part(csv, "offset", "estimator: joint speeds",
+           mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE) - mean_of(h, OFFSET, ETHD__TAP_KNOWN, NONE));
+  put_part(csv, "offset", "estimator: finger filter",
+           mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE) - mean_of(h, OFFSET, ETHD__TAP_ENCODER, NONE));
+  put_part(csv, "offset", "estimator: ring fit (300 Hz)",
+           mean_of(h, OFFSET, f, NONE) - mean_of(h, OFFSET, ETHD__TAP_CENTRE, NONE));
   for (int l = 0; l < LAWS; l++) {
     char name[64];
     snprintf(name, sizeof name, "transition and contact at a wall: %s", laws[l]->law.id);
-    ethd__tick_part(csv, laws[l]->law.id, name, mean_of(h, l, f, WALL) - mean_of(h, l, f, NONE));
+    put_part(csv, laws[l]->law.id, name, mean_of(h, l, f, WALL) - mean_of(h, l, f, NONE));
   }
-  ethd__tick_part(csv, "offset", "scene: 1000 segments instead of the wall",
-                  mean_of(h, OFFSET, f, THOUSAND) - mean_of(h, OFFSET, f, WALL));
+  put_part(csv, "offset", "scene: 1000 segments instead of the wall",
+           mean_of(h, OFFSET, f, THOUSAND) - mean_of(h, OFFSET, f, WALL));
   ethd__ticking_destroy(untraced);
 }
 
@@ -167,7 +171,6 @@ static void run(const char *folder, int quick) {
     times[i] = ethd__tick_report(csv, h.rows[i], ns, count, &quiet);
   }
   report_parts(csv, &h);
-  ethd__tick_calls(csv, quick);
   ethd__tick_cold(csv, quick);
   ethd__tick_live(csv, quick);
   judge(&h, times);

@@ -36,10 +36,6 @@ void ethd__tick_put(FILE *csv, ethd__tick_row row, const char *name, double shar
 ethd__bench_times ethd__tick_report(FILE *csv, ethd__tick_row row, double *ns, size_t count,
                                     const ethd__bench_times *quiet);
 
-/* The first writes a row of one part, on the terminal too; the second measures parts that are called alone. */
-void ethd__tick_part(FILE *csv, const char *law, const char *name, double ns);
-void ethd__tick_calls(FILE *csv, int quick);
-
 /* Measure ticks cold, with the caches emptied before them, and live, in a 1 kHz loop. */
 void ethd__tick_cold(FILE *csv, int quick);
 void ethd__tick_live(FILE *csv, int quick);
