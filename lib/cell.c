@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-static unsigned char *slot(ethd_cell *cell, unsigned i) ETHD_RT { return cell->slots + i * cell->stride; }
+static unsigned char *slot(ethd_cell *cell, unsigned i) { return cell->slots + i * cell->stride; }
 
 void ethd_cell_put(ethd_cell *cell, const void *value) {
   memcpy(slot(cell, cell->back), value, cell->size);

@@ -12,7 +12,7 @@ static const struct {
 #undef ROW
 };
 
-static bool is_row(ethd_fault fault) ETHD_RT { return (unsigned)fault < ETHD_FAULT_COUNT; }
+static bool is_row(ethd_fault fault) { return (unsigned)fault < ETHD_FAULT_COUNT; }
 
 const char *ethd_fault_sentence(ethd_fault fault) { return is_row(fault) ? rows[fault].sentence : "an unknown fault"; }
 

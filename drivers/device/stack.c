@@ -14,7 +14,7 @@ void ethd__stack_foreign(ethd__stack *s, uint32_t i, const char *doing) {
 
 /* ---- [rt] ---- */
 
-static ethd_status worse(ethd_status a, ethd_status b) ETHD_RT {
+static ethd_status worse(ethd_status a, ethd_status b) {
   if (a < 0 || b < 0) return a < b ? a : b;
   return a ? a : b;
 }

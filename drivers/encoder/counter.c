@@ -58,7 +58,7 @@ static ethd_status counter_service(void *device, uint32_t unit, int64_t now_ns) 
 /* ---- [rt] ---- */
 
 /* Steps one joint's encoder, and puts q, dq and faults into *out. */
-static void step(counter *c, int j, ethd_sense *out) ETHD_RT {
+static void step(counter *c, int j, ethd_sense *out) {
   const ethd__counter_snapshot *s = &c->taken;
   ethd__count count = {.time_ns = s->time_ns, .edge_ns = s->edge_ns[j], .raw = s->raw[j], .index = s->index[j]};
   if (s->marks[j] != c->marks[j]) count.flags = ETHD__COUNT_INDEX;
@@ -70,7 +70,7 @@ static void step(counter *c, int j, ethd_sense *out) ETHD_RT {
 }
 
 /* Makes the next mark the first one again. */
-static void forget_marks(counter *c) ETHD_RT {
+static void forget_marks(counter *c) {
   for (int j = 0; j < 2; j++) {
     c->encoder[j].misindexed = false;
     c->encoder[j].marks = 0;

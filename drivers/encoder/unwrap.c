@@ -14,7 +14,7 @@
 /* ---- counts ---- */
 
 /* Returns a - b modulo M = ceiling + 1, in [-M / 2, M / 2). */
-static int64_t shorter(uint64_t a, uint64_t b, uint64_t ceiling) ETHD_RT {
+static int64_t shorter(uint64_t a, uint64_t b, uint64_t ceiling) {
   uint64_t up = a >= b ? a - b : ceiling - (b - a) + 1;
   if (up == 0) return 0;
   uint64_t down = ceiling - up + 1;
@@ -22,25 +22,25 @@ static int64_t shorter(uint64_t a, uint64_t b, uint64_t ceiling) ETHD_RT {
 }
 
 /* Adds modulo 2^64, because the position of a 64-bit counter may wrap round too. */
-static int64_t sum(int64_t a, int64_t b) ETHD_RT { return (int64_t)((uint64_t)a + (uint64_t)b); }
+static int64_t sum(int64_t a, int64_t b) { return (int64_t)((uint64_t)a + (uint64_t)b); }
 
-static double angle_per_count(const ethd__encoder_def *def) ETHD_RT {
+static double angle_per_count(const ethd__encoder_def *def) {
   return def->sign * (TURN / ((double)def->counts_per_turn * def->ratio));
 }
 
-static int64_t away(int64_t d) ETHD_RT { return d < 0 ? -d : d; }
+static int64_t away(int64_t d) { return d < 0 ? -d : d; }
 
 /* ---- index marks ---- */
 
 /* Returns by how much the distance of two marks differs from whole turns. */
-static int64_t rest(int64_t distance, int64_t turn) ETHD_RT {
+static int64_t rest(int64_t distance, int64_t turn) {
   int64_t r = distance % turn;
   if (2 * r >= turn) r -= turn;
   if (2 * r < -turn) r += turn;
   return r;
 }
 
-static int64_t pass_mark(const ethd__encoder_def *def, ethd__encoder *e, uint64_t index) ETHD_RT {
+static int64_t pass_mark(const ethd__encoder_def *def, ethd__encoder *e, uint64_t index) {
   int64_t mark = sum(e->position, shorter(index, e->raw, def->ceiling));
   int64_t turn = def->counts_per_turn;
   int known = e->marks;
@@ -60,16 +60,16 @@ static int64_t pass_mark(const ethd__encoder_def *def, ethd__encoder *e, uint64_
 /* ---- speed from edges ---- */
 
 /* Returns the position of the last edge, which lies halfway between the present count and the one before. */
-static double edge_place(const ethd__encoder *e) ETHD_RT { return (double)e->position - 0.5 * e->direction; }
+static double edge_place(const ethd__encoder *e) { return (double)e->position - 0.5 * e->direction; }
 
 /* Without a new edge the speed is at most what an edge right now would show. */
-static void wait_for_edge(ethd__encoder *e, int64_t now_ns, double per_count) ETHD_RT {
+static void wait_for_edge(ethd__encoder *e, int64_t now_ns, double per_count) {
   double t = 1e-9 * (double)(now_ns - e->edge_ns), most = t > 0 ? fabs(per_count) / t : (double)INFINITY;
   if (now_ns - e->edge_ns > FRESH_NS) e->dq = 0;
   if (fabs(e->dq) > most) e->dq = copysign(most, e->dq);
 }
 
-static void time_edges(const ethd__encoder_def *def, ethd__encoder *e, const ethd__count *s) ETHD_RT {
+static void time_edges(const ethd__encoder_def *def, ethd__encoder *e, const ethd__count *s) {
   e->has_dq = 0;
   if (!def->stamps || s->edge_ns == 0) {
     e->edges = 0;
@@ -92,7 +92,7 @@ static void time_edges(const ethd__encoder_def *def, ethd__encoder *e, const eth
 
 /* ---- against the torque ---- */
 
-static int64_t check_still(const ethd__encoder_def *def, ethd__encoder *e, double dt, double torque) ETHD_RT {
+static int64_t check_still(const ethd__encoder_def *def, ethd__encoder *e, double dt, double torque) {
   if (e->step != 0) {
     e->low = e->high = torque;
     e->still = 0;
@@ -104,12 +104,12 @@ static int64_t check_still(const ethd__encoder_def *def, ethd__encoder *e, doubl
   return e->still >= def->freeze_time ? ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_FROZEN) : 0;
 }
 
-static double energy(const ethd__encoder_def *def, double speed) ETHD_RT { return 0.5 * def->inertia * speed * speed; }
+static double energy(const ethd__encoder_def *def, double speed) { return 0.5 * def->inertia * speed * speed; }
 
 /* A joint that is driven against its motion slows down, but a reversed encoder shows one that gains speed from the
    torque. A hand that pushes a joint with a sound encoder mostly works against the torque, so little of that work
    becomes speed. */
-static int64_t check_direction(const ethd__encoder_def *def, ethd__encoder *e, double dt, double torque) ETHD_RT {
+static int64_t check_direction(const ethd__encoder_def *def, ethd__encoder *e, double dt, double torque) {
   double way = angle_per_count(def) * (double)e->step;
   e->speed += (way / dt - e->speed) * (e->moves ? dt / (SMOOTHING + dt) : 1);
   e->moves = 1;
@@ -131,14 +131,14 @@ static int64_t check_direction(const ethd__encoder_def *def, ethd__encoder *e, d
 
 /* ---- one sample ---- */
 
-static void forget_motion(ethd__encoder *e) ETHD_RT {
+static void forget_motion(ethd__encoder *e) {
   e->low = (double)INFINITY;
   e->high = -(double)INFINITY;
   e->still = e->wrong = 0;
   e->moves = 0;
 }
 
-static void begin(const ethd__encoder_def *def, ethd__encoder *e, const ethd__count *s) ETHD_RT {
+static void begin(const ethd__encoder_def *def, ethd__encoder *e, const ethd__count *s) {
   e->position = shorter(s->raw, 0, def->ceiling);
   e->raw = s->raw;
   e->time_ns = s->time_ns;
@@ -147,7 +147,7 @@ static void begin(const ethd__encoder_def *def, ethd__encoder *e, const ethd__co
 }
 
 /* Extrapolates with the last step's speed. */
-static int64_t drop(const ethd__encoder_def *def, ethd__encoder *e, const ethd__count *s, int64_t *grave) ETHD_RT {
+static int64_t drop(const ethd__encoder_def *def, ethd__encoder *e, const ethd__count *s, int64_t *grave) {
   int64_t bit = ETHD_FAULT_BIT(ETHD_FAULT_ENCODER_JUMP);
   if (e->jumped && s->time_ns - e->jump_ns <= JUMPS_NS) *grave |= bit;
   e->jumped = 1;
@@ -158,7 +158,7 @@ static int64_t drop(const ethd__encoder_def *def, ethd__encoder *e, const ethd__
   return bit;
 }
 
-static bool is_jump(const ethd__encoder_def *def, const ethd__encoder *e, const ethd__count *s, int64_t step) ETHD_RT {
+static bool is_jump(const ethd__encoder_def *def, const ethd__encoder *e, const ethd__count *s, int64_t step) {
   double dt = 1e-9 * (double)(s->time_ns - e->time_ns);
   double most = def->speed_max * dt / fabs(angle_per_count(def)) + 1;
   return s->raw > def->ceiling || (step && !(fabs((double)step) <= most));

@@ -15,31 +15,31 @@ enum { AT_SEQ = 4, AT_TIME = 8, AT_X = 16, AT_Y = 24, AT_NOISE = 32, AT_FLAGS = 
 
 /* ---- bytes ---- */
 
-static uint64_t get(const uint8_t *at, int bytes) ETHD_RT {
+static uint64_t get(const uint8_t *at, int bytes) {
   uint64_t word = 0;
   for (int i = bytes; i--;) word = word << 8 | at[i];
   return word;
 }
 
-static double get_number(const uint8_t *at) ETHD_RT {
+static double get_number(const uint8_t *at) {
   uint64_t word = get(at, 8);
   double number;
   memcpy(&number, &word, sizeof number);
   return number;
 }
 
-static void put(uint8_t *at, uint64_t word, int bytes) ETHD_RT {
+static void put(uint8_t *at, uint64_t word, int bytes) {
   for (int i = 0; i < bytes; i++, word >>= 8) at[i] = (uint8_t)word;
 }
 
-static void put_number(uint8_t *at, double number) ETHD_RT {
+static void put_number(uint8_t *at, double number) {
   uint64_t word;
   memcpy(&word, &number, sizeof word);
   put(at, word, 8);
 }
 
 /* Returns whether the numbers can be an exposure's; NaN can't. */
-static bool is_possible(const ethd__exposure *e) ETHD_RT {
+static bool is_possible(const ethd__exposure *e) {
   return e->finger.x >= -ETHD_SENSE_LENGTH_MAX && e->finger.x <= ETHD_SENSE_LENGTH_MAX &&
          e->finger.y >= -ETHD_SENSE_LENGTH_MAX && e->finger.y <= ETHD_SENSE_LENGTH_MAX && e->noise >= 0 &&
          e->noise <= NOISE_MAX;
@@ -71,12 +71,12 @@ void ethd__exposure_encode(const ethd__exposure *e, uint8_t out[ETHD__EXPOSURE_S
 /* ---- clock ---- */
 
 /* Differences wrap round as the clocks do, because neither clock's zero means anything. */
-static int64_t minus(int64_t a, int64_t b) ETHD_RT { return (int64_t)((uint64_t)a - (uint64_t)b); }
-static int64_t plus(int64_t a, int64_t b) ETHD_RT { return (int64_t)((uint64_t)a + (uint64_t)b); }
+static int64_t minus(int64_t a, int64_t b) { return (int64_t)((uint64_t)a - (uint64_t)b); }
+static int64_t plus(int64_t a, int64_t b) { return (int64_t)((uint64_t)a + (uint64_t)b); }
 
-static int64_t lesser(int64_t a, int64_t b) ETHD_RT { return minus(a, b) < 0 ? a : b; }
+static int64_t lesser(int64_t a, int64_t b) { return minus(a, b) < 0 ? a : b; }
 
-static void begin(ethd__camera_clock *c, int64_t late) ETHD_RT {
+static void begin(ethd__camera_clock *c, int64_t late) {
   c->jumps += c->started;
   c->unsettled = c->started ? ETHD__CAMERA_UNSETTLED : 0;
   c->started = true;
@@ -86,14 +86,14 @@ static void begin(ethd__camera_clock *c, int64_t late) ETHD_RT {
 
 /* A datagram that the network held back is older by both its count and its clock. Where only one of them is older, the
    clock was set back, or the bridge was started again and counts from 0. */
-static bool jumped(const ethd__camera_clock *c, const ethd__exposure *e, int64_t late) ETHD_RT {
+static bool jumped(const ethd__camera_clock *c, const ethd__exposure *e, int64_t late) {
   int64_t off = minus(late, lesser(c->least[0], c->least[1]));
   int32_t step = (int32_t)(e->seq - c->seq);
   bool is_newer = minus(e->t_ns, c->t_ns) > 0;
   return off > BACK_NS || off < -AHEAD_NS || step > ORDER_MAX || step < -ORDER_MAX || is_newer != (step > 0);
 }
 
-static void settle(ethd__camera_clock *c, int64_t late) ETHD_RT {
+static void settle(ethd__camera_clock *c, int64_t late) {
   if (c->in_block++ == ETHD__CAMERA_BLOCK) {
     c->least[1] = c->least[0];
     c->least[0] = late;

@@ -30,7 +30,7 @@ void ethd__inbox_judge(ethd__inbox *in, bool is_good) {
   s->refused_in_a_row = is_good ? 0 : s->refused_in_a_row + 1;
 }
 
-static int64_t rows_of(const ethd__inbox *in, int64_t now_ns) ETHD_RT {
+static int64_t rows_of(const ethd__inbox *in, int64_t now_ns) {
   const ethd__sighting *s = &in->taken;
   int64_t rows = 0;
   if (s->lost != in->lost || (s->readings && now_ns - s->arrival_ns > in->gap_ns))

@@ -18,7 +18,7 @@ typedef struct arc {
   uint32_t length, first;
 } arc;
 
-static bool find_arc(uint32_t count, uint32_t lit, arc *out) ETHD_RT {
+static bool find_arc(uint32_t count, uint32_t lit, arc *out) {
   uint32_t begins = 0;
   *out = (arc){0, 0};
   for (uint32_t k = 0; k < count; k++) {
@@ -30,7 +30,7 @@ static bool find_arc(uint32_t count, uint32_t lit, arc *out) ETHD_RT {
 }
 
 /* Returns the direction of the run's middle; no barrier and all barriers have none. */
-static ethd_vec middle(const ethd__zones *z, arc a) ETHD_RT {
+static ethd_vec middle(const ethd__zones *z, arc a) {
   if (a.length == 0 || a.length == z->count) return (ethd_vec){0, 0};
   uint32_t half = a.first + (a.length - 1) / 2;
   ethd_vec u = z->ray[half % z->count];

@@ -52,10 +52,10 @@ ethd_status ethd__inject_around(const ethd_driver *driver, void *device, ethd__s
 
 /* ---- what is due ---- */
 
-static bool is_due(const ethd__injection *i, int64_t t) ETHD_RT { return t >= i->from_ns && t < i->until_ns; }
+static bool is_due(const ethd__injection *i, int64_t t) { return t >= i->from_ns && t < i->until_ns; }
 
 /* Returns the channel's next due injection from `at` on; NULL when none is left. */
-static ethd__injection *next_due(inject *in, ethd__inject_channel channel, uint32_t *at) ETHD_RT {
+static ethd__injection *next_due(inject *in, ethd__inject_channel channel, uint32_t *at) {
   while (*at < in->script.count) {
     ethd__injection *i = &in->script.at[(*at)++];
     if (i->channel != channel || !is_due(i, in->now)) continue;
@@ -65,7 +65,7 @@ static ethd__injection *next_due(inject *in, ethd__inject_channel channel, uint3
   return NULL;
 }
 
-static bool is_told(inject *in, ethd__inject_channel channel, ethd__inject_kind kind) ETHD_RT {
+static bool is_told(inject *in, ethd__inject_channel channel, ethd__inject_kind kind) {
   uint32_t at = 0;
   for (const ethd__injection *i; (i = next_due(in, channel, &at));)
     if (i->kind == kind) return true;
@@ -74,19 +74,19 @@ static bool is_told(inject *in, ethd__inject_channel channel, ethd__inject_kind 
 
 /* ---- samples ---- */
 
-static const ethd__injection *reading_fault(inject *in) ETHD_RT {
+static const ethd__injection *reading_fault(inject *in) {
   uint32_t at = 0;
   return next_due(in, ETHD__INJECT_READING, &at);
 }
 
-static void hold_reading(inject *in, double delay, const ethd_sense *s) ETHD_RT {
+static void hold_reading(inject *in, double delay, const ethd_sense *s) {
   held_reading *r = &in->held[in->readings++ % READINGS_MAX];
   r->due = in->now + (int64_t)rint(1e9 * delay);
   r->sense = *s;
 }
 
 /* Takes the newest sample that is due; it and all older ones leave the queue. */
-static void release_readings(inject *in, ethd_sense *s) ETHD_RT {
+static void release_readings(inject *in, ethd_sense *s) {
   for (uint64_t back = 0; back < READINGS_MAX && back < in->readings; back++) {
     held_reading *r = &in->held[(in->readings - 1 - back) % READINGS_MAX];
     if (r->due > in->now) continue;
@@ -96,7 +96,7 @@ static void release_readings(inject *in, ethd_sense *s) ETHD_RT {
   }
 }
 
-static void spoil_reading(inject *in, ethd_sense *s) ETHD_RT {
+static void spoil_reading(inject *in, ethd_sense *s) {
   const ethd__injection *i = s->have & ETHD__READING ? reading_fault(in) : NULL;
   if (i && i->kind == ETHD__INJECT_FREEZE) {
     int64_t stamp = s->sample_ns;
@@ -110,7 +110,7 @@ static void spoil_reading(inject *in, ethd_sense *s) ETHD_RT {
   if (s->have & ETHD__READING) in->last = *s;
 }
 
-static void raise_faults(inject *in, ethd_sense *s) ETHD_RT {
+static void raise_faults(inject *in, ethd_sense *s) {
   uint32_t at = 0;
   for (const ethd__injection *i; (i = next_due(in, ETHD__INJECT_FAULT, &at));) {
     int64_t bit = ETHD_FAULT_BIT(i->first + 1);
@@ -141,7 +141,7 @@ static ethd_status inject_read(void *device, int64_t now_ns, ethd_sense *out) ET
 /* ---- commands ---- */
 
 /* Returns the newest command that is `delay` old. */
-static ethd_command delayed(const inject *in, double delay) ETHD_RT {
+static ethd_command delayed(const inject *in, double delay) {
   int64_t until = in->now - (int64_t)rint(1e9 * delay);
   for (uint64_t back = 0; back < COMMANDS_MAX && back < in->commands; back++) {
     const stamped *w = &in->written[(in->commands - 1 - back) % COMMANDS_MAX];

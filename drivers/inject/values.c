@@ -3,7 +3,7 @@
 #include <math.h>
 
 /* Returns where the sample holds a channel's numbers; NULL when it doesn't hold them. */
-static double *numbers(ethd__inject_channel channel, bool joints, ethd_sense *s) ETHD_RT {
+static double *numbers(ethd__inject_channel channel, bool joints, ethd_sense *s) {
   switch (channel) {
   case ETHD__INJECT_Q: return joints ? s->q : NULL;
   case ETHD__INJECT_DQ: return joints && (s->have & ETHD_HAVE_DQ) ? s->dq : NULL;
@@ -16,14 +16,14 @@ static double *numbers(ethd__inject_channel channel, bool joints, ethd_sense *s)
 }
 
 /* Deterministic noise in [-1, 1) for one channel of one line at one instant. */
-static double draw(int line, uint32_t i, int64_t t) ETHD_RT {
+static double draw(int line, uint32_t i, int64_t t) {
   uint64_t z = ((uint64_t)line << 40) + ((uint64_t)i << 56) + (uint64_t)t;
   z = (z + 0x9e3779b97f4a7c15u) * 0xbf58476d1ce4e5b9u;
   z = (z ^ z >> 27) * 0x94d049bb133111ebu;
   return (double)((z ^ z >> 31) >> 11) * 0x1p-52 - 1;
 }
 
-static double spoilt(const ethd__injection *in, uint32_t i, int64_t t, double value) ETHD_RT {
+static double spoilt(const ethd__injection *in, uint32_t i, int64_t t, double value) {
   switch (in->kind) {
   case ETHD__INJECT_FREEZE: return in->held[i];
   case ETHD__INJECT_OFFSET: return value + in->by;
@@ -36,7 +36,7 @@ static double spoilt(const ethd__injection *in, uint32_t i, int64_t t, double va
   }
 }
 
-static bool shift_time(ethd__injection *in, ethd_sense *s) ETHD_RT {
+static bool shift_time(ethd__injection *in, ethd_sense *s) {
   if (!in->begun) in->held[0] = (double)s->time_ns;
   in->begun = true;
   s->time_ns = in->kind == ETHD__INJECT_FREEZE ? (int64_t)in->held[0] : s->time_ns + (int64_t)rint(1e9 * in->by);

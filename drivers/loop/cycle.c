@@ -29,7 +29,7 @@ int64_t ethd__loop_boot(const ethd_loop *l) {
 #endif
 }
 
-static int sleep_until(const ethd_loop *l, int64_t instant) ETHD_RT {
+static int sleep_until(const ethd_loop *l, int64_t instant) {
   struct timespec t = {.tv_sec = (time_t)(instant / 1000000000), .tv_nsec = (long)(instant % 1000000000)};
   int failure;
   if (l->def.clock) {
@@ -43,14 +43,14 @@ static int sleep_until(const ethd_loop *l, int64_t instant) ETHD_RT {
 
 /* ---- rows ---- */
 
-static bool room(const ethd__loop_ring *r) ETHD_RT {
+static bool room(const ethd__loop_ring *r) {
   return atomic_load_explicit(&r->head, memory_order_relaxed) - atomic_load_explicit(&r->tail, memory_order_acquire) <
          r->size;
 }
 
-static void raise(uint64_t *count, uint64_t by) ETHD_RT { __atomic_store_n(count, *count + by, __ATOMIC_RELAXED); }
+static void raise(uint64_t *count, uint64_t by) { __atomic_store_n(count, *count + by, __ATOMIC_RELAXED); }
 
-static void push(ethd_loop *l) ETHD_RT {
+static void push(ethd_loop *l) {
   ethd__loop_ring *r = &l->rows;
   if (!r->size) return;
   if (!room(r)) {
@@ -71,7 +71,7 @@ static void push(ethd_loop *l) ETHD_RT {
 /* ---- one tick ---- */
 
 /* Nothing is known about a device that can't be read, so the controller gets NaN and reports its input fault. */
-static void blind(ethd_loop *l) ETHD_RT {
+static void blind(ethd_loop *l) {
   raise(&l->stats.read_failures, 1);
   l->sense.have = 0;
   l->sense.time_ns = l->due;
@@ -80,7 +80,7 @@ static void blind(ethd_loop *l) ETHD_RT {
 
 /* A row that takes the torque away is acted on at once. A stop waits for the next sample: from an old one the ring's
    speed would seem to fall. Should none come, row FEEDBACK_OLD ends the torque. */
-static bool is_pressing(const ethd_sense *s) ETHD_RT {
+static bool is_pressing(const ethd_sense *s) {
   for (int64_t rows = s->faults | s->grave; rows; rows &= rows - 1) {
     ethd_fault row = (ethd_fault)__builtin_ctzll((uint64_t)rows);
     if (ethd_fault_reaction(row, s->grave >> row & 1) > ETHD_REACTION_STOP) return true;
@@ -89,7 +89,7 @@ static bool is_pressing(const ethd_sense *s) ETHD_RT {
 }
 
 /* A step without a newer sample uses the last one for the joints. */
-static void remember_joints(ethd_loop *l, ethd_status status) ETHD_RT {
+static void remember_joints(ethd_loop *l, ethd_status status) {
   ethd_sense *s = &l->sense;
   if (status == ETHD_OK) {
     l->joints = (ethd__joints){s->time_ns, s->have & ETHD_HAVE_DQ, {s->q[0], s->q[1]}, {s->dq[0], s->dq[1]}, 1};
@@ -103,20 +103,20 @@ static void remember_joints(ethd_loop *l, ethd_status status) ETHD_RT {
 
 /* A torque isn't held for longer than two steps may be apart. Before the first step after a start none is held, and
    the device may take a little longer. */
-static void watch_age(ethd_loop *l, ethd_status status) ETHD_RT {
+static void watch_age(ethd_loop *l, ethd_status status) {
   l->stale = status > 0 ? l->stale + 1 : 0;
   if (l->stale > (l->ramp ? l->hold : ETHD__HOLD_MAX / l->period))
     l->sense.faults |= ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD);
 }
 
-static void disarm(ethd_loop *l) ETHD_RT {
+static void disarm(ethd_loop *l) {
   atomic_store_explicit(&l->armed, 0, memory_order_relaxed);
   if (l->was_armed) l->def.driver->safe(l->def.device);
   l->was_armed = 0;
 }
 
 /* False when there is no newer sample than at the last step: the torque is then held, unless somebody disarmed. */
-static bool read_device(ethd_loop *l) ETHD_RT {
+static bool read_device(ethd_loop *l) {
   if (!l->held) memset(&l->sense, 0, sizeof l->sense);
   ethd_status status = l->def.driver->read(l->def.device, l->due, &l->sense);
   watch_age(l, status);
@@ -144,7 +144,7 @@ static double share(ethd_loop *l) ETHD_RT {
   return t < l->def.soft_start ? t / l->def.soft_start : 1;
 }
 
-static void write_device(ethd_loop *l, ethd_command *command) ETHD_RT {
+static void write_device(ethd_loop *l, ethd_command *command) {
   double s = 0;
   if (command->safe || !atomic_load_explicit(&l->armed, memory_order_relaxed)) {
     disarm(l);
@@ -162,14 +162,14 @@ static void write_device(ethd_loop *l, ethd_command *command) ETHD_RT {
 }
 
 /* Shows the watching thread since when a step runs. */
-static int64_t begin_step(ethd_loop *l) ETHD_RT {
+static int64_t begin_step(ethd_loop *l) {
   int64_t now = ethd__loop_now(l);
   atomic_store_explicit(&l->stepping, now, memory_order_relaxed);
   return now;
 }
 
 /* If [main] gave this thread up while the step hung, the device and all else no longer belong to the thread. */
-static void end_step(ethd_loop *l) ETHD_RT {
+static void end_step(ethd_loop *l) {
   if (atomic_exchange_explicit(&l->stepping, 0, memory_order_acq_rel) != ETHD__LOOP_LEFT) return;
   for (;;) (void)!sleep_until(l, ethd__loop_now(l) + 1000000000);
 }
@@ -209,7 +209,7 @@ void ethd__loop_rest(ethd_loop *l) {
 
 /* ---- the grid ---- */
 
-static void overrun(ethd_loop *l, int64_t late, int64_t periods) ETHD_RT {
+static void overrun(ethd_loop *l, int64_t late, int64_t periods) {
   ethd__loop_late(l, late);
   raise(&l->stats.overruns, 1);
   raise(&l->stats.missed, (uint64_t)periods);
@@ -218,7 +218,7 @@ static void overrun(ethd_loop *l, int64_t late, int64_t periods) ETHD_RT {
 }
 
 /* Sleeps until the tick. With early wake the caches are then warm and the start is exact. */
-static int wait(ethd_loop *l) ETHD_RT {
+static int wait(ethd_loop *l) {
   int failure = sleep_until(l, l->due - l->early);
   if (failure) return failure;
   int64_t now = ethd__loop_now(l), late = now - (l->due - l->early);
@@ -235,14 +235,14 @@ static int wait(ethd_loop *l) ETHD_RT {
 }
 
 /* Sets the next tick to the grid's next instant in the future. */
-static void advance(ethd_loop *l) ETHD_RT {
+static void advance(ethd_loop *l) {
   l->due += l->period;
   int64_t late = ethd__loop_now(l) - l->due;
   if (late > 0) overrun(l, late, (late + l->period - 1) / l->period);
 }
 
 /* True once [main] has asked for the device, unless it withdraws at this very moment. */
-static bool parked(ethd_loop *l) ETHD_RT {
+static bool parked(ethd_loop *l) {
   int mode = ETHD__LOOP_ASKED;
   return atomic_compare_exchange_strong_explicit(&l->mode, &mode, ETHD__LOOP_PARKED, memory_order_acq_rel,
                                                  memory_order_acquire) ||
@@ -267,7 +267,7 @@ int ethd__loop_turn(ethd_loop *l) {
 }
 
 /* The loop doesn't end while [main] has the device. */
-static bool told_to_stop(ethd_loop *l) ETHD_RT {
+static bool told_to_stop(ethd_loop *l) {
   return atomic_load_explicit(&l->stop, memory_order_relaxed) &&
          atomic_load_explicit(&l->mode, memory_order_acquire) == ETHD__LOOP_RUNS;
 }

@@ -3,7 +3,7 @@
 #define EXACT 32 /* values below this have a bin each; from there on there are so many bins per factor of two */
 #define EXACT_BITS 5
 
-static uint32_t bin_of(uint64_t ns) ETHD_RT {
+static uint32_t bin_of(uint64_t ns) {
   if (ns < EXACT) return (uint32_t)ns;
   uint32_t shift = 63 - (uint32_t)__builtin_clzll(ns) - EXACT_BITS;
   uint32_t bin = (shift << EXACT_BITS) + (uint32_t)(ns >> shift);
@@ -19,7 +19,7 @@ int64_t ethd_histogram_first(uint32_t bin) {
 int64_t ethd_histogram_last(uint32_t bin) { return ethd_histogram_first(bin + 1) - 1; }
 
 /* There is one writer; a reader at the same time sees whole numbers. */
-static void raise(uint64_t *count) ETHD_RT { __atomic_store_n(count, *count + 1, __ATOMIC_RELAXED); }
+static void raise(uint64_t *count) { __atomic_store_n(count, *count + 1, __ATOMIC_RELAXED); }
 
 void ethd_histogram_add(ethd_histogram *h, int64_t ns) {
   if (ns < 0) ns = 0;

@@ -22,13 +22,13 @@ void ethd__loop_ahead(ethd_loop *l, int64_t least, int64_t most) {
   l->missed += slept / l->period;
 }
 
-static void suspended(ethd_loop *l, ethd_sense *sense) ETHD_RT {
+static void suspended(ethd_loop *l, ethd_sense *sense) {
   int64_t *rows = l->slept > l->gap ? &sense->grave : &sense->faults;
   *rows |= ETHD_FAULT_BIT(ETHD_FAULT_CLOCK);
   l->slept = 0;
 }
 
-static int64_t overruns(ethd_loop *l) ETHD_RT {
+static int64_t overruns(ethd_loop *l) {
   int64_t rows = l->late ? ETHD_FAULT_BIT(ETHD_FAULT_OVERRUN) : 0;
   if (l->gap < INT64_MAX && (l->bucket >= FULL || l->late > l->gap)) rows |= ETHD_FAULT_BIT(ETHD_FAULT_OVERRUNS);
   if (!l->late && l->bucket) l->bucket--;

@@ -12,7 +12,7 @@
 
 /* Returns whether the times of two frames fit their sequence. While board 0 is late, t_us goes on and seq doesn't; the
    frame whose flag says so may itself be lost. */
-static bool follows(uint16_t seq, uint32_t t_us, const ethd__ring_frame *next) ETHD_RT {
+static bool follows(uint16_t seq, uint32_t t_us, const ethd__ring_frame *next) {
   double steps = (uint16_t)(next->seq - seq), passed = (uint32_t)(next->t_us - t_us);
   double extra = passed - steps * PERIOD_US;
   if (steps == 0 || extra < -TOLERANCE_US) return false;
@@ -22,23 +22,21 @@ static bool follows(uint16_t seq, uint32_t t_us, const ethd__ring_frame *next) E
   return may_be_late && whole <= LATE_MAX && rest * rest * PERIOD_US * PERIOD_US <= TOLERANCE_US * TOLERANCE_US;
 }
 
-static bool is_reset(const ethd__ring_frame *frame) ETHD_RT {
+static bool is_reset(const ethd__ring_frame *frame) {
   return (frame->flags & ETHD__FRAME_FIRST) && frame->seq == 0 && frame->t_us < 1000000;
 }
 
 /* ---- envelope ---- */
 
-static double above(const ethd__board_clock *c, ethd__clock_point p) ETHD_RT {
-  return p.y - (c->offset + c->drift * p.x);
-}
+static double above(const ethd__board_clock *c, ethd__clock_point p) { return p.y - (c->offset + c->drift * p.x); }
 
 /* Returns a positive number when c lies to the left of the line from a to b; b is then a corner of the lower hull. */
-static double turn(ethd__clock_point a, ethd__clock_point b, ethd__clock_point c) ETHD_RT {
+static double turn(ethd__clock_point a, ethd__clock_point b, ethd__clock_point c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
 /* Replaces the last blocks' points, oldest first, by their lower hull; returns the number of its corners. */
-static uint32_t hull(const ethd__board_clock *c, ethd__clock_point out[ETHD__CLOCK_BLOCKS], double *mean) ETHD_RT {
+static uint32_t hull(const ethd__board_clock *c, ethd__clock_point out[ETHD__CLOCK_BLOCKS], double *mean) {
   uint32_t count = c->blocks < ETHD__CLOCK_BLOCKS ? c->blocks : ETHD__CLOCK_BLOCKS, n = 0;
   *mean = 0;
   for (uint32_t i = 0; i < count; i++) {
@@ -50,14 +48,14 @@ static uint32_t hull(const ethd__board_clock *c, ethd__clock_point out[ETHD__CLO
   return n;
 }
 
-static double slope(const ethd__clock_point *corners, uint32_t n, double mean) ETHD_RT {
+static double slope(const ethd__clock_point *corners, uint32_t n, double mean) {
   uint32_t i = 1;
   while (i + 1 < n && corners[i].x < mean) i++;
   double s = (corners[i].y - corners[i - 1].y) / (corners[i].x - corners[i - 1].x);
   return s > DRIFT_MAX ? DRIFT_MAX : s < -DRIFT_MAX ? -DRIFT_MAX : s;
 }
 
-static void fit(ethd__board_clock *c) ETHD_RT {
+static void fit(ethd__board_clock *c) {
   ethd__clock_point corners[ETHD__CLOCK_BLOCKS];
   double mean;
   uint32_t n = hull(c, corners, &mean);
@@ -68,7 +66,7 @@ static void fit(ethd__board_clock *c) ETHD_RT {
   }
 }
 
-static void collect(ethd__board_clock *c, ethd__clock_point p) ETHD_RT {
+static void collect(ethd__board_clock *c, ethd__clock_point p) {
   if (c->in_block == 0 || above(c, p) < above(c, c->block)) c->block = p;
   if (++c->in_block == ETHD__CLOCK_BLOCK) {
     c->points[c->blocks++ % ETHD__CLOCK_BLOCKS] = c->block;
@@ -81,7 +79,7 @@ static void collect(ethd__board_clock *c, ethd__clock_point p) ETHD_RT {
 
 /* ---- frames ---- */
 
-static void begin(ethd__board_clock *c, const ethd__ring_frame *frame, int64_t arrival_ns) ETHD_RT {
+static void begin(ethd__board_clock *c, const ethd__ring_frame *frame, int64_t arrival_ns) {
   c->base_ns = arrival_ns;
   c->board_us = 0;
   c->offset = 0;
@@ -91,12 +89,12 @@ static void begin(ethd__board_clock *c, const ethd__ring_frame *frame, int64_t a
   c->t_us = frame->t_us;
 }
 
-static ethd__clock_point place(const ethd__board_clock *c, const ethd__ring_frame *frame, int64_t arrival_ns) ETHD_RT {
+static ethd__clock_point place(const ethd__board_clock *c, const ethd__ring_frame *frame, int64_t arrival_ns) {
   int64_t board_us = c->board_us + (uint32_t)(frame->t_us - c->t_us);
   return (ethd__clock_point){1e-6 * (double)board_us, 1e-9 * (double)(arrival_ns - c->base_ns - 1000 * board_us)};
 }
 
-static void accept(ethd__board_clock *c, const ethd__ring_frame *frame, int64_t arrival_ns, int64_t *t_ns) ETHD_RT {
+static void accept(ethd__board_clock *c, const ethd__ring_frame *frame, int64_t arrival_ns, int64_t *t_ns) {
   ethd__clock_point p = place(c, frame, arrival_ns);
   c->board_us += (uint32_t)(frame->t_us - c->t_us);
   c->t_us = frame->t_us;
@@ -107,7 +105,7 @@ static void accept(ethd__board_clock *c, const ethd__ring_frame *frame, int64_t 
   *t_ns = c->base_ns + 1000 * c->board_us + (int64_t)floor_ns;
 }
 
-static bool in_step(const ethd__board_clock *c, const ethd__ring_frame *frame, int64_t arrival_ns) ETHD_RT {
+static bool in_step(const ethd__board_clock *c, const ethd__ring_frame *frame, int64_t arrival_ns) {
   if (!follows(c->seq, c->t_us, frame)) return false;
   return c->blocks < SETTLED || above(c, place(c, frame, arrival_ns)) > -EARLY_MAX;
 }

@@ -21,17 +21,17 @@ ethd__calibration ethd__calibration_default(void) {
   return c;
 }
 
-static double power(double base, double exponent) ETHD_RT { return ethd_exp(exponent * ethd_log(base)); }
+static double power(double base, double exponent) { return ethd_exp(exponent * ethd_log(base)); }
 
-static double between(double x, double x0, double y0, double x1, double y1) ETHD_RT {
+static double between(double x, double x0, double y0, double x1, double y1) {
   return y0 + (y1 - y0) * ((x - x0) / (x1 - x0));
 }
 
 /* Returns the coordinate in which points are joined by straight lines, because a law with p = 2 is straight in it. */
-static double straight(double above) ETHD_RT { return 1 / sqrt(above); }
+static double straight(double above) { return 1 / sqrt(above); }
 
 /* Looks a distance up in the table; beyond its ends the first and the last line go on. */
-static double look_up(const ethd__sensor *s, double above) ETHD_RT {
+static double look_up(const ethd__sensor *s, double above) {
   uint32_t i = 1;
   while (i + 1 < s->points && s->above[i] > above) i++;
   double d = between(straight(above), straight(s->above[i - 1]), s->at[i - 1], straight(s->above[i]), s->at[i]);

@@ -15,10 +15,10 @@ uint16_t ethd__frame_crc(const uint8_t *bytes, size_t count) {
   return (uint16_t)crc;
 }
 
-static uint32_t word(const uint8_t *at) ETHD_RT { return at[0] | (uint32_t)at[1] << 8; }
+static uint32_t word(const uint8_t *at) { return at[0] | (uint32_t)at[1] << 8; }
 
 /* COBS: each code byte stands where a zero was and says how far the next code is. */
-static bool uncobs(const uint8_t coded[CODED], uint8_t out[ETHD__FRAME_SIZE]) ETHD_RT {
+static bool uncobs(const uint8_t coded[CODED], uint8_t out[ETHD__FRAME_SIZE]) {
   memcpy(out, coded + 1, ETHD__FRAME_SIZE);
   uint32_t at = coded[0];
   while (at < CODED) {
@@ -29,7 +29,7 @@ static bool uncobs(const uint8_t coded[CODED], uint8_t out[ETHD__FRAME_SIZE]) ET
   return at == CODED;
 }
 
-static void unpack(const uint8_t raw[ETHD__FRAME_SIZE], ethd__ring_frame *out) ETHD_RT {
+static void unpack(const uint8_t raw[ETHD__FRAME_SIZE], ethd__ring_frame *out) {
   const uint8_t *t = raw + ETHD__FRAME_AT_TIME;
   out->type = raw[ETHD__FRAME_AT_TYPE];
   out->flags = raw[ETHD__FRAME_AT_FLAGS];
@@ -39,7 +39,7 @@ static void unpack(const uint8_t raw[ETHD__FRAME_SIZE], ethd__ring_frame *out) E
 }
 
 /* Counts the frames that the sequence misses. A reset of board 0 restarts the sequence. */
-static void follow(ethd__decoder *d, ethd__ring_frame *frame) ETHD_RT {
+static void follow(ethd__decoder *d, ethd__ring_frame *frame) {
   uint16_t step = (uint16_t)(frame->seq - d->seq);
   bool fresh = !d->started || (frame->flags & ETHD__FRAME_FIRST);
   frame->lost = fresh || step == 0 ? 0 : step - 1u;
@@ -50,7 +50,7 @@ static void follow(ethd__decoder *d, ethd__ring_frame *frame) ETHD_RT {
   d->started = true;
 }
 
-static bool is_frame(const uint8_t *piece, size_t count, ethd__ring_frame *out) ETHD_RT {
+static bool is_frame(const uint8_t *piece, size_t count, ethd__ring_frame *out) {
   uint8_t raw[ETHD__FRAME_SIZE];
   if (count != CODED || !uncobs(piece, raw)) return false;
   if (raw[ETHD__FRAME_AT_TYPE] != ETHD__FRAME_TYPE || ethd__frame_crc(raw, sizeof raw) != 0) return false;
@@ -59,7 +59,7 @@ static bool is_frame(const uint8_t *piece, size_t count, ethd__ring_frame *out) 
 }
 
 /* Handles the end of a piece. Two zeros in a row enclose none. */
-static bool finish(ethd__decoder *d, const uint8_t *piece, size_t count, ethd__ring_frame *out) ETHD_RT {
+static bool finish(ethd__decoder *d, const uint8_t *piece, size_t count, ethd__ring_frame *out) {
   bool begun = d->in_step, told = d->held > CODED;
   d->in_step = true;
   d->held = 0;
@@ -74,7 +74,7 @@ static bool finish(ethd__decoder *d, const uint8_t *piece, size_t count, ethd__r
 
 /* Keeps a piece's bytes; of one that is too long, only the fact that it is. That is counted at once, because noise
    may go on for long without a zero. */
-static void hold(ethd__decoder *d, const uint8_t *bytes, size_t count) ETHD_RT {
+static void hold(ethd__decoder *d, const uint8_t *bytes, size_t count) {
   bool fitted = d->held <= CODED;
   size_t room = d->held < ETHD__FRAME_WIRE ? ETHD__FRAME_WIRE - d->held : 0;
   size_t kept = count < room ? count : room;
@@ -100,12 +100,12 @@ void ethd__decoder_restart(ethd__decoder *d) {
   d->started = d->in_step = false;
 }
 
-static void put_word(uint8_t *at, uint32_t value) ETHD_RT {
+static void put_word(uint8_t *at, uint32_t value) {
   at[0] = (uint8_t)value;
   at[1] = (uint8_t)(value >> 8);
 }
 
-static void cobs(const uint8_t raw[ETHD__FRAME_SIZE], uint8_t out[CODED]) ETHD_RT {
+static void cobs(const uint8_t raw[ETHD__FRAME_SIZE], uint8_t out[CODED]) {
   uint32_t code = 0;
   memcpy(out + 1, raw, ETHD__FRAME_SIZE);
   for (uint32_t i = 1; i < CODED; i++) {

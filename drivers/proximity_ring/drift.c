@@ -38,7 +38,7 @@ static bool fit(const ethd__drift *d, const double rays[ETHD_RAYS], double e[ETH
   return used >= GOOD;
 }
 
-static void judge(ethd__drift *d) ETHD_RT {
+static void judge(ethd__drift *d) {
   double counts = -d->across / d->along;
   d->offset = -counts * d->grows / d->frames;
   d->is_off = fabs(d->offset) > MOST && d->across * d->across > EXPLAINED * d->along * d->beside;

@@ -93,7 +93,7 @@ static ethd_status service(void *device, uint32_t unit, int64_t now_ns) {
 
 /* ---- [rt] ---- */
 
-static int64_t lasting(const sample *s, int64_t now_ns, int64_t *grave) ETHD_RT {
+static int64_t lasting(const sample *s, int64_t now_ns, int64_t *grave) {
   int64_t rows = 0;
   uint32_t out = 0;
   if (s->counts.readings == 0) return 0;

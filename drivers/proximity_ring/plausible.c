@@ -20,7 +20,7 @@ ethd_status ethd__plausible_prepare(double ring_radius, double finger_radius, do
   return ethd_fit_prepare(ETHD_FIT_ROBUST, p, ring_radius, finger_radius, &out->fit, error);
 }
 
-static uint32_t bits(uint32_t mask) ETHD_RT {
+static uint32_t bits(uint32_t mask) {
   uint32_t n = 0;
   for (; mask; mask &= mask - 1) n++;
   return n;
@@ -28,20 +28,20 @@ static uint32_t bits(uint32_t mask) ETHD_RT {
 
 /* ---- flags ---- */
 
-static uint32_t missing(const ethd__ring_frame *f) ETHD_RT {
+static uint32_t missing(const ethd__ring_frame *f) {
   uint32_t mask = 0;
   for (int k = 0; k < ETHD_RAYS; k++) mask |= (uint32_t)(f->counts[k] == ETHD__FRAME_MISSING) << k;
   return mask;
 }
 
-static bool board_missing(uint32_t mask) ETHD_RT {
+static bool board_missing(uint32_t mask) {
   const uint32_t whole = (1u << ETHD__FRAME_LANES) - 1;
   for (int b = 1; b < ETHD__FRAME_BOARDS; b++)
     if ((mask >> b * ETHD__FRAME_LANES & whole) == whole) return true;
   return false;
 }
 
-static bool flags_agree(const ethd__ring_frame *f, uint32_t mask) ETHD_RT {
+static bool flags_agree(const ethd__ring_frame *f, uint32_t mask) {
   if (f->flags & UNUSED_FLAGS) return false;
   if (((f->flags & ETHD__FRAME_SENSOR_MISSING) != 0) != (mask != 0)) return false;
   if ((f->flags & ETHD__FRAME_BOARD_MISSING) && !board_missing(mask)) return false;
@@ -51,9 +51,9 @@ static bool flags_agree(const ethd__ring_frame *f, uint32_t mask) ETHD_RT {
 /* ---- slew and geometry: bits of suspect rays ---- */
 
 /* Returns a distance for comparison. Beyond the ring its value doesn't matter, only that nothing is nearer. */
-static double seen(const ethd__plausible *p, double d) ETHD_RT { return fmin(d, 2 * p->fit.ring_radius); }
+static double seen(const ethd__plausible *p, double d) { return fmin(d, 2 * p->fit.ring_radius); }
 
-static uint32_t too_fast(const ethd__plausible *p, const ethd__ring_frame *f, const double d[ETHD_RAYS]) ETHD_RT {
+static uint32_t too_fast(const ethd__plausible *p, const ethd__ring_frame *f, const double d[ETHD_RAYS]) {
   uint32_t passed_us = f->t_us - p->t_us, suspects = 0;
   double most = p->speed * 1e-6 * passed_us + p->slack;
   if (!p->started || passed_us > GONE_US) return 0;
@@ -64,7 +64,7 @@ static uint32_t too_fast(const ethd__plausible *p, const ethd__ring_frame *f, co
   return suspects;
 }
 
-static uint32_t off_circle(const ethd__plausible *p, const double d[ETHD_RAYS], uint32_t leave_out) ETHD_RT {
+static uint32_t off_circle(const ethd__plausible *p, const double d[ETHD_RAYS], uint32_t leave_out) {
   double rays[ETHD_RAYS];
   uint32_t met = 0;
   ethd_finger finger;
@@ -78,7 +78,7 @@ static uint32_t off_circle(const ethd__plausible *p, const double d[ETHD_RAYS], 
 }
 
 /* Returns the rays that meet something, if there are enough for a finger; else none. */
-static uint32_t on_finger(const ethd__plausible *p, const double d[ETHD_RAYS]) ETHD_RT {
+static uint32_t on_finger(const ethd__plausible *p, const double d[ETHD_RAYS]) {
   uint32_t met = 0;
   for (int k = 0; k < ETHD_RAYS; k++) met |= (uint32_t)(fabs(d[k]) < p->fit.ring_radius) << k;
   return bits(met) < PRESENT ? 0 : met;
@@ -88,7 +88,7 @@ static uint32_t on_finger(const ethd__plausible *p, const double d[ETHD_RAYS]) E
 
 /* Returns the sensors that show a symptom of a failure; `met` are the rays that lie on a finger's circle. */
 static uint32_t symptoms(const ethd__plausible *p, const ethd__calibration *c, const ethd__ring_frame *f,
-                         uint32_t met) ETHD_RT {
+                         uint32_t met) {
   uint32_t same = 0, bad = 0;
   for (int k = 0; k < ETHD_RAYS; k++) {
     bool near = met >> k & 1; /* a finger that touches the ring saturates what it touches */
@@ -99,7 +99,7 @@ static uint32_t symptoms(const ethd__plausible *p, const ethd__calibration *c, c
   return bits(same) <= ETHD_RAYS / 2 ? bad | same : bad;
 }
 
-static void judge_sensors(ethd__plausible *p, uint32_t bad) ETHD_RT {
+static void judge_sensors(ethd__plausible *p, uint32_t bad) {
   for (int k = 0; k < ETHD_RAYS; k++) {
     uint8_t *failing = &p->failing[k];
     if (bad >> k & 1)
@@ -114,7 +114,7 @@ static void judge_sensors(ethd__plausible *p, uint32_t bad) ETHD_RT {
 /* ---- frames ---- */
 
 static void keep(ethd__plausible *p, const ethd__ring_frame *f, const double d[ETHD_RAYS], uint32_t suspects,
-                 double rays[ETHD_RAYS]) ETHD_RT {
+                 double rays[ETHD_RAYS]) {
   for (int k = 0; k < ETHD_RAYS; k++) {
     bool left_out = (suspects | p->out) >> k & 1;
     rays[k] = left_out ? (double)NAN : d[k];
@@ -127,7 +127,7 @@ static void keep(ethd__plausible *p, const ethd__ring_frame *f, const double d[E
 }
 
 /* Returns the suspect rays among the sensors in use. */
-static uint32_t suspect_rays(const ethd__plausible *p, const ethd__ring_frame *f, const double d[ETHD_RAYS]) ETHD_RT {
+static uint32_t suspect_rays(const ethd__plausible *p, const ethd__ring_frame *f, const double d[ETHD_RAYS]) {
   uint32_t fast = too_fast(p, f, d);
   if (p->bad_in_a_row >= ETHD__BAD_IN_A_ROW - 1) return off_circle(p, d, p->out) & ~p->out;
   return (fast | off_circle(p, d, p->out | fast)) & ~p->out;

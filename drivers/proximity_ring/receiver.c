@@ -2,8 +2,7 @@
 
 #include "clock.h"
 
-static bool receive(ethd__receiver *r, const ethd__ring_frame *frame, int64_t arrival_ns,
-                    ethd__ring_reading *out) ETHD_RT {
+static bool receive(ethd__receiver *r, const ethd__ring_frame *frame, int64_t arrival_ns, ethd__ring_reading *out) {
   int64_t t_ns;
   ethd__clock_verdict verdict = ethd__board_clock_step(&r->clock, frame, arrival_ns, &t_ns);
   r->counts.board_clock += verdict == ETHD__CLOCK_DOUBTFUL || verdict == ETHD__CLOCK_JUMPED;
@@ -21,7 +20,7 @@ static bool receive(ethd__receiver *r, const ethd__ring_frame *frame, int64_t ar
 }
 
 /* A corrupt frame counts as lost at once, before the gap in the sequence shows it. */
-static void count_corrupt(ethd__receiver *r) ETHD_RT {
+static void count_corrupt(ethd__receiver *r) {
   r->counts.frame_lost += r->decoder.counters.corrupt != r->corrupt;
   r->corrupt = r->decoder.counters.corrupt;
 }

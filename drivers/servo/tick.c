@@ -11,7 +11,7 @@ int64_t ethd__servo_old(const ethd__servo_device *d) {
   return two > OLD_LEAST ? two : OLD_LEAST;
 }
 
-static void add_edges(ethd__servo_device *d, ethd_sense *out) ETHD_RT {
+static void add_edges(ethd__servo_device *d, ethd_sense *out) {
   const ethd__servo_sample *s = &d->newest;
   for (int row = 0; row < ETHD_FAULT_COUNT; row++) {
     if (s->rows[row] != d->seen_rows[row]) out->faults |= ETHD_FAULT_BIT(row);
@@ -21,7 +21,7 @@ static void add_edges(ethd__servo_device *d, ethd_sense *out) ETHD_RT {
   memcpy(d->seen_worst, s->worst, sizeof s->worst);
 }
 
-static void add_joints(const ethd__servo_device *d, ethd_sense *out) ETHD_RT {
+static void add_joints(const ethd__servo_device *d, ethd_sense *out) {
   const ethd__servo_sample *s = &d->newest;
   out->time_ns = s->stamp_ns;
   for (int i = 0; i < 2; i++) {
@@ -34,7 +34,7 @@ static void add_joints(const ethd__servo_device *d, ethd_sense *out) ETHD_RT {
 }
 
 /* A reading that is younger than a late tick waits for the next one. */
-static void add_reading(ethd__servo_device *d, int64_t now_ns, ethd_sense *out) ETHD_RT {
+static void add_reading(ethd__servo_device *d, int64_t now_ns, ethd_sense *out) {
   const ethd__servo_sample *s = &d->newest;
   if (!(s->has & ETHD__SERVO_HAS_READING) || s->readings == d->seen_readings || s->reading_ns > now_ns) return;
   d->seen_readings = s->readings;
@@ -45,7 +45,7 @@ static void add_reading(ethd__servo_device *d, int64_t now_ns, ethd_sense *out) 
 }
 
 /* The fault bit of old feedback; not in the first moments after a start, in which the threads come up. */
-static int64_t is_old(ethd__servo_device *d, int64_t now_ns) ETHD_RT {
+static int64_t is_old(ethd__servo_device *d, int64_t now_ns) {
   if (d->seen_epoch != d->newest.epoch) {
     d->seen_epoch = d->newest.epoch;
     d->grace_ns = now_ns + GRACE;

@@ -89,10 +89,10 @@ static ethd_status start(void *device_) {
   return ethd_sim_start(d->sim, &d->tap);
 }
 
-static int64_t period_ns(const device *d) ETHD_RT { return (int64_t)rint(1e9 * d->def.period); }
+static int64_t period_ns(const device *d) { return (int64_t)rint(1e9 * d->def.period); }
 
 /* Simulates the periods that the loop missed, under the torque that it left. */
-static void catch_up(device *d, int64_t now_ns) ETHD_RT {
+static void catch_up(device *d, int64_t now_ns) {
   if (d->safe) d->held.safe = 1;
   for (int i = 0; d->written && i < CATCH_UP_MAX && now_ns - d->due_ns >= period_ns(d); i++) {
     ethd_sim_write(d->sim, &d->held);

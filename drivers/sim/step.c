@@ -34,7 +34,7 @@ static double reach(const ethd__two *term, int order, double h) {
 /* Finds where f, a value or a slope, times sign passes from below 0 to above, to LOCATED, by regula falsi (Illinois).
    Returns the end at which it is above. */
 static double locate(double (*f)(const ethd__two *, int, double) ETHD_RT, const ethd__two *term, int order, double sign,
-                     double high) ETHD_RT {
+                     double high) {
   double low = 0, below = sign * f(term, order, 0), above = sign * f(term, order, high);
   int side = 0;
   while (high - low > LOCATED) {
@@ -72,7 +72,7 @@ typedef struct change {
   ethd__touch touch;
 } change;
 
-static change next_change(const ethd__series *s, ethd__touch touch) ETHD_RT {
+static change next_change(const ethd__series *s, ethd__touch touch) {
   change none = {INFINITY, touch};
   int n = s->watched;
   if (!n) return none;

@@ -101,14 +101,14 @@ static ethd_status replay_read(void *device, int64_t now_ns, ethd_sense *out) ET
   return ETHD_OK;
 }
 
-static bool same_share(const double torque[2], const double recorded[2], double share) ETHD_RT {
+static bool same_share(const double torque[2], const double recorded[2], double share) {
   for (int j = 0; j < 2; j++)
     if (!(fabs(torque[j] - share * recorded[j]) <= 1e-15 * fabs(recorded[j]))) return false;
   return true;
 }
 
 /* Returns true if a command is the row's; *share is how much of the recorded torque it lets through. */
-static bool is_same(const replay *r, const ethd_trace *row, const ethd_command *c, double *share) ETHD_RT {
+static bool is_same(const replay *r, const ethd_trace *row, const ethd_command *c, double *share) {
   int big = fabs(row->tau[1]) > fabs(row->tau[0]);
   *share = r->share;
   if (c->safe) {

@@ -6,7 +6,7 @@
 
 /* Returns the distance from the ring's centre within which all that can count lies: d_re < near, or d_fr <= d_beta
    however far ahead the finger is. */
-static double range_of(const ethd__tick *t) ETHD_RT {
+static double range_of(const ethd__tick *t) {
   double behind = t->plan->d_beta + ethd_vec_norm(ethd_vec_sub(t->finger.x, t->ring.x));
   return t->plan->setup.ring_radius + (behind > t->near ? behind : t->near);
 }
@@ -21,7 +21,7 @@ typedef struct view {
 
 /* ---- what is near ---- */
 
-static void append(ethd__candidates *c, const view *from, const ethd_touch *touch, int slot) ETHD_RT {
+static void append(ethd__candidates *c, const view *from, const ethd_touch *touch, int slot) {
   ethd__candidate *k = &c->at[c->count++];
   k->touch = *touch;
   k->local = touch->point;
@@ -35,20 +35,20 @@ static void append(ethd__candidates *c, const view *from, const ethd_touch *touc
 }
 
 /* Returns true if an earlier touch, which is deeper, is on the same object and faces the same way. */
-static bool is_same_face(const ethd_touch *touches, int i) ETHD_RT {
+static bool is_same_face(const ethd_touch *touches, int i) {
   for (int k = 0; k < i; k++)
     if (touches[k].object == touches[i].object && ethd_vec_dot(touches[k].n, touches[i].n) > SAME_WAY) return true;
   return false;
 }
 
-static bool is_live(const ethd__state *state, unsigned in_use, int place) ETHD_RT {
+static bool is_live(const ethd__state *state, unsigned in_use, int place) {
   for (; in_use; in_use &= in_use - 1)
     if (state->slots[__builtin_ctz(in_use)].place == place) return true;
   return false;
 }
 
 /* Asks a scene for its touches, unless the ring can't have come near anything since it was last asked. */
-static void ask(const view *from, ethd__state *state, double range, ethd__candidates *c) ETHD_RT {
+static void ask(const view *from, ethd__state *state, double range, ethd__candidates *c) {
   ethd_touch touches[ETHD__TOUCHES];
   ethd__place *p = &state->places[from->place];
   if (ethd__place_is_far(p, from->x, range) && !is_live(state, c->live, from->place)) return;
@@ -68,8 +68,7 @@ static void ask(const view *from, ethd__state *state, double range, ethd__candid
 
 /* Finds the closest pair of a touch and an open contact on the same object, at most `limit` m apart. Returns the
    touch's index, -1 if there is no such pair; *slot is the contact's. */
-static int closest(const ethd__state *state, unsigned open, double limit, const ethd__candidates *c,
-                   int *slot) ETHD_RT {
+static int closest(const ethd__state *state, unsigned open, double limit, const ethd__candidates *c, int *slot) {
   int best = -1;
   for (; open; open &= open - 1) {
     int i = __builtin_ctz(open);
@@ -87,7 +86,7 @@ static int closest(const ethd__state *state, unsigned open, double limit, const 
   return best;
 }
 
-static int index_of(const ethd__candidates *c, const ethd_touch *touch, int place) ETHD_RT {
+static int index_of(const ethd__candidates *c, const ethd_touch *touch, int place) {
   for (int k = 0; k < c->count; k++)
     if (c->at[k].touch.object == touch->object && c->at[k].touch.feature == touch->feature && c->at[k].place == place)
       return k;
@@ -96,7 +95,7 @@ static int index_of(const ethd__candidates *c, const ethd_touch *touch, int plac
 
 /* Continues a contact that no near touch matches, because it jumped or is out of range: the scene finds the local
    minimum nearest to it. If that one isn't a candidate, the contact goes on until its state is transparent. */
-static void follow(const view *from, const ethd__slot *slot, int i, ethd__candidates *c) ETHD_RT {
+static void follow(const view *from, const ethd__slot *slot, int i, ethd__candidates *c) {
   ethd_touch touch;
   ethd_scene_follow(from->scene, slot->object, from->x, slot->point, &touch);
   int k = index_of(c, &touch, slot->place);
@@ -110,7 +109,7 @@ static void follow(const view *from, const ethd__slot *slot, int i, ethd__candid
 /* A surface of a new scene counts as the old scene's if this tick's touches of both differ by no more than this. */
 #define SAME_PLACE 1e-6 /* m, and rad of the normals */
 
-static bool continues(const ethd__slot *slot, const ethd__candidate *k) ETHD_RT {
+static bool continues(const ethd__slot *slot, const ethd__candidate *k) {
   /* a thin wall keeps the normal of the side on which the contact began */
   double side = slot->side != 0 && k->touch.side == -slot->side ? -1 : 1;
   return k->slot < 0 && k->place == slot->place && ethd_vec_norm(ethd_vec_sub(k->local, slot->point)) <= SAME_PLACE &&
@@ -119,7 +118,7 @@ static bool continues(const ethd__slot *slot, const ethd__candidate *k) ETHD_RT 
 
 /* Contacts whose scene was replaced go on if the new scene has the same surface, whatever its number there, and end if
    not. Returns the other contacts' slots. */
-static unsigned settle_orphans(ethd__state *state, ethd__candidates *c) ETHD_RT {
+static unsigned settle_orphans(ethd__state *state, ethd__candidates *c) {
   for (unsigned left = state->orphans & c->live; left; left &= left - 1) {
     int i = __builtin_ctz(left), k = 0;
     while (k < c->count && !continues(&state->slots[i], &c->at[k])) k++;
@@ -136,7 +135,7 @@ static unsigned settle_orphans(ethd__state *state, ethd__candidates *c) ETHD_RT 
 
 /* Pairs touches with contacts, the closest first, so that a contact that ends doesn't pass its state on to another.
    Returns the slots that stay open. */
-static unsigned match(const ethd__plan *plan, ethd__state *state, ethd__candidates *c) ETHD_RT {
+static unsigned match(const ethd__plan *plan, ethd__state *state, ethd__candidates *c) {
   unsigned open = state->orphans ? settle_orphans(state, c) : c->live;
   for (int i = 0, k; (k = closest(state, open, plan->setup.ring_radius, c, &i)) >= 0;) {
     c->at[k].slot = i;
@@ -146,14 +145,14 @@ static unsigned match(const ethd__plan *plan, ethd__state *state, ethd__candidat
 }
 
 /* Keeps the side of a thin wall on which the contact began, until the ring has gone round an end. */
-static void keep_side(ethd_touch *touch, const ethd__slot *slot) ETHD_RT {
+static void keep_side(ethd_touch *touch, const ethd__slot *slot) {
   if (slot->side == 0 || touch->side != -slot->side) return;
   touch->n = ethd_vec_scale(-1, touch->n);
   touch->distance = -touch->distance;
   touch->side = slot->side;
 }
 
-static void sort(ethd__candidates *c) ETHD_RT {
+static void sort(ethd__candidates *c) {
   for (int i = 1; i < c->count; i++) {
     ethd__candidate k = c->at[i];
     int j = i;
@@ -163,7 +162,7 @@ static void sort(ethd__candidates *c) ETHD_RT {
 }
 
 /* Gives the ring as seen from a place. The scene that stands still needs no frame, since it is in R_0. */
-static void look_from(const ethd__tick *t, int place, view *out) ETHD_RT {
+static void look_from(const ethd__tick *t, int place, view *out) {
   out->scene = ethd__place_scene(&t->plan->setup, place);
   out->place = place;
   out->x = t->ring.x;

@@ -28,7 +28,7 @@ typedef struct contact_work {
 } contact_work;
 
 /* Measures the contact at a candidate, all but its age. */
-static ethd_contact measure(const ethd__tick *t, const ethd__candidate *k) ETHD_RT {
+static ethd_contact measure(const ethd__tick *t, const ethd__candidate *k) {
   const ethd_touch *touch = &k->touch;
   const ethd_setup *setup = &t->plan->setup;
   ethd_contact c;
@@ -49,14 +49,14 @@ static ethd_contact measure(const ethd__tick *t, const ethd__candidate *k) ETHD_
 }
 
 /* NaN fails every one of these. */
-static bool ruling_is_good(const ethd_ruling *r) ETHD_RT {
+static bool ruling_is_good(const ethd_ruling *r) {
   return r->beta >= 0 && r->beta <= 1 && r->share >= 0 && r->share <= 1 && r->damping >= 0 && isfinite(r->damping) &&
          isfinite(r->offset) && isfinite(r->feed) && isfinite(r->shift.x) && isfinite(r->shift.y) &&
          isfinite(r->argument);
 }
 
 /* Asks the transition law who rules. */
-static bool rule(const ethd__tick *t, contact_work *w) ETHD_RT {
+static bool rule(const ethd__tick *t, contact_work *w) {
   const ethd_setup *setup = &t->plan->setup;
   ethd_ruling *r = &w->ruling;
   if (t->plan->range) {
@@ -71,7 +71,7 @@ static bool rule(const ethd__tick *t, contact_work *w) ETHD_RT {
 }
 
 /* Returns true while the ring enters. It counts as leaving once v < -h, and as entering again once v > h. */
-static bool entering(ethd__slot *slot, double v, double h) ETHD_RT {
+static bool entering(ethd__slot *slot, double v, double h) {
   if (v < -h)
     slot->leaving = true;
   else if (v > h)
@@ -80,7 +80,7 @@ static bool entering(ethd__slot *slot, double v, double h) ETHD_RT {
 }
 
 /* Force of the (offset) wall along n, N; never attractive. */
-static bool wall(const ethd__tick *t, const contact_work *w, double *force) ETHD_RT {
+static bool wall(const ethd__tick *t, const contact_work *w, double *force) {
   const ethd_contact *c = &w->contact;
   const double *p = ethd__contact_p(t->plan, c->body, w->candidate->touch.material);
   bool in = entering(w->slot, c->v, t->plan->setup.v_hysteresis);
@@ -93,13 +93,13 @@ static bool wall(const ethd__tick *t, const contact_work *w, double *force) ETHD
   return true;
 }
 
-static void add_force(double to[2], double force, ethd_vec n) ETHD_RT {
+static void add_force(double to[2], double force, ethd_vec n) {
   to[0] += force * n.x;
   to[1] += force * n.y;
 }
 
 /* Adds a contact to what the other contacts gave. */
-static void add(ethd__tick *t, const contact_work *w, double force) ETHD_RT {
+static void add(ethd__tick *t, const contact_work *w, double force) {
   const ethd_contact *c = &w->contact;
   const ethd_ruling *r = &w->ruling;
   ethd_trace *out = t->trace;
@@ -121,20 +121,20 @@ static void add(ethd__tick *t, const contact_work *w, double force) ETHD_RT {
 }
 
 /* Writes into the slot whose surface it is, before a law can fail. */
-static void claim(ethd__slot *slot, const ethd__candidate *k) ETHD_RT {
+static void claim(ethd__slot *slot, const ethd__candidate *k) {
   slot->object = k->touch.object;
   slot->place = k->place;
   slot->point = k->local;
   slot->side = k->touch.side;
 }
 
-static void change_state(ethd__slot *slot, int32_t state) ETHD_RT {
+static void change_state(ethd__slot *slot, int32_t state) {
   if (slot->state != state) slot->changed = slot->periods;
   slot->state = state;
 }
 
 /* Keeps what a new plan may adopt of a contact. Only the old plan's run at a swap, on the scratch, needs to do so. */
-static void tell(ethd__slot *slot, const ethd_contact *c, const ethd_ruling *r) ETHD_RT {
+static void tell(ethd__slot *slot, const ethd_contact *c, const ethd_ruling *r) {
   slot->past.n = c->n;
   slot->past.offset = r->offset;
   slot->past.d_re = c->d_re;
@@ -143,13 +143,13 @@ static void tell(ethd__slot *slot, const ethd_contact *c, const ethd_ruling *r) 
 
 /* What acts beside the wall and can reach a finger, N along n. Before a wall is rendered no finger leans on the ring,
    so the feed doesn't count as energy given: like tracking's torque it becomes the ring's motion and heat. */
-static double bare_force(const ethd_ruling *r, double v) ETHD_RT {
+static double bare_force(const ethd_ruling *r, double v) {
   double braking = -r->damping * v;
   return r->share > 0 ? r->feed + braking : braking;
 }
 
 /* Runs the laws on one contact. False: one of them failed. */
-static bool work_out(ethd__tick *t, contact_work *w) ETHD_RT {
+static bool work_out(ethd__tick *t, contact_work *w) {
   ethd__slot *slot = w->slot;
   ethd_contact *c = &w->contact;
   const ethd_ruling *r = &w->ruling;
@@ -174,7 +174,7 @@ static bool work_out(ethd__tick *t, contact_work *w) ETHD_RT {
 
 /* ---- slots ---- */
 
-static ethd__slot *free_slot(const ethd__tick *t) ETHD_RT {
+static ethd__slot *free_slot(const ethd__tick *t) {
   const ethd_setup *setup = &t->plan->setup;
   for (int i = 0; i < ETHD_CONTACTS_MAX; i++) {
     ethd__slot *slot = &t->state->slots[i];
@@ -188,7 +188,7 @@ static ethd__slot *free_slot(const ethd__tick *t) ETHD_RT {
 }
 
 /* Ends the contacts that no touch continues. */
-static void end_lost(ethd__state *state, const ethd__candidates *c) ETHD_RT {
+static void end_lost(ethd__state *state, const ethd__candidates *c) {
   unsigned lost = c->live;
   for (int k = 0; k < c->count; k++)
     if (c->at[k].slot >= 0) lost &= ~(1u << c->at[k].slot);
@@ -199,13 +199,13 @@ static void end_lost(ethd__state *state, const ethd__candidates *c) ETHD_RT {
   }
 }
 
-static void no_room(ethd__tick *t, int count) ETHD_RT {
+static void no_room(ethd__tick *t, int count) {
   t->trace->overflow += count;
   t->state->counters.contacts_lost += (uint64_t)count;
 }
 
 /* Frees the slot of the shallowest contact, which comes after candidate k in the list. */
-static void make_room(ethd__state *state, ethd__candidates *c, int k) ETHD_RT {
+static void make_room(ethd__state *state, ethd__candidates *c, int k) {
   /* unreachable: the loop's end, for fewer than all slots belong to candidates up to k */
   for (int i = c->count - 1; i > k; i--) {
     if (c->at[i].slot < 0) continue;
@@ -215,7 +215,7 @@ static void make_room(ethd__state *state, ethd__candidates *c, int k) ETHD_RT {
   }
 }
 
-static ethd__slot *new_slot(const ethd__tick *t, ethd__candidates *c, int k) ETHD_RT {
+static ethd__slot *new_slot(const ethd__tick *t, ethd__candidates *c, int k) {
   ethd__slot *slot = free_slot(t);
   if (slot) return slot;
   make_room(t->state, c, k);
@@ -224,7 +224,7 @@ static ethd__slot *new_slot(const ethd__tick *t, ethd__candidates *c, int k) ETH
 
 /* ---- all of them ---- */
 
-static void begin(ethd__tick *t) ETHD_RT {
+static void begin(ethd__tick *t) {
   ethd_trace *out = t->trace;
   out->queried = out->contacts = out->overflow = out->body = out->state = 0;
   out->object = -1;
@@ -235,7 +235,7 @@ static void begin(ethd__tick *t) ETHD_RT {
 }
 
 /* Sets t->near. False: the law failed. */
-static bool look_ahead(ethd__tick *t) ETHD_RT {
+static bool look_ahead(ethd__tick *t) {
   const ethd__plan *plan = t->plan;
   double range;
   t->near = plan->d_beta;
@@ -245,12 +245,12 @@ static bool look_ahead(ethd__tick *t) ETHD_RT {
   return ethd__law_is_good(t->state, ETHD_TRANSITION, status, true);
 }
 
-static bool could_count(const ethd_contact *c, double near, const ethd__slot *slot) ETHD_RT {
+static bool could_count(const ethd_contact *c, double near, const ethd__slot *slot) {
   return c->d_re < near || c->d_fr <= c->d_beta || (slot && slot->state != ETHD_TRANSPARENT);
 }
 
 /* Takes the candidates from the deepest to the shallowest, so that the shallowest go when there is no room. */
-static bool work_out_all(ethd__tick *t, ethd__candidates *c) ETHD_RT {
+static bool work_out_all(ethd__tick *t, ethd__candidates *c) {
   for (int k = 0, taken = 0; k < c->count; k++) {
     contact_work w;
     w.candidate = &c->at[k];

@@ -6,13 +6,13 @@
 #include "control/tick.h"
 #include "fp_mode.h"
 
-static void push(ethd_control *control, const ethd_event *event) ETHD_RT {
+static void push(ethd_control *control, const ethd_event *event) {
   if (!ethd__events_push(&control->events, event)) control->state.counters.events_dropped++;
 }
 
 /* Takes a posted setup, but only while there is room for its events, so that no replaced scene is lost. Returns the old
    plan, NULL if nothing was taken. */
-static const ethd__plan *take_posted(ethd_control *control) ETHD_RT {
+static const ethd__plan *take_posted(ethd_control *control) {
   if (!atomic_load_explicit(&control->posted, memory_order_acquire)) return NULL;
   if (ethd__events_room(&control->events) < ETHD__PLACES) return NULL;
   const ethd__plan *from = &control->plans[control->ruling];
@@ -23,7 +23,7 @@ static const ethd__plan *take_posted(ethd_control *control) ETHD_RT {
 
 /* Returns the replaced setup's scene in this place if nothing uses it any more; one that was in two places is returned
    for the first only. */
-static const ethd_scene *released(const ethd_setup *from, const ethd_setup *now, int place) ETHD_RT {
+static const ethd_scene *released(const ethd_setup *from, const ethd_setup *now, int place) {
   const ethd_scene *scene = ethd__place_scene(from, place);
   for (int i = 0; i < ETHD__PLACES; i++)
     if (scene == ethd__place_scene(now, i) || (i < place && scene == ethd__place_scene(from, i))) return NULL;
@@ -31,7 +31,7 @@ static const ethd_scene *released(const ethd_setup *from, const ethd_setup *now,
 }
 
 /* Hands the old scenes back and lets [main] post again, at the end of the tick, which needs both plans till then. */
-static void give_back(ethd_control *control, int64_t tick, const ethd__plan *from) ETHD_RT {
+static void give_back(ethd_control *control, int64_t tick, const ethd__plan *from) {
   const ethd_setup *now = &control->plans[control->ruling].setup;
   push(control, &(ethd_event){.kind = ETHD_EVENT_TAKEN, .tick = tick, .scene = released(&from->setup, now, 0)});
   for (int place = 1; place < ETHD__PLACES; place++) {
@@ -42,12 +42,12 @@ static void give_back(ethd_control *control, int64_t tick, const ethd__plan *fro
 }
 
 /* The tolerance is for the rounding of a sum of periods. */
-static bool clean_enough(const ethd_control *control) ETHD_RT {
+static bool clean_enough(const ethd_control *control) {
   double clean_time = control->plans[control->ruling].setup.limits.clean_time;
   return ethd_control_clean_time(control) >= clean_time * (1 - 1e-9);
 }
 
-static bool take_clear(ethd_control *control) ETHD_RT {
+static bool take_clear(ethd_control *control) {
   if (!atomic_load_explicit(&control->clear, memory_order_relaxed)) return false;
   atomic_store_explicit(&control->clear, 0, memory_order_relaxed);
   if (!control->state.fault || !clean_enough(control)) return false;
@@ -60,7 +60,7 @@ static bool take_clear(ethd_control *control) ETHD_RT {
 #define TOLD_WHEN_GRAVE (ETHD_FAULT_BIT(ETHD_FAULT_TORQUE) | ETHD_FAULT_BIT(ETHD_FAULT_TORQUE_RATE))
 
 /* Counts the occurrences that begin at this tick and makes their events. */
-static void report(ethd_control *control, int64_t tick) ETHD_RT {
+static void report(ethd_control *control, int64_t tick) {
   ethd__state *s = &control->state;
   const ethd__plan *plan = &control->plans[control->ruling];
   const ethd__fault_rows *met = &s->met.rows;
@@ -78,7 +78,7 @@ static void report(ethd_control *control, int64_t tick) ETHD_RT {
   s->before = *met;
 }
 
-static ethd_status finish(const ethd__tick *t, ethd_command *command) ETHD_RT {
+static ethd_status finish(const ethd__tick *t, ethd_command *command) {
   const ethd_trace *out = t->trace;
   const ethd_guard_state *guard = &t->state->guard;
   command->torque[0] = out->tau[0];

@@ -5,39 +5,37 @@
 #include "estimate/fit_methods.h"
 
 /* v - v is 0 for a finite number, and NaN for any other. */
-static bool is_finite(double v) ETHD_RT { return v - v == 0; }
+static bool is_finite(double v) { return v - v == 0; }
 
 /* ---- ring ---- */
 
 /* An enormous torque, which an estimator may take as its input, must not spoil its state for good: a speed that no
    joint can have, or NaN, begins it anew. */
-static double joint_speed(const ethd__tick *t, int i) ETHD_RT {
+static double joint_speed(const ethd__tick *t, int i) {
   ethd_velocity_state *s = &t->state->velocity[i];
   double speed = ethd_velocity_step(&t->plan->velocity, s, t->sense->q[i], t->state->guard.last[i], t->dt);
   if (!(fabs(speed) <= ETHD_SENSE_SPEED_MAX)) memset(s, 0, sizeof *s);
   return speed;
 }
 
-static void joint_speeds(const ethd__tick *t, double qd[2]) ETHD_RT {
+static void joint_speeds(const ethd__tick *t, double qd[2]) {
   for (int i = 0; i < 2; i++) qd[i] = t->sense->have & ETHD_HAVE_DQ ? t->sense->dq[i] : joint_speed(t, i);
 }
 
-static void remember(ethd__state *state, int64_t time_ns, ethd_vec x) ETHD_RT {
+static void remember(ethd__state *state, int64_t time_ns, ethd_vec x) {
   uint64_t i = state->remembered++ % ETHD__HISTORY;
   state->history[i].time_ns = time_ns;
   state->history[i].x = x;
 }
 
 /* Returns b - a in s, for any a <= b. */
-static double seconds(int64_t a, int64_t b) ETHD_RT { return 1e-9 * (double)((uint64_t)b - (uint64_t)a); }
+static double seconds(int64_t a, int64_t b) { return 1e-9 * (double)((uint64_t)b - (uint64_t)a); }
 
 /* Returns the instant `s` seconds before another one; wraps round like the clock. */
-static int64_t before(int64_t instant, double s) ETHD_RT {
-  return (int64_t)((uint64_t)instant - (uint64_t)(int64_t)(1e9 * s));
-}
+static int64_t before(int64_t instant, double s) { return (int64_t)((uint64_t)instant - (uint64_t)(int64_t)(1e9 * s)); }
 
 /* Returns where the ring was at an earlier instant: linear between ticks, constant before the history. */
-static ethd_vec ring_at(const ethd__state *state, int64_t time_ns) ETHD_RT {
+static ethd_vec ring_at(const ethd__state *state, int64_t time_ns) {
   uint64_t now = state->remembered - 1;
   uint64_t oldest = now >= ETHD__HISTORY ? now - ETHD__HISTORY + 1 : 0;
   uint64_t k = now;
@@ -61,7 +59,7 @@ static ethd_vec reference(const ethd__tick *t) ETHD_RT {
 }
 
 /* Returns the finger's velocity minus the ring's mean velocity while the frame's rays were taken. */
-static ethd_vec relative_velocity(const ethd__tick *t) ETHD_RT {
+static ethd_vec relative_velocity(const ethd__tick *t) {
   const ethd__plan *plan = t->plan;
   ethd_vec first = ring_at(t->state, before(t->sense->sample_ns, plan->lag_most));
   ethd_vec last = ring_at(t->state, before(t->sense->sample_ns, plan->lag_least));
@@ -76,7 +74,7 @@ static ethd_status fit(const ethd__tick *t, ethd_finger *out) ETHD_RT {
   return ethd__fit_moving(&plan->fit, t->sense->rays, plan->setup.ray_lag, relative_velocity(t), out);
 }
 
-static bool is_world(const ethd__tick *t) ETHD_RT {
+static bool is_world(const ethd__tick *t) {
   return (t->sense->have & (ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD)) == (ETHD_HAVE_CENTRE | ETHD_HAVE_WORLD);
 }
 
@@ -95,25 +93,25 @@ static bool reading(const ethd__tick *t, ethd_vec *out) ETHD_RT {
 
 /* Returns true if the reading isn't from the future and isn't the last one again. Stamps are compared because ages are
    sums of periods, whose rounding could make the same reading look newer. */
-static bool is_new(const ethd__tick *t) ETHD_RT {
+static bool is_new(const ethd__tick *t) {
   return t->sense->sample_ns <= t->sense->time_ns &&
          (t->state->filter.used == 0 || t->sense->sample_ns != t->state->reading_ns);
 }
 
 /* Returns whether a reading's noise is a possible number; NaN isn't. */
-static bool noise_is_possible(const ethd__tick *t) ETHD_RT {
+static bool noise_is_possible(const ethd__tick *t) {
   return t->sense->finger_noise >= 0 && t->sense->finger_noise <= ETHD_SENSE_LENGTH_MAX;
 }
 
 /* Returns whether a reading puts the finger's centre outside the ring. */
-static bool is_outside(const ethd__tick *t, ethd_vec reading) ETHD_RT {
+static bool is_outside(const ethd__tick *t, ethd_vec reading) {
   if (is_world(t)) reading = ethd_vec_sub(reading, ring_at(t->state, t->sense->sample_ns));
   return !(ethd_vec_norm(reading) <= t->plan->setup.ring_radius);
 }
 
 /* Corrects the filter. A reading is dropped (false) when it puts the finger's centre outside the ring or when the
    filter's gate rejects it. */
-static bool use(const ethd__tick *t, ethd_vec reading) ETHD_RT {
+static bool use(const ethd__tick *t, ethd_vec reading) {
   const ethd__plan *plan = t->plan;
   ethd_filter_state *filter = &t->state->filter;
   bool outside = plan->watches_finger && is_outside(t, reading);
@@ -129,7 +127,7 @@ static bool use(const ethd__tick *t, ethd_vec reading) ETHD_RT {
   return status == ETHD_OK;
 }
 
-static void correct(const ethd__tick *t) ETHD_RT {
+static void correct(const ethd__tick *t) {
   ethd_vec seen;
   if (!is_new(t) || !noise_is_possible(t) || !reading(t, &seen) || !use(t, seen)) {
     t->state->counters.readings_dropped++;

@@ -11,7 +11,7 @@
 #include "control/rows.h"
 
 /* Asks the tracking law for its torque before beta, tau. */
-static bool track(const ethd__tick *t, double tau[2]) ETHD_RT {
+static bool track(const ethd__tick *t, double tau[2]) {
   const ethd_setup *setup = &t->plan->setup;
   ethd_trace *out = t->trace;
   ethd_tracking_in in;

@@ -9,16 +9,16 @@
 #include "guard/parts.h"
 
 /* Returns the lesser of two numbers; NaN, for something that isn't known, stays if it is b. */
-static double least(double a, double b) ETHD_RT { return a < b ? a : b; }
+static double least(double a, double b) { return a < b ? a : b; }
 
 /* Gives the joints' torques as they act on the links' absolute angles: a serial arm's second motor sits on link 1. */
-static void on_links(const ethd__plan *plan, const double tau[2], double out[2]) ETHD_RT {
+static void on_links(const ethd__plan *plan, const double tau[2], double out[2]) {
   out[0] = plan->setup.arm.mechanism == ETHD_ARM_SERIAL ? tau[0] - tau[1] : tau[0];
   out[1] = tau[1];
 }
 
 /* Returns the most torque against g that its limits leave joint i at this tick, Nm. */
-static double room(const ethd__tick *t, int i, double g) ETHD_RT {
+static double room(const ethd__tick *t, int i, double g) {
   const ethd_limits *limits = &t->plan->setup.limits;
   const ethd_guard_state *guard = &t->state->guard;
   double most = limits->torque;
@@ -40,7 +40,7 @@ static double finger_age(const ethd__tick *t) ETHD_RT {
   return state->reading_age;
 }
 
-static double finger_acceleration(const ethd__tick *t, ethd_vec n) ETHD_RT {
+static double finger_acceleration(const ethd__tick *t, ethd_vec n) {
   const ethd_filter_state *filter = &t->state->filter;
   bool known = t->plan->filter.method == ETHD_FILTER_CA && filter->started && !(t->sense->have & ETHD_HAVE_FINGER);
   return known ? ethd_vec_dot(n, ethd_vec_of(filter->a)) : (double)NAN;

@@ -11,26 +11,26 @@ typedef struct fp_control {
   uint16_t x87;
 } fp_control;
 
-static fp_control control_now(void) ETHD_RT { return (fp_control){ethd__fp_now() & ETHD__FP_BITS, ethd__x87_now()}; }
+static fp_control control_now(void) { return (fp_control){ethd__fp_now() & ETHD__FP_BITS, ethd__x87_now()}; }
 
-static void control_set(fp_control c) ETHD_RT {
+static void control_set(fp_control c) {
   ethd__x87_set(c.x87);
   ethd__fp_set(c.word);
 }
 
-static bool control_is(fp_control a, fp_control b) ETHD_RT { return a.word == b.word && a.x87 == b.x87; }
+static bool control_is(fp_control a, fp_control b) { return a.word == b.word && a.x87 == b.x87; }
 
 /* ---- fences: a pattern before the law's state and from its end on ---- */
 
 #define PATTERN 0xfe9ce5fe9ce5fe9cu /* a NaN, but not the default one: no law writes it by accident */
 
-static void put_words(void *to, size_t bytes) ETHD_RT {
+static void put_words(void *to, size_t bytes) {
   const uint64_t word = PATTERN;
   for (size_t i = 0; i < bytes; i += sizeof word)
     memcpy((char *)to + i, &word, bytes - i < sizeof word ? bytes - i : sizeof word);
 }
 
-static bool holds(const void *from, size_t bytes) ETHD_RT {
+static bool holds(const void *from, size_t bytes) {
   const uint64_t pattern = PATTERN;
   uint64_t word, changed = 0;
   size_t i = 0;
@@ -42,16 +42,16 @@ static bool holds(const void *from, size_t bytes) ETHD_RT {
 }
 
 /* Returns the bytes behind the law's state, up to the end of the fence after its block. */
-static size_t rest_of(const ethd_law *law) ETHD_RT {
+static size_t rest_of(const ethd_law *law) {
   return sizeof(ethd__law_block) - offsetof(ethd__law_block, at) - law->state_size;
 }
 
-static void put_fences(const ethd_law *law, ethd__law_block *b) ETHD_RT {
+static void put_fences(const ethd_law *law, ethd__law_block *b) {
   put_words(b->before, sizeof b->before);
   put_words((char *)b->at + law->state_size, rest_of(law));
 }
 
-static bool fences_hold(const ethd_law *law, const ethd__law_block *b) ETHD_RT {
+static bool fences_hold(const ethd_law *law, const ethd__law_block *b) {
   return b->law == law && holds(b->before, sizeof b->before) &&
          holds((const char *)b->at + law->state_size, rest_of(law));
 }
@@ -64,14 +64,14 @@ typedef struct call {
   fp_control before;
 } call;
 
-static call enter(const ethd_law *law, ethd__law_block *b) ETHD_RT {
+static call enter(const ethd_law *law, ethd__law_block *b) {
   __atomic_store_n(&b->law, law, __ATOMIC_RELAXED);
   __atomic_store_n(&b->running, 1, __ATOMIC_RELEASE);
   return (call){law, b, control_now()};
 }
 
 /* Finds what the law changed that it must not change, and undoes it. */
-static ethd_status leave(const call *c, ethd_status status) ETHD_RT {
+static ethd_status leave(const call *c, ethd_status status) {
   ethd__law_block *b = c->block;
   if (!control_is(control_now(), c->before)) {
     control_set(c->before);
@@ -88,13 +88,13 @@ static ethd_status leave(const call *c, ethd_status status) ETHD_RT {
 }
 
 /* A reset that failed fails the step after it. */
-static ethd_status leave_step(const call *c, ethd_status status) ETHD_RT {
+static ethd_status leave_step(const call *c, ethd_status status) {
   ethd_status found = leave(c, status), reset = (ethd_status)c->block->failed;
   c->block->failed = 0;
   return reset ? reset : found;
 }
 
-static ethd__law_block *block_of(void *state) ETHD_RT {
+static ethd__law_block *block_of(void *state) {
   return (ethd__law_block *)(void *)((char *)state - offsetof(ethd__law_block, at));
 }
 

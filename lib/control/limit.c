@@ -13,12 +13,12 @@
 #include "guard/parts.h"
 
 /* Returns the share of swap_time that has passed, 1 at its end. Periods add up to swap_time only within rounding. */
-static double passed(double elapsed, double swap_time) ETHD_RT {
+static double passed(double elapsed, double swap_time) {
   return elapsed < swap_time * (1 - 1e-9) ? elapsed / swap_time : 1;
 }
 
 /* Advances both fades by this tick and returns whether there is one. */
-static bool advance(ethd__tick *t) ETHD_RT {
+static bool advance(ethd__tick *t) {
   ethd__state *state = t->state;
   if (!state->fades && !t->soft && !t->old) return false;
   if (t->soft) state->soft = -t->dt;

@@ -27,7 +27,7 @@
 
 /* A device gives the force in the period after it was worked out, or in the one after that: both are watched,
    and the worse counts. */
-static void observe(ethd__slot *slot, const ethd_contact *c) ETHD_RT {
+static void observe(ethd__slot *slot, const ethd_contact *c) {
   double travel = slot->watched ? slot->depth_was - c->d_re : 0;
   for (int late = 0; late < 2; late++) {
     double *e = &slot->energy[late];
@@ -40,11 +40,11 @@ static void observe(ethd__slot *slot, const ethd_contact *c) ETHD_RT {
 
 /* What a spring that pushes like this wall has stored; one that stiffens has stored less. A wall that came to the ring
    by itself, in a new scene, has stored nothing. */
-static double stored(const ethd__tick *t, const ethd__slot *slot, double depth, double wall) ETHD_RT {
+static double stored(const ethd__tick *t, const ethd__slot *slot, double depth, double wall) {
   return slot->periods > 0 || t->soft ? fmax(-wall * depth / 2, 0) : 0;
 }
 
-static void begin(const ethd__tick *t, ethd__slot *slot, double depth, double wall) ETHD_RT {
+static void begin(const ethd__tick *t, ethd__slot *slot, double depth, double wall) {
   const ethd__state *state = t->state;
   double has = stored(t, slot, depth, wall);
   double passed = (double)(state->counters.ticks - state->given_at) * t->plan->setup.period;
@@ -55,7 +55,7 @@ static void begin(const ethd__tick *t, ethd__slot *slot, double depth, double wa
 }
 
 /* Returns the damping to add, Ns/m: it begins when more than the bound was given away and ends below half of it. */
-static double damping(const ethd__plan *plan, ethd__slot *slot, double given, double v, double period) ETHD_RT {
+static double damping(const ethd__plan *plan, ethd__slot *slot, double given, double v, double period) {
   const double bound = plan->setup.limits.energy;
   if (given > bound) slot->giving = true;
   if (given <= bound / 2) slot->giving = false;
@@ -63,7 +63,7 @@ static double damping(const ethd__plan *plan, ethd__slot *slot, double given, do
   return fmin((given - bound / 2) / (v * v * period), plan->damping_max);
 }
 
-static bool persists(ethd__state *state, double period) ETHD_RT {
+static bool persists(ethd__state *state, double period) {
   uint64_t now = state->counters.ticks + 1;
   if (state->excess_at == 0 || (double)(now - state->excess_at) * period > RESPITE) state->excess_from = now;
   state->excess_at = now;

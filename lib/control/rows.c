@@ -14,13 +14,11 @@ static const int64_t stop_1 = 0 ETHD_FAULTS(STOP_1), stop_2 = 0 ETHD_FAULTS(STOP
 static const int64_t zero_1 = 0 ETHD_FAULTS(ZERO_1), zero_2 = 0 ETHD_FAULTS(ZERO_2);
 
 /* Returns those of the rows whose due reaction is STOP. */
-static int64_t stops(const ethd__fault_rows *r) ETHD_RT {
-  return (r->faults & ~r->grave & stop_1) | (r->grave & stop_2);
-}
+static int64_t stops(const ethd__fault_rows *r) { return (r->faults & ~r->grave & stop_1) | (r->grave & stop_2); }
 
 int64_t ethd__rows_zero(const ethd__fault_rows *r) { return (r->faults & ~r->grave & zero_1) | (r->grave & zero_2); }
 
-static ethd_fault lowest(int64_t rows) ETHD_RT { return (ethd_fault)__builtin_ctzll((uint64_t)rows); }
+static ethd_fault lowest(int64_t rows) { return (ethd_fault)__builtin_ctzll((uint64_t)rows); }
 
 /* ---- noting ---- */
 
@@ -44,7 +42,7 @@ void ethd__rows_take(ethd__state *state, const ethd_sense *sense) {
 
 #define CUT_MAX (0.1 + 1e-9) /* s; a torque that is cut for longer makes an event (sums of periods are rounded) */
 
-static void note_guard(ethd__state *state, int64_t bits) ETHD_RT {
+static void note_guard(ethd__state *state, int64_t bits) {
   if (bits & ETHD_GUARD_WORKSPACE) ethd__note_grave(state, ETHD_FAULT_WORKSPACE);
   if (bits & ETHD_GUARD_FINITE) ethd__note(state, ETHD_FAULT_FINITE);
   if (bits & ETHD_GUARD_TORQUE) ethd__note(state, ETHD_FAULT_TORQUE);

@@ -10,7 +10,7 @@
 
 /* ---- the state ---- */
 
-static void swap_velocity(const ethd__plan *from, const ethd__plan *to, ethd__state *state) ETHD_RT {
+static void swap_velocity(const ethd__plan *from, const ethd__plan *to, ethd__state *state) {
   if (from->velocity.method == to->velocity.method &&
       memcmp(from->velocity.p, to->velocity.p, sizeof from->velocity.p) == 0)
     return;
@@ -21,7 +21,7 @@ static void swap_velocity(const ethd__plan *from, const ethd__plan *to, ethd__st
   }
 }
 
-static void swap_filter(const ethd__plan *from, const ethd__plan *to, ethd__state *state) ETHD_RT {
+static void swap_filter(const ethd__plan *from, const ethd__plan *to, ethd__state *state) {
   ethd_vec x, v;
   if (!state->filter.started ||
       (from->filter.method == to->filter.method && memcmp(from->filter.p, to->filter.p, sizeof from->filter.p) == 0))
@@ -30,13 +30,13 @@ static void swap_filter(const ethd__plan *from, const ethd__plan *to, ethd__stat
   ethd_filter_start(&to->filter, &state->filter, x, v);
 }
 
-static bool has_same_scene(const ethd__plan *a, const ethd__plan *b, int place) ETHD_RT {
+static bool has_same_scene(const ethd__plan *a, const ethd__plan *b, int place) {
   return ethd__place_scene(&a->setup, place) == ethd__place_scene(&b->setup, place);
 }
 
 /* Makes a contact an orphan when its scene was replaced. Its object's number means nothing in the new scene, so its
    touch is kept, by which candidates.c finds the same surface there. */
-static void orphan(ethd__state *state, int i, const ethd__state *old) ETHD_RT {
+static void orphan(ethd__state *state, int i, const ethd__state *old) {
   ethd__slot *slot = &state->slots[i];
   if (!(state->live & (old ? old->live : 0) & 1u << i)) {
     ethd__slot_free(state, slot);
@@ -63,7 +63,7 @@ static void adopt(const ethd__plan *to, const ethd__slot *was, ethd__slot *slot)
   ethd__fence_adopt(to, &slot->transition, &past);
 }
 
-static void swap_slot(const ethd__plan *from, const ethd__plan *to, const ethd__slot *was, ethd__slot *slot) ETHD_RT {
+static void swap_slot(const ethd__plan *from, const ethd__plan *to, const ethd__slot *was, ethd__slot *slot) {
   if (from->setup.transition != to->setup.transition) adopt(to, was, slot);
   if (from->setup.contact != to->setup.contact)
     ethd__block_reset(to, &to->setup.contact->law, to->setup.contact_p, &slot->contact);
@@ -87,7 +87,7 @@ void ethd__swap_state(const ethd__plan *from, const ethd__plan *to, ethd__state 
 
 /* Works out what the old plan would command, on a copy of the state, so that this run leaves no mark in the state on
    which the new plan goes on. Returns false if a law failed, which is then noted in the state too. */
-static bool evaluate_old(ethd__tick *t, double torque[2]) ETHD_RT {
+static bool evaluate_old(ethd__tick *t, double torque[2]) {
   memcpy(t->scratch, t->state, sizeof *t->scratch);
   ethd__tick old = *t;
   old.plan = t->from;

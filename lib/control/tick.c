@@ -24,20 +24,20 @@
 #define CLOCK_WINDOW 0.2 /* s */
 #define GAP_MAX 1000000  /* periods: a longer gap counts as this one, so that sums stay small */
 
-static int64_t at_most(int64_t periods) ETHD_RT { return periods < GAP_MAX ? periods : GAP_MAX; }
+static int64_t at_most(int64_t periods) { return periods < GAP_MAX ? periods : GAP_MAX; }
 
 /* ---- what is already wrong ---- */
 
 /* Returns false for NaN too. */
-static bool within(const double v[2], double most) ETHD_RT { return fabs(v[0]) <= most && fabs(v[1]) <= most; }
+static bool within(const double v[2], double most) { return fabs(v[0]) <= most && fabs(v[1]) <= most; }
 
-static bool pose_is_possible(const ethd__body_pose *pose) ETHD_RT {
+static bool pose_is_possible(const ethd__body_pose *pose) {
   return fabs(pose->x.x) <= ETHD_SENSE_LENGTH_MAX && fabs(pose->x.y) <= ETHD_SENSE_LENGTH_MAX &&
          fabs(pose->angle) <= ETHD_SENSE_ANGLE_MAX && fabs(pose->v.x) <= ETHD_SENSE_SPEED_MAX &&
          fabs(pose->v.y) <= ETHD_SENSE_SPEED_MAX && fabs(pose->rate) <= ETHD_SENSE_SPEED_MAX;
 }
 
-static bool bodies_are_possible(const ethd_sense *s) ETHD_RT {
+static bool bodies_are_possible(const ethd_sense *s) {
   for (int i = 0; i < ETHD_BODIES_MAX; i++) {
     if (!(s->have & ((int64_t)ETHD_HAVE_BODY << i))) continue;
     ethd__body_pose pose = ethd__body_pose_of(s, i);
@@ -48,7 +48,7 @@ static bool bodies_are_possible(const ethd_sense *s) ETHD_RT {
 
 /* Returns true if every number that will be used is possible; else *which is the ETHD_HAVE_* bit of the one that isn't,
    0 for q. */
-static bool input_is_possible(const ethd_sense *s, double *which) ETHD_RT {
+static bool input_is_possible(const ethd_sense *s, double *which) {
   *which = 0;
   if (!within(s->q, ETHD_SENSE_ANGLE_MAX)) return false;
   *which = ETHD_HAVE_DQ;
@@ -62,14 +62,12 @@ static bool input_is_possible(const ethd_sense *s, double *which) ETHD_RT {
   return !(s->have & ETHD__HAVE_BODIES) || bodies_are_possible(s);
 }
 
-static double since(int64_t now, int64_t then) ETHD_RT {
-  return 1e-9 * (double)(int64_t)((uint64_t)now - (uint64_t)then);
-}
+static double since(int64_t now, int64_t then) { return 1e-9 * (double)(int64_t)((uint64_t)now - (uint64_t)then); }
 
 /* Returns true unless the device's clock stands still or has another rate: over a window it may differ from the loop's
    periods by two gaps, since the age of a sample may change by one. A step that is late begins a new window, and so does
    a device that says itself that its feedback is old. */
-static bool clock_runs(const ethd__tick *t, bool in_time) ETHD_RT {
+static bool clock_runs(const ethd__tick *t, bool in_time) {
   ethd__state *state = t->state;
   const double period = t->plan->setup.period;
   const bool told = t->sense->faults & ETHD_FAULT_BIT(ETHD_FAULT_FEEDBACK_OLD);
@@ -85,7 +83,7 @@ static bool clock_runs(const ethd__tick *t, bool in_time) ETHD_RT {
 /* Returns true unless this step comes later than limits.gap after the last, by the loop's periods, or the device's
    clock steps by more than that between two samples beside those periods. A sample that comes again counts with the
    next new one. The first two ticks compare no clocks, since a bus's first sample may be older than the loop. */
-static bool clock_is_good(const ethd__tick *t) ETHD_RT {
+static bool clock_is_good(const ethd__tick *t) {
   const double most = t->plan->setup.limits.gap, expected = (double)t->periods * t->plan->setup.period;
   if (isinf(most)) return true;
   ethd__state *state = t->state;
@@ -95,11 +93,11 @@ static bool clock_is_good(const ethd__tick *t) ETHD_RT {
   return clock_runs(t, expected <= most) && good;
 }
 
-static bool joints_are_good(const double joints[4], const double q[2]) ETHD_RT {
+static bool joints_are_good(const double joints[4], const double q[2]) {
   return q[0] >= joints[0] && q[0] <= joints[1] && q[1] >= joints[2] && q[1] <= joints[3];
 }
 
-static bool reach_is_good(const double reach[2], ethd_vec x) ETHD_RT {
+static bool reach_is_good(const double reach[2], ethd_vec x) {
   double r = ethd_vec_norm(x);
   return r >= reach[0] && r <= reach[1];
 }
@@ -107,7 +105,7 @@ static bool reach_is_good(const double reach[2], ethd_vec x) ETHD_RT {
 #define HOT 1.05 /* times the heat that the nominal torque leads to */
 
 /* Notes a motor that is too hot. The torque since the last tick was held under the limits that ruled then. */
-static void note_heat(ethd__tick *t) ETHD_RT {
+static void note_heat(ethd__tick *t) {
   const ethd_limits *held = t->from ? &t->from->setup.limits : &t->plan->setup.limits;
   if (held->nominal_torque < (double)INFINITY &&
       !(ethd_guard_heat(held, &t->state->guard, (double)t->periods * t->plan->setup.period) <= HOT))
@@ -115,7 +113,7 @@ static void note_heat(ethd__tick *t) ETHD_RT {
 }
 
 /* Notes the rows of limits that most setups don't have. */
-static void note_rare_limits(ethd__tick *t, bool possible) ETHD_RT {
+static void note_rare_limits(ethd__tick *t, bool possible) {
   if (!clock_is_good(t)) ethd__note_grave(t->state, ETHD_FAULT_CLOCK);
   if (possible && !joints_are_good(t->plan->setup.limits.joints, t->sense->q))
     ethd__note_grave(t->state, ETHD_FAULT_WORKSPACE);
@@ -124,7 +122,7 @@ static void note_rare_limits(ethd__tick *t, bool possible) ETHD_RT {
 }
 
 /* Returns whether the tick has a measurement. */
-static bool note_what_is_wrong(ethd__tick *t) ETHD_RT {
+static bool note_what_is_wrong(ethd__tick *t) {
   double which;
   ethd__rows_begin(t->state, t->sense);
   bool possible = input_is_possible(t->sense, &which);
@@ -138,7 +136,7 @@ static bool note_what_is_wrong(ethd__tick *t) ETHD_RT {
 /* ---- the torque of the laws ---- */
 
 /* Sets trace->tau_raw. If a law fails, tau_raw stays undefined, but a row is noted that forbids a torque. */
-static void work_out_torque(ethd__tick *t, double old[2]) ETHD_RT {
+static void work_out_torque(ethd__tick *t, double old[2]) {
   if (ethd__rows_forbid(t->state)) {
     if (t->from) ethd__swap_state(t->from, t->plan, t->state, NULL);
     ethd__estimate(t);
@@ -164,7 +162,7 @@ static void guard(ethd__tick *t) ETHD_RT {
 
 /* ---- the whole tick ---- */
 
-static void begin_trace(const ethd_sense *sense, ethd_trace *out) ETHD_RT {
+static void begin_trace(const ethd_sense *sense, ethd_trace *out) {
   const size_t own = offsetof(ethd_trace, tick);
   out->sense = *sense;
   memset((char *)out + own, 0, sizeof *out - own);

@@ -3,11 +3,11 @@
 #include "fp_mode.h"
 #include "guard/parts.h"
 
-static bool is_outside(const double w[4], ethd_vec x) ETHD_RT {
+static bool is_outside(const double w[4], ethd_vec x) {
   return !(x.x >= w[0] && x.x <= w[1] && x.y >= w[2] && x.y <= w[3]);
 }
 
-static int32_t breach(const ethd_limits *limits, ethd_vec x, ethd_vec v) ETHD_RT {
+static int32_t breach(const ethd_limits *limits, ethd_vec x, ethd_vec v) {
   int32_t bits = 0;
   if (!(ethd_vec_norm(v) <= limits->speed)) bits |= ETHD_GUARD_SPEED;
   if (is_outside(limits->workspace, x)) bits |= ETHD_GUARD_WORKSPACE;
@@ -15,14 +15,14 @@ static int32_t breach(const ethd_limits *limits, ethd_vec x, ethd_vec v) ETHD_RT
 }
 
 /* Brings a value, which isn't NaN, to within `most` of the centre; returns true if it was outside. */
-static bool clamp(double centre, double most, double *value) ETHD_RT {
+static bool clamp(double centre, double most, double *value) {
   double lo = centre - most, hi = centre + most;
   if (*value >= lo && *value <= hi) return false;
   *value = *value < lo ? lo : hi;
   return true;
 }
 
-static void count(ethd_guard_state *s, int32_t bits) ETHD_RT {
+static void count(ethd_guard_state *s, int32_t bits) {
   for (; bits; bits &= bits - 1) s->counts[__builtin_ctz((unsigned)bits)]++;
 }
 
@@ -39,7 +39,7 @@ static int32_t steep(const ethd_limits *limits, ethd_guard_state *s, double dt, 
 }
 
 /* Returns the most torque of a joint, Nm, that limit and heat leave; *bit says which of them it is. */
-static double most_of(const ethd_limits *limits, const ethd_guard_state *s, int i, int32_t *bit) ETHD_RT {
+static double most_of(const ethd_limits *limits, const ethd_guard_state *s, int i, int32_t *bit) {
   *bit = ETHD_GUARD_TORQUE;
   if (!(limits->nominal_torque < (double)INFINITY)) return limits->torque;
   const double heat = ethd__guard_cool(limits, s->heat[i]);

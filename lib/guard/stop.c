@@ -45,7 +45,7 @@ ethd_guard_device ethd_guard_device_of(const ethd_arm *arm, const ethd_dynamics 
   return device;
 }
 
-static double reaction(const ethd_guard_device *d, bool estimated) ETHD_RT {
+static double reaction(const ethd_guard_device *d, bool estimated) {
   return d->delay + d->period + (estimated ? d->lag : 0);
 }
 
@@ -104,15 +104,14 @@ double ethd_guard_stop_time(const ethd_guard_device *d, const ethd_limits *limit
 /* ---- a tick of a stop ---- */
 
 /* Returns how fast the torques of the last tick change the links' speeds, m/s^2 at the ring. */
-static double acceleration(const ethd_guard_device *d, const double torque[2]) ETHD_RT {
+static double acceleration(const ethd_guard_device *d, const double torque[2]) {
   double a = (torque[0] - d->serial * torque[1]) * d->link[0] / d->inertia[0];
   double b = torque[1] * d->link[1] / d->inertia[1];
   return sqrt(a * a + b * b);
 }
 
 /* Returns the change of speed, m/s, that the stop may command at this tick. */
-static double allowed(const ethd_guard_device *d, ethd_guard_state *s, const ethd_guard_motion *m,
-                      double speed) ETHD_RT {
+static double allowed(const ethd_guard_device *d, ethd_guard_state *s, const ethd_guard_motion *m, double speed) {
   if (!s->stop.begun) {
     memset(&s->stop, 0, sizeof s->stop);
     s->stop.begun = 1;
@@ -133,7 +132,7 @@ static double allowed(const ethd_guard_device *d, ethd_guard_state *s, const eth
 }
 
 static bool is_over(const ethd_limits *limits, const ethd_guard_device *d, const ethd_guard_state *s,
-                    const ethd_guard_motion *m, double speed) ETHD_RT {
+                    const ethd_guard_motion *m, double speed) {
   double most = limits->stop_time < (double)INFINITY ? limits->stop_time : ETHD_STOP_TIME;
   return !(speed >= STILL) || s->stop.time + d->period > most * (1 + 1e-9) ||
          s->stop.helpless > reaction(d, m->estimated) + d->period;

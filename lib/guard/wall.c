@@ -5,11 +5,11 @@
           |//////:    ring                                                                          */
 #include "guard/parts.h"
 
-static double push(const ethd_guard_device *d, double depth, double speed) ETHD_RT {
+static double push(const ethd_guard_device *d, double depth, double speed) {
   return depth > 0 ? d->stiffness * depth + d->damping * fmax(speed, 0) : 0;
 }
 
-static double push_both(const ethd_guard_device *d, const double range[2], double margin, double x, double v) ETHD_RT {
+static double push_both(const ethd_guard_device *d, const double range[2], double margin, double x, double v) {
   return push(d, range[0] + margin - x, -v) - push(d, x - (range[1] - margin), v);
 }
 

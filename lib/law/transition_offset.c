@@ -23,7 +23,7 @@ void ethd__offset_enter(ethd__offset *s, int phase, double eps) {
 }
 
 /* Adds a period to the time of braking by Kahan's summation, so that a long sum is right but for one rounding. */
-static void add_time(ethd__offset *s, double period) ETHD_RT {
+static void add_time(ethd__offset *s, double period) {
   double term = period - s->rest, sum = s->braked + term;
   s->rest = sum - s->braked - term;
   s->braked = sum;
@@ -39,7 +39,7 @@ static void brake(const double *p, ethd__offset *s, const ethd_contact *c) ETHD_
     ethd__offset_enter(s, ETHD_VO, -c->d_re);
 }
 
-static void advance(const double *p, ethd__offset *s, const ethd_contact *c) ETHD_RT {
+static void advance(const double *p, ethd__offset *s, const ethd_contact *c) {
   if (s->phase == ETHD_BRAKING)
     brake(p, s, c);
   else if (s->phase == ETHD_VO && c->d_re > c->d_beta)

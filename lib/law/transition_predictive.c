@@ -55,11 +55,11 @@ typedef struct predictive_state {
 
 _Static_assert(sizeof(predictive_state) <= ETHD_STATE_MAX, "state");
 
-static double least(double a, double b) ETHD_RT { return a < b ? a : b; }
+static double least(double a, double b) { return a < b ? a : b; }
 static double most(double a, double b) ETHD_RT { return a > b ? a : b; }
-static double within(double x, double low, double high) ETHD_RT { return least(most(x, low), high); }
+static double within(double x, double low, double high) { return least(most(x, low), high); }
 
-static ethd__ring_ability ability_of(const double *p, const ethd_contact *c) ETHD_RT {
+static ethd__ring_ability ability_of(const double *p, const ethd_contact *c) {
   double k = p[LEARN] > 0 ? ethd__brake_learnt(c->facts->memory) : 1;
   ethd__ring_ability out = ethd__ring_ability_of(c->facts, k);
   out.curve = ethd__brake_curve_of(p[EFFORT] * (out.force + out.friction) / out.mass, p[RATE], c->period);
@@ -68,7 +68,7 @@ static ethd__ring_ability ability_of(const double *p, const ethd_contact *c) ETH
 
 /* ---- where it is ---- */
 
-static void observe(const double *p, predictive_state *s, const ethd_contact *c, const ethd__ring_ability *m) ETHD_RT {
+static void observe(const double *p, predictive_state *s, const ethd_contact *c, const ethd__ring_ability *m) {
   double force = c->facts->applied - ethd__ring_friction(m, s->ring.v), model = force / m->mass;
   if (p[LEARN] > 0 && s->ahead)
     ethd__brake_learner_add(&s->learner, force / c->facts->mass, c->d_re, c->period, ethd__known(c->facts->delay));
@@ -87,14 +87,14 @@ static double clearance(const ethd_contact *c) ETHD_RT {
 }
 
 /* Returns the distance to the depth aimed at when this tick's force begins to act, m. */
-static double distance(const double *p, const predictive_state *s, const ethd_facts *f) ETHD_RT {
+static double distance(const double *p, const predictive_state *s, const ethd_facts *f) {
   return s->ring.d + p[AIM] - s->ring.v * ethd__known(f->delay);
 }
 
 /* ---- approach, braking, its end ---- */
 
 static bool meets_curve(const double *p, const predictive_state *s, const ethd_contact *c,
-                        const ethd__ring_ability *m) ETHD_RT {
+                        const ethd__ring_ability *m) {
   double v = s->ring.v, d = distance(p, s, c->facts) - v * c->period / 2;
   return v > 0 && c->v_f > 0 && v >= ethd__brake_curve_speed(&m->curve, d);
 }
@@ -111,7 +111,7 @@ static void approach(const double *p, const predictive_state *s, const ethd_cont
   out->shift = ethd_vec_scale(share * (late - lag), c->n);
 }
 
-static void begin(predictive_state *s) ETHD_RT {
+static void begin(predictive_state *s) {
   s->ahead = true;
   s->stood = false;
   s->time = 0;
@@ -119,7 +119,7 @@ static void begin(predictive_state *s) ETHD_RT {
 }
 
 static void brake(const double *p, const predictive_state *s, const ethd_contact *c, const ethd__ring_ability *m,
-                  ethd_ruling *out) ETHD_RT {
+                  ethd_ruling *out) {
   const ethd__brake_curve *curve = &m->curve;
   double d = distance(p, s, c->facts), v = s->ring.v, a = ethd__brake_curve_slope(curve, d, v);
   a += curve->rate * (ethd__brake_curve_speed(curve, d) - v) - s->ring.w;
@@ -130,7 +130,7 @@ static void brake(const double *p, const predictive_state *s, const ethd_contact
 }
 
 /* Returns true when the wall takes over, where the ring has stood. The finger's push doesn't count. */
-static bool is_over(const double *p, predictive_state *s, const ethd_contact *c, const ethd__ring_ability *m) ETHD_RT {
+static bool is_over(const double *p, predictive_state *s, const ethd_contact *c, const ethd__ring_ability *m) {
   double left = clearance(c), depth = most(0, -c->d_re), gap = c->facts->ring_radius - c->facts->finger_radius;
   s->time += c->period;
   if (fabs(s->ring.v) < p[ETHD__V_TH]) {
@@ -152,7 +152,7 @@ static bool is_over(const double *p, predictive_state *s, const ethd_contact *c,
 /* ---- the law ---- */
 
 /* Leaves what can't be seen to offset. */
-static void step_blindly(const double *p, predictive_state *s, const ethd_contact *c, ethd_ruling *out) ETHD_RT {
+static void step_blindly(const double *p, predictive_state *s, const ethd_contact *c, ethd_ruling *out) {
   if (s->ahead) ethd__offset_enter(&s->offset, c->d_re < 0 ? ETHD_BRAKING : ETHD_TRANSPARENT, 0);
   s->ahead = s->observed = false;
   ethd__offset_step(p, &s->offset, c, out);
