@@ -65,23 +65,8 @@ $(error $(FOREIGN): make as that user, or remove $(B) as that user, or build els
 endif
 endif
 
-# ---- one make at a time builds in a tree -------------------------------------------------------
-
 GOALS := $(or $(MAKECMDGOALS),all)
 DRY := $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
-# An object that another one is just writing can't be linked. The tree is locked until what is to run has been built, or
-# until this make ends, which tail waits for. What it starts builds in the same tree under its lock, and locks any other tree
-# (make ci, coverage, tests): ETHD_LOCKED names those that this make and the ones above it have locked.
-BUILDS := $(filter-out deb doc format format-check tidy ci coverage mutation check-xenomai install-files uninstall clean,$(GOALS))
-ifeq ($(filter $(abspath $(B)),$(ETHD_LOCKED))$(DRY),)
-ifneq ($(BUILDS),)
-export ETHD_LOCKED := $(ETHD_LOCKED) $(abspath $(B))
-HOLDER := $(shell mkdir -p '$(B)' && exec 9<'$(B)' && \
-  { flock -w 1 9 2>/dev/null || [ $$? != 1 ] || { echo 'make: waiting for another make in $(B)' >&2; flock 9; }; } && \
-  { tail --pid=$$PPID -s 0.2 -f /dev/null >/dev/null 2>&1 & echo $$!; })
-endif
-endif
-built = $(if $(HOLDER),@kill $(HOLDER) 2>/dev/null || :)
 
 # ---- set-up: before anything compiles, while this file is read ------------------------------
 
@@ -182,7 +167,6 @@ all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
 # A script may run any program.
 tests: $(addprefix $(B)/tests/,$(call wanted,$(notdir $(UNIT)))) $(PLUGINS) \
   $(if $(call wanted,$(basename $(notdir $(SCRIPTS)))),all $(if $(SAN),,man) $(TOOLS_C:%.c=$(B)/%) $(RING_PARTS))
-	$(built)
 $(B)/tests/test_servo_container: $(B)/bin/ethd-run
 
 # ---- build ----------------------------------------------------------------------------------
@@ -335,7 +319,6 @@ check: $(RUNS) $(TREE_RUN)
 	@sh .ci/summary $(RUNS) $(TREE_RUN)
 
 demo: all
-	$(built)
 	@BUILD='$(B)' sh apps/demo.sh
 
 # Other people's libraries that the benchmarks measure beside ours: the benchmark loads those that are there.
@@ -349,7 +332,6 @@ $(foreach p,$(wildcard tests/bench/peers/*.c tests/bench/peers/*.cc),$(eval $(ca
 
 bench-quick: QUICK := 1
 bench bench-quick: $(B)/tests/bench $(PEERS) $(SHARE)
-	$(built)
 	@BUILD='$(B)' QUICK='$(QUICK)' WHAT='$(WHAT)' sh tests/bench/bench.sh \
 	  'commit $(or $(shell git describe --always --dirty 2>/dev/null),unknown); $(CC) $(BASE)'
 
@@ -358,7 +340,6 @@ stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/te
   $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study $(B)/tests/test_servo_driver \
   $(B)/tests/test_fuzz_map $(B)/tests/test_promises $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile \
   $(B)/tests/volume $(B)/tests/day $(B)/tests/stress
-	$(built)
 	ETHD_SCENE_QUERIES=1000000 ETHD_SCENE_OBJECTS=10000000 $(B)/tests/test_scene_tree
 	ETHD_SERVO_PLUGS=100 $(B)/tests/test_servo_driver
 	ETHD_PROMISES=1e8 $(B)/tests/test_promises
@@ -389,7 +370,6 @@ mutation:
 	@BUILD='$(BUILD)' MAKE='$(MAKE)' sh tests/mutation.sh $(or $(COUNT),2000)
 # 1e9 inputs over all readers, and a simulated day: hours, again and again until they are through.
 volume-all: $(B)/tests/volume $(B)/tests/day
-	$(built)
 	@BUILD='$(abspath $(B))' sh tests/volume.sh 1e9
 	@$(B)/tests/day $(B)/day 24 2>$(B)/day.err
 

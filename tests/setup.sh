@@ -1,6 +1,6 @@
 #!/bin/sh
 # Set-up on machines that lack something, and a tree that somebody else has built: what is missing, why it can't be had and what
-# to do stand in a few lines; one make at a time builds in a tree, and links objects in one order, whatever the locale.
+# to do stand in a few lines; objects are linked in one order, whatever the locale.
 # apt-get, sudo and id are stubs here; nothing is installed.
 set -u
 work=$(mktemp -d)
@@ -101,35 +101,6 @@ for goal in all install clean; do
     fail "$goal in a tree of theirs: $(cat "$work/out")"
 done
 chmod u+w "$work/theirs" "$work/theirs/bin"
-
-# ---- a tree in which another make is building; who waits was started by a make, as make ci starts them ----
-mkdir "$work/ours"
-exec 8<"$work/ours"
-flock 8
-MAKELEVEL=1 ${MAKE:-make} --no-print-directory SETUP=no SAN= RT=posix BUILD="$work/ours" "$work/ours/flags" >"$work/out" 2>&1 8<&- &
-tries=0
-until grep -q "^make: waiting for another make in $work/ours$" "$work/out" || [ $tries = 600 ]; do
-  tries=$((tries + 1))
-  sleep 0.1
-done
-[ $tries -lt 600 ] && [ ! -e "$work/ours/flags" ] || fail "two makes at once: $(cat "$work/out")"
-exec 8<&-
-wait $! && [ -s "$work/ours/flags" ] || fail "after another make: $(cat "$work/out")"
-flock "$work/ours" true || fail 'the tree stays locked'
-# what a make starts waits for another one's tree, and neither for its own make's nor for those of the makes above
-cat >"$work/nested.mk" <<'END'
-include Makefile
-nested: FORCE
-	@[ -z '$(TREES)' ] || $(MAKE) --no-print-directory -f '$(firstword $(MAKEFILE_LIST))' \
-	  BUILD='$(firstword $(TREES))' TREES='$(wordlist 2,9,$(TREES))' nested
-END
-nested() { # TREE...
-  tree=$1
-  shift
-  timeout 60 ${MAKE:-make} --no-print-directory -f "$work/nested.mk" SETUP=no SAN= RT=posix BUILD="$tree" TREES="$*" nested >"$work/out" 2>&1
-}
-nested "$work/ours" "$work/ours" "$work/another" "$work/ours/." "$work/another" && ! grep -q waiting "$work/out" ||
-  fail "a make waits for those that have started it: $(cat "$work/out")"
 
 # ---- one order of linking, whatever the locale; where localedef can make one that sorts otherwise than C ----
 order() { LOCPATH=$work LC_ALL=$1 ${MAKE:-make} --no-print-directory SETUP=no -rpn clean | grep -E '^[A-Z]+_(C|O) :='; }
