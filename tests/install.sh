@@ -69,7 +69,7 @@ int main(void) {
   while (ethd_drivers[drivers]) drivers++;
   printf("%s, %d drivers, %g s\n", config->setup.transition->law.id, drivers, def.period);
   ethd_config_free(config);
-  return ethd_recording_verify("/nowhere", true, message) == ETHD_OK;
+  return ethd_recording_verify("/nowhere", true, NULL, message) == ETHD_OK;
 }
 END
 links() { # NAME FLAGS...: as pkg-config says it, words with spaces and all
