@@ -3,6 +3,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "arm_pose.h"
 #include "error.h"
 #include "ethd/maths.h"
 #include "fp_mode.h"
@@ -134,9 +135,11 @@ ethd_status ethd_arm_check(const ethd_arm *arm, ethd_error *error) {
 
 const char *ethd_arm_name(ethd_mechanism mechanism) { return (unsigned)mechanism < ROWS ? rows[mechanism].name : ""; }
 
+void ethd__arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) { rows[arm->mechanism].pose(arm, q, out); }
+
 void ethd_arm_pose(const ethd_arm *arm, const double q[2], ethd_pose *out) {
   const uint64_t callers = ethd__fp_take();
-  rows[arm->mechanism].pose(arm, q, out);
+  ethd__arm_pose(arm, q, out);
   ethd__fp_give(callers);
 }
 

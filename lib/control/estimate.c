@@ -1,8 +1,10 @@
 #include "control/estimate.h"
 
+#include "arm_pose.h"
 #include "control/finger_watch.h"
 #include "estimate/filter_methods.h"
 #include "estimate/fit_methods.h"
+#include "estimate/velocity_methods.h"
 
 /* v - v is 0 for a finite number, and NaN for any other. */
 static bool is_finite(double v) { return v - v == 0; }
@@ -11,15 +13,11 @@ static bool is_finite(double v) { return v - v == 0; }
 
 /* An enormous torque, which an estimator may take as its input, must not spoil its state for good: a speed that no
    joint can have, or NaN, begins it anew. */
-static double joint_speed(const ethd__tick *t, int i) {
+static double joint_speed(const ethd__tick *t, double dt, int i) {
   ethd_velocity_state *s = &t->state->velocity[i];
-  double speed = ethd_velocity_step(&t->plan->velocity, s, t->sense->q[i], t->state->guard.last[i], t->dt);
+  double speed = ethd__velocity_step(&t->plan->velocity, s, t->sense->q[i], t->state->guard.last[i], dt);
   if (!(fabs(speed) <= ETHD_SENSE_SPEED_MAX)) memset(s, 0, sizeof *s);
   return speed;
-}
-
-static void joint_speeds(const ethd__tick *t, double qd[2]) {
-  for (int i = 0; i < 2; i++) qd[i] = t->sense->have & ETHD_HAVE_DQ ? t->sense->dq[i] : joint_speed(t, i);
 }
 
 static void remember(ethd__state *state, int64_t time_ns, ethd_vec x) {
@@ -30,6 +28,27 @@ static void remember(ethd__state *state, int64_t time_ns, ethd_vec x) {
 
 /* Returns b - a in s, for any a <= b. */
 static double seconds(int64_t a, int64_t b) { return 1e-9 * (double)((uint64_t)b - (uint64_t)a); }
+
+#define ROUNDED 1e-3 /* periods: a stamp that is off by less is a whole tick's */
+#define LEAST 0.1    /* periods: samples nearer to each other say little of a speed */
+#define MOST 4.0     /* times the ticks' time: exchanges of one bus differ so much at most */
+
+/* Returns the time from the last joint sample to this one, s, by their stamps: a bus that isn't in step with the ticks gives
+   samples whose spacing varies, though each comes at a tick, and speeds by the ticks' time would seem to rise and fall, also
+   to a stop. Stamps that can't be right, of a clock that stands or jumps, leave the ticks' time. */
+static double sample_spacing(const ethd__tick *t) {
+  const double period = t->plan->setup.period;
+  if (t->sense->time_ns <= t->state->velocity_ns) return t->dt;
+  const double stamped = seconds(t->state->velocity_ns, t->sense->time_ns);
+  if (fabs(stamped - t->dt) <= ROUNDED * period) return t->dt;
+  return stamped >= LEAST * period && stamped <= MOST * t->dt ? stamped : t->dt;
+}
+
+static void joint_speeds(const ethd__tick *t, double qd[2]) {
+  const double dt = sample_spacing(t);
+  t->state->velocity_ns = t->sense->time_ns;
+  for (int i = 0; i < 2; i++) qd[i] = t->sense->have & ETHD_HAVE_DQ ? t->sense->dq[i] : joint_speed(t, dt, i);
+}
 
 /* Returns the instant `s` seconds before another one; wraps round like the clock. */
 static int64_t before(int64_t instant, double s) { return (int64_t)((uint64_t)instant - (uint64_t)(int64_t)(1e9 * s)); }
@@ -145,7 +164,7 @@ static void filter(const ethd__tick *t) ETHD_RT {
   if (t->sense->have & ETHD_HAVE_START)
     ethd_filter_start(method, s, ethd_vec_of(t->sense->finger), (ethd_vec){0, 0});
   else if (s->started)
-    ethd_filter_predict(method, s, t->dt);
+    ethd__filter_predict(method, s, t->dt);
   if (t->sense->have & (ETHD_HAVE_CENTRE | ETHD_HAVE_RAYS)) correct(t);
   if (t->plan->watches_finger) ethd__finger_watch(t);
 }
@@ -158,7 +177,7 @@ static void finger(ethd__tick *t) ETHD_RT {
     return;
   }
   filter(t);
-  if (t->state->filter.started) ethd_filter_output(&t->plan->filter, &t->state->filter, &t->finger.x, &t->finger.v);
+  if (t->state->filter.started) ethd__filter_output(&t->plan->filter, &t->state->filter, &t->finger.x, &t->finger.v);
 }
 
 /* ---- both ---- */
@@ -166,7 +185,7 @@ static void finger(ethd__tick *t) ETHD_RT {
 void ethd__estimate(ethd__tick *t) {
   ethd_trace *out = t->trace;
   joint_speeds(t, out->qd);
-  ethd_arm_pose(&t->plan->setup.arm, t->sense->q, &t->pose);
+  ethd__arm_pose(&t->plan->setup.arm, t->sense->q, &t->pose);
   t->ring = (ethd__motion){t->pose.x, ethd_pose_velocity(&t->pose, out->qd)};
   remember(t->state, t->sense->time_ns, t->ring.x);
   finger(t);

@@ -81,6 +81,7 @@ typedef struct ethd__state {
   int64_t blind;           /* periods since the last tick with a possible measurement */
   /* estimates */
   ethd_velocity_state velocity[2];
+  int64_t velocity_ns; /* instant of their last sample */
   ethd_filter_state filter;
   int64_t reading_ns;   /* stamp of the reading that was used last */
   double reading_age;   /* s: how old it was when it was used */

@@ -7,6 +7,7 @@
 #include "control/fence.h"
 #include "control/limit.h"
 #include "control/places.h"
+#include "estimate/filter_methods.h"
 
 /* ---- the state ---- */
 
@@ -26,7 +27,7 @@ static void swap_filter(const ethd__plan *from, const ethd__plan *to, ethd__stat
   if (!state->filter.started ||
       (from->filter.method == to->filter.method && memcmp(from->filter.p, to->filter.p, sizeof from->filter.p) == 0))
     return;
-  ethd_filter_output(&from->filter, &state->filter, &x, &v);
+  ethd__filter_output(&from->filter, &state->filter, &x, &v);
   ethd_filter_start(&to->filter, &state->filter, x, v);
 }
 

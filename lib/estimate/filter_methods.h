@@ -38,4 +38,8 @@ bool ethd__filter_correct(const ethd_filter *f, ethd_filter_state *s, ethd_vec r
 ethd_status ethd__filter_update(const ethd_filter *filter, ethd_filter_state *state, ethd_vec x, double age,
                                 double noise) ETHD_RT;
 
+/* ethd_filter_predict and ethd_filter_output in the library's floating-point mode. [rt] */
+void ethd__filter_predict(const ethd_filter *filter, ethd_filter_state *state, double dt) ETHD_RT;
+void ethd__filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x, ethd_vec *v) ETHD_RT;
+
 #endif

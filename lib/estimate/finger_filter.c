@@ -49,14 +49,14 @@ static void advance(const ethd_filter *f, ethd_filter_state *s, double t) {
   if (ethd__filter_is_kalman(f)) ethd__filter_spread(f, s, w);
 }
 
-ETHD__FP_APART static void predict(const ethd_filter *f, ethd_filter_state *s, double dt) ETHD_RT {
+ETHD__FP_APART void ethd__filter_predict(const ethd_filter *f, ethd_filter_state *s, double dt) {
   s->age += dt;
   if (f->compensation == ETHD_COMPENSATION_NONE) advance(f, s, dt);
 }
 
 void ethd_filter_predict(const ethd_filter *filter, ethd_filter_state *state, double dt) {
   const uint64_t callers = ethd__fp_take();
-  predict(filter, state, dt);
+  ethd__filter_predict(filter, state, dt);
   ethd__fp_give(callers);
 }
 
@@ -114,8 +114,8 @@ ethd_status ethd_filter_update(const ethd_filter *filter, ethd_filter_state *sta
   return status;
 }
 
-ETHD__FP_APART static void output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x,
-                                  ethd_vec *v) ETHD_RT {
+ETHD__FP_APART void ethd__filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x,
+                                        ethd_vec *v) {
   bool stamp = filter->compensation == ETHD_COMPENSATION_STAMP;
   double t = stamp ? state->age + filter->p[FILTER_LATENCY] : 0;
   ethd__filter_motion w = ethd__filter_motion_over(filter, t);
@@ -126,6 +126,6 @@ ETHD__FP_APART static void output(const ethd_filter *filter, const ethd_filter_s
 
 void ethd_filter_output(const ethd_filter *filter, const ethd_filter_state *state, ethd_vec *x, ethd_vec *v) {
   const uint64_t callers = ethd__fp_take();
-  output(filter, state, x, v);
+  ethd__filter_output(filter, state, x, v);
   ethd__fp_give(callers);
 }

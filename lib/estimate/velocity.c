@@ -42,8 +42,8 @@ static double next(const ethd_velocity *v, ethd_velocity_state *s, double torque
   return difference(s);
 }
 
-ETHD__FP_APART static double step(const ethd_velocity *v, ethd_velocity_state *s, double q, double torque,
-                                  double dt) ETHD_RT {
+ETHD__FP_APART double ethd__velocity_step(const ethd_velocity *v, ethd_velocity_state *s, double q, double torque,
+                                          double dt) {
   push(s, q, dt);
   return s->speed = next(v, s, torque);
 }
@@ -51,7 +51,7 @@ ETHD__FP_APART static double step(const ethd_velocity *v, ethd_velocity_state *s
 double ethd_velocity_step(const ethd_velocity *velocity, ethd_velocity_state *state, double q, double torque,
                           double dt) {
   const uint64_t callers = ethd__fp_take();
-  const double speed = step(velocity, state, q, torque, dt);
+  const double speed = ethd__velocity_step(velocity, state, q, torque, dt);
   ethd__fp_give(callers);
   return speed;
 }

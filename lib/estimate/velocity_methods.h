@@ -23,4 +23,7 @@ double ethd__velocity_lsq(const ethd_velocity *v, const ethd_velocity_state *s) 
 double ethd__velocity_foaw(const ethd_velocity *v, const ethd_velocity_state *s) ETHD_RT;
 double ethd__velocity_kalman(const ethd_velocity *v, ethd_velocity_state *s, double torque) ETHD_RT;
 
+/* ethd_velocity_step in the library's floating-point mode. [rt] */
+double ethd__velocity_step(const ethd_velocity *v, ethd_velocity_state *s, double q, double torque, double dt) ETHD_RT;
+
 #endif

@@ -87,9 +87,8 @@ static angle reduce_exactly(double x) {
 /* Cody and Waite 1980: n times each of the first two parts of pi/2 (33 bits each) is exact. What is left
    is wrong by 2^-98 at most, too much only where r is tiny. */
 static angle reduce(double x) {
-  if (!isfinite(x)) return (angle){{NAN, 0}, 0};
-  if (fabs(x) <= 0x1.921fb54442d18p-1) return (angle){{x, 0}, 0};
-  if (fabs(x) >= 0x1p20) return reduce_exactly(x);
+  if (islessequal(fabs(x), 0x1.921fb54442d18p-1)) return (angle){{x, 0}, 0};
+  if (!isless(fabs(x), 0x1p20)) return isfinite(x) ? reduce_exactly(x) : (angle){{NAN, 0}, 0};
 
   double n = nearest(x * 0x1.45f306dc9c883p-1);
   double_pair a = sum(x - n * 0x1.921fb544p+0, n * -0x1.0b4611a6p-34);
