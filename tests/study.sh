@@ -60,7 +60,7 @@ at=0 whole=0
 while [ $at -lt "$kills" ]; do
   become "$folder/random" >/dev/null 2>"$folder/err" &
   pid=$!
-  sleep "$(awk -v seed="$at$whole$$" 'BEGIN { srand(seed); print rand() * 0.06 }')"
+  sleep "$(awk -v seed="$at$whole$$" 'BEGIN { srand(seed); print rand() * 0.25 }')"
   kill -KILL $pid 2>/dev/null
   wait $pid 2>/dev/null
   if [ $? = 137 ]; then
@@ -150,7 +150,7 @@ pid=$!
 exec 9>"$folder/in"
 echo pause >&9
 for _ in $(seq 200); do
-  "$python3" -c 'import sqlite3, sys; sys.exit(not sqlite3.connect(f"file:{sys.argv[1]}?immutable=1", uri=True).execute("select 1 from event where event = \"pause\"").fetchone())' "$folder/at-work/study.sqlite" 2>/dev/null && break
+  "$python3" -c 'import sqlite3, sys; sys.exit(not sqlite3.connect(f"file:{sys.argv[1]}?immutable=1", uri=True).execute("select 1 from event where event = ?", ["pause"]).fetchone())' "$folder/at-work/study.sqlite" 2>/dev/null && break
   sleep 0.05
 done
 for way in --resume --export; do

@@ -7,19 +7,9 @@
 
 #include "text/error_text.h"
 
-const char *const ethd__standing_words[ETHD_STANDINGS] = {"", "aborted", "refused", "withdrawn", "excluded"};
-
 bool ethd__block_over(const ethd__protocol *protocol, const ethd__study_block *block, uint32_t taken, uint32_t valid) {
   if (block->training) return taken >= protocol->training;
   return valid >= protocol->taps || taken >= protocol->attempts;
-}
-
-bool ethd__participant_over(const ethd__protocol *protocol, const ethd__participant *who) {
-  ethd__study_block blocks[ETHD_STUDY_BLOCKS];
-  size_t count = ethd__order_of(protocol, who->person, blocks);
-  for (size_t i = 0; i < count; i++)
-    if (!ethd__block_over(protocol, &blocks[i], who->at[i].taken, who->at[i].valid)) return false;
-  return true;
 }
 
 /* ---- a participant ---- */
@@ -40,21 +30,15 @@ static ethd_status read_blocks(ethd__study_store *store, ethd__participant *who,
   return ethd__store_end(store, row, message);
 }
 
-/* The last event about it says how a participant stands. */
-static ethd_status read_standing(ethd__study_store *store, ethd__participant *who, char *message) {
-  static const struct {
-    const char *event;
-    ethd__standing standing;
-  } kinds[] = {{"abort", ETHD_STANDING_ABORTED},    {"undo", ETHD_STANDING_IN},
-               {"refuse", ETHD_STANDING_REFUSED},   {"withdraw", ETHD_STANDING_WITHDRAWN},
-               {"exclude", ETHD_STANDING_EXCLUDED}, {"include", ETHD_STANDING_IN}};
-  sqlite3_stmt *row = ethd__store_query(store, "SELECT event FROM event WHERE participant = ? ORDER BY id");
+static ethd_status read_events(ethd__study_store *store, ethd__participant *who, char *message) {
+  sqlite3_stmt *row =
+      ethd__store_query(store, "SELECT coalesce((SELECT event IN ('undo', 'include') FROM event WHERE participant = ?1 "
+                               "AND event IN " ETHD_STUDY_DECISIONS " ORDER BY id DESC LIMIT 1), 1),"
+                               "EXISTS (SELECT 1 FROM event WHERE participant = ?1 AND event = 'consent')");
   sqlite3_bind_int64(row, 1, who->person + 1);
-  while (ethd__store_next(row)) {
-    const char *event = ethd__store_text(row, 0);
-    who->consented |= !strcmp(event, "consent");
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-      if (!strcmp(event, kinds[i].event)) who->standing = kinds[i].standing;
+  if (ethd__store_next(row)) {
+    who->in = sqlite3_column_int(row, 0);
+    who->consented = sqlite3_column_int(row, 1);
   }
   return ethd__store_end(store, row, message);
 }
@@ -63,7 +47,7 @@ ethd_status ethd__participant_of(ethd__study_store *store, uint32_t person, ethd
                                  char message[ETHD_MESSAGE_MAX]) {
   *out = (ethd__participant){.person = person};
   ethd_status status = read_blocks(store, out, message);
-  return status ? status : read_standing(store, out, message);
+  return status ? status : read_events(store, out, message);
 }
 
 ethd_status ethd__said_of(ethd__study_store *store, uint32_t person, size_t block, ethd__said *out,

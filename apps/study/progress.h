@@ -2,6 +2,7 @@
 #ifndef ETHD__APPS_STUDY_PROGRESS_H
 #define ETHD__APPS_STUDY_PROGRESS_H
 
+#include "study/folder.h"
 #include "study/row.h"
 
 #define ETHD_STUDY_SESSION_PEOPLE 10000u
@@ -12,24 +13,15 @@ typedef struct ethd__progress_of {
   bool surveyed; /* asked and confirmed */
 } ethd__progress_of;
 
-/* Whether a participant's taps go on and belong to the analysis: of IN alone. */
-typedef enum ethd__standing {
-  ETHD_STANDING_IN,
-  ETHD_STANDING_ABORTED,
-  ETHD_STANDING_REFUSED,
-  ETHD_STANDING_WITHDRAWN,
-  ETHD_STANDING_EXCLUDED,
-  ETHD_STANDINGS
-} ethd__standing;
-
-extern const char *const ethd__standing_words[ETHD_STANDINGS];
-
 typedef struct ethd__participant {
   uint32_t person;
   ethd__progress_of at[ETHD_STUDY_BLOCKS]; /* by block */
-  ethd__standing standing;
+  bool in;                                 /* the taps go on, and belong to the analysis */
   bool consented;
 } ethd__participant;
+
+/* SQL: the events that say whether a participant is in; the last one counts. */
+#define ETHD_STUDY_DECISIONS "('abort', 'undo', 'refuse', 'withdraw', 'exclude', 'include')"
 
 /* Gives what is known of a participant. */
 ETHD_MUST_CHECK ethd_status ethd__participant_of(ethd__study_store *store, uint32_t person, ethd__participant *out,
@@ -59,8 +51,5 @@ ETHD_MUST_CHECK ethd_status ethd__progress_open(const ethd__folder *folder, cons
 
 /* Returns whether a block needs no more taps. [any] */
 bool ethd__block_over(const ethd__protocol *protocol, const ethd__study_block *block, uint32_t taken, uint32_t valid);
-
-/* Returns whether all blocks of a participant are over. [any] */
-bool ethd__participant_over(const ethd__protocol *protocol, const ethd__participant *participant);
 
 #endif

@@ -4,17 +4,12 @@
 #include <stdio.h>
 
 #include "store/schema.h"
-#include "text/csv.h"
-
-#define HASH_DIGITS 12 /* that tell a simulation's study */
 
 void ethd__participant_id(const ethd__protocol *protocol, uint32_t person, char out[ETHD_STUDY_ID_MAX]) {
   int digits = 2;
   for (uint32_t n = protocol->participants; n > 99; n /= 10) digits++;
   snprintf(out, ETHD_STUDY_ID_MAX, "P%0*" PRIu32, digits, person + 1);
 }
-
-/* ---- into the store ---- */
 
 static void bind_figures(sqlite3_stmt *query, int first, const ethd__result *result) {
   const ethd__metrics *m = &result->metrics;
@@ -66,64 +61,4 @@ ethd_status ethd__tap_put(ethd__study_store *store, size_t point, const ethd__ta
   bind_word(query, 27, ethd__reason_words[m->by_ring]);
   bind_word(query, 28, ethd__reason_words[m->by_finger]);
   return ethd__store_run(store, query, message);
-}
-
-/* ---- out of it ---- */
-
-enum {
-  POINT,
-  PERSON,
-  BLOCK,
-  ATTEMPT,
-  SEED,
-  TAP,
-  VALID,
-  REASON,
-  FIGURES,
-  HAND = FIGURES + ETHD_STORE_FIGURE_COUNT,
-  COLUMNS = HAND + 5
-};
-
-static void print_cells(FILE *file, const char *before, sqlite3_stmt *tap, int first, int end) {
-  for (int i = first; i < end; i++) {
-    fputs(before, file);
-    if (i < FIGURES || i >= HAND)
-      ethd__csv_put_word(file, ethd__store_text(tap, i));
-    else if (sqlite3_column_type(tap, i) != SQLITE_NULL)
-      fprintf(file, "%.17g", sqlite3_column_double(tap, i));
-    before = ",";
-  }
-}
-
-/* Prints a tap. `blocks` are its participant's. */
-static void print_tap(FILE *file, const ethd__protocol *p, const ethd__study_block *blocks, sqlite3_stmt *tap) {
-  char id[ETHD_STUDY_ID_MAX];
-  int number = sqlite3_column_int(tap, BLOCK);
-  const ethd__study_block *block = &blocks[number - 1];
-  ethd__participant_id(p, (uint32_t)sqlite3_column_int64(tap, PERSON) - 1, id);
-  fprintf(file, "%s,%d,%s,%" PRId64 ",%s,%s", id, number, block->training ? "training" : "test",
-          (int64_t)sqlite3_column_int64(tap, ATTEMPT), p->strategies.word[block->strategy],
-          p->speeds.word[block->speed]);
-  print_cells(file, ",", tap, SEED, COLUMNS);
-}
-
-ethd_status ethd__taps_print(FILE *file, ethd__study_store *store, const ethd__folder *folder,
-                             char message[ETHD_MESSAGE_MAX]) {
-  const ethd__protocol *p = &folder->protocol;
-  ethd__study_block blocks[ETHD_STUDY_BLOCKS];
-  int64_t person = -1;
-  sqlite3_stmt *tap = ethd__store_query(
-      store, folder->simulated ? "SELECT " ETHD_STORE_TAP " FROM tap ORDER BY point, participant, block, attempt"
-                               : "SELECT " ETHD_STORE_TAP " FROM tap ORDER BY id");
-  while (ethd__store_next(tap)) {
-    size_t point = (size_t)sqlite3_column_int64(tap, POINT);
-    int64_t now = sqlite3_column_int64(tap, PERSON) - 1;
-    if (now != person) (void)ethd__order_of(p, (uint32_t)(person = now), blocks);
-    if (folder->simulated) fprintf(file, "%.*s,%zu,", HASH_DIGITS, folder->hash, point);
-    print_tap(file, p, blocks, tap);
-    for (size_t i = 0; folder->simulated && i < p->axis_count; i++)
-      fprintf(file, ",%s", ethd__protocol_value(p, point, i));
-    putc('\n', file);
-  }
-  return ethd__store_end(store, tap, message);
 }

@@ -113,8 +113,7 @@ static ethd_status meet(ethd__sitting *s, const char *id, bool *stop, char *mess
 
 static bool block_due(const ethd__sitting *s, const ethd__turn *turn) {
   const ethd__progress_of *at = &s->who.at[turn->number - 1];
-  return s->who.standing == ETHD_STANDING_IN &&
-         !ethd__block_over(&s->folder->protocol, &turn->block, at->taken, at->valid);
+  return s->who.in && !ethd__block_over(&s->folder->protocol, &turn->block, at->taken, at->valid);
 }
 
 static ethd_status run_block(ethd__sitting *s, const char *id, ethd__turn *turn, bool *stop, char *message) {
@@ -144,7 +143,7 @@ static ethd_status run_person(ethd__sitting *s, uint32_t person, bool *stop, cha
     if (!block_due(s, &turn) && !ethd__survey_due(s, &turn)) continue;
     if (!met) status = meet(s, id, stop, message);
     met = true;
-    if (!status && !*stop && s->who.standing == ETHD_STANDING_IN) status = run_block(s, id, &turn, stop, message);
+    if (!status && !*stop && s->who.in) status = run_block(s, id, &turn, stop, message);
   }
   return status;
 }

@@ -5,8 +5,8 @@
 /* Simulated hands leave it empty; the paper's questions are about touch, which a mouse doesn't give. */
 bool ethd__survey_due(const ethd__sitting *s, const ethd__turn *turn) {
   const ethd__protocol *p = &s->folder->protocol;
-  return p->survey && !turn->block.training && !s->who.at[turn->number - 1].surveyed &&
-         s->who.standing == ETHD_STANDING_IN && (s->source.hand != ETHD_HAND_MOUSE || p->questionnaire.own);
+  return p->survey && !turn->block.training && !s->who.at[turn->number - 1].surveyed && s->who.in &&
+         (s->source.hand != ETHD_HAND_MOUSE || p->questionnaire.own);
 }
 
 /* The answers are confirmed. */

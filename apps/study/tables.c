@@ -5,141 +5,166 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "store/schema.h"
 #include "text/csv.h"
-#include "text/error_text.h"
 #include "text/text.h"
 
-/* ---- rows ---- */
+/* ---- what SQL asks of the study ---- */
 
-static void print_id(FILE *file, const ethd__protocol *p, sqlite3_stmt *row, int column) {
-  char id[ETHD_STUDY_ID_MAX] = "";
-  if (sqlite3_column_type(row, column) != SQLITE_NULL)
-    ethd__participant_id(p, (uint32_t)sqlite3_column_int64(row, column) - 1, id);
-  fputs(id, file);
+/* id(participant): P01, .. */
+static void sql_id(sqlite3_context *context, int count, sqlite3_value **value) {
+  char id[ETHD_STUDY_ID_MAX];
+  (void)count;
+  if (sqlite3_value_type(*value) == SQLITE_NULL) return; /* an event of nobody */
+  ethd__participant_id(sqlite3_user_data(context), (uint32_t)sqlite3_value_int64(*value) - 1, id);
+  sqlite3_result_text(context, id, -1, SQLITE_TRANSIENT);
 }
 
-/* The answers of a block, in the order of the questions; "" where there is none. */
-static ethd_status print_answers(FILE *file, ethd__study_store *store, const ethd__protocol *p, sqlite3_stmt *block,
-                                 char *message) {
-  static const char select[] = "SELECT number, words FROM answer WHERE participant = ? AND block = ? AND question = ?";
-  ethd_status status = ETHD_OK;
-  for (size_t i = 0; !status && i < ethd__question_count(&p->questionnaire); i++) {
-    sqlite3_stmt *row = ethd__store_query(store, select);
-    sqlite3_bind_int64(row, 1, sqlite3_column_int64(block, 0));
-    sqlite3_bind_int64(row, 2, sqlite3_column_int64(block, 1));
-    sqlite3_bind_int64(row, 3, (int64_t)i + 1);
-    bool there = ethd__store_next(row);
-    putc(',', file);
-    if (there && ethd__question_is_text(&p->questionnaire.question[i]))
-      ethd__csv_put_word(file, ethd__store_text(row, 1));
-    else if (there && sqlite3_column_int(row, 0) > 0)
-      fprintf(file, "%d", sqlite3_column_int(row, 0));
-    status = ethd__store_end(store, row, message);
-  }
-  return status;
-}
-
-static ethd_status print_survey(FILE *file, ethd__study_store *store, const ethd__folder *folder, char *message) {
-  const ethd__protocol *p = &folder->protocol;
+/* Returns a block by the arguments (participant, block); the first one where there is no such block. */
+static ethd__study_block block_of(const ethd__protocol *p, sqlite3_value **value) {
   ethd__study_block blocks[ETHD_STUDY_BLOCKS];
-  ethd_status status = ETHD_OK;
-  sqlite3_stmt *row = ethd__store_query(store, "SELECT participant, block FROM survey ORDER BY id");
-  while (!status && ethd__store_next(row)) {
-    (void)ethd__order_of(p, (uint32_t)sqlite3_column_int64(row, 0) - 1, blocks);
-    const ethd__study_block *block = &blocks[sqlite3_column_int(row, 1) - 1];
-    print_id(file, p, row, 0);
-    fprintf(file, ",%d,%s,%s", sqlite3_column_int(row, 1), p->strategies.word[block->strategy],
-            p->speeds.word[block->speed]);
-    status = print_answers(file, store, p, row, message);
-    putc('\n', file);
-  }
-  ethd_status ended = ethd__store_end(store, row, message);
-  return status ? status : ended;
+  size_t count = ethd__order_of(p, (uint32_t)sqlite3_value_int64(value[0]) - 1, blocks);
+  int64_t number = sqlite3_value_int64(value[1]);
+  return blocks[number >= 1 && (uint64_t)number <= count ? number - 1 : 0];
 }
 
-static ethd_status print_events(FILE *file, ethd__study_store *store, const ethd__folder *folder, char *message) {
-  sqlite3_stmt *row = ethd__store_query(store, "SELECT utc, participant, block, event, detail FROM event ORDER BY id");
-  while (ethd__store_next(row)) {
-    ethd__csv_put_word(file, ethd__store_text(row, 0));
-    putc(',', file);
-    print_id(file, &folder->protocol, row, 1);
-    for (int i = 2; i < 5; i++) {
-      putc(',', file);
-      ethd__csv_put_word(file, ethd__store_text(row, i));
-    }
-    putc('\n', file);
-  }
-  return ethd__store_end(store, row, message);
+static void sql_part(sqlite3_context *context, int count, sqlite3_value **value) {
+  (void)count;
+  const bool training = block_of(sqlite3_user_data(context), value).training;
+  sqlite3_result_text(context, training ? "training" : "test", -1, SQLITE_STATIC);
+}
+
+static void sql_transition(sqlite3_context *context, int count, sqlite3_value **value) {
+  const ethd__protocol *p = sqlite3_user_data(context);
+  (void)count;
+  sqlite3_result_text(context, p->strategies.word[block_of(p, value).strategy], -1, SQLITE_STATIC);
+}
+
+static void sql_speed(sqlite3_context *context, int count, sqlite3_value **value) {
+  const ethd__protocol *p = sqlite3_user_data(context);
+  (void)count;
+  sqlite3_result_text(context, p->speeds.word[block_of(p, value).speed], -1, SQLITE_STATIC);
+}
+
+/* gain(point, axis) */
+static void sql_gain(sqlite3_context *context, int count, sqlite3_value **value) {
+  size_t point = (size_t)sqlite3_value_int64(value[0]), axis = (size_t)sqlite3_value_int64(value[1]);
+  (void)count;
+  sqlite3_result_text(context, ethd__protocol_value(sqlite3_user_data(context), point, axis), -1, SQLITE_STATIC);
+}
+
+static void add_functions(ethd__study_store *store, const ethd__protocol *p) {
+  static const struct {
+    const char *name;
+    int arguments;
+    void (*call)(sqlite3_context *context, int count, sqlite3_value **value);
+  } functions[] = {{"id", 1, sql_id},
+                   {"part", 2, sql_part},
+                   {"transition", 2, sql_transition},
+                   {"speed", 2, sql_speed},
+                   {"gain", 2, sql_gain}};
+  for (size_t i = 0; i < sizeof functions / sizeof *functions; i++)
+    if (sqlite3_create_function(store->db, functions[i].name, functions[i].arguments, SQLITE_UTF8 | SQLITE_DIRECTONLY,
+                                (void *)p, functions[i].call, NULL, NULL))
+      ethd__fail_memory();
+}
+
+/* ---- each table's rows ---- */
+
+/* In a simulation the taps of a point stand together, the study and the point before each, its gains behind. */
+static void select_taps(FILE *sql, const ethd__folder *folder) {
+  fputs("SELECT ", sql);
+  if (folder->simulated) fprintf(sql, "'%.12s', point, ", folder->hash);
+  fputs("id(participant), block, part(participant, block), attempt, transition(participant, block), speed(participant, "
+        "block), "
+        "seed, tap, valid, reason, " ETHD_STORE_FIGURES ", hand, movement, utc, by_ring, by_finger",
+        sql);
+  for (size_t i = 0; folder->simulated && i < folder->protocol.axis_count; i++) fprintf(sql, ", gain(point, %zu)", i);
+  fputs(folder->simulated ? " FROM tap ORDER BY point, participant, block, attempt" : " FROM tap ORDER BY id", sql);
+}
+
+/* 0: no answer was given. */
+static void select_survey(FILE *sql, const ethd__folder *folder) {
+  fputs("SELECT id(participant), block, transition(participant, block), speed(participant, block)", sql);
+  for (size_t i = 1; i <= ethd__question_count(&folder->protocol.questionnaire); i++)
+    fprintf(
+        sql,
+        ", (SELECT coalesce(words, nullif(number, 0)) FROM answer WHERE answer.participant = survey.participant AND "
+        "answer.block = survey.block AND question = %zu)",
+        i);
+  fputs(" FROM survey ORDER BY id", sql);
+}
+
+static void select_events(FILE *sql, const ethd__folder *folder) {
+  (void)folder;
+  fputs("SELECT utc, id(participant), block, event, detail FROM event ORDER BY id", sql);
 }
 
 /* Everybody has a row who has tapped or about whom something was decided, then with its reason. */
-static ethd_status print_participant(FILE *file, ethd__study_store *store, const ethd__protocol *p,
-                                     const ethd__participant *who, char *message) {
-  static const char select[] =
-      "SELECT (SELECT detail FROM event WHERE participant = ?1 AND event IN "
-      "('abort', 'undo', 'refuse', 'withdraw', 'exclude', 'include') ORDER BY id DESC LIMIT 1),"
-      "(SELECT hand FROM tap WHERE point = 0 AND participant = ?1 LIMIT 1),"
-      "(SELECT utc FROM tap WHERE point = 0 AND participant = ?1 ORDER BY id LIMIT 1),"
-      "(SELECT utc FROM tap WHERE point = 0 AND participant = ?1 ORDER BY id DESC LIMIT 1)";
+static void select_participants(FILE *sql, const ethd__folder *folder) {
+  const ethd__protocol *p = &folder->protocol;
   ethd__study_block blocks[ETHD_STUDY_BLOCKS];
-  char id[ETHD_STUDY_ID_MAX];
-  uint32_t taps = 0, valid = 0;
-  for (size_t i = 0, count = ethd__order_of(p, who->person, blocks); i < count; i++) {
-    taps += blocks[i].training ? 0 : who->at[i].taken;
-    valid += blocks[i].training ? 0 : who->at[i].valid;
-  }
-  sqlite3_stmt *row = ethd__store_query(store, select);
-  sqlite3_bind_int64(row, 1, who->person + 1);
-  if (ethd__store_next(row) &&
-      (sqlite3_column_type(row, 0) != SQLITE_NULL || sqlite3_column_type(row, 1) != SQLITE_NULL)) {
-    ethd__participant_id(p, who->person, id);
-    fprintf(file, "%s,%s,%d,", id,
-            who->standing != ETHD_STANDING_IN ? ethd__standing_words[who->standing]
-            : ethd__participant_over(p, who)  ? "complete"
-                                              : "incomplete",
-            who->standing == ETHD_STANDING_IN);
-    ethd__csv_put_word(file, ethd__store_text(row, 0));
-    fprintf(file, ",%s,%u,%u,", ethd__store_text(row, 1), taps, valid);
-    ethd__csv_put_word(file, ethd__store_text(row, 2));
-    putc(',', file);
-    ethd__csv_put_word(file, ethd__store_text(row, 3));
-    putc('\n', file);
-  }
-  return ethd__store_end(store, row, message);
+  fprintf(
+      sql,
+      "WITH decided AS (SELECT participant, event, detail FROM event WHERE id IN (SELECT max(id) FROM event WHERE "
+      "participant NOTNULL AND event IN " ETHD_STUDY_DECISIONS " GROUP BY participant)),"
+      " done AS (SELECT participant, part(participant, block) = 'test' AS test, count(*) AS taken, sum(valid) AS "
+      "valid FROM tap GROUP BY participant, block),"
+      " tapped AS (SELECT participant, sum(taken * test) AS taps, sum(valid * test) AS valid, "
+      "sum(iif(test, valid >= %u OR taken >= %u, taken >= %u)) AS over FROM done GROUP BY participant)"
+      " SELECT id(participant), CASE event WHEN 'abort' THEN 'aborted' WHEN 'refuse' THEN 'refused' WHEN 'withdraw' "
+      "THEN 'withdrawn' WHEN 'exclude' THEN 'excluded' ELSE iif(over = %zu, 'complete', 'incomplete') END,"
+      " coalesce(event IN ('undo', 'include'), 1), detail,"
+      " (SELECT hand FROM tap WHERE point = 0 AND tap.participant = people.participant LIMIT 1),"
+      " coalesce(taps, 0), coalesce(valid, 0),"
+      " (SELECT utc FROM tap WHERE point = 0 AND tap.participant = people.participant ORDER BY id LIMIT 1),"
+      " (SELECT utc FROM tap WHERE point = 0 AND tap.participant = people.participant ORDER BY id DESC LIMIT 1)"
+      " FROM (SELECT participant FROM tapped UNION SELECT participant FROM decided) AS people"
+      " LEFT JOIN tapped USING (participant) LEFT JOIN decided USING (participant) ORDER BY participant",
+      p->taps, p->attempts, p->training, ethd__order_of(p, 0, blocks));
 }
 
-static ethd_status print_participants(FILE *file, ethd__study_store *store, const ethd__folder *folder, char *message) {
-  ethd__participant who;
-  ethd_status status = ETHD_OK;
-  for (uint32_t i = 0; !status && i < folder->protocol.participants; i++) {
-    status = ethd__participant_of(store, i, &who, message);
-    if (!status) status = print_participant(file, store, &folder->protocol, &who, message);
-  }
-  return status;
+/* NULL: the table was written as the folder was made. */
+static void (*const select_rows[ETHD_TABLES])(FILE *sql, const ethd__folder *folder) = {
+    [ETHD_TABLE_TAPS] = select_taps,
+    [ETHD_TABLE_SURVEY] = select_survey,
+    [ETHD_TABLE_EVENTS] = select_events,
+    [ETHD_TABLE_PARTICIPANTS] = select_participants};
+
+/* A simulation has but taps. */
+static bool has(const ethd__folder *folder, ethd__study_table table) {
+  return select_rows[table] && (!folder->simulated || table == ETHD_TABLE_TAPS);
 }
 
 /* ---- tables ---- */
 
-/* NULL: the table was written as the folder was made. */
-static ethd_status (*const print_rows[ETHD_TABLES])(FILE *file, ethd__study_store *store, const ethd__folder *folder,
-                                                    char message[ETHD_MESSAGE_MAX]) = {
-    [ETHD_TABLE_TAPS] = ethd__taps_print,
-    [ETHD_TABLE_SURVEY] = print_survey,
-    [ETHD_TABLE_EVENTS] = print_events,
-    [ETHD_TABLE_PARTICIPANTS] = print_participants};
-
-/* A simulation has but taps. */
-static bool has(const ethd__folder *folder, ethd__study_table table) {
-  return print_rows[table] && (!folder->simulated || table == ETHD_TABLE_TAPS);
+static void print_row(FILE *file, sqlite3_stmt *row) {
+  for (int i = 0; i < sqlite3_column_count(row); i++) {
+    if (i) putc(',', file);
+    if (sqlite3_column_type(row, i) == SQLITE_FLOAT)
+      fprintf(file, "%.17g", sqlite3_column_double(row, i));
+    else
+      ethd__csv_put_word(file, ethd__store_text(row, i));
+  }
+  putc('\n', file);
 }
 
 static ethd_status print_table(FILE *file, ethd__study_store *store, const ethd__folder *folder,
                                ethd__study_table table, char *message) {
-  char *header =
-      folder->simulated ? ethd__simulation_header(&folder->protocol) : ethd__table_header(table, &folder->protocol);
+  char *sql = NULL, *header = folder->simulated ? ethd__simulation_header(&folder->protocol)
+                                                : ethd__table_header(table, &folder->protocol);
+  size_t length;
+  FILE *text = open_memstream(&sql, &length);
+  if (!text) ethd__fail_memory();
+  select_rows[table](text, folder);
+  if (fclose(text)) ethd__fail_memory();
   fprintf(file, "%s\n", header);
+  add_functions(store, &folder->protocol);
+  sqlite3_stmt *row = ethd__store_query(store, sql);
+  while (ethd__store_next(row)) print_row(file, row);
   free(header);
-  return print_rows[table](file, store, folder, message);
+  free(sql);
+  return ethd__store_end(store, row, message);
 }
 
 ethd_status ethd__tables_of(const ethd__folder *folder, ethd__study_store *store, char *out[ETHD_TABLES],
