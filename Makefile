@@ -130,8 +130,9 @@ PROGRAMS_C := $(call files,apps/ethd-*.c)
 APPS_C := $(filter-out apps/examples/%,$(call files,apps/*/*.c))
 PLUGINS_C := $(call files,tests/plugins/*.c)
 TESTS_C := $(filter-out $(PLUGINS_C),$(call files,tests/*/test_*.c))
-HELPERS_C := $(filter-out $(PLUGINS_C) $(TESTS_C) tests/fuzz/% tests/simavr/% tests/proofs/%,$(call files,tests/*/*.c))
-TOOLS_C := $(call files,tests/*.c)
+BENCH_C := $(call files,tests/bench.c tests/bench/*.c)
+HELPERS_C := $(filter-out $(PLUGINS_C) $(TESTS_C) $(BENCH_C) tests/fuzz/% tests/simavr/% tests/proofs/%,$(call files,tests/*/*.c))
+TOOLS_C := $(filter-out $(BENCH_C),$(call files,tests/*.c))
 HEADERS := $(call files,include/ethd/*.h)
 SCRIPTS := $(sort $(shell find tests -name '*.sh' -perm -u+x 2>/dev/null))
 
@@ -166,14 +167,14 @@ DRIVERS_LIBS := -linih -lmodbus -lexpat
 all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
 # A script may run any program.
 tests: $(addprefix $(B)/tests/,$(call wanted,$(notdir $(UNIT)))) $(PLUGINS) \
-  $(if $(call wanted,$(basename $(notdir $(SCRIPTS)))),all $(if $(SAN),,man) $(TOOLS_C:%.c=$(B)/%) $(RING_PARTS))
+  $(if $(call wanted,$(basename $(notdir $(SCRIPTS)))),all $(if $(SAN),,man) $(TOOLS_C:%.c=$(B)/%) $(B)/tests/bench $(RING_PARTS))
 $(B)/tests/test_servo_container: $(B)/bin/ethd-run
 
 # ---- build ----------------------------------------------------------------------------------
 
 # Objects of different flags never mix: everything depends on the flags it is built with.
 FLAGS_TEXT = $(LINK) $(WHOLE) | $(FLAGS_lib) | $(FLAGS_drivers) | $(FLAGS_apps) | $(FLAGS_tests) | $(CPPFLAGS) | $(XENO_CFLAGS) | $(XENO_LDFLAGS)
-SOURCES_TEXT := $(LIB_C) | $(DRIVERS_C) | $(PROGRAMS_C) | $(APPS_C) | $(HELPERS_C)
+SOURCES_TEXT := $(LIB_C) | $(DRIVERS_C) | $(PROGRAMS_C) | $(APPS_C) | $(HELPERS_C) | $(BENCH_C)
 keep = mkdir -p $(@D) && cat >$@.new && if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 $(B)/flags: export TEXT = $(FLAGS_TEXT)
 $(B)/flags: FORCE
@@ -191,7 +192,7 @@ endef
 $(foreach d,lib drivers apps tests,$(eval $(call compile,$(d))))
 $(call obj,$(wildcard drivers/loop/*.c)): FLAGS_drivers += $(XENO_CFLAGS)
 -include $(patsubst %.o,%.d,$(call obj,$(LIB_C) $(DRIVERS_C) $(PROGRAMS_C) $(APPS_C) $(TESTS_C) $(TOOLS_C) \
-           $(HELPERS_C))) $(PLUGINS:.so=.d)
+           $(HELPERS_C) $(BENCH_C))) $(PLUGINS:.so=.d)
 
 $(B)/libethd.a: $(LIB_O)
 $(B)/libethd-drivers.a: $(call obj,$(DRIVERS_C))
@@ -245,6 +246,12 @@ $(TOOLS_C:%.c=$(B)/%): $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libethd-tests.a $(A
 	$(call say,LINK,$@)
 	@mkdir -p $(@D)
 	$(Q)$(LINK) -o $@ $< $(B)/libethd-tests.a $(B)/libethd-apps.a $(WHOLE) $(DRIVERS_LIBS) $(LIBS)
+
+# Needs nothing that only tests need.
+$(B)/tests/bench: $(call obj,$(BENCH_C)) $(ARCHIVES)
+	$(call say,LINK,$@)
+	@mkdir -p $(@D)
+	$(Q)$(LINK) -o $@ $(filter %.o,$^) $(B)/libethd-apps.a $(WHOLE) $(DRIVERS_LIBS) $(LIBS)
 
 $(PLUGINS): $(B)/tests/plugins/%.so: tests/plugins/%.c $(B)/flags
 	$(call say,PLUGIN,$@)
