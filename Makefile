@@ -19,7 +19,7 @@ RT ?= posix
 # Sources of libethd that work on [main] only; every other one must suit the control thread.
 MAIN_SIDE := $(wildcard lib/error.c lib/param.c lib/law/plugin.c lib/scene/parse.c lib/control/setup_set.c $(addprefix lib/,*_create.c */*check.c */*create.c */*build.c))
 # Sources of the loop that its thread runs: they may sleep and read the clock, no more.
-LOOP_SIDE := drivers/loop/cycle.c drivers/loop/histogram.c drivers/loop/rows.c drivers/servo/tick.c
+LOOP_SIDE := drivers/runtime/loop/cycle.c drivers/runtime/loop/histogram.c drivers/runtime/loop/rows.c drivers/servo/tick.c
 
 SHELL := /bin/sh
 .SUFFIXES:
@@ -105,10 +105,10 @@ BASE := -std=gnu11 $(CFLAGS) $(WARN) $(MATHS) $(SANFLAGS)
 PIC := -fPIC -fvisibility=hidden -fno-semantic-interposition
 
 FLAGS_lib := $(BASE) $(STRINGS) $(PIC) -fno-stack-protector -fno-builtin-bcmp -U_FORTIFY_SOURCE -Iinclude -Ilib
-IN_C_LOCALE := -include drivers/text/locale.h
-FLAGS_drivers := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Idrivers $(IN_C_LOCALE)
-FLAGS_apps := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Idrivers -Iapps $(IN_C_LOCALE)
-FLAGS_tests := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Ilib -Idrivers -Iapps -Itests $(IN_C_LOCALE)
+IN_C_LOCALE := -include drivers/runtime/text/locale.h
+FLAGS_drivers := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Idrivers -Idrivers/runtime $(IN_C_LOCALE)
+FLAGS_apps := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Idrivers -Idrivers/runtime -Iapps $(IN_C_LOCALE)
+FLAGS_tests := $(BASE) $(PIC) -D_GNU_SOURCE -Iinclude -Ilib -Idrivers -Idrivers/runtime -Iapps -Itests $(IN_C_LOCALE)
 FLAGS_plugin := $(BASE) -fPIC -Iinclude
 LIBS := $(XENO_LDFLAGS) -lm -ldl -lpthread
 LINK = $(CC) $(BASE) $(LDFLAGS)
@@ -125,7 +125,7 @@ endif
 # In one order whatever the locale, by which wildcard sorts: objects are linked in it, and builds are equal to the byte.
 files = $(foreach pattern,$(1),$(sort $(wildcard $(pattern))))
 LIB_C := $(call files,lib/*.c lib/*/*.c)
-DRIVERS_C := $(call files,drivers/*.c drivers/*/*.c)
+DRIVERS_C := $(call files,drivers/*.c drivers/*/*.c drivers/runtime/*/*.c)
 PROGRAMS_C := $(call files,apps/ethd-*.c)
 APPS_C := $(filter-out apps/examples/%,$(call files,apps/*/*.c))
 PLUGINS_C := $(call files,tests/plugins/*.c)
@@ -190,7 +190,7 @@ $(B)/obj/$(1)/%.o: $(1)/%.c $(B)/flags
 	$$(Q)$$(CC) $$(CPPFLAGS) $$(FLAGS_$(1)) -MMD -MP -c $$< -o $$@
 endef
 $(foreach d,lib drivers apps tests,$(eval $(call compile,$(d))))
-$(call obj,$(wildcard drivers/loop/*.c)): FLAGS_drivers += $(XENO_CFLAGS)
+$(call obj,$(wildcard drivers/runtime/loop/*.c)): FLAGS_drivers += $(XENO_CFLAGS)
 -include $(patsubst %.o,%.d,$(call obj,$(LIB_C) $(DRIVERS_C) $(PROGRAMS_C) $(APPS_C) $(TESTS_C) $(TOOLS_C) \
            $(HELPERS_C) $(BENCH_C))) $(PLUGINS:.so=.d)
 

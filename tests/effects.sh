@@ -28,23 +28,23 @@ check() { # SOURCE INCLUDES...
   source=$1
   shift
   locale=
-  case $source in drivers/* | "$work"/pointer.c | "$work"/lock.c) locale='-include drivers/text/locale.h' ;; esac
+  case $source in drivers/* | "$work"/pointer.c | "$work"/lock.c) locale='-include drivers/runtime/text/locale.h' ;; esac
   $clang -std=gnu11 -O1 -ffp-contract=off -fno-math-errno -D_GNU_SOURCE $locale "$@" \
     -fsyntax-only -Wfunction-effects -Werror=function-effects "$source"
 }
 for source in $(find lib drivers -name '*.c' ! -path '*/firmware/*'); do
-  check "$source" -Iinclude -Ilib -Idrivers || fail "$source"
+  check "$source" -Iinclude -Ilib -Idrivers -Idrivers/runtime || fail "$source"
 done
 
 # What each kind of breach looks like: a call by name, one that is only inferred, one through a table, one after a sleep.
 seed() { # NAME SOURCE SED
   sed "$3" "$2" >"$work/$1.c"
   ! cmp -s "$2" "$work/$1.c" || { fail "$1: the seed changes nothing"; return; }
-  check "$work/$1.c" -I"${2%/*}" -Iinclude -Ilib -Idrivers >"$work/out" 2>&1 && fail "$1: the seeded breach isn't found"
+  check "$work/$1.c" -I"${2%/*}" -Iinclude -Ilib -Idrivers -Idrivers/runtime >"$work/out" 2>&1 && fail "$1: the seeded breach isn't found"
   grep -q "$4" "$work/out" || fail "$1: found otherwise: $(head -n 3 "$work/out")"
 }
 seed heap lib/control/control.c 's|^  t.soft = take_clear(control);|  free(malloc(1));&|; 1i #include <stdlib.h>' "'malloc'"
 seed inferred lib/arm.c 's|^static double wrap.*{|&\n  putchar(10);|; 1i #include <stdio.h>' "'wrap'"
-seed pointer drivers/loop/cycle.c 's|l->def.driver->write(|l->def.driver->stop(l->def.device), &|' 'non-.nonblocking'
-seed lock drivers/loop/cycle.c 's|^  raise(&l->stats.ticks, 1);|  pthread_mutex_lock(0);&|' "'pthread_mutex_lock'"
+seed pointer drivers/runtime/loop/cycle.c 's|l->def.driver->write(|l->def.driver->stop(l->def.device), &|' 'non-.nonblocking'
+seed lock drivers/runtime/loop/cycle.c 's|^  raise(&l->stats.ticks, 1);|  pthread_mutex_lock(0);&|' "'pthread_mutex_lock'"
 exit $failed

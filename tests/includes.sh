@@ -19,7 +19,7 @@ def floor(path):
     return next(i for i, pattern in enumerate(FLOORS) if re.match(pattern, text))
 
 def resolve(path, name):
-    for root in [path.parent, *map(pathlib.Path, ("include", "lib", "drivers", "apps"))]:
+    for root in [path.parent, *map(pathlib.Path, ("include", "lib", "drivers", "drivers/runtime", "apps"))]:
         if (root / name).is_file():
             return root / name
 

@@ -42,7 +42,7 @@ def definitions(text):
 
 def guard(path):
     """ETHD__ROOM_FILE_H; a program's room has APPS_ before it, because the libraries may have a room of that name."""
-    top, *rest = path.with_suffix("").parts
+    top, *rest = [part for part in path.with_suffix("").parts if part != "runtime"]
     return "ETHD__" + ("APPS_" if top == "apps" else "") + "_".join(rest).upper().replace("-", "_") + "_H"
 
 unguarded = [path.as_posix() for top in ("lib", "drivers", "apps") for path in sorted(pathlib.Path(top).rglob("*.h"))

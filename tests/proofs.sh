@@ -12,7 +12,7 @@ prove() {
   start=$(date +%s) name=$1 unwind=$2
   shift 2
   timeout "${ETHD_PROOF_TIME:-900}" cbmc "$work/tree/tests/proofs/$name.c" --unwind "$unwind" --unwinding-assertions \
-    --slice-formula "$@" -D_GNU_SOURCE -I "$work/tree/include" -I "$work/tree/lib" -I "$work/tree/drivers" >"$work/out" 2>&1
+    --slice-formula "$@" -D_GNU_SOURCE -I "$work/tree/include" -I "$work/tree/lib" -I "$work/tree/drivers" -I "$work/tree/drivers/runtime" >"$work/out" 2>&1
   code=$?
   echo "$name: exit $code, $(sed -n 's/^\*\* \([0-9]* of [0-9]*\) failed.*/\1 failed/p' "$work/out"), $(($(date +%s) - start)) s"
 }
@@ -36,7 +36,7 @@ one() {
 }
 
 one words 3 drivers/servo/words.c 's/raw = raw == raw ? fmin(fmax(raw, min), max) : 0;/;/' $memory
-one npy_count 34 drivers/record/npy.c 's/if (!digits || end - p < 6 || /if (!digits || /' $memory
+one npy_count 34 drivers/runtime/record/npy.c 's/if (!digits || end - p < 6 || /if (!digits || /' $memory
 one decoder 48 drivers/proximity_ring/decoder.c 's/while (at < CODED)/while (at <= CODED)/' $memory
 one param 40 lib/param.c 's/bool inside = v >= row->min \&\& v <= row->max;/bool inside = !(v < row->min) \&\& v <= row->max;/' $memory
 # minutes

@@ -89,12 +89,12 @@ for object in $LOOP_OBJECTS; do
   needs "$object" | grep -vxE "$control|$clock|ethd_[a-z0-9_]+|$compiler" >"$work/object" &&
     fail "$object, of the loop's thread, needs what it may not:" && cat "$work/object"
 done
-# The C library's text depends on the process's locale: drivers/text/locale.c alone asks for it. lib's parser gives strtod digits
+# The C library's text depends on the process's locale: drivers/runtime/text/locale.c alone asks for it. lib's parser gives strtod digits
 # without a point; ini.c sets a locale while inih reads.
 local='(__)?(isoc[0-9]+_)?v?([fd]|sn?|as)?w?(printf|scanf)(_chk)?|(__isoc[0-9]+_)?(strto(d|f|ld)|wcsto[a-z]+)|atof|strf(rom.*|mon|ptime)|__ctype_.*|is(alnum|alpha|blank|cntrl|digit|graph|lower|print|punct|space|upper|xdigit)|to(upper|lower)|strn?casecmp|strcasestr|(str|wcs)(coll|xfrm)|alphasort|glob|fnmatch|regcomp|x?p?str?error(_r)?|perror|mb[a-z]+|wc[a-z]+|isw[a-z]+|(set|use|new|dup)locale|localeconv|nl_langinfo'
 nm -A -u "$BUILD/libethd.a" "$BUILD/libethd-drivers.a" "$BUILD/libethd-apps.a" "$BUILD"/obj/apps/ethd-*.o |
   awk '{ sub(/@.*/, "", $NF); sub(/:[^:]*$/, "", $1); print $1, $NF }' | grep -E " ($local)\$" |
   grep -vE ':locale.o |libethd.a:parse.o strtod$|:ini.o uselocale$' >"$work/local" &&
-  fail "text that depends on the process's locale (see drivers/text/locale.h):" && cat "$work/local"
+  fail "text that depends on the process's locale (see drivers/runtime/text/locale.h):" && cat "$work/local"
 echo "$(wc -l <"$work/exported") exported, $(echo $RT_OBJECTS $LOOP_OBJECTS | wc -w) objects of the control side"
 exit $failed

@@ -184,9 +184,10 @@ def name(path):
 def look(source):
     top = source.split("/")[0]
     flags = ["-std=gnu11", "-D_GNU_SOURCE", "-Iinclude"] + [f"-I{top}" for top in
-             {"lib": ["lib"], "drivers": ["drivers"], "apps": ["drivers", "apps"]}.get(top, ["lib", "drivers", "apps", "tests"])]
+             {"lib": ["lib"], "drivers": ["drivers", "drivers/runtime"],
+              "apps": ["drivers", "drivers/runtime", "apps"]}.get(top, ["lib", "drivers", "drivers/runtime", "apps", "tests"])]
     if top in ("drivers", "apps", "tests"):  # as the Makefile compiles them
-        flags += ["-include", "drivers/text/locale.h"]
+        flags += ["-include", "drivers/runtime/text/locale.h"]
     findings = set()
     sys.setrecursionlimit(10000)
     found = functions(source, flags)

@@ -41,7 +41,7 @@ XENO_STANDIN_CORE=mercury refuse 'RT=cobalt, but .* belongs to the core mercury'
 
 # Mercury: the loop's objects compile, and call libc by its own names.
 export XENO_STANDIN_CORE=mercury
-loop=$at/build-mercury/obj/drivers/loop
+loop=$at/build-mercury/obj/drivers/runtime/loop
 build RT=mercury XENO_CONFIG="$here/xeno-config" "$loop/cycle.o" "$loop/threads.o" "$loop/xenomai.o" || { cat "$at/log"; fail "RT=mercury"; }
 nm -u "$loop/cycle.o" | grep -q ' clock_nanosleep' || fail "mercury: cycle.o doesn't sleep"
 cat >"$at/init.c" <<'END'
@@ -58,11 +58,11 @@ cobalt=$at/build-cobalt
 build RT=cobalt XENO_CONFIG="$here/xeno-config" "$cobalt/bin/ethd-run" "$cobalt/tests/test_loop" "$cobalt/tests/test_loop_thread" \
   "$cobalt/share/ethd/n.plant" || { tail -n 30 "$at/log"; fail "RT=cobalt"; exit 1; }
 for name in clock_nanosleep clock_gettime; do
-  nm -u "$cobalt/obj/drivers/loop/cycle.o" | grep -q " __cobalt_$name" || fail "cobalt: cycle.o doesn't call __cobalt_$name"
-  nm -u "$cobalt/obj/drivers/loop/cycle.o" | grep -q " $name" && fail "cobalt: cycle.o calls $name past the core"
+  nm -u "$cobalt/obj/drivers/runtime/loop/cycle.o" | grep -q " __cobalt_$name" || fail "cobalt: cycle.o doesn't call __cobalt_$name"
+  nm -u "$cobalt/obj/drivers/runtime/loop/cycle.o" | grep -q " $name" && fail "cobalt: cycle.o calls $name past the core"
 done
 for version in 3.2 3.3; do
-  extra=$(lacks $version $(nm -u "$cobalt"/obj/drivers/loop/*.o "$cobalt/obj/drivers/servo/"*.o | awk '$2 ~ /^(__cobalt_|__real_|__wrap_|xenomai_|pthread_.*_np$)/ { print $2 }' |
+  extra=$(lacks $version $(nm -u "$cobalt"/obj/drivers/runtime/loop/*.o "$cobalt/obj/drivers/servo/"*.o | awk '$2 ~ /^(__cobalt_|__real_|__wrap_|xenomai_|pthread_.*_np$)/ { print $2 }' |
     sort -u | grep -vE '^pthread_(attr_)?[gs]etaffinity_np$'))
   [ -z "$extra" ] || fail "what Xenomai $version hasn't is called: $extra"
 done

@@ -1,10 +1,10 @@
 /* A step that hangs, the thread that watches, and [main], which gives the loop's thread up: who has the device, should
    the step return after all.
 
-   = drivers/loop/cycle.c: if (atomic_exchange_explicit(&l->stepping, 0, memory_order_acq_rel) != ETHD__LOOP_LEFT) return;
-   = drivers/loop/threads.c: bool taken = step > 0 && atomic_compare_exchange_strong(&l->stepping, &step, ETHD__LOOP_LEFT);
-   = drivers/loop/threads.c: while (l->has_watch && !ethd_loop_ended(l) && !ethd_loop_hangs(l, NULL)) pause_a_little();
-   = drivers/loop/watch.c: atomic_store_explicit(&l->hangs, w->silent >= hang, memory_order_release);
+   = drivers/runtime/loop/cycle.c: if (atomic_exchange_explicit(&l->stepping, 0, memory_order_acq_rel) != ETHD__LOOP_LEFT) return;
+   = drivers/runtime/loop/threads.c: bool taken = step > 0 && atomic_compare_exchange_strong(&l->stepping, &step, ETHD__LOOP_LEFT);
+   = drivers/runtime/loop/threads.c: while (l->has_watch && !ethd_loop_ended(l) && !ethd_loop_hangs(l, NULL)) pause_a_little();
+   = drivers/runtime/loop/watch.c: atomic_store_explicit(&l->hangs, w->silent >= hang, memory_order_release);
 
    Kept: once [main] has taken the device, the thread never touches it; a device in whose code the thread hangs isn't
    touched by [main]; join always returns. */

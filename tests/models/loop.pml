@@ -1,13 +1,13 @@
 /* The loop's thread, and [main], which enables, disarms, stops and joins: who has the device.
 
-   = drivers/loop/cycle.c: return atomic_compare_exchange_strong_explicit(&l->mode, &mode, ETHD__LOOP_PARKED, memory_order_acq_rel,
-   = drivers/loop/cycle.c: if (parked(l)) {
-   = drivers/loop/cycle.c: while (!failure && !told_to_stop(l)) failure = ethd__loop_turn(l);
-   = drivers/loop/cycle.c: ethd__loop_rest(l);
-   = drivers/loop/threads.c: atomic_store_explicit(&l->mode, ETHD__LOOP_ASKED, memory_order_release);
-   = drivers/loop/threads.c: return !atomic_compare_exchange_strong(&l->mode, &asked, ETHD__LOOP_RUNS);
-   = drivers/loop/threads.c: atomic_store_explicit(&l->mode, ETHD__LOOP_RUNS, memory_order_release);
-   = drivers/loop/threads.c: atomic_store_explicit(&l->ended, 1, memory_order_release);
+   = drivers/runtime/loop/cycle.c: return atomic_compare_exchange_strong_explicit(&l->mode, &mode, ETHD__LOOP_PARKED, memory_order_acq_rel,
+   = drivers/runtime/loop/cycle.c: if (parked(l)) {
+   = drivers/runtime/loop/cycle.c: while (!failure && !told_to_stop(l)) failure = ethd__loop_turn(l);
+   = drivers/runtime/loop/cycle.c: ethd__loop_rest(l);
+   = drivers/runtime/loop/threads.c: atomic_store_explicit(&l->mode, ETHD__LOOP_ASKED, memory_order_release);
+   = drivers/runtime/loop/threads.c: return !atomic_compare_exchange_strong(&l->mode, &asked, ETHD__LOOP_RUNS);
+   = drivers/runtime/loop/threads.c: atomic_store_explicit(&l->mode, ETHD__LOOP_RUNS, memory_order_release);
+   = drivers/runtime/loop/threads.c: atomic_store_explicit(&l->ended, 1, memory_order_release);
 
    Kept: never two in the device; the thread ends once it is told to, whatever enabling does; the last that is written
    is zero torque. Patience may be lost at any moment. */

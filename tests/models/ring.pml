@@ -6,9 +6,9 @@
    = lib/control/events.c: if (tail == atomic_load_explicit(&e->head, memory_order_acquire)) return ETHD_STATUS_EMPTY;
    = lib/control/events.c: *out = e->at[tail % ETHD__EVENTS];
    = lib/control/events.c: atomic_store_explicit(&e->tail, tail + 1, memory_order_release);
-   = drivers/loop/cycle.c: r->at[head % r->size] = l->row;
-   = drivers/loop/cycle.c: atomic_store_explicit(&r->head, head + 1, memory_order_release);
-   = drivers/loop/loop.c: *out = r->at[tail % r->size];
+   = drivers/runtime/loop/cycle.c: r->at[head % r->size] = l->row;
+   = drivers/runtime/loop/cycle.c: atomic_store_explicit(&r->head, head + 1, memory_order_release);
+   = drivers/runtime/loop/loop.c: *out = r->at[tail % r->size];
 
    Kept: what was pushed is taken whole, once, in order; and in the end, all of it. */
 #ifndef SIZE

@@ -1,4 +1,4 @@
-"""Files, as drivers/text/file.h and text.h treat them. Below a folder that somebody else may have made no link is followed,
+"""Files, as drivers/runtime/text/file.h and text.h treat them. Below a folder that somebody else may have made no link is followed,
 and only regular files are read; only a regular file is ever replaced, and by a whole one."""
 import contextlib
 import errno
