@@ -158,11 +158,11 @@ SHARE := $(patsubst apps/config/%,$(B)/share/ethd/%,$(shell find apps/config -ty
          $(patsubst apps/plot/%,$(B)/share/ethd/plot/%,$(wildcard apps/plot/*.gp)) \
          $(patsubst apps/cluster/%,$(B)/share/ethd/cluster/%,$(wildcard apps/cluster/*.sh)) \
          $(patsubst tests/motion/%,$(B)/share/ethd/motion/%,$(shell find tests/motion -type f 2>/dev/null)) \
-         $(PYTHON_FILES)
+         $(PYTHON_FILES) $(B)/share/ethd/python/drawing
 ARCHIVES := $(B)/libethd-apps.a $(B)/libethd-drivers.a $(B)/libethd.a
 LIBRARIES := $(foreach l,ethd ethd-drivers,$(B)/lib$(l).a $(B)/lib$(l).so.0 $(B)/lib$(l).so)
 # What the drivers' library needs of others.
-DRIVERS_LIBS := -linih -lmodbus -lexpat
+DRIVERS_LIBS := -linih -lmodbus
 
 all: $(LIBRARIES) $(PROGRAMS) $(SHARE)
 # A script may run any program.
@@ -237,7 +237,7 @@ $(B)/tests/$(notdir $(1:.c=)): $(B)/obj/$(1:.c=.o) $(B)/libethd-tests.a $(ARCHIV
 	$$(call say,LINK,$$@)
 	@mkdir -p $$(@D)
 	$$(Q)$$(LINK) -o $$@ $$< $(B)/libethd-tests.a $(B)/libethd-apps.a $$(WHOLE) \
-	  $$(shell $$(PKG_CONFIG) --libs check) -linih -lmodbus -lexpat $$(LIBS)
+	  $$(shell $$(PKG_CONFIG) --libs check) -linih -lmodbus $$(LIBS)
 endef
 $(foreach t,$(TESTS_C),$(eval $(call test_program,$(t))))
 
@@ -262,6 +262,9 @@ $(PLUGINS): $(B)/tests/plugins/%.so: tests/plugins/%.c $(B)/flags
 RUNS_PYTHON = $(shell sh .ci/setup programs)
 $(PYTHON_PROGRAMS): $(B)/bin/ethd-%: apps/python/launcher.in $(PYTHON_FILES)
 	@mkdir -p $(@D) && sed -e 's|@PYTHON@|$(RUNS_PYTHON)|' -e 's|@NAME@|$*|' $< >$@ && chmod +x $@
+# What ethd-scene starts.
+$(B)/share/ethd/python/drawing: apps/python/launcher.in $(PYTHON_FILES)
+	@mkdir -p $(@D) && sed -e 's|@PYTHON@|$(RUNS_PYTHON)|' -e 's|@NAME@|drawing|' -e 's|"../share/ethd/python"|"."|' $< >$@ && chmod +x $@
 $(B)/share/ethd/python/ethd_programs/VERSION: include/ethd/ethd.h
 	@mkdir -p $(@D) && echo '$(VERSION)' >$@
 $(filter %.py,$(PYTHON_FILES)): $(B)/share/ethd/python/%: apps/python/%
@@ -343,7 +346,7 @@ bench bench-quick: $(B)/tests/bench $(PEERS) $(SHARE)
 	  'commit $(or $(shell git describe --always --dirty 2>/dev/null),unknown); $(CC) $(BASE)'
 
 # The long ones: minutes.
-stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_svg $(B)/tests/test_fuzz_decoder \
+stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_fuzz_decoder \
   $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study $(B)/tests/test_servo_driver \
   $(B)/tests/test_fuzz_map $(B)/tests/test_promises $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile \
   $(B)/tests/volume $(B)/tests/day $(B)/tests/stress
@@ -355,7 +358,6 @@ stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/te
 	ETHD_SERVO_CYCLES=50000 $(B)/tests/test_servo_link
 	ETHD_FUZZ_RUNS=10000000 $(B)/tests/test_fuzz_map
 	ETHD_FUZZ=10000000 $(B)/tests/test_scene_parse
-	ETHD_FUZZ=10000000 $(B)/tests/test_svg
 	ETHD_FUZZ=100000000 $(B)/tests/test_fuzz_decoder
 	ETHD_RING_FRAMES=20000000 $(B)/tests/test_ring_noise
 	ETHD_REPLUGS=100 $(B)/tests/test_ring_driver

@@ -1,11 +1,9 @@
 /* What a scene holds, how far points are from it, and drawings as scenes. */
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cli/cli.h"
 #include "scene/scene.h"
-#include "text/text.h"
 
 static const char doc[] =
     "Says what a scene holds, or the signed distance of points from it; makes scenes from drawings.\v"
@@ -14,10 +12,11 @@ static const char doc[] =
     "out of the arm's reach count too.\n"
     "info: counts, extent, build time, memory, and what the arm can't reach. A picture shows the objects, the "
     "boxes of the tree by depth, and the arm's reach.\n"
-    "convert: IN is a drawing (.svg) or a scene (.scene), OUT a scene. A drawing may hold paths (MLHVCSQTAZ), "
-    "rect, circle, ellipse, line, polyline and polygon, in g with matrix, translate, scale and rotate. A shape that is "
-    "filled and closed is solid, any other is a thin wall. Title, desc, metadata, defs, other namespaces and hidden "
-    "elements are skipped; all else is refused. y is mirrored, so that it points up.\n\n"
+    "convert: IN is a drawing (.svg or .dxf) or a scene (.scene), OUT a scene. What is drawn decides: a shape that is "
+    "filled is solid, one that is stroked alone is a thin wall, whatever its width, and a filled one with holes "
+    "becomes "
+    "walls. Text, images and what else no scene can hold are left out and counted. y points up. Drawings are read by "
+    "Python, librsvg and ezdxf.\n\n"
     "Example:\n"
     "  ethd-scene query --scene walls.scene --in points.csv --out distances.csv\n"
     "  ethd-scene info walls.scene --plot walls.png\n"
@@ -26,17 +25,21 @@ static const char doc[] =
 
 static const struct argp_option options[] = {
     {"scene", 's', "F", 0, "query: the scene", 0},
-    {"in", 'i', "IN", 0, "query: points; convert: .svg or .scene", 0},
+    {"in", 'i', "IN", 0, "query: points; convert: .svg, .dxf or .scene", 0},
     {"out", 'o', "OUT", 0, "query: distances; convert: the scene", 0},
     {"config", 'c', "C.ini", 0, "info: configuration with the arm and the ring (default: built in)", 0},
-    {"plot", 'p', "OUT.png", 0, "info: draw a picture, and keep its data in OUT.csv", 0},
+    {"plot", 'p', "OUT.png", 0,
+     "info: draw a picture, and keep its data in OUT.csv; convert: draw drawing and scene side by side", 0},
     {"tolerance", 't', "M", 0, "convert: how far an edge may be from its curve, m (default: 1e-5)", 0},
-    {"scale", 'l', "M", 0, "convert: m per user unit (default: by width, height and viewBox, 96 px an inch)", 0},
-    {"origin", 'O', "X,Y", 0, "convert: where the page's lower left corner goes, m (default: 0,0)", 0},
+    {"scale", 'l', "M", 0, "convert: SVG: m per user unit (default: by width, height and viewBox, 96 px an inch)", 0},
+    {"units", 'u', "m|cm|mm|in|ft", 0, "convert: DXF: its unit, where the file doesn't say it", 0},
+    {"origin", 'O', "X,Y", 0, "convert: where the page's lower left corner, or DXF's origin, goes, m (default: 0,0)",
+     0},
+    {"page", 'g', "solid|background", 0, "convert: what a filled shape is that covers the page", 0},
     {0},
 };
 
-static ethd__scene_args arg = {.svg = {1e-5, NAN, {0, 0}}};
+static ethd__scene_args arg;
 
 static const struct {
   const char *name;
@@ -58,8 +61,11 @@ static void check_usage(struct argp_state *state) {
   if (command == CONVERT && (!arg.in || !arg.out)) argp_error(state, "convert needs --in and --out");
   if (command == INFO && (arg.in || arg.out)) argp_error(state, "--in and --out are for query and convert");
   if (command == CONVERT && arg.scene) argp_error(state, "--scene is for query");
-  if (command != INFO && (arg.config || arg.plot)) argp_error(state, "--config and --plot are for info");
-  if (command != CONVERT && arg.svg_given) argp_error(state, "--tolerance, --scale and --origin are for convert");
+  if (command != INFO && arg.config) argp_error(state, "--config is for info");
+  if (command == QUERY && arg.plot) argp_error(state, "--plot is for info and convert");
+  if (command == INFO && arg.plot) (void)ethd__option_picture("--plot", arg.plot);
+  if (command == INFO && arg.for_drawings)
+    argp_error(state, "--tolerance, --scale, --units, --origin and --page are for convert");
 }
 
 static void take_word(const char *word, struct argp_state *state) {
@@ -73,27 +79,30 @@ static void take_word(const char *word, struct argp_state *state) {
   }
 }
 
-/* X,Y */
-static ethd_vec origin(const char *text) {
-  const char *comma = strchr(text, ',');
-  ethd_vec o;
-  if (!comma || !ethd__number(text, (size_t)(comma - text), &o.x) ||
-      !ethd__number(comma + 1, strlen(comma + 1), &o.y) || !(fabs(o.x) <= 1e6 && fabs(o.y) <= 1e6))
-    ethd__fail(ETHD_EXIT_INPUT, "--origin: found \"%s\", X,Y in m is needed, each up to 1e6", text);
-  return o;
+static bool is_one_of(const char *keys, int key) { return key > ' ' && key < 128 && strchr(keys, key); }
+
+/* Keeps an option for the program that reads drawings. */
+static void keep(int key, const char *text) {
+  const struct argp_option *o = options;
+  while (o->key != key) o++;
+  if (arg.drawing_count == ETHD__DRAWING_OPTIONS) ethd__fail(ETHD_EXIT_INPUT, "--%s: too many options", o->name);
+  if (asprintf(&arg.drawing[arg.drawing_count++], "--%s=%s", o->name, text) < 0) ethd__fail_memory();
 }
 
 static error_t parse(int key, char *text, struct argp_state *state) {
-  arg.svg_given |= key == 't' || key == 'l' || key == 'O';
+  if (is_one_of("iotluOgp", key)) keep(key, text);
+  arg.for_drawings |= is_one_of("tluOg", key);
   switch (key) {
   case 's': arg.scene = text; return 0;
   case 'i': arg.in = text; return 0;
   case 'o': arg.out = text; return 0;
   case 'c': arg.config = text; return 0;
-  case 'p': arg.plot = ethd__option_picture("--plot", text); return 0;
-  case 't': arg.svg.tolerance = ethd__option_number("--tolerance", text, 1e-9, 1e3); return 0;
-  case 'l': arg.svg.scale = ethd__option_number("--scale", text, 1e-9, 1e6); return 0;
-  case 'O': arg.svg.origin = origin(text); return 0;
+  case 'p': arg.plot = text; return 0;
+  case 't':
+  case 'l':
+  case 'u':
+  case 'O':
+  case 'g': return 0;
   case ARGP_KEY_ARG: take_word(text, state); return 0;
   case ARGP_KEY_END: check_usage(state); return 0;
   default: return ARGP_ERR_UNKNOWN;

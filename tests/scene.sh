@@ -68,7 +68,8 @@ grep -q '^inf,.*,-1$' empty.csv || fail "an empty scene has a nearest object"
 cat >drawing.svg <<'END'
 <svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="100mm" viewBox="0 0 200 100">
   <title>a room</title>
-  <path fill="none" d="M10 10h180v80h-180z"/>
+  <path fill="none" stroke="black" d="M10 10h180v80h-180z"/>
+  <text x="20" y="20">a door</text>
   <circle cx="100" cy="50" r="10"/>
   <g display="none"><text>hidden</text></g>
 </svg>
@@ -83,7 +84,7 @@ END
 awk 'NR == FNR { for (i = 1; i <= NF; i++) want[NR, i] = $i; next }
   { for (i = 1; i <= NF; i++) if (i == 1 ? $i != want[FNR, i] : $i - want[FNR, i] > 1e-15 || want[FNR, i] - $i > 1e-15) { print $i; bad = 1 } }
   END { exit bad || FNR != 2 }' expected.scene room.scene || fail "the drawing became: $(cat room.scene)"
-for line in '2 objects, 4 segments' '1 user unit = 0.001 m; y up' 'corner at 0.1, 0.2 m, its size 0.2 x 0.1 m' 'skipped: 2 '; do
+for line in '2 objects, 4 segments' '1 user unit = 0.001 m; y up' 'corner at 0.1, 0.2 m, its size 0.2 x 0.1 m' 'left out: 2 text$'; do
   grep -q "$line" convert.txt || fail "convert doesn't say: $line"
 done
 "$program" convert --in walls.scene --out copy.scene >/dev/null || fail "a scene isn't written again"
@@ -200,7 +201,7 @@ printf '\377\376h\0a\0' >wide.scene
 refuse 'wide.scene: its text is UTF-16: save it as UTF-8' info wide.scene
 printf '<svg xmlns="http://www.w3.org/2000/svg"/>' >room.svg && cp room.svg room.txt && printf '  0\nSECTION\n' >room.dxf
 for drawing in room.svg room.txt; do refuse "$drawing: is a drawing, not a scene: ethd-scene convert --in DRAWING.svg --out NAME.scene" info $drawing; done
-refuse 'room.dxf: is a drawing (save it as SVG), not a scene: ethd-scene convert' info room.dxf
+refuse 'room.dxf: is a drawing, not a scene: ethd-scene convert' info room.dxf
 # a solid with another side near by: 4 mm of a box, 2 mm of a triangle; walls of one side, and thick ones, are none
 printf 'box 0.25 0.25 0.002 0.1 0\npolygon 0 0 1 0 0 0.002\ncapsule 0 0 1 0 0.006\nsegment 0 0 1 1\n' >thin.scene
 "$program" info thin.scene | grep -q '^thin:  *2 solids are thinner than 10 mm, object 1 (polygon) is 2 mm: a ring .* pushed out on the other side; a segment' || fail "thin solids: $("$program" info thin.scene)"
@@ -216,17 +217,18 @@ refuse 'for query' info walls.scene --in one.csv
 refuse 'no such argument' info walls.scene more
 refuse 'frobnicate' info --frobnicate walls.scene
 refuse 'count.scene:3: ' info count.scene
-printf '<svg width="1mm" height="1mm">\n<text/></svg>\n' >text.svg
+printf '<svg xmlns="http://www.w3.org/2000/svg" width="1mm" height="1mm">\n<text/></svg>\n' >text.svg
 cp drawing.svg drawing.txt
-refuse 'text.svg:2: not supported.*text' convert --in text.svg --out kept.csv
-refuse 'drawing.txt.*svg or .scene' convert --in drawing.txt --out kept.csv
+refuse 'text.svg: nothing that a scene can hold is drawn on its page' convert --in text.svg --out kept.csv
+refuse 'drawing.txt.*svg, .dxf or .scene' convert --in drawing.txt --out kept.csv
 refuse 'nowhere.svg' convert --in nowhere.svg --out kept.csv
 refuse 'convert needs' convert --in drawing.svg
 refuse 'are for drawings' convert --in walls.scene --out kept.csv --scale 2
 refuse 'tolerance: found "0"' convert --in drawing.svg --out kept.csv --tolerance 0
 refuse 'origin: found "1"' convert --in drawing.svg --out kept.csv --origin 1
 refuse 'for convert' info walls.scene --scale 2
-refuse 'for info' convert --in drawing.svg --out kept.csv --plot x.png
+refuse 'for info' convert --in drawing.svg --out kept.csv --config x.ini
+refuse 'plot: found "x.pdf"' convert --in drawing.svg --out kept.csv --plot x.pdf
 refuse 'plot: found "x.pdf"' info walls.scene --plot x.pdf
 refuse 'nowhere.ini: ' info walls.scene --config nowhere.ini
 [ $failed = 0 ] && echo "distances, summary and refusals as expected"

@@ -5,13 +5,15 @@
 #include <stdbool.h>
 
 #include "ethd/config.h"
-#include "svg/svg.h"
+
+enum { ETHD__DRAWING_OPTIONS = 16 };
 
 typedef struct ethd__scene_args {
   const char *command, *scene, *in, *out, *config;
-  const char *plot; /* ends in .png */
-  ethd_svg_options svg;
-  bool svg_given; /* one of the options for drawings was given */
+  const char *plot;                     /* ends in .png */
+  char *drawing[ETHD__DRAWING_OPTIONS]; /* the options that convert knows, as --name=value */
+  size_t drawing_count;
+  bool for_drawings; /* one that scenes don't take is among them */
 } ethd__scene_args;
 
 /* Loads a scene file and says how long reading and building took; exits if it can't. */

@@ -11,7 +11,6 @@
 #include "report/sheet.h"
 #include "servo/map.h"
 #include "study/protocol.h"
-#include "svg/svg.h"
 #include "text/csv.h"
 #include "text/ini.h"
 
@@ -33,22 +32,6 @@ static int read_scene(const char *text, size_t length) {
 
 static void grow_scene(FILE *out, int rows) {
   for (int i = 0; i < rows; i++) fprintf(out, "circle %d.5 %d 0.25 # %d\n", i % 997, i / 997, i);
-}
-
-static int read_svg(const char *text, size_t length) {
-  const ethd_svg_options options = {1e-4, (double)NAN, {0, 0}};
-  char message[ETHD_MESSAGE_MAX] = "";
-  ethd_svg_notes notes;
-  ethd_scene *scene = NULL;
-  ethd_status status = ethd_svg_parse(text, length, "x", &options, &scene, &notes, message);
-  if (status == ETHD_OK) ethd_scene_destroy(scene);
-  return judged(status, message);
-}
-
-static void grow_svg(FILE *out, int rows) {
-  fputs("<svg xmlns='http://www.w3.org/2000/svg' width='9000mm' height='9000mm'>\n", out);
-  for (int i = 0; i < rows; i++) fprintf(out, "<circle cx='%d' cy='%d' r='0.25'/>\n", i % 997, i / 997);
-  fputs("</svg>\n", out);
 }
 
 /* ---- tables ---- */
@@ -176,9 +159,6 @@ static const char *const scene_words[] = {"circle ",
                                           "#",
                                           "segment 0 0 1 1\n",
                                           NULL};
-static const char *const svg_words[] = {
-    "<g>", "</g>", "<path d='M0 0L1 1'/>", "'", "e9", "e-9", "-", ".", "0", "A", "C", "Z", "z", "1e308", "&lt;", "<!--",
-    "-->", NULL};
 static const char *const map_words[] = {
     "\n[register torque1]\n", "\n", "=", "0x", "step1=", "1e999", "-0.0", "type=f32\n", "[", NULL};
 static const char *const script_words[] = {"q1", "offset", " by=", " for=",  "inf",   "t",
@@ -196,13 +176,6 @@ const text_reader text_readers[] = {
      TEXT("material soft k_e=500 b_e=10\nhalfplane -1 0 -0.238 material=soft\ncircle 0.2 0.2 0.01\nbox 1 1 2 1 0.5\n"
           "polygon 0 0 0.6 0 0.6 0.238 0.238 0.238\npolyline 0 0 1 1 2 0\ncapsule 0 0 1 0 0.1\n"),
      scene_words, read_scene, grow_scene, 20000},
-    {"svg",
-     TEXT(
-         "<svg xmlns='http://www.w3.org/2000/svg' width='1000mm' height='1000mm'><g fill='none' transform='rotate(30)'>"
-         "<path d='M1 1h5v5z m2 2q3 4 5 6t3-2'/></g><path style='fill:none' d='M10 10C20 40 40-10 50 20A3 4 5 0 1 60 "
-         "40z'/>"
-         "<rect x='1' y='2' width='3' height='4'/><polygon points='0 0 3 0 3 3'/></svg>"),
-     svg_words, read_svg, grow_svg, 8000},
     {"ini",
      TEXT("[a]\nkey = 1\nword = some words ; and why\n[b]\nlist = 1, 2, 3\n# more\n[plugins]\nfile = a\nfile = b\n"),
      ini_words, read_ini, grow_ini, 2000},

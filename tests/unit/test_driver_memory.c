@@ -10,7 +10,6 @@
 #include "ethd/sim.h"
 #include "inject/script.h"
 #include "servo/map.h"
-#include "svg/svg.h"
 #include "tape/tape.h"
 #include "text/csv.h"
 #include "text/ini.h"
@@ -63,19 +62,6 @@ static ethd_status write_table(void) {
   ethd_csv_word(out, "word");
   ethd_csv_row(out);
   return ethd_csv_close(out, message);
-}
-
-static ethd_status read_drawing(void) {
-  static const char text[] =
-      "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='100mm'><g transform='translate(10 5)'>"
-      "<path d='M0 0 C 10 0 10 10 0 10 Z'/><circle cx='40' cy='40' r='9'/><polyline points='1,1 2,2 3,1'/>"
-      "<rect x='60' y='60' width='9' height='8' rx='2'/></g></svg>";
-  const ethd_svg_options options = {1e-4, (double)NAN, {0, 0}};
-  ethd_svg_notes notes;
-  ethd_scene *scene;
-  ethd_status status = ethd_svg_parse(text, sizeof text - 1, "x", &options, &scene, &notes, message);
-  if (!status) ethd_scene_destroy(scene);
-  return status;
 }
 
 static ethd_status read_script(void) {
@@ -138,10 +124,10 @@ static ethd_status open_device(void) {
 static const struct {
   const char *name;
   ethd_status (*run)(void);
-} jobs[] = {
-    {"configuration", load_config}, {"table", read_table}, {"table out", write_table}, {"drawing", read_drawing},
-    {"script", read_script},        {"map", read_map},     {"plant", read_plant},      {"recording", record},
-    {"verification", verify},       {"tape", load_tape},   {"device", open_device}};
+} jobs[] = {{"configuration", load_config}, {"table", read_table},    {"table out", write_table},
+            {"script", read_script},        {"map", read_map},        {"plant", read_plant},
+            {"recording", record},          {"verification", verify}, {"tape", load_tape},
+            {"device", open_device}};
 
 static void begin(void) {
   strcpy(folder, "/tmp/ethd-memory-XXXXXX");

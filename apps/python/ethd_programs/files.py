@@ -60,6 +60,25 @@ def opened(folder: str, *names: str) -> BinaryIO:
     return open(descriptor, "rb")
 
 
+def plain_file(path: str, most: int) -> bytes:
+    """What a file that the user names holds: a regular one of at most `most` bytes, or a pipe."""
+    if not path:
+        raise Refusal('"": a file\'s name is needed')
+    try:
+        with open(path, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NOCTTY)) as file:
+            mode = os.fstat(file.fileno()).st_mode
+            if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
+                raise Refusal(f"{path}: is a device, a file is needed")
+            data = file.read(most + 1)
+    except IsADirectoryError:
+        raise Refusal(f"{path}: is a folder, a file is needed") from None
+    except OSError as e:
+        raise Refusal(f"{path}: {reason(e)}") from None
+    if len(data) > most:
+        raise Refusal(f"{path}: over {most} bytes, at most that many are allowed")
+    return data
+
+
 def has_hole(file: BinaryIO, end: int) -> bool:
     """Whether the file's first `end` bytes have a part that was never written and takes no room on the disk."""
     descriptor = file.fileno()

@@ -31,11 +31,10 @@ static bool is_called(const char *path, const char *end) {
 
 /* Says what to do with a drawing in the place of a scene; false: it is none. */
 static bool say_drawing(const char *path, const ethd_error *error, char message[ETHD_MESSAGE_MAX]) {
-  bool dxf = is_called(path, ".dxf");
-  if (!dxf && !is_called(path, ".svg") && error->name[0] != '<') return false;
+  if (!is_called(path, ".dxf") && !is_called(path, ".svg") && error->name[0] != '<') return false;
   ethd__say(message, error->status,
-            "%.200s: is a drawing%s, not a scene: ethd-scene convert --in DRAWING.svg --out NAME.scene makes one of it",
-            path, dxf ? " (save it as SVG)" : "");
+            "%.200s: is a drawing, not a scene: ethd-scene convert --in DRAWING.svg --out NAME.scene makes one of it",
+            path);
   return true;
 }
 
