@@ -46,6 +46,7 @@ static const char doc[] =
     "  ethd-study --resume session --exclude 2 --reason \"was told another task\"\n"
     "  ethd-study --export session\n"
     "  ethd-study --verify session\n"
+    "  ethd-study --describe session --out facts    (study.json, for programs)\n"
     "  ethd-study grid.study --simulate 1000 --shard 1/4 --out bulk    (to 4/4)\n"
     "  ethd-study --merge bulk";
 
@@ -64,6 +65,8 @@ enum {
   OPTION_WORDS,
   OPTION_EXPORT,
   OPTION_VERIFY,
+  OPTION_DESCRIBE,
+  OPTION_PLUGINS,
   OPTION_WITHDRAW,
   OPTION_EXCLUDE,
   OPTION_INCLUDE,
@@ -85,6 +88,11 @@ static const struct argp_option options[] = {
      0},
     {"export", OPTION_EXPORT, "DIR", 0, "write a folder's tables (taps.csv and so on) anew from its study.sqlite", 0},
     {"verify", OPTION_VERIFY, "DIR", 0, "compare a folder's files with its SHA256SUMS", 0},
+    {"describe", OPTION_DESCRIBE, "DIR", 0,
+     "write what the study in DIR asked for, for programs, into the folder of --out: study.json, a simulated encounter "
+     "under each strategy, and of several folders the merged tables",
+     0},
+    {"plugins", OPTION_PLUGINS, NULL, 0, "with --describe: run the plugins that the folder's configuration names", 0},
     {"quiet", 'q', NULL, 0, "print no line for each tap", 0},
     {"withdraw", OPTION_WITHDRAW, "K", 0, "with --resume: write down that participant K has withdrawn, and end", 1},
     {"exclude", OPTION_EXCLUDE, "K", 0, "with --resume: take participant K out of the analysis, and end", 1},
@@ -138,11 +146,15 @@ static void decide(const char *option, const char *decision, const char *text) {
 
 /* What goes with what. */
 static void check_options(struct argp_state *state) {
-  bool stations = arg.merge && arg.out;
+  bool stations = (arg.merge || arg.describe) && arg.out;
   if (!stations && arg.word_count > 1) argp_error(state, "\"%s\": one study file is allowed", arg.word[1]);
   if (!stations && arg.word_count) arg.study = arg.word[0];
-  if (!!arg.out + !!arg.resume + (arg.merge && !stations) + !!arg.export + !!arg.verify + arg.plan + arg.words != 1)
+  if (arg.describe && !arg.out) argp_error(state, "--describe needs --out DIR");
+  if (!!arg.out + !!arg.resume + (arg.merge && (arg.describe || !stations)) + !!arg.export + !!arg.verify + arg.plan +
+          arg.words !=
+      1)
     argp_error(state, "--out DIR, --resume DIR, --merge DIR, --export DIR, --verify DIR, --plan or --words is needed");
+  if (arg.plugins && !arg.describe) argp_error(state, "--plugins needs --describe DIR");
   if (!arg.out && !arg.plan && (arg.study || arg.finger)) argp_error(state, "the study is taken from the folder");
   if ((arg.sharded || arg.shard.record) && !arg.simulate) argp_error(state, "--shard and --ticks need --simulate N");
   if (arg.width && (arg.ask || arg.simulate || arg.finger || arg.merge))
@@ -171,6 +183,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_WORDS: arg.words = true; return 0;
   case OPTION_EXPORT: arg.export = text; return 0;
   case OPTION_VERIFY: arg.verify = text; return 0;
+  case OPTION_DESCRIBE: arg.describe = text; return 0;
+  case OPTION_PLUGINS: arg.plugins = true; return 0;
   case OPTION_WITHDRAW: decide("--withdraw", "withdraw", text); return 0;
   case OPTION_EXCLUDE: decide("--exclude", "exclude", text); return 0;
   case OPTION_INCLUDE: decide("--include", "include", text); return 0;
@@ -188,11 +202,12 @@ int main(int argc, char **argv) {
   static const struct argp argp = {options, parse, "[STUDY]", doc, NULL, NULL, NULL};
   ethd__begin();
   argp_parse(&argp, argc, argv, 0, NULL, NULL);
-  const char *const folders[] = {arg.out, arg.resume, arg.merge, arg.export, arg.verify};
+  const char *const folders[] = {arg.out, arg.resume, arg.merge, arg.export, arg.verify, arg.describe};
   for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) ethd__receive(folders[i]);
-  for (size_t i = 0; arg.merge && i < arg.word_count; i++) ethd__receive(arg.word[i]);
+  for (size_t i = 0; (arg.merge || arg.describe) && i < arg.word_count; i++) ethd__receive(arg.word[i]);
   return ethd__end((arg.merge      ? ethd__command_merge
                     : arg.export   ? ethd__command_export
+                    : arg.describe ? ethd__command_describe
                     : arg.verify   ? ethd__command_verify
                     : arg.plan     ? ethd__command_plan
                     : arg.words    ? ethd__command_words

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
+#include "describe/describe.h"
 #include "screen/place.h"
 #include "study/plan.h"
 #include "study/sums.h"
@@ -221,6 +222,16 @@ int ethd__command_merge(const ethd__study_options *o) {
   if (status) ethd__fail(ethd__exit_code(status), "%s", message);
   check(ethd__stations_merge(folders, o->word_count + 1, o->out, &taps, message), message);
   say_taps(o->out, taps, o->word_count + 1);
+  return ETHD_EXIT_DONE;
+}
+
+int ethd__command_describe(const ethd__study_options *o) {
+  char message[ETHD_MESSAGE_MAX] = "";
+  const char *folders[ETHD_STUDY_STATIONS + 2] = {o->describe};
+  bool job;
+  memcpy(folders + 1, o->word, o->word_count * sizeof *folders);
+  ethd_status status = ethd__describe(folders, o->word_count + 1, o->plugins, o->out, &job, message);
+  if (status) ethd__fail(job ? ETHD_EXIT_FAILED : ethd__exit_code(status), "%s", message);
   return ETHD_EXIT_DONE;
 }
 

@@ -7,7 +7,7 @@
 #include "study/stations.h"
 
 typedef struct ethd__study_options {
-  const char *study, *out, *resume, *finger, *merge, *export, *verify;
+  const char *study, *out, *resume, *finger, *merge, *export, *verify, *describe;
   const char *decision, *reason;             /* withdraw, exclude, include */
   const char *word[ETHD_STUDY_STATIONS + 1]; /* that are no options: the study, or further stations */
   size_t word_count;
@@ -15,7 +15,7 @@ typedef struct ethd__study_options {
   int64_t decided, simulate;
   ethd__shard shard;
   int width, height; /* px of the screen; 0: none */
-  bool ask, quiet, sharded, is_virtual, plan, words;
+  bool ask, quiet, sharded, is_virtual, plan, words, plugins;
 } ethd__study_options;
 
 /* Begins a session in `out` or goes on with the one in `resume`. */
@@ -38,6 +38,9 @@ int ethd__command_words(const ethd__study_options *o);
 
 /* Prints the orders. */
 int ethd__command_plan(const ethd__study_options *o);
+
+/* Writes what the study of one folder, or of several stations, asked for. */
+int ethd__command_describe(const ethd__study_options *o);
 
 /* Checks a folder's sums. */
 int ethd__command_verify(const ethd__study_options *o);

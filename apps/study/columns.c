@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/json.h"
 #include "ethd/ethd.h"
 
 /* levels: "word=what it means|..", NULL where a column has none. */
@@ -185,29 +186,14 @@ void ethd__table_describe(FILE *file, ethd__study_table table, const ethd__table
 
 /* ---- for programs ---- */
 
-static void put_string(FILE *file, const char *text, size_t n) {
-  putc('"', file);
-  for (size_t i = 0; i < n && text[i]; i++) {
-    unsigned char c = (unsigned char)text[i];
-    if (c == '"' || c == '\\') putc('\\', file);
-    if (c < ' ')
-      fprintf(file, "\\u%04x", c);
-    else
-      putc(c, file);
-  }
-  putc('"', file);
-}
-
-static void put_word(FILE *file, const char *text) { put_string(file, text, strlen(text)); }
-
 static void put_levels(FILE *file, const char *levels) {
   fputs(",\n    \"Levels\": {", file);
   for (const char *at = levels; *at;) {
     size_t n = strcspn(at, "|"), name = strcspn(at, "=");
     fputs(at == levels ? "\n      " : ",\n      ", file);
-    put_string(file, at, name);
+    ethd__json_string(file, at, name);
     fputs(": ", file);
-    put_string(file, at + name + 1, n - name - 1);
+    ethd__json_string(file, at + name + 1, n - name - 1);
     at += n + (at[n] == '|');
   }
   fputs("\n    }", file);
@@ -216,7 +202,7 @@ static void put_levels(FILE *file, const char *levels) {
 static void put_question(FILE *file, size_t number, const ethd__question *q) {
   char words[256];
   fprintf(file, ",\n  \"q%zu\": {\n    \"Description\": ", number);
-  put_word(file, q->text);
+  ethd__json_word(file, q->text);
   if (ethd__question_is_text(q)) {
     fputs("\n  }", file);
     return;
@@ -225,7 +211,7 @@ static void put_question(FILE *file, size_t number, const ethd__question *q) {
   for (int k = 1; k <= (int)ethd__answer_count(q); k++) {
     ethd__answer_words(q, k, words, sizeof words);
     fprintf(file, "%s\n      \"%d\": ", k > 1 ? "," : "", k);
-    put_word(file, words);
+    ethd__json_word(file, words);
   }
   fputs("\n    }\n  }", file);
 }
@@ -247,10 +233,10 @@ static void put_words(FILE *file, const ethd__word_list *list, const char *befor
 
 static void put_column(FILE *file, const study_column *c, const ethd__protocol *p, const char *between) {
   fprintf(file, "%s\n  \"%s\": {\n    \"Description\": ", between, c->name);
-  put_word(file, c->meaning);
+  ethd__json_word(file, c->meaning);
   if (*c->unit) {
     fputs(",\n    \"Units\": ", file);
-    put_word(file, c->unit);
+    ethd__json_word(file, c->unit);
   }
   if (c->levels) put_levels(file, c->levels);
   if (!strcmp(c->name, "transition")) put_words(file, &p->strategies, "the transition law ", "");
@@ -264,12 +250,12 @@ static void put_gain(FILE *file, const ethd__axis *axis, const ethd_setup *setup
   char meaning[2 * ETHD_BRIEF_MAX];
   snprintf(meaning, sizeof meaning, "this gain at the point%s%s", gain ? ": " : "", gain ? gain->brief : "");
   fputs(",\n  ", file);
-  put_word(file, axis->key);
+  ethd__json_word(file, axis->key);
   fputs(": {\n    \"Description\": ", file);
-  put_word(file, meaning);
+  ethd__json_word(file, meaning);
   if (gain) {
     fputs(",\n    \"Units\": ", file);
-    put_word(file, gain->unit);
+    ethd__json_word(file, gain->unit);
   }
   put_words(file, &axis->values, "the value ", "");
   fputs("\n  }", file);
@@ -288,11 +274,11 @@ void ethd__table_sidecar(FILE *file, ethd__study_table table, const ethd__table_
 
 void ethd__dataset_describe(FILE *file, const ethd__protocol *p) {
   fputs("{\n  \"Name\": ", file);
-  put_word(file, p->name);
+  ethd__json_word(file, p->name);
   fputs(
       ",\n  \"DatasetType\": \"raw\",\n  \"Description\": \"A tapping study with an encounter-type haptic display. The "
       "sidecars follow BIDS; the tables are CSV.\",\n  \"GeneratedBy\": [{\"Name\": \"libethd\", \"Version\": ",
       file);
-  put_word(file, ETHD_VERSION);
+  ethd__json_word(file, ETHD_VERSION);
   fputs("}]\n}\n", file);
 }
