@@ -147,7 +147,7 @@ TESTS += tree_clean
 endif
 C_PROGRAMS := $(patsubst apps/%.c,$(B)/bin/%,$(PROGRAMS_C))
 # Programs in Python: bin/ethd-NAME runs ethd_programs.NAME.
-PYTHON_PROGRAMS := $(addprefix $(B)/bin/ethd-,convert)
+PYTHON_PROGRAMS := $(addprefix $(B)/bin/ethd-,convert report)
 PROGRAMS := $(sort $(C_PROGRAMS) $(PYTHON_PROGRAMS))
 PYTHON_FILES := $(patsubst apps/python/%,$(B)/share/ethd/python/%,$(shell find apps/python/ethd_programs -name '*.py')) \
                 $(B)/share/ethd/python/ethd_programs/VERSION

@@ -5,11 +5,11 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/picture.h"
 #include "identify/enough.h"
 #include "identify/excite.h"
 #include "identify/page.h"
 #include "record/recording_parts.h"
-#include "report/picture.h"
 #include "sim/plant.h"
 #include "text/error_text.h"
 #include "text/text.h"

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/picture.h"
 #include "ethd/ethd.h"
-#include "report/picture.h"
 #include "tap/load.h"
 #include "text/error_text.h"
 #include "text/text.h"

@@ -34,6 +34,23 @@ for margin in -1 0 nan 1e9; do
   [ $code = 2 ] && grep -q 'margin.study:2: statistics.margin_v_of: found' "$folder/err" || fail "a margin of $margin: exit $code, $(cat "$folder/err")"
 done
 
+# What a study asked for, for programs: each figure of the file that it was asked in, and the device's own.
+"$study" --describe "$here" --out "$folder/facts" >"$folder/out" 2>&1 || fail "--describe: $(cat "$folder/out")"
+"${PYTHON:-python3}" - "$folder/facts" <<'END' || fail "--describe: other facts"
+import csv, json, os, sys
+facts = json.load(open(os.path.join(sys.argv[1], "study.json")))
+wanted = dict(name="small", hands="simulated", plant=None, device="sim", is_simulated=True, valid_by_finger=False, survey=True, margin_d_max_m=0.0005,
+              strategies=["smooth", "offset"], mechanism="parallel", ring_radius_m=0.012, normal_x=-1, normal_y=0, wall_m=-0.238, grid=[])
+assert {k: facts[k] for k in wanted} == wanted, facts
+assert facts["speeds"]["high"] == {"centre_mps": 0.4, "band_mps": 0.08} and len(facts["questions"]) == 3 and len(facts["hash"]) == 64, facts
+for law in facts["strategies"]:
+    rows = list(csv.DictReader(open(os.path.join(sys.argv[1], f"encounter-{law}.csv"))))
+    assert len(rows) == 900 and max(float(r["pad_force_N"]) for r in rows) > 1 > float(rows[-1]["pad_force_N"]), law
+END
+"$study" --describe "$here" --out "$folder/facts" >"$folder/out" 2>&1 && fail "--describe writes over facts"
+"$study" --describe "$here" >"$folder/out" 2>&1
+[ $? = 2 ] && grep -q 'describe needs --out DIR' "$folder/out" || fail "--describe without --out: $(cat "$folder/out")"
+
 # Without gnuplot: one line, before anything is drawn.
 mkdir "$folder/empty"
 PATH=$folder/empty "$report" "$here" >"$folder/out" 2>"$folder/err"
@@ -69,7 +86,7 @@ for words in 'Simulated, not measured' 'No significance is claimed' 'smallest tw
   'simulated participants, no person' 'under seed 1: 2000 bootstrap samples' 'sign-flip' 'fitted to the four means' \
   'none of them is evidence about people' 'VO-A: tracking fades' 'medians have no 95 % interval' 'margins of the study file' '&#177;0.5 mm (d_max) and &#177;0.02 and' \
   '<b>The task:</b> to tap once, at a speed that was asked for (low: 0.2 &#177; 0.06 m/s; high: 0.4 &#177; 0.08 m/s)' \
-  "$(awk -F, 'NR > 1 && $3 == "test" && $9 { if (!n[$1 $5 $6]++) c[$1]++ } END { for (p in c) w += c[p] == 4; print w + 0 }' "$here/taps.csv") of them have a valid tap in every cell" 'lmer(d_max ~ strategy \* speed' 'second reaches the motors' 'mm into the wall that is asked for: .* the guard lets through at most 5\.[0-9] N'; do
+  "$(awk -F, 'NR > 1 && $3 == "test" && $9 { if (!n[$1 $5 $6]++) c[$1]++ } END { for (p in c) w += c[p] == 4; print w + 0 }' "$here/taps.csv") of them have a valid tap in every cell" 'lmer(d_max_mm ~ strategy \* speed' 'second reaches the motors' 'mm into the wall that is asked for: .* the guard lets through at most 5\.[0-9] N'; do
   grep -q -e "$words" "$here/report/report.html" || fail "the page doesn't say: $words"
 done
 grep -q 'too few people' "$here/report/report.html" && ! grep -q '<td[^>]*>shown<' "$here/report/report.html" || fail "two people show something"
@@ -115,8 +132,8 @@ for row in csv.DictReader(open(study / "report/forces.csv")):
     most = np.array(most)
     assert len(most) == int(row["taps"]) > 0
     assert np.allclose([np.median(most[:, 0]), most[:, 0].max(), np.median(most[:, 1]), most[:, 1].max()],
-                       [float(row[k]) for k in ("asked_nm_median", "asked_nm_max", "let_nm_median", "let_nm_max")], rtol=1e-12)
-    assert float(row["asked_n_max"]) > 2 * float(row["let_n_max"]) and float(row["let_n_max"]) < 6 # plant n has 5.4 N
+                       [float(row[k]) for k in ("asked_Nm_median", "asked_Nm_max", "let_Nm_median", "let_Nm_max")], rtol=1e-12)
+    assert float(row["asked_N_max"]) > 2 * float(row["let_N_max"]) and float(row["let_N_max"]) < 6 # plant n has 5.4 N
 END
 
 # Somebody isn't analysed.

@@ -18,10 +18,11 @@ quiet() { # WHAT
 
 # No script of the plots has a shell: neither system(), nor backquotes, nor a file that is a command.
 ! grep -nE 'system\(|`|"<|output *"\||shell|popen' apps/plot/*.gp || fail "a plot script runs commands"
-# One module runs gnuplot and one writes the page.
-[ "$(grep -l 'spawnp' -r apps drivers --include='*.c')" = apps/report/picture.c ] || fail "gnuplot is run elsewhere"
-[ -z "$(grep -nE 'f(printf|puts|putc|write)\([^;]*page' -r apps/report apps/ethd-report.c | grep -v '^apps/report/html.c')" ] ||
-  fail "a page is written elsewhere: $(grep -nE 'f(printf|puts|putc|write)\([^;]*page' -r apps/report apps/ethd-report.c)"
+# In C and in Python one module each runs gnuplot, no shell starts anything, and text reaches a page through one writer.
+[ "$(grep -l 'spawnp' -r apps drivers --include='*.c')" = apps/cli/picture.c ] && [ "$(grep -l '"gnuplot"' -r apps/python/ethd_programs)" = apps/python/ethd_programs/report/pictures.py ] ||
+  fail "gnuplot is run elsewhere"
+! grep -rnE 'os\.system|shell *=|popen\(' apps/python/ethd_programs || fail "a program runs a shell"
+[ "$(grep -l '_parts' -r apps/python/ethd_programs/report)" = apps/python/ethd_programs/report/page.py ] || fail "a page is written elsewhere"
 
 # ---- a study's folder ----
 printf '[study]\nname = small\nparticipants = 2\ntaps = 1\nattempts = 8\ntraining = 1\nsurvey = off\n' >"$folder/small.study"

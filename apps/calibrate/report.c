@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "report/picture.h"
+#include "cli/picture.h"
 #include "text/csv.h"
 #include "text/error_text.h"
 #include "text/text.h"

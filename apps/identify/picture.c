@@ -2,8 +2,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "cli/picture.h"
 #include "identify/page.h"
-#include "report/picture.h"
 #include "text/csv.h"
 
 #define SHOWN 10 /* consecutive windows that are drawn */

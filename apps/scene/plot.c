@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/picture.h"
 #include "ethd/maths.h"
-#include "report/picture.h"
 #include "scene/scene.h"
 #include "text/csv.h"
 

@@ -8,8 +8,7 @@ typedef struct ethd__cell {
   const char *law;
   const ethd__speed *speed;
   ethd__result *results;
-  uint32_t *person; /* who made each result, NULL: result i is finger i's, the same one in every cell */
-  size_t count;     /* taps done */
+  size_t count; /* taps done */
 } ethd__cell;
 
 /* A figure of ethd__metrics, over the valid taps that have it. */

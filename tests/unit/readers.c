@@ -8,7 +8,6 @@
 #include "inject/script.h"
 #include "proximity_ring/decoder.h"
 #include "record/npy_parts.h"
-#include "report/sheet.h"
 #include "servo/map.h"
 #include "study/protocol.h"
 #include "text/csv.h"
@@ -60,19 +59,6 @@ static int read_csv(const char *text, size_t length) {
 static void grow_csv(FILE *out, int rows) {
   fputs("t_s,x_m,y_m\n", out);
   for (int i = 0; i < rows; i++) fprintf(out, "%d.001,0.%d,-1e-%d\n", i, i, i % 99);
-}
-
-static int read_sheet(const char *text, size_t length) {
-  char message[ETHD_MESSAGE_MAX] = "";
-  ethd__sheet sheet;
-  ethd_status status = ethd__sheet_parse(text, length, "x", &sheet, message);
-  if (status == ETHD_OK) ethd__sheet_free(&sheet);
-  return judged(status, message);
-}
-
-static void grow_sheet(FILE *out, int rows) { /* a survey */
-  fputs("participant,strategy,real,note\n", out);
-  for (int i = 0; i < rows; i++) fprintf(out, "p%d,offset,%d,\"it felt \"\"real\"\", mostly\"\n", i, i % 7 + 1);
 }
 
 /* ---- recordings ---- */
@@ -180,8 +166,6 @@ const text_reader text_readers[] = {
      TEXT("[a]\nkey = 1\nword = some words ; and why\n[b]\nlist = 1, 2, 3\n# more\n[plugins]\nfile = a\nfile = b\n"),
      ini_words, read_ini, grow_ini, 2000},
     {"csv", TEXT("t_s,x_m,y_m\n0,1.5,-2e-3\n0.001,,nan\n0.002,7,8\n"), table_words, read_csv, grow_csv, 20000},
-    {"survey", TEXT("participant,strategy,real,note\np1,offset,7,\"so, so\"\np2,smooth,3,\n"), table_words, read_sheet,
-     grow_sheet, 20000},
     {"npy",
      TEXT("\x93NUMPY\x01\x00\x76\x00{'descr': [('n', '<i8'), ('x', '<f8', (16,))], 'fortran_order': False, "
           "'shape': (0,), }                              \n"),

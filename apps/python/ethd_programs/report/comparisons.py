@@ -1,0 +1,256 @@
+"""Sections of a report that test: Table 1, the paper's sentences, strategies within people, strategy by speed."""
+import math
+from dataclasses import dataclass
+from itertools import combinations
+from typing import List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from ethd_programs.cli import plural
+from ethd_programs.report import claims as paper
+from ethd_programs.report.output import Cell as Text
+from ethd_programs.report.output import harmless
+from ethd_programs.report.page import interval_text, mean_text, number_text, p_text
+from ethd_programs.report.report import Report
+from ethd_programs.report.statistics import (FEWEST_PEOPLE, NAN, Clusters, Equivalence, Interval, Numbers, Paired, Summary, cliff, compare,
+                                             equivalent, holm, summarise)
+from ethd_programs.report.taps import QUANTITIES, Cell, Quantity, Taps
+
+_NINE = 9  # taps behind each figure of the paper
+_TO_DRAW = 30  # taps to draw nine from
+_DRAWS = 2000
+
+# ---- Table 1 ----
+
+
+def _as_far_off(values: Numbers, mean: paper.Mean, seed: int) -> Tuple[float, float]:
+    """The shares of samples of nine taps whose mean, whose sd lies at least as far off as the paper's; two-sided."""
+    if len(values) < _TO_DRAW:
+        return NAN, NAN
+    drawn = np.random.default_rng(seed).choice(values, (_DRAWS, _NINE))
+    out = [min(1.0, 2 * min(float(np.mean(found >= there)), float(np.mean(found <= there))))
+           for found, there in ((drawn.mean(axis=1), mean.paper), (drawn.std(axis=1, ddof=1), mean.paper_sd))]
+    return out[0], out[1]
+
+
+def _of_offset(taps: Optional[Taps], mean: paper.Mean) -> Summary:
+    cell = taps.cell("offset", mean.speed) if taps else None
+    return summarise(cell.values(mean.quantity)) if cell else Summary(0)
+
+
+def table1(r: Report) -> None:
+    if not any(r.taps.cell("offset", speed) for speed in ("low", "high")):
+        return
+    r.page.heading("table1", "Table 1 of the paper")
+    if not r.measured or r.beside:
+        r.page.put("<p>The simulated device and finger were <b>fitted to the four means of this table</b>, not measured: that they agree is no "
+                   "evidence.</p>\n")
+    r.page.put("<p>Agreement is shown when the mean of %s's means lies within one published standard deviation of the published mean (two "
+               "one-sided t tests, p under 0.05); too few people can't show it. The last columns say how many samples of nine single taps, as "
+               "many as the paper has, would have a mean and a standard deviation at least as far off as the paper's; small shares speak against "
+               "agreement.</p>\n", r.judged_name)
+    beside = ("beside", "n") if r.beside else ()
+    r.page.table("Table 1: mean (sample standard deviation) of all valid taps, n; then the mean of people's means",
+                 ("offset", "paper, n = 9", "this study", "n", *beside, "people's mean, 90 %", "agreement", "p", "mean as far off",
+                  "sd as far off"), 1)
+    rows: List[List[Text]] = []
+    for m in paper.means(r.judged):
+        q, study, other = m.quantity, _of_offset(r.taps, m), _of_offset(r.beside, m)
+        cell = r.judged.cell("offset", m.speed)
+        shares = _as_far_off(cell.values(q), m, r.seed) if cell else (NAN, NAN)
+        known = m.verdict != paper.TOO_FEW
+        low, high, p = (m.equivalence.interval.low, m.equivalence.interval.high, m.equivalence.p) if known else (NAN, NAN, NAN)
+        average = f"{m.average:.{q.digits}f} ({interval_text(low, high, q.digits)})"
+        also = (mean_text(other.n, other.mean, other.sd, q.digits), str(other.n)) if r.beside else ()
+        r.page.row(f"{m.name} ({q.unit})", f"{m.paper:.3f} ({m.paper_sd:.3f})", mean_text(study.n, study.mean, study.sd, q.digits), str(study.n),
+                   *also, average, m.verdict, p_text(p), *("-" if math.isnan(s) else f"{100 * s:.1f} %" for s in shares))
+        rows.append([q.key, q.unit, m.speed, m.paper, m.paper_sd, study.mean, study.sd, study.n, other.mean, other.sd,
+                     other.n if r.beside else None, m.average, m.people, m.equivalence.interval.low, m.equivalence.interval.high, p, *shares,
+                     m.verdict])
+    r.page.end_table()
+    r.output.table("table1.csv", "metric,unit,speed,paper_mean,paper_sd,study_mean,study_sd,study_n,beside_mean,beside_sd,beside_n,people_mean,"
+                   "people,people_low_90,people_high_90,p_equivalent,mean_as_far_off,sd_as_far_off,verdict", rows)
+
+
+# ---- the paper's sentences ----
+
+
+def _bounds(part: paper.Part) -> str:
+    if math.isinf(part.high):
+        return f"above {part.low:g} {part.unit}"
+    return f"below {part.high:g} {part.unit}" if math.isinf(part.low) else f"{part.low:g} to {part.high:g} {part.unit}"
+
+
+def _print_part(r: Report, part: paper.Part) -> None:
+    both = part.at_low + part.at_high - part.people
+    n = f"{part.people} (low {part.at_low}, high {part.at_high}, both {both})" if part.at_low else str(part.people)
+    r.page.row(part.what, _bounds(part), part.test or "-", n, number_text(part.mean, 3), interval_text(part.interval.low, part.interval.high, 3),
+               number_text(part.d_z, 2), p_text(part.p))
+
+
+def _part_row(number: int, claim: paper.Claim, part: paper.Part) -> List[Text]:
+    bounds = (None if math.isinf(b) else b for b in (part.low, part.high))
+    return [number, harmless(claim.text), harmless(part.what), harmless(part.unit), *bounds, part.people, part.mean, part.interval.low,
+            part.interval.high, part.d_z, part.p, claim.p, claim.holm, claim.verdict, part.test, part.at_low or None, part.at_high or None]
+
+
+def _outcome(r: Report, found: Sequence[paper.Claim]) -> str:
+    r.verdicts.update(c.verdict for c in found)
+    counts = [f"{'of ' if verdict == paper.CONTRARY else ''}{r.verdicts[verdict]} {verdict}"
+              for verdict in (paper.SHOWN, paper.CONTRARY, paper.OPEN, paper.TOO_FEW) if r.verdicts[verdict]]
+    return ", ".join(counts)
+
+
+def claims(r: Report) -> None:
+    if not any(r.judged.cell("offset", speed) for speed in ("low", "high")):
+        return
+    people, m = len(r.judged.people), r.margins
+    found = paper.claims(r.judged, m, r.seed)
+    r.page.heading("claims", "The paper's sentences")
+    r.page.put("<p>Judged by the taps of %s, %d participant%s. A sentence is shown when all its parts are: its p is the largest of theirs, and is "
+               "corrected by Holm for all the sentences of this table, the family. &quot;Not shown&quot; doesn't mean that the contrary holds. "
+               "Smooth and offset are alike when their difference lies within &#177;%g mm (d_max) and &#177;%g and &#177;%g m/s (v_of, v_rmin): "
+               "margins of the study file.</p>\n", r.judged_name, people, plural(people), m.d_max, m.v_of, m.v_rmin)
+    r.page.put("<p>Tests: <em>sign flip</em>, the exact permutation test of people's contrasts; <em>TOST</em>, two one-sided t tests; "
+               "<em>bootstrap</em> of people and their taps, for the threshold; <em>overlap</em>, where fewer than six people have a valid tap in "
+               "all four cells: the strategies' differences of all people who have one at high speed are compared with those of all who have one "
+               "at low speed, by a t test that takes into account who is in both (Derrick and others 2017). It assumes that who lacks a valid tap "
+               "doesn't depend on the difference.</p>\n"
+               "<p>The threshold is the voluntary speed of the hand that parts the taps which touch early from the others with the fewest mistakes, "
+               "under all strategies together; a hand is seldom as fast as it was asked to be. Limits of braking time and offset are held against "
+               "each person's largest valid value, so that a single tap may exceed a limit that is shown. The share of valid taps is the mean of "
+               "the people's shares; the table of valid taps pools all taps, so that those who needed many weigh more there.</p>\n")
+    r.page.put('<p class="note">%s</p>\n', "These participants are simulated: a p value says how sure the simulation's own answer is. More "
+               "participants cost nothing and make any p small; none of them is evidence about people." if r.beside else r.caveat)
+    r.page.put("<p>Of %d sentences: %s.</p>\n", len(found), _outcome(r, found))
+    r.page.table("Sentences of the paper; n, mean and interval of people's contrasts",
+                 ("tested within people", "must be", "test", "n", "mean", "95 %", "d_z", "p"), 3)
+    rows: List[List[Text]] = []
+    for number, claim in enumerate(found, 1):
+        without_p = math.isnan(claim.holm) or claim.verdict == paper.CONTRARY  # p belongs to the sentence, not to its contrary
+        p = "" if without_p else f"; by Holm p {'' if claim.holm < 1e-4 else '= '}{p_text(claim.holm)}"
+        r.page.span(f"{claim.text}: {claim.verdict}{p}", 8)
+        for part in claim.parts:
+            _print_part(r, part)
+            rows.append(_part_row(number, claim, part))
+    r.page.end_table()
+    r.output.table("claims.csv", "claim,text,contrast,unit,from,to,participants,mean,low,high,d_z,p,p_claim,p_holm,verdict,test,people_low,"
+                   "people_high", rows)
+
+
+# ---- strategies within people ----
+
+
+@dataclass
+class _Within:
+    """Two strategies at one speed, or their difference at one speed less that at another."""
+
+    quantity: Quantity
+    a: Cell  #: b - a
+    b: Cell
+    less: Optional[Tuple[Cell, Cell]]  #: less the same two at another speed
+    paired: Paired
+    alike: Equivalence  #: p NaN: no margin is set, or too few people
+    delta: float = NAN  #: Cliff's
+    delta_interval: Interval = Interval()
+    holm: float = NAN
+
+    @property
+    def what(self) -> str:
+        if self.less:
+            return f"({self.b.law} - {self.a.law}): {self.a.speed.word} less {self.less[0].speed.word}"
+        return f"{self.b.law} - {self.a.law}, {self.a.speed.word}"
+
+
+def _within(r: Report, quantity: Quantity, a: Cell, b: Cell, less: Optional[Tuple[Cell, Cell]] = None) -> Optional[_Within]:
+    """None: nobody has taps in all of these cells."""
+    values = r.taps.medians(b, quantity) - r.taps.medians(a, quantity)
+    if less:
+        values = values - (r.taps.medians(less[1], quantity) - r.taps.medians(less[0], quantity))
+    values, margin = values[~np.isnan(values)], r.margins.of(quantity.key)
+    if not len(values):
+        return None
+    tested = len(values) >= FEWEST_PEOPLE and not math.isnan(margin)
+    out = _Within(quantity, a, b, less, compare(values, r.seed), equivalent(values, -margin, margin) if tested else Equivalence())
+    if not less:
+        taps = [(cell.of(quantity), cell.person, side) for side, cell in enumerate((a, b))]
+        value, person = np.concatenate([t[0] for t in taps]), np.concatenate([t[1] for t in taps])
+        side = np.concatenate([np.full(len(t[0]), t[2]) for t in taps])
+        there = ~np.isnan(value)
+        clusters = Clusters(value[there], person[there], side[there])
+        out.delta, out.delta_interval = clusters.here(cliff), clusters.interval(cliff, r.seed)
+    return out
+
+
+def _print_tests(r: Report, tests: Sequence[_Within], caption: str, what: str, with_alike: bool) -> None:
+    header = ("figure", what, "n (> 0)", "mean", "95 %", "unit", "p", "p, Holm", "p, alike" if with_alike else None)
+    r.page.table(caption, header, 2)
+    for w in tests:
+        q, c = w.quantity, w.paired
+        r.page.row(q.title, w.what, f"{c.n} ({c.positive})", number_text(c.mean, q.digits), interval_text(c.interval.low, c.interval.high, q.digits),
+                   q.unit, p_text(c.p), p_text(w.holm), p_text(w.alike.p) if with_alike else None)
+    r.page.end_table()
+    with_delta = with_alike and bool(tests)
+    r.page.table("Effect sizes: d_z of people's differences; Cliff's delta of their taps, -1 to 1" if with_delta
+                 else "Effect sizes: d_z of people's differences of differences",
+                 ("figure", "difference", "d_z", "95 %", *(("Cliff's delta", "95 %") if with_delta else ())), 2)
+    for w in tests:
+        effect, delta = w.paired.effect, w.delta_interval
+        also = (number_text(w.delta, 2), interval_text(delta.low, delta.high, 2)) if with_delta else ()
+        r.page.row(w.quantity.title, w.what, number_text(w.paired.d_z, 2), interval_text(effect.low, effect.high, 2), *also)
+    r.page.end_table()
+
+
+def _test_row(w: _Within) -> List[Text]:
+    c, q = w.paired, w.quantity
+    speeds = (w.a.speed.word, w.less[0].speed.word) if w.less else (w.a.speed.word,)
+    row: List[Text] = [q.key, q.unit, w.a.law, w.b.law, *speeds, c.n, c.positive, c.mean, c.sd, c.interval.low, c.interval.high, c.median, c.p,
+                       w.holm, c.d_z, c.effect.low, c.effect.high]
+    if not w.less:
+        row += [w.delta, w.delta_interval.low, w.delta_interval.high, w.alike.interval.low, w.alike.interval.high, w.alike.p]
+    return row
+
+
+def _corrected(tests: Sequence[Optional[_Within]]) -> List[_Within]:
+    made = [w for w in tests if w]
+    for w, p in zip(made, holm([w.paired.p for w in made])):
+        w.holm = p
+    return made
+
+
+def _pairs_at_one_speed(taps: Taps) -> List[Tuple[Cell, Cell]]:
+    return [(a, b) for a, b in combinations(taps.cells, 2) if a.speed.word == b.speed.word]
+
+
+def pairs(r: Report) -> None:
+    people = len(r.taps.people)
+    r.page.heading("pairs", "Strategies compared within participants")
+    r.page.put('<p class="note">%s', r.caveat)
+    if people < FEWEST_PEOPLE:
+        r.page.put(" <b>No significance is claimed:</b> with %d participant%s the smallest two-sided p is %.3g.", people, plural(people),
+                   min(1, 2 / 2**people))
+    r.page.put("</p>\n")
+    tests = _corrected([_within(r, q, a, b) for q in QUANTITIES.values() for a, b in _pairs_at_one_speed(r.taps)])
+    r.differences, r.significant = len(tests), sum(w.holm < 0.05 for w in tests)
+    _print_tests(r, tests, "Differences of participants' medians. n: participants with both, in brackets those with a difference above 0. Family "
+                 "of Holm's correction: the p of this table. p, alike: equivalence within the study's margin, not corrected", "difference", True)
+    r.output.table("pairs.csv", "metric,unit,transition_a,transition_b,speed,participants,positive,mean_b_minus_a,sd,mean_low,mean_high,median,p,"
+                   "p_holm,d_z,d_z_low,d_z_high,cliff_delta,cliff_low,cliff_high,mean_low_90,mean_high_90,p_equivalent", map(_test_row, tests))
+
+
+def interaction(r: Report) -> None:
+    r.page.heading("interaction", "Does the strategy matter more at higher speed?")
+    r.page.put("<p>The interaction of strategy and speed: each participant's difference between two strategies at one speed, less the same "
+               "difference at a lower speed. It is zero where the speed makes no difference to what the strategy does. %s</p>\n", r.caveat)
+    tests: List[Optional[_Within]] = []
+    for q in QUANTITIES.values():
+        for a, b in _pairs_at_one_speed(r.taps):
+            for low_a in r.taps.cells:
+                low_b = r.taps.cell(b.law, low_a.speed.word)
+                if low_a.law == a.law and low_a.speed.centre < a.speed.centre and low_b:
+                    tests.append(_within(r, q, a, b, (low_a, low_b)))
+    made = _corrected(tests)
+    _print_tests(r, made, "Differences of differences, tested by an exact sign-flip test. Family of Holm's correction: the p of this table",
+                 "difference of differences", False)
+    r.output.table("interaction.csv", "metric,unit,transition_a,transition_b,speed,less_speed,participants,positive,mean,sd,mean_low,mean_high,"
+                   "median,p,p_holm,d_z,d_z_low,d_z_high", map(_test_row, made))

@@ -1,0 +1,162 @@
+"""Reads a study's folder: what it asked for, its tables, and the ticks of its taps.
+
+What its study file, configuration, plant and walls mean, ethd-study says (--describe); nothing here reads them again. The
+folder may be a stranger's: no link in it is followed, and only regular files are read.
+"""
+import csv
+import io
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ethd_programs.cli import FAILED, Refusal, plural
+from ethd_programs.files import opened, there
+from ethd_programs.npy import header
+from ethd_programs.table import words
+
+Ticks = NDArray[Any]  #: a row a tick, with the columns of a recording
+
+
+def study_program() -> str:
+    """The path of ethd-study, which was installed with this program; from a venv, the first one on the PATH."""
+    beside = os.path.join(os.path.dirname(os.path.realpath(sys.argv[0])), "ethd-study")
+    found = beside if os.access(beside, os.X_OK) else shutil.which("ethd-study")
+    if not found:
+        raise Refusal("ethd-study: not found; it reads the study's files: install libethd's programs", FAILED)
+    return found
+
+
+def _said(stderr: str) -> str:
+    """What ethd-study refuses, as a sentence of our own."""
+    return re.sub(r"^ethd-study: ", "", stderr.strip().split("\n")[0])
+
+
+class Table:
+    """A CSV file of words: one header row, cells by name. A table that isn't there has no columns."""
+
+    def __init__(self, path: str, text: Optional[str]):
+        self.path, self._text, self.rows = path, text, 0
+        self.names: List[str] = []
+        if text is None:
+            return
+        if not text:
+            raise Refusal(f"{path}: is empty")
+        if "\0" in text:
+            raise Refusal(f"{path}: a byte 0: this isn't text")
+        lines = self._lines()
+        self.names = next(lines)
+        for self.rows, cells in enumerate(lines, 1):
+            if len(cells) != len(self.names):
+                found = f"{len(cells)} cell{plural(len(cells))}"
+                raise Refusal(f"{path}:{self.rows + 1}: {found}, the header has {len(self.names)}")
+
+    def _lines(self) -> Iterator[List[str]]:
+        reader = csv.reader(io.StringIO(self._text, newline=""), strict=True)
+        number = 0
+        while True:
+            number += 1
+            try:
+                yield next(reader) or [""]
+            except StopIteration:
+                return
+            except csv.Error as e:
+                why = "a quote that isn't closed" if "unexpected end" in str(e) else str(e)
+                raise Refusal(f"{self.path}:{number}: {why}") from None
+
+    def cells(self, *columns: str) -> Iterator[List[str]]:
+        """These cells of each row; "" where a column is missing."""
+        if self._text is None:
+            return
+        at = [self.names.index(name) if name in self.names else -1 for name in columns]
+        lines = self._lines()
+        next(lines)
+        for row in lines:
+            yield ["" if i < 0 else row[i] for i in at]
+
+
+class Folder:
+    """A study: one folder, or several stations' folders, of which the first one says what it asked for."""
+
+    def __init__(self, folders: Sequence[str], plugins: bool, scratch: str):
+        """scratch: a folder that isn't there yet, for what ethd-study says."""
+        self.folders, self._scratch = folders, scratch
+        command = [study_program(), "--describe", *map(_path, folders), "--out", scratch] + ["--plugins"] * plugins
+        told = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, errors="replace", check=False)
+        if told.returncode:
+            raise Refusal(_said(told.stderr), told.returncode if told.returncode > 0 else FAILED)
+        self.facts: Dict[str, Any] = json.loads(words(os.path.join(scratch, "study.json")))
+        self.name = str(self.facts["name"])
+
+    def table(self, name: str) -> Table:
+        """Of one folder as it stands there; of several, as ethd-study --merge would make it."""
+        file = f"{name}.csv"
+        path, source = os.path.join(self.folders[0], file), self.folders[0] if len(self.folders) == 1 else self._scratch
+        try:
+            return Table(path, words(os.path.join(source, file)) if there(source, file) else None)
+        except (OSError, ValueError) as e:
+            raise _refusal(e) from None
+
+    def encounter(self, law: str) -> Optional[str]:
+        """The table of a simulated encounter under this strategy; None: the study doesn't have it."""
+        name = f"encounter-{law}.csv"
+        return words(os.path.join(self._scratch, name)) if there(self._scratch, name) else None
+
+    # ---- recordings: taps/P01-03-004, of worker i of n of a simulation taps-i-of-n/0-P01-03-004 ----
+
+    def recordings(self) -> List[str]:
+        """The folders that hold ticks of taps; there may be none."""
+        found = []
+        for folder in self.folders:
+            names = sorted(n for n in os.listdir(folder) if n == "taps" or re.fullmatch(r"taps-[0-9]+-of-[0-9]+", n))
+            found += [os.path.join(folder, n) for n in names]
+        return found
+
+    def ticks(self, recording: str, file: str, columns: Sequence[str]) -> Ticks:
+        """tick.npy or truth.npy of a tap's recording."""
+        folder = next(f for f in self.folders if recording.startswith(os.path.join(f, "")))
+        path = os.path.join(recording, file)
+        names = os.path.relpath(path, folder).split(os.sep)
+        try:
+            with opened(folder, *names) as stream:
+                h = header(stream)
+                if len(h.shape) != 1 or not set(columns) <= set(h.dtype.names or ()):
+                    raise ValueError("other columns than those of this version of libethd")
+                if h.data + h.shape[0] * h.dtype.itemsize > os.fstat(stream.fileno()).st_size:
+                    raise ValueError(f"cut short: its header counts {h.shape[0]} rows")
+                rows: Ticks = np.fromfile(stream, h.dtype, h.shape[0])
+                return rows
+        except OSError as e:
+            raise _refusal(e) from None
+        except (ValueError, EOFError, OverflowError, MemoryError) as e:
+            raise Refusal(str(e) if path in str(e) else f"{path}: {e}", FAILED) from None
+
+
+def check_sums(folders: Sequence[str]) -> Tuple[int, str]:
+    """(files of all folders, what is wrong with the first folder that isn't as its SHA256SUMS says, else "")."""
+    files = 0
+    for folder in folders:
+        command = [study_program(), "--verify", _path(folder)]
+        told = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, errors="replace", check=False)
+        if told.returncode:
+            said = _said(told.stderr)
+            return files, said[len(_path(folder)) :].lstrip("/: ") if said.startswith(_path(folder)) else said
+        files += int(told.stdout.rsplit(": ", 1)[1].split(" ")[0])
+    return files, ""
+
+
+def _path(folder: str) -> str:
+    """A folder's name that no program takes for an option."""
+    return f"./{folder}" if folder.startswith("-") else folder
+
+
+def _refusal(e: Exception) -> Refusal:
+    if isinstance(e, OSError):
+        return Refusal(f"{e.filename}: {e.strerror}")
+    return Refusal(str(e))

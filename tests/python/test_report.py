@@ -1,0 +1,206 @@
+"""Parts of ethd-report that its tables can't show: the dip, exact tests against every case, what is escaped and refused."""
+import csv
+import io
+import itertools
+import math
+import os
+
+import pytest
+
+np = pytest.importorskip("numpy")
+pytest.importorskip("scipy")
+from scipy import optimize  # noqa: E402
+
+from ethd_programs.cli import Refusal  # noqa: E402
+from ethd_programs.report import statistics as st  # noqa: E402
+from ethd_programs.report.claims import threshold  # noqa: E402
+from ethd_programs.report.coverage import simulate  # noqa: E402
+from ethd_programs.report.output import ReportFolder, cell_text, harmless  # noqa: E402
+from ethd_programs.report.page import Page  # noqa: E402
+from ethd_programs.report.pictures import _path, _string  # noqa: E402
+from ethd_programs.report.study import Table  # noqa: E402
+from ethd_programs.report.taps import _Reader  # noqa: E402
+
+
+def slow_dip(x):
+    """By linear programming: of all distribution functions with a mode at value k the nearest one; k takes each value."""
+    n, best = len(x), 1.0
+    for k in range(n):  # g: at x[0] .. x[k - 1], just before x[k], at x[k] .. x[n - 1]; then the distance
+        rows, bounds = [], []
+
+        def at_most(bound, **terms):
+            row = np.zeros(n + 2)
+            for name, value in terms.items():
+                row[int(name[1:])] += value
+            rows.append(row)
+            bounds.append(bound)
+
+        d = f"g{n + 1}"
+        for i in range(n + 1):
+            g = f"g{i}"
+            after, before = (i + 1, i) if i < k else (None, k) if i == k else (i, i - 1)
+            at_most(before / n, **{g: 1, d: -1})
+            if after is not None:
+                at_most(-after / n, **{g: -1, d: -1})
+            if i:
+                at_most(0, **{f"g{i - 1}": 1, g: -1})
+        for first, last, sign in ((0, k, 1), (k, n - 1, -1)):  # convex before the mode, concave behind it
+            for i in range(first + 1, last):
+                a, b, c = (f"g{j + (sign < 0)}" for j in (i - 1, i, i + 1))
+                h, g = x[i] - x[i - 1], x[i + 1] - x[i]
+                at_most(0, **{a: -sign / h, b: sign * (1 / h + 1 / g), c: -sign / g})
+        cost = np.zeros(n + 2)
+        cost[-1] = 1
+        found = optimize.linprog(cost, A_ub=np.array(rows), b_ub=bounds, bounds=(0, 1), method="highs")
+        best = min(best, found.fun) if found.status == 0 else best
+    return best
+
+
+def test_dip_is_the_distance_to_the_nearest_distribution_with_one_mode():
+    rng = np.random.default_rng(1)
+    for n in (4, 8, 13, 20):
+        x = np.sort(rng.normal(size=n) + 3 * (rng.random(n) < 0.5))
+        assert st.dip(x) == pytest.approx(slow_dip(x), abs=1e-9)
+    assert st.dip(np.array([1.0, 1, 1])) == pytest.approx(1 / 6)
+    assert math.isnan(st.dip(np.array([])))
+    assert st.dip(np.repeat([0.0, 1.0], 50)) == pytest.approx(0.25, abs=1e-3)
+
+
+def test_quantiles_of_the_dip_are_those_of_uniform_samples():
+    rng = np.random.default_rng(2)
+    for n in (11, 40, 300):
+        p = np.array([st.dip_share(st.dip(np.sort(rng.random(n))), n) for _ in range(400)])
+        for share in (0.1, 0.5, 0.9):  # five standard deviations
+            assert abs(np.mean(p <= share) - share) < 5 * math.sqrt(share * (1 - share) / 400)
+    assert math.isnan(st.dip_share(0.1, 7)) and st.dip_share(0.25, 100) == 1e-4
+
+
+def test_equal_values_are_spread_over_their_step():
+    assert st.spread(np.array([3.0, 2, 3]), 1).tolist() == pytest.approx([2, 2.75, 3.25])
+
+
+def test_wilcoxon_tries_all_signs():
+    for x in ([1.0, -2, 3, 0, 3, -1], [0.0, 0, 1, 1, 1, -1, 2], [2.0, 4, 6]):
+        x = np.array(x)
+        from scipy.stats import rankdata
+
+        ranks = rankdata(np.abs(x))[x != 0]
+        sums = [np.dot(signs, ranks) for signs in itertools.product((0, 1), repeat=len(ranks))]
+        here = ranks[x[x != 0] > 0].sum()
+        p = min(1, 2 * min(np.mean([s <= here + 1e-9 for s in sums]), np.mean([s >= here - 1e-9 for s in sums])))
+        assert st.wilcoxon(x)[1] == pytest.approx(p, abs=1e-12)
+    assert math.isnan(st.wilcoxon(np.zeros(8))[1])
+    assert st.wilcoxon(np.arange(1.0, 251))[1] < 1e-30
+
+
+def test_sign_flip_of_many_people_is_drawn_near_the_exact_one():
+    x = np.random.default_rng(3).normal(0.35, 1, 17)
+    sums = np.zeros(1)
+    for v in x:
+        sums = np.concatenate((sums - v, sums + v))
+    exact = np.mean(np.abs(sums) >= abs(x.sum()) - 1e-12)
+    assert abs(st.sign_flip(x, 1) - exact) < 5 * math.sqrt(exact * (1 - exact) / 20000) + 1e-4
+    assert st.sign_flip(np.ones(6), 1) == pytest.approx(2 / 64)
+
+
+def test_holm_keeps_what_was_not_made():
+    assert st.holm([0.01, math.nan, 0.04, 0.03])[:1] == [0.03] and math.isnan(st.holm([0.01, math.nan])[1])
+    assert st.holm([0.01, 0.04, 0.03]) == pytest.approx([0.03, 0.06, 0.06])
+    assert st.holm([]) == []
+
+
+def test_bootstrap_draws_people_then_their_taps():
+    value, person = np.array([1.0, 2, 3, 10, 20, 30]), np.array([0, 0, 0, 1, 2, 2])
+    clusters = st.Clusters(value, person, np.zeros(6, int))
+    weight = clusters._weights(np.random.default_rng(1), 20000)
+    # each person is drawn once on average, and in a draw as often as the taps say
+    assert weight.mean(axis=0) == pytest.approx(np.ones(6), abs=0.03)
+    assert set(np.unique(weight[:, 3])) == {0, 1, 2, 3} and np.all(weight[:, :3].sum(axis=1) % 3 == 0)
+    three = weight[:, 3] == 3
+    assert np.mean(three) == pytest.approx(1 / 27, abs=0.006) and np.all(weight[three][:, [0, 1, 2, 4, 5]] == 0)
+    assert math.isnan(clusters.interval(st.median, 1).low)  # too few people
+    assert clusters.here(st.median) == 6.5
+
+
+def test_figures_of_weighted_taps():
+    clusters = st.Clusters(np.array([1.0, 1, 2, 3]), np.array([0, 1, 0, 1]), np.array([0, 1, 1, 0]))
+    weight = np.array([[1, 1, 1, 1], [2, 0, 3, 1], [1, 0, 0, 1]], np.int32)
+    assert st.median(clusters, weight).tolist() == [1.5, 2, 2]
+    found = st.cliff(clusters, weight)
+    assert found[:2].tolist() == pytest.approx([(1 - 2) / 4, (2 * 3 - 3) / 9]) and math.isnan(found[2])
+    early = st.Clusters(np.array([0.3, 0.4, 0.5, 0.6]), np.zeros(4, int), np.array([0, 0, 1, 1]))
+    found = threshold(early, np.array([[1, 1, 1, 1], [1, 0, 0, 1], [1, 1, 0, 0]], np.int32))
+    assert found[:2].tolist() == pytest.approx([0.45, 0.45]) and math.isnan(found[2])
+
+
+def test_intervals_hold_the_truth_about_as_often_as_they_say():
+    c = simulate(6, 300, 1)
+    for share, known in ((c.mean, 0.954), (c.effect, 0.955), (c.median, 0.946), (c.cliff, 0.960)):
+        assert abs(share - known) < 5 * math.sqrt(known * (1 - known) / 300)
+
+
+def test_equivalence_without_spread():
+    assert st.equivalent(np.zeros(6), -1, 1).p == 0 and st.equivalent(np.full(6, 2.0), -1, 1).p == 1
+    assert st.equivalent(np.full(6, 2.0), -1, 1).outside and math.isnan(st.equivalent(np.zeros(1), -1, 1).p)
+
+
+# ---- words ----
+
+
+def test_text_of_a_stranger_is_no_markup():
+    page = Page()
+    page.heading("x", '<script>"&\'')
+    page.table("a & b", ("<i>", None), 1)
+    page.row("\x1b[0m", "100 %")
+    page.put("<p>%s at %d %%</p>", "%d", 3)
+    text = page.whole("<t>").decode()
+    assert "<script>" not in text and "&lt;script&gt;&quot;&amp;&#39;" in text and "\x1b" not in text and "<t>" not in text
+    assert "<p>%d at 3 %</p>" in text and text.endswith("</html>\n")
+
+
+def test_cells():
+    for cell, text in ((math.nan, ""), (None, ""), (2.0, "2.0"), (2, "2"), (1e-9, "1e-09"), ("a\nb", "a b"), ('say "x"', '"say ""x"""'), ("a,b", '"a,b"')):
+        assert cell_text(cell) == text
+    assert [harmless(w) for w in ("=1+1", "-3.5e2", "@x", "a", "")] == ["'=1+1", "-3.5e2", "'@x", "a", ""]
+
+
+def test_gnuplot_gets_strings():
+    assert _string("a'; system('x'); b\n") == "'a''; system(''x''); b '" and _path("<x") == "'./<x'" and _path("/x") == "'/x'"
+
+
+def test_tables_of_a_stranger():
+    assert list(Table("x", 'a,b\n1,"p, ""q"""\r\n').cells("b", "c")) == [['p, "q"', ""]]
+    assert list(Table("x", None).cells("a")) == [] and Table("x", None).names == []
+    for text, what in (("", "is empty"), ("a,b\n1\n", "x:2: 1 cell, the header has 2"), ('a\n"1\n', "x:2: a quote that isn't closed"), ("a\n\0\n", "a byte 0")):
+        with pytest.raises(Refusal, match=what):
+            Table("x", text)
+
+
+def test_numbers_and_words_of_a_stranger():
+    reader = _Reader(Table("taps.csv", "a\n1\n"), {}, set())
+    assert reader.number(0, "a", "-1.5e3") == -1500 and math.isnan(reader.number(0, "a", ""))
+    for cell in ("x", "1_0", "0x1", " 1", "inf", "1e"):
+        with pytest.raises(Refusal, match="taps.csv:2: a: found"):
+            reader.number(0, "a", cell)
+    for point in ("-1", "x", "1e9"):
+        with pytest.raises(Refusal, match="a point of the grid"):
+            reader.point(0, point)
+    for speed in ("fast", "3", "nan"):
+        with pytest.raises(Refusal, match="low, high or a number"):
+            reader.speed(0, speed)
+
+
+def test_a_folder_is_written_by_one_program(tmp_path):
+    out = str(tmp_path / "report")
+    with ReportFolder(out, ("*.csv",), False, None) as folder:
+        folder.table("a.csv", "x,y", [[1, math.nan], ["p", 2.5]])
+        with pytest.raises(Refusal, match="another program is writing there"):
+            ReportFolder(out, ("*.csv",), True, None)
+    assert list(csv.reader(io.StringIO((tmp_path / "report/a.csv").read_text()))) == [["x", "y"], ["1", ""], ["p", "2.5"]]
+    assert os.listdir(out) == ["a.csv"]
+    with pytest.raises(Refusal, match="holds a.csv already; --force"):
+        ReportFolder(out, ("*.csv",), False, None)
+    os.symlink("/dev/null", f"{out}/b.csv")
+    with pytest.raises(Refusal, match="b.csv: isn't a file; remove it first"):
+        ReportFolder(out, ("*.csv",), True, str(tmp_path))
+    assert "b.csv" in os.listdir(out)
