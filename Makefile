@@ -224,7 +224,7 @@ WHOLE := -Wl,--whole-archive $(B)/libethd-drivers.a $(B)/libethd.a -Wl,--no-whol
 # Only the study has a window, and the tests of what is drawn into it.
 $(B)/bin/ethd-study $(B)/tests/test_shapes $(B)/tests/test_pages: LIBS += -lSDL2_ttf -lSDL2
 # Only the study has a database, which reports of several stations and its tests read too.
-$(B)/bin/ethd-study $(B)/bin/ethd-report $(B)/bin/ethd-bench $(B)/tests/test_study $(B)/tests/test_store: LIBS += -lsqlite3
+$(B)/bin/ethd-study $(B)/bin/ethd-report $(B)/tests/test_study $(B)/tests/test_store: LIBS += -lsqlite3
 # Only identification fits.
 $(B)/bin/ethd-identify: LIBS += -lcminpack
 $(C_PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES)
@@ -347,7 +347,7 @@ bench bench-quick: $(B)/tests/bench $(PEERS) $(SHARE)
 
 # The long ones: minutes.
 stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/test_fuzz_decoder \
-  $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study $(B)/tests/test_servo_driver \
+  $(B)/tests/test_ring_noise $(B)/tests/test_ring_driver $(B)/tests/test_study $(B)/tests/test_store $(B)/tests/test_servo_driver \
   $(B)/tests/test_fuzz_map $(B)/tests/test_promises $(B)/tests/test_servo_guardian $(B)/tests/test_servo_link $(B)/tests/test_hostile \
   $(B)/tests/volume $(B)/tests/day $(B)/tests/stress
 	ETHD_SCENE_QUERIES=1000000 ETHD_SCENE_OBJECTS=10000000 $(B)/tests/test_scene_tree
@@ -362,6 +362,7 @@ stress: all $(B)/tests/test_scene_tree $(B)/tests/test_scene_parse $(B)/tests/te
 	ETHD_RING_FRAMES=20000000 $(B)/tests/test_ring_noise
 	ETHD_REPLUGS=100 $(B)/tests/test_ring_driver
 	ETHD_FUZZ=1000000 $(B)/tests/test_study
+	ETHD_FUZZ=50000 $(B)/tests/test_store
 	@BUILD='$(abspath $(B))' CC='$(CC)' SAN='$(SAN)' ETHD_STUDY_KILLS=50 sh tests/study.sh
 	@BUILD='$(abspath $(B))' PYTHON='$(PYTHON)' SAN='$(SAN)' ETHD_STUDY_WHOLE=1 sh tests/study_whole.sh
 	@ETHD_MODELS=large sh tests/models.sh

@@ -369,7 +369,7 @@ END_TEST
 int main(void) {
   Suite *suite = suite_create("store");
   TCase *all = tcase_create("all");
-  tcase_set_timeout(all, 300);
+  tcase_set_timeout(all, 600);
   tcase_add_checked_fixture(all, setup, teardown);
   tcase_add_test(all, test_a_tap_comes_back);
   tcase_add_test(all, test_every_word_may_be_put);
