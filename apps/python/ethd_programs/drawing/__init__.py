@@ -15,7 +15,7 @@ Example:
 _METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
 
 
-def _number(parser: Parser, option: str, text: Optional[str], least: float) -> Optional[float]:
+def _number(option: str, text: Optional[str], least: float) -> Optional[float]:
     if text is None:
         return None
     plain = re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", text)
@@ -50,9 +50,9 @@ def _main(arguments: Sequence[str]) -> int:
         raise Refusal(f"--origin: found {quoted(o.origin)}, X,Y is allowed")
     if o.plot is not None and os.path.exists(o.out) and os.path.exists(o.plot) and os.path.samefile(o.out, o.plot):
         raise Refusal(f"--plot: {o.plot} is the file of --out, too; another name is needed")
-    origin = tuple(_number(parser, "--origin", word, -1e6) or 0.0 for word in places)
-    tolerance = _number(parser, "--tolerance", o.tolerance, 1e-9)
-    scale = _number(parser, "--scale", o.scale, 1e-9)
+    origin = tuple(_number("--origin", word, -1e6) or 0.0 for word in places)
+    tolerance = _number("--tolerance", o.tolerance, 1e-9)
+    scale = _number("--scale", o.scale, 1e-9)
     try:
         return _convert(o.drawing, o.out, o.plot, dict(tolerance=tolerance or 1e-5, scale=scale, origin=origin, page=o.page, units=o.units))
     except ModuleNotFoundError as e:

@@ -66,7 +66,7 @@ def _curve(p: Points, tolerance: float) -> Points:
         n = _edges(math.sqrt(6 * second / (8 * tolerance)))
         t = np.arange(1, n)[:, None] / n
         inner = (1 - t) ** 3 * p[0] + 3 * (1 - t) ** 2 * t * p[1] + 3 * (1 - t) * t**2 * p[2] + t**3 * p[3]
-    return np.vstack([inner, p[3:]])
+    return np.asarray(np.vstack([inner, p[3:]]))
 
 
 def points_of(part: Part, tolerance: float) -> Points:
@@ -80,7 +80,7 @@ def points_of(part: Part, tolerance: float) -> Points:
     points = points[np.concatenate([[True], apart])]
     while part.closed and len(points) > 1 and np.abs(points[0] - points[-1]).max() <= SAME:
         points = points[:-1]
-    return points
+    return np.asarray(points)
 
 
 def circle_of(part: Part) -> Optional[Tuple[Points, float]]:

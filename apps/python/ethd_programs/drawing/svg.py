@@ -29,8 +29,8 @@ class Options(NamedTuple):
     tolerance: float = 1e-5  #: m
     scale: Optional[float] = None  #: m per user unit; None: what the drawing says
     origin: Tuple[float, float] = (0.0, 0.0)  #: m: of the page's lower left corner
-    page: Optional[str] = None  #: what a filled shape that covers the page is: solid or background
-    units: Optional[str] = None
+    page: Optional[str] = None  #: SVG: what a filled shape that covers the page is: solid or background
+    units: Optional[str] = None  #: DXF: a name of its unit; None: what the file says
 
 
 class Page(NamedTuple):
@@ -38,7 +38,6 @@ class Page(NamedTuple):
     height: float
     unit: float  #: px per user unit
     metres: float  #: per px
-    said: bool  #: the drawing has a width or a height
 
 
 # ---- the source ----
@@ -108,8 +107,14 @@ def _refuse_transparent(path: str, root: Any) -> None:
         found = re.search(r"stop-opacity\s*:\s*([^;]+)", e.get("style") or "")
         opacity = (found.group(1) if found else e.get("stop-opacity") or "1").strip()
         colour = f"{e.get('style') or ''} {e.get('stop-color') or ''}"
-        if opacity.startswith(("0", ".")) and opacity not in ("0.99", "0.999") or "transparent" in colour:
+        if _share(opacity) < 1 or "transparent" in colour:
             raise Refusal(f"{path}: a gradient that is transparent somewhere has no edge there; fill the shape with a colour")
+
+
+def _share(text: str) -> float:
+    """An opacity, 1 where it is none."""
+    found = re.fullmatch(r"(\d+\.?\d*|\.\d+)(%?)", text.strip())
+    return float(found.group(1)) / (100 if found.group(2) else 1) if found else 1.0
 
 
 def _leave_out(root: Any) -> Counter[str]:
@@ -181,7 +186,7 @@ def _page(path: str, root: Any, options: Options) -> Page:
     if options.scale is None:
         _refuse_doubtful(path, root, said, size)
     metres = _METRES if options.scale is None else options.scale / unit
-    return Page(width, height, unit, metres, said)
+    return Page(width, height, unit, metres)
 
 
 def _refuse_doubtful(path: str, root: Any, said: bool, size: List[Optional[str]]) -> None:
@@ -265,7 +270,9 @@ def _parts(data: str, m: Any) -> List[Part]:
 
     while at < len(tokens):
         command = tokens[at]
-        count = {"M": 2, "L": 2, "C": 6, "Z": 0, "H": 1, "V": 1}[command]
+        count = {"M": 2, "L": 2, "C": 6, "Z": 0}.get(command)
+        if count is None:
+            raise Refusal(f"rsvg-convert writes {quoted(command)} in a path, which isn't known here", FAILED)
         numbers = tokens[at + 1 : at + 1 + count]
         at += 1 + count
         if command == "Z":
@@ -273,10 +280,6 @@ def _parts(data: str, m: Any) -> List[Part]:
         elif command == "M":
             end(False)
             start = put(numbers)[0]
-        elif command in "HV":
-            last = pieces[-1][-1] if pieces else start
-            back = np.linalg.solve(m, np.append(last, 1))[:2]
-            pieces.append(put([numbers[0], back[1]] if command == "H" else [back[0], numbers[0]]))
         else:
             pieces.append(put(numbers))
     end(False)
@@ -293,7 +296,7 @@ class _Reader:
 
     def walk(self, e: Any, m: Any, clip: Any) -> Iterator[Drawn]:
         name = _local(e)
-        if name in ("defs", "clipPath", "mask", "filter", "symbol", "linearGradient", "radialGradient", "pattern", "style") and name != "symbol":
+        if name not in ("svg", "g", "symbol", "use", "image", "path", "rect"):
             return
         m = m @ _matrix(e.get("transform"))
         clip = self._clipped(e, m, clip)
@@ -307,7 +310,7 @@ class _Reader:
                 yield from self.walk(of, m, clip)
         elif name == "image":
             self.images += 1
-        elif name in ("path", "rect"):
+        else:
             yield self._path(e, m, clip)
 
     def _clipped(self, e: Any, m: Any, clip: Any) -> Any:
@@ -325,7 +328,7 @@ class _Reader:
     def _path(self, e: Any, m: Any, clip: Any) -> Drawn:
         def seen(name: str, otherwise: str) -> Optional[str]:
             paint = _property(e, name) or otherwise
-            if paint == "none" or float((_property(e, name + "-opacity") or "1").rstrip("%")) <= 0:
+            if paint == "none" or _share(_property(e, name + "-opacity") or "1") <= 0:
                 return None
             found = re.match(r"rgba\(.*,\s*0(\.0*)?\)", paint)
             return None if found else paint
