@@ -223,8 +223,8 @@ WHOLE := -Wl,--whole-archive $(B)/libethd-drivers.a $(B)/libethd.a -Wl,--no-whol
 
 # Only the study has a window, and the tests of what is drawn into it.
 $(B)/bin/ethd-study $(B)/tests/test_shapes $(B)/tests/test_pages: LIBS += -lSDL2_ttf -lSDL2
-# Only the study has a database, which reports of several stations and its tests read too.
-$(B)/bin/ethd-study $(B)/bin/ethd-report $(B)/tests/test_study $(B)/tests/test_store: LIBS += -lsqlite3
+# Only the study has a database, and the tests of it.
+$(B)/bin/ethd-study $(B)/tests/test_study $(B)/tests/test_store: LIBS += -lsqlite3
 # Only identification fits.
 $(B)/bin/ethd-identify: LIBS += -lcminpack
 $(C_PROGRAMS): $(B)/bin/%: $(B)/obj/apps/%.o $(ARCHIVES)

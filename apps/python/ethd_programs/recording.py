@@ -12,7 +12,7 @@ from ethd_programs.files import opened, reason, there
 from ethd_programs.npy import header
 from ethd_programs.table import lines
 
-FILES = ("tick.npy", "config.ini", "scene.scene", "events.csv", "truth.npy", "snapshot.npy", "taps.csv", "tap.csv")
+FILES = ("tick.npy", "config.ini", "scene.scene", "events.csv", "truth.npy", "snapshot.npy", "taps.csv")
 PIECE = 4096  #: rows that are read at once
 
 
