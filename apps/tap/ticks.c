@@ -90,33 +90,3 @@ ethd_status ethd__ticks_close(ethd__ticks *ticks, char message[ETHD_MESSAGE_MAX]
   *ticks = (ethd__ticks){0};
   return status;
 }
-
-/* ---- reading ---- */
-
-static ethd_status read_npy(const char *folder, const char *name, const ethd_column *columns, size_t bytes, void **rows,
-                            size_t *count, char *message) {
-  char *path;
-  ethd_status status = in_folder(folder, name, &path, message);
-  if (!status) status = ethd_npy_read(path, columns, bytes, rows, count, message);
-  free(path);
-  return status;
-}
-
-ethd_status ethd__ticks_read(const char *folder, ethd__tap_rows *out, char message[ETHD_MESSAGE_MAX]) {
-  void *trace = NULL, *truth = NULL;
-  size_t count = 0, truths = 0;
-  *out = (ethd__tap_rows){0};
-  ethd_status status =
-      read_npy(folder, ETHD_RECORDING_TICK, ethd_trace_columns, sizeof(ethd_trace), &trace, &count, message);
-  if (!status) status = read_npy(folder, TRUTH, ethd__truth_columns, sizeof(ethd_truth), &truth, &truths, message);
-  if (!status && count != truths)
-    status = ethd__say(message, ETHD_E_SYNTAX, "%s: %zu rows in %s, %zu in %s; the same number is allowed", folder,
-                       count, ETHD_RECORDING_TICK, truths, TRUTH);
-  if (!status) {
-    *out = (ethd__tap_rows){trace, truth, count, count};
-    return ETHD_OK;
-  }
-  free(trace);
-  free(truth);
-  return status;
-}

@@ -31,7 +31,4 @@ ETHD_MUST_CHECK ethd_status ethd__ticks_tap(ethd__ticks *ticks, const char *word
 /* Closes the files; one without a recording may be closed too. */
 ETHD_MUST_CHECK ethd_status ethd__ticks_close(ethd__ticks *ticks, char message[ETHD_MESSAGE_MAX]);
 
-/* Reads both files of a folder into rows, which ethd__tap_rows_free frees. */
-ETHD_MUST_CHECK ethd_status ethd__ticks_read(const char *folder, ethd__tap_rows *out, char message[ETHD_MESSAGE_MAX]);
-
 #endif
