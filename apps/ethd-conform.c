@@ -8,7 +8,8 @@
 static const char doc[] =
     "Puts the driver of a configuration's device to the test at its own boundary: opening and closing, zero torque, "
     "signs, counts, limits, the watchdog, the safe state.\v"
-    "Only with --move does the device move: each joint is pushed, for 0.15 s at most. Keep clear of it, with the "
+    "Only with --move does the device move: each joint is pushed for 0.15 s, or longer on a bus with over 6 ms between "
+    "samples. Keep clear of it, with the "
     "emergency stop at hand. Ctrl-C, SIGTERM or SIGHUP makes the device safe and ends the questions.\n\n"
     "--probe measures the bus to a servo drive by its register map instead: it connects, identifies, writes zero "
     "torque and reads, as fast as the bus goes, and says which rate it can hold. Only --try-watchdog enables the "
@@ -20,8 +21,8 @@ static const char doc[] =
     "  ethd-conform --probe plant.map --port 127.0.0.1:1502 --duration 10\n"
     "A driver of your own: [device] driver = file:mine.so, or ethd_conform of ethd/conform.h in a program that links "
     "it. "
-    "Without --config the simulated device is asked; there the ring moves at zero torque, because its finger pushes "
-    "it.";
+    "Without --config the simulated device is tested. Its ring moves even at zero torque, because the simulated finger "
+    "pushes it.";
 
 enum { OPTION_PROBE = 256, OPTION_PORT, OPTION_PERIOD, OPTION_DURATION, OPTION_WATCHDOG, OPTION_BY_HAND };
 

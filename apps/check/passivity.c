@@ -36,7 +36,7 @@ int ethd__report_passivity(const ethd__subject *s) {
   return 0;
 }
 
-/* The estimator's largest answer to one count of a ring that stood still. */
+/* Returns the largest speed that the estimator gives after a ring at rest moves by one encoder count. */
 static double answer(const ethd_setup *setup, double count) {
   ethd_velocity velocity;
   ethd_velocity_state state;

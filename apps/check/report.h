@@ -29,8 +29,9 @@ typedef struct ethd__subject {
    asked. */
 void ethd__report_drivers(const ethd_config *config, const ethd_driver *driver, void *device, bool is_open);
 
-/* Gives a delay that nobody says: the spacing of the samples of a device that is open, else the longest spacing that the
-   setup's limits allow; `figures` tells which. Nothing is enabled. */
+/* Sets the delay that no option, driver or plant gives. Of an open device it measures the longest spacing of samples.
+   Otherwise, or if too few samples come, it takes the longest spacing that the limits allow. `figures` tells which.
+   Nothing is enabled. */
 void ethd__find_delay(const ethd_setup *setup, const ethd_driver *driver, void *device, bool is_open,
                       ethd__figures *figures);
 

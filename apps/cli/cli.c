@@ -26,8 +26,8 @@
 
 void ethd__flush_denormals(void) { (void)ethd__denormals_flush(); }
 
-/* Keeps numbers 0 to 2 from files of ours, into which standard output would go then. What stands there is closed to all
-   reading and writing. */
+/* Opens / on each of the descriptors 0 to 2 that is closed. Otherwise a file of ours could get number 1, and standard
+   output would go into it. O_PATH allows neither reading nor writing. */
 static void keep_streams(void) {
   for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
     if (fcntl(fd, F_GETFD) < 0) (void)!open("/", O_PATH | O_CLOEXEC);

@@ -17,7 +17,8 @@
 
 #define LEFT 10 /* s that what the program leaves behind has, at most */
 
-/* All but what a program does to itself, and SIGCONT. What stops a job is the program's to obey or not. */
+/* All signals but SIGCONT and those that a program raises by its own error. Signals that stop a job are passed on, too:
+   the program decides whether it stops. */
 static sigset_t passed_on(void) {
   static const int own[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS, SIGCONT};
   sigset_t set;

@@ -32,7 +32,9 @@ static void refuse(int number) {
   was_refused = 1;
 }
 
-/* What a device's stop needs isn't interrupted: there a call goes on after `ask`. A signal that is ignored when the program starts stays ignored: that is how nohup, and a script's &, ask for it. */
+/* Only `stop` and `wake` interrupt a system call that waits. The other handlers restart it (SA_RESTART), so that
+   no signal interrupts the calls that stop a device. A signal that is ignored at the program's start stays ignored:
+   nohup, and a script's &, rely on that. */
 static void catch (void (*handler)(int), int number) {
   struct sigaction action = {.sa_handler = handler}, before;
   if (handler != stop && handler != wake) action.sa_flags = SA_RESTART;

@@ -1,5 +1,6 @@
-/* The streams of a program. Control characters are kept from terminals, which obey sequences of them: names of files,
-   and words of files and plugins, may hold some. And nobody who doesn't read holds up a program that moves a device. */
+/* Standard output and standard error. A terminal obeys control sequences, and names or words from files and plugins may
+   contain them, so control characters are not sent to a terminal. A reader that doesn't read never blocks a program
+   that moves a device. */
 #ifndef ETHD__APPS_CLI_TERMINAL_H
 #define ETHD__APPS_CLI_TERMINAL_H
 

@@ -9,9 +9,9 @@
 
 #define STACK ((size_t)128 << 10)
 #define PIECE 4096    /* bytes: a pipe that poll calls ready takes so many at once */
-#define LOOK 1000000  /* ns between two looks at the end, */
-#define UNREAD 300    /* of which there are so many while nobody reads, */
-#define PATIENCE 5000 /* and so many at all */
+#define LOOK 1000000  /* ns between two checks in ethd__writer_end */
+#define UNREAD 300    /* checks in a row at which the descriptor isn't writable: then it gives up */
+#define PATIENCE 5000 /* checks at most */
 
 static size_t least(size_t a, size_t b) { return a < b ? a : b; }
 

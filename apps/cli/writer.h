@@ -1,5 +1,5 @@
-/* A thread that writes what a program says. Whoever reads too slowly, or not at all, then holds up nobody: what finds no
-   room is dropped and counted. */
+/* A thread that writes a program's output. A slow or absent reader blocks only this thread. A text that doesn't fit
+   into the buffer is dropped, and its bytes are counted. */
 #ifndef ETHD__APPS_CLI_WRITER_H
 #define ETHD__APPS_CLI_WRITER_H
 

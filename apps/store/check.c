@@ -129,7 +129,7 @@ static ethd_status check_schema(ethd__study_store *s, char *message) {
   return status;
 }
 
-/* integrity_check, as quick_check lets an index say what its table doesn't. */
+/* Uses integrity_check, because quick_check doesn't compare an index with its table. */
 static ethd_status check_content(ethd__study_store *s, char *message) {
   static const char *const queries[] = {
       "SELECT * FROM pragma_integrity_check(1) WHERE integrity_check <> 'ok'",

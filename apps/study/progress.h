@@ -39,7 +39,7 @@ typedef struct ethd__said {
 ETHD_MUST_CHECK ethd_status ethd__said_of(ethd__study_store *store, uint32_t person, size_t block, ethd__said *out,
                                           char message[ETHD_MESSAGE_MAX]);
 
-/* Gives whose hands taps are led by: of a session one, of several stations each. */
+/* Fills `out` with the hand sources in the store. A session has one source; merged stations can have several. */
 ETHD_MUST_CHECK ethd_status ethd__hands_of(ethd__study_store *store, bool out[ETHD_HAND_SOURCES],
                                            char message[ETHD_MESSAGE_MAX]);
 

@@ -55,7 +55,7 @@ typedef struct ethd__source {
   ethd_vec (*finger)(void *self);
 } ethd__source;
 
-/* Whoever looks on while a tap is done, some times a frame. False: it shall end. */
+/* An observer of a tap. `look` is called several times a frame while the tap runs. False: the tap must end. */
 typedef struct ethd__watcher {
   void *self;
   bool (*look)(void *self, double t, ethd_vec finger); /* s of the tap; NULL: nobody */

@@ -71,7 +71,7 @@ static void add_functions(ethd__study_store *store, const ethd__protocol *p) {
 
 /* ---- each table's rows ---- */
 
-/* In a simulation the taps of a point stand together, the study and the point before each, its gains behind. */
+/* A simulation's taps are sorted by grid point. A row begins with the study and the point, and ends with the gains. */
 static void select_taps(FILE *sql, const ethd__folder *folder) {
   fputs("SELECT ", sql);
   if (folder->simulated) fprintf(sql, "'%.12s', point, ", folder->hash);

@@ -15,7 +15,8 @@ static double path_speed(const ethd__tap_rows *rows, const ethd__rule *rule, siz
   return NAN;
 }
 
-/* A device knows no voluntary path: its finger goes on as it came. */
+/* A device doesn't measure the hand's voluntary path. The finger's mean speed in the last ETHD_TAP_CARRIED s before the
+   touch stands for the hand's speed. */
 static double carried_speed(const ethd__tap_rows *rows, const ethd__rule *rule, size_t begin, size_t touch) {
   size_t back = ticks(rule, ETHD_TAP_CARRIED);
   size_t from = touch > begin + back ? touch - back : begin;
@@ -38,7 +39,8 @@ static size_t ready_from(const ethd__tap_rows *rows, const ethd__rule *rule, siz
   return i;
 }
 
-/* The wall's offset a while after the touch; where no wall stands then, the last one's before. */
+/* Returns the wall's offset ETHD_TAP_FELT s after the touch. If no wall is rendered at that tick, returns the last
+   offset since the touch; NaN: there was none. */
 static double offset_after(const ethd__tap_rows *rows, const ethd__rule *rule, size_t touch) {
   size_t last = touch + ticks(rule, ETHD_TAP_FELT);
   double eps = NAN;

@@ -29,7 +29,8 @@ bool ethd__speed_parse(const char *word, const ethd_plant *plant, ethd__speed *o
 
 /* ---- where the wall is ---- */
 
-/* Steps by the clearance never pass through anything; at a wall's they end at once. */
+/* Sphere tracing: a step as long as the clearance never passes through an object. The search ends at
+   a clearance of 0. */
 static ethd_status find_wall(ethd__study *study, char *message) {
   const ethd_setup *setup = &study->config->setup;
   double inner, outer;

@@ -7,8 +7,8 @@
 #include "cli/cli.h"
 #include "text/error_text.h"
 
-/* What each round does: it taps 1/part of the last round's taps, takes over so many per cent of the round before, draws
-   so many children about each of these, and draws them within `spread` of the range. */
+/* A round runs 1/part of the last round's taps. It keeps the best points of the round before: `percent` of the number
+   of points in the first round. It draws `children` new points about each of these, within `spread` of the range. */
 static const struct {
   uint32_t part, percent, children;
   double spread;

@@ -1,5 +1,5 @@
-/* e: how far each point is outside of the circle through all of them. g: what one count less at every sensor changes e by.
-   Counts less by n make that e + n g, the least for n = - e g / g g. */
+/* e: each point's distance from the fitted circle, > 0 outside. g: the change of e when every sensor counts one less.
+   If every sensor counts n less, the distances are e + n g. Their sum of squares is least at n = -(e.g) / (g.g). */
 #include "proximity_ring/drift.h"
 
 #include <math.h>

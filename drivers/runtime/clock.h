@@ -20,8 +20,8 @@ static inline int64_t ethd__clock_after(int64_t last_ns, int64_t t_ns) {
   return last_ns && t_ns <= last_ns ? last_ns + 1 : t_ns;
 }
 
-/* Returns true at the first call, and after 0.1 s without one; *heard_ns is 0 at first. Who listens to a sensor asks it
-   before each look. Nobody knows when that came which has waited for so long, so it must not count as arrived now. */
+/* Returns true at the first call, and after 0.1 s without one; *heard_ns is 0 at first. A sensor's reader
+   calls it before each read. After such a pause the arrival time of data is unknown; it must not be taken as now. */
 static inline bool ethd__clock_was_deaf(int64_t *heard_ns, int64_t now_ns) {
   const int64_t before = *heard_ns;
   *heard_ns = now_ns;

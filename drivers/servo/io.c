@@ -19,8 +19,8 @@ static void command(ethd__servo_device *d, int64_t now_ns, double torque[2]) {
   d->due_ns = now_ns - behind + d->exchange_ns;
 }
 
-/* When the drive was asked for its joints, for the first of them. It reads them after that, nobody knows when, and a
-   sample may not look younger than it is. */
+/* Returns when the drive was asked for the joint positions; of two requests, the earlier one. The drive samples them at
+   an unknown time after the request. The request's time is used, so that no sample seems newer than it is. */
 static int64_t asked(const ethd__servo_link *l) {
   int64_t first = INT64_MAX;
   for (int i = 0; i < 2; i++) {

@@ -31,17 +31,18 @@ static double seconds(int64_t a, int64_t b) { return 1e-9 * (double)((uint64_t)b
 
 #define ROUNDED 1e-3 /* periods: a stamp that is off by less is a whole tick's */
 #define LEAST 0.1    /* periods: samples nearer to each other say little of a speed */
-#define MOST 4.0     /* times the ticks' time: exchanges of one bus differ so much at most */
+#define GAP 0.05     /* s: no exchange of a bus is longer */
 
-/* Returns the time from the last joint sample to this one, s, by their stamps: a bus that isn't in step with the ticks gives
-   samples whose spacing varies, though each comes at a tick, and speeds by the ticks' time would seem to rise and fall, also
-   to a stop. Stamps that can't be right, of a clock that stands or jumps, leave the ticks' time. */
+/* Returns the time from the last joint sample to this one, s, by their stamps. A bus that isn't in step with the ticks
+   gives samples whose spacing varies, though each comes at a tick: by the ticks' time the speed would seem to rise and
+   fall, also to a stop. Where the stamps differ by more than limits.gap from the ticks' time, or don't rise, their clock
+   is wrong, and the ticks' time counts. */
 static double sample_spacing(const ethd__tick *t) {
   const double period = t->plan->setup.period;
   if (t->sense->time_ns <= t->state->velocity_ns) return t->dt;
-  const double stamped = seconds(t->state->velocity_ns, t->sense->time_ns);
-  if (fabs(stamped - t->dt) <= ROUNDED * period) return t->dt;
-  return stamped >= LEAST * period && stamped <= MOST * t->dt ? stamped : t->dt;
+  const double stamped = seconds(t->state->velocity_ns, t->sense->time_ns), off = fabs(stamped - t->dt);
+  const bool used = off > ROUNDED * period && off <= fmin(t->plan->setup.limits.gap, GAP) && stamped >= LEAST * period;
+  return used ? stamped : t->dt;
 }
 
 static void joint_speeds(const ethd__tick *t, double qd[2]) {

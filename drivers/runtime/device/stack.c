@@ -43,7 +43,8 @@ static void safe_all(void *stack) ETHD_RT {
 
 /* ---- a child made by fork ---- */
 
-/* Lines, sockets and the guardian's page are its parent's: whatever a driver did to them here would happen there. */
+/* The parent process still uses the lines, the sockets and the guardian's page. A driver that is called in the child
+   would change them for the parent. */
 static bool is_forked(const ethd__stack *s) { return s->process != getpid(); }
 
 /* ---- I/O ---- */
