@@ -179,7 +179,8 @@ START_TEST(test_one_vanishes) {
   ck_assert_msg(open_pair() == ETHD_OK, "%s", message);
   now = 0;
   ck_assert_int_eq(servo->start(device), ETHD_OK);
-  for (int i = 0; i < 10; i++) tick();
+  /* until ten ticks in a row went well: on a busy machine an answer may be missing */
+  for (int i = 0, well = 0; i < 200 && well < 10; i++) tick(), well = sense.faults ? 0 : well + 1;
   ck_assert(pushes(drive.words) && pushes(drive.second));
   const ethd_sense before = sense;
   const _Atomic uint16_t *other = gone == 1 ? drive.second : drive.words;
