@@ -129,10 +129,11 @@ static ethd_status check_schema(ethd__study_store *s, char *message) {
   return status;
 }
 
-/* Uses integrity_check, because quick_check doesn't compare an index with its table. */
+/* Uses integrity_check, because quick_check doesn't compare an index with its table.
+   It takes no argument: SQLite 3.46 reads the 1 of pragma_integrity_check(1) as the name of a table. */
 static ethd_status check_content(ethd__study_store *s, char *message) {
   static const char *const queries[] = {
-      "SELECT * FROM pragma_integrity_check(1) WHERE integrity_check <> 'ok'",
+      "SELECT integrity_check FROM pragma_integrity_check WHERE integrity_check <> 'ok'",
       "SELECT 'a tap of no hand' FROM pragma_foreign_key_check",
       "SELECT 'a hand' FROM hand WHERE coalesce(" ETHD_STORE_HAND_RULE ", 0) = 0",
       "SELECT 'tap ' || id FROM tap WHERE coalesce(" ETHD_STORE_TAP_RULE ", 0) = 0",
