@@ -117,7 +117,7 @@ int main(int argc, char **argv) {
   study.gain_count = arg.gain_count;
   if (arg.finger) {
     char *finger = ethd__given_or_data(arg.finger);
-    check(ethd__movement_load(finger, arg.scale, &study.movement, message), message);
+    check(ethd__movement_load(finger, &arg.form, &study.movement, message), message);
     free(finger);
   }
   check(ethd__study_prepare(&study, message), message);

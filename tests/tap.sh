@@ -92,6 +92,13 @@ grep -q 'swing.csv, not scaled' "$folder/f.txt" || fail "it doesn't say that the
 grep -q 'SCALED by 2' "$folder/f.txt" || fail "it doesn't say that the movement was scaled"
 grep -q ',too-slow,' "$folder/g.csv" && fail "0.5 m/s is too slow"
 
+# The same movement as a spreadsheet may have it: centimetres, milliseconds, semicolons, decimal commas, to +x.
+awk -F, 'NR == 1 { print "Time;Left;Up" } NR > 1 { printf "%.1f;%.4f;0\n", 1e3 * $1, -100 * $2 }' "$folder/swing.csv" |
+  tr . , >"$folder/sheet.csv"
+"$tap" --finger "$folder/sheet.csv" --columns Time,-Left,Up --units cm,ms --speed high --taps 2 --csv "$folder/sheet-f.csv" >/dev/null
+paste -d, "$folder/f.csv" "$folder/sheet-f.csv" | awk -F, '{ for (i = 1; i <= NF / 2; i++) { d = $i - $(i + NF / 2); w += d > 1e-9 || d < -1e-9 } }
+  END { exit !(NR == 9 && !w) }' || fail "another writing of a movement changes its taps"
+
 motion=${ETHD_MOTION_DIR:-tests/motion}
 for file in tests/motion/*/*.csv "$motion"/*/*_tap.csv "$motion"/*/*_reach.csv "$motion"/*/*_free.csv "$motion"/*/*_move*.csv; do
   case $file in tests/* | *1.csv | *01_*) ;; *) continue ;; esac
@@ -135,7 +142,10 @@ refuse 'whole number from 0' --seed -1
 refuse 'no-such' --plant "$folder/no-such"
 refuse 'no-such' --config "$folder/no-such.ini"
 refuse 'no-such' --finger "$folder/no-such.csv"
-refuse 'needs --finger' --scale 2
+refuse 'need --finger' --scale 2
+refuse 'need --finger' --units cm
+refuse 'm, cm, mm or in' --finger "$folder/swing.csv" --units feet
+refuse 'those of time, x and y' --finger "$folder/swing.csv" --columns t_s
 refuse 'from 0.01 to 100' --finger "$folder/swing.csv" --scale 0
 refuse 'y_m' --finger "$folder/a.csv"
 printf 'halfplane -1 0 0.9\n' >"$folder/far.scene"

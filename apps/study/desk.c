@@ -63,7 +63,8 @@ static ethd_status take_movement(ethd__desk *desk, const ethd__turn *turn, char 
   size_t movement = movement_of(desk, turn);
   if (desk->study.movement.count && desk->movement == movement) return ETHD_OK;
   leave(desk);
-  ethd_status status = ethd__movement_load(desk->movements[movement], 1, &desk->study.movement, message);
+  ethd_status status =
+      ethd__movement_load(desk->movements[movement], &ethd__movement_si, &desk->study.movement, message);
   desk->movement = movement;
   return status ? status : ethd__study_prepare(&desk->study, message);
 }

@@ -17,7 +17,8 @@ static const char doc[] =
     "under each transition law at each speed, and prints figures beside the paper's.\v"
     "Plants are fitted to the paper's Table 1, not measured; nothing runs in real time. Tap k has the same "
     "finger under every law. The same seed gives the same bytes on every machine.\n\n"
-    "FILE.csv has columns t_s,x_m,y_m (further ones are ignored) of a movement towards -x. It is shifted so that "
+    "FILE.csv has columns t_s,x_m,y_m, or those of --columns (further ones are ignored), of a movement towards -x. "
+    "Commas, semicolons or tabs separate them. It is shifted so that "
     "the finger touches the wall where its speed toward it, after its peak, has fallen to the given speed "
     "(low, high: 0.2, 0.4 m/s), and is never scaled unless --scale says so. Speed is the slope of the "
     "least-squares line through the samples within 5 ms, at least one on either side; the path itself is "
@@ -49,7 +50,9 @@ enum {
   OPTION_VALIDITY,
   OPTION_LEARN,
   OPTION_SET,
-  OPTION_PAPER
+  OPTION_PAPER,
+  OPTION_UNITS,
+  OPTION_COLUMNS
 };
 
 static const struct argp_option options[] = {
@@ -65,6 +68,9 @@ static const struct argp_option options[] = {
     {"plant", 'p', "n|b|p|FILE", 0,
      "the simulated device and finger (default: that of --config, else n); a FILE.plant has FILE.ini beside it", 0},
     {"finger", 'f', "FILE.csv", 0, "use a recorded movement as the hand's voluntary path", 0},
+    {"columns", OPTION_COLUMNS, "T,X,Y", 0,
+     "the names of the movement's columns (t_s,x_m,y_m); -x_m turns the axis of x_m", 0},
+    {"units", OPTION_UNITS, "LENGTH[,TIME]", 0, "the movement's units: m, cm, mm or in, and s or ms (m,s)", 0},
     {"scale", OPTION_SCALE, "K", 0, "multiply the recorded positions by K, 0.01 to 100", 0},
     {"validity", OPTION_VALIDITY, "paper|finger", 0,
      "judge taps by how the ring meets the wall (paper, the default), or by the finger alone, alike for every law", 0},
@@ -85,6 +91,7 @@ static const struct argp_option options[] = {
 };
 
 static ethd__tap_options arg = {.scale = 1, .seed = 1};
+static ethd__tap_words columns, units; /* of the recorded movement */
 
 typedef struct named {
   ethd__tap_words *list;
@@ -123,6 +130,28 @@ static ethd__validity validity_of(const char *text) {
   return strcmp(text, "finger") ? ETHD_TAP_BY_PAPER : ETHD_TAP_BY_FINGER;
 }
 
+static double unit_of(const char *word, const char *const *names, const double *sizes) {
+  char quote[ETHD_QUOTE_MAX];
+  for (; *names; names++, sizes++)
+    if (!strcmp(*names, word)) return *sizes;
+  ethd__fail(ETHD_EXIT_INPUT, "--units: found %s, m, cm, mm or in and then s or ms are allowed",
+             ethd__quote(word, strlen(word), quote));
+}
+
+static ethd__movement_form form_of_movement(void) {
+  static const char *const lengths[] = {"m", "cm", "mm", "in", NULL}, *const times[] = {"s", "ms", NULL};
+  static const double metres[] = {1, 0.01, 0.001, 0.0254}, seconds[] = {1, 0.001};
+  ethd__movement_form form = ethd__movement_si;
+  if (columns.count && columns.count != 3)
+    ethd__fail(ETHD_EXIT_INPUT, "--columns: %zu names; those of time, x and y are needed", columns.count);
+  if (units.count > 2) ethd__fail(ETHD_EXIT_INPUT, "--units: one of length and one of time are allowed");
+  for (size_t i = 0; i < columns.count; i++) form.columns[i] = columns.words[i];
+  if (units.count) form.length = unit_of(units.words[0], lengths, metres);
+  if (units.count > 1) form.time = unit_of(units.words[1], times, seconds);
+  form.length *= arg.scale;
+  return form;
+}
+
 /* The option's text is cut in two where it stands. */
 static void add_gain(char *text) {
   char quote[ETHD_QUOTE_MAX], *equals = strchr(text, '=');
@@ -147,6 +176,8 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     arg.scale = ethd__option_number("--scale", text, 0.01, 100);
     arg.scaled = true;
     return 0;
+  case OPTION_COLUMNS: set_list(&columns, "--columns", text); return 0;
+  case OPTION_UNITS: set_list(&units, "--units", text); return 0;
   case OPTION_CSV: arg.csv = text; return 0;
   case OPTION_RECORD: arg.record = text; return 0;
   case OPTION_VALIDITY: arg.validity = validity_of(text); return 0;
@@ -157,7 +188,9 @@ static error_t parse(int key, char *text, struct argp_state *state) {
   case OPTION_PAPER: arg.paper = true; return 0;
   case ARGP_KEY_ARG: argp_error(state, "\"%s\": no such argument", text); return 0;
   case ARGP_KEY_END:
-    if (arg.scaled && !arg.finger) argp_error(state, "--scale needs --finger");
+    if ((arg.scaled || columns.count || units.count) && !arg.finger)
+      argp_error(state, "--scale, --columns and --units need --finger");
+    arg.form = form_of_movement();
     if (arg.paper && (arg.finger || arg.csv || arg.record || arg.trace || arg.laws.count || arg.speeds.count))
       argp_error(state, "--paper has its own laws and speeds, a synthetic hand and no files; --config, --plant, --set, "
                         "--taps and --seed go with it");
@@ -177,6 +210,8 @@ void ethd__tap_options_read(int argc, char **argv, ethd__tap_options *out) {
 void ethd__tap_options_free(ethd__tap_options *o) {
   drop(&o->laws);
   drop(&o->speeds);
+  drop(&columns);
+  drop(&units);
 }
 
 void ethd__tap_laws_choose(ethd__tap_options *o, const char *own) {

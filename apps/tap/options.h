@@ -16,7 +16,8 @@ typedef struct ethd__tap_words {
 
 typedef struct ethd__tap_options {
   const char *config, *plant, *finger, *csv, *record, *trace; /* NULL: not given */
-  double scale;                                               /* of the recorded movement */
+  ethd__movement_form form;                                   /* of the recorded movement; its length is scaled */
+  double scale;
   bool scaled, force;
   bool paper;   /* ethd__paper_print instead of a table */
   int64_t taps; /* for each law and speed */

@@ -10,13 +10,22 @@
 /* ---- reading ---- */
 
 enum { T, X, Y, COLUMNS };
-static const char *const names[COLUMNS + 1] = {"t_s", "x_m", "y_m", NULL};
 
-static ethd_status find(const char *path, const ethd_csv *csv, int column[COLUMNS], char *message) {
+const ethd__movement_form ethd__movement_si = {.columns = {"t_s", "x_m", "y_m"}, .time = 1, .length = 1};
+
+/* One column of the file: value = unit * cell. */
+typedef struct source {
+  const char *name;
+  int column;
+  double unit;
+} source;
+
+static ethd_status find(const char *path, const ethd_csv *csv, source from[COLUMNS], char *message) {
   for (int i = 0; i < COLUMNS; i++) {
-    column[i] = ethd_csv_column(csv, names[i]);
-    if (column[i] < 0)
-      return ethd__say(message, ETHD_E_UNKNOWN, "%s:1: no column %s; t_s, x_m and y_m are needed", path, names[i]);
+    from[i].column = ethd_csv_column(csv, from[i].name);
+    if (from[i].column < 0)
+      return ethd__say(message, ETHD_E_UNKNOWN, "%s:1: no column %s; %s, %s and %s are needed", path, from[i].name,
+                       from[T].name, from[X].name, from[Y].name);
   }
   if (csv->rows < 3)
     return ethd__say(message, ETHD_E_RANGE, "%s: %zu sample%s; at least 3 are needed", path, csv->rows,
@@ -24,58 +33,80 @@ static ethd_status find(const char *path, const ethd_csv *csv, int column[COLUMN
   return ETHD_OK;
 }
 
-static ethd_status check_row(const char *path, const ethd_csv *csv, const int column[COLUMNS], size_t row,
+static ethd_status check_row(const char *path, const ethd_csv *csv, const source from[COLUMNS], size_t row,
                              char *message) {
   size_t line = ethd_csv_line(row);
-  const double *now = &csv->values[row * csv->columns], *before = now - csv->columns;
   for (int i = 0; i < COLUMNS; i++) {
-    if (!isfinite(now[column[i]]))
-      return ethd__say(message, ETHD_E_NOT_FINITE, "%s:%zu: %s: %s; a finite number is needed", path, line, names[i],
-                       ethd_csv_empty(csv, row, column[i]) ? "an empty cell" : "nan");
-    if (i != T && !(fabs(now[column[i]]) <= 1e3))
-      return ethd__say(message, ETHD_E_RANGE, "%s:%zu: %s: found %.10g, -1000 to 1000 is allowed", path, line, names[i],
-                       now[column[i]]);
+    double cell = csv->values[row * csv->columns + (size_t)from[i].column], most = 1e3 / fabs(from[i].unit);
+    if (!isfinite(cell))
+      return ethd__say(message, ETHD_E_NOT_FINITE, "%s:%zu: %s: %s; a finite number is needed", path, line,
+                       from[i].name, ethd_csv_empty(csv, row, from[i].column) ? "an empty cell" : "nan");
+    if (i != T && !(fabs(cell) <= most))
+      return ethd__say(message, ETHD_E_RANGE, "%s:%zu: %s: found %.10g, %.6g to %.6g is allowed", path, line,
+                       from[i].name, cell, -most, most);
   }
-  if (row && !(now[column[T]] > before[column[T]]))
-    return ethd__say(message, ETHD_E_RANGE, "%s:%zu: t_s: found %.10g after %.10g; times must rise", path, line,
-                     now[column[T]], before[column[T]]);
-  if (!(now[column[T]] - csv->values[column[T]] <= ETHD_MOVEMENT_MOST))
-    return ethd__say(message, ETHD_E_RANGE, "%s:%zu: t_s: %.10g s after the start; at most %g are allowed", path, line,
-                     now[column[T]] - csv->values[column[T]], ETHD_MOVEMENT_MOST);
   return ETHD_OK;
 }
 
-/* `scale` may be what makes a hand too fast. */
-static ethd_status check_speed(const char *path, const ethd_path_sample *s, size_t line, char *message) {
+static ethd_status check_step(const char *path, const char *time, const ethd_path_sample *s, size_t line,
+                              char *message) {
   double speed = hypot(s[0].x - s[-1].x, s[0].y - s[-1].y) / (s[0].t - s[-1].t);
-  if (speed <= ETHD_HAND_SPEED_MAX) return ETHD_OK;
-  return ethd__say(message, ETHD_E_RANGE, "%s:%zu: found a hand at %.10g m/s; at most %g are allowed", path, line,
-                   speed, ETHD_HAND_SPEED_MAX);
+  if (!(s[0].t > s[-1].t))
+    return ethd__say(message, ETHD_E_RANGE, "%s:%zu: %s: found %.10g s after %.10g s; times must rise", path, line,
+                     time, s[0].t, s[-1].t);
+  if (!(s[0].t <= ETHD_MOVEMENT_MOST))
+    return ethd__say(message, ETHD_E_RANGE,
+                     "%s:%zu: %s: %.10g s after the start; at most %g are allowed. --units m,ms reads milliseconds",
+                     path, line, time, s[0].t, ETHD_MOVEMENT_MOST);
+  if (speed <= ETHD_MOVEMENT_FASTEST) return ETHD_OK;
+  return ethd__say(message, ETHD_E_RANGE,
+                   "%s:%zu: found a hand at %.3g m/s; at most %g are allowed. --units cm or mm reads other units", path,
+                   line, speed, ETHD_MOVEMENT_FASTEST);
 }
 
-static ethd_status convert(const char *path, const ethd_csv *csv, double scale, ethd__movement *out, char *message) {
-  int column[COLUMNS];
-  ethd_status status = find(path, csv, column, message);
-  for (size_t row = 0; !status && row < csv->rows; row++) status = check_row(path, csv, column, row, message);
+static ethd_status check_direction(const char *path, const ethd__movement *m, char *message) {
+  double to = 0, away = 0;
+  for (size_t k = 0; k < m->count; k++) {
+    double v = ethd__movement_speed(m, k);
+    to = fmax(to, v), away = fmax(away, -v);
+  }
+  if (!(to < away / 5)) return ETHD_OK;
+  return ethd__say(message, ETHD_E_RANGE,
+                   "%s: moves to +x (at up to %.3g m/s), away from the wall; --columns t_s,-x_m,-y_m turns it", path,
+                   away);
+}
+
+static ethd_status convert(const char *path, const ethd_csv *csv, source from[COLUMNS], ethd__movement *out,
+                           char *message) {
+  ethd_status status = find(path, csv, from, message);
+  for (size_t row = 0; !status && row < csv->rows; row++) status = check_row(path, csv, from, row, message);
   if (status) return status;
   out->samples = malloc(csv->rows * sizeof *out->samples);
   if (!out->samples) return ethd__no_memory(message, path);
   out->count = csv->rows;
   for (size_t row = 0; !status && row < csv->rows; row++) {
-    const double *cell = &csv->values[row * csv->columns];
-    out->samples[row] =
-        (ethd_path_sample){cell[column[T]] - csv->values[column[T]], scale * cell[column[X]], scale * cell[column[Y]]};
-    if (row) status = check_speed(path, &out->samples[row], ethd_csv_line(row), message);
+    const double *cell = &csv->values[row * csv->columns], *first = csv->values;
+    out->samples[row] = (ethd_path_sample){from[T].unit * (cell[from[T].column] - first[from[T].column]),
+                                           from[X].unit * cell[from[X].column], from[Y].unit * cell[from[Y].column]};
+    if (row) status = check_step(path, from[T].name, &out->samples[row], ethd_csv_line(row), message);
   }
-  return status;
+  return status ? status : check_direction(path, out, message);
 }
 
-ethd_status ethd__movement_load(const char *path, double scale, ethd__movement *out, char message[ETHD_MESSAGE_MAX]) {
+ethd_status ethd__movement_load(const char *path, const ethd__movement_form *form, ethd__movement *out,
+                                char message[ETHD_MESSAGE_MAX]) {
+  source from[COLUMNS];
+  const char *names[COLUMNS + 1] = {NULL};
   ethd_csv csv;
   *out = (ethd__movement){0};
+  for (int i = 0; i < COLUMNS; i++) {
+    bool turned = i != T && form->columns[i][0] == '-';
+    from[i] = (source){form->columns[i] + turned, -1, i == T ? form->time : turned ? -form->length : form->length};
+    names[i] = from[i].name;
+  }
   ethd_status status = ethd_csv_read_columns(path, names, &csv, message);
   if (status) return status;
-  status = convert(path, &csv, scale, out, message);
+  status = convert(path, &csv, from, out, message);
   if (status) ethd__movement_free(out);
   ethd_csv_free(&csv);
   return status;

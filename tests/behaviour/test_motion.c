@@ -125,7 +125,7 @@ static void run_file(ethd__study *study, const ethd_plant *plant, const char *pa
   const gains n = {7.32e-3, 10.546e-3, 5.357 * 0.25};
   char message[ETHD_MESSAGE_MAX], where[512];
   recording r = read_recording(path);
-  ck_assert_msg(!ethd__movement_load(path, 1, &study->movement, message), "%s", message);
+  ck_assert_msg(!ethd__movement_load(path, &ethd__movement_si, &study->movement, message), "%s", message);
   ck_assert_msg(!ethd__study_prepare(study, message), "%s", message);
   for (int l = 0; l < 3; l++) {
     ethd__stage stage;

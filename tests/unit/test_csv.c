@@ -47,6 +47,12 @@ START_TEST(test_numbers) {
   ck_assert_int_eq(ethd_csv_column(&c, "z"), -1);
   ck_assert_uint_eq(ethd_csv_line(2), 4);
   ethd_csv_free(&c);
+  parse("a;b\n1,5;-2.5\n", NULL, &c);
+  ck_assert(c.rows == 1 && c.columns == 2 && c.values[0] == 1.5 && c.values[1] == -2.5);
+  ethd_csv_free(&c);
+  parse("a\tb\n\t1,5e3\n", NULL, &c);
+  ck_assert(c.rows == 1 && c.columns == 2 && ethd_csv_empty(&c, 0, 0) && c.values[1] == 1500);
+  ethd_csv_free(&c);
 }
 END_TEST
 
@@ -96,7 +102,8 @@ static const struct {
     {"a,b\n1,--1\n", "x.csv:2: b: found \"--1\""},
     {"a,b\n1,\"2\n", "x.csv:2: a quote that isn't closed on its line"},
     {"a,b\n1,\"2\"3\n", "x.csv:2: text after a closing quote"},
-    {"a;b\n1;2\n", "x.csv:2: a;b: found \"1;2\""},
+    {"a;b\n1,5;2.5\n1,5\n", "x.csv:3: 1 cell"},
+    {"a\tb\n1,5,5\t2\n", "x.csv:2: a: found \"1,5,5\""},
 };
 
 START_TEST(test_bad_texts) {

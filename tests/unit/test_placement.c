@@ -132,31 +132,36 @@ END_TEST
 
 /* ---- files ---- */
 
-static ethd_status load(const char *text, double scale, ethd__movement *out, char *message) {
+static ethd_status load_form(const char *text, const ethd__movement_form *form, ethd__movement *out, char *message) {
   char path[] = "/tmp/ethd-placement-XXXXXX";
   int fd = mkstemp(path);
   ck_assert_int_ge(fd, 0);
   ck_assert_int_eq(write(fd, text, strlen(text)), (ssize_t)strlen(text));
   close(fd);
-  ethd_status status = ethd__movement_load(path, scale, out, message);
+  ethd_status status = ethd__movement_load(path, form, out, message);
   unlink(path);
   return status;
+}
+
+static ethd_status load(const char *text, ethd__movement *out, char *message) {
+  return load_form(text, &ethd__movement_si, out, message);
 }
 
 START_TEST(test_file) {
   ethd__movement m;
   char message[ETHD_MESSAGE_MAX];
-  ck_assert_int_eq(load("y_m,fy_n,t_s,x_m\n1,x,5,0.1\n2,x,5.5,0.2\n3,x,7,-0.4\n", 1, &m, message), ETHD_OK);
+  ck_assert_int_eq(load("y_m,fy_n,t_s,x_m\n1,x,5,0.1\n2,x,5.5,0.2\n3,x,7,-0.4\n", &m, message), ETHD_OK);
   ck_assert_uint_eq(m.count, 3);
   ck_assert_double_eq(m.samples[0].t, 0);
   ck_assert_double_eq(m.samples[2].t, 2);
   ck_assert_double_eq(m.samples[2].x, -0.4);
   ck_assert_double_eq(m.samples[2].y, 3);
   ethd__movement_free(&m);
-  ck_assert_int_eq(load("t_s,x_m,y_m\n0,0.1,1\n1,0.2,2\n2,-0.4,3\n", 0.5, &m, message), ETHD_OK);
-  ck_assert_double_eq(m.samples[2].x, -0.2);
-  ck_assert_double_eq(m.samples[2].y, 1.5);
-  ck_assert_double_eq(m.samples[2].t, 2);
+  const ethd__movement_form other = {{"Time (Seconds)", "-X", "Y"}, 1e-3, 0.01};
+  ck_assert_int_eq(load_form("X;Time (Seconds);Y\n10;100;1\n10,5;200;2\n9;400;3\n", &other, &m, message), ETHD_OK);
+  ck_assert_double_eq_tol(m.samples[1].x, -0.105, 1e-15);
+  ck_assert_double_eq_tol(m.samples[2].y, 0.03, 1e-15);
+  ck_assert_double_eq_tol(m.samples[2].t, 0.3, 1e-15);
   ethd__movement_free(&m);
 }
 END_TEST
@@ -169,10 +174,12 @@ START_TEST(test_bad_files) {
       {"t_s,x_m,y_m\n0,0,0\n1,0,0\n", "2 samples"},
       {"t_s,x_m,y_m\n0,0,0\n1,nan,0\n2,0,0\n", ":3: x_m: nan"},
       {"t_s,x_m,y_m\n0,0,0\n1,0,\n2,0,0\n", ":3: y_m: an empty cell"},
-      {"t_s,x_m,y_m\n0,0,0\n1,0,0\n1,0,0\n", ":4: t_s: found 1 after 1"},
-      {"t_s,x_m,y_m\n0,0,0\n1,0,0\n0.5,0,0\n", ":4: t_s: found 0.5 after 1"},
+      {"t_s,x_m,y_m\n0,0,0\n1,0,0\n1,0,0\n", ":4: t_s: found 1 s after 1 s"},
+      {"t_s,x_m,y_m\n0,0,0\n1,0,0\n0.5,0,0\n", ":4: t_s: found 0.5 s after 1 s"},
       {"t_s,x_m,y_m\n0,0,0\n1,1e4,0\n2,0,0\n", ":3: x_m: found 10000"},
-      {"t_s,x_m,y_m\n0,0,0\n1,199,0\n2,-2,0\n", ":4: found a hand at 201 m/s"},
+      {"t_s,x_m,y_m\n0,0,0\n1,9,0\n2,-2,0\n", ":4: found a hand at 11 m/s"},
+      {"t_s\tx_m\ty_m\n0\t0\t0\n1\t0,5\t0\n2\t1\t0\n", "--columns t_s,-x_m"},
+      {"Format Version,1.23,Take Name,a\n\nFrame,Time (Seconds),X,Y\n0,0,0,0\n", ":1: an export of Motive"},
       {"t_s,x_m,y_m\n0,0,0\n1,0,0\n121,0,0\n", ":4: t_s: 121 s after the start"},
       {"t_s,x_m,y_m\n0,0,0\n1,0\n2,0,0\n", ":3"},
       {"", ""},
@@ -180,7 +187,7 @@ START_TEST(test_bad_files) {
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     ethd__movement m;
     char message[ETHD_MESSAGE_MAX] = "";
-    ck_assert_int_lt(load(bad[i].text, 1, &m, message), 0);
+    ck_assert_int_lt(load(bad[i].text, &m, message), 0);
     ck_assert_msg(strstr(message, bad[i].says) != NULL, "%s", message);
     ck_assert(!strchr(message, '\n') && message[0]);
     ck_assert_ptr_null(m.samples);

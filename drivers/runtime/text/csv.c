@@ -21,7 +21,8 @@ typedef struct table {
   const char *rest, *text_end;
   const char *name;
   size_t line;
-  bool more; /* cells are left in the line */
+  char separator; /* between cells */
+  bool more;      /* cells are left in the line */
   char *message;
 } table;
 
@@ -58,7 +59,7 @@ static ethd_status quoted_cell(table *r, cell *out) {
   if (p >= r->end) return refuse(r, ETHD_E_SYNTAX, NULL, "a quote that isn't closed on its line");
   *out = (cell){r->at + 1, (size_t)(p - r->at - 1)};
   r->at = p + 1;
-  if (r->at < r->end && *r->at != ',')
+  if (r->at < r->end && *r->at != r->separator)
     return refuse(r, ETHD_E_SYNTAX, NULL, "text after a closing quote, a comma is allowed");
   return ETHD_OK;
 }
@@ -68,8 +69,8 @@ static ethd_status next_cell(table *r, cell *out) {
     ethd_status status = quoted_cell(r, out);
     if (status) return status;
   } else {
-    const char *comma = memchr(r->at, ',', (size_t)(r->end - r->at));
-    *out = (cell){r->at, (size_t)((comma ? comma : r->end) - r->at)};
+    const char *separator = memchr(r->at, r->separator, (size_t)(r->end - r->at));
+    *out = (cell){r->at, (size_t)((separator ? separator : r->end) - r->at)};
     r->at += out->length;
   }
   trim(out);
@@ -133,10 +134,21 @@ static ethd_status keep_names(const table *r, const layout *l, ethd_csv *out) {
   return ETHD_OK;
 }
 
+static char separator_of(const char *header, size_t length) {
+  if (memchr(header, ',', length)) return ',';
+  return memchr(header, ';', length) ? ';' : memchr(header, '\t', length) ? '\t' : ',';
+}
+
 static ethd_status read_header(table *r, layout *l, const char *const *wanted, ethd_csv *out) {
+  static const char motive[] = "Format Version,"; /* of OptiTrack's motion capture */
   cell c;
   if (!next_line(r))
     return ethd__say(r->message, ETHD_E_SYNTAX, "%s: is empty; a first line that names the columns is needed", r->name);
+  if ((size_t)(r->end - r->at) > sizeof motive && !memcmp(r->at, motive, sizeof motive - 1))
+    return refuse(
+        r, ETHD_E_SYNTAX, NULL,
+        "an export of Motive; delete the lines above \"Frame,Time (Seconds)\" and the other markers' columns");
+  r->separator = separator_of(r->at, (size_t)(r->end - r->at));
   while (r->more) {
     ethd_status status = next_cell(r, &c);
     if (!status) status = header_name(r, &c, l, wanted, out);
@@ -147,6 +159,14 @@ static ethd_status read_header(table *r, layout *l, const char *const *wanted, e
 
 /* ---- rows ---- */
 
+/* Between semicolons and tabs, a decimal comma is a point. */
+static bool read_number(const table *r, const cell *c, double *out) {
+  char text[64] = "";
+  if (r->separator == ',' || c->length >= sizeof text) return ethd__number(c->text, c->length, out);
+  for (size_t i = 0; i < c->length; i++) text[i] = c->text[i] == ',' ? '.' : c->text[i];
+  return ethd__number(text, c->length, out);
+}
+
 static ethd_status store(const table *r, const cell *c, const char *column, size_t index, ethd_csv *out) {
   char quote[ETHD_QUOTE_MAX];
   if (!c->length) {
@@ -154,7 +174,7 @@ static ethd_status store(const table *r, const cell *c, const char *column, size
     out->empties[index / 8] |= (unsigned char)(1u << index % 8);
     return ETHD_OK;
   }
-  if (ethd__number(c->text, c->length, &out->values[index]) && !isinf(out->values[index])) return ETHD_OK;
+  if (read_number(r, c, &out->values[index]) && !isinf(out->values[index])) return ETHD_OK;
   return ethd__say(r->message, ETHD_E_SYNTAX, "%s:%zu: %s: found %s, a finite decimal number is allowed", r->name,
                    r->line, column, ethd__quote(c->text, c->length, quote));
 }
