@@ -4,6 +4,7 @@
 #include "ethd/maths.h"
 
 #define PI 3.14159265358979323846
+#define INSTANT 1e-12 /* s: a shorter movement is a jump */
 
 static const ethd_vec ZERO = {0, 0};
 
@@ -11,7 +12,7 @@ static void hold(ethd_vec x, double begin, double end, ethd__piece *out) {
   *out = (ethd__piece){.begin = begin, .end = end, .a = x};
 }
 
-/* ---- synthetic ---- */
+/* ---- synthetic, speed constant between ramps ---- */
 
 /* Returns for how long the speed is constant. Ramps cover half of what the constant speed would in their time. A path
    that is too short for its ramps keeps its speed, and so ends beyond to_x. */
@@ -30,7 +31,7 @@ static void ramp(ethd_vec x, double velocity, double duration, double begin, dou
   out->e.x = velocity / (2 * out->w);
 }
 
-static void synthetic_piece(const ethd_path *path, double t, ethd__piece *out) {
+static void constant_piece(const ethd_path *path, double t, ethd__piece *out) {
   double velocity = path->to_x < path->from.x ? -path->speed : path->speed;
   double cruise = path->ramp_up, brake = cruise + cruise_time(path), end = brake + path->ramp_down;
   ethd_vec x = path->from;
@@ -54,6 +55,25 @@ static void synthetic_piece(const ethd_path *path, double t, ethd__piece *out) {
     ramp(x, velocity, path->ramp_down, brake, end, out);
   else
     hold(x, end, INFINITY, out);
+}
+
+/* ---- synthetic, minimum jerk ---- */
+
+/* The speed is greatest halfway: 15/8 of the mean. */
+static double jerk_time(const ethd_path *path) { return 1.875 * fabs(path->to_x - path->from.x) / path->speed; }
+
+static void jerk_piece(const ethd_path *path, double t, ethd__piece *out) {
+  double end = jerk_time(path), length = path->to_x - path->from.x, cube = end * end * end;
+  if (t < 0) {
+    hold(path->from, -INFINITY, 0, out);
+  } else if (t >= end || end < INSTANT) {
+    hold((ethd_vec){path->to_x, path->from.y}, end < INSTANT ? 0 : end, INFINITY, out);
+  } else {
+    hold(path->from, 0, end, out);
+    out->d.x = 10 * length / cube;
+    out->f = -15 * length / (cube * end);
+    out->g = 6 * length / (cube * end * end);
+  }
 }
 
 /* ---- recorded ---- */
@@ -108,23 +128,26 @@ static void recorded_piece(const ethd_path *path, double t, ethd__piece *out) {
   out->d = (ethd_vec){(g0.x + g1.x - 2 * m.x) / (h * h), (g0.y + g1.y - 2 * m.y) / (h * h)};
 }
 
-/* ---- both ---- */
+/* ---- all ---- */
 
 void ethd__path_piece(const ethd_path *path, double t, ethd__piece *out) {
   if (path->sample_count)
     recorded_piece(path, t, out);
+  else if (path->profile == ETHD_PROFILE_MINIMUM_JERK)
+    jerk_piece(path, t, out);
   else
-    synthetic_piece(path, t, out);
+    constant_piece(path, t, out);
 }
 
 ethd__sim_motion ethd__piece_at(const ethd__piece *p, double t) {
   double s = t - p->origin;
   ethd__sim_motion m;
-  m.x.x = p->a.x + s * (p->b.x + s * (p->c.x + s * p->d.x));
+  m.s = s;
+  m.x.x = p->a.x + s * (p->b.x + s * (p->c.x + s * (p->d.x + s * (p->f + s * p->g))));
   m.x.y = p->a.y + s * (p->b.y + s * (p->c.y + s * p->d.y));
-  m.v.x = p->b.x + s * (2 * p->c.x + s * (3 * p->d.x));
+  m.v.x = p->b.x + s * (2 * p->c.x + s * (3 * p->d.x + s * (4 * p->f + s * (5 * p->g))));
   m.v.y = p->b.y + s * (2 * p->c.y + s * (3 * p->d.y));
-  m.a.x = 2 * p->c.x + s * (6 * p->d.x);
+  m.a.x = 2 * p->c.x + s * (6 * p->d.x + s * (12 * p->f + s * (20 * p->g)));
   m.a.y = 2 * p->c.y + s * (6 * p->d.y);
   if (p->w == 0) return m;
   double sine, cosine;
@@ -135,18 +158,22 @@ ethd__sim_motion ethd__piece_at(const ethd__piece *p, double t) {
   return m;
 }
 
-void ethd__piece_terms(const ethd__piece *p, const ethd__sim_motion *at, ethd__two out[4]) {
-  double w2 = p->w * p->w;
+void ethd__piece_terms(const ethd__piece *p, const ethd__sim_motion *at, ethd__two out[ETHD__PATH_TERMS]) {
+  double w2 = p->w * p->w, s = at->s;
   out[0] = (ethd__two){at->x.x, at->x.y};
   out[1] = (ethd__two){at->v.x, at->v.y};
   out[2] = (ethd__two){at->a.x, at->a.y} / 2;
-  out[3] = (ethd__two){p->d.x, p->d.y} - w2 / 6 * (out[1] - (ethd__two){p->b.x, p->b.y});
+  out[3] =
+      (ethd__two){p->d.x + s * (4 * p->f + s * (10 * p->g)), p->d.y} - w2 / 6 * (out[1] - (ethd__two){p->b.x, p->b.y});
+  out[4] = (ethd__two){p->f + s * (5 * p->g), 0} - w2 * (1.0 / 12) * out[2];
+  out[5] = (ethd__two){p->g, 0} - w2 * (1.0 / 20) * out[3];
 }
 
 double ethd__piece_travel(const ethd__piece *p, const ethd__sim_motion *at, double h) {
-  double v = fabs(at->v.x) + fabs(at->v.y), a = fabs(at->a.x) + fabs(at->a.y), d = fabs(p->d.x) + fabs(p->d.y);
+  double v = fabs(at->v.x) + fabs(at->v.y), a = fabs(at->a.x) + fabs(at->a.y), s = at->s;
+  double d = fabs(p->d.x + s * (4 * p->f + s * (10 * p->g))) + fabs(p->d.y), f = fabs(p->f + s * (5 * p->g));
   if (p->w != 0) a = (fabs(p->e.x) + fabs(p->e.y)) * p->w * p->w;
-  return h * (v + h * (a / 2 + h * d));
+  return h * (v + h * (a / 2 + h * (d + h * (f + h * fabs(p->g)))));
 }
 
 __attribute__((noinline)) static void path_at(const ethd_path *path, double t, ethd_vec *x, ethd_vec *v) {
@@ -165,6 +192,7 @@ void ethd_path_at(const ethd_path *path, double t, ethd_vec *x, ethd_vec *v) {
 
 __attribute__((noinline)) static double path_end(const ethd_path *path) {
   if (path->sample_count) return path->samples[path->sample_count - 1].t;
+  if (path->profile == ETHD_PROFILE_MINIMUM_JERK) return jerk_time(path);
   return path->ramp_up + cruise_time(path) + path->ramp_down;
 }
 

@@ -28,7 +28,7 @@ typedef struct expansion {
   ethd__two push[ETHD__TERMS], force_x[ETHD__TERMS], force_y[ETHD__TERMS];       /* on the ring; push: over distance */
   ethd__two inverse_distance, stiffness; /* the pad's; stiffness over distance */
   double inverse_mass;                   /* of the finger */
-  double swing;                          /* -w^2 of the hand's path, for its terms beyond 3 */
+  double swing;                          /* -w^2 of the hand's path, for its terms from ETHD__PATH_TERMS on */
   double tolerance; /* m/s: terms that change less end the series, and the step is so short that the last ones do */
   int order_max;
 } expansion;
@@ -53,7 +53,8 @@ ETHD__INLINE void rotate(expansion *w, int k) {
 /* Computes term k of the vector from ring to finger. */
 ETHD__INLINE void relate(expansion *w, int k) {
   if (k > 0) rotate(w, k);
-  if (k > 3) w->out->hand[k] = w->out->hand[k - 2] * ethd__both(w->swing * (INVERSE[k] * INVERSE[k - 1]));
+  if (k >= ETHD__PATH_TERMS)
+    w->out->hand[k] = w->out->hand[k - 2] * ethd__both(w->swing * (INVERSE[k] * INVERSE[k - 1]));
   ethd__two x = w->length * w->cosine[k], y = w->length * w->sine[k];
   w->apart[k] = (w->out->hand[k] + w->out->aside[k]) - (ethd__two){ethd__sum(x), ethd__sum(y)};
   w->half_square[k] = ethd__both(ethd__sum(ethd__half_square(w->apart, k)));

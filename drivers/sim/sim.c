@@ -73,7 +73,8 @@ static bool samples_are_slow(const ethd_path *path) {
 }
 
 static bool shape_is_good(const ethd_path *p) {
-  return isfinite(p->from.x) && isfinite(p->from.y) && isfinite(p->to_x) && p->speed > 0 &&
+  return isfinite(p->from.x) && isfinite(p->from.y) && isfinite(p->to_x) &&
+         (p->profile == ETHD_PROFILE_CONSTANT || p->profile == ETHD_PROFILE_MINIMUM_JERK) && p->speed > 0 &&
          p->speed <= ETHD_HAND_SPEED_MAX && p->ramp_up >= 0 && isfinite(p->ramp_up) && p->ramp_down >= 0 &&
          isfinite(p->ramp_down);
 }

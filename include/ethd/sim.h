@@ -24,6 +24,12 @@ enum {
   ETHD_READING_COUNT
 };
 
+/* The speed of the hand on its synthetic path; every plant file names one. */
+enum {
+  ETHD_PROFILE_CONSTANT,     /* V between two ramps */
+  ETHD_PROFILE_MINIMUM_JERK, /* that of human reaches (Flash and Hogan 1985): x0 + D (10 s^3 - 15 s^4 + 6 s^5), s = t/T */
+};
+
 #define ETHD_SIM_DELAY_PERIODS 8
 
 typedef struct ethd_plant {
@@ -46,9 +52,11 @@ typedef struct ethd_plant {
   double ray_noise, ray_skew;                 /* m; s from ray 0 to ray 15, in ray order */
   double start, start_sd;                     /* D0, m before the place where the ring would meet the wall */
   double overshoot, overshoot_spread;         /* O m, s: the finger aims O exp(s g) behind it */
-  double ramp_up, ramp_down;                  /* s */
+  int32_t profile;                            /* ETHD_PROFILE_* */
+  double ramp_up, ramp_down;                  /* s, with ETHD_PROFILE_CONSTANT */
   double lateral_sd;                          /* m, y offset */
-  double speed_low, speed_high, speed_spread; /* m/s, m/s, coefficient of variation */
+  double speed_low, speed_high, speed_spread; /* m/s, m/s, coefficient of variation: V, of ETHD_PROFILE_MINIMUM_JERK
+                                                 where the path passes the place that `start` counts from */
   int32_t metrics_side;                       /* 0: the ring's true speed; 1: the encoder's (motor) side */
   double band_low, band_high;                 /* m/s: valid within 0.2 +- band_low, 0.4 +- band_high */
   /* of the sensors that a plant file doesn't describe; ethd_plant_finger fills them */
@@ -76,10 +84,12 @@ typedef struct ethd_path_sample {
 } ethd_path_sample;
 
 typedef struct ethd_path {
-  /* synthetic (sample_count = 0): from `from` to x = to_x, speed V (1 - cos)/2 over ramp_up, V, the
-     mirror image over ramp_down; starts at t = 0 */
+  /* synthetic (sample_count = 0): from `from` to x = to_x, starts at t = 0; `speed` V, m/s, is its largest.
+     ETHD_PROFILE_CONSTANT: speed V (1 - cos)/2 over ramp_up, V, the mirror image over ramp_down.
+     ETHD_PROFILE_MINIMUM_JERK: T = 15/8 D / V, D = to_x - from.x */
   ethd_vec from;
   double to_x, speed, ramp_up, ramp_down;
+  int32_t profile;
   /* recorded: C1 cubic interpolation (slopes of the parabola through three samples), held at both ends, where
      its slope is 0; the samples outlive the simulation */
   const ethd_path_sample *samples;
@@ -97,12 +107,13 @@ typedef struct ethd_sim_tap {
   uint64_t seed, tap;   /* on which all random numbers depend */
   double finger_radius; /* m */
   double phase;         /* s: first proximity sample */
-  double commanded;     /* m/s: the V that was drawn */
+  double commanded;     /* m/s: the speed that was drawn */
   ethd_path path;
 } ethd_sim_tap;
 
 /* Draws a synthetic tap at commanded speed `speed`, m/s, toward the wall that the ring meets with its centre at
-   `meet`, m in R_0 (the wall on the left). Normal draws are cut at 2 sd, the speed at 2.5. [any] */
+   `meet`, m in R_0 (the wall on the left). Normal draws are cut at 2 sd, the speed at 2.5. A movement of minimum jerk
+   that begins or ends near the wall is slower there, so that nowhere it is more than 3 times as fast as drawn. [any] */
 ETHD_API void ethd_sim_draw(const ethd_plant *plant, uint64_t seed, uint64_t tap, double speed, ethd_vec meet,
                             ethd_sim_tap *out);
 

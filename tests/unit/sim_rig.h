@@ -26,7 +26,7 @@ static inline void sim_hold(ethd_sim_def *def) {
 
 static inline ethd_sim_tap sim_tap(void) {
   ethd_sim_tap tap = {.seed = 3, .tap = 5, .finger_radius = 0.0073, .phase = 0.7e-3, .commanded = 0.4};
-  tap.path = (ethd_path){{0.29, 0.25}, 0.19, 0.4, 0.08, 0.03, NULL, 0};
+  tap.path = (ethd_path){{0.29, 0.25}, 0.19, 0.4, 0.08, 0.03, ETHD_PROFILE_CONSTANT, NULL, 0};
   return tap;
 }
 

@@ -68,6 +68,80 @@ START_TEST(test_other_reaches) {
 }
 END_TEST
 
+/* ---- minimum jerk ---- */
+
+/* 0.1 m in 0.5 s: on average 0.2 m/s, halfway 15/8 of it. */
+static const ethd_path jerk = {
+    .from = {0.30, 0.24}, .to_x = 0.20, .speed = 0.375, .profile = ETHD_PROFILE_MINIMUM_JERK};
+
+/* Position and speed as Flash and Hogan (1985) give them; at rest before and after; to the right the mirror image. */
+START_TEST(test_minimum_jerk) {
+  ethd_path right = jerk;
+  ethd_vec x, v, y, w;
+  right.to_x = 0.40;
+  ck_assert_double_eq_tol(ethd_path_end(&jerk), 0.5, 1e-15);
+  for (double t = -0.1; t < 0.7; t += 0.00037) {
+    double s = fmin(1, fmax(0, t / 0.5));
+    ethd_path_at(&jerk, t, &x, &v);
+    ck_assert_double_eq_tol(x.x, 0.30 - 0.1 * (10 * pow(s, 3) - 15 * pow(s, 4) + 6 * pow(s, 5)), 1e-15);
+    ck_assert_double_eq_tol(v.x, -0.2 * 30 * pow(s * (1 - s), 2), 1e-14);
+    ck_assert(x.y == 0.24 && v.y == 0);
+    ethd_path_at(&right, t, &y, &w);
+    ck_assert_double_eq_tol(y.x - 0.30, 0.30 - x.x, 1e-15);
+    ck_assert_double_eq_tol(w.x, -v.x, 1e-14);
+  }
+  ck_assert(x.x == 0.20);
+}
+END_TEST
+
+/* Its acceleration is greatest, 10 / sqrt(3) D / T^2, at s = (1 -+ 1 / sqrt(3)) / 2, and 0 at its ends and halfway; of all
+   movements between rests without acceleration it has the least integral of squared jerk, 720 D^2 / T^5. */
+START_TEST(test_acceleration) {
+  ethd__piece piece;
+  ethd__path_piece(&jerk, 0, &piece);
+  double most = 10 / sqrt(3) * 0.1 / 0.25, squared = 0, h = 1e-4;
+  ck_assert_double_eq_tol(ethd__piece_at(&piece, 0.25 * (1 - 1 / sqrt(3))).a.x, -most, 1e-13);
+  ck_assert_double_eq_tol(ethd__piece_at(&piece, 0.25 * (1 + 1 / sqrt(3))).a.x, most, 1e-13);
+  for (int i = 0; i < 3; i++) ck_assert_double_eq_tol(ethd__piece_at(&piece, 0.25 * i).a.x, 0, 1e-13);
+  for (int i = 0; i < 5000; i++) {
+    double change = ethd__piece_at(&piece, h * (i + 1)).a.x - ethd__piece_at(&piece, h * i).a.x;
+    squared += change * change / h;
+  }
+  ck_assert_double_eq_tol(squared, 720 * 0.01 / pow(0.5, 5), 1e-4);
+}
+END_TEST
+
+/* The power series about any instant is the piece itself. */
+START_TEST(test_terms) {
+  static const ethd_path *const paths[] = {&reach, &jerk};
+  for (double t = 0.001; t < 0.07; t += 0.001) {
+    ethd__piece piece;
+    ethd__two term[ETHD__PATH_TERMS];
+    ethd__path_piece(paths[_i], t, &piece);
+    ethd__sim_motion at = ethd__piece_at(&piece, t), then = ethd__piece_at(&piece, t + 1e-3);
+    ethd__piece_terms(&piece, &at, term);
+    double x = 0, v = 0;
+    for (int k = ETHD__PATH_TERMS - 1; k >= 0; k--) x = x * 1e-3 + term[k][0], v = k ? v * 1e-3 + k * term[k][0] : v;
+    ck_assert_double_eq_tol(x, then.x.x, _i ? 1e-16 : 3e-14); /* of a ramp, terms from the sixth on are left out */
+    ck_assert_double_eq_tol(v, then.v.x, _i ? 1e-15 : 2e-10);
+  }
+}
+END_TEST
+
+/* A movement of no length is a jump, not 0 / 0. */
+START_TEST(test_no_length) {
+  ethd_path still = jerk;
+  ethd_vec x, v;
+  for (int i = 0; i < 2; i++) {
+    still.to_x = i ? nextafter(0.30, 1) : 0.30;
+    for (double t = -1; t < 2; t++) {
+      ethd_path_at(&still, t, &x, &v);
+      ck_assert(x.x == (t < 0 ? 0.30 : still.to_x) && v.x == 0);
+    }
+  }
+}
+END_TEST
+
 /* ---- recorded ---- */
 
 enum { COUNT = 40 };
@@ -165,6 +239,7 @@ START_TEST(test_derivatives) {
   ethd_path_sample s[COUNT];
   ethd_path path = record(s, parabola);
   derivatives_agree(&reach, -0.01, 0.4);
+  derivatives_agree(&jerk, -0.01, 0.6);
   derivatives_agree(&path, 0.05, 0.3);
 }
 END_TEST
@@ -177,6 +252,8 @@ START_TEST(test_travel) {
     if (i % 2) {
       piece.c = (ethd_vec){draw(9 * i + 2, -20, 20), draw(9 * i + 3, -20, 20)};
       piece.d = (ethd_vec){draw(9 * i + 4, -500, 500), draw(9 * i + 5, -500, 500)};
+      piece.f = draw(9 * i + 8, -5e4, 5e4) * (i % 4 == 1);
+      piece.g = draw(9 * i, -5e6, 5e6) * (i % 4 == 1);
     } else {
       piece.e = (ethd_vec){draw(9 * i + 4, -0.01, 0.01), draw(9 * i + 5, -0.01, 0.01)};
       piece.w = 100;
@@ -201,6 +278,10 @@ int main(void) {
   tcase_add_test(t, test_speed);
   tcase_add_test(t, test_position);
   tcase_add_test(t, test_other_reaches);
+  tcase_add_test(t, test_minimum_jerk);
+  tcase_add_test(t, test_acceleration);
+  tcase_add_loop_test(t, test_terms, 0, 2);
+  tcase_add_test(t, test_no_length);
   tcase_add_test(t, test_parabola);
   tcase_add_test(t, test_through_samples);
   tcase_add_test(t, test_single_sample);

@@ -57,7 +57,7 @@ START_TEST(test_saturation_and_delay) {
   ethd_sim_tap tap = sim_tap();
   def.plant.friction = def.plant.viscous = 0;
   def.plant.delay = delays[_i];
-  tap.path = (ethd_path){{0.25, 0.25}, 0.2, 1e-9, 0, 0, NULL, 0};
+  tap.path = (ethd_path){{0.25, 0.25}, 0.2, 1e-9, 0, 0, ETHD_PROFILE_CONSTANT, NULL, 0};
   ethd_sim *sim = sim_open(&def, &tap);
   double q0[2] = {PI / 2, 0}, l = 0.25;
   for (int k = 0; k < 15; k++) {
@@ -122,13 +122,14 @@ static void follow(ethd_sim *sim) {
   sim_push(sim, 0.25 * (cos(q[0]) * fy - sin(q[0]) * fx), 0.25 * (cos(q[1]) * fy - sin(q[1]) * fx));
 }
 
-/* Left alone the finger is on its path: the synthetic one, and a recorded one that shakes. */
+/* Left alone the finger is on its path: the synthetic ones, and a recorded one that shakes. */
 START_TEST(test_free_finger) {
   enum { COUNT = 300 };
   ethd_path_sample samples[COUNT];
   ethd_sim_def def = sim_def();
   ethd_sim_tap tap = sim_tap();
-  if (_i) {
+  if (_i == 2) tap.path.profile = ETHD_PROFILE_MINIMUM_JERK;
+  if (_i == 1) {
     for (int i = 0; i < COUNT; i++) {
       double t = 0.00147 * i;
       samples[i] = (ethd_path_sample){t, 0.29 - 0.1 * t + draw((uint64_t)i, -1e-5, 1e-5), 0.25 + 0.01 * sin(9 * t)};
@@ -268,6 +269,7 @@ START_TEST(test_refused_taps) {
   REFUSED(ETHD_E_RANGE, t.path.speed = 0);
   REFUSED(ETHD_E_RANGE, t.path.speed = 1.001 * ETHD_HAND_SPEED_MAX);
   REFUSED(ETHD_E_RANGE, t.path.ramp_up = NAN);
+  REFUSED(ETHD_E_RANGE, t.path.profile = 2);
   REFUSED(ETHD_E_UNREACHABLE, t.path.from.x = 0.45);
   t.path.samples = good.path.samples = s;
   good.path.sample_count = 3;
@@ -290,7 +292,7 @@ int main(void) {
   tcase_add_loop_test(t, test_saturation_and_delay, 0, 9);
   tcase_add_test(t, test_torque_changes_in_time);
   tcase_add_test(t, test_safe);
-  tcase_add_loop_test(t, test_free_finger, 0, 2);
+  tcase_add_loop_test(t, test_free_finger, 0, 3);
   tcase_add_test(t, test_finger_against_ring);
   tcase_add_loop_test(t, test_same_bytes, 0, 2);
   tcase_add_test(t, test_refused_definitions);

@@ -131,6 +131,38 @@ START_TEST(test_two_springs) {
 }
 END_TEST
 
+/* The finger pressed on a ring as good as fixed by a hand of minimum jerk, both at rest at first. From its path h it is
+   y away: m y'' = -k y - K (h + y - r) is solved by y = -K / (k + K) (h - r - h''/w^2 + h''''/w^4) and a sine. */
+START_TEST(test_hand_of_minimum_jerk) {
+  enum { MS = 80 };
+  const double length = 0.02, whole = 1e-3 * MS, stiffness = 280 + 27000, square = stiffness / 0.07;
+  const ethd_path path = {.from = {0.258, 0.25},
+                          .to_x = 0.258 + length,
+                          .speed = 1.875 * length / whole,
+                          .profile = ETHD_PROFILE_MINIMUM_JERK};
+  ethd_sim_def def = quiet();
+  world w;
+  put(&def, PI / 2, 0, 0.0045, &w);
+  w.body.inertia[0] = w.body.inertia[1] = 1e12;
+  ethd__path_piece(&path, 0, &w.hand);
+  double edge = 0.25 + w.body.gap, rest = (280 * path.from.x + 27000 * edge) / stiffness;
+  w.state.q[2] = rest;
+  w.state.touch = ETHD__PRESSING;
+  for (int i = 1; i < MS; i++) {
+    run(&w, 1e-3, 1e-3);
+    double s = w.t / whole, h = path.from.x + length * s * s * s * (10 + s * (6 * s - 15));
+    double second = length / (whole * whole) * s * (60 + s * (120 * s - 180));
+    double third = 60 * length / (whole * whole * whole), fourth = (720 * s - 360) * length / pow(whole, 4);
+    double fifth = 720 * length / pow(whole, 5), first = -third / square + fifth / (square * square);
+    double y = h - edge - second / square + fourth / (square * square), root = sqrt(square);
+    y += 360 * length / pow(whole, 4) / (square * square) * cos(root * w.t) - first / root * sin(root * w.t);
+    double x = h - 27000 / stiffness * y;
+    ck_assert_double_eq_tol(w.state.q[2], x, 1e-14);
+    ck_assert(w.state.q[3] == 0.25 && w.state.touch == ETHD__PRESSING);
+  }
+}
+END_TEST
+
 /* A blow on the finger dies away in the hand: m x'' + b x' + k x = 0. */
 START_TEST(test_hand) {
   ethd_sim_def def = quiet();
@@ -403,6 +435,7 @@ int main(void) {
   tcase_add_test(t, test_friction);
   tcase_add_test(t, test_torque);
   tcase_add_test(t, test_two_springs);
+  tcase_add_test(t, test_hand_of_minimum_jerk);
   tcase_add_test(t, test_hand);
   tcase_add_test(t, test_pad);
   tcase_add_loop_test(t, test_energy, 0, 8);

@@ -79,11 +79,54 @@ START_TEST(test_key) {
 }
 END_TEST
 
+/* A movement of minimum jerk passes `meet` at the commanded speed, unless it were more than 3 times as fast halfway. */
+START_TEST(test_speed_at_the_wall) {
+  ethd_sim_def def = sim_def();
+  const ethd_vec meet = {0.25, 0.24};
+  def.plant.profile = ETHD_PROFILE_MINIMUM_JERK;
+  def.plant.overshoot = 8e-3;
+  def.plant.overshoot_spread = 1;
+  int capped = 0;
+  for (uint64_t k = 0; k < 2000; k++) {
+    ethd_sim_tap t;
+    ethd_vec x, v;
+    ethd_sim_draw(&def.plant, 4, k, 0.4, meet, &t);
+    double low = 0, high = ethd_path_end(&t.path), length = t.path.from.x - t.path.to_x;
+    ck_assert_double_eq_tol(high, 1.875 * length / t.path.speed, 1e-15);
+    while (high - low > 1e-15) {
+      double middle = (low + high) / 2;
+      ethd_path_at(&t.path, middle, &x, &v);
+      *(x.x > meet.x ? &low : &high) = middle;
+    }
+    ck_assert_double_eq_tol(x.x, meet.x, 1e-14);
+    bool cap = fabs(t.path.speed - 3 * t.commanded) < 1e-12;
+    ck_assert(cap ? -v.x < t.commanded : fabs(v.x + t.commanded) < 1e-12 && t.path.speed < 3 * t.commanded);
+    capped += cap;
+  }
+  ck_assert(capped > 20 && capped < 1000);
+}
+END_TEST
+
+/* A hand that would be faster than any isn't drawn, and neither one that doesn't move. */
+START_TEST(test_extreme_movements) {
+  ethd_sim_def def = sim_def();
+  ethd_sim_tap t;
+  def.plant.profile = ETHD_PROFILE_MINIMUM_JERK;
+  ethd_sim_draw(&def.plant, 4, 1, 190, (ethd_vec){0.25, 0.24}, &t);
+  ck_assert_double_eq(t.path.speed, ETHD_HAND_SPEED_MAX);
+  def.plant.start = def.plant.start_sd = def.plant.overshoot = 0;
+  ethd_sim_draw(&def.plant, 4, 1, 0.4, (ethd_vec){0.25, 0.24}, &t);
+  ethd_sim_destroy(sim_open(&def, &t));
+}
+END_TEST
+
 int main(void) {
   Suite *suite = suite_create("sim_draw");
   TCase *t = tcase_create("sim_draw");
   tcase_add_loop_test(t, test_moments, 0, 3);
   tcase_add_test(t, test_key);
+  tcase_add_test(t, test_speed_at_the_wall);
+  tcase_add_test(t, test_extreme_movements);
   suite_add_tcase(suite, t);
   return rig_run(suite);
 }
