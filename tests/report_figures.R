@@ -23,7 +23,7 @@ for (name in c("v_hand_mps", "touch_depth_m", "eps_felt_m")) if (is.null(taps[[n
 taps <- within(taps, {
   v_rvo <- v_rvo_mps; v_of <- v_of_mps; d_max <- 1e3*d_max_m; v_rmin <- v_rmin_mps; delta_s <- delta_s_ms; eps <- 1e3*eps_m
   delay <- 1e3*(t_of_s - t_seen_s); peak_force <- peak_force_n; v_hand <- v_hand_mps; touch_depth <- 1e3*touch_depth_m; eps_felt <- 1e3*eps_felt_m
-  size_of <- abs(v_of); size_rmin <- abs(v_rmin); with_finger <- 100*(v_of > 0)
+  size_of <- abs(v_of); size_rmin <- abs(v_rmin); with_finger <- 100*(v_of > 0); brief <- 100*(delta_s < 20); shallow <- 100*(eps < 3)
 })
 people <- unique(taps$participant)
 ok <- taps$reason == "ok"
@@ -124,10 +124,15 @@ holm("interaction", rows)
 rows <- report("table1.csv")
 for (k in seq_len(nrow(rows))) {
   r <- rows[k, ]; x <- own(taps[[r$metric]], "offset", r$speed, mean); x <- x[!is.na(x)]; what <- paste("table 1", r$metric, r$speed)
-  low <- r$paper_mean - r$paper_sd; high <- r$paper_mean + r$paper_sd; p <- alike(x, low, high)
-  there <- c(people = length(x), people_mean = mean(x), people_low_90 = ends(x, 0.9)[1], people_high_90 = ends(x, 0.9)[2], p_equivalent = p)
+  if (length(x) < 6) next
+  own_error <- var(x)/length(x); error <- r$paper_sd^2/9; d <- mean(x) - r$paper_mean # Welch's t test
+  f <- (own_error + error)^2/(own_error^2/(length(x) - 1) + error^2/8)
+  all <- taps[[r$metric]][ok & taps$transition == "offset" & taps$speed == r$speed]; all <- all[!is.na(all)]
+  below <- pf(var(all)/r$paper_sd^2, length(all) - 1, 8)
+  there <- c(people = length(x), people_mean = mean(x), people_low = ends(x, 0.95)[1], people_high = ends(x, 0.95)[2], difference = d,
+             difference_low = d - qt(0.975, f)*sqrt(own_error + error), difference_high = d + qt(0.975, f)*sqrt(own_error + error),
+             p_mean = 2*pt(-abs(d)/sqrt(own_error + error), f), sd_ratio = sd(all)/r$paper_sd, p_sd = 2*min(below, 1 - below))
   for (name in names(there)) same(paste(what, name), r[[name]], there[[name]])
-  same(paste(what, "verdict"), r$verdict, if (p < 0.05) "shown" else if (ends(x, 0.95)[1] > high || ends(x, 0.95)[2] < low) "the contrary is shown" else "not shown")
 }
 
 # ---- the paper's sentences ----
@@ -140,7 +145,7 @@ contrasts <- list(
   at("d_max", ol) - at("d_max", sl), at("v_of", ol) - at("v_of", sl), at("v_rmin", ol) - at("v_rmin", sl),
   at("d_max", sh) - 3*at("d_max", oh), at("size_rmin", sh) - 2*at("size_rmin", oh), at("size_of", sh) - at("size_of", oh),
   at("with_finger", oh, mean), inter("d_max"), inter("size_of"), inter("size_rmin"), (valid(sh) + valid(oh))/2,
-  at("delta_s", ol, max), at("delta_s", oh, max), at("eps", ol, max), at("eps", oh, max))
+  at("brief", ol, mean), at("brief", oh, mean), at("shallow", ol, mean), at("shallow", oh, mean))
 overlap <- function(x, y) { # Derrick and others 2017
   a <- x[!is.na(x)]; b <- y[!is.na(y)]; whole <- !is.na(x + y); n <- length(a); m <- length(b); c <- sum(whole)
   if (min(n, m) < 6) return(rep(NA, 4))
@@ -151,7 +156,7 @@ overlap <- function(x, y) { # Derrick and others 2017
   c(d, d + qt(c(0.025, 0.975), f)*e, 2*pt(-abs(d)/e, f))
 }
 claims <- report("claims.csv")
-ps <- rep(0, 10); overlaps <- 0
+ps <- rep(0, 10); against <- rep(1, 10); parts <- table(claims$claim); overlaps <- 0
 for (k in seq_along(contrasts)) {
   r <- claims[k, ]; x <- contrasts[[k]]; what <- paste("claim", r$claim, r$contrast)
   both <- if (is.list(x)) x$low + x$high else x
@@ -160,18 +165,21 @@ for (k in seq_along(contrasts)) {
     o <- overlap(x$high, -x$low); overlaps <- overlaps + !is.na(o[4])
     if (!is.na(o[4])) for (i in 1:4) same(paste(what, "overlap", i), r[[c("mean", "low", "high", "p")[i]]], o[i])
     ps[r$claim] <- max(ps[r$claim], if (is.na(o[1]) || o[1] > 0) o[4] else 1)
+    against[r$claim] <- min(against[r$claim], if (is.na(o[1]) || o[1] <= 0) o[4] else 1)
     next
   }
   same(paste(what, "n"), r$participants, length(y)); same(paste(what, "mean"), r$mean, mean(y))
   for (i in 1:2) same(paste(what, "end", i), r[[c("low", "high")[i]]], ends(y, 0.95)[i])
   if (!is.na(r$from) && !is.na(r$to)) {
     p <- alike(y, r$from, r$to); same(paste(what, "TOST"), r$p, p)
-    if (!is.na(p) && (ends(y, 0.95)[1] > r$to || ends(y, 0.95)[2] < r$from)) p <- 1
+    contrary <- if (is.na(p)) NA else if (sd(y) == 0) as.numeric(mean(y) > r$from && mean(y) < r$to) else
+      min(1, 2*min(t.test(y, mu = r$from, alternative = "less")$p.value, t.test(y, mu = r$to, alternative = "greater")$p.value))
   } else {
     z <- if (is.na(r$to)) y - r$from else r$to - y
     p <- flip(z); same(paste(what, "sign flip"), r$p, p[1], p[2]); p <- if (is.na(r$p) || mean(z) > 0) r$p else 1
+    contrary <- if (is.na(r$p) || mean(z) <= 0) r$p else 1
   }
-  ps[r$claim] <- max(ps[r$claim], p)
+  ps[r$claim] <- max(ps[r$claim], p); against[r$claim] <- min(against[r$claim], contrary)
 }
 r <- claims[nrow(claims), ]
 speed <- sort(unique(taps$commanded_mps)); early <- taps$reason == "early-contact"
@@ -179,8 +187,12 @@ cuts <- (head(speed, -1) + tail(speed, -1))/2
 mistakes <- sapply(cuts, function(cut) sum(!early & taps$commanded_mps > cut) + sum(early & taps$commanded_mps < cut))
 same("the threshold of early touches", r$mean, cuts[which.min(mistakes)])
 ps[10] <- r$p
+against <- pmin(1, against*as.vector(parts)); against[is.na(ps)] <- NA; against[10] <- r$p_contrary
 first <- claims[match(1:10, claims$claim), ]
-for (k in 1:10) { same(paste("claim", k, "p"), first$p_claim[k], ps[k]); same(paste("claim", k, "Holm"), first$p_holm[k], p.adjust(ps, "holm")[k]) }
+for (k in 1:10) { same(paste("claim", k, "p"), first$p_claim[k], ps[k]); same(paste("claim", k, "Holm"), first$p_holm[k], p.adjust(ps, "holm")[k])
+  same(paste("claim", k, "contrary"), first$p_contrary[k], against[k]); same(paste("claim", k, "contrary, Holm"), first$p_contrary_holm[k], p.adjust(against, "holm")[k])
+  verdict <- if (is.na(ps[k])) "too few people" else if (p.adjust(ps, "holm")[k] < 0.05) "shown" else if (p.adjust(against, "holm")[k] < 0.05) "the contrary is shown" else "not shown"
+  same(paste("claim", k, "verdict"), first$verdict[k], verdict) }
 
 # ---- the survey ----
 

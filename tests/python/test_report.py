@@ -141,7 +141,7 @@ def test_intervals_hold_the_truth_about_as_often_as_they_say():
 
 def test_equivalence_without_spread():
     assert st.equivalent(np.zeros(6), -1, 1).p == 0 and st.equivalent(np.full(6, 2.0), -1, 1).p == 1
-    assert st.equivalent(np.full(6, 2.0), -1, 1).outside and math.isnan(st.equivalent(np.zeros(1), -1, 1).p)
+    assert st.equivalent(np.full(6, 2.0), -1, 1).p_outside == 0 and math.isnan(st.equivalent(np.zeros(1), -1, 1).p)
 
 
 # ---- words ----

@@ -6,8 +6,8 @@ from typing import Callable, List, Sequence, Tuple
 
 import numpy as np
 
-from ethd_programs.report.statistics import (FEWEST_PEOPLE, NAN, Clusters, Equivalence, Interval, Numbers, Weights, compare, equivalent,
-                                             holm, overlapping)
+from ethd_programs.report.statistics import (FEWEST_PEOPLE, NAN, Clusters, Interval, Numbers, Published, Weights, beside_published,
+                                             compare, equivalent, holm, overlapping, t_interval)
 from ethd_programs.report.taps import QUANTITIES, Cell, Quantity, Taps
 
 TOO_FEW, SHOWN, OPEN, CONTRARY = "too few people", "shown", "not shown", "the contrary is shown"
@@ -26,26 +26,22 @@ class Margins:
         return float(getattr(self, quantity, NAN))
 
 
-def _between(e: Equivalence) -> str:
-    return SHOWN if e.p < _LEVEL else CONTRARY if e.outside else OPEN
-
-
 # ---- Table 1 ----
+
+NINE = 9  #: taps behind each figure of the paper
 
 
 @dataclass(frozen=True)
 class Mean:
-    """Shown to agree when people's mean lies within the paper's sd of the paper's mean (two one-sided t tests)."""
-
     name: str
     quantity: Quantity
     speed: str
     paper: float
     paper_sd: float
     people: int = 0
-    average: float = NAN
-    equivalence: Equivalence = Equivalence()
-    verdict: str = TOO_FEW
+    average: float = NAN  #: of people's means
+    interval: Interval = Interval()  #: 95 %
+    beside: Published = Published()
 
 
 _TABLE1 = (("Delta_s, low", "delta_s", "low", 3.111, 2.804), ("eps, low", "eps", "low", 0.388, 0.251),
@@ -58,9 +54,10 @@ def means(taps: Taps) -> List[Mean]:
         quantity, cell = QUANTITIES[key], taps.cell("offset", speed)
         own = taps.by_person(cell, cell.of(quantity) if cell else None, "mean")
         own = own[~np.isnan(own)]
-        e = equivalent(own, paper - sd, paper + sd)
-        verdict = _between(e) if len(own) >= FEWEST_PEOPLE else TOO_FEW
-        out.append(Mean(name, quantity, speed, paper, sd, len(own), float(np.mean(own)) if len(own) else NAN, e, verdict))
+        made = cell is not None and len(own) >= FEWEST_PEOPLE
+        out.append(Mean(name, quantity, speed, paper, sd, len(own), float(np.mean(own)) if len(own) else NAN,
+                        t_interval(own, 0.95) if len(own) > 2 else Interval(),
+                        beside_published(own, cell.values(quantity), NINE, paper, sd) if cell and made else Published()))
     return out
 
 
@@ -79,21 +76,25 @@ class Part:
     mean: float = NAN
     interval: Interval = Interval()  #: 95 %
     p: float = NAN  #: by `test`, two-sided but for TOST
+    p_shown: float = NAN  #: p where the mean lies within the bounds, else 1
+    p_contrary: float = NAN  #: two-sided p that it lies outside where it does, else 1
     d_z: float = NAN  #: of contrasts that are compared with 0
     test: str = ""  #: sign flip, TOST, overlap or bootstrap; "": no test was made
     at_low: int = 0  #: of an overlap: people who have both strategies at this speed
     at_high: int = 0
-    verdict: str = TOO_FEW
 
 
 @dataclass
 class Claim:
-    """It holds when all its parts do: its p is the largest of theirs."""
+    """It holds when all its parts do: its p is the largest of theirs. The contrary holds when that of one part does: its p is
+    the smallest of theirs by Bonferroni."""
 
     text: str
     parts: List[Part] = field(default_factory=list)
     p: float = NAN
     holm: float = NAN  #: corrected for all claims that could be tested
+    p_contrary: float = NAN
+    holm_contrary: float = NAN
     verdict: str = TOO_FEW
 
 
@@ -149,8 +150,15 @@ def _more_at_high(words: str, unit: str, of: Callable[[Cell], Numbers]) -> _Cont
     return _Contrast(f"{words}: (smooth - offset), high - low", unit, of, "median", (-1, 1, 1, -1), low=0)
 
 
-def _below(words: str, unit: str, key: str, limit: float) -> List[_Contrast]:
-    return [_Contrast(f"{words}: offset, {speed}", unit, _figure(key), "most", weights, high=limit)
+_MOST = 90  # %: of a person's taps that keep a limit which the paper calls kept
+
+
+def _mostly_below(key: str, limit: float, unit: str) -> List[_Contrast]:
+    def share(cell: Cell) -> Numbers:
+        values = cell.of(QUANTITIES[key])
+        return np.where(np.isnan(values), NAN, 100.0 * (values < limit))
+
+    return [_Contrast(f"share of taps with {key} under {limit} {unit}: offset, {speed}", "%", share, "mean", weights, low=_MOST)
             for speed, weights in (("low", (0, 1, 0, 0)), ("high", (0, 0, 0, 1)))]
 
 
@@ -170,13 +178,14 @@ _SENTENCES: List[Tuple[str, List[_Contrast]]] = [
       _more_at_high("|v_rmin|", "m/s", _figure("v_rmin", True))]),
     ("high speed: 20 to 30 % of the taps are valid, as 10 to 15 taps were needed for three",
      [_Contrast("valid taps: mean of smooth and offset", "%", _is_valid, "mean", (0, 0, 0.5, 0.5), 20, 30)]),
-    ("the ring is stopped in practice in less than 20 ms", _below("longest Delta_s", "ms", "delta_s", 20)),
-    ("the offset of the wall remains below 3 mm", _below("largest eps", "mm", "eps", 3)),
+    ("the ring is stopped in practice in less than 20 ms (over 90 % of a person's taps)", _mostly_below("delta_s", 20, "ms")),
+    ("the offset of the wall remains below 3 mm (over 90 % of a person's taps)", _mostly_below("eps", 3, "mm")),
 ]
 
 
-def _beyond(p: float, right_side: bool) -> str:
-    return OPEN if not p < _LEVEL else SHOWN if right_side else CONTRARY
+def _directed(out: Part, p: float, is_inside: bool) -> None:
+    """Of a two-sided p that belongs to the side on which the mean lies."""
+    out.p, out.p_shown, out.p_contrary = p, p if is_inside else 1.0, 1.0 if is_inside else p
 
 
 def _judge_overlap(taps: Taps, contrast: _Contrast, out: Part) -> None:
@@ -186,8 +195,8 @@ def _judge_overlap(taps: Taps, contrast: _Contrast, out: Part) -> None:
     if o.first < FEWEST_PEOPLE or o.second < FEWEST_PEOPLE or math.isnan(o.p):
         return
     out.test, out.people, out.at_low, out.at_high = "overlap", o.first + o.second - o.both, o.second, o.first
-    out.mean, out.interval, out.p = o.difference, o.interval, o.p
-    out.verdict = _beyond(o.p, o.difference > 0)
+    out.mean, out.interval = o.difference, o.interval
+    _directed(out, o.p, o.difference > 0)
 
 
 def _judge(taps: Taps, contrast: _Contrast, margins: Margins, seed: int) -> Part:
@@ -205,11 +214,12 @@ def _judge(taps: Taps, contrast: _Contrast, margins: Margins, seed: int) -> Part
             _judge_overlap(taps, contrast, out)
     elif math.isfinite(low) and math.isfinite(high):
         e = equivalent(values, low, high)
-        out.test, out.p, out.verdict = "TOST", e.p, _between(e)
+        out.test, out.p, out.p_shown, out.p_contrary = "TOST", e.p, e.p, e.p_outside
     else:
         above = math.isfinite(low)
         shifted = compare(values - low if above else high - values, seed, with_effect=False)
-        out.test, out.p, out.verdict = "sign flip", shifted.p, _beyond(shifted.p, shifted.mean > 0)
+        out.test = "sign flip"
+        _directed(out, shifted.p, shifted.mean > 0)
         if low == 0:
             out.d_z = shifted.d_z
     return out
@@ -247,31 +257,20 @@ def _early(taps: Taps, seed: int) -> Claim:
     draws = clusters.draws(threshold, seed) if part.people >= FEWEST_PEOPLE and not math.isnan(part.mean) else np.empty(0)
     if len(draws):
         part.test, part.interval = "bootstrap", Interval(*map(float, np.quantile(draws, [0.025, 0.975])))
-        part.p = (1 + max(np.count_nonzero(draws < low), np.count_nonzero(draws > high))) / (len(draws) + 1)
-        outside = part.interval.low > high or part.interval.high < low
-        part.verdict = SHOWN if part.p < _LEVEL else CONTRARY if outside else OPEN
+        below, above = np.count_nonzero(draws < low), np.count_nonzero(draws > high)
+        part.p = part.p_shown = (1 + max(below, above)) / (len(draws) + 1)
+        part.p_contrary = min(1.0, 2 * (1 + len(draws) - max(below, above)) / (len(draws) + 1))
     return Claim("the finger touches before the ring meets the wall from about 0.5 m/s on", [part])
-
-
-def _largest_p(parts: Sequence[Part]) -> float:
-    out = 0.0
-    for part in parts:
-        # a part that points the other way speaks for nothing, however small its p
-        away = (math.isinf(part.high) and part.mean < part.low) or (math.isinf(part.low) and part.mean > part.high)
-        p = 1.0 if part.verdict == CONTRARY or away else part.p
-        out = NAN if math.isnan(p) or math.isnan(out) else max(out, p)
-    return out
 
 
 def claims(taps: Taps, margins: Margins, seed: int) -> List[Claim]:
     out = [Claim(text, [_judge(taps, c, margins, seed) for c in contrasts]) for text, contrasts in _SENTENCES]
     out.append(_early(taps, seed))
     for claim in out:
-        claim.p = _largest_p(claim.parts)
-    for claim, corrected in zip(out, holm([c.p for c in out])):
-        claim.holm = corrected
-        if any(part.verdict == CONTRARY for part in claim.parts) and not math.isnan(claim.p):
-            claim.verdict = CONTRARY
-        elif not math.isnan(claim.p):
-            claim.verdict = SHOWN if claim.holm < _LEVEL else OPEN
+        shown, contrary = [x.p_shown for x in claim.parts], [x.p_contrary for x in claim.parts]
+        if not any(map(math.isnan, shown)):
+            claim.p, claim.p_contrary = max(shown), min(1.0, len(contrary) * min(contrary))
+    for claim, claim.holm, claim.holm_contrary in zip(out, holm([c.p for c in out]), holm([c.p_contrary for c in out])):
+        if not math.isnan(claim.holm):
+            claim.verdict = SHOWN if claim.holm < _LEVEL else CONTRARY if claim.holm_contrary < _LEVEL else OPEN
     return out

@@ -16,21 +16,7 @@ from ethd_programs.report.statistics import (FEWEST_PEOPLE, NAN, Clusters, Equiv
                                              equivalent, holm, summarise)
 from ethd_programs.report.taps import QUANTITIES, Cell, Quantity, Taps
 
-_NINE = 9  # taps behind each figure of the paper
-_TO_DRAW = 30  # taps to draw nine from
-_DRAWS = 2000
-
 # ---- Table 1 ----
-
-
-def _as_far_off(values: Numbers, mean: paper.Mean, seed: int) -> Tuple[float, float]:
-    """The shares of samples of nine taps whose mean, whose sd lies at least as far off as the paper's; two-sided."""
-    if len(values) < _TO_DRAW:
-        return NAN, NAN
-    drawn = np.random.default_rng(seed).choice(values, (_DRAWS, _NINE))
-    out = [min(1.0, 2 * min(float(np.mean(found >= there)), float(np.mean(found <= there))))
-           for found, there in ((drawn.mean(axis=1), mean.paper), (drawn.std(axis=1, ddof=1), mean.paper_sd))]
-    return out[0], out[1]
 
 
 def _of_offset(taps: Optional[Taps], mean: paper.Mean) -> Summary:
@@ -45,31 +31,27 @@ def table1(r: Report) -> None:
     if not r.measured or r.beside:
         r.page.put("<p>The simulated device and finger were <b>fitted to the four means of this table</b>, not measured: that they agree is no "
                    "evidence.</p>\n")
-    r.page.put("<p>Agreement is shown when the mean of %s's means lies within one published standard deviation of the published mean (two "
-               "one-sided t tests, p under 0.05); too few people can't show it. The last columns say how many samples of nine single taps, as "
-               "many as the paper has, would have a mean and a standard deviation at least as far off as the paper's; small shares speak against "
-               "agreement.</p>\n", r.judged_name)
+    r.page.put("<p>The last columns compare the people of %s with the paper's nine taps: the mean of people's means less the paper's (Welch's t "
+               "test), and the standard deviation of all taps over the paper's (F test, as if all taps were independent). A small p speaks "
+               "against agreement; a large one shows none.</p>\n", r.judged_name)
     beside = ("beside", "n") if r.beside else ()
     r.page.table("Table 1: mean (sample standard deviation) of all valid taps, n; then the mean of people's means",
-                 ("offset", "paper, n = 9", "this study", "n", *beside, "people's mean, 90 %", "agreement", "p", "mean as far off",
-                  "sd as far off"), 1)
+                 ("offset", "paper, n = 9", "this study", "n", *beside, "people's mean, 95 %", "less the paper's, 95 %", "p", "sd / paper's", "p"), 1)
     rows: List[List[Text]] = []
     for m in paper.means(r.judged):
-        q, study, other = m.quantity, _of_offset(r.taps, m), _of_offset(r.beside, m)
-        cell = r.judged.cell("offset", m.speed)
-        shares = _as_far_off(cell.values(q), m, r.seed) if cell else (NAN, NAN)
-        known = m.verdict != paper.TOO_FEW
-        low, high, p = (m.equivalence.interval.low, m.equivalence.interval.high, m.equivalence.p) if known else (NAN, NAN, NAN)
+        q, study, other, judged = m.quantity, _of_offset(r.taps, m), _of_offset(r.beside, m), _of_offset(r.judged, m)
+        low, high, found = m.interval.low, m.interval.high, m.beside
         average = f"{m.average:.{q.digits}f} ({interval_text(low, high, q.digits)})"
+        less = f"{number_text(found.difference, q.digits)} ({interval_text(found.interval.low, found.interval.high, q.digits)})"
         also = (mean_text(other.n, other.mean, other.sd, q.digits), str(other.n)) if r.beside else ()
         r.page.row(f"{m.name} ({q.unit})", f"{m.paper:.3f} ({m.paper_sd:.3f})", mean_text(study.n, study.mean, study.sd, q.digits), str(study.n),
-                   *also, average, m.verdict, p_text(p), *("-" if math.isnan(s) else f"{100 * s:.1f} %" for s in shares))
+                   *also, average, less, p_text(found.p_mean), number_text(judged.sd / m.paper_sd, 2), p_text(found.p_sd))
         rows.append([q.key, q.unit, m.speed, m.paper, m.paper_sd, study.mean, study.sd, study.n, other.mean, other.sd,
-                     other.n if r.beside else None, m.average, m.people, m.equivalence.interval.low, m.equivalence.interval.high, p, *shares,
-                     m.verdict])
+                     other.n if r.beside else None, m.average, m.people, low, high, found.difference, found.interval.low, found.interval.high,
+                     found.p_mean, judged.sd / m.paper_sd, found.p_sd])
     r.page.end_table()
     r.output.table("table1.csv", "metric,unit,speed,paper_mean,paper_sd,study_mean,study_sd,study_n,beside_mean,beside_sd,beside_n,people_mean,"
-                   "people,people_low_90,people_high_90,p_equivalent,mean_as_far_off,sd_as_far_off,verdict", rows)
+                   "people,people_low,people_high,difference,difference_low,difference_high,p_mean,sd_ratio,p_sd", rows)
 
 
 # ---- the paper's sentences ----
@@ -91,7 +73,8 @@ def _print_part(r: Report, part: paper.Part) -> None:
 def _part_row(number: int, claim: paper.Claim, part: paper.Part) -> List[Text]:
     bounds = (None if math.isinf(b) else b for b in (part.low, part.high))
     return [number, harmless(claim.text), harmless(part.what), harmless(part.unit), *bounds, part.people, part.mean, part.interval.low,
-            part.interval.high, part.d_z, part.p, claim.p, claim.holm, claim.verdict, part.test, part.at_low or None, part.at_high or None]
+            part.interval.high, part.d_z, part.p, claim.p, claim.holm, claim.p_contrary, claim.holm_contrary, claim.verdict, part.test,
+            part.at_low or None, part.at_high or None]
 
 
 def _outcome(r: Report, found: Sequence[paper.Claim]) -> str:
@@ -108,7 +91,8 @@ def claims(r: Report) -> None:
     found = paper.claims(r.judged, m, r.seed)
     r.page.heading("claims", "The paper's sentences")
     r.page.put("<p>Judged by the taps of %s, %d participant%s. A sentence is shown when all its parts are: its p is the largest of theirs, and is "
-               "corrected by Holm for all the sentences of this table, the family. &quot;Not shown&quot; doesn't mean that the contrary holds. "
+               "corrected by Holm for all the sentences of this table, the family. The contrary is shown when that of one part is: its p is the "
+               "smallest of theirs times their number, corrected by Holm in the same way. &quot;Not shown&quot; says neither. "
                "Smooth and offset are alike when their difference lies within &#177;%g mm (d_max) and &#177;%g and &#177;%g m/s (v_of, v_rmin): "
                "margins of the study file.</p>\n", r.judged_name, people, plural(people), m.d_max, m.v_of, m.v_rmin)
     r.page.put("<p>Tests: <em>sign flip</em>, the exact permutation test of people's contrasts; <em>TOST</em>, two one-sided t tests; "
@@ -117,9 +101,8 @@ def claims(r: Report) -> None:
                "at low speed, by a t test that takes into account who is in both (Derrick and others 2017). It assumes that who lacks a valid tap "
                "doesn't depend on the difference.</p>\n"
                "<p>The threshold is the voluntary speed of the hand that parts the taps which touch early from the others with the fewest mistakes, "
-               "under all strategies together; a hand is seldom as fast as it was asked to be. Limits of braking time and offset are held against "
-               "each person's largest valid value, so that a single tap may exceed a limit that is shown. The share of valid taps is the mean of "
-               "the people's shares; the table of valid taps pools all taps, so that those who needed many weigh more there.</p>\n")
+               "under all strategies together; a hand is seldom as fast as it was asked to be. Limits of braking time and offset are judged by "
+               "the share of a person's valid taps that keep them. The share of valid taps is the mean of the people's shares; the table of valid taps pools all taps, so that those who needed many weigh more there.</p>\n")
     r.page.put('<p class="note">%s</p>\n', "These participants are simulated: a p value says how sure the simulation's own answer is. More "
                "participants cost nothing and make any p small; none of them is evidence about people." if r.beside else r.caveat)
     r.page.put("<p>Of %d sentences: %s.</p>\n", len(found), _outcome(r, found))
@@ -127,14 +110,14 @@ def claims(r: Report) -> None:
                  ("tested within people", "must be", "test", "n", "mean", "95 %", "d_z", "p"), 3)
     rows: List[List[Text]] = []
     for number, claim in enumerate(found, 1):
-        without_p = math.isnan(claim.holm) or claim.verdict == paper.CONTRARY  # p belongs to the sentence, not to its contrary
-        p = "" if without_p else f"; by Holm p {'' if claim.holm < 1e-4 else '= '}{p_text(claim.holm)}"
+        corrected = claim.holm_contrary if claim.verdict == paper.CONTRARY else claim.holm
+        p = "" if math.isnan(corrected) else f"; by Holm p {'' if corrected < 1e-4 else '= '}{p_text(corrected)}"
         r.page.span(f"{claim.text}: {claim.verdict}{p}", 8)
         for part in claim.parts:
             _print_part(r, part)
             rows.append(_part_row(number, claim, part))
     r.page.end_table()
-    r.output.table("claims.csv", "claim,text,contrast,unit,from,to,participants,mean,low,high,d_z,p,p_claim,p_holm,verdict,test,people_low,"
+    r.output.table("claims.csv", "claim,text,contrast,unit,from,to,participants,mean,low,high,d_z,p,p_claim,p_holm,p_contrary,p_contrary_holm,verdict,test,people_low,"
                    "people_high", rows)
 
 

@@ -143,7 +143,7 @@ def compare(differences: Numbers, seed: int, with_effect: bool = True) -> Paired
 @dataclass(frozen=True)
 class Equivalence:
     p: float = NAN  #: the larger p of the two tests, small when the mean lies within; NaN with fewer than two people
-    outside: bool = False  #: the whole 95 % interval of the mean lies outside of a margin
+    p_outside: float = NAN  #: two-sided p of the mean against the nearest margin where it lies outside of both, else 1
     interval: Interval = Interval()  #: 90 % of the mean, which lies within the margins when p < 0.05
 
 
@@ -156,8 +156,30 @@ def equivalent(values: Numbers, low: float, high: float) -> Equivalence:
     distance = min(mean - low, high - mean)
     # differences without spread have no error: the mean is clearly inside the margin or clearly outside
     t = distance / error if error > 0 else math.copysign(math.inf, distance if distance else -1)
-    wide = t_interval(values, 0.95)
-    return Equivalence(float(special.stdtr(n - 1, -t)), wide.low > high or wide.high < low, t_interval(values, 0.9))
+    return Equivalence(float(special.stdtr(n - 1, -t)), min(1.0, 2 * float(special.stdtr(n - 1, t))), t_interval(values, 0.9))
+
+
+@dataclass(frozen=True)
+class Published:
+    """A sample beside a published one, of which n, mean and sd are known."""
+
+    difference: float = NAN  #: of the means, less the published one
+    interval: Interval = Interval()  #: 95 %
+    p_mean: float = NAN  #: Welch's t test, two-sided
+    p_sd: float = NAN  #: F test of the variances, two-sided
+
+
+def beside_published(people: Numbers, taps: Numbers, n: int, mean: float, sd: float) -> Published:
+    """people: one mean of each person, whose spread says how sure their mean is; taps: all taps, whose sd is compared."""
+    if len(people) < 2:
+        return Published()
+    difference, own, other = float(np.mean(people)) - mean, sd_of(people) ** 2 / len(people), sd**2 / n
+    freedom = (own + other) ** 2 / (own**2 / (len(people) - 1) + other**2 / (n - 1))
+    reach = student(0.975, freedom) * math.sqrt(own + other)
+    ratio = (sd_of(taps) / sd) ** 2
+    below = float(special.fdtr(len(taps) - 1, n - 1, ratio))
+    return Published(difference, Interval(difference - reach, difference + reach),
+                     2 * float(special.stdtr(freedom, -abs(difference) / math.sqrt(own + other))), 2 * min(below, 1 - below))
 
 
 @dataclass(frozen=True)
